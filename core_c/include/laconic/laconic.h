@@ -1,0 +1,493 @@
+/* Laconic: the dynamics of wheeled robots.
+ *
+ * One kernel for carriages with any number of omni, mecanum or fixed wheels anywhere, differential
+ * drives and caster wheels, after A. A. Zobova, "Application of laconic forms of the equations of
+ * motion in the dynamics of nonholonomic mobile robots", Rus. J. Nonlin. Dyn. 7(4), 2011. Equation
+ * numbers are that paper's; its symbols stand in the comments.
+ *
+ *     vehicle  --prepare-->  model  --step-->  state  -->  outputs
+ *      (SI)                (constants)           ^
+ *                                              input
+ *
+ * Memory   the caller owns every struct; no heap, no globals, nothing kept behind the caller's back.
+ *          All structs are plain data without pointers to each other: copy them to save and restore.
+ *          (laconic_integrator points to its method, which is constant.)
+ * Threads  functions touch only their arguments; different structs may be used at the same time.
+ * Errors   a function that can refuse returns a laconic_status and changes nothing when it does.
+ *          Where `why` is given (it may be NULL), it says which field and wheel, and which value;
+ *          laconic_message() turns that into one line of text.
+ * Bits     the same on every platform with IEEE arithmetic (-std=c99 -ffp-contract=off): the core
+ *          brings its own sine, exponential and square root.
+ *
+ * Frames   body axes (ξ, η): η is ξ turned by +90°. `com_*` and the wheels are given in the body frame,
+ *          whose origin may be anywhere. World axes (X, Y); heading θ is the angle from X to ξ. The
+ *          position (x, y) of a state is that of the centre of mass S.
+ * ν        pseudo-velocities: v_S = R ν1 e_ξ + R ν2 e_η, ν3 = Λ θ', with I_S = Λ² M R²   [rad/s]
+ * χ        own rotation of a wheel; positive χ' drives the hub along (−sin β, cos β), β the axle's
+ *          direction. So a wheel that rolls along +ξ has β = −π/2, left and right alike. */
+#ifndef LACONIC_H
+#define LACONIC_H
+
+#include "laconic/real.h"
+
+#ifdef __cplusplus
+extern "C" {
+#endif
+
+#define LACONIC_VERSION "0.1.0"
+#define LACONIC_GRAVITY_M_PER_S2 9.80665
+
+/* ------------------------------------------------------------------------------- refusals -- */
+
+typedef enum laconic_status {
+    LACONIC_OK = 0,
+    LACONIC_NOT_FINITE,                  /* a number is infinite or not a number                      */
+    LACONIC_NOT_POSITIVE,                /* mass, wheel radius, yaw inertia or step is not above zero */
+    LACONIC_NEGATIVE,                    /* an inertia, damping or friction is below zero             */
+    LACONIC_ROLLER_ALONG_AXLE,           /* |sin γ| too small: the wheel would transmit nothing       */
+    LACONIC_WHEEL_NOT_SET,               /* wheel_count counts a wheel whose kind was never given     */
+    LACONIC_WHEEL_KIND_UNKNOWN,          /* kind is none of laconic_wheel_kind                        */
+    LACONIC_TOO_MANY_WHEELS,             /* wheel_count below 0 or above LACONIC_MAX_WHEELS           */
+    LACONIC_TOO_MANY_SUPPORTS,           /* support_count below 0 or above LACONIC_MAX_SUPPORTS       */
+    LACONIC_NOTHING_MOVES,               /* three independent constraints                             */
+    LACONIC_ILL_CONDITIONED,             /* A has no correct digit left in this scalar type           */
+    LACONIC_START_AGAINST_CONSTRAINTS,   /* the initial velocity slides a fixed or locked wheel       */
+    LACONIC_METHOD_UNKNOWN,              /* no method of that name or number                          */
+    LACONIC_STEP_DOES_NOT_FIT,           /* the interval is no whole number of steps                  */
+    LACONIC_STEP_BEYOND_DAMPING_LIMIT,   /* explicit method: h·r_max above its limit                  */
+    LACONIC_STEP_BEYOND_GYROSCOPIC_LIMIT,/* explicit method: h·|ν3| above its limit in this state     */
+    LACONIC_STEP_GAINS_ENERGY,           /* the step would make energy out of nothing                 */
+    LACONIC_STEP_SINGULAR,               /* the step's equations have no solution in this state       */
+    LACONIC_OVERFLOW,                    /* the result leaves the range of the scalar type            */
+    LACONIC_STATUS_COUNT
+} laconic_status;
+
+/* The fields a refusal can name. laconic_field_name() gives the name used in scenes and FMUs. */
+typedef enum laconic_field {
+    LACONIC_FIELD_NONE = 0,
+    LACONIC_FIELD_MASS,
+    LACONIC_FIELD_YAW_INERTIA,
+    LACONIC_FIELD_COM_X,
+    LACONIC_FIELD_COM_Y,
+    LACONIC_FIELD_COM_Z,
+    LACONIC_FIELD_WHEEL_RADIUS,
+    LACONIC_FIELD_WHEEL_INERTIA,
+    LACONIC_FIELD_MOTOR_GAIN,
+    LACONIC_FIELD_MOTOR_DAMPING,
+    LACONIC_FIELD_FRICTION_COEFFICIENT,
+    LACONIC_FIELD_PAYLOAD_MASS,
+    LACONIC_FIELD_PAYLOAD_X,
+    LACONIC_FIELD_PAYLOAD_Y,
+    LACONIC_FIELD_PAYLOAD_YAW_INERTIA,
+    LACONIC_FIELD_WHEEL_COUNT,
+    LACONIC_FIELD_WHEEL_KIND,
+    LACONIC_FIELD_WHEEL_X,
+    LACONIC_FIELD_WHEEL_Y,
+    LACONIC_FIELD_AXLE,
+    LACONIC_FIELD_ROLLER,
+    LACONIC_FIELD_WHEEL_LOCKED,
+    LACONIC_FIELD_SUPPORT_COUNT,
+    LACONIC_FIELD_SUPPORT_X,
+    LACONIC_FIELD_SUPPORT_Y,
+    LACONIC_FIELD_START_NU,
+    LACONIC_FIELD_START_X,
+    LACONIC_FIELD_START_Y,
+    LACONIC_FIELD_START_HEADING,
+    LACONIC_FIELD_METHOD,
+    LACONIC_FIELD_STEP,
+    LACONIC_FIELD_VOLTAGE,
+    LACONIC_FIELD_AXLE_TORQUE,
+    LACONIC_FIELD_BODY_FORCE,
+    LACONIC_FIELD_BODY_MOMENT,
+    LACONIC_FIELD_WORLD_FORCE,
+    LACONIC_FIELD_WORLD_FORCE_POINT,
+    LACONIC_FIELD_RESISTANCE,
+    LACONIC_FIELD_TORQUE_CONSTANT,
+    LACONIC_FIELD_BACK_EMF,
+    LACONIC_FIELD_GEAR_RATIO,
+    LACONIC_FIELD_VISCOUS_FRICTION,
+    LACONIC_FIELD_ROTOR_INERTIA,
+    LACONIC_FIELD_COUNT
+} laconic_field;
+
+/* Why something was refused: what to tell the user. */
+typedef struct laconic_refusal {
+    laconic_status status;
+    laconic_field field;
+    int32_t item;       /* wheel, support or component, from 1; 0: the field has no items */
+    laconic_real value; /* the value that was refused                                     */
+    laconic_real limit; /* the nearest acceptable one, where there is one; else 0         */
+} laconic_refusal;
+
+/* One line of text for a refusal, naming the field, the wheel and the remedy. Writes at most `size`
+ * characters with the closing 0 and returns the length the whole text has (as snprintf does). */
+size_t laconic_message(const laconic_refusal *why, char *text, size_t size);
+
+/* "mass_kg", "wheel_x_m" … ; "" for a number that is no field. */
+const char *laconic_field_name(laconic_field field);
+
+/* "not finite", "wheel not set" … : a few words; "unknown status" for a number that is none. */
+const char *laconic_status_name(laconic_status status);
+
+/* -------------------------------------------------------------------------------- vehicle -- */
+
+typedef enum laconic_wheel_kind {
+    LACONIC_WHEEL_UNSET = 0,  /* refused: so that a forgotten wheel is noticed                    */
+    LACONIC_WHEEL_ROLLER = 1, /* omni or mecanum: slides freely along its rollers' rolling direction */
+    LACONIC_WHEEL_FIXED = 2   /* ordinary, not steered: does not move along its axle               */
+} laconic_wheel_kind;
+
+typedef struct laconic_wheel {
+    laconic_wheel_kind kind;
+    bool locked;             /* held by a brake: χ' = 0                                           */
+    laconic_real x_m, y_m;   /* wheel centre P_i in the body frame                                */
+    laconic_real axle_rad;   /* β_i, direction of the axle in the body frame                      */
+    laconic_real roller_rad; /* γ_i, from axle to roller axis (the roller that touches the ground):
+                                π/2 omni, ±π/4 mecanum; not read for fixed wheels                 */
+} laconic_wheel;
+
+/* A load fastened to the body. All zero: none. */
+typedef struct laconic_payload {
+    laconic_real mass_kg;
+    laconic_real x_m, y_m;         /* its centre of mass in the body frame                        */
+    laconic_real yaw_inertia_kgm2; /* about the vertical through its centre of mass               */
+} laconic_payload;
+
+typedef struct laconic_support { /* a ball caster: carries load, nothing else */
+    laconic_real x_m, y_m;
+} laconic_support;
+
+/* What the user knows. Start from all zero and set what applies. Totals count the wheels in. */
+typedef struct laconic_vehicle {
+    laconic_real mass_kg;               /* M, without payload                                     */
+    laconic_real yaw_inertia_kgm2;      /* I_S, about the vertical through the centre of mass     */
+    laconic_real com_x_m, com_y_m;      /* centre of mass S in the body frame, without payload    */
+    laconic_real com_z_m;               /* its height, for normal loads only                      */
+    laconic_real wheel_radius_m;        /* R, common to all wheels                                */
+    laconic_real wheel_inertia_kgm2;    /* J, one wheel with its gear and rotor about the axle    */
+    laconic_real motor_gain_Nm_per_V;   /* c1: torque on a wheel is c1 U − c2 χ' + axle torque    */
+    laconic_real motor_damping_Nms;     /* c2                                                     */
+    laconic_real friction_coefficient;  /* μ, for the no-slip margin only                         */
+    laconic_payload payload;
+    int32_t wheel_count;                /* N, 0 … LACONIC_MAX_WHEELS; 0 is a sliding puck         */
+    laconic_wheel wheel[LACONIC_MAX_WHEELS];
+    int32_t support_count;              /* 0 … LACONIC_MAX_SUPPORTS, for normal loads only        */
+    laconic_support support[LACONIC_MAX_SUPPORTS];
+} laconic_vehicle;
+
+/* OK iff every number of the vehicle is usable; else the first that is not. O(N). */
+laconic_status laconic_vehicle_check(const laconic_vehicle *vehicle, laconic_refusal *why);
+
+/* A brushed DC motor behind a gear, at the motor's shaft. */
+typedef struct laconic_motor {
+    laconic_real resistance_ohm;           /* R_a > 0                                             */
+    laconic_real torque_constant_Nm_per_A; /* k_t                                                 */
+    laconic_real back_emf_Vs_per_rad;      /* k_e                                                 */
+    laconic_real gear_ratio;               /* G: shaft turns per wheel turn, not 0                */
+    laconic_real viscous_friction_Nms;     /* b                                                   */
+    laconic_real rotor_inertia_kgm2;
+} laconic_motor;
+
+/* c1 = G k_t/R_a, c2 = G² (k_t k_e/R_a + b) set in the vehicle; G² J_rotor added to J, so call it once. */
+laconic_status laconic_motor_fit(laconic_vehicle *vehicle, const laconic_motor *motor, laconic_refusal *why);
+
+/* ---------------------------------------------------------------------------------- model -- */
+
+/* Prepared constants; read it, do not write it. Coordinates ζ make (4.7) as short as it gets:
+ *     ν = G ζ with GᵀAG = 1 and every constraint built in,
+ *     ζ' = (g·ζ)(ζ × w) − diag(r) ζ + b,      |ζ|² = νᵀAν,      g: third row of G.
+ * With fewer than three degrees of freedom the columns of G beyond `dof` are zero. */
+typedef struct laconic_model {
+    int32_t wheel_count;
+    int32_t dof;                                     /* m = 1 … 3                                 */
+    laconic_real nu_of_zeta[3][3];                   /* G                                         */
+    laconic_real gyro[3];                            /* w = G₀ × G₁ / Λ                           */
+    laconic_real decay_per_s[3];                     /* r_k ≥ 0, damping rates                    */
+    laconic_real inertia[3];                         /* 1 + λ² x_k, principal values of A         */
+    laconic_real velocity_of_zeta[2][3];             /* R G₀, R G₁: v_S in body axes              */
+    laconic_real yaw_rate_of_zeta[3];                /* g/Λ                                       */
+    laconic_real wheel_of_zeta[LACONIC_MAX_WHEELS][3]; /* Ξ G: χ' = Ξ ν                           */
+    laconic_real torque_scale;                       /* 1/(M R²)                                  */
+    laconic_real voltage_scale;                      /* c1/(M R²)                                 */
+    laconic_real motor_gain_Nm_per_V;                /* c1                                        */
+    laconic_real motor_damping_Nms;                  /* c2                                        */
+    laconic_real wheel_inertia_kgm2;                 /* J                                         */
+    laconic_real mass_kg, wheel_radius_m;            /* M with payload, R                         */
+    laconic_real yaw_scale;                          /* Λ                                         */
+    laconic_real com_x_m, com_y_m;                   /* S in the body frame, with payload         */
+} laconic_model;
+
+/* Checks the vehicle and fills the model: rows of Ξ (4.3–4.4), constraints of fixed and locked wheels,
+ * principal axes of A (4.6), damping rates. About 2,000 flops plus 60 N; the only place that takes sines
+ * and divides by what the user gave. Refuses as laconic_vehicle_check does, and with NOTHING_MOVES and
+ * ILL_CONDITIONED (value: the condition number of A). */
+laconic_status laconic_prepare(laconic_model *model, const laconic_vehicle *vehicle, laconic_refusal *why);
+
+/* Condition number of A on the motions that the constraints leave: log10 of it is the number of digits
+ * that a velocity loses when a torque is turned into an acceleration. */
+laconic_real laconic_condition_number(const laconic_model *model);
+
+/* The matrices of the paper, for people who want to see them. */
+typedef struct laconic_matrices {
+    laconic_real wheel_rows[LACONIC_MAX_WHEELS][3];      /* Ξ (4.3–4.4)                            */
+    laconic_real inertia[3][3];                          /* A = E + λ² ΞᵀΞ (4.6)                   */
+    laconic_real inverse_inertia[3][3];                  /* A⁻¹; with constraints G Gᵀ             */
+    int32_t constraint_count;                            /* rows below, dependent ones included    */
+    laconic_real constraint_rows[2 * LACONIC_MAX_WHEELS][3]; /* c with cᵀν = 0: per wheel the lateral
+                                                            one if fixed, then Ξ_i if locked      */
+    laconic_real lambda_yaw;                             /* Λ                                      */
+    laconic_real lambda_wheel;                           /* λ                                      */
+} laconic_matrices;
+
+laconic_status laconic_matrices_of(laconic_matrices *matrices, const laconic_vehicle *vehicle, laconic_refusal *why);
+
+/* ---------------------------------------------------------------------------------- input -- */
+
+/* What acts on the vehicle. All zero: it rolls freely (against its motors' damping). */
+typedef struct laconic_input {
+    laconic_real voltage_V[LACONIC_MAX_WHEELS];       /* U_i                                      */
+    laconic_real axle_torque_Nm[LACONIC_MAX_WHEELS];  /* besides the motor's                      */
+    laconic_real body_force_N[2];                     /* body axes, acting at S                   */
+    laconic_real body_moment_Nm;                      /* about S                                  */
+    laconic_real world_force_N[2];                    /* world axes                               */
+    laconic_real world_force_point_m[2];              /* where it acts: body axes, from S         */
+} laconic_input;
+
+/* OK iff every number of the first wheel_count wheels, and the rest, is finite. */
+laconic_status laconic_input_check(const laconic_model *model, const laconic_input *input, laconic_refusal *why);
+
+/* The input in ζ coordinates: b = constant + cos θ · cosine + sin θ · sine. */
+typedef struct laconic_load {
+    laconic_real constant[3];
+    laconic_real cosine[3], sine[3]; /* only where turns                                          */
+    bool turns;                      /* a force fixed in the world acts                           */
+} laconic_load;
+
+void laconic_load_of(laconic_load *load, const laconic_model *model, const laconic_input *input);
+
+/* ---------------------------------------------------------------------------------- state -- */
+
+/* A sum that does not lose what is small against it: true value = value + rest. */
+typedef struct laconic_sum {
+    laconic_real value, rest;
+} laconic_sum;
+
+/* θ = 2π (turns + (fraction + rest)·2⁻⁶⁴), 2⁻³² in single: never loses resolution, wraps exactly. */
+typedef struct laconic_heading {
+    int64_t turns;
+    laconic_turn fraction;
+    laconic_real rest; /* in units of the fraction */
+} laconic_heading;
+
+/* All that a motion consists of. Copy it to save, copy it back to return. */
+typedef struct laconic_state {
+    laconic_sum zeta[3];
+    laconic_sum x_m, y_m;
+    laconic_heading heading;
+    laconic_sum wheel_angle_rad[LACONIC_MAX_WHEELS]; /* χ_i */
+} laconic_state;
+
+typedef struct laconic_start {
+    laconic_real nu_rad_per_s[3];
+    laconic_real x_m, y_m; /* of the centre of mass */
+    laconic_real heading_rad;
+} laconic_start;
+
+/* Sets the state; wheel angles become 0. Refuses START_AGAINST_CONSTRAINTS iff ν is off the allowed
+ * motions by more than LACONIC_RANK_TOLERANCE of its size (item: the component that is furthest off,
+ * limit: the nearest allowed value of it). */
+laconic_status laconic_state_set(laconic_state *state, const laconic_model *model, const laconic_start *start,
+                                 laconic_refusal *why);
+
+/* Carries a motion over to a changed vehicle (payload, motor): velocity and pose of the body's origin,
+ * yaw rate and wheel angles stay; ν and (x, y) are recomputed. The wheels must be the same. */
+void laconic_state_carry(laconic_state *state, const laconic_model *from, const laconic_model *to);
+
+/* ------------------------------------------------------------------------ methods and steps -- */
+
+/* One method prepared for one step size: factors of one exponential sub-step, per axis k, a = h r_k. */
+typedef struct laconic_decay {
+    laconic_real gain[3];       /* h φ1(−a): increment per derivative                             */
+    laconic_real ramp[3];       /* h φ2(−a): increment per change of b over the step              */
+    laconic_real mean[3];       /* φ2/φ1: how far the mean lies along the increment, ½ … 1        */
+    laconic_real mean_ramp[3];  /* h (φ3 − φ2²/φ1)                                                */
+    laconic_real slope[3];      /* 12 (φ2/2 − φ3)/φ1: first moment along the increment, 1 … 0     */
+    laconic_real slope_ramp[3]; /* its part per change of b                                       */
+} laconic_decay;
+
+struct laconic_method;
+
+typedef struct laconic_integrator {
+    const struct laconic_method *method; /* what was asked for                                    */
+    const struct laconic_method *chosen; /* what works: differs from `method` only for auto       */
+    laconic_real step_s;                 /* h                                                     */
+    laconic_decay decay[3];              /* for h, h/2, h/4, as far as the method needs them      */
+    laconic_real gyro_limit;             /* largest |g·ζ| an explicit method bears; 0: any        */
+} laconic_integrator;
+
+/* What a method finds out about one step; all in ζ coordinates. */
+typedef struct laconic_increment {
+    laconic_real delta[3]; /* ζ(t+h) − ζ(t)                                                       */
+    laconic_real mean[3];  /* mean of ζ over the step                                             */
+    laconic_real slope[3]; /* 12/h² times the first moment of ζ about the middle of the step;
+                              = delta where ζ changes evenly, 0 where it jumps at once            */
+} laconic_increment;
+
+/* Inputs at the start, middle and end of the step. Held inputs: three times the same pointer. */
+typedef struct laconic_loads {
+    const laconic_load *start, *middle, *end;
+} laconic_loads;
+
+typedef struct laconic_method {
+    const char *name;
+    int32_t order;
+    laconic_status (*prepare)(laconic_integrator *integrator, const laconic_model *model, laconic_refusal *why);
+    laconic_status (*increment)(const laconic_model *model, const laconic_integrator *integrator,
+                                const laconic_state *state, laconic_loads loads, laconic_increment *out);
+} laconic_method;
+
+/*                                            order  takes                  conserves, free motion  */
+extern const laconic_method laconic_rk4;                 /* 4  h·r ≤ 2.785, h·|ν3| limited  –       */
+extern const laconic_method laconic_exponential_kahan;   /* 2  any damping                  nearly  */
+extern const laconic_method laconic_exponential_kahan_4; /* 4  any damping                  nearly  */
+extern const laconic_method laconic_exact_flow;          /* 2  everything                   exactly */
+extern const laconic_method laconic_exact_flow_4;        /* 4  any damping, best below h·r ≈ 0.3    */
+extern const laconic_method laconic_auto;                /* picks one of them; see auto.c           */
+
+/* All methods, for adapters that choose by number (0 auto, 1 rk4, 2 exponential-kahan,
+ * 3 exponential-kahan-4, 4 exact-flow, 5 exact-flow-4) or by name. NULL if there is none. Links them all. */
+#define LACONIC_METHOD_COUNT 6
+const laconic_method *laconic_method_by_number(int32_t number);
+const laconic_method *laconic_method_by_name(const char *name);
+
+/* Prepares a method for a step. Refuses NOT_FINITE, NOT_POSITIVE (step), and for explicit methods
+ * STEP_BEYOND_DAMPING_LIMIT (limit: the largest stable step). */
+laconic_status laconic_integrator_prepare(laconic_integrator *integrator, const laconic_method *method,
+                                          const laconic_model *model, laconic_real step_s, laconic_refusal *why);
+
+/* One step of h with the input held. Refuses NOT_FINITE (input), STEP_BEYOND_GYROSCOPIC_LIMIT,
+ * STEP_GAINS_ENERGY, STEP_SINGULAR, OVERFLOW; the state is then as it was. */
+laconic_status laconic_step(const laconic_model *model, const laconic_integrator *integrator, laconic_state *state,
+                            const laconic_input *held);
+
+/* One step with the input sampled at its start, middle and end. */
+laconic_status laconic_step_sampled(const laconic_model *model, const laconic_integrator *integrator,
+                                    laconic_state *state, const laconic_input *start, const laconic_input *middle,
+                                    const laconic_input *end);
+
+/* Turns the status of a refused step into words: which step, state and limit. */
+void laconic_step_refusal(laconic_refusal *why, laconic_status status, const laconic_model *model,
+                          const laconic_integrator *integrator, const laconic_state *state,
+                          const laconic_input *input);
+
+/* The largest step a method bears for this vehicle and state: damping and gyroscopic limit, 0: any. */
+laconic_real laconic_largest_stable_step_s(const laconic_method *method, const laconic_model *model,
+                                           const laconic_state *state);
+
+/* Whole number of steps in an interval: n = round(interval/step). Refuses STEP_DOES_NOT_FIT iff
+ * |n·step − interval| exceeds 1e-6 of the *step* (value: step, limit: interval/n) and non-positive numbers. */
+laconic_status laconic_steps_in(double interval_s, double step_s, uint64_t *steps, laconic_refusal *why);
+
+/* -------------------------------------------------------------------------------- outputs -- */
+
+void laconic_nu(const laconic_model *model, const laconic_state *state, laconic_real nu_rad_per_s[3]);
+
+typedef struct laconic_pose {
+    laconic_real x_m, y_m;               /* centre of mass S                                      */
+    laconic_real origin_x_m, origin_y_m; /* origin of the body frame                              */
+    laconic_real heading_rad;            /* unwrapped                                             */
+    laconic_real heading_wrapped_rad;    /* in (−π, π]                                            */
+} laconic_pose;
+
+void laconic_pose_of(laconic_pose *pose, const laconic_model *model, const laconic_state *state);
+
+/* v_S in body axes [m/s]; returns the yaw rate [rad/s]. */
+laconic_real laconic_body_velocity(const laconic_model *model, const laconic_state *state,
+                                   laconic_real velocity_m_per_s[2]);
+
+/* χ' of the model's N wheels [rad/s]. */
+void laconic_wheel_speeds(const laconic_model *model, const laconic_state *state, laconic_real *speed_rad_per_s);
+
+/* Torque on each axle: motor and applied, without brakes [N·m]. */
+void laconic_wheel_torques(const laconic_model *model, const laconic_state *state, const laconic_input *input,
+                           laconic_real *torque_Nm);
+
+/* Kinetic energy T = ½ M R² νᵀAν [J]; constant in free motion without damping. */
+laconic_real laconic_energy_J(const laconic_model *model, const laconic_state *state);
+
+/* K = (Aν)₃, the second integral of the free motion (no constraints, no damping) [rad/s]. */
+laconic_real laconic_yaw_integral(const laconic_model *model, const laconic_state *state);
+
+/* Right-hand side of (4.7) with everything: for Model Exchange and for tests. ν is first projected onto
+ * the motions that the constraints allow. */
+typedef struct laconic_rates {
+    laconic_real nu_rad_per_s2[3];
+    laconic_real x_m_per_s, y_m_per_s, yaw_rate_rad_per_s;
+    laconic_real wheel_speed_rad_per_s[LACONIC_MAX_WHEELS];
+} laconic_rates;
+
+void laconic_derivative(laconic_rates *rates, const laconic_model *model, const laconic_real nu_rad_per_s[3],
+                        laconic_real heading_rad, const laconic_input *input);
+
+/* ---------------------------------------------------- ground reactions and normal loads (§5) -- */
+
+/* What reactions need besides the model, prepared once. */
+typedef struct laconic_contact {
+    int32_t constraint_count;
+    int32_t lateral_row[LACONIC_MAX_WHEELS];  /* row of a fixed wheel's constraint, −1: none      */
+    int32_t brake_row[LACONIC_MAX_WHEELS];    /* row of a locked wheel's, −1: none                */
+    laconic_real multiplier[2 * LACONIC_MAX_WHEELS][3]; /* κ = multiplier · (Aν' − …): least norm,
+                                                 so wheels that share a constraint share its force */
+    laconic_real wheel_rows[LACONIC_MAX_WHEELS][3];     /* Ξ                                       */
+    laconic_real inverse_arm_per_m[LACONIC_MAX_WHEELS]; /* 1/(R sin γ_i)                           */
+    laconic_real pull[LACONIC_MAX_WHEELS][2]; /* unit vector the reaction acts along, body axes    */
+    laconic_real axle[LACONIC_MAX_WHEELS][2]; /* unit vector of the axle, body axes                */
+    laconic_real inertia[3][3];               /* A                                                 */
+    int32_t point_count;                      /* wheels, then supports                             */
+    laconic_real point_m[LACONIC_MAX_WHEELS + LACONIC_MAX_SUPPORTS][2]; /* from S, body axes       */
+    laconic_real load_of_wrench[LACONIC_MAX_WHEELS + LACONIC_MAX_SUPPORTS][3]; /* least-norm statics */
+    laconic_real com_z_m, friction_coefficient;
+} laconic_contact;
+
+laconic_status laconic_contact_prepare(laconic_contact *contact, const laconic_vehicle *vehicle,
+                                       const laconic_model *model, laconic_refusal *why);
+
+typedef struct laconic_reactions {
+    laconic_real along_N[LACONIC_MAX_WHEELS];   /* along `pull`: the roller axis; fixed: rolling direction */
+    laconic_real lateral_N[LACONIC_MAX_WHEELS]; /* fixed wheels: along the axle; others 0         */
+    laconic_real brake_Nm[LACONIC_MAX_WHEELS];  /* locked wheels: torque of the brake; others 0   */
+    laconic_real normal_N[LACONIC_MAX_WHEELS + LACONIC_MAX_SUPPORTS]; /* below 0: it would lift   */
+    laconic_real no_slip_margin_N;              /* least of μ N_i − |reaction_i|; below 0: it slips */
+} laconic_reactions;
+
+void laconic_reactions_of(laconic_reactions *reactions, const laconic_contact *contact, const laconic_model *model,
+                          const laconic_state *state, const laconic_input *input);
+
+/* ---------------------------------------------------------------------------------- plant -- */
+
+/* The whole thing in one piece, for adapters: FMU, firmware node and host all drive this. */
+typedef struct laconic_plant {
+    laconic_vehicle vehicle;
+    laconic_model model;
+    laconic_integrator integrator;
+    laconic_state state;
+    uint64_t steps; /* taken since the start: time is steps · step_s */
+} laconic_plant;
+
+/* vehicle → model, method and step → integrator, start → state. Nothing changes when it refuses. */
+laconic_status laconic_plant_start(laconic_plant *plant, const laconic_vehicle *vehicle, const laconic_method *method,
+                                   laconic_real step_s, const laconic_start *start, laconic_refusal *why);
+
+/* `steps` steps with the input held. When step k is refused, k − 1 steps have been taken (see `steps`). */
+laconic_status laconic_plant_run(laconic_plant *plant, const laconic_input *held, uint64_t steps, laconic_refusal *why);
+
+/* Another step size from here on (steps goes on counting). */
+laconic_status laconic_plant_set_step(laconic_plant *plant, laconic_real step_s, laconic_refusal *why);
+
+/* Another payload, motor, mass … while it moves (laconic_state_carry). The wheels must stay as they are. */
+laconic_status laconic_plant_change(laconic_plant *plant, const laconic_vehicle *vehicle, laconic_refusal *why);
+
+#ifdef __cplusplus
+}
+#endif
+#endif

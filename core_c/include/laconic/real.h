@@ -1,0 +1,87 @@
+/* The scalar type, the array bounds, and what a build leaves out.
+ *
+ * Everything that differs between builds of the core is decided here and nowhere else:
+ *   LACONIC_SINGLE         float instead of double
+ *   LACONIC_SCENE_HEADER   a generated header that fixes the constants below for one scene
+ * The constants are tested with plain `if`, so the compiler still reads what it then drops. */
+#ifndef LACONIC_REAL_H
+#define LACONIC_REAL_H
+
+#include <float.h>
+#include <stdbool.h>
+#include <stddef.h>
+#include <stdint.h>
+
+#ifdef __FAST_MATH__
+#error "laconic: -ffast-math breaks the compensated sums and the tests for NaN; compile without it"
+#endif
+#if defined(FLT_EVAL_METHOD) && FLT_EVAL_METHOD != 0 && FLT_EVAL_METHOD != 16
+#error "laconic: this target keeps excess precision (x87); compile with -msse2 -mfpmath=sse"
+#endif
+
+#ifdef LACONIC_SINGLE
+typedef float laconic_real;
+typedef uint32_t laconic_turn; /* angle in units of 2^-32 turn */
+#define LACONIC_REAL_NAME "single"
+#define LACONIC_EPSILON FLT_EPSILON
+#define LACONIC_REAL_MAX FLT_MAX
+#define LACONIC_REAL_MIN FLT_MIN
+#define LACONIC_RANK_TOLERANCE 1e-5F       /* constraint rows closer than this count once */
+#define LACONIC_SMALLEST_ROLLER_SINE 1e-3F /* |sin γ| below it is refused */
+#else
+typedef double laconic_real;
+typedef uint64_t laconic_turn; /* angle in units of 2^-64 turn */
+#define LACONIC_REAL_NAME "double"
+#define LACONIC_EPSILON DBL_EPSILON
+#define LACONIC_REAL_MAX DBL_MAX
+#define LACONIC_REAL_MIN DBL_MIN
+#define LACONIC_RANK_TOLERANCE 1e-9
+#define LACONIC_SMALLEST_ROLLER_SINE 1e-6
+#endif
+
+#ifdef LACONIC_SCENE_HEADER
+#include LACONIC_SCENE_HEADER
+#endif
+
+#ifndef LACONIC_MAX_WHEELS
+#define LACONIC_MAX_WHEELS 16
+#endif
+#if LACONIC_MAX_WHEELS < 1 || LACONIC_MAX_WHEELS > 64
+#error "laconic: LACONIC_MAX_WHEELS must be from 1 to 64"
+#endif
+#ifndef LACONIC_MAX_SUPPORTS
+#define LACONIC_MAX_SUPPORTS 4
+#endif
+#if LACONIC_MAX_SUPPORTS < 1 || LACONIC_MAX_SUPPORTS > 16
+#error "laconic: LACONIC_MAX_SUPPORTS must be from 1 to 16"
+#endif
+
+/* How many wheels a loop runs over: a field of the model, or the scene's own number. */
+#ifndef LACONIC_WHEELS
+#define LACONIC_WHEELS(model) ((model)->wheel_count)
+#endif
+
+/* What acts on the vehicle, and what is followed. A scene's header sets to 0 what it does without. */
+#ifndef LACONIC_WITH_VOLTAGE
+#define LACONIC_WITH_VOLTAGE 1
+#endif
+#ifndef LACONIC_WITH_AXLE_TORQUE
+#define LACONIC_WITH_AXLE_TORQUE 1
+#endif
+#ifndef LACONIC_WITH_BODY_WRENCH
+#define LACONIC_WITH_BODY_WRENCH 1
+#endif
+#ifndef LACONIC_WITH_WORLD_FORCE
+#define LACONIC_WITH_WORLD_FORCE 1
+#endif
+#ifndef LACONIC_WITH_SAMPLED_INPUT
+#define LACONIC_WITH_SAMPLED_INPUT 1
+#endif
+#ifndef LACONIC_WITH_POSE
+#define LACONIC_WITH_POSE 1
+#endif
+#ifndef LACONIC_WITH_WHEEL_ANGLES
+#define LACONIC_WITH_WHEEL_ANGLES 1
+#endif
+
+#endif
