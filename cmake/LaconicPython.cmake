@@ -1,0 +1,34 @@
+# The Python environment: target `laconic_venv` and its interpreter LACONIC_PYTHON.
+#
+# Depend on the target, not on the stamp file: Make would run the rule once in every target that names the file.
+#
+# It holds exactly what host_tests/requirements.txt locks, and the package `laconic` itself, editable. A build tree
+# whose LACONIC_VENV is another tree's only uses it; the other tree keeps it up to date.
+
+find_package(Python3 3.10 COMPONENTS Interpreter)
+if(NOT Python3_Interpreter_FOUND)
+    message(FATAL_ERROR "laconic: no Python 3.10 or newer was found: install one, or name it with -DPython3_EXECUTABLE=")
+endif()
+
+if(CMAKE_HOST_WIN32)
+    set(LACONIC_VENV_BIN "${LACONIC_VENV}/Scripts")
+else()
+    set(LACONIC_VENV_BIN "${LACONIC_VENV}/bin")
+endif()
+set(LACONIC_PYTHON "${LACONIC_VENV_BIN}/python${CMAKE_EXECUTABLE_SUFFIX}")
+set(LACONIC_COMMAND "${LACONIC_VENV_BIN}/laconic${CMAKE_EXECUTABLE_SUFFIX}")
+set(LACONIC_VENV_STAMP "${LACONIC_VENV}/laconic.stamp")
+
+set(host "${PROJECT_SOURCE_DIR}/host_tests")
+cmake_path(IS_PREFIX CMAKE_BINARY_DIR "${LACONIC_VENV}" NORMALIZE venv_is_ours)
+if(venv_is_ours)
+    add_custom_command(
+        OUTPUT "${LACONIC_VENV_STAMP}"
+        COMMAND "${Python3_EXECUTABLE}" "${PROJECT_SOURCE_DIR}/cmake/make_venv.py" --venv "${LACONIC_VENV}"
+                --requirements "${host}/requirements.txt" --package "${host}" --stamp "${LACONIC_VENV_STAMP}"
+        DEPENDS "${PROJECT_SOURCE_DIR}/cmake/make_venv.py" "${host}/requirements.txt" "${host}/pyproject.toml"
+        COMMENT "Python environment" USES_TERMINAL VERBATIM)
+elseif(NOT EXISTS "${LACONIC_VENV_STAMP}")
+    message(FATAL_ERROR "laconic: LACONIC_VENV=${LACONIC_VENV} is not there: build the tree it belongs to first")
+endif()
+add_custom_target(laconic_venv DEPENDS "${LACONIC_VENV_STAMP}")

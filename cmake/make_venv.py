@@ -1,0 +1,90 @@
+"""Make the Python environment that the build and the `laconic` command use: locked packages, then our own, editable."""
+
+from __future__ import annotations
+
+import argparse
+import re
+import shutil
+import subprocess
+import sys
+import venv
+from pathlib import Path
+
+
+def main() -> int:
+    arguments = parse()
+    try:
+        create(arguments.venv)
+        python = next(path for path in candidates(arguments.venv) if path.exists())
+        install_locked(python, arguments.requirements)
+        pip(python, "install", "--no-build-isolation", "--no-deps", "--editable", str(arguments.package))
+    except subprocess.CalledProcessError as failure:
+        print(f"laconic: the Python environment could not be made: {reason(failure)}", file=sys.stderr)
+        return 1
+    arguments.stamp.write_text("made by make_venv.py\n")
+    return 0
+
+
+def parse() -> argparse.Namespace:
+    parser = argparse.ArgumentParser(description=__doc__)
+    for name in ("venv", "requirements", "package", "stamp"):
+        parser.add_argument(f"--{name}", type=Path, required=True)
+    return parser.parse_args()
+
+
+def create(directory: Path) -> None:
+    """A fresh environment; one that an earlier attempt left half made is replaced."""
+    if any(path.exists() for path in candidates(directory)):
+        return
+    shutil.rmtree(directory, ignore_errors=True)
+    venv.create(directory, with_pip=True)
+
+
+def candidates(directory: Path) -> list[Path]:
+    return [directory / "bin" / "python", directory / "Scripts" / "python.exe"]
+
+
+def install_locked(python: Path, requirements: Path) -> None:
+    """Install the lock file, and say how far we are: this can take a minute."""
+    wanted = len(re.findall(r"^[a-z0-9].*==", requirements.read_text(), re.MULTILINE | re.IGNORECASE))
+    command = [str(python), "-m", "pip", "install", "--require-hashes", "--no-input", "-r", str(requirements)]
+    seen, lines = 0, []
+    with subprocess.Popen(command, stdout=subprocess.PIPE, stderr=subprocess.STDOUT, text=True) as process:
+        for line in process.stdout:
+            lines.append(line)
+            if line.startswith(("Collecting", "Requirement already", "Ignoring")):
+                seen += 1
+                progress(f"laconic: Python packages {seen} of {wanted}", last=False)
+            elif line.startswith("Installing collected"):
+                progress("laconic: Python packages: all there, installing", last=True)
+    if process.returncode:
+        raise subprocess.CalledProcessError(process.returncode, command, "".join(lines))
+
+
+def progress(text: str, last: bool) -> None:
+    if sys.stdout.isatty():
+        print(f"\r{text:60}", end="\n" if last else "", flush=True)
+    elif last:
+        print(text, flush=True)
+
+
+def pip(python: Path, *arguments: str) -> None:
+    subprocess.run(
+        [str(python), "-m", "pip", *arguments], check=True, stdout=subprocess.PIPE, stderr=subprocess.STDOUT, text=True
+    )
+
+
+def reason(failure: subprocess.CalledProcessError) -> str:
+    """The one line of the failed command's output that says why."""
+    text = failure.output if isinstance(failure.output, str) else (failure.output or b"").decode(errors="replace")
+    lines = [line.strip() for line in text.splitlines() if line.strip()]
+    errors = [line for line in lines if line.startswith("ERROR")]
+    if not shutil.which("python3-config") and "ensurepip" in " ".join(map(str, failure.cmd)):
+        return "ensurepip failed: install your system's python3-venv"
+    if any("NewConnectionError" in line or "ConnectTimeout" in line for line in lines):
+        return "the package index cannot be reached: connect this machine once, or configure pip for a mirror"
+    return (errors or lines or [f"exit status {failure.returncode}"])[0]
+
+
+if __name__ == "__main__":
+    sys.exit(main())
