@@ -1,0 +1,22 @@
+/* What a bench image needs of its board: a text channel, an end and a clock that counts instructions.
+ *
+ * Text and end go through ARM semihosting, so no board needs a UART driver. The clock is SysTick on the
+ * processor clock; under `qemu-system-arm -icount shift=8` every instruction lasts 256 ns, so ticks are
+ * instructions times a constant that board_calibrate() finds out. The counter has 24 bits. */
+#ifndef BOARD_H
+#define BOARD_H
+
+#include <stdint.h>
+
+void board_write(const char *text);
+void board_exit(int status) __attribute__((noreturn));
+
+void board_write_number(const char *name, uint64_t value);
+void board_write_bits(const char *name, const void *bytes, uint32_t size);
+
+void board_clock_start(void);
+uint32_t board_clock_now(void);
+uint32_t board_clock_since(uint32_t earlier); /* ticks, up to 2^24 − 1 */
+uint32_t board_calibrate(void);               /* ticks that 65,536 instructions take */
+
+#endif

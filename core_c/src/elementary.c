@@ -1,0 +1,112 @@
+#include "elementary.h"
+
+#include "polynomials.h"
+
+#ifdef LACONIC_SINGLE
+#define TURN_BITS 32
+#define SIGNED_TURN int32_t
+#define TURN_UNIT R(1.4629180792671596811e-9) /* 2π/2³² */
+#define REDUCE_1 R(1.5703125)              /* π/2 in three parts; the first two times k are exact for small k */
+#define REDUCE_2 R(4.8351287841796875e-4)
+#define REDUCE_3 R(3.139164786504813e-7)
+#define EXPONENT_SPAN R(103)
+#define LN2_HIGH R(0.693145751953125)
+#define LN2_LOW R(1.428606820309417232e-6)
+#else
+#define TURN_BITS 64
+#define SIGNED_TURN int64_t
+#define TURN_UNIT R(3.4061215800865545893e-19) /* 2π/2⁶⁴ */
+#define REDUCE_1 R(1.570796310901641845703125)
+#define REDUCE_2 R(1.589325471229585673427209e-8)
+#define REDUCE_3 R(6.12323399573676588613e-17)
+#define EXPONENT_SPAN R(745)
+#define LN2_HIGH R(0.6931471804855391383171082)
+#define LN2_LOW R(7.440617110012396716130157e-11)
+#endif
+
+real laconic_root(real x) {
+    real scale = R(1), guess;
+    int k;
+    if (!(x > R(0))) return R(0);
+    if (!finite(x)) return x;
+    for (; x > R(4); x *= R(0.0625)) scale *= R(4); /* powers of two: exact */
+    for (; x < R(0.25); x *= R(16)) scale *= R(0.25);
+    guess = R(0.5) + R(0.5) * x;
+    for (k = 0; k < 7; k++) guess = R(0.5) * (guess + x / guess);
+    return scale * guess;
+}
+
+real laconic_decaying_exponential(real a) {
+    real halvings, x, term = R(1), sum = R(1);
+    int k, n;
+    if (!(a < EXPONENT_SPAN)) return R(0);
+    n = (int)(a * R(1.4426950408889634) + R(0.5));
+    halvings = (real)n;
+    x = -((a - halvings * LN2_HIGH) - halvings * LN2_LOW); /* |x| <= ln 2 / 2 */
+    for (k = 1; k <= 18; k++) {
+        term *= x / (real)k;
+        sum += term;
+    }
+    for (; n > 0; n--) sum *= R(0.5);
+    return sum;
+}
+
+static direction quarter_turned(direction d, unsigned quarters) {
+    const direction turned[4] = {{d.cosine, d.sine}, {-d.sine, d.cosine}, {-d.cosine, -d.sine}, {d.sine, -d.cosine}};
+    return turned[quarters & 3U];
+}
+
+static direction direction_near_zero(real x) {
+    const real z = x * x;
+    const direction d = {poly_cos(z), poly_sin(x, z)};
+    return d;
+}
+
+direction laconic_direction_of_angle(real angle_rad) {
+    const real quarters = angle_rad * R(0.6366197723675813431);
+    if (magnitude(quarters) < R(1e6)) {
+        const int32_t k = (int32_t)(quarters + (quarters < R(0) ? R(-0.5) : R(0.5)));
+        const real n = (real)k;
+        return quarter_turned(direction_near_zero(((angle_rad - n * REDUCE_1) - n * REDUCE_2) - n * REDUCE_3),
+                              (unsigned)k);
+    }
+    return laconic_direction_of_turn(laconic_turn_of_angle(angle_rad));
+}
+
+direction laconic_direction_of_turn(laconic_turn turn) {
+    const laconic_turn eighth = (laconic_turn)1 << (TURN_BITS - 3);
+    const unsigned quarters = (unsigned)((laconic_turn)(turn + eighth) >> (TURN_BITS - 2));
+    const laconic_turn near = (laconic_turn)(turn - ((laconic_turn)quarters << (TURN_BITS - 2)));
+    return quarter_turned(direction_near_zero((real)(SIGNED_TURN)near * TURN_UNIT), quarters);
+}
+
+laconic_turn laconic_turn_of_angle(real angle_rad) {
+    const real turns = angle_rad * R(0.1591549430918953358);
+    const real half_turn = (real)((laconic_turn)1 << (TURN_BITS - 1));
+    if (magnitude(turns) < half_turn) {
+        const real part = turns - (real)(SIGNED_TURN)turns; /* in (−1, 1) */
+        return (laconic_turn)((laconic_turn)(SIGNED_TURN)(part * half_turn) * 2U);
+    }
+    return 0; /* NaN, or an angle too large to have a direction */
+}
+
+/* Below a = 4 by the series of φ4, downwards without cancellation; above by the recurrence upwards. */
+void laconic_phi(real phi[4], real a) {
+    if (a < R(4)) {
+        real term = R(1) / R(24), sum = term;
+        int k;
+        for (k = 5; k < 40; k++) {
+            term *= -a / (real)k;
+            sum += term;
+        }
+        phi[3] = sum;
+        phi[2] = R(1) / R(6) - a * phi[3];
+        phi[1] = R(0.5) - a * phi[2];
+        phi[0] = R(1) - a * phi[1];
+    } else {
+        phi[0] = (R(1) - laconic_decaying_exponential(a)) / a;
+        phi[1] = (R(1) - phi[0]) / a;
+        phi[2] = (R(0.5) - phi[1]) / a;
+        phi[3] = (R(1) / R(6) - phi[2]) / a;
+    }
+}

@@ -1,0 +1,18 @@
+/* Exponential Kahan, extrapolated to fourth order: the one that is good everywhere. */
+#include "exponential_kahan.h"
+#include "integrator.h"
+#include "symmetric.h"
+
+static laconic_status kahan_4_increment(const laconic_model *model, const laconic_integrator *integrator,
+                                        const laconic_state *state, laconic_loads loads, laconic_increment *out) {
+    return extrapolated_step(kahan_step, model, integrator, state, loads, out);
+}
+
+static laconic_status kahan_4_prepare(laconic_integrator *integrator, const laconic_model *model,
+                                      laconic_refusal *why) {
+    (void)why;
+    laconic_decay_levels(integrator, model, 2);
+    return LACONIC_OK;
+}
+
+const laconic_method laconic_exponential_kahan_4 = {"exponential-kahan-4", 4, kahan_4_prepare, kahan_4_increment};

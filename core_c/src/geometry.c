@@ -1,0 +1,47 @@
+#include "geometry.h"
+
+/* Parallel axes: two bodies at distance d add m₁m₂/(m₁+m₂) d² to their own inertias. */
+void laconic_body_of(body *b, const laconic_vehicle *vehicle) {
+    const laconic_payload *load = &vehicle->payload;
+    const real total = vehicle->mass_kg + load->mass_kg;
+    const real share = load->mass_kg / total;
+    const real dx = load->x_m - vehicle->com_x_m, dy = load->y_m - vehicle->com_y_m;
+    const real inertia =
+        vehicle->yaw_inertia_kgm2 + load->yaw_inertia_kgm2 + share * vehicle->mass_kg * (dx * dx + dy * dy);
+    b->mass_kg = total;
+    b->com_x_m = vehicle->com_x_m + share * dx;
+    b->com_y_m = vehicle->com_y_m + share * dy;
+    b->radius_m = vehicle->wheel_radius_m;
+    b->yaw_scale = laconic_root(inertia / total) / b->radius_m;
+    b->wheel_scale_square = vehicle->wheel_inertia_kgm2 / total / b->radius_m / b->radius_m;
+}
+
+real laconic_pull_direction(direction *pull, const laconic_wheel *wheel) {
+    const direction axle = laconic_direction_of_angle(wheel->axle_rad);
+    direction roller = {R(0), R(1)}; /* a fixed wheel: γ = π/2 exactly */
+    if (wheel->kind != LACONIC_WHEEL_FIXED) roller = laconic_direction_of_angle(wheel->roller_rad);
+    pull->cosine = axle.cosine * roller.cosine - axle.sine * roller.sine;
+    pull->sine = axle.sine * roller.cosine + axle.cosine * roller.sine;
+    return roller.sine;
+}
+
+/* (d_ξ, d_η, lever/(R Λ)): generalised direction of a line through the wheel's centre along d. */
+static void line_row(real row[3], const body *b, const laconic_wheel *wheel, direction d) {
+    const real lever = (wheel->x_m - b->com_x_m) * d.sine - (wheel->y_m - b->com_y_m) * d.cosine;
+    row[0] = d.cosine;
+    row[1] = d.sine;
+    row[2] = lever / (b->radius_m * b->yaw_scale);
+}
+
+void laconic_wheel_row(real row[3], const body *b, const laconic_wheel *wheel) {
+    direction pull;
+    const real sine = laconic_pull_direction(&pull, wheel);
+    line_row(row, b, wheel, pull);
+    row[0] /= sine;
+    row[1] /= sine;
+    row[2] /= sine;
+}
+
+void laconic_lateral_row(real row[3], const body *b, const laconic_wheel *wheel) {
+    line_row(row, b, wheel, laconic_direction_of_angle(wheel->axle_rad));
+}

@@ -1,0 +1,24 @@
+/* Prepares a method for one step size. */
+#include "integrator.h"
+
+laconic_status laconic_integrator_prepare(laconic_integrator *integrator, const laconic_method *method,
+                                          const laconic_model *model, laconic_real step_s, laconic_refusal *why) {
+    laconic_integrator prepared = {0};
+    laconic_status status;
+    if (method == NULL) return refuse(why, LACONIC_METHOD_UNKNOWN, LACONIC_FIELD_METHOD, 0, R(0), R(0));
+    if (!finite(step_s)) return refuse(why, LACONIC_NOT_FINITE, LACONIC_FIELD_STEP, 0, step_s, R(0));
+    if (!(step_s > R(0))) return refuse(why, LACONIC_NOT_POSITIVE, LACONIC_FIELD_STEP, 0, step_s, R(0));
+    prepared.method = prepared.chosen = method;
+    prepared.step_s = step_s;
+    status = method->prepare(&prepared, model, why);
+    if (status == LACONIC_OK) *integrator = prepared;
+    return status;
+}
+
+real laconic_fastest_decay(const laconic_model *model) {
+    real fastest = model->decay_per_s[0];
+    int k;
+    for (k = 1; k < 3; k++)
+        if (model->decay_per_s[k] > fastest) fastest = model->decay_per_s[k];
+    return fastest;
+}

@@ -1,0 +1,16 @@
+/* What methods need from a model when they are prepared. */
+#ifndef LACONIC_INTEGRATOR_H
+#define LACONIC_INTEGRATOR_H
+
+#include "elementary.h"
+
+/* max r_k */
+real laconic_fastest_decay(const laconic_model *model);
+
+/* Factors of an exponential step of size h: decay[level] for h = step_s / 2^level. */
+void laconic_decay_of(laconic_decay *decay, const laconic_model *model, real h);
+
+/* Fills decay[0] … decay[levels − 1] of an integrator. */
+void laconic_decay_levels(laconic_integrator *integrator, const laconic_model *model, int levels);
+
+#endif

@@ -1,0 +1,60 @@
+/* What the core's files share: short names, 3-vectors, compensated sums. Not for users. */
+#ifndef LACONIC_INTERNAL_H
+#define LACONIC_INTERNAL_H
+
+#include "laconic/laconic.h"
+
+typedef laconic_real real;
+
+#define R(x) ((real)(x)) /* a literal in the scalar type, converted by the compiler */
+
+static inline real dot(const real a[3], const real b[3]) {
+    return a[0] * b[0] + a[1] * b[1] + a[2] * b[2];
+}
+
+static inline void cross(real out[3], const real a[3], const real b[3]) {
+    out[0] = a[1] * b[2] - a[2] * b[1];
+    out[1] = a[2] * b[0] - a[0] * b[2];
+    out[2] = a[0] * b[1] - a[1] * b[0];
+}
+
+static inline real magnitude(real x) {
+    return x < R(0) ? -x : x;
+}
+
+/* |a|₁: not finite as soon as one component is not, or their sum leaves the range. */
+static inline real size(const real a[3]) {
+    return magnitude(a[0]) + magnitude(a[1]) + magnitude(a[2]);
+}
+
+static inline bool finite(real x) {
+    return magnitude(x) <= LACONIC_REAL_MAX; /* false for NaN too */
+}
+
+/* Kahan's sum: what `value` is too coarse to take goes to `rest` and joins the next addend. */
+static inline void sum_add(laconic_sum *sum, real addend) {
+    const real wanted = addend + sum->rest;
+    const real value = sum->value + wanted;
+    sum->rest = wanted - (value - sum->value);
+    sum->value = value;
+}
+
+static inline laconic_sum sum_of(real value) {
+    const laconic_sum sum = {value, R(0)};
+    return sum;
+}
+
+/* Says why and passes the status on, so that a refusal is one line where it happens. */
+static inline laconic_status refuse(laconic_refusal *why, laconic_status status, laconic_field field, int32_t item,
+                                    real value, real limit) {
+    if (why != NULL) {
+        why->status = status;
+        why->field = field;
+        why->item = item;
+        why->value = value;
+        why->limit = limit;
+    }
+    return status;
+}
+
+#endif

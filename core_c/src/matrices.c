@@ -1,0 +1,42 @@
+/* Ξ, A, A⁻¹ and the constraint rows as the paper writes them: for people, not for stepping. */
+#include "geometry.h"
+
+static void collect_rows(laconic_matrices *x, const body *b, const laconic_vehicle *vehicle) {
+    int32_t i;
+    for (i = 0; i < vehicle->wheel_count; i++) {
+        const laconic_wheel *wheel = &vehicle->wheel[i];
+        laconic_wheel_row(x->wheel_rows[i], b, wheel);
+        if (wheel->kind == LACONIC_WHEEL_FIXED)
+            laconic_lateral_row(x->constraint_rows[x->constraint_count++], b, wheel);
+        if (wheel->locked) laconic_wheel_row(x->constraint_rows[x->constraint_count++], b, wheel);
+    }
+}
+
+/* A = E + λ² ΞᵀΞ (4.6); a locked wheel counts: it is the constraint that keeps it from turning. */
+static void form_inertia(laconic_matrices *x, const body *b, int32_t wheel_count) {
+    int32_t r, c, i;
+    for (r = 0; r < 3; r++)
+        for (c = 0; c < 3; c++) {
+            real sum = R(0);
+            for (i = 0; i < wheel_count; i++) sum += x->wheel_rows[i][r] * x->wheel_rows[i][c];
+            x->inertia[r][c] = (r == c ? R(1) : R(0)) + b->wheel_scale_square * sum;
+        }
+}
+
+laconic_status laconic_matrices_of(laconic_matrices *matrices, const laconic_vehicle *vehicle, laconic_refusal *why) {
+    laconic_matrices x = {0};
+    laconic_model model;
+    body b;
+    int r, c;
+    const laconic_status status = laconic_prepare(&model, vehicle, why);
+    if (status != LACONIC_OK) return status;
+    laconic_body_of(&b, vehicle);
+    collect_rows(&x, &b, vehicle);
+    form_inertia(&x, &b, vehicle->wheel_count);
+    for (r = 0; r < 3; r++)
+        for (c = 0; c < 3; c++) x.inverse_inertia[r][c] = dot(model.nu_of_zeta[r], model.nu_of_zeta[c]);
+    x.lambda_yaw = b.yaw_scale;
+    x.lambda_wheel = laconic_root(b.wheel_scale_square);
+    *matrices = x;
+    return LACONIC_OK;
+}

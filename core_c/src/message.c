@@ -1,0 +1,124 @@
+/* A refusal in one line: field and item, what is wrong, what to do. `#` stands for the value, `@` for the limit. */
+#include "internal.h"
+
+typedef struct writer {
+    char *text;
+    size_t size, length;
+} writer;
+
+static void put(writer *w, char c) {
+    if (w->length + 1 < w->size) w->text[w->length] = c;
+    w->length++;
+}
+
+static void put_text(writer *w, const char *text) {
+    for (; *text != '\0'; text++) put(w, *text);
+}
+
+static void put_count(writer *w, int32_t number) {
+    if (number >= 10) put_count(w, number / 10);
+    put(w, (char)('0' + number % 10));
+}
+
+/* x = digits · 10^exponent with 1 <= digits < 10 */
+static int32_t scale_to_digits(real *x) {
+    int32_t exponent = 0;
+    for (; *x >= R(10); *x *= R(0.1)) exponent++;
+    for (; *x < R(1); *x *= R(10)) exponent--;
+    return exponent;
+}
+
+/* `count` decimals of x < 10, without trailing zeros; the point stands behind digit `point`. */
+static void put_digits(writer *w, int32_t digits, int32_t count, int32_t point) {
+    int32_t divisor = 1, k;
+    for (k = 1; k < count; k++) divisor *= 10;
+    for (k = 0; divisor > 0; k++, divisor /= 10) {
+        if (k >= point && digits == 0) return;
+        if (k == point) put(w, '.');
+        put(w, (char)('0' + digits / divisor));
+        digits %= divisor;
+    }
+}
+
+/* Six digits, as printf's %.6g. */
+static void put_number(writer *w, real x) {
+    int32_t exponent, digits, k;
+    if (x != x) {
+        put_text(w, "NaN");
+        return;
+    }
+    if (x < R(0)) put(w, '-');
+    x = magnitude(x);
+    if (!finite(x) || x == R(0)) {
+        put_text(w, x == R(0) ? "0" : "infinity");
+        return;
+    }
+    exponent = scale_to_digits(&x);
+    digits = (int32_t)(x * R(100000) + R(0.5));
+    if (digits >= 1000000) {
+        digits = 100000;
+        exponent++;
+    }
+    if (exponent >= -4 && exponent < 0) {
+        put_text(w, "0.");
+        for (k = exponent + 1; k < 0; k++) put(w, '0');
+        put_digits(w, digits, 6, 7);
+    } else if (exponent >= 0 && exponent < 6) {
+        put_digits(w, digits, 6, exponent + 1);
+    } else {
+        put_digits(w, digits, 6, 1);
+        put_text(w, exponent < 0 ? "e-" : "e+");
+        put_count(w, exponent < 0 ? -exponent : exponent);
+    }
+}
+
+static const char *explanation(laconic_status status) {
+    static const char *const texts[LACONIC_STATUS_COUNT] = {
+        "ok",
+        "# is not a finite number; give a number",
+        "# is not positive; give a value above 0",
+        "# is negative; give 0 or a value above it",
+        "with # rad the roller axis lies along the axle and the wheel transmits nothing; omni wheels have pi/2, "
+        "mecanum wheels pi/4 or -pi/4",
+        "this wheel was never set; give its kind and place, or lower wheel_count",
+        "# is no kind of wheel; use 1 (roller: omni or mecanum) or 2 (fixed)",
+        "# wheels, but this build takes 0 to @; lower it or build with a larger LACONIC_MAX_WHEELS",
+        "# supports, but this build takes 0 to @; lower it or build with a larger LACONIC_MAX_SUPPORTS",
+        "fixed and locked wheels leave nothing that moves; release a wheel or let fixed wheels share an axle line",
+        "masses and lengths are too far apart for " LACONIC_REAL_NAME
+        " precision: the condition number # leaves no correct digit; check the units",
+        "# slides a fixed or locked wheel; the nearest velocity that the wheels allow is @",
+        "there is no such method; use auto, rk4, exponential-kahan, exponential-kahan-4, exact-flow or exact-flow-4",
+        "steps of # s do not fill the interval; @ s would",
+        "# s is unstable with this method, the motors damp too fast; use at most @ s, or auto",
+        "# s is unstable with this method while the vehicle turns this fast; use at most @ s, or exact-flow",
+        "in this state a step of # s would make energy out of nothing; use @ s or less, or auto, or exact-flow",
+        "in this state a step of # s has no solution; use @ s or less, or auto, or exact-flow",
+        "the numbers leave the range of " LACONIC_REAL_NAME " precision; check inputs and units",
+    };
+    return (unsigned)status < LACONIC_STATUS_COUNT ? texts[status] : "unknown status";
+}
+
+size_t laconic_message(const laconic_refusal *why, char *text, size_t size) {
+    writer w = {NULL, 0, 0};
+    const char *c;
+    w.text = text;
+    w.size = size;
+    put_text(&w, laconic_field_name(why->field));
+    if (why->item > 0) {
+        put(&w, '[');
+        put_count(&w, why->item);
+        put(&w, ']');
+    }
+    if (w.length > 0) put_text(&w, ": ");
+    for (c = explanation(why->status); *c != '\0'; c++) {
+        if (*c == '#')
+            put_number(&w, why->value);
+        else if (*c == '@')
+            put_number(&w, why->limit);
+        else
+            put(&w, *c);
+    }
+    if (size > 0) text[w.length < size ? w.length : size - 1] = '\0';
+    return w.length;
+}

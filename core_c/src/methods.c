@@ -1,0 +1,22 @@
+/* The list of all methods: links them all, so firmware that knows its method names that one instead. */
+#include "internal.h"
+
+static const laconic_method *const methods[LACONIC_METHOD_COUNT] = {
+    &laconic_auto,       &laconic_rk4,         &laconic_exponential_kahan, &laconic_exponential_kahan_4,
+    &laconic_exact_flow, &laconic_exact_flow_4};
+
+static bool same_text(const char *a, const char *b) {
+    for (; *a != '\0' && *a == *b; a++) b++;
+    return *a == *b;
+}
+
+const laconic_method *laconic_method_by_number(int32_t number) {
+    return number >= 0 && number < LACONIC_METHOD_COUNT ? methods[number] : NULL;
+}
+
+const laconic_method *laconic_method_by_name(const char *name) {
+    int32_t i;
+    for (i = 0; i < LACONIC_METHOD_COUNT; i++)
+        if (same_text(methods[i]->name, name)) return methods[i];
+    return NULL;
+}

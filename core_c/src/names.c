@@ -1,0 +1,76 @@
+/* Names of statuses and fields, as scenes and FMUs spell them. */
+#include "internal.h"
+
+const char *laconic_field_name(laconic_field field) {
+    static const char *const names[LACONIC_FIELD_COUNT] = {
+        "",
+        "mass_kg",
+        "yaw_inertia_kgm2",
+        "com_x_m",
+        "com_y_m",
+        "com_z_m",
+        "wheel_radius_m",
+        "wheel_inertia_kgm2",
+        "motor_gain_Nm_per_V",
+        "motor_damping_Nms",
+        "friction_coefficient",
+        "payload_mass_kg",
+        "payload_x_m",
+        "payload_y_m",
+        "payload_yaw_inertia_kgm2",
+        "wheel_count",
+        "wheel_kind",
+        "wheel_x_m",
+        "wheel_y_m",
+        "axle_rad",
+        "roller_rad",
+        "wheel_locked",
+        "support_count",
+        "support_x_m",
+        "support_y_m",
+        "start_nu_rad_per_s",
+        "start_x_m",
+        "start_y_m",
+        "start_heading_rad",
+        "method",
+        "step_s",
+        "voltage_V",
+        "axle_torque_Nm",
+        "body_force_N",
+        "body_moment_Nm",
+        "world_force_N",
+        "world_force_point_m",
+        "resistance_ohm",
+        "torque_constant_Nm_per_A",
+        "back_emf_Vs_per_rad",
+        "gear_ratio",
+        "viscous_friction_Nms",
+        "rotor_inertia_kgm2",
+    };
+    return (unsigned)field < LACONIC_FIELD_COUNT ? names[field] : "";
+}
+
+const char *laconic_status_name(laconic_status status) {
+    static const char *const names[LACONIC_STATUS_COUNT] = {
+        "ok",
+        "not finite",
+        "not positive",
+        "negative",
+        "roller along axle",
+        "wheel not set",
+        "wheel kind unknown",
+        "too many wheels",
+        "too many supports",
+        "nothing moves",
+        "ill-conditioned",
+        "start against constraints",
+        "method unknown",
+        "step does not fit",
+        "step beyond damping limit",
+        "step beyond gyroscopic limit",
+        "step gains energy",
+        "step singular",
+        "overflow",
+    };
+    return (unsigned)status < LACONIC_STATUS_COUNT ? names[status] : "unknown status";
+}

@@ -1,0 +1,50 @@
+/* vehicle, model, integrator and state in one piece; the stepping loop with its integer count. */
+#include "internal.h"
+
+laconic_status laconic_plant_start(laconic_plant *plant, const laconic_vehicle *vehicle, const laconic_method *method,
+                                   laconic_real step_s, const laconic_start *start, laconic_refusal *why) {
+    laconic_model model;
+    laconic_integrator integrator;
+    laconic_status status = laconic_prepare(&model, vehicle, why);
+    if (status == LACONIC_OK) status = laconic_integrator_prepare(&integrator, method, &model, step_s, why);
+    if (status == LACONIC_OK) status = laconic_state_set(&plant->state, &model, start, why);
+    if (status != LACONIC_OK) return status;
+    plant->vehicle = *vehicle;
+    plant->model = model;
+    plant->integrator = integrator;
+    plant->steps = 0;
+    return LACONIC_OK;
+}
+
+laconic_status laconic_plant_run(laconic_plant *plant, const laconic_input *held, uint64_t steps,
+                                 laconic_refusal *why) {
+    uint64_t n;
+    for (n = 0; n < steps; n++) {
+        const laconic_status status = laconic_step(&plant->model, &plant->integrator, &plant->state, held);
+        if (status != LACONIC_OK) {
+            laconic_step_refusal(why, status, &plant->model, &plant->integrator, &plant->state, held);
+            return status;
+        }
+        plant->steps++;
+    }
+    return LACONIC_OK;
+}
+
+laconic_status laconic_plant_set_step(laconic_plant *plant, laconic_real step_s, laconic_refusal *why) {
+    return laconic_integrator_prepare(&plant->integrator, plant->integrator.method, &plant->model, step_s, why);
+}
+
+laconic_status laconic_plant_change(laconic_plant *plant, const laconic_vehicle *vehicle, laconic_refusal *why) {
+    laconic_model model;
+    laconic_integrator integrator;
+    laconic_status status = laconic_prepare(&model, vehicle, why);
+    if (status == LACONIC_OK)
+        status = laconic_integrator_prepare(&integrator, plant->integrator.method, &model, plant->integrator.step_s,
+                                            why);
+    if (status != LACONIC_OK) return status;
+    laconic_state_carry(&plant->state, &plant->model, &model);
+    plant->vehicle = *vehicle;
+    plant->model = model;
+    plant->integrator = integrator;
+    return LACONIC_OK;
+}

@@ -1,0 +1,235 @@
+/* vehicle → model: an orthonormal basis of the motions that the constraints leave, turned so that ΞᵀΞ,
+ * and with it inertia A = E + λ²ΞᵀΞ and damping, become diagonal in it (PHYSICS §4, §9). */
+#include "geometry.h"
+
+typedef struct basis {
+    int32_t count;
+    real vector[3][3]; /* orthonormal, one to a row */
+} basis;
+
+static bool normalise(real v[3]) {
+    const real largest = size(v);
+    real length;
+    int k;
+    if (!(largest > R(0))) return false;
+    for (k = 0; k < 3; k++) v[k] /= largest; /* first, so that squares neither overflow nor vanish */
+    length = laconic_root(dot(v, v));
+    for (k = 0; k < 3; k++) v[k] /= length;
+    return true;
+}
+
+static void remove_component(real v[3], const real unit[3]) {
+    const real along = dot(v, unit);
+    int k;
+    for (k = 0; k < 3; k++) v[k] -= along * unit[k];
+}
+
+/* What the row adds to the constraints known so far; false: nothing beyond rounding. */
+static bool new_direction(real v[3], const basis *known) {
+    int32_t k;
+    if (!normalise(v)) return false;
+    for (k = 0; k < known->count; k++) remove_component(v, known->vector[k]);
+    if (!(dot(v, v) > LACONIC_RANK_TOLERANCE * LACONIC_RANK_TOLERANCE)) return false;
+    for (k = 0; k < known->count; k++) remove_component(v, known->vector[k]); /* twice is enough */
+    return normalise(v);
+}
+
+static void add_constraint(basis *known, const real row[3]) {
+    real v[3];
+    int k;
+    for (k = 0; k < 3; k++) v[k] = row[k];
+    if (known->count < 3 && new_direction(v, known)) {
+        for (k = 0; k < 3; k++) known->vector[known->count][k] = v[k];
+        known->count++;
+    }
+}
+
+static void collect_constraints(basis *known, const body *b, const laconic_vehicle *vehicle) {
+    int32_t i;
+    real row[3];
+    known->count = 0;
+    for (i = 0; i < vehicle->wheel_count; i++) {
+        const laconic_wheel *wheel = &vehicle->wheel[i];
+        if (wheel->kind == LACONIC_WHEEL_FIXED) {
+            laconic_lateral_row(row, b, wheel);
+            add_constraint(known, row);
+        }
+        if (wheel->locked) {
+            laconic_wheel_row(row, b, wheel);
+            add_constraint(known, row);
+        }
+    }
+}
+
+/* Completes the constraints to a basis of space; what is added spans the allowed motions. */
+static void allowed_motions(basis *allowed, const basis *constraints) {
+    basis all = *constraints;
+    int32_t k, axis;
+    for (axis = 0; axis < 3; axis++) {
+        real unit[3] = {R(0), R(0), R(0)};
+        unit[axis] = R(1);
+        add_constraint(&all, unit);
+    }
+    allowed->count = all.count - constraints->count;
+    for (k = 0; k < allowed->count; k++) {
+        int c;
+        for (c = 0; c < 3; c++) allowed->vector[k][c] = all.vector[constraints->count + k][c];
+    }
+}
+
+/* One-sided Jacobi: turns pairs of basis vectors until the columns of Ξ V are orthogonal. It never forms
+ * ΞᵀΞ, so small rates keep their digits beside large ones. */
+typedef struct pair {
+    real aa, bb, ab;
+} pair;
+
+static pair column_products(const laconic_model *m, int32_t a, int32_t b) {
+    pair p = {R(0), R(0), R(0)};
+    int32_t i;
+    for (i = 0; i < m->wheel_count; i++) {
+        const real *row = m->wheel_of_zeta[i];
+        p.aa += row[a] * row[a];
+        p.bb += row[b] * row[b];
+        p.ab += row[a] * row[b];
+    }
+    return p;
+}
+
+static void turn_pair(real *a, real *b, direction d) {
+    const real old = *a;
+    *a = d.cosine * old - d.sine * *b;
+    *b = d.sine * old + d.cosine * *b;
+}
+
+static bool make_orthogonal(laconic_model *m, basis *v, int32_t a, int32_t b) {
+    const pair p = column_products(m, a, b);
+    real cotangent, tangent;
+    direction d;
+    int32_t i;
+    if (!(magnitude(p.ab) > R(0.25) * LACONIC_EPSILON * laconic_root(p.aa) * laconic_root(p.bb))) return false;
+    cotangent = (p.bb - p.aa) / (R(2) * p.ab);
+    tangent = R(1) / (magnitude(cotangent) + laconic_root(R(1) + cotangent * cotangent));
+    if (!finite(cotangent * cotangent)) tangent = R(0.5) / magnitude(cotangent);
+    if (cotangent < R(0)) tangent = -tangent;
+    d.cosine = R(1) / laconic_root(R(1) + tangent * tangent);
+    d.sine = d.cosine * tangent;
+    for (i = 0; i < m->wheel_count; i++) turn_pair(&m->wheel_of_zeta[i][a], &m->wheel_of_zeta[i][b], d);
+    for (i = 0; i < 3; i++) turn_pair(&v->vector[a][i], &v->vector[b][i], d);
+    return true;
+}
+
+static void find_principal_axes(laconic_model *m, basis *v) {
+    int sweep;
+    bool turned = true;
+    for (sweep = 0; sweep < 30 && turned; sweep++) {
+        int32_t a, b;
+        turned = false;
+        for (a = 0; a < v->count; a++)
+            for (b = a + 1; b < v->count; b++) turned = make_orthogonal(m, v, a, b) || turned;
+    }
+}
+
+static void project_wheels(laconic_model *m, const basis *v, const body *b, const laconic_vehicle *vehicle) {
+    int32_t i, k;
+    for (i = 0; i < vehicle->wheel_count; i++) {
+        real row[3];
+        laconic_wheel_row(row, b, &vehicle->wheel[i]);
+        for (k = 0; k < 3; k++)
+            m->wheel_of_zeta[i][k] = k < v->count && !vehicle->wheel[i].locked ? dot(row, v->vector[k]) : R(0);
+    }
+}
+
+/* Scales axis k so that its kinetic energy is ζ²/2 (in units of M R²). */
+static void scale_axis(laconic_model *m, const basis *v, const body *b, int32_t k) {
+    const real x = column_products(m, k, k).aa;
+    const real inertia = R(1) + b->wheel_scale_square * x;
+    const real scale = R(1) / laconic_root(inertia);
+    int32_t i;
+    m->inertia[k] = inertia;
+    m->decay_per_s[k] = m->motor_damping_Nms * m->torque_scale * x / inertia;
+    for (i = 0; i < 3; i++) m->nu_of_zeta[i][k] = scale * v->vector[k][i];
+    for (i = 0; i < m->wheel_count; i++) m->wheel_of_zeta[i][k] *= scale;
+}
+
+static void clear_axis(laconic_model *m, int32_t k) {
+    int i;
+    m->inertia[k] = R(1);
+    m->decay_per_s[k] = R(0);
+    for (i = 0; i < 3; i++) m->nu_of_zeta[i][k] = R(0);
+}
+
+static void derive_rows(laconic_model *m) {
+    int k;
+    cross(m->gyro, m->nu_of_zeta[0], m->nu_of_zeta[1]);
+    for (k = 0; k < 3; k++) {
+        m->gyro[k] /= m->yaw_scale;
+        m->yaw_rate_of_zeta[k] = m->nu_of_zeta[2][k] / m->yaw_scale;
+        m->velocity_of_zeta[0][k] = m->wheel_radius_m * m->nu_of_zeta[0][k];
+        m->velocity_of_zeta[1][k] = m->wheel_radius_m * m->nu_of_zeta[1][k];
+    }
+}
+
+static void take_constants(laconic_model *m, const laconic_vehicle *vehicle, const body *b) {
+    m->wheel_count = vehicle->wheel_count;
+    m->torque_scale = R(1) / (b->mass_kg * b->radius_m * b->radius_m);
+    m->voltage_scale = vehicle->motor_gain_Nm_per_V * m->torque_scale;
+    m->motor_gain_Nm_per_V = vehicle->motor_gain_Nm_per_V;
+    m->motor_damping_Nms = vehicle->motor_damping_Nms;
+    m->wheel_inertia_kgm2 = vehicle->wheel_inertia_kgm2;
+    m->mass_kg = b->mass_kg;
+    m->wheel_radius_m = b->radius_m;
+    m->yaw_scale = b->yaw_scale;
+    m->com_x_m = b->com_x_m;
+    m->com_y_m = b->com_y_m;
+}
+
+laconic_real laconic_condition_number(const laconic_model *model) {
+    real least = model->inertia[0], most = least;
+    int32_t k;
+    for (k = 1; k < model->dof; k++) {
+        if (model->inertia[k] < least) least = model->inertia[k];
+        if (model->inertia[k] > most) most = model->inertia[k];
+    }
+    return most / least;
+}
+
+/* Numbers so far apart that a constant left the range would turn into NaN later: say so now. */
+static bool usable(const laconic_model *m) {
+    real sum = size(m->inertia) + size(m->decay_per_s) + size(m->gyro) + size(m->yaw_rate_of_zeta) +
+               size(m->velocity_of_zeta[0]) + size(m->velocity_of_zeta[1]) + m->torque_scale +
+               magnitude(m->voltage_scale) + m->mass_kg + R(1) / m->yaw_scale + magnitude(m->com_x_m) +
+               magnitude(m->com_y_m);
+    int32_t i;
+    for (i = 0; i < m->wheel_count; i++) sum += size(m->wheel_of_zeta[i]);
+    return finite(sum) && m->torque_scale > R(0) && finite(sum * sum);
+}
+
+laconic_status laconic_prepare(laconic_model *model, const laconic_vehicle *vehicle, laconic_refusal *why) {
+    const laconic_status status = laconic_vehicle_check(vehicle, why);
+    laconic_model m = {0};
+    basis constraints = {0}, motions = {0};
+    body b;
+    int32_t k;
+    if (status != LACONIC_OK) return status;
+    laconic_body_of(&b, vehicle);
+    take_constants(&m, vehicle, &b);
+    collect_constraints(&constraints, &b, vehicle);
+    allowed_motions(&motions, &constraints);
+    if (motions.count == 0)
+        return refuse(why, LACONIC_NOTHING_MOVES, LACONIC_FIELD_WHEEL_KIND, 0, R(constraints.count), R(0));
+    m.dof = motions.count;
+    project_wheels(&m, &motions, &b, vehicle);
+    find_principal_axes(&m, &motions);
+    for (k = 0; k < 3; k++) {
+        if (k < m.dof)
+            scale_axis(&m, &motions, &b, k);
+        else
+            clear_axis(&m, k);
+    }
+    derive_rows(&m);
+    if (!usable(&m)) return refuse(why, LACONIC_OVERFLOW, LACONIC_FIELD_NONE, 0, R(0), R(0));
+    if (!(LACONIC_EPSILON * laconic_root(laconic_condition_number(&m)) < R(0.01)))
+        return refuse(why, LACONIC_ILL_CONDITIONED, LACONIC_FIELD_NONE, 0, laconic_condition_number(&m), R(0));
+    *model = m;
+    return LACONIC_OK;
+}
