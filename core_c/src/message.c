@@ -62,7 +62,8 @@ static void put_number(writer *w, real x) {
     if (exponent >= -4 && exponent < 0) {
         put_text(w, "0.");
         for (k = exponent + 1; k < 0; k++) put(w, '0');
-        put_digits(w, digits, 6, 7);
+        while (digits % 10 == 0) digits /= 10;
+        put_count(w, digits);
     } else if (exponent >= 0 && exponent < 6) {
         put_digits(w, digits, 6, exponent + 1);
     } else {
