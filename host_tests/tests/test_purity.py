@@ -11,7 +11,7 @@ import pytest
 
 CHECK = Path(__file__).parents[2] / "cmake" / "check_purity.py"
 COMPILER = shutil.which("cc") or shutil.which("gcc") or shutil.which("clang")
-needs_tools = pytest.mark.skipif(not (COMPILER and shutil.which("objdump")), reason="no compiler or objdump on the PATH")
+needs_tools = pytest.mark.skipif(not (COMPILER and shutil.which("objdump")), reason="no compiler or no objdump")
 
 
 def judge(folder: Path, text: str, *flags: str, build: bool = True) -> subprocess.CompletedProcess[str]:
