@@ -1,0 +1,120 @@
+"""What acts on a vehicle over time: the `[[input]]` tables of a scene, on the grid of its steps.
+
+`steps` hold a value from t_s on, and are zero before the first. `table` interpolates linearly and keeps its first and
+last value outside. `sine` is amplitude · sin(2π f t + phase). Several inputs of one signal add up.
+
+A scene with nothing but `steps` runs with held inputs; every change must fall on the start of a step, because a change
+moved to the grid would be another experiment. Any other scene is sampled at the start, middle and end of each step.
+"""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Iterator
+from dataclasses import dataclass, field
+from pathlib import Path
+
+import numpy as np
+
+from laconic.errors import BadInput
+
+ON_THE_GRID = 1e-6  # of a step, as laconic_steps_in
+
+
+@dataclass(frozen=True)
+class Input:
+    """One `[[input]]`: `place` is its name in the file, for messages."""
+
+    signal: str
+    kind: str
+    place: str
+    t_s: tuple[float, ...] = ()
+    value: tuple[float, ...] = ()
+    amplitude: float = 0.0
+    frequency_Hz: float = 0.0
+    phase_rad: float = 0.0
+
+    def at(self, time_s: np.ndarray) -> np.ndarray:
+        """Values of a table or sine at some instants."""
+        if self.kind == "table":
+            return np.interp(time_s, self.t_s, self.value)
+        return self.amplitude * np.sin(2.0 * np.pi * self.frequency_Hz * time_s + self.phase_rad)
+
+
+@dataclass(frozen=True)
+class Segment:
+    """Some steps with one set of values."""
+
+    first_step: int
+    steps: int
+    values: dict[str, float]
+
+
+@dataclass(frozen=True)
+class Drive:
+    """A scene's inputs on the grid of `step_s`, for `steps` steps."""
+
+    path: Path
+    inputs: tuple[Input, ...]
+    step_s: float
+    steps: int
+    signals: tuple[str, ...] = ()
+    changes: tuple[int, ...] = ()
+    _ticks: dict[str, np.ndarray] = field(default_factory=dict)
+
+    @classmethod
+    def on_grid(cls, path: Path, inputs: tuple[Input, ...], step_s: float, steps: int) -> Drive:
+        """Puts the changes on the grid; BadInput where one falls inside a step."""
+        ticks = {each.place: change_ticks(path, each, step_s, steps) for each in inputs if each.kind == "steps"}
+        within = {int(t) for ends in ticks.values() for t in ends if t < steps}
+        signals = tuple(dict.fromkeys(each.signal for each in inputs))
+        return cls(path, inputs, step_s, steps, signals, tuple(sorted({0} | within)), ticks)
+
+    @property
+    def is_held(self) -> bool:
+        """Whether every input holds its values over each step."""
+        return all(each.kind == "steps" for each in self.inputs)
+
+    def held_at(self, tick: int) -> dict[str, float]:
+        """Values at the start of a step, for those that hold them over it (FMU, node, held scenes)."""
+        row = self._rows(np.array([tick]), np.array([0.0]))[0, 0]
+        return dict(zip(self.signals, row.tolist()))
+
+    def segments(self) -> Iterator[Segment]:
+        """Stretches of constant inputs of a held scene."""
+        ends = [*self.changes[1:], self.steps]
+        for first, last in zip(self.changes, ends, strict=True):
+            yield Segment(first, last - first, self.held_at(first))
+
+    def samples(self, first: int, count: int) -> np.ndarray:
+        """Values (step, start|middle|end, signal) of some steps; `steps` inputs hold theirs over each."""
+        return self._rows(np.arange(first, first + count), np.array([0.0, 0.5, 1.0]))
+
+    def _rows(self, ticks: np.ndarray, parts: np.ndarray) -> np.ndarray:
+        rows = np.zeros((len(ticks), len(parts), len(self.signals)))
+        time_s = (ticks[:, None] + parts[None, :]) * self.step_s
+        for each in self.inputs:
+            column = rows[:, :, self.signals.index(each.signal)]
+            column += self._steps_at(each, ticks)[:, None] if each.kind == "steps" else each.at(time_s)
+        return rows
+
+    def _steps_at(self, each: Input, ticks: np.ndarray) -> np.ndarray:
+        values = np.concatenate([[0.0], each.value])
+        return values[np.searchsorted(self._ticks[each.place], ticks, side="right")]
+
+
+def change_ticks(path: Path, each: Input, step_s: float, steps: int) -> np.ndarray:
+    """The steps at whose start a `steps` input changes."""
+    instants = np.array(each.t_s)
+    ticks = np.rint(instants / step_s)
+    off = np.abs(ticks * step_s - instants) > ON_THE_GRID * step_s
+    late = instants >= steps * step_s
+    for instant in instants[off & ~late]:
+        raise BadInput(f"{path}: {each.place}.t_s: {instant:g} s falls inside a step of {step_s:g} s; "
+                       f"{step_remedy(instant, step_s)}")
+    return np.where(late, np.maximum(ticks, steps), ticks).astype(np.int64)
+
+
+def step_remedy(instant_s: float, step_s: float) -> str:
+    """The next smaller step that brings an instant onto the grid."""
+    return f"a step of {instant_s / math.ceil(instant_s / step_s):.9g} s would do"

@@ -1,0 +1,46 @@
+"""Where things are: the build tree (libraries, FMUs, node, results) and the scenes."""
+
+from __future__ import annotations
+
+import os
+import sys
+from pathlib import Path
+
+from laconic.errors import BadInput, nearest_of
+
+SOURCE_DIR = Path(__file__).resolve().parents[2]
+SCENE_DIR = SOURCE_DIR / "scenes"
+
+
+def build_dir() -> Path:
+    """The build tree: LACONIC_BUILD_DIR, else the one this Python environment stands in, else build/ of the sources."""
+    if given := os.environ.get("LACONIC_BUILD_DIR"):
+        return Path(given)
+    around = Path(sys.prefix).parent
+    return around if (around / "lib").is_dir() and (around / "CMakeCache.txt").exists() else SOURCE_DIR / "build"
+
+
+def built(relative: str) -> Path:
+    """A file of the build tree; says how to make it when it is not there."""
+    path = build_dir() / relative
+    if not path.exists():
+        raise BadInput(f"{path}: not built yet; run `cmake --workflow --preset demo` in {SOURCE_DIR}, "
+                       "or name the build tree in LACONIC_BUILD_DIR")
+    return path
+
+
+def scene_names() -> list[str]:
+    """Names of the scenes that come with the project."""
+    return sorted(path.stem for path in SCENE_DIR.glob("*.toml"))
+
+
+def scene_path(given: str | Path) -> Path:
+    """A scene file by its path, or by the name of one that comes with the project."""
+    path = Path(given)
+    if path.exists():
+        return path
+    named = SCENE_DIR / f"{given}.toml"
+    if path.name == str(given) and named.exists():
+        return named
+    remedy = nearest_of(path.stem, scene_names()) if scene_names() else "give the path of a scene file"
+    raise BadInput(f"{given}: no such scene file; {remedy}")

@@ -1,0 +1,158 @@
+"""A TOML table that is read key by key: what is missing, of the wrong kind or unknown becomes one clear line."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Iterator, Sequence
+from pathlib import Path
+from typing import Any, NoReturn
+
+from laconic.errors import BadInput, nearest_of, reason_of
+
+try:
+    import tomllib
+except ModuleNotFoundError:  # Python 3.10
+    import tomli as tomllib
+
+
+def read_toml(path: Path) -> Table:
+    """The file's top table."""
+    try:
+        text = path.read_bytes().decode()
+        return Table(path, "", tomllib.loads(text))
+    except OSError as error:
+        raise BadInput(f"{path}: cannot be read ({reason_of(error)}); give the path of a readable TOML file") from None
+    except UnicodeDecodeError:
+        raise BadInput(f"{path}: is no text in UTF-8; save it as UTF-8") from None
+    except tomllib.TOMLDecodeError as error:
+        raise BadInput(f"{path}: is no valid TOML: {error}; correct that line") from None
+
+
+class Table:
+    """One table of a file; remembers what was asked for, so that `done` can find what nobody knows."""
+
+    def __init__(self, path: Path, place: str, entries: dict[str, Any]):
+        self.path, self.place, self._entries = path, place, entries
+        self._known: set[str] = set()
+
+    def name(self, key: str) -> str:
+        """The key with the tables around it."""
+        return f"{self.place}.{key}" if self.place else key
+
+    def fail(self, key: str, message: str) -> NoReturn:
+        """Raises BadInput for a key of this table."""
+        raise BadInput(f"{self.path}: {self.name(key)}: {message}")
+
+    def has(self, key: str) -> bool:
+        """Whether the key is there; it counts as known from now on."""
+        self._known.add(key)
+        return key in self._entries
+
+    def done(self) -> None:
+        """Raises BadInput for the first key that nobody asked for."""
+        for key in self._entries:
+            if key not in self._known:
+                self.fail(key, f"is no known key here; {nearest_of(key, self._known)}")
+
+    def _get(self, key: str, default: Any, kinds: tuple[type, ...], what: str) -> Any:
+        if not self.has(key):
+            if default is REQUIRED:
+                self.fail(key, f"is missing; give it as {what}")
+            return default
+        value = self._entries[key]
+        if not isinstance(value, kinds) or (isinstance(value, bool) and bool not in kinds):
+            self.fail(key, f"is {_shown(value)}, not {what}")
+        return value
+
+    def number(self, key: str, default: Any = ..., *, finite: bool = True) -> Any:
+        """A number; what the core checks itself may be anything a float can be."""
+        value = self._get(key, default, (int, float), "a number")
+        return self._finite(key, value) if finite and value is not None else _float(value)
+
+    def _finite(self, key: str, value: float) -> float:
+        number = _float(value)
+        if not math.isfinite(number):
+            self.fail(key, f"is {_shown(value)}; give a finite number")
+        return number
+
+    def angle(self, stem: str, default: Any = ...) -> Any:
+        """An angle in rad: from stem_rad, or from stem_deg in degrees."""
+        in_radians, in_degrees = f"{stem}_rad", f"{stem}_deg"
+        if self.has(in_degrees):
+            if self.has(in_radians):
+                self.fail(in_degrees, f"is given besides {in_radians}; keep one of them")
+            return math.radians(self.number(in_degrees, finite=False))
+        return self.number(in_radians, default, finite=False)
+
+    def text(self, key: str, default: Any = ...) -> str:
+        """A string."""
+        return self._get(key, default, (str,), "text in quotes")
+
+    def flag(self, key: str, default: bool) -> bool:
+        """true or false."""
+        return self._get(key, default, (bool,), "true or false")
+
+    def whole(self, key: str, default: Any = ...) -> int:
+        """A whole number."""
+        return self._get(key, default, (int,), "a whole number")
+
+    def choice(self, key: str, choices: Sequence[str], default: Any = ...) -> str:
+        """One of some words."""
+        word = self.text(key, default)
+        if word is not None and word not in choices:
+            self.fail(key, f"there is no {word!r}; {nearest_of(word, choices)}")
+        return word
+
+    def numbers(self, key: str, length: int | None = None, *, finite: bool = True) -> tuple[float, ...]:
+        """A list of numbers, of the given length."""
+        what = "a list of numbers" if length is None else f"a list of {length} numbers"
+        values = self._get(key, ..., (list,), what)
+        if length is not None and len(values) != length:
+            self.fail(key, f"has {len(values)} entries, not {length}")
+        for value in values:
+            if isinstance(value, bool) or not isinstance(value, (int, float)):
+                self.fail(key, f"holds {_shown(value)}; give {what}")
+        return tuple(self._finite(key, v) if finite else _float(v) for v in values)
+
+    def texts(self, key: str, default: Any = ...) -> tuple[str, ...]:
+        """A list of strings."""
+        values = self._get(key, default, (list, tuple), "a list of texts in quotes")
+        for value in values:
+            if not isinstance(value, str):
+                self.fail(key, f"holds {_shown(value)}; give a list of texts in quotes")
+        return tuple(values)
+
+    def table(self, key: str, *, required: bool = False) -> Table:
+        """A table inside; an empty one where it may be left out."""
+        entries = self._get(key, REQUIRED if required else {}, (dict,), f"a table [{self.name(key)}]")
+        return Table(self.path, self.name(key), entries)
+
+    def tables(self, key: str) -> Iterator[Table]:
+        """The tables of an array of tables, numbered from 1."""
+        entries = self._get(key, [], (list,), f"tables [[{self.name(key)}]]")
+        for number, entry in enumerate(entries, start=1):
+            if not isinstance(entry, dict):
+                self.fail(key, f"is a list of values, not tables [[{self.name(key)}]]")
+            yield Table(self.path, f"{self.name(key)}[{number}]", entry)
+
+
+REQUIRED = ...
+
+
+def _float(value: Any) -> Any:
+    if value is None:
+        return None
+    try:
+        return float(value)
+    except OverflowError:
+        return math.inf if value > 0 else -math.inf
+
+
+def _shown(value: Any) -> str:
+    if isinstance(value, bool):
+        return "true" if value else "false"
+    if isinstance(value, str):
+        return f'the text "{value}"'
+    if isinstance(value, (list, dict)):
+        return "a list" if isinstance(value, list) else "a table"
+    return repr(value)
