@@ -1,0 +1,58 @@
+/* Protection of frames after AUTOSAR E2E: profile 2/22 for classic frames, profile 5 for CAN FD.
+ *
+ * Profile 22   byte 0 CRC-8H2F, byte 1 lower half: counter 0 … 15 (the upper half is payload). The CRC runs over
+ *              bytes 1 … and then one byte of the DataID list, chosen by the counter.
+ * Profile 5    bytes 0–1 CRC-16 (low byte first), byte 2 counter 0 … 255. The CRC runs over bytes 2 … and then
+ *              the DataID, low byte first.
+ *
+ * The time that a check takes depends on the length only, not on what is in the frame. */
+#ifndef LACONIC_NODE_E2E_H
+#define LACONIC_NODE_E2E_H
+
+#include <stdbool.h>
+#include <stdint.h>
+
+#define LACONIC_E2E_P22_HEADER 2
+#define LACONIC_E2E_P22_COUNTER_MASK 15U
+#define LACONIC_E2E_P05_HEADER 3
+#define LACONIC_E2E_P05_COUNTER_MASK 255U
+
+/* `turn` turns the DataID list: entry (counter + turn) mod 16 is used. 0: plain profile 22. Frames of one turn
+ * never pass the check of another, since then the last byte under the CRC differs. */
+void laconic_e2e_p22_protect(uint8_t *data, uint8_t length, const uint8_t data_ids[16], uint8_t turn, uint8_t counter);
+bool laconic_e2e_p22_crc_is_right(const uint8_t *data, uint8_t length, const uint8_t data_ids[16], uint8_t turn);
+
+void laconic_e2e_p05_protect(uint8_t *data, uint8_t length, uint16_t data_id, uint8_t counter);
+bool laconic_e2e_p05_crc_is_right(const uint8_t *data, uint8_t length, uint16_t data_id);
+
+typedef enum laconic_e2e_status {
+    LACONIC_E2E_OK = 0,
+    LACONIC_E2E_OK_SOME_LOST,   /* right, and fewer than max_delta frames are missing before it   */
+    LACONIC_E2E_REPEATED,       /* the counter of the last accepted frame again                   */
+    LACONIC_E2E_WRONG_SEQUENCE, /* counter further on than max_delta                              */
+    LACONIC_E2E_ERROR,          /* CRC wrong                                                      */
+    LACONIC_E2E_NO_NEW_DATA
+} laconic_e2e_status;
+
+/* Receiver of one kind of frame. All zero: nothing received yet, the first right frame is OK.
+ * A frame that is refused never moves `counter`. Only after LACONIC_E2E_RESYNC frames in a row with right CRC that
+ * follow one another (though not the reference) is the last of them OK and the new reference. */
+#define LACONIC_E2E_RESYNC 3
+
+typedef struct laconic_e2e_receiver {
+    bool known;             /* counter holds that of an accepted frame              */
+    uint8_t counter;        /* of the last accepted frame                           */
+    uint8_t stray;          /* of the last frame refused for its sequence           */
+    uint8_t stray_count;    /* how many of those followed one another; 0: none      */
+    uint8_t lost;           /* frames missing before the last accepted one          */
+} laconic_e2e_receiver;
+
+/* One frame came. `mask`: LACONIC_E2E_Pxx_COUNTER_MASK. */
+laconic_e2e_status laconic_e2e_check(laconic_e2e_receiver *receiver, bool crc_is_right, uint8_t counter, uint8_t mask,
+                                     uint8_t max_delta);
+
+static inline bool laconic_e2e_accepts(laconic_e2e_status status) {
+    return status == LACONIC_E2E_OK || status == LACONIC_E2E_OK_SOME_LOST;
+}
+
+#endif

@@ -1,0 +1,20 @@
+/* One CAN frame, classic or FD. */
+#ifndef LACONIC_NODE_FRAME_H
+#define LACONIC_NODE_FRAME_H
+
+#include <stdbool.h>
+#include <stdint.h>
+
+#define LACONIC_FRAME_BYTES 64
+
+typedef struct laconic_frame {
+    uint32_t id;
+    uint8_t length; /* bytes, not DLC code */
+    bool extended;  /* 29-bit identifier   */
+    bool remote;
+    bool fd;
+    bool bit_rate_switch;
+    uint8_t data[LACONIC_FRAME_BYTES];
+} laconic_frame;
+
+#endif

@@ -1,0 +1,106 @@
+/* A CAN node that plays the vehicle. Pure: it knows neither clock nor bus; a port feeds it frames and the time and
+ * fetches frames to send.
+ *
+ *     for (;;) {
+ *         while (receive(&frame)) laconic_node_on_frame(&node, &frame, now());
+ *         laconic_node_on_tick(&node, now());
+ *         while (laconic_node_next_frame(&node, &frame)) send(&frame);
+ *     }
+ *
+ * No heap, no blocking, no queue: answers are made from the newest state at the moment they are fetched, so nothing
+ * stale is ever sent. A call handles one frame, or at most LACONIC_NODE_STEPS_PER_TICK steps.
+ *
+ * Time is a count of microseconds that may wrap: only differences are used, and on_tick must be called at least
+ * every half hour. What the frames mean is in laconic.dbc. */
+#ifndef LACONIC_NODE_H
+#define LACONIC_NODE_H
+
+#include "laconic_node/e2e.h"
+#include "laconic_node/frame.h"
+#include "laconic_node/loader.h"
+#include "laconic_node/raw.h"
+
+#ifndef LACONIC_NODE_STEPS_PER_TICK
+#define LACONIC_NODE_STEPS_PER_TICK 64
+#endif
+#define LACONIC_NODE_HEARTBEAT_US 100000U
+#define LACONIC_NODE_ID_STRIDE 32U /* a node uses 32 identifiers from its base */
+
+typedef struct laconic_node_config {
+    uint16_t id_base;                                 /* multiple of 32, at most 0x7E0             */
+    bool can_fd;                                      /* the bus and the controller can do CAN FD  */
+    const laconic_method *(*method)(int32_t number);  /* which methods are linked; as
+                                                         laconic_method_by_number                  */
+} laconic_node_config;
+
+/* All of them stay at 65535. */
+typedef struct laconic_node_counters {
+    uint16_t crc_errors, sequence_errors, repeated, lost, malformed, missed_steps, accepted, refused, overrange;
+} laconic_node_counters;
+
+typedef struct laconic_node_result {
+    uint8_t request, command, status, field, item;
+} laconic_node_result;
+
+/* Lockstep: steps that are due, and which request asked for them. */
+typedef struct laconic_node_lockstep {
+    uint32_t steps_due;
+    uint8_t request;
+} laconic_node_lockstep;
+
+typedef struct laconic_node_free_run {
+    uint32_t rate_Hz, watchdog_us; /* watchdog 0: none                                             */
+    uint32_t steps_per_period;
+    uint32_t next_us, next_rest;   /* when the next period begins: next_us + next_rest/rate        */
+    uint32_t fed_us;               /* last time that all voltages had come                         */
+    uint32_t worst_lateness_us;
+} laconic_node_free_run;
+
+typedef struct laconic_node {
+    laconic_node_config config;
+    uint8_t state;                     /* LACONIC_WIRE_STATE_…                                     */
+    uint8_t session;                   /* of the last START; the next must name the one after      */
+    uint8_t send;                      /* chosen frames: LACONIC_NODE_SEND_…                       */
+    bool raw_fd;
+    uint32_t pending;                  /* frames to be fetched: bit = offset of the identifier     */
+    uint8_t wheel_group;               /* next WHEEL_SPEED group                                   */
+    uint8_t counter_page;
+    uint8_t groups_seen;               /* VOLTAGE groups since the watchdog was fed                */
+    uint32_t heartbeat_us;
+    laconic_node_result result;
+    laconic_node_lockstep lockstep;
+    laconic_node_free_run free_run;
+    laconic_node_counters counters;
+    laconic_e2e_receiver receiver[16]; /* by offset & 7, +8 for FD                                 */
+    uint8_t sent[16];                  /* counters of what was sent, in the same order             */
+    laconic_loader loader;
+    laconic_start start;               /* what RESET returns to                                    */
+    laconic_plant plant;
+    laconic_input input[3];            /* held: [0]; sampled: start, middle, end                   */
+    laconic_raw_input raw_input;
+    laconic_raw_output raw_output;
+} laconic_node;
+
+#define LACONIC_NODE_SEND_NU 1U
+#define LACONIC_NODE_SEND_POSE 2U
+#define LACONIC_NODE_SEND_WHEEL_SPEED 4U
+#define LACONIC_NODE_SEND_HEARTBEAT 8U
+#define LACONIC_NODE_SEND_COUNTERS 16U
+#define LACONIC_NODE_SEND_STATE_FD 32U
+
+/* False iff the ID base is no multiple of 32 or beyond 0x7E0; the node is then not usable. */
+bool laconic_node_init(laconic_node *node, const laconic_node_config *config, uint32_t now_us);
+
+void laconic_node_on_frame(laconic_node *node, const laconic_frame *frame, uint32_t now_us);
+void laconic_node_on_tick(laconic_node *node, uint32_t now_us);
+
+/* The next frame to send; false iff there is none. */
+bool laconic_node_next_frame(laconic_node *node, laconic_frame *frame);
+
+/* True while on_tick has steps to take: the port should not sleep. */
+bool laconic_node_is_busy(const laconic_node *node);
+
+/* Microseconds until on_tick has something to do, at most the time to the next heartbeat; 0: now. */
+uint32_t laconic_node_idle_us(const laconic_node *node, uint32_t now_us);
+
+#endif

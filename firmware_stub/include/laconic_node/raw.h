@@ -1,0 +1,56 @@
+/* Numbers bit for bit over the bus: inputs in, outputs out, as a stream of little-endian IEEE numbers. */
+#ifndef LACONIC_NODE_RAW_H
+#define LACONIC_NODE_RAW_H
+
+#include "laconic/laconic.h"
+
+/* What RAW_INPUT holds; the numbers of one input follow in this order. */
+#define LACONIC_RAW_VOLTAGE 1U      /* N numbers                             */
+#define LACONIC_RAW_AXLE_TORQUE 2U  /* N numbers                             */
+#define LACONIC_RAW_BODY_WRENCH 4U  /* force ξ, η, moment                    */
+#define LACONIC_RAW_WORLD_FORCE 8U  /* force X, Y, point ξ, η                */
+#define LACONIC_RAW_SAMPLED 128U    /* three inputs: start, middle, end      */
+
+/* What RAW_OUTPUT holds, in this order. */
+#define LACONIC_RAW_NU 1U           /* 3 */
+#define LACONIC_RAW_POSE 2U         /* x, y, heading (unwrapped) */
+#define LACONIC_RAW_WHEEL_SPEED 4U  /* N */
+#define LACONIC_RAW_WHEEL_ANGLE 8U  /* N */
+#define LACONIC_RAW_ENERGY 16U      /* 1 */
+#define LACONIC_RAW_OUTPUTS (7 + 2 * LACONIC_MAX_WHEELS)
+
+typedef struct laconic_raw_input {
+    uint8_t take;      /* mask                                                */
+    uint8_t filled;    /* bytes of `number` that are there                    */
+    uint16_t position; /* numbers stored since the last SYNC                  */
+    bool complete;     /* all of them have come since the last SYNC           */
+    bool broken;       /* a segment was out of order: wait for segment 0      */
+    uint8_t segment;   /* next one expected                                   */
+    uint8_t number[sizeof(laconic_real)];
+} laconic_raw_input;
+
+/* Forget what came since the last SYNC. */
+void laconic_raw_restart(laconic_raw_input *raw);
+
+/* Bytes of one segment. False iff it is out of order or one too many; the stream is then broken until segment 0. */
+bool laconic_raw_take(laconic_raw_input *raw, laconic_input input[3], int32_t wheel_count, uint8_t segment,
+                      uint8_t segment_mask, const uint8_t *bytes, uint8_t count);
+
+/* True iff a SYNC may use the inputs: nothing came, or everything did. */
+bool laconic_raw_is_whole(const laconic_raw_input *raw);
+
+typedef struct laconic_raw_output {
+    uint8_t send;      /* mask                                                */
+    uint16_t position; /* next byte                                           */
+    uint16_t size;     /* bytes                                               */
+    uint8_t segment;
+    laconic_real number[LACONIC_RAW_OUTPUTS];
+} laconic_raw_output;
+
+/* Reads the chosen outputs of the plant, all of one instant, and begins at the first byte. */
+void laconic_raw_collect(laconic_raw_output *raw, const laconic_plant *plant);
+
+/* Copies the next bytes, at most `room`, zeros behind the last; returns false iff that was all. */
+bool laconic_raw_give(laconic_raw_output *raw, uint8_t *bytes, uint8_t room);
+
+#endif

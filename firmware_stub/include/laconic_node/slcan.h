@@ -1,0 +1,42 @@
+/* SLCAN (Lawicel's ASCII protocol): CAN frames on a serial line, as python-can's `slcan` interface speaks it.
+ *
+ * Understood   O L C open, listen only, close; S0…S8, sxxyy bit rate; t T r R classic frames; d D b B CAN FD frames
+ *              (the CANable extension); Y2 Y5 data bit rate; V v N F Z0 Z1 version, number, flags, time stamps.
+ * Answered     CR for done, BEL for refused. Frames that the node sends are written as t/T/d/b lines.
+ *
+ * The reader is fed byte by byte, holds one line, and drops a line that is too long up to its end. */
+#ifndef LACONIC_NODE_SLCAN_H
+#define LACONIC_NODE_SLCAN_H
+
+#include "laconic_node/frame.h"
+
+#include <stddef.h>
+
+/* "B" + 8 identifier digits + DLC + 64 bytes in hexadecimal + CR */
+#define LACONIC_SLCAN_LINE (1 + 8 + 1 + 2 * LACONIC_FRAME_BYTES + 1)
+
+typedef enum laconic_slcan_event {
+    LACONIC_SLCAN_NOTHING = 0, /* the line goes on                                         */
+    LACONIC_SLCAN_FRAME,       /* *frame holds a frame                                     */
+    LACONIC_SLCAN_REPLY        /* reply[] holds the answer to a command; *frame unchanged  */
+} laconic_slcan_event;
+
+typedef struct laconic_slcan {
+    bool open;
+    bool listen_only;
+    char required_rate;  /* '0' … '8': only this S command is right, others shut the channel; 0: any */
+    bool rate_is_wrong;  /* the wrong one was chosen: frames neither come nor go                    */
+    uint16_t length;     /* of the line so far; LACONIC_SLCAN_LINE: too long, drop it               */
+    char line[LACONIC_SLCAN_LINE];
+    char reply[8];       /* text of the last REPLY, closed with 0                                   */
+} laconic_slcan;
+
+void laconic_slcan_init(laconic_slcan *slcan, char required_rate);
+
+/* A byte came. A frame is only reported while the channel is open and not listen-only. */
+laconic_slcan_event laconic_slcan_feed(laconic_slcan *slcan, char byte, laconic_frame *frame);
+
+/* Writes the frame as a line with its CR and returns the length; 0 iff the channel is shut. */
+size_t laconic_slcan_write(const laconic_slcan *slcan, const laconic_frame *frame, char text[LACONIC_SLCAN_LINE]);
+
+#endif

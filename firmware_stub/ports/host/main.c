@@ -1,0 +1,200 @@
+/* The node as a process: SLCAN on a TCP socket, so that python-can's `slcan` reaches it as it would reach a board.
+ *
+ *     laconic-node-double [--port N] [--id-base 0xNNN] [--bitrate N] [--once]
+ *
+ * Prints "listening on 127.0.0.1:PORT" (port 0: any free one). One client at a time; the vehicle lives on between
+ * clients, as it would on a board. --once: end when the first client leaves. */
+#define _GNU_SOURCE
+#include "laconic_node/node.h"
+#include "laconic_node/slcan.h"
+#include "laconic_wire.h"
+
+#include <arpa/inet.h>
+#include <errno.h>
+#include <netinet/in.h>
+#include <netinet/tcp.h>
+#include <poll.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+#include <sys/socket.h>
+#include <time.h>
+#include <unistd.h>
+
+enum { BAD_INPUT = 2, OUT_SIZE = 1 << 16 };
+
+typedef struct settings {
+    unsigned long port, id_base;
+    char rate; /* '0' … '8', 0: any */
+    bool once;
+} settings;
+
+typedef struct port {
+    laconic_node node;
+    laconic_slcan slcan;
+    int socket;
+    char out[OUT_SIZE]; /* what waits for the socket */
+    size_t out_count;
+} port;
+
+static int complain(const char *what, const char *remedy) {
+    fprintf(stderr, "laconic-node: %s: %s\n", what, remedy);
+    return BAD_INPUT;
+}
+
+static uint32_t now_us(void) {
+    struct timespec time;
+    clock_gettime(CLOCK_MONOTONIC, &time);
+    return (uint32_t)((uint64_t)time.tv_sec * 1000000U + (uint64_t)time.tv_nsec / 1000U);
+}
+
+static void flush_out(port *port) {
+    const ssize_t sent = send(port->socket, port->out, port->out_count, MSG_DONTWAIT | MSG_NOSIGNAL);
+    if (sent <= 0) return;
+    port->out_count -= (size_t)sent;
+    memmove(port->out, port->out + sent, port->out_count);
+}
+
+static void put(port *port, const char *text, size_t length) {
+    if (port->out_count + length > OUT_SIZE) return; /* the client does not read: as on a full bus, it is lost */
+    memcpy(port->out + port->out_count, text, length);
+    port->out_count += length;
+}
+
+static void fetch_frames(port *port) {
+    char line[LACONIC_SLCAN_LINE];
+    laconic_frame frame;
+    while (port->out_count + LACONIC_SLCAN_LINE < OUT_SIZE && laconic_node_next_frame(&port->node, &frame))
+        put(port, line, laconic_slcan_write(&port->slcan, &frame, line));
+}
+
+static void step_node(port *port) {
+    laconic_node_on_tick(&port->node, now_us());
+    fetch_frames(port);
+}
+
+/* False iff the client has gone. */
+static bool read_client(port *port) {
+    char bytes[4096];
+    laconic_frame frame;
+    const ssize_t count = recv(port->socket, bytes, sizeof bytes, MSG_DONTWAIT);
+    if (count == 0 || (count < 0 && errno != EAGAIN && errno != EINTR)) return false;
+    for (ssize_t k = 0; k < count; k++) {
+        switch (laconic_slcan_feed(&port->slcan, bytes[k], &frame)) {
+        case LACONIC_SLCAN_FRAME:
+            laconic_node_on_frame(&port->node, &frame, now_us());
+            step_node(port);
+            break;
+        case LACONIC_SLCAN_REPLY: put(port, port->slcan.reply, strlen(port->slcan.reply)); break;
+        default: break;
+        }
+    }
+    return true;
+}
+
+static void wait_for_work(const port *port, int listening) {
+    const uint32_t idle_us = laconic_node_idle_us(&port->node, now_us());
+    const struct timespec timeout = {idle_us / 1000000U, (long)(idle_us % 1000000U) * 1000L};
+    const bool connected = port->socket >= 0;
+    struct pollfd fd = {connected ? port->socket : listening, POLLIN, 0};
+    if (connected && port->out_count > 0) fd.events |= POLLOUT;
+    ppoll(&fd, 1, &timeout, NULL);
+}
+
+static void try_accept(port *port, int listening, char rate) {
+    const int on = 1;
+    port->socket = accept(listening, NULL, NULL);
+    if (port->socket < 0) return;
+    setsockopt(port->socket, IPPROTO_TCP, TCP_NODELAY, &on, sizeof on);
+    laconic_slcan_init(&port->slcan, rate);
+    port->out_count = 0;
+}
+
+static void serve(port *port, int listening, const settings *settings) {
+    port->socket = -1;
+    for (;;) {
+        wait_for_work(port, listening);
+        if (port->socket < 0) {
+            try_accept(port, listening, settings->rate);
+        } else if (!read_client(port)) {
+            close(port->socket);
+            port->socket = -1;
+            laconic_slcan_init(&port->slcan, settings->rate);
+            if (settings->once) return;
+        }
+        step_node(port);
+        if (port->out_count > 0 && port->socket >= 0) flush_out(port);
+    }
+}
+
+static int open_listener(unsigned long number, unsigned long *chosen) {
+    struct sockaddr_in address = {.sin_family = AF_INET, .sin_port = htons((uint16_t)number)};
+    socklen_t size = sizeof address;
+    const int on = 1;
+    const int listening = socket(AF_INET, SOCK_STREAM | SOCK_NONBLOCK, 0);
+    address.sin_addr.s_addr = htonl(INADDR_LOOPBACK);
+    if (listening < 0) return -1;
+    setsockopt(listening, SOL_SOCKET, SO_REUSEADDR, &on, sizeof on);
+    if (bind(listening, (struct sockaddr *)&address, size) != 0 || listen(listening, 1) != 0 ||
+        getsockname(listening, (struct sockaddr *)&address, &size) != 0) {
+        close(listening);
+        return -1;
+    }
+    *chosen = ntohs(address.sin_port);
+    return listening;
+}
+
+static char rate_letter(unsigned long bitrate) {
+    static const unsigned long rates[] = {10000, 20000, 50000, 100000, 125000, 250000, 500000, 800000, 1000000};
+    for (size_t k = 0; k < sizeof rates / sizeof rates[0]; k++)
+        if (rates[k] == bitrate) return (char)('0' + (char)k);
+    return 0;
+}
+
+static bool number(const char *text, unsigned long largest, unsigned long *value) {
+    char *end;
+    errno = 0;
+    *value = strtoul(text, &end, 0);
+    return errno == 0 && end != text && *end == 0 && *value <= largest;
+}
+
+static int parse(int count, char **words, settings *settings) {
+    unsigned long rate;
+    for (int k = 1; k < count; k++) {
+        const char *value = k + 1 < count ? words[k + 1] : "";
+        if (strcmp(words[k], "--once") == 0) {
+            settings->once = true;
+        } else if (strcmp(words[k], "--port") == 0) {
+            if (!number(value, 65535, &settings->port)) return complain("--port", "give a number from 0 to 65535");
+            k++;
+        } else if (strcmp(words[k], "--id-base") == 0) {
+            if (!number(value, 0x7E0, &settings->id_base) || settings->id_base % LACONIC_NODE_ID_STRIDE != 0)
+                return complain("--id-base", "give a multiple of 32 from 0 to 0x7E0");
+            k++;
+        } else if (strcmp(words[k], "--bitrate") == 0) {
+            settings->rate = number(value, 1000000, &rate) ? rate_letter(rate) : (char)0;
+            if (settings->rate == 0) return complain("--bitrate", "give one of SLCAN's rates, such as 500000");
+            k++;
+        } else {
+            return complain(words[k], "unknown option; there are --port, --id-base, --bitrate and --once");
+        }
+    }
+    return 0;
+}
+
+int main(int count, char **words) {
+    static port port;
+    settings settings = {.id_base = LACONIC_WIRE_ID_BASE};
+    unsigned long chosen;
+    const int bad = parse(count, words, &settings);
+    if (bad != 0) return bad;
+    const laconic_node_config config = {(uint16_t)settings.id_base, true, laconic_method_by_number};
+    laconic_node_init(&port.node, &config, now_us());
+    const int listening = open_listener(settings.port, &chosen);
+    if (listening < 0) return complain(strerror(errno), "the port is taken or not allowed; choose another --port");
+    printf("listening on 127.0.0.1:%lu\n", chosen);
+    fflush(stdout);
+    serve(&port, listening, &settings);
+    close(listening);
+    return 0;
+}

@@ -1,0 +1,65 @@
+#include "laconic_node/e2e.h"
+
+#include "laconic_node/crc.h"
+
+static uint8_t p22_crc(const uint8_t *data, uint8_t length, const uint8_t data_ids[16], uint8_t turn) {
+    const uint8_t *id = &data_ids[(data[1] + turn) & LACONIC_E2E_P22_COUNTER_MASK];
+    uint8_t crc = laconic_crc8(LACONIC_CRC8_START, data + 1, (size_t)length - 1U);
+    crc = laconic_crc8(crc, id, 1);
+    return (uint8_t)(crc ^ LACONIC_CRC8_END);
+}
+
+void laconic_e2e_p22_protect(uint8_t *data, uint8_t length, const uint8_t data_ids[16], uint8_t turn,
+                             uint8_t counter) {
+    data[1] = (uint8_t)((data[1] & 0xF0U) | (counter & LACONIC_E2E_P22_COUNTER_MASK));
+    data[0] = p22_crc(data, length, data_ids, turn);
+}
+
+bool laconic_e2e_p22_crc_is_right(const uint8_t *data, uint8_t length, const uint8_t data_ids[16], uint8_t turn) {
+    return length >= LACONIC_E2E_P22_HEADER && data[0] == p22_crc(data, length, data_ids, turn);
+}
+
+static uint16_t p05_crc(const uint8_t *data, uint8_t length, uint16_t data_id) {
+    const uint8_t id[2] = {(uint8_t)(data_id & 255U), (uint8_t)(data_id >> 8)};
+    uint16_t crc = laconic_crc16(LACONIC_CRC16_START, data + 2, (size_t)length - 2U);
+    crc = laconic_crc16(crc, id, 2);
+    return (uint16_t)(crc ^ LACONIC_CRC16_END);
+}
+
+void laconic_e2e_p05_protect(uint8_t *data, uint8_t length, uint16_t data_id, uint8_t counter) {
+    data[2] = counter;
+    const uint16_t crc = p05_crc(data, length, data_id);
+    data[0] = (uint8_t)(crc & 255U);
+    data[1] = (uint8_t)(crc >> 8);
+}
+
+bool laconic_e2e_p05_crc_is_right(const uint8_t *data, uint8_t length, uint16_t data_id) {
+    return length >= LACONIC_E2E_P05_HEADER && (data[0] | (data[1] << 8)) == p05_crc(data, length, data_id);
+}
+
+static laconic_e2e_status accept(laconic_e2e_receiver *receiver, uint8_t counter, uint8_t lost) {
+    receiver->known = true;
+    receiver->counter = counter;
+    receiver->stray_count = 0;
+    receiver->lost = lost;
+    return lost == 0 ? LACONIC_E2E_OK : LACONIC_E2E_OK_SOME_LOST;
+}
+
+/* A refused frame is remembered apart from the reference, so that a burst of old frames cannot rewind it. */
+static laconic_e2e_status stray(laconic_e2e_receiver *receiver, uint8_t counter, uint8_t mask) {
+    const bool follows = receiver->stray_count > 0 && counter == ((receiver->stray + 1U) & mask);
+    receiver->stray_count = (uint8_t)(follows ? receiver->stray_count + 1U : 1U);
+    receiver->stray = counter;
+    if (receiver->stray_count >= LACONIC_E2E_RESYNC) return accept(receiver, counter, 0);
+    return LACONIC_E2E_WRONG_SEQUENCE;
+}
+
+laconic_e2e_status laconic_e2e_check(laconic_e2e_receiver *receiver, bool crc_is_right, uint8_t counter, uint8_t mask,
+                                     uint8_t max_delta) {
+    if (!crc_is_right) return LACONIC_E2E_ERROR;
+    if (!receiver->known) return accept(receiver, counter, 0);
+    const uint8_t delta = (uint8_t)((counter - receiver->counter) & mask);
+    if (delta == 0) return LACONIC_E2E_REPEATED;
+    if (delta <= max_delta) return accept(receiver, counter, (uint8_t)(delta - 1U));
+    return stray(receiver, counter, mask);
+}

@@ -1,0 +1,37 @@
+/* The node as a shared library, for tests and the in-process rig: what Python sees of it. */
+#ifndef LACONIC_NODE_LIBRARY_H
+#define LACONIC_NODE_LIBRARY_H
+
+#include "laconic_node/frame.h"
+
+struct laconic_node;
+/* The functions of node.h, once more: cffi needs no more of the node than its name. */
+void laconic_node_on_frame(struct laconic_node *node, const laconic_frame *frame, uint32_t now_us);
+void laconic_node_on_tick(struct laconic_node *node, uint32_t now_us);
+bool laconic_node_next_frame(struct laconic_node *node, laconic_frame *frame);
+bool laconic_node_is_busy(const struct laconic_node *node);
+uint32_t laconic_node_idle_us(const struct laconic_node *node, uint32_t now_us);
+
+#include "laconic_node/crc.h"
+#include "laconic_node/e2e.h"
+#include "laconic_node/slcan.h"
+
+/* A node in memory that the caller provides (that many bytes, aligned to 8), with all methods. */
+uint32_t laconic_library_node_size(void);
+bool laconic_library_node_init(struct laconic_node *node, uint16_t id_base, bool can_fd, uint32_t now_us);
+
+/* Puts protection on a frame of the rig, or takes it off one of the node: by offset of the identifier. */
+void laconic_library_protect(uint8_t offset, uint8_t *data, uint8_t length, uint8_t session, uint8_t counter);
+bool laconic_library_crc_is_right(uint8_t offset, const uint8_t *data, uint8_t length, uint8_t session);
+
+/* Over every error of one, two and three bits in this 8-byte frame of profile 22, counted by what happens to it:
+ * outcome 0 found by the CRC, 1 found by the counter, 2 accepted. The receiver has just taken the frame before. */
+typedef struct laconic_error_census {
+    uint64_t counter_kept[3];    /* errors that leave the counter alone */
+    uint64_t counter_changed[3];
+} laconic_error_census;
+
+void laconic_library_census(laconic_error_census *census, const uint8_t frame[8], const uint8_t data_ids[16],
+                            uint8_t max_delta);
+
+#endif

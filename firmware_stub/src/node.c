@@ -1,0 +1,144 @@
+#include "laconic_node/node.h"
+
+#include "node_internal.h"
+
+#include <string.h>
+
+bool laconic_node_init(laconic_node *node, const laconic_node_config *config, uint32_t now_us) {
+    if (config->id_base % LACONIC_NODE_ID_STRIDE != 0 || config->id_base > 0x7E0U) return false;
+    memset(node, 0, sizeof *node);
+    node->config = *config;
+    node->state = LACONIC_WIRE_STATE_EMPTY;
+    node->send = LACONIC_NODE_SEND_HEARTBEAT;
+    node->heartbeat_us = now_us;
+    laconic_loader_begin(&node->loader);
+    laconic_raw_restart(&node->raw_input);
+    return true;
+}
+
+static bool is_well_formed(const laconic_frame *frame, const laconic_wire_row *row) {
+    return !frame->remote && frame->fd == (row->fd != 0) && frame->length == row->length && row->from_rig;
+}
+
+/* Lost frames are only forgiven where new ones follow by themselves. */
+static uint8_t max_delta(const laconic_node *node, const laconic_wire_row *row) {
+    return node->state == LACONIC_WIRE_STATE_FREE_RUN ? row->max_delta : 1U;
+}
+
+static bool is_fresh(laconic_node *node, uint8_t offset, const laconic_frame *frame) {
+    const laconic_wire_row *row = &laconic_wire[offset];
+    const uint8_t turn = row->of_session ? node->session : 0;
+    laconic_e2e_receiver *receiver = &node->receiver[receiver_slot(offset)];
+    const bool right = row->fd ? laconic_e2e_p05_crc_is_right(frame->data, frame->length,
+                                                              (uint16_t)(laconic_wire_data_id(offset) + turn))
+                               : laconic_e2e_p22_crc_is_right(frame->data, frame->length,
+                                                              laconic_wire_data_ids[offset], turn);
+    const uint8_t mask = row->fd ? LACONIC_E2E_P05_COUNTER_MASK : LACONIC_E2E_P22_COUNTER_MASK;
+    const uint8_t counter = row->fd ? frame->data[2] : frame->data[1] & mask;
+    switch (laconic_e2e_check(receiver, right, counter, mask, max_delta(node, row))) {
+    case LACONIC_E2E_OK: return true;
+    case LACONIC_E2E_OK_SOME_LOST:
+        for (uint8_t k = 0; k < receiver->lost; k++) count(&node->counters.lost);
+        return true;
+    case LACONIC_E2E_REPEATED: count(&node->counters.repeated); return false;
+    case LACONIC_E2E_WRONG_SEQUENCE: count(&node->counters.sequence_errors); return false;
+    default: count(&node->counters.crc_errors); return false;
+    }
+}
+
+static void sync(laconic_node *node, const uint8_t *data) {
+    const uint32_t steps =
+        (uint32_t)data[2] | (uint32_t)data[3] << 8 | (uint32_t)data[4] << 16 | (uint32_t)data[5] << 24;
+    laconic_node_sync(node, steps, data[1] >> 4);
+}
+
+static bool dispatch(laconic_node *node, uint8_t offset, const uint8_t *data, uint32_t now_us) {
+    switch (offset) {
+    case LACONIC_WIRE_CONTROL: laconic_node_control(node, data, now_us); return true;
+    case LACONIC_WIRE_SELECT: laconic_node_select(node, data); return true;
+    case LACONIC_WIRE_COMMIT: laconic_node_commit(node, data); return true;
+    case LACONIC_WIRE_PARAMETER: laconic_loader_take(&node->loader, data); return true;
+    case LACONIC_WIRE_SYNC: sync(node, data); return true;
+    case LACONIC_WIRE_VOLTAGE: return laconic_node_voltage(node, data, now_us);
+    case LACONIC_WIRE_VOLTAGE_FD: return laconic_node_voltage_fd(node, data, now_us);
+    case LACONIC_WIRE_RAW_INPUT: return laconic_node_raw(node, data + 2, data[1] >> 4, 15, 6);
+    default: return laconic_node_raw(node, data + 4, data[3], 255, 60);
+    }
+}
+
+void laconic_node_on_frame(laconic_node *node, const laconic_frame *frame, uint32_t now_us) {
+    const uint32_t offset = frame->id - node->config.id_base;
+    if (frame->extended || offset >= LACONIC_NODE_ID_STRIDE) return; /* somebody else's */
+    const laconic_wire_row *row = &laconic_wire[offset];
+    if (!is_well_formed(frame, row)) {
+        count(&node->counters.malformed);
+        return;
+    }
+    if (!is_fresh(node, (uint8_t)offset, frame)) return;
+    count(&node->counters.accepted);
+    if (!dispatch(node, (uint8_t)offset, frame->data, now_us)) count(&node->counters.refused);
+}
+
+void laconic_node_on_tick(laconic_node *node, uint32_t now_us) {
+    if (now_us - node->heartbeat_us >= LACONIC_NODE_HEARTBEAT_US) {
+        node->heartbeat_us += LACONIC_NODE_HEARTBEAT_US;
+        if (node->send & LACONIC_NODE_SEND_HEARTBEAT) node->pending |= BIT(LACONIC_WIRE_HEARTBEAT);
+        if (node->send & LACONIC_NODE_SEND_COUNTERS) node->pending |= BIT(LACONIC_WIRE_COUNTERS);
+    }
+    if (node->state == LACONIC_WIRE_STATE_LOCKSTEP) laconic_node_run_lockstep(node);
+    if (node->state == LACONIC_WIRE_STATE_FREE_RUN || node->state == LACONIC_WIRE_STATE_TIMEOUT)
+        laconic_node_run_free(node, now_us);
+}
+
+static void protect(laconic_node *node, uint8_t offset, laconic_frame *frame) {
+    const uint8_t counter = ++node->sent[receiver_slot(offset)];
+    if (frame->fd) {
+        laconic_e2e_p05_protect(frame->data, frame->length, laconic_wire_data_id(offset), counter);
+    } else {
+        laconic_e2e_p22_protect(frame->data, frame->length, laconic_wire_data_ids[offset], 0, counter);
+    }
+}
+
+/* True iff this frame has more parts to follow: wheel groups, counter pages, raw segments. */
+static bool has_more(laconic_node *node, uint8_t offset) {
+    switch (offset) {
+    case LACONIC_WIRE_WHEEL_SPEED:
+        node->wheel_group++;
+        return 3 * node->wheel_group < node->plant.model.wheel_count;
+    case LACONIC_WIRE_COUNTERS:
+        node->counter_page = (uint8_t)((node->counter_page + 1U) % 3U);
+        return node->counter_page != 0;
+    case LACONIC_WIRE_RAW_OUTPUT:
+    case LACONIC_WIRE_RAW_OUTPUT_FD: return node->raw_output.position < node->raw_output.size;
+    default: return false;
+    }
+}
+
+bool laconic_node_next_frame(laconic_node *node, laconic_frame *frame) {
+    uint8_t offset = LACONIC_WIRE_RESULT;
+    if (node->pending == 0) return false;
+    while ((node->pending & BIT(offset)) == 0) offset++;
+    const laconic_wire_row *row = &laconic_wire[offset];
+    frame->id = (uint32_t)node->config.id_base + offset;
+    frame->length = row->length;
+    frame->extended = false;
+    frame->remote = false;
+    frame->fd = row->fd != 0;
+    frame->bit_rate_switch = frame->fd;
+    laconic_node_pack(node, offset, frame->data);
+    protect(node, offset, frame);
+    if (!has_more(node, offset)) node->pending &= ~BIT(offset);
+    return true;
+}
+
+bool laconic_node_is_busy(const laconic_node *node) { return node->lockstep.steps_due > 0; }
+
+uint32_t laconic_node_idle_us(const laconic_node *node, uint32_t now_us) {
+    const uint32_t heartbeat = node->heartbeat_us + LACONIC_NODE_HEARTBEAT_US - now_us;
+    uint32_t idle = (int32_t)heartbeat < 0 ? 0U : heartbeat;
+    if (node->state == LACONIC_WIRE_STATE_FREE_RUN || node->state == LACONIC_WIRE_STATE_TIMEOUT) {
+        const int32_t step = (int32_t)(node->free_run.next_us - now_us);
+        if (step < (int32_t)idle) idle = step < 0 ? 0U : (uint32_t)step;
+    }
+    return laconic_node_is_busy(node) ? 0U : idle;
+}

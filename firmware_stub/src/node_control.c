@@ -1,0 +1,165 @@
+/* The node's life: who it is, what it plays, when it runs. */
+#include "node_internal.h"
+
+#include "laconic_dbc.h"
+
+#include <string.h>
+
+void laconic_node_answer(laconic_node *node, uint8_t command, uint8_t request, uint8_t status, uint8_t field,
+                         uint8_t item) {
+    const laconic_node_result result = {request, command, status, field, item};
+    node->result = result;
+    node->pending |= BIT(LACONIC_WIRE_RESULT);
+    if (status != 0) count(&node->counters.refused);
+}
+
+static void forget(laconic_node *node, uint8_t offset) {
+    memset(&node->receiver[receiver_slot(offset)], 0, sizeof node->receiver[0]);
+}
+
+static uint8_t identify(laconic_node *node) {
+    forget(node, LACONIC_WIRE_SELECT);
+    forget(node, LACONIC_WIRE_COMMIT);
+    node->pending |= BIT(LACONIC_WIRE_IDENTITY);
+    return 0;
+}
+
+static uint8_t begin(laconic_node *node) {
+    laconic_loader_begin(&node->loader);
+    forget(node, LACONIC_WIRE_PARAMETER);
+    forget(node, LACONIC_WIRE_COMMIT);
+    return 0;
+}
+
+/* A new session: nothing that was sent for an earlier one passes its check any more. */
+static uint8_t open_session(laconic_node *node, uint8_t session) {
+    if (node->state != LACONIC_WIRE_STATE_READY) return LACONIC_WIRE_STATUS_WRONG_STATE;
+    if (session != (uint8_t)(node->session + 1U)) return LACONIC_WIRE_STATUS_WRONG_SESSION;
+    node->session = session;
+    forget(node, LACONIC_WIRE_SYNC);
+    forget(node, LACONIC_WIRE_VOLTAGE);
+    forget(node, LACONIC_WIRE_RAW_INPUT);
+    forget(node, LACONIC_WIRE_VOLTAGE_FD);
+    forget(node, LACONIC_WIRE_RAW_INPUT_FD);
+    laconic_raw_restart(&node->raw_input);
+    node->groups_seen = 0;
+    return 0;
+}
+
+static uint8_t start_lockstep(laconic_node *node, uint8_t session) {
+    const uint8_t status = open_session(node, session);
+    if (status == 0) node->state = LACONIC_WIRE_STATE_LOCKSTEP;
+    return status;
+}
+
+static uint8_t start_free_run(laconic_node *node, const struct laconic_dbc_control_t *frame, uint32_t now_us) {
+    laconic_node_free_run run = {0};
+    uint64_t steps;
+    const double step_s = (double)node->plant.integrator.step_s;
+    if (node->state != LACONIC_WIRE_STATE_READY) return LACONIC_WIRE_STATUS_WRONG_STATE;
+    run.rate_Hz = frame->rate > 0 ? frame->rate : (uint32_t)(1.0 / step_s + 0.5);
+    if (run.rate_Hz < 1 || run.rate_Hz > 1000U) return LACONIC_WIRE_STATUS_OUT_OF_RANGE;
+    /* step_s of a single is only near its decimal value: half an ulp is far below the millionth that is allowed */
+    if (laconic_steps_in(1.0 / run.rate_Hz, step_s, &steps, NULL) != LACONIC_OK)
+        return LACONIC_WIRE_STATUS_OUT_OF_RANGE;
+    if (steps > LACONIC_NODE_STEPS_PER_TICK) return LACONIC_WIRE_STATUS_OUT_OF_RANGE;
+    const uint8_t status = open_session(node, frame->session);
+    if (status != 0) return status;
+    run.steps_per_period = (uint32_t)steps;
+    run.watchdog_us = 1000U * (uint32_t)frame->watchdog;
+    run.fed_us = now_us;
+    run.next_us = now_us + 1000000U / run.rate_Hz;
+    run.next_rest = 1000000U % run.rate_Hz;
+    node->free_run = run;
+    node->state = LACONIC_WIRE_STATE_FREE_RUN;
+    return 0;
+}
+
+static uint8_t stop(laconic_node *node) {
+    if (is_running(node)) node->state = LACONIC_WIRE_STATE_READY;
+    node->lockstep.steps_due = 0;
+    laconic_node_rest_inputs(node);
+    return 0;
+}
+
+static uint8_t reset(laconic_node *node, uint8_t *field, uint8_t *item) {
+    laconic_refusal why = {0};
+    if (node->state == LACONIC_WIRE_STATE_EMPTY) return LACONIC_WIRE_STATUS_WRONG_STATE;
+    const laconic_status status =
+        laconic_state_set(&node->plant.state, &node->plant.model, &node->start, &why);
+    stop(node);
+    node->plant.steps = 0;
+    node->state = LACONIC_WIRE_STATE_READY;
+    memset(&node->counters, 0, sizeof node->counters);
+    *field = (uint8_t)why.field;
+    *item = (uint8_t)why.item;
+    return (uint8_t)status;
+}
+
+void laconic_node_control(laconic_node *node, const uint8_t *data, uint32_t now_us) {
+    struct laconic_dbc_control_t frame;
+    uint8_t status;
+    uint8_t field = 0;
+    uint8_t item = 0;
+    laconic_dbc_control_unpack(&frame, data, 8);
+    switch (frame.command) {
+    case LACONIC_WIRE_COMMAND_IDENTIFY: status = identify(node); break;
+    case LACONIC_WIRE_COMMAND_BEGIN: status = begin(node); break;
+    case LACONIC_WIRE_COMMAND_START_LOCKSTEP: status = start_lockstep(node, frame.session); break;
+    case LACONIC_WIRE_COMMAND_START_FREE_RUN: status = start_free_run(node, &frame, now_us); break;
+    case LACONIC_WIRE_COMMAND_STOP: status = stop(node); break;
+    case LACONIC_WIRE_COMMAND_RESET: status = reset(node, &field, &item); break;
+    default: status = LACONIC_WIRE_STATUS_UNKNOWN_COMMAND; break;
+    }
+    laconic_node_answer(node, frame.command, frame.request, status, field, item);
+}
+
+/* The loaded parameters become the vehicle, or nothing changes. */
+static uint8_t adopt(laconic_node *node, uint8_t *field, uint8_t *item) {
+    const laconic_parameters *new = &node->loader.parameters;
+    const laconic_method *method = node->config.method(new->method);
+    laconic_refusal why = {0};
+    if (method == NULL) {
+        *field = LACONIC_FIELD_METHOD;
+        return LACONIC_METHOD_UNKNOWN;
+    }
+    const laconic_status status =
+        laconic_plant_start(&node->plant, &new->vehicle, method, new->step_s, &new->start, &why);
+    *field = (uint8_t)why.field;
+    *item = (uint8_t)why.item;
+    if (status != LACONIC_OK) return (uint8_t)status;
+    node->start = new->start;
+    node->state = LACONIC_WIRE_STATE_READY;
+    memset(node->input, 0, sizeof node->input);
+    laconic_node_rest_inputs(node);
+    return 0;
+}
+
+void laconic_node_commit(laconic_node *node, const uint8_t *data) {
+    struct laconic_dbc_commit_t frame;
+    laconic_dbc_commit_unpack(&frame, data, 8);
+    uint8_t field = node->loader.field;
+    uint8_t item = node->loader.item;
+    uint8_t status = laconic_loader_check(&node->loader, frame.frame_count, frame.checksum);
+    if (is_running(node)) status = LACONIC_WIRE_STATUS_WRONG_STATE;
+    if (status == 0) status = adopt(node, &field, &item);
+    laconic_node_answer(node, LACONIC_WIRE_COMMAND_COMMIT, frame.request, status, status != 0 ? field : 0,
+                        status != 0 ? item : 0);
+}
+
+void laconic_node_select(laconic_node *node, const uint8_t *data) {
+    const uint8_t raw_fd = data[3] >> 7;
+    uint8_t status = 0;
+    if (listens_to_voltages(node)) {
+        status = LACONIC_WIRE_STATUS_WRONG_STATE;
+    } else if ((raw_fd || data[2] & LACONIC_NODE_SEND_STATE_FD) && !node->config.can_fd) {
+        status = LACONIC_WIRE_STATUS_NOT_SUPPORTED;
+    } else {
+        node->send = data[2];
+        node->raw_fd = raw_fd != 0;
+        node->raw_output.send = data[3] & 0x1FU;
+        node->raw_input.take = data[4];
+        laconic_node_rest_inputs(node);
+    }
+    laconic_node_answer(node, LACONIC_WIRE_COMMAND_SELECT, data[1] >> 4, status, 0, 0);
+}

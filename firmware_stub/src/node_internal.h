@@ -1,0 +1,45 @@
+/* What the node's files share with each other. */
+#ifndef LACONIC_NODE_INTERNAL_H
+#define LACONIC_NODE_INTERNAL_H
+
+#include "laconic_node/node.h"
+#include "laconic_wire.h"
+
+#define BIT(offset) ((uint32_t)1 << (offset))
+
+static inline uint8_t receiver_slot(uint8_t offset) { return (uint8_t)((offset & 7U) | (offset >= 16U ? 8U : 0U)); }
+
+static inline void count(uint16_t *counter) { *counter = (uint16_t)(*counter + (*counter < UINT16_MAX)); }
+
+static inline bool is_running(const laconic_node *node) {
+    return node->state == LACONIC_WIRE_STATE_LOCKSTEP || node->state == LACONIC_WIRE_STATE_FREE_RUN ||
+           node->state == LACONIC_WIRE_STATE_TIMEOUT;
+}
+
+static inline bool listens_to_voltages(const laconic_node *node) {
+    return node->state == LACONIC_WIRE_STATE_LOCKSTEP || node->state == LACONIC_WIRE_STATE_FREE_RUN;
+}
+
+/* node_control.c: CONTROL, COMMIT and SELECT, each answered by RESULT. */
+void laconic_node_control(laconic_node *node, const uint8_t *data, uint32_t now_us);
+void laconic_node_commit(laconic_node *node, const uint8_t *data);
+void laconic_node_select(laconic_node *node, const uint8_t *data);
+void laconic_node_answer(laconic_node *node, uint8_t command, uint8_t request, uint8_t status, uint8_t field,
+                         uint8_t item);
+
+/* node_command.c: frames that move the vehicle. False iff the frame was refused. */
+bool laconic_node_voltage(laconic_node *node, const uint8_t *data, uint32_t now_us);
+bool laconic_node_voltage_fd(laconic_node *node, const uint8_t *data, uint32_t now_us);
+bool laconic_node_raw(laconic_node *node, const uint8_t *bytes, uint8_t segment, uint8_t mask, uint8_t size);
+void laconic_node_sync(laconic_node *node, uint32_t steps, uint8_t request);
+
+/* node_run.c */
+void laconic_node_run_lockstep(laconic_node *node);
+void laconic_node_run_free(laconic_node *node, uint32_t now_us);
+void laconic_node_rest_inputs(laconic_node *node);
+void laconic_node_publish(laconic_node *node);
+
+/* node_pack.c: payload of one frame; protection is put on afterwards. */
+void laconic_node_pack(laconic_node *node, uint8_t offset, uint8_t *data);
+
+#endif

@@ -1,0 +1,176 @@
+/* Payloads of the frames that the node sends. A value out of range saturates and sets the frame's overrange flag:
+ * the generated packers would wrap it. */
+#include "node_internal.h"
+
+#include "laconic_dbc.h"
+
+#include <string.h>
+
+static int32_t scaled(laconic_real value, int32_t per_unit, int32_t largest, uint8_t *overrange) {
+    const laconic_real bound = (laconic_real)largest;
+    const laconic_real half = (laconic_real)0.5;
+    const laconic_real raw = value * (laconic_real)per_unit;
+    if (raw >= -bound && raw <= bound) return (int32_t)(raw < 0 ? raw - half : raw + half);
+    *overrange = 1;
+    return raw > 0 ? largest : -largest;
+}
+
+#define SCALED(value, name, overrange) \
+    scaled(value, LACONIC_WIRE_##name##_PER_UNIT, LACONIC_WIRE_##name##_LARGEST, overrange)
+
+static void pack_result(const laconic_node *node, uint8_t *data) {
+    const laconic_node_result *result = &node->result;
+    const struct laconic_dbc_result_t frame = {
+        .request = result->request,
+        .command = result->command,
+        .status = result->status,
+        .field = result->field,
+        .item = result->item,
+        .state = node->state,
+        .session = (uint8_t)(node->session + 1U),
+    };
+    laconic_dbc_result_pack(data, &frame, 8);
+}
+
+/* LACONIC_VERSION is text, "major.minor.patch". */
+static uint8_t version_part(unsigned part) {
+    const char *text = LACONIC_VERSION;
+    uint8_t value = 0;
+    for (; *text != 0; text++) {
+        if (*text == '.') {
+            if (part-- == 0) break;
+            value = 0;
+        } else {
+            value = (uint8_t)(10U * value + (uint8_t)(*text - '0'));
+        }
+    }
+    return value;
+}
+
+static void pack_identity(const laconic_node *node, uint8_t *data) {
+    struct laconic_dbc_identity_t frame = {
+        .can_fd = node->config.can_fd,
+        .protocol = LACONIC_WIRE_VERSION,
+        .version_major = version_part(0),
+        .version_minor = version_part(1),
+        .version_patch = version_part(2),
+        .scalar_bytes = sizeof(laconic_real),
+        .max_wheels = LACONIC_MAX_WHEELS,
+    };
+    for (int32_t k = 0; k < LACONIC_METHOD_COUNT; k++)
+        if (node->config.method(k) != NULL) frame.methods = (uint8_t)(frame.methods | (1U << k));
+    laconic_dbc_identity_pack(data, &frame, 8);
+}
+
+static void pack_nu(const laconic_node *node, uint8_t *data) {
+    struct laconic_dbc_nu_t frame = {0};
+    laconic_real nu[3];
+    laconic_nu(&node->plant.model, &node->plant.state, nu);
+    frame.nu_1 = (int16_t)SCALED(nu[0], NU_NU_1, &frame.overrange);
+    frame.nu_2 = (int16_t)SCALED(nu[1], NU_NU_2, &frame.overrange);
+    frame.nu_3 = (int16_t)SCALED(nu[2], NU_NU_3, &frame.overrange);
+    laconic_dbc_nu_pack(data, &frame, 8);
+}
+
+static void pack_pose(const laconic_node *node, uint8_t *data) {
+    struct laconic_dbc_pose_t frame = {0};
+    laconic_pose pose;
+    laconic_pose_of(&pose, &node->plant.model, &node->plant.state);
+    frame.x = (int16_t)SCALED(pose.x_m, POSE_X, &frame.overrange);
+    frame.y = (int16_t)SCALED(pose.y_m, POSE_Y, &frame.overrange);
+    frame.heading = (int16_t)SCALED(pose.heading_wrapped_rad, POSE_HEADING, &frame.overrange);
+    laconic_dbc_pose_pack(data, &frame, 8);
+}
+
+static void pack_wheel_speed(const laconic_node *node, uint8_t *data) {
+    struct laconic_dbc_wheel_speed_t frame = {.group = node->wheel_group};
+    laconic_real speed[LACONIC_MAX_WHEELS + 3] = {0};
+    laconic_wheel_speeds(&node->plant.model, &node->plant.state, speed);
+    const laconic_real *three = &speed[3 * node->wheel_group];
+    frame.wheel_speed_1 = (int16_t)SCALED(three[0], WHEEL_SPEED_WHEEL_SPEED_1, &frame.overrange);
+    frame.wheel_speed_2 = (int16_t)SCALED(three[1], WHEEL_SPEED_WHEEL_SPEED_2, &frame.overrange);
+    frame.wheel_speed_3 = (int16_t)SCALED(three[2], WHEEL_SPEED_WHEEL_SPEED_3, &frame.overrange);
+    laconic_dbc_wheel_speed_pack(data, &frame, 8);
+}
+
+static void pack_heartbeat(const laconic_node *node, uint8_t *data) {
+    const uint32_t late = node->free_run.worst_lateness_us;
+    const struct laconic_dbc_heartbeat_t frame = {
+        .state = node->state,
+        .steps = (uint32_t)node->plant.steps,
+        .worst_lateness = (uint16_t)(late > UINT16_MAX ? UINT16_MAX : late),
+    };
+    laconic_dbc_heartbeat_pack(data, &frame, 8);
+}
+
+static void pack_counters(const laconic_node *node, uint8_t *data) {
+    const laconic_node_counters *c = &node->counters;
+    const struct laconic_dbc_counters_t frame = {
+        .page = node->counter_page,
+        .crc_errors = c->crc_errors,
+        .sequence_errors = c->sequence_errors,
+        .repeated = c->repeated,
+        .lost = c->lost,
+        .malformed = c->malformed,
+        .missed_steps = c->missed_steps,
+        .accepted = c->accepted,
+        .refused = c->refused,
+        .overrange = c->overrange,
+    };
+    laconic_dbc_counters_pack(data, &frame, 8);
+}
+
+static void put16(uint8_t *to, int32_t value) {
+    to[0] = (uint8_t)((uint32_t)value & 255U);
+    to[1] = (uint8_t)((uint32_t)value >> 8 & 255U);
+}
+
+static void put32(uint8_t *to, uint32_t value) {
+    put16(to, (int32_t)(value & 0xFFFFU));
+    put16(to + 2, (int32_t)(value >> 16));
+}
+
+/* By hand: seven numbers and sixteen wheels in a row need no packer of 300 lines. */
+static void pack_state_fd(const laconic_node *node, uint8_t *data) {
+    laconic_real nu[3];
+    laconic_real speed[LACONIC_MAX_WHEELS];
+    laconic_pose pose;
+    uint8_t over = 0;
+    memset(data, 0, 64);
+    laconic_nu(&node->plant.model, &node->plant.state, nu);
+    laconic_pose_of(&pose, &node->plant.model, &node->plant.state);
+    laconic_wheel_speeds(&node->plant.model, &node->plant.state, speed);
+    put32(data + 4, (uint32_t)node->plant.steps);
+    for (int k = 0; k < 3; k++) put32(data + 8 + 4 * k, (uint32_t)SCALED(nu[k], STATE_FD_NU_1, &over));
+    put32(data + 20, (uint32_t)SCALED(pose.x_m, STATE_FD_X, &over));
+    put32(data + 24, (uint32_t)SCALED(pose.y_m, STATE_FD_Y, &over));
+    put32(data + 28, (uint32_t)SCALED(pose.heading_wrapped_rad, STATE_FD_HEADING, &over));
+    for (int32_t i = 0; i < node->plant.model.wheel_count && i < 16; i++)
+        put16(data + 32 + 2 * i, SCALED(speed[i], STATE_FD_WHEEL_SPEED_1, &over));
+    data[3] = over;
+}
+
+static void pack_raw(laconic_node *node, uint8_t *data) {
+    data[1] = (uint8_t)(node->raw_output.segment << 4);
+    laconic_raw_give(&node->raw_output, data + 2, 6);
+}
+
+static void pack_raw_fd(laconic_node *node, uint8_t *data) {
+    data[3] = node->raw_output.segment;
+    laconic_raw_give(&node->raw_output, data + 4, 60);
+}
+
+void laconic_node_pack(laconic_node *node, uint8_t offset, uint8_t *data) {
+    switch (offset) {
+    case LACONIC_WIRE_RESULT: pack_result(node, data); break;
+    case LACONIC_WIRE_IDENTITY: pack_identity(node, data); break;
+    case LACONIC_WIRE_NU: pack_nu(node, data); break;
+    case LACONIC_WIRE_POSE: pack_pose(node, data); break;
+    case LACONIC_WIRE_WHEEL_SPEED: pack_wheel_speed(node, data); break;
+    case LACONIC_WIRE_RAW_OUTPUT: pack_raw(node, data); break;
+    case LACONIC_WIRE_HEARTBEAT: pack_heartbeat(node, data); break;
+    case LACONIC_WIRE_COUNTERS: pack_counters(node, data); break;
+    case LACONIC_WIRE_STATE_FD: pack_state_fd(node, data); break;
+    default: pack_raw_fd(node, data); break;
+    }
+}

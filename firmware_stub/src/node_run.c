@@ -1,0 +1,99 @@
+/* Time passes: steps in lockstep and in free run. The stepping itself is the core's. */
+#include "node_internal.h"
+
+#include <string.h>
+
+void laconic_node_rest_inputs(laconic_node *node) {
+    memset(node->input, 0, sizeof node->input);
+    laconic_raw_restart(&node->raw_input);
+}
+
+/* The chosen frames, from the state of this moment. */
+void laconic_node_publish(laconic_node *node) {
+    if (node->send & LACONIC_NODE_SEND_NU) node->pending |= BIT(LACONIC_WIRE_NU);
+    if (node->send & LACONIC_NODE_SEND_POSE) node->pending |= BIT(LACONIC_WIRE_POSE);
+    if (node->send & LACONIC_NODE_SEND_WHEEL_SPEED && node->plant.model.wheel_count > 0)
+        node->pending |= BIT(LACONIC_WIRE_WHEEL_SPEED);
+    if (node->send & LACONIC_NODE_SEND_STATE_FD) node->pending |= BIT(LACONIC_WIRE_STATE_FD);
+    node->wheel_group = 0;
+    laconic_raw_collect(&node->raw_output, &node->plant);
+    if (node->raw_output.size > 0)
+        node->pending |= node->raw_fd ? BIT(LACONIC_WIRE_RAW_OUTPUT_FD) : BIT(LACONIC_WIRE_RAW_OUTPUT);
+}
+
+/* A step that the core refuses ends the run; the state stays as it was before that step. */
+static void fail(laconic_node *node, laconic_status status, const laconic_refusal *why, uint8_t request) {
+    node->lockstep.steps_due = 0;
+    node->state = LACONIC_WIRE_STATE_FAULT;
+    laconic_node_rest_inputs(node);
+    laconic_node_answer(node, LACONIC_WIRE_COMMAND_SYNC, request, (uint8_t)status, (uint8_t)why->field,
+                        (uint8_t)why->item);
+}
+
+static laconic_status step_sampled(laconic_node *node, laconic_refusal *why) {
+    laconic_plant *plant = &node->plant;
+    const laconic_input *input = node->input;
+    const laconic_status status =
+        laconic_step_sampled(&plant->model, &plant->integrator, &plant->state, &input[0], &input[1], &input[2]);
+    if (status == LACONIC_OK) {
+        plant->steps++;
+    } else {
+        laconic_step_refusal(why, status, &plant->model, &plant->integrator, &plant->state, &input[0]);
+    }
+    return status;
+}
+
+void laconic_node_run_lockstep(laconic_node *node) {
+    laconic_refusal why = {0};
+    laconic_status status;
+    uint32_t steps = node->lockstep.steps_due;
+    if (steps == 0) return;
+    if (node->raw_input.take & LACONIC_RAW_SAMPLED) {
+        status = step_sampled(node, &why);
+    } else {
+        if (steps > LACONIC_NODE_STEPS_PER_TICK) steps = LACONIC_NODE_STEPS_PER_TICK;
+        status = laconic_plant_run(&node->plant, &node->input[0], steps, &why);
+    }
+    if (status != LACONIC_OK) {
+        fail(node, status, &why, node->lockstep.request);
+        return;
+    }
+    node->lockstep.steps_due -= steps;
+    if (node->lockstep.steps_due == 0) laconic_node_publish(node);
+}
+
+/* Commands have stopped coming: coast without voltage until the rig says STOP and START again. */
+static void watch(laconic_node *node, uint32_t now_us) {
+    const laconic_node_free_run *run = &node->free_run;
+    if (node->state != LACONIC_WIRE_STATE_FREE_RUN || run->watchdog_us == 0) return;
+    if (now_us - run->fed_us <= run->watchdog_us) return;
+    node->state = LACONIC_WIRE_STATE_TIMEOUT;
+    laconic_node_rest_inputs(node);
+}
+
+static void schedule_next(laconic_node_free_run *run) {
+    run->next_us += 1000000U / run->rate_Hz;
+    run->next_rest += 1000000U % run->rate_Hz;
+    if (run->next_rest >= run->rate_Hz) {
+        run->next_rest -= run->rate_Hz;
+        run->next_us++;
+    }
+}
+
+/* No step is ever left out: one that comes more than a period late is taken late, and counted. */
+void laconic_node_run_free(laconic_node *node, uint32_t now_us) {
+    laconic_node_free_run *run = &node->free_run;
+    laconic_refusal why = {0};
+    const uint32_t late = now_us - run->next_us;
+    watch(node, now_us);
+    if ((int32_t)late < 0) return;
+    if (late > run->worst_lateness_us) run->worst_lateness_us = late;
+    if (late >= 1000000U / run->rate_Hz) count(&node->counters.missed_steps);
+    const laconic_status status = laconic_plant_run(&node->plant, &node->input[0], run->steps_per_period, &why);
+    if (status != LACONIC_OK) {
+        fail(node, status, &why, 0);
+        return;
+    }
+    schedule_next(run);
+    laconic_node_publish(node);
+}

@@ -1,0 +1,113 @@
+#include "laconic_node/raw.h"
+
+#include <string.h>
+
+/* Both ways the numbers are little-endian; a big-endian target would have to turn them round here. */
+#if defined(__BYTE_ORDER__) && __BYTE_ORDER__ != __ORDER_LITTLE_ENDIAN__
+#error "laconic: raw frames are written for little-endian targets"
+#endif
+
+void laconic_raw_restart(laconic_raw_input *raw) {
+    raw->filled = 0;
+    raw->position = 0;
+    raw->segment = 0;
+    raw->complete = false;
+    raw->broken = false;
+}
+
+/* Where number k of one input lives; NULL behind the last. */
+static laconic_real *slot_in(laconic_input *input, uint8_t take, int32_t wheel_count, int32_t k) {
+    if (take & LACONIC_RAW_VOLTAGE) {
+        if (k < wheel_count) return &input->voltage_V[k];
+        k -= wheel_count;
+    }
+    if (take & LACONIC_RAW_AXLE_TORQUE) {
+        if (k < wheel_count) return &input->axle_torque_Nm[k];
+        k -= wheel_count;
+    }
+    if (take & LACONIC_RAW_BODY_WRENCH) {
+        if (k < 3) return k < 2 ? &input->body_force_N[k] : &input->body_moment_Nm;
+        k -= 3;
+    }
+    if (take & LACONIC_RAW_WORLD_FORCE && k < 4)
+        return k < 2 ? &input->world_force_N[k] : &input->world_force_point_m[k - 2];
+    return NULL;
+}
+
+static int32_t numbers_of(uint8_t take, int32_t wheel_count) {
+    int32_t count = 0;
+    if (take & LACONIC_RAW_VOLTAGE) count += wheel_count;
+    if (take & LACONIC_RAW_AXLE_TORQUE) count += wheel_count;
+    if (take & LACONIC_RAW_BODY_WRENCH) count += 3;
+    if (take & LACONIC_RAW_WORLD_FORCE) count += 4;
+    return count;
+}
+
+static void store(laconic_raw_input *raw, laconic_input input[3], int32_t wheel_count) {
+    const int32_t each = numbers_of(raw->take, wheel_count);
+    const int32_t total = raw->take & LACONIC_RAW_SAMPLED ? 3 * each : each;
+    laconic_real *to = slot_in(&input[raw->position / each], raw->take, wheel_count, raw->position % each);
+    memcpy(to, raw->number, sizeof raw->number);
+    raw->position++;
+    raw->filled = 0;
+    raw->complete = raw->position == total;
+}
+
+bool laconic_raw_take(laconic_raw_input *raw, laconic_input input[3], int32_t wheel_count, uint8_t segment,
+                      uint8_t segment_mask, const uint8_t *bytes, uint8_t count) {
+    if (raw->broken && segment == 0) laconic_raw_restart(raw);
+    const bool expected = !raw->broken && !raw->complete && segment == raw->segment;
+    if (!expected || numbers_of(raw->take, wheel_count) == 0) {
+        raw->broken = true;
+        return false;
+    }
+    raw->segment = (uint8_t)((segment + 1U) & segment_mask);
+    for (uint8_t k = 0; k < count && !raw->complete; k++) {
+        raw->number[raw->filled++] = bytes[k];
+        if (raw->filled == sizeof raw->number) store(raw, input, wheel_count);
+    }
+    return true;
+}
+
+bool laconic_raw_is_whole(const laconic_raw_input *raw) {
+    return !raw->broken && (raw->complete || (raw->position == 0 && raw->filled == 0));
+}
+
+static laconic_real *collect_pose(laconic_real *to, const laconic_plant *plant) {
+    laconic_pose pose;
+    laconic_pose_of(&pose, &plant->model, &plant->state);
+    *to++ = pose.x_m;
+    *to++ = pose.y_m;
+    *to++ = pose.heading_rad;
+    return to;
+}
+
+void laconic_raw_collect(laconic_raw_output *raw, const laconic_plant *plant) {
+    laconic_real *to = raw->number;
+    const int32_t n = plant->model.wheel_count;
+    if (raw->send & LACONIC_RAW_NU) {
+        laconic_nu(&plant->model, &plant->state, to);
+        to += 3;
+    }
+    if (raw->send & LACONIC_RAW_POSE) to = collect_pose(to, plant);
+    if (raw->send & LACONIC_RAW_WHEEL_SPEED) {
+        laconic_wheel_speeds(&plant->model, &plant->state, to);
+        to += n;
+    }
+    if (raw->send & LACONIC_RAW_WHEEL_ANGLE)
+        for (int32_t i = 0; i < n; i++) *to++ = plant->state.wheel_angle_rad[i].value;
+    if (raw->send & LACONIC_RAW_ENERGY) *to++ = laconic_energy_J(&plant->model, &plant->state);
+    raw->size = (uint16_t)((size_t)(to - raw->number) * sizeof(laconic_real));
+    raw->position = 0;
+    raw->segment = 0;
+}
+
+bool laconic_raw_give(laconic_raw_output *raw, uint8_t *bytes, uint8_t room) {
+    const uint16_t left = (uint16_t)(raw->size - raw->position);
+    const uint8_t count = left < room ? (uint8_t)left : room;
+    memcpy(bytes, (const uint8_t *)raw->number + raw->position, count);
+    memset(bytes + count, 0, (size_t)(room - count));
+    raw->position = (uint16_t)(raw->position + count);
+    raw->segment++;
+    return raw->position < raw->size;
+}

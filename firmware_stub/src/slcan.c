@@ -1,0 +1,141 @@
+#include "laconic_node/slcan.h"
+
+static const uint8_t fd_lengths[16] = {0, 1, 2, 3, 4, 5, 6, 7, 8, 12, 16, 20, 24, 32, 48, 64};
+
+static int digit(char c) {
+    if (c >= '0' && c <= '9') return c - '0';
+    if (c >= 'A' && c <= 'F') return c - 'A' + 10;
+    if (c >= 'a' && c <= 'f') return c - 'a' + 10;
+    return -1;
+}
+
+/* Reads `count` hexadecimal digits; false iff one is none. */
+static bool number(const char *text, size_t count, uint32_t *value) {
+    *value = 0;
+    for (size_t k = 0; k < count; k++) {
+        const int d = digit(text[k]);
+        if (d < 0) return false;
+        *value = (*value << 4) | (uint32_t)d;
+    }
+    return true;
+}
+
+void laconic_slcan_init(laconic_slcan *slcan, char required_rate) {
+    slcan->open = false;
+    slcan->listen_only = false;
+    slcan->required_rate = required_rate;
+    slcan->rate_is_wrong = false;
+    slcan->length = 0;
+    slcan->reply[0] = 0;
+}
+
+static bool kind_of(char letter, laconic_frame *frame) {
+    frame->extended = letter == 'T' || letter == 'R' || letter == 'D' || letter == 'B';
+    frame->remote = letter == 'r' || letter == 'R';
+    frame->bit_rate_switch = letter == 'b' || letter == 'B';
+    frame->fd = letter == 'd' || letter == 'D' || frame->bit_rate_switch;
+    return frame->extended || frame->remote || frame->fd || letter == 't';
+}
+
+/* The line must have exactly the length that its DLC asks for. */
+static bool parse_frame(const char *line, size_t length, laconic_frame *frame) {
+    laconic_frame read = {0};
+    uint32_t dlc;
+    uint32_t byte;
+    if (!kind_of(line[0], &read)) return false;
+    const size_t id_digits = read.extended ? 8 : 3;
+    if (length < 1U + id_digits + 1U) return false;
+    if (!number(line + 1, id_digits, &read.id) || !number(line + 1 + id_digits, 1, &dlc)) return false;
+    if (read.id > (read.extended ? 0x1FFFFFFFU : 0x7FFU) || (!read.fd && dlc > 8U)) return false;
+    read.length = fd_lengths[dlc];
+    const size_t header = 1U + id_digits + 1U;
+    if (length != header + (read.remote ? 0U : 2U * (size_t)read.length)) return false;
+    for (size_t k = 0; !read.remote && k < read.length; k++) {
+        if (!number(line + header + 2U * k, 2, &byte)) return false;
+        read.data[k] = (uint8_t)byte;
+    }
+    *frame = read;
+    return true;
+}
+
+static laconic_slcan_event reply(laconic_slcan *slcan, const char *text) {
+    size_t k = 0;
+    for (; text[k] != 0; k++) slcan->reply[k] = text[k];
+    slcan->reply[k] = 0;
+    return LACONIC_SLCAN_REPLY;
+}
+
+#define DONE "\r"
+#define REFUSED "\a"
+
+static laconic_slcan_event set_rate(laconic_slcan *slcan, size_t length) {
+    const char rate = slcan->line[1];
+    if (slcan->open || length != 2 || rate < '0' || rate > '8') return reply(slcan, REFUSED);
+    slcan->rate_is_wrong = slcan->required_rate != 0 && rate != slcan->required_rate;
+    return reply(slcan, DONE);
+}
+
+static laconic_slcan_event open_channel(laconic_slcan *slcan, bool listen_only) {
+    if (slcan->open) return reply(slcan, REFUSED);
+    slcan->open = true;
+    slcan->listen_only = listen_only;
+    return reply(slcan, DONE);
+}
+
+static laconic_slcan_event command(laconic_slcan *slcan, size_t length) {
+    switch (slcan->line[0]) {
+    case 'O': return open_channel(slcan, false);
+    case 'L': return open_channel(slcan, true);
+    case 'C': slcan->open = false; return reply(slcan, DONE);
+    case 'S': return set_rate(slcan, length);
+    case 's':
+    case 'Y':
+    case 'Z': return reply(slcan, slcan->open ? REFUSED : DONE);
+    case 'V':
+    case 'v': return reply(slcan, "V1010\r");
+    case 'N': return reply(slcan, "NLACO\r");
+    case 'F': return reply(slcan, "F00\r");
+    default: return reply(slcan, REFUSED);
+    }
+}
+
+static laconic_slcan_event end_of_line(laconic_slcan *slcan, laconic_frame *frame) {
+    const size_t length = slcan->length;
+    laconic_frame kind;
+    slcan->length = 0;
+    if (length == 0) return LACONIC_SLCAN_NOTHING;
+    if (length >= LACONIC_SLCAN_LINE) return reply(slcan, REFUSED);
+    if (!kind_of(slcan->line[0], &kind)) return command(slcan, length);
+    if (!slcan->open || slcan->listen_only || slcan->rate_is_wrong) return reply(slcan, REFUSED);
+    return parse_frame(slcan->line, length, frame) ? LACONIC_SLCAN_FRAME : reply(slcan, REFUSED);
+}
+
+laconic_slcan_event laconic_slcan_feed(laconic_slcan *slcan, char byte, laconic_frame *frame) {
+    if (byte == '\r') return end_of_line(slcan, frame);
+    if (byte == '\n') return LACONIC_SLCAN_NOTHING;
+    if (slcan->length < LACONIC_SLCAN_LINE) slcan->line[slcan->length++] = byte;
+    return LACONIC_SLCAN_NOTHING;
+}
+
+static char *put(char *to, uint32_t value, unsigned digits) {
+    while (digits-- > 0) *to++ = "0123456789ABCDEF"[(value >> (4U * digits)) & 15U];
+    return to;
+}
+
+static char letter_of(const laconic_frame *frame) {
+    if (frame->fd) return (char)((frame->bit_rate_switch ? 'b' : 'd') - (frame->extended ? 'a' - 'A' : 0));
+    return (char)((frame->remote ? 'r' : 't') - (frame->extended ? 'a' - 'A' : 0));
+}
+
+size_t laconic_slcan_write(const laconic_slcan *slcan, const laconic_frame *frame, char text[LACONIC_SLCAN_LINE]) {
+    char *to = text;
+    uint32_t dlc = 0;
+    if (!slcan->open || slcan->rate_is_wrong) return 0;
+    while (dlc < 15U && fd_lengths[dlc] < frame->length) dlc++;
+    *to++ = letter_of(frame);
+    to = put(to, frame->id, frame->extended ? 8 : 3);
+    to = put(to, dlc, 1);
+    for (uint8_t k = 0; !frame->remote && k < frame->length; k++) to = put(to, frame->data[k], 2);
+    *to++ = '\r';
+    return (size_t)(to - text);
+}

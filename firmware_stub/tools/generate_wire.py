@@ -1,0 +1,135 @@
+"""C table of the wire contract, from the DBC: offsets, lengths, protection, scales, value tables.
+
+    generate_wire.py laconic.dbc OUTPUT_DIRECTORY
+
+writes laconic_wire.h and laconic_wire.c. What cantools' own packers cannot know (protection, saturation) is here.
+"""
+
+from __future__ import annotations
+
+import sys
+from pathlib import Path
+
+import cantools.database
+from cantools.database.can import Database, Message, Signal
+
+ID_BASE = 512
+NOTE = "/* Generated from laconic.dbc. */\n"
+
+
+def attribute(message: Message, name: str) -> str | int:
+    """The message's attribute, or the database's default for it."""
+    found = message.dbc.attributes.get(name)
+    return found.value if found else message.dbc.database_default[name]
+
+
+def data_ids(message: Message) -> list[int]:
+    """The DataID list (profile 22), or the DataID's two bytes, low byte first (profile 5)."""
+    text = str(attribute(message, "E2EDataID"))
+    if message.is_fd:
+        number = int(text, 16)
+        return [number & 255, number >> 8]
+    ids = [int(part, 16) for part in text.split()]
+    if len(ids) != 16:
+        raise SystemExit(f"laconic.dbc: {message.name}: E2EDataID needs 16 bytes, has {len(ids)}")
+    return ids
+
+
+def constants(database: Database) -> list[str]:
+    """Macros for offsets, value tables, scales and limits."""
+    lines = [f"#define LACONIC_WIRE_VERSION {int(database.version)}", f"#define LACONIC_WIRE_ID_BASE {ID_BASE}"]
+    for message in database.messages:
+        lines.append(f"#define LACONIC_WIRE_{message.name} {message.frame_id - ID_BASE}")
+    choices: dict[str, int] = {}
+    for message in database.messages:
+        for signal in message.signals:
+            for number, text in (signal.choices or {}).items():
+                if signal.name in ("command", "state") or (signal.name == "status" and number >= 64):
+                    choices[f"LACONIC_WIRE_{signal.name}_{text}".upper()] = number
+            lines += scale(message, signal)
+    return lines + [f"#define {name} {number}" for name, number in choices.items()]
+
+
+def scale(message: Message, signal: Signal) -> list[str]:
+    """Steps per unit and the largest raw value of a scaled signal."""
+    if float(signal.scale) == 1.0:
+        return []
+    name = f"LACONIC_WIRE_{message.name}_{signal.name}".upper()
+    largest = round(float(signal.maximum) / float(signal.scale))
+    return [f"#define {name}_PER_UNIT {round(1 / float(signal.scale))}", f"#define {name}_LARGEST {largest}"]
+
+
+def rows(database: Database) -> list[str]:
+    """One initializer per identifier offset; unused offsets have length 0."""
+    by_offset = {message.frame_id - ID_BASE: message for message in database.messages}
+    lines = []
+    for offset in range(32):
+        if offset not in by_offset:
+            continue
+        message = by_offset[offset]
+        from_rig = int("RIG" in message.senders)
+        lines.append(
+            f"    [{offset}] = {{{message.length}, {int(message.is_fd)}, {from_rig}, "
+            f"{attribute(message, 'OfSession')}, {attribute(message, 'E2EMaxDeltaCounter')}}}, /* {message.name} */"
+        )
+    return lines
+
+
+def tables(database: Database) -> list[str]:
+    """DataID lists of the classic frames and DataIDs of the FD frames."""
+    classic = [m for m in database.messages if not m.is_fd]
+    longest = max(m.frame_id - ID_BASE for m in classic) + 1
+    lines = [f"const uint8_t laconic_wire_data_ids[{longest}][16] = {{"]
+    for message in classic:
+        ids = ", ".join(f"0x{number:02X}" for number in data_ids(message))
+        lines.append(f"    [{message.frame_id - ID_BASE}] = {{{ids}}},")
+    lines += ["};", "", "uint16_t laconic_wire_data_id(uint8_t offset) {", "    switch (offset) {"]
+    for message in database.messages:
+        if message.is_fd:
+            low, high = data_ids(message)
+            lines.append(f"    case {message.frame_id - ID_BASE}: return 0x{high:02X}{low:02X}U;")
+    return lines + ["    default: return 0;", "    }", "}"]
+
+
+HEADER = """#ifndef LACONIC_WIRE_H
+#define LACONIC_WIRE_H
+
+#include <stdbool.h>
+#include <stdint.h>
+
+{constants}
+
+typedef struct laconic_wire_row {{
+    uint8_t length;    /* 0: no such frame */
+    uint8_t fd;
+    uint8_t from_rig;
+    uint8_t of_session;
+    uint8_t max_delta;
+}} laconic_wire_row;
+
+#define LACONIC_WIRE_OFFSETS 32
+extern const laconic_wire_row laconic_wire[LACONIC_WIRE_OFFSETS];
+extern const uint8_t laconic_wire_data_ids[{classic}][16]; /* profile 22 */
+uint16_t laconic_wire_data_id(uint8_t offset);         /* profile 5  */
+
+#endif
+"""
+
+
+def main(dbc: str, directory: str) -> None:
+    """Reads the DBC and writes the two files."""
+    database = cantools.database.load_file(dbc)
+    defaults = {name: d.default_value for name, d in database.dbc.attribute_definitions.items()}
+    for message in database.messages:
+        message.dbc.database_default = defaults
+    classic = max(m.frame_id - ID_BASE for m in database.messages if not m.is_fd) + 1
+    out = Path(directory)
+    header = HEADER.format(constants="\n".join(constants(database)), classic=classic)
+    out.joinpath("laconic_wire.h").write_text(NOTE + header, encoding="utf-8")
+    body = ['#include "laconic_wire.h"', "", "const laconic_wire_row laconic_wire[LACONIC_WIRE_OFFSETS] = {"]
+    body += [*rows(database), "};", "", *tables(database), ""]
+    out.joinpath("laconic_wire.c").write_text(NOTE + "\n".join(body), encoding="utf-8")
+
+
+if __name__ == "__main__":
+    main(*sys.argv[1:])
