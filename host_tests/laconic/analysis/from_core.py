@@ -1,0 +1,95 @@
+"""From a scene to what the analysis works on: everything is read from what the core has prepared."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass
+from typing import Any
+
+import numpy as np
+
+from laconic.analysis.field import Field
+from laconic.core import Core, Matrices
+from laconic.errors import BadInput, Refused
+from laconic.method.scene_system import VehicleNumbers
+from laconic.scene import Scene
+
+Inputs = Mapping[str, float | Sequence[float]]
+
+
+@dataclass(frozen=True)
+class Subject:
+    """One vehicle as prepared by the core, with the constant inputs it is studied under."""
+
+    scene: Scene
+    core: Core
+    vehicle: Any              # laconic_vehicle
+    model: Any                # laconic_model
+    matrices: Matrices
+    inputs: dict[str, float]  # held: signal → value
+
+    @property
+    def wheel_count(self) -> int:
+        """N."""
+        return int(self.vehicle.wheel_count)
+
+    def voltages(self) -> np.ndarray:
+        """U [V]."""
+        return np.array([self.inputs.get(f"voltage_V[{i + 1}]", 0.0) for i in range(self.wheel_count)])
+
+    def field(self, inputs: Inputs | None = None) -> Field:
+        """The vector field under the given constant inputs (nothing said: the subject's own)."""
+        return field_of(self.core, self.model, self.inputs if inputs is None else inputs)
+
+    def start_nu(self) -> np.ndarray:
+        """ν at the scene's start."""
+        return np.array(self.scene.initial.nu(self.model), dtype=float)
+
+    def numbers(self) -> VehicleNumbers:
+        """The vehicle for the derivation."""
+        return VehicleNumbers(
+            name=self.scene.name, mass_kg=float(self.model.mass_kg), wheel_radius_m=float(self.model.wheel_radius_m),
+            lambda_yaw=self.matrices.lambda_yaw, lambda_wheel=self.matrices.lambda_wheel,
+            motor_gain_Nm_per_V=float(self.model.motor_gain_Nm_per_V),
+            motor_damping_Nms=float(self.model.motor_damping_Nms),
+            wheel_rows=self.matrices.wheel_rows, constraint_rows=self.matrices.constraint_rows)
+
+
+def subject_of(scene: Scene, at_s: float = 0.0) -> Subject:
+    """The scene's vehicle in the core (double), with the inputs as they are held at one instant."""
+    scene = scene.with_run(real="double")
+    core = scene.core()
+    vehicle, model = scene.c_vehicle(core), scene.model(core)
+    drive = scene.drive()
+    tick = int(np.floor(at_s / scene.run.step_s + 1e-6))
+    if not 0 <= tick <= drive.steps:
+        raise BadInput(f"{scene.path}: --at {at_s:g} s lies outside the run of {scene.run.duration_s:g} s")
+    return Subject(scene, core, vehicle, model, core.matrices(vehicle), drive.held_at(tick))
+
+
+def changed(subject: Subject, key: str, value: float) -> Subject:
+    """The same with one number of `[vehicle]` replaced; BadInput when the core refuses it."""
+    data = {**subject.scene.vehicle, key: value}
+    try:
+        vehicle = subject.core.vehicle(data)
+        model, matrices = subject.core.prepare(vehicle), subject.core.matrices(vehicle)
+    except Refused as refused:
+        raise refused.at(f"{subject.scene.path}, {key} = {value:g}") from None
+    return Subject(subject.scene, subject.core, vehicle, model, matrices, subject.inputs)
+
+
+def field_of(core: Core, model: Any, inputs: Inputs) -> Field:
+    """Reads the prepared model and the load of constant inputs; a force fixed in the world has no constant load."""
+    load = core.ffi.new("laconic_load *")
+    core.lib.laconic_load_of(load, model, core.input(inputs))
+    if load.turns:
+        raise BadInput("a force fixed in the world acts: it turns against the body with the heading, so there are no "
+                       "steady motions; leave it out (--free), or use `laconic simulate`")
+    return Field(
+        dof=int(model.dof),
+        nu_of_zeta=core.numbers(model.nu_of_zeta, 3, 3),
+        gyro=core.numbers(model.gyro),
+        decay_per_s=core.numbers(model.decay_per_s),
+        drive=core.numbers(load.constant),
+        lambda_yaw=float(model.yaw_scale),
+    )
