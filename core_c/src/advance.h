@@ -1,11 +1,83 @@
-/* From an increment of ζ to the next state: the one place where pose and wheel angles advance. */
+/* From what a method finds out about ζ to the next state: the one place where pose and wheel angles advance.
+ * Inlined into each method, so that a step is one function and nothing travels through memory. */
 #ifndef LACONIC_ADVANCE_H
 #define LACONIC_ADVANCE_H
 
-#include "internal.h"
+#include "heading.h"
+#include "passivity.h"
 
-/* Takes the step or refuses (OVERFLOW) and leaves the state as it was. */
-laconic_status laconic_advance(laconic_state *state, const laconic_model *model, real step_s,
-                               const laconic_increment *increment);
+/* Beyond this a square would leave the range within a few steps: no vehicle moves like that. */
+#ifdef LACONIC_SINGLE
+#define LARGEST_SPEED R(1e9)
+#else
+#define LARGEST_SPEED R(1e77)
+#endif
+
+typedef struct motion { /* over one step */
+    real along_m, across_m; /* displacement in axes at the mid-step heading */
+    real turn_rad;
+} motion;
+
+/* sinc α and ½ j₁(α), α half the turn of the step. */
+static inline void chord_factors(real *sinc, real *half_j1, real alpha) {
+    const real z = alpha * alpha;
+    if (z <= CHORD_SMALL) {
+        *sinc = poly_sinc(z);
+        *half_j1 = R(0.5) * alpha * poly_j1(z);
+    } else {
+        const direction d = laconic_direction_of_angle(alpha);
+        *sinc = d.sine / alpha;
+        *half_j1 = R(0.5) * (*sinc - d.cosine) / alpha;
+    }
+}
+
+/* Pose is a quadrature of ζ. Mean and first moment of ζ over the step, which every method delivers at its own
+ * order, fix it to fourth order with a single sine and cosine (PHYSICS §10), as complex numbers in body axes:
+ * ∫ e^{iθ} v dt = e^{iθ_mid} { sinc α · h v̄ + i [½ j₁(α) h Δv − (h Δω/12) h v̄] } */
+static inline motion displacement(const laconic_model *m, vector path, vector bend) {
+    const vector along = vec(m->velocity_of_zeta[0]), across = vec(m->velocity_of_zeta[1]);
+    const vector yaw_rate = vec(m->yaw_rate_of_zeta);
+    const real turn = dot(yaw_rate, path), yaw_change = dot(yaw_rate, bend) * (R(1) / R(12));
+    real sinc, half_j1;
+    vector aside;
+    chord_factors(&sinc, &half_j1, R(0.5) * turn);
+    aside = minus(scaled(half_j1, bend), scaled(yaw_change, path));
+    path = scaled(sinc, path);
+    return (motion){dot(along, path) - dot(across, aside), dot(across, path) + dot(along, aside), turn};
+}
+
+static inline void advance_pose(laconic_state *s, motion moved) {
+    const direction middle = direction_of_turn(heading_advance(&s->heading, moved.turn_rad));
+    sum_add(&s->x_m, middle.cosine * moved.along_m - middle.sine * moved.across_m);
+    sum_add(&s->y_m, middle.sine * moved.along_m + middle.cosine * moved.across_m);
+}
+
+static inline void add(laconic_sum sums[3], vector v) {
+    sum_add(&sums[0], v.x);
+    sum_add(&sums[1], v.y);
+    sum_add(&sums[2], v.z);
+}
+
+/* Takes the step, or refuses and leaves the state as it was. */
+static inline laconic_status advance(laconic_state *state, const laconic_model *model, real step_s, increment by) {
+    const vector path = scaled(step_s, by.mean);
+    if (!(square(by.delta) + square(by.mean) <= LARGEST_SPEED * LARGEST_SPEED)) return LACONIC_OVERFLOW;
+    if (LACONIC_WITH_POSE) {
+        const motion moved = displacement(model, path, scaled(step_s, by.slope));
+        const vector all = {moved.along_m, moved.across_m, moved.turn_rad};
+        if (!(square(all) < LARGEST_TURN_RAD * LARGEST_TURN_RAD)) return LACONIC_OVERFLOW;
+        advance_pose(state, moved);
+    }
+    add(state->zeta, by.delta);
+    if (LACONIC_WITH_WHEEL_ANGLES) add(state->travel, path);
+    return LACONIC_OK;
+}
+
+/* The same for methods that can go wrong: no energy out of nothing. */
+static inline laconic_status advance_if_passive(laconic_state *state, const laconic_model *model, real step_s,
+                                                vector zeta, const drive *b, increment by) {
+    if (!passive(zeta, step_s, b, by)) return LACONIC_STEP_GAINS_ENERGY;
+    return advance(state, model, step_s, by);
+}
 
 #endif

@@ -143,16 +143,15 @@ static void take_wrench(real wrench[3], const laconic_input *in, direction headi
 
 static void take_instant(instant *now, const laconic_model *m, const laconic_state *state, const laconic_input *in) {
     const direction heading = laconic_direction_of_turn(state->heading.fraction);
+    const vector zeta = zeta_of(state);
     laconic_load load;
-    real zeta[3], b[3], rate[3];
+    vector rate;
     int k;
-    take_zeta(zeta, state);
     laconic_load_of(&load, m, in);
-    load_now(b, &load, &state->heading, R(0));
-    zeta_rate(rate, m, zeta, b);
+    rate = zeta_rate(m, zeta, load_now(&load, &state->heading, R(0)));
     for (k = 0; k < 3; k++) {
-        now->nu[k] = dot(m->nu_of_zeta[k], zeta);
-        now->nu_rate[k] = dot(m->nu_of_zeta[k], rate);
+        now->nu[k] = dot(vec(m->nu_of_zeta[k]), zeta);
+        now->nu_rate[k] = dot(vec(m->nu_of_zeta[k]), rate);
     }
     take_wrench(now->wrench, in, heading);
     laconic_wheel_torques(m, state, in, now->torque);
@@ -163,13 +162,13 @@ static void multipliers(real *kappa, const laconic_contact *c, const laconic_mod
     const real yaw_rate = now->nu[2] / m->yaw_scale, radius = m->wheel_radius_m;
     real left[3];
     int32_t i, k;
-    for (k = 0; k < 3; k++) left[k] = dot(c->inertia[k], now->nu_rate);
+    for (k = 0; k < 3; k++) left[k] = dot(vec(c->inertia[k]), vec(now->nu_rate));
     left[0] -= yaw_rate * now->nu[1] + m->torque_scale * radius * now->wrench[0];
     left[1] -= -yaw_rate * now->nu[0] + m->torque_scale * radius * now->wrench[1];
     left[2] -= m->torque_scale * now->wrench[2] / m->yaw_scale;
     for (i = 0; i < m->wheel_count; i++)
         for (k = 0; k < 3; k++) left[k] -= m->torque_scale * now->torque[i] * c->wheel_rows[i][k];
-    for (i = 0; i < c->constraint_count; i++) kappa[i] = dot(c->multiplier[i], left);
+    for (i = 0; i < c->constraint_count; i++) kappa[i] = dot(vec(c->multiplier[i]), vec(left));
 }
 
 static void wheel_reaction(laconic_reactions *out, const laconic_contact *c, const laconic_model *m,
@@ -179,7 +178,7 @@ static void wheel_reaction(laconic_reactions *out, const laconic_contact *c, con
     real acceleration = R(0);
     out->lateral_N[i] = lateral >= 0 ? kappa[lateral] * (m->mass_kg * m->wheel_radius_m) : R(0);
     out->brake_Nm[i] = brake >= 0 ? kappa[brake] * unit_Nm : R(0);
-    if (brake < 0) acceleration = dot(c->wheel_rows[i], now->nu_rate);
+    if (brake < 0) acceleration = dot(vec(c->wheel_rows[i]), vec(now->nu_rate));
     out->along_N[i] =
         (now->torque[i] + out->brake_Nm[i] - m->wheel_inertia_kgm2 * acceleration) * c->inverse_arm_per_m[i];
 }
@@ -199,7 +198,7 @@ static void normal_loads(laconic_reactions *out, const laconic_contact *c, const
     wanted[0] = m->wheel_radius_m * weight;
     wanted[1] = -c->com_z_m * ground[0];
     wanted[2] = -c->com_z_m * ground[1];
-    for (i = 0; i < c->point_count; i++) out->normal_N[i] = dot(c->load_of_wrench[i], wanted);
+    for (i = 0; i < c->point_count; i++) out->normal_N[i] = dot(vec(c->load_of_wrench[i]), vec(wanted));
 }
 
 static void no_slip_margin(laconic_reactions *out, const laconic_contact *c, const laconic_model *m) {

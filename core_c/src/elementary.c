@@ -1,11 +1,8 @@
 #include "elementary.h"
 
-#include "polynomials.h"
+#include "turn.h"
 
 #ifdef LACONIC_SINGLE
-#define TURN_BITS 32
-#define SIGNED_TURN int32_t
-#define TURN_UNIT R(1.4629180792671596811e-9) /* 2π/2³² */
 #define REDUCE_1 R(1.5703125)              /* π/2 in three parts; the first two times k are exact for small k */
 #define REDUCE_2 R(4.8351287841796875e-4)
 #define REDUCE_3 R(3.139164786504813e-7)
@@ -13,9 +10,6 @@
 #define LN2_HIGH R(0.693145751953125)
 #define LN2_LOW R(1.428606820309417232e-6)
 #else
-#define TURN_BITS 64
-#define SIGNED_TURN int64_t
-#define TURN_UNIT R(3.4061215800865545893e-19) /* 2π/2⁶⁴ */
 #define REDUCE_1 R(1.570796310901641845703125)
 #define REDUCE_2 R(1.589325471229585673427209e-8)
 #define REDUCE_3 R(6.12323399573676588613e-17)
@@ -28,7 +22,7 @@ real laconic_root(real x) {
     real scale = R(1), guess;
     int k;
     if (!(x > R(0))) return R(0);
-    if (!finite(x)) return x;
+    if (!is_finite(x)) return x;
     for (; x > R(4); x *= R(0.0625)) scale *= R(4); /* powers of two: exact */
     for (; x < R(0.25); x *= R(16)) scale *= R(0.25);
     guess = R(0.5) + R(0.5) * x;
@@ -51,41 +45,26 @@ real laconic_decaying_exponential(real a) {
     return sum;
 }
 
-static direction quarter_turned(direction d, unsigned quarters) {
-    const direction turned[4] = {{d.cosine, d.sine}, {-d.sine, d.cosine}, {-d.cosine, -d.sine}, {d.sine, -d.cosine}};
-    return turned[quarters & 3U];
-}
-
-static direction direction_near_zero(real x) {
-    const real z = x * x;
-    const direction d = {poly_cos(z), poly_sin(x, z)};
-    return d;
-}
 
 direction laconic_direction_of_angle(real angle_rad) {
     const real quarters = angle_rad * R(0.6366197723675813431);
     if (magnitude(quarters) < R(1e6)) {
         const int32_t k = (int32_t)(quarters + (quarters < R(0) ? R(-0.5) : R(0.5)));
         const real n = (real)k;
-        return quarter_turned(direction_near_zero(((angle_rad - n * REDUCE_1) - n * REDUCE_2) - n * REDUCE_3),
-                              (unsigned)k);
+        return direction_near(((angle_rad - n * REDUCE_1) - n * REDUCE_2) - n * REDUCE_3, (unsigned)k);
     }
     return laconic_direction_of_turn(laconic_turn_of_angle(angle_rad));
 }
 
 direction laconic_direction_of_turn(laconic_turn turn) {
-    const laconic_turn eighth = (laconic_turn)1 << (TURN_BITS - 3);
-    const unsigned quarters = (unsigned)((laconic_turn)(turn + eighth) >> (TURN_BITS - 2));
-    const laconic_turn near = (laconic_turn)(turn - ((laconic_turn)quarters << (TURN_BITS - 2)));
-    return quarter_turned(direction_near_zero((real)(SIGNED_TURN)near * TURN_UNIT), quarters);
+    return direction_of_turn(turn);
 }
 
 laconic_turn laconic_turn_of_angle(real angle_rad) {
     const real turns = angle_rad * R(0.1591549430918953358);
-    const real half_turn = (real)((laconic_turn)1 << (TURN_BITS - 1));
-    if (magnitude(turns) < half_turn) {
-        const real part = turns - (real)(SIGNED_TURN)turns; /* in (−1, 1) */
-        return (laconic_turn)((laconic_turn)(SIGNED_TURN)(part * half_turn) * 2U);
+    if (magnitude(turns) < HALF_TURN) {
+        const real part = turns - (real)(signed_turn)turns; /* in (−1, 1) */
+        return (laconic_turn)((laconic_turn)(signed_turn)(part * HALF_TURN) * 2U);
     }
     return 0; /* NaN, or an angle too large to have a direction */
 }

@@ -2,8 +2,7 @@
 #include "zeta.h"
 
 laconic_real laconic_energy_J(const laconic_model *model, const laconic_state *state) {
-    real zeta[3];
-    take_zeta(zeta, state);
+    const vector zeta = zeta_of(state);
     return R(0.5) * dot(zeta, zeta) * (model->mass_kg * model->wheel_radius_m * model->wheel_radius_m);
 }
 

@@ -2,7 +2,6 @@
 #include "exact_flow.h"
 
 #include "integrator.h"
-#include "symmetric.h"
 
 /* Beyond the polynomial. Numerator and denominator may share any factor: only their ratio counts. */
 half_angle laconic_large_half_angle(real z, real along, real across) {
@@ -22,17 +21,22 @@ half_angle laconic_large_half_angle(real z, real along, real across) {
     return a;
 }
 
-static laconic_status exact_flow_increment(const laconic_model *model, const laconic_integrator *integrator,
-                                           const laconic_state *state, laconic_loads loads, laconic_increment *out) {
-    drive d;
-    return single_step(exact_flow_step, model, integrator, state, loads, &d, out);
+static laconic_status flow_step(const laconic_model *model, const laconic_integrator *integrator, laconic_state *state,
+                                const laconic_loads *loads) {
+    origin from = start_of(state);
+    increment by;
+    drive b;
+    const laconic_status status =
+        driven_step(exact_flow_step, model, integrator, 0, &from, loads->start, loads->end, &b, &by);
+    if (status != LACONIC_OK) return status;
+    return advance(state, model, integrator->step_s, by);
 }
 
-static laconic_status exact_flow_prepare(laconic_integrator *integrator, const laconic_model *model,
+static laconic_status flow_prepare(laconic_integrator *integrator, const laconic_model *model,
                                          laconic_refusal *why) {
     (void)why;
     laconic_decay_levels(integrator, model, 2);
     return LACONIC_OK;
 }
 
-const laconic_method laconic_exact_flow = {"exact-flow", 2, exact_flow_prepare, exact_flow_increment};
+const laconic_method laconic_exact_flow = {"exact-flow", 2, PREPARE(flow_prepare), flow_step};

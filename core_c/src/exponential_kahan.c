@@ -2,17 +2,16 @@
 #include "exponential_kahan.h"
 
 #include "integrator.h"
-#include "symmetric.h"
 
-static laconic_status kahan_increment(const laconic_model *model, const laconic_integrator *integrator,
-                                      const laconic_state *state, laconic_loads loads, laconic_increment *out) {
-    drive d;
-    real zeta[3];
-    const laconic_status status = single_step(kahan_step, model, integrator, state, loads, &d, out);
+static laconic_status kahan_1_step(const laconic_model *model, const laconic_integrator *integrator,
+                                   laconic_state *state, const laconic_loads *loads) {
+    origin from = start_of(state);
+    increment by;
+    drive b;
+    const laconic_status status =
+        driven_step(kahan_step, model, integrator, 0, &from, loads->start, loads->end, &b, &by);
     if (status != LACONIC_OK) return status;
-    take_zeta(zeta, state);
-    return passive(zeta, integrator->step_s, d.b, d.varies ? d.change : NULL, out) ? LACONIC_OK
-                                                                                   : LACONIC_STEP_GAINS_ENERGY;
+    return advance_if_passive(state, model, integrator->step_s, zeta_of(state), &b, by);
 }
 
 static laconic_status kahan_prepare(laconic_integrator *integrator, const laconic_model *model, laconic_refusal *why) {
@@ -21,4 +20,4 @@ static laconic_status kahan_prepare(laconic_integrator *integrator, const laconi
     return LACONIC_OK;
 }
 
-const laconic_method laconic_exponential_kahan = {"exponential-kahan", 2, kahan_prepare, kahan_increment};
+const laconic_method laconic_exponential_kahan = {"exponential-kahan", 2, PREPARE(kahan_prepare), kahan_1_step};

@@ -1,11 +1,10 @@
 /* Exponential Kahan, extrapolated to fourth order: the one that is good everywhere. */
 #include "exponential_kahan.h"
 #include "integrator.h"
-#include "symmetric.h"
 
-static laconic_status kahan_4_increment(const laconic_model *model, const laconic_integrator *integrator,
-                                        const laconic_state *state, laconic_loads loads, laconic_increment *out) {
-    return extrapolated_step(kahan_step, model, integrator, state, loads, out);
+static laconic_status kahan_4_step(const laconic_model *model, const laconic_integrator *integrator,
+                                   laconic_state *state, const laconic_loads *loads) {
+    return extrapolated_step(kahan_step, model, integrator, state, loads);
 }
 
 static laconic_status kahan_4_prepare(laconic_integrator *integrator, const laconic_model *model,
@@ -15,4 +14,4 @@ static laconic_status kahan_4_prepare(laconic_integrator *integrator, const laco
     return LACONIC_OK;
 }
 
-const laconic_method laconic_exponential_kahan_4 = {"exponential-kahan-4", 4, kahan_4_prepare, kahan_4_increment};
+const laconic_method laconic_exponential_kahan_4 = {"exponential-kahan-4", 4, PREPARE(kahan_4_prepare), kahan_4_step};

@@ -2,18 +2,9 @@
 #ifndef LACONIC_HEADING_H
 #define LACONIC_HEADING_H
 
-#include "elementary.h"
+#include "turn.h"
 
-/* Signed integer of the width of laconic_turn, and the value of half its range: a turn is twice that. */
-#ifdef LACONIC_SINGLE
-typedef int32_t signed_turn;
-#define HALF_TURN R(2147483648.0)
-#define TURN_SIGN_BIT 0x80000000U
-#else
-typedef int64_t signed_turn;
-#define HALF_TURN R(9223372036854775808.0)
-#define TURN_SIGN_BIT 0x8000000000000000U
-#endif
+#define HALF_TURN_BIT ((laconic_turn)1 << (TURN_BITS - 1))
 
 /* The largest angle one step may turn: whole turns must fit signed_turn. */
 #define LARGEST_TURN_RAD (HALF_TURN * R(2))
@@ -25,7 +16,7 @@ static inline laconic_turn heading_advance(laconic_heading *heading, real angle_
     const real wanted = (turns - (real)whole) * HALF_TURN + heading->rest;
     const signed_turn half = (signed_turn)wanted; /* half of the part of a turn, in units */
     const laconic_turn old = heading->fraction;
-    const laconic_turn odd = (laconic_turn)whole << (sizeof(laconic_turn) * 8U - 1U);
+    const laconic_turn odd = (laconic_turn)whole << (TURN_BITS - 1);
     heading->rest = wanted - (real)half;
     heading->fraction = (laconic_turn)(old + 2U * (laconic_turn)half);
     heading->turns += whole;
@@ -39,12 +30,12 @@ static inline laconic_turn heading_advance(laconic_heading *heading, real angle_
 /* The part beyond whole turns, in (−π, π]. */
 static inline real heading_wrapped(const laconic_heading *heading) {
     const signed_turn part = (signed_turn)heading->fraction;
-    if (heading->fraction == TURN_SIGN_BIT) return R(3.14159265358979323846);
+    if (heading->fraction == HALF_TURN_BIT) return R(3.14159265358979323846);
     return (real)part * (R(3.14159265358979323846) / HALF_TURN);
 }
 
 static inline real heading_unwrapped(const laconic_heading *heading) {
-    const int64_t turns = heading->turns + (heading->fraction > TURN_SIGN_BIT);
+    const int64_t turns = heading->turns + (heading->fraction > HALF_TURN_BIT);
     return (real)turns * R(6.28318530717958647693) + heading_wrapped(heading);
 }
 

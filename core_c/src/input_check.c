@@ -4,7 +4,7 @@
 static laconic_status check_many(const real *numbers, int32_t count, laconic_field field, laconic_refusal *why) {
     int32_t i;
     for (i = 0; i < count; i++)
-        if (!finite(numbers[i])) return refuse(why, LACONIC_NOT_FINITE, field, i + 1, numbers[i], R(0));
+        if (!is_finite(numbers[i])) return refuse(why, LACONIC_NOT_FINITE, field, i + 1, numbers[i], R(0));
     return LACONIC_OK;
 }
 

@@ -1,13 +1,16 @@
 /* Prepares a method for one step size. */
 #include "integrator.h"
 
+#define LARGEST_STEP_S R(1e9) /* thirty years: beyond, products with speeds would leave the range */
+
 laconic_status laconic_integrator_prepare(laconic_integrator *integrator, const laconic_method *method,
                                           const laconic_model *model, laconic_real step_s, laconic_refusal *why) {
     laconic_integrator prepared = {0};
     laconic_status status;
     if (method == NULL) return refuse(why, LACONIC_METHOD_UNKNOWN, LACONIC_FIELD_METHOD, 0, R(0), R(0));
-    if (!finite(step_s)) return refuse(why, LACONIC_NOT_FINITE, LACONIC_FIELD_STEP, 0, step_s, R(0));
+    if (!is_finite(step_s)) return refuse(why, LACONIC_NOT_FINITE, LACONIC_FIELD_STEP, 0, step_s, R(0));
     if (!(step_s > R(0))) return refuse(why, LACONIC_NOT_POSITIVE, LACONIC_FIELD_STEP, 0, step_s, R(0));
+    if (step_s > LARGEST_STEP_S) return refuse(why, LACONIC_OVERFLOW, LACONIC_FIELD_STEP, 0, step_s, LARGEST_STEP_S);
     prepared.method = prepared.chosen = method;
     prepared.step_s = step_s;
     status = method->prepare(&prepared, model, why);

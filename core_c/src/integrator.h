@@ -4,6 +4,9 @@
 
 #include "elementary.h"
 
+/* A build whose integrator is a prepared constant leaves preparation out. */
+#define PREPARE(function) (LACONIC_WITH_PREPARE ? (function) : NULL)
+
 /* max r_k */
 real laconic_fastest_decay(const laconic_model *model);
 

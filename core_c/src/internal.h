@@ -8,26 +8,18 @@ typedef laconic_real real;
 
 #define R(x) ((real)(x)) /* a literal in the scalar type, converted by the compiler */
 
-static inline real dot(const real a[3], const real b[3]) {
-    return a[0] * b[0] + a[1] * b[1] + a[2] * b[2];
-}
-
-static inline void cross(real out[3], const real a[3], const real b[3]) {
-    out[0] = a[1] * b[2] - a[2] * b[1];
-    out[1] = a[2] * b[0] - a[0] * b[2];
-    out[2] = a[0] * b[1] - a[1] * b[0];
-}
-
+/* |x| as an instruction: x < 0 ? -x : x would have to mind the sign of zero. */
 static inline real magnitude(real x) {
+#if defined(__GNUC__) && defined(LACONIC_SINGLE)
+    return __builtin_fabsf(x);
+#elif defined(__GNUC__)
+    return __builtin_fabs(x);
+#else
     return x < R(0) ? -x : x;
+#endif
 }
 
-/* |a|₁: not finite as soon as one component is not, or their sum leaves the range. */
-static inline real size(const real a[3]) {
-    return magnitude(a[0]) + magnitude(a[1]) + magnitude(a[2]);
-}
-
-static inline bool finite(real x) {
+static inline bool is_finite(real x) {
     return magnitude(x) <= LACONIC_REAL_MAX; /* false for NaN too */
 }
 

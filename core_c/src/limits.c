@@ -7,15 +7,14 @@ laconic_real laconic_largest_stable_step_s(const laconic_method *method, const l
     laconic_integrator trial;
     laconic_refusal why;
     const real huge = R(1) / LACONIC_REAL_MIN / R(16);
-    real step = huge, zeta[3], yaw;
+    real step = huge, yaw;
     if (laconic_integrator_prepare(&trial, method, model, step, &why) != LACONIC_OK) {
         step = why.limit;
         if (laconic_integrator_prepare(&trial, method, model, step * R(0.999), &why) != LACONIC_OK) return step;
         trial.step_s = step;
         trial.gyro_limit *= R(0.999);
     }
-    take_zeta(zeta, state);
-    yaw = magnitude(dot(model->nu_of_zeta[2], zeta));
+    yaw = magnitude(dot(vec(model->nu_of_zeta[2]), zeta_of(state)));
     if (trial.gyro_limit > R(0) && yaw > trial.gyro_limit) step *= trial.gyro_limit / yaw;
     return step < huge ? step : R(0);
 }

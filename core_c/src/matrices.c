@@ -1,5 +1,6 @@
 /* Ξ, A, A⁻¹ and the constraint rows as the paper writes them: for people, not for stepping. */
 #include "geometry.h"
+#include "vector.h"
 
 static void collect_rows(laconic_matrices *x, const body *b, const laconic_vehicle *vehicle) {
     int32_t i;
@@ -34,7 +35,7 @@ laconic_status laconic_matrices_of(laconic_matrices *matrices, const laconic_veh
     collect_rows(&x, &b, vehicle);
     form_inertia(&x, &b, vehicle->wheel_count);
     for (r = 0; r < 3; r++)
-        for (c = 0; c < 3; c++) x.inverse_inertia[r][c] = dot(model.nu_of_zeta[r], model.nu_of_zeta[c]);
+        for (c = 0; c < 3; c++) x.inverse_inertia[r][c] = dot(vec(model.nu_of_zeta[r]), vec(model.nu_of_zeta[c]));
     x.lambda_yaw = b.yaw_scale;
     x.lambda_wheel = laconic_root(b.wheel_scale_square);
     *matrices = x;

@@ -49,7 +49,7 @@ static void put_number(writer *w, real x) {
     }
     if (x < R(0)) put(w, '-');
     x = magnitude(x);
-    if (!finite(x) || x == R(0)) {
+    if (!is_finite(x) || x == R(0)) {
         put_text(w, x == R(0) ? "0" : "infinity");
         return;
     }

@@ -6,7 +6,7 @@ static laconic_status check_motor(const laconic_motor *m, laconic_refusal *why) 
                             m->gear_ratio,     m->viscous_friction_Nms,     m->rotor_inertia_kgm2};
     int32_t i;
     for (i = 0; i < 6; i++)
-        if (!finite(numbers[i]))
+        if (!is_finite(numbers[i]))
             return refuse(why, LACONIC_NOT_FINITE, (laconic_field)(LACONIC_FIELD_RESISTANCE + i), 0, numbers[i], R(0));
     if (!(m->resistance_ohm > R(0)))
         return refuse(why, LACONIC_NOT_POSITIVE, LACONIC_FIELD_RESISTANCE, 0, m->resistance_ohm, R(0));

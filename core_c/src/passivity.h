@@ -2,22 +2,34 @@
 #ifndef LACONIC_PASSIVITY_H
 #define LACONIC_PASSIVITY_H
 
-#include "internal.h"
+#include "vector.h"
+
+/* What a method finds out about one step. */
+typedef struct increment {
+    vector delta; /* ζ(t+h) − ζ(t)                                                            */
+    vector mean;  /* mean of ζ over the step                                                  */
+    vector slope; /* 12/h² times the first moment of ζ about the middle of the step: = delta
+                     where ζ changes evenly, 0 where it jumps at once                         */
+} increment;
+
+/* b over one step, linear from start to start + change. */
+typedef struct drive {
+    vector start, change;
+    bool varies; /* false: change is 0 and not looked at */
+} drive;
 
 /* Relative to |ζ|² + |ζ⁺|². What an accurate step gains by its truncation error is far below. */
 #define ENERGY_TOLERANCE R(0.0009765625) /* 2⁻¹⁰ */
 
-/* Exactly: |ζ⁺|² − |ζ|² = 2∫(b·ζ − ζ·diag(r)ζ)dt <= 2∫ b·ζ dt, for b linear in the step from b to b + change
- * (NULL: constant). The work is looked at only if |ζ| grew at all. False for NaN, too. */
-static inline bool passive(const real zeta[3], real step_s, const real b[3], const real *change,
-                           const laconic_increment *out) {
-    const real *d = out->delta;
-    const real before = dot(zeta, zeta);
-    const real gain = R(2) * dot(zeta, d) + dot(d, d);
+/* Exactly: |ζ⁺|² − |ζ|² = 2∫(b·ζ − ζ·diag(r)ζ)dt <= 2∫ b·ζ dt. The work is looked at only if |ζ| grew at
+ * all. False for NaN, too. */
+static inline bool passive(vector zeta, real step_s, const drive *b, increment by) {
+    const real before = square(zeta);
+    const real gain = R(2) * dot(zeta, by.delta) + square(by.delta);
     real work;
     if (gain <= ENERGY_TOLERANCE * before) return true;
-    work = dot(b, out->mean);
-    if (change != NULL) work += R(0.5) * dot(change, out->mean) + (R(1) / R(12)) * dot(change, out->slope);
+    work = dot(b->start, by.mean);
+    if (b->varies) work += R(0.5) * dot(b->change, by.mean) + (R(1) / R(12)) * dot(b->change, by.slope);
     return gain - R(2) * step_s * work <= ENERGY_TOLERANCE * (R(2) * before + gain);
 }
 

@@ -5,8 +5,8 @@
 
 #include "internal.h"
 
-#define HALF_TURN_SMALL R(0.5)       /* |α| up to which poly_sinc and poly_j1 hold */
-#define TANGENT_SMALL R(0.015625)    /* |z| up to which poly_tangent holds         */
+#define CHORD_SMALL R(0.25)          /* z = α² up to which poly_sinc and poly_j1 hold */
+#define TANGENT_SMALL R(0.015625)    /* |z| up to which poly_tangent holds            */
 
 #ifdef LACONIC_SINGLE
 

@@ -1,25 +1,26 @@
 /* vehicle → model: an orthonormal basis of the motions that the constraints leave, turned so that ΞᵀΞ,
  * and with it inertia A = E + λ²ΞᵀΞ and damping, become diagonal in it (PHYSICS §4, §9). */
 #include "geometry.h"
+#include "vector.h"
 
 typedef struct basis {
     int32_t count;
-    real vector[3][3]; /* orthonormal, one to a row */
+    real axis[3][3]; /* orthonormal, one to a row */
 } basis;
 
 static bool normalise(real v[3]) {
-    const real largest = size(v);
+    const real largest = size(vec(v));
     real length;
     int k;
     if (!(largest > R(0))) return false;
     for (k = 0; k < 3; k++) v[k] /= largest; /* first, so that squares neither overflow nor vanish */
-    length = laconic_root(dot(v, v));
+    length = laconic_root(dot(vec(v), vec(v)));
     for (k = 0; k < 3; k++) v[k] /= length;
     return true;
 }
 
 static void remove_component(real v[3], const real unit[3]) {
-    const real along = dot(v, unit);
+    const real along = dot(vec(v), vec(unit));
     int k;
     for (k = 0; k < 3; k++) v[k] -= along * unit[k];
 }
@@ -28,9 +29,9 @@ static void remove_component(real v[3], const real unit[3]) {
 static bool new_direction(real v[3], const basis *known) {
     int32_t k;
     if (!normalise(v)) return false;
-    for (k = 0; k < known->count; k++) remove_component(v, known->vector[k]);
-    if (!(dot(v, v) > LACONIC_RANK_TOLERANCE * LACONIC_RANK_TOLERANCE)) return false;
-    for (k = 0; k < known->count; k++) remove_component(v, known->vector[k]); /* twice is enough */
+    for (k = 0; k < known->count; k++) remove_component(v, known->axis[k]);
+    if (!(dot(vec(v), vec(v)) > LACONIC_RANK_TOLERANCE * LACONIC_RANK_TOLERANCE)) return false;
+    for (k = 0; k < known->count; k++) remove_component(v, known->axis[k]); /* twice is enough */
     return normalise(v);
 }
 
@@ -39,7 +40,7 @@ static void add_constraint(basis *known, const real row[3]) {
     int k;
     for (k = 0; k < 3; k++) v[k] = row[k];
     if (known->count < 3 && new_direction(v, known)) {
-        for (k = 0; k < 3; k++) known->vector[known->count][k] = v[k];
+        for (k = 0; k < 3; k++) known->axis[known->count][k] = v[k];
         known->count++;
     }
 }
@@ -73,7 +74,7 @@ static void allowed_motions(basis *allowed, const basis *constraints) {
     allowed->count = all.count - constraints->count;
     for (k = 0; k < allowed->count; k++) {
         int c;
-        for (c = 0; c < 3; c++) allowed->vector[k][c] = all.vector[constraints->count + k][c];
+        for (c = 0; c < 3; c++) allowed->axis[k][c] = all.axis[constraints->count + k][c];
     }
 }
 
@@ -109,12 +110,12 @@ static bool make_orthogonal(laconic_model *m, basis *v, int32_t a, int32_t b) {
     if (!(magnitude(p.ab) > R(0.25) * LACONIC_EPSILON * laconic_root(p.aa) * laconic_root(p.bb))) return false;
     cotangent = (p.bb - p.aa) / (R(2) * p.ab);
     tangent = R(1) / (magnitude(cotangent) + laconic_root(R(1) + cotangent * cotangent));
-    if (!finite(cotangent * cotangent)) tangent = R(0.5) / magnitude(cotangent);
+    if (!is_finite(cotangent * cotangent)) tangent = R(0.5) / magnitude(cotangent);
     if (cotangent < R(0)) tangent = -tangent;
     d.cosine = R(1) / laconic_root(R(1) + tangent * tangent);
     d.sine = d.cosine * tangent;
     for (i = 0; i < m->wheel_count; i++) turn_pair(&m->wheel_of_zeta[i][a], &m->wheel_of_zeta[i][b], d);
-    for (i = 0; i < 3; i++) turn_pair(&v->vector[a][i], &v->vector[b][i], d);
+    for (i = 0; i < 3; i++) turn_pair(&v->axis[a][i], &v->axis[b][i], d);
     return true;
 }
 
@@ -135,7 +136,7 @@ static void project_wheels(laconic_model *m, const basis *v, const body *b, cons
         real row[3];
         laconic_wheel_row(row, b, &vehicle->wheel[i]);
         for (k = 0; k < 3; k++)
-            m->wheel_of_zeta[i][k] = k < v->count && !vehicle->wheel[i].locked ? dot(row, v->vector[k]) : R(0);
+            m->wheel_of_zeta[i][k] = k < v->count && !vehicle->wheel[i].locked ? dot(vec(row), vec(v->axis[k])) : R(0);
     }
 }
 
@@ -147,7 +148,7 @@ static void scale_axis(laconic_model *m, const basis *v, const body *b, int32_t 
     int32_t i;
     m->inertia[k] = inertia;
     m->decay_per_s[k] = m->motor_damping_Nms * m->torque_scale * x / inertia;
-    for (i = 0; i < 3; i++) m->nu_of_zeta[i][k] = scale * v->vector[k][i];
+    for (i = 0; i < 3; i++) m->nu_of_zeta[i][k] = scale * v->axis[k][i];
     for (i = 0; i < m->wheel_count; i++) m->wheel_of_zeta[i][k] *= scale;
 }
 
@@ -160,7 +161,7 @@ static void clear_axis(laconic_model *m, int32_t k) {
 
 static void derive_rows(laconic_model *m) {
     int k;
-    cross(m->gyro, m->nu_of_zeta[0], m->nu_of_zeta[1]);
+    put(m->gyro, cross(vec(m->nu_of_zeta[0]), vec(m->nu_of_zeta[1])));
     for (k = 0; k < 3; k++) {
         m->gyro[k] /= m->yaw_scale;
         m->yaw_rate_of_zeta[k] = m->nu_of_zeta[2][k] / m->yaw_scale;
@@ -195,13 +196,13 @@ laconic_real laconic_condition_number(const laconic_model *model) {
 
 /* Numbers so far apart that a constant left the range would turn into NaN later: say so now. */
 static bool usable(const laconic_model *m) {
-    real sum = size(m->inertia) + size(m->decay_per_s) + size(m->gyro) + size(m->yaw_rate_of_zeta) +
-               size(m->velocity_of_zeta[0]) + size(m->velocity_of_zeta[1]) + m->torque_scale +
+    real sum = size(vec(m->inertia)) + size(vec(m->decay_per_s)) + size(vec(m->gyro)) + size(vec(m->yaw_rate_of_zeta)) +
+               size(vec(m->velocity_of_zeta[0])) + size(vec(m->velocity_of_zeta[1])) + m->torque_scale +
                magnitude(m->voltage_scale) + m->mass_kg + R(1) / m->yaw_scale + magnitude(m->com_x_m) +
                magnitude(m->com_y_m);
     int32_t i;
-    for (i = 0; i < m->wheel_count; i++) sum += size(m->wheel_of_zeta[i]);
-    return finite(sum) && m->torque_scale > R(0) && finite(sum * sum);
+    for (i = 0; i < m->wheel_count; i++) sum += size(vec(m->wheel_of_zeta[i]));
+    return is_finite(sum) && m->torque_scale > R(0) && is_finite(sum * sum);
 }
 
 laconic_status laconic_prepare(laconic_model *model, const laconic_vehicle *vehicle, laconic_refusal *why) {

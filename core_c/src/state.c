@@ -1,23 +1,15 @@
 /* Physical start values → state, and a motion carried over to a changed vehicle. */
 #include "heading.h"
-
-/* ν → ζ. As GᵀAG = 1 and G diagonalises A, ζ_k = (1 + λ²x_k) G_k · ν: the projection onto the allowed motions. */
-static void zeta_of_nu(laconic_state *state, const laconic_model *m, const real nu[3]) {
-    int k;
-    for (k = 0; k < 3; k++) {
-        const real column[3] = {m->nu_of_zeta[0][k], m->nu_of_zeta[1][k], m->nu_of_zeta[2][k]};
-        state->zeta[k] = sum_of(m->inertia[k] * dot(column, nu));
-    }
-}
+#include "zeta.h"
 
 static laconic_status check_start(const laconic_start *start, laconic_refusal *why) {
     int32_t k;
     for (k = 0; k < 3; k++)
-        if (!finite(start->nu_rad_per_s[k]))
+        if (!is_finite(start->nu_rad_per_s[k]))
             return refuse(why, LACONIC_NOT_FINITE, LACONIC_FIELD_START_NU, k + 1, start->nu_rad_per_s[k], R(0));
-    if (!finite(start->x_m)) return refuse(why, LACONIC_NOT_FINITE, LACONIC_FIELD_START_X, 0, start->x_m, R(0));
-    if (!finite(start->y_m)) return refuse(why, LACONIC_NOT_FINITE, LACONIC_FIELD_START_Y, 0, start->y_m, R(0));
-    if (!finite(start->heading_rad))
+    if (!is_finite(start->x_m)) return refuse(why, LACONIC_NOT_FINITE, LACONIC_FIELD_START_X, 0, start->x_m, R(0));
+    if (!is_finite(start->y_m)) return refuse(why, LACONIC_NOT_FINITE, LACONIC_FIELD_START_Y, 0, start->y_m, R(0));
+    if (!is_finite(start->heading_rad))
         return refuse(why, LACONIC_NOT_FINITE, LACONIC_FIELD_START_HEADING, 0, start->heading_rad, R(0));
     if (!(magnitude(start->heading_rad) < LARGEST_TURN_RAD))
         return refuse(why, LACONIC_OVERFLOW, LACONIC_FIELD_START_HEADING, 0, start->heading_rad, LARGEST_TURN_RAD);
@@ -35,7 +27,7 @@ static laconic_status check_allowed(const laconic_model *m, const laconic_state 
             item = k;
         }
     /* all three motions allowed: whatever differs is rounding */
-    if (m->dof == 3 || worst <= LACONIC_RANK_TOLERANCE * size(nu)) return LACONIC_OK;
+    if (m->dof == 3 || worst <= LACONIC_RANK_TOLERANCE * size(vec(nu))) return LACONIC_OK;
     return refuse(why, LACONIC_START_AGAINST_CONSTRAINTS, LACONIC_FIELD_START_NU, item + 1, nu[item], nearest[item]);
 }
 
@@ -44,7 +36,7 @@ laconic_status laconic_state_set(laconic_state *state, const laconic_model *mode
     laconic_state fresh = {0};
     laconic_status status = check_start(start, why);
     if (status != LACONIC_OK) return status;
-    zeta_of_nu(&fresh, model, start->nu_rad_per_s);
+    set_zeta(&fresh, zeta_of_nu(model, start->nu_rad_per_s));
     status = check_allowed(model, &fresh, start->nu_rad_per_s, why);
     if (status != LACONIC_OK) return status;
     fresh.x_m = sum_of(start->x_m);
@@ -58,12 +50,14 @@ laconic_status laconic_state_set(laconic_state *state, const laconic_model *mode
 void laconic_state_carry(laconic_state *state, const laconic_model *from, const laconic_model *to) {
     const direction heading = laconic_direction_of_turn(state->heading.fraction);
     const real dx = to->com_x_m - from->com_x_m, dy = to->com_y_m - from->com_y_m;
-    real velocity[2], nu[3];
+    real velocity[2], nu[3], angle[LACONIC_MAX_WHEELS];
     const real yaw_rate = laconic_body_velocity(from, state, velocity);
     nu[0] = (velocity[0] - yaw_rate * dy) / to->wheel_radius_m;
     nu[1] = (velocity[1] + yaw_rate * dx) / to->wheel_radius_m;
     nu[2] = to->yaw_scale * yaw_rate;
-    zeta_of_nu(state, to, nu);
+    laconic_wheel_angles(from, state, angle);
+    laconic_wheel_angles_set(to, state, angle);
+    set_zeta(state, zeta_of_nu(to, nu));
     sum_add(&state->x_m, heading.cosine * dx - heading.sine * dy);
     sum_add(&state->y_m, heading.sine * dx + heading.cosine * dy);
 }

@@ -3,105 +3,104 @@
 #ifndef LACONIC_SYMMETRIC_H
 #define LACONIC_SYMMETRIC_H
 
+#include "advance.h"
 #include "load.h"
-#include "passivity.h"
 #include "zeta.h"
 
-/* A second-order symmetric step of size step_s/2^level from ζ; b goes linearly from `b` to b + change
- * (NULL: constant). */
+/* A second-order symmetric step of size step_s/2^level from ζ under b. */
 typedef laconic_status (*base_step)(const laconic_model *model, const laconic_integrator *integrator, int level,
-                                    const real zeta[3], const real b[3], const real *change, laconic_increment *out);
+                                    vector zeta, const drive *b, increment *out);
 
-typedef struct drive { /* b over one base step, and how far the vehicle turned in it */
-    real b[3], change[3];
-    bool varies;
-    real turn_rad;
-} drive;
-
-static inline real level_step(const laconic_integrator *integrator, int level) {
-    const real fraction[3] = {R(1), R(0.5), R(0.25)};
-    return integrator->step_s * fraction[level];
+/* Mean and first moment of ζ over the step from its increment: exact for damping and drive alone, and
+ * symmetric, so that they gain two orders by extrapolation as the increment does. */
+static inline void fill(increment *out, const laconic_decay *d, vector zeta, vector delta, const drive *b) {
+    out->delta = delta;
+    out->mean = plus(zeta, times(vec(d->mean), delta));
+    out->slope = times(vec(d->slope), delta);
+    if (LACONIC_WITH_SAMPLED_INPUT && b->varies) {
+        out->mean = plus(out->mean, times(vec(d->mean_ramp), b->change));
+        out->slope = plus(out->slope, times(vec(d->slope_ramp), b->change));
+    }
 }
+
+/* Where a part of a step begins: ζ and the angle turned since the step's start. */
+typedef struct origin {
+    const laconic_heading *heading;
+    vector zeta;
+    real turned_rad;
+} origin;
 
 /* A force fixed in the world makes b depend on the heading at the step's end, which the step decides:
  * iterate. Three rounds leave an error of h⁷, so symmetry, which extrapolation rests on, is kept. */
 static inline laconic_status turning_step(base_step base, const laconic_model *m, const laconic_integrator *integrator,
-                                          int level, const real zeta[3], const laconic_heading *heading,
-                                          real offset_rad, const laconic_load *start, const laconic_load *end,
-                                          drive *d, laconic_increment *out) {
-    const real h = level_step(integrator, level);
+                                          int level, origin *from, const laconic_load *start, const laconic_load *end,
+                                          drive *b, increment *out) {
+    const real h = integrator->step_s * (level == 0 ? R(1) : R(0.5));
+    const vector yaw_rate = vec(m->yaw_rate_of_zeta);
+    const real before = from->turned_rad;
     laconic_status status = LACONIC_OK;
-    int round, k;
-    d->varies = true;
-    d->turn_rad = h * dot(m->yaw_rate_of_zeta, zeta);
-    load_now(d->b, start, heading, offset_rad);
+    int round;
+    from->turned_rad = before + h * dot(yaw_rate, from->zeta);
+    b->start = load_now(start, from->heading, before);
+    b->varies = true;
     for (round = 0; round < 3 && status == LACONIC_OK; round++) {
-        load_now(d->change, end, heading, offset_rad + d->turn_rad);
-        for (k = 0; k < 3; k++) d->change[k] -= d->b[k];
-        status = base(m, integrator, level, zeta, d->b, d->change, out);
-        d->turn_rad = h * dot(m->yaw_rate_of_zeta, out->mean);
+        b->change = minus(load_now(end, from->heading, from->turned_rad), b->start);
+        status = base(m, integrator, level, from->zeta, b, out);
+        from->turned_rad = before + h * dot(yaw_rate, out->mean);
     }
     return status;
 }
 
-/* One base step under any pair of loads. */
+/* One base step under any pair of loads; `from` moves on to its end. */
 static inline laconic_status driven_step(base_step base, const laconic_model *m, const laconic_integrator *integrator,
-                                         int level, const real zeta[3], const laconic_heading *heading,
-                                         real offset_rad, const laconic_load *start, const laconic_load *end,
-                                         drive *d, laconic_increment *out) {
-    int k;
-    if (LACONIC_WITH_WORLD_FORCE && (start->turns || end->turns))
-        return turning_step(base, m, integrator, level, zeta, heading, offset_rad, start, end, d, out);
-    d->turn_rad = R(0); /* not asked for */
-    d->varies = LACONIC_WITH_SAMPLED_INPUT && start != end;
-    for (k = 0; k < 3; k++) {
-        d->b[k] = start->constant[k];
-        d->change[k] = end->constant[k] - start->constant[k];
+                                         int level, origin *from, const laconic_load *start, const laconic_load *end,
+                                         drive *b, increment *out) {
+    laconic_status status;
+    if (LACONIC_WITH_WORLD_FORCE && (start->turns || end->turns)) {
+        status = turning_step(base, m, integrator, level, from, start, end, b, out);
+    } else {
+        b->start = vec(start->constant);
+        b->varies = LACONIC_WITH_SAMPLED_INPUT && start != end;
+        if (b->varies) b->change = minus(vec(end->constant), b->start);
+        status = base(m, integrator, level, from->zeta, b, out);
     }
-    return base(m, integrator, level, zeta, d->b, d->varies ? d->change : NULL, out);
+    from->zeta = plus(from->zeta, out->delta);
+    return status;
 }
 
-/* The base step itself as a method. */
-static inline laconic_status single_step(base_step base, const laconic_model *m, const laconic_integrator *integrator,
-                                         const laconic_state *state, laconic_loads loads, drive *d,
-                                         laconic_increment *out) {
-    real zeta[3];
-    take_zeta(zeta, state);
-    return driven_step(base, m, integrator, 0, zeta, &state->heading, R(0), loads.start, loads.end, d, out);
+static inline origin start_of(const laconic_state *state) {
+    const origin from = {&state->heading, zeta_of(state), R(0)};
+    return from;
 }
 
 /* (4 · two half steps − one full step)/3: the base's error has only even powers of h, so this is fourth order.
- * Mean and slope of the two halves together: the slope of a stair of two means is 3/2 of its height,
- * plus a quarter of each half's own. */
-static inline laconic_status extrapolated_step(base_step base, const laconic_model *m,
-                                               const laconic_integrator *integrator, const laconic_state *state,
-                                               laconic_loads loads, laconic_increment *out) {
-    const laconic_heading *heading = &state->heading;
+ * The slope of the two halves together is 3/2 of the height between their means, plus a quarter of each own. */
+static inline increment combine(const increment *whole, const increment *first, const increment *second) {
     const real third = R(1) / R(3);
-    laconic_increment whole, first, second;
+    const vector delta = plus(first->delta, second->delta);
+    const vector mean = scaled(R(0.5), plus(first->mean, second->mean));
+    increment by;
+    by.delta = plus(delta, scaled(third, minus(delta, whole->delta)));
+    by.mean = plus(mean, scaled(third, minus(mean, whole->mean)));
+    by.slope = plus(scaled(R(1.5), minus(second->mean, first->mean)),
+                    scaled(R(0.25), plus(first->slope, second->slope)));
+    return by;
+}
+
+static inline laconic_status extrapolated_step(base_step base, const laconic_model *m,
+                                               const laconic_integrator *integrator, laconic_state *state,
+                                               const laconic_loads *loads) {
+    increment whole, first, second;
     drive full, half;
-    real zeta[3], between[3];
-    laconic_status status;
-    int k;
-    take_zeta(zeta, state);
-    status = driven_step(base, m, integrator, 0, zeta, heading, R(0), loads.start, loads.end, &full, &whole);
+    origin from = start_of(state);
+    laconic_status status = driven_step(base, m, integrator, 0, &from, loads->start, loads->end, &full, &whole);
     if (status != LACONIC_OK) return status;
-    status = driven_step(base, m, integrator, 1, zeta, heading, R(0), loads.start, loads.middle, &half, &first);
+    from = start_of(state);
+    status = driven_step(base, m, integrator, 1, &from, loads->start, loads->middle, &half, &first);
     if (status != LACONIC_OK) return status;
-    for (k = 0; k < 3; k++) between[k] = zeta[k] + first.delta[k];
-    status = driven_step(base, m, integrator, 1, between, heading, half.turn_rad, loads.middle, loads.end, &half,
-                         &second);
+    status = driven_step(base, m, integrator, 1, &from, loads->middle, loads->end, &half, &second);
     if (status != LACONIC_OK) return status;
-    for (k = 0; k < 3; k++) {
-        const real delta = first.delta[k] + second.delta[k];
-        const real mean = R(0.5) * (first.mean[k] + second.mean[k]);
-        out->delta[k] = delta + third * (delta - whole.delta[k]);
-        out->mean[k] = mean + third * (mean - whole.mean[k]);
-        out->slope[k] = R(1.5) * (second.mean[k] - first.mean[k]) + R(0.25) * (first.slope[k] + second.slope[k]);
-    }
-    return passive(zeta, integrator->step_s, full.b, full.varies ? full.change : NULL, out)
-               ? LACONIC_OK
-               : LACONIC_STEP_GAINS_ENERGY;
+    return advance_if_passive(state, m, integrator->step_s, zeta_of(state), &full, combine(&whole, &first, &second));
 }
 
 #endif

@@ -2,16 +2,16 @@
 #include "elementary.h"
 
 static laconic_status check_number(real value, laconic_field field, int32_t item, laconic_refusal *why) {
-    return finite(value) ? LACONIC_OK : refuse(why, LACONIC_NOT_FINITE, field, item, value, R(0));
+    return is_finite(value) ? LACONIC_OK : refuse(why, LACONIC_NOT_FINITE, field, item, value, R(0));
 }
 
 static laconic_status check_positive(real value, laconic_field field, laconic_refusal *why) {
-    if (!finite(value)) return refuse(why, LACONIC_NOT_FINITE, field, 0, value, R(0));
+    if (!is_finite(value)) return refuse(why, LACONIC_NOT_FINITE, field, 0, value, R(0));
     return value > R(0) ? LACONIC_OK : refuse(why, LACONIC_NOT_POSITIVE, field, 0, value, R(0));
 }
 
 static laconic_status check_not_negative(real value, laconic_field field, laconic_refusal *why) {
-    if (!finite(value)) return refuse(why, LACONIC_NOT_FINITE, field, 0, value, R(0));
+    if (!is_finite(value)) return refuse(why, LACONIC_NOT_FINITE, field, 0, value, R(0));
     return value >= R(0) ? LACONIC_OK : refuse(why, LACONIC_NEGATIVE, field, 0, value, R(0));
 }
 

@@ -1,20 +1,29 @@
 #ifndef LACONIC_ZETA_H
 #define LACONIC_ZETA_H
 
-#include "internal.h"
+#include "vector.h"
 
-static inline void take_zeta(real zeta[3], const laconic_state *state) {
-    zeta[0] = state->zeta[0].value;
-    zeta[1] = state->zeta[1].value;
-    zeta[2] = state->zeta[2].value;
+static inline vector zeta_of(const laconic_state *state) {
+    const vector zeta = {state->zeta[0].value, state->zeta[1].value, state->zeta[2].value};
+    return zeta;
+}
+
+/* ν → ζ: as GᵀAG = 1 and G diagonalises A, ζ = diag(1 + λ²x) Gᵀ ν, the projection onto the allowed motions. */
+static inline vector zeta_of_nu(const laconic_model *m, const real nu[3]) {
+    const vector first = scaled(nu[0], vec(m->nu_of_zeta[0])), second = scaled(nu[1], vec(m->nu_of_zeta[1]));
+    return times(vec(m->inertia), plus(plus(first, second), scaled(nu[2], vec(m->nu_of_zeta[2]))));
+}
+
+static inline void set_zeta(laconic_state *state, vector zeta) {
+    state->zeta[0] = sum_of(zeta.x);
+    state->zeta[1] = sum_of(zeta.y);
+    state->zeta[2] = sum_of(zeta.z);
 }
 
 /* ζ' = (g·ζ)(ζ×w) − diag(r)ζ + b: equation (4.7) in the coordinates of laconic_model. */
-static inline void zeta_rate(real out[3], const laconic_model *m, const real z[3], const real b[3]) {
-    const real yaw = dot(m->nu_of_zeta[2], z);
-    int k;
-    cross(out, z, m->gyro);
-    for (k = 0; k < 3; k++) out[k] = yaw * out[k] + (b[k] - m->decay_per_s[k] * z[k]);
+static inline vector zeta_rate(const laconic_model *m, vector z, vector b) {
+    const vector turning = scaled(dot(vec(m->nu_of_zeta[2]), z), cross(z, vec(m->gyro)));
+    return plus(turning, minus(b, times(vec(m->decay_per_s), z)));
 }
 
 #endif

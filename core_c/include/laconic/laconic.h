@@ -284,7 +284,8 @@ typedef struct laconic_state {
     laconic_sum zeta[3];
     laconic_sum x_m, y_m;
     laconic_heading heading;
-    laconic_sum wheel_angle_rad[LACONIC_MAX_WHEELS]; /* χ_i */
+    laconic_sum travel[3]; /* ∫ζ dt since the wheel angles were last set: they are linear in it            */
+    laconic_real wheel_angle_set_rad[LACONIC_MAX_WHEELS]; /* what they were set to                          */
 } laconic_state;
 
 typedef struct laconic_start {
@@ -298,6 +299,15 @@ typedef struct laconic_start {
  * limit: the nearest allowed value of it). */
 laconic_status laconic_state_set(laconic_state *state, const laconic_model *model, const laconic_start *start,
                                  laconic_refusal *why);
+
+/* The same for the numbers of an outer integrator (Model Exchange): a ν that has drifted off the constraints is
+ * projected onto the allowed motions instead of refused. Wheel angles become 0. */
+laconic_status laconic_state_place(laconic_state *state, const laconic_model *model, const laconic_start *motion,
+                                   laconic_refusal *why);
+
+/* χ of the model's N wheels [rad]: what they were set to and wheel_of_zeta · travel. They start at 0. */
+void laconic_wheel_angles(const laconic_model *model, const laconic_state *state, laconic_real *angle_rad);
+void laconic_wheel_angles_set(const laconic_model *model, laconic_state *state, const laconic_real *angle_rad);
 
 /* Carries a motion over to a changed vehicle (payload, motor): velocity and pose of the body's origin,
  * yaw rate and wheel angles stay; ν and (x, y) are recomputed. The wheels must be the same. */
@@ -325,14 +335,6 @@ typedef struct laconic_integrator {
     laconic_real gyro_limit;             /* largest |g·ζ| an explicit method bears; 0: any        */
 } laconic_integrator;
 
-/* What a method finds out about one step; all in ζ coordinates. */
-typedef struct laconic_increment {
-    laconic_real delta[3]; /* ζ(t+h) − ζ(t)                                                       */
-    laconic_real mean[3];  /* mean of ζ over the step                                             */
-    laconic_real slope[3]; /* 12/h² times the first moment of ζ about the middle of the step;
-                              = delta where ζ changes evenly, 0 where it jumps at once            */
-} laconic_increment;
-
 /* Inputs at the start, middle and end of the step. Held inputs: three times the same pointer. */
 typedef struct laconic_loads {
     const laconic_load *start, *middle, *end;
@@ -342,8 +344,8 @@ typedef struct laconic_method {
     const char *name;
     int32_t order;
     laconic_status (*prepare)(laconic_integrator *integrator, const laconic_model *model, laconic_refusal *why);
-    laconic_status (*increment)(const laconic_model *model, const laconic_integrator *integrator,
-                                const laconic_state *state, laconic_loads loads, laconic_increment *out);
+    laconic_status (*step)(const laconic_model *model, const laconic_integrator *integrator, laconic_state *state,
+                           const laconic_loads *loads);
 } laconic_method;
 
 /*                                            order  takes                  conserves, free motion  */
@@ -352,7 +354,9 @@ extern const laconic_method laconic_exponential_kahan;   /* 2  any damping      
 extern const laconic_method laconic_exponential_kahan_4; /* 4  any damping                  nearly  */
 extern const laconic_method laconic_exact_flow;          /* 2  everything                   exactly */
 extern const laconic_method laconic_exact_flow_4;        /* 4  any damping, best below h·r ≈ 0.3    */
-extern const laconic_method laconic_auto;                /* picks one of them; see auto.c           */
+extern const laconic_method laconic_auto;                /* picks one of the next two; see auto.c   */
+extern const laconic_method laconic_auto_slow;           /* exact-flow-4, else exact-flow           */
+extern const laconic_method laconic_auto_fast;           /* exponential-kahan-4, else exact-flow    */
 
 /* All methods, for adapters that choose by number (0 auto, 1 rk4, 2 exponential-kahan,
  * 3 exponential-kahan-4, 4 exact-flow, 5 exact-flow-4) or by name. NULL if there is none. Links them all. */

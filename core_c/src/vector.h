@@ -1,0 +1,62 @@
+/* Three numbers at a time. Written out, not looped: at -O2 compilers keep loops of three as loops. */
+#ifndef LACONIC_VECTOR_H
+#define LACONIC_VECTOR_H
+
+#include "internal.h"
+
+typedef struct vector {
+    real x, y, z;
+} vector;
+
+static inline vector vec(const real v[3]) {
+    const vector out = {v[0], v[1], v[2]};
+    return out;
+}
+
+static inline void put(real out[3], vector v) {
+    out[0] = v.x;
+    out[1] = v.y;
+    out[2] = v.z;
+}
+
+static inline vector plus(vector a, vector b) {
+    const vector out = {a.x + b.x, a.y + b.y, a.z + b.z};
+    return out;
+}
+
+static inline vector minus(vector a, vector b) {
+    const vector out = {a.x - b.x, a.y - b.y, a.z - b.z};
+    return out;
+}
+
+static inline vector scaled(real factor, vector v) {
+    const vector out = {factor * v.x, factor * v.y, factor * v.z};
+    return out;
+}
+
+/* Each axis by its own factor: diag(a) b. */
+static inline vector times(vector a, vector b) {
+    const vector out = {a.x * b.x, a.y * b.y, a.z * b.z};
+    return out;
+}
+
+static inline real dot(vector a, vector b) {
+    return a.x * b.x + a.y * b.y + a.z * b.z;
+}
+
+/* |v|²: not finite as soon as one component is not. */
+static inline real square(vector v) {
+    return dot(v, v);
+}
+
+static inline vector cross(vector a, vector b) {
+    const vector out = {a.y * b.z - a.z * b.y, a.z * b.x - a.x * b.z, a.x * b.y - a.y * b.x};
+    return out;
+}
+
+/* |v|₁ */
+static inline real size(vector v) {
+    return magnitude(v.x) + magnitude(v.y) + magnitude(v.z);
+}
+
+#endif
