@@ -94,8 +94,10 @@ void laconic_raw_collect(laconic_raw_output *raw, const laconic_plant *plant) {
         laconic_wheel_speeds(&plant->model, &plant->state, to);
         to += n;
     }
-    if (raw->send & LACONIC_RAW_WHEEL_ANGLE)
-        for (int32_t i = 0; i < n; i++) *to++ = plant->state.wheel_angle_rad[i].value;
+    if (raw->send & LACONIC_RAW_WHEEL_ANGLE) {
+        laconic_wheel_angles(&plant->model, &plant->state, to);
+        to += n;
+    }
     if (raw->send & LACONIC_RAW_ENERGY) *to++ = laconic_energy_J(&plant->model, &plant->state);
     raw->size = (uint16_t)((size_t)(to - raw->number) * sizeof(laconic_real));
     raw->position = 0;

@@ -122,7 +122,7 @@ class Plant:
 
     def wheel_angles(self) -> np.ndarray:
         """χ [rad]."""
-        return self.core.numbers(self.c.state.wheel_angle_rad, -1, 2)[: self.wheel_count, 0]
+        return self._per_wheel(self.core.lib.laconic_wheel_angles)
 
     def energy_J(self) -> float:
         """Kinetic energy."""
