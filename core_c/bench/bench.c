@@ -2,22 +2,35 @@
 
 static laconic_state state;
 static uint32_t segment, taken; /* steps of this segment */
-static laconic_status failed;
 
 void bench_reset(void) {
-    state = bench_start;
+    state = laconic_scene_start;
     segment = taken = 0;
-    failed = LACONIC_OK;
 }
 
-const laconic_state *bench_state(void) { return &state; }
+const laconic_state *bench_state(void) {
+    return &state;
+}
 
-static uint32_t run_within_segment(uint32_t steps) {
+static laconic_status sampled_step(const bench_segment *now) {
+    return laconic_step_sampled(&laconic_scene_model, &laconic_scene_integrator, &state, &now->start, &now->middle,
+                                &now->end);
+}
+
+laconic_status bench_step(void) {
+    const bench_segment *now = &bench_segments[segment];
+    if (LACONIC_WITH_SAMPLED_INPUT && now->sampled) return sampled_step(now);
+    return laconic_step(&laconic_scene_model, &laconic_scene_integrator, &state, &now->start);
+}
+
+static uint32_t run_within_segment(uint32_t steps, laconic_status *failed) {
     const bench_segment *now = &bench_segments[segment];
     const uint32_t left = now->steps - taken, count = steps < left ? steps : left;
     for (uint32_t i = 0; i < count; i++) {
-        const laconic_status status = laconic_step(&bench_model, &bench_integrator, &state, &now->input);
-        if (status != LACONIC_OK) failed = status;
+        const laconic_status status =
+            now->sampled ? bench_step()
+                         : laconic_step(&laconic_scene_model, &laconic_scene_integrator, &state, &now->start);
+        if (status != LACONIC_OK) *failed = status;
     }
     taken = (taken + count) % now->steps;
     if (taken == 0) segment = (segment + 1) % bench_segment_count;
@@ -25,6 +38,7 @@ static uint32_t run_within_segment(uint32_t steps) {
 }
 
 laconic_status bench_run(uint32_t steps) {
-    while (steps > 0) steps -= run_within_segment(steps);
+    laconic_status failed = LACONIC_OK;
+    while (steps > 0) steps -= run_within_segment(steps, &failed);
     return failed;
 }

@@ -1,11 +1,11 @@
-/* bench-count STEPS: takes that many steps and prints the state, for counting instructions as I(2n) − I(n). */
-#include "bench.h"
+/* count STEPS: takes that many steps and writes the state; instructions a step are I(2n) − I(n), over n. */
+#include "write_state.h"
 
 #include <stdio.h>
 #include <stdlib.h>
 
-static void write_bits(const char *name, const void *bytes, size_t size) {
-    const unsigned char *from = (const unsigned char *)bytes + size;
+static void write_line(const char *name, const void *bytes, uint32_t size) {
+    const unsigned char *from = (const unsigned char *)bytes + size; /* most significant first: little-endian */
     printf("%s ", name);
     while (size-- > 0) printf("%02x", *--from);
     printf("\n");
@@ -15,11 +15,7 @@ int main(int argc, char **argv) {
     const uint32_t steps = argc > 1 ? (uint32_t)strtoul(argv[1], NULL, 10) : 1000U;
     bench_reset();
     const laconic_status status = bench_run(steps);
-    const laconic_state *state = bench_state();
-    for (int k = 0; k < 3; k++) write_bits("zeta", &state->zeta[k].value, sizeof(laconic_real));
-    write_bits("x", &state->x_m.value, sizeof(laconic_real));
-    write_bits("y", &state->y_m.value, sizeof(laconic_real));
-    write_bits("heading", &state->heading.fraction, sizeof(laconic_turn));
+    write_state(write_line, bench_state());
     printf("status %d\n", (int)status);
     return status != LACONIC_OK;
 }

@@ -14,7 +14,9 @@ static void semihosting(uint32_t operation, const void *argument) {
     __asm volatile("bkpt 0xAB" : "+r"(r0) : "r"(r1) : "memory");
 }
 
-void board_write(const char *text) { semihosting(SEMIHOSTING_WRITE0, text); }
+void board_write(const char *text) {
+    semihosting(SEMIHOSTING_WRITE0, text);
+}
 
 void board_exit(int status) {
     const uint32_t block[2] = {APPLICATION_EXIT, (uint32_t)status};
@@ -58,9 +60,13 @@ void board_clock_start(void) {
     SYSTICK_CONTROL = 5; /* enabled, no interrupt, processor clock */
 }
 
-uint32_t board_clock_now(void) { return SYSTICK_LARGEST - SYSTICK_VALUE; }
+uint32_t board_clock_now(void) {
+    return SYSTICK_LARGEST - SYSTICK_VALUE;
+}
 
-uint32_t board_clock_since(uint32_t earlier) { return (board_clock_now() - earlier) & SYSTICK_LARGEST; }
+uint32_t board_clock_since(uint32_t earlier) {
+    return (board_clock_now() - earlier) & SYSTICK_LARGEST;
+}
 
 uint32_t board_calibrate(void) {
     uint32_t rounds = 32768U; /* of two instructions */
@@ -68,4 +74,18 @@ uint32_t board_calibrate(void) {
     const uint32_t before = board_clock_now();
     __asm volatile(".syntax unified\n1: subs %0, %0, #1\n bne 1b" : "+l"(rounds) : : "cc");
     return board_clock_since(before);
+}
+
+enum { PAINTED_WORDS = 1024, SPARED_WORDS = 32 };
+#define PAINT 0xA5C3E1F7U
+
+uint32_t board_stack_of(void (*work)(void)) {
+    volatile uint32_t *here = __builtin_frame_address(0);
+    volatile uint32_t *top = here - SPARED_WORDS, *bottom = top - PAINTED_WORDS;
+    uint32_t stack_pointer;
+    for (volatile uint32_t *word = bottom; word < top; word++) *word = PAINT;
+    __asm volatile("mov %0, sp" : "=r"(stack_pointer));
+    work();
+    while (bottom < top && *bottom == PAINT) bottom++;
+    return stack_pointer - (uint32_t)(uintptr_t)bottom;
 }

@@ -19,4 +19,6 @@ uint32_t board_clock_now(void);
 uint32_t board_clock_since(uint32_t earlier); /* ticks, up to 2^24 − 1 */
 uint32_t board_calibrate(void);               /* ticks that 65,536 instructions take */
 
+uint32_t board_stack_of(void (*work)(void)); /* bytes of stack below the call, found by painting 4 KB of it */
+
 #endif

@@ -1,0 +1,28 @@
+"""laconic trim: the core for one scene alone."""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+import click
+
+from laconic.core import REALS
+from laconic.scene import read_scene
+from laconic.trim import trimmed
+
+
+@click.command(name="trim")
+@click.argument("scene")
+@click.option("--real", type=click.Choice(REALS), help="Scalar type; the scene's own where none is given.")
+@click.option("--out", type=click.Path(path_type=Path), default=Path(), show_default=True, help="Folder for the files.")
+def command(scene: str, real: str | None, out: Path) -> None:
+    """Writes the C files that make a build of the core for SCENE alone.
+
+    laconic_scene.h holds the constants that leave out what the scene does without: compile the core with
+    LACONIC_SCENE_HEADER naming it. laconic_scene_model.c holds the prepared model. `cmake -DLACONIC_SCENE=…` does all
+    of this by itself.
+    """
+    read = read_scene(scene)
+    files = trimmed(read, real or read.run.real)
+    files.write(out)
+    click.echo(files.method)
