@@ -5,13 +5,7 @@
 
 #include "heading.h"
 #include "passivity.h"
-
-/* Beyond this a square would leave the range within a few steps: no vehicle moves like that. */
-#ifdef LACONIC_SINGLE
-#define LARGEST_SPEED R(1e9)
-#else
-#define LARGEST_SPEED R(1e77)
-#endif
+#include "zeta.h"
 
 typedef struct motion { /* over one step */
     real along_m, across_m; /* displacement in axes at the mid-step heading */
@@ -38,12 +32,12 @@ static inline motion displacement(const laconic_model *m, vector path, vector be
     const vector along = vec(m->velocity_of_zeta[0]), across = vec(m->velocity_of_zeta[1]);
     const vector yaw_rate = vec(m->yaw_rate_of_zeta);
     const real turn = dot(yaw_rate, path), yaw_change = dot(yaw_rate, bend) * (R(1) / R(12));
-    real sinc, half_j1;
-    vector aside;
+    const real forth = dot(along, path), left = dot(across, path);
+    real sinc, half_j1, aside_forth, aside_left;
     chord_factors(&sinc, &half_j1, R(0.5) * turn);
-    aside = minus(scaled(half_j1, bend), scaled(yaw_change, path));
-    path = scaled(sinc, path);
-    return (motion){dot(along, path) - dot(across, aside), dot(across, path) + dot(along, aside), turn};
+    aside_forth = half_j1 * dot(along, bend) - yaw_change * forth;
+    aside_left = half_j1 * dot(across, bend) - yaw_change * left;
+    return (motion){sinc * forth - aside_left, sinc * left + aside_forth, turn};
 }
 
 static inline void advance_pose(laconic_state *s, motion moved) {
@@ -58,14 +52,16 @@ static inline void add(laconic_sum sums[3], vector v) {
     sum_add(&sums[2], v.z);
 }
 
-/* Takes the step, or refuses and leaves the state as it was. */
-static inline laconic_status advance(laconic_state *state, const laconic_model *model, real step_s, increment by) {
+/* Takes the step, or refuses and leaves the state as it was. With ζ and what it changes by in range, so is
+ * everything computed from them: model and step are bounded when they are prepared. */
+static inline laconic_status advance(laconic_state *state, const laconic_model *model, real step_s, vector zeta,
+                                     increment by) {
     const vector path = scaled(step_s, by.mean);
-    if (!(square(by.delta) + square(by.mean) <= LARGEST_SPEED * LARGEST_SPEED)) return LACONIC_OVERFLOW;
+    if (!(square(zeta) + square(by.delta) + square(by.slope) <= LARGEST_SPEED * LARGEST_SPEED))
+        return LACONIC_OVERFLOW;
     if (LACONIC_WITH_POSE) {
         const motion moved = displacement(model, path, scaled(step_s, by.slope));
-        const vector all = {moved.along_m, moved.across_m, moved.turn_rad};
-        if (!(square(all) < LARGEST_TURN_RAD * LARGEST_TURN_RAD)) return LACONIC_OVERFLOW;
+        if (!(magnitude(moved.turn_rad) < LARGEST_TURN_RAD)) return LACONIC_OVERFLOW;
         advance_pose(state, moved);
     }
     add(state->zeta, by.delta);
@@ -77,7 +73,7 @@ static inline laconic_status advance(laconic_state *state, const laconic_model *
 static inline laconic_status advance_if_passive(laconic_state *state, const laconic_model *model, real step_s,
                                                 vector zeta, const drive *b, increment by) {
     if (!passive(zeta, step_s, b, by)) return LACONIC_STEP_GAINS_ENERGY;
-    return advance(state, model, step_s, by);
+    return advance(state, model, step_s, zeta, by);
 }
 
 #endif

@@ -20,6 +20,8 @@ static laconic_status check_allowed(const laconic_model *m, const laconic_state 
                                     laconic_refusal *why) {
     real nearest[3], worst = R(0);
     int32_t k, item = 0;
+    if (!(square(zeta_of(state)) <= LARGEST_SPEED * LARGEST_SPEED))
+        return refuse(why, LACONIC_OVERFLOW, LACONIC_FIELD_START_NU, 0, size(vec(nu)), R(0));
     laconic_nu(m, state, nearest);
     for (k = 0; k < 3; k++)
         if (magnitude(nu[k] - nearest[k]) > worst) {

@@ -3,6 +3,13 @@
 
 #include "vector.h"
 
+/* Beyond this a square would leave the range within a few steps: no vehicle moves like that. */
+#ifdef LACONIC_SINGLE
+#define LARGEST_SPEED R(1e9)
+#else
+#define LARGEST_SPEED R(1e77)
+#endif
+
 static inline vector zeta_of(const laconic_state *state) {
     const vector zeta = {state->zeta[0].value, state->zeta[1].value, state->zeta[2].value};
     return zeta;
