@@ -1,0 +1,246 @@
+#include "vehicles.h"
+
+#define GRAVITY 9.80665
+
+static laconic_refusal why;
+
+typedef struct scene {
+    laconic_vehicle vehicle;
+    laconic_model model;
+    laconic_contact contact;
+    laconic_state state;
+    laconic_input input;
+    laconic_reactions out;
+} scene;
+
+static void judge(scene *s, laconic_vehicle v, laconic_start start, laconic_input input) {
+    s->vehicle = v;
+    s->model = model_of(v);
+    s->state = state_of(&s->model, start);
+    s->input = input;
+    memset(&s->out, 0, sizeof s->out);
+    ASSERT_STATUS(LACONIC_OK, laconic_contact_prepare(&s->contact, &v, &s->model, &why));
+    laconic_reactions_of(&s->out, &s->contact, &s->model, &s->state, &s->input);
+}
+
+static laconic_start turning_start(double nu1, double nu2, double nu3) {
+    laconic_start start = start_with(nu1, nu2, nu3);
+    start.heading_rad = REAL(0.7);
+    return start;
+}
+
+/* M v_S' = Σ reactions + F and I_S θ'' = Σ r × reactions + τ, from rates that know nothing of reactions. */
+static void forces_balance(const scene *s) {
+    laconic_rates rates;
+    laconic_real nu[3];
+    double fx, fy, moment, ax, ay;
+    const double cosine = cos(0.7), sine = sin(0.7), yaw_inertia = (double)s->model.yaw_scale * (double)s->model.yaw_scale *
+                                                                   (double)s->model.mass_kg * RADIUS * RADIUS;
+    const double along = cosine * (double)s->input.world_force_N[0] + sine * (double)s->input.world_force_N[1];
+    const double across = cosine * (double)s->input.world_force_N[1] - sine * (double)s->input.world_force_N[0];
+    int i;
+    laconic_nu(&s->model, &s->state, nu);
+    laconic_derivative(&rates, &s->model, nu, REAL(0.7), &s->input);
+    ax = RADIUS * ((double)rates.nu_rad_per_s2[0] - (double)rates.yaw_rate_rad_per_s * (double)nu[1]);
+    ay = RADIUS * ((double)rates.nu_rad_per_s2[1] + (double)rates.yaw_rate_rad_per_s * (double)nu[0]);
+    fx = (double)s->input.body_force_N[0] + along;
+    fy = (double)s->input.body_force_N[1] + across;
+    moment = (double)s->input.body_moment_Nm + (double)s->input.world_force_point_m[0] * across -
+             (double)s->input.world_force_point_m[1] * along;
+    for (i = 0; i < s->vehicle.wheel_count; i++) {
+        const laconic_wheel *w = &s->vehicle.wheel[i];
+        const double roller = w->kind == LACONIC_WHEEL_FIXED ? PI / 2 : (double)w->roller_rad;
+        const double pull = (double)w->axle_rad + roller, axle = (double)w->axle_rad;
+        const double px = cos(pull) * (double)s->out.along_N[i] + cos(axle) * (double)s->out.lateral_N[i];
+        const double py = sin(pull) * (double)s->out.along_N[i] + sin(axle) * (double)s->out.lateral_N[i];
+        fx += px;
+        fy += py;
+        moment += ((double)w->x_m - (double)s->model.com_x_m) * py - ((double)w->y_m - (double)s->model.com_y_m) * px;
+    }
+    ASSERT_NEAR(EITHER(1e-12, 2e-4), (double)s->model.mass_kg * ax, fx);
+    ASSERT_NEAR(EITHER(1e-12, 2e-4), (double)s->model.mass_kg * ay, fy);
+    ASSERT_NEAR(EITHER(1e-12, 2e-4), yaw_inertia * (double)rates.nu_rad_per_s2[2] / (double)s->model.yaw_scale, moment);
+}
+
+static void reactions_and_outer_forces_make_the_motion(void) {
+    scene s;
+    laconic_vehicle v;
+    judge(&s, with_motors(three_wheels()), turning_start(0.7, -0.4, 1.9), every_input());
+    forces_balance(&s);
+    judge(&s, with_motors(mecanum()), turning_start(0.7, -0.4, 1.9), every_input());
+    forces_balance(&s);
+    judge(&s, with_motors(differential_drive()), turning_start(-DELTA / BIG_LAMBDA * 1.5, 0.8, 1.5), every_input());
+    forces_balance(&s);
+    judge(&s, caster(), turning_start(0.7, 0, 1.9), every_input());
+    forces_balance(&s);
+    judge(&s, bare_body(), turning_start(0.7, 0.3, 1.9), every_input());
+    forces_balance(&s);
+    v = with_motors(mecanum());
+    v.payload.mass_kg = REAL(4);
+    v.payload.x_m = REAL(0.1);
+    v.payload.yaw_inertia_kgm2 = REAL(0.02);
+    judge(&s, v, turning_start(0.7, -0.4, 1.9), every_input());
+    forces_balance(&s);
+    v = with_motors(three_wheels());
+    v.wheel[2].locked = true;
+    judge(&s, v, turning_start(RHO * 1.9, -0.4, 1.9), every_input());
+    forces_balance(&s);
+    v = with_motors(differential_drive());
+    v.wheel[1].locked = true; /* χ2' = −ν2 + σ ν3 */
+    judge(&s, v, turning_start(-DELTA / BIG_LAMBDA * 1.5, DRIVE_SIGMA * 1.5, 1.5), every_input());
+    forces_balance(&s);
+}
+
+/* f = (M_i − J χ'')/(R sin γ) */
+static void a_roller_wheels_reaction_is_torque_less_its_own_inertia(void) {
+    scene s;
+    laconic_rates rates, later;
+    laconic_real nu[3], torque[4], after[3];
+    int i, k;
+    const double dt = EITHER(1e-4, 1e-2);
+    judge(&s, with_motors(mecanum()), turning_start(0.7, -0.4, 1.9), every_input());
+    laconic_nu(&s.model, &s.state, nu);
+    laconic_derivative(&rates, &s.model, nu, REAL(0.7), &s.input);
+    for (k = 0; k < 3; k++) after[k] = nu[k] + REAL(dt) * rates.nu_rad_per_s2[k];
+    laconic_derivative(&later, &s.model, after, REAL(0.7), &s.input); /* χ' is linear in ν: a difference is exact */
+    laconic_wheel_torques(&s.model, &s.state, &s.input, torque);
+    for (i = 0; i < 4; i++) {
+        const double acceleration =
+            ((double)later.wheel_speed_rad_per_s[i] - (double)rates.wheel_speed_rad_per_s[i]) / dt;
+        const double expected = ((double)torque[i] - 0.009 * acceleration) / (RADIUS * sin((double)s.vehicle.wheel[i].roller_rad));
+        ASSERT_NEAR(EITHER(1e-8, 1e-2), expected, s.out.along_N[i]);
+        TEST_ASSERT_EQUAL_DOUBLE(0.0, (double)s.out.lateral_N[i]);
+        TEST_ASSERT_EQUAL_DOUBLE(0.0, (double)s.out.brake_Nm[i]);
+    }
+}
+
+/* A sideways force F_η on a standing caster is taken by its wheel alone, along the axle (0, −1). */
+static void a_fixed_wheel_takes_a_push_along_its_axle(void) {
+    scene s;
+    laconic_input input = no_input();
+    input.body_force_N[1] = REAL(6);
+    judge(&s, caster(), start_with(0, 0, 0), input);
+    ASSERT_NEAR(EITHER(1e-13, 1e-5), 6, s.out.lateral_N[0]);
+    ASSERT_NEAR(EITHER(1e-13, 1e-5), 0, s.out.along_N[0]);
+}
+
+static void wheels_on_one_axle_line_share_its_force_equally(void) {
+    scene s;
+    laconic_input input = no_input();
+    input.body_force_N[0] = REAL(6); /* along the axle line ξ, at S: 0.02 m behind it, so the moment is free */
+    judge(&s, differential_drive(), start_with(0, 0, 0), input);
+    ASSERT_NEAR(EITHER(1e-12, 1e-5), (double)s.out.lateral_N[0], -(double)s.out.lateral_N[1]);
+    TEST_ASSERT_TRUE(fabs((double)s.out.lateral_N[0]) > 0.5);
+}
+
+/* A braked wheel that is driven with 1 V: the brake holds exactly against the motor. */
+static void a_brake_holds_what_the_motor_gives(void) {
+    scene s;
+    laconic_vehicle v = with_motors(caster());
+    laconic_input input = no_input();
+    v.wheel[0].locked = true;
+    input.voltage_V[0] = REAL(1);
+    judge(&s, v, start_with(0, 0, 2), input);
+    ASSERT_NEAR(EITHER(1e-13, 1e-6), -GAIN, s.out.brake_Nm[0]);
+    ASSERT_NEAR(EITHER(1e-12, 1e-5), 0, s.out.along_N[0]);
+}
+
+/* A push of 8 N along ξ against a braked wheel: the ground holds it, and so does the brake, with R F. */
+static void a_brake_holds_a_push(void) {
+    scene s;
+    laconic_vehicle v = caster();
+    laconic_input input = no_input();
+    v.wheel[0].locked = true;
+    input.body_force_N[0] = REAL(8);
+    judge(&s, v, start_with(0, 0, 0), input);
+    ASSERT_NEAR(EITHER(1e-12, 1e-5), -8, s.out.along_N[0]);
+    ASSERT_NEAR(EITHER(1e-12, 1e-5), -8 * RADIUS, s.out.brake_Nm[0]);
+}
+
+static void standing_on_four_wheels_each_carries_a_quarter(void) {
+    scene s;
+    int i;
+    judge(&s, mecanum(), start_with(0, 0, 0), no_input());
+    for (i = 0; i < 4; i++) ASSERT_NEAR(EITHER(1e-12, 1e-4), MASS * GRAVITY / 4, s.out.normal_N[i]);
+}
+
+/* Two wheels at ξ = ±0.075 and a caster at η = 0.1, S at η = 0.02: the caster carries 0.02/0.1 of the weight. */
+static void three_points_of_support_are_the_lever_law(void) {
+    scene s;
+    laconic_vehicle v = differential_drive();
+    v.support_count = 1;
+    v.support[0].y_m = REAL(0.1);
+    judge(&s, v, start_with(0, 0, 0), no_input());
+    ASSERT_NEAR(EITHER(1e-11, 2e-4), MASS * GRAVITY * 0.2, s.out.normal_N[2]);
+    ASSERT_NEAR(EITHER(1e-11, 2e-4), MASS * GRAVITY * 0.4, s.out.normal_N[0]);
+    ASSERT_NEAR(EITHER(1e-11, 2e-4), MASS * GRAVITY * 0.4, s.out.normal_N[1]);
+}
+
+/* Accelerating along ξ with a, S at height z: the front pair loses M a z/(2·2·0.2) each, the rear pair gains it. */
+static void acceleration_shifts_load_to_the_rear(void) {
+    scene s;
+    laconic_vehicle v = with_motors(mecanum());
+    laconic_input input = no_input();
+    laconic_rates rates;
+    const laconic_real rest[3] = {0, 0, 0};
+    double shift;
+    int i;
+    v.com_z_m = REAL(0.12);
+    for (i = 0; i < 4; i++) input.voltage_V[i] = REAL(0.5);
+    judge(&s, v, start_with(0, 0, 0), input);
+    laconic_derivative(&rates, &s.model, rest, 0, &input);
+    shift = MASS * RADIUS * (double)rates.nu_rad_per_s2[0] * 0.12 / (4 * 0.2);
+    TEST_ASSERT_TRUE(shift > 0.1);
+    ASSERT_NEAR(EITHER(1e-11, 2e-4), MASS * GRAVITY / 4 - shift, s.out.normal_N[0]);
+    ASSERT_NEAR(EITHER(1e-11, 2e-4), MASS * GRAVITY / 4 + shift, s.out.normal_N[3]);
+}
+
+static void the_no_slip_margin_is_the_least_of_all_wheels(void) {
+    scene s;
+    laconic_vehicle v = with_motors(three_wheels());
+    double least = INFINITY;
+    int i;
+    v.friction_coefficient = REAL(0.6);
+    judge(&s, v, turning_start(0.7, -0.4, 1.9), every_input());
+    for (i = 0; i < 3; i++) {
+        const double needed = hypot((double)s.out.along_N[i], (double)s.out.lateral_N[i]);
+        const double margin = 0.6 * (double)s.out.normal_N[i] - needed;
+        if (margin < least) least = margin;
+    }
+    ASSERT_NEAR(EITHER(1e-12, 1e-4), least, s.out.no_slip_margin_N);
+}
+
+static void without_wheels_there_is_no_margin_to_lose(void) {
+    scene s;
+    judge(&s, bare_body(), start_with(1, 2, 3), no_input());
+    TEST_ASSERT_EQUAL_DOUBLE(0.0, (double)s.out.no_slip_margin_N);
+}
+
+static void a_refused_vehicle_changes_nothing(void) {
+    laconic_vehicle v = three_wheels();
+    const laconic_model model = model_of(v);
+    laconic_contact contact, before;
+    memset(&contact, 4, sizeof contact);
+    before = contact;
+    v.yaw_inertia_kgm2 = 0;
+    ASSERT_REFUSED(LACONIC_NOT_POSITIVE, LACONIC_FIELD_YAW_INERTIA, 0,
+                   laconic_contact_prepare(&contact, &v, &model, &why), why);
+    TEST_ASSERT_EQUAL_MEMORY(&before, &contact, sizeof contact);
+}
+
+int main(void) {
+    UNITY_BEGIN();
+    RUN_TEST(reactions_and_outer_forces_make_the_motion);
+    RUN_TEST(a_roller_wheels_reaction_is_torque_less_its_own_inertia);
+    RUN_TEST(a_fixed_wheel_takes_a_push_along_its_axle);
+    RUN_TEST(wheels_on_one_axle_line_share_its_force_equally);
+    RUN_TEST(a_brake_holds_what_the_motor_gives);
+    RUN_TEST(a_brake_holds_a_push);
+    RUN_TEST(standing_on_four_wheels_each_carries_a_quarter);
+    RUN_TEST(three_points_of_support_are_the_lever_law);
+    RUN_TEST(acceleration_shifts_load_to_the_rear);
+    RUN_TEST(the_no_slip_margin_is_the_least_of_all_wheels);
+    RUN_TEST(without_wheels_there_is_no_margin_to_lose);
+    RUN_TEST(a_refused_vehicle_changes_nothing);
+    return UNITY_END();
+}

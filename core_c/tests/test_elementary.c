@@ -1,0 +1,131 @@
+#include "elementary.h"
+
+#include "check.h"
+
+static double relative(double expected, double actual) {
+    return fabs(actual - expected) / (fabs(expected) > 0 ? fabs(expected) : 1);
+}
+
+static void the_square_root_is_right_to_the_last_bits_over_the_whole_range(void) {
+    double x;
+    for (x = EITHER(1e-300, 1e-36); x < EITHER(1e300, 1e38); x *= 1.7) {
+        const double exact = sqrt((double)REAL(x));
+        TEST_ASSERT_TRUE(relative(exact, (double)laconic_root(REAL(x))) < 2 * (double)LACONIC_EPSILON);
+    }
+    TEST_ASSERT_EQUAL_DOUBLE(3.0, (double)laconic_root(REAL(9)));
+    TEST_ASSERT_EQUAL_DOUBLE(0.5, (double)laconic_root(REAL(0.25)));
+}
+
+static void the_root_of_nothing_or_less_is_zero_and_of_infinity_infinity(void) {
+    TEST_ASSERT_EQUAL_DOUBLE(0.0, (double)laconic_root(REAL(0)));
+    TEST_ASSERT_EQUAL_DOUBLE(0.0, (double)laconic_root(REAL(-4)));
+    TEST_ASSERT_EQUAL_DOUBLE(0.0, (double)laconic_root(NOT_A_NUMBER));
+    TEST_ASSERT_TRUE(isinf(laconic_root(INFINITE)));
+}
+
+static void the_exponential_decays_as_libm_says(void) {
+    double a;
+    for (a = 0; a < EITHER(700, 80); a += 0.037) {
+        const double exact = exp(-(double)REAL(a));
+        TEST_ASSERT_TRUE(relative(exact, (double)laconic_decaying_exponential(REAL(a))) < 8 * (double)LACONIC_EPSILON);
+    }
+    TEST_ASSERT_EQUAL_DOUBLE(1.0, (double)laconic_decaying_exponential(REAL(0)));
+    TEST_ASSERT_EQUAL_DOUBLE(0.0, (double)laconic_decaying_exponential(REAL(1e4)));
+    TEST_ASSERT_EQUAL_DOUBLE(0.0, (double)laconic_decaying_exponential(INFINITE));
+}
+
+static void sine_and_cosine_of_an_angle_are_libms_to_the_last_digits(void) {
+    double angle;
+    for (angle = EITHER(-1e5, -1e3); angle < EITHER(1e5, 1e3); angle += EITHER(7.131, 0.07131)) {
+        const direction d = laconic_direction_of_angle(REAL(angle));
+        ASSERT_NEAR(2 * (double)LACONIC_EPSILON, cos((double)REAL(angle)), d.cosine);
+        ASSERT_NEAR(2 * (double)LACONIC_EPSILON, sin((double)REAL(angle)), d.sine);
+    }
+}
+
+/* 2π·2²⁰ + 1: beyond the range of the fast reduction. */
+static void very_large_angles_are_as_good_as_the_angle_itself(void) {
+    const laconic_real angle = REAL(6.283185307179586 * 1048576.0 * 4.0 + 1.0);
+    const direction d = laconic_direction_of_angle(angle), back = laconic_direction_of_angle(-angle);
+    const double tolerance = 4 * (double)angle * (double)LACONIC_EPSILON;
+    ASSERT_NEAR(tolerance, cos((double)angle), d.cosine);
+    ASSERT_NEAR(tolerance, sin((double)angle), d.sine);
+    ASSERT_NEAR(tolerance, -sin((double)angle), back.sine);
+}
+
+static void a_quarter_turn_is_exact(void) {
+    const laconic_turn quarter = (laconic_turn)1 << (sizeof(laconic_turn) * 8 - 2);
+    const double expected[4][2] = {{1, 0}, {0, 1}, {-1, 0}, {0, -1}};
+    unsigned k;
+    for (k = 0; k < 4; k++) {
+        const direction d = laconic_direction_of_turn((laconic_turn)(k * quarter));
+        TEST_ASSERT_EQUAL_DOUBLE(expected[k][0], (double)d.cosine);
+        TEST_ASSERT_EQUAL_DOUBLE(expected[k][1], (double)d.sine);
+    }
+}
+
+static void turns_and_angles_agree(void) {
+    double angle;
+    for (angle = -20; angle < 20; angle += 0.0173) {
+        const direction d = laconic_direction_of_turn(laconic_turn_of_angle(REAL(angle)));
+        ASSERT_NEAR(EITHER(4e-15, 3e-6), cos((double)REAL(angle)), d.cosine);
+        ASSERT_NEAR(EITHER(4e-15, 3e-6), sin((double)REAL(angle)), d.sine);
+    }
+}
+
+static void an_angle_without_a_direction_counts_as_zero(void) {
+    TEST_ASSERT_TRUE(laconic_turn_of_angle(NOT_A_NUMBER) == 0);
+    TEST_ASSERT_TRUE(laconic_turn_of_angle(INFINITE) == 0);
+    TEST_ASSERT_TRUE(laconic_turn_of_angle(REAL(1e30)) == 0);
+    TEST_ASSERT_EQUAL_DOUBLE(1.0, (double)laconic_direction_of_angle(NOT_A_NUMBER).cosine);
+}
+
+/* By the defining integral, Simpson's rule. */
+static double phi_by_quadrature(int k, double a) {
+    const int n = 60000;
+    double sum = 0, factorial = 1;
+    int i;
+    for (i = 2; i < k; i++) factorial *= i;
+    for (i = 0; i <= n; i++) {
+        const double s = (double)i / n, weight = i == 0 || i == n ? 1 : i % 2 == 1 ? 4 : 2;
+        sum += weight * exp(-(1 - s) * a) * pow(s, k - 1) / factorial;
+    }
+    return sum / (3.0 * n);
+}
+
+static void phi_functions_agree_with_their_integrals(void) {
+    const double arguments[] = {0, 1e-6, 0.01, 0.3, 1, 2.5, 3.9, 4.0, 4.1, 10, 60};
+    size_t i;
+    int k;
+    for (i = 0; i < sizeof arguments / sizeof arguments[0]; i++) {
+        laconic_real phi[4];
+        laconic_phi(phi, REAL(arguments[i]));
+        for (k = 1; k <= 4; k++) {
+            const double exact = phi_by_quadrature(k, (double)REAL(arguments[i]));
+            ASSERT_NEAR(EITHER(4e-13, 2e-6) * exact, exact, phi[k - 1]);
+        }
+    }
+}
+
+static void phi_functions_stay_finite_for_any_damping(void) {
+    laconic_real phi[4];
+    laconic_phi(phi, REAL(1e30));
+    ASSERT_NEAR(1e-6, 1.0, (double)phi[0] * 1e30);
+    ASSERT_NEAR(1e-6, 1.0, (double)phi[1] * 1e30);
+    ASSERT_NEAR(1e-6, 0.5, (double)phi[2] * 1e30);
+}
+
+int main(void) {
+    UNITY_BEGIN();
+    RUN_TEST(the_square_root_is_right_to_the_last_bits_over_the_whole_range);
+    RUN_TEST(the_root_of_nothing_or_less_is_zero_and_of_infinity_infinity);
+    RUN_TEST(the_exponential_decays_as_libm_says);
+    RUN_TEST(sine_and_cosine_of_an_angle_are_libms_to_the_last_digits);
+    RUN_TEST(very_large_angles_are_as_good_as_the_angle_itself);
+    RUN_TEST(a_quarter_turn_is_exact);
+    RUN_TEST(turns_and_angles_agree);
+    RUN_TEST(an_angle_without_a_direction_counts_as_zero);
+    RUN_TEST(phi_functions_agree_with_their_integrals);
+    RUN_TEST(phi_functions_stay_finite_for_any_damping);
+    return UNITY_END();
+}

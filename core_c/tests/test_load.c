@@ -1,0 +1,79 @@
+#include "load.h"
+
+#include "vehicles.h"
+
+/* b = Gᵀ(Ξᵀ(c1 U + T) + w)/(M R²), written out with the matrices for people. */
+static void expected_load(double b[3], const laconic_vehicle *v, const laconic_input *in, double heading) {
+    const laconic_model m = model_of(*v);
+    laconic_matrices x;
+    double right[3];
+    int i, k;
+    const double along = cos(heading) * (double)in->world_force_N[0] + sin(heading) * (double)in->world_force_N[1];
+    const double across = cos(heading) * (double)in->world_force_N[1] - sin(heading) * (double)in->world_force_N[0];
+    ASSERT_STATUS(LACONIC_OK, laconic_matrices_of(&x, v, NULL));
+    right[0] = RADIUS * ((double)in->body_force_N[0] + along);
+    right[1] = RADIUS * ((double)in->body_force_N[1] + across);
+    right[2] = ((double)in->body_moment_Nm + (double)in->world_force_point_m[0] * across -
+                (double)in->world_force_point_m[1] * along) /
+               BIG_LAMBDA;
+    for (i = 0; i < v->wheel_count; i++)
+        for (k = 0; k < 3; k++)
+            right[k] += (double)x.wheel_rows[i][k] * (GAIN * (double)in->voltage_V[i] + (double)in->axle_torque_Nm[i]);
+    for (k = 0; k < 3; k++) {
+        b[k] = 0;
+        for (i = 0; i < 3; i++) b[k] += (double)m.nu_of_zeta[i][k] * right[i] / UNIT_INERTIA;
+    }
+}
+
+static void everything_that_acts_is_in_the_load(void) {
+    const laconic_vehicle v = with_motors(three_wheels());
+    const laconic_model m = model_of(v);
+    const laconic_input input = every_input();
+    laconic_load load;
+    double heading;
+    laconic_load_of(&load, &m, &input);
+    TEST_ASSERT_TRUE(load.turns);
+    for (heading = -3; heading < 3; heading += 0.8) {
+        double expected[3];
+        int k;
+        expected_load(expected, &v, &input, heading);
+        for (k = 0; k < 3; k++)
+            ASSERT_NEAR(EITHER(1e-13, 5e-5), expected[k],
+                        (double)load.constant[k] + cos(heading) * (double)load.cosine[k] +
+                            sin(heading) * (double)load.sine[k]);
+    }
+}
+
+static void without_a_world_force_the_load_does_not_turn(void) {
+    const laconic_vehicle v = with_motors(three_wheels());
+    const laconic_model m = model_of(v);
+    laconic_input input = every_input();
+    laconic_load load;
+    double expected[3];
+    input.world_force_N[0] = input.world_force_N[1] = 0;
+    laconic_load_of(&load, &m, &input);
+    TEST_ASSERT_FALSE(load.turns);
+    expected_load(expected, &v, &input, 0);
+    ASSERT_NEAR_ALL(EITHER(1e-13, 5e-5), expected, load.constant, 3);
+}
+
+static void either_component_of_a_world_force_turns_and_so_does_nan(void) {
+    const laconic_model m = model_of(three_wheels());
+    laconic_input input = no_input();
+    laconic_load load;
+    input.world_force_N[1] = REAL(1);
+    laconic_load_of(&load, &m, &input);
+    TEST_ASSERT_TRUE(load.turns);
+    input = no_input();
+    input.world_force_N[0] = NOT_A_NUMBER;
+    laconic_load_of(&load, &m, &input);
+    TEST_ASSERT_TRUE(load.turns);
+}
+
+int main(void) {
+    UNITY_BEGIN();
+    RUN_TEST(everything_that_acts_is_in_the_load);
+    RUN_TEST(without_a_world_force_the_load_does_not_turn);
+    RUN_TEST(either_component_of_a_world_force_turns_and_so_does_nan);
+    return UNITY_END();
+}

@@ -1,0 +1,86 @@
+#include "vehicles.h"
+
+static laconic_matrices x;
+static laconic_refusal why;
+
+static void the_three_wheel_example_has_the_papers_matrices(void) {
+    const laconic_vehicle v = three_wheels();
+    const double rows[3][3] = {{0, 1, SIGMA}, {0, -1, SIGMA}, {-1, 0, RHO}};
+    const double square = SMALL_LAMBDA * SMALL_LAMBDA;
+    const double a3 = 1 + (2 * SIGMA * SIGMA + RHO * RHO) * square;
+    const double inertia[3][3] = {{1 + square, 0, -RHO * square}, {0, 1 + 2 * square, 0}, {-RHO * square, 0, a3}};
+    int i;
+    ASSERT_STATUS(LACONIC_OK, laconic_matrices_of(&x, &v, &why));
+    ASSERT_NEAR(4 * ROUNDING, BIG_LAMBDA, x.lambda_yaw);
+    ASSERT_NEAR(ROUNDING, SMALL_LAMBDA, x.lambda_wheel);
+    TEST_ASSERT_EQUAL_INT(0, x.constraint_count);
+    for (i = 0; i < 3; i++) {
+        ASSERT_NEAR_ALL(ROUNDING, rows[i], x.wheel_rows[i], 3);
+        ASSERT_NEAR_ALL(ROUNDING, inertia[i], x.inertia[i], 3);
+    }
+}
+
+static void the_inverse_inertia_is_the_inverse(void) {
+    const laconic_vehicle v = mecanum();
+    int r, c, k;
+    ASSERT_STATUS(LACONIC_OK, laconic_matrices_of(&x, &v, &why));
+    for (r = 0; r < 3; r++)
+        for (c = 0; c < 3; c++) {
+            double sum = 0;
+            for (k = 0; k < 3; k++) sum += (double)x.inertia[r][k] * (double)x.inverse_inertia[k][c];
+            ASSERT_NEAR(8 * ROUNDING, r == c ? 1 : 0, sum);
+        }
+}
+
+static void mecanum_rows_are_the_textbooks(void) {
+    const laconic_vehicle v = mecanum();
+    const double lever = (0.2 + 0.15) / (RADIUS * BIG_LAMBDA);
+    const double rows[4][3] = {{1, -1, -lever}, {1, 1, lever}, {1, 1, -lever}, {1, -1, lever}};
+    int i;
+    ASSERT_STATUS(LACONIC_OK, laconic_matrices_of(&x, &v, &why));
+    for (i = 0; i < 4; i++) ASSERT_NEAR_ALL(10 * ROUNDING, rows[i], x.wheel_rows[i], 3);
+}
+
+static void the_differential_drive_has_the_papers_rows_and_constraint(void) {
+    const laconic_vehicle v = differential_drive();
+    const double rows[2][3] = {{0, 1, DRIVE_SIGMA}, {0, -1, DRIVE_SIGMA}};
+    const double lateral[3] = {1, 0, DELTA / BIG_LAMBDA};
+    int i, k;
+    ASSERT_STATUS(LACONIC_OK, laconic_matrices_of(&x, &v, NULL));
+    TEST_ASSERT_EQUAL_INT(2, x.constraint_count);
+    for (i = 0; i < 2; i++) ASSERT_NEAR_ALL(ROUNDING, rows[i], x.wheel_rows[i], 3);
+    for (k = 0; k < 3; k++) {
+        ASSERT_NEAR(ROUNDING, lateral[k], x.constraint_rows[0][k]);
+        ASSERT_NEAR(ROUNDING, -lateral[k], x.constraint_rows[1][k]);
+    }
+}
+
+static void a_locked_wheel_adds_its_own_row_as_a_constraint(void) {
+    laconic_vehicle v = differential_drive();
+    v.wheel[0].locked = true;
+    ASSERT_STATUS(LACONIC_OK, laconic_matrices_of(&x, &v, &why));
+    TEST_ASSERT_EQUAL_INT(3, x.constraint_count);
+    ASSERT_NEAR_ALL(ROUNDING, x.wheel_rows[0], x.constraint_rows[1], 3);
+    ASSERT_NEAR(EITHER(1e-9, 1e-6), -1.0, x.constraint_rows[2][0]);
+}
+
+static void a_refused_vehicle_changes_nothing(void) {
+    laconic_vehicle v = three_wheels();
+    laconic_matrices before;
+    memset(&x, 7, sizeof x);
+    before = x;
+    v.mass_kg = 0;
+    ASSERT_REFUSED(LACONIC_NOT_POSITIVE, LACONIC_FIELD_MASS, 0, laconic_matrices_of(&x, &v, &why), why);
+    TEST_ASSERT_EQUAL_MEMORY(&before, &x, sizeof x);
+}
+
+int main(void) {
+    UNITY_BEGIN();
+    RUN_TEST(the_three_wheel_example_has_the_papers_matrices);
+    RUN_TEST(the_inverse_inertia_is_the_inverse);
+    RUN_TEST(mecanum_rows_are_the_textbooks);
+    RUN_TEST(the_differential_drive_has_the_papers_rows_and_constraint);
+    RUN_TEST(a_locked_wheel_adds_its_own_row_as_a_constraint);
+    RUN_TEST(a_refused_vehicle_changes_nothing);
+    return UNITY_END();
+}

@@ -1,0 +1,98 @@
+#include "check.h"
+
+#include <stdio.h>
+
+static char text[400];
+
+static const char *message(laconic_status status, laconic_field field, int32_t item, double value, double limit) {
+    const laconic_refusal why = {status, field, item, REAL(value), REAL(limit)};
+    const size_t length = laconic_message(&why, text, sizeof text);
+    TEST_ASSERT_EQUAL_UINT(strlen(text), length);
+    return text;
+}
+
+static void a_refusal_names_field_item_value_and_remedy(void) {
+    TEST_ASSERT_EQUAL_STRING("mass_kg: -2 is not positive; give a value above 0",
+                             message(LACONIC_NOT_POSITIVE, LACONIC_FIELD_MASS, 0, -2, 0));
+    TEST_ASSERT_EQUAL_STRING_LEN("roller_rad[12]: with 0.5 rad the roller axis lies along the axle",
+                                 message(LACONIC_ROLLER_ALONG_AXLE, LACONIC_FIELD_ROLLER, 12, 0.5, 0), 63);
+    TEST_ASSERT_EQUAL_STRING("step_s: 0.25 s is unstable with this method, the motors damp too fast; use at most 0.125 s, "
+                             "or auto",
+                             message(LACONIC_STEP_BEYOND_DAMPING_LIMIT, LACONIC_FIELD_STEP, 0, 0.25, 0.125));
+}
+
+static void without_a_field_only_the_reason_is_said(void) {
+    TEST_ASSERT_EQUAL_STRING("ok", message(LACONIC_OK, LACONIC_FIELD_NONE, 0, 0, 0));
+}
+
+static void every_status_has_a_text_and_a_number_that_is_none_too(void) {
+    int status;
+    for (status = 1; status < LACONIC_STATUS_COUNT; status++)
+        TEST_ASSERT_TRUE(strlen(message((laconic_status)status, LACONIC_FIELD_NONE, 0, 1, 2)) > 10);
+    TEST_ASSERT_EQUAL_STRING("unknown status", message((laconic_status)1000, LACONIC_FIELD_NONE, 0, 0, 0));
+}
+
+/* The number as a message shows it. */
+static const char *shown(double value) {
+    const char *end = strstr(message(LACONIC_NOT_POSITIVE, LACONIC_FIELD_NONE, 0, value, 0), " is not positive");
+    TEST_ASSERT_NOT_NULL(end);
+    text[end - text] = '\0';
+    return text;
+}
+
+static void numbers_look_as_printf_would_show_them(void) {
+    const double values[] = {1,      -1,     0.1,    123456, 999999, 1e6,    1.5e6,  0.0001, 0.000123456, 0.00001, 2.5e-5,
+                             -3e-7,  3.14159, 100,    1e10,   1e30,   -1e-30, 0.5,    42.25,  999999.7,    12.5,    0.0625,
+                             1234.5, 0.999999, 0.0099, 65536,  7e-12,  -8,     31.4159};
+    size_t i;
+    for (i = 0; i < sizeof values / sizeof values[0]; i++) {
+        char expected[40];
+        double read = 0;
+        snprintf(expected, sizeof expected, "%.6g", values[i]);
+        TEST_ASSERT_EQUAL_INT(1, sscanf(shown(values[i]), "%lf", &read));
+        ASSERT_NEAR(EITHER(1.1e-6, 2e-6) * fabs(values[i]), values[i], read);
+        TEST_ASSERT_TRUE_MESSAGE(strlen(text) <= strlen(expected), text);
+    }
+}
+
+static void a_number_that_rounds_up_to_the_next_power_stays_right(void) {
+    TEST_ASSERT_EQUAL_STRING("1e+6", shown(999999.9));
+    TEST_ASSERT_EQUAL_STRING("10", shown(9.9999999));
+}
+
+static void zero_infinity_and_nan_are_written_out(void) {
+    TEST_ASSERT_EQUAL_STRING("0", shown(0.0));
+    TEST_ASSERT_EQUAL_STRING("infinity", shown(INFINITY));
+    TEST_ASSERT_EQUAL_STRING("-infinity", shown(-INFINITY));
+    TEST_ASSERT_EQUAL_STRING("NaN", shown(NAN));
+}
+
+static void the_ends_of_the_range_are_shown(void) {
+    double read;
+    TEST_ASSERT_EQUAL_INT(1, sscanf(shown((double)LACONIC_REAL_MAX), "%lf", &read));
+    ASSERT_NEAR(1e-4, 1.0, read / (double)LACONIC_REAL_MAX);
+    TEST_ASSERT_EQUAL_INT(1, sscanf(shown((double)LACONIC_REAL_MIN), "%lf", &read));
+    ASSERT_NEAR(1e-4, 1.0, read / (double)LACONIC_REAL_MIN);
+}
+
+static void a_short_buffer_gets_what_fits_and_the_whole_length_is_told(void) {
+    const laconic_refusal why = {LACONIC_NEGATIVE, LACONIC_FIELD_MOTOR_DAMPING, 0, REAL(-1), 0};
+    const size_t length = laconic_message(&why, text, sizeof text);
+    char little[8] = "#######";
+    TEST_ASSERT_EQUAL_UINT(length, laconic_message(&why, little, sizeof little));
+    TEST_ASSERT_EQUAL_STRING("motor_d", little);
+    TEST_ASSERT_EQUAL_UINT(length, laconic_message(&why, NULL, 0));
+}
+
+int main(void) {
+    UNITY_BEGIN();
+    RUN_TEST(a_refusal_names_field_item_value_and_remedy);
+    RUN_TEST(without_a_field_only_the_reason_is_said);
+    RUN_TEST(every_status_has_a_text_and_a_number_that_is_none_too);
+    RUN_TEST(numbers_look_as_printf_would_show_them);
+    RUN_TEST(a_number_that_rounds_up_to_the_next_power_stays_right);
+    RUN_TEST(zero_infinity_and_nan_are_written_out);
+    RUN_TEST(the_ends_of_the_range_are_shown);
+    RUN_TEST(a_short_buffer_gets_what_fits_and_the_whole_length_is_told);
+    return UNITY_END();
+}

@@ -1,0 +1,74 @@
+#include "vehicles.h"
+
+static laconic_refusal why;
+
+/* R_a = 2 Ω, k_t = 0.1, k_e = 0.12, G = 5, b = 0.001, J_rotor = 2e-5 */
+static laconic_motor good_motor(void) {
+    laconic_motor m = {REAL(2), REAL(0.1), REAL(0.12), REAL(5), REAL(0.001), REAL(2e-5)};
+    return m;
+}
+
+static void the_data_sheet_becomes_gain_damping_and_inertia(void) {
+    laconic_vehicle v = three_wheels();
+    const laconic_motor m = good_motor();
+    ASSERT_STATUS(LACONIC_OK, laconic_motor_fit(&v, &m, &why));
+    ASSERT_NEAR(ROUNDING, 5 * 0.1 / 2, v.motor_gain_Nm_per_V);
+    ASSERT_NEAR(ROUNDING, 25 * (0.1 * 0.12 / 2 + 0.001), v.motor_damping_Nms);
+    ASSERT_NEAR(ROUNDING, 0.009 + 25 * 2e-5, v.wheel_inertia_kgm2);
+}
+
+static void a_gear_that_reverses_turns_the_gain_round(void) {
+    laconic_vehicle v = three_wheels();
+    laconic_motor m = good_motor();
+    m.gear_ratio = REAL(-5);
+    ASSERT_STATUS(LACONIC_OK, laconic_motor_fit(&v, &m, NULL));
+    ASSERT_NEAR(ROUNDING, -0.25, v.motor_gain_Nm_per_V);
+    ASSERT_NEAR(ROUNDING, 0.175, v.motor_damping_Nms);
+}
+
+static void refuses(laconic_motor m, laconic_status status, laconic_field field) {
+    laconic_vehicle v = three_wheels();
+    const laconic_vehicle before = v;
+    ASSERT_REFUSED(status, field, 0, laconic_motor_fit(&v, &m, &why), why);
+    TEST_ASSERT_EQUAL_MEMORY(&before, &v, sizeof v);
+}
+
+static void every_number_that_is_not_finite_is_named(void) {
+    laconic_motor m;
+    m = good_motor(), m.resistance_ohm = NOT_A_NUMBER, refuses(m, LACONIC_NOT_FINITE, LACONIC_FIELD_RESISTANCE);
+    m = good_motor(), m.torque_constant_Nm_per_A = INFINITE;
+    refuses(m, LACONIC_NOT_FINITE, LACONIC_FIELD_TORQUE_CONSTANT);
+    m = good_motor(), m.back_emf_Vs_per_rad = -INFINITE, refuses(m, LACONIC_NOT_FINITE, LACONIC_FIELD_BACK_EMF);
+    m = good_motor(), m.gear_ratio = NOT_A_NUMBER, refuses(m, LACONIC_NOT_FINITE, LACONIC_FIELD_GEAR_RATIO);
+    m = good_motor(), m.viscous_friction_Nms = NOT_A_NUMBER;
+    refuses(m, LACONIC_NOT_FINITE, LACONIC_FIELD_VISCOUS_FRICTION);
+    m = good_motor(), m.rotor_inertia_kgm2 = INFINITE, refuses(m, LACONIC_NOT_FINITE, LACONIC_FIELD_ROTOR_INERTIA);
+}
+
+static void resistance_must_be_positive_and_the_gear_not_zero(void) {
+    laconic_motor m = good_motor();
+    m.resistance_ohm = 0;
+    refuses(m, LACONIC_NOT_POSITIVE, LACONIC_FIELD_RESISTANCE);
+    m = good_motor();
+    m.gear_ratio = 0;
+    refuses(m, LACONIC_NOT_POSITIVE, LACONIC_FIELD_GEAR_RATIO);
+}
+
+static void friction_and_rotor_inertia_must_not_be_negative(void) {
+    laconic_motor m = good_motor();
+    m.viscous_friction_Nms = REAL(-1e-3);
+    refuses(m, LACONIC_NEGATIVE, LACONIC_FIELD_VISCOUS_FRICTION);
+    m = good_motor();
+    m.rotor_inertia_kgm2 = REAL(-1e-5);
+    refuses(m, LACONIC_NEGATIVE, LACONIC_FIELD_ROTOR_INERTIA);
+}
+
+int main(void) {
+    UNITY_BEGIN();
+    RUN_TEST(the_data_sheet_becomes_gain_damping_and_inertia);
+    RUN_TEST(a_gear_that_reverses_turns_the_gain_round);
+    RUN_TEST(every_number_that_is_not_finite_is_named);
+    RUN_TEST(resistance_must_be_positive_and_the_gear_not_zero);
+    RUN_TEST(friction_and_rotor_inertia_must_not_be_negative);
+    return UNITY_END();
+}

@@ -1,0 +1,221 @@
+#include "vehicles.h"
+
+static laconic_refusal why;
+
+static void columns_are_orthonormal_in_the_inertia(laconic_vehicle v) {
+    const laconic_model m = model_of(v);
+    laconic_matrices x;
+    int a, b, r, c;
+    ASSERT_STATUS(LACONIC_OK, laconic_matrices_of(&x, &v, &why));
+    for (a = 0; a < m.dof; a++)
+        for (b = 0; b < m.dof; b++) {
+            double product = 0;
+            for (r = 0; r < 3; r++)
+                for (c = 0; c < 3; c++)
+                    product += (double)m.nu_of_zeta[r][a] * (double)x.inertia[r][c] * (double)m.nu_of_zeta[c][b];
+            ASSERT_NEAR(EITHER(4e-15, 2e-6), a == b ? 1 : 0, product);
+        }
+}
+
+static void the_basis_makes_inertia_the_unit_matrix(void) {
+    columns_are_orthonormal_in_the_inertia(three_wheels());
+    columns_are_orthonormal_in_the_inertia(mecanum());
+    columns_are_orthonormal_in_the_inertia(differential_drive());
+    columns_are_orthonormal_in_the_inertia(caster());
+    columns_are_orthonormal_in_the_inertia(bare_body());
+}
+
+static void the_basis_makes_damping_diagonal(void) {
+    const laconic_model m = model_of(with_motors(mecanum()));
+    int a, b, i;
+    for (a = 0; a < 3; a++)
+        for (b = 0; b < 3; b++) {
+            double sum = 0;
+            for (i = 0; i < m.wheel_count; i++)
+                sum += (double)m.wheel_of_zeta[i][a] * (double)m.wheel_of_zeta[i][b] * DAMPING / UNIT_INERTIA;
+            ASSERT_NEAR(EITHER(1e-14, 1e-5), a == b ? (double)m.decay_per_s[a] : 0, sum);
+        }
+}
+
+static void every_constraint_is_built_in(void) {
+    const laconic_vehicle v = differential_drive();
+    const laconic_model m = model_of(v);
+    laconic_matrices x;
+    int i, k;
+    ASSERT_STATUS(LACONIC_OK, laconic_matrices_of(&x, &v, &why));
+    for (i = 0; i < x.constraint_count; i++)
+        for (k = 0; k < 3; k++) {
+            double slip = 0;
+            int r;
+            for (r = 0; r < 3; r++) slip += (double)x.constraint_rows[i][r] * (double)m.nu_of_zeta[r][k];
+            ASSERT_NEAR(2 * ROUNDING, 0, slip);
+        }
+}
+
+/* ν2 stands alone there: X22 = 2. The others are the 2×2 problem of [[1, −ρ], [−ρ, 2σ² + ρ²]]. */
+static void damping_rates_of_the_three_wheel_example_are_the_closed_form(void) {
+    const laconic_model m = model_of(with_motors(three_wheels()));
+    const double c = DAMPING / UNIT_INERTIA, square = SMALL_LAMBDA * SMALL_LAMBDA;
+    const double trace = 1 + 2 * SIGMA * SIGMA + RHO * RHO, det = 2 * SIGMA * SIGMA;
+    const double root = sqrt(trace * trace / 4 - det);
+    const double x[3] = {2, trace / 2 + root, trace / 2 - root};
+    int wanted, k;
+    for (wanted = 0; wanted < 3; wanted++) {
+        double nearest = 1e9;
+        for (k = 0; k < 3; k++) {
+            const double off = fabs((double)m.decay_per_s[k] - c * x[wanted] / (1 + square * x[wanted])) +
+                               fabs((double)m.inertia[k] - (1 + square * x[wanted]));
+            if (off < nearest) nearest = off;
+        }
+        ASSERT_NEAR(4 * ROUNDING, 0, nearest);
+    }
+    ASSERT_NEAR(8 * ROUNDING, (1 + square * x[0]) / (1 + square * x[2]), laconic_condition_number(&m));
+}
+
+static void degrees_of_freedom_are_counted(void) {
+    laconic_vehicle v = differential_drive();
+    TEST_ASSERT_EQUAL_INT(3, model_of(bare_body()).dof);
+    TEST_ASSERT_EQUAL_INT(3, model_of(three_wheels()).dof);
+    TEST_ASSERT_EQUAL_INT(2, model_of(v).dof);
+    TEST_ASSERT_EQUAL_INT(2, model_of(caster()).dof);
+    v.wheel[0].locked = true;
+    TEST_ASSERT_EQUAL_INT(1, model_of(v).dof);
+    v = three_wheels();
+    v.wheel[2].locked = true;
+    TEST_ASSERT_EQUAL_INT(2, model_of(v).dof);
+}
+
+static void columns_beyond_the_degrees_of_freedom_are_zero(void) {
+    const laconic_model m = model_of(differential_drive());
+    int i;
+    for (i = 0; i < 3; i++) TEST_ASSERT_EQUAL_DOUBLE(0.0, (double)m.nu_of_zeta[i][2]);
+    for (i = 0; i < 2; i++) TEST_ASSERT_EQUAL_DOUBLE(0.0, (double)m.wheel_of_zeta[i][2]);
+    TEST_ASSERT_EQUAL_DOUBLE(0.0, (double)m.decay_per_s[2]);
+}
+
+static void axle_lines_that_agree_to_rounding_count_once(void) {
+    laconic_vehicle v = differential_drive();
+    v.wheel[1].axle_rad += REAL(EITHER(1e-11, 1e-6));
+    TEST_ASSERT_EQUAL_INT(2, model_of(v).dof);
+    v.wheel[1].axle_rad += REAL(EITHER(1e-6, 1e-2));
+    TEST_ASSERT_EQUAL_INT(1, model_of(v).dof);
+}
+
+static void a_locked_wheel_does_not_turn(void) {
+    laconic_vehicle v = three_wheels();
+    int k;
+    v.wheel[1].locked = true;
+    for (k = 0; k < 3; k++) TEST_ASSERT_EQUAL_DOUBLE(0.0, (double)model_of(v).wheel_of_zeta[1][k]);
+}
+
+static void three_fixed_wheels_whose_axles_do_not_meet_leave_nothing_that_moves(void) {
+    laconic_vehicle v = bare_body();
+    laconic_model model, before;
+    memset(&model, 5, sizeof model);
+    before = model;
+    add_wheel(&v, LACONIC_WHEEL_FIXED, 0.1, 0.0, 0.0, 0.0);
+    add_wheel(&v, LACONIC_WHEEL_FIXED, 0.0, 0.1, PI / 2, 0.0);
+    add_wheel(&v, LACONIC_WHEEL_FIXED, 0.2, 0.2, 1.0, 0.0);
+    add_wheel(&v, LACONIC_WHEEL_FIXED, 0.3, 0.2, 2.0, 0.0);
+    ASSERT_REFUSED(LACONIC_NOTHING_MOVES, LACONIC_FIELD_WHEEL_KIND, 0, laconic_prepare(&model, &v, &why), why);
+    TEST_ASSERT_EQUAL_MEMORY(&before, &model, sizeof model);
+}
+
+static void what_the_vehicle_check_refuses_is_refused(void) {
+    laconic_vehicle v = three_wheels();
+    laconic_model model;
+    v.wheel[2].x_m = NOT_A_NUMBER;
+    ASSERT_REFUSED(LACONIC_NOT_FINITE, LACONIC_FIELD_WHEEL_X, 3, laconic_prepare(&model, &v, &why), why);
+    ASSERT_STATUS(LACONIC_NOT_FINITE, laconic_prepare(&model, &v, NULL));
+}
+
+static void inertias_too_far_apart_for_the_precision_are_refused(void) {
+    laconic_vehicle v = three_wheels();
+    laconic_model model;
+    v.wheel[2].kind = LACONIC_WHEEL_FIXED; /* so that wheels do not turn in every motion */
+    v.wheel_count = 1;
+    v.wheel_inertia_kgm2 = REAL(EITHER(1e28, 1e11));
+    ASSERT_REFUSED(LACONIC_ILL_CONDITIONED, LACONIC_FIELD_NONE, 0, laconic_prepare(&model, &v, &why), why);
+    TEST_ASSERT_TRUE((double)why.value > EITHER(1e27, 1e9));
+    v.wheel_inertia_kgm2 = REAL(EITHER(1e20, 1e6));
+    ASSERT_STATUS(LACONIC_OK, laconic_prepare(&model, &v, &why));
+}
+
+static void numbers_that_leave_the_range_are_refused(void) {
+    laconic_vehicle v = three_wheels();
+    laconic_model model;
+    v.mass_kg = REAL(EITHER(1e-250, 1e-25));
+    v.wheel_radius_m = REAL(EITHER(1e-100, 1e-12));
+    ASSERT_REFUSED(LACONIC_OVERFLOW, LACONIC_FIELD_NONE, 0, laconic_prepare(&model, &v, &why), why);
+    v = three_wheels();
+    v.mass_kg = REAL(EITHER(1e300, 1e35));
+    v.wheel_radius_m = REAL(EITHER(1e30, 1e10));
+    ASSERT_REFUSED(LACONIC_OVERFLOW, LACONIC_FIELD_NONE, 0, laconic_prepare(&model, &v, &why), why);
+    v = three_wheels();
+    v.com_x_m = REAL(EITHER(1e300, 1e36));
+    ASSERT_REFUSED(LACONIC_OVERFLOW, LACONIC_FIELD_NONE, 0, laconic_prepare(&model, &v, &why), why);
+}
+
+/* Rates many decades apart: every one keeps its digits, since ΞᵀΞ is never formed. */
+static void a_slow_rate_keeps_its_digits_beside_a_fast_one(void) {
+    const double small = EITHER(1e-9, 1e-5); /* tilt of the second wheel's pull against the first's */
+    laconic_vehicle v = with_motors(bare_body());
+    laconic_model m;
+    double least;
+    int k;
+    v.wheel_inertia_kgm2 = 0;
+    add_wheel(&v, LACONIC_WHEEL_ROLLER, 0, 0, 0.0, PI / 2);
+    add_wheel(&v, LACONIC_WHEEL_ROLLER, 0, 0, small, PI / 2);
+    m = model_of(v);
+    least = INFINITY;
+    for (k = 0; k < 3; k++)
+        if (m.decay_per_s[k] > 0 && (double)m.decay_per_s[k] < least) least = (double)m.decay_per_s[k];
+    /* two unit vectors at a small angle ε: eigenvalues of ΞᵀΞ are 2 and ε²/2 */
+    ASSERT_NEAR(0.02, 1.0, least / (DAMPING / UNIT_INERTIA * small * small / 2));
+}
+
+static void sixteen_wheels_and_none_are_both_a_vehicle(void) {
+    laconic_vehicle v = with_motors(bare_body());
+    const laconic_model none = model_of(v);
+    laconic_model many;
+    int i;
+    for (i = 0; i < 3; i++) TEST_ASSERT_EQUAL_DOUBLE(0.0, (double)none.decay_per_s[i]);
+    for (i = 0; i < LACONIC_MAX_WHEELS; i++)
+        add_wheel(&v, LACONIC_WHEEL_ROLLER, 0.3 * cos(0.4 * i), 0.3 * sin(0.4 * i), 0.4 * i, i % 2 ? PI / 4 : -PI / 4);
+    many = model_of(v);
+    TEST_ASSERT_EQUAL_INT(LACONIC_MAX_WHEELS, many.wheel_count);
+    columns_are_orthonormal_in_the_inertia(v);
+}
+
+static void wheels_far_away_or_all_on_one_spot_give_numbers(void) {
+    laconic_vehicle v = with_motors(three_wheels());
+    laconic_model m;
+    int k;
+    v.wheel[0].x_m = REAL(EITHER(1e7, 1e2));
+    m = model_of(v);
+    for (k = 0; k < 3; k++) TEST_ASSERT_TRUE(isfinite(m.decay_per_s[k]));
+    v = with_motors(bare_body());
+    for (k = 0; k < 5; k++) add_wheel(&v, LACONIC_WHEEL_ROLLER, 0.1, 0.1, 0.7, PI / 2);
+    m = model_of(v);
+    for (k = 0; k < 3; k++) TEST_ASSERT_TRUE(isfinite(m.decay_per_s[k]));
+}
+
+int main(void) {
+    UNITY_BEGIN();
+    RUN_TEST(the_basis_makes_inertia_the_unit_matrix);
+    RUN_TEST(the_basis_makes_damping_diagonal);
+    RUN_TEST(every_constraint_is_built_in);
+    RUN_TEST(damping_rates_of_the_three_wheel_example_are_the_closed_form);
+    RUN_TEST(degrees_of_freedom_are_counted);
+    RUN_TEST(columns_beyond_the_degrees_of_freedom_are_zero);
+    RUN_TEST(axle_lines_that_agree_to_rounding_count_once);
+    RUN_TEST(a_locked_wheel_does_not_turn);
+    RUN_TEST(three_fixed_wheels_whose_axles_do_not_meet_leave_nothing_that_moves);
+    RUN_TEST(what_the_vehicle_check_refuses_is_refused);
+    RUN_TEST(inertias_too_far_apart_for_the_precision_are_refused);
+    RUN_TEST(numbers_that_leave_the_range_are_refused);
+    RUN_TEST(a_slow_rate_keeps_its_digits_beside_a_fast_one);
+    RUN_TEST(sixteen_wheels_and_none_are_both_a_vehicle);
+    RUN_TEST(wheels_far_away_or_all_on_one_spot_give_numbers);
+    return UNITY_END();
+}

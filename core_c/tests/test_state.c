@@ -1,0 +1,148 @@
+#include "vehicles.h"
+
+static laconic_refusal why;
+
+static void what_is_set_is_what_is_read(void) {
+    const laconic_model m = model_of(mecanum());
+    laconic_start start = start_with(0.7, -0.4, 1.9);
+    laconic_state state;
+    laconic_real nu[3], angle[4];
+    laconic_pose pose;
+    int i;
+    start.x_m = REAL(-3.5);
+    start.y_m = REAL(12.25);
+    start.heading_rad = REAL(-20);
+    memset(&state, 9, sizeof state);
+    ASSERT_STATUS(LACONIC_OK, laconic_state_set(&state, &m, &start, NULL));
+    laconic_nu(&m, &state, nu);
+    ASSERT_NEAR_ALL(4 * ROUNDING, start.nu_rad_per_s, nu, 3);
+    laconic_pose_of(&pose, &m, &state);
+    TEST_ASSERT_EQUAL_DOUBLE(-3.5, (double)pose.x_m);
+    TEST_ASSERT_EQUAL_DOUBLE(12.25, (double)pose.y_m);
+    ASSERT_NEAR(EITHER(1e-14, 1e-5), -20, pose.heading_rad);
+    laconic_wheel_angles(&m, &state, angle);
+    for (i = 0; i < 4; i++) TEST_ASSERT_EQUAL_DOUBLE(0.0, (double)angle[i]);
+}
+
+static void refuses(laconic_start start, laconic_status status, laconic_field field, int item) {
+    const laconic_model m = model_of(three_wheels());
+    laconic_state state, before;
+    memset(&state, 3, sizeof state);
+    before = state;
+    ASSERT_REFUSED(status, field, item, laconic_state_set(&state, &m, &start, &why), why);
+    TEST_ASSERT_EQUAL_MEMORY(&before, &state, sizeof state);
+}
+
+static void every_number_that_is_not_finite_is_named(void) {
+    laconic_start start;
+    refuses(start_with(NAN, 0, 0), LACONIC_NOT_FINITE, LACONIC_FIELD_START_NU, 1);
+    refuses(start_with(0, 0, -INFINITY), LACONIC_NOT_FINITE, LACONIC_FIELD_START_NU, 3);
+    start = start_with(0, 0, 0);
+    start.x_m = INFINITE;
+    refuses(start, LACONIC_NOT_FINITE, LACONIC_FIELD_START_X, 0);
+    start = start_with(0, 0, 0);
+    start.y_m = NOT_A_NUMBER;
+    refuses(start, LACONIC_NOT_FINITE, LACONIC_FIELD_START_Y, 0);
+    start = start_with(0, 0, 0);
+    start.heading_rad = NOT_A_NUMBER;
+    refuses(start, LACONIC_NOT_FINITE, LACONIC_FIELD_START_HEADING, 0);
+}
+
+static void a_heading_or_velocity_without_meaning_is_refused(void) {
+    laconic_start start = start_with(0, 0, 0);
+    start.heading_rad = REAL(1e30);
+    refuses(start, LACONIC_OVERFLOW, LACONIC_FIELD_START_HEADING, 0);
+    refuses(start_with((double)LACONIC_REAL_MAX, 0, (double)LACONIC_REAL_MAX), LACONIC_OVERFLOW, LACONIC_FIELD_START_NU,
+            0);
+}
+
+static void a_velocity_of_any_size_is_refused_before_it_becomes_nan(void) {
+    const laconic_model m = model_of(differential_drive());
+    laconic_start start = start_with((double)LACONIC_REAL_MAX, (double)LACONIC_REAL_MAX, (double)LACONIC_REAL_MAX);
+    laconic_state state;
+    TEST_ASSERT_NOT_EQUAL(LACONIC_OK, laconic_state_set(&state, &m, &start, &why));
+}
+
+static void a_start_that_slides_a_fixed_wheel_is_refused_with_the_nearest_that_does_not(void) {
+    const laconic_model m = model_of(caster());
+    laconic_start start = start_with(1, 0.25, 2);
+    laconic_state state;
+    ASSERT_REFUSED(LACONIC_START_AGAINST_CONSTRAINTS, LACONIC_FIELD_START_NU, 2,
+                   laconic_state_set(&state, &m, &start, &why), why);
+    ASSERT_NEAR(ROUNDING, 0.25, why.value);
+    ASSERT_NEAR(ROUNDING, 0, why.limit);
+    start = start_with(1, 0, 2);
+    ASSERT_STATUS(LACONIC_OK, laconic_state_set(&state, &m, &start, &why));
+}
+
+static void a_start_that_turns_a_locked_wheel_is_refused(void) {
+    laconic_vehicle v = three_wheels();
+    laconic_start start = start_with(1, 0, 0);
+    laconic_state state;
+    laconic_model m;
+    v.wheel[2].locked = true; /* χ3' = −ν1 + ρ ν3 */
+    m = model_of(v);
+    ASSERT_STATUS(LACONIC_START_AGAINST_CONSTRAINTS, laconic_state_set(&state, &m, &start, NULL));
+    start = start_with(RHO * 1.5, -2, 1.5);
+    ASSERT_STATUS(LACONIC_OK, laconic_state_set(&state, &m, &start, &why));
+}
+
+static void rest_is_always_allowed(void) {
+    const laconic_model m = model_of(differential_drive());
+    const laconic_start start = start_with(0, 0, 0);
+    laconic_state state;
+    ASSERT_STATUS(LACONIC_OK, laconic_state_set(&state, &m, &start, &why));
+}
+
+/* A payload set down at (0.3, −0.1): S moves by (0.1, −0.04). The body itself must not notice. */
+static void a_changed_vehicle_moves_on_where_the_old_one_was(void) {
+    laconic_vehicle v = three_wheels();
+    const laconic_model from = model_of(v);
+    laconic_model to;
+    laconic_start start = start_with(0.7, -0.4, 1.9);
+    laconic_state state;
+    laconic_pose before, after;
+    laconic_real old_speed[3], new_speed[3], velocity[2], old_origin[2], yaw, old_yaw;
+    const laconic_real angle[3] = {REAL(1), REAL(5), REAL(-2)};
+    laconic_real after_angle[3];
+    start.x_m = REAL(1);
+    start.heading_rad = REAL(0.6);
+    state = state_of(&from, start);
+    laconic_wheel_angles_set(&from, &state, angle);
+    laconic_wheel_speeds(&from, &state, old_speed);
+    laconic_pose_of(&before, &from, &state);
+    old_yaw = laconic_body_velocity(&from, &state, velocity);
+    old_origin[0] = velocity[0] + old_yaw * from.com_y_m;
+    old_origin[1] = velocity[1] - old_yaw * from.com_x_m;
+    v.payload.mass_kg = REAL(5);
+    v.payload.x_m = REAL(0.3);
+    v.payload.y_m = REAL(-0.1);
+    to = model_of(v);
+    laconic_state_carry(&state, &from, &to);
+    laconic_pose_of(&after, &to, &state);
+    yaw = laconic_body_velocity(&to, &state, velocity);
+    ASSERT_NEAR(4 * ROUNDING, old_yaw, yaw);
+    ASSERT_NEAR(4 * ROUNDING, old_origin[0], velocity[0] + yaw * to.com_y_m);
+    ASSERT_NEAR(4 * ROUNDING, old_origin[1], velocity[1] - yaw * to.com_x_m);
+    ASSERT_NEAR(2 * ROUNDING, before.origin_x_m, after.origin_x_m);
+    ASSERT_NEAR(2 * ROUNDING, before.origin_y_m, after.origin_y_m);
+    ASSERT_NEAR(2 * ROUNDING, before.x_m + REAL(0.1 * cos(0.6) + 0.04 * sin(0.6)), after.x_m);
+    TEST_ASSERT_EQUAL_DOUBLE((double)before.heading_rad, (double)after.heading_rad);
+    laconic_wheel_angles(&to, &state, after_angle);
+    ASSERT_NEAR_ALL(ROUNDING, angle, after_angle, 3);
+    laconic_wheel_speeds(&to, &state, new_speed);
+    ASSERT_NEAR_ALL(10 * ROUNDING, old_speed, new_speed, 3);
+}
+
+int main(void) {
+    UNITY_BEGIN();
+    RUN_TEST(what_is_set_is_what_is_read);
+    RUN_TEST(every_number_that_is_not_finite_is_named);
+    RUN_TEST(a_heading_or_velocity_without_meaning_is_refused);
+    RUN_TEST(a_velocity_of_any_size_is_refused_before_it_becomes_nan);
+    RUN_TEST(a_start_that_slides_a_fixed_wheel_is_refused_with_the_nearest_that_does_not);
+    RUN_TEST(a_start_that_turns_a_locked_wheel_is_refused);
+    RUN_TEST(rest_is_always_allowed);
+    RUN_TEST(a_changed_vehicle_moves_on_where_the_old_one_was);
+    return UNITY_END();
+}

@@ -1,0 +1,218 @@
+#include "vehicles.h"
+
+static laconic_refusal why;
+
+static void good_vehicles_are_accepted(void) {
+    laconic_vehicle v = three_wheels();
+    ASSERT_STATUS(LACONIC_OK, laconic_vehicle_check(&v, &why));
+    v = differential_drive();
+    ASSERT_STATUS(LACONIC_OK, laconic_vehicle_check(&v, NULL));
+    v = bare_body();
+    ASSERT_STATUS(LACONIC_OK, laconic_vehicle_check(&v, &why));
+}
+
+static void zero_inertia_of_wheels_and_negative_gain_are_accepted(void) {
+    laconic_vehicle v = three_wheels();
+    v.wheel_inertia_kgm2 = 0;
+    v.motor_gain_Nm_per_V = REAL(-1);
+    ASSERT_STATUS(LACONIC_OK, laconic_vehicle_check(&v, &why));
+}
+
+/* Sets one number of a good vehicle to `value` and says what the check then answers. */
+typedef laconic_real *(*place)(laconic_vehicle *v);
+
+static laconic_real *mass(laconic_vehicle *v) {
+    return &v->mass_kg;
+}
+static laconic_real *yaw_inertia(laconic_vehicle *v) {
+    return &v->yaw_inertia_kgm2;
+}
+static laconic_real *radius(laconic_vehicle *v) {
+    return &v->wheel_radius_m;
+}
+static laconic_real *wheel_inertia(laconic_vehicle *v) {
+    return &v->wheel_inertia_kgm2;
+}
+static laconic_real *damping(laconic_vehicle *v) {
+    return &v->motor_damping_Nms;
+}
+static laconic_real *friction(laconic_vehicle *v) {
+    return &v->friction_coefficient;
+}
+static laconic_real *payload_mass(laconic_vehicle *v) {
+    return &v->payload.mass_kg;
+}
+static laconic_real *payload_inertia(laconic_vehicle *v) {
+    return &v->payload.yaw_inertia_kgm2;
+}
+static laconic_real *com_x(laconic_vehicle *v) {
+    return &v->com_x_m;
+}
+static laconic_real *com_y(laconic_vehicle *v) {
+    return &v->com_y_m;
+}
+static laconic_real *com_z(laconic_vehicle *v) {
+    return &v->com_z_m;
+}
+static laconic_real *gain(laconic_vehicle *v) {
+    return &v->motor_gain_Nm_per_V;
+}
+static laconic_real *payload_x(laconic_vehicle *v) {
+    return &v->payload.x_m;
+}
+static laconic_real *payload_y(laconic_vehicle *v) {
+    return &v->payload.y_m;
+}
+static laconic_real *second_wheel_x(laconic_vehicle *v) {
+    return &v->wheel[1].x_m;
+}
+static laconic_real *second_wheel_y(laconic_vehicle *v) {
+    return &v->wheel[1].y_m;
+}
+static laconic_real *second_axle(laconic_vehicle *v) {
+    return &v->wheel[1].axle_rad;
+}
+static laconic_real *second_roller(laconic_vehicle *v) {
+    return &v->wheel[1].roller_rad;
+}
+static laconic_real *second_support_x(laconic_vehicle *v) {
+    return &v->support[1].x_m;
+}
+static laconic_real *second_support_y(laconic_vehicle *v) {
+    return &v->support[1].y_m;
+}
+
+typedef struct number {
+    place where;
+    laconic_field field;
+    int item;
+} number;
+
+static const number must_be_positive[] = {
+    {mass, LACONIC_FIELD_MASS, 0},
+    {yaw_inertia, LACONIC_FIELD_YAW_INERTIA, 0},
+    {radius, LACONIC_FIELD_WHEEL_RADIUS, 0},
+};
+static const number must_not_be_negative[] = {
+    {wheel_inertia, LACONIC_FIELD_WHEEL_INERTIA, 0},
+    {damping, LACONIC_FIELD_MOTOR_DAMPING, 0},
+    {friction, LACONIC_FIELD_FRICTION_COEFFICIENT, 0},
+    {payload_mass, LACONIC_FIELD_PAYLOAD_MASS, 0},
+    {payload_inertia, LACONIC_FIELD_PAYLOAD_YAW_INERTIA, 0},
+};
+static const number any_number[] = {
+    {com_x, LACONIC_FIELD_COM_X, 0},
+    {com_y, LACONIC_FIELD_COM_Y, 0},
+    {com_z, LACONIC_FIELD_COM_Z, 0},
+    {gain, LACONIC_FIELD_MOTOR_GAIN, 0},
+    {payload_x, LACONIC_FIELD_PAYLOAD_X, 0},
+    {payload_y, LACONIC_FIELD_PAYLOAD_Y, 0},
+    {second_wheel_x, LACONIC_FIELD_WHEEL_X, 2},
+    {second_wheel_y, LACONIC_FIELD_WHEEL_Y, 2},
+    {second_axle, LACONIC_FIELD_AXLE, 2},
+    {second_roller, LACONIC_FIELD_ROLLER, 2},
+    {second_support_x, LACONIC_FIELD_SUPPORT_X, 2},
+    {second_support_y, LACONIC_FIELD_SUPPORT_Y, 2},
+};
+#define COUNT(array) (sizeof(array) / sizeof(array)[0])
+
+static void refuses(const number *numbers, size_t count, laconic_real value, laconic_status status) {
+    size_t i;
+    for (i = 0; i < count; i++) {
+        laconic_vehicle v = three_wheels();
+        v.support_count = 2;
+        *numbers[i].where(&v) = value;
+        ASSERT_REFUSED(status, numbers[i].field, numbers[i].item, laconic_vehicle_check(&v, &why), why);
+        ASSERT_STATUS(status, laconic_vehicle_check(&v, NULL));
+    }
+}
+
+static void every_number_that_is_not_finite_is_named(void) {
+    const laconic_real values[] = {NOT_A_NUMBER, INFINITE, -INFINITE};
+    size_t i;
+    for (i = 0; i < 3; i++) {
+        refuses(must_be_positive, COUNT(must_be_positive), values[i], LACONIC_NOT_FINITE);
+        refuses(must_not_be_negative, COUNT(must_not_be_negative), values[i], LACONIC_NOT_FINITE);
+        refuses(any_number, COUNT(any_number), values[i], LACONIC_NOT_FINITE);
+    }
+}
+
+static void mass_radius_and_yaw_inertia_must_be_positive(void) {
+    refuses(must_be_positive, COUNT(must_be_positive), REAL(0), LACONIC_NOT_POSITIVE);
+    refuses(must_be_positive, COUNT(must_be_positive), REAL(-2), LACONIC_NOT_POSITIVE);
+    TEST_ASSERT_EQUAL_DOUBLE(-2.0, (double)why.value);
+}
+
+static void inertias_damping_and_friction_must_not_be_negative(void) {
+    refuses(must_not_be_negative, COUNT(must_not_be_negative), REAL(-0.5), LACONIC_NEGATIVE);
+    TEST_ASSERT_EQUAL_DOUBLE(-0.5, (double)why.value);
+}
+
+static void a_roller_along_the_axle_is_refused_just_below_the_limit(void) {
+    const double limit = EITHER(1e-6, 1e-3);
+    laconic_vehicle v = three_wheels();
+    v.wheel[2].roller_rad = REAL(limit * 0.99);
+    ASSERT_REFUSED(LACONIC_ROLLER_ALONG_AXLE, LACONIC_FIELD_ROLLER, 3, laconic_vehicle_check(&v, &why), why);
+    v.wheel[2].roller_rad = REAL(PI - limit * 0.99);
+    ASSERT_REFUSED(LACONIC_ROLLER_ALONG_AXLE, LACONIC_FIELD_ROLLER, 3, laconic_vehicle_check(&v, &why), why);
+    v.wheel[2].roller_rad = REAL(-limit * 1.01);
+    ASSERT_STATUS(LACONIC_OK, laconic_vehicle_check(&v, &why));
+}
+
+static void the_roller_of_a_fixed_wheel_is_not_read(void) {
+    laconic_vehicle v = differential_drive();
+    v.wheel[0].roller_rad = NOT_A_NUMBER;
+    ASSERT_STATUS(LACONIC_OK, laconic_vehicle_check(&v, &why));
+}
+
+static void a_forgotten_wheel_is_noticed(void) {
+    laconic_vehicle v = three_wheels();
+    v.wheel_count = 4;
+    ASSERT_REFUSED(LACONIC_WHEEL_NOT_SET, LACONIC_FIELD_WHEEL_KIND, 4, laconic_vehicle_check(&v, &why), why);
+}
+
+static void an_unknown_kind_is_named_with_its_number(void) {
+    laconic_vehicle v = three_wheels();
+    v.wheel[1].kind = (laconic_wheel_kind)3;
+    ASSERT_REFUSED(LACONIC_WHEEL_KIND_UNKNOWN, LACONIC_FIELD_WHEEL_KIND, 2, laconic_vehicle_check(&v, &why), why);
+    TEST_ASSERT_EQUAL_DOUBLE(3.0, (double)why.value);
+}
+
+static void the_wheel_count_stays_within_its_bounds(void) {
+    laconic_vehicle v = bare_body();
+    int i;
+    for (i = 0; i < LACONIC_MAX_WHEELS; i++) add_wheel(&v, LACONIC_WHEEL_ROLLER, 0.1, 0.0, 0.3 * i, PI / 2);
+    ASSERT_STATUS(LACONIC_OK, laconic_vehicle_check(&v, &why));
+    v.wheel_count = LACONIC_MAX_WHEELS + 1;
+    ASSERT_REFUSED(LACONIC_TOO_MANY_WHEELS, LACONIC_FIELD_WHEEL_COUNT, 0, laconic_vehicle_check(&v, &why), why);
+    TEST_ASSERT_EQUAL_DOUBLE(LACONIC_MAX_WHEELS, (double)why.limit);
+    v.wheel_count = -1;
+    ASSERT_REFUSED(LACONIC_TOO_MANY_WHEELS, LACONIC_FIELD_WHEEL_COUNT, 0, laconic_vehicle_check(&v, &why), why);
+}
+
+static void the_support_count_stays_within_its_bounds(void) {
+    laconic_vehicle v = three_wheels();
+    v.support_count = LACONIC_MAX_SUPPORTS;
+    ASSERT_STATUS(LACONIC_OK, laconic_vehicle_check(&v, &why));
+    v.support_count++;
+    ASSERT_REFUSED(LACONIC_TOO_MANY_SUPPORTS, LACONIC_FIELD_SUPPORT_COUNT, 0, laconic_vehicle_check(&v, &why), why);
+    TEST_ASSERT_EQUAL_DOUBLE(LACONIC_MAX_SUPPORTS, (double)why.limit);
+    v.support_count = -1;
+    ASSERT_REFUSED(LACONIC_TOO_MANY_SUPPORTS, LACONIC_FIELD_SUPPORT_COUNT, 0, laconic_vehicle_check(&v, &why), why);
+}
+
+int main(void) {
+    UNITY_BEGIN();
+    RUN_TEST(good_vehicles_are_accepted);
+    RUN_TEST(zero_inertia_of_wheels_and_negative_gain_are_accepted);
+    RUN_TEST(every_number_that_is_not_finite_is_named);
+    RUN_TEST(mass_radius_and_yaw_inertia_must_be_positive);
+    RUN_TEST(inertias_damping_and_friction_must_not_be_negative);
+    RUN_TEST(a_roller_along_the_axle_is_refused_just_below_the_limit);
+    RUN_TEST(the_roller_of_a_fixed_wheel_is_not_read);
+    RUN_TEST(a_forgotten_wheel_is_noticed);
+    RUN_TEST(an_unknown_kind_is_named_with_its_number);
+    RUN_TEST(the_wheel_count_stays_within_its_bounds);
+    RUN_TEST(the_support_count_stays_within_its_bounds);
+    return UNITY_END();
+}
