@@ -29,7 +29,7 @@ static laconic_status flow_step(const laconic_model *model, const laconic_integr
     const laconic_status status =
         driven_step(exact_flow_step, model, integrator, 0, &from, loads->start, loads->end, &b, &by);
     if (status != LACONIC_OK) return status;
-    return advance(state, model, integrator->step_s, by);
+    return advance(state, model, integrator->step_s, zeta_of(state), by);
 }
 
 static laconic_status flow_prepare(laconic_integrator *integrator, const laconic_model *model,

@@ -35,10 +35,11 @@ static laconic_status rk4_step(const laconic_model *model, const laconic_integra
     z = along(z1, half, inner);
     rate = zeta_rate(model, z, load_now(loads->middle, heading, turned_rad(model, half, end)));
     inner = plus(inner, rate);
-    by.mean = along(z1, sixth, plus(outer, inner));
+    outer = scaled(sixth, plus(outer, inner));
+    by.mean = plus(z1, outer);
     end = load_now(loads->end, heading, turned_rad(model, h, z));
-    outer = plus(outer, zeta_rate(model, along(z1, h, rate), end));
-    by.delta = scaled(sixth, plus(outer, plus(inner, inner)));
+    inner = plus(inner, zeta_rate(model, along(z1, h, rate), end));
+    by.delta = along(outer, sixth, inner);
     by.slope = by.delta;
     b.change = minus(end, b.start);
     b.varies = true;
