@@ -98,7 +98,7 @@ def header_of(scene: Scene, real: str, needs: Needs, method: str) -> str:
              "#ifndef LACONIC_SCENE_H", "#define LACONIC_SCENE_H",
              other, error, "#endif",
              f"#define LACONIC_MAX_WHEELS {max(1, n)}", "#define LACONIC_MAX_SUPPORTS 1",
-             f"#define LACONIC_WHEELS(model) {n}", "#define LACONIC_WITH_PREPARE 0"]
+             f"#define LACONIC_WHEELS(model) ((void)(model), {n})", "#define LACONIC_WITH_PREPARE 0"]
     lines += [f"#define LACONIC_WITH_{name.upper()} {int(value)}" for name, value in asdict(needs).items()]
     return "\n".join([*lines, "#endif", ""])
 
