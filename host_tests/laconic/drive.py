@@ -10,8 +10,9 @@ moved to the grid would be another experiment. Any other scene is sampled at the
 from __future__ import annotations
 
 import math
-from collections.abc import Iterator
+from collections.abc import Iterable, Iterator
 from dataclasses import dataclass, field
+from fractions import Fraction
 from pathlib import Path
 
 import numpy as np
@@ -111,10 +112,13 @@ def change_ticks(path: Path, each: Input, step_s: float, steps: int) -> np.ndarr
     late = instants >= steps * step_s
     for instant in instants[off & ~late]:
         raise BadInput(f"{path}: {each.place}.t_s: {instant:g} s falls inside a step of {step_s:g} s; "
-                       f"{step_remedy(instant, step_s)}")
+                       f"{step_remedy(instants[~late], step_s)}")
     return np.where(late, np.maximum(ticks, steps), ticks).astype(np.int64)
 
 
-def step_remedy(instant_s: float, step_s: float) -> str:
-    """The next smaller step that brings an instant onto the grid."""
-    return f"a step of {instant_s / math.ceil(instant_s / step_s):.9g} s would do"
+def step_remedy(instants_s: Iterable[float], step_s: float) -> str:
+    """The next smaller step that has all these instants on its grid: their greatest common divisor over n."""
+    exact = [Fraction(repr(float(t))) for t in instants_s]
+    whole = math.lcm(*(t.denominator for t in exact))
+    grid = Fraction(math.gcd(*(int(t * whole) for t in exact)), whole)
+    return f"a step of {float(grid / math.ceil(grid / Fraction(repr(step_s)))):.9g} s would do"

@@ -12,7 +12,7 @@ from pathlib import Path
 from typing import Any
 
 from laconic.core import REALS, Core, load
-from laconic.drive import Drive, Input
+from laconic.drive import Drive, Input, step_remedy
 from laconic.errors import BadInput, Refused
 from laconic.paths import scene_path
 from laconic.plant import Plant
@@ -136,7 +136,15 @@ class Scene:
         try:
             return load("double").steps_in(interval_s, self.run.step_s)
         except Refused as refused:
-            raise refused.at(f"{self.path}: {name} = {interval_s:g} s, run.step_s = {self.run.step_s:g} s") from None
+            if refused.status != "step does not fit":
+                raise refused.at(f"{self.path}: {name}") from None
+            raise BadInput(f"{self.path}: {name}: {interval_s:g} s is no whole number of steps of {self.run.step_s:g} s; "
+                           f"{step_remedy(self.instants(), self.run.step_s)}") from None
+
+    def instants(self) -> list[float]:
+        """Every instant of the run that must fall on a step."""
+        changes = [t for each in self.inputs if each.kind == "steps" for t in each.t_s if t < self.run.duration_s]
+        return [self.run.duration_s, *([self.outputs.every_s] if self.outputs.every_s else []), *changes]
 
     def drive(self) -> Drive:
         """The inputs on the grid of the scene's steps."""

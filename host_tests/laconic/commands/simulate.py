@@ -1,0 +1,89 @@
+"""laconic simulate: one scene through the core."""
+
+from __future__ import annotations
+
+import csv
+import json
+import sys
+from pathlib import Path
+from typing import Any
+
+import click
+
+from laconic.core import REALS
+from laconic.errors import BadInput, reason_of
+from laconic.scene import METHODS, read_scene
+from laconic.simulation import Trajectory, simulate, usual_signals, wanted_signals
+
+
+@click.command(name="simulate")
+@click.argument("scene")
+@click.option("--method", type=click.Choice(METHODS), help="Instead of the scene's.")
+@click.option("--step", "step_s", type=float, metavar="H", help="Step in seconds instead of the scene's.")
+@click.option("--real", type=click.Choice(REALS), help="Scalar type instead of the scene's.")
+@click.option("--out", type=click.Path(path_type=Path), metavar="F.csv", help="Write the outputs; - for stdout.")
+@click.option("--plot", type=click.Path(path_type=Path), metavar="F.png", help="Draw path, velocities, wheel speeds.")
+@click.option("--json", "json_wanted", is_flag=True, help="Machine-readable summary.")
+def command(scene: str, method: str | None, step_s: float | None, real: str | None, out: Path | None,
+            plot: Path | None, json_wanted: bool) -> None:
+    """Runs SCENE, a TOML file or the name of a scene that comes with the project.
+
+    Inputs of kind "steps" are held over each step; a step that one of them changes within is refused.
+    """
+    if step_s is not None and not 0.0 < step_s < float("inf"):
+        raise BadInput(f"--step: {step_s:g} s is not usable; give a finite number above zero")
+    given = read_scene(scene).with_run(method=method, step_s=step_s, real=real)
+    signals = dict.fromkeys((*wanted_signals(given), *(usual_signals(given) if plot else ())))
+    run = simulate(given, tuple(signals), progress=True)
+    if out:
+        write_csv(run, out)
+    if plot:
+        from laconic.plotting import simulation_picture
+        simulation_picture(run, plot)
+    if json_wanted:
+        click.echo(json.dumps(summary(run, out, plot), indent=1))
+    elif str(out) != "-":
+        tell(run, out, plot)
+
+
+def write_csv(run: Trajectory, path: Path) -> None:
+    """time_s and the scene's signals, with all digits."""
+    signals = wanted_signals(run.scene)
+    rows = zip(run.time_s.tolist(), *(run.columns[name].tolist() for name in signals))
+    if str(path) == "-":
+        write_rows(sys.stdout, signals, rows)
+        return
+    try:
+        with path.open("w", newline="") as file:
+            write_rows(file, signals, rows)
+    except OSError as error:
+        raise BadInput(f"{path}: cannot be written ({reason_of(error)}); choose another place") from None
+
+
+def write_rows(file: Any, signals: tuple[str, ...], rows: Any) -> None:
+    """A header line, then numbers."""
+    writer = csv.writer(file, lineterminator="\n")
+    writer.writerow(("time_s", *signals))
+    writer.writerows(rows)
+
+
+def summary(run: Trajectory, out: Path | None, plot: Path | None) -> dict[str, Any]:
+    """What was run and where it ended."""
+    return {
+        "scene": str(run.scene.path), "name": run.scene.name, "method": run.scene.run.method, "chosen": run.method,
+        "step_s": run.scene.run.step_s, "real": run.scene.run.real, "steps": run.steps, "seconds": run.seconds,
+        "final": {"time_s": run.time_s[-1], **{name: values[-1] for name, values in run.columns.items()}},
+        "files": [str(path) for path in (out, plot) if path]}
+
+
+def tell(run: Trajectory, out: Path | None, plot: Path | None) -> None:
+    """The same for people."""
+    asked, picked = run.scene.run.method, run.method
+    method = asked if asked == picked else f"{asked} (picked {picked})"
+    click.echo(f"{run.scene.name}: {run.steps} steps of {run.scene.run.step_s:g} s by {method}, {run.scene.run.real}, "
+               f"in {run.seconds:.2f} s")
+    for name, values in run.columns.items():
+        click.echo(f"  {name:28} {values[-1]: .12g}")
+    for path in (out, plot):
+        if path:
+            click.echo(f"wrote {path}")
