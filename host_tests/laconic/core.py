@@ -14,7 +14,7 @@ from __future__ import annotations
 import math
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
-from functools import lru_cache
+from functools import cache
 from typing import Any
 
 import numpy as np
@@ -41,7 +41,7 @@ class Matrices:
     lambda_wheel: float           # λ
 
 
-@lru_cache(maxsize=None)
+@cache
 def load(real: str = "double") -> Core:
     """The core in one scalar type, loaded once."""
     if real not in REALS:
@@ -102,14 +102,17 @@ class Core:
     # ---- vehicle and model
 
     def vehicle(self, data: Mapping[str, Any]) -> Any:
-        """A laconic_vehicle from a mapping with the keys of `[vehicle]`; `motor` is fitted, nothing else is checked."""
+        """A laconic_vehicle from a mapping with the keys of `[vehicle]`; `motor` is fitted, nothing else is checked.
+
+        Wheels beyond the core's room are only counted, so that the check refuses them.
+        """
         plain = {key: value for key, value in data.items() if key not in ("wheel", "support", "motor")}
         wheels, supports = data.get("wheel", []), data.get("support", [])
         vehicle = self.ffi.new("laconic_vehicle *", plain)
         vehicle.wheel_count, vehicle.support_count = len(wheels), len(supports)
-        for place, wheel in zip(vehicle.wheel, wheels):
+        for place, wheel in zip(vehicle.wheel, wheels, strict=False):
             self._set_wheel(place, wheel)
-        for place, support in zip(vehicle.support, supports):
+        for place, support in zip(vehicle.support, supports, strict=False):
             place.x_m, place.y_m = support["x_m"], support["y_m"]
         if motor := data.get("motor"):
             self._fit_motor(vehicle, motor)

@@ -79,7 +79,7 @@ class Drive:
     def held_at(self, tick: int) -> dict[str, float]:
         """Values at the start of a step, for those that hold them over it (FMU, node, held scenes)."""
         row = self._rows(np.array([tick]), np.array([0.0]))[0, 0]
-        return dict(zip(self.signals, row.tolist()))
+        return dict(zip(self.signals, row.tolist(), strict=True))
 
     def segments(self) -> Iterator[Segment]:
         """Stretches of constant inputs of a held scene."""

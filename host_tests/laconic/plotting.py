@@ -106,9 +106,9 @@ def _roomy(axes: Axes) -> None:
 
 def plot_error_against_time(axes: Axes, points: Mapping[str, Sequence[tuple[float, float]]], floor: float) -> None:
     """Work against precision: (run time per simulated second [µs], error) for several steps of each method."""
-    for (name, pairs), marker in zip(points.items(), MARKERS * 3):
+    for (name, pairs), marker in zip(points.items(), MARKERS, strict=False):
         if pairs:
-            times, errors = zip(*pairs)
+            times, errors = zip(*pairs, strict=True)
             axes.loglog(times, np.maximum(errors, 1e-17), marker=marker, markersize=5, label=name)
     axes.axhspan(1e-17, floor, color="0.5", alpha=0.15, lw=0)
     axes.set(xlabel="run time per simulated second [µs]", ylabel="largest error of ν [–]",

@@ -10,6 +10,7 @@ from __future__ import annotations
 import math
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass
+from itertools import pairwise
 from typing import Any
 
 import numpy as np
@@ -89,7 +90,7 @@ class Reference:
     def _basis(self) -> np.ndarray:
         """Orthonormal columns that span the ν which no fixed or locked wheel forbids."""
         bound = [self._lateral(w) for w in self.wheels if w["kind"] == "fixed"]
-        bound += [row for w, row in zip(self.wheels, self.rows) if w.get("locked")]
+        bound += [row for w, row in zip(self.wheels, self.rows, strict=True) if w.get("locked")]
         if not bound:
             return np.eye(3)
         _, sizes, directions = np.linalg.svd(np.array(bound))
@@ -109,7 +110,7 @@ class Reference:
         return np.array([*velocity, self.yaw_scale * start.yaw_rate_rad_per_s])
 
     def drive_terms(self, values: Values) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
-        """What inputs do to ν': a constant, and the parts that turn with cos θ and sin θ (forces fixed in the world)."""
+        """What inputs do to ν': a constant, and what turns with cos θ and sin θ (a force fixed in the world)."""
         t = self.totals
         numbers = range(1, len(self.wheels) + 1)
         torque = np.array([t.motor_gain_Nm_per_V * values.get(f"voltage_V[{i}]", 0.0)
@@ -186,7 +187,7 @@ def reference_states(scene: Scene, at_s: np.ndarray) -> np.ndarray:
     rows = np.empty((len(at_s), len(state)))
     rows[at_s == 0.0] = state
     edges = [0.0, *kinks(drive), float(max(at_s[-1], 0.0))]
-    for begin, end in zip(edges, edges[1:]):
+    for begin, end in pairwise(edges):
         if end <= begin:
             continue
         inside = (at_s > begin) & (at_s <= end)

@@ -138,8 +138,9 @@ class Scene:
         except Refused as refused:
             if refused.status != "step does not fit":
                 raise refused.at(f"{self.path}: {name}") from None
-            raise BadInput(f"{self.path}: {name}: {interval_s:g} s is no whole number of steps of {self.run.step_s:g} s; "
-                           f"{step_remedy(self.instants(), self.run.step_s)}") from None
+            remedy = step_remedy(self.instants(), self.run.step_s)
+            raise BadInput(f"{self.path}: {name}: {interval_s:g} s is no whole number of steps of "
+                           f"{self.run.step_s:g} s; {remedy}") from None
 
     def instants(self) -> list[float]:
         """Every instant of the run that must fall on a step."""

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Iterator, Sequence
+from itertools import pairwise
 from typing import Any
 
 from laconic.drive import Input
@@ -172,7 +173,7 @@ def check_instants(table: Table, t_s: Sequence[float]) -> None:
         table.fail("t_s", "is empty; give at least one instant")
     if t_s[0] < 0:
         table.fail("t_s", f"begins at {t_s[0]:g} s; the run begins at 0")
-    for before, after in zip(t_s, t_s[1:]):
+    for before, after in pairwise(t_s):
         if after <= before:
             table.fail("t_s", f"goes from {before:g} to {after:g} s; give instants in ascending order")
 

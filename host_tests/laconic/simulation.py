@@ -5,6 +5,7 @@ from __future__ import annotations
 import time
 from collections.abc import Callable, Iterator
 from dataclasses import dataclass
+from itertools import pairwise
 
 import numpy as np
 
@@ -109,7 +110,7 @@ class Recorder:
     def columns(self) -> dict[str, np.ndarray]:
         """By signal name."""
         table = np.array(self.rows, dtype=float).reshape(-1, len(self.signals))
-        return dict(zip(self.signals, table.T))
+        return dict(zip(self.signals, table.T, strict=True))
 
 
 def advance_plant(plant: Plant, drive: Drive, first: int, count: int) -> None:
@@ -129,7 +130,7 @@ def advance_plant(plant: Plant, drive: Drive, first: int, count: int) -> None:
 def held_stretches(drive: Drive, first: int, count: int) -> Iterator[tuple[int, int]]:
     """(first step, steps) between changes of the inputs, cut to a window."""
     edges = [first, *(c for c in drive.changes if first < c < first + count), first + count]
-    for begin, end in zip(edges, edges[1:]):
+    for begin, end in pairwise(edges):
         yield begin, end - begin
 
 
@@ -145,7 +146,7 @@ def simulate(scene: Scene, signals: tuple[str, ...] = (), progress: bool = False
     began = time.perf_counter()
     with progress_bar(scene.name, steps if progress else 0) as moved:
         recorder.take(plant, input_now(core, drive, 0))
-        for tick, following in zip(ticks, ticks[1:]):
+        for tick, following in pairwise(ticks):
             run_window(scene, plant, drive, tick, following - tick)
             recorder.take(plant, input_now(core, drive, following))
             if following // CHUNK > tick // CHUNK:

@@ -49,7 +49,7 @@ def command(scene: str, method: str | None, step_s: float | None, real: str | No
 def write_csv(run: Trajectory, path: Path) -> None:
     """time_s and the scene's signals, with all digits."""
     signals = wanted_signals(run.scene)
-    rows = zip(run.time_s.tolist(), *(run.columns[name].tolist() for name in signals))
+    rows = zip(run.time_s.tolist(), *(run.columns[name].tolist() for name in signals), strict=True)
     if str(path) == "-":
         write_rows(sys.stdout, signals, rows)
         return
