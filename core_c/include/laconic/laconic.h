@@ -315,14 +315,18 @@ void laconic_state_carry(laconic_state *state, const laconic_model *from, const 
 
 /* ------------------------------------------------------------------------ methods and steps -- */
 
-/* One method prepared for one step size: factors of one exponential sub-step, per axis k, a = h r_k. */
+/* One method prepared for one step size: factors of one exponential sub-step, per axis k, a = h r_k, φ at −a.
+ * b over the sub-step: start + change·s + curve·s(s − 1), s from 0 to 1. */
 typedef struct laconic_decay {
-    laconic_real gain[3];       /* h φ1(−a): increment per derivative                             */
-    laconic_real ramp[3];       /* h φ2(−a): increment per change of b over the step              */
-    laconic_real mean[3];       /* φ2/φ1: how far the mean lies along the increment, ½ … 1        */
-    laconic_real mean_ramp[3];  /* h (φ3 − φ2²/φ1)                                                */
+    laconic_real gain[3];       /* h φ1: increment per derivative                                 */
+    laconic_real ramp[3];       /* h φ2: increment per change of b                                */
+    laconic_real bend[3];       /* h (2 φ3 − φ2): increment per curve of b                        */
+    laconic_real mean[3];       /* κ = φ2/φ1: how far the mean lies along the increment, ½ … 1    */
+    laconic_real mean_ramp[3];  /* h (φ3 − κ φ2): and beside it, per change                       */
+    laconic_real mean_bend[3];  /* h (2 φ4 − φ3 − κ (2 φ3 − φ2)): per curve                       */
     laconic_real slope[3];      /* 12 (φ2/2 − φ3)/φ1: first moment along the increment, 1 … 0     */
     laconic_real slope_ramp[3]; /* its part per change of b                                       */
+    laconic_real slope_bend[3]; /* its part per curve of b                                        */
 } laconic_decay;
 
 struct laconic_method;
@@ -466,6 +470,42 @@ typedef struct laconic_reactions {
 
 void laconic_reactions_of(laconic_reactions *reactions, const laconic_contact *contact, const laconic_model *model,
                           const laconic_state *state, const laconic_input *input);
+
+/* ------------------------------------------------------------------------- linearisation -- */
+
+/* A point of the motion as outer integrators know it; where it is does not matter to any rate. */
+typedef struct laconic_motion {
+    laconic_real nu_rad_per_s[3];
+    laconic_real heading_rad;
+} laconic_motion;
+
+/* A direction in which states and inputs are varied. */
+typedef struct laconic_variation {
+    laconic_real nu_rad_per_s[3];
+    laconic_real x_m, y_m, heading_rad;
+    laconic_input input;
+} laconic_variation;
+
+/* What that does to the outputs, per unit of the direction. */
+typedef struct laconic_motion_change {
+    laconic_real origin_x_m, origin_y_m;
+    laconic_real velocity_m_per_s[2], yaw_rate_rad_per_s;
+    laconic_real wheel_speed_rad_per_s[LACONIC_MAX_WHEELS];
+    laconic_real wheel_torque_Nm[LACONIC_MAX_WHEELS];
+    laconic_real energy_J;
+} laconic_motion_change;
+
+/* Directional derivatives, analytic: (4.7) is quadratic in ν, linear in the voltages and torques, and bilinear in a
+ * world force and its point. Where the least margin passes from one wheel to another, or a wheel needs nothing from
+ * the ground, the margin has no derivative; that of the present wheel, and 0, are given. `now`: the reactions at
+ * the point. O(N). */
+void laconic_derivative_tangent(laconic_rates *change, const laconic_model *model, const laconic_motion *at,
+                                const laconic_input *input, const laconic_variation *by);
+void laconic_motion_tangent(laconic_motion_change *change, const laconic_model *model, const laconic_motion *at,
+                            const laconic_variation *by);
+void laconic_reactions_tangent(laconic_reactions *change, const laconic_contact *contact, const laconic_model *model,
+                               const laconic_motion *at, const laconic_input *input, const laconic_reactions *now,
+                               const laconic_variation *by);
 
 /* ---------------------------------------------------------------------------------- plant -- */
 

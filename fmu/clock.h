@@ -1,0 +1,27 @@
+/* Time as an integer count of equal steps since the last change of the step: no drift, however long it runs. */
+#ifndef LACONIC_FMU_CLOCK_H
+#define LACONIC_FMU_CLOCK_H
+
+#include <stdbool.h>
+#include <stdint.h>
+
+typedef struct fmu_clock {
+    double start_s, stop_s;
+    bool stop_defined;
+    double anchor_s, anchor_rest_s; /* when the step changed last: the sum of both                 */
+    double step_s;                  /* 0: no step taken yet                                        */
+    uint64_t ticks;                 /* since the anchor                                            */
+    double asked_s;                 /* the last communication step that was found to fit …         */
+    uint64_t asked_ticks;           /* … and the internal steps in it                              */
+} fmu_clock;
+
+void fmu_clock_start(fmu_clock *clock, double start_s, bool stop_defined, double stop_s);
+double fmu_clock_now(const fmu_clock *clock);
+
+/* From here on steps of another size. */
+void fmu_clock_change_step(fmu_clock *clock, double step_s);
+
+/* Half a step: what an importer's own time may be off, and no more. */
+bool fmu_clock_agrees(const fmu_clock *clock, double at_s, double step_s);
+
+#endif

@@ -1,0 +1,517 @@
+/* FMI 3.0: types translated, nothing else. */
+#include <stdlib.h>
+
+#include "fmi3Functions.h"
+
+#include "plant_api.h"
+
+#define SELF(instance) ((fmu_instance *)(instance))
+#define ALLOW(instance, call) \
+    if ((instance) == NULL || !fmu_may(SELF(instance), call)) return fmi3Error
+
+static fmi3Status give(fmu_status status) {
+    return (fmi3Status)status;
+}
+
+static fmu_references list(const fmi3ValueReference *references, size_t count) {
+    const fmu_references pair = {references, count};
+    return pair;
+}
+
+/* A pointer to a function does not fit a pointer to data in C; this is the box for it. */
+typedef struct fmu_callbacks_3 {
+    fmi3LogMessageCallback log;
+    fmi3IntermediateUpdateCallback update;
+} fmu_callbacks_3;
+
+typedef char fmu_box_is_large_enough[sizeof(fmu_callbacks_3) <= sizeof(((fmu_instance *)0)->box) ? 1 : -1];
+
+static const fmu_callbacks_3 *callbacks(const fmu_instance *instance) {
+    return (const fmu_callbacks_3 *)(const void *)&instance->box;
+}
+
+static void say(const fmu_instance *instance, fmu_status status, const char *category, const char *text) {
+    callbacks(instance)->log(instance->environment, give(status), category, text);
+}
+
+static bool offer_update(fmu_instance *instance, bool finished) {
+    fmi3Boolean early = fmi3False;
+    fmi3Float64 early_time = 0.0;
+    callbacks(instance)->update(instance->environment, fmu_clock_now(&instance->clock), !finished, true, true,
+                                instance->early_return_allowed, &early, &early_time);
+    return early && instance->early_return_allowed;
+}
+
+/* ----------------------------------------------------------------------------- life of an instance -- */
+
+const char *fmi3GetVersion(void) {
+    return fmi3Version;
+}
+
+static fmu_instance *create(const fmu_request *request, const fmu_callbacks_3 *functions) {
+    fmu_request complete = *request;
+    complete.deliver = functions->log != NULL ? say : NULL;
+    complete.box = functions;
+    complete.box_size = sizeof *functions;
+    return fmu_create(&complete);
+}
+
+fmi3Instance fmi3InstantiateModelExchange(fmi3String instanceName, fmi3String instantiationToken,
+                                          fmi3String resourcePath, fmi3Boolean visible, fmi3Boolean loggingOn,
+                                          fmi3InstanceEnvironment instanceEnvironment,
+                                          fmi3LogMessageCallback logMessage) {
+    const fmu_callbacks_3 functions = {logMessage, NULL};
+    fmu_request request = {0};
+    (void)visible;
+    request.instance_name = instanceName;
+    request.token = instantiationToken;
+    request.resources = resourcePath;
+    request.kind = FMU_MODEL_EXCHANGE;
+    request.version = 3;
+    request.logging_on = loggingOn;
+    request.environment = instanceEnvironment;
+    return create(&request, &functions);
+}
+
+fmi3Instance fmi3InstantiateCoSimulation(fmi3String instanceName, fmi3String instantiationToken,
+                                         fmi3String resourcePath, fmi3Boolean visible, fmi3Boolean loggingOn,
+                                         fmi3Boolean eventModeUsed, fmi3Boolean earlyReturnAllowed,
+                                         const fmi3ValueReference requiredIntermediateVariables[],
+                                         size_t nRequiredIntermediateVariables,
+                                         fmi3InstanceEnvironment instanceEnvironment, fmi3LogMessageCallback logMessage,
+                                         fmi3IntermediateUpdateCallback intermediateUpdate) {
+    const fmu_callbacks_3 functions = {logMessage, intermediateUpdate};
+    fmu_request request = {0};
+    fmu_instance *instance;
+    (void)visible;
+    (void)requiredIntermediateVariables; /* every output and input may be got and set then */
+    (void)nRequiredIntermediateVariables;
+    request.instance_name = instanceName;
+    request.token = instantiationToken;
+    request.resources = resourcePath;
+    request.kind = FMU_CO_SIMULATION;
+    request.version = 3;
+    request.logging_on = loggingOn;
+    request.environment = instanceEnvironment;
+    instance = create(&request, &functions);
+    if (instance == NULL) return NULL;
+    instance->event_mode_used = eventModeUsed;
+    instance->early_return_allowed = earlyReturnAllowed;
+    instance->between_steps = intermediateUpdate != NULL ? offer_update : NULL;
+    return instance;
+}
+
+fmi3Instance fmi3InstantiateScheduledExecution(fmi3String instanceName, fmi3String instantiationToken,
+                                               fmi3String resourcePath, fmi3Boolean visible, fmi3Boolean loggingOn,
+                                               fmi3InstanceEnvironment instanceEnvironment,
+                                               fmi3LogMessageCallback logMessage, fmi3ClockUpdateCallback clockUpdate,
+                                               fmi3LockPreemptionCallback lockPreemption,
+                                               fmi3UnlockPreemptionCallback unlockPreemption) {
+    (void)instanceName;
+    (void)instantiationToken;
+    (void)resourcePath;
+    (void)visible;
+    (void)loggingOn;
+    (void)clockUpdate;
+    (void)lockPreemption;
+    (void)unlockPreemption;
+    if (logMessage != NULL)
+        logMessage(instanceEnvironment, fmi3Error, "logStatusError", "this FMU offers no Scheduled Execution");
+    return NULL;
+}
+
+void fmi3FreeInstance(fmi3Instance instance) {
+    fmu_free(SELF(instance));
+}
+
+fmi3Status fmi3SetDebugLogging(fmi3Instance instance, fmi3Boolean loggingOn, size_t nCategories,
+                               const fmi3String categories[]) {
+    ALLOW(instance, FMU_CALL_SET_DEBUG_LOGGING);
+    return give(fmu_set_logging(SELF(instance), loggingOn, nCategories, categories));
+}
+
+fmi3Status fmi3EnterConfigurationMode(fmi3Instance instance) {
+    ALLOW(instance, FMU_CALL_ENTER_CONFIGURATION);
+    if (SELF(instance)->scalar) return give(fmu_refuse(SELF(instance), "this FMU has no structural parameters"));
+    fmu_enter(SELF(instance), FMU_CONFIGURATION);
+    return fmi3OK;
+}
+
+fmi3Status fmi3ExitConfigurationMode(fmi3Instance instance) {
+    ALLOW(instance, FMU_CALL_EXIT_CONFIGURATION);
+    fmu_enter(SELF(instance), FMU_INSTANTIATED);
+    return fmi3OK;
+}
+
+fmi3Status fmi3EnterInitializationMode(fmi3Instance instance, fmi3Boolean toleranceDefined, fmi3Float64 tolerance,
+                                       fmi3Float64 startTime, fmi3Boolean stopTimeDefined, fmi3Float64 stopTime) {
+    fmu_status status;
+    (void)toleranceDefined; /* the step is fixed: there is no error control to set */
+    (void)tolerance;
+    ALLOW(instance, FMU_CALL_ENTER_INITIALIZATION);
+    status = fmu_setup(SELF(instance), startTime, stopTimeDefined, stopTime);
+    if (status == FMU_OK) fmu_enter(SELF(instance), FMU_INITIALIZATION);
+    return give(status);
+}
+
+fmi3Status fmi3ExitInitializationMode(fmi3Instance instance) {
+    ALLOW(instance, FMU_CALL_EXIT_INITIALIZATION);
+    return give(fmu_exit_initialization(SELF(instance)));
+}
+
+fmi3Status fmi3EnterEventMode(fmi3Instance instance) {
+    ALLOW(instance, FMU_CALL_ENTER_EVENT);
+    if (SELF(instance)->kind == FMU_CO_SIMULATION && !SELF(instance)->event_mode_used)
+        return give(fmu_refuse(SELF(instance), "EnterEventMode: the instance was made without event mode"));
+    fmu_enter(SELF(instance), FMU_EVENT);
+    return fmi3OK;
+}
+
+fmi3Status fmi3Terminate(fmi3Instance instance) {
+    ALLOW(instance, FMU_CALL_TERMINATE);
+    fmu_enter(SELF(instance), FMU_TERMINATED);
+    return fmi3OK;
+}
+
+fmi3Status fmi3Reset(fmi3Instance instance) {
+    ALLOW(instance, FMU_CALL_RESET);
+    return give(fmu_reset(SELF(instance)));
+}
+
+/* --------------------------------------------------------------------------------------- variables -- */
+
+fmi3Status fmi3GetFloat64(fmi3Instance instance, const fmi3ValueReference valueReferences[], size_t nValueReferences,
+                          fmi3Float64 values[], size_t nValues) {
+    ALLOW(instance, FMU_CALL_GET);
+    return give(fmu_get(SELF(instance), FMU_REAL, valueReferences, nValueReferences, values, nValues));
+}
+
+fmi3Status fmi3SetFloat64(fmi3Instance instance, const fmi3ValueReference valueReferences[], size_t nValueReferences,
+                          const fmi3Float64 values[], size_t nValues) {
+    ALLOW(instance, FMU_CALL_SET_CONTINUOUS);
+    return give(fmu_set(SELF(instance), FMU_REAL, valueReferences, nValueReferences, values, nValues));
+}
+
+/* The other types in use, by way of doubles: no list of them is longer than the largest array, a call that asks for more
+ * variables at once is taken variable by variable. Enumerations are read and set as Int64. */
+#define TYPED(Name, fmi3Type, fmu_type)                                                                               \
+    fmi3Status fmi3Get##Name(fmi3Instance instance, const fmi3ValueReference valueReferences[],                       \
+                             size_t nValueReferences, fmi3Type values[], size_t nValues) {                            \
+        double numbers[FMU_PLANT_LARGEST_ARRAY];                                                                      \
+        size_t k, i, used = 0;                                                                                        \
+        ALLOW(instance, FMU_CALL_GET);                                                                                \
+        for (k = 0; k < nValueReferences; k++) {                                                                      \
+            size_t size = 0;                                                                                          \
+            fmu_status status = fmu_size(SELF(instance), valueReferences, values, k, nValues - used, &size);          \
+            if (status == FMU_OK) status = fmu_get(SELF(instance), fmu_type, &valueReferences[k], 1, numbers, size);  \
+            if (status != FMU_OK) return give(status);                                                                \
+            for (i = 0; i < size; i++) values[used++] = (fmi3Type)numbers[i];                                         \
+        }                                                                                                             \
+        return give(fmu_all_used(SELF(instance), used, nValues));                                                     \
+    }                                                                                                                 \
+    fmi3Status fmi3Set##Name(fmi3Instance instance, const fmi3ValueReference valueReferences[],                       \
+                             size_t nValueReferences, const fmi3Type values[], size_t nValues) {                      \
+        double numbers[FMU_PLANT_LARGEST_ARRAY];                                                                      \
+        size_t k, i, used = 0;                                                                                        \
+        ALLOW(instance, FMU_CALL_SET_DISCRETE);                                                                       \
+        for (k = 0; k < nValueReferences; k++) {                                                                      \
+            size_t size = 0;                                                                                          \
+            fmu_status status = fmu_size(SELF(instance), valueReferences, values, k, nValues - used, &size);          \
+            for (i = 0; i < size; i++) numbers[i] = (double)values[used++];                                           \
+            if (status == FMU_OK) status = fmu_set(SELF(instance), fmu_type, &valueReferences[k], 1, numbers, size);  \
+            if (status != FMU_OK) return give(status);                                                                \
+        }                                                                                                             \
+        return give(fmu_all_used(SELF(instance), used, nValues));                                                     \
+    }
+
+TYPED(Int32, fmi3Int32, FMU_INT32)
+TYPED(Int64, fmi3Int64, FMU_ENUMERATION)
+TYPED(UInt64, fmi3UInt64, FMU_UINT64)
+TYPED(Boolean, fmi3Boolean, FMU_BOOLEAN)
+
+/* Types that no variable has. */
+#define ABSENT(Name, fmi3Type)                                                                                        \
+    fmi3Status fmi3Get##Name(fmi3Instance instance, const fmi3ValueReference valueReferences[],                       \
+                             size_t nValueReferences, fmi3Type values[], size_t nValues) {                            \
+        (void)valueReferences;                                                                                        \
+        (void)values;                                                                                                 \
+        ALLOW(instance, FMU_CALL_GET);                                                                                \
+        return give(fmu_none_of(SELF(instance), #Name, nValueReferences + nValues));                                  \
+    }                                                                                                                 \
+    fmi3Status fmi3Set##Name(fmi3Instance instance, const fmi3ValueReference valueReferences[],                       \
+                             size_t nValueReferences, const fmi3Type values[], size_t nValues) {                      \
+        (void)valueReferences;                                                                                        \
+        (void)values;                                                                                                 \
+        ALLOW(instance, FMU_CALL_SET_CONTINUOUS);                                                                     \
+        return give(fmu_none_of(SELF(instance), #Name, nValueReferences + nValues));                                  \
+    }
+
+ABSENT(Float32, fmi3Float32)
+ABSENT(Int8, fmi3Int8)
+ABSENT(UInt8, fmi3UInt8)
+ABSENT(Int16, fmi3Int16)
+ABSENT(UInt16, fmi3UInt16)
+ABSENT(UInt32, fmi3UInt32)
+ABSENT(String, fmi3String)
+
+fmi3Status fmi3GetBinary(fmi3Instance instance, const fmi3ValueReference valueReferences[], size_t nValueReferences,
+                         size_t valueSizes[], fmi3Binary values[], size_t nValues) {
+    (void)valueReferences;
+    (void)valueSizes;
+    (void)values;
+    ALLOW(instance, FMU_CALL_GET);
+    return give(fmu_none_of(SELF(instance), "Binary", nValueReferences + nValues));
+}
+
+fmi3Status fmi3SetBinary(fmi3Instance instance, const fmi3ValueReference valueReferences[], size_t nValueReferences,
+                         const size_t valueSizes[], const fmi3Binary values[], size_t nValues) {
+    (void)valueReferences;
+    (void)valueSizes;
+    (void)values;
+    ALLOW(instance, FMU_CALL_SET_DISCRETE);
+    return give(fmu_none_of(SELF(instance), "Binary", nValueReferences + nValues));
+}
+
+/* ------------------------------------------------------------------------------------------ clocks -- */
+
+#define CLOCKS(Name, ...)                                                                                             \
+    fmi3Status fmi3##Name(fmi3Instance instance, const fmi3ValueReference valueReferences[], size_t nValueReferences, \
+                          __VA_ARGS__) {                                                                              \
+        (void)valueReferences;                                                                                        \
+        (void)first;                                                                                                  \
+        ALLOW(instance, FMU_CALL_STATE_OF_FMU);                                                                       \
+        return give(fmu_none_of(SELF(instance), "Clock", nValueReferences));                                          \
+    }
+#define CLOCKS_2(Name, first_type, second_type)                                                                       \
+    fmi3Status fmi3##Name(fmi3Instance instance, const fmi3ValueReference valueReferences[], size_t nValueReferences, \
+                          first_type first[], second_type second[]) {                                                 \
+        (void)second;                                                                                                 \
+        (void)valueReferences;                                                                                        \
+        (void)first;                                                                                                  \
+        ALLOW(instance, FMU_CALL_STATE_OF_FMU);                                                                       \
+        return give(fmu_none_of(SELF(instance), "Clock", nValueReferences));                                          \
+    }
+
+CLOCKS(GetClock, fmi3Clock first[])
+CLOCKS(SetClock, const fmi3Clock first[])
+CLOCKS(GetShiftDecimal, fmi3Float64 first[])
+CLOCKS(SetShiftDecimal, const fmi3Float64 first[])
+CLOCKS(SetIntervalDecimal, const fmi3Float64 first[])
+CLOCKS_2(GetIntervalDecimal, fmi3Float64, fmi3IntervalQualifier)
+CLOCKS_2(GetShiftFraction, fmi3UInt64, fmi3UInt64)
+CLOCKS_2(SetShiftFraction, const fmi3UInt64, const fmi3UInt64)
+CLOCKS_2(SetIntervalFraction, const fmi3UInt64, const fmi3UInt64)
+
+fmi3Status fmi3GetIntervalFraction(fmi3Instance instance, const fmi3ValueReference valueReferences[],
+                                   size_t nValueReferences, fmi3UInt64 counters[], fmi3UInt64 resolutions[],
+                                   fmi3IntervalQualifier qualifiers[]) {
+    (void)valueReferences;
+    (void)counters;
+    (void)resolutions;
+    (void)qualifiers;
+    ALLOW(instance, FMU_CALL_STATE_OF_FMU);
+    return give(fmu_none_of(SELF(instance), "Clock", nValueReferences));
+}
+
+fmi3Status fmi3EvaluateDiscreteStates(fmi3Instance instance) {
+    ALLOW(instance, FMU_CALL_UPDATE_DISCRETE_STATES);
+    return fmi3OK; /* there are none */
+}
+
+fmi3Status fmi3ActivateModelPartition(fmi3Instance instance, fmi3ValueReference clockReference,
+                                      fmi3Float64 activationTime) {
+    (void)clockReference;
+    (void)activationTime;
+    if (instance == NULL) return fmi3Error;
+    return give(fmu_refuse(SELF(instance), "this FMU offers no Scheduled Execution"));
+}
+
+/* ------------------------------------------------------------------------------------ dependencies -- */
+
+/* Dependencies are those of ModelStructure; none are given per element. */
+fmi3Status fmi3GetNumberOfVariableDependencies(fmi3Instance instance, fmi3ValueReference valueReference,
+                                               size_t *nDependencies) {
+    (void)valueReference;
+    (void)nDependencies;
+    ALLOW(instance, FMU_CALL_DEPENDENCIES);
+    return give(fmu_refuse(SELF(instance), "dependencies per element are not provided: see ModelStructure"));
+}
+
+fmi3Status fmi3GetVariableDependencies(fmi3Instance instance, fmi3ValueReference dependent,
+                                       size_t elementIndicesOfDependent[], fmi3ValueReference independents[],
+                                       size_t elementIndicesOfIndependents[], fmi3DependencyKind dependencyKinds[],
+                                       size_t nDependencies) {
+    (void)dependent;
+    (void)elementIndicesOfDependent;
+    (void)independents;
+    (void)elementIndicesOfIndependents;
+    (void)dependencyKinds;
+    (void)nDependencies;
+    ALLOW(instance, FMU_CALL_DEPENDENCIES);
+    return give(fmu_refuse(SELF(instance), "dependencies per element are not provided: see ModelStructure"));
+}
+
+/* ------------------------------------------------------------------------------------ saved states -- */
+
+fmi3Status fmi3GetFMUState(fmi3Instance instance, fmi3FMUState *state) {
+    ALLOW(instance, FMU_CALL_STATE_OF_FMU);
+    return give(fmu_save(SELF(instance), (fmu_snapshot **)state));
+}
+
+fmi3Status fmi3SetFMUState(fmi3Instance instance, fmi3FMUState state) {
+    ALLOW(instance, FMU_CALL_STATE_OF_FMU);
+    return give(fmu_restore(SELF(instance), state));
+}
+
+fmi3Status fmi3FreeFMUState(fmi3Instance instance, fmi3FMUState *state) {
+    ALLOW(instance, FMU_CALL_STATE_OF_FMU);
+    fmu_drop((fmu_snapshot **)state);
+    return fmi3OK;
+}
+
+fmi3Status fmi3SerializedFMUStateSize(fmi3Instance instance, fmi3FMUState state, size_t *size) {
+    ALLOW(instance, FMU_CALL_STATE_OF_FMU);
+    return give(fmu_serialized_size(SELF(instance), state, size));
+}
+
+fmi3Status fmi3SerializeFMUState(fmi3Instance instance, fmi3FMUState state, fmi3Byte bytes[], size_t size) {
+    ALLOW(instance, FMU_CALL_STATE_OF_FMU);
+    return give(fmu_serialize(SELF(instance), state, bytes, size));
+}
+
+fmi3Status fmi3DeserializeFMUState(fmi3Instance instance, const fmi3Byte bytes[], size_t size, fmi3FMUState *state) {
+    ALLOW(instance, FMU_CALL_STATE_OF_FMU);
+    return give(fmu_deserialize(SELF(instance), bytes, size, (fmu_snapshot **)state));
+}
+
+/* ------------------------------------------------------------------------------------- derivatives -- */
+
+fmi3Status fmi3GetDirectionalDerivative(fmi3Instance instance, const fmi3ValueReference unknowns[], size_t nUnknowns,
+                                        const fmi3ValueReference knowns[], size_t nKnowns, const fmi3Float64 seed[],
+                                        size_t nSeed, fmi3Float64 sensitivity[], size_t nSensitivity) {
+    ALLOW(instance, FMU_CALL_PARTIAL_DERIVATIVE);
+    return give(fmu_directional(SELF(instance), list(unknowns, nUnknowns), list(knowns, nKnowns), seed, nSeed,
+                                sensitivity, nSensitivity));
+}
+
+fmi3Status fmi3GetAdjointDerivative(fmi3Instance instance, const fmi3ValueReference unknowns[], size_t nUnknowns,
+                                    const fmi3ValueReference knowns[], size_t nKnowns, const fmi3Float64 seed[],
+                                    size_t nSeed, fmi3Float64 sensitivity[], size_t nSensitivity) {
+    ALLOW(instance, FMU_CALL_PARTIAL_DERIVATIVE);
+    return give(fmu_adjoint(SELF(instance), list(unknowns, nUnknowns), list(knowns, nKnowns), seed, nSeed, sensitivity,
+                            nSensitivity));
+}
+
+fmi3Status fmi3GetOutputDerivatives(fmi3Instance instance, const fmi3ValueReference valueReferences[],
+                                    size_t nValueReferences, const fmi3Int32 orders[], fmi3Float64 values[],
+                                    size_t nValues) {
+    ALLOW(instance, FMU_CALL_OUTPUT_DERIVATIVES);
+    return give(fmu_output_derivatives(SELF(instance), list(valueReferences, nValueReferences), orders, values,
+                                       nValues));
+}
+
+/* ------------------------------------------------------------------------------------------ events -- */
+
+fmi3Status fmi3UpdateDiscreteStates(fmi3Instance instance, fmi3Boolean *discreteStatesNeedUpdate,
+                                    fmi3Boolean *terminateSimulation, fmi3Boolean *nominalsOfContinuousStatesChanged,
+                                    fmi3Boolean *valuesOfContinuousStatesChanged, fmi3Boolean *nextEventTimeDefined,
+                                    fmi3Float64 *nextEventTime) {
+    bool changed;
+    fmu_status status;
+    ALLOW(instance, FMU_CALL_UPDATE_DISCRETE_STATES);
+    status = fmu_update_discrete_states(SELF(instance), &changed);
+    if (discreteStatesNeedUpdate != NULL) *discreteStatesNeedUpdate = fmi3False;
+    if (terminateSimulation != NULL) *terminateSimulation = fmi3False;
+    if (nominalsOfContinuousStatesChanged != NULL) *nominalsOfContinuousStatesChanged = fmi3False;
+    if (valuesOfContinuousStatesChanged != NULL) *valuesOfContinuousStatesChanged = changed;
+    if (nextEventTimeDefined != NULL) *nextEventTimeDefined = fmi3False;
+    if (nextEventTime != NULL) *nextEventTime = 0.0;
+    return give(status);
+}
+
+/* --------------------------------------------------------------------------------- Model Exchange -- */
+
+fmi3Status fmi3EnterContinuousTimeMode(fmi3Instance instance) {
+    ALLOW(instance, FMU_CALL_ENTER_CONTINUOUS_TIME);
+    fmu_enter(SELF(instance), FMU_CONTINUOUS);
+    return fmi3OK;
+}
+
+fmi3Status fmi3CompletedIntegratorStep(fmi3Instance instance, fmi3Boolean noSetFMUStatePriorToCurrentPoint,
+                                       fmi3Boolean *enterEventMode, fmi3Boolean *terminateSimulation) {
+    (void)noSetFMUStatePriorToCurrentPoint;
+    ALLOW(instance, FMU_CALL_COMPLETED_STEP);
+    if (enterEventMode != NULL) *enterEventMode = fmi3False;
+    if (terminateSimulation != NULL) *terminateSimulation = fmi3False;
+    return fmi3OK;
+}
+
+fmi3Status fmi3SetTime(fmi3Instance instance, fmi3Float64 time) {
+    ALLOW(instance, FMU_CALL_SET_TIME);
+    return give(fmu_set_time(SELF(instance), time));
+}
+
+fmi3Status fmi3SetContinuousStates(fmi3Instance instance, const fmi3Float64 continuousStates[],
+                                   size_t nContinuousStates) {
+    ALLOW(instance, FMU_CALL_SET_STATES);
+    return give(fmu_set_states(SELF(instance), continuousStates, nContinuousStates));
+}
+
+fmi3Status fmi3GetContinuousStateDerivatives(fmi3Instance instance, fmi3Float64 derivatives[],
+                                             size_t nContinuousStates) {
+    ALLOW(instance, FMU_CALL_GET_RATES);
+    return give(fmu_get_rates(SELF(instance), derivatives, nContinuousStates));
+}
+
+fmi3Status fmi3GetEventIndicators(fmi3Instance instance, fmi3Float64 eventIndicators[], size_t nEventIndicators) {
+    (void)eventIndicators;
+    ALLOW(instance, FMU_CALL_GET_STATES);
+    return give(fmu_none_of(SELF(instance), "event indicator", nEventIndicators));
+}
+
+fmi3Status fmi3GetContinuousStates(fmi3Instance instance, fmi3Float64 continuousStates[], size_t nContinuousStates) {
+    ALLOW(instance, FMU_CALL_GET_STATES);
+    return give(fmu_get_states(SELF(instance), continuousStates, nContinuousStates));
+}
+
+fmi3Status fmi3GetNominalsOfContinuousStates(fmi3Instance instance, fmi3Float64 nominals[], size_t nContinuousStates) {
+    ALLOW(instance, FMU_CALL_GET_NOMINALS);
+    return give(fmu_get_nominals(SELF(instance), nominals, nContinuousStates));
+}
+
+fmi3Status fmi3GetNumberOfEventIndicators(fmi3Instance instance, size_t *nEventIndicators) {
+    ALLOW(instance, FMU_CALL_COUNT_STATES);
+    if (nEventIndicators == NULL) return give(fmu_refuse(SELF(instance), "no place for the number (NULL)"));
+    *nEventIndicators = 0;
+    return fmi3OK;
+}
+
+fmi3Status fmi3GetNumberOfContinuousStates(fmi3Instance instance, size_t *nContinuousStates) {
+    ALLOW(instance, FMU_CALL_COUNT_STATES);
+    if (nContinuousStates == NULL) return give(fmu_refuse(SELF(instance), "no place for the number (NULL)"));
+    *nContinuousStates = fmu_plant_state_count(&SELF(instance)->plant);
+    return fmi3OK;
+}
+
+/* ---------------------------------------------------------------------------------- Co-Simulation -- */
+
+fmi3Status fmi3EnterStepMode(fmi3Instance instance) {
+    ALLOW(instance, FMU_CALL_ENTER_STEP);
+    fmu_enter(SELF(instance), FMU_STEP);
+    return fmi3OK;
+}
+
+fmi3Status fmi3DoStep(fmi3Instance instance, fmi3Float64 currentCommunicationPoint, fmi3Float64 communicationStepSize,
+                      fmi3Boolean noSetFMUStatePriorToCurrentPoint, fmi3Boolean *eventHandlingNeeded,
+                      fmi3Boolean *terminateSimulation, fmi3Boolean *earlyReturn, fmi3Float64 *lastSuccessfulTime) {
+    fmu_step_end end;
+    fmu_status status;
+    (void)noSetFMUStatePriorToCurrentPoint;
+    ALLOW(instance, FMU_CALL_DO_STEP);
+    status = fmu_do_step(SELF(instance), currentCommunicationPoint, communicationStepSize, &end);
+    if (eventHandlingNeeded != NULL) *eventHandlingNeeded = fmi3False;
+    if (terminateSimulation != NULL) *terminateSimulation = fmi3False;
+    if (earlyReturn != NULL) *earlyReturn = end.early;
+    if (lastSuccessfulTime != NULL) *lastSuccessfulTime = end.time_s;
+    return give(status);
+}

@@ -1,0 +1,112 @@
+/* The life of an instance: made, initialized, stepped, reset, freed. */
+#include "instance.h"
+
+#include <stdlib.h>
+#include <string.h>
+
+#include "plant_api.h"
+
+#define SETS(access) (1U << (access))
+
+/* What may be set in which mode; inputs wherever the call itself is allowed. */
+static uint32_t settable_in(const fmu_instance *instance, fmu_mode mode) {
+    const uint32_t start = SETS(FMU_FIXED) | SETS(FMU_TUNABLE) | SETS(FMU_INPUT);
+    switch (mode) {
+    case FMU_INSTANTIATED: return start;
+    case FMU_CONFIGURATION: return instance->scalar ? 0 : SETS(FMU_STRUCTURAL);
+    case FMU_INITIALIZATION: return start;
+    case FMU_EVENT: return SETS(FMU_TUNABLE) | SETS(FMU_INPUT);
+    case FMU_STEP: return SETS(FMU_INPUT) | (instance->event_mode_used ? 0 : SETS(FMU_TUNABLE));
+    case FMU_CONTINUOUS:
+    case FMU_INTERMEDIATE: return SETS(FMU_INPUT);
+    default: return 0;
+    }
+}
+
+void fmu_enter(fmu_instance *instance, fmu_mode mode) {
+    instance->mode = mode;
+    instance->settable = settable_in(instance, mode);
+}
+
+bool fmu_may(const fmu_instance *instance, fmu_call call) {
+    const fmu_rule *rule = &fmu_rules[call];
+    const unsigned allowed = instance->kind == FMU_CO_SIMULATION
+                                 ? (instance->version == 2 ? rule->simulation_2 : rule->simulation_3)
+                                 : (instance->version == 2 ? rule->exchange_2 : rule->exchange_3);
+    if (allowed >> instance->mode & 1U) return true;
+    fmu_refuse(instance, "%s is not allowed in %s", rule->what, fmu_mode_names[instance->mode]);
+    return false;
+}
+
+static char *copy_text(const char *text) {
+    const size_t size = strlen(text) + 1;
+    char *copy = malloc(size);
+    if (copy != NULL) memcpy(copy, text, size);
+    return copy;
+}
+
+fmu_instance *fmu_create(const fmu_request *request) {
+    fmu_instance *instance;
+    if (request->token == NULL || request->instance_name == NULL) return NULL;
+    instance = calloc(1, sizeof *instance);
+    if (instance == NULL) return NULL;
+    instance->kind = request->kind;
+    instance->version = request->version;
+    instance->deliver = request->deliver;
+    instance->environment = request->environment;
+    if (request->box_size <= sizeof instance->box) memcpy(instance->box, request->box, request->box_size);
+    instance->log_categories = request->logging_on ? FMU_LOG_ALL : FMU_LOG_ERROR | FMU_LOG_DISCARD;
+    instance->token_hash = fmu_token_hash(request->token);
+    instance->name = copy_text(request->instance_name);
+    if (instance->name == NULL || !fmu_load_start_values(instance, request->token, request->resources)) {
+        fmu_free(instance);
+        return NULL;
+    }
+    instance->plant.start_needed = true;
+    instance->initial = instance->plant;
+    fmu_enter(instance, FMU_INSTANTIATED);
+    return instance;
+}
+
+void fmu_free(fmu_instance *instance) {
+    if (instance == NULL) return;
+    free(instance->name);
+    free(instance);
+}
+
+static bool is_finite(double value) {
+    return value - value == 0.0;
+}
+
+fmu_status fmu_setup(fmu_instance *instance, double start_s, bool stop_defined, double stop_s) {
+    if (!is_finite(start_s)) return fmu_refuse(instance, "the start time %g is not finite", start_s);
+    if (stop_defined && !(stop_s >= start_s))
+        return fmu_refuse(instance, "the stop time %g s is before the start time %g s", stop_s, start_s);
+    fmu_clock_start(&instance->clock, start_s, stop_defined, stop_s);
+    instance->plant.time_s = start_s;
+    return FMU_OK;
+}
+
+fmu_status fmu_exit_initialization(fmu_instance *instance) {
+    const fmu_status status = fmu_make_current(instance);
+    if (status != FMU_OK) return status;
+    fmu_enter(instance, instance->kind == FMU_MODEL_EXCHANGE || instance->event_mode_used ? FMU_EVENT : FMU_STEP);
+    return FMU_OK;
+}
+
+fmu_status fmu_make_current(fmu_instance *instance) {
+    if (instance->plant.start_needed) return fmu_plant_start(instance);
+    return instance->plant.change_needed ? fmu_plant_change(instance) : FMU_OK;
+}
+
+fmu_status fmu_update_discrete_states(fmu_instance *instance, bool *states_changed) {
+    *states_changed = instance->plant.change_needed;
+    return instance->plant.change_needed ? fmu_plant_change(instance) : FMU_OK;
+}
+
+fmu_status fmu_reset(fmu_instance *instance) {
+    instance->plant = instance->initial;
+    fmu_clock_start(&instance->clock, 0.0, false, 0.0);
+    fmu_enter(instance, FMU_INSTANTIATED);
+    return FMU_OK;
+}

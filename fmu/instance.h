@@ -1,0 +1,213 @@
+/* One FMU instance, whatever the FMI version and the model behind it.
+ *
+ *     importer -> fmi2.c | fmi3.c  (translate types)
+ *                   |
+ *                   v
+ *     instance.c, lifecycle.c, variables.c, clock.c, derivatives.c, snapshot.c   (what both versions share)
+ *                   |
+ *                   v
+ *     plant.h       (the model: vehicle/ or controller/)
+ *
+ * Every function returns an fmu_status whose numbers are those of fmi2Status and fmi3Status. A refused call
+ * changes nothing and says why through the importer's logger. Memory is taken when an instance or a saved state
+ * is made, nowhere else; different instances may be used in different threads at the same time. */
+#ifndef LACONIC_FMU_INSTANCE_H
+#define LACONIC_FMU_INSTANCE_H
+
+#include <stdbool.h>
+#include <stddef.h>
+#include <stdint.h>
+
+#include "clock.h"
+#include "lifecycle.h"
+#include "plant.h"
+
+typedef enum fmu_status { FMU_OK, FMU_WARNING, FMU_DISCARD, FMU_ERROR, FMU_FATAL } fmu_status;
+
+typedef enum fmu_kind { FMU_MODEL_EXCHANGE, FMU_CO_SIMULATION } fmu_kind;
+
+/* Log categories, as in the descriptions; a bit each. */
+typedef enum fmu_category { FMU_LOG_WARNING = 1, FMU_LOG_DISCARD = 2, FMU_LOG_ERROR = 4, FMU_LOG_EVENTS = 8 } fmu_category;
+#define FMU_LOG_ALL 15U
+
+typedef struct fmu_instance fmu_instance;
+
+/* Hands a finished line to the importer; written by the glue of each version. */
+typedef void (*fmu_deliver)(const fmu_instance *instance, fmu_status status, const char *category, const char *text);
+
+/* Offered to the importer after each internal step; true: return early. Written by the FMI 3 glue. */
+typedef bool (*fmu_between_steps)(fmu_instance *instance, bool finished);
+
+struct fmu_instance {
+    fmu_kind kind;
+    int version; /* of FMI: 2 or 3 */
+    fmu_mode mode;
+    bool event_mode_used;
+    bool early_return_allowed;
+    bool scalar;              /* no structural parameter: the arrays' size is fixed          */
+    uint32_t settable;        /* bit per fmu_access: what may be set in this mode            */
+    unsigned log_categories;  /* bit per fmu_category                                        */
+    fmu_deliver deliver;
+    void *environment;
+    void (*box[2])(void);     /* the importer's callbacks, as the glue keeps them            */
+    char *name;
+    uint64_t token_hash;
+    fmu_between_steps between_steps; /* NULL: the importer does not ask for intermediate updates */
+    fmu_clock clock;
+    fmu_plant plant;
+    fmu_plant initial;        /* right after instantiation, for reset                        */
+};
+
+typedef struct fmu_request {
+    const char *instance_name;
+    const char *token;      /* fmuGUID, instantiationToken                                   */
+    const char *resources;  /* path of the resources folder, or a file: URI; may be NULL     */
+    fmu_kind kind;
+    int version;
+    bool logging_on;
+    fmu_deliver deliver;
+    void *environment;
+    const void *box; /* callbacks for fmu_instance.box */
+    size_t box_size;
+} fmu_request;
+
+/* NULL when the token is not this FMU's, the start values cannot be read, or memory is short. */
+fmu_instance *fmu_create(const fmu_request *request);
+void fmu_free(fmu_instance *instance);
+
+/* False, and a line in the log, when the call may not be made in the instance's present mode (lifecycle.h). */
+bool fmu_may(const fmu_instance *instance, fmu_call call);
+void fmu_enter(fmu_instance *instance, fmu_mode mode);
+
+/* Puts the start values that came with the FMU into the plant (start_values.c); false: they cannot be read. */
+bool fmu_load_start_values(fmu_instance *instance, const char *token, const char *resources);
+
+fmu_status fmu_setup(fmu_instance *instance, double start_s, bool stop_defined, double stop_s);
+fmu_status fmu_exit_initialization(fmu_instance *instance);
+fmu_status fmu_update_discrete_states(fmu_instance *instance, bool *states_changed);
+fmu_status fmu_reset(fmu_instance *instance);
+/* Pending parameters take effect, so that what is computed belongs to them. */
+fmu_status fmu_make_current(fmu_instance *instance);
+
+/* ---------------------------------------------------------------------------------- messages -- */
+
+#if defined(__GNUC__)
+#define FMU_LIKE_PRINTF(text, first) __attribute__((format(printf, text, first)))
+#else
+#define FMU_LIKE_PRINTF(text, first)
+#endif
+
+fmu_status fmu_report(const fmu_instance *instance, fmu_status status, fmu_category category, const char *format, ...)
+    FMU_LIKE_PRINTF(4, 5);
+fmu_status fmu_refuse(const fmu_instance *instance, const char *format, ...) FMU_LIKE_PRINTF(2, 3);
+fmu_status fmu_set_logging(fmu_instance *instance, bool on, size_t count, const char *const categories[]);
+
+/* --------------------------------------------------------------------------------- variables -- */
+
+typedef enum fmu_type { FMU_REAL, FMU_INT32, FMU_UINT64, FMU_ENUMERATION, FMU_BOOLEAN } fmu_type;
+
+typedef enum fmu_access { /* who sets it, and when (variables.c) */
+    FMU_INDEPENDENT,
+    FMU_STRUCTURAL,
+    FMU_FIXED,
+    FMU_TUNABLE,
+    FMU_INPUT,
+    FMU_OUTPUT,
+    FMU_LOCAL
+} fmu_access;
+
+/* One row of the table that is generated from the description; the row's number is the value reference. */
+typedef struct fmu_variable {
+    const char *name;
+    uint32_t offset; /* in fmu_plant                                          */
+    uint16_t stride; /* from one element to the next                          */
+    uint16_t size;   /* elements; 0: as many as fmu_plant_array_size() says   */
+    uint8_t type, access;
+    uint32_t group;  /* what must be fresh before it is read, see plant.h     */
+    uint32_t tangent; /* in fmu_tangent; UINT32_MAX: not differentiated       */
+} fmu_variable;
+
+extern const fmu_variable fmu_variables[];
+extern const uint32_t fmu_variable_count;
+
+/* Start values of the description this was built with. */
+typedef struct fmu_start_value {
+    uint32_t reference;
+    double value;
+} fmu_start_value;
+
+extern const fmu_start_value fmu_built_in_starts[];
+extern const size_t fmu_built_in_start_count;
+extern const char *const fmu_token_2, *const fmu_token_3; /* of the descriptions this was built with */
+
+/* A whole variable, or one element of it: reference v is row v, reference v + 1024·i its element i from 1. */
+#define FMU_ELEMENT_SHIFT 10
+typedef struct fmu_slot {
+    const fmu_variable *variable;
+    uint32_t first, count;
+} fmu_slot;
+
+bool fmu_find(const fmu_instance *instance, uint32_t reference, fmu_slot *slot);
+
+/* All numbers go through double, which holds every one of them exactly. `type` must be the variable's own. */
+fmu_status fmu_get(fmu_instance *instance, fmu_type type, const uint32_t *references, size_t count, double *values,
+                   size_t value_count);
+/* For glue that goes variable by variable: how many values the next one has, and whether all were used in the end. */
+fmu_status fmu_size(fmu_instance *instance, const uint32_t *references, const void *values, size_t which, size_t left,
+                    size_t *size);
+fmu_status fmu_all_used(const fmu_instance *instance, size_t used, size_t given);
+/* Refuses unless nothing was asked for: there are no variables of that kind. */
+fmu_status fmu_none_of(const fmu_instance *instance, const char *kind, size_t asked);
+/* One element, whatever the mode; false: no such variable, or no value it can have. */
+bool fmu_take_start_value(fmu_instance *instance, uint32_t reference, double value);
+fmu_status fmu_set(fmu_instance *instance, fmu_type type, const uint32_t *references, size_t count,
+                   const double *values, size_t value_count);
+
+/* ------------------------------------------------------------------------------------- steps -- */
+
+/* Where a step ended that was not taken in full. */
+typedef struct fmu_step_end {
+    double time_s;
+    bool early;
+} fmu_step_end;
+
+fmu_status fmu_do_step(fmu_instance *instance, double at_s, double step_s, fmu_step_end *end);
+
+/* ------------------------------------------------------------- continuous states (Model Exchange) -- */
+
+fmu_status fmu_set_time(fmu_instance *instance, double time_s);
+fmu_status fmu_get_states(fmu_instance *instance, double *values, size_t count);
+fmu_status fmu_set_states(fmu_instance *instance, const double *values, size_t count);
+fmu_status fmu_get_rates(fmu_instance *instance, double *values, size_t count);
+fmu_status fmu_get_nominals(fmu_instance *instance, double *values, size_t count);
+
+/* ------------------------------------------------------------------------ partial derivatives -- */
+
+typedef struct fmu_references {
+    const uint32_t *reference;
+    size_t count;
+} fmu_references;
+
+fmu_status fmu_directional(fmu_instance *instance, fmu_references unknowns, fmu_references knowns, const double *seed,
+                           size_t seed_count, double *sensitivity, size_t sensitivity_count);
+fmu_status fmu_adjoint(fmu_instance *instance, fmu_references unknowns, fmu_references knowns, const double *seed,
+                       size_t seed_count, double *sensitivity, size_t sensitivity_count);
+fmu_status fmu_output_derivatives(fmu_instance *instance, fmu_references outputs, const int32_t *orders,
+                                  double *values, size_t value_count);
+fmu_status fmu_set_input_derivatives(fmu_instance *instance, fmu_references inputs, const int32_t *orders,
+                                     const double *values);
+
+/* ------------------------------------------------------------------------------- saved states -- */
+
+typedef struct fmu_snapshot fmu_snapshot;
+
+uint64_t fmu_token_hash(const char *token);
+
+fmu_status fmu_save(fmu_instance *instance, fmu_snapshot **snapshot); /* fills *snapshot, or makes one where it is NULL */
+fmu_status fmu_restore(fmu_instance *instance, const fmu_snapshot *snapshot);
+void fmu_drop(fmu_snapshot **snapshot);
+fmu_status fmu_serialized_size(fmu_instance *instance, const fmu_snapshot *snapshot, size_t *size);
+fmu_status fmu_serialize(fmu_instance *instance, const fmu_snapshot *snapshot, uint8_t *bytes, size_t size);
+fmu_status fmu_deserialize(fmu_instance *instance, const uint8_t *bytes, size_t size, fmu_snapshot **snapshot);
+
+#endif

@@ -1,0 +1,1 @@
+"""From modelDescription.xml to C tables, descriptions and FMUs."""

@@ -1,0 +1,83 @@
+"""Command line for the build: tables, FMUs, and the token of modelDescription.xml."""
+
+from __future__ import annotations
+
+import argparse
+import sys
+from pathlib import Path
+
+from . import archive, fmi2
+from .description import parse, read, token_in, token_of, with_token
+from .package import pack
+from .tables import tables
+
+
+def make_tables(arguments: argparse.Namespace) -> None:
+    """Writes variables table and descriptions into a folder."""
+    text_3 = arguments.description.read_text(encoding="utf-8")
+    if token_in(text_3) != token_of(text_3):
+        sys.exit(f"{arguments.description}: its token does not belong to its text any more: "
+                 f"python -m laconic_fmu renew-token {arguments.description}")
+    description = parse(text_3)
+    text_2 = fmi2.describe(description, [*arguments.sources, "fmi2.c"])
+    out: Path = arguments.out
+    out.mkdir(parents=True, exist_ok=True)
+    (out / "variable_table.c").write_text(tables(description, text_3, text_2), encoding="utf-8")
+    (out / "fmi2.xml").write_text(text_2, encoding="utf-8")
+    (out / "fmi3.xml").write_text(text_3, encoding="utf-8")
+
+
+def make_fmu(arguments: argparse.Namespace) -> None:
+    """Packs an FMU from `part=file` pairs."""
+    identifier = read(arguments.source).root.find("CoSimulation").get("modelIdentifier", "")  # type: ignore[union-attr]
+    parts = {"modelDescription.xml": arguments.description.read_bytes()}
+    sources = []
+    for pair in arguments.sources:
+        name, _, file = pair.partition("=")
+        parts[f"sources/{name}"] = Path(file).read_bytes()
+        if name.endswith(".c"):
+            sources.append(name)
+    for pair in arguments.binaries:
+        platform, _, file = pair.partition("=")
+        parts[archive.binary_name(arguments.version, platform, identifier)] = Path(file).read_bytes()
+    for pair in arguments.parts:
+        name, _, file = pair.partition("=")
+        parts[name] = Path(file).read_bytes()
+    if arguments.version == 3:
+        parts["sources/buildDescription.xml"] = archive.build_description(sources, identifier).encode("utf-8")
+    pack(arguments.out, parts)
+
+
+def renew_token(arguments: argparse.Namespace) -> None:
+    """Gives modelDescription.xml the token that belongs to its text."""
+    text = arguments.description.read_text(encoding="utf-8")
+    arguments.description.write_text(with_token(text), encoding="utf-8")
+
+
+def main() -> None:
+    """Reads the command line and does what it says."""
+    parser = argparse.ArgumentParser(prog="laconic_fmu", description=__doc__)
+    commands = parser.add_subparsers(required=True)
+    command = commands.add_parser("tables")
+    command.add_argument("description", type=Path)
+    command.add_argument("--out", type=Path, required=True)
+    command.add_argument("--sources", nargs="*", default=[])
+    command.set_defaults(run=make_tables)
+    command = commands.add_parser("pack")
+    command.add_argument("--version", type=int, choices=(2, 3), required=True)
+    command.add_argument("--source", type=Path, required=True)
+    command.add_argument("--description", type=Path, required=True)
+    command.add_argument("--sources", nargs="*", default=[])
+    command.add_argument("--binaries", nargs="*", default=[])
+    command.add_argument("--parts", nargs="*", default=[])
+    command.add_argument("--out", type=Path, required=True)
+    command.set_defaults(run=make_fmu)
+    command = commands.add_parser("renew-token")
+    command.add_argument("description", type=Path)
+    command.set_defaults(run=renew_token)
+    arguments = parser.parse_args()
+    arguments.run(arguments)
+
+
+if __name__ == "__main__":
+    main()

@@ -1,0 +1,60 @@
+"""What goes into an FMU, and an FMU for a scene from the one that the build made."""
+
+from __future__ import annotations
+
+import xml.etree.ElementTree as ET
+import zipfile
+from collections.abc import Mapping, Sequence
+from pathlib import Path
+
+from . import fmi2, fmi3
+from .description import parse, start_values, token_in, with_values
+from .package import pack, start_file
+
+PLATFORMS = {
+    "x86_64-linux": ("linux64", "x86_64-linux", ".so"),
+    "aarch64-linux": ("aarch64-linux", "aarch64-linux", ".so"),
+    "x86_64-windows": ("win64", "x86_64-windows", ".dll"),
+    "x86_64-darwin": ("darwin64", "x86_64-darwin", ".dylib"),
+    "aarch64-darwin": ("aarch64-darwin", "aarch64-darwin", ".dylib"),
+}
+"""Folder in FMI 2, folder in FMI 3, ending of the binary."""
+
+
+def binary_name(version: int, platform: str, identifier: str) -> str:
+    """Where a binary lies in the archive."""
+    folder_2, folder_3, ending = PLATFORMS[platform]
+    return f"binaries/{folder_2 if version == 2 else folder_3}/{identifier}{ending}"
+
+
+def build_description(sources: Sequence[str], identifier: str) -> str:
+    """sources/buildDescription.xml of FMI 3."""
+    root = ET.Element("fmiBuildDescription", {"fmiVersion": "3.0"})
+    configuration = ET.SubElement(root, "BuildConfiguration", {"modelIdentifier": identifier})
+    group = ET.SubElement(configuration, "SourceFileSet", {"language": "C99", "compilerOptions": "-O2 -ffp-contract=off -fno-tree-slp-vectorize"})
+    for name in sources:
+        ET.SubElement(group, "SourceFile", {"name": name})
+    ET.indent(root)
+    return f'<?xml version="1.0" encoding="UTF-8"?>\n{ET.tostring(root, encoding="unicode")}\n'
+
+
+def read_parts(path: Path) -> dict[str, bytes]:
+    """All parts of an FMU."""
+    with zipfile.ZipFile(path) as archive:
+        return {name: archive.read(name) for name in archive.namelist() if not name.endswith("/")}
+
+
+def scene_fmu(generic: Path, source: Path, values: Mapping[str, Sequence[float]], name: str, text: str, out: Path, *,
+              version: int, scalar: bool) -> None:
+    """Writes the FMU of a scene: the generic one with the scene's start values."""
+    parts = read_parts(generic)
+    description = with_values(parse(source.read_text(encoding="utf-8")), values, name, text)
+    if version == 2:
+        old = ET.fromstring(parts["modelDescription.xml"])
+        files = [file.get("name", "") for file in old.findall("CoSimulation/SourceFiles/File")]
+        xml = fmi2.describe(description, files)
+    else:
+        xml = fmi3.describe_scalar(description) if scalar else fmi3.describe(description)
+    parts["modelDescription.xml"] = xml.encode("utf-8")
+    parts["resources/start.bin"] = start_file(start_values(description), token_in(xml), scalar or version == 2)
+    pack(out, parts)

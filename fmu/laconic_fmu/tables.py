@@ -1,0 +1,53 @@
+"""The C tables: one row per variable, start values, tokens."""
+
+from __future__ import annotations
+
+import re
+
+from .description import Description, Variable, start_values, token_in
+
+TYPES = {"Float64": "FMU_REAL", "Int32": "FMU_INT32", "UInt64": "FMU_UINT64", "Enumeration": "FMU_ENUMERATION",
+         "Boolean": "FMU_BOOLEAN"}
+
+
+def _access(variable: Variable) -> str:
+    if variable.causality == "parameter":
+        return "FMU_TUNABLE" if variable.attributes.get("variability") == "tunable" else "FMU_FIXED"
+    return {"independent": "FMU_INDEPENDENT", "structuralParameter": "FMU_STRUCTURAL", "input": "FMU_INPUT",
+            "output": "FMU_OUTPUT"}.get(variable.causality, "FMU_LOCAL")
+
+
+def _row(variable: Variable) -> str:
+    place = re.sub(r"\W+", "_", variable.name).strip("_")
+    size = 1 if variable.size is None else 0 if isinstance(variable.size, str) else variable.size
+    return f'    ROW("{variable.name}", {size}, {TYPES[variable.tag]}, {_access(variable)}, FMU_PLACE_{place}),'
+
+
+def tables(description: Description, text_3: str, text_2: str) -> str:
+    """The C file that fmu/variables.c and fmu/start_values.c link with."""
+    starts = start_values(description)
+    lines = [
+        "/* Made from the model description when the project is built. */",
+        '#include "instance.h"',
+        '#include "places.h"',
+        "",
+        "/* a place is: offset, stride, group, tangent offset */",
+        "#define ROW(name, size, type, access, ...) ROW_OF(name, size, type, access, __VA_ARGS__)",
+        "#define ROW_OF(name, size, type, access, offset, stride, group, tangent) \\",
+        "    {name, offset, (uint16_t)(stride), size, type, access, group, tangent}",
+        "",
+        "const fmu_variable fmu_variables[] = {",
+        *(_row(variable) for variable in description.variables),
+        "};",
+        f"const uint32_t fmu_variable_count = {len(description.variables)}U;",
+        "",
+        "const fmu_start_value fmu_built_in_starts[] = {",
+        *(f"    {{{reference}U, {value!r}}}," for reference, value in starts),
+        "};",
+        f"const size_t fmu_built_in_start_count = {len(starts)}U;",
+        "",
+        f'const char *const fmu_token_2 = "{token_in(text_2)}";',
+        f'const char *const fmu_token_3 = "{token_in(text_3)}";',
+        "",
+    ]
+    return "\n".join(lines)

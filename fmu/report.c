@@ -1,0 +1,70 @@
+/* Lines for the importer's log. */
+#include <stdarg.h>
+#include <stdio.h>
+#include <string.h>
+
+#include "instance.h"
+
+#define LINE_LENGTH 512
+
+static const struct {
+    fmu_category category;
+    const char *name;
+} categories[] = {
+    {FMU_LOG_WARNING, "logStatusWarning"},
+    {FMU_LOG_DISCARD, "logStatusDiscard"},
+    {FMU_LOG_ERROR, "logStatusError"},
+    {FMU_LOG_EVENTS, "logEvents"},
+};
+#define CATEGORY_COUNT (sizeof categories / sizeof categories[0])
+
+static void deliver(const fmu_instance *instance, fmu_status status, fmu_category category, const char *format,
+                    va_list arguments) {
+    char line[LINE_LENGTH];
+    size_t k;
+    if (instance->deliver == NULL || !(instance->log_categories & (unsigned)category)) return;
+    vsnprintf(line, sizeof line, format, arguments);
+    for (k = 0; k < CATEGORY_COUNT; k++)
+        if (categories[k].category == category) instance->deliver(instance, status, categories[k].name, line);
+}
+
+fmu_status fmu_report(const fmu_instance *instance, fmu_status status, fmu_category category, const char *format, ...) {
+    va_list arguments;
+    va_start(arguments, format);
+    deliver(instance, status, category, format, arguments);
+    va_end(arguments);
+    return status;
+}
+
+fmu_status fmu_refuse(const fmu_instance *instance, const char *format, ...) {
+    va_list arguments;
+    va_start(arguments, format);
+    deliver(instance, FMU_ERROR, FMU_LOG_ERROR, format, arguments);
+    va_end(arguments);
+    return FMU_ERROR;
+}
+
+static unsigned category_bit(const char *name) {
+    size_t k;
+    if (name == NULL) return 0;
+    if (strcmp(name, "logAll") == 0) return FMU_LOG_ALL;
+    for (k = 0; k < CATEGORY_COUNT; k++)
+        if (strcmp(categories[k].name, name) == 0) return (unsigned)categories[k].category;
+    return 0;
+}
+
+/* No categories: all of them. Off: nothing is logged at all. */
+fmu_status fmu_set_logging(fmu_instance *instance, bool on, size_t count, const char *const names[]) {
+    unsigned wanted = count == 0 ? FMU_LOG_ALL : 0;
+    size_t k;
+    if (count > 0 && names == NULL) return fmu_refuse(instance, "SetDebugLogging: %zu categories and no list of them", count);
+    for (k = 0; k < count; k++) {
+        const unsigned bit = category_bit(names[k]);
+        if (bit == 0)
+            return fmu_refuse(instance, "SetDebugLogging: there is no category '%s'; use logStatusWarning, "
+                              "logStatusDiscard, logStatusError or logEvents", names[k] != NULL ? names[k] : "(null)");
+        wanted |= bit;
+    }
+    instance->log_categories = on ? wanted : 0;
+    return FMU_OK;
+}

@@ -1,0 +1,115 @@
+/* The values an instance starts with.
+ *
+ * An FMU of the build carries them in its code. One that `laconic fmu` makes for a scene has them in
+ * resources/start.bin: "LACSTART", then numbers of 64 bits, little-endian: version, scalar, hash of the
+ * token, count, and for each value its reference and its bits as a double; at the end the checksum of all before. */
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include "plant_api.h"
+
+#define FILE_VERSION 1U
+#define HEADER_NUMBERS 4U
+#define LARGEST_FILE 65536U
+static const char magic[8] = {'L', 'A', 'C', 'S', 'T', 'A', 'R', 'T'};
+
+static void apply(fmu_instance *instance, const fmu_start_value *values, size_t count) {
+    size_t k;
+    for (k = 0; k < count; k++) fmu_take_start_value(instance, values[k].reference, values[k].value);
+}
+
+uint64_t fmu_token_hash(const char *token) {
+    uint64_t hash = 0xCBF29CE484222325U; /* FNV-1a */
+    for (; *token != '\0'; token++) hash = (hash ^ (uint8_t)*token) * 0x100000001B3U;
+    return hash;
+}
+
+static int hex_digit(char c) {
+    if (c >= '0' && c <= '9') return c - '0';
+    if (c >= 'a' && c <= 'f') return c - 'a' + 10;
+    if (c >= 'A' && c <= 'F') return c - 'A' + 10;
+    return -1;
+}
+
+/* "file:///a%20b/c" or "/a b/c" → "/a b/c/start.bin"; false: it does not fit. */
+static bool file_name(char *name, size_t size, const char *resources) {
+    static const char tail[] = "/start.bin";
+    size_t used = 0;
+    bool uri = false;
+    if (strncmp(resources, "file:", 5) == 0) {
+        uri = true;
+        resources += 5;
+        if (strncmp(resources, "//", 2) == 0) {
+            resources = strchr(resources + 2, '/'); /* past the host, which is empty or localhost */
+            if (resources == NULL) return false;
+        }
+        if (resources[0] == '/' && resources[1] != '\0' && resources[2] == ':') resources++; /* /C:/… */
+    }
+    for (; *resources != '\0' && used + sizeof tail < size; resources++) {
+        const int high = uri && *resources == '%' ? hex_digit(resources[1]) : -1;
+        const int low = high >= 0 ? hex_digit(resources[2]) : -1;
+        name[used++] = low >= 0 ? (char)(high * 16 + low) : *resources;
+        if (low >= 0) resources += 2;
+    }
+    if (*resources != '\0') return false;
+    while (used > 0 && (name[used - 1] == '/' || name[used - 1] == '\\')) used--;
+    memcpy(name + used, tail, sizeof tail);
+    return true;
+}
+
+static size_t read_file(const char *name, uint8_t *bytes, size_t size) {
+    FILE *file = fopen(name, "rb");
+    size_t got;
+    if (file == NULL) return 0;
+    got = fread(bytes, 1, size, file);
+    fclose(file);
+    return got;
+}
+
+static bool parse(fmu_instance *instance, const uint8_t *bytes, size_t size, const char *token) {
+    fmu_stream stream = {0};
+    uint64_t version = 0, scalar = 0, hash = 0, count = 0, checksum = 0, reference = 0, k;
+    double value = 0.0;
+    stream.from = bytes;
+    stream.size = size;
+    if (size < sizeof magic + 8 * (HEADER_NUMBERS + 1) || memcmp(bytes, magic, sizeof magic) != 0) return false;
+    stream.at = size - 8;
+    fmu_stream_u64(&stream, &checksum);
+    if (checksum != fmu_checksum(bytes, size - 8)) return false;
+    stream.at = sizeof magic;
+    fmu_stream_u64(&stream, &version);
+    fmu_stream_u64(&stream, &scalar);
+    fmu_stream_u64(&stream, &hash);
+    fmu_stream_u64(&stream, &count);
+    if (version != FILE_VERSION || hash != fmu_token_hash(token) || count != (size - stream.at - 8) / 16) return false;
+    instance->scalar = scalar != 0;
+    for (k = 0; k < count; k++) {
+        fmu_stream_u64(&stream, &reference);
+        fmu_stream_reals(&stream, &value, 1);
+        if (!fmu_take_start_value(instance, (uint32_t)reference, value)) return false;
+    }
+    return !stream.failed;
+}
+
+static bool load_file(fmu_instance *instance, const char *token, const char *resources) {
+    char name[4096];
+    uint8_t *bytes = malloc(LARGEST_FILE);
+    bool good;
+    if (bytes == NULL) return false;
+    good = file_name(name, sizeof name, resources) && parse(instance, bytes, read_file(name, bytes, LARGEST_FILE), token);
+    free(bytes);
+    if (!good)
+        fmu_refuse(instance, "the token %s is not this binary's, and %.300s/start.bin holds no start values for it: "
+                   "import the FMU anew", token, resources);
+    return good;
+}
+
+bool fmu_load_start_values(fmu_instance *instance, const char *token, const char *resources) {
+    instance->scalar = instance->version == 2;
+    apply(instance, fmu_built_in_starts, fmu_built_in_start_count);
+    if (strcmp(token, instance->version == 2 ? fmu_token_2 : fmu_token_3) == 0) return true;
+    if (resources != NULL) return load_file(instance, token, resources);
+    fmu_refuse(instance, "the token %s is not this binary's, and no resources folder was given", token);
+    return false;
+}

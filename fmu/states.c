@@ -1,0 +1,50 @@
+/* What Model Exchange asks for: time, continuous states, their rates. */
+#include "plant_api.h"
+
+/* Beyond this an angle in radians no longer says where it points. */
+#define LARGEST_STATE 1e18
+
+fmu_status fmu_set_time(fmu_instance *instance, double time_s) {
+    if (!(time_s - time_s == 0.0)) return fmu_refuse(instance, "SetTime: %g is not a time", time_s);
+    instance->plant.time_s = time_s;
+    return FMU_OK;
+}
+
+static fmu_status check_count(const fmu_instance *instance, const double *values, size_t count) {
+    const uint32_t states = fmu_plant_state_count(&instance->plant);
+    if (count != states)
+        return fmu_refuse(instance, "there are %u continuous states, not %zu", (unsigned)states, count);
+    return values != NULL || count == 0 ? FMU_OK : fmu_refuse(instance, "the list of values is missing (NULL)");
+}
+
+fmu_status fmu_get_states(fmu_instance *instance, double *values, size_t count) {
+    fmu_status status = check_count(instance, values, count);
+    if (status == FMU_OK) status = fmu_make_current(instance);
+    if (status == FMU_OK) fmu_plant_get_states(instance, values);
+    return status;
+}
+
+fmu_status fmu_set_states(fmu_instance *instance, const double *values, size_t count) {
+    const fmu_status status = check_count(instance, values, count);
+    size_t k;
+    if (status != FMU_OK) return status;
+    for (k = 0; k < count; k++)
+        if (!(values[k] <= LARGEST_STATE && values[k] >= -LARGEST_STATE))
+            return fmu_report(instance, FMU_DISCARD, FMU_LOG_DISCARD,
+                              "continuous state %zu of %zu cannot be %g: take a smaller step", k + 1, count, values[k]);
+    fmu_plant_set_states(instance, values);
+    return FMU_OK;
+}
+
+fmu_status fmu_get_rates(fmu_instance *instance, double *values, size_t count) {
+    fmu_status status = check_count(instance, values, count);
+    if (status == FMU_OK) status = fmu_make_current(instance);
+    if (status == FMU_OK) fmu_plant_get_rates(instance, values);
+    return status;
+}
+
+fmu_status fmu_get_nominals(fmu_instance *instance, double *values, size_t count) {
+    const fmu_status status = check_count(instance, values, count);
+    if (status == FMU_OK) fmu_plant_get_nominals(&instance->plant, values);
+    return status;
+}

@@ -1,0 +1,96 @@
+/* One communication step: whole internal steps, or a refusal with both numbers. */
+#include "plant_api.h"
+
+/* Steps as long as the communication step; one that differs by rounding only counts as the same. */
+#define SAME_STEP 1e-9
+
+static fmu_status check_interval(const fmu_instance *instance, double at_s, double step_s) {
+    const fmu_clock *clock = &instance->clock;
+    const double now_s = fmu_clock_now(clock);
+    if (!(step_s > 0.0) || !(step_s - step_s == 0.0))
+        return fmu_refuse(instance, "a communication step of %.17g s cannot be taken: it must be more than 0", step_s);
+    if (!fmu_clock_agrees(clock, at_s, clock->step_s > 0.0 && clock->step_s < step_s ? clock->step_s : step_s))
+        return fmu_refuse(instance, "the step starts at %.17g s, but the model is at %.17g s", at_s, now_s);
+    if (clock->stop_defined && now_s + step_s > clock->stop_s + 0.5 * step_s)
+        return fmu_refuse(instance, "the step from %.17g s to %.17g s goes beyond the stop time %.17g s", now_s,
+                          now_s + step_s, clock->stop_s);
+    return FMU_OK;
+}
+
+static fmu_status change_step(fmu_instance *instance, double step_s) {
+    const fmu_status status = fmu_plant_set_step(instance, step_s);
+    if (status == FMU_OK) fmu_clock_change_step(&instance->clock, step_s);
+    return status;
+}
+
+/* How many internal steps, kept for the next call with the same communication step. */
+static fmu_status count_steps(fmu_instance *instance, double step_s, uint64_t *steps) {
+    fmu_clock *clock = &instance->clock;
+    const double own_s = fmu_plant_own_step(&instance->plant);
+    fmu_status status = FMU_OK;
+    if (step_s == clock->asked_s) {
+        *steps = clock->asked_ticks;
+        return FMU_OK;
+    }
+    if (own_s > 0.0) {
+        if (clock->step_s != own_s) status = change_step(instance, own_s);
+        if (status == FMU_OK) status = fmu_plant_count_steps(instance, step_s, own_s, steps);
+    } else {
+        const double off = step_s - clock->step_s;
+        if (!(off <= SAME_STEP * step_s && off >= -SAME_STEP * step_s)) status = change_step(instance, step_s);
+        *steps = 1;
+    }
+    if (status == FMU_OK) {
+        clock->asked_s = step_s;
+        clock->asked_ticks = *steps;
+    }
+    return status;
+}
+
+/* One internal step at a time, each offered to the importer. */
+static fmu_status run_with_updates(fmu_instance *instance, uint64_t steps, fmu_step_end *end) {
+    uint64_t k, taken;
+    for (k = 0; k < steps; k++) {
+        const fmu_status status = fmu_plant_run(instance, 1, &taken);
+        if (status != FMU_OK) return status;
+        instance->clock.ticks++;
+        instance->plant.time_s = fmu_clock_now(&instance->clock);
+        fmu_enter(instance, FMU_INTERMEDIATE);
+        end->early = instance->between_steps(instance, k + 1 == steps) && k + 1 < steps;
+        fmu_enter(instance, FMU_STEP);
+        if (end->early) return FMU_OK;
+    }
+    return FMU_OK;
+}
+
+/* A refused step leaves everything as it was when the call came. */
+static fmu_status run(fmu_instance *instance, uint64_t steps, fmu_step_end *end) {
+    const fmu_clock clock = instance->clock;
+    fmu_plant_motion before;
+    uint64_t taken = 0;
+    fmu_status status;
+    if (instance->between_steps != NULL) {
+        fmu_plant_mark(&instance->plant, &before);
+        status = run_with_updates(instance, steps, end);
+    } else {
+        if (steps > 1) fmu_plant_mark(&instance->plant, &before);
+        status = fmu_plant_run(instance, steps, &taken);
+        instance->clock.ticks += taken;
+    }
+    if (status != FMU_OK && (steps > 1 || instance->between_steps != NULL)) {
+        fmu_plant_return(&instance->plant, &before);
+        instance->clock = clock;
+    }
+    return status;
+}
+
+fmu_status fmu_do_step(fmu_instance *instance, double at_s, double step_s, fmu_step_end *end) {
+    uint64_t steps;
+    fmu_status status = check_interval(instance, at_s, step_s);
+    end->early = false;
+    if (status == FMU_OK) status = fmu_make_current(instance);
+    if (status == FMU_OK) status = count_steps(instance, step_s, &steps);
+    if (status == FMU_OK) status = run(instance, steps, end);
+    end->time_s = instance->plant.time_s = fmu_clock_now(&instance->clock);
+    return status;
+}

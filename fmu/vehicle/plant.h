@@ -1,0 +1,81 @@
+/* The vehicle as the glue sees it: parameters and inputs as the importer set them, the core's plant, and outputs that
+ * are computed when they are asked for. Plain data; only the integrator points to its (constant) method. */
+#ifndef LACONIC_FMU_VEHICLE_PLANT_H
+#define LACONIC_FMU_VEHICLE_PLANT_H
+
+#include "laconic/laconic.h"
+
+#define FMU_PLANT_LARGEST_ARRAY LACONIC_MAX_WHEELS
+
+/* What must be fresh before a variable is read: bits in fmu_variable.group and fmu_plant.stale. */
+#define FMU_GROUP_STATE 1U   /* Model Exchange: the core's state follows the continuous states */
+#define FMU_GROUP_NU 2U
+#define FMU_GROUP_PLACE 4U   /* x, y, heading of the centre of mass */
+#define FMU_GROUP_ANGLES 8U
+#define FMU_GROUP_VELOCITY 16U
+#define FMU_GROUP_SPEEDS 32U
+#define FMU_GROUP_TORQUES 64U
+#define FMU_GROUP_GROUND 128U
+#define FMU_GROUP_ENERGY 256U
+#define FMU_GROUP_RATES 512U
+#define FMU_GROUP_POSE 1024U /* what else the pose says: origin, wrapped heading */
+#define FMU_GROUPS_ALL 2047U
+#define FMU_GROUPS_OF_INPUT (FMU_GROUP_TORQUES | FMU_GROUP_GROUND | FMU_GROUP_RATES)
+#define FMU_GROUPS_OF_CONTINUOUS_STATES (FMU_GROUP_NU | FMU_GROUP_PLACE | FMU_GROUP_ANGLES)
+
+typedef struct fmu_plant {
+    bool start_needed;  /* parameters were set since the last start          */
+    bool change_needed; /* tunable ones were set since                       */
+    bool continuous;    /* Model Exchange                                */
+    bool stand_in;      /* no step is known yet: the integrator is prepared for another method */
+    double time_s;
+    uint32_t stale;
+
+    laconic_vehicle vehicle;
+    laconic_start start;
+    int32_t method;
+    double step_s;
+    laconic_input input;
+    bool sloped;         /* some input's slope is not 0 */
+    laconic_input slope; /* du/dt during the next step  */
+
+    laconic_plant core;
+    laconic_contact contact;
+
+    double nu[3]; /* the continuous states; in Model Exchange the core's state follows them */
+    double x_m, y_m, heading_rad;
+    double wheel_angle_rad[LACONIC_MAX_WHEELS];
+
+    laconic_pose pose;
+    double velocity_m_per_s[2], yaw_rate_rad_per_s;
+    double wheel_speed_rad_per_s[LACONIC_MAX_WHEELS];
+    double wheel_torque_Nm[LACONIC_MAX_WHEELS];
+    double energy_J;
+    laconic_reactions ground;
+    laconic_rates rates;
+} fmu_plant;
+
+/* What steps change. */
+typedef struct fmu_plant_motion {
+    laconic_state state;
+    uint64_t steps;
+    laconic_input input;
+} fmu_plant_motion;
+
+/* A direction in the space of states, inputs and outputs. */
+typedef struct fmu_tangent {
+    double nu[3], x_m, y_m, heading_rad, wheel_angle_rad[LACONIC_MAX_WHEELS];
+    laconic_input input;
+    laconic_rates rates;
+    laconic_pose pose;
+    double velocity_m_per_s[2], yaw_rate_rad_per_s;
+    double wheel_speed_rad_per_s[LACONIC_MAX_WHEELS];
+    double wheel_torque_Nm[LACONIC_MAX_WHEELS];
+    double energy_J;
+    laconic_reactions ground;
+} fmu_tangent;
+
+/* What lies before it can be varied, what lies after it follows. */
+#define FMU_TANGENT_UNKNOWNS (uint32_t) offsetof(fmu_tangent, rates)
+
+#endif

@@ -1,0 +1,69 @@
+/* Partial derivatives of the vehicle, by the core's analytic linearisation. */
+#include "plant_api.h"
+
+static void take_variation(laconic_variation *by, const fmu_tangent *t) {
+    int32_t k;
+    for (k = 0; k < 3; k++) by->nu_rad_per_s[k] = t->nu[k];
+    by->x_m = t->x_m;
+    by->y_m = t->y_m;
+    by->heading_rad = t->heading_rad;
+    by->input = t->input;
+}
+
+static void take_motion(laconic_motion *at, fmu_instance *instance) {
+    const fmu_plant *p = &instance->plant;
+    int32_t k;
+    fmu_plant_refresh(instance, FMU_GROUP_NU | FMU_GROUP_PLACE);
+    for (k = 0; k < 3; k++) at->nu_rad_per_s[k] = p->nu[k];
+    at->heading_rad = p->heading_rad;
+}
+
+static void put_motion(fmu_tangent *t, const laconic_motion_change *change, int32_t wheels) {
+    int32_t i;
+    t->pose.origin_x_m = change->origin_x_m;
+    t->pose.origin_y_m = change->origin_y_m;
+    t->pose.heading_wrapped_rad = t->heading_rad;
+    t->velocity_m_per_s[0] = change->velocity_m_per_s[0];
+    t->velocity_m_per_s[1] = change->velocity_m_per_s[1];
+    t->yaw_rate_rad_per_s = change->yaw_rate_rad_per_s;
+    t->energy_J = change->energy_J;
+    for (i = 0; i < wheels; i++) {
+        t->wheel_speed_rad_per_s[i] = change->wheel_speed_rad_per_s[i];
+        t->wheel_torque_Nm[i] = change->wheel_torque_Nm[i];
+    }
+}
+
+void fmu_plant_tangent(fmu_instance *instance, fmu_tangent *tangent) {
+    const fmu_plant *p = &instance->plant;
+    const laconic_model *m = &p->core.model;
+    laconic_motion_change change;
+    laconic_variation by;
+    laconic_motion at;
+    take_motion(&at, instance);
+    take_variation(&by, tangent);
+    fmu_plant_refresh(instance, FMU_GROUP_GROUND);
+    laconic_derivative_tangent(&tangent->rates, m, &at, &p->input, &by);
+    laconic_motion_tangent(&change, m, &at, &by);
+    laconic_reactions_tangent(&tangent->ground, &p->contact, m, &at, &p->input, &p->ground, &by);
+    put_motion(tangent, &change, m->wheel_count);
+}
+
+void fmu_plant_motion_seed(fmu_instance *instance, fmu_tangent *tangent) {
+    const fmu_plant *p = &instance->plant;
+    int32_t i;
+    fmu_plant_refresh(instance, FMU_GROUP_RATES);
+    for (i = 0; i < 3; i++) tangent->nu[i] = p->rates.nu_rad_per_s2[i];
+    tangent->x_m = p->rates.x_m_per_s;
+    tangent->y_m = p->rates.y_m_per_s;
+    tangent->heading_rad = p->rates.yaw_rate_rad_per_s;
+    for (i = 0; i < p->core.model.wheel_count; i++) tangent->wheel_angle_rad[i] = p->rates.wheel_speed_rad_per_s[i];
+    if (p->sloped) tangent->input = p->slope;
+}
+
+void fmu_plant_set_slope(fmu_plant *plant, uint32_t tangent_offset, double slope) {
+    const size_t offset = tangent_offset - offsetof(fmu_tangent, input);
+    const laconic_input none = {{0.0}, {0.0}, {0.0}, 0.0, {0.0}, {0.0}};
+    if (!plant->sloped) plant->slope = none;
+    *(double *)(void *)((char *)&plant->slope + offset) = slope;
+    plant->sloped = true;
+}

@@ -1,0 +1,140 @@
+/* All that a vehicle consists of, to and from bytes. Prepared constants are not stored but prepared again: from the
+ * same numbers come the same bits. */
+#include "plant_api.h"
+
+static void transfer_vehicle(fmu_stream *s, laconic_vehicle *v) {
+    int32_t i;
+    fmu_stream_reals(s, &v->mass_kg, 1);
+    fmu_stream_reals(s, &v->yaw_inertia_kgm2, 1);
+    fmu_stream_reals(s, &v->com_x_m, 1);
+    fmu_stream_reals(s, &v->com_y_m, 1);
+    fmu_stream_reals(s, &v->com_z_m, 1);
+    fmu_stream_reals(s, &v->wheel_radius_m, 1);
+    fmu_stream_reals(s, &v->wheel_inertia_kgm2, 1);
+    fmu_stream_reals(s, &v->motor_gain_Nm_per_V, 1);
+    fmu_stream_reals(s, &v->motor_damping_Nms, 1);
+    fmu_stream_reals(s, &v->friction_coefficient, 1);
+    fmu_stream_reals(s, &v->payload.mass_kg, 1);
+    fmu_stream_reals(s, &v->payload.x_m, 1);
+    fmu_stream_reals(s, &v->payload.y_m, 1);
+    fmu_stream_reals(s, &v->payload.yaw_inertia_kgm2, 1);
+    fmu_stream_i32(s, &v->wheel_count, 0, LACONIC_MAX_WHEELS);
+    for (i = 0; i < LACONIC_MAX_WHEELS; i++) {
+        int32_t kind = (int32_t)v->wheel[i].kind;
+        fmu_stream_i32(s, &kind, INT32_MIN, INT32_MAX);
+        v->wheel[i].kind = (laconic_wheel_kind)kind;
+        fmu_stream_bool(s, &v->wheel[i].locked);
+        fmu_stream_reals(s, &v->wheel[i].x_m, 1);
+        fmu_stream_reals(s, &v->wheel[i].y_m, 1);
+        fmu_stream_reals(s, &v->wheel[i].axle_rad, 1);
+        fmu_stream_reals(s, &v->wheel[i].roller_rad, 1);
+    }
+    fmu_stream_i32(s, &v->support_count, INT32_MIN, INT32_MAX);
+    for (i = 0; i < LACONIC_MAX_SUPPORTS; i++) {
+        fmu_stream_reals(s, &v->support[i].x_m, 1);
+        fmu_stream_reals(s, &v->support[i].y_m, 1);
+    }
+}
+
+static void transfer_input(fmu_stream *s, laconic_input *u) {
+    fmu_stream_reals(s, u->voltage_V, LACONIC_MAX_WHEELS);
+    fmu_stream_reals(s, u->axle_torque_Nm, LACONIC_MAX_WHEELS);
+    fmu_stream_reals(s, u->body_force_N, 2);
+    fmu_stream_reals(s, &u->body_moment_Nm, 1);
+    fmu_stream_reals(s, u->world_force_N, 2);
+    fmu_stream_reals(s, u->world_force_point_m, 2);
+}
+
+static void transfer_sums(fmu_stream *s, laconic_sum *sums, size_t count) {
+    size_t k;
+    for (k = 0; k < count; k++) {
+        fmu_stream_reals(s, &sums[k].value, 1);
+        fmu_stream_reals(s, &sums[k].rest, 1);
+    }
+}
+
+static void transfer_state(fmu_stream *s, laconic_state *state) {
+    uint64_t fraction = state->heading.fraction;
+    transfer_sums(s, state->zeta, 3);
+    transfer_sums(s, &state->x_m, 1);
+    transfer_sums(s, &state->y_m, 1);
+    fmu_stream_i64(s, &state->heading.turns);
+    fmu_stream_u64(s, &fraction);
+    state->heading.fraction = fraction;
+    fmu_stream_reals(s, &state->heading.rest, 1);
+    transfer_sums(s, state->travel, 3);
+    fmu_stream_reals(s, state->wheel_angle_set_rad, LACONIC_MAX_WHEELS);
+}
+
+static void transfer_continuous(fmu_stream *s, fmu_plant *p) {
+    fmu_stream_reals(s, p->nu, 3);
+    fmu_stream_reals(s, &p->x_m, 1);
+    fmu_stream_reals(s, &p->y_m, 1);
+    fmu_stream_reals(s, &p->heading_rad, 1);
+    fmu_stream_reals(s, p->wheel_angle_rad, LACONIC_MAX_WHEELS);
+}
+
+/* Outputs are computed anew; the continuous states of Model Exchange lead and stay. */
+static void transfer_stale(fmu_stream *s, fmu_plant *p) {
+    bool follows = (p->stale & FMU_GROUP_STATE) != 0;
+    fmu_stream_bool(s, &follows);
+    if (s->from == NULL) return;
+    p->stale = FMU_GROUPS_ALL & ~FMU_GROUP_STATE;
+    if (p->continuous) p->stale &= ~FMU_GROUPS_OF_CONTINUOUS_STATES;
+    if (p->continuous && follows) p->stale |= FMU_GROUP_STATE;
+}
+
+static int32_t method_number(const laconic_method *method) {
+    int32_t number;
+    for (number = 0; number < LACONIC_METHOD_COUNT; number++)
+        if (laconic_method_by_number(number) == method) return number;
+    return 0;
+}
+
+/* Vehicle, method and step in use → model, integrator and contact. */
+static bool prepare_again(fmu_plant *p, int32_t number, double step_s) {
+    laconic_plant *core = &p->core;
+    const laconic_method *method = laconic_method_by_number(number);
+    if (laconic_prepare(&core->model, &core->vehicle, NULL) != LACONIC_OK) return false;
+    if (laconic_contact_prepare(&p->contact, &core->vehicle, &core->model, NULL) != LACONIC_OK) return false;
+    if (core->vehicle.wheel_count != p->vehicle.wheel_count) return false;
+    if (laconic_integrator_prepare(&core->integrator, p->stand_in ? &laconic_exact_flow : method, &core->model, step_s,
+                                   NULL) != LACONIC_OK)
+        return false;
+    core->integrator.method = method;
+    return true;
+}
+
+static void transfer_core(fmu_stream *s, fmu_plant *p) {
+    int32_t method = method_number(p->core.integrator.method);
+    double step_s = p->core.integrator.step_s;
+    transfer_vehicle(s, &p->core.vehicle);
+    transfer_state(s, &p->core.state);
+    fmu_stream_u64(s, &p->core.steps);
+    fmu_stream_i32(s, &method, 0, LACONIC_METHOD_COUNT - 1);
+    fmu_stream_reals(s, &step_s, 1);
+    if (s->from == NULL || s->failed || p->start_needed) return;
+    if (!prepare_again(p, method, step_s)) s->failed = true;
+}
+
+bool fmu_plant_transfer(fmu_stream *stream, fmu_plant *plant) {
+    fmu_stream_bool(stream, &plant->start_needed);
+    fmu_stream_bool(stream, &plant->change_needed);
+    fmu_stream_bool(stream, &plant->continuous);
+    fmu_stream_bool(stream, &plant->stand_in);
+    fmu_stream_reals(stream, &plant->time_s, 1);
+    transfer_vehicle(stream, &plant->vehicle);
+    fmu_stream_reals(stream, plant->start.nu_rad_per_s, 3);
+    fmu_stream_reals(stream, &plant->start.x_m, 1);
+    fmu_stream_reals(stream, &plant->start.y_m, 1);
+    fmu_stream_reals(stream, &plant->start.heading_rad, 1);
+    fmu_stream_i32(stream, &plant->method, INT32_MIN, INT32_MAX);
+    fmu_stream_reals(stream, &plant->step_s, 1);
+    transfer_input(stream, &plant->input);
+    fmu_stream_bool(stream, &plant->sloped);
+    transfer_input(stream, &plant->slope);
+    transfer_stale(stream, plant);
+    transfer_continuous(stream, plant);
+    transfer_core(stream, plant);
+    return !stream->failed;
+}
