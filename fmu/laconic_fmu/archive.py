@@ -45,10 +45,14 @@ def read_parts(path: Path) -> dict[str, bytes]:
 
 
 def scene_fmu(generic: Path, source: Path, values: Mapping[str, Sequence[float]], name: str, text: str, out: Path, *,
-              version: int, scalar: bool) -> None:
+              version: int, scalar: bool, stop_s: float, step_s: float) -> None:
     """Writes the FMU of a scene: the generic one with the scene's start values."""
     parts = read_parts(generic)
     description = with_values(parse(source.read_text(encoding="utf-8")), values, name, text)
+    experiment = description.root.find("DefaultExperiment")
+    if experiment is not None:
+        experiment.set("stopTime", repr(float(stop_s)))
+        experiment.set("stepSize", repr(float(step_s)))
     if version == 2:
         old = ET.fromstring(parts["modelDescription.xml"])
         files = [file.get("name", "") for file in old.findall("CoSimulation/SourceFiles/File")]

@@ -1,0 +1,36 @@
+"""laconic fmu: an FMU with a scene's vehicle."""
+
+from __future__ import annotations
+
+import json
+from pathlib import Path
+
+import click
+
+from laconic.errors import BadInput
+from laconic.fmu import make_fmu
+from laconic.scene import read_scene
+
+
+@click.command(name="fmu")
+@click.argument("scene")
+@click.option("--fmi", "version", type=click.Choice(("2", "3")), required=True, help="FMI 2.0 or 3.0.")
+@click.option("--scalar", is_flag=True, help="FMI 3.0 without arrays, for importers that handle them badly.")
+@click.option("-o", "--out", type=click.Path(path_type=Path), metavar="F.fmu", help="Where to; SCENE_fmi3.fmu if not given.")
+@click.option("--json", "json_wanted", is_flag=True, help="Machine-readable output.")
+def command(scene: str, version: str, scalar: bool, out: Path | None, json_wanted: bool) -> None:
+    """Writes an FMU whose start values are SCENE's vehicle, start, method and step.
+
+    Model Exchange and Co-Simulation are both in it. In FMI 3.0 the number of wheels is a structural parameter; in
+    FMI 2.0 and with --scalar it is a constant.
+    """
+    if scalar and version == "2":
+        raise BadInput("--scalar: FMI 2.0 has no arrays anyway; leave it out or use --fmi 3")
+    given = read_scene(scene)
+    made = make_fmu(given, out or Path(f"{given.path.stem}_fmi{version}{'_scalar' if scalar else ''}.fmu"),
+                    version=int(version), scalar=scalar)
+    if json_wanted:
+        click.echo(json.dumps({"scene": str(given.path), "fmi": int(version), "scalar": scalar, "file": str(made),
+                               "bytes": made.stat().st_size}, indent=1))
+    else:
+        click.echo(f"wrote {made} ({made.stat().st_size / 1000:.0f} kB): {given.name}, {given.wheel_count} wheels")
