@@ -23,19 +23,19 @@
 
 enum { BAD_INPUT = 2, OUT_SIZE = 1 << 16 };
 
-typedef struct settings {
+typedef struct options {
     unsigned long port, id_base;
     char rate; /* '0' … '8', 0: any */
     bool once;
-} settings;
+} options;
 
-typedef struct port {
+typedef struct board {
     laconic_node node;
     laconic_slcan slcan;
     int socket;
     char out[OUT_SIZE]; /* what waits for the socket */
     size_t out_count;
-} port;
+} board;
 
 static int complain(const char *what, const char *remedy) {
     fprintf(stderr, "laconic-node: %s: %s\n", what, remedy);
@@ -48,33 +48,33 @@ static uint32_t now_us(void) {
     return (uint32_t)((uint64_t)time.tv_sec * 1000000U + (uint64_t)time.tv_nsec / 1000U);
 }
 
-static void flush_out(port *port) {
+static void flush_out(board *port) {
     const ssize_t sent = send(port->socket, port->out, port->out_count, MSG_DONTWAIT | MSG_NOSIGNAL);
     if (sent <= 0) return;
     port->out_count -= (size_t)sent;
     memmove(port->out, port->out + sent, port->out_count);
 }
 
-static void put(port *port, const char *text, size_t length) {
+static void put(board *port, const char *text, size_t length) {
     if (port->out_count + length > OUT_SIZE) return; /* the client does not read: as on a full bus, it is lost */
     memcpy(port->out + port->out_count, text, length);
     port->out_count += length;
 }
 
-static void fetch_frames(port *port) {
+static void fetch_frames(board *port) {
     char line[LACONIC_SLCAN_LINE];
     laconic_frame frame;
     while (port->out_count + LACONIC_SLCAN_LINE < OUT_SIZE && laconic_node_next_frame(&port->node, &frame))
         put(port, line, laconic_slcan_write(&port->slcan, &frame, line));
 }
 
-static void step_node(port *port) {
+static void step_node(board *port) {
     laconic_node_on_tick(&port->node, now_us());
     fetch_frames(port);
 }
 
 /* False iff the client has gone. */
-static bool read_client(port *port) {
+static bool read_client(board *port) {
     char bytes[4096];
     laconic_frame frame;
     const ssize_t count = recv(port->socket, bytes, sizeof bytes, MSG_DONTWAIT);
@@ -92,7 +92,7 @@ static bool read_client(port *port) {
     return true;
 }
 
-static void wait_for_work(const port *port, int listening) {
+static void wait_for_work(const board *port, int listening) {
     const uint32_t idle_us = laconic_node_idle_us(&port->node, now_us());
     const struct timespec timeout = {idle_us / 1000000U, (long)(idle_us % 1000000U) * 1000L};
     const bool connected = port->socket >= 0;
@@ -101,7 +101,7 @@ static void wait_for_work(const port *port, int listening) {
     ppoll(&fd, 1, &timeout, NULL);
 }
 
-static void try_accept(port *port, int listening, char rate) {
+static void try_accept(board *port, int listening, char rate) {
     const int on = 1;
     port->socket = accept(listening, NULL, NULL);
     if (port->socket < 0) return;
@@ -110,7 +110,7 @@ static void try_accept(port *port, int listening, char rate) {
     port->out_count = 0;
 }
 
-static void serve(port *port, int listening, const settings *settings) {
+static void serve(board *port, int listening, const options *settings) {
     port->socket = -1;
     for (;;) {
         wait_for_work(port, listening);
@@ -158,7 +158,7 @@ static bool number(const char *text, unsigned long largest, unsigned long *value
     return errno == 0 && end != text && *end == 0 && *value <= largest;
 }
 
-static int parse(int count, char **words, settings *settings) {
+static int parse(int count, char **words, options *settings) {
     unsigned long rate;
     for (int k = 1; k < count; k++) {
         const char *value = k + 1 < count ? words[k + 1] : "";
@@ -183,8 +183,8 @@ static int parse(int count, char **words, settings *settings) {
 }
 
 int main(int count, char **words) {
-    static port port;
-    settings settings = {.id_base = LACONIC_WIRE_ID_BASE};
+    static board port;
+    options settings = {.id_base = LACONIC_WIRE_ID_BASE};
     unsigned long chosen;
     const int bad = parse(count, words, &settings);
     if (bad != 0) return bad;

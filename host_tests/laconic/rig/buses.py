@@ -1,0 +1,133 @@
+"""Ways to a node: a bus of python-can, a node in this process on the virtual bus, a node in a process of its own."""
+
+from __future__ import annotations
+
+import itertools
+import re
+import socket
+import subprocess
+from collections.abc import Iterator
+from contextlib import contextmanager, suppress
+from typing import Any
+
+import can
+
+from laconic.errors import BadInput
+from laconic.paths import built
+from laconic.rig.client import NodeClient
+from laconic.rig.errors import CannotReach
+from laconic.rig.link import Clock, Link
+from laconic.rig.node_library import LibraryNode
+
+_channel_numbers = itertools.count()
+
+
+def open_bus(interface: str, channel: str | None, *, bitrate: int | None = None, **options: Any) -> can.BusABC:
+    """A python-can bus; CannotReach says what was tried and what may help."""
+    if interface == "slcan" and str(channel).startswith("socket://"):
+        options.setdefault("sleep_after_open", 0.02)
+    if bitrate is not None:
+        options["bitrate"] = bitrate
+    try:
+        bus = can.Bus(interface=interface, channel=channel, **options)
+    except can.CanInterfaceNotImplementedError as error:
+        raise BadInput(f"--interface {interface}: {error}; python-can knows {', '.join(sorted(can.VALID_INTERFACES))}"
+                       ) from None
+    except (can.CanError, OSError, ValueError, TypeError) as error:
+        raise CannotReach(f"--interface {interface} --channel {channel}: cannot open the bus ({error}); check that "
+                          "the node or adapter is there and no other program has it") from None
+    without_delay(bus)
+    return bus
+
+
+def without_delay(bus: can.BusABC) -> None:
+    """TCP_NODELAY on a socket:// line: else several frames in a row wait for the acknowledgement of the first."""
+    line = getattr(getattr(bus, "serialPortOrig", None), "_socket", None)
+    if isinstance(line, socket.socket):
+        line.setsockopt(socket.IPPROTO_TCP, socket.TCP_NODELAY, 1)
+
+
+class VirtualClock(Clock):
+    """Time that passes only when somebody waits."""
+
+    def __init__(self) -> None:
+        self.time_us = 0
+
+    def now_us(self) -> int:
+        return self.time_us
+
+
+class NodeOnBus:
+    """A node in this process at the other end of a bus; `pump` lets it take what has come and send its answers."""
+
+    def __init__(self, node: LibraryNode, bus: can.BusABC, clock: VirtualClock):
+        self.node, self.bus, self.clock = node, bus, clock
+
+    def pump(self) -> bool:
+        """True iff anything happened; else time moves on to the node's next event."""
+        node, bus, now = self.node, self.bus, self.clock.time_us
+        busy = False
+        while (message := bus.recv(0)) is not None:
+            node.on_frame(message.arbitration_id, message.data, now, fd=message.is_fd,
+                          extended=message.is_extended_id, remote=message.is_remote_frame)
+            node.tick(now)
+            busy = self.send_all() or busy
+        node.tick(now)
+        busy = self.send_all() or busy
+        if not busy:
+            self.clock.time_us += max(1, min(node.idle_us(now), 1000))
+        return busy
+
+    def send_all(self) -> bool:
+        """Sends what the node has to say."""
+        sent = False
+        while (frame := self.node.take_frame()) is not None:
+            identifier, data, fd = frame
+            self.bus.send(can.Message(arbitration_id=identifier, is_extended_id=False, data=data, is_fd=fd,
+                                      bitrate_switch=fd))
+            sent = True
+        return sent
+
+
+@contextmanager
+def virtual_node(real: str = "double", id_base: int = 512, **node_options: Any) -> Iterator[NodeClient]:
+    """A node in this process on python-can's virtual bus, in virtual time."""
+    channel = f"laconic-{next(_channel_numbers)}"
+    clock = VirtualClock()
+    with can.Bus(interface="virtual", channel=channel) as ours, can.Bus(interface="virtual", channel=channel) as its:
+        end = NodeOnBus(LibraryNode(real, id_base, **node_options), its, clock)
+        yield NodeClient(Link(ours, id_base, clock=clock, pump=end.pump))
+
+
+@contextmanager
+def node_process(real: str = "double", id_base: int = 512, *arguments: str) -> Iterator[int]:
+    """A node in a process of its own; yields its TCP port."""
+    program = built(f"bin/laconic-node-{real}")
+    command = [str(program), "--id-base", hex(id_base), *arguments]
+    with subprocess.Popen(command, stdout=subprocess.PIPE, text=True) as process:
+        try:
+            line = process.stdout.readline()
+            found = re.search(r":(\d+)", line)
+            if not found:
+                raise CannotReach(f"{program}: did not start (it said {line.strip()!r})")
+            yield int(found.group(1))
+        finally:
+            process.terminate()
+
+
+@contextmanager
+def connected(interface: str, channel: str | None, id_base: int = 512, **options: Any) -> Iterator[NodeClient]:
+    """A client on a bus that python-can opens."""
+    bus = open_bus(interface, channel, **options)
+    try:
+        yield NodeClient(Link(bus, id_base))
+    finally:
+        with suppress(can.CanError, OSError):
+            bus.shutdown()
+
+
+@contextmanager
+def process_node(real: str = "double", id_base: int = 512) -> Iterator[NodeClient]:
+    """A node in a process of its own, over SLCAN on a TCP socket."""
+    with node_process(real, id_base) as port, connected("slcan", f"socket://127.0.0.1:{port}", id_base) as client:
+        yield client

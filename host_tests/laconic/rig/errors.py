@@ -1,0 +1,27 @@
+"""What can go wrong on a bus, in words for the user."""
+
+from __future__ import annotations
+
+from laconic.errors import BadInput, ResultFails
+
+
+class CannotReach(BadInput):
+    """The bus could not be opened, or nobody answers on it."""
+
+
+class NodeSilent(ResultFails):
+    """An answer that was due did not come."""
+
+
+class NodeRefused(ResultFails):
+    """The node answered with a refusal."""
+
+    def __init__(self, command: str, status: str, field: str, item: int, state: str):
+        where = f", {field}" if field != "none" else ""
+        where += f" {item}" if item else ""
+        super().__init__(f"the node refuses {command}: {status}{where} (its state: {state})")
+        self.command, self.status, self.field, self.item, self.state = command, status, field, item, state
+
+
+class BusDied(ResultFails):
+    """Sending or receiving failed in the middle of a run."""

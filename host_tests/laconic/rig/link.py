@@ -1,0 +1,105 @@
+"""Protected frames over any python-can bus: puts protection on, takes it off, and counts what was wrong."""
+
+from __future__ import annotations
+
+import time
+from collections import Counter
+from collections.abc import Callable
+
+import can
+
+from laconic.rig.errors import BusDied
+from laconic.rig.node_library import E2E_STATUS, node_library
+from laconic.rig.wire import Frame, wire
+
+Received = tuple[Frame, bytes]
+
+
+class Clock:
+    """The clock of a real bus: it passes by itself. A virtual one has `wait` move it."""
+
+    def now_us(self) -> int:
+        """Microseconds since some start."""
+        return time.perf_counter_ns() // 1000
+
+
+class Link:
+    """One end of the wire. `pump`, where given, lets a node in this process work; it returns False when idle."""
+
+    def __init__(self, bus: can.BusABC, id_base: int = 512, *, clock: Clock | None = None,
+                 pump: Callable[[], bool] | None = None):
+        self.bus, self.id_base, self.clock, self.pump = bus, id_base, clock or Clock(), pump
+        self.library = node_library("double")
+        self.session = 0
+        self.frames_out = self.frames_in = 0
+        self.faults: Counter[str] = Counter()
+        self.listeners: list[Callable[[can.Message], None]] = []
+        self._counters: Counter[int] = Counter()
+        self._receivers = {offset: self.library.receiver() for offset in wire().by_offset}
+        self._by_offset = wire().by_offset
+        self._check = self.library.lib.laconic_e2e_check
+
+    def forget_counters(self) -> None:
+        """As a rig that has just been switched on."""
+        self._counters.clear()
+        self._receivers = {offset: self.library.receiver() for offset in self._by_offset}
+
+    def send(self, frame: Frame, data: bytearray) -> None:
+        """Protects a payload and sends it."""
+        offset = frame.offset
+        self._counters[offset] = counter = (self._counters[offset] + 1) & (255 if frame.fd else 15)
+        self.library.protect(offset, data, self.session if frame.of_session else 0, counter)
+        self.send_message(can.Message(arbitration_id=self.id_base + offset, is_extended_id=False, data=data,
+                                      is_fd=frame.fd, bitrate_switch=frame.fd))
+
+    def send_message(self, message: can.Message) -> None:
+        """Sends a frame as it is."""
+        try:
+            self.bus.send(message)
+        except (can.CanError, OSError) as error:
+            raise BusDied(f"the bus died while sending: {error}") from None
+        self.frames_out += 1
+        for listener in self.listeners:
+            listener(message)
+
+    def receive(self, timeout_s: float = 1.0) -> Received | None:
+        """The next right frame from the node; None when none comes in time. Wrong ones are counted and dropped."""
+        deadline_us = self.clock.now_us() + int(timeout_s * 1e6)
+        while True:
+            message = self._next_message(deadline_us)
+            if message is None:
+                return None
+            if (received := self.take(message)) is not None:
+                return received
+
+    def _next_message(self, deadline_us: int) -> can.Message | None:
+        try:
+            if self.pump is None:
+                return self.bus.recv(max(0.0, (deadline_us - self.clock.now_us()) / 1e6))
+            message = self.bus.recv(0)
+            while message is None and (self.pump() or self.clock.now_us() < deadline_us):
+                message = self.bus.recv(0)
+            return message
+        except (can.CanError, OSError, ValueError, IndexError) as error:
+            raise BusDied(f"the bus died while receiving: {error or type(error).__name__}") from None
+
+    def take(self, message: can.Message) -> Received | None:
+        """Checks one frame: ours, well-formed, fresh and right."""
+        for listener in self.listeners:
+            listener(message)
+        frame = self._by_offset.get(message.arbitration_id - self.id_base)
+        if frame is None or message.is_extended_id or message.is_error_frame:
+            return None
+        self.frames_in += 1
+        if frame.from_rig or message.is_remote_frame or message.is_fd != frame.fd or len(message.data) != frame.length:
+            self.faults["malformed"] += 1
+            return None
+        data, offset = message.data, frame.offset
+        right = self.library.crc_is_right(offset, data)
+        counter, mask = (data[2], 255) if frame.fd else (data[1] & 15, 15)
+        receiver = self._receivers[offset]
+        status = self._check(receiver, right, counter, mask, frame.max_delta)
+        if status == 0:
+            return frame, data
+        self.faults[E2E_STATUS[status]] += receiver.lost if status == 1 else 1
+        return (frame, data) if status == 1 else None

@@ -1,0 +1,204 @@
+"""Lockstep with raw frames: a scene over a bus, bit for bit.
+
+    with virtual_node(scene.run.real) as node:
+        run = run_lockstep(node, scene, steps=10_000)
+    run.states[k]    ν, x, y, heading, wheel speeds, wheel angles after the k-th exchange, in the core's scalar type
+"""
+
+from __future__ import annotations
+
+import time
+from collections.abc import Callable, Iterator
+from dataclasses import dataclass
+from typing import Any
+
+import numpy as np
+
+from laconic.drive import Drive
+from laconic.errors import BadInput
+from laconic.plant import Plant
+from laconic.rig.client import NodeClient
+from laconic.rig.errors import NodeSilent
+from laconic.rig.wire import wire
+from laconic.scene import Scene
+
+INPUT_GROUPS = {  # bit of SELECT → numbers of one input, in the order of the stream
+    "take_voltage": ("voltage_V",), "take_axle_torque": ("axle_torque_Nm",),
+    "take_body_wrench": ("body_force_N", "body_moment_Nm"), "take_world_force": ("world_force_N", "world_force_point_m")}
+OUTPUTS = ("raw_nu", "raw_pose", "raw_wheel_speed", "raw_wheel_angle")
+
+
+@dataclass(frozen=True)
+class LockstepRun:
+    """What came back, one row an exchange."""
+
+    ticks: np.ndarray     # steps taken when the row was sent
+    states: np.ndarray    # ν(3), x, y, heading, wheel speeds (N), wheel angles (N)
+    seconds: float
+    frames_out: int
+    frames_in: int
+
+    @property
+    def steps(self) -> int:
+        """Steps taken."""
+        return int(self.ticks[-1])
+
+    @property
+    def nu(self) -> np.ndarray:
+        """ν, one row an exchange."""
+        return self.states[:, :3]
+
+    @property
+    def pose(self) -> np.ndarray:
+        """x, y, heading."""
+        return self.states[:, 3:6]
+
+
+def core_row(plant: Plant) -> np.ndarray:
+    """The same numbers as a row of LockstepRun.states, from a plant of the core."""
+    core, count = plant.core, plant.c.model.wheel_count
+    ffi, lib = core.ffi, core.lib
+    model, state = ffi.addressof(plant.c, "model"), ffi.addressof(plant.c, "state")
+    row = np.empty(6 + 2 * count, core.dtype)
+    nu, pose, speed = ffi.new("laconic_real[3]"), ffi.new("laconic_pose *"), ffi.new(f"laconic_real[{count + 1}]")
+    lib.laconic_nu(model, state, nu)
+    lib.laconic_pose_of(pose, model, state)
+    lib.laconic_wheel_speeds(model, state, speed)
+    row[:3] = list(nu)
+    row[3:6] = pose.x_m, pose.y_m, pose.heading_rad
+    row[6 : 6 + count] = list(speed)[:count]
+    row[6 + count :] = [plant.c.state.wheel_angle_rad[i].value for i in range(count)]
+    return row
+
+
+def start_of(scene: Scene) -> Any:
+    """The scene's laconic_start, in the core's scalar type."""
+    core, initial = scene.core(), scene.initial
+    return core.ffi.new("laconic_start *", {
+        "nu_rad_per_s": [float(v) for v in initial.nu(scene.model(core))], "x_m": initial.x_m, "y_m": initial.y_m,
+        "heading_rad": initial.heading_rad})
+
+
+def load_scene(node: NodeClient, scene: Scene) -> Plant:
+    """Sends a scene's vehicle, start and run to a node; returns its twin, a plant of the core at the same start."""
+    identity = node.identity or node.identify()
+    if identity.real != scene.run.real:
+        raise BadInput(f"{scene.path}: run.real is {scene.run.real}, the node computes in {identity.real}; "
+                       "give --real, or another node")
+    if identity.max_wheels < scene.wheel_count:
+        raise BadInput(f"{scene.path}: vehicle.wheel: {scene.wheel_count} of them, the node has room for "
+                       f"{identity.max_wheels}; use a build with more")
+    twin = scene.plant(scene.core())
+    node.load(twin, start_of(scene))
+    return twin
+
+
+class RawStream:
+    """A scene's inputs and outputs as raw frames."""
+
+    def __init__(self, node: NodeClient, scene: Scene, fd: bool = False):
+        self.node, self.core = node, scene.core()
+        self.drive: Drive = scene.drive()
+        names = {signal.partition("[")[0] for signal in self.drive.signals}
+        self.groups = [bit for bit, fields in INPUT_GROUPS.items() if names & set(fields)]
+        self.row_length = 6 + 2 * scene.wheel_count
+        self.sampled = not self.drive.is_held
+        self.places = self._places(scene.wheel_count)
+        self.fd = fd
+        self._in = wire()["RAW_INPUT_FD" if fd else "RAW_INPUT"]
+        self._out = "RAW_OUTPUT_FD" if fd else "RAW_OUTPUT"
+        self._chunk = 60 if fd else 6
+        self._sync = wire()["SYNC"]
+
+    def _places(self, wheel_count: int) -> np.ndarray:
+        """Where the stream's numbers stand in a row of laconic_input."""
+        places: list[int] = []
+        for bit in self.groups:
+            for name in INPUT_GROUPS[bit]:
+                start, length = self.core.input_fields[name]
+                per_wheel = name in ("voltage_V", "axle_torque_Nm")
+                places += range(start, start + (wheel_count if per_wheel else length))
+        return np.array(places, dtype=int)
+
+    def select(self) -> None:
+        """Tells the node which numbers go over the wire, and to send nothing else."""
+        bits = dict.fromkeys([*self.groups, *OUTPUTS], 1)
+        self.node.select(**bits, take_sampled=int(self.sampled and bool(self.groups)), raw_fd=int(self.fd))
+
+    def send_inputs(self, rows: np.ndarray) -> None:
+        """One row of laconic_input numbers, or three."""
+        stream = np.ascontiguousarray(np.atleast_2d(rows)[:, self.places]).tobytes()
+        link, frame, chunk = self.node.link, self._in, self._chunk
+        for segment, at in enumerate(range(0, len(stream), chunk)):
+            part = stream[at : at + chunk].ljust(chunk, b"\0")
+            if self.fd:
+                data = bytearray((0, 0, 0, segment & 255)) + part
+            else:
+                data = bytearray((0, (segment & 15) << 4)) + part
+            link.send(frame, data)
+
+    def sync(self, steps: int) -> None:
+        """Lets the node step."""
+        self.node.link.send(self._sync, self._sync.pack(step_count=steps))
+
+    def receive_state(self) -> np.ndarray:
+        """The node's answer to a SYNC."""
+        needed = self.row_length * self.core.dtype.itemsize
+        stream, expected = b"", 0
+        while len(stream) < needed:
+            received = self.node.link.receive(self.node.timeout_s)
+            if received is None:
+                raise NodeSilent(f"the node does not answer a SYNC within {self.node.timeout_s:g} s; faults seen: "
+                                 f"{dict(self.node.link.faults) or 'none'}")
+            frame, data = received
+            if frame.name == "RESULT":
+                self.node.check(frame.unpack(data))
+            elif frame.name == self._out:
+                segment = data[3] if self.fd else data[1] >> 4
+                if segment != expected & (255 if self.fd else 15):
+                    raise NodeSilent(f"part {expected} of the node's answer is missing")
+                expected += 1
+                stream += data[4:] if self.fd else data[2:]
+        return np.frombuffer(stream[:needed], self.core.dtype)
+
+    def exchanges(self, steps: int, every: int) -> Iterator[tuple[int, int, np.ndarray | None]]:
+        """(first step, how many, input rows to send or None) for a whole run; at most `every` steps each."""
+        if self.sampled:
+            for first in range(0, steps, 1000):
+                count = min(1000, steps - first)
+                samples = self.drive.samples(first, count)
+                rows = np.zeros((count, 3, self.core.input_length), self.core.dtype)
+                for column, signal in enumerate(self.drive.signals):
+                    rows[:, :, self.core.input_place(signal)] = samples[:, :, column]
+                yield from ((first + k, 1, rows[k]) for k in range(count))
+            return
+        edges = sorted({*range(0, steps, every), *(c for c in self.drive.changes if c < steps), steps})
+        changes = {0, *self.drive.changes}
+        for begin, end in zip(edges, edges[1:]):
+            row = self.core.input_row(self.drive.held_at(begin)) if begin in changes else None
+            yield begin, end - begin, row
+
+
+def run_lockstep(node: NodeClient, scene: Scene, steps: int | None = None, *, every: int = 1, fd: bool = False,
+                 resend: bool = False, moved: Callable[[int], None] = lambda _: None) -> LockstepRun:
+    """Loads a scene and runs it with raw frames. Held inputs are sent where they change (`resend`: every time)."""
+    load_scene(node, scene)
+    if steps is not None and steps > scene.steps():
+        scene = scene.with_run(duration_s=steps * scene.run.step_s)
+    stream = RawStream(node, scene, fd)
+    stream.select()
+    node.start_lockstep()
+    link, ticks, states, held = node.link, [], [], None
+    frames_out, frames_in, began = link.frames_out, link.frames_in, time.perf_counter()
+    for first, count, row in stream.exchanges(steps or scene.steps(), every):
+        held = row if row is not None else held
+        if stream.groups and (row is not None or resend):
+            stream.send_inputs(held)
+        stream.sync(count)
+        states.append(stream.receive_state())
+        ticks.append(first + count)
+        moved(count)
+    seconds = time.perf_counter() - began
+    node.stop()
+    return LockstepRun(np.array(ticks), np.array(states), seconds, link.frames_out - frames_out,
+                       link.frames_in - frames_in)

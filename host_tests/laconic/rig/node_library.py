@@ -1,0 +1,98 @@
+"""The shipping node as a shared library: protection for the link, and a node in this process for the virtual bus."""
+
+from __future__ import annotations
+
+from functools import lru_cache
+from typing import Any
+
+from cffi import FFI
+
+from laconic.paths import built
+
+
+class NodeLibrary:
+    """The C functions of one scalar type."""
+
+    def __init__(self, real: str):
+        self.real, self.ffi = real, FFI()
+        declarations = built("lib/laconic_node_cdef.h").read_text(encoding="utf-8")
+        self.ffi.cdef(without_inline_functions(declarations))
+        self.lib: Any = self.ffi.dlopen(str(built(f"lib/liblaconic_node_{real}.so")))
+
+    def protect(self, offset: int, data: bytearray, session: int, counter: int) -> None:
+        """Writes counter and CRC into a payload."""
+        self.lib.laconic_library_protect(offset, self.ffi.from_buffer(data), len(data), session & 255, counter)
+
+    def crc_is_right(self, offset: int, data: bytes | bytearray, session: int = 0) -> bool:
+        """Whether the CRC belongs to the payload."""
+        return self.lib.laconic_library_crc_is_right(offset, self.ffi.from_buffer(data), len(data), session & 255)
+
+    def receiver(self) -> Any:
+        """A fresh laconic_e2e_receiver."""
+        return self.ffi.new("laconic_e2e_receiver *")
+
+
+def without_inline_functions(text: str) -> str:
+    """cffi reads declarations only: `static inline` functions of the headers are left out."""
+    lines, skipping = [], False
+    for line in text.splitlines():
+        skipping = skipping or line.startswith("static inline")
+        if not skipping:
+            lines.append(line)
+        skipping = skipping and line != "}"
+    return "\n".join(lines)
+
+
+@lru_cache(maxsize=None)
+def node_library(real: str = "double") -> NodeLibrary:
+    """The library, loaded once."""
+    return NodeLibrary(real)
+
+
+E2E_STATUS = ("ok", "ok some lost", "repeated", "wrong sequence", "error", "no new data")
+
+
+class LibraryNode:
+    """A node in this process. It has no clock: whoever calls says what time it is."""
+
+    def __init__(self, real: str = "double", id_base: int = 512, can_fd: bool = True):
+        self.library = node_library(real)
+        ffi, lib = self.library.ffi, self.library.lib
+        self._memory = ffi.new("uint64_t[]", (lib.laconic_library_node_size() + 7) // 8)
+        self.c = ffi.cast("struct laconic_node *", self._memory)
+        self.frame = ffi.new("laconic_frame *")
+        self._bytes = ffi.buffer(self.frame.data)
+        self._on_frame, self._on_tick = lib.laconic_node_on_frame, lib.laconic_node_on_tick
+        self._next, self._busy = lib.laconic_node_next_frame, lib.laconic_node_is_busy
+        self.restart(id_base, can_fd, 0)
+
+    def restart(self, id_base: int = 512, can_fd: bool = True, now_us: int = 0) -> None:
+        """As after power-up."""
+        if not self.library.lib.laconic_library_node_init(self.c, id_base, can_fd, now_us & 0xFFFFFFFF):
+            raise ValueError(f"ID base 0x{id_base:X} is no multiple of 32 from 0 to 0x7E0")
+
+    def on_frame(self, arbitration_id: int, data: bytes, now_us: int, *, fd: bool = False, extended: bool = False,
+                 remote: bool = False) -> None:
+        """A frame came."""
+        frame = self.frame
+        frame.id, frame.length = arbitration_id, len(data)
+        frame.extended, frame.remote, frame.fd, frame.bit_rate_switch = extended, remote, fd, False
+        self._bytes[: len(data)] = data
+        self._on_frame(self.c, frame, now_us & 0xFFFFFFFF)
+
+    def tick(self, now_us: int) -> None:
+        """Time has come this far; takes all steps that are due."""
+        self._on_tick(self.c, now_us & 0xFFFFFFFF)
+        while self._busy(self.c):
+            self._on_tick(self.c, now_us & 0xFFFFFFFF)
+
+    def idle_us(self, now_us: int) -> int:
+        """Microseconds until the node has something to do."""
+        return int(self.library.lib.laconic_node_idle_us(self.c, now_us & 0xFFFFFFFF))
+
+    def take_frame(self) -> tuple[int, bytes, bool] | None:
+        """The next frame to send: identifier, payload, whether it is FD."""
+        if not self._next(self.c, self.frame):
+            return None
+        frame = self.frame
+        return frame.id, self._bytes[: frame.length], frame.fd
