@@ -9,12 +9,9 @@
  * depend only on state and input. So the same run makes the same choices everywhere. */
 #include "integrator.h"
 
-#define SLOW_DAMPING R(0.3)
-
 static laconic_status auto_prepare(laconic_integrator *integrator, const laconic_model *model, laconic_refusal *why) {
-    const real damping = integrator->step_s * laconic_fastest_decay(model);
     (void)why;
-    integrator->chosen = damping < SLOW_DAMPING ? &laconic_auto_slow : &laconic_auto_fast;
+    integrator->chosen = integrator->stiff ? &laconic_auto_fast : &laconic_auto_slow;
     laconic_decay_levels(integrator, model, 3);
     return LACONIC_OK;
 }

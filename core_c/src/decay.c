@@ -1,18 +1,26 @@
 /* Factors of exponential steps (PHYSICS §10): increments, not exponentials, so that single precision loses
- * nothing; mean and first moment of ζ' = −rζ + b with b linear over the step. */
+ * nothing; mean and first moment of ζ' = −rζ + b with b quadratic over the step. */
 #include "integrator.h"
 
-/* With ζ(t) = ζ + Δ(1 − e^{−rt})/(1 − e^{−a}) for constant b, and the response to a ramp of b:
- * mean = ζ + κΔ + …, slope = 12/h² ∫(t − h/2)ζ dt. All exact for the linear equation. */
+/* Response of ζ to b = s^k/k!: the increment is h φk+1, the mean h φk+2, 12 times the first moment about the
+ * middle 12 h (φk+2/2 − φk+3); s(s − 1) = 2·s²/2! − s. What the increment explains of mean and moment of a
+ * constant b it explains of any b; the rest goes beside it. All exact for the linear equation. */
 static void axis_factors(laconic_decay *d, int k, real h, real rate) {
-    real phi[4];
+    real phi[6], ramp, bend, mean, slope;
     laconic_phi(phi, h * rate);
-    d->gain[k] = h * phi[0];
-    d->ramp[k] = h * phi[1];
-    d->mean[k] = phi[1] / phi[0];
-    d->mean_ramp[k] = h * (phi[2] - d->mean[k] * phi[1]);
-    d->slope[k] = (R(6) * phi[1] - R(12) * phi[2]) / phi[0];
-    d->slope_ramp[k] = h * (R(6) * phi[2] - R(12) * phi[3] - d->slope[k] * phi[1]);
+    ramp = phi[2];
+    bend = R(2) * phi[3] - phi[2];
+    mean = phi[2] / phi[1];
+    slope = (R(6) * phi[2] - R(12) * phi[3]) / phi[1];
+    d->gain[k] = h * phi[1];
+    d->ramp[k] = h * ramp;
+    d->bend[k] = h * bend;
+    d->mean[k] = mean;
+    d->mean_ramp[k] = h * (phi[3] - mean * ramp);
+    d->mean_bend[k] = h * (R(2) * phi[4] - phi[3] - mean * bend);
+    d->slope[k] = slope;
+    d->slope_ramp[k] = h * (R(6) * phi[3] - R(12) * phi[4] - slope * ramp);
+    d->slope_bend[k] = h * (R(24) * phi[4] - R(24) * phi[5] - R(6) * phi[3] - slope * bend);
 }
 
 void laconic_decay_of(laconic_decay *decay, const laconic_model *model, real h) {

@@ -69,23 +69,20 @@ laconic_turn laconic_turn_of_angle(real angle_rad) {
     return 0; /* NaN, or an angle too large to have a direction */
 }
 
-/* Below a = 4 by the series of φ4, downwards without cancellation; above by the recurrence upwards. */
-void laconic_phi(real phi[4], real a) {
+/* φk = 1/k! − a φk+1. Below a = 4 from the series of φ5 downwards, which cancels nothing; above, upwards. */
+void laconic_phi(real phi[6], real a) {
+    static const real inverse_factorial[5] = {R(1), R(1), R(0.5), R(1) / R(6), R(1) / R(24)};
+    int k;
     if (a < R(4)) {
-        real term = R(1) / R(24), sum = term;
-        int k;
-        for (k = 5; k < 40; k++) {
+        real term = R(1) / R(120), sum = term;
+        for (k = 6; k < 40; k++) {
             term *= -a / (real)k;
             sum += term;
         }
-        phi[3] = sum;
-        phi[2] = R(1) / R(6) - a * phi[3];
-        phi[1] = R(0.5) - a * phi[2];
-        phi[0] = R(1) - a * phi[1];
+        phi[5] = sum;
+        for (k = 4; k >= 0; k--) phi[k] = inverse_factorial[k] - a * phi[k + 1];
     } else {
-        phi[0] = (R(1) - laconic_decaying_exponential(a)) / a;
-        phi[1] = (R(1) - phi[0]) / a;
-        phi[2] = (R(0.5) - phi[1]) / a;
-        phi[3] = (R(1) / R(6) - phi[2]) / a;
+        phi[0] = laconic_decaying_exponential(a);
+        for (k = 0; k < 5; k++) phi[k + 1] = (inverse_factorial[k] - phi[k]) / a;
     }
 }

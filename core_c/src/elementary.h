@@ -24,7 +24,7 @@ direction laconic_direction_of_turn(laconic_turn turn);
 /* An angle as a turn, whole turns dropped. |angle| below 10⁹ in single, 10¹⁸ in double. */
 laconic_turn laconic_turn_of_angle(real angle_rad);
 
-/* φk(−a) = ∫₀¹ e^{−(1−s)a} s^{k−1}/(k−1)! ds for k = 1 … 4 and a >= 0, phi[0] = φ1. */
-void laconic_phi(real phi[4], real a);
+/* φk(−a) = ∫₀¹ e^{−(1−s)a} s^{k−1}/(k−1)! ds for k = 1 … 5 and a >= 0; phi[k], phi[0] = e^−a. */
+void laconic_phi(real phi[6], real a);
 
 #endif

@@ -37,13 +37,23 @@ static inline vector free_flow(real half_step, vector g, vector w, vector zeta) 
     return scaled(factor, plus(scaled(a.denominator, turned), scaled(a.numerator, cross(turned, w))));
 }
 
-/* Damping and drive alone, exact for b linear over the half step. */
-static inline vector drive_flow(const laconic_model *m, const laconic_decay *d, vector zeta, vector b,
-                                const drive *whole) {
-    const vector step = times(vec(d->gain), minus(b, times(vec(m->decay_per_s), zeta)));
-    if (LACONIC_WITH_SAMPLED_INPUT && whole->varies)
-        return plus(step, times(vec(d->ramp), scaled(R(0.5), whole->change)));
+/* Damping and drive alone, exact. */
+static inline vector drive_flow(const laconic_model *m, const laconic_decay *d, vector zeta, const drive *b) {
+    const vector step = times(vec(d->gain), minus(b->start, times(vec(m->decay_per_s), zeta)));
+    if (LACONIC_WITH_SAMPLED_INPUT && b->varies) return plus(step, response(d->ramp, d->bend, b));
     return step;
+}
+
+/* The two halves of a parabola: s(s − 1) over half the range is a quarter of itself and a ramp. */
+static inline void split(drive halves[2], const drive *b) {
+    halves[0] = halves[1] = *b;
+    if (LACONIC_WITH_SAMPLED_INPUT && b->varies) {
+        const vector quarter = scaled(R(0.25), b->curve), even = scaled(R(0.5), b->change);
+        halves[0].change = minus(even, quarter);
+        halves[1].change = plus(even, quarter);
+        halves[1].start = plus(b->start, halves[0].change);
+        halves[0].curve = halves[1].curve = quarter;
+    }
 }
 
 /* Drive for h/2, free motion for h, drive for h/2. */
@@ -51,12 +61,13 @@ static inline laconic_status exact_flow_step(const laconic_model *m, const lacon
                                              vector zeta, const drive *b, increment *out) {
     const real half_step = integrator->step_s * (level == 0 ? R(0.5) : R(0.25));
     const laconic_decay *half = &integrator->decay[level + 1];
-    const vector first = drive_flow(m, half, zeta, b->start, b);
-    const vector before = plus(zeta, first);
-    const vector turn = free_flow(half_step, vec(m->nu_of_zeta[2]), vec(m->gyro), before);
-    vector middle = b->start, last;
-    if (LACONIC_WITH_SAMPLED_INPUT && b->varies) middle = plus(middle, scaled(R(0.5), b->change));
-    last = drive_flow(m, half, plus(before, turn), middle, b);
+    drive halves[2];
+    vector first, before, turn, last;
+    split(halves, b);
+    first = drive_flow(m, half, zeta, &halves[0]);
+    before = plus(zeta, first);
+    turn = free_flow(half_step, vec(m->nu_of_zeta[2]), vec(m->gyro), before);
+    last = drive_flow(m, half, plus(before, turn), &halves[1]);
     fill(out, &integrator->decay[level], zeta, plus(plus(first, turn), last), b);
     return LACONIC_OK;
 }

@@ -1,6 +1,7 @@
 /* Prepares a method for one step size. */
 #include "integrator.h"
 
+#define FAST_DAMPING R(0.3) /* h·r_max: below, splitting off the damping costs less than following it */
 #define LARGEST_STEP_S R(1e9) /* thirty years: beyond, products with speeds would leave the range */
 
 laconic_status laconic_integrator_prepare(laconic_integrator *integrator, const laconic_method *method,
@@ -13,6 +14,7 @@ laconic_status laconic_integrator_prepare(laconic_integrator *integrator, const 
     if (step_s > LARGEST_STEP_S) return refuse(why, LACONIC_OVERFLOW, LACONIC_FIELD_STEP, 0, step_s, LARGEST_STEP_S);
     prepared.method = prepared.chosen = method;
     prepared.step_s = step_s;
+    prepared.stiff = step_s * laconic_fastest_decay(model) >= FAST_DAMPING;
     status = method->prepare(&prepared, model, why);
     if (status == LACONIC_OK) *integrator = prepared;
     return status;

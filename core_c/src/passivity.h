@@ -12,10 +12,10 @@ typedef struct increment {
                      where ζ changes evenly, 0 where it jumps at once                         */
 } increment;
 
-/* b over one step, linear from start to start + change. */
+/* b over one step: start + change·s + curve·s(s − 1), s from 0 to 1. */
 typedef struct drive {
-    vector start, change;
-    bool varies; /* false: change is 0 and not looked at */
+    vector start, change, curve;
+    bool varies; /* false: change and curve are 0 and not looked at */
 } drive;
 
 /* Relative to |ζ|² + |ζ⁺|². What an accurate step gains by its truncation error is far below. */
@@ -29,7 +29,9 @@ static inline bool passive(vector zeta, real step_s, const drive *b, increment b
     real work;
     if (gain <= ENERGY_TOLERANCE * before) return true;
     work = dot(b->start, by.mean);
-    if (b->varies) work += R(0.5) * dot(b->change, by.mean) + (R(1) / R(12)) * dot(b->change, by.slope);
+    if (b->varies)
+        work += R(0.5) * dot(b->change, by.mean) + (R(1) / R(12)) * dot(b->change, by.slope) -
+                (R(1) / R(6)) * dot(b->curve, by.mean);
     return gain - R(2) * step_s * work <= ENERGY_TOLERANCE * (R(2) * before + gain);
 }
 

@@ -42,6 +42,7 @@ static laconic_status rk4_step(const laconic_model *model, const laconic_integra
     by.delta = along(outer, sixth, inner);
     by.slope = by.delta;
     b.change = minus(end, b.start);
+    b.curve = (vector){R(0), R(0), R(0)};
     b.varies = true;
     return advance_if_passive(state, model, h, z1, &b, by);
 }

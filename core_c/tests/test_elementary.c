@@ -98,21 +98,21 @@ static void phi_functions_agree_with_their_integrals(void) {
     size_t i;
     int k;
     for (i = 0; i < sizeof arguments / sizeof arguments[0]; i++) {
-        laconic_real phi[4];
+        laconic_real phi[6];
         laconic_phi(phi, REAL(arguments[i]));
-        for (k = 1; k <= 4; k++) {
+        for (k = 1; k <= 5; k++) {
             const double exact = phi_by_quadrature(k, (double)REAL(arguments[i]));
-            ASSERT_NEAR(EITHER(4e-13, 2e-6) * exact, exact, phi[k - 1]);
+            ASSERT_NEAR(EITHER(4e-13, 2e-6) * exact, exact, phi[k]);
         }
     }
 }
 
 static void phi_functions_stay_finite_for_any_damping(void) {
-    laconic_real phi[4];
+    laconic_real phi[6];
     laconic_phi(phi, REAL(1e30));
-    ASSERT_NEAR(1e-6, 1.0, (double)phi[0] * 1e30);
     ASSERT_NEAR(1e-6, 1.0, (double)phi[1] * 1e30);
-    ASSERT_NEAR(1e-6, 0.5, (double)phi[2] * 1e30);
+    ASSERT_NEAR(1e-6, 1.0, (double)phi[2] * 1e30);
+    ASSERT_NEAR(1e-6, 0.5, (double)phi[3] * 1e30);
 }
 
 int main(void) {

@@ -337,6 +337,7 @@ typedef struct laconic_integrator {
     laconic_real step_s;                 /* h                                                     */
     laconic_decay decay[3];              /* for h, h/2, h/4, as far as the method needs them      */
     laconic_real gyro_limit;             /* largest |g·ζ| an explicit method bears; 0: any        */
+    bool stiff;                          /* damping is fast beside the step: h·r_max >= 0.3       */
 } laconic_integrator;
 
 /* Inputs at the start, middle and end of the step. Held inputs: three times the same pointer. */
