@@ -124,6 +124,14 @@ class Plant:
         """χ [rad]."""
         return self._per_wheel(self.core.lib.laconic_wheel_angles)
 
+    def row(self) -> np.ndarray:
+        """ν(3), x, y, heading, wheel speeds (N), wheel angles (N): what adapters are compared by."""
+        pose = self.pose
+        row = np.empty(6 + 2 * self.wheel_count, self.core.dtype)
+        row[:3], row[3:6] = self.nu, (pose.x_m, pose.y_m, pose.heading_rad)
+        row[6 : 6 + self.wheel_count], row[6 + self.wheel_count :] = self.wheel_speeds(), self.wheel_angles()
+        return row
+
     def energy_J(self) -> float:
         """Kinetic energy."""
         return float(self.core.lib.laconic_energy_J(self._at("model"), self._at("state")))

@@ -142,7 +142,7 @@ class Reference:
         return out
 
     def solve(self, state: np.ndarray, begin_s: float, at_s: np.ndarray, values: Callable[[float], Values] | Values,
-              rtol: float = 1e-12, atol: float = 1e-13) -> np.ndarray:
+              rtol: float, atol: float) -> np.ndarray:
         """States at some instants after `begin_s`, with inputs that are smooth from there to the last instant."""
         if callable(values):
             def right(t: float, y: np.ndarray) -> np.ndarray:
@@ -152,12 +152,17 @@ class Reference:
 
             def right(t: float, y: np.ndarray) -> np.ndarray:
                 return self.rates(y, terms)
-        duration = at_s[-1] - begin_s
-        solver = "LSODA" if self.fastest_decay_per_s() * duration > STIFF_DECAYS else "DOP853"
-        found = solve_ivp(right, (begin_s, at_s[-1]), state, solver, t_eval=at_s, rtol=rtol, atol=atol)
-        if not found.success:
-            raise RuntimeError(f"{solver}: {found.message}")
-        return found.y.T
+        stiff = self.fastest_decay_per_s() * (at_s[-1] - begin_s) > STIFF_DECAYS
+        rows, first_step = [], None
+        for end in at_s:  # one call an instant: what the solver interpolates between its steps is less exact
+            found = solve_ivp(right, (begin_s, end), state, "LSODA" if stiff else "DOP853", rtol=rtol, atol=atol,
+                              first_step=first_step and min(first_step, end - begin_s))
+            if not found.success:
+                raise RuntimeError(f"the reference at t = {end:g} s: {found.message}")
+            state, begin_s = found.y[:, -1], end
+            first_step = float(np.max(np.diff(found.t)))
+            rows.append(state)
+        return np.array(rows)
 
 
 def kinks(drive: Drive) -> list[float]:
@@ -179,7 +184,7 @@ def values_at(drive: Drive, time_s: float, from_s: float) -> Values:
     return found
 
 
-def reference_states(scene: Scene, at_s: np.ndarray) -> np.ndarray:
+def reference_states(scene: Scene, at_s: np.ndarray, rtol: float = 1e-12, atol: float = 1e-13) -> np.ndarray:
     """States (ν, x, y, θ, χ) of a scene at some instants, ascending, the first not before 0."""
     reference, drive, start = Reference(scene.vehicle), scene.drive(), scene.initial
     state = np.concatenate([reference.nu(scene), [start.x_m, start.y_m, start.heading_rad],
@@ -194,7 +199,7 @@ def reference_states(scene: Scene, at_s: np.ndarray) -> np.ndarray:
         instants = np.unique(np.append(at_s[inside], end))
         held = values_at(drive, begin, begin)
         values = held if drive.is_held else (lambda t, begin=begin: values_at(drive, t, begin))
-        states = reference.solve(state, begin, instants, values)
+        states = reference.solve(state, begin, instants, values, rtol, atol)
         rows[inside] = states[np.searchsorted(instants, at_s[inside])]
         state = states[-1]
     return rows

@@ -1,0 +1,119 @@
+"""A scene's FMU driven by FMPy: one doStep an exchange, inputs set where they change, a row of outputs after each."""
+
+from __future__ import annotations
+
+import time
+from collections.abc import Callable
+from pathlib import Path
+from tempfile import TemporaryDirectory
+from typing import Any
+
+import fmpy
+import numpy as np
+from fmpy.fmi2 import FMU2Slave
+from fmpy.fmi3 import FMU3Slave
+
+from laconic.demo.rows import Rows, exchanges, row_names
+from laconic.drive import Drive
+from laconic.scene import Scene
+from laconic.scene_reader import LENGTHS, PER_WHEEL
+
+OUTPUTS = ("nu_rad_per_s", "x_m", "y_m", "heading_rad")
+OUTPUTS_PER_WHEEL = ("wheel_speed_rad_per_s", "wheel_angle_rad")  # not there in an FMU without wheels
+
+
+def elements(name: str, length: int) -> list[str]:
+    """name[1] … name[length]; the name itself for a length of 0."""
+    return [f"{name}[{i}]" for i in range(1, length + 1)] if length else [name]
+
+
+def input_arrays(drive: Drive, tick: int, wheel_count: int) -> dict[str, list[float]]:
+    """All elements of every input that the scene uses, at the start of a step."""
+    values = drive.held_at(tick)
+    bases = dict.fromkeys(signal.partition("[")[0] for signal in drive.signals)
+    lengths = {base: wheel_count if base in PER_WHEEL else LENGTHS[base] for base in bases}
+    return {base: [values.get(name, 0.0) for name in elements(base, length)] for base, length in lengths.items()}
+
+
+class Slave2:
+    """FMI 2: scalars."""
+
+    def __init__(self, slave: FMU2Slave, references: dict[str, int], wheel_count: int):
+        self.slave, self.references = slave, references
+        self.outputs = [references[name] for name in row_names(wheel_count)]
+
+    def start(self, end_s: float) -> None:
+        """Up to step mode."""
+        self.slave.instantiate()
+        self.slave.setupExperiment(startTime=0.0, stopTime=end_s)
+        self.slave.enterInitializationMode()
+        self.slave.exitInitializationMode()
+
+    def set(self, base: str, values: list[float]) -> None:
+        """One input with all its elements."""
+        names = elements(base, LENGTHS.get(base, len(values)))
+        self.slave.setReal([self.references[name] for name in names], values)
+
+    def get(self) -> list[float]:
+        """A row of outputs."""
+        return self.slave.getReal(self.outputs)
+
+
+class Slave3:
+    """FMI 3: arrays."""
+
+    def __init__(self, slave: FMU3Slave, references: dict[str, int], wheel_count: int):
+        self.slave, self.references = slave, references
+        self.outputs = [references[name] for name in (*OUTPUTS, *(OUTPUTS_PER_WHEEL if wheel_count else ()))]
+        self.count = 6 + 2 * wheel_count
+
+    def start(self, end_s: float) -> None:
+        """Up to step mode."""
+        self.slave.instantiate()
+        self.slave.enterInitializationMode(startTime=0.0, stopTime=end_s)
+        self.slave.exitInitializationMode()
+
+    def set(self, base: str, values: list[float]) -> None:
+        """One input with all its elements."""
+        self.slave.setFloat64([self.references[base]], values)
+
+    def get(self) -> list[float]:
+        """A row of outputs."""
+        return self.slave.getFloat64(self.outputs, nValues=self.count)
+
+
+def fmu_rows(scene: Scene, fmu: Path, steps: int, every: int = 1,
+             moved: Callable[[int], None] = lambda _: None) -> Rows:
+    """Rows of a scene's FMU; inputs are held over each communication step."""
+    description = fmpy.read_model_description(str(fmu), validate=False)
+    references = {variable.name: variable.valueReference for variable in description.modelVariables}
+    kind, ours = (FMU2Slave, Slave2) if description.fmiVersion == "2.0" else (FMU3Slave, Slave3)
+    with TemporaryDirectory() as folder:
+        fmpy.extract(str(fmu), unzipdir=folder)
+        slave = kind(guid=description.guid if ours is Slave2 else description.instantiationToken,
+                     unzipDirectory=folder, instanceName=scene.path.stem,
+                     modelIdentifier=description.coSimulation.modelIdentifier)
+        try:
+            return run(ours(slave, references, scene.wheel_count), scene, steps, every, moved)
+        finally:
+            slave.freeLibrary()
+
+
+def run(slave: Any, scene: Scene, steps: int, every: int, moved: Callable[[int], None]) -> Rows:
+    """From start to end; time is a whole number of steps times the step, as a master should count it."""
+    drive, step_s = scene.drive(), scene.run.step_s
+    slave.start(steps * step_s)
+    changes, ticks, rows, began = set(drive.changes), [], [], time.perf_counter()
+    for first, count in exchanges(drive, steps, every):
+        if first in changes or not drive.is_held:
+            for base, values in input_arrays(drive, first, scene.wheel_count).items():
+                slave.set(base, values)
+        slave.slave.doStep(first * step_s, count * step_s)
+        rows.append(slave.get())
+        ticks.append(first + count)
+        moved(count)
+    seconds = time.perf_counter() - began
+    slave.slave.terminate()
+    slave.slave.freeInstance()
+    version = "FMI 2" if isinstance(slave, Slave2) else "FMI 3"
+    return Rows(version, np.array(ticks), np.array(rows, dtype=float), seconds)
