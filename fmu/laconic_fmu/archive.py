@@ -20,6 +20,9 @@ PLATFORMS = {
 }
 """Folder in FMI 2, folder in FMI 3, ending of the binary."""
 
+OPTIONS = "-O2 -ffp-contract=off -fno-tree-slp-vectorize"
+"""What keeps the same bits (gcc and clang)."""
+
 
 def binary_name(version: int, platform: str, identifier: str) -> str:
     """Where a binary lies in the archive."""
@@ -31,7 +34,7 @@ def build_description(sources: Sequence[str], identifier: str) -> str:
     """sources/buildDescription.xml of FMI 3."""
     root = ET.Element("fmiBuildDescription", {"fmiVersion": "3.0"})
     configuration = ET.SubElement(root, "BuildConfiguration", {"modelIdentifier": identifier})
-    group = ET.SubElement(configuration, "SourceFileSet", {"language": "C99", "compilerOptions": "-O2 -ffp-contract=off -fno-tree-slp-vectorize"})
+    group = ET.SubElement(configuration, "SourceFileSet", {"language": "C99", "compilerOptions": OPTIONS})
     for name in sources:
         ET.SubElement(group, "SourceFile", {"name": name})
     ET.indent(root)

@@ -26,7 +26,7 @@ def _interface(parent: ET.Element, tag: str, source: ET.Element, extra: dict[str
 
 def _types(parent: ET.Element, source: ET.Element) -> None:
     for kind in source:
-        simple = ET.SubElement(parent, "SimpleType", {"name": kind.get("name", ""), "description": kind.get("description", "")})
+        simple = ET.SubElement(parent, "SimpleType", {k: kind.get(k, "") for k in ("name", "description")})
         if kind.tag == "Float64Type":
             ET.SubElement(simple, "Real", {k: kind.attrib[k] for k in ("unit", "displayUnit") if k in kind.attrib})
             continue
@@ -41,7 +41,8 @@ def _variable(parent: ET.Element, scalar: Scalar, index: dict[int, int]) -> None
     if variable.causality == "structuralParameter":
         attributes |= {"causality": "local", "variability": "constant", "initial": "exact"}
     else:
-        attributes |= {k: variable.attributes[k] for k in ("causality", "variability", "initial") if k in variable.attributes}
+        own = variable.attributes
+        attributes |= {k: own[k] for k in ("causality", "variability", "initial") if k in own}
     if attributes.get("causality") == "input":
         attributes.pop("initial", None)
     element = ET.SubElement(parent, "ScalarVariable", attributes)
@@ -62,7 +63,7 @@ def _structure(parent: ET.Element, tag: str, entries: Sequence[ScalarUnknown], i
         attributes = {"index": str(index[entry.scalar.reference])}
         if entry.dependencies is not None:
             kinds = entry.kinds or ("dependent",) * len(entry.dependencies)
-            pairs = sorted((index[known.reference], kind) for known, kind in zip(entry.dependencies, kinds, strict=True))
+            pairs = sorted((index[k.reference], kind) for k, kind in zip(entry.dependencies, kinds, strict=True))
             attributes["dependencies"] = " ".join(str(number) for number, _ in pairs)
             allowed = tag != "InitialUnknowns"
             attributes["dependenciesKind"] = " ".join(kind if allowed else "dependent" for _, kind in pairs)

@@ -45,7 +45,8 @@ def describe_scalar(description: Description) -> str:
         assert part is not None
         part.clear()
     variables, structure = root.find("ModelVariables"), root.find("ModelStructure")
-    assert variables is not None and structure is not None
+    assert variables is not None
+    assert structure is not None
     for scalar in scalars(description):
         ET.SubElement(variables, scalar.variable.tag, _attributes(scalar.variable, scalar))
     for kind in KINDS:

@@ -16,7 +16,8 @@ from laconic.scene import read_scene
 @click.argument("scene")
 @click.option("--fmi", "version", type=click.Choice(("2", "3")), required=True, help="FMI 2.0 or 3.0.")
 @click.option("--scalar", is_flag=True, help="FMI 3.0 without arrays, for importers that handle them badly.")
-@click.option("-o", "--out", type=click.Path(path_type=Path), metavar="F.fmu", help="Where to; SCENE_fmi3.fmu if not given.")
+@click.option("-o", "--out", type=click.Path(path_type=Path), metavar="F.fmu",
+              help="Where to; SCENE_fmi3.fmu if not given.")
 @click.option("--json", "json_wanted", is_flag=True, help="Machine-readable output.")
 def command(scene: str, version: str, scalar: bool, out: Path | None, json_wanted: bool) -> None:
     """Writes an FMU whose start values are SCENE's vehicle, start, method and step.
