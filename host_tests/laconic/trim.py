@@ -76,7 +76,7 @@ def trimmed(scene: Scene, real: str) -> Trimmed:
     plant = scene.plant(core)
     method = plant.chosen_method
     needs = needs_of(scene)
-    return Trimmed(needs, method, method_files(scene, method), header_of(scene, real, needs, method),
+    return Trimmed(needs, method, method_files(scene, method), header_of(scene, real, needs),
                    table_header(scene), tables(core, plant, scene))
 
 
@@ -88,13 +88,13 @@ def method_files(scene: Scene, chosen: str) -> tuple[str, ...]:
     return ("auto_slow" if chosen == "exact-flow-4" else "auto_fast", stem, "exact_flow")
 
 
-def header_of(scene: Scene, real: str, needs: Needs, method: str) -> str:
+def header_of(scene: Scene, real: str, needs: Needs) -> str:
     """laconic_scene.h."""
     n = scene.wheel_count
     other = "#ifdef LACONIC_SINGLE" if real == "double" else "#ifndef LACONIC_SINGLE"
     hint = "without" if real == "double" else "with"
     error = f'#error "laconic: {scene.path.name} was prepared for {real}: compile {hint} LACONIC_SINGLE"'
-    lines = [f"/* {scene.path.name}: what this build of the core is for ({method}, {real}). Generated. */",
+    lines = [f"/* {scene.path.name}: what this build of the core is for ({real}). Generated. */",
              "#ifndef LACONIC_SCENE_H", "#define LACONIC_SCENE_H",
              other, error, "#endif",
              f"#define LACONIC_MAX_WHEELS {max(1, n)}", "#define LACONIC_MAX_SUPPORTS 1",

@@ -5,6 +5,7 @@
 
 int peer_step(const double **arg, double **res, long long *iw, double *w, int mem);
 
+static double state[PEER_STATES], next[PEER_STATES], work[PEER_CASADI_WORK];
 static long long integer_work[PEER_CASADI_INTEGER_WORK];
 
 void peer_reset(void) {

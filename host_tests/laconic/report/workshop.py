@@ -135,7 +135,7 @@ class Workshop:
     def archive(self, target: Target, variant: Variant, folder: Path, extra: Sequence[str] = ()) -> Path:
         """The core as a static library, with .ci files (call graph and stack) beside its objects."""
         kind = "_".join((target.name, variant.real, variant.optimisation.strip("-"), *(e.strip("-") for e in extra)))
-        place = (folder / target.name if variant.trim else self.folder / "whole") / kind
+        place = self.folder / (f"trimmed_{variant.scene.path.stem}" if variant.trim else "whole") / kind
         if place not in self._archives:
             shutil.rmtree(place, ignore_errors=True)
             place.mkdir(parents=True)
