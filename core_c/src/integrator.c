@@ -2,7 +2,6 @@
 #include "integrator.h"
 
 #define FAST_DAMPING R(0.3) /* h·r_max: below, splitting off the damping costs less than following it */
-#define LARGEST_STEP_S R(1e9) /* thirty years: beyond, products with speeds would leave the range */
 
 laconic_status laconic_integrator_prepare(laconic_integrator *integrator, const laconic_method *method,
                                           const laconic_model *model, laconic_real step_s, laconic_refusal *why) {

@@ -7,6 +7,8 @@
 /* A build whose integrator is a prepared constant leaves preparation out. */
 #define PREPARE(function) (LACONIC_WITH_PREPARE ? (function) : NULL)
 
+#define LARGEST_STEP_S R(1e9) /* thirty years: beyond, products with speeds would leave the range */
+
 /* max r_k */
 real laconic_fastest_decay(const laconic_model *model);
 

@@ -1,22 +1,21 @@
 /* How far a method may step, and how many steps an interval holds. */
+#include "integrator.h"
 #include "zeta.h"
 
 /* Tries the method's own limits rather than knowing them: prepare and the gyroscopic limit say it. */
 laconic_real laconic_largest_stable_step_s(const laconic_method *method, const laconic_model *model,
                                            const laconic_state *state) {
-    laconic_integrator trial;
+    laconic_integrator trial = {0};
     laconic_refusal why;
-    const real huge = R(1) / LACONIC_REAL_MIN / R(16);
-    real step = huge, yaw;
+    real step = LARGEST_STEP_S, yaw;
     if (laconic_integrator_prepare(&trial, method, model, step, &why) != LACONIC_OK) {
         step = why.limit;
-        if (laconic_integrator_prepare(&trial, method, model, step * R(0.999), &why) != LACONIC_OK) return step;
-        trial.step_s = step;
+        (void)laconic_integrator_prepare(&trial, method, model, step * R(0.999), &why); /* safe from rounding */
         trial.gyro_limit *= R(0.999);
     }
     yaw = magnitude(dot(vec(model->nu_of_zeta[2]), zeta_of(state)));
     if (trial.gyro_limit > R(0) && yaw > trial.gyro_limit) step *= trial.gyro_limit / yaw;
-    return step < huge ? step : R(0);
+    return step < LARGEST_STEP_S ? step : R(0);
 }
 
 /* Compared in units of the step, never of the time: so the tolerance does not widen as time goes on. */
