@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import itertools
 import re
-import socket
 import subprocess
 from collections.abc import Iterator
 from contextlib import contextmanager, suppress
@@ -18,6 +17,7 @@ from laconic.rig.client import NodeClient
 from laconic.rig.errors import CannotReach
 from laconic.rig.link import Clock, Link
 from laconic.rig.node_library import LibraryNode
+from laconic.rig.socket_line import read_in_chunks
 
 _channel_numbers = itertools.count()
 
@@ -36,15 +36,8 @@ def open_bus(interface: str, channel: str | None, *, bitrate: int | None = None,
     except (can.CanError, OSError, ValueError, TypeError) as error:
         raise CannotReach(f"--interface {interface} --channel {channel}: cannot open the bus ({error}); check that "
                           "the node or adapter is there and no other program has it") from None
-    without_delay(bus)
+    read_in_chunks(bus)
     return bus
-
-
-def without_delay(bus: can.BusABC) -> None:
-    """TCP_NODELAY on a socket:// line: else several frames in a row wait for the acknowledgement of the first."""
-    line = getattr(getattr(bus, "serialPortOrig", None), "_socket", None)
-    if isinstance(line, socket.socket):
-        line.setsockopt(socket.IPPROTO_TCP, socket.TCP_NODELAY, 1)
 
 
 class VirtualClock(Clock):

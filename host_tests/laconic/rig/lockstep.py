@@ -2,7 +2,8 @@
 
     with virtual_node(scene.run.real) as node:
         run = run_lockstep(node, scene, steps=10_000)
-    run.states[k]    ν, x, y, heading, wheel speeds, wheel angles after the k-th exchange, in the core's scalar type
+    run.states[k]    ν, x, y, heading, wheel speeds, wheel angles after the k-th exchange, in the core's scalar type:
+                     what Plant.row() gives
 """
 
 from __future__ import annotations
@@ -21,6 +22,7 @@ from laconic.rig.client import NodeClient
 from laconic.rig.errors import NodeSilent
 from laconic.rig.wire import wire
 from laconic.scene import Scene
+from laconic.simulation import advance_plant
 
 INPUT_GROUPS = {  # bit of SELECT → numbers of one input, in the order of the stream
     "take_voltage": ("voltage_V",), "take_axle_torque": ("axle_torque_Nm",),
@@ -37,6 +39,8 @@ class LockstepRun:
     seconds: float
     frames_out: int
     frames_in: int
+    twin: Plant           # a plant of the core at the start, not stepped
+    latencies_s: list[float]
 
     @property
     def steps(self) -> int:
@@ -52,23 +56,6 @@ class LockstepRun:
     def pose(self) -> np.ndarray:
         """x, y, heading."""
         return self.states[:, 3:6]
-
-
-def core_row(plant: Plant) -> np.ndarray:
-    """The same numbers as a row of LockstepRun.states, from a plant of the core."""
-    core, count = plant.core, plant.c.model.wheel_count
-    ffi, lib = core.ffi, core.lib
-    model, state = ffi.addressof(plant.c, "model"), ffi.addressof(plant.c, "state")
-    row = np.empty(6 + 2 * count, core.dtype)
-    nu, pose, speed = ffi.new("laconic_real[3]"), ffi.new("laconic_pose *"), ffi.new(f"laconic_real[{count + 1}]")
-    lib.laconic_nu(model, state, nu)
-    lib.laconic_pose_of(pose, model, state)
-    lib.laconic_wheel_speeds(model, state, speed)
-    row[:3] = list(nu)
-    row[3:6] = pose.x_m, pose.y_m, pose.heading_rad
-    row[6 : 6 + count] = list(speed)[:count]
-    row[6 + count :] = [plant.c.state.wheel_angle_rad[i].value for i in range(count)]
-    return row
 
 
 def start_of(scene: Scene) -> Any:
@@ -182,23 +169,36 @@ class RawStream:
 def run_lockstep(node: NodeClient, scene: Scene, steps: int | None = None, *, every: int = 1, fd: bool = False,
                  resend: bool = False, moved: Callable[[int], None] = lambda _: None) -> LockstepRun:
     """Loads a scene and runs it with raw frames. Held inputs are sent where they change (`resend`: every time)."""
-    load_scene(node, scene)
+    twin = load_scene(node, scene)
     if steps is not None and steps > scene.steps():
         scene = scene.with_run(duration_s=steps * scene.run.step_s)
     stream = RawStream(node, scene, fd)
     stream.select()
     node.start_lockstep()
-    link, ticks, states, held = node.link, [], [], None
+    link, ticks, states, latencies, held = node.link, [], [], [], None
     frames_out, frames_in, began = link.frames_out, link.frames_in, time.perf_counter()
     for first, count, row in stream.exchanges(steps or scene.steps(), every):
-        held = row if row is not None else held
+        held, sent = row if row is not None else held, time.perf_counter()
         if stream.groups and (row is not None or resend):
             stream.send_inputs(held)
         stream.sync(count)
         states.append(stream.receive_state())
+        latencies.append(time.perf_counter() - sent)
         ticks.append(first + count)
         moved(count)
     seconds = time.perf_counter() - began
     node.stop()
     return LockstepRun(np.array(ticks), np.array(states), seconds, link.frames_out - frames_out,
-                       link.frames_in - frames_in)
+                       link.frames_in - frames_in, twin, latencies)
+
+
+def twin_states(scene: Scene, run: LockstepRun) -> np.ndarray:
+    """What the core says at the same steps."""
+    if run.steps > scene.steps():
+        scene = scene.with_run(duration_s=run.steps * scene.run.step_s)
+    plant, drive, rows, done = run.twin, scene.drive(), [], 0
+    for tick in run.ticks:
+        advance_plant(plant, drive, done, int(tick) - done)
+        rows.append(plant.row())
+        done = int(tick)
+    return np.array(rows)

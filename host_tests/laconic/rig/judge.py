@@ -1,0 +1,78 @@
+"""Runs a scene against a node in one of the modes and judges it."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+
+import numpy as np
+
+from laconic.rig.client import NodeClient
+from laconic.rig.latency import latency_figures
+from laconic.rig.lockstep import run_lockstep, twin_states
+from laconic.rig.scaled import Comparison, run_scaled
+from laconic.rig.verdict import Judgement, Verdict, same_bits, within
+from laconic.scene import Scene
+
+Moved = Callable[[int], None]
+HALF_A_BIT = 0.5 + 1e-6  # of the last place, and what float arithmetic of the rounding itself may add
+
+
+def judge_same_bits(node: NodeClient, scene: Scene, steps: int | None, *, every: int = 1, fd: bool = False,
+                    moved: Moved = lambda _: None) -> Judgement:
+    """Lockstep with raw frames against the core: every bit."""
+    run = run_lockstep(node, scene, steps, every=every, fd=fd, moved=moved)
+    theirs = twin_states(scene, run)
+    count = scene.wheel_count
+    judgement = Judgement(scene.name, "lockstep, same bits")
+    parts = {"nu": slice(0, 3), "pose": slice(3, 6), "wheel_speed": slice(6, 6 + count),
+             "wheel_angle": slice(6 + count, 6 + 2 * count)}
+    for name, part in parts.items():
+        if part.stop > part.start:
+            judgement.add(same_bits(name, run.states[:, part], theirs[:, part], run.ticks))
+    judgement.add(link_verdict(node))
+    judgement.figures |= speed_figures(run.steps, run.seconds, run.frames_out, run.frames_in, len(run.ticks))
+    judgement.figures |= latency_figures(run.latencies_s)
+    return judgement
+
+
+def judge_scaled(node: NodeClient, scene: Scene, steps: int | None, tolerances: dict[str, float],
+                 moved: Moved = lambda _: None) -> Judgement:
+    """Lockstep with scaled frames against a twin that gets the same integers: half a last place."""
+    run = run_scaled(node, scene, steps, moved)
+    judgement = Judgement(scene.name, "lockstep")
+    judgement.add(*signal_verdicts(run.comparison, tolerances), link_verdict(node),
+                  overrange_verdict(run.voltage_overranges, run.comparison.overranges))
+    judgement.figures |= speed_figures(run.steps, run.seconds, run.frames_out, run.frames_in, run.steps)
+    judgement.figures |= latency_figures(run.latencies_s)
+    return judgement
+
+
+def signal_verdicts(comparison: Comparison, tolerances: dict[str, float]) -> list[Verdict]:
+    """One per signal; a tolerance may be given by the full name or the part behind the dot."""
+    verdicts = []
+    for name, record in comparison.signals.items():
+        short = name.rpartition(".")[2]
+        limit = tolerances.get(name, tolerances.get(short, HALF_A_BIT * record.scale))
+        verdicts.append(within(name, np.array(record.measured), np.array(record.twin), limit, np.array(record.ticks)))
+    return verdicts
+
+
+def link_verdict(node: NodeClient) -> Verdict:
+    """No frame of the node was wrong, missing or doubled."""
+    faults = {name: count for name, count in node.link.faults.items() if count}
+    detail = ", ".join(f"{count} × {name}" for name, count in faults.items())
+    return Verdict("frames", not faults, detail or f"{node.link.frames_in} in, all right", float(sum(faults.values())))
+
+
+def overrange_verdict(out: int, back: int) -> Verdict:
+    """No value left the range of its frame."""
+    return Verdict("range", out + back == 0, f"{out} voltages and {back} answers out of range" if out + back else
+                   "every value fits its frame", float(out + back))
+
+
+def speed_figures(steps: int, seconds: float, frames_out: int, frames_in: int, exchanges: int) -> dict[str, float]:
+    """Steps and frames a second."""
+    return {"steps": steps, "seconds": seconds, "steps_per_s": steps / seconds if seconds else 0.0,
+            "exchanges_per_s": exchanges / seconds if seconds else 0.0,
+            "frames_out_per_exchange": frames_out / max(exchanges, 1),
+            "frames_in_per_exchange": frames_in / max(exchanges, 1)}

@@ -1,0 +1,57 @@
+"""Logs of everything on the bus, complete up to the last frame: BLF, ASC or whatever python-can writes by the name's end."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from contextlib import ExitStack, contextmanager
+from pathlib import Path
+
+import can
+
+from laconic.errors import BadInput, reason_of
+from laconic.rig.link import Link
+
+
+@contextmanager
+def logged(link: Link, paths: tuple[Path, ...]) -> Iterator[None]:
+    """Writes every frame that is sent or received; the files are closed even when the run dies."""
+    with ExitStack() as open_logs:
+        for path in paths:
+            writer = open_logs.enter_context(open_log(path))
+            link.listeners.append(stamped(writer, link))
+        yield
+
+
+def open_log(path: Path) -> can.io.generic.MessageWriter:
+    """A python-can log writer for this name."""
+    try:
+        return can.Logger(str(path))
+    except ValueError as error:
+        raise BadInput(f"--log {path}: {error}; use a name that ends in .blf or .asc") from None
+    except OSError as error:
+        raise BadInput(f"--log {path}: {reason_of(error)}; choose a folder that exists and may be written") from None
+
+
+def stamped(writer: can.io.generic.MessageWriter, link: Link) -> can.typechecking.MessageReceiver:
+    """Gives frames that carry no time (those we send, those of a virtual clock) the link's."""
+
+    def write(message: can.Message) -> None:
+        is_received = message.timestamp > 0.0
+        stamp = message.__copy__()
+        stamp.timestamp = link.clock.now_us() / 1e6
+        stamp.is_rx = is_received
+        stamp.channel = 1
+        writer(stamp)
+
+    return write
+
+
+def read_log(path: Path) -> list[can.Message]:
+    """All frames of a log."""
+    try:
+        with can.LogReader(str(path)) as reader:
+            return list(reader)
+    except ValueError as error:
+        raise BadInput(f"{path}: {error}; give a .blf or .asc file") from None
+    except (OSError, can.CanError) as error:
+        raise BadInput(f"{path}: cannot read this log ({error})") from None

@@ -1,0 +1,52 @@
+"""Results for people and for CI: table, JSON, JUnit."""
+
+from __future__ import annotations
+
+import json
+from dataclasses import asdict
+from pathlib import Path
+from xml.etree import ElementTree
+
+from rich.console import Console
+from rich.table import Table
+
+from laconic.errors import BadInput, reason_of
+from laconic.rig.verdict import Judgement
+
+
+def as_json(judgement: Judgement) -> str:
+    """Everything, machine-readable."""
+    whole = {"scene": judgement.scene, "mode": judgement.mode, "passed": judgement.passed,
+             "verdicts": [asdict(each) for each in judgement.verdicts], "figures": judgement.figures,
+             "notes": judgement.notes}
+    return json.dumps(whole, indent=1)
+
+
+def write_junit(judgement: Judgement, path: Path, seconds: float) -> None:
+    """One test case per verdict."""
+    failures = sum(not each.passed for each in judgement.verdicts)
+    suite = ElementTree.Element("testsuite", name=f"laconic rig {judgement.scene} {judgement.mode}",
+                                tests=str(len(judgement.verdicts)), failures=str(failures), time=f"{seconds:.3f}")
+    for each in judgement.verdicts:
+        case = ElementTree.SubElement(suite, "testcase", classname=f"rig.{judgement.mode}", name=each.name)
+        if not each.passed:
+            ElementTree.SubElement(case, "failure", message=each.detail).text = each.detail
+    try:
+        ElementTree.ElementTree(suite).write(path, encoding="utf-8", xml_declaration=True)
+    except OSError as error:
+        raise BadInput(f"--junit {path}: {reason_of(error)}; choose a folder that exists") from None
+
+
+def show(judgement: Judgement) -> None:
+    """The table for people."""
+    table = Table(title=f"{judgement.scene}, {judgement.mode}", title_justify="left")
+    for heading in ("signal", "verdict", "detail"):
+        table.add_column(heading)
+    for each in judgement.verdicts:
+        table.add_row(each.name, "[green]pass" if each.passed else "[red]FAIL", each.detail)
+    console = Console()
+    console.print(table)
+    for name, value in judgement.figures.items():
+        console.print(f"{name:>26}  {value:.6g}")
+    for note in judgement.notes:
+        console.print(note)

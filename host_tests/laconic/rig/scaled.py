@@ -1,0 +1,215 @@
+"""Daily use: voltages and answers as scaled integers, judged against a twin in the core that gets the same integers."""
+
+from __future__ import annotations
+
+import math
+import time
+from collections.abc import Callable
+from dataclasses import dataclass, field
+
+import numpy as np
+
+from laconic.drive import Drive
+from laconic.errors import BadInput
+from laconic.plant import Plant
+from laconic.rig.client import NodeClient
+from laconic.rig.errors import NodeSilent
+from laconic.rig.lockstep import load_scene
+from laconic.rig.wire import Frame, wire
+from laconic.scene import Scene
+
+DEFAULT_FRAMES = ("NU", "POSE", "WHEEL_SPEED")
+SELECT_BIT = {"NU": "send_nu", "POSE": "send_pose", "WHEEL_SPEED": "send_wheel_speed", "HEARTBEAT": "send_heartbeat",
+              "COUNTERS": "send_counters", "STATE_FD": "send_state_fd"}
+
+
+def wanted_frames(scene: Scene) -> tuple[str, ...]:
+    """The frames that [rig] asks for, or the usual ones."""
+    for name in scene.rig.frames:
+        if name not in SELECT_BIT:
+            raise BadInput(f"{scene.path}: rig.frames: there is no frame {name}; known are {', '.join(SELECT_BIT)}")
+    return scene.rig.frames or DEFAULT_FRAMES
+
+
+def check_voltages_only(scene: Scene) -> None:
+    """Scaled frames carry voltages and nothing else."""
+    for each in scene.inputs:
+        if not each.signal.startswith("voltage_V"):
+            raise BadInput(f"{scene.path}: {each.place}.signal: {each.signal} has no scaled frame; use --same-bits, "
+                           "which sends every input")
+
+
+def groups_of(wheel_count: int) -> int:
+    """Frames of three wheels each; at least one, which feeds the watchdog of a vehicle without wheels."""
+    return max(1, math.ceil(wheel_count / 3))
+
+
+class Held:
+    """A drive's values at the start of each step, looked up anew only where they can change."""
+
+    def __init__(self, drive: Drive):
+        self._drive, self._changes, self._values = drive, set(drive.changes), {}
+
+    def at(self, tick: int) -> dict[str, float]:
+        """By signal; after the end of the drive, its last values."""
+        if tick < self._drive.steps and (tick in self._changes or not self._drive.is_held or not self._values):
+            self._values = self._drive.held_at(tick)
+        return self._values
+
+
+class Voltages:
+    """Scaled voltages: what is sent, and the same numbers for the twin."""
+
+    def __init__(self, node: NodeClient, scene: Scene):
+        self.node, self.core = node, scene.core()
+        self.count = scene.wheel_count
+        self.frame = wire()["VOLTAGE"]
+        self.overranges = 0
+        self._fields = [self.frame.fields[f"voltage_{k}"] for k in (1, 2, 3)]
+        self._per_unit = self.core.dtype.type(round(1 / self._fields[0].scale))
+
+    def send(self, volts: dict[str, float], sync: bool = False) -> np.ndarray:
+        """Sends all groups; the last carries the sync flag. Returns the row of input numbers that the node uses."""
+        raws, row = [], np.zeros(self.core.input_length, self.core.dtype)
+        start = self.core.input_fields["voltage_V"][0]
+        for wheel in range(3 * groups_of(self.count)):
+            raw, over = self._fields[wheel % 3].raw(volts.get(f"voltage_V[{wheel + 1}]", 0.0))
+            raws.append((raw, over))
+            if wheel < self.count:
+                row[start + wheel] = self.core.dtype.type(raw) / self._per_unit
+        for group in range(groups_of(self.count)):
+            three = raws[3 * group : 3 * group + 3]
+            overrange = any(over for _, over in three)
+            self.overranges += overrange
+            last = group == groups_of(self.count) - 1
+            self.node.link.send(self.frame, self.frame.pack(
+                sync=int(sync and last), group=group, overrange=int(overrange),
+                **{f"voltage_{k + 1}": raw for k, (raw, _) in enumerate(three)}))
+        return row
+
+
+def expected_raw(plant: Plant, frame: Frame, group: int = 0) -> dict[str, float]:
+    """What the twin would put into a frame, before rounding, in units of the raw values."""
+    pose = plant.pose
+    if frame.name == "NU":
+        values = dict(zip(("nu_1", "nu_2", "nu_3"), plant.nu))
+    elif frame.name == "POSE":
+        values = {"x": pose.x_m, "y": pose.y_m, "heading": pose.heading_wrapped_rad}
+    elif frame.name == "WHEEL_SPEED":
+        speeds = plant.wheel_speeds()[3 * group : 3 * group + 3]
+        values = {f"wheel_speed_{k + 1}": speed for k, speed in enumerate(speeds)}
+    else:
+        speeds = plant.wheel_speeds()
+        values = {f"nu_{k + 1}": v for k, v in enumerate(plant.nu)}
+        values |= {"x": pose.x_m, "y": pose.y_m, "heading": pose.heading_wrapped_rad}
+        values |= {f"wheel_speed_{k + 1}": v for k, v in enumerate(speeds)}
+    return {name: float(value) / frame.fields[name].scale for name, value in values.items()}
+
+
+@dataclass
+class SignalRecord:
+    """One signal over a run, in its unit: what came and what the twin says."""
+
+    scale: float
+    ticks: list[int] = field(default_factory=list)
+    measured: list[float] = field(default_factory=list)
+    twin: list[float] = field(default_factory=list)
+
+
+class Comparison:
+    """Collects answers next to the twin's values."""
+
+    def __init__(self, wheel_count: int):
+        self.wheel_count = wheel_count
+        self.signals: dict[str, SignalRecord] = {}
+        self.overranges = 0
+
+    def take(self, frame: Frame, data: bytes, plant: Plant) -> None:
+        """One answer and the twin at the same step."""
+        raw = frame.unpack(data)
+        group = raw.get("group", 0)
+        self.overranges += raw.get("overrange", 0)
+        for name, value in expected_raw(plant, frame, group).items():
+            field_ = frame.fields[name]
+            label = f"{frame.name}.{self._label(name, group)}"
+            record = self.signals.setdefault(label, SignalRecord(field_.scale))
+            difference = raw[name] - value
+            if name == "heading":  # +π and −π are neighbours
+                turn = 2 * math.pi / field_.scale
+                difference -= turn * round(difference / turn)
+            cut = min(max(value, -field_.largest), field_.largest)
+            record.ticks.append(plant.steps)
+            record.measured.append((raw[name] if cut != value else value + difference) * field_.scale)
+            record.twin.append(cut * field_.scale)
+
+    def _label(self, name: str, group: int) -> str:
+        if not group:
+            return name
+        base, _, k = name.rpartition("_")
+        return f"{base}_{3 * group + int(k)}"
+
+
+@dataclass
+class ScaledRun:
+    """A lockstep run with scaled frames."""
+
+    comparison: Comparison
+    latencies_s: list[float]
+    seconds: float
+    steps: int
+    frames_out: int
+    frames_in: int
+    voltage_overranges: int
+
+
+def frames_per_answer(scene: Scene, frames: tuple[str, ...]) -> int:
+    """How many frames follow a SYNC."""
+    wheel_frames = math.ceil(scene.wheel_count / 3) if "WHEEL_SPEED" in frames else 0
+    return wheel_frames + sum(name in ("NU", "POSE", "STATE_FD") for name in frames)
+
+
+def run_scaled(node: NodeClient, scene: Scene, steps: int | None = None,
+               moved: Callable[[int], None] = lambda _: None) -> ScaledRun:
+    """Lockstep with scaled frames: voltages with sync flag out, the chosen frames in, the twin beside it."""
+    check_voltages_only(scene)
+    frames = wanted_frames(scene)
+    awaited = frames_per_answer(scene, frames)
+    if not awaited:
+        raise BadInput(f"{scene.path}: rig.frames: {', '.join(frames)} never answer a step; add NU, POSE or WHEEL_SPEED")
+    twin = load_scene(node, scene)
+    node.select(**{SELECT_BIT[name]: 1 for name in frames})
+    node.start_lockstep()
+    held, voltages, comparison = Held(scene.drive()), Voltages(node, scene), Comparison(scene.wheel_count)
+    link, latencies, steps = node.link, [], steps or scene.steps()
+    rows: list[np.ndarray] = []
+    answers: list[list[tuple[Frame, bytes]]] = []
+    frames_out, frames_in, began = link.frames_out, link.frames_in, time.perf_counter()
+    for tick in range(steps):
+        sent = time.perf_counter()
+        rows.append(voltages.send(held.at(tick), sync=True))
+        answers.append(await_answers(node, awaited))
+        latencies.append(time.perf_counter() - sent)
+        moved(1)
+    seconds = time.perf_counter() - began
+    node.stop()
+    for row, answer in zip(rows, answers):
+        twin.run(twin.core.input(row))
+        for frame, data in answer:
+            comparison.take(frame, data, twin)
+    return ScaledRun(comparison, latencies, seconds, steps, link.frames_out - frames_out, link.frames_in - frames_in,
+                     voltages.overranges)
+
+
+def await_answers(node: NodeClient, count: int) -> list[tuple[Frame, bytes]]:
+    """The frames that answer one step."""
+    answers: list[tuple[Frame, bytes]] = []
+    while len(answers) < count:
+        received = node.link.receive(node.timeout_s)
+        if received is None:
+            raise NodeSilent(f"{len(answers)} of {count} answers came within {node.timeout_s:g} s; faults seen: "
+                             f"{dict(node.link.faults) or 'none'}")
+        if received[0].name == "RESULT":
+            node.check(received[0].unpack(received[1]))
+        elif received[0].name in ("NU", "POSE", "WHEEL_SPEED", "STATE_FD"):
+            answers.append(received)
+    return answers

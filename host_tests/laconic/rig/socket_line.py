@@ -1,0 +1,72 @@
+"""A serial line over a socket that is read in whole chunks.
+
+pyserial's socket:// handler asks the system twice for every byte, which limits python-can's slcan to a few hundred
+frames a second; this stands in for it with the few calls that slcan makes.
+"""
+
+from __future__ import annotations
+
+import select
+import socket
+from collections.abc import Callable
+
+
+class SocketLine:
+    """What slcan needs of a serial port."""
+
+    def __init__(self, line: socket.socket, timeout_s: float, close: Callable[[], None]):
+        self._socket, self.timeout, self._close = line, timeout_s, close
+        self.write_timeout: float | None = None
+        self._buffer, self._at = b"", 0
+        line.setsockopt(socket.IPPROTO_TCP, socket.TCP_NODELAY, 1)
+        line.setblocking(True)
+
+    @property
+    def in_waiting(self) -> int:
+        """Bytes that can be read at once."""
+        if self._at >= len(self._buffer):
+            self._fill(0.0)
+        return len(self._buffer) - self._at
+
+    def _fill(self, timeout_s: float) -> None:
+        if select.select([self._socket], [], [], timeout_s)[0]:
+            self._buffer, self._at = self._socket.recv(65536), 0
+            if not self._buffer:
+                raise OSError("the other end has closed the connection")
+
+    def read(self, size: int = 1) -> bytes:
+        """Up to `size` bytes; none when none come within the timeout."""
+        if self._at >= len(self._buffer):
+            self._fill(self.timeout)
+        found = self._buffer[self._at : self._at + size]
+        self._at += len(found)
+        return found
+
+    def write(self, data: bytes) -> int:
+        """Sends all of it."""
+        self._socket.sendall(data)
+        return len(data)
+
+    def flush(self) -> None:
+        """Nothing is held back."""
+
+    def reset_input_buffer(self) -> None:
+        """Forgets what has come."""
+        while self.in_waiting:
+            self._at = len(self._buffer)
+
+    def fileno(self) -> int:
+        """For select."""
+        return self._socket.fileno()
+
+    def close(self) -> None:
+        """Ends the connection."""
+        self._close()
+
+
+def read_in_chunks(bus: object) -> None:
+    """Puts a SocketLine under an slcan bus that runs over a socket; leaves any other bus alone."""
+    port = getattr(bus, "serialPortOrig", None)
+    line = getattr(port, "_socket", None)
+    if isinstance(line, socket.socket):
+        bus.serialPortOrig = SocketLine(line, port.timeout or 0.001, port.close)  # type: ignore[attr-defined]

@@ -1,0 +1,80 @@
+"""What the rig says in the end: one verdict per signal, with the worst difference and what was allowed."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass, field
+
+import numpy as np
+
+from laconic.errors import BadInput
+
+
+@dataclass(frozen=True)
+class Verdict:
+    """About one signal, or about the run as a whole."""
+
+    name: str
+    passed: bool
+    detail: str
+    worst: float = 0.0
+    limit: float = 0.0
+    step: int = 0       # where the worst was
+
+
+@dataclass
+class Judgement:
+    """All verdicts of one run and the figures that go with them."""
+
+    scene: str
+    mode: str
+    verdicts: list[Verdict] = field(default_factory=list)
+    figures: dict[str, float] = field(default_factory=dict)
+    notes: list[str] = field(default_factory=list)
+
+    @property
+    def passed(self) -> bool:
+        """Whether every verdict is good; a run without verdict is not."""
+        return bool(self.verdicts) and all(each.passed for each in self.verdicts)
+
+    def add(self, *verdicts: Verdict) -> None:
+        """More of them."""
+        self.verdicts.extend(verdicts)
+
+
+def same_bits(name: str, ours: np.ndarray, theirs: np.ndarray, ticks: np.ndarray) -> Verdict:
+    """Every number the same, down to the last bit."""
+    different = np.flatnonzero((np.asarray(ours) != np.asarray(theirs)).reshape(len(ticks), -1).any(axis=1))
+    if not len(different):
+        return Verdict(name, True, f"same bits in {len(ticks)} answers")
+    first = different[0]
+    worst = float(np.max(np.abs(np.asarray(ours, float) - np.asarray(theirs, float))))
+    return Verdict(name, False, f"differs from the twin in {len(different)} of {len(ticks)} answers, first at step "
+                   f"{ticks[first]}", worst, 0.0, int(ticks[first]))
+
+
+def within(name: str, ours: np.ndarray, theirs: np.ndarray, limit: np.ndarray | float, ticks: np.ndarray) -> Verdict:
+    """No difference above the limit, which may vary from answer to answer."""
+    error = np.abs(np.asarray(ours, float) - np.asarray(theirs, float))
+    allowed = np.broadcast_to(np.asarray(limit, float), error.shape)
+    at = int(np.argmax(error - allowed)) if len(error) else 0
+    worst, limit_there = (float(error[at]), float(allowed[at])) if len(error) else (0.0, 0.0)
+    passed = len(error) > 0 and bool(np.all(error <= allowed))
+    detail = f"largest difference {float(error.max()) if len(error) else 0:.3g}"
+    if not passed:
+        detail = f"{worst:.3g} off at step {ticks[at]}, {limit_there:.3g} allowed" if len(error) else "never came"
+    return Verdict(name, passed, detail, worst, limit_there, int(ticks[at]) if len(error) else 0)
+
+
+def read_tolerances(given: Sequence[str]) -> dict[str, float]:
+    """{"nu_1": 0.01} from ["nu_1=0.01"]."""
+    found = {}
+    for text in given:
+        name, equals, value = text.partition("=")
+        try:
+            found[name] = float(value)
+        except ValueError:
+            equals = ""
+        if not equals or not 0.0 <= found[name] < float("inf"):
+            raise BadInput(f"--tolerance {text}: give SIGNAL=VALUE with a value that is zero or more, such as nu_1=0.01")
+    return found
