@@ -52,16 +52,16 @@ static inline void add(laconic_sum sums[3], vector v) {
     sum_add(&sums[2], v.z);
 }
 
-/* Takes the step, or refuses and leaves the state as it was. With ζ and what it changes by in range, so is
- * everything computed from them: model and step are bounded when they are prepared. */
+/* Takes the step, or refuses and leaves the state as it was. Model and step are bounded when they are prepared, so
+ * with ζ and the motion in range everything else is. */
 static inline laconic_status advance(laconic_state *state, const laconic_model *model, real step_s, vector zeta,
                                      increment by) {
     const vector path = scaled(step_s, by.mean);
-    if (!(square(zeta) + square(by.delta) + square(by.slope) <= LARGEST_SPEED * LARGEST_SPEED))
-        return LACONIC_OVERFLOW;
+    if (!(square(zeta) + square(plus(zeta, by.delta)) <= LARGEST_SPEED * LARGEST_SPEED)) return LACONIC_OVERFLOW;
     if (LACONIC_WITH_POSE) {
         const motion moved = displacement(model, path, scaled(step_s, by.slope));
-        if (!(magnitude(moved.turn_rad) < LARGEST_TURN_RAD)) return LACONIC_OVERFLOW;
+        if (!(magnitude(moved.turn_rad) + magnitude(moved.along_m) + magnitude(moved.across_m) < LARGEST_TURN_RAD))
+            return LACONIC_OVERFLOW;
         advance_pose(state, moved);
     }
     add(state->zeta, by.delta);

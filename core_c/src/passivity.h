@@ -24,15 +24,15 @@ typedef struct drive {
 /* Exactly: |ζ⁺|² − |ζ|² = 2∫(b·ζ − ζ·diag(r)ζ)dt <= 2∫ b·ζ dt. The work is looked at only if |ζ| grew at
  * all. False for NaN, too. */
 static inline bool passive(vector zeta, real step_s, const drive *b, increment by) {
-    const real before = square(zeta);
-    const real gain = R(2) * dot(zeta, by.delta) + square(by.delta);
-    real work;
-    if (gain <= ENERGY_TOLERANCE * before) return true;
+    const real before = square(zeta), after = square(plus(zeta, by.delta));
+    real gain, work;
+    if (after <= (R(1) + ENERGY_TOLERANCE) * before) return true;
+    gain = R(2) * dot(zeta, by.delta) + square(by.delta);
     work = dot(b->start, by.mean);
     if (b->varies)
         work += R(0.5) * dot(b->change, by.mean) + (R(1) / R(12)) * dot(b->change, by.slope) -
                 (R(1) / R(6)) * dot(b->curve, by.mean);
-    return gain - R(2) * step_s * work <= ENERGY_TOLERANCE * (R(2) * before + gain);
+    return gain - R(2) * step_s * work <= ENERGY_TOLERANCE * (before + after);
 }
 
 #endif

@@ -1,4 +1,4 @@
-/* vehicle, model, integrator and state in one piece; the stepping loop with its integer count. */
+/* vehicle, model, integrator and state in one piece, with its integer count of steps. */
 #include "internal.h"
 
 laconic_status laconic_plant_start(laconic_plant *plant, const laconic_vehicle *vehicle, const laconic_method *method,
@@ -18,16 +18,11 @@ laconic_status laconic_plant_start(laconic_plant *plant, const laconic_vehicle *
 
 laconic_status laconic_plant_run(laconic_plant *plant, const laconic_input *held, uint64_t steps,
                                  laconic_refusal *why) {
-    uint64_t n;
-    for (n = 0; n < steps; n++) {
-        const laconic_status status = laconic_step(&plant->model, &plant->integrator, &plant->state, held);
-        if (status != LACONIC_OK) {
-            laconic_step_refusal(why, status, &plant->model, &plant->integrator, &plant->state, held);
-            return status;
-        }
-        plant->steps++;
-    }
-    return LACONIC_OK;
+    laconic_status status;
+    plant->steps += laconic_run(&plant->model, &plant->integrator, &plant->state, held, steps, &status);
+    if (status != LACONIC_OK)
+        laconic_step_refusal(why, status, &plant->model, &plant->integrator, &plant->state, held);
+    return status;
 }
 
 laconic_status laconic_plant_set_step(laconic_plant *plant, laconic_real step_s, laconic_refusal *why) {

@@ -5,7 +5,7 @@
 
 #include "internal.h"
 
-#define CHORD_SMALL R(0.25)          /* z = α² up to which poly_sinc and poly_j1 hold */
+#define CHORD_SMALL R(0.015625)      /* z = α² up to which poly_sinc and poly_j1 hold */
 #define TANGENT_SMALL R(0.015625)    /* |z| up to which poly_tangent holds            */
 
 #ifdef LACONIC_SINGLE
@@ -21,14 +21,14 @@ static inline real poly_cos(real z) {
            z * z * (R(0.041666646860773310301) + z * (R(-0.0013887367223119975287) + z * R(0.000024438416549882651326)));
 }
 
-/* sin α/α, z = α²: error 1e-10 */
+/* sin α/α on z = α² <= 1/64: error 3e-11 */
 static inline real poly_sinc(real z) {
-    return R(1) + z * (R(-0.16666665880551673974) + z * (R(0.0083331423829819347446) + z * R(-0.00019709355699143168117)));
+    return R(1) + z * (R(-0.16666664580678050564) + z * R(0.0083290180090501000745));
 }
 
-/* (sin α − α cos α)/α³, z = α²: error 1e-8 */
+/* (sin α − α cos α)/α³ on z = α² <= 1/64: error 4e-8 */
 static inline real poly_j1(real z) {
-    return R(0.33333332262974735309) + z * (R(-0.033332561944357907755) + z * R(0.001182237312979869037));
+    return R(0.33333329701864815124) + z * R(-0.033314737524190506486);
 }
 
 /* tan √z/√z, either sign of z: error 2e-10 */
@@ -45,23 +45,22 @@ static inline real poly_sin(real x, real z) {
            z * (R(2.7557313693599078936e-6) + z * (R(-2.5050758387924907033e-8) + z * R(1.5896811979428936059e-10))))));
 }
 
-/* cos x on |x| <= π/4, z = x²: error 5e-20 */
+/* cos x on |x| <= π/4, z = x²: error 8e-17, half a unit in the last place */
 static inline real poly_cos(real z) {
-    return R(1) - z * R(0.5) + z * z * (R(0.041666666666666599524) +
-           z * (R(-0.0013888888888874132458) + z * (R(0.000024801587289487641776) +
-           z * (R(-2.7557314353950177896e-7) + z * (R(2.0875723498811682614e-9) + z * R(-1.1359659781881176891e-11))))));
+    return R(1) - z * R(0.5) + z * z * (R(0.041666666666602229484) +
+           z * (R(-0.0013888888878270576647) + z * (R(0.000024801580969956457619) +
+           z * (R(-2.7555566810097892732e-7) + z * R(2.064771670736716179e-9)))));
 }
 
-/* sin α/α, z = α²: error 2e-17 */
+/* sin α/α on z = α² <= 1/64: error 5e-20 */
 static inline real poly_sinc(real z) {
-    return R(1) + z * (R(-0.16666666666666281302) + z * (R(0.0083333333331147989683) +
-           z * (R(-0.00019841269438804871329) + z * (R(2.7556995710930070915e-6) + z * R(-2.4934019677787338054e-8)))));
+    return R(1) + z * (R(-0.16666666666666656249) + z * (R(0.0083333333332685511471) +
+           z * (R(-0.00019841268589095877322) + z * R(2.7547780343214621122e-6))));
 }
 
-/* (sin α − α cos α)/α³, z = α²: error 4e-15 */
+/* (sin α − α cos α)/α³ on z = α² <= 1/64: error 3e-12, and what it multiplies is itself of second order */
 static inline real poly_j1(real z) {
-    return R(0.33333333333332967299) + z * (R(-0.033333333332601061983) + z * (R(0.0011904761670361789656) +
-           z * (R(-0.000022045592735066974568) + z * R(2.4931945338832865323e-7))));
+    return R(0.33333333333070619568) + z * (R(-0.033333330306691614816) + z * R(0.0011899596015826127739));
 }
 
 /* tan √z/√z, either sign of z: error 5e-18 */

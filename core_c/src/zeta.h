@@ -30,7 +30,7 @@ static inline void set_zeta(laconic_state *state, vector zeta) {
 /* ζ' = (g·ζ)(ζ×w) − diag(r)ζ + b: equation (4.7) in the coordinates of laconic_model. */
 static inline vector zeta_rate(const laconic_model *m, vector z, vector b) {
     const vector turning = scaled(dot(vec(m->nu_of_zeta[2]), z), cross(z, vec(m->gyro)));
-    return plus(turning, minus(b, times(vec(m->decay_per_s), z)));
+    return plus(minus(turning, times(vec(m->decay_per_s), z)), b);
 }
 
 #endif

@@ -379,6 +379,11 @@ laconic_status laconic_integrator_prepare(laconic_integrator *integrator, const 
 laconic_status laconic_step(const laconic_model *model, const laconic_integrator *integrator, laconic_state *state,
                             const laconic_input *held);
 
+/* `steps` steps with the input held: what it amounts to in ζ coordinates is worked out once. Returns the
+ * number taken; where that is less, `status` says why the next was refused. */
+uint64_t laconic_run(const laconic_model *model, const laconic_integrator *integrator, laconic_state *state,
+                     const laconic_input *held, uint64_t steps, laconic_status *status);
+
 /* One step with the input sampled at its start, middle and end. */
 laconic_status laconic_step_sampled(const laconic_model *model, const laconic_integrator *integrator,
                                     laconic_state *state, const laconic_input *start, const laconic_input *middle,
