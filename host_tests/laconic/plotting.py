@@ -18,6 +18,7 @@ matplotlib.use("Agg")
 from matplotlib import pyplot as plt  # noqa: E402  (the backend must be chosen first)
 from matplotlib.axes import Axes  # noqa: E402
 from matplotlib.figure import Figure  # noqa: E402
+from matplotlib.transforms import ScaledTranslation  # noqa: E402
 
 STYLE = {"axes.grid": True, "grid.alpha": 0.3, "axes.spines.top": False, "axes.spines.right": False,
          "font.size": 10, "axes.titlesize": 11, "legend.frameon": False, "lines.linewidth": 1.3}
@@ -59,7 +60,8 @@ def plot_path(axes: Axes, run: Trajectory) -> None:
     axes.set_ylim(*_around(y, span, margin))
     axes.set_aspect("equal", adjustable="box")
     axes.set(xlabel="x [m]", ylabel="y [m]", title="Path of the centre of mass")
-    axes.legend(loc="upper left", bbox_to_anchor=(0.0, -0.12), ncols=3, borderaxespad=0.0)
+    below_label = axes.transAxes + ScaledTranslation(0.0, -42 / 72, axes.figure.dpi_scale_trans)
+    axes.legend(loc="upper center", bbox_to_anchor=(0.5, 0.0), bbox_transform=below_label, ncols=3, borderaxespad=0.0)
 
 
 def _around(values: np.ndarray, span: float, margin: float) -> tuple[float, float]:
@@ -107,12 +109,17 @@ def _roomy(axes: Axes) -> None:
 def plot_error_against_time(axes: Axes, points: Mapping[str, Sequence[tuple[float, float]]], floor: float) -> None:
     """Work against precision: (run time per simulated second [µs], error) for several steps of each method."""
     for (name, pairs), marker in zip(points.items(), MARKERS, strict=False):
-        if pairs:
-            times, errors = zip(*pairs, strict=True)
-            axes.loglog(times, np.maximum(errors, 1e-17), marker=marker, markersize=5, label=name)
-    axes.axhspan(1e-17, floor, color="0.5", alpha=0.15, lw=0)
-    axes.set(xlabel="run time per simulated second [µs]", ylabel="largest error of ν [–]",
-             title="Error against run time")
+        if not pairs:
+            continue
+        times, errors = zip(*pairs, strict=True)
+        # auto coincides with the method it picks: large and hollow, around the other's markers
+        look = {"linestyle": "none", "markersize": 11, "markerfacecolor": "none", "color": "k"} if name == "auto" else {
+            "markersize": 5}
+        axes.loglog(times, np.maximum(errors, 1e-17), marker=marker, label=name, **look)
+    axes.set_ylim(bottom=0.3 * min(axes.dataLim.y0, floor))
+    axes.axhspan(1e-17, floor, color="0.5", alpha=0.15, lw=0, label="the reference's own")
+    axes.set(xlabel="run time per simulated second [µs]", ylabel="largest relative error [–]",
+             title="Error (ν, pose, wheel angles) against run time, several steps")
     axes.legend(loc="center left", bbox_to_anchor=(1.01, 0.5), fontsize=9)
 
 
