@@ -19,10 +19,11 @@ laconic_status laconic_plant_start(laconic_plant *plant, const laconic_vehicle *
 laconic_status laconic_plant_run(laconic_plant *plant, const laconic_input *held, uint64_t steps,
                                  laconic_refusal *why) {
     laconic_status status;
+    laconic_refusal found;
     plant->steps += laconic_run(&plant->model, &plant->integrator, &plant->state, held, steps, &status);
-    if (status != LACONIC_OK)
-        laconic_step_refusal(why, status, &plant->model, &plant->integrator, &plant->state, held);
-    return status;
+    if (status == LACONIC_OK) return status;
+    laconic_step_refusal(&found, status, &plant->model, &plant->integrator, &plant->state, held);
+    return refuse(why, found.status, found.field, found.item, found.value, found.limit);
 }
 
 laconic_status laconic_plant_set_step(laconic_plant *plant, laconic_real step_s, laconic_refusal *why) {

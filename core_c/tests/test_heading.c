@@ -16,9 +16,9 @@ static void the_wrapped_heading_lies_in_minus_pi_to_pi(void) {
         angle += (double)step;
         wrapped = (double)heading_wrapped(&heading);
         TEST_ASSERT_TRUE(wrapped > -PI - 1e-6 && wrapped <= PI + 1e-6);
-        ASSERT_NEAR(EITHER(1e-11, 1e-4), cos(angle), cos(wrapped));
-        ASSERT_NEAR(EITHER(1e-11, 1e-4), sin(angle), sin(wrapped));
-        ASSERT_NEAR(EITHER(1e-11, 2e-4), angle, heading_unwrapped(&heading));
+        ASSERT_NEAR(EITHER(1e-9, 1e-3), cos(angle), cos(wrapped));
+        ASSERT_NEAR(EITHER(1e-9, 1e-3), sin(angle), sin(wrapped));
+        ASSERT_NEAR(EITHER(1e-9, 1e-3), angle, heading_unwrapped(&heading));
     }
 }
 

@@ -374,8 +374,9 @@ const laconic_method *laconic_method_by_name(const char *name);
 laconic_status laconic_integrator_prepare(laconic_integrator *integrator, const laconic_method *method,
                                           const laconic_model *model, laconic_real step_s, laconic_refusal *why);
 
-/* One step of h with the input held. Refuses NOT_FINITE (input), STEP_BEYOND_GYROSCOPIC_LIMIT,
- * STEP_GAINS_ENERGY, STEP_SINGULAR, OVERFLOW; the state is then as it was. */
+/* One step of h with the input held. Refuses STEP_BEYOND_GYROSCOPIC_LIMIT, STEP_GAINS_ENERGY, STEP_SINGULAR,
+ * OVERFLOW; the state is then as it was. A number of the input that is not finite makes any of these:
+ * laconic_step_refusal finds it. */
 laconic_status laconic_step(const laconic_model *model, const laconic_integrator *integrator, laconic_state *state,
                             const laconic_input *held);
 
@@ -389,7 +390,8 @@ laconic_status laconic_step_sampled(const laconic_model *model, const laconic_in
                                     laconic_state *state, const laconic_input *start, const laconic_input *middle,
                                     const laconic_input *end);
 
-/* Turns the status of a refused step into words: which step, state and limit. */
+/* Turns the status of a refused step into words: which step, state and limit; NOT_FINITE with its field where
+ * the input is to blame. */
 void laconic_step_refusal(laconic_refusal *why, laconic_status status, const laconic_model *model,
                           const laconic_integrator *integrator, const laconic_state *state,
                           const laconic_input *input);

@@ -1,0 +1,57 @@
+/* Where Kahan's equations have no solution: det(E − ½h[(g·ζ)(·×w) + (ζ×w)(g·)]) = 0, a cubic in the size of ζ. */
+#ifndef LACONIC_TEST_KAHAN_H
+#define LACONIC_TEST_KAHAN_H
+
+#include "stiff.h"
+
+static inline double kahan_determinant(const laconic_model *m, const laconic_state *state, double half_step) {
+    double g[3], w[3], z[3], turned[3], a[3][3], yaw = 0;
+    int r, c;
+    for (r = 0; r < 3; r++) {
+        g[r] = (double)m->nu_of_zeta[2][r];
+        w[r] = (double)m->gyro[r];
+        z[r] = (double)state->zeta[r].value;
+        yaw += g[r] * z[r];
+    }
+    for (r = 0; r < 3; r++) turned[r] = z[(r + 1) % 3] * w[(r + 2) % 3] - z[(r + 2) % 3] * w[(r + 1) % 3];
+    for (r = 0; r < 3; r++)
+        for (c = 0; c < 3; c++) a[r][c] = (r == c ? 1.0 : 0.0) - half_step * turned[r] * g[c];
+    for (r = 0; r < 3; r++) { /* (Δ×w)_r = Δ_{r+1} w_{r+2} − Δ_{r+2} w_{r+1} */
+        a[r][(r + 1) % 3] -= half_step * yaw * w[(r + 2) % 3];
+        a[r][(r + 2) % 3] += half_step * yaw * w[(r + 1) % 3];
+    }
+    return a[0][0] * (a[1][1] * a[2][2] - a[1][2] * a[2][1]) - a[0][1] * (a[1][0] * a[2][2] - a[1][2] * a[2][0]) +
+           a[0][2] * (a[1][0] * a[2][1] - a[1][1] * a[2][0]);
+}
+
+/* Scales a motion until the determinant vanishes, by bisection; step 1 s. */
+static inline laconic_state singular_state(const laconic_model *m, double half_step) {
+    laconic_real low = REAL(0), high = REAL(0);
+    laconic_state state;
+    int k;
+    for (high = REAL(0.01); high < REAL(1e3); low = high, high *= REAL(1.2)) {
+        state = moving(m, 91.7 * (double)high, 97.0 * (double)high, -8.4 * (double)high);
+        if (kahan_determinant(m, &state, half_step) < 0) break;
+    }
+    TEST_ASSERT_TRUE_MESSAGE(high < REAL(1e3), "no singular state in this direction");
+    for (k = 0; k < 60; k++) {
+        const laconic_real middle = REAL(0.5) * (low + high);
+        state = moving(m, 91.7 * (double)middle, 97.0 * (double)middle, -8.4 * (double)middle);
+        if (kahan_determinant(m, &state, half_step) < 0)
+            high = middle;
+        else
+            low = middle;
+    }
+    return state;
+}
+
+static inline void assert_singular_step_refused(const laconic_method *method, double half_step) {
+    const laconic_model m = model_of(three_wheels());
+    const laconic_integrator in = integrator_of(method, &m, 1.0);
+    const laconic_input input = no_input();
+    laconic_state state = singular_state(&m, half_step), before = state;
+    ASSERT_STATUS(LACONIC_STEP_SINGULAR, laconic_step(&m, &in, &state, &input));
+    TEST_ASSERT_EQUAL_MEMORY(&before, &state, sizeof state);
+}
+
+#endif

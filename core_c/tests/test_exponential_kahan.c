@@ -1,0 +1,70 @@
+#include "kahan.h"
+
+static void is_of_second_order_under_everything_that_can_act(void) {
+    const laconic_vehicle v = with_motors(three_wheels());
+    const laconic_input input = every_input();
+    assert_order(&laconic_exponential_kahan, &v, start_with(2, 1, 4), &input, 2.0, EITHER(100, 40), 2);
+}
+
+static void is_of_second_order_when_nothing_turns_with_the_world(void) {
+    const laconic_vehicle v = with_motors(mecanum());
+    laconic_input input = every_input();
+    input.world_force_N[0] = input.world_force_N[1] = 0;
+    assert_order(&laconic_exponential_kahan, &v, start_with(2, 1, 4), &input, 1.0, EITHER(100, 40), 2);
+}
+
+static void damping_and_drive_alone_are_exact(void) {
+    const laconic_vehicle v = with_motors(three_wheels());
+    laconic_input input = no_input();
+    errors e;
+    input.voltage_V[0] = REAL(1);
+    input.voltage_V[1] = REAL(-1); /* straight along η: nothing turns */
+    e = errors_of(&laconic_exponential_kahan, &v, start_with(0, 1, 0), &input, 1.0, 1);
+    TEST_ASSERT_TRUE(e.nu < EITHER(1e-13, 4e-6));
+    TEST_ASSERT_TRUE(e.wheels < EITHER(1e-13, 4e-6));
+}
+
+static void a_steady_motion_stays_at_any_step(void) {
+    assert_steady_motion_stays(&laconic_exponential_kahan, 0.1);
+    assert_steady_motion_stays(&laconic_exponential_kahan, 3.0);
+}
+
+static void a_stiff_vehicle_reaches_its_steady_motion(void) {
+    assert_stiff_vehicle_reaches_its_steady_motion(&laconic_exponential_kahan, EITHER(1e-13, 1e-5));
+}
+
+static void energy_and_k_nearly_stay(void) {
+    const laconic_vehicle v = three_wheels();
+    const drift d = free_drift(&laconic_exponential_kahan, &v, 0.02, 3000);
+    TEST_ASSERT_TRUE(d.energy < 1e-3);
+    TEST_ASSERT_TRUE(d.yaw_integral < 1e-3);
+}
+
+static void a_step_that_makes_energy_out_of_nothing_is_refused(void) {
+    assert_step_refused(&laconic_exponential_kahan, three_wheels(), start_with(368.759, -58.7414, -261.219),
+                        every_input(), 0.1, LACONIC_STEP_GAINS_ENERGY);
+}
+
+static void a_step_without_a_solution_is_refused(void) {
+    assert_singular_step_refused(&laconic_exponential_kahan, 0.5);
+}
+
+static void numbers_beyond_the_range_are_refused(void) {
+    laconic_input input = no_input();
+    input.body_force_N[0] = REAL(EITHER(1e100, 1e15)); /* a caster goes straight on: no energy out of nothing */
+    assert_step_refused(&laconic_exponential_kahan, caster(), start_with(0, 0, 0), input, 1.0, LACONIC_OVERFLOW);
+}
+
+int main(void) {
+    UNITY_BEGIN();
+    RUN_TEST(is_of_second_order_under_everything_that_can_act);
+    RUN_TEST(is_of_second_order_when_nothing_turns_with_the_world);
+    RUN_TEST(damping_and_drive_alone_are_exact);
+    RUN_TEST(a_steady_motion_stays_at_any_step);
+    RUN_TEST(a_stiff_vehicle_reaches_its_steady_motion);
+    RUN_TEST(energy_and_k_nearly_stay);
+    RUN_TEST(a_step_that_makes_energy_out_of_nothing_is_refused);
+    RUN_TEST(a_step_without_a_solution_is_refused);
+    RUN_TEST(numbers_beyond_the_range_are_refused);
+    return UNITY_END();
+}

@@ -1,0 +1,108 @@
+#include "methods.h"
+
+static laconic_refusal why;
+
+static laconic_plant plant_of(laconic_vehicle v, const laconic_method *method, double step) {
+    const laconic_start start = start_with(1, 2, 3);
+    laconic_plant plant;
+    memset(&plant, 0, sizeof plant);
+    ASSERT_STATUS(LACONIC_OK, laconic_plant_start(&plant, &v, method, REAL(step), &start, &why));
+    return plant;
+}
+
+static void running_is_stepping(void) {
+    laconic_plant plant = plant_of(with_motors(three_wheels()), &laconic_rk4, 0.01);
+    const laconic_input input = every_input();
+    laconic_state state = plant.state;
+    TEST_ASSERT_EQUAL_UINT64(0, plant.steps);
+    ASSERT_STATUS(LACONIC_OK, laconic_plant_run(&plant, &input, 30, &why));
+    ASSERT_STATUS(LACONIC_OK, laconic_plant_run(&plant, &input, 20, NULL));
+    take_steps(&laconic_rk4, &plant.model, &state, &input, 0.01, 50);
+    TEST_ASSERT_EQUAL_UINT64(50, plant.steps);
+    TEST_ASSERT_EQUAL_MEMORY(&state, &plant.state, sizeof state);
+}
+
+static void a_refused_start_changes_nothing(void) {
+    laconic_plant plant = plant_of(three_wheels(), &laconic_rk4, 0.01), before = plant;
+    laconic_vehicle v = three_wheels();
+    laconic_start start = start_with(0, 0, 0);
+    v.mass_kg = 0;
+    ASSERT_REFUSED(LACONIC_NOT_POSITIVE, LACONIC_FIELD_MASS, 0,
+                   laconic_plant_start(&plant, &v, &laconic_rk4, REAL(0.01), &start, &why), why);
+    v = three_wheels();
+    ASSERT_REFUSED(LACONIC_NOT_POSITIVE, LACONIC_FIELD_STEP, 0,
+                   laconic_plant_start(&plant, &v, &laconic_rk4, REAL(0), &start, &why), why);
+    start.x_m = NOT_A_NUMBER;
+    ASSERT_REFUSED(LACONIC_NOT_FINITE, LACONIC_FIELD_START_X, 0,
+                   laconic_plant_start(&plant, &v, &laconic_rk4, REAL(0.01), &start, &why), why);
+    TEST_ASSERT_EQUAL_MEMORY(&before, &plant, sizeof plant);
+}
+
+static void a_refused_step_stops_the_run_after_what_was_taken(void) {
+    laconic_plant plant = plant_of(three_wheels(), &laconic_rk4, 0.1);
+    laconic_input input = no_input();
+    input.body_moment_Nm = REAL(10); /* turns faster and faster until rk4 cannot follow */
+    ASSERT_REFUSED(LACONIC_STEP_BEYOND_GYROSCOPIC_LIMIT, LACONIC_FIELD_STEP, 0,
+                   laconic_plant_run(&plant, &input, 100000, &why), why);
+    TEST_ASSERT_TRUE(plant.steps > 0 && plant.steps < 100000);
+    TEST_ASSERT_TRUE((double)why.limit < 0.1);
+}
+
+static void an_input_that_is_not_finite_is_named(void) {
+    laconic_plant plant = plant_of(three_wheels(), &laconic_auto, 0.1);
+    laconic_input input = no_input();
+    input.body_force_N[1] = NOT_A_NUMBER;
+    ASSERT_REFUSED(LACONIC_NOT_FINITE, LACONIC_FIELD_BODY_FORCE, 2, laconic_plant_run(&plant, &input, 1, &why), why);
+}
+
+static void another_step_size_goes_on_counting(void) {
+    laconic_plant plant = plant_of(with_motors(three_wheels()), &laconic_rk4, 0.01), before;
+    const laconic_input input = no_input();
+    ASSERT_STATUS(LACONIC_OK, laconic_plant_run(&plant, &input, 5, &why));
+    ASSERT_STATUS(LACONIC_OK, laconic_plant_set_step(&plant, REAL(0.02), &why));
+    TEST_ASSERT_EQUAL_UINT64(5, plant.steps);
+    ASSERT_NEAR(ROUNDING, 0.02, plant.integrator.step_s);
+    before = plant;
+    ASSERT_REFUSED(LACONIC_STEP_BEYOND_DAMPING_LIMIT, LACONIC_FIELD_STEP, 0,
+                   laconic_plant_set_step(&plant, REAL(100), &why), why);
+    TEST_ASSERT_EQUAL_MEMORY(&before, &plant, sizeof plant);
+}
+
+static void a_payload_in_motion_leaves_the_body_where_it_is(void) {
+    laconic_plant plant = plant_of(three_wheels(), &laconic_exact_flow, 0.01);
+    laconic_vehicle v = three_wheels();
+    laconic_pose before, after;
+    v.payload.mass_kg = REAL(5);
+    v.payload.x_m = REAL(0.3);
+    laconic_pose_of(&before, &plant.model, &plant.state);
+    ASSERT_STATUS(LACONIC_OK, laconic_plant_change(&plant, &v, &why));
+    laconic_pose_of(&after, &plant.model, &plant.state);
+    ASSERT_NEAR(ROUNDING, before.origin_x_m, after.origin_x_m);
+    ASSERT_NEAR(ROUNDING, before.origin_y_m, after.origin_y_m);
+    ASSERT_NEAR(2 * ROUNDING, 15, plant.model.mass_kg);
+    TEST_ASSERT_EQUAL_DOUBLE(5.0, (double)plant.vehicle.payload.mass_kg);
+}
+
+static void a_refused_change_changes_nothing(void) {
+    laconic_plant plant = plant_of(three_wheels(), &laconic_rk4, 0.1), before = plant;
+    laconic_vehicle v = three_wheels();
+    v.payload.mass_kg = REAL(-1);
+    ASSERT_REFUSED(LACONIC_NEGATIVE, LACONIC_FIELD_PAYLOAD_MASS, 0, laconic_plant_change(&plant, &v, &why), why);
+    v = three_wheels();
+    v.motor_damping_Nms = REAL(1000);
+    ASSERT_REFUSED(LACONIC_STEP_BEYOND_DAMPING_LIMIT, LACONIC_FIELD_STEP, 0, laconic_plant_change(&plant, &v, &why),
+                   why);
+    TEST_ASSERT_EQUAL_MEMORY(&before, &plant, sizeof plant);
+}
+
+int main(void) {
+    UNITY_BEGIN();
+    RUN_TEST(running_is_stepping);
+    RUN_TEST(a_refused_start_changes_nothing);
+    RUN_TEST(a_refused_step_stops_the_run_after_what_was_taken);
+    RUN_TEST(an_input_that_is_not_finite_is_named);
+    RUN_TEST(another_step_size_goes_on_counting);
+    RUN_TEST(a_payload_in_motion_leaves_the_body_where_it_is);
+    RUN_TEST(a_refused_change_changes_nothing);
+    return UNITY_END();
+}

@@ -1,0 +1,78 @@
+#include "stiff.h"
+
+static void an_input_that_does_not_vary_gives_the_motion_of_a_held_one(void) {
+    const laconic_model m = model_of(with_motors(three_wheels()));
+    const laconic_input input = every_input();
+    int32_t i;
+    for (i = 0; i < LACONIC_METHOD_COUNT; i++) {
+        const laconic_integrator in = integrator_of(laconic_method_by_number(i), &m, 0.02);
+        laconic_state held = moving(&m, 1, 2, 3), sampled = held;
+        laconic_real a[3], b[3];
+        int k;
+        for (k = 0; k < 50; k++) {
+            ASSERT_STATUS(LACONIC_OK, laconic_step(&m, &in, &held, &input));
+            ASSERT_STATUS(LACONIC_OK, laconic_step_sampled(&m, &in, &sampled, &input, &input, &input));
+        }
+        laconic_nu(&m, &held, a);
+        laconic_nu(&m, &sampled, b);
+        ASSERT_NEAR_ALL(EITHER(1e-13, 2e-5), a, b, 3);
+    }
+}
+
+static laconic_input voltage_at(double t) {
+    laconic_input input = no_input();
+    input.voltage_V[0] = REAL(sin(3 * t));
+    input.voltage_V[1] = REAL(-sin(3 * t)); /* straight along η: ν2' = −r ν2 + 2 c1 sin(3t)/(MR² A2) */
+    return input;
+}
+
+static double error_under_a_sine(const laconic_method *method, int steps) {
+    const double square = SMALL_LAMBDA * SMALL_LAMBDA, a2 = 1 + 2 * square, r = 2 * DAMPING / UNIT_INERTIA / a2;
+    const double drive = 2 * GAIN / UNIT_INERTIA / a2, t = 2.0, h = t / steps;
+    const double exact = drive * (r * sin(3 * t) - 3 * cos(3 * t) + 3 * exp(-r * t)) / (r * r + 9);
+    const laconic_model m = model_of(with_motors(three_wheels()));
+    const laconic_integrator in = integrator_of(method, &m, h);
+    laconic_state state = moving(&m, 0, 0, 0);
+    laconic_real nu[3];
+    int i;
+    for (i = 0; i < steps; i++) {
+        const laconic_input start = voltage_at(i * h), middle = voltage_at((i + 0.5) * h), end = voltage_at((i + 1) * h);
+        ASSERT_STATUS(LACONIC_OK, laconic_step_sampled(&m, &in, &state, &start, &middle, &end));
+    }
+    laconic_nu(&m, &state, nu);
+    return fabs((double)nu[1] - exact);
+}
+
+static void a_sampled_sine_keeps_every_methods_order(void) {
+    int32_t i;
+    for (i = 0; i < LACONIC_METHOD_COUNT; i++) {
+        const laconic_method *method = laconic_method_by_number(i);
+        const int steps = method->order == 4 ? EITHER(20, 6) : EITHER(50, 20);
+        const double coarse = error_under_a_sine(method, steps), fine = error_under_a_sine(method, 2 * steps);
+        TEST_ASSERT_TRUE_MESSAGE(log2(coarse / fine) > method->order - 0.4, method->name);
+    }
+}
+
+static void a_number_that_is_none_at_any_sample_is_refused(void) {
+    const laconic_model m = model_of(with_motors(three_wheels()));
+    const laconic_input good = no_input();
+    laconic_input bad = no_input();
+    int32_t i;
+    bad.voltage_V[0] = NOT_A_NUMBER;
+    for (i = 0; i < LACONIC_METHOD_COUNT; i++) {
+        const laconic_integrator in = integrator_of(laconic_method_by_number(i), &m, 0.02);
+        laconic_state state = moving(&m, 1, 2, 3), before = state;
+        TEST_ASSERT_NOT_EQUAL(LACONIC_OK, laconic_step_sampled(&m, &in, &state, &bad, &good, &good));
+        TEST_ASSERT_NOT_EQUAL(LACONIC_OK, laconic_step_sampled(&m, &in, &state, &good, &bad, &good));
+        TEST_ASSERT_NOT_EQUAL(LACONIC_OK, laconic_step_sampled(&m, &in, &state, &good, &good, &bad));
+        TEST_ASSERT_EQUAL_MEMORY(&before, &state, sizeof state);
+    }
+}
+
+int main(void) {
+    UNITY_BEGIN();
+    RUN_TEST(an_input_that_does_not_vary_gives_the_motion_of_a_held_one);
+    RUN_TEST(a_sampled_sine_keeps_every_methods_order);
+    RUN_TEST(a_number_that_is_none_at_any_sample_is_refused);
+    return UNITY_END();
+}
