@@ -13,12 +13,12 @@ static double *tangent_place(fmu_tangent *tangent, const fmu_slot *slot, uint32_
  * nothing depends. */
 static bool is_known(const fmu_instance *instance, const fmu_variable *variable) {
     if (variable->access == FMU_INDEPENDENT || variable->access == FMU_INPUT) return true;
-    if (variable->tangent >= FMU_TANGENT_UNKNOWNS) return false;
-    return variable->access == FMU_OUTPUT || instance->mode == FMU_INITIALIZATION;
+    if (variable->access == FMU_STATE) return true;
+    return variable->tangent != NO_TANGENT && variable->access == FMU_FIXED && instance->mode == FMU_INITIALIZATION;
 }
 
 static bool is_unknown(const fmu_variable *variable) {
-    return variable->tangent != NO_TANGENT && (variable->access == FMU_OUTPUT || variable->access == FMU_LOCAL);
+    return variable->tangent != NO_TANGENT && variable->access >= FMU_STATE;
 }
 
 static fmu_status count_known(const fmu_instance *instance, fmu_references list, bool known, size_t *total) {

@@ -11,13 +11,14 @@
 /* What may be set in which mode; inputs wherever the call itself is allowed. */
 static uint32_t settable_in(const fmu_instance *instance, fmu_mode mode) {
     const uint32_t start = SETS(FMU_FIXED) | SETS(FMU_TUNABLE) | SETS(FMU_INPUT);
+    const bool sets_states = instance->version == 3 && instance->kind == FMU_MODEL_EXCHANGE;
     switch (mode) {
     case FMU_INSTANTIATED: return start;
     case FMU_CONFIGURATION: return instance->scalar ? 0 : SETS(FMU_STRUCTURAL);
     case FMU_INITIALIZATION: return start;
-    case FMU_EVENT: return SETS(FMU_TUNABLE) | SETS(FMU_INPUT);
+    case FMU_EVENT: return SETS(FMU_TUNABLE) | SETS(FMU_INPUT) | (sets_states ? SETS(FMU_STATE) : 0);
     case FMU_STEP: return SETS(FMU_INPUT) | (instance->event_mode_used ? 0 : SETS(FMU_TUNABLE));
-    case FMU_CONTINUOUS:
+    case FMU_CONTINUOUS: return SETS(FMU_INPUT) | (sets_states ? SETS(FMU_STATE) : 0);
     case FMU_INTERMEDIATE: return SETS(FMU_INPUT);
     default: return 0;
     }
@@ -55,7 +56,7 @@ fmu_instance *fmu_create(const fmu_request *request) {
     instance->deliver = request->deliver;
     instance->environment = request->environment;
     if (request->box_size <= sizeof instance->box) memcpy(instance->box, request->box, request->box_size);
-    instance->log_categories = request->logging_on ? FMU_LOG_ALL : FMU_LOG_ERROR | FMU_LOG_DISCARD;
+    instance->log_categories = request->logging_on ? FMU_LOG_ALL : FMU_LOG_ERROR;
     instance->token_hash = fmu_token_hash(request->token);
     instance->name = copy_text(request->instance_name);
     if (instance->name == NULL || !fmu_load_start_values(instance, request->token, request->resources)) {

@@ -112,6 +112,7 @@ typedef enum fmu_access { /* who sets it, and when (variables.c) */
     FMU_FIXED,
     FMU_TUNABLE,
     FMU_INPUT,
+    FMU_STATE,  /* an output that is a continuous state */
     FMU_OUTPUT,
     FMU_LOCAL
 } fmu_access;
@@ -174,6 +175,9 @@ typedef struct fmu_step_end {
 fmu_status fmu_do_step(fmu_instance *instance, double at_s, double step_s, fmu_step_end *end);
 
 /* ------------------------------------------------------------- continuous states (Model Exchange) -- */
+
+/* Beyond this an angle in radians has long stopped saying where it points. */
+#define FMU_LARGEST_STATE 1e18
 
 fmu_status fmu_set_time(fmu_instance *instance, double time_s);
 fmu_status fmu_get_states(fmu_instance *instance, double *values, size_t count);

@@ -39,6 +39,8 @@ void fmu_plant_return(fmu_plant *plant, const fmu_plant_motion *motion);
 uint32_t fmu_plant_state_count(const fmu_plant *plant);
 void fmu_plant_get_states(fmu_instance *instance, double *values);
 void fmu_plant_set_states(fmu_instance *instance, const double *values);
+/* Some of them are about to be set one by one. */
+void fmu_plant_states_lead(fmu_instance *instance);
 void fmu_plant_get_rates(fmu_instance *instance, double *values);
 void fmu_plant_get_nominals(const fmu_plant *plant, double *values);
 

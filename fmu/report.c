@@ -22,7 +22,8 @@ static void deliver(const fmu_instance *instance, fmu_status status, fmu_categor
                     va_list arguments) {
     char line[LINE_LENGTH];
     size_t k;
-    if (instance->deliver == NULL || !(instance->log_categories & (unsigned)category)) return;
+    /* errors are always told: FMI 3.0 wants it, and nobody is glad to miss them */
+    if (instance->deliver == NULL || !((instance->log_categories | FMU_LOG_ERROR) & (unsigned)category)) return;
     vsnprintf(line, sizeof line, format, arguments);
     for (k = 0; k < CATEGORY_COUNT; k++)
         if (categories[k].category == category) instance->deliver(instance, status, categories[k].name, line);
@@ -53,7 +54,7 @@ static unsigned category_bit(const char *name) {
     return 0;
 }
 
-/* No categories: all of them. Off: nothing is logged at all. */
+/* No categories: all of them. FMI 2: on means these and no others, off none. FMI 3: on adds these, off takes them away. */
 fmu_status fmu_set_logging(fmu_instance *instance, bool on, size_t count, const char *const names[]) {
     unsigned wanted = count == 0 ? FMU_LOG_ALL : 0;
     size_t k;
@@ -65,6 +66,11 @@ fmu_status fmu_set_logging(fmu_instance *instance, bool on, size_t count, const 
                               "logStatusDiscard, logStatusError or logEvents", names[k] != NULL ? names[k] : "(null)");
         wanted |= bit;
     }
-    instance->log_categories = on ? wanted : 0;
+    if (instance->version == 2)
+        instance->log_categories = on ? wanted : 0;
+    else if (on)
+        instance->log_categories |= wanted;
+    else
+        instance->log_categories &= ~wanted;
     return FMU_OK;
 }

@@ -1,9 +1,6 @@
 /* What Model Exchange asks for: time, continuous states, their rates. */
 #include "plant_api.h"
 
-/* Beyond this an angle in radians no longer says where it points. */
-#define LARGEST_STATE 1e18
-
 fmu_status fmu_set_time(fmu_instance *instance, double time_s) {
     if (!(time_s - time_s == 0.0)) return fmu_refuse(instance, "SetTime: %g is not a time", time_s);
     instance->plant.time_s = time_s;
@@ -29,7 +26,7 @@ fmu_status fmu_set_states(fmu_instance *instance, const double *values, size_t c
     size_t k;
     if (status != FMU_OK) return status;
     for (k = 0; k < count; k++)
-        if (!(values[k] <= LARGEST_STATE && values[k] >= -LARGEST_STATE))
+        if (!(values[k] <= FMU_LARGEST_STATE && values[k] >= -FMU_LARGEST_STATE))
             return fmu_report(instance, FMU_DISCARD, FMU_LOG_DISCARD,
                               "continuous state %zu of %zu cannot be %g: take a smaller step", k + 1, count, values[k]);
     fmu_plant_set_states(instance, values);

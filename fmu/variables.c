@@ -49,6 +49,7 @@ static fmu_status refuse_value(const fmu_instance *instance, const fmu_slot *slo
 /* Whether a number makes sense for the model is for the model to say; here only what the place can hold. */
 static bool acceptable(const fmu_variable *variable, double value) {
     if (variable->access == FMU_STRUCTURAL) return value >= 1.0 && value <= (double)FMU_PLANT_LARGEST_ARRAY;
+    if (variable->access == FMU_STATE) return value <= FMU_LARGEST_STATE && value >= -FMU_LARGEST_STATE;
     if (variable->type == FMU_REAL) return is_finite(value);
     return value >= (double)INT32_MIN && value <= (double)INT32_MAX;
 }
@@ -70,6 +71,7 @@ static const char *who_sets(fmu_access access) {
     case FMU_FIXED: return "it is fixed once initialization has ended";
     case FMU_TUNABLE: return "it is tunable: between steps, or in event mode where that is used";
     case FMU_INPUT: return "it is an input";
+    case FMU_STATE: return "it is a state; only Model Exchange sets it";
     default: return "it is computed by the model";
     }
 }
@@ -86,6 +88,8 @@ static fmu_status check_type(const fmu_instance *instance, fmu_type type, uint32
 static fmu_status make_ready(fmu_instance *instance, const fmu_variable *variable) {
     fmu_status status;
     if (variable->group == 0) return FMU_OK;
+    if (instance->mode < FMU_INITIALIZATION)
+        return fmu_refuse(instance, "%s is computed: it has no value before initialization", variable->name);
     status = fmu_make_current(instance);
     if (status == FMU_OK) fmu_plant_refresh(instance, variable->group);
     return status;
@@ -102,7 +106,7 @@ static fmu_status check_settable(fmu_instance *instance, fmu_type type, uint32_t
     if (!(instance->settable >> slot->variable->access & 1U))
         return fmu_refuse(instance, "%s cannot be set in %s: %s", slot->variable->name,
                           fmu_mode_names[instance->mode], who_sets((fmu_access)slot->variable->access));
-    return FMU_OK;
+    return slot->variable->access == FMU_STATE ? fmu_make_current(instance) : FMU_OK;
 }
 
 static fmu_status refuse_count(const fmu_instance *instance, const fmu_slot *slot, size_t given) {
@@ -157,6 +161,8 @@ static fmu_status check_set(fmu_instance *instance, fmu_type type, const uint32_
 static void note_change(fmu_instance *instance, fmu_access access) {
     if (access == FMU_INPUT)
         fmu_plant_input_changed(&instance->plant);
+    else if (access == FMU_STATE)
+        return;
     else if (instance->mode <= FMU_INITIALIZATION)
         instance->plant.start_needed = true;
     else
@@ -172,6 +178,7 @@ fmu_status fmu_set(fmu_instance *instance, fmu_type type, const uint32_t *refere
     if (status != FMU_OK) return status;
     for (k = 0; k < count; k++) {
         fmu_find(instance, references[k], &slot);
+        if (slot.variable->access == FMU_STATE) fmu_plant_states_lead(instance);
         for (i = 0; i < slot.count; i++) store(instance, &slot, i, values[used++]);
         note_change(instance, (fmu_access)slot.variable->access);
     }
@@ -202,7 +209,7 @@ fmu_status fmu_none_of(const fmu_instance *instance, const char *kind, size_t as
 bool fmu_take_start_value(fmu_instance *instance, uint32_t reference, double value) {
     fmu_slot slot;
     if (!fmu_find(instance, reference, &slot) || slot.count != 1) return false;
-    if (slot.variable->access == FMU_OUTPUT || slot.variable->access == FMU_LOCAL) return false;
+    if (slot.variable->access >= FMU_STATE) return false;
     if (slot.variable->access == FMU_STRUCTURAL && value == 0.0) /* a vehicle without wheels: only as a constant */
         instance->scalar = true;
     else if (!acceptable(slot.variable, value))

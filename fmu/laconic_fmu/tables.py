@@ -10,22 +10,25 @@ TYPES = {"Float64": "FMU_REAL", "Int32": "FMU_INT32", "UInt64": "FMU_UINT64", "E
          "Boolean": "FMU_BOOLEAN"}
 
 
-def _access(variable: Variable) -> str:
+def _access(variable: Variable, states: set[str]) -> str:
+    if str(variable.reference) in states:
+        return "FMU_STATE"
     if variable.causality == "parameter":
         return "FMU_TUNABLE" if variable.attributes.get("variability") == "tunable" else "FMU_FIXED"
     return {"independent": "FMU_INDEPENDENT", "structuralParameter": "FMU_STRUCTURAL", "input": "FMU_INPUT",
             "output": "FMU_OUTPUT"}.get(variable.causality, "FMU_LOCAL")
 
 
-def _row(variable: Variable) -> str:
+def _row(variable: Variable, states: set[str]) -> str:
     place = re.sub(r"\W+", "_", variable.name).strip("_")
     size = 1 if variable.size is None else 0 if isinstance(variable.size, str) else variable.size
-    return f'    ROW("{variable.name}", {size}, {TYPES[variable.tag]}, {_access(variable)}, FMU_PLACE_{place}),'
+    return f'    ROW("{variable.name}", {size}, {TYPES[variable.tag]}, {_access(variable, states)}, FMU_PLACE_{place}),'
 
 
 def tables(description: Description, text_3: str, text_2: str) -> str:
     """The C file that fmu/variables.c and fmu/start_values.c link with."""
     starts = start_values(description)
+    states = {v.attributes["derivative"] for v in description.variables if "derivative" in v.attributes}
     lines = [
         "/* Made from the model description when the project is built. */",
         '#include "instance.h"',
@@ -37,7 +40,7 @@ def tables(description: Description, text_3: str, text_2: str) -> str:
         "    {name, offset, (uint16_t)(stride), size, type, access, group, tangent}",
         "",
         "const fmu_variable fmu_variables[] = {",
-        *(_row(variable) for variable in description.variables),
+        *(_row(variable, states) for variable in description.variables),
         "};",
         f"const uint32_t fmu_variable_count = {len(description.variables)}U;",
         "",

@@ -220,6 +220,11 @@ void fmu_plant_get_states(fmu_instance *instance, double *values) {
     for (i = 0; i < fmu_plant_array_size(p); i++) values[6 + i] = p->wheel_angle_rad[i];
 }
 
+void fmu_plant_states_lead(fmu_instance *instance) {
+    fmu_plant_refresh(instance, FMU_GROUPS_OF_CONTINUOUS_STATES);
+    instance->plant.stale = FMU_GROUPS_ALL & ~FMU_GROUPS_OF_CONTINUOUS_STATES;
+}
+
 void fmu_plant_set_states(fmu_instance *instance, const double *values) {
     fmu_plant *p = &instance->plant;
     uint32_t i;

@@ -75,7 +75,4 @@ typedef struct fmu_tangent {
     laconic_reactions ground;
 } fmu_tangent;
 
-/* What lies before it can be varied, what lies after it follows. */
-#define FMU_TANGENT_UNKNOWNS (uint32_t) offsetof(fmu_tangent, rates)
-
 #endif

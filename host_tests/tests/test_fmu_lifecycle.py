@@ -29,7 +29,7 @@ ALLOWED = {  # call: FMI 2 ME, FMI 2 CS, FMI 3 ME, FMI 3 CS
     "EnterStepMode": (None, None, "", "E"),
     "Terminate": ("EX", "S", "EX", "ES"),
     "Reset": ("INEXT", "INST", "IFNEXT", "IFNEST"),
-    "Get": ("NEXT", "NST", "FNEXT", "FNEST"),
+    "Get": ("NEXT", "NST", "IFNEXT", "IFNEST"),
     "SetReal": ("INEX", "INS", "INEX", "INES"),
     "GetState": ("INEXT", "INST", "IFNEXT", "IFNEST"),
     "GetDirectionalDerivative": ("NEXT", "NST", "NEXT", "NEST"),
