@@ -71,8 +71,8 @@ static inline laconic_status advance(laconic_state *state, const laconic_model *
 
 /* The same for methods that can go wrong: no energy out of nothing. */
 static inline laconic_status advance_if_passive(laconic_state *state, const laconic_model *model, real step_s,
-                                                vector zeta, const drive *b, increment by) {
-    if (!passive(zeta, step_s, b, by)) return LACONIC_STEP_GAINS_ENERGY;
+                                                const laconic_loads *loads, vector zeta, increment by) {
+    if (!passive(model, state, step_s, loads, zeta, by)) return LACONIC_STEP_GAINS_ENERGY;
     return advance(state, model, step_s, zeta, by);
 }
 

@@ -23,12 +23,8 @@ half_angle laconic_large_half_angle(real z, real along, real across) {
 
 static laconic_status flow_step(const laconic_model *model, const laconic_integrator *integrator, laconic_state *state,
                                 const laconic_loads *loads) {
-    const stretch all = whole_of(loads);
-    origin from = start_of(state);
     increment by;
-    drive b;
-    const laconic_status status =
-        driven_step(exact_flow_step, model, integrator, 0, &from, &all, &b, &by);
+    const laconic_status status = single_step(exact_flow_step, model, integrator, state, loads, &by);
     if (status != LACONIC_OK) return status;
     return advance(state, model, integrator->step_s, zeta_of(state), by);
 }

@@ -40,20 +40,19 @@ static inline vector free_flow(real half_step, vector g, vector w, vector zeta) 
 /* Damping and drive alone, exact. */
 static inline vector drive_flow(const laconic_model *m, const laconic_decay *d, vector zeta, const drive *b) {
     const vector step = times(vec(d->gain), minus(b->start, times(vec(m->decay_per_s), zeta)));
-    if (LACONIC_WITH_SAMPLED_INPUT && b->varies) return plus(step, response(d->ramp, d->bend, b));
+    if (b->varies) return plus(step, response(d->ramp, d->bend, b));
     return step;
 }
 
 /* The two halves of a parabola: s(s − 1) over half the range is a quarter of itself and a ramp. */
-static inline void split(drive halves[2], const drive *b) {
-    halves[0] = halves[1] = *b;
-    if (LACONIC_WITH_SAMPLED_INPUT && b->varies) {
-        const vector quarter = scaled(R(0.25), b->curve), even = scaled(R(0.5), b->change);
-        halves[0].change = minus(even, quarter);
-        halves[1].change = plus(even, quarter);
-        halves[1].start = plus(b->start, halves[0].change);
-        halves[0].curve = halves[1].curve = quarter;
-    }
+static inline void split(drive *early, drive *late, const drive *b) {
+    const vector quarter = scaled(R(0.25), b->curve), even = scaled(R(0.5), b->change);
+    early->start = b->start;
+    early->change = minus(even, quarter);
+    late->start = plus(b->start, early->change);
+    late->change = plus(even, quarter);
+    early->curve = late->curve = quarter;
+    early->varies = late->varies = true;
 }
 
 /* Drive for h/2, free motion for h, drive for h/2. */
@@ -61,14 +60,19 @@ static inline laconic_status exact_flow_step(const laconic_model *m, const lacon
                                              vector zeta, const drive *b, increment *out) {
     const real half_step = integrator->step_s * (level == 0 ? R(0.5) : R(0.25));
     const laconic_decay *half = &integrator->decay[level + 1];
-    drive halves[2];
-    vector first, before, turn, last;
-    split(halves, b);
-    first = drive_flow(m, half, zeta, &halves[0]);
-    before = plus(zeta, first);
+    const drive *first = b, *second = b;
+    drive early, late;
+    vector up, before, turn, down;
+    if (b->varies) {
+        split(&early, &late, b);
+        first = &early;
+        second = &late;
+    }
+    up = drive_flow(m, half, zeta, first);
+    before = plus(zeta, up);
     turn = free_flow(half_step, vec(m->nu_of_zeta[2]), vec(m->gyro), before);
-    last = drive_flow(m, half, plus(before, turn), &halves[1]);
-    fill(out, &integrator->decay[level], zeta, plus(plus(first, turn), last), b);
+    down = drive_flow(m, half, plus(before, turn), second);
+    fill(out, &integrator->decay[level], zeta, plus(plus(up, turn), down), b);
     return LACONIC_OK;
 }
 

@@ -5,14 +5,10 @@
 
 static laconic_status kahan_1_step(const laconic_model *model, const laconic_integrator *integrator,
                                    laconic_state *state, const laconic_loads *loads) {
-    const stretch all = whole_of(loads);
-    origin from = start_of(state);
     increment by;
-    drive b;
-    const laconic_status status =
-        driven_step(kahan_step, model, integrator, 0, &from, &all, &b, &by);
+    const laconic_status status = single_step(kahan_step, model, integrator, state, loads, &by);
     if (status != LACONIC_OK) return status;
-    return advance_if_passive(state, model, integrator->step_s, zeta_of(state), &b, by);
+    return advance_if_passive(state, model, integrator->step_s, loads, zeta_of(state), by);
 }
 
 static laconic_status kahan_prepare(laconic_integrator *integrator, const laconic_model *model, laconic_refusal *why) {

@@ -69,7 +69,7 @@ static inline laconic_status kahan_step(const laconic_model *m, const laconic_in
     vector rhs = times(gain, rate), delta;
     solver s;
     if (!factorise(&s, &implicit)) return LACONIC_STEP_SINGULAR;
-    if (LACONIC_WITH_SAMPLED_INPUT && b->varies) rhs = plus(rhs, response(d->ramp, d->bend, b));
+    if (b->varies) rhs = plus(rhs, response(d->ramp, d->bend, b));
     delta = solve(&s, rhs);
     if (integrator->stiff) {
         drive followed = *b;

@@ -23,28 +23,23 @@ static laconic_status rk4_step(const laconic_model *model, const laconic_integra
     const laconic_heading *heading = &state->heading;
     const vector z1 = zeta_of(state);
     const real yaw = dot(vec(model->nu_of_zeta[2]), z1);
-    vector z, rate, inner, outer, end;
+    vector z, before, rate, inner, outer;
     increment by;
-    drive b;
     if (magnitude(yaw) > integrator->gyro_limit) return LACONIC_STEP_BEYOND_GYROSCOPIC_LIMIT;
-    b.start = load_now(loads->start, heading, R(0));
-    outer = zeta_rate(model, z1, b.start);
+    outer = zeta_rate(model, z1, load_now(loads->start, heading, R(0)));
     z = along(z1, half, outer);
     inner = zeta_rate(model, z, load_now(loads->middle, heading, turned_rad(model, half, z1)));
-    end = z;
+    before = z;
     z = along(z1, half, inner);
-    rate = zeta_rate(model, z, load_now(loads->middle, heading, turned_rad(model, half, end)));
+    rate = zeta_rate(model, z, load_now(loads->middle, heading, turned_rad(model, half, before)));
     inner = plus(inner, rate);
     outer = scaled(sixth, plus(outer, inner));
     by.mean = plus(z1, outer);
-    end = load_now(loads->end, heading, turned_rad(model, h, z));
-    inner = plus(inner, zeta_rate(model, along(z1, h, rate), end));
+    rate = along(z1, h, rate);
+    inner = plus(inner, zeta_rate(model, rate, load_now(loads->end, heading, turned_rad(model, h, z))));
     by.delta = along(outer, sixth, inner);
     by.slope = by.delta;
-    b.change = minus(end, b.start);
-    b.curve = (vector){R(0), R(0), R(0)};
-    b.varies = true;
-    return advance_if_passive(state, model, h, z1, &b, by);
+    return advance_if_passive(state, model, h, loads, z1, by);
 }
 
 static laconic_status rk4_prepare(laconic_integrator *integrator, const laconic_model *model, laconic_refusal *why) {

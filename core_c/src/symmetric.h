@@ -7,6 +7,12 @@
 #include "load.h"
 #include "zeta.h"
 
+/* b over one base step: start + change·s + curve·s(s − 1), s from 0 to 1. */
+typedef struct drive {
+    vector start, change, curve;
+    bool varies; /* false: change and curve are 0 and not looked at */
+} drive;
+
 /* A second-order symmetric step of size step_s/2^level from ζ under b. */
 typedef laconic_status (*base_step)(const laconic_model *model, const laconic_integrator *integrator, int level,
                                     vector zeta, const drive *b, increment *out);
@@ -28,79 +34,68 @@ static inline void fill(increment *out, const laconic_decay *d, vector zeta, vec
     }
 }
 
-/* Where a part of a step begins: ζ and the angle turned since the step's start. */
-typedef struct origin {
-    const laconic_heading *heading;
+/* A base step within a step: its size, where it begins, what acts. */
+typedef struct part {
+    int level;
     vector zeta;
-    real turned_rad;
-} origin;
-
-/* The loads of one base step; `curve` bends b between them. */
-typedef struct stretch {
+    real turned_rad; /* since the step's start, for forces fixed in the world */
     const laconic_load *start, *end;
-    vector curve;
-} stretch;
+} part;
 
-/* A force fixed in the world makes b depend on the heading at the step's end, which the step decides:
+/* 2 (b₀ + b₁ − 2 b½): the parabola through three samples; its half bends a quarter as much. Of a force fixed in
+ * the world it sees nothing: that one is followed by its heading. */
+static inline vector curve_of(const laconic_loads *loads, int level) {
+    const vector ends = plus(vec(loads->start->constant), vec(loads->end->constant));
+    return scaled(level == 0 ? R(2) : R(0.5), minus(ends, scaled(R(2), vec(loads->middle->constant))));
+}
+
+/* A force fixed in the world makes b depend on the heading at the end, which the step itself decides:
  * iterate. Three rounds leave an error of h⁷, so symmetry, which extrapolation rests on, is kept. */
 static inline laconic_status turning_step(base_step base, const laconic_model *m, const laconic_integrator *integrator,
-                                          int level, origin *from, const stretch *over, drive *b, increment *out) {
-    const real h = integrator->step_s * (level == 0 ? R(1) : R(0.5));
+                                          const laconic_heading *heading, part *p, drive *b, increment *out) {
+    const real h = integrator->step_s * (p->level == 0 ? R(1) : R(0.5));
     const vector yaw_rate = vec(m->yaw_rate_of_zeta);
-    const real before = from->turned_rad;
+    const real before = p->turned_rad;
     laconic_status status = LACONIC_OK;
     int round;
-    from->turned_rad = before + h * dot(yaw_rate, from->zeta);
-    b->start = load_now(over->start, from->heading, before);
-    b->curve = over->curve;
-    b->varies = true;
+    p->turned_rad = before + h * dot(yaw_rate, p->zeta);
+    b->start = load_now(p->start, heading, before);
     for (round = 0; round < 3 && status == LACONIC_OK; round++) {
-        b->change = minus(load_now(over->end, from->heading, from->turned_rad), b->start);
-        status = base(m, integrator, level, from->zeta, b, out);
-        from->turned_rad = before + h * dot(yaw_rate, out->mean);
+        b->change = minus(load_now(p->end, heading, p->turned_rad), b->start);
+        status = base(m, integrator, p->level, p->zeta, b, out);
+        p->turned_rad = before + h * dot(yaw_rate, out->mean);
     }
     return status;
 }
 
-/* One base step under any loads; `from` moves on to its end. */
-static inline laconic_status driven_step(base_step base, const laconic_model *m, const laconic_integrator *integrator,
-                                         int level, origin *from, const stretch *over, drive *b, increment *out) {
+/* One base step under any loads; zeta and turned_rad move on to its end. */
+static inline laconic_status part_step(base_step base, const laconic_model *m, const laconic_integrator *integrator,
+                                       const laconic_heading *heading, const laconic_loads *loads, part *p,
+                                       increment *out) {
     laconic_status status;
-    if (LACONIC_WITH_WORLD_FORCE && (over->start->turns || over->end->turns)) {
-        status = turning_step(base, m, integrator, level, from, over, b, out);
-    } else {
-        b->start = vec(over->start->constant);
-        b->varies = LACONIC_WITH_SAMPLED_INPUT && over->start != over->end;
-        if (b->varies) {
-            b->change = minus(vec(over->end->constant), b->start);
-            b->curve = over->curve;
-        }
-        status = base(m, integrator, level, from->zeta, b, out);
+    drive b;
+    b.start = vec(p->start->constant);
+    b.varies = LACONIC_WITH_SAMPLED_INPUT && p->start != p->end;
+    if (b.varies) {
+        b.change = minus(vec(p->end->constant), b.start);
+        b.curve = curve_of(loads, p->level);
     }
-    from->zeta = plus(from->zeta, out->delta);
+    if (LACONIC_WITH_WORLD_FORCE && (p->start->turns || p->end->turns)) {
+        if (!b.varies) b.curve = (vector){R(0), R(0), R(0)};
+        b.varies = true;
+        status = turning_step(base, m, integrator, heading, p, &b, out);
+    } else {
+        status = base(m, integrator, p->level, p->zeta, &b, out);
+    }
+    p->zeta = plus(p->zeta, out->delta);
     return status;
 }
 
-/* 2 (b₀ + b₁ − 2 b½): the parabola through three samples. Of a force fixed in the world it sees the rest. */
-static inline vector curve_of(const laconic_loads *loads) {
-    const vector ends = plus(vec(loads->start->constant), vec(loads->end->constant));
-    const vector none = {R(0), R(0), R(0)};
-    if (!LACONIC_WITH_SAMPLED_INPUT || loads->start == loads->end) return none;
-    return scaled(R(2), minus(ends, scaled(R(2), vec(loads->middle->constant))));
-}
-
-/* The whole step, or one of its halves: a parabola's half bends a quarter as much. */
-static inline stretch whole_of(const laconic_loads *loads) {
-    return (stretch){loads->start, loads->end, curve_of(loads)};
-}
-
-static inline stretch half_of(const laconic_load *start, const laconic_load *end, vector curve) {
-    return (stretch){start, end, scaled(R(0.25), curve)};
-}
-
-static inline origin start_of(const laconic_state *state) {
-    const origin from = {&state->heading, zeta_of(state), R(0)};
-    return from;
+/* The base step itself as a method. */
+static inline laconic_status single_step(base_step base, const laconic_model *m, const laconic_integrator *integrator,
+                                         const laconic_state *state, const laconic_loads *loads, increment *out) {
+    part whole = {0, zeta_of(state), R(0), loads->start, loads->end};
+    return part_step(base, m, integrator, &state->heading, loads, &whole, out);
 }
 
 /* (4 · two half steps − one full step)/3: the base's error has only even powers of h, so this is fourth order.
@@ -117,23 +112,27 @@ static inline increment combine(const increment *whole, const increment *first, 
     return by;
 }
 
+/* A loop, so that the base is inlined once: the halves follow each other from where the whole began. */
 static inline laconic_status extrapolated_step(base_step base, const laconic_model *m,
                                                const laconic_integrator *integrator, laconic_state *state,
                                                const laconic_loads *loads) {
-    increment whole, first, second;
-    drive full, half;
-    origin from = start_of(state);
-    const stretch all = whole_of(loads);
-    const stretch early = half_of(loads->start, loads->middle, all.curve);
-    const stretch late = half_of(loads->middle, loads->end, all.curve);
-    laconic_status status = driven_step(base, m, integrator, 0, &from, &all, &full, &whole);
-    if (status != LACONIC_OK) return status;
-    from = start_of(state);
-    status = driven_step(base, m, integrator, 1, &from, &early, &half, &first);
-    if (status != LACONIC_OK) return status;
-    status = driven_step(base, m, integrator, 1, &from, &late, &half, &second);
-    if (status != LACONIC_OK) return status;
-    return advance_if_passive(state, m, integrator->step_s, zeta_of(state), &full, combine(&whole, &first, &second));
+    const laconic_load *ends[4] = {loads->start, loads->start, loads->middle, loads->end};
+    const vector zeta = zeta_of(state);
+    increment parts[3];
+    part p = {0, zeta, R(0), loads->start, loads->end};
+    int i;
+    for (i = 0; i < 3; i++) {
+        const laconic_status status = part_step(base, m, integrator, &state->heading, loads, &p, &parts[i]);
+        if (status != LACONIC_OK) return status;
+        if (i == 0) {
+            p.zeta = zeta;
+            p.turned_rad = R(0);
+            p.level = 1;
+        }
+        p.start = ends[i + 1];
+        p.end = i == 0 ? loads->middle : loads->end;
+    }
+    return advance_if_passive(state, m, integrator->step_s, loads, zeta, combine(&parts[0], &parts[1], &parts[2]));
 }
 
 #endif
