@@ -1,0 +1,149 @@
+"""Time: whole internal steps, no drift, and steps that do not fit."""
+
+from __future__ import annotations
+
+import math
+
+import pytest
+from fmu_importer import DISCARD, ERROR, OK, Importer, generic
+
+BOTH = pytest.mark.parametrize("version", [2, 3])
+
+
+@BOTH
+def test_a_communication_step_is_a_whole_number_of_internal_steps(version: int) -> None:
+    with Importer(generic(version)) as importer, Importer(generic(version)) as single:
+        for each in (importer, single):
+            assert each.set("step_s", 0.001) == OK
+            each.initialize()
+            assert each.set("voltage_V", 3, 4, 5, 6) == OK
+        at = 0
+        for steps in (1, 7, 10, 100, 3, 250):
+            assert importer.step(at * 0.001, steps * 0.001) == OK
+            at += steps
+        for k in range(at):
+            assert single.step(k * 0.001, 0.001) == OK
+        assert importer.get("nu_rad_per_s") == single.get("nu_rad_per_s")
+        assert importer.get("x_m") == single.get("x_m")
+
+
+@BOTH
+def test_a_step_that_does_not_fit_is_refused_with_both_numbers(version: int) -> None:
+    with Importer(generic(version)) as importer:
+        assert importer.set("step_s", 0.01) == OK
+        importer.initialize()
+        before = importer.get("x_m")
+        assert importer.step(0.0, 0.025) == ERROR
+        assert "0.025" in importer.log[-1][2]
+        assert "0.01" in importer.log[-1][2]
+        assert importer.get("x_m") == before
+        assert importer.step(0.0, 0.03) == OK
+
+
+@BOTH
+@pytest.mark.parametrize("step_s", [0.0, -0.1, math.nan, math.inf])
+def test_impossible_steps_are_refused(version: int, step_s: float) -> None:
+    with Importer(generic(version)) as importer:
+        importer.initialize()
+        assert importer.step(0.0, step_s) == ERROR
+        assert importer.step(0.0, 0.1) == OK
+
+
+@BOTH
+def test_a_step_from_somewhere_else_is_refused(version: int) -> None:
+    with Importer(generic(version)) as importer:
+        importer.initialize(start_s=5.0)
+        assert importer.step(0.0, 0.1) == ERROR
+        assert "model is at 5 s" in importer.log[-1][2]
+        assert importer.step(5.0, 0.1) == OK
+
+
+@BOTH
+def test_negative_start_times_and_thirds(version: int) -> None:
+    with Importer(generic(version)) as importer:
+        importer.initialize(start_s=-10.0, stop_s=-5.0)
+        time = -10.0
+        for _ in range(15):
+            assert importer.step(time, 1 / 3) == OK
+            time += 1 / 3
+        assert importer.get("time") == pytest.approx([-5.0], abs=1e-12)
+        assert importer.step(time, 1 / 3) == ERROR
+        assert "stop time -5 s" in importer.log[-1][2]
+
+
+@BOTH
+def test_variable_communication_steps(version: int) -> None:
+    with Importer(generic(version)) as importer:
+        importer.initialize()
+        assert importer.set("voltage_V", 3, 4, 5, 6) == OK
+        exact = [0.1, 0.05, 0.0125, 0.2, 1 / 3, 0.1, 1e-4]
+        at = 0.0
+        for step_s in exact * 20:
+            assert importer.step(at, step_s) == OK
+            at += step_s
+        assert importer.get("time") == [pytest.approx(math.fsum(exact * 20), abs=1e-14 * 20)]
+
+
+def test_steps_that_differ_by_rounding_only_are_the_same_step() -> None:
+    with Importer(generic(3)) as jittered, Importer(generic(3)) as plain:
+        for each in (jittered, plain):
+            each.initialize()
+            assert each.set("voltage_V", 3, 4, 5, 6) == OK
+        time = 0.0
+        for k in range(1000):
+            following = (k + 1) * 0.01
+            assert jittered.step(time, following - time) == OK
+            time = following
+            assert plain.step(k * 0.01, 0.01) == OK
+        assert jittered.get("nu_rad_per_s") == plain.get("nu_rad_per_s")
+        assert jittered.get("time") == plain.get("time") == [10.0]
+
+
+def test_ten_million_steps_do_not_drift() -> None:
+    with Importer(generic(3)) as importer:
+        assert importer.set("step_s", 1 / 3) == OK
+        importer.initialize(start_s=-100.0)
+        block, at = 100_000, -100.0
+        for _ in range(100):  # 10^7 internal steps; the importer's own sum may drift, ours does not
+            assert importer.step(at, block / 3) == OK
+            at += block / 3
+        assert importer.get("time") == [-100.0 + 10_000_000 * (1 / 3)]
+
+
+@BOTH
+def test_a_step_beyond_the_stability_limit_is_discarded_and_a_smaller_one_goes_on(version: int) -> None:
+    with Importer(generic(version), logging=True) as importer:
+        assert importer.set("method", 1) == OK
+        importer.initialize()
+        before = importer.get("x_m")
+        assert importer.step(0.0, 100.0) == DISCARD
+        assert importer.log[-1][1] == "logStatusDiscard"
+        assert importer.get("x_m") == before
+        assert importer.step(0.0, 0.001) == OK
+
+
+def test_intermediate_updates_see_every_internal_step_and_may_return_early() -> None:
+    seen: list[tuple[float, list[float]]] = []
+
+    def update(_environment, time, set_requested, get_allowed, finished, can_return, requested, early_time):
+        assert get_allowed
+        assert finished
+        seen.append((time, importer.get("x_m")))
+        if set_requested:
+            assert importer.set("voltage_V", 1.0, 1.0, 1.0, 1.0) == OK
+        assert importer.call("Reset") == ERROR
+        if len(seen) == 4:
+            assert can_return
+            requested[0], early_time[0] = True, time
+
+    importer = Importer(generic(3), early_return=True, update=update)
+    with importer:
+        assert importer.set("step_s", 0.01) == OK
+        importer.initialize()
+        assert importer.step(0.0, 0.1) == OK
+        assert importer.end["early"]
+        assert importer.end["time_s"] == 0.04
+        assert [time for time, _ in seen] == [0.01, 0.02, 0.03, 0.04]
+        assert seen[-1][1] != seen[0][1]
+        assert importer.step(0.04, 0.06) == OK
+        assert not importer.end["early"]
