@@ -151,13 +151,13 @@ def diagram(field_of: FieldOf, low: float, high: float, *, grid: int = 41, step:
     """All branches of steady motions for low ≤ parameter ≤ high."""
     values = np.linspace(low, high, grid)
     seeds = [(value, motion) for value in values for motion in steady_motions(field_of(value))]
-    largest = max((abs(motion.nu[2]) for _, motion in seeds), default=0.0)
+    largest = max((abs(motion.nu[2]) for _, motion in seeds if motion.turns), default=0.0)
     straight = _always_straight(field_of, values)
     curve = Curve(field_of, low, high, largest if largest > 0.0 else 1.0, straight)
     tracks: list[list[np.ndarray]] = []
     for value, motion in seeds:
         point = np.array([(value - low) / (high - low), motion.nu[2] / curve.yaw_scale])
-        if not (straight and abs(point[1]) < 1e-9) and not _covered(tracks, point, 0.2 * step):
+        if not (straight and not motion.turns) and not _covered(tracks, point, 0.2 * step):
             back = follow(curve, point, -1.0, step)
             tracks.append(back[::-1] + follow(curve, point, 1.0, step)[1:])
     if straight:
@@ -167,13 +167,15 @@ def diagram(field_of: FieldOf, low: float, high: float, *, grid: int = 41, step:
 
 def _always_straight(field_of: FieldOf, values: np.ndarray) -> bool:
     """Whether n = 0 solves the equation for every value of the parameter."""
+    lowest, size = [], 0.0
     for value in values:
         field = field_of(value)
-        lowest = steady_polynomial(field)[0]
-        r = field.decay_per_s[: field.dof]
-        if abs(lowest) > 1e-12 * np.abs(field.yaw_row).max() * np.abs(field.drive).max() * max(r.max(), 1e-300) ** 2:
-            return False
-    return True
+        r = field.decay_per_s.copy()
+        r[field.dof :] = 1.0
+        terms = field.yaw_row * field.drive * np.array([r[1] * r[2], r[2] * r[0], r[0] * r[1]])
+        lowest.append(abs(terms.sum()))
+        size = max(size, float(np.abs(terms).max()), float(r.max() ** 2 * np.abs(field.drive).max() * 1e-3))
+    return max(lowest) <= 1e-10 * size
 
 
 def _read_all(curve: Curve, tracks: list[list[np.ndarray]]) -> Diagram:

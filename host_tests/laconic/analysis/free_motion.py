@@ -33,7 +33,7 @@ class FreeMotion:
         """Ω: one petal is 2π/Ω of heading."""
         return float(np.sqrt(max(np.linalg.det(self.inverse_inertia[:2, :2]), 0.0)))
 
-    def _harmonics(self) -> tuple[float, float, float]:
+    def harmonics(self) -> tuple[float, float, float]:
         """n0, a, b of ν3(φ) = n0 + a cos Ωφ + b sin Ωφ."""
         omega, pull = self.petal_rate, self.inverse_inertia[2, :2] @ S2
         turned = self.inverse_inertia[:2, :2] @ S2 @ self.start_nu[:2]
@@ -43,7 +43,7 @@ class FreeMotion:
     @property
     def discriminant(self) -> float:
         """n0² − a² − b²: above zero ν3 never vanishes on the curve."""
-        n0, a, b = self._harmonics()
+        n0, a, b = self.harmonics()
         return n0 * n0 - a * a - b * b
 
     @property
@@ -52,7 +52,7 @@ class FreeMotion:
         if abs(self.start_nu[2]) <= STRAIGHT * np.abs(self.start_nu).max(initial=0.0):
             return "straight"
         if self._omega_is_zero():
-            return "uniform" if not (self.inverse_inertia[2, :2] @ S2 @ self.start_nu[:2]) else "asymptotic"
+            return "asymptotic" if self._slope() else "uniform"
         return "periodic" if self.discriminant > 0.0 else "asymptotic"
 
     @property
@@ -65,6 +65,13 @@ class FreeMotion:
     def limit_nu(self) -> np.ndarray:
         """What an asymptotic motion tends to."""
         return self.nu_at_angle(self._angle_limit()) if self.kind == "asymptotic" else self.start_nu
+
+    def _slope(self) -> float:
+        """dν3/dφ at the start; 0 where it is nothing but rounding."""
+        pull = self.inverse_inertia[2, :2] @ S2
+        size = np.abs(self.inverse_inertia).max() * np.abs(self.start_nu).max()
+        slope = float(pull @ self.start_nu[:2])
+        return slope if abs(slope) > 1e-13 * size else 0.0
 
     def _omega_is_zero(self) -> bool:
         block = self.inverse_inertia[:2, :2]
@@ -94,7 +101,7 @@ class FreeMotion:
             return np.zeros_like(time)
         if self._omega_is_zero():
             return self._angle_without_petals(time)
-        n0, a, b = self._harmonics()
+        n0, a, b = self.harmonics()
         r, stretched = n0 + a, 0.5 * self.petal_rate * time / self.lambda_yaw
         root = np.sqrt(abs(self.discriminant))
         if self.discriminant > 0.0:
@@ -107,15 +114,14 @@ class FreeMotion:
 
     def _angle_without_petals(self, time: np.ndarray) -> np.ndarray:
         """Ω = 0: ν3 = ν3(0) + s φ, so φ grows or decays exponentially (s = 0: evenly)."""
-        slope = float(self.inverse_inertia[2, :2] @ S2 @ self.start_nu[:2])
-        rate, yaw_rate = slope / self.lambda_yaw, self.start_nu[2] / self.lambda_yaw
+        rate, yaw_rate = self._slope() / self.lambda_yaw, self.start_nu[2] / self.lambda_yaw
         return yaw_rate * (time if rate == 0.0 else np.expm1(rate * time) / rate)
 
     def _angle_limit(self) -> float:
         """The heading that an asymptotic motion turns by in all."""
         if self._omega_is_zero():
-            return -self.start_nu[2] / float(self.inverse_inertia[2, :2] @ S2 @ self.start_nu[:2])
-        n0, a, b = self._harmonics()
+            return -self.start_nu[2] / self._slope()
+        n0, a, b = self.harmonics()
         root = np.sqrt(max(-self.discriminant, 0.0))
         return float(2.0 * np.arctan2((n0 + a), root - b) / self.petal_rate)
 

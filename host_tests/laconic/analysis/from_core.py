@@ -78,6 +78,12 @@ def changed(subject: Subject, key: str, value: float) -> Subject:
     return Subject(subject.scene, subject.core, vehicle, model, matrices, subject.inputs)
 
 
+def nu_rates(core: Core, model: Any, nu: Sequence[float], heading_rad: float, held: Any) -> np.ndarray:
+    """ν' of (4.7) by the core. The struct is kept by name: its array alone would not keep it alive."""
+    rates = core.derivative(model, nu, heading_rad, held)
+    return core.numbers(rates.nu_rad_per_s2)
+
+
 def field_of(core: Core, model: Any, inputs: Inputs) -> Field:
     """Reads the prepared model and the load of constant inputs; a force fixed in the world has no constant load."""
     load = core.ffi.new("laconic_load *")

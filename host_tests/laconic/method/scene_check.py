@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import numpy as np
 
-from laconic.analysis.from_core import Subject
+from laconic.analysis.from_core import Subject, nu_rates
 from laconic.method.brackets import Bracketed
 from laconic.method.scene_system import rate_function
 
@@ -24,8 +24,7 @@ def core_difference(subject: Subject, system: Bracketed, *, count: int = 1000, s
             "body_force_N": rng.normal(0.0, 2.0, 2), "body_moment_Nm": rng.normal(0.0, 0.5),
             "world_force_N": rng.normal(0.0, 2.0, 2), "world_force_point_m": rng.normal(0.0, 0.2, 2),
         }
-        rates = core.derivative(subject.model, nu, theta, core.input(inputs))
-        found = core.numbers(rates.nu_rad_per_s2)
+        found = nu_rates(core, subject.model, nu, theta, core.input(inputs))
         wrench = (*inputs["body_force_N"], inputs["body_moment_Nm"])
         expected = derived(nu, theta, inputs["voltage_V"], inputs["axle_torque_Nm"], wrench,
                            inputs["world_force_N"], inputs["world_force_point_m"])

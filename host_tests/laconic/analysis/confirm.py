@@ -1,0 +1,96 @@
+"""Confirms by simulating with the core what the analysis says about steady motions and limit cycles."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+
+from laconic.analysis.cycle import LimitCycle
+from laconic.analysis.field import Field
+from laconic.analysis.from_core import Inputs, Subject
+from laconic.analysis.steady import SteadyMotion
+from laconic.plant import Plant
+
+STEPS_PER_FASTEST = 60  # steps per 1/|fastest eigenvalue|
+
+
+@dataclass(frozen=True)
+class Confirmation:
+    """What the core did."""
+
+    holds: bool
+    words: str
+
+
+def plant_at(subject: Subject, nu: np.ndarray, step_s: float) -> Plant:
+    """The vehicle in the core, at a ν that its constraints allow."""
+    return subject.core.plant(subject.vehicle, "auto", step_s, nu_rad_per_s=[float(v) for v in nu])
+
+
+def step_for(field: Field, zeta: np.ndarray) -> float:
+    """A step that resolves the fastest rate around a state."""
+    fastest = float(np.abs(np.linalg.eigvals(field.jacobian(zeta))).max())
+    return 1.0 / (STEPS_PER_FASTEST * max(fastest, 1e-3))
+
+
+def steady_motion(subject: Subject, inputs: Inputs, field: Field, motion: SteadyMotion) -> Confirmation:
+    """A small push along the slowest (or the growing) eigenvector changes by exp(Re λ · t), as the eigenvalue says."""
+    values, vectors = np.linalg.eig(field.jacobian(motion.zeta))
+    k = int(np.argmax(values.real))
+    rate, turn = float(values[k].real), abs(float(values[k].imag))
+    if motion.stability == "neutral":
+        return Confirmation(True, "neutral: not simulated")
+    duration = 1.0 / abs(rate)
+    if turn > 1e-9 * abs(values).max():
+        duration = max(1.0, np.round(duration * turn / (2.0 * np.pi))) * 2.0 * np.pi / turn
+    step_s = step_for(field, motion.zeta)
+    steps = min(max(int(np.ceil(duration / step_s)), 1), 2_000_000)
+    push = 1e-6 * max(1.0, float(np.abs(motion.zeta).max())) * (vectors[:, k].real / np.linalg.norm(vectors[:, k].real))
+    plant = plant_at(subject, field.nu(motion.zeta + push), duration / steps)
+    plant.run(subject.core.input(inputs), steps)
+    after = np.linalg.norm(field.zeta(plant.nu) - motion.zeta) / np.linalg.norm(push)
+    expected = float(np.exp(rate * duration))
+    holds = bool(abs(after / expected - 1.0) < 0.02)
+    return Confirmation(holds, f"core: a small push times {after:.4g} in {duration:.3g} s, eigenvalue: {expected:.4g}")
+
+
+def limit_cycle(subject: Subject, inputs: Inputs, field: Field, cycle: LimitCycle, centre: np.ndarray) -> Confirmation:
+    """One period leads back; from inside the motion returns to the steady one, from outside it leaves."""
+    step_s = cycle.period_s / max(400, int(np.ceil(cycle.period_s / step_for(field, centre))))
+    steps = int(round(cycle.period_s / step_s))
+    start = field.nu(cycle.start_zeta)
+    plant = plant_at(subject, start, step_s)
+    held = subject.core.input(inputs)
+    plant.run(held, steps)
+    gap = float(np.abs(plant.nu - start).max()) / cycle.size
+    inside, outside = (distance_after(subject, inputs, field, cycle, centre, share, step_s) for share in (0.9, 1.1))
+    leaves = inside < 0.5 < 1.5 < outside
+    holds = bool(gap < 1e-5 and (cycle.stable or leaves))
+    words = (f"core: one period closes to {gap:.1e} of the cycle's size; started at 0.9 of it the distance goes to "
+             f"{inside:.2g},"
+             f" at 1.1 to {outside:.2g} of the cycle's size")
+    return Confirmation(holds, words)
+
+
+def distance_after(subject: Subject, inputs: Inputs, field: Field, cycle: LimitCycle, centre: np.ndarray, share: float,
+                   step_s: float) -> float:
+    """Distance from the steady motion, over the cycle's size, after a start at `share` of the cycle's way from it.
+
+    Runs until the distance has fallen below 0.3 or risen above 2 at its largest over a period, or long enough to tell.
+    """
+    held = subject.core.input(inputs)
+    plant = plant_at(subject, field.nu(centre + share * (cycle.start_zeta - centre)), step_s)
+    middle, per_period = field.nu(centre), 24
+    steps = max(1, int(round(cycle.period_s / step_s / per_period)))
+    growth = abs(float(np.log(np.sort(np.abs(cycle.multipliers))[-1])))
+    periods = int(min(4000, 40.0 / max(growth, 1e-3)))
+    largest = 0.0
+    for _ in range(periods):
+        largest = 0.0
+        for _ in range(per_period):
+            plant.run(held, steps)
+            largest = max(largest, float(np.abs(plant.nu - middle).max()) / cycle.size)
+        if not 0.3 < largest < 2.0:
+            break
+    return largest

@@ -1,0 +1,198 @@
+"""What the wheels can do with the body: which motions they drive or feel, how evenly, and how well they turn it.
+
+Ξ is judged in metres per second: rim speeds R χ' against the body's (v_ξ, v_η, ℓ θ'), where ℓ is the wheels' root mean
+square distance from their middle. Its rank says which motions the motors do not see at all. The rank misses the
+classic mistake, mecanum wheels mounted in the wrong diagonal: it leaves full rank (unless the wheels stand in a square)
+and next to no leverage for turning. So turning has its own measure, the yaw authority: the least rim speed (root mean
+square) that a turn at 1 rad/s about any point needs, over ℓ. About 1 is usual, near 0 is a mistake.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, field
+from typing import Any
+
+import numpy as np
+
+from laconic.analysis.from_core import Subject
+
+RANK_TOLERANCE = 1e-9
+WEAK_YAW = 0.5            # below this fraction of what mirrored rollers would give, the mounting is called wrong
+ILL_CONDITIONED = 100.0   # rim speeds for one direction this many times those for another
+
+
+@dataclass(frozen=True)
+class Geometry:
+    """The diagnosis."""
+
+    dof: int
+    rank: int
+    singular_values: list[float]
+    condition: float                      # largest over smallest singular value; inf when the rank is short
+    yaw_authority: float
+    mirrored_yaw_authority: float | None  # with every mecanum roller angle negated; None without such wheels
+    not_driven: list[str]
+    words: list[str] = field(default_factory=list)
+
+
+def diagnose(subject: Subject) -> Geometry:
+    """Everything about the geometry of one vehicle."""
+    places = wheel_places(subject)
+    length = _spread(places)
+    allowed = _allowed_motions(subject, length)
+    rows = _rim_rows(subject, subject.matrices.wheel_rows, length) @ allowed
+    values, undriven = _null_motions(rows, allowed)
+    rank = allowed.shape[1] - len(undriven)
+    authority = _yaw_authority(rows, allowed)
+    mirrored = _mirrored_authority(subject, length, allowed)
+    condition = float(values[0] / values[-1]) if rank == allowed.shape[1] and rank > 0 else float("inf")
+    not_driven = [motion_words(motion, subject, length) for motion in undriven]
+    result = Geometry(allowed.shape[1], rank, [float(v) for v in values], condition, authority, mirrored, not_driven)
+    result.words.extend(_words(subject, result, allowed, length))
+    return result
+
+
+def wheel_places(subject: Subject) -> np.ndarray:
+    """Wheel centres in the body frame [m], one row each."""
+    wheels = subject.vehicle.wheel
+    return np.array([[wheels[i].x_m, wheels[i].y_m] for i in range(subject.wheel_count)]).reshape(-1, 2)
+
+
+def _spread(places: np.ndarray) -> float:
+    """ℓ; 1 m where the wheels have no extent."""
+    if len(places) == 0:
+        return 1.0
+    distance = np.sqrt(((places - places.mean(axis=0)) ** 2).sum(axis=1).mean())
+    return float(distance) if distance > 0.0 else 1.0
+
+
+def _body_of_nu(subject: Subject, length: float) -> np.ndarray:
+    """Diagonal: (v_ξ, v_η, ℓ θ') = scale · ν."""
+    radius = float(subject.model.wheel_radius_m)
+    return np.array([radius, radius, length / subject.matrices.lambda_yaw])
+
+
+def _rim_rows(subject: Subject, wheel_rows: np.ndarray, length: float) -> np.ndarray:
+    """R Ξ against (v_ξ, v_η, ℓ θ')."""
+    return float(subject.model.wheel_radius_m) * wheel_rows / _body_of_nu(subject, length)
+
+
+def _allowed_motions(subject: Subject, length: float) -> np.ndarray:
+    """Orthonormal columns of (v_ξ, v_η, ℓ θ') that the constraints allow, as the core found them."""
+    model = subject.model
+    columns = subject.core.numbers(model.nu_of_zeta, 3, 3)[:, : model.dof] * _body_of_nu(subject, length)[:, None]
+    return np.linalg.svd(columns, full_matrices=False)[0]
+
+
+def _null_motions(rows: np.ndarray, allowed: np.ndarray) -> tuple[np.ndarray, list[np.ndarray]]:
+    """Singular values, and the allowed motions that turn no wheel."""
+    if len(rows) == 0:
+        return np.zeros(0), list(np.eye(3) @ allowed.T if allowed.shape[1] == 3 else allowed.T)
+    _, values, right = np.linalg.svd(rows)
+    padded = np.zeros(allowed.shape[1])
+    padded[: len(values)] = values[: allowed.shape[1]]
+    null = padded <= RANK_TOLERANCE * max(padded[0], 1e-300)
+    return padded, _tidied(allowed @ right[null].T)
+
+
+def _tidied(columns: np.ndarray) -> list[np.ndarray]:
+    """The same space by vectors with as many zeros as possible, so that words for them are simple."""
+    work = columns.T.copy()
+    for k in range(len(work)):
+        pivot = int(np.argmax(np.abs(work[k])))
+        work[k] /= work[k, pivot]
+        for other in range(len(work)):
+            if other != k:
+                work[other] -= work[other, pivot] * work[k]
+    return list(work)
+
+
+def _yaw_authority(rows: np.ndarray, allowed: np.ndarray) -> float:
+    """Root mean square rim speed of the gentlest allowed motion with ℓ θ' = 1; 0 where nothing can turn."""
+    pull = allowed[2]
+    if len(rows) == 0 or np.abs(pull).max() < 1e-12:
+        return 0.0
+    base = pull / (pull @ pull)
+    free = np.linalg.svd(pull[None, :])[2][1:].T
+    answer = rows @ base
+    if free.shape[1]:
+        answer = answer - rows @ free @ np.linalg.lstsq(rows @ free, answer, rcond=None)[0]
+    return float(np.sqrt((answer**2).mean()))
+
+
+def _mirrored_authority(subject: Subject, length: float, allowed: np.ndarray) -> float | None:
+    """The yaw authority if every mecanum roller leaned the other way."""
+    vehicle, core = subject.vehicle, subject.core
+    roller = core.lib.LACONIC_WHEEL_ROLLER
+    other: Any = core.ffi.new("laconic_vehicle *", vehicle[0])
+    leaning = 0
+    for i in range(subject.wheel_count):
+        wheel = other.wheel[i]
+        if wheel.kind == roller and abs(np.cos(wheel.roller_rad)) > 1e-3:
+            wheel.roller_rad = -wheel.roller_rad
+            leaning += 1
+    if leaning == 0:
+        return None
+    return _yaw_authority(_rim_rows(subject, core.matrices(other).wheel_rows, length) @ allowed, allowed)
+
+
+def motion_words(motion: np.ndarray, subject: Subject, length: float) -> str:
+    """(v_ξ, v_η, ℓ θ') as words: a direction, or a turn about a point of the body."""
+    along, across, turn = motion / np.abs(motion).max()
+    if abs(turn) < 1e-9:
+        return direction_words(along, across)
+    yaw_rate = turn / length
+    x = float(subject.model.com_x_m) - across / yaw_rate
+    y = float(subject.model.com_y_m) + along / yaw_rate
+    if abs(along) < 1e-9 and abs(across) < 1e-9:
+        return "turning about the centre of mass"
+    return f"turning about the body's point ({x:.3g}, {y:.3g}) m"
+
+
+def direction_words(along: float, across: float) -> str:
+    """A direction of travel in the body frame."""
+    if abs(across) < 1e-9 * abs(along):
+        return "moving straight along x"
+    if abs(along) < 1e-9 * abs(across):
+        return "moving straight along y"
+    return f"moving straight at {np.degrees(np.arctan2(across, along)):.1f}° from x"
+
+
+def _words(subject: Subject, found: Geometry, allowed: np.ndarray, length: float) -> list[str]:
+    """The diagnosis in sentences."""
+    words = [_freedom_words(subject, allowed, length)]
+    if subject.wheel_count == 0:
+        return [*words, "There are no wheels: nothing drives or brakes the body but outer forces."]
+    if found.not_driven:
+        words.append(f"The wheels neither drive nor feel {' and '.join(found.not_driven)}.")
+    else:
+        words.append("Every motion that is possible turns at least one wheel, so the motors drive and damp all of "
+                     "them.")
+    if np.isfinite(found.condition) and found.condition > ILL_CONDITIONED:
+        words.append(f"The geometry is lopsided: one direction needs {found.condition:.0f} times the rim speed of "
+                     f"another.")
+    if np.abs(allowed[2]).max() < 1e-12:
+        return [*words, "The body cannot turn at all."]
+    return [*words, *_yaw_words(found)]
+
+
+def _yaw_words(found: Geometry) -> list[str]:
+    value, mirrored = found.yaw_authority, found.mirrored_yaw_authority
+    if mirrored is not None and value < WEAK_YAW * mirrored:
+        return [f"The mecanum rollers look mounted in the wrong diagonal: the yaw authority is {value:.3g}, with "
+                f"every roller "
+                f"leaning the other way it would be {mirrored:.3g}. Swap the left and right wheels of each axle, or "
+                "negate the roller angles if only the description is wrong."]
+    if value < 1e-9:
+        return ["The wheels have no hold on turning (yaw authority 0): only an outer force turns the body."]
+    if value < 0.1:
+        return [f"The wheels hardly turn the body: the yaw authority is {value:.3g}, where about 1 is usual."]
+    return [f"The yaw authority is {value:.3g} (about 1 is usual)."]
+
+
+def _freedom_words(subject: Subject, allowed: np.ndarray, length: float) -> str:
+    count = allowed.shape[1]
+    if count == 3:
+        return "The body moves freely in the plane: three degrees of freedom."
+    motions = " and ".join(motion_words(motion, subject, length) for motion in _tidied(allowed))
+    return f"Constraints leave {count} degree{'s' if count > 1 else ''} of freedom: {motions}."

@@ -1,0 +1,144 @@
+"""What is varied in a bifurcation diagram, and over which range."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from dataclasses import dataclass
+
+import numpy as np
+
+from laconic.analysis.field import Field
+from laconic.analysis.from_core import Inputs, Subject, changed, field_of
+from laconic.analysis.steady import steady_polynomial
+from laconic.errors import BadInput
+
+COMMANDS = {"nu1": 0, "nu2": 1}
+VEHICLE_KEYS = ("mass_kg", "yaw_inertia_kgm2", "com_x_m", "com_y_m", "wheel_inertia_kgm2", "motor_gain_Nm_per_V",
+                "motor_damping_Nms", "wheel_radius_m")
+
+
+@dataclass(frozen=True)
+class Parameter:
+    """One number that is varied, and what the vehicle becomes for each of its values."""
+
+    name: str
+    label: str
+    at_scene: float
+    subject_of: Callable[[float], Subject]
+    inputs_of: Callable[[float], Inputs]
+
+    def field_of(self, value: float) -> Field:
+        """The vector field at a value."""
+        subject = self.subject_of(value)
+        return field_of(subject.core, subject.model, self.inputs_of(value))
+
+
+def straight_torques(subject: Subject, nu: np.ndarray) -> Inputs:
+    """What the motors must be given for the straight motion ν⁰ to be steady: c1 U = c2 Ξ ν⁰ as axle torques.
+
+    Given as torques, since then it works for c1 = 0 too; U = (c2/c1) Ξ ν⁰ is the same thing.
+    """
+    damping = float(subject.model.motor_damping_Nms)
+    return {f"axle_torque_Nm[{i + 1}]": float(v) for i, v in enumerate(damping * (subject.matrices.wheel_rows @ nu))}
+
+
+def commanded_straight(subject: Subject) -> np.ndarray | None:
+    """ν⁰ of the straight motion that the held inputs ask for; None when they ask for a turn."""
+    field = subject.field()
+    m = field.dof
+    if not (field.decay_per_s[:m] > 0.0).all():
+        return None
+    nu = field.nu(field.drive[:m] / field.decay_per_s[:m])
+    return nu if abs(nu[2]) <= 1e-9 * max(1.0, float(np.abs(nu).max())) else None
+
+
+def command_parameter(subject: Subject, name: str, straight: np.ndarray) -> Parameter:
+    """One component of the commanded straight motion ν⁰ = (ν1⁰, ν2⁰, 0)."""
+    which = COMMANDS[name]
+
+    def inputs_of(value: float) -> Inputs:
+        nu = straight.copy()
+        nu[which] = value
+        return straight_torques(subject, nu)
+
+    label = f"commanded straight motion $\\nu_{which + 1}^0$ [rad/s]"
+    return Parameter(name, label, float(straight[which]), lambda _: subject, inputs_of)
+
+
+def scale_parameter(subject: Subject) -> Parameter:
+    """A factor on all inputs of the scene."""
+    return Parameter("input_scale", "factor on the inputs [–]", 1.0, lambda _: subject,
+                     lambda value: {name: value * v for name, v in subject.inputs.items()})
+
+
+def vehicle_parameter(subject: Subject, key: str) -> Parameter:
+    """A number of `[vehicle]`, with the scene's own inputs."""
+    if key.startswith("motor_") and subject.scene.vehicle.get("motor"):
+        raise BadInput(f"--parameter {key}: the scene gives [vehicle.motor] instead; vary another number")
+    current = float(subject.scene.vehicle.get(key, 0.0))
+    unit = key.rsplit("_", 1)[-1]
+    return Parameter(key, f"{key.removesuffix('_' + unit).replace('_', ' ')} [{unit}]", current,
+                     lambda value: changed(subject, key, value), lambda _: subject.inputs)
+
+
+def parameter_named(subject: Subject, name: str | None, straight: np.ndarray | None) -> Parameter:
+    """The parameter the user asked for, or the one that suits: the larger component of the straight motion."""
+    if name is None:
+        if straight is None:
+            return scale_parameter(subject)
+        name = "nu2" if abs(straight[1]) >= abs(straight[0]) else "nu1"
+    if name in COMMANDS:
+        if straight is None:
+            raise BadInput(f"--parameter {name}: the inputs ask for no straight motion; give one with --straight NU1 "
+                           f"NU2")
+        return command_parameter(subject, name, straight)
+    if name == "input_scale":
+        return scale_parameter(subject)
+    if name in VEHICLE_KEYS:
+        return vehicle_parameter(subject, name)
+    known = ", ".join((*COMMANDS, "input_scale", *VEHICLE_KEYS))
+    raise BadInput(f"--parameter: there is no {name!r}; known are {known}")
+
+
+def straight_thresholds(parameter: Parameter) -> list[float]:
+    """Where the straight motion of a command parameter changes stability: det J is a cubic in the parameter."""
+
+    def determinant(value: float) -> float:
+        field = parameter.field_of(value)
+        m = field.dof
+        return float(np.linalg.det(field.jacobian(field.drive[:m] / field.decay_per_s[:m])))
+
+    return _real_roots(determinant, 3, max(1.0, abs(parameter.at_scene)))
+
+
+def turning_folds(parameter: Parameter) -> list[float]:
+    """Vertices: with straight motion divided out, turning ones solve a quadratic; its discriminant is a quadratic."""
+
+    def discriminant(value: float) -> float:
+        _, lowest, linear, square = steady_polynomial(parameter.field_of(value))
+        return linear**2 - 4.0 * lowest * square
+
+    return _real_roots(discriminant, 2, max(1.0, abs(parameter.at_scene)))
+
+
+def _real_roots(function: Callable[[float], float], degree: int, size: float) -> list[float]:
+    """Real roots of a polynomial known by its values."""
+    samples = np.cos(np.pi * (np.arange(degree + 1) + 0.5) / (degree + 1))
+    coefficients = np.polyfit(samples, [function(size * u) for u in samples], degree)
+    coefficients[np.abs(coefficients) < 1e-10 * np.abs(coefficients).max()] = 0.0
+    roots = np.roots(np.trim_zeros(coefficients, "f")) if coefficients.any() else np.zeros(0)
+    return sorted(float(r.real) * size for r in roots if abs(r.imag) < 1e-9 * max(1.0, abs(r)))
+
+
+def default_range(parameter: Parameter) -> tuple[float, float]:
+    """A range that shows the scene's own value and every change of stability of straight motion."""
+    if parameter.name in COMMANDS:
+        marks = [0.0, parameter.at_scene, *straight_thresholds(parameter), *turning_folds(parameter)]
+        low, high = min(marks), max(marks)
+        spread = (high - low) or 1.0
+        return low - 0.15 * spread, high + 0.25 * spread
+    if parameter.name == "input_scale":
+        return -2.0, 2.0
+    size = abs(parameter.at_scene) or 0.1
+    return (parameter.at_scene - size, parameter.at_scene + size) if parameter.name.startswith("com_") else (
+        0.3 * parameter.at_scene, 3.0 * parameter.at_scene) if parameter.at_scene > 0.0 else (0.0, size)
