@@ -13,9 +13,9 @@ static void axis_factors(laconic_decay *d, int k, real h, real rate) {
     mean = phi[2] / phi[1];
     slope = (R(6) * phi[2] - R(12) * phi[3]) / phi[1];
     d->gain[k] = h * phi[1];
-    d->ramp[k] = h * ramp;
-    d->bend[k] = h * bend;
+    d->inverse_gain[k] = R(1) / d->gain[k];
     d->mean[k] = mean;
+    d->bend[k] = bend / phi[1];
     d->mean_ramp[k] = h * (phi[3] - mean * ramp);
     d->mean_bend[k] = h * (R(2) * phi[4] - phi[3] - mean * bend);
     d->slope[k] = slope;

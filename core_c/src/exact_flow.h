@@ -15,11 +15,11 @@ half_angle laconic_large_half_angle(real z, real along, real across);
 /* Free motion turns ζ about w by the angle ψ with ψ' = |w| g·ζ. As a Riccati equation for u = tan(ψ/2) it has
  * the solution u(h) = |w| along T/(1 − across T), T = tan √z/√z, with along = ½h g·ζ, across = ½h g·(ζ×w),
  * z = (½h)²[(g·ζ)(2(g·w)(w·ζ) − |w|² g·ζ) − (g·(ζ×w))²], either sign. */
-static inline half_angle half_angle_after(real half_step, vector g, vector w, vector zeta, vector turned) {
-    const real yaw = dot(g, zeta);
-    const real along = half_step * yaw, across = half_step * dot(g, turned);
-    const real rest = half_step * (R(2) * dot(g, w) * dot(w, zeta) - dot(w, w) * yaw);
-    const real z = along * rest - across * across;
+static inline half_angle half_angle_after(const laconic_model *m, real half_step, vector zeta) {
+    const real along = half_step * dot(vec(m->nu_of_zeta[2]), zeta);
+    const real across = half_step * dot(vec(m->spin_gain), zeta);
+    const real curve = half_step * dot(vec(m->spin_curve), zeta);
+    const real z = along * curve - across * across;
     if (z <= TANGENT_SMALL && z >= -TANGENT_SMALL) {
         const real tangent = poly_tangent(z);
         const half_angle a = {along * tangent, R(1) - across * tangent};
@@ -29,19 +29,17 @@ static inline half_angle half_angle_after(real half_step, vector g, vector w, ve
 }
 
 /* ζ⁺ − ζ = 2 τ/(1 + |w|²τ²) (ζ×w + τ (ζ×w)×w), τ = numerator/denominator: |ζ| stays to rounding. */
-static inline vector free_flow(real half_step, vector g, vector w, vector zeta) {
-    const vector turned = cross(zeta, w);
-    const half_angle a = half_angle_after(half_step, g, w, zeta, turned);
+static inline vector free_flow(const laconic_model *m, real half_step, vector zeta) {
+    const vector w = vec(m->gyro), turned = cross(zeta, w);
+    const half_angle a = half_angle_after(m, half_step, zeta);
     const real factor =
-        R(2) * a.numerator / (a.denominator * a.denominator + dot(w, w) * (a.numerator * a.numerator));
+        R(2) * a.numerator / (a.denominator * a.denominator + m->gyro_square * (a.numerator * a.numerator));
     return scaled(factor, plus(scaled(a.denominator, turned), scaled(a.numerator, cross(turned, w))));
 }
 
 /* Damping and drive alone, exact. */
 static inline vector drive_flow(const laconic_model *m, const laconic_decay *d, vector zeta, const drive *b) {
-    const vector step = times(vec(d->gain), minus(b->start, times(vec(m->decay_per_s), zeta)));
-    if (b->varies) return plus(step, response(d->ramp, d->bend, b));
-    return step;
+    return times(vec(d->gain), minus(constant_like(b, d), times(vec(m->decay_per_s), zeta)));
 }
 
 /* The two halves of a parabola: s(s − 1) over half the range is a quarter of itself and a ramp. */
@@ -56,7 +54,7 @@ static inline void split(drive *early, drive *late, const drive *b) {
 }
 
 /* Drive for h/2, free motion for h, drive for h/2. */
-static inline laconic_status exact_flow_step(const laconic_model *m, const laconic_integrator *integrator, int level,
+INLINE laconic_status exact_flow_step(const laconic_model *m, const laconic_integrator *integrator, int level,
                                              vector zeta, const drive *b, increment *out) {
     const real half_step = integrator->step_s * (level == 0 ? R(0.5) : R(0.25));
     const laconic_decay *half = &integrator->decay[level + 1];
@@ -70,7 +68,7 @@ static inline laconic_status exact_flow_step(const laconic_model *m, const lacon
     }
     up = drive_flow(m, half, zeta, first);
     before = plus(zeta, up);
-    turn = free_flow(half_step, vec(m->nu_of_zeta[2]), vec(m->gyro), before);
+    turn = free_flow(m, half_step, before);
     down = drive_flow(m, half, plus(before, turn), second);
     fill(out, &integrator->decay[level], zeta, plus(plus(up, turn), down), b);
     return LACONIC_OK;

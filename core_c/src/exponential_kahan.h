@@ -14,63 +14,62 @@ typedef struct solver {
     real inverse_determinant;
 } solver;
 
-/* False where M is singular to rounding. */
-static inline bool factorise(solver *s, const matrix *m) {
+/* False where M is singular to rounding; `scale` is what det M would be for ζ = 0. */
+static inline bool factorise(solver *s, const matrix *m, real scale) {
+    const real noise = R(16) * LACONIC_EPSILON * scale;
     real determinant;
     s->c0 = cross(m->row1, m->row2);
     s->c1 = cross(m->row2, m->row0);
     s->c2 = cross(m->row0, m->row1);
     determinant = dot(m->row0, s->c0);
     s->inverse_determinant = R(1) / determinant;
-    return determinant * determinant > R(256) * LACONIC_EPSILON * LACONIC_EPSILON * (R(1) + square(s->c0));
+    return magnitude(determinant) > noise;
 }
 
 static inline vector solve(const solver *s, vector rhs) {
     return scaled(s->inverse_determinant,
-                  plus(scaled(rhs.x, s->c0), plus(scaled(rhs.y, s->c1), scaled(rhs.z, s->c2))));
+                  plus(plus(scaled(rhs.x, s->c0), scaled(rhs.y, s->c1)), scaled(rhs.z, s->c2)));
 }
 
-/* E − D Q with D = hφ1, Q Δ = q(ζ,Δ) = ½[(g·ζ) Δ×w + (g·Δ) ζ×w]. */
-static inline matrix implicit_matrix(vector gain, vector g, vector w, real yaw, vector turned) {
-    const vector s = scaled(R(0.5) * yaw, gain), l = scaled(R(0.5), times(gain, turned));
+/* D⁻¹ − Q with D = hφ1, Q Δ = q(ζ,Δ) = ½[(g·ζ) Δ×w + (g·Δ) ζ×w]. */
+static inline matrix implicit_matrix(vector inverse_gain, vector g, vector w, real yaw, vector turned) {
+    const vector s = scaled(R(0.5) * yaw, w), l = scaled(R(0.5), turned);
     const matrix m = {
-        {R(1) - l.x * g.x, -(l.x * g.y + s.x * w.z), s.x * w.y - l.x * g.z},
-        {s.y * w.z - l.y * g.x, R(1) - l.y * g.y, -(l.y * g.z + s.y * w.x)},
-        {-(l.z * g.x + s.z * w.y), s.z * w.x - l.z * g.y, R(1) - l.z * g.z},
+        {inverse_gain.x - l.x * g.x, -(l.x * g.y + s.z), s.y - l.x * g.z},
+        {s.z - l.y * g.x, inverse_gain.y - l.y * g.y, -(l.y * g.z + s.x)},
+        {-(l.z * g.x + s.y), s.x - l.z * g.y, inverse_gain.z - l.z * g.z},
     };
     return m;
 }
 
 /* Where damping is fast beside the step, ζ follows b at once, and q with it: q(ζ,ζ⁺) is its mean, but what ζ
- * is at the step's end hangs on q there. So q, too, goes linearly from q(ζ,ζ) to q(ζ⁺,ζ⁺): it adds
- * (φ2 − φ1/2)·(their difference) to the increment, and joins the change of b for mean and slope. Without it
- * a stiff vehicle lags by h/r times the change of q; with it by (h/r)². */
+ * is at the step's end hangs on q there. So q, too, goes linearly from q(ζ,ζ) to q(ζ⁺,ζ⁺): beside its mean it
+ * is worth the constant (κ − ½)·(their difference), and joins the change of b for mean and slope of ζ. Without
+ * it a stiff vehicle lags by h/r times the change of q; with it by (h/r)². */
 static inline vector follow(drive *b, const laconic_model *m, const laconic_decay *d, const solver *s, vector zeta,
                             vector delta) {
     const vector g = vec(m->nu_of_zeta[2]), w = vec(m->gyro), end = plus(zeta, delta);
     const vector change = minus(scaled(dot(g, end), cross(end, w)), scaled(dot(g, zeta), cross(zeta, w)));
-    const vector none = {R(0), R(0), R(0)}, tilt = minus(vec(d->ramp), scaled(R(0.5), vec(d->gain)));
+    const vector none = {R(0), R(0), R(0)}, half = {R(0.5), R(0.5), R(0.5)};
     if (!b->varies) b->change = b->curve = none;
     b->change = plus(b->change, change);
     b->varies = true;
-    return plus(delta, solve(s, times(tilt, change)));
+    return plus(delta, solve(s, times(minus(vec(d->mean), half), change)));
 }
 
-/* ζ⁺ = e^{hL}ζ + hφ1(hL)[q(ζ,ζ⁺) + b] and what a varying b adds, written for the increment Δ = ζ⁺ − ζ:
- * (E − D Q)Δ = D ζ'(ζ) + … */
-static inline laconic_status kahan_step(const laconic_model *m, const laconic_integrator *integrator, int level,
+/* ζ⁺ = e^{hL}ζ + hφ1(hL)[q(ζ,ζ⁺) + b], written for the increment Δ = ζ⁺ − ζ: (D⁻¹ − Q)Δ = ζ'(ζ). */
+INLINE laconic_status kahan_step(const laconic_model *m, const laconic_integrator *integrator, int level,
                                         vector zeta, const drive *b, increment *out) {
     const laconic_decay *d = &integrator->decay[level];
-    const vector g = vec(m->nu_of_zeta[2]), w = vec(m->gyro), gain = vec(d->gain);
+    const vector g = vec(m->nu_of_zeta[2]), w = vec(m->gyro), inverse_gain = vec(d->inverse_gain);
     const real yaw = dot(g, zeta);
     const vector turned = cross(zeta, w);
-    const vector rate = plus(scaled(yaw, turned), minus(b->start, times(vec(m->decay_per_s), zeta)));
-    const matrix implicit = implicit_matrix(gain, g, w, yaw, turned);
-    vector rhs = times(gain, rate), delta;
+    const vector rate = plus(minus(scaled(yaw, turned), times(vec(m->decay_per_s), zeta)), constant_like(b, d));
+    const matrix implicit = implicit_matrix(inverse_gain, g, w, yaw, turned);
+    vector delta;
     solver s;
-    if (!factorise(&s, &implicit)) return LACONIC_STEP_SINGULAR;
-    if (b->varies) rhs = plus(rhs, response(d->ramp, d->bend, b));
-    delta = solve(&s, rhs);
+    if (!factorise(&s, &implicit, inverse_gain.x * inverse_gain.y * inverse_gain.z)) return LACONIC_STEP_SINGULAR;
+    delta = solve(&s, rate);
     if (integrator->stiff) {
         drive followed = *b;
         delta = follow(&followed, m, d, &s, zeta, delta);

@@ -8,6 +8,13 @@ typedef laconic_real real;
 
 #define R(x) ((real)(x)) /* a literal in the scalar type, converted by the compiler */
 
+/* For the base steps, which compilers find too large to inline although each is called at one place. */
+#ifdef __GNUC__
+#define INLINE static inline __attribute__((always_inline))
+#else
+#define INLINE static inline
+#endif
+
 /* |x| as an instruction: x < 0 ? -x : x would have to mind the sign of zero. */
 static inline real magnitude(real x) {
 #if defined(__GNUC__) && defined(LACONIC_SINGLE)

@@ -159,11 +159,19 @@ static void clear_axis(laconic_model *m, int32_t k) {
     for (i = 0; i < 3; i++) m->nu_of_zeta[i][k] = R(0);
 }
 
+/* w, and what the closed form of the free motion (exact_flow.h) makes of it. */
+static void derive_gyro(laconic_model *m) {
+    const vector g = vec(m->nu_of_zeta[2]);
+    const vector w = scaled(R(1) / m->yaw_scale, cross(vec(m->nu_of_zeta[0]), vec(m->nu_of_zeta[1])));
+    put(m->gyro, w);
+    m->gyro_square = square(w);
+    put(m->spin_gain, cross(w, g));
+    put(m->spin_curve, minus(scaled(R(2) * dot(g, w), w), scaled(m->gyro_square, g)));
+}
+
 static void derive_rows(laconic_model *m) {
     int k;
-    put(m->gyro, cross(vec(m->nu_of_zeta[0]), vec(m->nu_of_zeta[1])));
     for (k = 0; k < 3; k++) {
-        m->gyro[k] /= m->yaw_scale;
         m->yaw_rate_of_zeta[k] = m->nu_of_zeta[2][k] / m->yaw_scale;
         m->velocity_of_zeta[0][k] = m->wheel_radius_m * m->nu_of_zeta[0][k];
         m->velocity_of_zeta[1][k] = m->wheel_radius_m * m->nu_of_zeta[1][k];
@@ -196,7 +204,7 @@ laconic_real laconic_condition_number(const laconic_model *model) {
 
 /* Numbers so far apart that a constant left the range would turn into NaN later: say so now. */
 static bool usable(const laconic_model *m) {
-    real sum = size(vec(m->inertia)) + size(vec(m->decay_per_s)) + size(vec(m->gyro)) + size(vec(m->yaw_rate_of_zeta)) +
+    real sum = size(vec(m->inertia)) + size(vec(m->decay_per_s)) + size(vec(m->gyro)) + size(vec(m->spin_curve)) + size(vec(m->yaw_rate_of_zeta)) +
                size(vec(m->velocity_of_zeta[0])) + size(vec(m->velocity_of_zeta[1])) + m->torque_scale +
                magnitude(m->voltage_scale) + m->mass_kg + R(1) / m->yaw_scale + magnitude(m->com_x_m) +
                magnitude(m->com_y_m);
@@ -227,6 +235,7 @@ laconic_status laconic_prepare(laconic_model *model, const laconic_vehicle *vehi
         else
             clear_axis(&m, k);
     }
+    derive_gyro(&m);
     derive_rows(&m);
     if (!usable(&m)) return refuse(why, LACONIC_OVERFLOW, LACONIC_FIELD_NONE, 0, R(0), R(0));
     if (!(LACONIC_EPSILON * laconic_root(laconic_condition_number(&m)) < R(0.01)))

@@ -22,6 +22,11 @@ static inline vector response(const real ramp[3], const real bend[3], const driv
     return plus(times(vec(ramp), b->change), times(vec(bend), b->curve));
 }
 
+/* The constant b that leads to the same ζ at the end. */
+static inline vector constant_like(const drive *b, const laconic_decay *d) {
+    return b->varies ? plus(b->start, response(d->mean, d->bend, b)) : b->start;
+}
+
 /* Mean and first moment of ζ over the step from its increment: exact for damping and drive alone, and
  * symmetric, so that they gain two orders by extrapolation as the increment does. */
 static inline void fill(increment *out, const laconic_decay *d, vector zeta, vector delta, const drive *b) {
@@ -49,50 +54,43 @@ static inline vector curve_of(const laconic_loads *loads, int level) {
     return scaled(level == 0 ? R(2) : R(0.5), minus(ends, scaled(R(2), vec(loads->middle->constant))));
 }
 
-/* A force fixed in the world makes b depend on the heading at the end, which the step itself decides:
- * iterate. Three rounds leave an error of h⁷, so symmetry, which extrapolation rests on, is kept. */
-static inline laconic_status turning_step(base_step base, const laconic_model *m, const laconic_integrator *integrator,
-                                          const laconic_heading *heading, part *p, drive *b, increment *out) {
-    const real h = integrator->step_s * (p->level == 0 ? R(1) : R(0.5));
-    const vector yaw_rate = vec(m->yaw_rate_of_zeta);
-    const real before = p->turned_rad;
-    laconic_status status = LACONIC_OK;
-    int round;
-    p->turned_rad = before + h * dot(yaw_rate, p->zeta);
-    b->start = load_now(p->start, heading, before);
-    for (round = 0; round < 3 && status == LACONIC_OK; round++) {
-        b->change = minus(load_now(p->end, heading, p->turned_rad), b->start);
-        status = base(m, integrator, p->level, p->zeta, b, out);
-        p->turned_rad = before + h * dot(yaw_rate, out->mean);
-    }
-    return status;
-}
-
-/* One base step under any loads; zeta and turned_rad move on to its end. */
-static inline laconic_status part_step(base_step base, const laconic_model *m, const laconic_integrator *integrator,
-                                       const laconic_heading *heading, const laconic_loads *loads, part *p,
-                                       increment *out) {
-    laconic_status status;
+/* b at the part's start, and how it goes on as far as the inputs say. */
+static inline drive drive_of(const laconic_heading *heading, const laconic_loads *loads, const part *p, bool turns) {
+    const vector none = {R(0), R(0), R(0)};
     drive b;
-    b.start = vec(p->start->constant);
-    b.varies = LACONIC_WITH_SAMPLED_INPUT && p->start != p->end;
-    if (b.varies) {
+    b.start = load_now(p->start, heading, p->turned_rad);
+    b.varies = turns || (LACONIC_WITH_SAMPLED_INPUT && p->start != p->end);
+    b.change = b.curve = none;
+    if (LACONIC_WITH_SAMPLED_INPUT && p->start != p->end) {
         b.change = minus(vec(p->end->constant), b.start);
         b.curve = curve_of(loads, p->level);
     }
-    if (LACONIC_WITH_WORLD_FORCE && (p->start->turns || p->end->turns)) {
-        if (!b.varies) b.curve = (vector){R(0), R(0), R(0)};
-        b.varies = true;
-        status = turning_step(base, m, integrator, heading, p, &b, out);
-    } else {
+    return b;
+}
+
+/* One base step under any loads; zeta and turned_rad move on to its end. A force fixed in the world makes b
+ * depend on the heading at the end, which the step itself decides: iterate. Three rounds leave an error of h⁷,
+ * so symmetry, which extrapolation rests on, is kept. */
+INLINE laconic_status part_step(base_step base, const laconic_model *m, const laconic_integrator *integrator,
+                                const laconic_heading *heading, const laconic_loads *loads, part *p, increment *out) {
+    const bool turns = LACONIC_WITH_WORLD_FORCE && (p->start->turns || p->end->turns);
+    const real h = integrator->step_s * (p->level == 0 ? R(1) : R(0.5)), before = p->turned_rad;
+    drive b = drive_of(heading, loads, p, turns);
+    int rounds;
+    if (turns) p->turned_rad = before + h * dot(vec(m->yaw_rate_of_zeta), p->zeta);
+    for (rounds = turns ? 3 : 1; rounds > 0; rounds--) {
+        laconic_status status;
+        if (turns) b.change = minus(load_now(p->end, heading, p->turned_rad), b.start);
         status = base(m, integrator, p->level, p->zeta, &b, out);
+        if (status != LACONIC_OK) return status;
+        if (turns) p->turned_rad = before + h * dot(vec(m->yaw_rate_of_zeta), out->mean);
     }
     p->zeta = plus(p->zeta, out->delta);
-    return status;
+    return LACONIC_OK;
 }
 
 /* The base step itself as a method. */
-static inline laconic_status single_step(base_step base, const laconic_model *m, const laconic_integrator *integrator,
+INLINE laconic_status single_step(base_step base, const laconic_model *m, const laconic_integrator *integrator,
                                          const laconic_state *state, const laconic_loads *loads, increment *out) {
     part whole = {0, zeta_of(state), R(0), loads->start, loads->end};
     return part_step(base, m, integrator, &state->heading, loads, &whole, out);
@@ -113,7 +111,7 @@ static inline increment combine(const increment *whole, const increment *first, 
 }
 
 /* A loop, so that the base is inlined once: the halves follow each other from where the whole began. */
-static inline laconic_status extrapolated_step(base_step base, const laconic_model *m,
+INLINE laconic_status extrapolated_step(base_step base, const laconic_model *m,
                                                const laconic_integrator *integrator, laconic_state *state,
                                                const laconic_loads *loads) {
     const laconic_load *ends[4] = {loads->start, loads->start, loads->middle, loads->end};

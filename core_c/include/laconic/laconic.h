@@ -202,6 +202,9 @@ typedef struct laconic_model {
     int32_t dof;                                     /* m = 1 … 3                                 */
     laconic_real nu_of_zeta[3][3];                   /* G                                         */
     laconic_real gyro[3];                            /* w = G₀ × G₁ / Λ                           */
+    laconic_real gyro_square;                        /* |w|²                                      */
+    laconic_real spin_gain[3];                       /* w × g: (spin_gain · ζ)(g·ζ) = rate of g·ζ in free motion */
+    laconic_real spin_curve[3];                      /* 2(g·w)w − |w|²g                           */
     laconic_real decay_per_s[3];                     /* r_k ≥ 0, damping rates                    */
     laconic_real inertia[3];                         /* 1 + λ² x_k, principal values of A         */
     laconic_real velocity_of_zeta[2][3];             /* R G₀, R G₁: v_S in body axes              */
@@ -319,9 +322,10 @@ void laconic_state_carry(laconic_state *state, const laconic_model *from, const 
  * b over the sub-step: start + change·s + curve·s(s − 1), s from 0 to 1. */
 typedef struct laconic_decay {
     laconic_real gain[3];       /* h φ1: increment per derivative                                 */
-    laconic_real ramp[3];       /* h φ2: increment per change of b                                */
-    laconic_real bend[3];       /* h (2 φ3 − φ2): increment per curve of b                        */
-    laconic_real mean[3];       /* κ = φ2/φ1: how far the mean lies along the increment, ½ … 1    */
+    laconic_real inverse_gain[3];
+    laconic_real mean[3];       /* κ = φ2/φ1, ½ … 1: how far the mean of ζ lies along the increment, and
+                                   what constant b a change of b is worth                         */
+    laconic_real bend[3];       /* (2 φ3 − φ2)/φ1: what constant b a curve of b is worth          */
     laconic_real mean_ramp[3];  /* h (φ3 − κ φ2): and beside it, per change                       */
     laconic_real mean_bend[3];  /* h (2 φ4 − φ3 − κ (2 φ3 − φ2)): per curve                       */
     laconic_real slope[3];      /* 12 (φ2/2 − φ3)/φ1: first moment along the increment, 1 … 0     */
