@@ -36,4 +36,29 @@ static inline void assert_step_refused(const laconic_method *method, laconic_veh
     TEST_ASSERT_EQUAL_MEMORY(&before, &state, sizeof state);
 }
 
+/* Looks through scattered starts for one whose step of `step` is refused since it would gain energy: such states are
+ * rare, and where they lie is no promise, but that they are noticed and nothing changes then is one. */
+static inline laconic_start start_that_gains_energy(const laconic_method *method, laconic_vehicle v,
+                                                    laconic_input input, double step, double speed) {
+    const laconic_model m = model_of(v);
+    const laconic_integrator in = integrator_of(method, &m, step);
+    laconic_start start = start_with(0, 0, 0);
+    uint32_t seed = 1;
+    int tries, k;
+    for (tries = 0; tries < 100000; tries++) {
+        laconic_state state, before;
+        for (k = 0; k < 3; k++) {
+            seed = seed * 1664525U + 1013904223U;
+            start.nu_rad_per_s[k] = REAL(speed * ((double)(seed >> 8) / 8388608.0 - 1.0));
+        }
+        state = before = state_of(&m, start);
+        if (laconic_step(&m, &in, &state, &input) == LACONIC_STEP_GAINS_ENERGY) {
+            TEST_ASSERT_EQUAL_MEMORY(&before, &state, sizeof state);
+            return start;
+        }
+    }
+    TEST_FAIL_MESSAGE("no start was refused");
+    return start;
+}
+
 #endif
