@@ -111,14 +111,14 @@ def change_ticks(path: Path, each: Input, step_s: float, steps: int) -> np.ndarr
     off = np.abs(ticks * step_s - instants) > ON_THE_GRID * step_s
     late = instants >= steps * step_s
     for instant in instants[off & ~late]:
-        raise BadInput(f"{path}: {each.place}.t_s: {instant:g} s falls inside a step of {step_s:g} s; "
-                       f"{step_remedy(instants[~late], step_s)}")
+        remedy = step_remedy([*instants[~late], Fraction(repr(step_s)) * steps], step_s)
+        raise BadInput(f"{path}: {each.place}.t_s: {instant:g} s falls inside a step of {step_s:g} s; {remedy}")
     return np.where(late, np.maximum(ticks, steps), ticks).astype(np.int64)
 
 
-def step_remedy(instants_s: Iterable[float], step_s: float) -> str:
+def step_remedy(instants_s: Iterable[float | Fraction], step_s: float) -> str:
     """The next smaller step that has all these instants on its grid: their greatest common divisor over n."""
-    exact = [Fraction(repr(float(t))) for t in instants_s]
+    exact = [t if isinstance(t, Fraction) else Fraction(repr(float(t))) for t in instants_s]
     whole = math.lcm(*(t.denominator for t in exact))
     grid = Fraction(math.gcd(*(int(t * whole) for t in exact)), whole)
     return f"a step of {float(grid / math.ceil(grid / Fraction(repr(step_s)))):.9g} s would do"

@@ -1,0 +1,206 @@
+"""Bad input gives one clear line that names file, field and remedy, and exit status 2."""
+
+from __future__ import annotations
+
+import math
+import os
+import subprocess
+import sys
+from pathlib import Path
+
+import pytest
+from laconic.cli import run
+
+GOOD = """
+name = "Four wheels"
+source = "a test"
+[vehicle]
+mass_kg = 20.0
+yaw_inertia_kgm2 = 1.2
+com_y_m = 0.03
+wheel_radius_m = 0.05
+wheel_inertia_kgm2 = 0.004
+motor_gain_Nm_per_V = 0.8
+motor_damping_Nms = 0.05
+[[vehicle.wheel]]
+kind = "mecanum"
+x_m = 0.2
+y_m = 0.15
+axle_deg = -90
+roller_deg = 45
+[[vehicle.wheel]]
+kind = "omni"
+distance_m = 0.2
+bearing_deg = 180
+axle_deg = 180
+[[input]]
+signal = "voltage_V[1]"
+kind = "steps"
+t_s = [0.0, 0.5]
+value = [6.0, -3.0]
+[run]
+duration_s = 1.0
+step_s = 0.01
+"""
+
+# what is changed in the good scene, and what the line must say
+BAD = {
+    "missing field": (("mass_kg = 20.0\n", ""), ("vehicle.mass_kg", "missing")),
+    "missing table": (("[run]\nduration_s = 1.0\nstep_s = 0.01\n", ""), ("run", "missing")),
+    "missing wheel inertia": (("wheel_inertia_kgm2 = 0.004\n", ""), ("vehicle.wheel_inertia_kgm2", "missing")),
+    "missing damping": (("motor_damping_Nms = 0.05\n", ""), ("vehicle.motor_damping_Nms", "missing")),
+    "missing roller angle": (("roller_deg = 45\n", ""), ("vehicle.wheel[1].roller_rad", "missing")),
+    "missing bearing": (("bearing_deg = 180\n", ""), ("vehicle.wheel[2].bearing_rad", "missing")),
+    "negative mass": (("mass_kg = 20.0", "mass_kg = -20.0"), ("mass_kg", "-20", "above 0")),
+    "zero radius": (("wheel_radius_m = 0.05", "wheel_radius_m = 0.0"), ("wheel_radius_m", "above 0")),
+    "negative inertia": (("wheel_inertia_kgm2 = 0.004", "wheel_inertia_kgm2 = -1"), ("wheel_inertia_kgm2", "-1")),
+    "NaN": (("yaw_inertia_kgm2 = 1.2", "yaw_inertia_kgm2 = nan"), ("yaw_inertia_kgm2", "finite")),
+    "infinite place": (("x_m = 0.2", "x_m = inf"), ("wheel_x_m[1]", "finite")),
+    "infinite bearing": (("bearing_deg = 180", "bearing_deg = inf"), ("vehicle.wheel[2].bearing_rad", "finite")),
+    "roller along axle": (("roller_deg = 45", "roller_deg = 0"), ("roller_rad[1]", "axle")),
+    "roller of a fixed wheel": (('kind = "mecanum"', 'kind = "fixed"'), ("wheel[1].roller_deg", "no rollers")),
+    "unknown kind": (('kind = "mecanum"', 'kind = "mecanun"'), ("wheel[1].kind", "did you mean mecanum?")),
+    "unknown key": (("mass_kg = 20.0", "mass_kg = 20.0\nmas_kg = 1"), ("vehicle.mas_kg", "did you mean mass_kg?")),
+    "unknown key at the top": (('name = "Four', 'colour = "red"\nname = "Four'), ("colour", "no known key")),
+    "unknown key of a wheel": (("axle_deg = 180", "axle_deg = 180\nradius_m = 1"), ("wheel[2].radius_m", "known key")),
+    "wheel count mismatch": (("voltage_V[1]", "voltage_V[3]"), ("input[1].signal", "2 wheels", "voltage_V[2]")),
+    "unknown signal": (("voltage_V[1]", "volts[1]"), ("input[1].signal", "volts[1]")),
+    "unknown input kind": (('"steps"', '"ramp"'), ("input[1].kind", "ramp")),
+    "lists of different length": (("value = [6.0, -3.0]", "value = [6.0]"), ("input[1].value", "1 entries, not 2")),
+    "NaN voltage": (("value = [6.0, -3.0]", "value = [6.0, nan]"), ("input[1].value", "finite")),
+    "instants out of order": (("t_s = [0.0, 0.5]", "t_s = [0.5, 0.5]"), ("input[1].t_s", "ascending")),
+    "instant before the start": (("t_s = [0.0, 0.5]", "t_s = [-1.0, 0.5]"), ("input[1].t_s", "begins at 0")),
+    "change inside a step": (("t_s = [0.0, 0.5]", "t_s = [0.0, 0.5049]"), ("input[1].t_s", "0.5049", "would do")),
+    "text for a number": (("mass_kg = 20.0", 'mass_kg = "20"'), ("vehicle.mass_kg", "not a number")),
+    "true for a number": (("mass_kg = 20.0", "mass_kg = true"), ("vehicle.mass_kg", "true")),
+    "number for a text": (('source = "a test"', "source = 3"), ("source", "not text")),
+    "both angles": (("axle_deg = 180", "axle_deg = 180\naxle_rad = 3"), ("wheel[2].axle_deg", "keep one")),
+    "both places": (("distance_m = 0.2", "distance_m = 0.2\nx_m = 1"), ("wheel[2].distance_m", "x_m")),
+    "motor twice": (("[run]", "[vehicle.motor]\nresistance_ohm = 1\n[run]"), ("motor_gain_Nm_per_V", "keep one")),
+    "zero duration": (("duration_s = 1.0", "duration_s = 0"), ("run.duration_s", "above zero")),
+    "negative step": (("step_s = 0.01", "step_s = -0.01"), ("run.step_s", "above zero")),
+    "step does not fit": (("step_s = 0.01", "step_s = 0.03"), ("run.duration_s", "0.03 s", "0.0294117647 s would do")),
+    "unknown method": (("[run]", '[run]\nmethod = "rk5"'), ("run.method", "did you mean rk4?")),
+    "unknown scalar type": (("[run]", '[run]\nreal = "half"'), ("run.real", "half")),
+    "unknown output": (("[run]", '[outputs]\nsignals = ["speed"]\n[run]'), ("outputs.signals", "speed")),
+    "outputs between steps": (("[run]", "[outputs]\nevery_s = 0.015\n[run]"), ("outputs.every_s", "would do")),
+    "velocity twice": (
+        ("[run]", "[initial]\nnu_rad_per_s = [0,0,0]\nyaw_rate_rad_per_s = 1\n[run]"), ("yaw_rate_rad_per_s", "keep")),
+    "explicit step too large": (
+        ("motor_damping_Nms = 0.05", "motor_damping_Nms = 50.0"), ("step_s", "use at most")),
+    "identifier too large": (("[run]", "[rig]\nid_base = 4096\n[run]"), ("rig.id_base", "0x7FF")),
+    "no valid TOML": (("mass_kg = 20.0", "mass_kg = "), ("no valid TOML", "line 5")),
+}
+
+
+def complaint(capsys: pytest.CaptureFixture[str], arguments: list[str]) -> str:
+    """The one line that a command with bad input says."""
+    assert run(arguments) == 2
+    captured = capsys.readouterr()
+    assert captured.out == ""
+    assert captured.err.count("\n") == 1, captured.err
+    assert captured.err.endswith("\n")
+    return captured.err
+
+
+@pytest.mark.parametrize(("change", "words"), BAD.values(), ids=BAD.keys())
+def test_bad_scene_is_one_line_with_file_field_and_remedy(change, words, tmp_path, capsys):
+    old, new = change
+    text = GOOD.replace(old, new, 1)
+    assert text != GOOD
+    path = tmp_path / "scene.toml"
+    path.write_text(text)
+    explicit = [] if "method" in text else ["--method", "rk4"]
+    line = complaint(capsys, ["simulate", str(path), *explicit])
+    assert str(path) in line
+    for word in words:
+        assert word in line
+
+
+def test_a_start_that_slides_a_fixed_wheel(tmp_path, capsys):
+    path = tmp_path / "scene.toml"
+    path.write_text(GOOD.replace('"omni"', '"fixed"') + "[initial]\nnu_rad_per_s = [1.0, 1.0, 1.0]\n")
+    line = complaint(capsys, ["simulate", str(path)])
+    assert str(path) in line
+    assert "start_nu_rad_per_s" in line
+
+
+def test_the_good_scene_is_good(tmp_path, capsys):
+    path = tmp_path / "scene.toml"
+    path.write_text(GOOD)
+    assert run(["simulate", str(path)]) == 0
+    assert capsys.readouterr().err == ""
+
+
+def test_a_scene_that_is_not_there(capsys):
+    assert "no such scene file" in complaint(capsys, ["simulate", "nowhere/to/be/found.toml"])
+
+
+def test_a_misspelt_scene_of_the_project(capsys):
+    assert "did you mean robotino2?" in complaint(capsys, ["simulate", "robotino"])
+
+
+def test_a_folder_is_no_scene(tmp_path, capsys):
+    assert "cannot be read" in complaint(capsys, ["simulate", str(tmp_path)])
+
+
+@pytest.mark.skipif(os.geteuid() == 0 if hasattr(os, "geteuid") else True, reason="root may read every file")
+def test_an_unreadable_file(tmp_path, capsys):
+    path = tmp_path / "scene.toml"
+    path.write_text(GOOD)
+    path.chmod(0)
+    assert "cannot be read" in complaint(capsys, ["simulate", str(path)])
+
+
+def test_a_file_that_is_no_text(tmp_path, capsys):
+    path = tmp_path / "scene.toml"
+    path.write_bytes(b"\xff\xfe\x00")
+    assert "UTF-8" in complaint(capsys, ["simulate", str(path)])
+
+
+def test_too_many_wheels(tmp_path, capsys):
+    wheel = '[[vehicle.wheel]]\nkind = "omni"\nx_m = 0.1\ny_m = 0.1\naxle_rad = 0.3\n'
+    path = tmp_path / "scene.toml"
+    path.write_text(GOOD.replace("[[input]]", 16 * wheel + "[[input]]"))
+    line = complaint(capsys, ["simulate", str(path)])
+    assert "18" in line
+    assert "16" in line
+    assert str(path) in line
+
+
+@pytest.mark.parametrize("step", ["0", "-1", "nan", "inf"])
+def test_a_step_on_the_command_line_that_is_none(step, capsys):
+    assert "--step" in complaint(capsys, ["simulate", "s1", "--step", step])
+
+
+@pytest.mark.parametrize("arguments", [["simulat", "s1"], ["simulate"], ["simulate", "s1", "--stp", "1"],
+                                       ["simulate", "s1", "--method", "euler"], ["--nonsense"]])
+def test_a_wrong_command_line(arguments, capsys):
+    assert "--help" in complaint(capsys, arguments)
+
+
+@pytest.mark.parametrize("option", ["--out", "--plot"])
+def test_a_place_that_cannot_be_written(option, tmp_path, capsys):
+    blocked = tmp_path / "file"
+    blocked.write_text("")
+    line = complaint(capsys, ["simulate", "s1", option, str(blocked / "inside.png")])
+    assert str(blocked) in line
+    assert "cannot be written" in line
+
+
+def test_the_command_itself_ends_with_status_2():
+    done = subprocess.run([sys.executable, "-m", "laconic.cli", "simulate", "nowhere.toml"], capture_output=True,
+                          text=True, check=False, cwd=Path(__file__).parents[1])
+    assert (done.returncode, done.stdout, done.stderr.count("\n")) == (2, "", 1)
+
+
+def test_angles_in_degrees_are_the_same_as_in_radians(tmp_path, capsys):
+    def final(text: str) -> str:
+        path = tmp_path / "scene.toml"
+        path.write_text(text)
+        assert run(["simulate", str(path), "--out", "-"]) == 0
+        return capsys.readouterr().out
+
+    in_radians = GOOD.replace("axle_deg = -90", f"axle_rad = {-math.pi / 2!r}")
+    in_radians = in_radians.replace("roller_deg = 45", f"roller_rad = {math.pi / 4!r}")
+    assert final(in_radians) == final(GOOD)
