@@ -13,13 +13,14 @@ from laconic.core import Core
 from laconic.drive import Drive
 from laconic.errors import Refused
 from laconic.plant import Plant
-from laconic.progress import progress_bar
+from laconic.progress import Advance, progress_bar
 from laconic.scene import Scene
 from laconic.scene_reader import OUTPUT_LENGTHS, OUTPUTS_PER_WHEEL, signal_names
 
 USUAL = ("nu_rad_per_s", "x_m", "y_m", "heading_rad", "velocity_body_m_per_s", "yaw_rate_rad_per_s",
          "wheel_speed_rad_per_s", "wheel_angle_rad", "energy_J")
-CHUNK = 4096  # steps between two looks at the progress bar
+CHUNK = 4096          # sampled steps made ready at once
+HELD_CHUNK = 1 << 20  # held steps between two looks at the progress bar: about half a second
 
 Row = dict[str, float]
 
@@ -120,11 +121,17 @@ def advance_plant(plant: Plant, drive: Drive, first: int, count: int) -> None:
         for begin, steps in held_stretches(drive, first, count):
             plant.run(core.input(drive.held_at(begin)), steps)
         return
+    for begin in range(first, first + count, CHUNK):
+        plant.run_sampled(sampled_rows(core, drive, begin, min(CHUNK, first + count - begin)))
+
+
+def sampled_rows(core: Core, drive: Drive, first: int, count: int) -> np.ndarray:
+    """Rows of input numbers at the start, middle and end of some steps."""
     samples = drive.samples(first, count)
     rows = np.zeros((count, 3, core.input_length), core.dtype)
     for column, signal in enumerate(drive.signals):
         rows[:, :, core.input_place(signal)] = samples[:, :, column]
-    plant.run_sampled(rows)
+    return rows
 
 
 def held_stretches(drive: Drive, first: int, count: int) -> Iterator[tuple[int, int]]:
@@ -147,19 +154,20 @@ def simulate(scene: Scene, signals: tuple[str, ...] = (), progress: bool = False
     with progress_bar(scene.name, steps if progress else 0) as moved:
         recorder.take(plant, input_now(core, drive, 0))
         for tick, following in pairwise(ticks):
-            run_window(scene, plant, drive, tick, following - tick)
+            run_window(scene, plant, drive, tick, following - tick, moved)
             recorder.take(plant, input_now(core, drive, following))
-            if following // CHUNK > tick // CHUNK:
-                moved(following - tick if every > CHUNK else CHUNK)
     seconds = time.perf_counter() - began
     instants = np.array(ticks, dtype=float) * scene.run.step_s
     return Trajectory(scene, plant.chosen_method, steps, seconds, instants, recorder.columns())
 
 
-def run_window(scene: Scene, plant: Plant, drive: Drive, first: int, count: int) -> None:
+def run_window(scene: Scene, plant: Plant, drive: Drive, first: int, count: int, moved: Advance) -> None:
     """Some steps; a refusal is told with file and time."""
     try:
-        advance_plant(plant, drive, first, count)
+        for begin in range(first, first + count, HELD_CHUNK):
+            steps = min(HELD_CHUNK, first + count - begin)
+            advance_plant(plant, drive, begin, steps)
+            moved(steps)
     except Refused as refused:
         raise refused.at(f"{scene.path}: at t = {plant.steps * scene.run.step_s:g} s") from None
 

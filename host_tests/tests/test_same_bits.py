@@ -74,6 +74,20 @@ def test_every_method_gives_the_same_bits_everywhere(method, tmp_path):
     assert difference(node_rows(scene.with_run(duration_s=1.0), 1000, NODE_EVERY), core, 3) == ""
 
 
+def test_inputs_that_vary_within_a_step_give_the_same_bits_too(tmp_path):
+    path = tmp_path / "scene.toml"
+    text = read_scene("robotino2").path.read_text()
+    sine = '[[input]]\nsignal = "voltage_V[2]"\nkind = "sine"\namplitude = 2.0\nfrequency_Hz = 3.0\n\n[run]'
+    path.write_text(text.replace("[run]", sine))
+    scene = read_scene(path).with_run(duration_s=1.0)
+    sampled, held = core_rows(scene, 1000), core_rows(scene, 1000, hold=True)
+    assert difference(held, sampled, 3) != ""
+    assert difference(node_rows(scene, 1000, NODE_EVERY), sampled, 3) == ""
+    for version in (2, 3):
+        fmu = make_fmu(scene, tmp_path / f"fmi{version}.fmu", version=version)
+        assert difference(fmu_rows(scene, fmu, 1000, FMU_EVERY), held, 3) == ""
+
+
 def test_one_bit_is_enough_to_be_noticed():
     scene = read_scene("s1")
     core = core_rows(scene, 50)

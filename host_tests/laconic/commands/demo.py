@@ -25,7 +25,7 @@ SHOWN_METHODS = ("auto", "rk4")
 SHOWN_FACTORS = (1, 10, 50)
 
 
-@click.command(name="demo")
+@click.command(name="demo", short_help="The main job: real robots through core, FMUs and node.")
 @click.argument("scenes", nargs=-1, metavar="[SCENE]...")
 @click.option("--out", type=click.Path(path_type=Path, file_okay=False), metavar="DIR",
               help="Where pictures and figures go; demo/ of the build tree if not given.")

@@ -16,7 +16,7 @@ from laconic.scene import METHODS, read_scene
 from laconic.simulation import Trajectory, simulate, usual_signals, wanted_signals
 
 
-@click.command(name="simulate")
+@click.command(name="simulate", short_help="Run one scene through the core.")
 @click.argument("scene")
 @click.option("--method", type=click.Choice(METHODS), help="Instead of the scene's.")
 @click.option("--step", "step_s", type=float, metavar="H", help="Step in seconds instead of the scene's.")

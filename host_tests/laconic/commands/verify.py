@@ -16,7 +16,7 @@ from laconic.scene import METHODS
 from laconic.verification import CaseResult, as_json, read_reference, verify_case
 
 
-@click.command(name="verify")
+@click.command(name="verify", short_help="Compare the core with reference trajectories.")
 @click.argument("reference", type=click.Path(path_type=Path))
 @click.option("--method", type=click.Choice(METHODS), default="auto", show_default=True)
 @click.option("--step", "step_s", type=float, default=1e-3, show_default=True, metavar="H", help="Step in seconds.")

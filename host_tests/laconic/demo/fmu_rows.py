@@ -84,7 +84,7 @@ class Slave3:
 
 def fmu_rows(scene: Scene, fmu: Path, steps: int, every: int = 1,
              moved: Callable[[int], None] = lambda _: None) -> Rows:
-    """Rows of a scene's FMU; inputs are held over each communication step."""
+    """Rows of a scene's FMU. Inputs are held over each communication step, which is one step where they vary."""
     description = fmpy.read_model_description(str(fmu), validate=False)
     references = {variable.name: variable.valueReference for variable in description.modelVariables}
     kind, ours = (FMU2Slave, Slave2) if description.fmiVersion == "2.0" else (FMU3Slave, Slave3)
@@ -104,7 +104,7 @@ def run(slave: Any, scene: Scene, steps: int, every: int, moved: Callable[[int],
     drive, step_s = scene.drive(), scene.run.step_s
     slave.start(steps * step_s)
     changes, ticks, rows, began = set(drive.changes), [], [], time.perf_counter()
-    for first, count in exchanges(drive, steps, every):
+    for first, count in exchanges(drive, steps, every if drive.is_held else 1):
         if first in changes or not drive.is_held:
             for base, values in input_arrays(drive, first, scene.wheel_count).items():
                 slave.set(base, values)

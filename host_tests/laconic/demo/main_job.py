@@ -66,12 +66,13 @@ def run_scene(given: Scene, out: Path, moved: Advance) -> SceneResult:
     """Everything for one scene."""
     scene = steps_of(given)
     core = core_rows(scene, scene.steps())
+    held = core if scene.drive().is_held else core_rows(scene, scene.steps(), hold=True)
     result = SceneResult(scene.name, str(scene.path), scene.steps(), scene.plant(scene.core()).chosen_method)
     with TemporaryDirectory() as folder:
         for who in PARTICIPANTS:
             moved(0, what=f"{scene.name}: {who}")
             found = rows_of(who, scene, Path(folder))
-            result.same_bits[who] = difference(found, core, scene.wheel_count)
+            result.same_bits[who] = difference(found, core if who == "node" else held, scene.wheel_count)
             result.compared[who] = len(found.ticks)
             moved(1)
     moved(0, what=f"{scene.name}: reference, steps and methods")

@@ -39,12 +39,18 @@ def exchanges(drive: Drive, steps: int, every: int) -> Iterator[tuple[int, int]]
         yield begin, end - begin
 
 
-def core_rows(scene: Scene, steps: int, every: int = 1) -> Rows:
-    """The core itself: what the others are held against."""
+def core_rows(scene: Scene, steps: int, every: int = 1, hold: bool = False) -> Rows:
+    """The core itself: what the others are held against.
+
+    `hold`: with every input held over the step at its value at the start, as an FMU gets it.
+    """
     plant, drive = scene.plant(scene.core()), scene.drive()
     ticks, rows = [], []
-    for first, count in exchanges(drive, steps, every):
-        advance_plant(plant, drive, first, count)
+    for first, count in exchanges(drive, steps, 1 if hold else every):
+        if hold:
+            plant.run(plant.core.input(drive.held_at(first)), count)
+        else:
+            advance_plant(plant, drive, first, count)
         ticks.append(first + count)
         rows.append(plant.row())
     return Rows("core", np.array(ticks), np.array(rows))
