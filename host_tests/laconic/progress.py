@@ -15,8 +15,11 @@ Advance = Callable[..., None]
 def progress_bar(what: str, total: float) -> Iterator[Advance]:
     """Yields advance(amount=1, what=None): moves the bar on, and may rename what it says."""
     console = Console(stderr=True)
+    if not console.is_terminal:
+        yield lambda amount=1, what=None: None
+        return
     columns = (TextColumn("{task.description}"), BarColumn(), MofNCompleteColumn(), TimeRemainingColumn())
-    with Progress(*columns, console=console, transient=True, disable=not console.is_terminal) as bar:
+    with Progress(*columns, console=console, transient=True) as bar:
         task = bar.add_task(what, total=total)
 
         def advance(amount: float = 1, what: str | None = None) -> None:
