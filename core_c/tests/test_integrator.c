@@ -11,6 +11,7 @@ static void refuses(const laconic_method *method, double step, laconic_status st
     before = in;
     ASSERT_REFUSED(status, field, 0, laconic_integrator_prepare(&in, method, &m, REAL(step), &why), why);
     ASSERT_STATUS(status, laconic_integrator_prepare(&in, method, &m, REAL(step), NULL));
+    if (status == LACONIC_OVERFLOW) TEST_ASSERT_EQUAL_DOUBLE(1e9, (double)why.limit);
     TEST_ASSERT_EQUAL_MEMORY(&before, &in, sizeof in);
 }
 
@@ -22,6 +23,13 @@ static void steps_that_are_none_are_refused(void) {
         refuses(method, -0.01, LACONIC_NOT_POSITIVE, LACONIC_FIELD_STEP);
         refuses(method, NAN, LACONIC_NOT_FINITE, LACONIC_FIELD_STEP);
         refuses(method, INFINITY, LACONIC_NOT_FINITE, LACONIC_FIELD_STEP);
+    }
+}
+
+static void a_step_of_decades_is_refused_with_the_longest_there_is(void) {
+    int32_t i;
+    for (i = 0; i < LACONIC_METHOD_COUNT; i++) {
+        refuses(laconic_method_by_number(i), 2e9, LACONIC_OVERFLOW, LACONIC_FIELD_STEP);
     }
 }
 
@@ -52,6 +60,7 @@ static void the_fastest_decay_is_the_largest_of_all_axes(void) {
 int main(void) {
     UNITY_BEGIN();
     RUN_TEST(steps_that_are_none_are_refused);
+    RUN_TEST(a_step_of_decades_is_refused_with_the_longest_there_is);
     RUN_TEST(no_method_is_refused);
     RUN_TEST(a_good_step_is_kept_with_its_method);
     RUN_TEST(the_fastest_decay_is_the_largest_of_all_axes);

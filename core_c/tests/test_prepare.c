@@ -152,7 +152,22 @@ static void numbers_that_leave_the_range_are_refused(void) {
     v.wheel_radius_m = REAL(EITHER(1e30, 1e10));
     ASSERT_REFUSED(LACONIC_OVERFLOW, LACONIC_FIELD_NONE, 0, laconic_prepare(&model, &v, &why), why);
     v = three_wheels();
+    v.mass_kg = v.yaw_inertia_kgm2 = REAL(EITHER(1e300, 1e35)); /* M R² overflows */
+    v.wheel_radius_m = REAL(EITHER(1e5, 1e3));
+    ASSERT_REFUSED(LACONIC_OVERFLOW, LACONIC_FIELD_NONE, 0, laconic_prepare(&model, &v, &why), why);
+    v.mass_kg = v.yaw_inertia_kgm2 = REAL(EITHER(1e200, 1e25)); /* squares would */
+    v.wheel_radius_m = REAL(0.05);
+    ASSERT_REFUSED(LACONIC_OVERFLOW, LACONIC_FIELD_NONE, 0, laconic_prepare(&model, &v, &why), why);
+    v = three_wheels();
     v.com_x_m = REAL(EITHER(1e300, 1e36));
+    ASSERT_REFUSED(LACONIC_OVERFLOW, LACONIC_FIELD_NONE, 0, laconic_prepare(&model, &v, &why), why);
+}
+
+static void a_wheel_at_the_end_of_the_range_is_refused_not_turned_into_nan(void) {
+    laconic_vehicle v = differential_drive();
+    laconic_model model;
+    v.wheel[0].x_m = LACONIC_REAL_MAX;
+    v.com_x_m = -LACONIC_REAL_MAX;
     ASSERT_REFUSED(LACONIC_OVERFLOW, LACONIC_FIELD_NONE, 0, laconic_prepare(&model, &v, &why), why);
 }
 
@@ -214,6 +229,7 @@ int main(void) {
     RUN_TEST(what_the_vehicle_check_refuses_is_refused);
     RUN_TEST(inertias_too_far_apart_for_the_precision_are_refused);
     RUN_TEST(numbers_that_leave_the_range_are_refused);
+    RUN_TEST(a_wheel_at_the_end_of_the_range_is_refused_not_turned_into_nan);
     RUN_TEST(a_slow_rate_keeps_its_digits_beside_a_fast_one);
     RUN_TEST(sixteen_wheels_and_none_are_both_a_vehicle);
     RUN_TEST(wheels_far_away_or_all_on_one_spot_give_numbers);

@@ -53,6 +53,26 @@ static void a_sampled_sine_keeps_every_methods_order(void) {
     }
 }
 
+/* A world force that grows from nothing in the step pushes half as far as one that is there all the time. */
+static void a_world_force_may_begin_or_end_within_a_step(void) {
+    const laconic_model m = model_of(bare_body());
+    laconic_input none = no_input(), half = no_input(), full = no_input();
+    int32_t i;
+    half.world_force_N[0] = REAL(1);
+    full.world_force_N[0] = REAL(2);
+    for (i = 0; i < LACONIC_METHOD_COUNT; i++) {
+        const laconic_integrator in = integrator_of(laconic_method_by_number(i), &m, 0.5);
+        laconic_state growing = moving(&m, 0, 0, 0), fading = growing;
+        laconic_real nu[3];
+        ASSERT_STATUS(LACONIC_OK, laconic_step_sampled(&m, &in, &growing, &none, &half, &full));
+        ASSERT_STATUS(LACONIC_OK, laconic_step_sampled(&m, &in, &fading, &full, &half, &none));
+        laconic_nu(&m, &growing, nu);
+        ASSERT_NEAR(EITHER(1e-14, 1e-6), 1.0 * 0.5 / (MASS * RADIUS), nu[0]);
+        laconic_nu(&m, &fading, nu);
+        ASSERT_NEAR(EITHER(1e-14, 1e-6), 1.0 * 0.5 / (MASS * RADIUS), nu[0]);
+    }
+}
+
 static void a_number_that_is_none_at_any_sample_is_refused(void) {
     const laconic_model m = model_of(with_motors(three_wheels()));
     const laconic_input good = no_input();
@@ -73,6 +93,7 @@ int main(void) {
     UNITY_BEGIN();
     RUN_TEST(an_input_that_does_not_vary_gives_the_motion_of_a_held_one);
     RUN_TEST(a_sampled_sine_keeps_every_methods_order);
+    RUN_TEST(a_world_force_may_begin_or_end_within_a_step);
     RUN_TEST(a_number_that_is_none_at_any_sample_is_refused);
     return UNITY_END();
 }

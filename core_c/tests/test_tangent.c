@@ -196,13 +196,15 @@ static numbers numbers_of(const laconic_contact *c, const laconic_model *m, cons
     return all;
 }
 
-static void reactions_change_as_differences_say(laconic_vehicle v) {
-    const point p = somewhere();
+/* `pushed`: the wheel that gets a torque of its own, so that its margin is the least. */
+static void reactions_change_as_differences_say(laconic_vehicle v, int pushed) {
+    point p = somewhere();
     const laconic_motion at = motion_of(&p);
     laconic_model m;
     laconic_contact c;
     laconic_reactions now;
     int n;
+    p.input.axle_torque_Nm[pushed] += REAL(1);
     v.com_z_m = REAL(0.1);
     v.friction_coefficient = REAL(0.5);
     m = model_of(v);
@@ -221,15 +223,16 @@ static void reactions_change_as_differences_say(laconic_vehicle v) {
 
 static void reactions_of_every_vehicle_are_linearised(void) {
     laconic_vehicle v = with_motors(three_wheels());
-    reactions_change_as_differences_say(v);
+    reactions_change_as_differences_say(v, 0);
+    reactions_change_as_differences_say(v, 2);
     v.wheel[2].locked = true;
-    reactions_change_as_differences_say(v);
-    reactions_change_as_differences_say(with_motors(mecanum()));
+    reactions_change_as_differences_say(v, 0);
+    reactions_change_as_differences_say(with_motors(mecanum()), 3);
     v = with_motors(differential_drive());
     v.support_count = 1;
     v.support[0].y_m = REAL(0.1);
-    reactions_change_as_differences_say(v);
-    reactions_change_as_differences_say(bare_body());
+    reactions_change_as_differences_say(v, 0);
+    reactions_change_as_differences_say(bare_body(), 0);
 }
 
 static void a_wheel_that_needs_nothing_from_the_ground_is_given_no_change(void) {
