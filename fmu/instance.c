@@ -11,7 +11,8 @@
 /* What may be set in which mode; inputs wherever the call itself is allowed. */
 static uint32_t settable_in(const fmu_instance *instance, fmu_mode mode) {
     const uint32_t start = SETS(FMU_FIXED) | SETS(FMU_TUNABLE) | SETS(FMU_INPUT);
-    const bool sets_states = instance->version == 3 && instance->kind == FMU_MODEL_EXCHANGE;
+    /* one by one: FMI 3 says so; in FMI 2 importers such as CasADi do it */
+    const bool sets_states = instance->kind == FMU_MODEL_EXCHANGE;
     switch (mode) {
     case FMU_INSTANTIATED: return start;
     case FMU_CONFIGURATION: return instance->scalar ? 0 : SETS(FMU_STRUCTURAL);

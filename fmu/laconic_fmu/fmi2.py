@@ -90,7 +90,8 @@ def describe(description: Description, source_files: Sequence[str] = ()) -> str:
             _types(ET.SubElement(root, tag), part)
         else:
             root.append(ET.fromstring(ET.tostring(part)))
-    everything = scalars(description)
+    # the time need not be listed in FMI 2.0, and FMI Library, on which several importers stand, stumbles over it
+    everything = [scalar for scalar in scalars(description) if scalar.variable.causality != "independent"]
     index = {scalar.reference: number for number, scalar in enumerate(everything, start=1)}
     variables = ET.SubElement(root, "ModelVariables")
     for scalar in everything:

@@ -198,6 +198,14 @@ class Importer:
     def wheels(self, count: int) -> None:
         self._wheels = count
 
+    def time(self) -> float:
+        """The model's time."""
+        if self.version == 3:
+            return self.get("time")[0]
+        value = self.ffi.new("double *")
+        self.must("GetRealStatus", 2, value)
+        return value[0]
+
     def states(self) -> list[float]:
         """The continuous states."""
         count = 6 + self.wheels
