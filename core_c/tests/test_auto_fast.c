@@ -5,7 +5,8 @@ static void a_step_that_cannot_be_taken_is_taken_by_exact_flow(void) {
     const laconic_model m = model_of(with_motors(three_wheels()));
     const laconic_integrator in = integrator_of(&laconic_auto, &m, 1.0);
     const laconic_input input = no_input();
-    const laconic_start start = start_that_gains_energy(&laconic_exponential_kahan_4, with_motors(three_wheels()), input, 1.0, 1e4);
+    const laconic_start start =
+        start_that_gains_energy(&laconic_exponential_kahan_4, with_motors(three_wheels()), input, 1.0, 1e4);
     laconic_state a = state_of(&m, start), b = a;
     TEST_ASSERT_EQUAL_PTR(&laconic_auto_fast, in.chosen);
     ASSERT_STATUS(LACONIC_OK, laconic_step(&m, &in, &a, &input));

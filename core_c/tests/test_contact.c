@@ -34,8 +34,9 @@ static void forces_balance(const scene *s) {
     laconic_rates rates;
     laconic_real nu[3];
     double fx, fy, moment, ax, ay;
-    const double cosine = cos(0.7), sine = sin(0.7), yaw_inertia = (double)s->model.yaw_scale * (double)s->model.yaw_scale *
-                                                                   (double)s->model.mass_kg * RADIUS * RADIUS;
+    const double cosine = cos(0.7), sine = sin(0.7),
+                 yaw_inertia = (double)s->model.yaw_scale * (double)s->model.yaw_scale * (double)s->model.mass_kg *
+                               RADIUS * RADIUS;
     const double along = cosine * (double)s->input.world_force_N[0] + sine * (double)s->input.world_force_N[1];
     const double across = cosine * (double)s->input.world_force_N[1] - sine * (double)s->input.world_force_N[0];
     int i;
@@ -107,7 +108,8 @@ static void a_roller_wheels_reaction_is_torque_less_its_own_inertia(void) {
     for (i = 0; i < 4; i++) {
         const double acceleration =
             ((double)later.wheel_speed_rad_per_s[i] - (double)rates.wheel_speed_rad_per_s[i]) / dt;
-        const double expected = ((double)torque[i] - 0.009 * acceleration) / (RADIUS * sin((double)s.vehicle.wheel[i].roller_rad));
+        const double expected =
+            ((double)torque[i] - 0.009 * acceleration) / (RADIUS * sin((double)s.vehicle.wheel[i].roller_rad));
         ASSERT_NEAR(EITHER(1e-8, 1e-2), expected, s.out.along_N[i]);
         TEST_ASSERT_EQUAL_DOUBLE(0.0, (double)s.out.lateral_N[i]);
         TEST_ASSERT_EQUAL_DOUBLE(0.0, (double)s.out.brake_Nm[i]);

@@ -16,8 +16,7 @@ static double driven(const axis *a, double t) {
 /* ζ at the next node from the one before: within a node's width b is a parabola and Simpson's rule exact enough. */
 static double next(const axis *a, double zeta, double t, double dt) {
     const double decay = exp(-a->rate * dt), half = exp(-a->rate * dt / 2);
-    return decay * zeta +
-           dt / 6 * (decay * driven(a, t) + 4 * half * driven(a, t + dt / 2) + driven(a, t + dt));
+    return decay * zeta + dt / 6 * (decay * driven(a, t) + 4 * half * driven(a, t + dt / 2) + driven(a, t + dt));
 }
 
 static void factors_are_those_of_the_damped_axis(void) {
@@ -38,13 +37,15 @@ static void factors_are_those_of_the_damped_axis(void) {
             moment += weight * ((double)i / n - 0.5) * zeta;
             if (i < n) zeta = next(&a, zeta, a.step * i / n, a.step / n);
         }
-        delta = (double)d.gain[k] * (a.start - a.rate * a.zeta + (double)d.mean[k] * a.change + (double)d.bend[k] * a.curve);
+        delta = (double)d.gain[k] *
+                (a.start - a.rate * a.zeta + (double)d.mean[k] * a.change + (double)d.bend[k] * a.curve);
         ASSERT_NEAR(EITHER(1e-11, 1e-5), zeta - a.zeta, delta);
         ASSERT_NEAR(EITHER(1e-11, 1e-5), mean,
                     a.zeta + (double)d.mean[k] * delta + (double)d.mean_ramp[k] * a.change +
                         (double)d.mean_bend[k] * a.curve);
         ASSERT_NEAR(EITHER(1e-10, 1e-4), 12 * moment,
-                    (double)d.slope[k] * delta + (double)d.slope_ramp[k] * a.change + (double)d.slope_bend[k] * a.curve);
+                    (double)d.slope[k] * delta + (double)d.slope_ramp[k] * a.change +
+                        (double)d.slope_bend[k] * a.curve);
         ASSERT_NEAR(4 * ROUNDING, 1, (double)d.gain[k] * (double)d.inverse_gain[k]);
     }
 }

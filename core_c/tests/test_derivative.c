@@ -59,7 +59,8 @@ static void the_caster_follows_section_3(void) {
     for (heading = -3; heading < 3; heading += 0.7) {
         laconic_rates rates;
         laconic_derivative(&rates, &model, nu, REAL(heading), &input);
-        ASSERT_NEAR(EITHER(1e-13, 2e-5), RADIUS * force * cos(heading) / (0.009 + UNIT_INERTIA), rates.nu_rad_per_s2[0]);
+        ASSERT_NEAR(EITHER(1e-13, 2e-5), RADIUS * force * cos(heading) / (0.009 + UNIT_INERTIA),
+                    rates.nu_rad_per_s2[0]);
         ASSERT_NEAR(EITHER(1e-13, 2e-5), 0, rates.nu_rad_per_s2[1]);
         ASSERT_NEAR(EITHER(1e-13, 2e-5), BIG_LAMBDA * arm * force * sin(heading) / 0.225, rates.nu_rad_per_s2[2]);
         ASSERT_NEAR(ROUNDING, 0.5, rates.wheel_speed_rad_per_s[0]);

@@ -47,8 +47,8 @@ static void free_motion_is_the_papers_closed_form(void) {
     s = sin(omega * (double)pose.heading_rad) / omega;
     expected[0] = c * 0.5 + s * (p[0][0] * 0.3 - p[0][1] * 0.5); /* P S₂ ν, S₂ ν = (ν2, −ν1) */
     expected[1] = c * 0.3 + s * (p[1][0] * 0.3 - p[1][1] * 0.5);
-    expected[2] = (k - (double)x.inertia[0][2] * expected[0] - (double)x.inertia[1][2] * expected[1]) /
-                  (double)x.inertia[2][2];
+    expected[2] =
+        (k - (double)x.inertia[0][2] * expected[0] - (double)x.inertia[1][2] * expected[1]) / (double)x.inertia[2][2];
     ASSERT_NEAR_ALL(EITHER(1e-6, 2e-5), expected, nu, 3); /* the heading is a fourth-order quadrature */
 }
 
@@ -76,7 +76,8 @@ static void damped_motion_loses_energy_at_every_step_size(void) {
         int i;
         for (i = 0; i < 50; i++) {
             ASSERT_STATUS(LACONIC_OK, laconic_step(&m, &in, &state, &input));
-            TEST_ASSERT_TRUE((double)laconic_energy_J(&m, &state) <= (double)energy * (1 + 4 * (double)LACONIC_EPSILON));
+            TEST_ASSERT_TRUE((double)laconic_energy_J(&m, &state) <=
+                             (double)energy * (1 + 4 * (double)LACONIC_EPSILON));
             energy = laconic_energy_J(&m, &state);
         }
     }

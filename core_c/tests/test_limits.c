@@ -5,8 +5,7 @@ static laconic_refusal why;
 static void an_explicit_method_is_limited_by_damping(void) {
     const laconic_model m = model_of(with_motors(mecanum()));
     const laconic_state rest = moving(&m, 0, 0, 0);
-    const double fastest =
-        larger((double)m.decay_per_s[0], larger((double)m.decay_per_s[1], (double)m.decay_per_s[2]));
+    const double fastest = larger((double)m.decay_per_s[0], larger((double)m.decay_per_s[1], (double)m.decay_per_s[2]));
     const double limit = (double)laconic_largest_stable_step_s(&laconic_rk4, &m, &rest);
     ASSERT_NEAR(limit * 4 * ROUNDING, 2.785 / fastest, limit);
 }
@@ -35,8 +34,7 @@ static void the_other_methods_bear_any_step(void) {
     int32_t i;
     TEST_ASSERT_EQUAL_DOUBLE(0.0, (double)laconic_largest_stable_step_s(&laconic_auto, &m, &state));
     for (i = 2; i < LACONIC_METHOD_COUNT; i++)
-        TEST_ASSERT_EQUAL_DOUBLE(0.0,
-                                 (double)laconic_largest_stable_step_s(laconic_method_by_number(i), &m, &state));
+        TEST_ASSERT_EQUAL_DOUBLE(0.0, (double)laconic_largest_stable_step_s(laconic_method_by_number(i), &m, &state));
 }
 
 static void a_vehicle_without_damping_at_rest_bears_any_step(void) {

@@ -16,9 +16,10 @@ static void a_refusal_names_field_item_value_and_remedy(void) {
                              message(LACONIC_NOT_POSITIVE, LACONIC_FIELD_MASS, 0, -2, 0));
     TEST_ASSERT_EQUAL_STRING_LEN("roller_rad[12]: with 0.5 rad the roller axis lies along the axle",
                                  message(LACONIC_ROLLER_ALONG_AXLE, LACONIC_FIELD_ROLLER, 12, 0.5, 0), 63);
-    TEST_ASSERT_EQUAL_STRING("step_s: 0.25 s is unstable with this method, the motors damp too fast; use at most 0.125 s, "
-                             "or auto",
-                             message(LACONIC_STEP_BEYOND_DAMPING_LIMIT, LACONIC_FIELD_STEP, 0, 0.25, 0.125));
+    TEST_ASSERT_EQUAL_STRING(
+        "step_s: 0.25 s is unstable with this method, the motors damp too fast; use at most 0.125 s, "
+        "or auto",
+        message(LACONIC_STEP_BEYOND_DAMPING_LIMIT, LACONIC_FIELD_STEP, 0, 0.25, 0.125));
 }
 
 static void without_a_field_only_the_reason_is_said(void) {
@@ -41,9 +42,9 @@ static const char *shown(double value) {
 }
 
 static void numbers_look_as_printf_would_show_them(void) {
-    const double values[] = {1,      -1,     0.1,    123456, 999999, 1e6,    1.5e6,  0.0001, 0.000123456, 0.00001, 2.5e-5,
-                             -3e-7,  3.14159, 100,    1e10,   1e30,   -1e-30, 0.5,    42.25,  999999.7,    12.5,    0.0625,
-                             1234.5, 0.999999, 0.0099, 65536,  7e-12,  -8,     31.4159};
+    const double values[] = {1,      -1,     0.1,     123456,   999999, 1e6,   1.5e6,  0.0001, 0.000123456, 0.00001,
+                             2.5e-5, -3e-7,  3.14159, 100,      1e10,   1e30,  -1e-30, 0.5,    42.25,       999999.7,
+                             12.5,   0.0625, 1234.5,  0.999999, 0.0099, 65536, 7e-12,  -8,     31.4159};
     size_t i;
     for (i = 0; i < sizeof values / sizeof values[0]; i++) {
         char expected[40];

@@ -27,8 +27,8 @@ static void every_status_has_words_of_its_own(void) {
     for (a = 0; a < LACONIC_STATUS_COUNT; a++) {
         TEST_ASSERT_NOT_EQUAL(0, strlen(laconic_status_name((laconic_status)a)));
         for (b = 0; b < a; b++)
-            TEST_ASSERT_TRUE(
-                strcmp(laconic_status_name((laconic_status)a), laconic_status_name((laconic_status)b)) != 0);
+            TEST_ASSERT_TRUE(strcmp(laconic_status_name((laconic_status)a), laconic_status_name((laconic_status)b)) !=
+                             0);
     }
     TEST_ASSERT_EQUAL_STRING("ok", laconic_status_name(LACONIC_OK));
     TEST_ASSERT_EQUAL_STRING("wheel not set", laconic_status_name(LACONIC_WHEEL_NOT_SET));

@@ -13,8 +13,8 @@ static laconic_status explain(const laconic_method *method, laconic_status statu
 static void an_input_that_is_not_finite_is_found(void) {
     laconic_input input = no_input();
     input.axle_torque_Nm[1] = INFINITE;
-    ASSERT_REFUSED(LACONIC_NOT_FINITE, LACONIC_FIELD_AXLE_TORQUE, 2,
-                   explain(&laconic_rk4, LACONIC_NOT_FINITE, &input), why);
+    ASSERT_REFUSED(LACONIC_NOT_FINITE, LACONIC_FIELD_AXLE_TORQUE, 2, explain(&laconic_rk4, LACONIC_NOT_FINITE, &input),
+                   why);
 }
 
 static void turning_too_fast_comes_with_the_largest_step(void) {
@@ -35,7 +35,8 @@ static void other_failures_come_with_half_the_step(void) {
     ASSERT_REFUSED(LACONIC_STEP_SINGULAR, LACONIC_FIELD_STEP, 0,
                    explain(&laconic_exponential_kahan, LACONIC_STEP_SINGULAR, &input), why);
     ASSERT_NEAR(ROUNDING, 0.05, why.limit);
-    ASSERT_REFUSED(LACONIC_OVERFLOW, LACONIC_FIELD_STEP, 0, explain(&laconic_exact_flow, LACONIC_OVERFLOW, &input), why);
+    ASSERT_REFUSED(LACONIC_OVERFLOW, LACONIC_FIELD_STEP, 0, explain(&laconic_exact_flow, LACONIC_OVERFLOW, &input),
+                   why);
     TEST_ASSERT_EQUAL_DOUBLE(0.0, (double)why.limit);
 }
 

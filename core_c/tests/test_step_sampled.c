@@ -36,7 +36,8 @@ static double error_under_a_sine(const laconic_method *method, int steps) {
     laconic_real nu[3];
     int i;
     for (i = 0; i < steps; i++) {
-        const laconic_input start = voltage_at(i * h), middle = voltage_at((i + 0.5) * h), end = voltage_at((i + 1) * h);
+        const laconic_input start = voltage_at(i * h), middle = voltage_at((i + 0.5) * h),
+                            end = voltage_at((i + 1) * h);
         ASSERT_STATUS(LACONIC_OK, laconic_step_sampled(&m, &in, &state, &start, &middle, &end));
     }
     laconic_nu(&m, &state, nu);

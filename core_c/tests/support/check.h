@@ -43,10 +43,8 @@
         TEST_ASSERT_EQUAL_INT(expected_item, (why).item);                                                              \
     } while (0)
 
-void setUp(void) {
-}
+void setUp(void) {}
 
-void tearDown(void) {
-}
+void tearDown(void) {}
 
 #endif

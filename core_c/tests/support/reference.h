@@ -73,8 +73,7 @@ static inline void reference_rate(const reference *p, const double *y, const lac
     right[2] = ((double)in->body_moment_Nm + rx * across - ry * along) / p->big_lambda;
     for (i = 0; i < p->wheels; i++) {
         const double speed = p->row[i][0] * y[0] + p->row[i][1] * y[1] + p->row[i][2] * y[2];
-        const double torque =
-            p->gain * (double)in->voltage_V[i] - p->damping * speed + (double)in->axle_torque_Nm[i];
+        const double torque = p->gain * (double)in->voltage_V[i] - p->damping * speed + (double)in->axle_torque_Nm[i];
         for (k = 0; k < 3; k++) right[k] += p->row[i][k] * torque;
         rate[6 + i] = speed;
     }
