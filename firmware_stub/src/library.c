@@ -10,6 +10,27 @@ bool laconic_library_node_init(laconic_node *node, uint16_t id_base, bool can_fd
     return laconic_node_init(node, &config, now_us);
 }
 
+void laconic_library_look(const laconic_node *node, laconic_library_view *view) {
+    const laconic_node_counters *c = &node->counters;
+    const laconic_library_view seen = {
+        .state = node->state,
+        .session = node->session,
+        .steps = node->plant.steps,
+        .voltage_V = {(double)node->input[0].voltage_V[0], (double)node->input[0].voltage_V[1],
+                      (double)node->input[0].voltage_V[2]},
+        .crc_errors = c->crc_errors,
+        .sequence_errors = c->sequence_errors,
+        .repeated = c->repeated,
+        .lost = c->lost,
+        .malformed = c->malformed,
+        .missed_steps = c->missed_steps,
+        .accepted = c->accepted,
+        .refused = c->refused,
+        .overrange = c->overrange,
+    };
+    *view = seen;
+}
+
 static uint8_t turn_of(uint8_t offset, uint8_t session) { return laconic_wire[offset].of_session ? session : 0; }
 
 void laconic_library_protect(uint8_t offset, uint8_t *data, uint8_t length, uint8_t session, uint8_t counter) {

@@ -20,6 +20,16 @@ uint32_t laconic_node_idle_us(const struct laconic_node *node, uint32_t now_us);
 uint32_t laconic_library_node_size(void);
 bool laconic_library_node_init(struct laconic_node *node, uint16_t id_base, bool can_fd, uint32_t now_us);
 
+/* What a test may look at from outside. */
+typedef struct laconic_library_view {
+    uint8_t state, session;
+    uint64_t steps;
+    double voltage_V[3]; /* of the first wheels, as the next step will use them */
+    uint16_t crc_errors, sequence_errors, repeated, lost, malformed, missed_steps, accepted, refused, overrange;
+} laconic_library_view;
+
+void laconic_library_look(const struct laconic_node *node, laconic_library_view *view);
+
 /* Puts protection on a frame of the rig, or takes it off one of the node: by offset of the identifier. */
 void laconic_library_protect(uint8_t offset, uint8_t *data, uint8_t length, uint8_t session, uint8_t counter);
 bool laconic_library_crc_is_right(uint8_t offset, const uint8_t *data, uint8_t length, uint8_t session);

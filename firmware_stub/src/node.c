@@ -17,6 +17,7 @@ bool laconic_node_init(laconic_node *node, const laconic_node_config *config, ui
 }
 
 static bool is_well_formed(const laconic_frame *frame, const laconic_wire_row *row) {
+    if (row->fd && !LACONIC_NODE_CAN_FD) return false;
     return !frame->remote && frame->fd == (row->fd != 0) && frame->length == row->length && row->from_rig;
 }
 
@@ -29,12 +30,13 @@ static bool is_fresh(laconic_node *node, uint8_t offset, const laconic_frame *fr
     const laconic_wire_row *row = &laconic_wire[offset];
     const uint8_t turn = row->of_session ? node->session : 0;
     laconic_e2e_receiver *receiver = &node->receiver[receiver_slot(offset)];
-    const bool right = row->fd ? laconic_e2e_p05_crc_is_right(frame->data, frame->length,
+    const bool fd = LACONIC_NODE_CAN_FD && row->fd;
+    const bool right = fd ? laconic_e2e_p05_crc_is_right(frame->data, frame->length,
                                                               (uint16_t)(laconic_wire_data_id(offset) + turn))
                                : laconic_e2e_p22_crc_is_right(frame->data, frame->length,
                                                               laconic_wire_data_ids[offset], turn);
-    const uint8_t mask = row->fd ? LACONIC_E2E_P05_COUNTER_MASK : LACONIC_E2E_P22_COUNTER_MASK;
-    const uint8_t counter = row->fd ? frame->data[2] : frame->data[1] & mask;
+    const uint8_t mask = fd ? LACONIC_E2E_P05_COUNTER_MASK : LACONIC_E2E_P22_COUNTER_MASK;
+    const uint8_t counter = fd ? frame->data[2] : frame->data[1] & mask;
     switch (laconic_e2e_check(receiver, right, counter, mask, max_delta(node, row))) {
     case LACONIC_E2E_OK: return true;
     case LACONIC_E2E_OK_SOME_LOST:
@@ -60,10 +62,12 @@ static bool dispatch(laconic_node *node, uint8_t offset, const uint8_t *data, ui
     case LACONIC_WIRE_PARAMETER: laconic_loader_take(&node->loader, data); return true;
     case LACONIC_WIRE_SYNC: sync(node, data); return true;
     case LACONIC_WIRE_VOLTAGE: return laconic_node_voltage(node, data, now_us);
-    case LACONIC_WIRE_VOLTAGE_FD: return laconic_node_voltage_fd(node, data, now_us);
     case LACONIC_WIRE_RAW_INPUT: return laconic_node_raw(node, data + 2, data[1] >> 4, 15, 6);
-    default: return laconic_node_raw(node, data + 4, data[3], 255, 60);
+    default: break;
     }
+    if (!LACONIC_NODE_CAN_FD) return false;
+    if (offset == LACONIC_WIRE_VOLTAGE_FD) return laconic_node_voltage_fd(node, data, now_us);
+    return laconic_node_raw(node, data + 4, data[3], 255, 60);
 }
 
 void laconic_node_on_frame(laconic_node *node, const laconic_frame *frame, uint32_t now_us) {
@@ -92,7 +96,7 @@ void laconic_node_on_tick(laconic_node *node, uint32_t now_us) {
 
 static void protect(laconic_node *node, uint8_t offset, laconic_frame *frame) {
     const uint8_t counter = ++node->sent[receiver_slot(offset)];
-    if (frame->fd) {
+    if (LACONIC_NODE_CAN_FD && frame->fd) {
         laconic_e2e_p05_protect(frame->data, frame->length, laconic_wire_data_id(offset), counter);
     } else {
         laconic_e2e_p22_protect(frame->data, frame->length, laconic_wire_data_ids[offset], 0, counter);

@@ -52,20 +52,28 @@ static uint8_t start_lockstep(laconic_node *node, uint8_t session) {
     return status;
 }
 
+/* Periods of whole steps, 1 to 1000 a second; rate 0: one step a period. In the core's own arithmetic, so that a board
+ * without double needs none for this. */
+static bool choose_rate(laconic_node_free_run *run, uint16_t rate_Hz, laconic_real step_s) {
+    const laconic_real half = (laconic_real)0.5;
+    const laconic_real slack = (laconic_real)1e-4; /* of a step: many times what rounding makes */
+    const laconic_real own_rate_Hz = 1 / step_s;
+    if (!(own_rate_Hz < (laconic_real)1e6)) return false;
+    run->rate_Hz = rate_Hz > 0 ? rate_Hz : (uint32_t)(own_rate_Hz + half);
+    if (run->rate_Hz < 1 || run->rate_Hz > 1000U) return false;
+    const laconic_real steps = own_rate_Hz / (laconic_real)run->rate_Hz;
+    if (!(steps > half) || !(steps < LACONIC_NODE_STEPS_PER_TICK + half)) return false;
+    run->steps_per_period = (uint32_t)(steps + half);
+    const laconic_real off = steps - (laconic_real)run->steps_per_period;
+    return off < slack && off > -slack;
+}
+
 static uint8_t start_free_run(laconic_node *node, const struct laconic_dbc_control_t *frame, uint32_t now_us) {
     laconic_node_free_run run = {0};
-    uint64_t steps;
-    const double step_s = (double)node->plant.integrator.step_s;
     if (node->state != LACONIC_WIRE_STATE_READY) return LACONIC_WIRE_STATUS_WRONG_STATE;
-    run.rate_Hz = frame->rate > 0 ? frame->rate : (uint32_t)(1.0 / step_s + 0.5);
-    if (run.rate_Hz < 1 || run.rate_Hz > 1000U) return LACONIC_WIRE_STATUS_OUT_OF_RANGE;
-    /* step_s of a single is only near its decimal value: half an ulp is far below the millionth that is allowed */
-    if (laconic_steps_in(1.0 / run.rate_Hz, step_s, &steps, NULL) != LACONIC_OK)
-        return LACONIC_WIRE_STATUS_OUT_OF_RANGE;
-    if (steps > LACONIC_NODE_STEPS_PER_TICK) return LACONIC_WIRE_STATUS_OUT_OF_RANGE;
+    if (!choose_rate(&run, frame->rate, node->plant.integrator.step_s)) return LACONIC_WIRE_STATUS_OUT_OF_RANGE;
     const uint8_t status = open_session(node, frame->session);
     if (status != 0) return status;
-    run.steps_per_period = (uint32_t)steps;
     run.watchdog_us = 1000U * (uint32_t)frame->watchdog;
     run.fed_us = now_us;
     run.next_us = now_us + 1000000U / run.rate_Hz;

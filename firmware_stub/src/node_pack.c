@@ -170,7 +170,10 @@ void laconic_node_pack(laconic_node *node, uint8_t offset, uint8_t *data) {
     case LACONIC_WIRE_RAW_OUTPUT: pack_raw(node, data); break;
     case LACONIC_WIRE_HEARTBEAT: pack_heartbeat(node, data); break;
     case LACONIC_WIRE_COUNTERS: pack_counters(node, data); break;
-    case LACONIC_WIRE_STATE_FD: pack_state_fd(node, data); break;
-    default: pack_raw_fd(node, data); break;
+    default:
+        if (!LACONIC_NODE_CAN_FD) break;
+        if (offset == LACONIC_WIRE_STATE_FD) pack_state_fd(node, data);
+        if (offset == LACONIC_WIRE_RAW_OUTPUT_FD) pack_raw_fd(node, data);
+        break;
     }
 }

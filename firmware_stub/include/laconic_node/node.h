@@ -23,6 +23,9 @@
 #ifndef LACONIC_NODE_STEPS_PER_TICK
 #define LACONIC_NODE_STEPS_PER_TICK 64
 #endif
+#ifndef LACONIC_NODE_CAN_FD
+#define LACONIC_NODE_CAN_FD 1 /* 0 leaves the code for CAN FD out */
+#endif
 #define LACONIC_NODE_HEARTBEAT_US 100000U
 #define LACONIC_NODE_ID_STRIDE 32U /* a node uses 32 identifiers from its base */
 

@@ -57,6 +57,7 @@ class Frame:
         self.max_delta = int(self.attributes["E2EMaxDeltaCounter"])
         self.of_session = bool(self.attributes["OfSession"])
         self.fields = {signal.name: field_of(signal) for signal in message.signals}
+        self._pages = {signal.name: signal.multiplexer_ids[0] for signal in message.signals if signal.multiplexer_ids}
         self._unpack = [(f.name, f.start, f.mask, f.mask // 2 + 1 if f.signed else 0) for f in self.fields.values()]
 
     def pack(self, **raw: int) -> bytearray:
@@ -68,12 +69,14 @@ class Frame:
         return bytearray(whole.to_bytes(self.length, "little"))
 
     def unpack(self, data: bytes) -> dict[str, int]:
-        """Raw values of all signals; of multiplexed ones, read with the page in hand."""
+        """Raw values of all signals; of multiplexed ones, those of this page."""
         whole = int.from_bytes(data, "little")
         values = {}
         for name, start, mask, sign in self._unpack:
             value = whole >> start & mask
             values[name] = value - 2 * sign if sign and value & sign else value
+        if self._pages:
+            return {name: value for name, value in values.items() if self._pages.get(name) in (None, values["page"])}
         return values
 
     def physical(self, data: bytes) -> dict[str, float]:

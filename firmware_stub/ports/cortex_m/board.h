@@ -1,0 +1,34 @@
+/* What a board gives to the node: bytes in, bytes out, the time. Everything else of the port is the same for all. */
+#ifndef BOARD_H
+#define BOARD_H
+
+#include <stdbool.h>
+#include <stdint.h>
+
+/* UART at 115200 baud with receive interrupt, a microsecond timer, and a wake-up interrupt every millisecond. */
+void board_init(void);
+
+/* Sends a byte if the UART takes one at once; false iff it does not. Never waits. */
+bool board_send(char byte);
+
+/* Microseconds since start; wraps. To be called at least every two minutes. */
+uint32_t board_now_us(void);
+
+/* Called by the board's interrupt: a byte has come. False iff there is no room; the board then stops asking until
+ * board_resume. */
+bool port_received(char byte);
+void board_resume(void);
+
+/* Handlers, by the names that the vector table uses. */
+void board_uart_handler(void);
+void board_wake_handler(void);
+
+#define BOARD_UART_IRQ_MPS2 0
+#define BOARD_WAKE_IRQ_MPS2 9
+#define BOARD_UART_IRQ_MICROBIT 2
+#define BOARD_WAKE_IRQ_MICROBIT 8
+
+#define REGISTER(address) (*(volatile uint32_t *)(address))
+#define NVIC_ENABLE REGISTER(0xE000E100U)
+
+#endif

@@ -1,0 +1,96 @@
+/* The node on a board: SLCAN on its UART.
+ *
+ * The receive interrupt puts one byte into a ring; all other work is done here, and the processor sleeps in between.
+ * When the ring is full the interrupt is switched off until there is room, so no interrupt ever waits. */
+#include "board.h"
+#include "laconic_node/node.h"
+#include "laconic_node/slcan.h"
+#include "laconic_wire.h"
+#include "methods.h"
+
+#define RING_SIZE 256U /* 11 classic frames; a power of two */
+
+static laconic_node node;
+static laconic_slcan slcan;
+static volatile char ring[RING_SIZE];
+static volatile uint16_t ring_head, ring_tail; /* written by the interrupt; by main */
+static volatile bool ring_was_full;
+static char line[LACONIC_SLCAN_LINE];
+static uint16_t line_length, line_sent;
+
+bool port_received(char byte) {
+    const uint16_t head = ring_head;
+    ring[head % RING_SIZE] = byte;
+    ring_head = (uint16_t)(head + 1U);
+    ring_was_full = (uint16_t)(ring_head - ring_tail) >= RING_SIZE;
+    return !ring_was_full;
+}
+
+static bool take_byte(char *byte) {
+    const uint16_t tail = ring_tail;
+    if (tail == ring_head) return false;
+    *byte = ring[tail % RING_SIZE];
+    ring_tail = (uint16_t)(tail + 1U);
+    if (ring_was_full) {
+        ring_was_full = false;
+        board_resume();
+    }
+    return true;
+}
+
+static void queue_reply(const char *text) {
+    line_length = 0;
+    line_sent = 0;
+    while (text[line_length] != 0) {
+        line[line_length] = text[line_length];
+        line_length++;
+    }
+}
+
+/* One line out at a time; the node is asked for its next frame only when there is room for it. */
+static bool send_some(void) {
+    laconic_frame frame;
+    if (line_sent == line_length) {
+        line_sent = 0;
+        line_length = 0;
+        if (laconic_node_next_frame(&node, &frame))
+            line_length = (uint16_t)laconic_slcan_write(&slcan, &frame, line);
+    }
+    while (line_sent < line_length && board_send(line[line_sent])) line_sent++;
+    return line_sent < line_length;
+}
+
+static bool receive_some(void) {
+    laconic_frame frame;
+    char byte;
+    while (take_byte(&byte)) {
+        switch (laconic_slcan_feed(&slcan, byte, &frame)) {
+        case LACONIC_SLCAN_FRAME: laconic_node_on_frame(&node, &frame, board_now_us()); return true;
+        case LACONIC_SLCAN_REPLY:
+            if (line_sent == line_length) queue_reply(slcan.reply);
+            return true;
+        default: break;
+        }
+    }
+    return false;
+}
+
+/* With interrupts masked, WFI still wakes when one is pending: no byte can slip in between test and sleep. */
+static void sleep_until_interrupt(void) {
+    __asm volatile("cpsid i" ::: "memory");
+    if (ring_head == ring_tail) __asm volatile("wfi");
+    __asm volatile("cpsie i" ::: "memory");
+}
+
+int main(void) {
+    const laconic_node_config config = {LACONIC_WIRE_ID_BASE, LACONIC_NODE_CAN_FD != 0, port_method};
+    board_init();
+    laconic_slcan_init(&slcan, 0);
+    laconic_node_init(&node, &config, board_now_us());
+    for (;;) {
+        const bool received = receive_some();
+        laconic_node_on_tick(&node, board_now_us());
+        const bool sending = send_some();
+        if (!received && !sending && node.pending == 0 && !laconic_node_is_busy(&node)) sleep_until_interrupt();
+    }
+}

@@ -1,0 +1,71 @@
+/* BBC micro:bit (nRF51822, Cortex-M0): UART0 over the USB interface chip, TIMER0 at 1 MHz. */
+#include "board.h"
+
+#define UART_START_RX REGISTER(0x40002000U)
+#define UART_START_TX REGISTER(0x40002008U)
+#define UART_RX_READY REGISTER(0x40002108U)
+#define UART_TX_READY REGISTER(0x4000211CU)
+#define UART_INTERRUPT_SET REGISTER(0x40002304U)
+#define UART_INTERRUPT_CLEAR REGISTER(0x40002308U)
+#define UART_ENABLE REGISTER(0x40002500U)
+#define UART_PIN_TX REGISTER(0x4000250CU)
+#define UART_PIN_RX REGISTER(0x40002514U)
+#define UART_RX REGISTER(0x40002518U)
+#define UART_TX REGISTER(0x4000251CU)
+#define UART_BAUD REGISTER(0x40002524U)
+enum { UART_ON = 4, RX_INTERRUPT = 1 << 2, PIN_TX = 24, PIN_RX = 25 };
+#define BAUD_115200 0x01D7E000U
+
+#define TIMER_START REGISTER(0x40008000U)
+#define TIMER_CAPTURE_0 REGISTER(0x40008040U)
+#define TIMER_EVENT_1 REGISTER(0x40008144U)
+#define TIMER_INTERRUPT_SET REGISTER(0x40008304U)
+#define TIMER_BITS REGISTER(0x40008508U)
+#define TIMER_PRESCALER REGISTER(0x40008510U)
+#define TIMER_COMPARE_0 REGISTER(0x40008540U)
+#define TIMER_COMPARE_1 REGISTER(0x40008544U)
+enum { BITS_32 = 3, ONE_MHZ = 4, COMPARE_1_INTERRUPT = 1 << 17, WAKE_US = 1000 };
+
+static bool sending;
+
+void board_init(void) {
+    TIMER_BITS = BITS_32;
+    TIMER_PRESCALER = ONE_MHZ;
+    TIMER_COMPARE_1 = WAKE_US;
+    TIMER_INTERRUPT_SET = COMPARE_1_INTERRUPT;
+    TIMER_START = 1;
+    UART_PIN_TX = PIN_TX;
+    UART_PIN_RX = PIN_RX;
+    UART_BAUD = BAUD_115200;
+    UART_ENABLE = UART_ON;
+    UART_START_TX = 1;
+    UART_START_RX = 1;
+    UART_INTERRUPT_SET = RX_INTERRUPT;
+    NVIC_ENABLE = 1U << BOARD_UART_IRQ_MICROBIT | 1U << BOARD_WAKE_IRQ_MICROBIT;
+}
+
+bool board_send(char byte) {
+    if (sending && UART_TX_READY == 0) return false;
+    UART_TX_READY = 0;
+    UART_TX = (uint8_t)byte;
+    sending = true;
+    return true;
+}
+
+uint32_t board_now_us(void) {
+    TIMER_CAPTURE_0 = 1;
+    return TIMER_COMPARE_0;
+}
+
+void board_resume(void) { UART_INTERRUPT_SET = RX_INTERRUPT; }
+
+void board_uart_handler(void) {
+    if (UART_RX_READY == 0) return;
+    UART_RX_READY = 0;
+    if (!port_received((char)UART_RX)) UART_INTERRUPT_CLEAR = RX_INTERRUPT;
+}
+
+void board_wake_handler(void) {
+    TIMER_EVENT_1 = 0;
+    TIMER_COMPARE_1 += WAKE_US;
+}

@@ -1,0 +1,67 @@
+/* Arm MPS2 with AN385 (M3), AN386 (M4F), AN500 (M7): CMSDK UART0, TIMER0 and TIMER1 at 25 MHz. */
+#include "board.h"
+
+#define UART_DATA REGISTER(0x40004000U)
+#define UART_STATE REGISTER(0x40004004U)
+#define UART_CONTROL REGISTER(0x40004008U)
+#define UART_INTERRUPT REGISTER(0x4000400CU)
+#define UART_DIVIDER REGISTER(0x40004010U)
+enum { TX_FULL = 1, RX_FULL = 2, TX_ENABLE = 1, RX_ENABLE = 2, RX_INTERRUPT = 8, RX_CLEAR = 2 };
+
+#define CLOCK_CONTROL REGISTER(0x40000000U)
+#define CLOCK_VALUE REGISTER(0x40000004U)
+#define CLOCK_RELOAD REGISTER(0x40000008U)
+#define WAKE_CONTROL REGISTER(0x40001000U)
+#define WAKE_RELOAD REGISTER(0x40001008U)
+#define WAKE_INTERRUPT REGISTER(0x4000100CU)
+enum { TIMER_ENABLE = 1, TIMER_INTERRUPT = 8 };
+
+#define TICKS_PER_US 25U
+#define BAUD 115200U
+
+static uint32_t last_value;
+static uint32_t odd_ticks;
+static uint32_t time_us;
+
+void board_init(void) {
+    CLOCK_RELOAD = UINT32_MAX;
+    CLOCK_CONTROL = TIMER_ENABLE;
+    last_value = CLOCK_VALUE;
+    WAKE_RELOAD = 1000U * TICKS_PER_US - 1U;
+    WAKE_CONTROL = TIMER_ENABLE | TIMER_INTERRUPT;
+    UART_DIVIDER = 1000000U * TICKS_PER_US / BAUD;
+    UART_CONTROL = TX_ENABLE | RX_ENABLE | RX_INTERRUPT;
+    NVIC_ENABLE = 1U << BOARD_UART_IRQ_MPS2 | 1U << BOARD_WAKE_IRQ_MPS2;
+}
+
+bool board_send(char byte) {
+    if (UART_STATE & TX_FULL) return false;
+    UART_DATA = (uint8_t)byte;
+    return true;
+}
+
+/* The counter runs down from 2^32 − 1; whole microseconds are counted up and the rest is kept. */
+uint32_t board_now_us(void) {
+    const uint32_t value = CLOCK_VALUE;
+    const uint32_t ticks = last_value - value + odd_ticks;
+    last_value = value;
+    time_us += ticks / TICKS_PER_US;
+    odd_ticks = ticks % TICKS_PER_US;
+    return time_us;
+}
+
+/* A byte that came while the interrupt was off has raised none: fetch it as the interrupt would have. */
+void board_resume(void) {
+    __asm volatile("cpsid i" ::: "memory");
+    UART_CONTROL = TX_ENABLE | RX_ENABLE | RX_INTERRUPT;
+    board_uart_handler();
+    __asm volatile("cpsie i" ::: "memory");
+}
+
+void board_uart_handler(void) {
+    UART_INTERRUPT = RX_CLEAR;
+    if ((UART_STATE & RX_FULL) == 0) return;
+    if (!port_received((char)UART_DATA)) UART_CONTROL = TX_ENABLE | RX_ENABLE;
+}
+
+void board_wake_handler(void) { WAKE_INTERRUPT = 1; }

@@ -1,0 +1,107 @@
+"""Nodes that the rig starts itself: in this process, in a process of its own, on an emulated Cortex-M board."""
+
+from __future__ import annotations
+
+import shutil
+import socket
+import subprocess
+import time
+from collections.abc import Iterator
+from contextlib import AbstractContextManager, contextmanager
+from dataclasses import dataclass
+
+from laconic.errors import BadInput, nearest_of
+from laconic.paths import build_dir, built
+from laconic.rig.buses import connected, process_node, virtual_node
+from laconic.rig.client import NodeClient
+from laconic.rig.errors import CannotReach
+
+QEMU = "qemu-system-arm"
+QEMU_START_S = 10.0
+
+
+@dataclass(frozen=True)
+class Board:
+    """An emulated board."""
+
+    name: str
+    machine: str
+    real: str
+    text: str
+
+
+BOARDS = {board.name: board for board in (
+    Board("an385", "mps2-an385", "single", "Arm MPS2, Cortex-M3"),
+    Board("an386", "mps2-an386", "single", "Arm MPS2, Cortex-M4F"),
+    Board("an500", "mps2-an500", "double", "Arm MPS2, Cortex-M7"),
+    Board("microbit", "microbit", "single", "BBC micro:bit, Cortex-M0"),
+    Board("an386-small", "mps2-an386", "single", "Cortex-M4F, one method, four wheels"))}
+KINDS = ("virtual", "process", *BOARDS)
+
+
+def why_no_emulation() -> str | None:
+    """What is missing for emulated boards; None when nothing is."""
+    if shutil.which(QEMU) is None:
+        return f"no {QEMU} here: install the package qemu-system-arm"
+    if not (build_dir() / "firmware" / "laconic-node-an386.elf").exists():
+        return "no firmware images: install gcc-arm-none-eabi and libnewlib-arm-none-eabi, and build again"
+    return None
+
+
+def free_port() -> int:
+    """A TCP port that was free just now."""
+    with socket.socket() as listener:
+        listener.bind(("127.0.0.1", 0))
+        return listener.getsockname()[1]
+
+
+@contextmanager
+def emulated(name: str) -> Iterator[int]:
+    """A board under QEMU; yields the TCP port of its UART."""
+    if reason := why_no_emulation():
+        raise BadInput(f"--board {name}: {reason}")
+    board, port = BOARDS[name], free_port()
+    image = built(f"firmware/laconic-node-{name}.elf")
+    serial = f"tcp:127.0.0.1:{port},server=on,wait=off,nodelay=on"
+    command = [QEMU, "-M", board.machine, "-kernel", str(image), "-display", "none", "-monitor", "none",
+               "-serial", serial]
+    with subprocess.Popen(command, stdin=subprocess.DEVNULL, stderr=subprocess.PIPE, text=True) as process:
+        try:
+            wait_for_port(process, port)
+            yield port
+        finally:
+            process.kill()
+
+
+def wait_for_port(process: subprocess.Popen[str], port: int) -> None:
+    """Until QEMU listens."""
+    deadline = time.monotonic() + QEMU_START_S
+    while time.monotonic() < deadline:
+        if process.poll() is not None:
+            raise CannotReach(f"{QEMU} ended at once: {process.stderr.read().strip()}")
+        with open("/proc/net/tcp", encoding="ascii") as table:
+            if f"0100007F:{port:04X} 00000000:0000 0A" in table.read():
+                return
+        time.sleep(0.02)
+    raise CannotReach(f"{QEMU} does not listen on port {port} after {QEMU_START_S:g} s")
+
+
+@contextmanager
+def emulated_node(name: str) -> Iterator[NodeClient]:
+    """A client of an emulated board."""
+    with emulated(name) as port, connected("slcan", f"socket://127.0.0.1:{port}") as client:
+        client.timeout_s = 5.0
+        yield client
+
+
+def own_node(kind: str, real: str, id_base: int = 512) -> AbstractContextManager[NodeClient]:
+    """A node of the given kind, started here and ended with the context."""
+    if kind == "virtual":
+        return virtual_node(real, id_base)
+    if kind == "process":
+        return process_node(real, id_base)
+    if kind not in BOARDS:
+        raise BadInput(f"--board {kind}: no such board; {nearest_of(kind, KINDS)}")
+    if id_base != 512:
+        raise BadInput(f"--board {kind}: the images listen at ID base 0x200; leave --id-base out")
+    return emulated_node(kind)

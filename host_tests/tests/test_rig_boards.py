@@ -1,0 +1,62 @@
+"""Emulated Cortex-M boards: the same bits as the host's core, in lockstep, fast enough."""
+
+from __future__ import annotations
+
+import pytest
+
+from laconic.errors import Refused
+from laconic.paths import scene_names
+from laconic.rig.boards import BOARDS, emulated_node, why_no_emulation
+from laconic.rig.judge import judge_scaled
+from laconic.rig.lockstep import run_lockstep, twin_states
+from laconic.scene import Scene, read_scene
+
+pytestmark = pytest.mark.skipif(why_no_emulation() is not None, reason=why_no_emulation() or "")
+FULL = [name for name in BOARDS if name != "an386-small"]
+STEPS = {"an385": 4000, "microbit": 2000}  # without floating-point hardware; the others take 10,000
+STEPS_PER_SYNC = 500
+
+
+def fits_small_image(scene: Scene) -> bool:
+    """Four wheels and voltages only."""
+    return scene.wheel_count <= 4 and all(each.signal.startswith("voltage_V") for each in scene.inputs)
+
+
+def rk4_can(scene: Scene) -> bool:
+    """Not too stiff for the one method."""
+    try:
+        scene.plant(scene.core())
+    except Refused:
+        return False
+    return True
+
+
+@pytest.mark.parametrize("name", FULL)
+def test_all_scenes_give_the_bits_of_the_host_core_on_an_emulated_board(name: str) -> None:
+    with emulated_node(name) as node:
+        for scene_name in scene_names():
+            scene = read_scene(scene_name).with_run(real=BOARDS[name].real)
+            steps = STEPS.get(name, 10_000) if scene.drive().is_held else 300  # sampled inputs take one SYNC a step
+            run = run_lockstep(node, scene, steps, every=STEPS_PER_SYNC)
+            assert run.states.tobytes() == twin_states(scene, run).tobytes(), scene_name
+            node.stop()
+
+
+def test_the_small_image_gives_the_bits_of_the_host_core_with_its_one_method() -> None:
+    with emulated_node("an386-small") as node:
+        scenes = [read_scene(n).with_run(real="single", method="rk4") for n in scene_names()]
+        scenes = [scene for scene in scenes if fits_small_image(scene) and rk4_can(scene)]
+        assert len(scenes) >= 3
+        for scene in scenes:
+            run = run_lockstep(node, scene, 1000, every=STEPS_PER_SYNC)
+            assert run.states.tobytes() == twin_states(scene, run).tobytes(), scene.name
+
+
+def test_one_command_and_one_answer_a_step_run_at_150_steps_a_second_or_more() -> None:
+    scene = read_scene("turtlebot3_burger").with_run(real="single")
+    scene = Scene(**{**vars(scene), "rig": type(scene.rig)(frames=("NU",))})
+    with emulated_node("an386") as node:
+        judgement = judge_scaled(node, scene, 300, {})
+    assert judgement.passed, judgement.verdicts
+    assert judgement.figures["frames_out_per_exchange"] < 1.1 and judgement.figures["frames_in_per_exchange"] < 1.1
+    assert judgement.figures["steps_per_s"] >= 150
