@@ -1,0 +1,253 @@
+"""Faults on purpose, seeded: what happens to each frame on its way. Pure: frames and instants in, frames and instants out.
+
+A model sees both directions of one wire. Its random numbers depend on the seed and on the order of the frames only.
+"""
+
+from __future__ import annotations
+
+import heapq
+import itertools
+import random
+from dataclasses import dataclass, fields
+
+import can
+
+OUT, IN = "out", "in"
+
+
+@dataclass(frozen=True)
+class Faults:
+    """What goes wrong, and how often. Probabilities are per frame; times in seconds; all zero: nothing."""
+
+    loss: float = 0.0                # the frame disappears
+    duplication: float = 0.0         # it arrives twice
+    reordering: float = 0.0          # it arrives behind the one after it
+    delay_s: float = 0.0             # it takes longer
+    jitter_s: float = 0.0            # … by up to this much more
+    corruption: float = 0.0          # bits of the payload turn over (what a controller's CRC would not catch)
+    corrupted_bits: int = 1          # how many
+    stuck: float = 0.0               # from then on its identifier repeats the payload of that moment
+    wrong_length: float = 0.0        # a byte is missing or one too many
+    foreign: float = 0.0             # a random frame comes after it
+    babble_per_s: float = 0.0        # a node that sends identifier 0 without pause, so many frames a second
+    bus_off_after: int = 0           # so many frames, then nothing goes through …
+    bus_off_s: float = 0.0           # … for this long; 0: for ever
+    keep_queue: bool = False         # what was sent meanwhile is kept and comes out on recovery, stale
+    bitrate: int = 0                 # bits per second of the wire, with arbitration by identifier; 0: endless
+    direction: str = "both"          # out, in or both, seen from the user of the bus
+    only_id: int = -1                # only this identifier; −1: all
+    from_s: float = 0.0              # faults happen from here …
+    until_s: float = float("inf")    # … to here
+    seed: int = 1
+
+
+FIELD_TYPES = {field.name: type(field.default) for field in fields(Faults)}
+
+
+def faults_from(options: dict[str, object]) -> Faults:
+    """From options that may be texts; ValueError names one that is of no use."""
+    found = {}
+    for name, value in options.items():
+        wanted = FIELD_TYPES[name]
+        try:
+            found[name] = value not in ("0", "false", "no", False) if wanted is bool else wanted(value)
+        except (TypeError, ValueError):
+            raise ValueError(f"{name}={value}: give a {wanted.__name__}") from None
+    faults = Faults(**found)
+    for name in ("loss", "duplication", "reordering", "corruption", "stuck", "wrong_length", "foreign"):
+        if not 0.0 <= getattr(faults, name) <= 1.0:
+            raise ValueError(f"{name}={getattr(faults, name):g}: a probability is from 0 to 1")
+    if faults.direction not in ("out", "in", "both"):
+        raise ValueError(f"direction={faults.direction}: give out, in or both")
+    return faults
+
+
+Delivery = tuple[float, int, str, can.Message]
+
+
+class FaultModel:
+    """Takes frames in, gives them out when their time has come."""
+
+    def __init__(self, faults: Faults):
+        self.faults = faults
+        self.injected = 0            # faults done so far
+        self.first_injection_s: float | None = None
+        self.active = True
+        self._random = random.Random(faults.seed)
+        self._order = itertools.count()
+        self._due: list[Delivery] = []
+        self._waiting: list[tuple[float, int, int, str, can.Message]] = []
+        self._held: dict[str, can.Message] = {}
+        self._stuck: dict[int, bytes] = {}
+        self._passed = 0
+        self._off_since: float | None = None
+        self._queue: list[tuple[str, can.Message]] = []
+        self._wire_free_s = 0.0
+        self._babbled_s: float | None = None
+
+    # ---- in
+
+    def put(self, message: can.Message, direction: str, now_s: float) -> None:
+        """A frame sets out."""
+        if not self._applies(message, direction, now_s):
+            self._travel(message, direction, now_s)
+            return
+        self._passed += 1
+        if self._bus_is_off(message, direction, now_s):
+            return
+        for each in self._mangled(message, direction, now_s):
+            self._travel(each, direction, now_s + self._extra_s(now_s))
+
+    def _applies(self, message: can.Message, direction: str, now_s: float) -> bool:
+        faults = self.faults
+        return (self.active and faults.direction in (direction, "both") and faults.from_s <= now_s < faults.until_s
+                and faults.only_id in (-1, message.arbitration_id))
+
+    def _happens(self, probability: float, now_s: float) -> bool:
+        happens = probability > 0.0 and self._random.random() < probability
+        if happens:
+            self._note(now_s)
+        return happens
+
+    def _note(self, now_s: float) -> None:
+        self.injected += 1
+        if self.first_injection_s is None:
+            self.first_injection_s = now_s
+
+    def _bus_is_off(self, message: can.Message, direction: str, now_s: float) -> bool:
+        faults = self.faults
+        if not faults.bus_off_after or self._passed <= faults.bus_off_after:
+            return False
+        if self._off_since is None:
+            self._off_since = now_s
+        if faults.bus_off_s and now_s - self._off_since >= faults.bus_off_s:
+            return False
+        self._note(now_s)
+        if faults.keep_queue:
+            self._queue.append((direction, message))
+        return True
+
+    def _mangled(self, message: can.Message, direction: str, now_s: float) -> list[can.Message]:
+        """The frames that go on in place of this one."""
+        faults = self.faults
+        if self._happens(faults.loss, now_s):
+            return []
+        if self._happens(faults.corruption, now_s):
+            message = self.corrupted(message)
+        if self._happens(faults.wrong_length, now_s):
+            message = self.of_wrong_length(message)
+        message = self._maybe_stuck(message, now_s)
+        frames = [message, message] if self._happens(faults.duplication, now_s) else [message]
+        if self._happens(faults.foreign, now_s):
+            frames.append(self.foreign())
+        held = self._held.pop(direction, None)
+        if held is not None:
+            return [*frames, held]
+        if self._happens(faults.reordering, now_s):
+            self._held[direction] = message
+            return []
+        return frames
+
+    def corrupted(self, message: can.Message) -> can.Message:
+        """With some bits turned over."""
+        bits = 8 * len(message.data)
+        data = bytearray(message.data)
+        for bit in self._random.sample(range(bits), min(self.faults.corrupted_bits, bits)):
+            data[bit // 8] ^= 1 << bit % 8
+        return replaced(message, data)
+
+    def of_wrong_length(self, message: can.Message) -> can.Message:
+        """A classic frame loses a byte; an FD frame goes down to the next length there is."""
+        shorter = {64: 48, 48: 32, 32: 24, 24: 20, 20: 16, 16: 12, 12: 8}.get(len(message.data))
+        length = shorter if message.is_fd and shorter else max(0, len(message.data) - 1)
+        return replaced(message, message.data[:length])
+
+    def _maybe_stuck(self, message: can.Message, now_s: float) -> can.Message:
+        identifier = message.arbitration_id
+        if identifier in self._stuck:
+            self._note(now_s)
+            return replaced(message, bytearray(self._stuck[identifier]))
+        if self.faults.stuck > 0.0 and self._random.random() < self.faults.stuck:
+            self._stuck[identifier] = bytes(message.data)
+        return message
+
+    def foreign(self) -> can.Message:
+        """Any frame at all."""
+        length = self._random.randrange(9)
+        return can.Message(arbitration_id=self._random.randrange(0x800), is_extended_id=False,
+                           data=self._random.randbytes(length))
+
+    def _extra_s(self, now_s: float) -> float:
+        faults = self.faults
+        extra = faults.delay_s + (self._random.random() * faults.jitter_s if faults.jitter_s else 0.0)
+        if extra:
+            self._note(now_s)
+        return extra
+
+    # ---- the wire
+
+    def _travel(self, message: can.Message, direction: str, at_s: float) -> None:
+        order = next(self._order)
+        if self.faults.bitrate:
+            self._waiting.append((at_s, message.arbitration_id, order, direction, message))
+        else:
+            heapq.heappush(self._due, (at_s, order, direction, message))
+
+    def take(self, now_s: float) -> list[tuple[str, can.Message]]:
+        """Frames that have arrived by now, in order."""
+        self._recover(now_s)
+        self._babble(now_s)
+        self._arbitrate(now_s)
+        arrived = []
+        while self._due and self._due[0][0] <= now_s:
+            _, _, direction, message = heapq.heappop(self._due)
+            arrived.append((direction, message))
+        return arrived
+
+    def _recover(self, now_s: float) -> None:
+        """After bus-off: a queue that was kept comes out now, all of it stale."""
+        over = self._off_since is not None and self.faults.bus_off_s and now_s - self._off_since >= self.faults.bus_off_s
+        if over or not self.active:
+            queue, self._queue = self._queue, []
+            for direction, message in queue:
+                self._travel(message, direction, now_s)
+
+    def _babble(self, now_s: float) -> None:
+        faults = self.faults
+        if not faults.babble_per_s or not self.active or not faults.from_s <= now_s < faults.until_s:
+            return
+        start = self._babbled_s if self._babbled_s is not None else max(now_s, faults.from_s)
+        for k in range(int((now_s - start) * faults.babble_per_s)):
+            self._note(now_s)
+            noise = can.Message(arbitration_id=0, is_extended_id=False, data=self._random.randbytes(8))
+            self._travel(noise, OUT, start + k / faults.babble_per_s)
+        self._babbled_s = now_s if start == now_s else start + int((now_s - start) * faults.babble_per_s) / faults.babble_per_s
+
+    def _arbitrate(self, now_s: float) -> None:
+        """One frame at a time; of those that wait when the wire falls free, the lowest identifier goes first."""
+        while self._waiting:
+            begin = max(self._wire_free_s, min(each[0] for each in self._waiting))
+            if begin > now_s:
+                return
+            chosen = min((each for each in self._waiting if each[0] <= begin), key=lambda each: (each[1], each[2]))
+            self._waiting.remove(chosen)
+            self._wire_free_s = begin + frame_seconds(chosen[4], self.faults.bitrate)
+            heapq.heappush(self._due, (self._wire_free_s, chosen[2], chosen[3], chosen[4]))
+
+    def next_s(self) -> float:
+        """When the next frame arrives; infinite: none on its way."""
+        waiting = min((each[0] for each in self._waiting), default=float("inf"))
+        return min(self._due[0][0] if self._due else float("inf"), max(waiting, self._wire_free_s))
+
+
+def replaced(message: can.Message, data: bytearray) -> can.Message:
+    """The same frame with another payload."""
+    return can.Message(arbitration_id=message.arbitration_id, is_extended_id=message.is_extended_id, data=data,
+                       is_fd=message.is_fd, bitrate_switch=message.bitrate_switch, timestamp=message.timestamp)
+
+
+def frame_seconds(message: can.Message, bitrate: int) -> float:
+    """Time on the wire of a frame with the most stuff bits it can have (FD frames as if at one rate)."""
+    length = len(message.data)
+    stuffed = (54 if message.is_extended_id else 34) + 8 * length
+    return (stuffed + (stuffed - 1) // 4 + 13) / bitrate

@@ -1,0 +1,80 @@
+"""`faulty`: a python-can interface that puts faults between its user and any other bus.
+
+    can.Bus(interface="faulty", channel="can0", under="socketcan", loss=0.01, seed=7)
+
+`under` names the interface beneath, `channel` and unknown options go to it; the faults are those of
+laconic.rig.faults.Faults. With the entry point `can.interface` any program that uses python-can can have it.
+"""
+
+from __future__ import annotations
+
+import time
+from collections.abc import Callable
+from typing import Any
+
+import can
+
+from laconic.rig.faults import FIELD_TYPES, IN, OUT, FaultModel, faults_from
+
+
+class FaultyBus(can.BusABC):
+    """A bus with faults; the bus beneath is `inner`, what goes wrong is in `model`."""
+
+    def __init__(self, channel: Any = None, under: str = "virtual", inner: can.BusABC | None = None,
+                 clock: Callable[[], float] | None = None, **options: Any):
+        ours = {name: options.pop(name) for name in list(options) if name in FIELD_TYPES}
+        options.pop("interface", None)
+        try:
+            self.model = FaultModel(faults_from(ours))
+        except ValueError as error:
+            raise can.CanInitializationError(f"faulty: {error}") from None
+        self.inner = inner or can.Bus(interface=under, channel=channel, **options)
+        self._now = clock or time.monotonic
+        self._start = self._now()
+        self._arrived: list[can.Message] = []
+        self.channel_info = f"faulty over {self.inner.channel_info}"
+        self._can_protocol = self.inner.protocol
+        super().__init__(channel=channel)
+
+    def now_s(self) -> float:
+        """Seconds since the bus was opened: the time that from_s and until_s mean."""
+        return self._now() - self._start
+
+    def send(self, msg: can.Message, timeout: float | None = None) -> None:
+        """Sets the frame on its way."""
+        self.model.put(msg, OUT, self.now_s())
+        self.move()
+
+    def move(self) -> None:
+        """Lets everything arrive whose time has come."""
+        for direction, message in self.model.take(self.now_s()):
+            if direction == OUT:
+                self.inner.send(message)
+            else:
+                self._arrived.append(message)
+
+    def _recv_internal(self, timeout: float | None) -> tuple[can.Message | None, bool]:
+        deadline = None if timeout is None else self._now() + timeout
+        while True:
+            self.move()
+            while (message := self.inner.recv(0)) is not None:
+                self.model.put(message, IN, self.now_s())
+            self.move()
+            if self._arrived:
+                return self._arrived.pop(0), False
+            left = None if deadline is None else deadline - self._now()
+            if left is not None and left <= 0:
+                return None, False
+            wait = max(0.0, min(self.model.next_s() - self.now_s(), 0.01, left if left is not None else 0.01))
+            if (message := self.inner.recv(wait)) is not None:
+                self.model.put(message, IN, self.now_s())
+
+    def shutdown(self) -> None:
+        """Closes the bus beneath too."""
+        super().shutdown()
+        self.inner.shutdown()
+
+    @property
+    def state(self) -> can.BusState:
+        """That of the bus beneath."""
+        return self.inner.state
