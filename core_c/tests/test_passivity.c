@@ -36,7 +36,7 @@ static void a_loss_is_always_allowed(void) {
 
 static void nan_is_not_passive(void) {
     TEST_ASSERT_FALSE(growth_is_driven_by(REAL(2), REAL(2), REAL(2), NOT_A_NUMBER));
-    TEST_ASSERT_FALSE(growth_is_driven_by(REAL(2), NOT_A_NUMBER, REAL(2), REAL(0.2)));
+    TEST_ASSERT_FALSE(growth_is_driven_by(NOT_A_NUMBER, REAL(2), REAL(2), REAL(0.2)));
 }
 
 int main(void) {
