@@ -17,6 +17,7 @@ from laconic.reference import Reference
 from laconic.scene import Scene, read_scene
 
 STEP_S, STEPS = 0.01, 100
+RTOL, ATOL = 1e-12, 1e-14
 METHOD_ERROR = 1e-6  # what the step may cost; rounding may cost as many digits as the condition number says
 
 Vehicle = dict[str, Any]
@@ -78,7 +79,8 @@ def parallel(vehicle: Vehicle) -> None:
 CASES = (
     *(Extreme(f"γ = {g:g} rad", roller(g)) for g in (1e-1, 1e-2, 1e-3, 1e-4, 1e-7, 0.0)),
     # ν3 = Λ θ': the same turning for every Λ, so that the step stays a fair one
-    *(Extreme(f"Λ = {f:g}", scaled("yaw_inertia_kgm2", f), nu=(0.5, -0.3, min(1.0, f))) for f in (1e-6, 1e-3, 1e3, 1e6)),
+    *(Extreme(f"Λ = {f:g}", scaled("yaw_inertia_kgm2", f), nu=(0.5, -0.3, min(1.0, f)))
+      for f in (1e-6, 1e-3, 1e3, 1e6)),
     *(Extreme(f"λ = {f:g}", scaled("wheel_inertia_kgm2", f)) for f in (1e-6, 1e-3, 1e3, 1e6)),
     Extreme("no wheels (N = 0)", with_wheels(0)),
     Extreme("one wheel (rank 1)", with_wheels(1)),
@@ -148,7 +150,7 @@ def _error(plant: Plant, vehicle: Vehicle, case: Extreme) -> dict[str, Any]:
     if not (1e-12 < stiffness * end[0] < 1e4 or len(vehicle["wheel"]) == 0) or end[0] < 1e-200:
         return {"why": "beyond the reference solver"}
     try:
-        expected = reference.solve(state, 0.0, end, values)[-1, :3]
+        expected = reference.solve(state, 0.0, end, values, RTOL, ATOL)[-1, :3]
     except (RuntimeError, ValueError, OverflowError):
         return {"why": "beyond the reference solver"}
     size = float(np.max(np.abs(expected)))

@@ -70,7 +70,8 @@ def missing_peers() -> list[str]:
     use_peers_folder()
     found = [name for name in ("casadi", "numbalsoda") if importlib.util.find_spec(name) is None]
     headers = (Path("/usr/include"), Path("/usr/local/include"))
-    return found if any((h / "cvode/cvode.h").exists() for h in headers) else [*found, "SUNDIALS CVODE (libsundials-dev)"]
+    cvode = any((folder / "cvode/cvode.h").exists() for folder in headers)
+    return found if cvode else [*found, "SUNDIALS CVODE (libsundials-dev)"]
 
 
 def _rows(rows: Any) -> str:

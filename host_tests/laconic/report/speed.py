@@ -91,7 +91,8 @@ def _solvers(scene: Scene, folder: Path) -> dict[str, Callable[[float], peers.So
     return found | {f"SciPy {solver}": peers.scipy_runner(course, solver) for solver in ("DOP853", "Radau")}
 
 
-def cheapest(rows: list[dict[str, Any]], who: Callable[[str], bool], error: float = WANTED_ERROR) -> dict[str, Any] | None:
+def cheapest(rows: list[dict[str, Any]], who: Callable[[str], bool],
+             error: float = WANTED_ERROR) -> dict[str, Any] | None:
     """The quickest run of some contestants that is accurate enough."""
     good = [row for row in rows if who(row["who"]) and row["error_nu"] <= error]
     return min(good, key=lambda row: row["ms"], default=None)

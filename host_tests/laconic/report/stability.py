@@ -12,8 +12,9 @@ import numpy as np
 from laconic.core import load
 from laconic.drive import Input
 from laconic.errors import Refused
-from laconic.reference import Reference, reference_states, totals_of
+from laconic.reference import Reference, totals_of
 from laconic.report.accuracy import relative, state_row
+from laconic.report.stiff_reference import stiff_states
 from laconic.scene import METHODS, Scene
 from laconic.simulation import advance_plant
 
@@ -58,7 +59,7 @@ def map_rows(scene: Scene, methods: tuple[str, ...] = METHODS, advance: Any = la
     rows, ends = [], SEGMENT_S * np.arange(1, SEGMENTS + 1)
     for factor in FACTORS:
         strong = strengthened(scene, factor, four_steps(scene.wheel_count), SEGMENT_S * SEGMENTS)
-        expected = reference_states(strong.with_run(step_s=SEGMENT_S), ends)
+        expected = stiff_states(strong.with_run(step_s=SEGMENT_S), ends)
         rate = Reference(strong.vehicle).fastest_decay_per_s()
         for method in methods:
             for step_s in STEPS_S:
@@ -95,8 +96,8 @@ def stiff_rows(scenes: Sequence[Scene], advance: Any = lambda: None) -> list[dic
         for factor in STIFF_FACTORS:
             for name, inputs in (("constant", constant), ("sine 0.5 Hz", sinusoids)):
                 strong = strengthened(scene, factor, inputs(scene.wheel_count), STIFF_S).with_run(method="auto")
-                at_s = np.linspace(0.0, STIFF_S, 31)[1:]
-                expected = reference_states(strong.with_run(step_s=0.1), at_s)
+                at_s = np.linspace(0.0, STIFF_S, 16)[1:]
+                expected = stiff_states(strong.with_run(step_s=0.1), at_s)
                 rows += [_stiff_run(strong.with_run(step_s=h), name, factor, at_s, expected) for h in STIFF_STEPS_S]
                 advance()
     return rows

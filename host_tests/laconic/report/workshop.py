@@ -45,7 +45,7 @@ class Target:
     def window(self, real: str) -> int:
         """Steps that fit one window of the 24-bit counter, twice."""
         in_hardware = self.hardware_double if real == "double" else self.hardware_single
-        return 256 if in_hardware else 12
+        return 256 if in_hardware else 5
 
 
 ARM, THUMB = "arm-none-eabi-", "-mthumb"

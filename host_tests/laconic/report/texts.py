@@ -1,0 +1,67 @@
+"""What the report's page says above its pictures and tables, by section; paragraphs are separated by empty lines."""
+
+from __future__ import annotations
+
+from laconic.report.collect import MAP_SCENE
+
+GOALS = """
+The project's own goals, each computed from the measurements below.
+"""
+
+ACCURACY = """
+Each point is one step size, from 1 to 100 ms. Full lines: double; dashed: single. The error is the largest of the three
+components of ν at twenty instants of the first ten seconds, over max(1, largest ν), against an independent numpy
+reference, which itself is good to about 1e-11. Run time: thread CPU time of a step with held inputs, pose and wheel
+angles included.
+
+Read it from the left: take the lowest point that you can afford. A point that is missing was refused by the core.
+"""
+
+PEERS = """
+Scene S1 (three omni wheels, all voltages a square wave of 1 s), steps of 10 ms, gcc -O2. Both sides in one run,
+interleaved, thread CPU time, the least of many rounds; `ratio` is the time over that of CasADi's generated RK4 of the
+same nine states. Instructions by cachegrind, as I(2n) − I(n).
+
+The general solvers restart at every jump of the voltages. Adams and BDF are CVODE's, from C.
+"""
+
+STABILITY = f"""
+Scene {MAP_SCENE}, its motors from a tenth of their strength to a million times that: four voltage steps of a quarter
+second, error of ν at their ends. Grey: refused by the core before it could go wrong. Dashed: h·r = 1.
+
+The table: auto on very stiff vehicles. Sinusoids are sampled at the start, middle and end of each step.
+"""
+
+CONSERVED = """
+Free motion of the paper's three-wheel carriage in steps of 0.1 s. Both integrals of the motion, the energy and
+K = (Aν)₃, should stay.
+
+The table: one step with U = 0 of ten thousand random vehicles in random states, h from 1e-6 to 1e3 s; the A-norm
+√(νᵀAν) may not grow. Methods other than exact-flow refuse the step when it grows by more than their error allows (2⁻¹⁰).
+"""
+
+BOARDS = """
+Scene S1 with pose and wheel angles under QEMU (-icount): instructions, not cycles; the same digits in every run. Code:
+the functions that a step can reach. Flash: all that a step links, its prepared constants included. Stack: worst path of
+the call graph, and the most that a run was seen to use. Where the processor has no double-precision FPU (all but the
+M7) double is emulated.
+"""
+
+SCENES = """
+The same scene with the whole core and with a core built for it alone (cmake -DLACONIC_SCENE=…), by its own method, -Os,
+Cortex-M4F. The state after the run is the same to the last bit.
+"""
+
+REFERENCES = """
+Solutions to 25 digits; errors over max(1, largest value of that kind in the case).
+"""
+
+EXTREMES = """
+Numbers at the edge: S1's vehicle with one thing changed, a hundred steps of 10 ms by auto. `right`: within 1e-6 plus
+the digits that the condition number takes; `number`: finite, but beyond what the reference solver can check.
+"""
+
+
+def paragraphs(text: str) -> list[str]:
+    """Split at empty lines, each in one line."""
+    return [" ".join(part.split()) for part in text.strip().split("\n\n")]
