@@ -3,12 +3,16 @@
 from __future__ import annotations
 
 import time
-from dataclasses import dataclass
+from collections.abc import Sequence
+from dataclasses import dataclass, replace
+from itertools import product
+from typing import Any
 
 import numpy as np
 
 from laconic.drive import Drive
 from laconic.errors import Refused
+from laconic.plant import Plant
 from laconic.reference import reference_states
 from laconic.scene import METHODS, Scene
 from laconic.simulation import advance_plant
@@ -72,18 +76,16 @@ def usable_factors(scene: Scene) -> list[int]:
     return [factor for factor in FACTORS if all(mark % factor == 0 for mark in marks)]
 
 
-def measure(scene: Scene, target: Target, method: str, factor: int) -> Point:
-    """One method with one step: errors, and the least run time of some repetitions."""
+def measure(scene: Scene, target: Target, method: str, factor: int) -> tuple[Point, Scene, Drive]:
+    """One method with one step: errors, and what is needed to time it."""
     coarse = scene.with_run(method=method, step_s=scene.run.step_s * factor)
     drive = Drive.on_grid(scene.path, scene.inputs, coarse.run.step_s, scene.steps() // factor)
     try:
         states, chosen = states_at(coarse, drive, target.ticks // factor)
-        seconds = least_run_time(coarse, drive)
     except Refused as refused:
-        return Point(method, method, coarse.run.step_s, refusal=refused.status)
+        return Point(method, method, coarse.run.step_s, refusal=refused.status), coarse, drive
     errors = [target.error(states, part) for part in KINDS]
-    return Point(method, chosen, coarse.run.step_s, *errors, 1e9 * seconds,
-                 1e6 * seconds / coarse.run.step_s)
+    return Point(method, chosen, coarse.run.step_s, *errors), coarse, drive
 
 
 def states_at(scene: Scene, drive: Drive, ticks: np.ndarray) -> tuple[np.ndarray, str]:
@@ -101,33 +103,56 @@ def without_speeds(rows: np.ndarray, wheel_count: int) -> np.ndarray:
     return np.delete(rows, np.s_[6 : 6 + wheel_count], axis=1)
 
 
-def run_time(scene: Scene, drive: Drive, least_steps: int) -> float:
-    """Seconds a step of the core's loop costs, everything else made ready before.
+class Stopwatch:
+    """Seconds a step of the core's loop costs: the least time of a run, less the least time of its bare calls."""
 
-    Short runs are stretched to `least_steps` by holding each input longer, so that calling the loop does not count.
-    """
-    plant = scene.plant(scene.core())
-    if not drive.is_held:
-        began = time.thread_time()
-        advance_plant(plant, drive, 0, drive.steps)
-        return (time.thread_time() - began) / drive.steps
-    longer = -(-least_steps // drive.steps)
-    stretches = [(plant.core.input(plant.core.input_row(each.values)), each.steps * longer)
-                 for each in drive.segments()]
+    def __init__(self, scene: Scene, drive: Drive):
+        self.scene, self.drive = scene, drive
+        self.cycles = -(-TIMED_STEPS // drive.steps)  # a short run goes on, again and again from where it ended
+        self.run_s = self.empty_s = float("inf")
+
+    def measure(self) -> None:
+        """Once more."""
+        plant = self.scene.plant(self.scene.core())
+        if not self.drive.is_held:
+            began, self.cycles, self.empty_s = time.thread_time(), 1, 0.0
+            advance_plant(plant, self.drive, 0, self.drive.steps)
+            self.run_s = min(self.run_s, time.thread_time() - began)
+            return
+        stretches = [(plant.core.input(plant.core.input_row(each.values)), each.steps)
+                     for each in self.drive.segments()]
+        try:
+            self.run_s = min(self.run_s, call_time(plant, self.cycles * stretches))
+        except Refused:  # going on leads to where the step is too large
+            self.cycles, self.run_s = 1, float("inf")
+            self.run_s = call_time(self.scene.plant(self.scene.core()), stretches)
+        bare = self.cycles * [(held, 0) for held, _ in stretches]
+        self.empty_s = min(self.empty_s, call_time(plant, bare))
+
+    @property
+    def step_s(self) -> float:
+        """What was found."""
+        return (self.run_s - self.empty_s) / (self.cycles * self.drive.steps)
+
+
+def call_time(plant: Plant, stretches: Sequence[tuple[Any, int]]) -> float:
+    """Seconds of some calls of the core's loop."""
     began = time.thread_time()
     for held, steps in stretches:
         plant.run(held, steps)
-    return (time.thread_time() - began) / plant.steps
-
-
-def least_run_time(scene: Scene, drive: Drive) -> float:
-    """The least of some repetitions; where a stretched run leaves what the step can follow, of the run as it is."""
-    try:
-        return min(run_time(scene, drive, TIMED_STEPS) for _ in range(REPETITIONS))
-    except Refused:
-        return min(run_time(scene, drive, drive.steps) for _ in range(REPETITIONS))
+    return time.thread_time() - began
 
 
 def measure_all(scene: Scene, target: Target) -> list[Point]:
-    """Every method with every usable step."""
-    return [measure(scene, target, method, factor) for method in METHODS for factor in usable_factors(scene)]
+    """Every method with every usable step; timed in turns, so that what else the machine does hits all alike."""
+    points, watches = [], []
+    for method, factor in product(METHODS, usable_factors(scene)):
+        point, coarse, drive = measure(scene, target, method, factor)
+        points.append(point)
+        watches.append(None if point.refusal else Stopwatch(coarse, drive))
+    for _, watch in product(range(REPETITIONS), watches):
+        if watch:
+            watch.measure()
+    return [point if watch is None else
+            replace(point, ns_per_step=1e9 * watch.step_s, us_per_s=1e6 * watch.step_s / point.step_s)
+            for point, watch in zip(points, watches, strict=True)]
