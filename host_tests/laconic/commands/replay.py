@@ -1,0 +1,54 @@
+"""laconic replay: a recorded robot run against the model."""
+
+from __future__ import annotations
+
+import json
+from pathlib import Path
+
+import click
+
+from laconic.errors import BadInput, reason_of
+
+
+@click.command("replay")
+@click.argument("log", type=click.Path(path_type=Path))
+@click.argument("scene")
+@click.option("--fit", "fit_on", type=click.Path(path_type=Path), multiple=True, metavar="RUN.csv",
+              help="Fit friction on this run; may be given several times. Nothing said: every other run of a folder.")
+@click.option("--map", "map_path", type=click.Path(path_type=Path), metavar="MAP.toml",
+              help="Which column is what; the default is that of the Robotino's runs.")
+@click.option("--out", type=click.Path(file_okay=False, path_type=Path), metavar="DIR",
+              help="Write report.md, report.json and pictures there.")
+@click.option("--json", "as_json", is_flag=True, help="Machine-readable result on stdout.")
+def command(log: Path, scene: str, fit_on: tuple[Path, ...], map_path: Path | None, out: Path | None,
+            as_json: bool) -> None:
+    """Compare LOG, a recorded run as CSV or a folder of them, with the model of SCENE.
+
+    The measured wheel speeds are rolled and set beside the camera; friction is fitted by least squares; and the core,
+    driven by the measured currents as torques, predicts the wheel speeds.
+    """
+    from laconic.analysis.from_core import subject_of
+    from laconic.progress import progress_bar
+    from laconic.replay import report, session
+    from laconic.replay.log import DEFAULT_MAP, read_map
+    from laconic.scene import read_scene
+
+    subject = subject_of(read_scene(scene))
+    runs, names, skipped = session.gather(log, fit_on, read_map(map_path or DEFAULT_MAP))
+    with progress_bar("replaying", len(runs) + 1) as advance:
+        found = session.run(subject, runs, names, skipped, advance)
+    numbers = report.as_numbers(found)
+    if out is not None:
+        pictures = report.draw(found, out)
+        images = "".join(f"![{path.stem}]({path.name})\n" for path in pictures)
+        _write(out / "report.md", report.as_text(found) + "\n## Pictures\n\n" + images)
+        _write(out / "report.json", json.dumps(numbers, indent=1) + "\n")
+    click.echo(json.dumps(numbers, indent=1) if as_json else report.as_text(found))
+
+
+def _write(path: Path, text: str) -> None:
+    try:
+        path.parent.mkdir(parents=True, exist_ok=True)
+        path.write_text(text)
+    except OSError as error:
+        raise BadInput(f"{path}: cannot be written ({reason_of(error)}); choose another place") from None
