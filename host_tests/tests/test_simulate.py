@@ -5,12 +5,14 @@ from __future__ import annotations
 import csv
 import json
 import math
+import re
 from pathlib import Path
 
 import numpy as np
 import pytest
 from laconic.cli import run
 from laconic.core import load
+from laconic.paths import SOURCE_DIR
 from laconic.scene import read_scene
 from laconic.simulation import simulate, usual_signals
 
@@ -193,3 +195,13 @@ def test_a_saved_state_can_be_returned_to():
     plant.restore(state, steps)
     assert plant.steps == 10
     assert plant.row().tobytes() == before.tobytes()
+
+
+def test_the_scene_in_the_documentation_runs(tmp_path, capsys):
+    text = (SOURCE_DIR / "docs" / "scenes.md").read_text()
+    path = tmp_path / "documented.toml"
+    path.write_text(re.search(r"```toml\n(.*?)```", text, re.DOTALL)[1])
+    assert run(["simulate", str(path), "--json"]) == 0
+    answer = json.loads(capsys.readouterr().out)
+    assert answer["steps"] == 100
+    assert {"wheel_torque_Nm[2]", "no_slip_margin_N"} <= set(answer["final"])
