@@ -38,7 +38,7 @@ void laconic_library_protect(uint8_t offset, uint8_t *data, uint8_t length, uint
     if (laconic_wire[offset].fd) {
         laconic_e2e_p05_protect(data, length, (uint16_t)(laconic_wire_data_id(offset) + turn), counter);
     } else {
-        laconic_e2e_p22_protect(data, length, laconic_wire_data_ids[offset], turn, counter);
+        laconic_e2e_p22_protect(data, length, laconic_wire_data_ids[laconic_wire[offset].list], turn, counter);
     }
 }
 
@@ -46,7 +46,7 @@ bool laconic_library_crc_is_right(uint8_t offset, const uint8_t *data, uint8_t l
     const uint8_t turn = turn_of(offset, session);
     if (laconic_wire[offset].fd)
         return laconic_e2e_p05_crc_is_right(data, length, (uint16_t)(laconic_wire_data_id(offset) + turn));
-    return laconic_e2e_p22_crc_is_right(data, length, laconic_wire_data_ids[offset], turn);
+    return laconic_e2e_p22_crc_is_right(data, length, laconic_wire_data_ids[laconic_wire[offset].list], turn);
 }
 
 static void try_error(laconic_error_census *census, const uint8_t frame[8], uint64_t error,

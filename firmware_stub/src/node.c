@@ -29,12 +29,12 @@ static uint8_t max_delta(const laconic_node *node, const laconic_wire_row *row) 
 static bool is_fresh(laconic_node *node, uint8_t offset, const laconic_frame *frame) {
     const laconic_wire_row *row = &laconic_wire[offset];
     const uint8_t turn = row->of_session ? node->session : 0;
-    laconic_e2e_receiver *receiver = &node->receiver[receiver_slot(offset)];
+    laconic_e2e_receiver *receiver = &node->receiver[offset];
     const bool fd = LACONIC_NODE_CAN_FD && row->fd;
     const bool right = fd ? laconic_e2e_p05_crc_is_right(frame->data, frame->length,
                                                               (uint16_t)(laconic_wire_data_id(offset) + turn))
                                : laconic_e2e_p22_crc_is_right(frame->data, frame->length,
-                                                              laconic_wire_data_ids[offset], turn);
+                                                              laconic_wire_data_ids[laconic_wire[offset].list], turn);
     const uint8_t mask = fd ? LACONIC_E2E_P05_COUNTER_MASK : LACONIC_E2E_P22_COUNTER_MASK;
     const uint8_t counter = fd ? frame->data[2] : frame->data[1] & mask;
     switch (laconic_e2e_check(receiver, right, counter, mask, max_delta(node, row))) {
@@ -51,7 +51,8 @@ static bool is_fresh(laconic_node *node, uint8_t offset, const laconic_frame *fr
 static void sync(laconic_node *node, const uint8_t *data) {
     const uint32_t steps =
         (uint32_t)data[2] | (uint32_t)data[3] << 8 | (uint32_t)data[4] << 16 | (uint32_t)data[5] << 24;
-    laconic_node_sync(node, steps, data[1] >> 4);
+    const uint16_t input_frames = (uint16_t)(data[6] | data[7] << 8);
+    laconic_node_sync(node, steps, input_frames, data[1] >> 4);
 }
 
 static bool dispatch(laconic_node *node, uint8_t offset, const uint8_t *data, uint32_t now_us) {
@@ -95,11 +96,11 @@ void laconic_node_on_tick(laconic_node *node, uint32_t now_us) {
 }
 
 static void protect(laconic_node *node, uint8_t offset, laconic_frame *frame) {
-    const uint8_t counter = ++node->sent[receiver_slot(offset)];
+    const uint8_t counter = ++node->sent[offset - LACONIC_WIRE_NODE_FIRST];
     if (LACONIC_NODE_CAN_FD && frame->fd) {
         laconic_e2e_p05_protect(frame->data, frame->length, laconic_wire_data_id(offset), counter);
     } else {
-        laconic_e2e_p22_protect(frame->data, frame->length, laconic_wire_data_ids[offset], 0, counter);
+        laconic_e2e_p22_protect(frame->data, frame->length, laconic_wire_data_ids[laconic_wire[offset].list], 0, counter);
     }
 }
 

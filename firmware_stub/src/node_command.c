@@ -29,7 +29,7 @@ bool laconic_node_voltage(laconic_node *node, const uint8_t *data, uint32_t now_
         node->input[0].voltage_V[first + k] = (laconic_real)raw[k] / LACONIC_WIRE_VOLTAGE_VOLTAGE_1_PER_UNIT;
     if (frame.overrange) count(&node->counters.overrange);
     feed(node, frame.group, now_us);
-    if (frame.sync) laconic_node_sync(node, 1, 0);
+    if (frame.sync) laconic_node_sync(node, 1, 0, 0);
     return true;
 }
 
@@ -44,7 +44,7 @@ bool laconic_node_voltage_fd(laconic_node *node, const uint8_t *data, uint32_t n
     if (data[3] & 2U) count(&node->counters.overrange);
     node->groups_seen = 0;
     node->free_run.fed_us = now_us;
-    if (with_sync) laconic_node_sync(node, 1, 0);
+    if (with_sync) laconic_node_sync(node, 1, 0, 0);
     return true;
 }
 
@@ -53,17 +53,17 @@ bool laconic_node_raw(laconic_node *node, const uint8_t *bytes, uint8_t segment,
     return laconic_raw_take(&node->raw_input, node->input, node->plant.model.wheel_count, segment, mask, bytes, size);
 }
 
-static uint8_t sync_status(const laconic_node *node, uint32_t steps) {
+static uint8_t sync_status(const laconic_node *node, uint32_t steps, uint16_t input_frames) {
     const bool sampled = (node->raw_input.take & LACONIC_RAW_SAMPLED) != 0;
     if (node->state != LACONIC_WIRE_STATE_LOCKSTEP) return LACONIC_WIRE_STATUS_WRONG_STATE;
     if (node->lockstep.steps_due > 0) return LACONIC_WIRE_STATUS_BUSY;
     if (steps == 0 || (sampled && steps != 1)) return LACONIC_WIRE_STATUS_OUT_OF_RANGE;
-    if (!laconic_raw_is_whole(&node->raw_input)) return LACONIC_WIRE_STATUS_INPUT_INCOMPLETE;
+    if (!laconic_raw_is_whole(&node->raw_input, input_frames)) return LACONIC_WIRE_STATUS_INPUT_INCOMPLETE;
     return 0;
 }
 
-void laconic_node_sync(laconic_node *node, uint32_t steps, uint8_t request) {
-    const uint8_t status = sync_status(node, steps);
+void laconic_node_sync(laconic_node *node, uint32_t steps, uint16_t input_frames, uint8_t request) {
+    const uint8_t status = sync_status(node, steps, input_frames);
     if (status != LACONIC_WIRE_STATUS_BUSY) laconic_raw_restart(&node->raw_input);
     if (status != 0) {
         laconic_node_answer(node, LACONIC_WIRE_COMMAND_SYNC, request, status, 0, 0);

@@ -14,7 +14,7 @@ void laconic_node_answer(laconic_node *node, uint8_t command, uint8_t request, u
 }
 
 static void forget(laconic_node *node, uint8_t offset) {
-    memset(&node->receiver[receiver_slot(offset)], 0, sizeof node->receiver[0]);
+    memset(&node->receiver[offset], 0, sizeof node->receiver[0]);
 }
 
 static uint8_t identify(laconic_node *node) {

@@ -7,8 +7,6 @@
 
 #define BIT(offset) ((uint32_t)1 << (offset))
 
-static inline uint8_t receiver_slot(uint8_t offset) { return (uint8_t)((offset & 7U) | (offset >= 16U ? 8U : 0U)); }
-
 static inline void count(uint16_t *counter) { *counter = (uint16_t)(*counter + (*counter < UINT16_MAX)); }
 
 static inline bool is_running(const laconic_node *node) {
@@ -31,7 +29,8 @@ void laconic_node_answer(laconic_node *node, uint8_t command, uint8_t request, u
 bool laconic_node_voltage(laconic_node *node, const uint8_t *data, uint32_t now_us);
 bool laconic_node_voltage_fd(laconic_node *node, const uint8_t *data, uint32_t now_us);
 bool laconic_node_raw(laconic_node *node, const uint8_t *bytes, uint8_t segment, uint8_t mask, uint8_t size);
-void laconic_node_sync(laconic_node *node, uint32_t steps, uint8_t request);
+/* `input_frames`: how many RAW_INPUT frames the rig has sent for it. */
+void laconic_node_sync(laconic_node *node, uint32_t steps, uint16_t input_frames, uint8_t request);
 
 /* node_run.c */
 void laconic_node_run_lockstep(laconic_node *node);

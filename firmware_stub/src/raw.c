@@ -11,6 +11,7 @@ void laconic_raw_restart(laconic_raw_input *raw) {
     raw->filled = 0;
     raw->position = 0;
     raw->segment = 0;
+    raw->frames = 0;
     raw->complete = false;
     raw->broken = false;
 }
@@ -62,6 +63,7 @@ bool laconic_raw_take(laconic_raw_input *raw, laconic_input input[3], int32_t wh
         return false;
     }
     raw->segment = (uint8_t)((segment + 1U) & segment_mask);
+    raw->frames++;
     for (uint8_t k = 0; k < count && !raw->complete; k++) {
         raw->number[raw->filled++] = bytes[k];
         if (raw->filled == sizeof raw->number) store(raw, input, wheel_count);
@@ -69,8 +71,8 @@ bool laconic_raw_take(laconic_raw_input *raw, laconic_input input[3], int32_t wh
     return true;
 }
 
-bool laconic_raw_is_whole(const laconic_raw_input *raw) {
-    return !raw->broken && (raw->complete || (raw->position == 0 && raw->filled == 0));
+bool laconic_raw_is_whole(const laconic_raw_input *raw, uint16_t frames) {
+    return !raw->broken && raw->frames == frames && (raw->complete || (raw->position == 0 && raw->filled == 0));
 }
 
 static laconic_real *collect_pose(laconic_real *to, const laconic_plant *plant) {

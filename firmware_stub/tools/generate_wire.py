@@ -40,6 +40,11 @@ def constants(database: Database) -> list[str]:
     lines = [f"#define LACONIC_WIRE_VERSION {int(database.version)}", f"#define LACONIC_WIRE_ID_BASE {ID_BASE}"]
     for message in database.messages:
         lines.append(f"#define LACONIC_WIRE_{message.name} {message.frame_id - ID_BASE}")
+    rig, node = ([m.frame_id - ID_BASE for m in database.messages if side in m.senders] for side in ("RIG", "NODE"))
+    if max(rig) >= min(node):
+        raise SystemExit("laconic.dbc: identifiers of the rig's frames must all lie below those of the node's")
+    lines += [f"#define LACONIC_WIRE_RIG_OFFSETS {max(rig) + 1}", f"#define LACONIC_WIRE_NODE_FIRST {min(node)}"]
+    lines += [f"#define LACONIC_WIRE_NODE_OFFSETS {max(node) + 1 - min(node)}"]
     choices: dict[str, int] = {}
     for message in database.messages:
         for signal in message.signals:
@@ -62,6 +67,8 @@ def scale(message: Message, signal: Signal) -> list[str]:
 def rows(database: Database) -> list[str]:
     """One initializer per identifier offset; unused offsets have length 0."""
     by_offset = {message.frame_id - ID_BASE: message for message in database.messages}
+    lists = [offset for offset, message in by_offset.items() if not message.is_fd]
+    lists += [offset for offset, message in by_offset.items() if message.is_fd]
     lines = []
     for offset in range(32):
         if offset not in by_offset:
@@ -70,7 +77,8 @@ def rows(database: Database) -> list[str]:
         from_rig = int("RIG" in message.senders)
         lines.append(
             f"    [{offset}] = {{{message.length}, {int(message.is_fd)}, {from_rig}, "
-            f"{attribute(message, 'OfSession')}, {attribute(message, 'E2EMaxDeltaCounter')}}}, /* {message.name} */"
+            f"{attribute(message, 'OfSession')}, {attribute(message, 'E2EMaxDeltaCounter')}, {lists.index(offset)}}}, "
+            f"/* {message.name} */"
         )
     return lines
 
@@ -78,11 +86,10 @@ def rows(database: Database) -> list[str]:
 def tables(database: Database) -> list[str]:
     """DataID lists of the classic frames and DataIDs of the FD frames."""
     classic = [m for m in database.messages if not m.is_fd]
-    longest = max(m.frame_id - ID_BASE for m in classic) + 1
-    lines = [f"const uint8_t laconic_wire_data_ids[{longest}][16] = {{"]
+    lines = [f"const uint8_t laconic_wire_data_ids[{len(classic)}][16] = {{"]
     for message in classic:
         ids = ", ".join(f"0x{number:02X}" for number in data_ids(message))
-        lines.append(f"    [{message.frame_id - ID_BASE}] = {{{ids}}},")
+        lines.append(f"    {{{ids}}}, /* {message.name} */")
     lines += ["};", "", "uint16_t laconic_wire_data_id(uint8_t offset) {", "    switch (offset) {"]
     for message in database.messages:
         if message.is_fd:
@@ -105,6 +112,7 @@ typedef struct laconic_wire_row {{
     uint8_t from_rig;
     uint8_t of_session;
     uint8_t max_delta;
+    uint8_t list;      /* classic: which DataID list */
 }} laconic_wire_row;
 
 #define LACONIC_WIRE_OFFSETS 32
@@ -122,7 +130,7 @@ def main(dbc: str, directory: str) -> None:
     defaults = {name: d.default_value for name, d in database.dbc.attribute_definitions.items()}
     for message in database.messages:
         message.dbc.database_default = defaults
-    classic = max(m.frame_id - ID_BASE for m in database.messages if not m.is_fd) + 1
+    classic = sum(not m.is_fd for m in database.messages)
     out = Path(directory)
     header = HEADER.format(constants="\n".join(constants(database)), classic=classic)
     out.joinpath("laconic_wire.h").write_text(NOTE + header, encoding="utf-8")

@@ -19,6 +19,7 @@
 #include "laconic_node/frame.h"
 #include "laconic_node/loader.h"
 #include "laconic_node/raw.h"
+#include "laconic_wire.h"
 
 #ifndef LACONIC_NODE_STEPS_PER_TICK
 #define LACONIC_NODE_STEPS_PER_TICK 64
@@ -74,8 +75,8 @@ typedef struct laconic_node {
     laconic_node_lockstep lockstep;
     laconic_node_free_run free_run;
     laconic_node_counters counters;
-    laconic_e2e_receiver receiver[16]; /* by offset & 7, +8 for FD                                 */
-    uint8_t sent[16];                  /* counters of what was sent, in the same order             */
+    laconic_e2e_receiver receiver[LACONIC_WIRE_RIG_OFFSETS];
+    uint8_t sent[LACONIC_WIRE_NODE_OFFSETS]; /* counters of what was sent                             */
     laconic_loader loader;
     laconic_start start;               /* what RESET returns to                                    */
     laconic_plant plant;

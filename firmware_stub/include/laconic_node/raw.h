@@ -26,6 +26,7 @@ typedef struct laconic_raw_input {
     bool complete;     /* all of them have come since the last SYNC           */
     bool broken;       /* a segment was out of order: wait for segment 0      */
     uint8_t segment;   /* next one expected                                   */
+    uint16_t frames;   /* taken since the last SYNC                           */
     uint8_t number[sizeof(laconic_real)];
 } laconic_raw_input;
 
@@ -36,8 +37,8 @@ void laconic_raw_restart(laconic_raw_input *raw);
 bool laconic_raw_take(laconic_raw_input *raw, laconic_input input[3], int32_t wheel_count, uint8_t segment,
                       uint8_t segment_mask, const uint8_t *bytes, uint8_t count);
 
-/* True iff a SYNC may use the inputs: nothing came, or everything did. */
-bool laconic_raw_is_whole(const laconic_raw_input *raw);
+/* True iff a SYNC that speaks of so many frames may use the inputs: nothing came, or everything did. */
+bool laconic_raw_is_whole(const laconic_raw_input *raw, uint16_t frames);
 
 typedef struct laconic_raw_output {
     uint8_t send;      /* mask                                                */

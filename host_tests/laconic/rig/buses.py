@@ -40,6 +40,11 @@ def open_bus(interface: str, channel: str | None, *, bitrate: int | None = None,
     return bus
 
 
+def next_channel() -> str:
+    """A name that no other virtual bus has."""
+    return f"laconic-{next(_channel_numbers)}"
+
+
 class VirtualClock(Clock):
     """Time that passes only when somebody waits."""
 
@@ -61,9 +66,7 @@ class NodeOnBus:
         node, bus, now = self.node, self.bus, self.clock.time_us
         busy = False
         while (message := bus.recv(0)) is not None:
-            node.on_frame(message.arbitration_id, message.data, now, fd=message.is_fd,
-                          extended=message.is_extended_id, remote=message.is_remote_frame)
-            node.tick(now)
+            self.deliver(message)
             busy = self.send_all() or busy
         node.tick(now)
         busy = self.send_all() or busy
@@ -71,13 +74,24 @@ class NodeOnBus:
             self.clock.time_us += max(1, min(node.idle_us(now), 1000))
         return busy
 
+    def deliver(self, message: can.Message) -> None:
+        """A frame reaches the node."""
+        now = self.clock.time_us
+        self.node.on_frame(message.arbitration_id, message.data, now, fd=message.is_fd,
+                           extended=message.is_extended_id, remote=message.is_remote_frame)
+        self.node.tick(now)
+
+    def sent_frame(self, message: can.Message) -> None:
+        """A frame leaves the node."""
+        self.bus.send(message)
+
     def send_all(self) -> bool:
         """Sends what the node has to say."""
         sent = False
         while (frame := self.node.take_frame()) is not None:
             identifier, data, fd = frame
-            self.bus.send(can.Message(arbitration_id=identifier, is_extended_id=False, data=data, is_fd=fd,
-                                      bitrate_switch=fd))
+            self.sent_frame(can.Message(arbitration_id=identifier, is_extended_id=False, data=data, is_fd=fd,
+                                        bitrate_switch=fd))
             sent = True
         return sent
 
@@ -85,7 +99,7 @@ class NodeOnBus:
 @contextmanager
 def virtual_node(real: str = "double", id_base: int = 512, **node_options: Any) -> Iterator[NodeClient]:
     """A node in this process on python-can's virtual bus, in virtual time."""
-    channel = f"laconic-{next(_channel_numbers)}"
+    channel = next_channel()
     clock = VirtualClock()
     with can.Bus(interface="virtual", channel=channel) as ours, can.Bus(interface="virtual", channel=channel) as its:
         end = NodeOnBus(LibraryNode(real, id_base, **node_options), its, clock)

@@ -89,9 +89,8 @@ class NodeClient:
                               self.wire.choice("RESULT", "field", result["field"]), result["item"], self.state)
 
     def _wait_for(self, name: str, timeout_s: float) -> dict[str, int] | None:
-        clock = self.link.clock
-        deadline_us = clock.now_us() + int(1e6 * timeout_s)
-        while (received := self.link.receive((deadline_us - clock.now_us()) / 1e6)) is not None:
+        deadline_us = self.link.deadline_us(timeout_s)
+        while (received := self.link.receive_until(deadline_us)) is not None:
             frame, data = received
             if frame.name == name:
                 values = frame.unpack(data)

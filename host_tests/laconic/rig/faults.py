@@ -83,7 +83,7 @@ class FaultModel:
         self._off_since: float | None = None
         self._queue: list[tuple[str, can.Message]] = []
         self._wire_free_s = 0.0
-        self._babbled_s: float | None = None
+        self._next_babble_s: float | None = None
 
     # ---- in
 
@@ -216,12 +216,13 @@ class FaultModel:
         faults = self.faults
         if not faults.babble_per_s or not self.active or not faults.from_s <= now_s < faults.until_s:
             return
-        start = self._babbled_s if self._babbled_s is not None else max(now_s, faults.from_s)
-        for k in range(int((now_s - start) * faults.babble_per_s)):
+        if self._next_babble_s is None:
+            self._next_babble_s = now_s
+        while self._next_babble_s <= now_s:
             self._note(now_s)
             noise = can.Message(arbitration_id=0, is_extended_id=False, data=self._random.randbytes(8))
-            self._travel(noise, OUT, start + k / faults.babble_per_s)
-        self._babbled_s = now_s if start == now_s else start + int((now_s - start) * faults.babble_per_s) / faults.babble_per_s
+            self._travel(noise, OUT, self._next_babble_s)
+            self._next_babble_s += 1.0 / faults.babble_per_s
 
     def _arbitrate(self, now_s: float) -> None:
         """One frame at a time; of those that wait when the wire falls free, the lowest identifier goes first."""

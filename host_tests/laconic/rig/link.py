@@ -64,7 +64,14 @@ class Link:
 
     def receive(self, timeout_s: float = 1.0) -> Received | None:
         """The next right frame from the node; None when none comes in time. Wrong ones are counted and dropped."""
-        deadline_us = self.clock.now_us() + int(timeout_s * 1e6)
+        return self.receive_until(self.deadline_us(timeout_s))
+
+    def deadline_us(self, timeout_s: float) -> int:
+        """So long from now, in the link's time."""
+        return self.clock.now_us() + int(1e6 * timeout_s)
+
+    def receive_until(self, deadline_us: int) -> Received | None:
+        """As receive, for callers that skip frames: a heartbeat must not prolong their patience."""
         while True:
             message = self._next_message(deadline_us)
             if message is None:

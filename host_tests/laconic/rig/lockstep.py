@@ -96,6 +96,7 @@ class RawStream:
         self._out = "RAW_OUTPUT_FD" if fd else "RAW_OUTPUT"
         self._chunk = 60 if fd else 6
         self._sync = wire()["SYNC"]
+        self._sent = 0  # frames since the last SYNC
 
     def _places(self, wheel_count: int) -> np.ndarray:
         """Where the stream's numbers stand in a row of laconic_input."""
@@ -117,6 +118,7 @@ class RawStream:
         stream = np.ascontiguousarray(np.atleast_2d(rows)[:, self.places]).tobytes()
         link, frame, chunk = self.node.link, self._in, self._chunk
         for segment, at in enumerate(range(0, len(stream), chunk)):
+            self._sent += 1
             part = stream[at : at + chunk].ljust(chunk, b"\0")
             if self.fd:
                 data = bytearray((0, 0, 0, segment & 255)) + part
@@ -126,14 +128,16 @@ class RawStream:
 
     def sync(self, steps: int) -> None:
         """Lets the node step."""
-        self.node.link.send(self._sync, self._sync.pack(step_count=steps))
+        self.node.link.send(self._sync, self._sync.pack(step_count=steps, input_frames=self._sent))
+        self._sent = 0
 
     def receive_state(self) -> np.ndarray:
         """The node's answer to a SYNC."""
         needed = self.row_length * self.core.dtype.itemsize
         stream, expected = b"", 0
+        deadline_us = self.node.link.deadline_us(self.node.timeout_s)
         while len(stream) < needed:
-            received = self.node.link.receive(self.node.timeout_s)
+            received = self.node.link.receive_until(deadline_us)
             if received is None:
                 raise NodeSilent(f"the node does not answer a SYNC within {self.node.timeout_s:g} s; faults seen: "
                                  f"{dict(self.node.link.faults) or 'none'}")

@@ -52,6 +52,9 @@ def node_library(real: str = "double") -> NodeLibrary:
 E2E_STATUS = ("ok", "ok some lost", "repeated", "wrong sequence", "error", "no new data")
 
 
+NODE_STATES = ("empty", "ready", "lockstep", "free run", "timeout", "fault")
+
+
 class LibraryNode:
     """A node in this process. It has no clock: whoever calls says what time it is."""
 
@@ -62,6 +65,8 @@ class LibraryNode:
         self.c = ffi.cast("struct laconic_node *", self._memory)
         self.frame = ffi.new("laconic_frame *")
         self._bytes = ffi.buffer(self.frame.data)
+        self._view = ffi.new("laconic_library_view *")
+        self._view_names = [name for name, _ in ffi.typeof("laconic_library_view").fields]
         self._on_frame, self._on_tick = lib.laconic_node_on_frame, lib.laconic_node_on_tick
         self._next, self._busy = lib.laconic_node_next_frame, lib.laconic_node_is_busy
         self.restart(id_base, can_fd, 0)
@@ -85,6 +90,14 @@ class LibraryNode:
         self._on_tick(self.c, now_us & 0xFFFFFFFF)
         while self._busy(self.c):
             self._on_tick(self.c, now_us & 0xFFFFFFFF)
+
+    def look(self) -> dict[str, Any]:
+        """State, steps, voltages and counters, for tests."""
+        view = self._view
+        self.library.lib.laconic_library_look(self.c, view)
+        found = {name: getattr(view, name) for name in self._view_names}
+        found["state"], found["voltage_V"] = NODE_STATES[view.state], list(view.voltage_V)
+        return found
 
     def idle_us(self, now_us: int) -> int:
         """Microseconds until the node has something to do."""

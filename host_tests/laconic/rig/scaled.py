@@ -203,8 +203,9 @@ def run_scaled(node: NodeClient, scene: Scene, steps: int | None = None,
 def await_answers(node: NodeClient, count: int) -> list[tuple[Frame, bytes]]:
     """The frames that answer one step."""
     answers: list[tuple[Frame, bytes]] = []
+    deadline_us = node.link.deadline_us(node.timeout_s)
     while len(answers) < count:
-        received = node.link.receive(node.timeout_s)
+        received = node.link.receive_until(deadline_us)
         if received is None:
             raise NodeSilent(f"{len(answers)} of {count} answers came within {node.timeout_s:g} s; faults seen: "
                              f"{dict(node.link.faults) or 'none'}")
