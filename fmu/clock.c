@@ -23,8 +23,3 @@ void fmu_clock_change_step(fmu_clock *clock, double step_s) {
     clock->step_s = step_s;
     clock->asked_s = 0.0;
 }
-
-bool fmu_clock_agrees(const fmu_clock *clock, double at_s, double step_s) {
-    const double off = at_s - fmu_clock_now(clock);
-    return off <= 0.5 * step_s && off >= -0.5 * step_s;
-}

@@ -21,7 +21,4 @@ double fmu_clock_now(const fmu_clock *clock);
 /* From here on steps of another size. */
 void fmu_clock_change_step(fmu_clock *clock, double step_s);
 
-/* Half a step: what an importer's own time may be off, and no more. */
-bool fmu_clock_agrees(const fmu_clock *clock, double at_s, double step_s);
-
 #endif

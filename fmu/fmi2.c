@@ -113,12 +113,12 @@ fmi2Status fmi2Reset(fmi2Component c) {
 
 fmi2Status fmi2GetReal(fmi2Component c, const fmi2ValueReference vr[], size_t nvr, fmi2Real value[]) {
     ALLOW(c, FMU_CALL_GET);
-    return give(fmu_get(SELF(c), FMU_REAL, vr, nvr, value, nvr));
+    return give(fmu_get_reals(SELF(c), vr, nvr, value, nvr));
 }
 
 fmi2Status fmi2SetReal(fmi2Component c, const fmi2ValueReference vr[], size_t nvr, const fmi2Real value[]) {
     ALLOW(c, FMU_CALL_SET_CONTINUOUS);
-    return give(fmu_set(SELF(c), FMU_REAL, vr, nvr, value, nvr));
+    return give(fmu_set_reals(SELF(c), vr, nvr, value, nvr));
 }
 
 /* Whole numbers of three kinds in the description are one type here. */

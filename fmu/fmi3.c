@@ -183,13 +183,13 @@ fmi3Status fmi3Reset(fmi3Instance instance) {
 fmi3Status fmi3GetFloat64(fmi3Instance instance, const fmi3ValueReference valueReferences[], size_t nValueReferences,
                           fmi3Float64 values[], size_t nValues) {
     ALLOW(instance, FMU_CALL_GET);
-    return give(fmu_get(SELF(instance), FMU_REAL, valueReferences, nValueReferences, values, nValues));
+    return give(fmu_get_reals(SELF(instance), valueReferences, nValueReferences, values, nValues));
 }
 
 fmi3Status fmi3SetFloat64(fmi3Instance instance, const fmi3ValueReference valueReferences[], size_t nValueReferences,
                           const fmi3Float64 values[], size_t nValues) {
     ALLOW(instance, FMU_CALL_SET_CONTINUOUS);
-    return give(fmu_set(SELF(instance), FMU_REAL, valueReferences, nValueReferences, values, nValues));
+    return give(fmu_set_reals(SELF(instance), valueReferences, nValueReferences, values, nValues));
 }
 
 /* The other types in use, by way of doubles: no list of them is longer than the largest array, a call that asks for more

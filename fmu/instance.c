@@ -25,18 +25,27 @@ static uint32_t settable_in(const fmu_instance *instance, fmu_mode mode) {
     }
 }
 
-void fmu_enter(fmu_instance *instance, fmu_mode mode) {
-    instance->mode = mode;
-    instance->settable = settable_in(instance, mode);
+static bool allows(const fmu_instance *instance, const fmu_rule *rule, fmu_mode mode) {
+    const unsigned modes = instance->kind == FMU_CO_SIMULATION
+                               ? (instance->version == 2 ? rule->simulation_2 : rule->simulation_3)
+                               : (instance->version == 2 ? rule->exchange_2 : rule->exchange_3);
+    return (modes >> mode & 1U) != 0;
 }
 
-bool fmu_may(const fmu_instance *instance, fmu_call call) {
-    const fmu_rule *rule = &fmu_rules[call];
-    const unsigned allowed = instance->kind == FMU_CO_SIMULATION
-                                 ? (instance->version == 2 ? rule->simulation_2 : rule->simulation_3)
-                                 : (instance->version == 2 ? rule->exchange_2 : rule->exchange_3);
-    if (allowed >> instance->mode & 1U) return true;
-    fmu_refuse(instance, "%s is not allowed in %s", rule->what, fmu_mode_names[instance->mode]);
+typedef char fmu_calls_fit_a_word[FMU_CALL_COUNT <= 32 ? 1 : -1];
+
+void fmu_enter(fmu_instance *instance, fmu_mode mode) {
+    uint32_t call;
+    instance->mode = mode;
+    instance->read.count = instance->written.count = 0; /* what may be read and set changes with the mode */
+    instance->settable = settable_in(instance, mode);
+    instance->allowed = 0;
+    for (call = 0; call < FMU_CALL_COUNT; call++)
+        if (allows(instance, &fmu_rules[call], mode)) instance->allowed |= 1U << call;
+}
+
+bool fmu_may_not(const fmu_instance *instance, fmu_call call) {
+    fmu_refuse(instance, "%s is not allowed in %s", fmu_rules[call].what, fmu_mode_names[instance->mode]);
     return false;
 }
 

@@ -38,6 +38,15 @@ typedef void (*fmu_deliver)(const fmu_instance *instance, fmu_status status, con
 /* Offered to the importer after each internal step; true: return early. Written by the FMI 3 glue. */
 typedef bool (*fmu_between_steps)(fmu_instance *instance, bool finished);
 
+/* A list of references that was found good, and where its values are: importers ask with the same list every time. */
+#define FMU_LIST_LENGTH 64U
+typedef struct fmu_list {
+    size_t count, values; /* 0: none yet */
+    uint32_t groups;      /* of all of them */
+    uint32_t reference[FMU_LIST_LENGTH];
+    uint32_t offset[FMU_LIST_LENGTH]; /* of each value, in fmu_plant */
+} fmu_list;
+
 struct fmu_instance {
     fmu_kind kind;
     int version; /* of FMI: 2 or 3 */
@@ -45,6 +54,7 @@ struct fmu_instance {
     bool event_mode_used;
     bool early_return_allowed;
     bool scalar;              /* no structural parameter: the arrays' size is fixed          */
+    uint32_t allowed;         /* bit per fmu_call: what may be called in this mode           */
     uint32_t settable;        /* bit per fmu_access: what may be set in this mode            */
     unsigned log_categories;  /* bit per fmu_category                                        */
     fmu_deliver deliver;
@@ -56,6 +66,7 @@ struct fmu_instance {
     fmu_clock clock;
     fmu_plant plant;
     fmu_plant initial;        /* right after instantiation, for reset                        */
+    fmu_list read, written;   /* the last good lists of reals (reals.c)                      */
 };
 
 typedef struct fmu_request {
@@ -75,8 +86,13 @@ typedef struct fmu_request {
 fmu_instance *fmu_create(const fmu_request *request);
 void fmu_free(fmu_instance *instance);
 
-/* False, and a line in the log, when the call may not be made in the instance's present mode (lifecycle.h). */
-bool fmu_may(const fmu_instance *instance, fmu_call call);
+/* Says in the log that the call may not be made in the instance's present mode (lifecycle.h); false. */
+bool fmu_may_not(const fmu_instance *instance, fmu_call call);
+
+static inline bool fmu_may(const fmu_instance *instance, fmu_call call) {
+    return (instance->allowed >> call & 1U) != 0 || fmu_may_not(instance, call);
+}
+
 void fmu_enter(fmu_instance *instance, fmu_mode mode);
 
 /* Puts the start values that came with the FMU into the plant (start_values.c); false: they cannot be read. */
@@ -153,6 +169,11 @@ bool fmu_find(const fmu_instance *instance, uint32_t reference, fmu_slot *slot);
 /* All numbers go through double, which holds every one of them exactly. `type` must be the variable's own. */
 fmu_status fmu_get(fmu_instance *instance, fmu_type type, const uint32_t *references, size_t count, double *values,
                    size_t value_count);
+/* The same for reals, as fast as it goes (reals.c). */
+fmu_status fmu_get_reals(fmu_instance *instance, const uint32_t *references, size_t count, double *values,
+                         size_t value_count);
+fmu_status fmu_set_reals(fmu_instance *instance, const uint32_t *references, size_t count, const double *values,
+                         size_t value_count);
 /* For glue that goes variable by variable: how many values the next one has, and whether all were used in the end. */
 fmu_status fmu_size(fmu_instance *instance, const uint32_t *references, const void *values, size_t which, size_t left,
                     size_t *size);

@@ -1,13 +1,11 @@
 /* What a model behind the glue provides: vehicle/plant.c and controller/plant.c. Its struct fmu_plant (plant.h) is plain
- * data, so that it can be copied; `start_needed`, `change_needed` and `time_s` are members every plant has. */
+ * data, so that it can be copied; every plant has the members `start_needed`, `change_needed`, `time_s` and
+ * `stale` (the groups to compute before they are read), and the macros FMU_PLANT_ARRAY_SIZE, FMU_PLANT_LARGEST_ARRAY. */
 #ifndef LACONIC_FMU_PLANT_API_H
 #define LACONIC_FMU_PLANT_API_H
 
 #include "instance.h"
 #include "stream.h"
-
-/* Elements of the arrays whose size the structural parameter sets. */
-uint32_t fmu_plant_array_size(const fmu_plant *plant);
 
 /* Parameters → prepared model and initial state; refuses with the model's own message. */
 fmu_status fmu_plant_start(fmu_instance *instance);

@@ -14,7 +14,7 @@ bool fmu_find(const fmu_instance *instance, uint32_t reference, fmu_slot *slot) 
     uint32_t size;
     if (row >= fmu_variable_count) return false;
     slot->variable = &fmu_variables[row];
-    size = slot->variable->size != 0 ? slot->variable->size : fmu_plant_array_size(&instance->plant);
+    size = slot->variable->size != 0 ? slot->variable->size : FMU_PLANT_ARRAY_SIZE(&instance->plant);
     if (element > size) return false;
     slot->first = element == 0 ? 0 : element - 1;
     slot->count = element == 0 ? size : 1;
@@ -177,7 +177,7 @@ fmu_status fmu_set(fmu_instance *instance, fmu_type type, const uint32_t *refere
     const fmu_status status = check_set(instance, type, references, count, values, value_count);
     if (status != FMU_OK) return status;
     for (k = 0; k < count; k++) {
-        fmu_find(instance, references[k], &slot);
+        if (!fmu_find(instance, references[k], &slot)) return FMU_ERROR; /* check_set has found it */
         if (slot.variable->access == FMU_STATE) fmu_plant_states_lead(instance);
         for (i = 0; i < slot.count; i++) store(instance, &slot, i, values[used++]);
         note_change(instance, (fmu_access)slot.variable->access);

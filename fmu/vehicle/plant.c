@@ -5,10 +5,6 @@
 typedef char fmu_core_is_double[sizeof(laconic_real) == sizeof(double) ? 1 : -1];
 typedef char fmu_kind_is_int32[sizeof(laconic_wheel_kind) == sizeof(int32_t) ? 1 : -1];
 
-uint32_t fmu_plant_array_size(const fmu_plant *plant) {
-    return (uint32_t)plant->vehicle.wheel_count; /* never set beyond FMU_PLANT_LARGEST_ARRAY */
-}
-
 static fmu_status refuse_with(const fmu_instance *instance, const laconic_refusal *why, const char *when) {
     char text[256];
     laconic_message(why, text, sizeof text);
@@ -86,14 +82,6 @@ static void refresh_state(fmu_plant *p) {
     laconic_wheel_angles_set(&p->core.model, &p->core.state, p->wheel_angle_rad);
 }
 
-static void refresh_pose(fmu_plant *p, uint32_t groups) {
-    laconic_pose_of(&p->pose, &p->core.model, &p->core.state);
-    if (!(groups & FMU_GROUP_PLACE)) return;
-    p->x_m = p->pose.x_m;
-    p->y_m = p->pose.y_m;
-    p->heading_rad = p->pose.heading_rad;
-}
-
 static void refresh_angles(fmu_plant *p) {
     laconic_wheel_angles(&p->core.model, &p->core.state, p->wheel_angle_rad);
 }
@@ -108,8 +96,15 @@ void fmu_plant_refresh(fmu_instance *instance, uint32_t groups) {
         refresh_state(p);
         groups |= FMU_GROUP_STATE;
     }
-    if (groups & FMU_GROUP_NU) laconic_nu(m, s, p->nu);
-    if (groups & (FMU_GROUP_PLACE | FMU_GROUP_POSE)) refresh_pose(p, groups);
+    if (groups & FMU_GROUP_MOTION) {
+        laconic_nu(m, s, p->nu);
+        laconic_position(s, &p->x_m, &p->y_m, &p->heading_rad);
+        if (groups == FMU_GROUP_MOTION) { /* what is asked for at every step */
+            p->stale &= ~FMU_GROUP_MOTION;
+            return;
+        }
+    }
+    if (groups & FMU_GROUP_POSE) laconic_pose_of(&p->pose, m, s);
     if (groups & FMU_GROUP_ANGLES) refresh_angles(p);
     if (groups & FMU_GROUP_VELOCITY) p->yaw_rate_rad_per_s = laconic_body_velocity(m, s, p->velocity_m_per_s);
     if (groups & FMU_GROUP_SPEEDS) laconic_wheel_speeds(m, s, p->wheel_speed_rad_per_s);
@@ -118,7 +113,7 @@ void fmu_plant_refresh(fmu_instance *instance, uint32_t groups) {
     if (groups & FMU_GROUP_ENERGY) p->energy_J = laconic_energy_J(m, s);
     p->stale &= ~groups;
     if (groups & FMU_GROUP_RATES) {
-        fmu_plant_refresh(instance, FMU_GROUP_NU | FMU_GROUP_PLACE);
+        fmu_plant_refresh(instance, FMU_GROUP_MOTION);
         laconic_derivative(&p->rates, m, p->nu, p->heading_rad, &p->input);
     }
 }
@@ -181,10 +176,9 @@ static laconic_status run_sloped(fmu_plant *p, uint64_t steps, laconic_refusal *
 
 fmu_status fmu_plant_run(fmu_instance *instance, uint64_t steps, uint64_t *taken) {
     fmu_plant *p = &instance->plant;
-    laconic_refusal why = {LACONIC_OK, LACONIC_FIELD_NONE, 0, 0.0, 0.0};
+    laconic_refusal why;
     const uint64_t before = p->core.steps;
-    laconic_status status;
-    status = p->sloped ? run_sloped(p, steps, &why) : laconic_plant_run(&p->core, &p->input, steps, &why);
+    const laconic_status status = p->sloped ? run_sloped(p, steps, &why) : laconic_plant_run(&p->core, &p->input, steps, &why);
     *taken = p->core.steps - before;
     p->stale = FMU_GROUPS_ALL & ~FMU_GROUP_STATE;
     return status == LACONIC_OK ? FMU_OK : discard_with(instance, &why);
@@ -206,7 +200,7 @@ void fmu_plant_return(fmu_plant *plant, const fmu_plant_motion *motion) {
 /* ------------------------------------------------------------------------ continuous states -- */
 
 uint32_t fmu_plant_state_count(const fmu_plant *plant) {
-    return 6U + fmu_plant_array_size(plant);
+    return 6U + FMU_PLANT_ARRAY_SIZE(plant);
 }
 
 void fmu_plant_get_states(fmu_instance *instance, double *values) {
@@ -217,7 +211,7 @@ void fmu_plant_get_states(fmu_instance *instance, double *values) {
     values[3] = p->x_m;
     values[4] = p->y_m;
     values[5] = p->heading_rad;
-    for (i = 0; i < fmu_plant_array_size(p); i++) values[6 + i] = p->wheel_angle_rad[i];
+    for (i = 0; i < FMU_PLANT_ARRAY_SIZE(p); i++) values[6 + i] = p->wheel_angle_rad[i];
 }
 
 void fmu_plant_states_lead(fmu_instance *instance) {
@@ -232,7 +226,7 @@ void fmu_plant_set_states(fmu_instance *instance, const double *values) {
     p->x_m = values[3];
     p->y_m = values[4];
     p->heading_rad = values[5];
-    for (i = 0; i < fmu_plant_array_size(p); i++) p->wheel_angle_rad[i] = values[6 + i];
+    for (i = 0; i < FMU_PLANT_ARRAY_SIZE(p); i++) p->wheel_angle_rad[i] = values[6 + i];
     p->stale = FMU_GROUPS_ALL & ~FMU_GROUPS_OF_CONTINUOUS_STATES;
 }
 
@@ -244,7 +238,7 @@ void fmu_plant_get_rates(fmu_instance *instance, double *values) {
     values[3] = rates->x_m_per_s;
     values[4] = rates->y_m_per_s;
     values[5] = rates->yaw_rate_rad_per_s;
-    for (i = 0; i < fmu_plant_array_size(&instance->plant); i++) values[6 + i] = rates->wheel_speed_rad_per_s[i];
+    for (i = 0; i < FMU_PLANT_ARRAY_SIZE(&instance->plant); i++) values[6 + i] = rates->wheel_speed_rad_per_s[i];
 }
 
 void fmu_plant_get_nominals(const fmu_plant *plant, double *values) {

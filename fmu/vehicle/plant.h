@@ -7,10 +7,12 @@
 
 #define FMU_PLANT_LARGEST_ARRAY LACONIC_MAX_WHEELS
 
+/* Elements of the arrays whose size wheel_count says; it is never set beyond FMU_PLANT_LARGEST_ARRAY. */
+#define FMU_PLANT_ARRAY_SIZE(plant) ((uint32_t)(plant)->vehicle.wheel_count)
+
 /* What must be fresh before a variable is read: bits in fmu_variable.group and fmu_plant.stale. */
 #define FMU_GROUP_STATE 1U   /* Model Exchange: the core's state follows the continuous states */
-#define FMU_GROUP_NU 2U
-#define FMU_GROUP_PLACE 4U   /* x, y, heading of the centre of mass */
+#define FMU_GROUP_MOTION 2U  /* ν, x, y, heading */
 #define FMU_GROUP_ANGLES 8U
 #define FMU_GROUP_VELOCITY 16U
 #define FMU_GROUP_SPEEDS 32U
@@ -19,9 +21,9 @@
 #define FMU_GROUP_ENERGY 256U
 #define FMU_GROUP_RATES 512U
 #define FMU_GROUP_POSE 1024U /* what else the pose says: origin, wrapped heading */
-#define FMU_GROUPS_ALL 2047U
+#define FMU_GROUPS_ALL 2043U
 #define FMU_GROUPS_OF_INPUT (FMU_GROUP_TORQUES | FMU_GROUP_GROUND | FMU_GROUP_RATES)
-#define FMU_GROUPS_OF_CONTINUOUS_STATES (FMU_GROUP_NU | FMU_GROUP_PLACE | FMU_GROUP_ANGLES)
+#define FMU_GROUPS_OF_CONTINUOUS_STATES (FMU_GROUP_MOTION | FMU_GROUP_ANGLES)
 
 typedef struct fmu_plant {
     bool start_needed;  /* parameters were set since the last start          */

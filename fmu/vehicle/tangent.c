@@ -13,7 +13,7 @@ static void take_variation(laconic_variation *by, const fmu_tangent *t) {
 static void take_motion(laconic_motion *at, fmu_instance *instance) {
     const fmu_plant *p = &instance->plant;
     int32_t k;
-    fmu_plant_refresh(instance, FMU_GROUP_NU | FMU_GROUP_PLACE);
+    fmu_plant_refresh(instance, FMU_GROUP_MOTION);
     for (k = 0; k < 3; k++) at->nu_rad_per_s[k] = p->nu[k];
     at->heading_rad = p->heading_rad;
 }

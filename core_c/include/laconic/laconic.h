@@ -421,6 +421,9 @@ typedef struct laconic_pose {
 
 void laconic_pose_of(laconic_pose *pose, const laconic_model *model, const laconic_state *state);
 
+/* The pose's x_m, y_m and heading_rad alone, without a sine: for those who ask at every step. */
+void laconic_position(const laconic_state *state, laconic_real *x_m, laconic_real *y_m, laconic_real *heading_rad);
+
 /* v_S in body axes [m/s]; returns the yaw rate [rad/s]. */
 laconic_real laconic_body_velocity(const laconic_model *model, const laconic_state *state,
                                    laconic_real velocity_m_per_s[2]);

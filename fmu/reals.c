@@ -1,0 +1,104 @@
+/* Reals are read and set at every step, so the usual case has a short way: all references known, everything fresh or
+ * quickly made so, inputs that are numbers. Whatever else comes up takes the long way (variables.c), which says what is
+ * wrong. */
+#include "plant_api.h"
+
+#define ROW_MASK ((1U << FMU_ELEMENT_SHIFT) - 1U)
+
+static inline const fmu_variable *row_of(uint32_t reference) {
+    const uint32_t row = reference & ROW_MASK;
+    if (row >= fmu_variable_count || fmu_variables[row].type != FMU_REAL) return NULL;
+    return &fmu_variables[row];
+}
+
+static inline uint32_t size_of(const fmu_instance *instance, const fmu_variable *variable) {
+    return variable->size != 0 ? variable->size : FMU_PLANT_ARRAY_SIZE(&instance->plant);
+}
+
+/* Offsets of the values that a reference stands for; how many, 0: not this way. */
+static size_t offsets_of(const fmu_instance *instance, const fmu_variable *variable, uint32_t element, uint32_t *offset,
+                         size_t room) {
+    const uint32_t size = size_of(instance, variable), first = element != 0 ? element - 1 : 0;
+    const uint32_t count = element != 0 ? 1 : size;
+    uint32_t i;
+    if (element > size || count > room) return 0;
+    for (i = 0; i < count; i++) offset[i] = variable->offset + (first + i) * variable->stride;
+    return count;
+}
+
+/* Fills the list; false: one of the references takes the long way. */
+static bool look_up(const fmu_instance *instance, fmu_list *list, const uint32_t *references, size_t count, bool to_set) {
+    size_t k;
+    list->count = list->values = 0;
+    list->groups = 0;
+    if (count > FMU_LIST_LENGTH) return false;
+    for (k = 0; k < count; k++) {
+        const fmu_variable *variable = row_of(references[k]);
+        size_t found;
+        if (variable == NULL || (to_set && variable->access != FMU_INPUT)) return false;
+        found = offsets_of(instance, variable, references[k] >> FMU_ELEMENT_SHIFT, &list->offset[list->values],
+                           FMU_LIST_LENGTH - list->values);
+        if (found == 0) return false;
+        list->values += found;
+        list->groups |= variable->group;
+        list->reference[k] = references[k];
+    }
+    list->count = count;
+    return true;
+}
+
+static inline bool is_known(const fmu_list *list, const uint32_t *references, size_t count) {
+    size_t k;
+    if (list->count != count) return false;
+    for (k = 0; k < count; k++)
+        if (list->reference[k] != references[k]) return false;
+    return true;
+}
+
+static inline double *value_at(fmu_plant *plant, uint32_t offset) {
+    return (double *)(void *)((char *)plant + offset);
+}
+
+static bool get_quickly(fmu_instance *instance, const uint32_t *references, size_t count, double *values,
+                        size_t value_count) {
+    fmu_plant *plant = &instance->plant;
+    fmu_list *list = &instance->read;
+    size_t i;
+    if (plant->start_needed || plant->change_needed) return false;
+    if (!is_known(list, references, count) && !look_up(instance, list, references, count, false)) return false;
+    if (list->values != value_count) return false;
+    if (list->groups & plant->stale) fmu_plant_refresh(instance, list->groups);
+    for (i = 0; i < value_count; i++) values[i] = *value_at(plant, list->offset[i]);
+    return true;
+}
+
+/* All is checked before anything is stored. */
+static bool set_quickly(fmu_instance *instance, const uint32_t *references, size_t count, const double *values,
+                        size_t value_count) {
+    fmu_plant *plant = &instance->plant;
+    fmu_list *list = &instance->written;
+    double sum = 0.0;
+    size_t i;
+    if (!(instance->settable >> FMU_INPUT & 1U)) return false;
+    if (!is_known(list, references, count) && !look_up(instance, list, references, count, true)) return false;
+    if (list->values != value_count) return false;
+    for (i = 0; i < value_count; i++) sum += values[i] - values[i]; /* 0 unless one of them is no number */
+    if (!(sum == 0.0)) return false;
+    for (i = 0; i < value_count; i++) *value_at(plant, list->offset[i]) = values[i];
+    fmu_plant_input_changed(plant);
+    return true;
+}
+
+fmu_status fmu_get_reals(fmu_instance *instance, const uint32_t *references, size_t count, double *values,
+                         size_t value_count) {
+    if (references != NULL && values != NULL && get_quickly(instance, references, count, values, value_count))
+        return FMU_OK;
+    return fmu_get(instance, FMU_REAL, references, count, values, value_count);
+}
+
+fmu_status fmu_set_reals(fmu_instance *instance, const uint32_t *references, size_t count, const double *values,
+                         size_t value_count) {
+    if (references != NULL && values != NULL && set_quickly(instance, references, count, values, value_count))
+        return FMU_OK;
+    return fmu_set(instance, FMU_REAL, references, count, values, value_count);
+}
