@@ -9,9 +9,9 @@ from typing import Any
 from laconic.errors import Refused
 from laconic.report.counting import (
     cachegrind_present,
+    count_on_board,
     host_instructions,
     host_state,
-    run_on_board,
     size_of_step,
 )
 from laconic.report.workshop import BOARDS, HOST, M4F, Target, Variant, Workshop
@@ -35,8 +35,8 @@ def board_row(workshop: Workshop, target: Target, variant: Variant) -> dict[str,
         _, files = workshop.files(variant)
     except Refused as refused:
         return row | {"status": refused.status}
-    size, ran = size_of_step(workshop, target, variant), run_on_board(target, workshop.board_image(target, variant))
-    host = host_state(workshop.host_program(variant), 3 * target.window(variant.real))
+    size, ran = size_of_step(workshop, target, variant), count_on_board(workshop, target, variant)
+    host = host_state(workshop.host_program(variant), ran.steps)
     row |= {"status": "ok", "chosen": files.method, "instructions": round(ran.instructions, 1),
             "stack_measured": ran.stack_bytes} | asdict(size)
     return row | {"double_helpers": len(size.double_helpers), "heap": len(size.heap), "same_bits": host == ran.state}

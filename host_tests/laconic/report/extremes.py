@@ -116,12 +116,13 @@ def extreme_rows(reals: tuple[str, ...], advance: Any = lambda: None) -> list[di
     for real in reals:
         for case in CASES:
             with np.errstate(all="ignore"):  # numbers beyond single become infinite on their way in
-                rows.append({"case": case.name, "real": real} | _run(base, case, load(real)))
+                rows.append({"case": case.name, "real": real} | run_case(base, case, load(real)))
             advance()
     return rows
 
 
-def _run(base: Scene, case: Extreme, core: Core) -> dict[str, Any]:
+def run_case(base: Scene, case: Extreme, core: Core) -> dict[str, Any]:
+    """One case: `outcome` is right, wrong, number (not comparable), not finite or refused."""
     vehicle = copy.deepcopy(base.vehicle)
     case.change(vehicle)
     try:

@@ -22,7 +22,8 @@ TITLES = {
     "ns_per_step": "ns a step", "instructions": "instructions", "step_code": "code [B]",
     "flash": "flash [B]", "state": "state [B]",
     "worst_stack": "worst stack [B]",
-    "stack_measured": "stack measured [B]", "tables": "constants [B]", "error_nu": "error ν", "error_pose": "error pose",
+    "stack_measured": "stack measured [B]", "tables": "constants [B]", "error_nu": "error ν",
+    "error_pose": "error pose",
     "error_wheel": "error wheels", "error_path": "error path", "step_s": "h [s]", "same_bits": "host's bits",
     "worst_growth_ulp": "largest growth [ulp]", "steps_taken": "steps taken", "digits_lost": "digits lost",
     "who": "integrator", "as_good": "reached", "fastest_decay_per_s": "r [1/s]", "us_per_second": "µs/s"}
@@ -115,13 +116,14 @@ def _peers(results: dict[str, list[Row]]) -> Section:
 
 
 def _stability(results: dict[str, list[Row]]) -> Section:
-    drawn = [pictures.stability(results["map"], method) for method in METHODS]
+    drawn = [pictures.stability(results["map"], method) for method in METHODS] if results["map"] else []
     fields = ("scene", "factor", "drive", "step_s", "status", "error_nu", "error_path")
     return _section("stability", "Stability map", drawn, Table(results["stiff"], fields))
 
 
 def _conserved(results: dict[str, list[Row]]) -> Section:
-    drawn = [pictures.drift(results["drift"], real, what) for real in ("double", "single") for what in ("energy", "K")]
+    drawn = [pictures.drift(results["drift"], real, what) for real in ("double", "single") for what in ("energy", "K")
+             if results["drift"]]
     fields = ("real", "method", "steps_taken", "worst_growth_ulp", "refused")
     return _section("conserved", "What is conserved", drawn, Table(results["norm"], fields))
 
@@ -148,7 +150,8 @@ def _references(results: dict[str, list[Row]]) -> Section:
     return _section("references", "Reference trajectories", (), Table(auto, fields, "auto"),
                     Table(results["verified"], fields, "Every method", True),
                     Table(results["prototype"], beside, "Beside the prototype's errors"),
-                    Table(results["single"], ("method", "step_s", "error_nu"), "S1 in single precision, ν in rad/s"))
+                    Table(results["single"], ("method", "step_s", "error_nu", "error_anywhere"),
+                          "S1 in single precision: error of ν in rad/s at 10 s, and the largest on the way"))
 
 
 def _extremes(results: dict[str, list[Row]]) -> Section:

@@ -96,8 +96,9 @@ def scene_header(course: Course, casadi_work: Sequence[int] = (2, 1, 1, 1)) -> s
     return "\n".join(lines)
 
 
-def _compile(folder: Path, name: str, course: Course, files: list[Path], libraries: Sequence[str],
-             casadi_work: Sequence[int] = (2, 1, 1, 1)) -> ctypes.CDLL:
+def compile_peer(folder: Path, name: str, course: Course, files: list[Path], libraries: Sequence[str],
+                 casadi_work: Sequence[int] = (2, 1, 1, 1)) -> ctypes.CDLL:
+    """Compiles a peer for a course into a shared library and loads it."""
     folder.mkdir(parents=True, exist_ok=True)
     (folder / "peer_scene.h").write_text(scene_header(course, casadi_work))
     target = folder / f"lib{name}.so"
@@ -114,7 +115,7 @@ class CasadiRk4:
         folder.mkdir(parents=True, exist_ok=True)
         self.course, self.steps_per_second, self.folder = course, steps_per_second, folder
         self.work = casadi_rk4_source(course.reference, 1.0 / steps_per_second, folder)
-        self.library = _compile(folder, "casadi", course, [SOURCES / "casadi_rk4.c", folder / "peer_step.c"], ["m"],
+        self.library = compile_peer(folder, "casadi", course, [SOURCES / "casadi_rk4.c", folder / "peer_step.c"], ["m"],
                                 self.work)
         self.library.peer_run.argtypes = [ctypes.c_long, ctypes.c_long]
         self.library.peer_reset()
@@ -173,7 +174,7 @@ def _casadi_rates(casadi: Any, r: Reference, state: Any, voltage: Any) -> Any:
 
 def cvode_runner(course: Course, folder: Path) -> Callable[[bool, float], Solution]:
     """CVODE from C: call with (BDF?, rtol); runs the whole course."""
-    library = _compile(folder, "cvode", course, [SOURCES / "cvode.c", SOURCES / "rhs.c"], [*SUNDIALS, "m"])
+    library = compile_peer(folder, "cvode", course, [SOURCES / "cvode.c", SOURCES / "rhs.c"], [*SUNDIALS, "m"])
     library.peer_cvode.argtypes = [ctypes.c_int, ctypes.c_double, ctypes.c_double, ctypes.POINTER(ctypes.c_double)]
     shape = (len(course.durations_s), len(course.start))
 
@@ -195,7 +196,7 @@ def dop853_runner(course: Course, folder: Path, compiled_rhs: bool) -> Callable[
     The right-hand side is the C one (compiled_rhs), or one written for numba, as numbalsoda's manual shows it.
     """
     numba, numbalsoda = importlib.import_module("numba"), importlib.import_module("numbalsoda")
-    library = _compile(folder, "rhs", course, [SOURCES / "rhs.c"], ["m"])
+    library = compile_peer(folder, "rhs", course, [SOURCES / "rhs.c"], ["m"])
     rhs = None if compiled_rhs else _numba_rhs(numba, numbalsoda, course)
     address = ctypes.cast(library.peer_rhs, ctypes.c_void_p).value if rhs is None else rhs.address
     dop853 = numbalsoda.dop853

@@ -54,10 +54,11 @@ def sinusoids(wheels: int) -> list[Input]:
                   phase_rad=0.7 * i) for i in range(wheels)]
 
 
-def map_rows(scene: Scene, methods: tuple[str, ...] = METHODS, advance: Any = lambda: None) -> list[dict[str, Any]]:
+def map_rows(scene: Scene, methods: Sequence[str] = METHODS, factors: Sequence[float] = FACTORS,
+             advance: Any = lambda: None) -> list[dict[str, Any]]:
     """Error of ν at the four segments' ends, for each method, step and strength."""
     rows, ends = [], SEGMENT_S * np.arange(1, SEGMENTS + 1)
-    for factor in FACTORS:
+    for factor in factors:
         strong = strengthened(scene, factor, four_steps(scene.wheel_count), SEGMENT_S * SEGMENTS)
         expected = stiff_states(strong.with_run(step_s=SEGMENT_S), ends)
         rate = Reference(strong.vehicle).fastest_decay_per_s()
@@ -89,11 +90,12 @@ def path_error(found: np.ndarray, expected: np.ndarray) -> float:
     return float(np.hypot(*(found[-1, 3:5] - expected[-1, 3:5]))) / length
 
 
-def stiff_rows(scenes: Sequence[Scene], advance: Any = lambda: None) -> list[dict[str, Any]]:
+def stiff_rows(scenes: Sequence[Scene], factors: Sequence[float] = STIFF_FACTORS,
+               advance: Any = lambda: None) -> list[dict[str, Any]]:
     """auto on very stiff vehicles, with constant voltages and with sinusoids sampled inside the step."""
     rows = []
     for scene in scenes:
-        for factor in STIFF_FACTORS:
+        for factor in factors:
             for name, inputs in (("constant", constant), ("sine 0.5 Hz", sinusoids)):
                 strong = strengthened(scene, factor, inputs(scene.wheel_count), STIFF_S).with_run(method="auto")
                 at_s = np.linspace(0.0, STIFF_S, 16)[1:]

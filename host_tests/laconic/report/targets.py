@@ -120,7 +120,7 @@ def single_targets(results: Results) -> list[Target]:
     found = []
     for step_s in (0.01, 0.001):
         errors = select(results["single"], step_s=step_s, method="auto")
-        found.append(at_most("single precision", f"S1, auto, h = {step_s:g} s: error of ν [rad/s]",
+        found.append(at_most("single precision", f"S1, auto, h = {step_s:g} s: error of ν at 10 s [rad/s]",
                              worst(errors, "error_nu"), 2e-6))
     keeps = one(results["long"], "found", what="heading")
     found.append(at_least("single precision", "heading 10⁹ turns on advances by the same bits (1: yes)", keeps, 1))

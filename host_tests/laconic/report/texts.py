@@ -37,7 +37,8 @@ Free motion of the paper's three-wheel carriage in steps of 0.1 s. Both integral
 K = (Aν)₃, should stay.
 
 The table: one step with U = 0 of ten thousand random vehicles in random states, h from 1e-6 to 1e3 s; the A-norm
-√(νᵀAν) may not grow. Methods other than exact-flow refuse the step when it grows by more than their error allows (2⁻¹⁰).
+√(νᵀAν) may not grow. Methods other than exact-flow refuse the step when it grows by more than their error allows
+(2⁻¹⁰).
 """
 
 BOARDS = """

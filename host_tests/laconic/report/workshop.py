@@ -42,10 +42,10 @@ class Target:
         emulator = not self.machine or shutil.which("qemu-system-arm") is not None
         return shutil.which(self.tool("gcc")) is not None and emulator
 
-    def window(self, real: str) -> int:
-        """Steps that fit one window of the 24-bit counter, twice."""
+    def windows(self, real: str) -> tuple[int, ...]:
+        """Numbers of steps to try: twice as many must fit the 24-bit counter."""
         in_hardware = self.hardware_double if real == "double" else self.hardware_single
-        return 256 if in_hardware else 5
+        return (256, 40, 10) if in_hardware else (10, 2)
 
 
 ARM, THUMB = "arm-none-eabi-", "-mthumb"
@@ -166,11 +166,11 @@ class Workshop:
         """The bench as a shared library: bench_reset, bench_run."""
         return self._link(HOST, variant, "bench.so", [BENCH / "bench.c"], ["-shared", "-Wl,-Bsymbolic"], ["-fPIC"])
 
-    def board_image(self, target: Target, variant: Variant) -> Path:
-        """The counting image for a board."""
+    def board_image(self, target: Target, variant: Variant, steps: int) -> Path:
+        """The image that counts so many steps on a board."""
         board = BENCH / "cortex_m"
         sources = [BENCH / "bench.c", *(board / f"{name}.c" for name in ("startup", "board", "count"))]
-        flags = [f"-DBENCH_STEPS={target.window(variant.real)}", f"-I{board}", "-ffreestanding", "-nostartfiles",
+        flags = [f"-DBENCH_STEPS={steps}", f"-I{board}", "-ffreestanding", "-nostartfiles",
                  f"-L{board}", f"-T{target.script}"]
         return self._link(target, variant, "count.elf", sources, flags)
 
