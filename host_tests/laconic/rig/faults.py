@@ -189,6 +189,8 @@ class FaultModel:
     def _travel(self, message: can.Message, direction: str, at_s: float) -> None:
         order = next(self._order)
         if self.faults.bitrate:
+            if at_s < self._wire_free_s:
+                self._note(at_s)  # it has to wait
             self._waiting.append((at_s, message.arbitration_id, order, direction, message))
         else:
             heapq.heappush(self._due, (at_s, order, direction, message))

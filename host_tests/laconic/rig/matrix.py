@@ -44,6 +44,9 @@ FAULTS: dict[str, dict[str, Any]] = {
     "bus-off": {"bus_off_after": 3, "bus_off_s": 0.2}, "bus-off for ever": {"bus_off_after": 3},
     "stale queue": {"bus_off_after": 3, "bus_off_s": 0.2, "keep_queue": True}, "slow bus": {"bitrate": 10_000}}
 
+WHOLE_BUS = ("babbling node", "slow bus")
+ALL_CLASSIC, ALL_FD = "all classic", "all FD"
+
 # Where the script broke off → the states that the node may be in after the silence. A command whose answer got lost
 # may have been carried out or not; a free run without commands must have timed out.
 EXPECTED = {
@@ -72,13 +75,15 @@ class Row:
         return not self.problems
 
 
+Multiset = Counter[tuple[int, bytes]]  # frames, with how often they were sent and not yet taken
+
+
 class WatchedLink(Link):
     """A link that knows what the node really sent, and what itself sent."""
 
-    def __init__(self, *arguments: Any, row: Row, **options: Any):
+    def __init__(self, *arguments: Any, row: Row, sent: Multiset, node_sent: Multiset, **options: Any):
         super().__init__(*arguments, **options)
-        self.sent: Counter[tuple[int, bytes]] = Counter()
-        self.node_sent: Counter[tuple[int, bytes]] = Counter()
+        self.sent, self.node_sent = sent, node_sent
         self.row = row
 
     def send_message(self, message: can.Message) -> None:
@@ -102,7 +107,9 @@ class WatchedNode(NodeOnBus):
 
     def __init__(self, node: LibraryNode, bus: can.BusABC, clock: VirtualClock, row: Row):
         super().__init__(node, bus, clock)
-        self.row, self.link = row, None
+        self.row = row
+        self.rig_sent: Multiset = Counter()
+        self.sent: Multiset = Counter()
         self.allowed_V: set[float] = {0.0}
         self.view = node.look()
 
@@ -111,17 +118,16 @@ class WatchedNode(NodeOnBus):
         super().deliver(message)
         after = self.node.look()
         key = (message.arbitration_id, bytes(message.data))
-        if after["accepted"] > before["accepted"] and self.link is not None:
-            self.row.undetected += self.link.sent[key] <= 0
-            self.link.sent[key] -= 1
+        if after["accepted"] > before["accepted"]:
+            self.row.undetected += self.rig_sent[key] <= 0
+            self.rig_sent[key] -= 1
         for name in ("crc_errors", "sequence_errors", "repeated", "lost", "malformed", "refused"):
             if after[name] > before[name]:
                 self.row.detected_by[name] += after[name] - before[name]
         self.look()
 
     def sent_frame(self, message: can.Message) -> None:
-        if self.link is not None:
-            self.link.node_sent[message.arbitration_id, bytes(message.data)] += 1
+        self.sent[message.arbitration_id, bytes(message.data)] += 1
         super().sent_frame(message)
 
     def pump(self) -> bool:
@@ -157,8 +163,8 @@ class Case:
 
     def client(self) -> NodeClient:
         """A fresh rig."""
-        link = WatchedLink(self.bus, clock=self.clock, pump=self.pump, row=self.row)
-        self.node.link = link
+        link = WatchedLink(self.bus, clock=self.clock, pump=self.pump, row=self.row, sent=self.node.rig_sent,
+                           node_sent=self.node.sent)
         client = NodeClient(link)
         client.timeout_s = 0.15
         return client
@@ -195,18 +201,25 @@ def frames_of(fd: bool) -> list[str]:
     return [frame.name for frame in wire().frames.values() if frame.fd] if fd else classic
 
 
+def frames_for(fault: str) -> list[str]:
+    """What a fault is tried on: each frame by itself, or all at once where it is the bus that fails."""
+    return [ALL_CLASSIC, ALL_FD] if fault in WHOLE_BUS else [*frames_of(False), *frames_of(True)]
+
+
 def run_case(fault: str, frame: str, seed: int) -> Row:
     """One fault on one frame."""
     scene, row = read_scene(SCENE), Row(fault, frame)
-    each = wire()[frame]
-    faults = Faults(**FAULTS[fault], only_id=ID_BASE + each.offset, seed=seed)
+    whole_bus = frame not in wire().frames
+    only_id = -1 if whole_bus else ID_BASE + wire()[frame].offset
+    fd = frame == ALL_FD if whole_bus else wire()[frame].fd
+    faults = Faults(**FAULTS[fault], only_id=only_id, seed=seed)
     with faulty_node(faults, row, scene) as case:
         client = case.client()
         try:
-            script(client, case, each.fd)
+            script(client, case, fd)
         except LaconicError as error:
             row.detected_by["rig"] += 1
-            row.problems += [] if row.injected or case.bus.model.injected or fault == "slow bus" else [str(error)]
+            row.problems += [] if case.bus.model.injected else [f"without a fault: {error}"]
             case.pump()
         listen(case, client, SILENCE_S)
         row.injected, row.state = case.bus.model.injected, case.node.node.look()["state"]
@@ -306,7 +319,7 @@ def run_matrix(seed: int, faults: tuple[str, ...] = tuple(FAULTS)) -> Iterator[R
     """All cases; each has a seed of its own, drawn from this one."""
     source = random.Random(seed)
     for fault in faults:
-        for frame in (*frames_of(False), *frames_of(True)):
+        for frame in frames_for(fault):
             yield run_case(fault, frame, source.randrange(2**31))
 
 
