@@ -23,7 +23,7 @@ void laconic_library_look(const laconic_node *node, laconic_library_view *view) 
         .repeated = c->repeated,
         .lost = c->lost,
         .malformed = c->malformed,
-        .missed_steps = c->missed_steps,
+        .late_periods = c->late_periods,
         .accepted = c->accepted,
         .refused = c->refused,
         .overrange = c->overrange,

@@ -25,7 +25,7 @@ typedef struct laconic_library_view {
     uint8_t state, session;
     uint64_t steps;
     double voltage_V[3]; /* of the first wheels, as the next step will use them */
-    uint16_t crc_errors, sequence_errors, repeated, lost, malformed, missed_steps, accepted, refused, overrange;
+    uint16_t crc_errors, sequence_errors, repeated, lost, malformed, late_periods, accepted, refused, overrange;
 } laconic_library_view;
 
 void laconic_library_look(const struct laconic_node *node, laconic_library_view *view);

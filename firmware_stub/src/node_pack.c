@@ -112,7 +112,7 @@ static void pack_counters(const laconic_node *node, uint8_t *data) {
         .repeated = c->repeated,
         .lost = c->lost,
         .malformed = c->malformed,
-        .missed_steps = c->missed_steps,
+        .late_periods = c->late_periods,
         .accepted = c->accepted,
         .refused = c->refused,
         .overrange = c->overrange,

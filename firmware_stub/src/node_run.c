@@ -88,7 +88,7 @@ void laconic_node_run_free(laconic_node *node, uint32_t now_us) {
     watch(node, now_us);
     if ((int32_t)late < 0) return;
     if (late > run->worst_lateness_us) run->worst_lateness_us = late;
-    if (late >= 1000000U / run->rate_Hz) count(&node->counters.missed_steps);
+    if (late >= 1000000U / run->rate_Hz) count(&node->counters.late_periods);
     const laconic_status status = laconic_plant_run(&node->plant, &node->input[0], run->steps_per_period, &why);
     if (status != LACONIC_OK) {
         fail(node, status, &why, 0);

@@ -39,7 +39,7 @@ typedef struct laconic_node_config {
 
 /* All of them stay at 65535. */
 typedef struct laconic_node_counters {
-    uint16_t crc_errors, sequence_errors, repeated, lost, malformed, missed_steps, accepted, refused, overrange;
+    uint16_t crc_errors, sequence_errors, repeated, lost, malformed, late_periods, accepted, refused, overrange;
 } laconic_node_counters;
 
 typedef struct laconic_node_result {

@@ -90,6 +90,10 @@ class Link:
         except (can.CanError, OSError, ValueError, IndexError) as error:
             raise BusDied(f"the bus died while receiving: {error or type(error).__name__}") from None
 
+    def lost_before(self, frame: Frame) -> int:
+        """How many of its kind are missing before the last one taken."""
+        return int(self._receivers[frame.offset].lost)
+
     def take(self, message: can.Message) -> Received | None:
         """Checks one frame: ours, well-formed, fresh and right."""
         for listener in self.listeners:
