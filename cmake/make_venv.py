@@ -79,9 +79,9 @@ def reason(failure: subprocess.CalledProcessError) -> str:
     text = failure.output if isinstance(failure.output, str) else (failure.output or b"").decode(errors="replace")
     lines = [line.strip() for line in text.splitlines() if line.strip()]
     errors = [line for line in lines if line.startswith("ERROR")]
-    if not shutil.which("python3-config") and "ensurepip" in " ".join(map(str, failure.cmd)):
-        return "ensurepip failed: install your system's python3-venv"
-    if any("NewConnectionError" in line or "ConnectTimeout" in line for line in lines):
+    if "ensurepip" in " ".join(map(str, failure.cmd)):
+        return "pip cannot be put into it: install your system's python3-venv"
+    if any("ConnectionError" in line or "ConnectTimeout" in line or "from versions: none" in line for line in lines):
         return "the package index cannot be reached: connect this machine once, or configure pip for a mirror"
     return (errors or lines or [f"exit status {failure.returncode}"])[0]
 
