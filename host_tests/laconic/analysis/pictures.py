@@ -195,7 +195,8 @@ def _eigenvalues(study: Study):
     for number, motion in enumerate(steady.motions):
         colour = {"stable": STABLE, "unstable": UNSTABLE, "neutral": NEUTRAL}[motion.stability]
         shape = "turning" if motion.turns else "straight"
-        text = f"{shape}, ω = {motion.nu[2] / big + 0.0:.3g} rad/s: {motion.stability}"
+        yaw_rate = motion.nu[2] / big if motion.turns else 0.0
+        text = f"{shape}, ω = {yaw_rate:.3g} rad/s: {motion.stability}"
         axes.plot(motion.eigenvalues.real, motion.eigenvalues.imag, markers[number % 5], color=colour, ms=8,
                   mfc="none" if motion.turns else colour, mew=1.6, ls="", label=text, zorder=4)
     axes.axvline(0.0, color="k", lw=0.9)

@@ -295,9 +295,8 @@ def _complex_text(value: complex) -> str:
 def _tell_pushed(result: Study) -> None:
     found = pushed.headings(result.subject)
     result.steady = SteadyPart([], [], [], pushed=found)
-    result.say("steady", "A force fixed in the world acts: the vehicle speeds up, so ν has no steady value; the "
-                         "question is "
-               "which heading it keeps.")
+    result.say("steady", "A force fixed in the world acts: it turns against the body, so ν has no steady value of its "
+               "own; the question is which heading the vehicle keeps.")
     if found is None:
         result.say("steady", "With damping or a gyroscopic term the heading depends on the speed; see `laconic "
                              "simulate`.")

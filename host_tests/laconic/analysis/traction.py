@@ -212,9 +212,9 @@ def _words(subject: Subject, found: Traction, friction: float) -> list[str]:
     words = []
     points = subject.wheel_count + int(subject.vehicle.support_count)
     if not found.statics_hold:
-        words.append(f"The {points} point{'s' if points > 1 else ''} of contact cannot hold the body upright by "
-                     f"themselves; "
-                     "normal loads are the nearest that statics allows and say little. Add [[vehicle.support]] points.")
+        alone = "One point of contact" if points == 1 else f"{points} points of contact in a line"
+        words.append(f"{alone} cannot hold the body upright; the normal loads are the nearest that statics allows and "
+                     "say little. Add [[vehicle.support]] points.")
     elif points > 3:
         words.append(f"{points} points share the weight: statics alone does not settle the loads; the least-squares "
                      f"share is "

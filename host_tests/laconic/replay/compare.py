@@ -37,6 +37,8 @@ class Rolled:
     rolled_m: float
     camera_m: float
     ratio: Mean | None             # rolled over camera; None without a camera
+    rolled_direction_deg: float    # where pure rolling would have led
+    camera_direction_deg: float    # where the robot went
     path_m: np.ndarray             # rolled x, y in the robot's frame, summed
 
 
@@ -102,13 +104,18 @@ def rolled(subject: Subject, recording: Recording) -> Rolled:
     steps = radius * body_motion(subject, np.diff(recording.wheel_angle_rad, axis=0))[:, :2]
     path = np.vstack([np.zeros(2), np.cumsum(steps, axis=0)])
     wanted = radius * body_motion(subject, recording.set_speed_rad_per_s.mean(axis=0)[None, :])[0, :2]
-    ratio, camera_m = None, float("nan")
+    ratio, camera_m, camera_deg = None, float("nan"), float("nan")
     if recording.camera is not None:
         seen = recording.camera[:, :2] - recording.camera[0, :2]
-        camera_m = float(np.hypot(*seen[-1]))
+        camera_m, camera_deg = float(np.hypot(*seen[-1])), bearing_deg(seen[-1])
         ratio = _ratio(recording.time_s, path, seen, wanted / max(float(np.hypot(*wanted)), 1e-300))
-    direction = round(float(np.degrees(np.arctan2(wanted[1], wanted[0]))), 3) % 360.0
-    return Rolled(direction, float(np.hypot(*wanted)), float(np.hypot(*path[-1])), camera_m, ratio, path)
+    return Rolled(bearing_deg(wanted), float(np.hypot(*wanted)), float(np.hypot(*path[-1])), camera_m, ratio,
+                  bearing_deg(path[-1]), camera_deg, path)
+
+
+def bearing_deg(vector: np.ndarray) -> float:
+    """Direction of a vector, 0 … 360°."""
+    return round(float(np.degrees(np.arctan2(vector[1], vector[0]))), 3) % 360.0
 
 
 def _ratio(time_s: np.ndarray, path: np.ndarray, seen: np.ndarray, unit: np.ndarray) -> Mean:

@@ -49,17 +49,23 @@ def _pm(value: float, half: float) -> str:
 def _run_table(session: Session) -> list[str]:
     count = session.subject.wheel_count
     head = "".join(f" current {i + 1} [A] |" for i in range(count))
-    lines = [f"| run | direction [°] | set speed [m/s] | rolled [m] | camera [m] | rolled / camera |{head}",
-             "| --- " * (6 + count) + "|"]
+    lines = [f"| run | direction [°] | set speed [m/s] | rolled [m] | camera [m] | rolled / camera | "
+             f"rolled to [°] | went to [°] |{head}", "| --- " * (8 + count) + "|"]
     for c in session.comparisons:
         r = c.rolled
         camera = "–" if r.ratio is None else f"{r.camera_m:.3f}"
         ratio = "–" if r.ratio is None else f"{r.ratio.value:.2f} ± {r.ratio.half_width:.2f}"
         currents = "".join(f" {m.value:.2f} ± {m.half_width:.2f} |" for m in c.steady_current_A)
-        lines.append(f"| {c.recording.name} | {r.direction_deg:.0f} | {r.speed_m_per_s:.1f} | {r.rolled_m:.3f} | "
-                     f"{camera} | "
-                     f"{ratio} |{currents}")
+        went = "–" if r.ratio is None else f"{_whole_deg(r.camera_direction_deg)}"
+        lines.append(f"| {c.recording.name} | {_whole_deg(r.direction_deg)} | {r.speed_m_per_s:.1f} | {r.rolled_m:.3f} "
+                     f"| {camera} | {ratio} | {_whole_deg(r.rolled_direction_deg)} | {went} |{currents}")
+    if any((c.recording.set_speed_rad_per_s == 0.0).all(axis=0).any() for c in session.comparisons):
+        lines += ["", "The log has no sign for the current of a wheel that is told to stand; it counts as zero."]
     return lines
+
+
+def _whole_deg(angle_deg: float) -> int:
+    return round(angle_deg) % 360
 
 
 def _error_table(session: Session) -> list[str]:
@@ -85,7 +91,7 @@ def _mean(session: Session, model: int, what: str) -> float:
 
 def in_words(session: Session) -> list[str]:
     """What the ideal model explains and what it does not; every number is computed."""
-    words = [_slip_words(session)]
+    words = [sentence for sentence in (_slip_words(session), _direction_words(session)) if sentence]
     ideal, dry, drag = (_mean(session, k, "steady_error_A") for k in range(3))
     size = float(np.mean([np.sqrt(np.mean([m.value**2 for m in c.steady_current_A])) for c in session.judged()]))
     words.append(f"Steady currents of the runs that were not fitted: (4.7) alone, with the best constant damping, is "
@@ -133,12 +139,28 @@ def _damping_words(dry: Friction) -> str:
 def _drag_words(drag: Friction) -> str:
     torques, halves = drag.values[1:-1], drag.half_widths[1:-1]
     told = ", ".join(_pm(v, h) for v, h in zip(torques, halves, strict=True))
-    inside = "none" if not (np.abs(torques) > halves).any() else "not all of them zero"
-    return (f"With a drag of {_pm(drag.values[-1], drag.half_widths[-1])} N against the travel, the wheels' own dry "
-            f"torques "
-            f"become {told} N·m ({inside} beyond its interval): the loss is in the contact, where the rollers slip "
-            f"or turn "
-            "hard, rather than in the gears.")
+    sentence = (f"With a drag of {_pm(drag.values[-1], drag.half_widths[-1])} N against the travel, the wheels' own "
+                f"dry "
+                f"torques become {told} N·m")
+    if (np.abs(torques) > halves).any():
+        return f"{sentence}: both kinds of loss are there."
+    return (f"{sentence}, none beyond its interval: the loss is in the contact, where the rollers slip or turn hard, "
+            "rather than in the gears.")
+
+
+def _direction_words(session: Session) -> str | None:
+    seen = [c.rolled for c in session.comparisons if c.rolled.ratio is not None]
+    if not seen:
+        return None
+
+    def off(a: float, b: float) -> float:
+        return abs((a - b + 180.0) % 360.0 - 180.0)
+
+    worst = max(seen, key=lambda r: off(r.camera_direction_deg, r.direction_deg))
+    return (f"The direction of travel is off by up to {off(worst.camera_direction_deg, worst.direction_deg):.0f}° "
+            f"(asked for "
+            f"{worst.direction_deg:.0f}°, went to {worst.camera_direction_deg:.0f}°; the wheels rolled to "
+            f"{worst.rolled_direction_deg:.0f}°): slip is not the same in all directions.")
 
 
 def as_numbers(session: Session) -> dict[str, Any]:
@@ -160,6 +182,7 @@ def _numbers(c: Comparison) -> dict[str, Any]:
     return {
         "run": c.recording.name, "direction_deg": r.direction_deg, "set_speed_m_per_s": r.speed_m_per_s,
         "rolled_m": r.rolled_m, "camera_m": r.camera_m, "rolled_over_camera": ratio,
+        "rolled_direction_deg": r.rolled_direction_deg, "camera_direction_deg": r.camera_direction_deg,
         "steady_speed_rad_per_s": c.steady_speed_rad_per_s,
         "steady_current_A": [{"value": m.value, "half_width_95": m.half_width} for m in c.steady_current_A],
         "predictions": [{"model": p.model, "transient_error_rad_per_s": p.transient_error,
