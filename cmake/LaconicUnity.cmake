@@ -39,6 +39,8 @@ else()
     endif()
 endif()
 
+add_custom_target(laconic_unity_tests) # all of them
+
 # laconic_unity_test(<name> SOURCES <files> [LIBRARIES <targets>] [DEFINITIONS <macros>]): a program that ctest runs.
 function(laconic_unity_test name)
     cmake_parse_arguments(PARSE_ARGV 1 test "" "" "SOURCES;LIBRARIES;DEFINITIONS")
@@ -46,6 +48,7 @@ function(laconic_unity_test name)
     laconic_strict(${name})
     target_link_libraries(${name} PRIVATE ${test_LIBRARIES} laconic_unity)
     target_compile_definitions(${name} PRIVATE ${test_DEFINITIONS})
+    add_dependencies(laconic_unity_tests ${name})
     add_test(NAME ${name} COMMAND ${name})
     set_tests_properties(${name} PROPERTIES TIMEOUT 60 LABELS unity)
 endfunction()

@@ -200,7 +200,7 @@ static void acceleration_shifts_load_to_the_rear(void) {
 static void the_no_slip_margin_is_the_least_of_all_wheels(void) {
     scene s;
     laconic_vehicle v = with_motors(three_wheels());
-    double least = INFINITY;
+    double least = HUGE_VAL;
     int i;
     v.friction_coefficient = REAL(0.6);
     judge(&s, v, turning_start(0.7, -0.4, 1.9), every_input());

@@ -21,8 +21,8 @@ static void steps_that_are_none_are_refused(void) {
         const laconic_method *method = laconic_method_by_number(i);
         refuses(method, 0, LACONIC_NOT_POSITIVE, LACONIC_FIELD_STEP);
         refuses(method, -0.01, LACONIC_NOT_POSITIVE, LACONIC_FIELD_STEP);
-        refuses(method, NAN, LACONIC_NOT_FINITE, LACONIC_FIELD_STEP);
-        refuses(method, INFINITY, LACONIC_NOT_FINITE, LACONIC_FIELD_STEP);
+        refuses(method, (double)NAN, LACONIC_NOT_FINITE, LACONIC_FIELD_STEP);
+        refuses(method, HUGE_VAL, LACONIC_NOT_FINITE, LACONIC_FIELD_STEP);
     }
 }
 

@@ -83,7 +83,7 @@ static void the_tolerance_is_of_the_step_not_of_the_time(void) {
 }
 
 static void intervals_and_steps_that_are_none_are_refused(void) {
-    const double bad[] = {0, -1, NAN, INFINITY, -INFINITY};
+    const double bad[] = {0, -1, (double)NAN, HUGE_VAL, -HUGE_VAL};
     uint64_t steps = 0;
     size_t i;
     for (i = 0; i < 5; i++) {
@@ -91,7 +91,7 @@ static void intervals_and_steps_that_are_none_are_refused(void) {
         TEST_ASSERT_NOT_EQUAL(LACONIC_OK, laconic_steps_in(1.0, bad[i], &steps, &why));
         TEST_ASSERT_EQUAL_STRING("step_s", laconic_field_name(why.field));
     }
-    ASSERT_STATUS(LACONIC_NOT_FINITE, laconic_steps_in(1.0, NAN, &steps, &why));
+    ASSERT_STATUS(LACONIC_NOT_FINITE, laconic_steps_in(1.0, (double)NAN, &steps, &why));
     ASSERT_STATUS(LACONIC_NOT_POSITIVE, laconic_steps_in(1.0, 0.0, &steps, &why));
     ASSERT_STATUS(LACONIC_STEP_DOES_NOT_FIT, laconic_steps_in(1e9, 1e-9, &steps, &why));
 }

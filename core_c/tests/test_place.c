@@ -41,7 +41,7 @@ static void refuses(laconic_start motion, laconic_status status, laconic_field f
 
 static void numbers_that_are_none_are_refused(void) {
     laconic_start motion = start_with(0, 0, 0);
-    refuses(start_with(0, NAN, 0), LACONIC_NOT_FINITE, LACONIC_FIELD_START_NU, 2);
+    refuses(start_with(0, (double)NAN, 0), LACONIC_NOT_FINITE, LACONIC_FIELD_START_NU, 2);
     refuses(start_with((double)LACONIC_REAL_MAX, 0, (double)LACONIC_REAL_MAX), LACONIC_OVERFLOW, LACONIC_FIELD_START_NU,
             0);
     motion.y_m = INFINITE;

@@ -182,7 +182,7 @@ static void a_slow_rate_keeps_its_digits_beside_a_fast_one(void) {
     add_wheel(&v, LACONIC_WHEEL_ROLLER, 0, 0, 0.0, PI / 2);
     add_wheel(&v, LACONIC_WHEEL_ROLLER, 0, 0, small, PI / 2);
     m = model_of(v);
-    least = INFINITY;
+    least = HUGE_VAL;
     for (k = 0; k < 3; k++)
         if (m.decay_per_s[k] > 0 && (double)m.decay_per_s[k] < least) least = (double)m.decay_per_s[k];
     /* two unit vectors at a small angle ε: eigenvalues of ΞᵀΞ are 2 and ε²/2 */

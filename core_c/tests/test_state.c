@@ -35,8 +35,8 @@ static void refuses(laconic_start start, laconic_status status, laconic_field fi
 
 static void every_number_that_is_not_finite_is_named(void) {
     laconic_start start;
-    refuses(start_with(NAN, 0, 0), LACONIC_NOT_FINITE, LACONIC_FIELD_START_NU, 1);
-    refuses(start_with(0, 0, -INFINITY), LACONIC_NOT_FINITE, LACONIC_FIELD_START_NU, 3);
+    refuses(start_with((double)NAN, 0, 0), LACONIC_NOT_FINITE, LACONIC_FIELD_START_NU, 1);
+    refuses(start_with(0, 0, -HUGE_VAL), LACONIC_NOT_FINITE, LACONIC_FIELD_START_NU, 3);
     start = start_with(0, 0, 0);
     start.x_m = INFINITE;
     refuses(start, LACONIC_NOT_FINITE, LACONIC_FIELD_START_X, 0);

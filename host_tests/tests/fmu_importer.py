@@ -13,6 +13,7 @@ from typing import Any
 
 import cffi
 import fmpy
+
 from laconic.paths import build_dir, built
 
 OK, WARNING, DISCARD, ERROR = 0, 1, 2, 3

@@ -4,9 +4,10 @@ import json
 import time
 
 import pytest
+from matplotlib import image
+
 from laconic import cli
 from laconic.paths import SCENE_DIR
-from matplotlib import image
 
 SCENES = sorted(path.stem for path in SCENE_DIR.glob("*.toml"))
 

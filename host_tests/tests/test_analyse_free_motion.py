@@ -5,6 +5,7 @@ from pathlib import Path
 
 import numpy as np
 import pytest
+
 from laconic.analysis.field import Field
 from laconic.analysis.free_motion import S2, FreeMotion, yaw_by_integral
 from laconic.analysis.from_core import field_of, nu_rates

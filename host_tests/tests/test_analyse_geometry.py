@@ -2,6 +2,7 @@
 
 import numpy as np
 import pytest
+
 from laconic.analysis.from_core import subject_of
 from laconic.analysis.geometry import diagnose
 from laconic.analysis.traction import static_loads, study

@@ -2,6 +2,7 @@
 
 import numpy as np
 import pytest
+
 from laconic.analysis import confirm, pushed
 from laconic.analysis.continuation import diagram
 from laconic.analysis.cycle import cycle_near

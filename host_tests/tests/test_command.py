@@ -7,6 +7,7 @@ import subprocess
 import sys
 
 import pytest
+
 from laconic.cli import commands, run
 from laconic.errors import BadInput
 from laconic.paths import build_dir, built, scene_path

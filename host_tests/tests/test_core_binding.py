@@ -6,6 +6,7 @@ import math
 
 import numpy as np
 import pytest
+
 from laconic.core import REALS, load
 from laconic.errors import BadInput, Refused
 from laconic.scene import METHODS

@@ -7,6 +7,7 @@ from pathlib import Path
 import numpy as np
 import pytest
 from fmu_importer import OK, Importer
+
 from laconic.core import load
 from laconic.fmu import make_fmu
 from laconic.paths import scene_names

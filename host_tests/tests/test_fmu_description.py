@@ -12,6 +12,7 @@ import fmpy
 import pytest
 from fmpy.validation import validate_fmu
 from fmu_importer import generic
+
 from laconic.fmu import DESCRIPTION, make_fmu
 from laconic.scene import read_scene
 from laconic_fmu import fmi2

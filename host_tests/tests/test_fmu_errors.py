@@ -8,6 +8,7 @@ from pathlib import Path
 import numpy as np
 import pytest
 from fmu_importer import ERROR, OK, Importer, generic
+
 from laconic.fmu import make_fmu
 from laconic.scene import read_scene
 

@@ -11,6 +11,7 @@ import numpy as np
 import pytest
 from fmpy import simulate_fmu
 from fmu_importer import Importer
+
 from laconic.core import load
 from laconic.fmu import make_fmu
 from laconic.scene import Scene, read_scene

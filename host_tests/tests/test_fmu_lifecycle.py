@@ -8,6 +8,7 @@ from typing import Any
 
 import pytest
 from fmu_importer import ERROR, OK, Importer, generic
+
 from laconic.paths import SOURCE_DIR
 
 MODES = ("INSTANTIATED", "CONFIGURATION", "INITIALIZATION", "EVENT", "CONTINUOUS", "STEP", "TERMINATED")

@@ -2,6 +2,7 @@
 
 import pytest
 import sympy as sp
+
 from laconic.method import brackets, equations, vehicles
 
 theta = sp.Symbol("theta", real=True)

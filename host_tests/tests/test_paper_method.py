@@ -6,6 +6,7 @@ import numpy as np
 import pytest
 import sympy as sp
 from cffi import FFI
+
 from laconic.analysis.from_core import Subject, nu_rates, subject_of
 from laconic.core import load
 from laconic.method import brackets, equations, printing, scene_system, vehicles

@@ -4,6 +4,7 @@ import re
 import shlex
 
 import pytest
+
 from laconic import cli
 from laconic.paths import SCENE_DIR, SOURCE_DIR
 

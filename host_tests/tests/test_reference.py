@@ -6,6 +6,7 @@ from pathlib import Path
 
 import numpy as np
 import pytest
+
 from laconic.paths import scene_names
 from laconic.reference import Reference, reference_states
 from laconic.scene import read_scene

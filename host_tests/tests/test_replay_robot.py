@@ -6,6 +6,7 @@ from pathlib import Path
 
 import numpy as np
 import pytest
+
 from laconic import cli
 from laconic.analysis.from_core import subject_of
 from laconic.errors import BadInput

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import numpy as np
 import pytest
+
 from laconic.demo.fmu_rows import fmu_rows
 from laconic.demo.main_job import LEAST_STEPS, steps_of
 from laconic.demo.node_rows import node_rows

@@ -10,6 +10,7 @@ from pathlib import Path
 
 import numpy as np
 import pytest
+
 from laconic.cli import run
 from laconic.core import load
 from laconic.paths import SOURCE_DIR

@@ -8,6 +8,7 @@ import re
 from pathlib import Path
 
 import pytest
+
 from laconic.cli import run
 from laconic.verification import step_that_fits
 
