@@ -8,7 +8,7 @@ from typing import Any
 
 import numpy as np
 
-from laconic.analysis.study import BifurcationPart, FreePart, SteadyPart, Study
+from laconic.analysis.findings import BifurcationPart, FreePart, SteadyPart, Study
 from laconic.analysis.traction import Traction
 
 TITLES = {"geometry": "Geometry", "free": "Free motion", "steady": "Steady motions", "bifurcation": "Bifurcations",

@@ -34,9 +34,10 @@ def command(scene: str, out: Path | None, only: tuple[str, ...], at_s: float, st
 
     Exit status 1 when a simulation with the core does not confirm what the analysis says.
     """
+    from laconic.analysis.findings import Wishes
     from laconic.analysis.from_core import subject_of
     from laconic.analysis.report import as_numbers, as_text
-    from laconic.analysis.study import Wishes, study
+    from laconic.analysis.study import study
     from laconic.progress import progress_bar
     from laconic.scene import read_scene
 

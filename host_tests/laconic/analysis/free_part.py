@@ -1,0 +1,127 @@
+"""The free motion of a scene's vehicle: closed form beside the core, integrals, portrait, words."""
+
+from __future__ import annotations
+
+from typing import Any
+
+import numpy as np
+
+from laconic.analysis.findings import FreePart, Study, Wishes, nu_text
+from laconic.analysis.free_motion import FreeMotion
+from laconic.analysis.from_core import Subject
+from laconic.analysis.portrait import portrait
+from laconic.analysis.traction import study as study_traction
+from laconic.errors import BadInput
+
+
+def coasting(subject: Subject) -> Any:
+    """The same vehicle with its motors cut off."""
+    vehicle = subject.core.ffi.new("laconic_vehicle *", subject.vehicle[0])
+    vehicle.motor_gain_Nm_per_V = vehicle.motor_damping_Nms = 0.0
+    return vehicle
+
+
+def _allowed(subject: Subject, nu: tuple[float, float, float]) -> np.ndarray:
+    """A ν from the user; BadInput when the constraints forbid it."""
+    field_now = subject.field({})
+    nearest = field_now.nu(field_now.zeta(np.array(nu)))
+    if np.abs(nearest - nu).max() > 1e-9 * max(1.0, float(np.abs(nu).max())):
+        shown = " ".join(f"{v:.6g}" for v in nearest)
+        raise BadInput(f"--start: the constraints forbid this ν; the nearest allowed one is {shown}")
+    return np.array(nu)
+
+
+def _start_of_free_motion(subject: Subject) -> tuple[np.ndarray, float]:
+    """The scene's start; if that is at rest, the moment of its run with the largest ν."""
+    start = subject.start_nu()
+    if np.abs(start).max() > 0.0:
+        return start, 0.0
+    run = study_traction(subject)
+    turning = np.abs(run.nu[:, 2]) > 1e-6 * np.abs(run.nu).max()
+    size = np.linalg.norm(run.nu, axis=1) * (1.0 + 10.0 * turning)
+    k = int(np.argmax(size))
+    return run.nu[k], float(run.time_s[k])
+
+
+def free_part(result: Study, wishes: Wishes) -> None:
+    subject = result.subject
+    start, since_s = _start_of_free_motion(subject) if wishes.start is None else (_allowed(subject, wishes.start), 0.0)
+    if not np.abs(start).max() > 0.0:
+        result.say("free", "The vehicle stands still all through its run: there is no free motion to show.")
+        return
+    motion = FreeMotion(start, subject.matrices.inverse_inertia, subject.matrices.lambda_yaw)
+    times = np.linspace(0.0, _free_duration(subject, motion), 1201)[1:]
+    numbers = _core_coasting(subject, motion, times)
+    scale = 0.5 * float(subject.model.mass_kg) * float(subject.model.wheel_radius_m) ** 2
+    integral = None if subject.model.dof < 3 else float(subject.matrices.inertia[2] @ start)
+    result.free = FreePart(
+        motion=motion, since_s=since_s,
+        energy_J=scale * float(start @ np.linalg.lstsq(subject.matrices.inverse_inertia, start, rcond=None)[0]),
+        integral=integral, portrait=portrait(subject, start), path_time_s=times,
+        path_m=motion.path(times, float(subject.model.wheel_radius_m)), **numbers)
+    _tell_free(result, result.free, wishes)
+
+
+def _free_duration(subject: Subject, motion: FreeMotion) -> float:
+    """Some petals; for other motions the scene's duration."""
+    return 9.0 * motion.period_s if motion.kind == "periodic" else subject.scene.run.duration_s
+
+
+def _core_coasting(subject: Subject, motion: FreeMotion, times: np.ndarray) -> dict[str, Any]:
+    """exact-flow beside the closed form: largest gap and drift of the integrals."""
+    core, vehicle = subject.core, coasting(subject)
+    start = [float(v) for v in motion.start_nu]
+    plant = core.plant(vehicle, "exact-flow", float(times[1] - times[0]), nu_rad_per_s=start)
+    held = core.input()
+    model, state = core.ffi.addressof(plant.c, "model"), core.ffi.addressof(plant.c, "state")
+    energy, integral = plant.energy_J(), float(core.lib.laconic_yaw_integral(model, state))
+    gap, energy_drift, integral_drift, path = 0.0, 0.0, 0.0, []
+    for expected in motion.nu_at(times):
+        plant.run(held, 1)
+        gap = max(gap, float(np.abs(plant.nu - expected).max()))
+        energy_drift = max(energy_drift, abs(plant.energy_J() - energy))
+        integral_drift = max(integral_drift, abs(float(core.lib.laconic_yaw_integral(model, state)) - integral))
+        path.append((plant.pose.x_m, plant.pose.y_m))
+    size = float(np.abs(motion.start_nu).max())
+    return {"core_gap": gap / max(1.0, size), "energy_drift": energy_drift / max(energy, 1e-300),
+            "integral_drift": None if subject.model.dof < 3 else integral_drift / max(size, 1e-300),
+            "core_path_m": np.array(path)}
+
+
+def _tell_free(result: Study, free: FreePart, wishes: Wishes) -> None:
+    motion, subject = free.motion, result.subject
+    if wishes.start:
+        where = "from the given start"
+    else:
+        cut = f"with the motors cut off at {free.since_s:.4g} s"
+        where = cut if free.since_s else "from the scene's start"
+    nu = nu_text(motion.start_nu)
+    result.say("free", f"Free motion {where}, ν = ({nu}) rad/s: energy {free.energy_J:.6g} J"
+               + (f", K = {free.integral:.6g} rad/s." if free.integral is not None else "; with constraints there is "
+                                                                                        "no "
+                  "second integral K."))
+    kinds = {
+        "straight": "It does not turn: straight uniform motion for ever.",
+        "uniform": "It turns at a constant rate: nothing couples turning to the motion of the centre of mass.",
+        "asymptotic": "It tends to straight uniform motion: the yaw rate dies away and never changes its sign"
+                      + (f", ν tends to ({nu_text(motion.limit_nu())}) rad/s."
+                         if motion.kind == "asymptotic" else "."),
+        "periodic": f"It is periodic in ν with period {motion.period_s:.6g} s"
+                    + (f": the path has petals, one every {np.degrees(2.0 * np.pi / motion.petal_rate):.2f}° of "
+                       f"heading."
+                       if free.portrait is not None else "; ν3 is constant, ν turns evenly against the body."),
+    }
+    result.say("free", kinds[motion.kind])
+    drift = f"energy drifts by {free.energy_drift:.1e}"
+    if free.integral_drift is not None:
+        drift += f", K by {free.integral_drift:.1e}"
+    result.say("free", f"Closed form and the core's exact-flow differ by {free.core_gap:.1e} over "
+                       f"{free.path_time_s[-1]:.4g} s; "
+               f"{drift} (relative).")
+    if free.core_gap > 1e-9:
+        result.failures.append(f"closed form and exact-flow differ by {free.core_gap:.1e}")
+    if free.portrait is None:
+        result.say("free", "No phase portrait: ν3 does not change in free motion of this vehicle.")
+    elif subject.model.dof == 3:
+        result.say("free", f"On the plane of ν3 and the velocity across, motions of this K lie on ellipses about "
+                   f"ν3 = K/A33 = {free.portrait.centre:.6g} rad/s.")

@@ -1,0 +1,176 @@
+"""Pictures of steady motions: bifurcation diagram (Fig. 5), eigenvalues, motions under constant voltages."""
+
+from __future__ import annotations
+
+import numpy as np
+from matplotlib.axes import Axes
+from matplotlib.figure import Figure
+
+from laconic.analysis import confirm
+from laconic.analysis.findings import BifurcationPart, SteadyPart, Study
+from laconic.analysis.pictures_free import BOLD, THIN, keys
+from laconic.analysis.portrait import across_direction
+from laconic.plotting import figure
+
+STABLE, UNSTABLE, NEUTRAL = "tab:blue", "tab:red", "tab:gray"
+
+
+def bifurcation_picture(study: Study) -> Figure | None:
+    """Fig. 5."""
+    part = study.bifurcation
+    if part is None:
+        return None
+    picture = figure(7.6, 5.4)
+    axes = picture.subplots()
+    big = study.subject.matrices.lambda_yaw
+    for branch in part.diagram.branches:
+        _branch(axes, np.array(branch.parameter), branch.nu()[:, 2] / big, branch.stable())
+    for special in part.diagram.specials:
+        marker = "D" if special.kind == "fold" else "o"
+        axes.plot(special.parameter, special.nu[2] / big, marker, color="k", mfc="w", ms=7, zorder=5)
+    for hopf in part.diagram.hopf:
+        axes.plot(hopf.parameter, hopf.nu[2] / big, "*", color="tab:purple", ms=14, zorder=6)
+    _cycle_marks(axes, part, big)
+    if part.low <= part.parameter.at_scene <= part.high:
+        axes.axvline(part.parameter.at_scene, color="0.6", lw=0.9, ls=":")
+    axes.set_xlim(part.low, part.high)
+    handles = keys(axes, [(STABLE, BOLD, "-", "stable"), (UNSTABLE, THIN, "--", "unstable"),
+                           ("0.6", 0.9, ":", "the scene's own value")])
+    handles += _marks(axes, part)
+    axes.set(xlabel=part.parameter.label, ylabel=r"yaw rate $\omega=\nu_3/\Lambda$ [rad/s]",
+             title=f"{study.subject.scene.name}\nsteady motions")
+    picture.legend(handles=handles, loc="outside lower center", ncols=3, fontsize=9)
+    return picture
+
+
+def _marks(axes: Axes, part: BifurcationPart):
+    kinds = {special.kind for special in part.diagram.specials}
+    handles = []
+    if "fold" in kinds:
+        handles += axes.plot([], [], "D", color="k", mfc="w", ls="", label="fold (vertex)")
+    if "branch point" in kinds:
+        handles += axes.plot([], [], "o", color="k", mfc="w", ls="", label="branch point")
+    if part.diagram.hopf:
+        handles += axes.plot([], [], "*", color="tab:purple", ms=11, ls="", label="Andronov–Hopf point")
+    if part.cycles:
+        handles += axes.plot([], [], "_", color="tab:purple", ms=9, ls="", label="limit cycle: lowest, highest")
+    return handles
+
+
+def _branch(axes: Axes, x: np.ndarray, y: np.ndarray, stable: np.ndarray) -> None:
+    """Stable stretches bold, unstable ones thin and dashed, without gaps between them."""
+    change = np.flatnonzero(np.diff(stable.astype(int)) != 0) + 1
+    for first, last in zip([0, *change], [*change, len(x)], strict=True):
+        end = min(last + 1, len(x))
+        is_stable = bool(stable[first])
+        axes.plot(x[first:end], y[first:end], color=STABLE if is_stable else UNSTABLE,
+                  lw=BOLD if is_stable else THIN, ls="-" if is_stable else "--", solid_capstyle="butt",
+                  zorder=3 if is_stable else 2)
+
+
+def _cycle_marks(axes: Axes, part: BifurcationPart, big: float) -> None:
+    for item in part.cycles:
+        yaw = item.cycle.path_nu[:, 2] / big
+        axes.plot([item.cycle.parameter] * 2, [yaw.min(), yaw.max()], "_", color="tab:purple", ms=9, mew=1.5, zorder=4)
+
+
+def eigenvalue_picture(study: Study) -> Figure | None:
+    """Eigenvalues of the steady motions in the complex plane."""
+    steady = study.steady
+    if steady is None or not steady.motions:
+        return None
+    picture = figure(7.2, 4.8)
+    axes = picture.subplots()
+    markers, big = "osD^v", study.subject.matrices.lambda_yaw
+    if study.bifurcation is not None:
+        _loci(axes, study.bifurcation)
+    for number, motion in enumerate(steady.motions):
+        colour = {"stable": STABLE, "unstable": UNSTABLE, "neutral": NEUTRAL}[motion.stability]
+        shape = "turning" if motion.turns else "straight"
+        yaw_rate = motion.nu[2] / big if motion.turns else 0.0
+        text = f"{shape}, ω = {yaw_rate:.3g} rad/s: {motion.stability}"
+        axes.plot(motion.eigenvalues.real, motion.eigenvalues.imag, markers[number % 5], color=colour, ms=8,
+                  mfc="none" if motion.turns else colour, mew=1.6, ls="", label=text, zorder=4)
+    axes.axvline(0.0, color="k", lw=0.9)
+    axes.axhline(0.0, color="0.7", lw=0.7)
+    axes.margins(0.08)
+    axes.set(xlabel="real part [1/s]", ylabel="imaginary part [rad/s]",
+             title=f"{study.subject.scene.name}\neigenvalues of the steady motions")
+    picture.legend(handles=axes.get_legend_handles_labels()[0], loc="outside lower center", ncols=2, fontsize=9)
+    return picture
+
+
+def _loci(axes: Axes, part: BifurcationPart) -> None:
+    """Where the eigenvalues of all branches run as the parameter varies."""
+    first = True
+    for branch in part.diagram.branches:
+        values = np.concatenate([motion.eigenvalues for motion in branch.motion])
+        axes.plot(values.real, values.imag, ".", color="0.8", ms=2, zorder=1,
+                  label=f"along the branches, {part.parameter.name} varied" if first else None)
+        first = False
+
+
+def driven_picture(study: Study) -> Figure | None:
+    """Motions under the held inputs, run by the core, around the steady ones."""
+    steady, subject = study.steady, study.subject
+    direction = across_direction(subject)
+    if steady is None or not steady.motions or direction is None or not any(motion.turns for motion in steady.motions):
+        return None
+    across, label = direction
+    picture = figure(7.2, 5.8)
+    axes = picture.subplots()
+    for nu in _driven_runs(study, steady):
+        axes.plot(nu[:, 2], nu[:, :2] @ across, color="0.55", lw=0.8)
+        axes.plot(nu[0, 2], nu[0, :2] @ across, ".", color="0.55", ms=4)
+    for motion in steady.motions:
+        colour = {"stable": STABLE, "unstable": UNSTABLE, "neutral": NEUTRAL}[motion.stability]
+        axes.plot(motion.nu[2], motion.nu[:2] @ across, "o", color=colour, ms=8, zorder=5)
+    handles = [axes.plot([], [], "o", color=c, ls="", label=f"{t} steady motion")[0]
+               for c, t in ((STABLE, "stable"), (UNSTABLE, "unstable"))]
+    handles += keys(axes, [("0.55", 0.8, "-", "motions (start: dot)")]) + _nearest_cycles(axes, study, across)
+    axes.set(xlabel=r"$\nu_3$ [rad/s]", ylabel=f"{label} [rad/s]",
+             title=f"{subject.scene.name}\nmotions under constant voltages")
+    picture.legend(handles=handles, loc="outside lower center", ncols=3, fontsize=9)
+    return picture
+
+
+def _nearest_cycles(axes: Axes, study: Study, across: np.ndarray):
+    """The limit cycles that were found nearest to the scene's own parameter value."""
+    part = study.bifurcation
+    if part is None or not part.cycles:
+        return []
+    gap = min(abs(item.cycle.parameter - part.parameter.at_scene) for item in part.cycles)
+    value = 0.0
+    for item in part.cycles:
+        if abs(item.cycle.parameter - part.parameter.at_scene) <= gap + 1e-9:
+            path, value = item.cycle.path_nu, item.cycle.parameter
+            axes.plot(path[:, 2], path[:, :2] @ across, color="tab:purple", lw=1.8, ls="--", zorder=4)
+    return keys(axes, [("tab:purple", 1.8, "--", f"unstable limit cycle at {part.parameter.name} = {value:.4g}")])
+
+
+def _driven_runs(study: Study, steady: SteadyPart) -> list[np.ndarray]:
+    """Runs of the core from states on a frame around the steady motions."""
+    subject = study.subject
+    field = subject.field(steady.inputs)
+    states = np.array([motion.nu for motion in steady.motions])
+    spread = np.ptp(states, axis=0)
+    middle, size = states.mean(axis=0), 0.75 * np.maximum(spread, 0.2 * spread.max())
+    basis = field.nu_of_zeta[:, : field.dof]
+    rng = np.random.default_rng(7)
+    starts = [field.nu(field.zeta(middle + size * push)) for push in rng.uniform(-1.0, 1.0, (14, 3))]
+    unstable = [motion for motion in steady.motions if motion.stability == "unstable"]
+    starts += [motion.nu + 0.02 * spread.max() * basis[:, k] * side
+               for motion in unstable for k in range(field.dof) for side in (-1, 1)]
+    slowest = min(float(np.abs(motion.eigenvalues.real).min()) for motion in steady.motions)
+    fastest = max(float(np.abs(motion.eigenvalues).max()) for motion in steady.motions)
+    duration = float(np.clip(5.0 / max(slowest, 1e-9), 3.0 / fastest, 80.0 / fastest))
+    held = subject.core.input(steady.inputs)
+    runs = []
+    for start in starts:
+        plant = confirm.plant_at(subject, start, duration / 2400)
+        rows = [plant.nu]
+        for _ in range(1200):
+            plant.run(held, 2)
+            rows.append(plant.nu)
+        runs.append(np.array(rows))
+    return runs

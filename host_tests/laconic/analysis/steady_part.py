@@ -1,0 +1,59 @@
+"""Steady motions under the held inputs: found, confirmed by the core, told."""
+
+from __future__ import annotations
+
+import numpy as np
+
+from laconic.analysis import confirm, pushed
+from laconic.analysis.findings import SteadyPart, Study, Wishes, nu_text
+from laconic.analysis.from_core import Inputs, Subject
+from laconic.analysis.motions import straight_torques
+from laconic.analysis.steady import families, steady_motions
+
+
+def _studied_inputs(subject: Subject, wishes: Wishes) -> Inputs:
+    if wishes.straight is None:
+        return subject.inputs
+    return straight_torques(subject, np.array([*wishes.straight, 0.0]))
+
+
+def steady_part(result: Study, wishes: Wishes) -> None:
+    subject, inputs = result.subject, _studied_inputs(result.subject, wishes)
+    if wishes.straight is None and pushed.world_force_acts(subject):
+        _tell_pushed(result)
+        return
+    found = subject.field(inputs)
+    motions = steady_motions(found)
+    confirmations = [confirm.steady_motion(subject, inputs, found, motion) for motion in motions]
+    result.steady = SteadyPart(motions, confirmations, families(found), inputs=dict(inputs))
+    for motion, confirmation in zip(motions, confirmations, strict=True):
+        nu = nu_text(motion.nu)
+        rates = ", ".join(_complex_text(v) for v in motion.eigenvalues)
+        shape = "circle" if motion.turns else "straight"
+        result.say("steady", f"{shape}, {motion.stability}: ν = ({nu}) rad/s; eigenvalues {rates} 1/s; "
+                             f"{confirmation.words}.")
+        if not confirmation.holds:
+            result.failures.append(f"steady motion ({nu}): {confirmation.words}")
+    for family in result.steady.families:
+        result.say("steady", f"{family.words}.")
+    if not motions and not result.steady.families:
+        result.say("steady", "There is no steady motion: a direction without damping is driven and speeds up without "
+                             "end.")
+    if not subject.field(inputs).decay_per_s.any():
+        result.say("steady", "The motors do not damp (c2 = 0), so nothing is asymptotically stable.")
+
+
+def _complex_text(value: complex) -> str:
+    return f"{value.real:.5g}" if abs(value.imag) < 1e-12 * abs(value) else f"{value.real:.5g} {value.imag:+.5g}i"
+
+
+def _tell_pushed(result: Study) -> None:
+    found = pushed.headings(result.subject)
+    result.steady = SteadyPart([], [], [], pushed=found)
+    result.say("steady", "A force fixed in the world acts: it turns against the body, so ν has no steady value of its "
+               "own; the question is which heading the vehicle keeps.")
+    if found is None:
+        result.say("steady", "With damping or a gyroscopic term the heading depends on the speed; see `laconic "
+                             "simulate`.")
+    for heading in found or []:
+        result.say("steady", heading.words + ".")
