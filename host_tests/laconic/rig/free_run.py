@@ -131,7 +131,9 @@ def judge_free_run(node: NodeClient, scene: Scene, duration_s: float, rate_Hz: i
 
 
 def envelope_verdicts(run: FreeRun, twins: list[dict], tolerances: dict[str, float]) -> list[Verdict]:
-    """One per signal: between the twins, give or take half a last place and half of what lies between them."""
+    """One per signal: between the twins, give or take half a last place and the most that ever lay between them: each
+    command has a delay of its own, and what one of them has left behind in the pose stays."""
+    spread: dict[str, float] = {}
     worst: dict[str, tuple[float, float, int]] = {}
     for step, frame, data in run.answers:
         raw = frame.unpack(data)
@@ -142,7 +144,8 @@ def envelope_verdicts(run: FreeRun, twins: list[dict], tolerances: dict[str, flo
                 turn = 2 * np.pi / frame.fields[name].scale
                 values -= turn * np.round((values - raw[name]) / turn)
             scale, label = frame.fields[name].scale, f"{frame.name}.{name}"
-            slack = 0.5 + 1e-6 + 0.5 * np.ptp(values)
+            spread[label] = max(spread.get(label, 0.0), float(np.ptp(values)))
+            slack = 0.5 + 1e-6 + spread[label]
             slack += tolerances.get(label, tolerances.get(name, 0.0)) / scale
             beyond = max(values.min() - slack - raw[name], raw[name] - values.max() - slack)
             off = float(np.min(np.abs(values - raw[name]))) * scale

@@ -1,0 +1,98 @@
+/* Any frames at any time, most of them with right protection so that they get past it: the node keeps its promises.
+ *
+ * Input: records of 10 bytes: [identifier offset and what to spoil] [time that passes] [payload]. */
+#include "laconic_node/node.h"
+#include "laconic_wire.h"
+
+#include <stdlib.h>
+#include <string.h>
+
+int LLVMFuzzerTestOneInput(const uint8_t *data, size_t size);
+
+enum { RECORD = 10, SPOIL = 0x80, LONGER = 0x40 };
+
+typedef struct bench {
+    laconic_node node;
+    uint8_t counter[LACONIC_WIRE_OFFSETS];
+    uint32_t now_us;
+} bench;
+
+static void must(bool holds) {
+    if (!holds) abort();
+}
+
+/* A small vehicle, so that the running states are reached at once. */
+static void load(laconic_node *node) {
+    const laconic_vehicle vehicle = {
+        .mass_kg = 1,
+        .yaw_inertia_kgm2 = 1,
+        .wheel_radius_m = 1,
+        .motor_gain_Nm_per_V = 1,
+        .motor_damping_Nms = 1,
+        .wheel_count = 2,
+        .wheel = {{LACONIC_WHEEL_FIXED, false, 0, 1, 0, 0}, {LACONIC_WHEEL_FIXED, false, 0, -1, 0, 0}},
+    };
+    laconic_parameters *parameters = &node->loader.parameters;
+    parameters->vehicle = vehicle;
+    parameters->step_s = (laconic_real)0.001;
+    must(laconic_plant_start(&node->plant, &vehicle, &laconic_rk4, parameters->step_s, &parameters->start, NULL) ==
+         LACONIC_OK);
+    node->state = LACONIC_WIRE_STATE_READY;
+}
+
+static void fill(laconic_frame *frame, const uint8_t *record, uint16_t id_base) {
+    const uint8_t offset = record[0] & 31U;
+    const laconic_wire_row *row = &laconic_wire[offset];
+    memset(frame, 0, sizeof *frame);
+    frame->id = (uint32_t)id_base + offset;
+    frame->fd = row->fd != 0;
+    frame->length = row->length;
+    for (uint8_t k = 0; k < frame->length; k++) frame->data[k] = record[2 + k % 8];
+}
+
+static void protect(bench *bench, laconic_frame *frame, uint8_t offset) {
+    const laconic_wire_row *row = &laconic_wire[offset];
+    const uint8_t turn = row->of_session ? bench->node.session : 0;
+    const uint8_t counter = ++bench->counter[offset];
+    if (row->fd) {
+        laconic_e2e_p05_protect(frame->data, frame->length, (uint16_t)(laconic_wire_data_id(offset) + turn), counter);
+    } else if (row->length == 8) {
+        laconic_e2e_p22_protect(frame->data, 8, laconic_wire_data_ids[row->list], turn, counter);
+    }
+}
+
+/* What the documents promise of every state. */
+static void check(const laconic_node *node) {
+    const bool moves = node->state == LACONIC_WIRE_STATE_LOCKSTEP || node->state == LACONIC_WIRE_STATE_FREE_RUN;
+    must(node->state <= LACONIC_WIRE_STATE_FAULT);
+    for (int k = 0; !moves && k < LACONIC_MAX_WHEELS; k++) must(node->input[0].voltage_V[k] == 0);
+}
+
+static void drain(bench *bench) {
+    laconic_frame frame;
+    int left = 400; /* more than any answer has */
+    while (laconic_node_next_frame(&bench->node, &frame)) {
+        must(--left > 0);
+        must(frame.id >= bench->node.config.id_base + LACONIC_WIRE_NODE_FIRST && frame.length <= LACONIC_FRAME_BYTES);
+    }
+}
+
+int LLVMFuzzerTestOneInput(const uint8_t *data, size_t size) {
+    static bench bench;
+    const laconic_node_config config = {LACONIC_WIRE_ID_BASE, true, laconic_method_by_number};
+    memset(&bench, 0, sizeof bench);
+    laconic_node_init(&bench.node, &config, 0);
+    load(&bench.node);
+    for (; size >= RECORD; data += RECORD, size -= RECORD) {
+        laconic_frame frame;
+        fill(&frame, data, config.id_base);
+        if ((data[0] & SPOIL) == 0) protect(&bench, &frame, data[0] & 31U);
+        if (data[0] & LONGER) frame.length = data[2] % (LACONIC_FRAME_BYTES + 1U);
+        laconic_node_on_frame(&bench.node, &frame, bench.now_us);
+        bench.now_us += 64U * data[1];
+        laconic_node_on_tick(&bench.node, bench.now_us);
+        check(&bench.node);
+        drain(&bench);
+    }
+    return 0;
+}

@@ -1,0 +1,52 @@
+/* Any parameters: the loader writes only where a parameter lives, and whatever comes out of it the core takes or refuses.
+ *
+ * Input: records of 7 bytes: the payload of PARAMETER from byte 2 on, and its upper half flag. */
+#include "laconic_node/loader.h"
+#include "laconic_wire.h"
+
+#include <stdlib.h>
+#include <string.h>
+
+int LLVMFuzzerTestOneInput(const uint8_t *data, size_t size);
+
+enum { RECORD = 7, GUARD = 0x5A };
+
+typedef struct guarded {
+    uint8_t before[16];
+    laconic_loader loader;
+    uint8_t after[16];
+} guarded;
+
+static void must(bool holds) {
+    if (!holds) abort();
+}
+
+static void prepare(const laconic_parameters *parameters) {
+    static laconic_plant plant;
+    const laconic_method *method = laconic_method_by_number(parameters->method);
+    laconic_refusal why = {0};
+    if (method == NULL) return;
+    const laconic_status status = laconic_plant_start(&plant, &parameters->vehicle, method, parameters->step_s,
+                                                      &parameters->start, &why);
+    must(status == why.status && status < LACONIC_STATUS_COUNT);
+    if (status == LACONIC_OK) {
+        const laconic_input none = {{0}, {0}, {0, 0}, 0, {0, 0}, {0, 0}};
+        laconic_plant_run(&plant, &none, 2, &why);
+    }
+}
+
+int LLVMFuzzerTestOneInput(const uint8_t *data, size_t size) {
+    static guarded place;
+    memset(&place, GUARD, sizeof place);
+    laconic_loader_begin(&place.loader);
+    for (; size >= RECORD; data += RECORD, size -= RECORD) {
+        uint8_t payload[8] = {0, (uint8_t)(data[6] << 4 & 0x10U)};
+        memcpy(payload + 2, data, 6);
+        laconic_loader_take(&place.loader, payload);
+    }
+    for (int k = 0; k < 16; k++) must(place.before[k] == GUARD && place.after[k] == GUARD);
+    must(laconic_loader_check(&place.loader, place.loader.frame_count, ~place.loader.checksum + 1U) != 0);
+    if (laconic_loader_check(&place.loader, place.loader.frame_count, ~place.loader.checksum) == 0)
+        prepare(&place.loader.parameters);
+    return 0;
+}
