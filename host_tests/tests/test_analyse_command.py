@@ -117,6 +117,25 @@ def test_bad_input_is_one_clear_line_and_exit_status_2(capsys, arguments, words)
     assert words in lines[0]
 
 
+def test_analysis_that_the_core_does_not_confirm_is_exit_status_1(capsys, monkeypatch):
+    from laconic.analysis import confirm
+
+    monkeypatch.setattr(confirm, "steady_motion", lambda *_: confirm.Confirmation(False, "it went elsewhere"))
+    status, out, err = run(capsys, "analyse", "s1", "--only", "steady")
+    assert status == 1
+    assert "## Not confirmed" in out
+    assert "not confirmed" in err
+
+
+def test_derivation_that_contradicts_itself_is_exit_status_1(capsys, monkeypatch):
+    from laconic.method import checks
+
+    monkeypatch.setattr(checks, "forms_difference", lambda *_: 1e-3)
+    status, _, err = run(capsys, "derive", "--example", "caster")
+    assert status == 1
+    assert "contradicts itself" in err
+
+
 @pytest.mark.parametrize("form", [(), ("--latex",), ("--c",)])
 def test_derive_prints_and_checks_against_the_core(capsys, form):
     status, out, err = run(capsys, "derive", "turtlebot3_burger", *form)

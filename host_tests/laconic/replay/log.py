@@ -67,8 +67,10 @@ def read_map(path: Path) -> ColumnMap:
 
 def _columns(table: Table, one: bool = False, extra: tuple[str, ...] = ()) -> tuple[tuple[str, ...], np.ndarray]:
     names = (table.text("column"),) if one else table.texts("columns", ...)
-    has_list = isinstance(table._entries.get("scale"), list)  # noqa: SLF001
-    scale = np.array(table.numbers("scale", len(names)) if has_list else [table.number("scale", 1.0)] * len(names))
+    if table.has("scales"):
+        scale = np.array(table.numbers("scales", len(names)))
+    else:
+        scale = np.full(len(names), table.number("scale", 1.0))
     for key in extra:
         table.has(key)
     table.done()
