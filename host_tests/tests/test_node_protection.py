@@ -90,8 +90,8 @@ def census(max_delta: int) -> tuple[list[int], list[int]]:
         LIB.laconic_e2e_p22_protect(FFI.from_buffer(data), 8, COUNTING_IDS, 0, counter)
         found = FFI.new("laconic_error_census *")
         LIB.laconic_library_census(found, bytes(data), COUNTING_IDS, max_delta)
-        kept = [a + b for a, b in zip(kept, found.counter_kept)]
-        changed = [a + b for a, b in zip(changed, found.counter_changed)]
+        kept = [a + b for a, b in zip(kept, found.counter_kept, strict=True)]
+        changed = [a + b for a, b in zip(changed, found.counter_changed, strict=True)]
     return kept, changed
 
 

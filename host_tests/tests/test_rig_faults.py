@@ -77,7 +77,7 @@ def test_faulty_is_a_plug_in_that_python_can_finds_by_name() -> None:
     ({"reordering": 1.0}, lambda got: [m.data[0] for m in got[:4]] == [1, 0, 3, 2]),
     ({"delay_s": 0.0105}, lambda got: len(got) == 190),
     ({"corruption": 1.0, "corrupted_bits": 2}, lambda got: all(
-        sum(bin(a ^ b).count("1") for a, b in zip(m.data, [k] * 4)) == 2 for k, m in enumerate(got))),
+        sum(bin(a ^ b).count("1") for a, b in zip(m.data, [k] * 4, strict=True)) == 2 for k, m in enumerate(got))),
     ({"stuck": 1.0}, lambda got: {m.data[0] for m in got} == {0, 1, 2}),
     ({"wrong_length": 1.0}, lambda got: all(len(m.data) == 3 for m in got)),
     ({"foreign": 1.0}, lambda got: len(got) == 400),

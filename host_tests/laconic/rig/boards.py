@@ -9,6 +9,7 @@ import time
 from collections.abc import Iterator
 from contextlib import AbstractContextManager, contextmanager
 from dataclasses import dataclass
+from pathlib import Path
 
 from laconic.errors import BadInput, nearest_of
 from laconic.paths import build_dir, built
@@ -79,9 +80,8 @@ def wait_for_port(process: subprocess.Popen[str], port: int) -> None:
     while time.monotonic() < deadline:
         if process.poll() is not None:
             raise CannotReach(f"{QEMU} ended at once: {process.stderr.read().strip()}")
-        with open("/proc/net/tcp", encoding="ascii") as table:
-            if f"0100007F:{port:04X} 00000000:0000 0A" in table.read():
-                return
+        if f"0100007F:{port:04X} 00000000:0000 0A" in Path("/proc/net/tcp").read_text(encoding="ascii"):
+            return
         time.sleep(0.02)
     raise CannotReach(f"{QEMU} does not listen on port {port} after {QEMU_START_S:g} s")
 

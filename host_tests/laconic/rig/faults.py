@@ -1,4 +1,4 @@
-"""Faults on purpose, seeded: what happens to each frame on its way. Pure: frames and instants in, frames and instants out.
+"""Faults on purpose, seeded: what happens to each frame on its way. Pure: frames and instants in, the same out.
 
 A model sees both directions of one wire. Its random numbers depend on the seed and on the order of the frames only.
 """
@@ -208,7 +208,8 @@ class FaultModel:
 
     def _recover(self, now_s: float) -> None:
         """After bus-off: a queue that was kept comes out now, all of it stale."""
-        over = self._off_since is not None and self.faults.bus_off_s and now_s - self._off_since >= self.faults.bus_off_s
+        off_s = 0.0 if self._off_since is None else now_s - self._off_since
+        over = self.faults.bus_off_s and off_s >= self.faults.bus_off_s
         if over or not self.active:
             queue, self._queue = self._queue, []
             for direction, message in queue:

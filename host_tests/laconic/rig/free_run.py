@@ -27,6 +27,9 @@ CYCLE_S = 0.01          # of VOLTAGE, as the contract says
 DEFAULT_FRAMES = ("NU", "POSE")
 
 
+TwinValues = dict[tuple[int, str, int], dict[str, float]]  # (step, frame, group) → raw values before rounding
+
+
 @dataclass
 class FreeRun:
     """What was sent and what came."""
@@ -94,7 +97,7 @@ def take(run: FreeRun, node: NodeClient, frame: Frame, data: bytes) -> None:
         node.check(values)
 
 
-def twin_values(scene: Scene, run: FreeRun, delay: int, per_period: int) -> dict[tuple[int, str, int], dict[str, float]]:
+def twin_values(scene: Scene, run: FreeRun, delay: int, per_period: int) -> TwinValues:
     """What a twin whose commands act so many periods later says to every answer."""
     plant: Plant = scene.plant(scene.core())
     wanted: dict[int, list[tuple[str, int, Frame]]] = {}
@@ -151,7 +154,7 @@ def envelope_verdicts(run: FreeRun, twins: list[dict], tolerances: dict[str, flo
             off = float(np.min(np.abs(values - raw[name]))) * scale
             if label not in worst or beyond > worst[label][0]:
                 worst[label] = (beyond, off, step)
-    return [Verdict(label, beyond <= 0.0, f"within the twins' bounds, {off:.3g} from the nearest" if beyond <= 0.0 else
+    return [Verdict(label, beyond <= 0.0, f"{off:.3g} from the nearest twin" if beyond <= 0.0 else
                     f"{off:.3g} off at step {step}", off, 0.0, step) for label, (beyond, off, step) in worst.items()]
 
 
@@ -160,7 +163,7 @@ def steps_verdict(run: FreeRun) -> Verdict:
     expected = run.elapsed_s * run.rate_Hz
     missing = expected - run.steps
     passed = abs(missing) <= 0.05 * run.rate_Hz + 2
-    return Verdict("steps", passed, f"{run.steps} of {expected:.0f} steps, {run.late_periods} of them a period late or more, "
+    return Verdict("steps", passed, f"{run.steps} of {expected:.0f} steps, {run.late_periods} a period late or more, "
                    f"worst lateness {run.worst_lateness_us} µs", float(missing), 0.05 * run.rate_Hz + 2)
 
 

@@ -8,6 +8,7 @@
 
 from __future__ import annotations
 
+import itertools
 import time
 from collections.abc import Callable, Iterator
 from dataclasses import dataclass
@@ -26,7 +27,8 @@ from laconic.simulation import advance_plant
 
 INPUT_GROUPS = {  # bit of SELECT → numbers of one input, in the order of the stream
     "take_voltage": ("voltage_V",), "take_axle_torque": ("axle_torque_Nm",),
-    "take_body_wrench": ("body_force_N", "body_moment_Nm"), "take_world_force": ("world_force_N", "world_force_point_m")}
+    "take_body_wrench": ("body_force_N", "body_moment_Nm"),
+    "take_world_force": ("world_force_N", "world_force_point_m")}
 OUTPUTS = ("raw_nu", "raw_pose", "raw_wheel_speed", "raw_wheel_angle")
 
 
@@ -120,10 +122,8 @@ class RawStream:
         for segment, at in enumerate(range(0, len(stream), chunk)):
             self._sent += 1
             part = stream[at : at + chunk].ljust(chunk, b"\0")
-            if self.fd:
-                data = bytearray((0, 0, 0, segment & 255)) + part
-            else:
-                data = bytearray((0, (segment & 15) << 4)) + part
+            header = (0, 0, 0, segment & 255) if self.fd else (0, (segment & 15) << 4)
+            data = bytearray(header) + part
             link.send(frame, data)
 
     def sync(self, steps: int) -> None:
@@ -165,7 +165,7 @@ class RawStream:
             return
         edges = sorted({*range(0, steps, every), *(c for c in self.drive.changes if c < steps), steps})
         changes = {0, *self.drive.changes}
-        for begin, end in zip(edges, edges[1:]):
+        for begin, end in itertools.pairwise(edges):
             row = self.core.input_row(self.drive.held_at(begin)) if begin in changes else None
             yield begin, end - begin, row
 

@@ -1,4 +1,4 @@
-"""Logs of everything on the bus, complete up to the last frame: BLF, ASC or whatever python-can writes by the name's end."""
+"""Logs of everything on the bus, complete up to the last frame: BLF, ASC or what else python-can writes."""
 
 from __future__ import annotations
 

@@ -1,9 +1,9 @@
 """The fault matrix: every fault × every frame, in virtual time, with what the node and the rig made of it.
 
-Each case runs one script (identify, load, scaled lockstep, raw lockstep, free run, stop) over a `faulty` bus whose fault
-hits one kind of frame; then the rig falls silent for a while, the fault ends, and a fresh rig takes over. Watched all
-the time: that no changed frame is accepted on either side, that the node's voltages are some that were sent or zero, that
-it moves only while it runs. What remains undetected is counted.
+Each case runs one script (identify, load, scaled lockstep, raw lockstep, free run, stop) over a `faulty` bus whose
+fault hits one kind of frame; then the rig falls silent for a while, the fault ends, and a fresh rig takes over. Watched
+all the time: that no changed frame is accepted on either side, that the node's voltages are some that were sent or
+zero, that it moves only while it runs. What remains undetected is counted.
 """
 
 from __future__ import annotations

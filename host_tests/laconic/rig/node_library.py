@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from functools import lru_cache
+from functools import cache
 from typing import Any
 
 from cffi import FFI
@@ -43,7 +43,7 @@ def without_inline_functions(text: str) -> str:
     return "\n".join(lines)
 
 
-@lru_cache(maxsize=None)
+@cache
 def node_library(real: str = "double") -> NodeLibrary:
     """The library, loaded once."""
     return NodeLibrary(real)

@@ -92,7 +92,7 @@ def expected_raw(plant: Plant, frame: Frame, group: int = 0) -> dict[str, float]
     """What the twin would put into a frame, before rounding, in units of the raw values."""
     pose = plant.pose
     if frame.name == "NU":
-        values = dict(zip(("nu_1", "nu_2", "nu_3"), plant.nu))
+        values = dict(zip(("nu_1", "nu_2", "nu_3"), plant.nu, strict=True))
     elif frame.name == "POSE":
         values = {"x": pose.x_m, "y": pose.y_m, "heading": pose.heading_wrapped_rad}
     elif frame.name == "WHEEL_SPEED":
@@ -175,7 +175,7 @@ def run_scaled(node: NodeClient, scene: Scene, steps: int | None = None,
     frames = wanted_frames(scene)
     awaited = frames_per_answer(scene, frames)
     if not awaited:
-        raise BadInput(f"{scene.path}: rig.frames: {', '.join(frames)} never answer a step; add NU, POSE or WHEEL_SPEED")
+        raise BadInput(f"{scene.path}: rig.frames: {', '.join(frames)} never answer a step; add NU")
     twin = load_scene(node, scene)
     node.select(**{SELECT_BIT[name]: 1 for name in frames})
     node.start_lockstep()
@@ -192,7 +192,7 @@ def run_scaled(node: NodeClient, scene: Scene, steps: int | None = None,
         moved(1)
     seconds = time.perf_counter() - began
     node.stop()
-    for row, answer in zip(rows, answers):
+    for row, answer in zip(rows, answers, strict=True):
         twin.run(twin.core.input(row))
         for frame, data in answer:
             comparison.take(frame, data, twin)

@@ -76,5 +76,5 @@ def read_tolerances(given: Sequence[str]) -> dict[str, float]:
         except ValueError:
             equals = ""
         if not equals or not 0.0 <= found[name] < float("inf"):
-            raise BadInput(f"--tolerance {text}: give SIGNAL=VALUE with a value that is zero or more, such as nu_1=0.01")
+            raise BadInput(f"--tolerance {text}: give SIGNAL=VALUE, zero or more, such as nu_1=0.01")
     return found

@@ -1,0 +1,90 @@
+"""A log judged afterwards: the commands of the log drive the twin, the answers of the log are compared with it."""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+import can
+import numpy as np
+
+from laconic.errors import BadInput
+from laconic.plant import Plant
+from laconic.rig.client import NodeClient
+from laconic.rig.judge import link_verdict, signal_verdicts
+from laconic.rig.link import Link
+from laconic.rig.logs import read_log
+from laconic.rig.scaled import Comparison
+from laconic.rig.verdict import Judgement, Verdict
+from laconic.rig.wire import wire
+from laconic.scene import Scene
+
+
+class LogPlayer:
+    """Follows a log frame by frame."""
+
+    def __init__(self, scene: Scene, id_base: int, link: Link):
+        self.scene, self.id_base, self.link = scene, id_base, link
+        self.plant: Plant = scene.plant(scene.core())
+        self.row = np.zeros(self.plant.core.input_length, self.plant.core.dtype)
+        self.comparison = Comparison(scene.wheel_count)
+        self.wrong_commands = 0
+        self.running = False
+        self._session = 0
+
+    def take(self, message: can.Message) -> None:
+        """One frame of the log."""
+        frame = wire().by_offset.get(message.arbitration_id - self.id_base)
+        if frame is None or len(message.data) != frame.length:
+            return
+        if not frame.from_rig:
+            received = self.link.take(message)
+            if received is not None and self.running and frame.name in ("NU", "POSE", "WHEEL_SPEED", "STATE_FD"):
+                self.comparison.take(*received, self.plant)
+        elif self._is_right(frame.offset, frame.of_session, message):
+            self._command(frame.name, frame.unpack(message.data))
+
+    def _is_right(self, offset: int, of_session: bool, message: can.Message) -> bool:
+        session = self._session if of_session else 0
+        right = self.link.library.crc_is_right(offset, bytearray(message.data), session)
+        self.wrong_commands += not right
+        return right
+
+    def _command(self, name: str, raw: dict[str, int]) -> None:
+        if name == "CONTROL":
+            command = wire().choice("CONTROL", "command", raw["command"])
+            if command.startswith("start"):
+                self._session, self.running = raw["session"], command == "start lockstep"
+            elif command in ("stop", "reset"):
+                self.running = False
+        elif name == "VOLTAGE" and self.running:
+            self._voltages(raw)
+        elif name == "SYNC" and self.running:
+            self.plant.run(self.plant.core.input(self.row), raw["step_count"])
+
+    def _voltages(self, raw: dict[str, int]) -> None:
+        start, dtype = self.plant.core.input_fields["voltage_V"][0], self.plant.core.dtype.type
+        per_unit = dtype(round(1 / wire()["VOLTAGE"].fields["voltage_1"].scale))
+        for k in range(3):
+            wheel = 3 * raw["group"] + k
+            if wheel < self.scene.wheel_count:
+                self.row[start + wheel] = dtype(raw[f"voltage_{k + 1}"]) / per_unit
+        if raw["sync"]:
+            self.plant.run(self.plant.core.input(self.row), 1)
+
+
+def judge_log(path: Path, scene: Scene, id_base: int, tolerances: dict[str, float]) -> Judgement:
+    """The verdicts of a recorded lockstep run with scaled frames."""
+    messages = read_log(path)
+    with can.Bus(interface="virtual", channel=object()) as nowhere:
+        link = Link(nowhere, id_base)
+        player = LogPlayer(scene, id_base, link)
+        for message in messages:
+            player.take(message)
+        if not player.comparison.signals:
+            raise BadInput(f"--replay {path}: holds no answer of a scaled lockstep run at ID base 0x{id_base:X}; "
+                           "record one with --lockstep --log")
+        judgement = Judgement(scene.name, f"replay of {path.name}")
+        judgement.add(*signal_verdicts(player.comparison, tolerances), link_verdict(NodeClient(link)))
+        judgement.add(Verdict("commands", player.wrong_commands == 0, f"{player.wrong_commands} with a wrong CRC"))
+        judgement.figures |= {"frames": len(messages), "steps": player.plant.steps}
+    return judgement
