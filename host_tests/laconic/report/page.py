@@ -71,13 +71,13 @@ def shown(name: str, value: Any) -> str:
 
 def prepared(table: Table) -> dict[str, Any]:
     """What the template needs of a table."""
-    columns = [{"title": TITLES.get(name, name), "kind": "text" if name in TEXT else ""} for name in table.fields]
+    columns = [{"name": name, "title": TITLES.get(name, name), "kind": "text" if name in TEXT else ""} for name in table.fields]
     rows = []
     for row in table.rows:
         cells = []
         for name in table.fields:
             value = row.get(name)
-            styles = ["text"] if name in TEXT else []
+            styles = [f"f-{name}", *(["text"] if name in TEXT else [])]
             styles += ["long"] if name in ("why", "goal", "refused") else []
             styles += [str(value).replace(" ", "")] if name in STYLED else []
             cells.append({"text": shown(name, value), "style": " ".join(styles)})
