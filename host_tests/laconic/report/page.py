@@ -71,7 +71,8 @@ def shown(name: str, value: Any) -> str:
 
 def prepared(table: Table) -> dict[str, Any]:
     """What the template needs of a table."""
-    columns = [{"name": name, "title": TITLES.get(name, name), "kind": "text" if name in TEXT else ""} for name in table.fields]
+    columns = [{"name": name, "title": TITLES.get(name, name), "kind": "text" if name in TEXT else ""}
+               for name in table.fields]
     rows = []
     for row in table.rows:
         cells = []
