@@ -10,9 +10,10 @@ from laconic.analysis.findings import FreePart, Study, Wishes, nu_text
 from laconic.analysis.free_motion import FreeMotion
 from laconic.analysis.from_core import Subject
 from laconic.analysis.portrait import portrait
-from laconic.analysis.traction import study as study_traction
+from laconic.analysis.traction import advance
 from laconic.errors import BadInput
 
+MOST_LOOKS = 500  # at the scene's run, for the moment to cut its motors off
 
 def coasting(subject: Subject) -> Any:
     """The same vehicle with its motors cut off."""
@@ -36,11 +37,16 @@ def _start_of_free_motion(subject: Subject) -> tuple[np.ndarray, float]:
     start = subject.start_nu()
     if np.abs(start).max() > 0.0:
         return start, 0.0
-    run = study_traction(subject)
-    turning = np.abs(run.nu[:, 2]) > 1e-6 * np.abs(run.nu).max()
-    size = np.linalg.norm(run.nu, axis=1) * (1.0 + 10.0 * turning)
-    k = int(np.argmax(size))
-    return run.nu[k], float(run.time_s[k])
+    plant, drive = subject.scene.plant(subject.core), subject.scene.drive()
+    ticks = sorted({*range(0, drive.steps, max(1, drive.steps // MOST_LOOKS)), *drive.changes, drive.steps})
+    rows = [plant.nu]
+    for first, last in zip(ticks[:-1], ticks[1:], strict=True):
+        advance(subject, plant, drive, first, last)
+        rows.append(plant.nu)
+    nu = np.array(rows)
+    turning = np.abs(nu[:, 2]) > 1e-6 * np.abs(nu).max()
+    k = int(np.argmax(np.linalg.norm(nu, axis=1) * (1.0 + 10.0 * turning)))
+    return nu[k], ticks[k] * drive.step_s
 
 
 def free_part(result: Study, wishes: Wishes) -> None:

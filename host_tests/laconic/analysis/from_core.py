@@ -4,15 +4,17 @@ from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
 from laconic.analysis.field import Field
 from laconic.core import Core, Matrices
 from laconic.errors import BadInput, Refused
-from laconic.method.scene_system import VehicleNumbers
 from laconic.scene import Scene
+
+if TYPE_CHECKING:
+    from laconic.method.scene_system import VehicleNumbers  # brings SymPy, which takes a while
 
 Inputs = Mapping[str, float | Sequence[float]]
 
@@ -47,6 +49,8 @@ class Subject:
 
     def numbers(self) -> VehicleNumbers:
         """The vehicle for the derivation."""
+        from laconic.method.scene_system import VehicleNumbers
+
         return VehicleNumbers(
             name=self.scene.name, mass_kg=float(self.model.mass_kg), wheel_radius_m=float(self.model.wheel_radius_m),
             lambda_yaw=self.matrices.lambda_yaw, lambda_wheel=self.matrices.lambda_wheel,

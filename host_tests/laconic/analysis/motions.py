@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 
@@ -26,11 +26,13 @@ class Parameter:
     at_scene: float
     subject_of: Callable[[float], Subject]
     inputs_of: Callable[[float], Inputs]
+    field_of: Callable[[float], Field]   # the vector field at a value
 
-    def field_of(self, value: float) -> Field:
-        """The vector field at a value."""
-        subject = self.subject_of(value)
-        return field_of(subject.core, subject.model, self.inputs_of(value))
+
+def drive_line(subject: Subject, inputs_of: Callable[[float], Inputs]) -> Callable[[float], Field]:
+    """The field where only the inputs vary, evenly with the parameter: the core is asked at 0 and 1 only."""
+    start, end = (field_of(subject.core, subject.model, inputs_of(value)) for value in (0.0, 1.0))
+    return lambda value: replace(start, drive=start.drive + value * (end.drive - start.drive))
 
 
 def straight_torques(subject: Subject, nu: np.ndarray) -> Inputs:
@@ -62,13 +64,17 @@ def command_parameter(subject: Subject, name: str, straight: np.ndarray) -> Para
         return straight_torques(subject, nu)
 
     label = f"commanded straight motion $\\nu_{which + 1}^0$ [rad/s]"
-    return Parameter(name, label, float(straight[which]), lambda _: subject, inputs_of)
+    return Parameter(name, label, float(straight[which]), lambda _: subject, inputs_of, drive_line(subject, inputs_of))
 
 
 def scale_parameter(subject: Subject) -> Parameter:
     """A factor on all inputs of the scene."""
-    return Parameter("input_scale", "factor on the inputs [–]", 1.0, lambda _: subject,
-                     lambda value: {name: value * v for name, v in subject.inputs.items()})
+
+    def inputs_of(value: float) -> Inputs:
+        return {name: value * v for name, v in subject.inputs.items()}
+
+    label = "factor on the inputs [–]"
+    return Parameter("input_scale", label, 1.0, lambda _: subject, inputs_of, drive_line(subject, inputs_of))
 
 
 def vehicle_parameter(subject: Subject, key: str) -> Parameter:
@@ -78,7 +84,8 @@ def vehicle_parameter(subject: Subject, key: str) -> Parameter:
     current = float(subject.scene.vehicle.get(key, 0.0))
     unit = key.rsplit("_", 1)[-1]
     return Parameter(key, f"{key.removesuffix('_' + unit).replace('_', ' ')} [{unit}]", current,
-                     lambda value: changed(subject, key, value), lambda _: subject.inputs)
+                     lambda value: changed(subject, key, value), lambda _: subject.inputs,
+                     lambda value: changed(subject, key, value).field())
 
 
 def parameter_named(subject: Subject, name: str | None, straight: np.ndarray | None) -> Parameter:

@@ -167,9 +167,9 @@ def _driven_runs(study: Study, steady: SteadyPart) -> list[np.ndarray]:
     held = subject.core.input(steady.inputs)
     runs = []
     for start in starts:
-        plant = confirm.plant_at(subject, start, duration / 2400)
+        plant = confirm.plant_at(subject, start, duration / 1600)
         rows = [plant.nu]
-        for _ in range(1200):
+        for _ in range(800):
             plant.run(held, 2)
             rows.append(plant.nu)
         runs.append(np.array(rows))

@@ -71,10 +71,11 @@ def classify(field: Field, zeta: np.ndarray) -> SteadyMotion:
 
 def steady_at_yaw(field: Field, n: float) -> np.ndarray | None:
     """ζ of the steady motion with ν3 = n; None where the linear system does not determine it."""
-    matrix = np.diag(field.decay_per_s[: field.dof]) - n * field.cross_matrix
-    if np.linalg.cond(matrix) > 1e11:
+    m = field.dof
+    matrix = np.diag(field.decay_per_s[:m]) - n * field.cross_matrix
+    if not np.linalg.cond(matrix) < 1e11:
         return None
-    return np.linalg.solve(matrix, field.drive[: field.dof])
+    return np.linalg.solve(matrix, field.drive[:m])
 
 
 def _polished(field: Field, zeta: np.ndarray) -> np.ndarray | None:

@@ -19,7 +19,7 @@ from laconic.core import Core
 from laconic.drive import Drive
 from laconic.plant import Plant
 
-MOST_SAMPLES = 3000
+MOST_SAMPLES = 1500
 
 
 @dataclass
@@ -54,7 +54,7 @@ def study(subject: Subject, progress: Callable[[float], None] | None = None) -> 
     for first, last in zip(ticks[:-1], ticks[1:], strict=True):
         _sample(sampler, drive, first)
         slipped = slipped or _retaken(sampler, drive, ticks, first)
-        _advance(subject, plant, drive, first, last)
+        advance(subject, plant, drive, first, last)
         if progress is not None:
             progress(last / total)
     _sample(sampler, drive, total)
@@ -68,7 +68,7 @@ def _sample(sampler: _Sampler, drive: Drive, tick: int) -> None:
     sampler.take(tick * drive.step_s, values, drive.signals)
 
 
-def _advance(subject: Subject, plant: Plant, drive: Drive, first: int, last: int) -> None:
+def advance(subject: Subject, plant: Plant, drive: Drive, first: int, last: int) -> None:
     """The scene's steps from one tick to another; held inputs do not change in between."""
     if drive.is_held:
         plant.run(subject.core.input(drive.held_at(first)), last - first)
@@ -86,7 +86,7 @@ def _retaken(sampler: _Sampler, drive: Drive, ticks: list[int], at: int) -> bool
         saved, start = sampler.keep
         sampler.plant.restore(saved, start)
         for tick in range(start, at - 1):
-            _advance(sampler.subject, sampler.plant, drive, tick, tick + 1)
+            advance(sampler.subject, sampler.plant, drive, tick, tick + 1)
             _sample(sampler, drive, tick + 1)
             if sampler.slips():
                 break
