@@ -146,7 +146,8 @@ class Importer:
 
     def references(self, *names: str) -> Any:
         """Value references, as an array."""
-        return self.ffi.new(f"fmi{self.version}ValueReference[]", [self.variables[name].valueReference for name in names])
+        references = [self.variables[name].valueReference for name in names]
+        return self.ffi.new(f"fmi{self.version}ValueReference[]", references)
 
     def _type(self, name: str) -> str:
         return (TYPES_2 if self.version == 2 else TYPES_3)[self.variables[name].type]

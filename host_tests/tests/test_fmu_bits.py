@@ -17,6 +17,12 @@ VARIANTS = {"fmi2": (2, False), "fmi3": (3, False), "fmi3-scalar": (3, True)}
 STEPS, EVERY = 10_000, 100
 
 
+def signal_name(name: str, values: list[float], index: int) -> str:
+    """What the core calls one number of an input: with its index where the input has several, or one per wheel."""
+    return f"{name}[{index + 1}]" if len(values) > 1 or name.endswith(("_V", "axle_torque_Nm")) else name
+
+
+
 def outputs_of(plant: object, held: object) -> list[float]:
     """What the core says, in the order that fmu_row asks for."""
     pose, reactions = plant.pose, plant.reactions(held)
@@ -37,8 +43,8 @@ def random_inputs(count: int, wheels: int) -> list[dict[str, list[float]]]:
     random = np.random.default_rng(7)
     sizes = {"voltage_V": wheels, "axle_torque_Nm": wheels, "body_force_N": 2, "body_moment_Nm": 1,
              "world_force_N": 2, "world_force_point_m": 2}
-    scale = {"voltage_V": 2.0, "axle_torque_Nm": 0.01, "body_force_N": 0.3, "body_moment_Nm": 0.01, "world_force_N": 0.3,
-             "world_force_point_m": 0.1}
+    scale = {"voltage_V": 2.0, "axle_torque_Nm": 0.01, "body_force_N": 0.3, "body_moment_Nm": 0.01,
+             "world_force_N": 0.3, "world_force_point_m": 0.1}
     return [{name: (scale[name] * random.uniform(-1, 1, size)).tolist() for name, size in sizes.items()}
             for _ in range(count)]
 
@@ -56,8 +62,8 @@ def test_ten_thousand_steps_give_the_same_bits_as_the_core(scene_name: str, vari
         for k, inputs in enumerate(random_inputs(STEPS // EVERY, scene.wheel_count)):
             for name, values in inputs.items():
                 assert importer.set(name, *values) == OK
-            held = core.input({f"{name}[{i + 1}]" if len(values) > 1 or name.endswith(("_V", "axle_torque_Nm")) else name:
-                               value for name, values in inputs.items() for i, value in enumerate(values)})
+            held = core.input({signal_name(name, values, i): value for name, values in inputs.items()
+                               for i, value in enumerate(values)})
             for tick in range(k * EVERY, (k + 1) * EVERY):
                 assert importer.step(tick * step_s, step_s) == OK
             plant.run(held, EVERY)

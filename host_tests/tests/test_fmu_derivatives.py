@@ -49,8 +49,8 @@ def directional(importer: Importer, unknowns: tuple[str, ...], knowns: tuple[str
     count = sum(importer.size(name) for name in unknowns)
     result = importer.ffi.new("double[]", count)
     importer.must("GetDirectionalDerivative", importer.references(*unknowns), len(unknowns),
-                  importer.references(*knowns), len(knowns), importer.ffi.new("double[]", list(seed)), len(seed), result,
-                  count)
+                  importer.references(*knowns), len(knowns), importer.ffi.new("double[]", list(seed)), len(seed),
+                  result, count)
     return np.array(list(result))
 
 
@@ -94,8 +94,8 @@ def test_adjoint_derivatives_are_the_transpose(point: Importer) -> None:
     matrix = jacobian(point, unknowns, knowns)
     seed = np.random.default_rng(5).uniform(-1, 1, matrix.shape[0])
     result = point.ffi.new("double[]", matrix.shape[1])
-    point.must("GetAdjointDerivative", point.references(*unknowns), len(unknowns), point.references(*knowns), len(knowns),
-               point.ffi.new("double[]", list(seed)), len(seed), result, matrix.shape[1])
+    point.must("GetAdjointDerivative", point.references(*unknowns), len(unknowns), point.references(*knowns),
+               len(knowns), point.ffi.new("double[]", list(seed)), len(seed), result, matrix.shape[1])
     np.testing.assert_allclose(list(result), seed @ matrix, rtol=1e-12, atol=1e-12 * np.abs(matrix).max())
 
 
@@ -162,6 +162,6 @@ def test_what_has_no_derivative_is_refused_by_name(version: int) -> None:
         one, result = importer.ffi.new("double[]", [1.0]), importer.ffi.new("double[1]")
         more = ((1,), (1,)) if version == 3 else ((), ())
         for unknown, known, named in (("x_m", "mass_kg", "mass_kg"), ("mass_kg", "x_m", "mass_kg")):
-            assert importer.call("GetDirectionalDerivative", importer.references(unknown), 1, importer.references(known),
-                                 1, one, *more[0], result, *more[1]) == ERROR
+            assert importer.call("GetDirectionalDerivative", importer.references(unknown), 1,
+                                 importer.references(known), 1, one, *more[0], result, *more[1]) == ERROR
             assert named in importer.log[-1][2]
