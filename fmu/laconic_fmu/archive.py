@@ -8,8 +8,9 @@ from collections.abc import Mapping, Sequence
 from pathlib import Path
 
 from . import fmi2, fmi3
-from .description import parse, start_values, token_in, with_values
+from .description import Description, parse, start_values, token_in, with_values
 from .package import pack, start_file
+from .scalars import elements_of
 
 PLATFORMS = {
     "x86_64-linux": ("linux64", "x86_64-linux", ".so"),
@@ -47,6 +48,25 @@ def read_parts(path: Path) -> dict[str, bytes]:
         return {name: archive.read(name) for name in archive.namelist() if not name.endswith("/")}
 
 
+def terminals_of(text: str, description: Description, scalar: bool) -> str:
+    """The terminals for a description: array members are named element by element where there are no arrays."""
+    if not scalar:
+        return text
+    root = ET.fromstring(text)
+    for terminal in root.iter("Terminal"):
+        members = list(terminal)
+        for member in members:
+            terminal.remove(member)
+        for member in members:
+            for each in elements_of(description, description.variable(member.get("variableName", ""))):
+                suffix = f"[{each.element}]" if each.element else ""
+                ET.SubElement(terminal, member.tag, {"variableName": each.name,
+                                                     "memberName": member.get("memberName", "") + suffix,
+                                                     "variableKind": member.get("variableKind", "")})
+    ET.indent(root)
+    return f'<?xml version="1.0" encoding="UTF-8"?>\n{ET.tostring(root, encoding="unicode")}\n'
+
+
 def scene_fmu(generic: Path, source: Path, values: Mapping[str, Sequence[float]], name: str, text: str, out: Path, *,
               version: int, scalar: bool, stop_s: float, step_s: float) -> None:
     """Writes the FMU of a scene: the generic one with the scene's start values."""
@@ -63,5 +83,8 @@ def scene_fmu(generic: Path, source: Path, values: Mapping[str, Sequence[float]]
     else:
         xml = fmi3.describe_scalar(description) if scalar else fmi3.describe(description)
     parts["modelDescription.xml"] = xml.encode("utf-8")
+    if version == 3:
+        terminals = parts["terminalsAndIcons/terminalsAndIcons.xml"].decode("utf-8")
+        parts["terminalsAndIcons/terminalsAndIcons.xml"] = terminals_of(terminals, description, scalar).encode("utf-8")
     parts["resources/start.bin"] = start_file(start_values(description), token_in(xml), scalar or version == 2)
     pack(out, parts)

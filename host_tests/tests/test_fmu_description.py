@@ -12,6 +12,7 @@ import fmpy
 import pytest
 from fmpy.validation import validate_fmu
 from fmu_importer import generic
+from lxml import etree
 
 from laconic.fmu import DESCRIPTION, make_fmu
 from laconic.scene import read_scene
@@ -107,6 +108,23 @@ def test_a_scene_fmu_starts_with_the_scene(tmp_path: Path) -> None:
     assert variables["wheel_count"].start == "2"
     assert variables["wheel_count"].variability == "constant"
     assert "wheel_x_m[3]" not in variables
+
+
+def test_terminals_icon_documentation_and_licence_are_inside(fmus: list[Path]) -> None:
+    schema = etree.XMLSchema(file=str(Path(fmpy.__file__).parent / "schema" / "fmi3" / "fmi3TerminalsAndIcons.xsd"))
+    for fmu in fmus:
+        with zipfile.ZipFile(fmu) as archive:
+            names = set(archive.namelist())
+            assert {"documentation/index.html", "documentation/licenses/license.txt"} <= names
+            variables = {v.name for v in fmpy.read_model_description(str(fmu), validate=False).modelVariables}
+            if "model.png" in names:
+                continue
+            assert {"terminalsAndIcons/icon.png", "terminalsAndIcons/icon.svg"} <= names
+            terminals = etree.fromstring(archive.read("terminalsAndIcons/terminalsAndIcons.xml"))
+            schema.assertValid(terminals)
+            members = [member.get("variableName") for member in terminals.iter("TerminalMemberVariable")]
+            assert members
+            assert set(members) <= variables
 
 
 def test_the_archive_is_the_same_every_time(tmp_path: Path) -> None:
