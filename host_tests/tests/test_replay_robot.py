@@ -11,10 +11,11 @@ from laconic import cli
 from laconic.analysis.from_core import subject_of
 from laconic.errors import BadInput
 from laconic.paths import SOURCE_DIR
-from laconic.replay import report, session
+from laconic.replay import report
 from laconic.replay.compare import block_mean, compare, predicted_speeds, rolled
 from laconic.replay.friction import MODELS, Friction, fit, parameter_names, torque_per_ampere
 from laconic.replay.log import DEFAULT_MAP, read_log, read_map
+from laconic.replay.runs import gather, run
 from laconic.scene import read_scene
 
 RECORDED = SOURCE_DIR.parent / "shared" / "robotino"
@@ -212,8 +213,8 @@ def test_map_with_an_unknown_key_names_it(tmp_path):
 
 @pytest.fixture(scope="module")
 def recorded(robot):
-    found, names, skipped = session.gather(RECORDED, (), read_map(DEFAULT_MAP))
-    return session.run(robot, found, names, skipped, lambda *_, **__: None)
+    found, names, skipped = gather(RECORDED, (), read_map(DEFAULT_MAP))
+    return run(robot, found, names, skipped, lambda *_, **__: None)
 
 
 @needs_records

@@ -29,14 +29,15 @@ def command(log: Path, scene: str, fit_on: tuple[Path, ...], map_path: Path | No
     """
     from laconic.analysis.from_core import subject_of
     from laconic.progress import progress_bar
-    from laconic.replay import report, session
+    from laconic.replay import report
     from laconic.replay.log import DEFAULT_MAP, read_map
+    from laconic.replay.runs import gather, run
     from laconic.scene import read_scene
 
     subject = subject_of(read_scene(scene))
-    runs, names, skipped = session.gather(log, fit_on, read_map(map_path or DEFAULT_MAP))
+    runs, names, skipped = gather(log, fit_on, read_map(map_path or DEFAULT_MAP))
     with progress_bar("replaying", len(runs) + 1) as advance:
-        found = session.run(subject, runs, names, skipped, advance)
+        found = run(subject, runs, names, skipped, advance)
     numbers = report.as_numbers(found)
     if out is not None:
         pictures = report.draw(found, out)

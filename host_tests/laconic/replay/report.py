@@ -10,29 +10,29 @@ import numpy as np
 from laconic.plotting import figure, save
 from laconic.replay.compare import Comparison
 from laconic.replay.friction import Friction
-from laconic.replay.session import Session
+from laconic.replay.runs import Replay
 
 COLOURS = {"ideal": "tab:green", "dry": "tab:orange", "dry and drag": "tab:blue"}
 UNITS = {"damping_Nms": ("damping c2", "N·m·s"), "drag_N": ("drag against the travel", "N")}
 
 
-def as_text(session: Session) -> str:
+def as_text(replay: Replay) -> str:
     """A report in Markdown."""
-    lines = [f"# Recorded runs of {session.subject.scene.name}", "", *_fit_lines(session), "",
-             "## Rolled distance over camera distance, and steady currents", "", *_run_table(session), "",
-             "## Errors of the prediction", "", *_error_table(session), "", "## In words", ""]
-    return "\n".join([*lines, *(f"* {sentence}" for sentence in in_words(session)), ""])
+    lines = [f"# Recorded runs of {replay.subject.scene.name}", "", *_fit_lines(replay), "",
+             "## Rolled distance over camera distance, and steady currents", "", *_run_table(replay), "",
+             "## Errors of the prediction", "", *_error_table(replay), "", "## In words", ""]
+    return "\n".join([*lines, *(f"* {sentence}" for sentence in in_words(replay)), ""])
 
 
-def _fit_lines(session: Session) -> list[str]:
-    alone = "" if len(session.comparisons) > 1 else " (the very run that is judged: a fit, no prediction)"
-    lines = [f"Fitted on {', '.join(session.fitted_on)}{alone}; torques at the wheel, 95 % confidence intervals:", ""]
-    for model in session.models:
+def _fit_lines(replay: Replay) -> list[str]:
+    alone = "" if len(replay.comparisons) > 1 else " (the very run that is judged: a fit, no prediction)"
+    lines = [f"Fitted on {', '.join(replay.fitted_on)}{alone}; torques at the wheel, 95 % confidence intervals:", ""]
+    for model in replay.models:
         parts = [f"{_name(name)[0]} {_pm(value, half)} {_name(name)[1]}"
                  for name, value, half in zip(model.names, model.values, model.half_widths, strict=True)]
         lines.append(f"* **{model.model}**: {', '.join(parts)}; residual {model.residual_Nm:.3f} N·m")
-    if session.skipped:
-        lines += ["", f"Left out, not runs of this kind: {', '.join(session.skipped)}."]
+    if replay.skipped:
+        lines += ["", f"Left out, not runs of this kind: {', '.join(replay.skipped)}."]
     return lines
 
 
@@ -46,12 +46,12 @@ def _pm(value: float, half: float) -> str:
     return f"{value:.3g}" if not np.isfinite(half) else f"{value:.3g} ± {half:.2g}"
 
 
-def _run_table(session: Session) -> list[str]:
-    count = session.subject.wheel_count
+def _run_table(replay: Replay) -> list[str]:
+    count = replay.subject.wheel_count
     head = "".join(f" current {i + 1} [A] |" for i in range(count))
     lines = [f"| run | direction [°] | set speed [m/s] | rolled [m] | camera [m] | rolled / camera | "
              f"rolled to [°] | went to [°] |{head}", "| --- " * (8 + count) + "|"]
-    for c in session.comparisons:
+    for c in replay.comparisons:
         r = c.rolled
         camera = "–" if r.ratio is None else f"{r.camera_m:.3f}"
         ratio = "–" if r.ratio is None else f"{r.ratio.value:.2f} ± {r.ratio.half_width:.2f}"
@@ -59,7 +59,7 @@ def _run_table(session: Session) -> list[str]:
         went = "–" if r.ratio is None else f"{_whole_deg(r.camera_direction_deg)}"
         lines.append(f"| {c.recording.name} | {_whole_deg(r.direction_deg)} | {r.speed_m_per_s:.1f} | {r.rolled_m:.3f} "
                      f"| {camera} | {ratio} | {_whole_deg(r.rolled_direction_deg)} | {went} |{currents}")
-    if any((c.recording.set_speed_rad_per_s == 0.0).all(axis=0).any() for c in session.comparisons):
+    if any((c.recording.set_speed_rad_per_s == 0.0).all(axis=0).any() for c in replay.comparisons):
         lines += ["", "The log has no sign for the current of a wheel that is told to stand; it counts as zero."]
     return lines
 
@@ -68,46 +68,46 @@ def _whole_deg(angle_deg: float) -> int:
     return round(angle_deg) % 360
 
 
-def _error_table(session: Session) -> list[str]:
-    names = [model.model for model in session.models]
+def _error_table(replay: Replay) -> list[str]:
+    names = [model.model for model in replay.models]
     lines = ["Wheel speeds over the first second (root mean square, share of the measured speed) and steady "
              "currents:", "",
              "| run | used for |" + "".join(f" {n}: speed [rad/s] | {n}: current [A] |" for n in names),
              "| --- " * (2 + 2 * len(names)) + "|"]
-    for c in session.comparisons:
-        use = "fit" if c.recording.name in session.fitted_on else "judging"
+    for c in replay.comparisons:
+        use = "fit" if c.recording.name in replay.fitted_on else "judging"
         cells = "".join(f" {p.transient_error:.2f} ({100 * p.transient_error_share:.0f} %) | {p.steady_error_A:.3f} |"
                         for p in c.predictions)
         lines.append(f"| {c.recording.name} | {use} |{cells}")
-    means = "".join(f" {_mean(session, k, 'transient_error'):.2f} "
-                    f"({100 * _mean(session, k, 'transient_error_share'):.0f} %)"
-                    f" | {_mean(session, k, 'steady_error_A'):.3f} |" for k in range(len(names)))
+    means = "".join(f" {_mean(replay, k, 'transient_error'):.2f} "
+                    f"({100 * _mean(replay, k, 'transient_error_share'):.0f} %)"
+                    f" | {_mean(replay, k, 'steady_error_A'):.3f} |" for k in range(len(names)))
     return [*lines, f"| **mean of the judged** | |{means}"]
 
 
-def _mean(session: Session, model: int, what: str) -> float:
-    return float(np.mean([getattr(c.predictions[model], what) for c in session.judged()]))
+def _mean(replay: Replay, model: int, what: str) -> float:
+    return float(np.mean([getattr(c.predictions[model], what) for c in replay.judged()]))
 
 
-def in_words(session: Session) -> list[str]:
+def in_words(replay: Replay) -> list[str]:
     """What the ideal model explains and what it does not; every number is computed."""
-    words = [sentence for sentence in (_slip_words(session), _direction_words(session)) if sentence]
-    ideal, dry, drag = (_mean(session, k, "steady_error_A") for k in range(3))
-    size = float(np.mean([np.sqrt(np.mean([m.value**2 for m in c.steady_current_A])) for c in session.judged()]))
+    words = [sentence for sentence in (_slip_words(replay), _direction_words(replay)) if sentence]
+    ideal, dry, drag = (_mean(replay, k, "steady_error_A") for k in range(3))
+    size = float(np.mean([np.sqrt(np.mean([m.value**2 for m in c.steady_current_A])) for c in replay.judged()]))
     words.append(f"Steady currents of the runs that were not fitted: (4.7) alone, with the best constant damping, is "
                  f"wrong by "
                  f"{ideal:.2f} A of {size:.2f} A; with a dry-friction torque per wheel by {dry:.2f} A; with a drag "
                  f"against the "
                  f"travel besides by {drag:.2f} A.")
-    words.append(_damping_words(session.models[1]))
-    words.append(_drag_words(session.models[2]))
-    words.append(_transient_words(session))
+    words.append(_damping_words(replay.models[1]))
+    words.append(_drag_words(replay.models[2]))
+    words.append(_transient_words(replay))
     return words
 
 
-def _transient_words(session: Session) -> str:
-    shares = [100.0 * _mean(session, k, "transient_error_share") for k in range(3)]
-    told = ", ".join(f"{share:.0f} % ({model.model})" for share, model in zip(shares, session.models, strict=True))
+def _transient_words(replay: Replay) -> str:
+    shares = [100.0 * _mean(replay, k, "transient_error_share") for k in range(3)]
+    told = ", ".join(f"{share:.0f} % ({model.model})" for share, model in zip(shares, replay.models, strict=True))
     sentence = f"Wheel speeds of the first second, driven by the measured currents alone, are wrong by {told}."
     if min(shares) < 25.0:
         return sentence
@@ -115,8 +115,8 @@ def _transient_words(session: Session) -> str:
             "difference of large numbers: with none of these constant friction laws does the current tell the speed.")
 
 
-def _slip_words(session: Session) -> str:
-    ratios = [c.rolled.ratio for c in session.comparisons if c.rolled.ratio is not None]
+def _slip_words(replay: Replay) -> str:
+    ratios = [c.rolled.ratio for c in replay.comparisons if c.rolled.ratio is not None]
     if not ratios:
         return "There is no camera: rolling cannot be judged."
     low, high = min(r.value for r in ratios), max(r.value for r in ratios)
@@ -148,8 +148,8 @@ def _drag_words(drag: Friction) -> str:
             "rather than in the gears.")
 
 
-def _direction_words(session: Session) -> str | None:
-    seen = [c.rolled for c in session.comparisons if c.rolled.ratio is not None]
+def _direction_words(replay: Replay) -> str | None:
+    seen = [c.rolled for c in replay.comparisons if c.rolled.ratio is not None]
     if not seen:
         return None
 
@@ -163,17 +163,17 @@ def _direction_words(session: Session) -> str | None:
             f"{worst.rolled_direction_deg:.0f}°): slip is not the same in all directions.")
 
 
-def as_numbers(session: Session) -> dict[str, Any]:
+def as_numbers(replay: Replay) -> dict[str, Any]:
     """For machines."""
     from laconic.analysis.report import plain
 
     models = [{"model": m.model, "residual_Nm": m.residual_Nm,
                "parameters": {name: {"value": value, "half_width_95": half}
                               for name, value, half in zip(m.names, m.values, m.half_widths, strict=True)}}
-              for m in session.models]
-    return plain({"scene": str(session.subject.scene.path), "fitted_on": session.fitted_on, "models": models,
-                  "runs": [_numbers(c) for c in session.comparisons], "words": in_words(session),
-                  "skipped": session.skipped})
+              for m in replay.models]
+    return plain({"scene": str(replay.subject.scene.path), "fitted_on": replay.fitted_on, "models": models,
+                  "runs": [_numbers(c) for c in replay.comparisons], "words": in_words(replay),
+                  "skipped": replay.skipped})
 
 
 def _numbers(c: Comparison) -> dict[str, Any]:
@@ -193,21 +193,21 @@ def _numbers(c: Comparison) -> dict[str, Any]:
 # ---- pictures
 
 
-def draw(session: Session, folder: Path) -> list[Path]:
+def draw(replay: Replay, folder: Path) -> list[Path]:
     """Measured and predicted with residuals, rolled over camera, steady currents."""
     makers = {"replay": _speeds_picture, "rolled": _rolled_picture, "currents": _currents_picture}
     drawn = []
     for name, make in makers.items():
-        picture = make(session)
+        picture = make(replay)
         if picture is not None:
             save(picture, folder / f"{name}.png")
             drawn.append(folder / f"{name}.png")
     return drawn
 
 
-def _speeds_picture(session: Session):
+def _speeds_picture(replay: Replay):
     """Wheel speeds of one run, measured and predicted, and what is left over."""
-    shown, count = session.shown, session.subject.wheel_count
+    shown, count = replay.shown, replay.subject.wheel_count
     picture = figure(9.0, 2.0 * (count + 1))
     rows = picture.subplots(count + 1, 1, sharex=True)
     time, measured = shown.recording.time_s, shown.recording.smooth_speed_rad_per_s
@@ -228,9 +228,9 @@ def _speeds_picture(session: Session):
     return picture
 
 
-def _rolled_picture(session: Session):
+def _rolled_picture(replay: Replay):
     """Rolled over camera distance by direction; one colour per speed."""
-    seen = [c for c in session.comparisons if c.rolled.ratio is not None]
+    seen = [c for c in replay.comparisons if c.rolled.ratio is not None]
     if not seen:
         return None
     picture = figure(7.2, 4.6)
@@ -250,14 +250,14 @@ def _rolled_picture(session: Session):
     return picture
 
 
-def _currents_picture(session: Session):
+def _currents_picture(replay: Replay):
     """Steady currents: predicted over measured, for the runs that were not fitted."""
     picture = figure(6.4, 5.8)
     axes = picture.subplots()
-    judged = session.judged()
+    judged = replay.judged()
     measured = np.array([[m.value for m in c.steady_current_A] for c in judged])
     widths = np.array([[m.half_width for m in c.steady_current_A] for c in judged])
-    for k, model in enumerate(session.models):
+    for k, model in enumerate(replay.models):
         predicted = np.array([c.predictions[k].steady_current_A for c in judged])
         axes.errorbar(measured.ravel(), predicted.ravel(), xerr=widths.ravel(), fmt="osD"[k], ms=5, lw=0.8,
                       color=COLOURS[model.model], mfc="none", label=model.model)

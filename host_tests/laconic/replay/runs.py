@@ -17,7 +17,7 @@ from laconic.replay.log import ColumnMap, Recording, read_log
 
 
 @dataclass
-class Session:
+class Replay:
     """What was fitted on what, and what that says about the others."""
 
     subject: Subject
@@ -69,7 +69,7 @@ def _folder(given: Path, columns: ColumnMap) -> tuple[list[Recording], list[str]
 
 
 def run(subject: Subject, runs: list[Recording], fit_names: list[str], skipped: list[str],
-        advance: Callable[..., None]) -> Session:
+        advance: Callable[..., None]) -> Replay:
     """Fits, then compares run by run."""
     if runs[0].wheel_angle_rad.shape[1] != subject.wheel_count:
         raise BadInput(f"{subject.scene.path}: has {subject.wheel_count} wheels, the column map "
@@ -86,4 +86,4 @@ def run(subject: Subject, runs: list[Recording], fit_names: list[str], skipped: 
     others = [recording for recording in runs if recording.name not in fit_names] or runs
     shown = compare(subject, others[0], models, whole=True)
     advance(1, what="drawing")
-    return Session(subject, fit_names, models, comparisons, shown, skipped)
+    return Replay(subject, fit_names, models, comparisons, shown, skipped)
