@@ -15,7 +15,7 @@ from laconic.replay import report
 from laconic.replay.compare import block_mean, compare, predicted_speeds, rolled
 from laconic.replay.friction import MODELS, Friction, fit, parameter_names, torque_per_ampere
 from laconic.replay.log import DEFAULT_MAP, read_log, read_map
-from laconic.replay.runs import gather, run
+from laconic.replay.runs import compare_all, gather
 from laconic.scene import read_scene
 
 RECORDED = SOURCE_DIR.parent / "shared" / "robotino"
@@ -214,7 +214,7 @@ def test_map_with_an_unknown_key_names_it(tmp_path):
 @pytest.fixture(scope="module")
 def recorded(robot):
     found, names, skipped = gather(RECORDED, (), read_map(DEFAULT_MAP))
-    return run(robot, found, names, skipped, lambda *_, **__: None)
+    return compare_all(robot, found, names, skipped, lambda *_, **__: None)
 
 
 @needs_records

@@ -31,13 +31,13 @@ def command(log: Path, scene: str, fit_on: tuple[Path, ...], map_path: Path | No
     from laconic.progress import progress_bar
     from laconic.replay import report
     from laconic.replay.log import DEFAULT_MAP, read_map
-    from laconic.replay.runs import gather, run
+    from laconic.replay.runs import compare_all, gather
     from laconic.scene import read_scene
 
     subject = subject_of(read_scene(scene))
     runs, names, skipped = gather(log, fit_on, read_map(map_path or DEFAULT_MAP))
     with progress_bar("replaying", len(runs) + 1) as advance:
-        found = run(subject, runs, names, skipped, advance)
+        found = compare_all(subject, runs, names, skipped, advance)
     numbers = report.as_numbers(found)
     if out is not None:
         pictures = report.draw(found, out)

@@ -68,7 +68,7 @@ def _folder(given: Path, columns: ColumnMap) -> tuple[list[Recording], list[str]
     return runs, skipped
 
 
-def run(subject: Subject, runs: list[Recording], fit_names: list[str], skipped: list[str],
+def compare_all(subject: Subject, runs: list[Recording], fit_names: list[str], skipped: list[str],
         advance: Callable[..., None]) -> Replay:
     """Fits, then compares run by run."""
     if runs[0].wheel_angle_rad.shape[1] != subject.wheel_count:
