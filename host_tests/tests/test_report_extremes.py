@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import numpy as np
 import pytest
+
 from laconic.core import REALS, load
 from laconic.report.extremes import CASES, Extreme, run_case
 from laconic.scene import read_scene
