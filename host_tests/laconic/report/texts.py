@@ -20,7 +20,8 @@ Read it from the left: take the lowest point that you can afford. A point that i
 PEERS = """
 Scene S1 (three omni wheels, all voltages a square wave of 1 s), steps of 10 ms, gcc -O2. Both sides in one run,
 interleaved, thread CPU time, the least of many rounds; `ratio` is the time over that of CasADi's generated RK4 of the
-same nine states. Instructions by cachegrind, as I(2n) − I(n).
+same nine states. Instructions by cachegrind, as I(2n) − I(n). The core works a held input out once for all the steps it
+is held over, CasADi's step gets it every time.
 
 The general solvers restart at every jump of the voltages. Adams and BDF are CVODE's, from C.
 """
@@ -45,12 +46,14 @@ BOARDS = """
 Scene S1 with pose and wheel angles under QEMU (-icount): instructions, not cycles; the same digits in every run. Code:
 the functions that a step can reach. Flash: all that a step links, its prepared constants included. Stack: worst path of
 the call graph, and the most that a run was seen to use. Where the processor has no double-precision FPU (all but the
-M7) double is emulated.
+M7) double is emulated; on the M3 and M4 libgcc's emulation has a rounding error that can change the last digit
+(docs/performance.md).
 """
 
 SCENES = """
 The same scene with the whole core and with a core built for it alone (cmake -DLACONIC_SCENE=…), by its own method, -Os,
-Cortex-M4F. The state after the run is the same to the last bit.
+Cortex-M4F. Whole and trimmed give the same bits; `host's bits`: so does the host (in double but for libgcc's rounding
+error, see above).
 """
 
 REFERENCES = """
