@@ -9,6 +9,7 @@ from laconic.paths import scene_names
 from laconic.rig.boards import BOARDS, emulated_node, why_no_emulation
 from laconic.rig.judge import judge_scaled
 from laconic.rig.lockstep import run_lockstep, twin_states
+from laconic.rig.sizes import cost_of
 from laconic.scene import Scene, read_scene
 
 pytestmark = pytest.mark.skipif(why_no_emulation() is not None, reason=why_no_emulation() or "")
@@ -60,3 +61,16 @@ def test_one_command_and_one_answer_a_step_run_at_150_steps_a_second_or_more() -
     assert judgement.passed, judgement.verdicts
     assert judgement.figures["frames_out_per_exchange"] < 1.1 and judgement.figures["frames_in_per_exchange"] < 1.1
     assert judgement.figures["steps_per_s"] >= 150
+
+
+def test_flash_ram_stack_and_instructions_are_printed_and_the_small_image_is_small(
+        capsys: pytest.CaptureFixture[str]) -> None:
+    costs = [cost_of(name) for name in BOARDS]
+    with capsys.disabled():
+        print(f"\n  {'board':12s} {'flash':>6s} {'RAM':>6s} {'stack':>6s}  instructions")
+        for cost in costs:
+            counted = "  ".join(f"{name} {number}" for name, number in cost.instructions.items())
+            print(f"  {cost.board:12s} {cost.flash:6d} {cost.static_ram:6d} {cost.stack:6d}  {counted}")
+    small = costs[-1]
+    assert small.board == "an386-small" and small.flash < 16 * 1024 and small.static_ram + small.stack < 4 * 1024
+    assert all(cost.instructions["on_tick_with_step"] > 300 for cost in costs[:-1])

@@ -155,7 +155,7 @@ def node_for(scene: Scene, options: Options, id_base: int) -> Iterator[NodeClien
         if options.channel is not None:
             raise BadInput(f"--channel {options.channel}: say which --interface it belongs to, such as slcan")
         if options.bus_options:
-            raise BadInput(f"--bus-option {options.bus_options[0]}: say which --interface it belongs to, such as faulty "
+            raise BadInput(f"--bus-option {options.bus_options[0]}: say which --interface it is for, such as faulty "
                            "(NAME=VALUE)")
         with own_node(options.board or "virtual", scene.run.real, id_base) as node:
             yield node
