@@ -49,15 +49,16 @@ def portrait_picture(study: Study) -> Figure | None:
     axes.set_xlim(*_padded(every[:, 2]))
     axes.set_ylim(*_padded(ordinate))
     for piece, kind in pieces:
-        colour = "tab:blue" if kind == "periodic" else "tab:orange"
-        axes.plot(piece[:, 2], piece[:, :2] @ view.across, color=colour, lw=THIN)
+        colour, style = ("tab:blue", "-") if kind == "periodic" else ("tab:orange", "-.")
+        axes.plot(piece[:, 2], piece[:, :2] @ view.across, color=colour, lw=THIN, ls=style)
         _arrow(axes, piece[:, 2], piece[:, :2] @ view.across, colour)
     for piece in own:
         axes.plot(piece[:, 2], piece[:, :2] @ view.across, color="k", lw=2.0)
     _line_of_straight_motion(axes, view.straight_slope)
     axes.plot(view.centre, 0.0, "k+", ms=11, mew=1.6)
     kinds = {kind for _, kind in pieces}
-    entries = [(c, THIN, "-", k) for c, k in (("tab:blue", "periodic"), ("tab:orange", "asymptotic")) if k in kinds]
+    looks = (("tab:blue", "-", "periodic"), ("tab:orange", "-.", "asymptotic"))
+    entries = [(colour, THIN, style, kind) for colour, style, kind in looks if kind in kinds]
     entries += [("k", 2.0, "-", "this motion")] if own else []
     entries += [("tab:green", BOLD, "-", "straight motion, stable"), ("tab:green", THIN, "--", "straight motion, "
                                                                                                "unstable")]

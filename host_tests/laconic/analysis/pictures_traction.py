@@ -10,6 +10,8 @@ from laconic.analysis.findings import Study
 from laconic.analysis.traction import Traction
 from laconic.plotting import figure
 
+STYLES = ("-", "--", "-.", (0, (3, 1, 1, 1, 1, 1)))  # so that wheels differ in black and white too
+
 
 def traction_picture(study: Study) -> Figure | None:
     """Normal loads, reactions, and use of the friction cone."""
@@ -22,9 +24,9 @@ def traction_picture(study: Study) -> Figure | None:
     n, t = study.subject.wheel_count, found.time_s
     for i in range(found.normal_N.shape[1]):
         label = f"wheel {i + 1}" if i < n else f"support {i - n + 1}"
-        rows[0].plot(t, found.normal_N[:, i], label=label, ls="-" if i < n else ":")
+        rows[0].plot(t, found.normal_N[:, i], label=label, ls=STYLES[i % 4] if i < n else ":")
     for i in range(n):
-        rows[1].plot(t, np.hypot(found.along_N[:, i], found.lateral_N[:, i]), label=f"wheel {i + 1}")
+        rows[1].plot(t, np.hypot(found.along_N[:, i], found.lateral_N[:, i]), ls=STYLES[i % 4])
     rows[0].set(ylabel="normal load [N]", title=f"{study.subject.scene.name}\nwhat the ground must deliver")
     rows[1].set(ylabel="reaction [N]")
     if judged:
@@ -44,7 +46,7 @@ def traction_picture(study: Study) -> Figure | None:
 def _use(axes: Axes, found: Traction, count: int) -> None:
     top = min(3.0, max(1.15, 1.08 * float(np.nanmax(np.where(np.isfinite(found.use), found.use, 0.0)))))
     for i in range(count):
-        axes.plot(found.time_s, np.minimum(found.use[:, i], 1.2 * top))
+        axes.plot(found.time_s, np.minimum(found.use[:, i], 1.2 * top), ls=STYLES[i % 4])
     axes.axhspan(1.0, top, color="tab:red", alpha=0.10, lw=0)
     axes.axhline(1.0, color="tab:red", lw=1.0)
     axes.set_ylim(0.0, top)

@@ -13,6 +13,7 @@ from laconic.replay.friction import Friction
 from laconic.replay.runs import Replay
 
 COLOURS = {"ideal": "tab:green", "dry": "tab:orange", "dry and drag": "tab:blue"}
+STYLES = {"ideal": "--", "dry": "-.", "dry and drag": "-"}
 UNITS = {"damping_Nms": ("damping c2", "N·m·s"), "drag_N": ("drag against the travel", "N")}
 
 
@@ -214,16 +215,18 @@ def _speeds_picture(replay: Replay):
     for i in range(count):
         rows[i].plot(time, measured[:, i], color="k", lw=1.6)
         for p in shown.predictions:
-            rows[i].plot(time, p.speed_rad_per_s[:, i], color=COLOURS[p.model], lw=1.1)
+            rows[i].plot(time, p.speed_rad_per_s[:, i], color=COLOURS[p.model], ls=STYLES[p.model], lw=1.1)
         rows[i].set_ylabel(f"wheel {i + 1}\nspeed [rad/s]")
     for p in shown.predictions:
-        rows[-1].plot(time, np.sqrt(((p.speed_rad_per_s - measured) ** 2).mean(axis=1)), color=COLOURS[p.model], lw=1.1)
+        residual = np.sqrt(((p.speed_rad_per_s - measured) ** 2).mean(axis=1))
+        rows[-1].plot(time, residual, color=COLOURS[p.model], ls=STYLES[p.model], lw=1.1)
     rows[-1].set(ylabel="residual, root mean\nsquare [rad/s]", xlabel="time [s]")
     rows[0].set_title(f"{shown.recording.name}: {shown.rolled.direction_deg:.0f}°, {shown.rolled.speed_m_per_s:.1f} "
                       f"m/s\n"
                       "wheel speeds from the measured currents")
     handles = [rows[0].plot([], [], color="k", lw=1.6, label="measured")[0]]
-    handles += [rows[0].plot([], [], color=COLOURS[p.model], label=p.model)[0] for p in shown.predictions]
+    handles += [rows[0].plot([], [], color=COLOURS[p.model], ls=STYLES[p.model], label=p.model)[0]
+                for p in shown.predictions]
     picture.legend(handles=handles, loc="outside lower center", ncols=4, fontsize=9)
     return picture
 

@@ -69,7 +69,7 @@ def _folder(given: Path, columns: ColumnMap) -> tuple[list[Recording], list[str]
 
 
 def compare_all(subject: Subject, runs: list[Recording], fit_names: list[str], skipped: list[str],
-        advance: Callable[..., None]) -> Replay:
+                advance: Callable[..., None]) -> Replay:
     """Fits, then compares run by run."""
     if runs[0].wheel_angle_rad.shape[1] != subject.wheel_count:
         raise BadInput(f"{subject.scene.path}: has {subject.wheel_count} wheels, the column map "
