@@ -160,6 +160,7 @@ fmu_status fmu_set_input_derivatives(fmu_instance *instance, fmu_references inpu
     size_t k;
     fmu_slot slot;
     fmu_status status = check_inputs(instance, inputs, values);
+    if (!FMU_PLANT_TAKES_SLOPES) return fmu_refuse(instance, "the inputs are held over a step: they take no derivatives");
     if (status == FMU_OK) status = check_orders(instance, inputs.count, orders);
     if (status != FMU_OK) return status;
     for (k = 0; k < inputs.count; k++) {

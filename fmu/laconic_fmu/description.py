@@ -12,7 +12,9 @@ from pathlib import Path
 ELEMENT_SHIFT = 10
 """Element i of the array with the value reference v has the reference v + (i << ELEMENT_SHIFT)."""
 
-ELEMENTWISE = {("wheel_torque_Nm", "voltage_V"), ("wheel_torque_Nm", "axle_torque_Nm")}
+ELEMENTWISE = {("wheel_torque_Nm", "voltage_V"), ("wheel_torque_Nm", "axle_torque_Nm")} | {
+    (unknown, known) for unknown in ("voltage_V", "der(angle_error_rad)")
+    for known in ("setpoint_rad_per_s", "wheel_speed_rad_per_s", "angle_error_rad")}
 """Outputs (first) of which each element depends on the same element of the other array only."""
 
 INTERFACE_ATTRIBUTES = ("causality", "variability", "initial", "intermediateUpdate", "declaredType", "min", "max",

@@ -9,6 +9,8 @@ from .description import Description, with_token
 from .scalars import Scalar, ScalarUnknown, scalars, unknowns
 
 TYPES = {"Float64": "Real", "Int32": "Integer", "UInt64": "Integer", "Enumeration": "Enumeration", "Boolean": "Boolean"}
+INTERPOLATES = {"true": {"canInterpolateInputs": "true"}, "false": {}}
+"""FMI 2.0 gives inputs a slope where FMI 3.0 asks for them in between."""
 HEADER = ("modelName", "description", "author", "version", "copyright", "license", "generationTool",
           "variableNamingConvention")
 
@@ -79,7 +81,8 @@ def describe(description: Description, source_files: Sequence[str] = ()) -> str:
     if exchange is not None:
         _interface(root, "ModelExchange", exchange, {}, source_files)
     if simulation is not None:
-        extra = {"canHandleVariableCommunicationStepSize": "true", "canInterpolateInputs": "true",
+        interpolates = INTERPOLATES[simulation.get("providesIntermediateUpdate", "false")]
+        extra = {"canHandleVariableCommunicationStepSize": "true", **interpolates,
                  "maxOutputDerivativeOrder": simulation.get("maxOutputDerivativeOrder", "0")}
         _interface(root, "CoSimulation", simulation, extra, source_files)
     for tag in ("UnitDefinitions", "TypeDefinitions", "LogCategories", "DefaultExperiment"):

@@ -6,6 +6,7 @@
 #include "laconic/laconic.h"
 
 #define FMU_PLANT_LARGEST_ARRAY LACONIC_MAX_WHEELS
+#define FMU_PLANT_TAKES_SLOPES true
 
 /* Elements of the arrays whose size wheel_count says; it is never set beyond FMU_PLANT_LARGEST_ARRAY. */
 #define FMU_PLANT_ARRAY_SIZE(plant) ((uint32_t)(plant)->vehicle.wheel_count)

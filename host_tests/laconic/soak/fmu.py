@@ -19,8 +19,8 @@ def soak(minutes: float, seed: int, advance: Callable[[float], None]) -> dict[st
     left_s, inputs, slices = 60.0 * minutes, len(corpus), 0
     while left_s > 0.0 and said.returncode == 0:
         slice_s = min(SLICE_S, left_s)
-        said = subprocess.run([str(program), "--seconds", f"{slice_s:.3f}", "--seed", str(seed + 1_000_003 * slices), "--out",
-                               str(culprit)], capture_output=True, text=True)
+        said = subprocess.run([str(program), "--seconds", f"{slice_s:.3f}", "--seed", str(seed + 1_000_003 * slices),
+                               "--out", str(culprit)], capture_output=True, text=True)
         inputs += int(said.stdout.strip() or 0)
         left_s, slices = left_s - slice_s, slices + 1
         advance(slice_s)
