@@ -105,8 +105,9 @@ class _NormCount:
             self.refused[refused.status] = self.refused.get(refused.status, 0) + 1
             return
         self.taken += 1
-        growth = (_norm(plant) - before) / before / np.finfo(core.dtype).eps if before > 0 else 0.0
-        self.worst_ulp = max(self.worst_ulp, float(growth))
+        after = _norm(plant)
+        ulp = float(np.spacing(core.dtype.type(before)))
+        self.worst_ulp = max(self.worst_ulp, float(after - before) / ulp)
 
     def row(self) -> dict[str, Any]:
         """For the table."""
@@ -115,7 +116,7 @@ class _NormCount:
                 "worst_growth_ulp": self.worst_ulp}
 
 
-def _norm(plant: Plant) -> float:
-    """|ζ| = √(νᵀAν), value and rest, in double."""
-    zeta = [float(part.value) + float(part.rest) for part in plant.c.state.zeta]
-    return float(np.sqrt(np.dot(zeta, zeta)))
+def _norm(plant: Plant) -> np.longdouble:
+    """|ζ| = √(νᵀAν), value and rest, in more digits than the core has: its own rounding must not count."""
+    zeta = [np.longdouble(part.value) + np.longdouble(part.rest) for part in plant.c.state.zeta]
+    return np.sqrt(np.sum(np.square(np.array(zeta))))
