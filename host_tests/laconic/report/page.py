@@ -134,7 +134,7 @@ def _boards(results: dict[str, list[Row]]) -> Section:
     main = [row for row in rows if row["processor"] == "Cortex-M4F" and row["real"] == "single"]
     fields = ("processor", "real", "method", "optimisation", "build", "instructions", "step_code", "flash", "tables",
               "state", "worst_stack", "stack_measured", "same_bits")
-    return _section("boards", "On a microcontroller", (), Table(main, fields, "Cortex-M4F, single"),
+    return _section("boards", "On a microcontroller", (), Table(main, fields[2:], "Cortex-M4F, single"),
                     Table(rows, fields, "All boards", True))
 
 
