@@ -26,12 +26,13 @@ laconic_status bench_step(void) {
 static uint32_t run_within_segment(uint32_t steps, laconic_status *failed) {
     const bench_segment *now = &bench_segments[segment];
     const uint32_t left = now->steps - taken, count = steps < left ? steps : left;
-    for (uint32_t i = 0; i < count; i++) {
-        const laconic_status status =
-            now->sampled ? bench_step()
-                         : laconic_step(&laconic_scene_model, &laconic_scene_integrator, &state, &now->start);
-        if (status != LACONIC_OK) *failed = status;
+    laconic_status status = LACONIC_OK;
+    if (LACONIC_WITH_SAMPLED_INPUT && now->sampled) {
+        for (uint32_t i = 0; i < count && status == LACONIC_OK; i++) status = sampled_step(now);
+    } else {
+        laconic_run(&laconic_scene_model, &laconic_scene_integrator, &state, &now->start, count, &status);
     }
+    if (status != LACONIC_OK) *failed = status;
     taken = (taken + count) % now->steps;
     if (taken == 0) segment = (segment + 1) % bench_segment_count;
     return count;
