@@ -1,0 +1,46 @@
+"""Binaries for other platforms, built by the C compiler that the package ziglang brings along."""
+
+from __future__ import annotations
+
+import argparse
+import os
+import subprocess
+import sys
+from collections.abc import Sequence
+from pathlib import Path
+
+TARGETS = {
+    "x86_64-linux": "x86_64-linux-gnu.2.17",
+    "aarch64-linux": "aarch64-linux-gnu.2.17",
+    "x86_64-windows": "x86_64-windows-gnu",
+    "x86_64-darwin": "x86_64-macos",
+    "aarch64-darwin": "aarch64-macos",
+}
+FLAGS = ("-std=c99", "-O2", "-g0", "-s", "-fvisibility=hidden", "-ffp-contract=off", "-fno-slp-vectorize")
+"""The same arithmetic as cmake/LaconicStrict.cmake asks for; clang contracts by default even with -std=c99."""
+
+
+def compile_for(platform: str, sources: Sequence[str], includes: Sequence[str], out: Path, *, shared: bool = True,
+                python: str = sys.executable) -> None:
+    """Links one binary for a platform; the compiler's own messages go to the terminal."""
+    out.parent.mkdir(parents=True, exist_ok=True)
+    kind = ["-shared", *([] if platform.endswith("windows") else ["-fPIC"])] if shared else ["-static"]
+    command = [python, "-m", "ziglang", "cc", "-target", TARGETS[platform], *kind, *FLAGS,
+               *(f"-I{folder}" for folder in includes), *sources, "-o", str(out)]
+    subprocess.run(command, check=True, env={**os.environ, "ZIG_PROGRESS": "off"})
+
+
+def main() -> None:
+    """python -m laconic_fmu.cross PLATFORM OUT --include … --sources …"""
+    parser = argparse.ArgumentParser(prog="laconic_fmu.cross", description=__doc__)
+    parser.add_argument("platform", choices=sorted(TARGETS))
+    parser.add_argument("out", type=Path)
+    parser.add_argument("--include", nargs="*", default=[])
+    parser.add_argument("--sources", nargs="+", required=True)
+    parser.add_argument("--python", default=sys.executable, help="the interpreter that has ziglang")
+    arguments = parser.parse_args()
+    compile_for(arguments.platform, arguments.sources, arguments.include, arguments.out, python=arguments.python)
+
+
+if __name__ == "__main__":
+    main()
