@@ -13,7 +13,8 @@ from cantools.database.can import Database, Message, Signal
 
 HEAD = """# The wire contract
 
-Made from `firmware_stub/laconic.dbc`; edit that. {comment}
+Made from `firmware_stub/laconic.dbc`; edit that. Identifiers are those of a node at ID base 0x200; other
+nodes use the same offsets from their own base, a multiple of 32.
 
 Classic frames are protected by AUTOSAR E2E profile 22 (bytes 0 and half of 1), CAN FD frames by profile 5 (bytes 0 to 2).
 All numbers are little-endian. A value out of range saturates and sets its frame's `overrange`.
@@ -66,9 +67,8 @@ def section(message: Message) -> str:
 def main(dbc: str, output: str) -> None:
     """Reads the DBC and writes the page."""
     database = cantools.database.load_file(dbc)
-    text = HEAD.format(comment=database.dbc.database_comment if hasattr(database.dbc, "database_comment") else "")
     messages = sorted(database.messages, key=lambda message: message.frame_id)
-    text += "".join(overview(message, database) for message in messages)
+    text = HEAD + "".join(overview(message, database) for message in messages)
     text += "".join(section(message) for message in messages)
     Path(output).parent.mkdir(parents=True, exist_ok=True)
     Path(output).write_text(text, encoding="utf-8")

@@ -1,8 +1,8 @@
 """What the node costs on each board: flash, RAM, worst stack, instructions per frame and per step.
 
-The stack is read from the machine code: what each function pushes and reserves, along the deepest chain of calls; a call
-through a pointer may reach any function of an integrator whose address stands in the image's constants. Interrupts come
-on top.
+The stack is read from the machine code: what each function pushes and reserves, along the deepest chain of calls. A call
+through a pointer may reach any function of an integrator whose address stands in the image's constants. Interrupts
+come on top.
 """
 
 from __future__ import annotations
@@ -70,13 +70,9 @@ def read_instruction(function: Function, name: str, operands: str) -> None:
         function.frame += 4 * count_registers(operands)
     elif name.startswith("vpush"):
         function.frame += REGISTER_BYTES[operands[1]] * count_registers(operands)
-    elif name.startswith("sub") and (amount := re.match(r"sp, (?:sp, )?#(\d+)", operands)):
-        function.frame += int(amount[1])
-    elif name.startswith("str") and (amount := re.search(r"\[sp, #-(\d+)\]!", operands)):
-        function.frame += int(amount[1])
-    elif name.startswith("blx") and re.match(r"r\d+|ip|lr", operands):
-        function.calls_pointer = True
-    elif re.match(r"bx?$|b\.n|b\.w", name) and re.match(r"r\d+$|ip$", operands):
+    elif amount := re.fullmatch(r"sub\S* sp, (?:sp, )?#(\d+).*|str\S* .*\[sp, #-(\d+)\]!.*", f"{name} {operands}"):
+        function.frame += int(amount[1] or amount[2])
+    elif re.match(r"(blx|bx?) (r\d+|ip)$", f"{name} {operands}".strip()):
         function.calls_pointer = True
     elif name.startswith("b") and (target := re.search(r"<([^+>]+)>", operands)) and target[1] != function.name:
         function.calls.add(target[1])

@@ -1,0 +1,74 @@
+#include "laconic_node/e2e.h"
+#include "unity.h"
+
+#include <string.h>
+
+void setUp(void) {}
+void tearDown(void) {}
+
+static const uint8_t ids[16] = {1, 2, 3, 4, 5, 6, 7, 8, 9, 10, 11, 12, 13, 14, 15, 16};
+
+static void profile_2_gives_the_published_headers(void) {
+    const uint8_t expected[4][2] = {{0x1B, 0x01}, {0x98, 0x02}, {0x31, 0x03}, {0x0D, 0x04}};
+    for (uint8_t counter = 1; counter <= 4; counter++) {
+        uint8_t data[8] = {0};
+        laconic_e2e_p22_protect(data, 8, ids, 0, counter);
+        TEST_ASSERT_EQUAL_HEX8_ARRAY(expected[counter - 1], data, 2);
+    }
+}
+
+static void a_frame_too_short_for_its_header_is_never_right(void) {
+    uint8_t data[3] = {0};
+    TEST_ASSERT_FALSE(laconic_e2e_p22_crc_is_right(data, 1, ids, 0));
+    TEST_ASSERT_FALSE(laconic_e2e_p05_crc_is_right(data, 2, 7));
+}
+
+static void profile_5_finds_each_turned_bit(void) {
+    uint8_t data[64];
+    memset(data, 0xA5, sizeof data);
+    laconic_e2e_p05_protect(data, 64, 0x1234, 9);
+    TEST_ASSERT_TRUE(laconic_e2e_p05_crc_is_right(data, 64, 0x1234));
+    for (int bit = 0; bit < 512; bit++) {
+        data[bit / 8] = (uint8_t)(data[bit / 8] ^ 1U << bit % 8);
+        TEST_ASSERT_FALSE(laconic_e2e_p05_crc_is_right(data, 64, 0x1234));
+        data[bit / 8] = (uint8_t)(data[bit / 8] ^ 1U << bit % 8);
+    }
+}
+
+static void the_status_machine_never_moves_for_a_refused_frame(void) {
+    laconic_e2e_receiver receiver = {0};
+    TEST_ASSERT_EQUAL(LACONIC_E2E_OK, laconic_e2e_check(&receiver, true, 9, 15, 1));
+    TEST_ASSERT_EQUAL(LACONIC_E2E_REPEATED, laconic_e2e_check(&receiver, true, 9, 15, 1));
+    TEST_ASSERT_EQUAL(LACONIC_E2E_ERROR, laconic_e2e_check(&receiver, false, 10, 15, 1));
+    TEST_ASSERT_EQUAL(LACONIC_E2E_WRONG_SEQUENCE, laconic_e2e_check(&receiver, true, 3, 15, 1));
+    TEST_ASSERT_EQUAL_UINT8(9, receiver.counter);
+    TEST_ASSERT_EQUAL(LACONIC_E2E_OK, laconic_e2e_check(&receiver, true, 10, 15, 1));
+}
+
+static void lost_frames_are_counted_up_to_max_delta(void) {
+    laconic_e2e_receiver receiver = {0};
+    laconic_e2e_check(&receiver, true, 14, 15, 3);
+    TEST_ASSERT_EQUAL(LACONIC_E2E_OK_SOME_LOST, laconic_e2e_check(&receiver, true, 1, 15, 3));
+    TEST_ASSERT_EQUAL_UINT8(2, receiver.lost);
+    TEST_ASSERT_EQUAL(LACONIC_E2E_WRONG_SEQUENCE, laconic_e2e_check(&receiver, true, 5, 15, 3));
+}
+
+static void three_frames_in_a_row_make_a_new_reference(void) {
+    laconic_e2e_receiver receiver = {0};
+    laconic_e2e_check(&receiver, true, 9, 15, 1);
+    TEST_ASSERT_EQUAL(LACONIC_E2E_WRONG_SEQUENCE, laconic_e2e_check(&receiver, true, 1, 15, 1));
+    TEST_ASSERT_EQUAL(LACONIC_E2E_WRONG_SEQUENCE, laconic_e2e_check(&receiver, true, 2, 15, 1));
+    TEST_ASSERT_EQUAL(LACONIC_E2E_OK, laconic_e2e_check(&receiver, true, 3, 15, 1));
+    TEST_ASSERT_EQUAL(LACONIC_E2E_WRONG_SEQUENCE, laconic_e2e_check(&receiver, true, 9, 15, 1));
+}
+
+int main(void) {
+    UNITY_BEGIN();
+    RUN_TEST(profile_2_gives_the_published_headers);
+    RUN_TEST(a_frame_too_short_for_its_header_is_never_right);
+    RUN_TEST(profile_5_finds_each_turned_bit);
+    RUN_TEST(the_status_machine_never_moves_for_a_refused_frame);
+    RUN_TEST(lost_frames_are_counted_up_to_max_delta);
+    RUN_TEST(three_frames_in_a_row_make_a_new_reference);
+    return UNITY_END();
+}

@@ -1,0 +1,145 @@
+#include "bench.h"
+#include "unity.h"
+
+void setUp(void) { bench_begin(); }
+void tearDown(void) {}
+
+static void id_bases_are_multiples_of_32(void) {
+    laconic_node_config config = {0x210, true, laconic_method_by_number};
+    TEST_ASSERT_FALSE(laconic_node_init(&node, &config, 0));
+    config.id_base = 0x800;
+    TEST_ASSERT_FALSE(laconic_node_init(&node, &config, 0));
+    config.id_base = 0x7E0;
+    TEST_ASSERT_TRUE(laconic_node_init(&node, &config, 0));
+}
+
+static void the_node_says_who_it_is(void) {
+    uint8_t data[LACONIC_FRAME_BYTES];
+    struct laconic_dbc_identity_t identity;
+    const struct laconic_dbc_control_t frame = {.request = 1, .command = LACONIC_WIRE_COMMAND_IDENTIFY};
+    laconic_dbc_control_pack(data, &frame, 8);
+    bench_send(LACONIC_WIRE_CONTROL, data);
+    TEST_ASSERT_TRUE(bench_receive(LACONIC_WIRE_IDENTITY, data));
+    laconic_dbc_identity_unpack(&identity, data, 8);
+    TEST_ASSERT_EQUAL_UINT8(sizeof(laconic_real), identity.scalar_bytes);
+    TEST_ASSERT_EQUAL_UINT8(LACONIC_MAX_WHEELS, identity.max_wheels);
+    TEST_ASSERT_EQUAL_HEX8(0x3F, identity.methods);
+}
+
+static void nothing_starts_without_a_vehicle_or_with_the_wrong_session(void) {
+    TEST_ASSERT_EQUAL_UINT8(LACONIC_WIRE_STATUS_WRONG_STATE, bench_control(LACONIC_WIRE_COMMAND_START_LOCKSTEP, 1, 0, 0));
+    TEST_ASSERT_EQUAL_UINT8(LACONIC_WIRE_STATUS_WRONG_STATE, bench_control(LACONIC_WIRE_COMMAND_RESET, 0, 0, 0));
+    bench_load(2);
+    TEST_ASSERT_EQUAL_UINT8(LACONIC_WIRE_STATUS_WRONG_SESSION,
+                            bench_control(LACONIC_WIRE_COMMAND_START_LOCKSTEP, 2, 0, 0));
+    TEST_ASSERT_EQUAL_UINT8(0, bench_control(LACONIC_WIRE_COMMAND_START_LOCKSTEP, 1, 0, 0));
+    TEST_ASSERT_EQUAL_UINT8(0, bench_control(LACONIC_WIRE_COMMAND_STOP, 0, 0, 0));
+    TEST_ASSERT_EQUAL_UINT8(LACONIC_WIRE_STATUS_WRONG_SESSION,
+                            bench_control(LACONIC_WIRE_COMMAND_START_LOCKSTEP, 1, 0, 0));
+    TEST_ASSERT_EQUAL_UINT8(LACONIC_WIRE_STATUS_UNKNOWN_COMMAND, bench_control(99, 0, 0, 0));
+}
+
+static void a_sync_steps_and_is_answered_with_what_was_selected(void) {
+    uint8_t data[LACONIC_FRAME_BYTES];
+    bench_load(2);
+    bench_select(LACONIC_NODE_SEND_NU, 0, 0);
+    bench_control(LACONIC_WIRE_COMMAND_START_LOCKSTEP, 1, 0, 0);
+    bench_voltage(0, 500, 1);
+    laconic_node_on_tick(&node, now_us);
+    TEST_ASSERT_TRUE(node.plant.steps == 1 && node.input[0].voltage_V[1] == 1);
+    TEST_ASSERT_TRUE(bench_receive(LACONIC_WIRE_NU, data));
+    TEST_ASSERT_FALSE(laconic_node_next_frame(&node, &(laconic_frame){0}));
+    bench_sync(100);
+    TEST_ASSERT_TRUE(laconic_node_is_busy(&node) && laconic_node_idle_us(&node, now_us) == 0);
+    bench_sync(1); /* while it is busy */
+    TEST_ASSERT_TRUE(bench_receive(LACONIC_WIRE_RESULT, data));
+    TEST_ASSERT_EQUAL_UINT8(LACONIC_WIRE_STATUS_BUSY, data[3]);
+    while (laconic_node_is_busy(&node)) laconic_node_on_tick(&node, now_us);
+    TEST_ASSERT_EQUAL_UINT64(101, node.plant.steps);
+}
+
+static void a_sync_of_no_steps_or_without_its_inputs_is_refused(void) {
+    uint8_t data[LACONIC_FRAME_BYTES] = {0};
+    bench_load(2);
+    bench_select(0, LACONIC_RAW_NU, LACONIC_RAW_VOLTAGE);
+    bench_control(LACONIC_WIRE_COMMAND_START_LOCKSTEP, 1, 0, 0);
+    bench_sync(0);
+    TEST_ASSERT_TRUE(bench_receive(LACONIC_WIRE_RESULT, data));
+    TEST_ASSERT_EQUAL_UINT8(LACONIC_WIRE_STATUS_OUT_OF_RANGE, data[3]);
+    memset(data, 0, sizeof data);
+    bench_send(LACONIC_WIRE_RAW_INPUT, data);
+    bench_sync(1);
+    TEST_ASSERT_TRUE(bench_receive(LACONIC_WIRE_RESULT, data));
+    TEST_ASSERT_EQUAL_UINT8(LACONIC_WIRE_STATUS_INPUT_INCOMPLETE, data[3]);
+    TEST_ASSERT_EQUAL_UINT64(0, node.plant.steps);
+}
+
+static void frames_of_the_wrong_shape_change_nothing_but_a_counter(void) {
+    laconic_frame frame = {.id = LACONIC_WIRE_ID_BASE, .length = 7};
+    laconic_node_on_frame(&node, &frame, now_us);
+    frame.length = 8;
+    frame.remote = true;
+    laconic_node_on_frame(&node, &frame, now_us);
+    frame.remote = false;
+    frame.id += LACONIC_WIRE_NU; /* one of our own, from a second node */
+    laconic_node_on_frame(&node, &frame, now_us);
+    TEST_ASSERT_EQUAL_UINT16(3, node.counters.malformed);
+    frame.extended = true;
+    laconic_node_on_frame(&node, &frame, now_us);
+    frame.extended = false;
+    frame.id = LACONIC_WIRE_ID_BASE - 1;
+    laconic_node_on_frame(&node, &frame, now_us);
+    TEST_ASSERT_EQUAL_UINT16(3, node.counters.malformed);
+    frame.id = LACONIC_WIRE_ID_BASE;
+    laconic_node_on_frame(&node, &frame, now_us);
+    TEST_ASSERT_EQUAL_UINT16(1, node.counters.crc_errors);
+    TEST_ASSERT_FALSE(laconic_node_next_frame(&node, &frame));
+}
+
+static void a_vehicle_can_only_be_changed_while_it_stands(void) {
+    uint8_t data[LACONIC_FRAME_BYTES] = {0};
+    bench_load(2);
+    bench_control(LACONIC_WIRE_COMMAND_START_LOCKSTEP, 1, 0, 0);
+    bench_send(LACONIC_WIRE_COMMIT, data);
+    TEST_ASSERT_TRUE(bench_receive(LACONIC_WIRE_RESULT, data));
+    TEST_ASSERT_EQUAL_UINT8(LACONIC_WIRE_STATUS_WRONG_STATE, data[3]);
+    TEST_ASSERT_EQUAL_UINT8(LACONIC_WIRE_STATUS_WRONG_STATE, bench_select(0, 0, 0));
+}
+
+static void a_step_that_the_core_refuses_ends_in_fault_and_reset_mends_it(void) {
+    uint8_t data[LACONIC_FRAME_BYTES];
+    bench_load(2);
+    node.start.nu_rad_per_s[2] = 1;
+    bench_control(LACONIC_WIRE_COMMAND_START_LOCKSTEP, 1, 0, 0);
+    node.input[0].voltage_V[0] = LACONIC_REAL_MAX;
+    bench_sync(5);
+    laconic_node_on_tick(&node, now_us);
+    TEST_ASSERT_EQUAL_UINT8(LACONIC_WIRE_STATE_FAULT, node.state);
+    TEST_ASSERT_TRUE(bench_receive(LACONIC_WIRE_RESULT, data) && data[3] != 0);
+    TEST_ASSERT_EQUAL_UINT8(LACONIC_WIRE_STATUS_WRONG_STATE, bench_control(LACONIC_WIRE_COMMAND_START_LOCKSTEP, 2, 0, 0));
+    node.start.nu_rad_per_s[2] = 0;
+    TEST_ASSERT_EQUAL_UINT8(0, bench_control(LACONIC_WIRE_COMMAND_RESET, 0, 0, 0));
+    TEST_ASSERT_EQUAL_UINT8(0, bench_control(LACONIC_WIRE_COMMAND_START_LOCKSTEP, 2, 0, 0));
+}
+
+static void can_fd_is_refused_where_there_is_none(void) {
+    bench_load(2);
+    node.config.can_fd = false;
+    TEST_ASSERT_EQUAL_UINT8(LACONIC_WIRE_STATUS_NOT_SUPPORTED, bench_select(LACONIC_NODE_SEND_STATE_FD, 0, 0));
+    node.config.can_fd = true;
+    TEST_ASSERT_EQUAL_UINT8(0, bench_select(LACONIC_NODE_SEND_STATE_FD, 0, 0));
+}
+
+int main(void) {
+    UNITY_BEGIN();
+    RUN_TEST(id_bases_are_multiples_of_32);
+    RUN_TEST(the_node_says_who_it_is);
+    RUN_TEST(nothing_starts_without_a_vehicle_or_with_the_wrong_session);
+    RUN_TEST(a_sync_steps_and_is_answered_with_what_was_selected);
+    RUN_TEST(a_sync_of_no_steps_or_without_its_inputs_is_refused);
+    RUN_TEST(frames_of_the_wrong_shape_change_nothing_but_a_counter);
+    RUN_TEST(a_vehicle_can_only_be_changed_while_it_stands);
+    RUN_TEST(a_step_that_the_core_refuses_ends_in_fault_and_reset_mends_it);
+    RUN_TEST(can_fd_is_refused_where_there_is_none);
+    return UNITY_END();
+}

@@ -1,0 +1,78 @@
+#include "laconic_node/raw.h"
+#include "unity.h"
+
+#include <string.h>
+
+static laconic_raw_input raw;
+static laconic_input input[3];
+
+void setUp(void) {
+    memset(&raw, 0, sizeof raw);
+    memset(input, 0, sizeof input);
+}
+void tearDown(void) {}
+
+/* Sends numbers 1, 2, 3 … in segments of six bytes; returns how many. */
+static uint16_t send(int count, int32_t wheels) {
+    laconic_real numbers[64];
+    uint8_t bytes[sizeof numbers + 6] = {0};
+    uint16_t segments = 0;
+    for (int k = 0; k < count; k++) numbers[k] = (laconic_real)(k + 1);
+    memcpy(bytes, numbers, (size_t)count * sizeof numbers[0]);
+    for (size_t at = 0; at < (size_t)count * sizeof numbers[0]; at += 6, segments++)
+        TEST_ASSERT_TRUE(laconic_raw_take(&raw, input, wheels, segments & 15U, 15, bytes + at, 6));
+    return segments;
+}
+
+static void every_input_has_its_place_in_the_stream(void) {
+    raw.take = LACONIC_RAW_VOLTAGE | LACONIC_RAW_AXLE_TORQUE | LACONIC_RAW_BODY_WRENCH | LACONIC_RAW_WORLD_FORCE;
+    const uint16_t frames = send(2 + 2 + 3 + 4, 2);
+    TEST_ASSERT_TRUE(raw.complete && laconic_raw_is_whole(&raw, frames));
+    TEST_ASSERT_FALSE(laconic_raw_is_whole(&raw, (uint16_t)(frames + 1U)));
+    TEST_ASSERT_TRUE(input[0].voltage_V[1] == 2 && input[0].axle_torque_Nm[1] == 4);
+    TEST_ASSERT_TRUE(input[0].body_force_N[1] == 6 && input[0].body_moment_Nm == 7);
+    TEST_ASSERT_TRUE(input[0].world_force_N[1] == 9 && input[0].world_force_point_m[1] == 11);
+    TEST_ASSERT_TRUE(input[1].voltage_V[0] == 0);
+}
+
+static void sampled_inputs_fill_start_middle_and_end(void) {
+    raw.take = LACONIC_RAW_VOLTAGE | LACONIC_RAW_SAMPLED;
+    send(6, 2);
+    TEST_ASSERT_TRUE(raw.complete);
+    TEST_ASSERT_TRUE(input[0].voltage_V[1] == 2 && input[1].voltage_V[0] == 3 && input[2].voltage_V[1] == 6);
+}
+
+static void a_missing_segment_breaks_the_stream_until_it_begins_anew(void) {
+    const uint8_t bytes[6] = {0};
+    raw.take = LACONIC_RAW_VOLTAGE;
+    TEST_ASSERT_TRUE(laconic_raw_take(&raw, input, 4, 0, 15, bytes, 6));
+    TEST_ASSERT_FALSE(laconic_raw_take(&raw, input, 4, 2, 15, bytes, 6));
+    TEST_ASSERT_FALSE(laconic_raw_take(&raw, input, 4, 1, 15, bytes, 6));
+    TEST_ASSERT_FALSE(laconic_raw_is_whole(&raw, 1));
+    TEST_ASSERT_TRUE(laconic_raw_take(&raw, input, 4, 0, 15, bytes, 6));
+}
+
+static void one_segment_too_many_is_refused(void) {
+    const uint8_t bytes[6] = {0};
+    raw.take = LACONIC_RAW_VOLTAGE;
+    const uint16_t frames = send(1, 1);
+    TEST_ASSERT_FALSE(laconic_raw_take(&raw, input, 1, (uint8_t)frames, 15, bytes, 6));
+    TEST_ASSERT_FALSE(laconic_raw_is_whole(&raw, frames));
+}
+
+static void nothing_chosen_takes_nothing(void) {
+    const uint8_t bytes[6] = {0};
+    TEST_ASSERT_FALSE(laconic_raw_take(&raw, input, 2, 0, 15, bytes, 6));
+    laconic_raw_restart(&raw);
+    TEST_ASSERT_TRUE(laconic_raw_is_whole(&raw, 0));
+}
+
+int main(void) {
+    UNITY_BEGIN();
+    RUN_TEST(every_input_has_its_place_in_the_stream);
+    RUN_TEST(sampled_inputs_fill_start_middle_and_end);
+    RUN_TEST(a_missing_segment_breaks_the_stream_until_it_begins_anew);
+    RUN_TEST(one_segment_too_many_is_refused);
+    RUN_TEST(nothing_chosen_takes_nothing);
+    return UNITY_END();
+}
