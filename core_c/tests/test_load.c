@@ -57,6 +57,24 @@ static void without_a_world_force_the_load_does_not_turn(void) {
     ASSERT_NEAR_ALL(EITHER(1e-13, 5e-5), expected, load.constant, 3);
 }
 
+static void every_part_of_a_wrench_counts_alone(void) {
+    const laconic_vehicle v = with_motors(three_wheels());
+    const laconic_model m = model_of(v);
+    int part;
+    for (part = 0; part < 3; part++) {
+        laconic_input input = no_input();
+        laconic_load load;
+        double expected[3];
+        if (part < 2)
+            input.body_force_N[part] = REAL(2);
+        else
+            input.body_moment_Nm = REAL(0.3);
+        laconic_load_of(&load, &m, &input);
+        expected_load(expected, &v, &input, 0);
+        ASSERT_NEAR_ALL(EITHER(1e-13, 5e-5), expected, load.constant, 3);
+    }
+}
+
 static void either_component_of_a_world_force_turns_and_so_does_nan(void) {
     const laconic_model m = model_of(three_wheels());
     laconic_input input = no_input();
@@ -74,6 +92,7 @@ int main(void) {
     UNITY_BEGIN();
     RUN_TEST(everything_that_acts_is_in_the_load);
     RUN_TEST(without_a_world_force_the_load_does_not_turn);
+    RUN_TEST(every_part_of_a_wrench_counts_alone);
     RUN_TEST(either_component_of_a_world_force_turns_and_so_does_nan);
     return UNITY_END();
 }
