@@ -5,6 +5,7 @@ FMPy, ecospy and libcosimpy come with the project's environment; CasADi with req
 
 from __future__ import annotations
 
+import re
 from pathlib import Path
 
 import numpy as np
@@ -14,6 +15,7 @@ from fmu_importer import Importer
 
 from laconic.core import load
 from laconic.fmu import make_fmu
+from laconic.paths import SOURCE_DIR
 from laconic.scene import Scene, read_scene
 
 STEP_S, STEPS = 0.01, 300
@@ -150,3 +152,22 @@ def test_libcosim_co_simulation(fmus: dict[str, Path], expected: np.ndarray) -> 
     references = [variables[name].reference for name in NAMES]
     assert CosimVariableType(variables["x_m"].type) == CosimVariableType.REAL
     assert list(observer.last_real_values(slave, references)) == expected.tolist()
+
+
+def code_of(page: str) -> list[str]:
+    """The Python blocks of a documentation page."""
+    text = (SOURCE_DIR / "docs" / page).read_text(encoding="utf-8")
+    return re.findall(r"```python\n(.*?)```", text, re.DOTALL)
+
+
+@pytest.mark.parametrize(("page", "variant"), [("fmu-fmpy.md", "fmi3"), ("fmu-casadi.md", "fmi2")])
+def test_the_examples_of_the_documentation_run(page: str, variant: str, fmus: dict[str, Path], tmp_path: Path,
+                                               monkeypatch: pytest.MonkeyPatch) -> None:
+    if "casadi" in page:
+        pytest.importorskip("casadi", reason="CasADi is in requirements-peers.txt")
+    monkeypatch.chdir(tmp_path)
+    (tmp_path / "robotino2.fmu").write_bytes(fmus[variant].read_bytes())
+    names: dict[str, object] = {}
+    for block in code_of(page):
+        exec(compile(block, page, "exec"), names)
+    assert names
