@@ -1,8 +1,8 @@
 """What the node costs on each board: flash, RAM, worst stack, instructions per frame and per step.
 
-The stack is read from the machine code: what each function pushes and reserves, along the deepest chain of calls. A call
-through a pointer may reach any function of an integrator whose address stands in the image's constants. Interrupts
-come on top.
+The stack is read from the machine code: what each function pushes and reserves, along the deepest chain of calls. A
+call through a pointer may reach any function of an integrator whose address stands in the image's constants. Interrupts
+come on top. Frames too large for an instruction of the M0 come from a literal that is added to the stack pointer.
 """
 
 from __future__ import annotations
@@ -56,7 +56,14 @@ def functions_of(image: Path) -> dict[str, Function]:
     """All functions with their frames and calls."""
     found: dict[str, Function] = {}
     current = Function("", 0)
-    for line in tool(OBJDUMP, "-d", "--no-show-raw-insn", str(image)).splitlines():
+    lines = tool(OBJDUMP, "-d", "--no-show-raw-insn", str(image)).splitlines()
+    words = dict(re.findall(r"\s*([0-9a-f]+):\s+\.word\s+(0x[0-9a-f]+)", "\n".join(lines)))
+    literals: dict[str, int] = {}
+    for line in lines:
+        if literal := re.search(r"ldr\s+(r\d+), \[pc.*@ \(([0-9a-f]+) ", line):
+            literals[literal[1]] = int(words.get(literal[2], "0"), 16)
+        elif (added := re.search(r"add\s+sp, (r\d+)", line)) and literals.get(added[1], 0) >> 31:
+            current.frame += 2**32 - literals[added[1]]  # below zero: room is taken, not given back
         if header := re.match(r"([0-9a-f]{8}) <(\S+)>:", line):
             current = found.setdefault(header[2], Function(header[2], int(header[1], 16)))
         elif code := re.match(r"\s*[0-9a-f]+:\s+(\S+)\s*(.*)", line):
