@@ -19,7 +19,7 @@ static inline void chord_factors(real *sinc, real *half_j1, real alpha) {
         *sinc = poly_sinc(z);
         *half_j1 = R(0.5) * alpha * poly_j1(z);
     } else {
-        const direction d = laconic_direction_of_angle(alpha);
+        const direction d = laconic_direction_of_turn(laconic_turn_of_angle(alpha));
         *sinc = d.sine / alpha;
         *half_j1 = R(0.5) * (*sinc - d.cosine) / alpha;
     }
@@ -28,7 +28,7 @@ static inline void chord_factors(real *sinc, real *half_j1, real alpha) {
 /* Pose is a quadrature of ζ. Mean and first moment of ζ over the step, which every method delivers at its own
  * order, fix it to fourth order with a single sine and cosine (PHYSICS §10), as complex numbers in body axes:
  * ∫ e^{iθ} v dt = e^{iθ_mid} { sinc α · h v̄ + i [½ j₁(α) h Δv − (h Δω/12) h v̄] } */
-static inline motion displacement(const laconic_model *m, vector path, vector bend) {
+INLINE motion displacement(const laconic_model *m, vector path, vector bend) {
     const vector along = vec(m->velocity_of_zeta[0]), across = vec(m->velocity_of_zeta[1]);
     const vector yaw_rate = vec(m->yaw_rate_of_zeta);
     const real turn = dot(yaw_rate, path), yaw_change = dot(yaw_rate, bend) * (R(1) / R(12));
@@ -40,7 +40,7 @@ static inline motion displacement(const laconic_model *m, vector path, vector be
     return (motion){sinc * forth - aside_left, sinc * left + aside_forth, turn};
 }
 
-static inline void advance_pose(laconic_state *s, motion moved) {
+INLINE void advance_pose(laconic_state *s, motion moved) {
     const direction middle = direction_of_turn(heading_advance(&s->heading, moved.turn_rad));
     sum_add(&s->x_m, middle.cosine * moved.along_m - middle.sine * moved.across_m);
     sum_add(&s->y_m, middle.sine * moved.along_m + middle.cosine * moved.across_m);
@@ -52,9 +52,23 @@ static inline void add(laconic_sum sums[3], vector v) {
     sum_add(&sums[2], v.z);
 }
 
+/* Far below what has decayed for good, but so that its square is still a normal number: processors are many times
+ * slower with subnormal ones. Added and taken away again, it leaves nothing of what is smaller. */
+#ifdef LACONIC_SINGLE
+#define AT_REST R(1e-18)
+#else
+#define AT_REST R(1e-150)
+#endif
+
+static inline void settle(laconic_sum sums[3]) {
+    sums[0].value = (sums[0].value + AT_REST) - AT_REST;
+    sums[1].value = (sums[1].value + AT_REST) - AT_REST;
+    sums[2].value = (sums[2].value + AT_REST) - AT_REST;
+}
+
 /* Takes the step, or refuses and leaves the state as it was. Model and step are bounded when they are prepared, so
  * with ζ and the motion in range everything else is. */
-static inline laconic_status advance(laconic_state *state, const laconic_model *model, real step_s, vector zeta,
+INLINE laconic_status advance(laconic_state *state, const laconic_model *model, real step_s, vector zeta,
                                      increment by) {
     const vector path = scaled(step_s, by.mean);
     if (!(square(zeta) + square(plus(zeta, by.delta)) <= LARGEST_SPEED * LARGEST_SPEED)) return LACONIC_OVERFLOW;
@@ -65,12 +79,13 @@ static inline laconic_status advance(laconic_state *state, const laconic_model *
         advance_pose(state, moved);
     }
     add(state->zeta, by.delta);
+    settle(state->zeta);
     if (LACONIC_WITH_WHEEL_ANGLES) add(state->travel, path);
     return LACONIC_OK;
 }
 
 /* The same for methods that can go wrong: no energy out of nothing. */
-static inline laconic_status advance_if_passive(laconic_state *state, const laconic_model *model, real step_s,
+INLINE laconic_status advance_if_passive(laconic_state *state, const laconic_model *model, real step_s,
                                                 const laconic_loads *loads, vector zeta, increment by) {
     if (!passive(model, state, step_s, loads, zeta, by)) return LACONIC_STEP_GAINS_ENERGY;
     return advance(state, model, step_s, zeta, by);

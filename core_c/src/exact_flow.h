@@ -15,7 +15,7 @@ half_angle laconic_large_half_angle(real z, real along, real across);
 /* Free motion turns ζ about w by the angle ψ with ψ' = |w| g·ζ. As a Riccati equation for u = tan(ψ/2) it has
  * the solution u(h) = |w| along T/(1 − across T), T = tan √z/√z, with along = ½h g·ζ, across = ½h g·(ζ×w),
  * z = (½h)²[(g·ζ)(2(g·w)(w·ζ) − |w|² g·ζ) − (g·(ζ×w))²], either sign. */
-static inline half_angle half_angle_after(const laconic_model *m, real half_step, vector zeta) {
+INLINE half_angle half_angle_after(const laconic_model *m, real half_step, vector zeta) {
     const real along = half_step * dot(vec(m->nu_of_zeta[2]), zeta);
     const real across = half_step * dot(vec(m->spin_gain), zeta);
     const real curve = half_step * dot(vec(m->spin_curve), zeta);
@@ -29,7 +29,7 @@ static inline half_angle half_angle_after(const laconic_model *m, real half_step
 }
 
 /* ζ⁺ − ζ = 2 τ/(1 + |w|²τ²) (ζ×w + τ (ζ×w)×w), τ = numerator/denominator: |ζ| stays to rounding. */
-static inline vector free_flow(const laconic_model *m, real half_step, vector zeta) {
+INLINE vector free_flow(const laconic_model *m, real half_step, vector zeta) {
     const vector w = vec(m->gyro), turned = cross(zeta, w);
     const half_angle a = half_angle_after(m, half_step, zeta);
     const real factor =
@@ -38,7 +38,7 @@ static inline vector free_flow(const laconic_model *m, real half_step, vector ze
 }
 
 /* Damping and drive alone, exact. */
-static inline vector drive_flow(const laconic_model *m, const laconic_decay *d, vector zeta, const drive *b) {
+INLINE vector drive_flow(const laconic_model *m, const laconic_decay *d, vector zeta, const drive *b) {
     return times(vec(d->gain), minus(constant_like(b, d), times(vec(m->decay_per_s), zeta)));
 }
 

@@ -15,7 +15,7 @@ typedef struct solver {
 } solver;
 
 /* False where M is singular to rounding; `scale` is what det M would be for ζ = 0. */
-static inline bool factorise(solver *s, const matrix *m, real scale) {
+INLINE bool factorise(solver *s, const matrix *m, real scale) {
     const real noise = R(16) * LACONIC_EPSILON * scale;
     real determinant;
     s->c0 = cross(m->row1, m->row2);
@@ -26,13 +26,13 @@ static inline bool factorise(solver *s, const matrix *m, real scale) {
     return magnitude(determinant) > noise;
 }
 
-static inline vector solve(const solver *s, vector rhs) {
+INLINE vector solve(const solver *s, vector rhs) {
     return scaled(s->inverse_determinant,
                   plus(plus(scaled(rhs.x, s->c0), scaled(rhs.y, s->c1)), scaled(rhs.z, s->c2)));
 }
 
 /* D⁻¹ − Q with D = hφ1, Q Δ = q(ζ,Δ) = ½[(g·ζ) Δ×w + (g·Δ) ζ×w]. */
-static inline matrix implicit_matrix(vector inverse_gain, vector g, vector w, real yaw, vector turned) {
+INLINE matrix implicit_matrix(vector inverse_gain, vector g, vector w, real yaw, vector turned) {
     const vector s = scaled(R(0.5) * yaw, w), l = scaled(R(0.5), turned);
     const matrix m = {
         {inverse_gain.x - l.x * g.x, -(l.x * g.y + s.z), s.y - l.x * g.z},

@@ -8,7 +8,7 @@ typedef laconic_real real;
 
 #define R(x) ((real)(x)) /* a literal in the scalar type, converted by the compiler */
 
-/* For the base steps, which compilers find too large to inline although each is called at one place. */
+/* For the parts of a step, which compilers find too large to inline: a vector passed through memory stalls. */
 #ifdef __GNUC__
 #define INLINE static inline __attribute__((always_inline))
 #else

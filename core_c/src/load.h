@@ -57,11 +57,12 @@ static inline vector load_at(const laconic_load *load, direction heading) {
                                           scaled(heading.sine, vec(load->sine))));
 }
 
+/* The same at the heading of a state, turned on by an angle. */
+vector laconic_turned_load(const laconic_load *load, const laconic_heading *heading, real offset_rad);
+
 /* b of any load; the heading is looked at only where a force turns with it. */
 static inline vector load_now(const laconic_load *load, const laconic_heading *heading, real offset_rad) {
-    if (LACONIC_WITH_WORLD_FORCE && load->turns)
-        return load_at(load, laconic_direction_of_turn(
-                                 (laconic_turn)(heading->fraction + laconic_turn_of_angle(offset_rad))));
+    if (LACONIC_WITH_WORLD_FORCE && load->turns) return laconic_turned_load(load, heading, offset_rad);
     return vec(load->constant);
 }
 

@@ -20,11 +20,12 @@ bool laconic_growth_is_driven(const laconic_model *model, const laconic_state *s
                               const laconic_loads *loads, const increment *by);
 
 /* Exactly: |ζ⁺|² − |ζ|² = 2∫(b·ζ − ζ·diag(r)ζ)dt <= 2∫ b·ζ dt. Tried first as if b were held; false for NaN. */
-static inline bool passive(const laconic_model *model, const laconic_state *state, real step_s,
+INLINE bool passive(const laconic_model *model, const laconic_state *state, real step_s,
                            const laconic_loads *loads, vector zeta, increment by) {
     const real before = square(zeta), after = square(plus(zeta, by.delta));
-    const real work = step_s * dot(vec(loads->start->constant), by.mean);
-    if (after - before - R(2) * work <= ENERGY_TOLERANCE * (before + after)) return true;
+    const real gain = after - before, allowed = ENERGY_TOLERANCE * (before + after);
+    if (gain <= allowed) return true;
+    if (gain - R(2) * step_s * dot(vec(loads->start->constant), by.mean) <= allowed) return true;
     return laconic_growth_is_driven(model, state, step_s, loads, &by);
 }
 
