@@ -8,6 +8,7 @@ from pathlib import Path
 
 import click
 from rich.console import Console
+from rich.markup import escape
 from rich.table import Table
 
 from laconic.errors import BadInput, reason_of
@@ -54,5 +55,5 @@ def show(goals: list[dict]) -> None:
     colours = {"met": "green", "missed": "red", "not measured": "yellow"}
     for row in goals:
         numbers = [shown(name, row[name]) for name in ("found", "wanted")]
-        table.add_row(row["group"], row["goal"], *numbers, f"[{colours[row['verdict']]}]{row['verdict']}[/]")
+        table.add_row(row["group"], escape(row["goal"]), *numbers, f"[{colours[row['verdict']]}]{row['verdict']}[/]")
     Console(width=None if Console().is_terminal else 150).print(table)
