@@ -25,6 +25,7 @@ from laconic.scene import Scene
 
 CYCLE_S = 0.01          # of VOLTAGE, as the contract says
 DEFAULT_FRAMES = ("NU", "POSE")
+MOST_COMPARED = 5000    # periods; of a longer run every n-th
 
 
 TwinValues = dict[tuple[int, str, int], dict[str, float]]  # (step, frame, group) → raw values before rounding
@@ -35,6 +36,7 @@ class FreeRun:
     """What was sent and what came."""
 
     rate_Hz: int
+    keep: int = 1           # every so many periods are compared with the twins
     commands: list[tuple[int, np.ndarray]] = field(default_factory=list)    # (steps seen when it was sent, input row)
     answers: list[tuple[int, Frame, bytes]] = field(default_factory=list)   # (step, frame, payload)
     instants_s: list[float] = field(default_factory=list)                   # of NU
@@ -56,6 +58,7 @@ def run_free(node: NodeClient, scene: Scene, duration_s: float, rate_Hz: int = 0
     load_scene(node, scene)
     node.select(**{SELECT_BIT[name]: 1 for name in {*frames, "HEARTBEAT", "COUNTERS"}})
     run = FreeRun(rate_Hz or round(1.0 / scene.run.step_s))
+    run.keep = max(1, round(duration_s * run.rate_Hz / MOST_COMPARED))
     link, clock, voltages, held = node.link, node.link.clock, Voltages(node, scene), Held(scene.drive())
     start_us = clock.now_us()
     node.start_free_run(rate_Hz, watchdog_ms)
@@ -84,7 +87,7 @@ def take(run: FreeRun, node: NodeClient, frame: Frame, data: bytes) -> None:
         run.steps += 1 + node.link.lost_before(frame)
         run.instants_s.append(node.link.clock.now_us() / 1e6)
     values = frame.unpack(data)
-    if frame.name in ("NU", "POSE", "WHEEL_SPEED"):
+    if frame.name in ("NU", "POSE", "WHEEL_SPEED") and run.steps % run.keep == 0:
         run.answers.append((run.steps, frame, bytes(data)))
     elif frame.name == "HEARTBEAT":
         run.node_steps, run.worst_lateness_us = values["steps"], values["worst_lateness"]
@@ -103,16 +106,17 @@ def twin_values(scene: Scene, run: FreeRun, delay: int, per_period: int) -> Twin
     wanted: dict[int, list[tuple[str, int, Frame]]] = {}
     for step, frame, data in run.answers:
         wanted.setdefault(step, []).append((frame.name, frame.unpack(data).get("group", 0), frame))
-    commands = iter([*((seen + delay, row) for seen, row in run.commands), (np.inf, None)])
-    at, row = next(commands)
-    held, found = plant.core.input(), {}
-    for step in range(1, max(wanted, default=0) + 1):
-        while at < step:
-            held = plant.core.input(row)
-            at, row = next(commands)
-        plant.run(held, per_period)
+    acting = {}
+    for seen, row in run.commands:
+        acting[seen + delay] = row
+    last, found, held = max(wanted, default=0), {}, plant.core.input()
+    events = sorted({0, *(step for step in acting if step < last), *wanted})
+    for step, following in zip(events, [*events[1:], last], strict=True):
         for name, group, frame in wanted.get(step, ()):
             found[step, name, group] = expected_raw(plant, frame, group)
+        if step in acting:
+            held = plant.core.input(acting[step])
+        plant.run(held, (following - step) * per_period)
     return found
 
 
