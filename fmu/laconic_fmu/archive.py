@@ -68,9 +68,9 @@ def terminals_of(text: str, description: Description, scalar: bool) -> str:
 
 
 def scene_fmu(generic: Path, source: Path, values: Mapping[str, Sequence[float]], name: str, text: str, out: Path, *,
-              version: int, scalar: bool, stop_s: float, step_s: float) -> None:
+              version: int, scalar: bool, stop_s: float, step_s: float, sources: bool = True) -> None:
     """Writes the FMU of a scene: the generic one with the scene's start values."""
-    parts = read_parts(generic)
+    parts = {name: data for name, data in read_parts(generic).items() if sources or not name.startswith("sources/")}
     description = with_values(parse(source.read_text(encoding="utf-8")), values, name, text)
     experiment = description.root.find("DefaultExperiment")
     if experiment is not None:
@@ -78,7 +78,7 @@ def scene_fmu(generic: Path, source: Path, values: Mapping[str, Sequence[float]]
         experiment.set("stepSize", repr(float(step_s)))
     if version == 2:
         old = ET.fromstring(parts["modelDescription.xml"])
-        files = [file.get("name", "") for file in old.findall("CoSimulation/SourceFiles/File")]
+        files = [file.get("name", "") for file in old.findall("CoSimulation/SourceFiles/File") if sources]
         xml = fmi2.describe(description, files)
     else:
         xml = fmi3.describe_scalar(description) if scalar else fmi3.describe(description)

@@ -48,7 +48,7 @@ def start_values(scene: Scene) -> dict[str, list[float]]:
     return values | {"method": [METHODS.index(scene.run.method)], "step_s": [scene.run.step_s]}
 
 
-def make_fmu(scene: Scene, out: Path, *, version: int, scalar: bool = False) -> Path:
+def make_fmu(scene: Scene, out: Path, *, version: int, scalar: bool = False, sources: bool = True) -> Path:
     """Writes the scene's FMU; BadInput when the scene cannot be one."""
     if scene.wheel_count == 0 and version == 3 and not scalar:
         raise BadInput(f"{scene.path}: vehicle.wheel: a vehicle without wheels has no arrays; use --scalar or --fmi 2")
@@ -56,7 +56,7 @@ def make_fmu(scene: Scene, out: Path, *, version: int, scalar: bool = False) -> 
     values: Any = start_values(scene)
     try:
         scene_fmu(generic_fmu(version), DESCRIPTION, values, scene.name, scene.source, out, version=version,
-                  scalar=scalar, stop_s=scene.run.duration_s, step_s=scene.run.step_s)
+                  scalar=scalar, sources=sources, stop_s=scene.run.duration_s, step_s=scene.run.step_s)
     except OSError as error:
         raise BadInput(f"{out}: cannot be written ({reason_of(error)}); choose another place with -o") from None
     return out

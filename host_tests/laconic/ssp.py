@@ -17,11 +17,11 @@ SSD = "http://ssp-standard.org/SSP1/SystemStructureDescription"
 SSC = "http://ssp-standard.org/SSP1/SystemStructureCommon"
 
 
-def make_controller(scene: Scene, out: Path, *, version: int, scalar: bool = False) -> Path:
+def make_controller(scene: Scene, out: Path, *, version: int, scalar: bool = False, sources: bool = True) -> Path:
     """The controller's FMU with as many loops as the scene has wheels."""
     scene_fmu(built(f"fmu/LaconicController_fmi{version}.fmu"), CONTROLLER, {"wheel_count": [scene.wheel_count]},
               f"Wheel-speed controller for {scene.name}", scene.source, out, version=version, scalar=scalar,
-              stop_s=scene.run.duration_s, step_s=scene.run.step_s)
+              stop_s=scene.run.duration_s, step_s=scene.run.step_s, sources=sources)
     return out
 
 
@@ -61,11 +61,12 @@ def structure(scene: Scene) -> str:
     return f'<?xml version="1.0" encoding="UTF-8"?>\n{ET.tostring(root, encoding="unicode")}\n'
 
 
-def make_ssp(scene: Scene, out: Path, *, version: int = 2, scalar: bool = False) -> Path:
+def make_ssp(scene: Scene, out: Path, *, version: int = 2, scalar: bool = False, sources: bool = True) -> Path:
     """Writes the archive: both FMUs and how they are connected."""
     with tempfile.TemporaryDirectory() as folder:
-        vehicle = make_fmu(scene, Path(folder) / "vehicle.fmu", version=version, scalar=scalar)
-        controller = make_controller(scene, Path(folder) / "controller.fmu", version=version, scalar=scalar)
+        vehicle = make_fmu(scene, Path(folder) / "vehicle.fmu", version=version, scalar=scalar, sources=sources)
+        controller = make_controller(scene, Path(folder) / "controller.fmu", version=version, scalar=scalar,
+                                     sources=sources)
         pack(out, {"SystemStructure.ssd": structure(scene).encode("utf-8"),
                    "resources/vehicle.fmu": vehicle.read_bytes(), "resources/controller.fmu": controller.read_bytes()})
     return out

@@ -131,3 +131,12 @@ def test_the_archive_is_the_same_every_time(tmp_path: Path) -> None:
     scene = read_scene("robotino2")
     first, second = (make_fmu(scene, tmp_path / name, version=3).read_bytes() for name in ("a.fmu", "b.fmu"))
     assert first == second
+
+
+@pytest.mark.parametrize(("version", "scalar"), VARIANTS)
+def test_without_sources_an_fmu_is_small(version: int, scalar: bool, tmp_path: Path) -> None:
+    fmu = make_fmu(read_scene("robotino2"), tmp_path / "x.fmu", version=version, scalar=scalar, sources=False)
+    assert validate_fmu(str(fmu)) == []
+    with zipfile.ZipFile(fmu) as archive:
+        assert not [name for name in archive.namelist() if name.startswith("sources/")]
+    assert fmu.stat().st_size < 100_000

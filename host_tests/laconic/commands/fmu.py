@@ -17,11 +17,13 @@ from laconic.ssp import make_ssp
 @click.argument("scene")
 @click.option("--fmi", "version", type=click.Choice(("2", "3")), required=True, help="FMI 2.0 or 3.0.")
 @click.option("--scalar", is_flag=True, help="FMI 3.0 without arrays, for importers that handle them badly.")
+@click.option("--without-sources", is_flag=True, help="Binaries only: less than half the size.")
 @click.option("--ssp", is_flag=True, help="An SSP archive: the vehicle with a wheel-speed controller, connected.")
 @click.option("-o", "--out", type=click.Path(path_type=Path), metavar="F.fmu",
               help="Where to; SCENE_fmi3.fmu if not given.")
 @click.option("--json", "json_wanted", is_flag=True, help="Machine-readable output.")
-def command(scene: str, version: str, scalar: bool, ssp: bool, out: Path | None, json_wanted: bool) -> None:
+def command(scene: str, version: str, scalar: bool, without_sources: bool, ssp: bool, out: Path | None,
+            json_wanted: bool) -> None:
     """Writes an FMU whose start values are SCENE's vehicle, start, method and step.
 
     Model Exchange and Co-Simulation are both in it. In FMI 3.0 the number of wheels is a structural parameter; in
@@ -34,7 +36,7 @@ def command(scene: str, version: str, scalar: bool, ssp: bool, out: Path | None,
         raise BadInput("--ssp: SSP 1.0 knows no arrays; add --scalar or use --fmi 2")
     make, ending = (make_ssp, "ssp") if ssp else (make_fmu, "fmu")
     made = make(given, out or Path(f"{given.path.stem}_fmi{version}{'_scalar' if scalar else ''}.{ending}"),
-                version=int(version), scalar=scalar)
+                version=int(version), scalar=scalar, sources=not without_sources)
     if json_wanted:
         click.echo(json.dumps({"scene": str(given.path), "fmi": int(version), "scalar": scalar, "file": str(made),
                                "bytes": made.stat().st_size}, indent=1))
