@@ -3,21 +3,24 @@
 
 #include "integrator.h"
 
-/* Beyond the polynomial. Numerator and denominator may share any factor: only their ratio counts. */
+/* Beyond the polynomial: quarter z until it holds, then double the angle as often. With s = sin √z/√z and
+ * c = cos √z up to a common factor (only their ratio counts), s(4z) = s c, c(4z) = c² − z s²; divided by
+ * c² + |z| s² they stay of the order of 1 for either sign of z. */
 half_angle laconic_large_half_angle(real z, real along, real across) {
-    const real root = laconic_root(magnitude(z));
     half_angle a;
-    if (z > R(0)) {
-        const direction d = laconic_direction_of_angle(root);
-        const real sinc = d.sine / root;
-        a.numerator = along * sinc;
-        a.denominator = d.cosine - across * sinc;
-    } else {
-        const real fading = laconic_decaying_exponential(R(2) * root); /* tanh x = (1 − e^{−2x})/(1 + e^{−2x}) */
-        const real tangent = (R(1) - fading) / ((R(1) + fading) * root);
-        a.numerator = along * tangent;
-        a.denominator = R(1) - across * tangent;
+    real s, c = R(1);
+    int doublings = 0;
+    if (!is_finite(z)) doublings = -1; /* NaN from here on: the step will be refused */
+    for (; doublings >= 0 && magnitude(z) > TANGENT_SMALL; z *= R(0.25)) doublings++;
+    s = doublings < 0 ? z - z : poly_tangent(z);
+    for (; doublings > 0; doublings--) {
+        const real zss = z * s * s, norm = R(1) / (c * c + magnitude(zss));
+        s = norm * (s * c);
+        c = norm * (c * c - zss);
+        z *= R(4);
     }
+    a.numerator = along * s;
+    a.denominator = c - across * s;
     return a;
 }
 

@@ -26,6 +26,7 @@ INLINE bool passive(const laconic_model *model, const laconic_state *state, real
     const real gain = after - before, allowed = ENERGY_TOLERANCE * (before + after);
     if (gain <= allowed) return true;
     if (gain - R(2) * step_s * dot(vec(loads->start->constant), by.mean) <= allowed) return true;
+    if (!LACONIC_WITH_SAMPLED_INPUT && !LACONIC_WITH_WORLD_FORCE) return false;
     return laconic_growth_is_driven(model, state, step_s, loads, &by);
 }
 
