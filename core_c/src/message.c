@@ -16,8 +16,9 @@ static void put_text(writer *w, const char *text) {
 }
 
 static void put_count(writer *w, int32_t number) {
-    if (number >= 10) put_count(w, number / 10);
-    put(w, (char)('0' + number % 10));
+    int32_t divisor = 1;
+    while (number / divisor >= 10) divisor *= 10;
+    for (; divisor > 0; divisor /= 10) put(w, (char)('0' + number / divisor % 10));
 }
 
 /* x = digits · 10^exponent with 1 <= digits < 10 */
