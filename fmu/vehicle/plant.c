@@ -174,7 +174,7 @@ static laconic_status run_sloped(fmu_plant *p, uint64_t steps, laconic_refusal *
     return LACONIC_OK;
 }
 
-fmu_status fmu_plant_run(fmu_instance *instance, uint64_t steps, uint64_t *taken) {
+static fmu_status run_several_steps(fmu_instance *instance, uint64_t steps, uint64_t *taken) {
     fmu_plant *p = &instance->plant;
     laconic_refusal why;
     const uint64_t before = p->core.steps;
@@ -182,6 +182,21 @@ fmu_status fmu_plant_run(fmu_instance *instance, uint64_t steps, uint64_t *taken
     *taken = p->core.steps - before;
     p->stale = FMU_GROUPS_ALL & ~FMU_GROUP_STATE;
     return status == LACONIC_OK ? FMU_OK : discard_with(instance, &why);
+}
+
+/* One step with held inputs is what most importers ask for, again and again. */
+static bool run_one(fmu_plant *p) {
+    if (laconic_step(&p->core.model, &p->core.integrator, &p->core.state, &p->input) != LACONIC_OK) return false;
+    p->core.steps++;
+    p->stale = FMU_GROUPS_ALL & ~FMU_GROUP_STATE;
+    return true;
+}
+
+fmu_status fmu_plant_run(fmu_instance *instance, uint64_t steps, uint64_t *taken) {
+    fmu_plant *p = &instance->plant;
+    *taken = 1;
+    if (steps == 1 && !p->sloped && run_one(p)) return FMU_OK;
+    return run_several_steps(instance, steps, taken); /* says what is wrong where a single step was refused */
 }
 
 void fmu_plant_mark(const fmu_plant *plant, fmu_plant_motion *motion) {
