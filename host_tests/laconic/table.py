@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import difflib
 import math
 from collections.abc import Iterator, Sequence
 from pathlib import Path
@@ -57,12 +58,18 @@ class Table:
     def _get(self, key: str, default: Any, kinds: tuple[type, ...], what: str) -> Any:
         if not self.has(key):
             if default is REQUIRED:
-                self.fail(key, f"is missing; give it as {what}")
+                self.fail(key, f"is missing; give it as {what}{self._mistyped(key)}")
             return default
         value = self._entries[key]
         if not isinstance(value, kinds) or (isinstance(value, bool) and bool not in kinds):
             self.fail(key, f"is {_shown(value)}, not {what}")
         return value
+
+    def _mistyped(self, key: str) -> str:
+        """The key that was probably meant to be this one."""
+        unread = [entry for entry in self._entries if entry not in self._known]
+        close = difflib.get_close_matches(key, unread, n=1)
+        return f" (you wrote {close[0]}, which is no known key here)" if close else ""
 
     def number(self, key: str, default: Any = ..., *, finite: bool = True) -> Any:
         """A number; what the core checks itself may be anything a float can be."""

@@ -62,6 +62,7 @@ BAD = {
     "roller of a fixed wheel": (('kind = "mecanum"', 'kind = "fixed"'), ("wheel[1].roller_deg", "no rollers")),
     "unknown kind": (('kind = "mecanum"', 'kind = "mecanun"'), ("wheel[1].kind", "did you mean mecanum?")),
     "unknown key": (("mass_kg = 20.0", "mass_kg = 20.0\nmas_kg = 1"), ("vehicle.mas_kg", "did you mean mass_kg?")),
+    "mistyped key": (("mass_kg = 20.0", "mas_kg = 20.0"), ("vehicle.mass_kg", "is missing", "you wrote mas_kg")),
     "unknown key at the top": (('name = "Four', 'colour = "red"\nname = "Four'), ("colour", "no known key")),
     "unknown key of a wheel": (("axle_deg = 180", "axle_deg = 180\nradius_m = 1"), ("wheel[2].radius_m", "known key")),
     "wheel count mismatch": (("voltage_V[1]", "voltage_V[3]"), ("input[1].signal", "2 wheels", "voltage_V[2]")),
