@@ -26,7 +26,7 @@ static inline void chord_factors(real *sinc, real *half_j1, real alpha) {
 }
 
 /* Pose is a quadrature of ζ. Mean and first moment of ζ over the step, which every method delivers at its own
- * order, fix it to fourth order with a single sine and cosine (PHYSICS §10), as complex numbers in body axes:
+ * order, fix it to fourth order with a single sine and cosine, as complex numbers in body axes:
  * ∫ e^{iθ} v dt = e^{iθ_mid} { sinc α · h v̄ + i [½ j₁(α) h Δv − (h Δω/12) h v̄] } */
 INLINE motion displacement(const laconic_model *m, vector path, vector bend) {
     const vector along = vec(m->velocity_of_zeta[0]), across = vec(m->velocity_of_zeta[1]);

@@ -1,4 +1,4 @@
-/* What the ground must deliver (PHYSICS §5): reactions, brakes, normal loads, the no-slip margin. */
+/* What the ground must deliver: reactions, brakes, normal loads, the no-slip margin. */
 #include "geometry.h"
 #include "load.h"
 #include "zeta.h"
@@ -183,10 +183,9 @@ static void wheel_reaction(laconic_reactions *out, const laconic_contact *c, con
         (now->torque[i] + out->brake_Nm[i] - m->wheel_inertia_kgm2 * acceleration) * c->inverse_arm_per_m[i];
 }
 
-/* Σ N = M g; about S the loads balance the horizontal force that accelerates S, which acts com_z below it
- * (outer forces are taken to act at the height of S). Rows of `load_of_wrench`: R Σ N, Σ N ξ, Σ N η. */
-static void normal_loads(laconic_reactions *out, const laconic_contact *c, const laconic_model *m,
-                         const instant *now) {
+/* Σ N = M g; about S the loads balance the ground's horizontal force, which acts com_z below it (outer forces
+ * are taken to act at the height of S). Columns of `load_of_wrench`: R Σ N, Σ N ξ, Σ N η. */
+static void normal_loads(laconic_reactions *out, const laconic_contact *c, const laconic_model *m) {
     const real weight = m->mass_kg * R(LACONIC_GRAVITY_M_PER_S2);
     real wanted[3], ground[2] = {R(0), R(0)};
     int32_t i;
@@ -194,7 +193,6 @@ static void normal_loads(laconic_reactions *out, const laconic_contact *c, const
         ground[0] += out->along_N[i] * c->pull[i][0] + out->lateral_N[i] * c->axle[i][0];
         ground[1] += out->along_N[i] * c->pull[i][1] + out->lateral_N[i] * c->axle[i][1];
     }
-    (void)now;
     wanted[0] = m->wheel_radius_m * weight;
     wanted[1] = -c->com_z_m * ground[0];
     wanted[2] = -c->com_z_m * ground[1];
@@ -220,6 +218,6 @@ void laconic_reactions_of(laconic_reactions *reactions, const laconic_contact *c
     take_instant(&now, model, state, input);
     multipliers(kappa, contact, model, &now);
     for (i = 0; i < model->wheel_count; i++) wheel_reaction(reactions, contact, model, &now, kappa, i);
-    normal_loads(reactions, contact, model, &now);
+    normal_loads(reactions, contact, model);
     no_slip_margin(reactions, contact, model);
 }

@@ -1,4 +1,4 @@
-/* Factors of exponential steps (PHYSICS §10): increments, not exponentials, so that single precision loses
+/* Factors of exponential steps: increments, not exponentials, so that single precision loses
  * nothing; mean and first moment of ζ' = −rζ + b with b quadratic over the step. */
 #include "integrator.h"
 

@@ -45,7 +45,6 @@ real laconic_decaying_exponential(real a) {
     return sum;
 }
 
-
 direction laconic_direction_of_angle(real angle_rad) {
     const real quarters = angle_rad * R(0.6366197723675813431);
     if (magnitude(quarters) < R(1e6)) {

@@ -1,4 +1,4 @@
-/* The two integrals of the free motion (PHYSICS §6). */
+/* The two integrals of the free motion. */
 #include "zeta.h"
 
 laconic_real laconic_energy_J(const laconic_model *model, const laconic_state *state) {

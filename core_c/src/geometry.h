@@ -19,7 +19,7 @@ void laconic_body_of(body *b, const laconic_vehicle *vehicle);
 /* Row i of Ξ: χ_i' = row · ν (4.3–4.4). */
 void laconic_wheel_row(real row[3], const body *b, const laconic_wheel *wheel);
 
-/* row · ν = velocity of a fixed wheel's centre along its axle, over R (PHYSICS §4). */
+/* row · ν = velocity of a fixed wheel's centre along its axle, over R. */
 void laconic_lateral_row(real row[3], const body *b, const laconic_wheel *wheel);
 
 /* Direction in which a wheel's ground reaction acts, body axes: its roller's axis; of a fixed wheel its

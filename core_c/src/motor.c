@@ -1,4 +1,4 @@
-/* From a motor's data sheet to c1, c2 and J (PHYSICS: c1 = G k_t/R_a, c2 = G² (k_t k_e/R_a + b)). */
+/* From a motor's data sheet to c1, c2 and J: c1 = G k_t/R_a, c2 = G² (k_t k_e/R_a + b). */
 #include "internal.h"
 
 static laconic_status check_motor(const laconic_motor *m, laconic_refusal *why) {

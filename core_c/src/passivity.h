@@ -15,7 +15,7 @@ typedef struct increment {
 /* Relative to |ζ|² + |ζ⁺|². What an accurate step gains by its truncation error is far below. */
 #define ENERGY_TOLERANCE R(0.0009765625) /* 2⁻¹⁰ */
 
-/* The same with all that the loads do over the step. */
+/* What `passive` asks, with all that the loads do over the step. */
 bool laconic_growth_is_driven(const laconic_model *model, const laconic_state *state, real step_s,
                               const laconic_loads *loads, const increment *by);
 

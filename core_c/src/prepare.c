@@ -1,5 +1,5 @@
 /* vehicle → model: an orthonormal basis of the motions that the constraints leave, turned so that ΞᵀΞ,
- * and with it inertia A = E + λ²ΞᵀΞ and damping, become diagonal in it (PHYSICS §4, §9). */
+ * and with it inertia A = E + λ²ΞᵀΞ and damping, become diagonal in it. */
 #include "geometry.h"
 #include "vector.h"
 

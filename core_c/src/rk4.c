@@ -1,4 +1,4 @@
-/* Classical Runge-Kutta on the full state. θ and the wheel angles follow from the same stages:
+/* Classical Runge-Kutta for ζ. Its mean, which θ, the pose and the wheel angles follow, comes from the same stages:
  * h(ζ1 + 2ζ2 + 2ζ3 + ζ4)/6 = h(ζ + h(k1 + k2 + k3)/6). */
 #include "advance.h"
 #include "integrator.h"

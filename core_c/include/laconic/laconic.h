@@ -222,8 +222,8 @@ typedef struct laconic_model {
 
 /* Checks the vehicle and fills the model: rows of Ξ (4.3–4.4), constraints of fixed and locked wheels,
  * principal axes of A (4.6), damping rates. About 2,000 flops plus 60 N; the only place that takes sines
- * and divides by what the user gave. Refuses as laconic_vehicle_check does, and with NOTHING_MOVES and
- * ILL_CONDITIONED (value: the condition number of A). */
+ * and divides by what the user gave. Refuses as laconic_vehicle_check does, and with NOTHING_MOVES,
+ * ILL_CONDITIONED (value: the condition number of A), and OVERFLOW where a constant would leave the range. */
 laconic_status laconic_prepare(laconic_model *model, const laconic_vehicle *vehicle, laconic_refusal *why);
 
 /* Condition number of A on the motions that the constraints leave: log10 of it is the number of digits
@@ -275,11 +275,11 @@ typedef struct laconic_sum {
     laconic_real value, rest;
 } laconic_sum;
 
-/* θ = 2π (turns + (fraction + rest)·2⁻⁶⁴), 2⁻³² in single: never loses resolution, wraps exactly. */
+/* θ = 2π (turns + (fraction + 2 rest)·2⁻⁶⁴), 2⁻³² in single: never loses resolution, wraps exactly. */
 typedef struct laconic_heading {
     int64_t turns;
     laconic_turn fraction;
-    laconic_real rest; /* in units of the fraction */
+    laconic_real rest; /* in units of 2⁻⁶³ turn, 2⁻³¹ in single */
 } laconic_heading;
 
 /* All that a motion consists of. Copy it to save, copy it back to return. */
@@ -364,6 +364,7 @@ extern const laconic_method laconic_exponential_kahan_4; /* 4  any damping      
 extern const laconic_method laconic_exact_flow;          /* 2  everything                   exactly */
 extern const laconic_method laconic_exact_flow_4;        /* 4  any damping, best below h·r ≈ 0.3    */
 extern const laconic_method laconic_auto;                /* picks one of the next two; see auto.c   */
+/* Only ever `chosen`, for firmware whose integrator is a constant; what is prepared is laconic_auto. */
 extern const laconic_method laconic_auto_slow;           /* exact-flow-4, else exact-flow           */
 extern const laconic_method laconic_auto_fast;           /* exponential-kahan-4, else exact-flow    */
 
@@ -373,8 +374,8 @@ extern const laconic_method laconic_auto_fast;           /* exponential-kahan-4,
 const laconic_method *laconic_method_by_number(int32_t number);
 const laconic_method *laconic_method_by_name(const char *name);
 
-/* Prepares a method for a step. Refuses NOT_FINITE, NOT_POSITIVE (step), and for explicit methods
- * STEP_BEYOND_DAMPING_LIMIT (limit: the largest stable step). */
+/* Prepares a method for a step. Refuses METHOD_UNKNOWN (NULL), NOT_FINITE, NOT_POSITIVE, OVERFLOW (step; the last
+ * beyond 10⁹ s), and for explicit methods STEP_BEYOND_DAMPING_LIMIT (limit: the largest stable step). */
 laconic_status laconic_integrator_prepare(laconic_integrator *integrator, const laconic_method *method,
                                           const laconic_model *model, laconic_real step_s, laconic_refusal *why);
 
@@ -389,7 +390,9 @@ laconic_status laconic_step(const laconic_model *model, const laconic_integrator
 uint64_t laconic_run(const laconic_model *model, const laconic_integrator *integrator, laconic_state *state,
                      const laconic_input *held, uint64_t steps, laconic_status *status);
 
-/* One step with the input sampled at its start, middle and end. */
+/* One step with the input sampled at its start, middle and end. Torques and body wrench are followed along the
+ * parabola through the three; a force fixed in the world, which turns with the heading, from sample to sample (in
+ * the second-order methods from start to end). rk4 takes each stage's sample. Refuses as laconic_step does. */
 laconic_status laconic_step_sampled(const laconic_model *model, const laconic_integrator *integrator,
                                     laconic_state *state, const laconic_input *start, const laconic_input *middle,
                                     const laconic_input *end);
@@ -404,8 +407,9 @@ void laconic_step_refusal(laconic_refusal *why, laconic_status status, const lac
 laconic_real laconic_largest_stable_step_s(const laconic_method *method, const laconic_model *model,
                                            const laconic_state *state);
 
-/* Whole number of steps in an interval: n = round(interval/step). Refuses STEP_DOES_NOT_FIT iff
- * |n·step − interval| exceeds 1e-6 of the *step* (value: step, limit: interval/n) and non-positive numbers. */
+/* Whole number of steps in an interval: n = round(interval/step), at least 1. Refuses STEP_DOES_NOT_FIT where
+ * |n·step − interval| exceeds 1e-6 of the *step* (value: step, limit: interval/n), where the interval is not
+ * positive and finite, or n not below 9·10¹⁵; NOT_FINITE and NOT_POSITIVE for the step. */
 laconic_status laconic_steps_in(double interval_s, double step_s, uint64_t *steps, laconic_refusal *why);
 
 /* -------------------------------------------------------------------------------- outputs -- */
@@ -452,7 +456,7 @@ typedef struct laconic_rates {
 void laconic_derivative(laconic_rates *rates, const laconic_model *model, const laconic_real nu_rad_per_s[3],
                         laconic_real heading_rad, const laconic_input *input);
 
-/* ---------------------------------------------------- ground reactions and normal loads (§5) -- */
+/* --------------------------------------------------------- ground reactions and normal loads -- */
 
 /* What reactions need besides the model, prepared once. */
 typedef struct laconic_contact {
