@@ -25,7 +25,7 @@ static void free_motion_is_exact_of_every_kind(void) {
     free_motion_is_exact_at_any_step(bare_body(), start_with(1, 2, 3), 5);
 }
 
-/* §6: with heading as the variable, (ν1, ν2)(φ) turns with Ω = √det P about P S₂, and ν3 follows from K. */
+/* With heading as the variable, (ν1, ν2)(φ) turns with Ω = √det P about P S₂, and ν3 follows from K. */
 static void free_motion_is_the_papers_closed_form(void) {
     const laconic_vehicle v = three_wheels();
     const laconic_model m = model_of(v);

@@ -59,7 +59,7 @@ def totals_of(vehicle: Mapping[str, Any]) -> Totals:
 
 
 class Reference:
-    """ν' = G (GᵀAG)⁻¹ Gᵀ [Λ⁻¹a(ν) + (MR²)⁻¹(Ξᵀ(c1 U + T) − c2 ΞᵀΞν + w)], with pose and wheel angles (PHYSICS 2–4)."""
+    """ν' = G (GᵀAG)⁻¹ Gᵀ [Λ⁻¹a(ν) + (MR²)⁻¹(Ξᵀ(c1 U + T) − c2 ΞᵀΞν + w)], with pose and wheel angles (4.1–4.7)."""
 
     def __init__(self, vehicle: Mapping[str, Any]):
         self.totals = totals_of(vehicle)

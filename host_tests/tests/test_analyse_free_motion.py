@@ -1,4 +1,4 @@
-"""PHYSICS §6, free motion: integrals, invariant measure, closed form, ellipses, and what straight motion does."""
+"""Free motion (section 5): integrals, invariant measure, closed form, ellipses, and what straight motion does."""
 
 import json
 from pathlib import Path

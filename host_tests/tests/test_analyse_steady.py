@@ -1,4 +1,4 @@
-"""PHYSICS §6, driven motion, and errata 3 and 4: steady motions, parabola, thresholds, Andronov–Hopf points, cycles."""
+"""Driven motion (section 5), and errata 3 and 4: steady motions, parabola, thresholds, Andronov–Hopf points, cycles."""
 
 import numpy as np
 import pytest
@@ -43,7 +43,7 @@ class Example:
         return field_of(CORE, self.model, self.voltages(nu_1, nu_2))
 
     def turning(self, nu_1, nu_3):
-        """ν of the turning motion with this ν3, and the ν2⁰ that it belongs to, by the formulas of PHYSICS §6."""
+        """ν of the turning motion with this ν3, and the ν2⁰ that it belongs to, by section 5's formulas, mended."""
         nu = np.array([nu_1 + self.square * nu_3 / self.rho, self.threshold, nu_3])
         command = self.threshold + nu_3 * (self.rho * nu_1 + self.square * nu_3) / (2.0 * self.c * self.big * self.rho)
         return nu, command

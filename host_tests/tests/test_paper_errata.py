@@ -1,4 +1,4 @@
-"""PHYSICS §8: every erratum of the printed paper, as the right statement and, where it is wrong, the printed one."""
+"""Every erratum of the printed paper, as the right statement and, where it is wrong, the printed one."""
 
 import pytest
 import sympy as sp

@@ -221,8 +221,8 @@ typedef struct laconic_model {
 } laconic_model;
 
 /* Checks the vehicle and fills the model: rows of Ξ (4.3–4.4), constraints of fixed and locked wheels,
- * principal axes of A (4.6), damping rates. About 2,000 flops plus 60 N; the only place that takes sines
- * and divides by what the user gave. Refuses as laconic_vehicle_check does, and with NOTHING_MOVES,
+ * principal axes of A (4.6), damping rates. About 2,000 flops plus 60 N, so that no step takes sines of what
+ * the user gave or divides by it. Refuses as laconic_vehicle_check does, and with NOTHING_MOVES,
  * ILL_CONDITIONED (value: the condition number of A), and OVERFLOW where a constant would leave the range. */
 laconic_status laconic_prepare(laconic_model *model, const laconic_vehicle *vehicle, laconic_refusal *why);
 

@@ -88,7 +88,7 @@ static inline drift free_drift(const laconic_method *method, const laconic_vehic
     return d;
 }
 
-/* Voltages U = (c2/c1) Ξ ν⁰ with ν⁰ = (0.4, −0.3, 0) make ν⁰ a steady motion (PHYSICS §6). */
+/* Voltages U = (c2/c1) Ξ ν⁰ with ν⁰ = (0.4, −0.3, 0) make ν⁰ a steady motion. */
 static inline void assert_steady_motion_stays(const laconic_method *method, double step) {
     const laconic_model model = model_of(with_motors(three_wheels()));
     laconic_state state = moving(&model, 0.4, -0.3, 0.0);

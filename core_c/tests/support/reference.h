@@ -1,4 +1,4 @@
-/* The carriage of PHYSICS §4.6–4.7 in plain doubles, straight from the paper's formulas: no basis, no ζ, libm's sine.
+/* The carriage of (4.6) and (4.7) in plain doubles, straight from the paper's formulas: no basis, no ζ, libm's sine.
  * For roller-carrying wheels; the constrained vehicles have closed equations of their own in the tests. */
 #ifndef LACONIC_TEST_REFERENCE_H
 #define LACONIC_TEST_REFERENCE_H

@@ -1,7 +1,7 @@
 """The equations of motion as a quadratic vector field, in the coordinates that the core prepared.
 
-ν = G ζ with GᵀAG = 1, and  ζ' = (g·ζ)(ζ × w) − diag(r) ζ + b = q(ζ, ζ) − diag(r) ζ + b  (PHYSICS: the shortest
-form; g is the third row of G, so g·ζ = ν3). With constraints, or when a component of ζ is missing, all vectors
+ν = G ζ with GᵀAG = 1, and  ζ' = (g·ζ)(ζ × w) − diag(r) ζ + b = q(ζ, ζ) − diag(r) ζ + b  (g is the third row
+of G, so g·ζ = ν3). With constraints, or when a component of ζ is missing, all vectors
 keep length three and the components from `dof` on stay zero.
 """
 

@@ -1,4 +1,4 @@
-"""The free motion in closed form (PHYSICS §6): no motor, no damping, no force.
+"""The free motion in closed form: no motor, no damping, no force.
 
 With the heading as independent variable the system is linear: for φ = θ − θ0, P the upper left block of A⁻¹,
     (ν1, ν2)(φ) = [cos Ωφ E + Ω⁻¹ sin Ωφ P S2] (ν1, ν2)(0),   Ω = √det P,   ν3(φ) = n0 + a cos Ωφ + b sin Ωφ,

@@ -1,6 +1,6 @@
 """When is "no slip" true? The scene's run again, with what the ground would have to deliver at every step.
 
-Reactions and normal loads are the core's (PHYSICS §5). What is added here is the use of the friction cone of each
+Reactions and normal loads are the core's. What is added here is the use of the friction cone of each
 wheel, |reaction| / (μ N), the first moment at which it passes 1, and the balance of forces and of the moment about the
 centre of mass, formed from the reactions and the acceleration alone.
 """
