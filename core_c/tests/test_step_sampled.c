@@ -74,6 +74,30 @@ static void a_world_force_may_begin_or_end_within_a_step(void) {
     }
 }
 
+/* Simpson's rule over three samples: what fourth order sees of a push; second order sees the ends. */
+static void a_world_force_at_one_sample_alone_counts_by_its_weight(void) {
+    const laconic_model m = model_of(bare_body());
+    laconic_input none = no_input(), push = no_input();
+    const double whole = 0.5 * 2.0 / (MASS * RADIUS);
+    int32_t i;
+    push.world_force_N[0] = REAL(2);
+    for (i = 0; i < LACONIC_METHOD_COUNT; i++) {
+        const laconic_method *method = laconic_method_by_number(i);
+        const laconic_integrator in = integrator_of(method, &m, 0.5);
+        laconic_state early = moving(&m, 3000, 0, 0), late = early, between = early;
+        laconic_real nu[3];
+        ASSERT_STATUS(LACONIC_OK, laconic_step_sampled(&m, &in, &early, &push, &none, &none));
+        ASSERT_STATUS(LACONIC_OK, laconic_step_sampled(&m, &in, &late, &none, &none, &push));
+        ASSERT_STATUS(LACONIC_OK, laconic_step_sampled(&m, &in, &between, &none, &push, &none));
+        laconic_nu(&m, &early, nu);
+        ASSERT_NEAR(EITHER(1e-10, 1e-3), 3000 + whole * (method->order == 4 ? 1.0 / 6 : 0.5), nu[0]);
+        laconic_nu(&m, &late, nu);
+        ASSERT_NEAR(EITHER(1e-10, 1e-3), 3000 + whole * (method->order == 4 ? 1.0 / 6 : 0.5), nu[0]);
+        laconic_nu(&m, &between, nu);
+        ASSERT_NEAR(EITHER(1e-10, 1e-3), 3000 + whole * (method->order == 4 ? 4.0 / 6 : 0.0), nu[0]);
+    }
+}
+
 static void a_number_that_is_none_at_any_sample_is_refused(void) {
     const laconic_model m = model_of(with_motors(three_wheels()));
     const laconic_input good = no_input();
@@ -95,6 +119,7 @@ int main(void) {
     RUN_TEST(an_input_that_does_not_vary_gives_the_motion_of_a_held_one);
     RUN_TEST(a_sampled_sine_keeps_every_methods_order);
     RUN_TEST(a_world_force_may_begin_or_end_within_a_step);
+    RUN_TEST(a_world_force_at_one_sample_alone_counts_by_its_weight);
     RUN_TEST(a_number_that_is_none_at_any_sample_is_refused);
     return UNITY_END();
 }
