@@ -22,16 +22,18 @@ laconic_real laconic_largest_stable_step_s(const laconic_method *method, const l
 laconic_status laconic_steps_in(double interval_s, double step_s, uint64_t *steps, laconic_refusal *why) {
     const double ratio = interval_s / step_s;
     double count, off;
+    uint64_t nearest;
     if (!(interval_s <= DBL_MAX) || !(interval_s > 0.0))
         return refuse(why, LACONIC_STEP_DOES_NOT_FIT, LACONIC_FIELD_STEP, 0, (real)step_s, (real)interval_s);
     if (!(step_s <= DBL_MAX)) return refuse(why, LACONIC_NOT_FINITE, LACONIC_FIELD_STEP, 0, (real)step_s, R(0));
     if (!(step_s > 0.0)) return refuse(why, LACONIC_NOT_POSITIVE, LACONIC_FIELD_STEP, 0, (real)step_s, R(0));
     if (!(ratio < 9e15)) return refuse(why, LACONIC_STEP_DOES_NOT_FIT, LACONIC_FIELD_STEP, 0, (real)step_s, R(0));
-    *steps = (uint64_t)(ratio + 0.5);
-    if (*steps == 0) *steps = 1;
-    count = (double)*steps;
+    nearest = (uint64_t)(ratio + 0.5);
+    if (nearest == 0) nearest = 1;
+    count = (double)nearest;
     off = ratio - count;
     if (off > 1e-6 || off < -1e-6)
         return refuse(why, LACONIC_STEP_DOES_NOT_FIT, LACONIC_FIELD_STEP, 0, (real)step_s, (real)(interval_s / count));
+    *steps = nearest;
     return LACONIC_OK;
 }

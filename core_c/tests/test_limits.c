@@ -71,6 +71,7 @@ static void an_interval_of_no_whole_number_of_steps_is_refused_with_one_that_fit
     ASSERT_NEAR(ROUNDING, 0.1 / 3, why.limit);
     ASSERT_REFUSED(LACONIC_STEP_DOES_NOT_FIT, LACONIC_FIELD_STEP, 0, laconic_steps_in(0.001, 1.0, &steps, &why), why);
     ASSERT_NEAR(ROUNDING, 0.001, why.limit);
+    TEST_ASSERT_EQUAL_UINT64(77, steps);
 }
 
 /* 1000 s of 1 ms steps and half a step more: far within a tolerance relative to the time, but half a step is lost. */
