@@ -24,6 +24,14 @@ half_angle laconic_large_half_angle(real z, real along, real across) {
     return a;
 }
 
+/* |ζ + δ|² − |ζ|² = δ·(2ζ + δ) should be 0: take the excess off along ζ + δ. */
+vector laconic_cleared_turn(vector zeta, vector delta) {
+    const vector end = plus(zeta, delta);
+    const real excess = dot(delta, plus(zeta, end)), length = square(end);
+    if (!(length > R(0))) return delta;
+    return minus(delta, scaled(R(0.5) * excess / length, end));
+}
+
 static laconic_status flow_step(const laconic_model *model, const laconic_integrator *integrator, laconic_state *state,
                                 const laconic_loads *loads) {
     increment by;

@@ -12,6 +12,9 @@ typedef struct half_angle {
 
 half_angle laconic_large_half_angle(real z, real along, real across);
 
+/* A turn by a large angle, cleared of what rounding has done to |ζ|. */
+vector laconic_cleared_turn(vector zeta, vector delta);
+
 /* Free motion turns ζ about w by the angle ψ with ψ' = |w| g·ζ. As a Riccati equation for u = tan(ψ/2) it has
  * the solution u(h) = |w| along T/(1 − across T), T = tan √z/√z, with along = ½h g·ζ, across = ½h g·(ζ×w),
  * z = (½h)²[(g·ζ)(2(g·w)(w·ζ) − |w|² g·ζ) − (g·(ζ×w))²], either sign. */
@@ -32,9 +35,11 @@ INLINE half_angle half_angle_after(const laconic_model *m, real half_step, vecto
 INLINE vector free_flow(const laconic_model *m, real half_step, vector zeta) {
     const vector w = vec(m->gyro), turned = cross(zeta, w);
     const half_angle a = half_angle_after(m, half_step, zeta);
-    const real factor =
-        R(2) * a.numerator / (a.denominator * a.denominator + m->gyro_square * (a.numerator * a.numerator));
-    return scaled(factor, plus(scaled(a.denominator, turned), scaled(a.numerator, cross(turned, w))));
+    const real aside = m->gyro_square * (a.numerator * a.numerator), ahead = a.denominator * a.denominator;
+    const real factor = R(2) * a.numerator / (ahead + aside);
+    const vector delta =
+        scaled(factor, plus(scaled(a.denominator, turned), scaled(a.numerator, cross(turned, w))));
+    return aside > R(0.0625) * ahead ? laconic_cleared_turn(zeta, delta) : delta; /* ψ beyond half a radian */
 }
 
 /* Damping and drive alone, exact. */

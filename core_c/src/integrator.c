@@ -7,7 +7,8 @@ laconic_status laconic_integrator_prepare(laconic_integrator *integrator, const 
                                           const laconic_model *model, laconic_real step_s, laconic_refusal *why) {
     laconic_integrator prepared = {0};
     laconic_status status;
-    if (method == NULL) return refuse(why, LACONIC_METHOD_UNKNOWN, LACONIC_FIELD_METHOD, 0, R(0), R(0));
+    if (method == NULL || method->prepare == NULL) /* none, or one that only auto chooses */
+        return refuse(why, LACONIC_METHOD_UNKNOWN, LACONIC_FIELD_METHOD, 0, R(0), R(0));
     if (!is_finite(step_s)) return refuse(why, LACONIC_NOT_FINITE, LACONIC_FIELD_STEP, 0, step_s, R(0));
     if (!(step_s > R(0))) return refuse(why, LACONIC_NOT_POSITIVE, LACONIC_FIELD_STEP, 0, step_s, R(0));
     if (step_s > LARGEST_STEP_S) return refuse(why, LACONIC_OVERFLOW, LACONIC_FIELD_STEP, 0, step_s, LARGEST_STEP_S);

@@ -17,26 +17,33 @@ static inline vector along(vector zeta, real h, vector rate) {
     return plus(zeta, scaled(h, rate));
 }
 
+/* b at a stage that ζ has turned to from the start; where nothing varies, the one of the start. */
+INLINE vector stage_load(const laconic_model *m, const laconic_load *load, const laconic_heading *heading, real h,
+                         vector zeta, const vector *held) {
+    return held != NULL ? *held : load_now(load, heading, turned_rad(m, h, zeta));
+}
+
 static laconic_status rk4_step(const laconic_model *model, const laconic_integrator *integrator, laconic_state *state,
                                const laconic_loads *loads) {
     const real h = integrator->step_s, half = R(0.5) * h, sixth = h * (R(1) / R(6));
     const laconic_heading *heading = &state->heading;
     const vector z1 = zeta_of(state);
     const real yaw = dot(vec(model->nu_of_zeta[2]), z1);
+    const vector b = load_now(loads->start, &state->heading, R(0)), *held = steady_over(loads) ? &b : NULL;
     vector z, before, rate, inner, outer;
     increment by;
     if (magnitude(yaw) > integrator->gyro_limit) return LACONIC_STEP_BEYOND_GYROSCOPIC_LIMIT;
-    outer = zeta_rate(model, z1, load_now(loads->start, heading, R(0)));
+    outer = zeta_rate(model, z1, b);
     z = along(z1, half, outer);
-    inner = zeta_rate(model, z, load_now(loads->middle, heading, turned_rad(model, half, z1)));
+    inner = zeta_rate(model, z, stage_load(model, loads->middle, heading, half, z1, held));
     before = z;
     z = along(z1, half, inner);
-    rate = zeta_rate(model, z, load_now(loads->middle, heading, turned_rad(model, half, before)));
+    rate = zeta_rate(model, z, stage_load(model, loads->middle, heading, half, before, held));
     inner = plus(inner, rate);
     outer = scaled(sixth, plus(outer, inner));
     by.mean = plus(z1, outer);
     rate = along(z1, h, rate);
-    inner = plus(inner, zeta_rate(model, rate, load_now(loads->end, heading, turned_rad(model, h, z))));
+    inner = plus(inner, zeta_rate(model, rate, stage_load(model, loads->end, heading, h, z, held)));
     by.delta = along(outer, sixth, inner);
     by.slope = by.delta;
     return advance_if_passive(state, model, h, loads, z1, by);

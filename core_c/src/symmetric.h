@@ -54,12 +54,6 @@ static inline vector curve_of(const laconic_loads *loads, int level) {
     return scaled(level == 0 ? R(2) : R(0.5), minus(ends, scaled(R(2), vec(loads->middle->constant))));
 }
 
-/* Nothing varies over the step. Known beforehand, it leaves of the code below a base step and nothing else. */
-static inline bool steady_over(const laconic_loads *loads) {
-    if (LACONIC_WITH_WORLD_FORCE && (loads->start->turns || loads->middle->turns || loads->end->turns)) return false;
-    return !LACONIC_WITH_SAMPLED_INPUT || loads->start == loads->end;
-}
-
 /* b at the part's start, and how it goes on as far as the inputs say. */
 static inline drive drive_of(const laconic_heading *heading, const laconic_loads *loads, const part *p) {
     drive b;

@@ -1,3 +1,5 @@
+#include "exact_flow.h"
+
 #include "stiff.h"
 
 static void is_of_second_order_under_everything_that_can_act(void) {
@@ -105,6 +107,22 @@ static void more_turns_in_a_step_than_can_be_counted_are_refused(void) {
                         LACONIC_OVERFLOW);
 }
 
+static void a_large_turn_is_cleared_of_what_changes_its_length(void) {
+    const vector zeta = {REAL(3), REAL(4), REAL(0)}, none = {0, 0, 0};
+    const vector off = {REAL(-6), REAL(0.001), REAL(0)}; /* −3, 4.001: longer than 5 */
+    const vector turned = plus(zeta, laconic_cleared_turn(zeta, off));
+    ASSERT_NEAR(1e-6, 5.0, sqrt((double)square(turned)));
+    TEST_ASSERT_TRUE(laconic_cleared_turn(none, none).x == 0);
+}
+
+static void a_method_that_only_auto_chooses_is_not_prepared(void) {
+    const laconic_model m = model_of(bare_body());
+    laconic_integrator in;
+    laconic_refusal why;
+    ASSERT_STATUS(LACONIC_METHOD_UNKNOWN,
+                  laconic_integrator_prepare(&in, &laconic_auto_slow, &m, REAL(0.1), &why));
+}
+
 int main(void) {
     UNITY_BEGIN();
     RUN_TEST(is_of_second_order_under_everything_that_can_act);
@@ -114,6 +132,8 @@ int main(void) {
     RUN_TEST(energy_stays_even_at_steps_of_many_turns);
     RUN_TEST(damped_motion_loses_energy_at_every_step_size);
     RUN_TEST(a_stiff_vehicle_stays_bounded);
+    RUN_TEST(a_large_turn_is_cleared_of_what_changes_its_length);
+    RUN_TEST(a_method_that_only_auto_chooses_is_not_prepared);
     RUN_TEST(numbers_beyond_the_range_are_refused);
     RUN_TEST(more_turns_in_a_step_than_can_be_counted_are_refused);
     return UNITY_END();
