@@ -17,36 +17,42 @@ static inline vector along(vector zeta, real h, vector rate) {
     return plus(zeta, scaled(h, rate));
 }
 
-/* b at a stage that ζ has turned to from the start; where nothing varies, the one of the start. */
+/* Loads at the stages; where nothing varies, the one of the start. */
 INLINE vector stage_load(const laconic_model *m, const laconic_load *load, const laconic_heading *heading, real h,
-                         vector zeta, const vector *held) {
-    return held != NULL ? *held : load_now(load, heading, turned_rad(m, h, zeta));
+                         vector zeta, vector start, bool steady) {
+    return steady ? start : load_now(load, heading, turned_rad(m, h, zeta));
+}
+
+INLINE increment stages(const laconic_model *m, real h, vector z1, const laconic_heading *heading,
+                        const laconic_loads *loads, bool steady) {
+    const real half = R(0.5) * h, sixth = h * (R(1) / R(6));
+    const vector b = load_now(loads->start, heading, R(0));
+    vector outer = zeta_rate(m, z1, b), z2, z3, z4, inner, rate;
+    increment by;
+    z2 = along(z1, half, outer);
+    inner = zeta_rate(m, z2, stage_load(m, loads->middle, heading, half, z1, b, steady));
+    z3 = along(z1, half, inner);
+    rate = zeta_rate(m, z3, stage_load(m, loads->middle, heading, half, z2, b, steady));
+    z4 = along(z1, h, rate);
+    inner = plus(inner, rate);
+    outer = scaled(sixth, plus(outer, inner));
+    by.mean = plus(z1, outer);
+    inner = plus(inner, zeta_rate(m, z4, stage_load(m, loads->end, heading, h, z3, b, steady)));
+    by.delta = along(outer, sixth, inner);
+    by.slope = by.delta;
+    return by;
 }
 
 static laconic_status rk4_step(const laconic_model *model, const laconic_integrator *integrator, laconic_state *state,
                                const laconic_loads *loads) {
-    const real h = integrator->step_s, half = R(0.5) * h, sixth = h * (R(1) / R(6));
-    const laconic_heading *heading = &state->heading;
-    const vector z1 = zeta_of(state);
-    const real yaw = dot(vec(model->nu_of_zeta[2]), z1);
-    const vector b = load_now(loads->start, &state->heading, R(0)), *held = steady_over(loads) ? &b : NULL;
-    vector z, before, rate, inner, outer;
+    const real h = integrator->step_s;
+    const vector zeta = zeta_of(state);
     increment by;
-    if (magnitude(yaw) > integrator->gyro_limit) return LACONIC_STEP_BEYOND_GYROSCOPIC_LIMIT;
-    outer = zeta_rate(model, z1, b);
-    z = along(z1, half, outer);
-    inner = zeta_rate(model, z, stage_load(model, loads->middle, heading, half, z1, held));
-    before = z;
-    z = along(z1, half, inner);
-    rate = zeta_rate(model, z, stage_load(model, loads->middle, heading, half, before, held));
-    inner = plus(inner, rate);
-    outer = scaled(sixth, plus(outer, inner));
-    by.mean = plus(z1, outer);
-    rate = along(z1, h, rate);
-    inner = plus(inner, zeta_rate(model, rate, stage_load(model, loads->end, heading, h, z, held)));
-    by.delta = along(outer, sixth, inner);
-    by.slope = by.delta;
-    return advance_if_passive(state, model, h, loads, z1, by);
+    if (magnitude(dot(vec(model->nu_of_zeta[2]), zeta)) > integrator->gyro_limit)
+        return LACONIC_STEP_BEYOND_GYROSCOPIC_LIMIT;
+    by = steady_over(loads) ? stages(model, h, zeta, &state->heading, loads, true)
+                            : stages(model, h, zeta, &state->heading, loads, false);
+    return advance_if_passive(state, model, h, loads, zeta, by);
 }
 
 static laconic_status rk4_prepare(laconic_integrator *integrator, const laconic_model *model, laconic_refusal *why) {
