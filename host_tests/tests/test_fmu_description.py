@@ -14,7 +14,9 @@ from fmpy.validation import validate_fmu
 from fmu_importer import generic
 from lxml import etree
 
-from laconic.fmu import DESCRIPTION, make_fmu
+from laconic.analysis.from_core import subject_of
+from laconic.analysis.geometry import diagnose
+from laconic.fmu import DESCRIPTION, PLAIN, make_fmu
 from laconic.scene import read_scene
 from laconic_fmu import fmi2
 from laconic_fmu.description import ELEMENT_SHIFT, parse, read, token_in, token_of
@@ -53,6 +55,21 @@ def test_the_shipped_descriptions_are_the_source_and_what_follows_from_it() -> N
         shipped = archive.read("modelDescription.xml").decode("utf-8")
     files = [file.get("name", "") for file in ET.fromstring(shipped).findall("CoSimulation/SourceFiles/File")]
     assert shipped == fmi2.describe(parse(text), files)
+
+
+def test_the_generic_vehicle_is_mounted_right(tmp_path: Path) -> None:
+    start = {variable.name: variable.start for variable in read(DESCRIPTION).variables}
+    assert set(start["wheel_kind"]) == {"1"}  # roller
+    plain = "".join(f"{name} = {start[name][0]}\n" for name in PLAIN)
+    rows = zip(start["wheel_x_m"], start["wheel_y_m"], start["axle_rad"], start["roller_rad"], strict=True)
+    wheels = "".join(f'[[vehicle.wheel]]\nkind = "roller"\nx_m = {x}\ny_m = {y}\naxle_rad = {axle}\n'
+                     f"roller_rad = {roller}\n" for x, y, axle, roller in rows)
+    scene = tmp_path / "generic.toml"
+    scene.write_text(f'name = "generic"\nsource = "the description"\n[vehicle]\n{plain}{wheels}'
+                     "[run]\nduration_s = 1.0\nstep_s = 0.01\n")
+    found = diagnose(subject_of(read_scene(scene)))
+    assert found.mirrored_yaw_authority < found.yaw_authority
+    assert found.rank == 3
 
 
 def test_the_token_belongs_to_the_text() -> None:
