@@ -77,6 +77,12 @@ def test_the_constant_tables_hold_the_prepared_structs_to_the_last_bit(tmp_path:
 
 
 @needs_gcc
+def test_a_workshop_may_be_named_by_a_relative_path(tmp_path: Path, monkeypatch: pytest.MonkeyPatch):
+    monkeypatch.chdir(tmp_path)
+    assert Workshop(Path("bench")).host_program(Variant(read_scene("s1"), "double", trim=True)).is_file()
+
+
+@needs_gcc
 @pytest.mark.parametrize(("name", "real"), [("s1", "double"), ("paper_caster", "double"),
                                             ("turtlebot3_burger", "single")])
 def test_a_trimmed_core_gives_the_same_bits_as_the_whole_one(workshop: Workshop, name: str, real: str):

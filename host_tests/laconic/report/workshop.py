@@ -110,7 +110,7 @@ class Workshop:
 
     def __init__(self, folder: Path, core_dir: Path = SOURCE_DIR / "core_c") -> None:
         """Where to build, from which core."""
-        self.folder, self.core_dir = folder, core_dir
+        self.folder, self.core_dir = folder.resolve(), core_dir  # gcc runs in other folders
         self._archives: dict[Path, Path] = {}
         self._trimmed: dict[tuple[str, str, str, float], Trimmed] = {}
 
