@@ -22,7 +22,7 @@ laconic_status laconic_plant_run(laconic_plant *plant, const laconic_input *held
     laconic_refusal found;
     plant->steps += laconic_run(&plant->model, &plant->integrator, &plant->state, held, steps, &status);
     if (status == LACONIC_OK) return status;
-    laconic_step_refusal(&found, status, &plant->model, &plant->integrator, &plant->state, held);
+    laconic_step_refusal(&found, status, &plant->model, &plant->integrator, &plant->state, held, 1);
     return refuse(why, found.status, found.field, found.item, found.value, found.limit);
 }
 

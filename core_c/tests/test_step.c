@@ -9,7 +9,7 @@ static void refuses(const laconic_method *method, const laconic_input *input, la
     const laconic_status status = laconic_step(&m, &in, &state, input);
     TEST_ASSERT_NOT_EQUAL(LACONIC_OK, status);
     TEST_ASSERT_EQUAL_MEMORY(&before, &state, sizeof state);
-    laconic_step_refusal(&why, status, &m, &in, &state, input);
+    laconic_step_refusal(&why, status, &m, &in, &state, input, 1);
     ASSERT_REFUSED(LACONIC_NOT_FINITE, field, item, why.status, why);
 }
 

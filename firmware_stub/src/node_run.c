@@ -22,11 +22,11 @@ void laconic_node_publish(laconic_node *node) {
 }
 
 /* A step that the core refuses ends the run; the state stays as it was before that step. */
-static void fail(laconic_node *node, laconic_status status, const laconic_refusal *why, uint8_t request) {
+static void fail(laconic_node *node, const laconic_refusal *why, uint8_t request) {
     node->lockstep.steps_due = 0;
     node->state = LACONIC_WIRE_STATE_FAULT;
     laconic_node_rest_inputs(node);
-    laconic_node_answer(node, LACONIC_WIRE_COMMAND_SYNC, request, (uint8_t)status, (uint8_t)why->field,
+    laconic_node_answer(node, LACONIC_WIRE_COMMAND_SYNC, request, (uint8_t)why->status, (uint8_t)why->field,
                         (uint8_t)why->item);
 }
 
@@ -38,7 +38,7 @@ static laconic_status step_sampled(laconic_node *node, laconic_refusal *why) {
     if (status == LACONIC_OK) {
         plant->steps++;
     } else {
-        laconic_step_refusal(why, status, &plant->model, &plant->integrator, &plant->state, &input[0]);
+        laconic_step_refusal(why, status, &plant->model, &plant->integrator, &plant->state, input, 3);
     }
     return status;
 }
@@ -55,7 +55,7 @@ void laconic_node_run_lockstep(laconic_node *node) {
         status = laconic_plant_run(&node->plant, &node->input[0], steps, &why);
     }
     if (status != LACONIC_OK) {
-        fail(node, status, &why, node->lockstep.request);
+        fail(node, &why, node->lockstep.request);
         return;
     }
     node->lockstep.steps_due -= steps;
@@ -91,7 +91,7 @@ void laconic_node_run_free(laconic_node *node, uint32_t now_us) {
     if (late >= 1000000U / run->rate_Hz) count(&node->counters.late_periods);
     const laconic_status status = laconic_plant_run(&node->plant, &node->input[0], run->steps_per_period, &why);
     if (status != LACONIC_OK) {
-        fail(node, status, &why, 0);
+        fail(node, &why, 0);
         return;
     }
     schedule_next(run);

@@ -1,6 +1,8 @@
 #include "bench.h"
 #include "unity.h"
 
+#include <math.h>
+
 void setUp(void) { bench_begin(); }
 void tearDown(void) {}
 
@@ -122,6 +124,25 @@ static void a_step_that_the_core_refuses_ends_in_fault_and_reset_mends_it(void) 
     TEST_ASSERT_EQUAL_UINT8(0, bench_control(LACONIC_WIRE_COMMAND_START_LOCKSTEP, 2, 0, 0));
 }
 
+static void the_fault_names_the_wheel_whichever_sample_of_the_step_is_to_blame(void) {
+    for (int32_t k = 0; k < 3; k++) {
+        uint8_t data[LACONIC_FRAME_BYTES];
+        struct laconic_dbc_result_t result;
+        bench_begin();
+        bench_load(3);
+        bench_select(0, 0, LACONIC_RAW_SAMPLED);
+        bench_control(LACONIC_WIRE_COMMAND_START_LOCKSTEP, 1, 0, 0);
+        node.input[k].voltage_V[k] = (laconic_real)NAN;
+        bench_sync(1);
+        laconic_node_on_tick(&node, now_us);
+        TEST_ASSERT_TRUE(bench_receive(LACONIC_WIRE_RESULT, data));
+        laconic_dbc_result_unpack(&result, data, 8);
+        TEST_ASSERT_EQUAL_UINT8(LACONIC_NOT_FINITE, result.status);
+        TEST_ASSERT_EQUAL_UINT8(LACONIC_FIELD_VOLTAGE, result.field);
+        TEST_ASSERT_EQUAL_UINT8(k + 1, result.item);
+    }
+}
+
 static void can_fd_is_refused_where_there_is_none(void) {
     bench_load(2);
     node.config.can_fd = false;
@@ -140,6 +161,7 @@ int main(void) {
     RUN_TEST(frames_of_the_wrong_shape_change_nothing_but_a_counter);
     RUN_TEST(a_vehicle_can_only_be_changed_while_it_stands);
     RUN_TEST(a_step_that_the_core_refuses_ends_in_fault_and_reset_mends_it);
+    RUN_TEST(the_fault_names_the_wheel_whichever_sample_of_the_step_is_to_blame);
     RUN_TEST(can_fd_is_refused_where_there_is_none);
     return UNITY_END();
 }

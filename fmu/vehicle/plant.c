@@ -164,7 +164,7 @@ static laconic_status run_sloped(fmu_plant *p, uint64_t steps, laconic_refusal *
         for (k = 0; k < 3; k++) shift_input(&at[k], p, ((double)n + 0.5 * k) * h);
         status = laconic_step_sampled(&p->core.model, &p->core.integrator, &p->core.state, &at[0], &at[1], &at[2]);
         if (status != LACONIC_OK) {
-            laconic_step_refusal(why, status, &p->core.model, &p->core.integrator, &p->core.state, &at[0]);
+            laconic_step_refusal(why, status, &p->core.model, &p->core.integrator, &p->core.state, at, 3);
             return status;
         }
         p->core.steps++;

@@ -50,13 +50,13 @@ class Plant:
         for k in range(0, 3 * len(rows), 3):
             status = step(model, integrator, state, first + k, first + k + 1, first + k + 2)
             if status:
-                self._refuse(status, first + k)
+                self._refuse_sampled(status, first + k)
             self.c.steps += 1
 
-    def _refuse(self, status: int, held: Any) -> None:
+    def _refuse_sampled(self, status: int, samples: Any) -> None:
         why = self.core.why()
         self.core.lib.laconic_step_refusal(
-            why, status, self._at("model"), self._at("integrator"), self._at("state"), held)
+            why, status, self._at("model"), self._at("integrator"), self._at("state"), samples, 3)
         raise self.core.refusal(why)
 
     def set_step(self, step_s: float) -> None:

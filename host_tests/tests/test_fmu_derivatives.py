@@ -6,7 +6,7 @@ from pathlib import Path
 
 import numpy as np
 import pytest
-from fmu_importer import ERROR, OK, Importer, generic
+from fmu_importer import DISCARD, ERROR, OK, Importer, generic
 
 from laconic.fmu import make_fmu
 from laconic.scene import read_scene
@@ -153,6 +153,16 @@ def test_fmi2_input_derivatives_interpolate_within_the_step() -> None:
         assert sloped.get("voltage_V") == pytest.approx([20.0] * 4, abs=1e-12)
         np.testing.assert_allclose(row(sloped, ("nu_rad_per_s", "x_m")), row(fine, ("nu_rad_per_s", "x_m")), rtol=5e-7,
                                    atol=1e-9)
+
+
+def test_fmi2_an_input_that_leaves_the_range_within_the_step_is_named() -> None:
+    with Importer(generic(2), logging=True) as importer:
+        importer.initialize()
+        assert importer.set("axle_torque_Nm", 0.0, 0.0, 1e308, 0.0) == OK
+        orders, slopes = importer.ffi.new("int[]", [1]), importer.ffi.new("double[]", [1e308])
+        importer.must("SetRealInputDerivatives", importer.references("axle_torque_Nm[3]"), 1, orders, slopes)
+        assert importer.step(0.0, 1.0) == DISCARD
+        assert "axle_torque_Nm[3]: infinity is not a finite number" in importer.log[-1][2]
 
 
 @pytest.mark.parametrize("version", [2, 3])

@@ -57,7 +57,7 @@ typedef enum laconic_status {
     LACONIC_STEP_BEYOND_DAMPING_LIMIT,   /* explicit method: h·r_max above its limit                  */
     LACONIC_STEP_BEYOND_GYROSCOPIC_LIMIT,/* explicit method: h·|ν3| above its limit in this state     */
     LACONIC_STEP_GAINS_ENERGY,           /* the step would make energy out of nothing                 */
-    LACONIC_STEP_SINGULAR,               /* the step's equations have no solution in this state       */
+    LACONIC_STEP_SINGULAR,               /* the step has no finite result in this state               */
     LACONIC_OVERFLOW,                    /* the result leaves the range of the scalar type            */
     LACONIC_STATUS_COUNT
 } laconic_status;
@@ -344,9 +344,10 @@ typedef struct laconic_integrator {
     bool stiff;                          /* damping is fast beside the step: h·r_max >= 0.3       */
 } laconic_integrator;
 
-/* Inputs at the start, middle and end of the step. Held inputs: three times the same pointer. */
+/* Inputs at the start, middle and end of the step. Held inputs: three times the same pointer, steady unless it turns. */
 typedef struct laconic_loads {
     const laconic_load *start, *middle, *end;
+    bool steady; /* nothing varies over the step: `start` says it all                             */
 } laconic_loads;
 
 typedef struct laconic_method {
@@ -397,11 +398,11 @@ laconic_status laconic_step_sampled(const laconic_model *model, const laconic_in
                                     laconic_state *state, const laconic_input *start, const laconic_input *middle,
                                     const laconic_input *end);
 
-/* Turns the status of a refused step into words: which step, state and limit; NOT_FINITE with its field where
- * the input is to blame. */
+/* Turns the status of a refused step into words: which step, state and limit; NOT_FINITE with its field where an
+ * input is to blame. `inputs`: the held one (input_count 1), or start, middle and end in a row (3). */
 void laconic_step_refusal(laconic_refusal *why, laconic_status status, const laconic_model *model,
-                          const laconic_integrator *integrator, const laconic_state *state,
-                          const laconic_input *input);
+                          const laconic_integrator *integrator, const laconic_state *state, const laconic_input *inputs,
+                          int32_t input_count);
 
 /* The largest step a method bears for this vehicle and state: damping and gyroscopic limit, 0: any. */
 laconic_real laconic_largest_stable_step_s(const laconic_method *method, const laconic_model *model,
