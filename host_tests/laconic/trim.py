@@ -77,7 +77,7 @@ def trimmed(scene: Scene, real: str) -> Trimmed:
     method = plant.chosen_method
     needs = needs_of(scene)
     return Trimmed(needs, method, method_files(scene, method), header_of(scene, real, needs),
-                   table_header(scene), tables(core, plant, scene))
+                   table_header(scene, real), tables(core, plant, scene))
 
 
 def method_files(scene: Scene, chosen: str) -> tuple[str, ...]:
@@ -91,26 +91,33 @@ def method_files(scene: Scene, chosen: str) -> tuple[str, ...]:
 def header_of(scene: Scene, real: str, needs: Needs) -> str:
     """laconic_scene.h."""
     n = scene.wheel_count
-    other = "#ifdef LACONIC_SINGLE" if real == "double" else "#ifndef LACONIC_SINGLE"
-    hint = "without" if real == "double" else "with"
-    error = f'#error "laconic: {scene.path.name} was prepared for {real}: compile {hint} LACONIC_SINGLE"'
     lines = [f"/* {scene.path.name}: what this build of the core is for ({real}). Generated. */",
-             "#ifndef LACONIC_SCENE_H", "#define LACONIC_SCENE_H",
-             other, error, "#endif",
+             "#ifndef LACONIC_SCENE_H", "#define LACONIC_SCENE_H", *real_check(scene, real),
              f"#define LACONIC_MAX_WHEELS {max(1, n)}", "#define LACONIC_MAX_SUPPORTS 1",
              f"#define LACONIC_WHEELS(model) ((void)(model), {n})", "#define LACONIC_WITH_PREPARE 0"]
     lines += [f"#define LACONIC_WITH_{name.upper()} {int(value)}" for name, value in asdict(needs).items()]
     return "\n".join([*lines, "#endif", ""])
 
 
-def table_header(scene: Scene) -> str:
+def real_check(scene: Scene, real: str) -> list[str]:
+    """Lines that refuse the other scalar type, whose structs are of another size."""
+    other, hint = ("#ifdef", "without") if real == "double" else ("#ifndef", "with")
+    return [f"{other} LACONIC_SINGLE",
+            f'#error "laconic: {scene.path.name} was prepared for {real}: compile {hint} LACONIC_SINGLE"', "#endif"]
+
+
+def table_header(scene: Scene, real: str) -> str:
     """laconic_scene_model.h."""
+    single = "-DLACONIC_SINGLE " if real == "single" else ""
     return "\n".join([
         f"/* {scene.path.name}, prepared: step it with",
         " *     laconic_state state = laconic_scene_start;",
         " *     laconic_step(&laconic_scene_model, &laconic_scene_integrator, &state, &input);",
+        " * The structs are those of the library: what links the trimmed one is compiled like it, with",
+        f" *     {single}-DLACONIC_SCENE_HEADER='\"laconic_scene.h\"'",
         " * Generated. */",
-        "#ifndef LACONIC_SCENE_MODEL_H", "#define LACONIC_SCENE_MODEL_H", "", '#include "laconic/laconic.h"', "",
+        "#ifndef LACONIC_SCENE_MODEL_H", "#define LACONIC_SCENE_MODEL_H", "", *real_check(scene, real), "",
+        '#include "laconic/laconic.h"', "",
         "extern const laconic_model laconic_scene_model;",
         "extern const laconic_integrator laconic_scene_integrator;",
         "extern const laconic_state laconic_scene_start;", "", "#endif", ""])

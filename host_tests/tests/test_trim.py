@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import shutil
+import sys
 from dataclasses import replace
 from pathlib import Path
 
@@ -10,6 +11,8 @@ import pytest
 
 from laconic.core import load
 from laconic.drive import Input
+from laconic.errors import ResultFails
+from laconic.paths import build_dir
 from laconic.report.boards import board_row
 from laconic.report.counting import host_state
 from laconic.report.workshop import HOST, M4F, Variant, Workshop, run_tool
@@ -118,6 +121,28 @@ def test_on_a_cortex_m4f_the_bits_are_the_hosts_and_nothing_foreign_is_linked(wo
     assert row["static_ram"] == 0
     assert 0 < row["instructions"] < 2000
     assert row["stack_measured"] <= row["worst_stack"] + 32  # the caller's own frame is measured, too
+
+
+@needs_gcc
+def test_a_program_of_the_other_scalar_type_does_not_compile_with_the_model(tmp_path: Path):
+    trimmed(read_scene("s1"), "single").write(tmp_path)
+    include = Path(__file__).resolve().parents[2] / "core_c" / "include"
+    command = ["gcc", "-fsyntax-only", f"-I{include}", "-include", "laconic_scene_model.h", "-x", "c", "/dev/null"]
+    with pytest.raises(ResultFails, match="was prepared for single: compile with LACONIC_SINGLE"):
+        run_tool(command, tmp_path)
+    run_tool([*command, "-DLACONIC_SINGLE"], tmp_path)
+
+
+@needs_board
+@pytest.mark.skipif(shutil.which("cmake") is None, reason="no cmake here")
+def test_cmake_builds_the_library_for_a_board_with_another_trees_environment(tmp_path: Path):
+    if build_dir() != Path(sys.prefix).parent:
+        pytest.skip("the environment belongs to another build tree")
+    root = Path(__file__).resolve().parents[2]
+    run_tool(["cmake", "-S", str(root), "-B", str(tmp_path), "--toolchain", str(root / "cmake" / "cortex_m.cmake"),
+              "-DLACONIC_SCENE=scenes/s1.toml", "-DLACONIC_SCENE_REAL=single", f"-DLACONIC_VENV={sys.prefix}"])
+    run_tool(["cmake", "--build", str(tmp_path)])
+    assert (tmp_path / "lib" / "liblaconic_scene.a").is_file()
 
 
 @pytest.mark.skipif(shutil.which("cmake") is None, reason="no cmake here")
