@@ -7,7 +7,12 @@ import pytest
 from matplotlib import image
 
 from laconic import cli
+from laconic.analysis.findings import Wishes
+from laconic.analysis.from_core import subject_of
+from laconic.analysis.pictures_steady import driven_picture
+from laconic.analysis.study import study
 from laconic.paths import SCENE_DIR
+from laconic.scene import read_scene
 
 SCENES = sorted(path.stem for path in SCENE_DIR.glob("*.toml"))
 
@@ -94,6 +99,17 @@ def test_question_that_makes_no_sense_gets_clear_words(capsys, scene, part, word
     status, out, _ = run(capsys, "analyse", scene, "--only", part, "--json")
     assert status == 0
     assert any(word in sentence for sentence in json.loads(out)["words"][part])
+
+
+def test_one_steady_motion_alone_is_drawn_with_motions_that_lead_to_it():
+    found = study(subject_of(read_scene("paper_differential_drive"), 5.0), Wishes(("steady",)), lambda *_: None)
+    (steady,) = found.steady.motions
+    (axes,) = driven_picture(found).axes
+    runs = [line.get_xdata() for line in axes.lines if len(line.get_xdata()) > 100]
+    assert steady.stability == "stable"
+    assert len(runs) > 10
+    assert all(abs(run[0] - steady.nu[2]) > 5 * abs(run[-1] - steady.nu[2]) for run in runs)
+    assert "unstable steady motion" not in [line.get_label() for line in axes.lines]
 
 
 @pytest.mark.parametrize(("arguments", "words"), [

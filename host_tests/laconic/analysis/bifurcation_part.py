@@ -74,11 +74,19 @@ def _cycles_of(parameter: Parameter, found: Diagram, hopf: HopfPoint) -> list[Cy
     return parts
 
 
+def _speeds(result: Study, part: BifurcationPart) -> str:
+    """What a range of commanded ν means for the body's speed."""
+    if part.parameter.name not in ("nu1", "nu2"):
+        return ""
+    low, high = (float(result.subject.model.wheel_radius_m) * nu for nu in (part.low, part.high))
+    return f" rad/s ({low:.4g} to {high:.4g} m/s)"
+
+
 def _tell_bifurcation(result: Study, part: BifurcationPart) -> None:
     name = part.parameter.name
-    result.say("bifurcation", f"Steady motions for {name} from {part.low:.6g} to {part.high:.6g}: "
-                              f"{len(part.diagram.branches)} "
-               f"branch{'es' if len(part.diagram.branches) != 1 else ''}.")
+    count = len(part.diagram.branches)
+    result.say("bifurcation", f"Steady motions for {name} from {part.low:.6g} to {part.high:.6g}"
+                              f"{_speeds(result, part)}: {count} branch{'es' if count != 1 else ''}.")
     for value in part.thresholds:
         result.say("bifurcation", f"Straight motion changes its stability at {name} = {value:.9g}.")
     for special in part.diagram.specials:

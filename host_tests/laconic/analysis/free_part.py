@@ -99,7 +99,7 @@ def _tell_free(result: Study, free: FreePart, wishes: Wishes) -> None:
     if wishes.start:
         where = "from the given start"
     else:
-        cut = f"with the motors cut off at {free.since_s:.4g} s"
+        cut = f"with the motors cut off at {free.since_s:.4g} s, the run's fastest moment"
         where = cut if free.since_s else "from the scene's start"
     nu = nu_text(motion.start_nu)
     result.say("free", f"Free motion {where}, ν = ({nu}) rad/s: energy {free.energy_J:.6g} J"

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
@@ -29,6 +29,7 @@ class Subject:
     model: Any                # laconic_model
     matrices: Matrices
     inputs: dict[str, float]  # held: signal → value
+    held: str = ""            # which moment of the scene's inputs that is, in words; "": they never vary
 
     @property
     def wheel_count(self) -> int:
@@ -68,7 +69,9 @@ def subject_of(scene: Scene, at_s: float = 0.0) -> Subject:
     tick = int(np.floor(at_s / scene.run.step_s + 1e-6))
     if not 0 <= tick <= drive.steps:
         raise BadInput(f"{scene.path}: --at {at_s:g} s lies outside the run of {scene.run.duration_s:g} s")
-    return Subject(scene, core, vehicle, model, core.matrices(vehicle), drive.held_at(tick))
+    varying = not drive.is_held or len(drive.changes) > 1
+    held = f"The inputs are held as they are at {at_s:g} s (--at takes another instant)." if varying else ""
+    return Subject(scene, core, vehicle, model, core.matrices(vehicle), drive.held_at(tick), held)
 
 
 def changed(subject: Subject, key: str, value: float) -> Subject:
@@ -79,7 +82,7 @@ def changed(subject: Subject, key: str, value: float) -> Subject:
         model, matrices = subject.core.prepare(vehicle), subject.core.matrices(vehicle)
     except Refused as refused:
         raise refused.at(f"{subject.scene.path}, {key} = {value:g}") from None
-    return Subject(subject.scene, subject.core, vehicle, model, matrices, subject.inputs)
+    return replace(subject, vehicle=vehicle, model=model, matrices=matrices)
 
 
 def nu_rates(core: Core, model: Any, nu: Sequence[float], heading_rad: float, held: Any) -> np.ndarray:
@@ -94,7 +97,7 @@ def field_of(core: Core, model: Any, inputs: Inputs) -> Field:
     core.lib.laconic_load_of(load, model, core.input(inputs))
     if load.turns:
         raise BadInput("a force fixed in the world acts: it turns against the body with the heading, so there are no "
-                       "steady motions; leave it out (--free), or use `laconic simulate`")
+                       "steady motions; leave it out of the scene, or use `laconic simulate`")
     return Field(
         dof=int(model.dof),
         nu_of_zeta=core.numbers(model.nu_of_zeta, 3, 3),

@@ -142,8 +142,8 @@ def motion_words(motion: np.ndarray, subject: Subject, length: float) -> str:
     if abs(turn) < 1e-9:
         return direction_words(along, across)
     yaw_rate = turn / length
-    x = float(subject.model.com_x_m) - across / yaw_rate
-    y = float(subject.model.com_y_m) + along / yaw_rate
+    place = (float(subject.model.com_x_m) - across / yaw_rate, float(subject.model.com_y_m) + along / yaw_rate)
+    x, y = (0.0 if abs(metres) < 1e-9 * length else metres for metres in place)
     if abs(along) < 1e-9 and abs(across) < 1e-9:
         return "turning about the centre of mass"
     return f"turning about the body's point ({x:.3g}, {y:.3g}) m"

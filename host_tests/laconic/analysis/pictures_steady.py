@@ -13,6 +13,7 @@ from laconic.analysis.portrait import across_direction
 from laconic.plotting import figure
 
 STABLE, UNSTABLE, NEUTRAL = "tab:blue", "tab:red", "tab:gray"
+COLOURS = {"stable": STABLE, "unstable": UNSTABLE, "neutral": NEUTRAL}
 
 
 def bifurcation_picture(study: Study) -> Figure | None:
@@ -34,8 +35,10 @@ def bifurcation_picture(study: Study) -> Figure | None:
     if part.low <= part.parameter.at_scene <= part.high:
         axes.axvline(part.parameter.at_scene, color="0.6", lw=0.9, ls=":")
     axes.set_xlim(part.low, part.high)
-    handles = keys(axes, [(STABLE, BOLD, "-", "stable"), (UNSTABLE, THIN, "--", "unstable"),
-                           ("0.6", 0.9, ":", "the scene's own value")])
+    found = {bool(stable) for branch in part.diagram.branches for stable in branch.stable()}
+    looks = {True: (STABLE, BOLD, "-", "stable"), False: (UNSTABLE, THIN, "--", "unstable")}
+    handles = keys(axes, [look for stable, look in looks.items() if stable in found]
+                   + [("0.6", 0.9, ":", "the scene's own value")])
     handles += _marks(axes, part)
     axes.set(xlabel=part.parameter.label, ylabel=r"yaw rate $\omega=\nu_3/\Lambda$ [rad/s]",
              title=f"{study.subject.scene.name}\nsteady motions")
@@ -85,7 +88,7 @@ def eigenvalue_picture(study: Study) -> Figure | None:
     if study.bifurcation is not None:
         _loci(axes, study.bifurcation)
     for number, motion in enumerate(steady.motions):
-        colour = {"stable": STABLE, "unstable": UNSTABLE, "neutral": NEUTRAL}[motion.stability]
+        colour = COLOURS[motion.stability]
         shape = "turning" if motion.turns else "straight"
         yaw_rate = motion.nu[2] / big if motion.turns else 0.0
         text = f"{shape}, ω = {yaw_rate:.3g} rad/s: {motion.stability}"
@@ -122,11 +125,12 @@ def driven_picture(study: Study) -> Figure | None:
     for nu in _driven_runs(study, steady):
         axes.plot(nu[:, 2], nu[:, :2] @ across, color="0.55", lw=0.8)
         axes.plot(nu[0, 2], nu[0, :2] @ across, ".", color="0.55", ms=4)
-    for motion in steady.motions:
-        colour = {"stable": STABLE, "unstable": UNSTABLE, "neutral": NEUTRAL}[motion.stability]
-        axes.plot(motion.nu[2], motion.nu[:2] @ across, "o", color=colour, ms=8, zorder=5)
-    handles = [axes.plot([], [], "o", color=c, ls="", label=f"{t} steady motion")[0]
-               for c, t in ((STABLE, "stable"), (UNSTABLE, "unstable"))]
+    handles = []
+    for stability, colour in COLOURS.items():
+        nu = np.array([motion.nu for motion in steady.motions if motion.stability == stability]).reshape(-1, 3)
+        if len(nu):
+            handles += axes.plot(nu[:, 2], nu[:, :2] @ across, "o", color=colour, ms=8, zorder=5,
+                                 label=f"{stability} steady motion")
     handles += keys(axes, [("0.55", 0.8, "-", "motions (start: dot)")]) + _nearest_cycles(axes, study, across)
     axes.set(xlabel=r"$\nu_3$ [rad/s]", ylabel=f"{label} [rad/s]",
              title=f"{subject.scene.name}\nmotions under constant voltages")
@@ -153,7 +157,7 @@ def _driven_runs(study: Study, steady: SteadyPart) -> list[np.ndarray]:
     subject = study.subject
     field = subject.field(steady.inputs)
     states = np.array([motion.nu for motion in steady.motions])
-    spread = np.ptp(states, axis=0)
+    spread = np.ptp(states, axis=0) if len(states) > 1 else np.abs(states[0])
     middle, size = states.mean(axis=0), 0.75 * np.maximum(spread, 0.2 * spread.max())
     basis = field.nu_of_zeta[:, : field.dof]
     rng = np.random.default_rng(7)

@@ -38,7 +38,7 @@ def traction_picture(study: Study) -> Figure | None:
     handles, labels = rows[0].get_legend_handles_labels()
     if found.first_slip_s is not None:
         handles += rows[0].plot([], [], "k--", lw=1.2)
-        labels.append(f"no slip stops being true: {found.first_slip_s:.4g} s")
+        labels.append(f"first slip: {found.first_slip_s:.4g} s")
     picture.legend(handles, labels, loc="outside lower center", ncols=4, fontsize=9)
     return picture
 

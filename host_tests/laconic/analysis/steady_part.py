@@ -22,6 +22,8 @@ def steady_part(result: Study, wishes: Wishes) -> None:
     if wishes.straight is None and pushed.world_force_acts(subject):
         _tell_pushed(result)
         return
+    if wishes.straight is None and subject.held:
+        result.say("steady", subject.held)
     found = subject.field(inputs)
     motions = steady_motions(found)
     confirmations = [confirm.steady_motion(subject, inputs, found, motion) for motion in motions]

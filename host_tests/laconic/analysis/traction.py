@@ -220,7 +220,7 @@ def _words(subject: Subject, found: Traction, friction: float) -> list[str]:
                      f"share is "
                      "shown, which is that of equally soft suspensions.")
     for name, when in found.lifting.items():
-        words.append(f"{name.capitalize()} would lift off at {when:.3f} s: its load falls below zero.")
+        words.append(f"{name.capitalize()} would lift off at {when:.4g} s: its load falls below zero.")
     shared = _shared_lateral(subject)
     if shared:
         words.append(f"Fixed wheels {', '.join(map(str, shared))} stand on one axle line: only the sum of their "
@@ -237,9 +237,9 @@ def _words(subject: Subject, found: Traction, friction: float) -> list[str]:
     worst = "a wheel pulls without any load"
     if np.isfinite(most):
         worst = f"up to {100.0 * most:.0f} % of the friction cone"
-    return [*words, f"No slip stops being true at {found.first_slip_s:.4g} s (wheel {which}): from there on the run "
-                    f"shows "
-            f"what a vehicle with more grip would do ({worst})."]
+    wheels = f"wheel{'s' if len(found.slipping_wheels) > 1 else ''} {which}"
+    return [*words, f"At {found.first_slip_s:.4g} s {wheels} would begin to slip: from there on the run shows what a "
+                    f"vehicle with more grip would do ({worst})."]
 
 
 def _shared_lateral(subject: Subject) -> list[int]:
