@@ -88,7 +88,7 @@ static const char *explanation(laconic_status status) {
         "# supports, but this build takes 0 to @; lower it or build with a larger LACONIC_MAX_SUPPORTS",
         "fixed and locked wheels leave nothing that moves; release a wheel or let fixed wheels share an axle line",
         "masses and lengths are too far apart for " LACONIC_REAL_NAME
-        " precision: the condition number # leaves no correct digit; check the units",
+        " precision: the condition number # leaves fewer than two correct digits; check the units",
         "# slides a fixed or locked wheel; the nearest velocity that the wheels allow is @",
         "there is no such method; use auto, rk4, exponential-kahan, exponential-kahan-4, exact-flow or exact-flow-4",
         "steps of # s do not fill the interval; @ s would",

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import math
 
+import mpmath
 import numpy as np
 import pytest
 
@@ -130,6 +131,30 @@ def test_a_number_that_is_not_finite_in_any_sample_of_a_step_is_named(core, samp
         plant.run_sampled(rows)
     assert (caught.value.status, caught.value.field, caught.value.item) == ("not finite", "axle_torque_Nm", 3)
     assert plant.steps == 2
+
+
+def test_near_the_largest_condition_number_two_digits_of_an_acceleration_are_right(core):
+    epsilon = float(np.finfo(core.dtype).eps)
+    wheel = {"kind": "roller", "x_m": 0.25, "y_m": -0.125, "axle_rad": 0.75, "roller_rad": 1.25}
+    vehicle = {"mass_kg": 1.0, "yaw_inertia_kgm2": 1.0, "wheel_radius_m": 1.0, "wheel": [wheel]}
+    with mpmath.workdps(80):
+        pull, sine = mpmath.mpf(2), mpmath.sin(1.25)  # axle + roller
+        lever = 0.25 * mpmath.sin(pull) + 0.125 * mpmath.cos(pull)
+        row = mpmath.matrix([mpmath.cos(pull), mpmath.sin(pull), lever]) / sine
+        inertia = float((0.009 / epsilon) ** 2 / (row.T * row)[0])
+        matrix = mpmath.eye(3) + float(core.dtype.type(inertia)) * row * row.T
+        model = core.prepare(core.vehicle({**vehicle, "wheel_inertia_kgm2": inertia}))
+        for push in (row, mpmath.matrix([1, 2, 3])):  # along the largest inertia alone, and anywhere
+            wrench = np.array([float(part) for part in push], core.dtype)
+            held = core.input({"body_force_N": wrench[:2], "body_moment_Nm": wrench[2]})
+            found = core.derivative(model, [0.0] * 3, 0.0, held).nu_rad_per_s2
+            exact = mpmath.lu_solve(matrix, mpmath.matrix(wrench.tolist()))
+            error = mpmath.matrix(list(found)) - exact
+            assert mpmath.sqrt((error.T * matrix * error)[0] / (exact.T * matrix * exact)[0]) < 0.02
+    said = refused(core, **vehicle, wheel_inertia_kgm2=1.5 * inertia)
+    assert said.status == "ill-conditioned"
+    assert said.value == pytest.approx(1.5 * (0.009 / epsilon) ** 2, rel=0.02)
+    assert "leaves fewer than two correct digits" in str(said)
 
 
 def test_steps_are_counted_and_do_not_change_what_many_at_once_give(core):

@@ -50,7 +50,7 @@ typedef enum laconic_status {
     LACONIC_TOO_MANY_WHEELS,             /* wheel_count below 0 or above LACONIC_MAX_WHEELS           */
     LACONIC_TOO_MANY_SUPPORTS,           /* support_count below 0 or above LACONIC_MAX_SUPPORTS       */
     LACONIC_NOTHING_MOVES,               /* three independent constraints                             */
-    LACONIC_ILL_CONDITIONED,             /* A has no correct digit left in this scalar type           */
+    LACONIC_ILL_CONDITIONED,             /* ε √cond(A) >= 0.01: fewer than two correct digits left    */
     LACONIC_START_AGAINST_CONSTRAINTS,   /* the initial velocity slides a fixed or locked wheel       */
     LACONIC_METHOD_UNKNOWN,              /* no method of that name or number                          */
     LACONIC_STEP_DOES_NOT_FIT,           /* the interval is no whole number of steps                  */
@@ -223,11 +223,13 @@ typedef struct laconic_model {
 /* Checks the vehicle and fills the model: rows of Ξ (4.3–4.4), constraints of fixed and locked wheels,
  * principal axes of A (4.6), damping rates. About 2,000 flops plus 60 N, so that no step takes sines of what
  * the user gave or divides by it. Refuses as laconic_vehicle_check does, and with NOTHING_MOVES,
- * ILL_CONDITIONED (value: the condition number of A), and OVERFLOW where a constant would leave the range. */
+ * ILL_CONDITIONED (value: the condition number of A, refused from 2·10²⁷ on, in single from 7·10⁹), and OVERFLOW where
+ * a constant would leave the range. */
 laconic_status laconic_prepare(laconic_model *model, const laconic_vehicle *vehicle, laconic_refusal *why);
 
-/* Condition number of A on the motions that the constraints leave: log10 of it is the number of digits
- * that a velocity loses when a torque is turned into an acceleration. */
+/* Condition number of A on the motions that the constraints leave: largest over smallest inertia. By the measure of
+ * energy, √(ν'ᵀAν'), rounding costs an acceleration up to about ε √cond of its size, half of cond's digits. ν' itself
+ * keeps nearly all digits, but where a wrench pushes along the largest inertia alone it may lose all of cond's. */
 laconic_real laconic_condition_number(const laconic_model *model);
 
 /* The matrices of the paper, for people who want to see them. */
