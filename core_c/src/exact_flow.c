@@ -32,11 +32,17 @@ vector laconic_cleared_turn(vector zeta, vector delta) {
     return minus(delta, scaled(R(0.5) * excess / length, end));
 }
 
+RARE increment flow_varying(const laconic_model *model, const laconic_integrator *integrator,
+                            const laconic_state *state, const laconic_loads *loads) {
+    return single_varying(exact_flow_step, model, integrator, state, loads);
+}
+
 static laconic_status flow_step(const laconic_model *model, const laconic_integrator *integrator, laconic_state *state,
                                 const laconic_loads *loads) {
-    increment by;
-    (void)single_step(exact_flow_step, model, integrator, state, loads, &by); /* finds every step possible */
-    return advance(state, model, integrator->step_s, zeta_of(state), by);
+    const vector zeta = zeta_of(state);
+    const increment by = steady_over(loads) ? single(exact_flow_step, model, integrator, zeta, loads)
+                                            : flow_varying(model, integrator, state, loads);
+    return advance(state, model, integrator->step_s, zeta, by);
 }
 
 static laconic_status flow_prepare(laconic_integrator *integrator, const laconic_model *model,

@@ -59,8 +59,8 @@ static inline void split(drive *early, drive *late, const drive *b) {
 }
 
 /* Drive for h/2, free motion for h, drive for h/2. */
-INLINE laconic_status exact_flow_step(const laconic_model *m, const laconic_integrator *integrator, int level,
-                                             vector zeta, const drive *b, increment *out) {
+INLINE increment exact_flow_step(const laconic_model *m, const laconic_integrator *integrator, int level, vector zeta,
+                                 const drive *b) {
     const real half_step = integrator->step_s * (level == 0 ? R(0.5) : R(0.25));
     const laconic_decay *half = &integrator->decay[level + 1];
     const drive *first = b, *second = b;
@@ -75,8 +75,7 @@ INLINE laconic_status exact_flow_step(const laconic_model *m, const laconic_inte
     before = plus(zeta, up);
     turn = free_flow(m, half_step, before);
     down = drive_flow(m, half, plus(before, turn), second);
-    fill(out, &integrator->decay[level], zeta, plus(plus(up, turn), down), b);
-    return LACONIC_OK;
+    return increment_of(&integrator->decay[level], zeta, plus(plus(up, turn), down), b);
 }
 
 #endif

@@ -2,9 +2,17 @@
 #include "exact_flow.h"
 #include "integrator.h"
 
+RARE increment flow_4_varying(const laconic_model *model, const laconic_integrator *integrator,
+                              const laconic_state *state, const laconic_loads *loads) {
+    return extrapolated_varying(exact_flow_step, model, integrator, state, loads);
+}
+
 static laconic_status flow_4_step(const laconic_model *model, const laconic_integrator *integrator,
                                   laconic_state *state, const laconic_loads *loads) {
-    return extrapolated_step(exact_flow_step, model, integrator, state, loads);
+    const vector zeta = zeta_of(state);
+    const increment by = steady_over(loads) ? extrapolated(exact_flow_step, model, integrator, zeta, loads)
+                                            : flow_4_varying(model, integrator, state, loads);
+    return advance_if_passive(state, model, integrator->step_s, loads, zeta, by);
 }
 
 static laconic_status flow_4_prepare(laconic_integrator *integrator, const laconic_model *model,

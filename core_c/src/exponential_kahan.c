@@ -3,12 +3,17 @@
 
 #include "integrator.h"
 
+RARE increment kahan_varying(const laconic_model *model, const laconic_integrator *integrator,
+                             const laconic_state *state, const laconic_loads *loads) {
+    return single_varying(kahan_step, model, integrator, state, loads);
+}
+
 static laconic_status kahan_1_step(const laconic_model *model, const laconic_integrator *integrator,
                                    laconic_state *state, const laconic_loads *loads) {
-    increment by;
-    const laconic_status status = single_step(kahan_step, model, integrator, state, loads, &by);
-    if (status != LACONIC_OK) return status;
-    return advance_if_passive(state, model, integrator->step_s, loads, zeta_of(state), by);
+    const vector zeta = zeta_of(state);
+    const increment by = steady_over(loads) ? single(kahan_step, model, integrator, zeta, loads)
+                                            : kahan_varying(model, integrator, state, loads);
+    return advance_if_passive(state, model, integrator->step_s, loads, zeta, by);
 }
 
 static laconic_status kahan_prepare(laconic_integrator *integrator, const laconic_model *model, laconic_refusal *why) {

@@ -19,11 +19,7 @@ static inline laconic_turn heading_advance(laconic_heading *heading, real angle_
     const laconic_turn odd = (laconic_turn)whole << (TURN_BITS - 1);
     heading->rest = wanted - (real)half;
     heading->fraction = (laconic_turn)(old + 2U * (laconic_turn)half);
-    heading->turns += whole;
-    if (half >= 0)
-        heading->turns += heading->fraction < old;
-    else
-        heading->turns -= heading->fraction > old;
+    heading->turns += whole - (half < 0) + (heading->fraction < old); /* the carry of old + half, signed */
     return (laconic_turn)(old + (laconic_turn)half + odd);
 }
 

@@ -11,8 +11,10 @@ typedef laconic_real real;
 /* For the parts of a step, which compilers find too large to inline: a vector passed through memory stalls. */
 #if defined(__GNUC__) && !defined(LACONIC_PLAIN_INLINE) /* coverage counts each function once */
 #define INLINE static inline __attribute__((always_inline))
+#define RARE static __attribute__((noinline)) /* and what would only be in the way of the usual case */
 #else
 #define INLINE static inline
+#define RARE static
 #endif
 
 /* |x| as an instruction: x < 0 ? -x : x would have to mind the sign of zero. */

@@ -66,10 +66,9 @@ static inline vector load_now(const laconic_load *load, const laconic_heading *h
     return vec(load->constant);
 }
 
-/* Nothing varies over the step. Known beforehand, it leaves of the code below a base step and nothing else. */
+/* Known beforehand, it leaves of the code below a base step and nothing else. */
 static inline bool steady_over(const laconic_loads *loads) {
-    if (LACONIC_WITH_WORLD_FORCE && (loads->start->turns || loads->middle->turns || loads->end->turns)) return false;
-    return !LACONIC_WITH_SAMPLED_INPUT || loads->start == loads->end;
+    return (!LACONIC_WITH_WORLD_FORCE && !LACONIC_WITH_SAMPLED_INPUT) || loads->steady;
 }
 
 #endif

@@ -19,14 +19,15 @@ typedef struct increment {
 bool laconic_growth_is_driven(const laconic_model *model, const laconic_state *state, real step_s,
                               const laconic_loads *loads, const increment *by);
 
-/* Exactly: |ζ⁺|² − |ζ|² = 2∫(b·ζ − ζ·diag(r)ζ)dt <= 2∫ b·ζ dt. Tried first as if b were held; false for NaN. */
-INLINE bool passive(const laconic_model *model, const laconic_state *state, real step_s,
-                           const laconic_loads *loads, vector zeta, increment by) {
+/* Exactly: |ζ⁺|² − |ζ|² = 2∫(b·ζ − ζ·diag(r)ζ)dt <= 2∫ b·ζ dt. Tried first as if b were held; false for NaN, and
+ * in free motion for infinity. */
+INLINE bool passive(const laconic_model *model, const laconic_state *state, real step_s, const laconic_loads *loads,
+                    vector zeta, increment by) {
     const real before = square(zeta), after = square(plus(zeta, by.delta));
-    const real gain = after - before, allowed = ENERGY_TOLERANCE * (before + after);
-    if (gain <= allowed) return true;
-    if (gain - R(2) * step_s * dot(vec(loads->start->constant), by.mean) <= allowed) return true;
-    if (!LACONIC_WITH_SAMPLED_INPUT && !LACONIC_WITH_WORLD_FORCE) return false;
+    const real excess = (R(1) - ENERGY_TOLERANCE) * after - (R(1) + ENERGY_TOLERANCE) * before;
+    if (excess <= R(0)) return true;
+    if (excess <= R(2) * step_s * dot(vec(loads->start->constant), by.mean)) return true;
+    if (steady_over(loads)) return false;
     return laconic_growth_is_driven(model, state, step_s, loads, &by);
 }
 

@@ -17,28 +17,38 @@ static inline vector along(vector zeta, real h, vector rate) {
     return plus(zeta, scaled(h, rate));
 }
 
-/* Loads at the stages; where nothing varies, the one of the start. */
-INLINE vector stage_load(const laconic_model *m, const laconic_load *load, const laconic_heading *heading, real h,
-                         vector zeta, vector start, bool steady) {
-    return steady ? start : load_now(load, heading, turned_rad(m, h, zeta));
+/* b held. */
+INLINE increment steady_stages(const laconic_model *m, real h, vector z1, vector b) {
+    const real half = R(0.5) * h, sixth = h * (R(1) / R(6));
+    const vector k1 = zeta_rate(m, z1, b);
+    const vector k2 = zeta_rate(m, along(z1, half, k1), b);
+    const vector k3 = zeta_rate(m, along(z1, half, k2), b);
+    const vector k4 = zeta_rate(m, along(z1, h, k3), b);
+    const vector inner = plus(k2, k3), forth = scaled(sixth, plus(k1, inner));
+    increment by;
+    by.mean = plus(z1, forth);
+    by.delta = along(forth, sixth, plus(inner, k4));
+    by.slope = by.delta;
+    return by;
 }
 
-INLINE increment stages(const laconic_model *m, real h, vector z1, const laconic_heading *heading,
-                        const laconic_loads *loads, bool steady) {
-    const real half = R(0.5) * h, sixth = h * (R(1) / R(6));
-    const vector b = load_now(loads->start, heading, R(0));
-    vector outer = zeta_rate(m, z1, b), z2, z3, z4, inner, rate;
+/* The same, each stage under its own b: for samples, and for forces that turn with the heading. */
+RARE increment varying_stages(const laconic_model *m, real h, vector z1, const laconic_heading *heading,
+                         const laconic_loads *loads) {
+    const laconic_load *const load[4] = {loads->start, loads->middle, loads->middle, loads->end};
+    const real ahead[4] = {R(0), R(0.5) * h, R(0.5) * h, h}, sixth = h * (R(1) / R(6));
+    vector rate[4], z = z1, inner, forth;
     increment by;
-    z2 = along(z1, half, outer);
-    inner = zeta_rate(m, z2, stage_load(m, loads->middle, heading, half, z1, b, steady));
-    z3 = along(z1, half, inner);
-    rate = zeta_rate(m, z3, stage_load(m, loads->middle, heading, half, z2, b, steady));
-    z4 = along(z1, h, rate);
-    inner = plus(inner, rate);
-    outer = scaled(sixth, plus(outer, inner));
-    by.mean = plus(z1, outer);
-    inner = plus(inner, zeta_rate(m, z4, stage_load(m, loads->end, heading, h, z3, b, steady)));
-    by.delta = along(outer, sixth, inner);
+    int i;
+    for (i = 0; i < 4; i++) {
+        const vector b = load_now(load[i], heading, turned_rad(m, ahead[i], z));
+        if (i > 0) z = along(z1, ahead[i], rate[i - 1]);
+        rate[i] = zeta_rate(m, z, b);
+    }
+    inner = plus(rate[1], rate[2]);
+    forth = scaled(sixth, plus(rate[0], inner));
+    by.mean = plus(z1, forth);
+    by.delta = along(forth, sixth, plus(inner, rate[3]));
     by.slope = by.delta;
     return by;
 }
@@ -50,8 +60,8 @@ static laconic_status rk4_step(const laconic_model *model, const laconic_integra
     increment by;
     if (magnitude(dot(vec(model->nu_of_zeta[2]), zeta)) > integrator->gyro_limit)
         return LACONIC_STEP_BEYOND_GYROSCOPIC_LIMIT;
-    by = steady_over(loads) ? stages(model, h, zeta, &state->heading, loads, true)
-                            : stages(model, h, zeta, &state->heading, loads, false);
+    by = steady_over(loads) ? steady_stages(model, h, zeta, vec(loads->start->constant))
+                            : varying_stages(model, h, zeta, &state->heading, loads);
     return advance_if_passive(state, model, h, loads, zeta, by);
 }
 

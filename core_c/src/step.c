@@ -4,15 +4,17 @@
 uint64_t laconic_run(const laconic_model *model, const laconic_integrator *integrator, laconic_state *state,
                      const laconic_input *held, uint64_t steps, laconic_status *status) {
     laconic_load load;
-    const laconic_loads loads = {&load, &load, &load};
-    uint64_t taken;
+    laconic_loads loads = {&load, &load, &load, true};
+    laconic_status last = LACONIC_OK;
+    uint64_t left;
     load_of(&load, model, held);
-    *status = LACONIC_OK;
-    for (taken = 0; taken < steps; taken++) {
-        *status = integrator->chosen->step(model, integrator, state, &loads);
-        if (*status != LACONIC_OK) break;
+    loads.steady = !load.turns;
+    for (left = steps; left > 0; left--) {
+        last = integrator->chosen->step(model, integrator, state, &loads);
+        if (last != LACONIC_OK) break;
     }
-    return taken;
+    *status = last;
+    return steps - left;
 }
 
 laconic_status laconic_step(const laconic_model *model, const laconic_integrator *integrator, laconic_state *state,

@@ -14,8 +14,8 @@ typedef struct drive {
 } drive;
 
 /* A second-order symmetric step of size step_s/2^level from ζ under b. */
-typedef laconic_status (*base_step)(const laconic_model *model, const laconic_integrator *integrator, int level,
-                                    vector zeta, const drive *b, increment *out);
+typedef increment (*base_step)(const laconic_model *model, const laconic_integrator *integrator, int level,
+                               vector zeta, const drive *b);
 
 /* What a b that varies adds to one that does not. */
 static inline vector response(const real ramp[3], const real bend[3], const drive *b) {
@@ -29,15 +29,55 @@ INLINE vector constant_like(const drive *b, const laconic_decay *d) {
 
 /* Mean and first moment of ζ over the step from its increment: exact for damping and drive alone, and
  * symmetric, so that they gain two orders by extrapolation as the increment does. */
-INLINE void fill(increment *out, const laconic_decay *d, vector zeta, vector delta, const drive *b) {
-    out->delta = delta;
-    out->mean = plus(zeta, times(vec(d->mean), delta));
-    out->slope = times(vec(d->slope), delta);
+INLINE increment increment_of(const laconic_decay *d, vector zeta, vector delta, const drive *b) {
+    increment by;
+    by.delta = delta;
+    by.mean = plus(zeta, times(vec(d->mean), delta));
+    by.slope = times(vec(d->slope), delta);
     if (b->varies) {
-        out->mean = plus(out->mean, response(d->mean_ramp, d->mean_bend, b));
-        out->slope = plus(out->slope, response(d->slope_ramp, d->slope_bend, b));
+        by.mean = plus(by.mean, response(d->mean_ramp, d->mean_bend, b));
+        by.slope = plus(by.slope, response(d->slope_ramp, d->slope_bend, b));
     }
+    return by;
 }
+
+/* (4 · two half steps − one full step)/3: the base's error has only even powers of h, so this is fourth order.
+ * The slope of the two halves together is 3/2 of the height between their means, plus a quarter of each own. */
+INLINE increment combine(increment whole, increment first, increment second) {
+    const real third = R(1) / R(3);
+    const vector delta = plus(first.delta, second.delta);
+    const vector mean = scaled(R(0.5), plus(first.mean, second.mean));
+    increment by;
+    by.delta = plus(delta, scaled(third, minus(delta, whole.delta)));
+    by.mean = plus(mean, scaled(third, minus(mean, whole.mean)));
+    by.slope =
+        plus(scaled(R(1.5), minus(second.mean, first.mean)), scaled(R(0.25), plus(first.slope, second.slope)));
+    return by;
+}
+
+/* ------------------------------------------------------------------------- b held ------- */
+
+static inline drive held(const laconic_loads *loads) {
+    const vector none = {R(0), R(0), R(0)};
+    return (drive){vec(loads->start->constant), none, none, false};
+}
+
+/* The base step itself as a method. */
+INLINE increment single(base_step base, const laconic_model *m, const laconic_integrator *integrator, vector zeta,
+                        const laconic_loads *loads) {
+    const drive b = held(loads);
+    return base(m, integrator, 0, zeta, &b);
+}
+
+/* Written out, so that what the whole step and its first half share is computed once. */
+INLINE increment extrapolated(base_step base, const laconic_model *m, const laconic_integrator *integrator,
+                              vector zeta, const laconic_loads *loads) {
+    const drive b = held(loads);
+    const increment whole = base(m, integrator, 0, zeta, &b), first = base(m, integrator, 1, zeta, &b);
+    return combine(whole, first, base(m, integrator, 1, plus(zeta, first.delta), &b));
+}
+
+/* ------------------------------------------------------------------------- b varies ----- */
 
 /* A base step within a step: its size, where it begins, what acts. */
 typedef struct part {
@@ -64,95 +104,49 @@ static inline drive drive_of(const laconic_heading *heading, const laconic_loads
     return b;
 }
 
-/* One base step under loads that vary. A force fixed in the world makes b depend on the heading at the end,
- * which the step itself decides: iterate. Three rounds leave an error of h⁷, so symmetry, which extrapolation
+/* One base step; zeta and turned_rad move on to its end. A force fixed in the world makes b depend on the heading
+ * there, which the step itself decides: iterate. Three rounds leave an error of h⁷, so symmetry, which extrapolation
  * rests on, is kept. */
-INLINE laconic_status varying_step(base_step base, const laconic_model *m, const laconic_integrator *integrator,
-                                   const laconic_heading *heading, const laconic_loads *loads, part *p,
-                                   increment *out) {
+INLINE increment part_step(base_step base, const laconic_model *m, const laconic_integrator *integrator,
+                           const laconic_heading *heading, const laconic_loads *loads, part *p) {
     const bool turns = LACONIC_WITH_WORLD_FORCE && (p->start->turns || p->end->turns);
     const real h = integrator->step_s * (p->level == 0 ? R(1) : R(0.5)), before = p->turned_rad;
     drive b = drive_of(heading, loads, p);
+    increment by;
     int rounds;
     p->turned_rad = before + h * dot(vec(m->yaw_rate_of_zeta), p->zeta);
     for (rounds = turns ? 3 : 1; rounds > 0; rounds--) {
-        laconic_status status;
         if (turns) b.change = minus(load_now(p->end, heading, p->turned_rad), b.start);
-        status = base(m, integrator, p->level, p->zeta, &b, out);
-        if (status != LACONIC_OK) return status;
-        p->turned_rad = before + h * dot(vec(m->yaw_rate_of_zeta), out->mean);
+        by = base(m, integrator, p->level, p->zeta, &b);
+        p->turned_rad = before + h * dot(vec(m->yaw_rate_of_zeta), by.mean);
     }
-    return LACONIC_OK;
-}
-
-/* One base step; zeta and turned_rad move on to its end. */
-INLINE laconic_status part_step(base_step base, const laconic_model *m, const laconic_integrator *integrator,
-                                const laconic_heading *heading, const laconic_loads *loads, bool steady, part *p,
-                                increment *out) {
-    laconic_status status;
-    if (steady) {
-        const drive held = {vec(p->start->constant), {R(0), R(0), R(0)}, {R(0), R(0), R(0)}, false};
-        status = base(m, integrator, p->level, p->zeta, &held, out);
-    } else {
-        status = varying_step(base, m, integrator, heading, loads, p, out);
-    }
-    p->zeta = plus(p->zeta, out->delta);
-    return status;
-}
-
-/* The base step itself as a method. */
-INLINE laconic_status single_step(base_step base, const laconic_model *m, const laconic_integrator *integrator,
-                                  const laconic_state *state, const laconic_loads *loads, increment *out) {
-    part whole = {0, zeta_of(state), R(0), loads->start, loads->end};
-    if (steady_over(loads)) return part_step(base, m, integrator, &state->heading, loads, true, &whole, out);
-    return part_step(base, m, integrator, &state->heading, loads, false, &whole, out);
-}
-
-/* (4 · two half steps − one full step)/3: the base's error has only even powers of h, so this is fourth order.
- * The slope of the two halves together is 3/2 of the height between their means, plus a quarter of each own. */
-INLINE increment combine(const increment *whole, const increment *first, const increment *second) {
-    const real third = R(1) / R(3);
-    const vector delta = plus(first->delta, second->delta);
-    const vector mean = scaled(R(0.5), plus(first->mean, second->mean));
-    increment by;
-    by.delta = plus(delta, scaled(third, minus(delta, whole->delta)));
-    by.mean = plus(mean, scaled(third, minus(mean, whole->mean)));
-    by.slope = plus(scaled(R(1.5), minus(second->mean, first->mean)),
-                    scaled(R(0.25), plus(first->slope, second->slope)));
+    p->zeta = plus(p->zeta, by.delta);
     return by;
 }
 
+/* The base step itself as a method. */
+INLINE increment single_varying(base_step base, const laconic_model *m, const laconic_integrator *integrator,
+                                const laconic_state *state, const laconic_loads *loads) {
+    part whole = {0, zeta_of(state), R(0), loads->start, loads->end};
+    return part_step(base, m, integrator, &state->heading, loads, &whole);
+}
+
 /* A loop, so that the base is inlined once: the halves follow each other from where the whole began. */
-INLINE laconic_status extrapolate(base_step base, const laconic_model *m, const laconic_integrator *integrator,
-                                  const laconic_state *state, const laconic_loads *loads, bool steady,
-                                  increment *by) {
-    const laconic_load *ends[4] = {loads->start, loads->start, loads->middle, loads->end};
+INLINE increment extrapolated_varying(base_step base, const laconic_model *m, const laconic_integrator *integrator,
+                                      const laconic_state *state, const laconic_loads *loads) {
     increment parts[3];
     part p = {0, zeta_of(state), R(0), loads->start, loads->end};
     int i;
     for (i = 0; i < 3; i++) {
-        const laconic_status status =
-            part_step(base, m, integrator, &state->heading, loads, steady, &p, &parts[i]);
-        if (status != LACONIC_OK) return status;
+        parts[i] = part_step(base, m, integrator, &state->heading, loads, &p);
         if (i == 0) {
-            p.zeta = zeta_of(state);
-            p.turned_rad = R(0);
-            p.level = 1;
+            p = (part){1, zeta_of(state), R(0), loads->start, loads->middle};
+        } else {
+            p.start = loads->middle;
+            p.end = loads->end;
         }
-        p.start = ends[i + 1];
-        p.end = i == 0 ? loads->middle : loads->end;
     }
-    *by = combine(&parts[0], &parts[1], &parts[2]);
-    return LACONIC_OK;
-}
-
-INLINE laconic_status extrapolated_step(base_step base, const laconic_model *m, const laconic_integrator *integrator,
-                                        laconic_state *state, const laconic_loads *loads) {
-    increment by;
-    const laconic_status status = steady_over(loads) ? extrapolate(base, m, integrator, state, loads, true, &by)
-                                                     : extrapolate(base, m, integrator, state, loads, false, &by);
-    if (status != LACONIC_OK) return status;
-    return advance_if_passive(state, m, integrator->step_s, loads, zeta_of(state), by);
+    return combine(parts[0], parts[1], parts[2]);
 }
 
 #endif

@@ -7,7 +7,7 @@ static bool growth_is_driven_by(real start, real middle, real end, real grown) {
     const laconic_model m = model_of(bare_body());
     const increment by = {{grown, 0, 0}, {REAL(1) + grown / 2, 0, 0}, {grown, 0, 0}};
     laconic_load load[3];
-    const laconic_loads loads = {&load[0], &load[1], &load[2]};
+    const laconic_loads loads = {&load[0], &load[1], &load[2], false};
     laconic_state state;
     memset(load, 0, sizeof load);
     memset(&state, 0, sizeof state);

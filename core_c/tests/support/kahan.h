@@ -48,22 +48,20 @@ static inline double singular_scale(const laconic_model *m, double half_step) {
     return high;
 }
 
-/* Beside the zero that exact arithmetic has, within rounding, lies one that the core's has. */
+/* Wherever the determinant is within rounding of 0, the increment is none: too long, or not finite. */
 static inline void assert_singular_step_refused(const laconic_method *method, double half_step) {
     const laconic_model m = model_of(three_wheels());
     const laconic_integrator in = integrator_of(method, &m, 1.0);
     const laconic_input input = no_input(), alike = input;
     const double scale = singular_scale(&m, half_step);
-    laconic_status status = LACONIC_OK;
     int k;
-    for (k = -400; k <= 400 && status != LACONIC_STEP_SINGULAR; k++) {
+    for (k = -400; k <= 400; k++) {
         laconic_state state = scaled_motion(&m, scale * (1 + k * 0.25 * (double)LACONIC_EPSILON)), before = state;
-        status = laconic_step(&m, &in, &state, &input);
-        if (status != LACONIC_OK) TEST_ASSERT_EQUAL_MEMORY(&before, &state, sizeof state);
-        if (status == LACONIC_STEP_SINGULAR) /* and so it is where inputs are sampled, though all alike */
-            ASSERT_STATUS(status, laconic_step_sampled(&m, &in, &state, &input, &alike, &alike));
+        const laconic_status status = laconic_step(&m, &in, &state, &input);
+        TEST_ASSERT_TRUE(status == LACONIC_STEP_GAINS_ENERGY || status == LACONIC_STEP_SINGULAR);
+        TEST_ASSERT_EQUAL_MEMORY(&before, &state, sizeof state);
+        ASSERT_STATUS(status, laconic_step_sampled(&m, &in, &state, &input, &alike, &alike));
     }
-    ASSERT_STATUS(LACONIC_STEP_SINGULAR, status);
 }
 
 #endif
