@@ -103,14 +103,12 @@ static void take_points(laconic_contact *contact, const laconic_vehicle *vehicle
     least_norm(contact->load_of_wrench, (const real(*)[3])rows, contact->point_count);
 }
 
-laconic_status laconic_contact_prepare(laconic_contact *contact, const laconic_vehicle *vehicle,
-                                       const laconic_model *model, laconic_refusal *why) {
+laconic_status laconic_contact_prepare(laconic_contact *contact, const laconic_vehicle *vehicle, laconic_refusal *why) {
     laconic_matrices matrices;
     laconic_contact fresh = {0};
     int32_t i, k;
     body b;
     const laconic_status status = laconic_matrices_of(&matrices, vehicle, why);
-    (void)model;
     if (status != LACONIC_OK) return status;
     laconic_body_of(&b, vehicle);
     take_wheels(&fresh, vehicle, &b);

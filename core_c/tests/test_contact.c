@@ -19,7 +19,7 @@ static void judge(scene *s, laconic_vehicle v, laconic_start start, laconic_inpu
     s->state = state_of(&s->model, start);
     s->input = input;
     memset(&s->out, 0, sizeof s->out);
-    ASSERT_STATUS(LACONIC_OK, laconic_contact_prepare(&s->contact, &v, &s->model, &why));
+    ASSERT_STATUS(LACONIC_OK, laconic_contact_prepare(&s->contact, &v, &why));
     laconic_reactions_of(&s->out, &s->contact, &s->model, &s->state, &s->input);
 }
 
@@ -220,13 +220,12 @@ static void without_wheels_there_is_no_margin_to_lose(void) {
 
 static void a_refused_vehicle_changes_nothing(void) {
     laconic_vehicle v = three_wheels();
-    const laconic_model model = model_of(v);
     laconic_contact contact, before;
     memset(&contact, 4, sizeof contact);
     before = contact;
     v.yaw_inertia_kgm2 = 0;
-    ASSERT_REFUSED(LACONIC_NOT_POSITIVE, LACONIC_FIELD_YAW_INERTIA, 0,
-                   laconic_contact_prepare(&contact, &v, &model, &why), why);
+    ASSERT_REFUSED(LACONIC_NOT_POSITIVE, LACONIC_FIELD_YAW_INERTIA, 0, laconic_contact_prepare(&contact, &v, &why),
+                   why);
     TEST_ASSERT_EQUAL_MEMORY(&before, &contact, sizeof contact);
 }
 

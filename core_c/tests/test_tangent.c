@@ -208,7 +208,7 @@ static void reactions_change_as_differences_say(laconic_vehicle v, int pushed) {
     v.com_z_m = REAL(0.1);
     v.friction_coefficient = REAL(0.5);
     m = model_of(v);
-    ASSERT_STATUS(LACONIC_OK, laconic_contact_prepare(&c, &v, &m, NULL));
+    ASSERT_STATUS(LACONIC_OK, laconic_contact_prepare(&c, &v, NULL));
     now = reactions_at(&c, &m, &p);
     for (n = 0; n < DIRECTIONS; n++) {
         const laconic_variation by = direction_number(n);
@@ -245,7 +245,7 @@ static void a_wheel_that_needs_nothing_from_the_ground_is_given_no_change(void) 
     laconic_contact c;
     laconic_reactions now, change;
     memset(&at, 0, sizeof at);
-    ASSERT_STATUS(LACONIC_OK, laconic_contact_prepare(&c, &v, &m, NULL));
+    ASSERT_STATUS(LACONIC_OK, laconic_contact_prepare(&c, &v, NULL));
     laconic_reactions_of(&now, &c, &m, &rest, &input);
     laconic_reactions_tangent(&change, &c, &m, &at, &input, &now, &by);
     TEST_ASSERT_EQUAL_DOUBLE(0.0, (double)change.no_slip_margin_N);

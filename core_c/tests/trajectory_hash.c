@@ -91,7 +91,7 @@ static int run(const laconic_method *method, int which) {
     memset(&start, 0, sizeof start);
     start.heading_rad = (laconic_real)0.4;
     if (laconic_plant_start(&plant, &vehicle, method, (laconic_real)0.003, &start, &why) != LACONIC_OK ||
-        laconic_contact_prepare(&contact, &vehicle, &plant.model, &why) != LACONIC_OK)
+        laconic_contact_prepare(&contact, &vehicle, &why) != LACONIC_OK)
         return 1;
     for (step = 0; step < STEPS; step++) {
         const laconic_input input = input_of(step);

@@ -39,7 +39,7 @@ fmu_status fmu_plant_start(fmu_instance *instance) {
     laconic_status status;
     p->continuous = instance->kind == FMU_MODEL_EXCHANGE;
     status = start_core(p, &why);
-    if (status == LACONIC_OK) status = laconic_contact_prepare(&p->contact, &p->vehicle, &p->core.model, &why);
+    if (status == LACONIC_OK) status = laconic_contact_prepare(&p->contact, &p->vehicle, &why);
     if (status != LACONIC_OK) return refuse_with(instance, &why, "this vehicle cannot start");
     p->start_needed = p->change_needed = false;
     p->stale = FMU_GROUPS_ALL & ~FMU_GROUP_STATE;
@@ -57,7 +57,7 @@ fmu_status fmu_plant_change(fmu_instance *instance) {
     core = p->core;
     if (p->stand_in) core.integrator.method = &laconic_exact_flow;
     status = laconic_plant_change(&core, &p->vehicle, &why);
-    if (status == LACONIC_OK) status = laconic_contact_prepare(&contact, &p->vehicle, &core.model, &why);
+    if (status == LACONIC_OK) status = laconic_contact_prepare(&contact, &p->vehicle, &why);
     if (status != LACONIC_OK) return refuse_with(instance, &why, "the changed vehicle is refused");
     core.integrator.method = p->core.integrator.method;
     p->core = core;

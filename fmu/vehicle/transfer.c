@@ -96,7 +96,7 @@ static bool prepare_again(fmu_plant *p, int32_t number, double step_s) {
     laconic_plant *core = &p->core;
     const laconic_method *method = laconic_method_by_number(number);
     if (laconic_prepare(&core->model, &core->vehicle, NULL) != LACONIC_OK) return false;
-    if (laconic_contact_prepare(&p->contact, &core->vehicle, &core->model, NULL) != LACONIC_OK) return false;
+    if (laconic_contact_prepare(&p->contact, &core->vehicle, NULL) != LACONIC_OK) return false;
     if (core->vehicle.wheel_count != p->vehicle.wheel_count) return false;
     if (laconic_integrator_prepare(&core->integrator, p->stand_in ? &laconic_exact_flow : method, &core->model, step_s,
                                    NULL) != LACONIC_OK)

@@ -140,8 +140,7 @@ class Plant:
         """The laconic_reactions of this state and input."""
         if self._contact is None:
             contact, why = self.core.ffi.new("laconic_contact *"), self.core.why()
-            self.core.check(self.core.lib.laconic_contact_prepare(
-                contact, self._at("vehicle"), self._at("model"), why), why)
+            self.core.check(self.core.lib.laconic_contact_prepare(contact, self._at("vehicle"), why), why)
             self._contact = contact
         found = self.core.ffi.new("laconic_reactions *")
         self.core.lib.laconic_reactions_of(found, self._contact, self._at("model"), self._at("state"), held)

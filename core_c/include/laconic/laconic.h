@@ -479,8 +479,8 @@ typedef struct laconic_contact {
     laconic_real com_z_m, friction_coefficient;
 } laconic_contact;
 
-laconic_status laconic_contact_prepare(laconic_contact *contact, const laconic_vehicle *vehicle,
-                                       const laconic_model *model, laconic_refusal *why);
+/* Refuses as laconic_prepare does. */
+laconic_status laconic_contact_prepare(laconic_contact *contact, const laconic_vehicle *vehicle, laconic_refusal *why);
 
 typedef struct laconic_reactions {
     laconic_real along_N[LACONIC_MAX_WHEELS];   /* along `pull`: the roller axis; fixed: rolling direction */

@@ -168,7 +168,7 @@ def outer_wrench(inputs: dict[str, float], heading: float) -> tuple[np.ndarray, 
 def _prepared_contact(subject: Subject) -> Any:
     contact, why = subject.core.ffi.new("laconic_contact *"), subject.core.why()
     lib = subject.core.lib
-    subject.core.check(lib.laconic_contact_prepare(contact, subject.vehicle, subject.model, why), why)
+    subject.core.check(lib.laconic_contact_prepare(contact, subject.vehicle, why), why)
     return contact
 
 
