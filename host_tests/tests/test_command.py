@@ -9,6 +9,7 @@ import sys
 import pytest
 
 from laconic.cli import commands, run
+from laconic.commands.soak import kinds
 from laconic.errors import BadInput
 from laconic.paths import build_dir, built, scene_path
 
@@ -28,6 +29,13 @@ def test_help_lists_the_commands(capsys):
     assert run(["--help"]) == 0
     text = capsys.readouterr().out
     assert all(f"  {name} " in text for name in NAMES)
+    assert "..." not in text.partition("Commands:")[2]  # no summary is cut off
+
+
+def test_soak_explains_every_run_it_knows(capsys):
+    assert run(["soak", "--help"]) == 0
+    text = capsys.readouterr().out
+    assert all(f"\n  {name} " in text for name in kinds())
 
 
 def test_version(capsys):

@@ -12,7 +12,7 @@ from laconic.errors import BadInput, ResultFails, reason_of
 PARTS = ("geometry", "free", "steady", "bifurcation", "traction")
 
 
-@click.command("analyse")
+@click.command("analyse", short_help="Steady motions, stability, free motion, traction.")
 @click.argument("scene")
 @click.option("--out", type=click.Path(file_okay=False, path_type=Path), metavar="DIR",
               help="Write report.md, report.json and pictures there.")
@@ -24,13 +24,13 @@ PARTS = ("geometry", "free", "steady", "bifurcation", "traction")
               help="Where the free motion starts, in rad/s, instead of the scene's start.")
 @click.option("--parameter", metavar="NAME", help="What the bifurcation diagram varies: nu1, nu2, input_scale, or a "
               "number of [vehicle] such as com_y_m.")
-@click.option("--from", "low", type=float, metavar="A", help="Where the diagram begins.")
+@click.option("--from", "low", type=float, metavar="A", help="Where the bifurcation diagram begins.")
 @click.option("--to", "high", type=float, metavar="B", help="Where it ends.")
 @click.option("--json", "as_json", is_flag=True, help="Machine-readable result on stdout.")
 def command(scene: str, out: Path | None, only: tuple[str, ...], at_s: float, straight: tuple[float, float] | None,
             start: tuple[float, float, float] | None, parameter: str | None, low: float | None,
             high: float | None, as_json: bool) -> None:
-    """Analyse SCENE: geometry, free motion, steady motions and their stability, bifurcations, traction.
+    """Analyses SCENE: geometry, free motion, steady motions and their stability, bifurcations, traction.
 
     Exit status 1 when a simulation with the core does not confirm what the analysis says.
     """

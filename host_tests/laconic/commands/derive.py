@@ -14,7 +14,7 @@ EXAMPLES = ("caster", "carriage", "differential-drive", "trailer")
 AGREEMENT = 1e-12  # between the three forms, relative, at random numbers
 
 
-@click.command("derive")
+@click.command("derive", short_help="The equations of motion, by the paper's method.")
 @click.argument("scene", required=False)
 @click.option("--example", type=click.Choice(EXAMPLES), help="A worked system in symbols, instead of a scene.")
 @click.option("--latex", "form", flag_value="latex", help="Print LaTeX.")
@@ -22,7 +22,7 @@ AGREEMENT = 1e-12  # between the three forms, relative, at random numbers
 @click.option("-o", "--out", type=click.Path(dir_okay=False, path_type=Path), help="Write to a file, not to stdout.")
 @click.option("--json", "as_json", is_flag=True, help="Machine-readable: the text and the check.")
 def command(scene: str | None, example: str | None, form: str | None, out: Path | None, as_json: bool) -> None:
-    """Derive the equations of motion by the laconic equations (2.4).
+    """Derives the equations of motion by the laconic equations (2.4).
 
     The result is checked against (2.3) and Maggi's equations (1.2) at random numbers, and a scene's also against the
     C core's derivative.

@@ -13,7 +13,7 @@ from laconic.scene import read_scene
 from laconic.ssp import make_ssp
 
 
-@click.command(name="fmu")
+@click.command(name="fmu", short_help="Write an FMU of a scene's vehicle.")
 @click.argument("scene")
 @click.option("--fmi", "version", type=click.Choice(("2", "3")), required=True, help="FMI 2.0 or 3.0.")
 @click.option("--scalar", is_flag=True, help="FMI 3.0 without arrays, for importers that handle them badly.")

@@ -10,7 +10,7 @@ import click
 from laconic.errors import BadInput, reason_of
 
 
-@click.command("replay")
+@click.command("replay", short_help="Compare a recorded run with the model.")
 @click.argument("log", type=click.Path(path_type=Path))
 @click.argument("scene")
 @click.option("--fit", "fit_on", type=click.Path(path_type=Path), multiple=True, metavar="RUN.csv",
@@ -22,7 +22,7 @@ from laconic.errors import BadInput, reason_of
 @click.option("--json", "as_json", is_flag=True, help="Machine-readable result on stdout.")
 def command(log: Path, scene: str, fit_on: tuple[Path, ...], map_path: Path | None, out: Path | None,
             as_json: bool) -> None:
-    """Compare LOG, a recorded run as CSV or a folder of them, with the model of SCENE.
+    """Compares LOG, a recorded run as CSV or a folder of them, with the model of SCENE.
 
     The measured wheel speeds are rolled and set beside the camera; friction is fitted by least squares; and the core,
     driven by the measured currents as torques, predicts the wheel speeds.

@@ -18,10 +18,10 @@ from laconic.report.page import shown, write
 from laconic.scene import read_scene
 
 
-@click.command(name="report")
-@click.option("--scene", "scenes", multiple=True, metavar="SCENE", help="Only this scene; may be given several times.")
+@click.command(name="report", short_help="Error against run time, sizes, stability: an HTML page.")
+@click.option("--scene", "scenes", multiple=True, metavar="SCENE", help="Instead of all scenes; may be given several times.")
 @click.option("--out", type=click.Path(path_type=Path), metavar="DIR", help="Folder; build/report where none is given.")
-@click.option("--quick", is_flag=True, help="Fewer repetitions and one board: rough figures in a minute.")
+@click.option("--quick", is_flag=True, help="Fewer repetitions and one board: rough figures, some minutes.")
 @click.option("--json", "json_wanted", is_flag=True, help="Print the goals as JSON.")
 def command(scenes: tuple[str, ...], out: Path | None, quick: bool, json_wanted: bool) -> None:
     """Measures error against run time, stability, drift, extremes, sizes and other integrators.

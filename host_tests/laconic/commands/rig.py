@@ -54,7 +54,7 @@ class Options:
     json_wanted: bool
 
 
-@click.command(name="rig")
+@click.command(name="rig", short_help="Drive a node over CAN and judge it.")
 @click.argument("scene_name", metavar="SCENE")
 @click.option("--interface", help="python-can's name of the interface: slcan, socketcan, pcan, kvaser, faulty …")
 @click.option("--channel", help="Which one: socket://127.0.0.1:PORT, /dev/ttyACM0, can0 …")

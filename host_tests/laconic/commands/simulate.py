@@ -82,6 +82,7 @@ def tell(run: Trajectory, out: Path | None, plot: Path | None) -> None:
     method = asked if asked == picked else f"{asked} (picked {picked})"
     click.echo(f"{run.scene.name}: {run.steps} steps of {run.scene.run.step_s:g} s by {method}, {run.scene.run.real}, "
                f"in {run.seconds:.2f} s")
+    click.echo(f"at {run.time_s[-1]:g} s:")
     for name, values in run.columns.items():
         click.echo(f"  {name:28} {values[-1]: .12g}")
     for path in (out, plot):

@@ -21,13 +21,21 @@ def kinds() -> dict[str, str]:
     return {name.replace("_", "-"): name for name in found}
 
 
-@click.command(name="soak")
+@click.command(name="soak", short_help="Long fuzz, fault and endurance runs.")
 @click.argument("what")
 @click.option("--minutes", type=float, default=10.0, show_default=True, metavar="N", help="How long.")
 @click.option("--seed", type=int, help="For the random numbers; printed when not given.")
 @click.option("--json", "json_wanted", is_flag=True, help="Machine-readable output.")
 def command(what: str, minutes: float, seed: int | None, json_wanted: bool) -> int:
     """Runs WHAT for a long time and reports what was found.
+
+    \b
+    faults    the fault matrix of the rig, with new seeds
+    fmu       random use of the FMUs' C interface, under sanitizers
+    free-run  the node process at 1 kHz: no step may be lost
+    fuzz      SLCAN reader, frame handler and parameter loader under libFuzzer
+    rig       all scenes in lockstep on the virtual bus, same bits
+    slcan     all scenes over SLCAN to a node process
 
     Exit status 1 when something was found that must not be.
     """

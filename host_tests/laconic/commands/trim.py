@@ -11,7 +11,7 @@ from laconic.scene import read_scene
 from laconic.trim import trimmed
 
 
-@click.command(name="trim")
+@click.command(name="trim", short_help="Write the C that builds the core for one scene alone.")
 @click.argument("scene")
 @click.option("--real", type=click.Choice(REALS), help="Scalar type; the scene's own where none is given.")
 @click.option("--out", type=click.Path(path_type=Path), default=Path(), show_default=True, help="Folder for the files.")
