@@ -40,6 +40,18 @@ class Initial:
         forward, sideways = (v / model.wheel_radius_m for v in self.velocity_body_m_per_s)
         return (forward, sideways, model.yaw_scale * self.yaw_rate_rad_per_s)
 
+    def refusal(self, refused: Refused, model: Any) -> Refused:
+        """A start that slides a wheel, by the key that the scene gives: the core speaks of ν."""
+        name, scale = f"nu_rad_per_s[{refused.item}]", 1.0
+        if self.nu_rad_per_s is None and refused.item < 3:
+            name, scale = f"velocity_body_m_per_s[{refused.item}]", model.wheel_radius_m
+        elif self.nu_rad_per_s is None:
+            name, scale = "yaw_rate_rad_per_s", 1.0 / model.yaw_scale
+        value, limit = scale * refused.value, scale * refused.limit
+        text = (f"initial.{name}: {value:.6g} (of the centre of mass) slides a fixed or locked wheel; the nearest that "
+                f"the wheels allow is {limit:.6g}")
+        return Refused(refused.status, refused.field, refused.item, text, value=refused.value, limit=refused.limit)
+
 
 @dataclass(frozen=True)
 class Run:
@@ -119,12 +131,14 @@ class Scene:
 
     def plant(self, core: Core) -> Plant:
         """The vehicle at its start, ready to step by the scene's method and step."""
-        start = self.initial
-        nu, vehicle = start.nu(self.model(core)), self.c_vehicle(core)
+        start, model = self.initial, self.model(core)
+        nu, vehicle = start.nu(model), self.c_vehicle(core)
         try:
             return core.plant(vehicle, self.run.method, self.run.step_s, nu_rad_per_s=nu, x_m=start.x_m,
                               y_m=start.y_m, heading_rad=start.heading_rad)
         except Refused as refused:
+            if refused.status == "start against constraints":
+                refused = start.refusal(refused, model)
             raise refused.at(self.path) from None
 
     def steps(self) -> int:

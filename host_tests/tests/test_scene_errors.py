@@ -124,7 +124,18 @@ def test_a_start_that_slides_a_fixed_wheel(tmp_path, capsys):
     path.write_text(GOOD.replace('"omni"', '"fixed"') + "[initial]\nnu_rad_per_s = [1.0, 1.0, 1.0]\n")
     line = complaint(capsys, ["simulate", str(path)])
     assert str(path) in line
-    assert "start_nu_rad_per_s" in line
+    assert "initial.nu_rad_per_s[" in line
+
+
+def test_a_start_that_slides_a_fixed_wheel_is_told_by_the_keys_that_were_given(tmp_path, capsys):
+    path = tmp_path / "scene.toml"
+    start = "[initial]\nvelocity_body_m_per_s = [0.2, 0.1]\n"
+    path.write_text(GOOD.replace('"omni"', '"fixed"').replace("axle_deg = 180", "axle_deg = 90") + start)
+    line = complaint(capsys, ["simulate", str(path)])
+    assert "initial.velocity_body_m_per_s[2]: 0.1 " in line
+    allowed = float(line.split()[-1])
+    path.write_text(path.read_text().replace("0.1]", f"{allowed}]"))
+    assert abs(allowed) < 0.1
 
 
 def test_the_good_scene_is_good(tmp_path, capsys):
