@@ -95,11 +95,11 @@ def in_words(replay: Replay) -> list[str]:
     words = [sentence for sentence in (_slip_words(replay), _direction_words(replay)) if sentence]
     ideal, dry, drag = (_mean(replay, k, "steady_error_A") for k in range(3))
     size = float(np.mean([np.sqrt(np.mean([m.value**2 for m in c.steady_current_A])) for c in replay.judged()]))
-    words.append(f"Steady currents of the runs that were not fitted: (4.7) alone, with the best constant damping, is "
-                 f"wrong by "
+    unseen = any(c.recording.name not in replay.fitted_on for c in replay.comparisons)
+    judged = "the runs that were not fitted" if unseen else "the very runs of the fit"
+    words.append(f"Steady currents of {judged}: (4.7) alone, with the best constant damping, is wrong by "
                  f"{ideal:.2f} A of {size:.2f} A; with a dry-friction torque per wheel by {dry:.2f} A; with a drag "
-                 f"against the "
-                 f"travel besides by {drag:.2f} A.")
+                 f"against the travel besides by {drag:.2f} A.")
     words.append(_damping_words(replay.models[1]))
     words.append(_drag_words(replay.models[2]))
     words.append(_transient_words(replay))
@@ -158,10 +158,11 @@ def _direction_words(replay: Replay) -> str | None:
         return abs((a - b + 180.0) % 360.0 - 180.0)
 
     worst = max(seen, key=lambda r: off(r.camera_direction_deg, r.direction_deg))
+    asked, went, rolled = (_whole_deg(angle) for angle in (worst.direction_deg, worst.camera_direction_deg,
+                                                           worst.rolled_direction_deg))
     return (f"The direction of travel is off by up to {off(worst.camera_direction_deg, worst.direction_deg):.0f}° "
-            f"(asked for "
-            f"{worst.direction_deg:.0f}°, went to {worst.camera_direction_deg:.0f}°; the wheels rolled to "
-            f"{worst.rolled_direction_deg:.0f}°): slip is not the same in all directions.")
+            f"(asked for {asked}°, went to {went}°; the wheels rolled to {rolled}°): slip is not the same in all "
+            "directions.")
 
 
 def as_numbers(replay: Replay) -> dict[str, Any]:
