@@ -19,7 +19,7 @@ from laconic.scene import read_scene
 
 
 @click.command(name="report", short_help="Error against run time, sizes, stability: an HTML page.")
-@click.option("--scene", "scenes", multiple=True, metavar="SCENE", help="Instead of all scenes; may be given several times.")
+@click.option("--scene", "scenes", multiple=True, metavar="SCENE", help="Instead of all; may be given several times.")
 @click.option("--out", type=click.Path(path_type=Path), metavar="DIR", help="Folder; build/report where none is given.")
 @click.option("--quick", is_flag=True, help="Fewer repetitions and one board: rough figures, some minutes.")
 @click.option("--json", "json_wanted", is_flag=True, help="Print the goals as JSON.")
