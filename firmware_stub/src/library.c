@@ -11,22 +11,13 @@ bool laconic_library_node_init(laconic_node *node, uint16_t id_base, bool can_fd
 }
 
 void laconic_library_look(const laconic_node *node, laconic_library_view *view) {
-    const laconic_node_counters *c = &node->counters;
     const laconic_library_view seen = {
         .state = node->state,
         .session = node->session,
         .steps = node->plant.steps,
         .voltage_V = {(double)node->input[0].voltage_V[0], (double)node->input[0].voltage_V[1],
                       (double)node->input[0].voltage_V[2]},
-        .crc_errors = c->crc_errors,
-        .sequence_errors = c->sequence_errors,
-        .repeated = c->repeated,
-        .lost = c->lost,
-        .malformed = c->malformed,
-        .late_periods = c->late_periods,
-        .accepted = c->accepted,
-        .refused = c->refused,
-        .overrange = c->overrange,
+        .counters = node->counters,
     };
     *view = seen;
 }

@@ -12,6 +12,7 @@ bool laconic_node_next_frame(struct laconic_node *node, laconic_frame *frame);
 bool laconic_node_is_busy(const struct laconic_node *node);
 uint32_t laconic_node_idle_us(const struct laconic_node *node, uint32_t now_us);
 
+#include "laconic_node/counters.h"
 #include "laconic_node/crc.h"
 #include "laconic_node/e2e.h"
 #include "laconic_node/slcan.h"
@@ -25,7 +26,7 @@ typedef struct laconic_library_view {
     uint8_t state, session;
     uint64_t steps;
     double voltage_V[3]; /* of the first wheels, as the next step will use them */
-    uint16_t crc_errors, sequence_errors, repeated, lost, malformed, late_periods, accepted, refused, overrange;
+    laconic_node_counters counters;
 } laconic_library_view;
 
 void laconic_library_look(const struct laconic_node *node, laconic_library_view *view);

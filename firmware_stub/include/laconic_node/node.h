@@ -15,6 +15,7 @@
 #ifndef LACONIC_NODE_H
 #define LACONIC_NODE_H
 
+#include "laconic_node/counters.h"
 #include "laconic_node/e2e.h"
 #include "laconic_node/frame.h"
 #include "laconic_node/loader.h"
@@ -36,11 +37,6 @@ typedef struct laconic_node_config {
     const laconic_method *(*method)(int32_t number);  /* which methods are linked; as
                                                          laconic_method_by_number                  */
 } laconic_node_config;
-
-/* All of them stay at 65535. */
-typedef struct laconic_node_counters {
-    uint16_t crc_errors, sequence_errors, repeated, lost, malformed, late_periods, accepted, refused, overrange;
-} laconic_node_counters;
 
 typedef struct laconic_node_result {
     uint8_t request, command, status, field, item;

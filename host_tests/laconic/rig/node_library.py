@@ -66,7 +66,6 @@ class LibraryNode:
         self.frame = ffi.new("laconic_frame *")
         self._bytes = ffi.buffer(self.frame.data)
         self._view = ffi.new("laconic_library_view *")
-        self._view_names = [name for name, _ in ffi.typeof("laconic_library_view").fields]
         self._on_frame, self._on_tick = lib.laconic_node_on_frame, lib.laconic_node_on_tick
         self._next, self._busy = lib.laconic_node_next_frame, lib.laconic_node_is_busy
         self.restart(id_base, can_fd, 0)
@@ -95,9 +94,9 @@ class LibraryNode:
         """State, steps, voltages and counters, for tests."""
         view = self._view
         self.library.lib.laconic_library_look(self.c, view)
-        found = {name: getattr(view, name) for name in self._view_names}
-        found["state"], found["voltage_V"] = NODE_STATES[view.state], list(view.voltage_V)
-        return found
+        counters = {name: getattr(view.counters, name) for name in dir(view.counters)}
+        return {"state": NODE_STATES[view.state], "session": view.session, "steps": view.steps,
+                "voltage_V": list(view.voltage_V), **counters}
 
     def idle_us(self, now_us: int) -> int:
         """Microseconds until the node has something to do."""
