@@ -54,8 +54,9 @@ def make_fmu(scene: Scene, out: Path, *, version: int, scalar: bool = False, sou
         raise BadInput(f"{scene.path}: vehicle.wheel: a vehicle without wheels has no arrays; use --scalar or --fmi 2")
     scene.plant(load("double"))  # what cannot start is refused here, with the field's name
     values: Any = start_values(scene)
+    text = f"Dynamics of a wheeled robot; its numbers: {scene.source}"
     try:
-        scene_fmu(generic_fmu(version), DESCRIPTION, values, scene.name, scene.source, out, version=version,
+        scene_fmu(generic_fmu(version), DESCRIPTION, values, scene.name, text, out, version=version,
                   scalar=scalar, sources=sources, stop_s=scene.run.duration_s, step_s=scene.run.step_s)
     except OSError as error:
         raise BadInput(f"{out}: cannot be written ({reason_of(error)}); choose another place with -o") from None

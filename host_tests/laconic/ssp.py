@@ -10,6 +10,7 @@ from laconic.fmu import make_fmu
 from laconic.paths import SOURCE_DIR, built
 from laconic.scene import Scene
 from laconic_fmu.archive import scene_fmu
+from laconic_fmu.description import read
 from laconic_fmu.package import pack
 
 CONTROLLER = SOURCE_DIR / "fmu" / "controller" / "modelDescription.xml"
@@ -19,8 +20,9 @@ SSC = "http://ssp-standard.org/SSP1/SystemStructureCommon"
 
 def make_controller(scene: Scene, out: Path, *, version: int, scalar: bool = False, sources: bool = True) -> Path:
     """The controller's FMU with as many loops as the scene has wheels."""
+    text = read(CONTROLLER).root.get("description", "")
     scene_fmu(built(f"fmu/LaconicController_fmi{version}.fmu"), CONTROLLER, {"wheel_count": [scene.wheel_count]},
-              f"Wheel-speed controller for {scene.name}", scene.source, out, version=version, scalar=scalar,
+              f"Wheel-speed controller for {scene.name}", text, out, version=version, scalar=scalar,
               stop_s=scene.run.duration_s, step_s=scene.run.step_s, sources=sources)
     return out
 

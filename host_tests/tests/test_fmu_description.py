@@ -72,6 +72,14 @@ def test_the_generic_vehicle_is_mounted_right(tmp_path: Path) -> None:
     assert found.rank == 3
 
 
+def test_the_fmu_of_a_scene_says_what_it_is_and_where_its_numbers_come_from(fmus: list[Path]) -> None:
+    for fmu in fmus[2:]:
+        root = fmpy.read_model_description(str(fmu))
+        scene = read_scene(fmu.name.rpartition("_")[0])
+        assert root.modelName == scene.name
+        assert root.description == f"Dynamics of a wheeled robot; its numbers: {scene.source}"
+
+
 def test_the_token_belongs_to_the_text() -> None:
     text = DESCRIPTION.read_text(encoding="utf-8")
     assert token_in(text) == token_of(text)
