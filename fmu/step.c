@@ -12,11 +12,11 @@ static fmu_status check_interval(const fmu_instance *instance, double at_s, doub
     const double now_s = instance->plant.time_s, off_s = at_s - now_s;
     const double half_s = 0.5 * (clock->step_s > 0.0 && clock->step_s < step_s ? clock->step_s : step_s);
     if (!(step_s > 0.0 && step_s <= DBL_MAX))
-        return fmu_refuse(instance, "a communication step of %.17g s cannot be taken: it must be more than 0", step_s);
+        return fmu_refuse(instance, "a communication step of %.15g s cannot be taken: it must be more than 0", step_s);
     if (!(off_s <= half_s && off_s >= -half_s))
-        return fmu_refuse(instance, "the step starts at %.17g s, but the model is at %.17g s", at_s, now_s);
+        return fmu_refuse(instance, "the step starts at %.15g s, but the model is at %.15g s", at_s, now_s);
     if (clock->stop_defined && now_s + step_s > clock->stop_s + 0.5 * step_s)
-        return fmu_refuse(instance, "the step from %.17g s to %.17g s goes beyond the stop time %.17g s", now_s,
+        return fmu_refuse(instance, "the step from %.15g s to %.15g s goes beyond the stop time %.15g s", now_s,
                           now_s + step_s, clock->stop_s);
     return FMU_OK;
 }

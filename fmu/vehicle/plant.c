@@ -14,7 +14,7 @@ static fmu_status refuse_with(const fmu_instance *instance, const laconic_refusa
 static fmu_status discard_with(const fmu_instance *instance, const laconic_refusal *why) {
     char text[256];
     laconic_message(why, text, sizeof text);
-    return fmu_report(instance, FMU_DISCARD, FMU_LOG_DISCARD, "the step at %.17g s is refused: %s",
+    return fmu_report(instance, FMU_DISCARD, FMU_LOG_DISCARD, "the step at %.15g s is refused: %s",
                       fmu_clock_now(&instance->clock), text);
 }
 
@@ -134,8 +134,8 @@ fmu_status fmu_plant_set_step(fmu_instance *instance, double step_s) {
 fmu_status fmu_plant_count_steps(fmu_instance *instance, double step_s, double own_s, uint64_t *steps) {
     laconic_refusal why = {LACONIC_OK, LACONIC_FIELD_NONE, 0, 0.0, 0.0};
     if (laconic_steps_in(step_s, own_s, steps, &why) == LACONIC_OK) return FMU_OK;
-    return fmu_refuse(instance, "the communication step of %.17g s is no whole number of internal steps of %.17g s "
-                      "(step_s); nearest that is: %.17g s", step_s, own_s, own_s * (double)(uint64_t)(step_s / own_s + 0.5));
+    return fmu_refuse(instance, "the communication step of %.15g s is no whole number of internal steps of %.15g s "
+                      "(step_s); nearest that is: %.15g s", step_s, own_s, own_s * (double)(uint64_t)(step_s / own_s + 0.5));
 }
 
 static void shift_input(laconic_input *out, const fmu_plant *p, double by_s) {
