@@ -7,6 +7,7 @@ import pytest
 from laconic.errors import Refused
 from laconic.paths import scene_names
 from laconic.rig.boards import BOARDS, emulated_node, why_no_emulation
+from laconic.rig.errors import NodeRefused
 from laconic.rig.judge import judge_scaled
 from laconic.rig.lockstep import run_lockstep, twin_states
 from laconic.rig.sizes import cost_of
@@ -61,6 +62,12 @@ def test_one_command_and_one_answer_a_step_run_at_150_steps_a_second_or_more() -
     assert judgement.passed, judgement.verdicts
     assert judgement.figures["frames_out_per_exchange"] < 1.1 and judgement.figures["frames_in_per_exchange"] < 1.1
     assert judgement.figures["steps_per_s"] >= 150
+
+
+def test_a_board_without_the_scenes_method_says_what_to_do() -> None:
+    scene = read_scene("kuka_youbot").with_run(real="single", method="exact-flow")
+    with emulated_node("an386-small") as node, pytest.raises(NodeRefused, match="method unknown.*--method"):
+        run_lockstep(node, scene, 10)
 
 
 def test_flash_ram_stack_and_instructions_are_printed_and_the_small_image_is_small(

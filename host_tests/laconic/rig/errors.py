@@ -19,7 +19,8 @@ class NodeRefused(ResultFails):
     def __init__(self, command: str, status: str, field: str, item: int, state: str):
         where = f", {field}" if field != "none" else ""
         where += f" {item}" if item else ""
-        super().__init__(f"the node refuses {command}: {status}{where} (its state: {state})")
+        remedy = "; it holds other methods, choose one with --method" if status == "method unknown" else ""
+        super().__init__(f"the node refuses {command}: {status}{where} (its state: {state}){remedy}")
         self.command, self.status, self.field, self.item, self.state = command, status, field, item, state
 
 
