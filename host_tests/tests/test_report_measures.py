@@ -108,6 +108,8 @@ def test_the_page_is_one_file_without_anything_from_elsewhere(ladder: list[dict]
     assert "Error against run time" in page
     assert "something was left out" in page
     assert page.count("<svg") == 1
+    assert page.count('<tr class="heading">') == len({row["group"] for row in results["targets"]})
+    assert "`" not in page.partition("<body>")[2]
     loaded = re.findall(r"<(?:script|link|img|iframe)|@import|url\((?!#)|src=", page)
     assert loaded == []
     assert len(list(csv.DictReader((tmp_path / "accuracy.csv").open()))) == len(ladder)

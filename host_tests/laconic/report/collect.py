@@ -34,6 +34,8 @@ def collect(scenes: Sequence[Scene], folder: Path, quick: bool = False) -> Repor
         for section in sections:
             report.results |= section(report, scenes, bench, workshop, folder, quick, advance)
     report.results["targets"] = targets.targets(report.results)
+    if quick:
+        report.notes.append("Made with --quick: fewer steps, vehicles, repetitions and boards than the texts say.")
     return report
 
 

@@ -6,12 +6,14 @@ import csv
 import json
 import math
 import platform
+import re
 from collections.abc import Sequence
 from dataclasses import dataclass, field
 from pathlib import Path
 from typing import Any
 
 from jinja2 import Environment
+from markupsafe import Markup, escape
 
 from laconic.report import pictures, texts
 from laconic.report.collect import Report
@@ -27,7 +29,7 @@ TITLES = {
     "error_wheel": "error wheels", "error_path": "error path", "step_s": "h [s]", "same_bits": "host's bits",
     "worst_growth_ulp": "largest growth [ulp]", "steps_taken": "steps taken", "digits_lost": "digits lost",
     "who": "integrator", "as_good": "reached", "fastest_decay_per_s": "r [1/s]", "us_per_second": "µs/s"}
-TEXT = {"goal", "group", "scene", "method", "real", "processor", "build", "optimisation", "status", "who", "case",
+TEXT = {"goal", "scene", "method", "real", "processor", "build", "optimisation", "status", "who", "case",
         "why", "outcome", "drive", "refused", "verdict", "chosen", "same_bits", "as_good"}
 STYLED = {"verdict", "outcome", "same_bits", "as_good"}
 
@@ -40,6 +42,7 @@ class Table:
     fields: Sequence[str]
     title: str = ""
     folded: bool = False
+    headed_by: str = ""  # a field whose value stands above the rows that share it
 
 
 @dataclass(frozen=True)
@@ -73,16 +76,17 @@ def prepared(table: Table) -> dict[str, Any]:
     """What the template needs of a table."""
     columns = [{"name": name, "title": TITLES.get(name, name), "kind": "text" if name in TEXT else ""}
                for name in table.fields]
-    rows = []
+    rows, above = [], ""
     for row in table.rows:
-        cells = []
+        cells, heading = [], str(row.get(table.headed_by, ""))
         for name in table.fields:
             value = row.get(name)
             styles = [f"f-{name}", *(["text"] if name in TEXT else [])]
             styles += ["long"] if name in ("why", "goal", "refused") else []
             styles += [str(value).replace(" ", "")] if name in STYLED else []
             cells.append({"text": shown(name, value), "style": " ".join(styles)})
-        rows.append(cells)
+        rows.append({"cells": cells, "heading": heading if heading != above else ""})
+        above = heading
     return {"title": table.title, "folded": table.folded, "columns": columns, "rows": rows}
 
 
@@ -98,7 +102,8 @@ def _section(key: str, title: str, pictures_of: Sequence[str], *tables: Table) -
 
 
 def _goals(results: dict[str, list[Row]]) -> Section:
-    return _section("goals", "Goals", (), Table(results["targets"], ("group", "goal", "found", "wanted", "verdict")))
+    fields = ("goal", "found", "wanted", "verdict")
+    return _section("goals", "Goals", (), Table(results["targets"], fields, headed_by="group"))
 
 
 def _accuracy(results: dict[str, list[Row]]) -> Section:
@@ -174,7 +179,9 @@ def write(report: Report, folder: Path, version: str) -> Path:
                f"{count['not measured']} not measured.")
     shown_sections = [{"key": s.key, "title": s.title, "text": s.text, "pictures": s.pictures,
                        "tables": [prepared(t) for t in s.tables if t.rows]} for s in sections(report.results)]
-    template = Environment(autoescape=True).from_string(Path(__file__).with_name("page.html").read_text())
+    environment = Environment(autoescape=True)
+    environment.filters["code"] = lambda text: Markup(re.sub("`(.*?)`", r"<code>\1</code>", str(escape(text))))
+    template = environment.from_string(Path(__file__).with_name("page.html").read_text())
     machine = f"{platform.system()} {platform.machine()}"
     page = folder / "index.html"
     page.write_text(template.render(version=version, machine=machine, summary=summary, notes=report.notes,
