@@ -9,6 +9,7 @@ from pathlib import Path
 
 import pytest
 
+from laconic.cli import run
 from laconic.core import load
 from laconic.drive import Input
 from laconic.errors import ResultFails
@@ -121,6 +122,13 @@ def test_on_a_cortex_m4f_the_bits_are_the_hosts_and_nothing_foreign_is_linked(wo
     assert row["static_ram"] == 0
     assert 0 < row["instructions"] < 2000
     assert row["stack_measured"] <= row["worst_stack"] + 32  # the caller's own frame is measured, too
+
+
+def test_the_command_says_what_it_wrote_and_left_out(tmp_path: Path, capsys: pytest.CaptureFixture[str]):
+    assert run(["trim", "s1", "--real", "single", "--out", str(tmp_path)]) == 0
+    said = capsys.readouterr().out
+    assert str(tmp_path / "laconic_scene.h") in said
+    assert said.endswith("left out: axle torque, body wrench, world force, sampled input\n")
 
 
 @needs_gcc

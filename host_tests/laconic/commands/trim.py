@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from dataclasses import asdict
 from pathlib import Path
 
 import click
@@ -23,6 +24,9 @@ def command(scene: str, real: str | None, out: Path) -> None:
     of this by itself.
     """
     read = read_scene(scene)
-    files = trimmed(read, real or read.run.real)
+    chosen = real or read.run.real
+    files = trimmed(read, chosen)
     files.write(out)
-    click.echo(files.method)
+    left_out = ", ".join(name.replace("_", " ") for name, needed in asdict(files.needs).items() if not needed)
+    click.echo(f"wrote {out / 'laconic_scene.h'}, laconic_scene_model.h, laconic_scene_model.c: "
+               f"{chosen}, {files.method}, left out: {left_out or 'nothing'}")
