@@ -66,28 +66,35 @@ static inline void settle(laconic_sum sums[3]) {
     sums[2].value = (sums[2].value + AT_REST) - AT_REST;
 }
 
-/* Takes the step, or refuses and leaves the state as it was. Model and step are bounded when they are prepared, so
- * with ζ and the motion in range everything else is. */
-INLINE laconic_status advance(laconic_state *state, const laconic_model *model, real step_s, vector zeta,
-                              increment by) {
-    const vector path = scaled(step_s, by.mean);
-    motion moved = {R(0), R(0), R(0)};
-    if (!(square(zeta) + square(plus(zeta, by.delta)) <= LARGEST_SPEED * LARGEST_SPEED)) return LACONIC_OVERFLOW;
-    if (LACONIC_WITH_POSE) moved = displacement(model, path, scaled(step_s, by.slope));
+/* Looked at first: model and step are bounded when they are prepared, so with ζ in range all that follows is finite. */
+static inline bool in_range(vector zeta, vector delta) {
+    return square(zeta) + square(plus(zeta, delta)) <= LARGEST_SPEED * LARGEST_SPEED;
+}
+
+/* Takes the step, or refuses and leaves the state as it was. */
+INLINE laconic_status take(laconic_state *state, vector delta, vector path, motion moved) {
     if (!(magnitude(moved.turn_rad) + magnitude(moved.along_m) + magnitude(moved.across_m) < LARGEST_TURN_RAD))
         return LACONIC_OVERFLOW;
-    add(state->zeta, by.delta);
+    add(state->zeta, delta);
     settle(state->zeta);
     if (LACONIC_WITH_WHEEL_ANGLES) add(state->travel, path);
     if (LACONIC_WITH_POSE) advance_pose(state, moved);
     return LACONIC_OK;
 }
 
-/* The same for methods that can go wrong: no energy out of nothing, and no increment that is none. */
+INLINE laconic_status advance(laconic_state *state, const laconic_model *model, real step_s, vector zeta,
+                              increment by) {
+    const vector path = scaled(step_s, by.mean);
+    motion moved = {R(0), R(0), R(0)};
+    if (!in_range(zeta, by.delta)) return LACONIC_OVERFLOW;
+    if (LACONIC_WITH_POSE) moved = displacement(model, path, scaled(step_s, by.slope));
+    return take(state, by.delta, path, moved);
+}
+
+/* For methods that can go wrong: no energy out of nothing, and no increment that is none. */
 INLINE laconic_status advance_if_passive(laconic_state *state, const laconic_model *model, real step_s,
                                          const laconic_loads *loads, vector zeta, increment by) {
-    if (!passive(model, state, step_s, loads, zeta, by))
-        return is_finite(size(by.delta)) ? LACONIC_STEP_GAINS_ENERGY : LACONIC_STEP_SINGULAR;
+    if (!passive(model, state, step_s, loads, zeta, by)) return not_passive(by);
     return advance(state, model, step_s, zeta, by);
 }
 

@@ -1,5 +1,6 @@
 /* Prepares a method for one step size. */
 #include "integrator.h"
+#include "vector.h"
 
 #define FAST_DAMPING R(0.3) /* h·r_max: below, splitting off the damping costs less than following it */
 
@@ -18,6 +19,18 @@ laconic_status laconic_integrator_prepare(laconic_integrator *integrator, const 
     status = method->prepare(&prepared, model, why);
     if (status == LACONIC_OK) *integrator = prepared;
     return status;
+}
+
+laconic_status laconic_explicit_limits(laconic_integrator *integrator, const laconic_model *model,
+                                       real largest_damping, real largest_rotation, laconic_refusal *why) {
+    const real fastest = laconic_fastest_decay(model), turning = laconic_root(square(vec(model->gyro)));
+    if (!(integrator->step_s * fastest <= largest_damping))
+        return refuse(why, LACONIC_STEP_BEYOND_DAMPING_LIMIT, LACONIC_FIELD_STEP, 0, integrator->step_s,
+                      largest_damping / fastest);
+    integrator->gyro_limit = LACONIC_REAL_MAX;
+    if (integrator->step_s * turning > largest_rotation / LACONIC_REAL_MAX)
+        integrator->gyro_limit = largest_rotation / (integrator->step_s * turning);
+    return LACONIC_OK;
 }
 
 real laconic_fastest_decay(const laconic_model *model) {

@@ -31,4 +31,9 @@ INLINE bool passive(const laconic_model *model, const laconic_state *state, real
     return laconic_growth_is_driven(model, state, step_s, loads, &by);
 }
 
+/* What to say of a step that is not. */
+static inline laconic_status not_passive(increment by) {
+    return is_finite(size(by.delta)) ? LACONIC_STEP_GAINS_ENERGY : LACONIC_STEP_SINGULAR;
+}
+
 #endif

@@ -58,23 +58,14 @@ static laconic_status rk4_step(const laconic_model *model, const laconic_integra
     const real h = integrator->step_s;
     const vector zeta = zeta_of(state);
     increment by;
-    if (magnitude(dot(vec(model->nu_of_zeta[2]), zeta)) > integrator->gyro_limit)
-        return LACONIC_STEP_BEYOND_GYROSCOPIC_LIMIT;
+    if (beyond_rotation(model, integrator, zeta)) return LACONIC_STEP_BEYOND_GYROSCOPIC_LIMIT;
     by = steady_over(loads) ? steady_stages(model, h, zeta, vec(loads->start->constant))
                             : varying_stages(model, h, zeta, &state->heading, loads);
     return advance_if_passive(state, model, h, loads, zeta, by);
 }
 
 static laconic_status rk4_prepare(laconic_integrator *integrator, const laconic_model *model, laconic_refusal *why) {
-    const real fastest = laconic_fastest_decay(model);
-    const real turning = laconic_root(square(vec(model->gyro)));
-    if (!(integrator->step_s * fastest <= LARGEST_DAMPING))
-        return refuse(why, LACONIC_STEP_BEYOND_DAMPING_LIMIT, LACONIC_FIELD_STEP, 0, integrator->step_s,
-                      LARGEST_DAMPING / fastest);
-    integrator->gyro_limit = LACONIC_REAL_MAX;
-    if (integrator->step_s * turning > LARGEST_ROTATION / LACONIC_REAL_MAX)
-        integrator->gyro_limit = LARGEST_ROTATION / (integrator->step_s * turning);
-    return LACONIC_OK;
+    return laconic_explicit_limits(integrator, model, LARGEST_DAMPING, LARGEST_ROTATION, why);
 }
 
 const laconic_method laconic_rk4 = {"rk4", 4, PREPARE(rk4_prepare), rk4_step};

@@ -33,4 +33,9 @@ static inline vector zeta_rate(const laconic_model *m, vector z, vector b) {
     return plus(minus(turning, times(vec(m->decay_per_s), z)), b);
 }
 
+/* Free motion turns faster than an explicit method bears. */
+static inline bool beyond_rotation(const laconic_model *m, const laconic_integrator *integrator, vector zeta) {
+    return magnitude(dot(vec(m->nu_of_zeta[2]), zeta)) > integrator->gyro_limit;
+}
+
 #endif

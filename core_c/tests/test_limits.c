@@ -28,12 +28,12 @@ static void fast_turning_limits_free_and_damped_vehicles(void) {
     an_explicit_method_is_limited_by_fast_turning(with_motors(three_wheels()));
 }
 
-static void the_other_methods_bear_any_step(void) {
+static void the_implicit_methods_bear_any_step(void) {
     const laconic_model m = model_of(with_motors(three_wheels()));
     const laconic_state state = moving(&m, 10, 10, 400);
     int32_t i;
     TEST_ASSERT_EQUAL_DOUBLE(0.0, (double)laconic_largest_stable_step_s(&laconic_auto, &m, &state));
-    for (i = 2; i < LACONIC_METHOD_COUNT; i++)
+    for (i = 2; i <= 5; i++)
         TEST_ASSERT_EQUAL_DOUBLE(0.0, (double)laconic_largest_stable_step_s(laconic_method_by_number(i), &m, &state));
 }
 
@@ -101,7 +101,7 @@ int main(void) {
     UNITY_BEGIN();
     RUN_TEST(an_explicit_method_is_limited_by_damping);
     RUN_TEST(fast_turning_limits_free_and_damped_vehicles);
-    RUN_TEST(the_other_methods_bear_any_step);
+    RUN_TEST(the_implicit_methods_bear_any_step);
     RUN_TEST(a_vehicle_without_damping_at_rest_bears_any_step);
     RUN_TEST(damping_near_the_end_of_the_range_still_has_a_limit);
     RUN_TEST(whole_numbers_of_steps_are_counted);

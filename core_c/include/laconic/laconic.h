@@ -366,14 +366,15 @@ extern const laconic_method laconic_exponential_kahan;   /* 2  any damping      
 extern const laconic_method laconic_exponential_kahan_4; /* 4  any damping                  nearly  */
 extern const laconic_method laconic_exact_flow;          /* 2  everything                   exactly */
 extern const laconic_method laconic_exact_flow_4;        /* 4  any damping, best below h·r ≈ 0.3    */
+extern const laconic_method laconic_taylor_8;            /* 8  h·r ≤ 4.313, h·|ν3| limited  –       */
 extern const laconic_method laconic_auto;                /* picks one of the next two; see auto.c   */
 /* Only ever `chosen`, for firmware whose integrator is a constant; what is prepared is laconic_auto. */
 extern const laconic_method laconic_auto_slow;           /* exact-flow-4, else exact-flow           */
 extern const laconic_method laconic_auto_fast;           /* exponential-kahan-4, else exact-flow    */
 
 /* All methods, for adapters that choose by number (0 auto, 1 rk4, 2 exponential-kahan,
- * 3 exponential-kahan-4, 4 exact-flow, 5 exact-flow-4) or by name. NULL if there is none. Links them all. */
-#define LACONIC_METHOD_COUNT 6
+ * 3 exponential-kahan-4, 4 exact-flow, 5 exact-flow-4, 6 taylor-8) or by name. NULL if there is none. Links them all. */
+#define LACONIC_METHOD_COUNT 7
 const laconic_method *laconic_method_by_number(int32_t number);
 const laconic_method *laconic_method_by_name(const char *name);
 
