@@ -162,6 +162,7 @@ class Core:
         start, _ = self.input_fields[name]
         return start + (int(index.rstrip("]")) - 1 if index else 0)
 
+    @np.errstate(over="ignore")  # the core names a number that is too large for its scalar type
     def input_row(self, values: Mapping[str, float | Sequence[float]]) -> np.ndarray:
         """A row of input numbers from {"voltage_V": [1, 2], "voltage_V[2]": 3, "body_moment_Nm": 4 …}."""
         row = np.zeros(self.input_length, self.dtype)

@@ -35,6 +35,7 @@ class Input:
     frequency_Hz: float = 0.0
     phase_rad: float = 0.0
 
+    @np.errstate(over="ignore", invalid="ignore")  # the core names a number that is not finite
     def at(self, time_s: np.ndarray) -> np.ndarray:
         """Values of a table or sine at some instants."""
         if self.kind == "table":
@@ -91,6 +92,7 @@ class Drive:
         """Values (step, start|middle|end, signal) of some steps; `steps` inputs hold theirs over each."""
         return self._rows(np.arange(first, first + count), np.array([0.0, 0.5, 1.0]))
 
+    @np.errstate(over="ignore", invalid="ignore")
     def _rows(self, ticks: np.ndarray, parts: np.ndarray) -> np.ndarray:
         rows = np.zeros((len(ticks), len(parts), len(self.signals)))
         time_s = (ticks[:, None] + parts[None, :]) * self.step_s

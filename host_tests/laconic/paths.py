@@ -29,6 +29,14 @@ def built(relative: str) -> Path:
     return path
 
 
+def exists(path: Path) -> bool:
+    """Whether it is there; no file has a name that is too long."""
+    try:
+        return path.exists()
+    except OSError:
+        return False
+
+
 def scene_names() -> list[str]:
     """Names of the scenes that come with the project."""
     return sorted(path.stem for path in SCENE_DIR.glob("*.toml"))
@@ -37,10 +45,10 @@ def scene_names() -> list[str]:
 def scene_path(given: str | Path) -> Path:
     """A scene file by its path, or by the name of one that comes with the project."""
     path = Path(given)
-    if path.exists():
+    if exists(path):
         return path
     named = SCENE_DIR / f"{given}.toml"
-    if path.name == str(given) and named.exists():
+    if path.name == str(given) and exists(named):
         return named
     remedy = nearest_of(path.stem, scene_names()) if scene_names() else "give the path of a scene file"
     raise BadInput(f"{given}: no such scene file; {remedy}")

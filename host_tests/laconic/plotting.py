@@ -23,7 +23,7 @@ from matplotlib.transforms import ScaledTranslation  # noqa: E402
 STYLE = {"axes.grid": True, "grid.alpha": 0.3, "axes.spines.top": False, "axes.spines.right": False,
          "font.size": 10, "axes.titlesize": 11, "legend.frameon": False, "lines.linewidth": 1.3}
 ARROWS = 12
-MARKERS = "osD^vP"
+MARKERS = "osD^vPX"
 
 
 def figure(width_in: float, height_in: float) -> Figure:
@@ -35,6 +35,8 @@ def figure(width_in: float, height_in: float) -> Figure:
 def save(picture: Figure, path: Path) -> None:
     """Writes and closes a figure."""
     try:
+        if not path.suffix:
+            raise ValueError("has no ending that says what picture it is")
         path.parent.mkdir(parents=True, exist_ok=True)
         picture.savefig(path, dpi=110)
     except OSError as error:

@@ -19,7 +19,8 @@ from laconic.plant import Plant
 from laconic.scene_reader import read_parts
 from laconic.table import read_toml
 
-METHODS = ("auto", "rk4", "exponential-kahan", "exponential-kahan-4", "exact-flow", "exact-flow-4")
+MOST_STEPS = 9e15  # as laconic_steps_in
+METHODS = ("auto", "rk4", "exponential-kahan", "exponential-kahan-4", "exact-flow", "exact-flow-4", "taylor-8")
 
 
 @dataclass(frozen=True)
@@ -139,6 +140,8 @@ class Scene:
         except Refused as refused:
             if refused.status == "start against constraints":
                 refused = start.refusal(refused, model)
+            elif refused.field.startswith("start_"):
+                refused.message = refused.message.replace("start_", "initial.", 1)
             raise refused.at(self.path) from None
 
     def steps(self) -> int:
@@ -147,6 +150,9 @@ class Scene:
 
     def steps_in(self, name: str, interval_s: float) -> int:
         """The whole number of steps in an interval of this scene; BadInput names the field when there is none."""
+        if interval_s / self.run.step_s >= MOST_STEPS:
+            raise BadInput(f"{self.path}: {name}: {interval_s:g} s are more steps of {self.run.step_s:g} s than can be "
+                           "counted; give a shorter time or a longer step")
         try:
             return load("double").steps_in(interval_s, self.run.step_s)
         except Refused as refused:

@@ -11,7 +11,7 @@ import numpy as np
 
 from laconic.core import Core
 from laconic.drive import Drive
-from laconic.errors import Refused
+from laconic.errors import BadInput, Refused
 from laconic.plant import Plant
 from laconic.progress import Advance, progress_bar
 from laconic.scene import Scene
@@ -20,6 +20,7 @@ from laconic.scene_reader import OUTPUT_LENGTHS, OUTPUTS_PER_WHEEL, signal_names
 USUAL = ("nu_rad_per_s", "x_m", "y_m", "heading_rad", "velocity_body_m_per_s", "yaw_rate_rad_per_s",
          "wheel_speed_rad_per_s", "wheel_angle_rad", "energy_J")
 CHUNK = 4096          # sampled steps made ready at once
+MOST_ROWS = 10**7     # of outputs that are kept: some gigabytes
 HELD_CHUNK = 1 << 20  # held steps between two looks at the progress bar: about half a second
 
 Row = dict[str, float]
@@ -125,6 +126,7 @@ def advance_plant(plant: Plant, drive: Drive, first: int, count: int) -> None:
         plant.run_sampled(sampled_rows(core, drive, begin, min(CHUNK, first + count - begin)))
 
 
+@np.errstate(over="ignore")
 def sampled_rows(core: Core, drive: Drive, first: int, count: int) -> np.ndarray:
     """Rows of input numbers at the start, middle and end of some steps."""
     samples = drive.samples(first, count)
@@ -148,6 +150,9 @@ def simulate(scene: Scene, signals: tuple[str, ...] = (), progress: bool = False
     """
     core, steps = scene.core(), scene.steps()
     every = 1 if scene.outputs.every_s is None else scene.steps_in("outputs.every_s", scene.outputs.every_s)
+    if steps / every > MOST_ROWS:
+        raise BadInput(f"{scene.path}: outputs.every_s: {steps // every} rows are too many to keep; make it longer, "
+                       f"for {MOST_ROWS} or fewer")
     plant, drive, recorder = scene.plant(core), scene.drive(), Recorder(signals or wanted_signals(scene))
     ticks = [*range(0, steps, every), steps]  # the last row is the end of the run, wherever it falls
     began = time.perf_counter()

@@ -19,7 +19,7 @@ except ModuleNotFoundError:  # Python 3.10
 def read_toml(path: Path) -> Table:
     """The file's top table."""
     try:
-        text = path.read_bytes().decode()
+        text = path.read_bytes().decode("utf-8-sig")
         return Table(path, "", tomllib.loads(text))
     except OSError as error:
         raise BadInput(f"{path}: cannot be read ({reason_of(error)}); give the path of a readable TOML file") from None
@@ -27,6 +27,8 @@ def read_toml(path: Path) -> Table:
         raise BadInput(f"{path}: is no text in UTF-8; save it as UTF-8") from None
     except tomllib.TOMLDecodeError as error:
         raise BadInput(f"{path}: is no valid TOML: {error}; correct that line") from None
+    except RecursionError:
+        raise BadInput(f"{path}: nests its lists too deeply; give the path of a scene") from None
 
 
 class Table:
@@ -162,4 +164,4 @@ def _shown(value: Any) -> str:
         return f'the text "{value}"'
     if isinstance(value, (list, dict)):
         return "a list" if isinstance(value, list) else "a table"
-    return repr(value)
+    return repr(value) if isinstance(value, (int, float)) else str(value)  # dates as they are written

@@ -16,6 +16,7 @@ from typing import Any
 
 from laconic.c_tables import initializer
 from laconic.core import Core, load
+from laconic.errors import BadInput, reason_of
 from laconic.plant import Plant
 from laconic.scene import Scene
 
@@ -48,13 +49,16 @@ class Trimmed:
 
     def write(self, folder: Path) -> None:
         """Writes those files that have changed, so that nothing is compiled again without need."""
-        folder.mkdir(parents=True, exist_ok=True)
         names = {"laconic_scene.h": self.header, "laconic_scene_model.h": self.table_h,
                  "laconic_scene_model.c": self.table_c}
-        for name, text in names.items():
-            path = folder / name
-            if not path.exists() or path.read_text() != text:
-                path.write_text(text)
+        try:
+            folder.mkdir(parents=True, exist_ok=True)
+            for name, text in names.items():
+                path = folder / name
+                if not path.exists() or path.read_text() != text:
+                    path.write_text(text)
+        except OSError as error:
+            raise BadInput(f"{folder}: cannot be written ({reason_of(error)}); choose another with --out") from None
 
 
 def needs_of(scene: Scene) -> Needs:

@@ -39,10 +39,10 @@ class CaseResult:
 def read_reference(path: Path) -> list[Table]:
     """The cases of a reference file."""
     try:
-        content = json.loads(path.read_text())
+        content = json.loads(path.read_bytes())
     except OSError as error:
         raise BadInput(f"{path}: cannot be read ({reason_of(error)}); give a reference file") from None
-    except ValueError as error:
+    except (ValueError, RecursionError) as error:
         raise BadInput(f"{path}: is no valid JSON: {error}; give a reference file") from None
     if not isinstance(content, dict):
         raise BadInput(f"{path}: holds no object with cases; give a reference file")

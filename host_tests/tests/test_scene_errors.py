@@ -81,6 +81,14 @@ BAD = {
     "motor twice": (("[run]", "[vehicle.motor]\nresistance_ohm = 1\n[run]"), ("motor_gain_Nm_per_V", "keep one")),
     "zero duration": (("duration_s = 1.0", "duration_s = 0"), ("run.duration_s", "above zero")),
     "negative step": (("step_s = 0.01", "step_s = -0.01"), ("run.step_s", "above zero")),
+    "more steps than a count holds": (("duration_s = 1.0", "duration_s = 1e14"), ("run.duration_s", "shorter time")),
+    "more rows than memory holds": (("duration_s = 1.0", "duration_s = 1e9"), ("outputs.every_s", "10000000 or fewer")),
+    "date for a number": (("mass_kg = 20.0", "mass_kg = 2026-01-02"), ("vehicle.mass_kg: is 2026-01-02, not",)),
+    "start beyond the range": (
+        ("[run]", "[initial]\nnu_rad_per_s = [1e300, 1e300, 1e300]\n[run]"), ("initial.nu_rad_per_s: ", "range")),
+    "sine too fast to have a value": (
+        ('"steps"\nt_s = [0.0, 0.5]\nvalue = [6.0, -3.0]', '"sine"\namplitude = 1\nfrequency_Hz = 1e308'),
+        ("voltage_V[1]: NaN is not a finite number",)),
     "step does not fit": (("step_s = 0.01", "step_s = 0.03"), ("run.duration_s", "0.03 s", "0.0294117647 s would do")),
     "unknown method": (("[run]", '[run]\nmethod = "rk5"'), ("run.method", "did you mean rk4?")),
     "unknown scalar type": (("[run]", '[run]\nreal = "half"'), ("run.real", "half")),
@@ -106,6 +114,7 @@ def complaint(capsys: pytest.CaptureFixture[str], arguments: list[str]) -> str:
 
 
 @pytest.mark.parametrize(("change", "words"), BAD.values(), ids=BAD.keys())
+@pytest.mark.filterwarnings("error")  # a warning would be a second line
 def test_bad_scene_is_one_line_with_file_field_and_remedy(change, words, tmp_path, capsys):
     old, new = change
     text = GOOD.replace(old, new, 1)
@@ -117,6 +126,17 @@ def test_bad_scene_is_one_line_with_file_field_and_remedy(change, words, tmp_pat
     assert str(path) in line
     for word in words:
         assert word in line
+
+
+@pytest.mark.filterwarnings("error")
+@pytest.mark.parametrize(("kind", "t_s", "value"), [("steps", [0.0, 0.5], [6.0, 1e39]),
+                                                    ("table", [0.5, 0.51], [0.0, 1e39])])  # at the end of the step
+def test_an_input_beyond_single_precision_is_named_with_its_time(kind, t_s, value, tmp_path, capsys):
+    path = tmp_path / "scene.toml"
+    old = 'kind = "steps"\nt_s = [0.0, 0.5]\nvalue = [6.0, -3.0]'
+    path.write_text(GOOD.replace(old, f'kind = "{kind}"\nt_s = {t_s}\nvalue = {value}'))
+    line = complaint(capsys, ["simulate", str(path), "--real", "single"])
+    assert f"{path}: at t = 0.5 s: voltage_V[1]: infinity is not a finite number" in line
 
 
 def test_a_start_that_slides_a_fixed_wheel(tmp_path, capsys):
@@ -171,6 +191,28 @@ def test_a_file_that_is_no_text(tmp_path, capsys):
     assert "UTF-8" in complaint(capsys, ["simulate", str(path)])
 
 
+def test_a_file_saved_with_a_byte_order_mark_is_read(tmp_path, capsys):
+    path = tmp_path / "scene.toml"
+    path.write_text("\ufeff" + GOOD, encoding="utf-8")
+    assert run(["simulate", str(path)]) == 0
+
+
+def test_lists_in_lists_without_end(tmp_path, capsys):
+    path = tmp_path / "deep.toml"
+    path.write_text("x = " + 20_000 * "[" + 20_000 * "]")
+    assert "too deeply" in complaint(capsys, ["simulate", str(path)])
+    assert "no valid JSON" in complaint(capsys, ["verify", str(path)])
+    path.write_text(200_000 * "[")
+    assert "no valid JSON" in complaint(capsys, ["verify", str(path)])
+
+
+@pytest.mark.parametrize("arguments", [["simulate"], ["verify"], ["replay", "robotino2"], ["derive"]])
+def test_a_name_too_long_for_a_file(arguments, capsys):
+    command, *more = arguments
+    line = complaint(capsys, [command, 5000 * "a", *more])
+    assert "no such scene file" in line or "too long" in line
+
+
 def test_too_many_wheels(tmp_path, capsys):
     wheel = '[[vehicle.wheel]]\nkind = "omni"\nx_m = 0.1\ny_m = 0.1\naxle_rad = 0.3\n'
     path = tmp_path / "scene.toml"
@@ -190,6 +232,39 @@ def test_a_step_on_the_command_line_that_is_none(step, capsys):
                                        ["simulate", "s1", "--method", "euler"], ["--nonsense"]])
 def test_a_wrong_command_line(arguments, capsys):
     assert "--help" in complaint(capsys, arguments)
+
+
+@pytest.mark.parametrize(("arguments", "words"), [
+    (["derive", "s1", "--c", "--latex"], ("--latex --c", "give one")),
+    (["analyse", "s1", "--at", "nan"], ("--at nan", "give 0 to 10 s")),
+    (["analyse", "s1", "--at", "11"], ("--at 11", "give 0 to 10 s")),
+    (["simulate", "s1", "--plot", "picture"], ("picture", "ends in .png")),
+    (["rig", "s1", "--lockstep", "--free-run"], ("--lockstep --free-run", "give one")),
+    (["rig", "s1", "--same-bits", "--tolerance", "x=1"], ("--same-bits --tolerance", "give one")),
+    (["rig", "s1", "--same-bits", "--replay", "run.blf"], ("--same-bits --replay", "give one")),
+    (["rig", "s1", "--rate", "100"], ("--rate", "add --free-run")),
+    (["rig", "s1", "--same-bits", "--watchdog", "5"], ("--watchdog", "add --free-run")),
+    (["rig", "s1", "--every", "5"], ("--every", "add --same-bits")),
+    (["rig", "s1", "--free-run", "--fd"], ("--fd", "add --same-bits")),
+    (["rig", "s1", "--free-run", "--rate", "7"], ("run.step_s: 7 periods a second", "choose another --rate")),
+    (["rig", "s1", "--tolerance", "nu_4=1"], ("--tolerance nu_4=1: there is no signal nu_4", "nu_")),
+    (["rig", "s1", "--tolerance", "NU.wheel_speed_4=1"], ("no signal NU.wheel_speed_4", "wheel_speed_3")),
+    (["rig", "s1", "--interface", "slcan"], ("--interface slcan", "without --channel")),
+    (["rig", "s1", "--interface", "slcan", "--channel", "socket://here"], ("socket://here", "HOST:PORT"))])
+def test_options_that_mean_nothing(arguments, words, capsys):
+    line = complaint(capsys, arguments)
+    for word in words:
+        assert word in line
+
+
+@pytest.mark.parametrize(("arguments", "place"), [
+    (["trim", "s1", "--out"], "file"), (["trim", "s1", "--out"], "file/inside"),
+    (["derive", "--example", "caster", "-o"], "file/inside")])
+def test_a_folder_that_is_a_file(arguments, place, tmp_path, capsys):
+    (tmp_path / "file").write_text("")
+    line = complaint(capsys, [*arguments, str(tmp_path / place)])
+    assert f"{tmp_path / place}: cannot be written" in line
+    assert "choose another" in line
 
 
 @pytest.mark.parametrize("option", ["--out", "--plot"])

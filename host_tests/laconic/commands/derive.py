@@ -8,7 +8,8 @@ from pathlib import Path
 import click
 from rich.console import Console
 
-from laconic.errors import BadInput, ResultFails
+from laconic.errors import BadInput, ResultFails, reason_of
+from laconic.options import only_one
 
 EXAMPLES = ("caster", "carriage", "differential-drive", "trailer")
 AGREEMENT = 1e-12  # between the three forms, relative, at random numbers
@@ -17,11 +18,11 @@ AGREEMENT = 1e-12  # between the three forms, relative, at random numbers
 @click.command("derive", short_help="The equations of motion, by the paper's method.")
 @click.argument("scene", required=False)
 @click.option("--example", type=click.Choice(EXAMPLES), help="A worked system in symbols, instead of a scene.")
-@click.option("--latex", "form", flag_value="latex", help="Print LaTeX.")
-@click.option("--c", "form", flag_value="c", help="Print a C function of the scene's own numbers.")
+@click.option("--latex", is_flag=True, help="Print LaTeX.")
+@click.option("--c", "in_c", is_flag=True, help="Print a C function of the scene's own numbers.")
 @click.option("-o", "--out", type=click.Path(dir_okay=False, path_type=Path), help="Write to a file, not to stdout.")
 @click.option("--json", "as_json", is_flag=True, help="Machine-readable: the text and the check.")
-def command(scene: str | None, example: str | None, form: str | None, out: Path | None, as_json: bool) -> None:
+def command(scene: str | None, example: str | None, latex: bool, in_c: bool, out: Path | None, as_json: bool) -> None:
     """Derives the equations of motion by the laconic equations (2.4).
 
     The result is checked against (2.3) and Maggi's equations (1.2) at random numbers, and a scene's also against the
@@ -29,7 +30,8 @@ def command(scene: str | None, example: str | None, form: str | None, out: Path 
     """
     if (scene is None) == (example is None):
         raise BadInput("derive: give either a SCENE or --example; see laconic derive --help")
-    if example is not None and form == "c":
+    form = (only_one({"--latex": latex, "--c": in_c}) or "").removeprefix("--")
+    if example is not None and in_c:
         raise BadInput("--c: needs a scene, whose numbers it writes down; give a SCENE instead of --example")
     with Console(stderr=True).status("deriving"):
         text, checks = _of_example(example, form) if example else _of_scene(scene, form)
@@ -41,7 +43,7 @@ def command(scene: str | None, example: str | None, form: str | None, out: Path 
             raise ResultFails(f"{name} is {value:.1e}, above {AGREEMENT:.0e}: the derivation contradicts itself")
 
 
-def _of_example(name: str, form: str | None) -> tuple[str, dict[str, float]]:
+def _of_example(name: str, form: str) -> tuple[str, dict[str, float]]:
     from laconic.method import printing, vehicles
     from laconic.method.brackets import bracketed
     from laconic.method.checks import forms_difference
@@ -58,7 +60,7 @@ def _of_example(name: str, form: str | None) -> tuple[str, dict[str, float]]:
     return printing.as_latex(result) if form == "latex" else printing.as_text(result), checks
 
 
-def _of_scene(given: str, form: str | None) -> tuple[str, dict[str, float]]:
+def _of_scene(given: str, form: str) -> tuple[str, dict[str, float]]:
     from laconic.analysis.from_core import subject_of
     from laconic.method import printing
     from laconic.method.checks import forms_difference
@@ -70,9 +72,9 @@ def _of_scene(given: str, form: str | None) -> tuple[str, dict[str, float]]:
     subject = subject_of(read_scene(given))
     numbers = subject.numbers()
     system = derive(numbers)
-    writers = {"latex": printing.as_latex, "c": lambda s: printing.as_c(numbers, s), None: printing.as_text}
+    writers = {"latex": printing.as_latex, "c": lambda s: printing.as_c(numbers, s), "": printing.as_text}
     text = writers[form](system)
-    if form is None:
+    if not form:
         text += "\n" + _numbers_text(numbers)
     checks = {"(2.3), (2.4) and (1.2) differ at most by": forms_difference(carriage(plain_rows(numbers.wheel_rows)))}
     checks["derived equations and the C core's derivative differ at most by"] = core_difference(subject, system)
@@ -96,4 +98,4 @@ def _write(text: str, out: Path | None) -> None:
     try:
         out.write_text(text)
     except OSError as error:
-        raise BadInput(f"{out}: cannot be written ({(error.strerror or str(error)).lower()})") from None
+        raise BadInput(f"{out}: cannot be written ({reason_of(error)}); choose another place") from None

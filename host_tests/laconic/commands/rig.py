@@ -13,6 +13,7 @@ import click
 
 from laconic.core import REALS
 from laconic.errors import BadInput
+from laconic.options import belongs_to, only_one
 from laconic.progress import progress_bar
 from laconic.rig.boards import KINDS, own_node
 from laconic.rig.buses import connected
@@ -24,7 +25,8 @@ from laconic.rig.live import live_view
 from laconic.rig.logs import logged
 from laconic.rig.replay import judge_log
 from laconic.rig.results import as_json, show, write_junit
-from laconic.rig.verdict import Judgement, Verdict, read_tolerances
+from laconic.rig.scaled import read_tolerances
+from laconic.rig.verdict import Judgement, Verdict
 from laconic.scene import METHODS, Scene, read_scene
 
 
@@ -63,9 +65,9 @@ class Options:
               help="More for the interface, such as under=slcan or loss=0.01 for faulty.")
 @click.option("--id-base", help="The node's first CAN identifier, a multiple of 32.  [default: the scene's, or 0x200]")
 @click.option("--board", type=click.Choice(KINDS), help="Start a node for this run: here, as process, or emulated.")
-@click.option("--lockstep", "mode", flag_value="lockstep", default=True, help="One step to one command (default).")
-@click.option("--same-bits", "mode", flag_value="same-bits", help="Lockstep with raw frames; every bit must agree.")
-@click.option("--free-run", "mode", flag_value="free-run", help="The node steps by its own clock.")
+@click.option("--lockstep", is_flag=True, help="One step to one command (default).")
+@click.option("--same-bits", is_flag=True, help="Lockstep with raw frames; every bit must agree.")
+@click.option("--free-run", is_flag=True, help="The node steps by its own clock.")
 @click.option("--steps", type=click.IntRange(1), help="How many steps; the scene's duration otherwise.")
 @click.option("--every", type=click.IntRange(1), default=1, show_default=True, help="Steps to one SYNC (same-bits).")
 @click.option("--fd", is_flag=True, help="Raw frames as CAN FD (same-bits).")
@@ -81,17 +83,22 @@ class Options:
 @click.option("--live", is_flag=True, help="Show the signals while it runs.")
 @click.option("--junit", type=click.Path(path_type=Path), help="Results for CI.")
 @click.option("--json", "json_wanted", is_flag=True, help="Machine-readable output.")
-def command(scene_name: str, **given: Any) -> int:
+def command(scene_name: str, lockstep: bool, same_bits: bool, free_run: bool, **given: Any) -> int:
     """Drives a node over CAN with the inputs of SCENE, runs the core beside it as twin, and judges every signal.
 
     Without --interface and --board a node in this process answers on python-can's virtual bus, in virtual time. Exit
     status 1 when a verdict fails or the bus or node dies in the run, 2 when no node can be reached.
     """
-    options = Options(**given)
+    mode = only_one({"--lockstep": lockstep, "--same-bits": same_bits, "--free-run": free_run}) or "--lockstep"
+    only_one({"--same-bits": same_bits, "--tolerance": bool(given["tolerances"])})
+    only_one({"--same-bits": same_bits, "--free-run": free_run, "--replay": given["replay"] is not None})
+    belongs_to("--same-bits", same_bits, "--every", "--fd")
+    belongs_to("--free-run", free_run, "--rate", "--watchdog")
+    options = Options(mode=mode.removeprefix("--"), **given)
     scene = read_scene(scene_name).with_run(method=options.method, real=options.real)
     began = time.perf_counter()
     judgement = judge_log(options.replay, scene, read_id_base(options.id_base, scene),
-                          read_tolerances(options.tolerances)) if options.replay else run(scene, options)
+                          read_tolerances(options.tolerances, scene)) if options.replay else run(scene, options)
     if options.junit:
         write_junit(judgement, options.junit, time.perf_counter() - began)
     if options.json_wanted:
@@ -103,7 +110,7 @@ def command(scene_name: str, **given: Any) -> int:
 
 def run(scene: Scene, options: Options) -> Judgement:
     """One run against a node; a node or bus that dies in it is a verdict too, with the log complete."""
-    limits, base = read_tolerances(options.tolerances), read_id_base(options.id_base, scene)
+    limits, base = read_tolerances(options.tolerances, scene), read_id_base(options.id_base, scene)
     with (node_for(scene, options, base) as node, logged(node.link, options.logs),
           live_view(node.link) if options.live else nullcontext(),
           progress_bar(scene.name, 0 if options.live else options.steps or scene.steps()) as moved):

@@ -11,6 +11,7 @@ import numpy as np
 
 from laconic.analysis.from_core import Subject
 from laconic.errors import BadInput
+from laconic.paths import exists
 from laconic.replay.compare import Comparison, compare
 from laconic.replay.friction import MODELS, Friction, fit
 from laconic.replay.log import ColumnMap, Recording, read_log
@@ -40,7 +41,7 @@ def natural(path: Path) -> list[object]:
 
 def gather(given: Path, fit_on: tuple[Path, ...], columns: ColumnMap) -> tuple[list[Recording], list[str], list[str]]:
     """(all runs, names of those to fit on, files that are no such runs)."""
-    if not given.is_dir():
+    if not (exists(given) and given.is_dir()):
         runs, skipped = [read_log(given, columns)], []
     else:
         runs, skipped = _folder(given, columns)

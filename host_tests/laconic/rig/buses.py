@@ -24,7 +24,10 @@ _channel_numbers = itertools.count()
 
 def open_bus(interface: str, channel: str | None, *, bitrate: int | None = None, **options: Any) -> can.BusABC:
     """A python-can bus; CannotReach says what was tried and what may help."""
-    if interface == "slcan" and str(channel).startswith("socket://"):
+    is_socket = str(channel).startswith("socket://")
+    if is_socket and not re.fullmatch(r"socket://[^/]+:\d+.*", str(channel)):
+        raise BadInput(f"--channel {channel}: names no port; give socket://HOST:PORT")
+    if interface == "slcan" and is_socket:
         options.setdefault("sleep_after_open", 0.02)
     if bitrate is not None:
         options["bitrate"] = bitrate
@@ -34,6 +37,9 @@ def open_bus(interface: str, channel: str | None, *, bitrate: int | None = None,
         raise BadInput(f"--interface {interface}: {error}; python-can knows {', '.join(sorted(can.VALID_INTERFACES))}"
                        ) from None
     except (can.CanError, OSError, ValueError, TypeError) as error:
+        if channel is None:
+            raise BadInput(f"--interface {interface}: cannot be opened without --channel; give can0, /dev/ttyACM0, "
+                           "socket://127.0.0.1:PORT or what else it is") from None
         raise CannotReach(f"--interface {interface} --channel {channel}: cannot open the bus ({error}); check that "
                           "the node or adapter is there and no other program has it") from None
     read_in_chunks(bus)

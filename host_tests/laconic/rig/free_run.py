@@ -15,7 +15,7 @@ import numpy as np
 from laconic.errors import BadInput
 from laconic.plant import Plant
 from laconic.rig.client import NodeClient
-from laconic.rig.errors import NodeSilent
+from laconic.rig.errors import NodeRefused, NodeSilent
 from laconic.rig.latency import period_figures
 from laconic.rig.lockstep import load_scene
 from laconic.rig.scaled import SELECT_BIT, Held, Voltages, check_voltages_only, expected_raw
@@ -61,7 +61,7 @@ def run_free(node: NodeClient, scene: Scene, duration_s: float, rate_Hz: int = 0
     run.keep = max(1, round(duration_s * run.rate_Hz / MOST_COMPARED))
     link, clock, voltages, held = node.link, node.link.clock, Voltages(node, scene), Held(scene.drive())
     start_us = clock.now_us()
-    node.start_free_run(rate_Hz, watchdog_ms)
+    start_clock(node, scene, rate_Hz, watchdog_ms)
     end_us, next_us = start_us + int(1e6 * duration_s), clock.now_us()
     while (now_us := clock.now_us()) < end_us:
         if now_us >= next_us:
@@ -79,6 +79,17 @@ def run_free(node: NodeClient, scene: Scene, duration_s: float, rate_Hz: int = 0
         take(run, node, frame, data)
     run.overranges = voltages.overranges
     return run
+
+
+def start_clock(node: NodeClient, scene: Scene, rate_Hz: int, watchdog_ms: int) -> None:
+    """The node begins to step; BadInput where its periods cannot be made of whole steps."""
+    try:
+        node.start_free_run(rate_Hz, watchdog_ms)
+    except NodeRefused as refused:
+        if refused.status != "out of range":
+            raise
+        raise BadInput(f"{scene.path}: run.step_s: {rate_Hz or 1.0 / scene.run.step_s:g} periods a second take no "
+                       f"small whole number of steps of {scene.run.step_s:g} s each; choose another --rate") from None
 
 
 def take(run: FreeRun, node: NodeClient, frame: Frame, data: bytes) -> None:

@@ -4,13 +4,13 @@ from __future__ import annotations
 
 import math
 import time
-from collections.abc import Callable
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass, field
 
 import numpy as np
 
 from laconic.drive import Drive
-from laconic.errors import BadInput
+from laconic.errors import BadInput, nearest_of
 from laconic.plant import Plant
 from laconic.rig.client import NodeClient
 from laconic.rig.errors import NodeSilent
@@ -37,6 +37,24 @@ def check_voltages_only(scene: Scene) -> None:
         if not each.signal.startswith("voltage_V"):
             raise BadInput(f"{scene.path}: {each.place}.signal: {each.signal} has no scaled frame; use --same-bits, "
                            "which sends every input")
+
+
+def read_tolerances(given: Sequence[str], scene: Scene) -> dict[str, float]:
+    """{"nu_1": 0.01} from ["nu_1=0.01"]; the name of the frame may stand before that of the signal."""
+    signals = ["nu_1", "nu_2", "nu_3", "x", "y", "heading"]
+    signals += [f"wheel_speed_{wheel}" for wheel in range(1, scene.wheel_count + 1)]
+    found = {}
+    for text in given:
+        name, equals, value = text.partition("=")
+        try:
+            found[name] = float(value)
+        except ValueError:
+            equals = ""
+        if not equals or not 0.0 <= found[name] < float("inf"):
+            raise BadInput(f"--tolerance {text}: give SIGNAL=VALUE, zero or more, such as nu_1=0.01")
+        if name.rpartition(".")[2] not in signals:
+            raise BadInput(f"--tolerance {text}: there is no signal {name}; {nearest_of(name, signals)}")
+    return found
 
 
 def groups_of(wheel_count: int) -> int:

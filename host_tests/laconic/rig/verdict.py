@@ -2,12 +2,9 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
 from dataclasses import dataclass, field
 
 import numpy as np
-
-from laconic.errors import BadInput
 
 
 @dataclass(frozen=True)
@@ -64,17 +61,3 @@ def within(name: str, ours: np.ndarray, theirs: np.ndarray, limit: np.ndarray | 
     if not passed:
         detail = f"{worst:.3g} off at step {ticks[at]}, {limit_there:.3g} allowed" if len(error) else "never came"
     return Verdict(name, passed, detail, worst, limit_there, int(ticks[at]) if len(error) else 0)
-
-
-def read_tolerances(given: Sequence[str]) -> dict[str, float]:
-    """{"nu_1": 0.01} from ["nu_1=0.01"]."""
-    found = {}
-    for text in given:
-        name, equals, value = text.partition("=")
-        try:
-            found[name] = float(value)
-        except ValueError:
-            equals = ""
-        if not equals or not 0.0 <= found[name] < float("inf"):
-            raise BadInput(f"--tolerance {text}: give SIGNAL=VALUE, zero or more, such as nu_1=0.01")
-    return found
