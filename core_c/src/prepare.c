@@ -104,7 +104,7 @@ static void turn_pair(real *a, real *b, direction d) {
 
 static bool make_orthogonal(laconic_model *m, basis *v, int32_t a, int32_t b) {
     const pair p = column_products(m, a, b);
-    real cotangent, tangent;
+    real cotangent, tangent, q;
     direction d;
     int32_t i;
     if (!(magnitude(p.ab) > R(0.25) * LACONIC_EPSILON * laconic_root(p.aa) * laconic_root(p.bb))) return false;
@@ -112,8 +112,9 @@ static bool make_orthogonal(laconic_model *m, basis *v, int32_t a, int32_t b) {
     tangent = R(1) / (magnitude(cotangent) + laconic_root(R(1) + cotangent * cotangent));
     if (!is_finite(cotangent * cotangent)) tangent = R(0.5) / magnitude(cotangent);
     if (cotangent < R(0)) tangent = -tangent;
-    d.cosine = R(1) / laconic_root(R(1) + tangent * tangent);
-    d.sine = d.cosine * tangent;
+    q = laconic_root(R(1) + tangent * tangent);
+    d.cosine = R(1) - tangent * tangent / (q * (q + R(1))); /* 1/q, but rounded once */
+    d.sine = tangent / q;
     for (i = 0; i < m->wheel_count; i++) turn_pair(&m->wheel_of_zeta[i][a], &m->wheel_of_zeta[i][b], d);
     for (i = 0; i < 3; i++) turn_pair(&v->axis[a][i], &v->axis[b][i], d);
     return true;
@@ -144,12 +145,12 @@ static void project_wheels(laconic_model *m, const basis *v, const body *b, cons
 static void scale_axis(laconic_model *m, const basis *v, const body *b, int32_t k) {
     const real x = column_products(m, k, k).aa;
     const real inertia = R(1) + b->wheel_scale_square * x;
-    const real scale = R(1) / laconic_root(inertia);
+    const real root = laconic_root(inertia);
     int32_t i;
     m->inertia[k] = inertia;
     m->decay_per_s[k] = m->motor_damping_Nms * m->torque_scale * x / inertia;
-    for (i = 0; i < 3; i++) m->nu_of_zeta[i][k] = scale * v->axis[k][i];
-    for (i = 0; i < m->wheel_count; i++) m->wheel_of_zeta[i][k] *= scale;
+    for (i = 0; i < 3; i++) m->nu_of_zeta[i][k] = v->axis[k][i] / root;
+    for (i = 0; i < m->wheel_count; i++) m->wheel_of_zeta[i][k] /= root;
 }
 
 static void clear_axis(laconic_model *m, int32_t k) {
@@ -204,10 +205,10 @@ laconic_real laconic_condition_number(const laconic_model *model) {
 
 /* Numbers so far apart that a constant left the range would turn into NaN later: say so now. */
 static bool usable(const laconic_model *m) {
-    real sum = size(vec(m->inertia)) + size(vec(m->decay_per_s)) + size(vec(m->gyro)) + size(vec(m->spin_curve)) + size(vec(m->yaw_rate_of_zeta)) +
-               size(vec(m->velocity_of_zeta[0])) + size(vec(m->velocity_of_zeta[1])) + m->torque_scale +
-               magnitude(m->voltage_scale) + m->mass_kg + R(1) / m->yaw_scale + magnitude(m->com_x_m) +
-               magnitude(m->com_y_m);
+    real sum = size(vec(m->inertia)) + size(vec(m->decay_per_s)) + size(vec(m->gyro)) + size(vec(m->spin_curve)) +
+               size(vec(m->yaw_rate_of_zeta)) + size(vec(m->velocity_of_zeta[0])) + size(vec(m->velocity_of_zeta[1])) +
+               m->torque_scale + magnitude(m->voltage_scale) + m->mass_kg + R(1) / m->yaw_scale +
+               magnitude(m->com_x_m) + magnitude(m->com_y_m);
     int32_t i;
     for (i = 0; i < m->wheel_count; i++) sum += size(vec(m->wheel_of_zeta[i]));
     return is_finite(sum) && m->torque_scale > R(0) && is_finite(sum * sum);
