@@ -17,7 +17,8 @@ STANDARD = {"float.h", "stdbool.h", "stddef.h", "stdint.h"}
 SCENE_MACRO = "LACONIC_SCENE_HEADER"  # the one include whose name a build chooses
 COMPILER_MAY_CALL = {"memcpy", "memmove", "memset", "_GLOBAL_OFFSET_TABLE_"}
 SOFT_FLOAT = re.compile(r"__(aeabi_|[a-z]+(?:[sdt]f|[sd]i)\d?[a-z0-9]*$)")  # libgcc's arithmetic, without an FPU
-# Allowed, with plain C beside them: |x| as one instruction (never a call, which the objects show), inlining asked for or forbidden
+# Allowed, with plain C beside them: |x| as one instruction (never a call, which the objects show), and inlining
+# asked for or forbidden
 FORBIDDEN_WORDS = re.compile(
     r"\b(?:__builtin_(?!fabsf?\b)\w+|__attribute__(?!\(\((?:always_inline|noinline)\)\))|asm|__asm__|_Pragma|static_assert)\b"
     r"|#\s*pragma"
