@@ -10,7 +10,7 @@ static void is_of_fourth_order_when_nothing_turns_with_the_world(void) {
     const laconic_vehicle v = with_motors(mecanum());
     laconic_input input = every_input();
     input.world_force_N[0] = input.world_force_N[1] = 0;
-    assert_order(&laconic_exponential_kahan_4, &v, start_with(2, 1, 4), &input, 1.0, EITHER(40, 4), 4);
+    assert_order(&laconic_exponential_kahan_4, &v, start_with(2, 1, 4), &input, 1.0, EITHER(40, 3), 4);
 }
 
 static void a_steady_motion_stays_at_any_step(void) {
