@@ -47,6 +47,6 @@ static void run(int64_t method) {
 
 int main(void) {
     int64_t method;
-    for (method = 0; method < 6; method++) run(method);
+    for (method = 0; method < LACONIC_METHOD_COUNT; method++) run(method);
     return 0;
 }
