@@ -25,7 +25,7 @@ static void the_node_says_who_it_is(void) {
     laconic_dbc_identity_unpack(&identity, data, 8);
     TEST_ASSERT_EQUAL_UINT8(sizeof(laconic_real), identity.scalar_bytes);
     TEST_ASSERT_EQUAL_UINT8(LACONIC_MAX_WHEELS, identity.max_wheels);
-    TEST_ASSERT_EQUAL_HEX8(0x3F, identity.methods);
+    TEST_ASSERT_EQUAL_HEX8((1 << LACONIC_METHOD_COUNT) - 1, identity.methods);
 }
 
 static void nothing_starts_without_a_vehicle_or_with_the_wrong_session(void) {
