@@ -16,9 +16,9 @@ from laconic.report.collect import Report
 from laconic.report.equality import rates_of_peer
 from laconic.report.page import shown, write
 from laconic.report.referenced import beats
-from laconic.report.targets import at_least, at_most, targets
+from laconic.report.targets import COARSE_S, FINE_S, ORDERS, at_least, at_most, targets
 from laconic.report.workshop import HOST
-from laconic.scene import METHODS, read_scene
+from laconic.scene import read_scene
 
 EMPTY = ("verified", "prototype", "single", "long", "extremes", "steps", "precision", "boards", "scenes", "smallest",
          "map", "stiff", "drift", "norm", "accuracy")
@@ -29,10 +29,10 @@ def ladder() -> list[dict]:
     return accuracy.rows_of(read_scene("s1"), ("double",))
 
 
-@pytest.mark.parametrize(("method", "order"), list(zip(METHODS[1:], (4, 2, 4, 2, 4), strict=True)))
+@pytest.mark.parametrize(("method", "order"), ORDERS.items())
 def test_the_error_on_s1_falls_at_the_methods_order(ladder: list[dict], method: str, order: int):
     error = {row["step_s"]: row["error_nu"] for row in ladder if row["method"] == method}
-    assert math.log2(error[0.02] / error[0.01]) > order - 0.3
+    assert math.log2(error[COARSE_S] / error[FINE_S]) > order - 0.3
 
 
 def test_single_precision_keeps_s1_within_three_units_of_its_last_place():

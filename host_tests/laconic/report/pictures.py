@@ -17,7 +17,8 @@ from laconic.plotting import MARKERS, figure
 from laconic.scene import METHODS
 
 Row = dict[str, Any]
-COLOURS = dict(zip(METHODS, ("#111111", "#d1495b", "#e9a23b", "#2a9d8f", "#8d6cab", "#3066be"), strict=True))
+COLOURS = dict(zip(METHODS, ("#111111", "#d1495b", "#e9a23b", "#2a9d8f", "#8d6cab", "#3066be", "#7a5230"),
+                   strict=True))
 FLOOR = 1e-16
 SIZE = (5.2, 3.9)
 
