@@ -11,7 +11,7 @@ from laconic.demo.node_rows import node_rows
 from laconic.demo.rows import Rows, core_rows, difference, exchanges
 from laconic.fmu import make_fmu
 from laconic.paths import scene_names
-from laconic.scene import Scene, read_scene
+from laconic.scene import METHODS, Scene, read_scene
 
 # Numbers of steps an exchange that share no factor with the changes of the inputs, nor with each other.
 FMU_EVERY, NODE_EVERY = 3, 7
@@ -65,7 +65,7 @@ def test_node_in_single_precision_gives_the_single_cores_bits(name, expected):
     assert difference(found, core_of(scene, expected), scene.wheel_count) == ""
 
 
-@pytest.mark.parametrize("method", ["rk4", "exponential-kahan", "exponential-kahan-4", "exact-flow", "exact-flow-4"])
+@pytest.mark.parametrize("method", METHODS[1:])
 def test_every_method_gives_the_same_bits_everywhere(method, tmp_path):
     scene = read_scene("s1").with_run(method=method)
     core = core_rows(scene, 1000)

@@ -43,6 +43,14 @@ def test_rk4_at_1_ms_is_within_1e_10_everywhere_but_in_the_stiff_case(capsys):
             assert case["seconds"] > 0.0
 
 
+def test_taylor_8_at_10_ms_is_within_1e_12_everywhere_but_in_the_stiff_case(capsys):
+    status, answer = verify(capsys, TRAJECTORIES, "--method", "taylor-8", "--step", 0.01)
+    assert status == 1
+    cases = by_name(answer)
+    assert cases.pop("omni3-stiff")["status"].startswith("step beyond damping limit")
+    assert max(worst(case) for case in cases.values()) < 1e-12
+
+
 def test_the_stiff_case_is_refused_with_the_largest_stable_step_and_runs_with_it(capsys):
     _, answer = verify(capsys, TRAJECTORIES, "--method", "rk4", "--step", "1e-3")
     stiff = by_name(answer)["omni3-stiff"]
@@ -70,10 +78,10 @@ def test_second_order_methods_take_every_case(method, capsys):
 
 
 @pytest.mark.parametrize(("method", "order"), [("rk4", 4), ("exponential-kahan", 2), ("exponential-kahan-4", 4),
-                                               ("exact-flow", 2), ("exact-flow-4", 4)])
+                                               ("exact-flow", 2), ("exact-flow-4", 4), ("taylor-8", 8)])
 def test_errors_shrink_with_the_order_of_the_method(method, order, capsys):
-    coarse = by_name(verify(capsys, TRAJECTORIES, "--method", method, "--step", 0.02)[1])
-    fine = by_name(verify(capsys, TRAJECTORIES, "--method", method, "--step", 0.01)[1])
+    coarse = by_name(verify(capsys, TRAJECTORIES, "--method", method, "--step", 0.025)[1])
+    fine = by_name(verify(capsys, TRAJECTORIES, "--method", method, "--step", 0.0125)[1])
     ratio = worst(coarse["differential-drive"]) / worst(fine["differential-drive"])
     assert abs(math.log2(ratio) - order) < 0.2
 
