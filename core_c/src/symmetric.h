@@ -113,13 +113,13 @@ INLINE increment part_step(base_step base, const laconic_model *m, const laconic
     const real h = integrator->step_s * (p->level == 0 ? R(1) : R(0.5)), before = p->turned_rad;
     drive b = drive_of(heading, loads, p);
     increment by;
-    int rounds;
+    int rounds = turns ? 3 : 1;
     p->turned_rad = before + h * dot(vec(m->yaw_rate_of_zeta), p->zeta);
-    for (rounds = turns ? 3 : 1; rounds > 0; rounds--) {
+    do {
         if (turns) b.change = minus(load_now(p->end, heading, p->turned_rad), b.start);
         by = base(m, integrator, p->level, p->zeta, &b);
         p->turned_rad = before + h * dot(vec(m->yaw_rate_of_zeta), by.mean);
-    }
+    } while (--rounds > 0);
     p->zeta = plus(p->zeta, by.delta);
     return by;
 }

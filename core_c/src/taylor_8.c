@@ -42,14 +42,13 @@ static inline real turn_of_yaw(const laconic_model *m, real h) {
     return h / m->yaw_scale;
 }
 
-/* The product of series from its middle outwards: what has just been found comes last, so that nothing waits for it. */
+/* In the sum what has just been found comes last, so that nothing else waits for it. */
 INLINE void next_term(course *c, const laconic_model *m, real h, int n, vector turned[ORDER], vector b) {
     const vector zeta = c->zeta[n], decay = times(vec(m->decay_per_s), zeta);
     vector product = b;
     int j;
     turned[n] = cross(zeta, vec(m->gyro));
-    for (j = 1; j < n; j++) product = plus(product, scaled(c->yaw[j], turned[n - j]));
-    if (n > 0) product = plus(product, scaled(c->yaw[n], turned[0]));
+    for (j = 1; j <= n; j++) product = plus(product, scaled(c->yaw[j], turned[n - j]));
     product = plus(product, minus(scaled(c->yaw[0], turned[n]), decay));
     c->zeta[n + 1] = scaled(h * inverse[n], product);
     c->yaw[n + 1] = dot(vec(m->nu_of_zeta[2]), c->zeta[n + 1]);

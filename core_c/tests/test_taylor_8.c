@@ -75,6 +75,12 @@ static void a_step_that_makes_energy_out_of_nothing_is_refused(void) {
     start_that_gains_energy(&laconic_taylor_8, bare_body(), every_input(), 1.0, 5);
 }
 
+static void numbers_beyond_the_range_are_refused(void) {
+    laconic_input input = no_input();
+    input.body_force_N[0] = REAL(EITHER(1e100, 1e15)); /* a caster goes straight on: no energy out of nothing */
+    assert_step_refused(&laconic_taylor_8, caster(), start_with(0, 0, 0), input, 1.0, LACONIC_OVERFLOW);
+}
+
 int main(void) {
     UNITY_BEGIN();
     RUN_TEST(is_of_eighth_order_under_everything_that_can_act);
@@ -86,5 +92,6 @@ int main(void) {
     RUN_TEST(just_below_the_damping_limit_motion_dies_out);
     RUN_TEST(a_vehicle_that_turns_too_fast_for_the_step_is_refused);
     RUN_TEST(a_step_that_makes_energy_out_of_nothing_is_refused);
+    RUN_TEST(numbers_beyond_the_range_are_refused);
     return UNITY_END();
 }

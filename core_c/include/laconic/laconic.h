@@ -16,8 +16,8 @@
  * Errors   a function that can refuse returns a laconic_status and changes nothing when it does.
  *          Where `why` is given (it may be NULL), it says which field and wheel, and which value;
  *          laconic_message() turns that into one line of text.
- * Bits     the same on every platform with IEEE arithmetic (-std=c99 -ffp-contract=off): the core
- *          brings its own sine, exponential and square root.
+ * Bits     the same on every platform with IEEE arithmetic (-std=c99 -ffp-contract=off, and for gcc
+ *          -fno-tree-slp-vectorize): the core brings its own sine, exponential and square root.
  *
  * Frames   body axes (ξ, η): η is ξ turned by +90°. `com_*` and the wheels are given in the body frame,
  *          whose origin may be anywhere. World axes (X, Y); heading θ is the angle from X to ξ. The
