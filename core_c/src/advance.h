@@ -19,7 +19,7 @@ static inline void chord_factors(real *sinc, real *half_j1, real alpha) {
         *sinc = poly_sinc(z);
         *half_j1 = R(0.5) * alpha * poly_j1(z);
     } else {
-        const direction d = laconic_direction_of_turn(laconic_turn_of_angle(alpha));
+        const direction d = direction_of_turn(laconic_turn_of_angle(alpha));
         *sinc = d.sine / alpha;
         *half_j1 = R(0.5) * (*sinc - d.cosine) / alpha;
     }
