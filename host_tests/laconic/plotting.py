@@ -53,8 +53,8 @@ def plot_path(axes: Axes, run: Trajectory) -> None:
     axes.plot(x, y, color="tab:blue")
     span = max(np.ptp(x), np.ptp(y), 1e-3)
     at = np.unique(np.linspace(0, len(x) - 1, ARROWS).astype(int))
-    axes.quiver(x[at], y[at], np.cos(heading[at]), np.sin(heading[at]), angles="xy", width=0.005,
-                scale=14.0, color="tab:orange", zorder=3)
+    axes.quiver(x[at], y[at], np.cos(heading[at]), np.sin(heading[at]), angles=np.degrees(heading[at]),
+                width=0.005, scale=14.0, color="tab:orange", zorder=3)
     axes.plot([], [], ls="", marker=r"$\rightarrow$", ms=16, color="tab:orange", label="body axis ξ")
     axes.plot(x[0], y[0], "o", color="tab:green", label="start", zorder=4)
     axes.plot(x[-1], y[-1], "s", color="tab:red", label="end", zorder=4)

@@ -166,7 +166,8 @@ def simulate(scene: Scene, signals: tuple[str, ...] = (), progress: bool = False
     return Trajectory(scene, plant.chosen_method, steps, seconds, instants, recorder.columns())
 
 
-def run_window(scene: Scene, plant: Plant, drive: Drive, first: int, count: int, moved: Advance) -> None:
+def run_window(scene: Scene, plant: Plant, drive: Drive, first: int, count: int,
+               moved: Advance = lambda _: None) -> None:
     """Some steps; a refusal is told with file and time."""
     try:
         for begin in range(first, first + count, HELD_CHUNK):

@@ -8,6 +8,7 @@ from laconic.analysis.geometry import diagnose
 from laconic.analysis.traction import static_loads, study
 from laconic.paths import SCENE_DIR
 from laconic.scene import read_scene
+from laconic.simulation import sampled_rows
 
 HALF = np.pi / 4
 
@@ -182,14 +183,11 @@ def test_first_slip_is_the_first_step_at_which_a_reaction_leaves_the_friction_co
     subject = scene_with(tmp_path, BODY + MOTORS + mecanum(0.2, 0.15, 1), PUSH.replace("60.0", "4000.0"))
     found = study(subject)
     plant, drive = subject.scene.plant(subject.core), subject.scene.drive()
-    from laconic.analysis.traction import input_rows
-
     for tick in range(drive.steps):
-        values = drive.samples(tick, 1)
-        held = subject.core.input(dict(zip(drive.signals, values[0, 0].tolist(), strict=True)))
+        held = subject.core.input(drive.held_at(tick))
         if plant.reactions(held).no_slip_margin_N < 0.0:
             break
-        plant.run_sampled(input_rows(subject.core, drive.signals, values))
+        plant.run_sampled(sampled_rows(subject.core, drive, tick, 1))
     assert 0 < tick < 999
     assert found.first_slip_s == pytest.approx(tick * 0.001, abs=1e-9)
     assert found.slipping_wheels

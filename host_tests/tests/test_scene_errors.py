@@ -139,6 +139,12 @@ def test_an_input_beyond_single_precision_is_named_with_its_time(kind, t_s, valu
     assert f"{path}: at t = 0.5 s: voltage_V[1]: infinity is not a finite number" in line
 
 
+def test_analyse_says_when_a_step_is_refused(tmp_path, capsys):
+    path = tmp_path / "scene.toml"
+    path.write_text(GOOD.replace("-3.0", "-1e300"))
+    assert f"{path}: at t = 0.5 s: " in complaint(capsys, ["analyse", str(path), "--only", "traction"])
+
+
 def test_a_start_that_slides_a_fixed_wheel(tmp_path, capsys):
     path = tmp_path / "scene.toml"
     path.write_text(GOOD.replace('"omni"', '"fixed"') + "[initial]\nnu_rad_per_s = [1.0, 1.0, 1.0]\n")

@@ -108,6 +108,13 @@ def test_plot_is_a_picture(tmp_path):
     assert picture.read_bytes().startswith(PNG)
 
 
+@pytest.mark.filterwarnings("error")
+def test_plot_of_a_vehicle_that_stands_still(tmp_path):
+    picture = tmp_path / "run.png"
+    assert run(["simulate", str(scene_file(tmp_path, "")), "--plot", str(picture)]) == 0
+    assert picture.read_bytes().startswith(PNG)
+
+
 def test_plot_of_a_format_that_there_is_not(tmp_path, capsys):
     assert run(["simulate", "s1", "--plot", str(tmp_path / "run.xyz")]) == 2
     assert "run.xyz" in capsys.readouterr().err

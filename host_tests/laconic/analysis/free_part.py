@@ -10,10 +10,11 @@ from laconic.analysis.findings import FreePart, Study, Wishes, nu_text
 from laconic.analysis.free_motion import FreeMotion
 from laconic.analysis.from_core import Subject
 from laconic.analysis.portrait import portrait
-from laconic.analysis.traction import advance
 from laconic.errors import BadInput
+from laconic.simulation import run_window
 
 MOST_LOOKS = 500  # at the scene's run, for the moment to cut its motors off
+
 
 def coasting(subject: Subject) -> Any:
     """The same vehicle with its motors cut off."""
@@ -41,7 +42,7 @@ def _start_of_free_motion(subject: Subject) -> tuple[np.ndarray, float]:
     ticks = sorted({*range(0, drive.steps, max(1, drive.steps // MOST_LOOKS)), *drive.changes, drive.steps})
     rows = [plant.nu]
     for first, last in zip(ticks[:-1], ticks[1:], strict=True):
-        advance(subject, plant, drive, first, last)
+        run_window(subject.scene, plant, drive, first, last - first)
         rows.append(plant.nu)
     nu = np.array(rows)
     turning = np.abs(nu[:, 2]) > 1e-6 * np.abs(nu).max()

@@ -15,9 +15,9 @@ import numpy as np
 
 from laconic.analysis.from_core import Subject, nu_rates
 from laconic.analysis.geometry import wheel_places
-from laconic.core import Core
 from laconic.drive import Drive
 from laconic.plant import Plant
+from laconic.simulation import run_window
 
 MOST_SAMPLES = 1500
 
@@ -54,7 +54,7 @@ def study(subject: Subject, progress: Callable[[float], None] | None = None) -> 
     for first, last in zip(ticks[:-1], ticks[1:], strict=True):
         _sample(sampler, drive, first)
         slipped = slipped or _retaken(sampler, drive, ticks, first)
-        advance(subject, plant, drive, first, last)
+        run_window(scene, plant, drive, first, last - first)
         if progress is not None:
             progress(last / total)
     _sample(sampler, drive, total)
@@ -68,14 +68,6 @@ def _sample(sampler: _Sampler, drive: Drive, tick: int) -> None:
     sampler.take(tick * drive.step_s, values, drive.signals)
 
 
-def advance(subject: Subject, plant: Plant, drive: Drive, first: int, last: int) -> None:
-    """The scene's steps from one tick to another; held inputs do not change in between."""
-    if drive.is_held:
-        plant.run(subject.core.input(drive.held_at(first)), last - first)
-    else:
-        plant.run_sampled(input_rows(subject.core, drive.signals, drive.samples(first, last - first)))
-
-
 def _retaken(sampler: _Sampler, drive: Drive, ticks: list[int], at: int) -> bool:
     """When the newest sample is the first that slips: takes the steps since the one before again, one by one."""
     if not sampler.slips():
@@ -86,21 +78,13 @@ def _retaken(sampler: _Sampler, drive: Drive, ticks: list[int], at: int) -> bool
         saved, start = sampler.keep
         sampler.plant.restore(saved, start)
         for tick in range(start, at - 1):
-            advance(sampler.subject, sampler.plant, drive, tick, tick + 1)
+            run_window(sampler.subject.scene, sampler.plant, drive, tick, 1)
             _sample(sampler, drive, tick + 1)
             if sampler.slips():
                 break
         sampler.plant.restore(state, steps)
         sampler.rows.append(newest)
     return True
-
-
-def input_rows(core: Core, signals: tuple[str, ...], values: np.ndarray) -> np.ndarray:
-    """Rows of input numbers for the core from values (step, start|middle|end, signal)."""
-    rows = np.zeros((*values.shape[:2], core.input_length), core.dtype)
-    for column, signal in enumerate(signals):
-        rows[:, :, core.input_place(signal)] = values[:, :, column]
-    return rows
 
 
 class _Sampler:
