@@ -50,10 +50,12 @@ def command(scenes: tuple[str, ...], out: Path | None, quick: bool, json_wanted:
 def show(goals: list[dict]) -> None:
     """The table for people."""
     table = Table(title="Goals", title_justify="left")
-    for heading, justify in (("", "left"), ("goal", "left"), ("found", "right"), ("wanted", "right"), ("", "left")):
+    for heading, justify in (("", "left"), ("goal", "left"), ("found", "right"), ("", "left"), ("wanted", "right"),
+                             ("", "left")):
         table.add_column(heading, justify=justify, overflow="fold")
     colours = {"met": "green", "missed": "red", "not measured": "yellow"}
     for row in goals:
         numbers = [shown(name, row[name]) for name in ("found", "wanted")]
-        table.add_row(row["group"], escape(row["goal"]), *numbers, f"[{colours[row['verdict']]}]{row['verdict']}[/]")
+        table.add_row(row["group"], escape(row["goal"]), numbers[0], row["bound"], numbers[1],
+                      f"[{colours[row['verdict']]}]{row['verdict']}[/]")
     Console(width=None if Console().is_terminal else 150).print(table)

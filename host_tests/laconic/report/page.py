@@ -21,7 +21,7 @@ from laconic.scene import METHODS
 
 Row = dict[str, Any]
 TITLES = {
-    "ns_per_step": "ns a step", "instructions": "instructions", "step_code": "code [B]",
+    "bound": "", "ns_per_step": "ns a step", "instructions": "instructions", "step_code": "code [B]",
     "flash": "flash [B]", "state": "state [B]",
     "worst_stack": "worst stack [B]",
     "stack_measured": "stack measured [B]", "tables": "constants [B]", "error_nu": "error ν",
@@ -102,7 +102,7 @@ def _section(key: str, title: str, pictures_of: Sequence[str], *tables: Table) -
 
 
 def _goals(results: dict[str, list[Row]]) -> Section:
-    fields = ("goal", "found", "wanted", "verdict")
+    fields = ("goal", "found", "bound", "wanted", "verdict")
     return _section("goals", "Goals", (), Table(results["targets"], fields, headed_by="group"))
 
 

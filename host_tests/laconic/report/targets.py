@@ -23,25 +23,27 @@ class Target:
     group: str
     what: str
     found: float | None
+    bound: str  # ≤ or ≥
     wanted: float
     met: bool | None
 
     def row(self) -> Row:
         """For tables."""
         verdict = {True: "met", False: "missed", None: "not measured"}[self.met]
-        return {"group": self.group, "goal": self.what, "found": self.found, "wanted": self.wanted, "verdict": verdict}
+        return {"group": self.group, "goal": self.what, "found": self.found, "bound": self.bound, "wanted": self.wanted,
+                "verdict": verdict}
 
 
 def at_most(group: str, what: str, found: float | None, wanted: float) -> Target:
     """found <= wanted."""
     usable = found is not None and not math.isnan(found)
-    return Target(group, what, found, wanted, found <= wanted if usable else None)
+    return Target(group, what, found, "≤", wanted, found <= wanted if usable else None)
 
 
 def at_least(group: str, what: str, found: float | None, wanted: float) -> Target:
     """found >= wanted."""
     usable = found is not None and not math.isnan(found)
-    return Target(group, what, found, wanted, found >= wanted if usable else None)
+    return Target(group, what, found, "≥", wanted, found >= wanted if usable else None)
 
 
 def select(rows: Iterable[Row], **wanted: Any) -> list[Row]:
@@ -75,8 +77,9 @@ def structure_targets(results: Results) -> list[Target]:
     found = []
     for real, limit in (("double", 1e-13), ("single", 1e-4)):
         rows = select(results["drift"], real=real, method="exact-flow")
+        length = f"{worst(rows, 'steps') or 0:,} steps"
         for what in ("energy", "K"):
-            found.append(at_most("structure", f"exact-flow, {real}: drift of {what} over 10⁶ steps", worst(rows, what),
+            found.append(at_most("structure", f"exact-flow, {real}: drift of {what} over {length}", worst(rows, what),
                                  limit))
         grown = one(results["norm"], "worst_growth_ulp", real=real, method="exact-flow")
         what = f"exact-flow, {real}: growth of the A-norm in one step, U = 0 [ulp]"
