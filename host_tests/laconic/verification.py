@@ -15,6 +15,7 @@ import numpy as np
 from laconic.core import Core
 from laconic.errors import BadInput, Refused, reason_of
 from laconic.plant import Plant
+from laconic.scene import MOST_STEPS
 from laconic.table import Table
 
 
@@ -49,17 +50,22 @@ def read_reference(path: Path) -> list[Table]:
     top = Table(path, "", content)
     if top.whole("format") != 1:
         top.fail("format", f"is {top.whole('format')}; this program reads format 1")
-    return list(top.tables("cases"))
+    cases = list(top.tables("cases"))
+    if not cases:
+        top.fail("cases", "holds none, so there is nothing to compare; give at least one")
+    return cases
 
 
 def vehicle_of(case: Table) -> dict[str, Any]:
     """The case's vehicle with the keys of a scene: S lies at `offset` on the +η axis from Q."""
     table = case.table("vehicle", required=True)
-    locked = table.numbers("locked") if table.has("locked") else ()
+    wheels, locked = list(table.tables("wheels")), table.numbers("locked") if table.has("locked") else ()
+    if not set(locked) <= set(range(len(wheels))):
+        table.fail("locked", f"names wheels that are not there; the first is 0, the last {len(wheels) - 1}")
     keys = {"M": "mass_kg", "I_S": "yaw_inertia_kgm2", "R": "wheel_radius_m", "J": "wheel_inertia_kgm2",
             "offset": "com_y_m", "c1": "motor_gain_Nm_per_V", "c2": "motor_damping_Nms"}
     vehicle: dict[str, Any] = {name: table.number(key) for key, name in keys.items()}
-    vehicle["wheel"] = [wheel_of(each, number in locked) for number, each in enumerate(table.tables("wheels"))]
+    vehicle["wheel"] = [wheel_of(each, number in locked) for number, each in enumerate(wheels)]
     return vehicle
 
 
@@ -72,11 +78,11 @@ def wheel_of(table: Table, locked: bool) -> dict[str, Any]:
     return wheel | ({"roller_rad": table.number("gamma")} if kind == "roller" else {})
 
 
-def held_of(segment: Table) -> dict[str, Any]:
+def held_of(segment: Table, wheel_count: int) -> dict[str, Any]:
     """What acts during a segment, by the names of the core's input."""
     held: dict[str, Any] = {}
     if segment.has("U"):
-        held["voltage_V"] = segment.numbers("U")
+        held["voltage_V"] = segment.numbers("U", wheel_count)
     if segment.has("body_wrench"):
         *held["body_force_N"], held["body_moment_Nm"] = segment.numbers("body_wrench", 3)
     if segment.has("world_force"):
@@ -105,9 +111,16 @@ def start_case(core: Core, case: Table, method: str, step_s: float) -> Plant:
 def follow(plant: Plant, case: Table, step_s: float, advance: Callable[[], None]) -> tuple[list[np.ndarray], float]:
     """States (ν, pose, χ in one row) at the segments' ends, and the seconds the core took."""
     states, seconds = [], 0.0
-    for segment in case.tables("segments"):
-        held = plant.core.input(held_of(segment))
-        steps, fitting = step_that_fits(segment.number("duration"), step_s)
+    segments = list(case.tables("segments"))
+    if not segments:
+        case.fail("segments", "holds none; give at least one")
+    for segment in segments:
+        held = plant.core.input(held_of(segment, plant.wheel_count))
+        duration_s = segment.number("duration")
+        if not 0.0 < duration_s < MOST_STEPS * step_s:
+            segment.fail("duration", f"{duration_s:g} s takes no number of steps of {step_s:g} s; give a time above "
+                         "zero that can be counted in them")
+        steps, fitting = step_that_fits(duration_s, step_s)
         began = time.perf_counter()
         plant.set_step(fitting)
         plant.run(held, steps)

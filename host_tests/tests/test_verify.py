@@ -140,9 +140,15 @@ def bad_reference(change) -> str:
 
 
 @pytest.mark.parametrize(("text", "word"), [
-    ("{", "JSON"), ("[]", "cases"), ('{"cases": []}', "format"), ('{"format": 2, "cases": []}', "format 1"),
+    ("{", "JSON"), ("[]", "cases"), ('{"format": 1, "cases": []}', "nothing to compare"),
+    ('{"cases": []}', "format"), ('{"format": 2, "cases": []}', "format 1"),
     (bad_reference(lambda c: c["cases"][0]["vehicle"].pop("M")), "cases[1].vehicle.M"),
     (bad_reference(lambda c: c["cases"][1]["states"].pop()), "cases[2].states"),
+    (bad_reference(lambda c: c["cases"][0].update(segments=[], states=[])), "cases[1].segments"),
+    (bad_reference(lambda c: c["cases"][0]["segments"][0].update(duration=-1)), "cases[1].segments[1].duration"),
+    (bad_reference(lambda c: c["cases"][0]["segments"][0].update(duration=1e300)), "cases[1].segments[1].duration"),
+    (bad_reference(lambda c: c["cases"][0]["segments"][0].update(U=[1, 2, 3])), "cases[1].segments[1].U"),
+    (bad_reference(lambda c: c["cases"][0]["vehicle"].update(locked=[1])), "cases[1].vehicle.locked"),
     (bad_reference(lambda c: c["cases"][2]["states"][0]["nu"].__setitem__(1, "x")), "cases[3].states[1].nu"),
     (bad_reference(lambda c: c["cases"][0]["vehicle"]["wheels"][0].pop("beta")), "vehicle.wheels[1].beta")])
 def test_a_file_that_is_no_reference_is_one_line_and_status_2(text, word, tmp_path, capsys):
