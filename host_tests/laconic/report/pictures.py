@@ -48,7 +48,7 @@ def error_against_time(rows: Sequence[Row], scene: str) -> str:
             mine = [r for r in rows if (r["scene"], r["method"], r["real"]) == (scene, method, real)]
             _lines(axes, mine, "us_per_second", "error_nu", name, COLOURS[method], marker, linestyle=style)
     axes.set(xlabel="run time per simulated second [µs]", ylabel="error of ν, relative", title=scene)
-    axes.legend(fontsize=7.5, loc="upper right")
+    picture.legend(fontsize=7.5, loc="outside lower center", ncols=3)
     return svg(picture)
 
 
