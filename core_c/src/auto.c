@@ -1,19 +1,23 @@
 /* auto: fourth order where it can be had, a step that cannot fail where not. The rule, in full:
  *
- *   h·r_max < 0.3    exact-flow-4          damping is slow beside the step: the splitting's error is least
+ *   h·r_max < 0.3    exact-flow-4          damping is slow beside the step: the splitting's error is least, and free
+ *                                          motion keeps its energy
+ *                    taylor-8              instead, in steps over which a load varies, while h·|w||g·ζ| < 0.5: there
+ *                                          nothing is conserved, and the series is cheaper and more exact
  *   otherwise        exponential-kahan-4   keeps the steady state that fast damping leads to
  *   and where the chosen one refuses a step (it would gain energy or has no solution: h·|ν3| is large), that
  *   step is taken by exact-flow, which every step suits.
  *
- * The choice is made once, when the integrator is prepared, and can be read in `chosen`; whether exact-flow steps
- * in depends only on state and input. So the same run makes the same choices everywhere. */
+ * The choice by damping is made once, when the integrator is prepared, and can be read in `chosen`; the rest depends
+ * only on state and input. So the same run makes the same choices everywhere. */
 #include "integrator.h"
 
+#define SERIES_ROTATION R(0.5) /* rad: the first term that taylor-8 leaves out is then 1e-8 of the first */
+
 static laconic_status auto_prepare(laconic_integrator *integrator, const laconic_model *model, laconic_refusal *why) {
-    (void)why;
     integrator->chosen = integrator->stiff ? &laconic_auto_fast : &laconic_auto_slow;
     laconic_decay_levels(integrator, model, 3);
-    return LACONIC_OK;
+    return laconic_explicit_limits(integrator, model, LACONIC_REAL_MAX, SERIES_ROTATION, why);
 }
 
 /* Its own step is never taken: `chosen` is always one of the two. */

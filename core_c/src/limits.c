@@ -13,6 +13,7 @@ laconic_real laconic_largest_stable_step_s(const laconic_method *method, const l
         (void)laconic_integrator_prepare(&trial, method, model, step * R(0.999), &why); /* safe from rounding */
         trial.gyro_limit *= R(0.999);
     }
+    if (trial.chosen != method) return R(0); /* auto: goes on with another method */
     yaw = magnitude(dot(vec(model->nu_of_zeta[2]), zeta_of(state)));
     if (trial.gyro_limit > R(0) && yaw > trial.gyro_limit) step *= trial.gyro_limit / yaw;
     return step < LARGEST_STEP_S ? step : R(0);

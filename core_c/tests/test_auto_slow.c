@@ -20,9 +20,30 @@ static void what_exact_flow_cannot_take_is_refused(void) {
     assert_step_refused(&laconic_auto, v, start_with(0, 0, 0), input, 1.0, LACONIC_OVERFLOW);
 }
 
+/* A force fixed in the world varies as the vehicle turns. */
+static void a_load_that_varies_is_followed_by_the_series(void) {
+    const laconic_model m = model_of(with_motors(three_wheels()));
+    const laconic_input input = every_input();
+    laconic_state a = moving(&m, 1, 2, 3), b = a;
+    take_steps(&laconic_auto, &m, &a, &input, 0.01, 100);
+    take_steps(&laconic_taylor_8, &m, &b, &input, 0.01, 100);
+    TEST_ASSERT_EQUAL_MEMORY(&b, &a, sizeof a);
+}
+
+static void but_not_when_it_turns_fast(void) {
+    const laconic_model m = model_of(with_motors(three_wheels()));
+    const laconic_input input = every_input();
+    laconic_state a = moving(&m, 1, 2, 300), b = a;
+    take_steps(&laconic_auto, &m, &a, &input, 0.01, 10);
+    take_steps(&laconic_exact_flow_4, &m, &b, &input, 0.01, 10);
+    TEST_ASSERT_EQUAL_MEMORY(&b, &a, sizeof a);
+}
+
 int main(void) {
     UNITY_BEGIN();
     RUN_TEST(a_step_that_cannot_be_taken_is_taken_by_exact_flow);
+    RUN_TEST(a_load_that_varies_is_followed_by_the_series);
+    RUN_TEST(but_not_when_it_turns_fast);
     RUN_TEST(what_exact_flow_cannot_take_is_refused);
     return UNITY_END();
 }

@@ -89,7 +89,9 @@ def method_files(scene: Scene, chosen: str) -> tuple[str, ...]:
     stem = chosen.replace("-", "_")
     if scene.run.method != "auto":
         return (stem,)
-    return ("auto_slow" if chosen == "exact-flow-4" else "auto_fast", stem, "exact_flow")
+    if chosen == "exact-flow-4":
+        return ("auto_slow", stem, "taylor_8", "exact_flow")
+    return ("auto_fast", stem, "exact_flow")
 
 
 def header_of(scene: Scene, real: str, needs: Needs) -> str:

@@ -342,7 +342,7 @@ typedef struct laconic_integrator {
     const struct laconic_method *chosen; /* what works: differs from `method` only for auto       */
     laconic_real step_s;                 /* h                                                     */
     laconic_decay decay[3];              /* for h, h/2, h/4, as far as the method needs them      */
-    laconic_real gyro_limit;             /* largest |g·ζ| an explicit method bears; 0: any        */
+    laconic_real gyro_limit;             /* largest |g·ζ| an explicit method is given; 0: any     */
     bool stiff;                          /* damping is fast beside the step: h·r_max >= 0.3       */
 } laconic_integrator;
 
@@ -369,7 +369,7 @@ extern const laconic_method laconic_exact_flow_4;        /* 4  any damping, best
 extern const laconic_method laconic_taylor_8;            /* 8  h·r ≤ 4.313, h·|ν3| limited  –       */
 extern const laconic_method laconic_auto;                /* picks one of the next two; see auto.c   */
 /* Only ever `chosen`, for firmware whose integrator is a constant; what is prepared is laconic_auto. */
-extern const laconic_method laconic_auto_slow;           /* exact-flow-4, else exact-flow           */
+extern const laconic_method laconic_auto_slow;           /* exact-flow-4 or taylor-8, else exact-flow */
 extern const laconic_method laconic_auto_fast;           /* exponential-kahan-4, else exact-flow    */
 
 /* All methods, for adapters that choose by number (0 auto, 1 rk4, 2 exponential-kahan,
