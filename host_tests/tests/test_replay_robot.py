@@ -201,6 +201,20 @@ def test_bad_arguments_are_one_clear_line(folder, tmp_path, capsys, arguments, w
     assert words in err[0]
 
 
+@pytest.mark.parametrize(("old", "new", "words"), [
+    ('separator = ";"', 'separator = ";;"', "separator: is ';;'; give one character"),
+    ('columns = ["m1vel", "m2vel", "m3vel"]', "columns = []", "wheel_speed.columns: has 0 entries; give 3"),
+    ('columns = ["m1setvel", "m2setvel", "m3setvel"]', "columns = []", "set_speed.columns: has 0 entries; give one"),
+    ('columns = ["m1cur", "m2cur", "m3cur"]', 'columns = ["m1cur"]', "current.columns: has 1 entries; give 3"),
+    ('columns = ["dx", "dy", "dang"]', 'columns = ["dx", "dy"]', "camera.columns: has 2 entries; give 3")])
+def test_map_that_cannot_be_is_named_by_its_key(tmp_path, old, new, words):
+    path = tmp_path / "map.toml"
+    path.write_text(DEFAULT_MAP.read_text().replace(old, new))
+    with pytest.raises(BadInput) as caught:
+        read_map(path)
+    assert f"{path}: {words}" in str(caught.value)
+
+
 def test_map_with_an_unknown_key_names_it(tmp_path):
     path = tmp_path / "map.toml"
     path.write_text(DEFAULT_MAP.read_text().replace("names_line = 3", "names_line = 3\ncolour = 1"))

@@ -52,21 +52,28 @@ def read_map(path: Path) -> ColumnMap:
     """A column map; BadInput names the file and the key that is wrong."""
     table = read_toml(path)
     columns = {"time": _columns(table.table("time", required=True), one=True)}
+    wheels = None
     for name in ("set_speed", "wheel_angle", "wheel_speed", "current"):
-        columns[name] = _columns(table.table(name, required=True), extra=("sign_from_set_speed",))
+        columns[name] = _columns(table.table(name, required=True), wheels, extra=("sign_from_set_speed",))
+        wheels = len(columns[name][0])
     if table.has("camera"):
-        columns["camera"] = _columns(table.table("camera"))
+        columns["camera"] = _columns(table.table("camera"), 3)
     signed = table.table("current").flag("sign_from_set_speed", False)
     found = ColumnMap(table.text("separator", ","), table.whole("header_lines", 1), table.whole("names_line", 1),
                       columns, signed)
     table.done()
+    if len(found.separator) != 1:
+        table.fail("separator", f"is {found.separator!r}; give one character")
     if not 1 <= found.names_line <= found.header_lines:
         raise BadInput(f"{path}: names_line: is {found.names_line}; give a line from 1 to header_lines")
     return found
 
 
-def _columns(table: Table, one: bool = False, extra: tuple[str, ...] = ()) -> tuple[tuple[str, ...], np.ndarray]:
+def _columns(table: Table, count: int | None = None, *, one: bool = False,
+             extra: tuple[str, ...] = ()) -> tuple[tuple[str, ...], np.ndarray]:
     names = (table.text("column"),) if one else table.texts("columns", ...)
+    if not names or len(names) != (count or len(names)):
+        table.fail("columns", f"has {len(names)} entries; give {count or 'one for each wheel'}")
     if table.has("scales"):
         scale = np.array(table.numbers("scales", len(names)))
     else:
