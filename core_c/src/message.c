@@ -90,7 +90,8 @@ static const char *explanation(laconic_status status) {
         "masses and lengths are too far apart for " LACONIC_REAL_NAME
         " precision: the condition number # leaves fewer than two correct digits; check the units",
         "# slides a fixed or locked wheel; the nearest velocity that the wheels allow is @",
-        "there is no such method; use auto, rk4, exponential-kahan, exponential-kahan-4, exact-flow or exact-flow-4",
+        "there is no such method; use auto, rk4, exponential-kahan, exponential-kahan-4, exact-flow, exact-flow-4 or "
+        "taylor-8",
         "steps of # s do not fill the interval; @ s would",
         "# s is unstable with this method, the motors damp too fast; use at most @ s, or auto",
         "# s is unstable with this method while the vehicle turns this fast; use at most @ s, or exact-flow",

@@ -396,7 +396,8 @@ uint64_t laconic_run(const laconic_model *model, const laconic_integrator *integ
 
 /* One step with the input sampled at its start, middle and end. Torques and body wrench are followed along the
  * parabola through the three; a force fixed in the world, which turns with the heading, from sample to sample (in
- * the second-order methods from start to end). rk4 takes each stage's sample. Refuses as laconic_step does. */
+ * the second-order methods from start to end). rk4 takes each stage's sample; taylor-8 follows a world force, too,
+ * along the parabola. Refuses as laconic_step does. */
 laconic_status laconic_step_sampled(const laconic_model *model, const laconic_integrator *integrator,
                                     laconic_state *state, const laconic_input *start, const laconic_input *middle,
                                     const laconic_input *end);
