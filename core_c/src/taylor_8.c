@@ -42,28 +42,53 @@ static inline real turn_of_yaw(const laconic_model *m, real h) {
     return h / m->yaw_scale;
 }
 
-/* In the sum what has just been found comes last, so that nothing else waits for it. */
-INLINE void next_term(course *c, const laconic_model *m, real h, int n, vector turned[ORDER], vector b) {
-    const vector zeta = c->zeta[n], decay = times(vec(m->decay_per_s), zeta);
-    vector product = b;
-    int j;
+/* The Jacobian of the rate at the step's start, by rows: of the product of series, and of the damping, it is the part
+ * that the newest coefficient takes. */
+typedef struct jacobian {
+    vector x, y, z;
+} jacobian;
+
+static inline jacobian jacobian_at(const laconic_model *m, real yaw, vector turned) {
+    const vector g = vec(m->nu_of_zeta[2]), s = scaled(yaw, vec(m->gyro)), r = vec(m->decay_per_s);
+    const jacobian at = {{turned.x * g.x - r.x, turned.x * g.y + s.z, turned.x * g.z - s.y},
+                         {turned.y * g.x - s.z, turned.y * g.y - r.y, turned.y * g.z + s.x},
+                         {turned.z * g.x + s.y, turned.z * g.y - s.x, turned.z * g.z - r.z}};
+    return at;
+}
+
+static inline vector applied(const jacobian *a, vector v) {
+    const vector out = {dot(a->x, v), dot(a->y, v), dot(a->z, v)};
+    return out;
+}
+
+static inline void keep(course *c, vector turned[ORDER + 1], const laconic_model *m, int n, vector zeta) {
+    c->zeta[n] = zeta;
+    c->yaw[n] = dot(vec(m->nu_of_zeta[2]), zeta);
     turned[n] = cross(zeta, vec(m->gyro));
-    for (j = 1; j <= n; j++) product = plus(product, scaled(c->yaw[j], turned[n - j]));
-    product = plus(product, minus(scaled(c->yaw[0], turned[n]), decay));
-    c->zeta[n + 1] = scaled(h * inverse[n], product);
-    c->yaw[n + 1] = dot(vec(m->nu_of_zeta[2]), c->zeta[n + 1]);
 }
 
-INLINE void begin(course *c, const laconic_model *m, vector zeta) {
-    c->zeta[0] = zeta;
-    c->yaw[0] = dot(vec(m->nu_of_zeta[2]), zeta);
+/* ζ0 and ζ1. */
+INLINE vector first_term(course *c, vector turned[ORDER + 1], const laconic_model *m, real h, vector zeta, vector b) {
+    keep(c, turned, m, 0, zeta);
+    return scaled(h, plus(minus(scaled(c->yaw[0], turned[0]), times(vec(m->decay_per_s), zeta)), b));
 }
 
-INLINE void steady_course(course *c, const laconic_model *m, real h, vector zeta, vector b) {
-    vector turned[ORDER];
+/* Keeps ζn, returns ζn+1. Only the last two operations wait for ζn. */
+INLINE vector next_term(course *c, vector turned[ORDER + 1], const laconic_model *m, const jacobian *at, real h, int n,
+                        vector zeta, vector b) {
+    vector older = b;
+    int j;
+    for (j = 1; j < n; j++) older = plus(older, scaled(c->yaw[j], turned[n - j]));
+    keep(c, turned, m, n, zeta);
+    return scaled(h * inverse[n], plus(older, applied(at, zeta)));
+}
+
+INLINE void steady_course(course *c, const laconic_model *m, real h, vector start, vector b) {
+    vector turned[ORDER + 1], zeta = first_term(c, turned, m, h, start, b);
+    const jacobian at = jacobian_at(m, c->yaw[0], turned[0]);
     int n;
-    begin(c, m, zeta);
-    for (n = 0; n < ORDER; n++) next_term(c, m, h, n, turned, n == 0 ? b : none);
+    for (n = 1; n < ORDER; n++) zeta = next_term(c, turned, m, &at, h, n, zeta, none);
+    keep(c, turned, m, ORDER, zeta);
 }
 
 static void parabola(vector term[3], const real start[3], const real middle[3], const real end[3]) {
@@ -112,13 +137,15 @@ static vector forcing_term(forcing *f, const course *c, real turn, int n) {
     return b;
 }
 
-RARE void varying_course(course *c, const laconic_model *m, real h, vector zeta, const laconic_loads *loads,
+RARE void varying_course(course *c, const laconic_model *m, real h, vector start, const laconic_loads *loads,
                          const laconic_heading *heading) {
+    const real turn = turn_of_yaw(m, h);
     forcing f = forcing_of(loads, heading);
-    vector turned[ORDER];
+    vector turned[ORDER + 1], zeta = first_term(c, turned, m, h, start, forcing_term(&f, c, turn, 0));
+    const jacobian at = jacobian_at(m, c->yaw[0], turned[0]);
     int n;
-    begin(c, m, zeta);
-    for (n = 0; n < ORDER; n++) next_term(c, m, h, n, turned, forcing_term(&f, c, turn_of_yaw(m, h), n));
+    for (n = 1; n < ORDER; n++) zeta = next_term(c, turned, m, &at, h, n, zeta, forcing_term(&f, c, turn, n));
+    keep(c, turned, m, ORDER, zeta);
 }
 
 /* Smallest terms first. */
@@ -144,25 +171,42 @@ static inline void at_nodes(real value[NODES], const real *coefficient, int stri
         for (k = 0; k < NODES; k++) value[k] = node[k] * value[k] + coefficient[n * stride];
 }
 
+/* All at once where they are small, so that compilers take them two or four at a time. */
+static inline void directions_at_nodes(real cosine[NODES], real sine[NODES], const real angle[NODES]) {
+    real sum = R(0);
+    int k;
+    for (k = 0; k < NODES; k++) sum += magnitude(angle[k]);
+    if (sum <= R(0.78)) {
+        for (k = 0; k < NODES; k++) cosine[k] = poly_cos(angle[k] * angle[k]);
+        for (k = 0; k < NODES; k++) sine[k] = poly_sin(angle[k], angle[k] * angle[k]);
+    } else {
+        for (k = 0; k < NODES; k++) {
+            const direction d = laconic_direction_of_turn(laconic_turn_of_angle(angle[k]));
+            cosine[k] = d.cosine;
+            sine[k] = d.sine;
+        }
+    }
+}
+
 /* In axes at the mid-step heading: ∫ e^{i(θ − θ_mid)} v dt. */
 static inline motion quadrature(const course *c, const laconic_model *m, real h, real turn) {
     const vector forth = vec(m->velocity_of_zeta[0]), left = vec(m->velocity_of_zeta[1]);
     const int stride = sizeof(vector) / sizeof(real);
     motion moved = {R(0), R(0), turn};
-    real x[NODES], y[NODES], z[NODES], angle[NODES], turned[ORDER + 1];
+    real x[NODES], y[NODES], z[NODES], angle[NODES], turned[ORDER + 1], cosine[NODES], sine[NODES];
+    real along[NODES], across[NODES];
     int n, k;
     for (n = 0; n <= ORDER; n++) turned[n] = turn_of_yaw(m, h) * inverse[n] * c->yaw[n];
     at_nodes(x, &c->zeta[0].x, stride);
     at_nodes(y, &c->zeta[0].y, stride);
     at_nodes(z, &c->zeta[0].z, stride);
     at_nodes(angle, turned, 1);
-    for (k = 0; k < NODES; k++) {
-        const vector zeta = {x[k], y[k], z[k]};
-        const direction d = direction_of_angle(node[k] * angle[k] - R(0.5) * turn);
-        const real along = h * weight[k] * dot(forth, zeta), across = h * weight[k] * dot(left, zeta);
-        moved.along_m += d.cosine * along - d.sine * across;
-        moved.across_m += d.sine * along + d.cosine * across;
-    }
+    for (k = 0; k < NODES; k++) angle[k] = node[k] * angle[k] - R(0.5) * turn;
+    directions_at_nodes(cosine, sine, angle);
+    for (k = 0; k < NODES; k++) along[k] = h * weight[k] * (forth.x * x[k] + forth.y * y[k] + forth.z * z[k]);
+    for (k = 0; k < NODES; k++) across[k] = h * weight[k] * (left.x * x[k] + left.y * y[k] + left.z * z[k]);
+    for (k = 0; k < NODES; k++) moved.along_m += cosine[k] * along[k] - sine[k] * across[k];
+    for (k = 0; k < NODES; k++) moved.across_m += sine[k] * along[k] + cosine[k] * across[k];
     return moved;
 }
 

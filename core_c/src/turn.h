@@ -33,10 +33,4 @@ static inline direction direction_of_turn(laconic_turn turn) {
     return direction_near((real)(signed_turn)near * TURN_UNIT, quarters);
 }
 
-/* The same of an angle that is mostly small. */
-static inline direction direction_of_angle(real angle_rad) {
-    if (magnitude(angle_rad) <= R(0.78)) return direction_near(angle_rad, 0);
-    return laconic_direction_of_turn(laconic_turn_of_angle(angle_rad));
-}
-
 #endif
