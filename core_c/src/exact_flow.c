@@ -3,6 +3,8 @@
 
 #include "integrator.h"
 
+#define LARGEST_DOUBLINGS 520 /* quarter every finite number: an infinite one ends as NaN, and the step is refused */
+
 /* Beyond the polynomial: quarter z until it holds, then double the angle as often. With s = sin √z/√z and
  * c = cos √z up to a common factor (only their ratio counts), s(4z) = s c, c(4z) = c² − z s²; divided by
  * c² + |z| s² they stay of the order of 1 for either sign of z. */
@@ -10,9 +12,8 @@ half_angle laconic_large_half_angle(real z, real along, real across) {
     half_angle a;
     real s, c = R(1);
     int doublings = 0;
-    if (!is_finite(z)) doublings = -1; /* NaN from here on: the step will be refused */
-    for (; doublings >= 0 && magnitude(z) > TANGENT_SMALL; z *= R(0.25)) doublings++;
-    s = doublings < 0 ? z - z : poly_tangent(z);
+    for (; magnitude(z) > TANGENT_SMALL && doublings < LARGEST_DOUBLINGS; z *= R(0.25)) doublings++;
+    s = poly_tangent(z);
     for (; doublings > 0; doublings--) {
         const real zss = z * s * s, norm = R(1) / (c * c + magnitude(zss));
         s = norm * (s * c);

@@ -44,7 +44,7 @@ INLINE vector free_flow(const laconic_model *m, real half_step, vector zeta) {
 
 /* Damping and drive alone, exact. */
 INLINE vector drive_flow(const laconic_model *m, const laconic_decay *d, vector zeta, const drive *b) {
-    return times(vec(d->gain), minus(constant_like(b, d), times(vec(m->decay_per_s), zeta)));
+    return times(vec(d->gain), minus(constant_like(b, d), damping(m, zeta)));
 }
 
 /* The two halves of a parabola: s(s − 1) over half the range is a quarter of itself and a ramp. */
@@ -66,6 +66,8 @@ INLINE increment exact_flow_step(const laconic_model *m, const laconic_integrato
     const drive *first = b, *second = b;
     drive early, late;
     vector up, before, turn, down;
+    if (!LACONIC_WITH_DAMPING && !LACONIC_WITH_LOAD)
+        return increment_of(&integrator->decay[level], zeta, free_flow(m, half_step, zeta), b);
     if (b->varies) {
         split(&early, &late, b);
         first = &early;

@@ -63,7 +63,7 @@ INLINE increment kahan_step(const laconic_model *m, const laconic_integrator *in
     const vector g = vec(m->nu_of_zeta[2]), w = vec(m->gyro), inverse_gain = vec(d->inverse_gain);
     const real yaw = dot(g, zeta);
     const vector turned = cross(zeta, w);
-    const vector rate = plus(minus(scaled(yaw, turned), times(vec(m->decay_per_s), zeta)), constant_like(b, d));
+    const vector rate = plus(minus(scaled(yaw, turned), damping(m, zeta)), constant_like(b, d));
     const matrix implicit = implicit_matrix(inverse_gain, g, w, yaw, turned);
     const solver s = factorise(&implicit);
     const vector delta = solve(&s, rate);

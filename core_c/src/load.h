@@ -5,6 +5,10 @@
 #include "elementary.h"
 #include "vector.h"
 
+/* Anything that acts at all. */
+#define LACONIC_WITH_LOAD \
+    (LACONIC_WITH_VOLTAGE || LACONIC_WITH_AXLE_TORQUE || LACONIC_WITH_BODY_WRENCH || LACONIC_WITH_WORLD_FORCE)
+
 /* Ξᵀ(c1 U + T)/(M R²): power of a wheel's torque is torque · χ'. */
 static inline vector wheel_torques(const laconic_model *m, const laconic_input *in) {
     vector b = {R(0), R(0), R(0)};

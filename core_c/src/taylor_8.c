@@ -70,7 +70,7 @@ static inline void keep(course *c, vector turned[ORDER + 1], const laconic_model
 /* ζ0 and ζ1. */
 INLINE vector first_term(course *c, vector turned[ORDER + 1], const laconic_model *m, real h, vector zeta, vector b) {
     keep(c, turned, m, 0, zeta);
-    return scaled(h, plus(minus(scaled(c->yaw[0], turned[0]), times(vec(m->decay_per_s), zeta)), b));
+    return scaled(h, plus(minus(scaled(c->yaw[0], turned[0]), damping(m, zeta)), b));
 }
 
 /* Keeps ζn, returns ζn+1. Only the last two operations wait for ζn. */

@@ -27,10 +27,16 @@ static inline void set_zeta(laconic_state *state, vector zeta) {
     state->zeta[2] = sum_of(zeta.z);
 }
 
+/* diag(r)ζ, what the motors' damping takes off ζ'. */
+static inline vector damping(const laconic_model *m, vector z) {
+    const vector none = {R(0), R(0), R(0)};
+    return LACONIC_WITH_DAMPING ? times(vec(m->decay_per_s), z) : none;
+}
+
 /* ζ' = (g·ζ)(ζ×w) − diag(r)ζ + b: equation (4.7) in the coordinates of laconic_model. */
 static inline vector zeta_rate(const laconic_model *m, vector z, vector b) {
     const vector turning = scaled(dot(vec(m->nu_of_zeta[2]), z), cross(z, vec(m->gyro)));
-    return plus(minus(turning, times(vec(m->decay_per_s), z)), b);
+    return plus(minus(turning, damping(m, z)), b);
 }
 
 /* Free motion turns faster than an explicit method bears. */

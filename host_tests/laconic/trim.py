@@ -34,6 +34,7 @@ class Needs:
     sampled_input: bool
     pose: bool
     wheel_angles: bool
+    damping: bool
 
 
 @dataclass(frozen=True)
@@ -71,7 +72,8 @@ def needs_of(scene: Scene) -> Needs:
         body_wrench=bool(acting & {"body_force_N", "body_moment_Nm"}), world_force=world_force,
         sampled_input=not scene.drive().is_held,
         pose=world_force or not wanted or not wanted.isdisjoint(POSE),
-        wheel_angles=scene.wheel_count > 0 and (not wanted or "wheel_angle_rad" in wanted))
+        wheel_angles=scene.wheel_count > 0 and (not wanted or "wheel_angle_rad" in wanted),
+        damping=any(scene.plant(load("double")).c.model.decay_per_s))
 
 
 def trimmed(scene: Scene, real: str) -> Trimmed:

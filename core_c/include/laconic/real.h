@@ -74,6 +74,9 @@ typedef uint64_t laconic_turn; /* angle in units of 2^-64 turn */
 #ifndef LACONIC_WITH_WORLD_FORCE
 #define LACONIC_WITH_WORLD_FORCE 1
 #endif
+#ifndef LACONIC_WITH_DAMPING
+#define LACONIC_WITH_DAMPING 1
+#endif
 #ifndef LACONIC_WITH_PREPARE /* 0: model and integrator are constants made by the host */
 #define LACONIC_WITH_PREPARE 1
 #endif
