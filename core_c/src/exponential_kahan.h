@@ -49,7 +49,7 @@ static inline vector follow(drive *b, const laconic_model *m, const laconic_deca
                             vector delta) {
     const vector g = vec(m->nu_of_zeta[2]), w = vec(m->gyro), end = plus(zeta, delta);
     const vector change = minus(scaled(dot(g, end), cross(end, w)), scaled(dot(g, zeta), cross(zeta, w)));
-    const vector none = {R(0), R(0), R(0)}, half = {R(0.5), R(0.5), R(0.5)};
+    const vector half = {R(0.5), R(0.5), R(0.5)};
     if (!b->varies) b->change = b->curve = none;
     b->change = plus(b->change, change);
     b->varies = true;

@@ -11,7 +11,7 @@
 
 /* Ξᵀ(c1 U + T)/(M R²): power of a wheel's torque is torque · χ'. */
 static inline vector wheel_torques(const laconic_model *m, const laconic_input *in) {
-    vector b = {R(0), R(0), R(0)};
+    vector b = none;
     int32_t i;
     for (i = 0; i < LACONIC_WHEELS(m); i++) {
         const real motor = LACONIC_WITH_VOLTAGE ? m->voltage_scale * in->voltage_V[i] : R(0);
@@ -46,7 +46,7 @@ static inline bool acts(real a, real b, real c) {
 }
 
 static inline void load_of(laconic_load *load, const laconic_model *model, const laconic_input *input) {
-    vector b = {R(0), R(0), R(0)};
+    vector b = none;
     if (LACONIC_WITH_VOLTAGE || LACONIC_WITH_AXLE_TORQUE) b = wheel_torques(model, input);
     if (LACONIC_WITH_BODY_WRENCH && acts(input->body_force_N[0], input->body_force_N[1], input->body_moment_Nm))
         b = plus(b, body_wrench(model, input));

@@ -58,7 +58,6 @@ INLINE increment combine(increment whole, increment first, increment second) {
 /* ------------------------------------------------------------------------- b held ------- */
 
 static inline drive held(const laconic_loads *loads) {
-    const vector none = {R(0), R(0), R(0)};
     return (drive){vec(loads->start->constant), none, none, false};
 }
 

@@ -3,44 +3,12 @@
  *     (n + 1) ζn+1 = h [ Σj (g·ζj)(ζn−j × w) − diag(r) ζn + bn ].
  * θ follows term by term, and the pose by a quadrature of the same order. Explicit: for large steps of vehicles whose
  * damping is slow beside them, where it is far more exact than anything else of its cost. */
-#include "advance.h"
 #include "integrator.h"
-#include "load.h"
-#include "zeta.h"
+#include "taylor_forcing.h"
+#include "taylor_pose.h"
 
-#define ORDER 8
-#define NODES 4                   /* of Gauss, exact to degree 7                                       */
-#define LARGEST_DAMPING R(4.313)  /* h·r: end of the stability interval on the real axis               */
-#define LARGEST_ROTATION R(3.395) /* h·|w||g·ζ|: on the imaginary axis, where free motion turns        */
-
-static const real inverse[ORDER + 1] = {R(1),     R(1.0 / 2), R(1.0 / 3), R(1.0 / 4), R(1.0 / 5),
-                                        R(1.0 / 6), R(1.0 / 7), R(1.0 / 8), R(1.0 / 9)};
-static const real node[NODES] = {R(0.069431844202973712388), R(0.33000947820757186760), R(0.66999052179242813240),
-                                 R(0.93056815579702628761)};
-static const real weight[NODES] = {R(0.17392742256872692869), R(0.32607257743127307131), R(0.32607257743127307131),
-                                   R(0.17392742256872692869)};
-
-static const vector none = {R(0), R(0), R(0)};
-
-/* A motion over one step: coefficients of sⁿ. */
-typedef struct course {
-    vector zeta[ORDER + 1];
-    real yaw[ORDER + 1]; /* g·ζ */
-} course;
-
-/* What acts, as far as it varies: parabolas through the samples, and the heading that turns a world force. */
-typedef struct forcing {
-    vector constant[3], cosine[3], sine[3];
-    real heading_cosine[ORDER], heading_sine[ORDER];
-    bool turns;
-} forcing;
-
-/* ------------------------------------------------------------------------------- ζ ------ */
-
-/* g·ζ is Λ times the yaw rate: this times it is what the heading turns in a step. */
-static inline real turn_of_yaw(const laconic_model *m, real h) {
-    return h / m->yaw_scale;
-}
+#define LARGEST_DAMPING R(4.313)  /* h·r: end of the stability interval on the real axis        */
+#define LARGEST_ROTATION R(3.395) /* h·|w||g·ζ|: on the imaginary axis, where free motion turns */
 
 /* The Jacobian of the rate at the step's start, by rows: of the product of series, and of the damping, it is the part
  * that the newest coefficient takes. */
@@ -62,7 +30,9 @@ static inline vector applied(const jacobian *a, vector v) {
 }
 
 static inline void keep(course *c, vector turned[ORDER + 1], const laconic_model *m, int n, vector zeta) {
-    c->zeta[n] = zeta;
+    c->x[n] = zeta.x;
+    c->y[n] = zeta.y;
+    c->z[n] = zeta.z;
     c->yaw[n] = dot(vec(m->nu_of_zeta[2]), zeta);
     turned[n] = cross(zeta, vec(m->gyro));
 }
@@ -91,52 +61,6 @@ INLINE void steady_course(course *c, const laconic_model *m, real h, vector star
     keep(c, turned, m, ORDER, zeta);
 }
 
-static void parabola(vector term[3], const real start[3], const real middle[3], const real end[3]) {
-    const vector half = minus(vec(middle), vec(start)), whole = minus(vec(end), vec(start));
-    term[0] = vec(start);
-    term[1] = minus(scaled(R(4), half), whole);
-    term[2] = scaled(R(2), minus(whole, scaled(R(2), half)));
-}
-
-static forcing forcing_of(const laconic_loads *loads, const laconic_heading *heading) {
-    static const laconic_load still = {{R(0), R(0), R(0)}, {R(0), R(0), R(0)}, {R(0), R(0), R(0)}, false};
-    const laconic_load *at[3] = {loads->start, loads->middle, loads->end};
-    const direction now = laconic_direction_of_turn(heading->fraction);
-    forcing f;
-    int k;
-    parabola(f.constant, at[0]->constant, at[1]->constant, at[2]->constant);
-    f.turns = LACONIC_WITH_WORLD_FORCE && (at[0]->turns || at[1]->turns || at[2]->turns);
-    for (k = 0; k < 3; k++)
-        if (!at[k]->turns) at[k] = &still;
-    parabola(f.cosine, at[0]->cosine, at[1]->cosine, at[2]->cosine);
-    parabola(f.sine, at[0]->sine, at[1]->sine, at[2]->sine);
-    f.heading_cosine[0] = now.cosine;
-    f.heading_sine[0] = now.sine;
-    return f;
-}
-
-/* (cos θ)' = −θ' sin θ, (sin θ)' = θ' cos θ, coefficient by coefficient. */
-static void turn_on(forcing *f, const course *c, real turn, int n) {
-    real cosine = R(0), sine = R(0);
-    int j;
-    for (j = 0; j < n; j++) {
-        cosine -= c->yaw[j] * f->heading_sine[n - 1 - j];
-        sine += c->yaw[j] * f->heading_cosine[n - 1 - j];
-    }
-    f->heading_cosine[n] = turn * inverse[n - 1] * cosine;
-    f->heading_sine[n] = turn * inverse[n - 1] * sine;
-}
-
-static vector forcing_term(forcing *f, const course *c, real turn, int n) {
-    vector b = n < 3 ? f->constant[n] : none;
-    int k;
-    if (!f->turns) return b;
-    if (n > 0) turn_on(f, c, turn, n);
-    for (k = 0; k < 3 && k <= n; k++)
-        b = plus(b, plus(scaled(f->heading_cosine[n - k], f->cosine[k]), scaled(f->heading_sine[n - k], f->sine[k])));
-    return b;
-}
-
 RARE void varying_course(course *c, const laconic_model *m, real h, vector start, const laconic_loads *loads,
                          const laconic_heading *heading) {
     const real turn = turn_of_yaw(m, h);
@@ -153,64 +77,13 @@ static inline increment sum_of_terms(const course *c) {
     increment by = {none, none, none};
     int n;
     for (n = ORDER; n > 0; n--) {
-        by.delta = plus(by.delta, c->zeta[n]);
-        by.mean = plus(by.mean, scaled(inverse[n], c->zeta[n]));
+        by.delta = plus(by.delta, term(c, n));
+        by.mean = plus(by.mean, scaled(inverse[n], term(c, n)));
     }
-    by.mean = plus(by.mean, c->zeta[0]);
+    by.mean = plus(by.mean, term(c, 0));
     by.slope = by.delta;
     return by;
 }
-
-/* ---------------------------------------------------------------------------- pose ------ */
-
-/* A polynomial at all nodes at once; its coefficients stand `stride` apart. */
-static inline void at_nodes(real value[NODES], const real *coefficient, int stride) {
-    int n, k;
-    for (k = 0; k < NODES; k++) value[k] = coefficient[ORDER * stride];
-    for (n = ORDER - 1; n >= 0; n--)
-        for (k = 0; k < NODES; k++) value[k] = node[k] * value[k] + coefficient[n * stride];
-}
-
-/* All at once where they are small, so that compilers take them two or four at a time. */
-static inline void directions_at_nodes(real cosine[NODES], real sine[NODES], const real angle[NODES]) {
-    real sum = R(0);
-    int k;
-    for (k = 0; k < NODES; k++) sum += magnitude(angle[k]);
-    if (sum <= R(0.78)) {
-        for (k = 0; k < NODES; k++) cosine[k] = poly_cos(angle[k] * angle[k]);
-        for (k = 0; k < NODES; k++) sine[k] = poly_sin(angle[k], angle[k] * angle[k]);
-    } else {
-        for (k = 0; k < NODES; k++) {
-            const direction d = laconic_direction_of_turn(laconic_turn_of_angle(angle[k]));
-            cosine[k] = d.cosine;
-            sine[k] = d.sine;
-        }
-    }
-}
-
-/* In axes at the mid-step heading: ∫ e^{i(θ − θ_mid)} v dt. */
-static inline motion quadrature(const course *c, const laconic_model *m, real h, real turn) {
-    const vector forth = vec(m->velocity_of_zeta[0]), left = vec(m->velocity_of_zeta[1]);
-    const int stride = sizeof(vector) / sizeof(real);
-    motion moved = {R(0), R(0), turn};
-    real x[NODES], y[NODES], z[NODES], angle[NODES], turned[ORDER + 1], cosine[NODES], sine[NODES];
-    real along[NODES], across[NODES];
-    int n, k;
-    for (n = 0; n <= ORDER; n++) turned[n] = turn_of_yaw(m, h) * inverse[n] * c->yaw[n];
-    at_nodes(x, &c->zeta[0].x, stride);
-    at_nodes(y, &c->zeta[0].y, stride);
-    at_nodes(z, &c->zeta[0].z, stride);
-    at_nodes(angle, turned, 1);
-    for (k = 0; k < NODES; k++) angle[k] = node[k] * angle[k] - R(0.5) * turn;
-    directions_at_nodes(cosine, sine, angle);
-    for (k = 0; k < NODES; k++) along[k] = h * weight[k] * (forth.x * x[k] + forth.y * y[k] + forth.z * z[k]);
-    for (k = 0; k < NODES; k++) across[k] = h * weight[k] * (left.x * x[k] + left.y * y[k] + left.z * z[k]);
-    for (k = 0; k < NODES; k++) moved.along_m += cosine[k] * along[k] - sine[k] * across[k];
-    for (k = 0; k < NODES; k++) moved.across_m += sine[k] * along[k] + cosine[k] * across[k];
-    return moved;
-}
-
-/* ---------------------------------------------------------------------------- step ------ */
 
 static laconic_status taylor_step(const laconic_model *model, const laconic_integrator *integrator,
                                   laconic_state *state, const laconic_loads *loads) {

@@ -8,6 +8,8 @@ typedef struct vector {
     real x, y, z;
 } vector;
 
+static const vector none = {R(0), R(0), R(0)};
+
 static inline vector vec(const real v[3]) {
     const vector out = {v[0], v[1], v[2]};
     return out;

@@ -29,7 +29,6 @@ static inline void set_zeta(laconic_state *state, vector zeta) {
 
 /* diag(r)ζ, what the motors' damping takes off ζ'. */
 static inline vector damping(const laconic_model *m, vector z) {
-    const vector none = {R(0), R(0), R(0)};
     return LACONIC_WITH_DAMPING ? times(vec(m->decay_per_s), z) : none;
 }
 
