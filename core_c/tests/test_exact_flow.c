@@ -108,7 +108,7 @@ static void more_turns_in_a_step_than_can_be_counted_are_refused(void) {
 }
 
 static void a_large_turn_is_cleared_of_what_changes_its_length(void) {
-    const vector zeta = {REAL(3), REAL(4), REAL(0)}, none = {0, 0, 0};
+    const vector zeta = {REAL(3), REAL(4), REAL(0)};
     const vector off = {REAL(-6), REAL(0.001), REAL(0)}; /* −3, 4.001: longer than 5 */
     const vector turned = plus(zeta, laconic_cleared_turn(zeta, off));
     ASSERT_NEAR(1e-6, 5.0, sqrt((double)square(turned)));
