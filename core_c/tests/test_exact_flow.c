@@ -115,6 +115,12 @@ static void a_large_turn_is_cleared_of_what_changes_its_length(void) {
     TEST_ASSERT_TRUE(laconic_cleared_turn(none, none).x == 0);
 }
 
+static void an_angle_beyond_every_number_is_none(void) {
+    const real most = LACONIC_REAL_MAX;
+    TEST_ASSERT_FALSE(is_finite(laconic_large_half_angle(most * REAL(2), REAL(1), REAL(1)).denominator));
+    TEST_ASSERT_TRUE(is_finite(laconic_large_half_angle(most, REAL(1), REAL(1)).denominator));
+}
+
 static void a_method_that_only_auto_chooses_is_not_prepared(void) {
     const laconic_model m = model_of(bare_body());
     laconic_integrator in;
@@ -132,6 +138,7 @@ int main(void) {
     RUN_TEST(energy_stays_even_at_steps_of_many_turns);
     RUN_TEST(damped_motion_loses_energy_at_every_step_size);
     RUN_TEST(a_stiff_vehicle_stays_bounded);
+    RUN_TEST(an_angle_beyond_every_number_is_none);
     RUN_TEST(a_large_turn_is_cleared_of_what_changes_its_length);
     RUN_TEST(a_method_that_only_auto_chooses_is_not_prepared);
     RUN_TEST(numbers_beyond_the_range_are_refused);
