@@ -6,19 +6,14 @@
 
 #define ORDER 8
 
-/* Coefficients of sⁿ: of ζ, component by component, and of g·ζ. */
+/* Coefficients of sⁿ. */
 typedef struct course {
-    real x[ORDER + 1], y[ORDER + 1], z[ORDER + 1];
-    real yaw[ORDER + 1];
+    vector zeta[ORDER + 1];
+    real yaw[ORDER + 1]; /* g·ζ */
 } course;
 
 static const real inverse[ORDER + 1] = {R(1),       R(1.0 / 2), R(1.0 / 3), R(1.0 / 4), R(1.0 / 5),
                                         R(1.0 / 6), R(1.0 / 7), R(1.0 / 8), R(1.0 / 9)}; /* 1/(n + 1) */
-
-static inline vector term(const course *c, int n) {
-    const vector zeta = {c->x[n], c->y[n], c->z[n]};
-    return zeta;
-}
 
 /* g·ζ is Λ times the yaw rate: this times it is what the heading turns in a step. */
 static inline real turn_of_yaw(const laconic_model *m, real h) {

@@ -30,9 +30,7 @@ static inline vector applied(const jacobian *a, vector v) {
 }
 
 static inline void keep(course *c, vector turned[ORDER + 1], const laconic_model *m, int n, vector zeta) {
-    c->x[n] = zeta.x;
-    c->y[n] = zeta.y;
-    c->z[n] = zeta.z;
+    c->zeta[n] = zeta;
     c->yaw[n] = dot(vec(m->nu_of_zeta[2]), zeta);
     turned[n] = cross(zeta, vec(m->gyro));
 }
@@ -77,10 +75,10 @@ static inline increment sum_of_terms(const course *c) {
     increment by = {none, none, none};
     int n;
     for (n = ORDER; n > 0; n--) {
-        by.delta = plus(by.delta, term(c, n));
-        by.mean = plus(by.mean, scaled(inverse[n], term(c, n)));
+        by.delta = plus(by.delta, c->zeta[n]);
+        by.mean = plus(by.mean, scaled(inverse[n], c->zeta[n]));
     }
-    by.mean = plus(by.mean, term(c, 0));
+    by.mean = plus(by.mean, c->zeta[0]);
     by.slope = by.delta;
     return by;
 }

@@ -12,12 +12,31 @@ static const real node[NODES] = {R(0.069431844202973712388), R(0.330009478207571
 static const real weight[NODES] = {R(0.17392742256872692869), R(0.32607257743127307131), R(0.32607257743127307131),
                                    R(0.17392742256872692869)};
 
+/* The polynomials: the components of ζ, and ∫ g·ζ ds, divided by s. */
+typedef real (*polynomial)(const course *c, int n);
+
+static inline real zeta_x(const course *c, int n) {
+    return c->zeta[n].x;
+}
+
+static inline real zeta_y(const course *c, int n) {
+    return c->zeta[n].y;
+}
+
+static inline real zeta_z(const course *c, int n) {
+    return c->zeta[n].z;
+}
+
+static inline real mean_yaw(const course *c, int n) {
+    return inverse[n] * c->yaw[n];
+}
+
 /* A polynomial at all nodes at once: compilers take them two or four at a time. */
-static inline void at_nodes(real value[NODES], const real coefficient[ORDER + 1]) {
+INLINE void at_nodes(real value[NODES], const course *c, polynomial coefficient) {
     int n, k;
-    for (k = 0; k < NODES; k++) value[k] = coefficient[ORDER];
+    for (k = 0; k < NODES; k++) value[k] = coefficient(c, ORDER);
     for (n = ORDER - 1; n >= 0; n--)
-        for (k = 0; k < NODES; k++) value[k] = node[k] * value[k] + coefficient[n];
+        for (k = 0; k < NODES; k++) value[k] = node[k] * value[k] + coefficient(c, n);
 }
 
 /* All at once, too, where they are small. */
@@ -41,15 +60,14 @@ static inline void directions_at_nodes(real cosine[NODES], real sine[NODES], con
 static inline motion quadrature(const course *c, const laconic_model *m, real h, real turn) {
     const vector forth = vec(m->velocity_of_zeta[0]), left = vec(m->velocity_of_zeta[1]);
     motion moved = {R(0), R(0), turn};
-    real x[NODES], y[NODES], z[NODES], angle[NODES], turned[ORDER + 1], cosine[NODES], sine[NODES];
-    real along[NODES], across[NODES];
-    int n, k;
-    for (n = 0; n <= ORDER; n++) turned[n] = turn_of_yaw(m, h) * inverse[n] * c->yaw[n];
-    at_nodes(x, c->x);
-    at_nodes(y, c->y);
-    at_nodes(z, c->z);
-    at_nodes(angle, turned);
-    for (k = 0; k < NODES; k++) angle[k] = node[k] * angle[k] - R(0.5) * turn;
+    const real per_yaw = turn_of_yaw(m, h);
+    real x[NODES], y[NODES], z[NODES], angle[NODES], cosine[NODES], sine[NODES], along[NODES], across[NODES];
+    int k;
+    at_nodes(x, c, zeta_x);
+    at_nodes(y, c, zeta_y);
+    at_nodes(z, c, zeta_z);
+    at_nodes(angle, c, mean_yaw);
+    for (k = 0; k < NODES; k++) angle[k] = per_yaw * node[k] * angle[k] - R(0.5) * turn;
     directions_at_nodes(cosine, sine, angle);
     for (k = 0; k < NODES; k++) along[k] = h * weight[k] * (forth.x * x[k] + forth.y * y[k] + forth.z * z[k]);
     for (k = 0; k < NODES; k++) across[k] = h * weight[k] * (left.x * x[k] + left.y * y[k] + left.z * z[k]);

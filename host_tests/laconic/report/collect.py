@@ -89,7 +89,7 @@ def _speed(report: Report, scenes: Sequence[Scene], bench: Scene, workshop: Work
         return {"steps": [], "precision": []}
     steps = speed.step_rows(workshop, bench, folder / "peers", 5 if quick else speed.ROUNDS)
     advance()
-    rows = speed.precision_rows(bench, folder / "peers", steps, 2 if quick else 10)
+    rows = speed.precision_rows(workshop, bench, folder / "peers", 2 if quick else speed.ROUNDS)
     advance()
     return {"steps": steps, "precision": rows}
 

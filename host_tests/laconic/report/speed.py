@@ -12,7 +12,7 @@ from laconic.reference import reference_states
 from laconic.report import peers
 from laconic.report.accuracy import Truth, fits, follow
 from laconic.report.counting import cachegrind_present, host_instructions
-from laconic.report.timing import bench_contestant, race
+from laconic.report.timing import Contestant, bench_contestant, race
 from laconic.report.workshop import Variant, Workshop
 from laconic.scene import METHODS, Scene
 
@@ -45,13 +45,11 @@ def step_rows(workshop: Workshop, scene: Scene, folder: Path, rounds: int = ROUN
             for (who, real, build), seconds in best.items()]
 
 
-def precision_rows(scene: Scene, folder: Path, steps: list[dict[str, Any]], rounds: int = 10) -> list[dict[str, Any]]:
+def precision_rows(workshop: Workshop, scene: Scene, folder: Path, rounds: int = ROUNDS) -> list[dict[str, Any]]:
     """Whole run of S1: error of ν at the ends of the voltage's half periods, against milliseconds of run time."""
     ends = np.cumsum(peers.course_of(scene).durations_s)
     truth = Truth(ends, reference_states(scene, ends))
-    rows = [row for step in steps if step["build"] == "whole" and step["who"] in METHODS
-            for row in _core_rows(scene, step, truth)]
-    runs, found = {}, {}
+    steps, runs, found = _core_contestants(workshop, scene), {}, {}
     for name, run in _solvers(scene, folder).items():
         for rtol in TOLERANCES:
             slow = name.startswith("SciPy")
@@ -60,21 +58,30 @@ def precision_rows(scene: Scene, folder: Path, steps: list[dict[str, Any]], roun
             found[name, rtol] = run(rtol)
             runs[name, rtol] = lambda run=run, rtol=rtol: run(rtol).seconds
     quick = {key: run for key, run in runs.items() if found[key].seconds < 0.02}
-    best = race(quick, rounds) | {key: found[key].seconds for key in runs if key not in quick}
+    best = race(steps | quick, rounds) | {key: found[key].seconds for key in runs if key not in quick}
+    rows = [row for key in steps for row in _core_rows(scene, *key, best[key] / RACE_STEPS, truth)]
     for (name, rtol), solution in found.items():
         error = float(np.max(np.abs(solution.states[:, :3] - truth.states[:, :3])))
         rows.append({"who": name, "real": "double", "setting": rtol, "error_nu": error, "ms": best[name, rtol] * 1e3})
     return rows
 
 
-def _core_rows(scene: Scene, step: dict[str, Any], truth: Truth) -> list[dict[str, Any]]:
+def _core_contestants(workshop: Workshop, scene: Scene) -> dict[tuple[str, str], Contestant]:
+    """Every method's step: its time does not depend on the step's size."""
+    fixed = scene.with_run(step_s=STEP_S)
+    return {(method, real): bench_contestant(
+        workshop.host_library(Variant(fixed.with_run(method=method), real, "-O2", False)), RACE_STEPS)
+        for method in METHODS[1:] for real in ("double", "single")}
+
+
+def _core_rows(scene: Scene, method: str, real: str, seconds_per_step: float, truth: Truth) -> list[dict[str, Any]]:
     rows = []
     for step_s in LADDER_S:
-        run = scene.with_run(method=step["who"], step_s=step_s)
+        run = scene.with_run(method=method, step_s=step_s)
         if fits(run, truth):
-            error = float(np.max(np.abs(follow(run, step["real"], truth)[:, :3] - truth.states[:, :3])))
-            rows.append({"who": step["who"], "real": step["real"], "setting": step_s, "error_nu": error,
-                         "ms": step["ns_per_step"] * 1e-6 * scene.run.duration_s / step_s})
+            error = float(np.max(np.abs(follow(run, real, truth)[:, :3] - truth.states[:, :3])))
+            rows.append({"who": method, "real": real, "setting": step_s, "error_nu": error,
+                         "ms": seconds_per_step * 1e3 * scene.run.duration_s / step_s})
     return rows
 
 
