@@ -17,13 +17,9 @@ static inline vector along(vector zeta, real h, vector rate) {
     return plus(zeta, scaled(h, rate));
 }
 
-/* b held. */
-INLINE increment steady_stages(const laconic_model *m, real h, vector z1, vector b) {
-    const real half = R(0.5) * h, sixth = h * (R(1) / R(6));
-    const vector k1 = zeta_rate(m, z1, b);
-    const vector k2 = zeta_rate(m, along(z1, half, k1), b);
-    const vector k3 = zeta_rate(m, along(z1, half, k2), b);
-    const vector k4 = zeta_rate(m, along(z1, h, k3), b);
+/* Simpson's weights for the increment, and for the mean with what the stages know of it. */
+INLINE increment simpson(real h, vector z1, vector k1, vector k2, vector k3, vector k4) {
+    const real sixth = h * (R(1) / R(6));
     const vector inner = plus(k2, k3), forth = scaled(sixth, plus(k1, inner));
     increment by;
     by.mean = plus(z1, forth);
@@ -32,25 +28,29 @@ INLINE increment steady_stages(const laconic_model *m, real h, vector z1, vector
     return by;
 }
 
+/* b held. */
+INLINE increment steady_stages(const laconic_model *m, real h, vector z1, vector b) {
+    const real half = R(0.5) * h;
+    const vector k1 = zeta_rate(m, z1, b);
+    const vector k2 = zeta_rate(m, along(z1, half, k1), b);
+    const vector k3 = zeta_rate(m, along(z1, half, k2), b);
+    const vector k4 = zeta_rate(m, along(z1, h, k3), b);
+    return simpson(h, z1, k1, k2, k3, k4);
+}
+
 /* The same, each stage under its own b: for samples, and for forces that turn with the heading. */
 RARE increment varying_stages(const laconic_model *m, real h, vector z1, const laconic_heading *heading,
-                         const laconic_loads *loads) {
+                              const laconic_loads *loads) {
     const laconic_load *const load[4] = {loads->start, loads->middle, loads->middle, loads->end};
-    const real ahead[4] = {R(0), R(0.5) * h, R(0.5) * h, h}, sixth = h * (R(1) / R(6));
-    vector rate[4], z = z1, inner, forth;
-    increment by;
+    const real ahead[4] = {R(0), R(0.5) * h, R(0.5) * h, h};
+    vector rate[4], z = z1;
     int i;
     for (i = 0; i < 4; i++) {
         const vector b = load_now(load[i], heading, turned_rad(m, ahead[i], z));
         if (i > 0) z = along(z1, ahead[i], rate[i - 1]);
         rate[i] = zeta_rate(m, z, b);
     }
-    inner = plus(rate[1], rate[2]);
-    forth = scaled(sixth, plus(rate[0], inner));
-    by.mean = plus(z1, forth);
-    by.delta = along(forth, sixth, plus(inner, rate[3]));
-    by.slope = by.delta;
-    return by;
+    return simpson(h, z1, rate[0], rate[1], rate[2], rate[3]);
 }
 
 static laconic_status rk4_step(const laconic_model *model, const laconic_integrator *integrator, laconic_state *state,

@@ -21,15 +21,17 @@ static void parabola(vector term[3], const real start[3], const real middle[3], 
 static forcing forcing_of(const laconic_loads *loads, const laconic_heading *heading) {
     static const laconic_load still = {{R(0), R(0), R(0)}, {R(0), R(0), R(0)}, {R(0), R(0), R(0)}, false};
     const laconic_load *at[3] = {loads->start, loads->middle, loads->end};
-    const direction now = laconic_direction_of_turn(heading->fraction);
     forcing f;
+    direction now;
     int k;
     parabola(f.constant, at[0]->constant, at[1]->constant, at[2]->constant);
     f.turns = LACONIC_WITH_WORLD_FORCE && (at[0]->turns || at[1]->turns || at[2]->turns);
+    if (!f.turns) return f; /* the rest is not looked at */
     for (k = 0; k < 3; k++)
         if (!at[k]->turns) at[k] = &still;
     parabola(f.cosine, at[0]->cosine, at[1]->cosine, at[2]->cosine);
     parabola(f.sine, at[0]->sine, at[1]->sine, at[2]->sine);
+    now = laconic_direction_of_turn(heading->fraction);
     f.heading_cosine[0] = now.cosine;
     f.heading_sine[0] = now.sine;
     return f;
