@@ -41,6 +41,12 @@ def test_a_scene_with_voltages_needs_voltages_and_nothing_else_that_acts():
     assert not any(others)
 
 
+def test_damping_is_left_out_only_where_motors_do_not_damp():
+    coasting = replace(read_scene("s1"), inputs=())
+    assert needs_of(coasting).damping
+    assert not needs_of(read_scene("paper_three_wheel_free")).damping
+
+
 def test_pose_and_wheel_angles_are_left_out_only_where_outputs_say_so():
     scene = read_scene("s1")
     everything, little = needs_of(scene), needs_of(nu_only(scene))

@@ -24,16 +24,11 @@ WANTED_ERROR = 1e-6
 
 def step_rows(workshop: Workshop, scene: Scene, folder: Path, rounds: int = ROUNDS) -> list[dict[str, Any]]:
     """ns and instructions a step of every method, whole and trimmed, beside CasADi's RK4."""
-    fixed, contestants, programs = scene.with_run(step_s=STEP_S), {}, {}
-    for method in METHODS[1:]:
-        for real in ("double", "single"):
-            for trim in (False, True):
-                variant = Variant(fixed.with_run(method=method), real, "-O2", trim)
-                key = (method, real, "trimmed" if trim else "whole")
-                contestants[key] = bench_contestant(workshop.host_library(variant), RACE_STEPS)
-                programs[key] = workshop.host_program(variant)
+    variants = _variants(scene, "whole", "trimmed")
+    contestants = _contestants(workshop, variants)
+    programs = {key: workshop.host_program(variant) for key, variant in variants.items()}
     if "casadi" not in peers.missing_peers():
-        casadi = peers.CasadiRk4(peers.course_of(fixed), round(1.0 / STEP_S), folder / "casadi")
+        casadi = peers.CasadiRk4(peers.course_of(scene.with_run(step_s=STEP_S)), round(1.0 / STEP_S), folder / "casadi")
         contestants["CasADi RK4", "double", "generated"] = lambda: casadi.run(RACE_STEPS)
         programs["CasADi RK4", "double", "generated"] = casadi.program()
     best = race(contestants, rounds)
@@ -45,11 +40,21 @@ def step_rows(workshop: Workshop, scene: Scene, folder: Path, rounds: int = ROUN
             for (who, real, build), seconds in best.items()]
 
 
+def _variants(scene: Scene, *builds: str) -> dict[tuple[str, str, str], Variant]:
+    fixed = scene.with_run(step_s=STEP_S)
+    return {(method, real, build): Variant(fixed.with_run(method=method), real, "-O2", build == "trimmed")
+            for method in METHODS[1:] for real in ("double", "single") for build in builds}
+
+
+def _contestants(workshop: Workshop, variants: dict[tuple[str, str, str], Variant]) -> dict[Any, Contestant]:
+    return {key: bench_contestant(workshop.host_library(variant), RACE_STEPS) for key, variant in variants.items()}
+
+
 def precision_rows(workshop: Workshop, scene: Scene, folder: Path, rounds: int = ROUNDS) -> list[dict[str, Any]]:
     """Whole run of S1: error of ν at the ends of the voltage's half periods, against milliseconds of run time."""
     ends = np.cumsum(peers.course_of(scene).durations_s)
     truth = Truth(ends, reference_states(scene, ends))
-    steps, runs, found = _core_contestants(workshop, scene), {}, {}
+    steps, runs, found = _contestants(workshop, _variants(scene, "whole")), {}, {}
     for name, run in _solvers(scene, folder).items():
         for rtol in TOLERANCES:
             slow = name.startswith("SciPy")
@@ -59,22 +64,16 @@ def precision_rows(workshop: Workshop, scene: Scene, folder: Path, rounds: int =
             runs[name, rtol] = lambda run=run, rtol=rtol: run(rtol).seconds
     quick = {key: run for key, run in runs.items() if found[key].seconds < 0.02}
     best = race(steps | quick, rounds) | {key: found[key].seconds for key in runs if key not in quick}
-    rows = [row for key in steps for row in _core_rows(scene, *key, best[key] / RACE_STEPS, truth)]
+    rows = [row for method, real, build in steps
+            for row in _core_rows(scene, method, real, best[method, real, build] / RACE_STEPS, truth)]
     for (name, rtol), solution in found.items():
         error = float(np.max(np.abs(solution.states[:, :3] - truth.states[:, :3])))
         rows.append({"who": name, "real": "double", "setting": rtol, "error_nu": error, "ms": best[name, rtol] * 1e3})
     return rows
 
 
-def _core_contestants(workshop: Workshop, scene: Scene) -> dict[tuple[str, str], Contestant]:
-    """Every method's step: its time does not depend on the step's size."""
-    fixed = scene.with_run(step_s=STEP_S)
-    return {(method, real): bench_contestant(
-        workshop.host_library(Variant(fixed.with_run(method=method), real, "-O2", False)), RACE_STEPS)
-        for method in METHODS[1:] for real in ("double", "single")}
-
-
 def _core_rows(scene: Scene, method: str, real: str, seconds_per_step: float, truth: Truth) -> list[dict[str, Any]]:
+    """A step of any size takes as long as one of STEP_S."""
     rows = []
     for step_s in LADDER_S:
         run = scene.with_run(method=method, step_s=step_s)
