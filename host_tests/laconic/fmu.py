@@ -10,7 +10,8 @@ from pathlib import Path
 from typing import Any
 
 from laconic.core import load
-from laconic.errors import BadInput, reason_of
+from laconic.errors import BadInput
+from laconic.outputs import whole_file
 from laconic.paths import SOURCE_DIR, built
 from laconic.scene import METHODS, Scene
 
@@ -55,9 +56,7 @@ def make_fmu(scene: Scene, out: Path, *, version: int, scalar: bool = False, sou
     scene.plant(load("double"))  # what cannot start is refused here, with the field's name
     values: Any = start_values(scene)
     text = f"Dynamics of a wheeled robot; its numbers: {scene.source}"
-    try:
-        scene_fmu(generic_fmu(version), DESCRIPTION, values, scene.name, text, out, version=version,
+    with whole_file(out) as fresh:
+        scene_fmu(generic_fmu(version), DESCRIPTION, values, scene.name, text, fresh, version=version,
                   scalar=scalar, sources=sources, stop_s=scene.run.duration_s, step_s=scene.run.step_s)
-    except OSError as error:
-        raise BadInput(f"{out}: cannot be written ({reason_of(error)}); choose another place with -o") from None
     return out

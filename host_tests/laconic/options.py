@@ -1,13 +1,88 @@
-"""Options of the command line that do not go together."""
+"""Options and arguments of the command line: those that name files, and those that do not go together.
+
+Every argument that names a file has one of the types below, so that no command writes over what it reads.
+"""
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Callable, Mapping
+from pathlib import Path
+from typing import Any
 
 import click
 from click.core import ParameterSource
 
+from laconic import outputs
 from laconic.errors import BadInput
+from laconic.paths import exists, named_scene
+
+PICTURES = (".png", ".svg", ".pdf")
+
+
+class InputPath(click.ParamType):
+    """A file or folder that a command reads; whoever reads it says what is wrong with it."""
+
+    name = "path"
+
+    def convert(self, value: Any, param: click.Parameter | None, ctx: click.Context | None) -> Path:
+        """The path, noted as an input."""
+        path = Path(value)
+        if exists(path):
+            outputs.claims(ctx).read(path)
+        return path
+
+
+class SceneName(click.ParamType):
+    """A scene by its path or by its name; it stays as it was given, for `read_scene`."""
+
+    name = "scene"
+
+    def convert(self, value: Any, param: click.Parameter | None, ctx: click.Context | None) -> str:
+        """The name; its file is noted as an input."""
+        if path := named_scene(value):
+            outputs.claims(ctx).read(path)
+        return value
+
+
+class OutputFile(click.ParamType):
+    """A file that a command writes, in a format with these endings; "-" for stdout where that makes sense."""
+
+    name = "file"
+
+    def __init__(self, *endings: str, stdout: bool = False):
+        self.endings, self.stdout = endings, stdout
+
+    def convert(self, value: Any, param: click.Parameter | None, ctx: click.Context | None) -> Path:
+        """The path, claimed for this option."""
+        path, option = Path(value), _spelled(param)
+        if outputs.is_stdout(path) and not self.stdout:
+            raise BadInput(f"{option} {path}: cannot go to stdout; give the name of a file")
+        return outputs.claim_file(option, path, self.endings, ctx)
+
+
+class OutputFolder(click.ParamType):
+    """A folder that a command writes files into, made if it is not there."""
+
+    name = "folder"
+
+    def convert(self, value: Any, param: click.Parameter | None, ctx: click.Context | None) -> Path:
+        """The path; BadInput where there can be no folder."""
+        return outputs.claim_folder(_spelled(param), Path(value))
+
+
+def _spelled(param: click.Parameter | None) -> str:
+    return max(param.opts, key=len) if param else ""
+
+
+def json_flag(meaning: str = "Machine-readable output.") -> Callable[[Any], Any]:
+    """`--json` of a command that prints JSON instead of its text: stdout is then taken."""
+
+    def claim(ctx: click.Context, param: click.Parameter, is_on: bool) -> bool:
+        if is_on:
+            outputs.claim_file("--json", outputs.STDOUT, context=ctx)
+        return is_on
+
+    return click.option("--json", "json_wanted", is_flag=True, help=meaning, callback=claim)
 
 
 def only_one(flags: Mapping[str, bool]) -> str | None:

@@ -33,7 +33,7 @@ def exists(path: Path) -> bool:
     """Whether it is there; no file has a name that is too long."""
     try:
         return path.exists()
-    except OSError:
+    except (OSError, ValueError):
         return False
 
 
@@ -42,13 +42,17 @@ def scene_names() -> list[str]:
     return sorted(path.stem for path in SCENE_DIR.glob("*.toml"))
 
 
-def scene_path(given: str | Path) -> Path:
-    """A scene file by its path, or by the name of one that comes with the project."""
-    path = Path(given)
+def named_scene(given: str | Path) -> Path | None:
+    """The file of a scene by its path, or by its name among those that come with the project; None: there is none."""
+    path, named = Path(given), SCENE_DIR / f"{given}.toml"
     if exists(path):
         return path
-    named = SCENE_DIR / f"{given}.toml"
-    if path.name == str(given) and exists(named):
-        return named
-    remedy = nearest_of(path.stem, scene_names()) if scene_names() else "give the path of a scene file"
+    return named if path.name == str(given) and exists(named) else None
+
+
+def scene_path(given: str | Path) -> Path:
+    """The same; BadInput with the name that is nearest."""
+    if path := named_scene(given):
+        return path
+    remedy = nearest_of(Path(given).stem, scene_names()) if scene_names() else "give the path of a scene file"
     raise BadInput(f"{given}: no such scene file; {remedy}")

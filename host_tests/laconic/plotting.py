@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING
 import matplotlib
 import numpy as np
 
-from laconic.errors import BadInput, reason_of
+from laconic.outputs import whole_file
 
 if TYPE_CHECKING:
     from laconic.simulation import Trajectory
@@ -33,16 +33,10 @@ def figure(width_in: float, height_in: float) -> Figure:
 
 
 def save(picture: Figure, path: Path) -> None:
-    """Writes and closes a figure."""
+    """Writes and closes a figure, in the format that its name ends in."""
     try:
-        if not path.suffix:
-            raise ValueError("has no ending that says what picture it is")
-        path.parent.mkdir(parents=True, exist_ok=True)
-        picture.savefig(path, dpi=110)
-    except OSError as error:
-        raise BadInput(f"{path}: cannot be written ({reason_of(error)}); choose another place") from None
-    except ValueError as error:
-        raise BadInput(f"{path}: {str(error).splitlines()[0]}; choose a name that ends in .png, .svg or .pdf") from None
+        with whole_file(path) as fresh:
+            picture.savefig(fresh, dpi=110, format=path.suffix.lower().lstrip(".") or "png")
     finally:
         plt.close(picture)
 

@@ -7,6 +7,7 @@ import xml.etree.ElementTree as ET
 from pathlib import Path
 
 from laconic.fmu import make_fmu
+from laconic.outputs import whole_file
 from laconic.paths import SOURCE_DIR, built
 from laconic.scene import Scene
 from laconic_fmu.archive import scene_fmu
@@ -69,6 +70,8 @@ def make_ssp(scene: Scene, out: Path, *, version: int = 2, scalar: bool = False,
         vehicle = make_fmu(scene, Path(folder) / "vehicle.fmu", version=version, scalar=scalar, sources=sources)
         controller = make_controller(scene, Path(folder) / "controller.fmu", version=version, scalar=scalar,
                                      sources=sources)
-        pack(out, {"SystemStructure.ssd": structure(scene).encode("utf-8"),
-                   "resources/vehicle.fmu": vehicle.read_bytes(), "resources/controller.fmu": controller.read_bytes()})
+        with whole_file(out) as fresh:
+            pack(fresh, {"SystemStructure.ssd": structure(scene).encode("utf-8"),
+                         "resources/vehicle.fmu": vehicle.read_bytes(),
+                         "resources/controller.fmu": controller.read_bytes()})
     return out

@@ -16,7 +16,7 @@ from typing import Any
 
 from laconic.c_tables import initializer
 from laconic.core import Core, load
-from laconic.errors import BadInput, reason_of
+from laconic.outputs import write_text
 from laconic.plant import Plant
 from laconic.scene import Scene
 
@@ -52,14 +52,18 @@ class Trimmed:
         """Writes those files that have changed, so that nothing is compiled again without need."""
         names = {"laconic_scene.h": self.header, "laconic_scene_model.h": self.table_h,
                  "laconic_scene_model.c": self.table_c}
-        try:
-            folder.mkdir(parents=True, exist_ok=True)
-            for name, text in names.items():
-                path = folder / name
-                if not path.exists() or path.read_text() != text:
-                    path.write_text(text)
-        except OSError as error:
-            raise BadInput(f"{folder}: cannot be written ({reason_of(error)}); choose another with --out") from None
+        for name, text in names.items():
+            path = folder / name
+            if not holds(path, text):
+                write_text(path, text)
+
+
+def holds(path: Path, text: str) -> bool:
+    """Whether a file is there with just this text."""
+    try:
+        return path.read_text(encoding="utf-8") == text
+    except (OSError, UnicodeDecodeError):
+        return False
 
 
 def needs_of(scene: Scene) -> Needs:

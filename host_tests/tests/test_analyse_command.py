@@ -123,7 +123,7 @@ def test_one_steady_motion_alone_is_drawn_with_motions_that_lead_to_it():
     (("analyse", "s1", "--only", "geometry", "--out", "/dev/null/x"), "cannot be written"),
     (("derive",), "SCENE or --example"),
     (("derive", "--example", "caster", "--c"), "needs a scene"),
-    (("derive", "s1", "-o", "/dev/null/x"), "cannot be written"),
+    (("derive", "s1", "-o", "/dev/null/x.txt"), "cannot be written"),
 ])
 def test_bad_input_is_one_clear_line_and_exit_status_2(capsys, arguments, words):
     status, _, err = run(capsys, *arguments)

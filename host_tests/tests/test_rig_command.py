@@ -115,7 +115,7 @@ def test_a_tolerance_decides() -> None:
     (["--channel", "can0"], "--interface"),
     (["--tolerance", "nu_1"], "SIGNAL=VALUE"),
     (["--bus-option", "loss"], "NAME=VALUE"),
-    (["--log", "/nowhere/a.blf"], "/nowhere/a.blf"),
+    (["--log", "/dev/null/a.blf"], "/dev/null/a.blf"),
     (["--replay", "/nowhere/a.blf"], "/nowhere/a.blf"),
     (["--board", "virtual", "--interface", "virtual"], "leave --interface out")])
 def test_bad_input_is_one_line_and_status_2(arguments: list[str], says: str, capsys: object) -> None:

@@ -265,7 +265,7 @@ def test_options_that_mean_nothing(arguments, words, capsys):
 
 @pytest.mark.parametrize(("arguments", "place"), [
     (["trim", "s1", "--out"], "file"), (["trim", "s1", "--out"], "file/inside"),
-    (["derive", "--example", "caster", "-o"], "file/inside")])
+    (["derive", "--example", "caster", "-o"], "file/inside.txt")])
 def test_a_folder_that_is_a_file(arguments, place, tmp_path, capsys):
     (tmp_path / "file").write_text("")
     line = complaint(capsys, [*arguments, str(tmp_path / place)])
@@ -273,11 +273,11 @@ def test_a_folder_that_is_a_file(arguments, place, tmp_path, capsys):
     assert "choose another" in line
 
 
-@pytest.mark.parametrize("option", ["--out", "--plot"])
-def test_a_place_that_cannot_be_written(option, tmp_path, capsys):
+@pytest.mark.parametrize("option, ending", [("--out", ".csv"), ("--plot", ".png")])
+def test_a_place_that_cannot_be_written(option, ending, tmp_path, capsys):
     blocked = tmp_path / "file"
     blocked.write_text("")
-    line = complaint(capsys, ["simulate", "s1", option, str(blocked / "inside.png")])
+    line = complaint(capsys, ["simulate", "s1", option, str(blocked / f"inside{ending}")])
     assert str(blocked) in line
     assert "cannot be written" in line
 

@@ -7,14 +7,16 @@ from pathlib import Path
 
 import click
 
-from laconic.errors import BadInput, ResultFails, reason_of
+from laconic.errors import BadInput, ResultFails
+from laconic.options import OutputFolder, SceneName, json_flag
+from laconic.outputs import write_text
 
 PARTS = ("geometry", "free", "steady", "bifurcation", "traction")
 
 
 @click.command("analyse", short_help="Steady motions, stability, free motion, traction.")
-@click.argument("scene")
-@click.option("--out", type=click.Path(file_okay=False, path_type=Path), metavar="DIR",
+@click.argument("scene", type=SceneName())
+@click.option("--out", type=OutputFolder(), metavar="DIR",
               help="Write report.md, report.json and pictures there.")
 @click.option("--only", type=click.Choice(PARTS), multiple=True, help="Only this part; may be given several times.")
 @click.option("--at", "at_s", type=float, default=0.0, metavar="T", help="Hold the inputs of this instant [s].")
@@ -26,10 +28,10 @@ PARTS = ("geometry", "free", "steady", "bifurcation", "traction")
               "number of [vehicle] such as com_y_m.")
 @click.option("--from", "low", type=float, metavar="A", help="Where the bifurcation diagram begins.")
 @click.option("--to", "high", type=float, metavar="B", help="Where it ends.")
-@click.option("--json", "as_json", is_flag=True, help="Machine-readable result on stdout.")
+@json_flag("Machine-readable result on stdout.")
 def command(scene: str, out: Path | None, only: tuple[str, ...], at_s: float, straight: tuple[float, float] | None,
             start: tuple[float, float, float] | None, parameter: str | None, low: float | None,
-            high: float | None, as_json: bool) -> None:
+            high: float | None, json_wanted: bool) -> None:
     """Analyses SCENE: geometry, free motion, steady motions and their stability, bifurcations, traction.
 
     Exit status 1 when a simulation with the core does not confirm what the analysis says.
@@ -49,9 +51,9 @@ def command(scene: str, out: Path | None, only: tuple[str, ...], at_s: float, st
         pictures = _draw(found, out, advance)
     numbers = as_numbers(found, pictures)
     if out is not None:
-        _write(out / "report.md", as_text(found, pictures))
-        _write(out / "report.json", json.dumps(numbers, indent=1) + "\n")
-    click.echo(json.dumps(numbers, indent=1) if as_json else as_text(found, []))
+        write_text(out / "report.md", as_text(found, pictures))
+        write_text(out / "report.json", json.dumps(numbers, indent=1) + "\n")
+    click.echo(json.dumps(numbers, indent=1) if json_wanted else as_text(found, []))
     if found.failures:
         raise ResultFails("not confirmed: " + "; ".join(found.failures))
 
@@ -76,11 +78,3 @@ def _draw(found, out: Path | None, advance) -> list[Path]:
     pictures = draw(found, out)
     advance(10, what="drawing")
     return pictures
-
-
-def _write(path: Path, text: str) -> None:
-    try:
-        path.parent.mkdir(parents=True, exist_ok=True)
-        path.write_text(text)
-    except OSError as error:
-        raise BadInput(f"{path}: cannot be written ({reason_of(error)}); choose another place") from None

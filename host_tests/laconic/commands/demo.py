@@ -14,7 +14,8 @@ from rich.table import Table
 
 from laconic.demo.main_job import PARTICIPANTS, STAGES, SceneResult, run_scene
 from laconic.demo.work import Point
-from laconic.errors import BadInput, reason_of
+from laconic.options import OutputFolder, SceneName, json_flag
+from laconic.outputs import claim_file, opened, write_text
 from laconic.paths import build_dir
 from laconic.progress import progress_bar
 from laconic.scene import read_scene
@@ -26,10 +27,10 @@ SHOWN_FACTORS = (1, 10, 50)
 
 
 @click.command(name="demo", short_help="The main job: real robots through core, FMUs and node.")
-@click.argument("scenes", nargs=-1, metavar="[SCENE]...")
-@click.option("--out", type=click.Path(path_type=Path, file_okay=False), metavar="DIR",
+@click.argument("scenes", type=SceneName(), nargs=-1, metavar="[SCENE]...")
+@click.option("--out", type=OutputFolder(), metavar="DIR",
               help="Where pictures and figures go; demo/ of the build tree if not given.")
-@click.option("--json", "json_wanted", is_flag=True, help="Machine-readable output.")
+@json_flag()
 def command(scenes: tuple[str, ...], out: Path | None, json_wanted: bool) -> int:
     """Runs each SCENE (by default three real robots and the paper's examples) through the core, its FMU (FMI 2 and
     FMI 3, by FMPy) and the firmware node over CAN in lockstep, and compares all of them bit for bit.
@@ -39,7 +40,8 @@ def command(scenes: tuple[str, ...], out: Path | None, json_wanted: bool) -> int
     """
     out = out or build_dir() / "demo"
     given = [read_scene(scene) for scene in scenes or SCENES]
-    prepare_folder(out)
+    for scene in given:
+        claim_file("demo:", out / f"{scene.path.stem}.png")
     began = time.perf_counter()
     with progress_bar("demo", STAGES * len(given)) as moved:
         results = [run_scene(scene, out, moved) for scene in given]
@@ -52,18 +54,10 @@ def command(scenes: tuple[str, ...], out: Path | None, json_wanted: bool) -> int
     return 0 if all(each.passed for each in results) else 1
 
 
-def prepare_folder(out: Path) -> None:
-    """Makes the folder, or says why it cannot be used."""
-    try:
-        out.mkdir(parents=True, exist_ok=True)
-    except OSError as error:
-        raise BadInput(f"--out: {out} cannot be made ({reason_of(error)}); choose another place") from None
-
-
 def write_figures(results: list[SceneResult], out: Path) -> None:
     """demo.json with everything, errors.csv with one row a run."""
-    (out / "demo.json").write_text(json.dumps([each.as_json() for each in results], indent=1) + "\n")
-    with (out / "errors.csv").open("w", newline="") as file:
+    write_text(out / "demo.json", json.dumps([each.as_json() for each in results], indent=1) + "\n")
+    with opened(out / "errors.csv") as file:
         writer = csv.writer(file, lineterminator="\n")
         writer.writerow(["scene", *(each.name for each in fields(Point))])
         for each in results:

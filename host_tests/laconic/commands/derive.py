@@ -8,19 +8,22 @@ from pathlib import Path
 import click
 from rich.console import Console
 
-from laconic.errors import BadInput, ResultFails, reason_of
-from laconic.options import only_one
+from laconic.errors import BadInput, ResultFails
+from laconic.options import OutputFile, SceneName, only_one
+from laconic.outputs import STDOUT, check_ending, write_text
 
 EXAMPLES = ("caster", "carriage", "differential-drive", "trailer")
+ENDINGS = {"": (".txt", ".md"), "latex": (".tex",), "c": (".c", ".h"), "json": (".json",)}
+ALL_ENDINGS = tuple(ending for endings in ENDINGS.values() for ending in endings)
 AGREEMENT = 1e-12  # between the three forms, relative, at random numbers
 
 
 @click.command("derive", short_help="The equations of motion, by the paper's method.")
-@click.argument("scene", required=False)
+@click.argument("scene", type=SceneName(), required=False)
 @click.option("--example", type=click.Choice(EXAMPLES), help="A worked system in symbols, instead of a scene.")
 @click.option("--latex", is_flag=True, help="Print LaTeX.")
 @click.option("--c", "in_c", is_flag=True, help="Print a C function of the scene's own numbers.")
-@click.option("-o", "--out", type=click.Path(dir_okay=False, path_type=Path), help="Write to a file, not to stdout.")
+@click.option("-o", "--out", type=OutputFile(*ALL_ENDINGS, stdout=True), help="Write to a file, not to stdout.")
 @click.option("--json", "as_json", is_flag=True, help="Machine-readable: the text and the check.")
 def command(scene: str | None, example: str | None, latex: bool, in_c: bool, out: Path | None, as_json: bool) -> None:
     """Derives the equations of motion by the laconic equations (2.4).
@@ -33,10 +36,11 @@ def command(scene: str | None, example: str | None, latex: bool, in_c: bool, out
     form = (only_one({"--latex": latex, "--c": in_c}) or "").removeprefix("--")
     if example is not None and in_c:
         raise BadInput("--c: needs a scene, whose numbers it writes down; give a SCENE instead of --example")
+    check_ending("--out", out or STDOUT, ENDINGS["json" if as_json else form])
     with Console(stderr=True).status("deriving"):
         text, checks = _of_example(example, form) if example else _of_scene(scene, form)
     text = json.dumps({"text": text, "checks": checks}, indent=2) + "\n" if as_json else text
-    _write(text, out)
+    write_text(out or STDOUT, text)
     for name, value in checks.items():
         click.echo(f"{name}: {value:.1e}", err=True)
         if not value <= AGREEMENT:
@@ -89,13 +93,3 @@ def _numbers_text(numbers) -> str:
     lines.append("  M_i = c1 U_i - c2 chi_i' + T_i,"
                  f"  c1 = {numbers.motor_gain_Nm_per_V:.9g} N m/V,  c2 = {numbers.motor_damping_Nms:.9g} N m s")
     return f"with, for {numbers.name},\n" + "\n".join(lines) + "\n"
-
-
-def _write(text: str, out: Path | None) -> None:
-    if out is None:
-        click.echo(text, nl=False)
-        return
-    try:
-        out.write_text(text)
-    except OSError as error:
-        raise BadInput(f"{out}: cannot be written ({reason_of(error)}); choose another place") from None

@@ -9,19 +9,21 @@ import click
 
 from laconic.errors import BadInput
 from laconic.fmu import make_fmu
+from laconic.options import OutputFile, SceneName, json_flag
+from laconic.outputs import check_ending, claim_file
 from laconic.scene import read_scene
 from laconic.ssp import make_ssp
 
 
 @click.command(name="fmu", short_help="Write an FMU of a scene's vehicle.")
-@click.argument("scene")
+@click.argument("scene", type=SceneName())
 @click.option("--fmi", "version", type=click.Choice(("2", "3")), required=True, help="FMI 2.0 or 3.0.")
 @click.option("--scalar", is_flag=True, help="FMI 3.0 without arrays, for importers that handle them badly.")
 @click.option("--without-sources", is_flag=True, help="Binaries only: less than half the size.")
 @click.option("--ssp", is_flag=True, help="An SSP archive: the vehicle with a wheel-speed controller, connected.")
-@click.option("-o", "--out", type=click.Path(path_type=Path), metavar="F.fmu",
+@click.option("-o", "--out", type=OutputFile(".fmu", ".ssp"), metavar="F.fmu",
               help="Where to; SCENE_fmi3.fmu if not given.")
-@click.option("--json", "json_wanted", is_flag=True, help="Machine-readable output.")
+@json_flag()
 def command(scene: str, version: str, scalar: bool, without_sources: bool, ssp: bool, out: Path | None,
             json_wanted: bool) -> None:
     """Writes an FMU whose start values are SCENE's vehicle, start, method and step.
@@ -35,8 +37,10 @@ def command(scene: str, version: str, scalar: bool, without_sources: bool, ssp: 
     if ssp and version == "3" and not scalar:
         raise BadInput("--ssp: SSP 1.0 knows no arrays; add --scalar or use --fmi 2")
     make, ending = (make_ssp, "ssp") if ssp else (make_fmu, "fmu")
-    made = make(given, out or Path(f"{given.path.stem}_fmi{version}{'_scalar' if scalar else ''}.{ending}"),
-                version=int(version), scalar=scalar, sources=not without_sources)
+    if out is None:
+        out = claim_file("--out", Path(f"{given.path.stem}_fmi{version}{'_scalar' if scalar else ''}.{ending}"))
+    check_ending("--out", out, (f".{ending}",))
+    made = make(given, out, version=int(version), scalar=scalar, sources=not without_sources)
     if json_wanted:
         click.echo(json.dumps({"scene": str(given.path), "fmi": int(version), "scalar": scalar, "file": str(made),
                                "bytes": made.stat().st_size}, indent=1))

@@ -7,21 +7,22 @@ from pathlib import Path
 
 import click
 
-from laconic.errors import BadInput, reason_of
+from laconic.options import InputPath, OutputFolder, SceneName, json_flag
+from laconic.outputs import write_text
 
 
 @click.command("replay", short_help="Compare a recorded run with the model.")
-@click.argument("log", type=click.Path(path_type=Path))
-@click.argument("scene")
-@click.option("--fit", "fit_on", type=click.Path(path_type=Path), multiple=True, metavar="RUN.csv",
+@click.argument("log", type=InputPath())
+@click.argument("scene", type=SceneName())
+@click.option("--fit", "fit_on", type=InputPath(), multiple=True, metavar="RUN.csv",
               help="Fit friction on this run; may be given several times. Nothing said: every other run of a folder.")
-@click.option("--map", "map_path", type=click.Path(path_type=Path), metavar="MAP.toml",
+@click.option("--map", "map_path", type=InputPath(), metavar="MAP.toml",
               help="Which column is what; the default is that of the Robotino's runs.")
-@click.option("--out", type=click.Path(file_okay=False, path_type=Path), metavar="DIR",
+@click.option("--out", type=OutputFolder(), metavar="DIR",
               help="Write report.md, report.json and pictures there.")
-@click.option("--json", "as_json", is_flag=True, help="Machine-readable result on stdout.")
+@json_flag("Machine-readable result on stdout.")
 def command(log: Path, scene: str, fit_on: tuple[Path, ...], map_path: Path | None, out: Path | None,
-            as_json: bool) -> None:
+            json_wanted: bool) -> None:
     """Compares LOG, a recorded run as CSV or a folder of them, with the model of SCENE.
 
     The measured wheel speeds are rolled and set beside the camera; friction is fitted by least squares; and the core,
@@ -42,14 +43,6 @@ def command(log: Path, scene: str, fit_on: tuple[Path, ...], map_path: Path | No
     if out is not None:
         pictures = report.draw(found, out)
         images = "".join(f"![{path.stem}]({path.name})\n" for path in pictures)
-        _write(out / "report.md", report.as_text(found) + "\n## Pictures\n\n" + images)
-        _write(out / "report.json", json.dumps(numbers, indent=1) + "\n")
-    click.echo(json.dumps(numbers, indent=1) if as_json else report.as_text(found))
-
-
-def _write(path: Path, text: str) -> None:
-    try:
-        path.parent.mkdir(parents=True, exist_ok=True)
-        path.write_text(text)
-    except OSError as error:
-        raise BadInput(f"{path}: cannot be written ({reason_of(error)}); choose another place") from None
+        write_text(out / "report.md", report.as_text(found) + "\n## Pictures\n\n" + images)
+        write_text(out / "report.json", json.dumps(numbers, indent=1) + "\n")
+    click.echo(json.dumps(numbers, indent=1) if json_wanted else report.as_text(found))

@@ -12,6 +12,7 @@ from rich.markup import escape
 from rich.table import Table
 
 from laconic.errors import BadInput, reason_of
+from laconic.options import OutputFolder, SceneName, json_flag
 from laconic.paths import build_dir, scene_names
 from laconic.report.collect import collect
 from laconic.report.page import shown, write
@@ -19,10 +20,11 @@ from laconic.scene import read_scene
 
 
 @click.command(name="report", short_help="Error against run time, sizes, stability: an HTML page.")
-@click.option("--scene", "scenes", multiple=True, metavar="SCENE", help="Instead of all; may be given several times.")
-@click.option("--out", type=click.Path(path_type=Path), metavar="DIR", help="Folder; build/report where none is given.")
+@click.option("--scene", "scenes", type=SceneName(), multiple=True, metavar="SCENE",
+              help="Instead of all; may be given several times.")
+@click.option("--out", type=OutputFolder(), metavar="DIR", help="Folder; build/report where none is given.")
 @click.option("--quick", is_flag=True, help="Fewer repetitions and one board: rough figures, some minutes.")
-@click.option("--json", "json_wanted", is_flag=True, help="Print the goals as JSON.")
+@json_flag("Print the goals as JSON.")
 def command(scenes: tuple[str, ...], out: Path | None, quick: bool, json_wanted: bool) -> None:
     """Measures error against run time, stability, drift, extremes, sizes and other integrators.
 

@@ -13,7 +13,7 @@ import click
 
 from laconic.core import REALS
 from laconic.errors import BadInput
-from laconic.options import belongs_to, only_one
+from laconic.options import InputPath, OutputFile, SceneName, belongs_to, json_flag, only_one
 from laconic.progress import progress_bar
 from laconic.rig.boards import KINDS, own_node
 from laconic.rig.buses import connected
@@ -22,7 +22,7 @@ from laconic.rig.errors import BusDied, NodeRefused, NodeSilent
 from laconic.rig.free_run import judge_free_run
 from laconic.rig.judge import judge_same_bits, judge_scaled
 from laconic.rig.live import live_view
-from laconic.rig.logs import logged
+from laconic.rig.logs import LOGS, logged
 from laconic.rig.replay import judge_log
 from laconic.rig.results import as_json, show, write_junit
 from laconic.rig.scaled import read_tolerances
@@ -57,7 +57,7 @@ class Options:
 
 
 @click.command(name="rig", short_help="Drive a node over CAN and judge it.")
-@click.argument("scene_name", metavar="SCENE")
+@click.argument("scene_name", type=SceneName(), metavar="SCENE")
 @click.option("--interface", help="python-can's name of the interface: slcan, socketcan, pcan, kvaser, faulty …")
 @click.option("--channel", help="Which one: socket://127.0.0.1:PORT, /dev/ttyACM0, can0 …")
 @click.option("--bitrate", type=int, help="Bits per second, where the interface sets it.")
@@ -78,11 +78,11 @@ class Options:
 @click.option("--real", type=click.Choice(REALS), help="Instead of the scene's: what the node computes in.")
 @click.option("--tolerance", "tolerances", multiple=True, metavar="SIGNAL=VALUE",
               help="Allowed difference; half a last place otherwise.")
-@click.option("--log", "logs", multiple=True, type=click.Path(path_type=Path), help="Log all frames: .blf, .asc.")
-@click.option("--replay", type=click.Path(path_type=Path), help="Judge a log of a scaled lockstep run, without a node.")
+@click.option("--log", "logs", multiple=True, type=OutputFile(*LOGS), help="Log all frames: .blf, .asc.")
+@click.option("--replay", type=InputPath(), help="Judge a log of a scaled lockstep run, without a node.")
 @click.option("--live", is_flag=True, help="Show the signals while it runs.")
-@click.option("--junit", type=click.Path(path_type=Path), help="Results for CI.")
-@click.option("--json", "json_wanted", is_flag=True, help="Machine-readable output.")
+@click.option("--junit", type=OutputFile(".xml"), help="Results for CI.")
+@json_flag()
 def command(scene_name: str, lockstep: bool, same_bits: bool, free_run: bool, **given: Any) -> int:
     """Drives a node over CAN with the inputs of SCENE, runs the core beside it as twin, and judges every signal.
 

@@ -4,26 +4,27 @@ from __future__ import annotations
 
 import csv
 import json
-import sys
 from pathlib import Path
 from typing import Any
 
 import click
 
 from laconic.core import REALS
-from laconic.errors import BadInput, reason_of
+from laconic.errors import BadInput
+from laconic.options import PICTURES, OutputFile, SceneName, json_flag
+from laconic.outputs import is_stdout, opened
 from laconic.scene import METHODS, read_scene
 from laconic.simulation import Trajectory, simulate, usual_signals, wanted_signals
 
 
 @click.command(name="simulate", short_help="Run one scene through the core.")
-@click.argument("scene")
+@click.argument("scene", type=SceneName())
 @click.option("--method", type=click.Choice(METHODS), help="Instead of the scene's.")
 @click.option("--step", "step_s", type=float, metavar="H", help="Step in seconds instead of the scene's.")
 @click.option("--real", type=click.Choice(REALS), help="Scalar type instead of the scene's.")
-@click.option("--out", type=click.Path(path_type=Path), metavar="F.csv", help="Write the outputs; - for stdout.")
-@click.option("--plot", type=click.Path(path_type=Path), metavar="F.png", help="Draw path, velocities, wheel speeds.")
-@click.option("--json", "json_wanted", is_flag=True, help="Machine-readable summary.")
+@click.option("--out", type=OutputFile(".csv", stdout=True), metavar="F.csv", help="Write the outputs; - for stdout.")
+@click.option("--plot", type=OutputFile(*PICTURES), metavar="F.png", help="Draw path, velocities, wheel speeds.")
+@json_flag("Machine-readable summary.")
 def command(scene: str, method: str | None, step_s: float | None, real: str | None, out: Path | None,
             plot: Path | None, json_wanted: bool) -> None:
     """Runs SCENE, a TOML file or the name of a scene that comes with the project.
@@ -42,7 +43,7 @@ def command(scene: str, method: str | None, step_s: float | None, real: str | No
         simulation_picture(run, plot)
     if json_wanted:
         click.echo(json.dumps(summary(run, out, plot), indent=1))
-    elif str(out) != "-":
+    elif not (out and is_stdout(out)):
         tell(run, out, plot)
 
 
@@ -50,14 +51,8 @@ def write_csv(run: Trajectory, path: Path) -> None:
     """time_s and the scene's signals, with all digits."""
     signals = wanted_signals(run.scene)
     rows = zip(run.time_s.tolist(), *(run.columns[name].tolist() for name in signals), strict=True)
-    if str(path) == "-":
-        write_rows(sys.stdout, signals, rows)
-        return
-    try:
-        with path.open("w", newline="") as file:
-            write_rows(file, signals, rows)
-    except OSError as error:
-        raise BadInput(f"{path}: cannot be written ({reason_of(error)}); choose another place") from None
+    with opened(path) as file:
+        write_rows(file, signals, rows)
 
 
 def write_rows(file: Any, signals: tuple[str, ...], rows: Any) -> None:

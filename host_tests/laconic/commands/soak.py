@@ -12,6 +12,7 @@ from rich.console import Console
 
 import laconic.soak
 from laconic.errors import BadInput, nearest_of
+from laconic.options import json_flag
 from laconic.progress import progress_bar
 
 
@@ -25,7 +26,7 @@ def kinds() -> dict[str, str]:
 @click.argument("what")
 @click.option("--minutes", type=float, default=10.0, show_default=True, metavar="N", help="How long.")
 @click.option("--seed", type=int, help="For the random numbers; printed when not given.")
-@click.option("--json", "json_wanted", is_flag=True, help="Machine-readable output.")
+@json_flag()
 def command(what: str, minutes: float, seed: int | None, json_wanted: bool) -> int:
     """Runs WHAT for a long time and reports what was found.
 

@@ -8,14 +8,16 @@ from pathlib import Path
 import click
 
 from laconic.core import REALS
+from laconic.options import OutputFolder, SceneName
 from laconic.scene import read_scene
 from laconic.trim import trimmed
 
 
 @click.command(name="trim", short_help="Write the C that builds the core for one scene alone.")
-@click.argument("scene")
+@click.argument("scene", type=SceneName())
 @click.option("--real", type=click.Choice(REALS), help="Scalar type; the scene's own where none is given.")
-@click.option("--out", type=click.Path(path_type=Path), default=Path(), show_default=True, help="Folder for the files.")
+@click.option("--out", type=OutputFolder(), metavar="DIR", default=Path(), show_default=True,
+              help="Folder for the files.")
 def command(scene: str, real: str | None, out: Path) -> None:
     """Writes the C files that make a build of the core for SCENE alone.
 

@@ -11,18 +11,19 @@ from rich.table import Table
 
 from laconic.core import REALS, load
 from laconic.errors import BadInput
+from laconic.options import InputPath, json_flag
 from laconic.progress import progress_bar
 from laconic.scene import METHODS
 from laconic.verification import CaseResult, as_json, read_reference, verify_case
 
 
 @click.command(name="verify", short_help="Compare the core with reference trajectories.")
-@click.argument("reference", type=click.Path(path_type=Path))
+@click.argument("reference", type=InputPath())
 @click.option("--method", type=click.Choice(METHODS), default="auto", show_default=True)
 @click.option("--step", "step_s", type=float, default=1e-3, show_default=True, metavar="H", help="Step in seconds.")
 @click.option("--real", type=click.Choice(REALS), default="double", show_default=True, help="Scalar type of the core.")
 @click.option("--tolerance", type=float, metavar="T", help="Largest error that passes; without it any does.")
-@click.option("--json", "json_wanted", is_flag=True, help="Machine-readable output.")
+@json_flag()
 def command(reference: Path, method: str, step_s: float, real: str, tolerance: float | None, json_wanted: bool) -> int:
     """Compares the core with the trajectories of REFERENCE, a JSON file.
 

@@ -15,6 +15,7 @@ from typing import Any
 from jinja2 import Environment
 from markupsafe import Markup, escape
 
+from laconic.outputs import opened, write_text
 from laconic.report import pictures, texts
 from laconic.report.collect import Report
 from laconic.scene import METHODS
@@ -167,12 +168,11 @@ def _extremes(results: dict[str, list[Row]]) -> Section:
 
 def write(report: Report, folder: Path, version: str) -> Path:
     """index.html, report.json and one CSV a section."""
-    folder.mkdir(parents=True, exist_ok=True)
     for name, rows in report.results.items():
         if rows:
             _write_csv(folder / f"{name}.csv", rows)
-    (folder / "report.json").write_text(json.dumps({"version": version, "notes": report.notes, **report.results},
-                                                   indent=1, default=float))
+    write_text(folder / "report.json", json.dumps({"version": version, "notes": report.notes, **report.results},
+                                                  indent=1, default=float))
     goals = report.results["targets"]
     count = {verdict: sum(row["verdict"] == verdict for row in goals) for verdict in ("met", "missed", "not measured")}
     summary = (f"Of {len(goals)} goals {count['met']} are met, {count['missed']} missed, "
@@ -184,14 +184,14 @@ def write(report: Report, folder: Path, version: str) -> Path:
     template = environment.from_string(Path(__file__).with_name("page.html").read_text())
     machine = f"{platform.system()} {platform.machine()}"
     page = folder / "index.html"
-    page.write_text(template.render(version=version, machine=machine, summary=summary, notes=report.notes,
-                                    sections=shown_sections))
+    write_text(page, template.render(version=version, machine=machine, summary=summary, notes=report.notes,
+                                     sections=shown_sections))
     return page
 
 
 def _write_csv(path: Path, rows: Sequence[Row]) -> None:
     fields = list(dict.fromkeys(key for row in rows for key in row))
-    with path.open("w", newline="") as file:
+    with opened(path) as file:
         writer = csv.DictWriter(file, fields)
         writer.writeheader()
         writer.writerows(rows)

@@ -11,6 +11,8 @@ import can
 from laconic.errors import BadInput, reason_of
 from laconic.rig.link import Link
 
+LOGS = (".blf", ".asc", ".log", ".trc")
+
 
 @contextmanager
 def logged(link: Link, paths: tuple[Path, ...]) -> Iterator[None]:
@@ -25,11 +27,12 @@ def logged(link: Link, paths: tuple[Path, ...]) -> Iterator[None]:
 def open_log(path: Path) -> can.io.generic.MessageWriter:
     """A python-can log writer for this name."""
     try:
+        path.parent.mkdir(parents=True, exist_ok=True)
         return can.Logger(str(path))
     except ValueError as error:
         raise BadInput(f"--log {path}: {error}; use a name that ends in .blf or .asc") from None
     except OSError as error:
-        raise BadInput(f"--log {path}: {reason_of(error)}; choose a folder that exists and may be written") from None
+        raise BadInput(f"--log {path}: cannot be written ({reason_of(error)}); choose another place") from None
 
 
 def stamped(writer: can.io.generic.MessageWriter, link: Link) -> can.typechecking.MessageReceiver:

@@ -10,7 +10,7 @@ from xml.etree import ElementTree
 from rich.console import Console
 from rich.table import Table
 
-from laconic.errors import BadInput, reason_of
+from laconic.outputs import opened
 from laconic.rig.verdict import Judgement
 
 
@@ -31,10 +31,8 @@ def write_junit(judgement: Judgement, path: Path, seconds: float) -> None:
         case = ElementTree.SubElement(suite, "testcase", classname=f"rig.{judgement.mode}", name=each.name)
         if not each.passed:
             ElementTree.SubElement(case, "failure", message=each.detail).text = each.detail
-    try:
-        ElementTree.ElementTree(suite).write(path, encoding="utf-8", xml_declaration=True)
-    except OSError as error:
-        raise BadInput(f"--junit {path}: {reason_of(error)}; choose a folder that exists") from None
+    with opened(path, "wb") as file:
+        ElementTree.ElementTree(suite).write(file, encoding="utf-8", xml_declaration=True)
 
 
 def show(judgement: Judgement) -> None:
