@@ -9,6 +9,7 @@ from typing import TYPE_CHECKING
 import matplotlib
 import numpy as np
 
+from laconic.method_style import look
 from laconic.outputs import whole_file
 
 if TYPE_CHECKING:
@@ -23,7 +24,6 @@ from matplotlib.transforms import ScaledTranslation  # noqa: E402
 STYLE = {"axes.grid": True, "grid.alpha": 0.3, "axes.spines.top": False, "axes.spines.right": False,
          "font.size": 10, "axes.titlesize": 11, "legend.frameon": False, "lines.linewidth": 1.3}
 ARROWS = 12
-MARKERS = "osD^vPX"
 
 
 def figure(width_in: float, height_in: float) -> Figure:
@@ -105,14 +105,10 @@ def _roomy(axes: Axes) -> None:
 
 def plot_error_against_time(axes: Axes, points: Mapping[str, Sequence[tuple[float, float]]], floor: float) -> None:
     """Work against precision: (run time per simulated second [µs], error) for several steps of each method."""
-    for (name, pairs), marker in zip(points.items(), MARKERS, strict=False):
-        if not pairs:
-            continue
-        times, errors = zip(*pairs, strict=True)
-        # auto coincides with the method it picks: large and hollow, around the other's markers
-        look = {"linestyle": "none", "markersize": 11, "markerfacecolor": "none", "color": "k"} if name == "auto" else {
-            "markersize": 5}
-        axes.loglog(times, np.maximum(errors, 1e-17), marker=marker, label=name, **look)
+    for name, pairs in points.items():
+        if pairs:
+            times, errors = zip(*pairs, strict=True)
+            axes.loglog(times, np.maximum(errors, 1e-17), **look(name))
     axes.set_ylim(bottom=0.3 * min(axes.dataLim.y0, floor))
     axes.axhspan(1e-17, floor, color="0.5", alpha=0.15, lw=0, label="the reference's own")
     axes.set(xlabel="run time per simulated second [µs]", ylabel="largest relative error [–]",

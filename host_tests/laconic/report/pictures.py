@@ -13,12 +13,11 @@ from matplotlib.axes import Axes
 from matplotlib.colors import LogNorm
 from matplotlib.figure import Figure
 
-from laconic.plotting import MARKERS, figure
+from laconic.method_style import look
+from laconic.plotting import figure
 from laconic.scene import METHODS
 
 Row = dict[str, Any]
-COLOURS = dict(zip(METHODS, ("#111111", "#d1495b", "#e9a23b", "#2a9d8f", "#8d6cab", "#3066be", "#7a5230"),
-                   strict=True))
 FLOOR = 1e-16
 SIZE = (5.2, 3.9)
 
@@ -33,20 +32,20 @@ def svg(picture: Figure) -> str:
     return text[text.index("<svg"):]
 
 
-def _lines(axes: Axes, rows: Sequence[Row], x: str, y: str, name: str, colour: str, marker: str, **style: Any) -> None:
+def _lines(axes: Axes, rows: Sequence[Row], x: str, y: str, style: Row) -> None:
     points = sorted((row[x], max(row[y], FLOOR)) for row in rows if row.get(y) is not None and np.isfinite(row[y]))
     if points:
-        axes.loglog(*zip(*points, strict=True), marker=marker, markersize=3.5, color=colour, label=name, **style)
+        axes.loglog(*zip(*points, strict=True), **style)
 
 
 def error_against_time(rows: Sequence[Row], scene: str) -> str:
     """One scene: error of ν over run time; full lines double, dashed single."""
     picture = figure(*SIZE)
     axes = picture.add_subplot()
-    for method, marker in zip(METHODS, MARKERS, strict=False):
+    for method in METHODS:
         for real, style, name in (("double", "-", method), ("single", "--", None)):
             mine = [r for r in rows if (r["scene"], r["method"], r["real"]) == (scene, method, real)]
-            _lines(axes, mine, "us_per_second", "error_nu", name, COLOURS[method], marker, linestyle=style)
+            _lines(axes, mine, "us_per_second", "error_nu", look(method, 3.5, label=name, linestyle=style))
     axes.set(xlabel="run time per simulated second [µs]", ylabel="error of ν, relative", title=scene)
     picture.legend(fontsize=7.5, loc="outside lower center", ncols=3)
     return svg(picture)
@@ -56,13 +55,13 @@ def precision(rows: Sequence[Row]) -> str:
     """S1 with other people's integrators."""
     picture = figure(7.4, 5.0)
     axes = picture.add_subplot()
-    for method, marker in zip(METHODS[1:], MARKERS[1:], strict=False):
+    for method in METHODS[1:]:
         mine = [r for r in rows if r["who"] == method and r["real"] == "double"]
-        _lines(axes, mine, "ms", "error_nu", method, COLOURS[method], marker)
+        _lines(axes, mine, "ms", "error_nu", look(method, 3.5))
     others = sorted({r["who"] for r in rows} - set(METHODS))
     for name, grey in zip(others, np.linspace(0.15, 0.75, max(1, len(others))), strict=True):
-        _lines(axes, [r for r in rows if r["who"] == name], "ms", "error_nu", name, str(round(float(grey), 2)), "x",
-               linestyle=":")
+        _lines(axes, [r for r in rows if r["who"] == name], "ms", "error_nu",
+               look(name, 3.5, color=str(round(float(grey), 2)), linestyle=":"))
     axes.axhline(1e-6, color="0.6", linewidth=0.8)
     axes.set(xlabel="run time of all ten seconds [ms]", ylabel="largest error of ν [rad/s]", title="S1")
     axes.legend(fontsize=7.5, loc="upper right")
@@ -101,9 +100,9 @@ def drift(rows: Sequence[Row], real: str, what: str) -> str:
     """Largest relative change so far over the number of steps."""
     picture = figure(*SIZE)
     axes = picture.add_subplot()
-    for method, marker in zip(METHODS[1:], MARKERS[1:], strict=False):
+    for method in METHODS[1:]:
         mine = [r for r in rows if r["method"] == method and r["real"] == real and r["status"] == "ok"]
-        _lines(axes, mine, "steps", what, method, COLOURS[method], marker)
+        _lines(axes, mine, "steps", what, look(method, 3.5))
     axes.set(xlabel="steps of 0.1 s", ylabel=f"relative change of {what}", title=f"{what}, {real}")
     axes.legend(fontsize=7.5)
     return svg(picture)

@@ -1,0 +1,50 @@
+"""How a method looks in every picture of the project: one colour and one marker each, in this one table.
+
+    axes.loglog(times, errors, **look("rk4"))              # line and markers, with the method's name as the label
+    axes.plot(t, y, **look("rk4", marker="", label=None))  # whatever is given replaces what the table says
+
+`auto` gives the numbers of the method that it picks, so its points lie on that method's. Its markers are large and
+hollow, lie on top and have no line, so that both are seen.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import Any
+
+MARKER_SIZE = 5.0  # points; hollow markers are twice as large
+
+
+@dataclass(frozen=True)
+class MethodStyle:
+    """A colour that differs from the others in lightness as well as in hue, and a marker that no other method has."""
+
+    colour: str
+    marker: str
+    hollow: bool = False
+
+
+METHOD_STYLES = {
+    "auto": MethodStyle("#111111", "o", hollow=True),
+    "rk4": MethodStyle("#d1495b", "s"),
+    "exponential-kahan": MethodStyle("#e9a23b", "^"),
+    "exponential-kahan-4": MethodStyle("#2a9d8f", "D"),
+    "exact-flow": MethodStyle("#8d6cab", "v"),
+    "exact-flow-4": MethodStyle("#3066be", "P"),
+    "taylor-8": MethodStyle("#7a5230", "X"),
+}
+FOREIGN = MethodStyle("#777777", "x")  # somebody else's integrator
+
+
+def colour_of(method: str) -> str:
+    """The method's colour, for what has neither line nor marker."""
+    return METHOD_STYLES.get(method, FOREIGN).colour
+
+
+def look(method: str, size: float = MARKER_SIZE, **replaced: Any) -> dict[str, Any]:
+    """Keywords for matplotlib's plot functions: colour, marker and label of a method. `size`: marker size in points."""
+    style = METHOD_STYLES.get(method, FOREIGN)
+    keywords: dict[str, Any] = {"color": style.colour, "marker": style.marker, "markersize": size, "label": method}
+    if style.hollow:
+        keywords |= {"markersize": 2.0 * size, "markerfacecolor": "none", "linestyle": "none", "zorder": 3}
+    return keywords | replaced
