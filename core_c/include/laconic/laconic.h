@@ -555,6 +555,77 @@ laconic_status laconic_plant_set_step(laconic_plant *plant, laconic_real step_s,
 /* Another payload, motor, mass … while it moves (laconic_state_carry). The wheels must stay as they are. */
 laconic_status laconic_plant_change(laconic_plant *plant, const laconic_vehicle *vehicle, laconic_refusal *why);
 
+/* -------------------------------------------------------------------------------- recording -- */
+
+/* Everything a plant puts out at one moment; all of it numbers of the scalar type. */
+typedef struct laconic_outputs {
+    laconic_real nu_rad_per_s[3];
+    laconic_real velocity_body_m_per_s[2], yaw_rate_rad_per_s;
+    laconic_real energy_J;
+    laconic_pose pose;
+    laconic_real wheel_speed_rad_per_s[LACONIC_MAX_WHEELS];
+    laconic_real wheel_angle_rad[LACONIC_MAX_WHEELS];
+    laconic_real wheel_torque_Nm[LACONIC_MAX_WHEELS];
+    laconic_reactions reactions; /* only where a contact is given                                */
+    laconic_input input;         /* what acts from this moment on                                */
+} laconic_outputs;
+
+/* Fills the outputs but the reactions. What lies beyond the model's wheels stays as it was. One sine, O(N). */
+void laconic_outputs_of(laconic_outputs *outputs, const laconic_plant *plant, const laconic_input *input);
+
+/* One instant at which a wheel asked for more than the ground gives, or would have lifted. */
+typedef struct laconic_grip_event {
+    uint64_t steps;         /* taken before it: its time is steps · step_s                         */
+    int32_t point;          /* from 1: the wheels, then the supports; 0: it never happened         */
+    laconic_real needed_N;  /* size of the reaction                                                */
+    laconic_real normal_N;  /* normal load; the friction there is is μ times it, none where below 0 */
+    laconic_real margin_N;  /* μ normal − needed                                                   */
+} laconic_grip_event;
+
+/* Whether the no-slip model was true. Start from all zero. */
+typedef struct laconic_grip {
+    uint64_t looks, slipping, lifting; /* instants looked at; those with a slip, with a lifted point */
+    laconic_grip_event first_slip, worst_slip; /* worst: least margin                              */
+    laconic_grip_event first_lift, worst_lift; /* worst: least normal load                         */
+} laconic_grip;
+
+/* Enters one instant. Slip is judged only where the contact has a friction coefficient. What lies within the rank
+ * tolerance times the weight is rounding and counts as neither. */
+void laconic_grip_watch(laconic_grip *grip, const laconic_contact *contact, const laconic_model *model,
+                        const laconic_reactions *reactions, uint64_t steps);
+
+/* Inputs over many steps, of the few signals that a run uses; all other inputs are zero. Held: stretch k holds its
+ * values up to step until_step[k]. Sampled (until_step NULL): step k has values at its start, middle and end. */
+typedef struct laconic_schedule {
+    int32_t signal_count;
+    const uint32_t *signal;     /* where each stands in laconic_input, in bytes                     */
+    const laconic_real *value;  /* signal_count for each stretch; 3·signal_count for each step      */
+    const uint64_t *until_step; /* ascending; NULL: sampled                                         */
+    uint64_t count;             /* of stretches; of steps where sampled                             */
+    uint64_t first_step;        /* of the plant, at which the first begins                          */
+} laconic_schedule;
+
+/* What is kept of a run: rows of chosen outputs, and whether the ground could bear it. */
+typedef struct laconic_recorder {
+    const laconic_contact *contact; /* of this plant; NULL: no reactions, which cost as much as some steps */
+    laconic_grip *grip;             /* watched at the start of every step; NULL, or without contact: not  */
+    uint64_t every;                 /* a row at the start of each step whose number it divides; 0: none   */
+    int32_t column_count;
+    const uint32_t *column;         /* where each stands in laconic_outputs, in bytes               */
+    laconic_real *row;              /* room for row_room rows of column_count numbers               */
+    uint64_t row_count, row_room;
+} laconic_recorder;
+
+/* Takes steps along the schedule until `until_step` of the plant, the schedule's end, or the first row for which there
+ * is no room: plant->steps says how far it came, and the next call goes on from there. A row and the watch see the
+ * state and input at a step's start. `recorder` may be NULL. Gives the bits of laconic_plant_run and
+ * laconic_step_sampled, and refuses as they do. */
+laconic_status laconic_plant_follow(laconic_plant *plant, const laconic_schedule *schedule, uint64_t until_step,
+                                    laconic_recorder *recorder, laconic_refusal *why);
+
+/* One row, and one look at the grip, of this moment: for the end of a run. There must be room. */
+void laconic_record_row(laconic_recorder *recorder, const laconic_plant *plant, const laconic_input *input);
+
 #ifdef __cplusplus
 }
 #endif

@@ -1,0 +1,121 @@
+/* Steps along a schedule of inputs, with rows of chosen outputs and a watch on the ground. */
+#include "internal.h"
+
+/* The number that stands so many bytes into a struct that holds nothing but numbers. */
+static const real *number_in(const void *numbers, uint32_t place) {
+    return (const real *)(const void *)((const unsigned char *)numbers + place);
+}
+
+static void set_signals(laconic_input *input, const laconic_schedule *schedule, const real *value) {
+    int32_t k;
+    for (k = 0; k < schedule->signal_count; k++)
+        *(real *)(void *)((unsigned char *)input + schedule->signal[k]) = value[k];
+}
+
+static void copy_columns(laconic_recorder *recorder, const laconic_outputs *now) {
+    real *row = recorder->row + recorder->row_count * (uint64_t)recorder->column_count;
+    int32_t k;
+    for (k = 0; k < recorder->column_count; k++) row[k] = *number_in(now, recorder->column[k]);
+    recorder->row_count++;
+}
+
+static void look(laconic_recorder *recorder, const laconic_plant *plant, const laconic_input *input, bool row_due) {
+    laconic_outputs now;
+    if (recorder->contact != NULL && (row_due || recorder->grip != NULL)) {
+        laconic_reactions_of(&now.reactions, recorder->contact, &plant->model, &plant->state, input);
+        if (recorder->grip != NULL)
+            laconic_grip_watch(recorder->grip, recorder->contact, &plant->model, &now.reactions, plant->steps);
+    }
+    if (!row_due) return;
+    laconic_outputs_of(&now, plant, input);
+    copy_columns(recorder, &now);
+}
+
+void laconic_record_row(laconic_recorder *recorder, const laconic_plant *plant, const laconic_input *input) {
+    look(recorder, plant, input, true);
+}
+
+/* Looks where there is something to look for; returns how many of `left` steps may pass before the next look, 0 where
+ * a row has no room. */
+static uint64_t steps_until_look(laconic_recorder *recorder, const laconic_plant *plant, const laconic_input *input,
+                                 uint64_t left) {
+    uint64_t since_row;
+    bool row_due;
+    if (recorder == NULL) return left;
+    since_row = recorder->every != 0 ? plant->steps % recorder->every : 1;
+    row_due = since_row == 0;
+    if (row_due && recorder->row_count >= recorder->row_room) return 0;
+    look(recorder, plant, input, row_due);
+    if (recorder->contact != NULL && recorder->grip != NULL) return 1;
+    if (recorder->every == 0 || left < recorder->every - since_row) return left;
+    return recorder->every - since_row;
+}
+
+/* One stretch, up to `until_step`; *full: a row had no room. */
+static laconic_status hold(laconic_plant *plant, const laconic_input *input, uint64_t until_step,
+                           laconic_recorder *recorder, bool *full, laconic_refusal *why) {
+    while (plant->steps < until_step) {
+        const uint64_t steps = steps_until_look(recorder, plant, input, until_step - plant->steps);
+        laconic_status status;
+        *full = steps == 0;
+        if (*full) return LACONIC_OK;
+        status = laconic_plant_run(plant, input, steps, why);
+        if (status != LACONIC_OK) return status;
+    }
+    return LACONIC_OK;
+}
+
+/* The stretch that a step lies in: the first that ends after it. */
+static uint64_t stretch_at(const laconic_schedule *schedule, uint64_t step) {
+    uint64_t low = 0, high = schedule->count;
+    while (low < high) {
+        const uint64_t middle = low + (high - low) / 2;
+        if (schedule->until_step[middle] <= step)
+            low = middle + 1;
+        else
+            high = middle;
+    }
+    return low;
+}
+
+static laconic_status follow_held(laconic_plant *plant, const laconic_schedule *schedule, uint64_t until_step,
+                                  laconic_recorder *recorder, laconic_refusal *why) {
+    laconic_input input = {0};
+    laconic_status status = LACONIC_OK;
+    bool full = false;
+    uint64_t k = stretch_at(schedule, plant->steps);
+    for (; k < schedule->count && plant->steps < until_step && !full && status == LACONIC_OK; k++) {
+        const uint64_t end = schedule->until_step[k] < until_step ? schedule->until_step[k] : until_step;
+        set_signals(&input, schedule, schedule->value + k * (uint64_t)schedule->signal_count);
+        status = hold(plant, &input, end, recorder, &full, why);
+    }
+    return status;
+}
+
+static laconic_status follow_sampled(laconic_plant *plant, const laconic_schedule *schedule, uint64_t until_step,
+                                     laconic_recorder *recorder, laconic_refusal *why) {
+    const uint64_t end = schedule->first_step + schedule->count, numbers = (uint64_t)schedule->signal_count;
+    const laconic_input none = {0};
+    laconic_input input[3] = {none, none, none};
+    laconic_refusal found;
+    while (plant->steps < until_step && plant->steps < end) {
+        const real *value = schedule->value + 3 * numbers * (plant->steps - schedule->first_step);
+        laconic_status status;
+        uint64_t k;
+        for (k = 0; k < 3; k++) set_signals(&input[k], schedule, value + k * numbers);
+        if (steps_until_look(recorder, plant, input, 1) == 0) break;
+        status = laconic_step_sampled(&plant->model, &plant->integrator, &plant->state, input, input + 1, input + 2);
+        if (status != LACONIC_OK) {
+            laconic_step_refusal(&found, status, &plant->model, &plant->integrator, &plant->state, input, 3);
+            return refuse(why, found.status, found.field, found.item, found.value, found.limit);
+        }
+        plant->steps++;
+    }
+    return LACONIC_OK;
+}
+
+laconic_status laconic_plant_follow(laconic_plant *plant, const laconic_schedule *schedule, uint64_t until_step,
+                                    laconic_recorder *recorder, laconic_refusal *why) {
+    return schedule->until_step != NULL ? follow_held(plant, schedule, until_step, recorder, why)
+                                        : follow_sampled(plant, schedule, until_step, recorder, why);
+}

@@ -1,0 +1,133 @@
+#include "vehicles.h"
+
+#define GRAVITY 9.80665
+
+static laconic_refusal why;
+
+typedef struct scene {
+    laconic_vehicle vehicle;
+    laconic_model model;
+    laconic_contact contact;
+    laconic_grip grip;
+} scene;
+
+static scene scene_of(laconic_vehicle v, double friction, double height) {
+    scene s;
+    memset(&s, 0, sizeof s);
+    v.friction_coefficient = REAL(friction);
+    v.com_z_m = REAL(height);
+    s.vehicle = v;
+    s.model = model_of(v);
+    ASSERT_STATUS(LACONIC_OK, laconic_contact_prepare(&s.contact, &v, &why));
+    return s;
+}
+
+static laconic_reactions look_at(scene *s, laconic_input input, uint64_t steps) {
+    const laconic_state state = moving(&s->model, 0, 0, 0);
+    laconic_reactions found;
+    laconic_reactions_of(&found, &s->contact, &s->model, &state, &input);
+    laconic_grip_watch(&s->grip, &s->contact, &s->model, &found, steps);
+    return found;
+}
+
+/* All wheels pull forward with the same voltage, the first with some more. */
+static laconic_input forward(double volts) {
+    laconic_input input = no_input();
+    int i;
+    for (i = 0; i < 4; i++) input.voltage_V[i] = REAL(volts);
+    input.voltage_V[0] = REAL(1.5 * volts);
+    return input;
+}
+
+static void a_gentle_run_leaves_nothing_but_the_count(void) {
+    scene s = scene_of(with_motors(mecanum()), 0.8, 0.05);
+    look_at(&s, forward(0.1), 0);
+    look_at(&s, forward(0.2), 1);
+    TEST_ASSERT_EQUAL_UINT64(2, s.grip.looks);
+    TEST_ASSERT_EQUAL_UINT64(0, s.grip.slipping);
+    TEST_ASSERT_EQUAL_UINT64(0, s.grip.lifting);
+    TEST_ASSERT_EQUAL_INT(0, s.grip.first_slip.point);
+}
+
+static void the_first_and_the_worst_slip_are_kept_with_what_was_needed(void) {
+    scene s = scene_of(with_motors(mecanum()), 0.8, 0.0);
+    laconic_reactions first, worst;
+    look_at(&s, forward(0.1), 4);
+    first = look_at(&s, forward(6), 5);
+    worst = look_at(&s, forward(9), 6);
+    look_at(&s, forward(7), 7);
+    TEST_ASSERT_EQUAL_UINT64(3, s.grip.slipping);
+    TEST_ASSERT_EQUAL_UINT64(5, s.grip.first_slip.steps);
+    TEST_ASSERT_EQUAL_UINT64(6, s.grip.worst_slip.steps);
+    TEST_ASSERT_EQUAL_INT(1, s.grip.first_slip.point);
+    ASSERT_NEAR(1e-5, 0.25 * MASS * GRAVITY, s.grip.first_slip.normal_N);
+    ASSERT_NEAR(1e-4, fabs((double)first.along_N[0]), s.grip.first_slip.needed_N);
+    ASSERT_NEAR(1e-4, (double)first.no_slip_margin_N, s.grip.first_slip.margin_N);
+    ASSERT_NEAR(1e-4, (double)worst.no_slip_margin_N, s.grip.worst_slip.margin_N);
+}
+
+static void without_friction_nothing_slips(void) {
+    scene s = scene_of(with_motors(mecanum()), 0.0, 0.0);
+    look_at(&s, forward(9), 0);
+    TEST_ASSERT_EQUAL_UINT64(0, s.grip.slipping);
+}
+
+static void a_wheel_that_would_lift_is_kept_with_its_load(void) {
+    scene s = scene_of(with_motors(mecanum()), 0.0, 1.0);
+    const laconic_reactions found = look_at(&s, forward(6), 3);
+    TEST_ASSERT_EQUAL_UINT64(1, s.grip.lifting);
+    TEST_ASSERT_EQUAL_UINT64(3, s.grip.first_lift.steps);
+    TEST_ASSERT_TRUE(s.grip.first_lift.point == 1 || s.grip.first_lift.point == 2); /* in front */
+    TEST_ASSERT_TRUE(s.grip.first_lift.normal_N < REAL(0));
+    TEST_ASSERT_TRUE(s.grip.first_lift.normal_N == found.normal_N[s.grip.first_lift.point - 1]);
+}
+
+static void a_support_that_would_lift_has_a_number_after_the_wheels(void) {
+    laconic_vehicle v = with_motors(differential_drive());
+    scene s;
+    v.support_count = 1; /* beyond the centre of mass, seen from the axle: the load on it is below zero */
+    v.support[0].y_m = REAL(-0.1);
+    s = scene_of(v, 0.0, 0.0);
+    look_at(&s, no_input(), 0);
+    TEST_ASSERT_EQUAL_INT(3, s.grip.first_lift.point);
+    TEST_ASSERT_TRUE(s.grip.first_lift.needed_N == REAL(0));
+}
+
+static void what_is_within_rounding_of_nothing_neither_lifts_nor_slips(void) {
+    scene s = scene_of(with_motors(mecanum()), 0.8, 0.05);
+    laconic_reactions found = look_at(&s, no_input(), 0);
+    found.normal_N[2] = REAL(-1e-3) * LACONIC_RANK_TOLERANCE * REAL(MASS * GRAVITY);
+    found.no_slip_margin_N = REAL(0.8) * found.normal_N[2];
+    laconic_grip_watch(&s.grip, &s.contact, &s.model, &found, 1);
+    TEST_ASSERT_EQUAL_UINT64(0, s.grip.slipping);
+    TEST_ASSERT_EQUAL_UINT64(0, s.grip.lifting);
+    found.normal_N[2] = REAL(-1e3) * LACONIC_RANK_TOLERANCE * REAL(MASS * GRAVITY);
+    found.no_slip_margin_N = REAL(0.8) * found.normal_N[2];
+    laconic_grip_watch(&s.grip, &s.contact, &s.model, &found, 1);
+    TEST_ASSERT_EQUAL_UINT64(1, s.grip.slipping);
+    TEST_ASSERT_EQUAL_UINT64(1, s.grip.lifting);
+}
+
+static void what_is_no_number_is_a_fault(void) {
+    scene s = scene_of(with_motors(mecanum()), 0.8, 0.05);
+    laconic_reactions found = look_at(&s, forward(0.1), 0);
+    found.along_N[2] = NOT_A_NUMBER;
+    found.no_slip_margin_N = NOT_A_NUMBER;
+    found.normal_N[1] = NOT_A_NUMBER;
+    laconic_grip_watch(&s.grip, &s.contact, &s.model, &found, 1);
+    TEST_ASSERT_EQUAL_UINT64(1, s.grip.slipping);
+    TEST_ASSERT_EQUAL_UINT64(1, s.grip.lifting);
+    TEST_ASSERT_EQUAL_INT(2, s.grip.first_lift.point);
+}
+
+int main(void) {
+    UNITY_BEGIN();
+    RUN_TEST(a_gentle_run_leaves_nothing_but_the_count);
+    RUN_TEST(the_first_and_the_worst_slip_are_kept_with_what_was_needed);
+    RUN_TEST(without_friction_nothing_slips);
+    RUN_TEST(a_wheel_that_would_lift_is_kept_with_its_load);
+    RUN_TEST(a_support_that_would_lift_has_a_number_after_the_wheels);
+    RUN_TEST(what_is_within_rounding_of_nothing_neither_lifts_nor_slips);
+    RUN_TEST(what_is_no_number_is_a_fault);
+    return UNITY_END();
+}

@@ -1,0 +1,226 @@
+#include "vehicles.h"
+
+#define STEPS 60
+#define COLUMNS 4
+
+static laconic_refusal why;
+static const uint32_t signals[] = {offsetof(laconic_input, voltage_V) + sizeof(laconic_real),
+                                   offsetof(laconic_input, body_moment_Nm)};
+static const uint32_t columns[COLUMNS] = {
+    offsetof(laconic_outputs, pose.x_m), offsetof(laconic_outputs, nu_rad_per_s) + 2 * sizeof(laconic_real),
+    offsetof(laconic_outputs, reactions.no_slip_margin_N), offsetof(laconic_outputs, input.body_moment_Nm)};
+
+static laconic_plant plant_of(laconic_vehicle v, double step) {
+    const laconic_start start = start_with(1, 2, 3);
+    laconic_plant plant;
+    memset(&plant, 0, sizeof plant);
+    v.friction_coefficient = REAL(0.3);
+    ASSERT_STATUS(LACONIC_OK, laconic_plant_start(&plant, &v, &laconic_auto, REAL(step), &start, &why));
+    return plant;
+}
+
+typedef struct film { /* a recorder with its room */
+    laconic_contact contact;
+    laconic_grip grip;
+    laconic_real row[STEPS + 1][COLUMNS];
+    laconic_recorder recorder;
+} film;
+
+static void load_film(film *f, const laconic_plant *plant, uint64_t every, uint64_t room) {
+    memset(f, 0, sizeof *f);
+    ASSERT_STATUS(LACONIC_OK, laconic_contact_prepare(&f->contact, &plant->vehicle, &why));
+    f->recorder.contact = &f->contact;
+    f->recorder.every = every;
+    f->recorder.column_count = COLUMNS;
+    f->recorder.column = columns;
+    f->recorder.row = &f->row[0][0];
+    f->recorder.row_room = room;
+}
+
+static void assert_row(const laconic_real row[COLUMNS], const laconic_plant *plant, const laconic_contact *contact,
+                       const laconic_input *input) {
+    laconic_reactions reactions;
+    laconic_real nu[3];
+    laconic_nu(&plant->model, &plant->state, nu);
+    laconic_reactions_of(&reactions, contact, &plant->model, &plant->state, input);
+    TEST_ASSERT_TRUE(row[0] == plant->state.x_m.value);
+    TEST_ASSERT_TRUE(row[1] == nu[2]);
+    TEST_ASSERT_TRUE(row[2] == reactions.no_slip_margin_N);
+    TEST_ASSERT_TRUE(row[3] == input->body_moment_Nm);
+}
+
+static const laconic_real held_values[3][2] = {{REAL(1), REAL(0.1)}, {REAL(-2), REAL(0)}, {REAL(0.5), REAL(-0.2)}};
+static const uint64_t held_ends[3] = {7, 8, STEPS};
+
+static laconic_schedule held(void) {
+    laconic_schedule schedule = {2, signals, &held_values[0][0], held_ends, 3, 0};
+    return schedule;
+}
+
+static laconic_input held_at(uint64_t step) {
+    laconic_input input = no_input();
+    const int k = step < 7 ? 0 : step < 8 ? 1 : 2;
+    input.voltage_V[1] = held_values[k][0];
+    input.body_moment_Nm = held_values[k][1];
+    return input;
+}
+
+static void a_held_schedule_gives_the_bits_of_running_it_by_hand(void) {
+    const uint64_t every[] = {1, 3, 7, STEPS};
+    int k;
+    for (k = 0; k < 4; k++) {
+        laconic_plant by_hand = plant_of(with_motors(mecanum()), 0.01), plant = by_hand;
+        const laconic_schedule schedule = held();
+        laconic_input input;
+        uint64_t step, rows = 0;
+        film f;
+        load_film(&f, &plant, every[k], STEPS);
+        ASSERT_STATUS(LACONIC_OK, laconic_plant_follow(&plant, &schedule, STEPS, &f.recorder, &why));
+        TEST_ASSERT_EQUAL_UINT64(STEPS, plant.steps);
+        for (step = 0; step < STEPS; step++) {
+            input = held_at(step);
+            if (step % every[k] == 0) assert_row(f.row[rows++], &by_hand, &f.contact, &input);
+            ASSERT_STATUS(LACONIC_OK, laconic_plant_run(&by_hand, &input, 1, &why));
+        }
+        TEST_ASSERT_EQUAL_UINT64(rows, f.recorder.row_count);
+        TEST_ASSERT_EQUAL_MEMORY(&by_hand.state, &plant.state, sizeof plant.state);
+        f.recorder.row_room++;
+        laconic_record_row(&f.recorder, &plant, &input);
+        assert_row(f.row[rows], &by_hand, &f.contact, &input);
+    }
+}
+
+static laconic_real sampled_values[STEPS][3][2];
+
+static laconic_schedule sampled(void) {
+    const laconic_schedule schedule = {2, signals, &sampled_values[0][0][0], NULL, STEPS, 0};
+    int i, k;
+    for (i = 0; i < STEPS; i++)
+        for (k = 0; k < 3; k++) {
+            sampled_values[i][k][0] = REAL(sin(0.1 * (i + 0.5 * k)));
+            sampled_values[i][k][1] = REAL(0.1 * cos(0.07 * (i + 0.5 * k)));
+        }
+    return schedule;
+}
+
+static void sampled_at(laconic_input input[3], uint64_t step) {
+    int k;
+    for (k = 0; k < 3; k++) {
+        input[k] = no_input();
+        input[k].voltage_V[1] = sampled_values[step][k][0];
+        input[k].body_moment_Nm = sampled_values[step][k][1];
+    }
+}
+
+static void a_sampled_schedule_gives_the_bits_of_sampled_steps(void) {
+    laconic_plant by_hand = plant_of(with_motors(mecanum()), 0.01), plant = by_hand;
+    const laconic_schedule schedule = sampled();
+    laconic_input input[3];
+    uint64_t step;
+    film f;
+    load_film(&f, &plant, 2, STEPS);
+    ASSERT_STATUS(LACONIC_OK, laconic_plant_follow(&plant, &schedule, STEPS + 5, &f.recorder, &why));
+    TEST_ASSERT_EQUAL_UINT64(STEPS, plant.steps); /* where the schedule ends */
+    TEST_ASSERT_EQUAL_UINT64(STEPS / 2, f.recorder.row_count);
+    for (step = 0; step < STEPS; step++) {
+        sampled_at(input, step);
+        if (step % 2 == 0) assert_row(f.row[step / 2], &by_hand, &f.contact, input);
+        ASSERT_STATUS(LACONIC_OK, laconic_step_sampled(&by_hand.model, &by_hand.integrator, &by_hand.state, input,
+                                                       input + 1, input + 2));
+    }
+    TEST_ASSERT_EQUAL_MEMORY(&by_hand.state, &plant.state, sizeof plant.state);
+}
+
+static void pieces_of_any_length_are_the_whole(laconic_schedule schedule) {
+    laconic_plant whole = plant_of(with_motors(mecanum()), 0.01), pieces = whole;
+    film one, many;
+    uint64_t until;
+    load_film(&one, &whole, 3, STEPS);
+    load_film(&many, &pieces, 3, STEPS);
+    one.recorder.grip = &one.grip;
+    many.recorder.grip = &many.grip;
+    ASSERT_STATUS(LACONIC_OK, laconic_plant_follow(&whole, &schedule, STEPS, &one.recorder, &why));
+    for (until = 0; pieces.steps < STEPS; until += 1 + until % 4)
+        ASSERT_STATUS(LACONIC_OK,
+                      laconic_plant_follow(&pieces, &schedule, until < STEPS ? until : STEPS, &many.recorder, NULL));
+    TEST_ASSERT_EQUAL_MEMORY(&whole.state, &pieces.state, sizeof whole.state);
+    TEST_ASSERT_EQUAL_MEMORY(one.row, many.row, sizeof one.row);
+    TEST_ASSERT_EQUAL_UINT64(STEPS, many.grip.looks);
+    TEST_ASSERT_EQUAL_UINT64(one.grip.slipping, many.grip.slipping);
+    TEST_ASSERT_TRUE(one.grip.slipping > 0);
+}
+
+static void a_run_in_pieces_is_the_run_in_one(void) {
+    pieces_of_any_length_are_the_whole(held());
+    pieces_of_any_length_are_the_whole(sampled());
+}
+
+static void a_later_piece_of_a_sampled_run_has_a_schedule_of_its_own(void) {
+    laconic_plant whole = plant_of(with_motors(mecanum()), 0.01), pieces = whole;
+    laconic_schedule schedule = sampled();
+    ASSERT_STATUS(LACONIC_OK, laconic_plant_follow(&whole, &schedule, STEPS, NULL, &why));
+    schedule.count = 20;
+    ASSERT_STATUS(LACONIC_OK, laconic_plant_follow(&pieces, &schedule, STEPS, NULL, &why));
+    schedule.first_step = 20;
+    schedule.count = STEPS - 20;
+    schedule.value = &sampled_values[20][0][0];
+    ASSERT_STATUS(LACONIC_OK, laconic_plant_follow(&pieces, &schedule, STEPS, NULL, &why));
+    TEST_ASSERT_EQUAL_MEMORY(&whole.state, &pieces.state, sizeof whole.state);
+}
+
+static void stops_before_a_row_without_room(laconic_schedule schedule) {
+    laconic_plant plant = plant_of(with_motors(mecanum()), 0.01);
+    film f;
+    load_film(&f, &plant, 4, 3);
+    ASSERT_STATUS(LACONIC_OK, laconic_plant_follow(&plant, &schedule, STEPS, &f.recorder, &why));
+    TEST_ASSERT_EQUAL_UINT64(12, plant.steps);
+    TEST_ASSERT_EQUAL_UINT64(3, f.recorder.row_count);
+    f.recorder.row_room = 5;
+    ASSERT_STATUS(LACONIC_OK, laconic_plant_follow(&plant, &schedule, STEPS, &f.recorder, &why));
+    TEST_ASSERT_EQUAL_UINT64(20, plant.steps);
+    TEST_ASSERT_TRUE(f.row[5][0] == REAL(0));
+}
+
+static void a_full_recorder_stops_the_run_where_it_can_go_on(void) {
+    stops_before_a_row_without_room(held());
+    stops_before_a_row_without_room(sampled());
+}
+
+static void nothing_recorded_is_only_run(void) {
+    laconic_plant plant = plant_of(with_motors(mecanum()), 0.01);
+    const laconic_schedule schedule = held();
+    film f;
+    load_film(&f, &plant, 0, 0);
+    ASSERT_STATUS(LACONIC_OK, laconic_plant_follow(&plant, &schedule, STEPS, &f.recorder, &why));
+    TEST_ASSERT_EQUAL_UINT64(STEPS, plant.steps);
+}
+
+static void a_refused_step_leaves_what_was_taken_and_says_why(void) {
+    laconic_plant plant = plant_of(with_motors(mecanum()), 0.01);
+    laconic_schedule schedule = sampled();
+    film f;
+    load_film(&f, &plant, 1, STEPS);
+    sampled_values[9][1][1] = NOT_A_NUMBER;
+    ASSERT_REFUSED(LACONIC_NOT_FINITE, LACONIC_FIELD_BODY_MOMENT, 1,
+                   laconic_plant_follow(&plant, &schedule, STEPS, &f.recorder, &why), why);
+    TEST_ASSERT_EQUAL_UINT64(9, plant.steps);
+    TEST_ASSERT_EQUAL_UINT64(10, f.recorder.row_count);
+    plant = plant_of(three_wheels(), 0.01);
+    schedule = held();
+    schedule.value = &sampled_values[9][1][0]; /* a stretch whose second value is no number */
+    ASSERT_REFUSED(LACONIC_NOT_FINITE, LACONIC_FIELD_BODY_MOMENT, 1,
+                   laconic_plant_follow(&plant, &schedule, STEPS, NULL, &why), why);
+    TEST_ASSERT_EQUAL_UINT64(0, plant.steps);
+}
+
+int main(void) {
+    UNITY_BEGIN();
+    RUN_TEST(a_held_schedule_gives_the_bits_of_running_it_by_hand);
+    RUN_TEST(a_sampled_schedule_gives_the_bits_of_sampled_steps);
+    RUN_TEST(a_run_in_pieces_is_the_run_in_one);
+    RUN_TEST(a_later_piece_of_a_sampled_run_has_a_schedule_of_its_own);
+    RUN_TEST(a_full_recorder_stops_the_run_where_it_can_go_on);
+    RUN_TEST(nothing_recorded_is_only_run);
+    RUN_TEST(a_refused_step_leaves_what_was_taken_and_says_why);
+    return UNITY_END();
+}
