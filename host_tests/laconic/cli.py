@@ -6,11 +6,16 @@ import importlib
 import os
 import pkgutil
 import sys
+import traceback
+from contextlib import suppress
+from pathlib import Path
+from typing import Any
 
 import click
 
 import laconic.commands
-from laconic.errors import LaconicError, nearest_of
+from laconic.errors import BadInput, LaconicError, nearest_of, reason_of
+from laconic.streams import SHELL_SIGNAL, SIGPIPE, ReaderGone, guard, stop_status
 
 
 class LazyCommands(click.Group):
@@ -25,6 +30,25 @@ class LazyCommands(click.Group):
             raise click.UsageError(f"no command {cmd_name}; {nearest_of(cmd_name, self.list_commands(ctx))}", ctx)
         return importlib.import_module(f"laconic.commands.{cmd_name}").command
 
+    def invoke(self, ctx: click.Context) -> Any:
+        """Runs the command; what click and Python would make of an error is made ours before they see it."""
+        try:
+            return super().invoke(ctx)
+        except (LaconicError, click.ClickException, click.exceptions.Exit, click.Abort):
+            raise
+        except KeyboardInterrupt as stopped:
+            raise Ended(*stop_status(stopped)) from None
+        except Exception as error:
+            raise unexpected(error) from error
+
+
+class Ended(LaconicError):
+    """A signal ended the command."""
+
+    def __init__(self, message: str, exit_status: int):
+        super().__init__(message)
+        self.exit_status = exit_status
+
 
 @click.group(cls=LazyCommands, context_settings={"help_option_names": ["-h", "--help"], "max_content_width": 110})
 @click.version_option(package_name="laconic", message="laconic %(version)s")
@@ -33,15 +57,26 @@ def commands() -> None:
 
 
 def main(arguments: list[str] | None = None) -> None:
-    """Runs a command; exit status 0, 1 for a result that fails, 2 for bad input with one line on stderr."""
-    sys.exit(run(sys.argv[1:] if arguments is None else arguments))
+    """Runs a command and ends the process with its exit status.
+
+    0; 1 for a result that fails; 2 for anything that keeps the command from its result, with one line on stderr;
+    130 after Ctrl-C, 143 after SIGTERM; 141 when the reader of stdout has gone (| head -1), silently, as for any tool.
+    """
+    guard()
+    status = run(sys.argv[1:] if arguments is None else arguments)
+    with suppress(ReaderGone, BadInput):  # text before an error, which is already told
+        sys.stdout.flush()
+    sys.exit(status)
 
 
 def run(arguments: list[str]) -> int:
     """The exit status of a command line."""
     try:
         result = commands.main(arguments, prog_name="laconic", standalone_mode=False)
+        sys.stdout.flush()
         return result if isinstance(result, int) else 0
+    except ReaderGone:
+        return SHELL_SIGNAL + SIGPIPE
     except LaconicError as error:
         return fail(str(error), error.exit_status)
     except click.exceptions.NoArgsIsHelpError as error:
@@ -49,11 +84,8 @@ def run(arguments: list[str]) -> int:
         return 2
     except click.ClickException as error:
         return fail(usage(error), 2)
-    except (click.Abort, KeyboardInterrupt):
-        return fail("stopped by the user", 130)
-    except BrokenPipeError:
-        os.dup2(os.open(os.devnull, os.O_WRONLY), sys.stdout.fileno())
-        return 0
+    except (click.Abort, KeyboardInterrupt) as stopped:
+        return fail(*stop_status(stopped))
 
 
 def usage(error: click.ClickException) -> str:
@@ -63,9 +95,23 @@ def usage(error: click.ClickException) -> str:
     return error.format_message().rstrip(".") + more
 
 
+def unexpected(error: Exception) -> LaconicError:
+    """An error of the system, of a library or of ours, as one line; LACONIC_TRACEBACK=1 shows where it came from."""
+    if os.environ.get("LACONIC_TRACEBACK"):
+        traceback.print_exception(error)
+    if isinstance(error, OSError) and error.strerror:
+        return BadInput(f"{error.filename}: {reason_of(error)}" if error.filename else f"error: {reason_of(error)}")
+    if isinstance(error, MemoryError):
+        return BadInput("there is not enough memory for this; ask for fewer steps or outputs")
+    last = traceback.extract_tb(error.__traceback__)[-1]
+    return BadInput(f"unexpected {type(error).__name__}: {error} ({Path(last.filename).name}:{last.lineno}); "
+                    "LACONIC_TRACEBACK=1 in the environment shows more, for a report of the fault")
+
+
 def fail(message: str, status: int) -> int:
     """Says why on stderr, in one line."""
-    click.echo("laconic: " + " ".join(message.split()), err=True)
+    with suppress(OSError):  # nobody reads stderr either
+        click.echo("laconic: " + " ".join(message.split()), err=True)
     return status
 
 

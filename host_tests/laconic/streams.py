@@ -1,0 +1,75 @@
+"""stdout that says what is wrong with it, and signals that end a command in order.
+
+Python turns a reader that has closed the pipe into exceptions that libraries catch and take for failures of their own;
+here it is one that nothing but the command line catches.
+"""
+
+from __future__ import annotations
+
+import io
+import os
+import signal
+import sys
+from types import FrameType
+
+from laconic.errors import BadInput, reason_of
+
+ENDING_SIGNALS = ("SIGINT", "SIGTERM", "SIGHUP")
+SHELL_SIGNAL = 128  # a shell says 128 + signal of what a signal ended
+SIGPIPE = 13        # on every system that has it; Windows has not
+
+
+class ReaderGone(BaseException):
+    """Nobody reads stdout any more; no exception of the usual kind, so that no library takes it for its own."""
+
+
+class Stopped(KeyboardInterrupt):
+    """A signal ends the command; what is cleaned up after Ctrl-C is after any of them."""
+
+    def __init__(self, number: int = signal.SIGINT):
+        super().__init__()
+        self.number = number
+
+
+class Stdout(io.FileIO):
+    """The raw stdout; a write that fails is ReaderGone or BadInput."""
+
+    def write(self, data: object) -> int:
+        """As FileIO."""
+        try:
+            return super().write(data)  # type: ignore[arg-type]
+        except BrokenPipeError:
+            self.silence()
+            raise ReaderGone from None
+        except OSError as error:
+            self.silence()
+            raise BadInput(f"stdout: cannot be written ({reason_of(error)}); redirect it to another place") from None
+
+    def silence(self) -> None:
+        """What is still in buffers goes nowhere."""
+        os.dup2(os.open(os.devnull, os.O_WRONLY), self.fileno())
+
+
+def guard() -> None:
+    """Puts our stdout and our handlers of signals in place; for the process that the command line is."""
+    if sys.stdout is None:  # closed by the caller: writing to what is open for reading fails with a reason
+        os.open(os.devnull, os.O_RDONLY)
+    encoding = getattr(sys.stdout, "encoding", "utf-8")
+    raw = Stdout(1, "w", closefd=False)
+    sys.stdout = io.TextIOWrapper(io.BufferedWriter(raw), encoding, "backslashreplace", line_buffering=raw.isatty())
+    for name in ENDING_SIGNALS:
+        number = getattr(signal, name, None)
+        if number is not None and signal.getsignal(number) is not signal.SIG_IGN:  # nohup ignores SIGHUP
+            signal.signal(number, stop)
+
+
+def stop(number: int, _: FrameType | None) -> None:
+    """What a signal does."""
+    raise Stopped(number)
+
+
+def stop_status(stopped: BaseException) -> tuple[str, int]:
+    """The line and the exit status for what ended by a signal."""
+    number = getattr(stopped, "number", signal.SIGINT)
+    who = "the user" if number == signal.SIGINT else signal.Signals(number).name
+    return f"stopped by {who}", SHELL_SIGNAL + number
