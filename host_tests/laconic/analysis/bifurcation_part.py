@@ -7,7 +7,7 @@ import numpy as np
 from laconic.analysis import confirm, pushed
 from laconic.analysis.continuation import Diagram, diagram
 from laconic.analysis.cycle import cycle_near
-from laconic.analysis.findings import BifurcationPart, CyclePart, Study, Wishes, nu_text
+from laconic.analysis.findings import BifurcationPart, CyclePart, Study, Wishes
 from laconic.analysis.from_core import Subject
 from laconic.analysis.hopf import HopfPoint
 from laconic.analysis.motions import (
@@ -17,9 +17,12 @@ from laconic.analysis.motions import (
     parameter_named,
     straight_thresholds,
 )
+from laconic.analysis.reach import HEADROOM
+from laconic.analysis.speeds import command_text, motion_text, wheel_radius_m
 from laconic.analysis.steady import steady_motions
 
 CYCLE_SHARES = (0.97,)  # of the way from the branch's other end to the Hopf point
+NO_SIZE = 1e-4          # of that way: so close to the Hopf point a cycle (its size goes with the root) is not told
 
 
 def bifurcation_part(result: Study, wishes: Wishes) -> None:
@@ -54,10 +57,9 @@ def _no_diagram(subject: Subject, wishes: Wishes) -> str | None:
 
 def _cycles_of(parameter: Parameter, found: Diagram, hopf: HopfPoint) -> list[CyclePart]:
     """Limit cycles on the side of the Hopf point where they exist, at some distances from it."""
-    branch = min(found.branches, key=lambda b: float(np.abs(b.nu() - hopf.nu).sum(axis=1).min()))
-    reach = max(abs(p - hopf.parameter) for p in branch.parameter)
+    reach = _reach_of_branch(found, hopf)
     values = [hopf.parameter + sign * (1.0 - share) * reach for share in CYCLE_SHARES for sign in (-1.0, 1.0)]
-    if abs(parameter.at_scene - hopf.parameter) < 0.1 * reach:
+    if NO_SIZE * reach < abs(parameter.at_scene - hopf.parameter) < 0.1 * reach:
         values.append(parameter.at_scene)
     parts = []
     for value in values:
@@ -74,34 +76,60 @@ def _cycles_of(parameter: Parameter, found: Diagram, hopf: HopfPoint) -> list[Cy
     return parts
 
 
-def _speeds(result: Study, part: BifurcationPart) -> str:
-    """What a range of commanded ν means for the body's speed."""
+def _reach_of_branch(found: Diagram, hopf: HopfPoint) -> float:
+    """How far the branch of a Hopf point goes on from there, in the parameter."""
+    branch = min(found.branches, key=lambda b: float(np.abs(b.nu() - hopf.nu).sum(axis=1).min()))
+    return max(abs(p - hopf.parameter) for p in branch.parameter)
+
+
+def _stands_at(part: BifurcationPart) -> HopfPoint | None:
+    """The Hopf point at which the scene itself stands, if it does."""
+    return next((hopf for hopf in part.diagram.hopf if abs(part.parameter.at_scene - hopf.parameter)
+                 <= NO_SIZE * _reach_of_branch(part.diagram, hopf)), None)
+
+
+def _range_text(subject: Subject, part: BifurcationPart) -> str:
+    """From where to where, a commanded ν in m/s too."""
+    shown = f"{part.low:.6g} to {part.high:.6g}"
     if part.parameter.name not in ("nu1", "nu2"):
-        return ""
-    low, high = (float(result.subject.model.wheel_radius_m) * nu for nu in (part.low, part.high))
-    return f" rad/s ({low:.4g} to {high:.4g} m/s)"
+        return shown
+    low, high = (wheel_radius_m(subject) * nu for nu in (part.low, part.high))
+    return f"{shown} rad/s ({low:.4g} to {high:.4g} m/s)"
+
+
+def _threshold_text(subject: Subject, part: BifurcationPart, value: float) -> str:
+    where = command_text(subject, part.parameter.name, value)
+    if abs(value) <= part.parameter.reach:
+        return f"Straight motion changes its stability at {where}."
+    reach = part.parameter.reach
+    return (f"Straight motion would change its stability at {where}, out of reach: {HEADROOM:g} times the largest "
+            f"inputs of this scene give {reach:.4g} rad/s ({wheel_radius_m(subject) * reach:.4g} m/s).")
 
 
 def _tell_bifurcation(result: Study, part: BifurcationPart) -> None:
-    name = part.parameter.name
+    name, subject = part.parameter.name, result.subject
     count = len(part.diagram.branches)
-    result.say("bifurcation", f"Steady motions for {name} from {part.low:.6g} to {part.high:.6g}"
-                              f"{_speeds(result, part)}: {count} branch{'es' if count != 1 else ''}.")
+    result.say("bifurcation", f"Steady motions for {name} from {_range_text(subject, part)}: {count} "
+                              f"branch{'es' if count != 1 else ''}.")
     for value in part.thresholds:
-        result.say("bifurcation", f"Straight motion changes its stability at {name} = {value:.9g}.")
+        result.say("bifurcation", _threshold_text(subject, part, value))
     for special in part.diagram.specials:
-        result.say("bifurcation", f"{special.kind.capitalize()} at {name} = {special.parameter:.9g}, ν = "
-                   f"({nu_text(special.nu)}) rad/s.")
+        result.say("bifurcation", f"{special.kind.capitalize()} at {command_text(subject, name, special.parameter)}: "
+                                  f"{motion_text(subject, special.nu)}.")
     for hopf in part.diagram.hopf:
         born = "an unstable limit cycle around the stable motion" if hopf.lyapunov > 0.0 else "a stable limit cycle"
-        result.say("bifurcation", f"Andronov–Hopf point at {name} = {hopf.parameter:.9g}, ν3 = {hopf.nu[2]:.6g} rad/s, "
-                   f"{hopf.frequency_rad_per_s:.6g} rad/s: first Lyapunov coefficient {hopf.lyapunov:+.3e}, "
-                   f"{hopf.kind}: "
-                   f"{born} is born.")
+        result.say("bifurcation", f"Andronov–Hopf point at {command_text(subject, name, hopf.parameter)}, "
+                                  f"ν3 = {hopf.nu[2]:.6g} rad/s, where it swings at {hopf.frequency_rad_per_s:.6g} "
+                                  f"rad/s: first Lyapunov coefficient {hopf.lyapunov:+.3e}, {hopf.kind}: {born} is "
+                                  "born.")
+    if at_hopf := _stands_at(part):
+        result.say("bifurcation", "The scene itself stands at the Andronov–Hopf point "
+                                  f"{command_text(subject, name, at_hopf.parameter)}: there the limit cycle has no size "
+                                  "yet, and the turning motion is neither stable nor unstable in the linearisation.")
     for item in part.cycles:
         multipliers = ", ".join(f"{abs(m):.6g}" for m in item.cycle.multipliers)
-        result.say("bifurcation", f"Limit cycle at {name} = {item.cycle.parameter:.6g} about ν3 = "
-                                  f"{item.centre_nu[2]:.6g} rad/s: "
+        where = command_text(subject, name, item.cycle.parameter, 6)
+        result.say("bifurcation", f"Limit cycle at {where} about ν3 = {item.centre_nu[2]:.6g} rad/s: "
                    f"period {item.cycle.period_s:.6g} s, multipliers {multipliers}: "
                    f"{'stable' if item.cycle.stable else 'unstable'}; {item.confirmation.words}.")
         if not item.confirmation.holds:

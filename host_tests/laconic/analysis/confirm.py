@@ -14,6 +14,9 @@ from laconic.analysis.steady import SteadyMotion
 from laconic.plant import Plant
 
 STEPS_PER_FASTEST = 60  # steps per 1/|fastest eigenvalue|
+MOST_STEPS = 2_000_000  # of a steady motion's simulation: beyond, rounding and the method's error tell nothing
+MOST_PERIODS = 4000     # of a cycle's
+TELLING = 4.0           # growth times periods after which a motion has clearly left a cycle, or come back
 
 
 @dataclass(frozen=True)
@@ -22,6 +25,7 @@ class Confirmation:
 
     holds: bool
     words: str
+    simulated: bool = True  # False: nothing that could be told by simulating
 
 
 def plant_at(subject: Subject, nu: np.ndarray, step_s: float) -> Plant:
@@ -38,12 +42,14 @@ def step_for(field: Field, zeta: np.ndarray) -> float:
 def steady_motion(subject: Subject, inputs: Inputs, field: Field, motion: SteadyMotion) -> Confirmation:
     """A small push along the slowest (or the growing) eigenvector becomes exp(J t) times itself, as linearised."""
     if motion.stability == "neutral":
-        return Confirmation(True, "neutral: not simulated")
+        return Confirmation(True, "neutral: not simulated", simulated=False)
     jacobian = field.jacobian(motion.zeta)
     values, vectors = np.linalg.eig(jacobian)
     k = int(np.argmax(values.real))
     duration = 1.0 / abs(float(values[k].real))
-    steps = min(max(int(np.ceil(duration / step_for(field, motion.zeta))), 1), 2_000_000)
+    steps = max(int(np.ceil(duration / step_for(field, motion.zeta))), 1)
+    if steps > MOST_STEPS:
+        return Confirmation(True, f"a push takes {duration:.3g} s to change: too long to tell by simulating", False)
     push = 1e-6 * max(1.0, float(np.abs(motion.zeta).max())) * (vectors[:, k].real / np.linalg.norm(vectors[:, k].real))
     plant = plant_at(subject, field.nu(motion.zeta + push), duration / steps)
     plant.run(subject.core.input(inputs), steps)
@@ -64,6 +70,9 @@ def limit_cycle(subject: Subject, inputs: Inputs, field: Field, cycle: LimitCycl
     held = subject.core.input(inputs)
     plant.run(held, steps)
     gap = float(np.abs(plant.nu - start).max()) / cycle.size
+    if growth_per_period(cycle) * MOST_PERIODS < TELLING:
+        return Confirmation(bool(gap < 1e-5), f"core: one period closes to {gap:.1e} of the cycle's size; motions "
+                                              "beside it change too slowly to tell by simulating")
     inside, outside = (distance_after(subject, inputs, field, cycle, centre, share, step_s) for share in (0.9, 1.1))
     leaves = inside < 0.5 < 1.5 < outside
     holds = bool(gap < 1e-5 and (cycle.stable or leaves))
@@ -71,6 +80,12 @@ def limit_cycle(subject: Subject, inputs: Inputs, field: Field, cycle: LimitCycl
              f"{inside:.2g},"
              f" at 1.1 to {outside:.2g} of the cycle's size")
     return Confirmation(holds, words)
+
+
+def growth_per_period(cycle: LimitCycle) -> float:
+    """How fast motions beside a cycle leave it, or come back: |ln| of the largest multiplier but the one along it."""
+    along = int(np.argmin(np.abs(cycle.multipliers - 1.0)))
+    return abs(float(np.log(np.abs(np.delete(cycle.multipliers, along)).max(initial=1e-300))))
 
 
 def distance_after(subject: Subject, inputs: Inputs, field: Field, cycle: LimitCycle, centre: np.ndarray, share: float,
@@ -83,8 +98,7 @@ def distance_after(subject: Subject, inputs: Inputs, field: Field, cycle: LimitC
     plant = plant_at(subject, field.nu(centre + share * (cycle.start_zeta - centre)), step_s)
     middle, per_period = field.nu(centre), 24
     steps = max(1, int(round(cycle.period_s / step_s / per_period)))
-    growth = abs(float(np.log(np.sort(np.abs(cycle.multipliers))[-1])))
-    periods = int(min(4000, 40.0 / max(growth, 1e-3)))
+    periods = int(min(MOST_PERIODS, 40.0 / max(growth_per_period(cycle), 1e-3)))
     largest = 0.0
     for _ in range(periods):
         largest = 0.0

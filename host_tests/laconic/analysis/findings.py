@@ -101,8 +101,3 @@ class Wishes:
     straight: tuple[float, float] | None = None
     start: tuple[float, float, float] | None = None
 
-
-def nu_text(nu: np.ndarray) -> str:
-    """ν without rounding's rest."""
-    size = max(float(np.abs(nu).max()), 1e-300)
-    return ", ".join(f"{0.0 if abs(v) < 1e-9 * size else v:.6g}" for v in nu)

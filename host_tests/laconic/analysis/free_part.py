@@ -6,10 +6,11 @@ from typing import Any
 
 import numpy as np
 
-from laconic.analysis.findings import FreePart, Study, Wishes, nu_text
+from laconic.analysis.findings import FreePart, Study, Wishes
 from laconic.analysis.free_motion import FreeMotion
 from laconic.analysis.from_core import Subject
 from laconic.analysis.portrait import portrait
+from laconic.analysis.speeds import motion_text
 from laconic.errors import BadInput
 from laconic.simulation import run_window
 
@@ -102,8 +103,7 @@ def _tell_free(result: Study, free: FreePart, wishes: Wishes) -> None:
     else:
         cut = f"with the motors cut off at {free.since_s:.4g} s, the run's fastest moment"
         where = cut if free.since_s else "from the scene's start"
-    nu = nu_text(motion.start_nu)
-    result.say("free", f"Free motion {where}, ν = ({nu}) rad/s: energy {free.energy_J:.6g} J"
+    result.say("free", f"Free motion {where}: {motion_text(subject, motion.start_nu)}; energy {free.energy_J:.6g} J"
                + (f", K = {free.integral:.6g} rad/s." if free.integral is not None else "; with constraints there is "
                                                                                         "no "
                   "second integral K."))
@@ -111,7 +111,7 @@ def _tell_free(result: Study, free: FreePart, wishes: Wishes) -> None:
         "straight": "It does not turn: straight uniform motion for ever.",
         "uniform": "It turns at a constant rate: nothing couples turning to the motion of the centre of mass.",
         "asymptotic": "It tends to straight uniform motion: the yaw rate dies away and never changes its sign"
-                      + (f", ν tends to ({nu_text(motion.limit_nu())}) rad/s."
+                      + (f"; it tends to {motion_text(subject, motion.limit_nu())}."
                          if motion.kind == "asymptotic" else "."),
         "periodic": f"It is periodic in ν with period {motion.period_s:.6g} s"
                     + (f": the path has petals, one every {np.degrees(2.0 * np.pi / motion.petal_rate):.2f}° of "

@@ -9,6 +9,7 @@ import numpy as np
 
 from laconic.analysis.field import Field
 from laconic.analysis.from_core import Inputs, Subject, changed, field_of
+from laconic.analysis.reach import reach_rad_per_s
 from laconic.analysis.steady import steady_polynomial
 from laconic.errors import BadInput
 
@@ -27,6 +28,7 @@ class Parameter:
     subject_of: Callable[[float], Subject]
     inputs_of: Callable[[float], Inputs]
     field_of: Callable[[float], Field]   # the vector field at a value
+    reach: float = float("inf")          # the largest size that a vehicle of this kind gets to
 
 
 def drive_line(subject: Subject, inputs_of: Callable[[float], Inputs]) -> Callable[[float], Field]:
@@ -64,7 +66,8 @@ def command_parameter(subject: Subject, name: str, straight: np.ndarray) -> Para
         return straight_torques(subject, nu)
 
     label = f"commanded straight motion $\\nu_{which + 1}^0$ [rad/s]"
-    return Parameter(name, label, float(straight[which]), lambda _: subject, inputs_of, drive_line(subject, inputs_of))
+    return Parameter(name, label, float(straight[which]), lambda _: subject, inputs_of, drive_line(subject, inputs_of),
+                     reach_rad_per_s(subject, which, float(straight[which])))
 
 
 def scale_parameter(subject: Subject) -> Parameter:
@@ -85,7 +88,13 @@ def vehicle_parameter(subject: Subject, key: str) -> Parameter:
     unit = key.rsplit("_", 1)[-1]
     return Parameter(key, f"{key.removesuffix('_' + unit).replace('_', ' ')} [{unit}]", current,
                      lambda value: changed(subject, key, value), lambda _: subject.inputs,
-                     lambda value: changed(subject, key, value).field())
+                     lambda value: changed(subject, key, value).field(), _farthest_wheel_m(subject))
+
+
+def _farthest_wheel_m(subject: Subject) -> float:
+    """How far a centre of mass may wander: half the way to the wheel that is farthest off; infinite without wheels."""
+    places = [np.hypot(wheel.x_m, wheel.y_m) for wheel in subject.vehicle.wheel[0 : subject.wheel_count]]
+    return 0.5 * max(places, default=0.0) or float("inf")
 
 
 def parameter_named(subject: Subject, name: str | None, straight: np.ndarray | None) -> Parameter:
@@ -138,14 +147,27 @@ def _real_roots(function: Callable[[float], float], degree: int, size: float) ->
 
 
 def default_range(parameter: Parameter) -> tuple[float, float]:
-    """A range that shows the scene's own value and every change of stability of straight motion."""
+    """A range that the vehicle can reach, and in it the scene's own value and every change of stability.
+
+    Where a commanded motion changes nothing within reach, all that is within reach is shown.
+    """
+    value = parameter.at_scene
     if parameter.name in COMMANDS:
-        marks = [0.0, parameter.at_scene, *straight_thresholds(parameter), *turning_folds(parameter)]
-        low, high = min(marks), max(marks)
-        spread = (high - low) or 1.0
-        return low - 0.15 * spread, high + 0.25 * spread
+        return _command_range(parameter)
     if parameter.name == "input_scale":
         return -2.0, 2.0
-    size = abs(parameter.at_scene) or 0.1
-    return (parameter.at_scene - size, parameter.at_scene + size) if parameter.name.startswith("com_") else (
-        0.3 * parameter.at_scene, 3.0 * parameter.at_scene) if parameter.at_scene > 0.0 else (0.0, size)
+    if parameter.name.startswith("com_"):
+        size = abs(value) or min(0.1, parameter.reach)
+        return value - size, value + size
+    return (0.3 * value, 3.0 * value) if value > 0.0 else (0.0, 0.1)
+
+
+def _command_range(parameter: Parameter) -> tuple[float, float]:
+    reach = parameter.reach or 1.0
+    marks = [m for m in (*straight_thresholds(parameter), *turning_folds(parameter)) if abs(m) <= reach]
+    if not marks:
+        return -reach, reach
+    marks += [0.0, parameter.at_scene]
+    low, high = min(marks), max(marks)
+    spread = high - low
+    return max(low - 0.15 * spread, -reach), min(high + 0.25 * spread, reach)

@@ -9,6 +9,8 @@ from typing import Any
 import numpy as np
 
 from laconic.analysis.findings import BifurcationPart, FreePart, SteadyPart, Study
+from laconic.analysis.from_core import Subject
+from laconic.analysis.speeds import of_driver, wheel_radius_m
 from laconic.analysis.traction import Traction
 
 TITLES = {"geometry": "Geometry", "free": "Free motion", "steady": "Steady motions", "bifurcation": "Bifurcations",
@@ -30,32 +32,35 @@ def as_text(study: Study, pictures: list[Path]) -> str:
 
 def as_numbers(study: Study, pictures: list[Path]) -> dict[str, Any]:
     """The same for machines; complex numbers as [real, imaginary], what is infinite as null."""
-    writers = {"geometry": asdict, "free": _free, "steady": _steady, "bifurcation": _bifurcation, "traction": _traction}
+    writers = {"geometry": lambda found, _: asdict(found), "free": _free, "steady": _steady,
+               "bifurcation": _bifurcation, "traction": _traction}
     numbers: dict[str, Any] = {"scene": str(study.subject.scene.path), "name": study.subject.scene.name}
     for part, write in writers.items():
         found = getattr(study, part)
-        numbers[part] = None if found is None else write(found)
+        numbers[part] = None if found is None else write(found, study.subject)
     numbers |= {"words": study.words, "failures": study.failures, "pictures": [str(path) for path in pictures]}
     return plain(numbers)
 
 
-def _free(free: FreePart) -> dict[str, Any]:
+def _free(free: FreePart, subject: Subject) -> dict[str, Any]:
     motion = free.motion
     return {
-        "since_s": free.since_s, "start_nu_rad_per_s": motion.start_nu, "kind": motion.kind,
+        "since_s": free.since_s, "start_nu_rad_per_s": motion.start_nu, **of_driver(subject, motion.start_nu),
+        "kind": motion.kind,
         "period_s": motion.period_s, "energy_J": free.energy_J, "K_rad_per_s": free.integral,
         "limit_nu_rad_per_s": motion.limit_nu(), "difference_to_exact_flow": free.core_gap,
         "energy_drift": free.energy_drift, "K_drift": free.integral_drift,
         "ellipse_centre_rad_per_s": None if free.portrait is None else free.portrait.centre}
 
 
-def _motion(motion: Any) -> dict[str, Any]:
-    return {"nu_rad_per_s": motion.nu, "stability": motion.stability, "turns": motion.turns,
-            "eigenvalues_per_s": motion.eigenvalues}
+def _motion(motion: Any, subject: Subject) -> dict[str, Any]:
+    return {"nu_rad_per_s": motion.nu, **of_driver(subject, motion.nu), "stability": motion.stability,
+            "turns": motion.turns, "eigenvalues_per_s": motion.eigenvalues}
 
 
-def _steady(steady: SteadyPart) -> dict[str, Any]:
-    motions = [_motion(m) | {"confirmed": c.holds} for m, c in zip(steady.motions, steady.confirmations, strict=True)]
+def _steady(steady: SteadyPart, subject: Subject) -> dict[str, Any]:
+    motions = [_motion(m, subject) | {"confirmed": c.holds, "simulated": c.simulated}
+               for m, c in zip(steady.motions, steady.confirmations, strict=True)]
     families = [asdict(family) for family in steady.families]
     out: dict[str, Any] = {"inputs": steady.inputs, "motions": motions, "families": families}
     if steady.pushed is not None:
@@ -63,19 +68,23 @@ def _steady(steady: SteadyPart) -> dict[str, Any]:
     return out
 
 
-def _bifurcation(part: BifurcationPart) -> dict[str, Any]:
+def _bifurcation(part: BifurcationPart, subject: Subject) -> dict[str, Any]:
     branches = [{"parameter": b.parameter, "nu_rad_per_s": b.nu(), "stable": b.stable()} for b in part.diagram.branches]
     cycles = [{"parameter": c.cycle.parameter, "period_s": c.cycle.period_s, "multipliers": c.cycle.multipliers,
-               "stable": c.cycle.stable, "size_rad_per_s": c.cycle.size, "confirmed": c.confirmation.holds}
+               "stable": c.cycle.stable, "size_rad_per_s": c.cycle.size, "confirmed": c.confirmation.holds,
+               "simulated": c.confirmation.simulated}
               for c in part.cycles]
     hopf = [{"parameter": h.parameter, "nu_rad_per_s": h.nu, "frequency_rad_per_s": h.frequency_rad_per_s,
              "first_lyapunov_coefficient": h.lyapunov, "kind": h.kind} for h in part.diagram.hopf]
-    return {"parameter": part.parameter.name, "from": part.low, "to": part.high,
+    commanded = part.parameter.name in ("nu1", "nu2")
+    metres = {"from_m_per_s": wheel_radius_m(subject) * part.low, "to_m_per_s": wheel_radius_m(subject) * part.high,
+              "reach_rad_per_s": part.parameter.reach} if commanded else {}
+    return {"parameter": part.parameter.name, "from": part.low, "to": part.high, **metres,
             "straight_thresholds": part.thresholds, "specials": [asdict(s) for s in part.diagram.specials],
             "hopf": hopf, "cycles": cycles, "branches": branches}
 
 
-def _traction(found: Traction) -> dict[str, Any]:
+def _traction(found: Traction, _: Subject) -> dict[str, Any]:
     finite = found.use[np.isfinite(found.use)]
     return {
         "first_slip_s": found.first_slip_s, "slipping_wheels": found.slipping_wheels, "lifting": found.lifting,

@@ -5,9 +5,10 @@ from __future__ import annotations
 import numpy as np
 
 from laconic.analysis import confirm, pushed
-from laconic.analysis.findings import SteadyPart, Study, Wishes, nu_text
+from laconic.analysis.findings import SteadyPart, Study, Wishes
 from laconic.analysis.from_core import Inputs, Subject
 from laconic.analysis.motions import straight_torques
+from laconic.analysis.speeds import motion_text
 from laconic.analysis.steady import families, steady_motions
 
 
@@ -29,13 +30,12 @@ def steady_part(result: Study, wishes: Wishes) -> None:
     confirmations = [confirm.steady_motion(subject, inputs, found, motion) for motion in motions]
     result.steady = SteadyPart(motions, confirmations, families(found), inputs=dict(inputs))
     for motion, confirmation in zip(motions, confirmations, strict=True):
-        nu = nu_text(motion.nu)
         rates = ", ".join(_complex_text(v) for v in motion.eigenvalues)
         shape = "circle" if motion.turns else "straight"
-        result.say("steady", f"{shape}, {motion.stability}: ν = ({nu}) rad/s; eigenvalues {rates} 1/s; "
-                             f"{confirmation.words}.")
+        result.say("steady", f"{shape}, {motion.stability}: {motion_text(subject, motion.nu)}; eigenvalues {rates} "
+                             f"1/s; {confirmation.words}.")
         if not confirmation.holds:
-            result.failures.append(f"steady motion ({nu}): {confirmation.words}")
+            result.failures.append(f"steady motion, {motion_text(subject, motion.nu)}: {confirmation.words}")
     for family in result.steady.families:
         result.say("steady", f"{family.words}.")
     if not motions and not result.steady.families:
