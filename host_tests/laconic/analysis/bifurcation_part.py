@@ -123,9 +123,9 @@ def _tell_bifurcation(result: Study, part: BifurcationPart) -> None:
                                   f"rad/s: first Lyapunov coefficient {hopf.lyapunov:+.3e}, {hopf.kind}: {born} is "
                                   "born.")
     if at_hopf := _stands_at(part):
-        result.say("bifurcation", "The scene itself stands at the Andronov–Hopf point "
-                                  f"{command_text(subject, name, at_hopf.parameter)}: there the limit cycle has no size "
-                                  "yet, and the turning motion is neither stable nor unstable in the linearisation.")
+        where = command_text(subject, name, at_hopf.parameter)
+        result.say("bifurcation", f"The scene itself stands at the Andronov–Hopf point {where}: there the limit cycle "
+                                  "has no size yet, and the turning motion is neither stable nor unstable when linearised.")
     for item in part.cycles:
         multipliers = ", ".join(f"{abs(m):.6g}" for m in item.cycle.multipliers)
         where = command_text(subject, name, item.cycle.parameter, 6)
