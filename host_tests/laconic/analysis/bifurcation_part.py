@@ -125,7 +125,7 @@ def _tell_bifurcation(result: Study, part: BifurcationPart) -> None:
     if at_hopf := _stands_at(part):
         where = command_text(subject, name, at_hopf.parameter)
         result.say("bifurcation", f"The scene itself stands at the Andronov–Hopf point {where}: there the limit cycle "
-                                  "has no size yet, and the turning motion is neither stable nor unstable when linearised.")
+                                  "has no size yet, and the linearised turning motion is neither stable nor unstable.")
     for item in part.cycles:
         multipliers = ", ".join(f"{abs(m):.6g}" for m in item.cycle.multipliers)
         where = command_text(subject, name, item.cycle.parameter, 6)
