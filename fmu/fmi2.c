@@ -333,7 +333,7 @@ fmi2Status fmi2CompletedIntegratorStep(fmi2Component c, fmi2Boolean noSetFMUStat
     ALLOW(c, FMU_CALL_COMPLETED_STEP);
     if (enterEventMode != NULL) *enterEventMode = fmi2False;
     if (terminateSimulation != NULL) *terminateSimulation = fmi2False;
-    return fmi2OK;
+    return give(fmu_completed_step(SELF(c)));
 }
 
 fmi2Status fmi2SetTime(fmi2Component c, fmi2Real time) {

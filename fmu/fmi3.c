@@ -84,8 +84,6 @@ fmi3Instance fmi3InstantiateCoSimulation(fmi3String instanceName, fmi3String ins
     fmu_request request = {0};
     fmu_instance *instance;
     (void)visible;
-    (void)requiredIntermediateVariables; /* every output and input may be got and set then */
-    (void)nRequiredIntermediateVariables;
     request.instance_name = instanceName;
     request.token = instantiationToken;
     request.resources = resourcePath;
@@ -95,6 +93,10 @@ fmi3Instance fmi3InstantiateCoSimulation(fmi3String instanceName, fmi3String ins
     request.environment = instanceEnvironment;
     instance = create(&request, &functions);
     if (instance == NULL) return NULL;
+    if (fmu_check_intermediate(instance, requiredIntermediateVariables, nRequiredIntermediateVariables) != FMU_OK) {
+        fmu_free(instance);
+        return NULL;
+    }
     instance->event_mode_used = eventModeUsed;
     instance->early_return_allowed = earlyReturnAllowed;
     instance->between_steps = intermediateUpdate != NULL ? offer_update : NULL;
@@ -193,41 +195,45 @@ fmi3Status fmi3SetFloat64(fmi3Instance instance, const fmi3ValueReference valueR
 }
 
 /* The other types in use, by way of doubles: no list of them is longer than the largest array, a call that asks for more
- * variables at once is taken variable by variable. Enumerations are read and set as Int64. */
-#define TYPED(Name, fmi3Type, fmu_type)                                                                               \
-    fmi3Status fmi3Get##Name(fmi3Instance instance, const fmi3ValueReference valueReferences[],                       \
-                             size_t nValueReferences, fmi3Type values[], size_t nValues) {                            \
-        double numbers[FMU_PLANT_LARGEST_ARRAY];                                                                      \
-        size_t k, i, used = 0;                                                                                        \
-        ALLOW(instance, FMU_CALL_GET);                                                                                \
-        for (k = 0; k < nValueReferences; k++) {                                                                      \
-            size_t size = 0;                                                                                          \
-            fmu_status status = fmu_size(SELF(instance), valueReferences, values, k, nValues - used, &size);          \
-            if (status == FMU_OK) status = fmu_get(SELF(instance), fmu_type, &valueReferences[k], 1, numbers, size);  \
-            if (status != FMU_OK) return give(status);                                                                \
-            for (i = 0; i < size; i++) values[used++] = (fmi3Type)numbers[i];                                         \
-        }                                                                                                             \
-        return give(fmu_all_used(SELF(instance), used, nValues));                                                     \
-    }                                                                                                                 \
-    fmi3Status fmi3Set##Name(fmi3Instance instance, const fmi3ValueReference valueReferences[],                       \
-                             size_t nValueReferences, const fmi3Type values[], size_t nValues) {                      \
-        double numbers[FMU_PLANT_LARGEST_ARRAY];                                                                      \
-        size_t k, i, used = 0;                                                                                        \
-        ALLOW(instance, FMU_CALL_SET_DISCRETE);                                                                       \
-        for (k = 0; k < nValueReferences; k++) {                                                                      \
-            size_t size = 0;                                                                                          \
-            fmu_status status = fmu_size(SELF(instance), valueReferences, values, k, nValues - used, &size);          \
-            for (i = 0; i < size; i++) numbers[i] = (double)values[used++];                                           \
-            if (status == FMU_OK) status = fmu_set(SELF(instance), fmu_type, &valueReferences[k], 1, numbers, size);  \
-            if (status != FMU_OK) return give(status);                                                                \
-        }                                                                                                             \
-        return give(fmu_all_used(SELF(instance), used, nValues));                                                     \
+ * variables at once is taken variable by variable. Enumerations are read and set as Int64. `number` makes a double of
+ * a value that is set. */
+#define PLAIN(value) (double)(value)
+/* a negative number that was cast is said to be what it was */
+#define SIGNED(value) (double)(int64_t)(value)
+#define TYPED(Name, fmi3Type, fmu_type, number)                                                                        \
+    fmi3Status fmi3Get##Name(fmi3Instance instance, const fmi3ValueReference valueReferences[],                        \
+                             size_t nValueReferences, fmi3Type values[], size_t nValues) {                             \
+        double numbers[FMU_PLANT_LARGEST_ARRAY];                                                                       \
+        size_t k, i, used = 0;                                                                                         \
+        ALLOW(instance, FMU_CALL_GET);                                                                                 \
+        for (k = 0; k < nValueReferences; k++) {                                                                       \
+            size_t size = 0;                                                                                           \
+            fmu_status status = fmu_size(SELF(instance), valueReferences, values, k, nValues - used, &size);           \
+            if (status == FMU_OK) status = fmu_get(SELF(instance), fmu_type, &valueReferences[k], 1, numbers, size);   \
+            if (status != FMU_OK) return give(status);                                                                 \
+            for (i = 0; i < size; i++) values[used++] = (fmi3Type)numbers[i];                                          \
+        }                                                                                                              \
+        return give(fmu_all_used(SELF(instance), used, nValues));                                                      \
+    }                                                                                                                  \
+    fmi3Status fmi3Set##Name(fmi3Instance instance, const fmi3ValueReference valueReferences[],                        \
+                             size_t nValueReferences, const fmi3Type values[], size_t nValues) {                       \
+        double numbers[FMU_PLANT_LARGEST_ARRAY];                                                                       \
+        size_t k, i, used = 0;                                                                                         \
+        ALLOW(instance, FMU_CALL_SET_DISCRETE);                                                                        \
+        for (k = 0; k < nValueReferences; k++) {                                                                       \
+            size_t size = 0;                                                                                           \
+            fmu_status status = fmu_size(SELF(instance), valueReferences, values, k, nValues - used, &size);           \
+            for (i = 0; i < size; i++) numbers[i] = number(values[used++]);                                            \
+            if (status == FMU_OK) status = fmu_set(SELF(instance), fmu_type, &valueReferences[k], 1, numbers, size);   \
+            if (status != FMU_OK) return give(status);                                                                 \
+        }                                                                                                              \
+        return give(fmu_all_used(SELF(instance), used, nValues));                                                      \
     }
 
-TYPED(Int32, fmi3Int32, FMU_INT32)
-TYPED(Int64, fmi3Int64, FMU_ENUMERATION)
-TYPED(UInt64, fmi3UInt64, FMU_UINT64)
-TYPED(Boolean, fmi3Boolean, FMU_BOOLEAN)
+TYPED(Int32, fmi3Int32, FMU_INT32, PLAIN)
+TYPED(Int64, fmi3Int64, FMU_ENUMERATION, PLAIN)
+TYPED(UInt64, fmi3UInt64, FMU_UINT64, SIGNED)
+TYPED(Boolean, fmi3Boolean, FMU_BOOLEAN, PLAIN)
 
 /* Types that no variable has. */
 #define ABSENT(Name, fmi3Type)                                                                                        \
@@ -443,7 +449,7 @@ fmi3Status fmi3CompletedIntegratorStep(fmi3Instance instance, fmi3Boolean noSetF
     ALLOW(instance, FMU_CALL_COMPLETED_STEP);
     if (enterEventMode != NULL) *enterEventMode = fmi3False;
     if (terminateSimulation != NULL) *terminateSimulation = fmi3False;
-    return fmi3OK;
+    return give(fmu_completed_step(SELF(instance)));
 }
 
 fmi3Status fmi3SetTime(fmi3Instance instance, fmi3Float64 time) {

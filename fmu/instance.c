@@ -56,23 +56,34 @@ static char *copy_text(const char *text) {
     return copy;
 }
 
+static bool names_itself(const fmu_instance *instance, const fmu_request *request) {
+    if (request->instance_name == NULL || request->instance_name[0] == '\0')
+        fmu_refuse(instance, "Instantiate: the instance has no name (%s); give it one",
+                   request->instance_name == NULL ? "NULL" : "an empty text");
+    else if (request->token == NULL)
+        fmu_refuse(instance, "Instantiate: the token is missing (NULL); it stands in modelDescription.xml");
+    else
+        return true;
+    return false;
+}
+
 fmu_instance *fmu_create(const fmu_request *request) {
-    fmu_instance *instance;
-    if (request->token == NULL || request->instance_name == NULL) return NULL;
-    instance = calloc(1, sizeof *instance);
+    fmu_instance *instance = calloc(1, sizeof *instance);
     if (instance == NULL) return NULL;
     instance->kind = request->kind;
     instance->version = request->version;
     instance->deliver = request->deliver;
     instance->environment = request->environment;
     if (request->box_size <= sizeof instance->box) memcpy(instance->box, request->box, request->box_size);
-    instance->log_categories = request->logging_on ? FMU_LOG_ALL : FMU_LOG_ERROR;
-    instance->token_hash = fmu_token_hash(request->token);
-    instance->name = copy_text(request->instance_name);
-    if (instance->name == NULL || !fmu_load_start_values(instance, request->token, request->resources)) {
+    /* a warning says that the results do not hold, which is no debugging */
+    instance->log_categories = request->logging_on ? FMU_LOG_ALL : FMU_LOG_ERROR | FMU_LOG_WARNING;
+    instance->name = copy_text(request->instance_name != NULL ? request->instance_name : "");
+    if (instance->name == NULL || !names_itself(instance, request) ||
+        !fmu_load_start_values(instance, request->token, request->resources)) {
         fmu_free(instance);
         return NULL;
     }
+    instance->token_hash = fmu_token_hash(request->token);
     instance->plant.start_needed = true;
     instance->initial = instance->plant;
     fmu_enter(instance, FMU_INSTANTIATED);
@@ -117,6 +128,7 @@ fmu_status fmu_update_discrete_states(fmu_instance *instance, bool *states_chang
 
 fmu_status fmu_reset(fmu_instance *instance) {
     instance->plant = instance->initial;
+    instance->told = 0;
     fmu_clock_start(&instance->clock, 0.0, false, 0.0);
     fmu_enter(instance, FMU_INSTANTIATED);
     return FMU_OK;

@@ -62,6 +62,7 @@ struct fmu_instance {
     void (*box[2])(void);     /* the importer's callbacks, as the glue keeps them            */
     char *name;
     uint64_t token_hash;
+    uint32_t told;                   /* bit per thing that the plant says once a run                */
     fmu_between_steps between_steps; /* NULL: the importer does not ask for intermediate updates */
     fmu_clock clock;
     fmu_plant plant;
@@ -82,7 +83,8 @@ typedef struct fmu_request {
     size_t box_size;
 } fmu_request;
 
-/* NULL when the token is not this FMU's, the start values cannot be read, or memory is short. */
+/* NULL when name or token is missing, the token is not this FMU's, the start values cannot be read, or memory is
+ * short; the log says which. */
 fmu_instance *fmu_create(const fmu_request *request);
 void fmu_free(fmu_instance *instance);
 
@@ -140,8 +142,10 @@ typedef struct fmu_variable {
     uint16_t stride; /* from one element to the next                          */
     uint16_t size;   /* elements; 0: as many as fmu_plant_array_size() says   */
     uint8_t type, access;
-    uint32_t group;  /* what must be fresh before it is read, see plant.h     */
-    uint32_t tangent; /* in fmu_tangent; UINT32_MAX: not differentiated       */
+    bool intermediate;  /* may be got or set in between steps (FMI 3)          */
+    double least, most; /* what it may be set to                              */
+    uint32_t group;     /* what must be fresh before it is read, see plant.h     */
+    uint32_t tangent;   /* in fmu_tangent; UINT32_MAX: not differentiated       */
 } fmu_variable;
 
 extern const fmu_variable fmu_variables[];
@@ -157,8 +161,16 @@ extern const fmu_start_value fmu_built_in_starts[];
 extern const size_t fmu_built_in_start_count;
 extern const char *const fmu_token_2, *const fmu_token_3; /* of the descriptions this was built with */
 
-/* A whole variable, or one element of it: reference v is row v, reference v + 1024·i its element i from 1. */
+/* A whole variable, or one element of it: reference v is row v, reference 1024·v + i its element i from 1. An array's
+ * elements follow each other, as importers expect that put them together again; row 0, the time, has none. */
 #define FMU_ELEMENT_SHIFT 10
+static inline uint32_t fmu_row(uint32_t reference) {
+    return reference >> FMU_ELEMENT_SHIFT != 0 ? reference >> FMU_ELEMENT_SHIFT : reference;
+}
+static inline uint32_t fmu_element(uint32_t reference) { /* 0: the whole */
+    return reference >> FMU_ELEMENT_SHIFT != 0 ? reference & ((1U << FMU_ELEMENT_SHIFT) - 1U) : 0;
+}
+
 typedef struct fmu_slot {
     const fmu_variable *variable;
     uint32_t first, count;
@@ -180,6 +192,8 @@ fmu_status fmu_size(fmu_instance *instance, const uint32_t *references, const vo
 fmu_status fmu_all_used(const fmu_instance *instance, size_t used, size_t given);
 /* Refuses unless nothing was asked for: there are no variables of that kind. */
 fmu_status fmu_none_of(const fmu_instance *instance, const char *kind, size_t asked);
+/* Refuses unless every one of them may be got or set in between steps. */
+fmu_status fmu_check_intermediate(const fmu_instance *instance, const uint32_t *references, size_t count);
 /* One element, whatever the mode; false: no such variable, or no value it can have. */
 bool fmu_take_start_value(fmu_instance *instance, uint32_t reference, double value);
 fmu_status fmu_set(fmu_instance *instance, fmu_type type, const uint32_t *references, size_t count,
@@ -201,6 +215,7 @@ fmu_status fmu_do_step(fmu_instance *instance, double at_s, double step_s, fmu_s
 #define FMU_LARGEST_STATE 1e18
 
 fmu_status fmu_set_time(fmu_instance *instance, double time_s);
+fmu_status fmu_completed_step(fmu_instance *instance);
 fmu_status fmu_get_states(fmu_instance *instance, double *values, size_t count);
 fmu_status fmu_set_states(fmu_instance *instance, const double *values, size_t count);
 fmu_status fmu_get_rates(fmu_instance *instance, double *values, size_t count);

@@ -29,6 +29,9 @@ fmu_status fmu_plant_count_steps(fmu_instance *instance, double step_s, double o
 /* Takes up to `steps` internal steps; *taken says how many. Refused: the state is where *taken steps lead. */
 fmu_status fmu_plant_run(fmu_instance *instance, uint64_t steps, uint64_t *taken);
 
+/* Model Exchange has taken a step: what must be said about where it led is said. */
+void fmu_plant_watch(fmu_instance *instance);
+
 /* Remembers and brings back everything that steps change, for a communication step that is refused half-way. */
 void fmu_plant_mark(const fmu_plant *plant, fmu_plant_motion *motion);
 void fmu_plant_return(fmu_plant *plant, const fmu_plant_motion *motion);

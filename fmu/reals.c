@@ -3,11 +3,11 @@
  * wrong. */
 #include "plant_api.h"
 
-#define ROW_MASK ((1U << FMU_ELEMENT_SHIFT) - 1U)
-
 static inline const fmu_variable *row_of(uint32_t reference) {
-    const uint32_t row = reference & ROW_MASK;
-    if (row >= fmu_variable_count || fmu_variables[row].type != FMU_REAL) return NULL;
+    const uint32_t row = fmu_row(reference);
+    if (row >= fmu_variable_count || (row != reference && fmu_element(reference) == 0) ||
+        fmu_variables[row].type != FMU_REAL)
+        return NULL;
     return &fmu_variables[row];
 }
 
@@ -36,7 +36,7 @@ static bool look_up(const fmu_instance *instance, fmu_list *list, const uint32_t
         const fmu_variable *variable = row_of(references[k]);
         size_t found;
         if (variable == NULL || (to_set && variable->access != FMU_INPUT)) return false;
-        found = offsets_of(instance, variable, references[k] >> FMU_ELEMENT_SHIFT, &list->offset[list->values],
+        found = offsets_of(instance, variable, fmu_element(references[k]), &list->offset[list->values],
                            FMU_LIST_LENGTH - list->values);
         if (found == 0) return false;
         list->values += found;

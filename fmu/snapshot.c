@@ -7,7 +7,7 @@
 
 #include "plant_api.h"
 
-#define STATE_VERSION 1U
+#define STATE_VERSION 2U
 static const char magic[8] = {'L', 'A', 'C', 'S', 'T', 'A', 'T', 'E'};
 
 struct fmu_snapshot {
@@ -69,6 +69,7 @@ static void transfer_clock(fmu_stream *stream, fmu_clock *clock) {
     fmu_stream_u64(stream, &clock->ticks);
     fmu_stream_reals(stream, &clock->asked_s, 1);
     fmu_stream_u64(stream, &clock->asked_ticks);
+    fmu_stream_reals(stream, &clock->completed_s, 1);
 }
 
 /* Everything but magic and checksum. */

@@ -9,7 +9,7 @@
 
 #include "plant_api.h"
 
-#define FILE_VERSION 1U
+#define FILE_VERSION 2U
 #define HEADER_NUMBERS 4U
 #define LARGEST_FILE 65536U
 static const char magic[8] = {'L', 'A', 'C', 'S', 'T', 'A', 'R', 'T'};
@@ -95,13 +95,15 @@ static bool parse(fmu_instance *instance, const uint8_t *bytes, size_t size, con
 static bool load_file(fmu_instance *instance, const char *token, const char *resources) {
     char name[4096];
     uint8_t *bytes = malloc(LARGEST_FILE);
+    const bool named = file_name(name, sizeof name, resources);
     bool good;
     if (bytes == NULL) return false;
-    good = file_name(name, sizeof name, resources) && parse(instance, bytes, read_file(name, bytes, LARGEST_FILE), token);
+    good = named && parse(instance, bytes, read_file(name, bytes, LARGEST_FILE), token);
     free(bytes);
     if (!good)
-        fmu_refuse(instance, "the token %s is not this binary's, and %.300s/start.bin holds no start values for it: "
-                   "import the FMU anew", token, resources);
+        fmu_refuse(instance,
+                   "the token %s is not this binary's, and %.300s holds no start values for it: import the FMU anew",
+                   token, named ? name : resources);
     return good;
 }
 

@@ -3,7 +3,22 @@
 
 fmu_status fmu_set_time(fmu_instance *instance, double time_s) {
     if (!(time_s - time_s == 0.0)) return fmu_refuse(instance, "SetTime: %g is not a time", time_s);
+    if (fmu_clock_passes_stop(&instance->clock, time_s, 0.0) && !fmu_clock_may_look_at(&instance->clock, time_s))
+        return fmu_refuse(instance, "SetTime: %.15g s is beyond the stop time %.15g s", time_s, instance->clock.stop_s);
     instance->plant.time_s = time_s;
+    return FMU_OK;
+}
+
+fmu_status fmu_completed_step(fmu_instance *instance) {
+    const double time_s = instance->plant.time_s;
+    fmu_status status;
+    if (fmu_clock_passes_stop(&instance->clock, time_s, 0.0))
+        return fmu_refuse(instance, "CompletedIntegratorStep: %.15g s is beyond the stop time %.15g s", time_s,
+                          instance->clock.stop_s);
+    status = fmu_make_current(instance);
+    if (status != FMU_OK) return status;
+    instance->clock.completed_s = time_s;
+    fmu_plant_watch(instance);
     return FMU_OK;
 }
 

@@ -6,16 +6,37 @@
 /* Steps as long as the communication step; one that differs by rounding only counts as the same. */
 #define SAME_STEP 1e-9
 
+/* Importers add up their times and end with the remainder, which is none when it is this small a part of an internal
+ * step. */
+#define NO_STEP 1e-6
+
+/* With step_s = 0 the steps are as long as the last communication step; 0: none was taken yet. */
+static double last_internal_step(const fmu_instance *instance) {
+    const double own_s = fmu_plant_own_step(&instance->plant);
+    return own_s > 0.0 ? own_s : instance->clock.step_s;
+}
+
+static bool is_remainder(const fmu_instance *instance, double step_s) {
+    return step_s > 0.0 && step_s <= NO_STEP * last_internal_step(instance);
+}
+
+/* The internal step that the communication step asks for. */
+static double internal_step(const fmu_instance *instance, double step_s) {
+    const double last_s = last_internal_step(instance);
+    if (is_remainder(instance, step_s) || fmu_plant_own_step(&instance->plant) > 0.0) return last_s;
+    return last_s > 0.0 && last_s < step_s ? last_s : step_s;
+}
+
 /* The importer's time may be half an internal step off, and no more. */
 static fmu_status check_interval(const fmu_instance *instance, double at_s, double step_s) {
     const fmu_clock *clock = &instance->clock;
     const double now_s = instance->plant.time_s, off_s = at_s - now_s;
-    const double half_s = 0.5 * (clock->step_s > 0.0 && clock->step_s < step_s ? clock->step_s : step_s);
+    const double internal_s = internal_step(instance, step_s), half_s = 0.5 * internal_s;
     if (!(step_s > 0.0 && step_s <= DBL_MAX))
         return fmu_refuse(instance, "a communication step of %.15g s cannot be taken: it must be more than 0", step_s);
     if (!(off_s <= half_s && off_s >= -half_s))
         return fmu_refuse(instance, "the step starts at %.15g s, but the model is at %.15g s", at_s, now_s);
-    if (clock->stop_defined && now_s + step_s > clock->stop_s + 0.5 * step_s)
+    if (fmu_clock_passes_stop(clock, now_s + step_s, internal_s))
         return fmu_refuse(instance, "the step from %.15g s to %.15g s goes beyond the stop time %.15g s", now_s,
                           now_s + step_s, clock->stop_s);
     return FMU_OK;
@@ -27,13 +48,13 @@ static fmu_status change_step(fmu_instance *instance, double step_s) {
     return status;
 }
 
-/* How many internal steps, kept for the next call with the same communication step. */
+/* How many internal steps, kept for the next call with the same communication step; none in a remainder. */
 static fmu_status count_steps(fmu_instance *instance, double step_s, uint64_t *steps) {
     fmu_clock *clock = &instance->clock;
     const double own_s = fmu_plant_own_step(&instance->plant);
     fmu_status status = FMU_OK;
-    if (step_s == clock->asked_s) {
-        *steps = clock->asked_ticks;
+    if (step_s == clock->asked_s || is_remainder(instance, step_s)) {
+        *steps = step_s == clock->asked_s ? clock->asked_ticks : 0;
         return FMU_OK;
     }
     if (own_s > 0.0) {
@@ -90,7 +111,7 @@ static fmu_status run_several(fmu_instance *instance, uint64_t steps, fmu_step_e
 static fmu_status run(fmu_instance *instance, uint64_t steps, fmu_step_end *end) {
     uint64_t taken = 0;
     fmu_status status;
-    if (steps > 1 || instance->between_steps != NULL) return run_several(instance, steps, end);
+    if (steps != 1 || instance->between_steps != NULL) return run_several(instance, steps, end);
     status = fmu_plant_run(instance, 1, &taken);
     instance->clock.ticks += taken;
     return status;

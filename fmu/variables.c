@@ -1,18 +1,17 @@
 /* Reading and setting variables by value reference. */
 #include <float.h>
+#include <stdio.h>
 #include <string.h>
 
 #include "plant_api.h"
-
-#define ROW_MASK ((1U << FMU_ELEMENT_SHIFT) - 1U)
 
 static const char *const type_names[] = {"a Float64 (Real)", "an Int32 (Integer)", "a UInt64 (Integer)", "an Enumeration",
                                          "a Boolean"};
 
 bool fmu_find(const fmu_instance *instance, uint32_t reference, fmu_slot *slot) {
-    const uint32_t row = reference & ROW_MASK, element = reference >> FMU_ELEMENT_SHIFT;
+    const uint32_t row = fmu_row(reference), element = fmu_element(reference);
     uint32_t size;
-    if (row >= fmu_variable_count) return false;
+    if (row >= fmu_variable_count || (row != reference && element == 0)) return false;
     slot->variable = &fmu_variables[row];
     size = slot->variable->size != 0 ? slot->variable->size : FMU_PLANT_ARRAY_SIZE(&instance->plant);
     if (element > size) return false;
@@ -39,19 +38,32 @@ static bool is_finite(double value) {
     return value <= DBL_MAX && value >= -DBL_MAX;
 }
 
-static fmu_status refuse_value(const fmu_instance *instance, const fmu_slot *slot, uint32_t element, double value) {
-    if (slot->count == 1 && slot->first == 0 && slot->variable->size == 1)
-        return fmu_refuse(instance, "%s: %g is not a value it can have", slot->variable->name, value);
-    return fmu_refuse(instance, "%s[%u]: %g is not a value it can have", slot->variable->name,
-                      (unsigned)(slot->first + element + 1), value);
+static double least_of(const fmu_variable *variable) {
+    return variable->access == FMU_STATE ? -FMU_LARGEST_STATE : variable->least;
 }
 
-/* Whether a number makes sense for the model is for the model to say; here only what the place can hold. */
+static double most_of(const fmu_variable *variable) {
+    return variable->access == FMU_STATE ? FMU_LARGEST_STATE : variable->most;
+}
+
+static fmu_status refuse_value(const fmu_instance *instance, const fmu_slot *slot, uint32_t element, double value) {
+    const fmu_variable *variable = slot->variable;
+    const double least = least_of(variable), most = most_of(variable);
+    char name[80];
+    if (slot->count == 1 && slot->first == 0 && variable->size == 1)
+        snprintf(name, sizeof name, "%s", variable->name);
+    else
+        snprintf(name, sizeof name, "%s[%u]", variable->name, (unsigned)(slot->first + element + 1));
+    if (!is_finite(value)) return fmu_refuse(instance, "%s: %g is not a finite number", name, value);
+    if (most == DBL_MAX)
+        return fmu_refuse(instance, "%s: %.15g is outside its range: at least %g", name, value, least);
+    return fmu_refuse(instance, "%s: %.15g is outside its range: %g to %g", name, value, least, most);
+}
+
+/* The range that the description declares, which NaN is not in; whether the model can do with the number is for the
+ * model to say. */
 static bool acceptable(const fmu_variable *variable, double value) {
-    if (variable->access == FMU_STRUCTURAL) return value >= 1.0 && value <= (double)FMU_PLANT_LARGEST_ARRAY;
-    if (variable->access == FMU_STATE) return value <= FMU_LARGEST_STATE && value >= -FMU_LARGEST_STATE;
-    if (variable->type == FMU_REAL) return is_finite(value);
-    return value >= (double)INT32_MIN && value <= (double)INT32_MAX;
+    return value >= least_of(variable) && value <= most_of(variable);
 }
 
 static void store(fmu_instance *instance, const fmu_slot *slot, uint32_t element, double value) {
@@ -204,6 +216,23 @@ fmu_status fmu_all_used(const fmu_instance *instance, size_t used, size_t given)
 
 fmu_status fmu_none_of(const fmu_instance *instance, const char *kind, size_t asked) {
     return asked == 0 ? FMU_OK : fmu_refuse(instance, "there are no variables of the kind %s", kind);
+}
+
+fmu_status fmu_check_intermediate(const fmu_instance *instance, const uint32_t *references, size_t count) {
+    size_t k;
+    fmu_slot slot;
+    if (count > 0 && references == NULL)
+        return fmu_refuse(instance, "Instantiate: the list of %zu required intermediate variables is missing (NULL)",
+                          count);
+    for (k = 0; k < count; k++) {
+        if (!fmu_find(instance, references[k], &slot))
+            return fmu_refuse(instance, "Instantiate: no variable has the value reference %u, which is required as "
+                              "intermediate variable", (unsigned)references[k]);
+        if (!slot.variable->intermediate)
+            return fmu_refuse(instance, "Instantiate: %s is required as intermediate variable, but it has no "
+                              "intermediate updates", slot.variable->name);
+    }
+    return FMU_OK;
 }
 
 bool fmu_take_start_value(fmu_instance *instance, uint32_t reference, double value) {

@@ -16,11 +16,12 @@
 
 #include "instance.h"
 
-enum { WARM = 2000, STEPS = 20000, ROUNDS = 200, VOLTAGE = 31, NU = 37, X = 38 };
+enum { WARM = 2000, STEPS = 20000, ROUNDS = 200, FRICTION = 11, VOLTAGE = 31, NU = 37, X = 38 };
 #define STEP_S 0.01
 #define METHOD_RK4 1
 
 static const double volts[4] = {2.0, 3.0, 2.5, 2.0};
+static const double unwatched = 0.0; /* no friction coefficient: the glue alone, no reactions at every step */
 static double sink;
 
 static double now_ns(void) {
@@ -76,7 +77,7 @@ static void logger_2(fmi2ComponentEnvironment e, fmi2String name, fmi2Status s, 
 
 static void start_2(const char *path) {
     static const fmi2CallbackFunctions callbacks = {logger_2, calloc, free, NULL, NULL};
-    const fmi2ValueReference method = 29;
+    const fmi2ValueReference method = 29, friction = FRICTION;
     const fmi2Integer rk4 = METHOD_RK4;
     void *library = load(path);
     fmi2InstantiateTYPE *instantiate;
@@ -93,14 +94,15 @@ static void start_2(const char *path) {
     two.c = instantiate("bench", fmi2CoSimulation, fmu_token_2, NULL, &callbacks, fmi2False, fmi2False);
     must(two.c == NULL, "fmi2Instantiate");
     must((int)set_integer(two.c, &method, 1, &rk4), "fmi2SetInteger");
+    must((int)two.set(two.c, &friction, 1, &unwatched), "fmi2SetReal");
     must((int)enter(two.c), "fmi2EnterInitializationMode");
     must((int)leave(two.c), "fmi2ExitInitializationMode");
 }
 
 static void run_2(long first, long count) {
-    static const fmi2ValueReference in[4] = {VOLTAGE + (1U << 10), VOLTAGE + (2U << 10), VOLTAGE + (3U << 10),
-                                             VOLTAGE + (4U << 10)};
-    static const fmi2ValueReference out[6] = {NU + (1U << 10), NU + (2U << 10), NU + (3U << 10), X, X + 1, X + 2};
+    static const fmi2ValueReference in[4] = {VOLTAGE * 1024U + 1U, VOLTAGE * 1024U + 2U, VOLTAGE * 1024U + 3U,
+                                             VOLTAGE * 1024U + 4U};
+    static const fmi2ValueReference out[6] = {NU * 1024U + 1U, NU * 1024U + 2U, NU * 1024U + 3U, X, X + 1, X + 2};
     double values[6];
     long k;
     for (k = first; k < first + count; k++) {
@@ -126,7 +128,7 @@ static void logger_3(fmi3InstanceEnvironment e, fmi3Status s, fmi3String categor
 }
 
 static void start_3(const char *path) {
-    const fmi3ValueReference method = 29;
+    const fmi3ValueReference method = 29, friction = FRICTION;
     const fmi3Int64 rk4 = METHOD_RK4;
     void *library = load(path);
     fmi3InstantiateCoSimulationTYPE *instantiate;
@@ -143,6 +145,7 @@ static void start_3(const char *path) {
     three.c = instantiate("bench", fmu_token_3, NULL, false, false, false, false, NULL, 0, NULL, logger_3, NULL);
     must(three.c == NULL, "fmi3Instantiate");
     must((int)set_integer(three.c, &method, 1, &rk4, 1), "fmi3SetInt64");
+    must((int)three.set(three.c, &friction, 1, &unwatched, 1), "fmi3SetFloat64");
     must((int)enter(three.c, false, 0.0, 0.0, false, 0.0), "fmi3EnterInitializationMode");
     must((int)leave(three.c), "fmi3ExitInitializationMode");
 }

@@ -97,6 +97,10 @@ fmu_status fmu_plant_run(fmu_instance *instance, uint64_t steps, uint64_t *taken
     return FMU_OK;
 }
 
+void fmu_plant_watch(fmu_instance *instance) {
+    (void)instance; /* a controller needs no ground */
+}
+
 void fmu_plant_mark(const fmu_plant *plant, fmu_plant_motion *motion) {
     uint32_t i;
     for (i = 0; i < FMU_PLANT_LARGEST_ARRAY; i++) motion->error_rad[i] = plant->error_rad[i];

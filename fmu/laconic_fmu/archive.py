@@ -21,8 +21,8 @@ PLATFORMS = {
 }
 """Folder in FMI 2, folder in FMI 3, ending of the binary."""
 
-OPTIONS = "-O2 -ffp-contract=off -fno-tree-slp-vectorize"
-"""What keeps the same bits (gcc and clang)."""
+COMPILER, OPTIONS = "gcc", "-std=c99 -O2 -ffp-contract=off -fno-tree-slp-vectorize"
+"""What keeps the same bits; clang knows the same options."""
 
 
 def binary_name(version: int, platform: str, identifier: str) -> str:
@@ -35,7 +35,8 @@ def build_description(sources: Sequence[str], identifier: str) -> str:
     """sources/buildDescription.xml of FMI 3."""
     root = ET.Element("fmiBuildDescription", {"fmiVersion": "3.0"})
     configuration = ET.SubElement(root, "BuildConfiguration", {"modelIdentifier": identifier})
-    group = ET.SubElement(configuration, "SourceFileSet", {"language": "C99", "compilerOptions": OPTIONS})
+    group = ET.SubElement(configuration, "SourceFileSet", {"language": "C99", "compiler": COMPILER,
+                                                            "compilerOptions": OPTIONS})
     for name in sources:
         ET.SubElement(group, "SourceFile", {"name": name})
     ET.indent(root)

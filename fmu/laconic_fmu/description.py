@@ -10,7 +10,13 @@ from dataclasses import dataclass, field, replace
 from pathlib import Path
 
 ELEMENT_SHIFT = 10
-"""Element i of the array with the value reference v has the reference v + (i << ELEMENT_SHIFT)."""
+"""Element i of the array with the value reference v has the reference (v << ELEMENT_SHIFT) + i."""
+
+
+def element_reference(reference: int, element: int) -> int:
+    """The value reference of an array's element from 1; of the whole, or a scalar, for element 0."""
+    return (reference << ELEMENT_SHIFT) + element if element else reference
+
 
 ELEMENTWISE = {("wheel_torque_Nm", "voltage_V"), ("wheel_torque_Nm", "axle_torque_Nm")} | {
     (unknown, known) for unknown in ("voltage_V", "der(angle_error_rad)")
@@ -73,6 +79,11 @@ class Description:
         parameter = self.array_parameter
         return int(parameter.start[0]) if parameter else 0
 
+    def items(self, variable: Variable) -> dict[int, tuple[str, str]]:
+        """An enumeration's values, with the name and the description of each."""
+        kind = self.root.find(f"TypeDefinitions/EnumerationType[@name='{variable.attributes['declaredType']}']")
+        return {int(item.get("value", "")): (item.get("name", ""), item.get("description", "")) for item in kind or []}
+
     def elements(self, variable: Variable) -> int | None:
         """How many elements the variable has in this description; None for a scalar."""
         return self.array_size if isinstance(variable.size, str) else variable.size
@@ -101,6 +112,8 @@ def parse(text: str) -> Description:
     names = {int(e.get("valueReference", -1)): e.get("name", "") for e in elements}
     variables = tuple(_variable(element, names) for element in elements)
     for number, variable in enumerate(variables):
+        if number == 0 and variable.size is not None:
+            raise ValueError(f"{variable.name}: the first variable is no array: its elements would have no references")
         if variable.reference != number:
             raise ValueError(f"{variable.name}: its value reference is {variable.reference}, but it is number {number} "
                              "in the list: new variables go to the end")
@@ -154,8 +167,8 @@ def start_values(description: Description) -> list[tuple[int, float]]:
     values: list[tuple[int, float]] = []
     for variable in sorted(description.variables, key=lambda v: v.causality != "structuralParameter"):
         for i, text in enumerate(variable.start):
-            element = 0 if variable.size is None else (i + 1) << ELEMENT_SHIFT
-            values.append((variable.reference + element, as_double(text)))
+            element = 0 if variable.size is None else i + 1
+            values.append((element_reference(variable.reference, element), as_double(text)))
     return values
 
 

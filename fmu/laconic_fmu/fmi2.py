@@ -5,7 +5,7 @@ from __future__ import annotations
 import xml.etree.ElementTree as ET
 from collections.abc import Sequence
 
-from .description import Description, with_token
+from .description import Description, element_reference, with_token
 from .scalars import Scalar, ScalarUnknown, scalars, unknowns
 
 TYPES = {"Float64": "Real", "Int32": "Integer", "UInt64": "Integer", "Enumeration": "Enumeration", "Boolean": "Boolean"}
@@ -50,8 +50,7 @@ def _variable(parent: ET.Element, scalar: Scalar, index: dict[int, int]) -> None
     element = ET.SubElement(parent, "ScalarVariable", attributes)
     typed = {k: variable.attributes[k] for k in ("declaredType", "min", "max", "nominal") if k in variable.attributes}
     if "derivative" in variable.attributes:
-        state = int(variable.attributes["derivative"]) + (scalar.reference - variable.reference)
-        typed["derivative"] = str(index[state])
+        typed["derivative"] = str(index[element_reference(int(variable.attributes["derivative"]), scalar.element)])
     if scalar.start is not None:
         typed["start"] = scalar.start
     ET.SubElement(element, TYPES[variable.tag], typed)

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import xml.etree.ElementTree as ET
 
-from .description import Description, Variable, with_token
+from .description import Description, Variable, element_reference, with_token
 from .scalars import Scalar, scalars, unknowns
 
 KINDS = ("Output", "ContinuousStateDerivative", "InitialUnknown")
@@ -31,7 +31,7 @@ def _attributes(variable: Variable, scalar: Scalar) -> dict[str, str]:
     if variable.causality == "structuralParameter":
         attributes |= {"causality": "local", "variability": "constant", "initial": "exact"}
     if "derivative" in variable.attributes:
-        attributes["derivative"] = str(int(variable.attributes["derivative"]) + scalar.reference - variable.reference)
+        attributes["derivative"] = str(element_reference(int(variable.attributes["derivative"]), scalar.element))
     if scalar.start is not None:
         attributes["start"] = scalar.start
     return attributes

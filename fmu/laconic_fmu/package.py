@@ -22,7 +22,7 @@ def token_hash(token: str) -> int:
 def start_file(values: Iterable[tuple[int, float]], token: str, scalar: bool) -> bytes:
     """resources/start.bin, as fmu/start_values.c describes it."""
     rows = list(values)
-    body = b"LACSTART" + struct.pack("<QQQQ", 1, int(scalar), token_hash(token), len(rows))
+    body = b"LACSTART" + struct.pack("<QQQQ", 2, int(scalar), token_hash(token), len(rows))
     body += b"".join(struct.pack("<Qd", reference, value) for reference, value in rows)
     return body + struct.pack("<Q", zlib.crc32(body))
 

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 
-from .description import ELEMENT_SHIFT, ELEMENTWISE, Description, Variable
+from .description import ELEMENTWISE, Description, Variable, element_reference
 
 
 @dataclass(frozen=True)
@@ -19,7 +19,7 @@ class Scalar:
     @property
     def reference(self) -> int:
         """Its value reference."""
-        return self.variable.reference + (self.element << ELEMENT_SHIFT)
+        return element_reference(self.variable.reference, self.element)
 
     @property
     def name(self) -> str:

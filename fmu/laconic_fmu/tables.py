@@ -19,10 +19,30 @@ def _access(variable: Variable, states: set[str]) -> str:
             "output": "FMU_OUTPUT"}.get(variable.causality, "FMU_LOCAL")
 
 
-def _row(variable: Variable, states: set[str]) -> str:
+def _range(description: Description, variable: Variable) -> str:
+    """What the variable may be set to, as its type and the description have it."""
+    whole = {"Float64": ("-DBL_MAX", "DBL_MAX"), "Int32": ("INT32_MIN", "INT32_MAX"), "Boolean": ("0", "1")}
+    least, most = whole.get(variable.tag, ("", ""))
+    if variable.tag == "Enumeration":
+        items = description.items(variable)
+        least, most = str(min(items)), str(max(items))
+    return f"{variable.attributes.get('min', least)}, {variable.attributes.get('max', most)}"
+
+
+def _row(description: Description, variable: Variable, states: set[str]) -> str:
     place = re.sub(r"\W+", "_", variable.name).strip("_")
     size = 1 if variable.size is None else 0 if isinstance(variable.size, str) else variable.size
-    return f'    ROW("{variable.name}", {size}, {TYPES[variable.tag]}, {_access(variable, states)}, FMU_PLACE_{place}),'
+    return (f'    ROW("{variable.name}", {size}, {TYPES[variable.tag]}, {_access(variable, states)}, '
+            f"{variable.attributes.get('intermediateUpdate', 'false')}, {_range(description, variable)}, "
+            f"FMU_PLACE_{place}),")
+
+
+def _fits(description: Description) -> list[str]:
+    """Does not compile where the description promises longer arrays than the model has."""
+    parameter = description.array_parameter
+    if parameter is None:
+        return []
+    return [f"typedef char fmu_arrays_fit[{parameter.attributes['max']} <= FMU_PLANT_LARGEST_ARRAY ? 1 : -1];", ""]
 
 
 def tables(description: Description, text_3: str, text_2: str) -> str:
@@ -31,16 +51,21 @@ def tables(description: Description, text_3: str, text_2: str) -> str:
     states = {v.attributes["derivative"] for v in description.variables if "derivative" in v.attributes}
     lines = [
         "/* Made from the model description when the project is built. */",
+        "#include <float.h>",
+        "",
         '#include "instance.h"',
         '#include "places.h"',
         "",
         "/* a place is: offset, stride, group, tangent offset */",
-        "#define ROW(name, size, type, access, ...) ROW_OF(name, size, type, access, __VA_ARGS__)",
-        "#define ROW_OF(name, size, type, access, offset, stride, group, tangent) \\",
-        "    {name, offset, (uint16_t)(stride), size, type, access, group, tangent}",
+        "#define ROW(name, size, type, access, intermediate, least, most, ...) \\",
+        "    ROW_OF(name, size, type, access, intermediate, least, most, __VA_ARGS__)",
+        "#define ROW_OF(name, size, type, access, intermediate, least, most, offset, stride, group, tangent) \\",
+        "    {name, offset, (uint16_t)(stride), size, type, access, intermediate, least, most, group, tangent}",
+        "",
+        *_fits(description),
         "",
         "const fmu_variable fmu_variables[] = {",
-        *(_row(variable, states) for variable in description.variables),
+        *(_row(description, variable, states) for variable in description.variables),
         "};",
         f"const uint32_t fmu_variable_count = {len(description.variables)}U;",
         "",

@@ -27,7 +27,7 @@ static void log_2(fmi2ComponentEnvironment e, fmi2String name, fmi2Status status
 
 static double drive_2(fmi2Type kind, int steps) {
     static const fmi2CallbackFunctions callbacks = {log_2, calloc, free, NULL, NULL};
-    const fmi2ValueReference voltage = VOLTAGE + (1U << 10), x = X;
+    const fmi2ValueReference voltage = VOLTAGE * 1024U + 1U, x = X;
     fmi2Component c = fmi2Instantiate("one", kind, fmu_token_2, NULL, &callbacks, fmi2False, fmi2False);
     fmi2FMUstate state = NULL, copy = NULL;
     fmi2Byte *bytes;
@@ -57,7 +57,7 @@ static void log_3(fmi3InstanceEnvironment e, fmi3Status status, fmi3String categ
 }
 
 static double drive_3(bool exchange, int steps) {
-    const fmi3ValueReference voltage = VOLTAGE + (1U << 10), x = X;
+    const fmi3ValueReference voltage = VOLTAGE * 1024U + 1U, x = X;
     fmi3Instance c = exchange ? fmi3InstantiateModelExchange("one", fmu_token_3, NULL, false, false, NULL, log_3)
                               : fmi3InstantiateCoSimulation("one", fmu_token_3, NULL, false, false, false, false, NULL, 0,
                                                             NULL, log_3, NULL);

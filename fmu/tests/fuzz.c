@@ -70,7 +70,7 @@ static size_t next_list(source *s) {
     for (k = 0; k < count; k++) {
         const unsigned kind = k < 64 ? next(s) : (unsigned)(k % 251);
         references[k] = k >= 64 ? (fmi3ValueReference)(k % 60) : kind < 200 ? next(s) % 60 : next_word(s);
-        if (k < 64 && kind % 2) references[k] |= (fmi3ValueReference)(next(s) % 18) << 10;
+        if (k < 64 && kind % 2) references[k] = references[k] << 10 | (next(s) % 18);
     }
     return count;
 }

@@ -1,4 +1,5 @@
 /* The vehicle behind the glue: parameters → core, steps, and outputs when they are asked for. */
+#include "grip.h"
 #include "plant_api.h"
 
 /* Does not compile unless the core is the double-precision one and wheel_kind can be read as an int32_t. */
@@ -154,14 +155,19 @@ static void shift_input(laconic_input *out, const fmu_plant *p, double by_s) {
 }
 
 /* Inputs that change evenly over the communication step, sampled three times an internal step. */
-static laconic_status run_sloped(fmu_plant *p, uint64_t steps, laconic_refusal *why) {
-    const double h = p->core.integrator.step_s;
+static laconic_status run_sloped(fmu_instance *instance, uint64_t steps, laconic_refusal *why) {
+    fmu_plant *p = &instance->plant;
+    const double h = p->core.integrator.step_s, start_s = fmu_clock_now(&instance->clock);
     laconic_input at[3];
     uint64_t n;
     for (n = 0; n < steps; n++) {
         laconic_status status;
         int k;
         for (k = 0; k < 3; k++) shift_input(&at[k], p, ((double)n + 0.5 * k) * h);
+        if (fmu_grip_is_watched(instance)) {
+            laconic_reactions_of(&p->ground, &p->contact, &p->core.model, &p->core.state, &at[0]);
+            fmu_grip_judge(instance, &p->ground, start_s + (double)n * h);
+        }
         status = laconic_step_sampled(&p->core.model, &p->core.integrator, &p->core.state, &at[0], &at[1], &at[2]);
         if (status != LACONIC_OK) {
             laconic_step_refusal(why, status, &p->core.model, &p->core.integrator, &p->core.state, at, 3);
@@ -178,7 +184,7 @@ static fmu_status run_several_steps(fmu_instance *instance, uint64_t steps, uint
     fmu_plant *p = &instance->plant;
     laconic_refusal why;
     const uint64_t before = p->core.steps;
-    const laconic_status status = p->sloped ? run_sloped(p, steps, &why) : laconic_plant_run(&p->core, &p->input, steps, &why);
+    const laconic_status status = p->sloped ? run_sloped(instance, steps, &why) : fmu_grip_run(instance, steps, &why);
     *taken = p->core.steps - before;
     p->stale = FMU_GROUPS_ALL & ~FMU_GROUP_STATE;
     return status == LACONIC_OK ? FMU_OK : discard_with(instance, &why);
@@ -195,7 +201,7 @@ static bool run_one(fmu_plant *p) {
 fmu_status fmu_plant_run(fmu_instance *instance, uint64_t steps, uint64_t *taken) {
     fmu_plant *p = &instance->plant;
     *taken = 1;
-    if (steps == 1 && !p->sloped && run_one(p)) return FMU_OK;
+    if (steps == 1 && !p->sloped && !fmu_grip_is_watched(instance) && run_one(p)) return FMU_OK;
     return run_several_steps(instance, steps, taken); /* says what is wrong where a single step was refused */
 }
 

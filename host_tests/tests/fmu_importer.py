@@ -17,7 +17,8 @@ import fmpy
 from laconic.paths import build_dir, built
 
 OK, WARNING, DISCARD, ERROR = 0, 1, 2, 3
-TYPES_3 = {"Float64": "Float64", "Int32": "Int32", "UInt64": "UInt64", "Enumeration": "Int64", "Boolean": "Boolean"}
+TYPES_3 = {"Float64": "Float64", "Int32": "Int32", "UInt64": "UInt64", "Int64": "Int64", "Enumeration": "Int64",
+           "Boolean": "Boolean"}
 TYPES_2 = {"Real": "Real", "Integer": "Integer", "Enumeration": "Integer", "Boolean": "Boolean"}
 C_TYPES = {"Real": "double", "Integer": "int", "Float64": "double", "Int32": "int32_t", "UInt64": "uint64_t",
            "Int64": "int64_t"}
@@ -45,8 +46,8 @@ class Importer:
     """One instance of an FMU. `call("DoStep", …)` calls fmi2DoStep or fmi3DoStep and returns its status."""
 
     def __init__(self, fmu: Path, kind: str = "CoSimulation", *, logging: bool = False, event_mode: bool = False,
-                 early_return: bool = False, update: Any = None, token: str | None = None, name: str = "vehicle",
-                 resources: Path | None = None):
+                 early_return: bool = False, update: Any = None, token: str | None = "", name: str | None = "vehicle",
+                 resources: Path | None = None, intermediate: Sequence[int] | None = ()):
         self.folder = Path(tempfile.mkdtemp())
         fmpy.extract(str(fmu), unzipdir=str(self.folder))
         self.description = fmpy.read_model_description(str(self.folder), validate=False)
@@ -59,16 +60,21 @@ class Importer:
         self.log: list[tuple[int, str, str]] = []
         self.kind = kind
         self._keep: list[Any] = []
-        token = token if token is not None else self.description.guid if self.version == 2 \
-            else self.description.instantiationToken
+        if token == "":  # the FMU's own
+            token = self.description.guid if self.version == 2 else self.description.instantiationToken
         folder = resources if resources is not None else self.folder / "resources"
         make = self._make_2 if self.version == 2 else self._make_3
-        self.instance = make(name.encode(), token.encode(), folder, logging, event_mode, early_return, update)
+        self._intermediate = (self.ffi.NULL, 1) if intermediate is None else (list(intermediate), len(intermediate))
+        self.instance = make(self._c_text(name), self._c_text(token), folder, logging, event_mode, early_return, update)
+
+    def _c_text(self, text: str | None) -> Any:
+        self._keep.append(self.ffi.NULL if text is None else self.ffi.new("char[]", text.encode()))
+        return self._keep[-1]
 
     def _text(self, pointer: Any) -> str:
         return self.ffi.string(pointer).decode()
 
-    def _make_2(self, name: bytes, token: bytes, folder: Path, logging: bool, *_: Any) -> Any:
+    def _make_2(self, name: Any, token: Any, folder: Path, logging: bool, *_: Any) -> Any:
         def logger(_environment: Any, _name: Any, status: int, category: Any, message: Any) -> None:
             self.log.append((int(status), self._text(category), self._text(message)))
         ffi = self.ffi
@@ -78,7 +84,7 @@ class Importer:
         kind = 0 if self.kind == "ModelExchange" else 1
         return self.library.fmi2Instantiate(name, kind, token, folder.as_uri().encode(), functions, 0, int(logging))
 
-    def _make_3(self, name: bytes, token: bytes, folder: Path, logging: bool, event_mode: bool, early_return: bool,
+    def _make_3(self, name: Any, token: Any, folder: Path, logging: bool, event_mode: bool, early_return: bool,
                 update: Any) -> Any:
         def logger(_environment: Any, status: int, category: Any, message: Any) -> None:
             self.log.append((int(status), self._text(category), self._text(message)))
@@ -90,7 +96,7 @@ class Importer:
         if self.kind == "ModelExchange":
             return self.library.fmi3InstantiateModelExchange(name, token, path, False, logging, ffi.NULL, callback)
         return self.library.fmi3InstantiateCoSimulation(name, token, path, False, logging, event_mode, early_return,
-                                                        ffi.NULL, 0, ffi.NULL, callback, offered)
+                                                        *self._intermediate, ffi.NULL, callback, offered)
 
     def __enter__(self) -> Importer:
         return self

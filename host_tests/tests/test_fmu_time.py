@@ -71,6 +71,88 @@ def test_negative_start_times_and_thirds(version: int) -> None:
         assert "stop time -5 s" in importer.log[-1][2]
 
 
+def added_up(importer: Importer, steps: int, step_s: float) -> float:
+    """Steps as importers take them that add up their time; where the sum ends."""
+    time = 0.0
+    for _ in range(steps):
+        assert importer.step(time, step_s) == OK
+        time += step_s
+    return time
+
+
+@BOTH
+@pytest.mark.parametrize("own_s", [0.0, 0.001, 0.01])
+def test_an_importer_that_adds_up_its_time_may_end_with_the_remainder(version: int, own_s: float) -> None:
+    with Importer(generic(version)) as importer:
+        assert importer.set("step_s", own_s) == OK
+        importer.initialize(stop_s=11.0)
+        assert importer.set("voltage_V", 3, 4, 5, 6) == OK
+        time = added_up(importer, 1100, 0.01)
+        before = importer.get("nu_rad_per_s")
+        assert 0.0 < 11.0 - time < 1e-9
+        assert importer.step(time, 11.0 - time) == OK, importer.log
+        assert importer.get("nu_rad_per_s") == before
+        assert importer.time() == 11.0
+
+
+@BOTH
+@pytest.mark.parametrize(("own_s", "remainder_s", "status"), [
+    (0.01, 1e-8, OK), (0.01, 2e-8, ERROR), (0.001, 2e-9, ERROR), (0.0, 1e-8, OK), (0.0, 2e-8, OK)])
+def test_a_remainder_is_no_step_up_to_a_millionth_of_the_internal_step(
+        version: int, own_s: float, remainder_s: float, status: int) -> None:
+    with Importer(generic(version)) as importer:
+        assert importer.set("step_s", own_s) == OK
+        importer.initialize()
+        assert importer.step(0.0, 0.01) == OK
+        assert importer.step(0.01, remainder_s) == status
+        taken = own_s == 0.0 and remainder_s > 1e-8  # a step of its own size, since any size will do
+        assert importer.time() == 0.01 + (remainder_s if taken else 0.0)
+        assert importer.step(importer.time(), 0.01) == OK
+
+
+@BOTH
+def test_the_first_step_of_a_run_is_no_remainder(version: int) -> None:
+    with Importer(generic(version)) as importer:
+        importer.initialize()
+        assert importer.step(0.0, 1e-9) == OK
+        assert importer.time() == 1e-9
+
+
+@BOTH
+@pytest.mark.parametrize("own_s", [0.0, 0.01])
+def test_a_step_beyond_the_stop_time_is_refused_and_the_one_up_to_it_is_taken(version: int, own_s: float) -> None:
+    with Importer(generic(version)) as importer:
+        assert importer.set("step_s", own_s) == OK
+        importer.initialize(stop_s=0.05)
+        for k in range(4):
+            assert importer.step(k * 0.01, 0.01) == OK
+        assert importer.step(0.04, 0.02) == ERROR
+        assert "goes beyond the stop time 0.05 s" in importer.log[-1][2]
+        assert importer.step(0.04, 0.01 + 1e-12) == OK
+        assert importer.time() == pytest.approx(0.05, abs=2e-12)
+        assert importer.step(0.05, 0.01) == ERROR
+
+
+@BOTH
+def test_model_exchange_knows_its_stop_time_too(version: int) -> None:
+    with Importer(generic(version), "ModelExchange") as importer:
+        importer.initialize(start_s=-1.0, stop_s=10.0)
+        importer.must("EnterContinuousTimeMode")
+        flags = importer.ffi.new("int[2]" if version == 2 else "bool[2]")
+        for time, status in ((5.0, OK), (10.0, OK), (10.0 + 1e-9, OK), (10.001, ERROR), (11.0, ERROR)):
+            assert importer.call("SetTime", time) == status
+        assert "beyond the stop time 10 s" in importer.log[-1][2]
+        importer.must("SetTime", 9.9)
+        importer.must("CompletedIntegratorStep", 1, flags, flags + 1)
+        for time, status in ((10.2, OK), (10.23, ERROR)):  # a solver looks a fiftieth of the run ahead, and goes back
+            assert importer.call("SetTime", time) == status
+        assert importer.call("CompletedIntegratorStep", 1, flags, flags + 1) == ERROR
+        assert "CompletedIntegratorStep: 10.2 s is beyond" in importer.log[-1][2]
+        importer.must("SetTime", 10.0)
+        importer.must("CompletedIntegratorStep", 1, flags, flags + 1)
+        assert importer.call("SetTime", 10.001) == ERROR
+
+
 @BOTH
 def test_variable_communication_steps(version: int) -> None:
     with Importer(generic(version)) as importer:
