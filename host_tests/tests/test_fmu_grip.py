@@ -51,7 +51,7 @@ def test_the_first_instant_is_an_internal_step_within_the_communication_step() -
     with Importer(generic(3)) as fine, Importer(generic(3)) as coarse:
         for importer, size in ((fine, 1), (coarse, 100)):
             assert importer.set("step_s", 0.01) == OK
-            assert importer.set("body_moment_Nm", 60.0) == OK  # turns faster and faster, until the wheels cannot hold it
+            assert importer.set("body_moment_Nm", 60.0) == OK  # turns ever faster, until no wheel holds
             importer.initialize()
             drive(importer, 500, size)
         assert len(warnings(fine)) == 1
