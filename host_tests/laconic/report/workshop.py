@@ -6,7 +6,9 @@ import shutil
 import subprocess
 from collections.abc import Sequence
 from dataclasses import dataclass
+from functools import cache
 from pathlib import Path
+from tempfile import TemporaryDirectory
 
 from laconic.c_tables import initializer
 from laconic.core import Core, load
@@ -38,14 +40,26 @@ class Target:
 
     @property
     def present(self) -> bool:
-        """Whether its compiler (and emulator) are installed."""
+        """Whether its compiler (with a C library, which comes apart) and emulator are installed."""
         emulator = not self.machine or shutil.which("qemu-system-arm") is not None
-        return shutil.which(self.tool("gcc")) is not None and emulator
+        return emulator and can_link(self.tool("gcc"), self.flags, bare=bool(self.machine))
 
     def windows(self, real: str) -> tuple[int, ...]:
         """Numbers of steps to try: twice as many must fit the 24-bit counter."""
         in_hardware = self.hardware_double if real == "double" else self.hardware_single
         return (256, 40, 10) if in_hardware else (10, 2)
+
+
+@cache
+def can_link(compiler: str, flags: tuple[str, ...], bare: bool) -> bool:
+    """Whether a compiler is there and finds headers and library of C for a processor."""
+    if shutil.which(compiler) is None:
+        return False
+    more = ("-nostartfiles", "-Wl,-e,main") if bare else ()
+    with TemporaryDirectory() as folder:
+        command = [compiler, *flags, *more, "-x", "c", "-", "-o", str(Path(folder) / "probe")]
+        return subprocess.run(command, input="#include <stdint.h>\nint main(void) { return 0; }\n", text=True,
+                              capture_output=True, check=False).returncode == 0
 
 
 ARM, THUMB = "arm-none-eabi-", "-mthumb"
