@@ -39,11 +39,11 @@ class Refused(BadInput):
         return Refused(self.status, self.field, self.item, text, value=self.value, limit=self.limit)
 
 
-def nearest_of(word: str, known: Iterable[str]) -> str:
-    """The remedy for a word that is not known: "did you mean …?" or the list of known ones."""
+def nearest_of(word: str, known: Iterable[str], instead: str | None = None) -> str:
+    """The remedy for a word that is not known: "did you mean …?", what to do instead, or the list of known ones."""
     names = sorted(known)
-    close = difflib.get_close_matches(word, names, n=1, cutoff=0.6)
-    return f"did you mean {close[0]}?" if close else f"known are {', '.join(names)}"
+    close = difflib.get_close_matches(word, names, n=1, cutoff=0.8 if instead else 0.6)
+    return f"did you mean {close[0]}?" if close else instead or f"known are {', '.join(names)}"
 
 
 def reason_of(error: OSError) -> str:

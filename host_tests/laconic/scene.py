@@ -16,6 +16,7 @@ from laconic.drive import Drive, Input, step_remedy
 from laconic.errors import BadInput, Refused
 from laconic.paths import scene_path
 from laconic.plant import Plant
+from laconic.scene_names import in_file
 from laconic.scene_reader import read_parts
 from laconic.table import read_toml
 
@@ -93,6 +94,7 @@ class Scene:
     run: Run
     outputs: Outputs = field(default_factory=Outputs)
     rig: Rig = field(default_factory=Rig)
+    in_degrees: frozenset[str] = frozenset()  # angles that the file gives so, by their name in rad
 
     @property
     def wheel_count(self) -> int:
@@ -120,7 +122,7 @@ class Scene:
             core.check_vehicle(vehicle)
             return vehicle
         except Refused as refused:
-            raise refused.at(self.path) from None
+            raise self.told(refused) from None
 
     def model(self, core: Core) -> Any:
         """The prepared laconic_model."""
@@ -128,7 +130,7 @@ class Scene:
         try:
             return core.prepare(vehicle)
         except Refused as refused:
-            raise refused.at(self.path) from None
+            raise self.told(refused) from None
 
     def plant(self, core: Core) -> Plant:
         """The vehicle at its start, ready to step by the scene's method and step."""
@@ -139,10 +141,12 @@ class Scene:
                               y_m=start.y_m, heading_rad=start.heading_rad)
         except Refused as refused:
             if refused.status == "start against constraints":
-                refused = start.refusal(refused, model)
-            elif refused.field.startswith("start_"):
-                refused.message = refused.message.replace("start_", "initial.", 1)
-            raise refused.at(self.path) from None
+                raise start.refusal(refused, model).at(self.path) from None
+            raise self.told(refused) from None
+
+    def told(self, refused: Refused, when: str = "") -> Refused:
+        """A refusal of the core with this file in front, by the names that the file has."""
+        return in_file(refused, self.in_degrees).at(f"{self.path}: {when}" if when else self.path)
 
     def steps(self) -> int:
         """The run's whole number of steps."""
@@ -179,4 +183,4 @@ def read_scene(given: str | Path) -> Scene:
     return Scene(
         path=path, name=parts["name"], source=parts["source"], vehicle=parts["vehicle"],
         initial=Initial(**parts["initial"]), inputs=tuple(parts["inputs"]), run=Run(**parts["run"]),
-        outputs=Outputs(**parts["outputs"]), rig=Rig(**parts["rig"]))
+        outputs=Outputs(**parts["outputs"]), rig=Rig(**parts["rig"]), in_degrees=parts["in_degrees"])

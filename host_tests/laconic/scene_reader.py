@@ -9,6 +9,7 @@ from typing import Any
 
 from laconic.drive import Input
 from laconic.errors import nearest_of
+from laconic.not_modelled import KINDS_OF_WHEELS, OF_VEHICLES, OF_WHEELS
 from laconic.table import Table
 
 WHEEL_KINDS = ("omni", "mecanum", "roller", "fixed")
@@ -33,9 +34,12 @@ def read_parts(top: Table, methods: Sequence[str], reals: Sequence[str]) -> dict
     parts["initial"] = read_initial(top.table("initial"))
     parts["inputs"] = [read_input(each, wheel_count) for each in top.tables("input")]
     parts["run"] = read_run(top.table("run", required=True), methods, reals)
+    for each in parts["inputs"]:
+        check_end(top, each, parts["run"]["duration_s"])
     parts["outputs"] = read_outputs(top.table("outputs"), wheel_count)
     parts["rig"] = read_rig(top.table("rig"))
     top.done()
+    parts["in_degrees"] = frozenset(top.in_degrees)
     return parts
 
 
@@ -55,7 +59,7 @@ def read_vehicle(table: Table) -> dict[str, Any]:
         vehicle["payload"] = {key: payload.number(key, finite=False) for key in
                               ("mass_kg", "x_m", "y_m", "yaw_inertia_kgm2")}
         payload.done()
-    table.done()
+    table.done(OF_VEHICLES)
     return vehicle
 
 
@@ -76,17 +80,17 @@ def read_motor(table: Table) -> dict[str, Any]:
 
 def read_wheel(table: Table) -> dict[str, Any]:
     """One `[[vehicle.wheel]]`: an omni wheel's roller angle is π/2 unless it is given."""
-    kind = table.choice("kind", WHEEL_KINDS)
+    kind = table.choice("kind", WHEEL_KINDS, hints=KINDS_OF_WHEELS)
     wheel: dict[str, Any] = {"kind": kind, **read_place(table)}
-    wheel["axle_rad"] = table.angle("axle")
+    wheel["axle_rad"] = table.angle("axle", finite=False)
     if kind == "fixed":
         for key in ("roller_rad", "roller_deg"):
             if table.has(key):
                 table.fail(key, "is given for a fixed wheel, which has no rollers; take it out")
     else:
-        wheel["roller_rad"] = table.angle("roller", math.pi / 2 if kind == "omni" else ...)
+        wheel["roller_rad"] = table.angle("roller", math.pi / 2 if kind == "omni" else ..., finite=False)
     wheel["locked"] = table.flag("locked", False)
-    table.done()
+    table.done(OF_WHEELS)
     return wheel
 
 
@@ -99,8 +103,6 @@ def read_place(table: Table) -> dict[str, float]:
     if not polar:
         return {key: table.number(key, finite=False) for key in ("x_m", "y_m")}
     distance, bearing = table.number("distance_m"), table.angle("bearing")
-    if not math.isfinite(bearing):
-        table.fail("bearing_rad", f"is {bearing}; give a finite angle")
     return {"x_m": distance * math.cos(bearing), "y_m": distance * math.sin(bearing)}
 
 
@@ -124,8 +126,6 @@ def read_initial(table: Table) -> dict[str, Any]:
     start["yaw_rate_rad_per_s"] = table.number("yaw_rate_rad_per_s", 0.0)
     start |= {key: table.number(key, 0.0) for key in ("x_m", "y_m")}
     start["heading_rad"] = table.angle("heading", 0.0)
-    if not math.isfinite(start["heading_rad"]):
-        table.fail("heading_rad", f"is {start['heading_rad']}; give a finite angle")
     table.done()
     return start
 
@@ -155,8 +155,6 @@ def read_input(table: Table, wheel_count: int) -> Input:
     check_signal(table, "signal", signal, LENGTHS, PER_WHEEL, wheel_count)
     if kind == "sine":
         phase = table.angle("phase", 0.0)
-        if not math.isfinite(phase):
-            table.fail("phase_rad", f"is {phase}; give a finite angle")
         found = Input(signal, kind, table.place, amplitude=table.number("amplitude"),
                       frequency_Hz=table.number("frequency_Hz"), phase_rad=phase)
     else:
@@ -176,6 +174,17 @@ def check_instants(table: Table, t_s: Sequence[float]) -> None:
     for before, after in pairwise(t_s):
         if after <= before:
             table.fail("t_s", f"goes from {before:g} to {after:g} s; give instants in ascending order")
+
+
+def check_end(top: Table, each: Input, duration_s: float) -> None:
+    """Fails for instants that the run never comes to; a table may lead to one that lies beyond its end."""
+    if each.kind == "sine":
+        return
+    reached = [t for t in each.t_s if t <= duration_s * (1.0 + 1e-12)]
+    beyond = each.t_s[len(reached) + (each.kind == "table" and bool(reached)):]
+    if beyond:
+        top.fail(f"{each.place}.t_s", f"{beyond[0]:g} s lies beyond the run of {duration_s:g} s and would do nothing; "
+                 "take it out or make run.duration_s longer")
 
 
 def read_run(table: Table, methods: Sequence[str], reals: Sequence[str]) -> dict[str, Any]:
@@ -202,6 +211,9 @@ def read_outputs(table: Table, wheel_count: int) -> dict[str, Any]:
         else:
             check_signal(table, "signals", signal, OUTPUT_LENGTHS, OUTPUTS_PER_WHEEL, wheel_count)
             signals.append(signal)
+    for place, signal in enumerate(signals):
+        if signal in signals[:place]:
+            table.fail("signals", f"names {signal} twice; keep one of them")
     every = table.number("every_s", None)
     if every is not None and every <= 0:
         table.fail("every_s", f"is {every:g}; give a number above zero")

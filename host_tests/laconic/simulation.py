@@ -175,7 +175,7 @@ def run_window(scene: Scene, plant: Plant, drive: Drive, first: int, count: int,
             advance_plant(plant, drive, begin, steps)
             moved(steps)
     except Refused as refused:
-        raise refused.at(f"{scene.path}: at t = {plant.steps * scene.run.step_s:g} s") from None
+        raise scene.told(refused, f"at t = {plant.steps * scene.run.step_s:g} s") from None
 
 
 def input_now(core: Core, drive: Drive, tick: int) -> object:

@@ -4,16 +4,19 @@ from __future__ import annotations
 
 import difflib
 import math
-from collections.abc import Iterator, Sequence
+from collections.abc import Iterator, Mapping, Sequence
 from pathlib import Path
 from typing import Any, NoReturn
 
 from laconic.errors import BadInput, nearest_of, reason_of
+from laconic.not_modelled import instead_of
 
 try:
     import tomllib
 except ModuleNotFoundError:  # Python 3.10
     import tomli as tomllib
+
+NO_HINTS: Mapping[str, str] = {}
 
 
 def read_toml(path: Path) -> Table:
@@ -34,8 +37,9 @@ def read_toml(path: Path) -> Table:
 class Table:
     """One table of a file; remembers what was asked for, so that `done` can find what nobody knows."""
 
-    def __init__(self, path: Path, place: str, entries: dict[str, Any]):
+    def __init__(self, path: Path, place: str, entries: dict[str, Any], in_degrees: set[str] | None = None):
         self.path, self.place, self._entries = path, place, entries
+        self.in_degrees = set() if in_degrees is None else in_degrees  # names of the angles that are given so
         self._known: set[str] = set()
 
     def name(self, key: str) -> str:
@@ -51,11 +55,11 @@ class Table:
         self._known.add(key)
         return key in self._entries
 
-    def done(self) -> None:
-        """Raises BadInput for the first key that nobody asked for."""
+    def done(self, hints: Mapping[str, str] = NO_HINTS) -> None:
+        """Raises BadInput for the first key that nobody asked for; hints as in laconic.not_modelled."""
         for key in self._entries:
             if key not in self._known:
-                self.fail(key, f"is no known key here; {nearest_of(key, self._known)}")
+                self.fail(key, f"is no known key here; {nearest_of(key, self._known, instead_of(key, hints))}")
 
     def _get(self, key: str, default: Any, kinds: tuple[type, ...], what: str) -> Any:
         if not self.has(key):
@@ -84,14 +88,15 @@ class Table:
             self.fail(key, f"is {_shown(value)}; give a finite number")
         return number
 
-    def angle(self, stem: str, default: Any = ...) -> Any:
+    def angle(self, stem: str, default: Any = ..., *, finite: bool = True) -> Any:
         """An angle in rad: from stem_rad, or from stem_deg in degrees."""
         in_radians, in_degrees = f"{stem}_rad", f"{stem}_deg"
         if self.has(in_degrees):
             if self.has(in_radians):
                 self.fail(in_degrees, f"is given besides {in_radians}; keep one of them")
-            return math.radians(self.number(in_degrees, finite=False))
-        return self.number(in_radians, default, finite=False)
+            self.in_degrees.add(self.name(in_radians))
+            return math.radians(self.number(in_degrees, finite=finite))
+        return self.number(in_radians, default, finite=finite)
 
     def text(self, key: str, default: Any = ...) -> str:
         """A string."""
@@ -105,11 +110,12 @@ class Table:
         """A whole number."""
         return self._get(key, default, (int,), "a whole number")
 
-    def choice(self, key: str, choices: Sequence[str], default: Any = ...) -> str:
-        """One of some words."""
+    def choice(self, key: str, choices: Sequence[str], default: Any = ..., *,
+               hints: Mapping[str, str] = NO_HINTS) -> str:
+        """One of some words; hints as in laconic.not_modelled."""
         word = self.text(key, default)
         if word is not None and word not in choices:
-            self.fail(key, f"there is no {word!r}; {nearest_of(word, choices)}")
+            self.fail(key, f"there is no {word!r}; {nearest_of(word, choices, instead_of(word, hints))}")
         return word
 
     def numbers(self, key: str, length: int | None = None, *, finite: bool = True) -> tuple[float, ...]:
@@ -134,7 +140,7 @@ class Table:
     def table(self, key: str, *, required: bool = False) -> Table:
         """A table inside; an empty one where it may be left out."""
         entries = self._get(key, REQUIRED if required else {}, (dict,), f"a table [{self.name(key)}]")
-        return Table(self.path, self.name(key), entries)
+        return Table(self.path, self.name(key), entries, self.in_degrees)
 
     def tables(self, key: str) -> Iterator[Table]:
         """The tables of an array of tables, numbered from 1."""
@@ -142,7 +148,7 @@ class Table:
         for number, entry in enumerate(entries, start=1):
             if not isinstance(entry, dict):
                 self.fail(key, f"is a list of values, not tables [[{self.name(key)}]]")
-            yield Table(self.path, f"{self.name(key)}[{number}]", entry)
+            yield Table(self.path, f"{self.name(key)}[{number}]", entry, self.in_degrees)
 
 
 REQUIRED = ...

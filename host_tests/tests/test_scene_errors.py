@@ -52,13 +52,49 @@ BAD = {
     "missing damping": (("motor_damping_Nms = 0.05\n", ""), ("vehicle.motor_damping_Nms", "missing")),
     "missing roller angle": (("roller_deg = 45\n", ""), ("vehicle.wheel[1].roller_rad", "missing")),
     "missing bearing": (("bearing_deg = 180\n", ""), ("vehicle.wheel[2].bearing_rad", "missing")),
-    "negative mass": (("mass_kg = 20.0", "mass_kg = -20.0"), ("mass_kg", "-20", "above 0")),
-    "zero radius": (("wheel_radius_m = 0.05", "wheel_radius_m = 0.0"), ("wheel_radius_m", "above 0")),
-    "negative inertia": (("wheel_inertia_kgm2 = 0.004", "wheel_inertia_kgm2 = -1"), ("wheel_inertia_kgm2", "-1")),
-    "NaN": (("yaw_inertia_kgm2 = 1.2", "yaw_inertia_kgm2 = nan"), ("yaw_inertia_kgm2", "finite")),
-    "infinite place": (("x_m = 0.2", "x_m = inf"), ("wheel_x_m[1]", "finite")),
-    "infinite bearing": (("bearing_deg = 180", "bearing_deg = inf"), ("vehicle.wheel[2].bearing_rad", "finite")),
-    "roller along axle": (("roller_deg = 45", "roller_deg = 0"), ("roller_rad[1]", "axle")),
+    "negative mass": (("mass_kg = 20.0", "mass_kg = -20.0"), ("vehicle.mass_kg: -20", "above 0")),
+    "zero radius": (("wheel_radius_m = 0.05", "wheel_radius_m = 0.0"), ("vehicle.wheel_radius_m", "above 0")),
+    "negative inertia": (("wheel_inertia_kgm2 = 0.004", "wheel_inertia_kgm2 = -1"), ("vehicle.wheel_inertia_kgm2: -",)),
+    "NaN": (("yaw_inertia_kgm2 = 1.2", "yaw_inertia_kgm2 = nan"), ("vehicle.yaw_inertia_kgm2: NaN", "finite")),
+    "infinite place": (("x_m = 0.2", "x_m = inf"), ("vehicle.wheel[1].x_m: ", "finite")),
+    "infinite bearing": (("bearing_deg = 180", "bearing_deg = inf"), ("wheel[2].bearing_deg: is inf", "finite")),
+    "roller along axle": (
+        ("roller_deg = 45", "roller_deg = 0"), ("vehicle.wheel[1].roller_deg: with 0 degrees", "axle", "have 90")),
+    "roller along axle, in radians": (
+        ("roller_deg = 45", "roller_rad = 0"), ("vehicle.wheel[1].roller_rad: with 0 rad", "pi/2")),
+    "infinite axle": (("axle_deg = 180", "axle_deg = inf"), ("vehicle.wheel[2].axle_deg: infinity",)),
+    "infinite axle, in radians": (("axle_deg = 180", "axle_rad = inf"), ("vehicle.wheel[2].axle_rad: infinity",)),
+    "infinite heading": (("[run]", "[initial]\nheading_deg = inf\n[run]"), ("initial.heading_deg: is inf",)),
+    "heading beyond counting": (("[run]", "[initial]\nheading_deg = 1e300\n[run]"), ("initial.heading_deg: ",)),
+    "negative payload": (
+        ("[run]", "[vehicle.payload]\nmass_kg = -1\nx_m = 0\ny_m = 0\nyaw_inertia_kgm2 = 0\n[run]"),
+        ("vehicle.payload.mass_kg: -1", "negative")),
+    "infinite support": (
+        ("[run]", "[[vehicle.support]]\nx_m = 0\ny_m = inf\n[run]"), ("vehicle.support[1].y_m: infinity",)),
+    "motor without resistance": (
+        ("motor_gain_Nm_per_V = 0.8\nmotor_damping_Nms = 0.05\n", "motor = {resistance_ohm = 0, "
+         "torque_constant_Nm_per_A = 1, back_emf_Vs_per_rad = 1, gear_ratio = 1}\n"),
+        ("vehicle.motor.resistance_ohm: 0", "above 0")),
+    "caster": (('kind = "mecanum"', 'kind = "caster"'), ("wheel[1].kind", "[[vehicle.support]]")),
+    "swivel caster": (('kind = "omni"', 'kind = "swivel-caster"'), ("wheel[2].kind", "[[vehicle.support]]")),
+    "steered wheel": (('kind = "mecanum"', 'kind = "steered"'), ("wheel[1].kind", "constant steering angle")),
+    "skid-steered wheel": (('kind = "mecanum"', 'kind = "skid"'), ("wheel[1].kind", "track width")),
+    "plain wheel": (('kind = "mecanum"', 'kind = "standard"'), ("wheel[1].kind", '"fixed"')),
+    "table of casters": (("[run]", "[[vehicle.caster]]\nx_m = 0\n[run]"), ("vehicle.caster", "[[vehicle.support]]")),
+    "steering of a wheel": (("axle_deg = 180", "axle_deg = 180\nsteer_deg = 5"), ("wheel[2].steer_deg", "steered")),
+    "radius of a wheel": (("axle_deg = 180", "axle_deg = 180\nradius = 1"), ("wheel[2].radius", "one radius")),
+    "slope": (("mass_kg = 20.0", "mass_kg = 20.0\nslope_deg = 5"), ("vehicle.slope_deg", "world_force_N")),
+    "suspension": (("mass_kg = 20.0", "mass_kg = 20.0\nspring_N_per_m = 5"), ("vehicle.spring_N_per_m", "rigid")),
+    "output twice": (
+        ("[run]", '[outputs]\nsignals = ["x_m", "y_m", "x_m"]\n[run]'), ("outputs.signals: names x_m twice",)),
+    "output twice, once as one of all": (
+        ("[run]", '[outputs]\nsignals = ["nu_rad_per_s", "nu_rad_per_s[2]"]\n[run]'),
+        ("outputs.signals: names nu_rad_per_s[2] twice",)),
+    "instant beyond the run": (
+        ("t_s = [0.0, 0.5]", "t_s = [0.0, 1.5]"), ("input[1].t_s: 1.5 s lies beyond the run of 1 s", "duration_s")),
+    "table that goes on beyond the run": (
+        ('"steps"\nt_s = [0.0, 0.5]\nvalue = [6.0, -3.0]', '"table"\nt_s = [0, 2, 3]\nvalue = [1, 2, 3]'),
+        ("input[1].t_s: 3 s lies beyond",)),
     "roller of a fixed wheel": (('kind = "mecanum"', 'kind = "fixed"'), ("wheel[1].roller_deg", "no rollers")),
     "unknown kind": (('kind = "mecanum"', 'kind = "mecanun"'), ("wheel[1].kind", "did you mean mecanum?")),
     "unknown key": (("mass_kg = 20.0", "mass_kg = 20.0\nmas_kg = 1"), ("vehicle.mas_kg", "did you mean mass_kg?")),
@@ -97,7 +133,7 @@ BAD = {
     "velocity twice": (
         ("[run]", "[initial]\nnu_rad_per_s = [0,0,0]\nyaw_rate_rad_per_s = 1\n[run]"), ("yaw_rate_rad_per_s", "keep")),
     "explicit step too large": (
-        ("motor_damping_Nms = 0.05", "motor_damping_Nms = 50.0"), ("step_s", "use at most")),
+        ("motor_damping_Nms = 0.05", "motor_damping_Nms = 50.0"), ("run.step_s", "use at most")),
     "identifier too large": (("[run]", "[rig]\nid_base = 4096\n[run]"), ("rig.id_base", "0x7FF")),
     "no valid TOML": (("mass_kg = 20.0", "mass_kg = "), ("no valid TOML", "line 5")),
 }

@@ -1,0 +1,39 @@
+"""What people look for in a scene and the model does not have: each with what to do instead."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+
+SUPPORT = ("a caster carries load, nothing else, in this model: give it as [[vehicle.support]] with its x_m and y_m, "
+           "and its mass within vehicle.mass_kg")
+STEERED = ("wheels that are steered in motion are not modelled; for a constant steering angle give a \"fixed\" wheel "
+           "with its axle at that angle (axle_deg), see docs/scenes.md")
+SKID = ("skid steering and tracks live on slip, which is not modelled; give one \"fixed\" wheel a side, at the track "
+        "width that measured turns show, see docs/scenes.md")
+RADIUS = "all wheels have one radius, vehicle.wheel_radius_m; what only carries load is a [[vehicle.support]]"
+MOTOR = "all wheels have the same motor, [vehicle.motor]; a wheel without voltage is driven by axle_torque_Nm"
+LEVEL = ("the ground is level; on a slope give the downhill part of the weight as world_force_N, see docs/scenes.md")
+RIGID = "the vehicle is rigid, without suspension; normal loads are those of its mass at rest and in motion"
+SLIP = ("wheels roll without slip; friction_coefficient tells where they could not, and the run goes on as if they did")
+FIXED = "a wheel that is neither omni nor mecanum is \"fixed\", driven or not"
+
+OF_WHEELS = {
+    "caster castor swivel ball idler": SUPPORT,
+    "steer ackermann": STEERED,
+    "skid track crawler": SKID,
+    "radius diameter": RADIUS,
+    "motor gain damping gear resistance inertia": MOTOR,
+    "suspension spring stiffness": RIGID,
+    "slip tire tyre friction": SLIP,
+}
+OF_VEHICLES = OF_WHEELS | {"slope incline pitch tilt gravity": LEVEL}
+KINDS_OF_WHEELS = OF_WHEELS | {
+    "swedish": "Swedish wheels are \"mecanum\" with roller_deg, or \"omni\"",
+    "standard driv conventional normal rubber plain wheel": FIXED,
+}
+
+
+def instead_of(word: str, hints: Mapping[str, str]) -> str | None:
+    """What to do about a word with one of these stems; None for any other."""
+    low = word.lower()
+    return next((hint for stems, hint in hints.items() if any(stem in low for stem in stems.split())), None)
