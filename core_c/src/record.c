@@ -65,7 +65,7 @@ static laconic_status hold(laconic_plant *plant, const laconic_input *input, uin
     return LACONIC_OK;
 }
 
-/* The stretch that a step lies in: the first that ends after it. */
+/* The stretch that a step of the schedule lies in: the first that ends after it. */
 static uint64_t stretch_at(const laconic_schedule *schedule, uint64_t step) {
     uint64_t low = 0, high = schedule->count;
     while (low < high) {
@@ -83,9 +83,10 @@ static laconic_status follow_held(laconic_plant *plant, const laconic_schedule *
     laconic_input input = {0};
     laconic_status status = LACONIC_OK;
     bool full = false;
-    uint64_t k = stretch_at(schedule, plant->steps);
+    uint64_t k = stretch_at(schedule, plant->steps - schedule->first_step);
     for (; k < schedule->count && plant->steps < until_step && !full && status == LACONIC_OK; k++) {
-        const uint64_t end = schedule->until_step[k] < until_step ? schedule->until_step[k] : until_step;
+        const uint64_t left = schedule->until_step[k] - (plant->steps - schedule->first_step);
+        const uint64_t end = left < until_step - plant->steps ? plant->steps + left : until_step;
         set_signals(&input, schedule, schedule->value + k * (uint64_t)schedule->signal_count);
         status = hold(plant, &input, end, recorder, &full, why);
     }
@@ -94,11 +95,11 @@ static laconic_status follow_held(laconic_plant *plant, const laconic_schedule *
 
 static laconic_status follow_sampled(laconic_plant *plant, const laconic_schedule *schedule, uint64_t until_step,
                                      laconic_recorder *recorder, laconic_refusal *why) {
-    const uint64_t end = schedule->first_step + schedule->count, numbers = (uint64_t)schedule->signal_count;
+    const uint64_t numbers = (uint64_t)schedule->signal_count;
     const laconic_input none = {0};
     laconic_input input[3] = {none, none, none};
     laconic_refusal found;
-    while (plant->steps < until_step && plant->steps < end) {
+    while (plant->steps < until_step && plant->steps - schedule->first_step < schedule->count) {
         const real *value = schedule->value + 3 * numbers * (plant->steps - schedule->first_step);
         laconic_status status;
         uint64_t k;

@@ -181,6 +181,16 @@ static void stops_before_a_row_without_room(laconic_schedule schedule) {
     TEST_ASSERT_TRUE(f.row[5][0] == REAL(0));
 }
 
+static void a_held_schedule_may_begin_at_any_step_of_the_plant(void) {
+    laconic_plant early = plant_of(with_motors(mecanum()), 0.01), late = early;
+    laconic_schedule schedule = held();
+    ASSERT_STATUS(LACONIC_OK, laconic_plant_follow(&early, &schedule, STEPS, NULL, &why));
+    late.steps = schedule.first_step = 1000;
+    ASSERT_STATUS(LACONIC_OK, laconic_plant_follow(&late, &schedule, UINT64_MAX, NULL, &why));
+    TEST_ASSERT_EQUAL_UINT64(1000 + STEPS, late.steps);
+    TEST_ASSERT_EQUAL_MEMORY(&early.state, &late.state, sizeof late.state);
+}
+
 static void a_full_recorder_stops_the_run_where_it_can_go_on(void) {
     stops_before_a_row_without_room(held());
     stops_before_a_row_without_room(sampled());
@@ -219,6 +229,7 @@ int main(void) {
     RUN_TEST(a_sampled_schedule_gives_the_bits_of_sampled_steps);
     RUN_TEST(a_run_in_pieces_is_the_run_in_one);
     RUN_TEST(a_later_piece_of_a_sampled_run_has_a_schedule_of_its_own);
+    RUN_TEST(a_held_schedule_may_begin_at_any_step_of_the_plant);
     RUN_TEST(a_full_recorder_stops_the_run_where_it_can_go_on);
     RUN_TEST(nothing_recorded_is_only_run);
     RUN_TEST(a_refused_step_leaves_what_was_taken_and_says_why);

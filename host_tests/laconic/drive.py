@@ -14,11 +14,17 @@ from collections.abc import Iterable, Iterator
 from dataclasses import dataclass, field
 from fractions import Fraction
 from pathlib import Path
+from typing import TYPE_CHECKING
 
 import numpy as np
 
 from laconic.errors import BadInput
+from laconic.schedule import FOR_EVER, Schedule
 
+if TYPE_CHECKING:
+    from laconic.core import Core
+
+CHUNK = 4096        # sampled steps made ready at once
 ON_THE_GRID = 1e-6  # of a step, as laconic_steps_in
 
 
@@ -53,6 +59,15 @@ class Segment:
 
 
 @dataclass(frozen=True)
+class Window:
+    """A schedule for some steps of the run."""
+
+    first: int
+    end: int
+    schedule: Schedule
+
+
+@dataclass(frozen=True)
 class Drive:
     """A scene's inputs on the grid of `step_s`, for `steps` steps."""
 
@@ -62,15 +77,18 @@ class Drive:
     steps: int
     signals: tuple[str, ...] = ()
     changes: tuple[int, ...] = ()
-    _ticks: dict[str, np.ndarray] = field(default_factory=dict)
+    _ticks: dict[str, np.ndarray] = field(default_factory=dict)   # where each `steps` input changes, by its place
+    _levels: dict[str, np.ndarray] = field(default_factory=dict)  # its values, with the zero before the first
+    _made: dict[str, Window] = field(default_factory=dict)        # the last schedule for each scalar type
 
     @classmethod
     def on_grid(cls, path: Path, inputs: tuple[Input, ...], step_s: float, steps: int) -> Drive:
         """Puts the changes on the grid; BadInput where one falls inside a step."""
         ticks = {each.place: change_ticks(path, each, step_s, steps) for each in inputs if each.kind == "steps"}
+        levels = {each.place: np.array([0.0, *each.value]) for each in inputs if each.kind == "steps"}
         within = {int(t) for ends in ticks.values() for t in ends if t < steps}
         signals = tuple(dict.fromkeys(each.signal for each in inputs))
-        return cls(path, inputs, step_s, steps, signals, tuple(sorted({0} | within)), ticks)
+        return cls(path, inputs, step_s, steps, signals, tuple(sorted({0} | within)), ticks, levels)
 
     @property
     def is_held(self) -> bool:
@@ -92,6 +110,23 @@ class Drive:
         """Values (step, start|middle|end, signal) of some steps; `steps` inputs hold theirs over each."""
         return self._rows(np.arange(first, first + count), np.array([0.0, 0.5, 1.0]))
 
+    def schedule(self, core: Core, step: int) -> tuple[Schedule, int]:
+        """The inputs from a step on as the core follows them, counted from the run's start, and where they end."""
+        window = self._made.get(core.real)
+        if window is None or not window.first <= step < window.end:
+            window = self._made[core.real] = self._window(core, step)
+        return window.schedule, window.end
+
+    def _window(self, core: Core, step: int) -> Window:
+        """All stretches of a held scene; of a sampled one as many steps as are made ready at once."""
+        places = [core.input_place(signal) for signal in self.signals]
+        if self.is_held:
+            held = self._rows(np.array(self.changes), np.array([0.0]))[:, 0]
+            return Window(0, FOR_EVER, Schedule(core, places, held, [*self.changes[1:], FOR_EVER]))
+        first = step - step % CHUNK
+        end = min(first + CHUNK, self.steps) if step < self.steps else first + CHUNK
+        return Window(first, end, Schedule(core, places, self.samples(first, end - first), first_step=first))
+
     @np.errstate(over="ignore", invalid="ignore")
     def _rows(self, ticks: np.ndarray, parts: np.ndarray) -> np.ndarray:
         rows = np.zeros((len(ticks), len(parts), len(self.signals)))
@@ -102,8 +137,7 @@ class Drive:
         return rows
 
     def _steps_at(self, each: Input, ticks: np.ndarray) -> np.ndarray:
-        values = np.concatenate([[0.0], each.value])
-        return values[np.searchsorted(self._ticks[each.place], ticks, side="right")]
+        return self._levels[each.place][np.searchsorted(self._ticks[each.place], ticks, side="right")]
 
 
 def change_ticks(path: Path, each: Input, step_s: float, steps: int) -> np.ndarray:

@@ -6,8 +6,11 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
+from laconic.schedule import Schedule
+
 if TYPE_CHECKING:
     from laconic.core import Core
+    from laconic.recording import Recorder
 
 
 class Plant:
@@ -41,23 +44,14 @@ class Plant:
 
     def run_sampled(self, samples: np.ndarray) -> None:
         """One step per samples[k] = rows of input numbers at the step's start, middle and end."""
-        if not len(samples):
-            return
-        ffi, step = self.core.ffi, self.core.lib.laconic_step_sampled
-        rows = np.ascontiguousarray(samples, self.core.dtype)
-        first = ffi.cast("laconic_input *", ffi.from_buffer(rows))
-        model, integrator, state = (self._at(name) for name in ("model", "integrator", "state"))
-        for k in range(0, 3 * len(rows), 3):
-            status = step(model, integrator, state, first + k, first + k + 1, first + k + 2)
-            if status:
-                self._refuse_sampled(status, first + k)
-            self.c.steps += 1
+        every_signal = range(self.core.input_length)
+        self.follow(Schedule(self.core, every_signal, samples, first_step=self.steps), self.steps + len(samples))
 
-    def _refuse_sampled(self, status: int, samples: Any) -> None:
+    def follow(self, schedule: Schedule, until_step: int, recorder: Recorder | None = None) -> None:
+        """Steps along a schedule, recorded on the way; Refused leaves the state before the refused step."""
         why = self.core.why()
-        self.core.lib.laconic_step_refusal(
-            why, status, self._at("model"), self._at("integrator"), self._at("state"), samples, 3)
-        raise self.core.refusal(why)
+        record = recorder.c if recorder else self.core.ffi.NULL
+        self.core.check(self.core.lib.laconic_plant_follow(self.c, schedule.c, until_step, record, why), why)
 
     def set_step(self, step_s: float) -> None:
         """Another step size from here on."""
@@ -68,6 +62,7 @@ class Plant:
         """Another payload, motor … while it moves; the wheels must stay as they are."""
         why = self.core.why()
         self.core.check(self.core.lib.laconic_plant_change(self.c, vehicle, why), why)
+        self._contact = None
 
     def save(self) -> Any:
         """A copy of the state."""
@@ -136,12 +131,17 @@ class Plant:
         """Kinetic energy."""
         return float(self.core.lib.laconic_energy_J(self._at("model"), self._at("state")))
 
-    def reactions(self, held: Any) -> Any:
-        """The laconic_reactions of this state and input."""
+    @property
+    def contact(self) -> Any:
+        """The laconic_contact of the vehicle as it is now."""
         if self._contact is None:
             contact, why = self.core.ffi.new("laconic_contact *"), self.core.why()
             self.core.check(self.core.lib.laconic_contact_prepare(contact, self._at("vehicle"), why), why)
             self._contact = contact
+        return self._contact
+
+    def reactions(self, held: Any) -> Any:
+        """The laconic_reactions of this state and input."""
         found = self.core.ffi.new("laconic_reactions *")
-        self.core.lib.laconic_reactions_of(found, self._contact, self._at("model"), self._at("state"), held)
+        self.core.lib.laconic_reactions_of(found, self.contact, self._at("model"), self._at("state"), held)
         return found

@@ -595,12 +595,12 @@ void laconic_grip_watch(laconic_grip *grip, const laconic_contact *contact, cons
                         const laconic_reactions *reactions, uint64_t steps);
 
 /* Inputs over many steps, of the few signals that a run uses; all other inputs are zero. Held: stretch k holds its
- * values up to step until_step[k]. Sampled (until_step NULL): step k has values at its start, middle and end. */
+ * values before step until_step[k]. Sampled (until_step NULL): step k has values at its start, middle and end. */
 typedef struct laconic_schedule {
     int32_t signal_count;
     const uint32_t *signal;     /* where each stands in laconic_input, in bytes                     */
     const laconic_real *value;  /* signal_count for each stretch; 3·signal_count for each step      */
-    const uint64_t *until_step; /* ascending; NULL: sampled                                         */
+    const uint64_t *until_step; /* ascending, counted from first_step; NULL: sampled                */
     uint64_t count;             /* of stretches; of steps where sampled                             */
     uint64_t first_step;        /* of the plant, at which the first begins                          */
 } laconic_schedule;

@@ -11,10 +11,10 @@ import click
 
 from laconic.core import REALS
 from laconic.errors import BadInput
-from laconic.options import PICTURES, OutputFile, SceneName, json_flag
+from laconic.options import PICTURES, OutputFile, SceneName, belongs_to, json_flag
 from laconic.outputs import is_stdout, opened
 from laconic.scene import METHODS, read_scene
-from laconic.simulation import Trajectory, simulate, usual_signals, wanted_signals
+from laconic.simulation import Trajectory, input_signals, simulate, usual_signals, wanted_signals
 
 
 @click.command(name="simulate", short_help="Run one scene through the core.")
@@ -24,20 +24,25 @@ from laconic.simulation import Trajectory, simulate, usual_signals, wanted_signa
 @click.option("--real", type=click.Choice(REALS), help="Scalar type instead of the scene's.")
 @click.option("--out", type=OutputFile(".csv", stdout=True), metavar="F.csv", help="Write the outputs; - for stdout.")
 @click.option("--plot", type=OutputFile(*PICTURES), metavar="F.png", help="Draw path, velocities, wheel speeds.")
+@click.option("--inputs", "inputs_wanted", is_flag=True,
+              help="Write the inputs as further columns of --out: what acts from each row on.")
 @json_flag("Machine-readable summary.")
 def command(scene: str, method: str | None, step_s: float | None, real: str | None, out: Path | None,
-            plot: Path | None, json_wanted: bool) -> None:
+            plot: Path | None, inputs_wanted: bool, json_wanted: bool) -> None:
     """Runs SCENE, a TOML file or the name of a scene that comes with the project.
 
-    Inputs of kind "steps" are held over each step; a step that one of them changes within is refused.
+    Inputs of kind "steps" are held over each step; a step that one of them changes within is refused. Where the scene
+    gives a friction coefficient or the height of the centre of mass, the ground is watched: the first wheel that
+    would slip or lift is told on stderr.
     """
     if step_s is not None and not 0.0 < step_s < float("inf"):
         raise BadInput(f"--step: {step_s:g} s is not usable; give a finite number above zero")
+    belongs_to("--out", bool(out), "--inputs")
     given = read_scene(scene).with_run(method=method, step_s=step_s, real=real)
-    signals = dict.fromkeys((*wanted_signals(given), *(usual_signals(given) if plot else ())))
-    run = simulate(given, tuple(signals), progress=True)
+    written = (*wanted_signals(given), *(input_signals(given) if inputs_wanted else ()))
+    run = simulate(given, tuple(dict.fromkeys((*written, *(usual_signals(given) if plot else ())))), progress=True)
     if out:
-        write_csv(run, out)
+        write_csv(run, written, out)
     if plot:
         from laconic.plotting import simulation_picture
         simulation_picture(run, plot)
@@ -45,11 +50,17 @@ def command(scene: str, method: str | None, step_s: float | None, real: str | No
         click.echo(json.dumps(summary(run, out, plot), indent=1))
     elif not (out and is_stdout(out)):
         tell(run, out, plot)
+    if run.grip and not run.grip.holds:
+        warn(f"{given.path}: the ground cannot give what this run asks: {run.grip.warning()}")
 
 
-def write_csv(run: Trajectory, path: Path) -> None:
-    """time_s and the scene's signals, with all digits."""
-    signals = wanted_signals(run.scene)
+def warn(message: str) -> None:
+    """One line on stderr that changes no exit status."""
+    click.echo(f"laconic: warning: {message}", err=True)
+
+
+def write_csv(run: Trajectory, signals: tuple[str, ...], path: Path) -> None:
+    """time_s and the signals, with all digits."""
     rows = zip(run.time_s.tolist(), *(run.columns[name].tolist() for name in signals), strict=True)
     with opened(path) as file:
         write_rows(file, signals, rows)
@@ -68,6 +79,7 @@ def summary(run: Trajectory, out: Path | None, plot: Path | None) -> dict[str, A
         "scene": str(run.scene.path), "name": run.scene.name, "method": run.scene.run.method, "chosen": run.method,
         "step_s": run.scene.run.step_s, "real": run.scene.run.real, "steps": run.steps, "seconds": run.seconds,
         "final": {"time_s": run.time_s[-1], **{name: values[-1] for name, values in run.columns.items()}},
+        "no_slip": run.grip.as_json() if run.grip else None,
         "files": [str(path) for path in (out, plot) if path]}
 
 
