@@ -15,41 +15,64 @@ from laconic.errors import BadInput, reason_of
 from laconic.options import OutputFolder, SceneName, json_flag
 from laconic.paths import build_dir, scene_names
 from laconic.report.collect import collect
-from laconic.report.page import shown, write
+from laconic.report.page import TEXT, TITLES, shown
+from laconic.report.robot import collect_robots
+from laconic.report.writing import write
 from laconic.scene import read_scene
 
 
 @click.command(name="report", short_help="Error against run time, sizes, stability: an HTML page.")
 @click.option("--scene", "scenes", type=SceneName(), multiple=True, metavar="SCENE",
-              help="Instead of all; may be given several times.")
+              help="About this robot, instead of the project; may be given several times.")
 @click.option("--out", type=OutputFolder(), metavar="DIR", help="Folder; build/report where none is given.")
-@click.option("--quick", is_flag=True, help="Fewer repetitions and one board: rough figures, some minutes.")
-@json_flag("Print the goals as JSON.")
+@click.option("--quick", is_flag=True, help="Fewer repetitions and one board: rough figures, much sooner.")
+@json_flag("Print what is shown as JSON.")
 def command(scenes: tuple[str, ...], out: Path | None, quick: bool, json_wanted: bool) -> None:
-    """Measures error against run time, stability, drift, extremes, sizes and other integrators.
+    """Measures what accuracy costs: error against run time, stability, sizes; of robots, or of the project itself.
 
-    Writes index.html (one file, opens offline), report.json and a CSV for each table, and prints the project's goals
-    with what was found. What is not installed is left out and named.
+    With --scene the page is about that robot. Without, it is about the project, and measures drift, extremes and other
+    integrators besides; the project's goals are a page of their own, goals.html. Writes index.html (one file, opens
+    offline), report.json and a CSV for each table. What is not installed is left out and named.
     """
     folder = out or build_dir() / "report"
     read = [read_scene(name) for name in scenes or scene_names()]
     try:
         folder.mkdir(parents=True, exist_ok=True)
-        report = collect(read, folder / "work", quick)
+        report = (collect_robots if scenes else collect)(read, folder / "work", quick)
         page = write(report, folder, version("laconic"))
     except OSError as error:
         raise BadInput(f"{error.filename or folder}: {reason_of(error)}; choose another folder with --out") from None
     if json_wanted:
-        goals = report.results["targets"]
-        click.echo(json.dumps({"page": str(page), "notes": report.notes, "goals": goals}, indent=1, default=float))
+        found = {"goals": report.results["targets"], "robots": report.results["robots"], "take": report.results["take"]}
+        click.echo(json.dumps({"page": str(page), "notes": report.notes, **found}, indent=1, default=float))
         return
-    show(report.results["targets"])
+    console = Console(width=None if Console().is_terminal else 150)
+    for table in robot_tables(report.results) if scenes else [goal_table(report.results["targets"])]:
+        console.print(table)
     for note in report.notes:
         click.echo(note)
     click.echo(f"{page}")
 
 
-def show(goals: list[dict]) -> None:
+def robot_tables(results: dict[str, list[dict]]) -> list[Table]:
+    """For people: what to take, and what a step costs on a microcontroller."""
+    take = _table("What to take: the quickest that reaches an error of ν, pose and wheel angles (relative)",
+                  ("scene", "wanted_error", "real", "method", "step_s", "error", "us_per_second"), results["take"])
+    board = _table("On a Cortex-M4F", ("scene", "chosen", "real", "build", "instructions", "step_code", "flash",
+                                       "worst_stack", "same_bits"), results["scenes"])
+    return [take, board] if results["scenes"] else [take]
+
+
+def _table(title: str, fields: tuple[str, ...], rows: list[dict]) -> Table:
+    table = Table(title=title, title_justify="left")
+    for name in fields:
+        table.add_column(escape(TITLES.get(name, name)), justify="left" if name in TEXT else "right", overflow="fold")
+    for row in rows:
+        table.add_row(*(escape(shown(name, row.get(name))) for name in fields))
+    return table
+
+
+def goal_table(goals: list[dict]) -> Table:
     """The table for people."""
     table = Table(title="Goals", title_justify="left")
     for heading, justify in (("", "left"), ("goal", "left"), ("found", "right"), ("", "left"), ("wanted", "right"),
@@ -60,4 +83,4 @@ def show(goals: list[dict]) -> None:
         numbers = [shown(name, row[name]) for name in ("found", "wanted")]
         table.add_row(row["group"], escape(row["goal"]), numbers[0], row["bound"], numbers[1],
                       f"[{colours[row['verdict']]}]{row['verdict']}[/]")
-    Console(width=None if Console().is_terminal else 150).print(table)
+    return table

@@ -17,6 +17,7 @@ from laconic.simulation import advance_plant
 
 STEPS_S = (0.001, 0.002, 0.0025, 0.005, 0.01, 0.0125, 0.02, 0.025, 0.05, 0.1)
 CHECKPOINTS = 20
+GRID_S = 0.1  # every step of the ladder divides it
 LONGEST_S = 10.0
 TIMED_STEPS, TIMED_REPETITIONS = 4000, 5
 
@@ -36,8 +37,17 @@ def shortened(scene: Scene) -> Scene:
 
 def truth_of(scene: Scene) -> Truth:
     """Reference states at evenly spaced instants."""
-    at_s = np.linspace(0.0, scene.run.duration_s, CHECKPOINTS + 1)[1:]
+    at_s = checkpoints(scene.run.duration_s)
     return Truth(at_s, reference_states(scene, at_s))
+
+
+def checkpoints(duration_s: float) -> np.ndarray:
+    """At most twenty instants that every step of the ladder falls on; in a shorter run than that, twenty parts."""
+    if duration_s < GRID_S:
+        return np.linspace(0.0, duration_s, CHECKPOINTS + 1)[1:]
+    ticks = int(duration_s / GRID_S + 1e-6)
+    every = -(-ticks // CHECKPOINTS)
+    return GRID_S * every * np.arange(1, ticks // every + 1)
 
 
 def relative(found: np.ndarray, expected: np.ndarray) -> float:
@@ -111,11 +121,11 @@ def one_run(scene: Scene, real: str, truth: Truth) -> dict[str, Any]:
 
 
 def rows_of(scene: Scene, reals: tuple[str, ...], methods: tuple[str, ...] = METHODS,
-            advance: Any = lambda: None) -> list[dict[str, Any]]:
+            advance: Any = lambda: None, ladder: tuple[float, ...] = STEPS_S) -> list[dict[str, Any]]:
     """The whole ladder of one scene."""
     short = shortened(scene)
     truth, rows = truth_of(short), []
-    steps = [h for h in STEPS_S if fits(replace(short, run=replace(short.run, step_s=h)), truth)]
+    steps = [h for h in ladder if fits(replace(short, run=replace(short.run, step_s=h)), truth)]
     for real in reals:
         for method in methods:
             cost = cost_per_step(short, real, method)

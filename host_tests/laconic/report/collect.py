@@ -1,4 +1,4 @@
-"""Runs every measurement of a report, in order, with a progress bar; what cannot be measured here is noted."""
+"""Runs every measurement of the project's report, with a progress bar; what cannot be measured here is noted."""
 
 from __future__ import annotations
 
@@ -15,6 +15,8 @@ from laconic.scene import METHODS, Outputs, Scene, read_scene
 REALS = ("double", "single")
 MAP_SCENE, BENCH_SCENE, FREE_SCENE = "kuka_youbot", "s1", "paper_three_wheel_free"
 STIFF_SCENES = ("robotino2", "kuka_youbot")
+PARTS = ("targets", "robots", "take", "accuracy", "drift", "norm", "map", "stiff", "extremes", "verified", "prototype",
+         "single", "long", "steps", "precision", "boards", "scenes", "smallest")  # all that report.json may hold
 
 
 @dataclass
@@ -23,12 +25,13 @@ class Report:
 
     results: dict[str, list[dict[str, Any]]] = field(default_factory=dict)
     notes: list[str] = field(default_factory=list)
+    robots: list[Scene] = field(default_factory=list)  # whom it is about; none: the project's own scenes and goals
 
 
 def collect(scenes: Sequence[Scene], folder: Path, quick: bool = False) -> Report:
     """Everything. `quick` takes fewer repetitions and vehicles (for tests; the figures are then rough)."""
     bench = read_scene(BENCH_SCENE).with_run(step_s=speed.STEP_S)
-    workshop, report = Workshop(folder / "bench"), Report()
+    workshop, report = Workshop(folder / "bench"), Report({name: [] for name in PARTS})
     sections = (_numeric, _stiffness, _edges, _speed, _boards)
     with progress_bar("report", _amount(scenes, quick)) as advance:
         for section in sections:

@@ -2,34 +2,23 @@
 
 from __future__ import annotations
 
-import io
 from collections.abc import Sequence
+from itertools import count
 from typing import Any
 
-import matplotlib as mpl
 import numpy as np
-from matplotlib import pyplot as plt
 from matplotlib.axes import Axes
 from matplotlib.colors import LogNorm
 from matplotlib.figure import Figure
 
 from laconic.method_style import look
 from laconic.plotting import figure
+from laconic.report.svg import SIZE, svg
 from laconic.scene import METHODS
 
 Row = dict[str, Any]
-FLOOR = 1e-16
-SIZE = (5.2, 3.9)
-
-
-def svg(picture: Figure) -> str:
-    """The figure as an svg element without prolog; text stays text, identifiers stay the same in every run."""
-    out = io.StringIO()
-    with mpl.rc_context({"svg.fonttype": "none", "svg.hashsalt": "laconic"}):
-        picture.savefig(out, format="svg", metadata={"Date": None})
-    plt.close(picture)
-    text = out.getvalue()
-    return text[text.index("<svg"):]
+FLOOR, REFERENCE = 1e-16, 1e-11  # below the second, errors are the reference's own as much as the method's
+LETTERS, MARKS = 8, 3.5
 
 
 def _lines(axes: Axes, rows: Sequence[Row], x: str, y: str, style: Row) -> None:
@@ -38,38 +27,62 @@ def _lines(axes: Axes, rows: Sequence[Row], x: str, y: str, style: Row) -> None:
         axes.loglog(*zip(*points, strict=True), **style)
 
 
-def error_against_time(rows: Sequence[Row], scene: str) -> str:
-    """One scene: error of ν over run time; full lines double, dashed single."""
+def _legend_below(picture: Figure, axes: Axes, columns: int = 2) -> None:
+    """Outside of the axes, where it covers no curve; three columns would be cut on a phone."""
+    handles, labels = axes.get_legend_handles_labels()
+    picture.legend(handles, labels, fontsize=LETTERS, loc="outside lower center", ncols=columns)
+
+
+def coinciding(order: int, markers: int = 8) -> Row:
+    """Widths and places of markers for curves that may lie on each other: later ones thinner, markers taking turns."""
+    return {"linewidth": max(0.8, 3.4 - 0.5 * order), "markevery": (order % markers, markers)}
+
+
+def error_against_time(rows: Sequence[Row], scene: str, title: str = "") -> str:
+    """One scene: error of ν over run time; full lines double, dashed single. The scene's own step is marked."""
     picture = figure(*SIZE)
     axes = picture.add_subplot()
+    mine = [r for r in rows if r["scene"] == scene]
     for method in METHODS:
         for real, style, name in (("double", "-", method), ("single", "--", None)):
-            mine = [r for r in rows if (r["scene"], r["method"], r["real"]) == (scene, method, real)]
-            _lines(axes, mine, "us_per_second", "error_nu", look(method, 3.5, label=name, linestyle=style))
-    axes.set(xlabel="run time per simulated second [µs]", ylabel="error of ν, relative", title=scene)
-    picture.legend(fontsize=7.5, loc="outside lower center", ncols=3)
+            chosen = [r for r in mine if (r["method"], r["real"]) == (method, real)]
+            _lines(axes, chosen, "us_per_second", "error_nu", look(method, MARKS, label=name, linestyle=style)
+                   if method != "auto" else look(method, MARKS, label=name))
+    axes.plot([], [], "-", color="0.4", label="double")
+    axes.plot([], [], "--", color="0.4", label="single")
+    own = [r for r in mine if r.get("own")]
+    if own:
+        _lines(axes, own, "us_per_second", "error_nu", {
+            "marker": "o", "markersize": 12, "color": "#f2dc7e", "linestyle": "none", "zorder": 0.5,
+            "label": f"the scene's own step, {own[0]['step_s']:g} s"})
+    low = 0.3 * min(axes.dataLim.y0, REFERENCE)
+    axes.set_ylim(bottom=low)
+    axes.axhspan(low, REFERENCE, color="0.5", alpha=0.15, lw=0, label="error of the reference itself")
+    axes.set(xlabel="run time per simulated second [µs]", ylabel="error of ν, relative", title=title or scene)
+    _legend_below(picture, axes)
     return svg(picture)
 
 
 def precision(rows: Sequence[Row]) -> str:
     """S1 with other people's integrators."""
-    picture = figure(7.4, 5.0)
+    picture = figure(SIZE[0], SIZE[1] + 0.9)
     axes = picture.add_subplot()
     for method in METHODS[1:]:
         mine = [r for r in rows if r["who"] == method and r["real"] == "double"]
-        _lines(axes, mine, "ms", "error_nu", look(method, 3.5))
+        _lines(axes, mine, "ms", "error_nu", look(method, MARKS))
     others = sorted({r["who"] for r in rows} - set(METHODS))
-    for name, grey in zip(others, np.linspace(0.15, 0.75, max(1, len(others))), strict=True):
+    greys = np.linspace(0.15, 0.75, max(1, len(others)))
+    for name, grey, marker in zip(others, greys, "xxxx1234+*"[: len(others)].ljust(len(others), "x"), strict=True):
         _lines(axes, [r for r in rows if r["who"] == name], "ms", "error_nu",
-               look(name, 3.5, color=str(round(float(grey), 2)), linestyle=":"))
-    axes.axhline(1e-6, color="0.6", linewidth=0.8)
+               look(name, MARKS + 1.0, color=str(round(float(grey), 2)), linestyle=":", marker=marker))
+    axes.axhline(1e-6, color="0.6", linewidth=0.8, label="error of 1e-6")
     axes.set(xlabel="run time of all ten seconds [ms]", ylabel="largest error of ν [rad/s]", title="S1")
-    axes.legend(fontsize=7.5, loc="upper right")
+    _legend_below(picture, axes)
     return svg(picture)
 
 
-def stability(rows: Sequence[Row], method: str) -> str:
-    """Step across, damping upwards, error as colour; refused steps are grey."""
+def stability(rows: Sequence[Row], method: str, own: tuple[float, float] | None = None) -> str:
+    """Step across, damping upwards, error as colour; refused steps are grey. `own`: a robot's step and damping."""
     mine = [r for r in rows if r["method"] == method]
     steps = sorted({r["step_s"] for r in mine})
     rates = sorted({r["fastest_decay_per_s"] for r in mine})
@@ -82,11 +95,19 @@ def stability(rows: Sequence[Row], method: str) -> str:
     axes.set_facecolor("#c9c9c9")
     mesh = axes.pcolormesh(_edges(steps), _edges(rates), error, norm=LogNorm(FLOOR, 1.0), cmap="viridis_r",
                            rasterized=False)
-    axes.plot(steps, 1.0 / np.array(steps), color="white", linewidth=0.8, linestyle="--")
+    left, right = _edges(steps)[[0, -1]]
+    if own:
+        left, right = min(left, 0.8 * own[0]), max(right, 1.25 * own[0])
+        axes.plot(*own, "*", color="#d1495b", markeredgecolor="white", ms=13, ls="", label="this robot at its own step")
+    across = np.array([left, right])
+    axes.plot(across, 1.0 / across, color="white", linewidth=1.6)
+    axes.plot(across, 1.0 / across, color="0.2", linewidth=0.9, linestyle="--", label="h·r = 1")
+    axes.plot([], [], "s", color="#c9c9c9", ms=8, label="refused or not run")
     axes.set(xscale="log", yscale="log", xlabel="step h [s]", ylabel="fastest damping r [1/s]", title=method,
-             ylim=(_edges(rates)[0], _edges(rates)[-1]))
+             ylim=(_edges(rates)[0], _edges(rates)[-1]), xlim=(left, right))
     axes.grid(False)
-    picture.colorbar(mesh, ax=axes, label="error of ν")
+    picture.colorbar(mesh, ax=axes, label="error of ν, relative")
+    _legend_below(picture, axes)
     return svg(picture)
 
 
@@ -97,12 +118,13 @@ def _edges(values: Sequence[float]) -> np.ndarray:
 
 
 def drift(rows: Sequence[Row], real: str, what: str) -> str:
-    """Largest relative change so far over the number of steps."""
+    """Largest relative change so far over the number of steps; curves that coincide show through each other."""
     picture = figure(*SIZE)
     axes = picture.add_subplot()
-    for method in METHODS[1:]:
+    for order, method in zip(count(), METHODS[1:]):
         mine = [r for r in rows if r["method"] == method and r["real"] == real and r["status"] == "ok"]
-        _lines(axes, mine, "steps", what, look(method, 3.5))
-    axes.set(xlabel="steps of 0.1 s", ylabel=f"relative change of {what}", title=f"{what}, {real}")
-    axes.legend(fontsize=7.5)
+        _lines(axes, mine, "steps", what, look(method, MARKS + 1.0, **coinciding(order)))
+    name = {"K": "the yaw integral K = (Aν)₃"}.get(what, what)
+    axes.set(xlabel="steps of 0.1 s", ylabel="relative change so far", title=f"{name}, {real}")
+    _legend_below(picture, axes)
     return svg(picture)
