@@ -4,13 +4,18 @@ from __future__ import annotations
 
 import xml.etree.ElementTree as ET
 import zipfile
-from collections.abc import Mapping, Sequence
+from collections.abc import Callable, Mapping, Sequence
+from dataclasses import dataclass
 from pathlib import Path
 
 from . import fmi2, fmi3
 from .description import Description, parse, start_values, token_in, with_values
+from .enumerations import without_enumerations
 from .package import pack, start_file
 from .scalars import elements_of
+
+MOST_ROWS = 1000
+"""Rows that an importer writes which takes the default experiment as it is."""
 
 PLATFORMS = {
     "x86_64-linux": ("linux64", "x86_64-linux", ".so"),
@@ -68,24 +73,73 @@ def terminals_of(text: str, description: Description, scalar: bool) -> str:
     return f'<?xml version="1.0" encoding="UTF-8"?>\n{ET.tostring(root, encoding="unicode")}\n'
 
 
-def scene_fmu(generic: Path, source: Path, values: Mapping[str, Sequence[float]], name: str, text: str, out: Path, *,
-              version: int, scalar: bool, stop_s: float, step_s: float, sources: bool = True) -> None:
-    """Writes the FMU of a scene: the generic one with the scene's start values."""
-    parts = {name: data for name, data in read_parts(generic).items() if sources or not name.startswith("sources/")}
-    description = with_values(parse(source.read_text(encoding="utf-8")), values, name, text)
+@dataclass(frozen=True)
+class Variant:
+    """Which FMU of a scene."""
+
+    version: int
+    scalar: bool = False
+    """FMI 3 without arrays."""
+    enumerations: bool = True
+    """False: whole numbers instead, for importers that know no enumerations."""
+    sources: bool = True
+
+
+@dataclass(frozen=True)
+class Content:
+    """What the FMU of a scene says."""
+
+    name: str
+    text: str
+    values: Mapping[str, Sequence[float]]
+    """Start values by the variables' names."""
+    duration_s: float
+    step_s: float
+
+
+def output_step(duration_s: float, step_s: float) -> float:
+    """The default experiment's step: a whole number of internal steps, at most MOST_ROWS of it in the run.
+
+    The roundest number of steps will do, best one that divides the run.
+    """
+    count = max(1, round(duration_s / step_s))
+    round_numbers = [digit * 10**power for power in range(16) for digit in (1, 2, 5)]
+    enough = [number for number in round_numbers if count <= MOST_ROWS * number]
+    return step_s * next((number for number in enough[:3] if count % number == 0), enough[0])
+
+
+def _describe(parts: Mapping[str, bytes], description: Description, variant: Variant) -> str:
+    if variant.version == 3:
+        return fmi3.describe_scalar(description) if variant.scalar else fmi3.describe(description)
+    old = ET.fromstring(parts["modelDescription.xml"])
+    files = [file.get("name", "") for file in old.findall("CoSimulation/SourceFiles/File") if variant.sources]
+    return fmi2.describe(description, files)
+
+
+Shown = Callable[[Mapping[str, bytes], Description, int], Mapping[str, bytes]]
+"""From the generic FMU's parts, the description and the FMI version to the parts that show the scene."""
+
+
+def scene_fmu(generic: Path, source: Path, content: Content, out: Path, variant: Variant, shown: Shown | None) -> None:
+    """Writes the FMU of a scene: the generic one with the scene's start values, name and pictures."""
+    parts = {name: data for name, data in read_parts(generic).items()
+             if variant.sources or not name.startswith("sources/")}
+    given = parse(source.read_text(encoding="utf-8"))
+    description = with_values(given, content.values, content.name, content.text)
     experiment = description.root.find("DefaultExperiment")
     if experiment is not None:
-        experiment.set("stopTime", repr(float(stop_s)))
-        experiment.set("stepSize", repr(float(step_s)))
-    if version == 2:
-        old = ET.fromstring(parts["modelDescription.xml"])
-        files = [file.get("name", "") for file in old.findall("CoSimulation/SourceFiles/File") if sources]
-        xml = fmi2.describe(description, files)
-    else:
-        xml = fmi3.describe_scalar(description) if scalar else fmi3.describe(description)
+        experiment.set("stopTime", repr(float(content.duration_s)))
+        experiment.set("stepSize", repr(output_step(content.duration_s, content.step_s)))
+    if shown is not None:
+        parts |= shown(parts, description, variant.version)
+    if not variant.enumerations:
+        description = without_enumerations(description)
+    xml = _describe(parts, description, variant)
     parts["modelDescription.xml"] = xml.encode("utf-8")
-    if version == 3:
+    if variant.version == 3:
         terminals = parts["terminalsAndIcons/terminalsAndIcons.xml"].decode("utf-8")
-        parts["terminalsAndIcons/terminalsAndIcons.xml"] = terminals_of(terminals, description, scalar).encode("utf-8")
-    parts["resources/start.bin"] = start_file(start_values(description), token_in(xml), scalar or version == 2)
+        parts["terminalsAndIcons/terminalsAndIcons.xml"] = \
+            terminals_of(terminals, description, variant.scalar).encode("utf-8")
+    parts["resources/start.bin"] = start_file(start_values(description), token_in(xml),
+                                              variant.scalar or variant.version == 2)
     pack(out, parts)

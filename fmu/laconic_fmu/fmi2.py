@@ -8,7 +8,8 @@ from collections.abc import Sequence
 from .description import Description, element_reference, with_token
 from .scalars import Scalar, ScalarUnknown, scalars, unknowns
 
-TYPES = {"Float64": "Real", "Int32": "Integer", "UInt64": "Integer", "Enumeration": "Enumeration", "Boolean": "Boolean"}
+TYPES = {"Float64": "Real", "Int32": "Integer", "Int64": "Integer", "UInt64": "Integer",
+         "Enumeration": "Enumeration", "Boolean": "Boolean"}
 INTERPOLATES = {"true": {"canInterpolateInputs": "true"}, "false": {}}
 """FMI 2.0 gives inputs a slope where FMI 3.0 asks for them in between."""
 HEADER = ("modelName", "description", "author", "version", "copyright", "license", "generationTool",

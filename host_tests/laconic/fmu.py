@@ -16,7 +16,8 @@ from laconic.paths import SOURCE_DIR, built
 from laconic.scene import METHODS, Scene
 
 sys.path.insert(0, str(SOURCE_DIR / "fmu"))
-from laconic_fmu.archive import scene_fmu  # noqa: E402
+from laconic_fmu.archive import Content, Variant, scene_fmu  # noqa: E402
+from laconic_fmu.page import vehicle_parts  # noqa: E402
 
 DESCRIPTION = SOURCE_DIR / "modelDescription.xml"
 
@@ -49,14 +50,20 @@ def start_values(scene: Scene) -> dict[str, list[float]]:
     return values | {"method": [METHODS.index(scene.run.method)], "step_s": [scene.run.step_s]}
 
 
-def make_fmu(scene: Scene, out: Path, *, version: int, scalar: bool = False, sources: bool = True) -> Path:
+def content_of(scene: Scene, name: str, text: str, values: dict[str, Any]) -> Content:
+    """What an FMU of the scene says, with the scene's own duration and step."""
+    return Content(name, text, values, scene.run.duration_s, scene.run.step_s)
+
+
+def make_fmu(scene: Scene, out: Path, *, version: int, scalar: bool = False, sources: bool = True,
+             enumerations: bool = True) -> Path:
     """Writes the scene's FMU; BadInput when the scene cannot be one."""
     if scene.wheel_count == 0 and version == 3 and not scalar:
         raise BadInput(f"{scene.path}: vehicle.wheel: a vehicle without wheels has no arrays; use --scalar or --fmi 2")
     scene.plant(load("double"))  # what cannot start is refused here, with the field's name
-    values: Any = start_values(scene)
-    text = f"Dynamics of a wheeled robot; its numbers: {scene.source}"
+    content = content_of(scene, scene.name, f"Dynamics of a wheeled robot; its numbers: {scene.source}",
+                         start_values(scene))
     with whole_file(out) as fresh:
-        scene_fmu(generic_fmu(version), DESCRIPTION, values, scene.name, text, fresh, version=version,
-                  scalar=scalar, sources=sources, stop_s=scene.run.duration_s, step_s=scene.run.step_s)
+        scene_fmu(generic_fmu(version), DESCRIPTION, content, fresh,
+                  Variant(version, scalar, enumerations, sources), vehicle_parts)
     return out

@@ -20,12 +20,13 @@ from laconic.ssp import make_ssp
 @click.option("--fmi", "version", type=click.Choice(("2", "3")), required=True, help="FMI 2.0 or 3.0.")
 @click.option("--scalar", is_flag=True, help="FMI 3.0 without arrays, for importers that handle them badly.")
 @click.option("--without-sources", is_flag=True, help="Binaries only: less than half the size.")
-@click.option("--ssp", is_flag=True, help="An SSP archive: the vehicle with a wheel-speed controller, connected.")
+@click.option("--no-enumerations", is_flag=True, help="Whole numbers instead, for importers that know no enumerations.")
+@click.option("--ssp", is_flag=True, help="An SSP archive (--fmi 2): the vehicle with a wheel-speed controller.")
 @click.option("-o", "--out", type=OutputFile(".fmu", ".ssp"), metavar="F.fmu",
               help="Where to; SCENE_fmi3.fmu if not given.")
 @json_flag()
-def command(scene: str, version: str, scalar: bool, without_sources: bool, ssp: bool, out: Path | None,
-            json_wanted: bool) -> None:
+def command(scene: str, version: str, scalar: bool, without_sources: bool, no_enumerations: bool, ssp: bool,
+            out: Path | None, json_wanted: bool) -> None:
     """Writes an FMU whose start values are SCENE's vehicle, start, method and step.
 
     Model Exchange and Co-Simulation are both in it. In FMI 3.0 the number of wheels is a structural parameter; in
@@ -34,15 +35,15 @@ def command(scene: str, version: str, scalar: bool, without_sources: bool, ssp: 
     if scalar and version == "2":
         raise BadInput("--scalar: FMI 2.0 has no arrays anyway; leave it out or use --fmi 3")
     given = read_scene(scene)
-    if ssp and version == "3" and not scalar:
-        raise BadInput("--ssp: SSP 1.0 knows no arrays; add --scalar or use --fmi 2")
-    make, ending = (make_ssp, "ssp") if ssp else (make_fmu, "fmu")
+    ending = "ssp" if ssp else "fmu"
     if out is None:
         out = claim_file("--out", Path(f"{given.path.stem}_fmi{version}{'_scalar' if scalar else ''}.{ending}"))
     check_ending("--out", out, (f".{ending}",))
-    made = make(given, out, version=int(version), scalar=scalar, sources=not without_sources)
+    options = {"version": int(version), "sources": not without_sources, "enumerations": not no_enumerations}
+    made = make_ssp(given, out, **options) if ssp else make_fmu(given, out, scalar=scalar, **options)
     if json_wanted:
-        click.echo(json.dumps({"scene": str(given.path), "fmi": int(version), "scalar": scalar, "file": str(made),
-                               "bytes": made.stat().st_size}, indent=1))
+        click.echo(json.dumps({"scene": str(given.path), "fmi": int(version), "scalar": scalar,
+                               "enumerations": not no_enumerations, "file": str(made), "bytes": made.stat().st_size},
+                              indent=1))
     else:
         click.echo(f"wrote {made} ({made.stat().st_size / 1000:.0f} kB): {given.name}, {given.wheel_count} wheels")

@@ -1,0 +1,118 @@
+"""A vehicle's icon, drawn from its wheels: seen from above, the first body axis up.
+
+White bars are the rollers' axes as one sees them from above: those of a mecanum wheel are mirrored against the ones on
+the ground. A locked wheel is red, ball casters are grey discs.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+from math import cos, hypot, pi, sin
+
+from .raster import WHITE, Colour, Point, Shape, png, svg
+
+SIZE = 200
+MARGIN = 22
+SMALLEST = 0.16
+"""Length of a wheel against the vehicle's extent, where the wheels are smaller than can be seen."""
+BLUE, LIGHT, ORANGE, RED, GREY = (27, 73, 101), (190, 233, 232), (202, 103, 2), (174, 32, 18), (130, 140, 148)
+FIXED = 2
+"""Number of an ordinary wheel in wheel_kind."""
+
+
+def _disc(x: float, y: float, radius: float, corners: int = 24) -> list[Point]:
+    return [(x + radius * cos(2 * pi * k / corners), y + radius * sin(2 * pi * k / corners)) for k in range(corners)]
+
+
+def _bar(centre: Point, angle: float, length: float, width: float) -> list[Point]:
+    """A rectangle whose long side points along an angle."""
+    c, s = cos(angle), sin(angle)
+    return [(centre[0] + a * length / 2 * c - b * width / 2 * s, centre[1] + a * length / 2 * s + b * width / 2 * c)
+            for a, b in ((1, 1), (-1, 1), (-1, -1), (1, -1))]
+
+
+def _hull(points: Sequence[Point]) -> list[Point]:
+    """Convex hull, counter-clockwise (Andrew's monotone chain)."""
+    def half(ordered: Sequence[Point]) -> list[Point]:
+        chain: list[Point] = []
+        for p in ordered:
+            while len(chain) > 1 and ((chain[-1][0] - chain[-2][0]) * (p[1] - chain[-2][1])
+                                      <= (chain[-1][1] - chain[-2][1]) * (p[0] - chain[-2][0])):
+                chain.pop()
+            chain.append(p)
+        return chain[:-1]
+    ordered = sorted(set(points))
+    return half(ordered) + half(ordered[::-1])
+
+
+def _wheel(values: Mapping[str, Sequence[float]], i: int, length: float) -> list[tuple[Colour, list[Point]]]:
+    """A wheel and its rollers, in body axes."""
+    centre, axle = (values["wheel_x_m"][i], values["wheel_y_m"][i]), values["axle_rad"][i]
+    colour = RED if values["wheel_locked"][i] else BLUE
+    parts = [(colour, _bar(centre, axle + pi / 2, length, 0.5 * length))]
+    if values["wheel_kind"][i] == FIXED:
+        return parts
+    seen = axle - values["roller_rad"][i]
+    across = abs(cos(seen - axle))  # rollers along the wheel's rim are short, so that three of them follow each other
+    for k in (-1, 0, 1):
+        place = (centre[0] - 0.31 * k * length * sin(axle), centre[1] + 0.31 * k * length * cos(axle))
+        parts.append((WHITE, _bar(place, seen, (0.2 + 0.22 * across) * length, 0.07 * length)))
+    return parts
+
+
+def _drawing(values: Mapping[str, Sequence[float]]) -> list[tuple[Colour, list[Point]]]:
+    """Everything but the frame, in body axes and metres."""
+    supports = [(values["support_x_m"][i], values["support_y_m"][i]) for i in range(int(values["support_count"][0]))]
+    wheels = list(zip(values.get("wheel_x_m", ()), values.get("wheel_y_m", ()), strict=True))
+    centre = (values["com_x_m"][0], values["com_y_m"][0])
+    points = [*wheels, *supports, centre]
+    extent = max(hypot(x - centre[0], y - centre[1]) for x, y in points)
+    length = max(2 * values["wheel_radius_m"][0], SMALLEST * 2 * extent)
+    body = _hull([corner for x, y in points for corner in _disc(x, y, 0.45 * length)])
+    parts: list[tuple[Colour, list[Point]]] = [(BLUE, body), (LIGHT, _smaller(body, 0.06 * length))]
+    parts += [(GREY, _disc(*support, 0.22 * length)) for support in supports]
+    parts += [part for i in range(len(wheels)) for part in _wheel(values, i, length)]
+    reach = max(0.5 * length, 0.45 * extent)
+    tip = (centre[0] + reach, centre[1])
+    parts.append((ORANGE, _bar((centre[0] + 0.4 * reach, centre[1]), 0.0, 0.8 * reach, 0.14 * reach)))
+    parts.append((ORANGE, [tip, (tip[0] - 0.45 * reach, tip[1] + 0.3 * reach), (tip[0] - 0.45 * reach,
+                                                                              tip[1] - 0.3 * reach)]))
+    return [*parts, (ORANGE, _disc(*centre, 0.12 * reach))]
+
+
+def _smaller(hull: Sequence[Point], border: float) -> list[Point]:
+    """A convex polygon with a border taken off, roughly: each corner moves towards the middle."""
+    x, y = (sum(p[k] for p in hull) / len(hull) for k in (0, 1))
+    return [(x + (px - x) * (1 - border / hypot(px - x, py - y)), y + (py - y) * (1 - border / hypot(px - x, py - y)))
+            for px, py in hull]
+
+
+def _frame(inset: float, radius: float) -> tuple[Point, ...]:
+    """A square with round corners."""
+    low, high = inset + radius, SIZE - inset - radius
+    corners = ((high, high, 0.0), (low, high, pi / 2), (low, low, pi), (high, low, 3 * pi / 2))
+    return tuple((x + radius * cos(start + k * pi / 16), y + radius * sin(start + k * pi / 16))
+                 for x, y, start in corners for k in range(9))
+
+
+def shapes(values: Mapping[str, Sequence[float]]) -> list[Shape]:
+    """What the icon shows. `values`: the start values of a vehicle's description, by name."""
+    drawing = _drawing(values)
+    xs, ys = ([p[k] for _, points in drawing for p in points] for k in (0, 1))
+    scale = (SIZE - 2 * MARGIN) / max(max(xs) - min(xs), max(ys) - min(ys))
+    middle = ((max(xs) + min(xs)) / 2, (max(ys) + min(ys)) / 2)
+
+    def placed(p: Point) -> Point:
+        return SIZE / 2 - scale * (p[1] - middle[1]), SIZE / 2 - scale * (p[0] - middle[0])
+    return [Shape(BLUE, _frame(1, 15)), Shape(WHITE, _frame(6, 11)),
+            *(Shape(colour, tuple(placed(p) for p in points)) for colour, points in drawing)]
+
+
+def icon_svg(values: Mapping[str, Sequence[float]], title: str) -> str:
+    """The icon as SVG."""
+    return svg(shapes(values), SIZE, title)
+
+
+def icon_png(values: Mapping[str, Sequence[float]]) -> bytes:
+    """The icon as PNG."""
+    return png(shapes(values), SIZE)

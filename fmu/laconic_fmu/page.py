@@ -1,0 +1,89 @@
+"""What an FMU shows of its vehicle: icon, and a page of documentation with its name and its numbers."""
+
+from __future__ import annotations
+
+import xml.etree.ElementTree as ET
+from collections.abc import Mapping
+from html import escape
+
+from .description import Description, Variable, as_double
+from .icon import icon_png, icon_svg
+
+PAGE = "documentation/index.html"
+PLACE = "<!-- the vehicle of a scene -->"
+"""Where the template has room for it."""
+SUPPORTS = ("support_x_m", "support_y_m")
+WHEEL_COLUMNS = ("wheel_kind", "wheel_x_m", "wheel_y_m", "axle_rad", "roller_rad", "wheel_locked")
+
+
+def vehicle_parts(parts: Mapping[str, bytes], description: Description, version: int) -> dict[str, bytes]:
+    """Icon and page of a vehicle's FMU, by their names in the archive. `parts`: the generic FMU's."""
+    values = {v.name: [as_double(text) for text in v.start] for v in description.variables}
+    name = description.root.get("modelName", "")
+    drawing = icon_svg(values, name)
+    page = _page(parts[PAGE].decode("utf-8"), description, drawing).encode("utf-8")
+    if version == 2:
+        return {PAGE: page, "model.png": icon_png(values)}
+    return {PAGE: page, "terminalsAndIcons/icon.png": icon_png(values),
+            "terminalsAndIcons/icon.svg": drawing.encode("utf-8")}
+
+
+def _page(template: str, description: Description, drawing: str) -> str:
+    """The generic page under the vehicle's own name and numbers."""
+    name, text = (escape(description.root.get(key, "")) for key in ("modelName", "description"))
+    own = f'<p>{text}.</p>\n<p style="text-align:center">{drawing.strip()}</p>\n{_tables(description)}'
+    for old, new in (("<title>Laconic: dynamics of wheeled robots</title>", f"<title>{name}</title>"),
+                     ("<h1>Laconic</h1>", f"<h1>{name}</h1>"), (PLACE, own)):
+        if template.count(old) != 1:
+            raise ValueError(f"{PAGE}: {old} must stand there once")
+        template = template.replace(old, new)
+    return template
+
+
+def _tables(description: Description) -> str:
+    units = _units(description.root)
+    plain = [v for v in description.variables
+             if v.causality == "parameter" and v.name not in (*WHEEL_COLUMNS, *SUPPORTS)]
+    rows = "".join(f"<tr><th><code>{escape(v.name)}</code></th><td>{_values(description, v)}"
+                   f"{_unit(units, v)}</td><td>{escape(v.description)}</td></tr>\n" for v in plain)
+    return f'<h2>Its numbers</h2>\n<table class="wide">\n{rows}</table>\n{_wheels(description)}{_supports(description)}'
+
+
+def _wheels(description: Description) -> str:
+    columns = [description.variable(name) for name in WHEEL_COLUMNS]
+    count = description.array_size
+    if count == 0:
+        return "<p>It has no wheels.</p>\n"
+    head = "".join(f"<th><code>{v.name}</code></th>" for v in columns)
+    cells = ("".join(f"<td>{_value(description, v, i)}</td>" for v in columns) for i in range(count))
+    rows = "".join(f"<tr><th>{i}</th>{row}</tr>\n" for i, row in enumerate(cells, start=1))
+    table = f"<table>\n<tr><th></th>{head}</tr>\n{rows}</table>"
+    return f"<h2>Its wheels</h2>\n<div style='overflow-x:auto'>{table}</div>\n"
+
+
+def _supports(description: Description) -> str:
+    count = int(description.variable("support_count").start[0])
+    x, y = (description.variable(name).start for name in SUPPORTS)
+    places = ", ".join(f"({float(x[i]):.6g}, {float(y[i]):.6g})" for i in range(count))
+    return f"<p>Ball casters at {places} m.</p>\n" if count else ""
+
+
+def _values(description: Description, variable: Variable) -> str:
+    return ", ".join(_value(description, variable, i) for i in range(len(variable.start)))
+
+
+def _value(description: Description, variable: Variable, element: int) -> str:
+    """A start value as one reads it: the name of an enumeration's item, six digits of a number."""
+    text = variable.start[element]
+    if variable.tag == "Enumeration":
+        return escape(description.items(variable)[int(text)][0])
+    return f"{float(text):.6g}" if variable.tag == "Float64" else text
+
+
+def _units(root: ET.Element) -> dict[str, str]:
+    return {kind.get("name", ""): kind.get("unit", "") for kind in root.iter("Float64Type")}
+
+
+def _unit(units: Mapping[str, str], variable: Variable) -> str:
+    unit = units.get(variable.attributes.get("declaredType", ""), "")
+    return f" {escape(unit)}" if unit else ""
