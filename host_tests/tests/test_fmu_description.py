@@ -157,6 +157,18 @@ def test_terminals_icon_documentation_and_licence_are_inside(fmus: list[Path]) -
             assert set(members) <= variables
 
 
+def test_the_build_description_is_valid_and_names_the_compiler_with_its_options() -> None:
+    schema = etree.XMLSchema(file=str(Path(fmpy.__file__).parent / "schema" / "fmi3" / "fmi3BuildDescription.xsd"))
+    with zipfile.ZipFile(generic(3)) as archive:
+        text = archive.read("sources/buildDescription.xml")
+        files = set(archive.namelist())
+    schema.assertValid(root := etree.fromstring(text))
+    for group in root.iter("SourceFileSet"):
+        assert group.get("compiler") == "gcc"
+        assert "-ffp-contract=off" in group.get("compilerOptions")
+    assert {f"sources/{file.get('name')}" for file in root.iter("SourceFile")} <= files
+
+
 def test_the_archive_is_the_same_every_time(tmp_path: Path) -> None:
     scene = read_scene("robotino2")
     first, second = (make_fmu(scene, tmp_path / name, version=3).read_bytes() for name in ("a.fmu", "b.fmu"))

@@ -1,26 +1,43 @@
-"""One motion in every importer that is installed, compared with the core's own.
+"""One motion in every importer at hand, compared with the core's own and with what docs/fmu-importers.md says of it.
 
-FMPy, ecospy and libcosimpy come with the project's environment; CasADi with requirements-peers.txt.
+FMPy, ecospy, libcosimpy and the FMU toolbox come with the project's environment; CasADi with requirements-peers.txt.
 """
 
 from __future__ import annotations
 
 import re
+from importlib.util import find_spec
 from pathlib import Path
 
+import fmpy
 import numpy as np
 import pytest
 from fmpy import simulate_fmu
 from fmu_importer import Importer
+from importer_trials import STEP_S, STEPS, TRIALS, VOLTAGE_V, Trial, casadi_right_side, container_of, verdict
 
 from laconic.core import load
 from laconic.fmu import make_fmu
 from laconic.paths import SOURCE_DIR
 from laconic.scene import Scene, read_scene
+from laconic.ssp import make_controller
 
-STEP_S, STEPS = 0.01, 300
-VOLTAGE_V = (6.0, -4.0, 3.0)
-NAMES = ("nu_rad_per_s[1]", "nu_rad_per_s[2]", "nu_rad_per_s[3]", "x_m", "y_m", "heading_rad")
+PAGE = (SOURCE_DIR / "docs" / "fmu-importers.md").read_text(encoding="utf-8")
+VARIANTS = {"`--fmi 2`": ("fmi2", {"version": 2}),
+            "`--fmi 2 --no-enumerations`": ("fmi2n", {"version": 2, "enumerations": False}),
+            "`--fmi 3`": ("fmi3", {"version": 3}), "`--fmi 3 --scalar`": ("fmi3s", {"version": 3, "scalar": True})}
+
+
+def table_of(page: str) -> dict[str, dict[str, str]]:
+    """The first table of a page: row, column, cell."""
+    rows = [line.strip("| ").split("|") for line in page.splitlines() if line.startswith("|")]
+    lines = [[cell.strip() for cell in row] for row in rows]
+    return {row[0]: dict(zip(lines[0][1:], row[1:], strict=True)) for row in lines[2:]}
+
+
+def is_here(trial: Trial) -> bool:
+    """Whether the importer is installed."""
+    return find_spec(trial.package.replace("-", "_")) is not None
 
 
 @pytest.fixture(scope="module")
@@ -30,67 +47,61 @@ def scene() -> Scene:
 
 
 @pytest.fixture(scope="module")
-def expected(scene: Scene) -> np.ndarray:
+def expected(scene: Scene) -> list[float]:
     """Where the core's own run ends."""
     core = load("double")
     plant = scene.plant(core)
     plant.run(core.input({f"voltage_V[{i + 1}]": value for i, value in enumerate(VOLTAGE_V)}), STEPS)
-    return np.array([*plant.nu, plant.pose.x_m, plant.pose.y_m, plant.pose.heading_rad])
+    return [*plant.nu, plant.pose.x_m, plant.pose.y_m, plant.pose.heading_rad]
 
 
 @pytest.fixture(scope="module")
 def fmus(scene: Scene, tmp_path_factory: pytest.TempPathFactory) -> dict[str, Path]:
     """The scene's FMU in all variants."""
     folder = tmp_path_factory.mktemp("importers")
-    return {name: make_fmu(scene, folder / f"{name}.fmu", version=version, scalar=scalar)
-            for name, version, scalar in (("fmi2", 2, False), ("fmi3", 3, False), ("fmi3s", 3, True))}
+    return {name: make_fmu(scene, folder / f"{name}.fmu", **options) for name, options in VARIANTS.values()}
 
 
-def voltages(variant: str) -> dict[str, object]:
-    """Start values for FMPy."""
-    if variant == "fmi3":
-        return {"voltage_V": list(VOLTAGE_V)}
-    return {f"voltage_V[{i + 1}]": value for i, value in enumerate(VOLTAGE_V)}
+def test_the_page_has_a_row_for_every_importer_and_a_column_for_every_variant() -> None:
+    table = table_of(PAGE)
+    assert {trial.label for trial in TRIALS if is_here(trial)} <= set(table)
+    assert len(table) == len(TRIALS)
+    assert all(set(row) == set(VARIANTS) for row in table.values())
 
 
-def last_row(result: np.ndarray, variant: str) -> np.ndarray:
-    """The last row of FMPy's result."""
-    if variant == "fmi3":
-        return np.array([*result["nu_rad_per_s"][-1], result["x_m"][-1], result["y_m"][-1], result["heading_rad"][-1]])
-    return np.array([result[name][-1] for name in NAMES])
+@pytest.mark.parametrize("column", VARIANTS)
+@pytest.mark.parametrize("trial", TRIALS, ids=lambda trial: trial.title)
+def test_the_importer_does_with_the_fmu_what_the_page_says(
+        trial: Trial, column: str, fmus: dict[str, Path], expected: list[float]) -> None:
+    if not is_here(trial):
+        pytest.skip(f"{trial.package} is not installed")
+    assert verdict(trial, fmus[VARIANTS[column][0]], expected) == table_of(PAGE)[trial.label][column]
 
 
-@pytest.mark.parametrize("variant", ["fmi2", "fmi3", "fmi3s"])
-def test_fmpy_co_simulation_ends_with_the_same_bits(fmus: dict[str, Path], variant: str, expected: np.ndarray) -> None:
-    result = simulate_fmu(str(fmus[variant]), fmi_type="CoSimulation", stop_time=STEPS * STEP_S, step_size=STEP_S,
-                          output_interval=STEP_S, start_values=voltages(variant))
-    assert last_row(result, variant).tolist() == expected.tolist()
+@pytest.mark.parametrize("name", sorted(set(re.findall(r"`(test_\w+)`", PAGE))))
+def test_every_test_that_the_page_names_exists(name: str) -> None:
+    files = (SOURCE_DIR / "host_tests" / "tests").glob("test_fmu_*.py")
+    assert any(f"def {name}(" in path.read_text(encoding="utf-8") for path in files)
 
 
-@pytest.mark.parametrize("variant", ["fmi2", "fmi3", "fmi3s"])
-def test_fmpy_model_exchange_with_cvode(fmus: dict[str, Path], variant: str, expected: np.ndarray) -> None:
-    result = simulate_fmu(str(fmus[variant]), fmi_type="ModelExchange", solver="CVode", stop_time=STEPS * STEP_S,
-                          output_interval=0.1, relative_tolerance=1e-8, start_values=voltages(variant))
-    np.testing.assert_allclose(last_row(result, variant), expected, rtol=2e-5, atol=2e-5)
+def test_the_toolbox_connects_whole_arrays_of_two_fmus_in_a_container(tmp_path: Path) -> None:
+    robot, setpoint = read_scene("kuka_youbot").with_run(method="auto", step_s=STEP_S), (12.0, 10.0, 12.0, 10.0)
+    made = [make_controller(robot, tmp_path / "controller.fmu", version=2),
+            make_fmu(robot, tmp_path / "vehicle.fmu", version=2)]
+    links = [[str(made[0]), "voltage_V", str(made[1]), "voltage_V"],
+             [str(made[1]), "wheel_speed_rad_per_s", str(made[0]), "wheel_speed_rad_per_s"]]
+    container = container_of(tmp_path, made, links)
+    result = simulate_fmu(str(container), stop_time=4.0, step_size=STEP_S, output_interval=STEP_S, validate=False,
+                          start_values={f"setpoint_rad_per_s[{i + 1}]": v for i, v in enumerate(setpoint)})
+    forward = np.mean(setpoint) * robot.vehicle["wheel_radius_m"]
+    assert result["velocity_body_m_per_s[1]"][-1] == pytest.approx(forward, rel=0.01)
 
 
 @pytest.mark.parametrize("variant", ["fmi2", "fmi3s"])
-def test_casadi_model_exchange_and_its_jacobian(fmus: dict[str, Path], variant: str, expected: np.ndarray,
-                                                tmp_path: Path) -> None:
+def test_casadi_takes_the_fmus_own_jacobian(fmus: dict[str, Path], variant: str, tmp_path: Path) -> None:
     casadi = pytest.importorskip("casadi", reason="CasADi is in requirements-peers.txt")
-    import fmpy
     fmpy.extract(str(fmus[variant]), unzipdir=str(tmp_path))
-    dae = casadi.DaeBuilder("vehicle", str(tmp_path), {})
-    right_side = dae.create("f", ["x", "u"], ["ode", "y"])
-    inputs = np.array([VOLTAGE_V[int(name[10]) - 1] if name.startswith("voltage") else 0.0 for name in dae.u()])
-    state = np.zeros(9)
-    for _ in range(STEPS):
-        k1 = right_side(state, inputs)[0]
-        k2 = right_side(state + STEP_S / 2 * k1, inputs)[0]
-        k3 = right_side(state + STEP_S / 2 * k2, inputs)[0]
-        k4 = right_side(state + STEP_S * k3, inputs)[0]
-        state = state + STEP_S / 6 * (k1 + 2 * k2 + 2 * k3 + k4)
-    np.testing.assert_allclose(np.array(state).ravel()[:6], expected, rtol=1e-6, atol=1e-6)
+    right_side, inputs = casadi_right_side(tmp_path)
     point, jacobian = np.linspace(-1, 1, 9), right_side.jacobian()
     blocks = jacobian(point, inputs, *[casadi.DM(*right_side.size_out(k)) for k in range(2)])
     theirs = np.array(blocks[0])
@@ -116,42 +127,6 @@ def states_jacobian(importer: Importer) -> np.ndarray:
         importer.must("GetDirectionalDerivative", rates, count, states, count, *arguments)
         columns.append(list(result))
     return np.array(columns).T
-
-
-@pytest.mark.parametrize("variant", ["fmi2", "fmi3s"])
-def test_ecospy_co_simulation(fmus: dict[str, Path], variant: str, expected: np.ndarray) -> None:
-    try:
-        import ecospy
-    except (ImportError, OSError) as error:
-        pytest.skip(f"ecospy is not usable here: {error}")
-    with ecospy.EcosSimulationStructure() as structure:
-        structure.add_model("vehicle", str(fmus[variant]))
-        structure.add_parameter_set("drive", {f"vehicle::voltage_V[{i + 1}]": v for i, v in enumerate(VOLTAGE_V)})
-        with ecospy.EcosSimulation(structure=structure, step_size=STEP_S) as simulation:
-            simulation.init(parameter_set="drive")
-            simulation.step(STEPS)
-            ends = [simulation.get_real(f"vehicle::{name}") for name in NAMES]
-            simulation.terminate()
-    assert ends == expected.tolist()
-
-
-def test_libcosim_co_simulation(fmus: dict[str, Path], expected: np.ndarray) -> None:
-    pytest.importorskip("libcosimpy")
-    from libcosimpy.CosimEnums import CosimVariableType
-    from libcosimpy.CosimExecution import CosimExecution
-    from libcosimpy.CosimObserver import CosimObserver
-    from libcosimpy.CosimSlave import CosimLocalSlave
-    execution = CosimExecution.from_step_size(step_size=int(STEP_S * 1e9))
-    slave = execution.add_local_slave(CosimLocalSlave(fmu_path=str(fmus["fmi2"]), instance_name="vehicle"))
-    observer = CosimObserver.create_last_value()
-    assert execution.add_observer(observer)
-    variables = {each.name.decode(): each for each in execution.slave_variables(slave)}
-    for i, value in enumerate(VOLTAGE_V):
-        assert execution.real_initial_value(slave, variables[f"voltage_V[{i + 1}]"].reference, value)
-    execution.step(STEPS)
-    references = [variables[name].reference for name in NAMES]
-    assert CosimVariableType(variables["x_m"].type) == CosimVariableType.REAL
-    assert list(observer.last_real_values(slave, references)) == expected.tolist()
 
 
 def code_of(page: str) -> list[str]:
