@@ -30,7 +30,8 @@ VARIANTS = {"`--fmi 2`": ("fmi2", {"version": 2}),
 
 def table_of(page: str) -> dict[str, dict[str, str]]:
     """The first table of a page: row, column, cell."""
-    rows = [line.strip("| ").split("|") for line in page.splitlines() if line.startswith("|")]
+    first = next(part for part in page.split("\n\n") if part.startswith("|"))
+    rows = [line.strip("| ").split("|") for line in first.splitlines()]
     lines = [[cell.strip() for cell in row] for row in rows]
     return {row[0]: dict(zip(lines[0][1:], row[1:], strict=True)) for row in lines[2:]}
 
