@@ -2,12 +2,14 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
 from pathlib import Path
 
 import pytest
 from fmu_importer import OK, WARNING, Importer, generic
 
 from laconic.core import load
+from laconic.demo.fmu_rows import fmu_rows
 from laconic.fmu import make_fmu
 from laconic.scene import read_scene
 
@@ -157,3 +159,12 @@ def test_the_fmu_says_what_simulate_says(tmp_path: Path) -> None:
         assert importer.step(0.0, 0.01) == OK
         (line,) = warnings(importer)
     assert f"{-reactions.no_slip_margin_N:.4g} N are missing" in line
+
+
+@BOTH
+def test_the_demos_own_importer_prints_nothing_where_a_robot_slips(version: int, tmp_path: Path, capfd) -> None:
+    scene = read_scene("robotino2")
+    slippery = replace(scene, vehicle={**scene.vehicle, "friction_coefficient": 1e-3})
+    rows = fmu_rows(slippery, make_fmu(slippery, tmp_path / "x.fmu", version=version), 50)
+    assert len(rows.rows) == 50
+    assert capfd.readouterr().out == ""

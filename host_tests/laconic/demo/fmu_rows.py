@@ -45,6 +45,7 @@ class Slave2:
     def start(self, end_s: float) -> None:
         """Up to step mode."""
         self.slave.instantiate()
+        self.slave.setDebugLogging(False, [])  # FMPy would print the FMU's warnings on stdout
         self.slave.setupExperiment(startTime=0.0, stopTime=end_s)
         self.slave.enterInitializationMode()
         self.slave.exitInitializationMode()
@@ -70,6 +71,7 @@ class Slave3:
     def start(self, end_s: float) -> None:
         """Up to step mode."""
         self.slave.instantiate()
+        self.slave.setDebugLogging(False, [])  # FMPy would print the FMU's warnings on stdout
         self.slave.enterInitializationMode(startTime=0.0, stopTime=end_s)
         self.slave.exitInitializationMode()
 
