@@ -10,6 +10,8 @@ import numpy as np
 import pytest
 
 from laconic.cli import run
+from laconic.demo.fmu_rows import fmu_rows
+from laconic.fmu import make_fmu
 from laconic.scene import read_scene
 from laconic.simulation import simulate
 
@@ -105,3 +107,19 @@ def test_inputs_are_written_as_the_columns_they_are_called(tmp_path, kind):
 def test_inputs_need_a_file_to_be_written_to(tmp_path, capsys):
     assert run(["simulate", mecanum(tmp_path), "--inputs"]) == 2
     assert "--out" in capsys.readouterr().err
+
+
+def test_a_slip_and_a_lift_of_one_instant_are_told_apart(tmp_path, capsys):
+    assert run(["simulate", mecanum(tmp_path, ground="friction_coefficient = 0.2\ncom_z_m = 0.9", volts=80.0)]) == 0
+    slip, _, lift = capsys.readouterr().err.partition(" and ")
+    assert "slips at 0.5 s (needs " in slip and "normal load" not in slip
+    assert "lifts at 0.5 s (normal load -" in lift
+
+
+@pytest.mark.parametrize("version", [2, 3])
+def test_what_an_fmu_says_in_the_demo_is_kept_and_does_not_run_into_the_results(tmp_path, capfd, version):
+    scene = read_scene(mecanum(tmp_path)).with_run(duration_s=0.6)
+    fmu = make_fmu(scene, tmp_path / f"m{version}.fmu", version=version)
+    rows = fmu_rows(scene, fmu, scene.steps(), every=100)
+    assert any("grip" in line for line in rows.log)
+    assert capfd.readouterr().out == ""

@@ -73,6 +73,10 @@ def show(results: list[SceneResult], out: Path, seconds: float) -> None:
     for each in results:
         for difference in filter(None, each.same_bits.values()):
             console.print(f"[red]{each.name}: {difference}")
+    for each in results:
+        if each.ground:
+            console.print(f"{each.name}: the ground cannot give what this run asks: {each.ground}", markup=False,
+                          highlight=False)
     console.print(f"Pictures, demo.json and errors.csv (all methods and steps): {out}   ({seconds:.0f} s)")
 
 
@@ -83,10 +87,12 @@ def bits_table(results: list[SceneResult]) -> Table:
     table.add_column("steps", justify="right")
     for who in PARTICIPANTS:
         table.add_column(who + (" over CAN" if who == "node" else ""), justify="center")
+    table.add_column("grip and loads", justify="center")
     for each in results:
         words = ["yes" if not each.same_bits[who] else "[red]NO" for who in PARTICIPANTS]
         shown = [f"{word} ({each.compared[who]:,} exchanges)" for word, who in zip(words, PARTICIPANTS, strict=True)]
-        table.add_row(each.name, f"{each.steps:,}", *shown)
+        ground = "not watched" if each.no_slip is None else "hold" if each.no_slip["holds"] else "[yellow]exceeded"
+        table.add_row(each.name, f"{each.steps:,}", *shown, ground)
     return table
 
 

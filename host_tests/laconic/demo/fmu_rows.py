@@ -4,20 +4,25 @@ from __future__ import annotations
 
 import time
 from collections.abc import Callable
+from ctypes import byref
 from pathlib import Path
 from tempfile import TemporaryDirectory
 from typing import Any
 
+import click
 import fmpy
 import numpy as np
+from fmpy import fmi2
 from fmpy.fmi2 import FMU2Slave
 from fmpy.fmi3 import FMU3Slave
+from fmpy.logging import addLoggerProxy
 
 from laconic.demo.rows import Rows, exchanges, row_names
 from laconic.drive import Drive
 from laconic.scene import Scene
 from laconic.scene_reader import LENGTHS, PER_WHEEL
 
+FMI_ERROR = 3  # and fatal, 4, in FMI 2 and FMI 3
 OUTPUTS = ("nu_rad_per_s", "x_m", "y_m", "heading_rad")
 OUTPUTS_PER_WHEEL = ("wheel_speed_rad_per_s", "wheel_angle_rad")  # not there in an FMU without wheels
 
@@ -35,17 +40,39 @@ def input_arrays(drive: Drive, tick: int, wheel_count: int) -> dict[str, list[fl
     return {base: [values.get(name, 0.0) for name in elements(base, length)] for base, length in lengths.items()}
 
 
+class Log:
+    """What an FMU says: warnings are kept, errors go to stderr as well. FMPy would print them where the results go."""
+
+    def __init__(self):
+        self.lines: list[str] = []
+
+    def take(self, status: int, text: bytes) -> None:
+        """One message."""
+        self.lines.append(text.decode(errors="replace"))
+        if status >= FMI_ERROR:
+            click.echo(f"laconic: FMU: {self.lines[-1]}", err=True)
+
+    def fmi2_callbacks(self) -> fmi2.fmi2CallbackFunctions:
+        """For FMI 2, whose messages are formats with arguments: FMPy's proxy puts them together."""
+        callbacks = fmi2.fmi2CallbackFunctions()
+        callbacks.logger = fmi2.fmi2CallbackLoggerTYPE(
+            lambda environment, instance, status, category, text: self.take(status, text))
+        callbacks.allocateMemory = fmi2.defaultCallbacks.allocateMemory
+        callbacks.freeMemory = fmi2.defaultCallbacks.freeMemory
+        addLoggerProxy(byref(callbacks))
+        return callbacks
+
+
 class Slave2:
     """FMI 2: scalars."""
 
     def __init__(self, slave: FMU2Slave, references: dict[str, int], wheel_count: int):
-        self.slave, self.references = slave, references
+        self.slave, self.references, self.log = slave, references, Log()
         self.outputs = [references[name] for name in row_names(wheel_count)]
 
     def start(self, end_s: float) -> None:
         """Up to step mode."""
-        self.slave.instantiate()
-        self.slave.setDebugLogging(False, [])  # FMPy would print the FMU's warnings on stdout
+        self.slave.instantiate(callbacks=self.log.fmi2_callbacks())
         self.slave.setupExperiment(startTime=0.0, stopTime=end_s)
         self.slave.enterInitializationMode()
         self.slave.exitInitializationMode()
@@ -64,14 +91,13 @@ class Slave3:
     """FMI 3: arrays."""
 
     def __init__(self, slave: FMU3Slave, references: dict[str, int], wheel_count: int):
-        self.slave, self.references = slave, references
+        self.slave, self.references, self.log = slave, references, Log()
         self.outputs = [references[name] for name in (*OUTPUTS, *(OUTPUTS_PER_WHEEL if wheel_count else ()))]
         self.count = 6 + 2 * wheel_count
 
     def start(self, end_s: float) -> None:
         """Up to step mode."""
-        self.slave.instantiate()
-        self.slave.setDebugLogging(False, [])  # FMPy would print the FMU's warnings on stdout
+        self.slave.instantiate(logMessage=lambda _, status, category, text: self.log.take(status, text))
         self.slave.enterInitializationMode(startTime=0.0, stopTime=end_s)
         self.slave.exitInitializationMode()
 
@@ -118,4 +144,4 @@ def run(slave: Any, scene: Scene, steps: int, every: int, moved: Callable[[int],
     slave.slave.terminate()
     slave.slave.freeInstance()
     version = "FMI 2" if isinstance(slave, Slave2) else "FMI 3"
-    return Rows(version, np.array(ticks), np.array(rows, dtype=float), seconds)
+    return Rows(version, np.array(ticks), np.array(rows, dtype=float), seconds, tuple(slave.log.lines))

@@ -35,6 +35,9 @@ class SceneResult:
     points: list[Point] = field(default_factory=list)
     floor: float = 0.0
     picture: str = ""
+    log: dict[str, tuple[str, ...]] = field(default_factory=dict)  # participant → what it said
+    no_slip: dict[str, Any] | None = None  # Grip.as_json; None: the scene says nothing of the ground
+    ground: str = ""                       # in words what the ground cannot give
 
     @property
     def passed(self) -> bool:
@@ -74,6 +77,8 @@ def run_scene(given: Scene, out: Path, moved: Advance) -> SceneResult:
             found = rows_of(who, scene, Path(folder))
             result.same_bits[who] = difference(found, core if who == "node" else held, scene.wheel_count)
             result.compared[who] = len(found.ticks)
+            if found.log:
+                result.log[who] = found.log
             moved(1)
     moved(0, what=f"{scene.name}: reference, steps and methods")
     target: Target = target_of(scene)
@@ -85,8 +90,11 @@ def run_scene(given: Scene, out: Path, moved: Advance) -> SceneResult:
 
 
 def draw_scene(scene: Scene, result: SceneResult, out: Path) -> None:
-    """The scene's picture."""
+    """The scene's picture, and what the run asks of the ground."""
     from laconic.demo.pictures import draw
     picture = out / f"{scene.path.stem}.png"
-    draw(simulate(scene, usual_signals(scene)), result.points, result.floor, picture)
+    run = simulate(scene, usual_signals(scene))
+    draw(run, result.points, result.floor, picture)
     result.picture = str(picture)
+    if run.grip:
+        result.no_slip, result.ground = run.grip.as_json(), run.grip.warning()

@@ -6,17 +6,18 @@ from collections.abc import Sequence
 from pathlib import Path
 
 from laconic.demo.work import Point
-from laconic.plotting import figure, plot_error_against_time, plot_path, plot_velocities, save
+from laconic.plotting import figure, mark_ground, plot_error_against_time, plot_path, plot_velocities, save, title
 from laconic.simulation import Trajectory
 
 
 def draw(run: Trajectory, points: Sequence[Point], floor: float, path: Path) -> None:
     """Writes the picture."""
-    picture = figure(13.0, 7.0)
+    picture = figure(13.0, 7.6)
     places = picture.subplot_mosaic([["path", "velocities"], ["path", "error"]], width_ratios=(1.0, 1.35))
-    picture.suptitle(f"{run.scene.name}: {run.steps} steps of {run.scene.run.step_s:g} s by {run.method}")
-    plot_path(places["path"], run)
+    title(picture, f"{run.scene.name}: {run.steps} steps of {run.scene.run.step_s:g} s by {run.method}", run)
     plot_velocities(places["velocities"], run)
+    mark_ground(places, run)
+    plot_path(places["path"], run)
     curves: dict[str, list[tuple[float, float]]] = {}
     for point in points:
         curves.setdefault(point.method, [])

@@ -23,6 +23,7 @@ class Rows:
     ticks: np.ndarray
     rows: np.ndarray
     seconds: float = 0.0
+    log: tuple[str, ...] = ()  # what the participant said
 
 
 def row_names(wheel_count: int) -> list[str]:

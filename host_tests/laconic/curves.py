@@ -1,0 +1,96 @@
+"""Curves that stay readable: where they coincide, where there are many, where two scales share an axis.
+
+Limits are set so that nothing but the curves lies within the axes; legends stand above them.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+
+import numpy as np
+from matplotlib.axes import Axes
+from matplotlib.colors import CenteredNorm
+from matplotlib.lines import Line2D
+
+MOST_CURVES = 8       # beyond, colours are hard to tell apart
+STRIPES = 60          # stretches of the axis, in which coinciding curves take turns on top
+SAME = 0.012          # of the axis' height: closer curves hide each other
+FLAT = 1e-9           # a curve that varies less is flat: its scale is 1, so that its rounding is not shown
+MOST_CELLS = 1000     # instants in a picture of rows
+
+
+def plot_curves(axes: Axes, x: np.ndarray, columns: np.ndarray, labels: Sequence[str]) -> list[Line2D]:
+    """One curve for each column. Where some coincide they are striped in their colours, so that each is seen."""
+    colours = [f"C{k}" for k in range(columns.shape[1])]
+    handles = [axes.plot(x, columns[:, k], color=colour, label=label)[0]
+               for k, (colour, label) in enumerate(zip(colours, labels, strict=True))]
+    for first, last, k in stripes(columns):
+        axes.plot(x[first:last], columns[first:last, k], color=colours[k], zorder=2.2, solid_capstyle="butt")
+    return handles
+
+
+def stripes(columns: np.ndarray) -> list[tuple[int, int, int]]:
+    """(first row, row after the last, column) of what is drawn once more on top, where columns coincide."""
+    finite = np.where(np.isfinite(columns), columns, 0.0)
+    near = SAME * max(float(np.ptp(finite, axis=None)) if finite.size else 0.0, FLAT)
+    edges = np.unique(np.linspace(0, len(columns) - 1, STRIPES + 1).astype(int))
+    found = []
+    for turn, (first, last) in enumerate(zip(edges, edges[1:], strict=False)):
+        part = finite[first : last + 1]
+        apart = np.max(np.abs(part[:, :, None] - part[:, None, :]), axis=0)
+        for k in range(columns.shape[1]):
+            together = np.flatnonzero(apart[k] <= near)
+            if len(together) > 1 and together[turn % len(together)] == k:
+                found.append((int(first), int(last) + 1, k))
+    return found
+
+
+def plot_rows(axes: Axes, x: np.ndarray, columns: np.ndarray, what: str) -> None:
+    """A row of colour for each column, the first on top: for more of them than curves can be told apart."""
+    rows = np.unique(np.linspace(0, len(x) - 1, min(len(x), MOST_CELLS)).astype(int))
+    numbers = np.arange(1, columns.shape[1] + 1)
+    mesh = axes.pcolormesh(x[rows], numbers, columns[rows].T, cmap="RdBu_r", norm=CenteredNorm(0.0), shading="nearest",
+                           rasterized=True)
+    axes.set_yticks(numbers)
+    axes.invert_yaxis()
+    axes.grid(False)
+    axes.figure.colorbar(mesh, cax=axes.inset_axes((1.015, 0.0, 0.018, 1.0)), label=what)
+
+
+def share_zero(left: Axes, right: Axes) -> None:
+    """Limits of twin axes such that both have their zero at one height, and all curves a margin."""
+    spans = [_span(axes) for axes in (left, right)]
+    sizes = [_size(max(high, -low)) for low, high in spans]
+    low = min(span[0] / size for span, size in zip(spans, sizes, strict=True))
+    high = max(span[1] / size for span, size in zip(spans, sizes, strict=True))
+    if not high > low:  # nothing moves
+        low, high = -1.0, 1.0
+    margin = 0.06 * (high - low)
+    for axes, size in zip((left, right), sizes, strict=True):
+        axes.set_ylim(size * (low - margin), size * (high + margin))
+
+
+def _span(axes: Axes) -> tuple[float, float]:
+    low, high = axes.dataLim.y0, axes.dataLim.y1
+    return min(low, 0.0), max(high, 0.0)
+
+
+def _size(size: float) -> float:
+    return size if size > FLAT else 1.0
+
+
+def keep_scale(axes: Axes) -> None:
+    """A margin around the curves; a flat curve gets a scale that does not show rounding."""
+    low, high = axes.dataLim.y0, axes.dataLim.y1
+    size = _size(max(high - low, 1e-3 * max(abs(low), abs(high))))
+    middle = (low + high) / 2.0
+    axes.set_ylim(middle - 0.56 * size, middle + 0.56 * size)
+
+
+def head(axes: Axes, title: str, handles: Sequence[Line2D]) -> None:
+    """Above the axes the legend, and above that the title."""
+    columns = min(4, max(1, len(handles)))
+    rows = -(-len(handles) // columns)
+    axes.set_title(title, loc="left", pad=6.0 + 14.0 * rows)
+    axes.legend(handles=list(handles), loc="lower left", bbox_to_anchor=(0.0, 1.0), ncols=columns, fontsize=9,
+                borderaxespad=0.2, columnspacing=1.4, handlelength=1.6)
