@@ -6,6 +6,7 @@ from types import SimpleNamespace
 
 import numpy as np
 import pytest
+from matplotlib import pyplot as plt
 
 from laconic import cli
 from laconic.method_style import METHOD_STYLES
@@ -119,7 +120,8 @@ def figures(monkeypatch):
     """The pictures as figures, before they become text."""
     monkeypatch.setattr(pictures, "svg", lambda figure: figure)
     monkeypatch.setattr("laconic.report.plan.svg", lambda figure: figure)
-    return DRAWN
+    yield DRAWN
+    plt.close("all")
 
 
 @pytest.mark.parametrize("name", DRAWN)

@@ -7,14 +7,14 @@ from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 
 from laconic.analysis.findings import FreePart, Study
+from laconic.analysis.picture_parts import BOLD, THIN, head, keys, legend_below, speed_axes
 from laconic.analysis.portrait import half_curves
+from laconic.method_style import look
 from laconic.plotting import figure
 
-BOLD, THIN = 3.0, 1.1
-
-
-def keys(axes: Axes, entries: list[tuple[str, float, str, str]]):
-    return [axes.plot([], [], color=c, lw=w, ls=s, label=text)[0] for c, w, s, text in entries]
+ACROSS = r"$\nu_\perp$: the part of ($\nu_1$, $\nu_2$) across the direction that turning is coupled to"
+INTEGRAL = r"$K=(A\nu)_3$ stays in free motion, as the energy does; $A$: the matrix of inertia, $A_{33}$ its last entry"
+ROLLING = r"$R\nu_1$, $R\nu_2$: velocity of the centre of mass along the body axes $\xi$, $\eta$; $R$: wheel radius"
 
 
 def _arrow(axes: Axes, x: np.ndarray, y: np.ndarray, colour: str) -> None:
@@ -65,9 +65,15 @@ def portrait_picture(study: Study) -> Figure | None:
     handles = keys(axes, entries)
     about = rf"$K/A_{{33}}$ = {view.centre:.4g} rad/s (+)" if view.integral is not None else "the origin (+)"
     axes.set(xlabel=r"$\nu_3$ [rad/s]", ylabel=f"{view.label} [rad/s]",
-             title=f"{study.subject.scene.name}\nfree motion: ellipses about {about}")
-    picture.legend(handles=handles, loc="outside lower center", ncols=3, fontsize=9)
+             title=head(study, f"free motion: ellipses about {about}"))
+    speed_axes(axes, study.subject, view.label.partition(" (")[0])
+    legend_below(picture, handles, explained(view.label, view.integral is not None))
     return picture
+
+
+def explained(label: str, integral: bool) -> str:
+    """What the symbols of a portrait mean, as far as they occur."""
+    return "\n".join([ACROSS] * ("perp" in label) + [ROLLING] + [INTEGRAL] * integral)
 
 
 def _line_of_straight_motion(axes: Axes, slope: float) -> None:
@@ -85,13 +91,14 @@ def path_picture(study: Study) -> Figure | None:
         return None
     picture = figure(7.2, 6.4)
     axes = picture.subplots()
-    axes.plot(*free.path_m.T, color="tab:blue", lw=1.4, label="closed form")
+    axes.plot(*free.path_m.T, color="0.75", lw=3.0, label="closed form")
     every = max(1, len(free.path_m) // 120)
-    axes.plot(*free.core_path_m[::every].T, ".", color="tab:orange", ms=4, label="core, exact-flow")
+    axes.plot(*free.core_path_m[::every].T, **look("exact-flow", 4.0, linestyle="none", label="core, exact-flow"))
     axes.plot(0.0, 0.0, "o", color="tab:green", label="start")
     axes.set_aspect("equal", adjustable="datalim")
-    axes.set(xlabel="x [m]", ylabel="y [m]", title=f"{study.subject.scene.name}\n{_path_title(free)}")
-    picture.legend(handles=axes.get_legend_handles_labels()[0], loc="outside lower center", ncols=3, fontsize=9)
+    axes.set(xlabel="x [m]", ylabel="y [m]", title=head(study, _path_title(free)))
+    legend_below(picture, axes.get_legend_handles_labels()[0],
+                 r"$\nu$: velocity of the centre of mass and yaw rate, as seen from the body")
     return picture
 
 

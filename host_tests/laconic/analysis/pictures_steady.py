@@ -8,11 +8,27 @@ from matplotlib.figure import Figure
 
 from laconic.analysis import confirm
 from laconic.analysis.findings import BifurcationPart, SteadyPart, Study
-from laconic.analysis.pictures_free import BOLD, THIN, keys
+from laconic.analysis.motions import COMMANDS
+from laconic.analysis.picture_parts import (
+    BOLD,
+    THIN,
+    YAW,
+    head,
+    keys,
+    legend_below,
+    metres_beside,
+    speed_axes,
+)
+from laconic.analysis.pictures_free import explained
 from laconic.analysis.portrait import across_direction
+from laconic.analysis.speeds import wheel_radius_m
 from laconic.plotting import figure
 
 STABLE, UNSTABLE, NEUTRAL = "tab:blue", "tab:red", "tab:gray"
+SPECIALS = {  # the second fits into the first: where both are at one place, both are seen
+    "fold": {"marker": "D", "color": "k", "markerfacecolor": "w", "markersize": 10, "linestyle": "", "zorder": 5},
+    "branch point": {"marker": "o", "color": "k", "markerfacecolor": "w", "markersize": 5, "linestyle": "",
+                     "zorder": 6}}
 COLOURS = {"stable": STABLE, "unstable": UNSTABLE, "neutral": NEUTRAL}
 
 
@@ -27,32 +43,39 @@ def bifurcation_picture(study: Study) -> Figure | None:
     for branch in part.diagram.branches:
         _branch(axes, np.array(branch.parameter), branch.nu()[:, 2] / big, branch.stable())
     for special in part.diagram.specials:
-        marker = "D" if special.kind == "fold" else "o"
-        axes.plot(special.parameter, special.nu[2] / big, marker, color="k", mfc="w", ms=7, zorder=5)
+        axes.plot(special.parameter, special.nu[2] / big, **SPECIALS[special.kind])
     for hopf in part.diagram.hopf:
         axes.plot(hopf.parameter, hopf.nu[2] / big, "*", color="tab:purple", ms=14, zorder=6)
     _cycle_marks(axes, part, big)
-    if part.low <= part.parameter.at_scene <= part.high:
-        axes.axvline(part.parameter.at_scene, color="0.6", lw=0.9, ls=":")
-    axes.set_xlim(part.low, part.high)
-    found = {bool(stable) for branch in part.diagram.branches for stable in branch.stable()}
     looks = {True: (STABLE, BOLD, "-", "stable"), False: (UNSTABLE, THIN, "--", "unstable")}
-    handles = keys(axes, [look for stable, look in looks.items() if stable in found]
-                   + [("0.6", 0.9, ":", "the scene's own value")])
-    handles += _marks(axes, part)
-    axes.set(xlabel=part.parameter.label, ylabel=r"yaw rate $\omega=\nu_3/\Lambda$ [rad/s]",
-             title=f"{study.subject.scene.name}\nsteady motions")
-    picture.legend(handles=handles, loc="outside lower center", ncols=3, fontsize=9)
+    found = {bool(stable) for branch in part.diagram.branches for stable in branch.stable()}
+    entries = [look for stable, look in looks.items() if stable in found]
+    if part.low <= part.parameter.at_scene <= part.high:
+        axes.axvline(part.parameter.at_scene, color="0.3", lw=1.0, ls=":")
+        entries.append(("0.3", 1.0, ":", "the scene's own value"))
+    axes.set_xlim(part.low, part.high)
+    handles = keys(axes, entries) + _marks(axes, part)
+    axes.set(xlabel=part.parameter.label, ylabel=YAW, title=head(study, "steady motions"))
+    if part.parameter.name in COMMANDS:
+        metres_beside(axes, "top", "the same in m/s", wheel_radius_m(study.subject))
+    legend_below(picture, handles, _meaning(part))
     return picture
+
+
+def _meaning(part: BifurcationPart) -> str:
+    """What a commanded motion is, in words."""
+    if part.parameter.name not in COMMANDS:
+        return ""
+    return "Commanded: the straight motion that the constant voltages ask for. The vehicle may turn by itself."
 
 
 def _marks(axes: Axes, part: BifurcationPart):
     kinds = {special.kind for special in part.diagram.specials}
     handles = []
     if "fold" in kinds:
-        handles += axes.plot([], [], "D", color="k", mfc="w", ls="", label="fold (vertex)")
+        handles += axes.plot([], [], label="fold (vertex)", **SPECIALS["fold"])
     if "branch point" in kinds:
-        handles += axes.plot([], [], "o", color="k", mfc="w", ls="", label="branch point")
+        handles += axes.plot([], [], label="branch point", **SPECIALS["branch point"])
     if part.diagram.hopf:
         handles += axes.plot([], [], "*", color="tab:purple", ms=11, ls="", label="Andronov–Hopf point")
     if part.cycles:
@@ -84,7 +107,7 @@ def eigenvalue_picture(study: Study) -> Figure | None:
         return None
     picture = figure(7.2, 4.8)
     axes = picture.subplots()
-    markers, big = "osD^v", study.subject.matrices.lambda_yaw
+    markers, big, count = "osD^v", study.subject.matrices.lambda_yaw, len(steady.motions)
     if study.bifurcation is not None:
         _loci(axes, study.bifurcation)
     for number, motion in enumerate(steady.motions):
@@ -92,25 +115,24 @@ def eigenvalue_picture(study: Study) -> Figure | None:
         shape = "turning" if motion.turns else "straight"
         yaw_rate = motion.nu[2] / big if motion.turns else 0.0
         text = f"{shape}, ω = {yaw_rate:.3g} rad/s: {motion.stability}"
-        axes.plot(motion.eigenvalues.real, motion.eigenvalues.imag, markers[number % 5], color=colour, ms=8,
-                  mfc="none" if motion.turns else colour, mew=1.6, ls="", label=text, zorder=4)
+        axes.plot(motion.eigenvalues.real, motion.eigenvalues.imag, markers[number % 5], color=colour,
+                  ms=6 + 6 * (count - 1 - number), mfc="none", mew=1.6, ls="", label=text, zorder=4)
     axes.axvline(0.0, color="k", lw=0.9)
     axes.axhline(0.0, color="0.7", lw=0.7)
     axes.margins(0.08)
     axes.set(xlabel="real part [1/s]", ylabel="imaginary part [rad/s]",
-             title=f"{study.subject.scene.name}\neigenvalues of the steady motions")
-    picture.legend(handles=axes.get_legend_handles_labels()[0], loc="outside lower center", ncols=2, fontsize=9)
+             title=head(study, "eigenvalues of the steady motions"))
+    legend_below(picture, axes.get_legend_handles_labels()[0],
+                 "A push along an eigenvector grows (right of 0) or dies away (left) at the rate of the real part.", 2)
     return picture
 
 
 def _loci(axes: Axes, part: BifurcationPart) -> None:
     """Where the eigenvalues of all branches run as the parameter varies."""
-    first = True
     for branch in part.diagram.branches:
         values = np.concatenate([motion.eigenvalues for motion in branch.motion])
-        axes.plot(values.real, values.imag, ".", color="0.8", ms=2, zorder=1,
-                  label=f"along the branches, {part.parameter.name} varied" if first else None)
-        first = False
+        axes.plot(values.real, values.imag, ".", color="0.7", ms=2.5, zorder=1)
+    axes.plot([], [], ".", color="0.7", ms=8, ls="", label=f"along the branches, {part.parameter.name} varied")
 
 
 def driven_picture(study: Study) -> Figure | None:
@@ -133,8 +155,9 @@ def driven_picture(study: Study) -> Figure | None:
                                  label=f"{stability} steady motion")
     handles += keys(axes, [("0.55", 0.8, "-", "motions (start: dot)")]) + _nearest_cycles(axes, study, across)
     axes.set(xlabel=r"$\nu_3$ [rad/s]", ylabel=f"{label} [rad/s]",
-             title=f"{subject.scene.name}\nmotions under constant voltages")
-    picture.legend(handles=handles, loc="outside lower center", ncols=3, fontsize=9)
+             title=head(study, "motions under constant voltages"))
+    speed_axes(axes, subject, label.partition(" (")[0])
+    legend_below(picture, handles, explained(label, integral=False))
     return picture
 
 

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
-from itertools import count
 from typing import Any
 
 import numpy as np
@@ -11,9 +10,10 @@ from matplotlib.axes import Axes
 from matplotlib.colors import LogNorm
 from matplotlib.figure import Figure
 
+from laconic.curve_style import nested, taking_turns, wrapped
 from laconic.method_style import look
 from laconic.plotting import figure
-from laconic.report.svg import SIZE, svg
+from laconic.report.svg import SIZE, TITLE_LETTERS, svg
 from laconic.scene import METHODS
 
 Row = dict[str, Any]
@@ -31,11 +31,6 @@ def _legend_below(picture: Figure, axes: Axes, columns: int = 2) -> None:
     """Outside of the axes, where it covers no curve; three columns would be cut on a phone."""
     handles, labels = axes.get_legend_handles_labels()
     picture.legend(handles, labels, fontsize=LETTERS, loc="outside lower center", ncols=columns)
-
-
-def coinciding(order: int, markers: int = 8) -> Row:
-    """Widths and places of markers for curves that may lie on each other: later ones thinner, markers taking turns."""
-    return {"linewidth": max(0.8, 3.4 - 0.5 * order), "markevery": (order % markers, markers)}
 
 
 def error_against_time(rows: Sequence[Row], scene: str, title: str = "") -> str:
@@ -58,7 +53,8 @@ def error_against_time(rows: Sequence[Row], scene: str, title: str = "") -> str:
     low = 0.3 * min(axes.dataLim.y0, REFERENCE)
     axes.set_ylim(bottom=low)
     axes.axhspan(low, REFERENCE, color="0.5", alpha=0.15, lw=0, label="error of the reference itself")
-    axes.set(xlabel="run time per simulated second [µs]", ylabel="error of ν, relative", title=title or scene)
+    axes.set(xlabel="run time per simulated second [µs]", ylabel="error of ν, relative",
+             title=wrapped(title or scene, TITLE_LETTERS))
     _legend_below(picture, axes)
     return svg(picture)
 
@@ -121,9 +117,11 @@ def drift(rows: Sequence[Row], real: str, what: str) -> str:
     """Largest relative change so far over the number of steps; curves that coincide show through each other."""
     picture = figure(*SIZE)
     axes = picture.add_subplot()
-    for order, method in zip(count(), METHODS[1:]):
+    count = len(METHODS[1:])
+    for order, method in enumerate(METHODS[1:]):
         mine = [r for r in rows if r["method"] == method and r["real"] == real and r["status"] == "ok"]
-        _lines(axes, mine, "steps", what, look(method, MARKS + 1.0, **coinciding(order)))
+        _lines(axes, mine, "steps", what, look(method, MARKS + 1.0, markevery=taking_turns(order, count),
+                                           **nested(order, count)))
     name = {"K": "the yaw integral K = (Aν)₃"}.get(what, what)
     axes.set(xlabel="steps of 0.1 s", ylabel="relative change so far", title=f"{name}, {real}")
     _legend_below(picture, axes)

@@ -9,8 +9,9 @@ from matplotlib.axes import Axes
 from matplotlib.patches import Polygon
 
 from laconic.core import load
+from laconic.curve_style import wrapped
 from laconic.plotting import figure
-from laconic.report.svg import SIZE, svg
+from laconic.report.svg import SIZE, TITLE_LETTERS, svg
 from laconic.scene import Scene
 
 WIDTH = 0.7         # of a drawn wheel, in wheel radii
@@ -32,7 +33,7 @@ def plan(scene: Scene) -> str:
     _centre(axes, scene, radius)
     axes.set_aspect("equal", adjustable="datalim")
     axes.margins(0.12)
-    axes.set(xlabel="η, to the left [m]", ylabel="ξ, ahead [m]", title=scene.name)
+    axes.set(xlabel="η, to the left [m]", ylabel="ξ, ahead [m]", title=wrapped(scene.name, TITLE_LETTERS))
     axes.xaxis.set_major_formatter(lambda value, _: f"{-value:g}" if abs(value) > 1e-12 else "0")
     picture.legend(fontsize=8, loc="outside lower center", ncols=2)
     return svg(picture)

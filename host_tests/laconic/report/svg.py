@@ -9,6 +9,7 @@ from matplotlib import pyplot as plt
 from matplotlib.figure import Figure
 
 SIZE = (4.5, 3.9)  # inches; at a phone's 390 pixels its letters are still of reading size
+TITLE_LETTERS = 44  # in a line of that width
 
 
 def svg(picture: Figure) -> str:
