@@ -26,7 +26,7 @@ from laconic.plotting import figure
 
 STABLE, UNSTABLE, NEUTRAL = "tab:blue", "tab:red", "tab:gray"
 SPECIALS = {  # the second fits into the first: where both are at one place, both are seen
-    "fold": {"marker": "D", "color": "k", "markerfacecolor": "w", "markersize": 10, "linestyle": "", "zorder": 5},
+    "fold": {"marker": "D", "color": "k", "markerfacecolor": "w", "markersize": 9, "linestyle": "", "zorder": 5},
     "branch point": {"marker": "o", "color": "k", "markerfacecolor": "w", "markersize": 5, "linestyle": "",
                      "zorder": 6}}
 COLOURS = {"stable": STABLE, "unstable": UNSTABLE, "neutral": NEUTRAL}
