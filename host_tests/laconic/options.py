@@ -100,3 +100,13 @@ def belongs_to(flag: str, is_on: bool, *options: str) -> None:
         given = context.get_parameter_source(parameter.name) is ParameterSource.COMMANDLINE
         if given and not is_on and parameter.opts[0] in options:
             raise BadInput(f"{parameter.opts[0]}: says something to {flag} alone; leave it out, or add {flag}")
+
+
+def goes_with(flag: str, *options: str) -> None:
+    """BadInput for an option that was given beside a flag that makes no use of it."""
+    context = click.get_current_context()
+    for parameter in context.command.params:
+        given = context.get_parameter_source(parameter.name) is ParameterSource.COMMANDLINE
+        name = parameter.opts[0]
+        if given and isinstance(parameter, click.Option) and name != flag and name not in options:
+            raise BadInput(f"{name}: has no meaning beside {flag}; leave one of them out")

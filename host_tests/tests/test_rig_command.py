@@ -17,7 +17,7 @@ from laconic.cli import run
 from laconic.paths import built
 from laconic.rig.boards import free_port, own_node
 from laconic.rig.buses import connected, next_channel, node_process
-from laconic.rig.free_run import judge_free_run
+from laconic.rig.free_judge import judge_free_run
 from laconic.rig.judge import judge_same_bits, judge_scaled
 from laconic.rig.lockstep import load_scene, run_lockstep
 from laconic.rig.logs import read_log
@@ -116,7 +116,6 @@ def test_a_tolerance_decides() -> None:
     (["--tolerance", "nu_1"], "SIGNAL=VALUE"),
     (["--bus-option", "loss"], "NAME=VALUE"),
     (["--log", "/dev/null/a.blf"], "/dev/null/a.blf"),
-    (["--replay", "/nowhere/a.blf"], "/nowhere/a.blf"),
     (["--board", "virtual", "--interface", "virtual"], "leave --interface out")])
 def test_bad_input_is_one_line_and_status_2(arguments: list[str], says: str, capsys: object) -> None:
     assert run(["rig", "s1", "--steps", "5", *arguments]) == 2

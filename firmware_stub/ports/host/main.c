@@ -2,8 +2,8 @@
  *
  *     laconic-node-double [--port N] [--id-base 0xNNN] [--bitrate N] [--once]
  *
- * Prints "listening on 127.0.0.1:PORT" (port 0: any free one). One client at a time; the vehicle lives on between
- * clients, as it would on a board. --once: end when the first client leaves. */
+ * Prints "listening on 127.0.0.1:PORT" (port 0: any free one). The vehicle lives on between clients, as it would on a
+ * board. A serial line has one other end, so there is one client at a time; a second one is told so and let go. */
 #define _GNU_SOURCE
 #include "laconic_node/node.h"
 #include "laconic_node/slcan.h"
@@ -36,6 +36,23 @@ typedef struct board {
     char out[OUT_SIZE]; /* what waits for the socket */
     size_t out_count;
 } board;
+
+static const char help[] =
+    "usage: laconic-node-double|laconic-node-single [--port N] [--id-base 0xNNN] [--bitrate N] [--once]\n"
+    "\n"
+    "The CAN node as a process, computing in double or single precision: SLCAN on a TCP socket of this machine.\n"
+    "Prints \"listening on 127.0.0.1:PORT\" and serves one client at a time until it is ended (Ctrl-C, SIGTERM).\n"
+    "\n"
+    "  --port N         TCP port, 0 to 65535; 0 (default): any free one\n"
+    "  --id-base 0xNNN  the node's first CAN identifier, a multiple of 32 up to 0x7E0 (default: 0x%X)\n"
+    "  --bitrate N      answer only clients that set this rate, as a real bus would (default: any rate)\n"
+    "  --once           end when the first client leaves\n"
+    "  -h, --help       this text\n"
+    "\n"
+    "Drive it:  laconic rig SCENE --interface slcan --channel socket://127.0.0.1:PORT\n";
+
+/* BELL is SLCAN's error; the rest is no frame, so that a client skips it and a person reads it. */
+static const char occupied[] = "\aoccupied: this line has one client at a time, and another one is on it\r";
 
 static int complain(const char *what, const char *remedy) {
     fprintf(stderr, "laconic-node: %s: %s\n", what, remedy);
@@ -95,10 +112,20 @@ static bool read_client(board *port) {
 static void wait_for_work(const board *port, int listening) {
     const uint32_t idle_us = laconic_node_idle_us(&port->node, now_us());
     const struct timespec timeout = {idle_us / 1000000U, (long)(idle_us % 1000000U) * 1000L};
-    const bool connected = port->socket >= 0;
-    struct pollfd fd = {connected ? port->socket : listening, POLLIN, 0};
-    if (connected && port->out_count > 0) fd.events |= POLLOUT;
-    ppoll(&fd, 1, &timeout, NULL);
+    struct pollfd fds[2] = {{listening, POLLIN, 0}, {port->socket, POLLIN, 0}}; /* a socket of -1 is skipped */
+    if (port->out_count > 0) fds[1].events |= POLLOUT;
+    ppoll(fds, 2, &timeout, NULL);
+}
+
+/* Says why and hangs up: a client that got no answer would look for its fault elsewhere. */
+static void refuse_second(int listening) {
+    char rest[256];
+    const int second = accept(listening, NULL, NULL);
+    if (second < 0) return;
+    (void)send(second, occupied, sizeof occupied - 1, MSG_DONTWAIT | MSG_NOSIGNAL);
+    shutdown(second, SHUT_WR);
+    while (recv(second, rest, sizeof rest, MSG_DONTWAIT) > 0) {} /* unread bytes would turn the end into a reset */
+    close(second);
 }
 
 static void try_accept(board *port, int listening, char rate) {
@@ -121,6 +148,8 @@ static void serve(board *port, int listening, const options *settings) {
             port->socket = -1;
             laconic_slcan_init(&port->slcan, settings->rate);
             if (settings->once) return;
+        } else {
+            refuse_second(listening);
         }
         step_node(port);
         if (port->out_count > 0 && port->socket >= 0) flush_out(port);
@@ -135,7 +164,7 @@ static int open_listener(unsigned long number, unsigned long *chosen) {
     address.sin_addr.s_addr = htonl(INADDR_LOOPBACK);
     if (listening < 0) return -1;
     setsockopt(listening, SOL_SOCKET, SO_REUSEADDR, &on, sizeof on);
-    if (bind(listening, (struct sockaddr *)&address, size) != 0 || listen(listening, 1) != 0 ||
+    if (bind(listening, (struct sockaddr *)&address, size) != 0 || listen(listening, 4) != 0 ||
         getsockname(listening, (struct sockaddr *)&address, &size) != 0) {
         close(listening);
         return -1;
@@ -158,6 +187,12 @@ static bool number(const char *text, unsigned long largest, unsigned long *value
     return errno == 0 && end != text && *end == 0 && *value <= largest;
 }
 
+static bool asks_for_help(int count, char **words) {
+    for (int k = 1; k < count; k++)
+        if (strcmp(words[k], "--help") == 0 || strcmp(words[k], "-h") == 0) return true;
+    return false;
+}
+
 static int parse(int count, char **words, options *settings) {
     unsigned long rate;
     for (int k = 1; k < count; k++) {
@@ -176,7 +211,7 @@ static int parse(int count, char **words, options *settings) {
             if (settings->rate == 0) return complain("--bitrate", "give one of SLCAN's rates, such as 500000");
             k++;
         } else {
-            return complain(words[k], "unknown option; there are --port, --id-base, --bitrate and --once");
+            return complain(words[k], "unknown option; see --help");
         }
     }
     return 0;
@@ -186,6 +221,7 @@ int main(int count, char **words) {
     static board port;
     options settings = {.id_base = LACONIC_WIRE_ID_BASE};
     unsigned long chosen;
+    if (asks_for_help(count, words)) return printf(help, (unsigned)LACONIC_WIRE_ID_BASE) < 0;
     const int bad = parse(count, words, &settings);
     if (bad != 0) return bad;
     const laconic_node_config config = {(uint16_t)settings.id_base, true, laconic_method_by_number};

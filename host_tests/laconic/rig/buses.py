@@ -117,7 +117,8 @@ def node_process(real: str = "double", id_base: int = 512, *arguments: str) -> I
     """A node in a process of its own; yields its TCP port."""
     program = built(f"bin/laconic-node-{real}")
     command = [str(program), "--id-base", hex(id_base), *arguments]
-    with subprocess.Popen(command, stdout=subprocess.PIPE, text=True) as process:
+    # in a session of its own: Ctrl-C is for the rig, which brings the node to rest before it ends it
+    with subprocess.Popen(command, stdout=subprocess.PIPE, text=True, start_new_session=True) as process:
         try:
             line = process.stdout.readline()
             found = re.search(r":(\d+)", line)

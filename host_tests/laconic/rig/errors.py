@@ -2,7 +2,9 @@
 
 from __future__ import annotations
 
-from laconic.errors import BadInput, ResultFails
+import signal
+
+from laconic.errors import BadInput, LaconicError, ResultFails
 
 
 class CannotReach(BadInput):
@@ -26,3 +28,14 @@ class NodeRefused(ResultFails):
 
 class BusDied(ResultFails):
     """Sending or receiving failed in the middle of a run."""
+
+
+class Interrupted(LaconicError):
+    """A signal has ended the run; the exit status is what a shell gives it: 130 for SIGINT, 143 for SIGTERM."""
+
+    def __init__(self, number: int):
+        super().__init__(f"interrupted by {signal.Signals(number).name}")
+        self.exit_status = 128 + number
+
+
+ENDINGS = (BusDied, NodeSilent, NodeRefused, Interrupted)  # of a run before its last step

@@ -46,20 +46,32 @@ FIELD_TYPES = {field.name: type(field.default) for field in fields(Faults)}
 
 def faults_from(options: dict[str, object]) -> Faults:
     """From options that may be texts; ValueError names one that is of no use."""
-    found = {}
-    for name, value in options.items():
-        wanted = FIELD_TYPES[name]
-        try:
-            found[name] = value not in ("0", "false", "no", False) if wanted is bool else wanted(value)
-        except (TypeError, ValueError):
-            raise ValueError(f"{name}={value}: give a {wanted.__name__}") from None
-    faults = Faults(**found)
+    faults = Faults(**{name: value_of(name, value) for name, value in options.items()})
     for name in ("loss", "duplication", "reordering", "corruption", "stuck", "wrong_length", "foreign"):
         if not 0.0 <= getattr(faults, name) <= 1.0:
             raise ValueError(f"{name}={getattr(faults, name):g}: a probability is from 0 to 1")
+    for name in ("delay_s", "jitter_s", "corrupted_bits", "babble_per_s", "bus_off_after", "bus_off_s", "bitrate",
+                 "from_s", "until_s"):
+        if not 0 <= getattr(faults, name):
+            raise ValueError(f"{name}={getattr(faults, name):g}: give zero or more")
     if faults.direction not in ("out", "in", "both"):
         raise ValueError(f"direction={faults.direction}: give out, in or both")
     return faults
+
+
+TRUTHS = {"1": True, "true": True, "yes": True, "0": False, "false": False, "no": False}
+WANTED = {float: "a number", int: "a whole number", bool: "true or false"}
+
+
+def value_of(name: str, value: object) -> object:
+    """One option in its type; whole numbers may be hexadecimal, as identifiers are."""
+    wanted = FIELD_TYPES[name]
+    try:
+        if wanted is bool:
+            return TRUTHS[str(value).lower()]
+        return int(value, 0) if wanted is int and isinstance(value, str) else wanted(value)
+    except (KeyError, TypeError, ValueError):
+        raise ValueError(f"{name}={value}: give {WANTED[wanted]}") from None
 
 
 Delivery = tuple[float, int, str, can.Message]

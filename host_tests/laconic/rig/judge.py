@@ -6,7 +6,9 @@ from collections.abc import Callable
 
 import numpy as np
 
+from laconic.errors import LaconicError
 from laconic.rig.client import NodeClient
+from laconic.rig.errors import ENDINGS
 from laconic.rig.latency import latency_figures
 from laconic.rig.lockstep import run_lockstep, twin_states
 from laconic.rig.scaled import Comparison, run_scaled
@@ -20,7 +22,10 @@ HALF_A_BIT = 0.5 + 1e-6  # of the last place, and what float arithmetic of the r
 def judge_same_bits(node: NodeClient, scene: Scene, steps: int | None, *, every: int = 1, fd: bool = False,
                     moved: Moved = lambda _: None) -> Judgement:
     """Lockstep with raw frames against the core: every bit."""
-    run = run_lockstep(node, scene, steps, every=every, fd=fd, moved=moved)
+    try:
+        run = run_lockstep(node, scene, steps, every=every, fd=fd, moved=moved)
+    except ENDINGS as ending:
+        return ended_at_once(scene, "lockstep, same bits", ending, steps or scene.steps())
     theirs = twin_states(scene, run)
     count = scene.wheel_count
     judgement = Judgement(scene.name, "lockstep, same bits")
@@ -38,12 +43,22 @@ def judge_same_bits(node: NodeClient, scene: Scene, steps: int | None, *, every:
 def judge_scaled(node: NodeClient, scene: Scene, steps: int | None, tolerances: dict[str, float],
                  moved: Moved = lambda _: None) -> Judgement:
     """Lockstep with scaled frames against a twin that gets the same integers: half a last place."""
-    run = run_scaled(node, scene, steps, moved)
+    try:
+        run = run_scaled(node, scene, steps, moved)
+    except ENDINGS as ending:
+        return ended_at_once(scene, "lockstep", ending, steps or scene.steps())
     judgement = Judgement(scene.name, "lockstep")
     judgement.add(*signal_verdicts(run.comparison, tolerances), link_verdict(node),
                   overrange_verdict(run.voltage_overranges, run.comparison.overranges))
     judgement.figures |= speed_figures(run.steps, run.seconds, run.frames_out, run.frames_in, run.steps)
     judgement.figures |= latency_figures(run.latencies_s)
+    return judgement
+
+
+def ended_at_once(scene: Scene, mode: str, ending: LaconicError, steps: int) -> Judgement:
+    """A run of which nothing is left to judge."""
+    judgement = Judgement(scene.name, mode)
+    judgement.ended(ending, 0, steps)
     return judgement
 
 

@@ -1,57 +1,117 @@
-"""What goes over the bus, on the terminal, while it goes."""
+"""What goes over the bus, on the terminal, while it goes: one line a frame, as many as the terminal has room for."""
 
 from __future__ import annotations
 
+import itertools
 from collections import Counter
-from collections.abc import Iterator
+from collections.abc import Callable, Iterator
 from contextlib import contextmanager
 
 import can
-from rich.console import Console
+from rich.console import Console, ConsoleOptions, RenderResult
 from rich.live import Live
 from rich.table import Table
+from rich.text import Text
 
 from laconic.rig.link import Link
-from laconic.rig.wire import wire
+from laconic.rig.wire import Frame, wire
 
-HIDDEN = ("crc", "counter", "data", "segment")
+HIDDEN = ("crc", "counter", "request", "data", "segment", "group", "page")
+WHEELS_A_GROUP = 3
 REFRESHES_PER_S = 10
+AROUND = 6  # lines that are no frames: title, heading with its two rules, last rule, faults
+
+Key = tuple[int, int]  # offset of the identifier; group or page
 
 
 class View:
-    """The last of each frame, as a table."""
+    """The last frame of each kind, group and page, as a table."""
 
-    def __init__(self, link: Link):
-        self.link = link
-        self._last: dict[int, bytes] = {}
-        self._count: Counter[int] = Counter()
+    def __init__(self, link: Link, what: str, steps: int):
+        self.link, self.what, self.steps = link, what, steps
+        self.done = 0.0
+        self._last: dict[Key, can.Message] = {}
+        self._count: Counter[Key] = Counter()
+        self._newest: dict[Key, int] = {}
+        self._order = itertools.count()
+
+    def moved(self, steps: float) -> None:
+        """The run has come so much further."""
+        self.done += steps
 
     def take(self, message: can.Message) -> None:
         """A frame was sent or received."""
-        offset = message.arbitration_id - self.link.id_base
-        self._last[offset] = bytes(message.data)
-        self._count[offset] += 1
+        frame = wire().by_offset.get(message.arbitration_id - self.link.id_base)
+        part = part_of(frame, message) if frame is not None and not message.is_extended_id else 0
+        key = (message.arbitration_id - self.link.id_base, part)
+        self._last[key] = message
+        self._count[key] += 1
+        self._newest[key] = next(self._order)
 
-    def __rich__(self) -> Table:
-        table = Table(title=f"ID base 0x{self.link.id_base:X}", title_justify="left")
-        for heading in ("frame", "count", "signals"):
-            table.add_column(heading)
-        for offset, data in sorted(self._last.items()):
-            frame = wire().by_offset.get(offset)
-            known = frame is not None and len(data) == frame.length
-            signals = "  ".join(f"{name} {value:.6g}" for name, value in frame.physical(data).items()
-                                if not name.startswith(HIDDEN)) if known else data.hex(" ")
-            name = frame.name if frame else f"0x{offset + self.link.id_base:X}"
-            table.add_row(name, str(self._count[offset]), signals)
-        faults = ", ".join(f"{count} × {name}" for name, count in self.link.faults.items())
-        table.caption = faults or "no faults"
-        return table
+    def __rich_console__(self, console: Console, options: ConsoleOptions) -> RenderResult:
+        known = list(self._last)  # a copy: frames come while this is drawn
+        shown = self._newest_of(known, (options.height or console.size.height) - AROUND)
+        title = f"{self.what}, ID base 0x{self.link.id_base:X}, step {self.done:.0f} of {self.steps}"
+        table = Table(title=title, title_justify="left", caption=self._caption(len(known) - len(shown)),
+                      caption_justify="left", expand=True)
+        table.add_column("frame", no_wrap=True)
+        table.add_column("count", no_wrap=True, justify="right")
+        table.add_column("signals", no_wrap=True, overflow="ellipsis", ratio=1)
+        for key in shown:
+            table.add_row(self._name(key), str(self._count[key]), Text(self.text_of(key)))
+        yield table
+
+    def _newest_of(self, keys: list[Key], room: int) -> list[Key]:
+        """Where they are too many, those that came last; in the order of their identifiers."""
+        newest = sorted(keys, key=lambda key: self._newest.get(key, 0), reverse=True)
+        return sorted(newest[:max(1, room)])
+
+    def _caption(self, hidden: int) -> str:
+        faults = ", ".join(f"{count} × {name}" for name, count in list(self.link.faults.items())) or "no faults"
+        return faults + (f"; {hidden} more kinds of frames" if hidden else "")
+
+    def _name(self, key: Key) -> str:
+        frame = wire().by_offset.get(key[0])
+        return frame.name if frame else f"0x{key[0] + self.link.id_base:X}"
+
+    def text_of(self, key: Key) -> str:
+        """The signals of a frame with their values; the bytes of one that is none of the contract's."""
+        message, frame = self._last[key], wire().by_offset.get(key[0])
+        if frame is None or message.is_extended_id or len(message.data) != frame.length:
+            return bytes(message.data).hex(" ")
+        texts = []
+        for name, raw in frame.unpack(message.data).items():
+            if not name.startswith(HIDDEN):
+                texts.append(f"{numbered(name, frame, key[1])} {value_text(frame, name, raw)}")
+        return "  ".join(texts)
+
+
+def part_of(frame: Frame, message: can.Message) -> int:
+    """Which group of wheels or page of counters; 0 for frames that have none."""
+    if not {"group", "page"} & set(frame.fields) or len(message.data) != frame.length:
+        return 0
+    values = frame.unpack(message.data)
+    return values.get("group", values.get("page", 0))
+
+
+def numbered(name: str, frame: Frame, part: int) -> str:
+    """The signal's name with the number of its wheel, not of its place in the group."""
+    base, _, place = name.rpartition("_")
+    if "group" not in frame.fields or not place.isdigit():
+        return name
+    return f"{base}_{WHEELS_A_GROUP * part + int(place)}"
+
+
+def value_text(frame: Frame, name: str, raw: int) -> str:
+    """What a value table calls it, or the number in its unit."""
+    field = frame.fields[name]
+    return wire().choice(frame.name, name, raw) if field.choices else f"{raw * field.scale:.6g}"
 
 
 @contextmanager
-def live_view(link: Link) -> Iterator[None]:
-    """Shows a link's frames until the end of the context."""
-    view = View(link)
+def live_view(link: Link, what: str, steps: int) -> Iterator[Callable[[float], None]]:
+    """Shows a link's frames until the end of the context; yields what to call when the run has moved on."""
+    view = View(link, what, steps)
     link.listeners.append(view.take)
     with Live(view, console=Console(stderr=True), refresh_per_second=REFRESHES_PER_S):
-        yield
+        yield view.moved

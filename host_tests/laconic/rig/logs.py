@@ -50,11 +50,22 @@ def stamped(writer: can.io.generic.MessageWriter, link: Link) -> can.typecheckin
 
 
 def read_log(path: Path) -> list[can.Message]:
-    """All frames of a log."""
+    """All frames of a log; BadInput for one that is broken or cut off."""
     try:
         with can.LogReader(str(path)) as reader:
+            check_whole(path, reader)
             return list(reader)
-    except ValueError as error:
-        raise BadInput(f"{path}: {error}; give a .blf or .asc file") from None
-    except (OSError, can.CanError) as error:
-        raise BadInput(f"{path}: cannot read this log ({error})") from None
+    except OSError as error:
+        raise BadInput(f"{path}: {reason_of(error)}; give a .blf or .asc file") from None
+    except BadInput:
+        raise
+    except Exception as error:  # a parser that meets what it did not expect raises anything
+        raise BadInput(f"{path}: cannot be read as a log ({str(error) or type(error).__name__}); give a .blf or .asc "
+                       "file as it was written") from None
+
+
+def check_whole(path: Path, reader: can.io.generic.MessageReader) -> None:
+    """python-can reads a cut-off BLF up to the cut and says nothing."""
+    said, there = getattr(reader, "file_size", 0), path.stat().st_size
+    if isinstance(reader, can.BLFReader) and there < said:
+        raise BadInput(f"{path}: is cut off: {there} of {said} bytes are there; copy it again")

@@ -3,10 +3,13 @@
 from __future__ import annotations
 
 import json
+import math
 from dataclasses import asdict
 from pathlib import Path
+from typing import Any
 from xml.etree import ElementTree
 
+import numpy as np
 from rich.console import Console
 from rich.table import Table
 
@@ -17,9 +20,16 @@ from laconic.rig.verdict import Judgement
 def as_json(judgement: Judgement) -> str:
     """Everything, machine-readable."""
     whole = {"scene": judgement.scene, "mode": judgement.mode, "passed": judgement.passed,
-             "verdicts": [asdict(each) for each in judgement.verdicts], "figures": judgement.figures,
-             "notes": judgement.notes}
-    return json.dumps(whole, indent=1)
+             "verdicts": [in_json(asdict(each)) for each in judgement.verdicts],
+             "figures": in_json(judgement.figures), "notes": judgement.notes}
+    return json.dumps(whole, indent=1, allow_nan=False)
+
+
+def in_json(values: dict[str, Any]) -> dict[str, Any]:
+    """Plain numbers, and null for those that JSON has no word for: NaN and the infinities."""
+    plain = {name: value.item() if isinstance(value, np.generic) else value for name, value in values.items()}
+    return {name: None if isinstance(value, float) and not math.isfinite(value) else value
+            for name, value in plain.items()}
 
 
 def write_junit(judgement: Judgement, path: Path, seconds: float) -> None:

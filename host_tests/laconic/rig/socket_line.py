@@ -9,6 +9,7 @@ from __future__ import annotations
 import select
 import socket
 from collections.abc import Callable
+from contextlib import suppress
 
 
 class SocketLine:
@@ -30,9 +31,9 @@ class SocketLine:
 
     def _fill(self, timeout_s: float) -> None:
         if select.select([self._socket], [], [], timeout_s)[0]:
-            self._buffer, self._at = self._socket.recv(65536), 0
+            before, self._buffer, self._at = self._buffer, self._socket.recv(65536), 0
             if not self._buffer:
-                raise OSError("the other end has closed the connection")
+                raise OSError(closed_with(before))
 
     def read(self, size: int = 1) -> bytes:
         """Up to `size` bytes; none when none come within the timeout."""
@@ -44,8 +45,19 @@ class SocketLine:
 
     def write(self, data: bytes) -> int:
         """Sends all of it."""
-        self._socket.sendall(data)
+        try:
+            self._socket.sendall(data)
+        except (BrokenPipeError, ConnectionResetError):
+            raise OSError(closed_with(self._last_words())) from None
         return len(data)
+
+    def _last_words(self) -> bytes:
+        """What came before the other end closed the connection."""
+        rest = self._buffer[self._at :]
+        with suppress(OSError):
+            while select.select([self._socket], [], [], 0.0)[0] and (more := self._socket.recv(65536)):
+                rest += more
+        return rest
 
     def flush(self) -> None:
         """Nothing is held back."""
@@ -62,6 +74,13 @@ class SocketLine:
     def close(self) -> None:
         """Ends the connection."""
         self._close()
+
+
+def closed_with(last: bytes) -> str:
+    """What to tell of a closed connection: a line behind a BELL, SLCAN's error, says why in words."""
+    _, bell, words = last.rpartition(b"\a")
+    text = words.strip().decode("ascii", "replace") if bell else ""
+    return "the other end has closed the connection" + (f" and says: {text}" if text else "")
 
 
 def read_in_chunks(bus: object) -> None:

@@ -6,6 +6,8 @@ from dataclasses import dataclass, field
 
 import numpy as np
 
+from laconic.errors import LaconicError
+
 
 @dataclass(frozen=True)
 class Verdict:
@@ -18,6 +20,11 @@ class Verdict:
     limit: float = 0.0
     step: int = 0       # where the worst was
 
+    def __post_init__(self) -> None:
+        """Plain Python numbers, whatever NumPy gave: results go to JSON and XML."""
+        for name, kind in (("passed", bool), ("worst", float), ("limit", float), ("step", int)):
+            object.__setattr__(self, name, kind(getattr(self, name)))
+
 
 @dataclass
 class Judgement:
@@ -28,11 +35,24 @@ class Judgement:
     verdicts: list[Verdict] = field(default_factory=list)
     figures: dict[str, float] = field(default_factory=dict)
     notes: list[str] = field(default_factory=list)
+    ending: LaconicError | None = None      # what ended the run before its last step
 
     @property
     def passed(self) -> bool:
         """Whether every verdict is good; a run without verdict is not."""
         return bool(self.verdicts) and all(each.passed for each in self.verdicts)
+
+    @property
+    def exit_status(self) -> int:
+        """0: passed, 1: failed, 128 and the number of the signal that has ended the run."""
+        return self.ending.exit_status if self.ending is not None else 0 if self.passed else 1
+
+    def ended(self, ending: LaconicError | None, step: int, steps: int) -> None:
+        """Notes how far the run came. What ended it early is the verdict `run`, before those about its signals."""
+        self.figures |= {"last_step": step, "steps_wanted": steps}
+        if ending is not None:
+            self.ending = ending
+            self.verdicts.insert(0, Verdict("run", False, f"{ending}; after step {step} of {steps}", step=step))
 
     def add(self, *verdicts: Verdict) -> None:
         """More of them."""

@@ -6,7 +6,7 @@ from collections.abc import Callable
 from typing import Any
 
 from laconic.rig.boards import own_node
-from laconic.rig.free_run import judge_free_run
+from laconic.rig.free_judge import judge_free_run
 from laconic.scene import read_scene
 
 SCENE = "turtlebot3_burger"

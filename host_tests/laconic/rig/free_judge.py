@@ -1,0 +1,117 @@
+"""What there is to say about a free run.
+
+When a voltage takes effect is only known to within the time on the wire: the twin is run once for every delay up to
+`latency_s`, and a value must lie between what these twins say.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+
+import numpy as np
+
+from laconic.plant import Plant
+from laconic.rig.client import NodeClient
+from laconic.rig.errors import ENDINGS
+from laconic.rig.free_run import DEFAULT_FRAMES, FreeRun, run_free
+from laconic.rig.latency import period_figures
+from laconic.rig.scaled import expected_raw
+from laconic.rig.verdict import Judgement, Verdict
+from laconic.rig.wire import Frame
+from laconic.scene import Scene
+
+TwinValues = dict[tuple[int, str, int], dict[str, float]]  # (step, frame, group) → raw values before rounding
+
+
+def twin_values(scene: Scene, run: FreeRun, delay: int, per_period: int) -> TwinValues:
+    """What a twin whose commands act so many periods later says to every answer."""
+    plant: Plant = scene.plant(scene.core())
+    wanted: dict[int, list[tuple[str, int, Frame]]] = {}
+    for step, frame, data in run.answers:
+        wanted.setdefault(step, []).append((frame.name, frame.unpack(data).get("group", 0), frame))
+    acting = {}
+    for seen, row in run.commands:
+        acting[seen + delay] = row
+    last, found, held = max(wanted, default=0), {}, plant.core.input()
+    events = sorted({0, *(step for step in acting if step < last), *wanted})
+    for step, following in zip(events, [*events[1:], last], strict=True):
+        for name, group, frame in wanted.get(step, ()):
+            found[step, name, group] = expected_raw(plant, frame, group)
+        if step in acting:
+            held = plant.core.input(acting[step])
+        plant.run(held, (following - step) * per_period)
+    return found
+
+
+def judge_free_run(node: NodeClient, scene: Scene, duration_s: float, rate_Hz: int, watchdog_ms: int,
+                   tolerances: dict[str, float], latency_s: float = 0.02,
+                   moved: Callable[[float], None] = lambda _: None) -> Judgement:
+    """A free run and what there is to say about it, up to its end or to what has ended it early."""
+    run, ending = FreeRun(), None
+    try:
+        run_free(node, scene, duration_s, rate_Hz, watchdog_ms, scene.rig.frames or DEFAULT_FRAMES, moved, run)
+    except ENDINGS as error:
+        ending = error
+    judgement = Judgement(scene.name, f"free run at {run.rate_Hz} Hz")
+    if run.answers:
+        judgement.add(*envelope_verdicts(run, twins_of(scene, run, latency_s), tolerances), steps_verdict(run),
+                      clock_verdict(run))
+        judgement.figures |= {"steps": run.steps, "seconds": run.elapsed_s, "late_periods": run.late_periods,
+                              "worst_lateness_us": run.worst_lateness_us}
+        judgement.figures |= period_figures(run.instants_s, 1.0 / run.rate_Hz)
+    if run.silence is not None and run.punctuality is not None:
+        judgement.add(run.silence.verdict(), run.punctuality.verdict())
+        judgement.figures |= run.punctuality.figures()
+    judgement.ended(ending, run.steps, round(duration_s * run.rate_Hz))
+    return judgement
+
+
+def twins_of(scene: Scene, run: FreeRun, latency_s: float) -> list[TwinValues]:
+    """What twins with each delay up to the latency say."""
+    per_period = max(1, round(1.0 / (run.rate_Hz * scene.run.step_s)))
+    delays = sorted({0, 1, *np.linspace(0, max(1, round(latency_s * run.rate_Hz)), 6).astype(int).tolist()})
+    return [twin_values(scene, run, delay, per_period) for delay in delays]
+
+
+def envelope_verdicts(run: FreeRun, twins: list[TwinValues], tolerances: dict[str, float]) -> list[Verdict]:
+    """One per signal: between the twins, give or take half a last place and the most that ever lay between them: each
+    command has a delay of its own, and what one of them has left behind in the pose stays."""
+    spread: dict[str, float] = {}
+    worst: dict[str, tuple[float, float, int]] = {}
+    for step, frame, data in run.answers:
+        raw = frame.unpack(data)
+        group = raw.get("group", 0)
+        for name in twins[0].get((step, frame.name, group), ()):
+            values = np.array([twin[step, frame.name, group][name] for twin in twins])
+            if name == "heading":  # nearest turn
+                turn = 2 * np.pi / frame.fields[name].scale
+                values -= turn * np.round((values - raw[name]) / turn)
+            scale, label = frame.fields[name].scale, f"{frame.name}.{name}"
+            spread[label] = max(spread.get(label, 0.0), float(np.ptp(values)))
+            slack = 0.5 + 1e-6 + spread[label]
+            slack += tolerances.get(label, tolerances.get(name, 0.0)) / scale
+            beyond = max(values.min() - slack - raw[name], raw[name] - values.max() - slack)
+            off = float(np.min(np.abs(values - raw[name]))) * scale
+            if label not in worst or beyond > worst[label][0]:
+                worst[label] = (beyond, off, step)
+    return [Verdict(label, beyond <= 0.0, f"{off:.3g} from the nearest twin" if beyond <= 0.0 else
+                    f"{off:.3g} off at step {step}", off, 0.0, step) for label, (beyond, off, step) in worst.items()]
+
+
+def steps_verdict(run: FreeRun) -> Verdict:
+    """The node took every step, late or not; what was under way at the end may be missing."""
+    expected = run.elapsed_s * run.rate_Hz
+    missing = expected - run.steps
+    allowed = 0.05 * run.rate_Hz + 2
+    passed = abs(missing) <= allowed
+    return Verdict("steps", passed, f"{run.steps} of {expected:.0f} steps, the node took {run.late_periods} a "
+                   f"period late or more, worst {run.worst_lateness_us} µs late", float(missing), allowed)
+
+
+def clock_verdict(run: FreeRun) -> Verdict:
+    """The node's clock goes as fast as the rig's."""
+    if len(run.instants_s) < 2:
+        return Verdict("clock", False, "no two answers came")
+    rate = (len(run.instants_s) - 1) / (run.instants_s[-1] - run.instants_s[0])
+    off = rate / run.rate_Hz - 1.0
+    return Verdict("clock", abs(off) < 0.01, f"{rate:.2f} answers a second, {100 * off:+.3f} %", off, 0.01)

@@ -1,0 +1,82 @@
+"""What the command line of `laconic rig` says, and the node that it leads to."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from contextlib import contextmanager
+from dataclasses import dataclass
+from pathlib import Path
+
+from laconic.errors import BadInput
+from laconic.rig.boards import own_node
+from laconic.rig.bus_options import read_bus_options
+from laconic.rig.buses import connected
+from laconic.rig.client import NodeClient
+from laconic.rig.wire import ID_BASE, ID_STRIDE
+from laconic.scene import Scene
+
+LARGEST_BASE = 0x7E0
+
+
+@dataclass(frozen=True)
+class Options:
+    """The options by name."""
+
+    interface: str | None
+    channel: str | None
+    bitrate: int | None
+    id_base: str | None
+    board: str | None
+    mode: str
+    steps: int | None
+    every: int
+    fd: bool
+    rate: int | None
+    watchdog: int
+    method: str | None
+    real: str | None
+    tolerances: tuple[str, ...]
+    bus_options: tuple[str, ...]
+    logs: tuple[Path, ...]
+    replay: Path | None
+    live: bool
+    junit: Path | None
+    json_wanted: bool
+
+
+def read_id_base(given: str | None, scene: Scene | None) -> int:
+    """--id-base, the scene's, or the contract's own."""
+    of_scene = scene.rig.id_base if scene is not None else None
+    place = f"--id-base {given}" if given is not None else f"{scene.path if scene else ''}: rig.id_base"
+    try:
+        base = int(given, 0) if given is not None else ID_BASE if of_scene is None else of_scene
+    except ValueError:
+        raise BadInput(f"{place}: no number; give one such as 0x{ID_BASE + ID_STRIDE:X}") from None
+    if base % ID_STRIDE or not 0 <= base <= LARGEST_BASE:
+        raise BadInput(f"{place}: {in_hex(base)} cannot be the base of a node's {ID_STRIDE} identifiers; give a "
+                       f"multiple of {ID_STRIDE} from 0 to 0x{LARGEST_BASE:X}")
+    return base
+
+
+def in_hex(number: int) -> str:
+    """As identifiers are written."""
+    return f"{'-' if number < 0 else ''}0x{abs(number):X}"
+
+
+@contextmanager
+def node_for(options: Options, real: str, id_base: int) -> Iterator[NodeClient]:
+    """A client on the chosen bus, or a node of our own."""
+    if options.interface is None:
+        if options.channel is not None:
+            raise BadInput(f"--channel {options.channel}: say which --interface it belongs to, such as slcan")
+        if options.bus_options:
+            raise BadInput(f"--bus-option {options.bus_options[0]}: say which --interface it is for, such as faulty "
+                           "(NAME=VALUE)")
+        with own_node(options.board or "virtual", real, id_base) as node:
+            yield node
+        return
+    if options.board is not None:
+        raise BadInput(f"--board {options.board}: starts a node of its own; leave --interface out")
+    more = read_bus_options(options.bus_options, options.interface)
+    with connected(options.interface, options.channel, id_base, bitrate=options.bitrate, **more) as node:
+        yield node

@@ -1,0 +1,102 @@
+"""How punctual the rig itself is. A PC that stalls sends late and listens late; the node must not be blamed for it."""
+
+from __future__ import annotations
+
+from laconic.rig.link import Clock
+from laconic.rig.verdict import Verdict
+from laconic.rig.wire import wire
+
+
+class Punctuality:
+    """When the voltages were due and when they went out, and how long the rig did not listen.
+
+    `now_us` is the time that has passed while the rig was listening: frames that wait in a queue while the PC stalls
+    are not late in it.
+    """
+
+    def __init__(self, clock: Clock, cycle_s: float, watchdog_ms: int):
+        self.clock, self.cycle_us = clock, round(1e6 * cycle_s)
+        self.allowed_us = 1000 * (watchdog_ms or int(wire()["VOLTAGE"].attributes["GenMsgTimeout"]))
+        self.watchdog_ms = watchdog_ms
+        self.worst_lateness_us = 0
+        self.left_out = 0           # cycles in which no voltages went out
+        self.next_us = clock.now_us()
+        self._longest_pause_us = 0
+        self._sent_us: int | None = None
+        self._deaf_us = 0
+        self._listened_us: int | None = None
+
+    # ---- sending
+
+    def is_due(self) -> bool:
+        """Whether the next voltages have to go out."""
+        return self.clock.now_us() >= self.next_us
+
+    def is_late(self) -> bool:
+        """Whether they should have gone long ago."""
+        return self.clock.now_us() - self.next_us > self.cycle_us // 2
+
+    def sent(self) -> None:
+        """They have gone out. Cycles that have passed by meanwhile are left out, not made up for in a burst."""
+        now_us = self.clock.now_us()
+        lateness = now_us - self.next_us
+        missed = max(0, lateness // self.cycle_us)
+        self.worst_lateness_us = max(self.worst_lateness_us, lateness)
+        self._longest_pause_us = self.longest_pause_us()
+        self.left_out += missed
+        self.next_us += (1 + missed) * self.cycle_us
+        self._sent_us = now_us
+
+    def longest_pause_us(self) -> int:
+        """Between two sets of voltages, the one that lasts included."""
+        lasting = 0 if self._sent_us is None else self.clock.now_us() - self._sent_us
+        return max(self._longest_pause_us, lasting)
+
+    def ended(self) -> None:
+        """No more voltages are due: the last pause ends here."""
+        self._longest_pause_us, self._sent_us = self.longest_pause_us(), None
+
+    # ---- listening
+
+    def listens(self) -> None:
+        """The rig begins to wait for a frame: since it ended the last wait it was deaf."""
+        now_us = self.clock.now_us()
+        if self._listened_us is not None:
+            self._deaf_us += now_us - self._listened_us
+
+    def listened(self, until_us: int) -> None:
+        """The wait is over, and should have been at `until_us` at the latest."""
+        self._listened_us = self.clock.now_us()
+        self._deaf_us += max(0, self._listened_us - until_us)
+
+    def now_us(self) -> int:
+        """Time spent listening, and what it began with."""
+        return self.clock.now_us() - self._deaf_us
+
+    # ---- what there is to say
+
+    def was_too_late(self) -> bool:
+        """Whether the rig alone has given cause for a timeout."""
+        return self.longest_pause_us() > self.allowed_us
+
+    def explains_timeout(self) -> str:
+        """Whose fault it is that the node's watchdog has struck."""
+        pause_ms = self.longest_pause_us() / 1000.0
+        if self.was_too_late():
+            return (f"because the rig sent no voltages for {pause_ms:.0f} ms (watchdog {self.watchdog_ms} ms): this PC "
+                    "has stalled, not the node")
+        return (f"although the rig sent voltages in time (longest pause {pause_ms:.0f} ms, watchdog "
+                f"{self.watchdog_ms} ms): they did not arrive")
+
+    def verdict(self) -> Verdict:
+        """Apart from the node's: whether the rig has kept its own cycle."""
+        pause_us = self.longest_pause_us()
+        detail = (f"voltages at most {self.worst_lateness_us / 1000.0:.1f} ms late, longest pause "
+                  f"{pause_us / 1000.0:.1f} ms of {self.allowed_us / 1000.0:.0f} ms, {self.left_out} cycles left out")
+        detail += ": this PC has stalled" if self.was_too_late() else ""
+        return Verdict("rig", not self.was_too_late(), detail, pause_us / 1e6, self.allowed_us / 1e6)
+
+    def figures(self) -> dict[str, float]:
+        """For JSON."""
+        return {"rig_worst_lateness_us": self.worst_lateness_us, "rig_longest_pause_us": self.longest_pause_us(),
+                "rig_left_out_cycles": self.left_out}

@@ -1,0 +1,45 @@
+"""Bringing a node to rest, however a run has ended, and finding one that runs."""
+
+from __future__ import annotations
+
+from laconic.rig.client import NodeClient
+from laconic.rig.errors import BusDied, NodeRefused, NodeSilent
+
+ATTEMPTS = 4
+PATIENCE_S = 0.25  # for one answer: a run that ends must not take long over it
+RUNNING = ("lockstep", "free run", "timeout")
+
+
+def come_to_rest(node: NodeClient) -> str | None:
+    """STOP until it is answered; what went wrong, if it never was."""
+    patience_s, node.timeout_s = node.timeout_s, min(node.timeout_s, PATIENCE_S)
+    why = "nobody has tried"
+    try:
+        for _ in range(ATTEMPTS):
+            try:
+                node.stop()
+                return None
+            except (NodeSilent, NodeRefused) as error:  # a refusal may be the late answer to another frame
+                why = str(error)
+            except BusDied as error:
+                return str(error)
+    finally:
+        node.timeout_s = patience_s
+    return why
+
+
+def stop_running(node: NodeClient) -> str:
+    """Identifies a node and stops it if it runs; the state in which it was found."""
+    node.identify()
+    found = node.state
+    if found in RUNNING:
+        node.stop()
+    return found
+
+
+def stop_and_reset(node: NodeClient, with_reset: bool) -> dict[str, str]:
+    """What --stop and --reset do: the states in which the node was found and left."""
+    found = stop_running(node)
+    if with_reset and node.state != "empty":  # without a vehicle there is no start to return to
+        node.reset()
+    return {"found": found, "state": node.state}
