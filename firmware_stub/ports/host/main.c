@@ -32,7 +32,8 @@ typedef struct options {
 typedef struct board {
     laconic_node node;
     laconic_slcan slcan;
-    int socket;
+    int socket;  /* of the client, -1: none */
+    int refused; /* of the last client that was one too many */
     char out[OUT_SIZE]; /* what waits for the socket */
     size_t out_count;
 } board;
@@ -112,20 +113,34 @@ static bool read_client(board *port) {
 static void wait_for_work(const board *port, int listening) {
     const uint32_t idle_us = laconic_node_idle_us(&port->node, now_us());
     const struct timespec timeout = {idle_us / 1000000U, (long)(idle_us % 1000000U) * 1000L};
-    struct pollfd fds[2] = {{listening, POLLIN, 0}, {port->socket, POLLIN, 0}}; /* a socket of -1 is skipped */
-    if (port->out_count > 0) fds[1].events |= POLLOUT;
-    ppoll(fds, 2, &timeout, NULL);
+    struct pollfd fds[3] = {{port->socket, POLLIN, 0}, {listening, POLLIN, 0}, {port->refused, POLLIN, 0}}; /* -1: skipped */
+    if (port->out_count > 0) fds[0].events |= POLLOUT;
+    ppoll(fds, 3, &timeout, NULL);
 }
 
-/* Says why and hangs up: a client that got no answer would look for its fault elsewhere. */
-static void refuse_second(int listening) {
-    char rest[256];
+static void say_occupied(int client) { (void)send(client, occupied, sizeof occupied - 1, MSG_DONTWAIT | MSG_NOSIGNAL); }
+
+/* A client that got no answer would look for its fault elsewhere. */
+static void refuse_second(board *port, int listening) {
     const int second = accept(listening, NULL, NULL);
     if (second < 0) return;
-    (void)send(second, occupied, sizeof occupied - 1, MSG_DONTWAIT | MSG_NOSIGNAL);
-    shutdown(second, SHUT_WR);
-    while (recv(second, rest, sizeof rest, MSG_DONTWAIT) > 0) {} /* unread bytes would turn the end into a reset */
-    close(second);
+    if (port->refused >= 0) close(port->refused);
+    port->refused = second;
+    say_occupied(second);
+}
+
+/* Once more when it speaks, since a serial line is often flushed when it is opened; then the line ends. The socket stays
+ * until the client goes: closed earlier, it would reset the connection, and with it take the words away. */
+static void answer_refused(board *port) {
+    char rest[256];
+    const ssize_t count = port->refused < 0 ? -1 : recv(port->refused, rest, sizeof rest, MSG_DONTWAIT);
+    if (count > 0) {
+        say_occupied(port->refused);
+        shutdown(port->refused, SHUT_WR);
+    } else if (port->refused >= 0 && (count == 0 || (errno != EAGAIN && errno != EINTR))) {
+        close(port->refused);
+        port->refused = -1;
+    }
 }
 
 static void try_accept(board *port, int listening, char rate) {
@@ -139,6 +154,7 @@ static void try_accept(board *port, int listening, char rate) {
 
 static void serve(board *port, int listening, const options *settings) {
     port->socket = -1;
+    port->refused = -1;
     for (;;) {
         wait_for_work(port, listening);
         if (port->socket < 0) {
@@ -149,8 +165,9 @@ static void serve(board *port, int listening, const options *settings) {
             laconic_slcan_init(&port->slcan, settings->rate);
             if (settings->once) return;
         } else {
-            refuse_second(listening);
+            refuse_second(port, listening);
         }
+        answer_refused(port);
         step_node(port);
         if (port->out_count > 0 && port->socket >= 0) flush_out(port);
     }

@@ -12,6 +12,7 @@ from laconic.core import REALS
 from laconic.errors import BadInput
 from laconic.options import InputPath, OutputFile, SceneName, belongs_to, goes_with, json_flag, only_one
 from laconic.rig.boards import KINDS
+from laconic.rig.errors import Interrupted
 from laconic.rig.logs import LOGS
 from laconic.rig.options import Options, in_hex, node_for, read_id_base
 from laconic.rig.replay import judge_log
@@ -91,6 +92,8 @@ def drive(scene: Scene, options: Options) -> int:
         click.echo(as_json(judgement))
     else:
         show(judgement)
+    if isinstance(judgement.ending, Interrupted):
+        click.echo(f"laconic: {judgement.verdicts[0].detail}; {'; '.join(judgement.notes)}", err=True)
     return judgement.exit_status
 
 

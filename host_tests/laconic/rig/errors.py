@@ -30,6 +30,14 @@ class BusDied(ResultFails):
     """Sending or receiving failed in the middle of a run."""
 
 
+def in_words(error: BaseException) -> str:
+    """What a library says, and behind it what the system said to the library."""
+    text, last = str(error) or type(error).__name__, error
+    while last.__cause__ is not None:
+        last = last.__cause__
+    return text if str(last) in text else f"{text}: {last}"
+
+
 class Interrupted(LaconicError):
     """A signal has ended the run; the exit status is what a shell gives it: 130 for SIGINT, 143 for SIGTERM."""
 

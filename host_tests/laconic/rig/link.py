@@ -8,7 +8,7 @@ from collections.abc import Callable
 
 import can
 
-from laconic.rig.errors import BusDied
+from laconic.rig.errors import BusDied, in_words
 from laconic.rig.node_library import E2E_STATUS, node_library
 from laconic.rig.wire import Frame, wire
 
@@ -57,7 +57,7 @@ class Link:
         try:
             self.bus.send(message)
         except (can.CanError, OSError) as error:
-            raise BusDied(f"the bus died while sending: {error}") from None
+            raise BusDied(f"the bus died while sending: {in_words(error)}") from None
         self.frames_out += 1
         for listener in self.listeners:
             listener(message)
@@ -88,7 +88,7 @@ class Link:
                 message = self.bus.recv(0)
             return message
         except (can.CanError, OSError, ValueError, IndexError) as error:
-            raise BusDied(f"the bus died while receiving: {error or type(error).__name__}") from None
+            raise BusDied(f"the bus died while receiving: {in_words(error)}") from None
 
     def lost_before(self, frame: Frame) -> int:
         """How many of its kind are missing before the last one taken."""

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import itertools
+import re
 from collections import Counter
 from collections.abc import Callable, Iterator
 from contextlib import contextmanager
@@ -16,7 +17,7 @@ from rich.text import Text
 from laconic.rig.link import Link
 from laconic.rig.wire import Frame, wire
 
-HIDDEN = ("crc", "counter", "request", "data", "segment", "group", "page")
+HIDDEN = re.compile("crc|counter|request|data(_[0-9]+)?|segment|group|page")
 WHEELS_A_GROUP = 3
 REFRESHES_PER_S = 10
 AROUND = 6  # lines that are no frames: title, heading with its two rules, last rule, faults
@@ -79,11 +80,8 @@ class View:
         message, frame = self._last[key], wire().by_offset.get(key[0])
         if frame is None or message.is_extended_id or len(message.data) != frame.length:
             return bytes(message.data).hex(" ")
-        texts = []
-        for name, raw in frame.unpack(message.data).items():
-            if not name.startswith(HIDDEN):
-                texts.append(f"{numbered(name, frame, key[1])} {value_text(frame, name, raw)}")
-        return "  ".join(texts)
+        shown = {name: raw for name, raw in frame.unpack(message.data).items() if not HIDDEN.fullmatch(name)}
+        return signals_text(frame, key[1], shown)
 
 
 def part_of(frame: Frame, message: can.Message) -> int:
@@ -94,12 +92,24 @@ def part_of(frame: Frame, message: can.Message) -> int:
     return values.get("group", values.get("page", 0))
 
 
-def numbered(name: str, frame: Frame, part: int) -> str:
-    """The signal's name with the number of its wheel, not of its place in the group."""
-    base, _, place = name.rpartition("_")
-    if "group" not in frame.fields or not place.isdigit():
-        return name
-    return f"{base}_{WHEELS_A_GROUP * part + int(place)}"
+def signals_text(frame: Frame, part: int, raw: dict[str, int]) -> str:
+    """Names and values; of flags the names of those that are set; of numbered signals the name once."""
+    texts, base_before = [], ""
+    for name, value in raw.items():
+        if frame.fields[name].bits == 1:
+            texts += [name] if value else []
+            continue
+        base, _, place = name.rpartition("_")
+        number = f"_{wheel_of(frame, part, int(place))}" if place.isdigit() else ""
+        base = base if number else name
+        texts.append(f"{'' if base == base_before else base}{number} {value_text(frame, name, value)}")
+        base_before = base
+    return "  ".join(texts)
+
+
+def wheel_of(frame: Frame, part: int, place: int) -> int:
+    """The number of a wheel, from its place in its group."""
+    return WHEELS_A_GROUP * part + place if "group" in frame.fields else place
 
 
 def value_text(frame: Frame, name: str, raw: int) -> str:

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import logging
 from collections.abc import Iterator
 from contextlib import ExitStack, contextmanager
 from pathlib import Path
@@ -52,7 +53,7 @@ def stamped(writer: can.io.generic.MessageWriter, link: Link) -> can.typecheckin
 def read_log(path: Path) -> list[can.Message]:
     """All frames of a log; BadInput for one that is broken or cut off."""
     try:
-        with can.LogReader(str(path)) as reader:
+        with doubts_are_errors(), can.LogReader(str(path)) as reader:
             check_whole(path, reader)
             return list(reader)
     except OSError as error:
@@ -64,8 +65,38 @@ def read_log(path: Path) -> list[can.Message]:
                        "file as it was written") from None
 
 
+class Doubts(logging.Handler):
+    """What a reader would only have written to its own log: it leaves frames out."""
+
+    def emit(self, record: logging.LogRecord) -> None:
+        """A doubt is an error."""
+        raise ValueError(record.getMessage())
+
+
+@contextmanager
+def doubts_are_errors() -> Iterator[None]:
+    """No warning of python-can is passed over in here."""
+    logger, handler = logging.getLogger("can"), Doubts(logging.WARNING)
+    propagate, logger.propagate = logger.propagate, False
+    logger.addHandler(handler)
+    try:
+        yield
+    finally:
+        logger.removeHandler(handler)
+        logger.propagate = propagate
+
+
 def check_whole(path: Path, reader: can.io.generic.MessageReader) -> None:
     """python-can reads a cut-off BLF up to the cut and says nothing."""
     said, there = getattr(reader, "file_size", 0), path.stat().st_size
     if isinstance(reader, can.BLFReader) and there < said:
         raise BadInput(f"{path}: is cut off: {there} of {said} bytes are there; copy it again")
+
+
+def was_closed(path: Path) -> bool:
+    """Whether whoever wrote a log has come to its end: what was killed leaves frames out."""
+    if path.suffix.lower() == ".blf":
+        with can.BLFReader(path) as reader:
+            return reader.file_size >= path.stat().st_size
+    text = path.read_bytes().rstrip()
+    return path.suffix.lower() != ".asc" or text.lower().endswith(b"end triggerblock")

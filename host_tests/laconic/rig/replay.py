@@ -12,7 +12,7 @@ from laconic.plant import Plant
 from laconic.rig.client import NodeClient
 from laconic.rig.judge import link_verdict, signal_verdicts
 from laconic.rig.link import Link
-from laconic.rig.logs import read_log
+from laconic.rig.logs import read_log, was_closed
 from laconic.rig.scaled import Comparison
 from laconic.rig.verdict import Judgement, Verdict
 from laconic.rig.wire import wire
@@ -86,5 +86,7 @@ def judge_log(path: Path, scene: Scene, id_base: int, tolerances: dict[str, floa
         judgement = Judgement(scene.name, f"replay of {path.name}")
         judgement.add(*signal_verdicts(player.comparison, tolerances), link_verdict(NodeClient(link)))
         judgement.add(Verdict("commands", player.wrong_commands == 0, f"{player.wrong_commands} with a wrong CRC"))
+        if not was_closed(path):
+            judgement.notes.append(f"{path} was never closed: frames may be missing at its end")
         judgement.figures |= {"frames": len(messages), "steps": player.plant.steps}
     return judgement

@@ -7,7 +7,7 @@ from contextlib import contextmanager
 
 from laconic.progress import progress_bar
 from laconic.rig.client import NodeClient
-from laconic.rig.errors import BusDied, CannotReach, NodeRefused, NodeSilent
+from laconic.rig.errors import BusDied, CannotReach, Interrupted, NodeRefused, NodeSilent
 from laconic.rig.free_judge import judge_free_run
 from laconic.rig.interruption import Interruption
 from laconic.rig.judge import judge_same_bits, judge_scaled
@@ -29,21 +29,28 @@ def run(scene: Scene, options: Options) -> Judgement:
     with (Interruption() as told, node_for(options, scene.run.real, base) as node, logged(node.link, options.logs),
           shown(node, scene, options) as moved):
         node.link.listeners.append(told.check)  # behind the logs: a frame that is seen is logged first
-        judgement, at_rest = None, None
+        judgement, notes = None, []
         try:
             found = reach(node)
+            if found in RUNNING:
+                notes.append(f"the node was found in state {found} and has been stopped before the run")
             judgement = judge(node, scene, options, limits, moved)
+        except Interrupted as ending:  # before the first step
+            judgement = Judgement(scene.name, options.mode)
+            judgement.ended(ending, 0, options.steps or scene.steps())
         finally:
             if judgement is None or judgement.ending is not None:
                 with told.shielded():
-                    at_rest = come_to_rest(node)
-        if judgement.ending is not None:
-            judgement.notes.append(f"faulty frames: {dict(node.link.faults) or 'none'}")
-        if found in RUNNING:
-            judgement.notes.append(f"the node was found in state {found} and has been stopped before the run")
-        if at_rest is not None:
-            judgement.notes.append(f"the node could not be stopped ({at_rest}); try laconic rig --stop")
+                    notes += after_early_end(node)
+        judgement.notes += notes
         return judgement
+
+
+def after_early_end(node: NodeClient) -> list[str]:
+    """Stops the node; what there is to say about it."""
+    failure = come_to_rest(node)
+    state = "is at rest" if failure is None else f"could not be stopped ({failure}): try laconic rig --stop"
+    return [f"the node {state}", f"faulty frames: {dict(node.link.faults) or 'none'}"]
 
 
 def reach(node: NodeClient) -> str:

@@ -1,0 +1,122 @@
+"""Runs that are interrupted: the node comes to rest, what was judged is kept, logs are whole, the next run works."""
+
+from __future__ import annotations
+
+import json
+import os
+import signal
+import subprocess
+import sys
+from collections.abc import Callable, Iterator
+from pathlib import Path
+from xml.etree import ElementTree
+
+import pytest
+
+from laconic.cli import run
+from laconic.rig import run as one_run
+from laconic.rig.buses import connected, node_process
+from laconic.rig.lockstep import load_scene
+from laconic.rig.logs import read_log, was_closed
+from laconic.scene import read_scene
+
+MODES = {"lockstep": [], "same bits": ["--same-bits"], "free run": ["--free-run", "--watchdog", "0"]}
+LAST = 30  # the step or cycle in which the signal comes
+
+
+@pytest.fixture(scope="module")
+def port() -> Iterator[int]:
+    """A node process for all runs of this file."""
+    with node_process() as number:
+        yield number
+
+
+def on(port: int) -> list[str]:
+    """The options that lead to it."""
+    return ["--interface", "slcan", "--channel", f"socket://127.0.0.1:{port}"]
+
+
+def at_step(monkeypatch: pytest.MonkeyPatch, happens: Callable[[], None]) -> None:
+    """Lets something happen in the middle of the next run."""
+    judge, moves = one_run.judge, 0
+
+    def judge_and_disturb(node: object, scene: object, options: object, limits: object, moved: Callable) -> object:
+        def counted(amount: float) -> None:
+            nonlocal moves
+            moves += 1
+            moved(amount)
+            if moves == LAST:
+                happens()
+
+        return judge(node, scene, options, limits, counted)
+
+    monkeypatch.setattr(one_run, "judge", judge_and_disturb)
+
+
+def state_of(port: int, capsys: pytest.CaptureFixture[str]) -> str:
+    """In which state --stop finds the node."""
+    capsys.readouterr()
+    assert run(["rig", "--stop", *on(port), "--json"]) == 0
+    return json.loads(capsys.readouterr().out)["found"]
+
+
+@pytest.mark.parametrize("mode, number, status", [
+    ("lockstep", signal.SIGINT, 130), ("lockstep", signal.SIGTERM, 143), ("same bits", signal.SIGINT, 130),
+    ("free run", signal.SIGTERM, 143)])
+def test_an_interrupted_run_leaves_the_node_at_rest_and_the_next_one_works(
+        mode: str, number: int, status: int, port: int, monkeypatch: pytest.MonkeyPatch,
+        capsys: pytest.CaptureFixture[str]) -> None:
+    with monkeypatch.context() as patch:
+        at_step(patch, lambda: os.kill(os.getpid(), number))
+        assert run(["rig", "s1", *on(port), *MODES[mode], "--steps", "100000"]) == status
+    error = capsys.readouterr().err
+    assert error.count("\n") == 1 and signal.Signals(number).name in error and "the node is at rest" in error
+    assert state_of(port, capsys) == "ready"
+    assert run(["rig", "s1", *on(port), "--steps", "5"]) == 0
+    assert signal.getsignal(number) is not None and "Interruption" not in repr(signal.getsignal(number))
+
+
+def test_a_process_that_is_terminated_leaves_whole_logs_and_a_node_at_rest(port: int, tmp_path: Path,
+                                                                           capsys: pytest.CaptureFixture[str]) -> None:
+    program = ("import os, signal, sys; from laconic.cli import main; from laconic.rig import run as r; judge = r.judge\n"
+               "def moved(_, seen=[]):\n seen.append(0)\n len(seen) == 800 and os.kill(os.getpid(), signal.SIGTERM)\n"
+               "r.judge = lambda *a: judge(*a[:4], moved)\nmain(sys.argv[1:])\n")
+    logs = [tmp_path / "run.blf", tmp_path / "run.asc"]
+    done = subprocess.run([sys.executable, "-c", program, "rig", "s1", *on(port), "--steps", "100000",
+                           *(word for path in logs for word in ("--log", str(path)))], capture_output=True, text=True)
+    assert done.returncode == 143 and "Traceback" not in done.stderr
+    blf, asc = [[(m.arbitration_id, bytes(m.data)) for m in read_log(path)] for path in logs]
+    assert blf == asc and len(blf) > 3200 and all(was_closed(path) for path in logs)
+    assert state_of(port, capsys) == "ready"
+
+
+def test_a_run_that_raises_anything_leaves_the_node_at_rest(port: int, monkeypatch: pytest.MonkeyPatch,
+                                                            capsys: pytest.CaptureFixture[str]) -> None:
+    def fail() -> None:
+        raise RuntimeError("a fault of our own")
+
+    at_step(monkeypatch, fail)
+    with pytest.raises(RuntimeError):
+        run(["rig", "s1", *on(port), "--free-run", "--watchdog", "0"])
+    assert state_of(port, capsys) == "ready"
+
+
+@pytest.mark.parametrize("flag, state", [("--stop", "ready"), ("--reset", "ready")])
+def test_a_node_that_somebody_has_left_running_is_stopped_by_command(flag: str, state: str, port: int,
+                                                                      capsys: pytest.CaptureFixture[str]) -> None:
+    leave_running(port)
+    assert run(["rig", flag, *on(port)]) == 0
+    assert "found in state free run, now " + state in capsys.readouterr().out
+
+
+def test_a_run_recovers_a_node_that_it_finds_running_and_says_so(port: int, capsys: pytest.CaptureFixture[str]) -> None:
+    leave_running(port)
+    assert run(["rig", "s1", *on(port), "--steps", "10", "--json"]) == 0
+    assert "found in state free run" in json.loads(capsys.readouterr().out)["notes"][0]
+
+
+def leave_running(port: int) -> None:
+    """A rig that died: its node drives on, without watchdog."""
+    with connected("slcan", f"socket://127.0.0.1:{port}") as node:
+        load_scene(node, read_scene("s1"))
+        node.start_free_run(100, 0)
