@@ -63,7 +63,7 @@ def run_free(node: NodeClient, scene: Scene, duration_s: float, rate_Hz: int = 0
     start_us = node.link.clock.now_us()
     start_clock(node, scene, rate_Hz, watchdog_ms)
     run.punctuality = Punctuality(node.link.clock, CYCLE_S, watchdog_ms)
-    run.silence = Silence({*frames, "HEARTBEAT", "COUNTERS"}, 1.0 / run.rate_Hz, run.punctuality.now_us())
+    run.silence = Silence((*frames, "HEARTBEAT", "COUNTERS"), 1.0 / run.rate_Hz, run.punctuality.now_us())
     try:
         follow(run, node, scene, start_us, start_us + int(1e6 * duration_s), moved)
     finally:

@@ -32,12 +32,13 @@ class Silence:
 
     def check(self, now_us: int) -> None:
         """NodeSilent once a frame has been missing for too long. Call it when nothing more waits to be read."""
-        for name, last_us in self._last_us.items():
-            missing_us = now_us - last_us
-            self.longest_us[name] = max(self.longest_us[name], missing_us)
-            if missing_us > max(self.allowed_us[name], self._dead_us):
-                raise NodeSilent(f"no {name} has come for {missing_us / 1000.0:.0f} ms ("
-                                 f"{self.allowed_us[name] / 1000.0:.0f} ms are allowed): the node or the line is dead")
+        missing_us = {name: now_us - last_us for name, last_us in self._last_us.items()}
+        for name, silent_us in missing_us.items():
+            self.longest_us[name] = max(self.longest_us[name], silent_us)
+        if any(silent_us > max(self.allowed_us[name], self._dead_us) for name, silent_us in missing_us.items()):
+            late = [name for name, silent_us in missing_us.items() if silent_us > self.allowed_us[name]]
+            raise NodeSilent(f"no {', '.join(late)} for {max(missing_us.values()) / 1000.0:.0f} ms, more than the "
+                             "contract's timeouts: the node or the line to it is dead")
 
     def verdict(self) -> Verdict:
         """Whether every cyclic frame came within its timeout."""
