@@ -80,7 +80,7 @@ def host_state(program: Path, steps: int) -> tuple[str, ...]:
 
 def host_instructions(program: Path, steps: int = 2000) -> float:
     """I(2n) − I(n) over n, by cachegrind."""
-    return (_cachegrind(program, 2 * steps) - _cachegrind(program, steps)) / steps
+    return (instructions_of([str(program), str(2 * steps)]) - instructions_of([str(program), str(steps)])) / steps
 
 
 def cachegrind_present() -> bool:
@@ -88,12 +88,13 @@ def cachegrind_present() -> bool:
     return shutil.which("valgrind") is not None
 
 
-def _cachegrind(program: Path, steps: int) -> int:
+def instructions_of(command: list[str]) -> int:
+    """Instructions of a program from its start to its end, by cachegrind."""
     done = subprocess.run(["valgrind", "--tool=cachegrind", "--cache-sim=no", "--cachegrind-out-file=/dev/null",
-                           str(program), str(steps)], capture_output=True, text=True, check=False)
+                           *command], capture_output=True, text=True, check=False)
     found = re.search(r"I\s+refs:\s+([\d,]+)", done.stderr)
-    if not found:
-        raise ResultFails(f"cachegrind did not count {program.name}: {done.stderr[-200:]}")
+    if not found or done.returncode != 0:
+        raise ResultFails(f"cachegrind did not count {Path(command[0]).name}: {done.stderr[-200:]}")
     return int(found[1].replace(",", ""))
 
 
