@@ -2,14 +2,15 @@
 
 from __future__ import annotations
 
-import csv
 import json
 from pathlib import Path
 from typing import Any
 
 import click
+import numpy as np
 
 from laconic.core import REALS
+from laconic.csv_text import csv_text
 from laconic.errors import BadInput
 from laconic.options import PICTURES, OutputFile, SceneName, belongs_to, json_flag
 from laconic.outputs import is_stdout, opened
@@ -60,17 +61,12 @@ def warn(message: str) -> None:
 
 
 def write_csv(run: Trajectory, signals: tuple[str, ...], path: Path) -> None:
-    """time_s and the signals, with all digits."""
-    rows = zip(run.time_s.tolist(), *(run.columns[name].tolist() for name in signals), strict=True)
+    """A header line; then time_s and the signals, with all digits."""
+    table = np.column_stack([run.time_s, *(run.columns[name] for name in signals)])
     with opened(path) as file:
-        write_rows(file, signals, rows)
-
-
-def write_rows(file: Any, signals: tuple[str, ...], rows: Any) -> None:
-    """A header line, then numbers."""
-    writer = csv.writer(file, lineterminator="\n")
-    writer.writerow(("time_s", *signals))
-    writer.writerows(rows)
+        file.write(",".join(("time_s", *signals)) + "\n")
+        for lines in csv_text(table):
+            file.write(lines)
 
 
 def summary(run: Trajectory, out: Path | None, plot: Path | None) -> dict[str, Any]:
