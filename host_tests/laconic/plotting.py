@@ -58,7 +58,7 @@ def plot_path(axes: Axes, run: Trajectory) -> None:
     axes.quiver(x[at], y[at], np.cos(heading[at]), np.sin(heading[at]), angles=np.degrees(heading[at]),
                 width=0.005, scale=14.0, color="tab:orange", zorder=3)
     axes.plot([], [], ls="", marker=r"$\rightarrow$", ms=16, color="tab:orange", label="body axis ξ")
-    axes.plot(x[0], y[0], "o", ms=11, mfc="none", mew=2.0, color="tab:green", label="start", zorder=4)
+    axes.plot(x[0], y[0], "o", ms=15, mfc="none", mew=2.0, color="tab:green", label="start", zorder=4)
     axes.plot(x[-1], y[-1], "s", color="tab:red", label="end", zorder=4)
     margin = 0.12 * span
     axes.set_xlim(*_around(x, span, margin))
@@ -122,7 +122,7 @@ def mark_ground(places: Mapping[str, Axes], run: Trajectory) -> None:
                             label=f"{event.where} {word} first, {event.time_s:g} s")
         for name in ("velocities", "wheels"):
             if name in places:
-                places[name].axvline(event.time_s, color=colour, lw=size / 5.0, zorder=2.5)
+                places[name].axvline(event.time_s, color=colour, lw=size / 5.0, zorder=1.5)
                 places[name].plot(event.time_s, 0.04, "X", ms=size, color=colour, mec="white", zorder=6,
                                   transform=places[name].get_xaxis_transform())
 
