@@ -2,6 +2,7 @@
 
 import json
 import re
+from dataclasses import replace
 from types import SimpleNamespace
 
 import numpy as np
@@ -89,14 +90,19 @@ def test_two_scene_files_of_one_name_are_refused_in_one_line(capsys, tmp_path):
     assert "2 files are called s1" in capsys.readouterr().err
 
 
-@pytest.mark.parametrize("duration", [0.05, 0.1, 0.37, 1.0, 7.77, 10.0])
-def test_every_step_of_the_ladder_falls_on_the_instants_that_are_compared(duration):
-    at_s = accuracy.checkpoints(duration)
-    assert 1 <= len(at_s) <= accuracy.CHECKPOINTS
-    assert at_s[-1] <= duration * (1.0 + 1e-9)
-    if duration >= accuracy.GRID_S:
-        for step_s in accuracy.STEPS_S:
-            assert np.abs(at_s / step_s - np.rint(at_s / step_s)).max() < 1e-9
+@pytest.mark.parametrize(("duration", "own"), [(0.05, 0.001), (0.004, 0.001), (0.366, 0.003), (0.37, 0.001),
+                                               (7.77, 0.01), (10.0, 0.002), (4.0, 0.5)])
+def test_every_scene_has_steps_to_compare_its_own_among_them(duration, own):
+    scene = read_scene(SCENE).with_run(duration_s=duration, step_s=own)
+    scene = replace(scene, inputs=())
+    ladder, grid_s = accuracy.ladder_of(scene)
+    short = accuracy.shortened(scene, grid_s)
+    truth = accuracy.Truth(accuracy.checkpoints(short.run.duration_s, grid_s), np.zeros(0))
+    fitting = [step_s for step_s in ladder if accuracy.fits(short.with_run(step_s=step_s), truth)]
+    assert own in fitting
+    assert len(fitting) >= 5
+    assert len(truth.at_s) <= accuracy.CHECKPOINTS
+    assert truth.at_s[-1] <= duration * (1.0 + 1e-9)
 
 
 # ---- the pictures

@@ -18,6 +18,7 @@ from laconic.simulation import advance_plant
 STEPS_S = (0.001, 0.002, 0.0025, 0.005, 0.01, 0.0125, 0.02, 0.025, 0.05, 0.1)
 CHECKPOINTS = 20
 GRID_S = 0.1  # every step of the ladder divides it
+OWN_FACTORS = (0.1, 0.2, 0.25, 0.5, 1.0, 2.0, 5.0, 10.0)  # of a step that does not divide it
 LONGEST_S = 10.0
 TIMED_STEPS, TIMED_REPETITIONS = 4000, 5
 
@@ -30,24 +31,31 @@ class Truth:
     states: np.ndarray
 
 
-def shortened(scene: Scene) -> Scene:
-    """The scene's first ten seconds, in a step that every checkpoint falls on."""
-    return scene.with_run(duration_s=min(scene.run.duration_s, LONGEST_S))
+def shortened(scene: Scene, grid_s: float = GRID_S) -> Scene:
+    """The scene's first ten seconds, as far as the last checkpoint."""
+    return scene.with_run(duration_s=float(checkpoints(min(scene.run.duration_s, LONGEST_S), grid_s)[-1]))
 
 
-def truth_of(scene: Scene) -> Truth:
+def truth_of(scene: Scene, grid_s: float = GRID_S) -> Truth:
     """Reference states at evenly spaced instants."""
-    at_s = checkpoints(scene.run.duration_s)
+    at_s = checkpoints(scene.run.duration_s, grid_s)
     return Truth(at_s, reference_states(scene, at_s))
 
 
-def checkpoints(duration_s: float) -> np.ndarray:
-    """At most twenty instants that every step of the ladder falls on; in a shorter run than that, twenty parts."""
-    if duration_s < GRID_S:
-        return np.linspace(0.0, duration_s, CHECKPOINTS + 1)[1:]
-    ticks = int(duration_s / GRID_S + 1e-6)
+def checkpoints(duration_s: float, grid_s: float = GRID_S) -> np.ndarray:
+    """At most twenty instants on a grid that every step of the ladder divides."""
+    ticks = max(1, int(duration_s / grid_s + 1e-6))
     every = -(-ticks // CHECKPOINTS)
-    return GRID_S * every * np.arange(1, ticks // every + 1)
+    return grid_s * every * np.arange(1, ticks // every + 1)
+
+
+def ladder_of(scene: Scene) -> tuple[tuple[float, ...], float]:
+    """Steps for a scene, its own among them, and the grid they divide: in milliseconds, else in parts of its own."""
+    own, duration_s = scene.run.step_s, min(scene.run.duration_s, LONGEST_S)
+    ticks = GRID_S / own
+    if duration_s >= GRID_S and ticks >= 1.0 - 1e-9 and abs(ticks - round(ticks)) < 1e-6:
+        return tuple(sorted({*STEPS_S, own})), GRID_S
+    return tuple(own * factor for factor in OWN_FACTORS), own * min(10, max(1, int(duration_s / own + 1e-6)))
 
 
 def relative(found: np.ndarray, expected: np.ndarray) -> float:
@@ -121,10 +129,11 @@ def one_run(scene: Scene, real: str, truth: Truth) -> dict[str, Any]:
 
 
 def rows_of(scene: Scene, reals: tuple[str, ...], methods: tuple[str, ...] = METHODS,
-            advance: Any = lambda: None, ladder: tuple[float, ...] = STEPS_S) -> list[dict[str, Any]]:
+            advance: Any = lambda: None, ladder: tuple[float, ...] = STEPS_S,
+            grid_s: float = GRID_S) -> list[dict[str, Any]]:
     """The whole ladder of one scene."""
-    short = shortened(scene)
-    truth, rows = truth_of(short), []
+    short = shortened(scene, grid_s)
+    truth, rows = truth_of(short, grid_s), []
     steps = [h for h in ladder if fits(replace(short, run=replace(short.run, step_s=h)), truth)]
     for real in reals:
         for method in methods:

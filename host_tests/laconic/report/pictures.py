@@ -77,7 +77,8 @@ def precision(rows: Sequence[Row]) -> str:
     return svg(picture)
 
 
-def stability(rows: Sequence[Row], method: str, own: tuple[float, float] | None = None) -> str:
+def stability(rows: Sequence[Row], method: str, own: tuple[float, float] | None = None,
+              whose: str = "") -> str:
     """Step across, damping upwards, error as colour; refused steps are grey. `own`: a robot's step and damping."""
     mine = [r for r in rows if r["method"] == method]
     steps = sorted({r["step_s"] for r in mine})
@@ -99,7 +100,8 @@ def stability(rows: Sequence[Row], method: str, own: tuple[float, float] | None 
     axes.plot(across, 1.0 / across, color="white", linewidth=1.6)
     axes.plot(across, 1.0 / across, color="0.2", linewidth=0.9, linestyle="--", label="h·r = 1")
     axes.plot([], [], "s", color="#c9c9c9", ms=8, label="refused or not run")
-    axes.set(xscale="log", yscale="log", xlabel="step h [s]", ylabel="fastest damping r [1/s]", title=method,
+    axes.set(xscale="log", yscale="log", xlabel="step h [s]", ylabel="fastest damping r [1/s]",
+             title=method + whose,
              ylim=(_edges(rates)[0], _edges(rates)[-1]), xlim=(left, right))
     axes.grid(False)
     picture.colorbar(mesh, ax=axes, label="error of ν, relative")

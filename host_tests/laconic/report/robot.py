@@ -76,9 +76,9 @@ def robot_row(scene: Scene) -> Row:
 
 def ladder_rows(scene: Scene, advance: Any = lambda: None) -> list[Row]:
     """Error against run time, the scene's own step among the others."""
-    ladder = tuple(sorted({*accuracy.STEPS_S, scene.run.step_s}))
+    ladder, grid_s = accuracy.ladder_of(scene)
     return [row | {"own": row["step_s"] == scene.run.step_s}
-            for row in accuracy.rows_of(scene, REALS, advance=advance, ladder=ladder)]
+            for row in accuracy.rows_of(scene, REALS, METHODS, advance, ladder, grid_s)]
 
 
 def advice(rows: Sequence[Row], scene: Scene) -> list[Row]:

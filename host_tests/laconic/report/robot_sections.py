@@ -55,8 +55,9 @@ def _stability(scenes: Sequence[Scene], results: Results) -> Section:
     for scene in scenes:
         rows = [row for row in results["map"] if row["scene"] == scene.path.stem]
         own = next(row for row in results["robots"] if row["scene"] == scene.path.stem)
-        drawn += [pictures.stability(rows, method, (own["step_s"], own["fastest_decay_per_s"])) for method in METHODS
-                  if rows]
+        whose = f", {scene.path.stem}" if len(scenes) > 1 else ""
+        drawn += [pictures.stability(rows, method, (own["step_s"], own["fastest_decay_per_s"]), whose)
+                  for method in METHODS if rows]
     return Section("stability", "Stability map", texts.paragraphs(texts.ROBOT_STABILITY), drawn)
 
 

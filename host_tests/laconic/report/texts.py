@@ -9,7 +9,8 @@ The project's own goals, each computed from the measurements of the other page.
 """
 
 ACCURACY = """
-Each point is one step size, from 1 to 100 ms. Full lines: double; dashed: single. The error is the largest of the
+Each point is one step size, from 1 to 100 ms (or parts and multiples of a step that fits none of these). Full lines:
+double; dashed: single. The error is the largest of the
 three components of ν at twenty instants or fewer of the first ten seconds, over max(1, largest ν), against a separate
 numpy reference, which itself is good to about 1e-11. Run time: thread CPU time of a step with held inputs, pose and
 wheel angles included. `auto` picks one of the methods, so its large hollow circles lie on that method's points. In
