@@ -104,8 +104,13 @@ def unexpected(error: Exception) -> LaconicError:
     if isinstance(error, MemoryError):
         return BadInput("there is not enough memory for this; ask for fewer steps or outputs")
     last = traceback.extract_tb(error.__traceback__)[-1]
-    return BadInput(f"unexpected {type(error).__name__}: {error} ({Path(last.filename).name}:{last.lineno}); "
+    return BadInput(f"unexpected {_kind(error)}: {error} ({Path(last.filename).name}:{last.lineno}); "
                     "LACONIC_TRACEBACK=1 in the environment shows more, for a report of the fault")
+
+
+def _kind(error: Exception) -> str:
+    kind = type(error)
+    return kind.__name__ if kind.__module__ == "builtins" else f"{kind.__module__}.{kind.__qualname__}"
 
 
 def fail(message: str, status: int) -> int:

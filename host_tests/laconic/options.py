@@ -26,7 +26,7 @@ class InputPath(click.ParamType):
 
     def convert(self, value: Any, param: click.Parameter | None, ctx: click.Context | None) -> Path:
         """The path, noted as an input."""
-        path = Path(value)
+        path = _path(value, param)
         if exists(path):
             outputs.claims(ctx).read(path)
         return path
@@ -39,6 +39,7 @@ class SceneName(click.ParamType):
 
     def convert(self, value: Any, param: click.Parameter | None, ctx: click.Context | None) -> str:
         """The name; its file is noted as an input."""
+        _path(value, param)
         if path := named_scene(value):
             outputs.claims(ctx).read(path)
         return value
@@ -54,7 +55,7 @@ class OutputFile(click.ParamType):
 
     def convert(self, value: Any, param: click.Parameter | None, ctx: click.Context | None) -> Path:
         """The path, claimed for this option."""
-        path, option = Path(value), _spelled(param)
+        path, option = _path(value, param), _spelled(param)
         if outputs.is_stdout(path) and not self.stdout:
             raise BadInput(f"{option} {path}: cannot go to stdout; give the name of a file")
         return outputs.claim_file(option, path, self.endings, ctx)
@@ -67,11 +68,19 @@ class OutputFolder(click.ParamType):
 
     def convert(self, value: Any, param: click.Parameter | None, ctx: click.Context | None) -> Path:
         """The path; BadInput where there can be no folder."""
-        return outputs.claim_folder(_spelled(param), Path(value))
+        return outputs.claim_folder(_spelled(param), _path(value, param))
 
 
 def _spelled(param: click.Parameter | None) -> str:
-    return max(param.opts, key=len) if param else ""
+    if param is None:
+        return ""
+    return max(param.opts, key=len) if isinstance(param, click.Option) else (param.name or "").upper()
+
+
+def _path(value: Any, param: click.Parameter | None) -> Path:
+    if not str(value):  # Path("") is the current folder
+        raise BadInput(f"{_spelled(param)}: is empty; give a name")
+    return Path(value)
 
 
 def json_flag(meaning: str = "Machine-readable output.") -> Callable[[Any], Any]:

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import textwrap
+import warnings
 from collections.abc import Mapping, Sequence
 from pathlib import Path
 from typing import TYPE_CHECKING
@@ -21,6 +22,8 @@ matplotlib.use("Agg")
 from matplotlib import pyplot as plt  # noqa: E402  (the backend must be chosen first)
 from matplotlib.axes import Axes  # noqa: E402
 from matplotlib.figure import Figure  # noqa: E402
+from matplotlib.mathtext import MathTextParser  # noqa: E402
+from matplotlib.text import Text  # noqa: E402
 from matplotlib.transforms import ScaledTranslation  # noqa: E402
 
 STYLE = {"axes.grid": True, "grid.alpha": 0.3, "axes.spines.top": False, "axes.spines.right": False,
@@ -42,11 +45,23 @@ def figure(width_in: float, height_in: float) -> Figure:
 
 def save(picture: Figure, path: Path) -> None:
     """Writes and closes a figure, in the format that its name ends in."""
+    for text in picture.findobj(Text):
+        _check_formula(text)
     try:
-        with whole_file(path) as fresh:
+        with whole_file(path) as fresh, warnings.catch_warnings():
+            warnings.filterwarnings("ignore", "Glyph .* missing from")  # a box stands for it in the picture
             picture.savefig(fresh, dpi=110, format=path.suffix.lower().lstrip(".") or "png")
     finally:
         plt.close(picture)
+
+
+def _check_formula(text: Text) -> None:
+    """Names with dollars that are no formula ("robot for $5, not $6^") are shown as they stand."""
+    try:
+        if "$" in text.get_text():
+            MathTextParser("path").parse(text.get_text())
+    except ValueError:
+        text.set_parse_math(False)
 
 
 def plot_path(axes: Axes, run: Trajectory) -> None:

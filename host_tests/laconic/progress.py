@@ -18,7 +18,7 @@ def progress_bar(what: str, total: float) -> Iterator[Advance]:
     if not console.is_terminal:
         yield lambda amount=1, what=None: None
         return
-    columns = (TextColumn("{task.description}"), BarColumn(), MofNCompleteColumn(), TimeRemainingColumn())
+    columns = (TextColumn("{task.description}", markup=False), BarColumn(), MofNCompleteColumn(), TimeRemainingColumn())
     with Progress(*columns, console=console, transient=True) as bar:
         task = bar.add_task(what, total=total)
 

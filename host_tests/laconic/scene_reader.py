@@ -28,7 +28,7 @@ MOTOR_OPTIONAL = ("viscous_friction_Nms", "rotor_inertia_kgm2")
 
 def read_parts(top: Table, methods: Sequence[str], reals: Sequence[str]) -> dict[str, Any]:
     """Everything a scene consists of, as plain values."""
-    parts: dict[str, Any] = {"name": top.text("name", top.path.stem), "source": top.text("source", "")}
+    parts: dict[str, Any] = {"name": top.text("name", top.path.stem), "source": top.text("source", "", allowed="\t\n")}
     parts["vehicle"] = read_vehicle(top.table("vehicle", required=True))
     wheel_count = len(parts["vehicle"]["wheel"])
     parts["initial"] = read_initial(top.table("initial"))

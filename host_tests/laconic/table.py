@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import difflib
 import math
+import unicodedata
 from collections.abc import Iterator, Mapping, Sequence
 from pathlib import Path
 from typing import Any, NoReturn
@@ -16,6 +17,7 @@ try:
 except ModuleNotFoundError:  # Python 3.10
     import tomli as tomllib
 
+LONGEST_SHOWN = 60  # of a value in a message
 NO_HINTS: Mapping[str, str] = {}
 
 
@@ -98,9 +100,14 @@ class Table:
             return math.radians(self.number(in_degrees, finite=finite))
         return self.number(in_radians, default, finite=finite)
 
-    def text(self, key: str, default: Any = ...) -> str:
-        """A string."""
-        return self._get(key, default, (str,), "text in quotes")
+    def text(self, key: str, default: Any = ..., *, allowed: str = "") -> str:
+        """A string without the characters that steer a terminal (but for the allowed ones), so on one line."""
+        text = self._get(key, default, (str,), "text in quotes")
+        hidden = [letter for letter in text or "" if unicodedata.category(letter) in ("Cc", "Zl", "Zp")
+                  and letter not in allowed]
+        if hidden:
+            self.fail(key, f"holds the control character {hidden[0]!r}; give plain text")
+        return text
 
     def flag(self, key: str, default: bool) -> bool:
         """true or false."""
@@ -167,7 +174,11 @@ def _shown(value: Any) -> str:
     if isinstance(value, bool):
         return "true" if value else "false"
     if isinstance(value, str):
-        return f'the text "{value}"'
+        return f'the text "{_short(value)}"'
     if isinstance(value, (list, dict)):
         return "a list" if isinstance(value, list) else "a table"
-    return repr(value) if isinstance(value, (int, float)) else str(value)  # dates as they are written
+    return _short(repr(value)) if isinstance(value, (int, float)) else str(value)  # dates as they are written
+
+
+def _short(text: str) -> str:
+    return text if len(text) <= LONGEST_SHOWN else f"{text[:LONGEST_SHOWN]}…"

@@ -10,6 +10,7 @@ from pathlib import Path
 
 import click
 from rich.console import Console
+from rich.markup import escape
 from rich.table import Table
 
 from laconic.demo.main_job import PARTICIPANTS, STAGES, SceneResult, run_scene
@@ -72,12 +73,12 @@ def show(results: list[SceneResult], out: Path, seconds: float) -> None:
     console.print(work_table(results))
     for each in results:
         for difference in filter(None, each.same_bits.values()):
-            console.print(f"[red]{each.name}: {difference}")
+            console.print(f"[red]{escape(f'{each.name}: {difference}')}")
     for each in results:
         if each.ground:
             console.print(f"{each.name}: the ground cannot give what this run asks: {each.ground}", markup=False,
                           highlight=False)
-    console.print(f"Pictures, demo.json and errors.csv (all methods and steps): {out}   ({seconds:.0f} s)")
+    console.print(f"Pictures, demo.json and errors.csv (all methods and steps): {escape(str(out))}   ({seconds:.0f} s)")
 
 
 def bits_table(results: list[SceneResult]) -> Table:
@@ -92,7 +93,7 @@ def bits_table(results: list[SceneResult]) -> Table:
         words = ["yes" if not each.same_bits[who] else "[red]NO" for who in PARTICIPANTS]
         shown = [f"{word} ({each.compared[who]:,} exchanges)" for word, who in zip(words, PARTICIPANTS, strict=True)]
         ground = "not watched" if each.no_slip is None else "hold" if each.no_slip["holds"] else "[yellow]exceeded"
-        table.add_row(each.name, f"{each.steps:,}", *shown, ground)
+        table.add_row(escape(each.name), f"{each.steps:,}", *shown, ground)
     return table
 
 
@@ -110,7 +111,7 @@ def work_table(results: list[SceneResult]) -> Table:
         for method in SHOWN_METHODS:
             cells = [cell(each.points, method, factor * smallest) for factor in SHOWN_FACTORS]
             first = method == SHOWN_METHODS[0]
-            table.add_row(each.name if first else "", method, f"{smallest:g}" if first else "", *cells,
+            table.add_row(escape(each.name) if first else "", method, f"{smallest:g}" if first else "", *cells,
                           f"{each.floor:.0e}" if first else "", end_section=method == SHOWN_METHODS[-1])
     return table
 

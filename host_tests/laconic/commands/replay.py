@@ -3,10 +3,14 @@
 from __future__ import annotations
 
 import json
+from collections.abc import Callable
+from functools import partial
 from pathlib import Path
+from typing import Any
 
 import click
 
+from laconic.errors import BadInput
 from laconic.options import InputPath, OutputFolder, SceneName, json_flag
 from laconic.outputs import write_text
 
@@ -17,7 +21,8 @@ from laconic.outputs import write_text
 @click.option("--fit", "fit_on", type=InputPath(), multiple=True, metavar="RUN.csv",
               help="Fit friction on this run; may be given several times. Nothing said: every other run of a folder.")
 @click.option("--map", "map_path", type=InputPath(), metavar="MAP.toml",
-              help="Which column is what; the default is that of the Robotino's runs.")
+              help="Which column is what; the default is that of the Robotino's runs; a file "
+              "whose columns have names of signals needs none.")
 @click.option("--out", type=OutputFolder(), metavar="DIR",
               help="Write report.md, report.json and pictures there.")
 @json_flag("Machine-readable result on stdout.")
@@ -25,9 +30,41 @@ def command(log: Path, scene: str, fit_on: tuple[Path, ...], map_path: Path | No
             json_wanted: bool) -> None:
     """Compares LOG, a recorded run as CSV or a folder of them, with the model of SCENE.
 
-    The measured wheel speeds are rolled and set beside the camera; friction is fitted by least squares; and the core,
-    driven by the measured currents as torques, predicts the wheel speeds.
+    A file whose first column is time_s and whose others have names of signals, as `simulate --out F.csv --inputs`
+    writes it, needs no map: its inputs drive the core, and every other signal in it is compared. Otherwise the map says
+    what the columns are: the measured wheel speeds are rolled and set beside the camera; friction is fitted by least
+    squares; and the core, driven by the measured currents as torques, predicts the wheel speeds.
     """
+    from laconic.replay.signals import is_signal_log
+
+    if map_path is None and is_signal_log(log):
+        if fit_on:
+            raise BadInput("--fit: needs measured currents; leave it out for a file whose columns are signals, or give "
+                           "its --map")
+        text, numbers, draw = _by_signals(log, scene)
+    else:
+        text, numbers, draw = _by_map(log, scene, fit_on, map_path)
+    if out is not None:
+        images = "".join(f"![{path.stem}]({path.name})\n" for path in draw(out))
+        write_text(out / "report.md", f"{text}\n## Pictures\n\n{images}")
+        write_text(out / "report.json", json.dumps(numbers, indent=1) + "\n")
+    click.echo(json.dumps(numbers, indent=1) if json_wanted else text)
+
+
+Found = tuple[str, dict[str, Any], Callable[[Path], list[Path]]]
+"""Text, numbers, and what draws the pictures into a folder."""
+
+
+def _by_signals(log: Path, scene: str) -> Found:
+    from laconic.replay import signals_report as report
+    from laconic.replay.signals import read_signal_log, replay_signals
+    from laconic.scene import read_scene
+
+    found = replay_signals(read_scene(scene), read_signal_log(log))
+    return report.as_text(found), report.as_numbers(found), partial(report.draw, found)
+
+
+def _by_map(log: Path, scene: str, fit_on: tuple[Path, ...], map_path: Path | None) -> Found:
     from laconic.analysis.from_core import subject_of
     from laconic.progress import progress_bar
     from laconic.replay import report
@@ -39,10 +76,4 @@ def command(log: Path, scene: str, fit_on: tuple[Path, ...], map_path: Path | No
     runs, names, skipped = gather(log, fit_on, read_map(map_path or DEFAULT_MAP))
     with progress_bar("replaying", len(runs) + 1) as advance:
         found = compare_all(subject, runs, names, skipped, advance)
-    numbers = report.as_numbers(found)
-    if out is not None:
-        pictures = report.draw(found, out)
-        images = "".join(f"![{path.stem}]({path.name})\n" for path in pictures)
-        write_text(out / "report.md", report.as_text(found) + "\n## Pictures\n\n" + images)
-        write_text(out / "report.json", json.dumps(numbers, indent=1) + "\n")
-    click.echo(json.dumps(numbers, indent=1) if json_wanted else report.as_text(found))
+    return report.as_text(found), report.as_numbers(found), partial(report.draw, found)

@@ -7,6 +7,7 @@ from pathlib import Path
 
 import click
 from rich.console import Console
+from rich.markup import escape
 from rich.table import Table
 
 from laconic.core import REALS, load
@@ -64,5 +65,5 @@ def show(results: list[CaseResult], tolerance: float | None, title: str) -> None
     for each in results:
         errors = ["–" if e is None else f"{e:.1e}" for e in (each.error_nu, each.error_pose, each.error_wheel)]
         status = each.status if each.status != "ok" or passes(each, tolerance) else "over the tolerance"
-        table.add_row(each.name, *errors, f"{1e3 * each.seconds:.1f}", status)
+        table.add_row(escape(each.name), *errors, f"{1e3 * each.seconds:.1f}", escape(status))
     Console(width=None if Console().is_terminal else 160).print(table)

@@ -11,6 +11,7 @@ from xml.etree import ElementTree
 
 import numpy as np
 from rich.console import Console
+from rich.markup import escape
 from rich.table import Table
 
 from laconic.outputs import opened
@@ -47,14 +48,14 @@ def write_junit(judgement: Judgement, path: Path, seconds: float) -> None:
 
 def show(judgement: Judgement) -> None:
     """The table for people."""
-    table = Table(title=f"{judgement.scene}, {judgement.mode}", title_justify="left")
+    table = Table(title=escape(f"{judgement.scene}, {judgement.mode}"), title_justify="left")
     for heading in ("signal", "verdict", "detail"):
         table.add_column(heading)
     for each in judgement.verdicts:
-        table.add_row(each.name, "[green]pass" if each.passed else "[red]FAIL", each.detail)
+        table.add_row(each.name, "[green]pass" if each.passed else "[red]FAIL", escape(each.detail))
     console = Console()
     console.print(table)
     for name, value in judgement.figures.items():
         console.print(f"{name:>26}  {value:.6g}")
     for note in judgement.notes:
-        console.print(note)
+        console.print(note, markup=False)
