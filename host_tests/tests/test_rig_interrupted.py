@@ -8,11 +8,14 @@ import signal
 import subprocess
 import sys
 from collections.abc import Callable, Iterator
+from contextlib import contextmanager
 from pathlib import Path
+from xml.etree import ElementTree
 
 import pytest
 
 from laconic.cli import run
+from laconic.paths import built
 from laconic.rig import run as one_run
 from laconic.rig.buses import connected, node_process
 from laconic.rig.lockstep import load_scene
@@ -35,21 +38,21 @@ def on(port: int) -> list[str]:
     return ["--interface", "slcan", "--channel", f"socket://127.0.0.1:{port}"]
 
 
-def at_step(monkeypatch: pytest.MonkeyPatch, happens: Callable[[], None]) -> None:
-    """Lets something happen in the middle of the next run."""
-    judge, moves = one_run.judge, 0
+def at_step(monkeypatch: pytest.MonkeyPatch, happens: Callable[[], None], last: int = LAST) -> None:
+    """Lets something happen in the middle of the next run, in which one call of `moved` is one step or cycle."""
+    moves = 0
 
-    def judge_and_disturb(node: object, scene: object, options: object, limits: object, moved: Callable) -> object:
-        def counted(amount: float) -> None:
+    @contextmanager
+    def counting(*_: object) -> Iterator[Callable[[float], None]]:
+        def counted(_: float) -> None:
             nonlocal moves
             moves += 1
-            moved(amount)
-            if moves == LAST:
+            if moves == last:
                 happens()
 
-        return judge(node, scene, options, limits, counted)
+        yield counted
 
-    monkeypatch.setattr(one_run, "judge", judge_and_disturb)
+    monkeypatch.setattr(one_run, "shown", counting)
 
 
 def state_of(port: int, capsys: pytest.CaptureFixture[str]) -> str:
@@ -75,11 +78,40 @@ def test_an_interrupted_run_leaves_the_node_at_rest_and_the_next_one_works(
     assert signal.getsignal(number) is not None and "Interruption" not in repr(signal.getsignal(number))
 
 
+@pytest.mark.parametrize("mode, step", [("lockstep", LAST), ("same bits", LAST), ("free run", 10 * LAST)])
+def test_an_interrupted_run_tells_every_verdict_up_to_its_last_step_as_json_and_to_ci(
+        mode: str, step: int, port: int, tmp_path: Path, monkeypatch: pytest.MonkeyPatch,
+        capsys: pytest.CaptureFixture[str]) -> None:
+    at_step(monkeypatch, lambda: os.kill(os.getpid(), signal.SIGTERM))
+    assert run(["rig", "s1", *on(port), *MODES[mode], "--steps", "100000", "--json", "--junit",
+                str(tmp_path / "run.xml")]) == 143
+    told = json.loads(capsys.readouterr().out)
+    first, *others = told["verdicts"]
+    assert first["name"] == "run" and "SIGTERM" in first["detail"] and "of 100000" in first["detail"]
+    assert len(others) >= 5 and [each for each in others if not each["passed"] and each["name"] != "steps"] == []
+    assert abs(told["figures"]["last_step"] - step) <= (0 if mode != "free run" else 150)
+    suite = ElementTree.parse(tmp_path / "run.xml").getroot()
+    assert int(suite.get("tests")) == len(told["verdicts"]) and int(suite.get("failures")) >= 1
+
+
+def test_a_node_that_dies_in_lockstep_leaves_the_verdicts_of_the_steps_before(
+        monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]) -> None:
+    with subprocess.Popen([built("bin/laconic-node-double")], stdout=subprocess.PIPE, text=True) as node:
+        number = int(node.stdout.readline().rpartition(":")[2])
+        at_step(monkeypatch, node.kill)
+        assert run(["rig", "s1", *on(number), "--steps", "1000", "--json"]) == 1
+    told = json.loads(capsys.readouterr().out)
+    assert LAST <= told["figures"]["last_step"] <= LAST + 1 and told["figures"]["steps_wanted"] == 1000
+    assert [each["name"] for each in told["verdicts"] if not each["passed"]] == ["run"]
+    assert any("could not be stopped" in note for note in told["notes"])
+
+
 def test_a_process_that_is_terminated_leaves_whole_logs_and_a_node_at_rest(port: int, tmp_path: Path,
                                                                            capsys: pytest.CaptureFixture[str]) -> None:
-    program = ("import os, signal, sys\nfrom laconic.cli import main\nfrom laconic.rig import run\njudge = run.judge\n"
-               "def moved(_, seen=[]):\n seen.append(0)\n len(seen) == 800 and os.kill(os.getpid(), signal.SIGTERM)\n"
-               "run.judge = lambda *a: judge(*a[:4], moved)\nmain(sys.argv[1:])\n")
+    program = ("import os, signal, sys\nfrom contextlib import nullcontext\nfrom laconic.cli import main\n"
+               "from laconic.rig import run\ndef moved(_, seen=[]):\n seen.append(0)\n"
+               " len(seen) == 800 and os.kill(os.getpid(), signal.SIGTERM)\n"
+               "run.shown = lambda *_: nullcontext(moved)\nmain(sys.argv[1:])\n")
     logs = [tmp_path / "run.blf", tmp_path / "run.asc"]
     done = subprocess.run([sys.executable, "-c", program, "rig", "s1", *on(port), "--steps", "100000",
                            *(word for path in logs for word in ("--log", str(path)))], capture_output=True, text=True)

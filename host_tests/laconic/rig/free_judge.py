@@ -6,16 +6,14 @@ When a voltage takes effect is only known to within the time on the wire: the tw
 
 from __future__ import annotations
 
-from collections.abc import Callable
-
 import numpy as np
 
 from laconic.plant import Plant
 from laconic.rig.client import NodeClient
-from laconic.rig.errors import ENDINGS
 from laconic.rig.free_run import DEFAULT_FRAMES, FreeRun, run_free
 from laconic.rig.latency import period_figures
 from laconic.rig.scaled import expected_raw
+from laconic.rig.trial import Moved, Trial, driven
 from laconic.rig.verdict import Judgement, Verdict
 from laconic.rig.wire import Frame
 from laconic.scene import Scene
@@ -43,27 +41,39 @@ def twin_values(scene: Scene, run: FreeRun, delay: int, per_period: int) -> Twin
     return found
 
 
-def judge_free_run(node: NodeClient, scene: Scene, duration_s: float, rate_Hz: int, watchdog_ms: int,
-                   tolerances: dict[str, float], latency_s: float = 0.02,
-                   moved: Callable[[float], None] = lambda _: None) -> Judgement:
-    """A free run and what there is to say about it, up to its end or to what has ended it early."""
-    run, ending = FreeRun(), None
-    try:
-        run_free(node, scene, duration_s, rate_Hz, watchdog_ms, scene.rig.frames or DEFAULT_FRAMES, moved, run)
-    except ENDINGS as error:
-        ending = error
-    judgement = Judgement(scene.name, f"free run at {run.rate_Hz} Hz")
-    if run.answers:
-        judgement.add(*envelope_verdicts(run, twins_of(scene, run, latency_s), tolerances), steps_verdict(run),
-                      clock_verdict(run))
+class Free(Trial):
+    """A free run against twins with every possible delay."""
+
+    def __init__(self, node: NodeClient, scene: Scene, duration_s: float, rate_Hz: int, watchdog_ms: int,
+                 tolerances: dict[str, float], latency_s: float = 0.02):
+        self.rate_Hz = rate_Hz or round(1.0 / scene.run.step_s)
+        super().__init__(node, scene, round(duration_s * self.rate_Hz))
+        self.mode = f"free run at {self.rate_Hz} Hz"
+        self.given = (duration_s, rate_Hz, watchdog_ms, scene.rig.frames or DEFAULT_FRAMES)
+        self.tolerances, self.latency_s, self.run = tolerances, latency_s, FreeRun()
+
+    def run_it(self, moved: Moved) -> None:
+        run_free(self.node, self.scene, *self.given, lambda seconds: moved(seconds * self.rate_Hz), self.run)
+
+    def done(self) -> int:
+        return self.run.steps
+
+    def judge_it(self, judgement: Judgement) -> None:
+        run = self.run
+        if run.answers:
+            twins = twins_of(self.scene, run, self.latency_s)
+            judgement.add(*envelope_verdicts(run, twins, self.tolerances))
+        judgement.add(steps_verdict(run), clock_verdict(run), run.silence.verdict(), run.punctuality.verdict())
         judgement.figures |= {"steps": run.steps, "seconds": run.elapsed_s, "late_periods": run.late_periods,
                               "worst_lateness_us": run.worst_lateness_us}
         judgement.figures |= period_figures(run.instants_s, 1.0 / run.rate_Hz)
-    if run.silence is not None and run.punctuality is not None:
-        judgement.add(run.silence.verdict(), run.punctuality.verdict())
         judgement.figures |= run.punctuality.figures()
-    judgement.ended(ending, run.steps, round(duration_s * run.rate_Hz))
-    return judgement
+
+
+def judge_free_run(node: NodeClient, scene: Scene, duration_s: float, rate_Hz: int, watchdog_ms: int,
+                   tolerances: dict[str, float], latency_s: float = 0.02, moved: Moved = lambda _: None) -> Judgement:
+    """A free run and what there is to say about it."""
+    return driven(Free(node, scene, duration_s, rate_Hz, watchdog_ms, tolerances, latency_s), moved)
 
 
 def twins_of(scene: Scene, run: FreeRun, latency_s: float) -> list[TwinValues]:

@@ -1,65 +1,81 @@
-"""Runs a scene against a node in one of the modes and judges it."""
+"""Lockstep runs and their judgement."""
 
 from __future__ import annotations
 
-from collections.abc import Callable
-
 import numpy as np
 
-from laconic.errors import LaconicError
 from laconic.rig.client import NodeClient
-from laconic.rig.errors import ENDINGS
 from laconic.rig.latency import latency_figures
-from laconic.rig.lockstep import run_lockstep, twin_states
-from laconic.rig.scaled import Comparison, run_scaled
+from laconic.rig.lockstep import LockstepRun, run_lockstep, twin_states
+from laconic.rig.scaled import Comparison, ScaledRun, run_scaled
+from laconic.rig.trial import Moved, Trial, driven
 from laconic.rig.verdict import Judgement, Verdict, same_bits, within
 from laconic.scene import Scene
 
-Moved = Callable[[int], None]
 HALF_A_BIT = 0.5 + 1e-6  # of the last place, and what float arithmetic of the rounding itself may add
+
+
+class SameBits(Trial):
+    """Lockstep with raw frames against the core: every bit."""
+
+    mode = "lockstep, same bits"
+
+    def __init__(self, node: NodeClient, scene: Scene, steps: int | None, *, every: int = 1, fd: bool = False):
+        super().__init__(node, scene, steps)
+        self.steps, self.every, self.fd, self.run = steps, every, fd, LockstepRun()
+
+    def run_it(self, moved: Moved) -> None:
+        run_lockstep(self.node, self.scene, self.steps, every=self.every, fd=self.fd, moved=moved, run=self.run)
+
+    def done(self) -> int:
+        return self.run.steps
+
+    def judge_it(self, judgement: Judgement) -> None:
+        run, count = self.run, self.scene.wheel_count
+        theirs = twin_states(self.scene, run)
+        parts = {"nu": slice(0, 3), "pose": slice(3, 6), "wheel_speed": slice(6, 6 + count),
+                 "wheel_angle": slice(6 + count, 6 + 2 * count)}
+        for name, part in parts.items():
+            if part.stop > part.start:
+                judgement.add(same_bits(name, run.states[:, part], theirs[:, part], run.ticks))
+        judgement.add(link_verdict(self.node))
+        judgement.figures |= speed_figures(run.steps, run.seconds, run.frames_out, run.frames_in, len(run.ticks))
+        judgement.figures |= latency_figures(run.latencies_s)
+
+
+class Scaled(Trial):
+    """Lockstep with scaled frames against a twin that gets the same integers: half a last place."""
+
+    mode = "lockstep"
+
+    def __init__(self, node: NodeClient, scene: Scene, steps: int | None, tolerances: dict[str, float]):
+        super().__init__(node, scene, steps)
+        self.steps, self.tolerances, self.run = steps, tolerances, ScaledRun()
+
+    def run_it(self, moved: Moved) -> None:
+        run_scaled(self.node, self.scene, self.steps, moved, self.run)
+
+    def done(self) -> int:
+        return self.run.steps
+
+    def judge_it(self, judgement: Judgement) -> None:
+        run = self.run
+        judgement.add(*signal_verdicts(run.comparison, self.tolerances), link_verdict(self.node),
+                      overrange_verdict(run.voltage_overranges, run.comparison.overranges))
+        judgement.figures |= speed_figures(run.steps, run.seconds, run.frames_out, run.frames_in, run.steps)
+        judgement.figures |= latency_figures(run.latencies_s)
 
 
 def judge_same_bits(node: NodeClient, scene: Scene, steps: int | None, *, every: int = 1, fd: bool = False,
                     moved: Moved = lambda _: None) -> Judgement:
     """Lockstep with raw frames against the core: every bit."""
-    try:
-        run = run_lockstep(node, scene, steps, every=every, fd=fd, moved=moved)
-    except ENDINGS as ending:
-        return ended_at_once(scene, "lockstep, same bits", ending, steps or scene.steps())
-    theirs = twin_states(scene, run)
-    count = scene.wheel_count
-    judgement = Judgement(scene.name, "lockstep, same bits")
-    parts = {"nu": slice(0, 3), "pose": slice(3, 6), "wheel_speed": slice(6, 6 + count),
-             "wheel_angle": slice(6 + count, 6 + 2 * count)}
-    for name, part in parts.items():
-        if part.stop > part.start:
-            judgement.add(same_bits(name, run.states[:, part], theirs[:, part], run.ticks))
-    judgement.add(link_verdict(node))
-    judgement.figures |= speed_figures(run.steps, run.seconds, run.frames_out, run.frames_in, len(run.ticks))
-    judgement.figures |= latency_figures(run.latencies_s)
-    return judgement
+    return driven(SameBits(node, scene, steps, every=every, fd=fd), moved)
 
 
 def judge_scaled(node: NodeClient, scene: Scene, steps: int | None, tolerances: dict[str, float],
                  moved: Moved = lambda _: None) -> Judgement:
     """Lockstep with scaled frames against a twin that gets the same integers: half a last place."""
-    try:
-        run = run_scaled(node, scene, steps, moved)
-    except ENDINGS as ending:
-        return ended_at_once(scene, "lockstep", ending, steps or scene.steps())
-    judgement = Judgement(scene.name, "lockstep")
-    judgement.add(*signal_verdicts(run.comparison, tolerances), link_verdict(node),
-                  overrange_verdict(run.voltage_overranges, run.comparison.overranges))
-    judgement.figures |= speed_figures(run.steps, run.seconds, run.frames_out, run.frames_in, run.steps)
-    judgement.figures |= latency_figures(run.latencies_s)
-    return judgement
-
-
-def ended_at_once(scene: Scene, mode: str, ending: LaconicError, steps: int) -> Judgement:
-    """A run of which nothing is left to judge."""
-    judgement = Judgement(scene.name, mode)
-    judgement.ended(ending, 0, steps)
-    return judgement
+    return driven(Scaled(node, scene, steps, tolerances), moved)
 
 
 def signal_verdicts(comparison: Comparison, tolerances: dict[str, float]) -> list[Verdict]:

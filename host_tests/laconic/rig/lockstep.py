@@ -11,7 +11,8 @@ from __future__ import annotations
 import itertools
 import time
 from collections.abc import Callable, Iterator
-from dataclasses import dataclass
+from dataclasses import dataclass, field
+from functools import cached_property
 from typing import Any
 
 import numpy as np
@@ -32,22 +33,31 @@ INPUT_GROUPS = {  # bit of SELECT → numbers of one input, in the order of the 
 OUTPUTS = ("raw_nu", "raw_pose", "raw_wheel_speed", "raw_wheel_angle")
 
 
-@dataclass(frozen=True)
+@dataclass
 class LockstepRun:
-    """What came back, one row an exchange."""
+    """What came back, one row an exchange, as far as the run came."""
 
-    ticks: np.ndarray     # steps taken when the row was sent
-    states: np.ndarray    # ν(3), x, y, heading, wheel speeds (N), wheel angles (N)
-    seconds: float
-    frames_out: int
-    frames_in: int
-    twin: Plant           # a plant of the core at the start, not stepped
-    latencies_s: list[float]
+    twin: Plant | None = None    # a plant of the core at the start, not stepped
+    exchanges: list[tuple[int, np.ndarray]] = field(default_factory=list)  # steps taken, row
+    latencies_s: list[float] = field(default_factory=list)
+    seconds: float = 0.0
+    frames_out: int = 0
+    frames_in: int = 0
+
+    @cached_property
+    def ticks(self) -> np.ndarray:
+        """Steps taken when each row was sent."""
+        return np.array([ticks for ticks, _ in self.exchanges], dtype=int)
+
+    @cached_property
+    def states(self) -> np.ndarray:
+        """ν(3), x, y, heading, wheel speeds (N), wheel angles (N), one row an exchange."""
+        return np.array([row for _, row in self.exchanges])
 
     @property
     def steps(self) -> int:
         """Steps taken."""
-        return int(self.ticks[-1])
+        return self.exchanges[-1][0] if self.exchanges else 0
 
     @property
     def nu(self) -> np.ndarray:
@@ -171,29 +181,33 @@ class RawStream:
 
 
 def run_lockstep(node: NodeClient, scene: Scene, steps: int | None = None, *, every: int = 1, fd: bool = False,
-                 resend: bool = False, moved: Callable[[int], None] = lambda _: None) -> LockstepRun:
-    """Loads a scene and runs it with raw frames. Held inputs are sent where they change (`resend`: every time)."""
-    twin = load_scene(node, scene)
+                 resend: bool = False, moved: Callable[[int], None] = lambda _: None,
+                 run: LockstepRun | None = None) -> LockstepRun:
+    """Loads a scene and runs it with raw frames. Held inputs are sent where they change (`resend`: every time). What
+    comes is put into `run`, where one is given, so that it is there even if the run breaks off."""
+    run = run or LockstepRun()
+    run.twin = load_scene(node, scene)
     if steps is not None and steps > scene.steps():
         scene = scene.with_run(duration_s=steps * scene.run.step_s)
     stream = RawStream(node, scene, fd)
     stream.select()
     node.start_lockstep()
-    link, ticks, states, latencies, held = node.link, [], [], [], None
+    link, held = node.link, None
     frames_out, frames_in, began = link.frames_out, link.frames_in, time.perf_counter()
-    for first, count, row in stream.exchanges(steps or scene.steps(), every):
-        held, sent = row if row is not None else held, time.perf_counter()
-        if stream.groups and (row is not None or resend):
-            stream.send_inputs(held)
-        stream.sync(count)
-        states.append(stream.receive_state())
-        latencies.append(time.perf_counter() - sent)
-        ticks.append(first + count)
-        moved(count)
-    seconds = time.perf_counter() - began
+    try:
+        for first, count, row in stream.exchanges(steps or scene.steps(), every):
+            held, sent = row if row is not None else held, time.perf_counter()
+            if stream.groups and (row is not None or resend):
+                stream.send_inputs(held)
+            stream.sync(count)
+            run.exchanges.append((first + count, stream.receive_state()))
+            run.latencies_s.append(time.perf_counter() - sent)
+            moved(count)
+    finally:
+        run.seconds = time.perf_counter() - began
+        run.frames_out, run.frames_in = link.frames_out - frames_out, link.frames_in - frames_in
     node.stop()
-    return LockstepRun(np.array(ticks), np.array(states), seconds, link.frames_out - frames_out,
-                       link.frames_in - frames_in, twin, latencies)
+    return run
 
 
 def twin_states(scene: Scene, run: LockstepRun) -> np.ndarray:

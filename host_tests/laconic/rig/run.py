@@ -2,24 +2,23 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterator
+from collections.abc import Iterator
 from contextlib import contextmanager
 
 from laconic.progress import progress_bar
 from laconic.rig.client import NodeClient
 from laconic.rig.errors import BusDied, CannotReach, Interrupted, NodeRefused, NodeSilent
-from laconic.rig.free_judge import judge_free_run
+from laconic.rig.free_judge import Free
 from laconic.rig.interruption import Interruption
-from laconic.rig.judge import judge_same_bits, judge_scaled
+from laconic.rig.judge import SameBits, Scaled
 from laconic.rig.live import live_view
 from laconic.rig.logs import logged
 from laconic.rig.options import Options, node_for, read_id_base
 from laconic.rig.scaled import read_tolerances
 from laconic.rig.stopping import RUNNING, come_to_rest, stop_running
+from laconic.rig.trial import Moved, Trial
 from laconic.rig.verdict import Judgement
 from laconic.scene import Scene
-
-Moved = Callable[[float], None]
 
 
 def run(scene: Scene, options: Options) -> Judgement:
@@ -29,21 +28,32 @@ def run(scene: Scene, options: Options) -> Judgement:
     with (Interruption() as told, node_for(options, scene.run.real, base) as node, logged(node.link, options.logs),
           shown(node, scene, options) as moved):
         node.link.listeners.append(told.check)  # behind the logs: a frame that is seen is logged first
-        judgement, notes = None, []
+        trial, notes, is_over = trial_of(node, scene, options, limits), [], False
         try:
             found = reach(node)
             if found in RUNNING:
                 notes.append(f"the node was found in state {found} and has been stopped before the run")
-            judgement = judge(node, scene, options, limits, moved)
+            trial.drive(moved)
+            is_over = trial.ending is None
         except Interrupted as ending:  # before the first step
-            judgement = Judgement(scene.name, options.mode)
-            judgement.ended(ending, 0, options.steps or scene.steps())
+            trial.ending = ending
         finally:
-            if judgement is None or judgement.ending is not None:
+            if not is_over:
                 with told.shielded():
                     notes += after_early_end(node)
-        judgement.notes += notes
-        return judgement
+    judgement = trial.judge()
+    judgement.notes += notes
+    return judgement
+
+
+def trial_of(node: NodeClient, scene: Scene, options: Options, limits: dict[str, float]) -> Trial:
+    """A run in the chosen mode."""
+    if options.mode == "free-run":
+        duration_s = options.steps * scene.run.step_s if options.steps else scene.run.duration_s
+        return Free(node, scene, duration_s, options.rate or 0, options.watchdog, limits)
+    if options.mode == "same-bits":
+        return SameBits(node, scene, options.steps, every=options.every, fd=options.fd)
+    return Scaled(node, scene, options.steps, limits)
 
 
 def after_early_end(node: NodeClient) -> list[str]:
@@ -68,14 +78,3 @@ def shown(node: NodeClient, scene: Scene, options: Options) -> Iterator[Moved]:
     bar = live_view(node.link, scene.name, steps) if options.live else progress_bar(scene.name, steps)
     with bar as moved:
         yield moved
-
-
-def judge(node: NodeClient, scene: Scene, options: Options, limits: dict[str, float], moved: Moved) -> Judgement:
-    """One run in the chosen mode."""
-    if options.mode == "free-run":
-        duration_s = options.steps * scene.run.step_s if options.steps else scene.run.duration_s
-        return judge_free_run(node, scene, duration_s, options.rate or 0, options.watchdog, limits,
-                              moved=lambda seconds: moved(seconds / scene.run.step_s))
-    if options.mode == "same-bits":
-        return judge_same_bits(node, scene, options.steps, every=options.every, fd=options.fd, moved=moved)
-    return judge_scaled(node, scene, options.steps, limits, moved)

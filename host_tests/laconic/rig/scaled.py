@@ -6,6 +6,7 @@ import math
 import time
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass, field
+from functools import cached_property
 
 import numpy as np
 
@@ -169,15 +170,30 @@ class Comparison:
 
 @dataclass
 class ScaledRun:
-    """A lockstep run with scaled frames."""
+    """A lockstep run with scaled frames, as far as it came."""
 
-    comparison: Comparison
-    latencies_s: list[float]
-    seconds: float
-    steps: int
-    frames_out: int
-    frames_in: int
-    voltage_overranges: int
+    twin: Plant | None = None    # of the core, at the start until compared
+    exchanges: list[tuple[np.ndarray, list[tuple[Frame, bytes]]]] = field(default_factory=list)  # inputs, answers
+    latencies_s: list[float] = field(default_factory=list)
+    seconds: float = 0.0
+    frames_out: int = 0
+    frames_in: int = 0
+    voltage_overranges: int = 0
+
+    @property
+    def steps(self) -> int:
+        """Steps that were answered."""
+        return len(self.exchanges)
+
+    @cached_property
+    def comparison(self) -> Comparison:
+        """All answers next to the twin's values."""
+        comparison = Comparison(int(self.twin.c.vehicle.wheel_count))
+        for row, answer in self.exchanges:
+            self.twin.run(self.twin.core.input(row))
+            for frame, data in answer:
+                comparison.take(frame, data, self.twin)
+        return comparison
 
 
 def frames_per_answer(scene: Scene, frames: tuple[str, ...]) -> int:
@@ -187,35 +203,32 @@ def frames_per_answer(scene: Scene, frames: tuple[str, ...]) -> int:
 
 
 def run_scaled(node: NodeClient, scene: Scene, steps: int | None = None,
-               moved: Callable[[int], None] = lambda _: None) -> ScaledRun:
-    """Lockstep with scaled frames: voltages with sync flag out, the chosen frames in, the twin beside it."""
+               moved: Callable[[int], None] = lambda _: None, run: ScaledRun | None = None) -> ScaledRun:
+    """Lockstep with scaled frames: voltages with sync flag out, the chosen frames in. What comes is put into `run`,
+    where one is given, so that it is there even if the run breaks off."""
     check_voltages_only(scene)
     frames = wanted_frames(scene)
     awaited = frames_per_answer(scene, frames)
     if not awaited:
         raise BadInput(f"{scene.path}: rig.frames: {', '.join(frames)} never answer a step; add NU")
-    twin = load_scene(node, scene)
+    run = run or ScaledRun()
+    run.twin = load_scene(node, scene)
     node.select(**{SELECT_BIT[name]: 1 for name in frames})
     node.start_lockstep()
-    held, voltages, comparison = Held(scene.drive()), Voltages(node, scene), Comparison(scene.wheel_count)
-    link, latencies, steps = node.link, [], steps or scene.steps()
-    rows: list[np.ndarray] = []
-    answers: list[list[tuple[Frame, bytes]]] = []
+    held, voltages, link = Held(scene.drive()), Voltages(node, scene), node.link
     frames_out, frames_in, began = link.frames_out, link.frames_in, time.perf_counter()
-    for tick in range(steps):
-        sent = time.perf_counter()
-        rows.append(voltages.send(held.at(tick), sync=True))
-        answers.append(await_answers(node, awaited))
-        latencies.append(time.perf_counter() - sent)
-        moved(1)
-    seconds = time.perf_counter() - began
+    try:
+        for tick in range(steps or scene.steps()):
+            sent = time.perf_counter()
+            row = voltages.send(held.at(tick), sync=True)
+            run.exchanges.append((row, await_answers(node, awaited)))
+            run.latencies_s.append(time.perf_counter() - sent)
+            moved(1)
+    finally:
+        run.seconds, run.voltage_overranges = time.perf_counter() - began, voltages.overranges
+        run.frames_out, run.frames_in = link.frames_out - frames_out, link.frames_in - frames_in
     node.stop()
-    for row, answer in zip(rows, answers, strict=True):
-        twin.run(twin.core.input(row))
-        for frame, data in answer:
-            comparison.take(frame, data, twin)
-    return ScaledRun(comparison, latencies, seconds, steps, link.frames_out - frames_out, link.frames_in - frames_in,
-                     voltages.overranges)
+    return run
 
 
 def await_answers(node: NodeClient, count: int) -> list[tuple[Frame, bytes]]:
