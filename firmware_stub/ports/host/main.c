@@ -91,12 +91,8 @@ static void step_node(board *port) {
     fetch_frames(port);
 }
 
-/* False iff the client has gone. */
-static bool read_client(board *port) {
-    char bytes[4096];
+static void take_bytes(board *port, const char *bytes, ssize_t count) {
     laconic_frame frame;
-    const ssize_t count = recv(port->socket, bytes, sizeof bytes, MSG_DONTWAIT);
-    if (count == 0 || (count < 0 && errno != EAGAIN && errno != EINTR)) return false;
     for (ssize_t k = 0; k < count; k++) {
         switch (laconic_slcan_feed(&port->slcan, bytes[k], &frame)) {
         case LACONIC_SLCAN_FRAME:
@@ -107,7 +103,18 @@ static bool read_client(board *port) {
         default: break;
         }
     }
-    return true;
+}
+
+/* False iff the client has gone. Reads up to what waits, so that the end of a line is seen before the next client, who
+ * may be there already; but not for ever, since time passes for the node, too. */
+static bool read_client(board *port) {
+    char bytes[4096];
+    ssize_t count = 1;
+    for (int rounds = 0; rounds < 16 && count > 0; rounds++) {
+        count = recv(port->socket, bytes, sizeof bytes, MSG_DONTWAIT);
+        take_bytes(port, bytes, count);
+    }
+    return count > 0 || (count < 0 && (errno == EAGAIN || errno == EINTR));
 }
 
 static void wait_for_work(const board *port, int listening) {
