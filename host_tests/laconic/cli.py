@@ -103,6 +103,8 @@ def unexpected(error: Exception) -> LaconicError:
         return BadInput(f"{error.filename}: {reason_of(error)}" if error.filename else f"error: {reason_of(error)}")
     if isinstance(error, MemoryError):
         return BadInput("there is not enough memory for this; ask for fewer steps or outputs")
+    if isinstance(error, ModuleNotFoundError):
+        return BadInput(f"the Python environment has no {error.name}; build again, which brings it up to date")
     last = traceback.extract_tb(error.__traceback__)[-1]
     return BadInput(f"unexpected {_kind(error)}: {error} ({Path(last.filename).name}:{last.lineno}); "
                     "LACONIC_TRACEBACK=1 in the environment shows more, for a report of the fault")

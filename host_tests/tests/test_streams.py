@@ -80,6 +80,7 @@ def test_letters_that_stdout_does_not_know_are_no_error():
 @pytest.mark.parametrize("error, words", [
     (OSError(5, "Input/output error", "some.file"), "some.file: input/output error"),
     (BrokenPipeError(32, "Broken pipe"), "broken pipe"),
+    (ModuleNotFoundError("No module named 'x'", name="x"), "no x; build again"),
     (MemoryError(), "not enough memory"),
     (ZeroDivisionError("float division\nby zero"), "unexpected ZeroDivisionError: float division by zero (test_"),
     (RecursionError("deep"), "unexpected RecursionError")], ids=lambda e: type(e).__name__)
