@@ -75,6 +75,7 @@ static inline bool in_range(vector zeta, vector delta) {
 INLINE laconic_status take(laconic_state *state, vector delta, vector path, motion moved) {
     if (!(magnitude(moved.turn_rad) + magnitude(moved.along_m) + magnitude(moved.across_m) < LARGEST_TURN_RAD))
         return LACONIC_OVERFLOW;
+    if (LACONIC_WITH_POSE && !heading_has_room(&state->heading)) return LACONIC_OVERFLOW;
     add(state->zeta, delta);
     settle(state->zeta);
     if (LACONIC_WITH_WHEEL_ANGLES) add(state->travel, path);

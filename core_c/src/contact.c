@@ -103,6 +103,16 @@ static void take_points(laconic_contact *contact, const laconic_vehicle *vehicle
     least_norm(contact->load_of_wrench, (const real(*)[3])rows, contact->point_count);
 }
 
+/* What the matrices do not hold: heights and supports are in no model. */
+static real contact_size(const laconic_contact *c, int32_t wheel_count) {
+    real sum = rows_size(c->multiplier, c->constraint_count) + rows_size(c->load_of_wrench, c->point_count) +
+               c->com_z_m + c->friction_coefficient;
+    int32_t i;
+    for (i = 0; i < wheel_count; i++) sum += magnitude(c->inverse_arm_per_m[i]);
+    for (i = 0; i < c->point_count; i++) sum += magnitude(c->point_m[i][0]) + magnitude(c->point_m[i][1]);
+    return sum;
+}
+
 laconic_status laconic_contact_prepare(laconic_contact *contact, const laconic_vehicle *vehicle, laconic_refusal *why) {
     laconic_matrices matrices;
     laconic_contact fresh = {0};
@@ -121,6 +131,8 @@ laconic_status laconic_contact_prepare(laconic_contact *contact, const laconic_v
         for (k = 0; k < 3; k++) fresh.wheel_rows[i][k] = matrices.wheel_rows[i][k];
     fresh.com_z_m = vehicle->com_z_m;
     fresh.friction_coefficient = vehicle->friction_coefficient;
+    if (!fits_squared(contact_size(&fresh, vehicle->wheel_count)))
+        return refuse(why, LACONIC_OVERFLOW, LACONIC_FIELD_NONE, 0, R(0), R(0));
     *contact = fresh;
     return LACONIC_OK;
 }

@@ -9,6 +9,11 @@
 /* The largest angle one step may turn: whole turns must fit signed_turn. */
 #define LARGEST_TURN_RAD (HALF_TURN * R(2))
 
+/* A step begins only within 2⁶² turns: what it adds, below 2⁶² turns as well, then fits the count. */
+static inline bool heading_has_room(const laconic_heading *heading) {
+    return (uint64_t)heading->turns + ((uint64_t)1 << 62) < (uint64_t)1 << 63;
+}
+
 /* Turns on by an angle and returns the heading half-way, as a turn: where the mid-step pose looks. */
 static inline laconic_turn heading_advance(laconic_heading *heading, real angle_rad) {
     const real turns = angle_rad * R(0.1591549430918953358); /* 1/2π */

@@ -12,6 +12,8 @@ laconic_status laconic_integrator_prepare(laconic_integrator *integrator, const 
         return refuse(why, LACONIC_METHOD_UNKNOWN, LACONIC_FIELD_METHOD, 0, R(0), R(0));
     if (!is_finite(step_s)) return refuse(why, LACONIC_NOT_FINITE, LACONIC_FIELD_STEP, 0, step_s, R(0));
     if (!(step_s > R(0))) return refuse(why, LACONIC_NOT_POSITIVE, LACONIC_FIELD_STEP, 0, step_s, R(0));
+    if (step_s < SMALLEST_STEP_S)
+        return refuse(why, LACONIC_OVERFLOW, LACONIC_FIELD_STEP, 0, step_s, SMALLEST_STEP_S);
     if (step_s > LARGEST_STEP_S) return refuse(why, LACONIC_OVERFLOW, LACONIC_FIELD_STEP, 0, step_s, LARGEST_STEP_S);
     prepared.method = prepared.chosen = method;
     prepared.step_s = step_s;

@@ -7,6 +7,7 @@
 /* A build whose integrator is a prepared constant leaves preparation out. */
 #define PREPARE(function) (LACONIC_WITH_PREPARE ? (function) : NULL)
 
+#define SMALLEST_STEP_S (R(8) * LACONIC_REAL_MIN) /* one over a quarter of it is still a number */
 #define LARGEST_STEP_S R(1e9) /* thirty years: beyond, products with speeds would leave the range */
 
 /* max r_k */

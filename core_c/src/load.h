@@ -51,7 +51,9 @@ static inline void load_of(laconic_load *load, const laconic_model *model, const
     if (LACONIC_WITH_BODY_WRENCH && acts(input->body_force_N[0], input->body_force_N[1], input->body_moment_Nm))
         b = plus(b, body_wrench(model, input));
     put(load->constant, b);
-    load->turns = LACONIC_WITH_WORLD_FORCE && acts(input->world_force_N[0], input->world_force_N[1], R(0));
+    load->turns = LACONIC_WITH_WORLD_FORCE &&
+                  acts(input->world_force_N[0], input->world_force_N[1],
+                       zero_if_finite(input->world_force_point_m[0]) + zero_if_finite(input->world_force_point_m[1]));
     if (LACONIC_WITH_WORLD_FORCE && load->turns) add_world_force(load, model, input);
 }
 

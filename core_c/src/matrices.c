@@ -24,6 +24,12 @@ static void form_inertia(laconic_matrices *x, const body *b, int32_t wheel_count
         }
 }
 
+/* Rows of locked wheels and constraint rows are not in the model: they may be larger than it. */
+static real matrices_size(const laconic_matrices *x, int32_t wheel_count) {
+    return rows_size(x->wheel_rows, wheel_count) + rows_size(x->inertia, 3) + rows_size(x->inverse_inertia, 3) +
+           rows_size(x->constraint_rows, x->constraint_count) + x->lambda_wheel;
+}
+
 laconic_status laconic_matrices_of(laconic_matrices *matrices, const laconic_vehicle *vehicle, laconic_refusal *why) {
     laconic_matrices x = {0};
     laconic_model model;
@@ -38,6 +44,8 @@ laconic_status laconic_matrices_of(laconic_matrices *matrices, const laconic_veh
         for (c = 0; c < 3; c++) x.inverse_inertia[r][c] = dot(vec(model.nu_of_zeta[r]), vec(model.nu_of_zeta[c]));
     x.lambda_yaw = b.yaw_scale;
     x.lambda_wheel = laconic_root(b.wheel_scale_square);
+    if (!fits_squared(matrices_size(&x, vehicle->wheel_count)))
+        return refuse(why, LACONIC_OVERFLOW, LACONIC_FIELD_NONE, 0, R(0), R(0));
     *matrices = x;
     return LACONIC_OK;
 }

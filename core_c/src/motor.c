@@ -22,12 +22,18 @@ static laconic_status check_motor(const laconic_motor *m, laconic_refusal *why) 
 laconic_status laconic_motor_fit(laconic_vehicle *vehicle, const laconic_motor *motor, laconic_refusal *why) {
     const laconic_status status = check_motor(motor, why);
     const real ratio = motor->gear_ratio;
-    real per_volt;
+    real per_volt, gain, damping, inertia;
     if (status != LACONIC_OK) return status;
     per_volt = motor->torque_constant_Nm_per_A / motor->resistance_ohm;
-    vehicle->motor_gain_Nm_per_V = ratio * per_volt;
-    vehicle->motor_damping_Nms =
-        ratio * ratio * (per_volt * motor->back_emf_Vs_per_rad + motor->viscous_friction_Nms);
-    vehicle->wheel_inertia_kgm2 += ratio * ratio * motor->rotor_inertia_kgm2;
+    gain = ratio * per_volt;
+    damping = ratio * ratio * (per_volt * motor->back_emf_Vs_per_rad + motor->viscous_friction_Nms);
+    inertia = ratio * ratio * motor->rotor_inertia_kgm2;
+    if (!is_finite(gain) || !is_finite(damping) || !is_finite(inertia))
+        return refuse(why, LACONIC_OVERFLOW, LACONIC_FIELD_GEAR_RATIO, 0, ratio, R(0));
+    if (damping < R(0)) /* k_t and k_e of different signs: a motor that drives itself */
+        return refuse(why, LACONIC_NEGATIVE, LACONIC_FIELD_BACK_EMF, 0, motor->back_emf_Vs_per_rad, R(0));
+    vehicle->motor_gain_Nm_per_V = gain;
+    vehicle->motor_damping_Nms = damping;
+    vehicle->wheel_inertia_kgm2 += inertia;
     return LACONIC_OK;
 }

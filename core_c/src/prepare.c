@@ -203,15 +203,23 @@ laconic_real laconic_condition_number(const laconic_model *model) {
     return most / least;
 }
 
-/* Numbers so far apart that a constant left the range would turn into NaN later: say so now. */
+/* A scale by which some formulas multiply and others divide. */
+static real scale_size(real scale) {
+    return magnitude(scale) + R(1) / magnitude(scale);
+}
+
+/* Numbers so far apart that a constant left the range, or that a product of two would, turn into NaN later: say so
+ * now. Every constant is looked at, those too that only outputs or a change of the vehicle use. */
 static bool usable(const laconic_model *m) {
-    real sum = size(vec(m->inertia)) + size(vec(m->decay_per_s)) + size(vec(m->gyro)) + size(vec(m->spin_curve)) +
-               size(vec(m->yaw_rate_of_zeta)) + size(vec(m->velocity_of_zeta[0])) + size(vec(m->velocity_of_zeta[1])) +
-               m->torque_scale + magnitude(m->voltage_scale) + m->mass_kg + R(1) / m->yaw_scale +
-               magnitude(m->com_x_m) + magnitude(m->com_y_m);
-    int32_t i;
-    for (i = 0; i < m->wheel_count; i++) sum += size(vec(m->wheel_of_zeta[i]));
-    return is_finite(sum) && m->torque_scale > R(0) && is_finite(sum * sum);
+    const real vectors = size(vec(m->inertia)) + size(vec(m->decay_per_s)) + size(vec(m->gyro)) +
+                         size(vec(m->spin_gain)) + size(vec(m->spin_curve)) + size(vec(m->yaw_rate_of_zeta));
+    const real rows = rows_size(m->nu_of_zeta, 3) + rows_size(m->velocity_of_zeta, 2) +
+                      rows_size(m->wheel_of_zeta, m->wheel_count);
+    const real scales = scale_size(m->mass_kg) + scale_size(m->wheel_radius_m) + scale_size(m->yaw_scale) +
+                        scale_size(m->torque_scale);
+    const real others = m->gyro_square + magnitude(m->voltage_scale) + magnitude(m->motor_gain_Nm_per_V) +
+                        m->motor_damping_Nms + m->wheel_inertia_kgm2 + magnitude(m->com_x_m) + magnitude(m->com_y_m);
+    return fits_squared(vectors + rows + scales + others);
 }
 
 laconic_status laconic_prepare(laconic_model *model, const laconic_vehicle *vehicle, laconic_refusal *why) {

@@ -48,18 +48,31 @@ laconic_status laconic_state_set(laconic_state *state, const laconic_model *mode
     return LACONIC_OK;
 }
 
+/* Two models that each fit may together leave the range: a centre of mass far from the old one, a much larger Λ. */
+static bool carried_in_range(const laconic_state *state, const real *angle, int32_t wheel_count) {
+    real zero = zero_if_finite(state->x_m.value) + zero_if_finite(state->x_m.rest) +
+                zero_if_finite(state->y_m.value) + zero_if_finite(state->y_m.rest);
+    int32_t i;
+    for (i = 0; i < wheel_count; i++) zero += zero_if_finite(angle[i]);
+    return zero == R(0) && square(zeta_of(state)) <= LARGEST_SPEED * LARGEST_SPEED;
+}
+
 /* v_Q = v_S − θ' e_z × s stays, s = QS; so do θ' and the place of Q: x_S = x_Q + Rot(θ) s. */
-void laconic_state_carry(laconic_state *state, const laconic_model *from, const laconic_model *to) {
+laconic_status laconic_state_carry(laconic_state *state, const laconic_model *from, const laconic_model *to) {
     const direction heading = laconic_direction_of_turn(state->heading.fraction);
     const real dx = to->com_x_m - from->com_x_m, dy = to->com_y_m - from->com_y_m;
     real velocity[2], nu[3], angle[LACONIC_MAX_WHEELS];
     const real yaw_rate = laconic_body_velocity(from, state, velocity);
+    laconic_state carried = *state;
     nu[0] = (velocity[0] - yaw_rate * dy) / to->wheel_radius_m;
     nu[1] = (velocity[1] + yaw_rate * dx) / to->wheel_radius_m;
     nu[2] = to->yaw_scale * yaw_rate;
     laconic_wheel_angles(from, state, angle);
-    laconic_wheel_angles_set(to, state, angle);
-    set_zeta(state, zeta_of_nu(to, nu));
-    sum_add(&state->x_m, heading.cosine * dx - heading.sine * dy);
-    sum_add(&state->y_m, heading.sine * dx + heading.cosine * dy);
+    laconic_wheel_angles_set(to, &carried, angle);
+    set_zeta(&carried, zeta_of_nu(to, nu));
+    sum_add(&carried.x_m, heading.cosine * dx - heading.sine * dy);
+    sum_add(&carried.y_m, heading.sine * dx + heading.cosine * dy);
+    if (!carried_in_range(&carried, angle, LACONIC_WHEELS(from))) return LACONIC_OVERFLOW;
+    *state = carried;
+    return LACONIC_OK;
 }

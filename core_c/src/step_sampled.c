@@ -1,5 +1,11 @@
 #include "load.h"
 
+/* Methods of second order turn a world force from the start's to the end's and never look at the middle one. */
+static bool middle_is_finite(const laconic_load *middle) {
+    if (!LACONIC_WITH_WORLD_FORCE || !middle->turns) return true;
+    return is_finite(size(vec(middle->cosine)) + size(vec(middle->sine)));
+}
+
 laconic_status laconic_step_sampled(const laconic_model *model, const laconic_integrator *integrator,
                                     laconic_state *state, const laconic_input *start, const laconic_input *middle,
                                     const laconic_input *end) {
@@ -8,5 +14,6 @@ laconic_status laconic_step_sampled(const laconic_model *model, const laconic_in
     load_of(&load[0], model, start);
     load_of(&load[1], model, middle);
     load_of(&load[2], model, end);
+    if (!middle_is_finite(&load[1])) return LACONIC_OVERFLOW;
     return integrator->chosen->step(model, integrator, state, &loads);
 }

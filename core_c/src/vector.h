@@ -61,4 +61,17 @@ static inline real size(vector v) {
     return magnitude(v.x) + magnitude(v.y) + magnitude(v.z);
 }
 
+/* Σ|v| over rows of three. */
+static inline real rows_size(const real rows[][3], int32_t count) {
+    real sum = R(0);
+    int32_t i;
+    for (i = 0; i < count; i++) sum += size(vec(rows[i]));
+    return sum;
+}
+
+/* Products of two such numbers, of one model or of two, stay in the range. False for NaN. */
+static inline bool fits_squared(real sum_of_sizes) {
+    return is_finite(sum_of_sizes * sum_of_sizes);
+}
+
 #endif

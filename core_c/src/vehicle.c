@@ -46,6 +46,7 @@ static laconic_status check_body(const laconic_vehicle *v, laconic_refusal *why)
     const number not_negative[] = {
         {v->wheel_inertia_kgm2, LACONIC_FIELD_WHEEL_INERTIA},
         {v->motor_damping_Nms, LACONIC_FIELD_MOTOR_DAMPING},
+        {v->com_z_m, LACONIC_FIELD_COM_Z},
         {v->friction_coefficient, LACONIC_FIELD_FRICTION_COEFFICIENT},
         {v->payload.mass_kg, LACONIC_FIELD_PAYLOAD_MASS},
         {v->payload.yaw_inertia_kgm2, LACONIC_FIELD_PAYLOAD_YAW_INERTIA},
@@ -53,7 +54,6 @@ static laconic_status check_body(const laconic_vehicle *v, laconic_refusal *why)
     const number any[] = {
         {v->com_x_m, LACONIC_FIELD_COM_X},
         {v->com_y_m, LACONIC_FIELD_COM_Y},
-        {v->com_z_m, LACONIC_FIELD_COM_Z},
         {v->motor_gain_Nm_per_V, LACONIC_FIELD_MOTOR_GAIN},
         {v->payload.x_m, LACONIC_FIELD_PAYLOAD_X},
         {v->payload.y_m, LACONIC_FIELD_PAYLOAD_Y},

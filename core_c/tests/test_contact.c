@@ -218,6 +218,17 @@ static void without_wheels_there_is_no_margin_to_lose(void) {
     TEST_ASSERT_EQUAL_DOUBLE(0.0, (double)s.out.no_slip_margin_N);
 }
 
+static void points_so_far_away_that_their_loads_would_be_none_are_refused(void) {
+    laconic_vehicle v = three_wheels();
+    laconic_contact contact;
+    v.support_count = 1;
+    v.support[0].x_m = REAL(EITHER(1e200, 1e25));
+    ASSERT_REFUSED(LACONIC_OVERFLOW, LACONIC_FIELD_NONE, 0, laconic_contact_prepare(&contact, &v, &why), why);
+    v.support_count = 0;
+    v.com_z_m = REAL(EITHER(1e200, 1e25));
+    ASSERT_REFUSED(LACONIC_OVERFLOW, LACONIC_FIELD_NONE, 0, laconic_contact_prepare(&contact, &v, &why), why);
+}
+
 static void a_refused_vehicle_changes_nothing(void) {
     laconic_vehicle v = three_wheels();
     laconic_contact contact, before;
@@ -242,6 +253,7 @@ int main(void) {
     RUN_TEST(acceleration_shifts_load_to_the_rear);
     RUN_TEST(the_no_slip_margin_is_the_least_of_all_wheels);
     RUN_TEST(without_wheels_there_is_no_margin_to_lose);
+    RUN_TEST(points_so_far_away_that_their_loads_would_be_none_are_refused);
     RUN_TEST(a_refused_vehicle_changes_nothing);
     return UNITY_END();
 }

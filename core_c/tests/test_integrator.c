@@ -33,6 +33,15 @@ static void a_step_of_decades_is_refused_with_the_longest_there_is(void) {
     }
 }
 
+static void a_step_whose_parts_have_no_inverse_is_refused_with_the_shortest_there_is(void) {
+    const laconic_model m = model_of(with_motors(three_wheels()));
+    laconic_integrator in;
+    ASSERT_REFUSED(LACONIC_OVERFLOW, LACONIC_FIELD_STEP, 0,
+                   laconic_integrator_prepare(&in, &laconic_auto, &m, LACONIC_REAL_MIN, &why), why);
+    ASSERT_STATUS(LACONIC_OK, laconic_integrator_prepare(&in, &laconic_auto, &m, why.limit, &why));
+    TEST_ASSERT_TRUE(isfinite((double)in.decay[2].inverse_gain[0]));
+}
+
 static void no_method_is_refused(void) {
     refuses(NULL, 0.01, LACONIC_METHOD_UNKNOWN, LACONIC_FIELD_METHOD);
 }
@@ -61,6 +70,7 @@ int main(void) {
     UNITY_BEGIN();
     RUN_TEST(steps_that_are_none_are_refused);
     RUN_TEST(a_step_of_decades_is_refused_with_the_longest_there_is);
+    RUN_TEST(a_step_whose_parts_have_no_inverse_is_refused_with_the_shortest_there_is);
     RUN_TEST(no_method_is_refused);
     RUN_TEST(a_good_step_is_kept_with_its_method);
     RUN_TEST(the_fastest_decay_is_the_largest_of_all_axes);

@@ -64,6 +64,13 @@ static void a_locked_wheel_adds_its_own_row_as_a_constraint(void) {
     ASSERT_NEAR(EITHER(1e-9, 1e-6), -1.0, x.constraint_rows[2][0]);
 }
 
+static void a_locked_wheel_whose_row_leaves_the_range_is_refused(void) {
+    laconic_vehicle v = three_wheels();
+    v.wheel[0].locked = true; /* so it is in no model, but in A */
+    v.wheel[0].y_m = v.wheel[0].x_m = REAL(EITHER(1e200, 1e25));
+    ASSERT_REFUSED(LACONIC_OVERFLOW, LACONIC_FIELD_NONE, 0, laconic_matrices_of(&x, &v, &why), why);
+}
+
 static void a_refused_vehicle_changes_nothing(void) {
     laconic_vehicle v = three_wheels();
     laconic_matrices before;
@@ -81,6 +88,7 @@ int main(void) {
     RUN_TEST(mecanum_rows_are_the_textbooks);
     RUN_TEST(the_differential_drive_has_the_papers_rows_and_constraint);
     RUN_TEST(a_locked_wheel_adds_its_own_row_as_a_constraint);
+    RUN_TEST(a_locked_wheel_whose_row_leaves_the_range_is_refused);
     RUN_TEST(a_refused_vehicle_changes_nothing);
     return UNITY_END();
 }

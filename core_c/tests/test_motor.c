@@ -63,6 +63,15 @@ static void friction_and_rotor_inertia_must_not_be_negative(void) {
     refuses(m, LACONIC_NEGATIVE, LACONIC_FIELD_ROTOR_INERTIA);
 }
 
+static void a_motor_whose_numbers_leave_the_range_or_drive_it_by_themselves_is_refused(void) {
+    laconic_motor m = good_motor();
+    m.gear_ratio = REAL(EITHER(1e200, 1e25));
+    refuses(m, LACONIC_OVERFLOW, LACONIC_FIELD_GEAR_RATIO);
+    m = good_motor();
+    m.back_emf_Vs_per_rad = REAL(-0.12); /* damping below zero */
+    refuses(m, LACONIC_NEGATIVE, LACONIC_FIELD_BACK_EMF);
+}
+
 int main(void) {
     UNITY_BEGIN();
     RUN_TEST(the_data_sheet_becomes_gain_damping_and_inertia);
@@ -70,5 +79,6 @@ int main(void) {
     RUN_TEST(every_number_that_is_not_finite_is_named);
     RUN_TEST(resistance_must_be_positive_and_the_gear_not_zero);
     RUN_TEST(friction_and_rotor_inertia_must_not_be_negative);
+    RUN_TEST(a_motor_whose_numbers_leave_the_range_or_drive_it_by_themselves_is_refused);
     return UNITY_END();
 }

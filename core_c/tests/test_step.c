@@ -35,6 +35,11 @@ static void an_input_that_is_not_finite_leaves_the_state_as_it_was_whatever_the_
         input = every_input();
         input.world_force_point_m[1] = INFINITE;
         refuses(method, &input, LACONIC_FIELD_WORLD_FORCE_POINT, 2);
+        input.world_force_N[0] = input.world_force_N[1] = 0; /* a force of none at no point */
+        refuses(method, &input, LACONIC_FIELD_WORLD_FORCE_POINT, 2);
+        input = no_input();
+        input.world_force_point_m[0] = NOT_A_NUMBER;
+        refuses(method, &input, LACONIC_FIELD_WORLD_FORCE_POINT, 1);
     }
 }
 
@@ -81,11 +86,55 @@ static void a_free_puck_goes_straight(void) {
     ASSERT_NEAR(EITHER(1e-9, 1e-4), 10 * RADIUS * (2 * sin(0.4) - cos(0.4)), pose.y_m);
 }
 
+/* A step adds fewer than 2⁶² turns: it may begin within 2⁶² turns, and the count never overflows. */
+static void a_heading_of_more_turns_than_can_be_counted_is_refused_whatever_the_method(void) {
+    const laconic_model m = model_of(bare_body());
+    const laconic_input input = no_input();
+    const int64_t end = (int64_t)1 << 62, last[2] = {end - 10, 10 - end}, beyond[2] = {end + 1, -end - 1};
+    int32_t i, k;
+    for (i = 0; i < LACONIC_METHOD_COUNT; i++)
+        for (k = 0; k < 2; k++) {
+            const laconic_integrator in = integrator_of(laconic_method_by_number(i), &m, 0.01);
+            laconic_state state = moving(&m, 0, 0, k == 0 ? 3 : -3), before;
+            state.heading.turns = last[k];
+            ASSERT_STATUS(LACONIC_OK, laconic_step(&m, &in, &state, &input));
+            state.heading.turns = beyond[k];
+            before = state;
+            ASSERT_STATUS(LACONIC_OVERFLOW, laconic_step(&m, &in, &state, &input));
+            ASSERT_STATUS(LACONIC_OVERFLOW, laconic_step_sampled(&m, &in, &state, &input, &input, &input));
+            TEST_ASSERT_EQUAL_MEMORY(&before, &state, sizeof state);
+        }
+}
+
+static void the_fastest_turning_there_is_ends_in_a_refusal_never_in_a_jump(void) {
+    const laconic_input input = no_input();
+    laconic_vehicle v = bare_body();
+    laconic_model m;
+    laconic_integrator in;
+    laconic_state state;
+    int64_t turns = 0;
+    laconic_status status = LACONIC_OK;
+    int k;
+    v.mass_kg = v.yaw_inertia_kgm2 = v.wheel_radius_m = REAL(1);
+    m = model_of(v);
+    in = integrator_of(&laconic_auto, &m, 1);
+    state = moving(&m, 0, 0, EITHER(1.8e19, 5e8));
+    for (k = 0; k < 10 && status == LACONIC_OK; k++) {
+        status = laconic_step(&m, &in, &state, &input);
+        TEST_ASSERT_TRUE(state.heading.turns >= turns);
+        turns = state.heading.turns;
+    }
+    TEST_ASSERT_TRUE(k > 1); /* in single, the count lasts for 10¹⁰ steps */
+    ASSERT_STATUS(EITHER(LACONIC_OVERFLOW, LACONIC_OK), status);
+}
+
 int main(void) {
     UNITY_BEGIN();
     RUN_TEST(an_input_that_is_not_finite_leaves_the_state_as_it_was_whatever_the_method);
     RUN_TEST(what_lies_beyond_the_last_wheel_is_not_read);
     RUN_TEST(a_circle_is_exact_at_any_step);
     RUN_TEST(a_free_puck_goes_straight);
+    RUN_TEST(a_heading_of_more_turns_than_can_be_counted_is_refused_whatever_the_method);
+    RUN_TEST(the_fastest_turning_there_is_ends_in_a_refusal_never_in_a_jump);
     return UNITY_END();
 }

@@ -99,20 +99,44 @@ static void a_world_force_at_one_sample_alone_counts_by_its_weight(void) {
     }
 }
 
-static void a_number_that_is_none_at_any_sample_is_refused(void) {
-    const laconic_model m = model_of(with_motors(three_wheels()));
-    const laconic_input good = no_input();
-    laconic_input bad = no_input();
-    int32_t i;
-    bad.voltage_V[0] = NOT_A_NUMBER;
-    for (i = 0; i < LACONIC_METHOD_COUNT; i++) {
-        const laconic_integrator in = integrator_of(laconic_method_by_number(i), &m, 0.02);
-        laconic_state state = moving(&m, 1, 2, 3), before = state;
-        TEST_ASSERT_NOT_EQUAL(LACONIC_OK, laconic_step_sampled(&m, &in, &state, &bad, &good, &good));
-        TEST_ASSERT_NOT_EQUAL(LACONIC_OK, laconic_step_sampled(&m, &in, &state, &good, &bad, &good));
-        TEST_ASSERT_NOT_EQUAL(LACONIC_OK, laconic_step_sampled(&m, &in, &state, &good, &good, &bad));
+static laconic_input with_number(laconic_input input, int which, laconic_real number) {
+    laconic_real *const places[] = {&input.voltage_V[1],      &input.axle_torque_Nm[2], &input.body_force_N[0],
+                                    &input.body_moment_Nm,    &input.world_force_N[0],  &input.world_force_N[1],
+                                    &input.world_force_point_m[0], &input.world_force_point_m[1]};
+    *places[which] = number;
+    return input;
+}
+
+#define PLACES 8
+
+static void refuses_at_each_sample(const laconic_method *method, const laconic_model *m, laconic_input good,
+                                   laconic_input bad) {
+    const laconic_integrator in = integrator_of(method, m, 0.02);
+    int k;
+    for (k = 0; k < 3; k++) {
+        laconic_input at[3] = {good, good, good};
+        laconic_state state = moving(m, 1, 2, 3), before = state;
+        at[k] = bad;
+        TEST_ASSERT_NOT_EQUAL(LACONIC_OK, laconic_step_sampled(m, &in, &state, &at[0], &at[1], &at[2]));
         TEST_ASSERT_EQUAL_MEMORY(&before, &state, sizeof state);
     }
+}
+
+static void a_number_that_is_none_at_any_sample_is_refused(void) {
+    const laconic_model slow = model_of(with_motors(three_wheels())), fast = model_of(stiff());
+    const laconic_real numbers[] = {NOT_A_NUMBER, INFINITE, -INFINITE};
+    const laconic_input rest = no_input(), all = every_input();
+    int which, i;
+    int32_t number;
+    for (number = 0; number < LACONIC_METHOD_COUNT; number++)
+        for (which = 0; which < PLACES; which++)
+            for (i = 0; i < 3; i++) {
+                const laconic_method *method = laconic_method_by_number(number);
+                refuses_at_each_sample(method, &slow, rest, with_number(rest, which, numbers[i]));
+                refuses_at_each_sample(method, &slow, all, with_number(all, which, numbers[i]));
+                if (method == &laconic_auto) /* which then chooses another */
+                    refuses_at_each_sample(method, &fast, all, with_number(all, which, numbers[i]));
+            }
 }
 
 int main(void) {

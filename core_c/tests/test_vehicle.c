@@ -95,13 +95,13 @@ static const number must_be_positive[] = {
 };
 static const number must_not_be_negative[] = {
     {wheel_inertia, LACONIC_FIELD_WHEEL_INERTIA, 0},         {damping, LACONIC_FIELD_MOTOR_DAMPING, 0},
+    {com_z, LACONIC_FIELD_COM_Z, 0},
     {friction, LACONIC_FIELD_FRICTION_COEFFICIENT, 0},       {payload_mass, LACONIC_FIELD_PAYLOAD_MASS, 0},
     {payload_inertia, LACONIC_FIELD_PAYLOAD_YAW_INERTIA, 0},
 };
 static const number any_number[] = {
     {com_x, LACONIC_FIELD_COM_X, 0},
     {com_y, LACONIC_FIELD_COM_Y, 0},
-    {com_z, LACONIC_FIELD_COM_Z, 0},
     {gain, LACONIC_FIELD_MOTOR_GAIN, 0},
     {payload_x, LACONIC_FIELD_PAYLOAD_X, 0},
     {payload_y, LACONIC_FIELD_PAYLOAD_Y, 0},
@@ -141,7 +141,7 @@ static void mass_radius_and_yaw_inertia_must_be_positive(void) {
     TEST_ASSERT_EQUAL_DOUBLE(-2.0, (double)why.value);
 }
 
-static void inertias_damping_and_friction_must_not_be_negative(void) {
+static void inertias_damping_friction_and_height_must_not_be_negative(void) {
     refuses(must_not_be_negative, COUNT(must_not_be_negative), REAL(-0.5), LACONIC_NEGATIVE);
     TEST_ASSERT_EQUAL_DOUBLE(-0.5, (double)why.value);
 }
@@ -205,7 +205,7 @@ int main(void) {
     RUN_TEST(zero_inertia_of_wheels_and_negative_gain_are_accepted);
     RUN_TEST(every_number_that_is_not_finite_is_named);
     RUN_TEST(mass_radius_and_yaw_inertia_must_be_positive);
-    RUN_TEST(inertias_damping_and_friction_must_not_be_negative);
+    RUN_TEST(inertias_damping_friction_and_height_must_not_be_negative);
     RUN_TEST(a_roller_along_the_axle_is_refused_just_below_the_limit);
     RUN_TEST(the_roller_of_a_fixed_wheel_is_not_read);
     RUN_TEST(a_forgotten_wheel_is_noticed);

@@ -129,6 +129,31 @@ const char *laconic_field_name(laconic_field field);
 /* "not finite", "wheel not set" … : a few words; "unknown status" for a number that is none. */
 const char *laconic_status_name(laconic_status status);
 
+/* ----------------------------------------------------------------------------- arithmetic -- */
+
+/* What laconic_self_test() found. */
+typedef enum laconic_arithmetic {
+    LACONIC_ARITHMETIC_SOUND = 0,
+    LACONIC_ARITHMETIC_WITHOUT_NAN,       /* NaN and infinity pass for numbers: -ffinite-math-only          */
+    LACONIC_ARITHMETIC_ROUNDED_OTHERWISE, /* not to nearest, ties to even: fesetround, FPSCR, MXCSR         */
+    LACONIC_ARITHMETIC_REORDERED,         /* sums are taken in another order: -fassociative-math            */
+    LACONIC_ARITHMETIC_EXCESS_PRECISION,  /* intermediate results keep more than their type: x87            */
+    LACONIC_ARITHMETIC_FUSED,             /* multiply and add are rounded once: -ffp-contract, gcc's SLP     */
+    LACONIC_ARITHMETIC_BY_RECIPROCALS,    /* x/y as x·(1/y): -freciprocal-math                              */
+    LACONIC_ARITHMETIC_FLUSHED,           /* subnormal numbers count as 0: FTZ, DAZ, FPSCR.FZ, or a library
+                                             linked with -ffast-math, which sets them for the whole process */
+    LACONIC_ARITHMETIC_COUNT
+} laconic_arithmetic;
+
+/* Optional; for the start of a program: does arithmetic give the bits and the refusals that this header promises?
+ * What compilers admit is an error when compiling (real.h); this finds what no macro shows, the first of the list
+ * above. It sees the options its own file is compiled with, so compile it with the core's, and the modes of the thread
+ * that calls it, so call it there. A few hundred bytes; nothing else in the core calls it. */
+laconic_arithmetic laconic_self_test(void);
+
+/* "sound", or what is wrong and the remedy, in one line. */
+const char *laconic_arithmetic_text(laconic_arithmetic found);
+
 /* -------------------------------------------------------------------------------- vehicle -- */
 
 typedef enum laconic_wheel_kind {
@@ -316,7 +341,7 @@ void laconic_wheel_angles_set(const laconic_model *model, laconic_state *state, 
 
 /* Carries a motion over to a changed vehicle (payload, motor): velocity and pose of the body's origin,
  * yaw rate and wheel angles stay; ν and (x, y) are recomputed. The wheels must be the same. */
-void laconic_state_carry(laconic_state *state, const laconic_model *from, const laconic_model *to);
+laconic_status laconic_state_carry(laconic_state *state, const laconic_model *from, const laconic_model *to);
 
 /* ------------------------------------------------------------------------ methods and steps -- */
 

@@ -12,8 +12,16 @@
 #include <stddef.h>
 #include <stdint.h>
 
-#ifdef __FAST_MATH__
+/* What compilers say of their options; laconic_self_test() finds the rest when it runs. gcc defines all of these, clang
+ * the first two. */
+#if defined(__FAST_MATH__)
 #error "laconic: -ffast-math breaks the compensated sums and the tests for NaN; compile without it"
+#elif defined(__FINITE_MATH_ONLY__) && __FINITE_MATH_ONLY__ > 0
+#error "laconic: -ffinite-math-only disarms every test for NaN; compile without it"
+#elif defined(__ASSOCIATIVE_MATH__)
+#error "laconic: -fassociative-math (-funsafe-math-optimizations) breaks the compensated sums; compile without it"
+#elif defined(__RECIPROCAL_MATH__)
+#error "laconic: -freciprocal-math rounds divisions twice, so the bits differ; compile without it"
 #endif
 #if defined(FLT_EVAL_METHOD) && FLT_EVAL_METHOD != 0 && FLT_EVAL_METHOD != 16
 #error "laconic: this target keeps excess precision (x87); compile with -msse2 -mfpmath=sse"

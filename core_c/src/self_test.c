@@ -1,0 +1,84 @@
+/* Is arithmetic, as compiled and as it is set now, the arithmetic that the core's bits rest on? Each fault is sought
+ * with numbers that only that fault, or one sought before it, gets wrong. */
+#include "internal.h"
+
+/* Rounded to its type, and unknown when this is compiled. */
+static real opaque(real x) {
+    volatile real stored = x;
+    return stored;
+}
+
+/* -ffinite-math-only lets compilers take every test for NaN and infinity as passed. */
+static bool nan_passes_for_a_number(void) {
+    const real zero = opaque(R(0)), nan = opaque(zero / zero), infinite = opaque(R(1) / zero);
+    return nan == nan || nan > zero || is_finite(nan) || is_finite(infinite) || zero_if_finite(nan) == zero;
+}
+
+/* To nearest, ties to even; the other modes fail here on one side of 0 or the other. */
+static bool rounds_another_way(void) {
+    const real one = opaque(R(1)), next = R(1) + LACONIC_EPSILON, after = R(1) + R(2) * LACONIC_EPSILON;
+    const real half = opaque(R(0.5) * LACONIC_EPSILON), more = opaque(R(0.75) * LACONIC_EPSILON);
+    return opaque(one + more) != next || opaque(-one - more) != -next || opaque(one + half) != one ||
+           opaque(opaque(next) + half) != after;
+}
+
+/* -fassociative-math: (1 + huge) − huge is 0, even where more digits are kept than the type has. */
+static bool sums_in_another_order(void) {
+    const real one = opaque(R(1)), huge = opaque(R(1e36)), sum = one + huge;
+    return sum - huge != R(0);
+}
+
+/* x87, or float computed as double: what overflows comes back. */
+static bool keeps_more_than_the_type(void) {
+    return is_finite(opaque(LACONIC_REAL_MAX) * opaque(R(2)) * opaque(R(0.5)));
+}
+
+/* (1 + ε)(1 − ε) rounds to 1; fused with the subtraction it does not, and −ε² is left. Two products, each used once:
+ * compilers leave a product alone that is needed for itself. */
+static bool fuses_multiply_and_add(void) {
+    const real one = opaque(R(1)), more = R(1) + LACONIC_EPSILON, less = R(1) - LACONIC_EPSILON;
+    const real left = opaque(more) * opaque(less) - one, right = one - opaque(more) * opaque(less);
+    return left != R(0) || right != R(0);
+}
+
+/* Two numbers side by side: gcc 12's SLP vectoriser fuses such in spite of -ffp-contract=off. */
+typedef struct couple {
+    real first, second;
+} couple;
+
+RARE void multiply(couple *out, const couple *a, const couple *b) { /* as complex numbers */
+    const couple x = *a, y = *b;
+    out->first = x.first * y.first - x.second * y.second;
+    out->second = x.second * y.first + x.first * y.second;
+}
+
+static bool fuses_side_by_side(void) {
+    const couple a = {opaque(R(1) + LACONIC_EPSILON), opaque(R(1) - LACONIC_EPSILON)}, b = {a.second, a.first};
+    couple product;
+    multiply(&product, &a, &b);
+    return product.first != R(0);
+}
+
+/* -freciprocal-math, of which clang's macros say nothing: 107 · (1/107) is 1 neither in double nor in single. */
+static bool divides_by_reciprocals(void) {
+    const real number = R(107), divisor = opaque(number);
+    const real one = opaque(number) / divisor, two = opaque(R(2) * number) / divisor;
+    return one != R(1) || two != R(2) || opaque(number) / R(107) != R(1);
+}
+
+/* Half of the smallest normal number is subnormal: flushed as a result or as an operand, it does not come back. */
+static bool flushes_small_numbers(void) {
+    const real half = opaque(opaque(LACONIC_REAL_MIN) * opaque(R(0.5)));
+    return opaque(half * opaque(R(2))) != LACONIC_REAL_MIN;
+}
+
+laconic_arithmetic laconic_self_test(void) {
+    if (nan_passes_for_a_number()) return LACONIC_ARITHMETIC_WITHOUT_NAN;
+    if (rounds_another_way()) return LACONIC_ARITHMETIC_ROUNDED_OTHERWISE;
+    if (sums_in_another_order()) return LACONIC_ARITHMETIC_REORDERED;
+    if (keeps_more_than_the_type()) return LACONIC_ARITHMETIC_EXCESS_PRECISION;
+    if (fuses_multiply_and_add() || fuses_side_by_side()) return LACONIC_ARITHMETIC_FUSED;
+    if (divides_by_reciprocals()) return LACONIC_ARITHMETIC_BY_RECIPROCALS;
+    if (flushes_small_numbers()) return LACONIC_ARITHMETIC_FLUSHED;
+    return LACONIC_ARITHMETIC_SOUND;
+}
