@@ -13,7 +13,8 @@ laconic_status laconic_input_check(const laconic_model *model, const laconic_inp
     laconic_status status = check_many(input->voltage_V, n, LACONIC_FIELD_VOLTAGE, why);
     if (status == LACONIC_OK) status = check_many(input->axle_torque_Nm, n, LACONIC_FIELD_AXLE_TORQUE, why);
     if (status == LACONIC_OK) status = check_many(input->body_force_N, 2, LACONIC_FIELD_BODY_FORCE, why);
-    if (status == LACONIC_OK) status = check_many(&input->body_moment_Nm, 1, LACONIC_FIELD_BODY_MOMENT, why);
+    if (status == LACONIC_OK && !is_finite(input->body_moment_Nm))
+        status = refuse(why, LACONIC_NOT_FINITE, LACONIC_FIELD_BODY_MOMENT, 0, input->body_moment_Nm, R(0));
     if (status == LACONIC_OK) status = check_many(input->world_force_N, 2, LACONIC_FIELD_WORLD_FORCE, why);
     if (status == LACONIC_OK)
         status = check_many(input->world_force_point_m, 2, LACONIC_FIELD_WORLD_FORCE_POINT, why);

@@ -102,26 +102,54 @@ static const char *explanation(laconic_status status) {
     return (unsigned)status < LACONIC_STATUS_COUNT ? texts[status] : "unknown status";
 }
 
-size_t laconic_message(const laconic_refusal *why, char *text, size_t size) {
-    writer w = {NULL, 0, 0};
+/* Closes the text and says how long the whole would be. */
+static size_t end_text(const writer *w) {
+    if (w->size > 0) w->text[w->length < w->size ? w->length : w->size - 1] = '\0';
+    return w->length;
+}
+
+static void put_explanation(writer *w, const laconic_refusal *why) {
     const char *c;
-    w.text = text;
-    w.size = size;
-    put_text(&w, laconic_field_name(why->field));
-    if (why->item > 0) {
-        put(&w, '[');
-        put_count(&w, why->item);
-        put(&w, ']');
-    }
-    if (w.length > 0) put_text(&w, ": ");
     for (c = explanation(why->status); *c != '\0'; c++) {
         if (*c == '#')
-            put_number(&w, why->value);
+            put_number(w, why->value);
         else if (*c == '@')
-            put_number(&w, why->limit);
+            put_number(w, why->limit);
         else
-            put(&w, *c);
+            put(w, *c);
     }
-    if (size > 0) text[w.length < size ? w.length : size - 1] = '\0';
-    return w.length;
+}
+
+/* "[#]" of a path becomes the item's number; without an item, nothing. */
+static void put_path(writer *w, const char *path, int32_t item) {
+    for (; *path != '\0'; path++) {
+        if (*path != '[') {
+            put(w, *path);
+            continue;
+        }
+        if (item > 0) {
+            put(w, '[');
+            put_count(w, item);
+            put(w, ']');
+        }
+        path += 2;
+    }
+}
+
+size_t laconic_explanation(const laconic_refusal *why, char *text, size_t size) {
+    writer w = {NULL, 0, 0};
+    w.text = text;
+    w.size = size;
+    put_explanation(&w, why);
+    return end_text(&w);
+}
+
+size_t laconic_message(const laconic_refusal *why, char *text, size_t size) {
+    writer w = {NULL, 0, 0};
+    w.text = text;
+    w.size = size;
+    put_path(&w, laconic_field_path(why->field), why->item);
+    if (w.length > 0) put_text(&w, ": ");
+    put_explanation(&w, why);
+    return end_text(&w);
 }

@@ -1,4 +1,4 @@
-/* Names of statuses and fields, as scenes and FMUs spell them. */
+/* Names of statuses and fields, as FMUs spell them. */
 #include "internal.h"
 
 const char *laconic_field_name(laconic_field field) {

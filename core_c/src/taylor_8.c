@@ -63,7 +63,7 @@ RARE void varying_course(course *c, const laconic_model *m, real h, vector start
                          const laconic_heading *heading) {
     const real turn = turn_of_yaw(m, h);
     forcing f = forcing_of(loads, heading);
-    vector turned[ORDER + 1], zeta = first_term(c, turned, m, h, start, forcing_term(&f, c, turn, 0));
+    vector turned[ORDER + 1], zeta = first_term(c, turned, m, h, start, first_forcing(&f));
     const jacobian at = jacobian_at(m, c->yaw[0], turned[0]);
     int n;
     for (n = 1; n < ORDER; n++) zeta = next_term(c, turned, m, &at, h, n, zeta, forcing_term(&f, c, turn, n));

@@ -49,12 +49,19 @@ static void turn_on(forcing *f, const course *c, real turn, int n) {
     f->heading_sine[n] = turn * inverse[n - 1] * sine;
 }
 
-/* bn, from the coefficients of the motion below n. */
+/* b0: what acts before anything has moved. */
+static vector first_forcing(const forcing *f) {
+    const vector b = f->constant[0];
+    if (!f->turns) return b;
+    return plus(b, plus(scaled(f->heading_cosine[0], f->cosine[0]), scaled(f->heading_sine[0], f->sine[0])));
+}
+
+/* bn for n >= 1, from the coefficients of the motion below n. */
 static vector forcing_term(forcing *f, const course *c, real turn, int n) {
     vector b = n < 3 ? f->constant[n] : none;
     int k;
     if (!f->turns) return b;
-    if (n > 0) turn_on(f, c, turn, n);
+    turn_on(f, c, turn, n);
     for (k = 0; k < 3 && k <= n; k++)
         b = plus(b, plus(scaled(f->heading_cosine[n - k], f->cosine[k]), scaled(f->heading_sine[n - k], f->sine[k])));
     return b;

@@ -23,7 +23,7 @@ static void every_number_that_is_not_finite_is_named(void) {
     REFUSES(voltage_V[2], NOT_A_NUMBER, LACONIC_FIELD_VOLTAGE, 3);
     REFUSES(axle_torque_Nm[0], INFINITE, LACONIC_FIELD_AXLE_TORQUE, 1);
     REFUSES(body_force_N[1], -INFINITE, LACONIC_FIELD_BODY_FORCE, 2);
-    REFUSES(body_moment_Nm, NOT_A_NUMBER, LACONIC_FIELD_BODY_MOMENT, 1);
+    REFUSES(body_moment_Nm, NOT_A_NUMBER, LACONIC_FIELD_BODY_MOMENT, 0);
     REFUSES(world_force_N[0], INFINITE, LACONIC_FIELD_WORLD_FORCE, 1);
     REFUSES(world_force_point_m[1], NOT_A_NUMBER, LACONIC_FIELD_WORLD_FORCE_POINT, 2);
 #undef REFUSES

@@ -12,14 +12,29 @@ static const char *message(laconic_status status, laconic_field field, int32_t i
 }
 
 static void a_refusal_names_field_item_value_and_remedy(void) {
-    TEST_ASSERT_EQUAL_STRING("mass_kg: -2 is not positive; give a value above 0",
+    TEST_ASSERT_EQUAL_STRING("vehicle.mass_kg: -2 is not positive; give a value above 0",
                              message(LACONIC_NOT_POSITIVE, LACONIC_FIELD_MASS, 0, -2, 0));
-    TEST_ASSERT_EQUAL_STRING_LEN("roller_rad[12]: with 0.5 rad the roller axis lies along the axle",
-                                 message(LACONIC_ROLLER_ALONG_AXLE, LACONIC_FIELD_ROLLER, 12, 0.5, 0), 63);
+    TEST_ASSERT_EQUAL_STRING_LEN("vehicle.wheel[12].roller_rad: with 0.5 rad the roller axis lies along the axle",
+                                 message(LACONIC_ROLLER_ALONG_AXLE, LACONIC_FIELD_ROLLER, 12, 0.5, 0), 77);
     TEST_ASSERT_EQUAL_STRING(
-        "step_s: 0.25 s is unstable with this method, the motors damp too fast; use at most 0.125 s, "
+        "run.step_s: 0.25 s is unstable with this method, the motors damp too fast; use at most 0.125 s, "
         "or auto",
         message(LACONIC_STEP_BEYOND_DAMPING_LIMIT, LACONIC_FIELD_STEP, 0, 0.25, 0.125));
+}
+
+static void a_field_without_the_item_it_could_have_is_named_as_a_whole(void) {
+    TEST_ASSERT_EQUAL_STRING("initial.nu_rad_per_s: the numbers leave the range of " LACONIC_REAL_NAME
+                             " precision; check inputs and units",
+                             message(LACONIC_OVERFLOW, LACONIC_FIELD_START_NU, 0, 0, 0));
+    TEST_ASSERT_EQUAL_STRING_LEN("voltage_V[2]: NaN", message(LACONIC_NOT_FINITE, LACONIC_FIELD_VOLTAGE, 2, NAN, 0), 17);
+    TEST_ASSERT_EQUAL_STRING_LEN("body_moment_Nm: NaN", message(LACONIC_NOT_FINITE, LACONIC_FIELD_BODY_MOMENT, 0, NAN, 0),
+                                 19);
+}
+
+static void an_explanation_is_the_message_without_its_field(void) {
+    const laconic_refusal why = {LACONIC_NEGATIVE, LACONIC_FIELD_MOTOR_DAMPING, 0, REAL(-1), 0};
+    TEST_ASSERT_EQUAL_UINT(42, laconic_explanation(&why, text, sizeof text));
+    TEST_ASSERT_EQUAL_STRING("-1 is negative; give 0 or a value above it", text);
 }
 
 static void without_a_field_only_the_reason_is_said(void) {
@@ -81,13 +96,15 @@ static void a_short_buffer_gets_what_fits_and_the_whole_length_is_told(void) {
     const size_t length = laconic_message(&why, text, sizeof text);
     char little[8] = "#######";
     TEST_ASSERT_EQUAL_UINT(length, laconic_message(&why, little, sizeof little));
-    TEST_ASSERT_EQUAL_STRING("motor_d", little);
+    TEST_ASSERT_EQUAL_STRING("vehicle", little);
     TEST_ASSERT_EQUAL_UINT(length, laconic_message(&why, NULL, 0));
 }
 
 int main(void) {
     UNITY_BEGIN();
     RUN_TEST(a_refusal_names_field_item_value_and_remedy);
+    RUN_TEST(a_field_without_the_item_it_could_have_is_named_as_a_whole);
+    RUN_TEST(an_explanation_is_the_message_without_its_field);
     RUN_TEST(without_a_field_only_the_reason_is_said);
     RUN_TEST(every_status_has_a_text_and_a_number_that_is_none_too);
     RUN_TEST(numbers_look_as_printf_would_show_them);

@@ -10,7 +10,7 @@ static void every_field_but_none_has_a_name_of_its_own(void) {
     }
 }
 
-static void fields_are_called_as_scenes_and_fmus_call_them(void) {
+static void fields_are_called_as_fmus_call_them(void) {
     TEST_ASSERT_EQUAL_STRING("mass_kg", laconic_field_name(LACONIC_FIELD_MASS));
     TEST_ASSERT_EQUAL_STRING("payload_yaw_inertia_kgm2", laconic_field_name(LACONIC_FIELD_PAYLOAD_YAW_INERTIA));
     TEST_ASSERT_EQUAL_STRING("roller_rad", laconic_field_name(LACONIC_FIELD_ROLLER));
@@ -45,7 +45,7 @@ static void numbers_that_are_none_are_survived(void) {
 int main(void) {
     UNITY_BEGIN();
     RUN_TEST(every_field_but_none_has_a_name_of_its_own);
-    RUN_TEST(fields_are_called_as_scenes_and_fmus_call_them);
+    RUN_TEST(fields_are_called_as_fmus_call_them);
     RUN_TEST(every_status_has_words_of_its_own);
     RUN_TEST(numbers_that_are_none_are_survived);
     return UNITY_END();

@@ -211,14 +211,14 @@ static void a_refused_step_leaves_what_was_taken_and_says_why(void) {
     film f;
     load_film(&f, &plant, 1, STEPS);
     sampled_values[9][1][1] = NOT_A_NUMBER;
-    ASSERT_REFUSED(LACONIC_NOT_FINITE, LACONIC_FIELD_BODY_MOMENT, 1,
+    ASSERT_REFUSED(LACONIC_NOT_FINITE, LACONIC_FIELD_BODY_MOMENT, 0,
                    laconic_plant_follow(&plant, &schedule, STEPS, &f.recorder, &why), why);
     TEST_ASSERT_EQUAL_UINT64(9, plant.steps);
     TEST_ASSERT_EQUAL_UINT64(10, f.recorder.row_count);
     plant = plant_of(three_wheels(), 0.01);
     schedule = held();
     schedule.value = &sampled_values[9][1][0]; /* a stretch whose second value is no number */
-    ASSERT_REFUSED(LACONIC_NOT_FINITE, LACONIC_FIELD_BODY_MOMENT, 1,
+    ASSERT_REFUSED(LACONIC_NOT_FINITE, LACONIC_FIELD_BODY_MOMENT, 0,
                    laconic_plant_follow(&plant, &schedule, STEPS, NULL, &why), why);
     TEST_ASSERT_EQUAL_UINT64(0, plant.steps);
 }

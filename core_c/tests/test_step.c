@@ -28,7 +28,7 @@ static void an_input_that_is_not_finite_leaves_the_state_as_it_was_whatever_the_
         refuses(method, &input, LACONIC_FIELD_BODY_FORCE, 2);
         input = every_input();
         input.body_moment_Nm = NOT_A_NUMBER;
-        refuses(method, &input, LACONIC_FIELD_BODY_MOMENT, 1);
+        refuses(method, &input, LACONIC_FIELD_BODY_MOMENT, 0);
         input = every_input();
         input.world_force_N[0] = NOT_A_NUMBER;
         refuses(method, &input, LACONIC_FIELD_WORLD_FORCE, 1);

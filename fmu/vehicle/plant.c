@@ -1,4 +1,6 @@
 /* The vehicle behind the glue: parameters → core, steps, and outputs when they are asked for. */
+#include <stdio.h>
+
 #include "grip.h"
 #include "plant_api.h"
 
@@ -6,15 +8,26 @@
 typedef char fmu_core_is_double[sizeof(laconic_real) == sizeof(double) ? 1 : -1];
 typedef char fmu_kind_is_int32[sizeof(laconic_wheel_kind) == sizeof(int32_t) ? 1 : -1];
 
+/* laconic_message names a field as scenes do; here it has the name of the variable. */
+static void tell(char *text, size_t size, const laconic_refusal *why) {
+    char reason[256];
+    const char *name = laconic_field_name(why->field);
+    laconic_explanation(why, reason, sizeof reason);
+    if (why->item > 0)
+        snprintf(text, size, "%s[%d]: %s", name, (int)why->item, reason);
+    else
+        snprintf(text, size, "%s%s%s", name, *name != '\0' ? ": " : "", reason);
+}
+
 static fmu_status refuse_with(const fmu_instance *instance, const laconic_refusal *why, const char *when) {
-    char text[256];
-    laconic_message(why, text, sizeof text);
+    char text[320];
+    tell(text, sizeof text, why);
     return fmu_refuse(instance, "%s: %s", when, text);
 }
 
 static fmu_status discard_with(const fmu_instance *instance, const laconic_refusal *why) {
-    char text[256];
-    laconic_message(why, text, sizeof text);
+    char text[320];
+    tell(text, sizeof text, why);
     return fmu_report(instance, FMU_DISCARD, FMU_LOG_DISCARD, "the step at %.15g s is refused: %s",
                       fmu_clock_now(&instance->clock), text);
 }

@@ -19,6 +19,24 @@
  * Bits     the same on every platform with IEEE arithmetic (-std=c99 -ffp-contract=off, and for gcc
  *          -fno-tree-slp-vectorize): the core brings its own sine, exponential and square root.
  *
+ * Limits   what the model does not do, and what to do instead:
+ *          slip             wheels roll, and rollers roll; no_slip_margin_N says when the ground could not bear it
+ *                           (below 0: the run is no longer true). Nothing follows a wheel that slips.
+ *          suspension       the body is rigid and its height constant; normal loads are least-norm statics, without
+ *                           springs. More than three points of support: loads as if the ground were evenly soft.
+ *          level ground     a slope's pull along it is a world_force_N at S, (M g sin slope) down the slope; normal
+ *                           loads stay those of level ground.
+ *          one wheel radius R, J, c1 and c2 are common to all wheels: take the driven wheels'. Wheels that carry load
+ *                           and neither drive nor guide may be supports.
+ *          one motor        c1 U − c2 χ': a DC motor without inductance, without dry friction or limits. Any other
+ *                           torque comes in as axle_torque_Nm, with c1 = c2 = 0 where it replaces the motor.
+ *          swivel casters   a support: it carries load, its inertia and its turning round are left out. (A single
+ *                           fixed wheel is no swivel caster: it does not swivel.)
+ *          steered wheels   a fixed wheel keeps its axle; a constant steering angle is its axle_rad. Ackermann and
+ *                           swerve drives in motion are beyond (4.7).
+ *          skid steering    more than one axle line of fixed wheels is refused or cannot turn: give one axle line in
+ *                           the middle, a track width fitted to what the robot does, and the others as supports.
+ *
  * Frames   body axes (ξ, η): η is ξ turned by +90°. `com_*` and the wheels are given in the body frame,
  *          whose origin may be anywhere. World axes (X, Y); heading θ is the angle from X to ξ. The
  *          position (x, y) of a state is that of the centre of mass S.
@@ -62,7 +80,7 @@ typedef enum laconic_status {
     LACONIC_STATUS_COUNT
 } laconic_status;
 
-/* The fields a refusal can name. laconic_field_name() gives the name used in scenes and FMUs. */
+/* The fields a refusal can name. laconic_field_name() gives the name in FMUs, laconic_field_path() that in scenes. */
 typedef enum laconic_field {
     LACONIC_FIELD_NONE = 0,
     LACONIC_FIELD_MASS,
@@ -119,12 +137,19 @@ typedef struct laconic_refusal {
     laconic_real limit; /* the nearest acceptable one, where there is one; else 0         */
 } laconic_refusal;
 
-/* One line of text for a refusal, naming the field, the wheel and the remedy. Writes at most `size`
- * characters with the closing 0 and returns the length the whole text has (as snprintf does). */
+/* One line of text for a refusal, naming the field as a scene file has it, with its table and the number of the wheel,
+ * and the remedy: "vehicle.wheel[2].x_m: infinity is not a finite number; give a number". Angles in rad. Writes at most
+ * `size` characters with the closing 0 and returns the length the whole text has (as snprintf does). */
 size_t laconic_message(const laconic_refusal *why, char *text, size_t size);
+
+/* The same without the field, for those who name it in their own way. */
+size_t laconic_explanation(const laconic_refusal *why, char *text, size_t size);
 
 /* "mass_kg", "wheel_x_m" … ; "" for a number that is no field. */
 const char *laconic_field_name(laconic_field field);
+
+/* "vehicle.mass_kg", "vehicle.wheel[#].x_m" … , # for the item; an input's is its signal; "" for a number that is none. */
+const char *laconic_field_path(laconic_field field);
 
 /* "not finite", "wheel not set" … : a few words; "unknown status" for a number that is none. */
 const char *laconic_status_name(laconic_status status);
@@ -138,7 +163,7 @@ typedef enum laconic_arithmetic {
     LACONIC_ARITHMETIC_ROUNDED_OTHERWISE, /* not to nearest, ties to even: fesetround, FPSCR, MXCSR         */
     LACONIC_ARITHMETIC_REORDERED,         /* sums are taken in another order: -fassociative-math            */
     LACONIC_ARITHMETIC_EXCESS_PRECISION,  /* intermediate results keep more than their type: x87            */
-    LACONIC_ARITHMETIC_FUSED,             /* multiply and add are rounded once: -ffp-contract, gcc's SLP     */
+    LACONIC_ARITHMETIC_FUSED,             /* multiply and add are rounded once: -ffp-contract, gcc's SLP    */
     LACONIC_ARITHMETIC_BY_RECIPROCALS,    /* x/y as x·(1/y): -freciprocal-math                              */
     LACONIC_ARITHMETIC_FLUSHED,           /* subnormal numbers count as 0: FTZ, DAZ, FPSCR.FZ, or a library
                                              linked with -ffast-math, which sets them for the whole process */
@@ -187,7 +212,7 @@ typedef struct laconic_vehicle {
     laconic_real mass_kg;               /* M, without payload                                     */
     laconic_real yaw_inertia_kgm2;      /* I_S, about the vertical through the centre of mass     */
     laconic_real com_x_m, com_y_m;      /* centre of mass S in the body frame, without payload    */
-    laconic_real com_z_m;               /* its height, for normal loads only                      */
+    laconic_real com_z_m;               /* its height above the ground, >= 0; for normal loads only */
     laconic_real wheel_radius_m;        /* R, common to all wheels                                */
     laconic_real wheel_inertia_kgm2;    /* J, one wheel with its gear and rotor about the axle    */
     laconic_real motor_gain_Nm_per_V;   /* c1: torque on a wheel is c1 U − c2 χ' + axle torque    */
@@ -213,7 +238,8 @@ typedef struct laconic_motor {
     laconic_real rotor_inertia_kgm2;
 } laconic_motor;
 
-/* c1 = G k_t/R_a, c2 = G² (k_t k_e/R_a + b) set in the vehicle; G² J_rotor added to J, so call it once. */
+/* c1 = G k_t/R_a, c2 = G² (k_t k_e/R_a + b) set in the vehicle; G² J_rotor added to J, so call it once. Refuses
+ * OVERFLOW (gear_ratio) where one of these leaves the range, NEGATIVE (back_emf) where damping is below 0. */
 laconic_status laconic_motor_fit(laconic_vehicle *vehicle, const laconic_motor *motor, laconic_refusal *why);
 
 /* ---------------------------------------------------------------------------------- model -- */
@@ -249,7 +275,8 @@ typedef struct laconic_model {
  * principal axes of A (4.6), damping rates. About 2,000 flops plus 60 N, so that no step takes sines of what
  * the user gave or divides by it. Refuses as laconic_vehicle_check does, and with NOTHING_MOVES,
  * ILL_CONDITIONED (value: the condition number of A, refused from 2·10²⁷ on, in single from 7·10⁹), and OVERFLOW where
- * a constant would leave the range. */
+ * a constant, or one over a scale, would leave the range or its product with another would (beyond 10¹⁵⁴; 10¹⁹ in
+ * single): a model that is prepared is finite in every number. */
 laconic_status laconic_prepare(laconic_model *model, const laconic_vehicle *vehicle, laconic_refusal *why);
 
 /* Condition number of A on the motions that the constraints leave: largest over smallest inertia. By the measure of
@@ -269,6 +296,7 @@ typedef struct laconic_matrices {
     laconic_real lambda_wheel;                           /* λ                                      */
 } laconic_matrices;
 
+/* Refuses as laconic_prepare does, OVERFLOW for these numbers, too. */
 laconic_status laconic_matrices_of(laconic_matrices *matrices, const laconic_vehicle *vehicle, laconic_refusal *why);
 
 /* ---------------------------------------------------------------------------------- input -- */
@@ -340,7 +368,8 @@ void laconic_wheel_angles(const laconic_model *model, const laconic_state *state
 void laconic_wheel_angles_set(const laconic_model *model, laconic_state *state, const laconic_real *angle_rad);
 
 /* Carries a motion over to a changed vehicle (payload, motor): velocity and pose of the body's origin,
- * yaw rate and wheel angles stay; ν and (x, y) are recomputed. The wheels must be the same. */
+ * yaw rate and wheel angles stay; ν and (x, y) are recomputed. The wheels must be the same. Refuses OVERFLOW, and
+ * changes nothing, where two good models are so far apart that the motion of the one is out of range in the other. */
 laconic_status laconic_state_carry(laconic_state *state, const laconic_model *from, const laconic_model *to);
 
 /* ------------------------------------------------------------------------ methods and steps -- */
@@ -404,12 +433,14 @@ const laconic_method *laconic_method_by_number(int32_t number);
 const laconic_method *laconic_method_by_name(const char *name);
 
 /* Prepares a method for a step. Refuses METHOD_UNKNOWN (NULL), NOT_FINITE, NOT_POSITIVE, OVERFLOW (step; the last
- * beyond 10⁹ s), and for explicit methods STEP_BEYOND_DAMPING_LIMIT (limit: the largest stable step). */
+ * beyond 10⁹ s, and where a part of it has no inverse), and for explicit methods STEP_BEYOND_DAMPING_LIMIT (limit:
+ * the largest stable step). */
 laconic_status laconic_integrator_prepare(laconic_integrator *integrator, const laconic_method *method,
                                           const laconic_model *model, laconic_real step_s, laconic_refusal *why);
 
 /* One step of h with the input held. Refuses STEP_BEYOND_GYROSCOPIC_LIMIT, STEP_GAINS_ENERGY, STEP_SINGULAR,
- * OVERFLOW; the state is then as it was. A number of the input that is not finite makes any of these:
+ * OVERFLOW (also where the heading has counted 2⁶² turns); the state is then as it was. A number of the input that is
+ * not finite makes any of these, even the point of a world force of 0:
  * laconic_step_refusal finds it. */
 laconic_status laconic_step(const laconic_model *model, const laconic_integrator *integrator, laconic_state *state,
                             const laconic_input *held);
@@ -506,7 +537,7 @@ typedef struct laconic_contact {
     laconic_real com_z_m, friction_coefficient;
 } laconic_contact;
 
-/* Refuses as laconic_prepare does. */
+/* Refuses as laconic_prepare does, OVERFLOW for these constants, too (supports, com_z_m). */
 laconic_status laconic_contact_prepare(laconic_contact *contact, const laconic_vehicle *vehicle, laconic_refusal *why);
 
 typedef struct laconic_reactions {
