@@ -45,15 +45,19 @@ static inline bool acts(real a, real b, real c) {
     return !(a == R(0) && b == R(0) && c == R(0));
 }
 
+/* So does a point that is none: a force of 0 there is no nothing, but a mistake. */
+static inline bool world_force_acts(const laconic_input *input) {
+    const real force = magnitude(input->world_force_N[0]) + magnitude(input->world_force_N[1]);
+    return !(force + zero_if_finite(input->world_force_point_m[0] + input->world_force_point_m[1]) == R(0));
+}
+
 static inline void load_of(laconic_load *load, const laconic_model *model, const laconic_input *input) {
     vector b = none;
     if (LACONIC_WITH_VOLTAGE || LACONIC_WITH_AXLE_TORQUE) b = wheel_torques(model, input);
     if (LACONIC_WITH_BODY_WRENCH && acts(input->body_force_N[0], input->body_force_N[1], input->body_moment_Nm))
         b = plus(b, body_wrench(model, input));
     put(load->constant, b);
-    load->turns = LACONIC_WITH_WORLD_FORCE &&
-                  acts(input->world_force_N[0], input->world_force_N[1],
-                       zero_if_finite(input->world_force_point_m[0]) + zero_if_finite(input->world_force_point_m[1]));
+    load->turns = LACONIC_WITH_WORLD_FORCE && world_force_acts(input);
     if (LACONIC_WITH_WORLD_FORCE && load->turns) add_world_force(load, model, input);
 }
 

@@ -3,7 +3,8 @@
 /* Methods of second order turn a world force from the start's to the end's and never look at the middle one. */
 static bool middle_is_finite(const laconic_load *middle) {
     if (!LACONIC_WITH_WORLD_FORCE || !middle->turns) return true;
-    return is_finite(size(vec(middle->cosine)) + size(vec(middle->sine)));
+    return zero_if_finite(middle->cosine[0] + middle->cosine[1] + middle->cosine[2] + middle->sine[0] +
+                          middle->sine[1] + middle->sine[2]) == R(0);
 }
 
 laconic_status laconic_step_sampled(const laconic_model *model, const laconic_integrator *integrator,
