@@ -71,15 +71,10 @@ static inline bool in_range(vector zeta, vector delta) {
     return square(zeta) + square(plus(zeta, delta)) <= LARGEST_SPEED * LARGEST_SPEED;
 }
 
-/* A motion beyond the usual that turn and pose still bear. False for NaN. */
-RARE bool bearable(const laconic_heading *heading, real size) {
-    return size < LARGEST_TURN_RAD && heading_has_room(heading);
-}
-
 /* Takes the step, or refuses and leaves the state as it was. */
 INLINE laconic_status take(laconic_state *state, vector delta, vector path, motion moved) {
-    const real size = magnitude(moved.turn_rad) + magnitude(moved.along_m) + magnitude(moved.across_m);
-    if (!(size < USUAL_TURN_RAD) && !bearable(&state->heading, size)) return LACONIC_OVERFLOW;
+    if (!(magnitude(moved.turn_rad) + magnitude(moved.along_m) + magnitude(moved.across_m) < LARGEST_TURN_RAD))
+        return LACONIC_OVERFLOW;
     add(state->zeta, delta);
     settle(state->zeta);
     if (LACONIC_WITH_WHEEL_ANGLES) add(state->travel, path);

@@ -9,12 +9,9 @@
 /* The largest angle one step may turn: whole turns must fit signed_turn. */
 #define LARGEST_TURN_RAD (HALF_TURN * R(2))
 
-/* What a step of a vehicle stays far below. Steps that turn less need 10¹⁶ of them to come to the end of the count. */
-#define USUAL_TURN_RAD R(1000)
-
-/* A step that turns far must begin within 2⁶² turns: what it adds, below 2⁶² turns as well, then fits the count. */
+/* A step begins only within 2⁶² turns: what it adds, below 2⁶² turns as well, then fits the count. */
 static inline bool heading_has_room(const laconic_heading *heading) {
-    return (uint64_t)heading->turns + ((uint64_t)1 << 62) < (uint64_t)1 << 63;
+    return !LACONIC_WITH_POSE || (uint64_t)heading->turns + ((uint64_t)1 << 62) < (uint64_t)1 << 63;
 }
 
 /* Turns on by an angle and returns the heading half-way, as a turn: where the mid-step pose looks. */

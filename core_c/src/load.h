@@ -45,10 +45,9 @@ static inline bool acts(real a, real b, real c) {
     return !(a == R(0) && b == R(0) && c == R(0));
 }
 
-/* So does a point that is none: a force of 0 there is no nothing, but a mistake. */
-static inline bool world_force_acts(const laconic_input *input) {
-    const real force = magnitude(input->world_force_N[0]) + magnitude(input->world_force_N[1]);
-    return !(force + zero_if_finite(input->world_force_point_m[0] + input->world_force_point_m[1]) == R(0));
+/* A force of 0 is not looked at, but where it acts must be a place all the same. NaN or infinity where it is none. */
+static inline real world_force_place(const laconic_input *input) {
+    return LACONIC_WITH_WORLD_FORCE ? input->world_force_point_m[0] + input->world_force_point_m[1] : R(0);
 }
 
 static inline void load_of(laconic_load *load, const laconic_model *model, const laconic_input *input) {
@@ -57,7 +56,7 @@ static inline void load_of(laconic_load *load, const laconic_model *model, const
     if (LACONIC_WITH_BODY_WRENCH && acts(input->body_force_N[0], input->body_force_N[1], input->body_moment_Nm))
         b = plus(b, body_wrench(model, input));
     put(load->constant, b);
-    load->turns = LACONIC_WITH_WORLD_FORCE && world_force_acts(input);
+    load->turns = LACONIC_WITH_WORLD_FORCE && acts(input->world_force_N[0], input->world_force_N[1], R(0));
     if (LACONIC_WITH_WORLD_FORCE && load->turns) add_world_force(load, model, input);
 }
 

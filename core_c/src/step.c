@@ -1,4 +1,5 @@
 /* Steps with the input held: input → load once, then the method. The one stepping loop of the project. */
+#include "heading.h"
 #include "load.h"
 
 uint64_t laconic_run(const laconic_model *model, const laconic_integrator *integrator, laconic_state *state,
@@ -7,9 +8,17 @@ uint64_t laconic_run(const laconic_model *model, const laconic_integrator *integ
     laconic_loads loads = {&load, &load, &load, true};
     laconic_status last = LACONIC_OK;
     uint64_t left;
+    if (zero_if_finite(world_force_place(held)) != R(0)) {
+        *status = LACONIC_OVERFLOW;
+        return 0;
+    }
     load_of(&load, model, held);
     loads.steady = !load.turns;
     for (left = steps; left > 0; left--) {
+        if (!heading_has_room(&state->heading)) {
+            last = LACONIC_OVERFLOW;
+            break;
+        }
         last = integrator->chosen->step(model, integrator, state, &loads);
         if (last != LACONIC_OK) break;
     }

@@ -439,7 +439,7 @@ laconic_status laconic_integrator_prepare(laconic_integrator *integrator, const 
                                           const laconic_model *model, laconic_real step_s, laconic_refusal *why);
 
 /* One step of h with the input held. Refuses STEP_BEYOND_GYROSCOPIC_LIMIT, STEP_GAINS_ENERGY, STEP_SINGULAR,
- * OVERFLOW (also where a fast turn begins beyond 2⁶² turns); the state is then as it was. A number of the input that is
+ * OVERFLOW (also where the heading has counted 2⁶² turns); the state is then as it was. A number of the input that is
  * not finite makes any of these, even the point of a world force of 0:
  * laconic_step_refusal finds it. */
 laconic_status laconic_step(const laconic_model *model, const laconic_integrator *integrator, laconic_state *state,
