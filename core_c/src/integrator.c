@@ -12,8 +12,7 @@ laconic_status laconic_integrator_prepare(laconic_integrator *integrator, const 
         return refuse(why, LACONIC_METHOD_UNKNOWN, LACONIC_FIELD_METHOD, 0, R(0), R(0));
     if (!is_finite(step_s)) return refuse(why, LACONIC_NOT_FINITE, LACONIC_FIELD_STEP, 0, step_s, R(0));
     if (!(step_s > R(0))) return refuse(why, LACONIC_NOT_POSITIVE, LACONIC_FIELD_STEP, 0, step_s, R(0));
-    if (step_s < SMALLEST_STEP_S)
-        return refuse(why, LACONIC_OVERFLOW, LACONIC_FIELD_STEP, 0, step_s, SMALLEST_STEP_S);
+    if (step_s < SMALLEST_STEP_S) return refuse(why, LACONIC_OVERFLOW, LACONIC_FIELD_STEP, 0, step_s, SMALLEST_STEP_S);
     if (step_s > LARGEST_STEP_S) return refuse(why, LACONIC_OVERFLOW, LACONIC_FIELD_STEP, 0, step_s, LARGEST_STEP_S);
     prepared.method = prepared.chosen = method;
     prepared.step_s = step_s;
@@ -23,8 +22,8 @@ laconic_status laconic_integrator_prepare(laconic_integrator *integrator, const 
     return status;
 }
 
-laconic_status laconic_explicit_limits(laconic_integrator *integrator, const laconic_model *model,
-                                       real largest_damping, real largest_rotation, laconic_refusal *why) {
+laconic_status laconic_explicit_limits(laconic_integrator *integrator, const laconic_model *model, real largest_damping,
+                                       real largest_rotation, laconic_refusal *why) {
     const real fastest = laconic_fastest_decay(model), turning = laconic_root(square(vec(model->gyro)));
     if (!(integrator->step_s * fastest <= largest_damping))
         return refuse(why, LACONIC_STEP_BEYOND_DAMPING_LIMIT, LACONIC_FIELD_STEP, 0, integrator->step_s,

@@ -213,10 +213,10 @@ static real scale_size(real scale) {
 static bool usable(const laconic_model *m) {
     const real vectors = size(vec(m->inertia)) + size(vec(m->decay_per_s)) + size(vec(m->gyro)) +
                          size(vec(m->spin_gain)) + size(vec(m->spin_curve)) + size(vec(m->yaw_rate_of_zeta));
-    const real rows = rows_size(m->nu_of_zeta, 3) + rows_size(m->velocity_of_zeta, 2) +
-                      rows_size(m->wheel_of_zeta, m->wheel_count);
-    const real scales = scale_size(m->mass_kg) + scale_size(m->wheel_radius_m) + scale_size(m->yaw_scale) +
-                        scale_size(m->torque_scale);
+    const real rows =
+        rows_size(m->nu_of_zeta, 3) + rows_size(m->velocity_of_zeta, 2) + rows_size(m->wheel_of_zeta, m->wheel_count);
+    const real scales =
+        scale_size(m->mass_kg) + scale_size(m->wheel_radius_m) + scale_size(m->yaw_scale) + scale_size(m->torque_scale);
     const real others = m->gyro_square + magnitude(m->voltage_scale) + magnitude(m->motor_gain_Nm_per_V) +
                         m->motor_damping_Nms + m->wheel_inertia_kgm2 + magnitude(m->com_x_m) + magnitude(m->com_y_m);
     return fits_squared(vectors + rows + scales + others);

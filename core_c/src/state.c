@@ -50,8 +50,8 @@ laconic_status laconic_state_set(laconic_state *state, const laconic_model *mode
 
 /* Two models that each fit may together leave the range: a centre of mass far from the old one, a much larger Λ. */
 static bool carried_in_range(const laconic_state *state, const real *angle, int32_t wheel_count) {
-    real zero = zero_if_finite(state->x_m.value) + zero_if_finite(state->x_m.rest) +
-                zero_if_finite(state->y_m.value) + zero_if_finite(state->y_m.rest);
+    real zero = zero_if_finite(state->x_m.value) + zero_if_finite(state->x_m.rest) + zero_if_finite(state->y_m.value) +
+                zero_if_finite(state->y_m.rest);
     int32_t i;
     for (i = 0; i < wheel_count; i++) zero += zero_if_finite(angle[i]);
     return zero == R(0) && square(zeta_of(state)) <= LARGEST_SPEED * LARGEST_SPEED;

@@ -26,9 +26,10 @@ static void a_field_without_the_item_it_could_have_is_named_as_a_whole(void) {
     TEST_ASSERT_EQUAL_STRING("initial.nu_rad_per_s: the numbers leave the range of " LACONIC_REAL_NAME
                              " precision; check inputs and units",
                              message(LACONIC_OVERFLOW, LACONIC_FIELD_START_NU, 0, 0, 0));
-    TEST_ASSERT_EQUAL_STRING_LEN("voltage_V[2]: NaN", message(LACONIC_NOT_FINITE, LACONIC_FIELD_VOLTAGE, 2, NAN, 0), 17);
-    TEST_ASSERT_EQUAL_STRING_LEN("body_moment_Nm: NaN", message(LACONIC_NOT_FINITE, LACONIC_FIELD_BODY_MOMENT, 0, NAN, 0),
-                                 19);
+    TEST_ASSERT_EQUAL_STRING_LEN("voltage_V[2]: NaN",
+                                 message(LACONIC_NOT_FINITE, LACONIC_FIELD_VOLTAGE, 2, (double)NAN, 0), 17);
+    TEST_ASSERT_EQUAL_STRING_LEN("body_moment_Nm: NaN",
+                                 message(LACONIC_NOT_FINITE, LACONIC_FIELD_BODY_MOMENT, 0, (double)NAN, 0), 19);
 }
 
 static void an_explanation_is_the_message_without_its_field(void) {

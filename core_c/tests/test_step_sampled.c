@@ -100,8 +100,9 @@ static void a_world_force_at_one_sample_alone_counts_by_its_weight(void) {
 }
 
 static laconic_input with_number(laconic_input input, int which, laconic_real number) {
-    laconic_real *const places[] = {&input.voltage_V[1],      &input.axle_torque_Nm[2], &input.body_force_N[0],
-                                    &input.body_moment_Nm,    &input.world_force_N[0],  &input.world_force_N[1],
+    laconic_real *const places[] = {&input.voltage_V[1],           &input.axle_torque_Nm[2],
+                                    &input.body_force_N[0],        &input.body_moment_Nm,
+                                    &input.world_force_N[0],       &input.world_force_N[1],
                                     &input.world_force_point_m[0], &input.world_force_point_m[1]};
     *places[which] = number;
     return input;

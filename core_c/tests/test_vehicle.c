@@ -94,9 +94,11 @@ static const number must_be_positive[] = {
     {radius, LACONIC_FIELD_WHEEL_RADIUS, 0},
 };
 static const number must_not_be_negative[] = {
-    {wheel_inertia, LACONIC_FIELD_WHEEL_INERTIA, 0},         {damping, LACONIC_FIELD_MOTOR_DAMPING, 0},
+    {wheel_inertia, LACONIC_FIELD_WHEEL_INERTIA, 0},
+    {damping, LACONIC_FIELD_MOTOR_DAMPING, 0},
     {com_z, LACONIC_FIELD_COM_Z, 0},
-    {friction, LACONIC_FIELD_FRICTION_COEFFICIENT, 0},       {payload_mass, LACONIC_FIELD_PAYLOAD_MASS, 0},
+    {friction, LACONIC_FIELD_FRICTION_COEFFICIENT, 0},
+    {payload_mass, LACONIC_FIELD_PAYLOAD_MASS, 0},
     {payload_inertia, LACONIC_FIELD_PAYLOAD_YAW_INERTIA, 0},
 };
 static const number any_number[] = {

@@ -62,21 +62,21 @@ def test_a_scalar_type_that_there_is_not():
         load("half")
 
 
-@pytest.mark.parametrize(("changes", "status", "field", "item"), [
-    ({"mass_kg": -1.0}, "not positive", "mass_kg", 0),
-    ({"mass_kg": math.nan}, "not finite", "mass_kg", 0),
-    ({"wheel": [WHEEL, {**WHEEL, "roller_rad": 0.0}]}, "roller along axle", "roller_rad", 2),
-    ({"wheel": [WHEEL, {**WHEEL, "y_m": math.inf}]}, "not finite", "wheel_y_m", 2),
-    ({"wheel": [{**WHEEL, "kind": "unset"}]}, "wheel not set", "wheel_kind", 1),
-    ({"wheel": 17 * [WHEEL]}, "too many wheels", "wheel_count", 0),
+@pytest.mark.parametrize(("changes", "status", "field", "item", "place"), [
+    ({"mass_kg": -1.0}, "not positive", "mass_kg", 0, "vehicle.mass_kg: "),
+    ({"mass_kg": math.nan}, "not finite", "mass_kg", 0, "vehicle.mass_kg: "),
+    ({"com_z_m": -5.0}, "negative", "com_z_m", 0, "vehicle.com_z_m: -5 "),
+    ({"wheel": [WHEEL, {**WHEEL, "roller_rad": 0.0}]}, "roller along axle", "roller_rad", 2,
+     "vehicle.wheel[2].roller_rad: "),
+    ({"wheel": [WHEEL, {**WHEEL, "y_m": math.inf}]}, "not finite", "wheel_y_m", 2, "vehicle.wheel[2].y_m: "),
+    ({"wheel": [{**WHEEL, "kind": "unset"}]}, "wheel not set", "wheel_kind", 1, "vehicle.wheel[1].kind: "),
+    ({"wheel": 17 * [WHEEL]}, "too many wheels", "wheel_count", 0, "vehicle.wheel: "),
     ({"wheel": [{**WHEEL, "kind": "fixed", "locked": True}, {**WHEEL, "kind": "fixed", "x_m": 1.0, "axle_rad": 1.5}]},
-     "nothing moves", "", 0)])
-def test_a_refusal_arrives_with_status_field_item_and_words(core, changes, status, field, item):
+     "nothing moves", "wheel_kind", 0, "vehicle.wheel.kind: ")])
+def test_a_refusal_arrives_with_status_field_item_and_the_words_of_a_scene(core, changes, status, field, item, place):
     found = refused(core, **changes)
-    assert (found.status, found.item) == (status, item)
-    if field:
-        assert found.field == field
-        assert field in str(found)
+    assert (found.status, found.field, found.item) == (status, field, item)
+    assert str(found).startswith(place)
     assert found.exit_status == 2
     assert "\n" not in str(found)
 

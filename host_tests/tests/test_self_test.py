@@ -72,8 +72,8 @@ def test_every_mode_that_spoils_arithmetic_is_found(compiler, mode, tmp_path):
 @pytest.mark.skipif("gcc" not in COMPILERS or not processor_has("avx2"), reason="needs gcc and a processor with FMA")
 def test_what_a_vectoriser_fuses_against_its_orders_is_found_where_it_does(tmp_path):
     eager = ["-std=c99", "-O2", "-ffp-contract=off", "-march=x86-64-v3"]
-    listing = subprocess.run(["gcc", *eager, "-I", str(CORE / "include"), "-S", "-o", "-", str(CORE / "src/geometry.c")],
-                             capture_output=True, text=True, check=True).stdout
+    made = ["gcc", *eager, "-I", str(CORE / "include"), "-S", "-o", "-", str(CORE / "src/geometry.c")]
+    listing = subprocess.run(made, capture_output=True, text=True, check=True).stdout
     assert ("are fused" in found("gcc", eager, tmp_path)) == ("vfm" in listing)
     assert found("gcc", [*eager, "-fno-tree-slp-vectorize"], tmp_path) == "0 sound"
 
