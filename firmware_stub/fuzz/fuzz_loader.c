@@ -45,8 +45,10 @@ int LLVMFuzzerTestOneInput(const uint8_t *data, size_t size) {
         laconic_loader_take(&place.loader, payload);
     }
     for (int k = 0; k < 16; k++) must(place.before[k] == GUARD && place.after[k] == GUARD);
-    must(laconic_loader_check(&place.loader, place.loader.frame_count, ~place.loader.checksum + 1U) != 0);
-    if (laconic_loader_check(&place.loader, place.loader.frame_count, ~place.loader.checksum) == 0)
+    uint8_t field, item;
+    const uint16_t count = place.loader.frame_count;
+    must(laconic_loader_check(&place.loader, count, ~place.loader.checksum + 1U, &field, &item) != 0);
+    if (laconic_loader_check(&place.loader, count, ~place.loader.checksum, &field, &item) == 0)
         prepare(&place.loader.parameters);
     return 0;
 }

@@ -2,39 +2,38 @@
 
 #include "laconic_node/crc.h"
 
-static uint8_t p22_crc(const uint8_t *data, uint8_t length, const uint8_t data_ids[16], uint8_t turn) {
-    const uint8_t *id = &data_ids[(data[1] + turn) & LACONIC_E2E_P22_COUNTER_MASK];
-    uint8_t crc = laconic_crc8(LACONIC_CRC8_START, data + 1, (size_t)length - 1U);
-    crc = laconic_crc8(crc, id, 1);
+static uint8_t p22_crc(const uint8_t *data, uint8_t length, laconic_e2e_ends ends) {
+    const uint8_t id = (uint8_t)ends.data_id;
+    uint8_t crc = laconic_crc8((uint8_t)ends.start, data + 1, (size_t)length - 1U);
+    crc = laconic_crc8(crc, &id, 1);
     return (uint8_t)(crc ^ LACONIC_CRC8_END);
 }
 
-void laconic_e2e_p22_protect(uint8_t *data, uint8_t length, const uint8_t data_ids[16], uint8_t turn,
-                             uint8_t counter) {
+void laconic_e2e_p22_protect(uint8_t *data, uint8_t length, laconic_e2e_ends ends, uint8_t counter) {
     data[1] = (uint8_t)((data[1] & 0xF0U) | (counter & LACONIC_E2E_P22_COUNTER_MASK));
-    data[0] = p22_crc(data, length, data_ids, turn);
+    data[0] = p22_crc(data, length, ends);
 }
 
-bool laconic_e2e_p22_crc_is_right(const uint8_t *data, uint8_t length, const uint8_t data_ids[16], uint8_t turn) {
-    return length >= LACONIC_E2E_P22_HEADER && data[0] == p22_crc(data, length, data_ids, turn);
+bool laconic_e2e_p22_crc_is_right(const uint8_t *data, uint8_t length, laconic_e2e_ends ends) {
+    return length >= LACONIC_E2E_P22_HEADER && data[0] == p22_crc(data, length, ends);
 }
 
-static uint16_t p05_crc(const uint8_t *data, uint8_t length, uint16_t data_id) {
-    const uint8_t id[2] = {(uint8_t)(data_id & 255U), (uint8_t)(data_id >> 8)};
-    uint16_t crc = laconic_crc16(LACONIC_CRC16_START, data + 2, (size_t)length - 2U);
+static uint16_t p05_crc(const uint8_t *data, uint8_t length, laconic_e2e_ends ends) {
+    const uint8_t id[2] = {(uint8_t)(ends.data_id & 255U), (uint8_t)(ends.data_id >> 8)};
+    uint16_t crc = laconic_crc16(ends.start, data + 2, (size_t)length - 2U);
     crc = laconic_crc16(crc, id, 2);
     return (uint16_t)(crc ^ LACONIC_CRC16_END);
 }
 
-void laconic_e2e_p05_protect(uint8_t *data, uint8_t length, uint16_t data_id, uint8_t counter) {
+void laconic_e2e_p05_protect(uint8_t *data, uint8_t length, laconic_e2e_ends ends, uint8_t counter) {
     data[2] = counter;
-    const uint16_t crc = p05_crc(data, length, data_id);
+    const uint16_t crc = p05_crc(data, length, ends);
     data[0] = (uint8_t)(crc & 255U);
     data[1] = (uint8_t)(crc >> 8);
 }
 
-bool laconic_e2e_p05_crc_is_right(const uint8_t *data, uint8_t length, uint16_t data_id) {
-    return length >= LACONIC_E2E_P05_HEADER && (data[0] | (data[1] << 8)) == p05_crc(data, length, data_id);
+bool laconic_e2e_p05_crc_is_right(const uint8_t *data, uint8_t length, laconic_e2e_ends ends) {
+    return length >= LACONIC_E2E_P05_HEADER && (data[0] | (data[1] << 8)) == p05_crc(data, length, ends);
 }
 
 static laconic_e2e_status accept(laconic_e2e_receiver *receiver, uint8_t counter, uint8_t lost) {

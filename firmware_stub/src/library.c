@@ -5,15 +5,16 @@
 
 uint32_t laconic_library_node_size(void) { return (uint32_t)sizeof(laconic_node); }
 
-bool laconic_library_node_init(laconic_node *node, uint16_t id_base, bool can_fd, uint32_t now_us) {
-    const laconic_node_config config = {id_base, can_fd, laconic_method_by_number};
+bool laconic_library_node_init(laconic_node *node, uint16_t id_base, bool can_fd, uint32_t nonce_seed,
+                               uint32_t now_us) {
+    const laconic_node_config config = {id_base, can_fd, laconic_method_by_number, nonce_seed};
     return laconic_node_init(node, &config, now_us);
 }
 
 void laconic_library_look(const laconic_node *node, laconic_library_view *view) {
     const laconic_library_view seen = {
         .state = node->state,
-        .session = node->session,
+        .deaf = node->session.deaf != 0,
         .steps = node->plant.steps,
         .voltage_V = {(double)node->input[0].voltage_V[0], (double)node->input[0].voltage_V[1],
                       (double)node->input[0].voltage_V[2]},
@@ -22,31 +23,14 @@ void laconic_library_look(const laconic_node *node, laconic_library_view *view) 
     *view = seen;
 }
 
-static uint8_t turn_of(uint8_t offset, uint8_t session) { return laconic_wire[offset].of_session ? session : 0; }
-
-void laconic_library_protect(uint8_t offset, uint8_t *data, uint8_t length, uint8_t session, uint8_t counter) {
-    const uint8_t turn = turn_of(offset, session);
-    if (laconic_wire[offset].fd) {
-        laconic_e2e_p05_protect(data, length, (uint16_t)(laconic_wire_data_id(offset) + turn), counter);
-    } else {
-        laconic_e2e_p22_protect(data, length, laconic_wire_data_ids[laconic_wire[offset].list], turn, counter);
-    }
-}
-
-bool laconic_library_crc_is_right(uint8_t offset, const uint8_t *data, uint8_t length, uint8_t session) {
-    const uint8_t turn = turn_of(offset, session);
-    if (laconic_wire[offset].fd)
-        return laconic_e2e_p05_crc_is_right(data, length, (uint16_t)(laconic_wire_data_id(offset) + turn));
-    return laconic_e2e_p22_crc_is_right(data, length, laconic_wire_data_ids[laconic_wire[offset].list], turn);
-}
-
 static void try_error(laconic_error_census *census, const uint8_t frame[8], uint64_t error,
                       const uint8_t data_ids[16], uint8_t max_delta) {
     uint8_t data[8];
     const uint8_t mask = LACONIC_E2E_P22_COUNTER_MASK;
     for (unsigned k = 0; k < 8; k++) data[k] = (uint8_t)(frame[k] ^ (error >> (8U * k) & 255U));
     laconic_e2e_receiver receiver = {.known = true, .counter = (uint8_t)((frame[1] - 1U) & mask)};
-    const bool right = laconic_e2e_p22_crc_is_right(data, 8, data_ids, 0);
+    const laconic_e2e_ends ends = {LACONIC_E2E_P22_START, data_ids[data[1] & mask]};
+    const bool right = laconic_e2e_p22_crc_is_right(data, 8, ends);
     const laconic_e2e_status status = laconic_e2e_check(&receiver, right, data[1] & mask, mask, max_delta);
     uint64_t *counts = (data[1] & mask) == (frame[1] & mask) ? census->counter_kept : census->counter_changed;
     counts[!right ? 0 : laconic_e2e_accepts(status) ? 2 : 1]++;

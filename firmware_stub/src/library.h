@@ -15,25 +15,24 @@ uint32_t laconic_node_idle_us(const struct laconic_node *node, uint32_t now_us);
 #include "laconic_node/counters.h"
 #include "laconic_node/crc.h"
 #include "laconic_node/e2e.h"
+#include "laconic_node/protection.h"
 #include "laconic_node/slcan.h"
 
 /* A node in memory that the caller provides (that many bytes, aligned to 8), with all methods. */
 uint32_t laconic_library_node_size(void);
-bool laconic_library_node_init(struct laconic_node *node, uint16_t id_base, bool can_fd, uint32_t now_us);
+bool laconic_library_node_init(struct laconic_node *node, uint16_t id_base, bool can_fd, uint32_t nonce_seed,
+                               uint32_t now_us);
 
 /* What a test may look at from outside. */
 typedef struct laconic_library_view {
-    uint8_t state, session;
+    uint8_t state;
+    bool deaf;
     uint64_t steps;
     double voltage_V[3]; /* of the first wheels, as the next step will use them */
     laconic_node_counters counters;
 } laconic_library_view;
 
 void laconic_library_look(const struct laconic_node *node, laconic_library_view *view);
-
-/* Puts protection on a frame of the rig, or takes it off one of the node: by offset of the identifier. */
-void laconic_library_protect(uint8_t offset, uint8_t *data, uint8_t length, uint8_t session, uint8_t counter);
-bool laconic_library_crc_is_right(uint8_t offset, const uint8_t *data, uint8_t length, uint8_t session);
 
 /* Over every error of one, two and three bits in this 8-byte frame of profile 22, counted by what happens to it:
  * outcome 0 found by the CRC, 1 found by the counter, 2 accepted. The receiver has just taken the frame before. */

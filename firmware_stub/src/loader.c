@@ -8,52 +8,65 @@
 
 typedef enum value_kind { REAL, INTEGER, WHEEL_KIND, FLAG } value_kind;
 
+/* What must come, even if it is zero: as in a scene file, where nothing of a robot is assumed. */
+typedef enum need {
+    OPTIONAL,
+    ALWAYS,
+    WITH_WHEELS,   /* where there are wheels                      */
+    WITH_GROUP,    /* where another number of its group has come  */
+    EACH,          /* wheel or support up to their number         */
+    EACH_ROLLER    /* wheel with rollers                          */
+} need;
+
 typedef struct place {
     uint8_t field;
-    uint8_t kind;
+    uint8_t kind_and_need; /* value_kind, 16 · need */
     uint8_t items; /* 0: the field is no list */
     uint8_t stride;
     uint16_t offset;
 } place;
 
 #define AT(member) (uint16_t) offsetof(laconic_parameters, member)
-#define SCALAR(field, member) {(uint8_t)(field), REAL, 0, 0, AT(member)}
-#define PER_WHEEL(field, type, member) \
-    {(uint8_t)(field), type, LACONIC_MAX_WHEELS, sizeof(laconic_wheel), AT(vehicle.wheel[0].member)}
+#define SCALAR(field, member, need) {(uint8_t)(field), REAL | need << 4, 0, 0, AT(member)}
+#define COUNT(field, member, need) {(uint8_t)(field), INTEGER | need << 4, 0, 0, AT(member)}
+#define PER_WHEEL(field, type, member, need) \
+    {(uint8_t)(field), type | need << 4, LACONIC_MAX_WHEELS, sizeof(laconic_wheel), AT(vehicle.wheel[0].member)}
 #define PER_SUPPORT(field, member) \
-    {(uint8_t)(field), REAL, LACONIC_MAX_SUPPORTS, sizeof(laconic_support), AT(vehicle.support[0].member)}
+    {(uint8_t)(field), REAL | EACH << 4, LACONIC_MAX_SUPPORTS, sizeof(laconic_support), AT(vehicle.support[0].member)}
+
+#define PLACES (sizeof places / sizeof places[0])
 
 static const place places[] = {
-    SCALAR(LACONIC_FIELD_MASS, vehicle.mass_kg),
-    SCALAR(LACONIC_FIELD_YAW_INERTIA, vehicle.yaw_inertia_kgm2),
-    SCALAR(LACONIC_FIELD_COM_X, vehicle.com_x_m),
-    SCALAR(LACONIC_FIELD_COM_Y, vehicle.com_y_m),
-    SCALAR(LACONIC_FIELD_COM_Z, vehicle.com_z_m),
-    SCALAR(LACONIC_FIELD_WHEEL_RADIUS, vehicle.wheel_radius_m),
-    SCALAR(LACONIC_FIELD_WHEEL_INERTIA, vehicle.wheel_inertia_kgm2),
-    SCALAR(LACONIC_FIELD_MOTOR_GAIN, vehicle.motor_gain_Nm_per_V),
-    SCALAR(LACONIC_FIELD_MOTOR_DAMPING, vehicle.motor_damping_Nms),
-    SCALAR(LACONIC_FIELD_FRICTION_COEFFICIENT, vehicle.friction_coefficient),
-    SCALAR(LACONIC_FIELD_PAYLOAD_MASS, vehicle.payload.mass_kg),
-    SCALAR(LACONIC_FIELD_PAYLOAD_X, vehicle.payload.x_m),
-    SCALAR(LACONIC_FIELD_PAYLOAD_Y, vehicle.payload.y_m),
-    SCALAR(LACONIC_FIELD_PAYLOAD_YAW_INERTIA, vehicle.payload.yaw_inertia_kgm2),
-    {LACONIC_FIELD_WHEEL_COUNT, INTEGER, 0, 0, AT(vehicle.wheel_count)},
-    PER_WHEEL(LACONIC_FIELD_WHEEL_KIND, WHEEL_KIND, kind),
-    PER_WHEEL(LACONIC_FIELD_WHEEL_X, REAL, x_m),
-    PER_WHEEL(LACONIC_FIELD_WHEEL_Y, REAL, y_m),
-    PER_WHEEL(LACONIC_FIELD_AXLE, REAL, axle_rad),
-    PER_WHEEL(LACONIC_FIELD_ROLLER, REAL, roller_rad),
-    PER_WHEEL(LACONIC_FIELD_WHEEL_LOCKED, FLAG, locked),
-    {LACONIC_FIELD_SUPPORT_COUNT, INTEGER, 0, 0, AT(vehicle.support_count)},
+    SCALAR(LACONIC_FIELD_MASS, vehicle.mass_kg, ALWAYS),
+    SCALAR(LACONIC_FIELD_YAW_INERTIA, vehicle.yaw_inertia_kgm2, ALWAYS),
+    SCALAR(LACONIC_FIELD_COM_X, vehicle.com_x_m, OPTIONAL),
+    SCALAR(LACONIC_FIELD_COM_Y, vehicle.com_y_m, OPTIONAL),
+    SCALAR(LACONIC_FIELD_COM_Z, vehicle.com_z_m, OPTIONAL),
+    SCALAR(LACONIC_FIELD_WHEEL_RADIUS, vehicle.wheel_radius_m, ALWAYS),
+    SCALAR(LACONIC_FIELD_WHEEL_INERTIA, vehicle.wheel_inertia_kgm2, WITH_WHEELS),
+    SCALAR(LACONIC_FIELD_MOTOR_GAIN, vehicle.motor_gain_Nm_per_V, WITH_GROUP),
+    SCALAR(LACONIC_FIELD_MOTOR_DAMPING, vehicle.motor_damping_Nms, WITH_GROUP),
+    SCALAR(LACONIC_FIELD_FRICTION_COEFFICIENT, vehicle.friction_coefficient, OPTIONAL),
+    SCALAR(LACONIC_FIELD_PAYLOAD_MASS, vehicle.payload.mass_kg, WITH_GROUP),
+    SCALAR(LACONIC_FIELD_PAYLOAD_X, vehicle.payload.x_m, WITH_GROUP),
+    SCALAR(LACONIC_FIELD_PAYLOAD_Y, vehicle.payload.y_m, WITH_GROUP),
+    SCALAR(LACONIC_FIELD_PAYLOAD_YAW_INERTIA, vehicle.payload.yaw_inertia_kgm2, WITH_GROUP),
+    COUNT(LACONIC_FIELD_WHEEL_COUNT, vehicle.wheel_count, ALWAYS),
+    PER_WHEEL(LACONIC_FIELD_WHEEL_KIND, WHEEL_KIND, kind, EACH),
+    PER_WHEEL(LACONIC_FIELD_WHEEL_X, REAL, x_m, EACH),
+    PER_WHEEL(LACONIC_FIELD_WHEEL_Y, REAL, y_m, EACH),
+    PER_WHEEL(LACONIC_FIELD_AXLE, REAL, axle_rad, EACH),
+    PER_WHEEL(LACONIC_FIELD_ROLLER, REAL, roller_rad, EACH_ROLLER),
+    PER_WHEEL(LACONIC_FIELD_WHEEL_LOCKED, FLAG, locked, OPTIONAL),
+    COUNT(LACONIC_FIELD_SUPPORT_COUNT, vehicle.support_count, WITH_GROUP),
     PER_SUPPORT(LACONIC_FIELD_SUPPORT_X, x_m),
     PER_SUPPORT(LACONIC_FIELD_SUPPORT_Y, y_m),
-    {LACONIC_FIELD_START_NU, REAL, 3, sizeof(laconic_real), AT(start.nu_rad_per_s)},
-    SCALAR(LACONIC_FIELD_START_X, start.x_m),
-    SCALAR(LACONIC_FIELD_START_Y, start.y_m),
-    SCALAR(LACONIC_FIELD_START_HEADING, start.heading_rad),
-    {LACONIC_FIELD_METHOD, INTEGER, 0, 0, AT(method)},
-    SCALAR(LACONIC_FIELD_STEP, step_s),
+    {LACONIC_FIELD_START_NU, REAL | OPTIONAL << 4, 3, sizeof(laconic_real), AT(start.nu_rad_per_s)},
+    SCALAR(LACONIC_FIELD_START_X, start.x_m, OPTIONAL),
+    SCALAR(LACONIC_FIELD_START_Y, start.y_m, OPTIONAL),
+    SCALAR(LACONIC_FIELD_START_HEADING, start.heading_rad, OPTIONAL),
+    COUNT(LACONIC_FIELD_METHOD, method, OPTIONAL),
+    SCALAR(LACONIC_FIELD_STEP, step_s, ALWAYS),
 };
 
 void laconic_loader_begin(laconic_loader *loader) {
@@ -62,12 +75,17 @@ void laconic_loader_begin(laconic_loader *loader) {
 }
 
 static const place *find(uint8_t field, uint8_t item) {
-    for (size_t k = 0; k < sizeof places / sizeof places[0]; k++) {
+    for (size_t k = 0; k < PLACES; k++) {
         if (places[k].field != field) continue;
         const bool fits = places[k].items == 0 ? item == 0 : item >= 1 && item <= places[k].items;
         return fits ? &places[k] : NULL;
     }
     return NULL;
+}
+
+/* Numbers for which the contract has a field and the core has no use yet. */
+static bool is_reserved(uint8_t field) {
+    return field >= LACONIC_WIRE_FIELD_RESISTANCE && field <= LACONIC_WIRE_FIELD_START_WHEEL_SPEED;
 }
 
 static void refuse(laconic_loader *loader, uint8_t status, uint8_t field, uint8_t item) {
@@ -132,22 +150,74 @@ void laconic_loader_take(laconic_loader *loader, const uint8_t data[8]) {
     laconic_dbc_parameter_unpack(&frame, data, 8);
     const place *where = find(frame.field, frame.item);
     if (where == NULL) {
-        refuse(loader, LACONIC_WIRE_STATUS_PARAMETER_UNKNOWN, frame.field, frame.item);
+        refuse(loader, is_reserved(frame.field) ? LACONIC_WIRE_STATUS_NOT_SUPPORTED
+                                                : LACONIC_WIRE_STATUS_PARAMETER_UNKNOWN, frame.field, frame.item);
         return;
     }
+    loader->given[frame.field] |= (uint32_t)1 << frame.item;
     uint8_t *to = (uint8_t *)&loader->parameters + where->offset;
     if (where->items > 0) to += (size_t)where->stride * (size_t)(frame.item - 1);
-    if (where->kind == REAL) {
+    const uint8_t kind = where->kind_and_need & 15U;
+    if (kind == REAL) {
         store_real(loader, to, &frame);
     } else {
-        store_integer(loader, to, where->kind, &frame);
+        store_integer(loader, to, kind, &frame);
     }
 }
 
-uint8_t laconic_loader_check(const laconic_loader *loader, uint16_t frame_count, uint32_t checksum) {
+static bool any_of(const laconic_loader *loader, uint8_t first, uint8_t last) {
+    uint32_t given = 0;
+    for (; first <= last; first++) given |= loader->given[first];
+    return given != 0;
+}
+
+static bool group_has_begun(const laconic_loader *loader, uint8_t field) {
+    if (field == LACONIC_FIELD_SUPPORT_COUNT)
+        return any_of(loader, LACONIC_FIELD_SUPPORT_X, LACONIC_FIELD_SUPPORT_Y);
+    return field <= LACONIC_FIELD_MOTOR_DAMPING
+               ? any_of(loader, LACONIC_FIELD_MOTOR_GAIN, LACONIC_FIELD_MOTOR_DAMPING)
+               : any_of(loader, LACONIC_FIELD_PAYLOAD_MASS, LACONIC_FIELD_PAYLOAD_YAW_INERTIA);
+}
+
+/* Whether this item of the field must have come. Beyond the largest number of wheels or supports the count itself is
+ * wrong, which the core says. */
+static bool is_needed(const laconic_loader *loader, const place *where, int32_t item) {
+    const laconic_vehicle *vehicle = &loader->parameters.vehicle;
+    switch (where->kind_and_need >> 4) {
+    case ALWAYS: return true;
+    case WITH_WHEELS: return vehicle->wheel_count > 0;
+    case WITH_GROUP: return group_has_begun(loader, where->field);
+    case EACH: return item <= (where->field < LACONIC_FIELD_SUPPORT_X ? vehicle->wheel_count : vehicle->support_count);
+    case EACH_ROLLER: return item <= vehicle->wheel_count && vehicle->wheel[item - 1].kind == LACONIC_WHEEL_ROLLER;
+    default: return false;
+    }
+}
+
+static bool something_is_missing(const laconic_loader *loader, uint8_t *field, uint8_t *item) {
+    for (size_t k = 0; k < PLACES; k++) {
+        const place *where = &places[k];
+        *field = where->field;
+        for (*item = where->items > 0; *item <= where->items; ++*item) {
+            const bool given = (loader->given[where->field] >> *item & 1U) != 0;
+            if (!given && is_needed(loader, where, *item)) return true;
+        }
+    }
+    *field = 0;
+    *item = 0;
+    return false;
+}
+
+uint8_t laconic_loader_check(const laconic_loader *loader, uint16_t frame_count, uint32_t checksum, uint8_t *field,
+                             uint8_t *item) {
+    *field = loader->field;
+    *item = loader->item;
     if (loader->status != 0) return loader->status;
-    if (loader->half_field != 0) return LACONIC_WIRE_STATUS_INPUT_INCOMPLETE;
+    if (loader->half_field != 0) {
+        *field = loader->half_field;
+        *item = loader->half_item;
+        return LACONIC_WIRE_STATUS_INPUT_INCOMPLETE;
+    }
     if (loader->frame_count != frame_count || (loader->checksum ^ LACONIC_CRC32_END) != checksum)
         return LACONIC_WIRE_STATUS_CHECKSUM_MISMATCH;
-    return 0;
+    return something_is_missing(loader, field, item) ? LACONIC_WIRE_STATUS_PARAMETER_MISSING : 0;
 }

@@ -9,7 +9,6 @@ bool laconic_node_init(laconic_node *node, const laconic_node_config *config, ui
     memset(node, 0, sizeof *node);
     node->config = *config;
     node->state = LACONIC_WIRE_STATE_EMPTY;
-    node->send = LACONIC_NODE_SEND_HEARTBEAT;
     node->heartbeat_us = now_us;
     laconic_loader_begin(&node->loader);
     laconic_raw_restart(&node->raw_input);
@@ -18,49 +17,21 @@ bool laconic_node_init(laconic_node *node, const laconic_node_config *config, ui
 
 static bool is_well_formed(const laconic_frame *frame, const laconic_wire_row *row) {
     if (row->fd && !LACONIC_NODE_CAN_FD) return false;
-    return !frame->remote && frame->fd == (row->fd != 0) && frame->length == row->length && row->from_rig;
-}
-
-/* Lost frames are only forgiven where new ones follow by themselves. */
-static uint8_t max_delta(const laconic_node *node, const laconic_wire_row *row) {
-    return node->state == LACONIC_WIRE_STATE_FREE_RUN ? row->max_delta : 1U;
-}
-
-static bool is_fresh(laconic_node *node, uint8_t offset, const laconic_frame *frame) {
-    const laconic_wire_row *row = &laconic_wire[offset];
-    const uint8_t turn = row->of_session ? node->session : 0;
-    laconic_e2e_receiver *receiver = &node->receiver[offset];
-    const bool fd = LACONIC_NODE_CAN_FD && row->fd;
-    const bool right = fd ? laconic_e2e_p05_crc_is_right(frame->data, frame->length,
-                                                              (uint16_t)(laconic_wire_data_id(offset) + turn))
-                               : laconic_e2e_p22_crc_is_right(frame->data, frame->length,
-                                                              laconic_wire_data_ids[laconic_wire[offset].list], turn);
-    const uint8_t mask = fd ? LACONIC_E2E_P05_COUNTER_MASK : LACONIC_E2E_P22_COUNTER_MASK;
-    const uint8_t counter = fd ? frame->data[2] : frame->data[1] & mask;
-    switch (laconic_e2e_check(receiver, right, counter, mask, max_delta(node, row))) {
-    case LACONIC_E2E_OK: return true;
-    case LACONIC_E2E_OK_SOME_LOST:
-        for (uint8_t k = 0; k < receiver->lost; k++) count(&node->counters.lost);
-        return true;
-    case LACONIC_E2E_REPEATED: count(&node->counters.repeated); return false;
-    case LACONIC_E2E_WRONG_SEQUENCE: count(&node->counters.sequence_errors); return false;
-    default: count(&node->counters.crc_errors); return false;
-    }
+    return !frame->remote && frame->fd == (row->fd != 0) && frame->length == row->length;
 }
 
 static void sync(laconic_node *node, const uint8_t *data) {
-    const uint32_t steps =
-        (uint32_t)data[2] | (uint32_t)data[3] << 8 | (uint32_t)data[4] << 16 | (uint32_t)data[5] << 24;
-    const uint16_t input_frames = (uint16_t)(data[6] | data[7] << 8);
-    laconic_node_sync(node, steps, input_frames, data[1] >> 4);
+    laconic_node_sync(node, word32(data + 2), word16(data + 6), data[1] & 15U);
 }
 
 static bool dispatch(laconic_node *node, uint8_t offset, const uint8_t *data, uint32_t now_us) {
     switch (offset) {
+    case LACONIC_WIRE_HELLO: laconic_node_hello(node, data, now_us); return true;
+    case LACONIC_WIRE_OPEN: laconic_node_open(node, data, now_us); return true;
     case LACONIC_WIRE_CONTROL: laconic_node_control(node, data, now_us); return true;
     case LACONIC_WIRE_SELECT: laconic_node_select(node, data); return true;
     case LACONIC_WIRE_COMMIT: laconic_node_commit(node, data); return true;
-    case LACONIC_WIRE_PARAMETER: laconic_loader_take(&node->loader, data); return true;
+    case LACONIC_WIRE_PARAMETER: laconic_node_parameter(node, data); return true;
     case LACONIC_WIRE_SYNC: sync(node, data); return true;
     case LACONIC_WIRE_VOLTAGE: return laconic_node_voltage(node, data, now_us);
     case LACONIC_WIRE_RAW_INPUT: return laconic_node_raw(node, data + 2, data[1] >> 4, 15, 6);
@@ -71,23 +42,28 @@ static bool dispatch(laconic_node *node, uint8_t offset, const uint8_t *data, ui
     return laconic_node_raw(node, data + 4, data[3], 255, 60);
 }
 
+/* True iff the frame is one that the rig sends now. The handshake checks its own. */
+static bool takes(laconic_node *node, uint8_t offset, const uint8_t *data) {
+    const uint8_t key = laconic_wire[offset].key;
+    if (key == LACONIC_WIRE_KEY_SESSION) return laconic_node_takes_command(node, offset, data);
+    return key != LACONIC_WIRE_KEY_RUN || laconic_node_takes_motion(node, offset, data);
+}
+
 void laconic_node_on_frame(laconic_node *node, const laconic_frame *frame, uint32_t now_us) {
     const uint32_t offset = frame->id - node->config.id_base;
     if (frame->extended || offset >= LACONIC_NODE_ID_STRIDE) return; /* somebody else's */
-    const laconic_wire_row *row = &laconic_wire[offset];
-    if (!is_well_formed(frame, row)) {
+    if (offset >= LACONIC_WIRE_RIG_OFFSETS || !is_well_formed(frame, &laconic_wire[offset])) {
         count(&node->counters.malformed);
         return;
     }
-    if (!is_fresh(node, (uint8_t)offset, frame)) return;
-    count(&node->counters.accepted);
+    if (!takes(node, (uint8_t)offset, frame->data)) return;
     if (!dispatch(node, (uint8_t)offset, frame->data, now_us)) count(&node->counters.refused);
 }
 
 void laconic_node_on_tick(laconic_node *node, uint32_t now_us) {
-    if (now_us - node->heartbeat_us >= LACONIC_NODE_HEARTBEAT_US) {
+    if ((int32_t)(now_us - node->heartbeat_us) >= (int32_t)LACONIC_NODE_HEARTBEAT_US) {
         node->heartbeat_us += LACONIC_NODE_HEARTBEAT_US;
-        if (node->send & LACONIC_NODE_SEND_HEARTBEAT) node->pending |= BIT(LACONIC_WIRE_HEARTBEAT);
+        node->pending |= BIT(LACONIC_WIRE_HEARTBEAT);
         if (node->send & LACONIC_NODE_SEND_COUNTERS) node->pending |= BIT(LACONIC_WIRE_COUNTERS);
     }
     if (node->state == LACONIC_WIRE_STATE_LOCKSTEP) laconic_node_run_lockstep(node);
@@ -95,18 +71,12 @@ void laconic_node_on_tick(laconic_node *node, uint32_t now_us) {
         laconic_node_run_free(node, now_us);
 }
 
-static void protect(laconic_node *node, uint8_t offset, laconic_frame *frame) {
-    const uint8_t counter = ++node->sent[offset - LACONIC_WIRE_NODE_FIRST];
-    if (LACONIC_NODE_CAN_FD && frame->fd) {
-        laconic_e2e_p05_protect(frame->data, frame->length, laconic_wire_data_id(offset), counter);
-    } else {
-        laconic_e2e_p22_protect(frame->data, frame->length, laconic_wire_data_ids[laconic_wire[offset].list], 0, counter);
-    }
-}
-
 /* True iff this frame has more parts to follow: wheel groups, counter pages, raw segments. */
 static bool has_more(laconic_node *node, uint8_t offset) {
     switch (offset) {
+    case LACONIC_WIRE_RESULT:
+        node->answers_due = (uint16_t)(node->answers_due & (node->answers_due - 1U)); /* the lowest is done */
+        return node->answers_due != 0;
     case LACONIC_WIRE_WHEEL_SPEED:
         node->wheel_group++;
         return 3 * node->wheel_group < node->plant.model.wheel_count;
@@ -131,7 +101,7 @@ bool laconic_node_next_frame(laconic_node *node, laconic_frame *frame) {
     frame->fd = row->fd != 0;
     frame->bit_rate_switch = frame->fd;
     laconic_node_pack(node, offset, frame->data);
-    protect(node, offset, frame);
+    laconic_protect_plain(offset, frame->data, ++node->sent[offset - LACONIC_WIRE_NODE_FIRST]);
     if (!has_more(node, offset)) node->pending &= ~BIT(offset);
     return true;
 }

@@ -3,6 +3,12 @@
 
 #include "laconic_dbc.h"
 
+#if LACONIC_MAX_WHEELS > 24
+#error "laconic: VOLTAGE numbers eight groups of three wheels: LACONIC_MAX_WHEELS must be at most 24"
+#endif
+
+#define MOST_STEPS 1000000U /* of one SYNC */
+
 /* Everything the vehicle needs has come: the watchdog is content. */
 static void feed(laconic_node *node, uint8_t group, uint32_t now_us) {
     const int32_t wheels = node->plant.model.wheel_count;
@@ -29,22 +35,22 @@ bool laconic_node_voltage(laconic_node *node, const uint8_t *data, uint32_t now_
         node->input[0].voltage_V[first + k] = (laconic_real)raw[k] / LACONIC_WIRE_VOLTAGE_VOLTAGE_1_PER_UNIT;
     if (frame.overrange) count(&node->counters.overrange);
     feed(node, frame.group, now_us);
-    if (frame.sync) laconic_node_sync(node, 1, 0, 0);
+    if (frame.sync) laconic_node_sync(node, 1, 0, frame.counter);
     return true;
 }
 
 bool laconic_node_voltage_fd(laconic_node *node, const uint8_t *data, uint32_t now_us) {
     const bool with_sync = (data[3] & 1U) != 0;
     const int32_t wheels = node->plant.model.wheel_count;
-    if (!may_set_voltages(node, with_sync)) return false;
-    for (int32_t k = 0; k < wheels && k < 16; k++) {
+    if (!may_set_voltages(node, with_sync) || wheels > 16) return false; /* the frame has room for 16 */
+    for (int32_t k = 0; k < wheels; k++) {
         const int16_t raw = (int16_t)(data[4 + 2 * k] | data[5 + 2 * k] << 8);
         node->input[0].voltage_V[k] = (laconic_real)raw / LACONIC_WIRE_VOLTAGE_FD_VOLTAGE_1_PER_UNIT;
     }
     if (data[3] & 2U) count(&node->counters.overrange);
     node->groups_seen = 0;
     node->free_run.fed_us = now_us;
-    if (with_sync) laconic_node_sync(node, 1, 0, 0);
+    if (with_sync) laconic_node_sync(node, 1, 0, data[2] & 15U);
     return true;
 }
 
@@ -57,7 +63,7 @@ static uint8_t sync_status(const laconic_node *node, uint32_t steps, uint16_t in
     const bool sampled = (node->raw_input.take & LACONIC_RAW_SAMPLED) != 0;
     if (node->state != LACONIC_WIRE_STATE_LOCKSTEP) return LACONIC_WIRE_STATUS_WRONG_STATE;
     if (node->lockstep.steps_due > 0) return LACONIC_WIRE_STATUS_BUSY;
-    if (steps == 0 || (sampled && steps != 1)) return LACONIC_WIRE_STATUS_OUT_OF_RANGE;
+    if (steps == 0 || steps > MOST_STEPS || (sampled && steps != 1)) return LACONIC_WIRE_STATUS_OUT_OF_RANGE;
     if (!laconic_raw_is_whole(&node->raw_input, input_frames)) return LACONIC_WIRE_STATUS_INPUT_INCOMPLETE;
     return 0;
 }
@@ -66,7 +72,8 @@ void laconic_node_sync(laconic_node *node, uint32_t steps, uint16_t input_frames
     const uint8_t status = sync_status(node, steps, input_frames);
     if (status != LACONIC_WIRE_STATUS_BUSY) laconic_raw_restart(&node->raw_input);
     if (status != 0) {
-        laconic_node_answer(node, LACONIC_WIRE_COMMAND_SYNC, request, status, 0, 0);
+        node->answer[LACONIC_WIRE_SYNC].request = request;
+        laconic_node_answer(node, LACONIC_WIRE_SYNC, LACONIC_WIRE_COMMAND_SYNC, status, 0, 0);
         return;
     }
     node->lockstep.steps_due = steps;

@@ -5,51 +5,35 @@
 
 #include <string.h>
 
-void laconic_node_answer(laconic_node *node, uint8_t command, uint8_t request, uint8_t status, uint8_t field,
-                         uint8_t item) {
-    const laconic_node_result result = {request, command, status, field, item};
-    node->result = result;
+void laconic_node_answer_again(laconic_node *node, uint8_t offset) {
+    node->answers_due = (uint16_t)(node->answers_due | BIT(offset));
     node->pending |= BIT(LACONIC_WIRE_RESULT);
+}
+
+void laconic_node_answer(laconic_node *node, uint8_t offset, uint8_t command, uint8_t status, uint8_t field,
+                         uint8_t item) {
+    laconic_node_result *answer = &node->answer[offset];
+    answer->command = command;
+    answer->status = status;
+    answer->field = field;
+    answer->item = item;
+    laconic_node_answer_again(node, offset);
     if (status != 0) count(&node->counters.refused);
-}
-
-static void forget(laconic_node *node, uint8_t offset) {
-    memset(&node->receiver[offset], 0, sizeof node->receiver[0]);
-}
-
-static uint8_t identify(laconic_node *node) {
-    forget(node, LACONIC_WIRE_SELECT);
-    forget(node, LACONIC_WIRE_COMMIT);
-    node->pending |= BIT(LACONIC_WIRE_IDENTITY);
-    return 0;
 }
 
 static uint8_t begin(laconic_node *node) {
     laconic_loader_begin(&node->loader);
-    forget(node, LACONIC_WIRE_PARAMETER);
-    forget(node, LACONIC_WIRE_COMMIT);
     return 0;
 }
 
-/* A new session: nothing that was sent for an earlier one passes its check any more. */
-static uint8_t open_session(laconic_node *node, uint8_t session) {
+/* A new run: nothing that was sent for an earlier one passes its check any more. */
+static uint8_t start(laconic_node *node, uint8_t state) {
     if (node->state != LACONIC_WIRE_STATE_READY) return LACONIC_WIRE_STATUS_WRONG_STATE;
-    if (session != (uint8_t)(node->session + 1U)) return LACONIC_WIRE_STATUS_WRONG_SESSION;
-    node->session = session;
-    forget(node, LACONIC_WIRE_SYNC);
-    forget(node, LACONIC_WIRE_VOLTAGE);
-    forget(node, LACONIC_WIRE_RAW_INPUT);
-    forget(node, LACONIC_WIRE_VOLTAGE_FD);
-    forget(node, LACONIC_WIRE_RAW_INPUT_FD);
+    laconic_node_begin_run(node);
     laconic_raw_restart(&node->raw_input);
     node->groups_seen = 0;
+    node->state = state;
     return 0;
-}
-
-static uint8_t start_lockstep(laconic_node *node, uint8_t session) {
-    const uint8_t status = open_session(node, session);
-    if (status == 0) node->state = LACONIC_WIRE_STATE_LOCKSTEP;
-    return status;
 }
 
 /* Periods of whole steps, 1 to 1000 a second; rate 0: one step a period. In the core's own arithmetic, so that a board
@@ -72,22 +56,30 @@ static uint8_t start_free_run(laconic_node *node, const struct laconic_dbc_contr
     laconic_node_free_run run = {0};
     if (node->state != LACONIC_WIRE_STATE_READY) return LACONIC_WIRE_STATUS_WRONG_STATE;
     if (!choose_rate(&run, frame->rate, node->plant.integrator.step_s)) return LACONIC_WIRE_STATUS_OUT_OF_RANGE;
-    const uint8_t status = open_session(node, frame->session);
-    if (status != 0) return status;
     run.watchdog_us = 1000U * (uint32_t)frame->watchdog;
     run.fed_us = now_us;
     run.next_us = now_us + 1000000U / run.rate_Hz;
     run.next_rest = 1000000U % run.rate_Hz;
     node->free_run = run;
-    node->state = LACONIC_WIRE_STATE_FREE_RUN;
-    return 0;
+    return start(node, LACONIC_WIRE_STATE_FREE_RUN);
 }
 
 static uint8_t stop(laconic_node *node) {
     if (is_running(node)) node->state = LACONIC_WIRE_STATE_READY;
     node->lockstep.steps_due = 0;
+    node->session.deaf = 0;
     laconic_node_rest_inputs(node);
     return 0;
+}
+
+void laconic_node_rest(laconic_node *node) {
+    stop(node);
+    laconic_loader_begin(&node->loader);
+    node->send = 0;
+    node->raw_input.take = 0;
+    node->raw_output.send = 0;
+    node->answers_due = 0;
+    node->pending = 0;
 }
 
 static uint8_t reset(laconic_node *node, uint8_t *field, uint8_t *item) {
@@ -111,15 +103,22 @@ void laconic_node_control(laconic_node *node, const uint8_t *data, uint32_t now_
     uint8_t item = 0;
     laconic_dbc_control_unpack(&frame, data, 8);
     switch (frame.command) {
-    case LACONIC_WIRE_COMMAND_IDENTIFY: status = identify(node); break;
     case LACONIC_WIRE_COMMAND_BEGIN: status = begin(node); break;
-    case LACONIC_WIRE_COMMAND_START_LOCKSTEP: status = start_lockstep(node, frame.session); break;
+    case LACONIC_WIRE_COMMAND_START_LOCKSTEP: status = start(node, LACONIC_WIRE_STATE_LOCKSTEP); break;
     case LACONIC_WIRE_COMMAND_START_FREE_RUN: status = start_free_run(node, &frame, now_us); break;
     case LACONIC_WIRE_COMMAND_STOP: status = stop(node); break;
     case LACONIC_WIRE_COMMAND_RESET: status = reset(node, &field, &item); break;
     default: status = LACONIC_WIRE_STATUS_UNKNOWN_COMMAND; break;
     }
-    laconic_node_answer(node, frame.command, frame.request, status, field, item);
+    laconic_node_answer(node, LACONIC_WIRE_CONTROL, frame.command, status, field, item);
+}
+
+/* Answered each by itself, so that a lost one is missed at once; the first refusal stays until BEGIN. */
+void laconic_node_parameter(laconic_node *node, const uint8_t *data) {
+    const laconic_loader *loader = &node->loader;
+    laconic_loader_take(&node->loader, data);
+    laconic_node_answer(node, LACONIC_WIRE_PARAMETER, LACONIC_WIRE_COMMAND_PARAMETER, loader->status, loader->field,
+                        loader->item);
 }
 
 /* The loaded parameters become the vehicle, or nothing changes. */
@@ -144,15 +143,13 @@ static uint8_t adopt(laconic_node *node, uint8_t *field, uint8_t *item) {
 }
 
 void laconic_node_commit(laconic_node *node, const uint8_t *data) {
-    struct laconic_dbc_commit_t frame;
-    laconic_dbc_commit_unpack(&frame, data, 8);
-    uint8_t field = node->loader.field;
-    uint8_t item = node->loader.item;
-    uint8_t status = laconic_loader_check(&node->loader, frame.frame_count, frame.checksum);
-    if (is_running(node)) status = LACONIC_WIRE_STATUS_WRONG_STATE;
+    uint8_t field = 0;
+    uint8_t item = 0;
+    uint8_t status = LACONIC_WIRE_STATUS_WRONG_STATE;
+    if (!is_running(node))
+        status = laconic_loader_check(&node->loader, word16(data + 2), word32(data + 4), &field, &item);
     if (status == 0) status = adopt(node, &field, &item);
-    laconic_node_answer(node, LACONIC_WIRE_COMMAND_COMMIT, frame.request, status, status != 0 ? field : 0,
-                        status != 0 ? item : 0);
+    laconic_node_answer(node, LACONIC_WIRE_COMMIT, LACONIC_WIRE_COMMAND_COMMIT, status, field, item);
 }
 
 void laconic_node_select(laconic_node *node, const uint8_t *data) {
@@ -169,5 +166,5 @@ void laconic_node_select(laconic_node *node, const uint8_t *data) {
         node->raw_input.take = data[4];
         laconic_node_rest_inputs(node);
     }
-    laconic_node_answer(node, LACONIC_WIRE_COMMAND_SELECT, data[1] >> 4, status, 0, 0);
+    laconic_node_answer(node, LACONIC_WIRE_SELECT, LACONIC_WIRE_COMMAND_SELECT, status, 0, 0);
 }

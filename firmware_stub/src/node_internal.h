@@ -3,9 +3,25 @@
 #define LACONIC_NODE_INTERNAL_H
 
 #include "laconic_node/node.h"
+#include "laconic_node/protection.h"
 #include "laconic_wire.h"
 
 #define BIT(offset) ((uint32_t)1 << (offset))
+
+/* Numbers in a frame, little-endian. */
+static inline uint16_t word16(const uint8_t *data) { return (uint16_t)(data[0] | data[1] << 8); }
+
+static inline uint32_t word32(const uint8_t *data) { return word16(data) | (uint32_t)word16(data + 2) << 16; }
+
+static inline void put16(uint8_t *to, uint32_t value) {
+    to[0] = (uint8_t)(value & 255U);
+    to[1] = (uint8_t)(value >> 8 & 255U);
+}
+
+static inline void put32(uint8_t *to, uint32_t value) {
+    put16(to, value);
+    put16(to + 2, value >> 16);
+}
 
 static inline void count(uint16_t *counter) { *counter = (uint16_t)(*counter + (*counter < UINT16_MAX)); }
 
@@ -18,12 +34,25 @@ static inline bool listens_to_voltages(const laconic_node *node) {
     return node->state == LACONIC_WIRE_STATE_LOCKSTEP || node->state == LACONIC_WIRE_STATE_FREE_RUN;
 }
 
-/* node_control.c: CONTROL, COMMIT and SELECT, each answered by RESULT. */
+/* node_session.c: the handshake, and whether a frame may be carried out. */
+void laconic_node_hello(laconic_node *node, const uint8_t *data, uint32_t now_us);
+void laconic_node_open(laconic_node *node, const uint8_t *data, uint32_t now_us);
+bool laconic_node_takes_command(laconic_node *node, uint8_t offset, const uint8_t *data);
+bool laconic_node_takes_motion(laconic_node *node, uint8_t offset, const uint8_t *data);
+/* From now on motion frames are keyed by the START that was taken last. */
+void laconic_node_begin_run(laconic_node *node);
+
+/* node_control.c: CONTROL, PARAMETER, COMMIT and SELECT, each answered by RESULT. */
 void laconic_node_control(laconic_node *node, const uint8_t *data, uint32_t now_us);
+void laconic_node_parameter(laconic_node *node, const uint8_t *data);
 void laconic_node_commit(laconic_node *node, const uint8_t *data);
 void laconic_node_select(laconic_node *node, const uint8_t *data);
-void laconic_node_answer(laconic_node *node, uint8_t command, uint8_t request, uint8_t status, uint8_t field,
+/* At rest for a new session: stopped, nothing half loaded, nothing selected, nothing to say. */
+void laconic_node_rest(laconic_node *node);
+/* The RESULT to a frame of this offset, whose request is set already. */
+void laconic_node_answer(laconic_node *node, uint8_t offset, uint8_t command, uint8_t status, uint8_t field,
                          uint8_t item);
+void laconic_node_answer_again(laconic_node *node, uint8_t offset);
 
 /* node_command.c: frames that move the vehicle. False iff the frame was refused. */
 bool laconic_node_voltage(laconic_node *node, const uint8_t *data, uint32_t now_us);

@@ -19,17 +19,15 @@ static int32_t scaled(laconic_real value, int32_t per_unit, int32_t largest, uin
     scaled(value, LACONIC_WIRE_##name##_PER_UNIT, LACONIC_WIRE_##name##_LARGEST, overrange)
 
 static void pack_result(const laconic_node *node, uint8_t *data) {
-    const laconic_node_result *result = &node->result;
-    const struct laconic_dbc_result_t frame = {
-        .request = result->request,
-        .command = result->command,
-        .status = result->status,
-        .field = result->field,
-        .item = result->item,
-        .state = node->state,
-        .session = (uint8_t)(node->session + 1U),
-    };
-    laconic_dbc_result_pack(data, &frame, 8);
+    uint8_t offset = 0;
+    while ((node->answers_due & BIT(offset)) == 0) offset++;
+    const laconic_node_result *result = &node->answer[offset];
+    data[1] = (uint8_t)(result->request << 4);
+    data[2] = result->command;
+    data[3] = result->status;
+    data[4] = result->field;
+    data[5] = result->item;
+    data[6] = node->state;
 }
 
 /* LACONIC_VERSION is text, "major.minor.patch". */
@@ -60,6 +58,11 @@ static void pack_identity(const laconic_node *node, uint8_t *data) {
     for (int32_t k = 0; k < LACONIC_METHOD_COUNT; k++)
         if (node->config.method(k) != NULL) frame.methods = (uint8_t)(frame.methods | (1U << k));
     laconic_dbc_identity_pack(data, &frame, 8);
+}
+
+static void pack_challenge(const laconic_node *node, uint8_t *data) {
+    data[1] = (uint8_t)(node->session.request << 4);
+    put32(data + 2, node->session.nonce);
 }
 
 static void pack_nu(const laconic_node *node, uint8_t *data) {
@@ -93,41 +96,20 @@ static void pack_wheel_speed(const laconic_node *node, uint8_t *data) {
     laconic_dbc_wheel_speed_pack(data, &frame, 8);
 }
 
+#define MOST_LATENESS 32767U
+
 static void pack_heartbeat(const laconic_node *node, uint8_t *data) {
     const uint32_t late = node->free_run.worst_lateness_us;
-    const struct laconic_dbc_heartbeat_t frame = {
-        .state = node->state,
-        .steps = (uint32_t)node->plant.steps,
-        .worst_lateness = (uint16_t)(late > UINT16_MAX ? UINT16_MAX : late),
-    };
-    laconic_dbc_heartbeat_pack(data, &frame, 8);
+    const uint32_t deaf = node->session.deaf != 0 ? 0x8000U : 0U;
+    data[1] = (uint8_t)(node->state << 4);
+    put32(data + 2, (uint32_t)node->plant.steps);
+    put16(data + 6, (late > MOST_LATENESS ? MOST_LATENESS : late) | deaf);
 }
 
+/* The counters stand in the order of the pages, three to a page, and the target is little-endian (raw.c). */
 static void pack_counters(const laconic_node *node, uint8_t *data) {
-    const laconic_node_counters *c = &node->counters;
-    const struct laconic_dbc_counters_t frame = {
-        .page = node->counter_page,
-        .crc_errors = c->crc_errors,
-        .sequence_errors = c->sequence_errors,
-        .repeated = c->repeated,
-        .lost = c->lost,
-        .malformed = c->malformed,
-        .late_periods = c->late_periods,
-        .accepted = c->accepted,
-        .refused = c->refused,
-        .overrange = c->overrange,
-    };
-    laconic_dbc_counters_pack(data, &frame, 8);
-}
-
-static void put16(uint8_t *to, int32_t value) {
-    to[0] = (uint8_t)((uint32_t)value & 255U);
-    to[1] = (uint8_t)((uint32_t)value >> 8 & 255U);
-}
-
-static void put32(uint8_t *to, uint32_t value) {
-    put16(to, (int32_t)(value & 0xFFFFU));
-    put16(to + 2, (int32_t)(value >> 16));
+    data[1] = (uint8_t)(node->counter_page << 4);
+    memcpy(data + 2, (const uint8_t *)&node->counters + 6 * node->counter_page, 6);
 }
 
 /* By hand: seven numbers and sixteen wheels in a row need no packer of 300 lines. */
@@ -146,7 +128,7 @@ static void pack_state_fd(const laconic_node *node, uint8_t *data) {
     put32(data + 24, (uint32_t)SCALED(pose.y_m, STATE_FD_Y, &over));
     put32(data + 28, (uint32_t)SCALED(pose.heading_wrapped_rad, STATE_FD_HEADING, &over));
     for (int32_t i = 0; i < node->plant.model.wheel_count && i < 16; i++)
-        put16(data + 32 + 2 * i, SCALED(speed[i], STATE_FD_WHEEL_SPEED_1, &over));
+        put16(data + 32 + 2 * i, (uint32_t)SCALED(speed[i], STATE_FD_WHEEL_SPEED_1, &over));
     data[3] = over;
 }
 
@@ -161,9 +143,11 @@ static void pack_raw_fd(laconic_node *node, uint8_t *data) {
 }
 
 void laconic_node_pack(laconic_node *node, uint8_t offset, uint8_t *data) {
+    memset(data, 0, 8);
     switch (offset) {
     case LACONIC_WIRE_RESULT: pack_result(node, data); break;
     case LACONIC_WIRE_IDENTITY: pack_identity(node, data); break;
+    case LACONIC_WIRE_CHALLENGE: pack_challenge(node, data); break;
     case LACONIC_WIRE_NU: pack_nu(node, data); break;
     case LACONIC_WIRE_POSE: pack_pose(node, data); break;
     case LACONIC_WIRE_WHEEL_SPEED: pack_wheel_speed(node, data); break;

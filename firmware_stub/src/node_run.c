@@ -26,8 +26,9 @@ static void fail(laconic_node *node, const laconic_refusal *why, uint8_t request
     node->lockstep.steps_due = 0;
     node->state = LACONIC_WIRE_STATE_FAULT;
     laconic_node_rest_inputs(node);
-    laconic_node_answer(node, LACONIC_WIRE_COMMAND_SYNC, request, (uint8_t)why->status, (uint8_t)why->field,
-                        (uint8_t)why->item);
+    node->answer[LACONIC_WIRE_SYNC].request = request;
+    laconic_node_answer(node, LACONIC_WIRE_SYNC, LACONIC_WIRE_COMMAND_SYNC, (uint8_t)why->status,
+                        (uint8_t)why->field, (uint8_t)why->item);
 }
 
 static laconic_status step_sampled(laconic_node *node, laconic_refusal *why) {
@@ -62,11 +63,12 @@ void laconic_node_run_lockstep(laconic_node *node) {
     if (node->lockstep.steps_due == 0) laconic_node_publish(node);
 }
 
-/* Commands have stopped coming: coast without voltage until the rig says STOP and START again. */
+/* Commands have stopped coming: coast without voltage until the rig says STOP and START again. A frame may be stamped
+ * after the tick that follows it, so the difference has a sign. */
 static void watch(laconic_node *node, uint32_t now_us) {
     const laconic_node_free_run *run = &node->free_run;
     if (node->state != LACONIC_WIRE_STATE_FREE_RUN || run->watchdog_us == 0) return;
-    if (now_us - run->fed_us <= run->watchdog_us) return;
+    if ((int32_t)(now_us - run->fed_us) <= (int32_t)run->watchdog_us) return;
     node->state = LACONIC_WIRE_STATE_TIMEOUT;
     laconic_node_rest_inputs(node);
 }

@@ -29,12 +29,14 @@ void laconic_slcan_init(laconic_slcan *slcan, char required_rate) {
     slcan->reply[0] = 0;
 }
 
+/* Capital letters are for 29-bit identifiers. */
 static bool kind_of(char letter, laconic_frame *frame) {
-    frame->extended = letter == 'T' || letter == 'R' || letter == 'D' || letter == 'B';
-    frame->remote = letter == 'r' || letter == 'R';
-    frame->bit_rate_switch = letter == 'b' || letter == 'B';
-    frame->fd = letter == 'd' || letter == 'D' || frame->bit_rate_switch;
-    return frame->extended || frame->remote || frame->fd || letter == 't';
+    const char kind = (char)(letter | ' ');
+    frame->extended = kind != letter;
+    frame->remote = kind == 'r';
+    frame->bit_rate_switch = LACONIC_NODE_CAN_FD && kind == 'b';
+    frame->fd = LACONIC_NODE_CAN_FD && (kind == 'd' || kind == 'b');
+    return kind == 't' || frame->remote || frame->fd;
 }
 
 /* The line must have exactly the length that its DLC asks for. */

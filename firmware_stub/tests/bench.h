@@ -4,24 +4,30 @@
 
 #include "laconic_dbc.h"
 #include "laconic_node/node.h"
+#include "laconic_node/protection.h"
 
 #include <string.h>
 
 static laconic_node node;
-static uint8_t sent[LACONIC_WIRE_RIG_OFFSETS];
+static uint32_t sent[LACONIC_WIRE_RIG_OFFSETS]; /* counts since OPEN or START */
+static uint32_t bench_key, bench_run_key;
 static uint32_t now_us;
 
-static inline void bench_send(uint8_t offset, uint8_t *data) {
+/* A frame with a count that the test chooses. */
+static inline void bench_send_count(uint8_t offset, const uint8_t *payload, uint32_t count) {
     const laconic_wire_row *row = &laconic_wire[offset];
+    const bool of_run = row->key == LACONIC_WIRE_KEY_RUN;
     laconic_frame frame = {.id = LACONIC_WIRE_ID_BASE + (uint32_t)offset, .length = row->length, .fd = row->fd != 0};
-    const uint8_t turn = row->of_session ? node.session : 0;
-    if (row->fd) {
-        laconic_e2e_p05_protect(data, row->length, (uint16_t)(laconic_wire_data_id(offset) + turn), ++sent[offset]);
-    } else {
-        laconic_e2e_p22_protect(data, 8, laconic_wire_data_ids[row->list], turn, ++sent[offset]);
-    }
-    memcpy(frame.data, data, row->length);
+    memcpy(frame.data, payload, row->length);
+    laconic_protect_keyed(offset, frame.data, of_run ? bench_run_key : bench_key, count);
     laconic_node_on_frame(&node, &frame, now_us);
+}
+
+/* The next frame of its kind; before the first that moves the vehicle, one for reference. */
+static inline void bench_send(uint8_t offset, const uint8_t *payload) {
+    if (laconic_wire[offset].key == LACONIC_WIRE_KEY_RUN && sent[offset] == 0)
+        bench_send_count(offset, payload, ++sent[offset]);
+    bench_send_count(offset, payload, ++sent[offset]);
 }
 
 /* The next frame of that kind; others are dropped. False: none. */
@@ -35,14 +41,22 @@ static inline bool bench_receive(uint8_t offset, uint8_t *data) {
 }
 
 /* A CONTROL and the status of its RESULT. */
-static inline uint8_t bench_control(uint8_t command, uint8_t session, uint16_t rate, uint16_t watchdog) {
-    const struct laconic_dbc_control_t frame = {
-        .request = 5, .command = command, .session = session, .rate = rate, .watchdog = watchdog};
+static inline uint8_t bench_control(uint8_t command, uint16_t rate, uint16_t watchdog) {
+    const struct laconic_dbc_control_t frame = {.command = command, .rate = rate, .watchdog = watchdog};
     uint8_t data[LACONIC_FRAME_BYTES];
     laconic_dbc_control_pack(data, &frame, 8);
     bench_send(LACONIC_WIRE_CONTROL, data);
-    return bench_receive(LACONIC_WIRE_RESULT, data) ? data[3] : 255U;
+    const uint8_t status = bench_receive(LACONIC_WIRE_RESULT, data) ? data[3] : 255U;
+    const bool starts = command == LACONIC_WIRE_COMMAND_START_LOCKSTEP || command == LACONIC_WIRE_COMMAND_START_FREE_RUN;
+    if (starts && status == 0) {
+        bench_run_key = laconic_run_key(bench_key, sent[LACONIC_WIRE_CONTROL]);
+        for (uint8_t k = 0; k < LACONIC_WIRE_RIG_OFFSETS; k++)
+            if (laconic_wire[k].key == LACONIC_WIRE_KEY_RUN) sent[k] = 0;
+    }
+    return status;
 }
+
+static inline uint8_t bench_start_lockstep(void) { return bench_control(LACONIC_WIRE_COMMAND_START_LOCKSTEP, 0, 0); }
 
 static inline uint8_t bench_select(uint8_t send, uint8_t raw, uint8_t take) {
     uint8_t data[LACONIC_FRAME_BYTES] = {0, 0, send, raw, take};
@@ -59,7 +73,7 @@ static inline void bench_voltage(uint8_t group, int16_t raw, uint8_t sync) {
 }
 
 static inline void bench_sync(uint32_t steps) {
-    const struct laconic_dbc_sync_t frame = {.request = 7, .step_count = steps};
+    const struct laconic_dbc_sync_t frame = {.step_count = steps};
     uint8_t data[LACONIC_FRAME_BYTES];
     laconic_dbc_sync_pack(data, &frame, 8);
     bench_send(LACONIC_WIRE_SYNC, data);
@@ -77,11 +91,41 @@ static inline void bench_load(int32_t wheels) {
     node.state = LACONIC_WIRE_STATE_READY;
 }
 
-static inline void bench_begin(void) {
-    const laconic_node_config config = {LACONIC_WIRE_ID_BASE, true, laconic_method_by_number};
+/* HELLO; the nonce of the CHALLENGE. */
+static inline uint32_t bench_hello(void) {
+    laconic_frame frame = {.id = LACONIC_WIRE_ID_BASE + LACONIC_WIRE_HELLO, .length = 8};
+    struct laconic_dbc_challenge_t challenge = {0};
+    uint8_t data[LACONIC_FRAME_BYTES];
+    laconic_protect_plain(LACONIC_WIRE_HELLO, frame.data, 0);
+    laconic_node_on_frame(&node, &frame, now_us);
+    if (bench_receive(LACONIC_WIRE_CHALLENGE, data)) laconic_dbc_challenge_unpack(&challenge, data, 8);
+    return challenge.nonce;
+}
+
+static inline laconic_frame bench_open_frame(uint32_t session, uint32_t nonce) {
+    laconic_frame frame = {.id = LACONIC_WIRE_ID_BASE + LACONIC_WIRE_OPEN, .length = 8};
+    const struct laconic_dbc_open_t open = {.nonce_echo = (uint16_t)nonce, .session = session};
+    laconic_dbc_open_pack(frame.data, &open, 8);
+    laconic_protect_keyed(LACONIC_WIRE_OPEN, frame.data, nonce, 3);
+    return frame;
+}
+
+/* The handshake; the status of OPEN's RESULT, 255: none came. */
+static inline uint8_t bench_open(uint32_t session) {
+    uint8_t data[LACONIC_FRAME_BYTES];
+    const uint32_t nonce = bench_hello();
+    const laconic_frame frame = bench_open_frame(session, nonce);
+    laconic_node_on_frame(&node, &frame, now_us);
+    bench_key = laconic_mix(session, nonce);
     memset(sent, 0, sizeof sent);
+    return bench_receive(LACONIC_WIRE_RESULT, data) ? data[3] : 255U;
+}
+
+static inline void bench_begin(void) {
+    const laconic_node_config config = {LACONIC_WIRE_ID_BASE, true, laconic_method_by_number, 1905};
     now_us = 0xFFFFF000U; /* the time wraps in the first milliseconds of each test */
     laconic_node_init(&node, &config, now_us);
+    bench_open(0x5E55104EU);
 }
 
 #endif

@@ -8,29 +8,36 @@ void tearDown(void) {}
 
 static const uint8_t ids[16] = {1, 2, 3, 4, 5, 6, 7, 8, 9, 10, 11, 12, 13, 14, 15, 16};
 
+static laconic_e2e_ends of(uint8_t counter) {
+    const laconic_e2e_ends ends = {LACONIC_E2E_P22_START, ids[counter & 15U]};
+    return ends;
+}
+
+static const laconic_e2e_ends fd = {LACONIC_E2E_P05_START, 0x1234};
+
 static void profile_2_gives_the_published_headers(void) {
     const uint8_t expected[4][2] = {{0x1B, 0x01}, {0x98, 0x02}, {0x31, 0x03}, {0x0D, 0x04}};
     for (uint8_t counter = 1; counter <= 4; counter++) {
         uint8_t data[8] = {0};
-        laconic_e2e_p22_protect(data, 8, ids, 0, counter);
+        laconic_e2e_p22_protect(data, 8, of(counter), counter);
         TEST_ASSERT_EQUAL_HEX8_ARRAY(expected[counter - 1], data, 2);
     }
 }
 
 static void a_frame_too_short_for_its_header_is_never_right(void) {
     uint8_t data[3] = {0};
-    TEST_ASSERT_FALSE(laconic_e2e_p22_crc_is_right(data, 1, ids, 0));
-    TEST_ASSERT_FALSE(laconic_e2e_p05_crc_is_right(data, 2, 7));
+    TEST_ASSERT_FALSE(laconic_e2e_p22_crc_is_right(data, 1, of(0)));
+    TEST_ASSERT_FALSE(laconic_e2e_p05_crc_is_right(data, 2, fd));
 }
 
 static void profile_5_finds_each_turned_bit(void) {
     uint8_t data[64];
     memset(data, 0xA5, sizeof data);
-    laconic_e2e_p05_protect(data, 64, 0x1234, 9);
-    TEST_ASSERT_TRUE(laconic_e2e_p05_crc_is_right(data, 64, 0x1234));
+    laconic_e2e_p05_protect(data, 64, fd, 9);
+    TEST_ASSERT_TRUE(laconic_e2e_p05_crc_is_right(data, 64, fd));
     for (int bit = 0; bit < 512; bit++) {
         data[bit / 8] = (uint8_t)(data[bit / 8] ^ 1U << bit % 8);
-        TEST_ASSERT_FALSE(laconic_e2e_p05_crc_is_right(data, 64, 0x1234));
+        TEST_ASSERT_FALSE(laconic_e2e_p05_crc_is_right(data, 64, fd));
         data[bit / 8] = (uint8_t)(data[bit / 8] ^ 1U << bit % 8);
     }
 }

@@ -15,14 +15,14 @@ static void pass(uint32_t microseconds) {
 }
 
 static uint8_t start(uint16_t rate, uint16_t watchdog) {
-    return bench_control(LACONIC_WIRE_COMMAND_START_FREE_RUN, (uint8_t)(node.session + 1U), rate, watchdog);
+    return bench_control(LACONIC_WIRE_COMMAND_START_FREE_RUN, rate, watchdog);
 }
 
 static void every_period_takes_its_steps_though_the_time_wraps(void) {
     TEST_ASSERT_EQUAL_UINT8(0, start(0, 0));
     pass(10000);
     TEST_ASSERT_EQUAL_UINT64(10, node.plant.steps);
-    bench_control(LACONIC_WIRE_COMMAND_STOP, 0, 0, 0);
+    bench_control(LACONIC_WIRE_COMMAND_STOP, 0, 0);
     TEST_ASSERT_EQUAL_UINT8(0, start(100, 0));
     pass(20000);
     TEST_ASSERT_EQUAL_UINT64(30, node.plant.steps);
@@ -61,8 +61,17 @@ static void the_watchdog_wants_all_voltages_and_latches(void) {
     pass(2000);
     TEST_ASSERT_EQUAL_UINT8(LACONIC_WIRE_STATE_TIMEOUT, node.state);
     TEST_ASSERT_TRUE(node.input[0].voltage_V[0] == 0 && node.plant.steps == steps + 2);
-    bench_control(LACONIC_WIRE_COMMAND_STOP, 0, 0, 0);
+    bench_control(LACONIC_WIRE_COMMAND_STOP, 0, 0);
     TEST_ASSERT_EQUAL_UINT8(0, start(1000, 10));
+}
+
+static void a_frame_stamped_after_the_tick_that_follows_it_feeds_the_watchdog(void) {
+    start(1000, 10);
+    now_us += 500;
+    bench_voltage(0, 500, 0);
+    bench_voltage(1, 500, 0);
+    laconic_node_on_tick(&node, now_us - 1U);
+    TEST_ASSERT_EQUAL_UINT8(LACONIC_WIRE_STATE_FREE_RUN, node.state);
 }
 
 static void a_sync_has_no_place_in_free_run(void) {
@@ -91,6 +100,7 @@ int main(void) {
     RUN_TEST(rates_that_are_no_whole_steps_are_refused);
     RUN_TEST(steps_that_come_late_are_taken_late_and_counted);
     RUN_TEST(the_watchdog_wants_all_voltages_and_latches);
+    RUN_TEST(a_frame_stamped_after_the_tick_that_follows_it_feeds_the_watchdog);
     RUN_TEST(a_sync_has_no_place_in_free_run);
     RUN_TEST(the_heartbeat_beats_in_every_state);
     return UNITY_END();

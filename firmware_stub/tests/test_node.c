@@ -7,7 +7,7 @@ void setUp(void) { bench_begin(); }
 void tearDown(void) {}
 
 static void id_bases_are_multiples_of_32(void) {
-    laconic_node_config config = {0x210, true, laconic_method_by_number};
+    laconic_node_config config = {0x210, true, laconic_method_by_number, 0};
     TEST_ASSERT_FALSE(laconic_node_init(&node, &config, 0));
     config.id_base = 0x800;
     TEST_ASSERT_FALSE(laconic_node_init(&node, &config, 0));
@@ -18,9 +18,9 @@ static void id_bases_are_multiples_of_32(void) {
 static void the_node_says_who_it_is(void) {
     uint8_t data[LACONIC_FRAME_BYTES];
     struct laconic_dbc_identity_t identity;
-    const struct laconic_dbc_control_t frame = {.request = 1, .command = LACONIC_WIRE_COMMAND_IDENTIFY};
-    laconic_dbc_control_pack(data, &frame, 8);
-    bench_send(LACONIC_WIRE_CONTROL, data);
+    laconic_frame frame = {.id = LACONIC_WIRE_ID_BASE + LACONIC_WIRE_HELLO, .length = 8};
+    laconic_protect_plain(LACONIC_WIRE_HELLO, frame.data, 0);
+    laconic_node_on_frame(&node, &frame, now_us);
     TEST_ASSERT_TRUE(bench_receive(LACONIC_WIRE_IDENTITY, data));
     laconic_dbc_identity_unpack(&identity, data, 8);
     TEST_ASSERT_EQUAL_UINT8(sizeof(laconic_real), identity.scalar_bytes);
@@ -28,24 +28,21 @@ static void the_node_says_who_it_is(void) {
     TEST_ASSERT_EQUAL_HEX8((1 << LACONIC_METHOD_COUNT) - 1, identity.methods);
 }
 
-static void nothing_starts_without_a_vehicle_or_with_the_wrong_session(void) {
-    TEST_ASSERT_EQUAL_UINT8(LACONIC_WIRE_STATUS_WRONG_STATE, bench_control(LACONIC_WIRE_COMMAND_START_LOCKSTEP, 1, 0, 0));
-    TEST_ASSERT_EQUAL_UINT8(LACONIC_WIRE_STATUS_WRONG_STATE, bench_control(LACONIC_WIRE_COMMAND_RESET, 0, 0, 0));
+static void nothing_starts_without_a_vehicle(void) {
+    TEST_ASSERT_EQUAL_UINT8(LACONIC_WIRE_STATUS_WRONG_STATE, bench_start_lockstep());
+    TEST_ASSERT_EQUAL_UINT8(LACONIC_WIRE_STATUS_WRONG_STATE, bench_control(LACONIC_WIRE_COMMAND_RESET, 0, 0));
     bench_load(2);
-    TEST_ASSERT_EQUAL_UINT8(LACONIC_WIRE_STATUS_WRONG_SESSION,
-                            bench_control(LACONIC_WIRE_COMMAND_START_LOCKSTEP, 2, 0, 0));
-    TEST_ASSERT_EQUAL_UINT8(0, bench_control(LACONIC_WIRE_COMMAND_START_LOCKSTEP, 1, 0, 0));
-    TEST_ASSERT_EQUAL_UINT8(0, bench_control(LACONIC_WIRE_COMMAND_STOP, 0, 0, 0));
-    TEST_ASSERT_EQUAL_UINT8(LACONIC_WIRE_STATUS_WRONG_SESSION,
-                            bench_control(LACONIC_WIRE_COMMAND_START_LOCKSTEP, 1, 0, 0));
-    TEST_ASSERT_EQUAL_UINT8(LACONIC_WIRE_STATUS_UNKNOWN_COMMAND, bench_control(99, 0, 0, 0));
+    TEST_ASSERT_EQUAL_UINT8(0, bench_start_lockstep());
+    TEST_ASSERT_EQUAL_UINT8(LACONIC_WIRE_STATUS_WRONG_STATE, bench_start_lockstep());
+    TEST_ASSERT_EQUAL_UINT8(0, bench_control(LACONIC_WIRE_COMMAND_STOP, 0, 0));
+    TEST_ASSERT_EQUAL_UINT8(LACONIC_WIRE_STATUS_UNKNOWN_COMMAND, bench_control(99, 0, 0));
 }
 
 static void a_sync_steps_and_is_answered_with_what_was_selected(void) {
     uint8_t data[LACONIC_FRAME_BYTES];
     bench_load(2);
     bench_select(LACONIC_NODE_SEND_NU, 0, 0);
-    bench_control(LACONIC_WIRE_COMMAND_START_LOCKSTEP, 1, 0, 0);
+    bench_start_lockstep();
     bench_voltage(0, 500, 1);
     laconic_node_on_tick(&node, now_us);
     TEST_ASSERT_TRUE(node.plant.steps == 1 && node.input[0].voltage_V[1] == 1);
@@ -60,14 +57,17 @@ static void a_sync_steps_and_is_answered_with_what_was_selected(void) {
     TEST_ASSERT_EQUAL_UINT64(101, node.plant.steps);
 }
 
-static void a_sync_of_no_steps_or_without_its_inputs_is_refused(void) {
+static void a_sync_of_no_steps_or_too_many_or_without_its_inputs_is_refused(void) {
     uint8_t data[LACONIC_FRAME_BYTES] = {0};
     bench_load(2);
     bench_select(0, LACONIC_RAW_NU, LACONIC_RAW_VOLTAGE);
-    bench_control(LACONIC_WIRE_COMMAND_START_LOCKSTEP, 1, 0, 0);
-    bench_sync(0);
-    TEST_ASSERT_TRUE(bench_receive(LACONIC_WIRE_RESULT, data));
-    TEST_ASSERT_EQUAL_UINT8(LACONIC_WIRE_STATUS_OUT_OF_RANGE, data[3]);
+    bench_start_lockstep();
+    const uint32_t wrong[] = {0, 1000001, UINT32_MAX};
+    for (int k = 0; k < 3; k++) {
+        bench_sync(wrong[k]);
+        TEST_ASSERT_TRUE(bench_receive(LACONIC_WIRE_RESULT, data));
+        TEST_ASSERT_EQUAL_UINT8(LACONIC_WIRE_STATUS_OUT_OF_RANGE, data[3]);
+    }
     memset(data, 0, sizeof data);
     bench_send(LACONIC_WIRE_RAW_INPUT, data);
     bench_sync(1);
@@ -101,7 +101,7 @@ static void frames_of_the_wrong_shape_change_nothing_but_a_counter(void) {
 static void a_vehicle_can_only_be_changed_while_it_stands(void) {
     uint8_t data[LACONIC_FRAME_BYTES] = {0};
     bench_load(2);
-    bench_control(LACONIC_WIRE_COMMAND_START_LOCKSTEP, 1, 0, 0);
+    bench_start_lockstep();
     bench_send(LACONIC_WIRE_COMMIT, data);
     TEST_ASSERT_TRUE(bench_receive(LACONIC_WIRE_RESULT, data));
     TEST_ASSERT_EQUAL_UINT8(LACONIC_WIRE_STATUS_WRONG_STATE, data[3]);
@@ -112,16 +112,16 @@ static void a_step_that_the_core_refuses_ends_in_fault_and_reset_mends_it(void) 
     uint8_t data[LACONIC_FRAME_BYTES];
     bench_load(2);
     node.start.nu_rad_per_s[2] = 1;
-    bench_control(LACONIC_WIRE_COMMAND_START_LOCKSTEP, 1, 0, 0);
+    bench_start_lockstep();
     node.input[0].voltage_V[0] = LACONIC_REAL_MAX;
     bench_sync(5);
     laconic_node_on_tick(&node, now_us);
     TEST_ASSERT_EQUAL_UINT8(LACONIC_WIRE_STATE_FAULT, node.state);
     TEST_ASSERT_TRUE(bench_receive(LACONIC_WIRE_RESULT, data) && data[3] != 0);
-    TEST_ASSERT_EQUAL_UINT8(LACONIC_WIRE_STATUS_WRONG_STATE, bench_control(LACONIC_WIRE_COMMAND_START_LOCKSTEP, 2, 0, 0));
+    TEST_ASSERT_EQUAL_UINT8(LACONIC_WIRE_STATUS_WRONG_STATE, bench_start_lockstep());
     node.start.nu_rad_per_s[2] = 0;
-    TEST_ASSERT_EQUAL_UINT8(0, bench_control(LACONIC_WIRE_COMMAND_RESET, 0, 0, 0));
-    TEST_ASSERT_EQUAL_UINT8(0, bench_control(LACONIC_WIRE_COMMAND_START_LOCKSTEP, 2, 0, 0));
+    TEST_ASSERT_EQUAL_UINT8(0, bench_control(LACONIC_WIRE_COMMAND_RESET, 0, 0));
+    TEST_ASSERT_EQUAL_UINT8(0, bench_start_lockstep());
 }
 
 static void the_fault_names_the_wheel_whichever_sample_of_the_step_is_to_blame(void) {
@@ -131,7 +131,7 @@ static void the_fault_names_the_wheel_whichever_sample_of_the_step_is_to_blame(v
         bench_begin();
         bench_load(3);
         bench_select(0, 0, LACONIC_RAW_SAMPLED);
-        bench_control(LACONIC_WIRE_COMMAND_START_LOCKSTEP, 1, 0, 0);
+        bench_start_lockstep();
         node.input[k].voltage_V[k] = (laconic_real)NAN;
         bench_sync(1);
         laconic_node_on_tick(&node, now_us);
@@ -155,9 +155,9 @@ int main(void) {
     UNITY_BEGIN();
     RUN_TEST(id_bases_are_multiples_of_32);
     RUN_TEST(the_node_says_who_it_is);
-    RUN_TEST(nothing_starts_without_a_vehicle_or_with_the_wrong_session);
+    RUN_TEST(nothing_starts_without_a_vehicle);
     RUN_TEST(a_sync_steps_and_is_answered_with_what_was_selected);
-    RUN_TEST(a_sync_of_no_steps_or_without_its_inputs_is_refused);
+    RUN_TEST(a_sync_of_no_steps_or_too_many_or_without_its_inputs_is_refused);
     RUN_TEST(frames_of_the_wrong_shape_change_nothing_but_a_counter);
     RUN_TEST(a_vehicle_can_only_be_changed_while_it_stands);
     RUN_TEST(a_step_that_the_core_refuses_ends_in_fault_and_reset_mends_it);

@@ -12,7 +12,7 @@ static void publish(laconic_real nu_2, laconic_real x_m, laconic_real heading_ra
     const laconic_start start = {{0, nu_2, 0}, x_m, 0, heading_rad};
     bench_select(LACONIC_NODE_SEND_NU | LACONIC_NODE_SEND_POSE | LACONIC_NODE_SEND_WHEEL_SPEED |
                      LACONIC_NODE_SEND_STATE_FD | LACONIC_NODE_SEND_COUNTERS, 0, 0);
-    bench_control(LACONIC_WIRE_COMMAND_START_LOCKSTEP, (uint8_t)(node.session + 1U), 0, 0);
+    bench_start_lockstep();
     laconic_state_set(&node.plant.state, &node.plant.model, &start, NULL);
     bench_sync(1);
     laconic_node_on_tick(&node, now_us);
@@ -62,7 +62,7 @@ static void the_fd_frame_packed_by_hand_reads_by_the_contract(void) {
     struct laconic_dbc_state_fd_t state;
     publish((laconic_real)2.5, (laconic_real)1.25, (laconic_real)-0.5);
     TEST_ASSERT_TRUE(bench_receive(LACONIC_WIRE_STATE_FD, data));
-    TEST_ASSERT_TRUE(laconic_e2e_p05_crc_is_right(data, 64, laconic_wire_data_id(LACONIC_WIRE_STATE_FD)));
+    TEST_ASSERT_TRUE(laconic_plain_is_right(LACONIC_WIRE_STATE_FD, data));
     laconic_dbc_state_fd_unpack(&state, data, 64);
     TEST_ASSERT_EQUAL_UINT32(1, state.steps);
     TEST_ASSERT_INT_WITHIN(3, 2500000, state.nu_2);
@@ -76,14 +76,18 @@ static void counters_come_in_three_pages(void) {
     uint8_t data[LACONIC_FRAME_BYTES];
     struct laconic_dbc_counters_t counters;
     publish(0, 0, 0);
-    node.counters.late_periods = 7;
+    const laconic_node_counters all = {1, 2, 3, 4, 5, 6, 7, 8, 9};
+    node.counters = all;
     now_us += LACONIC_NODE_HEARTBEAT_US;
     laconic_node_on_tick(&node, now_us);
     for (uint8_t page = 0; page < 3; page++) {
         TEST_ASSERT_TRUE(bench_receive(LACONIC_WIRE_COUNTERS, data));
         laconic_dbc_counters_unpack(&counters, data, 8);
         TEST_ASSERT_EQUAL_UINT8(page, counters.page);
-        if (page == 1) TEST_ASSERT_EQUAL_UINT16(7, counters.late_periods);
+        const uint16_t found[9] = {counters.crc_errors, counters.sequence_errors, counters.repeated,
+                                   counters.lost, counters.malformed, counters.late_periods,
+                                   counters.accepted, counters.refused, counters.overrange};
+        for (uint8_t k = 0; k < 3; k++) TEST_ASSERT_EQUAL_UINT16(3 * page + k + 1, found[3 * page + k]);
     }
     TEST_ASSERT_FALSE(bench_receive(LACONIC_WIRE_COUNTERS, data));
 }

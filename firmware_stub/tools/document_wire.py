@@ -13,7 +13,7 @@ from cantools.database.can import Database, Message, Signal
 
 HEAD = """# The wire contract
 
-Made from `firmware_stub/laconic.dbc`; edit that. Identifiers are those of a node at ID base 0x200; other
+Made from `firmware_stub/laconic.dbc`; edit that. Identifiers are those of a node at ID base 0x680; other
 nodes use the same offsets from their own base, a multiple of 32.
 
 Classic frames are protected by AUTOSAR E2E profile 22 (bytes 0 and half of 1), CAN FD frames by profile 5 (bytes 0 to

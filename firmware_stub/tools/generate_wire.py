@@ -13,8 +13,9 @@ from pathlib import Path
 import cantools.database
 from cantools.database.can import Database, Message, Signal
 
-ID_BASE = 512
+ID_BASE = 1664
 NOTE = "/* Generated from laconic.dbc. */\n"
+KEYS = ("none", "nonce", "session", "run")  # how a frame's protection is keyed
 
 
 def attribute(message: Message, name: str) -> str | int:
@@ -30,6 +31,8 @@ def data_ids(message: Message) -> list[int]:
         number = int(text, 16)
         return [number & 255, number >> 8]
     ids = [int(part, 16) for part in text.split()]
+    if message.length != 8:
+        raise SystemExit(f"laconic.dbc: {message.name}: a classic frame has 8 bytes, this one {message.length}")
     if len(ids) != 16:
         raise SystemExit(f"laconic.dbc: {message.name}: E2EDataID needs 16 bytes, has {len(ids)}")
     return ids
@@ -45,13 +48,20 @@ def constants(database: Database) -> list[str]:
         raise SystemExit("laconic.dbc: identifiers of the rig's frames must all lie below those of the node's")
     lines += [f"#define LACONIC_WIRE_RIG_OFFSETS {max(rig) + 1}", f"#define LACONIC_WIRE_NODE_FIRST {min(node)}"]
     lines += [f"#define LACONIC_WIRE_NODE_OFFSETS {max(node) + 1 - min(node)}"]
+    moving = [m.frame_id - ID_BASE for m in database.messages if attribute(m, "E2EKey") == "run"]
+    if sorted(moving) != list(range(min(moving), max(moving) + 1)):
+        raise SystemExit("laconic.dbc: identifiers of the frames with E2EKey run must follow one another")
+    lines += [f"#define LACONIC_WIRE_RUN_FIRST {min(moving)}", f"#define LACONIC_WIRE_RUN_OFFSETS {len(moving)}"]
     choices: dict[str, int] = {}
     for message in database.messages:
         for signal in message.signals:
             for number, text in (signal.choices or {}).items():
                 if signal.name in ("command", "state") or (signal.name == "status" and number >= 64):
                     choices[f"LACONIC_WIRE_{signal.name}_{text}".upper()] = number
+                if (message.name, signal.name) == ("PARAMETER", "field"):
+                    choices[f"LACONIC_WIRE_FIELD_{text}"] = number
             lines += scale(message, signal)
+    lines += [f"#define LACONIC_WIRE_KEY_{key.upper()} {number}" for number, key in enumerate(KEYS)]
     return lines + [f"#define {name} {number}" for name, number in choices.items()]
 
 
@@ -70,16 +80,12 @@ def rows(database: Database) -> list[str]:
     lists = [offset for offset, message in by_offset.items() if not message.is_fd]
     lists += [offset for offset, message in by_offset.items() if message.is_fd]
     lines = []
-    for offset in range(32):
-        if offset not in by_offset:
-            continue
+    for offset in sorted(by_offset):
         message = by_offset[offset]
-        from_rig = int("RIG" in message.senders)
-        lines.append(
-            f"    [{offset}] = {{{message.length}, {int(message.is_fd)}, {from_rig}, "
-            f"{attribute(message, 'OfSession')}, {attribute(message, 'E2EMaxDeltaCounter')}, {lists.index(offset)}}}, "
-            f"/* {message.name} */"
-        )
+        key = KEYS.index(str(attribute(message, "E2EKey")))
+        row = (message.length, int(message.is_fd), int("RIG" in message.senders), key,
+               attribute(message, "E2EMaxDeltaCounter"), lists.index(offset))
+        lines.append(f"    [{offset}] = {{{', '.join(map(str, row))}}}, /* {message.name} */")
     return lines
 
 
@@ -110,12 +116,12 @@ typedef struct laconic_wire_row {{
     uint8_t length;    /* 0: no such frame */
     uint8_t fd;
     uint8_t from_rig;
-    uint8_t of_session;
+    uint8_t key;       /* LACONIC_WIRE_KEY_…: what the protection depends on */
     uint8_t max_delta;
     uint8_t list;      /* classic: which DataID list */
 }} laconic_wire_row;
 
-#define LACONIC_WIRE_OFFSETS 32
+#define LACONIC_WIRE_OFFSETS {offsets}
 extern const laconic_wire_row laconic_wire[LACONIC_WIRE_OFFSETS];
 extern const uint8_t laconic_wire_data_ids[{classic}][16]; /* profile 22 */
 uint16_t laconic_wire_data_id(uint8_t offset);         /* profile 5  */
@@ -132,7 +138,8 @@ def main(dbc: str, directory: str) -> None:
         message.dbc.database_default = defaults
     classic = sum(not m.is_fd for m in database.messages)
     out = Path(directory)
-    header = HEADER.format(constants="\n".join(constants(database)), classic=classic)
+    offsets = 1 + max(m.frame_id for m in database.messages) - ID_BASE
+    header = HEADER.format(constants="\n".join(constants(database)), classic=classic, offsets=offsets)
     out.joinpath("laconic_wire.h").write_text(NOTE + header, encoding="utf-8")
     body = ['#include "laconic_wire.h"', "", "const laconic_wire_row laconic_wire[LACONIC_WIRE_OFFSETS] = {"]
     body += [*rows(database), "};", "", *tables(database), ""]

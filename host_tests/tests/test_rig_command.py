@@ -22,8 +22,10 @@ from laconic.rig.judge import judge_same_bits, judge_scaled
 from laconic.rig.lockstep import load_scene, run_lockstep
 from laconic.rig.logs import read_log
 from laconic.rig.scaled import run_scaled
+from laconic.rig.wire import ID_BASE, wire
 from laconic.scene import read_scene
 
+NU = wire()["NU"].offset
 SAMPLED = """
 name = "sampled"
 source = "this test: a rolling cart with a sine on one wheel and a wind that turns with the world"
@@ -91,7 +93,7 @@ def test_a_run_is_logged_to_the_last_frame_replayed_and_told_to_ci(tmp_path: Pat
     suite = ElementTree.parse(tmp_path / "run.xml").getroot()
     assert int(suite.get("tests")) == len(told["verdicts"]) and suite.get("failures") == "0"
     for path in logs:
-        assert sum(m.arbitration_id == 0x200 + 11 for m in read_log(path)) == 50
+        assert sum(m.arbitration_id == ID_BASE + NU for m in read_log(path)) == 50
         assert run(["rig", "s1", "--replay", str(path)]) == 0
 
 
@@ -140,10 +142,10 @@ def rig_on(port: int, *more: str) -> int:
 
 
 def test_a_wrong_bit_rate_is_told(capsys: object) -> None:
-    with node_process("double", 512, "--bitrate", "500000") as port:
+    with node_process("double", ID_BASE, "--bitrate", "500000") as port:
         assert rig_on(port, "--bitrate", "250000") == 2
         assert "bit rate" in capsys.readouterr().err
-    with node_process("double", 512, "--bitrate", "500000") as port:
+    with node_process("double", ID_BASE, "--bitrate", "500000") as port:
         assert run(["rig", "s1", "--interface", "slcan", "--channel", f"socket://127.0.0.1:{port}", "--bitrate",
                     "500000", "--steps", "20"]) == 0
 
@@ -151,7 +153,7 @@ def test_a_wrong_bit_rate_is_told(capsys: object) -> None:
 def test_a_node_at_another_id_base_is_not_found_and_found_at_its_own(capsys: object) -> None:
     with node_process("double", 0x300) as port:
         assert rig_on(port) == 2
-        assert "0x200" in capsys.readouterr().err
+        assert "0x680" in capsys.readouterr().err
     with node_process("double", 0x300) as port, connected("slcan", f"socket://127.0.0.1:{port}", 0x300) as node:
         assert judge_scaled(node, read_scene("s1"), 20, {}).passed
 
@@ -166,9 +168,10 @@ def test_a_bus_that_dies_in_the_run_is_a_verdict_and_the_log_is_whole(tmp_path: 
     node.stdout.close()
     told = json.loads(capsys.readouterr().out)
     assert told["verdicts"][0]["name"] == "run" and "died" in told["verdicts"][0]["detail"]
-    names = [message.arbitration_id - 0x200 for message in read_log(tmp_path / "run.blf")]
-    assert names.count(3) > 5 and abs(names.count(3) - names.count(11)) <= 1
-    assert names[-1] in (0, 3, 11, 12, 13, 15)  # 0: a STOP in vain
+    names = [wire().by_offset[message.arbitration_id - ID_BASE].name for message in read_log(tmp_path / "run.blf")]
+    asked, answered = names.count("VOLTAGE") - 1, names.count("NU")  # the first is for reference
+    assert asked > 5 and abs(asked - answered) <= 1
+    assert names[-1] in ("CONTROL", "VOLTAGE", "NU", "POSE", "WHEEL_SPEED", "HEARTBEAT")  # CONTROL: a STOP in vain
 
 
 def test_a_board_that_restarts_in_the_run_is_a_verdict() -> None:
@@ -179,13 +182,13 @@ def test_a_board_that_restarts_in_the_run_is_a_verdict() -> None:
         def restart(count: int) -> None:
             restart.steps += count
             if restart.steps == 20:
-                library_node.restart(512, True, node.link.clock.now_us())
+                library_node.restart(ID_BASE, True, node.link.clock.now_us())
 
         restart.steps = 0
-        with pytest.raises(Exception, match="answers came|refuses") as died:
+        with pytest.raises(Exception, match="it has restarted") as died:
             run_scaled(node, scene, 100, restart)
         assert died.value.exit_status == 1
-        node.identify()
+        node.stop()
         assert node.state == "empty"
 
 
@@ -261,7 +264,7 @@ def test_lockstep_over_a_process_is_as_fast_as_promised(capsys: object) -> None:
 
 def test_a_node_without_vehicle_refuses_to_start() -> None:
     with own_node("virtual", "double") as node:
-        node.identify()
+        node.open()
         with pytest.raises(Exception, match="wrong state"):
             node.start_lockstep()
         load_scene(node, read_scene("s1"))

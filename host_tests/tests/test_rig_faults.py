@@ -9,7 +9,6 @@ from contextlib import contextmanager
 import can
 import pytest
 
-from laconic.errors import LaconicError
 from laconic.rig.buses import NodeOnBus, VirtualClock, next_channel
 from laconic.rig.client import NodeClient
 from laconic.rig.faulty import FaultyBus
@@ -18,7 +17,7 @@ from laconic.rig.lockstep import load_scene, run_lockstep, twin_states
 from laconic.rig.matrix import FAULTS, run_case, run_matrix, summary
 from laconic.rig.node_library import LibraryNode
 from laconic.rig.scaled import Voltages
-from laconic.rig.wire import wire
+from laconic.rig.wire import ID_BASE, wire
 from laconic.scene import read_scene
 
 FIXED_SEED = 20111125
@@ -122,7 +121,7 @@ def free_running(watchdog_ms: int = 50, **faults: object) -> Iterator[tuple[Node
     client = NodeClient(Link(near, clock=clock, pump=end.pump), timeout_s=0.3)
     near.model.active = False
     load_scene(client, read_scene("s1"))
-    client.select(send_heartbeat=1)
+    client.select(send_counters=1)
     client.start_free_run(100, watchdog_ms)
     near.model.active = True
     yield client, end, near
@@ -171,25 +170,29 @@ def drive_nothing(client: NodeClient, seconds: float) -> None:
 
 def test_a_stale_start_does_not_start_the_vehicle_again() -> None:
     with free_running() as (client, end, near):
-        session = client.link.session
+        recorded: list[can.Message] = []
+        client.link.listeners.append(recorded.append)
         client.stop()
-        with pytest.raises(LaconicError, match="wrong session"):
-            client.control("START_FREE_RUN", session=session, rate=100)
-        assert end.node.look()["state"] == "ready"
+        client.start_free_run(100, 50)
+        client.stop()
+        for message in recorded:  # STOP, START and STOP of before
+            near.send(message)
+            drive_nothing(client, 0.01)
+            assert end.node.look()["state"] == "ready"
 
 
 def test_counter_rewind_a_rejected_burst_does_not_open_the_door_for_what_follows_it() -> None:
     with free_running(watchdog_ms=0) as (client, end, near):
         recorded: list[can.Message] = []
-        client.link.listeners.append(lambda m: recorded.append(m) if m.arbitration_id == 0x200 + VOLTAGE else None)
+        client.link.listeners.append(lambda m: recorded.append(m) if m.arbitration_id == ID_BASE + VOLTAGE else None)
         drive(client, 2.0, 0.08)
         drive(client, 1.0, 0.05)
-        for message in recorded[1:3]:  # an old burst, too short to be taken for a restarted rig
+        for message in recorded[1:5]:
             near.send(message)
         drive_nothing(client, 0.001)
         assert end.node.look()["voltage_V"] == [1.0, 1.0, 1.0]
         before = end.node.look()
-        drive(client, 1.5, 0.02)
+        drive(client, 1.5, 0.02)  # the first is for reference
         assert end.node.look()["voltage_V"] == [1.5, 1.5, 1.5]
         assert end.node.look()["sequence_errors"] == before["sequence_errors"]
 
@@ -199,7 +202,7 @@ VOLTAGE = wire()["VOLTAGE"].offset
 
 def test_invalid_frames_do_not_feed_the_watchdog() -> None:
     for fault in ({"corruption": 1.0}, {"stuck": 1.0}, {"wrong_length": 1.0}):
-        with free_running(only_id=0x200 + VOLTAGE, direction="out", **fault) as (client, end, near):
+        with free_running(only_id=ID_BASE + VOLTAGE, direction="out", **fault) as (client, end, near):
             drive(client, 2.0, 0.2)
             view = end.node.look()
             assert view["state"] == "timeout" and view["voltage_V"] == [0.0, 0.0, 0.0], fault
@@ -222,7 +225,6 @@ def test_bus_off_stops_the_vehicle_and_recovers() -> None:
     with free_running(bus_off_after=30, bus_off_s=0.3) as (client, end, near):
         drive(client, 2.0, 0.5)
         assert end.node.look()["state"] == "timeout"
-        client.identify()
         client.stop()
         scene = read_scene("s1")
         run = run_lockstep(client, scene, 20)

@@ -4,7 +4,7 @@
 
 #include <stdint.h>
 
-/* All of them stay at 65535. */
+/* All of them stay at 65535. In the order of COUNTERS, three to a page. */
 typedef struct laconic_node_counters {
     uint16_t crc_errors, sequence_errors, repeated, lost, malformed, late_periods, accepted, refused, overrange;
 } laconic_node_counters;

@@ -17,13 +17,20 @@
 #define LACONIC_E2E_P05_HEADER 3
 #define LACONIC_E2E_P05_COUNTER_MASK 255U
 
-/* `turn` turns the DataID list: entry (counter + turn) mod 16 is used. 0: plain profile 22. Frames of one turn
- * never pass the check of another, since then the last byte under the CRC differs. */
-void laconic_e2e_p22_protect(uint8_t *data, uint8_t length, const uint8_t data_ids[16], uint8_t turn, uint8_t counter);
-bool laconic_e2e_p22_crc_is_right(const uint8_t *data, uint8_t length, const uint8_t data_ids[16], uint8_t turn);
+/* What the CRC begins and ends with: its start value, and the DataID that follows the payload. */
+typedef struct laconic_e2e_ends {
+    uint16_t start, data_id; /* profile 22: below 256 */
+} laconic_e2e_ends;
 
-void laconic_e2e_p05_protect(uint8_t *data, uint8_t length, uint16_t data_id, uint8_t counter);
-bool laconic_e2e_p05_crc_is_right(const uint8_t *data, uint8_t length, uint16_t data_id);
+/* Start values of the profiles; see protection.h for frames that choose others. */
+#define LACONIC_E2E_P22_START 0xFFU
+#define LACONIC_E2E_P05_START 0xFFFFU
+
+void laconic_e2e_p22_protect(uint8_t *data, uint8_t length, laconic_e2e_ends ends, uint8_t counter);
+bool laconic_e2e_p22_crc_is_right(const uint8_t *data, uint8_t length, laconic_e2e_ends ends);
+
+void laconic_e2e_p05_protect(uint8_t *data, uint8_t length, laconic_e2e_ends ends, uint8_t counter);
+bool laconic_e2e_p05_crc_is_right(const uint8_t *data, uint8_t length, laconic_e2e_ends ends);
 
 typedef enum laconic_e2e_status {
     LACONIC_E2E_OK = 0,
@@ -34,7 +41,7 @@ typedef enum laconic_e2e_status {
     LACONIC_E2E_NO_NEW_DATA
 } laconic_e2e_status;
 
-/* Receiver of one kind of frame. All zero: nothing received yet, the first right frame is OK.
+/* The rig's receiver of one kind of plain frame. All zero: nothing received yet, the first right frame is OK.
  * A frame that is refused never moves `counter`. Only after LACONIC_E2E_RESYNC frames in a row with right CRC that
  * follow one another (though not the reference) is the last of them OK and the new reference. */
 #define LACONIC_E2E_RESYNC 3

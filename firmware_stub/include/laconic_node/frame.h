@@ -5,7 +5,14 @@
 #include <stdbool.h>
 #include <stdint.h>
 
+#ifndef LACONIC_NODE_CAN_FD
+#define LACONIC_NODE_CAN_FD 1 /* 0 leaves the code and the room for CAN FD out */
+#endif
+#if LACONIC_NODE_CAN_FD
 #define LACONIC_FRAME_BYTES 64
+#else
+#define LACONIC_FRAME_BYTES 8
+#endif
 
 typedef struct laconic_frame {
     uint32_t id;

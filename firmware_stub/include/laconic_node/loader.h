@@ -11,6 +11,8 @@ typedef struct laconic_parameters {
     int32_t method;
 } laconic_parameters;
 
+#define LACONIC_LOADER_FIELDS (LACONIC_FIELD_STEP + 1)
+
 typedef struct laconic_loader {
     laconic_parameters parameters;
     uint32_t checksum;       /* CRC-32 so far                                                  */
@@ -19,6 +21,7 @@ typedef struct laconic_loader {
     uint8_t field, item;     /* … and what it was about                                        */
     uint8_t half_field, half_item; /* lower half of a double waits for its upper half; 0: none */
     uint32_t half;
+    uint32_t given[LACONIC_LOADER_FIELDS]; /* by field: bit = item, 0 where it has none                */
 } laconic_loader;
 
 void laconic_loader_begin(laconic_loader *loader);
@@ -26,8 +29,9 @@ void laconic_loader_begin(laconic_loader *loader);
 /* Takes one PARAMETER frame (8 bytes, protection already checked). */
 void laconic_loader_take(laconic_loader *loader, const uint8_t data[8]);
 
-/* 0 iff every frame was of use, none is missing, and the checksum is right; else LACONIC_WIRE_STATUS_…
- * Whether the vehicle is any good is for the core to say. */
-uint8_t laconic_loader_check(const laconic_loader *loader, uint16_t frame_count, uint32_t checksum);
+/* 0 iff every frame was of use, none is missing, the checksum is right, and nothing is left out that a scene file must
+ * give; else LACONIC_WIRE_STATUS_… and what it is about. Whether the vehicle is any good is for the core to say. */
+uint8_t laconic_loader_check(const laconic_loader *loader, uint16_t frame_count, uint32_t checksum, uint8_t *field,
+                             uint8_t *item);
 
 #endif

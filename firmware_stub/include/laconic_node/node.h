@@ -16,17 +16,14 @@
 #define LACONIC_NODE_H
 
 #include "laconic_node/counters.h"
-#include "laconic_node/e2e.h"
 #include "laconic_node/frame.h"
 #include "laconic_node/loader.h"
 #include "laconic_node/raw.h"
+#include "laconic_node/session.h"
 #include "laconic_wire.h"
 
 #ifndef LACONIC_NODE_STEPS_PER_TICK
 #define LACONIC_NODE_STEPS_PER_TICK 64
-#endif
-#ifndef LACONIC_NODE_CAN_FD
-#define LACONIC_NODE_CAN_FD 1 /* 0 leaves the code for CAN FD out */
 #endif
 #define LACONIC_NODE_HEARTBEAT_US 100000U
 #define LACONIC_NODE_ID_STRIDE 32U /* a node uses 32 identifiers from its base */
@@ -36,6 +33,8 @@ typedef struct laconic_node_config {
     bool can_fd;                                      /* the bus and the controller can do CAN FD  */
     const laconic_method *(*method)(int32_t number);  /* which methods are linked; as
                                                          laconic_method_by_number                  */
+    uint32_t nonce_seed;                              /* other at each power-up, as far as the port can: from a
+                                                         hardware generator, noise, a boot counter; 0: none  */
 } laconic_node_config;
 
 typedef struct laconic_node_result {
@@ -59,7 +58,6 @@ typedef struct laconic_node_free_run {
 typedef struct laconic_node {
     laconic_node_config config;
     uint8_t state;                     /* LACONIC_WIRE_STATE_…                                     */
-    uint8_t session;                   /* of the last START; the next must name the one after      */
     uint8_t send;                      /* chosen frames: LACONIC_NODE_SEND_…                       */
     bool raw_fd;
     uint32_t pending;                  /* frames to be fetched: bit = offset of the identifier     */
@@ -67,11 +65,12 @@ typedef struct laconic_node {
     uint8_t counter_page;
     uint8_t groups_seen;               /* VOLTAGE groups since the watchdog was fed                */
     uint32_t heartbeat_us;
-    laconic_node_result result;
+    uint16_t answers_due;              /* RESULTs to be fetched: bit = offset of what is answered  */
+    laconic_node_result answer[LACONIC_WIRE_RIG_OFFSETS]; /* the last to each kind; sent again when its frame is */
+    laconic_node_session session;
     laconic_node_lockstep lockstep;
     laconic_node_free_run free_run;
     laconic_node_counters counters;
-    laconic_e2e_receiver receiver[LACONIC_WIRE_RIG_OFFSETS];
     uint8_t sent[LACONIC_WIRE_NODE_OFFSETS]; /* counters of what was sent                             */
     laconic_loader loader;
     laconic_start start;               /* what RESET returns to                                    */
@@ -84,7 +83,6 @@ typedef struct laconic_node {
 #define LACONIC_NODE_SEND_NU 1U
 #define LACONIC_NODE_SEND_POSE 2U
 #define LACONIC_NODE_SEND_WHEEL_SPEED 4U
-#define LACONIC_NODE_SEND_HEARTBEAT 8U
 #define LACONIC_NODE_SEND_COUNTERS 16U
 #define LACONIC_NODE_SEND_STATE_FD 32U
 

@@ -14,9 +14,14 @@ bool board_send(char byte);
 /* Microseconds since start; wraps. To be called at least every two minutes. */
 uint32_t board_now_us(void);
 
-/* Called by the board's interrupt: a byte has come. False iff there is no room; the board then stops asking until
- * board_resume. */
-bool port_received(char byte);
+/* For laconic_node_config.nonce_seed: other at each power-up; 0 where the board has nothing that is. */
+uint32_t board_nonce_seed(void);
+
+/* Called by the board's interrupt, room first: an interrupt that was pending already comes once more after it has been
+ * switched off, and a byte that it took then would overwrite one that waits. No room: leave the byte where it is and
+ * switch the interrupt off until board_resume. */
+bool port_has_room(void);
+void port_received(char byte);
 void board_resume(void);
 
 /* Handlers, by the names that the vector table uses. */

@@ -2,6 +2,7 @@
 #include "../../../core_c/bench/cortex_m/board.h"
 
 #include "laconic_node/node.h"
+#include "laconic_node/protection.h"
 #include "laconic_node/slcan.h"
 #include "laconic_wire.h"
 #include "methods.h"
@@ -39,17 +40,18 @@ static void voltage_frame(laconic_frame *frame, uint8_t counter) {
     frame->data[1] = 0x10; /* sync */
     frame->data[2] = 100;
     frame->data[4] = 100;
-    laconic_e2e_p22_protect(frame->data, 8, laconic_wire_data_ids[laconic_wire[LACONIC_WIRE_VOLTAGE].list],
-                            node.session, counter);
+    laconic_protect_keyed(LACONIC_WIRE_VOLTAGE, frame->data, node.session.run_key, counter);
 }
 
 static bool start(void) {
-    const laconic_node_config config = {LACONIC_WIRE_ID_BASE, false, port_method};
+    const laconic_node_config config = {LACONIC_WIRE_ID_BASE, false, port_method, 0};
     const laconic_start rest = {{0, 0, 0}, 0, 0, 0};
     laconic_node_init(&node, &config, 0);
     if (laconic_plant_start(&node.plant, &vehicle, port_method(1), (laconic_real)0.001, &rest, NULL) != LACONIC_OK)
         return false;
     node.state = LACONIC_WIRE_STATE_LOCKSTEP;
+    node.session.open = true;
+    node.session.armed = 1U << LACONIC_WIRE_VOLTAGE;
     node.send = LACONIC_NODE_SEND_NU;
     return true;
 }

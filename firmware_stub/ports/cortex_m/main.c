@@ -18,12 +18,16 @@ static volatile bool ring_was_full;
 static char line[LACONIC_SLCAN_LINE];
 static uint16_t line_length, line_sent;
 
-bool port_received(char byte) {
+bool port_has_room(void) {
+    if ((uint16_t)(ring_head - ring_tail) < RING_SIZE) return true;
+    ring_was_full = true;
+    return false;
+}
+
+void port_received(char byte) {
     const uint16_t head = ring_head;
     ring[head % RING_SIZE] = byte;
     ring_head = (uint16_t)(head + 1U);
-    ring_was_full = (uint16_t)(ring_head - ring_tail) >= RING_SIZE;
-    return !ring_was_full;
 }
 
 static bool take_byte(char *byte) {
@@ -83,8 +87,9 @@ static void sleep_until_interrupt(void) {
 }
 
 int main(void) {
-    const laconic_node_config config = {LACONIC_WIRE_ID_BASE, LACONIC_NODE_CAN_FD != 0, port_method};
     board_init();
+    const laconic_node_config config = {LACONIC_WIRE_ID_BASE, LACONIC_NODE_CAN_FD != 0, port_method,
+                                        board_nonce_seed()};
     laconic_slcan_init(&slcan, 0);
     laconic_node_init(&node, &config, board_now_us());
     for (;;) {

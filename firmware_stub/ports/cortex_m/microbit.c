@@ -26,6 +26,11 @@ enum { UART_ON = 4, RX_INTERRUPT = 1 << 2, PIN_TX = 24, PIN_RX = 25 };
 #define TIMER_COMPARE_1 REGISTER(0x40008544U)
 enum { BITS_32 = 3, ONE_MHZ = 4, COMPARE_1_INTERRUPT = 1 << 17, WAKE_US = 1000 };
 
+#define NOISE_START REGISTER(0x4000D000U)
+#define NOISE_STOP REGISTER(0x4000D004U)
+#define NOISE_READY REGISTER(0x4000D100U)
+#define NOISE_VALUE REGISTER(0x4000D508U)
+
 static bool sending;
 
 void board_init(void) {
@@ -57,15 +62,37 @@ uint32_t board_now_us(void) {
     return TIMER_COMPARE_0;
 }
 
+/* Four bytes of the random number generator: thermal noise, about 0.7 ms each. */
+uint32_t board_nonce_seed(void) {
+    uint32_t seed = 0;
+    NOISE_START = 1;
+    for (int k = 0; k < 4; k++) {
+        while (NOISE_READY == 0) {}
+        NOISE_READY = 0;
+        seed = seed << 8 | (NOISE_VALUE & 255U);
+    }
+    NOISE_STOP = 1;
+    return seed;
+}
+
 void board_resume(void) { UART_INTERRUPT_SET = RX_INTERRUPT; }
 
 void board_uart_handler(void) {
     if (UART_RX_READY == 0) return;
-    UART_RX_READY = 0;
-    if (!port_received((char)UART_RX)) UART_INTERRUPT_CLEAR = RX_INTERRUPT;
+    if (port_has_room()) {
+        UART_RX_READY = 0;
+        port_received((char)UART_RX);
+    } else {
+        UART_INTERRUPT_CLEAR = RX_INTERRUPT;
+    }
 }
 
+/* A comparison that is set for an instant already past would come 71 minutes later: set again until it lies ahead. */
 void board_wake_handler(void) {
+    uint32_t wake_us;
     TIMER_EVENT_1 = 0;
-    TIMER_COMPARE_1 += WAKE_US;
+    do {
+        wake_us = board_now_us() + WAKE_US;
+        TIMER_COMPARE_1 = wake_us;
+    } while ((int32_t)(board_now_us() - wake_us) >= 0);
 }

@@ -50,6 +50,9 @@ uint32_t board_now_us(void) {
     return time_us;
 }
 
+/* The MPS2 has no generator and no clock that goes on without power: the first HELLO's instant must do. */
+uint32_t board_nonce_seed(void) { return 0; }
+
 /* A byte that came while the interrupt was off has raised none: fetch it as the interrupt would have. */
 void board_resume(void) {
     __asm volatile("cpsid i" ::: "memory");
@@ -61,7 +64,11 @@ void board_resume(void) {
 void board_uart_handler(void) {
     UART_INTERRUPT = RX_CLEAR;
     if ((UART_STATE & RX_FULL) == 0) return;
-    if (!port_received((char)UART_DATA)) UART_CONTROL = TX_ENABLE | RX_ENABLE;
+    if (port_has_room()) {
+        port_received((char)UART_DATA);
+    } else {
+        UART_CONTROL = TX_ENABLE | RX_ENABLE;
+    }
 }
 
 void board_wake_handler(void) { WAKE_INTERRUPT = 1; }

@@ -66,6 +66,16 @@ static uint32_t now_us(void) {
     return (uint32_t)((uint64_t)time.tv_sec * 1000000U + (uint64_t)time.tv_nsec / 1000U);
 }
 
+/* Other at each start, so that a recorded handshake fits no later process. */
+static uint32_t nonce_seed(void) {
+    uint32_t seed = (uint32_t)time(NULL) ^ (uint32_t)getpid() << 16;
+    FILE *noise = fopen("/dev/urandom", "rb");
+    if (noise == NULL) return seed;
+    if (fread(&seed, sizeof seed, 1, noise) != 1) seed ^= now_us();
+    fclose(noise);
+    return seed;
+}
+
 static void flush_out(board *port) {
     const ssize_t sent = send(port->socket, port->out, port->out_count, MSG_DONTWAIT | MSG_NOSIGNAL);
     if (sent <= 0) return;
@@ -248,7 +258,8 @@ int main(int count, char **words) {
     if (asks_for_help(count, words)) return printf(help, (unsigned)LACONIC_WIRE_ID_BASE) < 0;
     const int bad = parse(count, words, &settings);
     if (bad != 0) return bad;
-    const laconic_node_config config = {(uint16_t)settings.id_base, true, laconic_method_by_number};
+    const laconic_node_config config = {(uint16_t)settings.id_base, true, laconic_method_by_number,
+                                        nonce_seed()};
     laconic_node_init(&port.node, &config, now_us());
     const int listening = open_listener(settings.port, &chosen);
     if (listening < 0) return complain(strerror(errno), "the port is taken or not allowed; choose another --port");

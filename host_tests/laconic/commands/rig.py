@@ -32,7 +32,7 @@ CONNECTION = ("--interface", "--channel", "--bitrate", "--bus-option", "--id-bas
 @click.option("--bitrate", type=int, help="Bits per second, where the interface sets it.")
 @click.option("--bus-option", "bus_options", multiple=True, metavar="NAME=VALUE",
               help="More for the interface, such as under=slcan or loss=0.01 for faulty.")
-@click.option("--id-base", help="The node's first CAN identifier, a multiple of 32.  [default: the scene's, or 0x200]")
+@click.option("--id-base", help="The node's first CAN identifier, a multiple of 32.  [default: the scene's, or 0x680]")
 @click.option("--board", type=click.Choice(KINDS), help="Start a node for this run: here, as process, or emulated.")
 @click.option("--lockstep", is_flag=True, help="One step to one command (default).")
 @click.option("--same-bits", is_flag=True, help="Lockstep with raw frames; every bit must agree.")

@@ -16,6 +16,7 @@ from laconic.paths import build_dir, built
 from laconic.rig.buses import connected, process_node, virtual_node
 from laconic.rig.client import NodeClient
 from laconic.rig.errors import CannotReach
+from laconic.rig.wire import ID_BASE
 
 QEMU = "qemu-system-arm"
 QEMU_START_S = 10.0
@@ -94,7 +95,7 @@ def emulated_node(name: str) -> Iterator[NodeClient]:
         yield client
 
 
-def own_node(kind: str, real: str, id_base: int = 512) -> AbstractContextManager[NodeClient]:
+def own_node(kind: str, real: str, id_base: int = ID_BASE) -> AbstractContextManager[NodeClient]:
     """A node of the given kind, started here and ended with the context."""
     if kind == "virtual":
         return virtual_node(real, id_base)
@@ -102,6 +103,6 @@ def own_node(kind: str, real: str, id_base: int = 512) -> AbstractContextManager
         return process_node(real, id_base)
     if kind not in BOARDS:
         raise BadInput(f"--board {kind}: no such board; {nearest_of(kind, KINDS)}")
-    if id_base != 512:
-        raise BadInput(f"--board {kind}: the images listen at ID base 0x200; leave --id-base out")
+    if id_base != ID_BASE:
+        raise BadInput(f"--board {kind}: the images listen at ID base 0x{ID_BASE:X}; leave --id-base out")
     return emulated_node(kind)

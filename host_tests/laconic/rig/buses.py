@@ -18,6 +18,7 @@ from laconic.rig.errors import CannotReach
 from laconic.rig.link import Clock, Link
 from laconic.rig.node_library import LibraryNode
 from laconic.rig.socket_line import read_in_chunks
+from laconic.rig.wire import ID_BASE
 
 _channel_numbers = itertools.count()
 
@@ -103,7 +104,7 @@ class NodeOnBus:
 
 
 @contextmanager
-def virtual_node(real: str = "double", id_base: int = 512, **node_options: Any) -> Iterator[NodeClient]:
+def virtual_node(real: str = "double", id_base: int = ID_BASE, **node_options: Any) -> Iterator[NodeClient]:
     """A node in this process on python-can's virtual bus, in virtual time."""
     channel = next_channel()
     clock = VirtualClock()
@@ -113,7 +114,7 @@ def virtual_node(real: str = "double", id_base: int = 512, **node_options: Any) 
 
 
 @contextmanager
-def node_process(real: str = "double", id_base: int = 512, *arguments: str) -> Iterator[int]:
+def node_process(real: str = "double", id_base: int = ID_BASE, *arguments: str) -> Iterator[int]:
     """A node in a process of its own; yields its TCP port."""
     program = built(f"bin/laconic-node-{real}")
     command = [str(program), "--id-base", hex(id_base), *arguments]
@@ -130,7 +131,7 @@ def node_process(real: str = "double", id_base: int = 512, *arguments: str) -> I
 
 
 @contextmanager
-def connected(interface: str, channel: str | None, id_base: int = 512, **options: Any) -> Iterator[NodeClient]:
+def connected(interface: str, channel: str | None, id_base: int = ID_BASE, **options: Any) -> Iterator[NodeClient]:
     """A client on a bus that python-can opens."""
     bus = open_bus(interface, channel, **options)
     try:
@@ -141,7 +142,7 @@ def connected(interface: str, channel: str | None, id_base: int = 512, **options
 
 
 @contextmanager
-def process_node(real: str = "double", id_base: int = 512) -> Iterator[NodeClient]:
+def process_node(real: str = "double", id_base: int = ID_BASE) -> Iterator[NodeClient]:
     """A node in a process of its own, over SLCAN on a TCP socket."""
     with node_process(real, id_base) as port, connected("slcan", f"socket://127.0.0.1:{port}", id_base) as client:
         yield client

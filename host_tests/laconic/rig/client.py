@@ -1,9 +1,10 @@
-"""A node's life seen from the rig: identify, load a vehicle, choose frames, start, stop, reset."""
+"""A node's life seen from the rig: open a session, load a vehicle, choose frames, start, stop, reset."""
 
 from __future__ import annotations
 
+import secrets
 import zlib
-from collections.abc import Iterable, Iterator
+from collections.abc import Callable, Iterable, Iterator
 from dataclasses import dataclass
 from typing import Any
 
@@ -11,11 +12,11 @@ import numpy as np
 
 from laconic.plant import Plant
 from laconic.rig.errors import CannotReach, NodeRefused, NodeSilent
-from laconic.rig.link import Link
+from laconic.rig.link import Link, Received
 from laconic.rig.wire import Frame, wire
 
 Parameter = tuple[str, int, float | int]  # field (name in the value table), item, value
-RESYNC = 3                                # frames that a receiver needs to accept a new counter
+REPEAT_S = 0.1                            # how long to wait for an answer before the same frame goes out again
 
 
 @dataclass(frozen=True)
@@ -31,76 +32,166 @@ class Identity:
 
 
 class NodeClient:
-    """Requests and their answers. Every other frame that comes meanwhile goes to `others`."""
+    """Commands and their answers, one at a time: a command is sent again until it is answered, and the node acts on it
+    once. Every other frame that comes meanwhile goes to `others`. `random_bits` chooses the session numbers."""
 
-    def __init__(self, link: Link, timeout_s: float = 1.0):
-        self.link, self.timeout_s = link, timeout_s
+    def __init__(self, link: Link, timeout_s: float = 1.0, *, random_bits: Callable[[int], int] = secrets.randbits):
+        self.link, self.timeout_s, self._random_bits = link, timeout_s, random_bits
         self.wire = wire()
         self.identity: Identity | None = None
-        self.next_session = 1
-        self.state = "empty"
-        self.others: list[tuple[Frame, bytes]] = []
-        self._request = 0
+        self.state = self.found = "empty"  # now; as the last session found it
+        self.others: list[Received] = []
+        self._greetings = 0
+        self._heartbeat: dict[str, int] | None = None  # the last that came during a run
 
-    # ---- requests
+    # ---- handshake
 
-    def identify(self) -> Identity:
-        """Finds the node; CannotReach when nobody answers."""
-        for _ in range(RESYNC + 1):
-            self._send_control("IDENTIFY")
-            # RESULT has the lower identifier, so it comes first
-            if self._wait_for("RESULT", self.timeout_s / 2) is None:
-                continue
-            if (found := self._wait_for("IDENTITY", self.timeout_s / 2)) is not None:
-                self.identity = identity_of(found)
-                return self.identity
-        raise CannotReach(f"no node answers at ID base 0x{self.link.id_base:X}: check that it runs, its ID base, "
-                          "the bit rate and the wiring")
-
-    def control(self, command: str, *, session: int = 0, rate: int = 0, watchdog: int = 0) -> dict[str, int]:
-        """One CONTROL and its RESULT; NodeRefused when it is a refusal."""
-        self._send_control(command, session=session, rate=rate, watchdog=watchdog)
-        return self.answer(command)
-
-    def _send_control(self, command: str, **fields: int) -> None:
-        self._request = (self._request + 1) & 15
-        number = self.wire.number("CONTROL", "command", command)
-        frame = self.wire["CONTROL"]
-        self.link.send(frame, frame.pack(request=self._request, command=number, **fields))
-
-    def answer(self, command: str) -> dict[str, int]:
-        """The RESULT of the last request."""
+    def open(self) -> Identity:
+        """Waits for a sign of life, then opens a session: a node that runs stops, its vehicle stays. CannotReach when
+        nobody answers."""
+        self.link.session.is_open = False
+        self.identity = None
+        self.link.forget_counters()
+        self._wait_for_life()
+        deadline_us = self.link.deadline_us(self.timeout_s)
         while True:
-            result = self._wait_for("RESULT", self.timeout_s)
-            if result is None:
-                raise NodeSilent(f"the node does not answer {command.lower().replace('_', ' ')} "
-                                 f"within {self.timeout_s:g} s")
-            self.check(result)
-            if result["request"] == self._request:
-                return result
+            nonce = self._greet(deadline_us)
+            number = self._random_bits(32)
+            if self._wait_for("RESULT", self._open_message(number, nonce), deadline_us, tries=3,
+                              command=self.wire.number("RESULT", "command", "OPEN"), request=self._greetings & 15):
+                self.link.session.open(number, nonce)
+                return self.identity
+            if self.link.clock.now_us() >= deadline_us:
+                raise self._unreachable("a node answers HELLO, but not OPEN,")
+
+    identify = open
+
+    def _wait_for_life(self) -> None:
+        """Frames that are sent while a board starts are lost, and so may be what opened the channel to it. Its
+        HEARTBEAT tells the state, too."""
+        deadline_us, alive = self.link.deadline_us(self.timeout_s), False
+        while True:
+            until_us = min(self.link.deadline_us(3 * REPEAT_S), deadline_us)
+            while (received := self.link.receive_until(until_us)) is not None:
+                alive = True
+                if received[0].name == "HEARTBEAT":
+                    self.found = self.wire.choice("HEARTBEAT", "state", received[0].unpack(received[1])["state"])
+                    return
+            if alive:
+                return
+            if self.link.clock.now_us() >= deadline_us:
+                raise self._unreachable("no frame of a node comes")
+            self.link.knock()
+
+    def _greet(self, deadline_us: int) -> int:
+        """HELLO until CHALLENGE; the nonce."""
+        while True:
+            self._greetings += 1
+            data = self.wire["HELLO"].pack()
+            self.link.library.protect_plain(self.wire["HELLO"].offset, data, self._greetings & 15)
+            found = self._wait_for("CHALLENGE", self.link.message(self.wire["HELLO"], data), deadline_us, tries=1,
+                                   request=self._greetings & 15)
+            if found and self._is_identified(deadline_us):
+                return found["nonce"]
+            if self.link.clock.now_us() >= deadline_us:
+                raise self._unreachable("no node answers")
+
+    def _is_identified(self, deadline_us: int) -> bool:
+        """IDENTITY comes before CHALLENGE; only where it was lost there is something to wait for."""
+        until_us = min(self.link.deadline_us(REPEAT_S), deadline_us)
+        while self.identity is None and (received := self.link.receive_until(until_us)) is not None:
+            self._take(received)
+        return self.identity is not None
+
+    def _open_message(self, number: int, nonce: int) -> Any:
+        frame = self.wire["OPEN"]
+        data = frame.pack(nonce_echo=nonce & 0xFFFF, session=number)
+        self.link.library.protect_keyed(frame.offset, data, nonce, self._greetings & 15)
+        return self.link.message(frame, data)
+
+    def _unreachable(self, what: str) -> CannotReach:
+        return CannotReach(f"{what} at ID base 0x{self.link.id_base:X} within {self.timeout_s:g} s: check that the "
+                           "node runs, its ID base, the bit rate and the wiring")
+
+    # ---- commands
+
+    def control(self, command: str, *, rate: int = 0, watchdog: int = 0) -> dict[str, int]:
+        """One CONTROL and its RESULT; NodeRefused when it is a refusal."""
+        number = self.wire.number("CONTROL", "command", command)
+        return self.command("CONTROL", number, command=number, rate=rate, watchdog=watchdog)
+
+    def command(self, name: str, number: int | None = None, **fields: int) -> dict[str, int]:
+        """One command and its RESULT, in a session that is opened where there is none; NodeRefused when it is a
+        refusal. `number`: what RESULT calls it, where its frame's name does not say."""
+        if not self.link.session.is_open:
+            self.open()
+        frame = self.wire[name]
+        data = frame.pack(**fields)
+        count = self.link.session.protect(frame, data)
+        result = self._wait_for("RESULT", self.link.message(frame, data), self.link.deadline_us(self.timeout_s),
+                                command=self.wire.number("RESULT", "command", name) if number is None else number,
+                                request=count & 15)
+        if result is None:
+            self.link.session.is_open = False  # whether it was taken is not known: the next begins anew
+            raise NodeSilent(f"the node does not answer {self._spoken(name, number)} within {self.timeout_s:g} s; "
+                             f"faults seen: {dict(self.link.faults) or 'none'}")
+        self.check(result)
+        return result
+
+    def _spoken(self, name: str, number: int | None) -> str:
+        return name.lower() if number is None else self.wire.choice("CONTROL", "command", number)
 
     def check(self, result: dict[str, int]) -> None:
-        """Remembers state and session; raises the refusal."""
-        self.next_session = result["session"]
+        """Remembers the state; raises the refusal."""
         self.state = self.wire.choice("RESULT", "state", result["state"])
         if result["status"]:
             raise NodeRefused(self.wire.choice("RESULT", "command", result["command"]),
                               self.wire.choice("RESULT", "status", result["status"]),
                               self.wire.choice("RESULT", "field", result["field"]), result["item"], self.state)
 
-    def _wait_for(self, name: str, timeout_s: float) -> dict[str, int] | None:
-        deadline_us = self.link.deadline_us(timeout_s)
-        while (received := self.link.receive_until(deadline_us)) is not None:
-            frame, data = received
-            if frame.name == name:
-                values = frame.unpack(data)
-                if name == "RESULT":
-                    self.next_session = values["session"]
-                    self.state = self.wire.choice("RESULT", "state", values["state"])
-                return values
-            self.others.append(received)
-            del self.others[:-100]
+    def notice(self, frame: Frame, data: bytes) -> None:
+        """A frame that came while a lockstep answer was due: raises a refusal, remembers the last sign of life."""
+        if frame.name == "RESULT":
+            self.check(frame.unpack(data))
+        elif frame.name == "HEARTBEAT":
+            self._heartbeat = frame.unpack(data)
+
+    def excuse(self) -> str:
+        """Why a lockstep answer may not have come: what the last HEARTBEAT says (it may itself be late, so it is no
+        reason to give up early), and what the link has seen."""
+        heartbeat, faults = self._heartbeat, f"faults seen: {dict(self.link.faults) or 'none'}"
+        if heartbeat is None:
+            return f"no sign of life either; {faults}"
+        state = self.wire.choice("HEARTBEAT", "state", heartbeat["state"])
+        if state != "lockstep":
+            return f"the node is in state {state}" + (": it has restarted" if state == "empty" else "")
+        deaf = "a frame on its way to the node was lost or spoilt, and it is deaf until STOP and START; "
+        return (deaf if heartbeat["deaf"] else "") + faults
+
+    def _wait_for(self, name: str, message: Any, deadline_us: int, tries: int = 0, **wanted: int
+                  ) -> dict[str, int] | None:
+        """Sends a message until the answer comes that holds what is wanted; None: not in time, or not in `tries`."""
+        sent = 0
+        while not (tries and sent == tries) and (sent == 0 or self.link.clock.now_us() < deadline_us):
+            self.link.send_message(message)
+            sent += 1
+            until_us = min(self.link.deadline_us(REPEAT_S), deadline_us)
+            while (received := self.link.receive_until(until_us)) is not None:
+                values = self._take(received)
+                if received[0].name == name and all(values[key] == value for key, value in wanted.items()):
+                    return values
+                self.others.append(received)
+                del self.others[:-100]
         return None
+
+    def _take(self, received: Received) -> dict[str, int]:
+        frame, data = received
+        values = frame.unpack(data)
+        if frame.name == "RESULT":
+            self.state = self.wire.choice("RESULT", "state", values["state"])
+        elif frame.name == "IDENTITY":
+            self.identity = identity_of(values)
+        return values
 
     # ---- vehicle
 
@@ -113,39 +204,42 @@ class NodeClient:
         self.control("BEGIN")
         frame, checksum, count = self.wire["PARAMETER"], 0, 0
         for upper, field, item, bits in parameter_words(parameters, dtype):
-            data = frame.pack(upper_half=upper, field=field, item=item, value=bits)
+            values = {"upper_half": upper, "field": field, "item": item, "value": bits}
+            data = frame.pack(**values)
             checksum = zlib.crc32(bytes([data[1] & 0xF0]) + bytes(data[2:]), checksum)
-            self.link.send(frame, data)
+            self.command("PARAMETER", **values)
             count += 1
-        self._request = (self._request + 1) & 15
-        commit = self.wire["COMMIT"]
-        self.link.send(commit, commit.pack(request=self._request, frame_count=count, checksum=checksum))
-        self.answer("COMMIT")
+        self.command("COMMIT", frame_count=count, checksum=checksum)
 
     # ---- running
 
     def select(self, **bits: int) -> None:
         """Chooses frames and raw numbers: the one-bit signals of SELECT by name; what is not named is off."""
-        self._request = (self._request + 1) & 15
-        frame = self.wire["SELECT"]
-        self.link.send(frame, frame.pack(request=self._request, **bits))
-        self.answer("SELECT")
+        self.command("SELECT", **bits)
 
     def start_lockstep(self) -> None:
         """From now on the node steps at every SYNC."""
-        session = self.next_session
-        self.control("START_LOCKSTEP", session=session)
-        self.link.session = session
+        self._heartbeat = None
+        self.control("START_LOCKSTEP")
+        self.link.session.begin_run()
 
     def start_free_run(self, rate_Hz: int = 0, watchdog_ms: int = 100) -> None:
         """From now on the node steps by its own clock."""
-        session = self.next_session
-        self.control("START_FREE_RUN", session=session, rate=rate_Hz, watchdog=watchdog_ms)
-        self.link.session = session
+        self.control("START_FREE_RUN", rate=rate_Hz, watchdog=watchdog_ms)
+        self.link.session.begin_run()
 
     def stop(self) -> None:
-        """Stands still, voltages zero."""
-        self.control("STOP")
+        """Stands still, voltages zero, whatever went before; where STOP is not heard, by a new session."""
+        try:
+            if self.link.session.is_open:
+                self.control("STOP")
+                return
+        except NodeSilent:
+            pass
+        try:
+            self.open()
+        except CannotReach as unreachable:
+            raise NodeSilent(f"the node cannot be stopped: {unreachable}") from None
 
     def reset(self) -> None:
         """Back to the start of the loaded vehicle."""
@@ -167,11 +261,17 @@ PAYLOAD = {"mass_kg": "PAYLOAD_MASS", "x_m": "PAYLOAD_X", "y_m": "PAYLOAD_Y", "y
 WHEEL = {"x_m": "WHEEL_X", "y_m": "WHEEL_Y", "axle_rad": "AXLE", "roller_rad": "ROLLER"}
 
 
+OPTIONAL = {"COM_X", "COM_Y", "COM_Z", "FRICTION_COEFFICIENT"}
+REQUIRED = {*VEHICLE.values(), *WHEEL.values(), *PAYLOAD.values(), "WHEEL_COUNT", "WHEEL_KIND", "SUPPORT_X",
+            "SUPPORT_Y", "METHOD", "STEP"} - OPTIONAL
+
+
 def parameters_of(plant: Plant, start: Any) -> Iterator[Parameter]:
-    """Everything a node needs to play this plant, zeros left out."""
+    """Everything a node needs to play this plant, zeros left out where they need not be said."""
     vehicle, core = plant.c.vehicle, plant.core
     given = [(field, 0, getattr(vehicle, name)) for name, field in VEHICLE.items()]
-    given += [(field, 0, getattr(vehicle.payload, name)) for name, field in PAYLOAD.items()]
+    payload = [(field, 0, getattr(vehicle.payload, name)) for name, field in PAYLOAD.items()]
+    given += payload if any(value for _, _, value in payload) else []
     given += [("WHEEL_COUNT", 0, int(vehicle.wheel_count)), ("SUPPORT_COUNT", 0, int(vehicle.support_count))]
     for i in range(vehicle.wheel_count):
         wheel = vehicle.wheel[i]
@@ -183,7 +283,7 @@ def parameters_of(plant: Plant, start: Any) -> Iterator[Parameter]:
     given += [("START_NU", k + 1, start.nu_rad_per_s[k]) for k in range(3)]
     given += [("START_X", 0, start.x_m), ("START_Y", 0, start.y_m), ("START_HEADING", 0, start.heading_rad)]
     given += [("METHOD", 0, method_number(core, plant.c.integrator.method)), ("STEP", 0, plant.step_s)]
-    return ((field, item, value) for field, item, value in given if value != 0 or field == "METHOD")
+    return ((field, item, value) for field, item, value in given if value != 0 or field in REQUIRED)
 
 
 def method_number(core: Any, method: Any) -> int:

@@ -15,7 +15,7 @@ from laconic.rig.client import NodeClient
 from laconic.rig.errors import NodeRefused, NodeSilent
 from laconic.rig.lockstep import load_scene
 from laconic.rig.punctuality import Punctuality
-from laconic.rig.scaled import SELECT_BIT, Held, Voltages, check_voltages_only
+from laconic.rig.scaled import Held, Voltages, check_voltages_only, select_bits
 from laconic.rig.silence import Silence
 from laconic.rig.wire import Frame, wire
 from laconic.scene import Scene
@@ -59,7 +59,7 @@ def run_free(node: NodeClient, scene: Scene, duration_s: float, rate_Hz: int = 0
     run.rate_Hz = rate_Hz or round(1.0 / scene.run.step_s)
     run.keep = max(1, round(duration_s * run.rate_Hz / MOST_COMPARED))
     load_scene(node, scene)
-    node.select(**{SELECT_BIT[name]: 1 for name in {*frames, "HEARTBEAT", "COUNTERS"}})
+    node.select(**select_bits({*frames, "COUNTERS"}))
     start_us = node.link.clock.now_us()
     start_clock(node, scene, rate_Hz, watchdog_ms)
     run.punctuality = Punctuality(node.link.clock, CYCLE_S, watchdog_ms)

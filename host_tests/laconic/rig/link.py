@@ -7,10 +7,12 @@ from collections import Counter
 from collections.abc import Callable
 
 import can
+from can.interfaces.slcan import slcanBus
 
 from laconic.rig.errors import BusDied, in_words
 from laconic.rig.node_library import E2E_STATUS, node_library
-from laconic.rig.wire import Frame, wire
+from laconic.rig.session import Session
+from laconic.rig.wire import ID_BASE, Frame, wire
 
 Received = tuple[Frame, bytes]
 
@@ -26,31 +28,38 @@ class Clock:
 class Link:
     """One end of the wire. `pump`, where given, lets a node in this process work; it returns False when idle."""
 
-    def __init__(self, bus: can.BusABC, id_base: int = 512, *, clock: Clock | None = None,
+    def __init__(self, bus: can.BusABC, id_base: int = ID_BASE, *, clock: Clock | None = None,
                  pump: Callable[[], bool] | None = None):
         self.bus, self.id_base, self.clock, self.pump = bus, id_base, clock or Clock(), pump
         self.library = node_library("double")
-        self.session = 0
+        self.session = Session(self.library)
         self.frames_out = self.frames_in = 0
         self.faults: Counter[str] = Counter()
         self.listeners: list[Callable[[can.Message], None]] = []
-        self._counters: Counter[int] = Counter()
         self._receivers = {offset: self.library.receiver() for offset in wire().by_offset}
         self._by_offset = wire().by_offset
         self._check = self.library.lib.laconic_e2e_check
 
     def forget_counters(self) -> None:
-        """As a rig that has just been switched on."""
-        self._counters.clear()
+        """The node's frames may begin anywhere: it may have been switched on since, or be another."""
         self._receivers = {offset: self.library.receiver() for offset in self._by_offset}
 
-    def send(self, frame: Frame, data: bytearray) -> None:
-        """Protects a payload and sends it."""
-        offset = frame.offset
-        self._counters[offset] = counter = (self._counters[offset] + 1) & (255 if frame.fd else 15)
-        self.library.protect(offset, data, self.session if frame.of_session else 0, counter)
-        self.send_message(can.Message(arbitration_id=self.id_base + offset, is_extended_id=False, data=data,
-                                      is_fd=frame.fd, bitrate_switch=frame.fd))
+    def send(self, frame: Frame, data: bytearray) -> int:
+        """Protects a payload for the open session and sends it; returns its count. The first of its kind after START
+        is for reference only, so it goes out twice."""
+        count = self.session.protect(frame, data)
+        self.send_message(self.message(frame, data))
+        return self.send(frame, data) if frame.key == "run" and count == 1 else count
+
+    def message(self, frame: Frame, data: bytearray) -> can.Message:
+        """A protected payload as a frame of the bus."""
+        return can.Message(arbitration_id=self.id_base + frame.offset, is_extended_id=False, data=bytearray(data),
+                           is_fd=frame.fd, bitrate_switch=frame.fd)
+
+    def knock(self) -> None:
+        """Opens a serial line's channel once more, for a board that was not up yet when the bus was opened."""
+        if isinstance(self.bus, slcanBus):
+            self.bus.open()
 
     def send_message(self, message: can.Message) -> None:
         """Sends a frame as it is."""
@@ -106,8 +115,8 @@ class Link:
             self.faults["malformed"] += 1
             return None
         data, offset = message.data, frame.offset
-        right = self.library.crc_is_right(offset, data)
-        counter, mask = (data[2], 255) if frame.fd else (data[1] & 15, 15)
+        right = self.library.plain_is_right(offset, data)
+        counter, mask = frame.counter_of(data), 255 if frame.fd else 15
         receiver = self._receivers[offset]
         status = self._check(receiver, right, counter, mask, frame.max_delta)
         if status == 0:

@@ -80,7 +80,7 @@ def start_of(scene: Scene) -> Any:
 
 def load_scene(node: NodeClient, scene: Scene) -> Plant:
     """Sends a scene's vehicle, start and run to a node; returns its twin, a plant of the core at the same start."""
-    identity = node.identity or node.identify()
+    identity = node.identity if node.link.session.is_open else node.open()
     if identity.real != scene.run.real:
         raise BadInput(f"{scene.path}: run.real is {scene.run.real}, the node computes in {identity.real}; "
                        "give --real, or another node")
@@ -149,12 +149,11 @@ class RawStream:
         while len(stream) < needed:
             received = self.node.link.receive_until(deadline_us)
             if received is None:
-                raise NodeSilent(f"the node does not answer a SYNC within {self.node.timeout_s:g} s; faults seen: "
-                                 f"{dict(self.node.link.faults) or 'none'}")
+                raise NodeSilent(f"the node does not answer a SYNC within {self.node.timeout_s:g} s; "
+                                 f"{self.node.excuse()}")
             frame, data = received
-            if frame.name == "RESULT":
-                self.node.check(frame.unpack(data))
-            elif frame.name == self._out:
+            self.node.notice(frame, data)
+            if frame.name == self._out:
                 segment = data[3] if self.fd else data[1] >> 4
                 if segment != expected & (255 if self.fd else 15):
                     raise NodeSilent(f"part {expected} of the node's answer is missing")

@@ -1,6 +1,6 @@
 """The fault matrix: every fault × every frame, in virtual time, with what the node and the rig made of it.
 
-Each case runs one script (identify, load, scaled lockstep, raw lockstep, free run, stop) over a `faulty` bus whose
+Each case runs one script (open, load, scaled lockstep, raw lockstep, free run, stop) over a `faulty` bus whose
 fault hits one kind of frame; then the rig falls silent for a while, the fault ends, and a fresh rig takes over. Watched
 all the time: that no changed frame is accepted on either side, that the node's voltages are some that were sent or
 zero, that it moves only while it runs. What remains undetected is counted.
@@ -33,6 +33,7 @@ from laconic.scene import Scene, read_scene
 SCENE = "s1"
 WATCHDOG_MS = 50
 SILENCE_S = 0.3
+PATIENCE_S = 0.6
 PERIODS = 40  # of 10 ms in free run
 
 FAULTS: dict[str, dict[str, Any]] = {
@@ -50,7 +51,7 @@ ALL_CLASSIC, ALL_FD = "all classic", "all FD"
 # Where the script broke off → the states that the node may be in after the silence. A command whose answer got lost
 # may have been carried out or not; a free run without commands must have timed out.
 EXPECTED = {
-    "identify": {"empty"}, "load": {"empty", "ready"}, "select": {"ready"}, "start": {"ready", "lockstep"},
+    "open": {"empty"}, "load": {"empty", "ready"}, "select": {"ready"}, "start": {"ready", "lockstep"},
     "lockstep": {"lockstep"}, "stop": {"lockstep", "ready"}, "start free run": {"ready", "timeout"},
     "free run": {"timeout"}, "stop free run": {"timeout", "ready"}, "done": {"ready"}}
 
@@ -65,7 +66,7 @@ class Row:
     undetected: int = 0                     # changed or doubled frames that were accepted
     detected_by: Counter[str] = field(default_factory=Counter)
     detection_ms: float | None = None       # from the first fault to the first sign of it
-    stage: str = "identify"
+    stage: str = "open"
     state: str = ""
     problems: list[str] = field(default_factory=list)
 
@@ -160,14 +161,13 @@ class Case:
     bus: FaultyBus
     node: WatchedNode
     scene: Scene
+    random: random.Random  # for session numbers
 
     def client(self) -> NodeClient:
         """A fresh rig."""
         link = WatchedLink(self.bus, clock=self.clock, pump=self.pump, row=self.row, sent=self.node.rig_sent,
                            node_sent=self.node.sent)
-        client = NodeClient(link)
-        client.timeout_s = 0.15
-        return client
+        return NodeClient(link, PATIENCE_S, random_bits=self.random.getrandbits)
 
     def pump(self) -> bool:
         """The node works; the time of the first sign of the fault is taken down."""
@@ -187,7 +187,7 @@ def faulty_node(faults: Faults, row: Row, scene: Scene) -> Iterator[Case]:
         with FaultyBus(channel, inner=inner, clock=lambda: clock.time_us / 1e6, **vars(faults)) as bus:
             node = WatchedNode(LibraryNode(scene.run.real), its, clock, row)
             node.allowed_V |= {float(v) for v in marker_voltages(scene).values()}
-            yield Case(row, clock, bus, node, scene)
+            yield Case(row, clock, bus, node, scene, random.Random(faults.seed))
 
 
 def marker_voltages(scene: Scene) -> dict[str, float]:
@@ -234,11 +234,11 @@ def script(client: NodeClient, case: Case, fd: bool) -> None:
     """A whole life of a rig."""
     row, scene = case.row, case.scene
     volts = marker_voltages(scene)
-    client.identify()
+    client.open()
     row.stage = "load"
     load_scene(client, scene)
     row.stage = "select"
-    client.select(send_nu=1, send_pose=1, send_wheel_speed=1, send_heartbeat=1, send_counters=1, send_state_fd=int(fd))
+    client.select(send_nu=1, send_pose=1, send_wheel_speed=1, send_counters=1, send_state_fd=int(fd))
     row.stage = "start"
     client.start_lockstep()
     row.stage = "lockstep"
@@ -250,7 +250,7 @@ def script(client: NodeClient, case: Case, fd: bool) -> None:
     client.stop()
     raw_part(client, case, fd)
     row.stage = "select"
-    client.select(send_nu=1, send_pose=1, send_wheel_speed=1, send_heartbeat=1, send_counters=1, send_state_fd=int(fd))
+    client.select(send_nu=1, send_pose=1, send_wheel_speed=1, send_counters=1, send_state_fd=int(fd))
     row.stage = "start free run"
     client.start_free_run(100, WATCHDOG_MS)
     row.stage = "free run"
@@ -299,13 +299,12 @@ def listen(case: Case, client: NodeClient, seconds: float) -> None:
 
 
 def recover(case: Case) -> None:
-    """A fresh rig on a healthy bus: identify, stop, load, and the bits of the core again."""
+    """A fresh rig on a healthy bus: open, load, and the bits of the core again."""
     try:
         client = case.client()
         client.timeout_s = 1.0
         listen(case, client, 0.05)
-        client.identify()
-        client.stop()
+        client.open()
         case.node.allowed_V |= {float(v) for each in case.scene.inputs for v in each.value}
         case.node.allowed_V |= {-v for v in case.node.allowed_V}
         run = run_lockstep(client, case.scene, 10)

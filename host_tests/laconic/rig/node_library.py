@@ -8,6 +8,7 @@ from typing import Any
 from cffi import FFI
 
 from laconic.paths import built
+from laconic.rig.wire import ID_BASE
 
 
 class NodeLibrary:
@@ -19,13 +20,21 @@ class NodeLibrary:
         self.ffi.cdef(without_inline_functions(declarations))
         self.lib: Any = self.ffi.dlopen(str(built(f"lib/liblaconic_node_{real}.so")))
 
-    def protect(self, offset: int, data: bytearray, session: int, counter: int) -> None:
-        """Writes counter and CRC into a payload."""
-        self.lib.laconic_library_protect(offset, self.ffi.from_buffer(data), len(data), session & 255, counter)
+    def protect_plain(self, offset: int, data: bytearray, counter: int) -> None:
+        """Writes counter and CRC into a payload, by the profile alone."""
+        self.lib.laconic_protect_plain(offset, self.ffi.from_buffer(data), counter & 255)
 
-    def crc_is_right(self, offset: int, data: bytes | bytearray, session: int = 0) -> bool:
-        """Whether the CRC belongs to the payload."""
-        return self.lib.laconic_library_crc_is_right(offset, self.ffi.from_buffer(data), len(data), session & 255)
+    def protect_keyed(self, offset: int, data: bytearray, key: int, count: int) -> None:
+        """Writes counter and CRC into a payload, by key and count."""
+        self.lib.laconic_protect_keyed(offset, self.ffi.from_buffer(data), key, count & 0xFFFFFFFF)
+
+    def plain_is_right(self, offset: int, data: bytes | bytearray) -> bool:
+        """Whether the CRC belongs to the payload, which has the length of its frame."""
+        return self.lib.laconic_plain_is_right(offset, self.ffi.from_buffer(data))
+
+    def keyed_is_right(self, offset: int, data: bytes | bytearray, key: int, count: int) -> bool:
+        """Whether the CRC belongs to the payload for this key and count."""
+        return self.lib.laconic_keyed_is_right(offset, self.ffi.from_buffer(data), key, count & 0xFFFFFFFF)
 
     def receiver(self) -> Any:
         """A fresh laconic_e2e_receiver."""
@@ -58,7 +67,7 @@ NODE_STATES = ("empty", "ready", "lockstep", "free run", "timeout", "fault")
 class LibraryNode:
     """A node in this process. It has no clock: whoever calls says what time it is."""
 
-    def __init__(self, real: str = "double", id_base: int = 512, can_fd: bool = True):
+    def __init__(self, real: str = "double", id_base: int = ID_BASE, can_fd: bool = True, nonce_seed: int = 0):
         self.library = node_library(real)
         ffi, lib = self.library.ffi, self.library.lib
         self._memory = ffi.new("uint64_t[]", (lib.laconic_library_node_size() + 7) // 8)
@@ -66,13 +75,14 @@ class LibraryNode:
         self.frame = ffi.new("laconic_frame *")
         self._bytes = ffi.buffer(self.frame.data)
         self._view = ffi.new("laconic_library_view *")
+        self._counter_names = dir(self._view.counters)
         self._on_frame, self._on_tick = lib.laconic_node_on_frame, lib.laconic_node_on_tick
         self._next, self._busy = lib.laconic_node_next_frame, lib.laconic_node_is_busy
-        self.restart(id_base, can_fd, 0)
+        self.restart(id_base, can_fd, 0, nonce_seed)
 
-    def restart(self, id_base: int = 512, can_fd: bool = True, now_us: int = 0) -> None:
+    def restart(self, id_base: int = ID_BASE, can_fd: bool = True, now_us: int = 0, nonce_seed: int = 0) -> None:
         """As after power-up."""
-        if not self.library.lib.laconic_library_node_init(self.c, id_base, can_fd, now_us & 0xFFFFFFFF):
+        if not self.library.lib.laconic_library_node_init(self.c, id_base, can_fd, nonce_seed, now_us & 0xFFFFFFFF):
             raise ValueError(f"ID base 0x{id_base:X} is no multiple of 32 from 0 to 0x7E0")
 
     def on_frame(self, arbitration_id: int, data: bytes, now_us: int, *, fd: bool = False, extended: bool = False,
@@ -94,8 +104,8 @@ class LibraryNode:
         """State, steps, voltages and counters, for tests."""
         view = self._view
         self.library.lib.laconic_library_look(self.c, view)
-        counters = {name: getattr(view.counters, name) for name in dir(view.counters)}
-        return {"state": NODE_STATES[view.state], "session": view.session, "steps": view.steps,
+        counters = {name: getattr(view.counters, name) for name in self._counter_names}
+        return {"state": NODE_STATES[view.state], "deaf": view.deaf, "steps": view.steps,
                 "voltage_V": list(view.voltage_V), **counters}
 
     def idle_us(self, now_us: int) -> int:

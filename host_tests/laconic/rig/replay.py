@@ -14,6 +14,7 @@ from laconic.rig.judge import link_verdict, signal_verdicts
 from laconic.rig.link import Link
 from laconic.rig.logs import read_log, was_closed
 from laconic.rig.scaled import Comparison
+from laconic.rig.session import Follower, Heard
 from laconic.rig.verdict import Judgement, Verdict
 from laconic.rig.wire import wire
 from laconic.scene import Scene
@@ -29,7 +30,7 @@ class LogPlayer:
         self.comparison = Comparison(scene.wheel_count)
         self.wrong_commands = 0
         self.running = False
-        self._session = 0
+        self._follower = Follower(link.library)
 
     def take(self, message: can.Message) -> None:
         """One frame of the log."""
@@ -38,22 +39,21 @@ class LogPlayer:
             return
         if not frame.from_rig:
             received = self.link.take(message)
+            if received is not None and frame.name == "CHALLENGE":
+                self._follower.challenge(message.data)
             if received is not None and self.running and frame.name in ("NU", "POSE", "WHEEL_SPEED", "STATE_FD"):
                 self.comparison.take(*received, self.plant)
-        elif self._is_right(frame.offset, frame.of_session, message):
+            return
+        heard = self._follower.hears(frame, bytearray(message.data))
+        self.wrong_commands += heard is Heard.WRONG
+        if heard is Heard.ACTS:
             self._command(frame.name, frame.unpack(message.data))
-
-    def _is_right(self, offset: int, of_session: bool, message: can.Message) -> bool:
-        session = self._session if of_session else 0
-        right = self.link.library.crc_is_right(offset, bytearray(message.data), session)
-        self.wrong_commands += not right
-        return right
 
     def _command(self, name: str, raw: dict[str, int]) -> None:
         if name == "CONTROL":
             command = wire().choice("CONTROL", "command", raw["command"])
             if command.startswith("start"):
-                self._session, self.running = raw["session"], command == "start lockstep"
+                self.running = command == "start lockstep"
             elif command in ("stop", "reset"):
                 self.running = False
         elif name == "VOLTAGE" and self.running:

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import math
 import time
-from collections.abc import Callable, Sequence
+from collections.abc import Callable, Iterable, Sequence
 from dataclasses import dataclass, field
 from functools import cached_property
 
@@ -20,15 +20,22 @@ from laconic.rig.wire import Frame, wire
 from laconic.scene import Scene
 
 DEFAULT_FRAMES = ("NU", "POSE", "WHEEL_SPEED")
-SELECT_BIT = {"NU": "send_nu", "POSE": "send_pose", "WHEEL_SPEED": "send_wheel_speed", "HEARTBEAT": "send_heartbeat",
-              "COUNTERS": "send_counters", "STATE_FD": "send_state_fd"}
+SELECT_BIT = {"NU": "send_nu", "POSE": "send_pose", "WHEEL_SPEED": "send_wheel_speed", "COUNTERS": "send_counters",
+              "STATE_FD": "send_state_fd"}
+ALWAYS_SENT = ("HEARTBEAT",)
+
+
+def select_bits(frames: Iterable[str]) -> dict[str, int]:
+    """What SELECT must say for these frames to come."""
+    return {SELECT_BIT[name]: 1 for name in frames if name not in ALWAYS_SENT}
 
 
 def wanted_frames(scene: Scene) -> tuple[str, ...]:
     """The frames that [rig] asks for, or the usual ones."""
     for name in scene.rig.frames:
-        if name not in SELECT_BIT:
-            raise BadInput(f"{scene.path}: rig.frames: there is no frame {name}; known are {', '.join(SELECT_BIT)}")
+        if name not in SELECT_BIT and name not in ALWAYS_SENT:
+            known = ", ".join((*SELECT_BIT, *ALWAYS_SENT))
+            raise BadInput(f"{scene.path}: rig.frames: there is no frame {name}; known are {known}")
     return scene.rig.frames or DEFAULT_FRAMES
 
 
@@ -213,7 +220,7 @@ def run_scaled(node: NodeClient, scene: Scene, steps: int | None = None,
         raise BadInput(f"{scene.path}: rig.frames: {', '.join(frames)} never answer a step; add NU")
     run = run or ScaledRun()
     run.twin = load_scene(node, scene)
-    node.select(**{SELECT_BIT[name]: 1 for name in frames})
+    node.select(**select_bits(frames))
     node.start_lockstep()
     held, voltages, link = Held(scene.drive()), Voltages(node, scene), node.link
     frames_out, frames_in, began = link.frames_out, link.frames_in, time.perf_counter()
@@ -238,10 +245,8 @@ def await_answers(node: NodeClient, count: int) -> list[tuple[Frame, bytes]]:
     while len(answers) < count:
         received = node.link.receive_until(deadline_us)
         if received is None:
-            raise NodeSilent(f"{len(answers)} of {count} answers came within {node.timeout_s:g} s; faults seen: "
-                             f"{dict(node.link.faults) or 'none'}")
-        if received[0].name == "RESULT":
-            node.check(received[0].unpack(received[1]))
-        elif received[0].name in ("NU", "POSE", "WHEEL_SPEED", "STATE_FD"):
+            raise NodeSilent(f"{len(answers)} of {count} answers came within {node.timeout_s:g} s; {node.excuse()}")
+        node.notice(*received)
+        if received[0].name in ("NU", "POSE", "WHEEL_SPEED", "STATE_FD"):
             answers.append(received)
     return answers

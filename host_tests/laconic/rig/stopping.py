@@ -29,12 +29,9 @@ def come_to_rest(node: NodeClient) -> str | None:
 
 
 def stop_running(node: NodeClient) -> str:
-    """Identifies a node and stops it if it runs; the state in which it was found."""
-    node.identify()
-    found = node.state
-    if found in RUNNING:
-        node.stop()
-    return found
+    """Opens a session, which stops a node that runs; the state in which it was found."""
+    node.open()
+    return node.found
 
 
 def stop_and_reset(node: NodeClient, with_reset: bool) -> dict[str, str]:

@@ -16,7 +16,7 @@ from cantools.database.can import Database, Message
 from laconic.paths import SOURCE_DIR
 
 DBC = SOURCE_DIR / "firmware_stub" / "laconic.dbc"
-ID_BASE = 512
+ID_BASE = 0x680
 ID_STRIDE = 32
 
 
@@ -55,10 +55,14 @@ class Frame:
         found = {name: attribute.value for name, attribute in message.dbc.attributes.items()}
         self.attributes = {**defaults, **found}
         self.max_delta = int(self.attributes["E2EMaxDeltaCounter"])
-        self.of_session = bool(self.attributes["OfSession"])
+        self.key = str(self.attributes["E2EKey"])  # what its protection depends on: none, nonce, session, run
         self.fields = {signal.name: field_of(signal) for signal in message.signals}
         self._pages = {signal.name: signal.multiplexer_ids[0] for signal in message.signals if signal.multiplexer_ids}
         self._unpack = [(f.name, f.start, f.mask, f.mask // 2 + 1 if f.signed else 0) for f in self.fields.values()]
+
+    def counter_of(self, data: bytes) -> int:
+        """The counter in a payload."""
+        return data[2] if self.fd else data[1] & 15
 
     def pack(self, **raw: int) -> bytearray:
         """Payload from raw values; what is not named is zero."""

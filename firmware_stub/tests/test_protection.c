@@ -1,0 +1,65 @@
+#include "laconic_node/protection.h"
+#include "laconic_wire.h"
+#include "unity.h"
+
+#include <string.h>
+
+void setUp(void) {}
+void tearDown(void) {}
+
+/* By an implementation of its own in Python. */
+static void the_mixing_function_gives_its_test_vectors(void) {
+    TEST_ASSERT_EQUAL_HEX32(0x42F6FD56U, laconic_mix(0, 0));
+    TEST_ASSERT_EQUAL_HEX32(0x21E3D16FU, laconic_mix(1, 2));
+    TEST_ASSERT_EQUAL_HEX32(0xA7F1CA87U, laconic_mix(0xDEADBEEFU, 0xCAFEF00DU));
+}
+
+static void every_bit_of_both_sides_turns_about_half_of_the_result(void) {
+    uint32_t turned[64] = {0};
+    for (uint32_t k = 0; k < 4096; k++) {
+        const uint32_t a = k * 0x9E3779B9U;
+        const uint32_t b = ~k * 0x85EBCA6BU;
+        for (int bit = 0; bit < 64; bit++) {
+            const uint32_t other = bit < 32 ? laconic_mix(a ^ 1U << bit, b) : laconic_mix(a, b ^ 1U << (bit - 32));
+            turned[bit] += (uint32_t)__builtin_popcount(laconic_mix(a, b) ^ other);
+        }
+    }
+    for (int bit = 0; bit < 64; bit++) TEST_ASSERT_UINT32_WITHIN(4096 / 4, 4096 * 16, turned[bit]);
+}
+
+/* Frames of sixteen (256) counts ago show the same counter. */
+static void a_frame_passes_with_its_own_key_and_count_only(void) {
+    uint8_t data[LACONIC_WIRE_OFFSETS * 2] = {1, 2, 3, 4, 5, 6, 7, 8};
+    uint32_t classic = 0, fd = 0;
+    laconic_protect_keyed(LACONIC_WIRE_VOLTAGE, data, 77, 1000);
+    TEST_ASSERT_EQUAL_UINT8(1000 & 15, laconic_counter_of(LACONIC_WIRE_VOLTAGE, data));
+    TEST_ASSERT_TRUE(laconic_keyed_is_right(LACONIC_WIRE_VOLTAGE, data, 77, 1000));
+    for (uint32_t k = 1; k <= 65536; k++) {
+        classic += laconic_keyed_is_right(LACONIC_WIRE_VOLTAGE, data, 77 + k, 1000);
+        classic += laconic_keyed_is_right(LACONIC_WIRE_VOLTAGE, data, 77, 1000 + 16 * k);
+    }
+    TEST_ASSERT_UINT32_WITHIN(4 * 23, 2 * 65536 / 256, classic); /* four standard deviations */
+    uint8_t long_data[64] = {0};
+    laconic_protect_keyed(LACONIC_WIRE_RAW_INPUT_FD, long_data, 77, 1000);
+    TEST_ASSERT_TRUE(laconic_keyed_is_right(LACONIC_WIRE_RAW_INPUT_FD, long_data, 77, 1000));
+    for (uint32_t k = 1; k <= 1U << 18; k++) fd += laconic_keyed_is_right(LACONIC_WIRE_RAW_INPUT_FD, long_data, 77 + k, 1000);
+    TEST_ASSERT_UINT32_WITHIN(8, 4, fd);
+}
+
+static void a_plain_frame_is_that_of_the_profile(void) {
+    uint8_t data[8] = {0};
+    laconic_protect_plain(LACONIC_WIRE_HELLO, data, 5);
+    TEST_ASSERT_EQUAL_UINT8(5, data[1]);
+    TEST_ASSERT_TRUE(laconic_plain_is_right(LACONIC_WIRE_HELLO, data));
+    data[7] ^= 1;
+    TEST_ASSERT_FALSE(laconic_plain_is_right(LACONIC_WIRE_HELLO, data));
+}
+
+int main(void) {
+    UNITY_BEGIN();
+    RUN_TEST(the_mixing_function_gives_its_test_vectors);
+    RUN_TEST(every_bit_of_both_sides_turns_about_half_of_the_result);
+    RUN_TEST(a_frame_passes_with_its_own_key_and_count_only);
+    RUN_TEST(a_plain_frame_is_that_of_the_profile);
+    return UNITY_END();
+}

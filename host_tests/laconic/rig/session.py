@@ -1,0 +1,107 @@
+"""Which key and which count protects a frame of the rig: kept by the one who sends, or followed in a log."""
+
+from __future__ import annotations
+
+from collections import Counter
+from enum import Enum
+
+from laconic.rig.node_library import NodeLibrary
+from laconic.rig.wire import Frame, wire
+
+RUN_FRAMES = tuple(frame.offset for frame in wire().frames.values() if frame.key == "run")
+
+
+class Session:
+    """The rig's end: keys, and how many frames of each kind have been sent since OPEN or START."""
+
+    def __init__(self, library: NodeLibrary):
+        self.library = library
+        self.is_open = False
+        self.key = self.run_key = 0
+        self.counts: Counter[int] = Counter()
+
+    def open(self, number: int, nonce: int) -> None:
+        """After an OPEN that was answered."""
+        self.is_open = True
+        self.key = self.library.lib.laconic_mix(number, nonce)
+        self.run_key = self.library.lib.laconic_run_key(self.key, 0)
+        self.counts.clear()
+
+    def begin_run(self) -> None:
+        """After a START that was answered: it is the last CONTROL."""
+        self.run_key = self.library.lib.laconic_run_key(self.key, self.counts[wire()["CONTROL"].offset])
+        for offset in RUN_FRAMES:
+            self.counts[offset] = 0
+
+    def protect(self, frame: Frame, data: bytearray) -> int:
+        """Writes counter and CRC of the next frame of its kind; returns its count."""
+        self.counts[frame.offset] = count = self.counts[frame.offset] + 1
+        key = self.run_key if frame.key == "run" else self.key
+        self.library.protect_keyed(frame.offset, data, key, count)
+        return count
+
+
+class Heard(Enum):
+    """What the node makes of a frame of the rig."""
+
+    WRONG = "wrong"  # CRC, key or count
+    AGAIN = "again"  # right, but it does not act: repeated, or a motion frame that is for reference only
+    ACTS = "acts"
+
+
+class Follower:
+    """Somebody who listens: finds the keys in what goes over the bus and says what each frame of the rig does."""
+
+    def __init__(self, library: NodeLibrary):
+        self.library, self.session = library, Session(library)
+        self._nonces: list[int] = []
+        self._armed: set[int] = set()
+
+    def challenge(self, data: bytes) -> None:
+        """A CHALLENGE of the node; a rig may still answer the one before it."""
+        self._nonces = [*self._nonces[-1:], wire()["CHALLENGE"].unpack(data)["nonce"]]
+
+    def hears(self, frame: Frame, data: bytearray) -> Heard:
+        """One frame of the rig."""
+        if frame.key == "none":
+            return Heard.ACTS if self.library.plain_is_right(frame.offset, data) else Heard.WRONG
+        if frame.key == "nonce":
+            return self._open(frame, data)
+        return self._moves(frame, data) if frame.key == "run" else self._commands(frame, data)
+
+    def _open(self, frame: Frame, data: bytearray) -> Heard:
+        for nonce in self._nonces:
+            if self.library.keyed_is_right(frame.offset, data, nonce, frame.counter_of(data)):
+                number = frame.unpack(data)["session"]
+                again = self.session.is_open and self.session.key == self.library.lib.laconic_mix(number, nonce)
+                if not again:
+                    self.session.open(number, nonce)
+                return Heard.AGAIN if again else Heard.ACTS
+        return Heard.WRONG
+
+    def _ahead(self, frame: Frame, data: bytearray, key: int) -> int:
+        """Counts since the last of its kind, which this one becomes; -1: wrong."""
+        session, last = self.session, self.session.counts[frame.offset]
+        ahead = (frame.counter_of(data) - last) & (255 if frame.fd else 15)
+        if not session.is_open or not self.library.keyed_is_right(frame.offset, data, key, last + ahead):
+            return -1
+        session.counts[frame.offset] = last + ahead
+        return ahead
+
+    def _commands(self, frame: Frame, data: bytearray) -> Heard:
+        ahead = self._ahead(frame, data, self.session.key)
+        if ahead < 1:
+            return Heard.WRONG if ahead < 0 else Heard.AGAIN
+        if frame.name == "CONTROL" and wire().choice("CONTROL", "command", data[2]).startswith("start"):
+            self.session.begin_run()
+            self._armed.clear()
+        return Heard.ACTS
+
+    def _moves(self, frame: Frame, data: bytearray) -> Heard:
+        ahead = self._ahead(frame, data, self.session.run_key)
+        if ahead < 0:
+            self._armed.discard(frame.offset)
+            return Heard.WRONG
+        acts = ahead > 0 and frame.offset in self._armed
+        self._armed.add(frame.offset)
+        return Heard.ACTS if acts else Heard.AGAIN
