@@ -76,6 +76,17 @@ def test_a_scene_is_asked_for_where_one_is_needed(capsys: pytest.CaptureFixture[
     assert "--free-run: has no meaning beside --stop" in capsys.readouterr().err
 
 
+@pytest.mark.parametrize("arguments, says", [
+    (["--free-run", "--watchdog", "10"], "every 10 ms"),
+    (["--interface", "slcan", "--channel", "socket://127.0.0.1:99999"], "from 1 to 65535"),
+    (["--interface", "slcan", "--channel", "socket://127.0.0.1"], "names no port")])
+def test_numbers_that_cannot_work_are_refused_before_anything_is_sent(arguments: list[str], says: str,
+                                                                     capsys: pytest.CaptureFixture[str]) -> None:
+    assert run(["rig", "s1", *arguments]) == 2
+    error = capsys.readouterr().err
+    assert error.count("\n") == 1 and says in error
+
+
 def test_a_free_run_tells_its_results_as_json(capsys: pytest.CaptureFixture[str]) -> None:
     assert run(["rig", "s1", "--free-run", "--steps", "50", "--json"]) == 0
     told = json.loads(capsys.readouterr().out)

@@ -20,14 +20,16 @@ from laconic.rig.node_library import LibraryNode
 from laconic.rig.socket_line import read_in_chunks
 from laconic.rig.wire import ID_BASE
 
+LARGEST_PORT = 65535
 _channel_numbers = itertools.count()
 
 
 def open_bus(interface: str, channel: str | None, *, bitrate: int | None = None, **options: Any) -> can.BusABC:
     """A python-can bus; CannotReach says what was tried and what may help."""
     is_socket = str(channel).startswith("socket://")
-    if is_socket and not re.fullmatch(r"socket://[^/]+:\d+.*", str(channel)):
-        raise BadInput(f"--channel {channel}: names no port; give socket://HOST:PORT")
+    port = re.fullmatch(r"socket://[^/]+:(\d+)(\D.*)?", str(channel))
+    if is_socket and not (port and 0 < int(port[1]) <= LARGEST_PORT):
+        raise BadInput(f"--channel {channel}: names no port; give socket://HOST:PORT, PORT from 1 to {LARGEST_PORT}")
     if interface == "slcan" and is_socket:
         options.setdefault("sleep_after_open", 0.02)
     if bitrate is not None:

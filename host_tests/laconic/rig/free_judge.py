@@ -8,9 +8,10 @@ from __future__ import annotations
 
 import numpy as np
 
+from laconic.errors import BadInput
 from laconic.plant import Plant
 from laconic.rig.client import NodeClient
-from laconic.rig.free_run import DEFAULT_FRAMES, FreeRun, run_free
+from laconic.rig.free_run import CYCLE_S, DEFAULT_FRAMES, FreeRun, run_free
 from laconic.rig.latency import period_figures
 from laconic.rig.scaled import expected_raw
 from laconic.rig.trial import Moved, Trial, driven
@@ -46,6 +47,9 @@ class Free(Trial):
 
     def __init__(self, node: NodeClient, scene: Scene, duration_s: float, rate_Hz: int, watchdog_ms: int,
                  tolerances: dict[str, float], latency_s: float = 0.02):
+        if 0 < watchdog_ms <= 1000 * CYCLE_S:
+            raise BadInput(f"--watchdog {watchdog_ms}: the rig sends voltages every {1000 * CYCLE_S:.0f} ms; give "
+                           "more, or 0 for none")
         self.rate_Hz = rate_Hz or round(1.0 / scene.run.step_s)
         super().__init__(node, scene, round(duration_s * self.rate_Hz))
         self.mode = f"free run at {self.rate_Hz} Hz"
