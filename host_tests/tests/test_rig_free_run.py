@@ -61,6 +61,24 @@ def test_a_stalled_pc_without_watchdog_fails_the_verdict_about_the_rig_alone() -
     assert judgement.figures["rig_left_out_cycles"] >= 29
 
 
+def test_a_node_that_no_longer_follows_after_lost_voltages_is_noticed_even_without_watchdog() -> None:
+    def lose_ten(node: NodeClient) -> None:
+        send, voltage, lost = node.link.bus.send, node.link.id_base + wire()["VOLTAGE"].offset, []
+
+        def lossy(message: can.Message, timeout: float | None = None) -> None:
+            if message.arbitration_id == voltage and len(lost) < 10:
+                lost.append(message)
+            else:
+                send(message)
+
+        node.link.bus.send = lossy
+
+    judgement = disturbed(lose_ten, watchdog_ms=0)
+    found = verdicts(judgement)
+    assert "refuses the rig's voltages" in found["run"].detail and found["rig"].passed and found["NU.nu_1"].passed
+    assert judgement.figures["last_step"] < 600
+
+
 def test_voltages_that_are_lost_on_the_way_are_not_the_rigs_lateness() -> None:
     def cut(node: NodeClient) -> None:
         send, voltage = node.link.bus.send, node.link.id_base + wire()["VOLTAGE"].offset

@@ -5,21 +5,28 @@ from __future__ import annotations
 import json
 import os
 import signal
+import socket
 import subprocess
 import sys
 from collections.abc import Callable, Iterator
+from concurrent.futures import ThreadPoolExecutor
 from contextlib import contextmanager
 from pathlib import Path
 from xml.etree import ElementTree
 
+import can
 import pytest
 
 from laconic.cli import run
 from laconic.paths import built
 from laconic.rig import run as one_run
+from laconic.rig.boards import own_node
 from laconic.rig.buses import connected, node_process
+from laconic.rig.free_judge import Free
+from laconic.rig.judge import Scaled
 from laconic.rig.lockstep import load_scene
 from laconic.rig.logs import read_log, was_closed
+from laconic.rig.wire import wire
 from laconic.scene import read_scene
 
 MODES = {"lockstep": [], "same bits": ["--same-bits"], "free run": ["--free-run", "--watchdog", "0"]}
@@ -106,14 +113,64 @@ def test_a_node_that_dies_in_lockstep_leaves_the_verdicts_of_the_steps_before(
     assert any("could not be stopped" in note for note in told["notes"])
 
 
-def test_a_process_that_is_terminated_leaves_whole_logs_and_a_node_at_rest(port: int, tmp_path: Path,
-                                                                           capsys: pytest.CaptureFixture[str]) -> None:
+def raising(step: int, what: str) -> list[str]:
+    """`laconic` as a process that does something in a step of its run."""
     program = ("import os, signal, sys\nfrom contextlib import nullcontext\nfrom laconic.cli import main\n"
                "from laconic.rig import run\ndef moved(_, seen=[]):\n seen.append(0)\n"
-               " len(seen) == 800 and os.kill(os.getpid(), signal.SIGTERM)\n"
-               "run.shown = lambda *_: nullcontext(moved)\nmain(sys.argv[1:])\n")
+               f" len(seen) == {step} and {what}\nrun.shown = lambda *_: nullcontext(moved)\nmain(sys.argv[1:])\n")
+    return [sys.executable, "-c", program]
+
+
+def test_ctrl_c_reaches_the_rig_and_not_the_node_that_it_has_started() -> None:
+    program = raising(LAST, "os.killpg(0, signal.SIGINT)")  # as a terminal does it, to all in the foreground
+    done = subprocess.run([*program, "rig", "s1", "--board", "process", "--steps", "100000"], capture_output=True,
+                          text=True, start_new_session=True)
+    assert done.returncode == 130 and "the node is at rest" in done.stderr and "Traceback" not in done.stderr
+
+
+def test_a_signal_ends_the_wait_for_a_node_that_is_silent(capsys: pytest.CaptureFixture[str]) -> None:
+    with socket.create_server(("127.0.0.1", 0)) as server, ThreadPoolExecutor() as pool:
+        def answer_nothing() -> None:
+            line, _ = server.accept()
+            with line:
+                line.recv(64)
+                os.kill(os.getpid(), signal.SIGTERM)
+                while line.recv(64):
+                    pass
+
+        ending = pool.submit(answer_nothing)
+        assert run(["rig", "s1", *on(server.getsockname()[1])]) == 143
+        ending.result()
+    assert "after step 0" in capsys.readouterr().err
+
+
+@pytest.mark.parametrize("mode", ["lockstep", "free run"])
+def test_a_stop_that_is_lost_again_and_again_still_reaches_the_node(mode: str) -> None:
+    scene = read_scene("s1")
+    with own_node("virtual", "double") as node:
+        lost, send = [], node.link.bus.send
+        control, stop = wire()["CONTROL"], wire().number("CONTROL", "command", "STOP")
+
+        def lossy(message: can.Message, timeout: float | None = None) -> None:
+            is_stop = (message.arbitration_id == node.link.id_base + control.offset
+                       and control.unpack(message.data)["command"] == stop)
+            if is_stop and len(lost) < 4:
+                lost.append(message)
+            else:
+                send(message)
+
+        node.link.bus.send = lossy
+        trial = Scaled(node, scene, 20, {}) if mode == "lockstep" else Free(node, scene, 0.1, 100, 0, {})
+        trial.drive()
+        assert len(lost) == 4 and trial.ending is None
+        assert node.link.pump.__self__.node.look()["state"] == "ready"
+
+
+def test_a_process_that_is_terminated_leaves_whole_logs_and_a_node_at_rest(port: int, tmp_path: Path,
+                                                                           capsys: pytest.CaptureFixture[str]) -> None:
     logs = [tmp_path / "run.blf", tmp_path / "run.asc"]
-    done = subprocess.run([sys.executable, "-c", program, "rig", "s1", *on(port), "--steps", "100000",
+    program = raising(800, "os.kill(os.getpid(), signal.SIGTERM)")
+    done = subprocess.run([*program, "rig", "s1", *on(port), "--steps", "100000",
                            *(word for path in logs for word in ("--log", str(path)))], capture_output=True, text=True)
     assert done.returncode == 143 and "Traceback" not in done.stderr
     blf, asc = [[(m.arbitration_id, bytes(m.data)) for m in read_log(path)] for path in logs]

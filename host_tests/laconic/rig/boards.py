@@ -67,7 +67,9 @@ def emulated(name: str) -> Iterator[int]:
     serial = f"tcp:127.0.0.1:{port},server=on,wait=off,nodelay=on"
     command = [QEMU, "-M", board.machine, "-kernel", str(image), "-display", "none", "-monitor", "none",
                "-serial", serial]
-    with subprocess.Popen(command, stdin=subprocess.DEVNULL, stderr=subprocess.PIPE, text=True) as process:
+    # in a session of its own: Ctrl-C is for the rig, which brings the node to rest before it ends it
+    with subprocess.Popen(command, stdin=subprocess.DEVNULL, stderr=subprocess.PIPE, text=True,
+                          start_new_session=True) as process:
         try:
             wait_for_port(process, port)
             yield port

@@ -42,7 +42,8 @@ class FreeRun:
     late_periods: int = 0
     state: str = "ready"
     overranges: int = 0
-    fed_answers: int = 0    # how many answers had come when the node last said that its watchdog was fed
+    fed_answers: int = 0    # how many answers had come when the node last said that it follows the rig's voltages
+    deaf_heartbeats: int = 0  # in a row
     punctuality: Punctuality | None = None  # of the rig; these two from START on
     silence: Silence | None = None          # of the node
 
@@ -134,17 +135,27 @@ def take(run: FreeRun, node: NodeClient, frame: Frame, data: bytes) -> None:
     if frame.name in ("NU", "POSE", "WHEEL_SPEED") and run.steps % run.keep == 0:
         run.answers.append((run.steps, frame, bytes(data)))
     elif frame.name == "HEARTBEAT":
-        run.node_steps, run.worst_lateness_us = values["steps"], values["worst_lateness"]
-        run.state = wire().choice("HEARTBEAT", "state", values["state"])
-        if run.state == "free run":
-            run.fed_answers = len(run.answers)
-        if run.state == "timeout":
-            del run.answers[run.fed_answers :]  # since then it may have coasted: no twin knows from where on
-            raise NodeSilent(f"the node's watchdog has stopped it after {run.node_steps} steps, "
-                             f"{run.punctuality.explains_timeout()}")
-        if run.state == "fault":
-            raise NodeSilent(f"the node has gone into state fault after {run.node_steps} steps")
+        take_heartbeat(run, values)
     elif frame.name == "COUNTERS" and "late_periods" in values:
         run.late_periods = values["late_periods"]
     elif frame.name == "RESULT":
         node.check(values)
+
+
+def take_heartbeat(run: FreeRun, values: dict[str, int]) -> None:
+    """What the node says about itself; NodeSilent where it has stopped or no longer follows."""
+    run.node_steps, run.worst_lateness_us = values["steps"], values["worst_lateness"]
+    run.state = wire().choice("HEARTBEAT", "state", values["state"])
+    run.deaf_heartbeats = run.deaf_heartbeats + 1 if values["deaf"] else 0
+    if run.state == "fault":
+        raise NodeSilent(f"the node has gone into state fault after {run.node_steps} steps")
+    if run.state == "timeout":
+        del run.answers[run.fed_answers :]  # since then it may have coasted: no twin knows from where on
+        raise NodeSilent(f"the node's watchdog has stopped it after {run.node_steps} steps, "
+                         f"{run.punctuality.explains_timeout()}")
+    if run.deaf_heartbeats > 1:  # once may be one bad frame
+        del run.answers[run.fed_answers :]
+        raise NodeSilent("the node refuses the rig's voltages: more of them in a row were lost on the way than its "
+                         "counters can bridge, and nothing but STOP and START makes it listen again")
+    if run.state == "free run" and not values["deaf"]:
+        run.fed_answers = len(run.answers)

@@ -1,5 +1,5 @@
-"""Signals during a run. The first one is kept until the next frame, so that no frame and no log entry is cut in two and
-what was judged so far is told; a second one ends at once whatever waits."""
+"""Signals during a run. The first one is kept until the rig waits for a frame, so that no frame and no log entry is cut
+in two and what was judged so far is told; a second one ends at once whatever goes on."""
 
 from __future__ import annotations
 
@@ -39,8 +39,8 @@ class Interruption:
         if again and not self._shields:
             raise Interrupted(self.number)
 
-    def check(self, *_: object) -> None:
-        """Interrupted if a signal has come. Takes anything, to be a listener of a link."""
+    def check(self) -> None:
+        """Interrupted if a signal has come."""
         if self.number and not self._shields:
             raise Interrupted(self.number)
 

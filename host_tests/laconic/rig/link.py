@@ -15,6 +15,7 @@ from laconic.rig.session import Session
 from laconic.rig.wire import ID_BASE, Frame, wire
 
 Received = tuple[Frame, bytes]
+LONGEST_WAIT_S = 0.1  # then a wait looks up whether it may go on
 
 
 class Clock:
@@ -36,6 +37,7 @@ class Link:
         self.frames_out = self.frames_in = 0
         self.faults: Counter[str] = Counter()
         self.listeners: list[Callable[[can.Message], None]] = []
+        self.may_go_on: Callable[[], None] = lambda: None  # called before each wait; raises what ends it
         self._receivers = {offset: self.library.receiver() for offset in wire().by_offset}
         self._by_offset = wire().by_offset
         self._check = self.library.lib.laconic_e2e_check
@@ -90,14 +92,23 @@ class Link:
 
     def _next_message(self, deadline_us: int) -> can.Message | None:
         try:
+            self.may_go_on()
             if self.pump is None:
-                return self.bus.recv(max(0.0, (deadline_us - self.clock.now_us()) / 1e6))
+                return self._wait(deadline_us)
             message = self.bus.recv(0)
             while message is None and (self.pump() or self.clock.now_us() < deadline_us):
                 message = self.bus.recv(0)
             return message
         except (can.CanError, OSError, ValueError, IndexError) as error:
             raise BusDied(f"the bus died while receiving: {in_words(error)}") from None
+
+    def _wait(self, deadline_us: int) -> can.Message | None:
+        while True:
+            left_s = max(0.0, (deadline_us - self.clock.now_us()) / 1e6)
+            message = self.bus.recv(min(left_s, LONGEST_WAIT_S))
+            if message is not None or left_s <= LONGEST_WAIT_S:
+                return message
+            self.may_go_on()
 
     def lost_before(self, frame: Frame) -> int:
         """How many of its kind are missing before the last one taken."""
