@@ -130,7 +130,7 @@ static bool read_client(board *port) {
 static void wait_for_work(const board *port, int listening) {
     const uint32_t idle_us = laconic_node_idle_us(&port->node, now_us());
     const struct timespec timeout = {idle_us / 1000000U, (long)(idle_us % 1000000U) * 1000L};
-    struct pollfd fds[3] = {{port->socket, POLLIN, 0}, {listening, POLLIN, 0}, {port->refused, POLLIN, 0}}; /* -1: skipped */
+    struct pollfd fds[3] = {{port->socket, POLLIN, 0}, {listening, POLLIN, 0}, {port->refused, POLLIN, 0}}; /* -1: none */
     if (port->out_count > 0) fds[0].events |= POLLOUT;
     ppoll(fds, 3, &timeout, NULL);
 }
@@ -146,8 +146,8 @@ static void refuse_second(board *port, int listening) {
     say_occupied(second);
 }
 
-/* Once more when it speaks, since a serial line is often flushed when it is opened; then the line ends. The socket stays
- * until the client goes: closed earlier, it would reset the connection, and with it take the words away. */
+/* Once more when it speaks, since a serial line is often flushed when it is opened; then the line ends. The socket
+ * stays until the client goes: closed earlier, it would reset the connection, and with it take the words away. */
 static void answer_refused(board *port) {
     char rest[256];
     const ssize_t count = port->refused < 0 ? -1 : recv(port->refused, rest, sizeof rest, MSG_DONTWAIT);

@@ -61,12 +61,13 @@ def run_free(node: NodeClient, scene: Scene, duration_s: float, rate_Hz: int = 0
     run.keep = max(1, round(duration_s * run.rate_Hz / MOST_COMPARED))
     load_scene(node, scene)
     node.select(**select_bits({*frames, "COUNTERS"}))
+    voltages, held = Voltages(node, scene), Held(scene.drive())
     start_us = node.link.clock.now_us()
     start_clock(node, scene, rate_Hz, watchdog_ms)
     run.punctuality = Punctuality(node.link.clock, CYCLE_S, watchdog_ms)
     run.silence = Silence((*frames, "HEARTBEAT", "COUNTERS"), 1.0 / run.rate_Hz, run.punctuality.now_us())
     try:
-        follow(run, node, scene, start_us, start_us + int(1e6 * duration_s), moved)
+        follow(run, voltages, held, start_us, start_us + int(1e6 * duration_s), moved)
     finally:
         run.elapsed_s = (node.link.clock.now_us() - start_us) / 1e6
         run.punctuality.ended()
@@ -77,15 +78,16 @@ def run_free(node: NodeClient, scene: Scene, duration_s: float, rate_Hz: int = 0
     return run
 
 
-def follow(run: FreeRun, node: NodeClient, scene: Scene, start_us: int, end_us: int,
+def follow(run: FreeRun, voltages: Voltages, held: Held, start_us: int, end_us: int,
            moved: Callable[[float], None]) -> None:
     """Voltages out in their cycle, answers in, until the end."""
-    clock, rig, voltages, held = node.link.clock, run.punctuality, Voltages(node, scene), Held(scene.drive())
+    node, rig = voltages.node, run.punctuality
+    clock, step_s = node.link.clock, held.step_s
     while (now_us := clock.now_us()) < end_us:
         if rig.is_late():  # what has come meanwhile tells how far the node is
             catch_up(run, node, now_us + rig.cycle_us)
         if rig.is_due():
-            tick = int((clock.now_us() - start_us) / 1e6 / scene.run.step_s)
+            tick = int((clock.now_us() - start_us) / 1e6 / step_s)
             run.commands.append((run.steps, voltages.send(held.at(tick))))
             run.overranges = voltages.overranges
             rig.sent()

@@ -22,7 +22,7 @@ class Punctuality:
         self.left_out = 0           # cycles in which no voltages went out
         self.next_us = clock.now_us()
         self._longest_pause_us = 0
-        self._sent_us: int | None = None
+        self._sent_us: int | None = self.next_us  # START feeds the watchdog, too
         self._deaf_us = 0
         self._listened_us: int | None = None
 

@@ -74,6 +74,7 @@ class Held:
     """A drive's values at the start of each step, looked up anew only where they can change."""
 
     def __init__(self, drive: Drive):
+        self.step_s = drive.step_s
         self._drive, self._changes, self._values = drive, set(drive.changes), {}
 
     def at(self, tick: int) -> dict[str, float]:
