@@ -28,7 +28,7 @@ laconic_status laconic_motor_fit(laconic_vehicle *vehicle, const laconic_motor *
     gain = ratio * per_volt;
     damping = ratio * ratio * (per_volt * motor->back_emf_Vs_per_rad + motor->viscous_friction_Nms);
     inertia = ratio * ratio * motor->rotor_inertia_kgm2;
-    if (!is_finite(gain) || !is_finite(damping) || !is_finite(inertia))
+    if (zero_if_finite(gain) + zero_if_finite(damping) + zero_if_finite(inertia) != R(0))
         return refuse(why, LACONIC_OVERFLOW, LACONIC_FIELD_GEAR_RATIO, 0, ratio, R(0));
     if (damping < R(0)) /* k_t and k_e of different signs: a motor that drives itself */
         return refuse(why, LACONIC_NEGATIVE, LACONIC_FIELD_BACK_EMF, 0, motor->back_emf_Vs_per_rad, R(0));

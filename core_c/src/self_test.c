@@ -1,5 +1,6 @@
 /* Is arithmetic, as compiled and as it is set now, the arithmetic that the core's bits rest on? Each fault is sought
- * with numbers that only that fault, or one sought before it, gets wrong. */
+ * with numbers that only that fault, or one sought before it, gets wrong. Faults are counted, not looked for one by one:
+ * without branches there is none that a sound build never takes. */
 #include "internal.h"
 
 /* Rounded to its type, and unknown when this is compiled. */
@@ -11,15 +12,16 @@ static real opaque(real x) {
 /* -ffinite-math-only lets compilers take every test for NaN and infinity as passed. */
 static bool nan_passes_for_a_number(void) {
     const real zero = opaque(R(0)), nan = opaque(zero / zero), infinite = opaque(R(1) / zero);
-    return nan == nan || nan > zero || is_finite(nan) || is_finite(infinite) || zero_if_finite(nan) == zero;
+    return (nan == nan) + (nan > zero) + is_finite(nan) + is_finite(infinite) + (zero_if_finite(nan) == zero) > 0;
 }
 
 /* To nearest, ties to even; the other modes fail here on one side of 0 or the other. */
 static bool rounds_another_way(void) {
     const real one = opaque(R(1)), next = R(1) + LACONIC_EPSILON, after = R(1) + R(2) * LACONIC_EPSILON;
     const real half = opaque(R(0.5) * LACONIC_EPSILON), more = opaque(R(0.75) * LACONIC_EPSILON);
-    return opaque(one + more) != next || opaque(-one - more) != -next || opaque(one + half) != one ||
-           opaque(opaque(next) + half) != after;
+    return (opaque(one + more) != next) + (opaque(-one - more) != -next) + (opaque(one + half) != one) +
+               (opaque(opaque(next) + half) != after) >
+           0;
 }
 
 /* -fassociative-math: (1 + huge) − huge is 0, even where more digits are kept than the type has. */
@@ -33,14 +35,6 @@ static bool keeps_more_than_the_type(void) {
     return is_finite(opaque(LACONIC_REAL_MAX) * opaque(R(2)) * opaque(R(0.5)));
 }
 
-/* (1 + ε)(1 − ε) rounds to 1; fused with the subtraction it does not, and −ε² is left. Two products, each used once:
- * compilers leave a product alone that is needed for itself. */
-static bool fuses_multiply_and_add(void) {
-    const real one = opaque(R(1)), more = R(1) + LACONIC_EPSILON, less = R(1) - LACONIC_EPSILON;
-    const real left = opaque(more) * opaque(less) - one, right = one - opaque(more) * opaque(less);
-    return left != R(0) || right != R(0);
-}
-
 /* Two numbers side by side: gcc 12's SLP vectoriser fuses such in spite of -ffp-contract=off. */
 typedef struct couple {
     real first, second;
@@ -52,18 +46,22 @@ RARE void multiply(couple *out, const couple *a, const couple *b) { /* as comple
     out->second = x.second * y.first + x.first * y.second;
 }
 
-static bool fuses_side_by_side(void) {
-    const couple a = {opaque(R(1) + LACONIC_EPSILON), opaque(R(1) - LACONIC_EPSILON)}, b = {a.second, a.first};
+/* (1 + ε)(1 − ε) rounds to 1; fused with the subtraction it does not, and −ε² is left. Each product is used once:
+ * compilers leave a product alone that is needed for itself. */
+static bool fuses_multiply_and_add(void) {
+    const real one = opaque(R(1)), more = R(1) + LACONIC_EPSILON, less = R(1) - LACONIC_EPSILON;
+    const couple a = {opaque(more), opaque(less)}, b = {a.second, a.first};
+    const real left = opaque(more) * opaque(less) - one, right = one - opaque(more) * opaque(less);
     couple product;
     multiply(&product, &a, &b);
-    return product.first != R(0);
+    return (left != R(0)) + (right != R(0)) + (product.first != R(0)) > 0;
 }
 
 /* -freciprocal-math, of which clang's macros say nothing: 107 · (1/107) is 1 neither in double nor in single. */
 static bool divides_by_reciprocals(void) {
     const real number = R(107), divisor = opaque(number);
-    const real one = opaque(number) / divisor, two = opaque(R(2) * number) / divisor;
-    return one != R(1) || two != R(2) || opaque(number) / R(107) != R(1);
+    const real once = opaque(number) / divisor, twice = opaque(R(2) * number) / divisor;
+    return (once != R(1)) + (twice != R(2)) + (opaque(number) / R(107) != R(1)) > 0;
 }
 
 /* Half of the smallest normal number is subnormal: flushed as a result or as an operand, it does not come back. */
@@ -73,12 +71,12 @@ static bool flushes_small_numbers(void) {
 }
 
 laconic_arithmetic laconic_self_test(void) {
-    if (nan_passes_for_a_number()) return LACONIC_ARITHMETIC_WITHOUT_NAN;
-    if (rounds_another_way()) return LACONIC_ARITHMETIC_ROUNDED_OTHERWISE;
-    if (sums_in_another_order()) return LACONIC_ARITHMETIC_REORDERED;
-    if (keeps_more_than_the_type()) return LACONIC_ARITHMETIC_EXCESS_PRECISION;
-    if (fuses_multiply_and_add() || fuses_side_by_side()) return LACONIC_ARITHMETIC_FUSED;
-    if (divides_by_reciprocals()) return LACONIC_ARITHMETIC_BY_RECIPROCALS;
-    if (flushes_small_numbers()) return LACONIC_ARITHMETIC_FLUSHED;
+    static bool (*const wrong[LACONIC_ARITHMETIC_COUNT - 1])(void) = {
+        /* in the order of laconic_arithmetic */
+        nan_passes_for_a_number, rounds_another_way,     sums_in_another_order, keeps_more_than_the_type,
+        fuses_multiply_and_add,  divides_by_reciprocals, flushes_small_numbers};
+    int k;
+    for (k = 0; k < LACONIC_ARITHMETIC_COUNT - 1; k++)
+        if (wrong[k]()) return (laconic_arithmetic)(k + 1);
     return LACONIC_ARITHMETIC_SOUND;
 }
