@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import time
 from collections.abc import Callable
-from ctypes import byref
 from pathlib import Path
 from tempfile import TemporaryDirectory
 from typing import Any
@@ -15,7 +14,6 @@ import numpy as np
 from fmpy import fmi2
 from fmpy.fmi2 import FMU2Slave
 from fmpy.fmi3 import FMU3Slave
-from fmpy.logging import addLoggerProxy
 
 from laconic.demo.rows import Rows, exchanges, row_names
 from laconic.drive import Drive
@@ -53,13 +51,13 @@ class Log:
             click.echo(f"laconic: FMU: {self.lines[-1]}", err=True)
 
     def fmi2_callbacks(self) -> fmi2.fmi2CallbackFunctions:
-        """For FMI 2, whose messages are formats with arguments: FMPy's proxy puts them together."""
+        """For FMI 2. Our messages are whole texts, without FMPy's proxy for formats with arguments: that has room for one
+        logger in the process, and calls it for every FMU that comes later, when it has long gone."""
         callbacks = fmi2.fmi2CallbackFunctions()
         callbacks.logger = fmi2.fmi2CallbackLoggerTYPE(
             lambda environment, instance, status, category, text: self.take(status, text))
         callbacks.allocateMemory = fmi2.defaultCallbacks.allocateMemory
         callbacks.freeMemory = fmi2.defaultCallbacks.freeMemory
-        addLoggerProxy(byref(callbacks))
         return callbacks
 
 
