@@ -51,8 +51,8 @@ class Log:
             click.echo(f"laconic: FMU: {self.lines[-1]}", err=True)
 
     def fmi2_callbacks(self) -> fmi2.fmi2CallbackFunctions:
-        """For FMI 2. Our messages are whole texts, without FMPy's proxy for formats with arguments: that has room for one
-        logger in the process, and calls it for every FMU that comes later, when it has long gone."""
+        """For FMI 2, whose messages are whole texts here. FMPy's proxy for formats with arguments has room for one
+        logger in a process and calls it for every FMU that comes later, when it has long gone: it is left out."""
         callbacks = fmi2.fmi2CallbackFunctions()
         callbacks.logger = fmi2.fmi2CallbackLoggerTYPE(
             lambda environment, instance, status, category, text: self.take(status, text))
