@@ -30,34 +30,29 @@ static void pack_result(const laconic_node *node, uint8_t *data) {
     data[6] = node->state;
 }
 
-/* LACONIC_VERSION is text, "major.minor.patch". */
-static uint8_t version_part(unsigned part) {
-    const char *text = LACONIC_VERSION;
-    uint8_t value = 0;
-    for (; *text != 0; text++) {
+/* LACONIC_VERSION is text, "major.minor.patch"; on the wire six bits each, the patch lowest. */
+static uint32_t version(void) {
+    uint32_t whole = 0;
+    uint32_t part = 0;
+    for (const char *text = LACONIC_VERSION; *text != 0; text++) {
         if (*text == '.') {
-            if (part-- == 0) break;
-            value = 0;
+            whole = (whole | part) << 6;
+            part = 0;
         } else {
-            value = (uint8_t)(10U * value + (uint8_t)(*text - '0'));
+            part = 10U * part + (uint32_t)(*text - '0');
         }
     }
-    return value;
+    return whole | part;
 }
 
 static void pack_identity(const laconic_node *node, uint8_t *data) {
-    struct laconic_dbc_identity_t frame = {
-        .can_fd = node->config.can_fd,
-        .protocol = LACONIC_WIRE_VERSION,
-        .version_major = version_part(0),
-        .version_minor = version_part(1),
-        .version_patch = version_part(2),
-        .scalar_bytes = sizeof(laconic_real),
-        .max_wheels = LACONIC_MAX_WHEELS,
-    };
+    data[1] = (uint8_t)(node->config.can_fd << 4);
+    data[2] = LACONIC_WIRE_VERSION;
+    put16(data + 3, version());
+    data[5] = sizeof(laconic_real);
+    data[6] = LACONIC_MAX_WHEELS;
     for (int32_t k = 0; k < LACONIC_METHOD_COUNT; k++)
-        if (node->config.method(k) != NULL) frame.methods = (uint8_t)(frame.methods | (1U << k));
-    laconic_dbc_identity_pack(data, &frame, 8);
+        if (node->config.method(k) != NULL) data[7] = (uint8_t)(data[7] | 1U << k);
 }
 
 static void pack_challenge(const laconic_node *node, uint8_t *data) {
@@ -65,35 +60,35 @@ static void pack_challenge(const laconic_node *node, uint8_t *data) {
     put32(data + 2, node->session.nonce);
 }
 
+/* Three numbers of 16 bits from byte 2 on, and the flag at bit 12: NU, POSE and WHEEL_SPEED. */
+static void put_scaled(uint8_t *data, uint8_t place, laconic_real value, int32_t per_unit, int32_t largest) {
+    uint8_t overrange = 0;
+    put16(data + 2 + 2 * place, (uint32_t)scaled(value, per_unit, largest, &overrange));
+    data[1] = (uint8_t)(data[1] | overrange << 4);
+}
+
+#define PUT(place, value, name) \
+    put_scaled(data, place, value, LACONIC_WIRE_##name##_PER_UNIT, LACONIC_WIRE_##name##_LARGEST)
+
 static void pack_nu(const laconic_node *node, uint8_t *data) {
-    struct laconic_dbc_nu_t frame = {0};
     laconic_real nu[3];
     laconic_nu(&node->plant.model, &node->plant.state, nu);
-    frame.nu_1 = (int16_t)SCALED(nu[0], NU_NU_1, &frame.overrange);
-    frame.nu_2 = (int16_t)SCALED(nu[1], NU_NU_2, &frame.overrange);
-    frame.nu_3 = (int16_t)SCALED(nu[2], NU_NU_3, &frame.overrange);
-    laconic_dbc_nu_pack(data, &frame, 8);
+    for (uint8_t k = 0; k < 3; k++) PUT(k, nu[k], NU_NU_1);
 }
 
 static void pack_pose(const laconic_node *node, uint8_t *data) {
-    struct laconic_dbc_pose_t frame = {0};
     laconic_pose pose;
     laconic_pose_of(&pose, &node->plant.model, &node->plant.state);
-    frame.x = (int16_t)SCALED(pose.x_m, POSE_X, &frame.overrange);
-    frame.y = (int16_t)SCALED(pose.y_m, POSE_Y, &frame.overrange);
-    frame.heading = (int16_t)SCALED(pose.heading_wrapped_rad, POSE_HEADING, &frame.overrange);
-    laconic_dbc_pose_pack(data, &frame, 8);
+    PUT(0, pose.x_m, POSE_X);
+    PUT(1, pose.y_m, POSE_Y);
+    PUT(2, pose.heading_wrapped_rad, POSE_HEADING);
 }
 
 static void pack_wheel_speed(const laconic_node *node, uint8_t *data) {
-    struct laconic_dbc_wheel_speed_t frame = {.group = node->wheel_group};
     laconic_real speed[LACONIC_MAX_WHEELS + 3] = {0};
     laconic_wheel_speeds(&node->plant.model, &node->plant.state, speed);
-    const laconic_real *three = &speed[3 * node->wheel_group];
-    frame.wheel_speed_1 = (int16_t)SCALED(three[0], WHEEL_SPEED_WHEEL_SPEED_1, &frame.overrange);
-    frame.wheel_speed_2 = (int16_t)SCALED(three[1], WHEEL_SPEED_WHEEL_SPEED_2, &frame.overrange);
-    frame.wheel_speed_3 = (int16_t)SCALED(three[2], WHEEL_SPEED_WHEEL_SPEED_3, &frame.overrange);
-    laconic_dbc_wheel_speed_pack(data, &frame, 8);
+    data[1] = (uint8_t)(node->wheel_group << 5);
+    for (uint8_t k = 0; k < 3; k++) PUT(k, speed[3 * node->wheel_group + k], WHEEL_SPEED_WHEEL_SPEED_1);
 }
 
 #define MOST_LATENESS 32767U

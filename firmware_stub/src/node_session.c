@@ -96,9 +96,9 @@ void laconic_node_begin_run(laconic_node *node) {
     memset(&session->count[LACONIC_WIRE_RUN_FIRST], 0, LACONIC_WIRE_RUN_OFFSETS * sizeof session->count[0]);
 }
 
-/* Two in a row: a frame acts when the one before it was right, too. So one stale frame that happens to pass does not
- * move the vehicle, and nothing brings a lost count back but START. Lost frames are only forgiven where new ones follow
- * by themselves. */
+/* Two in a row: a frame acts when the one before it was right, too, and its count is the next. So one stale frame that
+ * happens to pass does not move the vehicle, and nothing brings a lost count back but START. Where new frames follow by
+ * themselves some lost ones are forgiven: the one after the gap is for reference. */
 bool laconic_node_takes_motion(laconic_node *node, uint8_t offset, const uint8_t *data) {
     laconic_node_session *session = &node->session;
     const int most = node->state == LACONIC_WIRE_STATE_FREE_RUN ? laconic_wire[offset].max_delta : 1;
@@ -117,5 +117,5 @@ bool laconic_node_takes_motion(laconic_node *node, uint8_t offset, const uint8_t
         return refuse(node, ahead);
     }
     for (int k = 1; k < ahead; k++) count(&node->counters.lost);
-    return accept(node, offset, ahead) && was_armed;
+    return accept(node, offset, ahead) && was_armed && ahead == 1;
 }

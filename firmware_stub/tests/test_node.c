@@ -2,6 +2,7 @@
 #include "unity.h"
 
 #include <math.h>
+#include <stdio.h>
 
 void setUp(void) { bench_begin(); }
 void tearDown(void) {}
@@ -26,6 +27,11 @@ static void the_node_says_who_it_is(void) {
     TEST_ASSERT_EQUAL_UINT8(sizeof(laconic_real), identity.scalar_bytes);
     TEST_ASSERT_EQUAL_UINT8(LACONIC_MAX_WHEELS, identity.max_wheels);
     TEST_ASSERT_EQUAL_HEX8((1 << LACONIC_METHOD_COUNT) - 1, identity.methods);
+    TEST_ASSERT_EQUAL_UINT8(LACONIC_WIRE_VERSION, identity.protocol);
+    TEST_ASSERT_EQUAL_UINT8(1, identity.can_fd);
+    char version[16];
+    snprintf(version, sizeof version, "%u.%u.%u", identity.version_major, identity.version_minor, identity.version_patch);
+    TEST_ASSERT_EQUAL_STRING(LACONIC_VERSION, version);
 }
 
 static void nothing_starts_without_a_vehicle(void) {

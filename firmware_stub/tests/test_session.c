@@ -151,12 +151,15 @@ static void in_free_run_two_lost_frames_are_forgiven_in_lockstep_none(void) {
     bench_load(2);
     bench_control(LACONIC_WIRE_COMMAND_START_FREE_RUN, 0, 0);
     bench_voltage(0, 0, 0);
-    bench_send_count(LACONIC_WIRE_VOLTAGE, data, 5);
-    TEST_ASSERT_TRUE(node.input[0].voltage_V[0] != 0 && node.counters.lost == 2);
+    bench_send_count(LACONIC_WIRE_VOLTAGE, data, 5); /* for reference */
+    TEST_ASSERT_TRUE(node.input[0].voltage_V[0] == 0 && node.counters.lost == 2);
+    bench_send_count(LACONIC_WIRE_VOLTAGE, data, 6);
+    TEST_ASSERT_TRUE(node.input[0].voltage_V[0] != 0);
     bench_control(LACONIC_WIRE_COMMAND_STOP, 0, 0);
     bench_start_lockstep();
     bench_voltage(0, 0, 0);
     bench_send_count(LACONIC_WIRE_VOLTAGE, data, 4);
+    bench_send_count(LACONIC_WIRE_VOLTAGE, data, 5);
     TEST_ASSERT_TRUE(node.input[0].voltage_V[0] == 0);
 }
 

@@ -1,6 +1,6 @@
-"""The wire contract as a page to read, from the DBC.
+"""The wire contract as a page to read, from the DBC, the text beside this file, and the reference client.
 
-document_wire.py laconic.dbc OUTPUT.md
+    document_wire.py          writes docs/wire.md
 """
 
 from __future__ import annotations
@@ -8,26 +8,39 @@ from __future__ import annotations
 import sys
 from pathlib import Path
 
-import cantools.database
 from cantools.database.can import Database, Message, Signal
 
-HEAD = """# The wire contract
+HERE = Path(__file__).resolve().parent
+PAGE = HERE.parents[1] / "docs" / "wire.md"
+sys.path.insert(0, str(HERE.parent))
 
-Made from `firmware_stub/laconic.dbc`; edit that. Identifiers are those of a node at ID base 0x680; other
-nodes use the same offsets from their own base, a multiple of 32.
+import reference_client as reference  # noqa: E402, I001
+from wire_parameters import PARAMETERS  # noqa: E402
 
-Classic frames are protected by AUTOSAR E2E profile 22 (bytes 0 and half of 1), CAN FD frames by profile 5 (bytes 0 to
-2). All numbers are little-endian. A value out of range saturates and sets its frame's `overrange`.
+METHODS = ("auto", "rk4", "exponential-kahan", "exponential-kahan-4", "exact-flow", "exact-flow-4", "taylor-8")
+NONCE, SESSION, STARTS = 0x0123ABCD, 0xC0FFEE11, 9
+STATUSES = {
+    "OK": "done", "NOT_FINITE": "a number is infinite or none", "NOT_POSITIVE": "must be above zero",
+    "NEGATIVE": "must not be below zero", "ROLLER_ALONG_AXLE": "rollers along the axle would transmit nothing",
+    "WHEEL_NOT_SET": "WHEEL_KIND is 0", "WHEEL_KIND_UNKNOWN": "no such kind",
+    "TOO_MANY_WHEELS": "more than IDENTITY.max_wheels", "TOO_MANY_SUPPORTS": "more than the node has room for",
+    "NOTHING_MOVES": "the wheels hold the vehicle fast", "ILL_CONDITIONED": "too few correct digits would be left",
+    "START_AGAINST_CONSTRAINTS": "the start slides a fixed or locked wheel", "METHOD_UNKNOWN": "the node holds others",
+    "STEP_DOES_NOT_FIT": "the interval is no whole number of steps",
+    "STEP_BEYOND_DAMPING_LIMIT": "the step is too long for an explicit method",
+    "STEP_BEYOND_GYROSCOPIC_LIMIT": "the vehicle turns too fast for that step and method",
+    "STEP_GAINS_ENERGY": "the step would make energy", "STEP_SINGULAR": "the step has no finite result",
+    "OVERFLOW": "a result leaves the range of numbers", "UNKNOWN_COMMAND": "CONTROL.command is none",
+    "WRONG_STATE": "not in this state", "CHECKSUM_MISMATCH": "COMMIT: frames were lost or another number was sent",
+    "INPUT_INCOMPLETE": "raw inputs or half a double are missing", "PARAMETER_UNKNOWN": "no such field or item",
+    "OUT_OF_RANGE": "value, rate or step_count", "NOT_SUPPORTED": "reserved field, or CAN FD on a classic node",
+    "BUSY": "the last SYNC still runs", "PARAMETER_MISSING": "a required number has not come"}
 
-| identifier | frame | from | bytes | cycle | timeout | DataID |
-| --- | --- | --- | --- | --- | --- | --- |
-"""
 
-
-def attribute(message: Message, database: Database, name: str) -> str:
+def attribute(message: Message, name: str) -> str:
     """The message's attribute, or the default."""
     found = message.dbc.attributes.get(name)
-    return str(found.value if found else database.dbc.attribute_definitions[name].default_value)
+    return str(found.value if found else message.dbc.attribute_definitions[name].default_value)
 
 
 def time_text(milliseconds: str) -> str:
@@ -35,44 +48,115 @@ def time_text(milliseconds: str) -> str:
     return f"{milliseconds} ms" if milliseconds != "0" else "–"
 
 
-def overview(message: Message, database: Database) -> str:
+def overview(message: Message) -> str:
     """One row of the list of frames."""
-    kind = f"{message.length} FD" if message.is_fd else str(message.length)
-    cells = (f"0x{message.frame_id:X}", f"[{message.name}](#{message.name.lower()})", message.senders[0].lower(), kind,
-             time_text(attribute(message, database, "GenMsgCycleTime")),
-             time_text(attribute(message, database, "GenMsgTimeout")),
-             f"`{attribute(message, database, 'E2EDataID')}`")
-    return "| " + " | ".join(cells) + " |\n"
+    key = attribute(message, "E2EKey")
+    cells = (f"0x{message.frame_id:X}", f"[{message.name}](#{message.name.lower()})", message.senders[0].lower(),
+             f"{message.length} FD" if message.is_fd else str(message.length),
+             time_text(attribute(message, "GenMsgCycleTime")), time_text(attribute(message, "GenMsgTimeout")),
+             "plain" if key == "none" else key, attribute(message, "E2EMaxDeltaCounter"))
+    return "| " + " | ".join(cells) + " |"
+
+
+def choices(signal: Signal) -> str:
+    """"0 EMPTY, 1 READY …"."""
+    return ", ".join(f"{number} {text}" for number, text in sorted(signal.choices.items()))
 
 
 def signal_row(signal: Signal) -> str:
     """One row of a frame's table."""
     sign = "signed" if signal.is_signed else "unsigned"
     page = f" (page {signal.multiplexer_ids[0]})" if signal.multiplexer_ids else ""
-    scaled = float(signal.scale) != 1.0
-    limits = f"{float(signal.minimum):g} … {float(signal.maximum):g}" if scaled else ""
-    choices = ", ".join(f"{number} {text}" for number, text in sorted((signal.choices or {}).items()))
-    notes = ". ".join(text.rstrip(".") for text in (signal.comment or "", choices) if text)
+    full = signal.minimum == 0 and float(signal.maximum) + 1 == 2.0**signal.length
+    limits = "" if full else f"{float(signal.minimum):.10g} … {float(signal.maximum):.10g}"
+    notes = (signal.comment or "").rstrip(".")
     return (f"| {signal.name}{page} | {signal.start} | {signal.length} {sign} | {float(signal.scale):g} "
-            f"{signal.unit or ''} | {limits} | {notes} |\n")
+            f"{signal.unit or ''} | {limits} | {notes} |")
 
 
 def section(message: Message) -> str:
     """One frame."""
-    head = f"\n## {message.name}\n\n{message.comment}\n\n"
-    head += "| signal | first bit | bits | one step | range | notes |\n| --- | --- | --- | --- | --- | --- |\n"
-    return head + "".join(signal_row(signal) for signal in message.signals)
+    rows = "\n".join(signal_row(signal) for signal in message.signals)
+    return (f"\n### {message.name}\n\n{message.comment}\n\n| signal | first bit | bits | one step | range | notes |\n"
+            f"| --- | --- | --- | --- | --- | --- |\n{rows}\n")
 
 
-def main(dbc: str, output: str) -> None:
-    """Reads the DBC and writes the page."""
-    database = cantools.database.load_file(dbc)
+def parameter_rows(database: Database) -> str:
+    """The numbers of a vehicle."""
+    numbers = {text: number for number, text in field_choices(database).items()}
+    rows = []
+    for field, (key, unit, item, required) in PARAMETERS.items():
+        rows.append(f"| {numbers[field]} | {field} | {unit} | {item} | {required or 'no'} | {key} |")
+    return "\n".join(rows)
+
+
+def field_choices(database: Database) -> dict[int, str]:
+    """PARAMETER.field."""
+    found = database.get_message_by_name("PARAMETER").get_signal_by_name("field").choices
+    return {number: str(text) for number, text in found.items()}
+
+
+def spaced(data: bytes) -> str:
+    """For reading."""
+    return data.hex(" ").upper()
+
+
+def example(client: reference.Client, name: str, count: int, key: int | None, said: str, **signals: object) -> str:
+    """One frame in hex, with what leads to it."""
+    frame = client.frame(name, count, key, **signals)
+    text = f"* {said}: "
+    if key is not None:
+        chosen = reference.mix(reference.mix(key, frame.arbitration_id - reference.BASE), count)
+        text += f"count {count}, hash 0x{chosen:08X}: "
+    return text + f"`{spaced(frame.data)}`"
+
+
+def examples(client: reference.Client) -> str:
+    """One of each profile and key."""
+    key = reference.mix(SESSION, NONCE)
+    run = reference.mix(key, STARTS + 32)
+    lines = [f"* stir(1) = 0x{reference.stir(1):08X}, mix(0, 0) = 0x{reference.mix(0, 0):08X}, mix(1, 2) = "
+             f"0x{reference.mix(1, 2):08X}",
+             f"* session key = mix(session, nonce) = 0x{key:08X}; run key = mix(session key, {STARTS} + 32) = "
+             f"0x{run:08X}",
+             example(client, "HELLO", 1, None, "HELLO, plain, counter 1"),
+             example(client, "OPEN", 1, NONCE, "OPEN, keyed by the nonce", nonce_echo=NONCE & 0xFFFF, session=SESSION),
+             example(client, "CONTROL", STARTS, key, "CONTROL START_LOCKSTEP, keyed by the session",
+                     command="START_LOCKSTEP"),
+             example(client, "VOLTAGE", 18, run, "VOLTAGE, group 0, 5.5 V and 10 V, sync, keyed by the run", sync=1,
+                     voltage_1=5.5, voltage_2=10.0),
+             example(client, "VOLTAGE_FD", 18, run, "VOLTAGE_FD, the same, profile 5", sync=1, voltage_1=5.5,
+                     voltage_2=10.0),
+             example(client, "NU", 7, None, "NU of a node, plain, counter 7, ν = (1, −1, 0.5) rad/s", nu_1=1.0,
+                     nu_2=-1.0, nu_3=0.5)]
+    return "\n".join(lines)
+
+
+def page() -> str:
+    """The whole text."""
+    client = reference.Client(bus=None)
+    database = reference.cantools.database.load_file(HERE.parent / "laconic.dbc")
     messages = sorted(database.messages, key=lambda message: message.frame_id)
-    text = HEAD + "".join(overview(message, database) for message in messages)
-    text += "".join(section(message) for message in messages)
-    Path(output).parent.mkdir(parents=True, exist_ok=True)
-    Path(output).write_text(text, encoding="utf-8")
+    result, fields = database.get_message_by_name("RESULT"), field_choices(database)
+    status = result.get_signal_by_name("status").choices
+    parts = {
+        "version": database.version, "frames": "\n".join(map(overview, messages)), "examples": examples(client),
+        "data_ids": "\n".join(f"| {m.name} | `{attribute(m, 'E2EDataID')}` |" for m in messages),
+        "parameters": parameter_rows(database),
+        "methods": ", ".join(f"{number} {name}" for number, name in enumerate(METHODS)),
+        "states": choices(result.get_signal_by_name("state")),
+        "control": choices(database.get_message_by_name("CONTROL").get_signal_by_name("command")),
+        "results": choices(result.get_signal_by_name("command")),
+        "statuses": "\n".join(f"| {number} | {text} | {STATUSES[str(text)]} |"
+                              for number, text in sorted(status.items())),
+        "other_fields": ", ".join(f"{number} {text}" for number, text in sorted(fields.items())
+                                  if number and text not in PARAMETERS),
+        "details": "".join(map(section, messages))}
+    text = (HERE / "wire_page.md").read_text(encoding="utf-8")
+    for name, part in parts.items():
+        text = text.replace("{{" + name + "}}", part)
+    return text
 
 
 if __name__ == "__main__":
-    main(*sys.argv[1:])
+    PAGE.write_text(page(), encoding="utf-8")

@@ -45,7 +45,7 @@ class Heard(Enum):
     """What the node makes of a frame of the rig."""
 
     WRONG = "wrong"  # CRC, key or count
-    AGAIN = "again"  # right, but it does not act: repeated, or a motion frame that is for reference only
+    AGAIN = "again"  # right, but it does not act: repeated, or a motion frame that is for reference
     ACTS = "acts"
 
 
@@ -102,6 +102,6 @@ class Follower:
         if ahead < 0:
             self._armed.discard(frame.offset)
             return Heard.WRONG
-        acts = ahead > 0 and frame.offset in self._armed
+        acts = ahead == 1 and frame.offset in self._armed
         self._armed.add(frame.offset)
         return Heard.ACTS if acts else Heard.AGAIN
