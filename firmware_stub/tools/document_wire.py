@@ -19,6 +19,7 @@ from wire_parameters import PARAMETERS  # noqa: E402
 
 METHODS = ("auto", "rk4", "exponential-kahan", "exponential-kahan-4", "exact-flow", "exact-flow-4", "taylor-8")
 NONCE, SESSION, STARTS = 0x0123ABCD, 0xC0FFEE11, 9
+ENUMERATED = ("command", "state", "status", "field")  # have a chapter of their own
 STATUSES = {
     "OK": "done", "NOT_FINITE": "a number is infinite or none", "NOT_POSITIVE": "must be above zero",
     "NEGATIVE": "must not be below zero", "ROLLER_ALONG_AXLE": "rollers along the axle would transmit nothing",
@@ -70,6 +71,8 @@ def signal_row(signal: Signal) -> str:
     full = signal.minimum == 0 and float(signal.maximum) + 1 == 2.0**signal.length
     limits = "" if full else f"{float(signal.minimum):.10g} … {float(signal.maximum):.10g}"
     notes = (signal.comment or "").rstrip(".")
+    if signal.choices and signal.name not in ENUMERATED:
+        notes = choices(signal)
     return (f"| {signal.name}{page} | {signal.start} | {signal.length} {sign} | {float(signal.scale):g} "
             f"{signal.unit or ''} | {limits} | {notes} |")
 
