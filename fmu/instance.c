@@ -116,14 +116,23 @@ fmu_status fmu_exit_initialization(fmu_instance *instance) {
     return FMU_OK;
 }
 
+/* Whatever applies the change, a value that is read or the end of an event iteration: the iteration tells of it. */
+static fmu_status apply_change(fmu_instance *instance) {
+    const fmu_status status = fmu_plant_change(instance);
+    if (status == FMU_OK) instance->plant.states_changed = true;
+    return status;
+}
+
 fmu_status fmu_make_current(fmu_instance *instance) {
     if (instance->plant.start_needed) return fmu_plant_start(instance);
-    return instance->plant.change_needed ? fmu_plant_change(instance) : FMU_OK;
+    return instance->plant.change_needed ? apply_change(instance) : FMU_OK;
 }
 
 fmu_status fmu_update_discrete_states(fmu_instance *instance, bool *states_changed) {
-    *states_changed = instance->plant.change_needed;
-    return instance->plant.change_needed ? fmu_plant_change(instance) : FMU_OK;
+    const fmu_status status = fmu_make_current(instance);
+    *states_changed = instance->plant.states_changed;
+    instance->plant.states_changed = false;
+    return status;
 }
 
 fmu_status fmu_reset(fmu_instance *instance) {

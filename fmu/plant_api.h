@@ -1,5 +1,5 @@
 /* What a model behind the glue provides: vehicle/plant.c and controller/plant.c. Its struct fmu_plant (plant.h) is plain
- * data, so that it can be copied; every plant has the members `start_needed`, `change_needed`, `time_s` and
+ * data, so that it can be copied; every plant has the members `start_needed`, `change_needed`, `states_changed`, `time_s` and
  * `stale` (the groups to compute before they are read), and the macros FMU_PLANT_ARRAY_SIZE, FMU_PLANT_LARGEST_ARRAY. */
 #ifndef LACONIC_FMU_PLANT_API_H
 #define LACONIC_FMU_PLANT_API_H

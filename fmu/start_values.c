@@ -1,8 +1,9 @@
 /* The values an instance starts with.
  *
- * An FMU of the build carries them in its code. One that `laconic fmu` makes for a scene has them in
- * resources/start.bin: "LACSTART", then numbers of 64 bits, little-endian: version, scalar, hash of the
- * token, count, and for each value its reference and its bits as a double; at the end the checksum of all before. */
+ * An FMU of the build carries them in its code. One that `laconic fmu` makes for a scene has all of them in
+ * resources/start.bin, and none of the build's: wheels that the scene has not stay unset. The file: "LACSTART", then
+ * numbers of 64 bits, little-endian: version, scalar, hash of the token, count, and for each value its reference and its
+ * bits as a double; at the end the checksum of all before. */
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
@@ -109,8 +110,10 @@ static bool load_file(fmu_instance *instance, const char *token, const char *res
 
 bool fmu_load_start_values(fmu_instance *instance, const char *token, const char *resources) {
     instance->scalar = instance->version == 2;
-    apply(instance, fmu_built_in_starts, fmu_built_in_start_count);
-    if (strcmp(token, instance->version == 2 ? fmu_token_2 : fmu_token_3) == 0) return true;
+    if (strcmp(token, instance->version == 2 ? fmu_token_2 : fmu_token_3) == 0) {
+        apply(instance, fmu_built_in_starts, fmu_built_in_start_count);
+        return true;
+    }
     if (resources != NULL) return load_file(instance, token, resources);
     fmu_refuse(instance, "the token %s is not this binary's, and no resources folder was given", token);
     return false;

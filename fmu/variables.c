@@ -174,7 +174,7 @@ static void note_change(fmu_instance *instance, fmu_access access) {
     if (access == FMU_INPUT)
         fmu_plant_input_changed(&instance->plant);
     else if (access == FMU_STATE)
-        return;
+        instance->plant.states_changed = instance->plant.states_changed || instance->mode == FMU_EVENT;
     else if (instance->mode <= FMU_INITIALIZATION)
         instance->plant.start_needed = true;
     else

@@ -171,6 +171,7 @@ void fmu_plant_set_slope(fmu_plant *plant, uint32_t tangent_offset, double slope
 bool fmu_plant_transfer(fmu_stream *stream, fmu_plant *plant) {
     fmu_stream_bool(stream, &plant->start_needed);
     fmu_stream_bool(stream, &plant->change_needed);
+    fmu_stream_bool(stream, &plant->states_changed);
     fmu_stream_reals(stream, &plant->time_s, 1);
     fmu_stream_i32(stream, &plant->wheel_count, 0, FMU_PLANT_LARGEST_ARRAY);
     fmu_stream_reals(stream, &plant->proportional_Vs_per_rad, 1);

@@ -17,7 +17,7 @@
 #define FMU_GROUPS_ALL 6U
 
 typedef struct fmu_plant {
-    bool start_needed, change_needed;
+    bool start_needed, change_needed, states_changed;
     double time_s;
     uint32_t stale;
     int32_t wheel_count;

@@ -29,6 +29,7 @@
 typedef struct fmu_plant {
     bool start_needed;  /* parameters were set since the last start          */
     bool change_needed; /* tunable ones were set since                       */
+    bool states_changed; /* by an event, and the importer was not told yet   */
     bool continuous;    /* Model Exchange                                */
     bool stand_in;      /* no step is known yet: the integrator is prepared for another method */
     double time_s;

@@ -120,6 +120,7 @@ static void transfer_core(fmu_stream *s, fmu_plant *p) {
 bool fmu_plant_transfer(fmu_stream *stream, fmu_plant *plant) {
     fmu_stream_bool(stream, &plant->start_needed);
     fmu_stream_bool(stream, &plant->change_needed);
+    fmu_stream_bool(stream, &plant->states_changed);
     fmu_stream_bool(stream, &plant->continuous);
     fmu_stream_bool(stream, &plant->stand_in);
     fmu_stream_reals(stream, &plant->time_s, 1);

@@ -82,6 +82,21 @@ def test_more_wheels_than_were_set_are_refused() -> None:
         assert importer.step(0.0, 0.1) == OK
 
 
+@pytest.mark.parametrize(("name", "more"), [("robotino2", 1), ("turtlebot3_burger", 2)])
+def test_wheels_beyond_those_of_a_scene_are_unset_and_no_wheels_of_another_robot(
+        name: str, more: int, tmp_path: Path) -> None:
+    with Importer(make_fmu(read_scene(name), tmp_path / "x.fmu", version=3)) as importer:
+        first = importer.wheels + 1
+        importer.wheels += more
+        importer.must("EnterConfigurationMode")
+        assert importer.set("wheel_count", importer.wheels) == OK
+        importer.must("ExitConfigurationMode")
+        for each in ("wheel_kind", "wheel_x_m", "wheel_y_m", "axle_rad"):
+            assert importer.get(each)[first - 1:] == [0] * more
+        said = refused_at_exit(importer)
+        assert f"wheel_kind[{first}]: this wheel was never set" in said
+
+
 @pytest.mark.parametrize(("count", "said"), [(0, "0"), (17, "17"), (1 << 40, "1099511627776"), ((1 << 64) - 1, "-1")])
 def test_a_wheel_count_that_does_not_fit_is_refused_at_once_as_it_was_given(count: int, said: str) -> None:
     with Importer(generic(3)) as importer:
