@@ -118,7 +118,8 @@ def _kind(error: Exception) -> str:
 def fail(message: str, status: int) -> int:
     """Says why on stderr, in one line."""
     with suppress(OSError):  # nobody reads stderr either
-        click.echo("laconic: " + " ".join(message.split()), err=True)
+        line = " ".join(message.split())
+        click.echo("laconic: " + "".join(c if c.isprintable() else ascii(c)[1:-1] for c in line), err=True)
     return status
 
 

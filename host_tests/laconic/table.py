@@ -101,12 +101,12 @@ class Table:
         return self.number(in_radians, default, finite=finite)
 
     def text(self, key: str, default: Any = ..., *, allowed: str = "") -> str:
-        """A string without the characters that steer a terminal (but for the allowed ones), so on one line."""
+        """A string without characters (but the allowed ones) that steer a terminal or that XML has not: one line."""
         text = self._get(key, default, (str,), "text in quotes")
-        hidden = [letter for letter in text or "" if unicodedata.category(letter) in ("Cc", "Zl", "Zp")
-                  and letter not in allowed]
+        hidden = [letter for letter in text or "" if _is_hidden(letter) and letter not in allowed]
         if hidden:
-            self.fail(key, f"holds the control character {hidden[0]!r}; give plain text")
+            kind = "control" if unicodedata.category(hidden[0]).startswith(("Cc", "Z")) else "unprintable"
+            self.fail(key, f"holds the {kind} character {hidden[0]!a}; give plain text")
         return text
 
     def flag(self, key: str, default: bool) -> bool:
@@ -159,6 +159,11 @@ class Table:
 
 
 REQUIRED = ...
+
+
+def _is_hidden(letter: str) -> bool:
+    """Controls, line ends, halves of pairs, and the two last of each plane, which stand for no character."""
+    return unicodedata.category(letter) in ("Cc", "Cs", "Zl", "Zp") or ord(letter) & 0xFFFE == 0xFFFE
 
 
 def _float(value: Any) -> Any:

@@ -17,6 +17,9 @@ TOML_FAULTS = {"binary.toml": "no text in UTF-8", "nul.toml": "no valid TOML", "
                "control.toml": "name: holds the control character '\\x1b'",
                "''": EMPTY, ".": "cannot be read", "/dev/null": "vehicle: is missing", "good.toml/x": "no such scene",
                "nowhere": "no such scene", "robotino": "did you mean robotino2?"}
+LETTERS = {"\\u0001": "the control character '\\x01'", "\\u001b": "the control character '\\x1b'",
+           "\\u2028": "the control character '\\u2028'", "\\uffff": "the unprintable character '\\uffff'",
+           "\\u0008": "the control character '\\x08'", "\\U0001fffe": "the unprintable character '\\U0001fffe'"}
 OF_SCENE = ("simulate", "derive", "fmu --fmi 2", "analyse", "trim", "rig", "demo", "report --scene")
 
 WRONG = {
@@ -102,6 +105,26 @@ def test_a_wrong_command_line_is_one_line_and_changes_nothing(line, workplace, m
     assert WRONG[line] in said.err
     assert said.err.count("\n") == 1
     assert snapshot(workplace) == before
+
+
+@pytest.mark.parametrize("key", ["name", "source"])
+@pytest.mark.parametrize("letter", LETTERS)
+def test_a_letter_that_cannot_be_printed_is_refused_in_the_field_that_has_it(letter, key, tmp_path, capsys):
+    path = tmp_path / "x.toml"
+    text = "".join(line for line in scene_path("robotino2").read_text().splitlines(keepends=True)
+                   if not line.startswith(f"{key} ="))
+    path.write_text(f'{key} = "a{letter}b"\n{text}')
+    for command in ("fmu {} --fmi 2 --ssp -o x.ssp", "fmu {} --fmi 3 -o x.fmu", "simulate {}", "trim {}"):
+        assert run(command.format(path).split()) == 2
+        assert f"x.toml: {key}: holds {LETTERS[letter]}" in (said := capsys.readouterr().err)
+        assert said.count("\n") == 1
+
+
+def test_a_key_with_control_characters_is_shown_without_them(tmp_path, capsys):
+    path = tmp_path / "x.toml"
+    path.write_text('"a\\u001b[31mb" = 1\n' + scene_path("s1").read_text())
+    assert run(["simulate", str(path)]) == 2
+    assert "a\\x1b[31mb: is no known key here" in capsys.readouterr().err
 
 
 def test_every_command_has_wrong_inputs():
