@@ -109,7 +109,9 @@ def test_a_wrong_command_line_is_one_line_and_changes_nothing(line, workplace, m
 
 @pytest.mark.parametrize("key", ["name", "source"])
 @pytest.mark.parametrize("letter", LETTERS)
-def test_a_letter_that_cannot_be_printed_is_refused_in_the_field_that_has_it(letter, key, tmp_path, capsys):
+def test_a_letter_that_cannot_be_printed_is_refused_in_the_field_that_has_it(
+        letter, key, tmp_path, monkeypatch, capsys):
+    monkeypatch.chdir(tmp_path)
     path = tmp_path / "x.toml"
     text = "".join(line for line in scene_path("robotino2").read_text().splitlines(keepends=True)
                    if not line.startswith(f"{key} ="))
