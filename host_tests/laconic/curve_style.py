@@ -2,9 +2,10 @@
 
 from __future__ import annotations
 
-import textwrap
+import unicodedata
 from typing import Any
 
+MOST_LINES = 3         # of a name in a title
 THICK, THIN = 3.6, 0.9  # points: the first of curves that coincide, and the last
 
 
@@ -22,6 +23,37 @@ def taking_turns(order: int, count: int) -> tuple[int, int]:
     return order % count, count
 
 
-def wrapped(title: str, letters: int) -> str:
-    """A title in lines of so many letters, so that a long name is not cut."""
-    return "\n".join(textwrap.wrap(" ".join(title.split()), letters)) or title
+def wrapped(name: str, letters: int, said: str = "") -> str:
+    """A title in lines as wide as so many letters: a long name is wrapped, one of too many lines ends in an ellipsis.
+
+    What is `said` of the name follows it after a colon and is never cut off.
+    """
+    lines: list[str] = []
+    words = " ".join(name.split())
+    while words and len(lines) < MOST_LINES:
+        line = _fitting(words, letters)
+        lines.append(line)
+        words = words[len(line):].lstrip()
+    if words:
+        lines[-1] = _fitting(lines[-1], letters - 1, at_a_space=False) + "…"
+    if said and lines:
+        is_short = _width(f"{lines[-1]}: {said}") <= letters
+        lines[-1:] = [f"{lines[-1]}: {said}"] if is_short else [f"{lines[-1]}:", said]
+    return "\n".join(lines) or said
+
+
+def _fitting(words: str, letters: int, at_a_space: bool = True) -> str:
+    """As much of the words as one line takes; a word that is longer than a line is broken."""
+    if _width(words) <= letters:
+        return words
+    count = 1
+    while _width(words[: count + 1]) <= letters:
+        count += 1
+    space = words.rfind(" ", 1, count + 1)
+    return words[: space if at_a_space and space > 0 else count].rstrip()
+
+
+def _width(words: str) -> float:
+    """In letters of middle width: capitals are wider, those of Chinese twice as wide."""
+    return sum(2.0 if unicodedata.east_asian_width(letter) in "WF" else 1.7 if letter in "MWmw@%" else
+               1.2 if letter.isupper() else 1.0 for letter in words[:MOST_LINES * 200])

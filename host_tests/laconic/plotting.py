@@ -11,6 +11,7 @@ from typing import TYPE_CHECKING
 import matplotlib
 import numpy as np
 
+from laconic.curve_style import wrapped
 from laconic.curves import MOST_CURVES, head, keep_scale, plot_curves, plot_rows, share_zero
 from laconic.method_style import look
 from laconic.outputs import whole_file
@@ -30,6 +31,7 @@ STYLE = {"axes.grid": True, "grid.alpha": 0.3, "axes.spines.top": False, "axes.s
          "font.size": 10, "axes.titlesize": 11, "legend.frameon": False, "lines.linewidth": 1.3,
          "agg.path.chunksize": 20_000}  # a path of millions of points does not fit the renderer in one piece
 ARROWS = 12
+LETTERS = 110  # in a line of a run's title
 ERROR_CAPTION = (
     "Error: the largest difference to an independent integrator of tight tolerance, over max(1, the largest value).\n"
     "ν: pseudo-velocities. Each point is a step size; a smaller step takes more time and lies further right. In the\n"
@@ -45,8 +47,7 @@ def figure(width_in: float, height_in: float) -> Figure:
 
 def save(picture: Figure, path: Path) -> None:
     """Writes and closes a figure, in the format that its name ends in."""
-    for text in picture.findobj(Text):
-        _check_formula(text)
+    check_formulas(picture)
     try:
         with whole_file(path) as fresh, warnings.catch_warnings():
             warnings.filterwarnings("ignore", "Glyph .* missing from")  # a box stands for it in the picture
@@ -55,13 +56,18 @@ def save(picture: Figure, path: Path) -> None:
         plt.close(picture)
 
 
-def _check_formula(text: Text) -> None:
-    """Names with dollars that are no formula ("robot for $5, not $6^") are shown as they stand."""
-    try:
-        if "$" in text.get_text():
-            MathTextParser("path").parse(text.get_text())
-    except ValueError:
-        text.set_parse_math(False)
+def check_formulas(picture: Figure) -> None:
+    """Names with dollars that are no formula ("robot for $5, not $6^") are shown as they stand.
+
+    Line by line, as a formula never runs over the end of one: a line feed would be a letter without a glyph.
+    """
+    for text in picture.findobj(Text):
+        try:
+            for line in text.get_text().splitlines():
+                if "$" in line:
+                    MathTextParser("path").parse(line)
+        except ValueError:
+            text.set_parse_math(False)
 
 
 def plot_path(axes: Axes, run: Trajectory) -> None:
@@ -162,7 +168,7 @@ def simulation_picture(run: Trajectory, path: Path) -> None:
     picture = figure(12.0, 7.0)
     layout = [["path", "velocities"], ["path", "wheels" if run.scene.wheel_count else "velocities"]]
     places = picture.subplot_mosaic(layout, width_ratios=(1.0, 1.25))
-    title(picture, f"{run.scene.name}: {run.method}, step {run.scene.run.step_s:g} s, {run.scene.run.real}", run)
+    title(picture, f"{run.method}, step {run.scene.run.step_s:g} s, {run.scene.run.real}", run)
     plot_velocities(places["velocities"], run)
     if run.scene.wheel_count:
         plot_wheel_speeds(places["wheels"], run)
@@ -172,9 +178,9 @@ def simulation_picture(run: Trajectory, path: Path) -> None:
 
 
 def title(picture: Figure, text: str, run: Trajectory) -> None:
-    """The picture's title; below it in red what the ground cannot give."""
+    """The picture's title: the scene's name and what is said of it; at the foot in red what the ground cannot give."""
     said = run.grip.warning() if run.grip else ""
-    wrapped = textwrap.wrap(f"The ground cannot give what this run asks: {said}" if said else "", 150)
-    picture.suptitle(text)
-    if wrapped:
-        picture.supxlabel("\n".join(wrapped), color=SLIPS, fontsize=9)
+    lines = textwrap.wrap(f"The ground cannot give what this run asks: {said}" if said else "", 150)
+    picture.suptitle(wrapped(run.scene.name, LETTERS, text))
+    if lines:
+        picture.supxlabel("\n".join(lines), color=SLIPS, fontsize=9)

@@ -17,6 +17,7 @@ from scipy.optimize import brentq
 
 from laconic.analysis.field import Field
 from laconic.analysis.hopf import HopfPoint, first_lyapunov, has_oscillating_pair
+from laconic.analysis.speeds import without_rest
 from laconic.analysis.steady import SteadyMotion, classify, steady_at_yaw, steady_motions, steady_polynomial
 
 FieldOf = Callable[[float], Field]
@@ -30,8 +31,8 @@ class Branch:
     motion: list[SteadyMotion] = dataclass_field(default_factory=list)
 
     def nu(self) -> np.ndarray:
-        """ν along the branch, one row per point."""
-        return np.array([motion.nu for motion in self.motion])
+        """ν along the branch, one row per point; what rounding left beside its largest speed is zero."""
+        return without_rest(np.array([motion.nu for motion in self.motion]))
 
     def stable(self) -> np.ndarray:
         """Where it is stable."""

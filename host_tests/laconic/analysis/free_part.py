@@ -11,7 +11,6 @@ from laconic.analysis.free_motion import FreeMotion
 from laconic.analysis.from_core import Subject
 from laconic.analysis.portrait import portrait
 from laconic.analysis.speeds import motion_text
-from laconic.errors import BadInput
 from laconic.simulation import run_window
 
 MOST_LOOKS = 500  # at the scene's run, for the moment to cut its motors off
@@ -22,16 +21,6 @@ def coasting(subject: Subject) -> Any:
     vehicle = subject.core.ffi.new("laconic_vehicle *", subject.vehicle[0])
     vehicle.motor_gain_Nm_per_V = vehicle.motor_damping_Nms = 0.0
     return vehicle
-
-
-def _allowed(subject: Subject, nu: tuple[float, float, float]) -> np.ndarray:
-    """A ν from the user; BadInput when the constraints forbid it."""
-    field_now = subject.field({})
-    nearest = field_now.nu(field_now.zeta(np.array(nu)))
-    if np.abs(nearest - nu).max() > 1e-9 * max(1.0, float(np.abs(nu).max())):
-        shown = " ".join(f"{v:.6g}" for v in nearest)
-        raise BadInput(f"--start: the constraints forbid this ν; the nearest allowed one is {shown}")
-    return np.array(nu)
 
 
 def _start_of_free_motion(subject: Subject) -> tuple[np.ndarray, float]:
@@ -53,7 +42,7 @@ def _start_of_free_motion(subject: Subject) -> tuple[np.ndarray, float]:
 
 def free_part(result: Study, wishes: Wishes) -> None:
     subject = result.subject
-    start, since_s = _start_of_free_motion(subject) if wishes.start is None else (_allowed(subject, wishes.start), 0.0)
+    start, since_s = _start_of_free_motion(subject) if wishes.start is None else (np.array(wishes.start), 0.0)
     if not np.abs(start).max() > 0.0:
         result.say("free", "The vehicle stands still all through its run: there is no free motion to show.")
         return

@@ -18,6 +18,9 @@ from laconic.analysis.from_core import Subject
 
 RANK_TOLERANCE = 1e-9
 WEAK_YAW = 0.5            # below this fraction of what mirrored rollers would give, the mounting is called wrong
+STRONG_YAW = 2.0          # above, the yaw authority is as unusual as below 1/2
+MEANING = ("that is the rims' speed in a turn, over the yaw rate times the wheels' distance from their middle; about 1 "
+           "is usual")
 ILL_CONDITIONED = 100.0   # rim speeds for one direction this many times those for another
 
 
@@ -166,8 +169,7 @@ def _words(subject: Subject, found: Geometry, allowed: np.ndarray, length: float
     if found.not_driven:
         words.append(f"The wheels neither drive nor feel {' and '.join(found.not_driven)}.")
     else:
-        words.append("Every motion that is possible turns at least one wheel, so the motors drive and damp all of "
-                     "them.")
+        words.append(f"Every motion that is possible turns at least one wheel, {_reach_words(subject)}.")
     if np.isfinite(found.condition) and found.condition > ILL_CONDITIONED:
         words.append(f"The geometry is lopsided: one direction needs {found.condition:.0f} times the rim speed of "
                      f"another.")
@@ -186,8 +188,26 @@ def _yaw_words(found: Geometry) -> list[str]:
     if value < 1e-9:
         return ["The wheels have no hold on turning (yaw authority 0): only an outer force turns the body."]
     if value < 0.1:
-        return [f"The wheels hardly turn the body: the yaw authority is {value:.3g}, where about 1 is usual."]
-    return [f"The yaw authority is {value:.3g} (about 1 is usual)."]
+        return [f"The wheels hardly turn the body: the yaw authority is {value:.3g}, {MEANING}. Check the places, axle "
+                "and roller angles of the wheels."]
+    words = f"The yaw authority is {value:.3g}"
+    if value > STRONG_YAW:
+        return [f"{words}, {MEANING}: turning is strong but slow. Where that is not meant, check the places and axle "
+                "angles of the wheels."]
+    if value < WEAK_YAW:
+        return [f"{words}, {MEANING}: turning is quick but weak. Where that is not meant, check the places, axle and "
+                "roller angles of the wheels."]
+    return [f"{words}, {MEANING}."]
+
+
+def _reach_words(subject: Subject) -> str:
+    """What reaches the wheels: motors with a drive or only with damping, or none."""
+    if float(subject.model.motor_gain_Nm_per_V):
+        return "so the motors drive and damp all of them" if float(subject.model.motor_damping_Nms) else (
+            "so the motors drive all of them; they damp none")
+    if float(subject.model.motor_damping_Nms):
+        return "so the motors' damping brakes all of them; no voltage drives them"
+    return "but there are no motors to drive or damp it: only forces and axle torques do"
 
 
 def _freedom_words(subject: Subject, allowed: np.ndarray, length: float) -> str:

@@ -6,6 +6,7 @@ from collections.abc import Callable
 from dataclasses import dataclass, replace
 
 import numpy as np
+from scipy.linalg import null_space
 
 from laconic.analysis.field import Field
 from laconic.analysis.from_core import Inputs, Subject, changed, field_of
@@ -44,6 +45,17 @@ def straight_torques(subject: Subject, nu: np.ndarray) -> Inputs:
     """
     damping = float(subject.model.motor_damping_Nms)
     return {f"axle_torque_Nm[{i + 1}]": float(v) for i, v in enumerate(damping * (subject.matrices.wheel_rows @ nu))}
+
+
+def allowed_columns(subject: Subject) -> np.ndarray:
+    """What spans the ν that the constraints allow: three rows."""
+    return subject.core.numbers(subject.model.nu_of_zeta, 3, 3)[:, : subject.model.dof]
+
+
+def straight_columns(subject: Subject) -> np.ndarray:
+    """What spans the straight motions (ν1, ν2) that the constraints allow: two rows, a column each; perhaps none."""
+    columns = allowed_columns(subject)
+    return (columns @ null_space(columns[2:]))[:2]
 
 
 def commanded_straight(subject: Subject) -> np.ndarray | None:
@@ -102,11 +114,13 @@ def parameter_named(subject: Subject, name: str | None, straight: np.ndarray | N
     if name is None:
         if straight is None:
             return scale_parameter(subject)
-        name = "nu2" if abs(straight[1]) >= abs(straight[0]) else "nu1"
+        name = "nu2" if abs(straight[1]) >= abs(straight[0]) and _is_possible(subject, "nu2") else "nu1"
     if name in COMMANDS:
         if straight is None:
             raise BadInput(f"--parameter {name}: the inputs ask for no straight motion; give one with --straight NU1 "
                            f"NU2")
+        if not _is_possible(subject, name):
+            raise BadInput(f"--parameter {name}: the constraints forbid straight motion that way; vary another number")
         return command_parameter(subject, name, straight)
     if name == "input_scale":
         return scale_parameter(subject)
@@ -114,6 +128,10 @@ def parameter_named(subject: Subject, name: str | None, straight: np.ndarray | N
         return vehicle_parameter(subject, name)
     known = ", ".join((*COMMANDS, "input_scale", *VEHICLE_KEYS))
     raise BadInput(f"--parameter: there is no {name!r}; known are {known}")
+
+
+def _is_possible(subject: Subject, name: str) -> bool:
+    return bool(np.abs(straight_columns(subject)[COMMANDS[name]]).max(initial=0.0) > 1e-9)
 
 
 def straight_thresholds(parameter: Parameter) -> list[float]:

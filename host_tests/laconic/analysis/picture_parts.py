@@ -6,6 +6,7 @@ from collections.abc import Sequence
 from typing import Any
 
 from matplotlib.axes import Axes
+from matplotlib.axis import YAxis
 from matplotlib.figure import Figure
 
 from laconic.analysis.findings import Study
@@ -44,6 +45,12 @@ def speed_axes(axes: Axes, subject: Subject, component: str) -> None:
     top = axes.secondary_xaxis("top", functions=(lambda v: v / yaw, lambda v: v * yaw))
     top.set_xlabel(YAW)
     metres_beside(axes, "right", f"R {component} [m/s]", roll)
+    power_aside(axes.yaxis)
+
+
+def power_aside(upright: YAxis) -> None:
+    """Moves the power of ten of a vertical scale ("1e-5") off the first number of the scale on top."""
+    upright.get_offset_text().set(x=-0.06, ha="right")
 
 
 def metres_beside(axes: Axes, side: str, label: str, roll: float) -> None:

@@ -17,6 +17,7 @@ from laconic.analysis.picture_parts import (
     keys,
     legend_below,
     metres_beside,
+    power_aside,
     speed_axes,
 )
 from laconic.analysis.pictures_free import explained
@@ -56,6 +57,7 @@ def bifurcation_picture(study: Study) -> Figure | None:
     axes.set_xlim(part.low, part.high)
     handles = keys(axes, entries) + _marks(axes, part)
     axes.set(xlabel=part.parameter.label, ylabel=YAW, title=head(study, "steady motions"))
+    power_aside(axes.yaxis)
     if part.parameter.name in COMMANDS:
         metres_beside(axes, "top", "the same in m/s", wheel_radius_m(study.subject))
     legend_below(picture, handles, _meaning(part))

@@ -11,6 +11,8 @@ import numpy as np
 
 from laconic.analysis.from_core import Subject
 
+ROUNDING = 1e-9  # of the largest speeds: what is smaller is what rounding left
+
 
 def wheel_radius_m(subject: Subject) -> float:
     """R: metres of travel for each radian of ν1 or ν2."""
@@ -24,10 +26,11 @@ def of_driver(subject: Subject, nu: np.ndarray) -> dict[str, Any]:
             "yaw_rate_rad_per_s": float(nu[2]) / subject.matrices.lambda_yaw}
 
 
-def without_rest(nu: np.ndarray) -> np.ndarray:
-    """ν with what rounding left behind set to zero."""
+def without_rest(nu: np.ndarray, size: float = 0.0) -> np.ndarray:
+    """ν with what rounding left behind set to zero; `size`: what else was reckoned with, where that is larger [rad/s].
+    """
     nu = np.asarray(nu, dtype=float)
-    return np.where(np.abs(nu) < 1e-9 * max(float(np.abs(nu).max()), 1e-300), 0.0, nu)
+    return np.where(np.abs(nu) < ROUNDING * max(float(np.abs(nu).max(initial=0.0)), size, 1e-300), 0.0, nu)
 
 
 def motion_text(subject: Subject, nu: np.ndarray) -> str:

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Callable
 
+from laconic.analysis.allowed import check
 from laconic.analysis.bifurcation_part import bifurcation_part
 from laconic.analysis.findings import Study, Wishes
 from laconic.analysis.free_part import free_part
@@ -15,6 +16,7 @@ from laconic.analysis.traction import study as study_traction
 
 def study(subject: Subject, wishes: Wishes, advance: Callable[[float, str], None]) -> Study:
     """All parts that were asked for, one after another."""
+    check(subject, wishes)
     result = Study(subject)
     share = 1.0 / len(wishes.parts)
     for part in wishes.parts:

@@ -38,6 +38,7 @@ def command(scene: str, out: Path | None, only: tuple[str, ...], at_s: float, st
     """
     from laconic.analysis.findings import Wishes
     from laconic.analysis.from_core import subject_of
+    from laconic.analysis.older_page import pictures_of_older_page
     from laconic.analysis.report import as_numbers, as_text
     from laconic.analysis.study import study
     from laconic.progress import progress_bar
@@ -51,8 +52,10 @@ def command(scene: str, out: Path | None, only: tuple[str, ...], at_s: float, st
         pictures = _draw(found, out, advance)
     numbers = as_numbers(found, pictures)
     if out is not None:
+        older = pictures_of_older_page(out, pictures)
         write_text(out / "report.md", as_text(found, pictures))
         write_text(out / "report.json", json.dumps(numbers, indent=1) + "\n")
+        _remove(older)
     click.echo(json.dumps(numbers, indent=1) if json_wanted else as_text(found, []))
     if found.failures:
         raise ResultFails("not confirmed: " + "; ".join(found.failures))
@@ -67,6 +70,14 @@ def _check(low: float | None, high: float | None, straight: tuple[float, ...] | 
             raise BadInput(f"{name}: {value:g} is not usable; give a finite number below 1e12")
     if low is not None and high is not None and not low < high:
         raise BadInput(f"--from {low:g} --to {high:g}: the range is empty; give the smaller number first")
+
+
+def _remove(older: list[Path]) -> None:
+    for path in older:
+        path.unlink(missing_ok=True)
+    if older:
+        click.echo(f"laconic: removed {', '.join(path.name for path in older)}, of an older page in this folder",
+                   err=True)
 
 
 def _draw(found, out: Path | None, advance) -> list[Path]:

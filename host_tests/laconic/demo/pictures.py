@@ -14,7 +14,7 @@ def draw(run: Trajectory, points: Sequence[Point], floor: float, path: Path) -> 
     """Writes the picture."""
     picture = figure(13.0, 7.6)
     places = picture.subplot_mosaic([["path", "velocities"], ["path", "error"]], width_ratios=(1.0, 1.35))
-    title(picture, f"{run.scene.name}: {run.steps} steps of {run.scene.run.step_s:g} s by {run.method}", run)
+    title(picture, f"{run.steps} steps of {run.scene.run.step_s:g} s by {run.method}", run)
     plot_velocities(places["velocities"], run)
     mark_ground(places, run)
     plot_path(places["path"], run)

@@ -7,6 +7,7 @@ from typing import Any
 
 import numpy as np
 
+from laconic.curve_style import wrapped
 from laconic.plotting import figure, save
 from laconic.replay.compare import Comparison
 from laconic.replay.friction import Friction
@@ -222,8 +223,8 @@ def _speeds_picture(replay: Replay):
         residual = np.sqrt(((p.speed_rad_per_s - measured) ** 2).mean(axis=1))
         rows[-1].plot(time, residual, color=COLOURS[p.model], ls=STYLES[p.model], lw=1.1)
     rows[-1].set(ylabel="residual, root mean\nsquare [rad/s]", xlabel="time [s]")
-    rows[0].set_title(f"{shown.recording.name}: {shown.rolled.direction_deg:.0f}°, {shown.rolled.speed_m_per_s:.1f} "
-                      f"m/s\n"
+    rows[0].set_title(f"{wrapped(shown.recording.name, 60)}: {shown.rolled.direction_deg:.0f}°, "
+                      f"{shown.rolled.speed_m_per_s:.1f} m/s\n"
                       "wheel speeds from the measured currents")
     handles = [rows[0].plot([], [], color="k", lw=1.6, label="measured")[0]]
     handles += [rows[0].plot([], [], color=COLOURS[p.model], ls=STYLES[p.model], label=p.model)[0]

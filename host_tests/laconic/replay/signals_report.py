@@ -5,6 +5,7 @@ from __future__ import annotations
 from pathlib import Path
 from typing import Any
 
+from laconic.curve_style import wrapped
 from laconic.replay.signals import SignalReplay
 
 MOST_PANELS = 6
@@ -58,7 +59,7 @@ def draw(found: SignalReplay, folder: Path) -> list[Path]:
         axes.plot(time_s, found.log.columns[each.signal], color="k", lw=2.4, alpha=0.35, label="file")
         axes.plot(time_s, found.model[each.signal], color="tab:blue", ls="--", label="model")
         axes.set_ylabel(each.signal, fontsize=8)
-    rows[0].set_title(f"{found.log.path.name} beside {found.scene.name}")
+    rows[0].set_title(wrapped(f"{found.log.path.name} beside {found.scene.name}", 80))
     rows[-1].set_xlabel("time [s]")
     picture.legend(handles=rows[0].get_legend_handles_labels()[0], loc="outside lower center", ncols=2, fontsize=9)
     save(picture, folder / "replay.png")

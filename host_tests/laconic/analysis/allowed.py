@@ -1,0 +1,28 @@
+"""Whether the motions that a user asks for are possible: constraints forbid a differential drive to go sideways."""
+
+from __future__ import annotations
+
+import numpy as np
+
+from laconic.analysis.findings import Wishes
+from laconic.analysis.from_core import Subject
+from laconic.analysis.motions import allowed_columns, straight_columns
+from laconic.analysis.speeds import ROUNDING, without_rest
+from laconic.errors import BadInput
+
+
+def check(subject: Subject, wishes: Wishes) -> None:
+    """BadInput when the constraints forbid a ν that was asked for; it names the nearest that they allow."""
+    columns = allowed_columns(subject)
+    if wishes.start is not None:
+        _fits("--start: the constraints forbid this ν", np.array(wishes.start), columns)
+    if wishes.straight is not None:
+        _fits("--straight: the constraints forbid this motion", np.array(wishes.straight), straight_columns(subject))
+
+
+def _fits(refusal: str, nu: np.ndarray, columns: np.ndarray) -> None:
+    size = float(np.abs(nu).max())
+    nearest = columns @ np.linalg.lstsq(columns, nu, rcond=None)[0] if columns.size else np.zeros_like(nu)
+    if np.abs(nearest - nu).max() > ROUNDING * max(1.0, size):
+        shown = " ".join(f"{v:.6g}" for v in without_rest(nearest, size))
+        raise BadInput(f"{refusal}; the nearest allowed one is {shown}")
