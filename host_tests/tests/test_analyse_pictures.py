@@ -51,8 +51,11 @@ def many(tmp_path_factory):
 
 @pytest.fixture(scope="module")
 def hopf():
+    """Turning motions, with no limit cycle beside them: those take long."""
     wishes = Wishes(("free", "steady", "bifurcation"))
-    return study(subject_of(read_scene("paper_three_wheel_hopf")), wishes, lambda *_: None)
+    with pytest.MonkeyPatch.context() as patch:
+        patch.setattr("laconic.analysis.bifurcation_part.cycle_near", lambda *_: None)
+        return study(subject_of(read_scene("paper_three_wheel_hopf")), wishes, lambda *_: None)
 
 
 @pytest.fixture(scope="module")
@@ -63,7 +66,7 @@ def drawn():
     def draw(found, name):
         if (id(found), name) not in made:
             made[id(found), name] = PICTURES[name](found)
-            made[id(found), name].canvas.draw()
+            made[id(found), name].draw_without_rendering()
         return made[id(found), name]
 
     yield draw

@@ -1,5 +1,7 @@
 """`laconic report --scene X` is about that robot, first and only; the project's goals are a page of their own."""
 
+import contextlib
+import io
 import json
 import re
 from dataclasses import replace
@@ -24,18 +26,20 @@ PHONE_CSS_PX, CSS_PX_PER_INCH = 390, 96
 
 @pytest.fixture(scope="module")
 def made(tmp_path_factory):
-    """The page of one robot: no board, and one strength of its motors, which is what takes long."""
+    """The page of one robot: no board, one second of its run, two strengths of its motors; the rest takes long."""
     folder = tmp_path_factory.mktemp("report")
     with pytest.MonkeyPatch.context() as patch:
         patch.setattr(robot, "M4F", SimpleNamespace(present=False))
-        patch.setattr(robot, "QUICK_FACTORS", (1.0, 10.0))
+        patch.setattr(robot, "QUICK_FACTORS", (0.1, 1.0))
+        patch.setattr("laconic.commands.report.read_scene", lambda name: read_scene(name).with_run(duration_s=1.0))
         patch.setattr("laconic.report.robot_sections.METHODS", ("auto",))
-        status = cli.run(["report", "--quick", "--scene", SCENE, "--out", str(folder), "--json"])
-    return status, folder
+        with contextlib.redirect_stdout(io.StringIO()) as out:
+            status = cli.run(["report", "--quick", "--scene", SCENE, "--out", str(folder), "--json"])
+    return status, folder, out.getvalue()
 
 
 def test_the_page_of_a_robot_opens_with_it_and_shows_no_other_scene_and_no_goal(made):
-    status, folder = made
+    status, folder, _ = made
     page = (folder / "index.html").read_text()
     words = re.sub(r"<style>.*?</style>|<svg.*?</svg>", "", page, flags=re.DOTALL)
     others = {path.stem for path in SCENE_DIR.glob("*.toml")} - {SCENE}
@@ -55,11 +59,8 @@ def test_nothing_but_the_robot_is_measured(made):
     assert rows["targets"] == []  # the keys stay, for those who read the file
 
 
-def test_json_of_a_robots_report_keeps_page_notes_and_goals(capsys, made, monkeypatch):
-    monkeypatch.setattr(robot, "M4F", SimpleNamespace(present=False))
-    monkeypatch.setattr(robot, "map_rows", lambda *_: [])
-    assert cli.run(["report", "--quick", "--scene", SCENE, "--out", str(made[1] / "again"), "--json"]) == 0
-    found = json.loads(capsys.readouterr().out)
+def test_json_of_a_robots_report_keeps_page_notes_and_goals(made):
+    found = json.loads(made[2])
     assert found["page"].endswith("index.html")
     assert found["goals"] == []
     assert any("arm-none-eabi-gcc" in note for note in found["notes"])
@@ -121,19 +122,23 @@ DRAWN = {"error": lambda: pictures.error_against_time(ERRORS, "x", "A robot with
          "plan": lambda: plan(read_scene("kuka_youbot"))}
 
 
-@pytest.fixture
-def figures(monkeypatch):
-    """The pictures as figures, before they become text."""
-    monkeypatch.setattr(pictures, "svg", lambda figure: figure)
-    monkeypatch.setattr("laconic.report.plan.svg", lambda figure: figure)
-    yield DRAWN
-    plt.close("all")
+@pytest.fixture(scope="module")
+def figures():
+    """The pictures as figures, laid out, before they become text."""
+    with pytest.MonkeyPatch.context() as patch:
+        patch.setattr(pictures, "svg", lambda figure: figure)
+        patch.setattr("laconic.report.plan.svg", lambda figure: figure)
+        made = {name: draw() for name, draw in DRAWN.items()}
+    for picture in made.values():
+        picture.draw_without_rendering()
+    yield made
+    for picture in made.values():
+        plt.close(picture)
 
 
 @pytest.mark.parametrize("name", DRAWN)
 def test_no_legend_covers_a_curve_and_nothing_is_cut(figures, name):
-    picture = figures[name]()
-    picture.canvas.draw()
+    picture = figures[name]
     frame = picture.bbox.padded(2.0)
     box = picture.get_tightbbox().transformed(picture.dpi_scale_trans)
     assert frame.x0 <= box.x0
@@ -148,7 +153,7 @@ def test_no_legend_covers_a_curve_and_nothing_is_cut(figures, name):
 
 @pytest.mark.parametrize("name", DRAWN)
 def test_letters_stay_of_reading_size_on_a_phone(figures, name):
-    picture = figures[name]()
+    picture = figures[name]
     shrunk = min(1.0, (PHONE_CSS_PX - 24) / (SIZE[0] * CSS_PX_PER_INCH))
     smallest = min(text.get_fontsize() for legend in picture.legends for text in legend.get_texts())
     assert picture.get_size_inches()[0] == SIZE[0]
@@ -156,7 +161,7 @@ def test_letters_stay_of_reading_size_on_a_phone(figures, name):
 
 
 def test_curves_that_coincide_keep_markers_of_their_own(figures):
-    (axes,) = figures["drift"]().axes
+    (axes,) = figures["drift"].axes
     places = [line.get_markevery() for line in axes.lines]
     widths = [line.get_linewidth() for line in axes.lines]
     assert len(set(places)) == len(places) == len(METHODS) - 1
@@ -166,7 +171,7 @@ def test_curves_that_coincide_keep_markers_of_their_own(figures):
 
 def test_a_method_has_the_same_colour_and_marker_in_every_picture(figures):
     for name in ("error", "drift", "peers"):
-        for line in figures[name]().axes[0].lines:
+        for line in figures[name].axes[0].lines:
             if line.get_label() in METHOD_STYLES:
                 style = METHOD_STYLES[line.get_label()]
                 assert (line.get_color(), line.get_marker()) == (style.colour, style.marker)
