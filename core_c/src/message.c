@@ -86,7 +86,8 @@ static const char *explanation(laconic_status status) {
         "# is no kind of wheel; use 1 (roller: omni or mecanum) or 2 (fixed)",
         "# wheels, but this build takes 0 to @; lower it or build with a larger LACONIC_MAX_WHEELS",
         "# supports, but this build takes 0 to @; lower it or build with a larger LACONIC_MAX_SUPPORTS",
-        "fixed and locked wheels leave nothing that moves; release a wheel or let fixed wheels share an axle line",
+        "fixed and locked wheels leave nothing that moves; the axle lines of all fixed wheels must meet in one point, "
+        "or all be parallel; else release a locked wheel",
         "masses and lengths are too far apart for " LACONIC_REAL_NAME
         " precision: the condition number # leaves fewer than two correct digits; check the units",
         "# slides a fixed or locked wheel; the nearest velocity that the wheels allow is @",

@@ -24,13 +24,15 @@ laconic_status laconic_motor_fit(laconic_vehicle *vehicle, const laconic_motor *
     const real ratio = motor->gear_ratio;
     real per_volt, gain, damping, inertia;
     if (status != LACONIC_OK) return status;
+    if (vehicle->wheel_inertia_kgm2 < R(0)) /* before the rotor's inertia hides the sign */
+        return refuse(why, LACONIC_NEGATIVE, LACONIC_FIELD_WHEEL_INERTIA, 0, vehicle->wheel_inertia_kgm2, R(0));
     per_volt = motor->torque_constant_Nm_per_A / motor->resistance_ohm;
     gain = ratio * per_volt;
     damping = ratio * ratio * (per_volt * motor->back_emf_Vs_per_rad + motor->viscous_friction_Nms);
     inertia = ratio * ratio * motor->rotor_inertia_kgm2;
     if (zero_if_finite(gain) + zero_if_finite(damping) + zero_if_finite(inertia) != R(0))
         return refuse(why, LACONIC_OVERFLOW, LACONIC_FIELD_GEAR_RATIO, 0, ratio, R(0));
-    if (damping < R(0)) /* k_t and k_e of different signs: a motor that drives itself */
+    if (per_volt * motor->back_emf_Vs_per_rad < R(0)) /* a motor that drives itself */
         return refuse(why, LACONIC_NEGATIVE, LACONIC_FIELD_BACK_EMF, 0, motor->back_emf_Vs_per_rad, R(0));
     vehicle->motor_gain_Nm_per_V = gain;
     vehicle->motor_damping_Nms = damping;

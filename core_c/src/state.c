@@ -30,6 +30,7 @@ static laconic_status check_allowed(const laconic_model *m, const laconic_state 
         }
     /* all three motions allowed: whatever differs is rounding */
     if (m->dof == 3 || worst <= LACONIC_RANK_TOLERANCE * size(vec(nu))) return LACONIC_OK;
+    if (magnitude(nearest[item]) <= LACONIC_RANK_TOLERANCE * size(vec(nu))) nearest[item] = R(0);
     return refuse(why, LACONIC_START_AGAINST_CONSTRAINTS, LACONIC_FIELD_START_NU, item + 1, nu[item], nearest[item]);
 }
 

@@ -7,7 +7,9 @@ static laconic_status check_number(real value, laconic_field field, int32_t item
 
 static laconic_status check_positive(real value, laconic_field field, laconic_refusal *why) {
     if (!is_finite(value)) return refuse(why, LACONIC_NOT_FINITE, field, 0, value, R(0));
-    return value > R(0) ? LACONIC_OK : refuse(why, LACONIC_NOT_POSITIVE, field, 0, value, R(0));
+    if (!(value > R(0))) return refuse(why, LACONIC_NOT_POSITIVE, field, 0, value, R(0));
+    if (value < LACONIC_REAL_MIN) return refuse(why, LACONIC_OVERFLOW, field, 0, value, LACONIC_REAL_MIN);
+    return LACONIC_OK;
 }
 
 static laconic_status check_not_negative(real value, laconic_field field, laconic_refusal *why) {

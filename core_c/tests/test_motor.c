@@ -72,6 +72,21 @@ static void a_motor_whose_numbers_leave_the_range_or_drive_it_by_themselves_is_r
     refuses(m, LACONIC_NEGATIVE, LACONIC_FIELD_BACK_EMF);
 }
 
+static void a_back_emf_of_the_wrong_sign_is_refused_even_where_friction_outweighs_it(void) {
+    laconic_motor m = good_motor();
+    m.back_emf_Vs_per_rad = REAL(-0.12);
+    m.viscous_friction_Nms = REAL(1);
+    refuses(m, LACONIC_NEGATIVE, LACONIC_FIELD_BACK_EMF);
+}
+
+static void a_negative_wheel_inertia_is_refused_before_the_rotors_inertia_hides_it(void) {
+    laconic_vehicle v = three_wheels();
+    laconic_motor m = good_motor();
+    m.rotor_inertia_kgm2 = REAL(1);
+    v.wheel_inertia_kgm2 = REAL(-0.02);
+    ASSERT_REFUSED(LACONIC_NEGATIVE, LACONIC_FIELD_WHEEL_INERTIA, 0, laconic_motor_fit(&v, &m, &why), why);
+}
+
 int main(void) {
     UNITY_BEGIN();
     RUN_TEST(the_data_sheet_becomes_gain_damping_and_inertia);
@@ -80,5 +95,7 @@ int main(void) {
     RUN_TEST(resistance_must_be_positive_and_the_gear_not_zero);
     RUN_TEST(friction_and_rotor_inertia_must_not_be_negative);
     RUN_TEST(a_motor_whose_numbers_leave_the_range_or_drive_it_by_themselves_is_refused);
+    RUN_TEST(a_back_emf_of_the_wrong_sign_is_refused_even_where_friction_outweighs_it);
+    RUN_TEST(a_negative_wheel_inertia_is_refused_before_the_rotors_inertia_hides_it);
     return UNITY_END();
 }

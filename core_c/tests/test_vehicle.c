@@ -201,6 +201,13 @@ static void the_support_count_stays_within_its_bounds(void) {
     ASSERT_REFUSED(LACONIC_TOO_MANY_SUPPORTS, LACONIC_FIELD_SUPPORT_COUNT, 0, laconic_vehicle_check(&v, &why), why);
 }
 
+static void a_mass_without_all_its_digits_is_refused_even_where_a_payload_outweighs_it(void) {
+    laconic_vehicle v = three_wheels();
+    v.mass_kg = LACONIC_REAL_MIN / 4;
+    v.payload.mass_kg = 1;
+    ASSERT_REFUSED(LACONIC_OVERFLOW, LACONIC_FIELD_MASS, 0, laconic_vehicle_check(&v, &why), why);
+}
+
 int main(void) {
     UNITY_BEGIN();
     RUN_TEST(good_vehicles_are_accepted);
@@ -214,5 +221,6 @@ int main(void) {
     RUN_TEST(an_unknown_kind_is_named_with_its_number);
     RUN_TEST(the_wheel_count_stays_within_its_bounds);
     RUN_TEST(the_support_count_stays_within_its_bounds);
+    RUN_TEST(a_mass_without_all_its_digits_is_refused_even_where_a_payload_outweighs_it);
     return UNITY_END();
 }
