@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import importlib
+import logging
 import os
 import pkgutil
 import sys
@@ -63,6 +64,7 @@ def main(arguments: list[str] | None = None) -> None:
     130 after Ctrl-C, 143 after SIGTERM; 141 when the reader of stdout has gone (| head -1), silently, as for any tool.
     """
     guard()
+    logging.getLogger("matplotlib").setLevel(logging.ERROR)  # its advice on a home that it cannot write is not ours
     status = run(sys.argv[1:] if arguments is None else arguments)
     with suppress(ReaderGone, BadInput):  # text before an error, which is already told
         sys.stdout.flush()

@@ -3,6 +3,8 @@
 `steps` hold a value from t_s on, and are zero before the first. `table` interpolates linearly and keeps its first and
 last value outside. `sine` is amplitude · sin(2π f t + phase). Several inputs of one signal add up.
 
+A change of `steps` exactly at the end of a run moves nothing and shows in the last row, as what acts from there on.
+
 A scene with nothing but `steps` runs with held inputs; every change must fall on the start of a step, because a change
 moved to the grid would be another experiment. Any other scene is sampled at the start, middle and end of each step.
 """
@@ -10,7 +12,7 @@ moved to the grid would be another experiment. Any other scene is sampled at the
 from __future__ import annotations
 
 import math
-from collections.abc import Iterable, Iterator
+from collections.abc import Iterable, Iterator, Sequence
 from dataclasses import dataclass, field
 from fractions import Fraction
 from pathlib import Path
@@ -26,6 +28,7 @@ if TYPE_CHECKING:
 
 CHUNK = 4096        # sampled steps made ready at once
 ON_THE_GRID = 1e-6  # of a step, as laconic_steps_in
+STEPS_A_PERIOD = 4  # of a sine at least: the parabola through start, middle and end of a step is then within 3 % of it
 
 
 @dataclass(frozen=True)
@@ -82,9 +85,11 @@ class Drive:
     _made: dict[str, Window] = field(default_factory=dict)        # the last schedule for each scalar type
 
     @classmethod
-    def on_grid(cls, path: Path, inputs: tuple[Input, ...], step_s: float, steps: int) -> Drive:
-        """Puts the changes on the grid; BadInput where one falls inside a step."""
-        ticks = {each.place: change_ticks(path, each, step_s, steps) for each in inputs if each.kind == "steps"}
+    def on_grid(cls, path: Path, inputs: tuple[Input, ...], step_s: float, steps: int,
+                grid_s: Sequence[float] = ()) -> Drive:
+        """Puts the changes on the grid; BadInput where one falls inside a step, with a step that fits `grid_s` too."""
+        grid = [*grid_s, Fraction(repr(step_s)) * steps]
+        ticks = {each.place: change_ticks(path, each, step_s, steps, grid) for each in inputs if each.kind == "steps"}
         levels = {each.place: np.array([0.0, *each.value]) for each in inputs if each.kind == "steps"}
         within = {int(t) for ends in ticks.values() for t in ends if t < steps}
         signals = tuple(dict.fromkeys(each.signal for each in inputs))
@@ -140,21 +145,36 @@ class Drive:
         return self._levels[each.place][np.searchsorted(self._ticks[each.place], ticks, side="right")]
 
 
-def change_ticks(path: Path, each: Input, step_s: float, steps: int) -> np.ndarray:
+def check_resolved(path: Path, inputs: tuple[Input, ...], step_s: float, grid_s: Sequence[float]) -> None:
+    """BadInput for a sine that the samples at the start, middle and end of each step would take for a slower one."""
+    fastest = max((each for each in inputs if each.kind == "sine"), key=lambda e: abs(e.frequency_Hz), default=None)
+    if fastest is None or abs(fastest.frequency_Hz) * step_s * STEPS_A_PERIOD <= 1.0 + ON_THE_GRID:
+        return
+    remedy = step_remedy(grid_s, 1 / abs(STEPS_A_PERIOD * Fraction(repr(fastest.frequency_Hz))))
+    raise BadInput(f"{path}: {fastest.place}.frequency_Hz: {fastest.frequency_Hz:g} Hz has fewer than {STEPS_A_PERIOD} "
+                   f"steps of {step_s:g} s a period, too few to follow it; {remedy}")
+
+
+def change_ticks(path: Path, each: Input, step_s: float, steps: int, grid: Sequence[float | Fraction]) -> np.ndarray:
     """The steps at whose start a `steps` input changes."""
     instants = np.array(each.t_s)
     ticks = np.rint(instants / step_s)
     off = np.abs(ticks * step_s - instants) > ON_THE_GRID * step_s
     late = instants >= steps * step_s
     for instant in instants[off & ~late]:
-        remedy = step_remedy([*instants[~late], Fraction(repr(step_s)) * steps], step_s)
+        remedy = step_remedy([*instants[~late], *grid], step_s)
         raise BadInput(f"{path}: {each.place}.t_s: {instant:g} s falls inside a step of {step_s:g} s; {remedy}")
     return np.where(late, np.maximum(ticks, steps), ticks).astype(np.int64)
 
 
-def step_remedy(instants_s: Iterable[float | Fraction], step_s: float) -> str:
-    """The next smaller step that has all these instants on its grid: their greatest common divisor over n."""
-    exact = [t if isinstance(t, Fraction) else Fraction(repr(float(t))) for t in instants_s]
+def step_remedy(instants_s: Iterable[float | Fraction], step_s: float | Fraction) -> str:
+    """The largest step, `step_s` or less, that has all these instants on its grid: their common divisor over n."""
+    exact = [as_written(t) for t in instants_s]
     whole = math.lcm(*(t.denominator for t in exact))
     grid = Fraction(math.gcd(*(int(t * whole) for t in exact)), whole)
-    return f"a step of {float(grid / math.ceil(grid / Fraction(repr(step_s)))):.9g} s would do"
+    return f"a step of {float(grid / math.ceil(grid / as_written(step_s))):.9g} s would do"
+
+
+def as_written(number: float | Fraction) -> Fraction:
+    """The decimal number that a float was read from."""
+    return number if isinstance(number, Fraction) else Fraction(repr(float(number)))

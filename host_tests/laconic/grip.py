@@ -62,7 +62,8 @@ class Grip:
         if self.first_slip and self.worst_slip:
             first, worst = self.first_slip, self.worst_slip
             found.append(f"{first.where} slips at {first.time_s:g} s (needs {newtons(first.needed_N)} of grip, has "
-                         f"{newtons(first.available_N)}{self._more(first, worst, self.slipping, slip_size(worst))})")
+                         f"{newtons(first.available_N)}: margin {newtons(first.margin_N)}"
+                         f"{self._more(first, worst, self.slipping, 'margin ' + newtons(worst.margin_N))})")
         if self.first_lift and self.worst_lift:
             first, worst = self.first_lift, self.worst_lift
             found.append(f"{first.where} lifts at {first.time_s:g} s (normal load {newtons(first.normal_N)}"
@@ -71,12 +72,7 @@ class Grip:
 
     def _more(self, first: GripEvent, worst: GripEvent, count: int, size: str) -> str:
         at_worst = "" if worst == first else f"; at worst {size}, {worst.where} at {worst.time_s:g} s"
-        return f"{at_worst}; {100 * count / self.looks:.2g} % of the run"
-
-
-def slip_size(event: GripEvent) -> str:
-    """What is needed, of what there is."""
-    return f"{newtons(event.needed_N)} of {newtons(event.available_N)}"
+        return f"{at_worst}; {100 * count / self.looks:.3g} % of the run"
 
 
 def newtons(force_N: float) -> str:

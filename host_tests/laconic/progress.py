@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+import sys
+import time
 from collections.abc import Callable, Iterator
 from contextlib import contextmanager
 
@@ -9,14 +11,19 @@ from rich.console import Console
 from rich.progress import BarColumn, MofNCompleteColumn, Progress, TextColumn, TimeRemainingColumn
 
 Advance = Callable[..., None]
+FIRST_WORD_S = 1.0  # after so long a log is told how long the work takes,
+LONG_S = 60.0       # if that is longer than this
 
 
 @contextmanager
-def progress_bar(what: str, total: float) -> Iterator[Advance]:
-    """Yields advance(amount=1, what=None): moves the bar on, and may rename what it says."""
+def progress_bar(what: str, total: float, *, told: bool = False) -> Iterator[Advance]:
+    """Yields advance(amount=1, what=None): moves the bar on, and may rename what it says.
+
+    `told`: where stderr is no terminal, one line says how long it takes if that is long.
+    """
     console = Console(stderr=True)
     if not console.is_terminal:
-        yield lambda amount=1, what=None: None
+        yield forecast(what, total) if told else lambda amount=1, what=None: None
         return
     columns = (TextColumn("{task.description}", markup=False), BarColumn(), MofNCompleteColumn(), TimeRemainingColumn())
     with Progress(*columns, console=console, transient=True) as bar:
@@ -26,3 +33,28 @@ def progress_bar(what: str, total: float) -> Iterator[Advance]:
             bar.update(task, advance=amount, **({"description": what} if what else {}))
 
         yield advance
+
+
+def forecast(what: str, total: float, clock: Callable[[], float] = time.monotonic) -> Advance:
+    """An advance(amount) that says once, on stderr, how long work takes that will take long."""
+    began, done, said = clock(), 0.0, False
+
+    def advance(amount: float = 1, what_now: str | None = None) -> None:
+        nonlocal done, said
+        done += amount
+        elapsed_s = clock() - began
+        if said or done <= 0 or elapsed_s < FIRST_WORD_S:
+            return
+        said, whole_s = True, elapsed_s * total / done
+        if whole_s > LONG_S:
+            print(f"laconic: {what_now or what}: takes about {duration_text(whole_s)}; Ctrl-C ends it",
+                  file=sys.stderr, flush=True)
+
+    return advance
+
+
+def duration_text(seconds: float) -> str:
+    """A time for people, in its largest fitting unit."""
+    units = (("years", 365.25 * 86400.0), ("days", 86400.0), ("hours", 3600.0), ("minutes", 60.0), ("seconds", 1.0))
+    name, size = next((unit for unit in units if seconds >= 2.0 * unit[1]), units[-1])
+    return f"{seconds / size:.0f} {name}"

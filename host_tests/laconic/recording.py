@@ -36,7 +36,7 @@ class Recorder:
             "row": ffi.from_buffer("laconic_real[]", self._table, require_writable=True), "row_room": rows})
 
     def take_last(self, held: Any) -> None:
-        """The row of the present state: the end of a run, with the input that acted in its last step."""
+        """The row of the present state: the end of a run, with the input of that instant."""
         if self.c.row_count >= len(self._table):
             raise IndexError("the recorder has no room for another row")
         self._plant.core.lib.laconic_record_row(self.c, self._plant.c, held)

@@ -12,7 +12,7 @@ from pathlib import Path
 from typing import Any
 
 from laconic.core import REALS, Core, load
-from laconic.drive import Drive, Input, step_remedy
+from laconic.drive import Drive, Input, check_resolved, step_remedy
 from laconic.errors import BadInput, Refused
 from laconic.paths import scene_path
 from laconic.plant import Plant
@@ -146,6 +146,8 @@ class Scene:
 
     def told(self, refused: Refused, when: str = "") -> Refused:
         """A refusal of the core with this file in front, by the names that the file has."""
+        if refused.status == "overflow" and not refused.field:
+            refused = refused.at("vehicle")  # of its numbers together
         return in_file(refused, self.in_degrees).at(f"{self.path}: {when}" if when else self.path)
 
     def steps(self) -> int:
@@ -173,7 +175,9 @@ class Scene:
 
     def drive(self) -> Drive:
         """The inputs on the grid of the scene's steps."""
-        return Drive.on_grid(self.path, self.inputs, self.run.step_s, self.steps())
+        steps, instants = self.steps(), self.instants()
+        check_resolved(self.path, self.inputs, self.run.step_s, instants)
+        return Drive.on_grid(self.path, self.inputs, self.run.step_s, steps, instants)
 
 
 def read_scene(given: str | Path) -> Scene:

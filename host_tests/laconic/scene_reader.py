@@ -29,14 +29,17 @@ MOTOR_OPTIONAL = ("viscous_friction_Nms", "rotor_inertia_kgm2")
 def read_parts(top: Table, methods: Sequence[str], reals: Sequence[str]) -> dict[str, Any]:
     """Everything a scene consists of, as plain values."""
     parts: dict[str, Any] = {"name": top.text("name", top.path.stem), "source": top.text("source", "", allowed="\t\n")}
+    if not parts["name"].strip():
+        top.fail("name", "is empty; give a name, or take it out for the file's own")
     parts["vehicle"] = read_vehicle(top.table("vehicle", required=True))
     wheel_count = len(parts["vehicle"]["wheel"])
     parts["initial"] = read_initial(top.table("initial"))
     parts["inputs"] = [read_input(each, wheel_count) for each in top.tables("input")]
     parts["run"] = read_run(top.table("run", required=True), methods, reals)
     for each in parts["inputs"]:
+        check_motor(top, each, parts["vehicle"])
         check_end(top, each, parts["run"]["duration_s"])
-    parts["outputs"] = read_outputs(top.table("outputs"), wheel_count)
+    parts["outputs"] = read_outputs(top.table("outputs"), wheel_count, parts["run"]["duration_s"])
     parts["rig"] = read_rig(top.table("rig"))
     top.done()
     parts["in_degrees"] = frozenset(top.in_degrees)
@@ -176,6 +179,13 @@ def check_instants(table: Table, t_s: Sequence[float]) -> None:
             table.fail("t_s", f"goes from {before:g} to {after:g} s; give instants in ascending order")
 
 
+def check_motor(top: Table, each: Input, vehicle: dict[str, Any]) -> None:
+    """Fails for a voltage where no motor makes a torque of it."""
+    if "motor" not in vehicle and vehicle["motor_gain_Nm_per_V"] == 0.0 and each.signal.startswith("voltage_V"):
+        top.fail(f"{each.place}.signal", f"{each.signal} would do nothing, the vehicle has no motor; give "
+                 "[vehicle.motor] or vehicle.motor_gain_Nm_per_V, or drive the wheel by axle_torque_Nm")
+
+
 def check_end(top: Table, each: Input, duration_s: float) -> None:
     """Fails for instants that the run never comes to; a table may lead to one that lies beyond its end."""
     if each.kind == "sine":
@@ -200,7 +210,7 @@ def read_run(table: Table, methods: Sequence[str], reals: Sequence[str]) -> dict
     return run
 
 
-def read_outputs(table: Table, wheel_count: int) -> dict[str, Any]:
+def read_outputs(table: Table, wheel_count: int, duration_s: float) -> dict[str, Any]:
     """`[outputs]`: a signal without its index stands for all of them."""
     signals: list[str] = []
     for signal in table.texts("signals", ()):
@@ -217,6 +227,10 @@ def read_outputs(table: Table, wheel_count: int) -> dict[str, Any]:
     every = table.number("every_s", None)
     if every is not None and every <= 0:
         table.fail("every_s", f"is {every:g}; give a number above zero")
+    if every is not None and every > duration_s * (1.0 + 1e-12):
+        table.fail("every_s", f"{every:g} s is longer than the run of {duration_s:g} s; give that or less")
+    if table.has("signals") and not signals:
+        table.fail("signals", "is empty; name some, or take it out for the usual ones")
     table.done()
     return {"signals": tuple(signals), "every_s": every}
 

@@ -7,7 +7,6 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from laconic.core import Core
 from laconic.drive import Drive
 from laconic.errors import BadInput, Refused
 from laconic.grip import Grip
@@ -90,9 +89,9 @@ def simulate(scene: Scene, signals: tuple[str, ...] = (), progress: bool = False
     ticks = np.append(np.arange(0, steps, every), steps)  # the last row is the end of the run, wherever it falls
     recorder = Recorder(plant, signals or wanted_signals(scene), every, len(ticks), watched=is_watched(scene))
     began = time.perf_counter()
-    with progress_bar(scene.name, steps if progress else 0) as moved:
+    with progress_bar(scene.name, steps if progress else 0, told=progress) as moved:
         run_window(scene, plant, drive, 0, steps, moved, recorder)
-    recorder.take_last(input_now(core, drive, steps))
+    recorder.take_last(core.input(drive.held_at(steps)))
     seconds = time.perf_counter() - began
     return Trajectory(scene, plant.chosen_method, steps, seconds, ticks * scene.run.step_s, recorder.columns(),
                       recorder.grip(scene.run.step_s))
@@ -108,8 +107,3 @@ def run_window(scene: Scene, plant: Plant, drive: Drive, first: int, count: int,
             moved(steps)
     except Refused as refused:
         raise scene.told(refused, f"at t = {plant.steps * scene.run.step_s:g} s") from None
-
-
-def input_now(core: Core, drive: Drive, tick: int) -> object:
-    """What acts at the start of a step (after the last: what acted in it)."""
-    return core.input(drive.held_at(min(tick, drive.steps - 1)))

@@ -52,8 +52,7 @@ class Stdout(io.FileIO):
 
 def guard() -> None:
     """Puts our stdout and our handlers of signals in place; for the process that the command line is."""
-    if sys.stdout is None:  # closed by the caller: writing to what is open for reading fails with a reason
-        os.open(os.devnull, os.O_RDONLY)
+    open_standard()
     encoding = getattr(sys.stdout, "encoding", "utf-8")
     raw = Stdout(1, "w", closefd=False)
     sys.stdout = io.TextIOWrapper(io.BufferedWriter(raw), encoding, "backslashreplace", line_buffering=raw.isatty())
@@ -61,6 +60,20 @@ def guard() -> None:
         number = getattr(signal, name, None)
         if number is not None and signal.getsignal(number) is not signal.SIG_IGN:  # nohup ignores SIGHUP
             signal.signal(number, stop)
+
+
+def open_standard() -> None:
+    """Opens those of 0, 1 and 2 that the caller has closed, in this order, so that no file of ours takes their place.
+
+    stdout is opened for reading: writing to it then fails with a reason. What goes to a closed stderr is lost.
+    """
+    for number, mode in enumerate((os.O_RDONLY, os.O_RDONLY, os.O_WRONLY)):
+        try:
+            os.fstat(number)
+        except OSError:
+            os.open(os.devnull, mode)
+    if sys.stderr is None:
+        sys.stderr = open(2, "w", closefd=False)  # noqa: SIM115 (open as long as the process lives)
 
 
 def stop(number: int, _: FrameType | None) -> None:

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import difflib
 import math
+import re
 import unicodedata
 from collections.abc import Iterator, Mapping, Sequence
 from pathlib import Path
@@ -31,7 +32,7 @@ def read_toml(path: Path) -> Table:
     except UnicodeDecodeError:
         raise BadInput(f"{path}: is no text in UTF-8; save it as UTF-8") from None
     except tomllib.TOMLDecodeError as error:
-        raise BadInput(f"{path}: is no valid TOML: {error}; correct that line") from None
+        raise BadInput(f"{path}: is no valid TOML: {error}{_line_of(text, error)}; correct that line") from None
     except RecursionError:
         raise BadInput(f"{path}: nests its lists too deeply; give the path of a scene") from None
 
@@ -98,6 +99,8 @@ class Table:
                 self.fail(in_degrees, f"is given besides {in_radians}; keep one of them")
             self.in_degrees.add(self.name(in_radians))
             return math.radians(self.number(in_degrees, finite=finite))
+        if default is REQUIRED and not self.has(in_radians):
+            self.fail(in_radians, f"is missing; give it, or {in_degrees}, as a number{self._mistyped(in_radians)}")
         return self.number(in_radians, default, finite=finite)
 
     def text(self, key: str, default: Any = ..., *, allowed: str = "") -> str:
@@ -164,6 +167,15 @@ REQUIRED = ...
 def _is_hidden(letter: str) -> bool:
     """Controls, line ends, halves of pairs, and the two last of each plane, which stand for no character."""
     return unicodedata.category(letter) in ("Cc", "Cs", "Zl", "Zp") or ord(letter) & 0xFFFE == 0xFFFE
+
+
+def _line_of(text: str, error: Exception) -> str:
+    """The line that an error of the TOML reader speaks of, which names no key."""
+    found = re.search(r"at line (\d+)", str(error))
+    lines = text.splitlines()
+    if not found or int(found[1]) > len(lines):
+        return ""
+    return f", {_short(lines[int(found[1]) - 1].strip())!r}"
 
 
 def _float(value: Any) -> Any:

@@ -62,9 +62,8 @@ def study(subject: Subject, progress: Callable[[float], None] | None = None) -> 
 
 
 def _sample(sampler: _Sampler, drive: Drive, tick: int) -> None:
-    """One sample with the inputs at a tick; at the very end, those of the last step's end."""
-    at_end = tick == drive.steps
-    values = drive.samples(tick - at_end, 1)[0, -1 if at_end else 0]
+    """One sample with the inputs at a tick."""
+    values = np.array(list(drive.held_at(tick).values()))
     sampler.take(tick * drive.step_s, values, drive.signals)
 
 

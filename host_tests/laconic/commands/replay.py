@@ -73,7 +73,13 @@ def _by_map(log: Path, scene: str, fit_on: tuple[Path, ...], map_path: Path | No
     from laconic.scene import read_scene
 
     subject = subject_of(read_scene(scene))
-    runs, names, skipped = gather(log, fit_on, read_map(map_path or DEFAULT_MAP))
+    try:
+        runs, names, skipped = gather(log, fit_on, read_map(map_path or DEFAULT_MAP))
+    except BadInput as error:
+        if map_path is not None or not log.is_file():
+            raise
+        raise BadInput(f"{error}; or, for a file without a map, call its first column time_s, the others as signals, "
+                       "with commas between them") from None
     with progress_bar("replaying", len(runs) + 1) as advance:
         found = compare_all(subject, runs, names, skipped, advance)
     return report.as_text(found), report.as_numbers(found), partial(report.draw, found)

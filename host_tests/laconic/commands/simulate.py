@@ -24,7 +24,8 @@ from laconic.simulation import Trajectory, input_signals, simulate, usual_signal
 @click.option("--step", "step_s", type=float, metavar="H", help="Step in seconds instead of the scene's.")
 @click.option("--real", type=click.Choice(REALS), help="Scalar type instead of the scene's.")
 @click.option("--out", type=OutputFile(".csv", stdout=True), metavar="F.csv", help="Write the outputs; - for stdout.")
-@click.option("--plot", type=OutputFile(*PICTURES), metavar="F.png", help="Draw path, velocities, wheel speeds.")
+@click.option("--plot", type=OutputFile(*PICTURES), metavar="F.png",
+              help="Draw path, velocities, wheel speeds; .png, .svg or .pdf.")
 @click.option("--inputs", "inputs_wanted", is_flag=True,
               help="Write the inputs as further columns of --out: what acts from each row on.")
 @json_flag("Machine-readable summary.")

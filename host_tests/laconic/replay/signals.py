@@ -101,15 +101,16 @@ def _numbers(path: Path, head: list[str], line: int, row: list[str]) -> list[flo
     return [float(text) for text in row]
 
 
-def ticks_of(log: SignalLog, step_s: float) -> np.ndarray:
+def ticks_of(log: SignalLog, scene: Scene) -> np.ndarray:
     """The rows' times in steps; BadInput for a row inside a step."""
+    step_s = scene.run.step_s
     ticks = np.rint(log.time_s / step_s)
     off = np.abs(ticks * step_s - log.time_s) > ON_THE_GRID * step_s
     if off.any():
         row = int(np.argmax(off))
         few = [round(float(t), 9) for t in log.time_s[1:]]
         raise BadInput(f"{log.path}: line {row + 2}: {TIME} {log.begin_s + log.time_s[row]:g} s falls inside a step of "
-                       f"{step_s:g} s; change run.step_s: {step_remedy(few, step_s)}")
+                       f"{step_s:g} s; change run.step_s: {step_remedy([*few, *scene.instants()], step_s)}")
     return ticks.astype(np.int64)
 
 
@@ -126,7 +127,7 @@ def replay_signals(scene: Scene, log: SignalLog) -> SignalReplay:
     if log.begin_s != 0.0 and not inputs:
         raise BadInput(f"{log.path}: begins at {log.begin_s:g} s, the scene's inputs at 0; give the inputs as "
                        "columns, as simulate --inputs writes them")
-    ticks = ticks_of(log, scene.run.step_s)
+    ticks = ticks_of(log, scene)
     every = int(np.gcd.reduce(np.diff(ticks)))
     run = scene.with_run(duration_s=int(ticks[-1]) * scene.run.step_s)
     run = replace(run, outputs=Outputs(outputs, every * scene.run.step_s))
