@@ -106,9 +106,11 @@ def test_where_a_wheel_slips_its_row_is_outlined(many, drawn):
     assert outlined == slips
 
 
-def test_wheels_whose_curves_coincide_are_drawn_one_inside_the_other(drawn):
-    found = study(subject_of(read_scene("kuka_youbot")), Wishes(("traction",)), lambda *_: None)
-    widths = [line.get_linewidth() for line in drawn(found, "traction").axes[1].lines[:4]]
+def test_wheels_whose_curves_coincide_are_drawn_one_inside_the_other():
+    subject = subject_of(read_scene("kuka_youbot").with_run(duration_s=0.5))
+    picture = PICTURES["traction"](study(subject, Wishes(("traction",)), lambda *_: None))
+    widths = [line.get_linewidth() for line in picture.axes[1].lines[:4]]
+    plt.close(picture)
     assert widths == sorted(widths, reverse=True)
     assert min(np.diff(widths[::-1])) > 0.5
     assert len({nested(i, 12)["linewidth"] for i in range(12)}) == 12

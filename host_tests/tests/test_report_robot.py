@@ -17,11 +17,17 @@ from laconic.paths import SCENE_DIR
 from laconic.report import accuracy, pictures, robot
 from laconic.report.collect import PARTS
 from laconic.report.plan import plan
-from laconic.report.svg import SIZE
+from laconic.report.svg import SIZE, svg
 from laconic.scene import METHODS, read_scene
 
 SCENE = "turtlebot3_burger"
 PHONE_CSS_PX, CSS_PX_PER_INCH = 390, 96
+
+
+def without_layout(picture):
+    """A picture as SVG text whose parts may lie over each other: the layout, half of the time, is tested below."""
+    picture.set_layout_engine("none")
+    return svg(picture)
 
 
 @pytest.fixture(scope="module")
@@ -32,7 +38,10 @@ def made(tmp_path_factory):
         patch.setattr(robot, "M4F", SimpleNamespace(present=False))
         patch.setattr(robot, "QUICK_FACTORS", (0.1, 1.0))
         patch.setattr("laconic.commands.report.read_scene", lambda name: read_scene(name).with_run(duration_s=1.0))
+        patch.setattr("laconic.report.stability.SEGMENTS", 1)
         patch.setattr("laconic.report.robot_sections.METHODS", ("auto",))
+        for drawing in ("pictures", "plan"):
+            patch.setattr(f"laconic.report.{drawing}.svg", without_layout)
         with contextlib.redirect_stdout(io.StringIO()) as out:
             status = cli.run(["report", "--quick", "--scene", SCENE, "--out", str(folder), "--json"])
     return status, folder, out.getvalue()
