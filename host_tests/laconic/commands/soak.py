@@ -31,6 +31,7 @@ def command(what: str, minutes: float, seed: int | None, json_wanted: bool) -> i
     """Runs WHAT for a long time and reports what was found.
 
     \b
+    boards    emulated boards started anew, idle and with all cores busy
     faults    the fault matrix of the rig, with new seeds
     fmu       random use of the FMUs' C interface, under sanitizers
     free-run  the node process at 1 kHz: no step may be lost

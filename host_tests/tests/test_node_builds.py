@@ -1,0 +1,40 @@
+"""The node compiles without warnings in the shapes that firmware chooses, and refuses those that it cannot serve."""
+
+from __future__ import annotations
+
+import shutil
+import subprocess
+
+import pytest
+
+from laconic.paths import SOURCE_DIR, build_dir
+
+FIRMWARE = SOURCE_DIR / "firmware_stub"
+STRICT = ("-std=c99", "-Wall", "-Wextra", "-Wconversion", "-Wshadow", "-Wdouble-promotion", "-Werror",
+          "-ffp-contract=off", "-fsyntax-only")
+INCLUDES = (SOURCE_DIR / "core_c" / "include", FIRMWARE / "include", FIRMWARE / "src")
+COMPILERS = [name for name in ("gcc", "clang") if shutil.which(name)]
+
+
+def compiled(compiler: str, *definitions: str, only: str = "*.c") -> str:
+    """What the compiler says to the files of the node."""
+    files = [str(path) for path in sorted((FIRMWARE / "src").glob(only)) if path.name != "library.c"]
+    where = [word for path in INCLUDES for word in ("-I", str(path))]
+    where += ["-isystem", str(build_dir() / "firmware_stub" / "wire")]
+    done = subprocess.run([compiler, *STRICT, *where, *(f"-D{each}" for each in definitions), *files],
+                          capture_output=True, text=True)
+    return done.stderr if done.returncode else ""
+
+
+@pytest.mark.parametrize("compiler", COMPILERS)
+@pytest.mark.parametrize("definitions", [
+    (), ("LACONIC_MAX_WHEELS=24",),
+    ("LACONIC_SINGLE", "LACONIC_NODE_CAN_FD=0", "LACONIC_MAX_WHEELS=4", "LACONIC_MAX_SUPPORTS=1")], ids=" ".join)
+def test_the_node_compiles_without_a_warning(compiler: str, definitions: tuple[str, ...]) -> None:
+    assert compiled(compiler, *definitions) == ""
+
+
+@pytest.mark.parametrize("compiler", COMPILERS)
+def test_more_wheels_than_the_groups_of_voltage_can_number_do_not_compile(compiler: str) -> None:
+    assert "VOLTAGE numbers eight groups of three wheels" in compiled(
+        compiler, "LACONIC_MAX_WHEELS=25", only="node_command.c")
