@@ -17,10 +17,10 @@ from laconic.paths import SOURCE_DIR
 from laconic.plant import Plant
 from laconic.rig.boards import own_node
 from laconic.rig.buses import node_process
-from laconic.rig.client import parameters_of
 from laconic.rig.errors import NodeRefused
 from laconic.rig.lockstep import start_of
 from laconic.rig.node_library import node_library
+from laconic.rig.parameters import parameters_of
 from laconic.rig.wire import ID_BASE, wire
 from laconic.scene import METHODS, read_scene
 
