@@ -40,7 +40,8 @@ CONNECTION = ("--interface", "--channel", "--bitrate", "--bus-option", "--id-bas
 @click.option("--steps", type=click.IntRange(1), help="How many steps; the scene's duration otherwise.")
 @click.option("--every", type=click.IntRange(1), default=1, show_default=True, help="Steps to one SYNC (same-bits).")
 @click.option("--fd", is_flag=True, help="Raw frames as CAN FD (same-bits).")
-@click.option("--rate", type=click.IntRange(1, 1000), help="Steps a second in free run.  [default: the scene's]")
+@click.option("--rate", type=click.IntRange(1, 1000),
+              help="Periods a second in free run, of whole steps.  [default: one step each]")
 @click.option("--watchdog", type=click.IntRange(0, 65535), default=100, show_default=True, metavar="MS",
               help="Longest time between commands in free run; 0: none.")
 @click.option("--method", type=click.Choice(METHODS), help="Instead of the scene's.")

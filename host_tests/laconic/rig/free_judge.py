@@ -13,7 +13,7 @@ from laconic.plant import Plant
 from laconic.rig.client import NodeClient
 from laconic.rig.free_run import CYCLE_S, DEFAULT_FRAMES, FreeRun, run_free
 from laconic.rig.latency import period_figures
-from laconic.rig.scaled import expected_raw
+from laconic.rig.scaled import expected_raw, half_a_place
 from laconic.rig.trial import Moved, Trial, driven
 from laconic.rig.verdict import Judgement, Verdict
 from laconic.rig.wire import Frame
@@ -66,7 +66,7 @@ class Free(Trial):
         run = self.run
         if run.answers:
             twins = twins_of(self.scene, run, self.latency_s)
-            judgement.add(*envelope_verdicts(run, twins, self.tolerances))
+            judgement.add(*envelope_verdicts(run, twins, self.tolerances, self.scene.core().dtype))
         judgement.add(steps_verdict(run), clock_verdict(run), run.silence.verdict(), run.punctuality.verdict())
         judgement.figures |= {"steps": run.steps, "seconds": run.elapsed_s, "late_periods": run.late_periods,
                               "worst_lateness_us": run.worst_lateness_us}
@@ -87,7 +87,8 @@ def twins_of(scene: Scene, run: FreeRun, latency_s: float) -> list[TwinValues]:
     return [twin_values(scene, run, delay, per_period) for delay in delays]
 
 
-def envelope_verdicts(run: FreeRun, twins: list[TwinValues], tolerances: dict[str, float]) -> list[Verdict]:
+def envelope_verdicts(run: FreeRun, twins: list[TwinValues], tolerances: dict[str, float],
+                      dtype: np.dtype) -> list[Verdict]:
     """One per signal: between the twins, give or take half a last place and the most that ever lay between them: each
     command has a delay of its own, and what one of them has left behind in the pose stays."""
     spread: dict[str, float] = {}
@@ -102,7 +103,7 @@ def envelope_verdicts(run: FreeRun, twins: list[TwinValues], tolerances: dict[st
                 values -= turn * np.round((values - raw[name]) / turn)
             scale, label = frame.fields[name].scale, f"{frame.name}.{name}"
             spread[label] = max(spread.get(label, 0.0), float(np.ptp(values)))
-            slack = 0.5 + 1e-6 + spread[label]
+            slack = half_a_place(raw[name], dtype) + spread[label]
             slack += tolerances.get(label, tolerances.get(name, 0.0)) / scale
             beyond = max(values.min() - slack - raw[name], raw[name] - values.max() - slack)
             off = float(np.min(np.abs(values - raw[name]))) * scale

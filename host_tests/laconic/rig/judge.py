@@ -7,12 +7,10 @@ import numpy as np
 from laconic.rig.client import NodeClient
 from laconic.rig.latency import latency_figures
 from laconic.rig.lockstep import LockstepRun, run_lockstep, twin_states
-from laconic.rig.scaled import Comparison, ScaledRun, run_scaled
+from laconic.rig.scaled import Comparison, ScaledRun, half_a_place, run_scaled
 from laconic.rig.trial import Moved, Trial, driven
 from laconic.rig.verdict import Judgement, Verdict, same_bits, within
 from laconic.scene import Scene
-
-HALF_A_BIT = 0.5 + 1e-6  # of the last place, and what float arithmetic of the rounding itself may add
 
 
 class SameBits(Trial):
@@ -83,8 +81,11 @@ def signal_verdicts(comparison: Comparison, tolerances: dict[str, float]) -> lis
     verdicts = []
     for name, record in comparison.signals.items():
         short = name.rpartition(".")[2]
-        limit = tolerances.get(name, tolerances.get(short, HALF_A_BIT * record.scale))
-        verdicts.append(within(name, np.array(record.measured), np.array(record.twin), limit, np.array(record.ticks)))
+        twin = np.array(record.twin)
+        limit = tolerances.get(name, tolerances.get(short))
+        if limit is None:
+            limit = half_a_place(twin / record.scale, record.dtype) * record.scale
+        verdicts.append(within(name, np.array(record.measured), twin, limit, np.array(record.ticks)))
     return verdicts
 
 

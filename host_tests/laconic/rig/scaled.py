@@ -133,11 +133,18 @@ def expected_raw(plant: Plant, frame: Frame, group: int = 0) -> dict[str, float]
     return {name: float(value) / frame.fields[name].scale for name, value in values.items()}
 
 
+def half_a_place(raw: np.ndarray | float, dtype: np.dtype) -> np.ndarray | float:
+    """How far a right answer may lie from the value that it stands for, in units of the raw values: half of the last
+    place, and what the node's own arithmetic adds when it scales and rounds: twice half a spacing of its numbers."""
+    return 0.5 + 1e-6 + np.finfo(dtype).eps * np.abs(raw)
+
+
 @dataclass
 class SignalRecord:
     """One signal over a run, in its unit: what came and what the twin says."""
 
     scale: float
+    dtype: np.dtype
     ticks: list[int] = field(default_factory=list)
     measured: list[float] = field(default_factory=list)
     twin: list[float] = field(default_factory=list)
@@ -159,7 +166,7 @@ class Comparison:
         for name, value in expected_raw(plant, frame, group).items():
             field_ = frame.fields[name]
             label = f"{frame.name}.{self._label(name, group)}"
-            record = self.signals.setdefault(label, SignalRecord(field_.scale))
+            record = self.signals.setdefault(label, SignalRecord(field_.scale, plant.core.dtype))
             difference = raw[name] - value
             if name == "heading":  # +π and −π are neighbours
                 turn = 2 * math.pi / field_.scale

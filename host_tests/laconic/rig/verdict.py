@@ -79,5 +79,5 @@ def within(name: str, ours: np.ndarray, theirs: np.ndarray, limit: np.ndarray | 
     passed = len(error) > 0 and bool(np.all(error <= allowed))
     detail = f"largest difference {float(error.max()) if len(error) else 0:.3g}"
     if not passed:
-        detail = f"{worst:.3g} off at step {ticks[at]}, {limit_there:.3g} allowed" if len(error) else "never came"
+        detail = f"{worst:.6g} off at step {ticks[at]}, {limit_there:.6g} allowed" if len(error) else "never came"
     return Verdict(name, passed, detail, worst, limit_there, int(ticks[at]) if len(error) else 0)
