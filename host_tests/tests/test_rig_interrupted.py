@@ -208,3 +208,12 @@ def leave_running(port: int) -> None:
     with connected("slcan", f"socket://127.0.0.1:{port}") as node:
         load_scene(node, read_scene("s1"))
         node.start_free_run(100, 0)
+
+
+def test_a_stop_of_a_node_that_is_occupied_is_status_2_for_it_was_not_reached(
+        port: int, capsys: pytest.CaptureFixture[str]) -> None:
+    with connected("slcan", f"socket://127.0.0.1:{port}") as first:
+        first.open()
+        assert run(["rig", "--stop", *on(port)]) == 2
+    error = capsys.readouterr().err
+    assert error.count("\n") == 1 and "no node could be reached" in error and "occupied" in error

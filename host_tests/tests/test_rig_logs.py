@@ -13,7 +13,7 @@ from laconic.rig.logs import LOGS, read_log
 from laconic.rig.wire import ID_BASE, wire
 
 SEED, BROKEN = 1, 40
-OPEN = ID_BASE + wire()["OPEN"].offset
+OPEN, VOLTAGE = (ID_BASE + wire()[name].offset for name in ("OPEN", "VOLTAGE"))
 
 
 def recorded(folder: Path, suffix: str) -> Path:
@@ -48,14 +48,28 @@ def test_a_blf_that_is_cut_off_is_refused_and_not_judged_up_to_the_cut(tmp_path:
     assert "is cut off" in capsys.readouterr().err
 
 
-def test_a_log_that_was_never_closed_is_judged_and_told_to_be_so(tmp_path: Path,
-                                                                 capsys: pytest.CaptureFixture[str]) -> None:
+def test_a_log_that_was_never_closed_fails_the_verdict_about_the_log_alone(tmp_path: Path,
+                                                                           capsys: pytest.CaptureFixture[str]) -> None:
     path = recorded(tmp_path, ".asc")
     lines = path.read_text(encoding="utf-8").splitlines(keepends=True)
     path.write_text("".join(lines[:-50]), encoding="utf-8")
     capsys.readouterr()
-    assert run(["rig", "s1", "--replay", str(path), "--json"]) == 0
-    assert "never closed" in json.loads(capsys.readouterr().out)["notes"][0]
+    assert run(["rig", "s1", "--replay", str(path), "--json"]) == 1
+    failed = [each for each in json.loads(capsys.readouterr().out)["verdicts"] if not each["passed"]]
+    assert [each["name"] for each in failed] == ["log"] and "never closed" in failed[0]["detail"]
+
+
+def test_a_voltage_that_is_missing_in_a_log_is_told_by_the_counter_of_the_rig(
+        tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    path = recorded(tmp_path, ".asc")
+    lines = path.read_text(encoding="utf-8").splitlines(keepends=True)
+    voltages = [k for k, line in enumerate(lines) if f" {VOLTAGE:X} " in line]
+    del lines[voltages[20]]
+    path.write_text("".join(lines), encoding="utf-8")
+    capsys.readouterr()
+    assert run(["rig", "s1", "--replay", str(path), "--json"]) == 1
+    frames = next(each for each in json.loads(capsys.readouterr().out)["verdicts"] if each["name"] == "frames")
+    assert not frames["passed"] and frames["detail"] == "1 × VOLTAGE missing"
 
 
 def test_a_log_is_read_back_frame_by_frame_in_each_format(tmp_path: Path) -> None:

@@ -78,6 +78,9 @@ def test_a_scene_is_asked_for_where_one_is_needed(capsys: pytest.CaptureFixture[
 
 @pytest.mark.parametrize("arguments, says", [
     (["--free-run", "--watchdog", "10"], "every 10 ms"),
+    (["--bitrate", "500000"], "--bitrate 500000: say which --interface"),
+    (["--bitrate", "-5"], "--bitrate -5: must be above 0"),
+    (["--interface", "slcan", "--channel", "socket://127.0.0.1:1", "--bitrate", "0"], "must be above 0"),
     (["--interface", "slcan", "--channel", "socket://127.0.0.1:99999"], "from 1 to 65535"),
     (["--interface", "slcan", "--channel", "socket://127.0.0.1"], "names no port")])
 def test_numbers_that_cannot_work_are_refused_before_anything_is_sent(arguments: list[str], says: str,

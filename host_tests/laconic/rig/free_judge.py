@@ -12,6 +12,7 @@ from laconic.errors import BadInput
 from laconic.plant import Plant
 from laconic.rig.client import NodeClient
 from laconic.rig.free_run import CYCLE_S, DEFAULT_FRAMES, FreeRun, run_free
+from laconic.rig.judge import link_verdict
 from laconic.rig.latency import period_figures
 from laconic.rig.scaled import expected_raw, half_a_place
 from laconic.rig.trial import Moved, Trial, driven
@@ -67,7 +68,8 @@ class Free(Trial):
         if run.answers:
             twins = twins_of(self.scene, run, self.latency_s)
             judgement.add(*envelope_verdicts(run, twins, self.tolerances, self.scene.core().dtype))
-        judgement.add(steps_verdict(run), clock_verdict(run), run.silence.verdict(), run.punctuality.verdict())
+        judgement.add(link_verdict(self.node), steps_verdict(run), clock_verdict(run), run.silence.verdict(),
+                      run.punctuality.verdict())
         judgement.figures |= {"steps": run.steps, "seconds": run.elapsed_s, "late_periods": run.late_periods,
                               "worst_lateness_us": run.worst_lateness_us}
         judgement.figures |= period_figures(run.instants_s, 1.0 / run.rate_Hz)
@@ -124,9 +126,9 @@ def steps_verdict(run: FreeRun) -> Verdict:
 
 
 def clock_verdict(run: FreeRun) -> Verdict:
-    """The node's clock goes as fast as the rig's."""
+    """The node's clock goes as fast as the rig's: by its steps, so that an answer lost on the way is not its fault."""
     if len(run.instants_s) < 2:
         return Verdict("clock", False, "no two answers came")
-    rate = (len(run.instants_s) - 1) / (run.instants_s[-1] - run.instants_s[0])
+    rate = (run.instant_steps[-1] - run.instant_steps[0]) / (run.instants_s[-1] - run.instants_s[0])
     off = rate / run.rate_Hz - 1.0
-    return Verdict("clock", abs(off) < 0.01, f"{rate:.2f} answers a second, {100 * off:+.3f} %", off, 0.01)
+    return Verdict("clock", abs(off) < 0.01, f"{rate:.2f} steps a second, {100 * off:+.3f} %", off, 0.01)

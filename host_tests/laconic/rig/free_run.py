@@ -35,6 +35,7 @@ class FreeRun:
     commands: list[tuple[int, np.ndarray]] = field(default_factory=list)    # (steps seen when it was sent, input row)
     answers: list[tuple[int, Frame, bytes]] = field(default_factory=list)   # (step, frame, payload)
     instants_s: list[float] = field(default_factory=list)                   # of NU
+    instant_steps: list[int] = field(default_factory=list)                  # the step that each of these belongs to
     steps: int = 0
     elapsed_s: float = 0.0
     node_steps: int = 0
@@ -133,6 +134,7 @@ def take(run: FreeRun, node: NodeClient, frame: Frame, data: bytes) -> None:
     if frame.name == "NU":
         run.steps += 1 + node.link.lost_before(frame)
         run.instants_s.append(node.link.clock.now_us() / 1e6)
+        run.instant_steps.append(run.steps)
     values = frame.unpack(data)
     if frame.name in ("NU", "POSE", "WHEEL_SPEED") and run.steps % run.keep == 0:
         run.answers.append((run.steps, frame, bytes(data)))

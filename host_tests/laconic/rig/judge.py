@@ -90,7 +90,7 @@ def signal_verdicts(comparison: Comparison, tolerances: dict[str, float]) -> lis
 
 
 def link_verdict(node: NodeClient) -> Verdict:
-    """No frame of the node was wrong, missing or doubled."""
+    """No frame was wrong, missing or doubled."""
     faults = {name: count for name, count in node.link.faults.items() if count}
     detail = ", ".join(f"{count} × {name}" for name, count in faults.items())
     return Verdict("frames", not faults, detail or f"{node.link.frames_in} in, all right", float(sum(faults.values())))

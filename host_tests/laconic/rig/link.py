@@ -39,12 +39,15 @@ class Link:
         self.listeners: list[Callable[[can.Message], None]] = []
         self.may_go_on: Callable[[], None] = lambda: None  # called before each wait; raises what ends it
         self._receivers = {offset: self.library.receiver() for offset in wire().by_offset}
+        self._counters: dict[int, int] = {}  # of the last frame taken of each kind
+        self._lost: dict[int, int] = {}      # before it
         self._by_offset = wire().by_offset
         self._check = self.library.lib.laconic_e2e_check
 
     def forget_counters(self) -> None:
         """The node's frames may begin anywhere: it may have been switched on since, or be another."""
         self._receivers = {offset: self.library.receiver() for offset in self._by_offset}
+        self._counters.clear()
 
     def send(self, frame: Frame, data: bytearray) -> int:
         """Protects a payload for the open session and sends it; returns its count. The first of its kind after START
@@ -111,8 +114,9 @@ class Link:
             self.may_go_on()
 
     def lost_before(self, frame: Frame) -> int:
-        """How many of its kind are missing before the last one taken."""
-        return int(self._receivers[frame.offset].lost)
+        """How many of its kind are missing before the last one taken, as far as its counter reaches: also those that
+        were refused until the receiver had found a new reference."""
+        return self._lost[frame.offset]
 
     def take(self, message: can.Message) -> Received | None:
         """Checks one frame: ours, well-formed, fresh and right."""
@@ -130,7 +134,11 @@ class Link:
         counter, mask = frame.counter_of(data), 255 if frame.fd else 15
         receiver = self._receivers[offset]
         status = self._check(receiver, right, counter, mask, frame.max_delta)
-        if status == 0:
-            return frame, data
-        self.faults[E2E_STATUS[status]] += receiver.lost if status == 1 else 1
-        return (frame, data) if status == 1 else None
+        if status > 1:
+            self.faults[E2E_STATUS[status]] += 1
+            return None
+        self._lost[offset] = (counter - self._counters.get(offset, counter - 1) - 1) & mask
+        self._counters[offset] = counter
+        if status == 1:
+            self.faults[E2E_STATUS[1]] += receiver.lost
+        return frame, data

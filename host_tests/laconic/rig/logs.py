@@ -98,5 +98,7 @@ def was_closed(path: Path) -> bool:
     if path.suffix.lower() == ".blf":
         with can.BLFReader(path) as reader:
             return reader.file_size >= path.stat().st_size
-    text = path.read_bytes().rstrip()
-    return path.suffix.lower() != ".asc" or text.lower().endswith(b"end triggerblock")
+    if path.suffix.lower() != ".asc":
+        return True
+    text = path.read_bytes().rstrip().lower()
+    return b"begin triggerblock" not in text or text.endswith(b"end triggerblock")

@@ -66,9 +66,13 @@ def in_hex(number: int) -> str:
 @contextmanager
 def node_for(options: Options, real: str, id_base: int) -> Iterator[NodeClient]:
     """A client on the chosen bus, or a node of our own."""
+    if options.bitrate is not None and options.bitrate <= 0:
+        raise BadInput(f"--bitrate {options.bitrate}: must be above 0; give bits per second, such as 500000")
     if options.interface is None:
         if options.channel is not None:
             raise BadInput(f"--channel {options.channel}: say which --interface it belongs to, such as slcan")
+        if options.bitrate is not None:
+            raise BadInput(f"--bitrate {options.bitrate}: say which --interface it is for, such as socketcan or slcan")
         if options.bus_options:
             raise BadInput(f"--bus-option {options.bus_options[0]}: say which --interface it is for, such as faulty "
                            "(NAME=VALUE)")

@@ -49,6 +49,11 @@ class LogPlayer:
         if heard is Heard.ACTS:
             self._command(frame.name, frame.unpack(message.data))
 
+    def end(self) -> None:
+        """Tells the link what the counts of the rig say to be missing: the twin did not get it either."""
+        for name, count in self._follower.missing.items():
+            self.link.faults[f"{name} missing"] += count
+
     def _command(self, name: str, raw: dict[str, int]) -> None:
         if name == "CONTROL":
             command = wire().choice("CONTROL", "command", raw["command"])
@@ -80,6 +85,7 @@ def judge_log(path: Path, scene: Scene, id_base: int, tolerances: dict[str, floa
         player = LogPlayer(scene, id_base, link)
         for message in messages:
             player.take(message)
+        player.end()
         if not player.comparison.signals:
             raise BadInput(f"--replay {path}: holds no answer of a scaled lockstep run at ID base 0x{id_base:X}; "
                            "record one with --lockstep --log")
@@ -87,6 +93,6 @@ def judge_log(path: Path, scene: Scene, id_base: int, tolerances: dict[str, floa
         judgement.add(*signal_verdicts(player.comparison, tolerances), link_verdict(NodeClient(link)))
         judgement.add(Verdict("commands", player.wrong_commands == 0, f"{player.wrong_commands} with a wrong CRC"))
         if not was_closed(path):
-            judgement.notes.append(f"{path} was never closed: frames may be missing at its end")
+            judgement.add(Verdict("log", False, "was never closed: frames may be missing at its end"))
         judgement.figures |= {"frames": len(messages), "steps": player.plant.steps}
     return judgement

@@ -7,7 +7,7 @@ from contextlib import contextmanager
 
 from laconic.progress import progress_bar
 from laconic.rig.client import NodeClient
-from laconic.rig.errors import BusDied, CannotReach, Interrupted, NodeRefused, NodeSilent
+from laconic.rig.errors import Interrupted
 from laconic.rig.free_judge import Free
 from laconic.rig.interruption import Interruption
 from laconic.rig.judge import SameBits, Scaled
@@ -30,7 +30,7 @@ def run(scene: Scene, options: Options) -> Judgement:
         node.link.may_go_on = told.check  # between frames: none of them and no entry of a log is cut in two
         trial, notes, is_over = trial_of(node, scene, options, limits), [], False
         try:
-            found = reach(node)
+            found = stop_running(node)
             if found in RUNNING:
                 notes.append(f"the node was found in state {found} and has been stopped before the run")
             trial.drive(moved)
@@ -61,14 +61,6 @@ def after_early_end(node: NodeClient) -> list[str]:
     failure = come_to_rest(node)
     state = "is at rest" if failure is None else f"could not be stopped ({failure}): try laconic rig --stop"
     return [f"the node {state}", f"faulty frames: {dict(node.link.faults) or 'none'}"]
-
-
-def reach(node: NodeClient) -> str:
-    """Finds the node and stops it where it runs; the state it was found in. CannotReach when nobody is there."""
-    try:
-        return stop_running(node)
-    except (BusDied, NodeSilent, NodeRefused) as error:
-        raise CannotReach(f"no node could be reached: {error}") from None
 
 
 @contextmanager

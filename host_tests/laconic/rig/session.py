@@ -54,6 +54,7 @@ class Follower:
 
     def __init__(self, library: NodeLibrary):
         self.library, self.session = library, Session(library)
+        self.missing: Counter[str] = Counter()  # frames of the rig by name, as its own counts tell
         self._nonces: list[int] = []
         self._armed: set[int] = set()
 
@@ -86,6 +87,7 @@ class Follower:
         if not session.is_open or not self.library.keyed_is_right(frame.offset, data, key, last + ahead):
             return -1
         session.counts[frame.offset] = last + ahead
+        self.missing[frame.name] += max(0, ahead - 1)
         return ahead
 
     def _commands(self, frame: Frame, data: bytearray) -> Heard:

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from laconic.rig.client import NodeClient
-from laconic.rig.errors import BusDied, NodeRefused, NodeSilent
+from laconic.rig.errors import BusDied, CannotReach, NodeRefused, NodeSilent
 
 ATTEMPTS = 4
 PATIENCE_S = 0.25  # for one answer: a run that ends must not take long over it
@@ -29,8 +29,12 @@ def come_to_rest(node: NodeClient) -> str | None:
 
 
 def stop_running(node: NodeClient) -> str:
-    """Opens a session, which stops a node that runs; the state in which it was found."""
-    node.open()
+    """Opens a session, which stops a node that runs; the state in which it was found. CannotReach when nobody is
+    there, or the line does not lead to it."""
+    try:
+        node.open()
+    except (BusDied, NodeSilent, NodeRefused) as error:
+        raise CannotReach(f"no node could be reached: {error}") from None
     return node.found
 
 
