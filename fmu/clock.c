@@ -22,6 +22,10 @@ bool fmu_clock_passes_stop(const fmu_clock *clock, double time_s, double step_s)
     return clock->stop_defined && time_s > clock->stop_s + rounding_s;
 }
 
+bool fmu_clock_is_before_start(const fmu_clock *clock, double time_s) {
+    return time_s < clock->start_s - 1e-9 * magnitude(clock->start_s);
+}
+
 bool fmu_clock_may_look_at(const fmu_clock *clock, double time_s) {
     const double run_s = clock->stop_s - clock->start_s;
     const bool on_its_way = clock->completed_s > clock->start_s && clock->completed_s < clock->stop_s - 1e-9 * run_s;

@@ -23,6 +23,9 @@ double fmu_clock_now(const fmu_clock *clock);
  * stop time by rounding, or by a millionth of the step, is the stop time. */
 bool fmu_clock_passes_stop(const fmu_clock *clock, double time_s, double step_s);
 
+/* Whether that time lies before the run began, by more than rounding. */
+bool fmu_clock_is_before_start(const fmu_clock *clock, double time_s);
+
 /* Whether a solver that steps towards the stop time may look at that time behind it: solvers with a step of their own
  * (CVODE) do so and interpolate back. No further than a fiftieth of the run, and not before it has completed a step. */
 bool fmu_clock_may_look_at(const fmu_clock *clock, double time_s);

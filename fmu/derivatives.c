@@ -5,6 +5,10 @@
 
 #define NO_TANGENT UINT32_MAX
 
+static bool is_number(double value) {
+    return value - value == 0.0;
+}
+
 static double *tangent_place(fmu_tangent *tangent, const fmu_slot *slot, uint32_t element) {
     return (double *)(void *)((char *)tangent + slot->variable->tangent + sizeof(double) * (slot->first + element));
 }
@@ -50,14 +54,27 @@ static fmu_status check_counts(fmu_instance *instance, fmu_references unknowns, 
     return status == FMU_OK ? fmu_make_current(instance) : status;
 }
 
-static void read_unknowns(const fmu_instance *instance, fmu_references unknowns, fmu_tangent *tangent, double *values) {
+static fmu_status refuse_result(const fmu_instance *instance, const fmu_variable *variable) {
+    return fmu_refuse(instance, "a derivative of or by %s leaves the range of double precision; check inputs, states and "
+                      "seeds", variable->name);
+}
+
+/* Checked before anything is handed out. */
+static fmu_status read_unknowns(const fmu_instance *instance, fmu_references unknowns, fmu_tangent *tangent,
+                                double *values) {
     size_t k, used = 0;
     uint32_t i;
     fmu_slot slot;
     for (k = 0; k < unknowns.count; k++) {
         fmu_find(instance, unknowns.reference[k], &slot);
+        for (i = 0; i < slot.count; i++)
+            if (!is_number(*tangent_place(tangent, &slot, i))) return refuse_result(instance, slot.variable);
+    }
+    for (k = 0; k < unknowns.count; k++) {
+        fmu_find(instance, unknowns.reference[k], &slot);
         for (i = 0; i < slot.count; i++) values[used++] = *tangent_place(tangent, &slot, i);
     }
+    return FMU_OK;
 }
 
 fmu_status fmu_directional(fmu_instance *instance, fmu_references unknowns, fmu_references knowns, const double *seed,
@@ -77,8 +94,7 @@ fmu_status fmu_directional(fmu_instance *instance, fmu_references unknowns, fmu_
             if (slot.variable->access != FMU_INDEPENDENT) *tangent_place(&tangent, &slot, i) += seed[used];
     }
     fmu_plant_tangent(instance, &tangent);
-    read_unknowns(instance, unknowns, &tangent, sensitivity);
-    return FMU_OK;
+    return read_unknowns(instance, unknowns, &tangent, sensitivity);
 }
 
 /* Σ over the unknowns of seed · ∂unknown/∂(one known element). */
@@ -111,7 +127,11 @@ fmu_status fmu_adjoint(fmu_instance *instance, fmu_references unknowns, fmu_refe
         return fmu_refuse(instance, "the list of seeds or sensitivities is missing (NULL)");
     for (k = 0; k < knowns.count; k++) {
         fmu_find(instance, knowns.reference[k], &slot);
-        for (i = 0; i < slot.count; i++) sensitivity[used++] = adjoint_of(instance, unknowns, &slot, i, seed);
+        for (i = 0; i < slot.count; i++) {
+            const double found = adjoint_of(instance, unknowns, &slot, i, seed);
+            if (!is_number(found)) return refuse_result(instance, slot.variable);
+            sensitivity[used++] = found;
+        }
     }
     return FMU_OK;
 }
@@ -136,8 +156,7 @@ fmu_status fmu_output_derivatives(fmu_instance *instance, fmu_references outputs
     memset(&tangent, 0, sizeof tangent);
     fmu_plant_motion_seed(instance, &tangent);
     fmu_plant_tangent(instance, &tangent);
-    read_unknowns(instance, outputs, &tangent, values);
-    return FMU_OK;
+    return read_unknowns(instance, outputs, &tangent, values);
 }
 
 static fmu_status check_inputs(const fmu_instance *instance, fmu_references inputs, const double *values) {

@@ -54,7 +54,13 @@ fmi2Component fmi2Instantiate(fmi2String instanceName, fmi2Type fmuType, fmi2Str
     fmu_callbacks_2 box;
     fmu_request request = {0};
     (void)visible;
-    if (functions == NULL || (fmuType != fmi2ModelExchange && fmuType != fmi2CoSimulation)) return NULL;
+    if (functions == NULL) return NULL;
+    if (fmuType != fmi2ModelExchange && fmuType != fmi2CoSimulation) {
+        if (functions->logger != NULL)
+            functions->logger(functions->componentEnvironment, instanceName, fmi2Error, "logStatusError",
+                              "Instantiate: there is no such fmuType; use fmi2ModelExchange (0) or fmi2CoSimulation (1)");
+        return NULL;
+    }
     box.log = functions->logger;
     request.instance_name = instanceName;
     request.token = fmuGUID;
@@ -132,27 +138,32 @@ static fmu_type whole(const fmu_instance *instance, fmi2ValueReference reference
 static fmi2Status get_whole(fmu_instance *instance, const fmi2ValueReference vr[], size_t nvr, int value[],
                             bool boolean) {
     size_t k;
+    int pass;
     if (nvr > 0 && (vr == NULL || value == NULL)) return give(fmu_refuse(instance, "a list is missing (NULL)"));
-    for (k = 0; k < nvr; k++) {
-        double number = 0.0;
-        const fmu_type type = boolean ? FMU_BOOLEAN : whole(instance, vr[k]);
-        const fmu_status status = fmu_get(instance, type, &vr[k], 1, &number, 1);
-        if (status != FMU_OK) return give(status);
-        value[k] = (int)number;
-    }
+    for (pass = 0; pass < 2; pass++) /* all checked, then handed out */
+        for (k = 0; k < nvr; k++) {
+            double number = 0.0;
+            const fmu_type type = boolean ? FMU_BOOLEAN : whole(instance, vr[k]);
+            const fmu_status status = fmu_get(instance, type, &vr[k], 1, &number, 1);
+            if (status != FMU_OK) return give(status);
+            if (pass == 1) value[k] = (int)number;
+        }
     return fmi2OK;
 }
 
 static fmi2Status set_whole(fmu_instance *instance, const fmi2ValueReference vr[], size_t nvr, const int value[],
                             bool boolean) {
     size_t k;
+    int pass;
     if (nvr > 0 && (vr == NULL || value == NULL)) return give(fmu_refuse(instance, "a list is missing (NULL)"));
-    for (k = 0; k < nvr; k++) {
-        const double number = boolean ? value[k] != fmi2False : value[k];
-        const fmu_type type = boolean ? FMU_BOOLEAN : whole(instance, vr[k]);
-        const fmu_status status = fmu_set(instance, type, &vr[k], 1, &number, 1);
-        if (status != FMU_OK) return give(status);
-    }
+    for (pass = 0; pass < 2; pass++) /* all checked, then set */
+        for (k = 0; k < nvr; k++) {
+            const double number = boolean ? value[k] != fmi2False : value[k];
+            const fmu_type type = boolean ? FMU_BOOLEAN : whole(instance, vr[k]);
+            const fmu_status status =
+                (pass == 0 ? fmu_check_set : fmu_set)(instance, type, &vr[k], 1, &number, 1);
+            if (status != FMU_OK) return give(status);
+        }
     return fmi2OK;
 }
 

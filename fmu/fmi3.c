@@ -195,39 +195,54 @@ fmi3Status fmi3SetFloat64(fmi3Instance instance, const fmi3ValueReference valueR
 }
 
 /* The other types in use, by way of doubles: no list of them is longer than the largest array, a call that asks for more
- * variables at once is taken variable by variable. Enumerations are read and set as Int64. `number` makes a double of
- * a value that is set. */
+ * variables at once is taken variable by variable: all are checked in a first pass, so that a refused call hands out and
+ * changes nothing. Enumerations are read and set as Int64. `number` makes a double of a value that is set. */
 #define PLAIN(value) (double)(value)
-/* a negative number that was cast is said to be what it was */
-#define SIGNED(value) (double)(int64_t)(value)
+/* a negative int that was cast is said to be what it was; what else is beyond the largest int64_t was meant so */
+#define SIGNED(value) ((value) >= UINT64_MAX - INT32_MAX ? (double)(int64_t)(value) : (double)(value))
 #define TYPED(Name, fmi3Type, fmu_type, number)                                                                        \
     fmi3Status fmi3Get##Name(fmi3Instance instance, const fmi3ValueReference valueReferences[],                        \
                              size_t nValueReferences, fmi3Type values[], size_t nValues) {                             \
         double numbers[FMU_PLANT_LARGEST_ARRAY];                                                                       \
-        size_t k, i, used = 0;                                                                                         \
+        size_t k, i, used;                                                                                             \
+        int pass;                                                                                                      \
         ALLOW(instance, FMU_CALL_GET);                                                                                 \
-        for (k = 0; k < nValueReferences; k++) {                                                                       \
-            size_t size = 0;                                                                                           \
-            fmu_status status = fmu_size(SELF(instance), valueReferences, values, k, nValues - used, &size);           \
-            if (status == FMU_OK) status = fmu_get(SELF(instance), fmu_type, &valueReferences[k], 1, numbers, size);   \
+        for (pass = 0; pass < 2; pass++) {                                                                             \
+            fmu_status status = FMU_OK;                                                                                \
+            for (k = used = 0; k < nValueReferences; k++, used += i) {                                                 \
+                size_t size = 0;                                                                                       \
+                status = fmu_size(SELF(instance), valueReferences, values, k, nValues - used, &size);                  \
+                if (status == FMU_OK) status = fmu_get(SELF(instance), fmu_type, &valueReferences[k], 1, numbers, size);\
+                if (status != FMU_OK) return give(status);                                                             \
+                for (i = 0; i < size; i++)                                                                             \
+                    if (pass == 1) values[used + i] = (fmi3Type)numbers[i];                                            \
+            }                                                                                                          \
+            status = fmu_all_used(SELF(instance), used, nValues);                                                      \
             if (status != FMU_OK) return give(status);                                                                 \
-            for (i = 0; i < size; i++) values[used++] = (fmi3Type)numbers[i];                                          \
         }                                                                                                              \
-        return give(fmu_all_used(SELF(instance), used, nValues));                                                      \
+        return fmi3OK;                                                                                                 \
     }                                                                                                                  \
     fmi3Status fmi3Set##Name(fmi3Instance instance, const fmi3ValueReference valueReferences[],                        \
                              size_t nValueReferences, const fmi3Type values[], size_t nValues) {                       \
         double numbers[FMU_PLANT_LARGEST_ARRAY];                                                                       \
-        size_t k, i, used = 0;                                                                                         \
+        size_t k, i, used;                                                                                             \
+        int pass;                                                                                                      \
         ALLOW(instance, FMU_CALL_SET_DISCRETE);                                                                        \
-        for (k = 0; k < nValueReferences; k++) {                                                                       \
-            size_t size = 0;                                                                                           \
-            fmu_status status = fmu_size(SELF(instance), valueReferences, values, k, nValues - used, &size);           \
-            for (i = 0; i < size; i++) numbers[i] = number(values[used++]);                                            \
-            if (status == FMU_OK) status = fmu_set(SELF(instance), fmu_type, &valueReferences[k], 1, numbers, size);   \
+        for (pass = 0; pass < 2; pass++) {                                                                             \
+            fmu_status status = FMU_OK;                                                                                \
+            for (k = used = 0; k < nValueReferences; k++, used += i) {                                                 \
+                size_t size = 0;                                                                                       \
+                status = fmu_size(SELF(instance), valueReferences, values, k, nValues - used, &size);                  \
+                for (i = 0; i < size; i++) numbers[i] = number(values[used + i]);                                      \
+                if (status == FMU_OK)                                                                                  \
+                    status = (pass == 0 ? fmu_check_set : fmu_set)(SELF(instance), fmu_type, &valueReferences[k], 1,   \
+                                                                   numbers, size);                                     \
+                if (status != FMU_OK) return give(status);                                                             \
+            }                                                                                                          \
+            status = fmu_all_used(SELF(instance), used, nValues);                                                      \
             if (status != FMU_OK) return give(status);                                                                 \
         }                                                                                                              \
-        return give(fmu_all_used(SELF(instance), used, nValues));                                                      \
+        return fmi3OK;                                                                                                 \
     }
 
 TYPED(Int32, fmi3Int32, FMU_INT32, PLAIN)

@@ -102,6 +102,7 @@ static bool is_finite(double value) {
 
 fmu_status fmu_setup(fmu_instance *instance, double start_s, bool stop_defined, double stop_s) {
     if (!is_finite(start_s)) return fmu_refuse(instance, "the start time %g is not finite", start_s);
+    if (stop_defined && stop_s != stop_s) return fmu_refuse(instance, "the stop time %g is not finite", stop_s);
     if (stop_defined && !(stop_s >= start_s))
         return fmu_refuse(instance, "the stop time %g s is before the start time %g s", stop_s, start_s);
     fmu_clock_start(&instance->clock, start_s, stop_defined, stop_s);
@@ -137,7 +138,7 @@ fmu_status fmu_update_discrete_states(fmu_instance *instance, bool *states_chang
 
 fmu_status fmu_reset(fmu_instance *instance) {
     instance->plant = instance->initial;
-    instance->told = 0;
+    instance->told = instance->noted = 0;
     fmu_clock_start(&instance->clock, 0.0, false, 0.0);
     fmu_enter(instance, FMU_INSTANTIATED);
     return FMU_OK;

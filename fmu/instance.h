@@ -63,6 +63,7 @@ struct fmu_instance {
     char *name;
     uint64_t token_hash;
     uint32_t told;                   /* bit per thing that the plant says once a run                */
+    uint32_t noted;                  /* the same, found in a step that may still be refused         */
     fmu_between_steps between_steps; /* NULL: the importer does not ask for intermediate updates */
     fmu_clock clock;
     fmu_plant plant;
@@ -186,6 +187,9 @@ fmu_status fmu_get_reals(fmu_instance *instance, const uint32_t *references, siz
                          size_t value_count);
 fmu_status fmu_set_reals(fmu_instance *instance, const uint32_t *references, size_t count, const double *values,
                          size_t value_count);
+/* Whether fmu_set would take them; says what is wrong. */
+fmu_status fmu_check_set(fmu_instance *instance, fmu_type type, const uint32_t *references, size_t count,
+                         const double *values, size_t value_count);
 /* For glue that goes variable by variable: how many values the next one has, and whether all were used in the end. */
 fmu_status fmu_size(fmu_instance *instance, const uint32_t *references, const void *values, size_t which, size_t left,
                     size_t *size);

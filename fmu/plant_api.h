@@ -29,6 +29,9 @@ fmu_status fmu_plant_count_steps(fmu_instance *instance, double step_s, double o
 /* Takes up to `steps` internal steps; *taken says how many. Refused: the state is where *taken steps lead. */
 fmu_status fmu_plant_run(fmu_instance *instance, uint64_t steps, uint64_t *taken);
 
+/* What was noted in a communication step (fmu_instance.noted) is said, or forgotten because the step was refused. */
+void fmu_plant_conclude(fmu_instance *instance, bool accepted);
+
 /* Model Exchange has taken a step: what must be said about where it led is said. */
 void fmu_plant_watch(fmu_instance *instance);
 

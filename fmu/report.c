@@ -18,6 +18,12 @@ static const struct {
 };
 #define CATEGORY_COUNT (sizeof categories / sizeof categories[0])
 
+/* " -nan" is " nan": what is no number has no sign, though some C libraries print one. */
+static void unsign_nan(char *line) {
+    char *found;
+    while ((found = strstr(line, " -nan")) != NULL) memmove(found + 1, found + 2, strlen(found + 1));
+}
+
 static void deliver(const fmu_instance *instance, fmu_status status, fmu_category category, const char *format,
                     va_list arguments) {
     char line[LINE_LENGTH];
@@ -25,6 +31,7 @@ static void deliver(const fmu_instance *instance, fmu_status status, fmu_categor
     /* errors are always told: FMI 3.0 wants it, and nobody is glad to miss them */
     if (instance->deliver == NULL || !((instance->log_categories | FMU_LOG_ERROR) & (unsigned)category)) return;
     vsnprintf(line, sizeof line, format, arguments);
+    unsign_nan(line);
     for (k = 0; k < CATEGORY_COUNT; k++)
         if (categories[k].category == category) instance->deliver(instance, status, categories[k].name, line);
 }

@@ -1,10 +1,14 @@
 /* What Model Exchange asks for: time, continuous states, their rates. */
+#include <string.h>
+
 #include "plant_api.h"
 
 fmu_status fmu_set_time(fmu_instance *instance, double time_s) {
     if (!(time_s - time_s == 0.0)) return fmu_refuse(instance, "SetTime: %g is not a time", time_s);
     if (fmu_clock_passes_stop(&instance->clock, time_s, 0.0) && !fmu_clock_may_look_at(&instance->clock, time_s))
         return fmu_refuse(instance, "SetTime: %.15g s is beyond the stop time %.15g s", time_s, instance->clock.stop_s);
+    if (fmu_clock_is_before_start(&instance->clock, time_s))
+        return fmu_refuse(instance, "SetTime: %.15g s is before the start time %.15g s", time_s, instance->clock.start_s);
     instance->plant.time_s = time_s;
     return FMU_OK;
 }
@@ -49,10 +53,18 @@ fmu_status fmu_set_states(fmu_instance *instance, const double *values, size_t c
 }
 
 fmu_status fmu_get_rates(fmu_instance *instance, double *values, size_t count) {
+    double rates[6 + FMU_PLANT_LARGEST_ARRAY];
     fmu_status status = check_count(instance, values, count);
+    size_t k;
     if (status == FMU_OK) status = fmu_make_current(instance);
-    if (status == FMU_OK) fmu_plant_get_rates(instance, values);
-    return status;
+    if (status != FMU_OK) return status;
+    fmu_plant_get_rates(instance, rates);
+    for (k = 0; k < count; k++)
+        if (!(rates[k] - rates[k] == 0.0))
+            return fmu_refuse(instance, "the derivative of continuous state %zu of %zu leaves the range of double "
+                              "precision; check inputs and states", k + 1, count);
+    memcpy(values, rates, count * sizeof *values);
+    return FMU_OK;
 }
 
 fmu_status fmu_get_nominals(fmu_instance *instance, double *values, size_t count) {

@@ -10,6 +10,9 @@
  * step. */
 #define NO_STEP 1e-6
 
+/* With step_s = 0, the part of a communication step that the importer's time may be off. */
+#define OFF_WITHOUT_STEP 1e-3
+
 /* With step_s = 0 the steps are as long as the last communication step; 0: none was taken yet. */
 static double last_internal_step(const fmu_instance *instance) {
     const double own_s = fmu_plant_own_step(&instance->plant);
@@ -27,14 +30,34 @@ static double internal_step(const fmu_instance *instance, double step_s) {
     return last_s > 0.0 && last_s < step_s ? last_s : step_s;
 }
 
-/* The importer's time may be half an internal step off, and no more. */
+static double magnitude(double value) {
+    return value < 0.0 ? -value : value;
+}
+
+/* How far the importer's time may be off: half an internal step. With step_s = 0 that would be half of whatever the
+ * importer asked for, so there it is a thousandth of the step, and what is lost to rounding by an importer that has added
+ * up as many steps as have passed; again half a step at most. */
+static double time_tolerance(const fmu_instance *instance, double at_s, double internal_s) {
+    const fmu_clock *clock = &instance->clock;
+    const double half_s = 0.5 * internal_s, last_s = clock->step_s > 0.0 ? clock->step_s : internal_s;
+    double off_s;
+    if (fmu_plant_own_step(&instance->plant) > 0.0) return half_s;
+    off_s = OFF_WITHOUT_STEP * internal_s +
+            DBL_EPSILON * magnitude(at_s) * (magnitude(instance->plant.time_s - clock->start_s) / last_s);
+    return off_s < half_s ? off_s : half_s;
+}
+
 static fmu_status check_interval(const fmu_instance *instance, double at_s, double step_s) {
     const fmu_clock *clock = &instance->clock;
     const double now_s = instance->plant.time_s, off_s = at_s - now_s;
-    const double internal_s = internal_step(instance, step_s), half_s = 0.5 * internal_s;
-    if (!(step_s > 0.0 && step_s <= DBL_MAX))
+    const double internal_s = internal_step(instance, step_s), most_s = time_tolerance(instance, at_s, internal_s);
+    if (!(step_s <= DBL_MAX && step_s >= -DBL_MAX))
+        return fmu_refuse(instance, "a communication step of %g s cannot be taken: it is not finite", step_s);
+    if (!(at_s <= DBL_MAX && at_s >= -DBL_MAX))
+        return fmu_refuse(instance, "the step starts at %g s: that is not finite", at_s);
+    if (!(step_s > 0.0))
         return fmu_refuse(instance, "a communication step of %.15g s cannot be taken: it must be more than 0", step_s);
-    if (!(off_s <= half_s && off_s >= -half_s))
+    if (!(off_s <= most_s && off_s >= -most_s))
         return fmu_refuse(instance, "the step starts at %.15g s, but the model is at %.15g s", at_s, now_s);
     if (fmu_clock_passes_stop(clock, now_s + step_s, internal_s))
         return fmu_refuse(instance, "the step from %.15g s to %.15g s goes beyond the stop time %.15g s", now_s,
@@ -121,7 +144,8 @@ static fmu_status run(fmu_instance *instance, uint64_t steps, fmu_step_end *end)
 static inline bool is_one_more(const fmu_instance *instance, double at_s, double step_s) {
     const fmu_clock *clock = &instance->clock;
     const double off_s = at_s - instance->plant.time_s;
-    return step_s == clock->asked_s && clock->asked_ticks == 1 && off_s <= 0.5 * step_s && off_s >= -0.5 * step_s &&
+    return step_s == clock->asked_s && clock->asked_ticks == 1 && off_s <= OFF_WITHOUT_STEP * step_s &&
+           off_s >= -OFF_WITHOUT_STEP * step_s &&
            !clock->stop_defined && !instance->plant.start_needed && !instance->plant.change_needed &&
            instance->between_steps == NULL;
 }
@@ -133,6 +157,7 @@ fmu_status fmu_do_step(fmu_instance *instance, double at_s, double step_s, fmu_s
     if (is_one_more(instance, at_s, step_s)) {
         status = fmu_plant_run(instance, 1, &steps);
         instance->clock.ticks += steps;
+        if (instance->noted != 0) fmu_plant_conclude(instance, status == FMU_OK);
         end->time_s = instance->plant.time_s = fmu_clock_now(&instance->clock);
         return status;
     }
@@ -140,6 +165,7 @@ fmu_status fmu_do_step(fmu_instance *instance, double at_s, double step_s, fmu_s
     if (status == FMU_OK) status = fmu_make_current(instance);
     if (status == FMU_OK) status = count_steps(instance, step_s, &steps);
     if (status == FMU_OK) status = run(instance, steps, end);
+    if (instance->noted != 0) fmu_plant_conclude(instance, status == FMU_OK);
     end->time_s = instance->plant.time_s = fmu_clock_now(&instance->clock);
     return status;
 }

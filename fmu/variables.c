@@ -46,14 +46,26 @@ static double most_of(const fmu_variable *variable) {
     return variable->access == FMU_STATE ? FMU_LARGEST_STATE : variable->most;
 }
 
+#define NAME_LENGTH 80U
+
+static void name_element(char name[NAME_LENGTH], const fmu_slot *slot, uint32_t element) {
+    if (slot->variable->size == 1)
+        snprintf(name, NAME_LENGTH, "%s", slot->variable->name);
+    else
+        snprintf(name, NAME_LENGTH, "%s[%u]", slot->variable->name, (unsigned)(slot->first + element + 1));
+}
+
+static fmu_status refuse_result(const fmu_instance *instance, const fmu_slot *slot, uint32_t element) {
+    char name[NAME_LENGTH];
+    name_element(name, slot, element);
+    return fmu_refuse(instance, "%s leaves the range of double precision; check inputs and states", name);
+}
+
 static fmu_status refuse_value(const fmu_instance *instance, const fmu_slot *slot, uint32_t element, double value) {
     const fmu_variable *variable = slot->variable;
     const double least = least_of(variable), most = most_of(variable);
-    char name[80];
-    if (slot->count == 1 && slot->first == 0 && variable->size == 1)
-        snprintf(name, sizeof name, "%s", variable->name);
-    else
-        snprintf(name, sizeof name, "%s[%u]", variable->name, (unsigned)(slot->first + element + 1));
+    char name[NAME_LENGTH];
+    name_element(name, slot, element);
     if (!is_finite(value)) return fmu_refuse(instance, "%s: %g is not a finite number", name, value);
     if (most == DBL_MAX)
         return fmu_refuse(instance, "%s: %.15g is outside its range: at least %g", name, value, least);
@@ -133,8 +145,9 @@ static fmu_status check_lists(const fmu_instance *instance, const void *referenc
     return FMU_OK;
 }
 
-fmu_status fmu_get(fmu_instance *instance, fmu_type type, const uint32_t *references, size_t count, double *values,
-                   size_t value_count) {
+/* All is checked before anything is handed out, so that a refused call leaves the importer's values as they were. */
+static fmu_status check_get(fmu_instance *instance, fmu_type type, const uint32_t *references, size_t count,
+                            const double *values, size_t value_count) {
     size_t k, used = 0;
     uint32_t i;
     fmu_slot slot;
@@ -143,16 +156,31 @@ fmu_status fmu_get(fmu_instance *instance, fmu_type type, const uint32_t *refere
         const fmu_status status = check_readable(instance, type, references[k], &slot);
         if (status != FMU_OK) return status;
         if (slot.count > value_count - used) return refuse_count(instance, &slot, value_count - used);
-        for (i = 0; i < slot.count; i++) values[used++] = load(instance, &slot, i);
+        for (i = 0; i < slot.count; i++, used++)
+            if (!is_finite(load(instance, &slot, i))) return refuse_result(instance, &slot, i);
     }
     if (used != value_count)
         return fmu_refuse(instance, "%zu values asked for, but the variables have %zu", value_count, used);
     return FMU_OK;
 }
 
+fmu_status fmu_get(fmu_instance *instance, fmu_type type, const uint32_t *references, size_t count, double *values,
+                   size_t value_count) {
+    size_t k, used = 0;
+    uint32_t i;
+    fmu_slot slot;
+    const fmu_status status = check_get(instance, type, references, count, values, value_count);
+    if (status != FMU_OK) return status;
+    for (k = 0; k < count; k++) {
+        if (!fmu_find(instance, references[k], &slot)) return FMU_ERROR; /* check_get has found it */
+        for (i = 0; i < slot.count; i++) values[used++] = load(instance, &slot, i);
+    }
+    return FMU_OK;
+}
+
 /* All is checked before anything is stored, so that a refused call changes nothing. */
-static fmu_status check_set(fmu_instance *instance, fmu_type type, const uint32_t *references, size_t count,
-                            const double *values, size_t value_count) {
+fmu_status fmu_check_set(fmu_instance *instance, fmu_type type, const uint32_t *references, size_t count,
+                         const double *values, size_t value_count) {
     size_t k, used = 0;
     uint32_t i;
     fmu_slot slot;
@@ -186,10 +214,10 @@ fmu_status fmu_set(fmu_instance *instance, fmu_type type, const uint32_t *refere
     size_t k, used = 0;
     uint32_t i;
     fmu_slot slot;
-    const fmu_status status = check_set(instance, type, references, count, values, value_count);
+    const fmu_status status = fmu_check_set(instance, type, references, count, values, value_count);
     if (status != FMU_OK) return status;
     for (k = 0; k < count; k++) {
-        if (!fmu_find(instance, references[k], &slot)) return FMU_ERROR; /* check_set has found it */
+        if (!fmu_find(instance, references[k], &slot)) return FMU_ERROR; /* fmu_check_set has found it */
         if (slot.variable->access == FMU_STATE) fmu_plant_states_lead(instance);
         for (i = 0; i < slot.count; i++) store(instance, &slot, i, values[used++]);
         note_change(instance, (fmu_access)slot.variable->access);

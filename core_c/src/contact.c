@@ -211,12 +211,13 @@ static void normal_loads(laconic_reactions *out, const laconic_contact *c, const
 
 static void no_slip_margin(laconic_reactions *out, const laconic_contact *c, const laconic_model *m) {
     int32_t i;
-    out->no_slip_margin_N = m->wheel_count > 0 ? LACONIC_REAL_MAX : R(0);
+    out->no_slip_margin_N = R(0);
     for (i = 0; i < m->wheel_count; i++) {
         const real needed =
             laconic_root(out->along_N[i] * out->along_N[i] + out->lateral_N[i] * out->lateral_N[i]);
         const real margin = c->friction_coefficient * out->normal_N[i] - needed;
-        if (margin < out->no_slip_margin_N) out->no_slip_margin_N = margin;
+        if (i == 0 || margin < out->no_slip_margin_N || margin != margin)
+            out->no_slip_margin_N = margin; /* where one is NaN, all is */
     }
 }
 

@@ -22,8 +22,11 @@ static finding worst_slip(const laconic_contact *c, const laconic_reactions *r, 
     finding found = {0, R(0)};
     int32_t i;
     if (r->no_slip_margin_N >= -rounding_N || !(c->friction_coefficient > R(0))) return found;
-    for (i = 0; i < wheels; i++)
-        take_worse(&found, i, c->friction_coefficient * r->normal_N[i] - needed(r, i), -rounding_N);
+    for (i = 0; i < wheels; i++) {
+        const real needed_N = needed(r, i);
+        if (needed_N <= rounding_N) continue; /* it may lift, but nothing is there to slip */
+        take_worse(&found, i, c->friction_coefficient * r->normal_N[i] - needed_N, -rounding_N);
+    }
     return found;
 }
 

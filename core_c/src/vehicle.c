@@ -66,8 +66,15 @@ static laconic_status check_body(const laconic_vehicle *v, laconic_refusal *why)
     return status;
 }
 
+/* Where neighbouring numbers are further apart than the smallest angle that counts, there is no direction any more. */
+static laconic_status check_angle(real value, laconic_field field, int32_t item, laconic_refusal *why) {
+    const real largest = LACONIC_SMALLEST_ROLLER_SINE / LACONIC_EPSILON;
+    if (!is_finite(value)) return refuse(why, LACONIC_NOT_FINITE, field, item, value, R(0));
+    return magnitude(value) <= largest ? LACONIC_OK : refuse(why, LACONIC_OVERFLOW, field, item, value, largest);
+}
+
 static laconic_status check_roller(const laconic_wheel *w, int32_t item, laconic_refusal *why) {
-    const laconic_status status = check_number(w->roller_rad, LACONIC_FIELD_ROLLER, item, why);
+    const laconic_status status = check_angle(w->roller_rad, LACONIC_FIELD_ROLLER, item, why);
     if (status != LACONIC_OK) return status;
     if (magnitude(laconic_direction_of_angle(w->roller_rad).sine) < LACONIC_SMALLEST_ROLLER_SINE)
         return refuse(why, LACONIC_ROLLER_ALONG_AXLE, LACONIC_FIELD_ROLLER, item, w->roller_rad, R(0));
@@ -82,7 +89,7 @@ static laconic_status check_wheel(const laconic_wheel *w, int32_t item, laconic_
         return refuse(why, LACONIC_WHEEL_KIND_UNKNOWN, LACONIC_FIELD_WHEEL_KIND, item, (real)w->kind, R(0));
     status = check_number(w->x_m, LACONIC_FIELD_WHEEL_X, item, why);
     if (status == LACONIC_OK) status = check_number(w->y_m, LACONIC_FIELD_WHEEL_Y, item, why);
-    if (status == LACONIC_OK) status = check_number(w->axle_rad, LACONIC_FIELD_AXLE, item, why);
+    if (status == LACONIC_OK) status = check_angle(w->axle_rad, LACONIC_FIELD_AXLE, item, why);
     if (status == LACONIC_OK && w->kind == LACONIC_WHEEL_ROLLER) status = check_roller(w, item, why);
     return status;
 }

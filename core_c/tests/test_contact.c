@@ -229,6 +229,15 @@ static void points_so_far_away_that_their_loads_would_be_none_are_refused(void) 
     ASSERT_REFUSED(LACONIC_OVERFLOW, LACONIC_FIELD_NONE, 0, laconic_contact_prepare(&contact, &v, &why), why);
 }
 
+static void a_margin_that_has_no_number_is_not_taken_for_a_large_one(void) {
+    scene s;
+    laconic_input input = no_input();
+    input.voltage_V[1] = LACONIC_REAL_MAX;
+    input.voltage_V[2] = -LACONIC_REAL_MAX;
+    judge(&s, with_motors(mecanum()), turning_start(0, 0, 0), input);
+    TEST_ASSERT_TRUE(!(s.out.no_slip_margin_N >= -LACONIC_REAL_MAX));
+}
+
 static void a_refused_vehicle_changes_nothing(void) {
     laconic_vehicle v = three_wheels();
     laconic_contact contact, before;
@@ -254,6 +263,7 @@ int main(void) {
     RUN_TEST(the_no_slip_margin_is_the_least_of_all_wheels);
     RUN_TEST(without_wheels_there_is_no_margin_to_lose);
     RUN_TEST(points_so_far_away_that_their_loads_would_be_none_are_refused);
+    RUN_TEST(a_margin_that_has_no_number_is_not_taken_for_a_large_one);
     RUN_TEST(a_refused_vehicle_changes_nothing);
     return UNITY_END();
 }

@@ -102,10 +102,24 @@ static void what_is_within_rounding_of_nothing_neither_lifts_nor_slips(void) {
     TEST_ASSERT_EQUAL_UINT64(0, s.grip.slipping);
     TEST_ASSERT_EQUAL_UINT64(0, s.grip.lifting);
     found.normal_N[2] = REAL(-1e3) * LACONIC_RANK_TOLERANCE * REAL(MASS * GRAVITY);
-    found.no_slip_margin_N = REAL(0.8) * found.normal_N[2];
+    found.along_N[2] = -found.normal_N[2];
+    found.no_slip_margin_N = REAL(1.8) * found.normal_N[2];
     laconic_grip_watch(&s.grip, &s.contact, &s.model, &found, 1);
     TEST_ASSERT_EQUAL_UINT64(1, s.grip.slipping);
     TEST_ASSERT_EQUAL_UINT64(1, s.grip.lifting);
+}
+
+static void a_wheel_that_lifts_and_needs_nothing_does_not_slip(void) {
+    laconic_vehicle v = with_motors(mecanum());
+    scene s;
+    v.com_x_m = REAL(0.3); /* beyond the wheels */
+    s = scene_of(v, 0.8, 0.05);
+    look_at(&s, no_input(), 0);
+    TEST_ASSERT_EQUAL_UINT64(1, s.grip.lifting);
+    TEST_ASSERT_EQUAL_UINT64(0, s.grip.slipping);
+    look_at(&s, forward(6), 1);
+    TEST_ASSERT_EQUAL_UINT64(1, s.grip.slipping);
+    TEST_ASSERT_TRUE(s.grip.first_slip.needed_N > REAL(0));
 }
 
 static void what_is_no_number_is_a_fault(void) {
@@ -128,6 +142,7 @@ int main(void) {
     RUN_TEST(a_wheel_that_would_lift_is_kept_with_its_load);
     RUN_TEST(a_support_that_would_lift_has_a_number_after_the_wheels);
     RUN_TEST(what_is_within_rounding_of_nothing_neither_lifts_nor_slips);
+    RUN_TEST(a_wheel_that_lifts_and_needs_nothing_does_not_slip);
     RUN_TEST(what_is_no_number_is_a_fault);
     return UNITY_END();
 }

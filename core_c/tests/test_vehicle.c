@@ -159,6 +159,22 @@ static void a_roller_along_the_axle_is_refused_just_below_the_limit(void) {
     ASSERT_STATUS(LACONIC_OK, laconic_vehicle_check(&v, &why));
 }
 
+static void an_angle_too_large_to_have_a_direction_is_refused_for_axle_and_roller_alike(void) {
+    const double largest = (double)LACONIC_SMALLEST_ROLLER_SINE / (double)LACONIC_EPSILON;
+    const place angle[] = {second_axle, second_roller};
+    const laconic_field field[] = {LACONIC_FIELD_AXLE, LACONIC_FIELD_ROLLER};
+    int k;
+    for (k = 0; k < 2; k++) {
+        laconic_vehicle v = three_wheels();
+        *angle[k](&v) = REAL(1.001 * largest);
+        ASSERT_REFUSED(LACONIC_OVERFLOW, field[k], 2, laconic_vehicle_check(&v, &why), why);
+        *angle[k](&v) = -LACONIC_REAL_MAX;
+        ASSERT_REFUSED(LACONIC_OVERFLOW, field[k], 2, laconic_vehicle_check(&v, &why), why);
+        *angle[k](&v) = REAL(PI / 2 + 200 * PI);
+        ASSERT_STATUS(LACONIC_OK, laconic_vehicle_check(&v, &why));
+    }
+}
+
 static void the_roller_of_a_fixed_wheel_is_not_read(void) {
     laconic_vehicle v = differential_drive();
     v.wheel[0].roller_rad = NOT_A_NUMBER;
@@ -216,6 +232,7 @@ int main(void) {
     RUN_TEST(mass_radius_and_yaw_inertia_must_be_positive);
     RUN_TEST(inertias_damping_friction_and_height_must_not_be_negative);
     RUN_TEST(a_roller_along_the_axle_is_refused_just_below_the_limit);
+    RUN_TEST(an_angle_too_large_to_have_a_direction_is_refused_for_axle_and_roller_alike);
     RUN_TEST(the_roller_of_a_fixed_wheel_is_not_read);
     RUN_TEST(a_forgotten_wheel_is_noticed);
     RUN_TEST(an_unknown_kind_is_named_with_its_number);

@@ -16,6 +16,8 @@ from .scalars import elements_of
 
 MOST_ROWS = 1000
 """Rows that an importer writes which takes the default experiment as it is."""
+LEAST_ROWS = 50
+"""Fewer show no motion."""
 
 PLATFORMS = {
     "x86_64-linux": ("linux64", "x86_64-linux", ".so"),
@@ -98,14 +100,17 @@ class Content:
 
 
 def output_step(duration_s: float, step_s: float) -> float:
-    """The default experiment's step: a whole number of internal steps, at most MOST_ROWS of it in the run.
+    """The default experiment's step: whole internal steps, so many that they divide the run: with others, importers
+    may pass the stop time.
 
-    The roundest number of steps will do, best one that divides the run.
+    At most MOST_ROWS in the run and no fewer than LEAST_ROWS, with a round number of internal steps where there is one.
+    A run whose number of steps has no such divisor, a prime say, is shown step by step.
     """
     count = max(1, round(duration_s / step_s))
     round_numbers = [digit * 10**power for power in range(16) for digit in (1, 2, 5)]
-    enough = [number for number in round_numbers if count <= MOST_ROWS * number]
-    return step_s * next((number for number in enough[:3] if count % number == 0), enough[0])
+    enough = [number for number in round_numbers if count <= MOST_ROWS * number][:3]
+    others = [count // rows for rows in range(MOST_ROWS, LEAST_ROWS - 1, -1) if count % rows == 0]
+    return step_s * next((number for number in (*enough, *others) if count % number == 0), 1)
 
 
 def _describe(parts: Mapping[str, bytes], description: Description, variant: Variant) -> str:

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import io
 import struct
 import zipfile
 import zlib
@@ -30,7 +31,8 @@ def start_file(values: Iterable[tuple[int, float]], token: str, scalar: bool) ->
 def pack(path: Path, parts: Mapping[str, bytes]) -> None:
     """Writes the FMU: parts by their name in the archive."""
     path.parent.mkdir(parents=True, exist_ok=True)
-    with zipfile.ZipFile(path, "w") as archive:
+    whole = io.BytesIO()  # a device or a pipe cannot go back to the archive's head
+    with zipfile.ZipFile(whole, "w") as archive:
         for name in sorted(parts):
             info = zipfile.ZipInfo(name, DATE)
             info.compress_type = zipfile.ZIP_DEFLATED
@@ -38,3 +40,4 @@ def pack(path: Path, parts: Mapping[str, bytes]) -> None:
             executable = name.startswith("binaries/")
             info.external_attr = (0o100755 if executable else 0o100644) << 16
             archive.writestr(info, parts[name], compresslevel=9)
+    path.write_bytes(whole.getvalue())

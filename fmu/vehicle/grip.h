@@ -10,11 +10,11 @@
 
 /* Nothing is computed where no friction coefficient is given, all is said already, or nobody listens. */
 static inline bool fmu_grip_is_watched(const fmu_instance *instance) {
-    return instance->plant.contact.friction_coefficient > 0.0 && instance->told != FMU_TOLD_ALL &&
+    return instance->plant.contact.friction_coefficient > 0.0 && (instance->told | instance->noted) != FMU_TOLD_ALL &&
            instance->deliver != NULL && (instance->log_categories & FMU_LOG_WARNING) != 0;
 }
 
-/* Says what the reactions at that time ask of the ground and it cannot give. */
+/* Notes what the reactions at that time ask of the ground and it cannot give; fmu_plant_conclude says it. */
 void fmu_grip_judge(fmu_instance *instance, const laconic_reactions *ground, double time_s);
 
 /* Steps with held inputs, judged where each begins: that is where a new input asks for the most. */

@@ -4,6 +4,9 @@
 #include "grip.h"
 #include "plant_api.h"
 
+/* A quotient beyond it is no count of steps: laconic_steps_in refuses it. */
+#define MOST_STEPS 9e15
+
 /* Does not compile unless the core is the double-precision one and wheel_kind can be read as an int32_t. */
 typedef char fmu_core_is_double[sizeof(laconic_real) == sizeof(double) ? 1 : -1];
 typedef char fmu_kind_is_int32[sizeof(laconic_wheel_kind) == sizeof(int32_t) ? 1 : -1];
@@ -145,11 +148,28 @@ fmu_status fmu_plant_set_step(fmu_instance *instance, double step_s) {
     return FMU_OK;
 }
 
+/* The communication step nearest to the one asked for that this instance takes, now; 0: there is none. */
+static double nearest_step(const fmu_instance *instance, double step_s, double own_s) {
+    const double ratio = step_s / own_s;
+    uint64_t rounded, count;
+    if (!(ratio < MOST_STEPS)) return 0.0;
+    rounded = ratio < 1.0 ? 1 : (uint64_t)(ratio + 0.5);
+    for (count = rounded; count > 0 && count + 1 >= rounded; count--)
+        if (!fmu_clock_passes_stop(&instance->clock, instance->plant.time_s + own_s * (double)count, own_s))
+            return own_s * (double)count;
+    return 0.0;
+}
+
 fmu_status fmu_plant_count_steps(fmu_instance *instance, double step_s, double own_s, uint64_t *steps) {
     laconic_refusal why = {LACONIC_OK, LACONIC_FIELD_NONE, 0, 0.0, 0.0};
+    double nearest;
     if (laconic_steps_in(step_s, own_s, steps, &why) == LACONIC_OK) return FMU_OK;
-    return fmu_refuse(instance, "the communication step of %.15g s is no whole number of internal steps of %.15g s "
-                      "(step_s); nearest that is: %.15g s", step_s, own_s, own_s * (double)(uint64_t)(step_s / own_s + 0.5));
+    nearest = nearest_step(instance, step_s, own_s);
+    if (nearest > 0.0)
+        return fmu_refuse(instance, "the communication step of %.15g s is no whole number of internal steps of %.15g s "
+                          "(step_s); nearest that is: %.15g s", step_s, own_s, nearest);
+    return fmu_refuse(instance, "the communication step of %.15g s cannot be taken in internal steps of %.15g s (step_s): "
+                      "set another step_s before the run", step_s, own_s);
 }
 
 static void shift_input(laconic_input *out, const fmu_plant *p, double by_s) {

@@ -45,6 +45,8 @@ typedef struct fmu_plant {
 
     laconic_plant core;
     laconic_contact contact;
+    laconic_grip_event noted_slip, noted_lift; /* where fmu_instance.noted says so */
+    double slip_s, lift_s;                     /* their times                      */
 
     double nu[3]; /* the continuous states; in Model Exchange the core's state follows them */
     double x_m, y_m, heading_rad;

@@ -72,7 +72,13 @@ class Grip:
 
     def _more(self, first: GripEvent, worst: GripEvent, count: int, size: str) -> str:
         at_worst = "" if worst == first else f"; at worst {size}, {worst.where} at {worst.time_s:g} s"
-        return f"{at_worst}; {100 * count / self.looks:.3g} % of the run"
+        return f"{at_worst}; {percent(count, self.looks)} of the run"
+
+
+def percent(count: int, of: int) -> str:
+    """A share in three digits; what only rounds to all is not all."""
+    shown = f"{100 * count / of:.3g}"
+    return "over 99.9 %" if shown == "100" and count < of else f"{shown} %"
 
 
 def newtons(force_N: float) -> str:

@@ -1,4 +1,4 @@
-"""stdout that says what is wrong with it, and signals that end a command in order.
+"""stdout that says what is wrong with it, warnings on stderr, and signals that end a command in order.
 
 Python turns a reader that has closed the pipe into exceptions that libraries catch and take for failures of their own;
 here it is one that nothing but the command line catches.
@@ -11,6 +11,8 @@ import os
 import signal
 import sys
 from types import FrameType
+
+import click
 
 from laconic.errors import BadInput, reason_of
 
@@ -74,6 +76,11 @@ def open_standard() -> None:
             os.open(os.devnull, mode)
     if sys.stderr is None:
         sys.stderr = open(2, "w", closefd=False)  # noqa: SIM115 (open as long as the process lives)
+
+
+def warn(message: str) -> None:
+    """One line on stderr that changes no exit status."""
+    click.echo(f"laconic: warning: {message}", err=True)
 
 
 def stop(number: int, _: FrameType | None) -> None:

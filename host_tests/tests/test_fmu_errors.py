@@ -291,3 +291,78 @@ def test_states_can_be_set_one_by_one_in_fmi3_model_exchange() -> None:
         assert importer.set("nu_rad_per_s", 1.0, 2.0, 3.0) == OK
         assert importer.states() == [1.0, 2.0, 3.0, 7.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0]
         assert importer.get("origin_x_m") == [7.0]
+
+
+def test_an_unknown_kind_of_fmu_is_refused_with_a_line() -> None:
+    with Importer(generic(2)) as importer:
+        ffi, functions = importer.ffi, importer._keep[-1]
+        name, token = ffi.new("char[]", b"x"), ffi.new("char[]", importer.description.guid.encode())
+        assert importer.library.fmi2Instantiate(name, ffi.cast("int", 7), token, ffi.NULL, functions, 0, 0) == ffi.NULL
+        assert "no such fmuType" in importer.log[-1][2]
+
+
+@pytest.mark.parametrize(("count", "said"), [
+    (1 << 63, "9.22337203685478e+18"), ((1 << 64) - (1 << 32), "1.84467440694146e+19"), ((1 << 64) - 7, "-7")])
+def test_a_large_wheel_count_is_shown_as_it_was_given(count: int, said: str) -> None:
+    with Importer(generic(3)) as importer:
+        importer.must("EnterConfigurationMode")
+        assert importer.set("wheel_count", count) == ERROR
+        assert importer.log[-1][2] == f"wheel_count: {said} is outside its range: 1 to 16"
+
+
+UNTOUCHED = 77.0
+
+
+@BOTH
+@pytest.mark.parametrize("kind", ["CoSimulation", "ModelExchange"])
+def test_a_result_beyond_double_precision_is_refused_and_nothing_handed_out(version: int, kind: str) -> None:
+    with Importer(generic(version), kind) as importer:
+        importer.initialize()
+        real, largest = ("Real" if version == 2 else "Float64"), 1.7e308
+        assert importer.set("voltage_V", largest, -largest, largest, largest) == OK
+        for name in ("no_slip_margin_N", "der(nu_rad_per_s)", "wheel_lateral_N", "wheel_reaction_N"):
+            names, _ = importer.elements(name)
+            names = ["x_m", *names]
+            size = 1 + importer.size(name)
+            values = importer.ffi.new("double[]", [UNTOUCHED] * size)
+            more = (size,) if version == 3 else ()
+            status = importer.call(f"Get{real}", importer.references(*names), len(names), values, *more)
+            if status == OK:
+                assert all(math.isfinite(value) for value in values)
+                assert name.startswith("wheel")
+                continue
+            assert status == ERROR
+            assert "leaves the range of double precision" in importer.log[-1][2]
+            assert importer.log[-1][2].startswith(name.removesuffix(")"))
+            assert list(values) == [UNTOUCHED] * size
+        if kind == "ModelExchange":
+            values = importer.ffi.new("double[]", [UNTOUCHED] * 10)
+            call = "GetDerivatives" if version == 2 else "GetContinuousStateDerivatives"
+            assert importer.call(call, values, 10) == ERROR
+            assert "derivative of continuous state 1 of 10 leaves the range" in importer.log[-1][2]
+            assert list(values) == [UNTOUCHED] * 10
+        assert importer.set("voltage_V", 1.0, 1.0, 1.0, 1.0) == OK
+        importer.get("no_slip_margin_N")
+        importer.get("der(nu_rad_per_s)")
+
+
+@BOTH
+def test_a_refused_call_hands_out_and_sets_none_of_its_values(version: int) -> None:
+    with Importer(generic(version)) as importer:
+        importer.initialize() if version == 2 else None
+        real, whole, c_type = ("Real", "Integer", "int") if version == 2 else ("Float64", "Int32", "int32_t")
+        nobody = importer.ffi.new(f"fmi{version}ValueReference[]", [importer.variables["mass_kg"].valueReference, 999])
+        values = importer.ffi.new("double[]", [UNTOUCHED] * 2)
+        more = (2,) if version == 3 else ()
+        assert importer.call(f"Get{real}", nobody, 2, values, *more) == ERROR
+        assert list(values) == [UNTOUCHED] * 2
+        count = importer.variables["support_count"].valueReference
+        nobody = importer.ffi.new(f"fmi{version}ValueReference[]", [count, 999])
+        numbers = importer.ffi.new(f"{c_type}[]", [7, 7])
+        assert importer.call(f"Get{whole}", nobody, 2, numbers, *more) == ERROR
+        assert list(numbers) == [7, 7]
+    with Importer(generic(version)) as importer:
+        both = importer.ffi.new(f"fmi{version}ValueReference[]", [count, count])
+        assert importer.call(f"Set{whole}", both, 2, importer.ffi.new(f"{c_type}[]", [1, 9]), *more) == ERROR
+        importer.initialize()
+        assert importer.get("support_count") == [0]

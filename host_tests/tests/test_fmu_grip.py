@@ -6,7 +6,7 @@ from dataclasses import replace
 from pathlib import Path
 
 import pytest
-from fmu_importer import OK, WARNING, Importer, generic
+from fmu_importer import DISCARD, OK, WARNING, Importer, generic
 
 from laconic.core import load
 from laconic.demo.fmu_rows import fmu_rows
@@ -168,3 +168,41 @@ def test_the_demos_own_importer_prints_nothing_where_a_robot_slips(version: int,
     rows = fmu_rows(slippery, make_fmu(slippery, tmp_path / "x.fmu", version=version), 50)
     assert len(rows.rows) == 50
     assert capfd.readouterr().out == ""
+
+
+@BOTH
+@pytest.mark.parametrize("size", [1, 10])
+def test_a_step_that_is_refused_says_nothing_of_grip_and_the_one_that_is_taken_does(version: int, size: int) -> None:
+    with Importer(generic(version)) as importer:
+        assert importer.set("step_s", 0.01) == OK
+        importer.initialize()
+        drive(importer, 20, size)
+        assert importer.set("voltage_V", *(1e100,) * 4) == OK
+        assert importer.step(0.2, 0.01 * size) == DISCARD
+        assert warnings(importer) == []
+        assert importer.set("voltage_V", *KICK_V) == OK
+        drive(importer, 10, size, 20)
+        assert [text.split(" wheel")[0] for text in warnings(importer)][0] == "at 0.2 s"
+        drive(importer, 10, size, 30)
+        assert len(warnings(importer)) in (1, 2)
+        assert any("of grip" in text for text in warnings(importer))
+
+
+@BOTH
+def test_a_vehicle_that_tips_over_at_rest_lifts_and_does_not_slip(version: int) -> None:
+    with Importer(generic(version)) as importer:
+        assert importer.set("com_x_m", 2.0) == OK
+        importer.initialize()
+        assert importer.step(0.0, 0.01) == OK
+        (line,) = warnings(importer)
+        assert "lifts: its normal load would be -" in line
+
+
+@BOTH
+def test_forces_beyond_all_numbers_are_told_in_words(version: int) -> None:
+    with Importer(generic(version)) as importer:
+        assert importer.set("com_z_m", 1e100) == OK
+        importer.initialize()
+        assert importer.set("voltage_V", *(1e60,) * 4) == OK
+        importer.step(0.0, 1e-9)
+        assert not any("inf" in text or "nan" in text for text in warnings(importer))

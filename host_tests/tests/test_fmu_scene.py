@@ -14,7 +14,7 @@ import numpy as np
 import pytest
 from fmpy import simulate_fmu
 from fmpy.validation import validate_fmu
-from fmu_importer import ERROR, OK, Importer
+from fmu_importer import ERROR, OK, Importer, generic
 
 from laconic.cli import run
 from laconic.fmu import make_fmu, start_values
@@ -97,6 +97,13 @@ def test_an_fmu_carries_its_scenes_icon_and_page(version: int, tmp_path: Path) -
     assert len(set(seen.values())) == 2
 
 
+def test_the_page_promises_the_wheels_that_there_can_be() -> None:
+    page = read_parts(generic(3))["documentation/index.html"].decode("utf-8")
+    assert "up to 16 omni, mecanum or fixed wheels" in page
+    assert "any number" not in page
+    assert "no swivel casters" in page
+
+
 def test_a_name_with_markup_stays_text(tmp_path: Path) -> None:
     text = (scene := read_scene("robotino2")).path.read_text(encoding="utf-8")
     (tmp_path / "odd.toml").write_text(text.replace(scene.name, "<b>A & B</b>"), encoding="utf-8")
@@ -107,12 +114,20 @@ def test_a_name_with_markup_stays_text(tmp_path: Path) -> None:
 
 
 @pytest.mark.parametrize(("duration_s", "step_s", "wanted_s"), [
-    (11.0, 0.001, 0.02), (10.0, 0.01, 0.01), (1.0, 0.001, 0.001), (7.007, 0.001, 0.01), (100.0, 1e-4, 0.1),
+    (11.0, 0.001, 0.02), (10.0, 0.01, 0.01), (1.0, 0.001, 0.001), (7.007, 0.001, 0.011), (100.0, 1e-4, 0.1),
     (5.0, 5.0, 5.0), (1.25, 1e-3, 0.002)])
 def test_the_default_experiments_step_is_a_round_number_of_internal_steps(
         duration_s: float, step_s: float, wanted_s: float) -> None:
     assert output_step(duration_s, step_s) == pytest.approx(wanted_s, rel=1e-12)
     assert duration_s / output_step(duration_s, step_s) <= MOST_ROWS * (1 + 1e-9)
+
+
+@pytest.mark.parametrize(("steps", "rows"), [
+    (10007, 10007), (1009, 1009), (997, 997), (101 * 103, 103), (7000, 700), (7007, 637), (10**9 + 7, 10**9 + 7)])
+def test_the_default_experiments_step_divides_the_run_whatever_the_number_of_steps(steps: int, rows: int) -> None:
+    step_s = output_step(steps * 0.001, 0.001)
+    assert steps * 0.001 / step_s == pytest.approx(rows, rel=1e-9)
+    assert steps % round(step_s / 0.001) == 0
 
 
 @BOTH

@@ -229,3 +229,78 @@ def test_intermediate_updates_see_every_internal_step_and_may_return_early() -> 
         assert seen[-1][1] != seen[0][1]
         assert importer.step(0.04, 0.06) == OK
         assert not importer.end["early"]
+
+
+@BOTH
+@pytest.mark.parametrize("value", [math.nan, math.inf, -math.inf])
+def test_a_time_or_a_step_that_is_no_number_is_said_to_be_none(version: int, value: float) -> None:
+    with Importer(generic(version)) as importer:
+        importer.initialize()
+        for at_s, step_s in ((0.0, value), (value, 0.1)):
+            assert importer.step(at_s, step_s) == ERROR
+            assert "not finite" in importer.log[-1][2]
+            assert "-nan" not in importer.log[-1][2]
+        importer.must("Reset")
+        if version == 2:
+            assert importer.call("SetupExperiment", 0, 0.0, 0.0, 1, math.nan) == ERROR
+        else:
+            assert importer.call("EnterInitializationMode", False, 0.0, 0.0, True, math.nan) == ERROR
+        assert importer.log[-1][2] == "the stop time nan is not finite"
+
+
+@BOTH
+@pytest.mark.parametrize(("own_s", "at_s", "wrong_s", "advised_s"), [
+    (0.01, 0.0, 0.003, 0.01), (0.01, 0.0, 0.025, 0.03), (0.01, 0.04, 0.0089, 0.01), (0.04, 0.04, 0.009, None),
+    (0.01, 0.02, 0.029, 0.03), (0.02, 0.02, 0.029, 0.02), (1e-300, 0.0, 0.01, None), (0.01, 0.0, 1e-7, 0.01)])
+def test_an_advised_step_is_one_that_is_taken(
+        version: int, own_s: float, at_s: float, wrong_s: float, advised_s: float | None) -> None:
+    with Importer(generic(version)) as importer:
+        assert importer.set("step_s", own_s) == OK
+        if own_s < 1e-100:
+            assert importer.set("method", 4) == OK
+        importer.initialize(stop_s=0.05)
+        if at_s:
+            assert importer.step(0.0, at_s) == OK
+        assert importer.step(at_s, wrong_s) == ERROR
+        said = importer.log[-1][2]
+        assert ("nearest that is" in said) == (advised_s is not None)
+        if advised_s is None:
+            assert "cannot be taken in internal steps" in said
+        else:
+            assert float(said.split("nearest that is: ")[1].removesuffix(" s")) == pytest.approx(advised_s)
+            assert importer.step(at_s, float(said.split("nearest that is: ")[1].removesuffix(" s"))) == OK
+
+
+@BOTH
+def test_without_a_step_of_its_own_the_model_takes_no_step_from_somewhere_else(version: int) -> None:
+    with Importer(generic(version)) as importer:
+        importer.initialize()
+        assert importer.step(0.0, 1.0) == OK
+        for off_s in (0.5, -0.5, 0.0011, -0.0011):
+            assert importer.step(1.0 + off_s, 1.0) == ERROR
+            assert "but the model is at 1 s" in importer.log[-1][2]
+        assert importer.step(1.0009, 1.0) == OK
+
+
+@BOTH
+def test_what_an_importer_loses_by_adding_up_its_time_for_hours_is_no_step_from_somewhere_else(version: int) -> None:
+    with Importer(generic(version)) as importer:
+        importer.initialize()
+        hours_s = 16384.0  # of steps of 1 ms, each of which loses up to half of the last digit of the time
+        assert importer.step(0.0, hours_s - 1.0) == OK
+        assert importer.step(hours_s - 1.0, 1.0) == OK
+        assert importer.step(hours_s, 0.001) == OK
+        lost_s = 0.4 * hours_s / 0.001 * 3.6e-12
+        assert importer.step(hours_s + 0.001 + lost_s, 0.001) == OK
+        assert importer.step(hours_s + 0.002 - 0.0006, 0.001) == ERROR
+
+
+@BOTH
+def test_model_exchange_has_no_time_before_its_start(version: int) -> None:
+    with Importer(generic(version), "ModelExchange") as importer:
+        importer.initialize(start_s=5.0)
+        importer.must("EnterContinuousTimeMode")
+        assert importer.call("SetTime", 4.9) == ERROR
+        assert importer.log[-1][2] == "SetTime: 4.9 s is before the start time 5 s"
+        for time in (5.0, 5.0 - 1e-12, 6.0, 5.5):
+            importer.must("SetTime", time)

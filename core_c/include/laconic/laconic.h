@@ -191,7 +191,8 @@ typedef struct laconic_wheel {
     laconic_wheel_kind kind;
     bool locked;             /* held by a brake: χ' = 0                                           */
     laconic_real x_m, y_m;   /* wheel centre P_i in the body frame                                */
-    laconic_real axle_rad;   /* β_i, direction of the axle in the body frame                      */
+    laconic_real axle_rad;   /* β_i, direction of the axle in the body frame; refused where too
+                                large to be known to 1e-6 rad (float: 1e-3), as is roller_rad    */
     laconic_real roller_rad; /* γ_i, from axle to roller axis (the roller that touches the ground):
                                 π/2 omni, ±π/4 mecanum; not read for fixed wheels                 */
 } laconic_wheel;
@@ -545,7 +546,8 @@ typedef struct laconic_reactions {
     laconic_real lateral_N[LACONIC_MAX_WHEELS]; /* fixed wheels: along the axle; others 0         */
     laconic_real brake_Nm[LACONIC_MAX_WHEELS];  /* locked wheels: torque of the brake; others 0   */
     laconic_real normal_N[LACONIC_MAX_WHEELS + LACONIC_MAX_SUPPORTS]; /* below 0: it would lift   */
-    laconic_real no_slip_margin_N;              /* least of μ N_i − |reaction_i|; below 0: it slips */
+    laconic_real no_slip_margin_N;              /* least of μ N_i − |reaction_i|; below 0: it slips;
+                                                   NaN or −∞ where a force leaves the scalar's range */
 } laconic_reactions;
 
 void laconic_reactions_of(laconic_reactions *reactions, const laconic_contact *contact, const laconic_model *model,

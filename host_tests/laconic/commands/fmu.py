@@ -10,9 +10,10 @@ import click
 from laconic.errors import BadInput
 from laconic.fmu import make_fmu
 from laconic.options import OutputFile, SceneName, json_flag
-from laconic.outputs import check_ending, claim_file
+from laconic.outputs import check_ending, claim_file, is_special
 from laconic.scene import read_scene
 from laconic.ssp import make_ssp
+from laconic.streams import warn
 
 
 @click.command(name="fmu", short_help="Write an FMU of a scene's vehicle.")
@@ -22,7 +23,7 @@ from laconic.ssp import make_ssp
 @click.option("--without-sources", is_flag=True, help="Binaries only: less than half the size.")
 @click.option("--no-enumerations", is_flag=True, help="Whole numbers instead, for importers that know no enumerations.")
 @click.option("--ssp", is_flag=True, help="An SSP archive (--fmi 2): the vehicle with a wheel-speed controller.")
-@click.option("-o", "--out", type=OutputFile(".fmu", ".ssp"), metavar="F.fmu",
+@click.option("-o", "--out", type=OutputFile(), metavar="F.fmu",
               help="Where to; SCENE_fmi3.fmu if not given.")
 @json_flag()
 def command(scene: str, version: str, scalar: bool, without_sources: bool, no_enumerations: bool, ssp: bool,
@@ -34,16 +35,21 @@ def command(scene: str, version: str, scalar: bool, without_sources: bool, no_en
     """
     if scalar and version == "2":
         raise BadInput("--scalar: FMI 2.0 has no arrays anyway; leave it out or use --fmi 3")
-    given = read_scene(scene)
     ending = "ssp" if ssp else "fmu"
+    if out is not None:
+        check_ending("--out", out, (f".{ending}",))
+    given = read_scene(scene)
     if out is None:
         out = claim_file("--out", Path(f"{given.path.stem}_fmi{version}{'_scalar' if scalar else ''}.{ending}"))
-    check_ending("--out", out, (f".{ending}",))
     options = {"version": int(version), "sources": not without_sources, "enumerations": not no_enumerations}
     made = make_ssp(given, out, **options) if ssp else make_fmu(given, out, scalar=scalar, **options)
+    size = None if is_special(made) else made.stat().st_size
     if json_wanted:
         click.echo(json.dumps({"scene": str(given.path), "fmi": int(version), "scalar": scalar,
-                               "enumerations": not no_enumerations, "file": str(made), "bytes": made.stat().st_size},
-                              indent=1))
+                               "enumerations": not no_enumerations, "real": "double", "scene_real": given.run.real,
+                               "file": str(made), "bytes": size}, indent=1))
     else:
-        click.echo(f"wrote {made} ({made.stat().st_size / 1000:.0f} kB): {given.name}, {given.wheel_count} wheels")
+        shown = "" if size is None else f" ({size / 1000:.0f} kB)"
+        click.echo(f"wrote {made}{shown}: {given.name}, {given.wheel_count} wheels")
+    if given.run.real != "double":
+        warn(f'{given.path}: run.real: is "{given.run.real}", but FMUs compute in double precision')

@@ -16,6 +16,7 @@ from laconic.options import PICTURES, OutputFile, SceneName, belongs_to, json_fl
 from laconic.outputs import is_stdout, opened
 from laconic.scene import METHODS, read_scene
 from laconic.simulation import Trajectory, input_signals, simulate, usual_signals, wanted_signals
+from laconic.streams import warn
 
 
 @click.command(name="simulate", short_help="Run one scene through the core.")
@@ -54,11 +55,6 @@ def command(scene: str, method: str | None, step_s: float | None, real: str | No
         tell(run, out, plot)
     if run.grip and not run.grip.holds:
         warn(f"{given.path}: the ground cannot give what this run asks: {run.grip.warning()}")
-
-
-def warn(message: str) -> None:
-    """One line on stderr that changes no exit status."""
-    click.echo(f"laconic: warning: {message}", err=True)
 
 
 def write_csv(run: Trajectory, signals: tuple[str, ...], path: Path) -> None:
