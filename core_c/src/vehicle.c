@@ -6,15 +6,16 @@ static laconic_status check_number(real value, laconic_field field, int32_t item
 }
 
 static laconic_status check_positive(real value, laconic_field field, laconic_refusal *why) {
-    if (!is_finite(value)) return refuse(why, LACONIC_NOT_FINITE, field, 0, value, R(0));
-    if (!(value > R(0))) return refuse(why, LACONIC_NOT_POSITIVE, field, 0, value, R(0));
-    if (value < LACONIC_REAL_MIN) return refuse(why, LACONIC_OVERFLOW, field, 0, value, LACONIC_REAL_MIN);
-    return LACONIC_OK;
+    const laconic_status status = check_number(value, field, 0, why);
+    if (status != LACONIC_OK || value >= LACONIC_REAL_MIN) return status;
+    if (value > R(0)) return refuse(why, LACONIC_OVERFLOW, field, 0, value, LACONIC_REAL_MIN);
+    return refuse(why, LACONIC_NOT_POSITIVE, field, 0, value, R(0));
 }
 
 static laconic_status check_not_negative(real value, laconic_field field, laconic_refusal *why) {
-    if (!is_finite(value)) return refuse(why, LACONIC_NOT_FINITE, field, 0, value, R(0));
-    return value >= R(0) ? LACONIC_OK : refuse(why, LACONIC_NEGATIVE, field, 0, value, R(0));
+    const laconic_status status = check_number(value, field, 0, why);
+    if (status != LACONIC_OK || value >= R(0)) return status;
+    return refuse(why, LACONIC_NEGATIVE, field, 0, value, R(0));
 }
 
 typedef struct number {
@@ -69,8 +70,9 @@ static laconic_status check_body(const laconic_vehicle *v, laconic_refusal *why)
 /* Where neighbouring numbers are further apart than the smallest angle that counts, there is no direction any more. */
 static laconic_status check_angle(real value, laconic_field field, int32_t item, laconic_refusal *why) {
     const real largest = LACONIC_SMALLEST_ROLLER_SINE / LACONIC_EPSILON;
-    if (!is_finite(value)) return refuse(why, LACONIC_NOT_FINITE, field, item, value, R(0));
-    return magnitude(value) <= largest ? LACONIC_OK : refuse(why, LACONIC_OVERFLOW, field, item, value, largest);
+    const laconic_status status = check_number(value, field, item, why);
+    if (status != LACONIC_OK || magnitude(value) <= largest) return status;
+    return refuse(why, LACONIC_OVERFLOW, field, item, value, largest);
 }
 
 static laconic_status check_roller(const laconic_wheel *w, int32_t item, laconic_refusal *why) {
