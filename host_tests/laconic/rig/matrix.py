@@ -121,11 +121,16 @@ class WatchedNode(NodeOnBus):
         key = (message.arbitration_id, bytes(message.data))
         if after["accepted"] > before["accepted"]:
             self.row.undetected += self.rig_sent[key] <= 0
-            self.rig_sent[key] -= 1
+            self.rig_sent[key] -= self.takes_once(message)
         for name in ("crc_errors", "sequence_errors", "repeated", "lost", "malformed", "refused"):
             if after[name] > before[name]:
                 self.row.detected_by[name] += after[name] - before[name]
         self.look()
+
+    @staticmethod
+    def takes_once(message: can.Message) -> bool:
+        """HELLO changes nothing, so by contract it may come any number of times; spoilt ones are refused as all are."""
+        return message.arbitration_id != ID_BASE + wire()["HELLO"].offset
 
     def sent_frame(self, message: can.Message) -> None:
         self.sent[message.arbitration_id, bytes(message.data)] += 1
