@@ -203,10 +203,6 @@ class Core:
         self.check(self.lib.laconic_steps_in(interval_s, step_s, steps, why), why)
         return int(steps[0])
 
-    def largest_stable_step_s(self, method: str, model: Any, state: Any) -> float:
-        """The largest step a method bears for this vehicle and state; 0: any."""
-        return float(self.lib.laconic_largest_stable_step_s(self.method(method), model, state))
-
     def derivative(self, model: Any, nu_rad_per_s: Sequence[float], heading_rad: float, held: Any) -> Any:
         """The laconic_rates of (4.7) for Model Exchange and tests."""
         rates = self.ffi.new("laconic_rates *")

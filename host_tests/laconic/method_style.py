@@ -36,11 +36,6 @@ METHOD_STYLES = {
 FOREIGN = MethodStyle("#777777", "x")  # somebody else's integrator
 
 
-def colour_of(method: str) -> str:
-    """The method's colour, for what has neither line nor marker."""
-    return METHOD_STYLES.get(method, FOREIGN).colour
-
-
 def look(method: str, size: float = MARKER_SIZE, **replaced: Any) -> dict[str, Any]:
     """Keywords for matplotlib's plot functions: colour, marker and label of a method. `size`: marker size in points."""
     style = METHOD_STYLES.get(method, FOREIGN)

@@ -85,6 +85,16 @@ def test_a_frame_lost_at_any_position_is_sent_again_and_acts_once(name: str) -> 
             assert run.states.tobytes() == twin_states(SCENE, run).tobytes(), position
 
 
+def test_a_lost_answer_costs_one_repetition_and_no_more() -> None:
+    with lossy() as (client, end):
+        life(client)
+        position = end.seen["RESULT"] + 1
+        end.lost = lambda kind, count: (kind, count) == ("RESULT", position)
+        began_us = client.link.clock.now_us()
+        client.start_lockstep()
+        assert REPEAT_S * 1e6 <= client.link.clock.now_us() - began_us < 1.5 * REPEAT_S * 1e6
+
+
 def test_every_third_frame_lost_costs_time_and_nothing_else() -> None:
     with lossy(timeout_s=10.0) as (client, end):
         chance = Random(5)  # not hash(), which Python seeds anew in each process

@@ -7,7 +7,7 @@ keep length three and the components from `dof` on stay zero.
 
 from __future__ import annotations
 
-from dataclasses import dataclass, replace
+from dataclasses import dataclass
 from functools import cached_property
 
 import numpy as np
@@ -28,10 +28,6 @@ class Field:
     def yaw_row(self) -> np.ndarray:
         """g: ν3 = g·ζ."""
         return self.nu_of_zeta[2]
-
-    def without_drive(self) -> Field:
-        """The free motion of the same vehicle: no damping, no drive."""
-        return replace(self, decay_per_s=np.zeros(3), drive=np.zeros(3))
 
     @cached_property
     def cross_matrix(self) -> np.ndarray:

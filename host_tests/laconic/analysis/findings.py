@@ -100,4 +100,3 @@ class Wishes:
     high: float | None = None
     straight: tuple[float, float] | None = None
     start: tuple[float, float, float] | None = None
-

@@ -10,7 +10,6 @@ from laconic.errors import Refused
 from laconic.report.counting import (
     cachegrind_present,
     count_on_board,
-    host_instructions,
     host_state,
     size_of_step,
 )
@@ -64,20 +63,5 @@ def scene_rows(workshop: Workshop, scenes: Sequence[Scene], reals: Sequence[str]
     for scene in scenes:
         for real in reals:
             rows += [board_row(workshop, board, Variant(scene, real, "-Os", trim)) for trim in (False, True)]
-            advance()
-    return rows
-
-
-def host_rows(workshop: Workshop, scene: Scene, reals: Sequence[str], methods: Sequence[str] = METHODS[1:],
-              advance: Any = lambda: None) -> list[dict[str, Any]]:
-    """Instructions of a step on the host, by cachegrind."""
-    rows = []
-    for real in reals:
-        for method in methods:
-            for trim in (False, True):
-                variant = Variant(scene.with_run(method=method), real, "-O2", trim)
-                count = host_instructions(workshop.host_program(variant))
-                rows.append({"scene": scene.path.stem, "method": method, "real": real, "build":
-                             "trimmed" if trim else "whole", "instructions": round(count, 1)})
             advance()
     return rows
