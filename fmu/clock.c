@@ -12,9 +12,7 @@ double fmu_clock_now(const fmu_clock *clock) {
     return clock->anchor_s + (clock->anchor_rest_s + (double)clock->ticks * clock->step_s);
 }
 
-static double magnitude(double value) {
-    return value < 0.0 ? -value : value;
-}
+static double magnitude(double value) { return value < 0.0 ? -value : value; }
 
 bool fmu_clock_passes_stop(const fmu_clock *clock, double time_s, double step_s) {
     const double start_s = magnitude(clock->start_s), stop_s = magnitude(clock->stop_s);

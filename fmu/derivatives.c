@@ -5,9 +5,7 @@
 
 #define NO_TANGENT UINT32_MAX
 
-static bool is_number(double value) {
-    return value - value == 0.0;
-}
+static bool is_number(double value) { return value - value == 0.0; }
 
 static double *tangent_place(fmu_tangent *tangent, const fmu_slot *slot, uint32_t element) {
     return (double *)(void *)((char *)tangent + slot->variable->tangent + sizeof(double) * (slot->first + element));
@@ -29,13 +27,16 @@ static fmu_status count_known(const fmu_instance *instance, fmu_references list,
     size_t k;
     fmu_slot slot;
     *total = 0;
-    if (list.count > 0 && list.reference == NULL) return fmu_refuse(instance, "the list of value references is missing (NULL)");
+    if (list.count > 0 && list.reference == NULL)
+        return fmu_refuse(instance, "the list of value references is missing (NULL)");
     for (k = 0; k < list.count; k++) {
         if (!fmu_find(instance, list.reference[k], &slot))
-            return fmu_refuse(instance, "there is no variable with the value reference %u", (unsigned)list.reference[k]);
+            return fmu_refuse(instance, "there is no variable with the value reference %u",
+                              (unsigned)list.reference[k]);
         if (!(known ? is_known(instance, slot.variable) : is_unknown(slot.variable)))
-            return fmu_refuse(instance, known ? "%s is neither an input nor a continuous state: no derivative with respect to it"
-                                              : "%s is neither an output nor a derivative: it has no partial derivatives",
+            return fmu_refuse(instance,
+                              known ? "%s is neither an input nor a continuous state: no derivative with respect to it"
+                                    : "%s is neither an output nor a derivative: it has no partial derivatives",
                               slot.variable->name);
         *total += slot.count;
     }
@@ -55,8 +56,10 @@ static fmu_status check_counts(fmu_instance *instance, fmu_references unknowns, 
 }
 
 static fmu_status refuse_result(const fmu_instance *instance, const fmu_variable *variable) {
-    return fmu_refuse(instance, "a derivative of or by %s leaves the range of double precision; check inputs, states and "
-                      "seeds", variable->name);
+    return fmu_refuse(instance,
+                      "a derivative of or by %s leaves the range of double precision; check inputs, states and "
+                      "seeds",
+                      variable->name);
 }
 
 /* Checked before anything is handed out. */
@@ -140,7 +143,9 @@ static fmu_status check_orders(const fmu_instance *instance, size_t count, const
     size_t k;
     if (count > 0 && orders == NULL) return fmu_refuse(instance, "the list of orders is missing (NULL)");
     for (k = 0; k < count; k++)
-        if (orders[k] != 1) return fmu_refuse(instance, "a derivative of order %d was asked for; there is only the first", (int)orders[k]);
+        if (orders[k] != 1)
+            return fmu_refuse(instance, "a derivative of order %d was asked for; there is only the first",
+                              (int)orders[k]);
     return FMU_OK;
 }
 
@@ -166,10 +171,12 @@ static fmu_status check_inputs(const fmu_instance *instance, fmu_references inpu
         return fmu_refuse(instance, "a list of value references or values is missing (NULL)");
     for (k = 0; k < inputs.count; k++) {
         if (!fmu_find(instance, inputs.reference[k], &slot))
-            return fmu_refuse(instance, "there is no variable with the value reference %u", (unsigned)inputs.reference[k]);
+            return fmu_refuse(instance, "there is no variable with the value reference %u",
+                              (unsigned)inputs.reference[k]);
         if (slot.variable->access != FMU_INPUT || slot.count != 1)
             return fmu_refuse(instance, "%s is no scalar input", slot.variable->name);
-        if (!(values[k] - values[k] == 0.0)) return fmu_refuse(instance, "%s: its derivative %g is not finite", slot.variable->name, values[k]);
+        if (!(values[k] - values[k] == 0.0))
+            return fmu_refuse(instance, "%s: its derivative %g is not finite", slot.variable->name, values[k]);
     }
     return FMU_OK;
 }
@@ -179,12 +186,14 @@ fmu_status fmu_set_input_derivatives(fmu_instance *instance, fmu_references inpu
     size_t k;
     fmu_slot slot;
     fmu_status status = check_inputs(instance, inputs, values);
-    if (!FMU_PLANT_TAKES_SLOPES) return fmu_refuse(instance, "the inputs are held over a step: they take no derivatives");
+    if (!FMU_PLANT_TAKES_SLOPES)
+        return fmu_refuse(instance, "the inputs are held over a step: they take no derivatives");
     if (status == FMU_OK) status = check_orders(instance, inputs.count, orders);
     if (status != FMU_OK) return status;
     for (k = 0; k < inputs.count; k++) {
         fmu_find(instance, inputs.reference[k], &slot);
-        fmu_plant_set_slope(&instance->plant, slot.variable->tangent + (uint32_t)sizeof(double) * slot.first, values[k]);
+        fmu_plant_set_slope(&instance->plant, slot.variable->tangent + (uint32_t)sizeof(double) * slot.first,
+                            values[k]);
     }
     return FMU_OK;
 }

@@ -7,9 +7,7 @@
 #define ALLOW(component, call) \
     if ((component) == NULL || !fmu_may(SELF(component), call)) return fmi2Error
 
-static fmi2Status give(fmu_status status) {
-    return (fmi2Status)status;
-}
+static fmi2Status give(fmu_status status) { return (fmi2Status)status; }
 
 static fmu_references list(const fmi2ValueReference *references, size_t count) {
     const fmu_references pair = {references, count};
@@ -40,13 +38,9 @@ static void say(const fmu_instance *instance, fmu_status status, const char *cat
 
 /* ----------------------------------------------------------------------------- life of an instance -- */
 
-const char *fmi2GetTypesPlatform(void) {
-    return fmi2TypesPlatform;
-}
+const char *fmi2GetTypesPlatform(void) { return fmi2TypesPlatform; }
 
-const char *fmi2GetVersion(void) {
-    return fmi2Version;
-}
+const char *fmi2GetVersion(void) { return fmi2Version; }
 
 fmi2Component fmi2Instantiate(fmi2String instanceName, fmi2Type fmuType, fmi2String fmuGUID,
                               fmi2String fmuResourceLocation, const fmi2CallbackFunctions *functions,
@@ -57,8 +51,9 @@ fmi2Component fmi2Instantiate(fmi2String instanceName, fmi2Type fmuType, fmi2Str
     if (functions == NULL) return NULL;
     if (fmuType != fmi2ModelExchange && fmuType != fmi2CoSimulation) {
         if (functions->logger != NULL)
-            functions->logger(functions->componentEnvironment, instanceName, fmi2Error, "logStatusError",
-                              "Instantiate: there is no such fmuType; use fmi2ModelExchange (0) or fmi2CoSimulation (1)");
+            functions->logger(
+                functions->componentEnvironment, instanceName, fmi2Error, "logStatusError",
+                "Instantiate: there is no such fmuType; use fmi2ModelExchange (0) or fmi2CoSimulation (1)");
         return NULL;
     }
     box.log = functions->logger;
@@ -75,9 +70,7 @@ fmi2Component fmi2Instantiate(fmi2String instanceName, fmi2Type fmuType, fmi2Str
     return fmu_create(&request);
 }
 
-void fmi2FreeInstance(fmi2Component c) {
-    fmu_free(SELF(c));
-}
+void fmi2FreeInstance(fmi2Component c) { fmu_free(SELF(c)); }
 
 fmi2Status fmi2SetDebugLogging(fmi2Component c, fmi2Boolean loggingOn, size_t nCategories,
                                const fmi2String categories[]) {
@@ -131,7 +124,8 @@ fmi2Status fmi2SetReal(fmi2Component c, const fmi2ValueReference vr[], size_t nv
 static fmu_type whole(const fmu_instance *instance, fmi2ValueReference reference) {
     fmu_slot slot;
     if (!fmu_find(instance, reference, &slot)) return FMU_INT32;
-    if (slot.variable->type == FMU_ENUMERATION || slot.variable->type == FMU_UINT64) return (fmu_type)slot.variable->type;
+    if (slot.variable->type == FMU_ENUMERATION || slot.variable->type == FMU_UINT64)
+        return (fmu_type)slot.variable->type;
     return FMU_INT32;
 }
 
@@ -160,8 +154,7 @@ static fmi2Status set_whole(fmu_instance *instance, const fmi2ValueReference vr[
         for (k = 0; k < nvr; k++) {
             const double number = boolean ? value[k] != fmi2False : value[k];
             const fmu_type type = boolean ? FMU_BOOLEAN : whole(instance, vr[k]);
-            const fmu_status status =
-                (pass == 0 ? fmu_check_set : fmu_set)(instance, type, &vr[k], 1, &number, 1);
+            const fmu_status status = (pass == 0 ? fmu_check_set : fmu_set)(instance, type, &vr[k], 1, &number, 1);
             if (status != FMU_OK) return give(status);
         }
     return fmi2OK;
@@ -240,8 +233,8 @@ fmi2Status fmi2GetDirectionalDerivative(fmi2Component c, const fmi2ValueReferenc
                                         const fmi2ValueReference knowns[], size_t nKnown, const fmi2Real dKnown[],
                                         fmi2Real dUnknown[]) {
     ALLOW(c, FMU_CALL_PARTIAL_DERIVATIVE);
-    return give(fmu_directional(SELF(c), list(unknowns, nUnknown), list(knowns, nKnown), dKnown, nKnown, dUnknown,
-                                nUnknown));
+    return give(
+        fmu_directional(SELF(c), list(unknowns, nUnknown), list(knowns, nKnown), dKnown, nKnown, dUnknown, nUnknown));
 }
 
 fmi2Status fmi2SetRealInputDerivatives(fmi2Component c, const fmi2ValueReference vr[], size_t nvr,

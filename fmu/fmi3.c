@@ -9,9 +9,7 @@
 #define ALLOW(instance, call) \
     if ((instance) == NULL || !fmu_may(SELF(instance), call)) return fmi3Error
 
-static fmi3Status give(fmu_status status) {
-    return (fmi3Status)status;
-}
+static fmi3Status give(fmu_status status) { return (fmi3Status)status; }
 
 static fmu_references list(const fmi3ValueReference *references, size_t count) {
     const fmu_references pair = {references, count};
@@ -44,9 +42,7 @@ static bool offer_update(fmu_instance *instance, bool finished) {
 
 /* ----------------------------------------------------------------------------- life of an instance -- */
 
-const char *fmi3GetVersion(void) {
-    return fmi3Version;
-}
+const char *fmi3GetVersion(void) { return fmi3Version; }
 
 static fmu_instance *create(const fmu_request *request, const fmu_callbacks_3 *functions) {
     fmu_request complete = *request;
@@ -122,9 +118,7 @@ fmi3Instance fmi3InstantiateScheduledExecution(fmi3String instanceName, fmi3Stri
     return NULL;
 }
 
-void fmi3FreeInstance(fmi3Instance instance) {
-    fmu_free(SELF(instance));
-}
+void fmi3FreeInstance(fmi3Instance instance) { fmu_free(SELF(instance)); }
 
 fmi3Status fmi3SetDebugLogging(fmi3Instance instance, fmi3Boolean loggingOn, size_t nCategories,
                                const fmi3String categories[]) {
@@ -200,49 +194,50 @@ fmi3Status fmi3SetFloat64(fmi3Instance instance, const fmi3ValueReference valueR
 #define PLAIN(value) (double)(value)
 /* a negative int that was cast is said to be what it was; what else is beyond the largest int64_t was meant so */
 #define SIGNED(value) ((value) >= UINT64_MAX - INT32_MAX ? (double)(int64_t)(value) : (double)(value))
-#define TYPED(Name, fmi3Type, fmu_type, number)                                                                        \
-    fmi3Status fmi3Get##Name(fmi3Instance instance, const fmi3ValueReference valueReferences[],                        \
-                             size_t nValueReferences, fmi3Type values[], size_t nValues) {                             \
-        double numbers[FMU_PLANT_LARGEST_ARRAY];                                                                       \
-        size_t k, i, used;                                                                                             \
-        int pass;                                                                                                      \
-        ALLOW(instance, FMU_CALL_GET);                                                                                 \
-        for (pass = 0; pass < 2; pass++) {                                                                             \
-            fmu_status status = FMU_OK;                                                                                \
-            for (k = used = 0; k < nValueReferences; k++, used += i) {                                                 \
-                size_t size = 0;                                                                                       \
-                status = fmu_size(SELF(instance), valueReferences, values, k, nValues - used, &size);                  \
-                if (status == FMU_OK) status = fmu_get(SELF(instance), fmu_type, &valueReferences[k], 1, numbers, size);\
-                if (status != FMU_OK) return give(status);                                                             \
-                for (i = 0; i < size; i++)                                                                             \
-                    if (pass == 1) values[used + i] = (fmi3Type)numbers[i];                                            \
-            }                                                                                                          \
-            status = fmu_all_used(SELF(instance), used, nValues);                                                      \
-            if (status != FMU_OK) return give(status);                                                                 \
-        }                                                                                                              \
-        return fmi3OK;                                                                                                 \
-    }                                                                                                                  \
-    fmi3Status fmi3Set##Name(fmi3Instance instance, const fmi3ValueReference valueReferences[],                        \
-                             size_t nValueReferences, const fmi3Type values[], size_t nValues) {                       \
-        double numbers[FMU_PLANT_LARGEST_ARRAY];                                                                       \
-        size_t k, i, used;                                                                                             \
-        int pass;                                                                                                      \
-        ALLOW(instance, FMU_CALL_SET_DISCRETE);                                                                        \
-        for (pass = 0; pass < 2; pass++) {                                                                             \
-            fmu_status status = FMU_OK;                                                                                \
-            for (k = used = 0; k < nValueReferences; k++, used += i) {                                                 \
-                size_t size = 0;                                                                                       \
-                status = fmu_size(SELF(instance), valueReferences, values, k, nValues - used, &size);                  \
-                for (i = 0; i < size; i++) numbers[i] = number(values[used + i]);                                      \
-                if (status == FMU_OK)                                                                                  \
-                    status = (pass == 0 ? fmu_check_set : fmu_set)(SELF(instance), fmu_type, &valueReferences[k], 1,   \
-                                                                   numbers, size);                                     \
-                if (status != FMU_OK) return give(status);                                                             \
-            }                                                                                                          \
-            status = fmu_all_used(SELF(instance), used, nValues);                                                      \
-            if (status != FMU_OK) return give(status);                                                                 \
-        }                                                                                                              \
-        return fmi3OK;                                                                                                 \
+#define TYPED(Name, fmi3Type, fmu_type, number) \
+    fmi3Status fmi3Get##Name(fmi3Instance instance, const fmi3ValueReference valueReferences[], \
+                             size_t nValueReferences, fmi3Type values[], size_t nValues) { \
+        double numbers[FMU_PLANT_LARGEST_ARRAY]; \
+        size_t k, i, used; \
+        int pass; \
+        ALLOW(instance, FMU_CALL_GET); \
+        for (pass = 0; pass < 2; pass++) { \
+            fmu_status status = FMU_OK; \
+            for (k = used = 0; k < nValueReferences; k++, used += i) { \
+                size_t size = 0; \
+                status = fmu_size(SELF(instance), valueReferences, values, k, nValues - used, &size); \
+                if (status == FMU_OK) \
+                    status = fmu_get(SELF(instance), fmu_type, &valueReferences[k], 1, numbers, size); \
+                if (status != FMU_OK) return give(status); \
+                for (i = 0; i < size; i++) \
+                    if (pass == 1) values[used + i] = (fmi3Type)numbers[i]; \
+            } \
+            status = fmu_all_used(SELF(instance), used, nValues); \
+            if (status != FMU_OK) return give(status); \
+        } \
+        return fmi3OK; \
+    } \
+    fmi3Status fmi3Set##Name(fmi3Instance instance, const fmi3ValueReference valueReferences[], \
+                             size_t nValueReferences, const fmi3Type values[], size_t nValues) { \
+        double numbers[FMU_PLANT_LARGEST_ARRAY]; \
+        size_t k, i, used; \
+        int pass; \
+        ALLOW(instance, FMU_CALL_SET_DISCRETE); \
+        for (pass = 0; pass < 2; pass++) { \
+            fmu_status status = FMU_OK; \
+            for (k = used = 0; k < nValueReferences; k++, used += i) { \
+                size_t size = 0; \
+                status = fmu_size(SELF(instance), valueReferences, values, k, nValues - used, &size); \
+                for (i = 0; i < size; i++) numbers[i] = number(values[used + i]); \
+                if (status == FMU_OK) \
+                    status = (pass == 0 ? fmu_check_set : fmu_set)(SELF(instance), fmu_type, &valueReferences[k], 1, \
+                                                                   numbers, size); \
+                if (status != FMU_OK) return give(status); \
+            } \
+            status = fmu_all_used(SELF(instance), used, nValues); \
+            if (status != FMU_OK) return give(status); \
+        } \
+        return fmi3OK; \
     }
 
 TYPED(Int32, fmi3Int32, FMU_INT32, PLAIN)
@@ -251,20 +246,20 @@ TYPED(UInt64, fmi3UInt64, FMU_UINT64, SIGNED)
 TYPED(Boolean, fmi3Boolean, FMU_BOOLEAN, PLAIN)
 
 /* Types that no variable has. */
-#define ABSENT(Name, fmi3Type)                                                                                        \
-    fmi3Status fmi3Get##Name(fmi3Instance instance, const fmi3ValueReference valueReferences[],                       \
-                             size_t nValueReferences, fmi3Type values[], size_t nValues) {                            \
-        (void)valueReferences;                                                                                        \
-        (void)values;                                                                                                 \
-        ALLOW(instance, FMU_CALL_GET);                                                                                \
-        return give(fmu_none_of(SELF(instance), #Name, nValueReferences + nValues));                                  \
-    }                                                                                                                 \
-    fmi3Status fmi3Set##Name(fmi3Instance instance, const fmi3ValueReference valueReferences[],                       \
-                             size_t nValueReferences, const fmi3Type values[], size_t nValues) {                      \
-        (void)valueReferences;                                                                                        \
-        (void)values;                                                                                                 \
-        ALLOW(instance, FMU_CALL_SET_CONTINUOUS);                                                                     \
-        return give(fmu_none_of(SELF(instance), #Name, nValueReferences + nValues));                                  \
+#define ABSENT(Name, fmi3Type) \
+    fmi3Status fmi3Get##Name(fmi3Instance instance, const fmi3ValueReference valueReferences[], \
+                             size_t nValueReferences, fmi3Type values[], size_t nValues) { \
+        (void)valueReferences; \
+        (void)values; \
+        ALLOW(instance, FMU_CALL_GET); \
+        return give(fmu_none_of(SELF(instance), #Name, nValueReferences + nValues)); \
+    } \
+    fmi3Status fmi3Set##Name(fmi3Instance instance, const fmi3ValueReference valueReferences[], \
+                             size_t nValueReferences, const fmi3Type values[], size_t nValues) { \
+        (void)valueReferences; \
+        (void)values; \
+        ALLOW(instance, FMU_CALL_SET_CONTINUOUS); \
+        return give(fmu_none_of(SELF(instance), #Name, nValueReferences + nValues)); \
     }
 
 ABSENT(Float32, fmi3Float32)
@@ -295,22 +290,22 @@ fmi3Status fmi3SetBinary(fmi3Instance instance, const fmi3ValueReference valueRe
 
 /* ------------------------------------------------------------------------------------------ clocks -- */
 
-#define CLOCKS(Name, ...)                                                                                             \
+#define CLOCKS(Name, ...) \
     fmi3Status fmi3##Name(fmi3Instance instance, const fmi3ValueReference valueReferences[], size_t nValueReferences, \
-                          __VA_ARGS__) {                                                                              \
-        (void)valueReferences;                                                                                        \
-        (void)first;                                                                                                  \
-        ALLOW(instance, FMU_CALL_STATE_OF_FMU);                                                                       \
-        return give(fmu_none_of(SELF(instance), "Clock", nValueReferences));                                          \
+                          __VA_ARGS__) { \
+        (void)valueReferences; \
+        (void)first; \
+        ALLOW(instance, FMU_CALL_STATE_OF_FMU); \
+        return give(fmu_none_of(SELF(instance), "Clock", nValueReferences)); \
     }
-#define CLOCKS_2(Name, first_type, second_type)                                                                       \
+#define CLOCKS_2(Name, first_type, second_type) \
     fmi3Status fmi3##Name(fmi3Instance instance, const fmi3ValueReference valueReferences[], size_t nValueReferences, \
-                          first_type first[], second_type second[]) {                                                 \
-        (void)second;                                                                                                 \
-        (void)valueReferences;                                                                                        \
-        (void)first;                                                                                                  \
-        ALLOW(instance, FMU_CALL_STATE_OF_FMU);                                                                       \
-        return give(fmu_none_of(SELF(instance), "Clock", nValueReferences));                                          \
+                          first_type first[], second_type second[]) { \
+        (void)second; \
+        (void)valueReferences; \
+        (void)first; \
+        ALLOW(instance, FMU_CALL_STATE_OF_FMU); \
+        return give(fmu_none_of(SELF(instance), "Clock", nValueReferences)); \
     }
 
 CLOCKS(GetClock, fmi3Clock first[])
@@ -427,8 +422,8 @@ fmi3Status fmi3GetOutputDerivatives(fmi3Instance instance, const fmi3ValueRefere
                                     size_t nValueReferences, const fmi3Int32 orders[], fmi3Float64 values[],
                                     size_t nValues) {
     ALLOW(instance, FMU_CALL_OUTPUT_DERIVATIVES);
-    return give(fmu_output_derivatives(SELF(instance), list(valueReferences, nValueReferences), orders, values,
-                                       nValues));
+    return give(
+        fmu_output_derivatives(SELF(instance), list(valueReferences, nValueReferences), orders, values, nValues));
 }
 
 /* ------------------------------------------------------------------------------------------ events -- */

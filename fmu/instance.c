@@ -96,9 +96,7 @@ void fmu_free(fmu_instance *instance) {
     free(instance);
 }
 
-static bool is_finite(double value) {
-    return value - value == 0.0;
-}
+static bool is_finite(double value) { return value - value == 0.0; }
 
 fmu_status fmu_setup(fmu_instance *instance, double start_s, bool stop_defined, double stop_s) {
     if (!is_finite(start_s)) return fmu_refuse(instance, "the start time %g is not finite", start_s);

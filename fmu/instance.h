@@ -27,7 +27,12 @@ typedef enum fmu_status { FMU_OK, FMU_WARNING, FMU_DISCARD, FMU_ERROR, FMU_FATAL
 typedef enum fmu_kind { FMU_MODEL_EXCHANGE, FMU_CO_SIMULATION } fmu_kind;
 
 /* Log categories, as in the descriptions; a bit each. */
-typedef enum fmu_category { FMU_LOG_WARNING = 1, FMU_LOG_DISCARD = 2, FMU_LOG_ERROR = 4, FMU_LOG_EVENTS = 8 } fmu_category;
+typedef enum fmu_category {
+    FMU_LOG_WARNING = 1,
+    FMU_LOG_DISCARD = 2,
+    FMU_LOG_ERROR = 4,
+    FMU_LOG_EVENTS = 8
+} fmu_category;
 #define FMU_LOG_ALL 15U
 
 typedef struct fmu_instance fmu_instance;
@@ -53,13 +58,13 @@ struct fmu_instance {
     fmu_mode mode;
     bool event_mode_used;
     bool early_return_allowed;
-    bool scalar;              /* no structural parameter: the arrays' size is fixed          */
-    uint32_t allowed;         /* bit per fmu_call: what may be called in this mode           */
-    uint32_t settable;        /* bit per fmu_access: what may be set in this mode            */
-    unsigned log_categories;  /* bit per fmu_category                                        */
+    bool scalar;             /* no structural parameter: the arrays' size is fixed          */
+    uint32_t allowed;        /* bit per fmu_call: what may be called in this mode           */
+    uint32_t settable;       /* bit per fmu_access: what may be set in this mode            */
+    unsigned log_categories; /* bit per fmu_category                                        */
     fmu_deliver deliver;
     void *environment;
-    void (*box[2])(void);     /* the importer's callbacks, as the glue keeps them            */
+    void (*box[2])(void); /* the importer's callbacks, as the glue keeps them            */
     char *name;
     uint64_t token_hash;
     uint32_t told;                   /* bit per thing that the plant says once a run                */
@@ -67,14 +72,14 @@ struct fmu_instance {
     fmu_between_steps between_steps; /* NULL: the importer does not ask for intermediate updates */
     fmu_clock clock;
     fmu_plant plant;
-    fmu_plant initial;        /* right after instantiation, for reset                        */
-    fmu_list read, written;   /* the last good lists of reals (reals.c)                      */
+    fmu_plant initial;      /* right after instantiation, for reset                        */
+    fmu_list read, written; /* the last good lists of reals (reals.c)                      */
 };
 
 typedef struct fmu_request {
     const char *instance_name;
-    const char *token;      /* fmuGUID, instantiationToken                                   */
-    const char *resources;  /* path of the resources folder, or a file: URI; may be NULL     */
+    const char *token;     /* fmuGUID, instantiationToken                                   */
+    const char *resources; /* path of the resources folder, or a file: URI; may be NULL     */
     fmu_kind kind;
     int version;
     bool logging_on;
@@ -126,14 +131,14 @@ fmu_status fmu_set_logging(fmu_instance *instance, bool on, size_t count, const 
 typedef enum fmu_type { FMU_REAL, FMU_INT32, FMU_UINT64, FMU_ENUMERATION, FMU_BOOLEAN } fmu_type;
 
 typedef enum fmu_access { /* who sets it, and when (variables.c) */
-    FMU_INDEPENDENT,
-    FMU_STRUCTURAL,
-    FMU_FIXED,
-    FMU_TUNABLE,
-    FMU_INPUT,
-    FMU_STATE,  /* an output that is a continuous state */
-    FMU_OUTPUT,
-    FMU_LOCAL
+                          FMU_INDEPENDENT,
+                          FMU_STRUCTURAL,
+                          FMU_FIXED,
+                          FMU_TUNABLE,
+                          FMU_INPUT,
+                          FMU_STATE, /* an output that is a continuous state */
+                          FMU_OUTPUT,
+                          FMU_LOCAL
 } fmu_access;
 
 /* One row of the table that is generated from the description; the row's number is the value reference. */
@@ -236,8 +241,8 @@ fmu_status fmu_directional(fmu_instance *instance, fmu_references unknowns, fmu_
                            size_t seed_count, double *sensitivity, size_t sensitivity_count);
 fmu_status fmu_adjoint(fmu_instance *instance, fmu_references unknowns, fmu_references knowns, const double *seed,
                        size_t seed_count, double *sensitivity, size_t sensitivity_count);
-fmu_status fmu_output_derivatives(fmu_instance *instance, fmu_references outputs, const int32_t *orders,
-                                  double *values, size_t value_count);
+fmu_status fmu_output_derivatives(fmu_instance *instance, fmu_references outputs, const int32_t *orders, double *values,
+                                  size_t value_count);
 fmu_status fmu_set_input_derivatives(fmu_instance *instance, fmu_references inputs, const int32_t *orders,
                                      const double *values);
 
@@ -247,7 +252,8 @@ typedef struct fmu_snapshot fmu_snapshot;
 
 uint64_t fmu_token_hash(const char *token);
 
-fmu_status fmu_save(fmu_instance *instance, fmu_snapshot **snapshot); /* fills *snapshot, or makes one where it is NULL */
+fmu_status fmu_save(fmu_instance *instance,
+                    fmu_snapshot **snapshot); /* fills *snapshot, or makes one where it is NULL */
 fmu_status fmu_restore(fmu_instance *instance, const fmu_snapshot *snapshot);
 void fmu_drop(fmu_snapshot **snapshot);
 fmu_status fmu_serialized_size(fmu_instance *instance, const fmu_snapshot *snapshot, size_t *size);

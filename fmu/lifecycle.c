@@ -17,8 +17,8 @@
 #define SIMULATION_3 (INSTANTIATED | CONFIGURATION | INITIALIZATION | EVENT | STEP | TERMINATED)
 
 const char *const fmu_mode_names[FMU_MODE_COUNT] = {
-    "instantiated",    "configuration mode", "initialization mode", "event mode", "continuous-time mode", "step mode",
-    "intermediate update mode", "terminated"};
+    "instantiated",         "configuration mode", "initialization mode",      "event mode",
+    "continuous-time mode", "step mode",          "intermediate update mode", "terminated"};
 
 /* columns: FMI 2 Model Exchange, FMI 2 Co-Simulation, FMI 3 Model Exchange, FMI 3 Co-Simulation */
 const fmu_rule fmu_rules[FMU_CALL_COUNT] = {

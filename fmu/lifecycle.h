@@ -52,8 +52,8 @@ typedef enum fmu_call {
 } fmu_call;
 
 typedef struct fmu_rule {
-    const char *what;                                                 /* for messages                        */
-    uint16_t exchange_2, simulation_2, exchange_3, simulation_3;      /* bit per mode in which it is allowed */
+    const char *what;                                            /* for messages                        */
+    uint16_t exchange_2, simulation_2, exchange_3, simulation_3; /* bit per mode in which it is allowed */
 } fmu_rule;
 
 extern const fmu_rule fmu_rules[FMU_CALL_COUNT];

@@ -27,7 +27,8 @@ static size_t offsets_of(const fmu_instance *instance, const fmu_variable *varia
 }
 
 /* Fills the list; false: one of the references takes the long way. */
-static bool look_up(const fmu_instance *instance, fmu_list *list, const uint32_t *references, size_t count, bool to_set) {
+static bool look_up(const fmu_instance *instance, fmu_list *list, const uint32_t *references, size_t count,
+                    bool to_set) {
     size_t k;
     list->count = list->values = 0;
     list->groups = 0;
@@ -55,9 +56,7 @@ static inline bool is_known(const fmu_list *list, const uint32_t *references, si
     return true;
 }
 
-static inline double *value_at(fmu_plant *plant, uint32_t offset) {
-    return (double *)(void *)((char *)plant + offset);
-}
+static inline double *value_at(fmu_plant *plant, uint32_t offset) { return (double *)(void *)((char *)plant + offset); }
 
 static bool get_quickly(fmu_instance *instance, const uint32_t *references, size_t count, double *values,
                         size_t value_count) {

@@ -65,12 +65,15 @@ static unsigned category_bit(const char *name) {
 fmu_status fmu_set_logging(fmu_instance *instance, bool on, size_t count, const char *const names[]) {
     unsigned wanted = count == 0 ? FMU_LOG_ALL : 0;
     size_t k;
-    if (count > 0 && names == NULL) return fmu_refuse(instance, "SetDebugLogging: %zu categories and no list of them", count);
+    if (count > 0 && names == NULL)
+        return fmu_refuse(instance, "SetDebugLogging: %zu categories and no list of them", count);
     for (k = 0; k < count; k++) {
         const unsigned bit = category_bit(names[k]);
         if (bit == 0)
-            return fmu_refuse(instance, "SetDebugLogging: there is no category '%s'; use logStatusWarning, "
-                              "logStatusDiscard, logStatusError or logEvents", names[k] != NULL ? names[k] : "(null)");
+            return fmu_refuse(instance,
+                              "SetDebugLogging: there is no category '%s'; use logStatusWarning, "
+                              "logStatusDiscard, logStatusError or logEvents",
+                              names[k] != NULL ? names[k] : "(null)");
         wanted |= bit;
     }
     if (instance->version == 2)

@@ -137,8 +137,7 @@ fmu_status fmu_serialize(fmu_instance *instance, const fmu_snapshot *snapshot, u
 }
 
 static bool mode_suits_kind(const fmu_snapshot *snapshot) {
-    if (snapshot->kind == FMU_MODEL_EXCHANGE)
-        return snapshot->mode != FMU_STEP && snapshot->mode != FMU_INTERMEDIATE;
+    if (snapshot->kind == FMU_MODEL_EXCHANGE) return snapshot->mode != FMU_STEP && snapshot->mode != FMU_INTERMEDIATE;
     return snapshot->mode != FMU_CONTINUOUS && snapshot->mode != FMU_INTERMEDIATE &&
            (snapshot->mode != FMU_EVENT || snapshot->event_mode_used);
 }
@@ -161,7 +160,8 @@ static fmu_status read_bytes(fmu_instance *instance, const uint8_t *bytes, size_
         return fmu_refuse(instance, "DeserializeFMUState: the %zu bytes are damaged or cut off", size);
     stream.at = sizeof magic;
     stream.size = size - 8;
-    if (!transfer(&stream, made, &version, &whole) || stream.at != stream.size || whole != size || !mode_suits_kind(made))
+    if (!transfer(&stream, made, &version, &whole) || stream.at != stream.size || whole != size ||
+        !mode_suits_kind(made))
         return fmu_refuse(instance, "DeserializeFMUState: the %zu bytes make no sense as a state", size);
     return check_ours(instance, made);
 }

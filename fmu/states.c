@@ -8,7 +8,8 @@ fmu_status fmu_set_time(fmu_instance *instance, double time_s) {
     if (fmu_clock_passes_stop(&instance->clock, time_s, 0.0) && !fmu_clock_may_look_at(&instance->clock, time_s))
         return fmu_refuse(instance, "SetTime: %.15g s is beyond the stop time %.15g s", time_s, instance->clock.stop_s);
     if (fmu_clock_is_before_start(&instance->clock, time_s))
-        return fmu_refuse(instance, "SetTime: %.15g s is before the start time %.15g s", time_s, instance->clock.start_s);
+        return fmu_refuse(instance, "SetTime: %.15g s is before the start time %.15g s", time_s,
+                          instance->clock.start_s);
     instance->plant.time_s = time_s;
     return FMU_OK;
 }
@@ -61,8 +62,10 @@ fmu_status fmu_get_rates(fmu_instance *instance, double *values, size_t count) {
     fmu_plant_get_rates(instance, rates);
     for (k = 0; k < count; k++)
         if (!(rates[k] - rates[k] == 0.0))
-            return fmu_refuse(instance, "the derivative of continuous state %zu of %zu leaves the range of double "
-                              "precision; check inputs and states", k + 1, count);
+            return fmu_refuse(instance,
+                              "the derivative of continuous state %zu of %zu leaves the range of double "
+                              "precision; check inputs and states",
+                              k + 1, count);
     memcpy(values, rates, count * sizeof *values);
     return FMU_OK;
 }

@@ -30,9 +30,7 @@ static double internal_step(const fmu_instance *instance, double step_s) {
     return last_s > 0.0 && last_s < step_s ? last_s : step_s;
 }
 
-static double magnitude(double value) {
-    return value < 0.0 ? -value : value;
-}
+static double magnitude(double value) { return value < 0.0 ? -value : value; }
 
 /* How far the importer's time may be off: half an internal step. With step_s = 0 that would be half of whatever the
  * importer asked for, so there it is a thousandth of the step, and what is lost to rounding by an importer that has added
@@ -145,9 +143,8 @@ static inline bool is_one_more(const fmu_instance *instance, double at_s, double
     const fmu_clock *clock = &instance->clock;
     const double off_s = at_s - instance->plant.time_s;
     return step_s == clock->asked_s && clock->asked_ticks == 1 && off_s <= OFF_WITHOUT_STEP * step_s &&
-           off_s >= -OFF_WITHOUT_STEP * step_s &&
-           !clock->stop_defined && !instance->plant.start_needed && !instance->plant.change_needed &&
-           instance->between_steps == NULL;
+           off_s >= -OFF_WITHOUT_STEP * step_s && !clock->stop_defined && !instance->plant.start_needed &&
+           !instance->plant.change_needed && instance->between_steps == NULL;
 }
 
 fmu_status fmu_do_step(fmu_instance *instance, double at_s, double step_s, fmu_step_end *end) {

@@ -10,7 +10,7 @@ typedef struct fmu_stream {
     uint8_t *to;         /* writing, unless NULL                   */
     const uint8_t *from; /* reading, unless NULL; both NULL: counts */
     size_t size, at;
-    bool failed;         /* ran out of bytes, or read nonsense     */
+    bool failed; /* ran out of bytes, or read nonsense     */
 } fmu_stream;
 
 void fmu_stream_u64(fmu_stream *stream, uint64_t *value);

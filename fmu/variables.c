@@ -5,8 +5,8 @@
 
 #include "plant_api.h"
 
-static const char *const type_names[] = {"a Float64 (Real)", "an Int32 (Integer)", "a UInt64 (Integer)", "an Enumeration",
-                                         "a Boolean"};
+static const char *const type_names[] = {"a Float64 (Real)", "an Int32 (Integer)", "a UInt64 (Integer)",
+                                         "an Enumeration", "a Boolean"};
 
 bool fmu_find(const fmu_instance *instance, uint32_t reference, fmu_slot *slot) {
     const uint32_t row = fmu_row(reference), element = fmu_element(reference);
@@ -34,9 +34,7 @@ static double load(const fmu_instance *instance, const fmu_slot *slot, uint32_t 
     }
 }
 
-static bool is_finite(double value) {
-    return value <= DBL_MAX && value >= -DBL_MAX;
-}
+static bool is_finite(double value) { return value <= DBL_MAX && value >= -DBL_MAX; }
 
 static double least_of(const fmu_variable *variable) {
     return variable->access == FMU_STATE ? -FMU_LARGEST_STATE : variable->least;
@@ -67,8 +65,7 @@ static fmu_status refuse_value(const fmu_instance *instance, const fmu_slot *slo
     char name[NAME_LENGTH];
     name_element(name, slot, element);
     if (!is_finite(value)) return fmu_refuse(instance, "%s: %g is not a finite number", name, value);
-    if (most == DBL_MAX)
-        return fmu_refuse(instance, "%s: %.15g is outside its range: at least %g", name, value, least);
+    if (most == DBL_MAX) return fmu_refuse(instance, "%s: %.15g is outside its range: at least %g", name, value, least);
     return fmu_refuse(instance, "%s: %.15g is outside its range: %g to %g", name, value, least, most);
 }
 
@@ -79,8 +76,8 @@ static bool acceptable(const fmu_variable *variable, double value) {
 }
 
 static void store(fmu_instance *instance, const fmu_slot *slot, uint32_t element, double value) {
-    void *place = (char *)&instance->plant + slot->variable->offset +
-                  (size_t)(slot->first + element) * slot->variable->stride;
+    void *place =
+        (char *)&instance->plant + slot->variable->offset + (size_t)(slot->first + element) * slot->variable->stride;
     switch (slot->variable->type) {
     case FMU_REAL: *(double *)place = value; break;
     case FMU_BOOLEAN: *(bool *)place = value != 0.0; break;
@@ -128,8 +125,8 @@ static fmu_status check_settable(fmu_instance *instance, fmu_type type, uint32_t
     const fmu_status status = check_type(instance, type, reference, slot);
     if (status != FMU_OK) return status;
     if (!(instance->settable >> slot->variable->access & 1U))
-        return fmu_refuse(instance, "%s cannot be set in %s: %s", slot->variable->name,
-                          fmu_mode_names[instance->mode], who_sets((fmu_access)slot->variable->access));
+        return fmu_refuse(instance, "%s cannot be set in %s: %s", slot->variable->name, fmu_mode_names[instance->mode],
+                          who_sets((fmu_access)slot->variable->access));
     return slot->variable->access == FMU_STATE ? fmu_make_current(instance) : FMU_OK;
 }
 
@@ -229,7 +226,8 @@ fmu_status fmu_size(fmu_instance *instance, const uint32_t *references, const vo
                     size_t *size) {
     fmu_slot slot;
     *size = 0;
-    if (references == NULL || values == NULL) return fmu_refuse(instance, "a list of value references or values is missing (NULL)");
+    if (references == NULL || values == NULL)
+        return fmu_refuse(instance, "a list of value references or values is missing (NULL)");
     if (!fmu_find(instance, references[which], &slot))
         return fmu_refuse(instance, "there is no variable with the value reference %u", (unsigned)references[which]);
     if (slot.count > left) return refuse_count(instance, &slot, left);
@@ -254,11 +252,15 @@ fmu_status fmu_check_intermediate(const fmu_instance *instance, const uint32_t *
                           count);
     for (k = 0; k < count; k++) {
         if (!fmu_find(instance, references[k], &slot))
-            return fmu_refuse(instance, "Instantiate: no variable has the value reference %u, which is required as "
-                              "intermediate variable", (unsigned)references[k]);
+            return fmu_refuse(instance,
+                              "Instantiate: no variable has the value reference %u, which is required as "
+                              "intermediate variable",
+                              (unsigned)references[k]);
         if (!slot.variable->intermediate)
-            return fmu_refuse(instance, "Instantiate: %s is required as intermediate variable, but it has no "
-                              "intermediate updates", slot.variable->name);
+            return fmu_refuse(instance,
+                              "Instantiate: %s is required as intermediate variable, but it has no "
+                              "intermediate updates",
+                              slot.variable->name);
     }
     return FMU_OK;
 }

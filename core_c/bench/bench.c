@@ -8,9 +8,7 @@ void bench_reset(void) {
     segment = taken = 0;
 }
 
-const laconic_state *bench_state(void) {
-    return &state;
-}
+const laconic_state *bench_state(void) { return &state; }
 
 static laconic_status sampled_step(const bench_segment *now) {
     return laconic_step_sampled(&laconic_scene_model, &laconic_scene_integrator, &state, &now->start, &now->middle,

@@ -7,7 +7,7 @@
 #include "passivity.h"
 #include "zeta.h"
 
-typedef struct motion { /* over one step */
+typedef struct motion {     /* over one step */
     real along_m, across_m; /* displacement in axes at the mid-step heading */
     real turn_rad;
 } motion;

@@ -181,8 +181,8 @@ static void multipliers(real *kappa, const laconic_contact *c, const laconic_mod
     for (i = 0; i < c->constraint_count; i++) kappa[i] = dot(vec(c->multiplier[i]), vec(left));
 }
 
-static void wheel_reaction(laconic_reactions *out, const laconic_contact *c, const laconic_model *m,
-                           const instant *now, const real *kappa, int32_t i) {
+static void wheel_reaction(laconic_reactions *out, const laconic_contact *c, const laconic_model *m, const instant *now,
+                           const real *kappa, int32_t i) {
     const real unit_Nm = m->mass_kg * m->wheel_radius_m * m->wheel_radius_m;
     const int32_t lateral = c->lateral_row[i], brake = c->brake_row[i];
     real acceleration = R(0);
@@ -213,8 +213,7 @@ static void no_slip_margin(laconic_reactions *out, const laconic_contact *c, con
     int32_t i;
     out->no_slip_margin_N = R(0);
     for (i = 0; i < m->wheel_count; i++) {
-        const real needed =
-            laconic_root(out->along_N[i] * out->along_N[i] + out->lateral_N[i] * out->lateral_N[i]);
+        const real needed = laconic_root(out->along_N[i] * out->along_N[i] + out->lateral_N[i] * out->lateral_N[i]);
         const real margin = c->friction_coefficient * out->normal_N[i] - needed;
         if (i == 0 || margin < out->no_slip_margin_N || margin != margin)
             out->no_slip_margin_N = margin; /* where one is NaN, all is */

@@ -3,7 +3,7 @@
 #include "turn.h"
 
 #ifdef LACONIC_SINGLE
-#define REDUCE_1 R(1.5703125)              /* π/2 in three parts; the first two times k are exact for small k */
+#define REDUCE_1 R(1.5703125) /* π/2 in three parts; the first two times k are exact for small k */
 #define REDUCE_2 R(4.8351287841796875e-4)
 #define REDUCE_3 R(3.139164786504813e-7)
 #define EXPONENT_SPAN R(103)
@@ -55,9 +55,7 @@ direction laconic_direction_of_angle(real angle_rad) {
     return laconic_direction_of_turn(laconic_turn_of_angle(angle_rad));
 }
 
-direction laconic_direction_of_turn(laconic_turn turn) {
-    return direction_of_turn(turn);
-}
+direction laconic_direction_of_turn(laconic_turn turn) { return direction_of_turn(turn); }
 
 laconic_turn laconic_turn_of_angle(real angle_rad) {
     const real turns = angle_rad * R(0.1591549430918953358);

@@ -46,8 +46,7 @@ static laconic_status flow_step(const laconic_model *model, const laconic_integr
     return advance(state, model, integrator->step_s, zeta, by);
 }
 
-static laconic_status flow_prepare(laconic_integrator *integrator, const laconic_model *model,
-                                         laconic_refusal *why) {
+static laconic_status flow_prepare(laconic_integrator *integrator, const laconic_model *model, laconic_refusal *why) {
     (void)why;
     laconic_decay_levels(integrator, model, 2);
     return LACONIC_OK;

@@ -37,8 +37,7 @@ INLINE vector free_flow(const laconic_model *m, real half_step, vector zeta) {
     const half_angle a = half_angle_after(m, half_step, zeta);
     const real aside = m->gyro_square * (a.numerator * a.numerator), ahead = a.denominator * a.denominator;
     const real factor = R(2) * a.numerator / (ahead + aside);
-    const vector delta =
-        scaled(factor, plus(scaled(a.denominator, turned), scaled(a.numerator, cross(turned, w))));
+    const vector delta = scaled(factor, plus(scaled(a.denominator, turned), scaled(a.numerator, cross(turned, w))));
     return aside > R(0.0625) * ahead ? laconic_cleared_turn(zeta, delta) : delta; /* ψ beyond half a radian */
 }
 

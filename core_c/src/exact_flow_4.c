@@ -15,8 +15,7 @@ static laconic_status flow_4_step(const laconic_model *model, const laconic_inte
     return advance_if_passive(state, model, integrator->step_s, loads, zeta, by);
 }
 
-static laconic_status flow_4_prepare(laconic_integrator *integrator, const laconic_model *model,
-                                     laconic_refusal *why) {
+static laconic_status flow_4_prepare(laconic_integrator *integrator, const laconic_model *model, laconic_refusal *why) {
     (void)why;
     laconic_decay_levels(integrator, model, 3);
     return LACONIC_OK;

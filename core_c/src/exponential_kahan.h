@@ -26,8 +26,7 @@ INLINE solver factorise(const matrix *m) {
 }
 
 INLINE vector solve(const solver *s, vector rhs) {
-    return scaled(s->inverse_determinant,
-                  plus(plus(scaled(rhs.x, s->c0), scaled(rhs.y, s->c1)), scaled(rhs.z, s->c2)));
+    return scaled(s->inverse_determinant, plus(plus(scaled(rhs.x, s->c0), scaled(rhs.y, s->c1)), scaled(rhs.z, s->c2)));
 }
 
 /* D⁻¹ − Q with D = hφ1, Q Δ = q(ζ,Δ) = ½[(g·ζ) Δ×w + (g·Δ) ζ×w]. */

@@ -16,7 +16,6 @@ laconic_status laconic_input_check(const laconic_model *model, const laconic_inp
     if (status == LACONIC_OK && !is_finite(input->body_moment_Nm))
         status = refuse(why, LACONIC_NOT_FINITE, LACONIC_FIELD_BODY_MOMENT, 0, input->body_moment_Nm, R(0));
     if (status == LACONIC_OK) status = check_many(input->world_force_N, 2, LACONIC_FIELD_WORLD_FORCE, why);
-    if (status == LACONIC_OK)
-        status = check_many(input->world_force_point_m, 2, LACONIC_FIELD_WORLD_FORCE_POINT, why);
+    if (status == LACONIC_OK) status = check_many(input->world_force_point_m, 2, LACONIC_FIELD_WORLD_FORCE_POINT, why);
     return status;
 }

@@ -28,14 +28,10 @@ static inline real magnitude(real x) {
 #endif
 }
 
-static inline bool is_finite(real x) {
-    return magnitude(x) <= LACONIC_REAL_MAX; /* false for NaN too */
-}
+static inline bool is_finite(real x) { return magnitude(x) <= LACONIC_REAL_MAX; /* false for NaN too */ }
 
 /* 0, or NaN where x is not finite: a sum of these asks of many numbers at once. */
-static inline real zero_if_finite(real x) {
-    return x - x;
-}
+static inline real zero_if_finite(real x) { return x - x; }
 
 /* Kahan's sum: what `value` is too coarse to take goes to `rest` and joins the next addend. */
 static inline void sum_add(laconic_sum *sum, real addend) {

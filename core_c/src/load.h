@@ -41,9 +41,7 @@ static inline void add_world_force(laconic_load *load, const laconic_model *m, c
 }
 
 /* What does not act costs nothing. Written so that NaN counts as acting and is noticed in the step. */
-static inline bool acts(real a, real b, real c) {
-    return !(a == R(0) && b == R(0) && c == R(0));
-}
+static inline bool acts(real a, real b, real c) { return !(a == R(0) && b == R(0) && c == R(0)); }
 
 /* A force of 0 is not looked at, but where it acts must be a place all the same. NaN or infinity where it is none. */
 static inline real world_force_place(const laconic_input *input) {
@@ -62,8 +60,8 @@ static inline void load_of(laconic_load *load, const laconic_model *model, const
 
 /* b of a load that turns. */
 static inline vector load_at(const laconic_load *load, direction heading) {
-    return plus(vec(load->constant), plus(scaled(heading.cosine, vec(load->cosine)),
-                                          scaled(heading.sine, vec(load->sine))));
+    return plus(vec(load->constant),
+                plus(scaled(heading.cosine, vec(load->cosine)), scaled(heading.sine, vec(load->sine))));
 }
 
 /* The same at the heading of a state, turned on by an angle. */

@@ -2,7 +2,7 @@
 #include "internal.h"
 
 static const laconic_method *const methods[LACONIC_METHOD_COUNT] = {
-    &laconic_auto,       &laconic_rk4,         &laconic_exponential_kahan, &laconic_exponential_kahan_4,
+    &laconic_auto,       &laconic_rk4,          &laconic_exponential_kahan, &laconic_exponential_kahan_4,
     &laconic_exact_flow, &laconic_exact_flow_4, &laconic_taylor_8};
 
 static bool same_text(const char *a, const char *b) {

@@ -35,8 +35,8 @@ laconic_status laconic_plant_change(laconic_plant *plant, const laconic_vehicle 
     laconic_integrator integrator;
     laconic_status status = laconic_prepare(&model, vehicle, why);
     if (status == LACONIC_OK)
-        status = laconic_integrator_prepare(&integrator, plant->integrator.method, &model, plant->integrator.step_s,
-                                            why);
+        status =
+            laconic_integrator_prepare(&integrator, plant->integrator.method, &model, plant->integrator.step_s, why);
     if (status != LACONIC_OK) return status;
     status = laconic_state_carry(&plant->state, &plant->model, &model);
     if (status != LACONIC_OK) return refuse(why, status, LACONIC_FIELD_NONE, 0, R(0), R(0));

@@ -5,20 +5,22 @@
 
 #include "internal.h"
 
-#define CHORD_SMALL R(0.015625)      /* z = α² up to which poly_sinc and poly_j1 hold */
-#define TANGENT_SMALL R(0.015625)    /* |z| up to which poly_tangent holds            */
+#define CHORD_SMALL R(0.015625)   /* z = α² up to which poly_sinc and poly_j1 hold */
+#define TANGENT_SMALL R(0.015625) /* |z| up to which poly_tangent holds            */
 
 #ifdef LACONIC_SINGLE
 
 /* sin x on |x| <= π/4, z = x²: error 4e-9 */
 static inline real poly_sin(real x, real z) {
-    return x + x * z * (R(-0.16666654940256574587) + z * (R(0.0083321779190321380808) + z * R(-0.00019517267132177431398)));
+    return x +
+           x * z * (R(-0.16666654940256574587) + z * (R(0.0083321779190321380808) + z * R(-0.00019517267132177431398)));
 }
 
 /* cos x on |x| <= π/4, z = x²: error 1e-10 */
 static inline real poly_cos(real z) {
     return R(1) - z * R(0.5) +
-           z * z * (R(0.041666646860773310301) + z * (R(-0.0013887367223119975287) + z * R(0.000024438416549882651326)));
+           z * z *
+               (R(0.041666646860773310301) + z * (R(-0.0013887367223119975287) + z * R(0.000024438416549882651326)));
 }
 
 /* sin α/α on z = α² <= 1/64: error 3e-11 */
@@ -27,9 +29,7 @@ static inline real poly_sinc(real z) {
 }
 
 /* (sin α − α cos α)/α³ on z = α² <= 1/64: error 4e-8 */
-static inline real poly_j1(real z) {
-    return R(0.33333329701864815124) + z * R(-0.033314737524190506486);
-}
+static inline real poly_j1(real z) { return R(0.33333329701864815124) + z * R(-0.033314737524190506486); }
 
 /* tan √z/√z, either sign of z: error 2e-10 */
 static inline real poly_tangent(real z) {
@@ -40,22 +40,29 @@ static inline real poly_tangent(real z) {
 
 /* sin x on |x| <= π/4, z = x²: error 3e-18 */
 static inline real poly_sin(real x, real z) {
-    return x + x * z * (R(-0.16666666666666632048) +
-           z * (R(0.0083333333333224192248) + z * (R(-0.00019841269829812470697) +
-           z * (R(2.7557313693599078936e-6) + z * (R(-2.5050758387924907033e-8) + z * R(1.5896811979428936059e-10))))));
+    return x + x * z *
+                   (R(-0.16666666666666632048) +
+                    z * (R(0.0083333333333224192248) +
+                         z * (R(-0.00019841269829812470697) +
+                              z * (R(2.7557313693599078936e-6) +
+                                   z * (R(-2.5050758387924907033e-8) + z * R(1.5896811979428936059e-10))))));
 }
 
 /* cos x on |x| <= π/4, z = x²: error 8e-17, half a unit in the last place */
 static inline real poly_cos(real z) {
-    return R(1) - z * R(0.5) + z * z * (R(0.041666666666602229484) +
-           z * (R(-0.0013888888878270576647) + z * (R(0.000024801580969956457619) +
-           z * (R(-2.7555566810097892732e-7) + z * R(2.064771670736716179e-9)))));
+    return R(1) - z * R(0.5) +
+           z * z *
+               (R(0.041666666666602229484) +
+                z * (R(-0.0013888888878270576647) +
+                     z * (R(0.000024801580969956457619) +
+                          z * (R(-2.7555566810097892732e-7) + z * R(2.064771670736716179e-9)))));
 }
 
 /* sin α/α on z = α² <= 1/64: error 5e-20 */
 static inline real poly_sinc(real z) {
-    return R(1) + z * (R(-0.16666666666666656249) + z * (R(0.0083333333332685511471) +
-           z * (R(-0.00019841268589095877322) + z * R(2.7547780343214621122e-6))));
+    return R(1) +
+           z * (R(-0.16666666666666656249) + z * (R(0.0083333333332685511471) + z * (R(-0.00019841268589095877322) +
+                                                                                     z * R(2.7547780343214621122e-6))));
 }
 
 /* (sin α − α cos α)/α³ on z = α² <= 1/64: error 3e-12, and what it multiplies is itself of second order */
@@ -68,7 +75,8 @@ static inline real poly_tangent(real z) {
     const real z2 = z * z; /* in pairs: half the latency of Horner's rule */
     return (R(1) + z * R(0.33333333333333561896)) +
            z2 * ((R(0.13333333333333602852) + z * R(0.053968253892745705214)) +
-                 z2 * ((R(0.021869488482977291104) + z * R(0.0088638563034496220872)) + z2 * R(0.0035924446910769512314)));
+                 z2 * ((R(0.021869488482977291104) + z * R(0.0088638563034496220872)) +
+                       z2 * R(0.0035924446910769512314)));
 }
 
 #endif

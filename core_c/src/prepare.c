@@ -204,9 +204,7 @@ laconic_real laconic_condition_number(const laconic_model *model) {
 }
 
 /* A scale by which some formulas multiply and others divide. */
-static real scale_size(real scale) {
-    return magnitude(scale) + R(1) / magnitude(scale);
-}
+static real scale_size(real scale) { return magnitude(scale) + R(1) / magnitude(scale); }
 
 /* Numbers so far apart that a constant left the range, or that a product of two would, turn into NaN later: say so
  * now. Every constant is looked at, those too that only outputs or a change of the vehicle use. */

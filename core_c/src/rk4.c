@@ -13,9 +13,7 @@ static inline real turned_rad(const laconic_model *m, real h, vector zeta) {
     return LACONIC_WITH_WORLD_FORCE ? h * dot(vec(m->yaw_rate_of_zeta), zeta) : R(0);
 }
 
-static inline vector along(vector zeta, real h, vector rate) {
-    return plus(zeta, scaled(h, rate));
-}
+static inline vector along(vector zeta, real h, vector rate) { return plus(zeta, scaled(h, rate)); }
 
 /* Simpson's weights for the increment, and for the mean with what the stages know of it. */
 INLINE increment simpson(real h, vector z1, vector k1, vector k2, vector k3, vector k4) {

@@ -14,8 +14,8 @@ typedef struct drive {
 } drive;
 
 /* A second-order symmetric step of size step_s/2^level from ζ under b. */
-typedef increment (*base_step)(const laconic_model *model, const laconic_integrator *integrator, int level,
-                               vector zeta, const drive *b);
+typedef increment (*base_step)(const laconic_model *model, const laconic_integrator *integrator, int level, vector zeta,
+                               const drive *b);
 
 /* What a b that varies adds to one that does not. */
 static inline vector response(const real ramp[3], const real bend[3], const drive *b) {
@@ -50,16 +50,13 @@ INLINE increment combine(increment whole, increment first, increment second) {
     increment by;
     by.delta = plus(delta, scaled(third, minus(delta, whole.delta)));
     by.mean = plus(mean, scaled(third, minus(mean, whole.mean)));
-    by.slope =
-        plus(scaled(R(1.5), minus(second.mean, first.mean)), scaled(R(0.25), plus(first.slope, second.slope)));
+    by.slope = plus(scaled(R(1.5), minus(second.mean, first.mean)), scaled(R(0.25), plus(first.slope, second.slope)));
     return by;
 }
 
 /* ------------------------------------------------------------------------- b held ------- */
 
-static inline drive held(const laconic_loads *loads) {
-    return (drive){vec(loads->start->constant), none, none, false};
-}
+static inline drive held(const laconic_loads *loads) { return (drive){vec(loads->start->constant), none, none, false}; }
 
 /* The base step itself as a method. */
 INLINE increment single(base_step base, const laconic_model *m, const laconic_integrator *integrator, vector zeta,
@@ -69,8 +66,8 @@ INLINE increment single(base_step base, const laconic_model *m, const laconic_in
 }
 
 /* Written out, so that what the whole step and its first half share is computed once. */
-INLINE increment extrapolated(base_step base, const laconic_model *m, const laconic_integrator *integrator,
-                              vector zeta, const laconic_loads *loads) {
+INLINE increment extrapolated(base_step base, const laconic_model *m, const laconic_integrator *integrator, vector zeta,
+                              const laconic_loads *loads) {
     const drive b = held(loads);
     const increment whole = base(m, integrator, 0, zeta, &b), first = base(m, integrator, 1, zeta, &b);
     return combine(whole, first, base(m, integrator, 1, plus(zeta, first.delta), &b));

@@ -21,9 +21,10 @@ static wrench wrench_change(const laconic_input *in, direction heading, const la
 
 /* b of a wrench and of the torques besides the damping, both linear. */
 static vector load_of_wrench(const laconic_model *m, const laconic_input *in, wrench w) {
-    vector b = scaled(m->torque_scale,
-                      plus(plus(scaled(w.along, vec(m->velocity_of_zeta[0])), scaled(w.across, vec(m->velocity_of_zeta[1]))),
-                           scaled(w.moment, vec(m->yaw_rate_of_zeta))));
+    vector b =
+        scaled(m->torque_scale,
+               plus(plus(scaled(w.along, vec(m->velocity_of_zeta[0])), scaled(w.across, vec(m->velocity_of_zeta[1]))),
+                    scaled(w.moment, vec(m->yaw_rate_of_zeta))));
     int32_t i;
     for (i = 0; i < m->wheel_count; i++)
         b = plus(b, scaled(m->voltage_scale * in->voltage_V[i] + m->torque_scale * in->axle_torque_Nm[i],
@@ -34,7 +35,8 @@ static vector load_of_wrench(const laconic_model *m, const laconic_input *in, wr
 /* d[(g·ζ)(ζ×w) − diag(r)ζ + b] */
 static vector rate_change(const laconic_model *m, vector zeta, vector d_zeta, vector d_load) {
     const vector gyro = vec(m->gyro), yaw = vec(m->nu_of_zeta[2]);
-    const vector turning = plus(scaled(dot(yaw, d_zeta), cross(zeta, gyro)), scaled(dot(yaw, zeta), cross(d_zeta, gyro)));
+    const vector turning =
+        plus(scaled(dot(yaw, d_zeta), cross(zeta, gyro)), scaled(dot(yaw, zeta), cross(d_zeta, gyro)));
     return plus(turning, minus(d_load, times(vec(m->decay_per_s), d_zeta)));
 }
 
@@ -88,7 +90,8 @@ static vector imbalance_change(const laconic_contact *c, const laconic_model *m,
     const real force = m->torque_scale * m->wheel_radius_m;
     const real nu[2] = {dot(vec(m->nu_of_zeta[0]), zeta), dot(vec(m->nu_of_zeta[1]), zeta)};
     const real d_nu[2] = {dot(vec(m->nu_of_zeta[0]), d_zeta), dot(vec(m->nu_of_zeta[1]), d_zeta)};
-    vector left = {dot(vec(c->inertia[0]), vec(d_rates->nu_rad_per_s2)), dot(vec(c->inertia[1]), vec(d_rates->nu_rad_per_s2)),
+    vector left = {dot(vec(c->inertia[0]), vec(d_rates->nu_rad_per_s2)),
+                   dot(vec(c->inertia[1]), vec(d_rates->nu_rad_per_s2)),
                    dot(vec(c->inertia[2]), vec(d_rates->nu_rad_per_s2))};
     int32_t i;
     left.x -= d_rate * nu[1] + rate * d_nu[1] + force * dw.along;
@@ -119,8 +122,7 @@ static void normal_change(laconic_reactions *change, const laconic_contact *c, c
         ground[1] += change->along_N[i] * c->pull[i][1] + change->lateral_N[i] * c->axle[i][1];
     }
     for (i = 0; i < c->point_count; i++)
-        change->normal_N[i] =
-            -c->com_z_m * (c->load_of_wrench[i][1] * ground[0] + c->load_of_wrench[i][2] * ground[1]);
+        change->normal_N[i] = -c->com_z_m * (c->load_of_wrench[i][1] * ground[0] + c->load_of_wrench[i][2] * ground[1]);
 }
 
 /* The margin is the least over the wheels: its change is that of the wheel which is least now. */

@@ -104,8 +104,7 @@ static laconic_status taylor_step(const laconic_model *model, const laconic_inte
     return take(state, by.delta, path, moved);
 }
 
-static laconic_status taylor_prepare(laconic_integrator *integrator, const laconic_model *model,
-                                     laconic_refusal *why) {
+static laconic_status taylor_prepare(laconic_integrator *integrator, const laconic_model *model, laconic_refusal *why) {
     return laconic_explicit_limits(integrator, model, LARGEST_DAMPING, LARGEST_ROTATION, why);
 }
 

@@ -15,21 +15,13 @@ static const real weight[NODES] = {R(0.17392742256872692869), R(0.32607257743127
 /* The polynomials: the components of ζ, and ∫ g·ζ ds, divided by s. */
 typedef real (*polynomial)(const course *c, int n);
 
-static inline real zeta_x(const course *c, int n) {
-    return c->zeta[n].x;
-}
+static inline real zeta_x(const course *c, int n) { return c->zeta[n].x; }
 
-static inline real zeta_y(const course *c, int n) {
-    return c->zeta[n].y;
-}
+static inline real zeta_y(const course *c, int n) { return c->zeta[n].y; }
 
-static inline real zeta_z(const course *c, int n) {
-    return c->zeta[n].z;
-}
+static inline real zeta_z(const course *c, int n) { return c->zeta[n].z; }
 
-static inline real mean_yaw(const course *c, int n) {
-    return inverse[n] * c->yaw[n];
-}
+static inline real mean_yaw(const course *c, int n) { return inverse[n] * c->yaw[n]; }
 
 /* A polynomial at all nodes at once: compilers take them two or four at a time. */
 INLINE void at_nodes(real value[NODES], const course *c, polynomial coefficient) {

@@ -42,14 +42,10 @@ static inline vector times(vector a, vector b) {
     return out;
 }
 
-static inline real dot(vector a, vector b) {
-    return a.x * b.x + a.y * b.y + a.z * b.z;
-}
+static inline real dot(vector a, vector b) { return a.x * b.x + a.y * b.y + a.z * b.z; }
 
 /* |v|²: not finite as soon as one component is not. */
-static inline real square(vector v) {
-    return dot(v, v);
-}
+static inline real square(vector v) { return dot(v, v); }
 
 static inline vector cross(vector a, vector b) {
     const vector out = {a.y * b.z - a.z * b.y, a.z * b.x - a.x * b.z, a.x * b.y - a.y * b.x};
@@ -57,9 +53,7 @@ static inline vector cross(vector a, vector b) {
 }
 
 /* |v|₁ */
-static inline real size(vector v) {
-    return magnitude(v.x) + magnitude(v.y) + magnitude(v.z);
-}
+static inline real size(vector v) { return magnitude(v.x) + magnitude(v.y) + magnitude(v.z); }
 
 /* Σ|v| over rows of three. */
 static inline real rows_size(const real rows[][3], int32_t count) {
@@ -70,8 +64,6 @@ static inline real rows_size(const real rows[][3], int32_t count) {
 }
 
 /* Products of two such numbers, of one model or of two, stay in the range. False for NaN. */
-static inline bool fits_squared(real sum_of_sizes) {
-    return is_finite(sum_of_sizes * sum_of_sizes);
-}
+static inline bool fits_squared(real sum_of_sizes) { return is_finite(sum_of_sizes * sum_of_sizes); }
 
 #endif

@@ -125,8 +125,7 @@ static void a_method_that_only_auto_chooses_is_not_prepared(void) {
     const laconic_model m = model_of(bare_body());
     laconic_integrator in;
     laconic_refusal why;
-    ASSERT_STATUS(LACONIC_METHOD_UNKNOWN,
-                  laconic_integrator_prepare(&in, &laconic_auto_slow, &m, REAL(0.1), &why));
+    ASSERT_STATUS(LACONIC_METHOD_UNKNOWN, laconic_integrator_prepare(&in, &laconic_auto_slow, &m, REAL(0.1), &why));
 }
 
 int main(void) {

@@ -10,9 +10,7 @@ static double chance(void) { /* from 0 to 1: xorshift, so the same everywhere */
     return (double)(seed >> 11) / 9007199254740992.0;
 }
 
-static bool one_in(int count) {
-    return chance() * count < 1;
-}
+static bool one_in(int count) { return chance() * count < 1; }
 
 /* Any size that the scalar type has, and its ends; every third of a size that robots have. */
 static laconic_real extreme(void) {
@@ -24,13 +22,9 @@ static laconic_real extreme(void) {
     return REAL(pow(10, (one_in(2) ? 1.0 : 0.5) * decades * (2 * chance() - 1)));
 }
 
-static laconic_real usual(void) {
-    return one_in(6) ? extreme() : REAL(pow(10, 4 * chance() - 3));
-}
+static laconic_real usual(void) { return one_in(6) ? extreme() : REAL(pow(10, 4 * chance() - 3)); }
 
-static laconic_real either_sign(laconic_real x) {
-    return one_in(2) ? -x : x;
-}
+static laconic_real either_sign(laconic_real x) { return one_in(2) ? -x : x; }
 
 static laconic_vehicle any_vehicle(void) {
     laconic_vehicle v = bare_body();
@@ -55,15 +49,9 @@ static laconic_vehicle any_vehicle(void) {
 
 static void change(laconic_vehicle *v) {
     switch ((int)(4 * chance())) {
-    case 0:
-        v->mass_kg = extreme();
-        break;
-    case 1:
-        v->yaw_inertia_kgm2 = extreme();
-        break;
-    case 2:
-        v->wheel_radius_m = extreme();
-        break;
+    case 0: v->mass_kg = extreme(); break;
+    case 1: v->yaw_inertia_kgm2 = extreme(); break;
+    case 2: v->wheel_radius_m = extreme(); break;
     default:
         v->payload.mass_kg = usual();
         v->payload.x_m = either_sign(extreme());

@@ -16,9 +16,9 @@ static void what_lies_beyond_the_last_wheel_is_not_read(void) {
 
 static void every_number_that_is_not_finite_is_named(void) {
     laconic_input good = every_input(), in;
-#define REFUSES(member, bad, field, item)                                                                              \
-    in = good;                                                                                                         \
-    in.member = bad;                                                                                                   \
+#define REFUSES(member, bad, field, item) \
+    in = good; \
+    in.member = bad; \
     ASSERT_REFUSED(LACONIC_NOT_FINITE, field, item, laconic_input_check(&model, &in, &why), why)
     REFUSES(voltage_V[2], NOT_A_NUMBER, LACONIC_FIELD_VOLTAGE, 3);
     REFUSES(axle_torque_Nm[0], INFINITE, LACONIC_FIELD_AXLE_TORQUE, 1);

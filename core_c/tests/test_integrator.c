@@ -42,9 +42,7 @@ static void a_step_whose_parts_have_no_inverse_is_refused_with_the_shortest_ther
     TEST_ASSERT_TRUE(isfinite((double)in.decay[2].inverse_gain[0]));
 }
 
-static void no_method_is_refused(void) {
-    refuses(NULL, 0.01, LACONIC_METHOD_UNKNOWN, LACONIC_FIELD_METHOD);
-}
+static void no_method_is_refused(void) { refuses(NULL, 0.01, LACONIC_METHOD_UNKNOWN, LACONIC_FIELD_METHOD); }
 
 static void a_good_step_is_kept_with_its_method(void) {
     const laconic_model m = model_of(with_motors(three_wheels()));

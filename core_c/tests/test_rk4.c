@@ -24,9 +24,7 @@ static void energy_and_k_drift_only_by_the_truncation_error(void) {
     TEST_ASSERT_TRUE(d.yaw_integral < EITHER(1e-9, 1e-5));
 }
 
-static void a_steady_motion_stays(void) {
-    assert_steady_motion_stays(&laconic_rk4, 0.1);
-}
+static void a_steady_motion_stays(void) { assert_steady_motion_stays(&laconic_rk4, 0.1); }
 
 static double fastest_decay(const laconic_model *m) {
     return larger((double)m->decay_per_s[0], larger((double)m->decay_per_s[1], (double)m->decay_per_s[2]));

@@ -32,9 +32,7 @@ static laconic_variation direction_number(int n) {
     return by;
 }
 
-static laconic_real moved(laconic_real from, double by, laconic_real along) {
-    return from + REAL(by) * along;
-}
+static laconic_real moved(laconic_real from, double by, laconic_real along) { return from + REAL(by) * along; }
 
 static point varied(const point *p, const laconic_variation *by, double step) {
     point q = *p;

@@ -24,9 +24,7 @@ static void energy_and_k_drift_only_by_the_truncation_error(void) {
     TEST_ASSERT_TRUE(d.yaw_integral < EITHER(1e-11, 1e-5));
 }
 
-static void a_steady_motion_stays(void) {
-    assert_steady_motion_stays(&laconic_taylor_8, 0.1);
-}
+static void a_steady_motion_stays(void) { assert_steady_motion_stays(&laconic_taylor_8, 0.1); }
 
 /* A puck that spins flies straight on, though its axes turn by 2 rad in each step: 2⁸/8! is what that costs. */
 static void a_spinning_puck_flies_straight(void) {

@@ -21,66 +21,26 @@ static void zero_inertia_of_wheels_and_negative_gain_are_accepted(void) {
 /* Sets one number of a good vehicle to `value` and says what the check then answers. */
 typedef laconic_real *(*place)(laconic_vehicle *v);
 
-static laconic_real *mass(laconic_vehicle *v) {
-    return &v->mass_kg;
-}
-static laconic_real *yaw_inertia(laconic_vehicle *v) {
-    return &v->yaw_inertia_kgm2;
-}
-static laconic_real *radius(laconic_vehicle *v) {
-    return &v->wheel_radius_m;
-}
-static laconic_real *wheel_inertia(laconic_vehicle *v) {
-    return &v->wheel_inertia_kgm2;
-}
-static laconic_real *damping(laconic_vehicle *v) {
-    return &v->motor_damping_Nms;
-}
-static laconic_real *friction(laconic_vehicle *v) {
-    return &v->friction_coefficient;
-}
-static laconic_real *payload_mass(laconic_vehicle *v) {
-    return &v->payload.mass_kg;
-}
-static laconic_real *payload_inertia(laconic_vehicle *v) {
-    return &v->payload.yaw_inertia_kgm2;
-}
-static laconic_real *com_x(laconic_vehicle *v) {
-    return &v->com_x_m;
-}
-static laconic_real *com_y(laconic_vehicle *v) {
-    return &v->com_y_m;
-}
-static laconic_real *com_z(laconic_vehicle *v) {
-    return &v->com_z_m;
-}
-static laconic_real *gain(laconic_vehicle *v) {
-    return &v->motor_gain_Nm_per_V;
-}
-static laconic_real *payload_x(laconic_vehicle *v) {
-    return &v->payload.x_m;
-}
-static laconic_real *payload_y(laconic_vehicle *v) {
-    return &v->payload.y_m;
-}
-static laconic_real *second_wheel_x(laconic_vehicle *v) {
-    return &v->wheel[1].x_m;
-}
-static laconic_real *second_wheel_y(laconic_vehicle *v) {
-    return &v->wheel[1].y_m;
-}
-static laconic_real *second_axle(laconic_vehicle *v) {
-    return &v->wheel[1].axle_rad;
-}
-static laconic_real *second_roller(laconic_vehicle *v) {
-    return &v->wheel[1].roller_rad;
-}
-static laconic_real *second_support_x(laconic_vehicle *v) {
-    return &v->support[1].x_m;
-}
-static laconic_real *second_support_y(laconic_vehicle *v) {
-    return &v->support[1].y_m;
-}
+static laconic_real *mass(laconic_vehicle *v) { return &v->mass_kg; }
+static laconic_real *yaw_inertia(laconic_vehicle *v) { return &v->yaw_inertia_kgm2; }
+static laconic_real *radius(laconic_vehicle *v) { return &v->wheel_radius_m; }
+static laconic_real *wheel_inertia(laconic_vehicle *v) { return &v->wheel_inertia_kgm2; }
+static laconic_real *damping(laconic_vehicle *v) { return &v->motor_damping_Nms; }
+static laconic_real *friction(laconic_vehicle *v) { return &v->friction_coefficient; }
+static laconic_real *payload_mass(laconic_vehicle *v) { return &v->payload.mass_kg; }
+static laconic_real *payload_inertia(laconic_vehicle *v) { return &v->payload.yaw_inertia_kgm2; }
+static laconic_real *com_x(laconic_vehicle *v) { return &v->com_x_m; }
+static laconic_real *com_y(laconic_vehicle *v) { return &v->com_y_m; }
+static laconic_real *com_z(laconic_vehicle *v) { return &v->com_z_m; }
+static laconic_real *gain(laconic_vehicle *v) { return &v->motor_gain_Nm_per_V; }
+static laconic_real *payload_x(laconic_vehicle *v) { return &v->payload.x_m; }
+static laconic_real *payload_y(laconic_vehicle *v) { return &v->payload.y_m; }
+static laconic_real *second_wheel_x(laconic_vehicle *v) { return &v->wheel[1].x_m; }
+static laconic_real *second_wheel_y(laconic_vehicle *v) { return &v->wheel[1].y_m; }
+static laconic_real *second_axle(laconic_vehicle *v) { return &v->wheel[1].axle_rad; }
+static laconic_real *second_roller(laconic_vehicle *v) { return &v->wheel[1].roller_rad; }
+static laconic_real *second_support_x(laconic_vehicle *v) { return &v->support[1].x_m; }
+static laconic_real *second_support_y(laconic_vehicle *v) { return &v->support[1].y_m; }
 
 typedef struct number {
     place where;

@@ -26,8 +26,8 @@ static void prepare(const laconic_parameters *parameters) {
     const laconic_method *method = laconic_method_by_number(parameters->method);
     laconic_refusal why = {0};
     if (method == NULL) return;
-    const laconic_status status = laconic_plant_start(&plant, &parameters->vehicle, method, parameters->step_s,
-                                                      &parameters->start, &why);
+    const laconic_status status =
+        laconic_plant_start(&plant, &parameters->vehicle, method, parameters->step_s, &parameters->start, &why);
     must(status == why.status && status < LACONIC_STATUS_COUNT);
     if (status == LACONIC_OK) {
         const laconic_input none = {{0}, {0}, {0, 0}, 0, {0, 0}, {0, 0}};

@@ -23,8 +23,8 @@ void laconic_library_look(const laconic_node *node, laconic_library_view *view) 
     *view = seen;
 }
 
-static void try_error(laconic_error_census *census, const uint8_t frame[8], uint64_t error,
-                      const uint8_t data_ids[16], uint8_t max_delta) {
+static void try_error(laconic_error_census *census, const uint8_t frame[8], uint64_t error, const uint8_t data_ids[16],
+                      uint8_t max_delta) {
     uint8_t data[8];
     const uint8_t mask = LACONIC_E2E_P22_COUNTER_MASK;
     for (unsigned k = 0; k < 8; k++) data[k] = (uint8_t)(frame[k] ^ (error >> (8U * k) & 255U));
@@ -44,8 +44,7 @@ void laconic_library_census(laconic_error_census *census, const uint8_t frame[8]
         for (unsigned j = i + 1; j < 64; j++) {
             const uint64_t two = one | (uint64_t)1 << j;
             try_error(census, frame, two, data_ids, max_delta);
-            for (unsigned k = j + 1; k < 64; k++)
-                try_error(census, frame, two | (uint64_t)1 << k, data_ids, max_delta);
+            for (unsigned k = j + 1; k < 64; k++) try_error(census, frame, two | (uint64_t)1 << k, data_ids, max_delta);
         }
     }
 }

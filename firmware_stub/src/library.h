@@ -37,7 +37,7 @@ void laconic_library_look(const struct laconic_node *node, laconic_library_view 
 /* Over every error of one, two and three bits in this 8-byte frame of profile 22, counted by what happens to it:
  * outcome 0 found by the CRC, 1 found by the counter, 2 accepted. The receiver has just taken the frame before. */
 typedef struct laconic_error_census {
-    uint64_t counter_kept[3];    /* errors that leave the counter alone */
+    uint64_t counter_kept[3]; /* errors that leave the counter alone */
     uint64_t counter_changed[3];
 } laconic_error_census;
 

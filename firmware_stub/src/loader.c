@@ -12,21 +12,21 @@ typedef enum value_kind { REAL, INTEGER, WHEEL_KIND, FLAG } value_kind;
 typedef enum need {
     OPTIONAL,
     ALWAYS,
-    WITH_WHEELS,   /* where there are wheels                      */
-    WITH_GROUP,    /* where another number of its group has come  */
-    EACH,          /* wheel or support up to their number         */
-    EACH_ROLLER    /* wheel with rollers                          */
+    WITH_WHEELS, /* where there are wheels                      */
+    WITH_GROUP,  /* where another number of its group has come  */
+    EACH,        /* wheel or support up to their number         */
+    EACH_ROLLER  /* wheel with rollers                          */
 } need;
 
 typedef struct place {
     uint8_t field;
     uint8_t kind_and_need; /* value_kind, 16 · need */
-    uint8_t items; /* 0: the field is no list */
+    uint8_t items;         /* 0: the field is no list */
     uint8_t stride;
     uint16_t offset;
 } place;
 
-#define AT(member) (uint16_t) offsetof(laconic_parameters, member)
+#define AT(member) (uint16_t)offsetof(laconic_parameters, member)
 #define SCALAR(field, member, need) {(uint8_t)(field), REAL | need << 4, 0, 0, AT(member)}
 #define COUNT(field, member, need) {(uint8_t)(field), INTEGER | need << 4, 0, 0, AT(member)}
 #define PER_WHEEL(field, type, member, need) \
@@ -125,8 +125,7 @@ static void store_real(laconic_loader *loader, void *to, const struct laconic_db
     if (assemble(loader, frame, &value)) memcpy(to, &value, sizeof value);
 }
 
-static void store_integer(laconic_loader *loader, void *to, uint8_t kind,
-                          const struct laconic_dbc_parameter_t *frame) {
+static void store_integer(laconic_loader *loader, void *to, uint8_t kind, const struct laconic_dbc_parameter_t *frame) {
     const int32_t number = (int32_t)frame->value;
     const bool flag = frame->value != 0;
     const uint32_t largest = kind == FLAG ? 1U : kind == WHEEL_KIND ? 127U : UINT32_MAX;
@@ -150,8 +149,9 @@ void laconic_loader_take(laconic_loader *loader, const uint8_t data[8]) {
     laconic_dbc_parameter_unpack(&frame, data, 8);
     const place *where = find(frame.field, frame.item);
     if (where == NULL) {
-        refuse(loader, is_reserved(frame.field) ? LACONIC_WIRE_STATUS_NOT_SUPPORTED
-                                                : LACONIC_WIRE_STATUS_PARAMETER_UNKNOWN, frame.field, frame.item);
+        refuse(loader,
+               is_reserved(frame.field) ? LACONIC_WIRE_STATUS_NOT_SUPPORTED : LACONIC_WIRE_STATUS_PARAMETER_UNKNOWN,
+               frame.field, frame.item);
         return;
     }
     loader->given[frame.field] |= (uint32_t)1 << frame.item;
@@ -172,8 +172,7 @@ static bool any_of(const laconic_loader *loader, uint8_t first, uint8_t last) {
 }
 
 static bool group_has_begun(const laconic_loader *loader, uint8_t field) {
-    if (field == LACONIC_FIELD_SUPPORT_COUNT)
-        return any_of(loader, LACONIC_FIELD_SUPPORT_X, LACONIC_FIELD_SUPPORT_Y);
+    if (field == LACONIC_FIELD_SUPPORT_COUNT) return any_of(loader, LACONIC_FIELD_SUPPORT_X, LACONIC_FIELD_SUPPORT_Y);
     return field <= LACONIC_FIELD_MOTOR_DAMPING
                ? any_of(loader, LACONIC_FIELD_MOTOR_GAIN, LACONIC_FIELD_MOTOR_DAMPING)
                : any_of(loader, LACONIC_FIELD_PAYLOAD_MASS, LACONIC_FIELD_PAYLOAD_YAW_INERTIA);

@@ -77,9 +77,7 @@ static bool has_more(laconic_node *node, uint8_t offset) {
     case LACONIC_WIRE_RESULT:
         node->answers_due = (uint16_t)(node->answers_due & (node->answers_due - 1U)); /* the lowest is done */
         return node->answers_due != 0;
-    case LACONIC_WIRE_WHEEL_SPEED:
-        node->wheel_group++;
-        return 3 * node->wheel_group < node->plant.model.wheel_count;
+    case LACONIC_WIRE_WHEEL_SPEED: node->wheel_group++; return 3 * node->wheel_group < node->plant.model.wheel_count;
     case LACONIC_WIRE_COUNTERS:
         node->counter_page = (uint8_t)((node->counter_page + 1U) % 3U);
         return node->counter_page != 0;

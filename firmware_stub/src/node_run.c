@@ -27,8 +27,8 @@ static void fail(laconic_node *node, const laconic_refusal *why, uint8_t request
     node->state = LACONIC_WIRE_STATE_FAULT;
     laconic_node_rest_inputs(node);
     node->answer[LACONIC_WIRE_SYNC].request = request;
-    laconic_node_answer(node, LACONIC_WIRE_SYNC, LACONIC_WIRE_COMMAND_SYNC, (uint8_t)why->status,
-                        (uint8_t)why->field, (uint8_t)why->item);
+    laconic_node_answer(node, LACONIC_WIRE_SYNC, LACONIC_WIRE_COMMAND_SYNC, (uint8_t)why->status, (uint8_t)why->field,
+                        (uint8_t)why->item);
 }
 
 static laconic_status step_sampled(laconic_node *node, laconic_refusal *why) {

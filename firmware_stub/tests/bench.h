@@ -47,7 +47,8 @@ static inline uint8_t bench_control(uint8_t command, uint16_t rate, uint16_t wat
     laconic_dbc_control_pack(data, &frame, 8);
     bench_send(LACONIC_WIRE_CONTROL, data);
     const uint8_t status = bench_receive(LACONIC_WIRE_RESULT, data) ? data[3] : 255U;
-    const bool starts = command == LACONIC_WIRE_COMMAND_START_LOCKSTEP || command == LACONIC_WIRE_COMMAND_START_FREE_RUN;
+    const bool starts =
+        command == LACONIC_WIRE_COMMAND_START_LOCKSTEP || command == LACONIC_WIRE_COMMAND_START_FREE_RUN;
     if (starts && status == 0) {
         bench_run_key = laconic_run_key(bench_key, sent[LACONIC_WIRE_CONTROL]);
         for (uint8_t k = 0; k < LACONIC_WIRE_RIG_OFFSETS; k++)

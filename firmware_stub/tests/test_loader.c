@@ -34,8 +34,8 @@ static uint8_t check(void) {
 
 /* A cart with two fixed wheels, all that a scene file must give, but for one number; 0, 0: nothing is left out. */
 static void send_cart_without(uint8_t left_out, uint8_t of_item) {
-    static const uint8_t plain[] = {LACONIC_FIELD_MASS, LACONIC_FIELD_YAW_INERTIA, LACONIC_FIELD_WHEEL_RADIUS,
-                                    LACONIC_FIELD_WHEEL_INERTIA, LACONIC_FIELD_MOTOR_GAIN, LACONIC_FIELD_MOTOR_DAMPING,
+    static const uint8_t plain[] = {LACONIC_FIELD_MASS,          LACONIC_FIELD_YAW_INERTIA, LACONIC_FIELD_WHEEL_RADIUS,
+                                    LACONIC_FIELD_WHEEL_INERTIA, LACONIC_FIELD_MOTOR_GAIN,  LACONIC_FIELD_MOTOR_DAMPING,
                                     LACONIC_FIELD_STEP};
     static const uint8_t of_wheel[] = {LACONIC_FIELD_WHEEL_X, LACONIC_FIELD_WHEEL_Y, LACONIC_FIELD_AXLE,
                                        LACONIC_FIELD_ROLLER};
@@ -53,10 +53,11 @@ static void send_cart_without(uint8_t left_out, uint8_t of_item) {
 
 static void what_a_scene_file_must_give_must_come_even_if_it_is_zero(void) {
     static const uint8_t needed[][2] = {
-        {LACONIC_FIELD_MASS, 0}, {LACONIC_FIELD_YAW_INERTIA, 0}, {LACONIC_FIELD_WHEEL_RADIUS, 0},
-        {LACONIC_FIELD_WHEEL_INERTIA, 0}, {LACONIC_FIELD_MOTOR_GAIN, 0}, {LACONIC_FIELD_MOTOR_DAMPING, 0},
-        {LACONIC_FIELD_STEP, 0}, {LACONIC_FIELD_WHEEL_COUNT, 0}, {LACONIC_FIELD_WHEEL_KIND, 2},
-        {LACONIC_FIELD_WHEEL_X, 1}, {LACONIC_FIELD_WHEEL_Y, 2}, {LACONIC_FIELD_AXLE, 1}, {LACONIC_FIELD_ROLLER, 2}};
+        {LACONIC_FIELD_MASS, 0},          {LACONIC_FIELD_YAW_INERTIA, 0}, {LACONIC_FIELD_WHEEL_RADIUS, 0},
+        {LACONIC_FIELD_WHEEL_INERTIA, 0}, {LACONIC_FIELD_MOTOR_GAIN, 0},  {LACONIC_FIELD_MOTOR_DAMPING, 0},
+        {LACONIC_FIELD_STEP, 0},          {LACONIC_FIELD_WHEEL_COUNT, 0}, {LACONIC_FIELD_WHEEL_KIND, 2},
+        {LACONIC_FIELD_WHEEL_X, 1},       {LACONIC_FIELD_WHEEL_Y, 2},     {LACONIC_FIELD_AXLE, 1},
+        {LACONIC_FIELD_ROLLER, 2}};
     send_cart_without(0, 0);
     TEST_ASSERT_EQUAL_UINT8(0, check());
     for (size_t k = 0; k < sizeof needed / sizeof needed[0]; k++) {

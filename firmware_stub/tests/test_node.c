@@ -30,7 +30,8 @@ static void the_node_says_who_it_is(void) {
     TEST_ASSERT_EQUAL_UINT8(LACONIC_WIRE_VERSION, identity.protocol);
     TEST_ASSERT_EQUAL_UINT8(1, identity.can_fd);
     char version[16];
-    snprintf(version, sizeof version, "%u.%u.%u", identity.version_major, identity.version_minor, identity.version_patch);
+    snprintf(version, sizeof version, "%u.%u.%u", identity.version_major, identity.version_minor,
+             identity.version_patch);
     TEST_ASSERT_EQUAL_STRING(LACONIC_VERSION, version);
 }
 

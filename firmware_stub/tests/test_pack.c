@@ -11,7 +11,8 @@ void tearDown(void) {}
 static void publish(laconic_real nu_2, laconic_real x_m, laconic_real heading_rad) {
     const laconic_start start = {{0, nu_2, 0}, x_m, 0, heading_rad};
     bench_select(LACONIC_NODE_SEND_NU | LACONIC_NODE_SEND_POSE | LACONIC_NODE_SEND_WHEEL_SPEED |
-                     LACONIC_NODE_SEND_STATE_FD | LACONIC_NODE_SEND_COUNTERS, 0, 0);
+                     LACONIC_NODE_SEND_STATE_FD | LACONIC_NODE_SEND_COUNTERS,
+                 0, 0);
     bench_start_lockstep();
     laconic_state_set(&node.plant.state, &node.plant.model, &start, NULL);
     bench_sync(1);
@@ -85,8 +86,8 @@ static void counters_come_in_three_pages(void) {
         laconic_dbc_counters_unpack(&counters, data, 8);
         TEST_ASSERT_EQUAL_UINT8(page, counters.page);
         const uint16_t found[9] = {counters.crc_errors, counters.sequence_errors, counters.repeated,
-                                   counters.lost, counters.malformed, counters.late_periods,
-                                   counters.accepted, counters.refused, counters.overrange};
+                                   counters.lost,       counters.malformed,       counters.late_periods,
+                                   counters.accepted,   counters.refused,         counters.overrange};
         for (uint8_t k = 0; k < 3; k++) TEST_ASSERT_EQUAL_UINT16(3 * page + k + 1, found[3 * page + k]);
     }
     TEST_ASSERT_FALSE(bench_receive(LACONIC_WIRE_COUNTERS, data));

@@ -42,7 +42,8 @@ static void a_frame_passes_with_its_own_key_and_count_only(void) {
     uint8_t long_data[64] = {0};
     laconic_protect_keyed(LACONIC_WIRE_RAW_INPUT_FD, long_data, 77, 1000);
     TEST_ASSERT_TRUE(laconic_keyed_is_right(LACONIC_WIRE_RAW_INPUT_FD, long_data, 77, 1000));
-    for (uint32_t k = 1; k <= 1U << 18; k++) fd += laconic_keyed_is_right(LACONIC_WIRE_RAW_INPUT_FD, long_data, 77 + k, 1000);
+    for (uint32_t k = 1; k <= 1U << 18; k++)
+        fd += laconic_keyed_is_right(LACONIC_WIRE_RAW_INPUT_FD, long_data, 77 + k, 1000);
     TEST_ASSERT_UINT32_WITHIN(8, 4, fd);
 }
 

@@ -24,9 +24,7 @@ void *minimal_create(void) {
     return m;
 }
 
-void minimal_destroy(void *instance) {
-    free(instance);
-}
+void minimal_destroy(void *instance) { free(instance); }
 
 int minimal_set(void *instance, const uint32_t *references, size_t count, const double *values, size_t value_count) {
     minimal *m = instance;

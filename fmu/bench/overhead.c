@@ -49,10 +49,10 @@ static void *load(const char *path) {
 }
 
 /* ISO C has no cast from data to function pointers. */
-#define LOAD(target, library, name)                     \
-    do {                                                \
-        void *found = symbol(library, name);            \
-        memcpy(&(target), &found, sizeof found);        \
+#define LOAD(target, library, name) \
+    do { \
+        void *found = symbol(library, name); \
+        memcpy(&(target), &found, sizeof found); \
     } while (0)
 
 static void must(int status, const char *what) {
@@ -70,7 +70,8 @@ static struct {
     fmi2Component c;
 } two;
 
-static void logger_2(fmi2ComponentEnvironment e, fmi2String name, fmi2Status s, fmi2String category, fmi2String text, ...) {
+static void logger_2(fmi2ComponentEnvironment e, fmi2String name, fmi2Status s, fmi2String category, fmi2String text,
+                     ...) {
     (void)e;
     fprintf(stderr, "%s %d %s %s\n", name, (int)s, category, text);
 }
@@ -240,8 +241,10 @@ typedef struct contender {
 } contender;
 
 int main(int argc, char **argv) {
-    contender all[] = {{"core", run_core, 1e99, 0}, {"core_with_outputs", run_core_with_outputs, 1e99, 0},
-                       {"fmi2", run_2, 1e99, 0},    {"fmi3", run_3, 1e99, 0},
+    contender all[] = {{"core", run_core, 1e99, 0},
+                       {"core_with_outputs", run_core_with_outputs, 1e99, 0},
+                       {"fmi2", run_2, 1e99, 0},
+                       {"fmi3", run_3, 1e99, 0},
                        {"minimal", run_minimal, 1e99, 0}};
     const size_t count = sizeof all / sizeof all[0];
     size_t i;

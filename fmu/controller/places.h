@@ -4,8 +4,8 @@
 
 #include "plant.h"
 
-#define AT(member) (uint32_t) offsetof(fmu_plant, member)
-#define TANGENT(member) (uint32_t) offsetof(fmu_tangent, member)
+#define AT(member) (uint32_t)offsetof(fmu_plant, member)
+#define TANGENT(member) (uint32_t)offsetof(fmu_tangent, member)
 #define PLAIN(member) AT(member), sizeof(double), 0, UINT32_MAX
 #define MOVING(member, group) AT(member), sizeof(double), group, TANGENT(member)
 

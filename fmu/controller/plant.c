@@ -26,7 +26,8 @@ static fmu_status check(const fmu_instance *instance) {
     const fmu_plant *p = &instance->plant;
     if (!(p->limit_V > 0.0)) return fmu_refuse(instance, "voltage_limit_V: %g must be above 0", p->limit_V);
     if (!(p->proportional_Vs_per_rad >= 0.0))
-        return fmu_refuse(instance, "proportional_gain_Vs_per_rad: %g must not be negative", p->proportional_Vs_per_rad);
+        return fmu_refuse(instance, "proportional_gain_Vs_per_rad: %g must not be negative",
+                          p->proportional_Vs_per_rad);
     if (!(p->integral_V_per_rad >= 0.0))
         return fmu_refuse(instance, "integral_gain_V_per_rad: %g must not be negative", p->integral_V_per_rad);
     return FMU_OK;
@@ -51,9 +52,7 @@ fmu_status fmu_plant_change(fmu_instance *instance) {
     return FMU_OK;
 }
 
-void fmu_plant_input_changed(fmu_plant *plant) {
-    plant->stale = FMU_GROUPS_ALL;
-}
+void fmu_plant_input_changed(fmu_plant *plant) { plant->stale = FMU_GROUPS_ALL; }
 
 void fmu_plant_refresh(fmu_instance *instance, uint32_t groups) {
     fmu_plant *p = &instance->plant;
@@ -102,9 +101,7 @@ void fmu_plant_conclude(fmu_instance *instance, bool accepted) {
     (void)accepted;
 }
 
-void fmu_plant_watch(fmu_instance *instance) {
-    (void)instance; /* a controller needs no ground */
-}
+void fmu_plant_watch(fmu_instance *instance) { (void)instance; /* a controller needs no ground */ }
 
 void fmu_plant_mark(const fmu_plant *plant, fmu_plant_motion *motion) {
     uint32_t i;
@@ -117,9 +114,7 @@ void fmu_plant_return(fmu_plant *plant, const fmu_plant_motion *motion) {
     plant->stale = FMU_GROUPS_ALL;
 }
 
-uint32_t fmu_plant_state_count(const fmu_plant *plant) {
-    return FMU_PLANT_ARRAY_SIZE(plant);
-}
+uint32_t fmu_plant_state_count(const fmu_plant *plant) { return FMU_PLANT_ARRAY_SIZE(plant); }
 
 void fmu_plant_get_states(fmu_instance *instance, double *values) {
     uint32_t i;
@@ -132,9 +127,7 @@ void fmu_plant_set_states(fmu_instance *instance, const double *values) {
     instance->plant.stale = FMU_GROUPS_ALL;
 }
 
-void fmu_plant_states_lead(fmu_instance *instance) {
-    instance->plant.stale = FMU_GROUPS_ALL;
-}
+void fmu_plant_states_lead(fmu_instance *instance) { instance->plant.stale = FMU_GROUPS_ALL; }
 
 void fmu_plant_get_rates(fmu_instance *instance, double *values) {
     uint32_t i;

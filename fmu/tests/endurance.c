@@ -20,7 +20,8 @@ static void must(int good, const char *what) {
     exit(1);
 }
 
-static void log_2(fmi2ComponentEnvironment e, fmi2String name, fmi2Status status, fmi2String category, fmi2String text, ...) {
+static void log_2(fmi2ComponentEnvironment e, fmi2String name, fmi2Status status, fmi2String category, fmi2String text,
+                  ...) {
     (void)e;
     fprintf(stderr, "%s: %d %s: %s\n", name, (int)status, category, text);
 }
@@ -59,20 +60,22 @@ static void log_3(fmi3InstanceEnvironment e, fmi3Status status, fmi3String categ
 static double drive_3(bool exchange, int steps) {
     const fmi3ValueReference voltage = VOLTAGE * 1024U + 1U, x = X;
     fmi3Instance c = exchange ? fmi3InstantiateModelExchange("one", fmu_token_3, NULL, false, false, NULL, log_3)
-                              : fmi3InstantiateCoSimulation("one", fmu_token_3, NULL, false, false, false, false, NULL, 0,
-                                                            NULL, log_3, NULL);
+                              : fmi3InstantiateCoSimulation("one", fmu_token_3, NULL, false, false, false, false, NULL,
+                                                            0, NULL, log_3, NULL);
     fmi3FMUState state = NULL;
     fmi3Boolean b[3];
     double value = 4.0, time;
     int k;
     must(c != NULL, "fmi3Instantiate");
     must(fmi3EnterInitializationMode(c, false, 0.0, 0.0, false, 0.0) == fmi3OK &&
-             fmi3ExitInitializationMode(c) == fmi3OK, "initialization");
+             fmi3ExitInitializationMode(c) == fmi3OK,
+         "initialization");
     must(fmi3SetFloat64(c, &voltage, 1, &value, 1) == fmi3OK, "fmi3SetFloat64");
     for (k = 0; k < steps && !exchange; k++)
         must(fmi3DoStep(c, k * 0.01, 0.01, true, &b[0], &b[1], &b[2], &time) == fmi3OK, "fmi3DoStep");
     must(fmi3GetFMUState(c, &state) == fmi3OK && fmi3SetFMUState(c, state) == fmi3OK &&
-             fmi3FreeFMUState(c, &state) == fmi3OK, "state");
+             fmi3FreeFMUState(c, &state) == fmi3OK,
+         "state");
     must(fmi3GetFloat64(c, &x, 1, &value, 1) == fmi3OK, "fmi3GetFloat64");
     fmi3FreeInstance(c);
     return value;

@@ -36,9 +36,7 @@ static uint64_t counts[NUMBERS];
 static bool flags[NUMBERS];
 static fmi3ValueReference references[NUMBERS];
 
-static unsigned next(source *s) {
-    return s->at < s->size ? s->bytes[s->at++] : 0;
-}
+static unsigned next(source *s) { return s->at < s->size ? s->bytes[s->at++] : 0; }
 
 static uint32_t next_word(source *s) {
     uint32_t word = next(s);
@@ -48,8 +46,8 @@ static uint32_t next_word(source *s) {
 }
 
 static double next_number(source *s) {
-    static const double odd[] = {0.0,   -0.0,    1.0,     -1.0,   1e-3,     0.01, 0.1,  2.0, 5.0, 1e9, -1e9, 1e300,
-                                 -1e300, DBL_MIN, DBL_MAX, -DBL_MAX, 1e-300, 3.14, 0.5, 1e17, 1e19};
+    static const double odd[] = {0.0,   -0.0,   1.0,     -1.0,    1e-3,     0.01,   0.1,  2.0, 5.0,  1e9, -1e9,
+                                 1e300, -1e300, DBL_MIN, DBL_MAX, -DBL_MAX, 1e-300, 3.14, 0.5, 1e17, 1e19};
     const unsigned choice = next(s);
     uint64_t bits;
     double value;
@@ -92,7 +90,8 @@ static size_t next_values(source *s, size_t count) {
     return total;
 }
 
-static void log_2(fmi2ComponentEnvironment e, fmi2String name, fmi2Status status, fmi2String category, fmi2String text, ...) {
+static void log_2(fmi2ComponentEnvironment e, fmi2String name, fmi2Status status, fmi2String category, fmi2String text,
+                  ...) {
     volatile size_t length = strlen(name) + strlen(category) + strlen(text);
     (void)e;
     (void)status;
@@ -106,8 +105,8 @@ static void log_3(fmi3InstanceEnvironment e, fmi3Status status, fmi3String categ
     (void)length;
 }
 
-static void update_3(fmi3InstanceEnvironment e, fmi3Float64 time, fmi3Boolean set, fmi3Boolean get, fmi3Boolean finished,
-                     fmi3Boolean can_return, fmi3Boolean *early, fmi3Float64 *early_time) {
+static void update_3(fmi3InstanceEnvironment e, fmi3Float64 time, fmi3Boolean set, fmi3Boolean get,
+                     fmi3Boolean finished, fmi3Boolean can_return, fmi3Boolean *early, fmi3Float64 *early_time) {
     (void)e;
     (void)set;
     (void)get;
@@ -135,10 +134,11 @@ static void create(source *s, live *l) {
     } else {
         const char *token = good ? fmu_token_3 : token_names[choice % 3];
         const fmi3LogMessageCallback log = choice % 5 ? log_3 : NULL;
-        l->instance = choice % 4 < 2 ? fmi3InstantiateCoSimulation(name, token, resources, false, choice % 7 == 0,
-                                                                   choice % 9 < 4, choice % 11 < 5, references, 3, NULL, log,
-                                                                   choice % 13 < 4 ? update_3 : NULL)
-                                     : fmi3InstantiateModelExchange(name, token, resources, false, choice % 7 == 0, NULL, log);
+        l->instance = choice % 4 < 2
+                          ? fmi3InstantiateCoSimulation(name, token, resources, false, choice % 7 == 0, choice % 9 < 4,
+                                                        choice % 11 < 5, references, 3, NULL, log,
+                                                        choice % 13 < 4 ? update_3 : NULL)
+                          : fmi3InstantiateModelExchange(name, token, resources, false, choice % 7 == 0, NULL, log);
         l->version = l->instance != NULL ? 3 : 0;
     }
 }
@@ -239,8 +239,13 @@ static void call_2(source *s, live *l) {
     case 2: fmi2EnterInitializationMode(c); break;
     case 3:
     case 4: fmi2ExitInitializationMode(c); break;
-    case 5: if (next(s) % 8 == 0) fmi2Terminate(c); break;
-    case 6: if (next(s) % 4 == 0) fmi2Reset(c); l->time = 0.0; break;
+    case 5:
+        if (next(s) % 8 == 0) fmi2Terminate(c);
+        break;
+    case 6:
+        if (next(s) % 4 == 0) fmi2Reset(c);
+        l->time = 0.0;
+        break;
     case 7:
     case 8: fmi2GetReal(c, (const fmi2ValueReference *)references, count, results); break;
     case 9:
@@ -253,9 +258,11 @@ static void call_2(source *s, live *l) {
     case 16: fmi2SetFMUstate(c, l->state[next(s) % STATES]); break;
     case 17: fmi2FreeFMUstate(c, &l->state[next(s) % STATES]); break;
     case 18: serialize(s, l); break;
-    case 19: fmi2GetDirectionalDerivative(c, (const fmi2ValueReference *)references, count / 2,
-                                          (const fmi2ValueReference *)references + count / 2, count - count / 2, null_or,
-                                          results); break;
+    case 19:
+        fmi2GetDirectionalDerivative(c, (const fmi2ValueReference *)references, count / 2,
+                                     (const fmi2ValueReference *)references + count / 2, count - count / 2, null_or,
+                                     results);
+        break;
     case 20: fmi2SetRealInputDerivatives(c, (const fmi2ValueReference *)references, count, wholes, numbers); break;
     case 21: fmi2GetRealOutputDerivatives(c, (const fmi2ValueReference *)references, count, wholes, results); break;
     case 22:
@@ -277,8 +284,14 @@ static void call_2(source *s, live *l) {
     case 33: fmi2GetDerivatives(c, results, states); break;
     case 34: fmi2GetNominalsOfContinuousStates(c, results, states); break;
     case 35: fmi2GetEventIndicators(c, results, count); break;
-    case 36: fmi2GetRealStatus(c, fmi2LastSuccessfulTime, &real); fmi2GetBooleanStatus(c, fmi2Terminated, &flag); break;
-    case 37: fmi2GetStatus(c, fmi2DoStepStatus, &status); fmi2CancelStep(c); break;
+    case 36:
+        fmi2GetRealStatus(c, fmi2LastSuccessfulTime, &real);
+        fmi2GetBooleanStatus(c, fmi2Terminated, &flag);
+        break;
+    case 37:
+        fmi2GetStatus(c, fmi2DoStepStatus, &status);
+        fmi2CancelStep(c);
+        break;
     case 38: fmi2GetString(c, (const fmi2ValueReference *)references, count, NULL); break;
     default: fmi2SetDebugLogging(c, next(s) % 2, 0, NULL);
     }
@@ -298,12 +311,20 @@ static void call_3(source *s, live *l) {
     case 0: fmi3EnterConfigurationMode(c); break;
     case 1: fmi3ExitConfigurationMode(c); break;
     case 2:
-    case 3: fmi3EnterInitializationMode(c, false, 0.0, next(s) % 4 ? 0.0 : next_number(s), next(s) % 5 == 0, next_number(s)); break;
+    case 3:
+        fmi3EnterInitializationMode(c, false, 0.0, next(s) % 4 ? 0.0 : next_number(s), next(s) % 5 == 0,
+                                    next_number(s));
+        break;
     case 4:
     case 5: fmi3ExitInitializationMode(c); break;
     case 6: fmi3EnterEventMode(c); break;
-    case 7: if (next(s) % 8 == 0) fmi3Terminate(c); break;
-    case 8: if (next(s) % 4 == 0) fmi3Reset(c); l->time = 0.0; break;
+    case 7:
+        if (next(s) % 8 == 0) fmi3Terminate(c);
+        break;
+    case 8:
+        if (next(s) % 4 == 0) fmi3Reset(c);
+        l->time = 0.0;
+        break;
     case 9:
     case 10: fmi3GetFloat64(c, references, count, results, total); break;
     case 11:
@@ -320,10 +341,14 @@ static void call_3(source *s, live *l) {
     case 22: fmi3SetFMUState(c, l->state[next(s) % STATES]); break;
     case 23: fmi3FreeFMUState(c, &l->state[next(s) % STATES]); break;
     case 24: serialize(s, l); break;
-    case 25: fmi3GetDirectionalDerivative(c, references, count / 2, references + count / 2, count - count / 2, null_or,
-                                          next(s) % 40, results, next(s) % 40); break;
-    case 26: fmi3GetAdjointDerivative(c, references, count / 2, references + count / 2, count - count / 2, null_or,
-                                      next(s) % 40, results, next(s) % 40); break;
+    case 25:
+        fmi3GetDirectionalDerivative(c, references, count / 2, references + count / 2, count - count / 2, null_or,
+                                     next(s) % 40, results, next(s) % 40);
+        break;
+    case 26:
+        fmi3GetAdjointDerivative(c, references, count / 2, references + count / 2, count - count / 2, null_or,
+                                 next(s) % 40, results, next(s) % 40);
+        break;
     case 27: fmi3GetOutputDerivatives(c, references, count, wholes_32, results, total); break;
     case 28:
     case 29:

@@ -3,21 +3,23 @@
 static void tell_lift(const fmu_instance *instance) {
     const laconic_grip_event *event = &instance->plant.noted_lift;
     const int wheels = (int)instance->plant.core.model.wheel_count, point = (int)event->point;
-    fmu_report(instance, FMU_WARNING, FMU_LOG_WARNING,
-               "at %.9g s %s %d lifts: its normal load would be %.4g N; the model keeps all wheels on the ground, so its "
-               "motion no longer holds (said once)",
-               instance->plant.lift_s, point <= wheels ? "wheel" : "support", point <= wheels ? point : point - wheels,
-               event->normal_N);
+    fmu_report(
+        instance, FMU_WARNING, FMU_LOG_WARNING,
+        "at %.9g s %s %d lifts: its normal load would be %.4g N; the model keeps all wheels on the ground, so its "
+        "motion no longer holds (said once)",
+        instance->plant.lift_s, point <= wheels ? "wheel" : "support", point <= wheels ? point : point - wheels,
+        event->normal_N);
 }
 
 static void tell_slip(const fmu_instance *instance) {
     const laconic_grip_event *event = &instance->plant.noted_slip;
     const double friction = instance->plant.contact.friction_coefficient;
     const double has_N = event->normal_N > 0.0 ? friction * event->normal_N : 0.0;
-    fmu_report(instance, FMU_WARNING, FMU_LOG_WARNING,
-               "at %.9g s wheel %d needs %.4g N of grip and has %.4g N (friction_coefficient = %.4g): %.4g N are missing; "
-               "the model knows no slip, so its motion no longer holds (said once)",
-               instance->plant.slip_s, (int)event->point, event->needed_N, has_N, friction, event->needed_N - has_N);
+    fmu_report(
+        instance, FMU_WARNING, FMU_LOG_WARNING,
+        "at %.9g s wheel %d needs %.4g N of grip and has %.4g N (friction_coefficient = %.4g): %.4g N are missing; "
+        "the model knows no slip, so its motion no longer holds (said once)",
+        instance->plant.slip_s, (int)event->point, event->needed_N, has_N, friction, event->needed_N - has_N);
 }
 
 static void tell_overflow(const fmu_instance *instance) {

@@ -6,8 +6,8 @@
 
 #include "plant.h"
 
-#define AT(member) (uint32_t) offsetof(fmu_plant, member)
-#define TANGENT(member) (uint32_t) offsetof(fmu_tangent, member)
+#define AT(member) (uint32_t)offsetof(fmu_plant, member)
+#define TANGENT(member) (uint32_t)offsetof(fmu_tangent, member)
 #define NO_TANGENT UINT32_MAX
 #define PLAIN(member) AT(member), sizeof(double), 0, NO_TANGENT
 #define OF_WHEELS(member) AT(vehicle.wheel[0].member), sizeof(laconic_wheel), 0, NO_TANGENT

@@ -82,13 +82,12 @@ fmu_status fmu_plant_change(fmu_instance *instance) {
     p->change_needed = false;
     p->stale = FMU_GROUPS_ALL & ~FMU_GROUP_STATE;
     if (p->continuous) fmu_plant_refresh(instance, FMU_GROUPS_OF_CONTINUOUS_STATES);
-    return fmu_report(instance, FMU_OK, FMU_LOG_EVENTS, "the vehicle changed: mass %g kg, velocity and place of its body carried over",
+    return fmu_report(instance, FMU_OK, FMU_LOG_EVENTS,
+                      "the vehicle changed: mass %g kg, velocity and place of its body carried over",
                       core.model.mass_kg);
 }
 
-void fmu_plant_input_changed(fmu_plant *plant) {
-    plant->stale |= FMU_GROUPS_OF_INPUT;
-}
+void fmu_plant_input_changed(fmu_plant *plant) { plant->stale |= FMU_GROUPS_OF_INPUT; }
 
 /* ---------------------------------------------------------------------------------- outputs -- */
 
@@ -99,9 +98,7 @@ static void refresh_state(fmu_plant *p) {
     laconic_wheel_angles_set(&p->core.model, &p->core.state, p->wheel_angle_rad);
 }
 
-static void refresh_angles(fmu_plant *p) {
-    laconic_wheel_angles(&p->core.model, &p->core.state, p->wheel_angle_rad);
-}
+static void refresh_angles(fmu_plant *p) { laconic_wheel_angles(&p->core.model, &p->core.state, p->wheel_angle_rad); }
 
 void fmu_plant_refresh(fmu_instance *instance, uint32_t groups) {
     fmu_plant *p = &instance->plant;
@@ -137,9 +134,7 @@ void fmu_plant_refresh(fmu_instance *instance, uint32_t groups) {
 
 /* ------------------------------------------------------------------------------------ steps -- */
 
-double fmu_plant_own_step(const fmu_plant *plant) {
-    return plant->step_s;
-}
+double fmu_plant_own_step(const fmu_plant *plant) { return plant->step_s; }
 
 fmu_status fmu_plant_set_step(fmu_instance *instance, double step_s) {
     laconic_refusal why = {LACONIC_OK, LACONIC_FIELD_NONE, 0, 0.0, 0.0};
@@ -166,10 +161,14 @@ fmu_status fmu_plant_count_steps(fmu_instance *instance, double step_s, double o
     if (laconic_steps_in(step_s, own_s, steps, &why) == LACONIC_OK) return FMU_OK;
     nearest = nearest_step(instance, step_s, own_s);
     if (nearest > 0.0)
-        return fmu_refuse(instance, "the communication step of %.15g s is no whole number of internal steps of %.15g s "
-                          "(step_s); nearest that is: %.15g s", step_s, own_s, nearest);
-    return fmu_refuse(instance, "the communication step of %.15g s cannot be taken in internal steps of %.15g s (step_s): "
-                      "set another step_s before the run", step_s, own_s);
+        return fmu_refuse(instance,
+                          "the communication step of %.15g s is no whole number of internal steps of %.15g s "
+                          "(step_s); nearest that is: %.15g s",
+                          step_s, own_s, nearest);
+    return fmu_refuse(instance,
+                      "the communication step of %.15g s cannot be taken in internal steps of %.15g s (step_s): "
+                      "set another step_s before the run",
+                      step_s, own_s);
 }
 
 static void shift_input(laconic_input *out, const fmu_plant *p, double by_s) {
@@ -253,9 +252,7 @@ void fmu_plant_return(fmu_plant *plant, const fmu_plant_motion *motion) {
 
 /* ------------------------------------------------------------------------ continuous states -- */
 
-uint32_t fmu_plant_state_count(const fmu_plant *plant) {
-    return 6U + FMU_PLANT_ARRAY_SIZE(plant);
-}
+uint32_t fmu_plant_state_count(const fmu_plant *plant) { return 6U + FMU_PLANT_ARRAY_SIZE(plant); }
 
 void fmu_plant_get_states(fmu_instance *instance, double *values) {
     const fmu_plant *p = &instance->plant;

@@ -12,8 +12,8 @@
 #define FMU_PLANT_ARRAY_SIZE(plant) ((uint32_t)(plant)->vehicle.wheel_count)
 
 /* What must be fresh before a variable is read: bits in fmu_variable.group and fmu_plant.stale. */
-#define FMU_GROUP_STATE 1U   /* Model Exchange: the core's state follows the continuous states */
-#define FMU_GROUP_MOTION 2U  /* ν, x, y, heading */
+#define FMU_GROUP_STATE 1U  /* Model Exchange: the core's state follows the continuous states */
+#define FMU_GROUP_MOTION 2U /* ν, x, y, heading */
 #define FMU_GROUP_ANGLES 8U
 #define FMU_GROUP_VELOCITY 16U
 #define FMU_GROUP_SPEEDS 32U
@@ -27,11 +27,11 @@
 #define FMU_GROUPS_OF_CONTINUOUS_STATES (FMU_GROUP_MOTION | FMU_GROUP_ANGLES)
 
 typedef struct fmu_plant {
-    bool start_needed;  /* parameters were set since the last start          */
-    bool change_needed; /* tunable ones were set since                       */
+    bool start_needed;   /* parameters were set since the last start          */
+    bool change_needed;  /* tunable ones were set since                       */
     bool states_changed; /* by an event, and the importer was not told yet   */
-    bool continuous;    /* Model Exchange                                */
-    bool stand_in;      /* no step is known yet: the integrator is prepared for another method */
+    bool continuous;     /* Model Exchange                                */
+    bool stand_in;       /* no step is known yet: the integrator is prepared for another method */
     double time_s;
     uint32_t stale;
 

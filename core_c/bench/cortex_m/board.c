@@ -14,9 +14,7 @@ static void semihosting(uint32_t operation, const void *argument) {
     __asm volatile("bkpt 0xAB" : "+r"(r0) : "r"(r1) : "memory");
 }
 
-void board_write(const char *text) {
-    semihosting(SEMIHOSTING_WRITE0, text);
-}
+void board_write(const char *text) { semihosting(SEMIHOSTING_WRITE0, text); }
 
 void board_exit(int status) {
     const uint32_t block[2] = {APPLICATION_EXIT, (uint32_t)status};
@@ -60,13 +58,9 @@ void board_clock_start(void) {
     SYSTICK_CONTROL = 5; /* enabled, no interrupt, processor clock */
 }
 
-uint32_t board_clock_now(void) {
-    return SYSTICK_LARGEST - SYSTICK_VALUE;
-}
+uint32_t board_clock_now(void) { return SYSTICK_LARGEST - SYSTICK_VALUE; }
 
-uint32_t board_clock_since(uint32_t earlier) {
-    return (board_clock_now() - earlier) & SYSTICK_LARGEST;
-}
+uint32_t board_clock_since(uint32_t earlier) { return (board_clock_now() - earlier) & SYSTICK_LARGEST; }
 
 uint32_t board_calibrate(void) {
     uint32_t rounds = 32768U; /* of two instructions */

@@ -14,9 +14,7 @@ static uint32_t ticks_for(uint32_t steps) {
     return board_clock_since(before);
 }
 
-static void one_step(void) {
-    bench_step();
-}
+static void one_step(void) { bench_step(); }
 
 int main(void) {
     board_write_number("calibration", board_calibrate());

@@ -29,6 +29,4 @@ void peer_run(long steps, long steps_per_second) {
     }
 }
 
-void peer_state(double *out) {
-    memcpy(out, state, sizeof state);
-}
+void peer_state(double *out) { memcpy(out, state, sizeof state); }

@@ -59,24 +59,24 @@ extern "C" {
 
 typedef enum laconic_status {
     LACONIC_OK = 0,
-    LACONIC_NOT_FINITE,                  /* a number is infinite or not a number                      */
-    LACONIC_NOT_POSITIVE,                /* mass, wheel radius, yaw inertia or step is not above zero */
-    LACONIC_NEGATIVE,                    /* an inertia, damping or friction is below zero             */
-    LACONIC_ROLLER_ALONG_AXLE,           /* |sin γ| too small: the wheel would transmit nothing       */
-    LACONIC_WHEEL_NOT_SET,               /* wheel_count counts a wheel whose kind was never given     */
-    LACONIC_WHEEL_KIND_UNKNOWN,          /* kind is none of laconic_wheel_kind                        */
-    LACONIC_TOO_MANY_WHEELS,             /* wheel_count below 0 or above LACONIC_MAX_WHEELS           */
-    LACONIC_TOO_MANY_SUPPORTS,           /* support_count below 0 or above LACONIC_MAX_SUPPORTS       */
-    LACONIC_NOTHING_MOVES,               /* three independent constraints                             */
-    LACONIC_ILL_CONDITIONED,             /* ε √cond(A) >= 0.01: fewer than two correct digits left    */
-    LACONIC_START_AGAINST_CONSTRAINTS,   /* the initial velocity slides a fixed or locked wheel       */
-    LACONIC_METHOD_UNKNOWN,              /* no method of that name or number                          */
-    LACONIC_STEP_DOES_NOT_FIT,           /* the interval is no whole number of steps                  */
-    LACONIC_STEP_BEYOND_DAMPING_LIMIT,   /* explicit method: h·r_max above its limit                  */
-    LACONIC_STEP_BEYOND_GYROSCOPIC_LIMIT,/* explicit method: h·|ν3| above its limit in this state     */
-    LACONIC_STEP_GAINS_ENERGY,           /* the step would make energy out of nothing                 */
-    LACONIC_STEP_SINGULAR,               /* the step has no finite result in this state               */
-    LACONIC_OVERFLOW,                    /* the result leaves the range of the scalar type            */
+    LACONIC_NOT_FINITE,                   /* a number is infinite or not a number                      */
+    LACONIC_NOT_POSITIVE,                 /* mass, wheel radius, yaw inertia or step is not above zero */
+    LACONIC_NEGATIVE,                     /* an inertia, damping or friction is below zero             */
+    LACONIC_ROLLER_ALONG_AXLE,            /* |sin γ| too small: the wheel would transmit nothing       */
+    LACONIC_WHEEL_NOT_SET,                /* wheel_count counts a wheel whose kind was never given     */
+    LACONIC_WHEEL_KIND_UNKNOWN,           /* kind is none of laconic_wheel_kind                        */
+    LACONIC_TOO_MANY_WHEELS,              /* wheel_count below 0 or above LACONIC_MAX_WHEELS           */
+    LACONIC_TOO_MANY_SUPPORTS,            /* support_count below 0 or above LACONIC_MAX_SUPPORTS       */
+    LACONIC_NOTHING_MOVES,                /* three independent constraints                             */
+    LACONIC_ILL_CONDITIONED,              /* ε √cond(A) >= 0.01: fewer than two correct digits left    */
+    LACONIC_START_AGAINST_CONSTRAINTS,    /* the initial velocity slides a fixed or locked wheel       */
+    LACONIC_METHOD_UNKNOWN,               /* no method of that name or number                          */
+    LACONIC_STEP_DOES_NOT_FIT,            /* the interval is no whole number of steps                  */
+    LACONIC_STEP_BEYOND_DAMPING_LIMIT,    /* explicit method: h·r_max above its limit                  */
+    LACONIC_STEP_BEYOND_GYROSCOPIC_LIMIT, /* explicit method: h·|ν3| above its limit in this state     */
+    LACONIC_STEP_GAINS_ENERGY,            /* the step would make energy out of nothing                 */
+    LACONIC_STEP_SINGULAR,                /* the step has no finite result in this state               */
+    LACONIC_OVERFLOW,                     /* the result leaves the range of the scalar type            */
     LACONIC_STATUS_COUNT
 } laconic_status;
 
@@ -210,19 +210,19 @@ typedef struct laconic_support { /* a ball caster: carries load, nothing else */
 
 /* What the user knows. Start from all zero and set what applies. Totals count the wheels in. */
 typedef struct laconic_vehicle {
-    laconic_real mass_kg;               /* M, without payload                                     */
-    laconic_real yaw_inertia_kgm2;      /* I_S, about the vertical through the centre of mass     */
-    laconic_real com_x_m, com_y_m;      /* centre of mass S in the body frame, without payload    */
-    laconic_real com_z_m;               /* its height above the ground, >= 0; for normal loads only */
-    laconic_real wheel_radius_m;        /* R, common to all wheels                                */
-    laconic_real wheel_inertia_kgm2;    /* J, one wheel with its gear and rotor about the axle    */
-    laconic_real motor_gain_Nm_per_V;   /* c1: torque on a wheel is c1 U − c2 χ' + axle torque    */
-    laconic_real motor_damping_Nms;     /* c2                                                     */
-    laconic_real friction_coefficient;  /* μ, for the no-slip margin only                         */
+    laconic_real mass_kg;              /* M, without payload                                     */
+    laconic_real yaw_inertia_kgm2;     /* I_S, about the vertical through the centre of mass     */
+    laconic_real com_x_m, com_y_m;     /* centre of mass S in the body frame, without payload    */
+    laconic_real com_z_m;              /* its height above the ground, >= 0; for normal loads only */
+    laconic_real wheel_radius_m;       /* R, common to all wheels                                */
+    laconic_real wheel_inertia_kgm2;   /* J, one wheel with its gear and rotor about the axle    */
+    laconic_real motor_gain_Nm_per_V;  /* c1: torque on a wheel is c1 U − c2 χ' + axle torque    */
+    laconic_real motor_damping_Nms;    /* c2                                                     */
+    laconic_real friction_coefficient; /* μ, for the no-slip margin only                         */
     laconic_payload payload;
-    int32_t wheel_count;                /* N, 0 … LACONIC_MAX_WHEELS; 0 is a sliding puck         */
+    int32_t wheel_count; /* N, 0 … LACONIC_MAX_WHEELS; 0 is a sliding puck         */
     laconic_wheel wheel[LACONIC_MAX_WHEELS];
-    int32_t support_count;              /* 0 … LACONIC_MAX_SUPPORTS, for normal loads only        */
+    int32_t support_count; /* 0 … LACONIC_MAX_SUPPORTS, for normal loads only        */
     laconic_support support[LACONIC_MAX_SUPPORTS];
 } laconic_vehicle;
 
@@ -251,25 +251,25 @@ laconic_status laconic_motor_fit(laconic_vehicle *vehicle, const laconic_motor *
  * With fewer than three degrees of freedom the columns of G beyond `dof` are zero. */
 typedef struct laconic_model {
     int32_t wheel_count;
-    int32_t dof;                                     /* m = 1 … 3                                 */
-    laconic_real nu_of_zeta[3][3];                   /* G                                         */
-    laconic_real gyro[3];                            /* w = G₀ × G₁ / Λ                           */
-    laconic_real gyro_square;                        /* |w|²                                      */
-    laconic_real spin_gain[3];                       /* w × g: (spin_gain · ζ)(g·ζ) = rate of g·ζ in free motion */
-    laconic_real spin_curve[3];                      /* 2(g·w)w − |w|²g                           */
-    laconic_real decay_per_s[3];                     /* r_k ≥ 0, damping rates                    */
-    laconic_real inertia[3];                         /* 1 + λ² x_k, principal values of A         */
-    laconic_real velocity_of_zeta[2][3];             /* R G₀, R G₁: v_S in body axes              */
-    laconic_real yaw_rate_of_zeta[3];                /* g/Λ                                       */
+    int32_t dof;                                       /* m = 1 … 3                                 */
+    laconic_real nu_of_zeta[3][3];                     /* G                                         */
+    laconic_real gyro[3];                              /* w = G₀ × G₁ / Λ                           */
+    laconic_real gyro_square;                          /* |w|²                                      */
+    laconic_real spin_gain[3];                         /* w × g: (spin_gain · ζ)(g·ζ) = rate of g·ζ in free motion */
+    laconic_real spin_curve[3];                        /* 2(g·w)w − |w|²g                           */
+    laconic_real decay_per_s[3];                       /* r_k ≥ 0, damping rates                    */
+    laconic_real inertia[3];                           /* 1 + λ² x_k, principal values of A         */
+    laconic_real velocity_of_zeta[2][3];               /* R G₀, R G₁: v_S in body axes              */
+    laconic_real yaw_rate_of_zeta[3];                  /* g/Λ                                       */
     laconic_real wheel_of_zeta[LACONIC_MAX_WHEELS][3]; /* Ξ G: χ' = Ξ ν                           */
-    laconic_real torque_scale;                       /* 1/(M R²)                                  */
-    laconic_real voltage_scale;                      /* c1/(M R²)                                 */
-    laconic_real motor_gain_Nm_per_V;                /* c1                                        */
-    laconic_real motor_damping_Nms;                  /* c2                                        */
-    laconic_real wheel_inertia_kgm2;                 /* J                                         */
-    laconic_real mass_kg, wheel_radius_m;            /* M with payload, R                         */
-    laconic_real yaw_scale;                          /* Λ                                         */
-    laconic_real com_x_m, com_y_m;                   /* S in the body frame, with payload         */
+    laconic_real torque_scale;                         /* 1/(M R²)                                  */
+    laconic_real voltage_scale;                        /* c1/(M R²)                                 */
+    laconic_real motor_gain_Nm_per_V;                  /* c1                                        */
+    laconic_real motor_damping_Nms;                    /* c2                                        */
+    laconic_real wheel_inertia_kgm2;                   /* J                                         */
+    laconic_real mass_kg, wheel_radius_m;              /* M with payload, R                         */
+    laconic_real yaw_scale;                            /* Λ                                         */
+    laconic_real com_x_m, com_y_m;                     /* S in the body frame, with payload         */
 } laconic_model;
 
 /* Checks the vehicle and fills the model: rows of Ξ (4.3–4.4), constraints of fixed and locked wheels,
@@ -287,14 +287,14 @@ laconic_real laconic_condition_number(const laconic_model *model);
 
 /* The matrices of the paper, for people who want to see them. */
 typedef struct laconic_matrices {
-    laconic_real wheel_rows[LACONIC_MAX_WHEELS][3];      /* Ξ (4.3–4.4)                            */
-    laconic_real inertia[3][3];                          /* A = E + λ² ΞᵀΞ (4.6)                   */
-    laconic_real inverse_inertia[3][3];                  /* A⁻¹; with constraints G Gᵀ             */
-    int32_t constraint_count;                            /* rows below, dependent ones included    */
+    laconic_real wheel_rows[LACONIC_MAX_WHEELS][3];          /* Ξ (4.3–4.4)                            */
+    laconic_real inertia[3][3];                              /* A = E + λ² ΞᵀΞ (4.6)                   */
+    laconic_real inverse_inertia[3][3];                      /* A⁻¹; with constraints G Gᵀ             */
+    int32_t constraint_count;                                /* rows below, dependent ones included    */
     laconic_real constraint_rows[2 * LACONIC_MAX_WHEELS][3]; /* c with cᵀν = 0: per wheel the lateral
                                                             one if fixed, then Ξ_i if locked      */
-    laconic_real lambda_yaw;                             /* Λ                                      */
-    laconic_real lambda_wheel;                           /* λ                                      */
+    laconic_real lambda_yaw;                                 /* Λ                                      */
+    laconic_real lambda_wheel;                               /* λ                                      */
 } laconic_matrices;
 
 /* Refuses as laconic_prepare does, OVERFLOW for these numbers, too. */
@@ -304,12 +304,12 @@ laconic_status laconic_matrices_of(laconic_matrices *matrices, const laconic_veh
 
 /* What acts on the vehicle. All zero: it rolls freely (against its motors' damping). */
 typedef struct laconic_input {
-    laconic_real voltage_V[LACONIC_MAX_WHEELS];       /* U_i                                      */
-    laconic_real axle_torque_Nm[LACONIC_MAX_WHEELS];  /* besides the motor's                      */
-    laconic_real body_force_N[2];                     /* body axes, acting at S                   */
-    laconic_real body_moment_Nm;                      /* about S                                  */
-    laconic_real world_force_N[2];                    /* world axes                               */
-    laconic_real world_force_point_m[2];              /* where it acts: body axes, from S         */
+    laconic_real voltage_V[LACONIC_MAX_WHEELS];      /* U_i                                      */
+    laconic_real axle_torque_Nm[LACONIC_MAX_WHEELS]; /* besides the motor's                      */
+    laconic_real body_force_N[2];                    /* body axes, acting at S                   */
+    laconic_real body_moment_Nm;                     /* about S                                  */
+    laconic_real world_force_N[2];                   /* world axes                               */
+    laconic_real world_force_point_m[2];             /* where it acts: body axes, from S         */
 } laconic_input;
 
 /* OK iff every number of the first wheel_count wheels, and the rest, is finite. */
@@ -378,7 +378,7 @@ laconic_status laconic_state_carry(laconic_state *state, const laconic_model *fr
 /* One method prepared for one step size: factors of one exponential sub-step, per axis k, a = h r_k, φ at −a.
  * b over the sub-step: start + change·s + curve·s(s − 1), s from 0 to 1. */
 typedef struct laconic_decay {
-    laconic_real gain[3];       /* h φ1: increment per derivative                                 */
+    laconic_real gain[3]; /* h φ1: increment per derivative                                 */
     laconic_real inverse_gain[3];
     laconic_real mean[3];       /* κ = φ2/φ1, ½ … 1: how far the mean of ζ lies along the increment, and
                                    what constant b a change of b is worth                         */
@@ -424,8 +424,8 @@ extern const laconic_method laconic_exact_flow_4;        /* 4  any damping, best
 extern const laconic_method laconic_taylor_8;            /* 8  h·r ≤ 4.313, h·|ν3| limited  –       */
 extern const laconic_method laconic_auto;                /* picks one of the next two; see auto.c   */
 /* Only ever `chosen`, for firmware whose integrator is a constant; what is prepared is laconic_auto. */
-extern const laconic_method laconic_auto_slow;           /* exact-flow-4 or taylor-8, else exact-flow */
-extern const laconic_method laconic_auto_fast;           /* exponential-kahan-4, else exact-flow    */
+extern const laconic_method laconic_auto_slow; /* exact-flow-4 or taylor-8, else exact-flow */
+extern const laconic_method laconic_auto_fast; /* exponential-kahan-4, else exact-flow    */
 
 /* All methods, for adapters that choose by number (0 auto, 1 rk4, 2 exponential-kahan,
  * 3 exponential-kahan-4, 4 exact-flow, 5 exact-flow-4, 6 taylor-8) or by name. NULL if there is none. Links them all. */
@@ -523,17 +523,17 @@ void laconic_derivative(laconic_rates *rates, const laconic_model *model, const 
 /* What reactions need besides the model, prepared once. */
 typedef struct laconic_contact {
     int32_t constraint_count;
-    int32_t lateral_row[LACONIC_MAX_WHEELS];  /* row of a fixed wheel's constraint, −1: none      */
-    int32_t brake_row[LACONIC_MAX_WHEELS];    /* row of a locked wheel's, −1: none                */
+    int32_t lateral_row[LACONIC_MAX_WHEELS];            /* row of a fixed wheel's constraint, −1: none      */
+    int32_t brake_row[LACONIC_MAX_WHEELS];              /* row of a locked wheel's, −1: none                */
     laconic_real multiplier[2 * LACONIC_MAX_WHEELS][3]; /* κ = multiplier · (Aν' − …): least norm,
                                                  so wheels that share a constraint share its force */
     laconic_real wheel_rows[LACONIC_MAX_WHEELS][3];     /* Ξ                                       */
     laconic_real inverse_arm_per_m[LACONIC_MAX_WHEELS]; /* 1/(R sin γ_i)                           */
-    laconic_real pull[LACONIC_MAX_WHEELS][2]; /* unit vector the reaction acts along, body axes    */
-    laconic_real axle[LACONIC_MAX_WHEELS][2]; /* unit vector of the axle, body axes                */
-    laconic_real inertia[3][3];               /* A                                                 */
-    int32_t point_count;                      /* wheels, then supports                             */
-    laconic_real point_m[LACONIC_MAX_WHEELS + LACONIC_MAX_SUPPORTS][2]; /* from S, body axes       */
+    laconic_real pull[LACONIC_MAX_WHEELS][2];           /* unit vector the reaction acts along, body axes    */
+    laconic_real axle[LACONIC_MAX_WHEELS][2];           /* unit vector of the axle, body axes                */
+    laconic_real inertia[3][3];                         /* A                                                 */
+    int32_t point_count;                                /* wheels, then supports                             */
+    laconic_real point_m[LACONIC_MAX_WHEELS + LACONIC_MAX_SUPPORTS][2];        /* from S, body axes       */
     laconic_real load_of_wrench[LACONIC_MAX_WHEELS + LACONIC_MAX_SUPPORTS][3]; /* least-norm statics */
     laconic_real com_z_m, friction_coefficient;
 } laconic_contact;
@@ -546,7 +546,7 @@ typedef struct laconic_reactions {
     laconic_real lateral_N[LACONIC_MAX_WHEELS]; /* fixed wheels: along the axle; others 0         */
     laconic_real brake_Nm[LACONIC_MAX_WHEELS];  /* locked wheels: torque of the brake; others 0   */
     laconic_real normal_N[LACONIC_MAX_WHEELS + LACONIC_MAX_SUPPORTS]; /* below 0: it would lift   */
-    laconic_real no_slip_margin_N;              /* least of μ N_i − |reaction_i|; below 0: it slips;
+    laconic_real no_slip_margin_N; /* least of μ N_i − |reaction_i|; below 0: it slips;
                                                    NaN or −∞ where a force leaves the scalar's range */
 } laconic_reactions;
 
@@ -633,16 +633,16 @@ void laconic_outputs_of(laconic_outputs *outputs, const laconic_plant *plant, co
 
 /* One instant at which a wheel asked for more than the ground gives, or would have lifted. */
 typedef struct laconic_grip_event {
-    uint64_t steps;         /* taken before it: its time is steps · step_s                         */
-    int32_t point;          /* from 1: the wheels, then the supports; 0: it never happened         */
-    laconic_real needed_N;  /* size of the reaction                                                */
-    laconic_real normal_N;  /* normal load; the friction there is is μ times it, none where below 0 */
-    laconic_real margin_N;  /* μ normal − needed                                                   */
+    uint64_t steps;        /* taken before it: its time is steps · step_s                         */
+    int32_t point;         /* from 1: the wheels, then the supports; 0: it never happened         */
+    laconic_real needed_N; /* size of the reaction                                                */
+    laconic_real normal_N; /* normal load; the friction there is is μ times it, none where below 0 */
+    laconic_real margin_N; /* μ normal − needed                                                   */
 } laconic_grip_event;
 
 /* Whether the no-slip model was true. Start from all zero. */
 typedef struct laconic_grip {
-    uint64_t looks, slipping, lifting; /* instants looked at; those with a slip, with a lifted point */
+    uint64_t looks, slipping, lifting;         /* instants looked at; those with a slip, with a lifted point */
     laconic_grip_event first_slip, worst_slip; /* worst: least margin                              */
     laconic_grip_event first_lift, worst_lift; /* worst: least normal load                         */
 } laconic_grip;
@@ -669,8 +669,8 @@ typedef struct laconic_recorder {
     laconic_grip *grip;             /* watched at the start of every step; NULL, or without contact: not  */
     uint64_t every;                 /* a row at the start of each step whose number it divides; 0: none   */
     int32_t column_count;
-    const uint32_t *column;         /* where each stands in laconic_outputs, in bytes               */
-    laconic_real *row;              /* room for row_room rows of column_count numbers               */
+    const uint32_t *column; /* where each stands in laconic_outputs, in bytes               */
+    laconic_real *row;      /* room for row_room rows of column_count numbers               */
     uint64_t row_count, row_room;
 } laconic_recorder;
 

@@ -22,9 +22,7 @@ typedef struct errors {
     double nu, pose, wheels;
 } errors;
 
-static inline double larger(double a, double b) {
-    return a > b ? a : b;
-}
+static inline double larger(double a, double b) { return a > b ? a : b; }
 
 /* Largest difference to the reference after `time`, in `steps` steps. */
 static inline errors errors_of(const laconic_method *method, const laconic_vehicle *vehicle, laconic_start start,

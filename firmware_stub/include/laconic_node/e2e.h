@@ -47,11 +47,11 @@ typedef enum laconic_e2e_status {
 #define LACONIC_E2E_RESYNC 3
 
 typedef struct laconic_e2e_receiver {
-    bool known;             /* counter holds that of an accepted frame              */
-    uint8_t counter;        /* of the last accepted frame                           */
-    uint8_t stray;          /* of the last frame refused for its sequence           */
-    uint8_t stray_count;    /* how many of those followed one another; 0: none      */
-    uint8_t lost;           /* frames missing before the last accepted one          */
+    bool known;          /* counter holds that of an accepted frame              */
+    uint8_t counter;     /* of the last accepted frame                           */
+    uint8_t stray;       /* of the last frame refused for its sequence           */
+    uint8_t stray_count; /* how many of those followed one another; 0: none      */
+    uint8_t lost;        /* frames missing before the last accepted one          */
 } laconic_e2e_receiver;
 
 /* One frame came. `mask`: LACONIC_E2E_Pxx_COUNTER_MASK. */

@@ -15,10 +15,10 @@ typedef struct laconic_parameters {
 
 typedef struct laconic_loader {
     laconic_parameters parameters;
-    uint32_t checksum;       /* CRC-32 so far                                                  */
+    uint32_t checksum; /* CRC-32 so far                                                  */
     uint16_t frame_count;
-    uint8_t status;          /* LACONIC_WIRE_STATUS_… of the first frame that was no use; 0    */
-    uint8_t field, item;     /* … and what it was about                                        */
+    uint8_t status;                /* LACONIC_WIRE_STATUS_… of the first frame that was no use; 0    */
+    uint8_t field, item;           /* … and what it was about                                        */
     uint8_t half_field, half_item; /* lower half of a double waits for its upper half; 0: none */
     uint32_t half;
     uint32_t given[LACONIC_LOADER_FIELDS]; /* by field: bit = item, 0 where it has none                */

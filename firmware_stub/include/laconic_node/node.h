@@ -29,11 +29,11 @@
 #define LACONIC_NODE_ID_STRIDE 32U /* a node uses 32 identifiers from its base */
 
 typedef struct laconic_node_config {
-    uint16_t id_base;                                 /* multiple of 32, at most 0x7E0             */
-    bool can_fd;                                      /* the bus and the controller can do CAN FD  */
-    const laconic_method *(*method)(int32_t number);  /* which methods are linked; as
+    uint16_t id_base;                                /* multiple of 32, at most 0x7E0             */
+    bool can_fd;                                     /* the bus and the controller can do CAN FD  */
+    const laconic_method *(*method)(int32_t number); /* which methods are linked; as
                                                          laconic_method_by_number                  */
-    uint32_t nonce_seed;                              /* other at each power-up, as far as the port can: from a
+    uint32_t nonce_seed;                             /* other at each power-up, as far as the port can: from a
                                                          hardware generator, noise, a boot counter; 0: none  */
 } laconic_node_config;
 
@@ -50,22 +50,22 @@ typedef struct laconic_node_lockstep {
 typedef struct laconic_node_free_run {
     uint32_t rate_Hz, watchdog_us; /* watchdog 0: none                                             */
     uint32_t steps_per_period;
-    uint32_t next_us, next_rest;   /* when the next period begins: next_us + next_rest/rate        */
-    uint32_t fed_us;               /* last time that all voltages had come                         */
+    uint32_t next_us, next_rest; /* when the next period begins: next_us + next_rest/rate        */
+    uint32_t fed_us;             /* last time that all voltages had come                         */
     uint32_t worst_lateness_us;
 } laconic_node_free_run;
 
 typedef struct laconic_node {
     laconic_node_config config;
-    uint8_t state;                     /* LACONIC_WIRE_STATE_…                                     */
-    uint8_t send;                      /* chosen frames: LACONIC_NODE_SEND_…                       */
+    uint8_t state; /* LACONIC_WIRE_STATE_…                                     */
+    uint8_t send;  /* chosen frames: LACONIC_NODE_SEND_…                       */
     bool raw_fd;
-    uint32_t pending;                  /* frames to be fetched: bit = offset of the identifier     */
-    uint8_t wheel_group;               /* next WHEEL_SPEED group                                   */
+    uint32_t pending;    /* frames to be fetched: bit = offset of the identifier     */
+    uint8_t wheel_group; /* next WHEEL_SPEED group                                   */
     uint8_t counter_page;
-    uint8_t groups_seen;               /* VOLTAGE groups since the watchdog was fed                */
+    uint8_t groups_seen; /* VOLTAGE groups since the watchdog was fed                */
     uint32_t heartbeat_us;
-    uint16_t answers_due;              /* RESULTs to be fetched: bit = offset of what is answered  */
+    uint16_t answers_due;                                 /* RESULTs to be fetched: bit = offset of what is answered  */
     laconic_node_result answer[LACONIC_WIRE_RIG_OFFSETS]; /* the last to each kind; sent again when its frame is */
     laconic_node_session session;
     laconic_node_lockstep lockstep;
@@ -73,9 +73,9 @@ typedef struct laconic_node {
     laconic_node_counters counters;
     uint8_t sent[LACONIC_WIRE_NODE_OFFSETS]; /* counters of what was sent                             */
     laconic_loader loader;
-    laconic_start start;               /* what RESET returns to                                    */
+    laconic_start start; /* what RESET returns to                                    */
     laconic_plant plant;
-    laconic_input input[3];            /* held: [0]; sampled: start, middle, end                   */
+    laconic_input input[3]; /* held: [0]; sampled: start, middle, end                   */
     laconic_raw_input raw_input;
     laconic_raw_output raw_output;
 } laconic_node;

@@ -5,18 +5,18 @@
 #include "laconic/laconic.h"
 
 /* What RAW_INPUT holds; the numbers of one input follow in this order. */
-#define LACONIC_RAW_VOLTAGE 1U      /* N numbers                             */
-#define LACONIC_RAW_AXLE_TORQUE 2U  /* N numbers                             */
-#define LACONIC_RAW_BODY_WRENCH 4U  /* force ξ, η, moment                    */
-#define LACONIC_RAW_WORLD_FORCE 8U  /* force X, Y, point ξ, η                */
-#define LACONIC_RAW_SAMPLED 128U    /* three inputs: start, middle, end      */
+#define LACONIC_RAW_VOLTAGE 1U     /* N numbers                             */
+#define LACONIC_RAW_AXLE_TORQUE 2U /* N numbers                             */
+#define LACONIC_RAW_BODY_WRENCH 4U /* force ξ, η, moment                    */
+#define LACONIC_RAW_WORLD_FORCE 8U /* force X, Y, point ξ, η                */
+#define LACONIC_RAW_SAMPLED 128U   /* three inputs: start, middle, end      */
 
 /* What RAW_OUTPUT holds, in this order. */
-#define LACONIC_RAW_NU 1U           /* 3 */
-#define LACONIC_RAW_POSE 2U         /* x, y, heading (unwrapped) */
-#define LACONIC_RAW_WHEEL_SPEED 4U  /* N */
-#define LACONIC_RAW_WHEEL_ANGLE 8U  /* N */
-#define LACONIC_RAW_ENERGY 16U      /* 1 */
+#define LACONIC_RAW_NU 1U          /* 3 */
+#define LACONIC_RAW_POSE 2U        /* x, y, heading (unwrapped) */
+#define LACONIC_RAW_WHEEL_SPEED 4U /* N */
+#define LACONIC_RAW_WHEEL_ANGLE 8U /* N */
+#define LACONIC_RAW_ENERGY 16U     /* 1 */
 #define LACONIC_RAW_OUTPUTS (7 + 2 * LACONIC_MAX_WHEELS)
 
 typedef struct laconic_raw_input {

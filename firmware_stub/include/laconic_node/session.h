@@ -9,13 +9,13 @@
 #include <stdint.h>
 
 typedef struct laconic_node_session {
-    bool has_nonce;                  /* a HELLO has come since power-up                                     */
-    bool open;                       /* an OPEN has been accepted since power-up                            */
-    uint8_t request;                 /* of the last HELLO                                                   */
-    uint32_t nonce, last_nonce;      /* for the next OPEN; of the last one that was accepted                */
+    bool has_nonce;             /* a HELLO has come since power-up                                     */
+    bool open;                  /* an OPEN has been accepted since power-up                            */
+    uint8_t request;            /* of the last HELLO                                                   */
+    uint32_t nonce, last_nonce; /* for the next OPEN; of the last one that was accepted                */
     uint32_t number, key, run_key;
     uint32_t count[LACONIC_WIRE_RIG_OFFSETS]; /* of the last right frame; 0: none since OPEN or START       */
-    uint32_t armed, deaf;            /* motion frames, bit = offset: the last was right; was refused        */
+    uint32_t armed, deaf;                     /* motion frames, bit = offset: the last was right; was refused        */
 } laconic_node_session;
 
 #endif

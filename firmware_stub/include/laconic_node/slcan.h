@@ -24,11 +24,11 @@ typedef enum laconic_slcan_event {
 typedef struct laconic_slcan {
     bool open;
     bool listen_only;
-    char required_rate;  /* '0' … '8': only this S command is right, others shut the channel; 0: any */
-    bool rate_is_wrong;  /* the wrong one was chosen: frames neither come nor go                    */
-    uint16_t length;     /* of the line so far; LACONIC_SLCAN_LINE: too long, drop it               */
+    char required_rate; /* '0' … '8': only this S command is right, others shut the channel; 0: any */
+    bool rate_is_wrong; /* the wrong one was chosen: frames neither come nor go                    */
+    uint16_t length;    /* of the line so far; LACONIC_SLCAN_LINE: too long, drop it               */
     char line[LACONIC_SLCAN_LINE];
-    char reply[8];       /* text of the last REPLY, closed with 0                                   */
+    char reply[8]; /* text of the last REPLY, closed with 0                                   */
 } laconic_slcan;
 
 void laconic_slcan_init(laconic_slcan *slcan, char required_rate);

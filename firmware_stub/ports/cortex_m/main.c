@@ -57,8 +57,7 @@ static bool send_some(void) {
     if (line_sent == line_length) {
         line_sent = 0;
         line_length = 0;
-        if (laconic_node_next_frame(&node, &frame))
-            line_length = (uint16_t)laconic_slcan_write(&slcan, &frame, line);
+        if (laconic_node_next_frame(&node, &frame)) line_length = (uint16_t)laconic_slcan_write(&slcan, &frame, line);
     }
     while (line_sent < line_length && board_send(line[line_sent])) line_sent++;
     return line_sent < line_length;

@@ -67,7 +67,8 @@ uint32_t board_nonce_seed(void) {
     uint32_t seed = 0;
     NOISE_START = 1;
     for (int k = 0; k < 4; k++) {
-        while (NOISE_READY == 0) {}
+        while (NOISE_READY == 0) {
+        }
         NOISE_READY = 0;
         seed = seed << 8 | (NOISE_VALUE & 255U);
     }

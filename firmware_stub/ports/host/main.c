@@ -32,8 +32,8 @@ typedef struct options {
 typedef struct board {
     laconic_node node;
     laconic_slcan slcan;
-    int socket;  /* of the client, -1: none */
-    int refused; /* of the last client that was one too many */
+    int socket;         /* of the client, -1: none */
+    int refused;        /* of the last client that was one too many */
     char out[OUT_SIZE]; /* what waits for the socket */
     size_t out_count;
 } board;
@@ -130,7 +130,8 @@ static bool read_client(board *port) {
 static void wait_for_work(const board *port, int listening) {
     const uint32_t idle_us = laconic_node_idle_us(&port->node, now_us());
     const struct timespec timeout = {idle_us / 1000000U, (long)(idle_us % 1000000U) * 1000L};
-    struct pollfd fds[3] = {{port->socket, POLLIN, 0}, {listening, POLLIN, 0}, {port->refused, POLLIN, 0}}; /* -1: none */
+    struct pollfd fds[3] = {
+        {port->socket, POLLIN, 0}, {listening, POLLIN, 0}, {port->refused, POLLIN, 0}}; /* -1: none */
     if (port->out_count > 0) fds[0].events |= POLLOUT;
     ppoll(fds, 3, &timeout, NULL);
 }
@@ -258,8 +259,7 @@ int main(int count, char **words) {
     if (asks_for_help(count, words)) return printf(help, (unsigned)LACONIC_WIRE_ID_BASE) < 0;
     const int bad = parse(count, words, &settings);
     if (bad != 0) return bad;
-    const laconic_node_config config = {(uint16_t)settings.id_base, true, laconic_method_by_number,
-                                        nonce_seed()};
+    const laconic_node_config config = {(uint16_t)settings.id_base, true, laconic_method_by_number, nonce_seed()};
     laconic_node_init(&port.node, &config, now_us());
     const int listening = open_listener(settings.port, &chosen);
     if (listening < 0) return complain(strerror(errno), "the port is taken or not allowed; choose another --port");
