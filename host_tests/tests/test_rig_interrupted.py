@@ -95,7 +95,9 @@ def test_an_interrupted_run_tells_every_verdict_up_to_its_last_step_as_json_and_
     told = json.loads(capsys.readouterr().out)
     first, *others = told["verdicts"]
     assert first["name"] == "run" and "SIGTERM" in first["detail"] and "of 100000" in first["detail"]
-    assert len(others) >= 5 and [each for each in others if not each["passed"] and each["name"] != "steps"] == []
+    by_run_or_machine = ("steps", "clock")  # too few, as it was stopped; behind the clock on a busy machine
+    assert len(others) >= 5 and [each for each in others
+                                 if not each["passed"] and each["name"] not in by_run_or_machine] == []
     assert abs(told["figures"]["last_step"] - step) <= (0 if mode != "free run" else 150)
     suite = ElementTree.parse(tmp_path / "run.xml").getroot()
     assert int(suite.get("tests")) == len(told["verdicts"]) and int(suite.get("failures")) >= 1
