@@ -27,7 +27,8 @@ set(scene_folder "${CMAKE_BINARY_DIR}/scene")
 set(scene_files "${scene_folder}/laconic_scene.h" "${scene_folder}/laconic_scene_model.h"
     "${scene_folder}/laconic_scene_model.c")
 cmake_path(GET LACONIC_VENV PARENT_PATH host_build)
-file(GLOB trim_program CONFIGURE_DEPENDS "${PROJECT_SOURCE_DIR}/host_tests/laconic/*.py")
+file(GLOB_RECURSE trim_program CONFIGURE_DEPENDS "${PROJECT_SOURCE_DIR}/host_tests/laconic/core/*.py"
+    "${PROJECT_SOURCE_DIR}/host_tests/laconic/scene/*.py" "${PROJECT_SOURCE_DIR}/host_tests/laconic/trim/*.py")
 add_custom_command(
     OUTPUT ${scene_files}
     COMMAND "${CMAKE_COMMAND}" -E env "LACONIC_BUILD_DIR=${host_build}"

@@ -11,7 +11,7 @@ from laconic.analysis.cycle import LimitCycle
 from laconic.analysis.field import Field
 from laconic.analysis.from_core import Inputs, Subject
 from laconic.analysis.steady import SteadyMotion
-from laconic.plant import Plant
+from laconic.core.plant import Plant
 
 STEPS_PER_FASTEST = 60  # steps per 1/|fastest eigenvalue|
 MOST_STEPS = 2_000_000  # of a steady motion's simulation: beyond, rounding and the method's error tell nothing

@@ -12,7 +12,7 @@ from matplotlib.figure import Figure
 from laconic.analysis.findings import Study
 from laconic.analysis.from_core import Subject
 from laconic.analysis.speeds import wheel_radius_m
-from laconic.curve_style import wrapped
+from laconic.pictures.curve_style import wrapped
 
 BOLD, THIN = 3.0, 1.1
 LETTERS = 68  # in a line of a title

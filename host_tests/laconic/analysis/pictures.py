@@ -8,7 +8,7 @@ from laconic.analysis.findings import Study
 from laconic.analysis.pictures_free import path_picture, portrait_picture
 from laconic.analysis.pictures_steady import bifurcation_picture, driven_picture, eigenvalue_picture
 from laconic.analysis.pictures_traction import traction_picture
-from laconic.plotting import save
+from laconic.pictures.plotting import save
 
 PICTURES = {
     "portrait": portrait_picture, "path": path_picture, "bifurcation": bifurcation_picture,

@@ -9,8 +9,8 @@ from matplotlib.figure import Figure
 from laconic.analysis.findings import FreePart, Study
 from laconic.analysis.picture_parts import BOLD, THIN, head, keys, legend_below, speed_axes
 from laconic.analysis.portrait import half_curves
-from laconic.method_style import look
-from laconic.plotting import figure
+from laconic.pictures.method_style import look
+from laconic.pictures.plotting import figure
 
 ACROSS = r"$\nu_\perp$: the part of ($\nu_1$, $\nu_2$) across the direction that turning is coupled to"
 INTEGRAL = r"$K=(A\nu)_3$ stays in free motion, as the energy does; $A$: the matrix of inertia, $A_{33}$ its last entry"

@@ -23,7 +23,7 @@ from laconic.analysis.picture_parts import (
 from laconic.analysis.pictures_free import explained
 from laconic.analysis.portrait import across_direction
 from laconic.analysis.speeds import wheel_radius_m
-from laconic.plotting import figure
+from laconic.pictures.plotting import figure
 
 STABLE, UNSTABLE, NEUTRAL = "tab:blue", "tab:red", "tab:gray"
 SPECIALS = {  # the second fits into the first: where both are at one place, both are seen

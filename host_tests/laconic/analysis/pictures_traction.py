@@ -9,8 +9,8 @@ from matplotlib.figure import Figure
 from laconic.analysis.findings import Study
 from laconic.analysis.picture_parts import head
 from laconic.analysis.traction import Traction
-from laconic.curve_style import nested
-from laconic.plotting import figure
+from laconic.pictures.curve_style import nested
+from laconic.pictures.plotting import figure
 
 STYLES = ("-", "--", "-.", (0, (3, 1, 1, 1, 1, 1)))  # so that wheels differ in black and white too
 MOST_CURVES = 10  # of points of contact that can be told apart as curves

@@ -15,8 +15,8 @@ import numpy as np
 
 from laconic.analysis.from_core import Subject, nu_rates
 from laconic.analysis.geometry import wheel_places
-from laconic.drive import Drive
-from laconic.plant import Plant
+from laconic.core.plant import Plant
+from laconic.scene.drive import Drive
 from laconic.simulation import run_window
 
 MOST_SAMPLES = 1500

@@ -6,7 +6,15 @@ from collections.abc import Sequence
 from pathlib import Path
 
 from laconic.demo.work import Point
-from laconic.plotting import figure, mark_ground, plot_error_against_time, plot_path, plot_velocities, save, title
+from laconic.pictures.plotting import (
+    figure,
+    mark_ground,
+    plot_error_against_time,
+    plot_path,
+    plot_velocities,
+    save,
+    title,
+)
 from laconic.simulation import Trajectory
 
 

@@ -10,8 +10,8 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from laconic.drive import Drive
 from laconic.scene import Scene
+from laconic.scene.drive import Drive
 from laconic.simulation import advance_plant
 
 

@@ -10,13 +10,13 @@ from typing import Any
 
 import numpy as np
 
-from laconic.drive import Drive
+from laconic.core.plant import Plant
 from laconic.errors import Refused
-from laconic.plant import Plant
-from laconic.reference import reference_states
 from laconic.scene import METHODS, Scene
+from laconic.scene.drive import Drive
 from laconic.simulation import advance_plant
-from laconic.verification import error_of
+from laconic.verification.reference import reference_states
+from laconic.verification.trajectories import error_of
 
 FACTORS = (1, 2, 5, 10, 20, 50, 100)  # steps, as multiples of the scene's; 100 of them between two looks
 LOOK = 100

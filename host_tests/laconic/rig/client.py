@@ -10,7 +10,7 @@ from typing import Any
 
 import numpy as np
 
-from laconic.plant import Plant
+from laconic.core.plant import Plant
 from laconic.rig.errors import CannotReach, NodeRefused, NodeSilent
 from laconic.rig.link import Link, Received
 from laconic.rig.parameters import Parameter, parameter_words, parameters_of

@@ -8,8 +8,8 @@ from __future__ import annotations
 
 import numpy as np
 
+from laconic.core.plant import Plant
 from laconic.errors import BadInput
-from laconic.plant import Plant
 from laconic.rig.client import NodeClient
 from laconic.rig.free_run import CYCLE_S, DEFAULT_FRAMES, FreeRun, run_free
 from laconic.rig.judge import link_verdict

@@ -17,13 +17,13 @@ from typing import Any
 
 import numpy as np
 
-from laconic.drive import Drive
+from laconic.core.plant import Plant
 from laconic.errors import BadInput
-from laconic.plant import Plant
 from laconic.rig.client import NodeClient
 from laconic.rig.errors import NodeSilent
 from laconic.rig.wire import wire
 from laconic.scene import Scene
+from laconic.scene.drive import Drive
 from laconic.simulation import advance_plant
 
 INPUT_GROUPS = {  # bit of SELECT → numbers of one input, in the order of the stream

@@ -7,7 +7,7 @@ from typing import Any
 
 import numpy as np
 
-from laconic.plant import Plant
+from laconic.core.plant import Plant
 from laconic.rig.wire import wire
 
 Parameter = tuple[str, int, float | int]  # field (name in the value table), item, value

@@ -7,8 +7,8 @@ from pathlib import Path
 import can
 import numpy as np
 
+from laconic.core.plant import Plant
 from laconic.errors import BadInput
-from laconic.plant import Plant
 from laconic.rig.client import NodeClient
 from laconic.rig.judge import link_verdict, signal_verdicts
 from laconic.rig.link import Link

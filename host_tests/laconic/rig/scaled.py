@@ -10,14 +10,14 @@ from functools import cached_property
 
 import numpy as np
 
-from laconic.drive import Drive
+from laconic.core.plant import Plant
 from laconic.errors import BadInput, nearest_of
-from laconic.plant import Plant
 from laconic.rig.client import NodeClient
 from laconic.rig.errors import NodeSilent
 from laconic.rig.lockstep import load_scene
 from laconic.rig.wire import Frame, wire
 from laconic.scene import Scene
+from laconic.scene.drive import Drive
 
 DEFAULT_FRAMES = ("NU", "POSE", "WHEEL_SPEED")
 SELECT_BIT = {"NU": "send_nu", "POSE": "send_pose", "WHEEL_SPEED": "send_wheel_speed", "COUNTERS": "send_counters",

@@ -7,7 +7,7 @@ import time
 from collections.abc import Callable
 from typing import Any
 
-from laconic.rig.matrix import Row, run_matrix
+from laconic.benchmark.fault_matrix import Row, run_matrix
 
 
 def soak(minutes: float, seed: int, advance: Callable[[float], None]) -> dict[str, Any]:

@@ -1,0 +1,120 @@
+"""Stiffness: one vehicle whose motors get stronger, over steps from milliseconds to a tenth of a second and more."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import replace
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+
+from laconic.benchmark.accuracy import relative, state_row
+from laconic.benchmark.stiff_reference import stiff_states
+from laconic.core import load
+from laconic.errors import Refused
+from laconic.scene import METHODS, Scene
+from laconic.scene.drive import Input
+from laconic.simulation import advance_plant
+from laconic.verification.reference import Reference, totals_of
+
+SEGMENT_S, SEGMENTS = 0.25, 4
+STEPS_S = tuple(SEGMENT_S / n for n in (250, 160, 100, 64, 40, 25, 16, 10, 6, 4, 2, 1))
+FACTORS = tuple(float(f) for f in 10.0 ** np.arange(-1.0, 6.01, 0.5))
+PATTERN, SIGNS = (6.0, -2.0, 4.0, 1.0), (1.0, -0.7, 0.5, -1.0)
+STIFF_STEPS_S, STIFF_FACTORS = (1e-3, 5e-3, 0.02, 0.1), (1e3, 1e6)
+SINE_HZ, STIFF_S = 0.5, 3.0
+
+
+def strengthened(scene: Scene, factor: float, inputs: Sequence[Input], duration_s: float) -> Scene:
+    """Motor gain and damping times a factor (the same speeds, reached sooner), another drive, from rest."""
+    totals = totals_of(scene.vehicle)
+    vehicle = {k: v for k, v in scene.vehicle.items() if k != "motor"}
+    vehicle |= {"motor_gain_Nm_per_V": factor * totals.motor_gain_Nm_per_V,
+                "motor_damping_Nms": factor * totals.motor_damping_Nms,
+                "wheel_inertia_kgm2": totals.wheel_inertia_kgm2}
+    return replace(scene, vehicle=vehicle, inputs=tuple(inputs)).with_run(duration_s=duration_s)
+
+
+def four_steps(wheels: int) -> list[Input]:
+    """Four voltage steps of a quarter second."""
+    times = tuple(k * SEGMENT_S for k in range(SEGMENTS))
+    return [Input(f"voltage_V[{i + 1}]", "steps", f"input[{i + 1}]", times, tuple(PATTERN[i % 4] * s for s in SIGNS))
+            for i in range(wheels)]
+
+
+def constant(wheels: int) -> list[Input]:
+    """Voltages that stay."""
+    return [Input(f"voltage_V[{i + 1}]", "steps", f"input[{i + 1}]", (0.0,), (PATTERN[i % 4],)) for i in range(wheels)]
+
+
+def sinusoids(wheels: int) -> list[Input]:
+    """Half a hertz, each wheel with its own phase."""
+    return [Input(f"voltage_V[{i + 1}]", "sine", f"input[{i + 1}]", amplitude=PATTERN[i % 4], frequency_Hz=SINE_HZ,
+                  phase_rad=0.7 * i) for i in range(wheels)]
+
+
+def map_rows(scene: Scene, methods: Sequence[str] = METHODS, factors: Sequence[float] = FACTORS,
+             advance: Any = lambda: None) -> list[dict[str, Any]]:
+    """Error of ν at the four segments' ends, for each method, step and strength."""
+    rows, ends = [], SEGMENT_S * np.arange(1, SEGMENTS + 1)
+    for factor in factors:
+        strong = strengthened(scene, factor, four_steps(scene.wheel_count), SEGMENT_S * SEGMENTS)
+        expected = stiff_states(strong.with_run(step_s=SEGMENT_S), ends)
+        rate = Reference(strong.vehicle).fastest_decay_per_s()
+        for method in methods:
+            for step_s in STEPS_S:
+                row = {"scene": scene.path.stem, "method": method, "factor": factor, "fastest_decay_per_s": rate,
+                       "step_s": step_s}
+                rows.append(row | _map_run(strong.with_run(method=method, step_s=step_s), ends, expected))
+        advance()
+    return rows
+
+
+def _map_run(scene: Scene, ends: np.ndarray, expected: np.ndarray) -> dict[str, Any]:
+    try:
+        plant, drive, found, done = scene.plant(load("double")), scene.drive(), [], 0
+        for tick in np.rint(ends / scene.run.step_s).astype(int):
+            advance_plant(plant, drive, done, int(tick) - done)
+            done = int(tick)
+            found.append(plant.nu)
+    except Refused as refused:
+        return {"status": refused.status}
+    return {"status": "ok", "error_nu": relative(np.array(found), expected[:, :3])}
+
+
+def path_error(found: np.ndarray, expected: np.ndarray) -> float:
+    """Distance off at the end over the length of the path so far (chords between the instants)."""
+    legs = np.diff(np.vstack([np.zeros(2), expected[:, 3:5]]), axis=0)
+    length = float(np.sum(np.hypot(legs[:, 0], legs[:, 1])))
+    return float(np.hypot(*(found[-1, 3:5] - expected[-1, 3:5]))) / length
+
+
+def stiff_rows(scenes: Sequence[Scene], factors: Sequence[float] = STIFF_FACTORS,
+               advance: Any = lambda: None) -> list[dict[str, Any]]:
+    """auto on very stiff vehicles, with constant voltages and with sinusoids sampled inside the step."""
+    rows = []
+    for scene in scenes:
+        for factor in factors:
+            for name, inputs in (("constant", constant), ("sine 0.5 Hz", sinusoids)):
+                strong = strengthened(scene, factor, inputs(scene.wheel_count), STIFF_S).with_run(method="auto")
+                at_s = np.linspace(0.0, STIFF_S, 16)[1:]
+                expected = stiff_states(strong.with_run(step_s=0.1), at_s)
+                rows += [_stiff_run(strong.with_run(step_s=h), name, factor, at_s, expected) for h in STIFF_STEPS_S]
+                advance()
+    return rows
+
+
+def _stiff_run(scene: Scene, drive_name: str, factor: float, at_s: np.ndarray, expected: np.ndarray) -> dict[str, Any]:
+    row = {"scene": Path(scene.path).stem, "factor": factor, "drive": drive_name, "step_s": scene.run.step_s}
+    try:
+        plant, drive, found, done = scene.plant(load("double")), scene.drive(), [], 0
+        for tick in np.rint(at_s / scene.run.step_s).astype(int):
+            advance_plant(plant, drive, done, int(tick) - done)
+            done = int(tick)
+            found.append(state_row(plant))
+    except Refused as refused:
+        return row | {"status": refused.status}
+    states = np.array(found)
+    nu = float(np.max(np.abs(states[-1, :3] - expected[-1, :3])) / np.max(np.abs(expected[-1, :3])))
+    return row | {"status": "ok", "error_nu": nu, "error_path": path_error(states, expected)}

@@ -1,0 +1,96 @@
+"""What the report's page says above its pictures and tables, by section; paragraphs are separated by empty lines."""
+
+from __future__ import annotations
+
+from laconic.benchmark.collect import MAP_SCENE
+
+GOALS = """
+The project's own goals, each computed from the measurements of the other page.
+"""
+
+ACCURACY = """
+Each point is one step size, from 1 to 100 ms (or parts and multiples of a step that fits none of these). Full lines:
+double; dashed: single. The error is the largest of the
+three components of ν at twenty instants or fewer of the first ten seconds, over max(1, largest ν), against a separate
+numpy reference, which itself is good to about 1e-11. Run time: thread CPU time of a step with held inputs, pose and
+wheel angles included. `auto` picks one of the methods, so its large hollow circles lie on that method's points. In
+the grey band the error may be the reference's own.
+
+Read it from the left: take the lowest point that you can afford. A point that is missing was refused by the core.
+"""
+
+PEERS = """
+Scene S1 (three omni wheels, all voltages a square wave of 1 s), steps of 10 ms, gcc -O2. Both sides in one run,
+interleaved, thread CPU time, the least of many rounds; `ratio` is the time over that of CasADi's generated RK4 of the
+same nine states. Instructions by cachegrind, as I(2n) − I(n). The core works a held input out once for all the steps
+it is held over, CasADi's step gets it every time.
+
+The general solvers restart at every jump of the voltages. Adams and BDF are CVODE's, from C.
+"""
+
+STABILITY = f"""
+Scene {MAP_SCENE}, its motors from a tenth of their strength to a million times that: four voltage steps of a quarter
+second, error of ν at their ends. Grey: refused by the core before it could go wrong. Dashed: h·r = 1.
+
+The table: auto on very stiff vehicles. Sinusoids are sampled at the start, middle and end of each step.
+"""
+
+CONSERVED = """
+Free motion of the paper's three-wheel carriage in steps of 0.1 s. Both integrals of the motion, the energy and K =
+(Aν)₃, the third component of inertia times velocity, should stay. Curves that coincide are drawn one inside the
+other.
+
+The table: one step with U = 0 of ten thousand random vehicles in random states, h from 1e-6 to 1e3 s; the A-norm
+√(νᵀAν) may not grow. Methods other than exact-flow refuse the step when it grows by more than their error allows
+(2⁻¹⁰).
+"""
+
+ROBOT = """
+From above; a wheel's roller is the one that touches the ground. `r` is the fastest rate at which the motors damp a
+motion of this robot (back-EMF and friction), h its own step: explicit methods need h·r well below 2, `auto` takes
+any.
+
+What to take: for an accuracy that you want of ν, pose and wheel angles (relative, against an independent numpy
+reference), the quickest method and step that reached it on this computer, with the inputs of this scene.
+"""
+
+ROBOT_STABILITY = """
+This robot, its motors from a tenth of their strength to a million times that: four voltage steps of a quarter second,
+error of ν at their ends. Grey: refused by the core before it could go wrong.
+"""
+
+ROBOT_BOARD = """
+One step of this scene on a Cortex-M4F at -Os, under QEMU (-icount): instructions, not cycles; the same digits in
+every run. `whole`: with the whole core; `trimmed`: with a core built for this scene alone (cmake -DLACONIC_SCENE=…).
+Code: the functions that a step can reach. Flash: all that a step links, its prepared constants included. Stack: the
+worst path of the call graph. `host's bits`: the state is the host's to the last bit (in double but for a rounding
+error of libgcc, see docs/performance.md).
+"""
+
+BOARDS = """
+Scene S1 with pose and wheel angles under QEMU (-icount): instructions, not cycles; the same digits in every run.
+Code: the functions that a step can reach. Flash: all that a step links, its prepared constants included. Stack: worst
+path of the call graph, and the most that a run was seen to use. Where the processor has no double-precision FPU (all
+but the M7) double is emulated; on the M3 and M4 libgcc's emulation has a rounding error that can change the last
+digit (docs/performance.md).
+"""
+
+SCENES = """
+The same scene with the whole core and with a core built for it alone (cmake -DLACONIC_SCENE=…), by its own method,
+-Os, Cortex-M4F. Whole and trimmed give the same bits; `host's bits`: so does the host (in double but for libgcc's
+rounding error, see above).
+"""
+
+REFERENCES = """
+Solutions to 25 digits; errors over max(1, largest value of that kind in the case).
+"""
+
+EXTREMES = """
+Numbers at the edge: S1's vehicle with one thing changed, a hundred steps of 10 ms by auto. `right`: within 1e-6 plus
+the digits that the condition number takes; `number`: finite, but beyond what the reference solver can check.
+"""
+
+
+def paragraphs(text: str) -> list[str]:
+    """Split at empty lines, each in one line."""
+    return [" ".join(part.split()) for part in text.strip().split("\n\n")]

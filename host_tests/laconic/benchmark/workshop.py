@@ -1,0 +1,196 @@
+"""Compiles the bench for one scene: for the host and for Cortex-M boards, whole core or trimmed to the scene."""
+
+from __future__ import annotations
+
+import shutil
+import subprocess
+from collections.abc import Sequence
+from dataclasses import dataclass
+from functools import cache
+from pathlib import Path
+from tempfile import TemporaryDirectory
+
+from laconic.core import Core, load
+from laconic.errors import ResultFails
+from laconic.paths import SOURCE_DIR
+from laconic.scene import Scene
+from laconic.trim import Trimmed, trimmed
+from laconic.trim.c_tables import initializer
+
+BENCH = SOURCE_DIR / "core_c" / "bench"
+FLAGS = ("-std=c99", "-ffp-contract=off", "-fno-tree-slp-vectorize", "-ffunction-sections", "-fdata-sections")
+SAMPLED_STEPS = 16  # of a scene with sampled inputs, taken again and again
+
+
+@dataclass(frozen=True)
+class Target:
+    """A processor: its compiler with flags and, for a board, QEMU's machine and the linker script."""
+
+    name: str
+    tools: str  # prefix of gcc, nm, size
+    flags: tuple[str, ...] = ()
+    machine: str = ""
+    script: str = ""
+    hardware_single: bool = False
+    hardware_double: bool = False
+
+    def tool(self, name: str) -> str:
+        """The full name of a tool of this target."""
+        return self.tools + name
+
+    @property
+    def present(self) -> bool:
+        """Whether its compiler (with a C library, which comes apart) and emulator are installed."""
+        emulator = not self.machine or shutil.which("qemu-system-arm") is not None
+        return emulator and can_link(self.tool("gcc"), self.flags, bare=bool(self.machine))
+
+    def windows(self, real: str) -> tuple[int, ...]:
+        """Numbers of steps to try: twice as many must fit the 24-bit counter."""
+        in_hardware = self.hardware_double if real == "double" else self.hardware_single
+        return (256, 40, 10) if in_hardware else (10, 2)
+
+
+@cache
+def can_link(compiler: str, flags: tuple[str, ...], bare: bool) -> bool:
+    """Whether a compiler is there and finds headers and library of C for a processor."""
+    if shutil.which(compiler) is None:
+        return False
+    more = ("-nostartfiles", "-Wl,-e,main") if bare else ()
+    with TemporaryDirectory() as folder:
+        command = [compiler, *flags, *more, "-x", "c", "-", "-o", str(Path(folder) / "probe")]
+        return subprocess.run(command, input="#include <stdint.h>\nint main(void) { return 0; }\n", text=True,
+                              capture_output=True, check=False).returncode == 0
+
+
+ARM, THUMB = "arm-none-eabi-", "-mthumb"
+HOST = Target("host", "")
+M4F = Target("Cortex-M4F", ARM, (THUMB, "-mcpu=cortex-m4", "-mfloat-abi=hard", "-mfpu=fpv4-sp-d16"), "mps2-an386",
+             "mps2.ld", hardware_single=True)
+BOARDS = (
+    Target("Cortex-M0", ARM, (THUMB, "-mcpu=cortex-m0"), "microbit", "microbit.ld"),
+    Target("Cortex-M3", ARM, (THUMB, "-mcpu=cortex-m3"), "mps2-an385", "mps2.ld"),
+    M4F,
+    Target("Cortex-M7", ARM, (THUMB, "-mcpu=cortex-m7", "-mfloat-abi=hard", "-mfpu=fpv5-d16"), "mps2-an500", "mps2.ld",
+           hardware_single=True, hardware_double=True),
+)
+
+
+@dataclass(frozen=True)
+class Variant:
+    """What is built: a scene (with its method and step), a scalar type, an optimisation, whole or trimmed."""
+
+    scene: Scene
+    real: str
+    optimisation: str = "-O2"
+    trim: bool = False
+
+    @property
+    def name(self) -> str:
+        """A folder's name."""
+        run, kind = self.scene.run, "trimmed" if self.trim else "whole"
+        parts = (self.scene.path.stem, run.method, f"{run.step_s:g}", self.real, self.optimisation.strip("-"), kind)
+        return "_".join(parts)
+
+
+def run_tool(command: Sequence[str], where: Path | None = None) -> str:
+    """A compiler or binary tool; its messages when it fails."""
+    done = subprocess.run(command, capture_output=True, text=True, cwd=where, check=False)
+    if done.returncode != 0:
+        first = next((line for line in done.stderr.splitlines() if "error" in line), done.stderr[-300:])
+        raise ResultFails(f"{command[0]} failed: {first}")
+    return done.stdout
+
+
+def segments_source(core: Core, scene: Scene, names: dict[int, str] | None = None) -> str:
+    """bench_segments.c: the scene's inputs."""
+    drive, rows = scene.drive(), []
+    if drive.is_held:
+        for segment in drive.segments():
+            held = initializer(core.ffi, core.input(segment.values)[0], names or {})
+            rows.append(f"{{.steps = {segment.steps}, .start = {held}}}")
+    else:
+        for sample in drive.samples(0, SAMPLED_STEPS):
+            at = [initializer(core.ffi, core.input(dict(zip(drive.signals, row.tolist(), strict=True)))[0], {})
+                  for row in sample]
+            rows.append(f"{{.steps = 1, .sampled = true, .start = {at[0]}, .middle = {at[1]}, .end = {at[2]}}}")
+    table = ",\n    ".join(rows)
+    return (f'#include "bench.h"\n\nconst bench_segment bench_segments[] = {{\n    {table}}};\n'
+            f"const uint32_t bench_segment_count = {len(rows)};\n"
+            "const char bench_state_bytes[sizeof(laconic_state)] = {0};\n")
+
+
+class Workshop:
+    """Builds into one folder; the whole core is compiled once per target, scalar type and optimisation."""
+
+    def __init__(self, folder: Path, core_dir: Path = SOURCE_DIR / "core_c") -> None:
+        """Where to build, from which core."""
+        self.folder, self.core_dir = folder.resolve(), core_dir  # gcc runs in other folders
+        self._archives: dict[Path, Path] = {}
+        self._trimmed: dict[tuple[str, str, str, float], Trimmed] = {}
+
+    def files(self, variant: Variant) -> tuple[Path, Trimmed]:
+        """The generated C of a variant, and the folder it is in."""
+        folder = self.folder / variant.name
+        key = (str(variant.scene.path), variant.real, variant.scene.run.method, variant.scene.run.step_s)
+        if key not in self._trimmed:
+            self._trimmed[key] = trimmed(variant.scene, variant.real)
+        files = self._trimmed[key]
+        files.write(folder)
+        (folder / "bench_segments.c").write_text(segments_source(load(variant.real), variant.scene))
+        return folder, files
+
+    def definitions(self, variant: Variant, folder: Path) -> list[str]:
+        """What the preprocessor is told."""
+        found = ["-DLACONIC_SINGLE"] if variant.real == "single" else []
+        if variant.trim:
+            found.append(f'-DLACONIC_SCENE_HEADER="{folder / "laconic_scene.h"}"')
+        return found
+
+    def archive(self, target: Target, variant: Variant, folder: Path, extra: Sequence[str] = ()) -> Path:
+        """The core as a static library, with .ci files (call graph and stack) beside its objects."""
+        kind = "_".join((target.name, variant.real, variant.optimisation.strip("-"), *(e.strip("-") for e in extra)))
+        place = self.folder / (f"trimmed_{variant.scene.path.stem}" if variant.trim else "whole") / kind
+        if place not in self._archives:
+            shutil.rmtree(place, ignore_errors=True)
+            place.mkdir(parents=True)
+            sources = sorted(map(str, (self.core_dir / "src").glob("*.c")))
+            graph = ("-fstack-usage", "-fcallgraph-info=su") if target.machine else ()
+            run_tool([target.tool("gcc"), "-c", *FLAGS, *graph, *extra, variant.optimisation, *target.flags,
+                      *self.definitions(variant, folder), f"-I{self.core_dir / 'include'}", *sources], place)
+            run_tool([target.tool("ar"), "rcs", "libcore.a", *sorted(p.name for p in place.glob("*.o"))], place)
+            self._archives[place] = place / "libcore.a"
+        return self._archives[place]
+
+    def _link(self, target: Target, variant: Variant, name: str, sources: Sequence[Path], flags: Sequence[str],
+              extra: Sequence[str] = ()) -> Path:
+        folder, _ = self.files(variant)
+        core = self.archive(target, variant, folder, extra)
+        output = folder / f"{target.name}_{name}"
+        generated = [str(folder / name) for name in ("laconic_scene_model.c", "bench_segments.c")]
+        run_tool([target.tool("gcc"), *FLAGS, *extra, variant.optimisation, *target.flags,
+                  *self.definitions(variant, folder), f"-I{self.core_dir / 'include'}", f"-I{BENCH}", f"-I{folder}",
+                  *map(str, sources), *generated, str(core), "-Wl,--gc-sections", *flags, "-o", str(output)])
+        return output
+
+    def host_program(self, variant: Variant) -> Path:
+        """count STEPS."""
+        return self._link(HOST, variant, "count", [BENCH / "bench.c", BENCH / "count_host.c"], [])
+
+    def host_library(self, variant: Variant) -> Path:
+        """The bench as a shared library: bench_reset, bench_run."""
+        return self._link(HOST, variant, "bench.so", [BENCH / "bench.c"], ["-shared", "-Wl,-Bsymbolic"], ["-fPIC"])
+
+    def board_image(self, target: Target, variant: Variant, steps: int) -> Path:
+        """The image that counts so many steps on a board."""
+        board = BENCH / "cortex_m"
+        sources = [BENCH / "bench.c", *(board / f"{name}.c" for name in ("startup", "board", "count"))]
+        flags = [f"-DBENCH_STEPS={steps}", f"-I{board}", "-ffreestanding", "-nostartfiles",
+                 f"-L{board}", f"-T{target.script}"]
+        return self._link(target, variant, "count.elf", sources, flags)
+
+    def step_image(self, target: Target, variant: Variant) -> Path:
+        """What laconic_step with the scene's constants brings into flash, and nothing else."""
+        entry = "laconic_step" if variant.scene.drive().is_held else "laconic_step_sampled"
+        keep = [f"-Wl,-u,{name}" for name in ("laconic_scene_model", "laconic_scene_integrator", "bench_state_bytes")]
+        flags = ["-nostartfiles", "-ffreestanding", f"-Wl,-e,{entry}", "-Wl,-Ttext=0x1000", *keep]
+        return self._link(target, variant, "step.elf", [], flags)

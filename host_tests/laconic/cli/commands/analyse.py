@@ -1,0 +1,91 @@
+"""laconic analyse: what can be said about a scene's motions."""
+
+from __future__ import annotations
+
+import json
+from pathlib import Path
+
+import click
+
+from laconic.cli.options import OutputFolder, SceneName, json_flag
+from laconic.errors import BadInput, ResultFails
+from laconic.outputs import write_text
+
+PARTS = ("geometry", "free", "steady", "bifurcation", "traction")
+
+
+@click.command("analyse", short_help="Steady motions, stability, free motion, traction.")
+@click.argument("scene", type=SceneName())
+@click.option("--out", type=OutputFolder(), metavar="DIR",
+              help="Write report.md, report.json and pictures there.")
+@click.option("--only", type=click.Choice(PARTS), multiple=True, help="Only this part; may be given several times.")
+@click.option("--at", "at_s", type=float, default=0.0, metavar="T", help="Hold the inputs of this instant [s].")
+@click.option("--straight", type=(float, float), metavar="NU1 NU2",
+              help="Constant voltages for this straight motion, in rad/s, instead of the scene's inputs.")
+@click.option("--start", type=(float, float, float), metavar="NU1 NU2 NU3",
+              help="Where the free motion starts, in rad/s, instead of the scene's start.")
+@click.option("--parameter", metavar="NAME", help="What the bifurcation diagram varies: nu1, nu2, input_scale, or a "
+              "number of [vehicle] such as com_y_m.")
+@click.option("--from", "low", type=float, metavar="A", help="Where the bifurcation diagram begins.")
+@click.option("--to", "high", type=float, metavar="B", help="Where it ends.")
+@json_flag("Machine-readable result on stdout.")
+def command(scene: str, out: Path | None, only: tuple[str, ...], at_s: float, straight: tuple[float, float] | None,
+            start: tuple[float, float, float] | None, parameter: str | None, low: float | None,
+            high: float | None, json_wanted: bool) -> None:
+    """Analyses SCENE: geometry, free motion, steady motions and their stability, bifurcations, traction.
+
+    Exit status 1 when a simulation with the core does not confirm what the analysis says.
+    """
+    from laconic.analysis.findings import Wishes
+    from laconic.analysis.from_core import subject_of
+    from laconic.analysis.older_page import pictures_of_older_page
+    from laconic.analysis.report import as_numbers, as_text
+    from laconic.analysis.study import study
+    from laconic.progress import progress_bar
+    from laconic.scene import read_scene
+
+    _check(low, high, straight, start)
+    wishes = Wishes(tuple(p for p in PARTS if not only or p in only), parameter, low, high, straight, start)
+    subject = subject_of(read_scene(scene), at_s)
+    with progress_bar("analysing", 100) as advance:
+        found = study(subject, wishes, lambda share, part: advance(90 * share, what=part))
+        pictures = _draw(found, out, advance)
+    numbers = as_numbers(found, pictures)
+    if out is not None:
+        older = pictures_of_older_page(out, pictures)
+        write_text(out / "report.md", as_text(found, pictures))
+        write_text(out / "report.json", json.dumps(numbers, indent=1) + "\n")
+        _remove(older)
+    click.echo(json.dumps(numbers, indent=1) if json_wanted else as_text(found, []))
+    if found.failures:
+        raise ResultFails("not confirmed: " + "; ".join(found.failures))
+
+
+def _check(low: float | None, high: float | None, straight: tuple[float, ...] | None,
+           start: tuple[float, ...] | None) -> None:
+    given = [("--from", low), ("--to", high)]
+    given += [("--straight", v) for v in straight or ()] + [("--start", v) for v in start or ()]
+    for name, value in given:
+        if value is not None and not abs(value) < 1e12:
+            raise BadInput(f"{name}: {value:g} is not usable; give a finite number below 1e12")
+    if low is not None and high is not None and not low < high:
+        raise BadInput(f"--from {low:g} --to {high:g}: the range is empty; give the smaller number first")
+
+
+def _remove(older: list[Path]) -> None:
+    for path in older:
+        path.unlink(missing_ok=True)
+    if older:
+        click.echo(f"laconic: removed {', '.join(path.name for path in older)}, of an older page in this folder",
+                   err=True)
+
+
+def _draw(found, out: Path | None, advance) -> list[Path]:
+    if out is None:
+        return []
+    from laconic.analysis.pictures import draw
+
+    advance(0, what="drawing")
+    pictures = draw(found, out)
+    advance(10, what="drawing")
+    return pictures

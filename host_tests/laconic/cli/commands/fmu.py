@@ -1,0 +1,55 @@
+"""laconic fmu: an FMU with a scene's vehicle."""
+
+from __future__ import annotations
+
+import json
+from pathlib import Path
+
+import click
+
+from laconic.cli.options import OutputFile, SceneName, json_flag
+from laconic.cli.streams import warn
+from laconic.errors import BadInput
+from laconic.fmu import make_fmu
+from laconic.fmu.ssp import make_ssp
+from laconic.outputs import check_ending, claim_file, is_special
+from laconic.scene import read_scene
+
+
+@click.command(name="fmu", short_help="Write an FMU of a scene's vehicle.")
+@click.argument("scene", type=SceneName())
+@click.option("--fmi", "version", type=click.Choice(("2", "3")), required=True, help="FMI 2.0 or 3.0.")
+@click.option("--scalar", is_flag=True, help="FMI 3.0 without arrays, for importers that handle them badly.")
+@click.option("--without-sources", is_flag=True, help="Binaries only: less than half the size.")
+@click.option("--no-enumerations", is_flag=True, help="Whole numbers instead, for importers that know no enumerations.")
+@click.option("--ssp", is_flag=True, help="An SSP archive (--fmi 2): the vehicle with a wheel-speed controller.")
+@click.option("-o", "--out", type=OutputFile(), metavar="F.fmu",
+              help="Where to; SCENE_fmi3.fmu if not given.")
+@json_flag()
+def command(scene: str, version: str, scalar: bool, without_sources: bool, no_enumerations: bool, ssp: bool,
+            out: Path | None, json_wanted: bool) -> None:
+    """Writes an FMU whose start values are SCENE's vehicle, start, method and step.
+
+    Model Exchange and Co-Simulation are both in it. In FMI 3.0 the number of wheels is a structural parameter; in
+    FMI 2.0 and with --scalar it is a constant.
+    """
+    if scalar and version == "2":
+        raise BadInput("--scalar: FMI 2.0 has no arrays anyway; leave it out or use --fmi 3")
+    ending = "ssp" if ssp else "fmu"
+    if out is not None:
+        check_ending("--out", out, (f".{ending}",))
+    given = read_scene(scene)
+    if out is None:
+        out = claim_file("--out", Path(f"{given.path.stem}_fmi{version}{'_scalar' if scalar else ''}.{ending}"))
+    options = {"version": int(version), "sources": not without_sources, "enumerations": not no_enumerations}
+    made = make_ssp(given, out, **options) if ssp else make_fmu(given, out, scalar=scalar, **options)
+    size = None if is_special(made) else made.stat().st_size
+    if json_wanted:
+        click.echo(json.dumps({"scene": str(given.path), "fmi": int(version), "scalar": scalar,
+                               "enumerations": not no_enumerations, "real": "double", "scene_real": given.run.real,
+                               "file": str(made), "bytes": size}, indent=1))
+    else:
+        shown = "" if size is None else f" ({size / 1000:.0f} kB)"
+        click.echo(f"wrote {made}{shown}: {given.name}, {given.wheel_count} wheels")
+    if given.run.real != "double":
+        warn(f'{given.path}: run.real: is "{given.run.real}", but FMUs compute in double precision')

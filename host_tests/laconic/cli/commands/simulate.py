@@ -1,0 +1,90 @@
+"""laconic simulate: one scene through the core."""
+
+from __future__ import annotations
+
+import json
+from pathlib import Path
+from typing import Any
+
+import click
+import numpy as np
+
+from laconic.cli.options import PICTURES, OutputFile, SceneName, belongs_to, json_flag
+from laconic.cli.streams import warn
+from laconic.core import REALS
+from laconic.errors import BadInput
+from laconic.outputs import is_stdout, opened
+from laconic.scene import METHODS, read_scene
+from laconic.simulation import Trajectory, input_signals, simulate, usual_signals, wanted_signals
+from laconic.simulation.csv_text import csv_text
+
+
+@click.command(name="simulate", short_help="Run one scene through the core.")
+@click.argument("scene", type=SceneName())
+@click.option("--method", type=click.Choice(METHODS), help="Instead of the scene's.")
+@click.option("--step", "step_s", type=float, metavar="H", help="Step in seconds instead of the scene's.")
+@click.option("--real", type=click.Choice(REALS), help="Scalar type instead of the scene's.")
+@click.option("--out", type=OutputFile(".csv", stdout=True), metavar="F.csv", help="Write the outputs; - for stdout.")
+@click.option("--plot", type=OutputFile(*PICTURES), metavar="F.png",
+              help="Draw path, velocities, wheel speeds; .png, .svg or .pdf.")
+@click.option("--inputs", "inputs_wanted", is_flag=True,
+              help="Write the inputs as further columns of --out: what acts from each row on.")
+@json_flag("Machine-readable summary.")
+def command(scene: str, method: str | None, step_s: float | None, real: str | None, out: Path | None,
+            plot: Path | None, inputs_wanted: bool, json_wanted: bool) -> None:
+    """Runs SCENE, a TOML file or the name of a scene that comes with the project.
+
+    Inputs of kind "steps" are held over each step; a step that one of them changes within is refused. Where the scene
+    gives a friction coefficient or the height of the centre of mass, the ground is watched: the first wheel that
+    would slip or lift is told on stderr.
+    """
+    if step_s is not None and not 0.0 < step_s < float("inf"):
+        raise BadInput(f"--step: {step_s:g} s is not usable; give a finite number above zero")
+    belongs_to("--out", bool(out), "--inputs")
+    given = read_scene(scene).with_run(method=method, step_s=step_s, real=real)
+    written = (*wanted_signals(given), *(input_signals(given) if inputs_wanted else ()))
+    run = simulate(given, tuple(dict.fromkeys((*written, *(usual_signals(given) if plot else ())))), progress=True)
+    if out:
+        write_csv(run, written, out)
+    if plot:
+        from laconic.pictures.plotting import simulation_picture
+        simulation_picture(run, plot)
+    if json_wanted:
+        click.echo(json.dumps(summary(run, out, plot), indent=1))
+    elif not (out and is_stdout(out)):
+        tell(run, out, plot)
+    if run.grip and not run.grip.holds:
+        warn(f"{given.path}: the ground cannot give what this run asks: {run.grip.warning()}")
+
+
+def write_csv(run: Trajectory, signals: tuple[str, ...], path: Path) -> None:
+    """A header line; then time_s and the signals, with all digits."""
+    table = np.column_stack([run.time_s, *(run.columns[name] for name in signals)])
+    with opened(path) as file:
+        file.write(",".join(("time_s", *signals)) + "\n")
+        for lines in csv_text(table):
+            file.write(lines)
+
+
+def summary(run: Trajectory, out: Path | None, plot: Path | None) -> dict[str, Any]:
+    """What was run and where it ended."""
+    return {
+        "scene": str(run.scene.path), "name": run.scene.name, "method": run.scene.run.method, "chosen": run.method,
+        "step_s": run.scene.run.step_s, "real": run.scene.run.real, "steps": run.steps, "seconds": run.seconds,
+        "final": {"time_s": run.time_s[-1], **{name: values[-1] for name, values in run.columns.items()}},
+        "no_slip": run.grip.as_json() if run.grip else None,
+        "files": [str(path) for path in (out, plot) if path]}
+
+
+def tell(run: Trajectory, out: Path | None, plot: Path | None) -> None:
+    """The same for people."""
+    asked, picked = run.scene.run.method, run.method
+    method = asked if asked == picked else f"{asked} (picked {picked})"
+    click.echo(f"{run.scene.name}: {run.steps} steps of {run.scene.run.step_s:g} s by {method}, {run.scene.run.real}, "
+               f"in {run.seconds:.2f} s")
+    click.echo(f"at {run.time_s[-1]:g} s:")
+    for name, values in run.columns.items():
+        click.echo(f"  {name:28} {values[-1]: .12g}")
+    for path in (out, plot):
+        if path:
+            click.echo(f"wrote {path}")

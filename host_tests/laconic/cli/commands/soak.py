@@ -1,0 +1,60 @@
+"""laconic soak: long fuzz, fault and endurance runs."""
+
+from __future__ import annotations
+
+import importlib
+import json
+import pkgutil
+import random
+
+import click
+from rich.console import Console
+
+import laconic.soak
+from laconic.cli.options import json_flag
+from laconic.errors import BadInput, nearest_of
+from laconic.progress import progress_bar
+
+
+def kinds() -> dict[str, str]:
+    """Name on the command line → module."""
+    found = (module.name for module in pkgutil.iter_modules(laconic.soak.__path__) if not module.name.startswith("_"))
+    return {name.replace("_", "-"): name for name in found}
+
+
+@click.command(name="soak", short_help="Long fuzz, fault and endurance runs.")
+@click.argument("what")
+@click.option("--minutes", type=float, default=10.0, show_default=True, metavar="N", help="How long.")
+@click.option("--seed", type=int, help="For the random numbers; printed when not given.")
+@json_flag()
+def command(what: str, minutes: float, seed: int | None, json_wanted: bool) -> int:
+    """Runs WHAT for a long time and reports what was found.
+
+    \b
+    boards    emulated boards started anew, idle and with all cores busy
+    faults    the fault matrix of the rig, with new seeds
+    fmu       random use of the FMUs' C interface, under sanitizers
+    free-run  the node process at 1 kHz: no step may be lost
+    fuzz      SLCAN reader, frame handler and parameter loader under libFuzzer
+    rig       all scenes in lockstep on the virtual bus, same bits
+    slcan     all scenes over SLCAN to a node process
+
+    Exit status 1 when something was found that must not be.
+    """
+    modules = kinds()
+    if what not in modules:
+        raise BadInput(f"soak: there is no {what}; {nearest_of(what, modules)}")
+    if not 0.0 < minutes < float("inf"):
+        raise BadInput(f"--minutes: {minutes:g} is not usable; give a finite number above zero")
+    chosen = random.SystemRandom().randrange(2**31) if seed is None else seed
+    module = importlib.import_module(f"laconic.soak.{modules[what]}")
+    with progress_bar(f"soak {what}", 60.0 * minutes) as advance:
+        result = module.soak(minutes, chosen, advance)
+    result = {"what": what, "minutes": minutes, "seed": chosen, **result}
+    if json_wanted:
+        click.echo(json.dumps(result, indent=1))
+    else:
+        console = Console()
+        for name, value in result.items():
+            console.print(f"{name:>24}  {value}")
+    return 0 if result["passed"] else 1

@@ -1,0 +1,211 @@
+"""The shipping C core from Python: loads the shared library and speaks numpy; physics is only on the other side.
+
+    core = load("double")
+    vehicle = core.vehicle({"mass_kg": 10.0, "wheel": [{"kind": "omni", "x_m": 0.1}], …})
+    plant = core.plant(vehicle, "auto", 1e-3)
+    plant.run(core.input({"voltage_V": [2.0, -2.0]}), steps=1000)
+    plant.nu, plant.pose, plant.wheel_speeds()
+
+What the core refuses is raised as `Refused`, with its status, field, item and message.
+"""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass
+from functools import cache
+from typing import Any
+
+import numpy as np
+from cffi import FFI
+
+from laconic.core.plant import Plant
+from laconic.errors import BadInput, Refused, nearest_of
+from laconic.paths import built
+
+REALS = ("double", "single")
+WHEEL_KINDS = {"omni": "ROLLER", "mecanum": "ROLLER", "roller": "ROLLER", "fixed": "FIXED", "unset": "UNSET"}
+OMNI_ROLLER_RAD = math.pi / 2
+
+
+@dataclass(frozen=True)
+class Matrices:
+    """The matrices of the paper for one vehicle."""
+
+    wheel_rows: np.ndarray        # Ξ, N × 3
+    inertia: np.ndarray           # A
+    inverse_inertia: np.ndarray   # A⁻¹; with constraints G Gᵀ
+    constraint_rows: np.ndarray   # C
+    lambda_yaw: float             # Λ
+    lambda_wheel: float           # λ
+
+
+@cache
+def load(real: str = "double") -> Core:
+    """The core in one scalar type, loaded once."""
+    if real not in REALS:
+        raise BadInput(f"real: there is no {real!r}; {nearest_of(real, REALS)}")
+    ffi = FFI()
+    ffi.cdef(built(f"lib/laconic_cdef_{real}.h").read_text())
+    return Core(real, ffi, ffi.dlopen(str(built(f"lib/liblaconic_{real}.so"))))
+
+
+class Core:
+    """The C functions of one scalar type with Python's manners."""
+
+    def __init__(self, real: str, ffi: FFI, lib: Any):
+        self.real, self.ffi, self.lib = real, ffi, lib
+        self.dtype = np.dtype(np.float64 if ffi.sizeof("laconic_real") == 8 else np.float32)
+        fields = dict(ffi.typeof("laconic_vehicle").fields)
+        self.max_wheels: int = fields["wheel"].type.length
+        self.max_supports: int = fields["support"].type.length
+        self.method_names = self._method_names()
+        self.input_fields = self._input_fields()
+        self.input_length = ffi.sizeof("laconic_input") // self.dtype.itemsize
+
+    def _method_names(self) -> tuple[str, ...]:
+        numbers = range(64)
+        methods = (self.lib.laconic_method_by_number(n) for n in numbers)
+        return tuple(self.text(m.name) for m in methods if m != self.ffi.NULL)
+
+    def _input_fields(self) -> dict[str, tuple[int, int]]:
+        """Name → (place, length) in laconic_input seen as one row of numbers: it holds nothing else."""
+        found = {}
+        for name, field in self.ffi.typeof("laconic_input").fields:
+            length = field.type.length if field.type.kind == "array" else 1
+            found[name] = (field.offset // self.dtype.itemsize, length)
+        return found
+
+    def text(self, chars: Any) -> str:
+        """A C string."""
+        return self.ffi.string(chars).decode()
+
+    def check(self, status: int, why: Any) -> None:
+        """Raises Refused unless the status is OK."""
+        if status != self.lib.LACONIC_OK:
+            raise self.refusal(why)
+
+    def refusal(self, why: Any) -> Refused:
+        """A laconic_refusal as an exception."""
+        size = 400
+        text = self.ffi.new("char[]", size)
+        self.lib.laconic_message(why, text, size)
+        return Refused(
+            self.text(self.lib.laconic_status_name(why.status)), self.text(self.lib.laconic_field_name(why.field)),
+            int(why.item), self.text(text), value=float(why.value), limit=float(why.limit))
+
+    def why(self) -> Any:
+        """Room for a refusal."""
+        return self.ffi.new("laconic_refusal *")
+
+    # ---- vehicle and model
+
+    def vehicle(self, data: Mapping[str, Any]) -> Any:
+        """A laconic_vehicle from a mapping with the keys of `[vehicle]`; `motor` is fitted, nothing else is checked.
+
+        Wheels beyond the core's room are only counted, so that the check refuses them.
+        """
+        plain = {key: value for key, value in data.items() if key not in ("wheel", "support", "motor")}
+        wheels, supports = data.get("wheel", []), data.get("support", [])
+        vehicle = self.ffi.new("laconic_vehicle *", plain)
+        vehicle.wheel_count, vehicle.support_count = len(wheels), len(supports)
+        for place, wheel in zip(vehicle.wheel, wheels, strict=False):
+            self._set_wheel(place, wheel)
+        for place, support in zip(vehicle.support, supports, strict=False):
+            place.x_m, place.y_m = support["x_m"], support["y_m"]
+        if motor := data.get("motor"):
+            self._fit_motor(vehicle, motor)
+        return vehicle
+
+    def _set_wheel(self, place: Any, wheel: Mapping[str, Any]) -> None:
+        place.kind = getattr(self.lib, f"LACONIC_WHEEL_{WHEEL_KINDS[wheel['kind']]}")
+        place.locked = wheel.get("locked", False)
+        place.x_m, place.y_m = wheel.get("x_m", 0.0), wheel.get("y_m", 0.0)
+        place.axle_rad = wheel.get("axle_rad", 0.0)
+        place.roller_rad = wheel.get("roller_rad", OMNI_ROLLER_RAD)
+
+    def _fit_motor(self, vehicle: Any, motor: Mapping[str, float]) -> None:
+        why = self.why()
+        self.check(self.lib.laconic_motor_fit(vehicle, self.ffi.new("laconic_motor *", dict(motor)), why), why)
+
+    def check_vehicle(self, vehicle: Any) -> None:
+        """Raises Refused unless every number of the vehicle is usable."""
+        why = self.why()
+        self.check(self.lib.laconic_vehicle_check(vehicle, why), why)
+
+    def prepare(self, vehicle: Any) -> Any:
+        """The prepared laconic_model."""
+        model, why = self.ffi.new("laconic_model *"), self.why()
+        self.check(self.lib.laconic_prepare(model, vehicle, why), why)
+        return model
+
+    def matrices(self, vehicle: Any) -> Matrices:
+        """Ξ, A, A⁻¹, C, Λ, λ."""
+        found, why = self.ffi.new("laconic_matrices *"), self.why()
+        self.check(self.lib.laconic_matrices_of(found, vehicle, why), why)
+        return Matrices(
+            self.numbers(found.wheel_rows, self.max_wheels, 3)[: vehicle.wheel_count],
+            self.numbers(found.inertia, 3, 3), self.numbers(found.inverse_inertia, 3, 3),
+            self.numbers(found.constraint_rows, 2 * self.max_wheels, 3)[: found.constraint_count],
+            float(found.lambda_yaw), float(found.lambda_wheel))
+
+    def numbers(self, array: Any, *shape: int) -> np.ndarray:
+        """A C array as a numpy array of its own."""
+        return np.frombuffer(self.ffi.buffer(array), self.dtype).reshape(shape or -1).copy()
+
+    # ---- input
+
+    def input_place(self, signal: str) -> int:
+        """Where a signal such as voltage_V[2] stands in a row of input numbers."""
+        name, _, index = signal.partition("[")
+        start, _ = self.input_fields[name]
+        return start + (int(index.rstrip("]")) - 1 if index else 0)
+
+    @np.errstate(over="ignore")  # the core names a number that is too large for its scalar type
+    def input_row(self, values: Mapping[str, float | Sequence[float]]) -> np.ndarray:
+        """A row of input numbers from {"voltage_V": [1, 2], "voltage_V[2]": 3, "body_moment_Nm": 4 …}."""
+        row = np.zeros(self.input_length, self.dtype)
+        for signal, value in values.items():
+            start = self.input_place(signal)
+            many = np.atleast_1d(np.asarray(value, self.dtype))
+            row[start : start + len(many)] = many
+        return row
+
+    def input(self, values: Mapping[str, float | Sequence[float]] | np.ndarray | None = None) -> Any:
+        """A laconic_input; from names, or from a row of input numbers."""
+        row = values if isinstance(values, np.ndarray) else self.input_row(values or {})
+        held = self.ffi.new("laconic_input *")
+        self.ffi.memmove(held, row.astype(self.dtype).tobytes(), self.ffi.sizeof("laconic_input"))
+        return held
+
+    # ---- method and plant
+
+    def method(self, name: str) -> Any:
+        """The laconic_method of that name."""
+        method = self.lib.laconic_method_by_name(name.encode())
+        if method == self.ffi.NULL:
+            raise BadInput(f"method: there is no {name!r}; {nearest_of(name, self.method_names)}")
+        return method
+
+    def plant(self, vehicle: Any, method: str, step_s: float, *, nu_rad_per_s: Sequence[float] = (0.0, 0.0, 0.0),
+              x_m: float = 0.0, y_m: float = 0.0, heading_rad: float = 0.0) -> Plant:
+        """A vehicle that stands at its start, ready to step."""
+        start = self.ffi.new("laconic_start *", {
+            "nu_rad_per_s": [float(v) for v in nu_rad_per_s], "x_m": x_m, "y_m": y_m, "heading_rad": heading_rad})
+        plant, why = self.ffi.new("laconic_plant *"), self.why()
+        self.check(self.lib.laconic_plant_start(plant, vehicle, self.method(method), step_s, start, why), why)
+        return Plant(self, plant)
+
+    def steps_in(self, interval_s: float, step_s: float) -> int:
+        """The whole number of steps in an interval; Refused when it is none."""
+        steps, why = self.ffi.new("uint64_t *"), self.why()
+        self.check(self.lib.laconic_steps_in(interval_s, step_s, steps, why), why)
+        return int(steps[0])
+
+    def derivative(self, model: Any, nu_rad_per_s: Sequence[float], heading_rad: float, held: Any) -> Any:
+        """The laconic_rates of (4.7) for Model Exchange and tests."""
+        rates = self.ffi.new("laconic_rates *")
+        nu = self.ffi.new("laconic_real[3]", [float(v) for v in nu_rad_per_s])
+        self.lib.laconic_derivative(rates, model, nu, heading_rad, held)
+        return rates

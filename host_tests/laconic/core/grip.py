@@ -1,0 +1,98 @@
+"""Was the no-slip model true? What a run asked of the ground, against what the ground gives.
+
+A wheel slips where the reaction it needs exceeds friction coefficient times normal load; it lifts where its normal load
+would have to be below zero. The model does neither: from there on it tells of another robot.
+"""
+
+from __future__ import annotations
+
+from dataclasses import asdict, dataclass
+from typing import TYPE_CHECKING, Any
+
+if TYPE_CHECKING:
+    from laconic.core.plant import Plant
+
+
+@dataclass(frozen=True)
+class GripEvent:
+    """One instant at which a wheel or support is over the edge."""
+
+    time_s: float
+    step: int
+    where: str           # "wheel 2", "support 1"
+    needed_N: float      # size of the reaction
+    available_N: float   # friction coefficient times normal load; 0 where it would lift
+    normal_N: float
+    margin_N: float      # friction coefficient · normal load − needed: the worst of all wheels at this instant
+
+
+@dataclass(frozen=True)
+class Grip:
+    """What the watch found over a run; events are None where there was none."""
+
+    friction_coefficient: float | None  # None: not given, so that slip cannot be judged
+    looks: int                          # instants that were looked at: the start of every step, and the end
+    slipping: int
+    lifting: int
+    first_slip: GripEvent | None
+    worst_slip: GripEvent | None
+    first_lift: GripEvent | None
+    worst_lift: GripEvent | None
+
+    @classmethod
+    def of(cls, grip: Any, plant: Plant, step_s: float) -> Grip:
+        """From a laconic_grip; `step_s` as it was given, which single precision does not keep."""
+        events = {name: event_of(getattr(grip, name), plant, step_s)
+                  for name in ("first_slip", "worst_slip", "first_lift", "worst_lift")}
+        return cls(float(plant.c.vehicle.friction_coefficient) or None, int(grip.looks), int(grip.slipping),
+                   int(grip.lifting), **events)
+
+    @property
+    def holds(self) -> bool:
+        """Whether the ground gave what the model took at every instant."""
+        return not (self.slipping or self.lifting)
+
+    def as_json(self) -> dict[str, Any]:
+        """Machine-readable."""
+        return {"holds": self.holds, **asdict(self)}
+
+    def warning(self) -> str:
+        """What there is to say, in one line for people; "" where the ground gave all."""
+        found = []
+        if self.first_slip and self.worst_slip:
+            first, worst = self.first_slip, self.worst_slip
+            found.append(f"{first.where} slips at {first.time_s:g} s (needs {newtons(first.needed_N)} of grip, has "
+                         f"{newtons(first.available_N)}: margin {newtons(first.margin_N)}"
+                         f"{self._more(first, worst, self.slipping, 'margin ' + newtons(worst.margin_N))})")
+        if self.first_lift and self.worst_lift:
+            first, worst = self.first_lift, self.worst_lift
+            found.append(f"{first.where} lifts at {first.time_s:g} s (normal load {newtons(first.normal_N)}"
+                         f"{self._more(first, worst, self.lifting, newtons(worst.normal_N))})")
+        return " and ".join(found)
+
+    def _more(self, first: GripEvent, worst: GripEvent, count: int, size: str) -> str:
+        at_worst = "" if worst == first else f"; at worst {size}, {worst.where} at {worst.time_s:g} s"
+        return f"{at_worst}; {percent(count, self.looks)} of the run"
+
+
+def percent(count: int, of: int) -> str:
+    """A share in three digits; what only rounds to all is not all."""
+    shown = f"{100 * count / of:.3g}"
+    return "over 99.9 %" if shown == "100" and count < of else f"{shown} %"
+
+
+def newtons(force_N: float) -> str:
+    """A force for people: three digits, or all before the point."""
+    return f"{force_N:.0f} N" if abs(force_N) >= 100.0 else f"{force_N:.3g} N"
+
+
+def event_of(event: Any, plant: Plant, step_s: float) -> GripEvent | None:
+    """A laconic_grip_event; None where it never happened."""
+    if not event.point:
+        return None
+    wheels = plant.wheel_count
+    where = f"wheel {event.point}" if event.point <= wheels else f"support {event.point - wheels}"
+    friction = float(plant.c.vehicle.friction_coefficient)
+    return GripEvent(
+        event.steps * step_s, int(event.steps), where, float(event.needed_N),
+        max(0.0, friction * float(event.normal_N)), float(event.normal_N), float(event.margin_N))

@@ -1,0 +1,147 @@
+"""A vehicle that moves: the core's laconic_plant with its outputs as numpy arrays."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+
+from laconic.core.schedule import Schedule
+
+if TYPE_CHECKING:
+    from laconic.core import Core
+    from laconic.core.recording import Recorder
+
+
+class Plant:
+    """Steps and outputs of one vehicle; `c` is the laconic_plant itself."""
+
+    def __init__(self, core: Core, plant: Any):
+        self.core, self.c = core, plant
+        self._contact: Any = None
+
+    # ---- motion
+
+    @property
+    def steps(self) -> int:
+        """Steps taken since the start."""
+        return int(self.c.steps)
+
+    @property
+    def step_s(self) -> float:
+        """The step, as the core's scalar type has it."""
+        return float(self.c.integrator.step_s)
+
+    @property
+    def chosen_method(self) -> str:
+        """The method that works: differs from the one asked for only with auto."""
+        return self.core.text(self.c.integrator.chosen.name)
+
+    def run(self, held: Any, steps: int = 1) -> None:
+        """Steps with the input held; Refused leaves the state before the refused step."""
+        why = self.core.why()
+        self.core.check(self.core.lib.laconic_plant_run(self.c, held, steps, why), why)
+
+    def run_sampled(self, samples: np.ndarray) -> None:
+        """One step per samples[k] = rows of input numbers at the step's start, middle and end."""
+        every_signal = range(self.core.input_length)
+        self.follow(Schedule(self.core, every_signal, samples, first_step=self.steps), self.steps + len(samples))
+
+    def follow(self, schedule: Schedule, until_step: int, recorder: Recorder | None = None) -> None:
+        """Steps along a schedule, recorded on the way; Refused leaves the state before the refused step."""
+        why = self.core.why()
+        record = recorder.c if recorder else self.core.ffi.NULL
+        self.core.check(self.core.lib.laconic_plant_follow(self.c, schedule.c, until_step, record, why), why)
+
+    def set_step(self, step_s: float) -> None:
+        """Another step size from here on."""
+        why = self.core.why()
+        self.core.check(self.core.lib.laconic_plant_set_step(self.c, step_s, why), why)
+
+    def change(self, vehicle: Any) -> None:
+        """Another payload, motor … while it moves; the wheels must stay as they are."""
+        why = self.core.why()
+        self.core.check(self.core.lib.laconic_plant_change(self.c, vehicle, why), why)
+        self._contact = None
+
+    def save(self) -> Any:
+        """A copy of the state."""
+        return self.core.ffi.new("laconic_state *", self.c.state)
+
+    def restore(self, state: Any, steps: int) -> None:
+        """Back to a saved state."""
+        self.c.state, self.c.steps = state[0], steps
+
+    # ---- outputs
+
+    def _at(self, name: str) -> Any:
+        return self.core.ffi.addressof(self.c, name)
+
+    @property
+    def wheel_count(self) -> int:
+        """N."""
+        return int(self.c.model.wheel_count)
+
+    @property
+    def nu(self) -> np.ndarray:
+        """ν1, ν2, ν3 [rad/s]."""
+        nu = self.core.ffi.new("laconic_real[3]")
+        self.core.lib.laconic_nu(self._at("model"), self._at("state"), nu)
+        return self.core.numbers(nu)
+
+    @property
+    def pose(self) -> Any:
+        """The laconic_pose: x_m, y_m, origin_x_m, origin_y_m, heading_rad, heading_wrapped_rad."""
+        pose = self.core.ffi.new("laconic_pose *")
+        self.core.lib.laconic_pose_of(pose, self._at("model"), self._at("state"))
+        return pose
+
+    def body_velocity(self) -> tuple[np.ndarray, float]:
+        """v_S in body axes [m/s] and the yaw rate [rad/s]."""
+        velocity = self.core.ffi.new("laconic_real[2]")
+        yaw_rate = self.core.lib.laconic_body_velocity(self._at("model"), self._at("state"), velocity)
+        return self.core.numbers(velocity), yaw_rate
+
+    def _per_wheel(self, function: Any, *more: Any) -> np.ndarray:
+        room = self.core.ffi.new("laconic_real[]", max(self.wheel_count, 1))
+        function(self._at("model"), self._at("state"), *more, room)
+        return self.core.numbers(room)[: self.wheel_count]
+
+    def wheel_speeds(self) -> np.ndarray:
+        """χ' [rad/s]."""
+        return self._per_wheel(self.core.lib.laconic_wheel_speeds)
+
+    def wheel_torques(self, held: Any) -> np.ndarray:
+        """Torque on each axle: motor and applied [N·m]."""
+        return self._per_wheel(self.core.lib.laconic_wheel_torques, held)
+
+    def wheel_angles(self) -> np.ndarray:
+        """χ [rad]."""
+        return self._per_wheel(self.core.lib.laconic_wheel_angles)
+
+    def row(self) -> np.ndarray:
+        """ν(3), x, y, heading, wheel speeds (N), wheel angles (N): what adapters are compared by."""
+        pose = self.pose
+        row = np.empty(6 + 2 * self.wheel_count, self.core.dtype)
+        row[:3], row[3:6] = self.nu, (pose.x_m, pose.y_m, pose.heading_rad)
+        row[6 : 6 + self.wheel_count], row[6 + self.wheel_count :] = self.wheel_speeds(), self.wheel_angles()
+        return row
+
+    def energy_J(self) -> float:
+        """Kinetic energy."""
+        return float(self.core.lib.laconic_energy_J(self._at("model"), self._at("state")))
+
+    @property
+    def contact(self) -> Any:
+        """The laconic_contact of the vehicle as it is now."""
+        if self._contact is None:
+            contact, why = self.core.ffi.new("laconic_contact *"), self.core.why()
+            self.core.check(self.core.lib.laconic_contact_prepare(contact, self._at("vehicle"), why), why)
+            self._contact = contact
+        return self._contact
+
+    def reactions(self, held: Any) -> Any:
+        """The laconic_reactions of this state and input."""
+        found = self.core.ffi.new("laconic_reactions *")
+        self.core.lib.laconic_reactions_of(found, self.contact, self._at("model"), self._at("state"), held)
+        return found

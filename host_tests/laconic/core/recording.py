@@ -1,0 +1,59 @@
+"""Rows of outputs that the core takes while it steps, and its watch on the ground (laconic_recorder)."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+
+from laconic.core.grip import Grip
+
+if TYPE_CHECKING:
+    from laconic.core.plant import Plant
+
+MEMBERS = {  # of laconic_outputs, where they are not called as the signal is
+    **{name: ("pose", name) for name in
+       ("x_m", "y_m", "heading_rad", "heading_wrapped_rad", "origin_x_m", "origin_y_m")},
+    "wheel_reaction_N": ("reactions", "along_N"), "wheel_lateral_N": ("reactions", "lateral_N"),
+    "no_slip_margin_N": ("reactions", "no_slip_margin_N"),
+}
+GROUND = ("wheel_reaction_N", "wheel_lateral_N", "no_slip_margin_N")  # what only the reactions tell
+
+
+class Recorder:
+    """`rows` rows of some signals, outputs or inputs, one at the start of every `every`-th step and one at the end."""
+
+    def __init__(self, plant: Plant, signals: tuple[str, ...], every: int, rows: int, watched: bool = False):
+        core, ffi = plant.core, plant.core.ffi
+        self._plant, self.signals = plant, signals
+        self._table = np.zeros((rows, len(signals)), core.dtype)
+        self._places = np.array([place_of(core, signal) for signal in signals], np.uint32)
+        ground = watched or any(signal.partition("[")[0] in GROUND for signal in signals)
+        self._grip = ffi.new("laconic_grip *") if watched else ffi.NULL
+        self.c: Any = ffi.new("laconic_recorder *", {
+            "contact": plant.contact if ground else ffi.NULL, "grip": self._grip, "every": every,
+            "column_count": len(signals), "column": ffi.from_buffer("uint32_t[]", self._places),
+            "row": ffi.from_buffer("laconic_real[]", self._table, require_writable=True), "row_room": rows})
+
+    def take_last(self, held: Any) -> None:
+        """The row of the present state: the end of a run, with the input of that instant."""
+        if self.c.row_count >= len(self._table):
+            raise IndexError("the recorder has no room for another row")
+        self._plant.core.lib.laconic_record_row(self.c, self._plant.c, held)
+
+    def columns(self) -> dict[str, np.ndarray]:
+        """What was taken, by signal name."""
+        table = self._table[: self.c.row_count].astype(float, copy=False)
+        return dict(zip(self.signals, table.T, strict=True))
+
+    def grip(self, step_s: float) -> Grip | None:
+        """What the watch has found in steps of `step_s`; None where there was no watch."""
+        return Grip.of(self._grip, self._plant, step_s) if self._grip else None
+
+
+def place_of(core: Any, signal: str) -> int:
+    """Where a signal stands in laconic_outputs, in bytes; the index counts from 1."""
+    name, _, index = signal.partition("[")
+    member = ("input", name) if name in core.input_fields else MEMBERS.get(name, (name,))
+    element = (int(index.rstrip("]")) - 1,) if index else ()
+    return core.ffi.offsetof("laconic_outputs", *member, *element)

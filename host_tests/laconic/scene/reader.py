@@ -1,0 +1,245 @@
+"""The keys of a scene file, table by table. What only the core can judge (masses, angles …) is left to the core."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Iterator, Sequence
+from itertools import pairwise
+from typing import Any
+
+from laconic.errors import nearest_of
+from laconic.scene.drive import Input
+from laconic.scene.not_modelled import KINDS_OF_WHEELS, OF_VEHICLES, OF_WHEELS
+from laconic.scene.table import Table
+
+WHEEL_KINDS = ("omni", "mecanum", "roller", "fixed")
+INPUT_KINDS = ("steps", "table", "sine")
+PER_WHEEL = ("voltage_V", "axle_torque_Nm")
+LENGTHS = {"body_force_N": 2, "body_moment_Nm": 0, "world_force_N": 2, "world_force_point_m": 2}
+OUTPUTS_PER_WHEEL = ("wheel_speed_rad_per_s", "wheel_angle_rad", "wheel_torque_Nm", "wheel_reaction_N",
+                     "wheel_lateral_N")
+OUTPUT_LENGTHS = {
+    "nu_rad_per_s": 3, "velocity_body_m_per_s": 2, "x_m": 0, "y_m": 0, "heading_rad": 0, "heading_wrapped_rad": 0,
+    "origin_x_m": 0, "origin_y_m": 0, "yaw_rate_rad_per_s": 0, "no_slip_margin_N": 0, "energy_J": 0}
+MOTOR_KEYS = ("resistance_ohm", "torque_constant_Nm_per_A", "back_emf_Vs_per_rad", "gear_ratio",
+              "viscous_friction_Nms", "rotor_inertia_kgm2")
+MOTOR_OPTIONAL = ("viscous_friction_Nms", "rotor_inertia_kgm2")
+
+
+def read_parts(top: Table, methods: Sequence[str], reals: Sequence[str]) -> dict[str, Any]:
+    """Everything a scene consists of, as plain values."""
+    parts: dict[str, Any] = {"name": top.text("name", top.path.stem), "source": top.text("source", "", allowed="\t\n")}
+    if not parts["name"].strip():
+        top.fail("name", "is empty; give a name, or take it out for the file's own")
+    parts["vehicle"] = read_vehicle(top.table("vehicle", required=True))
+    wheel_count = len(parts["vehicle"]["wheel"])
+    parts["initial"] = read_initial(top.table("initial"))
+    parts["inputs"] = [read_input(each, wheel_count) for each in top.tables("input")]
+    parts["run"] = read_run(top.table("run", required=True), methods, reals)
+    for each in parts["inputs"]:
+        check_motor(top, each, parts["vehicle"])
+        check_end(top, each, parts["run"]["duration_s"])
+    parts["outputs"] = read_outputs(top.table("outputs"), wheel_count, parts["run"]["duration_s"])
+    parts["rig"] = read_rig(top.table("rig"))
+    top.done()
+    parts["in_degrees"] = frozenset(top.in_degrees)
+    return parts
+
+
+def read_vehicle(table: Table) -> dict[str, Any]:
+    """`[vehicle]` with the keys of laconic_vehicle; `motor` stays apart for laconic_motor_fit."""
+    vehicle: dict[str, Any] = {key: table.number(key, finite=False)
+                               for key in ("mass_kg", "yaw_inertia_kgm2", "wheel_radius_m")}
+    for key in ("com_x_m", "com_y_m", "com_z_m", "friction_coefficient"):
+        vehicle[key] = table.number(key, 0.0, finite=False)
+    vehicle["wheel"] = [read_wheel(each) for each in table.tables("wheel")]
+    needed = ... if vehicle["wheel"] else 0.0
+    vehicle["wheel_inertia_kgm2"] = table.number("wheel_inertia_kgm2", needed, finite=False)
+    vehicle |= read_motor(table)
+    vehicle["support"] = [read_point(each) for each in table.tables("support")]
+    if table.has("payload"):
+        payload = table.table("payload")
+        vehicle["payload"] = {key: payload.number(key, finite=False) for key in
+                              ("mass_kg", "x_m", "y_m", "yaw_inertia_kgm2")}
+        payload.done()
+    table.done(OF_VEHICLES)
+    return vehicle
+
+
+def read_motor(table: Table) -> dict[str, Any]:
+    """Gain and damping at the wheel, or a motor at its shaft, or neither."""
+    direct = ("motor_gain_Nm_per_V", "motor_damping_Nms")
+    given = [key for key in direct if table.has(key)]
+    if not table.has("motor"):
+        default = ... if given else 0.0
+        return {key: table.number(key, default, finite=False) for key in direct}
+    if given:
+        table.fail(given[0], "is given besides [vehicle.motor]; keep one of them")
+    motor = table.table("motor")
+    values = {key: motor.number(key, 0.0 if key in MOTOR_OPTIONAL else ..., finite=False) for key in MOTOR_KEYS}
+    motor.done()
+    return {"motor": values}
+
+
+def read_wheel(table: Table) -> dict[str, Any]:
+    """One `[[vehicle.wheel]]`: an omni wheel's roller angle is π/2 unless it is given."""
+    kind = table.choice("kind", WHEEL_KINDS, hints=KINDS_OF_WHEELS)
+    wheel: dict[str, Any] = {"kind": kind, **read_place(table)}
+    wheel["axle_rad"] = table.angle("axle", finite=False)
+    if kind == "fixed":
+        for key in ("roller_rad", "roller_deg"):
+            if table.has(key):
+                table.fail(key, "is given for a fixed wheel, which has no rollers; take it out")
+    else:
+        wheel["roller_rad"] = table.angle("roller", math.pi / 2 if kind == "omni" else ..., finite=False)
+    wheel["locked"] = table.flag("locked", False)
+    table.done(OF_WHEELS)
+    return wheel
+
+
+def read_place(table: Table) -> dict[str, float]:
+    """x_m and y_m, or distance_m and a bearing from the ξ axis."""
+    polar = [key for key in ("distance_m", "bearing_rad", "bearing_deg") if table.has(key)]
+    plain = [key for key in ("x_m", "y_m") if table.has(key)]
+    if polar and plain:
+        table.fail(polar[0], f"is given besides {plain[0]}; give x_m and y_m, or distance_m and bearing_rad")
+    if not polar:
+        return {key: table.number(key, finite=False) for key in ("x_m", "y_m")}
+    distance, bearing = table.number("distance_m"), table.angle("bearing")
+    return {"x_m": distance * math.cos(bearing), "y_m": distance * math.sin(bearing)}
+
+
+def read_point(table: Table) -> dict[str, float]:
+    """x_m and y_m alone."""
+    point = {key: table.number(key, finite=False) for key in ("x_m", "y_m")}
+    table.done()
+    return point
+
+
+def read_initial(table: Table) -> dict[str, Any]:
+    """`[initial]`: ν, or velocity and yaw rate; standing still at the world's origin where nothing is said."""
+    start: dict[str, Any] = {}
+    velocity = [key for key in ("velocity_body_m_per_s", "yaw_rate_rad_per_s") if table.has(key)]
+    if table.has("nu_rad_per_s"):
+        if velocity:
+            table.fail(velocity[0], "is given besides nu_rad_per_s; keep one of them")
+        start["nu_rad_per_s"] = table.numbers("nu_rad_per_s", 3)
+    if "velocity_body_m_per_s" in velocity:
+        start["velocity_body_m_per_s"] = table.numbers("velocity_body_m_per_s", 2)
+    start["yaw_rate_rad_per_s"] = table.number("yaw_rate_rad_per_s", 0.0)
+    start |= {key: table.number(key, 0.0) for key in ("x_m", "y_m")}
+    start["heading_rad"] = table.angle("heading", 0.0)
+    table.done()
+    return start
+
+
+def signal_names(lengths: dict[str, int], per_wheel: Sequence[str], wheel_count: int) -> Iterator[str]:
+    """Every signal with its index, from 1; a length of 0 is a signal without index."""
+    for name, length in {**{name: wheel_count for name in per_wheel}, **lengths}.items():
+        yield from (f"{name}[{i}]" for i in range(1, length + 1)) if length or name in per_wheel else (name,)
+
+
+def check_signal(table: Table, key: str, signal: str, lengths: dict[str, int], per_wheel: Sequence[str],
+                 wheel_count: int) -> None:
+    """Fails with the reason: index beyond the wheels, or no such name."""
+    known = list(signal_names(lengths, per_wheel, wheel_count))
+    if signal in known:
+        return
+    name = signal.partition("[")[0]
+    if name in per_wheel:
+        there = f"use {name}[1] to {name}[{wheel_count}]" if wheel_count else "it has no such signals"
+        table.fail(key, f"{signal} does not match the vehicle's {wheel_count} wheels; {there}")
+    table.fail(key, f"there is no signal {signal!r}; {nearest_of(signal, known)}")
+
+
+def read_input(table: Table, wheel_count: int) -> Input:
+    """One `[[input]]`."""
+    signal, kind = table.text("signal"), table.choice("kind", INPUT_KINDS)
+    check_signal(table, "signal", signal, LENGTHS, PER_WHEEL, wheel_count)
+    if kind == "sine":
+        phase = table.angle("phase", 0.0)
+        found = Input(signal, kind, table.place, amplitude=table.number("amplitude"),
+                      frequency_Hz=table.number("frequency_Hz"), phase_rad=phase)
+    else:
+        t_s = table.numbers("t_s")
+        found = Input(signal, kind, table.place, t_s=t_s, value=table.numbers("value", len(t_s)))
+        check_instants(table, t_s)
+    table.done()
+    return found
+
+
+def check_instants(table: Table, t_s: Sequence[float]) -> None:
+    """Fails unless there is at least one instant, none negative, each after the one before."""
+    if not t_s:
+        table.fail("t_s", "is empty; give at least one instant")
+    if t_s[0] < 0:
+        table.fail("t_s", f"begins at {t_s[0]:g} s; the run begins at 0")
+    for before, after in pairwise(t_s):
+        if after <= before:
+            table.fail("t_s", f"goes from {before:g} to {after:g} s; give instants in ascending order")
+
+
+def check_motor(top: Table, each: Input, vehicle: dict[str, Any]) -> None:
+    """Fails for a voltage where no motor makes a torque of it."""
+    if "motor" not in vehicle and vehicle["motor_gain_Nm_per_V"] == 0.0 and each.signal.startswith("voltage_V"):
+        top.fail(f"{each.place}.signal", f"{each.signal} would do nothing, the vehicle has no motor; give "
+                 "[vehicle.motor] or vehicle.motor_gain_Nm_per_V, or drive the wheel by axle_torque_Nm")
+
+
+def check_end(top: Table, each: Input, duration_s: float) -> None:
+    """Fails for instants that the run never comes to; a table may lead to one that lies beyond its end."""
+    if each.kind == "sine":
+        return
+    reached = [t for t in each.t_s if t <= duration_s * (1.0 + 1e-12)]
+    beyond = each.t_s[len(reached) + (each.kind == "table" and bool(reached)):]
+    if beyond:
+        top.fail(f"{each.place}.t_s", f"{beyond[0]:g} s lies beyond the run of {duration_s:g} s and would do nothing; "
+                 "take it out or make run.duration_s longer")
+
+
+def read_run(table: Table, methods: Sequence[str], reals: Sequence[str]) -> dict[str, Any]:
+    """`[run]`."""
+    run: dict[str, Any] = {}
+    for key in ("duration_s", "step_s"):
+        run[key] = table.number(key)
+        if run[key] <= 0:
+            table.fail(key, f"is {run[key]:g}; give a number above zero")
+    run["method"] = table.choice("method", methods, "auto")
+    run["real"] = table.choice("real", reals, "double")
+    table.done()
+    return run
+
+
+def read_outputs(table: Table, wheel_count: int, duration_s: float) -> dict[str, Any]:
+    """`[outputs]`: a signal without its index stands for all of them."""
+    signals: list[str] = []
+    for signal in table.texts("signals", ()):
+        if "[" not in signal and signal in OUTPUTS_PER_WHEEL:
+            signals += [f"{signal}[{i}]" for i in range(1, wheel_count + 1)]
+        elif OUTPUT_LENGTHS.get(signal):
+            signals += [f"{signal}[{i}]" for i in range(1, OUTPUT_LENGTHS[signal] + 1)]
+        else:
+            check_signal(table, "signals", signal, OUTPUT_LENGTHS, OUTPUTS_PER_WHEEL, wheel_count)
+            signals.append(signal)
+    for place, signal in enumerate(signals):
+        if signal in signals[:place]:
+            table.fail("signals", f"names {signal} twice; keep one of them")
+    every = table.number("every_s", None)
+    if every is not None and every <= 0:
+        table.fail("every_s", f"is {every:g}; give a number above zero")
+    if every is not None and every > duration_s * (1.0 + 1e-12):
+        table.fail("every_s", f"{every:g} s is longer than the run of {duration_s:g} s; give that or less")
+    if table.has("signals") and not signals:
+        table.fail("signals", "is empty; name some, or take it out for the usual ones")
+    table.done()
+    return {"signals": tuple(signals), "every_s": every}
+
+
+def read_rig(table: Table) -> dict[str, Any]:
+    """`[rig]`: the first CAN identifier and the frames to use."""
+    id_base = table.whole("id_base", None)
+    if id_base is not None and not 0 <= id_base <= 0x7FF:
+        table.fail("id_base", f"is {id_base}; give an 11-bit identifier, 0 to 0x7FF")
+    frames = table.texts("frames", ())
+    table.done()
+    return {"id_base": id_base, "frames": frames}

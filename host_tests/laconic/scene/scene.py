@@ -1,0 +1,190 @@
+"""Scenes: a TOML file → vehicle, start, inputs and run. Every error is one line with file, field and remedy.
+
+    scene = read_scene("scenes/robotino2.toml")
+    plant = scene.plant(load(scene.run.real))
+    drive = scene.drive()
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, field, replace
+from pathlib import Path
+from typing import Any
+
+from laconic.core import REALS, Core, load
+from laconic.core.plant import Plant
+from laconic.errors import BadInput, Refused
+from laconic.paths import scene_path
+from laconic.scene.drive import Drive, Input, check_resolved, step_remedy
+from laconic.scene.names import in_file
+from laconic.scene.reader import read_parts
+from laconic.scene.table import read_toml
+
+MOST_STEPS = 9e15  # as laconic_steps_in
+METHODS = ("auto", "rk4", "exponential-kahan", "exponential-kahan-4", "exact-flow", "exact-flow-4", "taylor-8")
+
+
+@dataclass(frozen=True)
+class Initial:
+    """Where the motion starts: ν, or the velocity of the centre of mass in body axes and the yaw rate."""
+
+    nu_rad_per_s: tuple[float, ...] | None = None
+    velocity_body_m_per_s: tuple[float, ...] = (0.0, 0.0)
+    yaw_rate_rad_per_s: float = 0.0
+    x_m: float = 0.0
+    y_m: float = 0.0
+    heading_rad: float = 0.0
+
+    def nu(self, model: Any) -> tuple[float, ...]:
+        """ν for a prepared model: v_S = R (ν1, ν2), ν3 = Λ θ'."""
+        if self.nu_rad_per_s is not None:
+            return self.nu_rad_per_s
+        forward, sideways = (v / model.wheel_radius_m for v in self.velocity_body_m_per_s)
+        return (forward, sideways, model.yaw_scale * self.yaw_rate_rad_per_s)
+
+    def refusal(self, refused: Refused, model: Any) -> Refused:
+        """A start that slides a wheel, by the key that the scene gives: the core speaks of ν."""
+        name, scale = f"nu_rad_per_s[{refused.item}]", 1.0
+        if self.nu_rad_per_s is None and refused.item < 3:
+            name, scale = f"velocity_body_m_per_s[{refused.item}]", model.wheel_radius_m
+        elif self.nu_rad_per_s is None:
+            name, scale = "yaw_rate_rad_per_s", 1.0 / model.yaw_scale
+        value, limit = scale * refused.value, scale * refused.limit
+        text = (f"initial.{name}: {value:.6g} (of the centre of mass) slides a fixed or locked wheel; the nearest that "
+                f"the wheels allow is {limit:.6g}")
+        return Refused(refused.status, refused.field, refused.item, text, value=refused.value, limit=refused.limit)
+
+
+@dataclass(frozen=True)
+class Run:
+    """How long, in what steps, by which method, in which scalar type."""
+
+    duration_s: float
+    step_s: float
+    method: str = "auto"
+    real: str = "double"
+
+
+@dataclass(frozen=True)
+class Outputs:
+    """What to write, and how often; nothing said: the usual signals, every step."""
+
+    signals: tuple[str, ...] = ()
+    every_s: float | None = None
+
+
+@dataclass(frozen=True)
+class Rig:
+    """What a bus needs to know."""
+
+    id_base: int | None = None
+    frames: tuple[str, ...] = ()
+
+
+@dataclass(frozen=True)
+class Scene:
+    """One scene; `vehicle` has the keys of `[vehicle]`, with angles in rad and wheels in x and y."""
+
+    path: Path
+    name: str
+    source: str
+    vehicle: dict[str, Any]
+    initial: Initial
+    inputs: tuple[Input, ...]
+    run: Run
+    outputs: Outputs = field(default_factory=Outputs)
+    rig: Rig = field(default_factory=Rig)
+    in_degrees: frozenset[str] = frozenset()  # angles that the file gives so, by their name in rad
+
+    @property
+    def wheel_count(self) -> int:
+        """N."""
+        return len(self.vehicle["wheel"])
+
+    def with_run(self, *, method: str | None = None, step_s: float | None = None, real: str | None = None,
+                 duration_s: float | None = None) -> Scene:
+        """The scene with some of `[run]` replaced."""
+        given = {"method": method, "step_s": step_s, "real": real, "duration_s": duration_s}
+        return replace(self, run=replace(self.run, **{k: v for k, v in given.items() if v is not None}))
+
+    def core(self) -> Core:
+        """The core in the scene's scalar type."""
+        return load(self.run.real)
+
+    def c_vehicle(self, core: Core) -> Any:
+        """The checked laconic_vehicle, its motor fitted."""
+        for what, limit in (("wheel", core.max_wheels), ("support", core.max_supports)):
+            if len(self.vehicle[what]) > limit:
+                raise BadInput(f"{self.path}: vehicle.{what}: {len(self.vehicle[what])} of them, this build of the "
+                               f"core has room for {limit}; take some out")
+        try:
+            vehicle = core.vehicle(self.vehicle)
+            core.check_vehicle(vehicle)
+            return vehicle
+        except Refused as refused:
+            raise self.told(refused) from None
+
+    def model(self, core: Core) -> Any:
+        """The prepared laconic_model."""
+        vehicle = self.c_vehicle(core)
+        try:
+            return core.prepare(vehicle)
+        except Refused as refused:
+            raise self.told(refused) from None
+
+    def plant(self, core: Core) -> Plant:
+        """The vehicle at its start, ready to step by the scene's method and step."""
+        start, model = self.initial, self.model(core)
+        nu, vehicle = start.nu(model), self.c_vehicle(core)
+        try:
+            return core.plant(vehicle, self.run.method, self.run.step_s, nu_rad_per_s=nu, x_m=start.x_m,
+                              y_m=start.y_m, heading_rad=start.heading_rad)
+        except Refused as refused:
+            if refused.status == "start against constraints":
+                raise start.refusal(refused, model).at(self.path) from None
+            raise self.told(refused) from None
+
+    def told(self, refused: Refused, when: str = "") -> Refused:
+        """A refusal of the core with this file in front, by the names that the file has."""
+        if refused.status == "overflow" and not refused.field:
+            refused = refused.at("vehicle")  # of its numbers together
+        return in_file(refused, self.in_degrees).at(f"{self.path}: {when}" if when else self.path)
+
+    def steps(self) -> int:
+        """The run's whole number of steps."""
+        return self.steps_in("run.duration_s", self.run.duration_s)
+
+    def steps_in(self, name: str, interval_s: float) -> int:
+        """The whole number of steps in an interval of this scene; BadInput names the field when there is none."""
+        if interval_s / self.run.step_s >= MOST_STEPS:
+            raise BadInput(f"{self.path}: {name}: {interval_s:g} s are more steps of {self.run.step_s:g} s than can be "
+                           "counted; give a shorter time or a longer step")
+        try:
+            return load("double").steps_in(interval_s, self.run.step_s)
+        except Refused as refused:
+            if refused.status != "step does not fit":
+                raise refused.at(f"{self.path}: {name}") from None
+            remedy = step_remedy(self.instants(), self.run.step_s)
+            raise BadInput(f"{self.path}: {name}: {interval_s:g} s is no whole number of steps of "
+                           f"{self.run.step_s:g} s; {remedy}") from None
+
+    def instants(self) -> list[float]:
+        """Every instant of the run that must fall on a step."""
+        changes = [t for each in self.inputs if each.kind == "steps" for t in each.t_s if t < self.run.duration_s]
+        return [self.run.duration_s, *([self.outputs.every_s] if self.outputs.every_s else []), *changes]
+
+    def drive(self) -> Drive:
+        """The inputs on the grid of the scene's steps."""
+        steps, instants = self.steps(), self.instants()
+        check_resolved(self.path, self.inputs, self.run.step_s, instants)
+        return Drive.on_grid(self.path, self.inputs, self.run.step_s, steps, instants)
+
+
+def read_scene(given: str | Path) -> Scene:
+    """Reads a scene by its path, or by the name of one that comes with the project."""
+    path = scene_path(given)
+    parts = read_parts(read_toml(path), methods=METHODS, reals=REALS)
+    return Scene(
+        path=path, name=parts["name"], source=parts["source"], vehicle=parts["vehicle"],
+        initial=Initial(**parts["initial"]), inputs=tuple(parts["inputs"]), run=Run(**parts["run"]),
+        outputs=Outputs(**parts["outputs"]), rig=Rig(**parts["rig"]), in_degrees=parts["in_degrees"])

@@ -1,0 +1,13 @@
+"""Runs of scenes through the core, and their signals over time."""
+
+from laconic.simulation.run import (
+    Trajectory,
+    advance_plant,
+    input_signals,
+    run_window,
+    simulate,
+    usual_signals,
+    wanted_signals,
+)
+
+__all__ = ["Trajectory", "advance_plant", "input_signals", "run_window", "simulate", "usual_signals", "wanted_signals"]

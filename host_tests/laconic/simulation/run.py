@@ -1,0 +1,109 @@
+"""Runs a scene through the core and keeps what it puts out."""
+
+from __future__ import annotations
+
+import time
+from dataclasses import dataclass
+
+import numpy as np
+
+from laconic.core.grip import Grip
+from laconic.core.plant import Plant
+from laconic.core.recording import Recorder
+from laconic.errors import BadInput, Refused
+from laconic.progress import Advance, progress_bar
+from laconic.scene import Scene
+from laconic.scene.drive import Drive
+from laconic.scene.reader import LENGTHS, OUTPUT_LENGTHS, OUTPUTS_PER_WHEEL, PER_WHEEL, signal_names
+
+USUAL = ("nu_rad_per_s", "x_m", "y_m", "heading_rad", "velocity_body_m_per_s", "yaw_rate_rad_per_s",
+         "wheel_speed_rad_per_s", "wheel_angle_rad", "energy_J")
+MOST_ROWS = 10**7  # of outputs that are kept: some gigabytes
+CHUNK = 1 << 18    # steps between two looks at the progress bar and at Ctrl-C: a tenth of a second, watched a third
+
+
+@dataclass
+class Trajectory:
+    """Outputs over time; `columns` by signal name in the order to write them."""
+
+    scene: Scene
+    method: str
+    steps: int
+    seconds: float
+    time_s: np.ndarray
+    columns: dict[str, np.ndarray]
+    grip: Grip | None = None  # None: the scene says nothing of the ground
+
+    def columns_of(self, name: str) -> np.ndarray:
+        """All columns of one signal, side by side."""
+        return np.column_stack([v for k, v in self.columns.items() if k.partition("[")[0] == name])
+
+
+def wanted_signals(scene: Scene) -> tuple[str, ...]:
+    """The scene's output signals, or the usual ones."""
+    return scene.outputs.signals or usual_signals(scene)
+
+
+def usual_signals(scene: Scene) -> tuple[str, ...]:
+    """Velocities, pose, wheels and energy."""
+    every = signal_names(OUTPUT_LENGTHS, OUTPUTS_PER_WHEEL, scene.wheel_count)
+    by_name = {name: [] for name in USUAL}
+    for signal in every:
+        by_name.get(signal.partition("[")[0], []).append(signal)
+    return tuple(signal for name in USUAL for signal in by_name[name])
+
+
+def input_signals(scene: Scene) -> tuple[str, ...]:
+    """Every element of the inputs that the scene uses; the voltages where it uses none."""
+    used = dict.fromkeys(each.signal.partition("[")[0] for each in scene.inputs) or {"voltage_V": None}
+    every = signal_names(LENGTHS, PER_WHEEL, scene.wheel_count)
+    return tuple(signal for signal in every if signal.partition("[")[0] in used)
+
+
+def is_watched(scene: Scene) -> bool:
+    """Whether the scene says enough of the ground: its friction, or how high the centre of mass is."""
+    vehicle = scene.vehicle
+    return bool(scene.wheel_count and (vehicle["friction_coefficient"] or vehicle["com_z_m"]))
+
+
+def advance_plant(plant: Plant, drive: Drive, first: int, count: int, recorder: Recorder | None = None) -> None:
+    """Steps `first` … `first + count − 1` of a drive."""
+    origin, last = plant.steps - first, first + count
+    while first < last:
+        schedule, end = drive.schedule(plant.core, first)
+        first = min(last, end)
+        plant.follow(schedule.from_origin(origin), origin + first, recorder)
+
+
+def simulate(scene: Scene, signals: tuple[str, ...] = (), progress: bool = False) -> Trajectory:
+    """Runs a scene from its start to its end; Refused names file and time when a step is refused.
+
+    Keeps the given signals (outputs, or inputs), else the scene's outputs, else the usual ones.
+    """
+    core, steps = scene.core(), scene.steps()
+    every = 1 if scene.outputs.every_s is None else scene.steps_in("outputs.every_s", scene.outputs.every_s)
+    if steps / every > MOST_ROWS:
+        raise BadInput(f"{scene.path}: outputs.every_s: {steps // every} rows are too many to keep; make it longer, "
+                       f"for {MOST_ROWS} or fewer")
+    plant, drive = scene.plant(core), scene.drive()
+    ticks = np.append(np.arange(0, steps, every), steps)  # the last row is the end of the run, wherever it falls
+    recorder = Recorder(plant, signals or wanted_signals(scene), every, len(ticks), watched=is_watched(scene))
+    began = time.perf_counter()
+    with progress_bar(scene.name, steps if progress else 0, told=progress) as moved:
+        run_window(scene, plant, drive, 0, steps, moved, recorder)
+    recorder.take_last(core.input(drive.held_at(steps)))
+    seconds = time.perf_counter() - began
+    return Trajectory(scene, plant.chosen_method, steps, seconds, ticks * scene.run.step_s, recorder.columns(),
+                      recorder.grip(scene.run.step_s))
+
+
+def run_window(scene: Scene, plant: Plant, drive: Drive, first: int, count: int,
+               moved: Advance = lambda _: None, recorder: Recorder | None = None) -> None:
+    """Some steps; a refusal is told with file and time."""
+    try:
+        for begin in range(first, first + count, CHUNK):
+            steps = min(CHUNK, first + count - begin)
+            advance_plant(plant, drive, begin, steps, recorder)
+            moved(steps)
+    except Refused as refused:
+        raise scene.told(refused, f"at t = {plant.steps * scene.run.step_s:g} s") from None

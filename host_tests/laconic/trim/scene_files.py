@@ -1,0 +1,161 @@
+"""What one scene needs of the core, as C: constants that make the compiler drop the rest, and a prepared model.
+
+    files = trimmed(read_scene("s1"), "single")
+    files.header    laconic_scene.h: LACONIC_SCENE_HEADER of real.h
+    files.table_h   laconic_scene_model.h, files.table_c: model, integrator and start as constants
+
+Prepared here, so that neither preparation nor validation is in flash; the numbers are those the core prepares on the
+target, because every platform gives the same bits.
+"""
+
+from __future__ import annotations
+
+from dataclasses import asdict, dataclass
+from pathlib import Path
+from typing import Any
+
+from laconic.core import Core, load
+from laconic.core.plant import Plant
+from laconic.outputs import write_text
+from laconic.scene import Scene
+from laconic.trim.c_tables import initializer
+
+POSE = ("x_m", "y_m", "heading_rad", "heading_wrapped_rad", "origin_x_m", "origin_y_m")
+
+
+@dataclass(frozen=True)
+class Needs:
+    """What acts on the scene's vehicle and what is followed: LACONIC_WITH_… of real.h."""
+
+    voltage: bool
+    axle_torque: bool
+    body_wrench: bool
+    world_force: bool
+    sampled_input: bool
+    pose: bool
+    wheel_angles: bool
+    damping: bool
+
+
+@dataclass(frozen=True)
+class Trimmed:
+    """The generated files of one scene and scalar type."""
+
+    needs: Needs
+    method: str
+    method_files: tuple[str, ...]  # stems of the core's files that one step runs through
+    header: str
+    table_h: str
+    table_c: str
+
+    def write(self, folder: Path) -> None:
+        """Writes those files that have changed, so that nothing is compiled again without need."""
+        names = {"laconic_scene.h": self.header, "laconic_scene_model.h": self.table_h,
+                 "laconic_scene_model.c": self.table_c}
+        for name, text in names.items():
+            path = folder / name
+            if not holds(path, text):
+                write_text(path, text)
+
+
+def holds(path: Path, text: str) -> bool:
+    """Whether a file is there with just this text."""
+    try:
+        return path.read_text(encoding="utf-8") == text
+    except (OSError, UnicodeDecodeError):
+        return False
+
+
+def needs_of(scene: Scene) -> Needs:
+    """Read from the scene's inputs and outputs; without `[outputs] signals`, pose and wheel angles are followed."""
+    acting = {each.signal.partition("[")[0] for each in scene.inputs}
+    wanted = {name.partition("[")[0] for name in scene.outputs.signals}
+    world_force = "world_force_N" in acting
+    return Needs(
+        voltage="voltage_V" in acting, axle_torque="axle_torque_Nm" in acting,
+        body_wrench=bool(acting & {"body_force_N", "body_moment_Nm"}), world_force=world_force,
+        sampled_input=not scene.drive().is_held,
+        pose=world_force or not wanted or not wanted.isdisjoint(POSE),
+        wheel_angles=scene.wheel_count > 0 and (not wanted or "wheel_angle_rad" in wanted),
+        damping=any(scene.plant(load("double")).c.model.decay_per_s))
+
+
+def trimmed(scene: Scene, real: str) -> Trimmed:
+    """Everything a build for this scene alone consists of."""
+    core = load(real)
+    plant = scene.plant(core)
+    method = plant.chosen_method
+    needs = needs_of(scene)
+    return Trimmed(needs, method, method_files(scene, method), header_of(scene, real, needs),
+                   table_header(scene, real), tables(core, plant, scene))
+
+
+def method_files(scene: Scene, chosen: str) -> tuple[str, ...]:
+    """The method's own file; for auto the pair it chose and the two of the pair."""
+    stem = chosen.replace("-", "_")
+    if scene.run.method != "auto":
+        return (stem,)
+    if chosen == "exact-flow-4":
+        return ("auto_slow", stem, "taylor_8", "exact_flow")
+    return ("auto_fast", stem, "exact_flow")
+
+
+def header_of(scene: Scene, real: str, needs: Needs) -> str:
+    """laconic_scene.h."""
+    n = scene.wheel_count
+    lines = [f"/* {scene.path.name}: what this build of the core is for ({real}). Generated. */",
+             "#ifndef LACONIC_SCENE_H", "#define LACONIC_SCENE_H", *real_check(scene, real),
+             f"#define LACONIC_MAX_WHEELS {max(1, n)}", "#define LACONIC_MAX_SUPPORTS 1",
+             f"#define LACONIC_WHEELS(model) ((void)(model), {n})", "#define LACONIC_WITH_PREPARE 0"]
+    lines += [f"#define LACONIC_WITH_{name.upper()} {int(value)}" for name, value in asdict(needs).items()]
+    return "\n".join([*lines, "#endif", ""])
+
+
+def real_check(scene: Scene, real: str) -> list[str]:
+    """Lines that refuse the other scalar type, whose structs are of another size."""
+    other, hint = ("#ifdef", "without") if real == "double" else ("#ifndef", "with")
+    return [f"{other} LACONIC_SINGLE",
+            f'#error "laconic: {scene.path.name} was prepared for {real}: compile {hint} LACONIC_SINGLE"', "#endif"]
+
+
+def table_header(scene: Scene, real: str) -> str:
+    """laconic_scene_model.h."""
+    single = "-DLACONIC_SINGLE " if real == "single" else ""
+    return "\n".join([
+        f"/* {scene.path.name}, prepared: step it with",
+        " *     laconic_state state = laconic_scene_start;",
+        " *     laconic_step(&laconic_scene_model, &laconic_scene_integrator, &state, &input);",
+        " * The structs are those of the library: what links the trimmed one is compiled like it, with",
+        f" *     {single}-DLACONIC_SCENE_HEADER='\"laconic_scene.h\"'",
+        " * Generated. */",
+        "#ifndef LACONIC_SCENE_MODEL_H", "#define LACONIC_SCENE_MODEL_H", "", *real_check(scene, real), "",
+        '#include "laconic/laconic.h"', "",
+        "extern const laconic_model laconic_scene_model;",
+        "extern const laconic_integrator laconic_scene_integrator;",
+        "extern const laconic_state laconic_scene_start;", "", "#endif", ""])
+
+
+def tables(core: Core, plant: Plant, scene: Scene) -> str:
+    """laconic_scene_model.c: the plant's constants and start, to the last bit."""
+    integrator = core.ffi.new("laconic_integrator *", plant.c.integrator)
+    integrator.method = integrator.chosen
+    names = method_symbols(core, integrator)
+    values: dict[str, tuple[str, Any]] = {
+        "laconic_scene_model": ("laconic_model", plant.c.model),
+        "laconic_scene_integrator": ("laconic_integrator", integrator[0]),
+        "laconic_scene_start": ("laconic_state", plant.c.state)}
+    lines = [f"/* {scene.path.name}, prepared. Generated. */", '#include "laconic_scene_model.h"', ""]
+    lines += [f"const {kind} {name} = {initializer(core.ffi, value, names)};" for name, (kind, value) in values.items()]
+    return "\n".join([*lines, ""])
+
+
+def method_symbols(core: Core, integrator: Any) -> dict[int, str]:
+    """Address of a method → its C name. What auto chose is a pair of methods with one file of its own."""
+    found = {_address(core, core.method(name)): f"&laconic_{name.replace('-', '_')}" for name in core.method_names}
+    pair = "slow" if core.text(integrator.chosen.name) == "exact-flow-4" else "fast"
+    found.setdefault(_address(core, integrator.chosen), f"&laconic_auto_{pair}")
+    return found
+
+
+def _address(core: Core, pointer: Any) -> int:
+    return int(core.ffi.cast("uintptr_t", pointer))

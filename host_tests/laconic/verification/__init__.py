@@ -1,0 +1,1 @@
+"""The core against references: trajectories of 25 digits, and the equations once more in numpy."""

@@ -1,0 +1,23 @@
+"""A method looks the same in every picture."""
+
+from __future__ import annotations
+
+from laconic.core import load
+from laconic.pictures.method_style import METHOD_STYLES, look
+from laconic.scene import METHODS
+
+
+def test_every_method_of_the_core_has_a_colour_and_a_marker_of_its_own():
+    assert set(METHOD_STYLES) == set(METHODS) == set(load("double").method_names)
+    assert len({style.colour for style in METHOD_STYLES.values()}) == len(METHOD_STYLES)
+    assert len({style.marker for style in METHOD_STYLES.values()}) == len(METHOD_STYLES)
+
+
+def test_what_auto_lies_upon_stays_visible():
+    assert look("auto")["markerfacecolor"] == "none"
+    assert look("auto")["markersize"] > look("exact-flow-4")["markersize"]
+
+
+def test_what_a_caller_gives_replaces_the_table():
+    assert look("rk4", label=None, linestyle="--") == {
+        "color": "#d1495b", "marker": "s", "markersize": 5.0, "label": None, "linestyle": "--"}

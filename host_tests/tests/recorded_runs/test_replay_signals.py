@@ -1,0 +1,118 @@
+"""`laconic replay` of what `laconic simulate` wrote: no map is needed, and it says what it compared."""
+
+from __future__ import annotations
+
+import json
+from pathlib import Path
+
+import pytest
+
+from laconic.cli.main import run
+from laconic.paths import scene_path
+
+
+@pytest.fixture
+def written(tmp_path, capsys) -> Path:
+    """Outputs and inputs of s1."""
+    path = tmp_path / "run.csv"
+    assert run(["simulate", "s1", "--out", str(path), "--inputs"]) == 0
+    capsys.readouterr()
+    return path
+
+
+def compared(capsys, *arguments: object) -> dict:
+    assert run(["replay", *map(str, arguments), "--json"]) == 0
+    return json.loads(capsys.readouterr().out)
+
+
+def scene_without_inputs(folder: Path, old: str = "", new: str = "") -> Path:
+    """s1 that nothing drives; with a number changed."""
+    text = scene_path("s1").read_text().replace(old, new)
+    head, _, tail = text.partition("[[input]]")
+    path = folder / "changed.toml"
+    path.write_text(head + tail[tail.rindex("[run]"):])
+    return path
+
+
+def test_the_inputs_of_a_run_give_the_run_again(written, tmp_path, capsys):
+    found = compared(capsys, written, scene_without_inputs(tmp_path))
+    assert found["inputs"] == [f"voltage_V[{wheel}]" for wheel in (1, 2, 3)]
+    assert found["inputs_between_rows"] == "held"
+    assert found["rows"] == 1001 and found["end_s"] == 10.0 and found["left_out"] == []
+    names = [each["signal"] for each in found["compared"]]
+    assert names[:3] == ["nu_rad_per_s[1]", "nu_rad_per_s[2]", "nu_rad_per_s[3]"] and "energy_J" in names
+    assert max(each["largest_difference"] for each in found["compared"]) == 0.0
+
+
+def test_another_vehicle_differs_and_it_is_said_where(written, tmp_path, capsys):
+    scene = scene_without_inputs(tmp_path)
+    text = scene.read_text()
+    mass = next(line for line in text.splitlines() if line.startswith("mass_kg"))
+    scene.write_text(text.replace(mass, "mass_kg = 12.5"))
+    found = {each["signal"]: each for each in compared(capsys, written, scene)["compared"]}
+    worst = found["nu_rad_per_s[1]"]
+    assert 0.0 < worst["root_mean_square"] < worst["largest_difference"] < worst["largest_value"]
+    assert 0.0 < worst["at_s"] <= 10.0
+
+
+def test_the_report_says_what_was_compared(written, tmp_path, capsys):
+    table = [line.split(",") for line in written.read_text().splitlines()]
+    moved = [["time_s", *table[0][1:], "battery_V"], *([repr(float(t) + 5.0), *rest, "12.6"] for t, *rest in table[1:])]
+    written.write_text("\n".join(map(",".join, moved)))
+    assert run(["replay", str(written), "s1", "--out", str(tmp_path / "new" / "found")]) == 0
+    text = capsys.readouterr().out
+    assert "1001 rows, 5 to 15 s" in text
+    assert "Inputs from the file, held from each row to the next: voltage_V[1], voltage_V[2], voltage_V[3]." in text
+    assert "no signals of this vehicle: battery_V" in text
+    assert "| energy_J | 0 |" in text
+    made = tmp_path / "new" / "found"
+    assert sorted(path.name for path in made.iterdir()) == ["replay.png", "report.json", "report.md"]
+
+
+def test_a_file_without_inputs_is_compared_with_the_scenes_own(tmp_path, capsys):
+    path = tmp_path / "run.csv"
+    assert run(["simulate", "paper_caster", "--out", str(path)]) == 0
+    capsys.readouterr()
+    found = compared(capsys, path, "paper_caster")
+    assert found["inputs"] == [] and found["inputs_between_rows"] == "of the scene"
+    assert max(each["largest_difference"] for each in found["compared"]) == 0.0
+
+
+def test_inputs_that_vary_are_linear_between_rows(tmp_path, capsys):
+    scene, path = tmp_path / "sine.toml", tmp_path / "run.csv"
+    text = scene_without_inputs(tmp_path).read_text()
+    scene.write_text(text + '\n[[input]]\nsignal = "voltage_V[1]"\nkind = "sine"\namplitude = 6\nfrequency_Hz = 0.5\n')
+    assert run(["simulate", str(scene), "--out", str(path), "--inputs"]) == 0
+    capsys.readouterr()
+    found = compared(capsys, path, scene)
+    assert found["inputs_between_rows"] == "linear"
+    for each in found["compared"]:
+        assert each["largest_difference"] <= 1e-3 * max(each["largest_value"], 1e-2), each
+
+
+HEAD = "time_s,x_m,voltage_V[1]\n"
+BAD = {
+    "no rows": (HEAD + "0,0,0\n", "has 1 rows"),
+    "time that stands": (HEAD + "0,0,0\n1,0,0\n1,0,0\n", "line 4: time_s does not grow"),
+    "no number": (HEAD + "0,0,0\n1,x,0\n", "line 3: x_m is 'x'"),
+    "NaN": (HEAD + "0,0,0\n1,0,nan\n", "line 3: voltage_V[1] is 'nan'"),
+    "a row too short": (HEAD + "0,0,0\n1,0\n", "line 3: has 2 columns, the first line 3"),
+    "two columns of one name": ("time_s,x_m,x_m\n0,0,0\n1,0,0\n", "two columns 'x_m'"),
+    "nothing to compare": ("time_s,battery\n0,0\n1,0\n", "no column to compare"),
+    "between steps": (HEAD + "0,0,0\n0.0015,0,0\n", "line 3: time_s 0.0015 s falls inside a step of 0.001 s"),
+    "late, without inputs": ("time_s,x_m\n2,0\n3,0\n", "begins at 2 s"),
+}
+
+
+@pytest.mark.parametrize("text, words", BAD.values(), ids=BAD)
+def test_a_file_that_cannot_be_replayed_is_one_line(text, words, tmp_path, capsys):
+    path = tmp_path / "run.csv"
+    path.write_text(text)
+    assert run(["replay", str(path), "s1"]) == 2
+    said = capsys.readouterr()
+    assert words in said.err and str(path) in said.err and said.err.count("\n") == 1 and said.out == ""
+
+
+def test_friction_cannot_be_fitted_without_currents(written, capsys):
+    assert run(["replay", str(written), "s1", "--fit", str(written)]) == 2
+    assert "--fit: needs measured currents" in capsys.readouterr().err

@@ -1,0 +1,46 @@
+"""The node as a process: its help, and a client that finds another one on the line."""
+
+from __future__ import annotations
+
+import socket
+import subprocess
+
+import pytest
+
+from laconic.cli.main import run
+from laconic.paths import built
+from laconic.rig.buses import node_process
+
+
+@pytest.mark.parametrize("real", ["double", "single"])
+@pytest.mark.parametrize("flag", ["--help", "-h"])
+def test_the_node_says_how_it_is_started(real: str, flag: str) -> None:
+    told = subprocess.run([built(f"bin/laconic-node-{real}"), "--port", "x", flag], capture_output=True, text=True)
+    assert told.returncode == 0 and told.stderr == ""
+    assert all(word in told.stdout for word in ("usage:", "--port", "--id-base", "--bitrate", "--once", "laconic rig"))
+
+
+def test_a_wrong_option_of_the_node_is_one_line_that_names_it() -> None:
+    told = subprocess.run([built("bin/laconic-node-double"), "--prot", "1"], capture_output=True, text=True)
+    assert told.returncode == 2 and told.stderr.count("\n") == 1 and "--prot" in told.stderr and "--help" in told.stderr
+
+
+def test_a_second_client_is_told_that_the_line_is_occupied_and_the_first_is_not_disturbed() -> None:
+    with node_process() as port, socket.create_connection(("127.0.0.1", port)) as first:
+        first.sendall(b"V\r")
+        assert first.recv(16) == b"V1010\r"
+        with socket.create_connection(("127.0.0.1", port), timeout=10.0) as second, second.makefile("rb") as told:
+            assert told.read(9) == b"\aoccupied"  # at once, for a person
+            second.sendall(b"O\r")
+            assert told.read().count(b"\aoccupied") == 1  # again, for who has flushed the line; then it ends
+        first.sendall(b"V\r")
+        assert first.recv(16) == b"V1010\r"
+
+
+def test_a_rig_that_is_the_second_client_says_why_it_cannot_reach_the_node(capsys: pytest.CaptureFixture[str]) -> None:
+    with node_process() as port, socket.create_connection(("127.0.0.1", port)) as first:
+        first.sendall(b"V\r")
+        first.recv(16)
+        assert run(["rig", "s1", "--interface", "slcan", "--channel", f"socket://127.0.0.1:{port}"]) == 2
+        error = capsys.readouterr().err
+        assert error.count("\n") == 1 and "occupied" in error

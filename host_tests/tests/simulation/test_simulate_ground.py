@@ -1,0 +1,125 @@
+"""`laconic simulate` says once where the ground could not give what the no-slip model asks of it."""
+
+from __future__ import annotations
+
+import csv
+import json
+from pathlib import Path
+
+import numpy as np
+import pytest
+
+from laconic.cli.main import run
+from laconic.demo.fmu_rows import fmu_rows
+from laconic.fmu import make_fmu
+from laconic.scene import read_scene
+from laconic.simulation import simulate
+
+BODY = "mass_kg = 130.0\nyaw_inertia_kgm2 = 12.0\nwheel_radius_m = 0.0759\nwheel_inertia_kgm2 = 0.02\n"
+MOTOR = "motor_gain_Nm_per_V = 2.0\nmotor_damping_Nms = 3.0\n"
+CORNERS = ((0.319, 0.275, 45), (0.319, -0.275, -45), (-0.319, 0.275, -45), (-0.319, -0.275, 45))
+
+
+def mecanum(tmp_path: Path, ground: str = "friction_coefficient = 0.6\ncom_z_m = 0.3", volts: float = 60.0,
+            kind: str = "steps") -> str:
+    """Four mecanum wheels that get a gentle voltage at first and `volts` from 0.5 s on."""
+    wheels = "".join(f'[[vehicle.wheel]]\nkind = "mecanum"\nx_m = {x}\ny_m = {y}\naxle_deg = -90\n'
+                     f'roller_deg = {roller}\n' for x, y, roller in CORNERS)
+    t_s = "[0.0, 0.5]" if kind == "steps" else "[0.4999, 0.5]"
+    inputs = "".join(f'[[input]]\nsignal = "voltage_V[{i}]"\nkind = "{kind}"\nt_s = {t_s}\nvalue = [1.0, {volts}]\n'
+                     for i in (1, 2, 3, 4))
+    path = tmp_path / "mecanum.toml"
+    path.write_text(f"[vehicle]\n{BODY}{MOTOR}{ground}\n{wheels}{inputs}[run]\nduration_s = 1.0\nstep_s = 0.001\n"
+                    "[outputs]\nevery_s = 0.25\n")
+    return str(path)
+
+
+def test_a_run_without_enough_grip_says_so_once_with_instant_wheel_and_newtons(tmp_path, capsys):
+    scene = mecanum(tmp_path, ground="friction_coefficient = 0.6")
+    assert run(["simulate", scene]) == 0
+    said = capsys.readouterr().err
+    assert len(said.splitlines()) == 1
+    assert "slips at 0.5 s (needs " in said and " N of grip, has 191 N" in said
+    assert "lifts" not in said
+
+
+def test_a_wheel_that_lifts_is_told_with_its_normal_load(tmp_path, capsys):
+    assert run(["simulate", mecanum(tmp_path, ground="com_z_m = 0.6"), "--json"]) == 0
+    told = capsys.readouterr()
+    assert len(told.err.splitlines()) == 1 and "slips" not in told.err
+    assert "lifts at 0.5 s (normal load -" in told.err
+    found = json.loads(told.out)["no_slip"]
+    assert found["first_lift"]["normal_N"] < 0 and found["first_lift"]["where"] in ("wheel 1", "wheel 2")
+    assert found["friction_coefficient"] is None and found["slipping"] == 0
+
+
+def test_json_has_first_and_worst_instant_between_the_recorded_rows_too(tmp_path, capsys):
+    assert run(["simulate", mecanum(tmp_path), "--json"]) == 0
+    found = json.loads(capsys.readouterr().out)["no_slip"]
+    scene = read_scene(tmp_path / "mecanum.toml")
+    plant, drive = scene.plant(scene.core()), scene.drive()
+    margins = []
+    for tick in range(scene.steps()):
+        held = plant.core.input(drive.held_at(tick))
+        margins.append(plant.reactions(held).no_slip_margin_N)
+        plant.run(held)
+    margins.append(plant.reactions(held).no_slip_margin_N)
+    assert found["holds"] is False and found["looks"] == 1001
+    assert found["slipping"] == sum(margin < 0.0 for margin in margins)
+    assert found["first_slip"]["step"] == next(k for k, margin in enumerate(margins) if margin < 0.0)
+    assert found["worst_slip"]["margin_N"] == min(margins)
+    assert found["first_slip"]["time_s"] == 0.5
+    assert found["first_slip"]["available_N"] == pytest.approx(max(0.0, 0.6 * found["first_slip"]["normal_N"]))
+
+
+@pytest.mark.parametrize("kind", ["steps", "table"])
+def test_a_gentle_run_says_nothing(tmp_path, capsys, kind):
+    assert run(["simulate", mecanum(tmp_path, volts=2.0, kind=kind), "--json"]) == 0
+    told = capsys.readouterr()
+    assert told.err == ""
+    assert json.loads(told.out)["no_slip"]["holds"] is True
+
+
+def test_a_scene_that_says_nothing_of_the_ground_is_not_watched(tmp_path, capsys):
+    assert run(["simulate", mecanum(tmp_path, ground=""), "--json"]) == 0
+    told = capsys.readouterr()
+    assert told.err == "" and json.loads(told.out)["no_slip"] is None
+
+
+def test_single_precision_watches_as_well(tmp_path):
+    scene = read_scene(mecanum(tmp_path))
+    double, single = (simulate(scene.with_run(real=real)).grip for real in ("double", "single"))
+    assert single.first_slip.time_s == double.first_slip.time_s == 0.5
+    assert single.worst_slip.margin_N == pytest.approx(double.worst_slip.margin_N, rel=1e-3)
+
+
+@pytest.mark.parametrize("kind", ["steps", "table"])
+def test_inputs_are_written_as_the_columns_they_are_called(tmp_path, kind):
+    out = tmp_path / "run.csv"
+    scene = mecanum(tmp_path, kind=kind)
+    assert run(["simulate", scene, "--out", str(out), "--inputs"]) == 0
+    with out.open() as file:
+        header, *rows = list(csv.reader(file))
+    assert header[-4:] == [f"voltage_V[{i}]" for i in (1, 2, 3, 4)]
+    assert np.array(rows, float)[:, -1].tolist() == [1.0, 1.0, 60.0, 60.0, 60.0]
+
+
+def test_inputs_need_a_file_to_be_written_to(tmp_path, capsys):
+    assert run(["simulate", mecanum(tmp_path), "--inputs"]) == 2
+    assert "--out" in capsys.readouterr().err
+
+
+def test_a_slip_and_a_lift_of_one_instant_are_told_apart(tmp_path, capsys):
+    assert run(["simulate", mecanum(tmp_path, ground="friction_coefficient = 0.2\ncom_z_m = 0.9", volts=80.0)]) == 0
+    slip, _, lift = capsys.readouterr().err.partition(" and ")
+    assert "slips at 0.5 s (needs " in slip and "normal load" not in slip
+    assert "lifts at 0.5 s (normal load -" in lift
+
+
+@pytest.mark.parametrize("version", [2, 3])
+def test_what_an_fmu_says_in_the_demo_is_kept_and_does_not_run_into_the_results(tmp_path, capfd, version):
+    scene = read_scene(mecanum(tmp_path)).with_run(duration_s=0.6)
+    fmu = make_fmu(scene, tmp_path / f"m{version}.fmu", version=version)
+    rows = fmu_rows(scene, fmu, scene.steps(), every=100)
+    assert any("grip" in line for line in rows.log)
+    assert capfd.readouterr().out == ""

@@ -1,0 +1,168 @@
+"""The core for one scene alone: leaves out what the scene does without, and gives the same bits as the whole one."""
+
+from __future__ import annotations
+
+import shutil
+import sys
+from dataclasses import replace
+from pathlib import Path
+
+import pytest
+
+from laconic.benchmark.boards import board_row
+from laconic.benchmark.counting import host_state
+from laconic.benchmark.workshop import HOST, M4F, Variant, Workshop, run_tool
+from laconic.cli.main import run
+from laconic.core import load
+from laconic.errors import ResultFails
+from laconic.paths import build_dir
+from laconic.scene import METHODS, Outputs, Scene, read_scene
+from laconic.scene.drive import Input
+from laconic.trim import needs_of, trimmed
+
+needs_gcc = pytest.mark.skipif(not HOST.present, reason="no gcc here")
+needs_board = pytest.mark.skipif(not M4F.present, reason="no arm-none-eabi-gcc or qemu-system-arm here")
+METHOD_SYMBOLS = {f"laconic_{name.replace('-', '_')}" for name in METHODS}
+
+
+@pytest.fixture(scope="module")
+def workshop(tmp_path_factory: pytest.TempPathFactory) -> Workshop:
+    return Workshop(tmp_path_factory.mktemp("bench"))
+
+
+def nu_only(scene: Scene) -> Scene:
+    return replace(scene, outputs=Outputs(signals=("nu_rad_per_s[1]",)))
+
+
+def test_a_scene_with_voltages_needs_voltages_and_nothing_else_that_acts():
+    needs = needs_of(read_scene("s1"))
+    assert needs.voltage
+    others = (needs.axle_torque, needs.body_wrench, needs.world_force, needs.sampled_input)
+    assert not any(others)
+
+
+def test_damping_is_left_out_only_where_motors_do_not_damp():
+    coasting = replace(read_scene("s1"), inputs=())
+    assert needs_of(coasting).damping
+    assert not needs_of(read_scene("paper_three_wheel_free")).damping
+
+
+def test_pose_and_wheel_angles_are_left_out_only_where_outputs_say_so():
+    scene = read_scene("s1")
+    everything, little = needs_of(scene), needs_of(nu_only(scene))
+    assert (everything.pose, everything.wheel_angles) == (True, True)
+    assert (little.pose, little.wheel_angles) == (False, False)
+
+
+def test_a_force_fixed_in_the_world_needs_the_heading():
+    scene = nu_only(read_scene("s1"))
+    pushed = replace(scene, inputs=(Input("world_force_N[1]", "steps", "input[1]", (0.0,), (1.0,)),))
+    assert needs_of(pushed).pose
+
+
+def test_a_sine_is_sampled_inside_the_step():
+    scene = read_scene("s1")
+    waved = replace(scene, inputs=(Input("voltage_V[1]", "sine", "input[1]", amplitude=1.0, frequency_Hz=1.0),))
+    assert needs_of(waved).sampled_input
+
+
+def test_the_constant_tables_hold_the_prepared_structs_to_the_last_bit(tmp_path: Path):
+    if not HOST.present:
+        pytest.skip("no gcc here")
+    scene = read_scene("robotino2")
+    files, plant = trimmed(scene, "double"), scene.plant(load("double"))
+    files.write(tmp_path)
+    (tmp_path / "dump.c").write_text(
+        '#include <stdio.h>\n#include "laconic_scene_model.h"\nint main(void) {\n'
+        "    const unsigned char *bytes = (const unsigned char *)&laconic_scene_model;\n"
+        '    for (size_t i = 0; i < sizeof laconic_scene_model; i++) printf("%02x", bytes[i]);\n    return 0;\n}\n')
+    include = Path(__file__).resolve().parents[3] / "core_c" / "include"
+    names = METHOD_SYMBOLS | {"laconic_auto_slow", "laconic_auto_fast"}
+    stubs = "".join(f"const laconic_method {name} = {{0}};\n" for name in sorted(names))
+    (tmp_path / "methods.c").write_text('#include "laconic/laconic.h"\n' + stubs)
+    run_tool(["gcc", "-std=c99", f"-I{include}", f"-I{tmp_path}", "dump.c", "methods.c", "laconic_scene_model.c", "-o",
+              "dump"], tmp_path)
+    expected = bytes(load("double").ffi.buffer(load("double").ffi.addressof(plant.c, "model")))
+    assert bytes.fromhex(run_tool([str(tmp_path / "dump")])) == expected
+
+
+@needs_gcc
+def test_a_workshop_may_be_named_by_a_relative_path(tmp_path: Path, monkeypatch: pytest.MonkeyPatch):
+    monkeypatch.chdir(tmp_path)
+    assert Workshop(Path("bench")).host_program(Variant(read_scene("s1"), "double", trim=True)).is_file()
+
+
+@needs_gcc
+@pytest.mark.parametrize(("name", "real"), [("s1", "double"), ("paper_caster", "double"),
+                                            ("turtlebot3_burger", "single")])
+def test_a_trimmed_core_gives_the_same_bits_as_the_whole_one(workshop: Workshop, name: str, real: str):
+    scene = read_scene(name)
+    whole, trim = (workshop.host_program(Variant(scene, real, "-O0", trim)) for trim in (False, True))
+    assert host_state(whole, 700) == host_state(trim, 700)
+
+
+@needs_gcc
+def test_without_pose_the_velocities_still_have_the_same_bits(workshop: Workshop, tmp_path: Path):
+    scene = read_scene("paper_three_wheel_free")
+    whole = host_state(workshop.host_program(Variant(scene, "double", "-O0")), 500)
+    small = host_state(Workshop(tmp_path).host_program(Variant(nu_only(scene), "double", "-O0", True)), 500)
+    assert small == tuple(line for line in whole if line.startswith("zeta"))
+
+
+@needs_gcc
+def test_only_the_scenes_method_is_linked_and_no_preparation(workshop: Workshop):
+    scene = read_scene("paper_three_wheel_free").with_run(method="exact-flow")
+    program = workshop.host_program(Variant(scene, "double", "-O0", True))
+    symbols = run_tool(["nm", str(program)]).split()
+    assert METHOD_SYMBOLS & set(symbols) == {"laconic_exact_flow"}
+    assert not [name for name in symbols if "prepare" in name]
+
+
+@needs_board
+def test_on_a_cortex_m4f_the_bits_are_the_hosts_and_nothing_foreign_is_linked(workshop: Workshop):
+    row = board_row(workshop, M4F, Variant(read_scene("s1").with_run(method="rk4"), "single", "-Os", True))
+    assert row["same_bits"]
+    assert row["double_helpers"] == 0
+    assert row["heap"] == 0
+    assert row["static_ram"] == 0
+    assert 0 < row["instructions"] < 2000
+    assert row["stack_measured"] <= row["worst_stack"] + 32  # the caller's own frame is measured, too
+
+
+def test_the_command_says_what_it_wrote_and_left_out(tmp_path: Path, capsys: pytest.CaptureFixture[str]):
+    assert run(["trim", "s1", "--real", "single", "--out", str(tmp_path)]) == 0
+    said = capsys.readouterr().out
+    assert str(tmp_path / "laconic_scene.h") in said
+    assert said.endswith("left out: axle torque, body wrench, world force, sampled input\n")
+
+
+@needs_gcc
+def test_a_program_of_the_other_scalar_type_does_not_compile_with_the_model(tmp_path: Path):
+    trimmed(read_scene("s1"), "single").write(tmp_path)
+    include = Path(__file__).resolve().parents[3] / "core_c" / "include"
+    command = ["gcc", "-fsyntax-only", f"-I{include}", "-include", "laconic_scene_model.h", "-x", "c", "/dev/null"]
+    with pytest.raises(ResultFails, match="was prepared for single: compile with LACONIC_SINGLE"):
+        run_tool(command, tmp_path)
+    run_tool([*command, "-DLACONIC_SINGLE"], tmp_path)
+
+
+@needs_board
+@pytest.mark.skipif(shutil.which("cmake") is None, reason="no cmake here")
+def test_cmake_builds_the_library_for_a_board_with_another_trees_environment(tmp_path: Path):
+    if build_dir() != Path(sys.prefix).parent:
+        pytest.skip("the environment belongs to another build tree")
+    root = Path(__file__).resolve().parents[3]
+    run_tool(["cmake", "-S", str(root), "-B", str(tmp_path), "--toolchain", str(root / "cmake" / "cortex_m.cmake"),
+              "-DLACONIC_SCENE=scenes/s1.toml", "-DLACONIC_SCENE_REAL=single", f"-DLACONIC_VENV={sys.prefix}"])
+    run_tool(["cmake", "--build", str(tmp_path)])
+    assert (tmp_path / "lib" / "liblaconic_scene.a").is_file()
+
+
+@pytest.mark.skipif(shutil.which("cmake") is None, reason="no cmake here")
+def test_cmake_names_the_remedy_for_a_scene_that_is_not_there(tmp_path: Path):
+    import subprocess
+    root = Path(__file__).resolve().parents[3]
+    done = subprocess.run(["cmake", "-S", str(root), "-B", str(tmp_path / "b"), "-DLACONIC_SCENE=scenes/nothing.toml"],
+                          capture_output=True, text=True, check=False)
+    assert done.returncode != 0
+    assert "no such scene file" in done.stderr
