@@ -2,8 +2,9 @@
 #
 # Depend on the target, not on the stamp file: Make would run the rule once in every target that names the file.
 #
-# It holds exactly what host_tests/requirements.txt locks, and the package `laconic` itself, editable. A build tree
-# whose LACONIC_VENV is another tree's only uses it; the other tree keeps it up to date.
+# It holds exactly what host_tests/requirements.txt locks, and our own packages, editable: `laconic`, and those that make
+# tables, pages and archives for the FMUs and the node. A build tree whose LACONIC_VENV is another tree's only uses it;
+# the other tree keeps it up to date.
 
 find_package(Python3 3.10 COMPONENTS Interpreter)
 if(NOT Python3_Interpreter_FOUND)
@@ -20,13 +21,16 @@ set(LACONIC_COMMAND "${LACONIC_VENV_BIN}/laconic${CMAKE_EXECUTABLE_SUFFIX}")
 set(LACONIC_VENV_STAMP "${LACONIC_VENV}/laconic.stamp")
 
 set(host "${PROJECT_SOURCE_DIR}/host_tests")
+set(own_packages "${host}" "${PROJECT_SOURCE_DIR}/fmu" "${PROJECT_SOURCE_DIR}/firmware_stub")
+set(own_projects ${own_packages})
+list(TRANSFORM own_projects APPEND "/pyproject.toml")
 cmake_path(IS_PREFIX CMAKE_BINARY_DIR "${LACONIC_VENV}" NORMALIZE venv_is_ours)
 if(venv_is_ours)
     add_custom_command(
         OUTPUT "${LACONIC_VENV_STAMP}"
         COMMAND "${Python3_EXECUTABLE}" "${PROJECT_SOURCE_DIR}/cmake/make_venv.py" --venv "${LACONIC_VENV}"
-                --requirements "${host}/requirements.txt" --package "${host}" --stamp "${LACONIC_VENV_STAMP}"
-        DEPENDS "${PROJECT_SOURCE_DIR}/cmake/make_venv.py" "${host}/requirements.txt" "${host}/pyproject.toml"
+                --requirements "${host}/requirements.txt" --packages ${own_packages} --stamp "${LACONIC_VENV_STAMP}"
+        DEPENDS "${PROJECT_SOURCE_DIR}/cmake/make_venv.py" "${host}/requirements.txt" ${own_projects}
         COMMENT "Python environment" USES_TERMINAL VERBATIM)
 elseif(NOT EXISTS "${LACONIC_VENV_STAMP}")
     message(FATAL_ERROR "laconic: LACONIC_VENV=${LACONIC_VENV} is not there: build the tree it belongs to first")

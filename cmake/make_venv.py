@@ -17,7 +17,8 @@ def main() -> int:
         create(arguments.venv)
         python = next(path for path in candidates(arguments.venv) if path.exists())
         install_locked(python, arguments.requirements)
-        pip(python, "install", "--no-build-isolation", "--no-deps", "--editable", str(arguments.package))
+        own = [word for folder in arguments.packages for word in ("--editable", str(folder))]
+        pip(python, "install", "--no-build-isolation", "--no-deps", *own)
     except subprocess.CalledProcessError as failure:
         print(f"laconic: the Python environment could not be made: {reason(failure)}", file=sys.stderr)
         return 1
@@ -27,8 +28,9 @@ def main() -> int:
 
 def parse() -> argparse.Namespace:
     parser = argparse.ArgumentParser(description=__doc__)
-    for name in ("venv", "requirements", "package", "stamp"):
+    for name in ("venv", "requirements", "stamp"):
         parser.add_argument(f"--{name}", type=Path, required=True)
+    parser.add_argument("--packages", type=Path, nargs="+", required=True, help="folders of our own packages")
     return parser.parse_args()
 
 

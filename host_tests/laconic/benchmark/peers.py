@@ -9,7 +9,6 @@ from __future__ import annotations
 import ctypes
 import importlib
 import importlib.util
-import sys
 import time
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass
@@ -20,7 +19,6 @@ import numpy as np
 from scipy.integrate import solve_ivp
 
 from laconic.benchmark.workshop import BENCH, run_tool
-from laconic.paths import build_dir
 from laconic.scene import Scene
 from laconic.verification.reference import Reference
 
@@ -58,16 +56,8 @@ def course_of(scene: Scene) -> Course:
     return Course(reference, start, np.array([s.steps for s in segments]) * scene.run.step_s, np.array(voltages))
 
 
-def use_peers_folder() -> None:
-    """Makes the packages of the optional extra `peers` importable, after everything else."""
-    folder = str(build_dir() / "peers")
-    if folder not in sys.path:
-        sys.path.append(folder)
-
-
 def missing_peers() -> list[str]:
     """Names of what is not installed here."""
-    use_peers_folder()
     found = [name for name in ("casadi", "numbalsoda") if importlib.util.find_spec(name) is None]
     headers = (Path("/usr/include"), Path("/usr/local/include"))
     cvode = any((folder / "cvode/cvode.h").exists() for folder in headers)

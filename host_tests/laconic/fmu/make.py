@@ -5,7 +5,6 @@
 
 from __future__ import annotations
 
-import sys
 from pathlib import Path
 from typing import Any
 
@@ -14,10 +13,8 @@ from laconic.errors import BadInput
 from laconic.outputs import whole_file
 from laconic.paths import SOURCE_DIR, built
 from laconic.scene import METHODS, Scene
-
-sys.path.insert(0, str(SOURCE_DIR / "fmu"))
-from laconic_fmu.archive import Content, Variant, scene_fmu  # noqa: E402
-from laconic_fmu.page import vehicle_parts  # noqa: E402
+from laconic_fmu.archive import Content, Variant, scene_fmu
+from laconic_fmu.page import vehicle_parts
 
 DESCRIPTION = SOURCE_DIR / "modelDescription.xml"
 

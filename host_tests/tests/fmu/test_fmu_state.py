@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import json
+import os
 import subprocess
 import sys
 from pathlib import Path
@@ -76,11 +77,10 @@ def test_rollback_repeats_the_same_bits(version: int) -> None:
 CONTINUE = """
 import json, sys
 from pathlib import Path
-sys.path.insert(0, sys.argv[1])
 from fmu_importer import Importer
 from test_fmu_state import deserialize, drive, outputs
-with Importer(Path(sys.argv[2])) as importer:
-    assert deserialize(importer, Path(sys.argv[3]).read_bytes()) == 0, importer.log
+with Importer(Path(sys.argv[1])) as importer:
+    assert deserialize(importer, Path(sys.argv[2]).read_bytes()) == 0, importer.log
     drive(importer, 60, 100)
     print(json.dumps([value.hex() for value in outputs(importer)]))
 """
@@ -101,8 +101,9 @@ def test_bytes_continue_with_the_same_bits_in_a_fresh_process(version: int, meth
         here = [value.hex() for value in outputs(importer)]
     (tmp_path / "state.bin").write_bytes(data)
     (tmp_path / "go.py").write_text(CONTINUE)
-    there = subprocess.run([sys.executable, str(tmp_path / "go.py"), str(Path(__file__).parent), str(generic(version)),
-                            str(tmp_path / "state.bin")], capture_output=True, text=True, check=True).stdout
+    there = subprocess.run([sys.executable, str(tmp_path / "go.py"), str(generic(version)),
+                            str(tmp_path / "state.bin")], env={**os.environ, "PYTHONPATH": str(Path(__file__).parent)},
+                           capture_output=True, text=True, check=True).stdout
     assert json.loads(there) == here
 
 

@@ -7,8 +7,6 @@ import ast
 import re
 import subprocess
 import sys
-from importlib import util
-from types import ModuleType
 
 import numpy as np
 import pytest
@@ -23,26 +21,16 @@ from laconic.rig.node_library import node_library
 from laconic.rig.parameters import parameters_of
 from laconic.rig.wire import ID_BASE, wire
 from laconic.scene import METHODS, read_scene
+from laconic_wire import document_wire
+from laconic_wire.wire_parameters import PARAMETERS
 
 FIRMWARE = SOURCE_DIR / "firmware_stub"
 PAGE = (SOURCE_DIR / "docs" / "wire.md").read_text(encoding="utf-8")
 EXAMPLE = re.compile(r"^\* (\w+)\b.*?(?:count|counter) (\d+).*`((?:[0-9A-F]{2} ?)+)`$", re.MULTILINE)
 
 
-def module(path: str) -> ModuleType:
-    """A file of the firmware's tools, as a module."""
-    spec = util.spec_from_file_location(path.replace("/", "_"), FIRMWARE / f"{path}.py")
-    found = util.module_from_spec(spec)
-    sys.path.insert(0, str((FIRMWARE / path).parent))
-    try:
-        spec.loader.exec_module(found)
-    finally:
-        sys.path.pop(0)
-    return found
-
-
 def test_the_page_is_made_from_the_contract_of_today() -> None:
-    assert module("tools/document_wire").page() == PAGE, "run firmware_stub/tools/document_wire.py"
+    assert document_wire.page() == PAGE, "run python -m laconic_wire.document_wire"
 
 
 def test_the_worked_examples_are_what_the_node_computes() -> None:
@@ -73,7 +61,6 @@ def test_every_enumeration_and_every_frame_stands_on_the_page() -> None:
 
 def test_the_node_requires_what_the_page_says_and_nothing_else() -> None:
     """Each number of a vehicle that has all of them is left out once."""
-    table = module("tools/wire_parameters").PARAMETERS
     scene = read_scene("s1")
     plant: Plant = scene.plant(scene.core())
     vehicle = plant.c.vehicle
@@ -82,7 +69,8 @@ def test_the_node_requires_what_the_page_says_and_nothing_else() -> None:
     start = start_of(scene)
     start.x_m = start.y_m = start.heading_rad = start.nu_rad_per_s[0] = 1.0
     whole = list(parameters_of(plant, start))
-    assert {field for field, _, _ in whole} == {field for field, row in table.items() if not row[3].startswith("not")}
+    loaded = {field for field, row in PARAMETERS.items() if not row[3].startswith("not")}
+    assert {field for field, _, _ in whole} == loaded
     with own_node("virtual", "double") as node:
         for left_out in whole:
             missing = None
@@ -90,14 +78,13 @@ def test_the_node_requires_what_the_page_says_and_nothing_else() -> None:
                 node.load_parameters([each for each in whole if each != left_out], np.dtype(np.float64))
             except NodeRefused as refused:
                 missing = (refused.field, refused.item) if refused.status == "parameter missing" else None
-            needed = bool(table[left_out[0]][3])
+            needed = bool(PARAMETERS[left_out[0]][3])
             assert missing == ((left_out[0].lower().replace("_", " "), left_out[1]) if needed else None), left_out
 
 
 def test_reserved_numbers_are_refused_by_name() -> None:
-    table = module("tools/wire_parameters").PARAMETERS
     with own_node("virtual", "double") as node:
-        for field, (_, _, item, required) in table.items():
+        for field, (_, _, item, required) in PARAMETERS.items():
             if required.startswith("not yet"):
                 with pytest.raises(NodeRefused, match=f"not supported, {field.lower().replace('_', ' ')}"):
                     node.load_parameters([(field, int(item == "wheel"), 0.0)], np.dtype(np.float64))

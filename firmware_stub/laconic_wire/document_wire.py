@@ -1,21 +1,20 @@
 """The wire contract as a page to read, from the DBC, the text beside this file, and the reference client.
 
-    document_wire.py          writes docs/wire.md
+    python -m laconic_wire.document_wire          writes docs/wire.md
 """
 
 from __future__ import annotations
 
-import sys
 from pathlib import Path
 
 from cantools.database.can import Database, Message, Signal
 
+import reference_client as reference
+
+from .wire_parameters import PARAMETERS
+
 HERE = Path(__file__).resolve().parent
 PAGE = HERE.parents[1] / "docs" / "wire.md"
-sys.path.insert(0, str(HERE.parent))
-
-import reference_client as reference  # noqa: E402, I001
-from wire_parameters import PARAMETERS  # noqa: E402
 
 METHODS = ("auto", "rk4", "exponential-kahan", "exponential-kahan-4", "exact-flow", "exact-flow-4", "taylor-8")
 NONCE, SESSION, STARTS = 0x0123ABCD, 0xC0FFEE11, 9

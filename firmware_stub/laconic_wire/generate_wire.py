@@ -1,6 +1,6 @@
 """C table of the wire contract, from the DBC: offsets, lengths, protection, scales, value tables.
 
-    generate_wire.py laconic.dbc OUTPUT_DIRECTORY
+    python -m laconic_wire.generate_wire laconic.dbc OUTPUT_DIRECTORY
 
 writes laconic_wire.h and laconic_wire.c. What cantools' own packers cannot know (protection, saturation) is here.
 """
