@@ -1,3 +1,4 @@
+/* The time of an instance: ticks of a step since an anchor, and whether a time lies within the run. */
 #include "clock.h"
 
 void fmu_clock_start(fmu_clock *clock, double start_s, bool stop_defined, double stop_s) {

@@ -46,7 +46,6 @@ fmi2Component fmi2Instantiate(fmi2String instanceName, fmi2Type fmuType, fmi2Str
                               fmi2String fmuResourceLocation, const fmi2CallbackFunctions *functions,
                               fmi2Boolean visible, fmi2Boolean loggingOn) {
     fmu_callbacks_2 box;
-    fmu_request request = {0};
     (void)visible;
     if (functions == NULL) return NULL;
     if (fmuType != fmi2ModelExchange && fmuType != fmi2CoSimulation) {
@@ -57,16 +56,18 @@ fmi2Component fmi2Instantiate(fmi2String instanceName, fmi2Type fmuType, fmi2Str
         return NULL;
     }
     box.log = functions->logger;
-    request.instance_name = instanceName;
-    request.token = fmuGUID;
-    request.resources = fmuResourceLocation;
-    request.version = 2;
-    request.kind = fmuType == fmi2ModelExchange ? FMU_MODEL_EXCHANGE : FMU_CO_SIMULATION;
-    request.logging_on = loggingOn != fmi2False;
-    request.deliver = functions->logger != NULL ? say : NULL;
-    request.box = &box;
-    request.box_size = sizeof box;
-    request.environment = functions->componentEnvironment;
+    const fmu_request request = {
+        .instance_name = instanceName,
+        .token = fmuGUID,
+        .resources = fmuResourceLocation,
+        .kind = fmuType == fmi2ModelExchange ? FMU_MODEL_EXCHANGE : FMU_CO_SIMULATION,
+        .version = 2,
+        .logging_on = loggingOn != fmi2False,
+        .deliver = functions->logger != NULL ? say : NULL,
+        .environment = functions->componentEnvironment,
+        .box = &box,
+        .box_size = sizeof box,
+    };
     return fmu_create(&request);
 }
 
@@ -120,64 +121,32 @@ fmi2Status fmi2SetReal(fmi2Component c, const fmi2ValueReference vr[], size_t nv
     return give(fmu_set_reals(SELF(c), vr, nvr, value, nvr));
 }
 
-/* Whole numbers of three kinds in the description are one type here. */
-static fmu_type whole(const fmu_instance *instance, fmi2ValueReference reference) {
-    fmu_slot slot;
-    if (!fmu_find(instance, reference, &slot)) return FMU_INT32;
-    if (slot.variable->type == FMU_ENUMERATION || slot.variable->type == FMU_UINT64)
-        return (fmu_type)slot.variable->type;
-    return FMU_INT32;
-}
+static double read_integer(const void *values, size_t k) { return ((const fmi2Integer *)values)[k]; }
 
-static fmi2Status get_whole(fmu_instance *instance, const fmi2ValueReference vr[], size_t nvr, int value[],
-                            bool boolean) {
-    size_t k;
-    int pass;
-    if (nvr > 0 && (vr == NULL || value == NULL)) return give(fmu_refuse(instance, "a list is missing (NULL)"));
-    for (pass = 0; pass < 2; pass++) /* all checked, then handed out */
-        for (k = 0; k < nvr; k++) {
-            double number = 0.0;
-            const fmu_type type = boolean ? FMU_BOOLEAN : whole(instance, vr[k]);
-            const fmu_status status = fmu_get(instance, type, &vr[k], 1, &number, 1);
-            if (status != FMU_OK) return give(status);
-            if (pass == 1) value[k] = (int)number;
-        }
-    return fmi2OK;
-}
+static double read_boolean(const void *values, size_t k) { return ((const fmi2Boolean *)values)[k] != fmi2False; }
 
-static fmi2Status set_whole(fmu_instance *instance, const fmi2ValueReference vr[], size_t nvr, const int value[],
-                            bool boolean) {
-    size_t k;
-    int pass;
-    if (nvr > 0 && (vr == NULL || value == NULL)) return give(fmu_refuse(instance, "a list is missing (NULL)"));
-    for (pass = 0; pass < 2; pass++) /* all checked, then set */
-        for (k = 0; k < nvr; k++) {
-            const double number = boolean ? value[k] != fmi2False : value[k];
-            const fmu_type type = boolean ? FMU_BOOLEAN : whole(instance, vr[k]);
-            const fmu_status status = (pass == 0 ? fmu_check_set : fmu_set)(instance, type, &vr[k], 1, &number, 1);
-            if (status != FMU_OK) return give(status);
-        }
-    return fmi2OK;
-}
+static void write_integer(void *values, size_t k, double number) { ((fmi2Integer *)values)[k] = (fmi2Integer)number; }
+
+static void write_boolean(void *values, size_t k, double number) { ((fmi2Boolean *)values)[k] = (fmi2Boolean)number; }
 
 fmi2Status fmi2GetInteger(fmi2Component c, const fmi2ValueReference vr[], size_t nvr, fmi2Integer value[]) {
     ALLOW(c, FMU_CALL_GET);
-    return get_whole(SELF(c), vr, nvr, value, false);
+    return give(fmu_get(SELF(c), FMU_INTEGER, list(vr, nvr), value, nvr, write_integer));
 }
 
 fmi2Status fmi2SetInteger(fmi2Component c, const fmi2ValueReference vr[], size_t nvr, const fmi2Integer value[]) {
     ALLOW(c, FMU_CALL_SET_DISCRETE);
-    return set_whole(SELF(c), vr, nvr, value, false);
+    return give(fmu_set(SELF(c), FMU_INTEGER, list(vr, nvr), value, nvr, read_integer));
 }
 
 fmi2Status fmi2GetBoolean(fmi2Component c, const fmi2ValueReference vr[], size_t nvr, fmi2Boolean value[]) {
     ALLOW(c, FMU_CALL_GET);
-    return get_whole(SELF(c), vr, nvr, value, true);
+    return give(fmu_get(SELF(c), FMU_BOOLEAN, list(vr, nvr), value, nvr, write_boolean));
 }
 
 fmi2Status fmi2SetBoolean(fmi2Component c, const fmi2ValueReference vr[], size_t nvr, const fmi2Boolean value[]) {
     ALLOW(c, FMU_CALL_SET_DISCRETE);
-    return set_whole(SELF(c), vr, nvr, value, true);
+    return give(fmu_set(SELF(c), FMU_BOOLEAN, list(vr, nvr), value, nvr, read_boolean));
 }
 
 fmi2Status fmi2GetString(fmi2Component c, const fmi2ValueReference vr[], size_t nvr, fmi2String value[]) {

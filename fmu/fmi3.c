@@ -44,12 +44,21 @@ static bool offer_update(fmu_instance *instance, bool finished) {
 
 const char *fmi3GetVersion(void) { return fmi3Version; }
 
-static fmu_instance *create(const fmu_request *request, const fmu_callbacks_3 *functions) {
-    fmu_request complete = *request;
-    complete.deliver = functions->log != NULL ? say : NULL;
-    complete.box = functions;
-    complete.box_size = sizeof *functions;
-    return fmu_create(&complete);
+static fmu_instance *create(fmu_kind kind, fmi3String name, fmi3String token, fmi3String resources, bool logging_on,
+                            fmi3InstanceEnvironment environment, const fmu_callbacks_3 *functions) {
+    const fmu_request request = {
+        .instance_name = name,
+        .token = token,
+        .resources = resources,
+        .kind = kind,
+        .version = 3,
+        .logging_on = logging_on,
+        .deliver = functions->log != NULL ? say : NULL,
+        .environment = environment,
+        .box = functions,
+        .box_size = sizeof *functions,
+    };
+    return fmu_create(&request);
 }
 
 fmi3Instance fmi3InstantiateModelExchange(fmi3String instanceName, fmi3String instantiationToken,
@@ -57,16 +66,9 @@ fmi3Instance fmi3InstantiateModelExchange(fmi3String instanceName, fmi3String in
                                           fmi3InstanceEnvironment instanceEnvironment,
                                           fmi3LogMessageCallback logMessage) {
     const fmu_callbacks_3 functions = {logMessage, NULL};
-    fmu_request request = {0};
     (void)visible;
-    request.instance_name = instanceName;
-    request.token = instantiationToken;
-    request.resources = resourcePath;
-    request.kind = FMU_MODEL_EXCHANGE;
-    request.version = 3;
-    request.logging_on = loggingOn;
-    request.environment = instanceEnvironment;
-    return create(&request, &functions);
+    return create(FMU_MODEL_EXCHANGE, instanceName, instantiationToken, resourcePath, loggingOn, instanceEnvironment,
+                  &functions);
 }
 
 fmi3Instance fmi3InstantiateCoSimulation(fmi3String instanceName, fmi3String instantiationToken,
@@ -77,17 +79,9 @@ fmi3Instance fmi3InstantiateCoSimulation(fmi3String instanceName, fmi3String ins
                                          fmi3InstanceEnvironment instanceEnvironment, fmi3LogMessageCallback logMessage,
                                          fmi3IntermediateUpdateCallback intermediateUpdate) {
     const fmu_callbacks_3 functions = {logMessage, intermediateUpdate};
-    fmu_request request = {0};
-    fmu_instance *instance;
+    fmu_instance *instance = create(FMU_CO_SIMULATION, instanceName, instantiationToken, resourcePath, loggingOn,
+                                    instanceEnvironment, &functions);
     (void)visible;
-    request.instance_name = instanceName;
-    request.token = instantiationToken;
-    request.resources = resourcePath;
-    request.kind = FMU_CO_SIMULATION;
-    request.version = 3;
-    request.logging_on = loggingOn;
-    request.environment = instanceEnvironment;
-    instance = create(&request, &functions);
     if (instance == NULL) return NULL;
     if (fmu_check_intermediate(instance, requiredIntermediateVariables, nRequiredIntermediateVariables) != FMU_OK) {
         fmu_free(instance);
@@ -188,56 +182,24 @@ fmi3Status fmi3SetFloat64(fmi3Instance instance, const fmi3ValueReference valueR
     return give(fmu_set_reals(SELF(instance), valueReferences, nValueReferences, values, nValues));
 }
 
-/* The other types in use, by way of doubles: no list of them is longer than the largest array, a call that asks for more
- * variables at once is taken variable by variable: all are checked in a first pass, so that a refused call hands out and
- * changes nothing. Enumerations are read and set as Int64. `number` makes a double of a value that is set. */
+/* The other types in use. Enumerations are read and set as Int64. `number` makes a double of a value that is set. */
 #define PLAIN(value) (double)(value)
 /* a negative int that was cast is said to be what it was; what else is beyond the largest int64_t was meant so */
 #define SIGNED(value) ((value) >= UINT64_MAX - INT32_MAX ? (double)(int64_t)(value) : (double)(value))
-#define TYPED(Name, fmi3Type, fmu_type, number) \
+#define TYPED(Name, Type, fmu_type, number) \
+    static double read_##Name(const void *values, size_t k) { return number(((const Type *)values)[k]); } \
+    static void write_##Name(void *values, size_t k, double value) { ((Type *)values)[k] = (Type)value; } \
     fmi3Status fmi3Get##Name(fmi3Instance instance, const fmi3ValueReference valueReferences[], \
-                             size_t nValueReferences, fmi3Type values[], size_t nValues) { \
-        double numbers[FMU_PLANT_LARGEST_ARRAY]; \
-        size_t k, i, used; \
-        int pass; \
+                             size_t nValueReferences, Type values[], size_t nValues) { \
         ALLOW(instance, FMU_CALL_GET); \
-        for (pass = 0; pass < 2; pass++) { \
-            fmu_status status = FMU_OK; \
-            for (k = used = 0; k < nValueReferences; k++, used += i) { \
-                size_t size = 0; \
-                status = fmu_size(SELF(instance), valueReferences, values, k, nValues - used, &size); \
-                if (status == FMU_OK) \
-                    status = fmu_get(SELF(instance), fmu_type, &valueReferences[k], 1, numbers, size); \
-                if (status != FMU_OK) return give(status); \
-                for (i = 0; i < size; i++) \
-                    if (pass == 1) values[used + i] = (fmi3Type)numbers[i]; \
-            } \
-            status = fmu_all_used(SELF(instance), used, nValues); \
-            if (status != FMU_OK) return give(status); \
-        } \
-        return fmi3OK; \
+        return give(fmu_get(SELF(instance), fmu_type, list(valueReferences, nValueReferences), values, nValues, \
+                            write_##Name)); \
     } \
     fmi3Status fmi3Set##Name(fmi3Instance instance, const fmi3ValueReference valueReferences[], \
-                             size_t nValueReferences, const fmi3Type values[], size_t nValues) { \
-        double numbers[FMU_PLANT_LARGEST_ARRAY]; \
-        size_t k, i, used; \
-        int pass; \
+                             size_t nValueReferences, const Type values[], size_t nValues) { \
         ALLOW(instance, FMU_CALL_SET_DISCRETE); \
-        for (pass = 0; pass < 2; pass++) { \
-            fmu_status status = FMU_OK; \
-            for (k = used = 0; k < nValueReferences; k++, used += i) { \
-                size_t size = 0; \
-                status = fmu_size(SELF(instance), valueReferences, values, k, nValues - used, &size); \
-                for (i = 0; i < size; i++) numbers[i] = number(values[used + i]); \
-                if (status == FMU_OK) \
-                    status = (pass == 0 ? fmu_check_set : fmu_set)(SELF(instance), fmu_type, &valueReferences[k], 1, \
-                                                                   numbers, size); \
-                if (status != FMU_OK) return give(status); \
-            } \
-            status = fmu_all_used(SELF(instance), used, nValues); \
-            if (status != FMU_OK) return give(status); \
-        } \
-        return fmi3OK; \
+        return give( \
+            fmu_set(SELF(instance), fmu_type, list(valueReferences, nValueReferences), values, nValues, read_##Name)); \
     }
 
 TYPED(Int32, fmi3Int32, FMU_INT32, PLAIN)
@@ -245,89 +207,51 @@ TYPED(Int64, fmi3Int64, FMU_ENUMERATION, PLAIN)
 TYPED(UInt64, fmi3UInt64, FMU_UINT64, SIGNED)
 TYPED(Boolean, fmi3Boolean, FMU_BOOLEAN, PLAIN)
 
-/* Types that no variable has. */
-#define ABSENT(Name, fmi3Type) \
-    fmi3Status fmi3Get##Name(fmi3Instance instance, const fmi3ValueReference valueReferences[], \
-                             size_t nValueReferences, fmi3Type values[], size_t nValues) { \
+/* Calls about a kind of variable that this FMU has none of: good while nothing is asked for. The names of the parameters
+ * that do not matter stand in `unread`. */
+#define ABSENT(function, call, kind, asked, unread, ...) \
+    fmi3Status function(fmi3Instance instance, const fmi3ValueReference valueReferences[], size_t nValueReferences, \
+                        __VA_ARGS__) { \
         (void)valueReferences; \
-        (void)values; \
-        ALLOW(instance, FMU_CALL_GET); \
-        return give(fmu_none_of(SELF(instance), #Name, nValueReferences + nValues)); \
-    } \
-    fmi3Status fmi3Set##Name(fmi3Instance instance, const fmi3ValueReference valueReferences[], \
-                             size_t nValueReferences, const fmi3Type values[], size_t nValues) { \
-        (void)valueReferences; \
-        (void)values; \
-        ALLOW(instance, FMU_CALL_SET_CONTINUOUS); \
-        return give(fmu_none_of(SELF(instance), #Name, nValueReferences + nValues)); \
+        unread; \
+        ALLOW(instance, call); \
+        return give(fmu_none_of(SELF(instance), kind, asked)); \
     }
+#define ABSENT_TYPE(Name, Type) \
+    ABSENT(fmi3Get##Name, FMU_CALL_GET, #Name, nValueReferences + nValues, (void)values, Type values[], \
+           size_t nValues) \
+    ABSENT(fmi3Set##Name, FMU_CALL_SET_CONTINUOUS, #Name, nValueReferences + nValues, (void)values, \
+           const Type values[], size_t nValues)
 
-ABSENT(Float32, fmi3Float32)
-ABSENT(Int8, fmi3Int8)
-ABSENT(UInt8, fmi3UInt8)
-ABSENT(Int16, fmi3Int16)
-ABSENT(UInt16, fmi3UInt16)
-ABSENT(UInt32, fmi3UInt32)
-ABSENT(String, fmi3String)
+ABSENT_TYPE(Float32, fmi3Float32)
+ABSENT_TYPE(Int8, fmi3Int8)
+ABSENT_TYPE(UInt8, fmi3UInt8)
+ABSENT_TYPE(Int16, fmi3Int16)
+ABSENT_TYPE(UInt16, fmi3UInt16)
+ABSENT_TYPE(UInt32, fmi3UInt32)
+ABSENT_TYPE(String, fmi3String)
+ABSENT(fmi3GetBinary, FMU_CALL_GET, "Binary", nValueReferences + nValues, ((void)valueSizes, (void)values),
+       size_t valueSizes[], fmi3Binary values[], size_t nValues)
+ABSENT(fmi3SetBinary, FMU_CALL_SET_DISCRETE, "Binary", nValueReferences + nValues, ((void)valueSizes, (void)values),
+       const size_t valueSizes[], const fmi3Binary values[], size_t nValues)
 
-fmi3Status fmi3GetBinary(fmi3Instance instance, const fmi3ValueReference valueReferences[], size_t nValueReferences,
-                         size_t valueSizes[], fmi3Binary values[], size_t nValues) {
-    (void)valueReferences;
-    (void)valueSizes;
-    (void)values;
-    ALLOW(instance, FMU_CALL_GET);
-    return give(fmu_none_of(SELF(instance), "Binary", nValueReferences + nValues));
-}
+#define NO_CLOCK(Name, unread, ...) \
+    ABSENT(fmi3##Name, FMU_CALL_STATE_OF_FMU, "Clock", nValueReferences, unread, __VA_ARGS__)
 
-fmi3Status fmi3SetBinary(fmi3Instance instance, const fmi3ValueReference valueReferences[], size_t nValueReferences,
-                         const size_t valueSizes[], const fmi3Binary values[], size_t nValues) {
-    (void)valueReferences;
-    (void)valueSizes;
-    (void)values;
-    ALLOW(instance, FMU_CALL_SET_DISCRETE);
-    return give(fmu_none_of(SELF(instance), "Binary", nValueReferences + nValues));
-}
-
-/* ------------------------------------------------------------------------------------------ clocks -- */
-
-#define CLOCKS(Name, ...) \
-    fmi3Status fmi3##Name(fmi3Instance instance, const fmi3ValueReference valueReferences[], size_t nValueReferences, \
-                          __VA_ARGS__) { \
-        (void)valueReferences; \
-        (void)first; \
-        ALLOW(instance, FMU_CALL_STATE_OF_FMU); \
-        return give(fmu_none_of(SELF(instance), "Clock", nValueReferences)); \
-    }
-#define CLOCKS_2(Name, first_type, second_type) \
-    fmi3Status fmi3##Name(fmi3Instance instance, const fmi3ValueReference valueReferences[], size_t nValueReferences, \
-                          first_type first[], second_type second[]) { \
-        (void)second; \
-        (void)valueReferences; \
-        (void)first; \
-        ALLOW(instance, FMU_CALL_STATE_OF_FMU); \
-        return give(fmu_none_of(SELF(instance), "Clock", nValueReferences)); \
-    }
-
-CLOCKS(GetClock, fmi3Clock first[])
-CLOCKS(SetClock, const fmi3Clock first[])
-CLOCKS(GetShiftDecimal, fmi3Float64 first[])
-CLOCKS(SetShiftDecimal, const fmi3Float64 first[])
-CLOCKS(SetIntervalDecimal, const fmi3Float64 first[])
-CLOCKS_2(GetIntervalDecimal, fmi3Float64, fmi3IntervalQualifier)
-CLOCKS_2(GetShiftFraction, fmi3UInt64, fmi3UInt64)
-CLOCKS_2(SetShiftFraction, const fmi3UInt64, const fmi3UInt64)
-CLOCKS_2(SetIntervalFraction, const fmi3UInt64, const fmi3UInt64)
-
-fmi3Status fmi3GetIntervalFraction(fmi3Instance instance, const fmi3ValueReference valueReferences[],
-                                   size_t nValueReferences, fmi3UInt64 counters[], fmi3UInt64 resolutions[],
-                                   fmi3IntervalQualifier qualifiers[]) {
-    (void)valueReferences;
-    (void)counters;
-    (void)resolutions;
-    (void)qualifiers;
-    ALLOW(instance, FMU_CALL_STATE_OF_FMU);
-    return give(fmu_none_of(SELF(instance), "Clock", nValueReferences));
-}
+NO_CLOCK(GetClock, (void)values, fmi3Clock values[])
+NO_CLOCK(SetClock, (void)values, const fmi3Clock values[])
+NO_CLOCK(GetShiftDecimal, (void)shifts, fmi3Float64 shifts[])
+NO_CLOCK(SetShiftDecimal, (void)shifts, const fmi3Float64 shifts[])
+NO_CLOCK(SetIntervalDecimal, (void)intervals, const fmi3Float64 intervals[])
+NO_CLOCK(GetIntervalDecimal, ((void)intervals, (void)qualifiers), fmi3Float64 intervals[],
+         fmi3IntervalQualifier qualifiers[])
+NO_CLOCK(GetShiftFraction, ((void)counters, (void)resolutions), fmi3UInt64 counters[], fmi3UInt64 resolutions[])
+NO_CLOCK(SetShiftFraction, ((void)counters, (void)resolutions), const fmi3UInt64 counters[],
+         const fmi3UInt64 resolutions[])
+NO_CLOCK(SetIntervalFraction, ((void)counters, (void)resolutions), const fmi3UInt64 counters[],
+         const fmi3UInt64 resolutions[])
+NO_CLOCK(GetIntervalFraction, ((void)counters, (void)resolutions, (void)qualifiers), fmi3UInt64 counters[],
+         fmi3UInt64 resolutions[], fmi3IntervalQualifier qualifiers[])
 
 fmi3Status fmi3EvaluateDiscreteStates(fmi3Instance instance) {
     ALLOW(instance, FMU_CALL_UPDATE_DISCRETE_STATES);

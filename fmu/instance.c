@@ -96,10 +96,8 @@ void fmu_free(fmu_instance *instance) {
     free(instance);
 }
 
-static bool is_finite(double value) { return value - value == 0.0; }
-
 fmu_status fmu_setup(fmu_instance *instance, double start_s, bool stop_defined, double stop_s) {
-    if (!is_finite(start_s)) return fmu_refuse(instance, "the start time %g is not finite", start_s);
+    if (!fmu_is_finite(start_s)) return fmu_refuse(instance, "the start time %g is not finite", start_s);
     if (stop_defined && stop_s != stop_s) return fmu_refuse(instance, "the stop time %g is not finite", stop_s);
     if (stop_defined && !(stop_s >= start_s))
         return fmu_refuse(instance, "the stop time %g s is before the start time %g s", stop_s, start_s);

@@ -3,7 +3,7 @@
  *     importer -> fmi2.c | fmi3.c  (translate types)
  *                   |
  *                   v
- *     instance.c, lifecycle.c, variables.c, clock.c, derivatives.c, snapshot.c   (what both versions share)
+ *     instance.c, variables.c, co_simulation.c, model_exchange.c, …   (what both versions share)
  *                   |
  *                   v
  *     plant.h       (the model: vehicle/ or controller/)
@@ -36,6 +36,9 @@ typedef enum fmu_category {
 #define FMU_LOG_ALL 15U
 
 typedef struct fmu_instance fmu_instance;
+
+/* False for NaN and for both infinities. */
+static inline bool fmu_is_finite(double value) { return value - value == 0.0; }
 
 /* Hands a finished line to the importer; written by the glue of each version. */
 typedef void (*fmu_deliver)(const fmu_instance *instance, fmu_status status, const char *category, const char *text);
@@ -73,7 +76,7 @@ struct fmu_instance {
     fmu_clock clock;
     fmu_plant plant;
     fmu_plant initial;      /* right after instantiation, for reset                        */
-    fmu_list read, written; /* the last good lists of reals (reals.c)                      */
+    fmu_list read, written; /* the last good lists of reals (cached_reals.c)                      */
 };
 
 typedef struct fmu_request {
@@ -103,7 +106,7 @@ static inline bool fmu_may(const fmu_instance *instance, fmu_call call) {
 
 void fmu_enter(fmu_instance *instance, fmu_mode mode);
 
-/* Puts the start values that came with the FMU into the plant (start_values.c); false: they cannot be read. */
+/* Puts the start values that came with the FMU into the plant (start_file.c); false: they cannot be read. */
 bool fmu_load_start_values(fmu_instance *instance, const char *token, const char *resources);
 
 fmu_status fmu_setup(fmu_instance *instance, double start_s, bool stop_defined, double stop_s);
@@ -128,7 +131,14 @@ fmu_status fmu_set_logging(fmu_instance *instance, bool on, size_t count, const 
 
 /* --------------------------------------------------------------------------------- variables -- */
 
-typedef enum fmu_type { FMU_REAL, FMU_INT32, FMU_UINT64, FMU_ENUMERATION, FMU_BOOLEAN } fmu_type;
+typedef enum fmu_type {
+    FMU_REAL,
+    FMU_INT32,
+    FMU_UINT64,
+    FMU_ENUMERATION,
+    FMU_BOOLEAN,
+    FMU_INTEGER /* only asked for: FMI 2's Integer, which stands for the three whole types above */
+} fmu_type;
 
 typedef enum fmu_access { /* who sets it, and when (variables.c) */
                           FMU_INDEPENDENT,
@@ -184,29 +194,31 @@ typedef struct fmu_slot {
 
 bool fmu_find(const fmu_instance *instance, uint32_t reference, fmu_slot *slot);
 
-/* All numbers go through double, which holds every one of them exactly. `type` must be the variable's own. */
-fmu_status fmu_get(fmu_instance *instance, fmu_type type, const uint32_t *references, size_t count, double *values,
-                   size_t value_count);
-/* The same for reals, as fast as it goes (reals.c). */
+typedef struct fmu_references {
+    const uint32_t *reference;
+    size_t count;
+} fmu_references;
+
+/* Value k of a list whose type only the glue knows; all numbers go through double, which holds every one exactly. */
+typedef double (*fmu_read)(const void *values, size_t k);
+typedef void (*fmu_write)(void *values, size_t k, double number);
+
+/* `type` must be that of every variable. All is checked first: a refused call hands out and changes nothing. */
+fmu_status fmu_get(fmu_instance *instance, fmu_type type, fmu_references list, void *values, size_t value_count,
+                   fmu_write write);
+fmu_status fmu_set(fmu_instance *instance, fmu_type type, fmu_references list, const void *values, size_t value_count,
+                   fmu_read read);
+/* The same for reals, as fast as it goes (cached_reals.c). */
 fmu_status fmu_get_reals(fmu_instance *instance, const uint32_t *references, size_t count, double *values,
                          size_t value_count);
 fmu_status fmu_set_reals(fmu_instance *instance, const uint32_t *references, size_t count, const double *values,
                          size_t value_count);
-/* Whether fmu_set would take them; says what is wrong. */
-fmu_status fmu_check_set(fmu_instance *instance, fmu_type type, const uint32_t *references, size_t count,
-                         const double *values, size_t value_count);
-/* For glue that goes variable by variable: how many values the next one has, and whether all were used in the end. */
-fmu_status fmu_size(fmu_instance *instance, const uint32_t *references, const void *values, size_t which, size_t left,
-                    size_t *size);
-fmu_status fmu_all_used(const fmu_instance *instance, size_t used, size_t given);
 /* Refuses unless nothing was asked for: there are no variables of that kind. */
 fmu_status fmu_none_of(const fmu_instance *instance, const char *kind, size_t asked);
 /* Refuses unless every one of them may be got or set in between steps. */
 fmu_status fmu_check_intermediate(const fmu_instance *instance, const uint32_t *references, size_t count);
 /* One element, whatever the mode; false: no such variable, or no value it can have. */
 bool fmu_take_start_value(fmu_instance *instance, uint32_t reference, double value);
-fmu_status fmu_set(fmu_instance *instance, fmu_type type, const uint32_t *references, size_t count,
-                   const double *values, size_t value_count);
 
 /* ------------------------------------------------------------------------------------- steps -- */
 
@@ -231,11 +243,6 @@ fmu_status fmu_get_rates(fmu_instance *instance, double *values, size_t count);
 fmu_status fmu_get_nominals(fmu_instance *instance, double *values, size_t count);
 
 /* ------------------------------------------------------------------------ partial derivatives -- */
-
-typedef struct fmu_references {
-    const uint32_t *reference;
-    size_t count;
-} fmu_references;
 
 fmu_status fmu_directional(fmu_instance *instance, fmu_references unknowns, fmu_references knowns, const double *seed,
                            size_t seed_count, double *sensitivity, size_t sensitivity_count);

@@ -1,3 +1,4 @@
+/* The table of calls and modes. */
 #include "lifecycle.h"
 
 #define BIT(mode) (1U << (mode))

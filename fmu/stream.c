@@ -1,3 +1,4 @@
+/* Numbers to and from bytes, one byte after the other, and the checksum that ends a file. */
 #include "stream.h"
 
 #include <string.h>

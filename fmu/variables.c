@@ -6,7 +6,7 @@
 #include "plant_api.h"
 
 static const char *const type_names[] = {"a Float64 (Real)", "an Int32 (Integer)", "a UInt64 (Integer)",
-                                         "an Enumeration", "a Boolean"};
+                                         "an Enumeration",   "a Boolean",          "an Int32 (Integer)"};
 
 bool fmu_find(const fmu_instance *instance, uint32_t reference, fmu_slot *slot) {
     const uint32_t row = fmu_row(reference), element = fmu_element(reference);
@@ -20,21 +20,18 @@ bool fmu_find(const fmu_instance *instance, uint32_t reference, fmu_slot *slot) 
     return true;
 }
 
-static const void *place_of(const fmu_instance *instance, const fmu_slot *slot, uint32_t element) {
-    return (const char *)&instance->plant + slot->variable->offset +
-           (size_t)(slot->first + element) * slot->variable->stride;
+static size_t offset_of(const fmu_slot *slot, uint32_t element) {
+    return slot->variable->offset + (size_t)(slot->first + element) * slot->variable->stride;
 }
 
 static double load(const fmu_instance *instance, const fmu_slot *slot, uint32_t element) {
-    const void *place = place_of(instance, slot, element);
+    const void *place = (const char *)&instance->plant + offset_of(slot, element);
     switch (slot->variable->type) {
     case FMU_REAL: return *(const double *)place;
     case FMU_BOOLEAN: return *(const bool *)place ? 1.0 : 0.0;
     default: return (double)*(const int32_t *)place;
     }
 }
-
-static bool is_finite(double value) { return value <= DBL_MAX && value >= -DBL_MAX; }
 
 static double least_of(const fmu_variable *variable) {
     return variable->access == FMU_STATE ? -FMU_LARGEST_STATE : variable->least;
@@ -64,7 +61,7 @@ static fmu_status refuse_value(const fmu_instance *instance, const fmu_slot *slo
     const double least = least_of(variable), most = most_of(variable);
     char name[NAME_LENGTH];
     name_element(name, slot, element);
-    if (!is_finite(value)) return fmu_refuse(instance, "%s: %g is not a finite number", name, value);
+    if (!fmu_is_finite(value)) return fmu_refuse(instance, "%s: %g is not a finite number", name, value);
     if (most == DBL_MAX) return fmu_refuse(instance, "%s: %.15g is outside its range: at least %g", name, value, least);
     return fmu_refuse(instance, "%s: %.15g is outside its range: %g to %g", name, value, least, most);
 }
@@ -76,8 +73,7 @@ static bool acceptable(const fmu_variable *variable, double value) {
 }
 
 static void store(fmu_instance *instance, const fmu_slot *slot, uint32_t element, double value) {
-    void *place =
-        (char *)&instance->plant + slot->variable->offset + (size_t)(slot->first + element) * slot->variable->stride;
+    void *place = (char *)&instance->plant + offset_of(slot, element);
     switch (slot->variable->type) {
     case FMU_REAL: *(double *)place = value; break;
     case FMU_BOOLEAN: *(bool *)place = value != 0.0; break;
@@ -97,10 +93,15 @@ static const char *who_sets(fmu_access access) {
     }
 }
 
-static fmu_status check_type(const fmu_instance *instance, fmu_type type, uint32_t reference, fmu_slot *slot) {
+static bool is_of(fmu_type type, uint8_t own) {
+    if (type == FMU_INTEGER) return own == FMU_INT32 || own == FMU_UINT64 || own == FMU_ENUMERATION;
+    return own == (uint8_t)type;
+}
+
+static fmu_status find_typed(const fmu_instance *instance, fmu_type type, uint32_t reference, fmu_slot *slot) {
     if (!fmu_find(instance, reference, slot))
         return fmu_refuse(instance, "there is no variable with the value reference %u", (unsigned)reference);
-    if (slot->variable->type != (uint8_t)type)
+    if (!is_of(type, slot->variable->type))
         return fmu_refuse(instance, "%s is %s, not %s", slot->variable->name, type_names[slot->variable->type],
                           type_names[type]);
     return FMU_OK;
@@ -116,82 +117,56 @@ static fmu_status make_ready(fmu_instance *instance, const fmu_variable *variabl
     return status;
 }
 
-static fmu_status check_readable(fmu_instance *instance, fmu_type type, uint32_t reference, fmu_slot *slot) {
-    const fmu_status status = check_type(instance, type, reference, slot);
-    return status == FMU_OK ? make_ready(instance, slot->variable) : status;
-}
+/* One call of the importer: the list of its values, which get writes and set reads. */
+typedef struct exchange {
+    void *asked;
+    fmu_write write;
+    const void *given;
+    fmu_read read;
+    size_t count;
+    const char *what; /* for messages: what the importer does with the values */
+} exchange;
 
-static fmu_status check_settable(fmu_instance *instance, fmu_type type, uint32_t reference, fmu_slot *slot) {
-    const fmu_status status = check_type(instance, type, reference, slot);
-    if (status != FMU_OK) return status;
-    if (!(instance->settable >> slot->variable->access & 1U))
-        return fmu_refuse(instance, "%s cannot be set in %s: %s", slot->variable->name, fmu_mode_names[instance->mode],
-                          who_sets((fmu_access)slot->variable->access));
-    return slot->variable->access == FMU_STATE ? fmu_make_current(instance) : FMU_OK;
-}
+/* What is done with one variable whose values begin at number `used` of the exchange. */
+typedef fmu_status (*visit)(fmu_instance *instance, const fmu_slot *slot, const exchange *values, size_t used);
 
-static fmu_status refuse_count(const fmu_instance *instance, const fmu_slot *slot, size_t given) {
+static fmu_status check_room(const fmu_instance *instance, const fmu_slot *slot, const exchange *values, size_t used) {
+    if (slot->count <= values->count - used) return FMU_OK;
     return fmu_refuse(instance, "%s has %u values, but only %zu were left of those given", slot->variable->name,
-                      (unsigned)slot->count, given);
+                      (unsigned)slot->count, values->count - used);
 }
 
-static fmu_status check_lists(const fmu_instance *instance, const void *references, size_t count, const void *values,
-                              size_t value_count) {
-    if ((count > 0 && references == NULL) || (value_count > 0 && values == NULL))
-        return fmu_refuse(instance, "a list of value references or values is missing (NULL)");
-    return FMU_OK;
-}
-
-/* All is checked before anything is handed out, so that a refused call leaves the importer's values as they were. */
-static fmu_status check_get(fmu_instance *instance, fmu_type type, const uint32_t *references, size_t count,
-                            const double *values, size_t value_count) {
-    size_t k, used = 0;
+static fmu_status check_get(fmu_instance *instance, const fmu_slot *slot, const exchange *values, size_t used) {
+    fmu_status status = make_ready(instance, slot->variable);
     uint32_t i;
-    fmu_slot slot;
-    if (check_lists(instance, references, count, values, value_count) != FMU_OK) return FMU_ERROR;
-    for (k = 0; k < count; k++) {
-        const fmu_status status = check_readable(instance, type, references[k], &slot);
-        if (status != FMU_OK) return status;
-        if (slot.count > value_count - used) return refuse_count(instance, &slot, value_count - used);
-        for (i = 0; i < slot.count; i++, used++)
-            if (!is_finite(load(instance, &slot, i))) return refuse_result(instance, &slot, i);
-    }
-    if (used != value_count)
-        return fmu_refuse(instance, "%zu values asked for, but the variables have %zu", value_count, used);
+    if (status == FMU_OK) status = check_room(instance, slot, values, used);
+    for (i = 0; status == FMU_OK && i < slot->count; i++)
+        if (!fmu_is_finite(load(instance, slot, i))) status = refuse_result(instance, slot, i);
+    return status;
+}
+
+static fmu_status hand_out(fmu_instance *instance, const fmu_slot *slot, const exchange *values, size_t used) {
+    uint32_t i;
+    for (i = 0; i < slot->count; i++) values->write(values->asked, used + i, load(instance, slot, i));
     return FMU_OK;
 }
 
-fmu_status fmu_get(fmu_instance *instance, fmu_type type, const uint32_t *references, size_t count, double *values,
-                   size_t value_count) {
-    size_t k, used = 0;
-    uint32_t i;
-    fmu_slot slot;
-    const fmu_status status = check_get(instance, type, references, count, values, value_count);
-    if (status != FMU_OK) return status;
-    for (k = 0; k < count; k++) {
-        if (!fmu_find(instance, references[k], &slot)) return FMU_ERROR; /* check_get has found it */
-        for (i = 0; i < slot.count; i++) values[used++] = load(instance, &slot, i);
-    }
-    return FMU_OK;
+static fmu_status check_settable(fmu_instance *instance, const fmu_variable *variable) {
+    if (!(instance->settable >> variable->access & 1U))
+        return fmu_refuse(instance, "%s cannot be set in %s: %s", variable->name, fmu_mode_names[instance->mode],
+                          who_sets((fmu_access)variable->access));
+    return variable->access == FMU_STATE ? fmu_make_current(instance) : FMU_OK;
 }
 
-/* All is checked before anything is stored, so that a refused call changes nothing. */
-fmu_status fmu_check_set(fmu_instance *instance, fmu_type type, const uint32_t *references, size_t count,
-                         const double *values, size_t value_count) {
-    size_t k, used = 0;
+static fmu_status check_set(fmu_instance *instance, const fmu_slot *slot, const exchange *values, size_t used) {
+    fmu_status status = check_settable(instance, slot->variable);
     uint32_t i;
-    fmu_slot slot;
-    if (check_lists(instance, references, count, values, value_count) != FMU_OK) return FMU_ERROR;
-    for (k = 0; k < count; k++) {
-        const fmu_status status = check_settable(instance, type, references[k], &slot);
-        if (status != FMU_OK) return status;
-        if (slot.count > value_count - used) return refuse_count(instance, &slot, value_count - used);
-        for (i = 0; i < slot.count; i++, used++)
-            if (!acceptable(slot.variable, values[used])) return refuse_value(instance, &slot, i, values[used]);
+    if (status == FMU_OK) status = check_room(instance, slot, values, used);
+    for (i = 0; status == FMU_OK && i < slot->count; i++) {
+        const double value = values->read(values->given, used + i);
+        if (!acceptable(slot->variable, value)) status = refuse_value(instance, slot, i, value);
     }
-    if (used != value_count)
-        return fmu_refuse(instance, "%zu values given, but the variables have %zu", value_count, used);
-    return FMU_OK;
+    return status;
 }
 
 /* Parameters: until initialization ends everything starts anew, afterwards the motion is carried over. */
@@ -206,38 +181,48 @@ static void note_change(fmu_instance *instance, fmu_access access) {
         instance->plant.change_needed = true;
 }
 
-fmu_status fmu_set(fmu_instance *instance, fmu_type type, const uint32_t *references, size_t count,
-                   const double *values, size_t value_count) {
-    size_t k, used = 0;
+static fmu_status take_over(fmu_instance *instance, const fmu_slot *slot, const exchange *values, size_t used) {
     uint32_t i;
-    fmu_slot slot;
-    const fmu_status status = fmu_check_set(instance, type, references, count, values, value_count);
-    if (status != FMU_OK) return status;
-    for (k = 0; k < count; k++) {
-        if (!fmu_find(instance, references[k], &slot)) return FMU_ERROR; /* fmu_check_set has found it */
-        if (slot.variable->access == FMU_STATE) fmu_plant_states_lead(instance);
-        for (i = 0; i < slot.count; i++) store(instance, &slot, i, values[used++]);
-        note_change(instance, (fmu_access)slot.variable->access);
+    if (slot->variable->access == FMU_STATE) fmu_plant_states_lead(instance);
+    for (i = 0; i < slot->count; i++) store(instance, slot, i, values->read(values->given, used + i));
+    note_change(instance, (fmu_access)slot->variable->access);
+    return FMU_OK;
+}
+
+static fmu_status visit_each(fmu_instance *instance, fmu_type type, fmu_references list, const exchange *values,
+                             visit what) {
+    size_t k, used = 0;
+    for (k = 0; k < list.count; k++) {
+        fmu_slot slot;
+        fmu_status status = find_typed(instance, type, list.reference[k], &slot);
+        if (status == FMU_OK) status = what(instance, &slot, values, used);
+        if (status != FMU_OK) return status;
+        used += slot.count;
     }
-    return FMU_OK;
+    if (used == values->count) return FMU_OK;
+    return fmu_refuse(instance, "%zu values %s, but the variables have %zu", values->count, values->what, used);
 }
 
-fmu_status fmu_size(fmu_instance *instance, const uint32_t *references, const void *values, size_t which, size_t left,
-                    size_t *size) {
-    fmu_slot slot;
-    *size = 0;
-    if (references == NULL || values == NULL)
+static fmu_status check_then(fmu_instance *instance, fmu_type type, fmu_references list, const exchange *values,
+                             visit check, visit act) {
+    const bool missing = values->asked == NULL && values->given == NULL;
+    fmu_status status;
+    if ((list.count > 0 && list.reference == NULL) || (values->count > 0 && missing))
         return fmu_refuse(instance, "a list of value references or values is missing (NULL)");
-    if (!fmu_find(instance, references[which], &slot))
-        return fmu_refuse(instance, "there is no variable with the value reference %u", (unsigned)references[which]);
-    if (slot.count > left) return refuse_count(instance, &slot, left);
-    *size = slot.count;
-    return FMU_OK;
+    status = visit_each(instance, type, list, values, check);
+    return status == FMU_OK ? visit_each(instance, type, list, values, act) : status;
 }
 
-fmu_status fmu_all_used(const fmu_instance *instance, size_t used, size_t given) {
-    if (used == given) return FMU_OK;
-    return fmu_refuse(instance, "%zu values, but the variables have %zu", given, used);
+fmu_status fmu_get(fmu_instance *instance, fmu_type type, fmu_references list, void *values, size_t value_count,
+                   fmu_write write) {
+    const exchange asked = {.asked = values, .write = write, .count = value_count, .what = "asked for"};
+    return check_then(instance, type, list, &asked, check_get, hand_out);
+}
+
+fmu_status fmu_set(fmu_instance *instance, fmu_type type, fmu_references list, const void *values, size_t value_count,
+                   fmu_read read) {
+    const exchange given = {.given = values, .read = read, .count = value_count, .what = "given"};
+    return check_then(instance, type, list, &given, check_set, take_over);
 }
 
 fmu_status fmu_none_of(const fmu_instance *instance, const char *kind, size_t asked) {

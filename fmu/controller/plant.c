@@ -1,3 +1,4 @@
+/* The controller behind the glue: a limited PI controller for the speed of each wheel. */
 #include "plant_api.h"
 
 /* The voltage before it is limited. */

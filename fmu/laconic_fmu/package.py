@@ -13,7 +13,7 @@ DATE = (1980, 1, 1, 0, 0, 0)
 
 
 def token_hash(token: str) -> int:
-    """FNV-1a, as fmu/start_values.c has it."""
+    """FNV-1a, as fmu/start_file.c has it."""
     value = 0xCBF29CE484222325
     for byte in token.encode("utf-8"):
         value = ((value ^ byte) * 0x100000001B3) & 0xFFFFFFFFFFFFFFFF
@@ -21,7 +21,7 @@ def token_hash(token: str) -> int:
 
 
 def start_file(values: Iterable[tuple[int, float]], token: str, scalar: bool) -> bytes:
-    """resources/start.bin, as fmu/start_values.c describes it."""
+    """resources/start.bin, as fmu/start_file.c describes it."""
     rows = list(values)
     body = b"LACSTART" + struct.pack("<QQQQ", 2, int(scalar), token_hash(token), len(rows))
     body += b"".join(struct.pack("<Qd", reference, value) for reference, value in rows)

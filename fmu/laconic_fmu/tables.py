@@ -46,7 +46,7 @@ def _fits(description: Description) -> list[str]:
 
 
 def tables(description: Description, text_3: str, text_2: str) -> str:
-    """The C file that fmu/variables.c and fmu/start_values.c link with."""
+    """The C file that fmu/variables.c and fmu/start_file.c link with."""
     starts = start_values(description)
     states = {v.attributes["derivative"] for v in description.variables if "derivative" in v.attributes}
     lines = [

@@ -1,7 +1,7 @@
 /* The vehicle behind the glue: parameters → core, steps, and outputs when they are asked for. */
 #include <stdio.h>
 
-#include "grip.h"
+#include "grip_warning.h"
 #include "plant_api.h"
 
 /* A quotient beyond it is no count of steps: laconic_steps_in refuses it. */
@@ -212,11 +212,27 @@ static laconic_status run_sloped(fmu_instance *instance, uint64_t steps, laconic
     return LACONIC_OK;
 }
 
+/* Inputs that are held, judged where each step begins: that is where a new input asks for the most. */
+static laconic_status run_held(fmu_instance *instance, uint64_t steps, laconic_refusal *why) {
+    fmu_plant *p = &instance->plant;
+    const double h = p->core.integrator.step_s, start_s = fmu_clock_now(&instance->clock);
+    uint64_t n;
+    for (n = 0; n < steps && fmu_grip_is_watched(instance); n++) {
+        laconic_status status;
+        fmu_plant_refresh(instance, FMU_GROUP_GROUND);
+        fmu_grip_judge(instance, &p->ground, start_s + (double)n * h);
+        status = laconic_plant_run(&p->core, &p->input, 1, why);
+        if (status != LACONIC_OK) return status;
+        p->stale = FMU_GROUPS_ALL & ~FMU_GROUP_STATE;
+    }
+    return laconic_plant_run(&p->core, &p->input, steps - n, why);
+}
+
 static fmu_status run_several_steps(fmu_instance *instance, uint64_t steps, uint64_t *taken) {
     fmu_plant *p = &instance->plant;
     laconic_refusal why;
     const uint64_t before = p->core.steps;
-    const laconic_status status = p->sloped ? run_sloped(instance, steps, &why) : fmu_grip_run(instance, steps, &why);
+    const laconic_status status = p->sloped ? run_sloped(instance, steps, &why) : run_held(instance, steps, &why);
     *taken = p->core.steps - before;
     p->stale = FMU_GROUPS_ALL & ~FMU_GROUP_STATE;
     return status == LACONIC_OK ? FMU_OK : discard_with(instance, &why);

@@ -1,4 +1,5 @@
-#include "grip.h"
+/* Judges the reactions of the ground during a run, and says once what they cannot be. */
+#include "grip_warning.h"
 
 static void tell_lift(const fmu_instance *instance) {
     const laconic_grip_event *event = &instance->plant.noted_lift;
@@ -30,8 +31,7 @@ static void tell_overflow(const fmu_instance *instance) {
 }
 
 static bool is_told_in_numbers(const laconic_grip_event *event) {
-    const double sum = event->needed_N + event->normal_N + event->margin_N;
-    return sum - sum == 0.0;
+    return fmu_is_finite(event->needed_N + event->normal_N + event->margin_N);
 }
 
 void fmu_plant_conclude(fmu_instance *instance, bool accepted) {
@@ -70,19 +70,4 @@ void fmu_plant_watch(fmu_instance *instance) {
     fmu_plant_refresh(instance, FMU_GROUP_GROUND);
     fmu_grip_judge(instance, &instance->plant.ground, instance->plant.time_s);
     fmu_plant_conclude(instance, true);
-}
-
-laconic_status fmu_grip_run(fmu_instance *instance, uint64_t steps, laconic_refusal *why) {
-    fmu_plant *p = &instance->plant;
-    const double start_s = fmu_clock_now(&instance->clock), step_s = p->core.integrator.step_s;
-    uint64_t n;
-    for (n = 0; n < steps && fmu_grip_is_watched(instance); n++) {
-        laconic_status status;
-        fmu_plant_refresh(instance, FMU_GROUP_GROUND);
-        fmu_grip_judge(instance, &p->ground, start_s + (double)n * step_s);
-        status = laconic_plant_run(&p->core, &p->input, 1, why);
-        if (status != LACONIC_OK) return status;
-        p->stale = FMU_GROUPS_ALL & ~FMU_GROUP_STATE;
-    }
-    return laconic_plant_run(&p->core, &p->input, steps - n, why);
 }

@@ -5,8 +5,6 @@
 
 #define NO_TANGENT UINT32_MAX
 
-static bool is_number(double value) { return value - value == 0.0; }
-
 static double *tangent_place(fmu_tangent *tangent, const fmu_slot *slot, uint32_t element) {
     return (double *)(void *)((char *)tangent + slot->variable->tangent + sizeof(double) * (slot->first + element));
 }
@@ -71,7 +69,7 @@ static fmu_status read_unknowns(const fmu_instance *instance, fmu_references unk
     for (k = 0; k < unknowns.count; k++) {
         fmu_find(instance, unknowns.reference[k], &slot);
         for (i = 0; i < slot.count; i++)
-            if (!is_number(*tangent_place(tangent, &slot, i))) return refuse_result(instance, slot.variable);
+            if (!fmu_is_finite(*tangent_place(tangent, &slot, i))) return refuse_result(instance, slot.variable);
     }
     for (k = 0; k < unknowns.count; k++) {
         fmu_find(instance, unknowns.reference[k], &slot);
@@ -132,7 +130,7 @@ fmu_status fmu_adjoint(fmu_instance *instance, fmu_references unknowns, fmu_refe
         fmu_find(instance, knowns.reference[k], &slot);
         for (i = 0; i < slot.count; i++) {
             const double found = adjoint_of(instance, unknowns, &slot, i, seed);
-            if (!is_number(found)) return refuse_result(instance, slot.variable);
+            if (!fmu_is_finite(found)) return refuse_result(instance, slot.variable);
             sensitivity[used++] = found;
         }
     }
@@ -175,7 +173,7 @@ static fmu_status check_inputs(const fmu_instance *instance, fmu_references inpu
                               (unsigned)inputs.reference[k]);
         if (slot.variable->access != FMU_INPUT || slot.count != 1)
             return fmu_refuse(instance, "%s is no scalar input", slot.variable->name);
-        if (!(values[k] - values[k] == 0.0))
+        if (!fmu_is_finite(values[k]))
             return fmu_refuse(instance, "%s: its derivative %g is not finite", slot.variable->name, values[k]);
     }
     return FMU_OK;

@@ -1,6 +1,6 @@
 /* Whether the ground can give what the motion asks for: a warning, once a run for each thing that can go wrong. */
-#ifndef LACONIC_FMU_VEHICLE_GRIP_H
-#define LACONIC_FMU_VEHICLE_GRIP_H
+#ifndef LACONIC_FMU_VEHICLE_GRIP_WARNING_H
+#define LACONIC_FMU_VEHICLE_GRIP_WARNING_H
 
 #include "plant_api.h"
 
@@ -16,8 +16,5 @@ static inline bool fmu_grip_is_watched(const fmu_instance *instance) {
 
 /* Notes what the reactions at that time ask of the ground and it cannot give; fmu_plant_conclude says it. */
 void fmu_grip_judge(fmu_instance *instance, const laconic_reactions *ground, double time_s);
-
-/* Steps with held inputs, judged where each begins: that is where a new input asks for the most. */
-laconic_status fmu_grip_run(fmu_instance *instance, uint64_t steps, laconic_refusal *why);
 
 #endif

@@ -62,14 +62,14 @@ static bool get_quickly(fmu_instance *instance, const uint32_t *references, size
                         size_t value_count) {
     fmu_plant *plant = &instance->plant;
     fmu_list *list = &instance->read;
-    double sum = 0.0;
+    bool finite = true;
     size_t i;
     if (plant->start_needed || plant->change_needed) return false;
     if (!is_known(list, references, count) && !look_up(instance, list, references, count, false)) return false;
     if (list->values != value_count) return false;
     if (list->groups & plant->stale) fmu_plant_refresh(instance, list->groups);
-    for (i = 0; i < value_count; i++) sum += *value_at(plant, list->offset[i]) - *value_at(plant, list->offset[i]);
-    if (!(sum == 0.0)) return false; /* one of them is no number: the long way says which */
+    for (i = 0; i < value_count; i++) finite &= fmu_is_finite(*value_at(plant, list->offset[i]));
+    if (!finite) return false; /* the long way says which */
     for (i = 0; i < value_count; i++) values[i] = *value_at(plant, list->offset[i]);
     return true;
 }
@@ -79,28 +79,32 @@ static bool set_quickly(fmu_instance *instance, const uint32_t *references, size
                         size_t value_count) {
     fmu_plant *plant = &instance->plant;
     fmu_list *list = &instance->written;
-    double sum = 0.0;
+    bool finite = true;
     size_t i;
     if (!(instance->settable >> FMU_INPUT & 1U)) return false;
     if (!is_known(list, references, count) && !look_up(instance, list, references, count, true)) return false;
     if (list->values != value_count) return false;
-    for (i = 0; i < value_count; i++) sum += values[i] - values[i]; /* 0 unless one of them is no number */
-    if (!(sum == 0.0)) return false;
+    for (i = 0; i < value_count; i++) finite &= fmu_is_finite(values[i]);
+    if (!finite) return false;
     for (i = 0; i < value_count; i++) *value_at(plant, list->offset[i]) = values[i];
     fmu_plant_input_changed(plant);
     return true;
 }
 
+static double read_real(const void *values, size_t k) { return ((const double *)values)[k]; }
+
+static void write_real(void *values, size_t k, double number) { ((double *)values)[k] = number; }
+
 fmu_status fmu_get_reals(fmu_instance *instance, const uint32_t *references, size_t count, double *values,
                          size_t value_count) {
     if (references != NULL && values != NULL && get_quickly(instance, references, count, values, value_count))
         return FMU_OK;
-    return fmu_get(instance, FMU_REAL, references, count, values, value_count);
+    return fmu_get(instance, FMU_REAL, (fmu_references){references, count}, values, value_count, write_real);
 }
 
 fmu_status fmu_set_reals(fmu_instance *instance, const uint32_t *references, size_t count, const double *values,
                          size_t value_count) {
     if (references != NULL && values != NULL && set_quickly(instance, references, count, values, value_count))
         return FMU_OK;
-    return fmu_set(instance, FMU_REAL, references, count, values, value_count);
+    return fmu_set(instance, FMU_REAL, (fmu_references){references, count}, values, value_count, read_real);
 }

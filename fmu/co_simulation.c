@@ -49,10 +49,9 @@ static fmu_status check_interval(const fmu_instance *instance, double at_s, doub
     const fmu_clock *clock = &instance->clock;
     const double now_s = instance->plant.time_s, off_s = at_s - now_s;
     const double internal_s = internal_step(instance, step_s), most_s = time_tolerance(instance, at_s, internal_s);
-    if (!(step_s <= DBL_MAX && step_s >= -DBL_MAX))
+    if (!fmu_is_finite(step_s))
         return fmu_refuse(instance, "a communication step of %g s cannot be taken: it is not finite", step_s);
-    if (!(at_s <= DBL_MAX && at_s >= -DBL_MAX))
-        return fmu_refuse(instance, "the step starts at %g s: that is not finite", at_s);
+    if (!fmu_is_finite(at_s)) return fmu_refuse(instance, "the step starts at %g s: that is not finite", at_s);
     if (!(step_s > 0.0))
         return fmu_refuse(instance, "a communication step of %.15g s cannot be taken: it must be more than 0", step_s);
     if (!(off_s <= most_s && off_s >= -most_s))
