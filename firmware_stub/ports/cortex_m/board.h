@@ -2,8 +2,9 @@
 #ifndef BOARD_H
 #define BOARD_H
 
+#include "startup.h"
+
 #include <stdbool.h>
-#include <stdint.h>
 
 /* UART at 115200 baud with receive interrupt, a microsecond timer, and a wake-up interrupt every millisecond. */
 void board_init(void);
@@ -24,16 +25,6 @@ bool port_has_room(void);
 void port_received(char byte);
 void board_resume(void);
 
-/* Handlers, by the names that the vector table uses. */
-void board_uart_handler(void);
-void board_wake_handler(void);
-
-#define BOARD_UART_IRQ_MPS2 0
-#define BOARD_WAKE_IRQ_MPS2 9
-#define BOARD_UART_IRQ_MICROBIT 2
-#define BOARD_WAKE_IRQ_MICROBIT 8
-
-#define REGISTER(address) (*(volatile uint32_t *)(address))
 #define NVIC_ENABLE REGISTER(0xE000E100U)
 
 #endif

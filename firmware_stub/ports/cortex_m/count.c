@@ -1,6 +1,5 @@
 /* How many instructions the node takes for a frame and for a step: run under QEMU with -icount, prints and ends. */
-#include "../../../core_c/bench/cortex_m/board.h"
-
+#include "bench_board.h"
 #include "laconic_node/node.h"
 #include "laconic_node/protection.h"
 #include "laconic_node/slcan.h"

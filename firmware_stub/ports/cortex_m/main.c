@@ -85,6 +85,21 @@ static void sleep_until_interrupt(void) {
     __asm volatile("cpsie i" ::: "memory");
 }
 
+#define RESET_CONTROL REGISTER(0xE000ED0CU)
+#define RESET_REQUEST 0x05FA0004U
+
+/* A fault restarts the board: the rig sees the state "empty" and says so. */
+void board_fault(void) {
+    RESET_CONTROL = RESET_REQUEST;
+    for (;;) {
+    }
+}
+
+void board_end(int status) {
+    (void)status; /* main does not return */
+    board_fault();
+}
+
 int main(void) {
     board_init();
     const laconic_node_config config = {LACONIC_WIRE_ID_BASE, LACONIC_NODE_CAN_FD != 0, port_method,

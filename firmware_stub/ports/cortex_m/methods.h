@@ -1,3 +1,4 @@
+/* Which integrators this image holds. */
 #ifndef METHODS_H
 #define METHODS_H
 

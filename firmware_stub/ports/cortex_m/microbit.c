@@ -13,6 +13,7 @@
 #define UART_RX REGISTER(0x40002518U)
 #define UART_TX REGISTER(0x4000251CU)
 #define UART_BAUD REGISTER(0x40002524U)
+enum { UART_IRQ = 2, WAKE_IRQ = 8 };
 enum { UART_ON = 4, RX_INTERRUPT = 1 << 2, PIN_TX = 24, PIN_RX = 25 };
 #define BAUD_115200 0x01D7E000U
 
@@ -46,7 +47,7 @@ void board_init(void) {
     UART_START_TX = 1;
     UART_START_RX = 1;
     UART_INTERRUPT_SET = RX_INTERRUPT;
-    NVIC_ENABLE = 1U << BOARD_UART_IRQ_MICROBIT | 1U << BOARD_WAKE_IRQ_MICROBIT;
+    NVIC_ENABLE = 1U << UART_IRQ | 1U << WAKE_IRQ;
 }
 
 bool board_send(char byte) {
@@ -78,7 +79,7 @@ uint32_t board_nonce_seed(void) {
 
 void board_resume(void) { UART_INTERRUPT_SET = RX_INTERRUPT; }
 
-void board_uart_handler(void) {
+static void uart_handler(void) {
     if (UART_RX_READY == 0) return;
     if (port_has_room()) {
         UART_RX_READY = 0;
@@ -89,7 +90,7 @@ void board_uart_handler(void) {
 }
 
 /* A comparison that is set for an instant already past would come 71 minutes later: set again until it lies ahead. */
-void board_wake_handler(void) {
+static void wake_handler(void) {
     uint32_t wake_us;
     TIMER_EVENT_1 = 0;
     do {
@@ -97,3 +98,5 @@ void board_wake_handler(void) {
         TIMER_COMPARE_1 = wake_us;
     } while ((int32_t)(board_now_us() - wake_us) >= 0);
 }
+
+BOARD_INTERRUPTS = {[UART_IRQ] = uart_handler, [WAKE_IRQ] = wake_handler};

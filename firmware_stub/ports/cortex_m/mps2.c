@@ -6,6 +6,7 @@
 #define UART_CONTROL REGISTER(0x40004008U)
 #define UART_INTERRUPT REGISTER(0x4000400CU)
 #define UART_DIVIDER REGISTER(0x40004010U)
+enum { UART_IRQ = 0, WAKE_IRQ = 9 };
 enum { TX_FULL = 1, RX_FULL = 2, TX_ENABLE = 1, RX_ENABLE = 2, RX_INTERRUPT = 8, RX_CLEAR = 2 };
 
 #define CLOCK_CONTROL REGISTER(0x40000000U)
@@ -31,7 +32,7 @@ void board_init(void) {
     WAKE_CONTROL = TIMER_ENABLE | TIMER_INTERRUPT;
     UART_DIVIDER = 1000000U * TICKS_PER_US / BAUD;
     UART_CONTROL = TX_ENABLE | RX_ENABLE | RX_INTERRUPT;
-    NVIC_ENABLE = 1U << BOARD_UART_IRQ_MPS2 | 1U << BOARD_WAKE_IRQ_MPS2;
+    NVIC_ENABLE = 1U << UART_IRQ | 1U << WAKE_IRQ;
 }
 
 bool board_send(char byte) {
@@ -53,15 +54,7 @@ uint32_t board_now_us(void) {
 /* The MPS2 has no generator and no clock that goes on without power: the first HELLO's instant must do. */
 uint32_t board_nonce_seed(void) { return 0; }
 
-/* A byte that came while the interrupt was off has raised none: fetch it as the interrupt would have. */
-void board_resume(void) {
-    __asm volatile("cpsid i" ::: "memory");
-    UART_CONTROL = TX_ENABLE | RX_ENABLE | RX_INTERRUPT;
-    board_uart_handler();
-    __asm volatile("cpsie i" ::: "memory");
-}
-
-void board_uart_handler(void) {
+static void uart_handler(void) {
     UART_INTERRUPT = RX_CLEAR;
     if ((UART_STATE & RX_FULL) == 0) return;
     if (port_has_room()) {
@@ -71,4 +64,14 @@ void board_uart_handler(void) {
     }
 }
 
-void board_wake_handler(void) { WAKE_INTERRUPT = 1; }
+/* A byte that came while the interrupt was off has raised none: fetch it as the interrupt would have. */
+void board_resume(void) {
+    __asm volatile("cpsid i" ::: "memory");
+    UART_CONTROL = TX_ENABLE | RX_ENABLE | RX_INTERRUPT;
+    uart_handler();
+    __asm volatile("cpsie i" ::: "memory");
+}
+
+static void wake_handler(void) { WAKE_INTERRUPT = 1; }
+
+BOARD_INTERRUPTS = {[UART_IRQ] = uart_handler, [WAKE_IRQ] = wake_handler};

@@ -182,10 +182,10 @@ class Workshop:
 
     def board_image(self, target: Target, variant: Variant, steps: int) -> Path:
         """The image that counts so many steps on a board."""
-        board = BENCH / "cortex_m"
-        sources = [BENCH / "bench.c", *(board / f"{name}.c" for name in ("startup", "board", "count"))]
-        flags = [f"-DBENCH_STEPS={steps}", f"-I{board}", "-ffreestanding", "-nostartfiles",
-                 f"-L{board}", f"-T{target.script}"]
+        board, startup = BENCH / "cortex_m", BENCH.parent / "cortex_m"
+        sources = [BENCH / "bench.c", startup / "startup.c", board / "bench_board.c", board / "count.c"]
+        flags = [f"-DBENCH_STEPS={steps}", f"-I{board}", f"-I{startup}", "-ffreestanding", "-nostartfiles",
+                 f"-L{startup}", f"-T{target.script}"]
         return self._link(target, variant, "count.elf", sources, flags)
 
     def step_image(self, target: Target, variant: Variant) -> Path:

@@ -1,11 +1,12 @@
-#include "board.h"
+/* Text, end, instruction counter and stack gauge of a bench image. */
+#include "bench_board.h"
 
 enum { SEMIHOSTING_WRITE0 = 0x04, SEMIHOSTING_EXIT = 0x18, SEMIHOSTING_EXIT_EXTENDED = 0x20 };
 #define APPLICATION_EXIT 0x20026U
 
-#define SYSTICK_CONTROL (*(volatile uint32_t *)0xE000E010U)
-#define SYSTICK_RELOAD (*(volatile uint32_t *)0xE000E014U)
-#define SYSTICK_VALUE (*(volatile uint32_t *)0xE000E018U)
+#define SYSTICK_CONTROL REGISTER(0xE000E010U)
+#define SYSTICK_RELOAD REGISTER(0xE000E014U)
+#define SYSTICK_VALUE REGISTER(0xE000E018U)
 #define SYSTICK_LARGEST 0xFFFFFFU
 
 static void semihosting(uint32_t operation, const void *argument) {
@@ -16,11 +17,16 @@ static void semihosting(uint32_t operation, const void *argument) {
 
 void board_write(const char *text) { semihosting(SEMIHOSTING_WRITE0, text); }
 
-void board_exit(int status) {
+void board_end(int status) {
     const uint32_t block[2] = {APPLICATION_EXIT, (uint32_t)status};
     semihosting(SEMIHOSTING_EXIT_EXTENDED, block);
     for (;;) {
     }
+}
+
+void board_fault(void) {
+    board_write("fault\n");
+    board_end(1);
 }
 
 void board_write_number(const char *name, uint64_t value) {

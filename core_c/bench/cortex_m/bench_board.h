@@ -3,13 +3,12 @@
  * Text and end go through ARM semihosting, so no board needs a UART driver. The clock is SysTick on the
  * processor clock; under `qemu-system-arm -icount shift=8` every instruction lasts 256 ns, so ticks are
  * instructions times a constant that board_calibrate() finds out. The counter has 24 bits. */
-#ifndef BOARD_H
-#define BOARD_H
+#ifndef BENCH_BOARD_H
+#define BENCH_BOARD_H
 
-#include <stdint.h>
+#include "startup.h"
 
 void board_write(const char *text);
-void board_exit(int status) __attribute__((noreturn));
 
 void board_write_number(const char *name, uint64_t value);
 void board_write_bits(const char *name, const void *bytes, uint32_t size);

@@ -1,16 +1,13 @@
-/* Start of a Cortex-M bench image: vector table, memory set-up, FPU, and the way out.
- *
- * One file for ARMv6-M, ARMv7-M and ARMv7E-M. The linker script names the borders of the sections. */
-#include "board.h"
+/* From reset to main, for ARMv6-M, ARMv7-M and ARMv7E-M. The linker script names the borders of the sections. */
+#include "startup.h"
 
 extern uint32_t board_stack_top;
 extern uint32_t board_data_load, board_data_start, board_data_end, board_bss_start, board_bss_end;
 
 int main(void);
 void board_reset(void);
-static void board_fault(void);
 
-#define COPROCESSOR_ACCESS (*(volatile uint32_t *)0xE000ED88U)
+#define COPROCESSOR_ACCESS REGISTER(0xE000ED88U)
 
 typedef union vector {
     uint32_t *stack;
@@ -22,11 +19,6 @@ __attribute__((section(".vectors"), used)) static const vector vectors[16] = {
     {.handler = board_fault},    {.handler = board_fault}, {.handler = board_fault},
 };
 
-static void board_fault(void) {
-    board_write("fault\n");
-    board_exit(1);
-}
-
 void board_reset(void) {
     const uint32_t *from = &board_data_load;
     for (uint32_t *to = &board_data_start; to < &board_data_end; to++) *to = *from++;
@@ -35,5 +27,5 @@ void board_reset(void) {
     COPROCESSOR_ACCESS |= 0xFU << 20; /* CP10, CP11: full access, before the first FPU instruction */
     __asm volatile("dsb\n isb");
 #endif
-    board_exit(main());
+    board_end(main());
 }
