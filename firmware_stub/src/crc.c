@@ -1,3 +1,4 @@
+/* The three checksums of the wire: CRC-8 and CRC-16 of the frames, CRC-32 of a loaded vehicle. */
 #include "laconic_node/crc.h"
 
 /* A nibble at a time: two look-ups a byte, and 112 bytes of tables for all three. */

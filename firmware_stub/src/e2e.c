@@ -1,3 +1,4 @@
+/* AUTOSAR end-to-end profiles 22 (classic frames) and 5 (CAN FD): CRC and counter of one frame. */
 #include "laconic_node/e2e.h"
 
 #include "laconic_node/crc.h"

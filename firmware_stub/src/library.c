@@ -1,3 +1,4 @@
+/* What tests and the in-process rig call beside the node's own functions. */
 #include "library.h"
 
 #include "laconic_node/node.h"

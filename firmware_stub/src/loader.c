@@ -1,3 +1,4 @@
+/* One PARAMETER frame after the other becomes a vehicle, its start and its run. */
 #include "laconic_node/loader.h"
 
 #include "laconic_dbc.h"

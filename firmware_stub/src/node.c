@@ -1,3 +1,4 @@
+/* The node's three calls: a frame comes, time passes, a frame is fetched. */
 #include "laconic_node/node.h"
 
 #include "node_internal.h"

@@ -54,7 +54,7 @@ void laconic_node_answer(laconic_node *node, uint8_t offset, uint8_t command, ui
                          uint8_t item);
 void laconic_node_answer_again(laconic_node *node, uint8_t offset);
 
-/* node_command.c: frames that move the vehicle. False iff the frame was refused. */
+/* node_motion.c: frames that move the vehicle. False iff the frame was refused. */
 bool laconic_node_voltage(laconic_node *node, const uint8_t *data, uint32_t now_us);
 bool laconic_node_voltage_fd(laconic_node *node, const uint8_t *data, uint32_t now_us);
 bool laconic_node_raw(laconic_node *node, const uint8_t *bytes, uint8_t segment, uint8_t mask, uint8_t size);

@@ -1,3 +1,4 @@
+/* Which start and DataID the CRC of a frame has, and so which frames are right now. */
 #include "laconic_node/protection.h"
 
 #include "laconic_node/e2e.h"

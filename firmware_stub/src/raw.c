@@ -1,3 +1,4 @@
+/* The bytes of RAW_INPUT to numbers of the input, and numbers of the plant to the bytes of RAW_OUTPUT. */
 #include "laconic_node/raw.h"
 
 #include <string.h>

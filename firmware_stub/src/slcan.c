@@ -1,3 +1,4 @@
+/* Lines of SLCAN to frames and commands, and frames to lines. */
 #include "laconic_node/slcan.h"
 
 static const uint8_t fd_lengths[16] = {0, 1, 2, 3, 4, 5, 6, 7, 8, 12, 16, 20, 24, 32, 48, 64};

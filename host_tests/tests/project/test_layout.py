@@ -35,6 +35,20 @@ def test_adapters_hold_no_python_and_do_not_see_each_other():
             assert not [name for name in includes if name.startswith(f"{other}/") or name == "Python.h"], path
 
 
+def test_cortex_m_images_start_in_one_place():
+    parts = [ROOT / "core_c", ROOT / "firmware_stub"]
+    starts = [path for part in parts for path in part.rglob("*.c") if "void board_reset(void) {" in path.read_text()]
+    scripts = [path.name for part in parts for path in part.rglob("*.ld")]
+    assert len(starts) == 1, starts
+    assert sorted(scripts) == sorted(set(scripts))
+
+
+def test_the_fmu_decides_in_one_place_whether_a_number_is_finite():
+    judging = re.compile(r"\b(\w+) - \1 == 0\.0|<= DBL_MAX && \w+ >= -DBL_MAX")
+    places = {path.name for path in (ROOT / "fmu").rglob("*.[ch]") if judging.search(path.read_text(encoding="utf-8"))}
+    assert places == {"instance.h"}
+
+
 def test_nothing_generated_is_committed():
     if not (ROOT / ".git").exists() or shutil.which("git") is None:
         pytest.skip("no checkout, or no git")

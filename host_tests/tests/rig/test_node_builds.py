@@ -37,4 +37,4 @@ def test_the_node_compiles_without_a_warning(compiler: str, definitions: tuple[s
 @pytest.mark.parametrize("compiler", COMPILERS)
 def test_more_wheels_than_the_groups_of_voltage_can_number_do_not_compile(compiler: str) -> None:
     assert "VOLTAGE numbers eight groups of three wheels" in compiled(
-        compiler, "LACONIC_MAX_WHEELS=25", only="node_command.c")
+        compiler, "LACONIC_MAX_WHEELS=25", only="node_motion.c")
