@@ -7,7 +7,7 @@
 
 #include "plant_api.h"
 
-#define STATE_VERSION 3U
+#define STATE_VERSION 4U
 static const char magic[8] = {'L', 'A', 'C', 'S', 'T', 'A', 'T', 'E'};
 
 struct fmu_snapshot {

@@ -1,4 +1,4 @@
-/* A refusal in one line: field and item, what is wrong, what to do. `#` stands for the value, `@` for the limit. */
+/* A refusal in words: the status in a few, or all in one line: field and item, what is wrong, what to do. */
 #include "internal.h"
 
 typedef struct writer {
@@ -74,32 +74,16 @@ static void put_number(writer *w, real x) {
     }
 }
 
+#define NAME(IDENTIFIER, name, explanation) name,
+#define EXPLANATION(IDENTIFIER, name, explanation) explanation,
+
+const char *laconic_status_name(laconic_status status) {
+    static const char *const names[] = {LACONIC_STATUSES(NAME)};
+    return (unsigned)status < LACONIC_STATUS_COUNT ? names[status] : "unknown status";
+}
+
 static const char *explanation(laconic_status status) {
-    static const char *const texts[LACONIC_STATUS_COUNT] = {
-        "ok",
-        "# is not a finite number; give a number",
-        "# is not positive; give a value above 0",
-        "# is negative; give 0 or a value above it",
-        "with # rad the roller axis lies along the axle and the wheel transmits nothing; omni wheels have pi/2, "
-        "mecanum wheels pi/4 or -pi/4",
-        "this wheel was never set; give its kind and place, or lower wheel_count",
-        "# is no kind of wheel; use 1 (roller: omni or mecanum) or 2 (fixed)",
-        "# wheels, but this build takes 0 to @; lower it or build with a larger LACONIC_MAX_WHEELS",
-        "# supports, but this build takes 0 to @; lower it or build with a larger LACONIC_MAX_SUPPORTS",
-        "fixed and locked wheels leave nothing that moves; the axle lines of all fixed wheels must meet in one point, "
-        "or all be parallel; else release a locked wheel",
-        "masses and lengths are too far apart for " LACONIC_REAL_NAME
-        " precision: the condition number # leaves fewer than two correct digits; check the units",
-        "# slides a fixed or locked wheel; the nearest velocity that the wheels allow is @",
-        "there is no such method; use auto, rk4, exponential-kahan, exponential-kahan-4, exact-flow, exact-flow-4 or "
-        "taylor-8",
-        "steps of # s do not fill the interval; @ s would",
-        "# s is unstable with this method, the motors damp too fast; use at most @ s, or auto",
-        "# s is unstable with this method while the vehicle turns this fast; use at most @ s, or exact-flow",
-        "in this state a step of # s would make energy out of nothing; use @ s or less, or auto, or exact-flow",
-        "in this state a step of # s has no solution; use @ s or less, or auto, or exact-flow",
-        "the numbers leave the range of " LACONIC_REAL_NAME " precision; check inputs and units",
-    };
+    static const char *const texts[] = {LACONIC_STATUSES(EXPLANATION)};
     return (unsigned)status < LACONIC_STATUS_COUNT ? texts[status] : "unknown status";
 }
 

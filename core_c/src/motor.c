@@ -1,22 +1,31 @@
 /* From a motor's data sheet to c1, c2 and J: c1 = G k_t/R_a, c2 = G² (k_t k_e/R_a + b). */
 #include "internal.h"
 
-static laconic_status check_motor(const laconic_motor *m, laconic_refusal *why) {
-    const real numbers[] = {m->resistance_ohm, m->torque_constant_Nm_per_A, m->back_emf_Vs_per_rad,
-                            m->gear_ratio,     m->viscous_friction_Nms,     m->rotor_inertia_kgm2};
-    int32_t i;
-    for (i = 0; i < 6; i++)
-        if (!is_finite(numbers[i]))
-            return refuse(why, LACONIC_NOT_FINITE, (laconic_field)(LACONIC_FIELD_RESISTANCE + i), 0, numbers[i], R(0));
-    if (!(m->resistance_ohm > R(0)))
-        return refuse(why, LACONIC_NOT_POSITIVE, LACONIC_FIELD_RESISTANCE, 0, m->resistance_ohm, R(0));
-    if (magnitude(m->gear_ratio) < LACONIC_REAL_MIN)
-        return refuse(why, LACONIC_NOT_POSITIVE, LACONIC_FIELD_GEAR_RATIO, 0, m->gear_ratio, R(1));
-    if (m->viscous_friction_Nms < R(0))
-        return refuse(why, LACONIC_NEGATIVE, LACONIC_FIELD_VISCOUS_FRICTION, 0, m->viscous_friction_Nms, R(0));
-    if (m->rotor_inertia_kgm2 < R(0))
-        return refuse(why, LACONIC_NEGATIVE, LACONIC_FIELD_ROTOR_INERTIA, 0, m->rotor_inertia_kgm2, R(0));
+#define RULE_OF(of, number, IDENTIFIER, member, name, KIND, RULE, NEED) {number, LACONIC_RULE_##RULE},
+#define VALUE_OF(motor, number, IDENTIFIER, member, name, KIND, RULE, NEED) motor->member,
+
+static laconic_status check_rule(real value, uint8_t rule, laconic_field field, laconic_refusal *why) {
+    if (rule == LACONIC_RULE_NOT_NEGATIVE && value < R(0)) return refuse(why, LACONIC_NEGATIVE, field, 0, value, R(0));
+    if (rule == LACONIC_RULE_POSITIVE && value <= R(0)) return refuse(why, LACONIC_NOT_POSITIVE, field, 0, value, R(0));
+    if (rule == LACONIC_RULE_NOT_ZERO && magnitude(value) < LACONIC_REAL_MIN)
+        return refuse(why, LACONIC_NOT_POSITIVE, field, 0, value, R(1));
     return LACONIC_OK;
+}
+
+static laconic_status check_motor(const laconic_motor *m, laconic_refusal *why) {
+    static const struct {
+        uint8_t field, rule;
+    } numbers[] = {LACONIC_MOTOR_FIELDS(RULE_OF, )};
+    const real values[] = {LACONIC_MOTOR_FIELDS(VALUE_OF, m)};
+    const size_t count = sizeof numbers / sizeof numbers[0];
+    laconic_status status = LACONIC_OK;
+    size_t k;
+    for (k = 0; k < count; k++)
+        if (!is_finite(values[k]))
+            return refuse(why, LACONIC_NOT_FINITE, (laconic_field)numbers[k].field, 0, values[k], R(0));
+    for (k = 0; k < count && status == LACONIC_OK; k++)
+        status = check_rule(values[k], numbers[k].rule, (laconic_field)numbers[k].field, why);
+    return status;
 }
 
 laconic_status laconic_motor_fit(laconic_vehicle *vehicle, const laconic_motor *motor, laconic_refusal *why) {

@@ -49,6 +49,21 @@ static void every_status_has_a_text_and_a_number_that_is_none_too(void) {
     TEST_ASSERT_EQUAL_STRING("unknown status", message((laconic_status)1000, LACONIC_FIELD_NONE, 0, 0, 0));
 }
 
+static void every_status_has_words_of_its_own(void) {
+    int a, b;
+    for (a = 0; a < LACONIC_STATUS_COUNT; a++) {
+        TEST_ASSERT_NOT_EQUAL(0, strlen(laconic_status_name((laconic_status)a)));
+        for (b = 0; b < a; b++)
+            TEST_ASSERT_TRUE(strcmp(laconic_status_name((laconic_status)a), laconic_status_name((laconic_status)b)) !=
+                             0);
+    }
+    TEST_ASSERT_EQUAL_STRING("ok", laconic_status_name(LACONIC_OK));
+    TEST_ASSERT_EQUAL_STRING("wheel not set", laconic_status_name(LACONIC_WHEEL_NOT_SET));
+    TEST_ASSERT_EQUAL_STRING("overflow", laconic_status_name(LACONIC_OVERFLOW));
+    TEST_ASSERT_EQUAL_STRING("unknown status", laconic_status_name(LACONIC_STATUS_COUNT));
+    TEST_ASSERT_EQUAL_STRING("unknown status", laconic_status_name((laconic_status)1000));
+}
+
 /* The number as a message shows it. */
 static const char *shown(double value) {
     const char *end = strstr(message(LACONIC_NOT_POSITIVE, LACONIC_FIELD_NONE, 0, value, 0), " is not positive");
@@ -107,6 +122,7 @@ int main(void) {
     RUN_TEST(a_field_without_the_item_it_could_have_is_named_as_a_whole);
     RUN_TEST(an_explanation_is_the_message_without_its_field);
     RUN_TEST(without_a_field_only_the_reason_is_said);
+    RUN_TEST(every_status_has_words_of_its_own);
     RUN_TEST(every_status_has_a_text_and_a_number_that_is_none_too);
     RUN_TEST(numbers_look_as_printf_would_show_them);
     RUN_TEST(a_number_that_rounds_up_to_the_next_power_stays_right);

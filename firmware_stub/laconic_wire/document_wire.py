@@ -87,7 +87,7 @@ def parameter_rows(database: Database) -> str:
     """The numbers of a vehicle."""
     numbers = {text: number for number, text in field_choices(database).items()}
     rows = []
-    for field, (key, unit, item, required) in PARAMETERS.items():
+    for field, (key, unit, item, required) in sorted(PARAMETERS.items(), key=lambda each: numbers[each[0]]):
         rows.append(f"| {numbers[field]} | {field} | {unit} | {item} | {required or 'no'} | {key} |")
     return "\n".join(rows)
 

@@ -1,48 +1,51 @@
 """What each PARAMETER means: its unit, whether it is a number or an integer, and when it must come.
 
-Field in the DBC → (key in a scene file, unit, item, required). The test test_wire_page.py holds `required` against the
-node itself.
+Field in the DBC → (key in a scene file, unit, item, required). What a node takes follows from the core's list of fields
+(vehicle.h) and modelDescription.xml; the test test_wire_page.py holds `required` against the node itself.
 """
 
 from __future__ import annotations
 
-ALWAYS, NEVER = "always", ""
-WHEELS, MOTOR, PAYLOAD = "with wheels", "with the other of the motor", "with any of the payload"
-EACH_WHEEL, EACH_SUPPORT = "each wheel", "each support"
+import xml.etree.ElementTree as ET
+
+from laconic.core import Field, load
+from laconic.paths import SOURCE_DIR
+
+NEEDS = {
+    "NEVER": "", "ALWAYS": "always", "WITH_WHEELS": "with wheels", "WITH_MOTOR": "with the other of the motor",
+    "WITH_PAYLOAD": "with any of the payload", "WITH_SUPPORTS": "with any support", "EACH_WHEEL": "each wheel",
+    "EACH_ROLLER": "each wheel of kind 1", "EACH_SUPPORT": "each support"}
 RESERVED = "not yet: NOT_SUPPORTED"
 NONE, WHEEL, SUPPORT, COMPONENT = "0", "wheel", "support", "1, 2, 3"
+NOTES = {"WHEEL_KIND": ": 1 rollers (omni, mecanum), 2 fixed", "WHEEL_LOCKED": ": 0 or 1", "METHOD": ": see below"}
+
+
+def units() -> dict[str, str]:
+    """Variable → unit, from modelDescription.xml."""
+    root = ET.parse(SOURCE_DIR / "modelDescription.xml").getroot()
+    types = {each.get("name"): each.get("unit", "1") for each in root.iter("Float64Type")}
+    found = {each.get("name", ""): types[each.get("declaredType")] for each in root.iter("Float64")}
+    return {name: unit.replace(".", " ").replace("2", "²") for name, unit in found.items()}
+
+
+def row(field: Field, unit: str) -> tuple[str, str, str, str]:
+    """One that a node takes."""
+    key = f"how many [[{field.path}]]" if field.counts else field.path.removesuffix("[#]")
+    tables = {"vehicle.wheel[#]": WHEEL, "vehicle.support[#]": SUPPORT}
+    item = tables.get(field.table, COMPONENT if field.items else NONE)
+    if item in (WHEEL, SUPPORT):
+        key = f"{item}.{field.key}"
+    return key + NOTES.get(field.identifier, ""), unit, item, NEEDS[field.need]
+
+
+def taken() -> dict[str, tuple[str, str, str, str]]:
+    """Those that a node takes."""
+    unit = units()
+    return {field.identifier: row(field, unit[field.name] if field.kind == "REAL" else "integer")
+            for field in load().fields if field.table and field.table != "vehicle.motor"}
+
 
 PARAMETERS = {
-    "MASS": ("vehicle.mass_kg", "kg", NONE, ALWAYS),
-    "YAW_INERTIA": ("vehicle.yaw_inertia_kgm2", "kg m²", NONE, ALWAYS),
-    "COM_X": ("vehicle.com_x_m", "m", NONE, NEVER),
-    "COM_Y": ("vehicle.com_y_m", "m", NONE, NEVER),
-    "COM_Z": ("vehicle.com_z_m", "m", NONE, NEVER),
-    "WHEEL_RADIUS": ("vehicle.wheel_radius_m", "m", NONE, ALWAYS),
-    "WHEEL_INERTIA": ("vehicle.wheel_inertia_kgm2", "kg m²", NONE, WHEELS),
-    "MOTOR_GAIN": ("vehicle.motor_gain_Nm_per_V", "N m/V", NONE, MOTOR),
-    "MOTOR_DAMPING": ("vehicle.motor_damping_Nms", "N m s", NONE, MOTOR),
-    "FRICTION_COEFFICIENT": ("vehicle.friction_coefficient", "1", NONE, NEVER),
-    "PAYLOAD_MASS": ("vehicle.payload.mass_kg", "kg", NONE, PAYLOAD),
-    "PAYLOAD_X": ("vehicle.payload.x_m", "m", NONE, PAYLOAD),
-    "PAYLOAD_Y": ("vehicle.payload.y_m", "m", NONE, PAYLOAD),
-    "PAYLOAD_YAW_INERTIA": ("vehicle.payload.yaw_inertia_kgm2", "kg m²", NONE, PAYLOAD),
-    "WHEEL_COUNT": ("how many [[vehicle.wheel]]", "integer", NONE, ALWAYS),
-    "WHEEL_KIND": ("wheel.kind: 1 rollers (omni, mecanum), 2 fixed", "integer", WHEEL, EACH_WHEEL),
-    "WHEEL_X": ("wheel.x_m", "m", WHEEL, EACH_WHEEL),
-    "WHEEL_Y": ("wheel.y_m", "m", WHEEL, EACH_WHEEL),
-    "AXLE": ("wheel.axle_rad", "rad", WHEEL, EACH_WHEEL),
-    "ROLLER": ("wheel.roller_rad", "rad", WHEEL, "each wheel of kind 1"),
-    "WHEEL_LOCKED": ("wheel.locked: 0 or 1", "integer", WHEEL, NEVER),
-    "SUPPORT_COUNT": ("how many [[vehicle.support]]", "integer", NONE, "with any support"),
-    "SUPPORT_X": ("support.x_m", "m", SUPPORT, EACH_SUPPORT),
-    "SUPPORT_Y": ("support.y_m", "m", SUPPORT, EACH_SUPPORT),
-    "START_NU": ("initial.nu_rad_per_s", "rad/s", COMPONENT, NEVER),
-    "START_X": ("initial.x_m", "m", NONE, NEVER),
-    "START_Y": ("initial.y_m", "m", NONE, NEVER),
-    "START_HEADING": ("initial.heading_rad", "rad", NONE, NEVER),
-    "METHOD": ("run.method: see below", "integer", NONE, NEVER),
-    "STEP": ("run.step_s", "s", NONE, ALWAYS),
     "RESISTANCE": ("vehicle.motor.resistance_ohm", "Ω", NONE, RESERVED),
     "TORQUE_CONSTANT": ("vehicle.motor.torque_constant_Nm_per_A", "N m/A", NONE, RESERVED),
     "BACK_EMF": ("vehicle.motor.back_emf_Vs_per_rad", "V s/rad", NONE, RESERVED),
@@ -66,4 +69,4 @@ PARAMETERS = {
     "SUPPLY_RESISTANCE": ("the drive's supply_resistance_ohm", "Ω", NONE, RESERVED),
     "CURRENT_LIMIT": ("the drive's current_limit_A", "A", NONE, RESERVED),
     "START_WHEEL_SPEED": ("a wheel's speed at the start", "rad/s", WHEEL, RESERVED),
-}
+} | taken()

@@ -7,68 +7,28 @@
 
 #include <string.h>
 
-typedef enum value_kind { REAL, INTEGER, WHEEL_KIND, FLAG } value_kind;
-
-/* What must come, even if it is zero: as in a scene file, where nothing of a robot is assumed. */
-typedef enum need {
-    OPTIONAL,
-    ALWAYS,
-    WITH_WHEELS, /* where there are wheels                      */
-    WITH_GROUP,  /* where another number of its group has come  */
-    EACH,        /* wheel or support up to their number         */
-    EACH_ROLLER  /* wheel with rollers                          */
-} need;
-
 typedef struct place {
     uint8_t field;
-    uint8_t kind_and_need; /* value_kind, 16 · need */
+    uint8_t kind_and_need; /* laconic_field_kind, 16 · laconic_field_need */
     uint8_t items;         /* 0: the field is no list */
     uint8_t stride;
     uint16_t offset;
 } place;
 
 #define AT(member) (uint16_t)offsetof(laconic_parameters, member)
-#define SCALAR(field, member, need) {(uint8_t)(field), REAL | need << 4, 0, 0, AT(member)}
-#define COUNT(field, member, need) {(uint8_t)(field), INTEGER | need << 4, 0, 0, AT(member)}
-#define PER_WHEEL(field, type, member, need) \
-    {(uint8_t)(field), type | need << 4, LACONIC_MAX_WHEELS, sizeof(laconic_wheel), AT(vehicle.wheel[0].member)}
-#define PER_SUPPORT(field, member) \
-    {(uint8_t)(field), REAL | EACH << 4, LACONIC_MAX_SUPPORTS, sizeof(laconic_support), AT(vehicle.support[0].member)}
+#define IN_VEHICLE(member) 0, 0, AT(vehicle.member)
+#define IN_PAYLOAD(member) 0, 0, AT(vehicle.payload.member)
+#define IN_COUNT(member) 0, 0, AT(vehicle.member##_count)
+#define IN_WHEEL(member) LACONIC_MAX_WHEELS, sizeof(laconic_wheel), AT(vehicle.wheel[0].member)
+#define IN_SUPPORT(member) LACONIC_MAX_SUPPORTS, sizeof(laconic_support), AT(vehicle.support[0].member)
+#define IN_START_ARRAY(member) \
+    sizeof(((laconic_start *)NULL)->member) / sizeof(laconic_real), sizeof(laconic_real), AT(start.member)
+#define IN_START(member) 0, 0, AT(start.member)
+#define IN_RUN(member) 0, 0, AT(member)
+#define PLACE(of, number, IDENTIFIER, member, name, KIND, RULE, NEED) \
+    {number, LACONIC_KIND_##KIND | LACONIC_NEED_##NEED << 4, IN_##of(member)},
 
-#define PLACES (sizeof places / sizeof places[0])
-
-static const place places[] = {
-    SCALAR(LACONIC_FIELD_MASS, vehicle.mass_kg, ALWAYS),
-    SCALAR(LACONIC_FIELD_YAW_INERTIA, vehicle.yaw_inertia_kgm2, ALWAYS),
-    SCALAR(LACONIC_FIELD_COM_X, vehicle.com_x_m, OPTIONAL),
-    SCALAR(LACONIC_FIELD_COM_Y, vehicle.com_y_m, OPTIONAL),
-    SCALAR(LACONIC_FIELD_COM_Z, vehicle.com_z_m, OPTIONAL),
-    SCALAR(LACONIC_FIELD_WHEEL_RADIUS, vehicle.wheel_radius_m, ALWAYS),
-    SCALAR(LACONIC_FIELD_WHEEL_INERTIA, vehicle.wheel_inertia_kgm2, WITH_WHEELS),
-    SCALAR(LACONIC_FIELD_MOTOR_GAIN, vehicle.motor_gain_Nm_per_V, WITH_GROUP),
-    SCALAR(LACONIC_FIELD_MOTOR_DAMPING, vehicle.motor_damping_Nms, WITH_GROUP),
-    SCALAR(LACONIC_FIELD_FRICTION_COEFFICIENT, vehicle.friction_coefficient, OPTIONAL),
-    SCALAR(LACONIC_FIELD_PAYLOAD_MASS, vehicle.payload.mass_kg, WITH_GROUP),
-    SCALAR(LACONIC_FIELD_PAYLOAD_X, vehicle.payload.x_m, WITH_GROUP),
-    SCALAR(LACONIC_FIELD_PAYLOAD_Y, vehicle.payload.y_m, WITH_GROUP),
-    SCALAR(LACONIC_FIELD_PAYLOAD_YAW_INERTIA, vehicle.payload.yaw_inertia_kgm2, WITH_GROUP),
-    COUNT(LACONIC_FIELD_WHEEL_COUNT, vehicle.wheel_count, ALWAYS),
-    PER_WHEEL(LACONIC_FIELD_WHEEL_KIND, WHEEL_KIND, kind, EACH),
-    PER_WHEEL(LACONIC_FIELD_WHEEL_X, REAL, x_m, EACH),
-    PER_WHEEL(LACONIC_FIELD_WHEEL_Y, REAL, y_m, EACH),
-    PER_WHEEL(LACONIC_FIELD_AXLE, REAL, axle_rad, EACH),
-    PER_WHEEL(LACONIC_FIELD_ROLLER, REAL, roller_rad, EACH_ROLLER),
-    PER_WHEEL(LACONIC_FIELD_WHEEL_LOCKED, FLAG, locked, OPTIONAL),
-    COUNT(LACONIC_FIELD_SUPPORT_COUNT, vehicle.support_count, WITH_GROUP),
-    PER_SUPPORT(LACONIC_FIELD_SUPPORT_X, x_m),
-    PER_SUPPORT(LACONIC_FIELD_SUPPORT_Y, y_m),
-    {LACONIC_FIELD_START_NU, REAL | OPTIONAL << 4, 3, sizeof(laconic_real), AT(start.nu_rad_per_s)},
-    SCALAR(LACONIC_FIELD_START_X, start.x_m, OPTIONAL),
-    SCALAR(LACONIC_FIELD_START_Y, start.y_m, OPTIONAL),
-    SCALAR(LACONIC_FIELD_START_HEADING, start.heading_rad, OPTIONAL),
-    COUNT(LACONIC_FIELD_METHOD, method, OPTIONAL),
-    SCALAR(LACONIC_FIELD_STEP, step_s, ALWAYS),
-};
+static const place places[LACONIC_LOADER_FIELDS] = {LACONIC_PARAMETER_FIELDS(PLACE)};
 
 void laconic_loader_begin(laconic_loader *loader) {
     memset(loader, 0, sizeof *loader);
@@ -76,7 +36,7 @@ void laconic_loader_begin(laconic_loader *loader) {
 }
 
 static const place *find(uint8_t field, uint8_t item) {
-    for (size_t k = 0; k < PLACES; k++) {
+    for (size_t k = 0; k < LACONIC_LOADER_FIELDS; k++) {
         if (places[k].field != field) continue;
         const bool fits = places[k].items == 0 ? item == 0 : item >= 1 && item <= places[k].items;
         return fits ? &places[k] : NULL;
@@ -129,12 +89,12 @@ static void store_real(laconic_loader *loader, void *to, const struct laconic_db
 static void store_integer(laconic_loader *loader, void *to, uint8_t kind, const struct laconic_dbc_parameter_t *frame) {
     const int32_t number = (int32_t)frame->value;
     const bool flag = frame->value != 0;
-    const uint32_t largest = kind == FLAG ? 1U : kind == WHEEL_KIND ? 127U : UINT32_MAX;
+    const uint32_t largest = kind == LACONIC_KIND_FLAG ? 1U : kind == LACONIC_KIND_WHEEL_KIND ? 127U : UINT32_MAX;
     if (frame->upper_half || frame->value > largest) {
         refuse(loader, LACONIC_WIRE_STATUS_OUT_OF_RANGE, frame->field, frame->item);
-    } else if (kind == INTEGER) {
+    } else if (kind == LACONIC_KIND_INTEGER) {
         memcpy(to, &number, sizeof number);
-    } else if (kind == WHEEL_KIND) {
+    } else if (kind == LACONIC_KIND_WHEEL_KIND) {
         *(laconic_wheel_kind *)to = (laconic_wheel_kind)frame->value;
     } else {
         memcpy(to, &flag, sizeof flag);
@@ -155,51 +115,51 @@ void laconic_loader_take(laconic_loader *loader, const uint8_t data[8]) {
                frame.field, frame.item);
         return;
     }
-    loader->given[frame.field] |= (uint32_t)1 << frame.item;
+    loader->given[where - places] |= (uint32_t)1 << frame.item;
     uint8_t *to = (uint8_t *)&loader->parameters + where->offset;
     if (where->items > 0) to += (size_t)where->stride * (size_t)(frame.item - 1);
     const uint8_t kind = where->kind_and_need & 15U;
-    if (kind == REAL) {
+    if (kind == LACONIC_KIND_REAL) {
         store_real(loader, to, &frame);
     } else {
         store_integer(loader, to, kind, &frame);
     }
 }
 
-static bool any_of(const laconic_loader *loader, uint8_t first, uint8_t last) {
-    uint32_t given = 0;
-    for (; first <= last; first++) given |= loader->given[first];
-    return given != 0;
-}
+static laconic_field_need need_of(const place *where) { return (laconic_field_need)(where->kind_and_need >> 4); }
 
-static bool group_has_begun(const laconic_loader *loader, uint8_t field) {
-    if (field == LACONIC_FIELD_SUPPORT_COUNT) return any_of(loader, LACONIC_FIELD_SUPPORT_X, LACONIC_FIELD_SUPPORT_Y);
-    return field <= LACONIC_FIELD_MOTOR_DAMPING
-               ? any_of(loader, LACONIC_FIELD_MOTOR_GAIN, LACONIC_FIELD_MOTOR_DAMPING)
-               : any_of(loader, LACONIC_FIELD_PAYLOAD_MASS, LACONIC_FIELD_PAYLOAD_YAW_INERTIA);
+/* Whether anything that is needed so has come. */
+static bool any_given(const laconic_loader *loader, laconic_field_need need) {
+    uint32_t given = 0;
+    for (size_t k = 0; k < LACONIC_LOADER_FIELDS; k++)
+        if (need_of(&places[k]) == need) given |= loader->given[k];
+    return given != 0;
 }
 
 /* Whether this item of the field must have come. Beyond the largest number of wheels or supports the count itself is
  * wrong, which the core says. */
-static bool is_needed(const laconic_loader *loader, const place *where, int32_t item) {
+static bool is_needed(const laconic_loader *loader, laconic_field_need need, int32_t item) {
     const laconic_vehicle *vehicle = &loader->parameters.vehicle;
-    switch (where->kind_and_need >> 4) {
-    case ALWAYS: return true;
-    case WITH_WHEELS: return vehicle->wheel_count > 0;
-    case WITH_GROUP: return group_has_begun(loader, where->field);
-    case EACH: return item <= (where->field < LACONIC_FIELD_SUPPORT_X ? vehicle->wheel_count : vehicle->support_count);
-    case EACH_ROLLER: return item <= vehicle->wheel_count && vehicle->wheel[item - 1].kind == LACONIC_WHEEL_ROLLER;
+    switch (need) {
+    case LACONIC_NEED_ALWAYS: return true;
+    case LACONIC_NEED_WITH_WHEELS: return vehicle->wheel_count > 0;
+    case LACONIC_NEED_WITH_MOTOR:
+    case LACONIC_NEED_WITH_PAYLOAD: return any_given(loader, need);
+    case LACONIC_NEED_WITH_SUPPORTS: return any_given(loader, LACONIC_NEED_EACH_SUPPORT);
+    case LACONIC_NEED_EACH_WHEEL: return item <= vehicle->wheel_count;
+    case LACONIC_NEED_EACH_ROLLER:
+        return item <= vehicle->wheel_count && vehicle->wheel[item - 1].kind == LACONIC_WHEEL_ROLLER;
+    case LACONIC_NEED_EACH_SUPPORT: return item <= vehicle->support_count;
     default: return false;
     }
 }
 
 static bool something_is_missing(const laconic_loader *loader, uint8_t *field, uint8_t *item) {
-    for (size_t k = 0; k < PLACES; k++) {
-        const place *where = &places[k];
-        *field = where->field;
-        for (*item = where->items > 0; *item <= where->items; ++*item) {
-            const bool given = (loader->given[where->field] >> *item & 1U) != 0;
-            if (!given && is_needed(loader, where, *item)) return true;
+    for (size_t k = 0; k < LACONIC_LOADER_FIELDS; k++) {
+        *field = places[k].field;
+        for (*item = places[k].items > 0; *item <= places[k].items; ++*item) {
+            const bool given = (loader->given[k] >> *item & 1U) != 0;
+            if (!given && is_needed(loader, need_of(&places[k]), *item)) return true;
         }
     }
     *field = 0;

@@ -32,9 +32,8 @@ def _range(description: Description, variable: Variable) -> str:
 def _row(description: Description, variable: Variable, states: set[str]) -> str:
     place = re.sub(r"\W+", "_", variable.name).strip("_")
     size = 1 if variable.size is None else 0 if isinstance(variable.size, str) else variable.size
-    return (f'    ROW("{variable.name}", {size}, {TYPES[variable.tag]}, {_access(variable, states)}, '
-            f"{variable.attributes.get('intermediateUpdate', 'false')}, {_range(description, variable)}, "
-            f"FMU_PLACE_{place}),")
+    return (f'    ROW({place}, "{variable.name}", {size}, {TYPES[variable.tag]}, {_access(variable, states)}, '
+            f"{variable.attributes.get('intermediateUpdate', 'false')}, {_range(description, variable)}),")
 
 
 def _fits(description: Description) -> list[str]:
@@ -56,11 +55,9 @@ def tables(description: Description, text_3: str, text_2: str) -> str:
         '#include "instance.h"',
         '#include "places.h"',
         "",
-        "/* a place is: offset, stride, group, tangent offset */",
-        "#define ROW(name, size, type, access, intermediate, least, most, ...) \\",
-        "    ROW_OF(name, size, type, access, intermediate, least, most, __VA_ARGS__)",
-        "#define ROW_OF(name, size, type, access, intermediate, least, most, offset, stride, group, tangent) \\",
-        "    {name, offset, (uint16_t)(stride), size, type, access, intermediate, least, most, group, tangent}",
+        "#define ROW(place, name, size, type, access, intermediate, least, most) \\",
+        "    {name, FMU_OFFSET_##place, (uint16_t)FMU_STRIDE_##place, size, type, access, intermediate, least, \\",
+        "     most, FMU_GROUP_OF_##place, (uint32_t)FMU_TANGENT_##place}",
         "",
         *_fits(description),
         "",

@@ -2,38 +2,36 @@
  * same numbers come the same bits. */
 #include "plant_api.h"
 
+/* One field of a struct, by its kind. */
+#define TRANSFER(of, number, IDENTIFIER, member, name, KIND, RULE, NEED) TRANSFER_##KIND(s, &(of).member);
+#define TRANSFER_REAL(stream, number) fmu_stream_reals(stream, number, 1)
+#define TRANSFER_INTEGER(stream, number) fmu_stream_i32(stream, number, INT32_MIN, INT32_MAX)
+#define TRANSFER_FLAG(stream, flag) fmu_stream_bool(stream, flag)
+#define TRANSFER_WHEEL_KIND(stream, kind) transfer_kind(stream, kind)
+
+static void transfer_kind(fmu_stream *s, laconic_wheel_kind *kind) {
+    int32_t number = (int32_t)*kind;
+    fmu_stream_i32(s, &number, INT32_MIN, INT32_MAX);
+    *kind = (laconic_wheel_kind)number;
+}
+
 static void transfer_vehicle(fmu_stream *s, laconic_vehicle *v) {
     int32_t i;
-    fmu_stream_reals(s, &v->mass_kg, 1);
-    fmu_stream_reals(s, &v->yaw_inertia_kgm2, 1);
-    fmu_stream_reals(s, &v->com_x_m, 1);
-    fmu_stream_reals(s, &v->com_y_m, 1);
-    fmu_stream_reals(s, &v->com_z_m, 1);
-    fmu_stream_reals(s, &v->wheel_radius_m, 1);
-    fmu_stream_reals(s, &v->wheel_inertia_kgm2, 1);
-    fmu_stream_reals(s, &v->motor_gain_Nm_per_V, 1);
-    fmu_stream_reals(s, &v->motor_damping_Nms, 1);
-    fmu_stream_reals(s, &v->friction_coefficient, 1);
-    fmu_stream_reals(s, &v->payload.mass_kg, 1);
-    fmu_stream_reals(s, &v->payload.x_m, 1);
-    fmu_stream_reals(s, &v->payload.y_m, 1);
-    fmu_stream_reals(s, &v->payload.yaw_inertia_kgm2, 1);
+    LACONIC_VEHICLE_FIELDS(TRANSFER, *v)
+    LACONIC_PAYLOAD_FIELDS(TRANSFER, v->payload)
     fmu_stream_i32(s, &v->wheel_count, 0, LACONIC_MAX_WHEELS);
     for (i = 0; i < LACONIC_MAX_WHEELS; i++) {
-        int32_t kind = (int32_t)v->wheel[i].kind;
-        fmu_stream_i32(s, &kind, INT32_MIN, INT32_MAX);
-        v->wheel[i].kind = (laconic_wheel_kind)kind;
-        fmu_stream_bool(s, &v->wheel[i].locked);
-        fmu_stream_reals(s, &v->wheel[i].x_m, 1);
-        fmu_stream_reals(s, &v->wheel[i].y_m, 1);
-        fmu_stream_reals(s, &v->wheel[i].axle_rad, 1);
-        fmu_stream_reals(s, &v->wheel[i].roller_rad, 1);
+        LACONIC_WHEEL_FIELDS(TRANSFER, v->wheel[i])
     }
     fmu_stream_i32(s, &v->support_count, INT32_MIN, INT32_MAX);
     for (i = 0; i < LACONIC_MAX_SUPPORTS; i++) {
-        fmu_stream_reals(s, &v->support[i].x_m, 1);
-        fmu_stream_reals(s, &v->support[i].y_m, 1);
+        LACONIC_SUPPORT_FIELDS(TRANSFER, v->support[i])
     }
+}
+
+static void transfer_start(fmu_stream *s, laconic_start *start) {
+    fmu_stream_reals(s, start->nu_rad_per_s, 3);
+    LACONIC_START_FIELDS(TRANSFER, *start)
 }
 
 static void transfer_input(fmu_stream *s, laconic_input *u) {
@@ -125,10 +123,7 @@ bool fmu_plant_transfer(fmu_stream *stream, fmu_plant *plant) {
     fmu_stream_bool(stream, &plant->stand_in);
     fmu_stream_reals(stream, &plant->time_s, 1);
     transfer_vehicle(stream, &plant->vehicle);
-    fmu_stream_reals(stream, plant->start.nu_rad_per_s, 3);
-    fmu_stream_reals(stream, &plant->start.x_m, 1);
-    fmu_stream_reals(stream, &plant->start.y_m, 1);
-    fmu_stream_reals(stream, &plant->start.heading_rad, 1);
+    transfer_start(stream, &plant->start);
     fmu_stream_i32(stream, &plant->method, INT32_MIN, INT32_MAX);
     fmu_stream_reals(stream, &plant->step_s, 1);
     transfer_input(stream, &plant->input);

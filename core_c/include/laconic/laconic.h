@@ -47,6 +47,8 @@
 #define LACONIC_H
 
 #include "laconic/real.h"
+#include "laconic/status.h"  /* laconic_status, laconic_arithmetic */
+#include "laconic/vehicle.h" /* laconic_vehicle, _motor, _input, _start; laconic_field */
 
 #ifdef __cplusplus
 extern "C" {
@@ -56,77 +58,6 @@ extern "C" {
 #define LACONIC_GRAVITY_M_PER_S2 9.80665
 
 /* ------------------------------------------------------------------------------- refusals -- */
-
-typedef enum laconic_status {
-    LACONIC_OK = 0,
-    LACONIC_NOT_FINITE,                   /* a number is infinite or not a number                      */
-    LACONIC_NOT_POSITIVE,                 /* mass, wheel radius, yaw inertia or step is not above zero */
-    LACONIC_NEGATIVE,                     /* an inertia, damping or friction is below zero             */
-    LACONIC_ROLLER_ALONG_AXLE,            /* |sin γ| too small: the wheel would transmit nothing       */
-    LACONIC_WHEEL_NOT_SET,                /* wheel_count counts a wheel whose kind was never given     */
-    LACONIC_WHEEL_KIND_UNKNOWN,           /* kind is none of laconic_wheel_kind                        */
-    LACONIC_TOO_MANY_WHEELS,              /* wheel_count below 0 or above LACONIC_MAX_WHEELS           */
-    LACONIC_TOO_MANY_SUPPORTS,            /* support_count below 0 or above LACONIC_MAX_SUPPORTS       */
-    LACONIC_NOTHING_MOVES,                /* three independent constraints                             */
-    LACONIC_ILL_CONDITIONED,              /* ε √cond(A) >= 0.01: fewer than two correct digits left    */
-    LACONIC_START_AGAINST_CONSTRAINTS,    /* the initial velocity slides a fixed or locked wheel       */
-    LACONIC_METHOD_UNKNOWN,               /* no method of that name or number                          */
-    LACONIC_STEP_DOES_NOT_FIT,            /* the interval is no whole number of steps                  */
-    LACONIC_STEP_BEYOND_DAMPING_LIMIT,    /* explicit method: h·r_max above its limit                  */
-    LACONIC_STEP_BEYOND_GYROSCOPIC_LIMIT, /* explicit method: h·|ν3| above its limit in this state     */
-    LACONIC_STEP_GAINS_ENERGY,            /* the step would make energy out of nothing                 */
-    LACONIC_STEP_SINGULAR,                /* the step has no finite result in this state               */
-    LACONIC_OVERFLOW,                     /* the result leaves the range of the scalar type            */
-    LACONIC_STATUS_COUNT
-} laconic_status;
-
-/* The fields a refusal can name. laconic_field_name() gives the name in FMUs, laconic_field_path() that in scenes. */
-typedef enum laconic_field {
-    LACONIC_FIELD_NONE = 0,
-    LACONIC_FIELD_MASS,
-    LACONIC_FIELD_YAW_INERTIA,
-    LACONIC_FIELD_COM_X,
-    LACONIC_FIELD_COM_Y,
-    LACONIC_FIELD_COM_Z,
-    LACONIC_FIELD_WHEEL_RADIUS,
-    LACONIC_FIELD_WHEEL_INERTIA,
-    LACONIC_FIELD_MOTOR_GAIN,
-    LACONIC_FIELD_MOTOR_DAMPING,
-    LACONIC_FIELD_FRICTION_COEFFICIENT,
-    LACONIC_FIELD_PAYLOAD_MASS,
-    LACONIC_FIELD_PAYLOAD_X,
-    LACONIC_FIELD_PAYLOAD_Y,
-    LACONIC_FIELD_PAYLOAD_YAW_INERTIA,
-    LACONIC_FIELD_WHEEL_COUNT,
-    LACONIC_FIELD_WHEEL_KIND,
-    LACONIC_FIELD_WHEEL_X,
-    LACONIC_FIELD_WHEEL_Y,
-    LACONIC_FIELD_AXLE,
-    LACONIC_FIELD_ROLLER,
-    LACONIC_FIELD_WHEEL_LOCKED,
-    LACONIC_FIELD_SUPPORT_COUNT,
-    LACONIC_FIELD_SUPPORT_X,
-    LACONIC_FIELD_SUPPORT_Y,
-    LACONIC_FIELD_START_NU,
-    LACONIC_FIELD_START_X,
-    LACONIC_FIELD_START_Y,
-    LACONIC_FIELD_START_HEADING,
-    LACONIC_FIELD_METHOD,
-    LACONIC_FIELD_STEP,
-    LACONIC_FIELD_VOLTAGE,
-    LACONIC_FIELD_AXLE_TORQUE,
-    LACONIC_FIELD_BODY_FORCE,
-    LACONIC_FIELD_BODY_MOMENT,
-    LACONIC_FIELD_WORLD_FORCE,
-    LACONIC_FIELD_WORLD_FORCE_POINT,
-    LACONIC_FIELD_RESISTANCE,
-    LACONIC_FIELD_TORQUE_CONSTANT,
-    LACONIC_FIELD_BACK_EMF,
-    LACONIC_FIELD_GEAR_RATIO,
-    LACONIC_FIELD_VISCOUS_FRICTION,
-    LACONIC_FIELD_ROTOR_INERTIA,
-    LACONIC_FIELD_COUNT
-} laconic_field;
 
 /* Why something was refused: what to tell the user. */
 typedef struct laconic_refusal {
@@ -151,28 +82,25 @@ const char *laconic_field_name(laconic_field field);
 /* "vehicle.mass_kg", "vehicle.wheel[#].x_m" … , # for the item; an input's is its signal; "" for a number that is none. */
 const char *laconic_field_path(laconic_field field);
 
+/* What else vehicle.h says of a field; items: how many numbers it has, 0: one. */
+typedef struct laconic_field_traits {
+    laconic_field_kind kind;
+    laconic_field_rule rule;
+    laconic_field_need need;
+    int32_t items;
+} laconic_field_traits;
+
+/* For hosts and tools, which make their own lists of it; NULL for a number that is no field. */
+const laconic_field_traits *laconic_field_traits_of(laconic_field field);
+
 /* "not finite", "wheel not set" … : a few words; "unknown status" for a number that is none. */
 const char *laconic_status_name(laconic_status status);
 
 /* ----------------------------------------------------------------------------- arithmetic -- */
 
-/* What laconic_self_test() found. */
-typedef enum laconic_arithmetic {
-    LACONIC_ARITHMETIC_SOUND = 0,
-    LACONIC_ARITHMETIC_WITHOUT_NAN,       /* NaN and infinity pass for numbers: -ffinite-math-only          */
-    LACONIC_ARITHMETIC_ROUNDED_OTHERWISE, /* not to nearest, ties to even: fesetround, FPSCR, MXCSR         */
-    LACONIC_ARITHMETIC_REORDERED,         /* sums are taken in another order: -fassociative-math            */
-    LACONIC_ARITHMETIC_EXCESS_PRECISION,  /* intermediate results keep more than their type: x87            */
-    LACONIC_ARITHMETIC_FUSED,             /* multiply and add are rounded once: -ffp-contract, gcc's SLP    */
-    LACONIC_ARITHMETIC_BY_RECIPROCALS,    /* x/y as x·(1/y): -freciprocal-math                              */
-    LACONIC_ARITHMETIC_FLUSHED,           /* subnormal numbers count as 0: FTZ, DAZ, FPSCR.FZ, or a library
-                                             linked with -ffast-math, which sets them for the whole process */
-    LACONIC_ARITHMETIC_COUNT
-} laconic_arithmetic;
-
 /* Optional; for the start of a program: does arithmetic give the bits and the refusals that this header promises?
- * What compilers admit is an error when compiling (real.h); this finds what no macro shows, the first of the list
- * above. It sees the options its own file is compiled with, so compile it with the core's, and the modes of the thread
+ * What compilers admit is an error when compiling (real.h); this finds what no macro shows, the first of
+ * LACONIC_ARITHMETICS. It sees the options its own file is compiled with, so compile it with the core's, and the modes of the thread
  * that calls it, so call it there. Less than 1 KB in single on a Cortex-M4; nothing else in the core calls it. */
 laconic_arithmetic laconic_self_test(void);
 
@@ -181,63 +109,8 @@ const char *laconic_arithmetic_text(laconic_arithmetic found);
 
 /* -------------------------------------------------------------------------------- vehicle -- */
 
-typedef enum laconic_wheel_kind {
-    LACONIC_WHEEL_UNSET = 0,  /* refused: so that a forgotten wheel is noticed                    */
-    LACONIC_WHEEL_ROLLER = 1, /* omni or mecanum: slides freely along its rollers' rolling direction */
-    LACONIC_WHEEL_FIXED = 2   /* ordinary, not steered: does not move along its axle               */
-} laconic_wheel_kind;
-
-typedef struct laconic_wheel {
-    laconic_wheel_kind kind;
-    bool locked;             /* held by a brake: χ' = 0                                           */
-    laconic_real x_m, y_m;   /* wheel centre P_i in the body frame                                */
-    laconic_real axle_rad;   /* β_i, direction of the axle in the body frame; refused where too
-                                large to be known to 1e-6 rad (float: 1e-3), as is roller_rad    */
-    laconic_real roller_rad; /* γ_i, from axle to roller axis (the roller that touches the ground):
-                                π/2 omni, ±π/4 mecanum; not read for fixed wheels                 */
-} laconic_wheel;
-
-/* A load fastened to the body. All zero: none. */
-typedef struct laconic_payload {
-    laconic_real mass_kg;
-    laconic_real x_m, y_m;         /* its centre of mass in the body frame                        */
-    laconic_real yaw_inertia_kgm2; /* about the vertical through its centre of mass               */
-} laconic_payload;
-
-typedef struct laconic_support { /* a ball caster: carries load, nothing else */
-    laconic_real x_m, y_m;
-} laconic_support;
-
-/* What the user knows. Start from all zero and set what applies. Totals count the wheels in. */
-typedef struct laconic_vehicle {
-    laconic_real mass_kg;              /* M, without payload                                     */
-    laconic_real yaw_inertia_kgm2;     /* I_S, about the vertical through the centre of mass     */
-    laconic_real com_x_m, com_y_m;     /* centre of mass S in the body frame, without payload    */
-    laconic_real com_z_m;              /* its height above the ground, >= 0; for normal loads only */
-    laconic_real wheel_radius_m;       /* R, common to all wheels                                */
-    laconic_real wheel_inertia_kgm2;   /* J, one wheel with its gear and rotor about the axle    */
-    laconic_real motor_gain_Nm_per_V;  /* c1: torque on a wheel is c1 U − c2 χ' + axle torque    */
-    laconic_real motor_damping_Nms;    /* c2                                                     */
-    laconic_real friction_coefficient; /* μ, for the no-slip margin only                         */
-    laconic_payload payload;
-    int32_t wheel_count; /* N, 0 … LACONIC_MAX_WHEELS; 0 is a sliding puck         */
-    laconic_wheel wheel[LACONIC_MAX_WHEELS];
-    int32_t support_count; /* 0 … LACONIC_MAX_SUPPORTS, for normal loads only        */
-    laconic_support support[LACONIC_MAX_SUPPORTS];
-} laconic_vehicle;
-
 /* OK iff every number of the vehicle is usable; else the first that is not. O(N). */
 laconic_status laconic_vehicle_check(const laconic_vehicle *vehicle, laconic_refusal *why);
-
-/* A brushed DC motor behind a gear, at the motor's shaft. */
-typedef struct laconic_motor {
-    laconic_real resistance_ohm;           /* R_a > 0                                             */
-    laconic_real torque_constant_Nm_per_A; /* k_t                                                 */
-    laconic_real back_emf_Vs_per_rad;      /* k_e                                                 */
-    laconic_real gear_ratio;               /* G: shaft turns per wheel turn, not 0                */
-    laconic_real viscous_friction_Nms;     /* b                                                   */
-    laconic_real rotor_inertia_kgm2;
-} laconic_motor;
 
 /* c1 = G k_t/R_a, c2 = G² (k_t k_e/R_a + b) set in the vehicle; G² J_rotor added to J, so call it once. Refuses
  * OVERFLOW (gear_ratio) where one of these leaves the range, NEGATIVE (back_emf) where damping is below 0. */
@@ -302,16 +175,6 @@ laconic_status laconic_matrices_of(laconic_matrices *matrices, const laconic_veh
 
 /* ---------------------------------------------------------------------------------- input -- */
 
-/* What acts on the vehicle. All zero: it rolls freely (against its motors' damping). */
-typedef struct laconic_input {
-    laconic_real voltage_V[LACONIC_MAX_WHEELS];      /* U_i                                      */
-    laconic_real axle_torque_Nm[LACONIC_MAX_WHEELS]; /* besides the motor's                      */
-    laconic_real body_force_N[2];                    /* body axes, acting at S                   */
-    laconic_real body_moment_Nm;                     /* about S                                  */
-    laconic_real world_force_N[2];                   /* world axes                               */
-    laconic_real world_force_point_m[2];             /* where it acts: body axes, from S         */
-} laconic_input;
-
 /* OK iff every number of the first wheel_count wheels, and the rest, is finite. */
 laconic_status laconic_input_check(const laconic_model *model, const laconic_input *input, laconic_refusal *why);
 
@@ -346,12 +209,6 @@ typedef struct laconic_state {
     laconic_sum travel[3]; /* ∫ζ dt since the wheel angles were last set: they are linear in it            */
     laconic_real wheel_angle_set_rad[LACONIC_MAX_WHEELS]; /* what they were set to                          */
 } laconic_state;
-
-typedef struct laconic_start {
-    laconic_real nu_rad_per_s[3];
-    laconic_real x_m, y_m; /* of the centre of mass */
-    laconic_real heading_rad;
-} laconic_start;
 
 /* Sets the state; wheel angles become 0. Refuses START_AGAINST_CONSTRAINTS iff ν is off the allowed
  * motions by more than LACONIC_RANK_TOLERANCE of its size (item: the component that is furthest off,

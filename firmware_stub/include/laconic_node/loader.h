@@ -11,7 +11,9 @@ typedef struct laconic_parameters {
     int32_t method;
 } laconic_parameters;
 
-#define LACONIC_LOADER_FIELDS (LACONIC_FIELD_STEP + 1)
+/* How many fields it takes. */
+#define LACONIC_LOADER_ONE(of, number, ...) +1
+#define LACONIC_LOADER_FIELDS (0 LACONIC_PARAMETER_FIELDS(LACONIC_LOADER_ONE))
 
 typedef struct laconic_loader {
     laconic_parameters parameters;
@@ -21,7 +23,7 @@ typedef struct laconic_loader {
     uint8_t field, item;           /* … and what it was about                                        */
     uint8_t half_field, half_item; /* lower half of a double waits for its upper half; 0: none */
     uint32_t half;
-    uint32_t given[LACONIC_LOADER_FIELDS]; /* by field: bit = item, 0 where it has none                */
+    uint32_t given[LACONIC_LOADER_FIELDS]; /* bit = item, 0 where the field has none                   */
 } laconic_loader;
 
 void laconic_loader_begin(laconic_loader *loader);

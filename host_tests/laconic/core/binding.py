@@ -20,6 +20,7 @@ from typing import Any
 import numpy as np
 from cffi import FFI
 
+from laconic.core.fields import Field, fields_from
 from laconic.core.plant import Plant
 from laconic.errors import BadInput, Refused, nearest_of
 from laconic.paths import built
@@ -60,6 +61,7 @@ class Core:
         fields = dict(ffi.typeof("laconic_vehicle").fields)
         self.max_wheels: int = fields["wheel"].type.length
         self.max_supports: int = fields["support"].type.length
+        self.fields = fields_from(ffi, lib)
         self.method_names = self._method_names()
         self.input_fields = self._input_fields()
         self.input_length = ffi.sizeof("laconic_input") // self.dtype.itemsize
@@ -76,6 +78,10 @@ class Core:
             length = field.type.length if field.type.kind == "array" else 1
             found[name] = (field.offset // self.dtype.itemsize, length)
         return found
+
+    def fields_of(self, table: str) -> list[Field]:
+        """The fields that are keys of a scene's table: "vehicle", "vehicle.payload", "vehicle.wheel[#]" …"""
+        return [field for field in self.fields if field.table == table and not field.counts]
 
     def text(self, chars: Any) -> str:
         """A C string."""
@@ -113,17 +119,17 @@ class Core:
         for place, wheel in zip(vehicle.wheel, wheels, strict=False):
             self._set_wheel(place, wheel)
         for place, support in zip(vehicle.support, supports, strict=False):
-            place.x_m, place.y_m = support["x_m"], support["y_m"]
+            for field in self.fields_of("vehicle.support[#]"):
+                setattr(place, field.key, support[field.key])
         if motor := data.get("motor"):
             self._fit_motor(vehicle, motor)
         return vehicle
 
     def _set_wheel(self, place: Any, wheel: Mapping[str, Any]) -> None:
-        place.kind = getattr(self.lib, f"LACONIC_WHEEL_{WHEEL_KINDS[wheel['kind']]}")
-        place.locked = wheel.get("locked", False)
-        place.x_m, place.y_m = wheel.get("x_m", 0.0), wheel.get("y_m", 0.0)
-        place.axle_rad = wheel.get("axle_rad", 0.0)
-        place.roller_rad = wheel.get("roller_rad", OMNI_ROLLER_RAD)
+        kind = getattr(self.lib, f"LACONIC_WHEEL_{WHEEL_KINDS[wheel['kind']]}")
+        given = {"roller_rad": OMNI_ROLLER_RAD, **wheel, "kind": kind}
+        for field in self.fields_of("vehicle.wheel[#]"):
+            setattr(place, field.key, given.get(field.key, 0))
 
     def _fit_motor(self, vehicle: Any, motor: Mapping[str, float]) -> None:
         why = self.why()

@@ -18,12 +18,6 @@ from laconic_fmu.page import vehicle_parts
 
 DESCRIPTION = SOURCE_DIR / "modelDescription.xml"
 
-PLAIN = ("mass_kg", "yaw_inertia_kgm2", "com_x_m", "com_y_m", "com_z_m", "wheel_radius_m", "wheel_inertia_kgm2",
-         "motor_gain_Nm_per_V", "motor_damping_Nms", "friction_coefficient")
-PAYLOAD = ("mass_kg", "x_m", "y_m", "yaw_inertia_kgm2")
-WHEEL = {"wheel_kind": "kind", "wheel_x_m": "x_m", "wheel_y_m": "y_m", "axle_rad": "axle_rad",
-         "roller_rad": "roller_rad", "wheel_locked": "locked"}
-
 
 def generic_fmu(version: int) -> Path:
     """The FMU that the build made."""
@@ -33,17 +27,13 @@ def generic_fmu(version: int) -> Path:
 def start_values(scene: Scene) -> dict[str, list[float]]:
     """The scene's vehicle, start, method and step by the names of the FMI variables."""
     core = load("double")
-    vehicle, start = scene.c_vehicle(core), scene.initial
-    wheels = [vehicle.wheel[i] for i in range(vehicle.wheel_count)]
-    supports = [vehicle.support[i] for i in range(core.max_supports)]
-    values: dict[str, list[float]] = {"wheel_count": [vehicle.wheel_count]}
-    values |= {name: [getattr(vehicle, name)] for name in PLAIN}
-    values |= {f"payload_{name}": [getattr(vehicle.payload, name)] for name in PAYLOAD}
-    values |= {name: [float(getattr(wheel, key)) for wheel in wheels] for name, key in WHEEL.items()}
-    values |= {"support_count": [vehicle.support_count], "support_x_m": [each.x_m for each in supports],
-               "support_y_m": [each.y_m for each in supports]}
-    values |= {"start_nu_rad_per_s": [float(nu) for nu in start.nu(scene.model(core))], "start_x_m": [start.x_m],
-               "start_y_m": [start.y_m], "start_heading_rad": [start.heading_rad]}
+    roots = {"vehicle": scene.c_vehicle(core), "initial": scene.c_start(core)}
+    values: dict[str, list[float]] = {}
+    for field in core.fields:
+        root = field.path.partition(".")[0]
+        if root in roots and field.table != "vehicle.motor":
+            of_wheels = field.table == "vehicle.wheel[#]"
+            values[field.name] = field.values(roots[root])[:scene.wheel_count if of_wheels else None]
     return values | {"method": [METHODS.index(scene.run.method)], "step_s": [scene.run.step_s]}
 
 

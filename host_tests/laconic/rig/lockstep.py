@@ -72,10 +72,7 @@ class LockstepRun:
 
 def start_of(scene: Scene) -> Any:
     """The scene's laconic_start, in the core's scalar type."""
-    core, initial = scene.core(), scene.initial
-    return core.ffi.new("laconic_start *", {
-        "nu_rad_per_s": [float(v) for v in initial.nu(scene.model(core))], "x_m": initial.x_m, "y_m": initial.y_m,
-        "heading_rad": initial.heading_rad})
+    return scene.c_start(scene.core())
 
 
 def load_scene(node: NodeClient, scene: Scene) -> Plant:

@@ -7,6 +7,7 @@ from collections.abc import Iterator, Sequence
 from itertools import pairwise
 from typing import Any
 
+from laconic.core import Field, load
 from laconic.errors import nearest_of
 from laconic.scene.drive import Input
 from laconic.scene.not_modelled import KINDS_OF_WHEELS, OF_VEHICLES, OF_WHEELS
@@ -21,9 +22,6 @@ OUTPUTS_PER_WHEEL = ("wheel_speed_rad_per_s", "wheel_angle_rad", "wheel_torque_N
 OUTPUT_LENGTHS = {
     "nu_rad_per_s": 3, "velocity_body_m_per_s": 2, "x_m": 0, "y_m": 0, "heading_rad": 0, "heading_wrapped_rad": 0,
     "origin_x_m": 0, "origin_y_m": 0, "yaw_rate_rad_per_s": 0, "no_slip_margin_N": 0, "energy_J": 0}
-MOTOR_KEYS = ("resistance_ohm", "torque_constant_Nm_per_A", "back_emf_Vs_per_rad", "gear_ratio",
-              "viscous_friction_Nms", "rotor_inertia_kgm2")
-MOTOR_OPTIONAL = ("viscous_friction_Nms", "rotor_inertia_kgm2")
 
 
 def read_parts(top: Table, methods: Sequence[str], reals: Sequence[str]) -> dict[str, Any]:
@@ -48,35 +46,41 @@ def read_parts(top: Table, methods: Sequence[str], reals: Sequence[str]) -> dict
 
 def read_vehicle(table: Table) -> dict[str, Any]:
     """`[vehicle]` with the keys of laconic_vehicle; `motor` stays apart for laconic_motor_fit."""
-    vehicle: dict[str, Any] = {key: table.number(key, finite=False)
-                               for key in ("mass_kg", "yaw_inertia_kgm2", "wheel_radius_m")}
-    for key in ("com_x_m", "com_y_m", "com_z_m", "friction_coefficient"):
-        vehicle[key] = table.number(key, 0.0, finite=False)
+    fields = load().fields_of("vehicle")
+    vehicle: dict[str, Any] = {field.key: read_field(table, field) for field in fields if field.need == "ALWAYS"}
+    vehicle |= {field.key: read_field(table, field, 0.0) for field in fields if field.need == "NEVER"}
     vehicle["wheel"] = [read_wheel(each) for each in table.tables("wheel")]
     needed = ... if vehicle["wheel"] else 0.0
-    vehicle["wheel_inertia_kgm2"] = table.number("wheel_inertia_kgm2", needed, finite=False)
-    vehicle |= read_motor(table)
+    vehicle |= {field.key: read_field(table, field, needed) for field in fields if field.need == "WITH_WHEELS"}
+    vehicle |= read_motor(table, [field for field in fields if field.need == "WITH_MOTOR"])
     vehicle["support"] = [read_point(each) for each in table.tables("support")]
     if table.has("payload"):
         payload = table.table("payload")
-        vehicle["payload"] = {key: payload.number(key, finite=False) for key in
-                              ("mass_kg", "x_m", "y_m", "yaw_inertia_kgm2")}
+        vehicle["payload"] = {field.key: read_field(payload, field) for field in load().fields_of("vehicle.payload")}
         payload.done()
     table.done(OF_VEHICLES)
     return vehicle
 
 
-def read_motor(table: Table) -> dict[str, Any]:
+def read_field(table: Table, field: Field, default: Any = ..., *, finite: bool = False) -> Any:
+    """One key of a table by what the core says of it; what the number must be is left to the core."""
+    if field.kind == "FLAG":
+        return table.flag(field.key, default if default is ... else bool(default))
+    if field.key.endswith("_rad"):
+        return table.angle(field.key.removesuffix("_rad"), default, finite=finite)
+    return table.number(field.key, default, finite=finite)
+
+
+def read_motor(table: Table, direct: Sequence[Field]) -> dict[str, Any]:
     """Gain and damping at the wheel, or a motor at its shaft, or neither."""
-    direct = ("motor_gain_Nm_per_V", "motor_damping_Nms")
-    given = [key for key in direct if table.has(key)]
+    given = [field.key for field in direct if table.has(field.key)]
     if not table.has("motor"):
-        default = ... if given else 0.0
-        return {key: table.number(key, default, finite=False) for key in direct}
+        return {field.key: read_field(table, field, ... if given else 0.0) for field in direct}
     if given:
         table.fail(given[0], "is given besides [vehicle.motor]; keep one of them")
     motor = table.table("motor")
-    values = {key: motor.number(key, 0.0 if key in MOTOR_OPTIONAL else ..., finite=False) for key in MOTOR_KEYS}
+    values = {field.key: read_field(motor, field, 0.0 if field.need == "NEVER" else ...)
+              for field in load().fields_of("vehicle.motor")}
     motor.done()
     return {"motor": values}
 
@@ -85,14 +89,16 @@ def read_wheel(table: Table) -> dict[str, Any]:
     """One `[[vehicle.wheel]]`: an omni wheel's roller angle is π/2 unless it is given."""
     kind = table.choice("kind", WHEEL_KINDS, hints=KINDS_OF_WHEELS)
     wheel: dict[str, Any] = {"kind": kind, **read_place(table)}
-    wheel["axle_rad"] = table.angle("axle", finite=False)
+    fields = {field.key: field for field in load().fields_of("vehicle.wheel[#]") if field.key not in wheel}
+    roller = fields.pop("roller_rad")
+    wheel |= {key: read_field(table, field) for key, field in fields.items() if field.need == "EACH_WHEEL"}
     if kind == "fixed":
         for key in ("roller_rad", "roller_deg"):
             if table.has(key):
                 table.fail(key, "is given for a fixed wheel, which has no rollers; take it out")
     else:
-        wheel["roller_rad"] = table.angle("roller", math.pi / 2 if kind == "omni" else ..., finite=False)
-    wheel["locked"] = table.flag("locked", False)
+        wheel["roller_rad"] = read_field(table, roller, math.pi / 2 if kind == "omni" else ...)
+    wheel |= {key: read_field(table, field, 0.0) for key, field in fields.items() if field.need == "NEVER"}
     table.done(OF_WHEELS)
     return wheel
 
@@ -110,8 +116,8 @@ def read_place(table: Table) -> dict[str, float]:
 
 
 def read_point(table: Table) -> dict[str, float]:
-    """x_m and y_m alone."""
-    point = {key: table.number(key, finite=False) for key in ("x_m", "y_m")}
+    """One `[[vehicle.support]]`."""
+    point = {field.key: read_field(table, field) for field in load().fields_of("vehicle.support[#]")}
     table.done()
     return point
 
@@ -127,8 +133,8 @@ def read_initial(table: Table) -> dict[str, Any]:
     if "velocity_body_m_per_s" in velocity:
         start["velocity_body_m_per_s"] = table.numbers("velocity_body_m_per_s", 2)
     start["yaw_rate_rad_per_s"] = table.number("yaw_rate_rad_per_s", 0.0)
-    start |= {key: table.number(key, 0.0) for key in ("x_m", "y_m")}
-    start["heading_rad"] = table.angle("heading", 0.0)
+    single = [field for field in load().fields_of("initial") if field.items == 0]
+    start |= {field.key: read_field(table, field, 0.0, finite=True) for field in single}
     table.done()
     return start
 

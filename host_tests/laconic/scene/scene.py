@@ -132,6 +132,11 @@ class Scene:
         except Refused as refused:
             raise self.told(refused) from None
 
+    def c_start(self, core: Core) -> Any:
+        """The laconic_start."""
+        start = {field.key: getattr(self.initial, field.key) for field in core.fields_of("initial")}
+        return core.ffi.new("laconic_start *", start | {"nu_rad_per_s": self.initial.nu(self.model(core))})
+
     def plant(self, core: Core) -> Plant:
         """The vehicle at its start, ready to step by the scene's method and step."""
         start, model = self.initial, self.model(core)

@@ -17,7 +17,8 @@ from lxml import etree
 
 from laconic.analysis.from_core import subject_of
 from laconic.analysis.geometry import diagnose
-from laconic.fmu import DESCRIPTION, PLAIN, make_fmu
+from laconic.core import load
+from laconic.fmu import DESCRIPTION, make_fmu
 from laconic.scene import read_scene
 from laconic_fmu import fmi2
 from laconic_fmu.description import parse, read, token_in, token_of
@@ -61,7 +62,8 @@ def test_the_shipped_descriptions_are_the_source_and_what_follows_from_it() -> N
 def test_the_generic_vehicle_is_mounted_right(tmp_path: Path) -> None:
     start = {variable.name: variable.start for variable in read(DESCRIPTION).variables}
     assert set(start["wheel_kind"]) == {"1"}  # roller
-    plain = "".join(f"{name} = {start[name][0]}\n" for name in PLAIN)
+    names = [field.name for field in load().fields_of("vehicle")]
+    plain = "".join(f"{name} = {start[name][0]}\n" for name in names)
     rows = zip(start["wheel_x_m"], start["wheel_y_m"], start["axle_rad"], start["roller_rad"], strict=True)
     wheels = "".join(f'[[vehicle.wheel]]\nkind = "roller"\nx_m = {x}\ny_m = {y}\naxle_rad = {axle}\n'
                      f"roller_rad = {roller}\n" for x, y, axle, roller in rows)

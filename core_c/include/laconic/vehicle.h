@@ -1,0 +1,220 @@
+/* The vehicle as its user knows it, and the one list that describes each of its fields. Part of laconic.h.
+ *
+ * A new number of a vehicle costs four places; everything else follows from them, and tests say where one is missing:
+ *   here                   its member of a struct, and its row in the list of that struct
+ *   modelDescription.xml   the variable with its description and unit
+ *   laconic.dbc            its number in the value tables of PARAMETER.field and RESULT.field
+ *   docs/wire.md           made from these by firmware_stub/tools/document_wire.py */
+#ifndef LACONIC_VEHICLE_H
+#define LACONIC_VEHICLE_H
+
+#include "laconic/real.h"
+
+typedef enum laconic_wheel_kind {
+    LACONIC_WHEEL_UNSET = 0,  /* refused: so that a forgotten wheel is noticed                    */
+    LACONIC_WHEEL_ROLLER = 1, /* omni or mecanum: slides freely along its rollers' rolling direction */
+    LACONIC_WHEEL_FIXED = 2   /* ordinary, not steered: does not move along its axle               */
+} laconic_wheel_kind;
+
+typedef struct laconic_wheel {
+    laconic_wheel_kind kind;
+    bool locked;             /* held by a brake: χ' = 0                                           */
+    laconic_real x_m, y_m;   /* wheel centre P_i in the body frame                                */
+    laconic_real axle_rad;   /* β_i, direction of the axle in the body frame; refused where too
+                                large to be known to 1e-6 rad (float: 1e-3), as is roller_rad    */
+    laconic_real roller_rad; /* γ_i, from axle to roller axis (the roller that touches the ground):
+                                π/2 omni, ±π/4 mecanum; not read for fixed wheels                 */
+} laconic_wheel;
+
+/* A load fastened to the body. All zero: none. */
+typedef struct laconic_payload {
+    laconic_real mass_kg;
+    laconic_real x_m, y_m;         /* its centre of mass in the body frame                        */
+    laconic_real yaw_inertia_kgm2; /* about the vertical through its centre of mass               */
+} laconic_payload;
+
+typedef struct laconic_support { /* a ball caster: carries load, nothing else */
+    laconic_real x_m, y_m;
+} laconic_support;
+
+/* What the user knows. Start from all zero and set what applies. Totals count the wheels in. */
+typedef struct laconic_vehicle {
+    laconic_real mass_kg;              /* M, without payload                                     */
+    laconic_real yaw_inertia_kgm2;     /* I_S, about the vertical through the centre of mass     */
+    laconic_real com_x_m, com_y_m;     /* centre of mass S in the body frame, without payload    */
+    laconic_real com_z_m;              /* its height above the ground, >= 0; for normal loads only */
+    laconic_real wheel_radius_m;       /* R, common to all wheels                                */
+    laconic_real wheel_inertia_kgm2;   /* J, one wheel with its gear and rotor about the axle    */
+    laconic_real motor_gain_Nm_per_V;  /* c1: torque on a wheel is c1 U − c2 χ' + axle torque    */
+    laconic_real motor_damping_Nms;    /* c2                                                     */
+    laconic_real friction_coefficient; /* μ, for the no-slip margin only                         */
+    laconic_payload payload;
+    int32_t wheel_count; /* N, 0 … LACONIC_MAX_WHEELS; 0 is a sliding puck         */
+    laconic_wheel wheel[LACONIC_MAX_WHEELS];
+    int32_t support_count; /* 0 … LACONIC_MAX_SUPPORTS, for normal loads only        */
+    laconic_support support[LACONIC_MAX_SUPPORTS];
+} laconic_vehicle;
+
+/* A brushed DC motor behind a gear, at the motor's shaft. */
+typedef struct laconic_motor {
+    laconic_real resistance_ohm;           /* R_a > 0                                             */
+    laconic_real torque_constant_Nm_per_A; /* k_t                                                 */
+    laconic_real back_emf_Vs_per_rad;      /* k_e                                                 */
+    laconic_real gear_ratio;               /* G: shaft turns per wheel turn, not 0                */
+    laconic_real viscous_friction_Nms;     /* b                                                   */
+    laconic_real rotor_inertia_kgm2;
+} laconic_motor;
+
+/* What acts on the vehicle. All zero: it rolls freely (against its motors' damping). */
+typedef struct laconic_input {
+    laconic_real voltage_V[LACONIC_MAX_WHEELS];      /* U_i                                      */
+    laconic_real axle_torque_Nm[LACONIC_MAX_WHEELS]; /* besides the motor's                      */
+    laconic_real body_force_N[2];                    /* body axes, acting at S                   */
+    laconic_real body_moment_Nm;                     /* about S                                  */
+    laconic_real world_force_N[2];                   /* world axes                               */
+    laconic_real world_force_point_m[2];             /* where it acts: body axes, from S         */
+} laconic_input;
+
+typedef struct laconic_start {
+    laconic_real nu_rad_per_s[3];
+    laconic_real x_m, y_m; /* of the centre of mass */
+    laconic_real heading_rad;
+} laconic_start;
+
+/* ------------------------------------------------------------------- what a list says of a field -- */
+
+typedef enum laconic_field_kind {
+    LACONIC_KIND_REAL,
+    LACONIC_KIND_INTEGER,    /* int32_t            */
+    LACONIC_KIND_WHEEL_KIND, /* laconic_wheel_kind */
+    LACONIC_KIND_FLAG        /* bool               */
+} laconic_field_kind;
+
+/* What a number must be; all but UNCHECKED must be finite. laconic_vehicle_check() goes through a vehicle's own numbers
+ * and its payload's rule by rule in this order. */
+typedef enum laconic_field_rule {
+    LACONIC_RULE_UNCHECKED, /* has a check of its own, or every value is right */
+    LACONIC_RULE_POSITIVE,
+    LACONIC_RULE_NOT_NEGATIVE,
+    LACONIC_RULE_FINITE,
+    LACONIC_RULE_NOT_ZERO,
+    LACONIC_RULE_ANGLE,  /* small enough to have a direction                     */
+    LACONIC_RULE_ROLLER, /* an angle that is not along the axle; rollers alone   */
+    LACONIC_RULE_COUNT
+} laconic_field_rule;
+
+/* When a number must be given where nothing of a robot is assumed: in a scene and by a node on a bus. */
+typedef enum laconic_field_need {
+    LACONIC_NEED_NEVER,         /* left out, it is 0                                     */
+    LACONIC_NEED_ALWAYS,        /* (of a motor: where there is one)                      */
+    LACONIC_NEED_WITH_WHEELS,   /* where there are wheels                                */
+    LACONIC_NEED_WITH_MOTOR,    /* where another one of these is given                   */
+    LACONIC_NEED_WITH_PAYLOAD,  /* where another one of these is given                   */
+    LACONIC_NEED_WITH_SUPPORTS, /* where a support is given                              */
+    LACONIC_NEED_EACH_WHEEL,    /* for each wheel                                        */
+    LACONIC_NEED_EACH_ROLLER,   /* for each wheel with rollers                           */
+    LACONIC_NEED_EACH_SUPPORT   /* for each support                                      */
+} laconic_field_need;
+
+/* ----------------------------------------------------------------------------------- the lists -- */
+
+/* One row for each field, in the order in which numbers are checked:
+ *     X(of, number, IDENTIFIER, member, name, KIND, RULE, NEED)
+ * of           passed through from the list: the table's name, or whatever else its user needs
+ * number       on the wire, for good; 43 to 59 are taken by laconic.dbc for what the core will learn
+ * IDENTIFIER   LACONIC_FIELD_IDENTIFIER; also the text in the value tables of laconic.dbc
+ * member       in the struct that the list is for, and the key in a scene
+ * name         of the variable in modelDescription.xml, and of laconic_field_name()
+ * KIND …       LACONIC_KIND_…, LACONIC_RULE_…, LACONIC_NEED_… */
+/* clang-format off */
+#define LACONIC_VEHICLE_FIELDS(X, of) \
+    X(of,  1, MASS,                 mass_kg,              mass_kg,              REAL, POSITIVE,     ALWAYS) \
+    X(of,  2, YAW_INERTIA,          yaw_inertia_kgm2,     yaw_inertia_kgm2,     REAL, POSITIVE,     ALWAYS) \
+    X(of,  3, COM_X,                com_x_m,              com_x_m,              REAL, FINITE,       NEVER) \
+    X(of,  4, COM_Y,                com_y_m,              com_y_m,              REAL, FINITE,       NEVER) \
+    X(of,  6, WHEEL_RADIUS,         wheel_radius_m,       wheel_radius_m,       REAL, POSITIVE,     ALWAYS) \
+    X(of,  7, WHEEL_INERTIA,        wheel_inertia_kgm2,   wheel_inertia_kgm2,   REAL, NOT_NEGATIVE, WITH_WHEELS) \
+    X(of,  8, MOTOR_GAIN,           motor_gain_Nm_per_V,  motor_gain_Nm_per_V,  REAL, FINITE,       WITH_MOTOR) \
+    X(of,  9, MOTOR_DAMPING,        motor_damping_Nms,    motor_damping_Nms,    REAL, NOT_NEGATIVE, WITH_MOTOR) \
+    X(of,  5, COM_Z,                com_z_m,              com_z_m,              REAL, NOT_NEGATIVE, NEVER) \
+    X(of, 10, FRICTION_COEFFICIENT, friction_coefficient, friction_coefficient, REAL, NOT_NEGATIVE, NEVER)
+
+#define LACONIC_PAYLOAD_FIELDS(X, of) \
+    X(of, 11, PAYLOAD_MASS,        mass_kg,          payload_mass_kg,          REAL, NOT_NEGATIVE, WITH_PAYLOAD) \
+    X(of, 12, PAYLOAD_X,           x_m,              payload_x_m,              REAL, FINITE,       WITH_PAYLOAD) \
+    X(of, 13, PAYLOAD_Y,           y_m,              payload_y_m,              REAL, FINITE,       WITH_PAYLOAD) \
+    X(of, 14, PAYLOAD_YAW_INERTIA, yaw_inertia_kgm2, payload_yaw_inertia_kgm2, REAL, NOT_NEGATIVE, WITH_PAYLOAD)
+
+/* How many of a list; member: the list's. */
+#define LACONIC_WHEEL_COUNT_FIELD(X, of) \
+    X(of, 15, WHEEL_COUNT, wheel, wheel_count, INTEGER, UNCHECKED, ALWAYS)
+
+#define LACONIC_WHEEL_FIELDS(X, of) \
+    X(of, 16, WHEEL_KIND,   kind,       wheel_kind,   WHEEL_KIND, UNCHECKED, EACH_WHEEL) \
+    X(of, 17, WHEEL_X,      x_m,        wheel_x_m,    REAL,       FINITE,    EACH_WHEEL) \
+    X(of, 18, WHEEL_Y,      y_m,        wheel_y_m,    REAL,       FINITE,    EACH_WHEEL) \
+    X(of, 19, AXLE,         axle_rad,   axle_rad,     REAL,       ANGLE,     EACH_WHEEL) \
+    X(of, 20, ROLLER,       roller_rad, roller_rad,   REAL,       ROLLER,    EACH_ROLLER) \
+    X(of, 21, WHEEL_LOCKED, locked,     wheel_locked, FLAG,       UNCHECKED, NEVER)
+
+#define LACONIC_SUPPORT_COUNT_FIELD(X, of) \
+    X(of, 22, SUPPORT_COUNT, support, support_count, INTEGER, UNCHECKED, WITH_SUPPORTS)
+
+#define LACONIC_SUPPORT_FIELDS(X, of) \
+    X(of, 23, SUPPORT_X, x_m, support_x_m, REAL, FINITE, EACH_SUPPORT) \
+    X(of, 24, SUPPORT_Y, y_m, support_y_m, REAL, FINITE, EACH_SUPPORT)
+
+/* Arrays of laconic_start, then its single numbers. laconic_state_set() checks them. */
+#define LACONIC_START_ARRAY_FIELDS(X, of) \
+    X(of, 25, START_NU, nu_rad_per_s, start_nu_rad_per_s, REAL, FINITE, NEVER)
+#define LACONIC_START_FIELDS(X, of) \
+    X(of, 26, START_X,       x_m,         start_x_m,         REAL, FINITE, NEVER) \
+    X(of, 27, START_Y,       y_m,         start_y_m,         REAL, FINITE, NEVER) \
+    X(of, 28, START_HEADING, heading_rad, start_heading_rad, REAL, FINITE, NEVER)
+
+/* Of no struct of the core; laconic_integrator_prepare() checks them. */
+#define LACONIC_RUN_FIELDS(X, of) \
+    X(of, 29, METHOD, method, method, INTEGER, UNCHECKED, NEVER) \
+    X(of, 30, STEP,   step_s, step_s, REAL,    POSITIVE,  ALWAYS)
+
+/* Arrays of laconic_input, and its single number. laconic_input_check() checks them. */
+#define LACONIC_INPUT_ARRAY_FIELDS(X, of) \
+    X(of, 31, VOLTAGE,           voltage_V,           voltage_V,           REAL, FINITE, NEVER) \
+    X(of, 32, AXLE_TORQUE,       axle_torque_Nm,      axle_torque_Nm,      REAL, FINITE, NEVER) \
+    X(of, 33, BODY_FORCE,        body_force_N,        body_force_N,        REAL, FINITE, NEVER) \
+    X(of, 35, WORLD_FORCE,       world_force_N,       world_force_N,       REAL, FINITE, NEVER) \
+    X(of, 36, WORLD_FORCE_POINT, world_force_point_m, world_force_point_m, REAL, FINITE, NEVER)
+#define LACONIC_INPUT_FIELDS(X, of) \
+    X(of, 34, BODY_MOMENT, body_moment_Nm, body_moment_Nm, REAL, FINITE, NEVER)
+
+/* laconic_motor_fit() checks them. */
+#define LACONIC_MOTOR_FIELDS(X, of) \
+    X(of, 37, RESISTANCE,       resistance_ohm,           resistance_ohm,           REAL, POSITIVE,     ALWAYS) \
+    X(of, 38, TORQUE_CONSTANT,  torque_constant_Nm_per_A, torque_constant_Nm_per_A, REAL, FINITE,       ALWAYS) \
+    X(of, 39, BACK_EMF,         back_emf_Vs_per_rad,      back_emf_Vs_per_rad,      REAL, FINITE,       ALWAYS) \
+    X(of, 40, GEAR_RATIO,       gear_ratio,               gear_ratio,               REAL, NOT_ZERO,     ALWAYS) \
+    X(of, 41, VISCOUS_FRICTION, viscous_friction_Nms,     viscous_friction_Nms,     REAL, NOT_NEGATIVE, NEVER) \
+    X(of, 42, ROTOR_INERTIA,    rotor_inertia_kgm2,       rotor_inertia_kgm2,       REAL, NOT_NEGATIVE, NEVER)
+
+/* What a plant starts from: vehicle, start, method and step. */
+#define LACONIC_PARAMETER_FIELDS(X) \
+    LACONIC_VEHICLE_FIELDS(X, VEHICLE) LACONIC_PAYLOAD_FIELDS(X, PAYLOAD) \
+    LACONIC_WHEEL_COUNT_FIELD(X, COUNT) LACONIC_WHEEL_FIELDS(X, WHEEL) \
+    LACONIC_SUPPORT_COUNT_FIELD(X, COUNT) LACONIC_SUPPORT_FIELDS(X, SUPPORT) \
+    LACONIC_START_ARRAY_FIELDS(X, START_ARRAY) LACONIC_START_FIELDS(X, START) LACONIC_RUN_FIELDS(X, RUN)
+
+#define LACONIC_ALL_FIELDS(X) \
+    LACONIC_PARAMETER_FIELDS(X) \
+    LACONIC_INPUT_ARRAY_FIELDS(X, INPUT_ARRAY) LACONIC_INPUT_FIELDS(X, INPUT) LACONIC_MOTOR_FIELDS(X, MOTOR)
+
+/* clang-format on */
+
+#define LACONIC_FIELD_NUMBER(of, number, IDENTIFIER, ...) LACONIC_FIELD_##IDENTIFIER = number,
+
+/* The fields a refusal can name: LACONIC_FIELD_MASS = 1 … */
+typedef enum laconic_field {
+    LACONIC_FIELD_NONE = 0,
+    LACONIC_ALL_FIELDS(LACONIC_FIELD_NUMBER) LACONIC_FIELD_COUNT = 43 /* one more than the largest number above */
+} laconic_field;
+
+#endif

@@ -1,0 +1,49 @@
+/* What the list of vehicle.h says of a field: its name in FMUs, its place in a scene, its traits. */
+#include "internal.h"
+
+#define TEXT_OF(table, number) ((unsigned)(number) < LACONIC_FIELD_COUNT && table[number] != NULL ? table[number] : "")
+
+#define NAME(of, number, IDENTIFIER, member, name, KIND, RULE, NEED) [number] = #name,
+
+const char *laconic_field_name(laconic_field field) {
+    static const char *const names[LACONIC_FIELD_COUNT] = {LACONIC_ALL_FIELDS(NAME)};
+    return TEXT_OF(names, field);
+}
+
+/* The key of a scene file. `#` stands for the number of the wheel, support or component. */
+#define PATH_VEHICLE(member) "vehicle." #member
+#define PATH_PAYLOAD(member) "vehicle.payload." #member
+#define PATH_COUNT(member) "vehicle." #member
+#define PATH_WHEEL(member) "vehicle.wheel[#]." #member
+#define PATH_SUPPORT(member) "vehicle.support[#]." #member
+#define PATH_START_ARRAY(member) "initial." #member "[#]"
+#define PATH_START(member) "initial." #member
+#define PATH_RUN(member) "run." #member
+#define PATH_INPUT_ARRAY(member) #member "[#]"
+#define PATH_INPUT(member) #member
+#define PATH_MOTOR(member) "vehicle.motor." #member
+#define PATH(of, number, IDENTIFIER, member, name, KIND, RULE, NEED) [number] = PATH_##of(member),
+
+const char *laconic_field_path(laconic_field field) {
+    static const char *const paths[LACONIC_FIELD_COUNT] = {LACONIC_ALL_FIELDS(PATH)};
+    return TEXT_OF(paths, field);
+}
+
+#define ITEMS_VEHICLE(member) 0
+#define ITEMS_PAYLOAD(member) 0
+#define ITEMS_COUNT(member) 0
+#define ITEMS_WHEEL(member) LACONIC_MAX_WHEELS
+#define ITEMS_SUPPORT(member) LACONIC_MAX_SUPPORTS
+#define ITEMS_START_ARRAY(member) sizeof(((laconic_start *)NULL)->member) / sizeof(real)
+#define ITEMS_START(member) 0
+#define ITEMS_RUN(member) 0
+#define ITEMS_INPUT_ARRAY(member) sizeof(((laconic_input *)NULL)->member) / sizeof(real)
+#define ITEMS_INPUT(member) 0
+#define ITEMS_MOTOR(member) 0
+#define TRAITS(of, number, IDENTIFIER, member, name, KIND, RULE, NEED) \
+    [number] = {LACONIC_KIND_##KIND, LACONIC_RULE_##RULE, LACONIC_NEED_##NEED, ITEMS_##of(member)},
+
+const laconic_field_traits *laconic_field_traits_of(laconic_field field) {
+    static const laconic_field_traits traits[LACONIC_FIELD_COUNT] = {LACONIC_ALL_FIELDS(TRAITS)};
+    return *laconic_field_name(field) != '\0' ? &traits[field] : NULL;
+}
