@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import ast
 import re
 import shutil
 import subprocess
@@ -10,6 +11,7 @@ from pathlib import Path
 import pytest
 
 ROOT = Path(__file__).parents[3]
+MOST_LINES_OF_CODE = 400
 
 
 def test_every_source_file_of_the_core_has_its_test_file():
@@ -47,6 +49,48 @@ def test_the_fmu_decides_in_one_place_whether_a_number_is_finite():
     judging = re.compile(r"\b(\w+) - \1 == 0\.0|<= DBL_MAX && \w+ >= -DBL_MAX")
     places = {path.name for path in (ROOT / "fmu").rglob("*.[ch]") if judging.search(path.read_text(encoding="utf-8"))}
     assert places == {"instance.h"}
+
+
+C_COMMENT = re.compile(r"/\*.*?\*/|//[^\n]*", re.DOTALL)
+SOURCES = [path for part in ("cmake", "core_c", "firmware_stub", "fmu", "host_tests") for path in (ROOT / part).rglob("*")
+           if path.suffix in (".c", ".h", ".py", ".cmake") or path.name == "CMakeLists.txt"] + [ROOT / "CMakeLists.txt"]
+
+
+def docstrings(tree: ast.Module) -> list[ast.Constant]:
+    """Those of the module, its classes and functions."""
+    owners = (node for node in ast.walk(tree) if isinstance(node, (ast.Module, ast.ClassDef, ast.FunctionDef)))
+    return [node.body[0].value for node in owners if ast.get_docstring(node)]
+
+
+def lines_of_code(path: Path) -> int:
+    """Lines that hold more than a comment, a docstring or nothing."""
+    text = path.read_text(encoding="utf-8")
+    if path.suffix in (".c", ".h"):
+        return sum(bool(line.strip()) for line in C_COMMENT.sub("", text).splitlines())
+    lines = [line for line in text.splitlines() if line.strip() and not line.strip().startswith("#")]
+    said = docstrings(ast.parse(text)) if path.suffix == ".py" else []
+    return len(lines) - sum(len([line for line in text.splitlines()[doc.lineno - 1:doc.end_lineno] if line.strip()])
+                            for doc in said)
+
+
+def says_its_job(path: Path) -> bool:
+    """Whether the file begins with a comment of some words; an empty package file has none to do."""
+    text = path.read_text(encoding="utf-8")
+    if path.suffix == ".py":
+        said = ast.get_docstring(ast.parse(text))
+        return not text.strip() or (said is not None and len(said.split()) > 2)
+    opening = r"/\* \w+(?:\S* \w+){2}" if path.suffix in (".c", ".h") else r"# \w+(?:\S* \w+){2}"
+    return re.match(opening, text) is not None
+
+
+def test_every_source_file_begins_with_its_one_job():
+    assert len(SOURCES) > 300
+    assert [str(path.relative_to(ROOT)) for path in SOURCES if not says_its_job(path)] == []
+
+
+def test_no_source_file_is_longer_than_a_reader_can_hold():
+    longer = {path.name for path in SOURCES if lines_of_code(path) > MOST_LINES_OF_CODE}
+    assert longer <= {"laconic.h"}  # the manual of the core, read from top to bottom
 
 
 def test_nothing_generated_is_committed():
