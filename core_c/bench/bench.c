@@ -1,3 +1,4 @@
+/* The steps of the bench: through the scene's segments, again and again. */
 #include "bench.h"
 
 static laconic_state state;

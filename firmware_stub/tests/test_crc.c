@@ -1,3 +1,4 @@
+/* Tests of crc.c against the published check values. */
 #include "laconic_node/crc.h"
 #include "unity.h"
 

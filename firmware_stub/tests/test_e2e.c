@@ -1,3 +1,4 @@
+/* Tests of e2e.c: CRC and counter of profiles 22 and 5. */
 #include "laconic_node/e2e.h"
 #include "unity.h"
 

@@ -1,3 +1,4 @@
+/* Tests of node_run.c in free run: periods, lateness and the watchdog. */
 #include "bench.h"
 #include "unity.h"
 

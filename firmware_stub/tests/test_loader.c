@@ -1,3 +1,4 @@
+/* Tests of loader.c: a vehicle arrives number by number, or what is wrong is named. */
 #include "laconic_dbc.h"
 #include "laconic_node/crc.h"
 #include "laconic_node/loader.h"

@@ -1,3 +1,4 @@
+/* Tests of node.c and node_motion.c: frames, steps and answers of a node in lockstep. */
 #include "bench.h"
 #include "unity.h"
 

@@ -1,3 +1,4 @@
+/* Tests of node_pack.c: what the node's frames say, and when they say overrange. */
 #include "bench.h"
 #include "unity.h"
 

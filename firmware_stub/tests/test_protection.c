@@ -1,3 +1,4 @@
+/* Tests of protection.c: a frame is right only with its key and its count. */
 #include "laconic_node/protection.h"
 #include "laconic_wire.h"
 #include "unity.h"

@@ -1,3 +1,4 @@
+/* Tests of raw.c: numbers cross the bus bit for bit, and a stream out of order is refused. */
 #include "laconic_node/raw.h"
 #include "unity.h"
 

@@ -1,3 +1,4 @@
+/* Tests of slcan.c: lines become frames and replies, frames become lines. */
 #include "laconic_node/slcan.h"
 #include "unity.h"
 

@@ -1,3 +1,4 @@
+/* One input of bytes becomes a sequence of FMI calls, in either version, with arguments good and bad. */
 #include "fuzz.h"
 
 #include <float.h>

@@ -25,7 +25,8 @@ def stations(title: str) -> list[tuple[Path, list[str]]]:
 
 def defines(source: Path, function: str) -> bool:
     """Whether the C file has the function's body."""
-    return re.search(rf"^\w[\w *]*\b{function}\([^;{{]*\) \{{", source.read_text(encoding="utf-8"), re.MULTILINE) is not None
+    body = rf"^\w[\w *]*\b{function}\([^;{{]*\) \{{"
+    return re.search(body, source.read_text(encoding="utf-8"), re.MULTILINE) is not None
 
 
 WAYS = ("From a CAN frame", "From an FMI call")
