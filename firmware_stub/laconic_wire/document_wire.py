@@ -11,6 +11,7 @@ from cantools.database.can import Database, Message, Signal
 
 import reference_client as reference
 
+from .contract import attribute, choices, limits, load
 from .wire_parameters import PARAMETERS
 
 HERE = Path(__file__).resolve().parent
@@ -37,12 +38,6 @@ STATUSES = {
     "BUSY": "the last SYNC still runs", "PARAMETER_MISSING": "a required number has not come"}
 
 
-def attribute(message: Message, name: str) -> str:
-    """The message's attribute, or the default."""
-    found = message.dbc.attributes.get(name)
-    return str(found.value if found else message.dbc.attribute_definitions[name].default_value)
-
-
 def time_text(milliseconds: str) -> str:
     """"10 ms", or a dash for none."""
     return f"{milliseconds} ms" if milliseconds != "0" else "–"
@@ -58,22 +53,22 @@ def overview(message: Message) -> str:
     return "| " + " | ".join(cells) + " |"
 
 
-def choices(signal: Signal) -> str:
+def choices_text(signal: Signal) -> str:
     """"0 EMPTY, 1 READY …"."""
-    return ", ".join(f"{number} {text}" for number, text in sorted(signal.choices.items()))
+    return ", ".join(f"{number} {text}" for number, text in choices(signal).items())
 
 
 def signal_row(signal: Signal) -> str:
     """One row of a frame's table."""
     sign = "signed" if signal.is_signed else "unsigned"
     page = f" (page {signal.multiplexer_ids[0]})" if signal.multiplexer_ids else ""
-    full = signal.minimum == 0 and float(signal.maximum) + 1 == 2.0**signal.length
-    limits = "" if full else f"{float(signal.minimum):.10g} … {float(signal.maximum):.10g}"
+    least, largest = limits(signal)
+    shown = "" if least == 0 and largest + 1 == 2.0**signal.length else f"{least:.10g} … {largest:.10g}"
     notes = (signal.comment or "").rstrip(".")
     if signal.choices and signal.name not in ENUMERATED:
-        notes = choices(signal)
+        notes = choices_text(signal)
     return (f"| {signal.name}{page} | {signal.start} | {signal.length} {sign} | {float(signal.scale):g} "
-            f"{signal.unit or ''} | {limits} | {notes} |")
+            f"{signal.unit or ''} | {shown} | {notes} |")
 
 
 def section(message: Message) -> str:
@@ -94,8 +89,7 @@ def parameter_rows(database: Database) -> str:
 
 def field_choices(database: Database) -> dict[int, str]:
     """PARAMETER.field."""
-    found = database.get_message_by_name("PARAMETER").get_signal_by_name("field").choices
-    return {number: str(text) for number, text in found.items()}
+    return choices(database.get_message_by_name("PARAMETER").get_signal_by_name("field"))
 
 
 def spaced(data: bytes) -> str:
@@ -137,21 +131,21 @@ def examples(client: reference.Client) -> str:
 def page() -> str:
     """The whole text."""
     client = reference.Client(bus=None)
-    database = reference.cantools.database.load_file(HERE.parent / "laconic.dbc")
+    database = load(HERE.parent / "laconic.dbc")
     messages = sorted(database.messages, key=lambda message: message.frame_id)
     result, fields = database.get_message_by_name("RESULT"), field_choices(database)
-    status = result.get_signal_by_name("status").choices
+    status = choices(result.get_signal_by_name("status"))
     parts = {
-        "version": database.version, "frames": "\n".join(map(overview, messages)), "examples": examples(client),
+        "version": str(database.version), "frames": "\n".join(map(overview, messages)), "examples": examples(client),
         "data_ids": "\n".join(f"| {m.name} | `{attribute(m, 'E2EDataID')}` |" for m in messages),
         "parameters": parameter_rows(database),
         "methods": ", ".join(f"{number} {name}" for number, name in enumerate(METHODS)),
-        "states": choices(result.get_signal_by_name("state")),
-        "control": choices(database.get_message_by_name("CONTROL").get_signal_by_name("command")),
-        "results": choices(result.get_signal_by_name("command")),
-        "statuses": "\n".join(f"| {number} | {text} | {STATUSES[str(text)]} |"
-                              for number, text in sorted(status.items())),
-        "other_fields": ", ".join(f"{number} {text}" for number, text in sorted(fields.items())
+        "states": choices_text(result.get_signal_by_name("state")),
+        "control": choices_text(database.get_message_by_name("CONTROL").get_signal_by_name("command")),
+        "results": choices_text(result.get_signal_by_name("command")),
+        "statuses": "\n".join(f"| {number} | {text} | {STATUSES[text]} |"
+                              for number, text in status.items()),
+        "other_fields": ", ".join(f"{number} {text}" for number, text in fields.items()
                                   if number and text not in PARAMETERS),
         "details": "".join(map(section, messages))}
     text = (HERE / "wire_page.md").read_text(encoding="utf-8")

@@ -10,23 +10,18 @@ from __future__ import annotations
 import sys
 from pathlib import Path
 
-import cantools.database
 from cantools.database.can import Database, Message, Signal
+
+from .contract import attribute, limits, load
 
 ID_BASE = 1664
 NOTE = "/* Generated from laconic.dbc. */\n"
 KEYS = ("none", "nonce", "session", "run")  # how a frame's protection is keyed
 
 
-def attribute(message: Message, name: str) -> str | int:
-    """The message's attribute, or the database's default for it."""
-    found = message.dbc.attributes.get(name)
-    return found.value if found else message.dbc.database_default[name]
-
-
 def data_ids(message: Message) -> list[int]:
     """The DataID list (profile 22), or the DataID's two bytes, low byte first (profile 5)."""
-    text = str(attribute(message, "E2EDataID"))
+    text = attribute(message, "E2EDataID")
     if message.is_fd:
         number = int(text, 16)
         return [number & 255, number >> 8]
@@ -40,7 +35,7 @@ def data_ids(message: Message) -> list[int]:
 
 def constants(database: Database) -> list[str]:
     """Macros for offsets, value tables, scales and limits."""
-    lines = [f"#define LACONIC_WIRE_VERSION {int(database.version)}", f"#define LACONIC_WIRE_ID_BASE {ID_BASE}"]
+    lines = [f"#define LACONIC_WIRE_VERSION {int(database.version or 0)}", f"#define LACONIC_WIRE_ID_BASE {ID_BASE}"]
     for message in database.messages:
         lines.append(f"#define LACONIC_WIRE_{message.name} {message.frame_id - ID_BASE}")
     rig, node = ([m.frame_id - ID_BASE for m in database.messages if side in m.senders] for side in ("RIG", "NODE"))
@@ -70,7 +65,7 @@ def scale(message: Message, signal: Signal) -> list[str]:
     if float(signal.scale) == 1.0:
         return []
     name = f"LACONIC_WIRE_{message.name}_{signal.name}".upper()
-    largest = round(float(signal.maximum) / float(signal.scale))
+    largest = round(limits(signal)[1] / float(signal.scale))
     return [f"#define {name}_PER_UNIT {round(1 / float(signal.scale))}", f"#define {name}_LARGEST {largest}"]
 
 
@@ -82,7 +77,7 @@ def rows(database: Database) -> list[str]:
     lines = []
     for offset in sorted(by_offset):
         message = by_offset[offset]
-        key = KEYS.index(str(attribute(message, "E2EKey")))
+        key = KEYS.index(attribute(message, "E2EKey"))
         row = (message.length, int(message.is_fd), int("RIG" in message.senders), key,
                attribute(message, "E2EMaxDeltaCounter"), lists.index(offset))
         lines.append(f"    [{offset}] = {{{', '.join(map(str, row))}}}, /* {message.name} */")
@@ -132,10 +127,7 @@ uint16_t laconic_wire_data_id(uint8_t offset);         /* profile 5  */
 
 def main(dbc: str, directory: str) -> None:
     """Reads the DBC and writes the two files."""
-    database = cantools.database.load_file(dbc)
-    defaults = {name: d.default_value for name, d in database.dbc.attribute_definitions.items()}
-    for message in database.messages:
-        message.dbc.database_default = defaults
+    database = load(Path(dbc))
     classic = sum(not m.is_fd for m in database.messages)
     out = Path(directory)
     offsets = 1 + max(m.frame_id for m in database.messages) - ID_BASE

@@ -1,0 +1,50 @@
+"""Wheeled robots from Python: scenes, runs of them through the C core, and FMUs; docs/python.md shows them at work.
+
+    run = laconic.simulate(laconic.read_scene("robotino2"))
+    run.time_s, run.columns["x_m"]
+
+The names in `__all__` are the public interface; everything else may change. Each is loaded when it is first used, so
+that `import laconic` costs next to nothing. Lengths are in m, angles in rad, times in s; what a user gave and cannot be
+used is raised as BadInput, in one line that names the field and the remedy.
+"""
+
+from __future__ import annotations
+
+from importlib import import_module
+from typing import TYPE_CHECKING, Any
+
+if TYPE_CHECKING:  # for type checkers and editors; the table below is what runs
+    from laconic.core import Core as Core
+    from laconic.core import load as load_core
+    from laconic.core.plant import Plant as Plant
+    from laconic.errors import BadInput as BadInput
+    from laconic.errors import Refused as Refused
+    from laconic.fmu import make_fmu as make_fmu
+    from laconic.paths import scene_names as scene_names
+    from laconic.scene import METHODS as METHODS
+    from laconic.scene import Scene as Scene
+    from laconic.scene import read_scene as read_scene
+    from laconic.simulation import Trajectory as Trajectory
+    from laconic.simulation import simulate as simulate
+
+__all__ = ["METHODS", "BadInput", "Core", "Plant", "Refused", "Scene", "Trajectory", "load_core", "make_fmu",
+           "read_scene", "scene_names", "simulate"]
+
+_PLACES = {  # name → where it is, and as what if not by the same name
+    "METHODS": "scene", "BadInput": "errors", "Core": "core", "Plant": "core.plant", "Refused": "errors",
+    "Scene": "scene", "Trajectory": "simulation", "load_core": "core:load", "make_fmu": "fmu", "read_scene": "scene",
+    "scene_names": "paths", "simulate": "simulation"}
+
+
+if not TYPE_CHECKING:  # a type checker would take every name for one that this function knows
+
+    def __getattr__(name: str) -> Any:
+        if name not in _PLACES:
+            raise AttributeError(f"module 'laconic' has no attribute {name!r}; its names are {', '.join(__all__)}")
+        module, _, inside = _PLACES[name].partition(":")
+        found = globals()[name] = getattr(import_module(f"laconic.{module}"), inside or name)
+        return found
+
+
+def __dir__() -> list[str]:
+    return sorted({*globals(), *__all__})

@@ -185,8 +185,8 @@ def opened(path: Path, mode: str = "w") -> Iterator[IO[Any]]:
     if is_stdout(path):
         yield sys.stdout
         return
-    text = {} if "b" in mode else {"encoding": "utf-8", "newline": ""}
-    with whole_file(path) as fresh, fresh.open(mode, **text) as file:
+    encoding, newline = (None, None) if "b" in mode else ("utf-8", "")
+    with whole_file(path) as fresh, fresh.open(mode, encoding=encoding, newline=newline) as file:
         yield file
 
 

@@ -30,7 +30,7 @@ def progress_bar(what: str, total: float, *, told: bool = False) -> Iterator[Adv
         task = bar.add_task(what, total=total)
 
         def advance(amount: float = 1, what: str | None = None) -> None:
-            bar.update(task, advance=amount, **({"description": what} if what else {}))
+            bar.update(task, advance=amount, description=what or None)
 
         yield advance
 

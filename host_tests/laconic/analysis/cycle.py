@@ -33,11 +33,12 @@ class LimitCycle:
         return bool(np.abs(np.delete(self.multipliers, along)).max(initial=0.0) < 1.0)
 
 
-def flow(field: Field, zeta: np.ndarray, duration_s: float, samples: int = 2, tolerance: float = 1e-12):
-    """(times, ζ at the times, ∂ζ(end)/∂ζ(start))."""
+def flow(field: Field, zeta: np.ndarray, duration_s: float, samples: int = 2,
+         tolerance: float = 1e-12) -> tuple[np.ndarray, np.ndarray, np.ndarray] | None:
+    """(times, ζ at the times, ∂ζ(end)/∂ζ(start)); None where the motion cannot be followed so far."""
     m = field.dof
 
-    def rates(_, packed):
+    def rates(_: float, packed: np.ndarray) -> np.ndarray:
         point, matrix = packed[:m], packed[m:].reshape(m, m)
         return np.concatenate([field.rates(point), (field.jacobian(point) @ matrix).ravel()])
 
@@ -72,7 +73,8 @@ def shoot(field: Field, guess: np.ndarray, period_s: float, centre: np.ndarray, 
     return None
 
 
-def _finished(field: Field, zeta, period_s: float, centre, parameter: float) -> LimitCycle | None:
+def _finished(field: Field, zeta: np.ndarray, period_s: float, centre: np.ndarray,
+              parameter: float) -> LimitCycle | None:
     result = flow(field, zeta, period_s, samples=200)
     if result is None:
         return None

@@ -85,7 +85,7 @@ def changed(subject: Subject, key: str, value: float) -> Subject:
     return replace(subject, vehicle=vehicle, model=model, matrices=matrices)
 
 
-def nu_rates(core: Core, model: Any, nu: Sequence[float], heading_rad: float, held: Any) -> np.ndarray:
+def nu_rates(core: Core, model: Any, nu: Sequence[float] | np.ndarray, heading_rad: float, held: Any) -> np.ndarray:
     """ν' of (4.7) by the core. The struct is kept by name: its array alone would not keep it alive."""
     rates = core.derivative(model, nu, heading_rad, held)
     return core.numbers(rates.nu_rad_per_s2)

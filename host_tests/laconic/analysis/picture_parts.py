@@ -2,8 +2,8 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
-from typing import Any
+from collections.abc import Callable, Sequence
+from typing import Any, Literal
 
 from matplotlib.axes import Axes
 from matplotlib.axis import YAxis
@@ -42,10 +42,15 @@ def speed_axes(axes: Axes, subject: Subject, component: str) -> None:
     They are the same numbers in other units, so all four axes have their zeros in common.
     """
     yaw, roll = subject.matrices.lambda_yaw, wheel_radius_m(subject)
-    top = axes.secondary_xaxis("top", functions=(lambda v: v / yaw, lambda v: v * yaw))
+    top = axes.secondary_xaxis("top", functions=_divided_by(yaw))
     top.set_xlabel(YAW)
     metres_beside(axes, "right", f"R {component} [m/s]", roll)
     power_aside(axes.yaxis)
+
+
+def _divided_by(unit: float) -> tuple[Callable[[Any], Any], Callable[[Any], Any]]:
+    """From numbers to multiples of a unit, and back."""
+    return lambda number: number / unit, lambda multiple: multiple * unit
 
 
 def power_aside(upright: YAxis) -> None:
@@ -53,10 +58,10 @@ def power_aside(upright: YAxis) -> None:
     upright.get_offset_text().set(x=-0.06, ha="right")
 
 
-def metres_beside(axes: Axes, side: str, label: str, roll: float) -> None:
+def metres_beside(axes: Axes, side: Literal["top", "right"], label: str, roll: float) -> None:
     """A second scale in m/s beside one of ν in rad/s, on "top" or on the "right"."""
-    functions = (lambda v: v * roll, lambda v: v / roll)
+    back, there = _divided_by(roll)
     if side == "top":
-        axes.secondary_xaxis(side, functions=functions).set_xlabel(label)
+        axes.secondary_xaxis(side, functions=(there, back)).set_xlabel(label)
     else:
-        axes.secondary_yaxis(side, functions=functions).set_ylabel(label)
+        axes.secondary_yaxis(side, functions=(there, back)).set_ylabel(label)

@@ -2,9 +2,12 @@
 
 from __future__ import annotations
 
+from typing import Any
+
 import numpy as np
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
+from matplotlib.lines import Line2D
 
 from laconic.analysis import confirm
 from laconic.analysis.findings import BifurcationPart, SteadyPart, Study
@@ -26,7 +29,7 @@ from laconic.analysis.speeds import wheel_radius_m
 from laconic.pictures.plotting import figure
 
 STABLE, UNSTABLE, NEUTRAL = "tab:blue", "tab:red", "tab:gray"
-SPECIALS = {  # the second fits into the first: where both are at one place, both are seen
+SPECIALS: dict[str, dict[str, Any]] = {  # the second fits into the first: where both are at one place, both are seen
     "fold": {"marker": "D", "color": "k", "markerfacecolor": "w", "markersize": 9, "linestyle": "", "zorder": 5},
     "branch point": {"marker": "o", "color": "k", "markerfacecolor": "w", "markersize": 5, "linestyle": "",
                      "zorder": 6}}
@@ -71,9 +74,9 @@ def _meaning(part: BifurcationPart) -> str:
     return "Commanded: the straight motion that the constant voltages ask for. The vehicle may turn by itself."
 
 
-def _marks(axes: Axes, part: BifurcationPart):
+def _marks(axes: Axes, part: BifurcationPart) -> list[Line2D]:
     kinds = {special.kind for special in part.diagram.specials}
-    handles = []
+    handles: list[Line2D] = []
     if "fold" in kinds:
         handles += axes.plot([], [], label="fold (vertex)", **SPECIALS["fold"])
     if "branch point" in kinds:
@@ -163,7 +166,7 @@ def driven_picture(study: Study) -> Figure | None:
     return picture
 
 
-def _nearest_cycles(axes: Axes, study: Study, across: np.ndarray):
+def _nearest_cycles(axes: Axes, study: Study, across: np.ndarray) -> list[Line2D]:
     """The limit cycles that were found nearest to the scene's own parameter value."""
     part = study.bifurcation
     if part is None or not part.cycles:

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Callable
 from dataclasses import asdict
 from pathlib import Path
 from typing import Any
@@ -32,8 +33,9 @@ def as_text(study: Study, pictures: list[Path]) -> str:
 
 def as_numbers(study: Study, pictures: list[Path]) -> dict[str, Any]:
     """The same for machines; complex numbers as [real, imaginary], what is infinite as null."""
-    writers = {"geometry": lambda found, _: asdict(found), "free": _free, "steady": _steady,
-               "bifurcation": _bifurcation, "traction": _traction}
+    writers: dict[str, Callable[[Any, Subject], Any]] = {
+        "geometry": lambda found, _: asdict(found), "free": _free, "steady": _steady,
+        "bifurcation": _bifurcation, "traction": _traction}
     numbers: dict[str, Any] = {"scene": str(study.subject.scene.path), "name": study.subject.scene.name}
     for part, write in writers.items():
         found = getattr(study, part)

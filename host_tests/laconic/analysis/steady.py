@@ -131,7 +131,8 @@ def families(field: Field) -> list[Family]:
     return out
 
 
-def _straight_family(field: Field, undamped, decay, drive, g) -> list[Family]:
+def _straight_family(field: Field, undamped: np.ndarray, decay: np.ndarray, drive: np.ndarray,
+                     g: np.ndarray) -> list[Family]:
     """Straight motions ν3 = 0: the damped components are fixed by the drive, the others free but for g·ζ = 0."""
     base = np.where(undamped, 0.0, drive / np.where(undamped, 1.0, decay))
     free = np.flatnonzero(undamped)

@@ -90,7 +90,8 @@ class _Sampler:
     """Collects one sample after another and checks its balance."""
 
     def __init__(self, subject: Subject, plant: Plant):
-        self.subject, self.plant, self.rows = subject, plant, []
+        self.subject, self.plant = subject, plant
+        self.rows: list[tuple[Any, ...]] = []
         self.contact = _prepared_contact(subject)
         core, n = subject.core, subject.wheel_count
         self.pull = core.numbers(self.contact.pull, -1, 2)[:n]
@@ -120,7 +121,8 @@ class _Sampler:
         self.rows.append((time_s, along, lateral, core.numbers(found.brake_Nm)[:n],
                           core.numbers(found.normal_N)[:points], nu, (pose.x_m, pose.y_m, pose.heading_rad)))
 
-    def _balance(self, along, lateral, nu, heading: float, held: Any, inputs: dict[str, float]) -> None:
+    def _balance(self, along: np.ndarray, lateral: np.ndarray, nu: np.ndarray, heading: float, held: Any,
+                 inputs: dict[str, float]) -> None:
         """M v̇_S = Σ reactions + F and I_S θ̈ = Σ r × reaction + τ: what is left over."""
         subject, model = self.subject, self.subject.model
         mass, radius, big = float(model.mass_kg), float(model.wheel_radius_m), float(model.yaw_scale)

@@ -8,7 +8,7 @@ from pathlib import Path
 from typing import Any
 
 from laconic.benchmark import accuracy, boards, drift, extremes, peers, referenced, single, speed, stability, targets
-from laconic.benchmark.workshop import M4F, Variant, Workshop
+from laconic.benchmark.workshop import BOARDS, M4F, Variant, Workshop
 from laconic.progress import progress_bar
 from laconic.scene import METHODS, Outputs, Scene, read_scene
 
@@ -45,7 +45,7 @@ def collect(scenes: Sequence[Scene], folder: Path, quick: bool = False) -> Repor
 def _amount(scenes: Sequence[Scene], quick: bool) -> int:
     """How often the bar is moved on."""
     numeric = 2 * len(METHODS) * len(scenes) + 2 * len(METHODS[1:])
-    board_count = 1 if quick else len(boards.BOARDS)
+    board_count = 1 if quick else len(BOARDS)
     sizes = 2 * len(METHODS[1:]) * board_count + 2 * len(scenes)
     return numeric + len(stability.FACTORS) + 8 + 2 * len(extremes.CASES) + 2 + sizes
 
@@ -102,7 +102,7 @@ def _boards(report: Report, scenes: Sequence[Scene], bench: Scene, workshop: Wor
     advance(0, "Cortex-M")
     if not M4F.present:
         return {"boards": [], "scenes": [], "smallest": []}
-    targets_here = (M4F,) if quick else boards.BOARDS
+    targets_here = (M4F,) if quick else BOARDS
     smallest = replace(read_scene(FREE_SCENE).with_run(method="exact-flow"),
                        outputs=Outputs(signals=tuple(f"nu_rad_per_s[{k}]" for k in (1, 2, 3))))
     return {"boards": boards.method_rows(workshop, bench, REALS, targets_here, advance=advance),

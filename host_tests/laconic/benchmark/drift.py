@@ -93,7 +93,8 @@ class _NormCount:
     """What one method did to all those norms."""
 
     def __init__(self, real: str, method: str) -> None:
-        self.real, self.method, self.taken, self.refused, self.worst_ulp = real, method, 0, {}, 0.0
+        self.real, self.method, self.taken, self.worst_ulp = real, method, 0, 0.0
+        self.refused: dict[str, int] = {}  # how often, by the refusal's name
 
     def one(self, core: Core, vehicle: dict[str, Any], method: str, nu: np.ndarray, step_s: float) -> None:
         """One vehicle, one state, one step."""

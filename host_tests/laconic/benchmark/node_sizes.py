@@ -88,7 +88,7 @@ def read_instruction(function: Function, name: str, operands: str) -> None:
 def count_registers(operands: str) -> int:
     """Registers in {r4, r6-r8, lr}."""
     total = 0
-    for part in re.search(r"\{(.*)\}", operands)[1].split(","):
+    for part in re.findall(r"\{(.*)\}", operands)[0].split(","):
         ends = re.findall(r"\d+", part)
         total += int(ends[1]) - int(ends[0]) + 1 if "-" in part else 1
     return total
@@ -125,7 +125,7 @@ def deepest(name: str, functions: dict[str, Function], pointers: set[str], done:
 def worst_stack(image: Path, board: str) -> int:
     """Main and the deepest interrupt on top of it."""
     functions = functions_of(image)
-    pointers, done = pointed_to(image, functions), {}
+    pointers, done = pointed_to(image, functions), dict[str, int]()
     interrupts = max(deepest(name, functions, pointers, done) for name in functions if name.endswith("_handler"))
     main = deepest("board_reset", functions, pointers, done)
     return main + EXCEPTION_FRAME.get(board, 104) + interrupts

@@ -191,7 +191,7 @@ def dop853_runner(course: Course, folder: Path, compiled_rhs: bool) -> Callable[
     address = ctypes.cast(library.peer_rhs, ctypes.c_void_p).value if rhs is None else rhs.address
     dop853 = numbalsoda.dop853
 
-    def segments(function, state, durations, voltages, rtol, states):  # noqa: ANN001, ANN202
+    def segments(function: Any, state: Any, durations: Any, voltages: Any, rtol: float, states: Any) -> bool:
         good = True
         for k in range(durations.size):
             points, success = dop853(function, state, np.array([0.0, durations[k]]), voltages[k], rtol, rtol * 1e-2)
@@ -222,8 +222,7 @@ def _numba_rhs(numba: Any, numbalsoda: Any, course: Course) -> Any:
     yaw_scale, radius = r.yaw_scale, r.totals.wheel_radius_m
     gain, damping = r.scale * r.totals.motor_gain_Nm_per_V, r.scale * r.totals.motor_damping_Nms
 
-    @numba.cfunc(numbalsoda.lsoda_sig)
-    def rhs(_t, state_at, rates_at, voltage_at):  # noqa: ANN001, ANN202
+    def rhs(_t: float, state_at: Any, rates_at: Any, voltage_at: Any) -> None:
         state = numba.carray(state_at, (6 + wheels,))
         rates = numba.carray(rates_at, (6 + wheels,))
         voltage = numba.carray(voltage_at, (wheels,))
@@ -240,7 +239,7 @@ def _numba_rhs(numba: Any, numbalsoda: Any, course: Course) -> Any:
         rates[3], rates[4] = radius * (n1 * cosine - n2 * sine), radius * (n1 * sine + n2 * cosine)
         rates[5] = yaw_rate
 
-    return rhs
+    return numba.cfunc(numbalsoda.lsoda_sig)(rhs)
 
 
 def scipy_runner(course: Course, solver: str) -> Callable[[float], Solution]:

@@ -9,10 +9,12 @@ from typing import Any
 from laconic.core import load
 from laconic.paths import SOURCE_DIR
 from laconic.scene import METHODS
+from laconic.scene.table import Table
 from laconic.verification.trajectories import read_reference, verify_case
 
 STEPS_S = (1e-4, 1e-3, 1e-2, 2.5e-2, 5e-2)
-PROTOTYPE = {  # error of ν of an earlier prototype: (case, step) → method → error; None: it blew up
+# Errors of ν of an earlier prototype: (case, step) → method → error; None: it blew up.
+PROTOTYPE: dict[tuple[str, float], dict[str, float | None]] = {
     ("omni3-free-periodic", 0.1): {"rk4": 3.9e-7, "exponential-kahan": 2.0e-3, "exponential-kahan-4": 1.4e-7,
                                    "exact-flow-4": 7e-15},
     ("omni3-driven-stable", 0.1): {"rk4": 3.7e-7, "exponential-kahan": 3.5e-6, "exponential-kahan-4": 5.9e-10,
@@ -53,7 +55,7 @@ def verified_rows(advance: Any = lambda: None) -> list[dict[str, Any]]:
 
 def table_rows(advance: Any = lambda: None) -> list[dict[str, Any]]:
     """The prototype's table, case by case: absolute error of ν at the segments' ends."""
-    cases = {}
+    cases: dict[str, Table] = {}
     for name in ("trajectories.json", "methods.json"):
         if (path := reference_file(name)) is not None:
             cases |= {case.text("name"): case for case in read_reference(path)}

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable
+from functools import partial
 from pathlib import Path
 from typing import Any
 
@@ -54,14 +55,16 @@ def precision_rows(workshop: Workshop, scene: Scene, folder: Path, rounds: int =
     """Whole run of S1: error of ν at the ends of the voltage's half periods, against milliseconds of run time."""
     ends = np.cumsum(peers.course_of(scene).durations_s)
     truth = Truth(ends, reference_states(scene, ends))
-    steps, runs, found = _contestants(workshop, _variants(scene, "whole")), {}, {}
+    steps = _contestants(workshop, _variants(scene, "whole"))
+    runs: dict[Any, Contestant] = {}
+    found: dict[tuple[str, float], peers.Solution] = {}
     for name, run in _solvers(scene, folder).items():
         for rtol in TOLERANCES:
             slow = name.startswith("SciPy")
             if slow and rtol not in TOLERANCES[2::3]:
                 continue
             found[name, rtol] = run(rtol)
-            runs[name, rtol] = lambda run=run, rtol=rtol: run(rtol).seconds
+            runs[name, rtol] = partial(_seconds, run, rtol)
     quick = {key: run for key, run in runs.items() if found[key].seconds < 0.02}
     best = race(steps | quick, rounds) | {key: found[key].seconds for key in runs if key not in quick}
     rows = [row for method, real, build in steps
@@ -70,6 +73,10 @@ def precision_rows(workshop: Workshop, scene: Scene, folder: Path, rounds: int =
         error = float(np.max(np.abs(solution.states[:, :3] - truth.states[:, :3])))
         rows.append({"who": name, "real": "double", "setting": rtol, "error_nu": error, "ms": best[name, rtol] * 1e3})
     return rows
+
+
+def _seconds(run: Callable[[float], peers.Solution], rtol: float) -> float:
+    return run(rtol).seconds
 
 
 def _core_rows(scene: Scene, method: str, real: str, seconds_per_step: float, truth: Truth) -> list[dict[str, Any]]:

@@ -6,11 +6,13 @@ import ctypes
 import time
 from collections.abc import Callable, Mapping
 from pathlib import Path
+from typing import TypeVar
 
 Contestant = Callable[[], float]
+Key = TypeVar("Key")
 
 
-def race(contestants: Mapping[str, Contestant], repetitions: int) -> dict[str, float]:
+def race(contestants: Mapping[Key, Contestant], repetitions: int) -> dict[Key, float]:
     """Least seconds of each: every round runs all of them once, so a slow moment of the machine hits all."""
     best = dict.fromkeys(contestants, float("inf"))
     for _ in range(repetitions):

@@ -19,7 +19,7 @@ from laconic.paths import exists, named_scene
 PICTURES = (".png", ".svg", ".pdf")
 
 
-class InputPath(click.ParamType):
+class InputPath(click.ParamType[Path]):
     """A file or folder that a command reads; whoever reads it says what is wrong with it."""
 
     name = "path"
@@ -32,7 +32,7 @@ class InputPath(click.ParamType):
         return path
 
 
-class SceneName(click.ParamType):
+class SceneName(click.ParamType[str]):
     """A scene by its path or by its name; it stays as it was given, for `read_scene`."""
 
     name = "scene"
@@ -45,7 +45,7 @@ class SceneName(click.ParamType):
         return value
 
 
-class OutputFile(click.ParamType):
+class OutputFile(click.ParamType[Path]):
     """A file that a command writes, in a format with these endings; "-" for stdout where that makes sense."""
 
     name = "file"
@@ -61,7 +61,7 @@ class OutputFile(click.ParamType):
         return outputs.claim_file(option, path, self.endings, ctx)
 
 
-class OutputFolder(click.ParamType):
+class OutputFolder(click.ParamType[Path]):
     """A folder that a command writes files into, made if it is not there."""
 
     name = "folder"

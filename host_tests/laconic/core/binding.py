@@ -57,7 +57,7 @@ class Core:
 
     def __init__(self, real: str, ffi: FFI, lib: Any):
         self.real, self.ffi, self.lib = real, ffi, lib
-        self.dtype = np.dtype(np.float64 if ffi.sizeof("laconic_real") == 8 else np.float32)
+        self.dtype: np.dtype[Any] = np.dtype(np.float64 if ffi.sizeof("laconic_real") == 8 else np.float32)
         fields = dict(ffi.typeof("laconic_vehicle").fields)
         self.max_wheels: int = fields["wheel"].type.length
         self.max_supports: int = fields["support"].type.length
@@ -209,7 +209,7 @@ class Core:
         self.check(self.lib.laconic_steps_in(interval_s, step_s, steps, why), why)
         return int(steps[0])
 
-    def derivative(self, model: Any, nu_rad_per_s: Sequence[float], heading_rad: float, held: Any) -> Any:
+    def derivative(self, model: Any, nu_rad_per_s: Sequence[float] | np.ndarray, heading_rad: float, held: Any) -> Any:
         """The laconic_rates of (4.7) for Model Exchange and tests."""
         rates = self.ffi.new("laconic_rates *")
         nu = self.ffi.new("laconic_real[3]", [float(v) for v in nu_rad_per_s])

@@ -41,7 +41,7 @@ def input_arrays(drive: Drive, tick: int, wheel_count: int) -> dict[str, list[fl
 class Log:
     """What an FMU says: warnings are kept, errors go to stderr as well. FMPy would print them where the results go."""
 
-    def __init__(self):
+    def __init__(self) -> None:
         self.lines: list[str] = []
 
     def take(self, status: int, text: bytes) -> None:

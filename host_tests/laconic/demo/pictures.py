@@ -29,7 +29,7 @@ def draw(run: Trajectory, points: Sequence[Point], floor: float, path: Path) -> 
     curves: dict[str, list[tuple[float, float]]] = {}
     for point in points:
         curves.setdefault(point.method, [])
-        if point.error is not None:
+        if point.error is not None and point.us_per_s is not None:
             curves[point.method].append((point.us_per_s, point.error))
     plot_error_against_time(places["error"], curves, floor)
     save(picture, path)

@@ -42,7 +42,8 @@ class Point:
     @property
     def error(self) -> float | None:
         """The largest of the errors of ν, pose and wheel angles."""
-        return None if self.error_nu is None else max(self.error_nu, self.error_pose, self.error_wheel)
+        errors = (self.error_nu, self.error_pose, self.error_wheel)
+        return max((error for error in errors if error is not None), default=None)
 
 
 @dataclass(frozen=True)
@@ -84,8 +85,8 @@ def measure(scene: Scene, target: Target, method: str, factor: int) -> tuple[Poi
         states, chosen = states_at(coarse, drive, target.ticks // factor)
     except Refused as refused:
         return Point(method, method, coarse.run.step_s, refusal=refused.status), coarse, drive
-    errors = [target.error(states, part) for part in KINDS]
-    return Point(method, chosen, coarse.run.step_s, *errors), coarse, drive
+    nu, pose, wheel = (target.error(states, part) for part in KINDS)
+    return Point(method, chosen, coarse.run.step_s, nu, pose, wheel), coarse, drive
 
 
 def states_at(scene: Scene, drive: Drive, ticks: np.ndarray) -> tuple[np.ndarray, str]:

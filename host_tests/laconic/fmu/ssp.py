@@ -12,6 +12,7 @@ import xml.etree.ElementTree as ET
 from collections.abc import Iterable, Iterator
 from dataclasses import dataclass
 from pathlib import Path
+from typing import Any
 
 from laconic.errors import BadInput
 from laconic.fmu import DESCRIPTION, content_of, make_fmu
@@ -146,7 +147,7 @@ def make_ssp(scene: Scene, out: Path, *, version: int = 2, sources: bool = True,
         raise BadInput("--ssp: SSP 1.0 knows no FMUs of FMI 3; use --fmi 2")
     if scene.wheel_count == 0:
         raise BadInput(f"{scene.path}: vehicle.wheel: there is nothing to control without wheels; leave out --ssp")
-    options = {"version": version, "sources": sources, "enumerations": enumerations}
+    options: dict[str, Any] = {"version": version, "sources": sources, "enumerations": enumerations}
     with tempfile.TemporaryDirectory() as folder:
         vehicle = make_fmu(scene, Path(folder) / "vehicle.fmu", **options)
         controller = make_controller(scene, Path(folder) / "controller.fmu", **options)

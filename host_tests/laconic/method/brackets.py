@@ -8,6 +8,7 @@ table is Gᵀ{P, P}G: nothing is derived again.
 from __future__ import annotations
 
 from dataclasses import dataclass
+from typing import Any
 
 import sympy as sp
 
@@ -92,7 +93,7 @@ def impose(system: Bracketed, basis: sp.Matrix, kept: tuple[int, ...], name: str
     eta_rates = tuple(system.pseudo_rates[k] for k in kept)
     put_in = dict(zip(system.pseudo_velocities, basis * sp.Matrix(eta), strict=True))
 
-    def star(expression):
+    def star(expression: Any) -> Any:
         return expression.xreplace(put_in)
 
     return Bracketed(

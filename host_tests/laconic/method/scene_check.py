@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from typing import Any
+
 import numpy as np
 
 from laconic.analysis.from_core import Subject, nu_rates
@@ -19,7 +21,7 @@ def core_difference(subject: Subject, system: Bracketed, *, count: int = 1000, s
     for _ in range(count):
         nu = allowed @ rng.normal(0.0, 5.0, allowed.shape[1])
         theta = rng.uniform(-10.0, 10.0)
-        inputs = {
+        inputs: dict[str, Any] = {
             "voltage_V": rng.normal(0.0, 5.0, n), "axle_torque_Nm": rng.normal(0.0, 0.5, n),
             "body_force_N": rng.normal(0.0, 2.0, 2), "body_moment_Nm": rng.normal(0.0, 0.5),
             "world_force_N": rng.normal(0.0, 2.0, 2), "world_force_point_m": rng.normal(0.0, 0.2, 2),

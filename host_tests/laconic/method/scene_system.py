@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 
 import numpy as np
@@ -9,6 +10,8 @@ import sympy as sp
 
 from laconic.method.brackets import Bracketed, bracketed, impose
 from laconic.method.vehicles import carriage, wheel_rows
+
+Row = Sequence[float] | np.ndarray
 
 RANK_TOLERANCE = 1e-9  # relative, as in the core: an angle such as π is not exact in binary
 
@@ -128,7 +131,7 @@ def explicit_rates(numbers: VehicleNumbers, system: Bracketed) -> list[sp.Expr]:
     return list((sp.Matrix(basis) * inverse * right).applyfunc(sp.expand))
 
 
-def rate_function(numbers: VehicleNumbers, system: Bracketed):
+def rate_function(numbers: VehicleNumbers, system: Bracketed) -> Callable[..., np.ndarray]:
     """Numeric ν'(ν, θ, U, T, body wrench, world force, its point) of the derived equations, for checks."""
     count = len(numbers.wheel_rows)
     arguments = [*sp.symbols("nu_1 nu_2 nu_3 theta", real=True)]
@@ -137,7 +140,8 @@ def rate_function(numbers: VehicleNumbers, system: Bracketed):
     arguments += [*sp.symbols("F_xi F_eta tau F_X F_Y r_xi r_eta", real=True)]
     compiled = sp.lambdify(arguments, explicit_rates(numbers, system), "math", cse=True)
 
-    def rates(nu, theta, voltage, torque, wrench=(0, 0, 0), world=(0, 0), point=(0, 0)) -> np.ndarray:
+    def rates(nu: Row, theta: float, voltage: Row, torque: Row, wrench: Row = (0, 0, 0), world: Row = (0, 0),
+              point: Row = (0, 0)) -> np.ndarray:
         return np.array(compiled(*nu, theta, *voltage, *torque, *wrench, *world, *point), dtype=float)
 
     return rates

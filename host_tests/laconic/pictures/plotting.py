@@ -6,7 +6,7 @@ import textwrap
 import warnings
 from collections.abc import Mapping, Sequence
 from pathlib import Path
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any
 
 import matplotlib
 import numpy as np
@@ -27,7 +27,7 @@ from matplotlib.mathtext import MathTextParser  # noqa: E402
 from matplotlib.text import Text  # noqa: E402
 from matplotlib.transforms import ScaledTranslation  # noqa: E402
 
-STYLE = {"axes.grid": True, "grid.alpha": 0.3, "axes.spines.top": False, "axes.spines.right": False,
+STYLE: dict[Any, Any] = {"axes.grid": True, "grid.alpha": 0.3, "axes.spines.top": False, "axes.spines.right": False,
          "font.size": 10, "axes.titlesize": 11, "legend.frameon": False, "lines.linewidth": 1.3,
          "agg.path.chunksize": 20_000}  # a path of millions of points does not fit the renderer in one piece
 ARROWS = 12
@@ -167,8 +167,8 @@ def plot_error_against_time(axes: Axes, points: Mapping[str, Sequence[tuple[floa
 def simulation_picture(run: Trajectory, path: Path) -> None:
     """Path, velocities and wheel speeds of one run, and where the ground could not give what it asks."""
     picture = figure(12.0, 7.0)
-    layout = [["path", "velocities"], ["path", "wheels" if run.scene.wheel_count else "velocities"]]
-    places = picture.subplot_mosaic(layout, width_ratios=(1.0, 1.25))
+    below = "wheels" if run.scene.wheel_count else "velocities"
+    places = picture.subplot_mosaic([["path", "velocities"], ["path", below]], width_ratios=(1.0, 1.25))
     title(picture, f"{run.method}, step {run.scene.run.step_s:g} s, {run.scene.run.real}", run)
     plot_velocities(places["velocities"], run)
     if run.scene.wheel_count:

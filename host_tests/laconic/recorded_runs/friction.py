@@ -12,7 +12,7 @@ freedom), because samples within a run repeat each other.
 from __future__ import annotations
 
 import math
-from collections.abc import Callable
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 
 import numpy as np
@@ -135,7 +135,7 @@ def fit(subject: Subject, recordings: list[Recording], model: str) -> Friction:
     return Friction(model, names, values, half, float(np.sqrt((residual**2).mean())))
 
 
-def _half_widths(blocks, values: np.ndarray, whole: np.ndarray) -> np.ndarray:
+def _half_widths(blocks: Sequence[tuple[np.ndarray, np.ndarray]], values: np.ndarray, whole: np.ndarray) -> np.ndarray:
     """Cluster-robust: every run counts as one observation."""
     runs = len(blocks)
     if runs < 2:

@@ -6,6 +6,7 @@ from pathlib import Path
 from typing import Any
 
 import numpy as np
+from matplotlib.figure import Figure
 
 from laconic.pictures.curve_style import wrapped
 from laconic.pictures.plotting import figure, save
@@ -208,7 +209,7 @@ def draw(replay: Replay, folder: Path) -> list[Path]:
     return drawn
 
 
-def _speeds_picture(replay: Replay):
+def _speeds_picture(replay: Replay) -> Figure:
     """Wheel speeds of one run, measured and predicted, and what is left over."""
     shown, count = replay.shown, replay.subject.wheel_count
     picture = figure(9.0, 2.0 * (count + 1))
@@ -233,18 +234,18 @@ def _speeds_picture(replay: Replay):
     return picture
 
 
-def _rolled_picture(replay: Replay):
+def _rolled_picture(replay: Replay) -> Figure | None:
     """Rolled over camera distance by direction; one colour per speed."""
-    seen = [c for c in replay.comparisons if c.rolled.ratio is not None]
+    seen = [(c.rolled, c.rolled.ratio) for c in replay.comparisons if c.rolled.ratio is not None]
     if not seen:
         return None
     picture = figure(7.2, 4.6)
     axes = picture.subplots()
-    speeds = sorted({round(c.rolled.speed_m_per_s, 3) for c in seen})
+    speeds = sorted({round(rolled.speed_m_per_s, 3) for rolled, _ in seen})
     for k, speed in enumerate(speeds):
-        at = [c for c in seen if round(c.rolled.speed_m_per_s, 3) == speed]
-        axes.errorbar([c.rolled.direction_deg + 4.0 * (k - 0.5 * (len(speeds) - 1)) for c in at],
-                      [c.rolled.ratio.value for c in at], [c.rolled.ratio.half_width for c in at], fmt="osD^v"[k % 5],
+        at = [(rolled, ratio) for rolled, ratio in seen if round(rolled.speed_m_per_s, 3) == speed]
+        axes.errorbar([rolled.direction_deg + 4.0 * (k - 0.5 * (len(speeds) - 1)) for rolled, _ in at],
+                      [ratio.value for _, ratio in at], [ratio.half_width for _, ratio in at], fmt="osD^v"[k % 5],
                       capsize=4, label=f"{speed:g} m/s")
     axes.axhline(1.0, color="k", lw=1.0, ls="--", label="pure rolling")
     axes.set(xlabel="direction of travel in the robot's frame [°]", ylabel="rolled / camera distance [–]",
@@ -255,7 +256,7 @@ def _rolled_picture(replay: Replay):
     return picture
 
 
-def _currents_picture(replay: Replay):
+def _currents_picture(replay: Replay) -> Figure:
     """Steady currents: predicted over measured, for the runs that were not fitted."""
     picture = figure(6.4, 5.8)
     axes = picture.subplots()

@@ -42,7 +42,7 @@ def natural(path: Path) -> list[object]:
 def gather(given: Path, fit_on: tuple[Path, ...], columns: ColumnMap) -> tuple[list[Recording], list[str], list[str]]:
     """(all runs, names of those to fit on, files that are no such runs)."""
     if not (exists(given) and given.is_dir()):
-        runs, skipped = [read_log(given, columns)], []
+        runs, skipped = [read_log(given, columns)], list[str]()
     else:
         runs, skipped = _folder(given, columns)
     known = {run.name: run for run in runs}

@@ -82,7 +82,7 @@ def wait_for_port(process: subprocess.Popen[str], port: int) -> None:
     deadline = time.monotonic() + QEMU_START_S
     while time.monotonic() < deadline:
         if process.poll() is not None:
-            raise CannotReach(f"{QEMU} ended at once: {process.stderr.read().strip()}")
+            raise CannotReach(f"{QEMU} ended at once: {process.communicate()[1].strip()}")
         if f"0100007F:{port:04X} 00000000:0000 0A" in Path("/proc/net/tcp").read_text(encoding="ascii"):
             return
         time.sleep(0.02)

@@ -123,7 +123,7 @@ def node_process(real: str = "double", id_base: int = ID_BASE, *arguments: str) 
     # in a session of its own: Ctrl-C is for the rig, which brings the node to rest before it ends it
     with subprocess.Popen(command, stdout=subprocess.PIPE, text=True, start_new_session=True) as process:
         try:
-            line = process.stdout.readline()
+            line = process.stdout.readline() if process.stdout else ""
             found = re.search(r":(\d+)", line)
             if not found:
                 raise CannotReach(f"{program}: did not start (it said {line.strip()!r})")

@@ -57,8 +57,9 @@ class NodeClient:
         while True:
             nonce = self._greet(deadline_us)
             number = self._random_bits(32)
-            if self._wait_for("RESULT", self._open_message(number, nonce), deadline_us, tries=3,
-                              command=self.wire.number("RESULT", "command", "OPEN"), request=self._greetings & 15):
+            opened = self._wait_for("RESULT", self._open_message(number, nonce), deadline_us, tries=3,
+                                    command=self.wire.number("RESULT", "command", "OPEN"), request=self._greetings & 15)
+            if opened and self.identity:
                 self.link.session.open(number, nonce)
                 return self.identity
             if self.link.clock.now_us() >= deadline_us:

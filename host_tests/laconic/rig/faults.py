@@ -8,7 +8,9 @@ from __future__ import annotations
 import heapq
 import itertools
 import random
+from collections.abc import Mapping
 from dataclasses import dataclass, fields
+from typing import Any
 
 import can
 
@@ -41,10 +43,10 @@ class Faults:
     seed: int = 1
 
 
-FIELD_TYPES = {field.name: type(field.default) for field in fields(Faults)}
+FIELD_TYPES: dict[str, type[Any]] = {field.name: type(field.default) for field in fields(Faults)}
 
 
-def faults_from(options: dict[str, object]) -> Faults:
+def faults_from(options: Mapping[str, object]) -> Faults:
     """From options that may be texts; ValueError names one that is of no use."""
     faults = Faults(**{name: value_of(name, value) for name, value in options.items()})
     for name in ("loss", "duplication", "reordering", "corruption", "stuck", "wrong_length", "foreign"):
@@ -63,7 +65,7 @@ TRUTHS = {"1": True, "true": True, "yes": True, "0": False, "false": False, "no"
 WANTED = {float: "a number", int: "a whole number", bool: "true or false"}
 
 
-def value_of(name: str, value: object) -> object:
+def value_of(name: str, value: object) -> Any:
     """One option in its type; whole numbers may be hexadecimal, as identifiers are."""
     wanted = FIELD_TYPES[name]
     try:

@@ -78,3 +78,7 @@ class FaultyBus(can.BusABC):
     def state(self) -> can.BusState:
         """That of the bus beneath."""
         return self.inner.state
+
+    @state.setter
+    def state(self, new_state: can.BusState) -> None:
+        self.inner.state = new_state

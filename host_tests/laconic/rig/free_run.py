@@ -45,8 +45,8 @@ class FreeRun:
     overranges: int = 0
     fed_answers: int = 0    # how many answers had come when the node last said that it follows the rig's voltages
     deaf_heartbeats: int = 0  # in a row
-    punctuality: Punctuality | None = None  # of the rig; these two from START on
-    silence: Silence | None = None          # of the node
+    punctuality: Punctuality = field(init=False)  # of the rig; these two from START on
+    silence: Silence = field(init=False)          # of the node
 
 
 def run_free(node: NodeClient, scene: Scene, duration_s: float, rate_Hz: int = 0, watchdog_ms: int = 100,

@@ -8,6 +8,7 @@ import threading
 from collections.abc import Iterator
 from contextlib import contextmanager
 from types import FrameType, TracebackType
+from typing import Any
 
 from laconic.rig.errors import Interrupted
 
@@ -19,7 +20,7 @@ class Interruption:
 
     def __init__(self) -> None:
         self.number = 0
-        self._before: dict[int, object] = {}
+        self._before: dict[int, Any] = {}
         self._shields = 0
 
     def __enter__(self) -> Interruption:

@@ -82,7 +82,7 @@ def signal_verdicts(comparison: Comparison, tolerances: dict[str, float]) -> lis
     for name, record in comparison.signals.items():
         short = name.rpartition(".")[2]
         twin = np.array(record.twin)
-        limit = tolerances.get(name, tolerances.get(short))
+        limit: np.ndarray | float | None = tolerances.get(name, tolerances.get(short))
         if limit is None:
             limit = half_a_place(twin / record.scale, record.dtype) * record.scale
         verdicts.append(within(name, np.array(record.measured), twin, limit, np.array(record.ticks)))

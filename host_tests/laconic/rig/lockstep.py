@@ -37,12 +37,12 @@ OUTPUTS = ("raw_nu", "raw_pose", "raw_wheel_speed", "raw_wheel_angle")
 class LockstepRun:
     """What came back, one row an exchange, as far as the run came."""
 
-    twin: Plant | None = None    # a plant of the core at the start, not stepped
     exchanges: list[tuple[int, np.ndarray]] = field(default_factory=list)  # steps taken, row
     latencies_s: list[float] = field(default_factory=list)
     seconds: float = 0.0
     frames_out: int = 0
     frames_in: int = 0
+    twin: Plant = field(init=False)  # a plant of the core at the start, not stepped; from loading on
 
     @cached_property
     def ticks(self) -> np.ndarray:
@@ -77,7 +77,7 @@ def start_of(scene: Scene) -> Any:
 
 def load_scene(node: NodeClient, scene: Scene) -> Plant:
     """Sends a scene's vehicle, start and run to a node; returns its twin, a plant of the core at the same start."""
-    identity = node.identity if node.link.session.is_open else node.open()
+    identity = (node.identity if node.link.session.is_open else None) or node.open()
     if identity.real != scene.run.real:
         raise BadInput(f"{scene.path}: run.real is {scene.run.real}, the node computes in {identity.real}; "
                        "give --real, or another node")
@@ -188,12 +188,13 @@ def run_lockstep(node: NodeClient, scene: Scene, steps: int | None = None, *, ev
     stream = RawStream(node, scene, fd)
     stream.select()
     node.start_lockstep()
-    link, held = node.link, None
+    link = node.link
+    held: np.ndarray | None = None
     frames_out, frames_in, began = link.frames_out, link.frames_in, time.perf_counter()
     try:
         for first, count, row in stream.exchanges(steps or scene.steps(), every):
             held, sent = row if row is not None else held, time.perf_counter()
-            if stream.groups and (row is not None or resend):
+            if stream.groups and held is not None and (row is not None or resend):
                 stream.send_inputs(held)
             stream.sync(count)
             run.exchanges.append((first + count, stream.receive_state()))

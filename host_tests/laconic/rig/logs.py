@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import logging
-from collections.abc import Iterator
+from collections.abc import Callable, Iterator
 from contextlib import ExitStack, contextmanager
 from pathlib import Path
 
@@ -36,7 +36,7 @@ def open_log(path: Path) -> can.io.generic.MessageWriter:
         raise BadInput(f"--log {path}: cannot be written ({reason_of(error)}); choose another place") from None
 
 
-def stamped(writer: can.io.generic.MessageWriter, link: Link) -> can.typechecking.MessageReceiver:
+def stamped(writer: can.io.generic.MessageWriter, link: Link) -> Callable[[can.Message], None]:
     """Gives frames that carry no time (those we send, those of a virtual clock) the link's."""
 
     def write(message: can.Message) -> None:

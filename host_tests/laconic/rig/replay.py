@@ -9,6 +9,7 @@ import numpy as np
 
 from laconic.core.plant import Plant
 from laconic.errors import BadInput
+from laconic.rig.buses import next_channel
 from laconic.rig.client import NodeClient
 from laconic.rig.judge import link_verdict, signal_verdicts
 from laconic.rig.link import Link
@@ -80,7 +81,7 @@ class LogPlayer:
 def judge_log(path: Path, scene: Scene, id_base: int, tolerances: dict[str, float]) -> Judgement:
     """The verdicts of a recorded lockstep run with scaled frames."""
     messages = read_log(path)
-    with can.Bus(interface="virtual", channel=object()) as nowhere:
+    with can.Bus(interface="virtual", channel=next_channel()) as nowhere:
         link = Link(nowhere, id_base)
         player = LogPlayer(scene, id_base, link)
         for message in messages:

@@ -75,7 +75,8 @@ class Held:
 
     def __init__(self, drive: Drive):
         self.step_s = drive.step_s
-        self._drive, self._changes, self._values = drive, set(drive.changes), {}
+        self._drive, self._changes = drive, set(drive.changes)
+        self._values: dict[str, float] = {}
 
     def at(self, tick: int) -> dict[str, float]:
         """By signal; after the end of the drive, its last values."""
@@ -187,13 +188,13 @@ class Comparison:
 class ScaledRun:
     """A lockstep run with scaled frames, as far as it came."""
 
-    twin: Plant | None = None    # of the core, at the start until compared
     exchanges: list[tuple[np.ndarray, list[tuple[Frame, bytes]]]] = field(default_factory=list)  # inputs, answers
     latencies_s: list[float] = field(default_factory=list)
     seconds: float = 0.0
     frames_out: int = 0
     frames_in: int = 0
     voltage_overranges: int = 0
+    twin: Plant = field(init=False)  # of the core, at the start until compared; from loading on
 
     @property
     def steps(self) -> int:

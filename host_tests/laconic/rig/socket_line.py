@@ -10,6 +10,7 @@ import select
 import socket
 from collections.abc import Callable
 from contextlib import suppress
+from typing import Any
 
 
 class SocketLine:
@@ -84,13 +85,13 @@ def closed_with(last: bytes) -> str:
     return "the other end has closed the connection" + (f" and says: {text}" if text else "")
 
 
-def read_in_chunks(bus: object) -> None:
+def read_in_chunks(bus: Any) -> None:
     """Puts a SocketLine under an slcan bus that runs over a socket; leaves any other bus alone."""
-    port = getattr(bus, "serialPortOrig", None)
+    port: Any = getattr(bus, "serialPortOrig", None)
     line = getattr(port, "_socket", None)
     if isinstance(line, socket.socket):
 
         def forget() -> None:
             port._socket, port.is_open = None, False
 
-        bus.serialPortOrig = SocketLine(line, port.timeout or 0.001, forget)  # type: ignore[attr-defined]
+        bus.serialPortOrig = SocketLine(line, port.timeout or 0.001, forget)

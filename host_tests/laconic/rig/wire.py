@@ -52,7 +52,7 @@ class Frame:
         self.offset = message.frame_id - ID_BASE
         self.from_rig = "RIG" in message.senders
         self.comment = message.comment or ""
-        found = {name: attribute.value for name, attribute in message.dbc.attributes.items()}
+        found = {name: each.value for name, each in message.dbc.attributes.items()} if message.dbc else {}
         self.attributes = {**defaults, **found}
         self.max_delta = int(self.attributes["E2EMaxDeltaCounter"])
         self.key = str(self.attributes["E2EKey"])  # what its protection depends on: none, nonce, session, run
@@ -102,7 +102,8 @@ class Wire:
     """All messages, by name and by identifier offset."""
 
     def __init__(self, database: Database):
-        defaults = {name: each.default_value for name, each in database.dbc.attribute_definitions.items()}
+        definitions = database.dbc.attribute_definitions if database.dbc else {}
+        defaults = {name: each.default_value for name, each in definitions.items()}
         self.database = database
         self.frames = {message.name: Frame(message, defaults) for message in database.messages}
         self.by_offset = {frame.offset: frame for frame in self.frames.values()}
@@ -124,4 +125,7 @@ class Wire:
 @lru_cache(maxsize=1)
 def wire() -> Wire:
     """The contract, read once."""
-    return Wire(cantools.database.load_file(DBC))
+    database = cantools.database.load_file(DBC)
+    if not isinstance(database, Database):
+        raise ValueError(f"{DBC}: is no database of CAN frames")
+    return Wire(database)

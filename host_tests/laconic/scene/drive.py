@@ -88,7 +88,7 @@ class Drive:
     def on_grid(cls, path: Path, inputs: tuple[Input, ...], step_s: float, steps: int,
                 grid_s: Sequence[float] = ()) -> Drive:
         """Puts the changes on the grid; BadInput where one falls inside a step, with a step that fits `grid_s` too."""
-        grid = [*grid_s, Fraction(repr(step_s)) * steps]
+        grid: list[float | Fraction] = [*grid_s, Fraction(repr(step_s)) * steps]
         ticks = {each.place: change_ticks(path, each, step_s, steps, grid) for each in inputs if each.kind == "steps"}
         levels = {each.place: np.array([0.0, *each.value]) for each in inputs if each.kind == "steps"}
         within = {int(t) for ends in ticks.values() for t in ends if t < steps}

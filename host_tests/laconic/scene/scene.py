@@ -104,7 +104,7 @@ class Scene:
     def with_run(self, *, method: str | None = None, step_s: float | None = None, real: str | None = None,
                  duration_s: float | None = None) -> Scene:
         """The scene with some of `[run]` replaced."""
-        given = {"method": method, "step_s": step_s, "real": real, "duration_s": duration_s}
+        given: dict[str, Any] = {"method": method, "step_s": step_s, "real": real, "duration_s": duration_s}
         return replace(self, run=replace(self.run, **{k: v for k, v in given.items() if v is not None}))
 
     def core(self) -> Core:

@@ -5,6 +5,7 @@ from __future__ import annotations
 import difflib
 import math
 import re
+import sys
 import unicodedata
 from collections.abc import Iterator, Mapping, Sequence
 from pathlib import Path
@@ -13,9 +14,9 @@ from typing import Any, NoReturn
 from laconic.errors import BadInput, nearest_of, reason_of
 from laconic.scene.not_modelled import instead_of
 
-try:
+if sys.version_info >= (3, 11):
     import tomllib
-except ModuleNotFoundError:  # Python 3.10
+else:
     import tomli as tomllib
 
 LONGEST_SHOWN = 60  # of a value in a message

@@ -47,7 +47,7 @@ def wanted_signals(scene: Scene) -> tuple[str, ...]:
 def usual_signals(scene: Scene) -> tuple[str, ...]:
     """Velocities, pose, wheels and energy."""
     every = signal_names(OUTPUT_LENGTHS, OUTPUTS_PER_WHEEL, scene.wheel_count)
-    by_name = {name: [] for name in USUAL}
+    by_name: dict[str, list[str]] = {name: [] for name in USUAL}
     for signal in every:
         by_name.get(signal.partition("[")[0], []).append(signal)
     return tuple(signal for name in USUAL for signal in by_name[name])

@@ -28,7 +28,7 @@ def soak(minutes: float, seed: int, advance: Callable[[float], None]) -> dict[st
     """All boards in turn until the time is up, every second round with all cores busy."""
     if reason := why_no_emulation():
         raise BadInput(f"soak boards: {reason}")
-    source, starts, bad = random.Random(seed), Counter(), []
+    source, starts, bad = random.Random(seed), Counter[str](), list[str]()
     began = last = time.monotonic()
     while time.monotonic() - began < 60.0 * minutes:
         for busy in (False, True):

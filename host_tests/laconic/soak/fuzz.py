@@ -34,7 +34,7 @@ def fuzz(target: str, seconds: float, seed: int, advance: Callable[[float], None
                str(SOURCE_DIR / "firmware_stub" / "fuzz" / "corpus" / target)]
     with subprocess.Popen(command, stdout=subprocess.DEVNULL, stderr=subprocess.PIPE, text=True) as process:
         log, last = [], time.monotonic()
-        for line in process.stderr:
+        for line in process.stderr or ():
             log.append(line)
             now = time.monotonic()
             if now - last > SLICE_S:

@@ -170,8 +170,9 @@ def verify_case(core: Core, case: Table, method: str, step_s: float, advance: Ca
     found, expected = np.array(states, dtype=float), expected_states(case)
     if found.shape != expected.shape:
         case.fail("states", f"have shape {expected.shape}, the segments and wheels need {found.shape}")
-    errors = [error_of(found[:, part], expected[:, part]) for part in (slice(0, 3), slice(3, 6), slice(6, None))]
-    return CaseResult(name, "ok", *errors, seconds=seconds)
+    nu, pose, wheels = (error_of(found[:, part], expected[:, part])
+                        for part in (slice(0, 3), slice(3, 6), slice(6, None)))
+    return CaseResult(name, "ok", nu, pose, wheels, seconds)
 
 
 def as_json(results: list[CaseResult], method: str, step_s: float, real: str) -> dict[str, Any]:

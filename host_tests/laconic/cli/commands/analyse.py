@@ -4,12 +4,17 @@ from __future__ import annotations
 
 import json
 from pathlib import Path
+from typing import TYPE_CHECKING
 
 import click
 
 from laconic.cli.options import OutputFolder, SceneName, json_flag
 from laconic.errors import BadInput, ResultFails
 from laconic.outputs import write_text
+
+if TYPE_CHECKING:
+    from laconic.analysis.findings import Study
+    from laconic.progress import Advance
 
 PARTS = ("geometry", "free", "steady", "bifurcation", "traction")
 
@@ -80,7 +85,7 @@ def _remove(older: list[Path]) -> None:
                    err=True)
 
 
-def _draw(found, out: Path | None, advance) -> list[Path]:
+def _draw(found: Study, out: Path | None, advance: Advance) -> list[Path]:
     if out is None:
         return []
     from laconic.analysis.pictures import draw

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import json
 from pathlib import Path
+from typing import TYPE_CHECKING
 
 import click
 from rich.console import Console
@@ -11,6 +12,9 @@ from rich.console import Console
 from laconic.cli.options import OutputFile, SceneName, only_one
 from laconic.errors import BadInput, ResultFails
 from laconic.outputs import STDOUT, check_ending, write_text
+
+if TYPE_CHECKING:
+    from laconic.method.scene_system import VehicleNumbers
 
 EXAMPLES = ("caster", "carriage", "differential-drive", "trailer")
 ENDINGS = {"": (".txt", ".md"), "latex": (".tex",), "c": (".c", ".h"), "json": (".json",)}
@@ -31,14 +35,15 @@ def command(scene: str | None, example: str | None, latex: bool, in_c: bool, out
     The result is checked against (2.3) and Maggi's equations (1.2) at random numbers, and a scene's also against the
     C core's derivative.
     """
-    if (scene is None) == (example is None):
+    given = [name for name in (scene, example) if name is not None]
+    if len(given) != 1:
         raise BadInput("derive: give either a SCENE or --example; see laconic derive --help")
     form = (only_one({"--latex": latex, "--c": in_c}) or "").removeprefix("--")
     if example is not None and in_c:
         raise BadInput("--c: needs a scene, whose numbers it writes down; give a SCENE instead of --example")
     check_ending("--out", out or STDOUT, ENDINGS["json" if as_json else form])
     with Console(stderr=True).status("deriving"):
-        text, checks = _of_example(example, form) if example else _of_scene(scene, form)
+        text, checks = (_of_example if example else _of_scene)(given[0], form)
     text = json.dumps({"text": text, "checks": checks}, indent=2) + "\n" if as_json else text
     write_text(out or STDOUT, text)
     for name, value in checks.items():
@@ -85,7 +90,7 @@ def _of_scene(given: str, form: str) -> tuple[str, dict[str, float]]:
     return text, checks
 
 
-def _numbers_text(numbers) -> str:
+def _numbers_text(numbers: VehicleNumbers) -> str:
     """The scene's numbers for the symbols above."""
     values = numbers.symbol_values()
     shown = {str(s): float(v) for s, v in values.items()}

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import json
 from pathlib import Path
+from typing import Any
 
 import click
 
@@ -41,7 +42,8 @@ def command(scene: str, version: str, scalar: bool, without_sources: bool, no_en
     given = read_scene(scene)
     if out is None:
         out = claim_file("--out", Path(f"{given.path.stem}_fmi{version}{'_scalar' if scalar else ''}.{ending}"))
-    options = {"version": int(version), "sources": not without_sources, "enumerations": not no_enumerations}
+    options: dict[str, Any] = {"version": int(version), "sources": not without_sources,
+                               "enumerations": not no_enumerations}
     made = make_ssp(given, out, **options) if ssp else make_fmu(given, out, scalar=scalar, **options)
     size = None if is_special(made) else made.stat().st_size
     if json_wanted:

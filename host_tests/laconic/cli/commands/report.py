@@ -5,9 +5,10 @@ from __future__ import annotations
 import json
 from importlib.metadata import version
 from pathlib import Path
+from typing import Any
 
 import click
-from rich.console import Console
+from rich.console import Console, JustifyMethod
 from rich.markup import escape
 from rich.table import Table
 
@@ -55,7 +56,7 @@ def command(scenes: tuple[str, ...], out: Path | None, quick: bool, json_wanted:
     click.echo(f"{page}")
 
 
-def robot_tables(results: dict[str, list[dict]]) -> list[Table]:
+def robot_tables(results: dict[str, list[dict[str, Any]]]) -> list[Table]:
     """For people: what to take, and what a step costs on a microcontroller."""
     take = _table("What to take: the quickest that reaches an error of ν, pose and wheel angles (relative)",
                   ("scene", "wanted_error", "real", "method", "step_s", "error", "us_per_second"), results["take"])
@@ -64,7 +65,7 @@ def robot_tables(results: dict[str, list[dict]]) -> list[Table]:
     return [take, board] if results["scenes"] else [take]
 
 
-def _table(title: str, fields: tuple[str, ...], rows: list[dict]) -> Table:
+def _table(title: str, fields: tuple[str, ...], rows: list[dict[str, Any]]) -> Table:
     table = Table(title=title, title_justify="left")
     for name in fields:
         table.add_column(escape(TITLES.get(name, name)), justify="left" if name in TEXT else "right", overflow="fold")
@@ -73,11 +74,12 @@ def _table(title: str, fields: tuple[str, ...], rows: list[dict]) -> Table:
     return table
 
 
-def goal_table(goals: list[dict]) -> Table:
+def goal_table(goals: list[dict[str, Any]]) -> Table:
     """The table for people."""
     table = Table(title="Goals", title_justify="left")
-    for heading, justify in (("", "left"), ("goal", "left"), ("found", "right"), ("", "left"), ("wanted", "right"),
-                             ("", "left")):
+    headings: tuple[tuple[str, JustifyMethod], ...] = (
+        ("", "left"), ("goal", "left"), ("found", "right"), ("", "left"), ("wanted", "right"), ("", "left"))
+    for heading, justify in headings:
         table.add_column(heading, justify=justify, overflow="fold")
     colours = {"met": "green", "missed": "red", "not measured": "yellow"}
     for row in goals:

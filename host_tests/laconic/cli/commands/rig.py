@@ -69,8 +69,8 @@ def command(scene_name: str | None, lockstep: bool, same_bits: bool, free_run: b
     belongs_to("--same-bits", same_bits, "--every", "--fd")
     belongs_to("--free-run", free_run, "--rate", "--watchdog")
     options = Options(mode=mode.removeprefix("--"), **given)
-    if stop or reset:
-        goes_with(only_one({"--stop": stop, "--reset": reset}), *CONNECTION, "--json")
+    if ending := only_one({"--stop": stop, "--reset": reset}):
+        goes_with(ending, *CONNECTION, "--json")
         return rest(scene_name, options, reset)
     if scene_name is None:
         raise BadInput("SCENE: is missing; name the scene to drive, or give --stop or --reset")
