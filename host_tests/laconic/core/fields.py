@@ -41,7 +41,7 @@ class Field:
         """Whether it says how many tables there are, so that no scene has it as a key."""
         return self.table == "vehicle" and self.key in COUNTED
 
-    def values(self, root: Any) -> list[float] | list[int]:
+    def values(self, root: Any) -> list[float]:
         """Its numbers in a laconic_vehicle or laconic_start: of all items that there is room for."""
         if self.counts:
             return [int(getattr(root, f"{self.key}_count"))]
@@ -61,9 +61,11 @@ def fields_from(ffi: Any, lib: Any) -> tuple[Field, ...]:
     for label, number in ffi.typeof("laconic_field").relements.items():
         traits = lib.laconic_field_traits_of(number)
         if traits != ffi.NULL:
-            texts = (ffi.string(text(number)).decode() for text in (lib.laconic_field_name, lib.laconic_field_path))
-            ends = (_end(ffi, traits, what) for what in ("kind", "rule", "need"))
-            found.append(Field(number, label.removeprefix("LACONIC_FIELD_"), *texts, *ends, int(traits.items)))
+            spelled = (lib.laconic_field_name(number), lib.laconic_field_path(number))
+            name, path = (ffi.string(text).decode() for text in spelled)
+            kind, rule, need = (_end(ffi, traits, what) for what in ("kind", "rule", "need"))
+            identifier, items = label.removeprefix("LACONIC_FIELD_"), int(traits.items)
+            found.append(Field(number, identifier, name, path, kind, rule, need, items))
     return tuple(sorted(found, key=lambda field: field.number))
 
 

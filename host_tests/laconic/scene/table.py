@@ -113,7 +113,7 @@ class Table:
             self.fail(key, f"holds the {kind} character {hidden[0]!a}; give plain text")
         return text
 
-    def flag(self, key: str, default: bool) -> bool:
+    def flag(self, key: str, default: Any = ...) -> bool:
         """true or false."""
         return self._get(key, default, (bool,), "true or false")
 
