@@ -20,25 +20,22 @@ static size_t offsets_of(const fmu_instance *instance, const fmu_variable *varia
                          size_t room) {
     const uint32_t size = size_of(instance, variable), first = element != 0 ? element - 1 : 0;
     const uint32_t count = element != 0 ? 1 : size;
-    uint32_t i;
     if (element > size || count > room) return 0;
-    for (i = 0; i < count; i++) offset[i] = variable->offset + (first + i) * variable->stride;
+    for (uint32_t i = 0; i < count; i++) offset[i] = variable->offset + (first + i) * variable->stride;
     return count;
 }
 
 /* Fills the list; false: one of the references takes the long way. */
 static bool look_up(const fmu_instance *instance, fmu_list *list, const uint32_t *references, size_t count,
                     bool to_set) {
-    size_t k;
     list->count = list->values = 0;
     list->groups = 0;
     if (count > FMU_LIST_LENGTH) return false;
-    for (k = 0; k < count; k++) {
+    for (size_t k = 0; k < count; k++) {
         const fmu_variable *variable = row_of(references[k]);
-        size_t found;
         if (variable == NULL || (to_set && variable->access != FMU_INPUT)) return false;
-        found = offsets_of(instance, variable, fmu_element(references[k]), &list->offset[list->values],
-                           FMU_LIST_LENGTH - list->values);
+        const size_t found = offsets_of(instance, variable, fmu_element(references[k]), &list->offset[list->values],
+                                        FMU_LIST_LENGTH - list->values);
         if (found == 0) return false;
         list->values += found;
         list->groups |= variable->group;
@@ -49,9 +46,8 @@ static bool look_up(const fmu_instance *instance, fmu_list *list, const uint32_t
 }
 
 static inline bool is_known(const fmu_list *list, const uint32_t *references, size_t count) {
-    size_t k;
     if (list->count != count) return false;
-    for (k = 0; k < count; k++)
+    for (size_t k = 0; k < count; k++)
         if (list->reference[k] != references[k]) return false;
     return true;
 }
@@ -63,14 +59,13 @@ static bool get_quickly(fmu_instance *instance, const uint32_t *references, size
     fmu_plant *plant = &instance->plant;
     fmu_list *list = &instance->read;
     bool finite = true;
-    size_t i;
     if (plant->start_needed || plant->change_needed) return false;
     if (!is_known(list, references, count) && !look_up(instance, list, references, count, false)) return false;
     if (list->values != value_count) return false;
     if (list->groups & plant->stale) fmu_plant_refresh(instance, list->groups);
-    for (i = 0; i < value_count; i++) finite &= fmu_is_finite(*value_at(plant, list->offset[i]));
+    for (size_t i = 0; i < value_count; i++) finite &= fmu_is_finite(*value_at(plant, list->offset[i]));
     if (!finite) return false; /* the long way says which */
-    for (i = 0; i < value_count; i++) values[i] = *value_at(plant, list->offset[i]);
+    for (size_t i = 0; i < value_count; i++) values[i] = *value_at(plant, list->offset[i]);
     return true;
 }
 
@@ -80,13 +75,12 @@ static bool set_quickly(fmu_instance *instance, const uint32_t *references, size
     fmu_plant *plant = &instance->plant;
     fmu_list *list = &instance->written;
     bool finite = true;
-    size_t i;
     if (!(instance->settable >> FMU_INPUT & 1U)) return false;
     if (!is_known(list, references, count) && !look_up(instance, list, references, count, true)) return false;
     if (list->values != value_count) return false;
-    for (i = 0; i < value_count; i++) finite &= fmu_is_finite(values[i]);
+    for (size_t i = 0; i < value_count; i++) finite &= fmu_is_finite(values[i]);
     if (!finite) return false;
-    for (i = 0; i < value_count; i++) *value_at(plant, list->offset[i]) = values[i];
+    for (size_t i = 0; i < value_count; i++) *value_at(plant, list->offset[i]) = values[i];
     fmu_plant_input_changed(plant);
     return true;
 }

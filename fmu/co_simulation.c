@@ -38,10 +38,9 @@ static double magnitude(double value) { return value < 0.0 ? -value : value; }
 static double time_tolerance(const fmu_instance *instance, double at_s, double internal_s) {
     const fmu_clock *clock = &instance->clock;
     const double half_s = 0.5 * internal_s, last_s = clock->step_s > 0.0 ? clock->step_s : internal_s;
-    double off_s;
     if (fmu_plant_own_step(&instance->plant) > 0.0) return half_s;
-    off_s = OFF_WITHOUT_STEP * internal_s +
-            DBL_EPSILON * magnitude(at_s) * (magnitude(instance->plant.time_s - clock->start_s) / last_s);
+    const double off_s = OFF_WITHOUT_STEP * internal_s +
+                         DBL_EPSILON * magnitude(at_s) * (magnitude(instance->plant.time_s - clock->start_s) / last_s);
     return off_s < half_s ? off_s : half_s;
 }
 
@@ -94,8 +93,8 @@ static fmu_status count_steps(fmu_instance *instance, double step_s, uint64_t *s
 
 /* One internal step at a time, each offered to the importer. */
 static fmu_status run_with_updates(fmu_instance *instance, uint64_t steps, fmu_step_end *end) {
-    uint64_t k, taken;
-    for (k = 0; k < steps; k++) {
+    uint64_t taken;
+    for (uint64_t k = 0; k < steps; k++) {
         const fmu_status status = fmu_plant_run(instance, 1, &taken);
         if (status != FMU_OK) return status;
         instance->clock.ticks++;
@@ -130,9 +129,8 @@ static fmu_status run_several(fmu_instance *instance, uint64_t steps, fmu_step_e
 /* A single step is not taken at all when it is refused: nothing to bring back. */
 static fmu_status run(fmu_instance *instance, uint64_t steps, fmu_step_end *end) {
     uint64_t taken = 0;
-    fmu_status status;
     if (steps != 1 || instance->between_steps != NULL) return run_several(instance, steps, end);
-    status = fmu_plant_run(instance, 1, &taken);
+    const fmu_status status = fmu_plant_run(instance, 1, &taken);
     instance->clock.ticks += taken;
     return status;
 }

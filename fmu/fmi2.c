@@ -281,10 +281,9 @@ fmi2Status fmi2EnterEventMode(fmi2Component c) {
 
 fmi2Status fmi2NewDiscreteStates(fmi2Component c, fmi2EventInfo *info) {
     bool changed;
-    fmu_status status;
     ALLOW(c, FMU_CALL_UPDATE_DISCRETE_STATES);
     if (info == NULL) return give(fmu_refuse(SELF(c), "NewDiscreteStates: no place for the event information (NULL)"));
-    status = fmu_update_discrete_states(SELF(c), &changed);
+    const fmu_status status = fmu_update_discrete_states(SELF(c), &changed);
     info->newDiscreteStatesNeeded = fmi2False;
     info->terminateSimulation = fmi2False;
     info->nominalsOfContinuousStatesChanged = fmi2False;

@@ -135,11 +135,10 @@ fmi3Status fmi3ExitConfigurationMode(fmi3Instance instance) {
 
 fmi3Status fmi3EnterInitializationMode(fmi3Instance instance, fmi3Boolean toleranceDefined, fmi3Float64 tolerance,
                                        fmi3Float64 startTime, fmi3Boolean stopTimeDefined, fmi3Float64 stopTime) {
-    fmu_status status;
     (void)toleranceDefined; /* the step is fixed: there is no error control to set */
     (void)tolerance;
     ALLOW(instance, FMU_CALL_ENTER_INITIALIZATION);
-    status = fmu_setup(SELF(instance), startTime, stopTimeDefined, stopTime);
+    const fmu_status status = fmu_setup(SELF(instance), startTime, stopTimeDefined, stopTime);
     if (status == FMU_OK) fmu_enter(SELF(instance), FMU_INITIALIZATION);
     return give(status);
 }
@@ -357,9 +356,8 @@ fmi3Status fmi3UpdateDiscreteStates(fmi3Instance instance, fmi3Boolean *discrete
                                     fmi3Boolean *valuesOfContinuousStatesChanged, fmi3Boolean *nextEventTimeDefined,
                                     fmi3Float64 *nextEventTime) {
     bool changed;
-    fmu_status status;
     ALLOW(instance, FMU_CALL_UPDATE_DISCRETE_STATES);
-    status = fmu_update_discrete_states(SELF(instance), &changed);
+    const fmu_status status = fmu_update_discrete_states(SELF(instance), &changed);
     if (discreteStatesNeedUpdate != NULL) *discreteStatesNeedUpdate = fmi3False;
     if (terminateSimulation != NULL) *terminateSimulation = fmi3False;
     if (nominalsOfContinuousStatesChanged != NULL) *nominalsOfContinuousStatesChanged = fmi3False;
@@ -445,10 +443,9 @@ fmi3Status fmi3DoStep(fmi3Instance instance, fmi3Float64 currentCommunicationPoi
                       fmi3Boolean noSetFMUStatePriorToCurrentPoint, fmi3Boolean *eventHandlingNeeded,
                       fmi3Boolean *terminateSimulation, fmi3Boolean *earlyReturn, fmi3Float64 *lastSuccessfulTime) {
     fmu_step_end end;
-    fmu_status status;
     (void)noSetFMUStatePriorToCurrentPoint;
     ALLOW(instance, FMU_CALL_DO_STEP);
-    status = fmu_do_step(SELF(instance), currentCommunicationPoint, communicationStepSize, &end);
+    const fmu_status status = fmu_do_step(SELF(instance), currentCommunicationPoint, communicationStepSize, &end);
     if (eventHandlingNeeded != NULL) *eventHandlingNeeded = fmi3False;
     if (terminateSimulation != NULL) *terminateSimulation = fmi3False;
     if (earlyReturn != NULL) *earlyReturn = end.early;

@@ -35,12 +35,11 @@ static bool allows(const fmu_instance *instance, const fmu_rule *rule, fmu_mode 
 typedef char fmu_calls_fit_a_word[FMU_CALL_COUNT <= 32 ? 1 : -1];
 
 void fmu_enter(fmu_instance *instance, fmu_mode mode) {
-    uint32_t call;
     instance->mode = mode;
     instance->read.count = instance->written.count = 0; /* what may be read and set changes with the mode */
     instance->settable = settable_in(instance, mode);
     instance->allowed = 0;
-    for (call = 0; call < FMU_CALL_COUNT; call++)
+    for (uint32_t call = 0; call < FMU_CALL_COUNT; call++)
         if (allows(instance, &fmu_rules[call], mode)) instance->allowed |= 1U << call;
 }
 

@@ -27,12 +27,11 @@ static void unsign_nan(char *line) {
 static void deliver(const fmu_instance *instance, fmu_status status, fmu_category category, const char *format,
                     va_list arguments) {
     char line[LINE_LENGTH];
-    size_t k;
     /* errors are always told: FMI 3.0 wants it, and nobody is glad to miss them */
     if (instance->deliver == NULL || !((instance->log_categories | FMU_LOG_ERROR) & (unsigned)category)) return;
     vsnprintf(line, sizeof line, format, arguments);
     unsign_nan(line);
-    for (k = 0; k < CATEGORY_COUNT; k++)
+    for (size_t k = 0; k < CATEGORY_COUNT; k++)
         if (categories[k].category == category) instance->deliver(instance, status, categories[k].name, line);
 }
 
@@ -53,10 +52,9 @@ fmu_status fmu_refuse(const fmu_instance *instance, const char *format, ...) {
 }
 
 static unsigned category_bit(const char *name) {
-    size_t k;
     if (name == NULL) return 0;
     if (strcmp(name, "logAll") == 0) return FMU_LOG_ALL;
-    for (k = 0; k < CATEGORY_COUNT; k++)
+    for (size_t k = 0; k < CATEGORY_COUNT; k++)
         if (strcmp(categories[k].name, name) == 0) return (unsigned)categories[k].category;
     return 0;
 }
@@ -64,10 +62,9 @@ static unsigned category_bit(const char *name) {
 /* No categories: all of them. FMI 2: on means these and no others, off none. FMI 3: on adds these, off takes them away. */
 fmu_status fmu_set_logging(fmu_instance *instance, bool on, size_t count, const char *const names[]) {
     unsigned wanted = count == 0 ? FMU_LOG_ALL : 0;
-    size_t k;
     if (count > 0 && names == NULL)
         return fmu_refuse(instance, "SetDebugLogging: %zu categories and no list of them", count);
-    for (k = 0; k < count; k++) {
+    for (size_t k = 0; k < count; k++) {
         const unsigned bit = category_bit(names[k]);
         if (bit == 0)
             return fmu_refuse(instance,

@@ -16,11 +16,10 @@ fmu_status fmu_set_time(fmu_instance *instance, double time_s) {
 
 fmu_status fmu_completed_step(fmu_instance *instance) {
     const double time_s = instance->plant.time_s;
-    fmu_status status;
     if (fmu_clock_passes_stop(&instance->clock, time_s, 0.0))
         return fmu_refuse(instance, "CompletedIntegratorStep: %.15g s is beyond the stop time %.15g s", time_s,
                           instance->clock.stop_s);
-    status = fmu_make_current(instance);
+    const fmu_status status = fmu_make_current(instance);
     if (status != FMU_OK) return status;
     instance->clock.completed_s = time_s;
     fmu_plant_watch(instance);
@@ -43,9 +42,8 @@ fmu_status fmu_get_states(fmu_instance *instance, double *values, size_t count) 
 
 fmu_status fmu_set_states(fmu_instance *instance, const double *values, size_t count) {
     const fmu_status status = check_count(instance, values, count);
-    size_t k;
     if (status != FMU_OK) return status;
-    for (k = 0; k < count; k++)
+    for (size_t k = 0; k < count; k++)
         if (!(values[k] <= FMU_LARGEST_STATE && values[k] >= -FMU_LARGEST_STATE))
             return fmu_report(instance, FMU_DISCARD, FMU_LOG_DISCARD,
                               "continuous state %zu of %zu cannot be %g: take a smaller step", k + 1, count, values[k]);
@@ -56,11 +54,10 @@ fmu_status fmu_set_states(fmu_instance *instance, const double *values, size_t c
 fmu_status fmu_get_rates(fmu_instance *instance, double *values, size_t count) {
     double rates[6 + FMU_PLANT_LARGEST_ARRAY];
     fmu_status status = check_count(instance, values, count);
-    size_t k;
     if (status == FMU_OK) status = fmu_make_current(instance);
     if (status != FMU_OK) return status;
     fmu_plant_get_rates(instance, rates);
-    for (k = 0; k < count; k++)
+    for (size_t k = 0; k < count; k++)
         if (!fmu_is_finite(rates[k]))
             return fmu_refuse(instance,
                               "the derivative of continuous state %zu of %zu leaves the range of double "

@@ -22,12 +22,11 @@ static bool is_unknown(const fmu_variable *variable) {
 }
 
 static fmu_status count_known(const fmu_instance *instance, fmu_references list, bool known, size_t *total) {
-    size_t k;
     fmu_slot slot;
     *total = 0;
     if (list.count > 0 && list.reference == NULL)
         return fmu_refuse(instance, "the list of value references is missing (NULL)");
-    for (k = 0; k < list.count; k++) {
+    for (size_t k = 0; k < list.count; k++) {
         if (!fmu_find(instance, list.reference[k], &slot))
             return fmu_refuse(instance, "there is no variable with the value reference %u",
                               (unsigned)list.reference[k]);
@@ -63,17 +62,16 @@ static fmu_status refuse_result(const fmu_instance *instance, const fmu_variable
 /* Checked before anything is handed out. */
 static fmu_status read_unknowns(const fmu_instance *instance, fmu_references unknowns, fmu_tangent *tangent,
                                 double *values) {
-    size_t k, used = 0;
-    uint32_t i;
+    size_t used = 0;
     fmu_slot slot;
-    for (k = 0; k < unknowns.count; k++) {
+    for (size_t k = 0; k < unknowns.count; k++) {
         fmu_find(instance, unknowns.reference[k], &slot);
-        for (i = 0; i < slot.count; i++)
+        for (uint32_t i = 0; i < slot.count; i++)
             if (!fmu_is_finite(*tangent_place(tangent, &slot, i))) return refuse_result(instance, slot.variable);
     }
-    for (k = 0; k < unknowns.count; k++) {
+    for (size_t k = 0; k < unknowns.count; k++) {
         fmu_find(instance, unknowns.reference[k], &slot);
-        for (i = 0; i < slot.count; i++) values[used++] = *tangent_place(tangent, &slot, i);
+        for (uint32_t i = 0; i < slot.count; i++) values[used++] = *tangent_place(tangent, &slot, i);
     }
     return FMU_OK;
 }
@@ -81,17 +79,16 @@ static fmu_status read_unknowns(const fmu_instance *instance, fmu_references unk
 fmu_status fmu_directional(fmu_instance *instance, fmu_references unknowns, fmu_references knowns, const double *seed,
                            size_t seed_count, double *sensitivity, size_t sensitivity_count) {
     fmu_tangent tangent;
-    size_t k, used = 0;
-    uint32_t i;
+    size_t used = 0;
     fmu_slot slot;
     const fmu_status status = check_counts(instance, unknowns, knowns, sensitivity_count, seed_count);
     if (status != FMU_OK) return status;
     if ((seed_count > 0 && seed == NULL) || (sensitivity_count > 0 && sensitivity == NULL))
         return fmu_refuse(instance, "the list of seeds or sensitivities is missing (NULL)");
     memset(&tangent, 0, sizeof tangent);
-    for (k = 0; k < knowns.count; k++) {
+    for (size_t k = 0; k < knowns.count; k++) {
         fmu_find(instance, knowns.reference[k], &slot);
-        for (i = 0; i < slot.count; i++, used++)
+        for (uint32_t i = 0; i < slot.count; i++, used++)
             if (slot.variable->access != FMU_INDEPENDENT) *tangent_place(&tangent, &slot, i) += seed[used];
     }
     fmu_plant_tangent(instance, &tangent);
@@ -103,32 +100,30 @@ static double adjoint_of(fmu_instance *instance, fmu_references unknowns, const 
                          const double *seed) {
     fmu_tangent tangent;
     double sum = 0.0;
-    size_t k, used = 0;
-    uint32_t i;
+    size_t used = 0;
     fmu_slot slot;
     if (known->variable->access == FMU_INDEPENDENT) return 0.0;
     memset(&tangent, 0, sizeof tangent);
     *tangent_place(&tangent, known, element) = 1.0;
     fmu_plant_tangent(instance, &tangent);
-    for (k = 0; k < unknowns.count; k++) {
+    for (size_t k = 0; k < unknowns.count; k++) {
         fmu_find(instance, unknowns.reference[k], &slot);
-        for (i = 0; i < slot.count; i++) sum += seed[used++] * *tangent_place(&tangent, &slot, i);
+        for (uint32_t i = 0; i < slot.count; i++) sum += seed[used++] * *tangent_place(&tangent, &slot, i);
     }
     return sum;
 }
 
 fmu_status fmu_adjoint(fmu_instance *instance, fmu_references unknowns, fmu_references knowns, const double *seed,
                        size_t seed_count, double *sensitivity, size_t sensitivity_count) {
-    size_t k, used = 0;
-    uint32_t i;
+    size_t used = 0;
     fmu_slot slot;
     const fmu_status status = check_counts(instance, unknowns, knowns, seed_count, sensitivity_count);
     if (status != FMU_OK) return status;
     if ((seed_count > 0 && seed == NULL) || (sensitivity_count > 0 && sensitivity == NULL))
         return fmu_refuse(instance, "the list of seeds or sensitivities is missing (NULL)");
-    for (k = 0; k < knowns.count; k++) {
+    for (size_t k = 0; k < knowns.count; k++) {
         fmu_find(instance, knowns.reference[k], &slot);
-        for (i = 0; i < slot.count; i++) {
+        for (uint32_t i = 0; i < slot.count; i++) {
             const double found = adjoint_of(instance, unknowns, &slot, i, seed);
             if (!fmu_is_finite(found)) return refuse_result(instance, slot.variable);
             sensitivity[used++] = found;
@@ -138,9 +133,8 @@ fmu_status fmu_adjoint(fmu_instance *instance, fmu_references unknowns, fmu_refe
 }
 
 static fmu_status check_orders(const fmu_instance *instance, size_t count, const int32_t *orders) {
-    size_t k;
     if (count > 0 && orders == NULL) return fmu_refuse(instance, "the list of orders is missing (NULL)");
-    for (k = 0; k < count; k++)
+    for (size_t k = 0; k < count; k++)
         if (orders[k] != 1)
             return fmu_refuse(instance, "a derivative of order %d was asked for; there is only the first",
                               (int)orders[k]);
@@ -163,11 +157,10 @@ fmu_status fmu_output_derivatives(fmu_instance *instance, fmu_references outputs
 }
 
 static fmu_status check_inputs(const fmu_instance *instance, fmu_references inputs, const double *values) {
-    size_t k;
     fmu_slot slot;
     if (inputs.count > 0 && (inputs.reference == NULL || values == NULL))
         return fmu_refuse(instance, "a list of value references or values is missing (NULL)");
-    for (k = 0; k < inputs.count; k++) {
+    for (size_t k = 0; k < inputs.count; k++) {
         if (!fmu_find(instance, inputs.reference[k], &slot))
             return fmu_refuse(instance, "there is no variable with the value reference %u",
                               (unsigned)inputs.reference[k]);
@@ -181,14 +174,13 @@ static fmu_status check_inputs(const fmu_instance *instance, fmu_references inpu
 
 fmu_status fmu_set_input_derivatives(fmu_instance *instance, fmu_references inputs, const int32_t *orders,
                                      const double *values) {
-    size_t k;
     fmu_slot slot;
     fmu_status status = check_inputs(instance, inputs, values);
     if (!FMU_PLANT_TAKES_SLOPES)
         return fmu_refuse(instance, "the inputs are held over a step: they take no derivatives");
     if (status == FMU_OK) status = check_orders(instance, inputs.count, orders);
     if (status != FMU_OK) return status;
-    for (k = 0; k < inputs.count; k++) {
+    for (size_t k = 0; k < inputs.count; k++) {
         fmu_find(instance, inputs.reference[k], &slot);
         fmu_plant_set_slope(&instance->plant, slot.variable->tangent + (uint32_t)sizeof(double) * slot.first,
                             values[k]);

@@ -168,12 +168,11 @@ static fmu_status read_bytes(fmu_instance *instance, const uint8_t *bytes, size_
 
 fmu_status fmu_deserialize(fmu_instance *instance, const uint8_t *bytes, size_t size, fmu_snapshot **snapshot) {
     fmu_snapshot *made;
-    fmu_status status;
     if (bytes == NULL || snapshot == NULL)
         return fmu_refuse(instance, "DeserializeFMUState: the bytes or the place for the state are missing (NULL)");
     made = calloc(1, sizeof *made);
     if (made == NULL) return fmu_refuse(instance, "DeserializeFMUState: out of memory");
-    status = read_bytes(instance, bytes, size, made);
+    const fmu_status status = read_bytes(instance, bytes, size, made);
     if (status == FMU_OK && *snapshot == NULL) {
         *snapshot = made;
         return FMU_OK;

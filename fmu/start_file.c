@@ -16,8 +16,7 @@
 static const char magic[8] = {'L', 'A', 'C', 'S', 'T', 'A', 'R', 'T'};
 
 static void apply(fmu_instance *instance, const fmu_start_value *values, size_t count) {
-    size_t k;
-    for (k = 0; k < count; k++) fmu_take_start_value(instance, values[k].reference, values[k].value);
+    for (size_t k = 0; k < count; k++) fmu_take_start_value(instance, values[k].reference, values[k].value);
 }
 
 uint64_t fmu_token_hash(const char *token) {
@@ -61,16 +60,15 @@ static bool file_name(char *name, size_t size, const char *resources) {
 
 static size_t read_file(const char *name, uint8_t *bytes, size_t size) {
     FILE *file = fopen(name, "rb");
-    size_t got;
     if (file == NULL) return 0;
-    got = fread(bytes, 1, size, file);
+    const size_t got = fread(bytes, 1, size, file);
     fclose(file);
     return got;
 }
 
 static bool parse(fmu_instance *instance, const uint8_t *bytes, size_t size, const char *token) {
     fmu_stream stream = {0};
-    uint64_t version = 0, scalar = 0, hash = 0, count = 0, checksum = 0, reference = 0, k;
+    uint64_t version = 0, scalar = 0, hash = 0, count = 0, checksum = 0, reference = 0;
     double value = 0.0;
     stream.from = bytes;
     stream.size = size;
@@ -85,7 +83,7 @@ static bool parse(fmu_instance *instance, const uint8_t *bytes, size_t size, con
     fmu_stream_u64(&stream, &count);
     if (version != FILE_VERSION || hash != fmu_token_hash(token) || count != (size - stream.at - 8) / 16) return false;
     instance->scalar = scalar != 0;
-    for (k = 0; k < count; k++) {
+    for (uint64_t k = 0; k < count; k++) {
         fmu_stream_u64(&stream, &reference);
         fmu_stream_reals(&stream, &value, 1);
         if (!fmu_take_start_value(instance, (uint32_t)reference, value)) return false;
@@ -97,9 +95,8 @@ static bool load_file(fmu_instance *instance, const char *token, const char *res
     char name[4096];
     uint8_t *bytes = malloc(LARGEST_FILE);
     const bool named = file_name(name, sizeof name, resources);
-    bool good;
     if (bytes == NULL) return false;
-    good = named && parse(instance, bytes, read_file(name, bytes, LARGEST_FILE), token);
+    const bool good = named && parse(instance, bytes, read_file(name, bytes, LARGEST_FILE), token);
     free(bytes);
     if (!good)
         fmu_refuse(instance,

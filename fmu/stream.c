@@ -4,17 +4,16 @@
 #include <string.h>
 
 void fmu_stream_u64(fmu_stream *stream, uint64_t *value) {
-    unsigned k;
     if (stream->size - stream->at < 8 && (stream->to != NULL || stream->from != NULL)) {
         stream->failed = true;
         return;
     }
     if (stream->from != NULL) {
         *value = 0;
-        for (k = 0; k < 8; k++) *value |= (uint64_t)stream->from[stream->at + k] << (8 * k);
+        for (unsigned k = 0; k < 8; k++) *value |= (uint64_t)stream->from[stream->at + k] << (8 * k);
     }
     if (stream->to != NULL)
-        for (k = 0; k < 8; k++) stream->to[stream->at + k] = (uint8_t)(*value >> (8 * k));
+        for (unsigned k = 0; k < 8; k++) stream->to[stream->at + k] = (uint8_t)(*value >> (8 * k));
     stream->at += 8;
 }
 
@@ -42,8 +41,7 @@ void fmu_stream_bool(fmu_stream *stream, bool *value) {
 }
 
 void fmu_stream_reals(fmu_stream *stream, double *values, size_t count) {
-    size_t k;
-    for (k = 0; k < count; k++) {
+    for (size_t k = 0; k < count; k++) {
         uint64_t bits = 0;
         memcpy(&bits, &values[k], sizeof bits);
         fmu_stream_u64(stream, &bits);
@@ -53,11 +51,9 @@ void fmu_stream_reals(fmu_stream *stream, double *values, size_t count) {
 
 uint32_t fmu_checksum(const uint8_t *bytes, size_t size) {
     uint32_t remainder = 0xFFFFFFFFU;
-    size_t k;
-    int bit;
-    for (k = 0; k < size; k++) {
+    for (size_t k = 0; k < size; k++) {
         remainder ^= bytes[k];
-        for (bit = 0; bit < 8; bit++) remainder = (remainder >> 1) ^ (0xEDB88320U & (0U - (remainder & 1U)));
+        for (int bit = 0; bit < 8; bit++) remainder = (remainder >> 1) ^ (0xEDB88320U & (0U - (remainder & 1U)));
     }
     return ~remainder;
 }

@@ -108,11 +108,10 @@ static fmu_status find_typed(const fmu_instance *instance, fmu_type type, uint32
 }
 
 static fmu_status make_ready(fmu_instance *instance, const fmu_variable *variable) {
-    fmu_status status;
     if (variable->group == 0) return FMU_OK;
     if (instance->mode < FMU_INITIALIZATION)
         return fmu_refuse(instance, "%s is computed: it has no value before initialization", variable->name);
-    status = fmu_make_current(instance);
+    const fmu_status status = fmu_make_current(instance);
     if (status == FMU_OK) fmu_plant_refresh(instance, variable->group);
     return status;
 }
@@ -138,16 +137,14 @@ static fmu_status check_room(const fmu_instance *instance, const fmu_slot *slot,
 
 static fmu_status check_get(fmu_instance *instance, const fmu_slot *slot, const exchange *values, size_t used) {
     fmu_status status = make_ready(instance, slot->variable);
-    uint32_t i;
     if (status == FMU_OK) status = check_room(instance, slot, values, used);
-    for (i = 0; status == FMU_OK && i < slot->count; i++)
+    for (uint32_t i = 0; status == FMU_OK && i < slot->count; i++)
         if (!fmu_is_finite(load(instance, slot, i))) status = refuse_result(instance, slot, i);
     return status;
 }
 
 static fmu_status hand_out(fmu_instance *instance, const fmu_slot *slot, const exchange *values, size_t used) {
-    uint32_t i;
-    for (i = 0; i < slot->count; i++) values->write(values->asked, used + i, load(instance, slot, i));
+    for (uint32_t i = 0; i < slot->count; i++) values->write(values->asked, used + i, load(instance, slot, i));
     return FMU_OK;
 }
 
@@ -160,9 +157,8 @@ static fmu_status check_settable(fmu_instance *instance, const fmu_variable *var
 
 static fmu_status check_set(fmu_instance *instance, const fmu_slot *slot, const exchange *values, size_t used) {
     fmu_status status = check_settable(instance, slot->variable);
-    uint32_t i;
     if (status == FMU_OK) status = check_room(instance, slot, values, used);
-    for (i = 0; status == FMU_OK && i < slot->count; i++) {
+    for (uint32_t i = 0; status == FMU_OK && i < slot->count; i++) {
         const double value = values->read(values->given, used + i);
         if (!acceptable(slot->variable, value)) status = refuse_value(instance, slot, i, value);
     }
@@ -182,17 +178,16 @@ static void note_change(fmu_instance *instance, fmu_access access) {
 }
 
 static fmu_status take_over(fmu_instance *instance, const fmu_slot *slot, const exchange *values, size_t used) {
-    uint32_t i;
     if (slot->variable->access == FMU_STATE) fmu_plant_states_lead(instance);
-    for (i = 0; i < slot->count; i++) store(instance, slot, i, values->read(values->given, used + i));
+    for (uint32_t i = 0; i < slot->count; i++) store(instance, slot, i, values->read(values->given, used + i));
     note_change(instance, (fmu_access)slot->variable->access);
     return FMU_OK;
 }
 
 static fmu_status visit_each(fmu_instance *instance, fmu_type type, fmu_references list, const exchange *values,
                              visit what) {
-    size_t k, used = 0;
-    for (k = 0; k < list.count; k++) {
+    size_t used = 0;
+    for (size_t k = 0; k < list.count; k++) {
         fmu_slot slot;
         fmu_status status = find_typed(instance, type, list.reference[k], &slot);
         if (status == FMU_OK) status = what(instance, &slot, values, used);
@@ -206,10 +201,9 @@ static fmu_status visit_each(fmu_instance *instance, fmu_type type, fmu_referenc
 static fmu_status check_then(fmu_instance *instance, fmu_type type, fmu_references list, const exchange *values,
                              visit check, visit act) {
     const bool missing = values->asked == NULL && values->given == NULL;
-    fmu_status status;
     if ((list.count > 0 && list.reference == NULL) || (values->count > 0 && missing))
         return fmu_refuse(instance, "a list of value references or values is missing (NULL)");
-    status = visit_each(instance, type, list, values, check);
+    const fmu_status status = visit_each(instance, type, list, values, check);
     return status == FMU_OK ? visit_each(instance, type, list, values, act) : status;
 }
 
@@ -230,12 +224,11 @@ fmu_status fmu_none_of(const fmu_instance *instance, const char *kind, size_t as
 }
 
 fmu_status fmu_check_intermediate(const fmu_instance *instance, const uint32_t *references, size_t count) {
-    size_t k;
     fmu_slot slot;
     if (count > 0 && references == NULL)
         return fmu_refuse(instance, "Instantiate: the list of %zu required intermediate variables is missing (NULL)",
                           count);
-    for (k = 0; k < count; k++) {
+    for (size_t k = 0; k < count; k++) {
         if (!fmu_find(instance, references[k], &slot))
             return fmu_refuse(instance,
                               "Instantiate: no variable has the value reference %u, which is required as "

@@ -28,9 +28,8 @@ void minimal_destroy(void *instance) { free(instance); }
 
 int minimal_set(void *instance, const uint32_t *references, size_t count, const double *values, size_t value_count) {
     minimal *m = instance;
-    size_t k;
     if (m == NULL || !m->stepping || references == NULL || values == NULL || value_count != count) return 3;
-    for (k = 0; k < count; k++) {
+    for (size_t k = 0; k < count; k++) {
         switch (references[k]) {
         case 0: m->input[0] = values[k]; break;
         case 1: m->input[1] = values[k]; break;
@@ -44,9 +43,8 @@ int minimal_set(void *instance, const uint32_t *references, size_t count, const 
 
 int minimal_get(void *instance, const uint32_t *references, size_t count, double *values, size_t value_count) {
     minimal *m = instance;
-    size_t k;
     if (m == NULL || !m->stepping || references == NULL || values == NULL || value_count != count) return 3;
-    for (k = 0; k < count; k++) {
+    for (size_t k = 0; k < count; k++) {
         switch (references[k]) {
         case 0: values[k] = m->output[0]; break;
         case 1: values[k] = m->output[1]; break;
@@ -62,9 +60,8 @@ int minimal_get(void *instance, const uint32_t *references, size_t count, double
 
 int minimal_step(void *instance, double at_s, double step_s) {
     minimal *m = instance;
-    int k;
     if (m == NULL || !m->stepping || !(step_s > 0.0) || at_s < m->time - 0.5 * step_s) return 3;
-    for (k = 0; k < OUTPUT_COUNT; k++) m->output[k] += step_s * (m->input[k % INPUT_COUNT] - m->output[k]);
+    for (int k = 0; k < OUTPUT_COUNT; k++) m->output[k] += step_s * (m->input[k % INPUT_COUNT] - m->output[k]);
     m->time = at_s + step_s;
     return 0;
 }

@@ -203,8 +203,7 @@ static void start_core(void) {
     const laconic_start start = {{0.0, 0.0, 0.0}, 0.0, 0.0, 0.0};
     const fmu_start_value *value = fmu_built_in_starts;
     fmu_instance *instance = calloc(1, sizeof *instance);
-    size_t k;
-    for (k = 0; k < fmu_built_in_start_count; k++)
+    for (size_t k = 0; k < fmu_built_in_start_count; k++)
         if (!fmu_take_start_value(instance, value[k].reference, value[k].value)) exit(2);
     must((int)laconic_plant_start(&plant, &instance->plant.vehicle, &laconic_rk4, STEP_S, &start, NULL), "plant_start");
     free(instance);
@@ -247,8 +246,6 @@ int main(int argc, char **argv) {
                        {"fmi3", run_3, 1e99, 0},
                        {"minimal", run_minimal, 1e99, 0}};
     const size_t count = sizeof all / sizeof all[0];
-    size_t i;
-    int round;
     if (argc < 4) {
         fprintf(stderr, "usage: fmu_overhead FMI2.so FMI3.so MINIMAL.so [--json]\n");
         return 2;
@@ -257,13 +254,12 @@ int main(int argc, char **argv) {
     start_3(argv[2]);
     start_minimal(argv[3]);
     start_core();
-    for (round = 0; round < ROUNDS; round++)
-        for (i = 0; i < count; i++) {
+    for (int round = 0; round < ROUNDS; round++)
+        for (size_t i = 0; i < count; i++) {
             const long steps = round == 0 ? WARM : STEPS / 20;
             const double start = now_ns();
-            double each;
             all[i].run(all[i].at, steps);
-            each = (now_ns() - start) / (double)steps;
+            const double each = (now_ns() - start) / (double)steps;
             all[i].at += steps;
             if (each < all[i].least_ns) all[i].least_ns = each;
         }
@@ -273,7 +269,7 @@ int main(int argc, char **argv) {
                all[0].least_ns, all[1].least_ns, all[2].least_ns, all[3].least_ns, all[4].least_ns,
                all[2].least_ns - all[0].least_ns, all[3].least_ns - all[0].least_ns);
     else
-        for (i = 0; i < count; i++)
+        for (size_t i = 0; i < count; i++)
             printf("%-20s %7.1f ns a step, %7.1f beyond the bare core step\n", all[i].name, all[i].least_ns,
                    all[i].least_ns - all[0].least_ns);
     return sink == 0.12345 ? 1 : 0;

@@ -37,9 +37,8 @@ static fmu_status check(const fmu_instance *instance) {
 fmu_status fmu_plant_start(fmu_instance *instance) {
     fmu_plant *p = &instance->plant;
     const fmu_status status = check(instance);
-    uint32_t i;
     if (status != FMU_OK) return status;
-    for (i = 0; i < FMU_PLANT_LARGEST_ARRAY; i++) p->error_rad[i] = 0.0;
+    for (uint32_t i = 0; i < FMU_PLANT_LARGEST_ARRAY; i++) p->error_rad[i] = 0.0;
     p->start_needed = p->change_needed = false;
     p->stale = FMU_GROUPS_ALL;
     return FMU_OK;
@@ -57,10 +56,9 @@ void fmu_plant_input_changed(fmu_plant *plant) { plant->stale = FMU_GROUPS_ALL; 
 
 void fmu_plant_refresh(fmu_instance *instance, uint32_t groups) {
     fmu_plant *p = &instance->plant;
-    uint32_t i;
     groups &= p->stale;
     p->stale &= ~groups;
-    for (i = 0; i < FMU_PLANT_ARRAY_SIZE(p); i++) {
+    for (uint32_t i = 0; i < FMU_PLANT_ARRAY_SIZE(p); i++) {
         if (groups & FMU_GROUP_VOLTAGE) p->voltage_V[i] = limited_V(p, i);
         if (groups & FMU_GROUP_RATES)
             p->error_rate_rad_per_s[i] = is_held(p, i) ? 0.0 : p->setpoint_rad_per_s[i] - p->speed_rad_per_s[i];
@@ -88,9 +86,8 @@ fmu_status fmu_plant_count_steps(fmu_instance *instance, double step_s, double o
 /* The inputs are held over the step, so the integral grows evenly. */
 fmu_status fmu_plant_run(fmu_instance *instance, uint64_t steps, uint64_t *taken) {
     fmu_plant *p = &instance->plant;
-    uint32_t i;
     fmu_plant_refresh(instance, FMU_GROUP_RATES);
-    for (i = 0; i < FMU_PLANT_ARRAY_SIZE(p); i++)
+    for (uint32_t i = 0; i < FMU_PLANT_ARRAY_SIZE(p); i++)
         p->error_rad[i] += (double)steps * p->step_s * p->error_rate_rad_per_s[i];
     p->stale = FMU_GROUPS_ALL;
     *taken = steps;
@@ -105,47 +102,41 @@ void fmu_plant_conclude(fmu_instance *instance, bool accepted) {
 void fmu_plant_watch(fmu_instance *instance) { (void)instance; /* a controller needs no ground */ }
 
 void fmu_plant_mark(const fmu_plant *plant, fmu_plant_motion *motion) {
-    uint32_t i;
-    for (i = 0; i < FMU_PLANT_LARGEST_ARRAY; i++) motion->error_rad[i] = plant->error_rad[i];
+    for (uint32_t i = 0; i < FMU_PLANT_LARGEST_ARRAY; i++) motion->error_rad[i] = plant->error_rad[i];
 }
 
 void fmu_plant_return(fmu_plant *plant, const fmu_plant_motion *motion) {
-    uint32_t i;
-    for (i = 0; i < FMU_PLANT_LARGEST_ARRAY; i++) plant->error_rad[i] = motion->error_rad[i];
+    for (uint32_t i = 0; i < FMU_PLANT_LARGEST_ARRAY; i++) plant->error_rad[i] = motion->error_rad[i];
     plant->stale = FMU_GROUPS_ALL;
 }
 
 uint32_t fmu_plant_state_count(const fmu_plant *plant) { return FMU_PLANT_ARRAY_SIZE(plant); }
 
 void fmu_plant_get_states(fmu_instance *instance, double *values) {
-    uint32_t i;
-    for (i = 0; i < FMU_PLANT_ARRAY_SIZE(&instance->plant); i++) values[i] = instance->plant.error_rad[i];
+    for (uint32_t i = 0; i < FMU_PLANT_ARRAY_SIZE(&instance->plant); i++) values[i] = instance->plant.error_rad[i];
 }
 
 void fmu_plant_set_states(fmu_instance *instance, const double *values) {
-    uint32_t i;
-    for (i = 0; i < FMU_PLANT_ARRAY_SIZE(&instance->plant); i++) instance->plant.error_rad[i] = values[i];
+    for (uint32_t i = 0; i < FMU_PLANT_ARRAY_SIZE(&instance->plant); i++) instance->plant.error_rad[i] = values[i];
     instance->plant.stale = FMU_GROUPS_ALL;
 }
 
 void fmu_plant_states_lead(fmu_instance *instance) { instance->plant.stale = FMU_GROUPS_ALL; }
 
 void fmu_plant_get_rates(fmu_instance *instance, double *values) {
-    uint32_t i;
     fmu_plant_refresh(instance, FMU_GROUP_RATES);
-    for (i = 0; i < FMU_PLANT_ARRAY_SIZE(&instance->plant); i++) values[i] = instance->plant.error_rate_rad_per_s[i];
+    for (uint32_t i = 0; i < FMU_PLANT_ARRAY_SIZE(&instance->plant); i++)
+        values[i] = instance->plant.error_rate_rad_per_s[i];
 }
 
 void fmu_plant_get_nominals(const fmu_plant *plant, double *values) {
-    uint32_t i;
-    for (i = 0; i < FMU_PLANT_ARRAY_SIZE(plant); i++) values[i] = 1.0;
+    for (uint32_t i = 0; i < FMU_PLANT_ARRAY_SIZE(plant); i++) values[i] = 1.0;
 }
 
 /* Linear but for the limit, where the derivative is that of the side it is on. */
 void fmu_plant_tangent(fmu_instance *instance, fmu_tangent *t) {
     const fmu_plant *p = &instance->plant;
-    uint32_t i;
-    for (i = 0; i < FMU_PLANT_ARRAY_SIZE(p); i++) {
+    for (uint32_t i = 0; i < FMU_PLANT_ARRAY_SIZE(p); i++) {
         const double error = t->setpoint_rad_per_s[i] - t->speed_rad_per_s[i];
         t->voltage_V[i] =
             is_limited(p, i) ? 0.0 : p->proportional_Vs_per_rad * error + p->integral_V_per_rad * t->error_rad[i];
@@ -154,9 +145,8 @@ void fmu_plant_tangent(fmu_instance *instance, fmu_tangent *t) {
 }
 
 void fmu_plant_motion_seed(fmu_instance *instance, fmu_tangent *tangent) {
-    uint32_t i;
     fmu_plant_refresh(instance, FMU_GROUP_RATES);
-    for (i = 0; i < FMU_PLANT_ARRAY_SIZE(&instance->plant); i++)
+    for (uint32_t i = 0; i < FMU_PLANT_ARRAY_SIZE(&instance->plant); i++)
         tangent->error_rad[i] = instance->plant.error_rate_rad_per_s[i];
 }
 

@@ -34,12 +34,11 @@ static double drive_2(fmi2Type kind, int steps) {
     fmi2Byte *bytes;
     size_t size;
     double value = 4.0;
-    int k;
     must(c != NULL, "fmi2Instantiate");
     must(fmi2EnterInitializationMode(c) == fmi2OK && fmi2ExitInitializationMode(c) == fmi2OK, "initialization");
     must(fmi2SetReal(c, &voltage, 1, &value) == fmi2OK, "fmi2SetReal");
     if (kind == fmi2CoSimulation)
-        for (k = 0; k < steps; k++) must(fmi2DoStep(c, k * 0.01, 0.01, fmi2True) == fmi2OK, "fmi2DoStep");
+        for (int k = 0; k < steps; k++) must(fmi2DoStep(c, k * 0.01, 0.01, fmi2True) == fmi2OK, "fmi2DoStep");
     must(fmi2GetFMUstate(c, &state) == fmi2OK && fmi2SerializedFMUstateSize(c, state, &size) == fmi2OK, "state");
     bytes = malloc(size);
     must(bytes != NULL && fmi2SerializeFMUstate(c, state, bytes, size) == fmi2OK, "fmi2SerializeFMUstate");
@@ -65,13 +64,12 @@ static double drive_3(bool exchange, int steps) {
     fmi3FMUState state = NULL;
     fmi3Boolean b[3];
     double value = 4.0, time;
-    int k;
     must(c != NULL, "fmi3Instantiate");
     must(fmi3EnterInitializationMode(c, false, 0.0, 0.0, false, 0.0) == fmi3OK &&
              fmi3ExitInitializationMode(c) == fmi3OK,
          "initialization");
     must(fmi3SetFloat64(c, &voltage, 1, &value, 1) == fmi3OK, "fmi3SetFloat64");
-    for (k = 0; k < steps && !exchange; k++)
+    for (int k = 0; k < steps && !exchange; k++)
         must(fmi3DoStep(c, k * 0.01, 0.01, true, &b[0], &b[1], &b[2], &time) == fmi3OK, "fmi3DoStep");
     must(fmi3GetFMUState(c, &state) == fmi3OK && fmi3SetFMUState(c, state) == fmi3OK &&
              fmi3FreeFMUState(c, &state) == fmi3OK,
@@ -93,16 +91,14 @@ static void *work(void *result) {
 static void run_threads(int count) {
     pthread_t thread[MOST_THREADS];
     double x[MOST_THREADS][2];
-    int k;
     must(count > 0 && count <= MOST_THREADS, "the number of threads");
-    for (k = 0; k < count; k++) must(pthread_create(&thread[k], NULL, work, x[k]) == 0, "pthread_create");
-    for (k = 0; k < count; k++) must(pthread_join(thread[k], NULL) == 0, "pthread_join");
-    for (k = 0; k < count; k++) must(memcmp(x[k], x[0], sizeof x[0]) == 0 && x[k][0] == x[k][1], "equality");
+    for (int k = 0; k < count; k++) must(pthread_create(&thread[k], NULL, work, x[k]) == 0, "pthread_create");
+    for (int k = 0; k < count; k++) must(pthread_join(thread[k], NULL) == 0, "pthread_join");
+    for (int k = 0; k < count; k++) must(memcmp(x[k], x[0], sizeof x[0]) == 0 && x[k][0] == x[k][1], "equality");
 }
 
 int main(int argc, char **argv) {
     const int count = argc == 3 ? atoi(argv[2]) : 0;
-    int k;
     if (count <= 0) {
         fprintf(stderr, "usage: fmu_endurance cycles|threads N\n");
         return 2;
@@ -111,7 +107,7 @@ int main(int argc, char **argv) {
         run_threads(count);
         return 0;
     }
-    for (k = 0; k < count; k++) {
+    for (int k = 0; k < count; k++) {
         drive_2(fmi2CoSimulation, 3);
         drive_2(fmi2ModelExchange, 0);
         drive_3(false, 3);

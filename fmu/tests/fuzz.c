@@ -50,13 +50,12 @@ static double next_number(source *s) {
     static const double odd[] = {0.0,   -0.0,   1.0,     -1.0,    1e-3,     0.01,   0.1,  2.0, 5.0,  1e9, -1e9,
                                  1e300, -1e300, DBL_MIN, DBL_MAX, -DBL_MAX, 1e-300, 3.14, 0.5, 1e17, 1e19};
     const unsigned choice = next(s);
-    uint64_t bits;
     double value;
     if (choice < 128) return odd[choice % (sizeof odd / sizeof odd[0])];
     if (choice < 140) return NAN;
     if (choice < 150) return choice % 2 ? INFINITY : -INFINITY;
     if (choice < 230) return (double)(int32_t)next_word(s) * 1e-9;
-    bits = (uint64_t)next_word(s) << 32 | next_word(s);
+    uint64_t bits = (uint64_t)next_word(s) << 32 | next_word(s);
     memcpy(&value, &bits, sizeof value);
     return value;
 }
@@ -64,9 +63,9 @@ static double next_number(source *s) {
 /* Mostly variables that exist, elements that exist, lists of a sensible length. */
 static size_t next_list(source *s) {
     const unsigned choice = next(s);
-    size_t count = choice % 5, k;
+    size_t count = choice % 5;
     if (choice > 240) count = next_word(s) % NUMBERS;
-    for (k = 0; k < count; k++) {
+    for (size_t k = 0; k < count; k++) {
         const unsigned kind = k < 64 ? next(s) : (unsigned)(k % 251);
         references[k] = k >= 64 ? (fmi3ValueReference)(k % 60) : kind < 200 ? next(s) % 60 : next_word(s);
         if (k < 64 && kind % 2) references[k] = references[k] << 10 | (next(s) % 18);
@@ -76,11 +75,11 @@ static size_t next_list(source *s) {
 
 static size_t next_values(source *s, size_t count) {
     const unsigned choice = next(s);
-    size_t total = count, k;
+    size_t total = count;
     if (choice < 100) total = count * 4;
     if (choice > 200) total = next_word(s) % NUMBERS;
     if (total > NUMBERS) total = NUMBERS;
-    for (k = 0; k < total && k < 200; k++) {
+    for (size_t k = 0; k < total && k < 200; k++) {
         numbers[k] = next_number(s);
         wholes[k] = (int)(next(s) % 7) - 1;
         wholes_32[k] = k % 13 == 12 ? (int32_t)next_word(s) : wholes[k];
@@ -168,8 +167,7 @@ static void begin(live *l, unsigned choice) {
 }
 
 static void destroy(live *l) {
-    size_t k;
-    for (k = 0; k < STATES; k++) {
+    for (size_t k = 0; k < STATES; k++) {
         if (l->version == 2) fmi2FreeFMUstate(l->instance, &l->state[k]);
         if (l->version == 3) fmi3FreeFMUState(l->instance, &l->state[k]);
     }
@@ -210,10 +208,9 @@ static void serialize(source *s, live *l) {
     if (choice % 7 == 0) size = next_word(s) % size;
     if (choice % 5 == 0 && size > 64) { /* wrong content under a right checksum */
         const uint64_t at = 8 * (next_word(s) % (size / 8));
-        uint64_t sum;
         bytes[at] = (uint8_t)next(s);
         bytes[at + 7] = (uint8_t)next(s);
-        sum = fmu_checksum(bytes, size - 8);
+        uint64_t sum = fmu_checksum(bytes, size - 8);
         memcpy(bytes + size - 8, &sum, 8);
     }
     if (l->version == 2)
@@ -383,7 +380,6 @@ static void call_3(source *s, live *l) {
 void fuzz_one(const uint8_t *bytes, size_t size) {
     source s = {bytes, size, 0};
     live all[LIVE];
-    size_t k;
     memset(all, 0, sizeof all);
     while (s.at < s.size) {
         live *l = &all[next(&s) % LIVE];
@@ -397,5 +393,5 @@ void fuzz_one(const uint8_t *bytes, size_t size) {
         else
             call_3(&s, l);
     }
-    for (k = 0; k < LIVE; k++) destroy(&all[k]);
+    for (size_t k = 0; k < LIVE; k++) destroy(&all[k]);
 }

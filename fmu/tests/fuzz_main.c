@@ -14,12 +14,11 @@ static uint8_t bytes[1 << 20];
 
 static void replay(const char *name) {
     FILE *file = fopen(name, "rb");
-    size_t size;
     if (file == NULL) {
         fprintf(stderr, "fmu_fuzz: %s cannot be read\n", name);
         exit(2);
     }
-    size = fread(bytes, 1, sizeof bytes, file);
+    const size_t size = fread(bytes, 1, sizeof bytes, file);
     fclose(file);
     fuzz_one(bytes, size);
 }
@@ -50,8 +49,7 @@ static unsigned long soak(double seconds, uint64_t seed) {
     do {
         uint64_t state = seed + played;
         const size_t size = 200 + scramble(&state) % (LARGEST - 200);
-        size_t k;
-        for (k = 0; k < size; k++) bytes[k] = (uint8_t)(scramble(&state) >> 24);
+        for (size_t k = 0; k < size; k++) bytes[k] = (uint8_t)(scramble(&state) >> 24);
         culprit_size = size;
         fuzz_one(bytes, size);
         played++;
@@ -62,8 +60,7 @@ static unsigned long soak(double seconds, uint64_t seed) {
 int main(int argc, char **argv) {
     double seconds = 0.0;
     uint64_t seed = 1;
-    int k;
-    for (k = 1; k < argc; k++) {
+    for (int k = 1; k < argc; k++) {
         if (strcmp(argv[k], "--seconds") == 0 && k + 1 < argc)
             seconds = atof(argv[++k]);
         else if (strcmp(argv[k], "--seed") == 0 && k + 1 < argc)

@@ -40,11 +40,10 @@ static fmu_status discard_with(const fmu_instance *instance, const laconic_refus
 static laconic_status start_core(fmu_plant *p, laconic_refusal *why) {
     const laconic_method *method = laconic_method_by_number(p->method);
     const bool known = p->step_s > 0.0 && !p->continuous;
-    laconic_status status;
     if (method == NULL || p->step_s < 0.0) /* the core says what is wrong with either */
         return laconic_plant_start(&p->core, &p->vehicle, method, p->step_s, &p->start, why);
-    status = laconic_plant_start(&p->core, &p->vehicle, known ? method : &laconic_exact_flow, known ? p->step_s : 1.0,
-                                 &p->start, why);
+    const laconic_status status = laconic_plant_start(&p->core, &p->vehicle, known ? method : &laconic_exact_flow,
+                                                      known ? p->step_s : 1.0, &p->start, why);
     p->stand_in = !known;
     if (status == LACONIC_OK && !known) p->core.integrator.method = method;
     return status;
@@ -53,9 +52,8 @@ static laconic_status start_core(fmu_plant *p, laconic_refusal *why) {
 fmu_status fmu_plant_start(fmu_instance *instance) {
     fmu_plant *p = &instance->plant;
     laconic_refusal why = {LACONIC_OK, LACONIC_FIELD_NONE, 0, 0.0, 0.0};
-    laconic_status status;
     p->continuous = instance->kind == FMU_MODEL_EXCHANGE;
-    status = start_core(p, &why);
+    laconic_status status = start_core(p, &why);
     if (status == LACONIC_OK) status = laconic_contact_prepare(&p->contact, &p->vehicle, &why);
     if (status != LACONIC_OK) return refuse_with(instance, &why, "this vehicle cannot start");
     p->start_needed = p->change_needed = false;
@@ -69,11 +67,10 @@ fmu_status fmu_plant_change(fmu_instance *instance) {
     laconic_plant core;
     laconic_contact contact;
     laconic_refusal why = {LACONIC_OK, LACONIC_FIELD_NONE, 0, 0.0, 0.0};
-    laconic_status status;
     fmu_plant_refresh(instance, FMU_GROUP_STATE);
     core = p->core;
     if (p->stand_in) core.integrator.method = &laconic_exact_flow;
-    status = laconic_plant_change(&core, &p->vehicle, &why);
+    laconic_status status = laconic_plant_change(&core, &p->vehicle, &why);
     if (status == LACONIC_OK) status = laconic_contact_prepare(&contact, &p->vehicle, &why);
     if (status != LACONIC_OK) return refuse_with(instance, &why, "the changed vehicle is refused");
     core.integrator.method = p->core.integrator.method;
@@ -146,10 +143,9 @@ fmu_status fmu_plant_set_step(fmu_instance *instance, double step_s) {
 /* The communication step nearest to the one asked for that this instance takes, now; 0: there is none. */
 static double nearest_step(const fmu_instance *instance, double step_s, double own_s) {
     const double ratio = step_s / own_s;
-    uint64_t rounded, count;
     if (!(ratio < MOST_STEPS)) return 0.0;
-    rounded = ratio < 1.0 ? 1 : (uint64_t)(ratio + 0.5);
-    for (count = rounded; count > 0 && count + 1 >= rounded; count--)
+    const uint64_t rounded = ratio < 1.0 ? 1 : (uint64_t)(ratio + 0.5);
+    for (uint64_t count = rounded; count > 0 && count + 1 >= rounded; count--)
         if (!fmu_clock_passes_stop(&instance->clock, instance->plant.time_s + own_s * (double)count, own_s))
             return own_s * (double)count;
     return 0.0;
@@ -157,9 +153,8 @@ static double nearest_step(const fmu_instance *instance, double step_s, double o
 
 fmu_status fmu_plant_count_steps(fmu_instance *instance, double step_s, double own_s, uint64_t *steps) {
     laconic_refusal why = {LACONIC_OK, LACONIC_FIELD_NONE, 0, 0.0, 0.0};
-    double nearest;
     if (laconic_steps_in(step_s, own_s, steps, &why) == LACONIC_OK) return FMU_OK;
-    nearest = nearest_step(instance, step_s, own_s);
+    const double nearest = nearest_step(instance, step_s, own_s);
     if (nearest > 0.0)
         return fmu_refuse(instance,
                           "the communication step of %.15g s is no whole number of internal steps of %.15g s "
@@ -173,12 +168,11 @@ fmu_status fmu_plant_count_steps(fmu_instance *instance, double step_s, double o
 
 static void shift_input(laconic_input *out, const fmu_plant *p, double by_s) {
     const laconic_input *u = &p->input, *du = &p->slope;
-    int32_t i;
-    for (i = 0; i < p->core.model.wheel_count; i++) {
+    for (int32_t i = 0; i < p->core.model.wheel_count; i++) {
         out->voltage_V[i] = u->voltage_V[i] + by_s * du->voltage_V[i];
         out->axle_torque_Nm[i] = u->axle_torque_Nm[i] + by_s * du->axle_torque_Nm[i];
     }
-    for (i = 0; i < 2; i++) {
+    for (int32_t i = 0; i < 2; i++) {
         out->body_force_N[i] = u->body_force_N[i] + by_s * du->body_force_N[i];
         out->world_force_N[i] = u->world_force_N[i] + by_s * du->world_force_N[i];
         out->world_force_point_m[i] = u->world_force_point_m[i] + by_s * du->world_force_point_m[i];
@@ -191,16 +185,14 @@ static laconic_status run_sloped(fmu_instance *instance, uint64_t steps, laconic
     fmu_plant *p = &instance->plant;
     const double h = p->core.integrator.step_s, start_s = fmu_clock_now(&instance->clock);
     laconic_input at[3];
-    uint64_t n;
-    for (n = 0; n < steps; n++) {
-        laconic_status status;
-        int k;
-        for (k = 0; k < 3; k++) shift_input(&at[k], p, ((double)n + 0.5 * k) * h);
+    for (uint64_t n = 0; n < steps; n++) {
+        for (int k = 0; k < 3; k++) shift_input(&at[k], p, ((double)n + 0.5 * k) * h);
         if (fmu_grip_is_watched(instance)) {
             laconic_reactions_of(&p->ground, &p->contact, &p->core.model, &p->core.state, &at[0]);
             fmu_grip_judge(instance, &p->ground, start_s + (double)n * h);
         }
-        status = laconic_step_sampled(&p->core.model, &p->core.integrator, &p->core.state, &at[0], &at[1], &at[2]);
+        const laconic_status status =
+            laconic_step_sampled(&p->core.model, &p->core.integrator, &p->core.state, &at[0], &at[1], &at[2]);
         if (status != LACONIC_OK) {
             laconic_step_refusal(why, status, &p->core.model, &p->core.integrator, &p->core.state, at, 3);
             return status;
@@ -218,10 +210,9 @@ static laconic_status run_held(fmu_instance *instance, uint64_t steps, laconic_r
     const double h = p->core.integrator.step_s, start_s = fmu_clock_now(&instance->clock);
     uint64_t n;
     for (n = 0; n < steps && fmu_grip_is_watched(instance); n++) {
-        laconic_status status;
         fmu_plant_refresh(instance, FMU_GROUP_GROUND);
         fmu_grip_judge(instance, &p->ground, start_s + (double)n * h);
-        status = laconic_plant_run(&p->core, &p->input, 1, why);
+        const laconic_status status = laconic_plant_run(&p->core, &p->input, 1, why);
         if (status != LACONIC_OK) return status;
         p->stale = FMU_GROUPS_ALL & ~FMU_GROUP_STATE;
     }
@@ -272,13 +263,12 @@ uint32_t fmu_plant_state_count(const fmu_plant *plant) { return 6U + FMU_PLANT_A
 
 void fmu_plant_get_states(fmu_instance *instance, double *values) {
     const fmu_plant *p = &instance->plant;
-    uint32_t i;
     fmu_plant_refresh(instance, FMU_GROUPS_OF_CONTINUOUS_STATES);
-    for (i = 0; i < 3; i++) values[i] = p->nu[i];
+    for (uint32_t i = 0; i < 3; i++) values[i] = p->nu[i];
     values[3] = p->x_m;
     values[4] = p->y_m;
     values[5] = p->heading_rad;
-    for (i = 0; i < FMU_PLANT_ARRAY_SIZE(p); i++) values[6 + i] = p->wheel_angle_rad[i];
+    for (uint32_t i = 0; i < FMU_PLANT_ARRAY_SIZE(p); i++) values[6 + i] = p->wheel_angle_rad[i];
 }
 
 void fmu_plant_states_lead(fmu_instance *instance) {
@@ -288,27 +278,25 @@ void fmu_plant_states_lead(fmu_instance *instance) {
 
 void fmu_plant_set_states(fmu_instance *instance, const double *values) {
     fmu_plant *p = &instance->plant;
-    uint32_t i;
-    for (i = 0; i < 3; i++) p->nu[i] = values[i];
+    for (uint32_t i = 0; i < 3; i++) p->nu[i] = values[i];
     p->x_m = values[3];
     p->y_m = values[4];
     p->heading_rad = values[5];
-    for (i = 0; i < FMU_PLANT_ARRAY_SIZE(p); i++) p->wheel_angle_rad[i] = values[6 + i];
+    for (uint32_t i = 0; i < FMU_PLANT_ARRAY_SIZE(p); i++) p->wheel_angle_rad[i] = values[6 + i];
     p->stale = FMU_GROUPS_ALL & ~FMU_GROUPS_OF_CONTINUOUS_STATES;
 }
 
 void fmu_plant_get_rates(fmu_instance *instance, double *values) {
     const laconic_rates *rates = &instance->plant.rates;
-    uint32_t i;
     fmu_plant_refresh(instance, FMU_GROUP_RATES);
-    for (i = 0; i < 3; i++) values[i] = rates->nu_rad_per_s2[i];
+    for (uint32_t i = 0; i < 3; i++) values[i] = rates->nu_rad_per_s2[i];
     values[3] = rates->x_m_per_s;
     values[4] = rates->y_m_per_s;
     values[5] = rates->yaw_rate_rad_per_s;
-    for (i = 0; i < FMU_PLANT_ARRAY_SIZE(&instance->plant); i++) values[6 + i] = rates->wheel_speed_rad_per_s[i];
+    for (uint32_t i = 0; i < FMU_PLANT_ARRAY_SIZE(&instance->plant); i++)
+        values[6 + i] = rates->wheel_speed_rad_per_s[i];
 }
 
 void fmu_plant_get_nominals(const fmu_plant *plant, double *values) {
-    uint32_t i;
-    for (i = 0; i < fmu_plant_state_count(plant); i++) values[i] = i < 3 || i > 5 ? 10.0 : 1.0;
+    for (uint32_t i = 0; i < fmu_plant_state_count(plant); i++) values[i] = i < 3 || i > 5 ? 10.0 : 1.0;
 }

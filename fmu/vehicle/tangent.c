@@ -2,8 +2,7 @@
 #include "plant_api.h"
 
 static void take_variation(laconic_variation *by, const fmu_tangent *t) {
-    int32_t k;
-    for (k = 0; k < 3; k++) by->nu_rad_per_s[k] = t->nu[k];
+    for (int32_t k = 0; k < 3; k++) by->nu_rad_per_s[k] = t->nu[k];
     by->x_m = t->x_m;
     by->y_m = t->y_m;
     by->heading_rad = t->heading_rad;
@@ -12,14 +11,12 @@ static void take_variation(laconic_variation *by, const fmu_tangent *t) {
 
 static void take_motion(laconic_motion *at, fmu_instance *instance) {
     const fmu_plant *p = &instance->plant;
-    int32_t k;
     fmu_plant_refresh(instance, FMU_GROUP_MOTION);
-    for (k = 0; k < 3; k++) at->nu_rad_per_s[k] = p->nu[k];
+    for (int32_t k = 0; k < 3; k++) at->nu_rad_per_s[k] = p->nu[k];
     at->heading_rad = p->heading_rad;
 }
 
 static void put_motion(fmu_tangent *t, const laconic_motion_change *change, int32_t wheels) {
-    int32_t i;
     t->pose.origin_x_m = change->origin_x_m;
     t->pose.origin_y_m = change->origin_y_m;
     t->pose.heading_wrapped_rad = t->heading_rad;
@@ -27,7 +24,7 @@ static void put_motion(fmu_tangent *t, const laconic_motion_change *change, int3
     t->velocity_m_per_s[1] = change->velocity_m_per_s[1];
     t->yaw_rate_rad_per_s = change->yaw_rate_rad_per_s;
     t->energy_J = change->energy_J;
-    for (i = 0; i < wheels; i++) {
+    for (int32_t i = 0; i < wheels; i++) {
         t->wheel_speed_rad_per_s[i] = change->wheel_speed_rad_per_s[i];
         t->wheel_torque_Nm[i] = change->wheel_torque_Nm[i];
     }
@@ -50,13 +47,13 @@ void fmu_plant_tangent(fmu_instance *instance, fmu_tangent *tangent) {
 
 void fmu_plant_motion_seed(fmu_instance *instance, fmu_tangent *tangent) {
     const fmu_plant *p = &instance->plant;
-    int32_t i;
     fmu_plant_refresh(instance, FMU_GROUP_RATES);
-    for (i = 0; i < 3; i++) tangent->nu[i] = p->rates.nu_rad_per_s2[i];
+    for (int32_t i = 0; i < 3; i++) tangent->nu[i] = p->rates.nu_rad_per_s2[i];
     tangent->x_m = p->rates.x_m_per_s;
     tangent->y_m = p->rates.y_m_per_s;
     tangent->heading_rad = p->rates.yaw_rate_rad_per_s;
-    for (i = 0; i < p->core.model.wheel_count; i++) tangent->wheel_angle_rad[i] = p->rates.wheel_speed_rad_per_s[i];
+    for (int32_t i = 0; i < p->core.model.wheel_count; i++)
+        tangent->wheel_angle_rad[i] = p->rates.wheel_speed_rad_per_s[i];
     if (p->sloped) tangent->input = p->slope;
 }
 

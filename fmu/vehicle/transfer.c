@@ -16,15 +16,14 @@ static void transfer_kind(fmu_stream *s, laconic_wheel_kind *kind) {
 }
 
 static void transfer_vehicle(fmu_stream *s, laconic_vehicle *v) {
-    int32_t i;
     LACONIC_VEHICLE_FIELDS(TRANSFER, *v)
     LACONIC_PAYLOAD_FIELDS(TRANSFER, v->payload)
     fmu_stream_i32(s, &v->wheel_count, 0, LACONIC_MAX_WHEELS);
-    for (i = 0; i < LACONIC_MAX_WHEELS; i++) {
+    for (int32_t i = 0; i < LACONIC_MAX_WHEELS; i++) {
         LACONIC_WHEEL_FIELDS(TRANSFER, v->wheel[i])
     }
     fmu_stream_i32(s, &v->support_count, INT32_MIN, INT32_MAX);
-    for (i = 0; i < LACONIC_MAX_SUPPORTS; i++) {
+    for (int32_t i = 0; i < LACONIC_MAX_SUPPORTS; i++) {
         LACONIC_SUPPORT_FIELDS(TRANSFER, v->support[i])
     }
 }
@@ -44,8 +43,7 @@ static void transfer_input(fmu_stream *s, laconic_input *u) {
 }
 
 static void transfer_sums(fmu_stream *s, laconic_sum *sums, size_t count) {
-    size_t k;
-    for (k = 0; k < count; k++) {
+    for (size_t k = 0; k < count; k++) {
         fmu_stream_reals(s, &sums[k].value, 1);
         fmu_stream_reals(s, &sums[k].rest, 1);
     }
@@ -83,8 +81,7 @@ static void transfer_stale(fmu_stream *s, fmu_plant *p) {
 }
 
 static int32_t method_number(const laconic_method *method) {
-    int32_t number;
-    for (number = 0; number < LACONIC_METHOD_COUNT; number++)
+    for (int32_t number = 0; number < LACONIC_METHOD_COUNT; number++)
         if (laconic_method_by_number(number) == method) return number;
     return 0;
 }
