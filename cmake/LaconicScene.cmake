@@ -45,7 +45,6 @@ endif()
 file(GLOB scene_sources CONFIGURE_DEPENDS "${PROJECT_SOURCE_DIR}/core_c/src/*.c")
 add_library(laconic_scene STATIC ${scene_sources} "${scene_folder}/laconic_scene_model.c")
 laconic_strict(laconic_scene)
-target_compile_options(laconic_scene PRIVATE -ffunction-sections -fdata-sections)
 target_include_directories(laconic_scene PUBLIC "${PROJECT_SOURCE_DIR}/core_c/include" "${scene_folder}"
     PRIVATE "${PROJECT_SOURCE_DIR}/core_c/src")
 target_compile_definitions(laconic_scene PUBLIC LACONIC_SCENE_HEADER="laconic_scene.h")

@@ -10,9 +10,29 @@
  *
  * The choice by damping is made once, when the integrator is prepared, and can be read in `chosen`; the rest depends
  * only on state and input. So the same run makes the same choices everywhere. */
-#include "integrator.h"
+#include "step_internals.h"
 
 #define SERIES_ROTATION R(0.5) /* rad: the first term that taylor-8 leaves out is then 1e-8 of the first */
+
+static laconic_status auto_slow_step(const laconic_model *model, const laconic_integrator *integrator,
+                                     laconic_state *state, const laconic_loads *loads) {
+    laconic_status status = LACONIC_STEP_BEYOND_GYROSCOPIC_LIMIT;
+    if (!steady_over(loads)) status = laconic_taylor_8.step(model, integrator, state, loads);
+    if (status != LACONIC_OK) status = laconic_exact_flow_4.step(model, integrator, state, loads);
+    if (status != LACONIC_OK) status = laconic_exact_flow.step(model, integrator, state, loads);
+    return status;
+}
+
+const laconic_method laconic_auto_slow = {"exact-flow-4", 4, NULL, auto_slow_step};
+
+static laconic_status auto_fast_step(const laconic_model *model, const laconic_integrator *integrator,
+                                     laconic_state *state, const laconic_loads *loads) {
+    const laconic_status status = laconic_exponential_kahan_4.step(model, integrator, state, loads);
+    if (status == LACONIC_OK) return status;
+    return laconic_exact_flow.step(model, integrator, state, loads);
+}
+
+const laconic_method laconic_auto_fast = {"exponential-kahan-4", 4, NULL, auto_fast_step};
 
 static laconic_status auto_prepare(laconic_integrator *integrator, const laconic_model *model, laconic_refusal *why) {
     integrator->chosen = integrator->stiff ? &laconic_auto_fast : &laconic_auto_slow;

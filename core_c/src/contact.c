@@ -1,7 +1,8 @@
-/* What the ground must deliver: reactions, brakes, normal loads, the no-slip margin. */
+/* What the ground must deliver: reactions, brakes, normal loads, the no-slip margin; and how they change along a
+ * variation. */
 #include "geometry.h"
-#include "load.h"
-#include "zeta.h"
+#include "step_internals.h"
+#include "wrench.h"
 
 /* Least-norm solution of Cᵀκ = f for rows C (n×3) of any rank: κ = C (CᵀC)⁺ f. The 3×3 pseudo-inverse comes
  * from the eigenvectors of S = CᵀC by cyclic Jacobi. */
@@ -137,84 +138,96 @@ laconic_status laconic_contact_prepare(laconic_contact *contact, const laconic_v
     return LACONIC_OK;
 }
 
-typedef struct instant { /* everything at one moment */
-    real nu[3], nu_rate[3], wrench[3], torque[LACONIC_MAX_WHEELS];
+/* ------------------------------------------------------------------------- at one moment -- */
+
+/* What the reactions are linear in, of a motion or of its change. */
+typedef struct instant {
+    real nu_rate[3];
+    real gyro[2]; /* Λ⁻¹a of (4.7) */
+    wrench outer;
+    real torque_Nm[LACONIC_MAX_WHEELS];
+    real weight_N;
 } instant;
 
-/* Outer wrench at S in body axes: F_ξ, F_η, τ. */
-static void take_wrench(real wrench[3], const laconic_input *in, direction heading) {
-    const real *f = in->world_force_N, *r = in->world_force_point_m;
-    const real along = heading.cosine * f[0] + heading.sine * f[1];
-    const real across = heading.cosine * f[1] - heading.sine * f[0];
-    wrench[0] = in->body_force_N[0] + along;
-    wrench[1] = in->body_force_N[1] + across;
-    wrench[2] = in->body_moment_Nm + (r[0] * across - r[1] * along);
-}
-
 static void take_instant(instant *now, const laconic_model *m, const laconic_state *state, const laconic_input *in) {
-    const direction heading = laconic_direction_of_turn(state->heading.fraction);
     const vector zeta = zeta_of(state);
     laconic_load load;
     vector rate;
+    real nu[3], yaw_rate;
     int k;
     laconic_load_of(&load, m, in);
     rate = zeta_rate(m, zeta, load_now(&load, &state->heading, R(0)));
     for (k = 0; k < 3; k++) {
-        now->nu[k] = dot(vec(m->nu_of_zeta[k]), zeta);
+        nu[k] = dot(vec(m->nu_of_zeta[k]), zeta);
         now->nu_rate[k] = dot(vec(m->nu_of_zeta[k]), rate);
     }
-    take_wrench(now->wrench, in, heading);
-    laconic_wheel_torques(m, state, in, now->torque);
+    yaw_rate = nu[2] / m->yaw_scale;
+    now->gyro[0] = yaw_rate * nu[1];
+    now->gyro[1] = -yaw_rate * nu[0];
+    now->outer = wrench_of(in, laconic_direction_of_turn(state->heading.fraction));
+    now->weight_N = m->mass_kg * R(LACONIC_GRAVITY_M_PER_S2);
+    laconic_wheel_torques(m, state, in, now->torque_Nm);
 }
 
-/* κ from A ν' − Λ⁻¹a − (MR²)⁻¹(Ξᵀ M + w) = Cᵀκ */
-static void multipliers(real *kappa, const laconic_contact *c, const laconic_model *m, const instant *now) {
-    const real yaw_rate = now->nu[2] / m->yaw_scale, radius = m->wheel_radius_m;
-    real left[3];
-    int32_t i, k;
-    for (k = 0; k < 3; k++) left[k] = dot(vec(c->inertia[k]), vec(now->nu_rate));
-    left[0] -= yaw_rate * now->nu[1] + m->torque_scale * radius * now->wrench[0];
-    left[1] -= -yaw_rate * now->nu[0] + m->torque_scale * radius * now->wrench[1];
-    left[2] -= m->torque_scale * now->wrench[2] / m->yaw_scale;
+/* A ν' − Λ⁻¹a − (MR²)⁻¹(Ξᵀ M + w) = Cᵀκ: what the constraints' multipliers κ answer for. */
+static vector imbalance(const laconic_contact *c, const laconic_model *m, const instant *now) {
+    const real force = m->torque_scale * m->wheel_radius_m;
+    vector left = {dot(vec(c->inertia[0]), vec(now->nu_rate)), dot(vec(c->inertia[1]), vec(now->nu_rate)),
+                   dot(vec(c->inertia[2]), vec(now->nu_rate))};
+    int32_t i;
+    left.x -= now->gyro[0] + force * now->outer.along;
+    left.y -= now->gyro[1] + force * now->outer.across;
+    left.z -= m->torque_scale * now->outer.moment / m->yaw_scale;
     for (i = 0; i < m->wheel_count; i++)
-        for (k = 0; k < 3; k++) left[k] -= m->torque_scale * now->torque[i] * c->wheel_rows[i][k];
-    for (i = 0; i < c->constraint_count; i++) kappa[i] = dot(vec(c->multiplier[i]), vec(left));
+        left = minus(left, scaled(m->torque_scale * now->torque_Nm[i], vec(c->wheel_rows[i])));
+    return left;
 }
 
 static void wheel_reaction(laconic_reactions *out, const laconic_contact *c, const laconic_model *m, const instant *now,
-                           const real *kappa, int32_t i) {
-    const real unit_Nm = m->mass_kg * m->wheel_radius_m * m->wheel_radius_m;
+                           vector left, int32_t i) {
+    const real unit_N = m->mass_kg * m->wheel_radius_m;
     const int32_t lateral = c->lateral_row[i], brake = c->brake_row[i];
     real acceleration = R(0);
-    out->lateral_N[i] = lateral >= 0 ? kappa[lateral] * (m->mass_kg * m->wheel_radius_m) : R(0);
-    out->brake_Nm[i] = brake >= 0 ? kappa[brake] * unit_Nm : R(0);
+    out->lateral_N[i] = lateral >= 0 ? dot(vec(c->multiplier[lateral]), left) * unit_N : R(0);
+    out->brake_Nm[i] = brake >= 0 ? dot(vec(c->multiplier[brake]), left) * (unit_N * m->wheel_radius_m) : R(0);
     if (brake < 0) acceleration = dot(vec(c->wheel_rows[i]), vec(now->nu_rate));
     out->along_N[i] =
-        (now->torque[i] + out->brake_Nm[i] - m->wheel_inertia_kgm2 * acceleration) * c->inverse_arm_per_m[i];
+        (now->torque_Nm[i] + out->brake_Nm[i] - m->wheel_inertia_kgm2 * acceleration) * c->inverse_arm_per_m[i];
 }
 
 /* Σ N = M g; about S the loads balance the ground's horizontal force, which acts com_z below it (outer forces
  * are taken to act at the height of S). Columns of `load_of_wrench`: R Σ N, Σ N ξ, Σ N η. */
-static void normal_loads(laconic_reactions *out, const laconic_contact *c, const laconic_model *m) {
-    const real weight = m->mass_kg * R(LACONIC_GRAVITY_M_PER_S2);
+static void normal_loads(laconic_reactions *out, const laconic_contact *c, const laconic_model *m, real weight_N) {
     real wanted[3], ground[2] = {R(0), R(0)};
     int32_t i;
     for (i = 0; i < m->wheel_count; i++) {
         ground[0] += out->along_N[i] * c->pull[i][0] + out->lateral_N[i] * c->axle[i][0];
         ground[1] += out->along_N[i] * c->pull[i][1] + out->lateral_N[i] * c->axle[i][1];
     }
-    wanted[0] = m->wheel_radius_m * weight;
+    wanted[0] = m->wheel_radius_m * weight_N;
     wanted[1] = -c->com_z_m * ground[0];
     wanted[2] = -c->com_z_m * ground[1];
     for (i = 0; i < c->point_count; i++) out->normal_N[i] = dot(vec(c->load_of_wrench[i]), vec(wanted));
+}
+
+/* All that is linear: everything but the margin. */
+static void linear_reactions(laconic_reactions *out, const laconic_contact *c, const laconic_model *m,
+                             const instant *now) {
+    const vector left = imbalance(c, m, now);
+    int32_t i;
+    for (i = 0; i < m->wheel_count; i++) wheel_reaction(out, c, m, now, left, i);
+    normal_loads(out, c, m, now->weight_N);
+}
+
+static real reaction_size(const laconic_reactions *r, int32_t i) {
+    return laconic_root(r->along_N[i] * r->along_N[i] + r->lateral_N[i] * r->lateral_N[i]);
 }
 
 static void no_slip_margin(laconic_reactions *out, const laconic_contact *c, const laconic_model *m) {
     int32_t i;
     out->no_slip_margin_N = R(0);
     for (i = 0; i < m->wheel_count; i++) {
-        const real needed = laconic_root(out->along_N[i] * out->along_N[i] + out->lateral_N[i] * out->lateral_N[i]);
-        const real margin = c->friction_coefficient * out->normal_N[i] - needed;
+        const real margin = c->friction_coefficient * out->normal_N[i] - reaction_size(out, i);
         if (i == 0 || margin < out->no_slip_margin_N || margin != margin)
             out->no_slip_margin_N = margin; /* where one is NaN, all is */
     }
@@ -223,11 +236,51 @@ static void no_slip_margin(laconic_reactions *out, const laconic_contact *c, con
 void laconic_reactions_of(laconic_reactions *reactions, const laconic_contact *contact, const laconic_model *model,
                           const laconic_state *state, const laconic_input *input) {
     instant now;
-    real kappa[2 * LACONIC_MAX_WHEELS];
-    int32_t i;
     take_instant(&now, model, state, input);
-    multipliers(kappa, contact, model, &now);
-    for (i = 0; i < model->wheel_count; i++) wheel_reaction(reactions, contact, model, &now, kappa, i);
-    normal_loads(reactions, contact, model);
+    linear_reactions(reactions, contact, model, &now);
     no_slip_margin(reactions, contact, model);
+}
+
+/* --------------------------------------------------------------------- along a variation -- */
+
+static void take_change(instant *change, const laconic_model *m, const laconic_motion *at, const laconic_input *input,
+                        const laconic_variation *by) {
+    const vector zeta = zeta_of_nu(m, at->nu_rad_per_s), d_zeta = zeta_of_nu(m, by->nu_rad_per_s);
+    const real rate = dot(vec(m->yaw_rate_of_zeta), zeta), d_rate = dot(vec(m->yaw_rate_of_zeta), d_zeta);
+    laconic_rates rates;
+    laconic_motion_change outputs;
+    int32_t i;
+    laconic_derivative_tangent(&rates, m, at, input, by);
+    laconic_motion_tangent(&outputs, m, at, by);
+    for (i = 0; i < 3; i++) change->nu_rate[i] = rates.nu_rad_per_s2[i];
+    for (i = 0; i < m->wheel_count; i++) change->torque_Nm[i] = outputs.wheel_torque_Nm[i];
+    change->gyro[0] = d_rate * dot(vec(m->nu_of_zeta[1]), zeta) + rate * dot(vec(m->nu_of_zeta[1]), d_zeta);
+    change->gyro[1] = -(d_rate * dot(vec(m->nu_of_zeta[0]), zeta) + rate * dot(vec(m->nu_of_zeta[0]), d_zeta));
+    change->outer = wrench_change(input, laconic_direction_of_angle(at->heading_rad), by);
+    change->weight_N = R(0);
+}
+
+/* The margin is the least over the wheels: its change is that of the wheel which is least now. */
+static void margin_change(laconic_reactions *change, const laconic_contact *c, const laconic_model *m,
+                          const laconic_reactions *now) {
+    real least = R(0);
+    int32_t i;
+    change->no_slip_margin_N = R(0);
+    for (i = 0; i < m->wheel_count; i++) {
+        const real a = now->along_N[i], l = now->lateral_N[i], needed = reaction_size(now, i);
+        const real margin = c->friction_coefficient * now->normal_N[i] - needed;
+        const real d_needed = needed > R(0) ? (a * change->along_N[i] + l * change->lateral_N[i]) / needed : R(0);
+        if (i > 0 && !(margin < least)) continue;
+        least = margin;
+        change->no_slip_margin_N = c->friction_coefficient * change->normal_N[i] - d_needed;
+    }
+}
+
+void laconic_reactions_tangent(laconic_reactions *change, const laconic_contact *contact, const laconic_model *model,
+                               const laconic_motion *at, const laconic_input *input, const laconic_reactions *now,
+                               const laconic_variation *by) {
+    instant instant_change;
+    take_change(&instant_change, model, at, input, by);
+    linear_reactions(change, contact, model, &instant_change);
+    margin_change(change, contact, model, now);
 }

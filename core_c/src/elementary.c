@@ -1,6 +1,6 @@
 #include "elementary.h"
 
-#include "turn.h"
+#include "heading.h"
 
 #ifdef LACONIC_SINGLE
 #define REDUCE_1 R(1.5703125) /* π/2 in three parts; the first two times k are exact for small k */

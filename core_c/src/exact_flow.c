@@ -1,14 +1,18 @@
-/* Exact-flow splitting: second order, keeps energy and K of the free motion to rounding, takes every step. */
-#include "exact_flow.h"
+/* Exact-flow splitting: keeps energy and K of the free motion to rounding. Second order, which takes every step, and
+ * extrapolated to fourth, which is exact for free motion and best while damping is slow. */
+#include "step_internals.h"
 
-#include "integrator.h"
+/* Half-angle of the turn about w as a ratio: tan(ψ/2) = |w| numerator/denominator. */
+typedef struct half_angle {
+    real numerator, denominator;
+} half_angle;
 
 #define LARGEST_DOUBLINGS 520 /* quarter every finite number: an infinite one ends as NaN, and the step is refused */
 
 /* Beyond the polynomial: quarter z until it holds, then double the angle as often. With s = sin √z/√z and
  * c = cos √z up to a common factor (only their ratio counts), s(4z) = s c, c(4z) = c² − z s²; divided by
  * c² + |z| s² they stay of the order of 1 for either sign of z. */
-half_angle laconic_large_half_angle(real z, real along, real across) {
+RARE half_angle large_half_angle(real z, real along, real across) {
     half_angle a;
     real s, c = R(1);
     int doublings = 0;
@@ -26,30 +30,121 @@ half_angle laconic_large_half_angle(real z, real along, real across) {
 }
 
 /* |ζ + δ|² − |ζ|² = δ·(2ζ + δ) should be 0: take the excess off along ζ + δ. */
-vector laconic_cleared_turn(vector zeta, vector delta) {
+RARE vector cleared_turn(vector zeta, vector delta) {
     const vector end = plus(zeta, delta);
     const real excess = dot(delta, plus(zeta, end)), length = square(end);
     if (!(length > R(0))) return delta;
     return minus(delta, scaled(R(0.5) * excess / length, end));
 }
 
-RARE increment flow_varying(const laconic_model *model, const laconic_integrator *integrator,
-                            const laconic_state *state, const laconic_loads *loads) {
-    return single_varying(exact_flow_step, model, integrator, state, loads);
+/* Free motion turns ζ about w by the angle ψ with ψ' = |w| g·ζ. As a Riccati equation for u = tan(ψ/2) it has
+ * the solution u(h) = |w| along T/(1 − across T), T = tan √z/√z, with along = ½h g·ζ, across = ½h g·(ζ×w),
+ * z = (½h)²[(g·ζ)(2(g·w)(w·ζ) − |w|² g·ζ) − (g·(ζ×w))²], either sign. */
+INLINE half_angle half_angle_after(const laconic_model *m, real half_step, vector zeta) {
+    const real along = half_step * dot(vec(m->nu_of_zeta[2]), zeta);
+    const real across = half_step * dot(vec(m->spin_gain), zeta);
+    const real curve = half_step * dot(vec(m->spin_curve), zeta);
+    const real z = along * curve - across * across;
+    if (z <= TANGENT_SMALL && z >= -TANGENT_SMALL) {
+        const real tangent = poly_tangent(z);
+        const half_angle a = {along * tangent, R(1) - across * tangent};
+        return a;
+    }
+    return large_half_angle(z, along, across);
 }
 
-static laconic_status flow_step(const laconic_model *model, const laconic_integrator *integrator, laconic_state *state,
-                                const laconic_loads *loads) {
+/* ζ⁺ − ζ = 2 τ/(1 + |w|²τ²) (ζ×w + τ (ζ×w)×w), τ = numerator/denominator: |ζ| stays to rounding. */
+INLINE vector free_flow(const laconic_model *m, real half_step, vector zeta) {
+    const vector w = vec(m->gyro), turned = cross(zeta, w);
+    const half_angle a = half_angle_after(m, half_step, zeta);
+    const real aside = m->gyro_square * (a.numerator * a.numerator), ahead = a.denominator * a.denominator;
+    const real factor = R(2) * a.numerator / (ahead + aside);
+    const vector delta = scaled(factor, plus(scaled(a.denominator, turned), scaled(a.numerator, cross(turned, w))));
+    return aside > R(0.0625) * ahead ? cleared_turn(zeta, delta) : delta; /* ψ beyond half a radian */
+}
+
+/* Damping and drive alone, exact. */
+INLINE vector drive_flow(const laconic_model *m, const laconic_decay *d, vector zeta, const drive *b) {
+    return times(vec(d->gain), minus(constant_like(b, d), damping(m, zeta)));
+}
+
+/* The two halves of a parabola: s(s − 1) over half the range is a quarter of itself and a ramp. */
+static inline void split(drive *early, drive *late, const drive *b) {
+    const vector quarter = scaled(R(0.25), b->curve), even = scaled(R(0.5), b->change);
+    early->start = b->start;
+    early->change = minus(even, quarter);
+    late->start = plus(b->start, early->change);
+    late->change = plus(even, quarter);
+    early->curve = late->curve = quarter;
+    early->varies = late->varies = true;
+}
+
+/* Drive for h/2, free motion for h, drive for h/2. */
+INLINE increment flow_base(const laconic_model *m, const laconic_integrator *integrator, int level, vector zeta,
+                           const drive *b) {
+    const real half_step = integrator->step_s * (level == 0 ? R(0.5) : R(0.25));
+    const laconic_decay *half = &integrator->decay[level + 1];
+    const drive *first = b, *second = b;
+    drive early, late;
+    vector up, before, turn, down;
+    if (!LACONIC_WITH_DAMPING && !LACONIC_WITH_LOAD)
+        return increment_of(&integrator->decay[level], zeta, free_flow(m, half_step, zeta), b);
+    if (b->varies) {
+        split(&early, &late, b);
+        first = &early;
+        second = &late;
+    }
+    up = drive_flow(m, half, zeta, first);
+    before = plus(zeta, up);
+    turn = free_flow(m, half_step, before);
+    down = drive_flow(m, half, plus(before, turn), second);
+    return increment_of(&integrator->decay[level], zeta, plus(plus(up, turn), down), b);
+}
+
+/* ------------------------------------------------------------------------- second order -- */
+
+RARE increment flow_varying(const laconic_model *model, const laconic_integrator *integrator,
+                            const laconic_state *state, const laconic_loads *loads) {
+    return single_varying(flow_base, model, integrator, state, loads);
+}
+
+static laconic_status exact_flow_step(const laconic_model *model, const laconic_integrator *integrator,
+                                      laconic_state *state, const laconic_loads *loads) {
     const vector zeta = zeta_of(state);
-    const increment by = steady_over(loads) ? single(exact_flow_step, model, integrator, zeta, loads)
+    const increment by = steady_over(loads) ? single(flow_base, model, integrator, zeta, loads)
                                             : flow_varying(model, integrator, state, loads);
     return advance(state, model, integrator->step_s, zeta, by);
 }
 
-static laconic_status flow_prepare(laconic_integrator *integrator, const laconic_model *model, laconic_refusal *why) {
+static laconic_status exact_flow_prepare(laconic_integrator *integrator, const laconic_model *model,
+                                         laconic_refusal *why) {
     (void)why;
     laconic_decay_levels(integrator, model, 2);
     return LACONIC_OK;
 }
 
-const laconic_method laconic_exact_flow = {"exact-flow", 2, PREPARE(flow_prepare), flow_step};
+const laconic_method laconic_exact_flow = {"exact-flow", 2, PREPARE(exact_flow_prepare), exact_flow_step};
+
+/* ------------------------------------------------------------------------- fourth order -- */
+
+RARE increment flow_4_varying(const laconic_model *model, const laconic_integrator *integrator,
+                              const laconic_state *state, const laconic_loads *loads) {
+    return extrapolated_varying(flow_base, model, integrator, state, loads);
+}
+
+static laconic_status exact_flow_4_step(const laconic_model *model, const laconic_integrator *integrator,
+                                        laconic_state *state, const laconic_loads *loads) {
+    const vector zeta = zeta_of(state);
+    const increment by = steady_over(loads) ? extrapolated(flow_base, model, integrator, zeta, loads)
+                                            : flow_4_varying(model, integrator, state, loads);
+    return advance_if_passive(state, model, integrator->step_s, loads, zeta, by);
+}
+
+static laconic_status exact_flow_4_prepare(laconic_integrator *integrator, const laconic_model *model,
+                                           laconic_refusal *why) {
+    (void)why;
+    laconic_decay_levels(integrator, model, 3);
+    return LACONIC_OK;
+}
+
+const laconic_method laconic_exact_flow_4 = {"exact-flow-4", 4, PREPARE(exact_flow_4_prepare), exact_flow_4_step};

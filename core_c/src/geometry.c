@@ -42,6 +42,10 @@ void laconic_wheel_row(real row[3], const body *b, const laconic_wheel *wheel) {
     row[2] /= sine;
 }
 
-void laconic_lateral_row(real row[3], const body *b, const laconic_wheel *wheel) {
-    line_row(row, b, wheel, laconic_direction_of_angle(wheel->axle_rad));
+int32_t laconic_constraint_rows(real rows[2][3], const body *b, const laconic_wheel *wheel) {
+    int32_t count = 0;
+    if (wheel->kind == LACONIC_WHEEL_FIXED)
+        line_row(rows[count++], b, wheel, laconic_direction_of_angle(wheel->axle_rad));
+    if (wheel->locked) laconic_wheel_row(rows[count++], b, wheel);
+    return count;
 }

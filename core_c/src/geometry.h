@@ -19,8 +19,9 @@ void laconic_body_of(body *b, const laconic_vehicle *vehicle);
 /* Row i of Ξ: χ_i' = row · ν (4.3–4.4). */
 void laconic_wheel_row(real row[3], const body *b, const laconic_wheel *wheel);
 
-/* row · ν = velocity of a fixed wheel's centre along its axle, over R. */
-void laconic_lateral_row(real row[3], const body *b, const laconic_wheel *wheel);
+/* The constraints row · ν = 0 of one wheel: a fixed one's centre does not move along its axle (velocity over R); then a
+ * locked one does not turn (its row of Ξ). Returns how many there are, 0 to 2. */
+int32_t laconic_constraint_rows(real rows[2][3], const body *b, const laconic_wheel *wheel);
 
 /* Direction in which a wheel's ground reaction acts, body axes: its roller's axis; of a fixed wheel its
  * rolling direction. Returns sin γ. */

@@ -1,6 +1,5 @@
-/* Prepares a method for one step size. */
-#include "integrator.h"
-#include "vector.h"
+/* Prepares a method for one step size; how far a method may step, and how many steps an interval holds. */
+#include "step_internals.h"
 
 #define FAST_DAMPING R(0.3) /* h·r_max: below, splitting off the damping costs less than following it */
 
@@ -40,4 +39,79 @@ real laconic_fastest_decay(const laconic_model *model) {
     for (k = 1; k < 3; k++)
         if (model->decay_per_s[k] > fastest) fastest = model->decay_per_s[k];
     return fastest;
+}
+
+/* Factors of exponential steps: increments, not exponentials, so that single precision loses
+ * nothing; mean and first moment of ζ' = −rζ + b with b quadratic over the step. */
+
+/* Response of ζ to b = s^k/k!: the increment is h φk+1, the mean h φk+2, 12 times the first moment about the
+ * middle 12 h (φk+2/2 − φk+3); s(s − 1) = 2·s²/2! − s. What the increment explains of mean and moment of a
+ * constant b it explains of any b; the rest goes beside it. All exact for the linear equation. */
+static void axis_factors(laconic_decay *d, int k, real h, real rate) {
+    real phi[6], ramp, bend, mean, slope;
+    laconic_phi(phi, h * rate);
+    ramp = phi[2];
+    bend = R(2) * phi[3] - phi[2];
+    mean = phi[2] / phi[1];
+    slope = (R(6) * phi[2] - R(12) * phi[3]) / phi[1];
+    d->gain[k] = h * phi[1];
+    d->inverse_gain[k] = R(1) / d->gain[k];
+    d->mean[k] = mean;
+    d->bend[k] = bend / phi[1];
+    d->mean_ramp[k] = h * (phi[3] - mean * ramp);
+    d->mean_bend[k] = h * (R(2) * phi[4] - phi[3] - mean * bend);
+    d->slope[k] = slope;
+    d->slope_ramp[k] = h * (R(6) * phi[3] - R(12) * phi[4] - slope * ramp);
+    d->slope_bend[k] = h * (R(24) * phi[4] - R(24) * phi[5] - R(6) * phi[3] - slope * bend);
+}
+
+void laconic_decay_of(laconic_decay *decay, const laconic_model *model, real h) {
+    int k;
+    for (k = 0; k < 3; k++) axis_factors(decay, k, h, model->decay_per_s[k]);
+}
+
+void laconic_decay_levels(laconic_integrator *integrator, const laconic_model *model, int levels) {
+    real h = integrator->step_s;
+    int level;
+    for (level = 0; level < levels; level++) {
+        laconic_decay_of(&integrator->decay[level], model, h);
+        h *= R(0.5);
+    }
+}
+
+/* Tries the method's own limits rather than knowing them: prepare and the gyroscopic limit say it. */
+laconic_real laconic_largest_stable_step_s(const laconic_method *method, const laconic_model *model,
+                                           const laconic_state *state) {
+    laconic_integrator trial = {0};
+    laconic_refusal why;
+    real step = LARGEST_STEP_S, yaw;
+    if (laconic_integrator_prepare(&trial, method, model, step, &why) != LACONIC_OK) {
+        step = why.limit;
+        (void)laconic_integrator_prepare(&trial, method, model, step * R(0.999), &why); /* safe from rounding */
+        trial.gyro_limit *= R(0.999);
+    }
+    if (trial.chosen != method) return R(0); /* auto: goes on with another method */
+    yaw = magnitude(dot(vec(model->nu_of_zeta[2]), zeta_of(state)));
+    if (trial.gyro_limit > R(0) && yaw > trial.gyro_limit) step *= trial.gyro_limit / yaw;
+    return step < LARGEST_STEP_S ? step : R(0);
+}
+
+/* Compared in units of the step, never of the time: so the tolerance does not widen as time goes on. */
+laconic_status laconic_steps_in(double interval_s, double step_s, uint64_t *steps, laconic_refusal *why) {
+    const double ratio = interval_s / step_s;
+    double count, off;
+    uint64_t nearest;
+    if (!(interval_s <= DBL_MAX) || !(interval_s > 0.0))
+        return refuse(why, LACONIC_STEP_DOES_NOT_FIT, LACONIC_FIELD_STEP, 0, (real)step_s, (real)interval_s);
+    if (!(step_s <= DBL_MAX)) return refuse(why, LACONIC_NOT_FINITE, LACONIC_FIELD_STEP, 0, (real)step_s, R(0));
+    if (!(step_s > 0.0)) return refuse(why, LACONIC_NOT_POSITIVE, LACONIC_FIELD_STEP, 0, (real)step_s, R(0));
+    if (!(ratio < 9e15)) return refuse(why, LACONIC_STEP_DOES_NOT_FIT, LACONIC_FIELD_STEP, 0, (real)step_s, R(0));
+    nearest = (uint64_t)(ratio + 0.5);
+    if (nearest == 0) nearest = 1;
+    count = (double)nearest;
+    off = ratio - count;
+    if (off > 1e-6 || off < -1e-6)
+        return refuse(why, LACONIC_STEP_DOES_NOT_FIT, LACONIC_FIELD_STEP, 0, (real)step_s, (real)(interval_s / count));
+    *steps = nearest;
+    return LACONIC_OK;
 }

@@ -5,11 +5,8 @@
 static void collect_rows(laconic_matrices *x, const body *b, const laconic_vehicle *vehicle) {
     int32_t i;
     for (i = 0; i < vehicle->wheel_count; i++) {
-        const laconic_wheel *wheel = &vehicle->wheel[i];
-        laconic_wheel_row(x->wheel_rows[i], b, wheel);
-        if (wheel->kind == LACONIC_WHEEL_FIXED)
-            laconic_lateral_row(x->constraint_rows[x->constraint_count++], b, wheel);
-        if (wheel->locked) laconic_wheel_row(x->constraint_rows[x->constraint_count++], b, wheel);
+        laconic_wheel_row(x->wheel_rows[i], b, &vehicle->wheel[i]);
+        x->constraint_count += laconic_constraint_rows(x->constraint_rows + x->constraint_count, b, &vehicle->wheel[i]);
     }
 }
 

@@ -1,5 +1,113 @@
-/* All outputs of a plant at one moment, for those who choose among them by number. */
-#include "internal.h"
+/* What a motion looks like from outside: velocities, position and pose, wheels, energy; how they change along a
+ * variation; and all of it at once. */
+#include "step_internals.h"
+
+/* ----------------------------------------------------------------------------- velocities -- */
+
+static void velocity_of(const laconic_model *model, vector zeta, real velocity_m_per_s[2], real *yaw_rate_rad_per_s) {
+    velocity_m_per_s[0] = dot(vec(model->velocity_of_zeta[0]), zeta);
+    velocity_m_per_s[1] = dot(vec(model->velocity_of_zeta[1]), zeta);
+    *yaw_rate_rad_per_s = dot(vec(model->yaw_rate_of_zeta), zeta);
+}
+
+void laconic_nu(const laconic_model *model, const laconic_state *state, laconic_real nu_rad_per_s[3]) {
+    const vector zeta = zeta_of(state);
+    int k;
+    for (k = 0; k < 3; k++) nu_rad_per_s[k] = dot(vec(model->nu_of_zeta[k]), zeta);
+}
+
+laconic_real laconic_body_velocity(const laconic_model *model, const laconic_state *state,
+                                   laconic_real velocity_m_per_s[2]) {
+    real yaw_rate;
+    velocity_of(model, zeta_of(state), velocity_m_per_s, &yaw_rate);
+    return yaw_rate;
+}
+
+/* ----------------------------------------------------------------------- position and pose -- */
+
+void laconic_position(const laconic_state *state, laconic_real *x_m, laconic_real *y_m, laconic_real *heading_rad) {
+    *x_m = state->x_m.value;
+    *y_m = state->y_m.value;
+    *heading_rad = heading_unwrapped(&state->heading);
+}
+
+/* The body's origin is at (x, y) − Rot(θ) s, s = QS. */
+void laconic_pose_of(laconic_pose *pose, const laconic_model *model, const laconic_state *state) {
+    const direction heading = laconic_direction_of_turn(state->heading.fraction);
+    const real sx = model->com_x_m, sy = model->com_y_m;
+    pose->x_m = state->x_m.value;
+    pose->y_m = state->y_m.value;
+    pose->origin_x_m = pose->x_m - (heading.cosine * sx - heading.sine * sy);
+    pose->origin_y_m = pose->y_m - (heading.sine * sx + heading.cosine * sy);
+    pose->heading_rad = heading_unwrapped(&state->heading);
+    pose->heading_wrapped_rad = heading_wrapped(&state->heading);
+}
+
+/* --------------------------------------------------------------------------------- wheels -- */
+
+/* χ' = Ξ ν */
+static void speeds_of(const laconic_model *model, vector zeta, real *speed_rad_per_s) {
+    int32_t i;
+    for (i = 0; i < LACONIC_WHEELS(model); i++) speed_rad_per_s[i] = dot(vec(model->wheel_of_zeta[i]), zeta);
+}
+
+void laconic_wheel_speeds(const laconic_model *model, const laconic_state *state, laconic_real *speed_rad_per_s) {
+    speeds_of(model, zeta_of(state), speed_rad_per_s);
+}
+
+/* χ' = wheel_of_zeta · ζ, so χ is the same row of ∫ζ dt: no work per wheel in a step. */
+void laconic_wheel_angles(const laconic_model *model, const laconic_state *state, laconic_real *angle_rad) {
+    const vector travel = {state->travel[0].value, state->travel[1].value, state->travel[2].value};
+    const vector rest = {state->travel[0].rest, state->travel[1].rest, state->travel[2].rest};
+    int32_t i;
+    for (i = 0; i < LACONIC_WHEELS(model); i++) {
+        const vector row = vec(model->wheel_of_zeta[i]);
+        angle_rad[i] = state->wheel_angle_set_rad[i] + (dot(row, travel) + dot(row, rest));
+    }
+}
+
+void laconic_wheel_angles_set(const laconic_model *model, laconic_state *state, const laconic_real *angle_rad) {
+    int32_t i;
+    for (i = 0; i < LACONIC_WHEELS(model); i++) state->wheel_angle_set_rad[i] = angle_rad[i];
+    for (i = 0; i < 3; i++) state->travel[i] = sum_of(R(0));
+}
+
+/* M_i = c1 U_i − c2 χ_i' + T_i */
+static void torques_of(const laconic_model *model, const real *speed_rad_per_s, const laconic_input *input,
+                       real *torque_Nm) {
+    int32_t i;
+    for (i = 0; i < LACONIC_WHEELS(model); i++)
+        torque_Nm[i] = model->motor_gain_Nm_per_V * input->voltage_V[i] -
+                       model->motor_damping_Nms * speed_rad_per_s[i] + input->axle_torque_Nm[i];
+}
+
+void laconic_wheel_torques(const laconic_model *model, const laconic_state *state, const laconic_input *input,
+                           laconic_real *torque_Nm) {
+    laconic_wheel_speeds(model, state, torque_Nm);
+    torques_of(model, torque_Nm, input, torque_Nm);
+}
+
+/* ------------------------------------------------------ the two integrals of the free motion -- */
+
+/* 2T = M R² νᵀAν = M R² |ζ|²; of two motions, half their product under A. */
+static real energy_of(const laconic_model *model, vector zeta, vector other) {
+    return dot(zeta, other) * (model->mass_kg * model->wheel_radius_m * model->wheel_radius_m);
+}
+
+laconic_real laconic_energy_J(const laconic_model *model, const laconic_state *state) {
+    const vector zeta = zeta_of(state);
+    return R(0.5) * energy_of(model, zeta, zeta);
+}
+
+/* A G = V diag(√(1 + λ²x)) = G diag(1 + λ²x), as G = V diag(1/√(1 + λ²x)). */
+laconic_real laconic_yaw_integral(const laconic_model *model, const laconic_state *state) {
+    real sum = R(0);
+    int k;
+    for (k = 0; k < 3; k++) sum += model->nu_of_zeta[2][k] * model->inertia[k] * state->zeta[k].value;
+    return sum;
+}
+
+/* ------------------------------------------------------------------------ all, and changes -- */
 
 void laconic_outputs_of(laconic_outputs *outputs, const laconic_plant *plant, const laconic_input *input) {
     const laconic_model *model = &plant->model;
@@ -12,4 +120,18 @@ void laconic_outputs_of(laconic_outputs *outputs, const laconic_plant *plant, co
     laconic_wheel_angles(model, state, outputs->wheel_angle_rad);
     laconic_wheel_torques(model, state, input, outputs->wheel_torque_Nm);
     outputs->input = *input;
+}
+
+/* All but origin and energy are linear in ζ and the input: they change as they are. */
+void laconic_motion_tangent(laconic_motion_change *change, const laconic_model *model, const laconic_motion *at,
+                            const laconic_variation *by) {
+    const direction heading = laconic_direction_of_angle(at->heading_rad);
+    const vector zeta = zeta_of_nu(model, at->nu_rad_per_s), d_zeta = zeta_of_nu(model, by->nu_rad_per_s);
+    const real sx = model->com_x_m, sy = model->com_y_m, turn = by->heading_rad;
+    change->origin_x_m = by->x_m + turn * (heading.sine * sx + heading.cosine * sy);
+    change->origin_y_m = by->y_m - turn * (heading.cosine * sx - heading.sine * sy);
+    velocity_of(model, d_zeta, change->velocity_m_per_s, &change->yaw_rate_rad_per_s);
+    change->energy_J = energy_of(model, zeta, d_zeta);
+    speeds_of(model, d_zeta, change->wheel_speed_rad_per_s);
+    torques_of(model, change->wheel_speed_rad_per_s, &by->input, change->wheel_torque_Nm);
 }

@@ -46,19 +46,12 @@ static void add_constraint(basis *known, const real row[3]) {
 }
 
 static void collect_constraints(basis *known, const body *b, const laconic_vehicle *vehicle) {
-    int32_t i;
-    real row[3];
+    int32_t i, k;
     known->count = 0;
     for (i = 0; i < vehicle->wheel_count; i++) {
-        const laconic_wheel *wheel = &vehicle->wheel[i];
-        if (wheel->kind == LACONIC_WHEEL_FIXED) {
-            laconic_lateral_row(row, b, wheel);
-            add_constraint(known, row);
-        }
-        if (wheel->locked) {
-            laconic_wheel_row(row, b, wheel);
-            add_constraint(known, row);
-        }
+        real rows[2][3];
+        const int32_t count = laconic_constraint_rows(rows, b, &vehicle->wheel[i]);
+        for (k = 0; k < count; k++) add_constraint(known, rows[k]);
     }
 }
 
@@ -160,7 +153,7 @@ static void clear_axis(laconic_model *m, int32_t k) {
     for (i = 0; i < 3; i++) m->nu_of_zeta[i][k] = R(0);
 }
 
-/* w, and what the closed form of the free motion (exact_flow.h) makes of it. */
+/* w, and what the closed form of the free motion (exact_flow.c) makes of it. */
 static void derive_gyro(laconic_model *m) {
     const vector g = vec(m->nu_of_zeta[2]);
     const vector w = scaled(R(1) / m->yaw_scale, cross(vec(m->nu_of_zeta[0]), vec(m->nu_of_zeta[1])));

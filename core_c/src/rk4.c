@@ -1,9 +1,6 @@
 /* Classical Runge-Kutta for ζ. Its mean, which θ, the pose and the wheel angles follow, comes from the same stages:
  * h(ζ1 + 2ζ2 + 2ζ3 + ζ4)/6 = h(ζ + h(k1 + k2 + k3)/6). */
-#include "advance.h"
-#include "integrator.h"
-#include "load.h"
-#include "zeta.h"
+#include "step_internals.h"
 
 #define LARGEST_DAMPING R(2.785)  /* h·r: end of the stability interval on the real axis          */
 #define LARGEST_ROTATION R(2.828) /* h·|w||g·ζ|: on the imaginary axis, where free motion turns    */

@@ -80,3 +80,10 @@ laconic_arithmetic laconic_self_test(void) {
         if (wrong[k]()) return (laconic_arithmetic)(k + 1);
     return LACONIC_ARITHMETIC_SOUND;
 }
+
+#define TEXT(IDENTIFIER, text) text,
+
+const char *laconic_arithmetic_text(laconic_arithmetic found) {
+    static const char *const texts[] = {LACONIC_ARITHMETICS(TEXT)};
+    return (unsigned)found < LACONIC_ARITHMETIC_COUNT ? texts[found] : "unknown";
+}

@@ -1,6 +1,5 @@
-/* Steps with the input held: input → load once, then the method. The one stepping loop of the project. */
-#include "heading.h"
-#include "load.h"
+/* Steps: input → b, then the method; and why a step was refused. */
+#include "step_internals.h"
 
 uint64_t laconic_run(const laconic_model *model, const laconic_integrator *integrator, laconic_state *state,
                      const laconic_input *held, uint64_t steps, laconic_status *status) {
@@ -31,4 +30,58 @@ laconic_status laconic_step(const laconic_model *model, const laconic_integrator
     laconic_status status;
     laconic_run(model, integrator, state, held, 1, &status);
     return status;
+}
+
+/* What some methods never look at: a world force in the middle, which those of second order turn from the start's to
+ * the end's; and where a force of 0 acts. */
+static inline bool world_forces_are_finite(const laconic_input *start, const laconic_input *middle,
+                                           const laconic_input *end) {
+    const real force = LACONIC_WITH_WORLD_FORCE ? middle->world_force_N[0] + middle->world_force_N[1] : R(0);
+    const real places = world_force_place(start) + world_force_place(middle) + world_force_place(end);
+    return zero_if_finite(force + places) == R(0);
+}
+
+laconic_status laconic_step_sampled(const laconic_model *model, const laconic_integrator *integrator,
+                                    laconic_state *state, const laconic_input *start, const laconic_input *middle,
+                                    const laconic_input *end) {
+    laconic_load load[3];
+    const laconic_loads loads = {&load[0], &load[1], &load[2], false};
+    if (!world_forces_are_finite(start, middle, end) || !heading_has_room(&state->heading)) return LACONIC_OVERFLOW;
+    laconic_load_of(&load[0], model, start);
+    laconic_load_of(&load[1], model, middle);
+    laconic_load_of(&load[2], model, end);
+    return integrator->chosen->step(model, integrator, state, &loads);
+}
+
+static laconic_status check_many(const real *numbers, int32_t count, laconic_field field, laconic_refusal *why) {
+    int32_t i;
+    for (i = 0; i < count; i++)
+        if (!is_finite(numbers[i])) return refuse(why, LACONIC_NOT_FINITE, field, i + 1, numbers[i], R(0));
+    return LACONIC_OK;
+}
+
+laconic_status laconic_input_check(const laconic_model *model, const laconic_input *input, laconic_refusal *why) {
+    const int32_t n = model->wheel_count;
+    laconic_status status = check_many(input->voltage_V, n, LACONIC_FIELD_VOLTAGE, why);
+    if (status == LACONIC_OK) status = check_many(input->axle_torque_Nm, n, LACONIC_FIELD_AXLE_TORQUE, why);
+    if (status == LACONIC_OK) status = check_many(input->body_force_N, 2, LACONIC_FIELD_BODY_FORCE, why);
+    if (status == LACONIC_OK && !is_finite(input->body_moment_Nm))
+        status = refuse(why, LACONIC_NOT_FINITE, LACONIC_FIELD_BODY_MOMENT, 0, input->body_moment_Nm, R(0));
+    if (status == LACONIC_OK) status = check_many(input->world_force_N, 2, LACONIC_FIELD_WORLD_FORCE, why);
+    if (status == LACONIC_OK) status = check_many(input->world_force_point_m, 2, LACONIC_FIELD_WORLD_FORCE_POINT, why);
+    return status;
+}
+
+void laconic_step_refusal(laconic_refusal *why, laconic_status status, const laconic_model *model,
+                          const laconic_integrator *integrator, const laconic_state *state, const laconic_input *inputs,
+                          int32_t input_count) {
+    real limit = R(0);
+    int32_t i;
+    if (why == NULL) return;
+    for (i = 0; i < input_count; i++)
+        if (laconic_input_check(model, &inputs[i], why) != LACONIC_OK) return;
+    if (status == LACONIC_STEP_BEYOND_GYROSCOPIC_LIMIT)
+        limit = laconic_largest_stable_step_s(integrator->method, model, state);
+    if (status == LACONIC_STEP_GAINS_ENERGY || status == LACONIC_STEP_SINGULAR) limit = R(0.5) * integrator->step_s;
+    refuse(why, status, LACONIC_FIELD_STEP, 0, integrator->step_s, limit);
 }

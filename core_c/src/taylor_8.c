@@ -3,12 +3,92 @@
  *     (n + 1) ζn+1 = h [ Σj (g·ζj)(ζn−j × w) − diag(r) ζn + bn ].
  * θ follows term by term, and the pose by a quadrature of the same order. Explicit: for large steps of vehicles whose
  * damping is slow beside them, where it is far more exact than anything else of its cost. */
-#include "integrator.h"
-#include "taylor_forcing.h"
-#include "taylor_pose.h"
+#include "step_internals.h"
 
 #define LARGEST_DAMPING R(4.313)  /* h·r: end of the stability interval on the real axis        */
 #define LARGEST_ROTATION R(3.395) /* h·|w||g·ζ|: on the imaginary axis, where free motion turns */
+
+/* -------------------------------------------------------- the motion over one step as a series -- */
+
+#define ORDER 8
+
+/* Coefficients of sⁿ. */
+typedef struct course {
+    vector zeta[ORDER + 1];
+    real yaw[ORDER + 1]; /* g·ζ */
+} course;
+
+static const real inverse[ORDER + 1] = {R(1),       R(1.0 / 2), R(1.0 / 3), R(1.0 / 4), R(1.0 / 5),
+                                        R(1.0 / 6), R(1.0 / 7), R(1.0 / 8), R(1.0 / 9)}; /* 1/(n + 1) */
+
+/* g·ζ is Λ times the yaw rate: this times it is what the heading turns in a step. */
+static inline real turn_of_yaw(const laconic_model *m, real h) { return h / m->yaw_scale; }
+
+/* ---- b as a series: parabolas through the samples, and the heading that turns a force fixed in the world -- */
+
+typedef struct forcing {
+    vector constant[3], cosine[3], sine[3];
+    real heading_cosine[ORDER], heading_sine[ORDER];
+    bool turns;
+} forcing;
+
+static void parabola(vector term[3], const real start[3], const real middle[3], const real end[3]) {
+    const vector half = minus(vec(middle), vec(start)), whole = minus(vec(end), vec(start));
+    term[0] = vec(start);
+    term[1] = minus(scaled(R(4), half), whole);
+    term[2] = scaled(R(2), minus(whole, scaled(R(2), half)));
+}
+
+static forcing forcing_of(const laconic_loads *loads, const laconic_heading *heading) {
+    static const laconic_load still = {{R(0), R(0), R(0)}, {R(0), R(0), R(0)}, {R(0), R(0), R(0)}, false};
+    const laconic_load *at[3] = {loads->start, loads->middle, loads->end};
+    forcing f;
+    direction now;
+    int k;
+    parabola(f.constant, at[0]->constant, at[1]->constant, at[2]->constant);
+    f.turns = LACONIC_WITH_WORLD_FORCE && (at[0]->turns || at[1]->turns || at[2]->turns);
+    if (!f.turns) return f; /* the rest is not looked at */
+    for (k = 0; k < 3; k++)
+        if (!at[k]->turns) at[k] = &still;
+    parabola(f.cosine, at[0]->cosine, at[1]->cosine, at[2]->cosine);
+    parabola(f.sine, at[0]->sine, at[1]->sine, at[2]->sine);
+    now = laconic_direction_of_turn(heading->fraction);
+    f.heading_cosine[0] = now.cosine;
+    f.heading_sine[0] = now.sine;
+    return f;
+}
+
+/* (cos θ)' = −θ' sin θ, (sin θ)' = θ' cos θ, coefficient by coefficient. */
+static void turn_on(forcing *f, const course *c, real turn, int n) {
+    real cosine = R(0), sine = R(0);
+    int j;
+    for (j = 0; j < n; j++) {
+        cosine -= c->yaw[j] * f->heading_sine[n - 1 - j];
+        sine += c->yaw[j] * f->heading_cosine[n - 1 - j];
+    }
+    f->heading_cosine[n] = turn * inverse[n - 1] * cosine;
+    f->heading_sine[n] = turn * inverse[n - 1] * sine;
+}
+
+/* b0: what acts before anything has moved. */
+static vector first_forcing(const forcing *f) {
+    const vector b = f->constant[0];
+    if (!f->turns) return b;
+    return plus(b, plus(scaled(f->heading_cosine[0], f->cosine[0]), scaled(f->heading_sine[0], f->sine[0])));
+}
+
+/* bn for n >= 1, from the coefficients of the motion below n. */
+static vector forcing_term(forcing *f, const course *c, real turn, int n) {
+    vector b = n < 3 ? f->constant[n] : none;
+    int k;
+    if (!f->turns) return b;
+    turn_on(f, c, turn, n);
+    for (k = 0; k < 3 && k <= n; k++)
+        b = plus(b, plus(scaled(f->heading_cosine[n - k], f->cosine[k]), scaled(f->heading_sine[n - k], f->sine[k])));
+    return b;
+}
+
+/* --------------------------------------------------------------------------- the terms of ζ -- */
 
 /* The Jacobian of the rate at the step's start, by rows: of the product of series, and of the damping, it is the part
  * that the newest coefficient takes. */
@@ -70,6 +150,73 @@ RARE void varying_course(course *c, const laconic_model *m, real h, vector start
     keep(c, turned, m, ORDER, zeta);
 }
 
+/* ------------------------------------------------ the pose: a quadrature of the same order -- */
+
+#define NODES 4 /* of Gauss, exact to degree 7 */
+
+static const real node[NODES] = {R(0.069431844202973712388), R(0.33000947820757186760), R(0.66999052179242813240),
+                                 R(0.93056815579702628761)};
+static const real weight[NODES] = {R(0.17392742256872692869), R(0.32607257743127307131), R(0.32607257743127307131),
+                                   R(0.17392742256872692869)};
+
+/* The polynomials: the components of ζ, and ∫ g·ζ ds, divided by s. */
+typedef real (*polynomial)(const course *c, int n);
+
+static inline real zeta_x(const course *c, int n) { return c->zeta[n].x; }
+
+static inline real zeta_y(const course *c, int n) { return c->zeta[n].y; }
+
+static inline real zeta_z(const course *c, int n) { return c->zeta[n].z; }
+
+static inline real mean_yaw(const course *c, int n) { return inverse[n] * c->yaw[n]; }
+
+/* A polynomial at all nodes at once: compilers take them two or four at a time. */
+INLINE void at_nodes(real value[NODES], const course *c, polynomial coefficient) {
+    int n, k;
+    for (k = 0; k < NODES; k++) value[k] = coefficient(c, ORDER);
+    for (n = ORDER - 1; n >= 0; n--)
+        for (k = 0; k < NODES; k++) value[k] = node[k] * value[k] + coefficient(c, n);
+}
+
+/* All at once, too, where they are small. */
+static inline void directions_at_nodes(real cosine[NODES], real sine[NODES], const real angle[NODES]) {
+    real sum = R(0);
+    int k;
+    for (k = 0; k < NODES; k++) sum += magnitude(angle[k]);
+    if (sum <= R(0.78)) {
+        for (k = 0; k < NODES; k++) cosine[k] = poly_cos(angle[k] * angle[k]);
+        for (k = 0; k < NODES; k++) sine[k] = poly_sin(angle[k], angle[k] * angle[k]);
+    } else {
+        for (k = 0; k < NODES; k++) {
+            const direction d = laconic_direction_of_turn(laconic_turn_of_angle(angle[k]));
+            cosine[k] = d.cosine;
+            sine[k] = d.sine;
+        }
+    }
+}
+
+/* In axes at the mid-step heading: ∫ e^{i(θ − θ_mid)} v dt. */
+static inline pose_change quadrature(const course *c, const laconic_model *m, real h, real turn) {
+    const vector forth = vec(m->velocity_of_zeta[0]), left = vec(m->velocity_of_zeta[1]);
+    pose_change moved = {R(0), R(0), turn};
+    const real per_yaw = turn_of_yaw(m, h);
+    real x[NODES], y[NODES], z[NODES], angle[NODES], cosine[NODES], sine[NODES], along[NODES], across[NODES];
+    int k;
+    at_nodes(x, c, zeta_x);
+    at_nodes(y, c, zeta_y);
+    at_nodes(z, c, zeta_z);
+    at_nodes(angle, c, mean_yaw);
+    for (k = 0; k < NODES; k++) angle[k] = per_yaw * node[k] * angle[k] - R(0.5) * turn;
+    directions_at_nodes(cosine, sine, angle);
+    for (k = 0; k < NODES; k++) along[k] = h * weight[k] * (forth.x * x[k] + forth.y * y[k] + forth.z * z[k]);
+    for (k = 0; k < NODES; k++) across[k] = h * weight[k] * (left.x * x[k] + left.y * y[k] + left.z * z[k]);
+    for (k = 0; k < NODES; k++) moved.along_m += cosine[k] * along[k] - sine[k] * across[k];
+    for (k = 0; k < NODES; k++) moved.across_m += sine[k] * along[k] + cosine[k] * across[k];
+    return moved;
+}
+
+/* -------------------------------------------------------------------------------- the step -- */
+
 /* Smallest terms first. */
 static inline increment sum_of_terms(const course *c) {
     increment by = {none, none, none};
@@ -83,11 +230,11 @@ static inline increment sum_of_terms(const course *c) {
     return by;
 }
 
-static laconic_status taylor_step(const laconic_model *model, const laconic_integrator *integrator,
-                                  laconic_state *state, const laconic_loads *loads) {
+static laconic_status taylor_8_step(const laconic_model *model, const laconic_integrator *integrator,
+                                    laconic_state *state, const laconic_loads *loads) {
     const real h = integrator->step_s;
     const vector zeta = zeta_of(state);
-    motion moved = {R(0), R(0), R(0)};
+    pose_change moved = {R(0), R(0), R(0)};
     vector path;
     increment by;
     course c;
@@ -104,8 +251,9 @@ static laconic_status taylor_step(const laconic_model *model, const laconic_inte
     return take(state, by.delta, path, moved);
 }
 
-static laconic_status taylor_prepare(laconic_integrator *integrator, const laconic_model *model, laconic_refusal *why) {
+static laconic_status taylor_8_prepare(laconic_integrator *integrator, const laconic_model *model,
+                                       laconic_refusal *why) {
     return laconic_explicit_limits(integrator, model, LARGEST_DAMPING, LARGEST_ROTATION, why);
 }
 
-const laconic_method laconic_taylor_8 = {"taylor-8", 8, PREPARE(taylor_prepare), taylor_step};
+const laconic_method laconic_taylor_8 = {"taylor-8", 8, PREPARE(taylor_8_prepare), taylor_8_step};

@@ -1,6 +1,8 @@
-#include "exact_flow.h"
+#include "exact_flow.c" /* its turns by large angles are nobody else's business */
 
 #include "stiff.h"
+
+/* ------------------------------------------------------------------------------ second order -- */
 
 static void is_of_second_order_under_everything_that_can_act(void) {
     const laconic_vehicle v = with_motors(three_wheels());
@@ -110,15 +112,15 @@ static void more_turns_in_a_step_than_can_be_counted_are_refused(void) {
 static void a_large_turn_is_cleared_of_what_changes_its_length(void) {
     const vector zeta = {REAL(3), REAL(4), REAL(0)};
     const vector off = {REAL(-6), REAL(0.001), REAL(0)}; /* −3, 4.001: longer than 5 */
-    const vector turned = plus(zeta, laconic_cleared_turn(zeta, off));
+    const vector turned = plus(zeta, cleared_turn(zeta, off));
     ASSERT_NEAR(1e-6, 5.0, sqrt((double)square(turned)));
-    TEST_ASSERT_TRUE(laconic_cleared_turn(none, none).x == 0);
+    TEST_ASSERT_TRUE(cleared_turn(none, none).x == 0);
 }
 
 static void an_angle_beyond_every_number_is_none(void) {
     const real most = LACONIC_REAL_MAX;
-    TEST_ASSERT_FALSE(is_finite(laconic_large_half_angle(most * REAL(2), REAL(1), REAL(1)).denominator));
-    TEST_ASSERT_TRUE(is_finite(laconic_large_half_angle(most, REAL(1), REAL(1)).denominator));
+    TEST_ASSERT_FALSE(is_finite(large_half_angle(most * REAL(2), REAL(1), REAL(1)).denominator));
+    TEST_ASSERT_TRUE(is_finite(large_half_angle(most, REAL(1), REAL(1)).denominator));
 }
 
 static void a_method_that_only_auto_chooses_is_not_prepared(void) {
@@ -126,6 +128,39 @@ static void a_method_that_only_auto_chooses_is_not_prepared(void) {
     laconic_integrator in;
     laconic_refusal why;
     ASSERT_STATUS(LACONIC_METHOD_UNKNOWN, laconic_integrator_prepare(&in, &laconic_auto_slow, &m, REAL(0.1), &why));
+}
+
+/* ------------------------------------------------------------------------------ fourth order -- */
+
+static void is_of_fourth_order_under_everything_that_can_act(void) {
+    const laconic_vehicle v = with_motors(three_wheels());
+    const laconic_input input = every_input();
+    assert_order(&laconic_exact_flow_4, &v, start_with(2, 1, 4), &input, 2.0, EITHER(40, 8), 4);
+}
+
+static void is_of_fourth_order_when_nothing_turns_with_the_world(void) {
+    const laconic_vehicle v = with_motors(mecanum());
+    laconic_input input = every_input();
+    input.world_force_N[0] = input.world_force_N[1] = 0;
+    assert_order(&laconic_exact_flow_4, &v, start_with(2, 1, 4), &input, 1.0, EITHER(40, 3), 4);
+}
+
+static void free_motion_is_exact(void) {
+    const laconic_vehicle v = three_wheels();
+    const laconic_input input = no_input();
+    const errors e = errors_of(&laconic_exact_flow_4, &v, start_with(1, 2, 3), &input, 4.0, 40);
+    TEST_ASSERT_TRUE(e.nu < EITHER(2e-12, 2e-5));
+}
+
+static void energy_and_k_stay_to_rounding_in_the_extrapolated(void) {
+    const laconic_vehicle v = three_wheels();
+    const drift d = free_drift(&laconic_exact_flow_4, &v, 0.05, 10000);
+    TEST_ASSERT_TRUE(d.energy < EITHER(1e-13, 2e-5));
+    TEST_ASSERT_TRUE(d.yaw_integral < EITHER(1e-13, 2e-5));
+}
+
+static void a_step_that_makes_energy_out_of_nothing_is_refused(void) {
+    start_that_gains_energy(&laconic_exact_flow_4, bare_body(), every_input(), 1.0, 10);
 }
 
 int main(void) {
@@ -142,5 +177,10 @@ int main(void) {
     RUN_TEST(a_method_that_only_auto_chooses_is_not_prepared);
     RUN_TEST(numbers_beyond_the_range_are_refused);
     RUN_TEST(more_turns_in_a_step_than_can_be_counted_are_refused);
+    RUN_TEST(is_of_fourth_order_under_everything_that_can_act);
+    RUN_TEST(is_of_fourth_order_when_nothing_turns_with_the_world);
+    RUN_TEST(free_motion_is_exact);
+    RUN_TEST(energy_and_k_stay_to_rounding_in_the_extrapolated);
+    RUN_TEST(a_step_that_makes_energy_out_of_nothing_is_refused);
     return UNITY_END();
 }

@@ -59,13 +59,16 @@ static void rows_are_the_velocity_of_the_wheels_centre(void) {
         const double yaw = nu[2] / BIG_LAMBDA;
         const double vx = RADIUS * nu[0] - yaw * py, vy = RADIUS * nu[1] + yaw * px;
         const double axle = (double)v.wheel[i].axle_rad;
-        real row[3];
+        real row[3], constraint[2][3];
+        laconic_wheel fixed = v.wheel[i];
+        fixed.kind = LACONIC_WHEEL_FIXED;
         laconic_wheel_row(row, &b, &v.wheel[i]);
         ASSERT_NEAR(4 * ROUNDING, (-sin(axle) * vx + cos(axle) * vy) / RADIUS,
                     nu[0] * (double)row[0] + nu[1] * (double)row[1] + nu[2] * (double)row[2]);
-        laconic_lateral_row(row, &b, &v.wheel[i]);
+        TEST_ASSERT_EQUAL_INT(1, laconic_constraint_rows(constraint, &b, &fixed));
         ASSERT_NEAR(4 * ROUNDING, (cos(axle) * vx + sin(axle) * vy) / RADIUS,
-                    nu[0] * (double)row[0] + nu[1] * (double)row[1] + nu[2] * (double)row[2]);
+                    nu[0] * (double)constraint[0][0] + nu[1] * (double)constraint[0][1] +
+                        nu[2] * (double)constraint[0][2]);
     }
 }
 

@@ -1,4 +1,208 @@
-#include "vehicles.h"
+#include "methods.h"
+
+/* -------------------------------------------------------------------------------- velocities -- */
+
+static void velocity_is_r_nu_and_yaw_rate_nu3_over_lambda(void) {
+    const laconic_model m = model_of(mecanum());
+    const laconic_state state = moving(&m, 0.7, -0.4, 1.9);
+    laconic_real nu[3], velocity[2];
+    const laconic_real yaw_rate = laconic_body_velocity(&m, &state, velocity);
+    laconic_nu(&m, &state, nu);
+    ASSERT_NEAR(4 * ROUNDING, 0.7, nu[0]);
+    ASSERT_NEAR(4 * ROUNDING, -0.4, nu[1]);
+    ASSERT_NEAR(4 * ROUNDING, 1.9, nu[2]);
+    ASSERT_NEAR(ROUNDING, RADIUS * 0.7, velocity[0]);
+    ASSERT_NEAR(ROUNDING, RADIUS * -0.4, velocity[1]);
+    ASSERT_NEAR(ROUNDING, 1.9 / BIG_LAMBDA, yaw_rate);
+}
+
+static void a_constrained_vehicle_shows_its_dependent_component(void) {
+    const laconic_model m = model_of(differential_drive());
+    const laconic_state state = moving(&m, -DELTA / BIG_LAMBDA * 2.0, 1.0, 2.0);
+    laconic_real nu[3];
+    laconic_nu(&m, &state, nu);
+    ASSERT_NEAR(2 * ROUNDING, -DELTA / BIG_LAMBDA * 2.0, nu[0]);
+    ASSERT_NEAR(2 * ROUNDING, 1.0, nu[1]);
+    ASSERT_NEAR(2 * ROUNDING, 2.0, nu[2]);
+}
+
+/* -------------------------------------------------------------------------------------- pose -- */
+
+static void the_origin_lies_where_the_heading_puts_it(void) {
+    laconic_vehicle v = three_wheels();
+    laconic_start start = start_with(0, 0, 0);
+    laconic_model m;
+    laconic_state state;
+    laconic_pose pose;
+    double heading;
+    v.com_x_m = REAL(0.13);
+    v.com_y_m = REAL(-0.07);
+    m = model_of(v);
+    start.x_m = REAL(2);
+    start.y_m = REAL(-1);
+    for (heading = -9; heading < 9; heading += 0.77) {
+        start.heading_rad = REAL(heading);
+        state = state_of(&m, start);
+        laconic_pose_of(&pose, &m, &state);
+        ASSERT_NEAR(2 * ROUNDING, 2 - (0.13 * cos(heading) + 0.07 * sin(heading)), pose.origin_x_m);
+        ASSERT_NEAR(2 * ROUNDING, -1 - (0.13 * sin(heading) - 0.07 * cos(heading)), pose.origin_y_m);
+        ASSERT_NEAR(EITHER(1e-14, 4e-6), heading, pose.heading_rad);
+        ASSERT_NEAR(EITHER(1e-14, 4e-6), atan2(sin(heading), cos(heading)), pose.heading_wrapped_rad);
+    }
+}
+
+/* ---------------------------------------------------------------------------------- position -- */
+
+static void it_is_the_pose_to_the_last_bit(void) {
+    laconic_vehicle v = three_wheels();
+    laconic_start start = start_with(1, 2, 3);
+    laconic_model m = model_of(v);
+    laconic_state state;
+    laconic_pose pose;
+    laconic_real x, y, heading;
+    double angle;
+    for (angle = -40; angle < 40; angle += 1.7) {
+        start.x_m = REAL(angle / 3);
+        start.y_m = REAL(-angle);
+        start.heading_rad = REAL(angle);
+        state = state_of(&m, start);
+        laconic_pose_of(&pose, &m, &state);
+        laconic_position(&state, &x, &y, &heading);
+        TEST_ASSERT_TRUE(x == pose.x_m && y == pose.y_m && heading == pose.heading_rad);
+    }
+}
+
+/* ------------------------------------------------------------------------------ wheel speeds -- */
+
+static void wheels_turn_as_xi_says(void) {
+    const laconic_model m = model_of(three_wheels());
+    const laconic_state state = moving(&m, 0.7, -0.4, 1.9);
+    const double expected[3] = {-0.4 + SIGMA * 1.9, 0.4 + SIGMA * 1.9, -0.7 + RHO * 1.9};
+    laconic_real speed[3];
+    laconic_wheel_speeds(&m, &state, speed);
+    ASSERT_NEAR_ALL(4 * ROUNDING, expected, speed, 3);
+}
+
+static void a_wheel_with_its_axle_to_the_right_turns_forward_when_the_vehicle_does(void) {
+    const laconic_model m = model_of(caster());
+    const laconic_state state = moving(&m, 2, 0, 0);
+    laconic_real speed[1];
+    laconic_wheel_speeds(&m, &state, speed);
+    ASSERT_NEAR(ROUNDING, 2, speed[0]);
+}
+
+static void a_locked_wheel_stands(void) {
+    laconic_vehicle v = three_wheels();
+    laconic_model m;
+    laconic_state state;
+    laconic_real speed[3];
+    v.wheel[2].locked = true;
+    m = model_of(v);
+    state = moving(&m, RHO * 3, 1, 3);
+    laconic_wheel_speeds(&m, &state, speed);
+    TEST_ASSERT_EQUAL_DOUBLE(0.0, (double)speed[2]);
+    ASSERT_NEAR(4 * ROUNDING, 1 + SIGMA * 3, speed[0]);
+}
+
+/* ------------------------------------------------------------------------------ wheel angles -- */
+
+static void angles_start_at_zero_and_can_be_set(void) {
+    const laconic_model m = model_of(three_wheels());
+    laconic_state state = moving(&m, 1, 2, 3);
+    const laconic_real wanted[3] = {REAL(0.5), REAL(-40), REAL(1000)};
+    laconic_real angle[3];
+    laconic_wheel_angles(&m, &state, angle);
+    TEST_ASSERT_EACH_EQUAL_DOUBLE(0.0, ((double[3]){(double)angle[0], (double)angle[1], (double)angle[2]}), 3);
+    laconic_wheel_angles_set(&m, &state, wanted);
+    laconic_wheel_angles(&m, &state, angle);
+    ASSERT_NEAR_ALL(0, wanted, angle, 3);
+}
+
+/* Straight ahead at ν = (2, 0, 0) a caster's wheel turns by 2 rad a second. */
+static void angles_grow_with_the_wheels_speed_from_what_they_were_set_to(void) {
+    const laconic_model m = model_of(caster());
+    const laconic_input input = no_input();
+    laconic_state state = moving(&m, 2, 0, 0);
+    const laconic_real wanted[1] = {REAL(10)};
+    laconic_real angle[1];
+    take_steps(&laconic_exact_flow, &m, &state, &input, 0.125, 8);
+    laconic_wheel_angles_set(&m, &state, wanted);
+    take_steps(&laconic_exact_flow, &m, &state, &input, 0.125, 16);
+    laconic_wheel_angles(&m, &state, angle);
+    ASSERT_NEAR(EITHER(1e-14, 4e-6), 14.0, angle[0]);
+}
+
+static void the_angle_of_a_locked_wheel_stays(void) {
+    laconic_vehicle v = three_wheels();
+    const laconic_input input = no_input();
+    const laconic_real wanted[3] = {0, 0, REAL(7)};
+    laconic_real angle[3];
+    laconic_model m;
+    laconic_state state;
+    v.wheel[2].locked = true;
+    m = model_of(v);
+    state = moving(&m, RHO, 1, 1);
+    laconic_wheel_angles_set(&m, &state, wanted);
+    take_steps(&laconic_exact_flow, &m, &state, &input, 0.1, 50);
+    laconic_wheel_angles(&m, &state, angle);
+    TEST_ASSERT_EQUAL_DOUBLE(7.0, (double)angle[2]);
+}
+
+/* ----------------------------------------------------------------------------- wheel torques -- */
+
+static void torque_is_gain_times_voltage_less_damping_plus_what_is_applied(void) {
+    const laconic_model m = model_of(with_motors(three_wheels()));
+    const laconic_state state = moving(&m, 0.7, -0.4, 1.9);
+    const laconic_input input = every_input();
+    laconic_real speed[3], torque[3];
+    int i;
+    laconic_wheel_speeds(&m, &state, speed);
+    laconic_wheel_torques(&m, &state, &input, torque);
+    for (i = 0; i < 3; i++)
+        ASSERT_NEAR(2 * ROUNDING, GAIN * (1.5 - 0.7 * i) - DAMPING * (double)speed[i] + 0.02 * i - 0.03, torque[i]);
+}
+
+static void without_motors_only_the_applied_torque_is_left(void) {
+    const laconic_model m = model_of(three_wheels());
+    const laconic_state state = moving(&m, 0.7, -0.4, 1.9);
+    const laconic_input input = every_input();
+    laconic_real torque[3];
+    laconic_wheel_torques(&m, &state, &input, torque);
+    ASSERT_NEAR(ROUNDING, 0.01, torque[2]);
+}
+
+/* -------------------------------------------------------------- integrals of the free motion -- */
+
+/* ½ M v² + ½ I_S θ'² + Σ ½ J χ'², from physical velocities alone. */
+static void energy_is_that_of_the_moving_masses(laconic_vehicle v, double nu1, double nu2, double nu3) {
+    const laconic_model m = model_of(v);
+    const laconic_state state = moving(&m, nu1, nu2, nu3);
+    const double speed_square = RADIUS * RADIUS * (nu1 * nu1 + nu2 * nu2), yaw = nu3 / BIG_LAMBDA;
+    double energy = 0.5 * MASS * speed_square + 0.5 * 0.225 * yaw * yaw;
+    laconic_real wheel[LACONIC_MAX_WHEELS];
+    int i;
+    laconic_wheel_speeds(&m, &state, wheel);
+    for (i = 0; i < v.wheel_count; i++) energy += 0.5 * 0.009 * (double)wheel[i] * (double)wheel[i];
+    ASSERT_NEAR(8 * ROUNDING, energy, laconic_energy_J(&m, &state));
+}
+
+static void energy_counts_body_and_wheels(void) {
+    energy_is_that_of_the_moving_masses(three_wheels(), 0.7, -0.4, 1.9);
+    energy_is_that_of_the_moving_masses(mecanum(), -0.2, 1.1, 0.3);
+    energy_is_that_of_the_moving_masses(bare_body(), 1, 2, 3);
+    energy_is_that_of_the_moving_masses(caster(), 1, 0, 3);
+    energy_is_that_of_the_moving_masses(differential_drive(), -DELTA / BIG_LAMBDA * 2, 1, 2);
+}
+
+static void the_second_integral_is_the_third_component_of_a_nu(void) {
+    const laconic_model m = model_of(three_wheels());
+    const laconic_state state = moving(&m, 0.7, -0.4, 1.9);
+    const double square = SMALL_LAMBDA * SMALL_LAMBDA;
+    const double expected = -RHO * square * 0.7 + (1 + (2 * SIGMA * SIGMA + RHO * RHO) * square) * 1.9;
+    ASSERT_NEAR(4 * ROUNDING, expected, laconic_yaw_integral(&m, &state));
+}
+
+/* --------------------------------------------------------------------------------------- all -- */
 
 static laconic_refusal why;
 
@@ -31,6 +235,20 @@ static void they_are_what_the_single_functions_give(void) {
 
 int main(void) {
     UNITY_BEGIN();
+    RUN_TEST(velocity_is_r_nu_and_yaw_rate_nu3_over_lambda);
+    RUN_TEST(a_constrained_vehicle_shows_its_dependent_component);
+    RUN_TEST(the_origin_lies_where_the_heading_puts_it);
+    RUN_TEST(it_is_the_pose_to_the_last_bit);
+    RUN_TEST(wheels_turn_as_xi_says);
+    RUN_TEST(a_wheel_with_its_axle_to_the_right_turns_forward_when_the_vehicle_does);
+    RUN_TEST(a_locked_wheel_stands);
+    RUN_TEST(angles_start_at_zero_and_can_be_set);
+    RUN_TEST(angles_grow_with_the_wheels_speed_from_what_they_were_set_to);
+    RUN_TEST(the_angle_of_a_locked_wheel_stays);
+    RUN_TEST(torque_is_gain_times_voltage_less_damping_plus_what_is_applied);
+    RUN_TEST(without_motors_only_the_applied_torque_is_left);
+    RUN_TEST(energy_counts_body_and_wheels);
+    RUN_TEST(the_second_integral_is_the_third_component_of_a_nu);
     RUN_TEST(they_are_what_the_single_functions_give);
     return UNITY_END();
 }

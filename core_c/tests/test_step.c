@@ -1,4 +1,6 @@
-#include "methods.h"
+#include "stiff.h"
+
+/* -------------------------------------------------------------------------------------- held -- */
 
 /* What each method says itself differs; laconic_step_refusal finds the number. */
 static void refuses(const laconic_method *method, const laconic_input *input, laconic_field field, int item) {
@@ -135,6 +137,245 @@ static void the_fastest_turning_there_is_ends_in_a_refusal_never_in_a_jump(void)
     ASSERT_STATUS(EITHER(LACONIC_OVERFLOW, LACONIC_OK), status);
 }
 
+/* ----------------------------------------------------------------------------------- sampled -- */
+
+static void an_input_that_does_not_vary_gives_the_motion_of_a_held_one(void) {
+    const laconic_model m = model_of(with_motors(three_wheels()));
+    const laconic_input input = every_input();
+    int32_t i;
+    for (i = 0; i < LACONIC_METHOD_COUNT; i++) {
+        const laconic_integrator in = integrator_of(laconic_method_by_number(i), &m, 0.02);
+        laconic_state held = moving(&m, 1, 2, 3), sampled = held;
+        laconic_real a[3], b[3];
+        int k;
+        for (k = 0; k < 50; k++) {
+            ASSERT_STATUS(LACONIC_OK, laconic_step(&m, &in, &held, &input));
+            ASSERT_STATUS(LACONIC_OK, laconic_step_sampled(&m, &in, &sampled, &input, &input, &input));
+        }
+        laconic_nu(&m, &held, a);
+        laconic_nu(&m, &sampled, b);
+        ASSERT_NEAR_ALL(EITHER(1e-13, 2e-5), a, b, 3);
+    }
+}
+
+static laconic_input voltage_at(double t) {
+    laconic_input input = no_input();
+    input.voltage_V[0] = REAL(sin(3 * t));
+    input.voltage_V[1] = REAL(-sin(3 * t)); /* straight along η: ν2' = −r ν2 + 2 c1 sin(3t)/(MR² A2) */
+    return input;
+}
+
+static double error_under_a_sine(const laconic_method *method, int steps) {
+    const double square = SMALL_LAMBDA * SMALL_LAMBDA, a2 = 1 + 2 * square, r = 2 * DAMPING / UNIT_INERTIA / a2;
+    const double drive = 2 * GAIN / UNIT_INERTIA / a2, t = 2.0, h = t / steps;
+    const double exact = drive * (r * sin(3 * t) - 3 * cos(3 * t) + 3 * exp(-r * t)) / (r * r + 9);
+    const laconic_model m = model_of(with_motors(three_wheels()));
+    const laconic_integrator in = integrator_of(method, &m, h);
+    laconic_state state = moving(&m, 0, 0, 0);
+    laconic_real nu[3];
+    int i;
+    for (i = 0; i < steps; i++) {
+        const laconic_input start = voltage_at(i * h), middle = voltage_at((i + 0.5) * h),
+                            end = voltage_at((i + 1) * h);
+        ASSERT_STATUS(LACONIC_OK, laconic_step_sampled(&m, &in, &state, &start, &middle, &end));
+    }
+    laconic_nu(&m, &state, nu);
+    return fabs((double)nu[1] - exact);
+}
+
+/* Up to the fourth, which is as far as three samples tell of a step. */
+static void a_sampled_sine_keeps_every_methods_order(void) {
+    int32_t i;
+    for (i = 0; i < LACONIC_METHOD_COUNT; i++) {
+        const laconic_method *method = laconic_method_by_number(i);
+        const int steps = method->order >= 4 ? EITHER(20, 6) : EITHER(50, 20), order = method->order < 4 ? 2 : 4;
+        const double coarse = error_under_a_sine(method, steps), fine = error_under_a_sine(method, 2 * steps);
+        TEST_ASSERT_TRUE_MESSAGE(log2(coarse / fine) > order - 0.4, method->name);
+    }
+}
+
+/* A world force that grows from nothing in the step pushes half as far as one that is there all the time. */
+static void a_world_force_may_begin_or_end_within_a_step(void) {
+    const laconic_model m = model_of(bare_body());
+    laconic_input none = no_input(), half = no_input(), full = no_input();
+    int32_t i;
+    half.world_force_N[0] = REAL(1);
+    full.world_force_N[0] = REAL(2);
+    for (i = 0; i < LACONIC_METHOD_COUNT; i++) {
+        const laconic_integrator in = integrator_of(laconic_method_by_number(i), &m, 0.5);
+        laconic_state growing = moving(&m, 0, 0, 0), fading = growing;
+        laconic_real nu[3];
+        ASSERT_STATUS(LACONIC_OK, laconic_step_sampled(&m, &in, &growing, &none, &half, &full));
+        ASSERT_STATUS(LACONIC_OK, laconic_step_sampled(&m, &in, &fading, &full, &half, &none));
+        laconic_nu(&m, &growing, nu);
+        ASSERT_NEAR(EITHER(1e-14, 1e-6), 1.0 * 0.5 / (MASS * RADIUS), nu[0]);
+        laconic_nu(&m, &fading, nu);
+        ASSERT_NEAR(EITHER(1e-14, 1e-6), 1.0 * 0.5 / (MASS * RADIUS), nu[0]);
+    }
+}
+
+/* Simpson's rule over three samples: what fourth order sees of a push; second order sees the ends. */
+static void a_world_force_at_one_sample_alone_counts_by_its_weight(void) {
+    const laconic_model m = model_of(bare_body());
+    laconic_input none = no_input(), push = no_input();
+    const double whole = 0.5 * 2.0 / (MASS * RADIUS);
+    int32_t i;
+    push.world_force_N[0] = REAL(2);
+    for (i = 0; i < LACONIC_METHOD_COUNT; i++) {
+        const laconic_method *method = laconic_method_by_number(i);
+        const laconic_integrator in = integrator_of(method, &m, 0.5);
+        laconic_state early = moving(&m, 3000, 0, 0), late = early, between = early;
+        laconic_real nu[3];
+        ASSERT_STATUS(LACONIC_OK, laconic_step_sampled(&m, &in, &early, &push, &none, &none));
+        ASSERT_STATUS(LACONIC_OK, laconic_step_sampled(&m, &in, &late, &none, &none, &push));
+        ASSERT_STATUS(LACONIC_OK, laconic_step_sampled(&m, &in, &between, &none, &push, &none));
+        laconic_nu(&m, &early, nu);
+        ASSERT_NEAR(EITHER(1e-10, 1e-3), 3000 + whole * (method->order >= 4 ? 1.0 / 6 : 0.5), nu[0]);
+        laconic_nu(&m, &late, nu);
+        ASSERT_NEAR(EITHER(1e-10, 1e-3), 3000 + whole * (method->order >= 4 ? 1.0 / 6 : 0.5), nu[0]);
+        laconic_nu(&m, &between, nu);
+        ASSERT_NEAR(EITHER(1e-10, 1e-3), 3000 + whole * (method->order >= 4 ? 4.0 / 6 : 0.0), nu[0]);
+    }
+}
+
+static laconic_input with_number(laconic_input input, int which, laconic_real number) {
+    laconic_real *const places[] = {&input.voltage_V[1],           &input.axle_torque_Nm[2],
+                                    &input.body_force_N[0],        &input.body_moment_Nm,
+                                    &input.world_force_N[0],       &input.world_force_N[1],
+                                    &input.world_force_point_m[0], &input.world_force_point_m[1]};
+    *places[which] = number;
+    return input;
+}
+
+#define PLACES 8
+
+static void refuses_at_each_sample(const laconic_method *method, const laconic_model *m, laconic_input good,
+                                   laconic_input bad) {
+    const laconic_integrator in = integrator_of(method, m, 0.02);
+    int k;
+    for (k = 0; k < 3; k++) {
+        laconic_input at[3] = {good, good, good};
+        laconic_state state = moving(m, 1, 2, 3), before = state;
+        at[k] = bad;
+        TEST_ASSERT_NOT_EQUAL(LACONIC_OK, laconic_step_sampled(m, &in, &state, &at[0], &at[1], &at[2]));
+        TEST_ASSERT_EQUAL_MEMORY(&before, &state, sizeof state);
+    }
+}
+
+static void a_number_that_is_none_at_any_sample_is_refused(void) {
+    const laconic_model slow = model_of(with_motors(three_wheels())), fast = model_of(stiff());
+    const laconic_real numbers[] = {NOT_A_NUMBER, INFINITE, -INFINITE};
+    const laconic_input rest = no_input(), all = every_input();
+    int which, i;
+    int32_t number;
+    for (number = 0; number < LACONIC_METHOD_COUNT; number++)
+        for (which = 0; which < PLACES; which++)
+            for (i = 0; i < 3; i++) {
+                const laconic_method *method = laconic_method_by_number(number);
+                refuses_at_each_sample(method, &slow, rest, with_number(rest, which, numbers[i]));
+                refuses_at_each_sample(method, &slow, all, with_number(all, which, numbers[i]));
+                if (method == &laconic_auto) /* which then chooses another */
+                    refuses_at_each_sample(method, &fast, all, with_number(all, which, numbers[i]));
+            }
+}
+
+/* ------------------------------------------------------------------------------------ inputs -- */
+
+static laconic_model model;
+static laconic_refusal why;
+
+static void a_finite_input_is_accepted(void) {
+    const laconic_input input = every_input();
+    ASSERT_STATUS(LACONIC_OK, laconic_input_check(&model, &input, &why));
+}
+
+static void what_lies_beyond_the_last_wheel_is_not_read_input(void) {
+    laconic_input input = every_input();
+    input.voltage_V[3] = input.axle_torque_Nm[3] = NOT_A_NUMBER;
+    ASSERT_STATUS(LACONIC_OK, laconic_input_check(&model, &input, &why));
+}
+
+static void every_number_that_is_not_finite_is_named(void) {
+    laconic_input good = every_input(), in;
+#define REFUSES(member, bad, field, item) \
+    in = good; \
+    in.member = bad; \
+    ASSERT_REFUSED(LACONIC_NOT_FINITE, field, item, laconic_input_check(&model, &in, &why), why)
+    REFUSES(voltage_V[2], NOT_A_NUMBER, LACONIC_FIELD_VOLTAGE, 3);
+    REFUSES(axle_torque_Nm[0], INFINITE, LACONIC_FIELD_AXLE_TORQUE, 1);
+    REFUSES(body_force_N[1], -INFINITE, LACONIC_FIELD_BODY_FORCE, 2);
+    REFUSES(body_moment_Nm, NOT_A_NUMBER, LACONIC_FIELD_BODY_MOMENT, 0);
+    REFUSES(world_force_N[0], INFINITE, LACONIC_FIELD_WORLD_FORCE, 1);
+    REFUSES(world_force_point_m[1], NOT_A_NUMBER, LACONIC_FIELD_WORLD_FORCE_POINT, 2);
+#undef REFUSES
+}
+
+/* ---------------------------------------------------------------------------------- refusals -- */
+
+static laconic_status explain(const laconic_method *method, laconic_status status, const laconic_input *input) {
+    const laconic_model m = model_of(three_wheels());
+    const laconic_integrator in = integrator_of(method, &m, 0.1);
+    const laconic_state state = moving(&m, 1, 1, 500);
+    laconic_step_refusal(&why, status, &m, &in, &state, input, 1);
+    return why.status;
+}
+
+static void an_input_that_is_not_finite_is_found(void) {
+    laconic_input input = no_input();
+    input.axle_torque_Nm[1] = INFINITE;
+    ASSERT_REFUSED(LACONIC_NOT_FINITE, LACONIC_FIELD_AXLE_TORQUE, 2, explain(&laconic_rk4, LACONIC_NOT_FINITE, &input),
+                   why);
+}
+
+static void every_sample_of_a_step_is_looked_at(void) {
+    const laconic_model m = model_of(with_motors(three_wheels()));
+    int32_t i, k;
+    for (i = 0; i < LACONIC_METHOD_COUNT; i++)
+        for (k = 0; k < 3; k++) {
+            const laconic_integrator in = integrator_of(laconic_method_by_number(i), &m, 0.1);
+            laconic_input at[3] = {every_input(), every_input(), every_input()};
+            laconic_state state = moving(&m, 1, 2, 3), before = state;
+            laconic_status status;
+            at[k].voltage_V[2 - k] = NOT_A_NUMBER;
+            status = laconic_step_sampled(&m, &in, &state, &at[0], &at[1], &at[2]);
+            TEST_ASSERT_NOT_EQUAL(LACONIC_OK, status);
+            TEST_ASSERT_EQUAL_MEMORY(&before, &state, sizeof state);
+            laconic_step_refusal(&why, status, &m, &in, &state, at, 3);
+            ASSERT_REFUSED(LACONIC_NOT_FINITE, LACONIC_FIELD_VOLTAGE, 3 - k, why.status, why);
+        }
+}
+
+static void turning_too_fast_comes_with_the_largest_step(void) {
+    const laconic_model m = model_of(three_wheels());
+    const laconic_state state = moving(&m, 1, 1, 500);
+    const laconic_input input = no_input();
+    ASSERT_REFUSED(LACONIC_STEP_BEYOND_GYROSCOPIC_LIMIT, LACONIC_FIELD_STEP, 0,
+                   explain(&laconic_rk4, LACONIC_STEP_BEYOND_GYROSCOPIC_LIMIT, &input), why);
+    TEST_ASSERT_EQUAL_DOUBLE((double)laconic_largest_stable_step_s(&laconic_rk4, &m, &state), (double)why.limit);
+    ASSERT_NEAR(ROUNDING, 0.1, why.value);
+}
+
+static void other_failures_come_with_half_the_step(void) {
+    const laconic_input input = no_input();
+    ASSERT_REFUSED(LACONIC_STEP_GAINS_ENERGY, LACONIC_FIELD_STEP, 0,
+                   explain(&laconic_exponential_kahan, LACONIC_STEP_GAINS_ENERGY, &input), why);
+    ASSERT_NEAR(ROUNDING, 0.05, why.limit);
+    ASSERT_REFUSED(LACONIC_STEP_SINGULAR, LACONIC_FIELD_STEP, 0,
+                   explain(&laconic_exponential_kahan, LACONIC_STEP_SINGULAR, &input), why);
+    ASSERT_NEAR(ROUNDING, 0.05, why.limit);
+    ASSERT_REFUSED(LACONIC_OVERFLOW, LACONIC_FIELD_STEP, 0, explain(&laconic_exact_flow, LACONIC_OVERFLOW, &input),
+                   why);
+    TEST_ASSERT_EQUAL_DOUBLE(0.0, (double)why.limit);
+}
+
+static void nobody_need_ask_why(void) {
+    const laconic_model m = model_of(three_wheels());
+    const laconic_integrator in = integrator_of(&laconic_rk4, &m, 0.1);
+    const laconic_state state = moving(&m, 1, 1, 500);
+    const laconic_input input = no_input();
+    laconic_step_refusal(NULL, LACONIC_OVERFLOW, &m, &in, &state, &input, 1);
+}
+
 int main(void) {
     UNITY_BEGIN();
     RUN_TEST(an_input_that_is_not_finite_leaves_the_state_as_it_was_whatever_the_method);
@@ -143,5 +384,19 @@ int main(void) {
     RUN_TEST(a_free_puck_goes_straight);
     RUN_TEST(a_heading_of_more_turns_than_can_be_counted_is_refused_whatever_the_method);
     RUN_TEST(the_fastest_turning_there_is_ends_in_a_refusal_never_in_a_jump);
+    RUN_TEST(an_input_that_does_not_vary_gives_the_motion_of_a_held_one);
+    RUN_TEST(a_sampled_sine_keeps_every_methods_order);
+    RUN_TEST(a_world_force_may_begin_or_end_within_a_step);
+    RUN_TEST(a_world_force_at_one_sample_alone_counts_by_its_weight);
+    RUN_TEST(a_number_that_is_none_at_any_sample_is_refused);
+    model = model_of(three_wheels());
+    RUN_TEST(a_finite_input_is_accepted);
+    RUN_TEST(what_lies_beyond_the_last_wheel_is_not_read_input);
+    RUN_TEST(every_number_that_is_not_finite_is_named);
+    RUN_TEST(an_input_that_is_not_finite_is_found);
+    RUN_TEST(every_sample_of_a_step_is_looked_at);
+    RUN_TEST(turning_too_fast_comes_with_the_largest_step);
+    RUN_TEST(other_failures_come_with_half_the_step);
+    RUN_TEST(nobody_need_ask_why);
     return UNITY_END();
 }

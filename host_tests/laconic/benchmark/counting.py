@@ -105,7 +105,7 @@ def size_of_step(workshop: Workshop, target: Target, variant: Variant) -> Size:
     folder, files = workshop.files(variant)
     graph = CallGraph.read(workshop.archive(target, variant, folder).parent)
     entry = "laconic_step" if variant.scene.drive().is_held else "laconic_step_sampled"
-    method = [name for stem in files.method_files for name in method_functions(stem, graph)]
+    method = [title for title in graph.stack if title.rpartition(":")[2] in files.method_steps]
     reached = graph.reached(entry, method)
     text, data, bss = _sections(target, image)
     tables = sum(symbols.get(name, 0) for name in ("laconic_scene_model", "laconic_scene_integrator"))
@@ -133,11 +133,6 @@ def _symbols(target: Target, image: Path) -> dict[str, int]:
 def _sections(target: Target, image: Path) -> tuple[int, int, int]:
     numbers = run_tool([target.tool("size"), str(image)]).splitlines()[1].split()
     return int(numbers[0]), int(numbers[1]), int(numbers[2])
-
-
-def method_functions(method: str, graph: CallGraph) -> list[str]:
-    """The functions that a step may reach through the method's pointer."""
-    return [title for title in graph.stack if title.endswith("_step") and title.startswith(f"{method}.c:")]
 
 
 NODE = re.compile(r'node: \{ title: "([^"]+)" label: "([^"]*)"')

@@ -43,7 +43,7 @@ class Trimmed:
 
     needs: Needs
     method: str
-    method_files: tuple[str, ...]  # stems of the core's files that one step runs through
+    method_steps: tuple[str, ...]  # the core's functions that a step may reach through the method's pointer
     header: str
     table_h: str
     table_c: str
@@ -86,18 +86,18 @@ def trimmed(scene: Scene, real: str) -> Trimmed:
     plant = scene.plant(core)
     method = plant.chosen_method
     needs = needs_of(scene)
-    return Trimmed(needs, method, method_files(scene, method), header_of(scene, real, needs),
+    return Trimmed(needs, method, method_steps(scene, method), header_of(scene, real, needs),
                    table_header(scene, real), tables(core, plant, scene))
 
 
-def method_files(scene: Scene, chosen: str) -> tuple[str, ...]:
-    """The method's own file; for auto the pair it chose and the two of the pair."""
-    stem = chosen.replace("-", "_")
+def method_steps(scene: Scene, chosen: str) -> tuple[str, ...]:
+    """The method's own step function; for auto that of the pair it chose and those that the pair calls."""
+    own = f"{chosen.replace('-', '_')}_step"
     if scene.run.method != "auto":
-        return (stem,)
+        return (own,)
     if chosen == "exact-flow-4":
-        return ("auto_slow", stem, "taylor_8", "exact_flow")
-    return ("auto_fast", stem, "exact_flow")
+        return ("auto_slow_step", own, "taylor_8_step", "exact_flow_step")
+    return ("auto_fast_step", own, "exact_flow_step")
 
 
 def header_of(scene: Scene, real: str, needs: Needs) -> str:
@@ -150,7 +150,7 @@ def tables(core: Core, plant: Plant, scene: Scene) -> str:
 
 
 def method_symbols(core: Core, integrator: Any) -> dict[int, str]:
-    """Address of a method → its C name. What auto chose is a pair of methods with one file of its own."""
+    """Address of a method → its C name. What auto chose is a pair of methods with a name of its own."""
     found = {_address(core, core.method(name)): f"&laconic_{name.replace('-', '_')}" for name in core.method_names}
     pair = "slow" if core.text(integrator.chosen.name) == "exact-flow-4" else "fast"
     found.setdefault(_address(core, integrator.chosen), f"&laconic_auto_{pair}")

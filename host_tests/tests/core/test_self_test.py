@@ -9,7 +9,7 @@ from pathlib import Path
 import pytest
 
 CORE = Path(__file__).parents[3] / "core_c"
-SOURCES = [CORE / "src/self_test.c", CORE / "src/arithmetic_text.c", CORE / "tests/self_test_under.c"]
+SOURCES = [CORE / "src/self_test.c", CORE / "tests/self_test_under.c"]
 COMPILERS = [name for name in ("gcc", "clang") if shutil.which(name)]
 SOUND = ["-std=c99", "-O2", "-ffp-contract=off", "-fno-tree-slp-vectorize"]
 SILENCED = {  # as a compiler that defines no macro: the options of the refusals below

@@ -20,6 +20,44 @@ def test_every_source_file_of_the_core_has_its_test_file():
     assert sources - tests == set()
 
 
+def lines_of_code(path):
+    text = re.sub(r"/\*.*?\*/", "", path.read_text(encoding="utf-8"), flags=re.DOTALL)
+    return sum(1 for line in text.splitlines() if line.strip())
+
+
+def test_no_source_file_of_the_core_has_more_than_400_lines_of_code():
+    counts = {path.name: lines_of_code(path) for path in (ROOT / "core_c/src").iterdir()}
+    assert {name: count for name, count in counts.items() if count > 400} == {}
+
+
+def test_every_header_of_the_core_serves_more_than_one_file():
+    texts = [path.read_text(encoding="utf-8") for path in (ROOT / "core_c/src").iterdir()]
+    users = {path.name: sum(f'#include "{path.name}"' in text for text in texts)
+             for path in (ROOT / "core_c/src").glob("*.h")}
+    assert {name: count for name, count in users.items() if count < 2} == {}
+
+
+@pytest.mark.skipif(shutil.which("gcc") is None, reason="needs gcc")
+def test_a_program_that_steps_with_one_method_holds_no_other_and_no_refusals(tmp_path):
+    (tmp_path / "main.c").write_text("""#include "laconic/laconic.h"
+        static laconic_plant p;
+        static laconic_input held;
+        int main(void) {
+            p.integrator.chosen = &laconic_rk4;
+            return laconic_step(&p.model, &p.integrator, &p.state, &held);
+        }
+        """)
+    sections = ["-ffunction-sections", "-fdata-sections", "-Wl,--gc-sections"]
+    sources = sorted(map(str, (ROOT / "core_c/src").glob("*.c")))
+    subprocess.run(["gcc", "-std=c99", *sections, "-DLACONIC_WITH_PREPARE=0", f"-I{ROOT / 'core_c/include'}", "main.c",
+                    *sources, "-o", "program"], cwd=tmp_path, check=True)
+    names = subprocess.run(["nm", "program"], cwd=tmp_path, capture_output=True, text=True, check=True).stdout
+    functions = set(re.findall(r" [tT] (\w+)", names))
+    assert {"laconic_step", "rk4_step"} <= functions
+    others = {name for name in functions if name.endswith("_step")} - {"laconic_step", "rk4_step"}
+    assert others | functions & {"laconic_step_refusal", "laconic_message", "laconic_prepare", "laconic_phi"} == set()
+
+
 @pytest.mark.parametrize("path", sorted((ROOT / "core_c/tests").glob("test_*.c")), ids=lambda path: path.stem)
 def test_every_test_that_is_written_is_run(path):
     text = path.read_text(encoding="utf-8")

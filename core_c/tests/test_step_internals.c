@@ -1,6 +1,8 @@
-#include "load.h"
+#include "step_internals.h"
 
 #include "vehicles.h"
+
+/* --------------------------------------------------------------------------------- what acts -- */
 
 /* b = Gᵀ(Ξᵀ(c1 U + T) + w)/(M R²), written out with the matrices for people. */
 static void expected_load(double b[3], const laconic_vehicle *v, const laconic_input *in, double heading) {
@@ -88,11 +90,85 @@ static void either_component_of_a_world_force_turns_and_so_does_nan(void) {
     TEST_ASSERT_TRUE(load.turns);
 }
 
+/* -------------------------------------------------- a force fixed in the world, at a heading -- */
+
+/* b = constant + cos θ · cosine + sin θ · sine, at the heading of a state and an angle further on. */
+static void a_force_fixed_in_the_world_turns_against_the_body(void) {
+    const laconic_model m = model_of(three_wheels());
+    const laconic_input input = every_input();
+    const double headings[] = {-2.5, -0.3, 0.0, 0.9, 3.0}, offsets[] = {-0.7, 0.0, 1.3};
+    laconic_load load;
+    size_t i, j;
+    laconic_load_of(&load, &m, &input);
+    for (i = 0; i < 5; i++)
+        for (j = 0; j < 3; j++) {
+            laconic_start start = start_with(0, 0, 0);
+            const double angle = headings[i] + offsets[j];
+            laconic_state state;
+            vector b;
+            start.heading_rad = REAL(headings[i]);
+            state = state_of(&m, start);
+            b = laconic_turned_load(&load, &state.heading, REAL(offsets[j]));
+            ASSERT_NEAR(EITHER(1e-13, 5e-5),
+                        (double)load.constant[0] + cos(angle) * (double)load.cosine[0] +
+                            sin(angle) * (double)load.sine[0],
+                        b.x);
+            ASSERT_NEAR(EITHER(1e-13, 5e-5),
+                        (double)load.constant[2] + cos(angle) * (double)load.cosine[2] +
+                            sin(angle) * (double)load.sine[2],
+                        b.z);
+        }
+}
+
+/* ------------------------------------------------------------------------------------ energy -- */
+
+/* ζ goes from 1 to 1.2 along the first axis in 0.1 s: |ζ|² grows by 0.44, which takes a mean drive of 2. */
+static bool growth_is_driven_by(real start, real middle, real end, real grown) {
+    const laconic_model m = model_of(bare_body());
+    const increment by = {{grown, 0, 0}, {REAL(1) + grown / 2, 0, 0}, {grown, 0, 0}};
+    laconic_load load[3];
+    const laconic_loads loads = {&load[0], &load[1], &load[2], false};
+    laconic_state state;
+    memset(load, 0, sizeof load);
+    memset(&state, 0, sizeof state);
+    state.zeta[0].value = REAL(1);
+    load[0].constant[0] = start;
+    load[1].constant[0] = middle;
+    load[2].constant[0] = end;
+    return passive(&m, &state, REAL(0.1), &loads, (vector){REAL(1), 0, 0}, by);
+}
+
+static void growth_that_the_drive_pays_for_is_allowed(void) {
+    TEST_ASSERT_TRUE(growth_is_driven_by(REAL(2), REAL(2), REAL(2), REAL(0.2)));
+    TEST_ASSERT_TRUE(growth_is_driven_by(REAL(0), REAL(2), REAL(4), REAL(0.2)));
+    TEST_ASSERT_TRUE(growth_is_driven_by(REAL(5), REAL(5), REAL(5), REAL(0.2)));
+}
+
+static void growth_out_of_nothing_is_not(void) {
+    TEST_ASSERT_FALSE(growth_is_driven_by(REAL(0), REAL(0), REAL(0), REAL(0.2)));
+    TEST_ASSERT_FALSE(growth_is_driven_by(REAL(-2), REAL(-2), REAL(-2), REAL(0.2)));
+    TEST_ASSERT_FALSE(growth_is_driven_by(REAL(1), REAL(1), REAL(1), REAL(0.2)));
+}
+
+static void a_loss_is_always_allowed(void) {
+    TEST_ASSERT_TRUE(growth_is_driven_by(REAL(0), REAL(0), REAL(0), REAL(-0.2)));
+}
+
+static void nan_is_not_passive(void) {
+    TEST_ASSERT_FALSE(growth_is_driven_by(REAL(2), REAL(2), REAL(2), NOT_A_NUMBER));
+    TEST_ASSERT_FALSE(growth_is_driven_by(NOT_A_NUMBER, REAL(2), REAL(2), REAL(0.2)));
+}
+
 int main(void) {
     UNITY_BEGIN();
     RUN_TEST(everything_that_acts_is_in_the_load);
     RUN_TEST(without_a_world_force_the_load_does_not_turn);
     RUN_TEST(every_part_of_a_wrench_counts_alone);
     RUN_TEST(either_component_of_a_world_force_turns_and_so_does_nan);
+    RUN_TEST(a_force_fixed_in_the_world_turns_against_the_body);
+    RUN_TEST(growth_that_the_drive_pays_for_is_allowed);
+    RUN_TEST(growth_out_of_nothing_is_not);
+    RUN_TEST(a_loss_is_always_allowed);
+    RUN_TEST(nan_is_not_passive);
     return UNITY_END();
 }

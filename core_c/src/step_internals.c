@@ -1,6 +1,14 @@
-#include "passivity.h"
+/* The parts of a step that are not inlined into the methods. */
+#include "step_internals.h"
 
-#include "zeta.h"
+void laconic_load_of(laconic_load *load, const laconic_model *model, const laconic_input *input) {
+    load_of(load, model, input);
+}
+
+vector laconic_turned_load(const laconic_load *load, const laconic_heading *heading, real offset_rad) {
+    const laconic_turn turn = (laconic_turn)(heading->fraction + laconic_turn_of_angle(offset_rad));
+    return load_at(load, laconic_direction_of_turn(turn));
+}
 
 /* ∫b·ζ over the step, divided by h: b through its values at start, middle and end, ζ by mean and slope. */
 static real work(vector start, vector middle, vector end, const increment *by) {

@@ -1,0 +1,410 @@
+/* What the methods share, in the order in which a step uses it: ζ and its rate, what acts on it, what a method finds out,
+ * the energy it may gain, the next state; then what the symmetric methods share, and what methods need to be prepared.
+ * Inlined into each method, so that a step is one function and nothing travels through memory. */
+#ifndef LACONIC_STEP_INTERNALS_H
+#define LACONIC_STEP_INTERNALS_H
+
+#include "heading.h"
+#include "polynomials.h"
+#include "wrench.h"
+
+/* ------------------------------------------------------------- ζ, and equation (4.7) in it -- */
+
+/* Beyond this a square would leave the range within a few steps: no vehicle moves like that. */
+#ifdef LACONIC_SINGLE
+#define LARGEST_SPEED R(1e9)
+#else
+#define LARGEST_SPEED R(1e77)
+#endif
+
+static inline vector zeta_of(const laconic_state *state) {
+    const vector zeta = {state->zeta[0].value, state->zeta[1].value, state->zeta[2].value};
+    return zeta;
+}
+
+/* ν → ζ: as GᵀAG = 1 and G diagonalises A, ζ = diag(1 + λ²x) Gᵀ ν, the projection onto the allowed motions. */
+static inline vector zeta_of_nu(const laconic_model *m, const real nu[3]) {
+    const vector first = scaled(nu[0], vec(m->nu_of_zeta[0])), second = scaled(nu[1], vec(m->nu_of_zeta[1]));
+    return times(vec(m->inertia), plus(plus(first, second), scaled(nu[2], vec(m->nu_of_zeta[2]))));
+}
+
+static inline void set_zeta(laconic_state *state, vector zeta) {
+    state->zeta[0] = sum_of(zeta.x);
+    state->zeta[1] = sum_of(zeta.y);
+    state->zeta[2] = sum_of(zeta.z);
+}
+
+/* diag(r)ζ, what the motors' damping takes off ζ'. */
+static inline vector damping(const laconic_model *m, vector z) {
+    return LACONIC_WITH_DAMPING ? times(vec(m->decay_per_s), z) : none;
+}
+
+/* ζ' = (g·ζ)(ζ×w) − diag(r)ζ + b: equation (4.7) in the coordinates of laconic_model. */
+static inline vector zeta_rate(const laconic_model *m, vector z, vector b) {
+    const vector turning = scaled(dot(vec(m->nu_of_zeta[2]), z), cross(z, vec(m->gyro)));
+    return plus(minus(turning, damping(m, z)), b);
+}
+
+/* Free motion turns faster than an explicit method bears. */
+static inline bool beyond_rotation(const laconic_model *m, const laconic_integrator *integrator, vector zeta) {
+    return magnitude(dot(vec(m->nu_of_zeta[2]), zeta)) > integrator->gyro_limit;
+}
+
+/* ----------------------------------------------------------------- what acts: input → b -- */
+
+/* Anything that acts at all. */
+#define LACONIC_WITH_LOAD \
+    (LACONIC_WITH_VOLTAGE || LACONIC_WITH_AXLE_TORQUE || LACONIC_WITH_BODY_WRENCH || LACONIC_WITH_WORLD_FORCE)
+
+/* Ξᵀ(c1 U + T)/(M R²): power of a wheel's torque is torque · χ'. */
+static inline vector b_of_torques(const laconic_model *m, const laconic_input *in) {
+    vector b = none;
+    int32_t i;
+    for (i = 0; i < LACONIC_WHEELS(m); i++) {
+        const real motor = LACONIC_WITH_VOLTAGE ? m->voltage_scale * in->voltage_V[i] : R(0);
+        const real torque = LACONIC_WITH_AXLE_TORQUE ? motor + m->torque_scale * in->axle_torque_Nm[i] : motor;
+        b = plus(b, scaled(torque, vec(m->wheel_of_zeta[i])));
+    }
+    return b;
+}
+
+/* A world force F at the body point r: F_ξ = c F_X + s F_Y, F_η = −s F_X + c F_Y, τ = r_ξ F_η − r_η F_ξ. */
+static inline void add_world_force(laconic_load *load, const laconic_model *m, const laconic_input *in) {
+    const real fx = m->torque_scale * in->world_force_N[0], fy = m->torque_scale * in->world_force_N[1];
+    const real *r = in->world_force_point_m;
+    const vector yaw = vec(m->yaw_rate_of_zeta);
+    const vector along = minus(vec(m->velocity_of_zeta[0]), scaled(r[1], yaw));
+    const vector across = plus(vec(m->velocity_of_zeta[1]), scaled(r[0], yaw));
+    put(load->cosine, plus(scaled(fx, along), scaled(fy, across)));
+    put(load->sine, minus(scaled(fy, along), scaled(fx, across)));
+}
+
+/* What does not act costs nothing. Written so that NaN counts as acting and is noticed in the step. */
+static inline bool acts(real a, real b, real c) { return !(a == R(0) && b == R(0) && c == R(0)); }
+
+/* A force of 0 is not looked at, but where it acts must be a place all the same. NaN or infinity where it is none. */
+static inline real world_force_place(const laconic_input *input) {
+    return LACONIC_WITH_WORLD_FORCE ? input->world_force_point_m[0] + input->world_force_point_m[1] : R(0);
+}
+
+static inline void load_of(laconic_load *load, const laconic_model *model, const laconic_input *input) {
+    vector b = none;
+    if (LACONIC_WITH_VOLTAGE || LACONIC_WITH_AXLE_TORQUE) b = b_of_torques(model, input);
+    if (LACONIC_WITH_BODY_WRENCH && acts(input->body_force_N[0], input->body_force_N[1], input->body_moment_Nm))
+        b = plus(b,
+                 b_of_wrench(model, (wrench){input->body_force_N[0], input->body_force_N[1], input->body_moment_Nm}));
+    put(load->constant, b);
+    load->turns = LACONIC_WITH_WORLD_FORCE && acts(input->world_force_N[0], input->world_force_N[1], R(0));
+    if (LACONIC_WITH_WORLD_FORCE && load->turns) add_world_force(load, model, input);
+}
+
+/* b of a load that turns. */
+static inline vector load_at(const laconic_load *load, direction heading) {
+    return plus(vec(load->constant),
+                plus(scaled(heading.cosine, vec(load->cosine)), scaled(heading.sine, vec(load->sine))));
+}
+
+/* The same at the heading of a state, turned on by an angle. */
+vector laconic_turned_load(const laconic_load *load, const laconic_heading *heading, real offset_rad);
+
+/* b of any load; the heading is looked at only where a force turns with it. */
+static inline vector load_now(const laconic_load *load, const laconic_heading *heading, real offset_rad) {
+    if (LACONIC_WITH_WORLD_FORCE && load->turns) return laconic_turned_load(load, heading, offset_rad);
+    return vec(load->constant);
+}
+
+/* Known beforehand, it leaves of the code below a base step and nothing else. */
+static inline bool steady_over(const laconic_loads *loads) {
+    return (!LACONIC_WITH_WORLD_FORCE && !LACONIC_WITH_SAMPLED_INPUT) || loads->steady;
+}
+
+/* ---------------------------------------------------- what a method finds out about a step -- */
+
+/* What a method finds out about one step. */
+typedef struct increment {
+    vector delta; /* ζ(t+h) − ζ(t)                                                            */
+    vector mean;  /* mean of ζ over the step                                                  */
+    vector slope; /* 12/h² times the first moment of ζ about the middle of the step: = delta
+                     where ζ changes evenly, 0 where it jumps at once                         */
+} increment;
+
+/* Relative to |ζ|² + |ζ⁺|². What an accurate step gains by its truncation error is far below. */
+#define ENERGY_TOLERANCE R(0.0009765625) /* 2⁻¹⁰ */
+
+/* What `passive` asks, with all that the loads do over the step. */
+bool laconic_growth_is_driven(const laconic_model *model, const laconic_state *state, real step_s,
+                              const laconic_loads *loads, const increment *by);
+
+/* Exactly: |ζ⁺|² − |ζ|² = 2∫(b·ζ − ζ·diag(r)ζ)dt <= 2∫ b·ζ dt. Tried first as if b were held; false for NaN, and
+ * in free motion for infinity. */
+INLINE bool passive(const laconic_model *model, const laconic_state *state, real step_s, const laconic_loads *loads,
+                    vector zeta, increment by) {
+    const real before = square(zeta), after = square(plus(zeta, by.delta));
+    const real excess = (R(1) - ENERGY_TOLERANCE) * after - (R(1) + ENERGY_TOLERANCE) * before;
+    if (excess <= R(0)) return true;
+    if (excess <= R(2) * step_s * dot(vec(loads->start->constant), by.mean)) return true;
+    if (steady_over(loads)) return false;
+    return laconic_growth_is_driven(model, state, step_s, loads, &by);
+}
+
+/* What to say of a step that is not. */
+static inline laconic_status not_passive(increment by) {
+    return is_finite(size(by.delta)) ? LACONIC_STEP_GAINS_ENERGY : LACONIC_STEP_SINGULAR;
+}
+
+/* ---------------------------------------------------------------------- the next state -- */
+
+typedef struct pose_change { /* over one step */
+    real along_m, across_m;  /* displacement in axes at the mid-step heading */
+    real turn_rad;
+} pose_change;
+
+/* sinc α and ½ j₁(α), α half the turn of the step. */
+static inline void chord_factors(real *sinc, real *half_j1, real alpha) {
+    const real z = alpha * alpha;
+    if (z <= CHORD_SMALL) {
+        *sinc = poly_sinc(z);
+        *half_j1 = R(0.5) * alpha * poly_j1(z);
+    } else {
+        const direction d = direction_of_turn(laconic_turn_of_angle(alpha));
+        *sinc = d.sine / alpha;
+        *half_j1 = R(0.5) * (*sinc - d.cosine) / alpha;
+    }
+}
+
+/* Pose is a quadrature of ζ. Mean and first moment of ζ over the step, which every method delivers at its own
+ * order, fix it to fourth order with a single sine and cosine, as complex numbers in body axes:
+ * ∫ e^{iθ} v dt = e^{iθ_mid} { sinc α · h v̄ + i [½ j₁(α) h Δv − (h Δω/12) h v̄] } */
+INLINE pose_change displacement(const laconic_model *m, vector path, vector bend) {
+    const vector along = vec(m->velocity_of_zeta[0]), across = vec(m->velocity_of_zeta[1]);
+    const vector yaw_rate = vec(m->yaw_rate_of_zeta);
+    const real turn = dot(yaw_rate, path), yaw_change = dot(yaw_rate, bend) * (R(1) / R(12));
+    const real forth = dot(along, path), left = dot(across, path);
+    real sinc, half_j1, aside_forth, aside_left;
+    chord_factors(&sinc, &half_j1, R(0.5) * turn);
+    aside_forth = half_j1 * dot(along, bend) - yaw_change * forth;
+    aside_left = half_j1 * dot(across, bend) - yaw_change * left;
+    return (pose_change){sinc * forth - aside_left, sinc * left + aside_forth, turn};
+}
+
+INLINE void advance_pose(laconic_state *s, pose_change moved) {
+    const direction middle = direction_of_turn(heading_advance(&s->heading, moved.turn_rad));
+    sum_add(&s->x_m, middle.cosine * moved.along_m - middle.sine * moved.across_m);
+    sum_add(&s->y_m, middle.sine * moved.along_m + middle.cosine * moved.across_m);
+}
+
+static inline void add(laconic_sum sums[3], vector v) {
+    sum_add(&sums[0], v.x);
+    sum_add(&sums[1], v.y);
+    sum_add(&sums[2], v.z);
+}
+
+/* Far below what has decayed for good, but so that its square is still a normal number: processors are many times
+ * slower with subnormal ones. Added and taken away again, it leaves nothing of what is smaller. */
+#ifdef LACONIC_SINGLE
+#define AT_REST R(1e-18)
+#else
+#define AT_REST R(1e-150)
+#endif
+
+static inline void settle(laconic_sum sums[3]) {
+    sums[0].value = (sums[0].value + AT_REST) - AT_REST;
+    sums[1].value = (sums[1].value + AT_REST) - AT_REST;
+    sums[2].value = (sums[2].value + AT_REST) - AT_REST;
+}
+
+/* Looked at first: model and step are bounded when they are prepared, so with ζ in range all that follows is finite. */
+static inline bool in_range(vector zeta, vector delta) {
+    return square(zeta) + square(plus(zeta, delta)) <= LARGEST_SPEED * LARGEST_SPEED;
+}
+
+/* Takes the step, or refuses and leaves the state as it was. */
+INLINE laconic_status take(laconic_state *state, vector delta, vector path, pose_change moved) {
+    if (!(magnitude(moved.turn_rad) + magnitude(moved.along_m) + magnitude(moved.across_m) < LARGEST_TURN_RAD))
+        return LACONIC_OVERFLOW;
+    add(state->zeta, delta);
+    settle(state->zeta);
+    if (LACONIC_WITH_WHEEL_ANGLES) add(state->travel, path);
+    if (LACONIC_WITH_POSE) advance_pose(state, moved);
+    return LACONIC_OK;
+}
+
+INLINE laconic_status advance(laconic_state *state, const laconic_model *model, real step_s, vector zeta,
+                              increment by) {
+    const vector path = scaled(step_s, by.mean);
+    pose_change moved = {R(0), R(0), R(0)};
+    if (!in_range(zeta, by.delta)) return LACONIC_OVERFLOW;
+    if (LACONIC_WITH_POSE) moved = displacement(model, path, scaled(step_s, by.slope));
+    return take(state, by.delta, path, moved);
+}
+
+/* For methods that can go wrong: no energy out of nothing, and no increment that is none. */
+INLINE laconic_status advance_if_passive(laconic_state *state, const laconic_model *model, real step_s,
+                                         const laconic_loads *loads, vector zeta, increment by) {
+    if (!passive(model, state, step_s, loads, zeta, by)) return not_passive(by);
+    return advance(state, model, step_s, zeta, by);
+}
+
+/* -------------------------------------------- symmetric base steps and their extrapolation -- */
+
+/* b over one base step: start + change·s + curve·s(s − 1), s from 0 to 1. */
+typedef struct drive {
+    vector start, change, curve;
+    bool varies; /* false: change and curve are 0 and not looked at */
+} drive;
+
+/* A second-order symmetric step of size step_s/2^level from ζ under b. */
+typedef increment (*base_step)(const laconic_model *model, const laconic_integrator *integrator, int level, vector zeta,
+                               const drive *b);
+
+/* What a b that varies adds to one that does not. */
+static inline vector response(const real ramp[3], const real bend[3], const drive *b) {
+    return plus(times(vec(ramp), b->change), times(vec(bend), b->curve));
+}
+
+/* The constant b that leads to the same ζ at the end. */
+INLINE vector constant_like(const drive *b, const laconic_decay *d) {
+    return b->varies ? plus(b->start, response(d->mean, d->bend, b)) : b->start;
+}
+
+/* Mean and first moment of ζ over the step from its increment: exact for damping and drive alone, and
+ * symmetric, so that they gain two orders by extrapolation as the increment does. */
+INLINE increment increment_of(const laconic_decay *d, vector zeta, vector delta, const drive *b) {
+    increment by;
+    by.delta = delta;
+    by.mean = plus(zeta, times(vec(d->mean), delta));
+    by.slope = times(vec(d->slope), delta);
+    if (b->varies) {
+        by.mean = plus(by.mean, response(d->mean_ramp, d->mean_bend, b));
+        by.slope = plus(by.slope, response(d->slope_ramp, d->slope_bend, b));
+    }
+    return by;
+}
+
+/* (4 · two half steps − one full step)/3: the base's error has only even powers of h, so this is fourth order.
+ * The slope of the two halves together is 3/2 of the height between their means, plus a quarter of each own. */
+INLINE increment combine(increment whole, increment first, increment second) {
+    const real third = R(1) / R(3);
+    const vector delta = plus(first.delta, second.delta);
+    const vector mean = scaled(R(0.5), plus(first.mean, second.mean));
+    increment by;
+    by.delta = plus(delta, scaled(third, minus(delta, whole.delta)));
+    by.mean = plus(mean, scaled(third, minus(mean, whole.mean)));
+    by.slope = plus(scaled(R(1.5), minus(second.mean, first.mean)), scaled(R(0.25), plus(first.slope, second.slope)));
+    return by;
+}
+
+/* ------------------------------------------------------------------------- b held ------- */
+
+static inline drive held(const laconic_loads *loads) { return (drive){vec(loads->start->constant), none, none, false}; }
+
+/* The base step itself as a method. */
+INLINE increment single(base_step base, const laconic_model *m, const laconic_integrator *integrator, vector zeta,
+                        const laconic_loads *loads) {
+    const drive b = held(loads);
+    return base(m, integrator, 0, zeta, &b);
+}
+
+/* Written out, so that what the whole step and its first half share is computed once. */
+INLINE increment extrapolated(base_step base, const laconic_model *m, const laconic_integrator *integrator, vector zeta,
+                              const laconic_loads *loads) {
+    const drive b = held(loads);
+    const increment whole = base(m, integrator, 0, zeta, &b), first = base(m, integrator, 1, zeta, &b);
+    return combine(whole, first, base(m, integrator, 1, plus(zeta, first.delta), &b));
+}
+
+/* ------------------------------------------------------------------------- b varies ----- */
+
+/* A base step within a step: its size, where it begins, what acts. */
+typedef struct substep {
+    int level;
+    vector zeta;
+    real turned_rad; /* since the step's start, for forces fixed in the world */
+    const laconic_load *start, *end;
+} substep;
+
+/* 2 (b₀ + b₁ − 2 b½): the parabola through three samples; its half bends a quarter as much. Of a force fixed in
+ * the world it sees nothing: that one is followed by its heading. */
+static inline vector curve_of(const laconic_loads *loads, int level) {
+    const vector ends = plus(vec(loads->start->constant), vec(loads->end->constant));
+    return scaled(level == 0 ? R(2) : R(0.5), minus(ends, scaled(R(2), vec(loads->middle->constant))));
+}
+
+/* b at the substep's start, and how it goes on as far as the inputs say. */
+static inline drive drive_of(const laconic_heading *heading, const laconic_loads *loads, const substep *p) {
+    drive b;
+    b.varies = true;
+    b.start = load_now(p->start, heading, p->turned_rad);
+    b.change = minus(vec(p->end->constant), b.start);
+    b.curve = curve_of(loads, p->level);
+    return b;
+}
+
+/* One base step; zeta and turned_rad move on to its end. A force fixed in the world makes b depend on the heading
+ * there, which the step itself decides: iterate. Three rounds leave an error of h⁷, so symmetry, which extrapolation
+ * rests on, is kept. */
+INLINE increment take_substep(base_step base, const laconic_model *m, const laconic_integrator *integrator,
+                              const laconic_heading *heading, const laconic_loads *loads, substep *p) {
+    const bool turns = LACONIC_WITH_WORLD_FORCE && (p->start->turns || p->end->turns);
+    const real h = integrator->step_s * (p->level == 0 ? R(1) : R(0.5)), before = p->turned_rad;
+    drive b = drive_of(heading, loads, p);
+    increment by;
+    int rounds = turns ? 3 : 1;
+    p->turned_rad = before + h * dot(vec(m->yaw_rate_of_zeta), p->zeta);
+    do {
+        if (turns) b.change = minus(load_now(p->end, heading, p->turned_rad), b.start);
+        by = base(m, integrator, p->level, p->zeta, &b);
+        p->turned_rad = before + h * dot(vec(m->yaw_rate_of_zeta), by.mean);
+    } while (--rounds > 0);
+    p->zeta = plus(p->zeta, by.delta);
+    return by;
+}
+
+/* The base step itself as a method. */
+INLINE increment single_varying(base_step base, const laconic_model *m, const laconic_integrator *integrator,
+                                const laconic_state *state, const laconic_loads *loads) {
+    substep whole = {0, zeta_of(state), R(0), loads->start, loads->end};
+    return take_substep(base, m, integrator, &state->heading, loads, &whole);
+}
+
+/* A loop, so that the base is inlined once: the halves follow each other from where the whole began. */
+INLINE increment extrapolated_varying(base_step base, const laconic_model *m, const laconic_integrator *integrator,
+                                      const laconic_state *state, const laconic_loads *loads) {
+    increment parts[3];
+    substep p = {0, zeta_of(state), R(0), loads->start, loads->end};
+    int i;
+    for (i = 0; i < 3; i++) {
+        parts[i] = take_substep(base, m, integrator, &state->heading, loads, &p);
+        if (i == 0) {
+            p = (substep){1, zeta_of(state), R(0), loads->start, loads->middle};
+        } else {
+            p.start = loads->middle;
+            p.end = loads->end;
+        }
+    }
+    return combine(parts[0], parts[1], parts[2]);
+}
+
+/* ------------------------------------------------------- when a method is prepared -- */
+
+/* A build whose integrator is a prepared constant leaves preparation out. */
+#define PREPARE(function) (LACONIC_WITH_PREPARE ? (function) : NULL)
+
+#define SMALLEST_STEP_S (R(8) * LACONIC_REAL_MIN) /* one over a quarter of it is still a number */
+#define LARGEST_STEP_S R(1e9)                     /* thirty years: beyond, products with speeds would leave the range */
+
+/* max r_k */
+real laconic_fastest_decay(const laconic_model *model);
+
+/* Sets how fast a motion an explicit method bears, from where its stability ends on the real and on the imaginary
+ * axis; refuses a step that is too large for the damping. */
+laconic_status laconic_explicit_limits(laconic_integrator *integrator, const laconic_model *model, real largest_damping,
+                                       real largest_rotation, laconic_refusal *why);
+
+/* Factors of an exponential step of size h: decay[level] for h = step_s / 2^level. */
+void laconic_decay_of(laconic_decay *decay, const laconic_model *model, real h);
+
+/* Fills decay[0] … decay[levels − 1] of an integrator. */
+void laconic_decay_levels(laconic_integrator *integrator, const laconic_model *model, int levels);
+
+#endif

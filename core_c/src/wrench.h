@@ -1,0 +1,44 @@
+/* Outer forces as a wrench in body axes, its change along a variation, and b of it. */
+#ifndef LACONIC_WRENCH_H
+#define LACONIC_WRENCH_H
+
+#include "elementary.h"
+#include "vector.h"
+
+typedef struct wrench { /* F_ξ, F_η, τ about S */
+    real along, across, moment;
+} wrench;
+
+/* b of a wrench, by its power F·v_S + τ θ'. */
+static inline vector b_of_wrench(const laconic_model *m, wrench w) {
+    const vector along = scaled(w.along, vec(m->velocity_of_zeta[0]));
+    const vector across = scaled(w.across, vec(m->velocity_of_zeta[1]));
+    return scaled(m->torque_scale, plus(along, plus(across, scaled(w.moment, vec(m->yaw_rate_of_zeta)))));
+}
+
+/* The world force turned into body axes. */
+static inline wrench world_force_seen(const laconic_input *in, direction heading) {
+    const real *f = in->world_force_N, *r = in->world_force_point_m;
+    const real along = heading.cosine * f[0] + heading.sine * f[1];
+    const real across = heading.cosine * f[1] - heading.sine * f[0];
+    return (wrench){along, across, r[0] * across - r[1] * along};
+}
+
+/* All outer forces of an input. */
+static inline wrench wrench_of(const laconic_input *in, direction heading) {
+    const wrench w = world_force_seen(in, heading);
+    return (wrench){in->body_force_N[0] + w.along, in->body_force_N[1] + w.across, in->body_moment_Nm + w.moment};
+}
+
+/* Its change: a body that turns by dθ sees a force that is fixed in the world turn by −dθ. */
+static inline wrench wrench_change(const laconic_input *in, direction heading, const laconic_variation *by) {
+    const real *r = in->world_force_point_m, *dr = by->input.world_force_point_m;
+    const wrench force = world_force_seen(in, heading), change = world_force_seen(&by->input, heading);
+    const real along = change.along + by->heading_rad * force.across;
+    const real across = change.across - by->heading_rad * force.along;
+    return (wrench){by->input.body_force_N[0] + along, by->input.body_force_N[1] + across,
+                    by->input.body_moment_Nm + (dr[0] * force.across - dr[1] * force.along) +
+                        (r[0] * across - r[1] * along)};
+}
+
+#endif
