@@ -45,7 +45,7 @@ static inline bool heading_has_room(const laconic_heading *heading) {
 }
 
 /* Turns on by an angle and returns the heading half-way, as a turn: where the mid-step pose looks. */
-static inline laconic_turn heading_advance(laconic_heading *heading, real angle_rad) {
+INLINE laconic_turn heading_advance(laconic_heading *heading, real angle_rad) {
     const real turns = angle_rad * R(0.1591549430918953358); /* 1/2π */
     const signed_turn whole = (signed_turn)turns;
     const real wanted = (turns - (real)whole) * HALF_TURN + heading->rest;

@@ -11,9 +11,17 @@ typedef laconic_real real;
 /* For the parts of a step, which compilers find too large to inline: a vector passed through memory stalls. */
 #if defined(__GNUC__) && !defined(LACONIC_PLAIN_INLINE) /* coverage counts each function once */
 #define INLINE static inline __attribute__((always_inline))
-#define RARE static __attribute__((noinline)) /* and what would only be in the way of the usual case */
 #else
 #define INLINE static inline
+#endif
+
+/* For what would only be in the way of the usual case. gcc treats a noipa function as code of another file: it keeps
+ * fewer registers busy around a call that it knows nothing about, which is faster where the call is not taken. */
+#if defined(__GNUC__) && !defined(__clang__) && __GNUC__ >= 8
+#define RARE static __attribute__((noipa))
+#elif defined(__GNUC__)
+#define RARE static __attribute__((noinline))
+#else
 #define RARE static
 #endif
 

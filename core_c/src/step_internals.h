@@ -108,7 +108,7 @@ static inline vector load_at(const laconic_load *load, direction heading) {
 vector laconic_turned_load(const laconic_load *load, const laconic_heading *heading, real offset_rad);
 
 /* b of any load; the heading is looked at only where a force turns with it. */
-static inline vector load_now(const laconic_load *load, const laconic_heading *heading, real offset_rad) {
+INLINE vector load_now(const laconic_load *load, const laconic_heading *heading, real offset_rad) {
     if (LACONIC_WITH_WORLD_FORCE && load->turns) return laconic_turned_load(load, heading, offset_rad);
     return vec(load->constant);
 }
@@ -160,7 +160,7 @@ typedef struct pose_change { /* over one step */
 } pose_change;
 
 /* sinc α and ½ j₁(α), α half the turn of the step. */
-static inline void chord_factors(real *sinc, real *half_j1, real alpha) {
+INLINE void chord_factors(real *sinc, real *half_j1, real alpha) {
     const real z = alpha * alpha;
     if (z <= CHORD_SMALL) {
         *sinc = poly_sinc(z);
@@ -193,7 +193,7 @@ INLINE void advance_pose(laconic_state *s, pose_change moved) {
     sum_add(&s->y_m, middle.sine * moved.along_m + middle.cosine * moved.across_m);
 }
 
-static inline void add(laconic_sum sums[3], vector v) {
+INLINE void add(laconic_sum sums[3], vector v) {
     sum_add(&sums[0], v.x);
     sum_add(&sums[1], v.y);
     sum_add(&sums[2], v.z);
@@ -325,13 +325,13 @@ typedef struct substep {
 
 /* 2 (b₀ + b₁ − 2 b½): the parabola through three samples; its half bends a quarter as much. Of a force fixed in
  * the world it sees nothing: that one is followed by its heading. */
-static inline vector curve_of(const laconic_loads *loads, int level) {
+INLINE vector curve_of(const laconic_loads *loads, int level) {
     const vector ends = plus(vec(loads->start->constant), vec(loads->end->constant));
     return scaled(level == 0 ? R(2) : R(0.5), minus(ends, scaled(R(2), vec(loads->middle->constant))));
 }
 
 /* b at the substep's start, and how it goes on as far as the inputs say. */
-static inline drive drive_of(const laconic_heading *heading, const laconic_loads *loads, const substep *p) {
+INLINE drive drive_of(const laconic_heading *heading, const laconic_loads *loads, const substep *p) {
     drive b;
     b.varies = true;
     b.start = load_now(p->start, heading, p->turned_rad);
