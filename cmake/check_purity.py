@@ -18,9 +18,9 @@ SCENE_MACRO = "LACONIC_SCENE_HEADER"  # the one include whose name a build choos
 COMPILER_MAY_CALL = {"memcpy", "memmove", "memset", "_GLOBAL_OFFSET_TABLE_"}
 SOFT_FLOAT = re.compile(r"__(aeabi_|[a-z]+(?:[sdt]f|[sd]i)\d?[a-z0-9]*$)")  # libgcc's arithmetic, without an FPU
 # Allowed, with plain C beside them: |x| as one instruction (never a call, which the objects show), and inlining
-# asked for or forbidden
+# asked for or forbidden (noipa: with all that gcc concludes from one function about another)
 FORBIDDEN_WORDS = re.compile(
-    r"\b(?:__builtin_(?!fabsf?\b)\w+|__attribute__(?!\(\((?:always_inline|noinline)\)\))|asm|__asm__|_Pragma|static_assert)\b"
+    r"\b(?:__builtin_(?!fabsf?\b)\w+|__attribute__(?!\(\((?:always_inline|noinline|noipa)\)\))|asm|__asm__|_Pragma|static_assert)\b"
     r"|#\s*pragma"
 )
 WRITABLE = re.compile(r"^\s*\d+\s+(\.(?:data|bss|tdata|tbss|sdata|sbss|lbss|ldata)\S*|COMMON)\s+([0-9a-f]+)\s")
