@@ -30,7 +30,7 @@ RARE half_angle large_half_angle(real z, real along, real across) {
 }
 
 /* |ζ + δ|² − |ζ|² = δ·(2ζ + δ) should be 0: take the excess off along ζ + δ. */
-RARE vector cleared_turn(vector zeta, vector delta) {
+RARE_AND_OPAQUE vector cleared_turn(vector zeta, vector delta) {
     const vector end = plus(zeta, delta);
     const real excess = dot(delta, plus(zeta, end)), length = square(end);
     if (!(length > R(0))) return delta;

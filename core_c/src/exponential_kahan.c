@@ -42,8 +42,8 @@ INLINE matrix implicit_matrix(vector inverse_gain, vector g, vector w, real yaw,
  * is at the step's end hangs on q there. So q, too, goes linearly from q(ζ,ζ) to q(ζ⁺,ζ⁺): beside its mean it
  * is worth the constant (κ − ½)·(their difference), and joins the change of b for mean and slope of ζ. Without
  * it a stiff vehicle lags by h/r times the change of q; with it by (h/r)². */
-static inline vector follow(drive *b, const laconic_model *m, const laconic_decay *d, const solver *s, vector zeta,
-                            vector delta) {
+INLINE vector follow_inlined(drive *b, const laconic_model *m, const laconic_decay *d, const solver *s, vector zeta,
+                             vector delta) {
     const vector g = vec(m->nu_of_zeta[2]), w = vec(m->gyro), end = plus(zeta, delta);
     const vector change = minus(scaled(dot(g, end), cross(end, w)), scaled(dot(g, zeta), cross(zeta, w)));
     const vector half = {R(0.5), R(0.5), R(0.5)};
@@ -53,9 +53,17 @@ static inline vector follow(drive *b, const laconic_model *m, const laconic_deca
     return plus(delta, solve(s, times(minus(vec(d->mean), half), change)));
 }
 
+typedef vector (*follower)(drive *b, const laconic_model *m, const laconic_decay *d, const solver *s, vector zeta,
+                           vector delta);
+
+static vector follow(drive *b, const laconic_model *m, const laconic_decay *d, const solver *s, vector zeta,
+                     vector delta) {
+    return follow_inlined(b, m, d, s, zeta, delta);
+}
+
 /* ζ⁺ = e^{hL}ζ + hφ1(hL)[q(ζ,ζ⁺) + b], written for the increment Δ = ζ⁺ − ζ: (D⁻¹ − Q)Δ = ζ'(ζ). */
-INLINE increment kahan_base(const laconic_model *m, const laconic_integrator *integrator, int level, vector zeta,
-                            const drive *b) {
+INLINE increment kahan_increment(const laconic_model *m, const laconic_integrator *integrator, int level, vector zeta,
+                                 const drive *b, follower following) {
     const laconic_decay *d = &integrator->decay[level];
     const vector g = vec(m->nu_of_zeta[2]), w = vec(m->gyro), inverse_gain = vec(d->inverse_gain);
     const real yaw = dot(g, zeta);
@@ -67,12 +75,24 @@ INLINE increment kahan_base(const laconic_model *m, const laconic_integrator *in
     increment by;
     if (integrator->stiff) {
         drive followed = *b;
-        const vector following = follow(&followed, m, d, &s, zeta, delta);
-        by = increment_of(d, zeta, following, &followed);
+        const vector longer = following(&followed, m, d, &s, zeta, delta);
+        by = increment_of(d, zeta, longer, &followed);
     } else {
         by = increment_of(d, zeta, delta, b);
     }
     return by;
+}
+
+/* For programs with several base steps. */
+INLINE increment kahan_base(const laconic_model *m, const laconic_integrator *integrator, int level, vector zeta,
+                            const drive *b) {
+    return kahan_increment(m, integrator, level, zeta, b, follow);
+}
+
+/* Smaller where a program has but one: that of the second-order method where nothing varies. */
+INLINE increment only_kahan_base(const laconic_model *m, const laconic_integrator *integrator, int level, vector zeta,
+                                 const drive *b) {
+    return kahan_increment(m, integrator, level, zeta, b, follow_inlined);
 }
 
 /* ------------------------------------------------------------------------- second order -- */
@@ -85,8 +105,9 @@ RARE increment kahan_varying(const laconic_model *model, const laconic_integrato
 static laconic_status exponential_kahan_step(const laconic_model *model, const laconic_integrator *integrator,
                                              laconic_state *state, const laconic_loads *loads) {
     const vector zeta = zeta_of(state);
-    const increment by = steady_over(loads) ? single(kahan_base, model, integrator, zeta, loads)
-                                            : kahan_varying(model, integrator, state, loads);
+    const increment by = steady_over(loads)
+                             ? single(ONLY_STEADY ? only_kahan_base : kahan_base, model, integrator, zeta, loads)
+                             : kahan_varying(model, integrator, state, loads);
     return advance_if_passive(state, model, integrator->step_s, loads, zeta, by);
 }
 

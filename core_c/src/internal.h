@@ -15,14 +15,19 @@ typedef laconic_real real;
 #define INLINE static inline
 #endif
 
-/* For what would only be in the way of the usual case. gcc treats a noipa function as code of another file: it keeps
- * fewer registers busy around a call that it knows nothing about, which is faster where the call is not taken. */
-#if defined(__GNUC__) && !defined(__clang__) && __GNUC__ >= 8
-#define RARE static __attribute__((noipa))
-#elif defined(__GNUC__)
+/* For what would only be in the way of the usual case. */
+#if defined(__GNUC__) && !defined(LACONIC_PLAIN_INLINE)
 #define RARE static __attribute__((noinline))
 #else
 #define RARE static
+#endif
+
+/* The same, and gcc concludes nothing from it about its callers, as if it stood in another file: where the usual case is
+ * short of registers, it is faster when the call beside it is an ordinary one. */
+#if defined(__GNUC__) && !defined(__clang__) && __GNUC__ >= 8
+#define RARE_AND_OPAQUE static __attribute__((noipa))
+#else
+#define RARE_AND_OPAQUE RARE
 #endif
 
 /* |x| as an instruction: x < 0 ? -x : x would have to mind the sign of zero. */

@@ -32,7 +32,7 @@ static inline real poly_sinc(real z) {
 static inline real poly_j1(real z) { return R(0.33333329701864815124) + z * R(-0.033314737524190506486); }
 
 /* tan √z/√z, either sign of z: error 2e-10 */
-static inline real poly_tangent(real z) {
+INLINE real poly_tangent(real z) {
     return R(1) + z * (R(0.3333333331151476837) + z * (R(0.13333775436886876984) + z * R(0.053971311619314569029)));
 }
 
@@ -71,7 +71,7 @@ static inline real poly_j1(real z) {
 }
 
 /* tan √z/√z, either sign of z: error 5e-18 */
-static inline real poly_tangent(real z) {
+INLINE real poly_tangent(real z) {
     const real z2 = z * z; /* in pairs: half the latency of Horner's rule */
     return (R(1) + z * R(0.33333333333333561896)) +
            z2 * ((R(0.13333333333333602852) + z * R(0.053968253892745705214)) +

@@ -114,9 +114,9 @@ INLINE vector load_now(const laconic_load *load, const laconic_heading *heading,
 }
 
 /* Known beforehand, it leaves of the code below a base step and nothing else. */
-static inline bool steady_over(const laconic_loads *loads) {
-    return (!LACONIC_WITH_WORLD_FORCE && !LACONIC_WITH_SAMPLED_INPUT) || loads->steady;
-}
+#define ONLY_STEADY (!LACONIC_WITH_WORLD_FORCE && !LACONIC_WITH_SAMPLED_INPUT)
+
+static inline bool steady_over(const laconic_loads *loads) { return ONLY_STEADY || loads->steady; }
 
 /* ---------------------------------------------------- what a method finds out about a step -- */
 
