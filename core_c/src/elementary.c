@@ -1,3 +1,4 @@
+/* The core's own square root, exponential, sine and cosine, and the φ functions of exponential steps. */
 #include "elementary.h"
 
 #include "heading.h"

@@ -1,3 +1,4 @@
+/* A checked vehicle → the body with its payload, rows of Ξ and constraint rows. */
 #include "geometry.h"
 
 /* Parallel axes: two bodies at distance d add m₁m₂/(m₁+m₂) d² to their own inertias. */

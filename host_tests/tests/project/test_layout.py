@@ -20,16 +20,6 @@ def test_every_source_file_of_the_core_has_its_test_file():
     assert sources - tests == set()
 
 
-def lines_of_code(path):
-    text = re.sub(r"/\*.*?\*/", "", path.read_text(encoding="utf-8"), flags=re.DOTALL)
-    return sum(1 for line in text.splitlines() if line.strip())
-
-
-def test_no_source_file_of_the_core_has_more_than_400_lines_of_code():
-    counts = {path.name: lines_of_code(path) for path in (ROOT / "core_c/src").iterdir()}
-    assert {name: count for name, count in counts.items() if count > 400} == {}
-
-
 def test_every_header_of_the_core_serves_more_than_one_file():
     texts = [path.read_text(encoding="utf-8") for path in (ROOT / "core_c/src").iterdir()]
     users = {path.name: sum(f'#include "{path.name}"' in text for text in texts)
@@ -90,7 +80,7 @@ def test_the_fmu_decides_in_one_place_whether_a_number_is_finite():
 
 
 C_COMMENT = re.compile(r"/\*.*?\*/|//[^\n]*", re.DOTALL)
-PARTS = ("cmake", "core_c/bench", "core_c/cortex_m", "core_c/include", "firmware_stub", "fmu", "host_tests")
+PARTS = ("cmake", "core_c/bench", "core_c/cortex_m", "core_c/include", "core_c/src", "firmware_stub", "fmu", "host_tests")
 SOURCES = [path for part in PARTS for path in (ROOT / part).rglob("*")
            if path.suffix in (".c", ".h", ".py", ".cmake") or path.name == "CMakeLists.txt"]
 
