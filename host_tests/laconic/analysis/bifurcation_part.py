@@ -50,8 +50,7 @@ def _no_diagram(subject: Subject, wishes: Wishes) -> str | None:
     inputs_zero = not any(subject.inputs.values())
     if inputs_zero and wishes.straight is None and wishes.parameter in (None, "input_scale"):
         return ("No bifurcation diagram: all inputs are zero at this instant; choose another with --at, or give a "
-                "straight "
-                "motion with --straight NU1 NU2.")
+                "straight motion with --straight NU1 NU2.")
     return None
 
 

@@ -85,6 +85,23 @@ def _core_coasting(subject: Subject, motion: FreeMotion, times: np.ndarray) -> d
             "core_path_m": np.array(path)}
 
 
+def _kind_in_words(subject: Subject, free: FreePart) -> str:
+    """What becomes of the motion."""
+    motion = free.motion
+    if motion.kind == "straight":
+        return "It does not turn: straight uniform motion for ever."
+    if motion.kind == "uniform":
+        return "It turns at a constant rate: nothing couples turning to the motion of the centre of mass."
+    if motion.kind == "asymptotic":
+        return ("It tends to straight uniform motion: the yaw rate dies away and never changes its sign; it tends to "
+                f"{motion_text(subject, motion.limit_nu())}.")
+    periodic = f"It is periodic in ν with period {motion.period_s:.6g} s"
+    if free.portrait is None:
+        return f"{periodic}; ν3 is constant, ν turns evenly against the body."
+    petal_deg = np.degrees(2.0 * np.pi / motion.petal_rate)
+    return f"{periodic}: the path has petals, one every {petal_deg:.2f}° of heading."
+
+
 def _tell_free(result: Study, free: FreePart, wishes: Wishes) -> None:
     motion, subject = free.motion, result.subject
     if wishes.start:
@@ -92,28 +109,15 @@ def _tell_free(result: Study, free: FreePart, wishes: Wishes) -> None:
     else:
         cut = f"with the motors cut off at {free.since_s:.4g} s, the run's fastest moment"
         where = cut if free.since_s else "from the scene's start"
-    result.say("free", f"Free motion {where}: {motion_text(subject, motion.start_nu)}; energy {free.energy_J:.6g} J"
-               + (f", K = {free.integral:.6g} rad/s." if free.integral is not None else "; with constraints there is "
-                                                                                        "no "
-                  "second integral K."))
-    kinds = {
-        "straight": "It does not turn: straight uniform motion for ever.",
-        "uniform": "It turns at a constant rate: nothing couples turning to the motion of the centre of mass.",
-        "asymptotic": "It tends to straight uniform motion: the yaw rate dies away and never changes its sign"
-                      + (f"; it tends to {motion_text(subject, motion.limit_nu())}."
-                         if motion.kind == "asymptotic" else "."),
-        "periodic": f"It is periodic in ν with period {motion.period_s:.6g} s"
-                    + (f": the path has petals, one every {np.degrees(2.0 * np.pi / motion.petal_rate):.2f}° of "
-                       f"heading."
-                       if free.portrait is not None else "; ν3 is constant, ν turns evenly against the body."),
-    }
-    result.say("free", kinds[motion.kind])
+    told = f"Free motion {where}: {motion_text(subject, motion.start_nu)}; energy {free.energy_J:.6g} J"
+    result.say("free", f"{told}; with constraints there is no second integral K." if free.integral is None else
+               f"{told}, K = {free.integral:.6g} rad/s.")
+    result.say("free", _kind_in_words(subject, free))
     drift = f"energy drifts by {free.energy_drift:.1e}"
     if free.integral_drift is not None:
         drift += f", K by {free.integral_drift:.1e}"
     result.say("free", f"Closed form and the core's exact-flow differ by {free.core_gap:.1e} over "
-                       f"{free.path_time_s[-1]:.4g} s; "
-               f"{drift} (relative).")
+                       f"{free.path_time_s[-1]:.4g} s; {drift} (relative).")
     if free.core_gap > 1e-9:
         result.failures.append(f"closed form and exact-flow differ by {free.core_gap:.1e}")
     if free.portrait is None:

@@ -181,10 +181,9 @@ def _words(subject: Subject, found: Geometry, allowed: np.ndarray, length: float
 def _yaw_words(found: Geometry) -> list[str]:
     value, mirrored = found.yaw_authority, found.mirrored_yaw_authority
     if mirrored is not None and value < WEAK_YAW * mirrored:
-        return [f"The mecanum rollers look mounted in the wrong diagonal: the yaw authority is {value:.3g}, with "
-                f"every roller "
-                f"leaning the other way it would be {mirrored:.3g}. Swap the left and right wheels of each axle, or "
-                "negate the roller angles if only the description is wrong."]
+        return [f"The mecanum rollers look mounted in the wrong diagonal: the yaw authority is {value:.3g}, with every "
+                f"roller leaning the other way it would be {mirrored:.3g}. Swap the left and right wheels of each "
+                "axle, or negate the roller angles if only the description is wrong."]
     if value < 1e-9:
         return ["The wheels have no hold on turning (yaw authority 0): only an outer force turns the body."]
     if value < 0.1:

@@ -202,15 +202,13 @@ def _words(subject: Subject, found: Traction, friction: float) -> list[str]:
                      "say little. Add [[vehicle.support]] points.")
     elif points > 3:
         words.append(f"{points} points share the weight: statics alone does not settle the loads; the least-squares "
-                     f"share is "
-                     "shown, which is that of equally soft suspensions.")
+                     "share is shown, which is that of equally soft suspensions.")
     for name, when in found.lifting.items():
         words.append(f"{name.capitalize()} would lift off at {when:.4g} s: its load falls below zero.")
     shared = _shared_lateral(subject)
     if shared:
         words.append(f"Fixed wheels {', '.join(map(str, shared))} stand on one axle line: only the sum of their "
-                     f"lateral "
-                     "forces is determined; it is shown split equally.")
+                     "lateral forces is determined; it is shown split equally.")
     words.append(f"The reactions balance the motion: forces to {found.balance_N:.1e} N, moments to "
                  f"{found.balance_Nm:.1e} N m.")
     if friction <= 0.0:

@@ -125,8 +125,8 @@ def _slip_words(replay: Replay) -> str:
     low, high = min(r.value for r in ratios), max(r.value for r in ratios)
     beyond = sum(r.value - r.half_width > 1.0 for r in ratios)
     return (f"Pure rolling gives {low:.2f} to {high:.2f} times the distance that the camera saw; in {beyond} of "
-            f"{len(ratios)} "
-            "runs the interval excludes 1. The model's no-slip assumption over-predicts the path on this floor.")
+            f"{len(ratios)} runs the interval excludes 1. The model's no-slip assumption over-predicts the path on "
+            "this floor.")
 
 
 def _damping_words(dry: Friction) -> str:
@@ -135,16 +135,14 @@ def _damping_words(dry: Friction) -> str:
         return f"Damping beside dry friction: {value:.3g} N·m·s, from one run, so without an interval."
     seen = "does not differ from zero" if abs(value) < half else "differs from zero"
     return (f"Once dry friction is allowed, the fitted damping {value:.3g} ± {half:.2g} N·m·s {seen}: what (4.7) has "
-            f"to "
-            "call damping is mostly not proportional to speed.")
+            "to call damping is mostly not proportional to speed.")
 
 
 def _drag_words(drag: Friction) -> str:
     torques, halves = drag.values[1:-1], drag.half_widths[1:-1]
     told = ", ".join(_pm(v, h) for v, h in zip(torques, halves, strict=True))
     sentence = (f"With a drag of {_pm(drag.values[-1], drag.half_widths[-1])} N against the travel, the wheels' own "
-                f"dry "
-                f"torques become {told} N·m")
+                f"dry torques become {told} N·m")
     if (np.abs(torques) > halves).any():
         return f"{sentence}: both kinds of loss are there."
     return (f"{sentence}, none beyond its interval: the loss is in the contact, where the rollers slip or turn hard, "
