@@ -3,14 +3,11 @@
 # from the system (Debian: libsundials-dev).
 set(peers_lock "${PROJECT_SOURCE_DIR}/host_tests/requirements-peers.txt")
 set(peers_stamp "${CMAKE_BINARY_DIR}/peers/laconic.stamp")
-set(write_path_file "import pathlib as p, sys, sysconfig as s"
-    "p.Path(s.get_path('purelib'), 'laconic_peers.pth').write_text(sys.argv[1])")
-list(JOIN write_path_file "\n" write_path_file)
 add_custom_command(
     OUTPUT "${peers_stamp}"
     COMMAND "${LACONIC_PYTHON}" -m pip install --quiet --no-input --require-hashes --no-deps --upgrade
             --target "${CMAKE_BINARY_DIR}/peers" -r "${peers_lock}"
-    COMMAND "${LACONIC_PYTHON}" -c "${write_path_file}" "${CMAKE_BINARY_DIR}/peers"
+    COMMAND "${LACONIC_PYTHON}" "${PROJECT_SOURCE_DIR}/cmake/add_to_path.py" "${CMAKE_BINARY_DIR}/peers"
     COMMAND "${CMAKE_COMMAND}" -E touch "${peers_stamp}"
     DEPENDS "${peers_lock}"
     COMMENT "Other integrators to compare with" USES_TERMINAL VERBATIM)
