@@ -2,7 +2,9 @@
  * same numbers come the same bits. */
 #include "plant_api.h"
 
-/* One field of a struct, by its kind. */
+/* One field of a struct: an array of numbers, or one by its kind. */
+#define TRANSFER_ARRAY(of, number, IDENTIFIER, member, name, KIND, RULE, NEED) \
+    fmu_stream_reals(s, (of).member, sizeof(of).member / sizeof(double));
 #define TRANSFER(of, number, IDENTIFIER, member, name, KIND, RULE, NEED) TRANSFER_##KIND(s, &(of).member);
 #define TRANSFER_REAL(stream, number) fmu_stream_reals(stream, number, 1)
 #define TRANSFER_INTEGER(stream, number) fmu_stream_i32(stream, number, INT32_MIN, INT32_MAX)
@@ -29,17 +31,13 @@ static void transfer_vehicle(fmu_stream *s, laconic_vehicle *v) {
 }
 
 static void transfer_start(fmu_stream *s, laconic_start *start) {
-    fmu_stream_reals(s, start->nu_rad_per_s, 3);
+    LACONIC_START_ARRAY_FIELDS(TRANSFER_ARRAY, *start)
     LACONIC_START_FIELDS(TRANSFER, *start)
 }
 
 static void transfer_input(fmu_stream *s, laconic_input *u) {
-    fmu_stream_reals(s, u->voltage_V, LACONIC_MAX_WHEELS);
-    fmu_stream_reals(s, u->axle_torque_Nm, LACONIC_MAX_WHEELS);
-    fmu_stream_reals(s, u->body_force_N, 2);
-    fmu_stream_reals(s, &u->body_moment_Nm, 1);
-    fmu_stream_reals(s, u->world_force_N, 2);
-    fmu_stream_reals(s, u->world_force_point_m, 2);
+    LACONIC_INPUT_ARRAY_FIELDS(TRANSFER_ARRAY, *u)
+    LACONIC_INPUT_FIELDS(TRANSFER, *u)
 }
 
 static void transfer_sums(fmu_stream *s, laconic_sum *sums, size_t count) {

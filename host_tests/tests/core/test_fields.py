@@ -8,6 +8,7 @@ from laconic.core import Field, load
 from laconic.core.fields import COUNTED
 from laconic.fmu import DESCRIPTION, start_values
 from laconic.scene import read_scene
+from laconic.scene.reader import LENGTHS, PER_WHEEL
 from laconic_fmu.description import read
 
 STRUCTS = {"vehicle": "laconic_vehicle", "vehicle.payload": "laconic_payload", "vehicle.wheel[#]": "laconic_wheel",
@@ -33,6 +34,11 @@ def test_a_list_has_room_for_as_many_items_as_its_struct() -> None:
     for field in parameters():
         if field.table != "run":
             assert len(field.values(vehicle if field.table != "initial" else start)) == max(field.items, 1), field
+
+
+def test_inputs_of_scenes_are_those_of_the_list() -> None:
+    known = {field.name: field.items for field in load().fields if not field.table}
+    assert known == {**dict.fromkeys(PER_WHEEL, load().max_wheels), **LENGTHS}
 
 
 def test_every_parameter_is_a_variable_of_the_fmus_and_has_its_start_value_there() -> None:
