@@ -12,20 +12,18 @@ typedef struct symmetric3 {
 
 static void rotate(symmetric3 *s, int p, int q) {
     const real off = s->value[p][q];
-    real cotangent, tangent, c, d;
-    int k;
     if (off == R(0)) return;
-    cotangent = (s->value[q][q] - s->value[p][p]) / (R(2) * off);
-    tangent = R(1) / (magnitude(cotangent) + laconic_root(R(1) + cotangent * cotangent));
+    const real cotangent = (s->value[q][q] - s->value[p][p]) / (R(2) * off);
+    real tangent = R(1) / (magnitude(cotangent) + laconic_root(R(1) + cotangent * cotangent));
     if (cotangent < R(0)) tangent = -tangent;
-    c = R(1) / laconic_root(R(1) + tangent * tangent);
-    d = c * tangent;
-    for (k = 0; k < 3; k++) {
+    const real c = R(1) / laconic_root(R(1) + tangent * tangent);
+    const real d = c * tangent;
+    for (int k = 0; k < 3; k++) {
         const real kp = s->value[k][p], kq = s->value[k][q];
         s->value[k][p] = c * kp - d * kq;
         s->value[k][q] = d * kp + c * kq;
     }
-    for (k = 0; k < 3; k++) {
+    for (int k = 0; k < 3; k++) {
         const real pk = s->value[p][k], qk = s->value[q][k], vp = s->vector[k][p], vq = s->vector[k][q];
         s->value[p][k] = c * pk - d * qk;
         s->value[q][k] = d * pk + c * qk;
@@ -37,45 +35,43 @@ static void rotate(symmetric3 *s, int p, int q) {
 static void pseudo_inverse(real out[3][3], const real matrix[3][3]) {
     symmetric3 s;
     real largest = R(0);
-    int r, c, k;
-    for (r = 0; r < 3; r++)
-        for (c = 0; c < 3; c++) {
+    for (int r = 0; r < 3; r++)
+        for (int c = 0; c < 3; c++) {
             s.value[r][c] = matrix[r][c];
             s.vector[r][c] = r == c ? R(1) : R(0);
             out[r][c] = R(0);
         }
-    for (k = 0; k < 12; k++) {
+    for (int k = 0; k < 12; k++) {
         rotate(&s, 0, 1);
         rotate(&s, 0, 2);
         rotate(&s, 1, 2);
     }
-    for (k = 0; k < 3; k++)
+    for (int k = 0; k < 3; k++)
         if (s.value[k][k] > largest) largest = s.value[k][k];
-    for (k = 0; k < 3; k++) {
+    for (int k = 0; k < 3; k++) {
         if (!(s.value[k][k] > LACONIC_RANK_TOLERANCE * largest)) continue;
-        for (r = 0; r < 3; r++)
-            for (c = 0; c < 3; c++) out[r][c] += s.vector[r][k] * s.vector[c][k] / s.value[k][k];
+        for (int r = 0; r < 3; r++)
+            for (int c = 0; c < 3; c++) out[r][c] += s.vector[r][k] * s.vector[c][k] / s.value[k][k];
     }
 }
 
 /* rows (n×3) → solver (n×3) with κ = solver · f. */
 static void least_norm(real solver[][3], const real rows[][3], int32_t count) {
     real gram[3][3], inverse[3][3];
-    int32_t i, r, c;
-    for (r = 0; r < 3; r++)
-        for (c = 0; c < 3; c++) {
+    for (int32_t r = 0; r < 3; r++)
+        for (int32_t c = 0; c < 3; c++) {
             gram[r][c] = R(0);
-            for (i = 0; i < count; i++) gram[r][c] += rows[i][r] * rows[i][c];
+            for (int32_t i = 0; i < count; i++) gram[r][c] += rows[i][r] * rows[i][c];
         }
     pseudo_inverse(inverse, (const real(*)[3])gram);
-    for (i = 0; i < count; i++)
-        for (c = 0; c < 3; c++)
+    for (int32_t i = 0; i < count; i++)
+        for (int32_t c = 0; c < 3; c++)
             solver[i][c] = rows[i][0] * inverse[0][c] + rows[i][1] * inverse[1][c] + rows[i][2] * inverse[2][c];
 }
 
 static void take_wheels(laconic_contact *contact, const laconic_vehicle *vehicle, const body *b) {
-    int32_t i, row = 0;
-    for (i = 0; i < vehicle->wheel_count; i++) {
+    int32_t row = 0;
+    for (int32_t i = 0; i < vehicle->wheel_count; i++) {
         const laconic_wheel *wheel = &vehicle->wheel[i];
         const direction axle = laconic_direction_of_angle(wheel->axle_rad);
         direction pull;
@@ -91,10 +87,9 @@ static void take_wheels(laconic_contact *contact, const laconic_vehicle *vehicle
 
 static void take_points(laconic_contact *contact, const laconic_vehicle *vehicle, const body *b) {
     const int32_t n = vehicle->wheel_count;
-    int32_t i;
     real rows[LACONIC_MAX_WHEELS + LACONIC_MAX_SUPPORTS][3];
     contact->point_count = n + vehicle->support_count;
-    for (i = 0; i < contact->point_count; i++) {
+    for (int32_t i = 0; i < contact->point_count; i++) {
         contact->point_m[i][0] = (i < n ? vehicle->wheel[i].x_m : vehicle->support[i - n].x_m) - b->com_x_m;
         contact->point_m[i][1] = (i < n ? vehicle->wheel[i].y_m : vehicle->support[i - n].y_m) - b->com_y_m;
         rows[i][0] = b->radius_m; /* a length, so that the three balances are of one unit */
@@ -108,16 +103,14 @@ static void take_points(laconic_contact *contact, const laconic_vehicle *vehicle
 static real contact_size(const laconic_contact *c, int32_t wheel_count) {
     real sum = rows_size(c->multiplier, c->constraint_count) + rows_size(c->load_of_wrench, c->point_count) +
                c->com_z_m + c->friction_coefficient;
-    int32_t i;
-    for (i = 0; i < wheel_count; i++) sum += magnitude(c->inverse_arm_per_m[i]);
-    for (i = 0; i < c->point_count; i++) sum += magnitude(c->point_m[i][0]) + magnitude(c->point_m[i][1]);
+    for (int32_t i = 0; i < wheel_count; i++) sum += magnitude(c->inverse_arm_per_m[i]);
+    for (int32_t i = 0; i < c->point_count; i++) sum += magnitude(c->point_m[i][0]) + magnitude(c->point_m[i][1]);
     return sum;
 }
 
 laconic_status laconic_contact_prepare(laconic_contact *contact, const laconic_vehicle *vehicle, laconic_refusal *why) {
     laconic_matrices matrices;
     laconic_contact fresh = {0};
-    int32_t i, k;
     body b;
     const laconic_status status = laconic_matrices_of(&matrices, vehicle, why);
     if (status != LACONIC_OK) return status;
@@ -126,10 +119,10 @@ laconic_status laconic_contact_prepare(laconic_contact *contact, const laconic_v
     take_points(&fresh, vehicle, &b);
     fresh.constraint_count = matrices.constraint_count;
     least_norm(fresh.multiplier, (const real(*)[3])matrices.constraint_rows, matrices.constraint_count);
-    for (i = 0; i < 3; i++)
-        for (k = 0; k < 3; k++) fresh.inertia[i][k] = matrices.inertia[i][k];
-    for (i = 0; i < vehicle->wheel_count; i++)
-        for (k = 0; k < 3; k++) fresh.wheel_rows[i][k] = matrices.wheel_rows[i][k];
+    for (int32_t i = 0; i < 3; i++)
+        for (int32_t k = 0; k < 3; k++) fresh.inertia[i][k] = matrices.inertia[i][k];
+    for (int32_t i = 0; i < vehicle->wheel_count; i++)
+        for (int32_t k = 0; k < 3; k++) fresh.wheel_rows[i][k] = matrices.wheel_rows[i][k];
     fresh.com_z_m = vehicle->com_z_m;
     fresh.friction_coefficient = vehicle->friction_coefficient;
     if (!fits_squared(contact_size(&fresh, vehicle->wheel_count)))
@@ -152,12 +145,10 @@ typedef struct instant {
 static void take_instant(instant *now, const laconic_model *m, const laconic_state *state, const laconic_input *in) {
     const vector zeta = zeta_of(state);
     laconic_load load;
-    vector rate;
     real nu[3], yaw_rate;
-    int k;
     laconic_load_of(&load, m, in);
-    rate = zeta_rate(m, zeta, load_now(&load, &state->heading, R(0)));
-    for (k = 0; k < 3; k++) {
+    const vector rate = zeta_rate(m, zeta, load_now(&load, &state->heading, R(0)));
+    for (int k = 0; k < 3; k++) {
         nu[k] = dot(vec(m->nu_of_zeta[k]), zeta);
         now->nu_rate[k] = dot(vec(m->nu_of_zeta[k]), rate);
     }
@@ -174,11 +165,10 @@ static vector imbalance(const laconic_contact *c, const laconic_model *m, const 
     const real force = m->torque_scale * m->wheel_radius_m;
     vector left = {dot(vec(c->inertia[0]), vec(now->nu_rate)), dot(vec(c->inertia[1]), vec(now->nu_rate)),
                    dot(vec(c->inertia[2]), vec(now->nu_rate))};
-    int32_t i;
     left.x -= now->gyro[0] + force * now->outer.along;
     left.y -= now->gyro[1] + force * now->outer.across;
     left.z -= m->torque_scale * now->outer.moment / m->yaw_scale;
-    for (i = 0; i < m->wheel_count; i++)
+    for (int32_t i = 0; i < m->wheel_count; i++)
         left = minus(left, scaled(m->torque_scale * now->torque_Nm[i], vec(c->wheel_rows[i])));
     return left;
 }
@@ -199,23 +189,21 @@ static void wheel_reaction(laconic_reactions *out, const laconic_contact *c, con
  * are taken to act at the height of S). Columns of `load_of_wrench`: R Σ N, Σ N ξ, Σ N η. */
 static void normal_loads(laconic_reactions *out, const laconic_contact *c, const laconic_model *m, real weight_N) {
     real wanted[3], ground[2] = {R(0), R(0)};
-    int32_t i;
-    for (i = 0; i < m->wheel_count; i++) {
+    for (int32_t i = 0; i < m->wheel_count; i++) {
         ground[0] += out->along_N[i] * c->pull[i][0] + out->lateral_N[i] * c->axle[i][0];
         ground[1] += out->along_N[i] * c->pull[i][1] + out->lateral_N[i] * c->axle[i][1];
     }
     wanted[0] = m->wheel_radius_m * weight_N;
     wanted[1] = -c->com_z_m * ground[0];
     wanted[2] = -c->com_z_m * ground[1];
-    for (i = 0; i < c->point_count; i++) out->normal_N[i] = dot(vec(c->load_of_wrench[i]), vec(wanted));
+    for (int32_t i = 0; i < c->point_count; i++) out->normal_N[i] = dot(vec(c->load_of_wrench[i]), vec(wanted));
 }
 
 /* All that is linear: everything but the margin. */
 static void linear_reactions(laconic_reactions *out, const laconic_contact *c, const laconic_model *m,
                              const instant *now) {
     const vector left = imbalance(c, m, now);
-    int32_t i;
-    for (i = 0; i < m->wheel_count; i++) wheel_reaction(out, c, m, now, left, i);
+    for (int32_t i = 0; i < m->wheel_count; i++) wheel_reaction(out, c, m, now, left, i);
     normal_loads(out, c, m, now->weight_N);
 }
 
@@ -224,9 +212,8 @@ static real reaction_size(const laconic_reactions *r, int32_t i) {
 }
 
 static void no_slip_margin(laconic_reactions *out, const laconic_contact *c, const laconic_model *m) {
-    int32_t i;
     out->no_slip_margin_N = R(0);
-    for (i = 0; i < m->wheel_count; i++) {
+    for (int32_t i = 0; i < m->wheel_count; i++) {
         const real margin = c->friction_coefficient * out->normal_N[i] - reaction_size(out, i);
         if (i == 0 || margin < out->no_slip_margin_N || margin != margin)
             out->no_slip_margin_N = margin; /* where one is NaN, all is */
@@ -249,11 +236,10 @@ static void take_change(instant *change, const laconic_model *m, const laconic_m
     const real rate = dot(vec(m->yaw_rate_of_zeta), zeta), d_rate = dot(vec(m->yaw_rate_of_zeta), d_zeta);
     laconic_rates rates;
     laconic_motion_change outputs;
-    int32_t i;
     laconic_derivative_tangent(&rates, m, at, input, by);
     laconic_motion_tangent(&outputs, m, at, by);
-    for (i = 0; i < 3; i++) change->nu_rate[i] = rates.nu_rad_per_s2[i];
-    for (i = 0; i < m->wheel_count; i++) change->torque_Nm[i] = outputs.wheel_torque_Nm[i];
+    for (int32_t i = 0; i < 3; i++) change->nu_rate[i] = rates.nu_rad_per_s2[i];
+    for (int32_t i = 0; i < m->wheel_count; i++) change->torque_Nm[i] = outputs.wheel_torque_Nm[i];
     change->gyro[0] = d_rate * dot(vec(m->nu_of_zeta[1]), zeta) + rate * dot(vec(m->nu_of_zeta[1]), d_zeta);
     change->gyro[1] = -(d_rate * dot(vec(m->nu_of_zeta[0]), zeta) + rate * dot(vec(m->nu_of_zeta[0]), d_zeta));
     change->outer = wrench_change(input, laconic_direction_of_angle(at->heading_rad), by);
@@ -264,9 +250,8 @@ static void take_change(instant *change, const laconic_model *m, const laconic_m
 static void margin_change(laconic_reactions *change, const laconic_contact *c, const laconic_model *m,
                           const laconic_reactions *now) {
     real least = R(0);
-    int32_t i;
     change->no_slip_margin_N = R(0);
-    for (i = 0; i < m->wheel_count; i++) {
+    for (int32_t i = 0; i < m->wheel_count; i++) {
         const real a = now->along_N[i], l = now->lateral_N[i], needed = reaction_size(now, i);
         const real margin = c->friction_coefficient * now->normal_N[i] - needed;
         const real d_needed = needed > R(0) ? (a * change->along_N[i] + l * change->lateral_N[i]) / needed : R(0);

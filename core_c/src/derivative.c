@@ -6,9 +6,8 @@
 /* Rates or their changes, all linear: of ν from ζ', of the position from the velocity in body axes, of angles from ζ. */
 static void take_rates(laconic_rates *rates, const laconic_model *model, vector zeta, vector zeta_rate, real along,
                        real across, direction heading) {
-    int32_t i;
-    for (i = 0; i < 3; i++) rates->nu_rad_per_s2[i] = dot(vec(model->nu_of_zeta[i]), zeta_rate);
-    for (i = 0; i < LACONIC_WHEELS(model); i++)
+    for (int32_t i = 0; i < 3; i++) rates->nu_rad_per_s2[i] = dot(vec(model->nu_of_zeta[i]), zeta_rate);
+    for (int32_t i = 0; i < LACONIC_WHEELS(model); i++)
         rates->wheel_speed_rad_per_s[i] = dot(vec(model->wheel_of_zeta[i]), zeta);
     rates->x_m_per_s = along * heading.cosine - across * heading.sine;
     rates->y_m_per_s = along * heading.sine + across * heading.cosine;

@@ -21,24 +21,22 @@
 
 real laconic_root(real x) {
     real scale = R(1), guess;
-    int k;
     if (!(x > R(0))) return R(0);
     if (!is_finite(x)) return x;
     for (; x > R(4); x *= R(0.0625)) scale *= R(4); /* powers of two: exact */
     for (; x < R(0.25); x *= R(16)) scale *= R(0.25);
     guess = R(0.5) + R(0.5) * x;
-    for (k = 0; k < 7; k++) guess = R(0.5) * (guess + x / guess);
+    for (int k = 0; k < 7; k++) guess = R(0.5) * (guess + x / guess);
     return scale * guess;
 }
 
 real laconic_decaying_exponential(real a) {
     real halvings, x, term = R(1), sum = R(1);
-    int k, n;
     if (!(a < EXPONENT_SPAN)) return R(0);
-    n = (int)(a * R(1.4426950408889634) + R(0.5));
+    int n = (int)(a * R(1.4426950408889634) + R(0.5));
     halvings = (real)n;
     x = -((a - halvings * LN2_HIGH) - halvings * LN2_LOW); /* |x| <= ln 2 / 2 */
-    for (k = 1; k <= 18; k++) {
+    for (int k = 1; k <= 18; k++) {
         term *= x / (real)k;
         sum += term;
     }
@@ -70,17 +68,16 @@ laconic_turn laconic_turn_of_angle(real angle_rad) {
 /* φk = 1/k! − a φk+1. Below a = 4 from the series of φ5 downwards, which cancels nothing; above, upwards. */
 void laconic_phi(real phi[6], real a) {
     static const real inverse_factorial[5] = {R(1), R(1), R(0.5), R(1) / R(6), R(1) / R(24)};
-    int k;
     if (a < R(4)) {
         real term = R(1) / R(120), sum = term;
-        for (k = 6; k < 40; k++) {
+        for (int k = 6; k < 40; k++) {
             term *= -a / (real)k;
             sum += term;
         }
         phi[5] = sum;
-        for (k = 4; k >= 0; k--) phi[k] = inverse_factorial[k] - a * phi[k + 1];
+        for (int k = 4; k >= 0; k--) phi[k] = inverse_factorial[k] - a * phi[k + 1];
     } else {
         phi[0] = laconic_decaying_exponential(a);
-        for (k = 0; k < 5; k++) phi[k + 1] = (inverse_factorial[k] - phi[k]) / a;
+        for (int k = 0; k < 5; k++) phi[k + 1] = (inverse_factorial[k] - phi[k]) / a;
     }
 }

@@ -86,7 +86,6 @@ INLINE increment flow_base(const laconic_model *m, const laconic_integrator *int
     const laconic_decay *half = &integrator->decay[level + 1];
     const drive *first = b, *second = b;
     drive early, late;
-    vector up, before, turn, down;
     if (!LACONIC_WITH_DAMPING && !LACONIC_WITH_LOAD)
         return increment_of(&integrator->decay[level], zeta, free_flow(m, half_step, zeta), b);
     if (b->varies) {
@@ -94,10 +93,10 @@ INLINE increment flow_base(const laconic_model *m, const laconic_integrator *int
         first = &early;
         second = &late;
     }
-    up = drive_flow(m, half, zeta, first);
-    before = plus(zeta, up);
-    turn = free_flow(m, half_step, before);
-    down = drive_flow(m, half, plus(before, turn), second);
+    const vector up = drive_flow(m, half, zeta, first);
+    const vector before = plus(zeta, up);
+    const vector turn = free_flow(m, half_step, before);
+    const vector down = drive_flow(m, half, plus(before, turn), second);
     return increment_of(&integrator->decay[level], zeta, plus(plus(up, turn), down), b);
 }
 

@@ -20,9 +20,8 @@ static void take_worse(finding *found, int32_t index, real value, real limit) {
 
 static finding worst_slip(const laconic_contact *c, const laconic_reactions *r, int32_t wheels, real rounding_N) {
     finding found = {0, R(0)};
-    int32_t i;
     if (r->no_slip_margin_N >= -rounding_N || !(c->friction_coefficient > R(0))) return found;
-    for (i = 0; i < wheels; i++) {
+    for (int32_t i = 0; i < wheels; i++) {
         const real needed_N = needed(r, i);
         if (needed_N <= rounding_N) continue; /* it may lift, but nothing is there to slip */
         take_worse(&found, i, c->friction_coefficient * r->normal_N[i] - needed_N, -rounding_N);
@@ -32,8 +31,7 @@ static finding worst_slip(const laconic_contact *c, const laconic_reactions *r, 
 
 static finding worst_lift(const laconic_contact *c, const laconic_reactions *r, real rounding_N) {
     finding found = {0, R(0)};
-    int32_t i;
-    for (i = 0; i < c->point_count; i++) take_worse(&found, i, r->normal_N[i], -rounding_N);
+    for (int32_t i = 0; i < c->point_count; i++) take_worse(&found, i, r->normal_N[i], -rounding_N);
     return found;
 }
 

@@ -6,7 +6,6 @@
 laconic_status laconic_integrator_prepare(laconic_integrator *integrator, const laconic_method *method,
                                           const laconic_model *model, laconic_real step_s, laconic_refusal *why) {
     laconic_integrator prepared = {0};
-    laconic_status status;
     if (method == NULL || method->prepare == NULL) /* none, or one that only auto chooses */
         return refuse(why, LACONIC_METHOD_UNKNOWN, LACONIC_FIELD_METHOD, 0, R(0), R(0));
     if (!is_finite(step_s)) return refuse(why, LACONIC_NOT_FINITE, LACONIC_FIELD_STEP, 0, step_s, R(0));
@@ -16,7 +15,7 @@ laconic_status laconic_integrator_prepare(laconic_integrator *integrator, const 
     prepared.method = prepared.chosen = method;
     prepared.step_s = step_s;
     prepared.stiff = step_s * laconic_fastest_decay(model) >= FAST_DAMPING;
-    status = method->prepare(&prepared, model, why);
+    const laconic_status status = method->prepare(&prepared, model, why);
     if (status == LACONIC_OK) *integrator = prepared;
     return status;
 }
@@ -35,8 +34,7 @@ laconic_status laconic_explicit_limits(laconic_integrator *integrator, const lac
 
 real laconic_fastest_decay(const laconic_model *model) {
     real fastest = model->decay_per_s[0];
-    int k;
-    for (k = 1; k < 3; k++)
+    for (int k = 1; k < 3; k++)
         if (model->decay_per_s[k] > fastest) fastest = model->decay_per_s[k];
     return fastest;
 }
@@ -66,14 +64,12 @@ static void axis_factors(laconic_decay *d, int k, real h, real rate) {
 }
 
 void laconic_decay_of(laconic_decay *decay, const laconic_model *model, real h) {
-    int k;
-    for (k = 0; k < 3; k++) axis_factors(decay, k, h, model->decay_per_s[k]);
+    for (int k = 0; k < 3; k++) axis_factors(decay, k, h, model->decay_per_s[k]);
 }
 
 void laconic_decay_levels(laconic_integrator *integrator, const laconic_model *model, int levels) {
     real h = integrator->step_s;
-    int level;
-    for (level = 0; level < levels; level++) {
+    for (int level = 0; level < levels; level++) {
         laconic_decay_of(&integrator->decay[level], model, h);
         h *= R(0.5);
     }
@@ -84,14 +80,14 @@ laconic_real laconic_largest_stable_step_s(const laconic_method *method, const l
                                            const laconic_state *state) {
     laconic_integrator trial = {0};
     laconic_refusal why;
-    real step = LARGEST_STEP_S, yaw;
+    real step = LARGEST_STEP_S;
     if (laconic_integrator_prepare(&trial, method, model, step, &why) != LACONIC_OK) {
         step = why.limit;
         (void)laconic_integrator_prepare(&trial, method, model, step * R(0.999), &why); /* safe from rounding */
         trial.gyro_limit *= R(0.999);
     }
     if (trial.chosen != method) return R(0); /* auto: goes on with another method */
-    yaw = magnitude(dot(vec(model->nu_of_zeta[2]), zeta_of(state)));
+    const real yaw = magnitude(dot(vec(model->nu_of_zeta[2]), zeta_of(state)));
     if (trial.gyro_limit > R(0) && yaw > trial.gyro_limit) step *= trial.gyro_limit / yaw;
     return step < LARGEST_STEP_S ? step : R(0);
 }
@@ -99,17 +95,15 @@ laconic_real laconic_largest_stable_step_s(const laconic_method *method, const l
 /* Compared in units of the step, never of the time: so the tolerance does not widen as time goes on. */
 laconic_status laconic_steps_in(double interval_s, double step_s, uint64_t *steps, laconic_refusal *why) {
     const double ratio = interval_s / step_s;
-    double count, off;
-    uint64_t nearest;
     if (!(interval_s <= DBL_MAX) || !(interval_s > 0.0))
         return refuse(why, LACONIC_STEP_DOES_NOT_FIT, LACONIC_FIELD_STEP, 0, (real)step_s, (real)interval_s);
     if (!(step_s <= DBL_MAX)) return refuse(why, LACONIC_NOT_FINITE, LACONIC_FIELD_STEP, 0, (real)step_s, R(0));
     if (!(step_s > 0.0)) return refuse(why, LACONIC_NOT_POSITIVE, LACONIC_FIELD_STEP, 0, (real)step_s, R(0));
     if (!(ratio < 9e15)) return refuse(why, LACONIC_STEP_DOES_NOT_FIT, LACONIC_FIELD_STEP, 0, (real)step_s, R(0));
-    nearest = (uint64_t)(ratio + 0.5);
+    uint64_t nearest = (uint64_t)(ratio + 0.5);
     if (nearest == 0) nearest = 1;
-    count = (double)nearest;
-    off = ratio - count;
+    const double count = (double)nearest;
+    const double off = ratio - count;
     if (off > 1e-6 || off < -1e-6)
         return refuse(why, LACONIC_STEP_DOES_NOT_FIT, LACONIC_FIELD_STEP, 0, (real)step_s, (real)(interval_s / count));
     *steps = nearest;

@@ -3,8 +3,7 @@
 #include "vector.h"
 
 static void collect_rows(laconic_matrices *x, const body *b, const laconic_vehicle *vehicle) {
-    int32_t i;
-    for (i = 0; i < vehicle->wheel_count; i++) {
+    for (int32_t i = 0; i < vehicle->wheel_count; i++) {
         laconic_wheel_row(x->wheel_rows[i], b, &vehicle->wheel[i]);
         x->constraint_count += laconic_constraint_rows(x->constraint_rows + x->constraint_count, b, &vehicle->wheel[i]);
     }
@@ -12,11 +11,10 @@ static void collect_rows(laconic_matrices *x, const body *b, const laconic_vehic
 
 /* A = E + λ² ΞᵀΞ (4.6); a locked wheel counts: it is the constraint that keeps it from turning. */
 static void form_inertia(laconic_matrices *x, const body *b, int32_t wheel_count) {
-    int32_t r, c, i;
-    for (r = 0; r < 3; r++)
-        for (c = 0; c < 3; c++) {
+    for (int32_t r = 0; r < 3; r++)
+        for (int32_t c = 0; c < 3; c++) {
             real sum = R(0);
-            for (i = 0; i < wheel_count; i++) sum += x->wheel_rows[i][r] * x->wheel_rows[i][c];
+            for (int32_t i = 0; i < wheel_count; i++) sum += x->wheel_rows[i][r] * x->wheel_rows[i][c];
             x->inertia[r][c] = (r == c ? R(1) : R(0)) + b->wheel_scale_square * sum;
         }
 }
@@ -31,14 +29,13 @@ laconic_status laconic_matrices_of(laconic_matrices *matrices, const laconic_veh
     laconic_matrices x = {0};
     laconic_model model;
     body b;
-    int r, c;
     const laconic_status status = laconic_prepare(&model, vehicle, why);
     if (status != LACONIC_OK) return status;
     laconic_body_of(&b, vehicle);
     collect_rows(&x, &b, vehicle);
     form_inertia(&x, &b, vehicle->wheel_count);
-    for (r = 0; r < 3; r++)
-        for (c = 0; c < 3; c++) x.inverse_inertia[r][c] = dot(vec(model.nu_of_zeta[r]), vec(model.nu_of_zeta[c]));
+    for (int r = 0; r < 3; r++)
+        for (int c = 0; c < 3; c++) x.inverse_inertia[r][c] = dot(vec(model.nu_of_zeta[r]), vec(model.nu_of_zeta[c]));
     x.lambda_yaw = b.yaw_scale;
     x.lambda_wheel = laconic_root(b.wheel_scale_square);
     if (!fits_squared(matrices_size(&x, vehicle->wheel_count)))

@@ -31,9 +31,9 @@ static int32_t scale_to_digits(real *x) {
 
 /* `count` decimals of x < 10, without trailing zeros; the point stands behind digit `point`. */
 static void put_digits(writer *w, int32_t digits, int32_t count, int32_t point) {
-    int32_t divisor = 1, k;
-    for (k = 1; k < count; k++) divisor *= 10;
-    for (k = 0; divisor > 0; k++, divisor /= 10) {
+    int32_t divisor = 1;
+    for (int32_t k = 1; k < count; k++) divisor *= 10;
+    for (int32_t k = 0; divisor > 0; k++, divisor /= 10) {
         if (k >= point && digits == 0) return;
         if (k == point) put(w, '.');
         put(w, (char)('0' + digits / divisor));
@@ -43,7 +43,6 @@ static void put_digits(writer *w, int32_t digits, int32_t count, int32_t point) 
 
 /* Six digits, as printf's %.6g. */
 static void put_number(writer *w, real x) {
-    int32_t exponent, digits, k;
     if (x != x) {
         put_text(w, "NaN");
         return;
@@ -54,15 +53,15 @@ static void put_number(writer *w, real x) {
         put_text(w, x == R(0) ? "0" : "infinity");
         return;
     }
-    exponent = scale_to_digits(&x);
-    digits = (int32_t)(x * R(100000) + R(0.5));
+    int32_t exponent = scale_to_digits(&x);
+    int32_t digits = (int32_t)(x * R(100000) + R(0.5));
     if (digits >= 1000000) {
         digits = 100000;
         exponent++;
     }
     if (exponent >= -4 && exponent < 0) {
         put_text(w, "0.");
-        for (k = exponent + 1; k < 0; k++) put(w, '0');
+        for (int32_t k = exponent + 1; k < 0; k++) put(w, '0');
         while (digits % 10 == 0) digits /= 10;
         put_count(w, digits);
     } else if (exponent >= 0 && exponent < 6) {

@@ -15,8 +15,7 @@ const laconic_method *laconic_method_by_number(int32_t number) {
 }
 
 const laconic_method *laconic_method_by_name(const char *name) {
-    int32_t i;
-    for (i = 0; i < LACONIC_METHOD_COUNT; i++)
+    for (int32_t i = 0; i < LACONIC_METHOD_COUNT; i++)
         if (same_text(methods[i]->name, name)) return methods[i];
     return NULL;
 }

@@ -19,11 +19,10 @@ static laconic_status check_motor(const laconic_motor *m, laconic_refusal *why) 
     const real values[] = {LACONIC_MOTOR_FIELDS(VALUE_OF, m)};
     const size_t count = sizeof numbers / sizeof numbers[0];
     laconic_status status = LACONIC_OK;
-    size_t k;
-    for (k = 0; k < count; k++)
+    for (size_t k = 0; k < count; k++)
         if (!is_finite(values[k]))
             return refuse(why, LACONIC_NOT_FINITE, (laconic_field)numbers[k].field, 0, values[k], R(0));
-    for (k = 0; k < count && status == LACONIC_OK; k++)
+    for (size_t k = 0; k < count && status == LACONIC_OK; k++)
         status = check_rule(values[k], numbers[k].rule, (laconic_field)numbers[k].field, why);
     return status;
 }
@@ -31,14 +30,13 @@ static laconic_status check_motor(const laconic_motor *m, laconic_refusal *why) 
 laconic_status laconic_motor_fit(laconic_vehicle *vehicle, const laconic_motor *motor, laconic_refusal *why) {
     const laconic_status status = check_motor(motor, why);
     const real ratio = motor->gear_ratio;
-    real per_volt, gain, damping, inertia;
     if (status != LACONIC_OK) return status;
     if (vehicle->wheel_inertia_kgm2 < R(0)) /* before the rotor's inertia hides the sign */
         return refuse(why, LACONIC_NEGATIVE, LACONIC_FIELD_WHEEL_INERTIA, 0, vehicle->wheel_inertia_kgm2, R(0));
-    per_volt = motor->torque_constant_Nm_per_A / motor->resistance_ohm;
-    gain = ratio * per_volt;
-    damping = ratio * ratio * (per_volt * motor->back_emf_Vs_per_rad + motor->viscous_friction_Nms);
-    inertia = ratio * ratio * motor->rotor_inertia_kgm2;
+    const real per_volt = motor->torque_constant_Nm_per_A / motor->resistance_ohm;
+    const real gain = ratio * per_volt;
+    const real damping = ratio * ratio * (per_volt * motor->back_emf_Vs_per_rad + motor->viscous_friction_Nms);
+    const real inertia = ratio * ratio * motor->rotor_inertia_kgm2;
     if (zero_if_finite(gain) + zero_if_finite(damping) + zero_if_finite(inertia) != R(0))
         return refuse(why, LACONIC_OVERFLOW, LACONIC_FIELD_GEAR_RATIO, 0, ratio, R(0));
     if (per_volt * motor->back_emf_Vs_per_rad < R(0)) /* a motor that drives itself */

@@ -12,8 +12,7 @@ static void velocity_of(const laconic_model *model, vector zeta, real velocity_m
 
 void laconic_nu(const laconic_model *model, const laconic_state *state, laconic_real nu_rad_per_s[3]) {
     const vector zeta = zeta_of(state);
-    int k;
-    for (k = 0; k < 3; k++) nu_rad_per_s[k] = dot(vec(model->nu_of_zeta[k]), zeta);
+    for (int k = 0; k < 3; k++) nu_rad_per_s[k] = dot(vec(model->nu_of_zeta[k]), zeta);
 }
 
 laconic_real laconic_body_velocity(const laconic_model *model, const laconic_state *state,
@@ -47,8 +46,7 @@ void laconic_pose_of(laconic_pose *pose, const laconic_model *model, const lacon
 
 /* χ' = Ξ ν */
 static void speeds_of(const laconic_model *model, vector zeta, real *speed_rad_per_s) {
-    int32_t i;
-    for (i = 0; i < LACONIC_WHEELS(model); i++) speed_rad_per_s[i] = dot(vec(model->wheel_of_zeta[i]), zeta);
+    for (int32_t i = 0; i < LACONIC_WHEELS(model); i++) speed_rad_per_s[i] = dot(vec(model->wheel_of_zeta[i]), zeta);
 }
 
 void laconic_wheel_speeds(const laconic_model *model, const laconic_state *state, laconic_real *speed_rad_per_s) {
@@ -59,24 +57,21 @@ void laconic_wheel_speeds(const laconic_model *model, const laconic_state *state
 void laconic_wheel_angles(const laconic_model *model, const laconic_state *state, laconic_real *angle_rad) {
     const vector travel = {state->travel[0].value, state->travel[1].value, state->travel[2].value};
     const vector rest = {state->travel[0].rest, state->travel[1].rest, state->travel[2].rest};
-    int32_t i;
-    for (i = 0; i < LACONIC_WHEELS(model); i++) {
+    for (int32_t i = 0; i < LACONIC_WHEELS(model); i++) {
         const vector row = vec(model->wheel_of_zeta[i]);
         angle_rad[i] = state->wheel_angle_set_rad[i] + (dot(row, travel) + dot(row, rest));
     }
 }
 
 void laconic_wheel_angles_set(const laconic_model *model, laconic_state *state, const laconic_real *angle_rad) {
-    int32_t i;
-    for (i = 0; i < LACONIC_WHEELS(model); i++) state->wheel_angle_set_rad[i] = angle_rad[i];
-    for (i = 0; i < 3; i++) state->travel[i] = sum_of(R(0));
+    for (int32_t i = 0; i < LACONIC_WHEELS(model); i++) state->wheel_angle_set_rad[i] = angle_rad[i];
+    for (int32_t i = 0; i < 3; i++) state->travel[i] = sum_of(R(0));
 }
 
 /* M_i = c1 U_i − c2 χ_i' + T_i */
 static void torques_of(const laconic_model *model, const real *speed_rad_per_s, const laconic_input *input,
                        real *torque_Nm) {
-    int32_t i;
-    for (i = 0; i < LACONIC_WHEELS(model); i++)
+    for (int32_t i = 0; i < LACONIC_WHEELS(model); i++)
         torque_Nm[i] = model->motor_gain_Nm_per_V * input->voltage_V[i] -
                        model->motor_damping_Nms * speed_rad_per_s[i] + input->axle_torque_Nm[i];
 }
@@ -102,8 +97,7 @@ laconic_real laconic_energy_J(const laconic_model *model, const laconic_state *s
 /* A G = V diag(√(1 + λ²x)) = G diag(1 + λ²x), as G = V diag(1/√(1 + λ²x)). */
 laconic_real laconic_yaw_integral(const laconic_model *model, const laconic_state *state) {
     real sum = R(0);
-    int k;
-    for (k = 0; k < 3; k++) sum += model->nu_of_zeta[2][k] * model->inertia[k] * state->zeta[k].value;
+    for (int k = 0; k < 3; k++) sum += model->nu_of_zeta[2][k] * model->inertia[k] * state->zeta[k].value;
     return sum;
 }
 

@@ -10,64 +10,56 @@ typedef struct basis {
 
 static bool normalise(real v[3]) {
     const real largest = size(vec(v));
-    real length;
-    int k;
     if (!(largest > R(0))) return false;
-    for (k = 0; k < 3; k++) v[k] /= largest; /* first, so that squares neither overflow nor vanish */
-    length = laconic_root(dot(vec(v), vec(v)));
-    for (k = 0; k < 3; k++) v[k] /= length;
+    for (int k = 0; k < 3; k++) v[k] /= largest; /* first, so that squares neither overflow nor vanish */
+    const real length = laconic_root(dot(vec(v), vec(v)));
+    for (int k = 0; k < 3; k++) v[k] /= length;
     return true;
 }
 
 static void remove_component(real v[3], const real unit[3]) {
     const real along = dot(vec(v), vec(unit));
-    int k;
-    for (k = 0; k < 3; k++) v[k] -= along * unit[k];
+    for (int k = 0; k < 3; k++) v[k] -= along * unit[k];
 }
 
 /* What the row adds to the constraints known so far; false: nothing beyond rounding. */
 static bool new_direction(real v[3], const basis *known) {
-    int32_t k;
     if (!normalise(v)) return false;
-    for (k = 0; k < known->count; k++) remove_component(v, known->axis[k]);
+    for (int32_t k = 0; k < known->count; k++) remove_component(v, known->axis[k]);
     if (!(dot(vec(v), vec(v)) > LACONIC_RANK_TOLERANCE * LACONIC_RANK_TOLERANCE)) return false;
-    for (k = 0; k < known->count; k++) remove_component(v, known->axis[k]); /* twice is enough */
+    for (int32_t k = 0; k < known->count; k++) remove_component(v, known->axis[k]); /* twice is enough */
     return normalise(v);
 }
 
 static void add_constraint(basis *known, const real row[3]) {
     real v[3];
-    int k;
-    for (k = 0; k < 3; k++) v[k] = row[k];
+    for (int k = 0; k < 3; k++) v[k] = row[k];
     if (known->count < 3 && new_direction(v, known)) {
-        for (k = 0; k < 3; k++) known->axis[known->count][k] = v[k];
+        for (int k = 0; k < 3; k++) known->axis[known->count][k] = v[k];
         known->count++;
     }
 }
 
 static void collect_constraints(basis *known, const body *b, const laconic_vehicle *vehicle) {
-    int32_t i, k;
     known->count = 0;
-    for (i = 0; i < vehicle->wheel_count; i++) {
+    for (int32_t i = 0; i < vehicle->wheel_count; i++) {
         real rows[2][3];
         const int32_t count = laconic_constraint_rows(rows, b, &vehicle->wheel[i]);
-        for (k = 0; k < count; k++) add_constraint(known, rows[k]);
+        for (int32_t k = 0; k < count; k++) add_constraint(known, rows[k]);
     }
 }
 
 /* Completes the constraints to a basis of space; what is added spans the allowed motions. */
 static void allowed_motions(basis *allowed, const basis *constraints) {
     basis all = *constraints;
-    int32_t k, axis;
-    for (axis = 0; axis < 3; axis++) {
+    for (int32_t axis = 0; axis < 3; axis++) {
         real unit[3] = {R(0), R(0), R(0)};
         unit[axis] = R(1);
         add_constraint(&all, unit);
     }
     allowed->count = all.count - constraints->count;
-    for (k = 0; k < allowed->count; k++) {
-        int c;
-        for (c = 0; c < 3; c++) allowed->axis[k][c] = all.axis[constraints->count + k][c];
+    for (int32_t k = 0; k < allowed->count; k++) {
+        for (int c = 0; c < 3; c++) allowed->axis[k][c] = all.axis[constraints->count + k][c];
     }
 }
 
@@ -79,8 +71,7 @@ typedef struct pair {
 
 static pair column_products(const laconic_model *m, int32_t a, int32_t b) {
     pair p = {R(0), R(0), R(0)};
-    int32_t i;
-    for (i = 0; i < m->wheel_count; i++) {
+    for (int32_t i = 0; i < m->wheel_count; i++) {
         const real *row = m->wheel_of_zeta[i];
         p.aa += row[a] * row[a];
         p.bb += row[b] * row[b];
@@ -97,39 +88,34 @@ static void turn_pair(real *a, real *b, direction d) {
 
 static bool make_orthogonal(laconic_model *m, basis *v, int32_t a, int32_t b) {
     const pair p = column_products(m, a, b);
-    real cotangent, tangent, q;
     direction d;
-    int32_t i;
     if (!(magnitude(p.ab) > R(0.25) * LACONIC_EPSILON * laconic_root(p.aa) * laconic_root(p.bb))) return false;
-    cotangent = (p.bb - p.aa) / (R(2) * p.ab);
-    tangent = R(1) / (magnitude(cotangent) + laconic_root(R(1) + cotangent * cotangent));
+    const real cotangent = (p.bb - p.aa) / (R(2) * p.ab);
+    real tangent = R(1) / (magnitude(cotangent) + laconic_root(R(1) + cotangent * cotangent));
     if (!is_finite(cotangent * cotangent)) tangent = R(0.5) / magnitude(cotangent);
     if (cotangent < R(0)) tangent = -tangent;
-    q = laconic_root(R(1) + tangent * tangent);
+    const real q = laconic_root(R(1) + tangent * tangent);
     d.cosine = R(1) - tangent * tangent / (q * (q + R(1))); /* 1/q, but rounded once */
     d.sine = tangent / q;
-    for (i = 0; i < m->wheel_count; i++) turn_pair(&m->wheel_of_zeta[i][a], &m->wheel_of_zeta[i][b], d);
-    for (i = 0; i < 3; i++) turn_pair(&v->axis[a][i], &v->axis[b][i], d);
+    for (int32_t i = 0; i < m->wheel_count; i++) turn_pair(&m->wheel_of_zeta[i][a], &m->wheel_of_zeta[i][b], d);
+    for (int32_t i = 0; i < 3; i++) turn_pair(&v->axis[a][i], &v->axis[b][i], d);
     return true;
 }
 
 static void find_principal_axes(laconic_model *m, basis *v) {
-    int sweep;
     bool turned = true;
-    for (sweep = 0; sweep < 30 && turned; sweep++) {
-        int32_t a, b;
+    for (int sweep = 0; sweep < 30 && turned; sweep++) {
         turned = false;
-        for (a = 0; a < v->count; a++)
-            for (b = a + 1; b < v->count; b++) turned = make_orthogonal(m, v, a, b) || turned;
+        for (int32_t a = 0; a < v->count; a++)
+            for (int32_t b = a + 1; b < v->count; b++) turned = make_orthogonal(m, v, a, b) || turned;
     }
 }
 
 static void project_wheels(laconic_model *m, const basis *v, const body *b, const laconic_vehicle *vehicle) {
-    int32_t i, k;
-    for (i = 0; i < vehicle->wheel_count; i++) {
+    for (int32_t i = 0; i < vehicle->wheel_count; i++) {
         real row[3];
         laconic_wheel_row(row, b, &vehicle->wheel[i]);
-        for (k = 0; k < 3; k++)
+        for (int32_t k = 0; k < 3; k++)
             m->wheel_of_zeta[i][k] = k < v->count && !vehicle->wheel[i].locked ? dot(vec(row), vec(v->axis[k])) : R(0);
     }
 }
@@ -139,18 +125,16 @@ static void scale_axis(laconic_model *m, const basis *v, const body *b, int32_t 
     const real x = column_products(m, k, k).aa;
     const real inertia = R(1) + b->wheel_scale_square * x;
     const real root = laconic_root(inertia);
-    int32_t i;
     m->inertia[k] = inertia;
     m->decay_per_s[k] = m->motor_damping_Nms * m->torque_scale * x / inertia;
-    for (i = 0; i < 3; i++) m->nu_of_zeta[i][k] = v->axis[k][i] / root;
-    for (i = 0; i < m->wheel_count; i++) m->wheel_of_zeta[i][k] /= root;
+    for (int32_t i = 0; i < 3; i++) m->nu_of_zeta[i][k] = v->axis[k][i] / root;
+    for (int32_t i = 0; i < m->wheel_count; i++) m->wheel_of_zeta[i][k] /= root;
 }
 
 static void clear_axis(laconic_model *m, int32_t k) {
-    int i;
     m->inertia[k] = R(1);
     m->decay_per_s[k] = R(0);
-    for (i = 0; i < 3; i++) m->nu_of_zeta[i][k] = R(0);
+    for (int i = 0; i < 3; i++) m->nu_of_zeta[i][k] = R(0);
 }
 
 /* w, and what the closed form of the free motion (exact_flow.c) makes of it. */
@@ -164,8 +148,7 @@ static void derive_gyro(laconic_model *m) {
 }
 
 static void derive_rows(laconic_model *m) {
-    int k;
-    for (k = 0; k < 3; k++) {
+    for (int k = 0; k < 3; k++) {
         m->yaw_rate_of_zeta[k] = m->nu_of_zeta[2][k] / m->yaw_scale;
         m->velocity_of_zeta[0][k] = m->wheel_radius_m * m->nu_of_zeta[0][k];
         m->velocity_of_zeta[1][k] = m->wheel_radius_m * m->nu_of_zeta[1][k];
@@ -188,8 +171,7 @@ static void take_constants(laconic_model *m, const laconic_vehicle *vehicle, con
 
 laconic_real laconic_condition_number(const laconic_model *model) {
     real least = model->inertia[0], most = least;
-    int32_t k;
-    for (k = 1; k < model->dof; k++) {
+    for (int32_t k = 1; k < model->dof; k++) {
         if (model->inertia[k] < least) least = model->inertia[k];
         if (model->inertia[k] > most) most = model->inertia[k];
     }
@@ -218,7 +200,6 @@ laconic_status laconic_prepare(laconic_model *model, const laconic_vehicle *vehi
     laconic_model m = {0};
     basis constraints = {0}, motions = {0};
     body b;
-    int32_t k;
     if (status != LACONIC_OK) return status;
     laconic_body_of(&b, vehicle);
     take_constants(&m, vehicle, &b);
@@ -229,7 +210,7 @@ laconic_status laconic_prepare(laconic_model *model, const laconic_vehicle *vehi
     m.dof = motions.count;
     project_wheels(&m, &motions, &b, vehicle);
     find_principal_axes(&m, &motions);
-    for (k = 0; k < 3; k++) {
+    for (int32_t k = 0; k < 3; k++) {
         if (k < m.dof)
             scale_axis(&m, &motions, &b, k);
         else

@@ -7,15 +7,13 @@ static const real *number_in(const void *numbers, uint32_t place) {
 }
 
 static void set_signals(laconic_input *input, const laconic_schedule *schedule, const real *value) {
-    int32_t k;
-    for (k = 0; k < schedule->signal_count; k++)
+    for (int32_t k = 0; k < schedule->signal_count; k++)
         *(real *)(void *)((unsigned char *)input + schedule->signal[k]) = value[k];
 }
 
 static void copy_columns(laconic_recorder *recorder, const laconic_outputs *now) {
     real *row = recorder->row + recorder->row_count * (uint64_t)recorder->column_count;
-    int32_t k;
-    for (k = 0; k < recorder->column_count; k++) row[k] = *number_in(now, recorder->column[k]);
+    for (int32_t k = 0; k < recorder->column_count; k++) row[k] = *number_in(now, recorder->column[k]);
     recorder->row_count++;
 }
 
@@ -39,11 +37,9 @@ void laconic_record_row(laconic_recorder *recorder, const laconic_plant *plant, 
  * a row has no room. */
 static uint64_t steps_until_look(laconic_recorder *recorder, const laconic_plant *plant, const laconic_input *input,
                                  uint64_t left) {
-    uint64_t since_row;
-    bool row_due;
     if (recorder == NULL) return left;
-    since_row = recorder->every != 0 ? plant->steps % recorder->every : 1;
-    row_due = since_row == 0;
+    const uint64_t since_row = recorder->every != 0 ? plant->steps % recorder->every : 1;
+    const bool row_due = since_row == 0;
     if (row_due && recorder->row_count >= recorder->row_room) return 0;
     look(recorder, plant, input, row_due);
     if (recorder->contact != NULL && recorder->grip != NULL) return 1;
@@ -56,10 +52,9 @@ static laconic_status hold(laconic_plant *plant, const laconic_input *input, uin
                            laconic_recorder *recorder, bool *full, laconic_refusal *why) {
     while (plant->steps < until_step) {
         const uint64_t steps = steps_until_look(recorder, plant, input, until_step - plant->steps);
-        laconic_status status;
         *full = steps == 0;
         if (*full) return LACONIC_OK;
-        status = laconic_plant_run(plant, input, steps, why);
+        const laconic_status status = laconic_plant_run(plant, input, steps, why);
         if (status != LACONIC_OK) return status;
     }
     return LACONIC_OK;
@@ -101,11 +96,10 @@ static laconic_status follow_sampled(laconic_plant *plant, const laconic_schedul
     laconic_refusal found;
     while (plant->steps < until_step && plant->steps - schedule->first_step < schedule->count) {
         const real *value = schedule->value + 3 * numbers * (plant->steps - schedule->first_step);
-        laconic_status status;
-        uint64_t k;
-        for (k = 0; k < 3; k++) set_signals(&input[k], schedule, value + k * numbers);
+        for (uint64_t k = 0; k < 3; k++) set_signals(&input[k], schedule, value + k * numbers);
         if (steps_until_look(recorder, plant, input, 1) == 0) break;
-        status = laconic_step_sampled(&plant->model, &plant->integrator, &plant->state, input, input + 1, input + 2);
+        const laconic_status status =
+            laconic_step_sampled(&plant->model, &plant->integrator, &plant->state, input, input + 1, input + 2);
         if (status != LACONIC_OK) {
             laconic_step_refusal(&found, status, &plant->model, &plant->integrator, &plant->state, input, 3);
             return refuse(why, found.status, found.field, found.item, found.value, found.limit);

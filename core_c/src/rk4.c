@@ -39,8 +39,7 @@ RARE increment varying_stages(const laconic_model *m, real h, vector z1, const l
     const laconic_load *const load[4] = {loads->start, loads->middle, loads->middle, loads->end};
     const real ahead[4] = {R(0), R(0.5) * h, R(0.5) * h, h};
     vector rate[4], z = z1;
-    int i;
-    for (i = 0; i < 4; i++) {
+    for (int i = 0; i < 4; i++) {
         const vector b = load_now(load[i], heading, turned_rad(m, ahead[i], z));
         if (i > 0) z = along(z1, ahead[i], rate[i - 1]);
         rate[i] = zeta_rate(m, z, b);

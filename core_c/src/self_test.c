@@ -75,8 +75,7 @@ laconic_arithmetic laconic_self_test(void) {
         /* in the order of laconic_arithmetic */
         nan_passes_for_a_number, rounds_another_way,     sums_in_another_order, keeps_more_than_the_type,
         fuses_multiply_and_add,  divides_by_reciprocals, flushes_small_numbers};
-    int k;
-    for (k = 0; k < LACONIC_ARITHMETIC_COUNT - 1; k++)
+    for (int k = 0; k < LACONIC_ARITHMETIC_COUNT - 1; k++)
         if (wrong[k]()) return (laconic_arithmetic)(k + 1);
     return LACONIC_ARITHMETIC_SOUND;
 }

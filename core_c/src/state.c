@@ -2,8 +2,7 @@
 #include "step_internals.h"
 
 static laconic_status check_start(const laconic_start *start, laconic_refusal *why) {
-    int32_t k;
-    for (k = 0; k < 3; k++)
+    for (int32_t k = 0; k < 3; k++)
         if (!is_finite(start->nu_rad_per_s[k]))
             return refuse(why, LACONIC_NOT_FINITE, LACONIC_FIELD_START_NU, k + 1, start->nu_rad_per_s[k], R(0));
     if (!is_finite(start->x_m)) return refuse(why, LACONIC_NOT_FINITE, LACONIC_FIELD_START_X, 0, start->x_m, R(0));
@@ -18,11 +17,11 @@ static laconic_status check_start(const laconic_start *start, laconic_refusal *w
 static laconic_status check_allowed(const laconic_model *m, const laconic_state *state, const real nu[3],
                                     laconic_refusal *why) {
     real nearest[3], worst = R(0);
-    int32_t k, item = 0;
+    int32_t item = 0;
     if (!(square(zeta_of(state)) <= LARGEST_SPEED * LARGEST_SPEED))
         return refuse(why, LACONIC_OVERFLOW, LACONIC_FIELD_START_NU, 0, size(vec(nu)), R(0));
     laconic_nu(m, state, nearest);
-    for (k = 0; k < 3; k++)
+    for (int32_t k = 0; k < 3; k++)
         if (magnitude(nu[k] - nearest[k]) > worst) {
             worst = magnitude(nu[k] - nearest[k]);
             item = k;
@@ -53,16 +52,14 @@ laconic_status laconic_state_place(laconic_state *state, const laconic_model *mo
                                    laconic_refusal *why) {
     laconic_start at_rest = *motion;
     const vector zeta = zeta_of_nu(model, motion->nu_rad_per_s);
-    laconic_status status;
-    int k;
-    for (k = 0; k < 3; k++) {
+    for (int k = 0; k < 3; k++) {
         if (!is_finite(motion->nu_rad_per_s[k]))
             return refuse(why, LACONIC_NOT_FINITE, LACONIC_FIELD_START_NU, k + 1, motion->nu_rad_per_s[k], R(0));
         at_rest.nu_rad_per_s[k] = R(0);
     }
     if (!(square(zeta) <= LARGEST_SPEED * LARGEST_SPEED))
         return refuse(why, LACONIC_OVERFLOW, LACONIC_FIELD_START_NU, 0, size(vec(motion->nu_rad_per_s)), R(0));
-    status = laconic_state_set(state, model, &at_rest, why);
+    const laconic_status status = laconic_state_set(state, model, &at_rest, why);
     if (status == LACONIC_OK) set_zeta(state, zeta);
     return status;
 }
@@ -71,8 +68,7 @@ laconic_status laconic_state_place(laconic_state *state, const laconic_model *mo
 static bool carried_in_range(const laconic_state *state, const real *angle, int32_t wheel_count) {
     real zero = zero_if_finite(state->x_m.value) + zero_if_finite(state->x_m.rest) + zero_if_finite(state->y_m.value) +
                 zero_if_finite(state->y_m.rest);
-    int32_t i;
-    for (i = 0; i < wheel_count; i++) zero += zero_if_finite(angle[i]);
+    for (int32_t i = 0; i < wheel_count; i++) zero += zero_if_finite(angle[i]);
     return zero == R(0) && square(zeta_of(state)) <= LARGEST_SPEED * LARGEST_SPEED;
 }
 

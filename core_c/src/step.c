@@ -54,8 +54,7 @@ laconic_status laconic_step_sampled(const laconic_model *model, const laconic_in
 }
 
 static laconic_status check_many(const real *numbers, int32_t count, laconic_field field, laconic_refusal *why) {
-    int32_t i;
-    for (i = 0; i < count; i++)
+    for (int32_t i = 0; i < count; i++)
         if (!is_finite(numbers[i])) return refuse(why, LACONIC_NOT_FINITE, field, i + 1, numbers[i], R(0));
     return LACONIC_OK;
 }
@@ -76,9 +75,8 @@ void laconic_step_refusal(laconic_refusal *why, laconic_status status, const lac
                           const laconic_integrator *integrator, const laconic_state *state, const laconic_input *inputs,
                           int32_t input_count) {
     real limit = R(0);
-    int32_t i;
     if (why == NULL) return;
-    for (i = 0; i < input_count; i++)
+    for (int32_t i = 0; i < input_count; i++)
         if (laconic_input_check(model, &inputs[i], why) != LACONIC_OK) return;
     if (status == LACONIC_STEP_BEYOND_GYROSCOPIC_LIMIT)
         limit = laconic_largest_stable_step_s(integrator->method, model, state);

@@ -59,8 +59,7 @@ static inline bool beyond_rotation(const laconic_model *m, const laconic_integra
 /* Ξᵀ(c1 U + T)/(M R²): power of a wheel's torque is torque · χ'. */
 static inline vector b_of_torques(const laconic_model *m, const laconic_input *in) {
     vector b = none;
-    int32_t i;
-    for (i = 0; i < LACONIC_WHEELS(m); i++) {
+    for (int32_t i = 0; i < LACONIC_WHEELS(m); i++) {
         const real motor = LACONIC_WITH_VOLTAGE ? m->voltage_scale * in->voltage_V[i] : R(0);
         const real torque = LACONIC_WITH_AXLE_TORQUE ? motor + m->torque_scale * in->axle_torque_Nm[i] : motor;
         b = plus(b, scaled(torque, vec(m->wheel_of_zeta[i])));
@@ -180,10 +179,10 @@ INLINE pose_change displacement(const laconic_model *m, vector path, vector bend
     const vector yaw_rate = vec(m->yaw_rate_of_zeta);
     const real turn = dot(yaw_rate, path), yaw_change = dot(yaw_rate, bend) * (R(1) / R(12));
     const real forth = dot(along, path), left = dot(across, path);
-    real sinc, half_j1, aside_forth, aside_left;
+    real sinc, half_j1;
     chord_factors(&sinc, &half_j1, R(0.5) * turn);
-    aside_forth = half_j1 * dot(along, bend) - yaw_change * forth;
-    aside_left = half_j1 * dot(across, bend) - yaw_change * left;
+    const real aside_forth = half_j1 * dot(along, bend) - yaw_change * forth;
+    const real aside_left = half_j1 * dot(across, bend) - yaw_change * left;
     return (pose_change){sinc * forth - aside_left, sinc * left + aside_forth, turn};
 }
 
@@ -372,8 +371,7 @@ INLINE increment extrapolated_varying(base_step base, const laconic_model *m, co
                                       const laconic_state *state, const laconic_loads *loads) {
     increment parts[3];
     substep p = {0, zeta_of(state), R(0), loads->start, loads->end};
-    int i;
-    for (i = 0; i < 3; i++) {
+    for (int i = 0; i < 3; i++) {
         parts[i] = take_substep(base, m, integrator, &state->heading, loads, &p);
         if (i == 0) {
             p = (substep){1, zeta_of(state), R(0), loads->start, loads->middle};

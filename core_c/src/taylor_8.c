@@ -43,16 +43,14 @@ static forcing forcing_of(const laconic_loads *loads, const laconic_heading *hea
     static const laconic_load still = {{R(0), R(0), R(0)}, {R(0), R(0), R(0)}, {R(0), R(0), R(0)}, false};
     const laconic_load *at[3] = {loads->start, loads->middle, loads->end};
     forcing f;
-    direction now;
-    int k;
     parabola(f.constant, at[0]->constant, at[1]->constant, at[2]->constant);
     f.turns = LACONIC_WITH_WORLD_FORCE && (at[0]->turns || at[1]->turns || at[2]->turns);
     if (!f.turns) return f; /* the rest is not looked at */
-    for (k = 0; k < 3; k++)
+    for (int k = 0; k < 3; k++)
         if (!at[k]->turns) at[k] = &still;
     parabola(f.cosine, at[0]->cosine, at[1]->cosine, at[2]->cosine);
     parabola(f.sine, at[0]->sine, at[1]->sine, at[2]->sine);
-    now = laconic_direction_of_turn(heading->fraction);
+    direction now = laconic_direction_of_turn(heading->fraction);
     f.heading_cosine[0] = now.cosine;
     f.heading_sine[0] = now.sine;
     return f;
@@ -61,8 +59,7 @@ static forcing forcing_of(const laconic_loads *loads, const laconic_heading *hea
 /* (cos θ)' = −θ' sin θ, (sin θ)' = θ' cos θ, coefficient by coefficient. */
 static void turn_on(forcing *f, const course *c, real turn, int n) {
     real cosine = R(0), sine = R(0);
-    int j;
-    for (j = 0; j < n; j++) {
+    for (int j = 0; j < n; j++) {
         cosine -= c->yaw[j] * f->heading_sine[n - 1 - j];
         sine += c->yaw[j] * f->heading_cosine[n - 1 - j];
     }
@@ -80,10 +77,9 @@ static vector first_forcing(const forcing *f) {
 /* bn for n >= 1, from the coefficients of the motion below n. */
 static vector forcing_term(forcing *f, const course *c, real turn, int n) {
     vector b = n < 3 ? f->constant[n] : none;
-    int k;
     if (!f->turns) return b;
     turn_on(f, c, turn, n);
-    for (k = 0; k < 3 && k <= n; k++)
+    for (int k = 0; k < 3 && k <= n; k++)
         b = plus(b, plus(scaled(f->heading_cosine[n - k], f->cosine[k]), scaled(f->heading_sine[n - k], f->sine[k])));
     return b;
 }
@@ -125,8 +121,7 @@ INLINE vector first_term(course *c, vector turned[ORDER + 1], const laconic_mode
 INLINE vector next_term(course *c, vector turned[ORDER + 1], const laconic_model *m, const jacobian *at, real h, int n,
                         vector zeta, vector b) {
     vector older = b;
-    int j;
-    for (j = 1; j < n; j++) older = plus(older, scaled(c->yaw[j], turned[n - j]));
+    for (int j = 1; j < n; j++) older = plus(older, scaled(c->yaw[j], turned[n - j]));
     keep(c, turned, m, n, zeta);
     return scaled(h * inverse[n], plus(older, applied(at, zeta)));
 }
@@ -134,8 +129,7 @@ INLINE vector next_term(course *c, vector turned[ORDER + 1], const laconic_model
 INLINE void steady_course(course *c, const laconic_model *m, real h, vector start, vector b) {
     vector turned[ORDER + 1], zeta = first_term(c, turned, m, h, start, b);
     const jacobian at = jacobian_at(m, c->yaw[0], turned[0]);
-    int n;
-    for (n = 1; n < ORDER; n++) zeta = next_term(c, turned, m, &at, h, n, zeta, none);
+    for (int n = 1; n < ORDER; n++) zeta = next_term(c, turned, m, &at, h, n, zeta, none);
     keep(c, turned, m, ORDER, zeta);
 }
 
@@ -145,8 +139,7 @@ RARE void varying_course(course *c, const laconic_model *m, real h, vector start
     forcing f = forcing_of(loads, heading);
     vector turned[ORDER + 1], zeta = first_term(c, turned, m, h, start, first_forcing(&f));
     const jacobian at = jacobian_at(m, c->yaw[0], turned[0]);
-    int n;
-    for (n = 1; n < ORDER; n++) zeta = next_term(c, turned, m, &at, h, n, zeta, forcing_term(&f, c, turn, n));
+    for (int n = 1; n < ORDER; n++) zeta = next_term(c, turned, m, &at, h, n, zeta, forcing_term(&f, c, turn, n));
     keep(c, turned, m, ORDER, zeta);
 }
 
@@ -172,22 +165,20 @@ static inline real mean_yaw(const course *c, int n) { return inverse[n] * c->yaw
 
 /* A polynomial at all nodes at once: compilers take them two or four at a time. */
 INLINE void at_nodes(real value[NODES], const course *c, polynomial coefficient) {
-    int n, k;
-    for (k = 0; k < NODES; k++) value[k] = coefficient(c, ORDER);
-    for (n = ORDER - 1; n >= 0; n--)
-        for (k = 0; k < NODES; k++) value[k] = node[k] * value[k] + coefficient(c, n);
+    for (int k = 0; k < NODES; k++) value[k] = coefficient(c, ORDER);
+    for (int n = ORDER - 1; n >= 0; n--)
+        for (int k = 0; k < NODES; k++) value[k] = node[k] * value[k] + coefficient(c, n);
 }
 
 /* All at once, too, where they are small. */
 static inline void directions_at_nodes(real cosine[NODES], real sine[NODES], const real angle[NODES]) {
     real sum = R(0);
-    int k;
-    for (k = 0; k < NODES; k++) sum += magnitude(angle[k]);
+    for (int k = 0; k < NODES; k++) sum += magnitude(angle[k]);
     if (sum <= R(0.78)) {
-        for (k = 0; k < NODES; k++) cosine[k] = poly_cos(angle[k] * angle[k]);
-        for (k = 0; k < NODES; k++) sine[k] = poly_sin(angle[k], angle[k] * angle[k]);
+        for (int k = 0; k < NODES; k++) cosine[k] = poly_cos(angle[k] * angle[k]);
+        for (int k = 0; k < NODES; k++) sine[k] = poly_sin(angle[k], angle[k] * angle[k]);
     } else {
-        for (k = 0; k < NODES; k++) {
+        for (int k = 0; k < NODES; k++) {
             const direction d = laconic_direction_of_turn(laconic_turn_of_angle(angle[k]));
             cosine[k] = d.cosine;
             sine[k] = d.sine;
@@ -201,17 +192,16 @@ static inline pose_change quadrature(const course *c, const laconic_model *m, re
     pose_change moved = {R(0), R(0), turn};
     const real per_yaw = turn_of_yaw(m, h);
     real x[NODES], y[NODES], z[NODES], angle[NODES], cosine[NODES], sine[NODES], along[NODES], across[NODES];
-    int k;
     at_nodes(x, c, zeta_x);
     at_nodes(y, c, zeta_y);
     at_nodes(z, c, zeta_z);
     at_nodes(angle, c, mean_yaw);
-    for (k = 0; k < NODES; k++) angle[k] = per_yaw * node[k] * angle[k] - R(0.5) * turn;
+    for (int k = 0; k < NODES; k++) angle[k] = per_yaw * node[k] * angle[k] - R(0.5) * turn;
     directions_at_nodes(cosine, sine, angle);
-    for (k = 0; k < NODES; k++) along[k] = h * weight[k] * (forth.x * x[k] + forth.y * y[k] + forth.z * z[k]);
-    for (k = 0; k < NODES; k++) across[k] = h * weight[k] * (left.x * x[k] + left.y * y[k] + left.z * z[k]);
-    for (k = 0; k < NODES; k++) moved.along_m += cosine[k] * along[k] - sine[k] * across[k];
-    for (k = 0; k < NODES; k++) moved.across_m += sine[k] * along[k] + cosine[k] * across[k];
+    for (int k = 0; k < NODES; k++) along[k] = h * weight[k] * (forth.x * x[k] + forth.y * y[k] + forth.z * z[k]);
+    for (int k = 0; k < NODES; k++) across[k] = h * weight[k] * (left.x * x[k] + left.y * y[k] + left.z * z[k]);
+    for (int k = 0; k < NODES; k++) moved.along_m += cosine[k] * along[k] - sine[k] * across[k];
+    for (int k = 0; k < NODES; k++) moved.across_m += sine[k] * along[k] + cosine[k] * across[k];
     return moved;
 }
 
@@ -220,8 +210,7 @@ static inline pose_change quadrature(const course *c, const laconic_model *m, re
 /* Smallest terms first. */
 static inline increment sum_of_terms(const course *c) {
     increment by = {none, none, none};
-    int n;
-    for (n = ORDER; n > 0; n--) {
+    for (int n = ORDER; n > 0; n--) {
         by.delta = plus(by.delta, c->zeta[n]);
         by.mean = plus(by.mean, scaled(inverse[n], c->zeta[n]));
     }
@@ -235,7 +224,6 @@ static laconic_status taylor_8_step(const laconic_model *model, const laconic_in
     const real h = integrator->step_s;
     const vector zeta = zeta_of(state);
     pose_change moved = {R(0), R(0), R(0)};
-    vector path;
     increment by;
     course c;
     if (beyond_rotation(model, integrator, zeta)) return LACONIC_STEP_BEYOND_GYROSCOPIC_LIMIT;
@@ -246,7 +234,7 @@ static laconic_status taylor_8_step(const laconic_model *model, const laconic_in
     by = sum_of_terms(&c);
     if (!passive(model, state, h, loads, zeta, by)) return not_passive(by);
     if (!in_range(zeta, by.delta)) return LACONIC_OVERFLOW;
-    path = scaled(h, by.mean);
+    const vector path = scaled(h, by.mean);
     if (LACONIC_WITH_POSE) moved = quadrature(&c, model, h, dot(vec(model->yaw_rate_of_zeta), path));
     return take(state, by.delta, path, moved);
 }

@@ -58,8 +58,7 @@ static inline real size(vector v) { return magnitude(v.x) + magnitude(v.y) + mag
 /* Σ|v| over rows of three. */
 static inline real rows_size(const real rows[][3], int32_t count) {
     real sum = R(0);
-    int32_t i;
-    for (i = 0; i < count; i++) sum += size(vec(rows[i]));
+    for (int32_t i = 0; i < count; i++) sum += size(vec(rows[i]));
     return sum;
 }
 

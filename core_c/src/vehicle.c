@@ -44,19 +44,17 @@ static laconic_status check_number(real value, const checked_number *number, int
 /* The numbers with rules from `first` to `last` of a struct. */
 static laconic_status check_numbers(const void *of, const checked_number *numbers, size_t count, uint8_t first,
                                     uint8_t last, int32_t item, laconic_refusal *why) {
-    size_t k;
-    for (k = 0; k < count; k++) {
-        laconic_status status;
+    for (size_t k = 0; k < count; k++) {
         if (numbers[k].rule < first || numbers[k].rule > last) continue;
-        status = check_number(*(const real *)((const char *)of + numbers[k].offset), &numbers[k], item, why);
+        const laconic_status status =
+            check_number(*(const real *)((const char *)of + numbers[k].offset), &numbers[k], item, why);
         if (status != LACONIC_OK) return status;
     }
     return LACONIC_OK;
 }
 
 static laconic_status check_body(const laconic_vehicle *v, laconic_refusal *why) {
-    uint8_t rule;
-    for (rule = LACONIC_RULE_POSITIVE; rule < LACONIC_RULE_COUNT; rule++) {
+    for (uint8_t rule = LACONIC_RULE_POSITIVE; rule < LACONIC_RULE_COUNT; rule++) {
         const laconic_status status = check_numbers(v, of_body, COUNT(of_body), rule, rule, 0, why);
         if (status != LACONIC_OK) return status;
     }
@@ -73,11 +71,10 @@ static laconic_status check_wheel(const laconic_wheel *w, int32_t item, laconic_
 }
 
 static laconic_status check_supports(const laconic_vehicle *v, laconic_refusal *why) {
-    int32_t i;
     if (v->support_count < 0 || v->support_count > LACONIC_MAX_SUPPORTS)
         return refuse(why, LACONIC_TOO_MANY_SUPPORTS, LACONIC_FIELD_SUPPORT_COUNT, 0, (real)v->support_count,
                       R(LACONIC_MAX_SUPPORTS));
-    for (i = 0; i < v->support_count; i++) {
+    for (int32_t i = 0; i < v->support_count; i++) {
         const laconic_status status = check_numbers(&v->support[i], of_support, COUNT(of_support),
                                                     LACONIC_RULE_POSITIVE, LACONIC_RULE_ROLLER, i + 1, why);
         if (status != LACONIC_OK) return status;
@@ -86,13 +83,12 @@ static laconic_status check_supports(const laconic_vehicle *v, laconic_refusal *
 }
 
 laconic_status laconic_vehicle_check(const laconic_vehicle *vehicle, laconic_refusal *why) {
-    int32_t i;
     laconic_status status = check_body(vehicle, why);
     if (status != LACONIC_OK) return status;
     if (vehicle->wheel_count < 0 || vehicle->wheel_count > LACONIC_MAX_WHEELS)
         return refuse(why, LACONIC_TOO_MANY_WHEELS, LACONIC_FIELD_WHEEL_COUNT, 0, (real)vehicle->wheel_count,
                       R(LACONIC_MAX_WHEELS));
-    for (i = 0; i < vehicle->wheel_count; i++) {
+    for (int32_t i = 0; i < vehicle->wheel_count; i++) {
         status = check_wheel(&vehicle->wheel[i], i + 1, why);
         if (status != LACONIC_OK) return status;
     }

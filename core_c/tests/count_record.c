@@ -39,9 +39,8 @@ int main(int argc, char **argv) {
     laconic_contact contact;
     laconic_plant plant;
     laconic_recorder recorder = {NULL, NULL, every, COLUMNS - 1, column, row, 0, MOST_STEPS};
-    size_t k;
     if (steps > MOST_STEPS) return 2;
-    for (k = 0; k < sizeof value / sizeof value[0]; k++) value[k] = REAL(0.001) * (laconic_real)(k % 100);
+    for (size_t k = 0; k < sizeof value / sizeof value[0]; k++) value[k] = REAL(0.001) * (laconic_real)(k % 100);
     if (laconic_plant_start(&plant, &vehicle, &laconic_auto, REAL(0.01), &start, NULL) != LACONIC_OK) return 1;
     if (laconic_contact_prepare(&contact, &vehicle, NULL) != LACONIC_OK) return 1;
     if (watch > 0) {

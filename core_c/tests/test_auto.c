@@ -1,3 +1,4 @@
+/* Tests of auto.c: which method is chosen when, and what happens to steps that it refuses. */
 #include "stiff.h"
 
 /* -------------------------------------------------------------------------------- the choice -- */

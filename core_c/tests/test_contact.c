@@ -1,3 +1,4 @@
+/* Tests of contact.c: reactions, brakes, normal loads and the no-slip margin. */
 #include "vehicles.h"
 
 #define GRAVITY 9.80665
@@ -33,22 +34,20 @@ static laconic_start turning_start(double nu1, double nu2, double nu3) {
 static void forces_balance(const scene *s) {
     laconic_rates rates;
     laconic_real nu[3];
-    double fx, fy, moment, ax, ay;
     const double cosine = cos(0.7), sine = sin(0.7),
                  yaw_inertia = (double)s->model.yaw_scale * (double)s->model.yaw_scale * (double)s->model.mass_kg *
                                RADIUS * RADIUS;
     const double along = cosine * (double)s->input.world_force_N[0] + sine * (double)s->input.world_force_N[1];
     const double across = cosine * (double)s->input.world_force_N[1] - sine * (double)s->input.world_force_N[0];
-    int i;
     laconic_nu(&s->model, &s->state, nu);
     laconic_derivative(&rates, &s->model, nu, REAL(0.7), &s->input);
-    ax = RADIUS * ((double)rates.nu_rad_per_s2[0] - (double)rates.yaw_rate_rad_per_s * (double)nu[1]);
-    ay = RADIUS * ((double)rates.nu_rad_per_s2[1] + (double)rates.yaw_rate_rad_per_s * (double)nu[0]);
-    fx = (double)s->input.body_force_N[0] + along;
-    fy = (double)s->input.body_force_N[1] + across;
-    moment = (double)s->input.body_moment_Nm + (double)s->input.world_force_point_m[0] * across -
-             (double)s->input.world_force_point_m[1] * along;
-    for (i = 0; i < s->vehicle.wheel_count; i++) {
+    const double ax = RADIUS * ((double)rates.nu_rad_per_s2[0] - (double)rates.yaw_rate_rad_per_s * (double)nu[1]);
+    const double ay = RADIUS * ((double)rates.nu_rad_per_s2[1] + (double)rates.yaw_rate_rad_per_s * (double)nu[0]);
+    double fx = (double)s->input.body_force_N[0] + along;
+    double fy = (double)s->input.body_force_N[1] + across;
+    double moment = (double)s->input.body_moment_Nm + (double)s->input.world_force_point_m[0] * across -
+                    (double)s->input.world_force_point_m[1] * along;
+    for (int i = 0; i < s->vehicle.wheel_count; i++) {
         const laconic_wheel *w = &s->vehicle.wheel[i];
         const double roller = w->kind == LACONIC_WHEEL_FIXED ? PI / 2 : (double)w->roller_rad;
         const double pull = (double)w->axle_rad + roller, axle = (double)w->axle_rad;
@@ -97,15 +96,14 @@ static void a_roller_wheels_reaction_is_torque_less_its_own_inertia(void) {
     scene s;
     laconic_rates rates, later;
     laconic_real nu[3], torque[4], after[3];
-    int i, k;
     const double dt = EITHER(1e-4, 1e-2);
     judge(&s, with_motors(mecanum()), turning_start(0.7, -0.4, 1.9), every_input());
     laconic_nu(&s.model, &s.state, nu);
     laconic_derivative(&rates, &s.model, nu, REAL(0.7), &s.input);
-    for (k = 0; k < 3; k++) after[k] = nu[k] + REAL(dt) * rates.nu_rad_per_s2[k];
+    for (int k = 0; k < 3; k++) after[k] = nu[k] + REAL(dt) * rates.nu_rad_per_s2[k];
     laconic_derivative(&later, &s.model, after, REAL(0.7), &s.input); /* χ' is linear in ν: a difference is exact */
     laconic_wheel_torques(&s.model, &s.state, &s.input, torque);
-    for (i = 0; i < 4; i++) {
+    for (int i = 0; i < 4; i++) {
         const double acceleration =
             ((double)later.wheel_speed_rad_per_s[i] - (double)rates.wheel_speed_rad_per_s[i]) / dt;
         const double expected =
@@ -161,9 +159,8 @@ static void a_brake_holds_a_push(void) {
 
 static void standing_on_four_wheels_each_carries_a_quarter(void) {
     scene s;
-    int i;
     judge(&s, mecanum(), start_with(0, 0, 0), no_input());
-    for (i = 0; i < 4; i++) ASSERT_NEAR(EITHER(1e-12, 1e-4), MASS * GRAVITY / 4, s.out.normal_N[i]);
+    for (int i = 0; i < 4; i++) ASSERT_NEAR(EITHER(1e-12, 1e-4), MASS * GRAVITY / 4, s.out.normal_N[i]);
 }
 
 /* Two wheels at ξ = ±0.075 and a caster at η = 0.1, S at η = 0.02: the caster carries 0.02/0.1 of the weight. */
@@ -185,13 +182,11 @@ static void acceleration_shifts_load_to_the_rear(void) {
     laconic_input input = no_input();
     laconic_rates rates;
     const laconic_real rest[3] = {0, 0, 0};
-    double shift;
-    int i;
     v.com_z_m = REAL(0.12);
-    for (i = 0; i < 4; i++) input.voltage_V[i] = REAL(0.5);
+    for (int i = 0; i < 4; i++) input.voltage_V[i] = REAL(0.5);
     judge(&s, v, start_with(0, 0, 0), input);
     laconic_derivative(&rates, &s.model, rest, 0, &input);
-    shift = MASS * RADIUS * (double)rates.nu_rad_per_s2[0] * 0.12 / (4 * 0.2);
+    const double shift = MASS * RADIUS * (double)rates.nu_rad_per_s2[0] * 0.12 / (4 * 0.2);
     TEST_ASSERT_TRUE(shift > 0.1);
     ASSERT_NEAR(EITHER(1e-11, 2e-4), MASS * GRAVITY / 4 - shift, s.out.normal_N[0]);
     ASSERT_NEAR(EITHER(1e-11, 2e-4), MASS * GRAVITY / 4 + shift, s.out.normal_N[3]);
@@ -201,10 +196,9 @@ static void the_no_slip_margin_is_the_least_of_all_wheels(void) {
     scene s;
     laconic_vehicle v = with_motors(three_wheels());
     double least = HUGE_VAL;
-    int i;
     v.friction_coefficient = REAL(0.6);
     judge(&s, v, turning_start(0.7, -0.4, 1.9), every_input());
-    for (i = 0; i < 3; i++) {
+    for (int i = 0; i < 3; i++) {
         const double needed = hypot((double)s.out.along_N[i], (double)s.out.lateral_N[i]);
         const double margin = 0.6 * (double)s.out.normal_N[i] - needed;
         if (margin < least) least = margin;

@@ -1,3 +1,4 @@
+/* Tests of derivative.c against the paper's formulas. */
 #include "reference.h"
 
 static void is_the_papers_right_hand_side(laconic_vehicle v) {
@@ -5,12 +6,10 @@ static void is_the_papers_right_hand_side(laconic_vehicle v) {
     const reference p = reference_of(&v);
     const laconic_input input = every_input();
     const laconic_real nu[3] = {REAL(0.8), REAL(-1.3), REAL(2.1)};
-    double heading;
-    for (heading = -7; heading < 7; heading += 0.9) {
+    for (double heading = -7; heading < 7; heading += 0.9) {
         double y[6 + LACONIC_MAX_WHEELS] = {0}, rate[6 + LACONIC_MAX_WHEELS];
         laconic_rates rates;
-        int i;
-        for (i = 0; i < 3; i++) y[i] = (double)nu[i];
+        for (int i = 0; i < 3; i++) y[i] = (double)nu[i];
         y[5] = (double)REAL(heading);
         reference_rate(&p, y, &input, rate);
         laconic_derivative(&rates, &model, nu, REAL(heading), &input);
@@ -53,10 +52,9 @@ static void the_caster_follows_section_3(void) {
     const double force = 3.0, arm = 0.12;
     const laconic_real nu[3] = {REAL(0.5), 0, REAL(-0.8)};
     laconic_input input = no_input();
-    double heading;
     input.world_force_N[0] = REAL(force);
     input.world_force_point_m[0] = REAL(-arm);
-    for (heading = -3; heading < 3; heading += 0.7) {
+    for (double heading = -3; heading < 3; heading += 0.7) {
         laconic_rates rates;
         laconic_derivative(&rates, &model, nu, REAL(heading), &input);
         ASSERT_NEAR(EITHER(1e-13, 2e-5), RADIUS * force * cos(heading) / (0.009 + UNIT_INERTIA),

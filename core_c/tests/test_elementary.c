@@ -1,3 +1,4 @@
+/* Tests of elementary.c against libm, over the whole range. */
 #include "elementary.h"
 
 #include "check.h"
@@ -24,8 +25,7 @@ static void the_root_of_nothing_or_less_is_zero_and_of_infinity_infinity(void) {
 }
 
 static void the_exponential_decays_as_libm_says(void) {
-    double a;
-    for (a = 0; a < EITHER(700, 80); a += 0.037) {
+    for (double a = 0; a < EITHER(700, 80); a += 0.037) {
         const double exact = exp(-(double)REAL(a));
         TEST_ASSERT_TRUE(relative(exact, (double)laconic_decaying_exponential(REAL(a))) < 8 * (double)LACONIC_EPSILON);
     }
@@ -56,8 +56,7 @@ static void very_large_angles_are_as_good_as_the_angle_itself(void) {
 static void a_quarter_turn_is_exact(void) {
     const laconic_turn quarter = (laconic_turn)1 << (sizeof(laconic_turn) * 8 - 2);
     const double expected[4][2] = {{1, 0}, {0, 1}, {-1, 0}, {0, -1}};
-    unsigned k;
-    for (k = 0; k < 4; k++) {
+    for (unsigned k = 0; k < 4; k++) {
         const direction d = laconic_direction_of_turn((laconic_turn)(k * quarter));
         TEST_ASSERT_EQUAL_DOUBLE(expected[k][0], (double)d.cosine);
         TEST_ASSERT_EQUAL_DOUBLE(expected[k][1], (double)d.sine);
@@ -65,8 +64,7 @@ static void a_quarter_turn_is_exact(void) {
 }
 
 static void turns_and_angles_agree(void) {
-    double angle;
-    for (angle = -20; angle < 20; angle += 0.0173) {
+    for (double angle = -20; angle < 20; angle += 0.0173) {
         const direction d = laconic_direction_of_turn(laconic_turn_of_angle(REAL(angle)));
         ASSERT_NEAR(EITHER(4e-15, 3e-6), cos((double)REAL(angle)), d.cosine);
         ASSERT_NEAR(EITHER(4e-15, 3e-6), sin((double)REAL(angle)), d.sine);
@@ -84,9 +82,8 @@ static void an_angle_without_a_direction_counts_as_zero(void) {
 static double phi_by_quadrature(int k, double a) {
     const int n = 60000;
     double sum = 0, factorial = 1;
-    int i;
-    for (i = 2; i < k; i++) factorial *= i;
-    for (i = 0; i <= n; i++) {
+    for (int i = 2; i < k; i++) factorial *= i;
+    for (int i = 0; i <= n; i++) {
         const double s = (double)i / n, weight = i == 0 || i == n ? 1 : i % 2 == 1 ? 4 : 2;
         sum += weight * exp(-(1 - s) * a) * pow(s, k - 1) / factorial;
     }
@@ -95,12 +92,10 @@ static double phi_by_quadrature(int k, double a) {
 
 static void phi_functions_agree_with_their_integrals(void) {
     const double arguments[] = {0, 1e-6, 0.01, 0.3, 1, 2.5, 3.9, 4.0, 4.1, 10, 60};
-    size_t i;
-    int k;
-    for (i = 0; i < sizeof arguments / sizeof arguments[0]; i++) {
+    for (size_t i = 0; i < sizeof arguments / sizeof arguments[0]; i++) {
         laconic_real phi[6];
         laconic_phi(phi, REAL(arguments[i]));
-        for (k = 1; k <= 5; k++) {
+        for (int k = 1; k <= 5; k++) {
             const double exact = phi_by_quadrature(k, (double)REAL(arguments[i]));
             ASSERT_NEAR(EITHER(4e-13, 2e-6) * exact, exact, phi[k]);
         }

@@ -1,3 +1,4 @@
+/* Tests of exact_flow.c: order, energy and K, free motion in closed form, refusals. */
 #include "exact_flow.c" /* its turns by large angles are nobody else's business */
 
 #include "stiff.h"
@@ -12,8 +13,7 @@ static void is_of_second_order_under_everything_that_can_act(void) {
 
 static void free_motion_is_exact_at_any_step(laconic_vehicle v, laconic_start start, double time) {
     const laconic_input input = no_input();
-    int steps;
-    for (steps = 1; steps < 40; steps *= 3) {
+    for (int steps = 1; steps < 40; steps *= 3) {
         const errors e = errors_of(&laconic_exact_flow, &v, start, &input, time, steps);
         TEST_ASSERT_TRUE(e.nu < EITHER(2e-12, 2e-5));
     }
@@ -72,13 +72,11 @@ static void energy_stays_even_at_steps_of_many_turns(void) {
 static void damped_motion_loses_energy_at_every_step_size(void) {
     const laconic_model m = model_of(with_motors(three_wheels()));
     const laconic_input input = no_input();
-    double step;
-    for (step = 1e-3; step < 1e3; step *= 3.7) {
+    for (double step = 1e-3; step < 1e3; step *= 3.7) {
         const laconic_integrator in = integrator_of(&laconic_exact_flow, &m, step);
         laconic_state state = moving(&m, 20, -30, 40);
         laconic_real energy = laconic_energy_J(&m, &state);
-        int i;
-        for (i = 0; i < 50; i++) {
+        for (int i = 0; i < 50; i++) {
             ASSERT_STATUS(LACONIC_OK, laconic_step(&m, &in, &state, &input));
             TEST_ASSERT_TRUE((double)laconic_energy_J(&m, &state) <=
                              (double)energy * (1 + 4 * (double)LACONIC_EPSILON));

@@ -1,3 +1,4 @@
+/* Tests of exponential_kahan.c: order, steady motions, stiff vehicles, refusals. */
 #include "kahan.h"
 
 /* ------------------------------------------------------------------------------ second order -- */

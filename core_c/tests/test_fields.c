@@ -1,3 +1,4 @@
+/* Tests of fields.c: names, places and traits of the vehicle's fields. */
 #include "check.h"
 
 #define NUMBER(of, number, ...) (laconic_field) number,
@@ -5,12 +6,11 @@ static const laconic_field every_field[] = {LACONIC_ALL_FIELDS(NUMBER)};
 #define FIELDS (sizeof every_field / sizeof every_field[0])
 
 static void every_field_has_a_name_a_path_and_traits_of_its_own(void) {
-    size_t a, b;
-    for (a = 0; a < FIELDS; a++) {
+    for (size_t a = 0; a < FIELDS; a++) {
         const char *name = laconic_field_name(every_field[a]), *path = laconic_field_path(every_field[a]);
         TEST_ASSERT_TRUE(every_field[a] > LACONIC_FIELD_NONE && every_field[a] < LACONIC_FIELD_COUNT);
         TEST_ASSERT_TRUE(*name != '\0' && *path != '\0' && laconic_field_traits_of(every_field[a]) != NULL);
-        for (b = 0; b < a; b++) {
+        for (size_t b = 0; b < a; b++) {
             TEST_ASSERT_TRUE(strcmp(name, laconic_field_name(every_field[b])) != 0);
             TEST_ASSERT_TRUE(strcmp(path, laconic_field_path(every_field[b])) != 0);
         }
@@ -19,8 +19,7 @@ static void every_field_has_a_name_a_path_and_traits_of_its_own(void) {
 
 /* Both end in the same key. */
 static void a_path_ends_in_the_key_that_the_name_ends_in(void) {
-    size_t k;
-    for (k = 0; k < FIELDS; k++) {
+    for (size_t k = 0; k < FIELDS; k++) {
         const char *name = laconic_field_name(every_field[k]), *path = laconic_field_path(every_field[k]);
         const char *dot = strrchr(path, '.'), *key = dot != NULL ? dot + 1 : path;
         const size_t length = strcspn(key, "[");
@@ -82,8 +81,7 @@ static void numbers_stay_for_good(void) {
 
 static void numbers_that_are_none_are_survived(void) {
     const int none[] = {LACONIC_FIELD_NONE, LACONIC_FIELD_COUNT, 1000};
-    int k;
-    for (k = 0; k < 3; k++) {
+    for (int k = 0; k < 3; k++) {
         TEST_ASSERT_EQUAL_STRING("", laconic_field_name((laconic_field)none[k]));
         TEST_ASSERT_EQUAL_STRING("", laconic_field_path((laconic_field)none[k]));
         TEST_ASSERT_NULL(laconic_field_traits_of((laconic_field)none[k]));

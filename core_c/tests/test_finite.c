@@ -61,8 +61,7 @@ static void change(laconic_vehicle *v) {
 }
 
 static void assert_finite(const laconic_real *numbers, size_t count) {
-    size_t i;
-    for (i = 0; i < count; i++)
+    for (size_t i = 0; i < count; i++)
         if (!isfinite((double)numbers[i])) TEST_FAIL_MESSAGE("a number that was accepted is not finite");
 }
 
@@ -122,20 +121,19 @@ static void change_and_step(laconic_plant *plant, laconic_vehicle v) {
 }
 
 static void extreme_vehicles_and_changes_are_refused_or_finite(void) {
-    int i, k;
     seed = 88172645463325252U;
-    for (i = 0; i < 3000; i++) {
+    for (int i = 0; i < 3000; i++) {
         const laconic_vehicle v = any_vehicle();
         const laconic_method *method = laconic_method_by_number(i % LACONIC_METHOD_COUNT);
         laconic_start start = start_with(0, 0, 0);
         laconic_plant plant;
         memset(&plant, 0, sizeof plant);
         start.x_m = either_sign(extreme());
-        for (k = 0; k < 3 && !one_in(2); k++) start.nu_rad_per_s[k] = either_sign(usual());
+        for (int k = 0; k < 3 && !one_in(2); k++) start.nu_rad_per_s[k] = either_sign(usual());
         if (laconic_plant_start(&plant, &v, method, usual(), &start, NULL) != LACONIC_OK) continue;
         assert_plant_finite(&plant);
         assert_contact_finite(&v);
-        for (k = 0; k < 8; k++) change_and_step(&plant, v);
+        for (int k = 0; k < 8; k++) change_and_step(&plant, v);
     }
     TEST_ASSERT_TRUE(accepted > 2000);
 }

@@ -1,3 +1,4 @@
+/* Tests of geometry.c: payload, and the rows of wheels and constraints. */
 #include "geometry.h"
 
 #include "vehicles.h"
@@ -51,10 +52,9 @@ static void a_fixed_wheel_pulls_where_it_rolls_whatever_its_roller_angle(void) {
 static void rows_are_the_velocity_of_the_wheels_centre(void) {
     const laconic_vehicle v = three_wheels();
     const double nu[3] = {0.7, -0.4, 1.1};
-    int i;
     body b;
     laconic_body_of(&b, &v);
-    for (i = 0; i < 3; i++) {
+    for (int i = 0; i < 3; i++) {
         const double px = (double)v.wheel[i].x_m, py = (double)v.wheel[i].y_m - DELTA * RADIUS;
         const double yaw = nu[2] / BIG_LAMBDA;
         const double vx = RADIUS * nu[0] - yaw * py, vy = RADIUS * nu[1] + yaw * px;

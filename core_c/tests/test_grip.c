@@ -1,3 +1,4 @@
+/* Tests of grip.c: the first and the worst instant of slipping and of lifting. */
 #include "vehicles.h"
 
 #define GRAVITY 9.80665
@@ -33,8 +34,7 @@ static laconic_reactions look_at(scene *s, laconic_input input, uint64_t steps) 
 /* All wheels pull forward with the same voltage, the first with some more. */
 static laconic_input forward(double volts) {
     laconic_input input = no_input();
-    int i;
-    for (i = 0; i < 4; i++) input.voltage_V[i] = REAL(volts);
+    for (int i = 0; i < 4; i++) input.voltage_V[i] = REAL(volts);
     input.voltage_V[0] = REAL(1.5 * volts);
     return input;
 }

@@ -8,13 +8,11 @@
 static void the_wrapped_heading_lies_in_minus_pi_to_pi(void) {
     laconic_heading heading = {0, 0, 0};
     double angle = 0;
-    int i;
-    for (i = 0; i < 2000; i++) {
+    for (int i = 0; i < 2000; i++) {
         const laconic_real step = REAL(i % 3 == 0 ? -0.7 : 0.9);
-        double wrapped;
         heading_advance(&heading, step);
         angle += (double)step;
-        wrapped = (double)heading_wrapped(&heading);
+        const double wrapped = (double)heading_wrapped(&heading);
         TEST_ASSERT_TRUE(wrapped > -PI - 1e-6 && wrapped <= PI + 1e-6);
         ASSERT_NEAR(EITHER(1e-9, 1e-3), cos(angle), cos(wrapped));
         ASSERT_NEAR(EITHER(1e-9, 1e-3), sin(angle), sin(wrapped));
@@ -32,8 +30,7 @@ static void half_a_turn_is_pi_and_never_minus_pi(void) {
 
 static void resolution_does_not_fall_with_the_number_of_turns(void) {
     laconic_heading near = {0, 0, 0}, far = {1000000000, 0, 0};
-    int i;
-    for (i = 0; i < 1000; i++) {
+    for (int i = 0; i < 1000; i++) {
         heading_advance(&near, REAL(0.01));
         heading_advance(&far, REAL(0.01));
     }
@@ -64,8 +61,7 @@ static void a_compensated_sum_loses_nothing(void) {
     laconic_sum sum = sum_of(REAL(1));
     laconic_real plain = REAL(1);
     const double addend = EITHER(1e-17, 1e-9);
-    int i;
-    for (i = 0; i < 1000000; i++) {
+    for (int i = 0; i < 1000000; i++) {
         sum_add(&sum, REAL(addend));
         plain += REAL(addend);
     }

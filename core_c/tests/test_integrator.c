@@ -1,3 +1,4 @@
+/* Tests of integrator.c: which steps a method takes, and what is prepared for them. */
 #include "step_internals.h"
 
 #include "methods.h"
@@ -18,8 +19,7 @@ static void refuses(const laconic_method *method, double step, laconic_status st
 }
 
 static void steps_that_are_none_are_refused(void) {
-    int32_t i;
-    for (i = 0; i < LACONIC_METHOD_COUNT; i++) {
+    for (int32_t i = 0; i < LACONIC_METHOD_COUNT; i++) {
         const laconic_method *method = laconic_method_by_number(i);
         refuses(method, 0, LACONIC_NOT_POSITIVE, LACONIC_FIELD_STEP);
         refuses(method, -0.01, LACONIC_NOT_POSITIVE, LACONIC_FIELD_STEP);
@@ -29,8 +29,7 @@ static void steps_that_are_none_are_refused(void) {
 }
 
 static void a_step_of_decades_is_refused_with_the_longest_there_is(void) {
-    int32_t i;
-    for (i = 0; i < LACONIC_METHOD_COUNT; i++) {
+    for (int32_t i = 0; i < LACONIC_METHOD_COUNT; i++) {
         refuses(laconic_method_by_number(i), 2e9, LACONIC_OVERFLOW, LACONIC_FIELD_STEP);
     }
 }
@@ -56,9 +55,8 @@ static void a_good_step_is_kept_with_its_method(void) {
 
 static void the_fastest_decay_is_the_largest_of_all_axes(void) {
     laconic_model m;
-    int k;
     memset(&m, 0, sizeof m);
-    for (k = 0; k < 3; k++) {
+    for (int k = 0; k < 3; k++) {
         m.decay_per_s[k] = REAL(k + 1);
         TEST_ASSERT_EQUAL_DOUBLE(k + 1, (double)laconic_fastest_decay(&m));
     }
@@ -90,21 +88,20 @@ static void factors_are_those_of_the_damped_axis(void) {
     const int n = 20000;
     laconic_model m;
     laconic_decay d;
-    int k, i;
     memset(&m, 0, sizeof m);
-    for (k = 0; k < 3; k++) m.decay_per_s[k] = REAL(rates[k]);
+    for (int k = 0; k < 3; k++) m.decay_per_s[k] = REAL(rates[k]);
     laconic_decay_of(&d, &m, REAL(0.8));
-    for (k = 0; k < 3; k++) {
+    for (int k = 0; k < 3; k++) {
         const axis a = {rates[k], 0.8, 1.3, -0.4, 2.1, -1.7};
-        double zeta = a.zeta, mean = 0, moment = 0, delta;
-        for (i = 0; i <= n; i++) {
+        double zeta = a.zeta, mean = 0, moment = 0;
+        for (int i = 0; i <= n; i++) {
             const double weight = (i == 0 || i == n ? 1 : i % 2 == 1 ? 4 : 2) / (3.0 * n);
             mean += weight * zeta;
             moment += weight * ((double)i / n - 0.5) * zeta;
             if (i < n) zeta = next(&a, zeta, a.step * i / n, a.step / n);
         }
-        delta = (double)d.gain[k] *
-                (a.start - a.rate * a.zeta + (double)d.mean[k] * a.change + (double)d.bend[k] * a.curve);
+        const double delta = (double)d.gain[k] *
+                             (a.start - a.rate * a.zeta + (double)d.mean[k] * a.change + (double)d.bend[k] * a.curve);
         ASSERT_NEAR(EITHER(1e-11, 1e-5), zeta - a.zeta, delta);
         ASSERT_NEAR(EITHER(1e-11, 1e-5), mean,
                     a.zeta + (double)d.mean[k] * delta + (double)d.mean_ramp[k] * a.change +
@@ -170,9 +167,8 @@ static void fast_turning_limits_free_and_damped_vehicles(void) {
 static void the_implicit_methods_bear_any_step(void) {
     const laconic_model m = model_of(with_motors(three_wheels()));
     const laconic_state state = moving(&m, 10, 10, 400);
-    int32_t i;
     TEST_ASSERT_EQUAL_DOUBLE(0.0, (double)laconic_largest_stable_step_s(&laconic_auto, &m, &state));
-    for (i = 2; i <= 5; i++)
+    for (int32_t i = 2; i <= 5; i++)
         TEST_ASSERT_EQUAL_DOUBLE(0.0, (double)laconic_largest_stable_step_s(laconic_method_by_number(i), &m, &state));
 }
 
@@ -186,11 +182,10 @@ static void damping_near_the_end_of_the_range_still_has_a_limit(void) {
     laconic_vehicle v = three_wheels();
     laconic_model m;
     laconic_state rest;
-    double limit;
     v.motor_damping_Nms = REAL(EITHER(1e150, 1e15));
     m = model_of(v);
     rest = moving(&m, 0, 0, 0);
-    limit = (double)laconic_largest_stable_step_s(&laconic_rk4, &m, &rest);
+    const double limit = (double)laconic_largest_stable_step_s(&laconic_rk4, &m, &rest);
     TEST_ASSERT_TRUE(limit > 0 && limit < 1e-10);
 }
 
@@ -225,8 +220,7 @@ static void the_tolerance_is_of_the_step_not_of_the_time(void) {
 static void intervals_and_steps_that_are_none_are_refused(void) {
     const double bad[] = {0, -1, (double)NAN, HUGE_VAL, -HUGE_VAL};
     uint64_t steps = 0;
-    size_t i;
-    for (i = 0; i < 5; i++) {
+    for (size_t i = 0; i < 5; i++) {
         ASSERT_STATUS(LACONIC_STEP_DOES_NOT_FIT, laconic_steps_in(bad[i], 0.01, &steps, &why));
         TEST_ASSERT_NOT_EQUAL(LACONIC_OK, laconic_steps_in(1.0, bad[i], &steps, &why));
         TEST_ASSERT_EQUAL_STRING("step_s", laconic_field_name(why.field));

@@ -1,3 +1,4 @@
+/* Tests of matrices.c against the paper's examples. */
 #include "vehicles.h"
 
 static laconic_matrices x;
@@ -9,12 +10,11 @@ static void the_three_wheel_example_has_the_papers_matrices(void) {
     const double square = SMALL_LAMBDA * SMALL_LAMBDA;
     const double a3 = 1 + (2 * SIGMA * SIGMA + RHO * RHO) * square;
     const double inertia[3][3] = {{1 + square, 0, -RHO * square}, {0, 1 + 2 * square, 0}, {-RHO * square, 0, a3}};
-    int i;
     ASSERT_STATUS(LACONIC_OK, laconic_matrices_of(&x, &v, &why));
     ASSERT_NEAR(4 * ROUNDING, BIG_LAMBDA, x.lambda_yaw);
     ASSERT_NEAR(ROUNDING, SMALL_LAMBDA, x.lambda_wheel);
     TEST_ASSERT_EQUAL_INT(0, x.constraint_count);
-    for (i = 0; i < 3; i++) {
+    for (int i = 0; i < 3; i++) {
         ASSERT_NEAR_ALL(ROUNDING, rows[i], x.wheel_rows[i], 3);
         ASSERT_NEAR_ALL(ROUNDING, inertia[i], x.inertia[i], 3);
     }
@@ -22,12 +22,11 @@ static void the_three_wheel_example_has_the_papers_matrices(void) {
 
 static void the_inverse_inertia_is_the_inverse(void) {
     const laconic_vehicle v = mecanum();
-    int r, c, k;
     ASSERT_STATUS(LACONIC_OK, laconic_matrices_of(&x, &v, &why));
-    for (r = 0; r < 3; r++)
-        for (c = 0; c < 3; c++) {
+    for (int r = 0; r < 3; r++)
+        for (int c = 0; c < 3; c++) {
             double sum = 0;
-            for (k = 0; k < 3; k++) sum += (double)x.inertia[r][k] * (double)x.inverse_inertia[k][c];
+            for (int k = 0; k < 3; k++) sum += (double)x.inertia[r][k] * (double)x.inverse_inertia[k][c];
             ASSERT_NEAR(8 * ROUNDING, r == c ? 1 : 0, sum);
         }
 }
@@ -36,20 +35,18 @@ static void mecanum_rows_are_the_textbooks(void) {
     const laconic_vehicle v = mecanum();
     const double lever = (0.2 + 0.15) / (RADIUS * BIG_LAMBDA);
     const double rows[4][3] = {{1, -1, -lever}, {1, 1, lever}, {1, 1, -lever}, {1, -1, lever}};
-    int i;
     ASSERT_STATUS(LACONIC_OK, laconic_matrices_of(&x, &v, &why));
-    for (i = 0; i < 4; i++) ASSERT_NEAR_ALL(10 * ROUNDING, rows[i], x.wheel_rows[i], 3);
+    for (int i = 0; i < 4; i++) ASSERT_NEAR_ALL(10 * ROUNDING, rows[i], x.wheel_rows[i], 3);
 }
 
 static void the_differential_drive_has_the_papers_rows_and_constraint(void) {
     const laconic_vehicle v = differential_drive();
     const double rows[2][3] = {{0, 1, DRIVE_SIGMA}, {0, -1, DRIVE_SIGMA}};
     const double lateral[3] = {1, 0, DELTA / BIG_LAMBDA};
-    int i, k;
     ASSERT_STATUS(LACONIC_OK, laconic_matrices_of(&x, &v, NULL));
     TEST_ASSERT_EQUAL_INT(2, x.constraint_count);
-    for (i = 0; i < 2; i++) ASSERT_NEAR_ALL(ROUNDING, rows[i], x.wheel_rows[i], 3);
-    for (k = 0; k < 3; k++) {
+    for (int i = 0; i < 2; i++) ASSERT_NEAR_ALL(ROUNDING, rows[i], x.wheel_rows[i], 3);
+    for (int k = 0; k < 3; k++) {
         ASSERT_NEAR(ROUNDING, lateral[k], x.constraint_rows[0][k]);
         ASSERT_NEAR(ROUNDING, -lateral[k], x.constraint_rows[1][k]);
     }

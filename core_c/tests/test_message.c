@@ -1,3 +1,4 @@
+/* Tests of message.c: a refusal in words, numbers included. */
 #include "check.h"
 
 #include <stdio.h>
@@ -43,17 +44,15 @@ static void without_a_field_only_the_reason_is_said(void) {
 }
 
 static void every_status_has_a_text_and_a_number_that_is_none_too(void) {
-    int status;
-    for (status = 1; status < LACONIC_STATUS_COUNT; status++)
+    for (int status = 1; status < LACONIC_STATUS_COUNT; status++)
         TEST_ASSERT_TRUE(strlen(message((laconic_status)status, LACONIC_FIELD_NONE, 0, 1, 2)) > 10);
     TEST_ASSERT_EQUAL_STRING("unknown status", message((laconic_status)1000, LACONIC_FIELD_NONE, 0, 0, 0));
 }
 
 static void every_status_has_words_of_its_own(void) {
-    int a, b;
-    for (a = 0; a < LACONIC_STATUS_COUNT; a++) {
+    for (int a = 0; a < LACONIC_STATUS_COUNT; a++) {
         TEST_ASSERT_NOT_EQUAL(0, strlen(laconic_status_name((laconic_status)a)));
-        for (b = 0; b < a; b++)
+        for (int b = 0; b < a; b++)
             TEST_ASSERT_TRUE(strcmp(laconic_status_name((laconic_status)a), laconic_status_name((laconic_status)b)) !=
                              0);
     }
@@ -76,8 +75,7 @@ static void numbers_look_as_printf_would_show_them(void) {
     const double values[] = {1,      -1,     0.1,     123456,   999999, 1e6,   1.5e6,  0.0001, 0.000123456, 0.00001,
                              2.5e-5, -3e-7,  3.14159, 100,      1e10,   1e30,  -1e-30, 0.5,    42.25,       999999.7,
                              12.5,   0.0625, 1234.5,  0.999999, 0.0099, 65536, 7e-12,  -8,     31.4159};
-    size_t i;
-    for (i = 0; i < sizeof values / sizeof values[0]; i++) {
+    for (size_t i = 0; i < sizeof values / sizeof values[0]; i++) {
         char expected[40];
         double read = 0;
         snprintf(expected, sizeof expected, "%.6g", values[i]);

@@ -1,11 +1,11 @@
+/* Tests of methods.c: numbers and names of the methods. */
 #include "check.h"
 
 static void every_number_has_its_method_and_every_name_leads_back(void) {
     const char *const names[LACONIC_METHOD_COUNT] = {
         "auto", "rk4", "exponential-kahan", "exponential-kahan-4", "exact-flow", "exact-flow-4", "taylor-8"};
     const int32_t orders[LACONIC_METHOD_COUNT] = {4, 4, 2, 4, 2, 4, 8};
-    int32_t i;
-    for (i = 0; i < LACONIC_METHOD_COUNT; i++) {
+    for (int32_t i = 0; i < LACONIC_METHOD_COUNT; i++) {
         const laconic_method *method = laconic_method_by_number(i);
         TEST_ASSERT_NOT_NULL(method);
         TEST_ASSERT_EQUAL_STRING(names[i], method->name);

@@ -1,3 +1,4 @@
+/* Tests of motor.c: a data sheet becomes constants, or is refused. */
 #include "vehicles.h"
 
 static laconic_refusal why;

@@ -1,3 +1,4 @@
+/* Tests of outputs.c: velocities, pose, wheels, torques and energy. */
 #include "methods.h"
 
 /* -------------------------------------------------------------------------------- velocities -- */
@@ -34,13 +35,12 @@ static void the_origin_lies_where_the_heading_puts_it(void) {
     laconic_model m;
     laconic_state state;
     laconic_pose pose;
-    double heading;
     v.com_x_m = REAL(0.13);
     v.com_y_m = REAL(-0.07);
     m = model_of(v);
     start.x_m = REAL(2);
     start.y_m = REAL(-1);
-    for (heading = -9; heading < 9; heading += 0.77) {
+    for (double heading = -9; heading < 9; heading += 0.77) {
         start.heading_rad = REAL(heading);
         state = state_of(&m, start);
         laconic_pose_of(&pose, &m, &state);
@@ -60,8 +60,7 @@ static void it_is_the_pose_to_the_last_bit(void) {
     laconic_state state;
     laconic_pose pose;
     laconic_real x, y, heading;
-    double angle;
-    for (angle = -40; angle < 40; angle += 1.7) {
+    for (double angle = -40; angle < 40; angle += 1.7) {
         start.x_m = REAL(angle / 3);
         start.y_m = REAL(-angle);
         start.heading_rad = REAL(angle);
@@ -155,10 +154,9 @@ static void torque_is_gain_times_voltage_less_damping_plus_what_is_applied(void)
     const laconic_state state = moving(&m, 0.7, -0.4, 1.9);
     const laconic_input input = every_input();
     laconic_real speed[3], torque[3];
-    int i;
     laconic_wheel_speeds(&m, &state, speed);
     laconic_wheel_torques(&m, &state, &input, torque);
-    for (i = 0; i < 3; i++)
+    for (int i = 0; i < 3; i++)
         ASSERT_NEAR(2 * ROUNDING, GAIN * (1.5 - 0.7 * i) - DAMPING * (double)speed[i] + 0.02 * i - 0.03, torque[i]);
 }
 
@@ -180,9 +178,8 @@ static void energy_is_that_of_the_moving_masses(laconic_vehicle v, double nu1, d
     const double speed_square = RADIUS * RADIUS * (nu1 * nu1 + nu2 * nu2), yaw = nu3 / BIG_LAMBDA;
     double energy = 0.5 * MASS * speed_square + 0.5 * 0.225 * yaw * yaw;
     laconic_real wheel[LACONIC_MAX_WHEELS];
-    int i;
     laconic_wheel_speeds(&m, &state, wheel);
-    for (i = 0; i < v.wheel_count; i++) energy += 0.5 * 0.009 * (double)wheel[i] * (double)wheel[i];
+    for (int i = 0; i < v.wheel_count; i++) energy += 0.5 * 0.009 * (double)wheel[i] * (double)wheel[i];
     ASSERT_NEAR(8 * ROUNDING, energy, laconic_energy_J(&m, &state));
 }
 

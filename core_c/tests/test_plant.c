@@ -1,3 +1,4 @@
+/* Tests of plant.c: start, run and change of a vehicle that counts its steps. */
 #include "methods.h"
 
 static laconic_refusal why;

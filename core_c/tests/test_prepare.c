@@ -1,3 +1,4 @@
+/* Tests of prepare.c: the basis of the allowed motions, and what cannot be prepared. */
 #include "vehicles.h"
 
 static laconic_refusal why;
@@ -5,13 +6,12 @@ static laconic_refusal why;
 static void columns_are_orthonormal_in_the_inertia(laconic_vehicle v) {
     const laconic_model m = model_of(v);
     laconic_matrices x;
-    int a, b, r, c;
     ASSERT_STATUS(LACONIC_OK, laconic_matrices_of(&x, &v, &why));
-    for (a = 0; a < m.dof; a++)
-        for (b = 0; b < m.dof; b++) {
+    for (int a = 0; a < m.dof; a++)
+        for (int b = 0; b < m.dof; b++) {
             double product = 0;
-            for (r = 0; r < 3; r++)
-                for (c = 0; c < 3; c++)
+            for (int r = 0; r < 3; r++)
+                for (int c = 0; c < 3; c++)
                     product += (double)m.nu_of_zeta[r][a] * (double)x.inertia[r][c] * (double)m.nu_of_zeta[c][b];
             ASSERT_NEAR(EITHER(4e-15, 2e-6), a == b ? 1 : 0, product);
         }
@@ -27,11 +27,10 @@ static void the_basis_makes_inertia_the_unit_matrix(void) {
 
 static void the_basis_makes_damping_diagonal(void) {
     const laconic_model m = model_of(with_motors(mecanum()));
-    int a, b, i;
-    for (a = 0; a < 3; a++)
-        for (b = 0; b < 3; b++) {
+    for (int a = 0; a < 3; a++)
+        for (int b = 0; b < 3; b++) {
             double sum = 0;
-            for (i = 0; i < m.wheel_count; i++)
+            for (int i = 0; i < m.wheel_count; i++)
                 sum += (double)m.wheel_of_zeta[i][a] * (double)m.wheel_of_zeta[i][b] * DAMPING / UNIT_INERTIA;
             ASSERT_NEAR(EITHER(1e-14, 1e-5), a == b ? (double)m.decay_per_s[a] : 0, sum);
         }
@@ -41,13 +40,11 @@ static void every_constraint_is_built_in(void) {
     const laconic_vehicle v = differential_drive();
     const laconic_model m = model_of(v);
     laconic_matrices x;
-    int i, k;
     ASSERT_STATUS(LACONIC_OK, laconic_matrices_of(&x, &v, &why));
-    for (i = 0; i < x.constraint_count; i++)
-        for (k = 0; k < 3; k++) {
+    for (int i = 0; i < x.constraint_count; i++)
+        for (int k = 0; k < 3; k++) {
             double slip = 0;
-            int r;
-            for (r = 0; r < 3; r++) slip += (double)x.constraint_rows[i][r] * (double)m.nu_of_zeta[r][k];
+            for (int r = 0; r < 3; r++) slip += (double)x.constraint_rows[i][r] * (double)m.nu_of_zeta[r][k];
             ASSERT_NEAR(2 * ROUNDING, 0, slip);
         }
 }
@@ -59,10 +56,9 @@ static void damping_rates_of_the_three_wheel_example_are_the_closed_form(void) {
     const double trace = 1 + 2 * SIGMA * SIGMA + RHO * RHO, det = 2 * SIGMA * SIGMA;
     const double root = sqrt(trace * trace / 4 - det);
     const double x[3] = {2, trace / 2 + root, trace / 2 - root};
-    int wanted, k;
-    for (wanted = 0; wanted < 3; wanted++) {
+    for (int wanted = 0; wanted < 3; wanted++) {
         double nearest = 1e9;
-        for (k = 0; k < 3; k++) {
+        for (int k = 0; k < 3; k++) {
             const double off = fabs((double)m.decay_per_s[k] - c * x[wanted] / (1 + square * x[wanted])) +
                                fabs((double)m.inertia[k] - (1 + square * x[wanted]));
             if (off < nearest) nearest = off;
@@ -87,9 +83,8 @@ static void degrees_of_freedom_are_counted(void) {
 
 static void columns_beyond_the_degrees_of_freedom_are_zero(void) {
     const laconic_model m = model_of(differential_drive());
-    int i;
-    for (i = 0; i < 3; i++) TEST_ASSERT_EQUAL_DOUBLE(0.0, (double)m.nu_of_zeta[i][2]);
-    for (i = 0; i < 2; i++) TEST_ASSERT_EQUAL_DOUBLE(0.0, (double)m.wheel_of_zeta[i][2]);
+    for (int i = 0; i < 3; i++) TEST_ASSERT_EQUAL_DOUBLE(0.0, (double)m.nu_of_zeta[i][2]);
+    for (int i = 0; i < 2; i++) TEST_ASSERT_EQUAL_DOUBLE(0.0, (double)m.wheel_of_zeta[i][2]);
     TEST_ASSERT_EQUAL_DOUBLE(0.0, (double)m.decay_per_s[2]);
 }
 
@@ -103,9 +98,8 @@ static void axle_lines_that_agree_to_rounding_count_once(void) {
 
 static void a_locked_wheel_does_not_turn(void) {
     laconic_vehicle v = three_wheels();
-    int k;
     v.wheel[1].locked = true;
-    for (k = 0; k < 3; k++) TEST_ASSERT_EQUAL_DOUBLE(0.0, (double)model_of(v).wheel_of_zeta[1][k]);
+    for (int k = 0; k < 3; k++) TEST_ASSERT_EQUAL_DOUBLE(0.0, (double)model_of(v).wheel_of_zeta[1][k]);
 }
 
 static void three_fixed_wheels_whose_axles_do_not_meet_leave_nothing_that_moves(void) {
@@ -176,14 +170,12 @@ static void a_slow_rate_keeps_its_digits_beside_a_fast_one(void) {
     const double small = EITHER(1e-9, 1e-5); /* tilt of the second wheel's pull against the first's */
     laconic_vehicle v = with_motors(bare_body());
     laconic_model m;
-    double least;
-    int k;
     v.wheel_inertia_kgm2 = 0;
     add_wheel(&v, LACONIC_WHEEL_ROLLER, 0, 0, 0.0, PI / 2);
     add_wheel(&v, LACONIC_WHEEL_ROLLER, 0, 0, small, PI / 2);
     m = model_of(v);
-    least = HUGE_VAL;
-    for (k = 0; k < 3; k++)
+    double least = HUGE_VAL;
+    for (int k = 0; k < 3; k++)
         if (m.decay_per_s[k] > 0 && (double)m.decay_per_s[k] < least) least = (double)m.decay_per_s[k];
     /* two unit vectors at a small angle ε: eigenvalues of ΞᵀΞ are 2 and ε²/2 */
     ASSERT_NEAR(0.02, 1.0, least / (DAMPING / UNIT_INERTIA * small * small / 2));
@@ -193,9 +185,8 @@ static void sixteen_wheels_and_none_are_both_a_vehicle(void) {
     laconic_vehicle v = with_motors(bare_body());
     const laconic_model none = model_of(v);
     laconic_model many;
-    int i;
-    for (i = 0; i < 3; i++) TEST_ASSERT_EQUAL_DOUBLE(0.0, (double)none.decay_per_s[i]);
-    for (i = 0; i < LACONIC_MAX_WHEELS; i++)
+    for (int i = 0; i < 3; i++) TEST_ASSERT_EQUAL_DOUBLE(0.0, (double)none.decay_per_s[i]);
+    for (int i = 0; i < LACONIC_MAX_WHEELS; i++)
         add_wheel(&v, LACONIC_WHEEL_ROLLER, 0.3 * cos(0.4 * i), 0.3 * sin(0.4 * i), 0.4 * i, i % 2 ? PI / 4 : -PI / 4);
     many = model_of(v);
     TEST_ASSERT_EQUAL_INT(LACONIC_MAX_WHEELS, many.wheel_count);
@@ -205,14 +196,13 @@ static void sixteen_wheels_and_none_are_both_a_vehicle(void) {
 static void wheels_far_away_or_all_on_one_spot_give_numbers(void) {
     laconic_vehicle v = with_motors(three_wheels());
     laconic_model m;
-    int k;
     v.wheel[0].x_m = REAL(EITHER(1e7, 1e2));
     m = model_of(v);
-    for (k = 0; k < 3; k++) TEST_ASSERT_TRUE(isfinite(m.decay_per_s[k]));
+    for (int k = 0; k < 3; k++) TEST_ASSERT_TRUE(isfinite(m.decay_per_s[k]));
     v = with_motors(bare_body());
-    for (k = 0; k < 5; k++) add_wheel(&v, LACONIC_WHEEL_ROLLER, 0.1, 0.1, 0.7, PI / 2);
+    for (int k = 0; k < 5; k++) add_wheel(&v, LACONIC_WHEEL_ROLLER, 0.1, 0.1, 0.7, PI / 2);
     m = model_of(v);
-    for (k = 0; k < 3; k++) TEST_ASSERT_TRUE(isfinite(m.decay_per_s[k]));
+    for (int k = 0; k < 3; k++) TEST_ASSERT_TRUE(isfinite(m.decay_per_s[k]));
 }
 
 int main(void) {

@@ -1,3 +1,4 @@
+/* Tests of record.c: runs along a schedule have the bits of runs by hand. */
 #include "vehicles.h"
 
 #define STEPS 60
@@ -67,17 +68,16 @@ static laconic_input held_at(uint64_t step) {
 
 static void a_held_schedule_gives_the_bits_of_running_it_by_hand(void) {
     const uint64_t every[] = {1, 3, 7, STEPS};
-    int k;
-    for (k = 0; k < 4; k++) {
+    for (int k = 0; k < 4; k++) {
         laconic_plant by_hand = plant_of(with_motors(mecanum()), 0.01), plant = by_hand;
         const laconic_schedule schedule = held();
         laconic_input input;
-        uint64_t step, rows = 0;
+        uint64_t rows = 0;
         film f;
         load_film(&f, &plant, every[k], STEPS);
         ASSERT_STATUS(LACONIC_OK, laconic_plant_follow(&plant, &schedule, STEPS, &f.recorder, &why));
         TEST_ASSERT_EQUAL_UINT64(STEPS, plant.steps);
-        for (step = 0; step < STEPS; step++) {
+        for (uint64_t step = 0; step < STEPS; step++) {
             input = held_at(step);
             if (step % every[k] == 0) assert_row(f.row[rows++], &by_hand, &f.contact, &input);
             ASSERT_STATUS(LACONIC_OK, laconic_plant_run(&by_hand, &input, 1, &why));
@@ -94,9 +94,8 @@ static laconic_real sampled_values[STEPS][3][2];
 
 static laconic_schedule sampled(void) {
     const laconic_schedule schedule = {2, signals, &sampled_values[0][0][0], NULL, STEPS, 0};
-    int i, k;
-    for (i = 0; i < STEPS; i++)
-        for (k = 0; k < 3; k++) {
+    for (int i = 0; i < STEPS; i++)
+        for (int k = 0; k < 3; k++) {
             sampled_values[i][k][0] = REAL(sin(0.1 * (i + 0.5 * k)));
             sampled_values[i][k][1] = REAL(0.1 * cos(0.07 * (i + 0.5 * k)));
         }
@@ -104,8 +103,7 @@ static laconic_schedule sampled(void) {
 }
 
 static void sampled_at(laconic_input input[3], uint64_t step) {
-    int k;
-    for (k = 0; k < 3; k++) {
+    for (int k = 0; k < 3; k++) {
         input[k] = no_input();
         input[k].voltage_V[1] = sampled_values[step][k][0];
         input[k].body_moment_Nm = sampled_values[step][k][1];
@@ -116,13 +114,12 @@ static void a_sampled_schedule_gives_the_bits_of_sampled_steps(void) {
     laconic_plant by_hand = plant_of(with_motors(mecanum()), 0.01), plant = by_hand;
     const laconic_schedule schedule = sampled();
     laconic_input input[3];
-    uint64_t step;
     film f;
     load_film(&f, &plant, 2, STEPS);
     ASSERT_STATUS(LACONIC_OK, laconic_plant_follow(&plant, &schedule, STEPS + 5, &f.recorder, &why));
     TEST_ASSERT_EQUAL_UINT64(STEPS, plant.steps); /* where the schedule ends */
     TEST_ASSERT_EQUAL_UINT64(STEPS / 2, f.recorder.row_count);
-    for (step = 0; step < STEPS; step++) {
+    for (uint64_t step = 0; step < STEPS; step++) {
         sampled_at(input, step);
         if (step % 2 == 0) assert_row(f.row[step / 2], &by_hand, &f.contact, input);
         ASSERT_STATUS(LACONIC_OK, laconic_step_sampled(&by_hand.model, &by_hand.integrator, &by_hand.state, input,
@@ -134,13 +131,12 @@ static void a_sampled_schedule_gives_the_bits_of_sampled_steps(void) {
 static void pieces_of_any_length_are_the_whole(laconic_schedule schedule) {
     laconic_plant whole = plant_of(with_motors(mecanum()), 0.01), pieces = whole;
     film one, many;
-    uint64_t until;
     load_film(&one, &whole, 3, STEPS);
     load_film(&many, &pieces, 3, STEPS);
     one.recorder.grip = &one.grip;
     many.recorder.grip = &many.grip;
     ASSERT_STATUS(LACONIC_OK, laconic_plant_follow(&whole, &schedule, STEPS, &one.recorder, &why));
-    for (until = 0; pieces.steps < STEPS; until += 1 + until % 4)
+    for (uint64_t until = 0; pieces.steps < STEPS; until += 1 + until % 4)
         ASSERT_STATUS(LACONIC_OK,
                       laconic_plant_follow(&pieces, &schedule, until < STEPS ? until : STEPS, &many.recorder, NULL));
     TEST_ASSERT_EQUAL_MEMORY(&whole.state, &pieces.state, sizeof whole.state);

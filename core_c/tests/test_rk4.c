@@ -1,3 +1,4 @@
+/* Tests of rk4.c: order, drift, stability limit, refusals. */
 #include "stiff.h"
 
 static laconic_refusal why;

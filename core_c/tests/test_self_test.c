@@ -1,3 +1,4 @@
+/* Tests of self_test.c: sound arithmetic passes, and each fault is found and named. */
 #include "check.h"
 
 #include <fenv.h>
@@ -13,8 +14,7 @@ static void arithmetic_as_this_build_has_it_is_sound(void) {
 
 static void every_other_rounding_mode_is_found(void) {
     const int modes[] = {FE_UPWARD, FE_DOWNWARD, FE_TOWARDZERO};
-    int i;
-    for (i = 0; i < 3; i++) {
+    for (int i = 0; i < 3; i++) {
         laconic_arithmetic found;
         TEST_ASSERT_EQUAL_INT(0, fesetround(modes[i]));
         found = laconic_self_test();
@@ -28,8 +28,7 @@ static void subnormal_numbers_that_count_as_none_are_found(void) {
 #if defined(__SSE__)
     const unsigned modes[] = {0x8000U, 0x0040U, 0x8040U}; /* flush to zero, denormals are zero, both */
     const unsigned before = _mm_getcsr();
-    int i;
-    for (i = 0; i < 3; i++) {
+    for (int i = 0; i < 3; i++) {
         laconic_arithmetic found;
         _mm_setcsr(before | modes[i]);
         found = laconic_self_test();
@@ -44,11 +43,10 @@ static void subnormal_numbers_that_count_as_none_are_found(void) {
 /* --------------------------------------------------------------------------------- its words -- */
 
 static void every_finding_has_words_of_its_own(void) {
-    int a, b;
-    for (a = 0; a < LACONIC_ARITHMETIC_COUNT; a++) {
+    for (int a = 0; a < LACONIC_ARITHMETIC_COUNT; a++) {
         const char *text = laconic_arithmetic_text((laconic_arithmetic)a);
         TEST_ASSERT_TRUE(strlen(text) >= 5);
-        for (b = 0; b < a; b++) TEST_ASSERT_TRUE(strcmp(text, laconic_arithmetic_text((laconic_arithmetic)b)) != 0);
+        for (int b = 0; b < a; b++) TEST_ASSERT_TRUE(strcmp(text, laconic_arithmetic_text((laconic_arithmetic)b)) != 0);
     }
     TEST_ASSERT_EQUAL_STRING("sound", laconic_arithmetic_text(LACONIC_ARITHMETIC_SOUND));
 }

@@ -1,3 +1,4 @@
+/* Tests of state.c: start values, and a motion carried over to a changed vehicle. */
 #include "vehicles.h"
 
 /* ------------------------------------------------------------------------------------- start -- */
@@ -10,7 +11,6 @@ static void what_is_set_is_what_is_read(void) {
     laconic_state state;
     laconic_real nu[3], angle[4];
     laconic_pose pose;
-    int i;
     start.x_m = REAL(-3.5);
     start.y_m = REAL(12.25);
     start.heading_rad = REAL(-20);
@@ -23,7 +23,7 @@ static void what_is_set_is_what_is_read(void) {
     TEST_ASSERT_EQUAL_DOUBLE(12.25, (double)pose.y_m);
     ASSERT_NEAR(EITHER(1e-14, 1e-5), -20, pose.heading_rad);
     laconic_wheel_angles(&m, &state, angle);
-    for (i = 0; i < 4; i++) TEST_ASSERT_EQUAL_DOUBLE(0.0, (double)angle[i]);
+    for (int i = 0; i < 4; i++) TEST_ASSERT_EQUAL_DOUBLE(0.0, (double)angle[i]);
 }
 
 static void refuses(laconic_start start, laconic_status status, laconic_field field, int item) {

@@ -1,3 +1,4 @@
+/* Tests of step.c: held and sampled inputs, for every method, and why a step is refused. */
 #include "stiff.h"
 
 /* -------------------------------------------------------------------------------------- held -- */
@@ -16,8 +17,7 @@ static void refuses(const laconic_method *method, const laconic_input *input, la
 }
 
 static void an_input_that_is_not_finite_leaves_the_state_as_it_was_whatever_the_method(void) {
-    int32_t i;
-    for (i = 0; i < LACONIC_METHOD_COUNT; i++) {
+    for (int32_t i = 0; i < LACONIC_METHOD_COUNT; i++) {
         const laconic_method *method = laconic_method_by_number(i);
         laconic_input input = every_input();
         input.voltage_V[2] = NOT_A_NUMBER;
@@ -60,8 +60,7 @@ static void a_circle_is_exact_at_any_step(void) {
     const laconic_input input = no_input();
     const double radius = RADIUS * BIG_LAMBDA * 2.0 / 6.0;
     const double steps[] = {0.01, 0.3, 0.9, 1.7, 3.3};
-    size_t i;
-    for (i = 0; i < sizeof steps / sizeof steps[0]; i++) {
+    for (size_t i = 0; i < sizeof steps / sizeof steps[0]; i++) {
         const double angle = 6.0 / BIG_LAMBDA * steps[i] * 25;
         laconic_state state = moving(&m, 2, 0, 6);
         laconic_pose pose;
@@ -100,9 +99,8 @@ static void a_heading_of_more_turns_than_can_be_counted_is_refused_whatever_the_
     const laconic_model m = spinning_drive();
     const laconic_input input = no_input();
     const int64_t end = (int64_t)1 << 62, last[2] = {end - 1, 1 - end}, beyond[2] = {end + 1, -end - 1};
-    int32_t i, k;
-    for (i = 0; i < LACONIC_METHOD_COUNT; i++)
-        for (k = 0; k < 2; k++) {
+    for (int32_t i = 0; i < LACONIC_METHOD_COUNT; i++)
+        for (int32_t k = 0; k < 2; k++) {
             const laconic_integrator in = integrator_of(laconic_method_by_number(i), &m, 1);
             laconic_state state = moving(&m, 0, 0, k == 0 ? 1e8 : -1e8), before;
             state.heading.turns = last[k];
@@ -142,13 +140,11 @@ static void the_fastest_turning_there_is_ends_in_a_refusal_never_in_a_jump(void)
 static void an_input_that_does_not_vary_gives_the_motion_of_a_held_one(void) {
     const laconic_model m = model_of(with_motors(three_wheels()));
     const laconic_input input = every_input();
-    int32_t i;
-    for (i = 0; i < LACONIC_METHOD_COUNT; i++) {
+    for (int32_t i = 0; i < LACONIC_METHOD_COUNT; i++) {
         const laconic_integrator in = integrator_of(laconic_method_by_number(i), &m, 0.02);
         laconic_state held = moving(&m, 1, 2, 3), sampled = held;
         laconic_real a[3], b[3];
-        int k;
-        for (k = 0; k < 50; k++) {
+        for (int k = 0; k < 50; k++) {
             ASSERT_STATUS(LACONIC_OK, laconic_step(&m, &in, &held, &input));
             ASSERT_STATUS(LACONIC_OK, laconic_step_sampled(&m, &in, &sampled, &input, &input, &input));
         }
@@ -173,8 +169,7 @@ static double error_under_a_sine(const laconic_method *method, int steps) {
     const laconic_integrator in = integrator_of(method, &m, h);
     laconic_state state = moving(&m, 0, 0, 0);
     laconic_real nu[3];
-    int i;
-    for (i = 0; i < steps; i++) {
+    for (int i = 0; i < steps; i++) {
         const laconic_input start = voltage_at(i * h), middle = voltage_at((i + 0.5) * h),
                             end = voltage_at((i + 1) * h);
         ASSERT_STATUS(LACONIC_OK, laconic_step_sampled(&m, &in, &state, &start, &middle, &end));
@@ -185,8 +180,7 @@ static double error_under_a_sine(const laconic_method *method, int steps) {
 
 /* Up to the fourth, which is as far as three samples tell of a step. */
 static void a_sampled_sine_keeps_every_methods_order(void) {
-    int32_t i;
-    for (i = 0; i < LACONIC_METHOD_COUNT; i++) {
+    for (int32_t i = 0; i < LACONIC_METHOD_COUNT; i++) {
         const laconic_method *method = laconic_method_by_number(i);
         const int steps = method->order >= 4 ? EITHER(20, 6) : EITHER(50, 20), order = method->order < 4 ? 2 : 4;
         const double coarse = error_under_a_sine(method, steps), fine = error_under_a_sine(method, 2 * steps);
@@ -198,10 +192,9 @@ static void a_sampled_sine_keeps_every_methods_order(void) {
 static void a_world_force_may_begin_or_end_within_a_step(void) {
     const laconic_model m = model_of(bare_body());
     laconic_input none = no_input(), half = no_input(), full = no_input();
-    int32_t i;
     half.world_force_N[0] = REAL(1);
     full.world_force_N[0] = REAL(2);
-    for (i = 0; i < LACONIC_METHOD_COUNT; i++) {
+    for (int32_t i = 0; i < LACONIC_METHOD_COUNT; i++) {
         const laconic_integrator in = integrator_of(laconic_method_by_number(i), &m, 0.5);
         laconic_state growing = moving(&m, 0, 0, 0), fading = growing;
         laconic_real nu[3];
@@ -219,9 +212,8 @@ static void a_world_force_at_one_sample_alone_counts_by_its_weight(void) {
     const laconic_model m = model_of(bare_body());
     laconic_input none = no_input(), push = no_input();
     const double whole = 0.5 * 2.0 / (MASS * RADIUS);
-    int32_t i;
     push.world_force_N[0] = REAL(2);
-    for (i = 0; i < LACONIC_METHOD_COUNT; i++) {
+    for (int32_t i = 0; i < LACONIC_METHOD_COUNT; i++) {
         const laconic_method *method = laconic_method_by_number(i);
         const laconic_integrator in = integrator_of(method, &m, 0.5);
         laconic_state early = moving(&m, 3000, 0, 0), late = early, between = early;
@@ -252,8 +244,7 @@ static laconic_input with_number(laconic_input input, int which, laconic_real nu
 static void refuses_at_each_sample(const laconic_method *method, const laconic_model *m, laconic_input good,
                                    laconic_input bad) {
     const laconic_integrator in = integrator_of(method, m, 0.02);
-    int k;
-    for (k = 0; k < 3; k++) {
+    for (int k = 0; k < 3; k++) {
         laconic_input at[3] = {good, good, good};
         laconic_state state = moving(m, 1, 2, 3), before = state;
         at[k] = bad;
@@ -266,11 +257,9 @@ static void a_number_that_is_none_at_any_sample_is_refused(void) {
     const laconic_model slow = model_of(with_motors(three_wheels())), fast = model_of(stiff());
     const laconic_real numbers[] = {NOT_A_NUMBER, INFINITE, -INFINITE};
     const laconic_input rest = no_input(), all = every_input();
-    int which, i;
-    int32_t number;
-    for (number = 0; number < LACONIC_METHOD_COUNT; number++)
-        for (which = 0; which < PLACES; which++)
-            for (i = 0; i < 3; i++) {
+    for (int32_t number = 0; number < LACONIC_METHOD_COUNT; number++)
+        for (int which = 0; which < PLACES; which++)
+            for (int i = 0; i < 3; i++) {
                 const laconic_method *method = laconic_method_by_number(number);
                 refuses_at_each_sample(method, &slow, rest, with_number(rest, which, numbers[i]));
                 refuses_at_each_sample(method, &slow, all, with_number(all, which, numbers[i]));
@@ -329,15 +318,13 @@ static void an_input_that_is_not_finite_is_found(void) {
 
 static void every_sample_of_a_step_is_looked_at(void) {
     const laconic_model m = model_of(with_motors(three_wheels()));
-    int32_t i, k;
-    for (i = 0; i < LACONIC_METHOD_COUNT; i++)
-        for (k = 0; k < 3; k++) {
+    for (int32_t i = 0; i < LACONIC_METHOD_COUNT; i++)
+        for (int32_t k = 0; k < 3; k++) {
             const laconic_integrator in = integrator_of(laconic_method_by_number(i), &m, 0.1);
             laconic_input at[3] = {every_input(), every_input(), every_input()};
             laconic_state state = moving(&m, 1, 2, 3), before = state;
-            laconic_status status;
             at[k].voltage_V[2 - k] = NOT_A_NUMBER;
-            status = laconic_step_sampled(&m, &in, &state, &at[0], &at[1], &at[2]);
+            const laconic_status status = laconic_step_sampled(&m, &in, &state, &at[0], &at[1], &at[2]);
             TEST_ASSERT_NOT_EQUAL(LACONIC_OK, status);
             TEST_ASSERT_EQUAL_MEMORY(&before, &state, sizeof state);
             laconic_step_refusal(&why, status, &m, &in, &state, at, 3);

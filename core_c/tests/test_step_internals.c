@@ -1,3 +1,4 @@
+/* Tests of step_internals: forces in body axes, and the energy that a step may gain. */
 #include "step_internals.h"
 
 #include "vehicles.h"
@@ -9,7 +10,6 @@ static void expected_load(double b[3], const laconic_vehicle *v, const laconic_i
     const laconic_model m = model_of(*v);
     laconic_matrices x;
     double right[3];
-    int i, k;
     const double along = cos(heading) * (double)in->world_force_N[0] + sin(heading) * (double)in->world_force_N[1];
     const double across = cos(heading) * (double)in->world_force_N[1] - sin(heading) * (double)in->world_force_N[0];
     ASSERT_STATUS(LACONIC_OK, laconic_matrices_of(&x, v, NULL));
@@ -18,12 +18,12 @@ static void expected_load(double b[3], const laconic_vehicle *v, const laconic_i
     right[2] = ((double)in->body_moment_Nm + (double)in->world_force_point_m[0] * across -
                 (double)in->world_force_point_m[1] * along) /
                BIG_LAMBDA;
-    for (i = 0; i < v->wheel_count; i++)
-        for (k = 0; k < 3; k++)
+    for (int i = 0; i < v->wheel_count; i++)
+        for (int k = 0; k < 3; k++)
             right[k] += (double)x.wheel_rows[i][k] * (GAIN * (double)in->voltage_V[i] + (double)in->axle_torque_Nm[i]);
-    for (k = 0; k < 3; k++) {
+    for (int k = 0; k < 3; k++) {
         b[k] = 0;
-        for (i = 0; i < 3; i++) b[k] += (double)m.nu_of_zeta[i][k] * right[i] / UNIT_INERTIA;
+        for (int i = 0; i < 3; i++) b[k] += (double)m.nu_of_zeta[i][k] * right[i] / UNIT_INERTIA;
     }
 }
 
@@ -32,14 +32,12 @@ static void everything_that_acts_is_in_the_load(void) {
     const laconic_model m = model_of(v);
     const laconic_input input = every_input();
     laconic_load load;
-    double heading;
     laconic_load_of(&load, &m, &input);
     TEST_ASSERT_TRUE(load.turns);
-    for (heading = -3; heading < 3; heading += 0.8) {
+    for (double heading = -3; heading < 3; heading += 0.8) {
         double expected[3];
-        int k;
         expected_load(expected, &v, &input, heading);
-        for (k = 0; k < 3; k++)
+        for (int k = 0; k < 3; k++)
             ASSERT_NEAR(EITHER(1e-13, 5e-5), expected[k],
                         (double)load.constant[k] + cos(heading) * (double)load.cosine[k] +
                             sin(heading) * (double)load.sine[k]);
@@ -62,8 +60,7 @@ static void without_a_world_force_the_load_does_not_turn(void) {
 static void every_part_of_a_wrench_counts_alone(void) {
     const laconic_vehicle v = with_motors(three_wheels());
     const laconic_model m = model_of(v);
-    int part;
-    for (part = 0; part < 3; part++) {
+    for (int part = 0; part < 3; part++) {
         laconic_input input = no_input();
         laconic_load load;
         double expected[3];
@@ -98,17 +95,15 @@ static void a_force_fixed_in_the_world_turns_against_the_body(void) {
     const laconic_input input = every_input();
     const double headings[] = {-2.5, -0.3, 0.0, 0.9, 3.0}, offsets[] = {-0.7, 0.0, 1.3};
     laconic_load load;
-    size_t i, j;
     laconic_load_of(&load, &m, &input);
-    for (i = 0; i < 5; i++)
-        for (j = 0; j < 3; j++) {
+    for (size_t i = 0; i < 5; i++)
+        for (size_t j = 0; j < 3; j++) {
             laconic_start start = start_with(0, 0, 0);
             const double angle = headings[i] + offsets[j];
             laconic_state state;
-            vector b;
             start.heading_rad = REAL(headings[i]);
             state = state_of(&m, start);
-            b = laconic_turned_load(&load, &state.heading, REAL(offsets[j]));
+            vector b = laconic_turned_load(&load, &state.heading, REAL(offsets[j]));
             ASSERT_NEAR(EITHER(1e-13, 5e-5),
                         (double)load.constant[0] + cos(angle) * (double)load.cosine[0] +
                             sin(angle) * (double)load.sine[0],

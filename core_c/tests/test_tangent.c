@@ -12,13 +12,12 @@ typedef struct point {
 
 static laconic_variation direction_number(int n) {
     laconic_variation by;
-    int i;
     memset(&by, 0, sizeof by);
-    for (i = 0; i < 3; i++) by.nu_rad_per_s[i] = REAL(0.3 * n - 0.5 * i + 0.2);
+    for (int i = 0; i < 3; i++) by.nu_rad_per_s[i] = REAL(0.3 * n - 0.5 * i + 0.2);
     by.x_m = REAL(0.4 - 0.1 * n);
     by.y_m = REAL(-0.3 + 0.2 * n);
     by.heading_rad = REAL(0.7 - 0.4 * n);
-    for (i = 0; i < LACONIC_MAX_WHEELS; i++) {
+    for (int i = 0; i < LACONIC_MAX_WHEELS; i++) {
         by.input.voltage_V[i] = REAL(0.6 - 0.3 * i + 0.1 * n);
         by.input.axle_torque_Nm[i] = REAL(0.02 * i - 0.01 * n);
     }
@@ -36,16 +35,15 @@ static laconic_real moved(laconic_real from, double by, laconic_real along) { re
 
 static point varied(const point *p, const laconic_variation *by, double step) {
     point q = *p;
-    int i;
-    for (i = 0; i < 3; i++) q.motion.nu_rad_per_s[i] = moved(q.motion.nu_rad_per_s[i], step, by->nu_rad_per_s[i]);
+    for (int i = 0; i < 3; i++) q.motion.nu_rad_per_s[i] = moved(q.motion.nu_rad_per_s[i], step, by->nu_rad_per_s[i]);
     q.motion.x_m = moved(q.motion.x_m, step, by->x_m);
     q.motion.y_m = moved(q.motion.y_m, step, by->y_m);
     q.motion.heading_rad = moved(q.motion.heading_rad, step, by->heading_rad);
-    for (i = 0; i < LACONIC_MAX_WHEELS; i++) {
+    for (int i = 0; i < LACONIC_MAX_WHEELS; i++) {
         q.input.voltage_V[i] = moved(q.input.voltage_V[i], step, by->input.voltage_V[i]);
         q.input.axle_torque_Nm[i] = moved(q.input.axle_torque_Nm[i], step, by->input.axle_torque_Nm[i]);
     }
-    for (i = 0; i < 2; i++) {
+    for (int i = 0; i < 2; i++) {
         q.input.body_force_N[i] = moved(q.input.body_force_N[i], step, by->input.body_force_N[i]);
         q.input.world_force_N[i] = moved(q.input.world_force_N[i], step, by->input.world_force_N[i]);
         q.input.world_force_point_m[i] = moved(q.input.world_force_point_m[i], step, by->input.world_force_point_m[i]);
@@ -74,8 +72,7 @@ typedef struct numbers {
 } numbers;
 
 static void take(numbers *all, const laconic_real *from, int count) {
-    int i;
-    for (i = 0; i < count; i++) all->n[all->count++] = (double)from[i];
+    for (int i = 0; i < count; i++) all->n[all->count++] = (double)from[i];
 }
 
 static numbers rates_at(const laconic_model *m, const point *p) {
@@ -145,9 +142,8 @@ static numbers output_changes(const laconic_model *m, const point *p, const laco
 }
 
 static void agree(numbers expected_high, numbers expected_low, numbers change) {
-    int i;
     TEST_ASSERT_EQUAL_INT(expected_high.count, change.count);
-    for (i = 0; i < change.count; i++) {
+    for (int i = 0; i < change.count; i++) {
         const double difference = (expected_high.n[i] - expected_low.n[i]) / (2 * SMALL);
         ASSERT_NEAR(TOLERANCE * (1 + fabs(difference)), difference, change.n[i]);
     }
@@ -156,8 +152,7 @@ static void agree(numbers expected_high, numbers expected_low, numbers change) {
 static void rates_and_outputs_change_as_differences_say(laconic_vehicle v) {
     const laconic_model m = model_of(v);
     const point p = somewhere();
-    int n;
-    for (n = 0; n < DIRECTIONS; n++) {
+    for (int n = 0; n < DIRECTIONS; n++) {
         const laconic_variation by = direction_number(n);
         const point high = varied(&p, &by, SMALL), low = varied(&p, &by, -SMALL);
         agree(rates_at(&m, &high), rates_at(&m, &low), rate_changes(&m, &p, &by));
@@ -201,14 +196,13 @@ static void reactions_change_as_differences_say(laconic_vehicle v, int pushed) {
     laconic_model m;
     laconic_contact c;
     laconic_reactions now;
-    int n;
     p.input.axle_torque_Nm[pushed] += REAL(1);
     v.com_z_m = REAL(0.1);
     v.friction_coefficient = REAL(0.5);
     m = model_of(v);
     ASSERT_STATUS(LACONIC_OK, laconic_contact_prepare(&c, &v, NULL));
     now = reactions_at(&c, &m, &p);
-    for (n = 0; n < DIRECTIONS; n++) {
+    for (int n = 0; n < DIRECTIONS; n++) {
         const laconic_variation by = direction_number(n);
         const point high = varied(&p, &by, SMALL), low = varied(&p, &by, -SMALL);
         const laconic_reactions up = reactions_at(&c, &m, &high), down = reactions_at(&c, &m, &low);

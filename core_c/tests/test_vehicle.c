@@ -1,3 +1,4 @@
+/* Tests of vehicle.c: every number that cannot be used is named. */
 #include "vehicles.h"
 
 static laconic_refusal why;
@@ -77,8 +78,7 @@ static const number any_number[] = {
 #define COUNT(array) (sizeof(array) / sizeof(array)[0])
 
 static void refuses(const number *numbers, size_t count, laconic_real value, laconic_status status) {
-    size_t i;
-    for (i = 0; i < count; i++) {
+    for (size_t i = 0; i < count; i++) {
         laconic_vehicle v = three_wheels();
         v.support_count = 2;
         *numbers[i].where(&v) = value;
@@ -89,8 +89,7 @@ static void refuses(const number *numbers, size_t count, laconic_real value, lac
 
 static void every_number_that_is_not_finite_is_named(void) {
     const laconic_real values[] = {NOT_A_NUMBER, INFINITE, -INFINITE};
-    size_t i;
-    for (i = 0; i < 3; i++) {
+    for (size_t i = 0; i < 3; i++) {
         refuses(must_be_positive, COUNT(must_be_positive), values[i], LACONIC_NOT_FINITE);
         refuses(must_not_be_negative, COUNT(must_not_be_negative), values[i], LACONIC_NOT_FINITE);
         refuses(any_number, COUNT(any_number), values[i], LACONIC_NOT_FINITE);
@@ -123,8 +122,7 @@ static void an_angle_too_large_to_have_a_direction_is_refused_for_axle_and_rolle
     const double largest = (double)LACONIC_SMALLEST_ROLLER_SINE / (double)LACONIC_EPSILON;
     const place angle[] = {second_axle, second_roller};
     const laconic_field field[] = {LACONIC_FIELD_AXLE, LACONIC_FIELD_ROLLER};
-    int k;
-    for (k = 0; k < 2; k++) {
+    for (int k = 0; k < 2; k++) {
         laconic_vehicle v = three_wheels();
         *angle[k](&v) = REAL(1.001 * largest);
         ASSERT_REFUSED(LACONIC_OVERFLOW, field[k], 2, laconic_vehicle_check(&v, &why), why);
@@ -156,8 +154,7 @@ static void an_unknown_kind_is_named_with_its_number(void) {
 
 static void the_wheel_count_stays_within_its_bounds(void) {
     laconic_vehicle v = bare_body();
-    int i;
-    for (i = 0; i < LACONIC_MAX_WHEELS; i++) add_wheel(&v, LACONIC_WHEEL_ROLLER, 0.1, 0.0, 0.3 * i, PI / 2);
+    for (int i = 0; i < LACONIC_MAX_WHEELS; i++) add_wheel(&v, LACONIC_WHEEL_ROLLER, 0.1, 0.0, 0.3 * i, PI / 2);
     ASSERT_STATUS(LACONIC_OK, laconic_vehicle_check(&v, &why));
     v.wheel_count = LACONIC_MAX_WHEELS + 1;
     ASSERT_REFUSED(LACONIC_TOO_MANY_WHEELS, LACONIC_FIELD_WHEEL_COUNT, 0, laconic_vehicle_check(&v, &why), why);

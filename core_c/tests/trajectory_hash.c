@@ -12,12 +12,10 @@
 static uint64_t hash = 1469598103934665603U; /* FNV-1a */
 
 static void take(const laconic_real *numbers, int count) {
-    int i;
-    size_t k;
-    for (i = 0; i < count; i++) {
+    for (int i = 0; i < count; i++) {
         unsigned char bytes[sizeof(laconic_real)];
         memcpy(bytes, &numbers[i], sizeof bytes);
-        for (k = 0; k < sizeof bytes; k++) hash = (hash ^ bytes[k]) * 1099511628211U;
+        for (size_t k = 0; k < sizeof bytes; k++) hash = (hash ^ bytes[k]) * 1099511628211U;
     }
 }
 
@@ -58,7 +56,6 @@ static laconic_input input_of(int step) {
 static laconic_vehicle vehicle_of(int which) {
     const laconic_real turn = (laconic_real)1.0471975511966;
     laconic_vehicle v;
-    int i;
     memset(&v, 0, sizeof v);
     v.mass_kg = (laconic_real)10.3;
     v.yaw_inertia_kgm2 = (laconic_real)0.231;
@@ -71,7 +68,7 @@ static laconic_vehicle vehicle_of(int which) {
     v.motor_damping_Nms = which == 2 ? (laconic_real)3 : (laconic_real)0.02;
     v.friction_coefficient = (laconic_real)0.7;
     v.wheel_count = which == 1 ? 2 : 4;
-    for (i = 0; i < v.wheel_count; i++) {
+    for (int i = 0; i < v.wheel_count; i++) {
         v.wheel[i].kind = which == 1 ? LACONIC_WHEEL_FIXED : LACONIC_WHEEL_ROLLER;
         v.wheel[i].x_m = which == 1 ? (laconic_real)0 : (laconic_real)(i - 1) * (laconic_real)0.11;
         v.wheel[i].y_m = (laconic_real)(i % 2 == 0 ? 1 : -1) * (laconic_real)0.13;
@@ -87,13 +84,12 @@ static int run(const laconic_method *method, int which) {
     laconic_plant plant;
     laconic_contact contact;
     laconic_refusal why;
-    int step;
     memset(&start, 0, sizeof start);
     start.heading_rad = (laconic_real)0.4;
     if (laconic_plant_start(&plant, &vehicle, method, (laconic_real)0.003, &start, &why) != LACONIC_OK ||
         laconic_contact_prepare(&contact, &vehicle, &why) != LACONIC_OK)
         return 1;
-    for (step = 0; step < STEPS; step++) {
+    for (int step = 0; step < STEPS; step++) {
         const laconic_input input = input_of(step);
         if (laconic_plant_run(&plant, &input, 1, &why) != LACONIC_OK) return 1;
         if (step % 10 == 0) take_outputs(&plant, &contact, &input);
@@ -102,10 +98,8 @@ static int run(const laconic_method *method, int which) {
 }
 
 int main(void) {
-    int32_t number;
-    int which;
-    for (number = 0; number < LACONIC_METHOD_COUNT; number++)
-        for (which = 0; which < 3; which++)
+    for (int32_t number = 0; number < LACONIC_METHOD_COUNT; number++)
+        for (int which = 0; which < 3; which++)
             if (run(laconic_method_by_number(number), which) != 0) return 1;
     printf("%016" PRIx64 "\n", hash);
     return 0;

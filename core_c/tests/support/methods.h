@@ -14,8 +14,7 @@ static inline laconic_integrator integrator_of(const laconic_method *method, con
 static inline void take_steps(const laconic_method *method, const laconic_model *model, laconic_state *state,
                               const laconic_input *input, double step, int count) {
     const laconic_integrator integrator = integrator_of(method, model, step);
-    int i;
-    for (i = 0; i < count; i++) ASSERT_STATUS(LACONIC_OK, laconic_step(model, &integrator, state, input));
+    for (int i = 0; i < count; i++) ASSERT_STATUS(LACONIC_OK, laconic_step(model, &integrator, state, input));
 }
 
 typedef struct errors {
@@ -35,8 +34,7 @@ static inline errors errors_of(const laconic_method *method, const laconic_vehic
     laconic_real angle[LACONIC_MAX_WHEELS];
     double y[6 + LACONIC_MAX_WHEELS] = {0};
     errors e = {0, 0, 0};
-    int i;
-    for (i = 0; i < 3; i++) y[i] = (double)start.nu_rad_per_s[i];
+    for (int i = 0; i < 3; i++) y[i] = (double)start.nu_rad_per_s[i];
     y[3] = (double)start.x_m;
     y[4] = (double)start.y_m;
     y[5] = (double)start.heading_rad;
@@ -45,12 +43,12 @@ static inline errors errors_of(const laconic_method *method, const laconic_vehic
     laconic_nu(&model, &state, nu);
     laconic_pose_of(&pose, &model, &state);
     laconic_wheel_angles(&model, &state, angle);
-    for (i = 0; i < 3; i++) e.nu = larger(e.nu, fabs((double)nu[i] - y[i]));
+    for (int i = 0; i < 3; i++) e.nu = larger(e.nu, fabs((double)nu[i] - y[i]));
     e.pose = larger(e.pose, fabs((double)pose.x_m - y[3]));
     e.pose = larger(e.pose, fabs((double)pose.y_m - y[4]));
     e.pose = larger(e.pose, fabs((double)pose.heading_rad - y[5]));
     laconic_wheel_angles(&model, &state, angle);
-    for (i = 0; i < p.wheels; i++) e.wheels = larger(e.wheels, fabs((double)angle[i] - y[6 + i]));
+    for (int i = 0; i < p.wheels; i++) e.wheels = larger(e.wheels, fabs((double)angle[i] - y[6 + i]));
     return e;
 }
 
@@ -77,8 +75,7 @@ static inline drift free_drift(const laconic_method *method, const laconic_vehic
     const double energy = (double)laconic_energy_J(&model, &state);
     const double integral = (double)laconic_yaw_integral(&model, &state);
     drift d = {0, 0};
-    int i;
-    for (i = 0; i < steps; i++) {
+    for (int i = 0; i < steps; i++) {
         ASSERT_STATUS(LACONIC_OK, laconic_step(&model, &integrator, &state, &input));
         d.energy = larger(d.energy, fabs((double)laconic_energy_J(&model, &state) / energy - 1.0));
         d.yaw_integral = larger(d.yaw_integral, fabs((double)laconic_yaw_integral(&model, &state) / integral - 1.0));

@@ -17,8 +17,7 @@ static inline void assert_stiff_vehicle_reaches_its_steady_motion(const laconic_
     laconic_state state = moving(&m, 0, 0, 0);
     laconic_input input = no_input();
     laconic_real nu[3];
-    int i;
-    for (i = 0; i < 4; i++) input.voltage_V[i] = REAL(1);
+    for (int i = 0; i < 4; i++) input.voltage_V[i] = REAL(1);
     take_steps(method, &m, &state, &input, 0.1, 20);
     laconic_nu(&m, &state, nu);
     ASSERT_NEAR(tolerance, 1, nu[0]);
@@ -44,10 +43,9 @@ static inline laconic_start start_that_gains_energy(const laconic_method *method
     const laconic_integrator in = integrator_of(method, &m, step);
     laconic_start start = start_with(0, 0, 0);
     uint32_t seed = 1;
-    int tries, k;
-    for (tries = 0; tries < 100000; tries++) {
+    for (int tries = 0; tries < 100000; tries++) {
         laconic_state state, before;
-        for (k = 0; k < 3; k++) {
+        for (int k = 0; k < 3; k++) {
             seed = seed * 1664525U + 1013904223U;
             start.nu_rad_per_s[k] = REAL(speed * ((double)(seed >> 8) / 8388608.0 - 1.0));
         }

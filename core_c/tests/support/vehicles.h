@@ -114,8 +114,7 @@ static inline laconic_input no_input(void) {
 /* Voltages, torques, wrench in the body and in the world: everything that can act. */
 static inline laconic_input every_input(void) {
     laconic_input input = no_input();
-    int i;
-    for (i = 0; i < LACONIC_MAX_WHEELS; i++) {
+    for (int i = 0; i < LACONIC_MAX_WHEELS; i++) {
         input.voltage_V[i] = REAL(1.5 - 0.7 * i);
         input.axle_torque_Nm[i] = REAL(0.02 * i - 0.03);
     }

@@ -80,8 +80,7 @@ def test_the_fmu_decides_in_one_place_whether_a_number_is_finite():
 
 
 C_COMMENT = re.compile(r"/\*.*?\*/|//[^\n]*", re.DOTALL)
-PARTS = ("cmake", "core_c/bench", "core_c/cortex_m", "core_c/include", "core_c/src", "firmware_stub", "fmu",
-         "host_tests")
+PARTS = ("cmake", "core_c", "firmware_stub", "fmu", "host_tests")
 SOURCES = [path for part in PARTS for path in (ROOT / part).rglob("*")
            if path.suffix in (".c", ".h", ".py", ".cmake") or path.name == "CMakeLists.txt"]
 
@@ -114,7 +113,7 @@ def says_its_job(path: Path) -> bool:
 
 
 def test_every_source_file_begins_with_its_one_job():
-    assert len(SOURCES) > 200
+    assert len(SOURCES) > 300
     assert [str(path.relative_to(ROOT)) for path in SOURCES if not says_its_job(path)] == []
 
 
