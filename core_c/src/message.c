@@ -1,4 +1,4 @@
-/* A refusal in words: the status in a few, or all in one line: field and item, what is wrong, what to do. */
+/* The texts of a refusal: the name of its status, and one line with field, item, fault and remedy. */
 #include "internal.h"
 
 typedef struct writer {
@@ -21,7 +21,7 @@ static void put_count(writer *w, int32_t number) {
     for (; divisor > 0; divisor /= 10) put(w, (char)('0' + number / divisor % 10));
 }
 
-/* x = digits · 10^exponent with 1 <= digits < 10 */
+/* Scales a finite x > 0 to 1 <= x < 10; returns the exponent of 10 that is taken out. */
 static int32_t scale_to_digits(real *x) {
     int32_t exponent = 0;
     for (; *x >= R(10); *x *= R(0.1)) exponent++;
@@ -29,7 +29,7 @@ static int32_t scale_to_digits(real *x) {
     return exponent;
 }
 
-/* `count` decimals of x < 10, without trailing zeros; the point stands behind digit `point`. */
+/* Writes the `count` digits of a number without trailing zeros; the point stands behind digit `point`. */
 static void put_digits(writer *w, int32_t digits, int32_t count, int32_t point) {
     int32_t divisor = 1;
     for (int32_t k = 1; k < count; k++) divisor *= 10;
@@ -86,7 +86,7 @@ static const char *explanation(laconic_status status) {
     return (unsigned)status < LACONIC_STATUS_COUNT ? texts[status] : "unknown status";
 }
 
-/* Closes the text and says how long the whole would be. */
+/* Closes the text; returns the length that the whole text has. */
 static size_t end_text(const writer *w) {
     if (w->size > 0) w->text[w->length < w->size ? w->length : w->size - 1] = '\0';
     return w->length;
@@ -104,7 +104,7 @@ static void put_explanation(writer *w, const laconic_refusal *why) {
     }
 }
 
-/* "[#]" of a path becomes the item's number; without an item, nothing. */
+/* The item's number replaces # in "[#]" of a path; without an item "[#]" is left out. */
 static void put_path(writer *w, const char *path, int32_t item) {
     for (; *path != '\0'; path++) {
         if (*path != '[') {

@@ -18,13 +18,13 @@ static void a_refusal_names_field_item_value_and_remedy(void) {
     TEST_ASSERT_EQUAL_STRING_LEN("vehicle.wheel[12].roller_rad: with 0.5 rad the roller axis lies along the axle",
                                  message(LACONIC_ROLLER_ALONG_AXLE, LACONIC_FIELD_ROLLER, 12, 0.5, 0), 77);
     TEST_ASSERT_EQUAL_STRING(
-        "run.step_s: 0.25 s is unstable with this method, the motors damp too fast; use at most 0.125 s, "
+        "run.step_s: 0.25 s is unstable with this method because the motors damp too fast; use at most 0.125 s, "
         "or auto",
         message(LACONIC_STEP_BEYOND_DAMPING_LIMIT, LACONIC_FIELD_STEP, 0, 0.25, 0.125));
 }
 
 static void a_field_without_the_item_it_could_have_is_named_as_a_whole(void) {
-    TEST_ASSERT_EQUAL_STRING("initial.nu_rad_per_s: the numbers leave the range of " LACONIC_REAL_NAME
+    TEST_ASSERT_EQUAL_STRING("initial.nu_rad_per_s: a result leaves the range of " LACONIC_REAL_NAME
                              " precision; check inputs and units",
                              message(LACONIC_OVERFLOW, LACONIC_FIELD_START_NU, 0, 0, 0));
     TEST_ASSERT_EQUAL_STRING_LEN("voltage_V[2]: NaN",

@@ -17,10 +17,10 @@
     X(NEGATIVE, "negative", \
       "# is negative; give 0 or a value above it") \
     X(ROLLER_ALONG_AXLE, "roller along axle", /* |sin γ| is too small */ \
-      "with # rad the roller axis lies along the axle and the wheel transmits nothing; omni wheels have pi/2, mecanum " \
+      "with # rad the roller axis lies along the axle, and the wheel transmits no force; omni wheels have pi/2, mecanum " \
       "wheels pi/4 or -pi/4") \
     X(WHEEL_NOT_SET, "wheel not set", /* wheel_count counts a wheel whose kind was never given */ \
-      "this wheel was never set; give its kind and place, or lower wheel_count") \
+      "this wheel was never set; give its kind and position, or lower wheel_count") \
     X(WHEEL_KIND_UNKNOWN, "wheel kind unknown", \
       "# is no kind of wheel; use 1 (roller: omni or mecanum) or 2 (fixed)") \
     X(TOO_MANY_WHEELS, "too many wheels", /* below 0, too */ \
@@ -28,45 +28,45 @@
     X(TOO_MANY_SUPPORTS, "too many supports", /* below 0, too */ \
       "# supports, but this build takes 0 to @; lower it or build with a larger LACONIC_MAX_SUPPORTS") \
     X(NOTHING_MOVES, "nothing moves", /* three independent constraints */ \
-      "fixed and locked wheels leave nothing that moves; the axle lines of all fixed wheels must meet in one point, or " \
-      "all be parallel; else release a locked wheel") \
+      "fixed and locked wheels prevent every motion; the axle lines of all fixed wheels must meet in one point or all " \
+      "be parallel; else release a locked wheel") \
     X(ILL_CONDITIONED, "ill-conditioned", /* ε √cond(A) >= 0.01 */ \
       "masses and lengths are too far apart for " LACONIC_REAL_NAME " precision: the condition number # leaves fewer " \
       "than two correct digits; check the units") \
     X(START_AGAINST_CONSTRAINTS, "start against constraints", \
-      "# slides a fixed or locked wheel; the nearest velocity that the wheels allow is @") \
+      "# makes a fixed or locked wheel slide; the nearest value that the wheels allow is @") \
     X(METHOD_UNKNOWN, "method unknown", \
       "there is no such method; use auto, rk4, exponential-kahan, exponential-kahan-4, exact-flow, exact-flow-4 or " \
       "taylor-8") \
     X(STEP_DOES_NOT_FIT, "step does not fit", \
-      "steps of # s do not fill the interval; @ s would") \
+      "the interval is no whole number of steps of # s; use @ s") \
     X(STEP_BEYOND_DAMPING_LIMIT, "step beyond damping limit", /* explicit methods: h·r_max above their limit */ \
-      "# s is unstable with this method, the motors damp too fast; use at most @ s, or auto") \
+      "# s is unstable with this method because the motors damp too fast; use at most @ s, or auto") \
     X(STEP_BEYOND_GYROSCOPIC_LIMIT, "step beyond gyroscopic limit", /* explicit methods: h·|ν3| above their limit */ \
-      "# s is unstable with this method while the vehicle turns this fast; use at most @ s, or exact-flow") \
+      "# s is unstable with this method at this yaw rate; use at most @ s, or exact-flow") \
     X(STEP_GAINS_ENERGY, "step gains energy", \
-      "in this state a step of # s would make energy out of nothing; use @ s or less, or auto, or exact-flow") \
+      "in this state a step of # s would add energy that no input supplies; use @ s or less, or auto, or exact-flow") \
     X(STEP_SINGULAR, "step singular", \
       "in this state a step of # s has no solution; use @ s or less, or auto, or exact-flow") \
     X(OVERFLOW, "overflow", \
-      "the numbers leave the range of " LACONIC_REAL_NAME " precision; check inputs and units")
+      "a result leaves the range of " LACONIC_REAL_NAME " precision; check inputs and units")
 
 /* X(IDENTIFIER, explanation with the remedy): what laconic_self_test() finds. */
 #define LACONIC_ARITHMETICS(X) \
     X(SOUND, \
       "sound") \
     X(WITHOUT_NAN, \
-      "NaN and infinity pass for numbers; compile without -ffinite-math-only") \
+      "checks for NaN and infinity do not work; compile without -ffinite-math-only") \
     X(ROUNDED_OTHERWISE, /* fesetround, FPSCR, MXCSR */ \
       "results are not rounded to nearest; set the rounding mode to nearest, ties to even") \
     X(REORDERED, \
-      "sums are taken in another order; compile without -fassociative-math and -funsafe-math-optimizations") \
+      "sums are computed in another order; compile without -fassociative-math and -funsafe-math-optimizations") \
     X(EXCESS_PRECISION, \
       "intermediate results keep more digits than their type; compile for SSE2, not x87") \
     X(FUSED, \
       "multiply and add are fused; compile with -ffp-contract=off, and with gcc -fno-tree-slp-vectorize") \
     X(BY_RECIPROCALS, /* x/y as x·(1/y) */ \
-      "divisions are done by reciprocals; compile without -freciprocal-math and -funsafe-math-optimizations") \
+      "divisions are computed by reciprocals; compile without -freciprocal-math and -funsafe-math-optimizations") \
     X(FLUSHED, /* FTZ, DAZ, FPSCR.FZ, or a library linked with -ffast-math, which sets them for the whole process */ \
       "subnormal numbers are flushed to zero; clear the flush-to-zero and denormals-are-zero modes")
 

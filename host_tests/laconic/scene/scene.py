@@ -50,8 +50,8 @@ class Initial:
         elif self.nu_rad_per_s is None:
             name, scale = "yaw_rate_rad_per_s", 1.0 / model.yaw_scale
         value, limit = scale * refused.value, scale * refused.limit
-        text = (f"initial.{name}: {value:.6g} (of the centre of mass) slides a fixed or locked wheel; the nearest that "
-                f"the wheels allow is {limit:.6g}")
+        text = (f"initial.{name}: {value:.6g} (of the centre of mass) makes a fixed or locked wheel slide; the nearest "
+                f"value that the wheels allow is {limit:.6g}")
         return Refused(refused.status, refused.field, refused.item, text, value=refused.value, limit=refused.limit)
 
 

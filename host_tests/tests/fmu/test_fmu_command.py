@@ -62,4 +62,4 @@ def test_an_angle_too_large_to_have_a_direction_is_refused_by_its_name(key: str,
     lines = "\n".join(f"{name} = {value}" for name, value in wheel.items())
     path.write_text(f'{text[:first]}[[vehicle.wheel]]\nkind = "omni"\nx_m = 0.1\ny_m = 0.0\n{lines}\n\n{text[after:]}')
     assert run(["simulate", str(path)]) == 2
-    assert f"vehicle.wheel[1].{key}: the numbers leave the range" in capsys.readouterr().err
+    assert f"vehicle.wheel[1].{key}: a result leaves the range" in capsys.readouterr().err
