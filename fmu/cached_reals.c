@@ -1,7 +1,7 @@
 /* Reals are read and set at every step, so the usual case has a short way: all references known, everything fresh or
  * quickly made so, inputs that are numbers. Whatever else comes up takes the long way (variables.c), which says what is
  * wrong. */
-#include "plant_api.h"
+#include "model_interface.h"
 
 static inline const fmu_variable *row_of(uint32_t reference) {
     const uint32_t row = fmu_row(reference);
@@ -12,7 +12,7 @@ static inline const fmu_variable *row_of(uint32_t reference) {
 }
 
 static inline uint32_t size_of(const fmu_instance *instance, const fmu_variable *variable) {
-    return variable->size != 0 ? variable->size : FMU_PLANT_ARRAY_SIZE(&instance->plant);
+    return variable->size != 0 ? variable->size : FMU_MODEL_ARRAY_SIZE(&instance->model);
 }
 
 /* Offsets of the values that a reference stands for; how many, 0: not this way. */
@@ -52,27 +52,27 @@ static inline bool is_known(const fmu_list *list, const uint32_t *references, si
     return true;
 }
 
-static inline double *value_at(fmu_plant *plant, uint32_t offset) { return (double *)(void *)((char *)plant + offset); }
+static inline double *value_at(fmu_model *model, uint32_t offset) { return (double *)(void *)((char *)model + offset); }
 
 static bool get_quickly(fmu_instance *instance, const uint32_t *references, size_t count, double *values,
                         size_t value_count) {
-    fmu_plant *plant = &instance->plant;
+    fmu_model *model = &instance->model;
     fmu_list *list = &instance->read;
     bool finite = true;
-    if (plant->start_needed || plant->change_needed) return false;
+    if (model->start_needed || model->change_needed) return false;
     if (!is_known(list, references, count) && !look_up(instance, list, references, count, false)) return false;
     if (list->values != value_count) return false;
-    if (list->groups & plant->stale) fmu_plant_refresh(instance, list->groups);
-    for (size_t i = 0; i < value_count; i++) finite &= fmu_is_finite(*value_at(plant, list->offset[i]));
+    if (list->groups & model->stale) fmu_model_refresh(instance, list->groups);
+    for (size_t i = 0; i < value_count; i++) finite &= fmu_is_finite(*value_at(model, list->offset[i]));
     if (!finite) return false; /* the long way says which */
-    for (size_t i = 0; i < value_count; i++) values[i] = *value_at(plant, list->offset[i]);
+    for (size_t i = 0; i < value_count; i++) values[i] = *value_at(model, list->offset[i]);
     return true;
 }
 
 /* All is checked before anything is stored. */
 static bool set_quickly(fmu_instance *instance, const uint32_t *references, size_t count, const double *values,
                         size_t value_count) {
-    fmu_plant *plant = &instance->plant;
+    fmu_model *model = &instance->model;
     fmu_list *list = &instance->written;
     bool finite = true;
     if (!(instance->settable >> FMU_INPUT & 1U)) return false;
@@ -80,8 +80,8 @@ static bool set_quickly(fmu_instance *instance, const uint32_t *references, size
     if (list->values != value_count) return false;
     for (size_t i = 0; i < value_count; i++) finite &= fmu_is_finite(values[i]);
     if (!finite) return false;
-    for (size_t i = 0; i < value_count; i++) *value_at(plant, list->offset[i]) = values[i];
-    fmu_plant_input_changed(plant);
+    for (size_t i = 0; i < value_count; i++) *value_at(model, list->offset[i]) = values[i];
+    fmu_model_input_changed(model);
     return true;
 }
 

@@ -25,7 +25,7 @@ bool fmu_clock_is_before_start(const fmu_clock *clock, double time_s) {
     return time_s < clock->start_s - 1e-9 * magnitude(clock->start_s);
 }
 
-bool fmu_clock_may_look_at(const fmu_clock *clock, double time_s) {
+bool fmu_clock_allows_overshoot(const fmu_clock *clock, double time_s) {
     const double run_s = clock->stop_s - clock->start_s;
     const bool on_its_way = clock->completed_s > clock->start_s && clock->completed_s < clock->stop_s - 1e-9 * run_s;
     return on_its_way && time_s - clock->stop_s <= 0.02 * run_s;
@@ -40,5 +40,5 @@ void fmu_clock_change_step(fmu_clock *clock, double step_s) {
     clock->anchor_s = anchor;
     clock->ticks = 0;
     clock->step_s = step_s;
-    clock->asked_s = 0.0;
+    clock->communication_s = 0.0;
 }

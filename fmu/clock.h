@@ -11,8 +11,8 @@ typedef struct fmu_clock {
     double anchor_s, anchor_rest_s; /* when the step changed last: the sum of both                 */
     double step_s;                  /* 0: no step taken yet                                        */
     uint64_t ticks;                 /* since the anchor                                            */
-    double asked_s;                 /* the last communication step that was found to fit …         */
-    uint64_t asked_ticks;           /* … and the internal steps in it                              */
+    double communication_s;         /* the last communication step that was found to fit …         */
+    uint64_t communication_ticks;   /* … and the internal steps in it                              */
     double completed_s;             /* Model Exchange: where the last completed step ended         */
 } fmu_clock;
 
@@ -28,7 +28,7 @@ bool fmu_clock_is_before_start(const fmu_clock *clock, double time_s);
 
 /* Whether a solver that steps towards the stop time may look at that time behind it: solvers with a step of their own
  * (CVODE) do so and interpolate back. No further than a fiftieth of the run, and not before it has completed a step. */
-bool fmu_clock_may_look_at(const fmu_clock *clock, double time_s);
+bool fmu_clock_allows_overshoot(const fmu_clock *clock, double time_s);
 
 /* From here on steps of another size. */
 void fmu_clock_change_step(fmu_clock *clock, double step_s);

@@ -1,7 +1,7 @@
 /* One communication step: whole internal steps, or a refusal with both numbers. */
 #include <float.h>
 
-#include "plant_api.h"
+#include "model_interface.h"
 
 /* Steps as long as the communication step; one that differs by rounding only counts as the same. */
 #define SAME_STEP 1e-9
@@ -15,7 +15,7 @@
 
 /* With step_s = 0 the steps are as long as the last communication step; 0: none was taken yet. */
 static double last_internal_step(const fmu_instance *instance) {
-    const double own_s = fmu_plant_own_step(&instance->plant);
+    const double own_s = fmu_model_own_step(&instance->model);
     return own_s > 0.0 ? own_s : instance->clock.step_s;
 }
 
@@ -26,7 +26,7 @@ static bool is_remainder(const fmu_instance *instance, double step_s) {
 /* The internal step that the communication step asks for. */
 static double internal_step(const fmu_instance *instance, double step_s) {
     const double last_s = last_internal_step(instance);
-    if (is_remainder(instance, step_s) || fmu_plant_own_step(&instance->plant) > 0.0) return last_s;
+    if (is_remainder(instance, step_s) || fmu_model_own_step(&instance->model) > 0.0) return last_s;
     return last_s > 0.0 && last_s < step_s ? last_s : step_s;
 }
 
@@ -38,15 +38,15 @@ static double magnitude(double value) { return value < 0.0 ? -value : value; }
 static double time_tolerance(const fmu_instance *instance, double at_s, double internal_s) {
     const fmu_clock *clock = &instance->clock;
     const double half_s = 0.5 * internal_s, last_s = clock->step_s > 0.0 ? clock->step_s : internal_s;
-    if (fmu_plant_own_step(&instance->plant) > 0.0) return half_s;
+    if (fmu_model_own_step(&instance->model) > 0.0) return half_s;
     const double off_s = OFF_WITHOUT_STEP * internal_s +
-                         DBL_EPSILON * magnitude(at_s) * (magnitude(instance->plant.time_s - clock->start_s) / last_s);
+                         DBL_EPSILON * magnitude(at_s) * (magnitude(instance->model.time_s - clock->start_s) / last_s);
     return off_s < half_s ? off_s : half_s;
 }
 
 static fmu_status check_interval(const fmu_instance *instance, double at_s, double step_s) {
     const fmu_clock *clock = &instance->clock;
-    const double now_s = instance->plant.time_s, off_s = at_s - now_s;
+    const double now_s = instance->model.time_s, off_s = at_s - now_s;
     const double internal_s = internal_step(instance, step_s), most_s = time_tolerance(instance, at_s, internal_s);
     if (!fmu_is_finite(step_s))
         return fmu_refuse(instance, "a communication step of %g s cannot be taken: it is not finite", step_s);
@@ -62,7 +62,7 @@ static fmu_status check_interval(const fmu_instance *instance, double at_s, doub
 }
 
 static fmu_status change_step(fmu_instance *instance, double step_s) {
-    const fmu_status status = fmu_plant_set_step(instance, step_s);
+    const fmu_status status = fmu_model_set_step(instance, step_s);
     if (status == FMU_OK) fmu_clock_change_step(&instance->clock, step_s);
     return status;
 }
@@ -70,23 +70,23 @@ static fmu_status change_step(fmu_instance *instance, double step_s) {
 /* How many internal steps, kept for the next call with the same communication step; none in a remainder. */
 static fmu_status count_steps(fmu_instance *instance, double step_s, uint64_t *steps) {
     fmu_clock *clock = &instance->clock;
-    const double own_s = fmu_plant_own_step(&instance->plant);
+    const double own_s = fmu_model_own_step(&instance->model);
     fmu_status status = FMU_OK;
-    if (step_s == clock->asked_s || is_remainder(instance, step_s)) {
-        *steps = step_s == clock->asked_s ? clock->asked_ticks : 0;
+    if (step_s == clock->communication_s || is_remainder(instance, step_s)) {
+        *steps = step_s == clock->communication_s ? clock->communication_ticks : 0;
         return FMU_OK;
     }
     if (own_s > 0.0) {
         if (clock->step_s != own_s) status = change_step(instance, own_s);
-        if (status == FMU_OK) status = fmu_plant_count_steps(instance, step_s, own_s, steps);
+        if (status == FMU_OK) status = fmu_model_count_steps(instance, step_s, own_s, steps);
     } else {
         const double off = step_s - clock->step_s;
         if (!(off <= SAME_STEP * step_s && off >= -SAME_STEP * step_s)) status = change_step(instance, step_s);
         *steps = 1;
     }
     if (status == FMU_OK) {
-        clock->asked_s = step_s;
-        clock->asked_ticks = *steps;
+        clock->communication_s = step_s;
+        clock->communication_ticks = *steps;
     }
     return status;
 }
@@ -95,10 +95,10 @@ static fmu_status count_steps(fmu_instance *instance, double step_s, uint64_t *s
 static fmu_status run_with_updates(fmu_instance *instance, uint64_t steps, fmu_step_end *end) {
     uint64_t taken;
     for (uint64_t k = 0; k < steps; k++) {
-        const fmu_status status = fmu_plant_run(instance, 1, &taken);
+        const fmu_status status = fmu_model_run(instance, 1, &taken);
         if (status != FMU_OK) return status;
         instance->clock.ticks++;
-        instance->plant.time_s = fmu_clock_now(&instance->clock);
+        instance->model.time_s = fmu_clock_now(&instance->clock);
         fmu_enter(instance, FMU_INTERMEDIATE);
         end->early = instance->between_steps(instance, k + 1 == steps) && k + 1 < steps;
         fmu_enter(instance, FMU_STEP);
@@ -110,18 +110,18 @@ static fmu_status run_with_updates(fmu_instance *instance, uint64_t steps, fmu_s
 /* A refused step leaves everything as it was when the call came. */
 static fmu_status run_several(fmu_instance *instance, uint64_t steps, fmu_step_end *end) {
     const uint64_t ticks = instance->clock.ticks;
-    fmu_plant_motion before;
+    fmu_model_motion before;
     uint64_t taken = 0;
     fmu_status status;
-    fmu_plant_mark(&instance->plant, &before);
+    fmu_model_save_motion(&instance->model, &before);
     if (instance->between_steps != NULL) {
         status = run_with_updates(instance, steps, end);
     } else {
-        status = fmu_plant_run(instance, steps, &taken);
+        status = fmu_model_run(instance, steps, &taken);
         instance->clock.ticks += taken;
     }
     if (status == FMU_OK) return status;
-    fmu_plant_return(&instance->plant, &before);
+    fmu_model_restore_motion(&instance->model, &before);
     instance->clock.ticks = ticks;
     return status;
 }
@@ -130,7 +130,7 @@ static fmu_status run_several(fmu_instance *instance, uint64_t steps, fmu_step_e
 static fmu_status run(fmu_instance *instance, uint64_t steps, fmu_step_end *end) {
     uint64_t taken = 0;
     if (steps != 1 || instance->between_steps != NULL) return run_several(instance, steps, end);
-    const fmu_status status = fmu_plant_run(instance, 1, &taken);
+    const fmu_status status = fmu_model_run(instance, 1, &taken);
     instance->clock.ticks += taken;
     return status;
 }
@@ -138,10 +138,10 @@ static fmu_status run(fmu_instance *instance, uint64_t steps, fmu_step_end *end)
 /* The usual case: one internal step, as long as the last one, from where the model is. */
 static inline bool is_one_more(const fmu_instance *instance, double at_s, double step_s) {
     const fmu_clock *clock = &instance->clock;
-    const double off_s = at_s - instance->plant.time_s;
-    return step_s == clock->asked_s && clock->asked_ticks == 1 && off_s <= OFF_WITHOUT_STEP * step_s &&
-           off_s >= -OFF_WITHOUT_STEP * step_s && !clock->stop_defined && !instance->plant.start_needed &&
-           !instance->plant.change_needed && instance->between_steps == NULL;
+    const double off_s = at_s - instance->model.time_s;
+    return step_s == clock->communication_s && clock->communication_ticks == 1 && off_s <= OFF_WITHOUT_STEP * step_s &&
+           off_s >= -OFF_WITHOUT_STEP * step_s && !clock->stop_defined && !instance->model.start_needed &&
+           !instance->model.change_needed && instance->between_steps == NULL;
 }
 
 fmu_status fmu_do_step(fmu_instance *instance, double at_s, double step_s, fmu_step_end *end) {
@@ -149,17 +149,17 @@ fmu_status fmu_do_step(fmu_instance *instance, double at_s, double step_s, fmu_s
     fmu_status status;
     end->early = false;
     if (is_one_more(instance, at_s, step_s)) {
-        status = fmu_plant_run(instance, 1, &steps);
+        status = fmu_model_run(instance, 1, &steps);
         instance->clock.ticks += steps;
-        if (instance->noted != 0) fmu_plant_conclude(instance, status == FMU_OK);
-        end->time_s = instance->plant.time_s = fmu_clock_now(&instance->clock);
+        if (instance->warnings_pending != 0) fmu_model_settle_warnings(instance, status == FMU_OK);
+        end->time_s = instance->model.time_s = fmu_clock_now(&instance->clock);
         return status;
     }
     status = check_interval(instance, at_s, step_s);
-    if (status == FMU_OK) status = fmu_make_current(instance);
+    if (status == FMU_OK) status = fmu_apply_parameters(instance);
     if (status == FMU_OK) status = count_steps(instance, step_s, &steps);
     if (status == FMU_OK) status = run(instance, steps, end);
-    if (instance->noted != 0) fmu_plant_conclude(instance, status == FMU_OK);
-    end->time_s = instance->plant.time_s = fmu_clock_now(&instance->clock);
+    if (instance->warnings_pending != 0) fmu_model_settle_warnings(instance, status == FMU_OK);
+    end->time_s = instance->model.time_s = fmu_clock_now(&instance->clock);
     return status;
 }

@@ -1,13 +1,13 @@
 /* FMI 2.0: types translated, nothing else. */
 #include "fmi2Functions.h"
 
-#include "plant_api.h"
+#include "model_interface.h"
 
 #define SELF(component) ((fmu_instance *)(component))
 #define ALLOW(component, call) \
-    if ((component) == NULL || !fmu_may(SELF(component), call)) return fmi2Error
+    if ((component) == NULL || !fmu_may_call(SELF(component), call)) return fmi2Error
 
-static fmi2Status give(fmu_status status) { return (fmi2Status)status; }
+static fmi2Status to_fmi(fmu_status status) { return (fmi2Status)status; }
 
 static fmu_references list(const fmi2ValueReference *references, size_t count) {
     const fmu_references pair = {references, count};
@@ -20,12 +20,12 @@ typedef struct fmu_callbacks_2 {
 } fmu_callbacks_2;
 
 static const fmu_callbacks_2 *callbacks(const fmu_instance *instance) {
-    return (const fmu_callbacks_2 *)(const void *)&instance->box;
+    return (const fmu_callbacks_2 *)(const void *)&instance->callback_storage;
 }
 
 /* The logger is printf-like, and some importers print the text as it is: a % would do harm in the first and is
  * doubled, which the others show twice. No arguments are ever passed. */
-static void say(const fmu_instance *instance, fmu_status status, const char *category, const char *text) {
+static void log_message(const fmu_instance *instance, fmu_status status, const char *category, const char *text) {
     char safe[1024];
     size_t used = 0;
     for (; *text != '\0' && used + 2 < sizeof safe; text++) {
@@ -33,7 +33,7 @@ static void say(const fmu_instance *instance, fmu_status status, const char *cat
         safe[used++] = *text;
     }
     safe[used] = '\0';
-    callbacks(instance)->log(instance->environment, instance->name, give(status), category, safe);
+    callbacks(instance)->log(instance->environment, instance->name, to_fmi(status), category, safe);
 }
 
 /* ----------------------------------------------------------------------------- life of an instance -- */
@@ -45,7 +45,7 @@ const char *fmi2GetVersion(void) { return fmi2Version; }
 fmi2Component fmi2Instantiate(fmi2String instanceName, fmi2Type fmuType, fmi2String fmuGUID,
                               fmi2String fmuResourceLocation, const fmi2CallbackFunctions *functions,
                               fmi2Boolean visible, fmi2Boolean loggingOn) {
-    fmu_callbacks_2 box;
+    fmu_callbacks_2 stored;
     (void)visible;
     if (functions == NULL) return NULL;
     if (fmuType != fmi2ModelExchange && fmuType != fmi2CoSimulation) {
@@ -55,7 +55,7 @@ fmi2Component fmi2Instantiate(fmi2String instanceName, fmi2Type fmuType, fmi2Str
                 "Instantiate: there is no such fmuType; use fmi2ModelExchange (0) or fmi2CoSimulation (1)");
         return NULL;
     }
-    box.log = functions->logger;
+    stored.log = functions->logger;
     const fmu_request request = {
         .instance_name = instanceName,
         .token = fmuGUID,
@@ -63,10 +63,10 @@ fmi2Component fmi2Instantiate(fmi2String instanceName, fmi2Type fmuType, fmi2Str
         .kind = fmuType == fmi2ModelExchange ? FMU_MODEL_EXCHANGE : FMU_CO_SIMULATION,
         .version = 2,
         .logging_on = loggingOn != fmi2False,
-        .deliver = functions->logger != NULL ? say : NULL,
+        .deliver = functions->logger != NULL ? log_message : NULL,
         .environment = functions->componentEnvironment,
-        .box = &box,
-        .box_size = sizeof box,
+        .callbacks = &stored,
+        .callbacks_size = sizeof stored,
     };
     return fmu_create(&request);
 }
@@ -76,7 +76,7 @@ void fmi2FreeInstance(fmi2Component c) { fmu_free(SELF(c)); }
 fmi2Status fmi2SetDebugLogging(fmi2Component c, fmi2Boolean loggingOn, size_t nCategories,
                                const fmi2String categories[]) {
     ALLOW(c, FMU_CALL_SET_DEBUG_LOGGING);
-    return give(fmu_set_logging(SELF(c), loggingOn != fmi2False, nCategories, categories));
+    return to_fmi(fmu_set_logging(SELF(c), loggingOn != fmi2False, nCategories, categories));
 }
 
 fmi2Status fmi2SetupExperiment(fmi2Component c, fmi2Boolean toleranceDefined, fmi2Real tolerance, fmi2Real startTime,
@@ -84,7 +84,7 @@ fmi2Status fmi2SetupExperiment(fmi2Component c, fmi2Boolean toleranceDefined, fm
     (void)toleranceDefined; /* the step is fixed: there is no error control to set */
     (void)tolerance;
     ALLOW(c, FMU_CALL_SETUP_EXPERIMENT);
-    return give(fmu_setup(SELF(c), startTime, stopTimeDefined != fmi2False, stopTime));
+    return to_fmi(fmu_setup(SELF(c), startTime, stopTimeDefined != fmi2False, stopTime));
 }
 
 fmi2Status fmi2EnterInitializationMode(fmi2Component c) {
@@ -95,7 +95,7 @@ fmi2Status fmi2EnterInitializationMode(fmi2Component c) {
 
 fmi2Status fmi2ExitInitializationMode(fmi2Component c) {
     ALLOW(c, FMU_CALL_EXIT_INITIALIZATION);
-    return give(fmu_exit_initialization(SELF(c)));
+    return to_fmi(fmu_exit_initialization(SELF(c)));
 }
 
 fmi2Status fmi2Terminate(fmi2Component c) {
@@ -106,19 +106,19 @@ fmi2Status fmi2Terminate(fmi2Component c) {
 
 fmi2Status fmi2Reset(fmi2Component c) {
     ALLOW(c, FMU_CALL_RESET);
-    return give(fmu_reset(SELF(c)));
+    return to_fmi(fmu_reset(SELF(c)));
 }
 
 /* --------------------------------------------------------------------------------------- variables -- */
 
 fmi2Status fmi2GetReal(fmi2Component c, const fmi2ValueReference vr[], size_t nvr, fmi2Real value[]) {
     ALLOW(c, FMU_CALL_GET);
-    return give(fmu_get_reals(SELF(c), vr, nvr, value, nvr));
+    return to_fmi(fmu_get_reals(SELF(c), vr, nvr, value, nvr));
 }
 
 fmi2Status fmi2SetReal(fmi2Component c, const fmi2ValueReference vr[], size_t nvr, const fmi2Real value[]) {
     ALLOW(c, FMU_CALL_SET_CONTINUOUS);
-    return give(fmu_set_reals(SELF(c), vr, nvr, value, nvr));
+    return to_fmi(fmu_set_reals(SELF(c), vr, nvr, value, nvr));
 }
 
 static double read_integer(const void *values, size_t k) { return ((const fmi2Integer *)values)[k]; }
@@ -131,48 +131,48 @@ static void write_boolean(void *values, size_t k, double number) { ((fmi2Boolean
 
 fmi2Status fmi2GetInteger(fmi2Component c, const fmi2ValueReference vr[], size_t nvr, fmi2Integer value[]) {
     ALLOW(c, FMU_CALL_GET);
-    return give(fmu_get(SELF(c), FMU_INTEGER, list(vr, nvr), value, nvr, write_integer));
+    return to_fmi(fmu_get(SELF(c), FMU_INTEGER, list(vr, nvr), value, nvr, write_integer));
 }
 
 fmi2Status fmi2SetInteger(fmi2Component c, const fmi2ValueReference vr[], size_t nvr, const fmi2Integer value[]) {
     ALLOW(c, FMU_CALL_SET_DISCRETE);
-    return give(fmu_set(SELF(c), FMU_INTEGER, list(vr, nvr), value, nvr, read_integer));
+    return to_fmi(fmu_set(SELF(c), FMU_INTEGER, list(vr, nvr), value, nvr, read_integer));
 }
 
 fmi2Status fmi2GetBoolean(fmi2Component c, const fmi2ValueReference vr[], size_t nvr, fmi2Boolean value[]) {
     ALLOW(c, FMU_CALL_GET);
-    return give(fmu_get(SELF(c), FMU_BOOLEAN, list(vr, nvr), value, nvr, write_boolean));
+    return to_fmi(fmu_get(SELF(c), FMU_BOOLEAN, list(vr, nvr), value, nvr, write_boolean));
 }
 
 fmi2Status fmi2SetBoolean(fmi2Component c, const fmi2ValueReference vr[], size_t nvr, const fmi2Boolean value[]) {
     ALLOW(c, FMU_CALL_SET_DISCRETE);
-    return give(fmu_set(SELF(c), FMU_BOOLEAN, list(vr, nvr), value, nvr, read_boolean));
+    return to_fmi(fmu_set(SELF(c), FMU_BOOLEAN, list(vr, nvr), value, nvr, read_boolean));
 }
 
 fmi2Status fmi2GetString(fmi2Component c, const fmi2ValueReference vr[], size_t nvr, fmi2String value[]) {
     (void)vr;
     (void)value;
     ALLOW(c, FMU_CALL_GET);
-    return give(fmu_none_of(SELF(c), "String", nvr));
+    return to_fmi(fmu_refuse_kind(SELF(c), "String", nvr));
 }
 
 fmi2Status fmi2SetString(fmi2Component c, const fmi2ValueReference vr[], size_t nvr, const fmi2String value[]) {
     (void)vr;
     (void)value;
     ALLOW(c, FMU_CALL_SET_DISCRETE);
-    return give(fmu_none_of(SELF(c), "String", nvr));
+    return to_fmi(fmu_refuse_kind(SELF(c), "String", nvr));
 }
 
 /* ------------------------------------------------------------------------------------ saved states -- */
 
 fmi2Status fmi2GetFMUstate(fmi2Component c, fmi2FMUstate *state) {
     ALLOW(c, FMU_CALL_STATE_OF_FMU);
-    return give(fmu_save(SELF(c), (fmu_snapshot **)state));
+    return to_fmi(fmu_save(SELF(c), (fmu_snapshot **)state));
 }
 
 fmi2Status fmi2SetFMUstate(fmi2Component c, fmi2FMUstate state) {
     ALLOW(c, FMU_CALL_STATE_OF_FMU);
-    return give(fmu_restore(SELF(c), state));
+    return to_fmi(fmu_restore(SELF(c), state));
 }
 
 fmi2Status fmi2FreeFMUstate(fmi2Component c, fmi2FMUstate *state) {
@@ -183,17 +183,17 @@ fmi2Status fmi2FreeFMUstate(fmi2Component c, fmi2FMUstate *state) {
 
 fmi2Status fmi2SerializedFMUstateSize(fmi2Component c, fmi2FMUstate state, size_t *size) {
     ALLOW(c, FMU_CALL_STATE_OF_FMU);
-    return give(fmu_serialized_size(SELF(c), state, size));
+    return to_fmi(fmu_serialized_size(SELF(c), state, size));
 }
 
 fmi2Status fmi2SerializeFMUstate(fmi2Component c, fmi2FMUstate state, fmi2Byte bytes[], size_t size) {
     ALLOW(c, FMU_CALL_STATE_OF_FMU);
-    return give(fmu_serialize(SELF(c), state, (uint8_t *)bytes, size));
+    return to_fmi(fmu_serialize(SELF(c), state, (uint8_t *)bytes, size));
 }
 
 fmi2Status fmi2DeSerializeFMUstate(fmi2Component c, const fmi2Byte bytes[], size_t size, fmi2FMUstate *state) {
     ALLOW(c, FMU_CALL_STATE_OF_FMU);
-    return give(fmu_deserialize(SELF(c), (const uint8_t *)bytes, size, (fmu_snapshot **)state));
+    return to_fmi(fmu_deserialize(SELF(c), (const uint8_t *)bytes, size, (fmu_snapshot **)state));
 }
 
 /* ------------------------------------------------------------------------------------- derivatives -- */
@@ -202,20 +202,20 @@ fmi2Status fmi2GetDirectionalDerivative(fmi2Component c, const fmi2ValueReferenc
                                         const fmi2ValueReference knowns[], size_t nKnown, const fmi2Real dKnown[],
                                         fmi2Real dUnknown[]) {
     ALLOW(c, FMU_CALL_PARTIAL_DERIVATIVE);
-    return give(
+    return to_fmi(
         fmu_directional(SELF(c), list(unknowns, nUnknown), list(knowns, nKnown), dKnown, nKnown, dUnknown, nUnknown));
 }
 
 fmi2Status fmi2SetRealInputDerivatives(fmi2Component c, const fmi2ValueReference vr[], size_t nvr,
                                        const fmi2Integer order[], const fmi2Real value[]) {
     ALLOW(c, FMU_CALL_INPUT_DERIVATIVES);
-    return give(fmu_set_input_derivatives(SELF(c), list(vr, nvr), order, value));
+    return to_fmi(fmu_set_input_derivatives(SELF(c), list(vr, nvr), order, value));
 }
 
 fmi2Status fmi2GetRealOutputDerivatives(fmi2Component c, const fmi2ValueReference vr[], size_t nvr,
                                         const fmi2Integer order[], fmi2Real value[]) {
     ALLOW(c, FMU_CALL_OUTPUT_DERIVATIVES);
-    return give(fmu_output_derivatives(SELF(c), list(vr, nvr), order, value, nvr));
+    return to_fmi(fmu_output_derivatives(SELF(c), list(vr, nvr), order, value, nvr));
 }
 
 /* ---------------------------------------------------------------------------------- Co-Simulation -- */
@@ -225,7 +225,7 @@ fmi2Status fmi2DoStep(fmi2Component c, fmi2Real currentCommunicationPoint, fmi2R
     fmu_step_end end;
     (void)noSetFMUStatePriorToCurrentPoint;
     ALLOW(c, FMU_CALL_DO_STEP);
-    return give(fmu_do_step(SELF(c), currentCommunicationPoint, communicationStepSize, &end));
+    return to_fmi(fmu_do_step(SELF(c), currentCommunicationPoint, communicationStepSize, &end));
 }
 
 fmi2Status fmi2CancelStep(fmi2Component c) {
@@ -282,7 +282,8 @@ fmi2Status fmi2EnterEventMode(fmi2Component c) {
 fmi2Status fmi2NewDiscreteStates(fmi2Component c, fmi2EventInfo *info) {
     bool changed;
     ALLOW(c, FMU_CALL_UPDATE_DISCRETE_STATES);
-    if (info == NULL) return give(fmu_refuse(SELF(c), "NewDiscreteStates: no place for the event information (NULL)"));
+    if (info == NULL)
+        return to_fmi(fmu_refuse(SELF(c), "NewDiscreteStates: no place for the event information (NULL)"));
     const fmu_status status = fmu_update_discrete_states(SELF(c), &changed);
     info->newDiscreteStatesNeeded = fmi2False;
     info->terminateSimulation = fmi2False;
@@ -290,7 +291,7 @@ fmi2Status fmi2NewDiscreteStates(fmi2Component c, fmi2EventInfo *info) {
     info->valuesOfContinuousStatesChanged = changed ? fmi2True : fmi2False;
     info->nextEventTimeDefined = fmi2False;
     info->nextEventTime = 0.0;
-    return give(status);
+    return to_fmi(status);
 }
 
 fmi2Status fmi2EnterContinuousTimeMode(fmi2Component c) {
@@ -305,36 +306,36 @@ fmi2Status fmi2CompletedIntegratorStep(fmi2Component c, fmi2Boolean noSetFMUStat
     ALLOW(c, FMU_CALL_COMPLETED_STEP);
     if (enterEventMode != NULL) *enterEventMode = fmi2False;
     if (terminateSimulation != NULL) *terminateSimulation = fmi2False;
-    return give(fmu_completed_step(SELF(c)));
+    return to_fmi(fmu_completed_step(SELF(c)));
 }
 
 fmi2Status fmi2SetTime(fmi2Component c, fmi2Real time) {
     ALLOW(c, FMU_CALL_SET_TIME);
-    return give(fmu_set_time(SELF(c), time));
+    return to_fmi(fmu_set_time(SELF(c), time));
 }
 
 fmi2Status fmi2SetContinuousStates(fmi2Component c, const fmi2Real x[], size_t nx) {
     ALLOW(c, FMU_CALL_SET_STATES);
-    return give(fmu_set_states(SELF(c), x, nx));
+    return to_fmi(fmu_set_states(SELF(c), x, nx));
 }
 
 fmi2Status fmi2GetDerivatives(fmi2Component c, fmi2Real derivatives[], size_t nx) {
     ALLOW(c, FMU_CALL_GET_RATES);
-    return give(fmu_get_rates(SELF(c), derivatives, nx));
+    return to_fmi(fmu_get_rates(SELF(c), derivatives, nx));
 }
 
 fmi2Status fmi2GetEventIndicators(fmi2Component c, fmi2Real eventIndicators[], size_t ni) {
     (void)eventIndicators;
     ALLOW(c, FMU_CALL_GET_STATES);
-    return give(fmu_none_of(SELF(c), "event indicator", ni));
+    return to_fmi(fmu_refuse_kind(SELF(c), "event indicator", ni));
 }
 
 fmi2Status fmi2GetContinuousStates(fmi2Component c, fmi2Real x[], size_t nx) {
     ALLOW(c, FMU_CALL_GET_STATES);
-    return give(fmu_get_states(SELF(c), x, nx));
+    return to_fmi(fmu_get_states(SELF(c), x, nx));
 }
 
 fmi2Status fmi2GetNominalsOfContinuousStates(fmi2Component c, fmi2Real nominals[], size_t nx) {
     ALLOW(c, FMU_CALL_GET_NOMINALS);
-    return give(fmu_get_nominals(SELF(c), nominals, nx));
+    return to_fmi(fmu_get_nominals(SELF(c), nominals, nx));
 }

@@ -3,13 +3,13 @@
 
 #include "fmi3Functions.h"
 
-#include "plant_api.h"
+#include "model_interface.h"
 
 #define SELF(instance) ((fmu_instance *)(instance))
 #define ALLOW(instance, call) \
-    if ((instance) == NULL || !fmu_may(SELF(instance), call)) return fmi3Error
+    if ((instance) == NULL || !fmu_may_call(SELF(instance), call)) return fmi3Error
 
-static fmi3Status give(fmu_status status) { return (fmi3Status)status; }
+static fmi3Status to_fmi(fmu_status status) { return (fmi3Status)status; }
 
 static fmu_references list(const fmi3ValueReference *references, size_t count) {
     const fmu_references pair = {references, count};
@@ -22,14 +22,16 @@ typedef struct fmu_callbacks_3 {
     fmi3IntermediateUpdateCallback update;
 } fmu_callbacks_3;
 
-typedef char fmu_box_is_large_enough[sizeof(fmu_callbacks_3) <= sizeof(((fmu_instance *)0)->box) ? 1 : -1];
+typedef char
+    fmu_callback_storage_is_large_enough[sizeof(fmu_callbacks_3) <= sizeof(((fmu_instance *)0)->callback_storage) ? 1
+                                                                                                                  : -1];
 
 static const fmu_callbacks_3 *callbacks(const fmu_instance *instance) {
-    return (const fmu_callbacks_3 *)(const void *)&instance->box;
+    return (const fmu_callbacks_3 *)(const void *)&instance->callback_storage;
 }
 
-static void say(const fmu_instance *instance, fmu_status status, const char *category, const char *text) {
-    callbacks(instance)->log(instance->environment, give(status), category, text);
+static void log_message(const fmu_instance *instance, fmu_status status, const char *category, const char *text) {
+    callbacks(instance)->log(instance->environment, to_fmi(status), category, text);
 }
 
 static bool offer_update(fmu_instance *instance, bool finished) {
@@ -53,10 +55,10 @@ static fmu_instance *create(fmu_kind kind, fmi3String name, fmi3String token, fm
         .kind = kind,
         .version = 3,
         .logging_on = logging_on,
-        .deliver = functions->log != NULL ? say : NULL,
+        .deliver = functions->log != NULL ? log_message : NULL,
         .environment = environment,
-        .box = functions,
-        .box_size = sizeof *functions,
+        .callbacks = functions,
+        .callbacks_size = sizeof *functions,
     };
     return fmu_create(&request);
 }
@@ -117,12 +119,12 @@ void fmi3FreeInstance(fmi3Instance instance) { fmu_free(SELF(instance)); }
 fmi3Status fmi3SetDebugLogging(fmi3Instance instance, fmi3Boolean loggingOn, size_t nCategories,
                                const fmi3String categories[]) {
     ALLOW(instance, FMU_CALL_SET_DEBUG_LOGGING);
-    return give(fmu_set_logging(SELF(instance), loggingOn, nCategories, categories));
+    return to_fmi(fmu_set_logging(SELF(instance), loggingOn, nCategories, categories));
 }
 
 fmi3Status fmi3EnterConfigurationMode(fmi3Instance instance) {
     ALLOW(instance, FMU_CALL_ENTER_CONFIGURATION);
-    if (SELF(instance)->scalar) return give(fmu_refuse(SELF(instance), "this FMU has no structural parameters"));
+    if (SELF(instance)->scalar) return to_fmi(fmu_refuse(SELF(instance), "this FMU has no structural parameters"));
     fmu_enter(SELF(instance), FMU_CONFIGURATION);
     return fmi3OK;
 }
@@ -140,18 +142,18 @@ fmi3Status fmi3EnterInitializationMode(fmi3Instance instance, fmi3Boolean tolera
     ALLOW(instance, FMU_CALL_ENTER_INITIALIZATION);
     const fmu_status status = fmu_setup(SELF(instance), startTime, stopTimeDefined, stopTime);
     if (status == FMU_OK) fmu_enter(SELF(instance), FMU_INITIALIZATION);
-    return give(status);
+    return to_fmi(status);
 }
 
 fmi3Status fmi3ExitInitializationMode(fmi3Instance instance) {
     ALLOW(instance, FMU_CALL_EXIT_INITIALIZATION);
-    return give(fmu_exit_initialization(SELF(instance)));
+    return to_fmi(fmu_exit_initialization(SELF(instance)));
 }
 
 fmi3Status fmi3EnterEventMode(fmi3Instance instance) {
     ALLOW(instance, FMU_CALL_ENTER_EVENT);
     if (SELF(instance)->kind == FMU_CO_SIMULATION && !SELF(instance)->event_mode_used)
-        return give(fmu_refuse(SELF(instance), "EnterEventMode: the instance was made without event mode"));
+        return to_fmi(fmu_refuse(SELF(instance), "EnterEventMode: the instance was made without event mode"));
     fmu_enter(SELF(instance), FMU_EVENT);
     return fmi3OK;
 }
@@ -164,7 +166,7 @@ fmi3Status fmi3Terminate(fmi3Instance instance) {
 
 fmi3Status fmi3Reset(fmi3Instance instance) {
     ALLOW(instance, FMU_CALL_RESET);
-    return give(fmu_reset(SELF(instance)));
+    return to_fmi(fmu_reset(SELF(instance)));
 }
 
 /* --------------------------------------------------------------------------------------- variables -- */
@@ -172,13 +174,13 @@ fmi3Status fmi3Reset(fmi3Instance instance) {
 fmi3Status fmi3GetFloat64(fmi3Instance instance, const fmi3ValueReference valueReferences[], size_t nValueReferences,
                           fmi3Float64 values[], size_t nValues) {
     ALLOW(instance, FMU_CALL_GET);
-    return give(fmu_get_reals(SELF(instance), valueReferences, nValueReferences, values, nValues));
+    return to_fmi(fmu_get_reals(SELF(instance), valueReferences, nValueReferences, values, nValues));
 }
 
 fmi3Status fmi3SetFloat64(fmi3Instance instance, const fmi3ValueReference valueReferences[], size_t nValueReferences,
                           const fmi3Float64 values[], size_t nValues) {
     ALLOW(instance, FMU_CALL_SET_CONTINUOUS);
-    return give(fmu_set_reals(SELF(instance), valueReferences, nValueReferences, values, nValues));
+    return to_fmi(fmu_set_reals(SELF(instance), valueReferences, nValueReferences, values, nValues));
 }
 
 /* The other types in use. Enumerations are read and set as Int64. `number` makes a double of a value that is set. */
@@ -191,13 +193,13 @@ fmi3Status fmi3SetFloat64(fmi3Instance instance, const fmi3ValueReference valueR
     fmi3Status fmi3Get##Name(fmi3Instance instance, const fmi3ValueReference valueReferences[], \
                              size_t nValueReferences, Type values[], size_t nValues) { \
         ALLOW(instance, FMU_CALL_GET); \
-        return give(fmu_get(SELF(instance), fmu_type, list(valueReferences, nValueReferences), values, nValues, \
-                            write_##Name)); \
+        return to_fmi(fmu_get(SELF(instance), fmu_type, list(valueReferences, nValueReferences), values, nValues, \
+                              write_##Name)); \
     } \
     fmi3Status fmi3Set##Name(fmi3Instance instance, const fmi3ValueReference valueReferences[], \
                              size_t nValueReferences, const Type values[], size_t nValues) { \
         ALLOW(instance, FMU_CALL_SET_DISCRETE); \
-        return give( \
+        return to_fmi( \
             fmu_set(SELF(instance), fmu_type, list(valueReferences, nValueReferences), values, nValues, read_##Name)); \
     }
 
@@ -214,7 +216,7 @@ TYPED(Boolean, fmi3Boolean, FMU_BOOLEAN, PLAIN)
         (void)valueReferences; \
         unread; \
         ALLOW(instance, call); \
-        return give(fmu_none_of(SELF(instance), kind, asked)); \
+        return to_fmi(fmu_refuse_kind(SELF(instance), kind, asked)); \
     }
 #define ABSENT_TYPE(Name, Type) \
     ABSENT(fmi3Get##Name, FMU_CALL_GET, #Name, nValueReferences + nValues, (void)values, Type values[], \
@@ -262,7 +264,7 @@ fmi3Status fmi3ActivateModelPartition(fmi3Instance instance, fmi3ValueReference 
     (void)clockReference;
     (void)activationTime;
     if (instance == NULL) return fmi3Error;
-    return give(fmu_refuse(SELF(instance), "this FMU offers no Scheduled Execution"));
+    return to_fmi(fmu_refuse(SELF(instance), "this FMU offers no Scheduled Execution"));
 }
 
 /* ------------------------------------------------------------------------------------ dependencies -- */
@@ -273,7 +275,7 @@ fmi3Status fmi3GetNumberOfVariableDependencies(fmi3Instance instance, fmi3ValueR
     (void)valueReference;
     (void)nDependencies;
     ALLOW(instance, FMU_CALL_DEPENDENCIES);
-    return give(fmu_refuse(SELF(instance), "dependencies per element are not provided: see ModelStructure"));
+    return to_fmi(fmu_refuse(SELF(instance), "dependencies per element are not provided: see ModelStructure"));
 }
 
 fmi3Status fmi3GetVariableDependencies(fmi3Instance instance, fmi3ValueReference dependent,
@@ -287,19 +289,19 @@ fmi3Status fmi3GetVariableDependencies(fmi3Instance instance, fmi3ValueReference
     (void)dependencyKinds;
     (void)nDependencies;
     ALLOW(instance, FMU_CALL_DEPENDENCIES);
-    return give(fmu_refuse(SELF(instance), "dependencies per element are not provided: see ModelStructure"));
+    return to_fmi(fmu_refuse(SELF(instance), "dependencies per element are not provided: see ModelStructure"));
 }
 
 /* ------------------------------------------------------------------------------------ saved states -- */
 
 fmi3Status fmi3GetFMUState(fmi3Instance instance, fmi3FMUState *state) {
     ALLOW(instance, FMU_CALL_STATE_OF_FMU);
-    return give(fmu_save(SELF(instance), (fmu_snapshot **)state));
+    return to_fmi(fmu_save(SELF(instance), (fmu_snapshot **)state));
 }
 
 fmi3Status fmi3SetFMUState(fmi3Instance instance, fmi3FMUState state) {
     ALLOW(instance, FMU_CALL_STATE_OF_FMU);
-    return give(fmu_restore(SELF(instance), state));
+    return to_fmi(fmu_restore(SELF(instance), state));
 }
 
 fmi3Status fmi3FreeFMUState(fmi3Instance instance, fmi3FMUState *state) {
@@ -310,17 +312,17 @@ fmi3Status fmi3FreeFMUState(fmi3Instance instance, fmi3FMUState *state) {
 
 fmi3Status fmi3SerializedFMUStateSize(fmi3Instance instance, fmi3FMUState state, size_t *size) {
     ALLOW(instance, FMU_CALL_STATE_OF_FMU);
-    return give(fmu_serialized_size(SELF(instance), state, size));
+    return to_fmi(fmu_serialized_size(SELF(instance), state, size));
 }
 
 fmi3Status fmi3SerializeFMUState(fmi3Instance instance, fmi3FMUState state, fmi3Byte bytes[], size_t size) {
     ALLOW(instance, FMU_CALL_STATE_OF_FMU);
-    return give(fmu_serialize(SELF(instance), state, bytes, size));
+    return to_fmi(fmu_serialize(SELF(instance), state, bytes, size));
 }
 
 fmi3Status fmi3DeserializeFMUState(fmi3Instance instance, const fmi3Byte bytes[], size_t size, fmi3FMUState *state) {
     ALLOW(instance, FMU_CALL_STATE_OF_FMU);
-    return give(fmu_deserialize(SELF(instance), bytes, size, (fmu_snapshot **)state));
+    return to_fmi(fmu_deserialize(SELF(instance), bytes, size, (fmu_snapshot **)state));
 }
 
 /* ------------------------------------------------------------------------------------- derivatives -- */
@@ -329,23 +331,23 @@ fmi3Status fmi3GetDirectionalDerivative(fmi3Instance instance, const fmi3ValueRe
                                         const fmi3ValueReference knowns[], size_t nKnowns, const fmi3Float64 seed[],
                                         size_t nSeed, fmi3Float64 sensitivity[], size_t nSensitivity) {
     ALLOW(instance, FMU_CALL_PARTIAL_DERIVATIVE);
-    return give(fmu_directional(SELF(instance), list(unknowns, nUnknowns), list(knowns, nKnowns), seed, nSeed,
-                                sensitivity, nSensitivity));
+    return to_fmi(fmu_directional(SELF(instance), list(unknowns, nUnknowns), list(knowns, nKnowns), seed, nSeed,
+                                  sensitivity, nSensitivity));
 }
 
 fmi3Status fmi3GetAdjointDerivative(fmi3Instance instance, const fmi3ValueReference unknowns[], size_t nUnknowns,
                                     const fmi3ValueReference knowns[], size_t nKnowns, const fmi3Float64 seed[],
                                     size_t nSeed, fmi3Float64 sensitivity[], size_t nSensitivity) {
     ALLOW(instance, FMU_CALL_PARTIAL_DERIVATIVE);
-    return give(fmu_adjoint(SELF(instance), list(unknowns, nUnknowns), list(knowns, nKnowns), seed, nSeed, sensitivity,
-                            nSensitivity));
+    return to_fmi(fmu_adjoint(SELF(instance), list(unknowns, nUnknowns), list(knowns, nKnowns), seed, nSeed,
+                              sensitivity, nSensitivity));
 }
 
 fmi3Status fmi3GetOutputDerivatives(fmi3Instance instance, const fmi3ValueReference valueReferences[],
                                     size_t nValueReferences, const fmi3Int32 orders[], fmi3Float64 values[],
                                     size_t nValues) {
     ALLOW(instance, FMU_CALL_OUTPUT_DERIVATIVES);
-    return give(
+    return to_fmi(
         fmu_output_derivatives(SELF(instance), list(valueReferences, nValueReferences), orders, values, nValues));
 }
 
@@ -364,7 +366,7 @@ fmi3Status fmi3UpdateDiscreteStates(fmi3Instance instance, fmi3Boolean *discrete
     if (valuesOfContinuousStatesChanged != NULL) *valuesOfContinuousStatesChanged = changed;
     if (nextEventTimeDefined != NULL) *nextEventTimeDefined = fmi3False;
     if (nextEventTime != NULL) *nextEventTime = 0.0;
-    return give(status);
+    return to_fmi(status);
 }
 
 /* --------------------------------------------------------------------------------- Model Exchange -- */
@@ -381,53 +383,53 @@ fmi3Status fmi3CompletedIntegratorStep(fmi3Instance instance, fmi3Boolean noSetF
     ALLOW(instance, FMU_CALL_COMPLETED_STEP);
     if (enterEventMode != NULL) *enterEventMode = fmi3False;
     if (terminateSimulation != NULL) *terminateSimulation = fmi3False;
-    return give(fmu_completed_step(SELF(instance)));
+    return to_fmi(fmu_completed_step(SELF(instance)));
 }
 
 fmi3Status fmi3SetTime(fmi3Instance instance, fmi3Float64 time) {
     ALLOW(instance, FMU_CALL_SET_TIME);
-    return give(fmu_set_time(SELF(instance), time));
+    return to_fmi(fmu_set_time(SELF(instance), time));
 }
 
 fmi3Status fmi3SetContinuousStates(fmi3Instance instance, const fmi3Float64 continuousStates[],
                                    size_t nContinuousStates) {
     ALLOW(instance, FMU_CALL_SET_STATES);
-    return give(fmu_set_states(SELF(instance), continuousStates, nContinuousStates));
+    return to_fmi(fmu_set_states(SELF(instance), continuousStates, nContinuousStates));
 }
 
 fmi3Status fmi3GetContinuousStateDerivatives(fmi3Instance instance, fmi3Float64 derivatives[],
                                              size_t nContinuousStates) {
     ALLOW(instance, FMU_CALL_GET_RATES);
-    return give(fmu_get_rates(SELF(instance), derivatives, nContinuousStates));
+    return to_fmi(fmu_get_rates(SELF(instance), derivatives, nContinuousStates));
 }
 
 fmi3Status fmi3GetEventIndicators(fmi3Instance instance, fmi3Float64 eventIndicators[], size_t nEventIndicators) {
     (void)eventIndicators;
     ALLOW(instance, FMU_CALL_GET_STATES);
-    return give(fmu_none_of(SELF(instance), "event indicator", nEventIndicators));
+    return to_fmi(fmu_refuse_kind(SELF(instance), "event indicator", nEventIndicators));
 }
 
 fmi3Status fmi3GetContinuousStates(fmi3Instance instance, fmi3Float64 continuousStates[], size_t nContinuousStates) {
     ALLOW(instance, FMU_CALL_GET_STATES);
-    return give(fmu_get_states(SELF(instance), continuousStates, nContinuousStates));
+    return to_fmi(fmu_get_states(SELF(instance), continuousStates, nContinuousStates));
 }
 
 fmi3Status fmi3GetNominalsOfContinuousStates(fmi3Instance instance, fmi3Float64 nominals[], size_t nContinuousStates) {
     ALLOW(instance, FMU_CALL_GET_NOMINALS);
-    return give(fmu_get_nominals(SELF(instance), nominals, nContinuousStates));
+    return to_fmi(fmu_get_nominals(SELF(instance), nominals, nContinuousStates));
 }
 
 fmi3Status fmi3GetNumberOfEventIndicators(fmi3Instance instance, size_t *nEventIndicators) {
     ALLOW(instance, FMU_CALL_COUNT_STATES);
-    if (nEventIndicators == NULL) return give(fmu_refuse(SELF(instance), "no place for the number (NULL)"));
+    if (nEventIndicators == NULL) return to_fmi(fmu_refuse(SELF(instance), "no place for the number (NULL)"));
     *nEventIndicators = 0;
     return fmi3OK;
 }
 
 fmi3Status fmi3GetNumberOfContinuousStates(fmi3Instance instance, size_t *nContinuousStates) {
     ALLOW(instance, FMU_CALL_COUNT_STATES);
-    if (nContinuousStates == NULL) return give(fmu_refuse(SELF(instance), "no place for the number (NULL)"));
-    *nContinuousStates = fmu_plant_state_count(&SELF(instance)->plant);
+    if (nContinuousStates == NULL) return to_fmi(fmu_refuse(SELF(instance), "no place for the number (NULL)"));
+    *nContinuousStates = fmu_model_state_count(&SELF(instance)->model);
     return fmi3OK;
 }
 
@@ -450,5 +452,5 @@ fmi3Status fmi3DoStep(fmi3Instance instance, fmi3Float64 currentCommunicationPoi
     if (terminateSimulation != NULL) *terminateSimulation = fmi3False;
     if (earlyReturn != NULL) *earlyReturn = end.early;
     if (lastSuccessfulTime != NULL) *lastSuccessfulTime = end.time_s;
-    return give(status);
+    return to_fmi(status);
 }

@@ -4,7 +4,7 @@
 #include <stdlib.h>
 #include <string.h>
 
-#include "plant_api.h"
+#include "model_interface.h"
 
 #define SETS(access) (1U << (access))
 
@@ -43,7 +43,7 @@ void fmu_enter(fmu_instance *instance, fmu_mode mode) {
         if (allows(instance, &fmu_rules[call], mode)) instance->allowed |= 1U << call;
 }
 
-bool fmu_may_not(const fmu_instance *instance, fmu_call call) {
+bool fmu_refuse_call(const fmu_instance *instance, fmu_call call) {
     fmu_refuse(instance, "%s is not allowed in %s", fmu_rules[call].what, fmu_mode_names[instance->mode]);
     return false;
 }
@@ -55,7 +55,7 @@ static char *copy_text(const char *text) {
     return copy;
 }
 
-static bool names_itself(const fmu_instance *instance, const fmu_request *request) {
+static bool has_name_and_token(const fmu_instance *instance, const fmu_request *request) {
     if (request->instance_name == NULL || request->instance_name[0] == '\0')
         fmu_refuse(instance, "Instantiate: the instance has no name (%s); give it one",
                    request->instance_name == NULL ? "NULL" : "an empty text");
@@ -73,18 +73,19 @@ fmu_instance *fmu_create(const fmu_request *request) {
     instance->version = request->version;
     instance->deliver = request->deliver;
     instance->environment = request->environment;
-    if (request->box_size <= sizeof instance->box) memcpy(instance->box, request->box, request->box_size);
+    if (request->callbacks_size <= sizeof instance->callback_storage)
+        memcpy(instance->callback_storage, request->callbacks, request->callbacks_size);
     /* a warning says that the results do not hold, which is no debugging */
     instance->log_categories = request->logging_on ? FMU_LOG_ALL : FMU_LOG_ERROR | FMU_LOG_WARNING;
     instance->name = copy_text(request->instance_name != NULL ? request->instance_name : "");
-    if (instance->name == NULL || !names_itself(instance, request) ||
+    if (instance->name == NULL || !has_name_and_token(instance, request) ||
         !fmu_load_start_values(instance, request->token, request->resources)) {
         fmu_free(instance);
         return NULL;
     }
     instance->token_hash = fmu_token_hash(request->token);
-    instance->plant.start_needed = true;
-    instance->initial = instance->plant;
+    instance->model.start_needed = true;
+    instance->initial = instance->model;
     fmu_enter(instance, FMU_INSTANTIATED);
     return instance;
 }
@@ -101,12 +102,12 @@ fmu_status fmu_setup(fmu_instance *instance, double start_s, bool stop_defined, 
     if (stop_defined && !(stop_s >= start_s))
         return fmu_refuse(instance, "the stop time %g s is before the start time %g s", stop_s, start_s);
     fmu_clock_start(&instance->clock, start_s, stop_defined, stop_s);
-    instance->plant.time_s = start_s;
+    instance->model.time_s = start_s;
     return FMU_OK;
 }
 
 fmu_status fmu_exit_initialization(fmu_instance *instance) {
-    const fmu_status status = fmu_make_current(instance);
+    const fmu_status status = fmu_apply_parameters(instance);
     if (status != FMU_OK) return status;
     fmu_enter(instance, instance->kind == FMU_MODEL_EXCHANGE || instance->event_mode_used ? FMU_EVENT : FMU_STEP);
     return FMU_OK;
@@ -114,26 +115,26 @@ fmu_status fmu_exit_initialization(fmu_instance *instance) {
 
 /* Whatever applies the change, a value that is read or the end of an event iteration: the iteration tells of it. */
 static fmu_status apply_change(fmu_instance *instance) {
-    const fmu_status status = fmu_plant_change(instance);
-    if (status == FMU_OK) instance->plant.states_changed = true;
+    const fmu_status status = fmu_model_change(instance);
+    if (status == FMU_OK) instance->model.states_changed = true;
     return status;
 }
 
-fmu_status fmu_make_current(fmu_instance *instance) {
-    if (instance->plant.start_needed) return fmu_plant_start(instance);
-    return instance->plant.change_needed ? apply_change(instance) : FMU_OK;
+fmu_status fmu_apply_parameters(fmu_instance *instance) {
+    if (instance->model.start_needed) return fmu_model_start(instance);
+    return instance->model.change_needed ? apply_change(instance) : FMU_OK;
 }
 
 fmu_status fmu_update_discrete_states(fmu_instance *instance, bool *states_changed) {
-    const fmu_status status = fmu_make_current(instance);
-    *states_changed = instance->plant.states_changed;
-    instance->plant.states_changed = false;
+    const fmu_status status = fmu_apply_parameters(instance);
+    *states_changed = instance->model.states_changed;
+    instance->model.states_changed = false;
     return status;
 }
 
 fmu_status fmu_reset(fmu_instance *instance) {
-    instance->plant = instance->initial;
-    instance->told = instance->noted = 0;
+    instance->model = instance->initial;
+    instance->warnings_given = instance->warnings_pending = 0;
     fmu_clock_start(&instance->clock, 0.0, false, 0.0);
     fmu_enter(instance, FMU_INSTANTIATED);
     return FMU_OK;

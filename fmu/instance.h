@@ -6,7 +6,7 @@
  *     instance.c, variables.c, co_simulation.c, model_exchange.c, …   (what both versions share)
  *                   |
  *                   v
- *     plant.h       (the model: vehicle/ or controller/)
+ *     model.h       (the model: vehicle/ or controller/)
  *
  * Every function returns an fmu_status whose numbers are those of fmi2Status and fmi3Status. A refused call
  * changes nothing and says why through the importer's logger. Memory is taken when an instance or a saved state
@@ -20,7 +20,7 @@
 
 #include "clock.h"
 #include "lifecycle.h"
-#include "plant.h"
+#include "model.h"
 
 typedef enum fmu_status { FMU_OK, FMU_WARNING, FMU_DISCARD, FMU_ERROR, FMU_FATAL } fmu_status;
 
@@ -52,7 +52,7 @@ typedef struct fmu_list {
     size_t count, values; /* 0: none yet */
     uint32_t groups;      /* of all of them */
     uint32_t reference[FMU_LIST_LENGTH];
-    uint32_t offset[FMU_LIST_LENGTH]; /* of each value, in fmu_plant */
+    uint32_t offset[FMU_LIST_LENGTH]; /* of each value, in fmu_model */
 } fmu_list;
 
 struct fmu_instance {
@@ -67,15 +67,15 @@ struct fmu_instance {
     unsigned log_categories; /* bit per fmu_category                                        */
     fmu_deliver deliver;
     void *environment;
-    void (*box[2])(void); /* the importer's callbacks, as the glue keeps them            */
+    void (*callback_storage[2])(void); /* the importer's callbacks, as the glue keeps them            */
     char *name;
     uint64_t token_hash;
-    uint32_t told;                   /* bit per thing that the plant says once a run                */
-    uint32_t noted;                  /* the same, found in a step that may still be refused         */
+    uint32_t warnings_given;         /* bit per thing that the model says once a run                */
+    uint32_t warnings_pending;       /* the same, found in a step that may still be refused         */
     fmu_between_steps between_steps; /* NULL: the importer does not ask for intermediate updates */
     fmu_clock clock;
-    fmu_plant plant;
-    fmu_plant initial;      /* right after instantiation, for reset                        */
+    fmu_model model;
+    fmu_model initial;      /* right after instantiation, for reset                        */
     fmu_list read, written; /* the last good lists of reals (cached_reals.c)                      */
 };
 
@@ -88,8 +88,8 @@ typedef struct fmu_request {
     bool logging_on;
     fmu_deliver deliver;
     void *environment;
-    const void *box; /* callbacks for fmu_instance.box */
-    size_t box_size;
+    const void *callbacks; /* callbacks for fmu_instance.callback_storage */
+    size_t callbacks_size;
 } fmu_request;
 
 /* NULL when name or token is missing, the token is not this FMU's, the start values cannot be read, or memory is
@@ -98,15 +98,15 @@ fmu_instance *fmu_create(const fmu_request *request);
 void fmu_free(fmu_instance *instance);
 
 /* Says in the log that the call may not be made in the instance's present mode (lifecycle.h); false. */
-bool fmu_may_not(const fmu_instance *instance, fmu_call call);
+bool fmu_refuse_call(const fmu_instance *instance, fmu_call call);
 
-static inline bool fmu_may(const fmu_instance *instance, fmu_call call) {
-    return (instance->allowed >> call & 1U) != 0 || fmu_may_not(instance, call);
+static inline bool fmu_may_call(const fmu_instance *instance, fmu_call call) {
+    return (instance->allowed >> call & 1U) != 0 || fmu_refuse_call(instance, call);
 }
 
 void fmu_enter(fmu_instance *instance, fmu_mode mode);
 
-/* Puts the start values that came with the FMU into the plant (start_file.c); false: they cannot be read. */
+/* Puts the start values that came with the FMU into the model (start_file.c); false: they cannot be read. */
 bool fmu_load_start_values(fmu_instance *instance, const char *token, const char *resources);
 
 fmu_status fmu_setup(fmu_instance *instance, double start_s, bool stop_defined, double stop_s);
@@ -114,7 +114,7 @@ fmu_status fmu_exit_initialization(fmu_instance *instance);
 fmu_status fmu_update_discrete_states(fmu_instance *instance, bool *states_changed);
 fmu_status fmu_reset(fmu_instance *instance);
 /* Pending parameters take effect, so that what is computed belongs to them. */
-fmu_status fmu_make_current(fmu_instance *instance);
+fmu_status fmu_apply_parameters(fmu_instance *instance);
 
 /* ---------------------------------------------------------------------------------- messages -- */
 
@@ -124,7 +124,7 @@ fmu_status fmu_make_current(fmu_instance *instance);
 #define FMU_LIKE_PRINTF(text, first)
 #endif
 
-fmu_status fmu_report(const fmu_instance *instance, fmu_status status, fmu_category category, const char *format, ...)
+fmu_status fmu_log(const fmu_instance *instance, fmu_status status, fmu_category category, const char *format, ...)
     FMU_LIKE_PRINTF(4, 5);
 fmu_status fmu_refuse(const fmu_instance *instance, const char *format, ...) FMU_LIKE_PRINTF(2, 3);
 fmu_status fmu_set_logging(fmu_instance *instance, bool on, size_t count, const char *const categories[]);
@@ -154,13 +154,13 @@ typedef enum fmu_access { /* who sets it, and when (variables.c) */
 /* One row of the table that is generated from the description; the row's number is the value reference. */
 typedef struct fmu_variable {
     const char *name;
-    uint32_t offset; /* in fmu_plant                                          */
+    uint32_t offset; /* in fmu_model                                          */
     uint16_t stride; /* from one element to the next                          */
-    uint16_t size;   /* elements; 0: as many as fmu_plant_array_size() says   */
+    uint16_t size;   /* elements; 0: as many as FMU_MODEL_ARRAY_SIZE says   */
     uint8_t type, access;
     bool intermediate;  /* may be got or set in between steps (FMI 3)          */
     double least, most; /* what it may be set to                              */
-    uint32_t group;     /* what must be fresh before it is read, see plant.h     */
+    uint32_t group;     /* what must be fresh before it is read, see model.h     */
     uint32_t tangent;   /* in fmu_tangent; UINT32_MAX: not differentiated       */
 } fmu_variable;
 
@@ -214,11 +214,11 @@ fmu_status fmu_get_reals(fmu_instance *instance, const uint32_t *references, siz
 fmu_status fmu_set_reals(fmu_instance *instance, const uint32_t *references, size_t count, const double *values,
                          size_t value_count);
 /* Refuses unless nothing was asked for: there are no variables of that kind. */
-fmu_status fmu_none_of(const fmu_instance *instance, const char *kind, size_t asked);
+fmu_status fmu_refuse_kind(const fmu_instance *instance, const char *kind, size_t asked);
 /* Refuses unless every one of them may be got or set in between steps. */
 fmu_status fmu_check_intermediate(const fmu_instance *instance, const uint32_t *references, size_t count);
 /* One element, whatever the mode; false: no such variable, or no value it can have. */
-bool fmu_take_start_value(fmu_instance *instance, uint32_t reference, double value);
+bool fmu_set_start_value(fmu_instance *instance, uint32_t reference, double value);
 
 /* ------------------------------------------------------------------------------------- steps -- */
 

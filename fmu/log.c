@@ -35,7 +35,7 @@ static void deliver(const fmu_instance *instance, fmu_status status, fmu_categor
         if (categories[k].category == category) instance->deliver(instance, status, categories[k].name, line);
 }
 
-fmu_status fmu_report(const fmu_instance *instance, fmu_status status, fmu_category category, const char *format, ...) {
+fmu_status fmu_log(const fmu_instance *instance, fmu_status status, fmu_category category, const char *format, ...) {
     va_list arguments;
     va_start(arguments, format);
     deliver(instance, status, category, format, arguments);

@@ -1,33 +1,33 @@
 /* What Model Exchange asks for: time, continuous states, their rates. */
 #include <string.h>
 
-#include "plant_api.h"
+#include "model_interface.h"
 
 fmu_status fmu_set_time(fmu_instance *instance, double time_s) {
     if (!fmu_is_finite(time_s)) return fmu_refuse(instance, "SetTime: %g is not a time", time_s);
-    if (fmu_clock_passes_stop(&instance->clock, time_s, 0.0) && !fmu_clock_may_look_at(&instance->clock, time_s))
+    if (fmu_clock_passes_stop(&instance->clock, time_s, 0.0) && !fmu_clock_allows_overshoot(&instance->clock, time_s))
         return fmu_refuse(instance, "SetTime: %.15g s is beyond the stop time %.15g s", time_s, instance->clock.stop_s);
     if (fmu_clock_is_before_start(&instance->clock, time_s))
         return fmu_refuse(instance, "SetTime: %.15g s is before the start time %.15g s", time_s,
                           instance->clock.start_s);
-    instance->plant.time_s = time_s;
+    instance->model.time_s = time_s;
     return FMU_OK;
 }
 
 fmu_status fmu_completed_step(fmu_instance *instance) {
-    const double time_s = instance->plant.time_s;
+    const double time_s = instance->model.time_s;
     if (fmu_clock_passes_stop(&instance->clock, time_s, 0.0))
         return fmu_refuse(instance, "CompletedIntegratorStep: %.15g s is beyond the stop time %.15g s", time_s,
                           instance->clock.stop_s);
-    const fmu_status status = fmu_make_current(instance);
+    const fmu_status status = fmu_apply_parameters(instance);
     if (status != FMU_OK) return status;
     instance->clock.completed_s = time_s;
-    fmu_plant_watch(instance);
+    fmu_model_completed_step(instance);
     return FMU_OK;
 }
 
 static fmu_status check_count(const fmu_instance *instance, const double *values, size_t count) {
-    const uint32_t states = fmu_plant_state_count(&instance->plant);
+    const uint32_t states = fmu_model_state_count(&instance->model);
     if (count != states)
         return fmu_refuse(instance, "there are %u continuous states, not %zu", (unsigned)states, count);
     return values != NULL || count == 0 ? FMU_OK : fmu_refuse(instance, "the list of values is missing (NULL)");
@@ -35,8 +35,8 @@ static fmu_status check_count(const fmu_instance *instance, const double *values
 
 fmu_status fmu_get_states(fmu_instance *instance, double *values, size_t count) {
     fmu_status status = check_count(instance, values, count);
-    if (status == FMU_OK) status = fmu_make_current(instance);
-    if (status == FMU_OK) fmu_plant_get_states(instance, values);
+    if (status == FMU_OK) status = fmu_apply_parameters(instance);
+    if (status == FMU_OK) fmu_model_get_states(instance, values);
     return status;
 }
 
@@ -45,18 +45,18 @@ fmu_status fmu_set_states(fmu_instance *instance, const double *values, size_t c
     if (status != FMU_OK) return status;
     for (size_t k = 0; k < count; k++)
         if (!(values[k] <= FMU_LARGEST_STATE && values[k] >= -FMU_LARGEST_STATE))
-            return fmu_report(instance, FMU_DISCARD, FMU_LOG_DISCARD,
-                              "continuous state %zu of %zu cannot be %g: take a smaller step", k + 1, count, values[k]);
-    fmu_plant_set_states(instance, values);
+            return fmu_log(instance, FMU_DISCARD, FMU_LOG_DISCARD,
+                           "continuous state %zu of %zu cannot be %g: take a smaller step", k + 1, count, values[k]);
+    fmu_model_set_states(instance, values);
     return FMU_OK;
 }
 
 fmu_status fmu_get_rates(fmu_instance *instance, double *values, size_t count) {
-    double rates[6 + FMU_PLANT_LARGEST_ARRAY];
+    double rates[6 + FMU_MODEL_LARGEST_ARRAY];
     fmu_status status = check_count(instance, values, count);
-    if (status == FMU_OK) status = fmu_make_current(instance);
+    if (status == FMU_OK) status = fmu_apply_parameters(instance);
     if (status != FMU_OK) return status;
-    fmu_plant_get_rates(instance, rates);
+    fmu_model_get_rates(instance, rates);
     for (size_t k = 0; k < count; k++)
         if (!fmu_is_finite(rates[k]))
             return fmu_refuse(instance,
@@ -69,6 +69,6 @@ fmu_status fmu_get_rates(fmu_instance *instance, double *values, size_t count) {
 
 fmu_status fmu_get_nominals(fmu_instance *instance, double *values, size_t count) {
     const fmu_status status = check_count(instance, values, count);
-    if (status == FMU_OK) fmu_plant_get_nominals(&instance->plant, values);
+    if (status == FMU_OK) fmu_model_get_nominals(&instance->model, values);
     return status;
 }

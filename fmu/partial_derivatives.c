@@ -1,11 +1,11 @@
 /* Directional and adjoint derivatives, output and input derivatives: which variable is meant, and seeds. */
 #include <string.h>
 
-#include "plant_api.h"
+#include "model_interface.h"
 
 #define NO_TANGENT UINT32_MAX
 
-static double *tangent_place(fmu_tangent *tangent, const fmu_slot *slot, uint32_t element) {
+static double *tangent_at(fmu_tangent *tangent, const fmu_slot *slot, uint32_t element) {
     return (double *)(void *)((char *)tangent + slot->variable->tangent + sizeof(double) * (slot->first + element));
 }
 
@@ -49,7 +49,7 @@ static fmu_status check_counts(fmu_instance *instance, fmu_references unknowns, 
     if (status == FMU_OK) status = count_known(instance, knowns, true, &total);
     if (status == FMU_OK && total != known_values)
         status = fmu_refuse(instance, "%zu values for knowns that have %zu", known_values, total);
-    return status == FMU_OK ? fmu_make_current(instance) : status;
+    return status == FMU_OK ? fmu_apply_parameters(instance) : status;
 }
 
 static fmu_status refuse_result(const fmu_instance *instance, const fmu_variable *variable) {
@@ -67,11 +67,11 @@ static fmu_status read_unknowns(const fmu_instance *instance, fmu_references unk
     for (size_t k = 0; k < unknowns.count; k++) {
         fmu_find(instance, unknowns.reference[k], &slot);
         for (uint32_t i = 0; i < slot.count; i++)
-            if (!fmu_is_finite(*tangent_place(tangent, &slot, i))) return refuse_result(instance, slot.variable);
+            if (!fmu_is_finite(*tangent_at(tangent, &slot, i))) return refuse_result(instance, slot.variable);
     }
     for (size_t k = 0; k < unknowns.count; k++) {
         fmu_find(instance, unknowns.reference[k], &slot);
-        for (uint32_t i = 0; i < slot.count; i++) values[used++] = *tangent_place(tangent, &slot, i);
+        for (uint32_t i = 0; i < slot.count; i++) values[used++] = *tangent_at(tangent, &slot, i);
     }
     return FMU_OK;
 }
@@ -89,9 +89,9 @@ fmu_status fmu_directional(fmu_instance *instance, fmu_references unknowns, fmu_
     for (size_t k = 0; k < knowns.count; k++) {
         fmu_find(instance, knowns.reference[k], &slot);
         for (uint32_t i = 0; i < slot.count; i++, used++)
-            if (slot.variable->access != FMU_INDEPENDENT) *tangent_place(&tangent, &slot, i) += seed[used];
+            if (slot.variable->access != FMU_INDEPENDENT) *tangent_at(&tangent, &slot, i) += seed[used];
     }
-    fmu_plant_tangent(instance, &tangent);
+    fmu_model_tangent(instance, &tangent);
     return read_unknowns(instance, unknowns, &tangent, sensitivity);
 }
 
@@ -104,11 +104,11 @@ static double adjoint_of(fmu_instance *instance, fmu_references unknowns, const 
     fmu_slot slot;
     if (known->variable->access == FMU_INDEPENDENT) return 0.0;
     memset(&tangent, 0, sizeof tangent);
-    *tangent_place(&tangent, known, element) = 1.0;
-    fmu_plant_tangent(instance, &tangent);
+    *tangent_at(&tangent, known, element) = 1.0;
+    fmu_model_tangent(instance, &tangent);
     for (size_t k = 0; k < unknowns.count; k++) {
         fmu_find(instance, unknowns.reference[k], &slot);
-        for (uint32_t i = 0; i < slot.count; i++) sum += seed[used++] * *tangent_place(&tangent, &slot, i);
+        for (uint32_t i = 0; i < slot.count; i++) sum += seed[used++] * *tangent_at(&tangent, &slot, i);
     }
     return sum;
 }
@@ -151,8 +151,8 @@ fmu_status fmu_output_derivatives(fmu_instance *instance, fmu_references outputs
     if (status != FMU_OK) return status;
     if (value_count > 0 && values == NULL) return fmu_refuse(instance, "the list of values is missing (NULL)");
     memset(&tangent, 0, sizeof tangent);
-    fmu_plant_motion_seed(instance, &tangent);
-    fmu_plant_tangent(instance, &tangent);
+    fmu_model_motion_seed(instance, &tangent);
+    fmu_model_tangent(instance, &tangent);
     return read_unknowns(instance, outputs, &tangent, values);
 }
 
@@ -176,13 +176,13 @@ fmu_status fmu_set_input_derivatives(fmu_instance *instance, fmu_references inpu
                                      const double *values) {
     fmu_slot slot;
     fmu_status status = check_inputs(instance, inputs, values);
-    if (!FMU_PLANT_TAKES_SLOPES)
+    if (!FMU_MODEL_TAKES_SLOPES)
         return fmu_refuse(instance, "the inputs are held over a step: they take no derivatives");
     if (status == FMU_OK) status = check_orders(instance, inputs.count, orders);
     if (status != FMU_OK) return status;
     for (size_t k = 0; k < inputs.count; k++) {
         fmu_find(instance, inputs.reference[k], &slot);
-        fmu_plant_set_slope(&instance->plant, slot.variable->tangent + (uint32_t)sizeof(double) * slot.first,
+        fmu_model_set_slope(&instance->model, slot.variable->tangent + (uint32_t)sizeof(double) * slot.first,
                             values[k]);
     }
     return FMU_OK;

@@ -1,11 +1,11 @@
 /* Saved states: a copy within the process, or bytes that any process and machine with the same FMU takes back.
  *
  * Bytes: "LACSTATE", then numbers of 64 bits, little-endian: version, hash of the instantiation token, size of the
- * whole, kind, mode, event mode used, clock, plant; at the end the checksum of all before. */
+ * whole, kind, mode, event mode used, clock, model; at the end the checksum of all before. */
 #include <stdlib.h>
 #include <string.h>
 
-#include "plant_api.h"
+#include "model_interface.h"
 
 #define STATE_VERSION 4U
 static const char magic[8] = {'L', 'A', 'C', 'S', 'T', 'A', 'T', 'E'};
@@ -16,7 +16,7 @@ struct fmu_snapshot {
     fmu_mode mode;
     bool event_mode_used;
     fmu_clock clock;
-    fmu_plant plant;
+    fmu_model model;
 };
 
 fmu_status fmu_save(fmu_instance *instance, fmu_snapshot **snapshot) {
@@ -29,12 +29,12 @@ fmu_status fmu_save(fmu_instance *instance, fmu_snapshot **snapshot) {
     copy->mode = instance->mode;
     copy->event_mode_used = instance->event_mode_used;
     copy->clock = instance->clock;
-    copy->plant = instance->plant;
+    copy->model = instance->model;
     *snapshot = copy;
     return FMU_OK;
 }
 
-static fmu_status check_ours(const fmu_instance *instance, const fmu_snapshot *snapshot) {
+static fmu_status check_origin(const fmu_instance *instance, const fmu_snapshot *snapshot) {
     if (snapshot == NULL) return fmu_refuse(instance, "the saved state is missing (NULL)");
     if (snapshot->token_hash != instance->token_hash)
         return fmu_refuse(instance, "the saved state belongs to another FMU");
@@ -45,10 +45,10 @@ static fmu_status check_ours(const fmu_instance *instance, const fmu_snapshot *s
 }
 
 fmu_status fmu_restore(fmu_instance *instance, const fmu_snapshot *snapshot) {
-    const fmu_status status = check_ours(instance, snapshot);
+    const fmu_status status = check_origin(instance, snapshot);
     if (status != FMU_OK) return status;
     instance->clock = snapshot->clock;
-    instance->plant = snapshot->plant;
+    instance->model = snapshot->model;
     fmu_enter(instance, snapshot->mode);
     return FMU_OK;
 }
@@ -59,7 +59,7 @@ void fmu_drop(fmu_snapshot **snapshot) {
     *snapshot = NULL;
 }
 
-static void transfer_clock(fmu_stream *stream, fmu_clock *clock) {
+static void serialize_clock(fmu_stream *stream, fmu_clock *clock) {
     fmu_stream_reals(stream, &clock->start_s, 1);
     fmu_stream_reals(stream, &clock->stop_s, 1);
     fmu_stream_bool(stream, &clock->stop_defined);
@@ -67,13 +67,13 @@ static void transfer_clock(fmu_stream *stream, fmu_clock *clock) {
     fmu_stream_reals(stream, &clock->anchor_rest_s, 1);
     fmu_stream_reals(stream, &clock->step_s, 1);
     fmu_stream_u64(stream, &clock->ticks);
-    fmu_stream_reals(stream, &clock->asked_s, 1);
-    fmu_stream_u64(stream, &clock->asked_ticks);
+    fmu_stream_reals(stream, &clock->communication_s, 1);
+    fmu_stream_u64(stream, &clock->communication_ticks);
     fmu_stream_reals(stream, &clock->completed_s, 1);
 }
 
 /* Everything but magic and checksum. */
-static bool transfer(fmu_stream *stream, fmu_snapshot *snapshot, uint64_t *version, uint64_t *size) {
+static bool serialize(fmu_stream *stream, fmu_snapshot *snapshot, uint64_t *version, uint64_t *size) {
     int32_t kind = (int32_t)snapshot->kind, mode = (int32_t)snapshot->mode;
     fmu_stream_u64(stream, version);
     fmu_stream_u64(stream, &snapshot->token_hash);
@@ -82,21 +82,21 @@ static bool transfer(fmu_stream *stream, fmu_snapshot *snapshot, uint64_t *versi
     fmu_stream_i32(stream, &kind, FMU_MODEL_EXCHANGE, FMU_CO_SIMULATION);
     fmu_stream_i32(stream, &mode, FMU_INSTANTIATED, FMU_MODE_COUNT - 1);
     fmu_stream_bool(stream, &snapshot->event_mode_used);
-    transfer_clock(stream, &snapshot->clock);
+    serialize_clock(stream, &snapshot->clock);
     snapshot->kind = (fmu_kind)kind;
     snapshot->mode = (fmu_mode)mode;
-    return fmu_plant_transfer(stream, &snapshot->plant);
+    return fmu_model_serialize(stream, &snapshot->model);
 }
 
 static size_t whole_size(fmu_snapshot *snapshot) {
     fmu_stream counter = {0};
     uint64_t version = 0, size = 0;
-    transfer(&counter, snapshot, &version, &size);
+    serialize(&counter, snapshot, &version, &size);
     return sizeof magic + counter.at + 8;
 }
 
 fmu_status fmu_serialized_size(fmu_instance *instance, const fmu_snapshot *snapshot, size_t *size) {
-    const fmu_status status = check_ours(instance, snapshot);
+    const fmu_status status = check_origin(instance, snapshot);
     fmu_snapshot *copy = NULL;
     if (status != FMU_OK) return status;
     if (size == NULL) return fmu_refuse(instance, "no place for the size (NULL)");
@@ -117,14 +117,14 @@ static fmu_status write_bytes(fmu_instance *instance, fmu_snapshot *copy, uint8_
     stream.to = bytes;
     stream.size = size;
     stream.at = sizeof magic;
-    transfer(&stream, copy, &version, &whole);
+    serialize(&stream, copy, &version, &whole);
     checksum = fmu_checksum(bytes, size - 8);
     fmu_stream_u64(&stream, &checksum);
     return FMU_OK;
 }
 
 fmu_status fmu_serialize(fmu_instance *instance, const fmu_snapshot *snapshot, uint8_t *bytes, size_t size) {
-    fmu_status status = check_ours(instance, snapshot);
+    fmu_status status = check_origin(instance, snapshot);
     fmu_snapshot *copy;
     if (status != FMU_OK) return status;
     if (bytes == NULL) return fmu_refuse(instance, "SerializeFMUState: no place for the bytes (NULL)");
@@ -160,10 +160,10 @@ static fmu_status read_bytes(fmu_instance *instance, const uint8_t *bytes, size_
         return fmu_refuse(instance, "DeserializeFMUState: the %zu bytes are damaged or cut off", size);
     stream.at = sizeof magic;
     stream.size = size - 8;
-    if (!transfer(&stream, made, &version, &whole) || stream.at != stream.size || whole != size ||
+    if (!serialize(&stream, made, &version, &whole) || stream.at != stream.size || whole != size ||
         !mode_suits_kind(made))
         return fmu_refuse(instance, "DeserializeFMUState: the %zu bytes make no sense as a state", size);
-    return check_ours(instance, made);
+    return check_origin(instance, made);
 }
 
 fmu_status fmu_deserialize(fmu_instance *instance, const uint8_t *bytes, size_t size, fmu_snapshot **snapshot) {

@@ -8,7 +8,7 @@
 #include <stdlib.h>
 #include <string.h>
 
-#include "plant_api.h"
+#include "model_interface.h"
 
 #define FILE_VERSION 2U
 #define HEADER_NUMBERS 4U
@@ -16,7 +16,7 @@
 static const char magic[8] = {'L', 'A', 'C', 'S', 'T', 'A', 'R', 'T'};
 
 static void apply(fmu_instance *instance, const fmu_start_value *values, size_t count) {
-    for (size_t k = 0; k < count; k++) fmu_take_start_value(instance, values[k].reference, values[k].value);
+    for (size_t k = 0; k < count; k++) fmu_set_start_value(instance, values[k].reference, values[k].value);
 }
 
 uint64_t fmu_token_hash(const char *token) {
@@ -86,7 +86,7 @@ static bool parse(fmu_instance *instance, const uint8_t *bytes, size_t size, con
     for (uint64_t k = 0; k < count; k++) {
         fmu_stream_u64(&stream, &reference);
         fmu_stream_reals(&stream, &value, 1);
-        if (!fmu_take_start_value(instance, (uint32_t)reference, value)) return false;
+        if (!fmu_set_start_value(instance, (uint32_t)reference, value)) return false;
     }
     return !stream.failed;
 }

@@ -3,7 +3,7 @@
 #include <stdio.h>
 #include <string.h>
 
-#include "plant_api.h"
+#include "model_interface.h"
 
 static const char *const type_names[] = {"a Float64 (Real)", "an Int32 (Integer)", "a UInt64 (Integer)",
                                          "an Enumeration",   "a Boolean",          "an Int32 (Integer)"};
@@ -13,7 +13,7 @@ bool fmu_find(const fmu_instance *instance, uint32_t reference, fmu_slot *slot) 
     uint32_t size;
     if (row >= fmu_variable_count || (row != reference && element == 0)) return false;
     slot->variable = &fmu_variables[row];
-    size = slot->variable->size != 0 ? slot->variable->size : FMU_PLANT_ARRAY_SIZE(&instance->plant);
+    size = slot->variable->size != 0 ? slot->variable->size : FMU_MODEL_ARRAY_SIZE(&instance->model);
     if (element > size) return false;
     slot->first = element == 0 ? 0 : element - 1;
     slot->count = element == 0 ? size : 1;
@@ -25,11 +25,11 @@ static size_t offset_of(const fmu_slot *slot, uint32_t element) {
 }
 
 static double load(const fmu_instance *instance, const fmu_slot *slot, uint32_t element) {
-    const void *place = (const char *)&instance->plant + offset_of(slot, element);
+    const void *address = (const char *)&instance->model + offset_of(slot, element);
     switch (slot->variable->type) {
-    case FMU_REAL: return *(const double *)place;
-    case FMU_BOOLEAN: return *(const bool *)place ? 1.0 : 0.0;
-    default: return (double)*(const int32_t *)place;
+    case FMU_REAL: return *(const double *)address;
+    case FMU_BOOLEAN: return *(const bool *)address ? 1.0 : 0.0;
+    default: return (double)*(const int32_t *)address;
     }
 }
 
@@ -73,11 +73,11 @@ static bool acceptable(const fmu_variable *variable, double value) {
 }
 
 static void store(fmu_instance *instance, const fmu_slot *slot, uint32_t element, double value) {
-    void *place = (char *)&instance->plant + offset_of(slot, element);
+    void *address = (char *)&instance->model + offset_of(slot, element);
     switch (slot->variable->type) {
-    case FMU_REAL: *(double *)place = value; break;
-    case FMU_BOOLEAN: *(bool *)place = value != 0.0; break;
-    default: *(int32_t *)place = (int32_t)value;
+    case FMU_REAL: *(double *)address = value; break;
+    case FMU_BOOLEAN: *(bool *)address = value != 0.0; break;
+    default: *(int32_t *)address = (int32_t)value;
     }
 }
 
@@ -111,8 +111,8 @@ static fmu_status make_ready(fmu_instance *instance, const fmu_variable *variabl
     if (variable->group == 0) return FMU_OK;
     if (instance->mode < FMU_INITIALIZATION)
         return fmu_refuse(instance, "%s is computed: it has no value before initialization", variable->name);
-    const fmu_status status = fmu_make_current(instance);
-    if (status == FMU_OK) fmu_plant_refresh(instance, variable->group);
+    const fmu_status status = fmu_apply_parameters(instance);
+    if (status == FMU_OK) fmu_model_refresh(instance, variable->group);
     return status;
 }
 
@@ -143,7 +143,7 @@ static fmu_status check_get(fmu_instance *instance, const fmu_slot *slot, const 
     return status;
 }
 
-static fmu_status hand_out(fmu_instance *instance, const fmu_slot *slot, const exchange *values, size_t used) {
+static fmu_status copy_out(fmu_instance *instance, const fmu_slot *slot, const exchange *values, size_t used) {
     for (uint32_t i = 0; i < slot->count; i++) values->write(values->asked, used + i, load(instance, slot, i));
     return FMU_OK;
 }
@@ -152,7 +152,7 @@ static fmu_status check_settable(fmu_instance *instance, const fmu_variable *var
     if (!(instance->settable >> variable->access & 1U))
         return fmu_refuse(instance, "%s cannot be set in %s: %s", variable->name, fmu_mode_names[instance->mode],
                           who_sets((fmu_access)variable->access));
-    return variable->access == FMU_STATE ? fmu_make_current(instance) : FMU_OK;
+    return variable->access == FMU_STATE ? fmu_apply_parameters(instance) : FMU_OK;
 }
 
 static fmu_status check_set(fmu_instance *instance, const fmu_slot *slot, const exchange *values, size_t used) {
@@ -168,17 +168,17 @@ static fmu_status check_set(fmu_instance *instance, const fmu_slot *slot, const 
 /* Parameters: until initialization ends everything starts anew, afterwards the motion is carried over. */
 static void note_change(fmu_instance *instance, fmu_access access) {
     if (access == FMU_INPUT)
-        fmu_plant_input_changed(&instance->plant);
+        fmu_model_input_changed(&instance->model);
     else if (access == FMU_STATE)
-        instance->plant.states_changed = instance->plant.states_changed || instance->mode == FMU_EVENT;
+        instance->model.states_changed = instance->model.states_changed || instance->mode == FMU_EVENT;
     else if (instance->mode <= FMU_INITIALIZATION)
-        instance->plant.start_needed = true;
+        instance->model.start_needed = true;
     else
-        instance->plant.change_needed = true;
+        instance->model.change_needed = true;
 }
 
-static fmu_status take_over(fmu_instance *instance, const fmu_slot *slot, const exchange *values, size_t used) {
-    if (slot->variable->access == FMU_STATE) fmu_plant_states_lead(instance);
+static fmu_status copy_in(fmu_instance *instance, const fmu_slot *slot, const exchange *values, size_t used) {
+    if (slot->variable->access == FMU_STATE) fmu_model_before_set_state(instance);
     for (uint32_t i = 0; i < slot->count; i++) store(instance, slot, i, values->read(values->given, used + i));
     note_change(instance, (fmu_access)slot->variable->access);
     return FMU_OK;
@@ -210,16 +210,16 @@ static fmu_status check_then(fmu_instance *instance, fmu_type type, fmu_referenc
 fmu_status fmu_get(fmu_instance *instance, fmu_type type, fmu_references list, void *values, size_t value_count,
                    fmu_write write) {
     const exchange asked = {.asked = values, .write = write, .count = value_count, .what = "asked for"};
-    return check_then(instance, type, list, &asked, check_get, hand_out);
+    return check_then(instance, type, list, &asked, check_get, copy_out);
 }
 
 fmu_status fmu_set(fmu_instance *instance, fmu_type type, fmu_references list, const void *values, size_t value_count,
                    fmu_read read) {
     const exchange given = {.given = values, .read = read, .count = value_count, .what = "given"};
-    return check_then(instance, type, list, &given, check_set, take_over);
+    return check_then(instance, type, list, &given, check_set, copy_in);
 }
 
-fmu_status fmu_none_of(const fmu_instance *instance, const char *kind, size_t asked) {
+fmu_status fmu_refuse_kind(const fmu_instance *instance, const char *kind, size_t asked) {
     return asked == 0 ? FMU_OK : fmu_refuse(instance, "there are no variables of the kind %s", kind);
 }
 
@@ -243,7 +243,7 @@ fmu_status fmu_check_intermediate(const fmu_instance *instance, const uint32_t *
     return FMU_OK;
 }
 
-bool fmu_take_start_value(fmu_instance *instance, uint32_t reference, double value) {
+bool fmu_set_start_value(fmu_instance *instance, uint32_t reference, double value) {
     fmu_slot slot;
     if (!fmu_find(instance, reference, &slot) || slot.count != 1) return false;
     if (slot.variable->access >= FMU_STATE) return false;

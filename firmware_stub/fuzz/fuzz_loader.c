@@ -36,19 +36,19 @@ static void prepare(const laconic_parameters *parameters) {
 }
 
 int LLVMFuzzerTestOneInput(const uint8_t *data, size_t size) {
-    static guarded place;
-    memset(&place, GUARD, sizeof place);
-    laconic_loader_begin(&place.loader);
+    static guarded memory;
+    memset(&memory, GUARD, sizeof memory);
+    laconic_loader_begin(&memory.loader);
     for (; size >= RECORD; data += RECORD, size -= RECORD) {
         uint8_t payload[8] = {0, (uint8_t)(data[6] << 4 & 0x10U)};
         memcpy(payload + 2, data, 6);
-        laconic_loader_take(&place.loader, payload);
+        laconic_loader_take(&memory.loader, payload);
     }
-    for (int k = 0; k < 16; k++) must(place.before[k] == GUARD && place.after[k] == GUARD);
+    for (int k = 0; k < 16; k++) must(memory.before[k] == GUARD && memory.after[k] == GUARD);
     uint8_t field, item;
-    const uint16_t count = place.loader.frame_count;
-    must(laconic_loader_check(&place.loader, count, ~place.loader.checksum + 1U, &field, &item) != 0);
-    if (laconic_loader_check(&place.loader, count, ~place.loader.checksum, &field, &item) == 0)
-        prepare(&place.loader.parameters);
+    const uint16_t count = memory.loader.frame_count;
+    must(laconic_loader_check(&memory.loader, count, ~memory.loader.checksum + 1U, &field, &item) != 0);
+    if (laconic_loader_check(&memory.loader, count, ~memory.loader.checksum, &field, &item) == 0)
+        prepare(&memory.loader.parameters);
     return 0;
 }

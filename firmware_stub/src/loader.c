@@ -7,13 +7,13 @@
 
 #include <string.h>
 
-typedef struct place {
+typedef struct location {
     uint8_t field;
     uint8_t kind_and_need; /* laconic_field_kind, 16 · laconic_field_need */
     uint8_t items;         /* 0: the field is no list */
     uint8_t stride;
     uint16_t offset;
-} place;
+} location;
 
 #define AT(member) (uint16_t)offsetof(laconic_parameters, member)
 #define IN_VEHICLE(member) 0, 0, AT(vehicle.member)
@@ -25,21 +25,21 @@ typedef struct place {
     sizeof(((laconic_start *)NULL)->member) / sizeof(laconic_real), sizeof(laconic_real), AT(start.member)
 #define IN_START(member) 0, 0, AT(start.member)
 #define IN_RUN(member) 0, 0, AT(member)
-#define PLACE(of, number, IDENTIFIER, member, name, KIND, RULE, NEED) \
+#define LOCATION(of, number, IDENTIFIER, member, name, KIND, RULE, NEED) \
     {number, LACONIC_KIND_##KIND | LACONIC_NEED_##NEED << 4, IN_##of(member)},
 
-static const place places[LACONIC_LOADER_FIELDS] = {LACONIC_PARAMETER_FIELDS(PLACE)};
+static const location locations[LACONIC_LOADER_FIELDS] = {LACONIC_PARAMETER_FIELDS(LOCATION)};
 
 void laconic_loader_begin(laconic_loader *loader) {
     memset(loader, 0, sizeof *loader);
     loader->checksum = LACONIC_CRC32_START;
 }
 
-static const place *find(uint8_t field, uint8_t item) {
+static const location *find(uint8_t field, uint8_t item) {
     for (size_t k = 0; k < LACONIC_LOADER_FIELDS; k++) {
-        if (places[k].field != field) continue;
-        const bool fits = places[k].items == 0 ? item == 0 : item >= 1 && item <= places[k].items;
-        return fits ? &places[k] : NULL;
+        if (locations[k].field != field) continue;
+        const bool fits = locations[k].items == 0 ? item == 0 : item >= 1 && item <= locations[k].items;
+        return fits ? &locations[k] : NULL;
     }
     return NULL;
 }
@@ -108,14 +108,14 @@ void laconic_loader_take(laconic_loader *loader, const uint8_t data[8]) {
     loader->checksum = laconic_crc32(loader->checksum, data + 2, 6);
     loader->frame_count++;
     laconic_dbc_parameter_unpack(&frame, data, 8);
-    const place *where = find(frame.field, frame.item);
+    const location *where = find(frame.field, frame.item);
     if (where == NULL) {
         refuse(loader,
                is_reserved(frame.field) ? LACONIC_WIRE_STATUS_NOT_SUPPORTED : LACONIC_WIRE_STATUS_PARAMETER_UNKNOWN,
                frame.field, frame.item);
         return;
     }
-    loader->given[where - places] |= (uint32_t)1 << frame.item;
+    loader->given[where - locations] |= (uint32_t)1 << frame.item;
     uint8_t *to = (uint8_t *)&loader->parameters + where->offset;
     if (where->items > 0) to += (size_t)where->stride * (size_t)(frame.item - 1);
     const uint8_t kind = where->kind_and_need & 15U;
@@ -126,13 +126,13 @@ void laconic_loader_take(laconic_loader *loader, const uint8_t data[8]) {
     }
 }
 
-static laconic_field_need need_of(const place *where) { return (laconic_field_need)(where->kind_and_need >> 4); }
+static laconic_field_need need_of(const location *where) { return (laconic_field_need)(where->kind_and_need >> 4); }
 
 /* Whether anything that is needed so has come. */
 static bool any_given(const laconic_loader *loader, laconic_field_need need) {
     uint32_t given = 0;
     for (size_t k = 0; k < LACONIC_LOADER_FIELDS; k++)
-        if (need_of(&places[k]) == need) given |= loader->given[k];
+        if (need_of(&locations[k]) == need) given |= loader->given[k];
     return given != 0;
 }
 
@@ -156,10 +156,10 @@ static bool is_needed(const laconic_loader *loader, laconic_field_need need, int
 
 static bool something_is_missing(const laconic_loader *loader, uint8_t *field, uint8_t *item) {
     for (size_t k = 0; k < LACONIC_LOADER_FIELDS; k++) {
-        *field = places[k].field;
-        for (*item = places[k].items > 0; *item <= places[k].items; ++*item) {
+        *field = locations[k].field;
+        for (*item = locations[k].items > 0; *item <= locations[k].items; ++*item) {
             const bool given = (loader->given[k] >> *item & 1U) != 0;
-            if (!given && is_needed(loader, need_of(&places[k]), *item)) return true;
+            if (!given && is_needed(loader, need_of(&locations[k]), *item)) return true;
         }
     }
     *field = 0;

@@ -68,11 +68,11 @@ static uint8_t stop(laconic_node *node) {
     if (is_running(node)) node->state = LACONIC_WIRE_STATE_READY;
     node->lockstep.steps_due = 0;
     node->session.deaf = 0;
-    laconic_node_rest_inputs(node);
+    laconic_node_clear_inputs(node);
     return 0;
 }
 
-void laconic_node_rest(laconic_node *node) {
+void laconic_node_make_idle(laconic_node *node) {
     stop(node);
     laconic_loader_begin(&node->loader);
     node->send = 0;
@@ -137,7 +137,7 @@ static uint8_t adopt(laconic_node *node, uint8_t *field, uint8_t *item) {
     node->start = new->start;
     node->state = LACONIC_WIRE_STATE_READY;
     memset(node->input, 0, sizeof node->input);
-    laconic_node_rest_inputs(node);
+    laconic_node_clear_inputs(node);
     return 0;
 }
 
@@ -163,7 +163,7 @@ void laconic_node_select(laconic_node *node, const uint8_t *data) {
         node->raw_fd = raw_fd != 0;
         node->raw_output.send = data[3] & 0x1FU;
         node->raw_input.take = data[4];
-        laconic_node_rest_inputs(node);
+        laconic_node_clear_inputs(node);
     }
     laconic_node_answer(node, LACONIC_WIRE_SELECT, LACONIC_WIRE_COMMAND_SELECT, status, 0, 0);
 }

@@ -48,7 +48,7 @@ void laconic_node_parameter(laconic_node *node, const uint8_t *data);
 void laconic_node_commit(laconic_node *node, const uint8_t *data);
 void laconic_node_select(laconic_node *node, const uint8_t *data);
 /* At rest for a new session: stopped, nothing half loaded, nothing selected, nothing to say. */
-void laconic_node_rest(laconic_node *node);
+void laconic_node_make_idle(laconic_node *node);
 /* The RESULT to a frame of this offset, whose request is set already. */
 void laconic_node_answer(laconic_node *node, uint8_t offset, uint8_t command, uint8_t status, uint8_t field,
                          uint8_t item);
@@ -64,7 +64,7 @@ void laconic_node_sync(laconic_node *node, uint32_t steps, uint16_t input_frames
 /* node_run.c */
 void laconic_node_run_lockstep(laconic_node *node);
 void laconic_node_run_free(laconic_node *node, uint32_t now_us);
-void laconic_node_rest_inputs(laconic_node *node);
+void laconic_node_clear_inputs(laconic_node *node);
 void laconic_node_publish(laconic_node *node);
 
 /* node_pack.c: payload of one frame; protection is put on afterwards. */

@@ -61,14 +61,14 @@ static void pack_challenge(const laconic_node *node, uint8_t *data) {
 }
 
 /* Three numbers of 16 bits from byte 2 on, and the flag at bit 12: NU, POSE and WHEEL_SPEED. */
-static void put_scaled(uint8_t *data, uint8_t place, laconic_real value, int32_t per_unit, int32_t largest) {
+static void put_scaled(uint8_t *data, uint8_t index, laconic_real value, int32_t per_unit, int32_t largest) {
     uint8_t overrange = 0;
-    put16(data + 2 + 2 * place, (uint32_t)scaled(value, per_unit, largest, &overrange));
+    put16(data + 2 + 2 * index, (uint32_t)scaled(value, per_unit, largest, &overrange));
     data[1] = (uint8_t)(data[1] | overrange << 4);
 }
 
-#define PUT(place, value, name) \
-    put_scaled(data, place, value, LACONIC_WIRE_##name##_PER_UNIT, LACONIC_WIRE_##name##_LARGEST)
+#define PUT(index, value, name) \
+    put_scaled(data, index, value, LACONIC_WIRE_##name##_PER_UNIT, LACONIC_WIRE_##name##_LARGEST)
 
 static void pack_nu(const laconic_node *node, uint8_t *data) {
     laconic_real nu[3];
@@ -101,7 +101,7 @@ static void pack_heartbeat(const laconic_node *node, uint8_t *data) {
     put16(data + 6, (late > MOST_LATENESS ? MOST_LATENESS : late) | deaf);
 }
 
-/* The counters stand in the order of the pages, three to a page, and the target is little-endian (raw.c). */
+/* The counters stand in the order of the pages, three to a page, and the target is little-endian (raw_frames.c). */
 static void pack_counters(const laconic_node *node, uint8_t *data) {
     data[1] = (uint8_t)(node->counter_page << 4);
     memcpy(data + 2, (const uint8_t *)&node->counters + 6 * node->counter_page, 6);

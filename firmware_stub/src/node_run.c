@@ -3,7 +3,7 @@
 
 #include <string.h>
 
-void laconic_node_rest_inputs(laconic_node *node) {
+void laconic_node_clear_inputs(laconic_node *node) {
     memset(node->input, 0, sizeof node->input);
     laconic_raw_restart(&node->raw_input);
 }
@@ -25,7 +25,7 @@ void laconic_node_publish(laconic_node *node) {
 static void fail(laconic_node *node, const laconic_refusal *why, uint8_t request) {
     node->lockstep.steps_due = 0;
     node->state = LACONIC_WIRE_STATE_FAULT;
-    laconic_node_rest_inputs(node);
+    laconic_node_clear_inputs(node);
     node->answer[LACONIC_WIRE_SYNC].request = request;
     laconic_node_answer(node, LACONIC_WIRE_SYNC, LACONIC_WIRE_COMMAND_SYNC, (uint8_t)why->status, (uint8_t)why->field,
                         (uint8_t)why->item);
@@ -70,7 +70,7 @@ static void watch(laconic_node *node, uint32_t now_us) {
     if (node->state != LACONIC_WIRE_STATE_FREE_RUN || run->watchdog_us == 0) return;
     if ((int32_t)(now_us - run->fed_us) <= (int32_t)run->watchdog_us) return;
     node->state = LACONIC_WIRE_STATE_TIMEOUT;
-    laconic_node_rest_inputs(node);
+    laconic_node_clear_inputs(node);
 }
 
 static void schedule_next(laconic_node_free_run *run) {

@@ -44,7 +44,7 @@ void laconic_node_open(laconic_node *node, const uint8_t *data, uint32_t now_us)
     const uint32_t number = word32(data + 4);
     if (session->has_nonce && answers(data, session->nonce)) {
         begin_session(node, number, now_us);
-        laconic_node_rest(node);
+        laconic_node_make_idle(node);
         count(&node->counters.accepted);
     } else if (session->open && number == session->number && answers(data, session->last_nonce)) {
         count(&node->counters.repeated);

@@ -1,5 +1,5 @@
-/* Tests of raw.c: numbers cross the bus bit for bit, and a stream out of order is refused. */
-#include "laconic_node/raw.h"
+/* Tests of raw_frames.c: numbers cross the bus bit for bit, and a stream out of order is refused. */
+#include "laconic_node/raw_frames.h"
 #include "unity.h"
 
 #include <string.h>

@@ -204,8 +204,8 @@ static void start_core(void) {
     const fmu_start_value *value = fmu_built_in_starts;
     fmu_instance *instance = calloc(1, sizeof *instance);
     for (size_t k = 0; k < fmu_built_in_start_count; k++)
-        if (!fmu_take_start_value(instance, value[k].reference, value[k].value)) exit(2);
-    must((int)laconic_plant_start(&plant, &instance->plant.vehicle, &laconic_rk4, STEP_S, &start, NULL), "plant_start");
+        if (!fmu_set_start_value(instance, value[k].reference, value[k].value)) exit(2);
+    must((int)laconic_plant_start(&plant, &instance->model.vehicle, &laconic_rk4, STEP_S, &start, NULL), "plant_start");
     free(instance);
     memcpy(input.voltage_V, volts, sizeof volts);
 }

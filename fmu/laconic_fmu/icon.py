@@ -55,8 +55,8 @@ def _wheel(values: Mapping[str, Sequence[float]], i: int, length: float) -> list
     seen = axle - values["roller_rad"][i]
     across = abs(cos(seen - axle))  # rollers along the wheel's rim are short, so that three of them follow each other
     for k in (-1, 0, 1):
-        place = (centre[0] - 0.31 * k * length * sin(axle), centre[1] + 0.31 * k * length * cos(axle))
-        parts.append((WHITE, _bar(place, seen, (0.2 + 0.22 * across) * length, 0.07 * length)))
+        middle = (centre[0] - 0.31 * k * length * sin(axle), centre[1] + 0.31 * k * length * cos(axle))
+        parts.append((WHITE, _bar(middle, seen, (0.2 + 0.22 * across) * length, 0.07 * length)))
     return parts
 
 

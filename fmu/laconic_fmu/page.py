@@ -10,7 +10,7 @@ from .description import Description, Variable, as_double
 from .icon import icon_png, icon_svg
 
 PAGE = "documentation/index.html"
-PLACE = "<!-- the vehicle of a scene -->"
+VEHICLE_MARK = "<!-- the vehicle of a scene -->"
 """Where the template has room for it."""
 SUPPORTS = ("support_x_m", "support_y_m")
 WHEEL_COLUMNS = ("wheel_kind", "wheel_x_m", "wheel_y_m", "axle_rad", "roller_rad", "wheel_locked")
@@ -33,7 +33,7 @@ def _page(template: str, description: Description, drawing: str) -> str:
     name, text = (escape(description.root.get(key, "")) for key in ("modelName", "description"))
     own = f'<p>{text}.</p>\n<p style="text-align:center">{drawing.strip()}</p>\n{_tables(description)}'
     for old, new in (("<title>Laconic: dynamics of wheeled robots</title>", f"<title>{name}</title>"),
-                     ("<h1>Laconic</h1>", f"<h1>{name}</h1>"), (PLACE, own)):
+                     ("<h1>Laconic</h1>", f"<h1>{name}</h1>"), (VEHICLE_MARK, own)):
         if template.count(old) != 1:
             raise ValueError(f"{PAGE}: {old} must stand there once")
         template = template.replace(old, new)
@@ -64,8 +64,8 @@ def _wheels(description: Description) -> str:
 def _supports(description: Description) -> str:
     count = int(description.variable("support_count").start[0])
     x, y = (description.variable(name).start for name in SUPPORTS)
-    places = ", ".join(f"({float(x[i]):.6g}, {float(y[i]):.6g})" for i in range(count))
-    return f"<p>Ball casters at {places} m.</p>\n" if count else ""
+    positions = ", ".join(f"({float(x[i]):.6g}, {float(y[i]):.6g})" for i in range(count))
+    return f"<p>Ball casters at {positions} m.</p>\n" if count else ""
 
 
 def _values(description: Description, variable: Variable) -> str:

@@ -30,9 +30,9 @@ def _range(description: Description, variable: Variable) -> str:
 
 
 def _row(description: Description, variable: Variable, states: set[str]) -> str:
-    place = re.sub(r"\W+", "_", variable.name).strip("_")
+    identifier = re.sub(r"\W+", "_", variable.name).strip("_")
     size = 1 if variable.size is None else 0 if isinstance(variable.size, str) else variable.size
-    return (f'    ROW({place}, "{variable.name}", {size}, {TYPES[variable.tag]}, {_access(variable, states)}, '
+    return (f'    ROW({identifier}, "{variable.name}", {size}, {TYPES[variable.tag]}, {_access(variable, states)}, '
             f"{variable.attributes.get('intermediateUpdate', 'false')}, {_range(description, variable)}),")
 
 
@@ -41,7 +41,7 @@ def _fits(description: Description) -> list[str]:
     parameter = description.array_parameter
     if parameter is None:
         return []
-    return [f"typedef char fmu_arrays_fit[{parameter.attributes['max']} <= FMU_PLANT_LARGEST_ARRAY ? 1 : -1];", ""]
+    return [f"typedef char fmu_arrays_fit[{parameter.attributes['max']} <= FMU_MODEL_LARGEST_ARRAY ? 1 : -1];", ""]
 
 
 def tables(description: Description, text_3: str, text_2: str) -> str:
@@ -53,11 +53,11 @@ def tables(description: Description, text_3: str, text_2: str) -> str:
         "#include <float.h>",
         "",
         '#include "instance.h"',
-        '#include "places.h"',
+        '#include "variable_locations.h"',
         "",
-        "#define ROW(place, name, size, type, access, intermediate, least, most) \\",
-        "    {name, FMU_OFFSET_##place, (uint16_t)FMU_STRIDE_##place, size, type, access, intermediate, least, \\",
-        "     most, FMU_GROUP_OF_##place, (uint32_t)FMU_TANGENT_##place}",
+        "#define ROW(identifier, name, size, type, access, intermediate, least, most) \\",
+        "    {name, FMU_OFFSET_##identifier, (uint16_t)FMU_STRIDE_##identifier, size, type, access, intermediate, least, \\",
+        "     most, FMU_GROUP_OF_##identifier, (uint32_t)FMU_TANGENT_##identifier}",
         "",
         *_fits(description),
         "",

@@ -11,7 +11,7 @@
 #include "fmi2Functions.h"
 #include "fmi3Functions.h"
 
-#include "plant_api.h"
+#include "model_interface.h"
 
 enum { LIVE = 3, STATES = 4, NUMBERS = 3000 };
 
@@ -184,8 +184,8 @@ static double next_step(source *s) {
 }
 
 /* A thousand million internal steps in one are not wrong either. */
-static bool takes_for_ever(const live *l) {
-    const double own = ((const fmu_instance *)l->instance)->plant.step_s;
+static bool takes_too_long(const live *l) {
+    const double own = ((const fmu_instance *)l->instance)->model.step_s;
     return own > 0.0 && own < 1e-4;
 }
 
@@ -267,7 +267,7 @@ static void call_2(source *s, live *l) {
     case 23:
     case 24: {
         const double step = next_step(s);
-        if (takes_for_ever(l)) break;
+        if (takes_too_long(l)) break;
         if (fmi2DoStep(c, next(s) % 16 ? l->time : next_number(s), step, fmi2True) == fmi2OK) l->time += step;
         break;
     }
@@ -352,7 +352,7 @@ static void call_3(source *s, live *l) {
     case 29:
     case 30: {
         const double step = next_step(s);
-        if (takes_for_ever(l)) break;
+        if (takes_too_long(l)) break;
         if (fmi3DoStep(c, next(s) % 16 ? l->time : next_number(s), step, true, &b[0], &b[1], &b[2], &time) == fmi3OK)
             l->time = time;
         break;

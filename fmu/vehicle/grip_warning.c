@@ -1,73 +1,71 @@
 /* Judges the reactions of the ground during a run, and says once what they cannot be. */
 #include "grip_warning.h"
 
-static void tell_lift(const fmu_instance *instance) {
-    const laconic_grip_event *event = &instance->plant.noted_lift;
-    const int wheels = (int)instance->plant.core.model.wheel_count, point = (int)event->point;
-    fmu_report(
-        instance, FMU_WARNING, FMU_LOG_WARNING,
-        "at %.9g s %s %d lifts: its normal load would be %.4g N; the model keeps all wheels on the ground, so its "
-        "motion no longer holds (said once)",
-        instance->plant.lift_s, point <= wheels ? "wheel" : "support", point <= wheels ? point : point - wheels,
-        event->normal_N);
+static void warn_of_lift(const fmu_instance *instance) {
+    const laconic_grip_event *event = &instance->model.pending_lift;
+    const int wheels = (int)instance->model.plant.model.wheel_count, point = (int)event->point;
+    fmu_log(instance, FMU_WARNING, FMU_LOG_WARNING,
+            "at %.9g s %s %d lifts: its normal load would be %.4g N; the model keeps all wheels on the ground, so its "
+            "motion no longer holds (said once)",
+            instance->model.lift_s, point <= wheels ? "wheel" : "support", point <= wheels ? point : point - wheels,
+            event->normal_N);
 }
 
-static void tell_slip(const fmu_instance *instance) {
-    const laconic_grip_event *event = &instance->plant.noted_slip;
-    const double friction = instance->plant.contact.friction_coefficient;
+static void warn_of_slip(const fmu_instance *instance) {
+    const laconic_grip_event *event = &instance->model.pending_slip;
+    const double friction = instance->model.contact.friction_coefficient;
     const double has_N = event->normal_N > 0.0 ? friction * event->normal_N : 0.0;
-    fmu_report(
-        instance, FMU_WARNING, FMU_LOG_WARNING,
-        "at %.9g s wheel %d needs %.4g N of grip and has %.4g N (friction_coefficient = %.4g): %.4g N are missing; "
-        "the model knows no slip, so its motion no longer holds (said once)",
-        instance->plant.slip_s, (int)event->point, event->needed_N, has_N, friction, event->needed_N - has_N);
+    fmu_log(instance, FMU_WARNING, FMU_LOG_WARNING,
+            "at %.9g s wheel %d needs %.4g N of grip and has %.4g N (friction_coefficient = %.4g): %.4g N are missing; "
+            "the model knows no slip, so its motion no longer holds (said once)",
+            instance->model.slip_s, (int)event->point, event->needed_N, has_N, friction, event->needed_N - has_N);
 }
 
-static void tell_overflow(const fmu_instance *instance) {
-    const fmu_plant *p = &instance->plant;
-    fmu_report(instance, FMU_WARNING, FMU_LOG_WARNING,
-               "at %.9g s the forces on the ground leave the range of double precision; check the inputs (said once)",
-               instance->noted & FMU_TOLD_SLIP ? p->slip_s : p->lift_s);
+static void warn_of_overflow(const fmu_instance *instance) {
+    const fmu_model *self = &instance->model;
+    fmu_log(instance, FMU_WARNING, FMU_LOG_WARNING,
+            "at %.9g s the forces on the ground leave the range of double precision; check the inputs (said once)",
+            instance->warnings_pending & FMU_SLIP_WARNING ? self->slip_s : self->lift_s);
 }
 
-static bool is_told_in_numbers(const laconic_grip_event *event) {
+static bool is_finite(const laconic_grip_event *event) {
     return fmu_is_finite(event->needed_N + event->normal_N + event->margin_N);
 }
 
-void fmu_plant_conclude(fmu_instance *instance, bool accepted) {
-    const uint32_t noted = instance->noted;
-    const fmu_plant *p = &instance->plant;
-    if (accepted && ((noted & FMU_TOLD_SLIP && !is_told_in_numbers(&p->noted_slip)) ||
-                     (noted & FMU_TOLD_LIFT && !is_told_in_numbers(&p->noted_lift))))
-        tell_overflow(instance);
+void fmu_model_settle_warnings(fmu_instance *instance, bool accepted) {
+    const uint32_t pending = instance->warnings_pending;
+    const fmu_model *self = &instance->model;
+    if (accepted && ((pending & FMU_SLIP_WARNING && !is_finite(&self->pending_slip)) ||
+                     (pending & FMU_LIFT_WARNING && !is_finite(&self->pending_lift))))
+        warn_of_overflow(instance);
     else if (accepted) {
-        if (noted & FMU_TOLD_SLIP) tell_slip(instance);
-        if (noted & FMU_TOLD_LIFT) tell_lift(instance);
+        if (pending & FMU_SLIP_WARNING) warn_of_slip(instance);
+        if (pending & FMU_LIFT_WARNING) warn_of_lift(instance);
     }
-    if (accepted) instance->told |= noted;
-    instance->noted = 0;
+    if (accepted) instance->warnings_given |= pending;
+    instance->warnings_pending = 0;
 }
 
-void fmu_grip_judge(fmu_instance *instance, const laconic_reactions *ground, double time_s) {
-    fmu_plant *p = &instance->plant;
-    const uint32_t known = instance->told | instance->noted;
+void fmu_grip_check(fmu_instance *instance, const laconic_reactions *ground, double time_s) {
+    fmu_model *self = &instance->model;
+    const uint32_t known = instance->warnings_given | instance->warnings_pending;
     laconic_grip now = {0};
-    laconic_grip_watch(&now, &p->contact, &p->core.model, ground, p->core.steps);
-    if (now.slipping && !(known & FMU_TOLD_SLIP)) {
-        p->noted_slip = now.first_slip;
-        p->slip_s = time_s;
-        instance->noted |= FMU_TOLD_SLIP;
+    laconic_grip_watch(&now, &self->contact, &self->plant.model, ground, self->plant.steps);
+    if (now.slipping && !(known & FMU_SLIP_WARNING)) {
+        self->pending_slip = now.first_slip;
+        self->slip_s = time_s;
+        instance->warnings_pending |= FMU_SLIP_WARNING;
     }
-    if (now.lifting && !(known & FMU_TOLD_LIFT)) {
-        p->noted_lift = now.first_lift;
-        p->lift_s = time_s;
-        instance->noted |= FMU_TOLD_LIFT;
+    if (now.lifting && !(known & FMU_LIFT_WARNING)) {
+        self->pending_lift = now.first_lift;
+        self->lift_s = time_s;
+        instance->warnings_pending |= FMU_LIFT_WARNING;
     }
 }
 
-void fmu_plant_watch(fmu_instance *instance) {
+void fmu_model_completed_step(fmu_instance *instance) {
     if (!fmu_grip_is_watched(instance)) return;
-    fmu_plant_refresh(instance, FMU_GROUP_GROUND);
-    fmu_grip_judge(instance, &instance->plant.ground, instance->plant.time_s);
-    fmu_plant_conclude(instance, true);
+    fmu_model_refresh(instance, FMU_GROUP_GROUND);
+    fmu_grip_check(instance, &instance->model.ground, instance->model.time_s);
+    fmu_model_settle_warnings(instance, true);
 }

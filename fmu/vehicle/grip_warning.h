@@ -2,19 +2,20 @@
 #ifndef LACONIC_FMU_VEHICLE_GRIP_WARNING_H
 #define LACONIC_FMU_VEHICLE_GRIP_WARNING_H
 
-#include "plant_api.h"
+#include "model_interface.h"
 
-#define FMU_TOLD_SLIP 1U
-#define FMU_TOLD_LIFT 2U
-#define FMU_TOLD_ALL 3U
+#define FMU_SLIP_WARNING 1U
+#define FMU_LIFT_WARNING 2U
+#define FMU_ALL_WARNINGS 3U
 
 /* Nothing is computed where no friction coefficient is given, all is said already, or nobody listens. */
 static inline bool fmu_grip_is_watched(const fmu_instance *instance) {
-    return instance->plant.contact.friction_coefficient > 0.0 && (instance->told | instance->noted) != FMU_TOLD_ALL &&
-           instance->deliver != NULL && (instance->log_categories & FMU_LOG_WARNING) != 0;
+    return instance->model.contact.friction_coefficient > 0.0 &&
+           (instance->warnings_given | instance->warnings_pending) != FMU_ALL_WARNINGS && instance->deliver != NULL &&
+           (instance->log_categories & FMU_LOG_WARNING) != 0;
 }
 
-/* Notes what the reactions at that time ask of the ground and it cannot give; fmu_plant_conclude says it. */
-void fmu_grip_judge(fmu_instance *instance, const laconic_reactions *ground, double time_s);
+/* Notes what the reactions at that time ask of the ground and it cannot give; fmu_model_settle_warnings says it. */
+void fmu_grip_check(fmu_instance *instance, const laconic_reactions *ground, double time_s);
 
 #endif

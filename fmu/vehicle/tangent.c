@@ -1,5 +1,5 @@
 /* Partial derivatives of the vehicle, by the core's analytic linearisation. */
-#include "plant_api.h"
+#include "model_interface.h"
 
 static void take_variation(laconic_variation *by, const fmu_tangent *t) {
     for (int32_t k = 0; k < 3; k++) by->nu_rad_per_s[k] = t->nu[k];
@@ -10,10 +10,10 @@ static void take_variation(laconic_variation *by, const fmu_tangent *t) {
 }
 
 static void take_motion(laconic_motion *at, fmu_instance *instance) {
-    const fmu_plant *p = &instance->plant;
-    fmu_plant_refresh(instance, FMU_GROUP_MOTION);
-    for (int32_t k = 0; k < 3; k++) at->nu_rad_per_s[k] = p->nu[k];
-    at->heading_rad = p->heading_rad;
+    const fmu_model *self = &instance->model;
+    fmu_model_refresh(instance, FMU_GROUP_MOTION);
+    for (int32_t k = 0; k < 3; k++) at->nu_rad_per_s[k] = self->nu[k];
+    at->heading_rad = self->heading_rad;
 }
 
 static void put_motion(fmu_tangent *t, const laconic_motion_change *change, int32_t wheels) {
@@ -30,37 +30,37 @@ static void put_motion(fmu_tangent *t, const laconic_motion_change *change, int3
     }
 }
 
-void fmu_plant_tangent(fmu_instance *instance, fmu_tangent *tangent) {
-    const fmu_plant *p = &instance->plant;
-    const laconic_model *m = &p->core.model;
+void fmu_model_tangent(fmu_instance *instance, fmu_tangent *tangent) {
+    const fmu_model *self = &instance->model;
+    const laconic_model *m = &self->plant.model;
     laconic_motion_change change;
     laconic_variation by;
     laconic_motion at;
     take_motion(&at, instance);
     take_variation(&by, tangent);
-    fmu_plant_refresh(instance, FMU_GROUP_GROUND);
-    laconic_derivative_tangent(&tangent->rates, m, &at, &p->input, &by);
+    fmu_model_refresh(instance, FMU_GROUP_GROUND);
+    laconic_derivative_tangent(&tangent->rates, m, &at, &self->input, &by);
     laconic_motion_tangent(&change, m, &at, &by);
-    laconic_reactions_tangent(&tangent->ground, &p->contact, m, &at, &p->input, &p->ground, &by);
+    laconic_reactions_tangent(&tangent->ground, &self->contact, m, &at, &self->input, &self->ground, &by);
     put_motion(tangent, &change, m->wheel_count);
 }
 
-void fmu_plant_motion_seed(fmu_instance *instance, fmu_tangent *tangent) {
-    const fmu_plant *p = &instance->plant;
-    fmu_plant_refresh(instance, FMU_GROUP_RATES);
-    for (int32_t i = 0; i < 3; i++) tangent->nu[i] = p->rates.nu_rad_per_s2[i];
-    tangent->x_m = p->rates.x_m_per_s;
-    tangent->y_m = p->rates.y_m_per_s;
-    tangent->heading_rad = p->rates.yaw_rate_rad_per_s;
-    for (int32_t i = 0; i < p->core.model.wheel_count; i++)
-        tangent->wheel_angle_rad[i] = p->rates.wheel_speed_rad_per_s[i];
-    if (p->sloped) tangent->input = p->slope;
+void fmu_model_motion_seed(fmu_instance *instance, fmu_tangent *tangent) {
+    const fmu_model *self = &instance->model;
+    fmu_model_refresh(instance, FMU_GROUP_RATES);
+    for (int32_t i = 0; i < 3; i++) tangent->nu[i] = self->rates.nu_rad_per_s2[i];
+    tangent->x_m = self->rates.x_m_per_s;
+    tangent->y_m = self->rates.y_m_per_s;
+    tangent->heading_rad = self->rates.yaw_rate_rad_per_s;
+    for (int32_t i = 0; i < self->plant.model.wheel_count; i++)
+        tangent->wheel_angle_rad[i] = self->rates.wheel_speed_rad_per_s[i];
+    if (self->sloped) tangent->input = self->slope;
 }
 
-void fmu_plant_set_slope(fmu_plant *plant, uint32_t tangent_offset, double slope) {
+void fmu_model_set_slope(fmu_model *model, uint32_t tangent_offset, double slope) {
     const size_t offset = tangent_offset - offsetof(fmu_tangent, input);
     const laconic_input none = {{0.0}, {0.0}, {0.0}, 0.0, {0.0}, {0.0}};
-    if (!plant->sloped) plant->slope = none;
-    *(double *)(void *)((char *)&plant->slope + offset) = slope;
-    plant->sloped = true;
+    if (!model->sloped) model->slope = none;
+    *(double *)(void *)((char *)&model->slope + offset) = slope;
+    model->sloped = true;
 }

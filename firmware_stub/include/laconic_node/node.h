@@ -18,7 +18,7 @@
 #include "laconic_node/counters.h"
 #include "laconic_node/frame.h"
 #include "laconic_node/loader.h"
-#include "laconic_node/raw.h"
+#include "laconic_node/raw_frames.h"
 #include "laconic_node/session.h"
 #include "laconic_wire.h"
 

@@ -103,7 +103,7 @@ class LibraryNode:
     def look(self) -> dict[str, Any]:
         """State, steps, voltages and counters, for tests."""
         view = self._view
-        self.library.lib.laconic_library_look(self.c, view)
+        self.library.lib.laconic_library_inspect(self.c, view)
         counters = {name: getattr(view.counters, name) for name in self._counter_names}
         return {"state": NODE_STATES[view.state], "deaf": view.deaf, "steps": view.steps,
                 "voltage_V": list(view.voltage_V), **counters}

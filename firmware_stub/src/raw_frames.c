@@ -1,5 +1,5 @@
 /* The bytes of RAW_INPUT to numbers of the input, and numbers of the plant to the bytes of RAW_OUTPUT. */
-#include "laconic_node/raw.h"
+#include "laconic_node/raw_frames.h"
 
 #include <string.h>
 

@@ -1,5 +1,5 @@
 /* What tests and the in-process rig call beside the node's own functions. */
-#include "library.h"
+#include "shared_library.h"
 
 #include "laconic_node/node.h"
 #include "laconic_wire.h"
@@ -12,7 +12,7 @@ bool laconic_library_node_init(laconic_node *node, uint16_t id_base, bool can_fd
     return laconic_node_init(node, &config, now_us);
 }
 
-void laconic_library_look(const laconic_node *node, laconic_library_view *view) {
+void laconic_library_inspect(const laconic_node *node, laconic_library_view *view) {
     const laconic_library_view seen = {
         .state = node->state,
         .deaf = node->session.deaf != 0,

@@ -1,6 +1,6 @@
 /* The node as a shared library, for tests and the in-process rig: what Python sees of it. */
-#ifndef LACONIC_NODE_LIBRARY_H
-#define LACONIC_NODE_LIBRARY_H
+#ifndef LACONIC_NODE_SHARED_LIBRARY_H
+#define LACONIC_NODE_SHARED_LIBRARY_H
 
 #include "laconic_node/frame.h"
 
@@ -32,7 +32,7 @@ typedef struct laconic_library_view {
     laconic_node_counters counters;
 } laconic_library_view;
 
-void laconic_library_look(const struct laconic_node *node, laconic_library_view *view);
+void laconic_library_inspect(const struct laconic_node *node, laconic_library_view *view);
 
 /* Over every error of one, two and three bits in this 8-byte frame of profile 22, counted by what happens to it:
  * outcome 0 found by the CRC, 1 found by the counter, 2 accepted. The receiver has just taken the frame before. */

@@ -1,10 +1,10 @@
-/* Where each variable of modelDescription.xml lives in fmu_plant, what must be fresh before it is read, and where its
+/* Where each variable of modelDescription.xml lives in fmu_model, what must be fresh before it is read, and where its
  * direction lives in fmu_tangent. Parameters and inputs follow from the core's list of fields. */
-#ifndef LACONIC_FMU_VEHICLE_PLACES_H
-#define LACONIC_FMU_VEHICLE_PLACES_H
+#ifndef LACONIC_FMU_VEHICLE_VARIABLE_LOCATIONS_H
+#define LACONIC_FMU_VEHICLE_VARIABLE_LOCATIONS_H
 
-#include "place.h"
-#include "plant.h"
+#include "location_macros.h"
+#include "model.h"
 
 #define IN_VEHICLE(member) FMU_PLAIN(vehicle.member)
 #define IN_PAYLOAD(member) FMU_PLAIN(vehicle.payload.member)
@@ -16,12 +16,12 @@
 #define IN_RUN(member) FMU_PLAIN(member)
 #define IN_INPUT_ARRAY(member) FMU_MOVING(input.member, 0)
 #define IN_INPUT(member) FMU_MOVING(input.member, 0)
-#define FIELD(of, number, IDENTIFIER, member, name, KIND, RULE, NEED) FMU_PLACE(name, IN_##of(member))
-#define OUTPUT(name, member, group) FMU_PLACE(name, FMU_MOVING(member, group))
+#define FIELD(of, number, IDENTIFIER, member, name, KIND, RULE, NEED) FMU_LOCATION(name, IN_##of(member))
+#define OUTPUT(name, member, group) FMU_LOCATION(name, FMU_MOVING(member, group))
 
 /* clang-format off */
-enum fmu_places {
-    FMU_PLACE(time, FMU_PLAIN(time_s))
+enum fmu_locations {
+    FMU_LOCATION(time, FMU_PLAIN(time_s))
     LACONIC_PARAMETER_FIELDS(FIELD)
     LACONIC_INPUT_ARRAY_FIELDS(FIELD, INPUT_ARRAY)
     LACONIC_INPUT_FIELDS(FIELD, INPUT)

@@ -1,6 +1,6 @@
 /* Numbers bit for bit over the bus: inputs in, outputs out, as a stream of little-endian IEEE numbers. */
-#ifndef LACONIC_NODE_RAW_H
-#define LACONIC_NODE_RAW_H
+#ifndef LACONIC_NODE_RAW_FRAMES_H
+#define LACONIC_NODE_RAW_FRAMES_H
 
 #include "laconic/laconic.h"
 

@@ -1,0 +1,305 @@
+/* The vehicle behind the glue: parameters → core, steps, and outputs when they are asked for. */
+#include <stdio.h>
+
+#include "grip_warning.h"
+#include "model_interface.h"
+
+/* A quotient beyond it is no count of steps: laconic_steps_in refuses it. */
+#define MOST_STEPS 9e15
+
+/* Does not compile unless the core is the double-precision one and wheel_kind can be read as an int32_t. */
+typedef char fmu_core_is_double[sizeof(laconic_real) == sizeof(double) ? 1 : -1];
+typedef char fmu_kind_is_int32[sizeof(laconic_wheel_kind) == sizeof(int32_t) ? 1 : -1];
+
+/* laconic_message names a field as scenes do; here it has the name of the variable. */
+static void explain(char *text, size_t size, const laconic_refusal *why) {
+    char reason[256];
+    const char *name = laconic_field_name(why->field);
+    laconic_explanation(why, reason, sizeof reason);
+    if (why->item > 0)
+        snprintf(text, size, "%s[%d]: %s", name, (int)why->item, reason);
+    else
+        snprintf(text, size, "%s%s%s", name, *name != '\0' ? ": " : "", reason);
+}
+
+static fmu_status refuse_with(const fmu_instance *instance, const laconic_refusal *why, const char *when) {
+    char text[320];
+    explain(text, sizeof text, why);
+    return fmu_refuse(instance, "%s: %s", when, text);
+}
+
+static fmu_status discard_with(const fmu_instance *instance, const laconic_refusal *why) {
+    char text[320];
+    explain(text, sizeof text, why);
+    return fmu_log(instance, FMU_DISCARD, FMU_LOG_DISCARD, "the step at %.15g s is refused: %s",
+                   fmu_clock_now(&instance->clock), text);
+}
+
+/* The step of a co-simulation is known at its first step only when step_s says so; until then a method that takes
+ * any step stands in. */
+static laconic_status start_plant(fmu_model *self, laconic_refusal *why) {
+    const laconic_method *method = laconic_method_by_number(self->method);
+    const bool known = self->step_s > 0.0 && !self->continuous;
+    if (method == NULL || self->step_s < 0.0) /* the core says what is wrong with either */
+        return laconic_plant_start(&self->plant, &self->vehicle, method, self->step_s, &self->start, why);
+    const laconic_status status =
+        laconic_plant_start(&self->plant, &self->vehicle, known ? method : &laconic_exact_flow,
+                            known ? self->step_s : 1.0, &self->start, why);
+    self->stand_in = !known;
+    if (status == LACONIC_OK && !known) self->plant.integrator.method = method;
+    return status;
+}
+
+fmu_status fmu_model_start(fmu_instance *instance) {
+    fmu_model *self = &instance->model;
+    laconic_refusal why = {LACONIC_OK, LACONIC_FIELD_NONE, 0, 0.0, 0.0};
+    self->continuous = instance->kind == FMU_MODEL_EXCHANGE;
+    laconic_status status = start_plant(self, &why);
+    if (status == LACONIC_OK) status = laconic_contact_prepare(&self->contact, &self->vehicle, &why);
+    if (status != LACONIC_OK) return refuse_with(instance, &why, "this vehicle cannot start");
+    self->start_needed = self->change_needed = false;
+    self->stale = FMU_GROUPS_ALL & ~FMU_GROUP_STATE;
+    if (self->continuous) fmu_model_refresh(instance, FMU_GROUPS_OF_CONTINUOUS_STATES);
+    return FMU_OK;
+}
+
+fmu_status fmu_model_change(fmu_instance *instance) {
+    fmu_model *self = &instance->model;
+    laconic_plant plant;
+    laconic_contact contact;
+    laconic_refusal why = {LACONIC_OK, LACONIC_FIELD_NONE, 0, 0.0, 0.0};
+    fmu_model_refresh(instance, FMU_GROUP_STATE);
+    plant = self->plant;
+    if (self->stand_in) plant.integrator.method = &laconic_exact_flow;
+    laconic_status status = laconic_plant_change(&plant, &self->vehicle, &why);
+    if (status == LACONIC_OK) status = laconic_contact_prepare(&contact, &self->vehicle, &why);
+    if (status != LACONIC_OK) return refuse_with(instance, &why, "the changed vehicle is refused");
+    plant.integrator.method = self->plant.integrator.method;
+    self->plant = plant;
+    self->contact = contact;
+    self->change_needed = false;
+    self->stale = FMU_GROUPS_ALL & ~FMU_GROUP_STATE;
+    if (self->continuous) fmu_model_refresh(instance, FMU_GROUPS_OF_CONTINUOUS_STATES);
+    return fmu_log(instance, FMU_OK, FMU_LOG_EVENTS,
+                   "the vehicle changed: mass %g kg, velocity and place of its body carried over", plant.model.mass_kg);
+}
+
+void fmu_model_input_changed(fmu_model *model) { model->stale |= FMU_GROUPS_OF_INPUT; }
+
+/* ---------------------------------------------------------------------------------- outputs -- */
+
+static void refresh_state(fmu_model *self) {
+    laconic_start motion = {{self->nu[0], self->nu[1], self->nu[2]}, self->x_m, self->y_m, self->heading_rad};
+    /* not refused: fmu_set_states takes no number that it would refuse */
+    (void)laconic_state_place(&self->plant.state, &self->plant.model, &motion, NULL);
+    laconic_wheel_angles_set(&self->plant.model, &self->plant.state, self->wheel_angle_rad);
+}
+
+static void refresh_angles(fmu_model *self) {
+    laconic_wheel_angles(&self->plant.model, &self->plant.state, self->wheel_angle_rad);
+}
+
+void fmu_model_refresh(fmu_instance *instance, uint32_t groups) {
+    fmu_model *self = &instance->model;
+    const laconic_model *m = &self->plant.model;
+    const laconic_state *s = &self->plant.state;
+    groups &= self->stale;
+    if (groups == 0) return;
+    if (self->stale & FMU_GROUP_STATE && groups != FMU_GROUP_RATES) {
+        refresh_state(self);
+        groups |= FMU_GROUP_STATE;
+    }
+    if (groups & FMU_GROUP_MOTION) {
+        laconic_nu(m, s, self->nu);
+        laconic_position(s, &self->x_m, &self->y_m, &self->heading_rad);
+        if (groups == FMU_GROUP_MOTION) { /* what is asked for at every step */
+            self->stale &= ~FMU_GROUP_MOTION;
+            return;
+        }
+    }
+    if (groups & FMU_GROUP_POSE) laconic_pose_of(&self->pose, m, s);
+    if (groups & FMU_GROUP_ANGLES) refresh_angles(self);
+    if (groups & FMU_GROUP_VELOCITY) self->yaw_rate_rad_per_s = laconic_body_velocity(m, s, self->velocity_m_per_s);
+    if (groups & FMU_GROUP_SPEEDS) laconic_wheel_speeds(m, s, self->wheel_speed_rad_per_s);
+    if (groups & FMU_GROUP_TORQUES) laconic_wheel_torques(m, s, &self->input, self->wheel_torque_Nm);
+    if (groups & FMU_GROUP_GROUND) laconic_reactions_of(&self->ground, &self->contact, m, s, &self->input);
+    if (groups & FMU_GROUP_ENERGY) self->energy_J = laconic_energy_J(m, s);
+    self->stale &= ~groups;
+    if (groups & FMU_GROUP_RATES) {
+        fmu_model_refresh(instance, FMU_GROUP_MOTION);
+        laconic_derivative(&self->rates, m, self->nu, self->heading_rad, &self->input);
+    }
+}
+
+/* ------------------------------------------------------------------------------------ steps -- */
+
+double fmu_model_own_step(const fmu_model *model) { return model->step_s; }
+
+fmu_status fmu_model_set_step(fmu_instance *instance, double step_s) {
+    laconic_refusal why = {LACONIC_OK, LACONIC_FIELD_NONE, 0, 0.0, 0.0};
+    if (laconic_plant_set_step(&instance->model.plant, step_s, &why) != LACONIC_OK) return discard_with(instance, &why);
+    instance->model.stand_in = false;
+    return FMU_OK;
+}
+
+/* The communication step nearest to the one asked for that this instance takes, now; 0: there is none. */
+static double nearest_step(const fmu_instance *instance, double step_s, double own_s) {
+    const double ratio = step_s / own_s;
+    if (!(ratio < MOST_STEPS)) return 0.0;
+    const uint64_t rounded = ratio < 1.0 ? 1 : (uint64_t)(ratio + 0.5);
+    for (uint64_t count = rounded; count > 0 && count + 1 >= rounded; count--)
+        if (!fmu_clock_passes_stop(&instance->clock, instance->model.time_s + own_s * (double)count, own_s))
+            return own_s * (double)count;
+    return 0.0;
+}
+
+fmu_status fmu_model_count_steps(fmu_instance *instance, double step_s, double own_s, uint64_t *steps) {
+    laconic_refusal why = {LACONIC_OK, LACONIC_FIELD_NONE, 0, 0.0, 0.0};
+    if (laconic_steps_in(step_s, own_s, steps, &why) == LACONIC_OK) return FMU_OK;
+    const double nearest = nearest_step(instance, step_s, own_s);
+    if (nearest > 0.0)
+        return fmu_refuse(instance,
+                          "the communication step of %.15g s is no whole number of internal steps of %.15g s "
+                          "(step_s); nearest that is: %.15g s",
+                          step_s, own_s, nearest);
+    return fmu_refuse(instance,
+                      "the communication step of %.15g s cannot be taken in internal steps of %.15g s (step_s): "
+                      "set another step_s before the run",
+                      step_s, own_s);
+}
+
+static void shift_input(laconic_input *out, const fmu_model *self, double by_s) {
+    const laconic_input *u = &self->input, *du = &self->slope;
+    for (int32_t i = 0; i < self->plant.model.wheel_count; i++) {
+        out->voltage_V[i] = u->voltage_V[i] + by_s * du->voltage_V[i];
+        out->axle_torque_Nm[i] = u->axle_torque_Nm[i] + by_s * du->axle_torque_Nm[i];
+    }
+    for (int32_t i = 0; i < 2; i++) {
+        out->body_force_N[i] = u->body_force_N[i] + by_s * du->body_force_N[i];
+        out->world_force_N[i] = u->world_force_N[i] + by_s * du->world_force_N[i];
+        out->world_force_point_m[i] = u->world_force_point_m[i] + by_s * du->world_force_point_m[i];
+    }
+    out->body_moment_Nm = u->body_moment_Nm + by_s * du->body_moment_Nm;
+}
+
+/* Inputs that change evenly over the communication step, sampled three times an internal step. */
+static laconic_status run_sloped(fmu_instance *instance, uint64_t steps, laconic_refusal *why) {
+    fmu_model *self = &instance->model;
+    const double h = self->plant.integrator.step_s, start_s = fmu_clock_now(&instance->clock);
+    laconic_input at[3];
+    for (uint64_t n = 0; n < steps; n++) {
+        for (int k = 0; k < 3; k++) shift_input(&at[k], self, ((double)n + 0.5 * k) * h);
+        if (fmu_grip_is_watched(instance)) {
+            laconic_reactions_of(&self->ground, &self->contact, &self->plant.model, &self->plant.state, &at[0]);
+            fmu_grip_check(instance, &self->ground, start_s + (double)n * h);
+        }
+        const laconic_status status = laconic_step_sampled(&self->plant.model, &self->plant.integrator,
+                                                           &self->plant.state, &at[0], &at[1], &at[2]);
+        if (status != LACONIC_OK) {
+            laconic_step_refusal(why, status, &self->plant.model, &self->plant.integrator, &self->plant.state, at, 3);
+            return status;
+        }
+        self->plant.steps++;
+    }
+    shift_input(&self->input, self, (double)steps * h);
+    self->sloped = false; /* slopes hold for one communication step */
+    return LACONIC_OK;
+}
+
+/* Inputs that are held, judged where each step begins: that is where a new input asks for the most. */
+static laconic_status run_held(fmu_instance *instance, uint64_t steps, laconic_refusal *why) {
+    fmu_model *self = &instance->model;
+    const double h = self->plant.integrator.step_s, start_s = fmu_clock_now(&instance->clock);
+    uint64_t n;
+    for (n = 0; n < steps && fmu_grip_is_watched(instance); n++) {
+        fmu_model_refresh(instance, FMU_GROUP_GROUND);
+        fmu_grip_check(instance, &self->ground, start_s + (double)n * h);
+        const laconic_status status = laconic_plant_run(&self->plant, &self->input, 1, why);
+        if (status != LACONIC_OK) return status;
+        self->stale = FMU_GROUPS_ALL & ~FMU_GROUP_STATE;
+    }
+    return laconic_plant_run(&self->plant, &self->input, steps - n, why);
+}
+
+static fmu_status run_several_steps(fmu_instance *instance, uint64_t steps, uint64_t *taken) {
+    fmu_model *self = &instance->model;
+    laconic_refusal why;
+    const uint64_t before = self->plant.steps;
+    const laconic_status status = self->sloped ? run_sloped(instance, steps, &why) : run_held(instance, steps, &why);
+    *taken = self->plant.steps - before;
+    self->stale = FMU_GROUPS_ALL & ~FMU_GROUP_STATE;
+    return status == LACONIC_OK ? FMU_OK : discard_with(instance, &why);
+}
+
+/* One step with held inputs is what most importers ask for, again and again. */
+static bool run_one(fmu_model *self) {
+    if (laconic_step(&self->plant.model, &self->plant.integrator, &self->plant.state, &self->input) != LACONIC_OK)
+        return false;
+    self->plant.steps++;
+    self->stale = FMU_GROUPS_ALL & ~FMU_GROUP_STATE;
+    return true;
+}
+
+fmu_status fmu_model_run(fmu_instance *instance, uint64_t steps, uint64_t *taken) {
+    fmu_model *self = &instance->model;
+    *taken = 1;
+    if (steps == 1 && !self->sloped && !fmu_grip_is_watched(instance) && run_one(self)) return FMU_OK;
+    return run_several_steps(instance, steps, taken); /* says what is wrong where a single step was refused */
+}
+
+void fmu_model_save_motion(const fmu_model *model, fmu_model_motion *motion) {
+    motion->state = model->plant.state;
+    motion->steps = model->plant.steps;
+    motion->input = model->input;
+}
+
+void fmu_model_restore_motion(fmu_model *model, const fmu_model_motion *motion) {
+    model->plant.state = motion->state;
+    model->plant.steps = motion->steps;
+    model->input = motion->input;
+    model->stale = FMU_GROUPS_ALL & ~FMU_GROUP_STATE;
+}
+
+/* ------------------------------------------------------------------------ continuous states -- */
+
+uint32_t fmu_model_state_count(const fmu_model *model) { return 6U + FMU_MODEL_ARRAY_SIZE(model); }
+
+void fmu_model_get_states(fmu_instance *instance, double *values) {
+    const fmu_model *self = &instance->model;
+    fmu_model_refresh(instance, FMU_GROUPS_OF_CONTINUOUS_STATES);
+    for (uint32_t i = 0; i < 3; i++) values[i] = self->nu[i];
+    values[3] = self->x_m;
+    values[4] = self->y_m;
+    values[5] = self->heading_rad;
+    for (uint32_t i = 0; i < FMU_MODEL_ARRAY_SIZE(self); i++) values[6 + i] = self->wheel_angle_rad[i];
+}
+
+void fmu_model_before_set_state(fmu_instance *instance) {
+    fmu_model_refresh(instance, FMU_GROUPS_OF_CONTINUOUS_STATES);
+    instance->model.stale = FMU_GROUPS_ALL & ~FMU_GROUPS_OF_CONTINUOUS_STATES;
+}
+
+void fmu_model_set_states(fmu_instance *instance, const double *values) {
+    fmu_model *self = &instance->model;
+    for (uint32_t i = 0; i < 3; i++) self->nu[i] = values[i];
+    self->x_m = values[3];
+    self->y_m = values[4];
+    self->heading_rad = values[5];
+    for (uint32_t i = 0; i < FMU_MODEL_ARRAY_SIZE(self); i++) self->wheel_angle_rad[i] = values[6 + i];
+    self->stale = FMU_GROUPS_ALL & ~FMU_GROUPS_OF_CONTINUOUS_STATES;
+}
+
+void fmu_model_get_rates(fmu_instance *instance, double *values) {
+    const laconic_rates *rates = &instance->model.rates;
+    fmu_model_refresh(instance, FMU_GROUP_RATES);
+    for (uint32_t i = 0; i < 3; i++) values[i] = rates->nu_rad_per_s2[i];
+    values[3] = rates->x_m_per_s;
+    values[4] = rates->y_m_per_s;
+    values[5] = rates->yaw_rate_rad_per_s;
+    for (uint32_t i = 0; i < FMU_MODEL_ARRAY_SIZE(&instance->model); i++)
+        values[6 + i] = rates->wheel_speed_rad_per_s[i];
+}
+
+void fmu_model_get_nominals(const fmu_model *model, double *values) {
+    for (uint32_t i = 0; i < fmu_model_state_count(model); i++) values[i] = i < 3 || i > 5 ? 10.0 : 1.0;
+}

@@ -1,0 +1,131 @@
+/* All that a vehicle consists of, to and from bytes. Prepared constants are not stored but prepared again: from the
+ * same numbers come the same bits. */
+#include "model_interface.h"
+
+/* One field of a struct: an array of numbers, or one by its kind. */
+#define SERIALIZE_ARRAY(of, number, IDENTIFIER, member, name, KIND, RULE, NEED) \
+    fmu_stream_reals(s, (of).member, sizeof(of).member / sizeof(double));
+#define SERIALIZE(of, number, IDENTIFIER, member, name, KIND, RULE, NEED) SERIALIZE_##KIND(s, &(of).member);
+#define SERIALIZE_REAL(stream, number) fmu_stream_reals(stream, number, 1)
+#define SERIALIZE_INTEGER(stream, number) fmu_stream_i32(stream, number, INT32_MIN, INT32_MAX)
+#define SERIALIZE_FLAG(stream, flag) fmu_stream_bool(stream, flag)
+#define SERIALIZE_WHEEL_KIND(stream, kind) serialize_kind(stream, kind)
+
+static void serialize_kind(fmu_stream *s, laconic_wheel_kind *kind) {
+    int32_t number = (int32_t)*kind;
+    fmu_stream_i32(s, &number, INT32_MIN, INT32_MAX);
+    *kind = (laconic_wheel_kind)number;
+}
+
+static void serialize_vehicle(fmu_stream *s, laconic_vehicle *v) {
+    LACONIC_VEHICLE_FIELDS(SERIALIZE, *v)
+    LACONIC_PAYLOAD_FIELDS(SERIALIZE, v->payload)
+    fmu_stream_i32(s, &v->wheel_count, 0, LACONIC_MAX_WHEELS);
+    for (int32_t i = 0; i < LACONIC_MAX_WHEELS; i++) {
+        LACONIC_WHEEL_FIELDS(SERIALIZE, v->wheel[i])
+    }
+    fmu_stream_i32(s, &v->support_count, INT32_MIN, INT32_MAX);
+    for (int32_t i = 0; i < LACONIC_MAX_SUPPORTS; i++) {
+        LACONIC_SUPPORT_FIELDS(SERIALIZE, v->support[i])
+    }
+}
+
+static void serialize_start(fmu_stream *s, laconic_start *start) {
+    LACONIC_START_ARRAY_FIELDS(SERIALIZE_ARRAY, *start)
+    LACONIC_START_FIELDS(SERIALIZE, *start)
+}
+
+static void serialize_input(fmu_stream *s, laconic_input *u) {
+    LACONIC_INPUT_ARRAY_FIELDS(SERIALIZE_ARRAY, *u)
+    LACONIC_INPUT_FIELDS(SERIALIZE, *u)
+}
+
+static void serialize_sums(fmu_stream *s, laconic_sum *sums, size_t count) {
+    for (size_t k = 0; k < count; k++) {
+        fmu_stream_reals(s, &sums[k].value, 1);
+        fmu_stream_reals(s, &sums[k].rest, 1);
+    }
+}
+
+static void serialize_state(fmu_stream *s, laconic_state *state) {
+    uint64_t fraction = state->heading.fraction;
+    serialize_sums(s, state->zeta, 3);
+    serialize_sums(s, &state->x_m, 1);
+    serialize_sums(s, &state->y_m, 1);
+    fmu_stream_i64(s, &state->heading.turns);
+    fmu_stream_u64(s, &fraction);
+    state->heading.fraction = fraction;
+    fmu_stream_reals(s, &state->heading.rest, 1);
+    serialize_sums(s, state->travel, 3);
+    fmu_stream_reals(s, state->wheel_angle_set_rad, LACONIC_MAX_WHEELS);
+}
+
+static void serialize_continuous(fmu_stream *s, fmu_model *self) {
+    fmu_stream_reals(s, self->nu, 3);
+    fmu_stream_reals(s, &self->x_m, 1);
+    fmu_stream_reals(s, &self->y_m, 1);
+    fmu_stream_reals(s, &self->heading_rad, 1);
+    fmu_stream_reals(s, self->wheel_angle_rad, LACONIC_MAX_WHEELS);
+}
+
+/* Outputs are computed anew; the continuous states of Model Exchange lead and stay. */
+static void serialize_stale(fmu_stream *s, fmu_model *self) {
+    bool follows = (self->stale & FMU_GROUP_STATE) != 0;
+    fmu_stream_bool(s, &follows);
+    if (s->from == NULL) return;
+    self->stale = FMU_GROUPS_ALL & ~FMU_GROUP_STATE;
+    if (self->continuous) self->stale &= ~FMU_GROUPS_OF_CONTINUOUS_STATES;
+    if (self->continuous && follows) self->stale |= FMU_GROUP_STATE;
+}
+
+static int32_t method_number(const laconic_method *method) {
+    for (int32_t number = 0; number < LACONIC_METHOD_COUNT; number++)
+        if (laconic_method_by_number(number) == method) return number;
+    return 0;
+}
+
+/* Vehicle, method and step in use → model, integrator and contact. */
+static bool prepare_again(fmu_model *self, int32_t number, double step_s) {
+    laconic_plant *plant = &self->plant;
+    const laconic_method *method = laconic_method_by_number(number);
+    if (laconic_prepare(&plant->model, &plant->vehicle, NULL) != LACONIC_OK) return false;
+    if (laconic_contact_prepare(&self->contact, &plant->vehicle, NULL) != LACONIC_OK) return false;
+    if (plant->vehicle.wheel_count != self->vehicle.wheel_count) return false;
+    if (laconic_integrator_prepare(&plant->integrator, self->stand_in ? &laconic_exact_flow : method, &plant->model,
+                                   step_s, NULL) != LACONIC_OK)
+        return false;
+    plant->integrator.method = method;
+    return true;
+}
+
+static void serialize_plant(fmu_stream *s, fmu_model *self) {
+    int32_t method = method_number(self->plant.integrator.method);
+    double step_s = self->plant.integrator.step_s;
+    serialize_vehicle(s, &self->plant.vehicle);
+    serialize_state(s, &self->plant.state);
+    fmu_stream_u64(s, &self->plant.steps);
+    fmu_stream_i32(s, &method, 0, LACONIC_METHOD_COUNT - 1);
+    fmu_stream_reals(s, &step_s, 1);
+    if (s->from == NULL || s->failed || self->start_needed) return;
+    if (!prepare_again(self, method, step_s)) s->failed = true;
+}
+
+bool fmu_model_serialize(fmu_stream *stream, fmu_model *model) {
+    fmu_stream_bool(stream, &model->start_needed);
+    fmu_stream_bool(stream, &model->change_needed);
+    fmu_stream_bool(stream, &model->states_changed);
+    fmu_stream_bool(stream, &model->continuous);
+    fmu_stream_bool(stream, &model->stand_in);
+    fmu_stream_reals(stream, &model->time_s, 1);
+    serialize_vehicle(stream, &model->vehicle);
+    serialize_start(stream, &model->start);
+    fmu_stream_i32(stream, &model->method, INT32_MIN, INT32_MAX);
+    fmu_stream_reals(stream, &model->step_s, 1);
+    serialize_input(stream, &model->input);
+    fmu_stream_bool(stream, &model->sloped);
+    serialize_input(stream, &model->slope);
+    serialize_stale(stream, model);
+    serialize_continuous(stream, model);
+    serialize_plant(stream, model);
+    return !stream->failed;
+}
