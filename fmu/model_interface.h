@@ -1,8 +1,8 @@
 /* What a model behind the glue provides: vehicle/model.c and controller/model.c. Its struct fmu_model (model.h) is plain
  * data, so that it can be copied; every model has the members `start_needed`, `change_needed`, `states_changed`, `time_s` and
  * `stale` (the groups to compute before they are read), and the macros FMU_MODEL_ARRAY_SIZE, FMU_MODEL_LARGEST_ARRAY. */
-#ifndef LACONIC_FMU_MODEL_API_H
-#define LACONIC_FMU_MODEL_API_H
+#ifndef LACONIC_FMU_MODEL_INTERFACE_H
+#define LACONIC_FMU_MODEL_INTERFACE_H
 
 #include "instance.h"
 #include "stream.h"
