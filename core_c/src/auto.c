@@ -12,7 +12,7 @@
  * only on state and input. So the same run makes the same choices everywhere. */
 #include "step_internals.h"
 
-#define SERIES_ROTATION R(0.5) /* rad: the first term that taylor-8 leaves out is then 1e-8 of the first */
+#define SERIES_ROTATION R(0.5) /* rad: of the terms aⁿ/n! the first that taylor-8 leaves out is then 5e-9 */
 
 static laconic_status auto_slow_step(const laconic_model *model, const laconic_integrator *integrator,
                                      laconic_state *state, const laconic_loads *loads) {

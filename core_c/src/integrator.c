@@ -1,7 +1,10 @@
 /* Prepares a method for one step size; how far a method may step, and how many steps an interval holds. */
 #include "step_internals.h"
 
-#define FAST_DAMPING R(0.3) /* h·r_max: below, splitting off the damping costs less than following it */
+/* h·r_max. On the way to a steady state exact-flow-4 errs 0.6 times as much as exponential-kahan-4 (median of 100 random
+ * robots), but it misses the steady state of a turning robot: at h·r = 0.1, 0.3, 1 and 3 by 4e-9, 3e-7, 3e-5 and 2e-3 of the
+ * speed (median of 60; the worst ten times that), where exponential-kahan-4 has it exactly. */
+#define FAST_DAMPING R(0.3)
 
 laconic_status laconic_integrator_prepare(laconic_integrator *integrator, const laconic_method *method,
                                           const laconic_model *model, laconic_real step_s, laconic_refusal *why) {
@@ -83,7 +86,8 @@ laconic_real laconic_largest_stable_step_s(const laconic_method *method, const l
     real step = LARGEST_STEP_S;
     if (laconic_integrator_prepare(&trial, method, model, step, &why) != LACONIC_OK) {
         step = why.limit;
-        (void)laconic_integrator_prepare(&trial, method, model, step * R(0.999), &why); /* safe from rounding */
+        (void)laconic_integrator_prepare(&trial, method, model, step * R(0.999),
+                                         &why); /* far beyond rounding in single, too */
         trial.gyro_limit *= R(0.999);
     }
     if (trial.chosen != method) return R(0); /* auto: goes on with another method */

@@ -1,12 +1,13 @@
-/* Minimax polynomials (Remez, computed in 50 digits) of the functions that a step needs close to 0.
- * The only place where the two scalar types differ in more than their name: single needs fewer terms. */
+/* Minimax polynomials (Remez, computed in 50 digits) of the functions that a step needs close to 0. In single precision
+ * they have fewer terms. */
 #ifndef LACONIC_POLYNOMIALS_H
 #define LACONIC_POLYNOMIALS_H
 
 #include "internal.h"
 
-#define CHORD_SMALL R(0.015625)   /* z = α² up to which poly_sinc and poly_j1 hold */
-#define TANGENT_SMALL R(0.015625) /* |z| up to which poly_tangent holds            */
+/* Bounds up to which the polynomials hold: a step that turns by less than a quarter of a radian, as most do. */
+#define CHORD_SMALL R(0.015625)   /* z = α² of poly_sinc and poly_j1, α half the turn */
+#define TANGENT_SMALL R(0.015625) /* |z| of poly_tangent, √z half of Ω times the turn */
 
 #ifdef LACONIC_SINGLE
 

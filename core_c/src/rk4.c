@@ -2,8 +2,8 @@
  * h(ζ1 + 2ζ2 + 2ζ3 + ζ4)/6 = h(ζ + h(k1 + k2 + k3)/6). */
 #include "step_internals.h"
 
-#define LARGEST_DAMPING R(2.785)  /* h·r: end of the stability interval on the real axis          */
-#define LARGEST_ROTATION R(2.828) /* h·|w||g·ζ|: on the imaginary axis, where free motion turns    */
+#define LARGEST_DAMPING R(2.785)  /* h·r: |Σ (−a)ⁿ/n!| to n = 4 exceeds 1 from a = 2.7853 on */
+#define LARGEST_ROTATION R(2.828) /* h·|w||g·ζ|: |Σ (ia)ⁿ/n!|, the turning of free motion, from 2√2 on */
 
 /* The angle that a stage has turned on, for forces fixed in the world. */
 static inline real turned_rad(const laconic_model *m, real h, vector zeta) {

@@ -5,8 +5,8 @@
  * damping is slow beside them, where it is far more exact than anything else of its cost. */
 #include "step_internals.h"
 
-#define LARGEST_DAMPING R(4.313)  /* h·r: end of the stability interval on the real axis        */
-#define LARGEST_ROTATION R(3.395) /* h·|w||g·ζ|: on the imaginary axis, where free motion turns */
+#define LARGEST_DAMPING R(4.313)  /* h·r: |Σ (−a)ⁿ/n!| to n = 8 exceeds 1 from a = 4.3136 on   */
+#define LARGEST_ROTATION R(3.395) /* h·|w||g·ζ|: |Σ (ia)ⁿ/n!|, the turning of free motion, from 3.3951 on */
 
 /* -------------------------------------------------------- the motion over one step as a series -- */
 
@@ -174,7 +174,7 @@ INLINE void at_nodes(real value[NODES], const course *c, polynomial coefficient)
 static inline void directions_at_nodes(real cosine[NODES], real sine[NODES], const real angle[NODES]) {
     real sum = R(0);
     for (int k = 0; k < NODES; k++) sum += magnitude(angle[k]);
-    if (sum <= R(0.78)) {
+    if (sum <= R(0.78)) { /* then each is below π/4 = 0.785, up to where the polynomials hold */
         for (int k = 0; k < NODES; k++) cosine[k] = poly_cos(angle[k] * angle[k]);
         for (int k = 0; k < NODES; k++) sine[k] = poly_sin(angle[k], angle[k] * angle[k]);
     } else {

@@ -46,6 +46,7 @@
 #ifndef LACONIC_H
 #define LACONIC_H
 
+#include "laconic/internals.h"
 #include "laconic/real.h"
 #include "laconic/status.h"  /* laconic_status, laconic_arithmetic */
 #include "laconic/vehicle.h" /* laconic_vehicle, _motor, _input, _start; laconic_field */
@@ -232,23 +233,7 @@ laconic_status laconic_state_carry(laconic_state *state, const laconic_model *fr
 
 /* ------------------------------------------------------------------------ methods and steps -- */
 
-/* One method prepared for one step size: factors of one exponential sub-step, per axis k, a = h r_k, φ at −a.
- * b over the sub-step: start + change·s + curve·s(s − 1), s from 0 to 1. */
-typedef struct laconic_decay {
-    laconic_real gain[3]; /* h φ1: increment per derivative                                 */
-    laconic_real inverse_gain[3];
-    laconic_real mean[3];       /* κ = φ2/φ1, ½ … 1: how far the mean of ζ lies along the increment, and
-                                   what constant b a change of b is worth                         */
-    laconic_real bend[3];       /* (2 φ3 − φ2)/φ1: what constant b a curve of b is worth          */
-    laconic_real mean_ramp[3];  /* h (φ3 − κ φ2): and beside it, per change                       */
-    laconic_real mean_bend[3];  /* h (2 φ4 − φ3 − κ (2 φ3 − φ2)): per curve                       */
-    laconic_real slope[3];      /* 12 (φ2/2 − φ3)/φ1: first moment along the increment, 1 … 0     */
-    laconic_real slope_ramp[3]; /* its part per change of b                                       */
-    laconic_real slope_bend[3]; /* its part per curve of b                                        */
-} laconic_decay;
-
-struct laconic_method;
-
+/* One method prepared for one step size. */
 typedef struct laconic_integrator {
     const struct laconic_method *method; /* what was asked for                                    */
     const struct laconic_method *chosen; /* what works: differs from `method` only for auto       */
@@ -258,18 +243,12 @@ typedef struct laconic_integrator {
     bool stiff;                          /* damping is fast beside the step: h·r_max >= 0.3       */
 } laconic_integrator;
 
-/* Inputs at the start, middle and end of the step. Held inputs: three times the same pointer, steady unless it turns. */
-typedef struct laconic_loads {
-    const laconic_load *start, *middle, *end;
-    bool steady; /* nothing varies over the step: `start` says it all                             */
-} laconic_loads;
-
 typedef struct laconic_method {
     const char *name;
     int32_t order;
     laconic_status (*prepare)(laconic_integrator *integrator, const laconic_model *model, laconic_refusal *why);
     laconic_status (*step)(const laconic_model *model, const laconic_integrator *integrator, laconic_state *state,
-                           const laconic_loads *loads);
+                           const struct laconic_loads *loads);
 } laconic_method;
 
 /*                                            order  takes                  conserves, free motion  */
@@ -279,10 +258,7 @@ extern const laconic_method laconic_exponential_kahan_4; /* 4  any damping      
 extern const laconic_method laconic_exact_flow;          /* 2  everything                   exactly */
 extern const laconic_method laconic_exact_flow_4;        /* 4  any damping, best below h·r ≈ 0.3    */
 extern const laconic_method laconic_taylor_8;            /* 8  h·r ≤ 4.313, h·|ν3| limited  –       */
-extern const laconic_method laconic_auto;                /* picks one of the next two; see auto.c   */
-/* Only ever `chosen`, for firmware whose integrator is a constant; what is prepared is laconic_auto. */
-extern const laconic_method laconic_auto_slow; /* exact-flow-4 or taylor-8, else exact-flow */
-extern const laconic_method laconic_auto_fast; /* exponential-kahan-4, else exact-flow    */
+extern const laconic_method laconic_auto;                /* 4  picks for each step; see auto.c      */
 
 /* All methods, for adapters that choose by number (0 auto, 1 rk4, 2 exponential-kahan,
  * 3 exponential-kahan-4, 4 exact-flow, 5 exact-flow-4, 6 taylor-8) or by name. NULL if there is none. Links them all. */
