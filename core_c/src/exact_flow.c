@@ -13,7 +13,7 @@ typedef struct half_angle {
 /* Beyond the polynomial: quarter z until it holds, then double the angle as often. With s = sin √z/√z and
  * c = cos √z up to a common factor (only their ratio counts), s(4z) = s c, c(4z) = c² − z s²; divided by
  * c² + |z| s² they stay of the order of 1 for either sign of z. */
-RARE half_angle large_half_angle(real z, real along, real across) {
+RARE_AND_OPAQUE half_angle large_half_angle(real z, real along, real across) {
     half_angle a;
     real s, c = R(1);
     int doublings = 0;
