@@ -2,7 +2,7 @@
  *
  *   h·r_max < 0.3    exact-flow-4          damping is slow beside the step: the splitting's error is least, and free
  *                                          motion keeps its energy
- *                    taylor-8              instead, in steps over which a load varies, while h·|w||g·ζ| < 0.5: there
+ *                    taylor-8              instead, in steps over which a forcing varies, while h·|w||g·ζ| < 0.5: there
  *                                          nothing is conserved, and the series is cheaper and more exact
  *   otherwise        exponential-kahan-4   keeps the steady state that fast damping leads to
  *   and where the chosen one refuses a step (it would gain energy or has no solution: h·|ν3| is large), that
@@ -15,21 +15,21 @@
 #define SERIES_ROTATION R(0.5) /* rad: of the terms aⁿ/n! the first that taylor-8 leaves out is then 5e-9 */
 
 static laconic_status auto_slow_step(const laconic_model *model, const laconic_integrator *integrator,
-                                     laconic_state *state, const laconic_loads *loads) {
+                                     laconic_state *state, const laconic_forcing_samples *samples) {
     laconic_status status = LACONIC_STEP_BEYOND_GYROSCOPIC_LIMIT;
-    if (!steady_over(loads)) status = laconic_taylor_8.step(model, integrator, state, loads);
-    if (status != LACONIC_OK) status = laconic_exact_flow_4.step(model, integrator, state, loads);
-    if (status != LACONIC_OK) status = laconic_exact_flow.step(model, integrator, state, loads);
+    if (!steady_over(samples)) status = laconic_taylor_8.step(model, integrator, state, samples);
+    if (status != LACONIC_OK) status = laconic_exact_flow_4.step(model, integrator, state, samples);
+    if (status != LACONIC_OK) status = laconic_exact_flow.step(model, integrator, state, samples);
     return status;
 }
 
 const laconic_method laconic_auto_slow = {"exact-flow-4", 4, NULL, auto_slow_step};
 
 static laconic_status auto_fast_step(const laconic_model *model, const laconic_integrator *integrator,
-                                     laconic_state *state, const laconic_loads *loads) {
-    const laconic_status status = laconic_exponential_kahan_4.step(model, integrator, state, loads);
+                                     laconic_state *state, const laconic_forcing_samples *samples) {
+    const laconic_status status = laconic_exponential_kahan_4.step(model, integrator, state, samples);
     if (status == LACONIC_OK) return status;
-    return laconic_exact_flow.step(model, integrator, state, loads);
+    return laconic_exact_flow.step(model, integrator, state, samples);
 }
 
 const laconic_method laconic_auto_fast = {"exponential-kahan-4", 4, NULL, auto_fast_step};

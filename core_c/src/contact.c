@@ -71,7 +71,7 @@ static void least_norm(real solver[][3], const real rows[][3], int32_t count) {
             solver[i][c] = rows[i][0] * inverse[0][c] + rows[i][1] * inverse[1][c] + rows[i][2] * inverse[2][c];
 }
 
-static void take_wheels(laconic_contact *contact, const laconic_vehicle *vehicle, const body *b) {
+static void fill_wheels(laconic_contact *contact, const laconic_vehicle *vehicle, const body *b) {
     int32_t row = 0;
     for (int32_t i = 0; i < vehicle->wheel_count; i++) {
         const laconic_wheel *wheel = &vehicle->wheel[i];
@@ -87,7 +87,7 @@ static void take_wheels(laconic_contact *contact, const laconic_vehicle *vehicle
     }
 }
 
-static void take_points(laconic_contact *contact, const laconic_vehicle *vehicle, const body *b) {
+static void fill_points(laconic_contact *contact, const laconic_vehicle *vehicle, const body *b) {
     const int32_t n = vehicle->wheel_count;
     real rows[LACONIC_MAX_WHEELS + LACONIC_MAX_SUPPORTS][3];
     contact->point_count = n + vehicle->support_count;
@@ -98,12 +98,12 @@ static void take_points(laconic_contact *contact, const laconic_vehicle *vehicle
         rows[i][1] = contact->point_m[i][0];
         rows[i][2] = contact->point_m[i][1];
     }
-    least_norm(contact->load_of_wrench, (const real(*)[3])rows, contact->point_count);
+    least_norm(contact->normal_load_of_wrench, (const real(*)[3])rows, contact->point_count);
 }
 
 /* What the matrices do not hold: heights and supports are in no model. */
 static real contact_size(const laconic_contact *c, int32_t wheel_count) {
-    real sum = rows_size(c->multiplier, c->constraint_count) + rows_size(c->load_of_wrench, c->point_count) +
+    real sum = rows_size(c->multiplier, c->constraint_count) + rows_size(c->normal_load_of_wrench, c->point_count) +
                c->com_z_m + c->friction_coefficient;
     for (int32_t i = 0; i < wheel_count; i++) sum += magnitude(c->inverse_arm_per_m[i]);
     for (int32_t i = 0; i < c->point_count; i++) sum += magnitude(c->point_m[i][0]) + magnitude(c->point_m[i][1]);
@@ -117,8 +117,8 @@ laconic_status laconic_contact_prepare(laconic_contact *contact, const laconic_v
     const laconic_status status = laconic_matrices_of(&matrices, vehicle, why);
     if (status != LACONIC_OK) return status;
     laconic_body_of(&b, vehicle);
-    take_wheels(&fresh, vehicle, &b);
-    take_points(&fresh, vehicle, &b);
+    fill_wheels(&fresh, vehicle, &b);
+    fill_points(&fresh, vehicle, &b);
     fresh.constraint_count = matrices.constraint_count;
     least_norm(fresh.multiplier, (const real(*)[3])matrices.constraint_rows, matrices.constraint_count);
     for (int32_t i = 0; i < 3; i++)
@@ -144,12 +144,12 @@ typedef struct instant {
     real weight_N;
 } instant;
 
-static void take_instant(instant *now, const laconic_model *m, const laconic_state *state, const laconic_input *in) {
+static void fill_instant(instant *now, const laconic_model *m, const laconic_state *state, const laconic_input *in) {
     const vector zeta = zeta_of(state);
-    laconic_load load;
+    laconic_forcing forcing;
     real nu[3], yaw_rate;
-    laconic_load_of(&load, m, in);
-    const vector rate = zeta_rate(m, zeta, load_now(&load, &state->heading, R(0)));
+    laconic_forcing_of(&forcing, m, in);
+    const vector rate = zeta_rate(m, zeta, forcing_after_yaw(&forcing, &state->heading, R(0)));
     for (int k = 0; k < 3; k++) {
         nu[k] = dot(vec(m->nu_of_zeta[k]), zeta);
         now->nu_rate[k] = dot(vec(m->nu_of_zeta[k]), rate);
@@ -157,7 +157,7 @@ static void take_instant(instant *now, const laconic_model *m, const laconic_sta
     yaw_rate = nu[2] / m->yaw_scale;
     now->gyro[0] = yaw_rate * nu[1];
     now->gyro[1] = -yaw_rate * nu[0];
-    now->outer = wrench_of(in, laconic_direction_of_turn(state->heading.fraction));
+    now->outer = wrench_of(in, laconic_direction_of_binary_angle(state->heading.fraction));
     now->weight_N = m->mass_kg * R(LACONIC_GRAVITY_M_PER_S2);
     laconic_wheel_torques(m, state, in, now->torque_Nm);
 }
@@ -188,7 +188,7 @@ static void wheel_reaction(laconic_reactions *out, const laconic_contact *c, con
 }
 
 /* Σ N = M g; about S the loads balance the ground's horizontal force, which acts com_z below it (outer forces
- * are taken to act at the height of S). Columns of `load_of_wrench`: R Σ N, Σ N ξ, Σ N η. */
+ * are taken to act at the height of S). Columns of `normal_load_of_wrench`: R Σ N, Σ N ξ, Σ N η. */
 static void normal_loads(laconic_reactions *out, const laconic_contact *c, const laconic_model *m, real weight_N) {
     real wanted[3], ground[2] = {R(0), R(0)};
     for (int32_t i = 0; i < m->wheel_count; i++) {
@@ -198,7 +198,7 @@ static void normal_loads(laconic_reactions *out, const laconic_contact *c, const
     wanted[0] = m->wheel_radius_m * weight_N;
     wanted[1] = -c->com_z_m * ground[0];
     wanted[2] = -c->com_z_m * ground[1];
-    for (int32_t i = 0; i < c->point_count; i++) out->normal_N[i] = dot(vec(c->load_of_wrench[i]), vec(wanted));
+    for (int32_t i = 0; i < c->point_count; i++) out->normal_N[i] = dot(vec(c->normal_load_of_wrench[i]), vec(wanted));
 }
 
 /* All that is linear: everything but the margin. */
@@ -225,14 +225,14 @@ static void no_slip_margin(laconic_reactions *out, const laconic_contact *c, con
 void laconic_reactions_of(laconic_reactions *reactions, const laconic_contact *contact, const laconic_model *model,
                           const laconic_state *state, const laconic_input *input) {
     instant now;
-    take_instant(&now, model, state, input);
+    fill_instant(&now, model, state, input);
     linear_reactions(reactions, contact, model, &now);
     no_slip_margin(reactions, contact, model);
 }
 
 /* --------------------------------------------------------------------- along a variation -- */
 
-static void take_change(instant *change, const laconic_model *m, const laconic_motion *at, const laconic_input *input,
+static void fill_change(instant *change, const laconic_model *m, const laconic_motion *at, const laconic_input *input,
                         const laconic_variation *by) {
     const vector zeta = zeta_of_nu(m, at->nu_rad_per_s), d_zeta = zeta_of_nu(m, by->nu_rad_per_s);
     const real rate = dot(vec(m->yaw_rate_of_zeta), zeta), d_rate = dot(vec(m->yaw_rate_of_zeta), d_zeta);
@@ -267,7 +267,7 @@ void laconic_reactions_tangent(laconic_reactions *change, const laconic_contact 
                                const laconic_motion *at, const laconic_input *input, const laconic_reactions *now,
                                const laconic_variation *by) {
     instant instant_change;
-    take_change(&instant_change, model, at, input, by);
+    fill_change(&instant_change, model, at, input, by);
     linear_reactions(change, contact, model, &instant_change);
     margin_change(change, contact, model, now);
 }

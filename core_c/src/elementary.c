@@ -54,16 +54,16 @@ direction laconic_direction_of_angle(real angle_rad) {
         const real n = (real)k;
         return direction_near(((angle_rad - n * REDUCE_1) - n * REDUCE_2) - n * REDUCE_3, (unsigned)k);
     }
-    return laconic_direction_of_turn(laconic_turn_of_angle(angle_rad));
+    return laconic_direction_of_binary_angle(laconic_binary_angle_of(angle_rad));
 }
 
-direction laconic_direction_of_turn(laconic_turn turn) { return direction_of_turn(turn); }
+direction laconic_direction_of_binary_angle(laconic_binary_angle angle) { return direction_of_binary_angle(angle); }
 
-laconic_turn laconic_turn_of_angle(real angle_rad) {
+laconic_binary_angle laconic_binary_angle_of(real angle_rad) {
     const real turns = angle_rad * R(0.1591549430918953358);
     if (magnitude(turns) < HALF_TURN) {
-        const real part = turns - (real)(signed_turn)turns; /* in (−1, 1) */
-        return (laconic_turn)((laconic_turn)(signed_turn)(part * HALF_TURN) * 2U);
+        const real part = turns - (real)(signed_binary_angle)turns; /* in (−1, 1) */
+        return (laconic_binary_angle)((laconic_binary_angle)(signed_binary_angle)(part * HALF_TURN) * 2U);
     }
     return 0; /* NaN, or an angle too large to have a direction */
 }

@@ -19,10 +19,10 @@ real laconic_decaying_exponential(real a);
 direction laconic_direction_of_angle(real angle_rad);
 
 /* cos and sin of a turn: range reduction by bits, exact for every argument. */
-direction laconic_direction_of_turn(laconic_turn turn);
+direction laconic_direction_of_binary_angle(laconic_binary_angle angle);
 
 /* An angle as a turn, whole turns dropped. |angle| below 10⁹ in single, 10¹⁸ in double. */
-laconic_turn laconic_turn_of_angle(real angle_rad);
+laconic_binary_angle laconic_binary_angle_of(real angle_rad);
 
 /* φk(−a) = ∫₀¹ e^{−(1−s)a} s^{k−1}/(k−1)! ds for k = 1 … 5 and a >= 0; phi[k], phi[0] = e^−a. */
 void laconic_phi(real phi[6], real a);

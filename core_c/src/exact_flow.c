@@ -31,7 +31,7 @@ RARE_AND_OPAQUE half_angle large_half_angle(real z, real along, real across) {
 }
 
 /* |ζ + δ|² − |ζ|² = δ·(2ζ + δ) should be 0: take the excess off along ζ + δ. */
-RARE_AND_OPAQUE vector cleared_turn(vector zeta, vector delta) {
+RARE_AND_OPAQUE vector length_kept(vector zeta, vector delta) {
     const vector end = plus(zeta, delta);
     const real excess = dot(delta, plus(zeta, end)), length = square(end);
     if (!(length > R(0))) return delta;
@@ -56,22 +56,23 @@ INLINE half_angle half_angle_after(const laconic_model *m, real half_step, vecto
 
 /* ζ⁺ − ζ = 2 τ/(1 + |w|²τ²) (ζ×w + τ (ζ×w)×w), τ = numerator/denominator: |ζ| stays to rounding. */
 INLINE vector free_flow(const laconic_model *m, real half_step, vector zeta) {
-    const vector w = vec(m->gyro), turned = cross(zeta, w);
+    const vector w = vec(m->gyro), zeta_cross_w = cross(zeta, w);
     const half_angle a = half_angle_after(m, half_step, zeta);
     const real aside = m->gyro_square * (a.numerator * a.numerator), ahead = a.denominator * a.denominator;
     const real factor = R(2) * a.numerator / (ahead + aside);
-    const vector delta = scaled(factor, plus(scaled(a.denominator, turned), scaled(a.numerator, cross(turned, w))));
+    const vector delta =
+        scaled(factor, plus(scaled(a.denominator, zeta_cross_w), scaled(a.numerator, cross(zeta_cross_w, w))));
     /* tan²(ψ/2) is 1/16 at ψ = 0.49: up to there |δ| is at most half of |ζ|, and rounding δ costs less than rounding ζ⁺. */
-    return aside > R(0.0625) * ahead ? cleared_turn(zeta, delta) : delta;
+    return aside > R(0.0625) * ahead ? length_kept(zeta, delta) : delta;
 }
 
 /* Damping and drive alone, exact. */
-INLINE vector drive_flow(const laconic_model *m, const laconic_decay *d, vector zeta, const drive *b) {
-    return times(vec(d->gain), minus(constant_like(b, d), damping(m, zeta)));
+INLINE vector linear_flow(const laconic_model *m, const laconic_decay *d, vector zeta, const parabola *b) {
+    return times(vec(d->gain), minus(equivalent_constant(b, d), damping(m, zeta)));
 }
 
 /* The two halves of a parabola: s(s − 1) over half the range is a quarter of itself and a ramp. */
-static inline void split(drive *early, drive *late, const drive *b) {
+static inline void split(parabola *early, parabola *late, const parabola *b) {
     const vector quarter = scaled(R(0.25), b->curve), even = scaled(R(0.5), b->change);
     early->start = b->start;
     early->change = minus(even, quarter);
@@ -83,37 +84,37 @@ static inline void split(drive *early, drive *late, const drive *b) {
 
 /* Drive for h/2, free motion for h, drive for h/2. */
 INLINE increment flow_base(const laconic_model *m, const laconic_integrator *integrator, int level, vector zeta,
-                           const drive *b) {
+                           const parabola *b) {
     const real half_step = integrator->step_s * (level == 0 ? R(0.5) : R(0.25));
     const laconic_decay *half = &integrator->decay[level + 1];
-    const drive *first = b, *second = b;
-    drive early, late;
-    if (!LACONIC_WITH_DAMPING && !LACONIC_WITH_LOAD)
+    const parabola *first = b, *second = b;
+    parabola early, late;
+    if (!LACONIC_WITH_DAMPING && !LACONIC_WITH_FORCING)
         return increment_of(&integrator->decay[level], zeta, free_flow(m, half_step, zeta), b);
     if (b->varies) {
         split(&early, &late, b);
         first = &early;
         second = &late;
     }
-    const vector up = drive_flow(m, half, zeta, first);
+    const vector up = linear_flow(m, half, zeta, first);
     const vector before = plus(zeta, up);
-    const vector turn = free_flow(m, half_step, before);
-    const vector down = drive_flow(m, half, plus(before, turn), second);
-    return increment_of(&integrator->decay[level], zeta, plus(plus(up, turn), down), b);
+    const vector rotation = free_flow(m, half_step, before);
+    const vector down = linear_flow(m, half, plus(before, rotation), second);
+    return increment_of(&integrator->decay[level], zeta, plus(plus(up, rotation), down), b);
 }
 
 /* ------------------------------------------------------------------------- second order -- */
 
 RARE increment flow_varying(const laconic_model *model, const laconic_integrator *integrator,
-                            const laconic_state *state, const laconic_loads *loads) {
-    return single_varying(flow_base, model, integrator, state, loads);
+                            const laconic_state *state, const laconic_forcing_samples *samples) {
+    return base_alone_varying(flow_base, model, integrator, state, samples);
 }
 
 static laconic_status exact_flow_step(const laconic_model *model, const laconic_integrator *integrator,
-                                      laconic_state *state, const laconic_loads *loads) {
+                                      laconic_state *state, const laconic_forcing_samples *samples) {
     const vector zeta = zeta_of(state);
-    const increment by = steady_over(loads) ? single(flow_base, model, integrator, zeta, loads)
-                                            : flow_varying(model, integrator, state, loads);
+    const increment by = steady_over(samples) ? base_alone(flow_base, model, integrator, zeta, samples)
+                                              : flow_varying(model, integrator, state, samples);
     return advance(state, model, integrator->step_s, zeta, by);
 }
 
@@ -129,16 +130,16 @@ const laconic_method laconic_exact_flow = {"exact-flow", 2, PREPARE(exact_flow_p
 /* ------------------------------------------------------------------------- fourth order -- */
 
 RARE increment flow_4_varying(const laconic_model *model, const laconic_integrator *integrator,
-                              const laconic_state *state, const laconic_loads *loads) {
-    return extrapolated_varying(flow_base, model, integrator, state, loads);
+                              const laconic_state *state, const laconic_forcing_samples *samples) {
+    return extrapolated_varying(flow_base, model, integrator, state, samples);
 }
 
 static laconic_status exact_flow_4_step(const laconic_model *model, const laconic_integrator *integrator,
-                                        laconic_state *state, const laconic_loads *loads) {
+                                        laconic_state *state, const laconic_forcing_samples *samples) {
     const vector zeta = zeta_of(state);
-    const increment by = steady_over(loads) ? extrapolated(flow_base, model, integrator, zeta, loads)
-                                            : flow_4_varying(model, integrator, state, loads);
-    return advance_if_passive(state, model, integrator->step_s, loads, zeta, by);
+    const increment by = steady_over(samples) ? extrapolated(flow_base, model, integrator, zeta, samples)
+                                              : flow_4_varying(model, integrator, state, samples);
+    return advance_if_passive(state, model, integrator->step_s, samples, zeta, by);
 }
 
 static laconic_status exact_flow_4_prepare(laconic_integrator *integrator, const laconic_model *model,

@@ -28,8 +28,8 @@ INLINE vector solve(const solver *s, vector rhs) {
 }
 
 /* D⁻¹ − Q with D = hφ1, Q Δ = q(ζ,Δ) = ½[(g·ζ) Δ×w + (g·Δ) ζ×w]. */
-INLINE matrix implicit_matrix(vector inverse_gain, vector g, vector w, real yaw, vector turned) {
-    const vector s = scaled(R(0.5) * yaw, w), l = scaled(R(0.5), turned);
+INLINE matrix implicit_matrix(vector inverse_gain, vector g, vector w, real yaw, vector zeta_cross_w) {
+    const vector s = scaled(R(0.5) * yaw, w), l = scaled(R(0.5), zeta_cross_w);
     const matrix m = {
         {inverse_gain.x - l.x * g.x, -(l.x * g.y + s.z), s.y - l.x * g.z},
         {s.z - l.y * g.x, inverse_gain.y - l.y * g.y, -(l.y * g.z + s.x)},
@@ -42,7 +42,7 @@ INLINE matrix implicit_matrix(vector inverse_gain, vector g, vector w, real yaw,
  * is at the step's end hangs on q there. So q, too, goes linearly from q(ζ,ζ) to q(ζ⁺,ζ⁺): beside its mean it
  * is worth the constant (κ − ½)·(their difference), and joins the change of b for mean and slope of ζ. Without
  * it a stiff vehicle lags by h/r times the change of q; with it by (h/r)². */
-INLINE vector follow_inlined(drive *b, const laconic_model *m, const laconic_decay *d, const solver *s, vector zeta,
+INLINE vector follow_inlined(parabola *b, const laconic_model *m, const laconic_decay *d, const solver *s, vector zeta,
                              vector delta) {
     const vector g = vec(m->nu_of_zeta[2]), w = vec(m->gyro), end = plus(zeta, delta);
     const vector change = minus(scaled(dot(g, end), cross(end, w)), scaled(dot(g, zeta), cross(zeta, w)));
@@ -53,28 +53,28 @@ INLINE vector follow_inlined(drive *b, const laconic_model *m, const laconic_dec
     return plus(delta, solve(s, times(minus(vec(d->mean), half), change)));
 }
 
-typedef vector (*follower)(drive *b, const laconic_model *m, const laconic_decay *d, const solver *s, vector zeta,
+typedef vector (*follower)(parabola *b, const laconic_model *m, const laconic_decay *d, const solver *s, vector zeta,
                            vector delta);
 
-static vector follow(drive *b, const laconic_model *m, const laconic_decay *d, const solver *s, vector zeta,
+static vector follow(parabola *b, const laconic_model *m, const laconic_decay *d, const solver *s, vector zeta,
                      vector delta) {
     return follow_inlined(b, m, d, s, zeta, delta);
 }
 
 /* ζ⁺ = e^{hL}ζ + hφ1(hL)[q(ζ,ζ⁺) + b], written for the increment Δ = ζ⁺ − ζ: (D⁻¹ − Q)Δ = ζ'(ζ). */
 INLINE increment kahan_increment(const laconic_model *m, const laconic_integrator *integrator, int level, vector zeta,
-                                 const drive *b, follower following) {
+                                 const parabola *b, follower following) {
     const laconic_decay *d = &integrator->decay[level];
     const vector g = vec(m->nu_of_zeta[2]), w = vec(m->gyro), inverse_gain = vec(d->inverse_gain);
     const real yaw = dot(g, zeta);
-    const vector turned = cross(zeta, w);
-    const vector rate = plus(minus(scaled(yaw, turned), damping(m, zeta)), constant_like(b, d));
-    const matrix implicit = implicit_matrix(inverse_gain, g, w, yaw, turned);
+    const vector zeta_cross_w = cross(zeta, w);
+    const vector rate = plus(minus(scaled(yaw, zeta_cross_w), damping(m, zeta)), equivalent_constant(b, d));
+    const matrix implicit = implicit_matrix(inverse_gain, g, w, yaw, zeta_cross_w);
     const solver s = factorise(&implicit);
     const vector delta = solve(&s, rate);
     increment by;
     if (integrator->stiff) {
-        drive followed = *b;
+        parabola followed = *b;
         const vector longer = following(&followed, m, d, &s, zeta, delta);
         by = increment_of(d, zeta, longer, &followed);
     } else {
@@ -85,30 +85,30 @@ INLINE increment kahan_increment(const laconic_model *m, const laconic_integrato
 
 /* For programs with several base steps. */
 INLINE increment kahan_base(const laconic_model *m, const laconic_integrator *integrator, int level, vector zeta,
-                            const drive *b) {
+                            const parabola *b) {
     return kahan_increment(m, integrator, level, zeta, b, follow);
 }
 
 /* Smaller where a program has but one: that of the second-order method where nothing varies. */
 INLINE increment only_kahan_base(const laconic_model *m, const laconic_integrator *integrator, int level, vector zeta,
-                                 const drive *b) {
+                                 const parabola *b) {
     return kahan_increment(m, integrator, level, zeta, b, follow_inlined);
 }
 
 /* ------------------------------------------------------------------------- second order -- */
 
 RARE increment kahan_varying(const laconic_model *model, const laconic_integrator *integrator,
-                             const laconic_state *state, const laconic_loads *loads) {
-    return single_varying(kahan_base, model, integrator, state, loads);
+                             const laconic_state *state, const laconic_forcing_samples *samples) {
+    return base_alone_varying(kahan_base, model, integrator, state, samples);
 }
 
 static laconic_status exponential_kahan_step(const laconic_model *model, const laconic_integrator *integrator,
-                                             laconic_state *state, const laconic_loads *loads) {
+                                             laconic_state *state, const laconic_forcing_samples *samples) {
     const vector zeta = zeta_of(state);
-    const increment by = steady_over(loads)
-                             ? single(ONLY_STEADY ? only_kahan_base : kahan_base, model, integrator, zeta, loads)
-                             : kahan_varying(model, integrator, state, loads);
-    return advance_if_passive(state, model, integrator->step_s, loads, zeta, by);
+    const increment by = steady_over(samples)
+                             ? base_alone(ONLY_STEADY ? only_kahan_base : kahan_base, model, integrator, zeta, samples)
+                             : kahan_varying(model, integrator, state, samples);
+    return advance_if_passive(state, model, integrator->step_s, samples, zeta, by);
 }
 
 static laconic_status exponential_kahan_prepare(laconic_integrator *integrator, const laconic_model *model,
@@ -124,16 +124,16 @@ const laconic_method laconic_exponential_kahan = {"exponential-kahan", 2, PREPAR
 /* ------------------------------------------------------------------------- fourth order -- */
 
 RARE increment kahan_4_varying(const laconic_model *model, const laconic_integrator *integrator,
-                               const laconic_state *state, const laconic_loads *loads) {
-    return extrapolated_varying(kahan_base, model, integrator, state, loads);
+                               const laconic_state *state, const laconic_forcing_samples *samples) {
+    return extrapolated_varying(kahan_base, model, integrator, state, samples);
 }
 
 static laconic_status exponential_kahan_4_step(const laconic_model *model, const laconic_integrator *integrator,
-                                               laconic_state *state, const laconic_loads *loads) {
+                                               laconic_state *state, const laconic_forcing_samples *samples) {
     const vector zeta = zeta_of(state);
-    const increment by = steady_over(loads) ? extrapolated(kahan_base, model, integrator, zeta, loads)
-                                            : kahan_4_varying(model, integrator, state, loads);
-    return advance_if_passive(state, model, integrator->step_s, loads, zeta, by);
+    const increment by = steady_over(samples) ? extrapolated(kahan_base, model, integrator, zeta, samples)
+                                              : kahan_4_varying(model, integrator, state, samples);
+    return advance_if_passive(state, model, integrator->step_s, samples, zeta, by);
 }
 
 static laconic_status exponential_kahan_4_prepare(laconic_integrator *integrator, const laconic_model *model,

@@ -3,12 +3,12 @@
 
 /* Parallel axes: two bodies at distance d add m₁m₂/(m₁+m₂) d² to their own inertias. */
 void laconic_body_of(body *b, const laconic_vehicle *vehicle) {
-    const laconic_payload *load = &vehicle->payload;
-    const real total = vehicle->mass_kg + load->mass_kg;
-    const real share = load->mass_kg / total;
-    const real dx = load->x_m - vehicle->com_x_m, dy = load->y_m - vehicle->com_y_m;
+    const laconic_payload *payload = &vehicle->payload;
+    const real total = vehicle->mass_kg + payload->mass_kg;
+    const real share = payload->mass_kg / total;
+    const real dx = payload->x_m - vehicle->com_x_m, dy = payload->y_m - vehicle->com_y_m;
     const real inertia =
-        vehicle->yaw_inertia_kgm2 + load->yaw_inertia_kgm2 + share * vehicle->mass_kg * (dx * dx + dy * dy);
+        vehicle->yaw_inertia_kgm2 + payload->yaw_inertia_kgm2 + share * vehicle->mass_kg * (dx * dx + dy * dy);
     b->mass_kg = total;
     b->com_x_m = vehicle->com_x_m + share * dx;
     b->com_y_m = vehicle->com_y_m + share * dy;

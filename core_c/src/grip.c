@@ -12,7 +12,7 @@ static real needed(const laconic_reactions *r, int32_t wheel) {
 }
 
 /* Written so that a number that is none counts as a fault. */
-static void take_worse(finding *found, int32_t index, real value, real limit) {
+static void keep_worse(finding *found, int32_t index, real value, real limit) {
     if (value >= limit || (found->point != 0 && value >= found->by_N)) return;
     found->point = index + 1;
     found->by_N = value;
@@ -24,14 +24,14 @@ static finding worst_slip(const laconic_contact *c, const laconic_reactions *r, 
     for (int32_t i = 0; i < wheels; i++) {
         const real needed_N = needed(r, i);
         if (needed_N <= rounding_N) continue; /* it may lift, but nothing is there to slip */
-        take_worse(&found, i, c->friction_coefficient * r->normal_N[i] - needed_N, -rounding_N);
+        keep_worse(&found, i, c->friction_coefficient * r->normal_N[i] - needed_N, -rounding_N);
     }
     return found;
 }
 
 static finding worst_lift(const laconic_contact *c, const laconic_reactions *r, real rounding_N) {
     finding found = {0, R(0)};
-    for (int32_t i = 0; i < c->point_count; i++) take_worse(&found, i, r->normal_N[i], -rounding_N);
+    for (int32_t i = 0; i < c->point_count; i++) keep_worse(&found, i, r->normal_N[i], -rounding_N);
     return found;
 }
 
@@ -60,7 +60,7 @@ void laconic_grip_watch(laconic_grip *grip, const laconic_contact *contact, cons
     const finding slip = worst_slip(contact, reactions, wheels, rounding_N);
     const finding lift = worst_lift(contact, reactions, rounding_N);
     laconic_grip_event now;
-    grip->looks++;
+    grip->instants++;
     if (slip.point != 0) {
         now = event_of(contact, reactions, slip.point, wheels, steps);
         enter(&grip->first_slip, &grip->worst_slip, &grip->slipping, &now, slip.by_N < grip->worst_slip.margin_N);

@@ -1,5 +1,5 @@
-/* Angles as integers: a turn is the whole range of laconic_turn, so it wraps by itself, exactly. The heading is such an
- * angle with a count of turns: no loss of resolution after any number of them. */
+/* Binary angles: the range of an unsigned integer is one turn, so an angle wraps by itself, exactly. The heading is such
+ * an angle with a count of turns: no loss of resolution after any number of them. */
 #ifndef LACONIC_HEADING_H
 #define LACONIC_HEADING_H
 
@@ -7,15 +7,15 @@
 #include "polynomials.h"
 
 #ifdef LACONIC_SINGLE
-typedef int32_t signed_turn;
-#define TURN_BITS 32
-#define TURN_UNIT R(1.4629180792671596811e-9) /* 2π/2³² */
-#define HALF_TURN R(2147483648.0)             /* 2³¹ units */
+typedef int32_t signed_binary_angle;
+#define BINARY_ANGLE_BITS 32
+#define BINARY_ANGLE_UNIT_RAD R(1.4629180792671596811e-9) /* 2π/2³² */
+#define HALF_TURN R(2147483648.0)                         /* 2³¹ units */
 #else
-typedef int64_t signed_turn;
-#define TURN_BITS 64
-#define TURN_UNIT R(3.4061215800865545893e-19) /* 2π/2⁶⁴ */
-#define HALF_TURN R(9223372036854775808.0)     /* 2⁶³ units */
+typedef int64_t signed_binary_angle;
+#define BINARY_ANGLE_BITS 64
+#define BINARY_ANGLE_UNIT_RAD R(3.4061215800865545893e-19) /* 2π/2⁶⁴ */
+#define HALF_TURN R(9223372036854775808.0)                 /* 2⁶³ units */
 #endif
 
 /* (cos, sin) of x + quarters · π/2 for |x| <= π/4. */
@@ -27,17 +27,18 @@ static inline direction direction_near(real x, unsigned quarters) {
     return d;
 }
 
-static inline direction direction_of_turn(laconic_turn turn) {
-    const laconic_turn eighth = (laconic_turn)1 << (TURN_BITS - 3);
-    const unsigned quarters = (unsigned)((laconic_turn)(turn + eighth) >> (TURN_BITS - 2));
-    const laconic_turn near = (laconic_turn)(turn - ((laconic_turn)quarters << (TURN_BITS - 2)));
-    return direction_near((real)(signed_turn)near * TURN_UNIT, quarters);
+static inline direction direction_of_binary_angle(laconic_binary_angle angle) {
+    const laconic_binary_angle eighth = (laconic_binary_angle)1 << (BINARY_ANGLE_BITS - 3);
+    const unsigned quarters = (unsigned)((laconic_binary_angle)(angle + eighth) >> (BINARY_ANGLE_BITS - 2));
+    const laconic_binary_angle near =
+        (laconic_binary_angle)(angle - ((laconic_binary_angle)quarters << (BINARY_ANGLE_BITS - 2)));
+    return direction_near((real)(signed_binary_angle)near * BINARY_ANGLE_UNIT_RAD, quarters);
 }
 
-#define HALF_TURN_BIT ((laconic_turn)1 << (TURN_BITS - 1))
+#define HALF_TURN_BIT ((laconic_binary_angle)1 << (BINARY_ANGLE_BITS - 1))
 
-/* The largest angle one step may turn: whole turns must fit signed_turn. */
-#define LARGEST_TURN_RAD (HALF_TURN * R(2))
+/* The largest angle one step may turn: whole turns must fit signed_binary_angle. */
+#define LARGEST_YAW_CHANGE_RAD (HALF_TURN * R(2))
 
 /* A step begins only within 2⁶² turns: what it adds, below 2⁶² turns as well, then fits the count. */
 static inline bool heading_has_room(const laconic_heading *heading) {
@@ -45,22 +46,22 @@ static inline bool heading_has_room(const laconic_heading *heading) {
 }
 
 /* Turns on by an angle and returns the heading half-way, as a turn: where the mid-step pose looks. */
-INLINE laconic_turn heading_advance(laconic_heading *heading, real angle_rad) {
+INLINE laconic_binary_angle heading_advance(laconic_heading *heading, real angle_rad) {
     const real turns = angle_rad * R(0.1591549430918953358); /* 1/2π */
-    const signed_turn whole = (signed_turn)turns;
+    const signed_binary_angle whole = (signed_binary_angle)turns;
     const real wanted = (turns - (real)whole) * HALF_TURN + heading->rest;
-    const signed_turn half = (signed_turn)wanted; /* half of the part of a turn, in units */
-    const laconic_turn old = heading->fraction;
-    const laconic_turn odd = (laconic_turn)whole << (TURN_BITS - 1);
+    const signed_binary_angle half = (signed_binary_angle)wanted; /* half of the part of a turn, in units */
+    const laconic_binary_angle old = heading->fraction;
+    const laconic_binary_angle odd = (laconic_binary_angle)whole << (BINARY_ANGLE_BITS - 1);
     heading->rest = wanted - (real)half;
-    heading->fraction = (laconic_turn)(old + 2U * (laconic_turn)half);
+    heading->fraction = (laconic_binary_angle)(old + 2U * (laconic_binary_angle)half);
     heading->turns += whole - (half < 0) + (heading->fraction < old); /* the carry of old + half, signed */
-    return (laconic_turn)(old + (laconic_turn)half + odd);
+    return (laconic_binary_angle)(old + (laconic_binary_angle)half + odd);
 }
 
 /* The part beyond whole turns, in (−π, π]. */
 static inline real heading_wrapped(const laconic_heading *heading) {
-    const signed_turn part = (signed_turn)heading->fraction;
+    const signed_binary_angle part = (signed_binary_angle)heading->fraction;
     if (heading->fraction == HALF_TURN_BIT) return R(3.14159265358979323846);
     return (real)part * (R(3.14159265358979323846) / HALF_TURN);
 }

@@ -25,13 +25,13 @@ laconic_status laconic_integrator_prepare(laconic_integrator *integrator, const 
 
 laconic_status laconic_explicit_limits(laconic_integrator *integrator, const laconic_model *model, real largest_damping,
                                        real largest_rotation, laconic_refusal *why) {
-    const real fastest = laconic_fastest_decay(model), turning = laconic_root(square(vec(model->gyro)));
+    const real fastest = laconic_fastest_decay(model), gyro_size = laconic_root(square(vec(model->gyro)));
     if (!(integrator->step_s * fastest <= largest_damping))
         return refuse(why, LACONIC_STEP_BEYOND_DAMPING_LIMIT, LACONIC_FIELD_STEP, 0, integrator->step_s,
                       largest_damping / fastest);
     integrator->gyro_limit = LACONIC_REAL_MAX;
-    if (integrator->step_s * turning > largest_rotation / LACONIC_REAL_MAX)
-        integrator->gyro_limit = largest_rotation / (integrator->step_s * turning);
+    if (integrator->step_s * gyro_size > largest_rotation / LACONIC_REAL_MAX)
+        integrator->gyro_limit = largest_rotation / (integrator->step_s * gyro_size);
     return LACONIC_OK;
 }
 

@@ -32,7 +32,7 @@ void laconic_position(const laconic_state *state, laconic_real *x_m, laconic_rea
 
 /* The body's origin is at (x, y) − Rot(θ) s, s = QS. */
 void laconic_pose_of(laconic_pose *pose, const laconic_model *model, const laconic_state *state) {
-    const direction heading = laconic_direction_of_turn(state->heading.fraction);
+    const direction heading = laconic_direction_of_binary_angle(state->heading.fraction);
     const real sx = model->com_x_m, sy = model->com_y_m;
     pose->x_m = state->x_m.value;
     pose->y_m = state->y_m.value;
@@ -121,9 +121,9 @@ void laconic_motion_tangent(laconic_motion_change *change, const laconic_model *
                             const laconic_variation *by) {
     const direction heading = laconic_direction_of_angle(at->heading_rad);
     const vector zeta = zeta_of_nu(model, at->nu_rad_per_s), d_zeta = zeta_of_nu(model, by->nu_rad_per_s);
-    const real sx = model->com_x_m, sy = model->com_y_m, turn = by->heading_rad;
-    change->origin_x_m = by->x_m + turn * (heading.sine * sx + heading.cosine * sy);
-    change->origin_y_m = by->y_m - turn * (heading.cosine * sx - heading.sine * sy);
+    const real sx = model->com_x_m, sy = model->com_y_m, yaw = by->heading_rad;
+    change->origin_x_m = by->x_m + yaw * (heading.sine * sx + heading.cosine * sy);
+    change->origin_y_m = by->y_m - yaw * (heading.cosine * sx - heading.sine * sy);
     velocity_of(model, d_zeta, change->velocity_m_per_s, &change->yaw_rate_rad_per_s);
     change->energy_J = energy_of(model, zeta, d_zeta);
     speeds_of(model, d_zeta, change->wheel_speed_rad_per_s);

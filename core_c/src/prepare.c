@@ -80,7 +80,7 @@ static pair column_products(const laconic_model *m, int32_t a, int32_t b) {
     return p;
 }
 
-static void turn_pair(real *a, real *b, direction d) {
+static void rotate_pair(real *a, real *b, direction d) {
     const real old = *a;
     *a = d.cosine * old - d.sine * *b;
     *b = d.sine * old + d.cosine * *b;
@@ -97,19 +97,19 @@ static bool make_orthogonal(laconic_model *m, basis *v, int32_t a, int32_t b) {
     const real q = laconic_root(R(1) + tangent * tangent);
     d.cosine = R(1) - tangent * tangent / (q * (q + R(1))); /* 1/q, but rounded once */
     d.sine = tangent / q;
-    for (int32_t i = 0; i < m->wheel_count; i++) turn_pair(&m->wheel_of_zeta[i][a], &m->wheel_of_zeta[i][b], d);
-    for (int32_t i = 0; i < 3; i++) turn_pair(&v->axis[a][i], &v->axis[b][i], d);
+    for (int32_t i = 0; i < m->wheel_count; i++) rotate_pair(&m->wheel_of_zeta[i][a], &m->wheel_of_zeta[i][b], d);
+    for (int32_t i = 0; i < 3; i++) rotate_pair(&v->axis[a][i], &v->axis[b][i], d);
     return true;
 }
 
 static void find_principal_axes(laconic_model *m, basis *v) {
-    bool turned = true;
+    bool rotated = true;
     /* Two to seven sweeps do all that counts. The threshold of make_orthogonal lies below what rounding leaves of a product
      * of columns, so about one robot in ten goes on turning by angles of that size: 30 ends it. */
-    for (int sweep = 0; sweep < 30 && turned; sweep++) {
-        turned = false;
+    for (int sweep = 0; sweep < 30 && rotated; sweep++) {
+        rotated = false;
         for (int32_t a = 0; a < v->count; a++)
-            for (int32_t b = a + 1; b < v->count; b++) turned = make_orthogonal(m, v, a, b) || turned;
+            for (int32_t b = a + 1; b < v->count; b++) rotated = make_orthogonal(m, v, a, b) || rotated;
     }
 }
 
@@ -143,10 +143,10 @@ static void clear_axis(laconic_model *m, int32_t k) {
 static void derive_gyro(laconic_model *m) {
     const vector g = vec(m->nu_of_zeta[2]);
     const vector w = scaled(R(1) / m->yaw_scale, cross(vec(m->nu_of_zeta[0]), vec(m->nu_of_zeta[1])));
-    put(m->gyro, w);
+    store(m->gyro, w);
     m->gyro_square = square(w);
-    put(m->spin_gain, cross(w, g));
-    put(m->spin_curve, minus(scaled(R(2) * dot(g, w), w), scaled(m->gyro_square, g)));
+    store(m->spin_gain, cross(w, g));
+    store(m->spin_curve, minus(scaled(R(2) * dot(g, w), w), scaled(m->gyro_square, g)));
 }
 
 static void derive_rows(laconic_model *m) {
@@ -157,7 +157,7 @@ static void derive_rows(laconic_model *m) {
     }
 }
 
-static void take_constants(laconic_model *m, const laconic_vehicle *vehicle, const body *b) {
+static void fill_constants(laconic_model *m, const laconic_vehicle *vehicle, const body *b) {
     m->wheel_count = vehicle->wheel_count;
     m->torque_scale = R(1) / (b->mass_kg * b->radius_m * b->radius_m);
     m->voltage_scale = vehicle->motor_gain_Nm_per_V * m->torque_scale;
@@ -204,7 +204,7 @@ laconic_status laconic_prepare(laconic_model *model, const laconic_vehicle *vehi
     body b;
     if (status != LACONIC_OK) return status;
     laconic_body_of(&b, vehicle);
-    take_constants(&m, vehicle, &b);
+    fill_constants(&m, vehicle, &b);
     collect_constraints(&constraints, &b, vehicle);
     allowed_motions(&motions, &constraints);
     if (motions.count == 0)

@@ -2,8 +2,8 @@
 #include "internal.h"
 
 /* The number that stands so many bytes into a struct that holds nothing but numbers. */
-static const real *number_in(const void *numbers, uint32_t place) {
-    return (const real *)(const void *)((const unsigned char *)numbers + place);
+static const real *number_at(const void *numbers, uint32_t offset) {
+    return (const real *)(const void *)((const unsigned char *)numbers + offset);
 }
 
 static void set_signals(laconic_input *input, const laconic_schedule *schedule, const real *value) {
@@ -13,11 +13,11 @@ static void set_signals(laconic_input *input, const laconic_schedule *schedule, 
 
 static void copy_columns(laconic_recorder *recorder, const laconic_outputs *now) {
     real *row = recorder->row + recorder->row_count * (uint64_t)recorder->column_count;
-    for (int32_t k = 0; k < recorder->column_count; k++) row[k] = *number_in(now, recorder->column[k]);
+    for (int32_t k = 0; k < recorder->column_count; k++) row[k] = *number_at(now, recorder->column[k]);
     recorder->row_count++;
 }
 
-static void look(laconic_recorder *recorder, const laconic_plant *plant, const laconic_input *input, bool row_due) {
+static void observe(laconic_recorder *recorder, const laconic_plant *plant, const laconic_input *input, bool row_due) {
     laconic_outputs now;
     if (recorder->contact != NULL && (row_due || recorder->grip != NULL)) {
         laconic_reactions_of(&now.reactions, recorder->contact, &plant->model, &plant->state, input);
@@ -30,28 +30,28 @@ static void look(laconic_recorder *recorder, const laconic_plant *plant, const l
 }
 
 void laconic_record_row(laconic_recorder *recorder, const laconic_plant *plant, const laconic_input *input) {
-    look(recorder, plant, input, true);
+    observe(recorder, plant, input, true);
 }
 
 /* Looks where there is something to look for; returns how many of `left` steps may pass before the next look, 0 where
  * a row has no room. */
-static uint64_t steps_until_look(laconic_recorder *recorder, const laconic_plant *plant, const laconic_input *input,
-                                 uint64_t left) {
+static uint64_t steps_until_observation(laconic_recorder *recorder, const laconic_plant *plant,
+                                        const laconic_input *input, uint64_t left) {
     if (recorder == NULL) return left;
     const uint64_t since_row = recorder->every != 0 ? plant->steps % recorder->every : 1;
     const bool row_due = since_row == 0;
     if (row_due && recorder->row_count >= recorder->row_room) return 0;
-    look(recorder, plant, input, row_due);
+    observe(recorder, plant, input, row_due);
     if (recorder->contact != NULL && recorder->grip != NULL) return 1;
     if (recorder->every == 0 || left < recorder->every - since_row) return left;
     return recorder->every - since_row;
 }
 
 /* One stretch, up to `until_step`; *full: a row had no room. */
-static laconic_status hold(laconic_plant *plant, const laconic_input *input, uint64_t until_step,
-                           laconic_recorder *recorder, bool *full, laconic_refusal *why) {
+static laconic_status run_held(laconic_plant *plant, const laconic_input *input, uint64_t until_step,
+                               laconic_recorder *recorder, bool *full, laconic_refusal *why) {
     while (plant->steps < until_step) {
-        const uint64_t steps = steps_until_look(recorder, plant, input, until_step - plant->steps);
+        const uint64_t steps = steps_until_observation(recorder, plant, input, until_step - plant->steps);
         *full = steps == 0;
         if (*full) return LACONIC_OK;
         const laconic_status status = laconic_plant_run(plant, input, steps, why);
@@ -83,7 +83,7 @@ static laconic_status follow_held(laconic_plant *plant, const laconic_schedule *
         const uint64_t left = schedule->until_step[k] - (plant->steps - schedule->first_step);
         const uint64_t end = left < until_step - plant->steps ? plant->steps + left : until_step;
         set_signals(&input, schedule, schedule->value + k * (uint64_t)schedule->signal_count);
-        status = hold(plant, &input, end, recorder, &full, why);
+        status = run_held(plant, &input, end, recorder, &full, why);
     }
     return status;
 }
@@ -97,7 +97,7 @@ static laconic_status follow_sampled(laconic_plant *plant, const laconic_schedul
     while (plant->steps < until_step && plant->steps - schedule->first_step < schedule->count) {
         const real *value = schedule->value + 3 * numbers * (plant->steps - schedule->first_step);
         for (uint64_t k = 0; k < 3; k++) set_signals(&input[k], schedule, value + k * numbers);
-        if (steps_until_look(recorder, plant, input, 1) == 0) break;
+        if (steps_until_observation(recorder, plant, input, 1) == 0) break;
         const laconic_status status =
             laconic_step_sampled(&plant->model, &plant->integrator, &plant->state, input, input + 1, input + 2);
         if (status != LACONIC_OK) {

@@ -6,7 +6,7 @@
 #define LARGEST_ROTATION R(2.828) /* h·|w||g·ζ|: |Σ (ia)ⁿ/n!|, the turning of free motion, from 2√2 on */
 
 /* The angle that a stage has turned on, for forces fixed in the world. */
-static inline real turned_rad(const laconic_model *m, real h, vector zeta) {
+static inline real yaw_change_rad(const laconic_model *m, real h, vector zeta) {
     return LACONIC_WITH_WORLD_FORCE ? h * dot(vec(m->yaw_rate_of_zeta), zeta) : R(0);
 }
 
@@ -35,12 +35,12 @@ INLINE increment steady_stages(const laconic_model *m, real h, vector z1, vector
 
 /* The same, each stage under its own b: for samples, and for forces that turn with the heading. */
 RARE increment varying_stages(const laconic_model *m, real h, vector z1, const laconic_heading *heading,
-                              const laconic_loads *loads) {
-    const laconic_load *const load[4] = {loads->start, loads->middle, loads->middle, loads->end};
+                              const laconic_forcing_samples *samples) {
+    const laconic_forcing *const forcing[4] = {samples->start, samples->middle, samples->middle, samples->end};
     const real ahead[4] = {R(0), R(0.5) * h, R(0.5) * h, h};
     vector rate[4], z = z1;
     for (int i = 0; i < 4; i++) {
-        const vector b = load_now(load[i], heading, turned_rad(m, ahead[i], z));
+        const vector b = forcing_after_yaw(forcing[i], heading, yaw_change_rad(m, ahead[i], z));
         if (i > 0) z = along(z1, ahead[i], rate[i - 1]);
         rate[i] = zeta_rate(m, z, b);
     }
@@ -48,14 +48,14 @@ RARE increment varying_stages(const laconic_model *m, real h, vector z1, const l
 }
 
 static laconic_status rk4_step(const laconic_model *model, const laconic_integrator *integrator, laconic_state *state,
-                               const laconic_loads *loads) {
+                               const laconic_forcing_samples *samples) {
     const real h = integrator->step_s;
     const vector zeta = zeta_of(state);
     increment by;
     if (beyond_rotation(model, integrator, zeta)) return LACONIC_STEP_BEYOND_GYROSCOPIC_LIMIT;
-    by = steady_over(loads) ? steady_stages(model, h, zeta, vec(loads->start->constant))
-                            : varying_stages(model, h, zeta, &state->heading, loads);
-    return advance_if_passive(state, model, h, loads, zeta, by);
+    by = steady_over(samples) ? steady_stages(model, h, zeta, vec(samples->start->constant))
+                              : varying_stages(model, h, zeta, &state->heading, samples);
+    return advance_if_passive(state, model, h, samples, zeta, by);
 }
 
 static laconic_status rk4_prepare(laconic_integrator *integrator, const laconic_model *model, laconic_refusal *why) {

@@ -9,8 +9,9 @@ static laconic_status check_start(const laconic_start *start, laconic_refusal *w
     if (!is_finite(start->y_m)) return refuse(why, LACONIC_NOT_FINITE, LACONIC_FIELD_START_Y, 0, start->y_m, R(0));
     if (!is_finite(start->heading_rad))
         return refuse(why, LACONIC_NOT_FINITE, LACONIC_FIELD_START_HEADING, 0, start->heading_rad, R(0));
-    if (!(magnitude(start->heading_rad) < LARGEST_TURN_RAD))
-        return refuse(why, LACONIC_OVERFLOW, LACONIC_FIELD_START_HEADING, 0, start->heading_rad, LARGEST_TURN_RAD);
+    if (!(magnitude(start->heading_rad) < LARGEST_YAW_CHANGE_RAD))
+        return refuse(why, LACONIC_OVERFLOW, LACONIC_FIELD_START_HEADING, 0, start->heading_rad,
+                      LARGEST_YAW_CHANGE_RAD);
     return LACONIC_OK;
 }
 
@@ -48,8 +49,8 @@ laconic_status laconic_state_set(laconic_state *state, const laconic_model *mode
 }
 
 /* Whatever an outer integrator has let ν drift off the constraints is projected away. */
-laconic_status laconic_state_place(laconic_state *state, const laconic_model *model, const laconic_start *motion,
-                                   laconic_refusal *why) {
+laconic_status laconic_state_project(laconic_state *state, const laconic_model *model, const laconic_start *motion,
+                                     laconic_refusal *why) {
     laconic_start at_rest = *motion;
     const vector zeta = zeta_of_nu(model, motion->nu_rad_per_s);
     for (int k = 0; k < 3; k++) {
@@ -74,7 +75,7 @@ static bool carried_in_range(const laconic_state *state, const real *angle, int3
 
 /* v_Q = v_S − θ' e_z × s stays, s = QS; so do θ' and the place of Q: x_S = x_Q + Rot(θ) s. */
 laconic_status laconic_state_carry(laconic_state *state, const laconic_model *from, const laconic_model *to) {
-    const direction heading = laconic_direction_of_turn(state->heading.fraction);
+    const direction heading = laconic_direction_of_binary_angle(state->heading.fraction);
     const real dx = to->com_x_m - from->com_x_m, dy = to->com_y_m - from->com_y_m;
     real velocity[2], nu[3], angle[LACONIC_MAX_WHEELS];
     const real yaw_rate = laconic_body_velocity(from, state, velocity);

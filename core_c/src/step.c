@@ -3,22 +3,22 @@
 
 uint64_t laconic_run(const laconic_model *model, const laconic_integrator *integrator, laconic_state *state,
                      const laconic_input *held, uint64_t steps, laconic_status *status) {
-    laconic_load load;
-    laconic_loads loads = {&load, &load, &load, true};
+    laconic_forcing forcing;
+    laconic_forcing_samples samples = {&forcing, &forcing, &forcing, true};
     laconic_status last = LACONIC_OK;
     uint64_t left;
-    if (zero_if_finite(world_force_place(held)) != R(0)) {
+    if (zero_if_finite(world_force_point(held)) != R(0)) {
         *status = LACONIC_OVERFLOW;
         return 0;
     }
-    load_of(&load, model, held);
-    loads.steady = !load.turns;
+    forcing_of(&forcing, model, held);
+    samples.steady = !forcing.rotates;
     for (left = steps; left > 0; left--) {
         if (!heading_has_room(&state->heading)) {
             last = LACONIC_OVERFLOW;
             break;
         }
-        last = integrator->chosen->step(model, integrator, state, &loads);
+        last = integrator->chosen->step(model, integrator, state, &samples);
         if (last != LACONIC_OK) break;
     }
     *status = last;
@@ -37,20 +37,20 @@ laconic_status laconic_step(const laconic_model *model, const laconic_integrator
 static inline bool world_forces_are_finite(const laconic_input *start, const laconic_input *middle,
                                            const laconic_input *end) {
     const real force = LACONIC_WITH_WORLD_FORCE ? middle->world_force_N[0] + middle->world_force_N[1] : R(0);
-    const real places = world_force_place(start) + world_force_place(middle) + world_force_place(end);
+    const real places = world_force_point(start) + world_force_point(middle) + world_force_point(end);
     return zero_if_finite(force + places) == R(0);
 }
 
 laconic_status laconic_step_sampled(const laconic_model *model, const laconic_integrator *integrator,
                                     laconic_state *state, const laconic_input *start, const laconic_input *middle,
                                     const laconic_input *end) {
-    laconic_load load[3];
-    const laconic_loads loads = {&load[0], &load[1], &load[2], false};
+    laconic_forcing forcing[3];
+    const laconic_forcing_samples samples = {&forcing[0], &forcing[1], &forcing[2], false};
     if (!world_forces_are_finite(start, middle, end) || !heading_has_room(&state->heading)) return LACONIC_OVERFLOW;
-    laconic_load_of(&load[0], model, start);
-    laconic_load_of(&load[1], model, middle);
-    laconic_load_of(&load[2], model, end);
-    return integrator->chosen->step(model, integrator, state, &loads);
+    laconic_forcing_of(&forcing[0], model, start);
+    laconic_forcing_of(&forcing[1], model, middle);
+    laconic_forcing_of(&forcing[2], model, end);
+    return integrator->chosen->step(model, integrator, state, &samples);
 }
 
 static laconic_status check_many(const real *numbers, int32_t count, laconic_field field, laconic_refusal *why) {

@@ -41,8 +41,8 @@ static inline vector damping(const laconic_model *m, vector z) {
 
 /* ζ' = (g·ζ)(ζ×w) − diag(r)ζ + b: equation (4.7) in the coordinates of laconic_model. */
 static inline vector zeta_rate(const laconic_model *m, vector z, vector b) {
-    const vector turning = scaled(dot(vec(m->nu_of_zeta[2]), z), cross(z, vec(m->gyro)));
-    return plus(minus(turning, damping(m, z)), b);
+    const vector gyroscopic = scaled(dot(vec(m->nu_of_zeta[2]), z), cross(z, vec(m->gyro)));
+    return plus(minus(gyroscopic, damping(m, z)), b);
 }
 
 /* Free motion turns faster than an explicit method bears. */
@@ -53,7 +53,7 @@ static inline bool beyond_rotation(const laconic_model *m, const laconic_integra
 /* ----------------------------------------------------------------- what acts: input → b -- */
 
 /* Anything that acts at all. */
-#define LACONIC_WITH_LOAD \
+#define LACONIC_WITH_FORCING \
     (LACONIC_WITH_VOLTAGE || LACONIC_WITH_AXLE_TORQUE || LACONIC_WITH_BODY_WRENCH || LACONIC_WITH_WORLD_FORCE)
 
 /* Ξᵀ(c1 U + T)/(M R²): power of a wheel's torque is torque · χ'. */
@@ -68,54 +68,55 @@ static inline vector b_of_torques(const laconic_model *m, const laconic_input *i
 }
 
 /* A world force F at the body point r: F_ξ = c F_X + s F_Y, F_η = −s F_X + c F_Y, τ = r_ξ F_η − r_η F_ξ. */
-static inline void add_world_force(laconic_load *load, const laconic_model *m, const laconic_input *in) {
+static inline void add_world_force(laconic_forcing *forcing, const laconic_model *m, const laconic_input *in) {
     const real fx = m->torque_scale * in->world_force_N[0], fy = m->torque_scale * in->world_force_N[1];
     const real *r = in->world_force_point_m;
     const vector yaw = vec(m->yaw_rate_of_zeta);
     const vector along = minus(vec(m->velocity_of_zeta[0]), scaled(r[1], yaw));
     const vector across = plus(vec(m->velocity_of_zeta[1]), scaled(r[0], yaw));
-    put(load->cosine, plus(scaled(fx, along), scaled(fy, across)));
-    put(load->sine, minus(scaled(fy, along), scaled(fx, across)));
+    store(forcing->cosine, plus(scaled(fx, along), scaled(fy, across)));
+    store(forcing->sine, minus(scaled(fy, along), scaled(fx, across)));
 }
 
 /* What does not act costs nothing. Written so that NaN counts as acting and is noticed in the step. */
 static inline bool acts(real a, real b, real c) { return !(a == R(0) && b == R(0) && c == R(0)); }
 
 /* A force of 0 is not looked at, but where it acts must be a place all the same. NaN or infinity where it is none. */
-static inline real world_force_place(const laconic_input *input) {
+static inline real world_force_point(const laconic_input *input) {
     return LACONIC_WITH_WORLD_FORCE ? input->world_force_point_m[0] + input->world_force_point_m[1] : R(0);
 }
 
-static inline void load_of(laconic_load *load, const laconic_model *model, const laconic_input *input) {
+static inline void forcing_of(laconic_forcing *forcing, const laconic_model *model, const laconic_input *input) {
     vector b = none;
     if (LACONIC_WITH_VOLTAGE || LACONIC_WITH_AXLE_TORQUE) b = b_of_torques(model, input);
     if (LACONIC_WITH_BODY_WRENCH && acts(input->body_force_N[0], input->body_force_N[1], input->body_moment_Nm))
         b = plus(b,
                  b_of_wrench(model, (wrench){input->body_force_N[0], input->body_force_N[1], input->body_moment_Nm}));
-    put(load->constant, b);
-    load->turns = LACONIC_WITH_WORLD_FORCE && acts(input->world_force_N[0], input->world_force_N[1], R(0));
-    if (LACONIC_WITH_WORLD_FORCE && load->turns) add_world_force(load, model, input);
+    store(forcing->constant, b);
+    forcing->rotates = LACONIC_WITH_WORLD_FORCE && acts(input->world_force_N[0], input->world_force_N[1], R(0));
+    if (LACONIC_WITH_WORLD_FORCE && forcing->rotates) add_world_force(forcing, model, input);
 }
 
-/* b of a load that turns. */
-static inline vector load_at(const laconic_load *load, direction heading) {
-    return plus(vec(load->constant),
-                plus(scaled(heading.cosine, vec(load->cosine)), scaled(heading.sine, vec(load->sine))));
+/* b of a forcing that turns. */
+static inline vector forcing_at(const laconic_forcing *forcing, direction heading) {
+    return plus(vec(forcing->constant),
+                plus(scaled(heading.cosine, vec(forcing->cosine)), scaled(heading.sine, vec(forcing->sine))));
 }
 
 /* The same at the heading of a state, turned on by an angle. */
-vector laconic_turned_load(const laconic_load *load, const laconic_heading *heading, real offset_rad);
+vector laconic_forcing_after_yaw(const laconic_forcing *forcing, const laconic_heading *heading, real yaw_change_rad);
 
-/* b of any load; the heading is looked at only where a force turns with it. */
-INLINE vector load_now(const laconic_load *load, const laconic_heading *heading, real offset_rad) {
-    if (LACONIC_WITH_WORLD_FORCE && load->turns) return laconic_turned_load(load, heading, offset_rad);
-    return vec(load->constant);
+/* b of any forcing; the heading is looked at only where a force turns with it. */
+INLINE vector forcing_after_yaw(const laconic_forcing *forcing, const laconic_heading *heading, real yaw_change_rad) {
+    if (LACONIC_WITH_WORLD_FORCE && forcing->rotates)
+        return laconic_forcing_after_yaw(forcing, heading, yaw_change_rad);
+    return vec(forcing->constant);
 }
 
 /* Known beforehand, it leaves of the code below a base step and nothing else. */
 #define ONLY_STEADY (!LACONIC_WITH_WORLD_FORCE && !LACONIC_WITH_SAMPLED_INPUT)
 
-static inline bool steady_over(const laconic_loads *loads) { return ONLY_STEADY || loads->steady; }
+static inline bool steady_over(const laconic_forcing_samples *samples) { return ONLY_STEADY || samples->steady; }
 
 /* ---------------------------------------------------- what a method finds out about a step -- */
 
@@ -132,19 +133,19 @@ typedef struct increment {
 #define ENERGY_TOLERANCE R(0.0009765625)
 
 /* What `passive` asks, with all that the loads do over the step. */
-bool laconic_growth_is_driven(const laconic_model *model, const laconic_state *state, real step_s,
-                              const laconic_loads *loads, const increment *by);
+bool laconic_growth_is_forced(const laconic_model *model, const laconic_state *state, real step_s,
+                              const laconic_forcing_samples *samples, const increment *by);
 
 /* Exactly: |ζ⁺|² − |ζ|² = 2∫(b·ζ − ζ·diag(r)ζ)dt <= 2∫ b·ζ dt. Tried first as if b were held; false for NaN, and
  * in free motion for infinity. */
-INLINE bool passive(const laconic_model *model, const laconic_state *state, real step_s, const laconic_loads *loads,
-                    vector zeta, increment by) {
+INLINE bool passive(const laconic_model *model, const laconic_state *state, real step_s,
+                    const laconic_forcing_samples *samples, vector zeta, increment by) {
     const real before = square(zeta), after = square(plus(zeta, by.delta));
     const real excess = (R(1) - ENERGY_TOLERANCE) * after - (R(1) + ENERGY_TOLERANCE) * before;
     if (excess <= R(0)) return true;
-    if (excess <= R(2) * step_s * dot(vec(loads->start->constant), by.mean)) return true;
-    if (steady_over(loads)) return false;
-    return laconic_growth_is_driven(model, state, step_s, loads, &by);
+    if (excess <= R(2) * step_s * dot(vec(samples->start->constant), by.mean)) return true;
+    if (steady_over(samples)) return false;
+    return laconic_growth_is_forced(model, state, step_s, samples, &by);
 }
 
 /* What to say of a step that is not. */
@@ -156,7 +157,7 @@ static inline laconic_status not_passive(increment by) {
 
 typedef struct pose_change { /* over one step */
     real along_m, across_m;  /* displacement in axes at the mid-step heading */
-    real turn_rad;
+    real yaw_change_rad;
 } pose_change;
 
 /* sinc α and ½ j₁(α), α half the turn of the step. */
@@ -166,7 +167,7 @@ INLINE void chord_factors(real *sinc, real *half_j1, real alpha) {
         *sinc = poly_sinc(z);
         *half_j1 = R(0.5) * alpha * poly_j1(z);
     } else {
-        const direction d = direction_of_turn(laconic_turn_of_angle(alpha));
+        const direction d = direction_of_binary_angle(laconic_binary_angle_of(alpha));
         *sinc = d.sine / alpha;
         *half_j1 = R(0.5) * (*sinc - d.cosine) / alpha;
     }
@@ -178,22 +179,22 @@ INLINE void chord_factors(real *sinc, real *half_j1, real alpha) {
 INLINE pose_change displacement(const laconic_model *m, vector path, vector bend) {
     const vector along = vec(m->velocity_of_zeta[0]), across = vec(m->velocity_of_zeta[1]);
     const vector yaw_rate = vec(m->yaw_rate_of_zeta);
-    const real turn = dot(yaw_rate, path), yaw_change = dot(yaw_rate, bend) * (R(1) / R(12));
+    const real yaw_change = dot(yaw_rate, path), yaw_bend = dot(yaw_rate, bend) * (R(1) / R(12));
     const real forth = dot(along, path), left = dot(across, path);
     real sinc, half_j1;
-    chord_factors(&sinc, &half_j1, R(0.5) * turn);
-    const real aside_forth = half_j1 * dot(along, bend) - yaw_change * forth;
-    const real aside_left = half_j1 * dot(across, bend) - yaw_change * left;
-    return (pose_change){sinc * forth - aside_left, sinc * left + aside_forth, turn};
+    chord_factors(&sinc, &half_j1, R(0.5) * yaw_change);
+    const real aside_forth = half_j1 * dot(along, bend) - yaw_bend * forth;
+    const real aside_left = half_j1 * dot(across, bend) - yaw_bend * left;
+    return (pose_change){sinc * forth - aside_left, sinc * left + aside_forth, yaw_change};
 }
 
 INLINE void advance_pose(laconic_state *s, pose_change moved) {
-    const direction middle = direction_of_turn(heading_advance(&s->heading, moved.turn_rad));
+    const direction middle = direction_of_binary_angle(heading_advance(&s->heading, moved.yaw_change_rad));
     sum_add(&s->x_m, middle.cosine * moved.along_m - middle.sine * moved.across_m);
     sum_add(&s->y_m, middle.sine * moved.along_m + middle.cosine * moved.across_m);
 }
 
-INLINE void add(laconic_sum sums[3], vector v) {
+INLINE void add_to_sums(laconic_sum sums[3], vector v) {
     sum_add(&sums[0], v.x);
     sum_add(&sums[1], v.y);
     sum_add(&sums[2], v.z);
@@ -207,7 +208,7 @@ INLINE void add(laconic_sum sums[3], vector v) {
 #define AT_REST R(1e-150)
 #endif
 
-static inline void settle(laconic_sum sums[3]) {
+static inline void flush_decayed(laconic_sum sums[3]) {
     sums[0].value = (sums[0].value + AT_REST) - AT_REST;
     sums[1].value = (sums[1].value + AT_REST) - AT_REST;
     sums[2].value = (sums[2].value + AT_REST) - AT_REST;
@@ -219,12 +220,13 @@ static inline bool in_range(vector zeta, vector delta) {
 }
 
 /* Takes the step, or refuses and leaves the state as it was. */
-INLINE laconic_status take(laconic_state *state, vector delta, vector path, pose_change moved) {
-    if (!(magnitude(moved.turn_rad) + magnitude(moved.along_m) + magnitude(moved.across_m) < LARGEST_TURN_RAD))
+INLINE laconic_status accept_step(laconic_state *state, vector delta, vector path, pose_change moved) {
+    if (!(magnitude(moved.yaw_change_rad) + magnitude(moved.along_m) + magnitude(moved.across_m) <
+          LARGEST_YAW_CHANGE_RAD))
         return LACONIC_OVERFLOW;
-    add(state->zeta, delta);
-    settle(state->zeta);
-    if (LACONIC_WITH_WHEEL_ANGLES) add(state->travel, path);
+    add_to_sums(state->zeta, delta);
+    flush_decayed(state->zeta);
+    if (LACONIC_WITH_WHEEL_ANGLES) add_to_sums(state->travel, path);
     if (LACONIC_WITH_POSE) advance_pose(state, moved);
     return LACONIC_OK;
 }
@@ -235,41 +237,41 @@ INLINE laconic_status advance(laconic_state *state, const laconic_model *model, 
     pose_change moved = {R(0), R(0), R(0)};
     if (!in_range(zeta, by.delta)) return LACONIC_OVERFLOW;
     if (LACONIC_WITH_POSE) moved = displacement(model, path, scaled(step_s, by.slope));
-    return take(state, by.delta, path, moved);
+    return accept_step(state, by.delta, path, moved);
 }
 
 /* For methods that can go wrong: no energy out of nothing, and no increment that is none. */
 INLINE laconic_status advance_if_passive(laconic_state *state, const laconic_model *model, real step_s,
-                                         const laconic_loads *loads, vector zeta, increment by) {
-    if (!passive(model, state, step_s, loads, zeta, by)) return not_passive(by);
+                                         const laconic_forcing_samples *samples, vector zeta, increment by) {
+    if (!passive(model, state, step_s, samples, zeta, by)) return not_passive(by);
     return advance(state, model, step_s, zeta, by);
 }
 
 /* -------------------------------------------- symmetric base steps and their extrapolation -- */
 
 /* b over one base step: start + change·s + curve·s(s − 1), s from 0 to 1. */
-typedef struct drive {
+typedef struct parabola {
     vector start, change, curve;
     bool varies; /* false: change and curve are 0 and not looked at */
-} drive;
+} parabola;
 
 /* A second-order symmetric step of size step_s/2^level from ζ under b. */
 typedef increment (*base_step)(const laconic_model *model, const laconic_integrator *integrator, int level, vector zeta,
-                               const drive *b);
+                               const parabola *b);
 
 /* What a b that varies adds to one that does not. */
-static inline vector response(const real ramp[3], const real bend[3], const drive *b) {
+static inline vector response(const real ramp[3], const real bend[3], const parabola *b) {
     return plus(times(vec(ramp), b->change), times(vec(bend), b->curve));
 }
 
 /* The constant b that leads to the same ζ at the end. */
-INLINE vector constant_like(const drive *b, const laconic_decay *d) {
+INLINE vector equivalent_constant(const parabola *b, const laconic_decay *d) {
     return b->varies ? plus(b->start, response(d->mean, d->bend, b)) : b->start;
 }
 
 /* Mean and first moment of ζ over the step from its increment: exact for damping and drive alone, and
  * symmetric, so that they gain two orders by extrapolation as the increment does. */
-INLINE increment increment_of(const laconic_decay *d, vector zeta, vector delta, const drive *b) {
+INLINE increment increment_of(const laconic_decay *d, vector zeta, vector delta, const parabola *b) {
     increment by;
     by.delta = delta;
     by.mean = plus(zeta, times(vec(d->mean), delta));
@@ -296,19 +298,21 @@ INLINE increment combine(increment whole, increment first, increment second) {
 
 /* ------------------------------------------------------------------------- b held ------- */
 
-static inline drive held(const laconic_loads *loads) { return (drive){vec(loads->start->constant), none, none, false}; }
+static inline parabola held(const laconic_forcing_samples *samples) {
+    return (parabola){vec(samples->start->constant), none, none, false};
+}
 
 /* The base step itself as a method. */
-INLINE increment single(base_step base, const laconic_model *m, const laconic_integrator *integrator, vector zeta,
-                        const laconic_loads *loads) {
-    const drive b = held(loads);
+INLINE increment base_alone(base_step base, const laconic_model *m, const laconic_integrator *integrator, vector zeta,
+                            const laconic_forcing_samples *samples) {
+    const parabola b = held(samples);
     return base(m, integrator, 0, zeta, &b);
 }
 
 /* Written out, so that what the whole step and its first half share is computed once. */
 INLINE increment extrapolated(base_step base, const laconic_model *m, const laconic_integrator *integrator, vector zeta,
-                              const laconic_loads *loads) {
-    const drive b = held(loads);
+                              const laconic_forcing_samples *samples) {
+    const parabola b = held(samples);
     const increment whole = base(m, integrator, 0, zeta, &b), first = base(m, integrator, 1, zeta, &b);
     return combine(whole, first, base(m, integrator, 1, plus(zeta, first.delta), &b));
 }
@@ -319,66 +323,66 @@ INLINE increment extrapolated(base_step base, const laconic_model *m, const laco
 typedef struct substep {
     int level;
     vector zeta;
-    real turned_rad; /* since the step's start, for forces fixed in the world */
-    const laconic_load *start, *end;
+    real yaw_change_rad; /* since the step's start, for forces fixed in the world */
+    const laconic_forcing *start, *end;
 } substep;
 
 /* 2 (b₀ + b₁ − 2 b½): the parabola through three samples; its half bends a quarter as much. Of a force fixed in
  * the world it sees nothing: that one is followed by its heading. */
-INLINE vector curve_of(const laconic_loads *loads, int level) {
-    const vector ends = plus(vec(loads->start->constant), vec(loads->end->constant));
-    return scaled(level == 0 ? R(2) : R(0.5), minus(ends, scaled(R(2), vec(loads->middle->constant))));
+INLINE vector curve_of(const laconic_forcing_samples *samples, int level) {
+    const vector ends = plus(vec(samples->start->constant), vec(samples->end->constant));
+    return scaled(level == 0 ? R(2) : R(0.5), minus(ends, scaled(R(2), vec(samples->middle->constant))));
 }
 
 /* b at the substep's start, and how it goes on as far as the inputs say. */
-INLINE drive drive_of(const laconic_heading *heading, const laconic_loads *loads, const substep *p) {
-    drive b;
+INLINE parabola parabola_of(const laconic_heading *heading, const laconic_forcing_samples *samples, const substep *p) {
+    parabola b;
     b.varies = true;
-    b.start = load_now(p->start, heading, p->turned_rad);
+    b.start = forcing_after_yaw(p->start, heading, p->yaw_change_rad);
     b.change = minus(vec(p->end->constant), b.start);
-    b.curve = curve_of(loads, p->level);
+    b.curve = curve_of(samples, p->level);
     return b;
 }
 
-/* One base step; zeta and turned_rad move on to its end. A force fixed in the world makes b depend on the heading
+/* One base step; zeta and yaw_change_rad move on to its end. A force fixed in the world makes b depend on the heading
  * there, which the step itself decides: iterate. Three rounds leave an error of h⁷, so symmetry, which extrapolation
  * rests on, is kept. */
 INLINE increment take_substep(base_step base, const laconic_model *m, const laconic_integrator *integrator,
-                              const laconic_heading *heading, const laconic_loads *loads, substep *p) {
-    const bool turns = LACONIC_WITH_WORLD_FORCE && (p->start->turns || p->end->turns);
-    const real h = integrator->step_s * (p->level == 0 ? R(1) : R(0.5)), before = p->turned_rad;
-    drive b = drive_of(heading, loads, p);
+                              const laconic_heading *heading, const laconic_forcing_samples *samples, substep *p) {
+    const bool rotates = LACONIC_WITH_WORLD_FORCE && (p->start->rotates || p->end->rotates);
+    const real h = integrator->step_s * (p->level == 0 ? R(1) : R(0.5)), before = p->yaw_change_rad;
+    parabola b = parabola_of(heading, samples, p);
     increment by;
-    int rounds = turns ? 3 : 1;
-    p->turned_rad = before + h * dot(vec(m->yaw_rate_of_zeta), p->zeta);
+    int rounds = rotates ? 3 : 1;
+    p->yaw_change_rad = before + h * dot(vec(m->yaw_rate_of_zeta), p->zeta);
     do {
-        if (turns) b.change = minus(load_now(p->end, heading, p->turned_rad), b.start);
+        if (rotates) b.change = minus(forcing_after_yaw(p->end, heading, p->yaw_change_rad), b.start);
         by = base(m, integrator, p->level, p->zeta, &b);
-        p->turned_rad = before + h * dot(vec(m->yaw_rate_of_zeta), by.mean);
+        p->yaw_change_rad = before + h * dot(vec(m->yaw_rate_of_zeta), by.mean);
     } while (--rounds > 0);
     p->zeta = plus(p->zeta, by.delta);
     return by;
 }
 
 /* The base step itself as a method. */
-INLINE increment single_varying(base_step base, const laconic_model *m, const laconic_integrator *integrator,
-                                const laconic_state *state, const laconic_loads *loads) {
-    substep whole = {0, zeta_of(state), R(0), loads->start, loads->end};
-    return take_substep(base, m, integrator, &state->heading, loads, &whole);
+INLINE increment base_alone_varying(base_step base, const laconic_model *m, const laconic_integrator *integrator,
+                                    const laconic_state *state, const laconic_forcing_samples *samples) {
+    substep whole = {0, zeta_of(state), R(0), samples->start, samples->end};
+    return take_substep(base, m, integrator, &state->heading, samples, &whole);
 }
 
 /* A loop, so that the base is inlined once: the halves follow each other from where the whole began. */
 INLINE increment extrapolated_varying(base_step base, const laconic_model *m, const laconic_integrator *integrator,
-                                      const laconic_state *state, const laconic_loads *loads) {
+                                      const laconic_state *state, const laconic_forcing_samples *samples) {
     increment parts[3];
-    substep p = {0, zeta_of(state), R(0), loads->start, loads->end};
+    substep p = {0, zeta_of(state), R(0), samples->start, samples->end};
     for (int i = 0; i < 3; i++) {
-        parts[i] = take_substep(base, m, integrator, &state->heading, loads, &p);
+        parts[i] = take_substep(base, m, integrator, &state->heading, samples, &p);
         if (i == 0) {
-            p = (substep){1, zeta_of(state), R(0), loads->start, loads->middle};
+            p = (substep){1, zeta_of(state), R(0), samples->start, samples->middle};
         } else {
-            p.start = loads->middle;
-            p.end = loads->end;
+            p.start = samples->middle;
+            p.end = samples->end;
         }
     }
     return combine(parts[0], parts[1], parts[2]);

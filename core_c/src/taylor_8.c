@@ -13,72 +13,72 @@
 #define ORDER 8
 
 /* Coefficients of sⁿ. */
-typedef struct course {
+typedef struct motion_series {
     vector zeta[ORDER + 1];
     real yaw[ORDER + 1]; /* g·ζ */
-} course;
+} motion_series;
 
 static const real inverse[ORDER + 1] = {R(1),       R(1.0 / 2), R(1.0 / 3), R(1.0 / 4), R(1.0 / 5),
                                         R(1.0 / 6), R(1.0 / 7), R(1.0 / 8), R(1.0 / 9)}; /* 1/(n + 1) */
 
 /* g·ζ is Λ times the yaw rate: this times it is what the heading turns in a step. */
-static inline real turn_of_yaw(const laconic_model *m, real h) { return h / m->yaw_scale; }
+static inline real yaw_per_nu3(const laconic_model *m, real h) { return h / m->yaw_scale; }
 
 /* ---- b as a series: parabolas through the samples, and the heading that turns a force fixed in the world -- */
 
-typedef struct forcing {
+typedef struct forcing_series {
     vector constant[3], cosine[3], sine[3];
     real heading_cosine[ORDER], heading_sine[ORDER];
-    bool turns;
-} forcing;
+    bool rotates;
+} forcing_series;
 
-static void parabola(vector term[3], const real start[3], const real middle[3], const real end[3]) {
+static void parabola_terms(vector term[3], const real start[3], const real middle[3], const real end[3]) {
     const vector half = minus(vec(middle), vec(start)), whole = minus(vec(end), vec(start));
     term[0] = vec(start);
     term[1] = minus(scaled(R(4), half), whole);
     term[2] = scaled(R(2), minus(whole, scaled(R(2), half)));
 }
 
-static forcing forcing_of(const laconic_loads *loads, const laconic_heading *heading) {
-    static const laconic_load still = {{R(0), R(0), R(0)}, {R(0), R(0), R(0)}, {R(0), R(0), R(0)}, false};
-    const laconic_load *at[3] = {loads->start, loads->middle, loads->end};
-    forcing f;
-    parabola(f.constant, at[0]->constant, at[1]->constant, at[2]->constant);
-    f.turns = LACONIC_WITH_WORLD_FORCE && (at[0]->turns || at[1]->turns || at[2]->turns);
-    if (!f.turns) return f; /* the rest is not looked at */
+static forcing_series forcing_series_of(const laconic_forcing_samples *samples, const laconic_heading *heading) {
+    static const laconic_forcing still = {{R(0), R(0), R(0)}, {R(0), R(0), R(0)}, {R(0), R(0), R(0)}, false};
+    const laconic_forcing *at[3] = {samples->start, samples->middle, samples->end};
+    forcing_series f;
+    parabola_terms(f.constant, at[0]->constant, at[1]->constant, at[2]->constant);
+    f.rotates = LACONIC_WITH_WORLD_FORCE && (at[0]->rotates || at[1]->rotates || at[2]->rotates);
+    if (!f.rotates) return f; /* the rest is not looked at */
     for (int k = 0; k < 3; k++)
-        if (!at[k]->turns) at[k] = &still;
-    parabola(f.cosine, at[0]->cosine, at[1]->cosine, at[2]->cosine);
-    parabola(f.sine, at[0]->sine, at[1]->sine, at[2]->sine);
-    direction now = laconic_direction_of_turn(heading->fraction);
+        if (!at[k]->rotates) at[k] = &still;
+    parabola_terms(f.cosine, at[0]->cosine, at[1]->cosine, at[2]->cosine);
+    parabola_terms(f.sine, at[0]->sine, at[1]->sine, at[2]->sine);
+    direction now = laconic_direction_of_binary_angle(heading->fraction);
     f.heading_cosine[0] = now.cosine;
     f.heading_sine[0] = now.sine;
     return f;
 }
 
 /* (cos θ)' = −θ' sin θ, (sin θ)' = θ' cos θ, coefficient by coefficient. */
-static void turn_on(forcing *f, const course *c, real turn, int n) {
+static void add_heading_term(forcing_series *f, const motion_series *c, real per_nu3, int n) {
     real cosine = R(0), sine = R(0);
     for (int j = 0; j < n; j++) {
         cosine -= c->yaw[j] * f->heading_sine[n - 1 - j];
         sine += c->yaw[j] * f->heading_cosine[n - 1 - j];
     }
-    f->heading_cosine[n] = turn * inverse[n - 1] * cosine;
-    f->heading_sine[n] = turn * inverse[n - 1] * sine;
+    f->heading_cosine[n] = per_nu3 * inverse[n - 1] * cosine;
+    f->heading_sine[n] = per_nu3 * inverse[n - 1] * sine;
 }
 
 /* b0: what acts before anything has moved. */
-static vector first_forcing(const forcing *f) {
+static vector first_forcing(const forcing_series *f) {
     const vector b = f->constant[0];
-    if (!f->turns) return b;
+    if (!f->rotates) return b;
     return plus(b, plus(scaled(f->heading_cosine[0], f->cosine[0]), scaled(f->heading_sine[0], f->sine[0])));
 }
 
 /* bn for n >= 1, from the coefficients of the motion below n. */
-static vector forcing_term(forcing *f, const course *c, real turn, int n) {
+static vector forcing_term(forcing_series *f, const motion_series *c, real per_nu3, int n) {
     vector b = n < 3 ? f->constant[n] : none;
-    if (!f->turns) return b;
-    turn_on(f, c, turn, n);
+    if (!f->rotates) return b;
+    add_heading_term(f, c, per_nu3, n);
     for (int k = 0; k < 3 && k <= n; k++)
         b = plus(b, plus(scaled(f->heading_cosine[n - k], f->cosine[k]), scaled(f->heading_sine[n - k], f->sine[k])));
     return b;
@@ -92,11 +92,11 @@ typedef struct jacobian {
     vector x, y, z;
 } jacobian;
 
-static inline jacobian jacobian_at(const laconic_model *m, real yaw, vector turned) {
+static inline jacobian jacobian_at(const laconic_model *m, real yaw, vector zeta_cross_w) {
     const vector g = vec(m->nu_of_zeta[2]), s = scaled(yaw, vec(m->gyro)), r = vec(m->decay_per_s);
-    const jacobian at = {{turned.x * g.x - r.x, turned.x * g.y + s.z, turned.x * g.z - s.y},
-                         {turned.y * g.x - s.z, turned.y * g.y - r.y, turned.y * g.z + s.x},
-                         {turned.z * g.x + s.y, turned.z * g.y - s.x, turned.z * g.z - r.z}};
+    const jacobian at = {{zeta_cross_w.x * g.x - r.x, zeta_cross_w.x * g.y + s.z, zeta_cross_w.x * g.z - s.y},
+                         {zeta_cross_w.y * g.x - s.z, zeta_cross_w.y * g.y - r.y, zeta_cross_w.y * g.z + s.x},
+                         {zeta_cross_w.z * g.x + s.y, zeta_cross_w.z * g.y - s.x, zeta_cross_w.z * g.z - r.z}};
     return at;
 }
 
@@ -105,42 +105,45 @@ static inline vector applied(const jacobian *a, vector v) {
     return out;
 }
 
-static inline void keep(course *c, vector turned[ORDER + 1], const laconic_model *m, int n, vector zeta) {
+static inline void keep_term(motion_series *c, vector zeta_cross_w[ORDER + 1], const laconic_model *m, int n,
+                             vector zeta) {
     c->zeta[n] = zeta;
     c->yaw[n] = dot(vec(m->nu_of_zeta[2]), zeta);
-    turned[n] = cross(zeta, vec(m->gyro));
+    zeta_cross_w[n] = cross(zeta, vec(m->gyro));
 }
 
 /* ζ0 and ζ1. */
-INLINE vector first_term(course *c, vector turned[ORDER + 1], const laconic_model *m, real h, vector zeta, vector b) {
-    keep(c, turned, m, 0, zeta);
-    return scaled(h, plus(minus(scaled(c->yaw[0], turned[0]), damping(m, zeta)), b));
+INLINE vector first_term(motion_series *c, vector zeta_cross_w[ORDER + 1], const laconic_model *m, real h, vector zeta,
+                         vector b) {
+    keep_term(c, zeta_cross_w, m, 0, zeta);
+    return scaled(h, plus(minus(scaled(c->yaw[0], zeta_cross_w[0]), damping(m, zeta)), b));
 }
 
 /* Keeps ζn, returns ζn+1. Only the last two operations wait for ζn. */
-INLINE vector next_term(course *c, vector turned[ORDER + 1], const laconic_model *m, const jacobian *at, real h, int n,
-                        vector zeta, vector b) {
+INLINE vector next_term(motion_series *c, vector zeta_cross_w[ORDER + 1], const laconic_model *m, const jacobian *at,
+                        real h, int n, vector zeta, vector b) {
     vector older = b;
-    for (int j = 1; j < n; j++) older = plus(older, scaled(c->yaw[j], turned[n - j]));
-    keep(c, turned, m, n, zeta);
+    for (int j = 1; j < n; j++) older = plus(older, scaled(c->yaw[j], zeta_cross_w[n - j]));
+    keep_term(c, zeta_cross_w, m, n, zeta);
     return scaled(h * inverse[n], plus(older, applied(at, zeta)));
 }
 
-INLINE void steady_course(course *c, const laconic_model *m, real h, vector start, vector b) {
-    vector turned[ORDER + 1], zeta = first_term(c, turned, m, h, start, b);
-    const jacobian at = jacobian_at(m, c->yaw[0], turned[0]);
-    for (int n = 1; n < ORDER; n++) zeta = next_term(c, turned, m, &at, h, n, zeta, none);
-    keep(c, turned, m, ORDER, zeta);
+INLINE void steady_series(motion_series *c, const laconic_model *m, real h, vector start, vector b) {
+    vector zeta_cross_w[ORDER + 1], zeta = first_term(c, zeta_cross_w, m, h, start, b);
+    const jacobian at = jacobian_at(m, c->yaw[0], zeta_cross_w[0]);
+    for (int n = 1; n < ORDER; n++) zeta = next_term(c, zeta_cross_w, m, &at, h, n, zeta, none);
+    keep_term(c, zeta_cross_w, m, ORDER, zeta);
 }
 
-RARE void varying_course(course *c, const laconic_model *m, real h, vector start, const laconic_loads *loads,
-                         const laconic_heading *heading) {
-    const real turn = turn_of_yaw(m, h);
-    forcing f = forcing_of(loads, heading);
-    vector turned[ORDER + 1], zeta = first_term(c, turned, m, h, start, first_forcing(&f));
-    const jacobian at = jacobian_at(m, c->yaw[0], turned[0]);
-    for (int n = 1; n < ORDER; n++) zeta = next_term(c, turned, m, &at, h, n, zeta, forcing_term(&f, c, turn, n));
-    keep(c, turned, m, ORDER, zeta);
+RARE void varying_series(motion_series *c, const laconic_model *m, real h, vector start,
+                         const laconic_forcing_samples *samples, const laconic_heading *heading) {
+    const real per_nu3 = yaw_per_nu3(m, h);
+    forcing_series f = forcing_series_of(samples, heading);
+    vector zeta_cross_w[ORDER + 1], zeta = first_term(c, zeta_cross_w, m, h, start, first_forcing(&f));
+    const jacobian at = jacobian_at(m, c->yaw[0], zeta_cross_w[0]);
+    for (int n = 1; n < ORDER; n++)
+        zeta = next_term(c, zeta_cross_w, m, &at, h, n, zeta, forcing_term(&f, c, per_nu3, n));
+    keep_term(c, zeta_cross_w, m, ORDER, zeta);
 }
 
 /* ------------------------------------------------ the pose: a quadrature of the same order -- */
@@ -153,18 +156,18 @@ static const real weight[NODES] = {R(0.17392742256872692869), R(0.32607257743127
                                    R(0.17392742256872692869)};
 
 /* The polynomials: the components of ζ, and ∫ g·ζ ds, divided by s. */
-typedef real (*polynomial)(const course *c, int n);
+typedef real (*polynomial)(const motion_series *c, int n);
 
-static inline real zeta_x(const course *c, int n) { return c->zeta[n].x; }
+static inline real zeta_x(const motion_series *c, int n) { return c->zeta[n].x; }
 
-static inline real zeta_y(const course *c, int n) { return c->zeta[n].y; }
+static inline real zeta_y(const motion_series *c, int n) { return c->zeta[n].y; }
 
-static inline real zeta_z(const course *c, int n) { return c->zeta[n].z; }
+static inline real zeta_z(const motion_series *c, int n) { return c->zeta[n].z; }
 
-static inline real mean_yaw(const course *c, int n) { return inverse[n] * c->yaw[n]; }
+static inline real mean_yaw(const motion_series *c, int n) { return inverse[n] * c->yaw[n]; }
 
 /* A polynomial at all nodes at once: compilers take them two or four at a time. */
-INLINE void at_nodes(real value[NODES], const course *c, polynomial coefficient) {
+INLINE void at_nodes(real value[NODES], const motion_series *c, polynomial coefficient) {
     for (int k = 0; k < NODES; k++) value[k] = coefficient(c, ORDER);
     for (int n = ORDER - 1; n >= 0; n--)
         for (int k = 0; k < NODES; k++) value[k] = node[k] * value[k] + coefficient(c, n);
@@ -179,7 +182,7 @@ static inline void directions_at_nodes(real cosine[NODES], real sine[NODES], con
         for (int k = 0; k < NODES; k++) sine[k] = poly_sin(angle[k], angle[k] * angle[k]);
     } else {
         for (int k = 0; k < NODES; k++) {
-            const direction d = laconic_direction_of_turn(laconic_turn_of_angle(angle[k]));
+            const direction d = laconic_direction_of_binary_angle(laconic_binary_angle_of(angle[k]));
             cosine[k] = d.cosine;
             sine[k] = d.sine;
         }
@@ -187,16 +190,16 @@ static inline void directions_at_nodes(real cosine[NODES], real sine[NODES], con
 }
 
 /* In axes at the mid-step heading: ∫ e^{i(θ − θ_mid)} v dt. */
-static inline pose_change quadrature(const course *c, const laconic_model *m, real h, real turn) {
+static inline pose_change quadrature(const motion_series *c, const laconic_model *m, real h, real yaw_change) {
     const vector forth = vec(m->velocity_of_zeta[0]), left = vec(m->velocity_of_zeta[1]);
-    pose_change moved = {R(0), R(0), turn};
-    const real per_yaw = turn_of_yaw(m, h);
+    pose_change moved = {R(0), R(0), yaw_change};
+    const real per_nu3 = yaw_per_nu3(m, h);
     real x[NODES], y[NODES], z[NODES], angle[NODES], cosine[NODES], sine[NODES], along[NODES], across[NODES];
     at_nodes(x, c, zeta_x);
     at_nodes(y, c, zeta_y);
     at_nodes(z, c, zeta_z);
     at_nodes(angle, c, mean_yaw);
-    for (int k = 0; k < NODES; k++) angle[k] = per_yaw * node[k] * angle[k] - R(0.5) * turn;
+    for (int k = 0; k < NODES; k++) angle[k] = per_nu3 * node[k] * angle[k] - R(0.5) * yaw_change;
     directions_at_nodes(cosine, sine, angle);
     for (int k = 0; k < NODES; k++) along[k] = h * weight[k] * (forth.x * x[k] + forth.y * y[k] + forth.z * z[k]);
     for (int k = 0; k < NODES; k++) across[k] = h * weight[k] * (left.x * x[k] + left.y * y[k] + left.z * z[k]);
@@ -208,7 +211,7 @@ static inline pose_change quadrature(const course *c, const laconic_model *m, re
 /* -------------------------------------------------------------------------------- the step -- */
 
 /* Smallest terms first. */
-static inline increment sum_of_terms(const course *c) {
+static inline increment sum_of_terms(const motion_series *c) {
     increment by = {none, none, none};
     for (int n = ORDER; n > 0; n--) {
         by.delta = plus(by.delta, c->zeta[n]);
@@ -220,23 +223,23 @@ static inline increment sum_of_terms(const course *c) {
 }
 
 static laconic_status taylor_8_step(const laconic_model *model, const laconic_integrator *integrator,
-                                    laconic_state *state, const laconic_loads *loads) {
+                                    laconic_state *state, const laconic_forcing_samples *samples) {
     const real h = integrator->step_s;
     const vector zeta = zeta_of(state);
     pose_change moved = {R(0), R(0), R(0)};
     increment by;
-    course c;
+    motion_series c;
     if (beyond_rotation(model, integrator, zeta)) return LACONIC_STEP_BEYOND_GYROSCOPIC_LIMIT;
-    if (steady_over(loads))
-        steady_course(&c, model, h, zeta, vec(loads->start->constant));
+    if (steady_over(samples))
+        steady_series(&c, model, h, zeta, vec(samples->start->constant));
     else
-        varying_course(&c, model, h, zeta, loads, &state->heading);
+        varying_series(&c, model, h, zeta, samples, &state->heading);
     by = sum_of_terms(&c);
-    if (!passive(model, state, h, loads, zeta, by)) return not_passive(by);
+    if (!passive(model, state, h, samples, zeta, by)) return not_passive(by);
     if (!in_range(zeta, by.delta)) return LACONIC_OVERFLOW;
     const vector path = scaled(h, by.mean);
     if (LACONIC_WITH_POSE) moved = quadrature(&c, model, h, dot(vec(model->yaw_rate_of_zeta), path));
-    return take(state, by.delta, path, moved);
+    return accept_step(state, by.delta, path, moved);
 }
 
 static laconic_status taylor_8_prepare(laconic_integrator *integrator, const laconic_model *model,

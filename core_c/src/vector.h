@@ -15,7 +15,7 @@ static inline vector vec(const real v[3]) {
     return out;
 }
 
-static inline void put(real out[3], vector v) {
+static inline void store(real out[3], vector v) {
     out[0] = v.x;
     out[1] = v.y;
     out[2] = v.z;

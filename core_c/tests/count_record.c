@@ -50,6 +50,6 @@ int main(int argc, char **argv) {
     if (watch > 1) recorder.grip = &grip;
     if (laconic_plant_follow(&plant, &schedule, steps, &recorder, NULL) != LACONIC_OK) return 1;
     printf("%llu steps, %llu rows, %llu looks\n", (unsigned long long)plant.steps,
-           (unsigned long long)recorder.row_count, (unsigned long long)grip.looks);
+           (unsigned long long)recorder.row_count, (unsigned long long)grip.instants);
     return plant.steps != steps;
 }

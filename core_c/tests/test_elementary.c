@@ -54,10 +54,10 @@ static void very_large_angles_are_as_good_as_the_angle_itself(void) {
 }
 
 static void a_quarter_turn_is_exact(void) {
-    const laconic_turn quarter = (laconic_turn)1 << (sizeof(laconic_turn) * 8 - 2);
+    const laconic_binary_angle quarter = (laconic_binary_angle)1 << (sizeof(laconic_binary_angle) * 8 - 2);
     const double expected[4][2] = {{1, 0}, {0, 1}, {-1, 0}, {0, -1}};
     for (unsigned k = 0; k < 4; k++) {
-        const direction d = laconic_direction_of_turn((laconic_turn)(k * quarter));
+        const direction d = laconic_direction_of_binary_angle((laconic_binary_angle)(k * quarter));
         TEST_ASSERT_EQUAL_DOUBLE(expected[k][0], (double)d.cosine);
         TEST_ASSERT_EQUAL_DOUBLE(expected[k][1], (double)d.sine);
     }
@@ -65,16 +65,16 @@ static void a_quarter_turn_is_exact(void) {
 
 static void turns_and_angles_agree(void) {
     for (double angle = -20; angle < 20; angle += 0.0173) {
-        const direction d = laconic_direction_of_turn(laconic_turn_of_angle(REAL(angle)));
+        const direction d = laconic_direction_of_binary_angle(laconic_binary_angle_of(REAL(angle)));
         ASSERT_NEAR(EITHER(4e-15, 3e-6), cos((double)REAL(angle)), d.cosine);
         ASSERT_NEAR(EITHER(4e-15, 3e-6), sin((double)REAL(angle)), d.sine);
     }
 }
 
 static void an_angle_without_a_direction_counts_as_zero(void) {
-    TEST_ASSERT_TRUE(laconic_turn_of_angle(NOT_A_NUMBER) == 0);
-    TEST_ASSERT_TRUE(laconic_turn_of_angle(INFINITE) == 0);
-    TEST_ASSERT_TRUE(laconic_turn_of_angle(REAL(1e30)) == 0);
+    TEST_ASSERT_TRUE(laconic_binary_angle_of(NOT_A_NUMBER) == 0);
+    TEST_ASSERT_TRUE(laconic_binary_angle_of(INFINITE) == 0);
+    TEST_ASSERT_TRUE(laconic_binary_angle_of(REAL(1e30)) == 0);
     TEST_ASSERT_EQUAL_DOUBLE(1.0, (double)laconic_direction_of_angle(NOT_A_NUMBER).cosine);
 }
 

@@ -110,9 +110,9 @@ static void more_turns_in_a_step_than_can_be_counted_are_refused(void) {
 static void a_large_turn_is_cleared_of_what_changes_its_length(void) {
     const vector zeta = {REAL(3), REAL(4), REAL(0)};
     const vector off = {REAL(-6), REAL(0.001), REAL(0)}; /* −3, 4.001: longer than 5 */
-    const vector turned = plus(zeta, cleared_turn(zeta, off));
+    const vector turned = plus(zeta, length_kept(zeta, off));
     ASSERT_NEAR(1e-6, 5.0, sqrt((double)square(turned)));
-    TEST_ASSERT_TRUE(cleared_turn(none, none).x == 0);
+    TEST_ASSERT_TRUE(length_kept(none, none).x == 0);
 }
 
 static void an_angle_beyond_every_number_is_none(void) {

@@ -96,7 +96,7 @@ static void assert_contact_finite(const laconic_vehicle *v) {
     laconic_contact c;
     if (laconic_contact_prepare(&c, v, NULL) != LACONIC_OK) return;
     assert_finite(&c.multiplier[0][0], 3 * (size_t)c.constraint_count);
-    assert_finite(&c.load_of_wrench[0][0], 3 * (size_t)c.point_count);
+    assert_finite(&c.normal_load_of_wrench[0][0], 3 * (size_t)c.point_count);
     assert_finite(&c.point_m[0][0], 2 * (size_t)c.point_count);
     assert_finite(c.inverse_arm_per_m, (size_t)v->wheel_count);
     assert_finite(&c.wheel_rows[0][0], 3 * (size_t)v->wheel_count);

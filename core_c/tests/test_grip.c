@@ -43,7 +43,7 @@ static void a_gentle_run_leaves_nothing_but_the_count(void) {
     scene s = scene_of(with_motors(mecanum()), 0.8, 0.05);
     look_at(&s, forward(0.1), 0);
     look_at(&s, forward(0.2), 1);
-    TEST_ASSERT_EQUAL_UINT64(2, s.grip.looks);
+    TEST_ASSERT_EQUAL_UINT64(2, s.grip.instants);
     TEST_ASSERT_EQUAL_UINT64(0, s.grip.slipping);
     TEST_ASSERT_EQUAL_UINT64(0, s.grip.lifting);
     TEST_ASSERT_EQUAL_INT(0, s.grip.first_slip.point);

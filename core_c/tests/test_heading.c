@@ -21,7 +21,7 @@ static void the_wrapped_heading_lies_in_minus_pi_to_pi(void) {
 }
 
 static void half_a_turn_is_pi_and_never_minus_pi(void) {
-    laconic_heading heading = {0, (laconic_turn)1 << (sizeof(laconic_turn) * 8 - 1), 0};
+    laconic_heading heading = {0, (laconic_binary_angle)1 << (sizeof(laconic_binary_angle) * 8 - 1), 0};
     ASSERT_NEAR(ROUNDING, PI, heading_wrapped(&heading));
     ASSERT_NEAR(ROUNDING, PI, heading_unwrapped(&heading));
     heading.turns = -1;
@@ -49,10 +49,10 @@ static void many_turns_in_one_step_are_counted(void) {
 
 static void the_heading_half_way_is_returned(void) {
     laconic_heading heading = {0, 0, 0};
-    direction d = laconic_direction_of_turn(heading_advance(&heading, REAL(1.0)));
+    direction d = laconic_direction_of_binary_angle(heading_advance(&heading, REAL(1.0)));
     ASSERT_NEAR(ROUNDING, cos(0.5), d.cosine);
     ASSERT_NEAR(ROUNDING, sin(0.5), d.sine);
-    d = laconic_direction_of_turn(heading_advance(&heading, REAL(WHOLE_TURN + 1.0)));
+    d = laconic_direction_of_binary_angle(heading_advance(&heading, REAL(WHOLE_TURN + 1.0)));
     ASSERT_NEAR(EITHER(1e-14, 5e-6), cos(1.5 + PI), d.cosine);
     ASSERT_NEAR(EITHER(1e-14, 5e-6), sin(1.5 + PI), d.sine);
 }

@@ -141,7 +141,7 @@ static void pieces_of_any_length_are_the_whole(laconic_schedule schedule) {
                       laconic_plant_follow(&pieces, &schedule, until < STEPS ? until : STEPS, &many.recorder, NULL));
     TEST_ASSERT_EQUAL_MEMORY(&whole.state, &pieces.state, sizeof whole.state);
     TEST_ASSERT_EQUAL_MEMORY(one.row, many.row, sizeof one.row);
-    TEST_ASSERT_EQUAL_UINT64(STEPS, many.grip.looks);
+    TEST_ASSERT_EQUAL_UINT64(STEPS, many.grip.instants);
     TEST_ASSERT_EQUAL_UINT64(one.grip.slipping, many.grip.slipping);
     TEST_ASSERT_TRUE(one.grip.slipping > 0);
 }

@@ -146,7 +146,7 @@ static void what_the_constraints_forbid_is_projected_away_and_the_rest_stays(voi
     laconic_real nu[3];
     motion.x_m = REAL(4);
     motion.heading_rad = REAL(1);
-    ASSERT_STATUS(LACONIC_OK, laconic_state_place(&state, &m, &motion, &why));
+    ASSERT_STATUS(LACONIC_OK, laconic_state_project(&state, &m, &motion, &why));
     laconic_nu(&m, &state, nu);
     laconic_pose_of(&pose, &m, &state);
     ASSERT_NEAR(ROUNDING, 0.5, nu[0]);
@@ -162,7 +162,7 @@ static void allowed_motions_are_set_as_they_are(void) {
     laconic_state placed;
     const laconic_state set = state_of(&m, motion);
     memset(&placed, 0, sizeof placed);
-    ASSERT_STATUS(LACONIC_OK, laconic_state_place(&placed, &m, &motion, NULL));
+    ASSERT_STATUS(LACONIC_OK, laconic_state_project(&placed, &m, &motion, NULL));
     TEST_ASSERT_EQUAL_MEMORY(&set.zeta, &placed.zeta, sizeof set.zeta);
 }
 
@@ -171,7 +171,7 @@ static void refuses_placed(laconic_start motion, laconic_status status, laconic_
     laconic_state state, before;
     memset(&state, 3, sizeof state);
     before = state;
-    ASSERT_REFUSED(status, field, item, laconic_state_place(&state, &m, &motion, &why), why);
+    ASSERT_REFUSED(status, field, item, laconic_state_project(&state, &m, &motion, &why), why);
     TEST_ASSERT_EQUAL_MEMORY(&before, &state, sizeof state);
 }
 

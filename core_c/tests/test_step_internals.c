@@ -6,7 +6,7 @@
 /* --------------------------------------------------------------------------------- what acts -- */
 
 /* b = Gᵀ(Ξᵀ(c1 U + T) + w)/(M R²), written out with the matrices for people. */
-static void expected_load(double b[3], const laconic_vehicle *v, const laconic_input *in, double heading) {
+static void expected_forcing(double b[3], const laconic_vehicle *v, const laconic_input *in, double heading) {
     const laconic_model m = model_of(*v);
     laconic_matrices x;
     double right[3];
@@ -27,34 +27,34 @@ static void expected_load(double b[3], const laconic_vehicle *v, const laconic_i
     }
 }
 
-static void everything_that_acts_is_in_the_load(void) {
+static void everything_that_acts_is_in_the_forcing(void) {
     const laconic_vehicle v = with_motors(three_wheels());
     const laconic_model m = model_of(v);
     const laconic_input input = every_input();
-    laconic_load load;
-    laconic_load_of(&load, &m, &input);
-    TEST_ASSERT_TRUE(load.turns);
+    laconic_forcing forcing;
+    laconic_forcing_of(&forcing, &m, &input);
+    TEST_ASSERT_TRUE(forcing.rotates);
     for (double heading = -3; heading < 3; heading += 0.8) {
         double expected[3];
-        expected_load(expected, &v, &input, heading);
+        expected_forcing(expected, &v, &input, heading);
         for (int k = 0; k < 3; k++)
             ASSERT_NEAR(EITHER(1e-13, 5e-5), expected[k],
-                        (double)load.constant[k] + cos(heading) * (double)load.cosine[k] +
-                            sin(heading) * (double)load.sine[k]);
+                        (double)forcing.constant[k] + cos(heading) * (double)forcing.cosine[k] +
+                            sin(heading) * (double)forcing.sine[k]);
     }
 }
 
-static void without_a_world_force_the_load_does_not_turn(void) {
+static void without_a_world_force_the_forcing_does_not_rotate(void) {
     const laconic_vehicle v = with_motors(three_wheels());
     const laconic_model m = model_of(v);
     laconic_input input = every_input();
-    laconic_load load;
+    laconic_forcing forcing;
     double expected[3];
     input.world_force_N[0] = input.world_force_N[1] = 0;
-    laconic_load_of(&load, &m, &input);
-    TEST_ASSERT_FALSE(load.turns);
-    expected_load(expected, &v, &input, 0);
-    ASSERT_NEAR_ALL(EITHER(1e-13, 5e-5), expected, load.constant, 3);
+    laconic_forcing_of(&forcing, &m, &input);
+    TEST_ASSERT_FALSE(forcing.rotates);
+    expected_forcing(expected, &v, &input, 0);
+    ASSERT_NEAR_ALL(EITHER(1e-13, 5e-5), expected, forcing.constant, 3);
 }
 
 static void every_part_of_a_wrench_counts_alone(void) {
@@ -62,40 +62,40 @@ static void every_part_of_a_wrench_counts_alone(void) {
     const laconic_model m = model_of(v);
     for (int part = 0; part < 3; part++) {
         laconic_input input = no_input();
-        laconic_load load;
+        laconic_forcing forcing;
         double expected[3];
         if (part < 2)
             input.body_force_N[part] = REAL(2);
         else
             input.body_moment_Nm = REAL(0.3);
-        laconic_load_of(&load, &m, &input);
-        expected_load(expected, &v, &input, 0);
-        ASSERT_NEAR_ALL(EITHER(1e-13, 5e-5), expected, load.constant, 3);
+        laconic_forcing_of(&forcing, &m, &input);
+        expected_forcing(expected, &v, &input, 0);
+        ASSERT_NEAR_ALL(EITHER(1e-13, 5e-5), expected, forcing.constant, 3);
     }
 }
 
-static void either_component_of_a_world_force_turns_and_so_does_nan(void) {
+static void either_component_of_a_world_force_rotates_the_forcing_and_so_does_nan(void) {
     const laconic_model m = model_of(three_wheels());
     laconic_input input = no_input();
-    laconic_load load;
+    laconic_forcing forcing;
     input.world_force_N[1] = REAL(1);
-    laconic_load_of(&load, &m, &input);
-    TEST_ASSERT_TRUE(load.turns);
+    laconic_forcing_of(&forcing, &m, &input);
+    TEST_ASSERT_TRUE(forcing.rotates);
     input = no_input();
     input.world_force_N[0] = NOT_A_NUMBER;
-    laconic_load_of(&load, &m, &input);
-    TEST_ASSERT_TRUE(load.turns);
+    laconic_forcing_of(&forcing, &m, &input);
+    TEST_ASSERT_TRUE(forcing.rotates);
 }
 
 /* -------------------------------------------------- a force fixed in the world, at a heading -- */
 
 /* b = constant + cos θ · cosine + sin θ · sine, at the heading of a state and an angle further on. */
-static void a_force_fixed_in_the_world_turns_against_the_body(void) {
+static void a_force_fixed_in_the_world_rotates_against_the_body(void) {
     const laconic_model m = model_of(three_wheels());
     const laconic_input input = every_input();
     const double headings[] = {-2.5, -0.3, 0.0, 0.9, 3.0}, offsets[] = {-0.7, 0.0, 1.3};
-    laconic_load load;
-    laconic_load_of(&load, &m, &input);
+    laconic_forcing forcing;
+    laconic_forcing_of(&forcing, &m, &input);
     for (size_t i = 0; i < 5; i++)
         for (size_t j = 0; j < 3; j++) {
             laconic_start start = start_with(0, 0, 0);
@@ -103,14 +103,14 @@ static void a_force_fixed_in_the_world_turns_against_the_body(void) {
             laconic_state state;
             start.heading_rad = REAL(headings[i]);
             state = state_of(&m, start);
-            vector b = laconic_turned_load(&load, &state.heading, REAL(offsets[j]));
+            vector b = laconic_forcing_after_yaw(&forcing, &state.heading, REAL(offsets[j]));
             ASSERT_NEAR(EITHER(1e-13, 5e-5),
-                        (double)load.constant[0] + cos(angle) * (double)load.cosine[0] +
-                            sin(angle) * (double)load.sine[0],
+                        (double)forcing.constant[0] + cos(angle) * (double)forcing.cosine[0] +
+                            sin(angle) * (double)forcing.sine[0],
                         b.x);
             ASSERT_NEAR(EITHER(1e-13, 5e-5),
-                        (double)load.constant[2] + cos(angle) * (double)load.cosine[2] +
-                            sin(angle) * (double)load.sine[2],
+                        (double)forcing.constant[2] + cos(angle) * (double)forcing.cosine[2] +
+                            sin(angle) * (double)forcing.sine[2],
                         b.z);
         }
 }
@@ -121,16 +121,16 @@ static void a_force_fixed_in_the_world_turns_against_the_body(void) {
 static bool growth_is_driven_by(real start, real middle, real end, real grown) {
     const laconic_model m = model_of(bare_body());
     const increment by = {{grown, 0, 0}, {REAL(1) + grown / 2, 0, 0}, {grown, 0, 0}};
-    laconic_load load[3];
-    const laconic_loads loads = {&load[0], &load[1], &load[2], false};
+    laconic_forcing forcing[3];
+    const laconic_forcing_samples samples = {&forcing[0], &forcing[1], &forcing[2], false};
     laconic_state state;
-    memset(load, 0, sizeof load);
+    memset(forcing, 0, sizeof forcing);
     memset(&state, 0, sizeof state);
     state.zeta[0].value = REAL(1);
-    load[0].constant[0] = start;
-    load[1].constant[0] = middle;
-    load[2].constant[0] = end;
-    return passive(&m, &state, REAL(0.1), &loads, (vector){REAL(1), 0, 0}, by);
+    forcing[0].constant[0] = start;
+    forcing[1].constant[0] = middle;
+    forcing[2].constant[0] = end;
+    return passive(&m, &state, REAL(0.1), &samples, (vector){REAL(1), 0, 0}, by);
 }
 
 static void growth_that_the_drive_pays_for_is_allowed(void) {
@@ -156,11 +156,11 @@ static void nan_is_not_passive(void) {
 
 int main(void) {
     UNITY_BEGIN();
-    RUN_TEST(everything_that_acts_is_in_the_load);
-    RUN_TEST(without_a_world_force_the_load_does_not_turn);
+    RUN_TEST(everything_that_acts_is_in_the_forcing);
+    RUN_TEST(without_a_world_force_the_forcing_does_not_rotate);
     RUN_TEST(every_part_of_a_wrench_counts_alone);
-    RUN_TEST(either_component_of_a_world_force_turns_and_so_does_nan);
-    RUN_TEST(a_force_fixed_in_the_world_turns_against_the_body);
+    RUN_TEST(either_component_of_a_world_force_rotates_the_forcing_and_so_does_nan);
+    RUN_TEST(a_force_fixed_in_the_world_rotates_against_the_body);
     RUN_TEST(growth_that_the_drive_pays_for_is_allowed);
     RUN_TEST(growth_out_of_nothing_is_not);
     RUN_TEST(a_loss_is_always_allowed);

@@ -102,7 +102,7 @@ static numbers rate_changes(const laconic_model *m, const point *p, const laconi
 
 static laconic_state placed(const laconic_model *m, const point *p) {
     laconic_state state;
-    ASSERT_STATUS(LACONIC_OK, laconic_state_place(&state, m, &p->motion, NULL));
+    ASSERT_STATUS(LACONIC_OK, laconic_state_project(&state, m, &p->motion, NULL));
     return state;
 }
 

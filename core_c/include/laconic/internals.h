@@ -25,10 +25,10 @@ typedef struct laconic_decay {
 } laconic_decay;
 
 /* What acts at the start, middle and end of a step. Held inputs: three times the same pointer. */
-typedef struct laconic_loads {
-    const struct laconic_load *start, *middle, *end;
+typedef struct laconic_forcing_samples {
+    const struct laconic_forcing *start, *middle, *end;
     bool steady; /* nothing varies over the step: `start` says it all                             */
-} laconic_loads;
+} laconic_forcing_samples;
 
 /* What laconic_auto has chosen (laconic_integrator.chosen); they cannot be prepared by themselves. */
 extern const struct laconic_method laconic_auto_slow; /* exact-flow-4 or taylor-8, else exact-flow */

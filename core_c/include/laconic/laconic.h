@@ -180,13 +180,13 @@ laconic_status laconic_matrices_of(laconic_matrices *matrices, const laconic_veh
 laconic_status laconic_input_check(const laconic_model *model, const laconic_input *input, laconic_refusal *why);
 
 /* The input in ζ coordinates: b = constant + cos θ · cosine + sin θ · sine. */
-typedef struct laconic_load {
+typedef struct laconic_forcing {
     laconic_real constant[3];
-    laconic_real cosine[3], sine[3]; /* only where turns                                          */
-    bool turns;                      /* a force fixed in the world acts                           */
-} laconic_load;
+    laconic_real cosine[3], sine[3]; /* only where rotates                                         */
+    bool rotates;                    /* a force fixed in the world acts                           */
+} laconic_forcing;
 
-void laconic_load_of(laconic_load *load, const laconic_model *model, const laconic_input *input);
+void laconic_forcing_of(laconic_forcing *forcing, const laconic_model *model, const laconic_input *input);
 
 /* ---------------------------------------------------------------------------------- state -- */
 
@@ -198,7 +198,7 @@ typedef struct laconic_sum {
 /* θ = 2π (turns + (fraction + 2 rest)·2⁻⁶⁴), 2⁻³² in single: never loses resolution, wraps exactly. */
 typedef struct laconic_heading {
     int64_t turns;
-    laconic_turn fraction;
+    laconic_binary_angle fraction;
     laconic_real rest; /* in units of 2⁻⁶³ turn, 2⁻³¹ in single */
 } laconic_heading;
 
@@ -219,8 +219,8 @@ laconic_status laconic_state_set(laconic_state *state, const laconic_model *mode
 
 /* The same for the numbers of an outer integrator (Model Exchange): a ν that has drifted off the constraints is
  * projected onto the allowed motions instead of refused. Wheel angles become 0. */
-laconic_status laconic_state_place(laconic_state *state, const laconic_model *model, const laconic_start *motion,
-                                   laconic_refusal *why);
+laconic_status laconic_state_project(laconic_state *state, const laconic_model *model, const laconic_start *motion,
+                                     laconic_refusal *why);
 
 /* χ of the model's N wheels [rad]: what they were set to and wheel_of_zeta · travel. They start at 0. */
 void laconic_wheel_angles(const laconic_model *model, const laconic_state *state, laconic_real *angle_rad);
@@ -248,7 +248,7 @@ typedef struct laconic_method {
     int32_t order;
     laconic_status (*prepare)(laconic_integrator *integrator, const laconic_model *model, laconic_refusal *why);
     laconic_status (*step)(const laconic_model *model, const laconic_integrator *integrator, laconic_state *state,
-                           const struct laconic_loads *loads);
+                           const struct laconic_forcing_samples *samples);
 } laconic_method;
 
 /*                                            order  takes                  conserves, free motion  */
@@ -366,8 +366,8 @@ typedef struct laconic_contact {
     laconic_real axle[LACONIC_MAX_WHEELS][2];           /* unit vector of the axle, body axes                */
     laconic_real inertia[3][3];                         /* A                                                 */
     int32_t point_count;                                /* wheels, then supports                             */
-    laconic_real point_m[LACONIC_MAX_WHEELS + LACONIC_MAX_SUPPORTS][2];        /* from S, body axes       */
-    laconic_real load_of_wrench[LACONIC_MAX_WHEELS + LACONIC_MAX_SUPPORTS][3]; /* least-norm statics */
+    laconic_real point_m[LACONIC_MAX_WHEELS + LACONIC_MAX_SUPPORTS][2];               /* from S, body axes       */
+    laconic_real normal_load_of_wrench[LACONIC_MAX_WHEELS + LACONIC_MAX_SUPPORTS][3]; /* least-norm statics */
     laconic_real com_z_m, friction_coefficient;
 } laconic_contact;
 
@@ -475,7 +475,7 @@ typedef struct laconic_grip_event {
 
 /* Whether the no-slip model was true. Start from all zero. */
 typedef struct laconic_grip {
-    uint64_t looks, slipping, lifting;         /* instants looked at; those with a slip, with a lifted point */
+    uint64_t instants, slipping, lifting;      /* instants looked at; those with a slip, with a lifted point */
     laconic_grip_event first_slip, worst_slip; /* worst: least margin                              */
     laconic_grip_event first_lift, worst_lift; /* worst: least normal load                         */
 } laconic_grip;

@@ -29,7 +29,7 @@
 
 #ifdef LACONIC_SINGLE
 typedef float laconic_real;
-typedef uint32_t laconic_turn; /* angle in units of 2^-32 turn */
+typedef uint32_t laconic_binary_angle; /* angle in units of 2^-32 turn */
 #define LACONIC_REAL_NAME "single"
 #define LACONIC_EPSILON FLT_EPSILON
 #define LACONIC_REAL_MAX FLT_MAX
@@ -38,7 +38,7 @@ typedef uint32_t laconic_turn; /* angle in units of 2^-32 turn */
 #define LACONIC_SMALLEST_ROLLER_SINE 1e-3F /* |sin γ| below it is refused */
 #else
 typedef double laconic_real;
-typedef uint64_t laconic_turn; /* angle in units of 2^-64 turn */
+typedef uint64_t laconic_binary_angle; /* angle in units of 2^-64 turn */
 #define LACONIC_REAL_NAME "double"
 #define LACONIC_EPSILON DBL_EPSILON
 #define LACONIC_REAL_MAX DBL_MAX

@@ -5,16 +5,16 @@
 #include "stiff.h"
 
 static inline double kahan_determinant(const laconic_model *m, const laconic_state *state, double half_step) {
-    double g[3], w[3], z[3], turned[3], a[3][3], yaw = 0;
+    double g[3], w[3], z[3], zeta_cross_w[3], a[3][3], yaw = 0;
     for (int r = 0; r < 3; r++) {
         g[r] = (double)m->nu_of_zeta[2][r];
         w[r] = (double)m->gyro[r];
         z[r] = (double)state->zeta[r].value;
         yaw += g[r] * z[r];
     }
-    for (int r = 0; r < 3; r++) turned[r] = z[(r + 1) % 3] * w[(r + 2) % 3] - z[(r + 2) % 3] * w[(r + 1) % 3];
+    for (int r = 0; r < 3; r++) zeta_cross_w[r] = z[(r + 1) % 3] * w[(r + 2) % 3] - z[(r + 2) % 3] * w[(r + 1) % 3];
     for (int r = 0; r < 3; r++)
-        for (int c = 0; c < 3; c++) a[r][c] = (r == c ? 1.0 : 0.0) - half_step * turned[r] * g[c];
+        for (int c = 0; c < 3; c++) a[r][c] = (r == c ? 1.0 : 0.0) - half_step * zeta_cross_w[r] * g[c];
     for (int r = 0; r < 3; r++) { /* (Δ×w)_r = Δ_{r+1} w_{r+2} − Δ_{r+2} w_{r+1} */
         a[r][(r + 1) % 3] -= half_step * yaw * w[(r + 2) % 3];
         a[r][(r + 2) % 3] += half_step * yaw * w[(r + 1) % 3];

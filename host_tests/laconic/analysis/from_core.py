@@ -93,9 +93,9 @@ def nu_rates(core: Core, model: Any, nu: Sequence[float] | np.ndarray, heading_r
 
 def field_of(core: Core, model: Any, inputs: Inputs) -> Field:
     """Reads the prepared model and the load of constant inputs; a force fixed in the world has no constant load."""
-    load = core.ffi.new("laconic_load *")
-    core.lib.laconic_load_of(load, model, core.input(inputs))
-    if load.turns:
+    forcing = core.ffi.new("laconic_forcing *")
+    core.lib.laconic_forcing_of(forcing, model, core.input(inputs))
+    if forcing.rotates:
         raise BadInput("a force fixed in the world acts: it turns against the body with the heading, so there are no "
                        "steady motions; leave it out of the scene, or use `laconic simulate`")
     return Field(
@@ -103,6 +103,6 @@ def field_of(core: Core, model: Any, inputs: Inputs) -> Field:
         nu_of_zeta=core.numbers(model.nu_of_zeta, 3, 3),
         gyro=core.numbers(model.gyro),
         decay_per_s=core.numbers(model.decay_per_s),
-        drive=core.numbers(load.constant),
+        drive=core.numbers(forcing.constant),
         lambda_yaw=float(model.yaw_scale),
     )

@@ -39,13 +39,14 @@ def world_force_acts(subject: Subject) -> bool:
 def headings(subject: Subject) -> list[PushedHeading] | None:
     """The headings that can be kept; None where damping or a gyroscopic term makes the question another one."""
     core, model = subject.core, subject.model
-    load = core.ffi.new("laconic_load *")
-    core.lib.laconic_load_of(load, model, core.input(subject.inputs))
+    forcing = core.ffi.new("laconic_forcing *")
+    core.lib.laconic_forcing_of(forcing, model, core.input(subject.inputs))
     damped = core.numbers(model.decay_per_s)[: model.dof].any()
-    if damped or np.abs(core.numbers(model.gyro)).max() > 1e-12 or not load.turns:
+    if damped or np.abs(core.numbers(model.gyro)).max() > 1e-12 or not forcing.rotates:
         return None
     yaw = core.numbers(model.nu_of_zeta, 3, 3)[2] / float(model.yaw_scale)
-    constant, cosine, sine = (float(yaw @ core.numbers(part)) for part in (load.constant, load.cosine, load.sine))
+    parts = (forcing.constant, forcing.cosine, forcing.sine)
+    constant, cosine, sine = (float(yaw @ core.numbers(part)) for part in parts)
     size = np.hypot(cosine, sine)
     if size <= 1e-300 or abs(constant) > size:
         return []

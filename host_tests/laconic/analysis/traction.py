@@ -184,7 +184,7 @@ def static_loads(subject: Subject) -> tuple[np.ndarray, bool]:
     count = int(contact.point_count)
     points = subject.core.numbers(contact.point_m, -1, 2)[:count]
     radius, weight = float(model.wheel_radius_m), float(model.mass_kg) * 9.80665
-    loads = subject.core.numbers(contact.load_of_wrench, -1, 3)[:count, 0] * radius * weight
+    loads = subject.core.numbers(contact.normal_load_of_wrench, -1, 3)[:count, 0] * radius * weight
     size = max(float(np.abs(points).max(initial=0.0)), radius)
     spread = np.linalg.matrix_rank(np.column_stack([np.full(count, size), points]), tol=1e-9 * size) if count else 0
     return loads, bool(spread == 3)

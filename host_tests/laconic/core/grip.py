@@ -44,7 +44,7 @@ class Grip:
         """From a laconic_grip; `step_s` as it was given, which single precision does not keep."""
         events = {name: event_of(getattr(grip, name), plant, step_s)
                   for name in ("first_slip", "worst_slip", "first_lift", "worst_lift")}
-        return cls(float(plant.c.vehicle.friction_coefficient) or None, int(grip.looks), int(grip.slipping),
+        return cls(float(plant.c.vehicle.friction_coefficient) or None, int(grip.instants), int(grip.slipping),
                    int(grip.lifting), **events)
 
     @property

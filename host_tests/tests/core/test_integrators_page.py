@@ -71,9 +71,9 @@ class Case:
         c, numbers = self.plant.c, self.core.numbers
         forcing = []
         for given in self.inputs:
-            load_of = self.core.ffi.new("laconic_load *")
-            self.core.lib.laconic_load_of(load_of, self.core.ffi.addressof(c, "model"), given)
-            forcing.append(vector(*numbers(load_of.constant)))
+            core_forcing = self.core.ffi.new("laconic_forcing *")
+            self.core.lib.laconic_forcing_of(core_forcing, self.core.ffi.addressof(c, "model"), given)
+            forcing.append(vector(*numbers(core_forcing.constant)))
         unit = sp.eye(3)
         return {
             "h": sp.Float(self.step_s, DIGITS), "zeta": vector(*(part.value for part in c.state.zeta)),
