@@ -1,4 +1,4 @@
-/* From a motor's data sheet to c1, c2 and J: c1 = G k_t/R_a, c2 = G² (k_t k_e/R_a + b). */
+/* From a motor's data sheet to c1, c2 and J: c1 = n k_t/R_a, c2 = n² (k_t k_e/R_a + d). */
 #include "internal.h"
 
 #define RULE_OF(of, number, IDENTIFIER, member, name, KIND, RULE, NEED) {number, LACONIC_RULE_##RULE},

@@ -113,7 +113,7 @@ const char *laconic_arithmetic_text(laconic_arithmetic found);
 /* OK iff every number of the vehicle is usable; else the first that is not. O(N). */
 laconic_status laconic_vehicle_check(const laconic_vehicle *vehicle, laconic_refusal *why);
 
-/* c1 = G k_t/R_a, c2 = G² (k_t k_e/R_a + b) set in the vehicle; G² J_rotor added to J, so call it once. Refuses
+/* c1 = n k_t/R_a, c2 = n² (k_t k_e/R_a + d) set in the vehicle; n² J_rotor added to J, so call it once. Refuses
  * OVERFLOW (gear_ratio) where one of these leaves the range, NEGATIVE (back_emf) where damping is below 0. */
 laconic_status laconic_motor_fit(laconic_vehicle *vehicle, const laconic_motor *motor, laconic_refusal *why);
 

@@ -1,6 +1,6 @@
 /* The vehicle as its user knows it, and the one list that describes each of its fields. Part of laconic.h.
  *
- * A new number of a vehicle costs four places; everything else follows from them, and tests say where one is missing:
+ * A new number of a vehicle changes four files; everything else follows from them, and tests name one that is missing:
  *   here                   its member of a struct, and its row in the list of that struct
  *   modelDescription.xml   the variable with its description and unit
  *   laconic.dbc            its number in the value tables of PARAMETER.field and RESULT.field
@@ -26,14 +26,14 @@ typedef struct laconic_wheel {
                                 π/2 omni, ±π/4 mecanum; not read for fixed wheels                 */
 } laconic_wheel;
 
-/* A load fastened to the body. All zero: none. */
+/* A mass fastened to the body. All zero: no payload. */
 typedef struct laconic_payload {
     laconic_real mass_kg;
     laconic_real x_m, y_m;         /* its centre of mass in the body frame                        */
     laconic_real yaw_inertia_kgm2; /* about the vertical through its centre of mass               */
 } laconic_payload;
 
-typedef struct laconic_support { /* a ball caster: carries load, nothing else */
+typedef struct laconic_support { /* a ball caster: carries a normal load, nothing else */
     laconic_real x_m, y_m;
 } laconic_support;
 
@@ -60,12 +60,12 @@ typedef struct laconic_motor {
     laconic_real resistance_ohm;           /* R_a > 0                                             */
     laconic_real torque_constant_Nm_per_A; /* k_t                                                 */
     laconic_real back_emf_Vs_per_rad;      /* k_e                                                 */
-    laconic_real gear_ratio;               /* G: shaft turns per wheel turn, not 0                */
-    laconic_real viscous_friction_Nms;     /* b                                                   */
+    laconic_real gear_ratio;               /* n: turns of the shaft per turn of the wheel, not 0  */
+    laconic_real viscous_friction_Nms;     /* d: torque per speed of the shaft                    */
     laconic_real rotor_inertia_kgm2;
 } laconic_motor;
 
-/* What acts on the vehicle. All zero: it rolls freely (against its motors' damping). */
+/* What acts on the vehicle. All zero: only its motors' damping acts. */
 typedef struct laconic_input {
     laconic_real voltage_V[LACONIC_MAX_WHEELS];      /* U_i                                      */
     laconic_real axle_torque_Nm[LACONIC_MAX_WHEELS]; /* besides the motor's                      */
