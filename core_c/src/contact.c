@@ -41,8 +41,8 @@ static void pseudo_inverse(real out[3][3], const real matrix[3][3]) {
             s.vector[r][c] = r == c ? R(1) : R(0);
             out[r][c] = R(0);
         }
-    /* After four sweeps what is left off the diagonal is below 1e-17 of it (4,000 random matrices, rows over 12 decades);
-     * the others cost a preparation nothing that matters. */
+    /* After four sweeps what is left off the diagonal is below 1e-17 of it (4,000 random matrices, rows over 12
+     * decades); the others cost a preparation nothing that matters. */
     for (int k = 0; k < 12; k++) {
         rotate(&s, 0, 1);
         rotate(&s, 0, 2);

@@ -3,7 +3,8 @@
 #include "step_internals.h"
 #include "wrench.h"
 
-/* Rates or their changes, all linear: of ν from ζ', of the position from the velocity in body axes, of angles from ζ. */
+/* Rates or their changes, all linear: of ν from ζ', of the position from the velocity in body axes, of angles from
+ * ζ. */
 static void fill_rates(laconic_rates *rates, const laconic_model *model, vector zeta, vector zeta_rate, real along,
                        real across, direction heading) {
     for (int32_t i = 0; i < 3; i++) rates->nu_rad_per_s2[i] = dot(vec(model->nu_of_zeta[i]), zeta_rate);

@@ -26,8 +26,8 @@ real laconic_root(real x) {
     for (; x > R(4); x *= R(0.0625)) scale *= R(4); /* powers of two: exact */
     for (; x < R(0.25); x *= R(16)) scale *= R(0.25);
     guess = R(0.5) + R(0.5) * x;
-    /* The guess is at most 25 % off, and each round squares that: 2.5e-2, 3e-4, 5e-8, 1.2e-15, then rounding. In a million
-     * samples the sixth round changes no bit; the seventh makes sure. */
+    /* The guess is at most 25 % off, and each round squares that: 2.5e-2, 3e-4, 5e-8, 1.2e-15, then rounding. In a
+     * million samples the sixth round changes no bit; the seventh makes sure. */
     for (int k = 0; k < 7; k++) guess = R(0.5) * (guess + x / guess);
     return scale * guess;
 }
@@ -68,9 +68,10 @@ laconic_binary_angle laconic_binary_angle_of(real angle_rad) {
     return 0; /* NaN, or an angle too large to have a direction */
 }
 
-/* φk = 1/k! − a φk+1. Below a = 4 from the series of φ5 downwards, above upwards from φ0. Downwards each step multiplies
- * what is lost before by a: φ1 is off by 17 units in the last place at a = 4, by 54 at 5. Upwards each step divides by a:
- * φ5 is off by 1.3 units at 4, by 7 at 2 and by 1,300 at ½. Of the series at a = 4, the 31st term is the last to count. */
+/* φk = 1/k! − a φk+1. Below a = 4 from the series of φ5 downwards, above upwards from φ0. Downwards each step
+ * multiplies what is lost before by a: φ1 is off by 17 units in the last place at a = 4, by 54 at 5. Upwards each step
+ * divides by a: φ5 is off by 1.3 units at 4, by 7 at 2 and by 1,300 at ½. Of the series at a = 4, the 31st term is the
+ * last to count. */
 void laconic_phi(real phi[6], real a) {
     static const real inverse_factorial[5] = {R(1), R(1), R(0.5), R(1) / R(6), R(1) / R(24)};
     if (a < R(4)) {

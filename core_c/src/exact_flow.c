@@ -7,7 +7,8 @@ typedef struct half_angle {
     real numerator, denominator;
 } half_angle;
 
-/* A number below 2¹⁰²⁴ is below 2⁻⁶ after 515 quarterings; an infinite one never is, ends as NaN, and the step is refused. */
+/* A number below 2¹⁰²⁴ is below 2⁻⁶ after 515 quarterings; an infinite one never is, ends as NaN, and the step is
+ * refused. */
 #define LARGEST_DOUBLINGS 520
 
 /* Beyond the polynomial: quarter z until it holds, then double the angle as often. With s = sin √z/√z and
@@ -62,7 +63,8 @@ INLINE vector free_flow(const laconic_model *m, real half_step, vector zeta) {
     const real factor = R(2) * a.numerator / (ahead + aside);
     const vector delta =
         scaled(factor, plus(scaled(a.denominator, zeta_cross_w), scaled(a.numerator, cross(zeta_cross_w, w))));
-    /* tan²(ψ/2) is 1/16 at ψ = 0.49: up to there |δ| is at most half of |ζ|, and rounding δ costs less than rounding ζ⁺. */
+    /* tan²(ψ/2) is 1/16 at ψ = 0.49: up to there |δ| is at most half of |ζ|, and rounding δ costs less than rounding
+     * ζ⁺. */
     return aside > R(0.0625) * ahead ? length_kept(zeta, delta) : delta;
 }
 

@@ -1,5 +1,5 @@
-/* Binary angles: the range of an unsigned integer is one turn, so an angle wraps by itself, exactly. The heading is such
- * an angle with a count of turns: no loss of resolution after any number of them. */
+/* Binary angles: the range of an unsigned integer is one turn, so an angle wraps by itself, exactly. The heading is
+ * such an angle with a count of turns: no loss of resolution after any number of them. */
 #ifndef LACONIC_HEADING_H
 #define LACONIC_HEADING_H
 

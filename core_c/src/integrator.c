@@ -1,9 +1,9 @@
 /* Prepares a method for one step size; how far a method may step, and how many steps an interval holds. */
 #include "step_internals.h"
 
-/* h·r_max. On the way to a steady state exact-flow-4 errs 0.6 times as much as exponential-kahan-4 (median of 100 random
- * robots), but it misses the steady state of a turning robot: at h·r = 0.1, 0.3, 1 and 3 by 4e-9, 3e-7, 3e-5 and 2e-3 of the
- * speed (median of 60; the worst ten times that), where exponential-kahan-4 has it exactly. */
+/* h·r_max. On the way to a steady state exact-flow-4 errs 0.6 times as much as exponential-kahan-4 (median of 100
+ * random robots), but it misses the steady state of a turning robot: at h·r = 0.1, 0.3, 1 and 3 by 4e-9, 3e-7, 3e-5 and
+ * 2e-3 of the speed (median of 60; the worst ten times that), where exponential-kahan-4 has it exactly. */
 #define FAST_DAMPING R(0.3)
 
 laconic_status laconic_integrator_prepare(laconic_integrator *integrator, const laconic_method *method,

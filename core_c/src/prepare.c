@@ -104,8 +104,8 @@ static bool make_orthogonal(laconic_model *m, basis *v, int32_t a, int32_t b) {
 
 static void find_principal_axes(laconic_model *m, basis *v) {
     bool rotated = true;
-    /* Two to seven sweeps do all that counts. The threshold of make_orthogonal lies below what rounding leaves of a product
-     * of columns, so about one robot in ten goes on turning by angles of that size: 30 ends it. */
+    /* Two to seven sweeps do all that counts. The threshold of make_orthogonal lies below what rounding leaves of a
+     * product of columns, so about one robot in ten goes on turning by angles of that size: 30 ends it. */
     for (int sweep = 0; sweep < 30 && rotated; sweep++) {
         rotated = false;
         for (int32_t a = 0; a < v->count; a++)

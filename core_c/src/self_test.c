@@ -1,6 +1,6 @@
 /* Is arithmetic, as compiled and as it is set now, the arithmetic that the core's bits rest on? Each fault is sought
- * with numbers that only that fault, or one sought before it, gets wrong. Faults are counted, not looked for one by one:
- * without branches there is none that a sound build never takes. */
+ * with numbers that only that fault, or one sought before it, gets wrong. Faults are counted, not looked for one by
+ * one: without branches there is none that a sound build never takes. */
 #include "internal.h"
 
 /* Rounded to its type, and unknown when this is compiled. */

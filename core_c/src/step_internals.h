@@ -1,6 +1,6 @@
-/* What the methods share, in the order in which a step uses it: ζ and its rate, what acts on it, what a method finds out,
- * the energy it may gain, the next state; then what the symmetric methods share, and what methods need to be prepared.
- * Inlined into each method, so that a step is one function and nothing travels through memory. */
+/* What the methods share, in the order in which a step uses it: ζ and its rate, what acts on it, what a method finds
+ * out, the energy it may gain, the next state; then what the symmetric methods share, and what methods need to be
+ * prepared. Inlined into each method, so that a step is one function and nothing travels through memory. */
 #ifndef LACONIC_STEP_INTERNALS_H
 #define LACONIC_STEP_INTERNALS_H
 
@@ -128,8 +128,8 @@ typedef struct increment {
                      where ζ changes evenly, 0 where it jumps at once                         */
 } increment;
 
-/* 2⁻¹⁰, relative to |ζ|² + |ζ⁺|². Of 850 free steps of the two Kahan methods none with an error below 1e-3 of |ζ| gained as
- * much, while those whose error exceeds |ζ| nearly all did: a step that is refused was worth little. */
+/* 2⁻¹⁰, relative to |ζ|² + |ζ⁺|². Of 850 free steps of the two Kahan methods none with an error below 1e-3 of |ζ|
+ * gained as much, while those whose error exceeds |ζ| nearly all did: a step that is refused was worth little. */
 #define ENERGY_TOLERANCE R(0.0009765625)
 
 /* What `passive` asks, with all that the loads do over the step. */

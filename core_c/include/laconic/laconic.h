@@ -3,46 +3,58 @@
  * One kernel for carriages with any number of omni, mecanum or fixed wheels anywhere, differential
  * drives and caster wheels, after A. A. Zobova, "Application of laconic forms of the equations of
  * motion in the dynamics of nonholonomic mobile robots", Rus. J. Nonlin. Dyn. 7(4), 2011. Equation
- * numbers are that paper's; its symbols stand in the comments.
+ * numbers are that paper's.
  *
  *     vehicle  --prepare-->  model  --step-->  state  -->  outputs
  *      (SI)                (constants)           ^
  *                                              input
  *
- * Memory   the caller owns every struct; no heap, no globals, nothing kept behind the caller's back.
+ * Memory   the caller owns every struct; no heap, no globals, and no pointer to the caller's memory is kept.
  *          All structs are plain data without pointers to each other: copy them to save and restore.
  *          (laconic_integrator points to its method, which is constant.)
  * Threads  functions touch only their arguments; different structs may be used at the same time.
  * Errors   a function that can refuse returns a laconic_status and changes nothing when it does.
- *          Where `why` is given (it may be NULL), it says which field and wheel, and which value;
- *          laconic_message() turns that into one line of text.
+ *          Where `why` is given (it may be NULL), it gets the field, the item and the value at fault;
+ *          laconic_message() makes one line of text of them.
  * Bits     the same on every platform with IEEE arithmetic (-std=c99 -ffp-contract=off, and for gcc
  *          -fno-tree-slp-vectorize): the core brings its own sine, exponential and square root.
  *
+ * Frames   body axes (ξ, η), η to the left of ξ. Centre of mass, wheels and supports are given in the body frame, whose
+ *          origin may be anywhere. World axes (X, Y); the heading θ is the angle from X to ξ. The position (x, y) of a
+ *          state is that of S.
+ *
+ * Symbols  docs/glossary.md has all of them. Those that the comments use:
+ *          S             centre of mass of the robot with its wheels and payload
+ *          M, R, J       mass of all of it; radius of each wheel; inertia of a wheel about its axle
+ *          Λ, λ          I_S = Λ² M R² and J = λ² M R²: the yaw inertia about S, and J, without a unit
+ *          ν             pseudo-velocities [rad/s]: v_S = R (ν1 e_ξ + ν2 e_η), yaw rate θ' = ν3/Λ
+ *          χ             own rotation of a wheel; positive χ' drives the hub along (−sin β, cos β), with β the axle's
+ *                        direction. So a wheel that rolls along +ξ has β = −π/2, left and right alike.
+ *          Ξ             wheel matrix (4.3, 4.4): χ' = Ξν
+ *          A             inertia matrix E + λ²ΞᵀΞ (4.6): the kinetic energy is ½ M R² νᵀAν
+ *          K             (Aν)₃, which free motion without constraints conserves beside the energy
+ *          ζ, G, g       the velocity in principal coordinates, ν = Gζ; g is the third row of G, so ν3 = g·ζ
+ *          w, r, b       of ζ' = (g·ζ)(ζ × w) − diag(r)ζ + b: axis of the gyroscopic term, damping rates, forcing
+ *          κ             multipliers of the constraints [rad/s²]: M R κ is a force, M R² κ the torque of a brake
+ *          c1, c2        a motor gives its wheel the torque c1 U − c2 χ' at the voltage U
+ *
  * Limits   what the model does not do, and what to do instead:
- *          slip             wheels roll, and rollers roll; no_slip_margin_N says when the ground could not bear it
- *                           (below 0: the run is no longer true). Nothing follows a wheel that slips.
+ *          slip             wheels and rollers roll without slip. no_slip_margin_N is below 0 where the ground cannot
+ *                           hold a wheel; from there on the run is not true. Nothing models a wheel that slips.
  *          suspension       the body is rigid and its height constant; normal loads are least-norm statics, without
- *                           springs. More than three points of support: loads as if the ground were evenly soft.
+ *                           springs. On more than three points they are those of an evenly soft ground.
  *          level ground     a slope's pull along it is a world_force_N at S, (M g sin slope) down the slope; normal
  *                           loads stay those of level ground.
- *          one wheel radius R, J, c1 and c2 are common to all wheels: take the driven wheels'. Wheels that carry load
- *                           and neither drive nor guide may be supports.
- *          one motor        c1 U − c2 χ': a DC motor without inductance, without dry friction or limits. Any other
- *                           torque comes in as axle_torque_Nm, with c1 = c2 = 0 where it replaces the motor.
- *          swivel casters   a support: it carries load, its inertia and its turning round are left out. (A single
+ *          one wheel radius R, J, c1 and c2 are common to all wheels: give the driven wheels'. Wheels that neither
+ *                           drive nor guide may be supports.
+ *          one motor        a DC motor without inductance, dry friction or limits. Any other torque is given as
+ *                           axle_torque_Nm, with c1 = c2 = 0 where it replaces the motor's.
+ *          swivel casters   a support: it carries a normal load; its inertia and its swivelling are left out. (A single
  *                           fixed wheel is no swivel caster: it does not swivel.)
- *          steered wheels   a fixed wheel keeps its axle; a constant steering angle is its axle_rad. Ackermann and
- *                           swerve drives in motion are beyond (4.7).
- *          skid steering    more than one axle line of fixed wheels is refused or cannot turn: give one axle line in
- *                           the middle, a track width fitted to what the robot does, and the others as supports.
- *
- * Frames   body axes (ξ, η): η is ξ turned by +90°. `com_*` and the wheels are given in the body frame,
- *          whose origin may be anywhere. World axes (X, Y); heading θ is the angle from X to ξ. The
- *          position (x, y) of a state is that of the centre of mass S.
- * ν        pseudo-velocities: v_S = R ν1 e_ξ + R ν2 e_η, ν3 = Λ θ', with I_S = Λ² M R²   [rad/s]
- * χ        own rotation of a wheel; positive χ' drives the hub along (−sin β, cos β), β the axle's
- *          direction. So a wheel that rolls along +ξ has β = −π/2, left and right alike. */
+ *          steered wheels   a fixed wheel keeps its axle; a constant steering angle is its axle_rad. (4.7) does not
+ *                           describe Ackermann and swerve drives that steer while they move.
+ *          skid steering    fixed wheels on more than one axle line are refused or cannot yaw: give one axle line in
+ *                           the middle, a track width fitted to what the robot does, and the others as supports. */
 #ifndef LACONIC_H
 #define LACONIC_H
 
@@ -60,7 +72,7 @@ extern "C" {
 
 /* ------------------------------------------------------------------------------- refusals -- */
 
-/* Why something was refused: what to tell the user. */
+/* Why a call was refused. */
 typedef struct laconic_refusal {
     laconic_status status;
     laconic_field field;
@@ -74,16 +86,17 @@ typedef struct laconic_refusal {
  * `size` characters with the closing 0 and returns the length the whole text has (as snprintf does). */
 size_t laconic_message(const laconic_refusal *why, char *text, size_t size);
 
-/* The same without the field, for those who name it in their own way. */
+/* The same without the field, for callers that name the field themselves. */
 size_t laconic_explanation(const laconic_refusal *why, char *text, size_t size);
 
 /* "mass_kg", "wheel_x_m" … ; "" for a number that is no field. */
 const char *laconic_field_name(laconic_field field);
 
-/* "vehicle.mass_kg", "vehicle.wheel[#].x_m" … , # for the item; an input's is its signal; "" for a number that is none. */
+/* The key of a scene: "vehicle.mass_kg", "vehicle.wheel[#].x_m" … , # for the item; of an input the name of its signal;
+ * "" for a number that is no field. */
 const char *laconic_field_path(laconic_field field);
 
-/* What else vehicle.h says of a field; items: how many numbers it has, 0: one. */
+/* What else vehicle.h states of a field. `items`: how many items it has, 0 where it is a single number. */
 typedef struct laconic_field_traits {
     laconic_field_kind kind;
     laconic_field_rule rule;
@@ -91,21 +104,22 @@ typedef struct laconic_field_traits {
     int32_t items;
 } laconic_field_traits;
 
-/* For hosts and tools, which make their own lists of it; NULL for a number that is no field. */
+/* For hosts and tools that make their own lists of fields; NULL for a number that is no field. */
 const laconic_field_traits *laconic_field_traits_of(laconic_field field);
 
-/* "not finite", "wheel not set" … : a few words; "unknown status" for a number that is none. */
+/* "not finite", "wheel not set" … : a few words; "unknown status" for a number that is no status. */
 const char *laconic_status_name(laconic_status status);
 
 /* ----------------------------------------------------------------------------- arithmetic -- */
 
-/* Optional; for the start of a program: does arithmetic give the bits and the refusals that this header promises?
- * What compilers admit is an error when compiling (real.h); this finds what no macro shows, the first of
- * LACONIC_ARITHMETICS. It sees the options its own file is compiled with, so compile it with the core's, and the modes of the thread
- * that calls it, so call it there. Less than 1 KB in single on a Cortex-M4; nothing else in the core calls it. */
+/* Optional, for the start of a program: does arithmetic give the bits and the refusals that this header promises?
+ * Options that compilers reveal by macros are errors when compiling (real.h); this call finds the others and returns
+ * the first of LACONIC_ARITHMETICS that is wrong. It tests the options of its own file and the modes of the calling
+ * thread: compile it with the core's options and call it in the thread that steps. Less than 1 KB in single on a
+ * Cortex-M4. */
 laconic_arithmetic laconic_self_test(void);
 
-/* "sound", or what is wrong and the remedy, in one line. */
+/* "sound", or the fault and its remedy in one line. */
 const char *laconic_arithmetic_text(laconic_arithmetic found);
 
 /* -------------------------------------------------------------------------------- vehicle -- */
@@ -119,8 +133,8 @@ laconic_status laconic_motor_fit(laconic_vehicle *vehicle, const laconic_motor *
 
 /* ---------------------------------------------------------------------------------- model -- */
 
-/* Prepared constants; read it, do not write it. Coordinates ζ make (4.7) as short as it gets:
- *     ν = G ζ with GᵀAG = 1 and every constraint built in,
+/* Prepared constants; read them, do not write them. In the coordinates ζ equation (4.7) is shortest:
+ *     ν = G ζ with GᵀAG = E; every ζ satisfies the constraints,
  *     ζ' = (g·ζ)(ζ × w) − diag(r) ζ + b,      |ζ|² = νᵀAν,      g: third row of G.
  * With fewer than three degrees of freedom the columns of G beyond `dof` are zero. */
 typedef struct laconic_model {
@@ -146,43 +160,45 @@ typedef struct laconic_model {
     laconic_real com_x_m, com_y_m;                     /* S in the body frame, with payload         */
 } laconic_model;
 
-/* Checks the vehicle and fills the model: rows of Ξ (4.3–4.4), constraints of fixed and locked wheels,
- * principal axes of A (4.6), damping rates. About 2,000 flops plus 60 N, so that no step takes sines of what
- * the user gave or divides by it. Refuses as laconic_vehicle_check does, and with NOTHING_MOVES,
- * ILL_CONDITIONED (value: the condition number of A, refused from 2·10²⁷ on, in single from 7·10⁹), and OVERFLOW where
- * a constant, or one over a scale, would leave the range or its product with another would (beyond 10¹⁵⁴; 10¹⁹ in
- * single): a model that is prepared is finite in every number. */
+/* Checks the vehicle and fills the model: rows of Ξ (4.3–4.4), constraints of fixed and locked wheels, principal axes
+ * of A (4.6), damping rates. About 2,000 flops plus 60 for each wheel; steps then need no sine of a given angle and no
+ * division by a given number. Refuses as laconic_vehicle_check does, and with NOTHING_MOVES, ILL_CONDITIONED (value:
+ * the condition number of A, refused from 2·10²⁷ on, in single from 7·10⁹), and OVERFLOW where a constant or the
+ * inverse of a scale is beyond 10¹⁵⁴ (single: 10¹⁹), so that the product of two would leave the range: every number of
+ * a prepared model is finite. */
 laconic_status laconic_prepare(laconic_model *model, const laconic_vehicle *vehicle, laconic_refusal *why);
 
-/* Condition number of A on the motions that the constraints leave: largest over smallest inertia. By the measure of
- * energy, √(ν'ᵀAν'), rounding costs an acceleration up to about ε √cond of its size, half of cond's digits. ν' itself
- * keeps nearly all digits, but where a wrench pushes along the largest inertia alone it may lose all of cond's. */
+/* Condition number of A on the motions that the constraints leave: largest over smallest inertia. Measured as energy
+ * is, √(ν'ᵀAν'), an acceleration has a relative rounding error up to about ε √cond: half of cond's digits are lost. ν'
+ * itself keeps nearly all digits, but where a wrench acts along the largest inertia alone, all of cond's digits may be
+ * lost. */
 laconic_real laconic_condition_number(const laconic_model *model);
 
-/* The matrices of the paper, for people who want to see them. */
+/* The matrices of the paper, to read; steps do not need them. */
 typedef struct laconic_matrices {
     laconic_real wheel_rows[LACONIC_MAX_WHEELS][3];          /* Ξ (4.3–4.4)                            */
     laconic_real inertia[3][3];                              /* A = E + λ² ΞᵀΞ (4.6)                   */
     laconic_real inverse_inertia[3][3];                      /* A⁻¹; with constraints G Gᵀ             */
-    int32_t constraint_count;                                /* rows below, dependent ones included    */
-    laconic_real constraint_rows[2 * LACONIC_MAX_WHEELS][3]; /* c with cᵀν = 0: per wheel the lateral
-                                                            one if fixed, then Ξ_i if locked      */
+    int32_t constraint_count;                                /* rows below, with the dependent ones    */
+    laconic_real constraint_rows[2 * LACONIC_MAX_WHEELS][3]; /* c with cᵀν = 0: for each wheel
+                                                          (P_i's motion along the axle)/R if
+                                                          fixed, then row i of Ξ if locked */
     laconic_real lambda_yaw;                                 /* Λ                                      */
     laconic_real lambda_wheel;                               /* λ                                      */
 } laconic_matrices;
 
-/* Refuses as laconic_prepare does, OVERFLOW for these numbers, too. */
+/* Refuses as laconic_prepare does, and OVERFLOW for these numbers. */
 laconic_status laconic_matrices_of(laconic_matrices *matrices, const laconic_vehicle *vehicle, laconic_refusal *why);
 
 /* ---------------------------------------------------------------------------------- input -- */
 
-/* OK iff every number of the first wheel_count wheels, and the rest, is finite. */
+/* OK iff every number is finite, those of the first wheel_count wheels and those without a wheel. */
 laconic_status laconic_input_check(const laconic_model *model, const laconic_input *input, laconic_refusal *why);
 
-/* The input in ζ coordinates: b = constant + cos θ · cosine + sin θ · sine. */
+/* The forcing b that an input makes, as a function of the heading: constant + cos θ · cosine + sin θ · sine. */
 typedef struct laconic_forcing {
     laconic_real constant[3];
-    laconic_real cosine[3], sine[3]; /* only where rotates                                         */
+    laconic_real cosine[3], sine[3]; /* set only where `rotates` is true                           */
     bool rotates;                    /* a force fixed in the world acts                           */
 } laconic_forcing;
 
@@ -190,30 +206,31 @@ void laconic_forcing_of(laconic_forcing *forcing, const laconic_model *model, co
 
 /* ---------------------------------------------------------------------------------- state -- */
 
-/* A sum that does not lose what is small against it: true value = value + rest. */
+/* A compensated sum, which keeps in `rest` what is too small for `value` to take up: it stands for value + rest. */
 typedef struct laconic_sum {
     laconic_real value, rest;
 } laconic_sum;
 
-/* θ = 2π (turns + (fraction + 2 rest)·2⁻⁶⁴), 2⁻³² in single: never loses resolution, wraps exactly. */
+/* θ = 2π (turns + (fraction + 2 rest)·2⁻⁶⁴), 2⁻³² in single: wraps exactly, with the same resolution after any
+ * number of turns. */
 typedef struct laconic_heading {
     int64_t turns;
     laconic_binary_angle fraction;
     laconic_real rest; /* in units of 2⁻⁶³ turn, 2⁻³¹ in single */
 } laconic_heading;
 
-/* All that a motion consists of. Copy it to save, copy it back to return. */
+/* All that a motion consists of. Copy it to save the motion, copy it back to restore it. */
 typedef struct laconic_state {
     laconic_sum zeta[3];
     laconic_sum x_m, y_m;
     laconic_heading heading;
-    laconic_sum travel[3]; /* ∫ζ dt since the wheel angles were last set: they are linear in it            */
-    laconic_real wheel_angle_set_rad[LACONIC_MAX_WHEELS]; /* what they were set to                          */
+    laconic_sum travel[3]; /* ∫ζ dt since the wheel angles were last set; they are linear in it            */
+    laconic_real wheel_angle_set_rad[LACONIC_MAX_WHEELS]; /* the angles then                                */
 } laconic_state;
 
-/* Sets the state; wheel angles become 0. Refuses START_AGAINST_CONSTRAINTS iff ν is off the allowed
- * motions by more than LACONIC_RANK_TOLERANCE of its size (item: the component that is furthest off,
- * limit: the nearest allowed value of it). */
+/* Sets the state; wheel angles become 0. Refuses START_AGAINST_CONSTRAINTS iff ν differs from the nearest motion
+ * that the constraints allow by more than LACONIC_RANK_TOLERANCE of its size (item: the component that differs most,
+ * limit: its value in that motion). */
 laconic_status laconic_state_set(laconic_state *state, const laconic_model *model, const laconic_start *start,
                                  laconic_refusal *why);
 
@@ -222,24 +239,24 @@ laconic_status laconic_state_set(laconic_state *state, const laconic_model *mode
 laconic_status laconic_state_project(laconic_state *state, const laconic_model *model, const laconic_start *motion,
                                      laconic_refusal *why);
 
-/* χ of the model's N wheels [rad]: what they were set to and wheel_of_zeta · travel. They start at 0. */
+/* χ of the model's N wheels [rad], wheel_angle_set_rad + wheel_of_zeta · travel; setting them makes travel 0. */
 void laconic_wheel_angles(const laconic_model *model, const laconic_state *state, laconic_real *angle_rad);
 void laconic_wheel_angles_set(const laconic_model *model, laconic_state *state, const laconic_real *angle_rad);
 
 /* Carries a motion over to a changed vehicle (payload, motor): velocity and pose of the body's origin,
- * yaw rate and wheel angles stay; ν and (x, y) are recomputed. The wheels must be the same. Refuses OVERFLOW, and
- * changes nothing, where two good models are so far apart that the motion of the one is out of range in the other. */
+ * yaw rate and wheel angles stay; ν and (x, y) are recomputed. The wheels must be the same. Refuses OVERFLOW
+ * where the motion leaves the range in coordinates of the other model. */
 laconic_status laconic_state_carry(laconic_state *state, const laconic_model *from, const laconic_model *to);
 
 /* ------------------------------------------------------------------------ methods and steps -- */
 
 /* One method prepared for one step size. */
 typedef struct laconic_integrator {
-    const struct laconic_method *method; /* what was asked for                                    */
-    const struct laconic_method *chosen; /* what works: differs from `method` only for auto       */
+    const struct laconic_method *method; /* the prepared method                                   */
+    const struct laconic_method *chosen; /* takes the steps; another than `method` only for auto  */
     laconic_real step_s;                 /* h                                                     */
     laconic_decay decay[3];              /* for h, h/2, h/4, as far as the method needs them      */
-    laconic_real gyro_limit;             /* largest |g·ζ| an explicit method is given; 0: any     */
+    laconic_real gyro_limit;             /* largest |g·ζ| that an explicit method takes; 0: any   */
     bool stiff;                          /* damping is fast beside the step: h·r_max >= 0.3       */
 } laconic_integrator;
 
@@ -258,47 +275,48 @@ extern const laconic_method laconic_exponential_kahan_4; /* 4  any damping      
 extern const laconic_method laconic_exact_flow;          /* 2  everything                   exactly */
 extern const laconic_method laconic_exact_flow_4;        /* 4  any damping, best below h·r ≈ 0.3    */
 extern const laconic_method laconic_taylor_8;            /* 8  h·r ≤ 4.313, h·|ν3| limited  –       */
-extern const laconic_method laconic_auto;                /* 4  picks for each step; see auto.c      */
+extern const laconic_method laconic_auto;                /* 4  any step: the rule stands in auto.c  */
 
-/* All methods, for adapters that choose by number (0 auto, 1 rk4, 2 exponential-kahan,
- * 3 exponential-kahan-4, 4 exact-flow, 5 exact-flow-4, 6 taylor-8) or by name. NULL if there is none. Links them all. */
+/* All methods, for adapters that choose by number (0 auto, 1 rk4, 2 exponential-kahan, 3 exponential-kahan-4, 4
+ * exact-flow, 5 exact-flow-4, 6 taylor-8) or by name. NULL if there is none. Links every method. */
 #define LACONIC_METHOD_COUNT 7
 const laconic_method *laconic_method_by_number(int32_t number);
 const laconic_method *laconic_method_by_name(const char *name);
 
-/* Prepares a method for a step. Refuses METHOD_UNKNOWN (NULL), NOT_FINITE, NOT_POSITIVE, OVERFLOW (step; the last
- * beyond 10⁹ s, and where a part of it has no inverse), and for explicit methods STEP_BEYOND_DAMPING_LIMIT (limit:
- * the largest stable step). */
+/* Prepares a method for a step. Refuses METHOD_UNKNOWN (NULL), NOT_FINITE, NOT_POSITIVE, OVERFLOW (the step; beyond 10⁹
+ * s, and where the inverse of a quarter of it leaves the range), and for explicit methods STEP_BEYOND_DAMPING_LIMIT
+ * (limit: the largest stable step). */
 laconic_status laconic_integrator_prepare(laconic_integrator *integrator, const laconic_method *method,
                                           const laconic_model *model, laconic_real step_s, laconic_refusal *why);
 
 /* One step of h with the input held. Refuses STEP_BEYOND_GYROSCOPIC_LIMIT, STEP_GAINS_ENERGY, STEP_SINGULAR,
- * OVERFLOW (also where the heading has counted 2⁶² turns); the state is then as it was. A number of the input that is
- * not finite makes any of these, even the point of a world force of 0:
- * laconic_step_refusal finds it. */
+ * OVERFLOW (also where the heading has counted 2⁶² turns); the state is then as it was. An input with a number that
+ * is not finite is refused with any of these, even where it is the point of a world force of 0; laconic_step_refusal
+ * finds the number. */
 laconic_status laconic_step(const laconic_model *model, const laconic_integrator *integrator, laconic_state *state,
                             const laconic_input *held);
 
-/* `steps` steps with the input held: what it amounts to in ζ coordinates is worked out once. Returns the
- * number taken; where that is less, `status` says why the next was refused. */
+/* `steps` steps with the input held: its forcing is computed once. Returns the number of steps taken; where that is
+ * less, `status` is that of the refused step, else OK. */
 uint64_t laconic_run(const laconic_model *model, const laconic_integrator *integrator, laconic_state *state,
                      const laconic_input *held, uint64_t steps, laconic_status *status);
 
-/* One step with the input sampled at its start, middle and end. Torques and body wrench are followed along the
- * parabola through the three; a force fixed in the world, which turns with the heading, from sample to sample (in
- * the second-order methods from start to end). rk4 takes each stage's sample; taylor-8 follows a world force, too,
- * along the parabola. Refuses as laconic_step does. */
+/* One step with the input sampled at its start, middle and end. Over the step torques and body
+ * wrench are the parabola through the three; b of a force fixed in the world, which rotates against the body, varies
+ * linearly between its values at the samples (in second-order methods at start and end). rk4 takes each stage's sample;
+ * taylor-8 takes a world force, too, along the parabola. Refuses as laconic_step does. */
 laconic_status laconic_step_sampled(const laconic_model *model, const laconic_integrator *integrator,
                                     laconic_state *state, const laconic_input *start, const laconic_input *middle,
                                     const laconic_input *end);
 
-/* Turns the status of a refused step into words: which step, state and limit; NOT_FINITE with its field where an
- * input is to blame. `inputs`: the held one (input_count 1), or start, middle and end in a row (3). */
+/* Makes the refusal that belongs to the status of a refused step (value: the step, limit: a smaller one to try, if
+ * any); NOT_FINITE with its field where an input is at fault. `inputs`: the held one (input_count 1), or start, middle
+ * and end in a row (3). */
 void laconic_step_refusal(laconic_refusal *why, laconic_status status, const laconic_model *model,
                           const laconic_integrator *integrator, const laconic_state *state, const laconic_input *inputs,
                           int32_t input_count);
 
-/* The largest step a method bears for this vehicle and state: damping and gyroscopic limit, 0: any. */
+/* The largest step at which a method is stable for this vehicle and state, by damping and gyroscopic limit; 0: any. */
 laconic_real laconic_largest_stable_step_s(const laconic_method *method, const laconic_model *model,
                                            const laconic_state *state);
 
@@ -320,7 +338,7 @@ typedef struct laconic_pose {
 
 void laconic_pose_of(laconic_pose *pose, const laconic_model *model, const laconic_state *state);
 
-/* The pose's x_m, y_m and heading_rad alone, without a sine: for those who ask at every step. */
+/* The pose's x_m, y_m and heading_rad alone, without a sine: for callers that need them at every step. */
 void laconic_position(const laconic_state *state, laconic_real *x_m, laconic_real *y_m, laconic_real *heading_rad);
 
 /* v_S in body axes [m/s]; returns the yaw rate [rad/s]. */
@@ -330,7 +348,7 @@ laconic_real laconic_body_velocity(const laconic_model *model, const laconic_sta
 /* χ' of the model's N wheels [rad/s]. */
 void laconic_wheel_speeds(const laconic_model *model, const laconic_state *state, laconic_real *speed_rad_per_s);
 
-/* Torque on each axle: motor and applied, without brakes [N·m]. */
+/* Torque on each axle, the motor's and the input's without the brake's [N·m]. */
 void laconic_wheel_torques(const laconic_model *model, const laconic_state *state, const laconic_input *input,
                            laconic_real *torque_Nm);
 
@@ -340,8 +358,8 @@ laconic_real laconic_energy_J(const laconic_model *model, const laconic_state *s
 /* K = (Aν)₃, the second integral of the free motion (no constraints, no damping) [rad/s]. */
 laconic_real laconic_yaw_integral(const laconic_model *model, const laconic_state *state);
 
-/* Right-hand side of (4.7) with everything: for Model Exchange and for tests. ν is first projected onto
- * the motions that the constraints allow. */
+/* Right-hand side of (4.7) with forcing and damping, and of the kinematics: for Model Exchange and for tests. ν is
+ * first projected onto the motions that the constraints allow. */
 typedef struct laconic_rates {
     laconic_real nu_rad_per_s2[3];
     laconic_real x_m_per_s, y_m_per_s, yaw_rate_rad_per_s;
@@ -353,16 +371,16 @@ void laconic_derivative(laconic_rates *rates, const laconic_model *model, const 
 
 /* --------------------------------------------------------- ground reactions and normal loads -- */
 
-/* What reactions need besides the model, prepared once. */
+/* Constants of reactions and normal loads besides the model's. */
 typedef struct laconic_contact {
     int32_t constraint_count;
     int32_t lateral_row[LACONIC_MAX_WHEELS];            /* row of a fixed wheel's constraint, −1: none      */
-    int32_t brake_row[LACONIC_MAX_WHEELS];              /* row of a locked wheel's, −1: none                */
+    int32_t brake_row[LACONIC_MAX_WHEELS];              /* row of a locked wheel's constraint, −1: none     */
     laconic_real multiplier[2 * LACONIC_MAX_WHEELS][3]; /* κ = multiplier · (Aν' − …): least norm,
                                                  so wheels that share a constraint share its force */
     laconic_real wheel_rows[LACONIC_MAX_WHEELS][3];     /* Ξ                                       */
     laconic_real inverse_arm_per_m[LACONIC_MAX_WHEELS]; /* 1/(R sin γ_i)                           */
-    laconic_real pull[LACONIC_MAX_WHEELS][2];           /* unit vector the reaction acts along, body axes    */
+    laconic_real pull[LACONIC_MAX_WHEELS][2];           /* unit vector along which along_N acts, body axes   */
     laconic_real axle[LACONIC_MAX_WHEELS][2];           /* unit vector of the axle, body axes                */
     laconic_real inertia[3][3];                         /* A                                                 */
     int32_t point_count;                                /* wheels, then supports                             */
@@ -371,15 +389,15 @@ typedef struct laconic_contact {
     laconic_real com_z_m, friction_coefficient;
 } laconic_contact;
 
-/* Refuses as laconic_prepare does, OVERFLOW for these constants, too (supports, com_z_m). */
+/* Refuses as laconic_prepare does, and OVERFLOW for these constants (supports, com_z_m). */
 laconic_status laconic_contact_prepare(laconic_contact *contact, const laconic_vehicle *vehicle, laconic_refusal *why);
 
 typedef struct laconic_reactions {
-    laconic_real along_N[LACONIC_MAX_WHEELS];   /* along `pull`: the roller axis; fixed: rolling direction */
+    laconic_real along_N[LACONIC_MAX_WHEELS];   /* along the roller's axis; fixed: rolling direction */
     laconic_real lateral_N[LACONIC_MAX_WHEELS]; /* fixed wheels: along the axle; others 0         */
     laconic_real brake_Nm[LACONIC_MAX_WHEELS];  /* locked wheels: torque of the brake; others 0   */
-    laconic_real normal_N[LACONIC_MAX_WHEELS + LACONIC_MAX_SUPPORTS]; /* below 0: it would lift   */
-    laconic_real no_slip_margin_N; /* least of μ N_i − |reaction_i|; below 0: it slips;
+    laconic_real normal_N[LACONIC_MAX_WHEELS + LACONIC_MAX_SUPPORTS]; /* below 0: the point would lift */
+    laconic_real no_slip_margin_N; /* least of μ N_i − |reaction_i|; below 0: the wheel would slip;
                                                    NaN or −∞ where a force leaves the scalar's range */
 } laconic_reactions;
 
@@ -388,7 +406,7 @@ void laconic_reactions_of(laconic_reactions *reactions, const laconic_contact *c
 
 /* ------------------------------------------------------------------------- linearisation -- */
 
-/* A point of the motion as outer integrators know it; where it is does not matter to any rate. */
+/* A motion at one moment, as outer integrators know it. No rate depends on the position. */
 typedef struct laconic_motion {
     laconic_real nu_rad_per_s[3];
     laconic_real heading_rad;
@@ -401,7 +419,7 @@ typedef struct laconic_variation {
     laconic_input input;
 } laconic_variation;
 
-/* What that does to the outputs, per unit of the direction. */
+/* Derivatives of the outputs along a variation. */
 typedef struct laconic_motion_change {
     laconic_real origin_x_m, origin_y_m;
     laconic_real velocity_m_per_s[2], yaw_rate_rad_per_s;
@@ -411,9 +429,9 @@ typedef struct laconic_motion_change {
 } laconic_motion_change;
 
 /* Directional derivatives, analytic: (4.7) is quadratic in ν, linear in the voltages and torques, and bilinear in a
- * world force and its point. Where the least margin passes from one wheel to another, or a wheel needs nothing from
- * the ground, the margin has no derivative; that of the present wheel, and 0, are given. `now`: the reactions at
- * the point. O(N). */
+ * world force and its point. The margin has no derivative where the least margin passes from one wheel to another (that
+ * of the first such wheel is given), or where a wheel's reaction is 0 (the reaction counts as constant). `now`: the
+ * reactions of the motion. O(N). */
 void laconic_derivative_tangent(laconic_rates *change, const laconic_model *model, const laconic_motion *at,
                                 const laconic_input *input, const laconic_variation *by);
 void laconic_motion_tangent(laconic_motion_change *change, const laconic_model *model, const laconic_motion *at,
@@ -424,7 +442,7 @@ void laconic_reactions_tangent(laconic_reactions *change, const laconic_contact 
 
 /* ---------------------------------------------------------------------------------- plant -- */
 
-/* The whole thing in one piece, for adapters: FMU, firmware node and host all drive this. */
+/* Vehicle, model, integrator and state together: FMU, firmware node and host step this struct. */
 typedef struct laconic_plant {
     laconic_vehicle vehicle;
     laconic_model model;
@@ -433,22 +451,22 @@ typedef struct laconic_plant {
     uint64_t steps; /* taken since the start: time is steps · step_s */
 } laconic_plant;
 
-/* vehicle → model, method and step → integrator, start → state. Nothing changes when it refuses. */
+/* vehicle → model, method and step → integrator, start → state. A refusal changes nothing. */
 laconic_status laconic_plant_start(laconic_plant *plant, const laconic_vehicle *vehicle, const laconic_method *method,
                                    laconic_real step_s, const laconic_start *start, laconic_refusal *why);
 
-/* `steps` steps with the input held. When step k is refused, k − 1 steps have been taken (see `steps`). */
+/* `steps` steps with the input held. When step k is refused, plant->steps has grown by k − 1. */
 laconic_status laconic_plant_run(laconic_plant *plant, const laconic_input *held, uint64_t steps, laconic_refusal *why);
 
-/* Another step size from here on (steps goes on counting). */
+/* Another step size from now on; plant->steps goes on counting. */
 laconic_status laconic_plant_set_step(laconic_plant *plant, laconic_real step_s, laconic_refusal *why);
 
-/* Another payload, motor, mass … while it moves (laconic_state_carry). The wheels must stay as they are. */
+/* Another payload, motor, mass … while the vehicle moves (laconic_state_carry). The wheels must stay as they are. */
 laconic_status laconic_plant_change(laconic_plant *plant, const laconic_vehicle *vehicle, laconic_refusal *why);
 
 /* -------------------------------------------------------------------------------- recording -- */
 
-/* Everything a plant puts out at one moment; all of it numbers of the scalar type. */
+/* All outputs of a plant at one moment; every member is a number of the scalar type. */
 typedef struct laconic_outputs {
     laconic_real nu_rad_per_s[3];
     laconic_real velocity_body_m_per_s[2], yaw_rate_rad_per_s;
@@ -457,31 +475,31 @@ typedef struct laconic_outputs {
     laconic_real wheel_speed_rad_per_s[LACONIC_MAX_WHEELS];
     laconic_real wheel_angle_rad[LACONIC_MAX_WHEELS];
     laconic_real wheel_torque_Nm[LACONIC_MAX_WHEELS];
-    laconic_reactions reactions; /* only where a contact is given                                */
+    laconic_reactions reactions; /* set only where a contact is given                            */
     laconic_input input;         /* what acts from this moment on                                */
 } laconic_outputs;
 
-/* Fills the outputs but the reactions. What lies beyond the model's wheels stays as it was. One sine, O(N). */
+/* Fills the outputs but the reactions. Items beyond the model's wheels stay as they were. One sine and cosine, O(N). */
 void laconic_outputs_of(laconic_outputs *outputs, const laconic_plant *plant, const laconic_input *input);
 
-/* One instant at which a wheel asked for more than the ground gives, or would have lifted. */
+/* One instant at which a wheel needed more than the friction available, or a point would have lifted. */
 typedef struct laconic_grip_event {
     uint64_t steps;        /* taken before it: its time is steps · step_s                         */
-    int32_t point;         /* from 1: the wheels, then the supports; 0: it never happened         */
+    int32_t point;         /* from 1: the wheels, then the supports; 0: no such instant           */
     laconic_real needed_N; /* size of the reaction                                                */
-    laconic_real normal_N; /* normal load; the friction there is is μ times it, none where below 0 */
+    laconic_real normal_N; /* normal load N; the friction available is μ N, none where N is below 0 */
     laconic_real margin_N; /* μ normal − needed                                                   */
 } laconic_grip_event;
 
 /* Whether the no-slip model was true. Start from all zero. */
 typedef struct laconic_grip {
-    uint64_t instants, slipping, lifting;      /* instants looked at; those with a slip, with a lifted point */
+    uint64_t instants, slipping, lifting;      /* instants watched; those with a slip, with a lifted point   */
     laconic_grip_event first_slip, worst_slip; /* worst: least margin                              */
     laconic_grip_event first_lift, worst_lift; /* worst: least normal load                         */
 } laconic_grip;
 
-/* Enters one instant. Slip is judged only where the contact has a friction coefficient. What lies within the rank
- * tolerance times the weight is rounding and counts as neither. */
+/* Enters one instant. Slip is judged only where the contact has a friction coefficient. A margin or normal load below 0
+ * by less than the rank tolerance times the weight is rounding and counts as neither slip nor lift. */
 void laconic_grip_watch(laconic_grip *grip, const laconic_contact *contact, const laconic_model *model,
                         const laconic_reactions *reactions, uint64_t steps);
 
@@ -489,32 +507,32 @@ void laconic_grip_watch(laconic_grip *grip, const laconic_contact *contact, cons
  * values before step until_step[k]. Sampled (until_step NULL): step k has values at its start, middle and end. */
 typedef struct laconic_schedule {
     int32_t signal_count;
-    const uint32_t *signal;     /* where each stands in laconic_input, in bytes                     */
+    const uint32_t *signal;     /* offset of each in laconic_input, in bytes                        */
     const laconic_real *value;  /* signal_count for each stretch; 3·signal_count for each step      */
     const uint64_t *until_step; /* ascending, counted from first_step; NULL: sampled                */
     uint64_t count;             /* of stretches; of steps where sampled                             */
-    uint64_t first_step;        /* of the plant, at which the first begins                          */
+    uint64_t first_step;        /* plant->steps at which the first begins                           */
 } laconic_schedule;
 
-/* What is kept of a run: rows of chosen outputs, and whether the ground could bear it. */
+/* What is kept of a run: rows of chosen outputs, and whether the no-slip model was true. */
 typedef struct laconic_recorder {
     const laconic_contact *contact; /* of this plant; NULL: no reactions, which cost as much as some steps */
-    laconic_grip *grip;             /* watched at the start of every step; NULL, or without contact: not  */
+    laconic_grip *grip;             /* watched at the start of every step; not where it or contact is NULL */
     uint64_t every;                 /* a row at the start of each step whose number it divides; 0: none   */
     int32_t column_count;
-    const uint32_t *column; /* where each stands in laconic_outputs, in bytes               */
+    const uint32_t *column; /* offset of each in laconic_outputs, in bytes                  */
     laconic_real *row;      /* room for row_room rows of column_count numbers               */
     uint64_t row_count, row_room;
 } laconic_recorder;
 
 /* Takes steps along the schedule until `until_step` of the plant, the schedule's end, or the first row for which there
- * is no room: plant->steps says how far it came, and the next call goes on from there. A row and the watch see the
- * state and input at a step's start. `recorder` may be NULL. Gives the bits of laconic_plant_run and
+ * is no room: plant->steps is the number of steps taken, and the next call goes on from there. A row and the watch
+ * take state and input at a step's start. `recorder` may be NULL. Gives the bits of laconic_plant_run and
  * laconic_step_sampled, and refuses as they do. */
 laconic_status laconic_plant_follow(laconic_plant *plant, const laconic_schedule *schedule, uint64_t until_step,
                                     laconic_recorder *recorder, laconic_refusal *why);
 
-/* One row, and one look at the grip, of this moment: for the end of a run. There must be room. */
+/* Records one row, and watches the grip, of this moment: for the end of a run. There must be room for the row. */
 void laconic_record_row(laconic_recorder *recorder, const laconic_plant *plant, const laconic_input *input);
 
 #ifdef __cplusplus

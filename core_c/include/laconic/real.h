@@ -3,7 +3,7 @@
  * Everything that differs between builds of the core is decided here and nowhere else:
  *   LACONIC_SINGLE         float instead of double
  *   LACONIC_SCENE_HEADER   a generated header that fixes the constants below for one scene
- * The constants are tested with plain `if`, so the compiler still reads what it then drops. */
+ * Plain `if` tests the constants, so compilers check also the code that they then drop. */
 #ifndef LACONIC_REAL_H
 #define LACONIC_REAL_H
 
@@ -12,12 +12,12 @@
 #include <stddef.h>
 #include <stdint.h>
 
-/* What compilers say of their options; laconic_self_test() finds the rest when it runs. gcc defines all of these, clang
- * the first two. */
+/* Options that compilers reveal by macros, gcc by all of these and clang by the first two; laconic_self_test() finds
+ * the other options when it runs. */
 #if defined(__FAST_MATH__)
 #error "laconic: -ffast-math breaks the compensated sums and the tests for NaN; compile without it"
 #elif defined(__FINITE_MATH_ONLY__) && __FINITE_MATH_ONLY__ > 0
-#error "laconic: -ffinite-math-only disarms every test for NaN; compile without it"
+#error "laconic: -ffinite-math-only disables every test for NaN; compile without it"
 #elif defined(__ASSOCIATIVE_MATH__)
 #error "laconic: -fassociative-math (-funsafe-math-optimizations) breaks the compensated sums; compile without it"
 #elif defined(__RECIPROCAL_MATH__)
@@ -34,7 +34,7 @@ typedef uint32_t laconic_binary_angle; /* angle in units of 2^-32 turn */
 #define LACONIC_EPSILON FLT_EPSILON
 #define LACONIC_REAL_MAX FLT_MAX
 #define LACONIC_REAL_MIN FLT_MIN
-#define LACONIC_RANK_TOLERANCE 1e-5F       /* constraint rows closer than this count once */
+#define LACONIC_RANK_TOLERANCE 1e-5F       /* constraints that differ by less count as one */
 #define LACONIC_SMALLEST_ROLLER_SINE 1e-3F /* |sin γ| below it is refused */
 #else
 typedef double laconic_real;
@@ -69,7 +69,7 @@ typedef uint64_t laconic_binary_angle; /* angle in units of 2^-64 turn */
 #define LACONIC_WHEELS(model) ((model)->wheel_count)
 #endif
 
-/* What acts on the vehicle, and what is followed. A scene's header sets to 0 what it does without. */
+/* Inputs and outputs of the build. A scene's header sets to 0 what the scene does not use. */
 #ifndef LACONIC_WITH_VOLTAGE
 #define LACONIC_WITH_VOLTAGE 1
 #endif

@@ -1,12 +1,12 @@
-/* Every status with its name and its words: the enumerations of laconic.h and all their texts follow from these lists.
- * Part of laconic.h. */
+/* Every status with its name and its explanation: the enumerations of laconic.h and all their texts follow from these
+ * lists. Part of laconic.h. */
 #ifndef LACONIC_STATUS_H
 #define LACONIC_STATUS_H
 
 /* clang-format off */
 
-/* X(IDENTIFIER, name, explanation with the remedy; # stands for the refusal's value, @ for its limit). The numbers go on
- * the wire: a new one comes last, and into the value table of RESULT.status in laconic.dbc. */
+/* X(IDENTIFIER, name, explanation with the remedy; # stands for the refusal's value, @ for its limit). The numbers go
+ * on the wire: a new one comes last, and into the value table of RESULT.status in laconic.dbc. */
 #define LACONIC_STATUSES(X) \
     X(OK, "ok", \
       "ok") \
@@ -17,8 +17,8 @@
     X(NEGATIVE, "negative", \
       "# is negative; give 0 or a value above it") \
     X(ROLLER_ALONG_AXLE, "roller along axle", /* |sin γ| is too small */ \
-      "with # rad the roller axis lies along the axle, and the wheel transmits no force; omni wheels have pi/2, mecanum " \
-      "wheels pi/4 or -pi/4") \
+      "with # rad the roller axis lies along the axle, and the wheel transmits no force; omni wheels have pi/2, " \
+      "mecanum wheels pi/4 or -pi/4") \
     X(WHEEL_NOT_SET, "wheel not set", /* wheel_count counts a wheel whose kind was never given */ \
       "this wheel was never set; give its kind and position, or lower wheel_count") \
     X(WHEEL_KIND_UNKNOWN, "wheel kind unknown", \
@@ -28,8 +28,8 @@
     X(TOO_MANY_SUPPORTS, "too many supports", /* below 0, too */ \
       "# supports, but this build takes 0 to @; lower it or build with a larger LACONIC_MAX_SUPPORTS") \
     X(NOTHING_MOVES, "nothing moves", /* three independent constraints */ \
-      "fixed and locked wheels prevent every motion; the axle lines of all fixed wheels must meet in one point or all " \
-      "be parallel; else release a locked wheel") \
+      "fixed and locked wheels prevent every motion; the axle lines of all fixed wheels must meet in one point or " \
+      "all be parallel; else release a locked wheel") \
     X(ILL_CONDITIONED, "ill-conditioned", /* ε √cond(A) >= 0.01 */ \
       "masses and lengths are too far apart for " LACONIC_REAL_NAME " precision: the condition number # leaves fewer " \
       "than two correct digits; check the units") \

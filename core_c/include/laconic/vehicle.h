@@ -11,8 +11,8 @@
 #include "laconic/real.h"
 
 typedef enum laconic_wheel_kind {
-    LACONIC_WHEEL_UNSET = 0,  /* refused: so that a forgotten wheel is noticed                    */
-    LACONIC_WHEEL_ROLLER = 1, /* omni or mecanum: slides freely along its rollers' rolling direction */
+    LACONIC_WHEEL_UNSET = 0,  /* refused, so that a forgotten wheel is noticed                    */
+    LACONIC_WHEEL_ROLLER = 1, /* omni or mecanum: slides freely along the direction in which its rollers roll */
     LACONIC_WHEEL_FIXED = 2   /* ordinary, not steered: does not move along its axle               */
 } laconic_wheel_kind;
 
@@ -20,8 +20,9 @@ typedef struct laconic_wheel {
     laconic_wheel_kind kind;
     bool locked;             /* held by a brake: χ' = 0                                           */
     laconic_real x_m, y_m;   /* wheel centre P_i in the body frame                                */
-    laconic_real axle_rad;   /* β_i, direction of the axle in the body frame; refused where too
-                                large to be known to 1e-6 rad (float: 1e-3), as is roller_rad    */
+    laconic_real axle_rad;   /* β_i, direction of the axle in the body frame. Angles so large
+                                that neighbouring numbers differ by more than 1e-6 rad (float:
+                                1e-3) are refused                                                */
     laconic_real roller_rad; /* γ_i, from axle to roller axis (the roller that touches the ground):
                                 π/2 omni, ±π/4 mecanum; not read for fixed wheels                 */
 } laconic_wheel;
@@ -37,12 +38,12 @@ typedef struct laconic_support { /* a ball caster: carries a normal load, nothin
     laconic_real x_m, y_m;
 } laconic_support;
 
-/* What the user knows. Start from all zero and set what applies. Totals count the wheels in. */
+/* What the user knows of the robot. Start from all zero and set what applies. M and I_S include the wheels. */
 typedef struct laconic_vehicle {
     laconic_real mass_kg;              /* M, without payload                                     */
     laconic_real yaw_inertia_kgm2;     /* I_S, about the vertical through the centre of mass     */
     laconic_real com_x_m, com_y_m;     /* centre of mass S in the body frame, without payload    */
-    laconic_real com_z_m;              /* its height above the ground, >= 0; for normal loads only */
+    laconic_real com_z_m;              /* height of S above the ground, >= 0; for normal loads only */
     laconic_real wheel_radius_m;       /* R, common to all wheels                                */
     laconic_real wheel_inertia_kgm2;   /* J, one wheel with its gear and rotor about the axle    */
     laconic_real motor_gain_Nm_per_V;  /* c1: torque on a wheel is c1 U − c2 χ' + axle torque    */
@@ -68,7 +69,7 @@ typedef struct laconic_motor {
 /* What acts on the vehicle. All zero: only its motors' damping acts. */
 typedef struct laconic_input {
     laconic_real voltage_V[LACONIC_MAX_WHEELS];      /* U_i                                      */
-    laconic_real axle_torque_Nm[LACONIC_MAX_WHEELS]; /* besides the motor's                      */
+    laconic_real axle_torque_Nm[LACONIC_MAX_WHEELS]; /* any other torque on the axle             */
     laconic_real body_force_N[2];                    /* body axes, acting at S                   */
     laconic_real body_moment_Nm;                     /* about S                                  */
     laconic_real world_force_N[2];                   /* world axes                               */
@@ -81,7 +82,7 @@ typedef struct laconic_start {
     laconic_real heading_rad;
 } laconic_start;
 
-/* ------------------------------------------------------------------- what a list says of a field -- */
+/* ---------------------------------------------------------------------------- traits of a field -- */
 
 typedef enum laconic_field_kind {
     LACONIC_KIND_REAL,
@@ -90,26 +91,26 @@ typedef enum laconic_field_kind {
     LACONIC_KIND_FLAG        /* bool               */
 } laconic_field_kind;
 
-/* What a number must be; all but UNCHECKED must be finite. laconic_vehicle_check() goes through a vehicle's own numbers
- * and its payload's rule by rule in this order. */
+/* What a number must satisfy; all but UNCHECKED must be finite. laconic_vehicle_check() goes through a vehicle's own
+ * numbers and its payload's rule by rule in this order. */
 typedef enum laconic_field_rule {
-    LACONIC_RULE_UNCHECKED, /* has a check of its own, or every value is right */
+    LACONIC_RULE_UNCHECKED, /* has a check of its own, or every value is valid */
     LACONIC_RULE_POSITIVE,
     LACONIC_RULE_NOT_NEGATIVE,
     LACONIC_RULE_FINITE,
     LACONIC_RULE_NOT_ZERO,
-    LACONIC_RULE_ANGLE,  /* small enough to have a direction                     */
-    LACONIC_RULE_ROLLER, /* an angle that is not along the axle; rollers alone   */
+    LACONIC_RULE_ANGLE,  /* small enough that its direction is known             */
+    LACONIC_RULE_ROLLER, /* an angle not along the axle; roller wheels only      */
     LACONIC_RULE_COUNT
 } laconic_field_rule;
 
-/* When a number must be given where nothing of a robot is assumed: in a scene and by a node on a bus. */
+/* When a scene, or a client of a node, must give a number: neither has default values of a robot. */
 typedef enum laconic_field_need {
     LACONIC_NEED_NEVER,         /* left out, it is 0                                     */
-    LACONIC_NEED_ALWAYS,        /* (of a motor: where there is one)                      */
+    LACONIC_NEED_ALWAYS,        /* of a motor: where a motor is given                    */
     LACONIC_NEED_WITH_WHEELS,   /* where there are wheels                                */
-    LACONIC_NEED_WITH_MOTOR,    /* where another one of these is given                   */
-    LACONIC_NEED_WITH_PAYLOAD,  /* where another one of these is given                   */
+    LACONIC_NEED_WITH_MOTOR,    /* where another number of the motors is given           */
+    LACONIC_NEED_WITH_PAYLOAD,  /* where another number of the payload is given          */
     LACONIC_NEED_WITH_SUPPORTS, /* where a support is given                              */
     LACONIC_NEED_EACH_WHEEL,    /* for each wheel                                        */
     LACONIC_NEED_EACH_ROLLER,   /* for each wheel with rollers                           */
@@ -120,8 +121,8 @@ typedef enum laconic_field_need {
 
 /* One row for each field, in the order in which numbers are checked:
  *     X(of, number, IDENTIFIER, member, name, KIND, RULE, NEED)
- * of           passed through from the list: the table's name, or whatever else its user needs
- * number       on the wire, for good; 43 to 59 are taken by laconic.dbc for what the core will learn
+ * of           the argument of the list, passed through: the name of a table, or what else X needs
+ * number       on the wire, never changed; laconic.dbc reserves 43 to 59 for fields to come
  * IDENTIFIER   LACONIC_FIELD_IDENTIFIER; also the text in the value tables of laconic.dbc
  * member       in the struct that the list is for, and the key in a scene
  * name         of the variable in modelDescription.xml, and of laconic_field_name()
@@ -145,7 +146,7 @@ typedef enum laconic_field_need {
     X(of, 13, PAYLOAD_Y,           y_m,              payload_y_m,              REAL, FINITE,       WITH_PAYLOAD) \
     X(of, 14, PAYLOAD_YAW_INERTIA, yaw_inertia_kgm2, payload_yaw_inertia_kgm2, REAL, NOT_NEGATIVE, WITH_PAYLOAD)
 
-/* How many of a list; member: the list's. */
+/* How many wheels or supports are given; member: their array. */
 #define LACONIC_WHEEL_COUNT_FIELD(X, of) \
     X(of, 15, WHEEL_COUNT, wheel, wheel_count, INTEGER, UNCHECKED, ALWAYS)
 
@@ -172,7 +173,7 @@ typedef enum laconic_field_need {
     X(of, 27, START_Y,       y_m,         start_y_m,         REAL, FINITE, NEVER) \
     X(of, 28, START_HEADING, heading_rad, start_heading_rad, REAL, FINITE, NEVER)
 
-/* Of no struct of the core; laconic_integrator_prepare() checks them. */
+/* Members of no struct of the core; laconic_integrator_prepare() checks them. */
 #define LACONIC_RUN_FIELDS(X, of) \
     X(of, 29, METHOD, method, method, INTEGER, UNCHECKED, NEVER) \
     X(of, 30, STEP,   step_s, step_s, REAL,    POSITIVE,  ALWAYS)
@@ -196,7 +197,7 @@ typedef enum laconic_field_need {
     X(of, 41, VISCOUS_FRICTION, viscous_friction_Nms,     viscous_friction_Nms,     REAL, NOT_NEGATIVE, NEVER) \
     X(of, 42, ROTOR_INERTIA,    rotor_inertia_kgm2,       rotor_inertia_kgm2,       REAL, NOT_NEGATIVE, NEVER)
 
-/* What a plant starts from: vehicle, start, method and step. */
+/* What a plant starts with: vehicle, start, method and step. */
 #define LACONIC_PARAMETER_FIELDS(X) \
     LACONIC_VEHICLE_FIELDS(X, VEHICLE) LACONIC_PAYLOAD_FIELDS(X, PAYLOAD) \
     LACONIC_WHEEL_COUNT_FIELD(X, COUNT) LACONIC_WHEEL_FIELDS(X, WHEEL) \
