@@ -1,6 +1,5 @@
-/* Reals are read and set at every step, so the usual case has a short way: all references known, everything fresh or
- * quickly made so, inputs that are numbers. Whatever else comes up takes the long way (variables.c), which says what is
- * wrong. */
+/* Gets and sets reals at every step by a fast path: for a list of references that was valid the last time, and finite
+ * values. All other cases take the path with all checks (variables.c), which logs the reason of a refusal. */
 #include "model_interface.h"
 
 static inline const fmu_variable *row_of(uint32_t reference) {
@@ -15,7 +14,7 @@ static inline uint32_t size_of(const fmu_instance *instance, const fmu_variable 
     return variable->size != 0 ? variable->size : FMU_MODEL_ARRAY_SIZE(&instance->model);
 }
 
-/* Offsets of the values that a reference stands for; how many, 0: not this way. */
+/* Writes the offsets of the values of a reference and returns their number; 0: not by the fast path. */
 static size_t offsets_of(const fmu_instance *instance, const fmu_variable *variable, uint32_t element, uint32_t *offset,
                          size_t room) {
     const uint32_t size = size_of(instance, variable), first = element != 0 ? element - 1 : 0;
@@ -25,7 +24,7 @@ static size_t offsets_of(const fmu_instance *instance, const fmu_variable *varia
     return count;
 }
 
-/* Fills the list; false: one of the references takes the long way. */
+/* Fills the list; false: not all of the references can take the fast path. */
 static bool look_up(const fmu_instance *instance, fmu_list *list, const uint32_t *references, size_t count,
                     bool to_set) {
     list->count = list->values = 0;
@@ -64,7 +63,7 @@ static bool get_quickly(fmu_instance *instance, const uint32_t *references, size
     if (list->values != value_count) return false;
     if (list->groups & model->stale) fmu_model_refresh(instance, list->groups);
     for (size_t i = 0; i < value_count; i++) finite &= fmu_is_finite(*value_at(model, list->offset[i]));
-    if (!finite) return false; /* the long way says which */
+    if (!finite) return false; /* variables.c logs which */
     for (size_t i = 0; i < value_count; i++) values[i] = *value_at(model, list->offset[i]);
     return true;
 }

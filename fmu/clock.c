@@ -31,7 +31,7 @@ bool fmu_clock_allows_overshoot(const fmu_clock *clock, double time_s) {
     return on_its_way && time_s - clock->stop_s <= 0.02 * run_s;
 }
 
-/* Compensated, since a run with variable steps moves the anchor at every one of them. */
+/* The anchor is a compensated sum, since it moves at every step of a run with variable steps. */
 void fmu_clock_change_step(fmu_clock *clock, double step_s) {
     const double passed = clock->anchor_rest_s + (double)clock->ticks * clock->step_s;
     const double anchor = clock->anchor_s + passed;

@@ -1,19 +1,18 @@
-/* One communication step: whole internal steps, or a refusal with both numbers. */
+/* One communication step: a whole number of internal steps, or a refusal that gives both lengths. */
 #include <float.h>
 
 #include "model_interface.h"
 
-/* Steps as long as the communication step; one that differs by rounding only counts as the same. */
+/* Communication steps that differ by less, relatively, differ by rounding and count as equal. */
 #define SAME_STEP 1e-9
 
-/* Importers add up their times and end with the remainder, which is none when it is this small a part of an internal
- * step. */
+/* Importers add up their times and end a run with the remainder; up to this part of an internal step it is no step. */
 #define NO_STEP 1e-6
 
-/* With step_s = 0, the part of a communication step that the importer's time may be off. */
+/* With step_s = 0, the part of a communication step by which the importer's time may be wrong. */
 #define OFF_WITHOUT_STEP 1e-3
 
-/* With step_s = 0 the steps are as long as the last communication step; 0: none was taken yet. */
+/* With step_s = 0 the last communication step; 0: there was none yet. */
 static double last_internal_step(const fmu_instance *instance) {
     const double own_s = fmu_model_own_step(&instance->model);
     return own_s > 0.0 ? own_s : instance->clock.step_s;
@@ -23,7 +22,7 @@ static bool is_remainder(const fmu_instance *instance, double step_s) {
     return step_s > 0.0 && step_s <= NO_STEP * last_internal_step(instance);
 }
 
-/* The internal step that the communication step asks for. */
+/* The internal step by which this communication step is taken. */
 static double internal_step(const fmu_instance *instance, double step_s) {
     const double last_s = last_internal_step(instance);
     if (is_remainder(instance, step_s) || fmu_model_own_step(&instance->model) > 0.0) return last_s;
@@ -32,9 +31,9 @@ static double internal_step(const fmu_instance *instance, double step_s) {
 
 static double magnitude(double value) { return value < 0.0 ? -value : value; }
 
-/* How far the importer's time may be off: half an internal step. With step_s = 0 that would be half of whatever the
- * importer asked for, so there it is a thousandth of the step, and what is lost to rounding by an importer that has added
- * up as many steps as have passed; again half a step at most. */
+/* How far the importer's time may differ from the model's: half an internal step. With step_s = 0 the importer chooses the
+ * step and half of it would be too much; there it is a thousandth of the step, plus the rounding of an importer that has
+ * added up all steps since the start, and half a step at most. */
 static double time_tolerance(const fmu_instance *instance, double at_s, double internal_s) {
     const fmu_clock *clock = &instance->clock;
     const double half_s = 0.5 * internal_s, last_s = clock->step_s > 0.0 ? clock->step_s : internal_s;
@@ -67,7 +66,7 @@ static fmu_status change_step(fmu_instance *instance, double step_s) {
     return status;
 }
 
-/* How many internal steps, kept for the next call with the same communication step; none in a remainder. */
+/* Counts the internal steps; the clock keeps the count for the next communication step of the same length. */
 static fmu_status count_steps(fmu_instance *instance, double step_s, uint64_t *steps) {
     fmu_clock *clock = &instance->clock;
     const double own_s = fmu_model_own_step(&instance->model);
@@ -91,7 +90,7 @@ static fmu_status count_steps(fmu_instance *instance, double step_s, uint64_t *s
     return status;
 }
 
-/* One internal step at a time, each offered to the importer. */
+/* Takes one internal step at a time; the importer may get and set variables after each. */
 static fmu_status run_with_updates(fmu_instance *instance, uint64_t steps, fmu_step_end *end) {
     uint64_t taken;
     for (uint64_t k = 0; k < steps; k++) {
@@ -107,7 +106,7 @@ static fmu_status run_with_updates(fmu_instance *instance, uint64_t steps, fmu_s
     return FMU_OK;
 }
 
-/* A refused step leaves everything as it was when the call came. */
+/* A refused communication step leaves everything as it was before the call. */
 static fmu_status run_several(fmu_instance *instance, uint64_t steps, fmu_step_end *end) {
     const uint64_t ticks = instance->clock.ticks;
     fmu_model_motion before;
@@ -126,7 +125,7 @@ static fmu_status run_several(fmu_instance *instance, uint64_t steps, fmu_step_e
     return status;
 }
 
-/* A single step is not taken at all when it is refused: nothing to bring back. */
+/* A single internal step that is refused has changed nothing, so nothing needs to be restored. */
 static fmu_status run(fmu_instance *instance, uint64_t steps, fmu_step_end *end) {
     uint64_t taken = 0;
     if (steps != 1 || instance->between_steps != NULL) return run_several(instance, steps, end);
@@ -135,7 +134,7 @@ static fmu_status run(fmu_instance *instance, uint64_t steps, fmu_step_end *end)
     return status;
 }
 
-/* The usual case: one internal step, as long as the last one, from where the model is. */
+/* The usual case: one internal step, as long as the last one, from the model's time. */
 static inline bool is_one_more(const fmu_instance *instance, double at_s, double step_s) {
     const fmu_clock *clock = &instance->clock;
     const double off_s = at_s - instance->model.time_s;

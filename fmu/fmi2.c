@@ -1,4 +1,4 @@
-/* FMI 2.0: types translated, nothing else. */
+/* The functions of FMI 2.0: they translate types, nothing else. */
 #include "fmi2Functions.h"
 
 #include "model_interface.h"
@@ -23,8 +23,8 @@ static const fmu_callbacks_2 *callbacks(const fmu_instance *instance) {
     return (const fmu_callbacks_2 *)(const void *)&instance->callback_storage;
 }
 
-/* The logger is printf-like, and some importers print the text as it is: a % would do harm in the first and is
- * doubled, which the others show twice. No arguments are ever passed. */
+/* The logger formats like printf, and no arguments are passed to it: each % must be doubled. Importers that print the text
+ * as it is show both. */
 static void log_message(const fmu_instance *instance, fmu_status status, const char *category, const char *text) {
     char safe[1024];
     size_t used = 0;
@@ -235,7 +235,7 @@ fmi2Status fmi2CancelStep(fmi2Component c) {
 
 static fmi2Status no_status(fmi2Component c) {
     ALLOW(c, FMU_CALL_STEP_STATUS);
-    return fmi2Discard; /* steps are synchronous: there is nothing pending to ask for */
+    return fmi2Discard; /* steps are synchronous: none is ever pending */
 }
 
 fmi2Status fmi2GetStatus(fmi2Component c, const fmi2StatusKind kind, fmi2Status *value) {
@@ -283,7 +283,7 @@ fmi2Status fmi2NewDiscreteStates(fmi2Component c, fmi2EventInfo *info) {
     bool changed;
     ALLOW(c, FMU_CALL_UPDATE_DISCRETE_STATES);
     if (info == NULL)
-        return to_fmi(fmu_refuse(SELF(c), "NewDiscreteStates: no place for the event information (NULL)"));
+        return to_fmi(fmu_refuse(SELF(c), "NewDiscreteStates: the pointer to the event information is missing (NULL)"));
     const fmu_status status = fmu_update_discrete_states(SELF(c), &changed);
     info->newDiscreteStatesNeeded = fmi2False;
     info->terminateSimulation = fmi2False;

@@ -1,4 +1,4 @@
-/* FMI 3.0: types translated, nothing else. */
+/* The functions of FMI 3.0: they translate types, nothing else. */
 #include <stdlib.h>
 
 #include "fmi3Functions.h"
@@ -16,7 +16,7 @@ static fmu_references list(const fmi3ValueReference *references, size_t count) {
     return pair;
 }
 
-/* A pointer to a function does not fit a pointer to data in C; this is the box for it. */
+/* C does not convert pointers to functions to pointers to data, so the instance keeps the callbacks in this struct. */
 typedef struct fmu_callbacks_3 {
     fmi3LogMessageCallback log;
     fmi3IntermediateUpdateCallback update;
@@ -185,7 +185,7 @@ fmi3Status fmi3SetFloat64(fmi3Instance instance, const fmi3ValueReference valueR
 
 /* The other types in use. Enumerations are read and set as Int64. `number` makes a double of a value that is set. */
 #define PLAIN(value) (double)(value)
-/* a negative int that was cast is said to be what it was; what else is beyond the largest int64_t was meant so */
+/* a negative int that the importer has cast to uint64_t is refused as the negative number that it was */
 #define SIGNED(value) ((value) >= UINT64_MAX - INT32_MAX ? (double)(int64_t)(value) : (double)(value))
 #define TYPED(Name, Type, fmu_type, number) \
     static double read_##Name(const void *values, size_t k) { return number(((const Type *)values)[k]); } \
@@ -208,8 +208,8 @@ TYPED(Int64, fmi3Int64, FMU_ENUMERATION, PLAIN)
 TYPED(UInt64, fmi3UInt64, FMU_UINT64, SIGNED)
 TYPED(Boolean, fmi3Boolean, FMU_BOOLEAN, PLAIN)
 
-/* Calls about a kind of variable that this FMU has none of: good while nothing is asked for. The names of the parameters
- * that do not matter stand in `unread`. */
+/* Functions for kinds of variables that this FMU lacks: they succeed with an empty list only. `unread` casts the unused
+ * parameters to void. */
 #define ABSENT(function, call, kind, asked, unread, ...) \
     fmi3Status function(fmi3Instance instance, const fmi3ValueReference valueReferences[], size_t nValueReferences, \
                         __VA_ARGS__) { \
@@ -269,7 +269,7 @@ fmi3Status fmi3ActivateModelPartition(fmi3Instance instance, fmi3ValueReference 
 
 /* ------------------------------------------------------------------------------------ dependencies -- */
 
-/* Dependencies are those of ModelStructure; none are given per element. */
+/* Dependencies are given in ModelStructure, not per element. */
 fmi3Status fmi3GetNumberOfVariableDependencies(fmi3Instance instance, fmi3ValueReference valueReference,
                                                size_t *nDependencies) {
     (void)valueReference;
@@ -421,14 +421,16 @@ fmi3Status fmi3GetNominalsOfContinuousStates(fmi3Instance instance, fmi3Float64 
 
 fmi3Status fmi3GetNumberOfEventIndicators(fmi3Instance instance, size_t *nEventIndicators) {
     ALLOW(instance, FMU_CALL_COUNT_STATES);
-    if (nEventIndicators == NULL) return to_fmi(fmu_refuse(SELF(instance), "no place for the number (NULL)"));
+    if (nEventIndicators == NULL)
+        return to_fmi(fmu_refuse(SELF(instance), "the pointer to the number is missing (NULL)"));
     *nEventIndicators = 0;
     return fmi3OK;
 }
 
 fmi3Status fmi3GetNumberOfContinuousStates(fmi3Instance instance, size_t *nContinuousStates) {
     ALLOW(instance, FMU_CALL_COUNT_STATES);
-    if (nContinuousStates == NULL) return to_fmi(fmu_refuse(SELF(instance), "no place for the number (NULL)"));
+    if (nContinuousStates == NULL)
+        return to_fmi(fmu_refuse(SELF(instance), "the pointer to the number is missing (NULL)"));
     *nContinuousStates = fmu_model_state_count(&SELF(instance)->model);
     return fmi3OK;
 }

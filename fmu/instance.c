@@ -11,7 +11,7 @@
 /* What may be set in which mode; inputs wherever the call itself is allowed. */
 static uint32_t settable_in(const fmu_instance *instance, fmu_mode mode) {
     const uint32_t start = SETS(FMU_FIXED) | SETS(FMU_TUNABLE) | SETS(FMU_INPUT);
-    /* one by one: FMI 3 says so; in FMI 2 importers such as CasADi do it */
+    /* one by one: FMI 3 allows it, and in FMI 2 importers such as CasADi do it */
     const bool sets_states = instance->kind == FMU_MODEL_EXCHANGE;
     switch (mode) {
     case FMU_INSTANTIATED: return start;
@@ -36,7 +36,7 @@ typedef char fmu_calls_fit_a_word[FMU_CALL_COUNT <= 32 ? 1 : -1];
 
 void fmu_enter(fmu_instance *instance, fmu_mode mode) {
     instance->mode = mode;
-    instance->read.count = instance->written.count = 0; /* what may be read and set changes with the mode */
+    instance->read.count = instance->written.count = 0; /* they were checked for the old mode */
     instance->settable = settable_in(instance, mode);
     instance->allowed = 0;
     for (uint32_t call = 0; call < FMU_CALL_COUNT; call++)
@@ -75,7 +75,7 @@ fmu_instance *fmu_create(const fmu_request *request) {
     instance->environment = request->environment;
     if (request->callbacks_size <= sizeof instance->callback_storage)
         memcpy(instance->callback_storage, request->callbacks, request->callbacks_size);
-    /* a warning says that the results do not hold, which is no debugging */
+    /* warnings are logged by default, since they state that results are invalid */
     instance->log_categories = request->logging_on ? FMU_LOG_ALL : FMU_LOG_ERROR | FMU_LOG_WARNING;
     instance->name = copy_text(request->instance_name != NULL ? request->instance_name : "");
     if (instance->name == NULL || !has_name_and_token(instance, request) ||
@@ -113,7 +113,7 @@ fmu_status fmu_exit_initialization(fmu_instance *instance) {
     return FMU_OK;
 }
 
-/* Whatever applies the change, a value that is read or the end of an event iteration: the iteration tells of it. */
+/* The next event iteration reports the changed states, whichever call has applied the change. */
 static fmu_status apply_change(fmu_instance *instance) {
     const fmu_status status = fmu_model_change(instance);
     if (status == FMU_OK) instance->model.states_changed = true;

@@ -6,11 +6,11 @@
  *     instance.c, variables.c, co_simulation.c, model_exchange.c, …   (what both versions share)
  *                   |
  *                   v
- *     model.h       (the model: vehicle/ or controller/)
+ *     model_interface.h   (the FMU model: vehicle/ or controller/)
  *
- * Every function returns an fmu_status whose numbers are those of fmi2Status and fmi3Status. A refused call
- * changes nothing and says why through the importer's logger. Memory is taken when an instance or a saved state
- * is made, nowhere else; different instances may be used in different threads at the same time. */
+ * The numbers of fmu_status are those of fmi2Status and fmi3Status. A refused call changes nothing and gives the reason
+ * through the importer's logger. Memory is allocated only to make an instance and to save and serialize states. Different
+ * instances may be used in different threads at the same time. */
 #ifndef LACONIC_FMU_INSTANCE_H
 #define LACONIC_FMU_INSTANCE_H
 
@@ -40,17 +40,17 @@ typedef struct fmu_instance fmu_instance;
 /* False for NaN and for both infinities. */
 static inline bool fmu_is_finite(double value) { return value - value == 0.0; }
 
-/* Hands a finished line to the importer; written by the glue of each version. */
+/* Passes a finished line of the log to the importer; in fmi2.c and fmi3.c. */
 typedef void (*fmu_deliver)(const fmu_instance *instance, fmu_status status, const char *category, const char *text);
 
-/* Offered to the importer after each internal step; true: return early. Written by the FMI 3 glue. */
+/* Lets the importer get and set variables after each internal step; true: the step returns early. In fmi3.c. */
 typedef bool (*fmu_between_steps)(fmu_instance *instance, bool finished);
 
-/* A list of references that was found good, and where its values are: importers ask with the same list every time. */
+/* The last valid list of value references and the offsets of its values: importers pass the same list at every step. */
 #define FMU_LIST_LENGTH 64U
 typedef struct fmu_list {
     size_t count, values; /* 0: none yet */
-    uint32_t groups;      /* of all of them */
+    uint32_t groups;      /* of all its variables */
     uint32_t reference[FMU_LIST_LENGTH];
     uint32_t offset[FMU_LIST_LENGTH]; /* of each value, in fmu_model */
 } fmu_list;
@@ -67,12 +67,12 @@ struct fmu_instance {
     unsigned log_categories; /* bit per fmu_category                                        */
     fmu_deliver deliver;
     void *environment;
-    void (*callback_storage[2])(void); /* the importer's callbacks, as the glue keeps them            */
+    void (*callback_storage[2])(void); /* for fmu_callbacks_2 or fmu_callbacks_3 */
     char *name;
     uint64_t token_hash;
-    uint32_t warnings_given;         /* bit per thing that the model says once a run                */
-    uint32_t warnings_pending;       /* the same, found in a step that may still be refused         */
-    fmu_between_steps between_steps; /* NULL: the importer does not ask for intermediate updates */
+    uint32_t warnings_given;         /* bit per warning that was logged in this run */
+    uint32_t warnings_pending;       /* bit per warning of a step that may still be refused */
+    fmu_between_steps between_steps; /* NULL: the importer wants no intermediate updates */
     fmu_clock clock;
     fmu_model model;
     fmu_model initial;      /* right after instantiation, for reset                        */
@@ -93,11 +93,11 @@ typedef struct fmu_request {
 } fmu_request;
 
 /* NULL when name or token is missing, the token is not this FMU's, the start values cannot be read, or memory is
- * short; the log says which. */
+ * short; the log gives the reason. */
 fmu_instance *fmu_create(const fmu_request *request);
 void fmu_free(fmu_instance *instance);
 
-/* Says in the log that the call may not be made in the instance's present mode (lifecycle.h); false. */
+/* Logs that the call is not allowed in the instance's present mode (lifecycle.h); false. */
 bool fmu_refuse_call(const fmu_instance *instance, fmu_call call);
 
 static inline bool fmu_may_call(const fmu_instance *instance, fmu_call call) {
@@ -113,7 +113,7 @@ fmu_status fmu_setup(fmu_instance *instance, double start_s, bool stop_defined, 
 fmu_status fmu_exit_initialization(fmu_instance *instance);
 fmu_status fmu_update_discrete_states(fmu_instance *instance, bool *states_changed);
 fmu_status fmu_reset(fmu_instance *instance);
-/* Pending parameters take effect, so that what is computed belongs to them. */
+/* Starts or changes the model if parameters were set since the last call; precedes everything that is computed. */
 fmu_status fmu_apply_parameters(fmu_instance *instance);
 
 /* ---------------------------------------------------------------------------------- messages -- */
@@ -137,7 +137,7 @@ typedef enum fmu_type {
     FMU_UINT64,
     FMU_ENUMERATION,
     FMU_BOOLEAN,
-    FMU_INTEGER /* only asked for: FMI 2's Integer, which stands for the three whole types above */
+    FMU_INTEGER /* in calls only: FMI 2's Integer, any of the three integer types above */
 } fmu_type;
 
 typedef enum fmu_access { /* who sets it, and when (variables.c) */
@@ -156,11 +156,11 @@ typedef struct fmu_variable {
     const char *name;
     uint32_t offset; /* in fmu_model                                          */
     uint16_t stride; /* from one element to the next                          */
-    uint16_t size;   /* elements; 0: as many as FMU_MODEL_ARRAY_SIZE says   */
+    uint16_t size;   /* elements; 0: FMU_MODEL_ARRAY_SIZE of them  */
     uint8_t type, access;
-    bool intermediate;  /* may be got or set in between steps (FMI 3)          */
+    bool intermediate;  /* may be got or set between internal steps (FMI 3) */
     double least, most; /* what it may be set to                              */
-    uint32_t group;     /* what must be fresh before it is read, see model.h     */
+    uint32_t group;     /* to compute before it is read, see model.h */
     uint32_t tangent;   /* in fmu_tangent; UINT32_MAX: not differentiated       */
 } fmu_variable;
 
@@ -177,8 +177,8 @@ extern const fmu_start_value fmu_built_in_starts[];
 extern const size_t fmu_built_in_start_count;
 extern const char *const fmu_token_2, *const fmu_token_3; /* of the descriptions this was built with */
 
-/* A whole variable, or one element of it: reference v is row v, reference 1024·v + i its element i from 1. An array's
- * elements follow each other, as importers expect that put them together again; row 0, the time, has none. */
+/* Reference v is all of row v, reference 1024·v + i its element i, from 1. The references of an array's elements are
+ * consecutive, since some importers join them to an array again. Row 0, the time, has no elements. */
 #define FMU_ELEMENT_SHIFT 10
 static inline uint32_t fmu_row(uint32_t reference) {
     return reference >> FMU_ELEMENT_SHIFT != 0 ? reference >> FMU_ELEMENT_SHIFT : reference;
@@ -199,30 +199,31 @@ typedef struct fmu_references {
     size_t count;
 } fmu_references;
 
-/* Value k of a list whose type only the glue knows; all numbers go through double, which holds every one exactly. */
+/* Reads or writes value k of a list whose C type only fmi2.c or fmi3.c knows. Numbers pass as double, which holds every
+ * value in the range of a variable exactly. */
 typedef double (*fmu_read)(const void *values, size_t k);
 typedef void (*fmu_write)(void *values, size_t k, double number);
 
-/* `type` must be that of every variable. All is checked first: a refused call hands out and changes nothing. */
+/* Every variable must have that type. All values are checked first: a refused call writes and sets none. */
 fmu_status fmu_get(fmu_instance *instance, fmu_type type, fmu_references list, void *values, size_t value_count,
                    fmu_write write);
 fmu_status fmu_set(fmu_instance *instance, fmu_type type, fmu_references list, const void *values, size_t value_count,
                    fmu_read read);
-/* The same for reals, as fast as it goes (cached_reals.c). */
+/* The same for reals, with a fast path (cached_reals.c). */
 fmu_status fmu_get_reals(fmu_instance *instance, const uint32_t *references, size_t count, double *values,
                          size_t value_count);
 fmu_status fmu_set_reals(fmu_instance *instance, const uint32_t *references, size_t count, const double *values,
                          size_t value_count);
-/* Refuses unless nothing was asked for: there are no variables of that kind. */
+/* Refuses unless `asked` is 0: the FMU has no variables of that kind. */
 fmu_status fmu_refuse_kind(const fmu_instance *instance, const char *kind, size_t asked);
-/* Refuses unless every one of them may be got or set in between steps. */
+/* Refuses unless every one of them may be got or set between internal steps. */
 fmu_status fmu_check_intermediate(const fmu_instance *instance, const uint32_t *references, size_t count);
-/* One element, whatever the mode; false: no such variable, or no value it can have. */
+/* Sets the start value of one element, in any mode; false: no such variable, or a value outside its range. */
 bool fmu_set_start_value(fmu_instance *instance, uint32_t reference, double value);
 
 /* ------------------------------------------------------------------------------------- steps -- */
 
-/* Where a step ended that was not taken in full. */
+/* Where a communication step ended, and whether the importer ended it early. */
 typedef struct fmu_step_end {
     double time_s;
     bool early;
@@ -232,7 +233,7 @@ fmu_status fmu_do_step(fmu_instance *instance, double at_s, double step_s, fmu_s
 
 /* ------------------------------------------------------------- continuous states (Model Exchange) -- */
 
-/* Beyond this an angle in radians has long stopped saying where it points. */
+/* Largest magnitude of a continuous state: doubles beyond it are at least 128 apart, in rad many turns. */
 #define FMU_LARGEST_STATE 1e18
 
 fmu_status fmu_set_time(fmu_instance *instance, double time_s);

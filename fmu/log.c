@@ -18,7 +18,7 @@ static const struct {
 };
 #define CATEGORY_COUNT (sizeof categories / sizeof categories[0])
 
-/* " -nan" is " nan": what is no number has no sign, though some C libraries print one. */
+/* Makes " nan" of " -nan": NaN has no sign, though some C libraries print one. */
 static void unsign_nan(char *line) {
     char *found;
     while ((found = strstr(line, " -nan")) != NULL) memmove(found + 1, found + 2, strlen(found + 1));
@@ -27,7 +27,7 @@ static void unsign_nan(char *line) {
 static void deliver(const fmu_instance *instance, fmu_status status, fmu_category category, const char *format,
                     va_list arguments) {
     char line[LINE_LENGTH];
-    /* errors are always told: FMI 3.0 wants it, and nobody is glad to miss them */
+    /* errors are always logged, as FMI 3.0 requires */
     if (instance->deliver == NULL || !((instance->log_categories | FMU_LOG_ERROR) & (unsigned)category)) return;
     vsnprintf(line, sizeof line, format, arguments);
     unsign_nan(line);
@@ -59,7 +59,7 @@ static unsigned category_bit(const char *name) {
     return 0;
 }
 
-/* No categories: all of them. FMI 2: on means these and no others, off none. FMI 3: on adds these, off takes them away. */
+/* No categories mean all. FMI 2: `on` selects these and no others, off none. FMI 3: `on` adds these, off removes them. */
 fmu_status fmu_set_logging(fmu_instance *instance, bool on, size_t count, const char *const names[]) {
     unsigned wanted = count == 0 ? FMU_LOG_ALL : 0;
     if (count > 0 && names == NULL)

@@ -1,4 +1,4 @@
-/* What Model Exchange asks for: time, continuous states, their rates. */
+/* The calls of Model Exchange: time, continuous states, their rates. */
 #include <string.h>
 
 #include "model_interface.h"

@@ -1,41 +1,42 @@
-/* What a model behind the glue provides: vehicle/model.c and controller/model.c. Its struct fmu_model (model.h) is plain
- * data, so that it can be copied; every model has the members `start_needed`, `change_needed`, `states_changed`, `time_s` and
- * `stale` (the groups to compute before they are read), and the macros FMU_MODEL_ARRAY_SIZE, FMU_MODEL_LARGEST_ARRAY. */
+/* The functions of an FMU model, which vehicle/model.c and controller/model.c implement for the glue. The struct fmu_model
+ * (model.h) is plain data, so that it can be copied. Each model has the members `start_needed`, `change_needed`,
+ * `states_changed`, `time_s` and `stale` (bits of the groups that must be computed before they are read), and the macros
+ * FMU_MODEL_ARRAY_SIZE, FMU_MODEL_LARGEST_ARRAY and FMU_MODEL_TAKES_SLOPES. */
 #ifndef LACONIC_FMU_MODEL_INTERFACE_H
 #define LACONIC_FMU_MODEL_INTERFACE_H
 
 #include "instance.h"
 #include "stream.h"
 
-/* Parameters → prepared model and initial state; refuses with the model's own message. */
+/* Prepares the model from its parameters and sets the initial state. The log gives the reason of a refusal. */
 fmu_status fmu_model_start(fmu_instance *instance);
 
-/* Tunable parameters set since → prepared anew, the motion carried over. */
+/* Prepares the model again after tunable parameters were set; the motion is carried over. */
 fmu_status fmu_model_change(fmu_instance *instance);
 
-/* An input was set: what depends on it is no longer fresh. */
+/* To be called after an input was set: marks the groups that depend on inputs as stale. */
 void fmu_model_input_changed(fmu_model *model);
 
-/* Computes the groups that are not fresh. */
+/* Computes those of the groups that are stale. */
 void fmu_model_refresh(fmu_instance *instance, uint32_t groups);
 
-/* The internal step that the parameters ask for; 0: as long as the communication step. */
+/* The internal step that the parameters set; 0: the internal step is the communication step. */
 double fmu_model_own_step(const fmu_model *model);
 fmu_status fmu_model_set_step(fmu_instance *instance, double step_s);
 
-/* Whole number of own steps in a communication step; refused with both numbers where there is none. */
+/* Writes how many internal steps of own_s the communication step has; refuses, with both lengths, a fraction of one. */
 fmu_status fmu_model_count_steps(fmu_instance *instance, double step_s, double own_s, uint64_t *steps);
 
-/* Takes up to `steps` internal steps; *taken says how many. Refused: the state is where *taken steps lead. */
+/* Takes `steps` internal steps. When the core refuses one, the state is that after the *taken steps before it. */
 fmu_status fmu_model_run(fmu_instance *instance, uint64_t steps, uint64_t *taken);
 
-/* What was noted in a communication step (fmu_instance.warnings_pending) is said, or forgotten because the step was refused. */
+/* Logs the warnings of a communication step (fmu_instance.warnings_pending) if the step is accepted, else drops them. */
 void fmu_model_settle_warnings(fmu_instance *instance, bool accepted);
 
-/* Model Exchange has taken a step: what must be said about where it led is said. */
+/* To be called when Model Exchange has completed a step: logs the warnings about the state it has reached. */
 void fmu_model_completed_step(fmu_instance *instance);
 
-/* Remembers and brings back everything that steps change, for a communication step that is refused half-way. */
+/* Copies everything that steps change, and restores it when a communication step is refused after some internal steps. */
 void fmu_model_save_motion(const fmu_model *model, fmu_model_motion *motion);
 void fmu_model_restore_motion(fmu_model *model, const fmu_model_motion *motion);
 
@@ -43,19 +44,19 @@ void fmu_model_restore_motion(fmu_model *model, const fmu_model_motion *motion);
 uint32_t fmu_model_state_count(const fmu_model *model);
 void fmu_model_get_states(fmu_instance *instance, double *values);
 void fmu_model_set_states(fmu_instance *instance, const double *values);
-/* Some of them are about to be set one by one. */
+/* To be called before single continuous states are set: computes all of them; from then on the state follows them. */
 void fmu_model_before_set_state(fmu_instance *instance);
 void fmu_model_get_rates(fmu_instance *instance, double *values);
 void fmu_model_get_nominals(const fmu_model *model, double *values);
 
-/* Directional derivative: `tangent` holds the seeds, laid out by the table's `tangent` offsets; the outputs' part is filled. */
+/* Directional derivative: `tangent` has the seeds at the `tangent` offsets of the variable table, and gets the outputs'. */
 void fmu_model_tangent(fmu_instance *instance, fmu_tangent *tangent);
-/* Seeds of d/dt along the motion: rates of the states and slopes of the inputs. */
+/* Writes the seeds of the time derivative: rates of the states and slopes of the inputs. */
 void fmu_model_motion_seed(fmu_instance *instance, fmu_tangent *tangent);
-/* Slopes of the inputs within the next step (FMI 2), laid out as the tangent's inputs. */
+/* Sets du/dt of one input in the next communication step (FMI 2); `tangent_offset` is that of the input in fmu_tangent. */
 void fmu_model_set_slope(fmu_model *model, uint32_t tangent_offset, double slope);
 
-/* Writes or reads all that the model consists of (stream.h). False: the bytes make no sense. */
+/* Writes or reads the whole model (stream.h). False: the bytes are too few, or a value is impossible. */
 bool fmu_model_serialize(fmu_stream *stream, fmu_model *model);
 
 #endif

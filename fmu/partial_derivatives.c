@@ -1,4 +1,4 @@
-/* Directional and adjoint derivatives, output and input derivatives: which variable is meant, and seeds. */
+/* Directional and adjoint derivatives, output and input derivatives: checks references and distributes seeds. */
 #include <string.h>
 
 #include "model_interface.h"
@@ -9,8 +9,8 @@ static double *tangent_at(fmu_tangent *tangent, const fmu_slot *slot, uint32_t e
     return (double *)(void *)((char *)tangent + slot->variable->tangent + sizeof(double) * (slot->first + element));
 }
 
-/* Inputs and continuous states; in initialization mode the start values that set the states; the time, on which
- * nothing depends. */
+/* Known are inputs and continuous states, in initialization mode also the start values of the states, and the time, on
+ * which nothing depends. */
 static bool is_known(const fmu_instance *instance, const fmu_variable *variable) {
     if (variable->access == FMU_INDEPENDENT || variable->access == FMU_INPUT) return true;
     if (variable->access == FMU_STATE) return true;
@@ -59,7 +59,7 @@ static fmu_status refuse_result(const fmu_instance *instance, const fmu_variable
                       variable->name);
 }
 
-/* Checked before anything is handed out. */
+/* Checks all values before it writes the first. */
 static fmu_status read_unknowns(const fmu_instance *instance, fmu_references unknowns, fmu_tangent *tangent,
                                 double *values) {
     size_t used = 0;
@@ -136,7 +136,7 @@ static fmu_status check_orders(const fmu_instance *instance, size_t count, const
     if (count > 0 && orders == NULL) return fmu_refuse(instance, "the list of orders is missing (NULL)");
     for (size_t k = 0; k < count; k++)
         if (orders[k] != 1)
-            return fmu_refuse(instance, "a derivative of order %d was asked for; there is only the first",
+            return fmu_refuse(instance, "a derivative of order %d was requested; there is only the first",
                               (int)orders[k]);
     return FMU_OK;
 }

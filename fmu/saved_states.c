@@ -1,4 +1,4 @@
-/* Saved states: a copy within the process, or bytes that any process and machine with the same FMU takes back.
+/* Saved states: a copy within the process, or bytes that the same FMU can read in any process and on any machine.
  *
  * Bytes: "LACSTATE", then numbers of 64 bits, little-endian: version, hash of the instantiation token, size of the
  * whole, kind, mode, event mode used, clock, model; at the end the checksum of all before. */
@@ -21,7 +21,7 @@ struct fmu_snapshot {
 
 fmu_status fmu_save(fmu_instance *instance, fmu_snapshot **snapshot) {
     fmu_snapshot *copy;
-    if (snapshot == NULL) return fmu_refuse(instance, "GetFMUState: no place for the state (NULL)");
+    if (snapshot == NULL) return fmu_refuse(instance, "GetFMUState: the pointer to the state is missing (NULL)");
     copy = *snapshot != NULL ? *snapshot : calloc(1, sizeof *copy);
     if (copy == NULL) return fmu_refuse(instance, "GetFMUState: out of memory");
     copy->token_hash = instance->token_hash;
@@ -99,7 +99,7 @@ fmu_status fmu_serialized_size(fmu_instance *instance, const fmu_snapshot *snaps
     const fmu_status status = check_origin(instance, snapshot);
     fmu_snapshot *copy = NULL;
     if (status != FMU_OK) return status;
-    if (size == NULL) return fmu_refuse(instance, "no place for the size (NULL)");
+    if (size == NULL) return fmu_refuse(instance, "the pointer to the size is missing (NULL)");
     copy = malloc(sizeof *copy);
     if (copy == NULL) return fmu_refuse(instance, "SerializedFMUStateSize: out of memory");
     *copy = *snapshot;
@@ -127,7 +127,7 @@ fmu_status fmu_serialize(fmu_instance *instance, const fmu_snapshot *snapshot, u
     fmu_status status = check_origin(instance, snapshot);
     fmu_snapshot *copy;
     if (status != FMU_OK) return status;
-    if (bytes == NULL) return fmu_refuse(instance, "SerializeFMUState: no place for the bytes (NULL)");
+    if (bytes == NULL) return fmu_refuse(instance, "SerializeFMUState: the memory for the bytes is missing (NULL)");
     copy = malloc(sizeof *copy);
     if (copy == NULL) return fmu_refuse(instance, "SerializeFMUState: out of memory");
     *copy = *snapshot;
@@ -162,14 +162,14 @@ static fmu_status read_bytes(fmu_instance *instance, const uint8_t *bytes, size_
     stream.size = size - 8;
     if (!serialize(&stream, made, &version, &whole) || stream.at != stream.size || whole != size ||
         !mode_suits_kind(made))
-        return fmu_refuse(instance, "DeserializeFMUState: the %zu bytes make no sense as a state", size);
+        return fmu_refuse(instance, "DeserializeFMUState: the %zu bytes are no possible state", size);
     return check_origin(instance, made);
 }
 
 fmu_status fmu_deserialize(fmu_instance *instance, const uint8_t *bytes, size_t size, fmu_snapshot **snapshot) {
     fmu_snapshot *made;
     if (bytes == NULL || snapshot == NULL)
-        return fmu_refuse(instance, "DeserializeFMUState: the bytes or the place for the state are missing (NULL)");
+        return fmu_refuse(instance, "DeserializeFMUState: the bytes or the pointer to the state are missing (NULL)");
     made = calloc(1, sizeof *made);
     if (made == NULL) return fmu_refuse(instance, "DeserializeFMUState: out of memory");
     const fmu_status status = read_bytes(instance, bytes, size, made);

@@ -1,4 +1,4 @@
-/* Plain numbers to and from bytes, little-endian whatever the machine: the same code describes both directions. */
+/* Numbers to and from bytes, little-endian on every machine. The same calls write, read or count. */
 #ifndef LACONIC_FMU_STREAM_H
 #define LACONIC_FMU_STREAM_H
 
@@ -10,7 +10,7 @@ typedef struct fmu_stream {
     uint8_t *to;         /* writing, unless NULL                   */
     const uint8_t *from; /* reading, unless NULL; both NULL: counts */
     size_t size, at;
-    bool failed; /* ran out of bytes, or read nonsense     */
+    bool failed; /* the bytes were too few, or a value out of range */
 } fmu_stream;
 
 void fmu_stream_u64(fmu_stream *stream, uint64_t *value);

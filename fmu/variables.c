@@ -66,8 +66,7 @@ static fmu_status refuse_value(const fmu_instance *instance, const fmu_slot *slo
     return fmu_refuse(instance, "%s: %.15g is outside its range: %g to %g", name, value, least, most);
 }
 
-/* The range that the description declares, which NaN is not in; whether the model can do with the number is for the
- * model to say. */
+/* Whether the value lies in the range that the description declares; NaN does not. The model checks the rest. */
 static bool acceptable(const fmu_variable *variable, double value) {
     return value >= least_of(variable) && value <= most_of(variable);
 }
@@ -126,7 +125,7 @@ typedef struct exchange {
     const char *what; /* for messages: what the importer does with the values */
 } exchange;
 
-/* What is done with one variable whose values begin at number `used` of the exchange. */
+/* An action on one variable, whose values begin at number `used` of the exchange. */
 typedef fmu_status (*visit)(fmu_instance *instance, const fmu_slot *slot, const exchange *values, size_t used);
 
 static fmu_status check_room(const fmu_instance *instance, const fmu_slot *slot, const exchange *values, size_t used) {
@@ -165,7 +164,7 @@ static fmu_status check_set(fmu_instance *instance, const fmu_slot *slot, const 
     return status;
 }
 
-/* Parameters: until initialization ends everything starts anew, afterwards the motion is carried over. */
+/* A parameter that is set before initialization ends makes the model start anew; later the motion is carried over. */
 static void note_change(fmu_instance *instance, fmu_access access) {
     if (access == FMU_INPUT)
         fmu_model_input_changed(&instance->model);
@@ -247,7 +246,7 @@ bool fmu_set_start_value(fmu_instance *instance, uint32_t reference, double valu
     fmu_slot slot;
     if (!fmu_find(instance, reference, &slot) || slot.count != 1) return false;
     if (slot.variable->access >= FMU_STATE) return false;
-    if (slot.variable->access == FMU_STRUCTURAL && value == 0.0) /* a vehicle without wheels: only as a constant */
+    if (slot.variable->access == FMU_STRUCTURAL && value == 0.0) /* without wheels it is a constant */
         instance->scalar = true;
     else if (!acceptable(slot.variable, value))
         return false;

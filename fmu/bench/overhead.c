@@ -21,7 +21,7 @@ enum { WARM = 2000, STEPS = 20000, ROUNDS = 200, FRICTION = 11, VOLTAGE = 31, NU
 #define METHOD_RK4 1
 
 static const double volts[4] = {2.0, 3.0, 2.5, 2.0};
-static const double unwatched = 0.0; /* no friction coefficient: the glue alone, no reactions at every step */
+static const double unwatched = 0.0; /* no friction coefficient: no reactions are computed at every step */
 static double sink;
 
 static double now_ns(void) {
@@ -230,7 +230,7 @@ static void run_core_with_outputs(long first, long count) {
     }
 }
 
-/* ---------------------------------------------------------------------------------------- report -- */
+/* --------------------------------------------------------------------------------------- results -- */
 
 typedef struct contender {
     const char *name;

@@ -1,4 +1,4 @@
-/* The controller behind the glue: a limited PI controller for the speed of each wheel. */
+/* The controller as an FMU model: a limited PI controller for the speed of each wheel. */
 #include "model_interface.h"
 
 /* The voltage before it is limited. */
@@ -12,7 +12,7 @@ static bool is_limited(const fmu_model *self, uint32_t i) {
     return wanted > self->limit_V || wanted < -self->limit_V;
 }
 
-/* While the voltage is limited the integral must not run further into the limit. */
+/* The integral stops while the voltage is limited and the error would drive it further beyond the limit. */
 static bool is_held(const fmu_model *self, uint32_t i) {
     const double error = self->setpoint_rad_per_s[i] - self->speed_rad_per_s[i], wanted = wanted_V(self, i);
     return (wanted > self->limit_V && error > 0.0) || (wanted < -self->limit_V && error < 0.0);
@@ -84,7 +84,7 @@ fmu_status fmu_model_count_steps(fmu_instance *instance, double step_s, double o
     return FMU_OK;
 }
 
-/* The inputs are held over the step, so the integral grows evenly. */
+/* The inputs are held over the step, so the integral changes linearly. */
 fmu_status fmu_model_run(fmu_instance *instance, uint64_t steps, uint64_t *taken) {
     fmu_model *self = &instance->model;
     fmu_model_refresh(instance, FMU_GROUP_RATES);
@@ -96,11 +96,11 @@ fmu_status fmu_model_run(fmu_instance *instance, uint64_t steps, uint64_t *taken
 }
 
 void fmu_model_settle_warnings(fmu_instance *instance, bool accepted) {
-    (void)instance; /* nothing is ever noted */
+    (void)instance; /* a controller has no warnings */
     (void)accepted;
 }
 
-void fmu_model_completed_step(fmu_instance *instance) { (void)instance; /* a controller needs no ground */ }
+void fmu_model_completed_step(fmu_instance *instance) { (void)instance; /* a controller has no warnings */ }
 
 void fmu_model_save_motion(const fmu_model *model, fmu_model_motion *motion) {
     for (uint32_t i = 0; i < FMU_MODEL_LARGEST_ARRAY; i++) motion->error_rad[i] = model->error_rad[i];
@@ -134,7 +134,7 @@ void fmu_model_get_nominals(const fmu_model *model, double *values) {
     for (uint32_t i = 0; i < FMU_MODEL_ARRAY_SIZE(model); i++) values[i] = 1.0;
 }
 
-/* Linear but for the limit, where the derivative is that of the side it is on. */
+/* The controller is linear; a limited voltage and a stopped integral are constant, so their derivatives are 0. */
 void fmu_model_tangent(fmu_instance *instance, fmu_tangent *t) {
     const fmu_model *self = &instance->model;
     for (uint32_t i = 0; i < FMU_MODEL_ARRAY_SIZE(self); i++) {
@@ -152,7 +152,7 @@ void fmu_model_motion_seed(fmu_instance *instance, fmu_tangent *tangent) {
         tangent->error_rad[i] = instance->model.error_rate_rad_per_s[i];
 }
 
-/* Inputs are held: the description says that they are not interpolated. */
+/* Never called: FMU_MODEL_TAKES_SLOPES is false, inputs are held. */
 void fmu_model_set_slope(fmu_model *model, uint32_t tangent_offset, double slope) {
     (void)model;
     (void)tangent_offset;

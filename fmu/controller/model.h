@@ -1,6 +1,6 @@
-/* A PI controller for wheel speeds, one loop per wheel: the second FMU of the same glue.
+/* A PI controller for wheel speeds, one loop per wheel: the second FMU model behind the same glue.
  *
- *     u = K_p e + K_i I, limited to ±limit;   I' = e, or 0 while u is limited and e would drive it further */
+ *     u = K_p e + K_i I, limited to ±limit;   I' = e, or 0 while u is limited and e would drive it further beyond */
 #ifndef LACONIC_FMU_CONTROLLER_MODEL_H
 #define LACONIC_FMU_CONTROLLER_MODEL_H
 
@@ -11,7 +11,7 @@
 #define FMU_MODEL_LARGEST_ARRAY 16
 #define FMU_MODEL_TAKES_SLOPES false
 #define FMU_MODEL_ARRAY_SIZE(model) ((uint32_t)(model)->wheel_count)
-#define FMU_GROUP_STATE_READ 1U /* nothing to compute; read only once initialization has begun */
+#define FMU_GROUP_STATE_READ 1U /* nothing to compute, but not readable before initialization */
 #define FMU_GROUP_VOLTAGE 2U
 #define FMU_GROUP_RATES 4U
 #define FMU_GROUPS_ALL 6U

@@ -1,4 +1,4 @@
-/* Where each variable of the controller lives (see place.h). */
+/* The location of each variable of the controller (see location_macros.h). */
 #ifndef LACONIC_FMU_CONTROLLER_VARIABLE_LOCATIONS_H
 #define LACONIC_FMU_CONTROLLER_VARIABLE_LOCATIONS_H
 

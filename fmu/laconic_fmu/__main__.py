@@ -13,7 +13,7 @@ from .tables import tables
 
 
 def make_tables(arguments: argparse.Namespace) -> None:
-    """Writes variables table and descriptions into a folder."""
+    """Writes the variable table and the descriptions into a folder."""
     text_3 = arguments.description.read_text(encoding="utf-8")
     if token_in(text_3) != token_of(text_3):
         sys.exit(f"{arguments.description}: its token does not belong to its text any more: "
@@ -55,7 +55,7 @@ def renew_token(arguments: argparse.Namespace) -> None:
 
 
 def main() -> None:
-    """Reads the command line and does what it says."""
+    """Runs the subcommand on the command line."""
     parser = argparse.ArgumentParser(prog="laconic_fmu", description=__doc__)
     commands = parser.add_subparsers(required=True)
     command = commands.add_parser("tables")

@@ -1,4 +1,4 @@
-"""What goes into an FMU, and an FMU for a scene from the one that the build made."""
+"""The parts of an FMU, and the FMU of a scene, made from that of the build."""
 
 from __future__ import annotations
 
@@ -15,7 +15,7 @@ from .package import pack, start_file
 from .scalars import elements_of
 
 MOST_ROWS = 1000
-"""Rows that an importer writes which takes the default experiment as it is."""
+"""Rows that an importer writes if it uses the default experiment unchanged."""
 LEAST_ROWS = 50
 """Fewer show no motion."""
 
@@ -29,11 +29,11 @@ PLATFORMS = {
 """Folder in FMI 2, folder in FMI 3, ending of the binary."""
 
 COMPILER, OPTIONS = "gcc", "-std=c99 -O2 -ffp-contract=off -fno-tree-slp-vectorize"
-"""What keeps the same bits; clang knows the same options."""
+"""These options give the same bits as the build's; clang has the same ones."""
 
 
 def binary_name(version: int, platform: str, identifier: str) -> str:
-    """Where a binary lies in the archive."""
+    """The path of a binary in the archive."""
     folder_2, folder_3, ending = PLATFORMS[platform]
     return f"binaries/{folder_2 if version == 2 else folder_3}/{identifier}{ending}"
 
@@ -89,7 +89,7 @@ class Variant:
 
 @dataclass(frozen=True)
 class Content:
-    """What the FMU of a scene says."""
+    """Name, text and numbers of a scene for its FMU."""
 
     name: str
     text: str
@@ -100,8 +100,8 @@ class Content:
 
 
 def output_step(duration_s: float, step_s: float) -> float:
-    """The default experiment's step: whole internal steps, so many that they divide the run: with others, importers
-    may pass the stop time.
+    """The default experiment's step: a number of internal steps that divides that of the run, since with another one an
+    importer may pass the stop time.
 
     At most MOST_ROWS in the run and no fewer than LEAST_ROWS, with a round number of internal steps where there is one.
     A run whose number of steps has no such divisor, a prime say, is shown step by step.
@@ -126,7 +126,7 @@ Shown = Callable[[Mapping[str, bytes], Description, int], Mapping[str, bytes]]
 
 
 def scene_fmu(generic: Path, source: Path, content: Content, out: Path, variant: Variant, shown: Shown | None) -> None:
-    """Writes the FMU of a scene: the generic one with the scene's start values, name and pictures."""
+    """Writes the FMU of a scene: the generic one with the scene's start values, name, icon and page."""
     parts = {name: data for name, data in read_parts(generic).items()
              if variant.sources or not name.startswith("sources/")}
     given = parse(source.read_text(encoding="utf-8"))

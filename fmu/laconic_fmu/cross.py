@@ -1,4 +1,4 @@
-"""Binaries for other platforms, built by the C compiler that the package ziglang brings along."""
+"""Builds binaries for other platforms with the C compiler in the package ziglang."""
 
 from __future__ import annotations
 
@@ -17,7 +17,7 @@ TARGETS = {
     "aarch64-darwin": "aarch64-macos",
 }
 FLAGS = ("-std=c99", "-O2", "-g0", "-s", "-fvisibility=hidden", "-ffp-contract=off", "-fno-slp-vectorize")
-"""The same arithmetic as cmake/LaconicStrict.cmake asks for; clang contracts by default even with -std=c99."""
+"""The same arithmetic as in cmake/LaconicStrict.cmake; clang fuses multiply and add by default even with -std=c99."""
 
 
 def compile_for(platform: str, sources: Sequence[str], includes: Sequence[str], out: Path, *, shared: bool = True,

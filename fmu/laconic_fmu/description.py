@@ -37,7 +37,7 @@ class Variable:
     description: str
     attributes: Mapping[str, str]
     size: int | str | None
-    """None: a scalar; a number: so many elements; otherwise the name of the structural parameter that says it."""
+    """None: a scalar; a number: so many elements; otherwise the name of the structural parameter that sets it."""
     start: tuple[str, ...]
 
     @property
@@ -70,7 +70,7 @@ class Description:
 
     @property
     def array_parameter(self) -> Variable | None:
-        """The structural parameter that says how large the arrays are."""
+        """The structural parameter that sets the size of the arrays."""
         return next((v for v in self.variables if v.causality == "structuralParameter"), None)
 
     @property
@@ -173,7 +173,7 @@ def start_values(description: Description) -> list[tuple[int, float]]:
 
 
 def token_of(text: str) -> str:
-    """The token that belongs to a description's text: a hash of all of it but the token itself."""
+    """The token that belongs to a description's text: a hash of the text without the token."""
     blank = re.sub(r'(instantiationToken|guid)="[^"]*"', r'\1=""', text, count=1)
     digest = hashlib.sha256(blank.encode("utf-8")).hexdigest()
     return "{" + "-".join((digest[:8], digest[8:12], digest[12:16], digest[16:20], digest[20:32])) + "}"

@@ -22,7 +22,7 @@ def _plain(description: Description, variable: Variable) -> Variable:
 
 
 def without_enumerations(description: Description) -> Description:
-    """The same description with numbers in the enumerations' place."""
+    """The same description with integers instead of enumerations."""
     variables = tuple(_plain(description, variable) for variable in description.variables)
     root = ET.fromstring(ET.tostring(description.root))
     types = root.find("TypeDefinitions")

@@ -11,7 +11,7 @@ from .scalars import Scalar, ScalarUnknown, scalars, unknowns
 TYPES = {"Float64": "Real", "Int32": "Integer", "Int64": "Integer", "UInt64": "Integer",
          "Enumeration": "Enumeration", "Boolean": "Boolean"}
 INTERPOLATES = {"true": {"canInterpolateInputs": "true"}, "false": {}}
-"""FMI 2.0 gives inputs a slope where FMI 3.0 asks for them in between."""
+"""FMI 2.0 sets derivatives of inputs where FMI 3.0 sets the inputs between internal steps."""
 HEADER = ("modelName", "description", "author", "version", "copyright", "license", "generationTool",
           "variableNamingConvention")
 
@@ -93,7 +93,7 @@ def describe(description: Description, source_files: Sequence[str] = ()) -> str:
             _types(ET.SubElement(root, tag), part)
         else:
             root.append(ET.fromstring(ET.tostring(part)))
-    # the time need not be listed in FMI 2.0, and FMI Library, on which several importers stand, stumbles over it
+    # FMI 2.0 does not require the time as a variable, and FMI Library, which several importers use, fails on it
     everything = [scalar for scalar in scalars(description) if scalar.variable.causality != "independent"]
     index = {scalar.reference: number for number, scalar in enumerate(everything, start=1)}
     variables = ET.SubElement(root, "ModelVariables")

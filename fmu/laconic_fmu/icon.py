@@ -1,7 +1,7 @@
 """A vehicle's icon, drawn from its wheels: seen from above, the first body axis up.
 
-White bars are the rollers' axes as one sees them from above: those of a mecanum wheel are mirrored against the ones on
-the ground. A locked wheel is red, ball casters are grey discs.
+White bars are the axes of the rollers on top of a wheel, which one sees from above; those of a mecanum wheel are
+mirrored against the roller on the ground. A locked wheel is red, ball casters are grey discs.
 """
 
 from __future__ import annotations
@@ -14,7 +14,7 @@ from .raster import WHITE, Colour, Point, Shape, png, svg
 SIZE = 200
 MARGIN = 22
 SMALLEST = 0.16
-"""Length of a wheel against the vehicle's extent, where the wheels are smaller than can be seen."""
+"""Least length of a drawn wheel as a fraction of the vehicle's extent, so that small wheels can be seen."""
 BLUE, LIGHT, ORANGE, RED, GREY = (27, 73, 101), (190, 233, 232), (202, 103, 2), (174, 32, 18), (130, 140, 148)
 FIXED = 2
 """Number of an ordinary wheel in wheel_kind."""
@@ -81,7 +81,7 @@ def _drawing(values: Mapping[str, Sequence[float]]) -> list[tuple[Colour, list[P
 
 
 def _smaller(hull: Sequence[Point], border: float) -> list[Point]:
-    """A convex polygon with a border taken off, roughly: each corner moves towards the middle."""
+    """A convex polygon without a border of about this width: each corner moves towards the middle."""
     x, y = (sum(p[k] for p in hull) / len(hull) for k in (0, 1))
     return [(x + (px - x) * (1 - border / hypot(px - x, py - y)), y + (py - y) * (1 - border / hypot(px - x, py - y)))
             for px, py in hull]
@@ -96,7 +96,7 @@ def _frame(inset: float, radius: float) -> tuple[Point, ...]:
 
 
 def shapes(values: Mapping[str, Sequence[float]]) -> list[Shape]:
-    """What the icon shows. `values`: the start values of a vehicle's description, by name."""
+    """The polygons of the icon. `values`: the start values of a vehicle's description, by name."""
     drawing = _drawing(values)
     xs, ys = ([p[k] for _, points in drawing for p in points] for k in (0, 1))
     scale = (SIZE - 2 * MARGIN) / max(max(xs) - min(xs), max(ys) - min(ys))

@@ -13,7 +13,7 @@ DATE = (1980, 1, 1, 0, 0, 0)
 
 
 def token_hash(token: str) -> int:
-    """FNV-1a, as fmu/start_file.c has it."""
+    """FNV-1a, as in fmu/start_file.c."""
     value = 0xCBF29CE484222325
     for byte in token.encode("utf-8"):
         value = ((value ^ byte) * 0x100000001B3) & 0xFFFFFFFFFFFFFFFF
@@ -31,7 +31,7 @@ def start_file(values: Iterable[tuple[int, float]], token: str, scalar: bool) ->
 def pack(path: Path, parts: Mapping[str, bytes]) -> None:
     """Writes the FMU: parts by their name in the archive."""
     path.parent.mkdir(parents=True, exist_ok=True)
-    whole = io.BytesIO()  # a device or a pipe cannot go back to the archive's head
+    whole = io.BytesIO()  # zipfile writes back into the archive's head, which a device or a pipe does not allow
     with zipfile.ZipFile(whole, "w") as archive:
         for name in sorted(parts):
             info = zipfile.ZipInfo(name, DATE)

@@ -1,4 +1,4 @@
-"""What an FMU shows of its vehicle: icon, and a page of documentation with its name and its numbers."""
+"""The icon of a vehicle's FMU, and its page of documentation with the vehicle's name and numbers."""
 
 from __future__ import annotations
 
@@ -11,7 +11,7 @@ from .icon import icon_png, icon_svg
 
 PAGE = "documentation/index.html"
 VEHICLE_MARK = "<!-- the vehicle of a scene -->"
-"""Where the template has room for it."""
+"""The comment in the template that the vehicle's part replaces."""
 SUPPORTS = ("support_x_m", "support_y_m")
 WHEEL_COLUMNS = ("wheel_kind", "wheel_x_m", "wheel_y_m", "axle_rad", "roller_rad", "wheel_locked")
 
@@ -35,7 +35,7 @@ def _page(template: str, description: Description, drawing: str) -> str:
     for old, new in (("<title>Laconic: dynamics of wheeled robots</title>", f"<title>{name}</title>"),
                      ("<h1>Laconic</h1>", f"<h1>{name}</h1>"), (VEHICLE_MARK, own)):
         if template.count(old) != 1:
-            raise ValueError(f"{PAGE}: {old} must stand there once")
+            raise ValueError(f"{PAGE}: {old} must occur exactly once")
         template = template.replace(old, new)
     return template
 
@@ -73,7 +73,7 @@ def _values(description: Description, variable: Variable) -> str:
 
 
 def _value(description: Description, variable: Variable, element: int) -> str:
-    """A start value as one reads it: the name of an enumeration's item, six digits of a number."""
+    """A start value for readers: the name of an enumeration's item, six digits of a number."""
     text = variable.start[element]
     if variable.tag == "Enumeration":
         return escape(description.items(variable)[int(text)][0])

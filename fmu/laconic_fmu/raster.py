@@ -1,4 +1,4 @@
-"""Convex polygons to a picture: one list of shapes gives the SVG and the PNG, so that both show the same."""
+"""Draws convex polygons: one list of shapes gives the SVG and the PNG, so that both show the same."""
 
 from __future__ import annotations
 
@@ -35,7 +35,7 @@ def svg(shapes: Sequence[Shape], size: int, title: str) -> str:
 
 
 def _span(points: Sequence[Point], y: float) -> tuple[float, float] | None:
-    """From where to where a horizontal line lies in a convex polygon."""
+    """Where a horizontal line enters and leaves a convex polygon."""
     found = [x0 + (y - y0) * (x1 - x0) / (y1 - y0) for (x0, y0), (x1, y1) in pairwise((*points, points[0]))
              if (y0 <= y) != (y1 <= y)]
     return (min(found), max(found)) if found else None
@@ -47,7 +47,7 @@ def _blend(row: bytearray, k: int, colour: Colour, share: float) -> None:
 
 
 def _paint_row(row: bytearray, spans: Sequence[tuple[float, float]], colour: Colour) -> None:
-    """Pixels that all lines cover at once, the ones at the rims by how much of them is covered."""
+    """Fills the pixels that all lines cover, and blends those at the edges by the part of them that is covered."""
     size = len(row) // 3
     first, end = max(0, int(min(left for left, _ in spans))), min(size, int(max(right for _, right in spans)) + 1)
     full = max(first, ceil(max(left for left, _ in spans)))

@@ -1,4 +1,4 @@
-"""Arrays taken apart: what the FMI 2.0 and the scalar FMI 3.0 descriptions share."""
+"""Arrays as scalar variables, for the FMI 2.0 and the scalar FMI 3.0 description."""
 
 from __future__ import annotations
 

@@ -20,7 +20,7 @@ def _access(variable: Variable, states: set[str]) -> str:
 
 
 def _range(description: Description, variable: Variable) -> str:
-    """What the variable may be set to, as its type and the description have it."""
+    """Least and largest value of the variable, from the description or else its type."""
     whole = {"Float64": ("-DBL_MAX", "DBL_MAX"), "Int32": ("INT32_MIN", "INT32_MAX"), "Boolean": ("0", "1")}
     least, most = whole.get(variable.tag, ("", ""))
     if variable.tag == "Enumeration":
@@ -30,14 +30,14 @@ def _range(description: Description, variable: Variable) -> str:
 
 
 def _row(description: Description, variable: Variable, states: set[str]) -> str:
-    identifier = re.sub(r"\W+", "_", variable.name).strip("_")
+    symbol = re.sub(r"\W+", "_", variable.name).strip("_")
     size = 1 if variable.size is None else 0 if isinstance(variable.size, str) else variable.size
-    return (f'    ROW({identifier}, "{variable.name}", {size}, {TYPES[variable.tag]}, {_access(variable, states)}, '
+    return (f'    ROW({symbol}, "{variable.name}", {size}, {TYPES[variable.tag]}, {_access(variable, states)}, '
             f"{variable.attributes.get('intermediateUpdate', 'false')}, {_range(description, variable)}),")
 
 
 def _fits(description: Description) -> list[str]:
-    """Does not compile where the description promises longer arrays than the model has."""
+    """C that does not compile if the description declares longer arrays than the model has."""
     parameter = description.array_parameter
     if parameter is None:
         return []
@@ -55,9 +55,9 @@ def tables(description: Description, text_3: str, text_2: str) -> str:
         '#include "instance.h"',
         '#include "variable_locations.h"',
         "",
-        "#define ROW(identifier, name, size, type, access, intermediate, least, most) \\",
-        "    {name, FMU_OFFSET_##identifier, (uint16_t)FMU_STRIDE_##identifier, size, type, access, intermediate, \\",
-        "     least, most, FMU_GROUP_OF_##identifier, (uint32_t)FMU_TANGENT_##identifier}",
+        "#define ROW(symbol, name, size, type, access, intermediate, least, most) \\",
+        "    {name, FMU_OFFSET_##symbol, (uint16_t)FMU_STRIDE_##symbol, size, type, access, intermediate, least, \\",
+        "     most, FMU_GROUP_OF_##symbol, (uint32_t)FMU_TANGENT_##symbol}",
         "",
         *_fits(description),
         "",

@@ -1,4 +1,4 @@
-/* One input of bytes becomes a sequence of FMI calls, in either version, with arguments good and bad. */
+/* One input of bytes becomes a sequence of FMI calls, of either version, with valid and invalid arguments. */
 #include "fuzz.h"
 
 #include <float.h>
@@ -143,7 +143,7 @@ static void create(source *s, live *l) {
     }
 }
 
-/* Takes a new instance to where it can be stepped or integrated, so that what lies behind is reached often. */
+/* Brings a new instance into step mode or continuous-time mode, so that many inputs reach the calls allowed there. */
 static void begin(live *l, unsigned choice) {
     fmi3Boolean b[5];
     fmi3Float64 time;
@@ -180,16 +180,16 @@ static double next_step(source *s) {
     static const double steps[] = {0.01, 0.001, 0.1, 0.02, 1.0 / 3.0, 1.0};
     const unsigned choice = next(s);
     const double step = choice < 220 ? steps[choice % 6] : next_number(s);
-    return step > 1.0 && step <= DBL_MAX ? 1.0 : step; /* a step of 1e9 s is not wrong, only long */
+    return step > 1.0 && step <= DBL_MAX ? 1.0 : step; /* a step of 1e9 s is allowed, but takes too long */
 }
 
-/* A thousand million internal steps in one are not wrong either. */
+/* A billion internal steps in a communication step are allowed, too. */
 static bool takes_too_long(const live *l) {
     const double own = ((const fmu_instance *)l->instance)->model.step_s;
     return own > 0.0 && own < 1e-4;
 }
 
-/* Turns some bits of a good state, or cuts it, and offers it again. */
+/* Serializes a state, flips some bits or cuts the bytes, and deserializes them. */
 static void serialize(source *s, live *l) {
     const unsigned choice = next(s);
     void *state = l->state[choice % STATES];

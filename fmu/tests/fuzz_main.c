@@ -1,6 +1,6 @@
 /* fmu_fuzz FILE…               replays those inputs
  * fmu_fuzz --seconds S --seed N --out FILE   random inputs for S seconds; when a sanitizer
- *                              stops the program, FILE holds the culprit */
+ *                              ends the program, FILE holds the input that caused it */
 #define _POSIX_C_SOURCE 200809L
 #include <stdio.h>
 #include <stdlib.h>

@@ -1,4 +1,4 @@
-/* Judges the reactions of the ground during a run, and says once what they cannot be. */
+/* Checks the reactions of the ground during a run and logs once what the ground cannot provide. */
 #include "grip_warning.h"
 
 static void warn_of_lift(const fmu_instance *instance) {
@@ -6,7 +6,7 @@ static void warn_of_lift(const fmu_instance *instance) {
     const int wheels = (int)instance->model.plant.model.wheel_count, point = (int)event->point;
     fmu_log(instance, FMU_WARNING, FMU_LOG_WARNING,
             "at %.9g s %s %d lifts: its normal load would be %.4g N; the model keeps all wheels on the ground, so its "
-            "motion no longer holds (said once)",
+            "motion no longer holds (logged once)",
             instance->model.lift_s, point <= wheels ? "wheel" : "support", point <= wheels ? point : point - wheels,
             event->normal_N);
 }
@@ -17,14 +17,14 @@ static void warn_of_slip(const fmu_instance *instance) {
     const double has_N = event->normal_N > 0.0 ? friction * event->normal_N : 0.0;
     fmu_log(instance, FMU_WARNING, FMU_LOG_WARNING,
             "at %.9g s wheel %d needs %.4g N of grip and has %.4g N (friction_coefficient = %.4g): %.4g N are missing; "
-            "the model knows no slip, so its motion no longer holds (said once)",
+            "the model has no slip, so its motion no longer holds (logged once)",
             instance->model.slip_s, (int)event->point, event->needed_N, has_N, friction, event->needed_N - has_N);
 }
 
 static void warn_of_overflow(const fmu_instance *instance) {
     const fmu_model *self = &instance->model;
     fmu_log(instance, FMU_WARNING, FMU_LOG_WARNING,
-            "at %.9g s the forces on the ground leave the range of double precision; check the inputs (said once)",
+            "at %.9g s the forces on the ground leave the range of double precision; check the inputs (logged once)",
             instance->warnings_pending & FMU_SLIP_WARNING ? self->slip_s : self->lift_s);
 }
 

@@ -1,4 +1,4 @@
-/* Whether the ground can give what the motion asks for: a warning, once a run for each thing that can go wrong. */
+/* Warnings that a wheel would slip or lift, so that the model no longer holds; each is logged once in a run. */
 #ifndef LACONIC_FMU_VEHICLE_GRIP_WARNING_H
 #define LACONIC_FMU_VEHICLE_GRIP_WARNING_H
 
@@ -8,14 +8,14 @@
 #define FMU_LIFT_WARNING 2U
 #define FMU_ALL_WARNINGS 3U
 
-/* Nothing is computed where no friction coefficient is given, all is said already, or nobody listens. */
+/* False, and nothing is computed, where no friction coefficient is given, all warnings are given, or none is logged. */
 static inline bool fmu_grip_is_watched(const fmu_instance *instance) {
     return instance->model.contact.friction_coefficient > 0.0 &&
            (instance->warnings_given | instance->warnings_pending) != FMU_ALL_WARNINGS && instance->deliver != NULL &&
            (instance->log_categories & FMU_LOG_WARNING) != 0;
 }
 
-/* Notes what the reactions at that time ask of the ground and it cannot give; fmu_model_settle_warnings says it. */
+/* Makes slip and lift at that time pending warnings, which fmu_model_settle_warnings logs. */
 void fmu_grip_check(fmu_instance *instance, const laconic_reactions *ground, double time_s);
 
 #endif

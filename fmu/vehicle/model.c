@@ -1,17 +1,17 @@
-/* The vehicle behind the glue: parameters → core, steps, and outputs when they are asked for. */
+/* The vehicle as an FMU model: starts and steps the core's plant, and computes outputs when they are read. */
 #include <stdio.h>
 
 #include "grip_warning.h"
 #include "model_interface.h"
 
-/* A quotient beyond it is no count of steps: laconic_steps_in refuses it. */
+/* A larger quotient is no number of steps: laconic_steps_in refuses it. */
 #define MOST_STEPS 9e15
 
-/* Does not compile unless the core is the double-precision one and wheel_kind can be read as an int32_t. */
+/* These do not compile unless the core computes in double and a wheel_kind can be read as an int32_t. */
 typedef char fmu_core_is_double[sizeof(laconic_real) == sizeof(double) ? 1 : -1];
 typedef char fmu_kind_is_int32[sizeof(laconic_wheel_kind) == sizeof(int32_t) ? 1 : -1];
 
-/* laconic_message names a field as scenes do; here it has the name of the variable. */
+/* laconic_message names a field as a scene does; the log of an FMU names the variable. */
 static void explain(char *text, size_t size, const laconic_refusal *why) {
     char reason[256];
     const char *name = laconic_field_name(why->field);
@@ -35,12 +35,12 @@ static fmu_status discard_with(const fmu_instance *instance, const laconic_refus
                    fmu_clock_now(&instance->clock), text);
 }
 
-/* The step of a co-simulation is known at its first step only when step_s says so; until then a method that takes
- * any step stands in. */
+/* Without step_s, Co-Simulation knows its internal step only at its first communication step, and Model Exchange never.
+ * Until then the integrator is prepared for exact-flow, which accepts every step. */
 static laconic_status start_plant(fmu_model *self, laconic_refusal *why) {
     const laconic_method *method = laconic_method_by_number(self->method);
     const bool known = self->step_s > 0.0 && !self->continuous;
-    if (method == NULL || self->step_s < 0.0) /* the core says what is wrong with either */
+    if (method == NULL || self->step_s < 0.0) /* the core refuses both and gives the reason */
         return laconic_plant_start(&self->plant, &self->vehicle, method, self->step_s, &self->start, why);
     const laconic_status status =
         laconic_plant_start(&self->plant, &self->vehicle, known ? method : &laconic_exact_flow,
@@ -81,7 +81,7 @@ fmu_status fmu_model_change(fmu_instance *instance) {
     self->stale = FMU_GROUPS_ALL & ~FMU_GROUP_STATE;
     if (self->continuous) fmu_model_refresh(instance, FMU_GROUPS_OF_CONTINUOUS_STATES);
     return fmu_log(instance, FMU_OK, FMU_LOG_EVENTS,
-                   "the vehicle changed: mass %g kg, velocity and place of its body carried over", plant.model.mass_kg);
+                   "the vehicle changed: mass %g kg, its body keeps velocity and position", plant.model.mass_kg);
 }
 
 void fmu_model_input_changed(fmu_model *model) { model->stale |= FMU_GROUPS_OF_INPUT; }
@@ -90,7 +90,7 @@ void fmu_model_input_changed(fmu_model *model) { model->stale |= FMU_GROUPS_OF_I
 
 static void refresh_state(fmu_model *self) {
     laconic_start motion = {{self->nu[0], self->nu[1], self->nu[2]}, self->x_m, self->y_m, self->heading_rad};
-    /* not refused: fmu_set_states takes no number that it would refuse */
+    /* cannot be refused: fmu_set_states has already refused every number that would be */
     (void)laconic_state_project(&self->plant.state, &self->plant.model, &motion, NULL);
     laconic_wheel_angles_set(&self->plant.model, &self->plant.state, self->wheel_angle_rad);
 }
@@ -112,7 +112,7 @@ void fmu_model_refresh(fmu_instance *instance, uint32_t groups) {
     if (groups & FMU_GROUP_MOTION) {
         laconic_nu(m, s, self->nu);
         laconic_position(s, &self->x_m, &self->y_m, &self->heading_rad);
-        if (groups == FMU_GROUP_MOTION) { /* what is asked for at every step */
+        if (groups == FMU_GROUP_MOTION) { /* importers read it at every step */
             self->stale &= ~FMU_GROUP_MOTION;
             return;
         }
@@ -142,7 +142,7 @@ fmu_status fmu_model_set_step(fmu_instance *instance, double step_s) {
     return FMU_OK;
 }
 
-/* The communication step nearest to the one asked for that this instance takes, now; 0: there is none. */
+/* The whole number of internal steps nearest to step_s that does not pass the stop time, in seconds; 0: there is none. */
 static double nearest_step(const fmu_instance *instance, double step_s, double own_s) {
     const double ratio = step_s / own_s;
     if (!(ratio < MOST_STEPS)) return 0.0;
@@ -182,7 +182,7 @@ static void shift_input(laconic_input *out, const fmu_model *self, double by_s) 
     out->body_moment_Nm = u->body_moment_Nm + by_s * du->body_moment_Nm;
 }
 
-/* Inputs that change evenly over the communication step, sampled three times an internal step. */
+/* Inputs change linearly over the communication step and are sampled three times in each internal step. */
 static laconic_status run_sloped(fmu_instance *instance, uint64_t steps, laconic_refusal *why) {
     fmu_model *self = &instance->model;
     const double h = self->plant.integrator.step_s, start_s = fmu_clock_now(&instance->clock);
@@ -206,7 +206,7 @@ static laconic_status run_sloped(fmu_instance *instance, uint64_t steps, laconic
     return LACONIC_OK;
 }
 
-/* Inputs that are held, judged where each step begins: that is where a new input asks for the most. */
+/* Inputs are held. Grip is checked at the start of each step, where the reactions to a new input are largest. */
 static laconic_status run_held(fmu_instance *instance, uint64_t steps, laconic_refusal *why) {
     fmu_model *self = &instance->model;
     const double h = self->plant.integrator.step_s, start_s = fmu_clock_now(&instance->clock);
@@ -231,7 +231,7 @@ static fmu_status run_several_steps(fmu_instance *instance, uint64_t steps, uint
     return status == LACONIC_OK ? FMU_OK : discard_with(instance, &why);
 }
 
-/* One step with held inputs is what most importers ask for, again and again. */
+/* One step with held inputs: what most importers need at every communication step. */
 static bool run_one(fmu_model *self) {
     if (laconic_step(&self->plant.model, &self->plant.integrator, &self->plant.state, &self->input) != LACONIC_OK)
         return false;
@@ -244,7 +244,7 @@ fmu_status fmu_model_run(fmu_instance *instance, uint64_t steps, uint64_t *taken
     fmu_model *self = &instance->model;
     *taken = 1;
     if (steps == 1 && !self->sloped && !fmu_grip_is_watched(instance) && run_one(self)) return FMU_OK;
-    return run_several_steps(instance, steps, taken); /* says what is wrong where a single step was refused */
+    return run_several_steps(instance, steps, taken); /* tries a refused single step again, to log the reason */
 }
 
 void fmu_model_save_motion(const fmu_model *model, fmu_model_motion *motion) {

@@ -1,5 +1,5 @@
-/* The vehicle as the glue sees it: parameters and inputs as the importer set them, the core's plant, and outputs that
- * are computed when they are asked for. Plain data; only the integrator points to its (constant) method. */
+/* The vehicle as an FMU model: parameters and inputs as the importer set them, the core's plant, and outputs that are
+ * computed when they are read. Plain data; its only pointer is that of the integrator to its (constant) method. */
 #ifndef LACONIC_FMU_VEHICLE_MODEL_H
 #define LACONIC_FMU_VEHICLE_MODEL_H
 
@@ -8,11 +8,11 @@
 #define FMU_MODEL_LARGEST_ARRAY LACONIC_MAX_WHEELS
 #define FMU_MODEL_TAKES_SLOPES true
 
-/* Elements of the arrays whose size wheel_count says; it is never set beyond FMU_MODEL_LARGEST_ARRAY. */
+/* Number of elements of the arrays that have one for each wheel, at most FMU_MODEL_LARGEST_ARRAY. */
 #define FMU_MODEL_ARRAY_SIZE(model) ((uint32_t)(model)->vehicle.wheel_count)
 
-/* What must be fresh before a variable is read: bits in fmu_variable.group and fmu_model.stale. */
-#define FMU_GROUP_STATE 1U  /* Model Exchange: the core's state follows the continuous states */
+/* Groups of variables that are computed together before one is read: bits in fmu_variable.group and fmu_model.stale. */
+#define FMU_GROUP_STATE 1U  /* Model Exchange: the plant's state, computed from the continuous states */
 #define FMU_GROUP_MOTION 2U /* ν, x, y, heading */
 #define FMU_GROUP_ANGLES 8U
 #define FMU_GROUP_VELOCITY 16U
@@ -21,17 +21,17 @@
 #define FMU_GROUP_GROUND 128U
 #define FMU_GROUP_ENERGY 256U
 #define FMU_GROUP_RATES 512U
-#define FMU_GROUP_POSE 1024U /* what else the pose says: origin, wrapped heading */
+#define FMU_GROUP_POSE 1024U /* the rest of the pose: origin, wrapped heading */
 #define FMU_GROUPS_ALL 2043U
 #define FMU_GROUPS_OF_INPUT (FMU_GROUP_TORQUES | FMU_GROUP_GROUND | FMU_GROUP_RATES)
 #define FMU_GROUPS_OF_CONTINUOUS_STATES (FMU_GROUP_MOTION | FMU_GROUP_ANGLES)
 
 typedef struct fmu_model {
     bool start_needed;   /* parameters were set since the last start          */
-    bool change_needed;  /* tunable ones were set since                       */
-    bool states_changed; /* by an event, and the importer was not told yet   */
+    bool change_needed;  /* tunable parameters were set since */
+    bool states_changed; /* by an event that no event iteration has reported yet */
     bool continuous;     /* Model Exchange                                */
-    bool stand_in;       /* no step is known yet: the integrator is prepared for another method */
+    bool stand_in;       /* the step is not known yet: the integrator is prepared for exact-flow */
     double time_s;
     uint32_t stale;
 
@@ -40,15 +40,15 @@ typedef struct fmu_model {
     int32_t method;
     double step_s;
     laconic_input input;
-    bool sloped;         /* some input's slope is not 0 */
+    bool sloped;         /* the importer has set slopes */
     laconic_input slope; /* du/dt during the next step  */
 
     laconic_plant plant;
     laconic_contact contact;
-    laconic_grip_event pending_slip, pending_lift; /* where fmu_instance.warnings_pending says so */
+    laconic_grip_event pending_slip, pending_lift; /* valid where fmu_instance.warnings_pending has their bit */
     double slip_s, lift_s;                         /* their times                      */
 
-    double nu[3]; /* the continuous states; in Model Exchange the core's state follows them */
+    double nu[3]; /* the continuous states; in Model Exchange the plant's state follows them */
     double x_m, y_m, heading_rad;
     double wheel_angle_rad[LACONIC_MAX_WHEELS];
 
@@ -68,7 +68,7 @@ typedef struct fmu_model_motion {
     laconic_input input;
 } fmu_model_motion;
 
-/* A direction in the space of states, inputs and outputs. */
+/* Derivatives of states, inputs and outputs along one direction. */
 typedef struct fmu_tangent {
     double nu[3], x_m, y_m, heading_rad, wheel_angle_rad[LACONIC_MAX_WHEELS];
     laconic_input input;

@@ -1,5 +1,5 @@
-/* All that a vehicle consists of, to and from bytes. Prepared constants are not stored but prepared again: from the
- * same numbers come the same bits. */
+/* All members of the vehicle's fmu_model to and from bytes. Prepared constants are not stored but prepared again, which
+ * gives the same bits. */
 #include "model_interface.h"
 
 /* One field of a struct: an array of numbers, or one by its kind. */
@@ -68,7 +68,8 @@ static void serialize_continuous(fmu_stream *s, fmu_model *self) {
     fmu_stream_reals(s, self->wheel_angle_rad, LACONIC_MAX_WHEELS);
 }
 
-/* Outputs are computed anew; the continuous states of Model Exchange lead and stay. */
+/* After reading, outputs are stale. In Model Exchange the continuous states are not: they are stored, and `follows` states
+ * whether the plant's state must still be computed from them. */
 static void serialize_stale(fmu_stream *s, fmu_model *self) {
     bool follows = (self->stale & FMU_GROUP_STATE) != 0;
     fmu_stream_bool(s, &follows);
@@ -84,7 +85,7 @@ static int32_t method_number(const laconic_method *method) {
     return 0;
 }
 
-/* Vehicle, method and step in use → model, integrator and contact. */
+/* Prepares model, integrator and contact from the vehicle, the method and the step that were in use. */
 static bool prepare_again(fmu_model *self, int32_t number, double step_s) {
     laconic_plant *plant = &self->plant;
     const laconic_method *method = laconic_method_by_number(number);

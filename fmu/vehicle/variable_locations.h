@@ -1,5 +1,5 @@
-/* Where each variable of modelDescription.xml lives in fmu_model, what must be fresh before it is read, and where its
- * direction lives in fmu_tangent. Parameters and inputs follow from the core's list of fields. */
+/* For each variable of modelDescription.xml its offset in fmu_model, the group that must be computed before it is read, and
+ * the offset of its derivative in fmu_tangent. Parameters and inputs follow from the core's list of fields. */
 #ifndef LACONIC_FMU_VEHICLE_VARIABLE_LOCATIONS_H
 #define LACONIC_FMU_VEHICLE_VARIABLE_LOCATIONS_H
 
@@ -11,7 +11,7 @@
 #define IN_COUNT(member) FMU_PLAIN(vehicle.member##_count)
 #define IN_WHEEL(member) FMU_AT(vehicle.wheel[0].member), sizeof(laconic_wheel), 0, FMU_NO_TANGENT
 #define IN_SUPPORT(member) FMU_AT(vehicle.support[0].member), sizeof(laconic_support), 0, FMU_NO_TANGENT
-#define IN_START_ARRAY(member) FMU_AT(start.member), sizeof(double), 0, FMU_ALONG(nu) /* ν is the only one */
+#define IN_START_ARRAY(member) FMU_AT(start.member), sizeof(double), 0, FMU_ALONG(nu) /* ν is the only array */
 #define IN_START(member) FMU_AT(start.member), sizeof(double), 0, FMU_ALONG(member)
 #define IN_RUN(member) FMU_PLAIN(member)
 #define IN_INPUT_ARRAY(member) FMU_MOVING(input.member, 0)

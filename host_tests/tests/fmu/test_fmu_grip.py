@@ -1,4 +1,4 @@
-"""What the ground cannot give is said once, through the importer's logger, and costs nothing where nobody asks."""
+"""What the ground cannot provide is logged once in a run; where no warning can be logged, nothing is computed."""
 
 from __future__ import annotations
 
@@ -205,6 +205,6 @@ def test_forces_beyond_all_numbers_are_told_in_words(version: int) -> None:
         assert importer.set("voltage_V", *(1e160,) * 4) == OK
         assert importer.step(0.0, 1e-120) == OK
         assert warnings(importer) == ["at 0 s the forces on the ground leave the range of double precision; check the "
-                                      "inputs (said once)"]
+                                      "inputs (logged once)"]
         assert importer.step(1e-120, 1e-120) == OK
         assert len(warnings(importer)) == 1
