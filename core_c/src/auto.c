@@ -1,8 +1,8 @@
-/* auto: fourth order where it can be had, a step that cannot fail where not. The rule, in full:
+/* auto: a method of fourth order where one takes the step, else exact-flow, which takes every step. The rule in full:
  *
- *   h·r_max < 0.3    exact-flow-4          damping is slow beside the step: the splitting's error is least, and free
- *                                          motion keeps its energy
- *                    taylor-8              instead, in steps over which a forcing varies, while h·|w||g·ζ| < 0.5: there
+ *   h·r_max < 0.3    exact-flow-4          damping is slow beside the step: the error of the splitting is least, and
+ *                                          free motion keeps its energy
+ *                    taylor-8              instead, in steps over which b varies, while h·|w||g·ζ| < 0.5: there
  *                                          nothing is conserved, and the series is cheaper and more exact
  *   otherwise        exponential-kahan-4   keeps the steady state that fast damping leads to
  *   and where the chosen one refuses a step (it would gain energy or has no solution: h·|ν3| is large), that

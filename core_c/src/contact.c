@@ -1,4 +1,4 @@
-/* What the ground must deliver: reactions, brakes, normal loads, the no-slip margin; and how they change along a
+/* Reactions of the ground, torques of brakes, normal loads, the no-slip margin; and their derivatives along a
  * variation. */
 #include "geometry.h"
 #include "step_internals.h"
@@ -94,14 +94,14 @@ static void fill_points(laconic_contact *contact, const laconic_vehicle *vehicle
     for (int32_t i = 0; i < contact->point_count; i++) {
         contact->point_m[i][0] = (i < n ? vehicle->wheel[i].x_m : vehicle->support[i - n].x_m) - b->com_x_m;
         contact->point_m[i][1] = (i < n ? vehicle->wheel[i].y_m : vehicle->support[i - n].y_m) - b->com_y_m;
-        rows[i][0] = b->radius_m; /* a length, so that the three balances are of one unit */
+        rows[i][0] = b->radius_m; /* a length, so that the three balances have one unit */
         rows[i][1] = contact->point_m[i][0];
         rows[i][2] = contact->point_m[i][1];
     }
     least_norm(contact->normal_load_of_wrench, (const real(*)[3])rows, contact->point_count);
 }
 
-/* What the matrices do not hold: heights and supports are in no model. */
+/* Of the constants that laconic_matrices_of() has not checked. */
 static real contact_size(const laconic_contact *c, int32_t wheel_count) {
     real sum = rows_size(c->multiplier, c->constraint_count) + rows_size(c->normal_load_of_wrench, c->point_count) +
                c->com_z_m + c->friction_coefficient;
@@ -135,7 +135,7 @@ laconic_status laconic_contact_prepare(laconic_contact *contact, const laconic_v
 
 /* ------------------------------------------------------------------------- at one moment -- */
 
-/* What the reactions are linear in, of a motion or of its change. */
+/* The quantities in which the reactions are linear: of a motion, or their derivatives. */
 typedef struct instant {
     real nu_rate[3];
     real gyro[2]; /* Λ⁻¹a of (4.7) */
@@ -162,7 +162,7 @@ static void fill_instant(instant *now, const laconic_model *m, const laconic_sta
     laconic_wheel_torques(m, state, in, now->torque_Nm);
 }
 
-/* A ν' − Λ⁻¹a − (MR²)⁻¹(Ξᵀ M + w) = Cᵀκ: what the constraints' multipliers κ answer for. */
+/* A ν' − Λ⁻¹a − (MR²)⁻¹(Ξᵀ M_i + F) = Cᵀκ: the part of the balance that the multipliers κ supply. */
 static vector imbalance(const laconic_contact *c, const laconic_model *m, const instant *now) {
     const real force = m->torque_scale * m->wheel_radius_m;
     vector left = {dot(vec(c->inertia[0]), vec(now->nu_rate)), dot(vec(c->inertia[1]), vec(now->nu_rate)),
@@ -187,7 +187,7 @@ static void wheel_reaction(laconic_reactions *out, const laconic_contact *c, con
         (now->torque_Nm[i] + out->brake_Nm[i] - m->wheel_inertia_kgm2 * acceleration) * c->inverse_arm_per_m[i];
 }
 
-/* Σ N = M g; about S the loads balance the ground's horizontal force, which acts com_z below it (outer forces
+/* Σ N = M g; about S the normal loads balance the ground's horizontal force, which acts com_z below it (outer forces
  * are taken to act at the height of S). Columns of `normal_load_of_wrench`: R Σ N, Σ N ξ, Σ N η. */
 static void normal_loads(laconic_reactions *out, const laconic_contact *c, const laconic_model *m, real weight_N) {
     real wanted[3], ground[2] = {R(0), R(0)};
@@ -201,7 +201,7 @@ static void normal_loads(laconic_reactions *out, const laconic_contact *c, const
     for (int32_t i = 0; i < c->point_count; i++) out->normal_N[i] = dot(vec(c->normal_load_of_wrench[i]), vec(wanted));
 }
 
-/* All that is linear: everything but the margin. */
+/* All but the margin, which is not linear. */
 static void linear_reactions(laconic_reactions *out, const laconic_contact *c, const laconic_model *m,
                              const instant *now) {
     const vector left = imbalance(c, m, now);
@@ -218,7 +218,7 @@ static void no_slip_margin(laconic_reactions *out, const laconic_contact *c, con
     for (int32_t i = 0; i < m->wheel_count; i++) {
         const real margin = c->friction_coefficient * out->normal_N[i] - reaction_size(out, i);
         if (i == 0 || margin < out->no_slip_margin_N || margin != margin)
-            out->no_slip_margin_N = margin; /* where one is NaN, all is */
+            out->no_slip_margin_N = margin; /* one NaN makes the margin NaN */
     }
 }
 
@@ -248,7 +248,7 @@ static void fill_change(instant *change, const laconic_model *m, const laconic_m
     change->weight_N = R(0);
 }
 
-/* The margin is the least over the wheels: its change is that of the wheel which is least now. */
+/* The margin is the least over the wheels: its derivative is that of the wheel whose margin is least now. */
 static void margin_change(laconic_reactions *change, const laconic_contact *c, const laconic_model *m,
                           const laconic_reactions *now) {
     real least = R(0);

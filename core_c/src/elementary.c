@@ -27,7 +27,7 @@ real laconic_root(real x) {
     for (; x < R(0.25); x *= R(16)) scale *= R(0.25);
     guess = R(0.5) + R(0.5) * x;
     /* The guess is at most 25 % off, and each round squares that: 2.5e-2, 3e-4, 5e-8, 1.2e-15, then rounding. In a
-     * million samples the sixth round changes no bit; the seventh makes sure. */
+     * million samples the sixth round changes no bit; the seventh is a reserve. */
     for (int k = 0; k < 7; k++) guess = R(0.5) * (guess + x / guess);
     return scale * guess;
 }
@@ -65,13 +65,13 @@ laconic_binary_angle laconic_binary_angle_of(real angle_rad) {
         const real part = turns - (real)(signed_binary_angle)turns; /* in (−1, 1) */
         return (laconic_binary_angle)((laconic_binary_angle)(signed_binary_angle)(part * HALF_TURN) * 2U);
     }
-    return 0; /* NaN, or an angle too large to have a direction */
+    return 0; /* NaN, or an angle so large that its direction is not known */
 }
 
 /* φk = 1/k! − a φk+1. Below a = 4 from the series of φ5 downwards, above upwards from φ0. Downwards each step
- * multiplies what is lost before by a: φ1 is off by 17 units in the last place at a = 4, by 54 at 5. Upwards each step
- * divides by a: φ5 is off by 1.3 units at 4, by 7 at 2 and by 1,300 at ½. Of the series at a = 4, the 31st term is the
- * last to count. */
+ * multiplies the error by a: φ1 is off by 17 units in the last place at a = 4, by 54 at 5. Upwards each step
+ * divides it by a: φ5 is off by 1.3 units at 4, by 7 at 2 and by 1,300 at ½. Of the series at a = 4, the 31st term is
+ * the last that changes the sum. */
 void laconic_phi(real phi[6], real a) {
     static const real inverse_factorial[5] = {R(1), R(1), R(0.5), R(1) / R(6), R(1) / R(24)};
     if (a < R(4)) {

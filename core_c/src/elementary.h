@@ -8,20 +8,21 @@ typedef struct direction {
     real cosine, sine;
 } direction;
 
-/* √x for x >= 0 to the last bit or two; 0 for x <= 0. */
+/* √x for x >= 0 with an error of at most two units in the last place; 0 for x <= 0 and NaN. */
 real laconic_root(real x);
 
-/* e^−a for a >= 0, relative error a few units in the last place; 0 beyond the range. */
+/* e^−a for a >= 0, relative error a few units in the last place; 0 where it is below the range. */
 real laconic_decaying_exponential(real a);
 
-/* cos and sin of an angle in rad: exact to the last digits up to |angle| ~ 10⁵ (10³ in single), beyond
- * that as exact as the angle itself is. */
+/* cos and sin of an angle in rad: a few units in the last place up to |angle| ~ 10⁵ (10³ in single);
+ * beyond that the resolution of the angle bounds the error. */
 direction laconic_direction_of_angle(real angle_rad);
 
-/* cos and sin of a turn: range reduction by bits, exact for every argument. */
+/* cos and sin of a binary angle; its bits give the quarter, so range reduction is exact for every argument. */
 direction laconic_direction_of_binary_angle(laconic_binary_angle angle);
 
-/* An angle as a turn, whole turns dropped. |angle| below 10⁹ in single, 10¹⁸ in double. */
+/* An angle as a binary angle, without its whole turns. 0 for NaN and from |angle| ~ 10¹⁰ in single, 6·10¹⁹ in double
+ * on. */
 laconic_binary_angle laconic_binary_angle_of(real angle_rad);
 
 /* φk(−a) = ∫₀¹ e^{−(1−s)a} s^{k−1}/(k−1)! ds for k = 1 … 5 and a >= 0; phi[k], phi[0] = e^−a. */

@@ -1,18 +1,18 @@
 /* Exact-flow splitting: keeps energy and K of the free motion to rounding. Second order, which takes every step, and
- * extrapolated to fourth, which is exact for free motion and best while damping is slow. */
+ * extrapolated to fourth order, which is exact for free motion and most accurate while damping is slow. */
 #include "step_internals.h"
 
-/* Half-angle of the turn about w as a ratio: tan(ψ/2) = |w| numerator/denominator. */
+/* ζ rotates about w by the angle ψ over a step: tan(ψ/2) = |w| numerator/denominator. */
 typedef struct half_angle {
     real numerator, denominator;
 } half_angle;
 
-/* A number below 2¹⁰²⁴ is below 2⁻⁶ after 515 quarterings; an infinite one never is, ends as NaN, and the step is
- * refused. */
+/* A number below 2¹⁰²⁴ is below 2⁻⁶ after 515 quarterings; an infinite one never is: it becomes NaN,
+ * and the step is refused. */
 #define LARGEST_DOUBLINGS 520
 
-/* Beyond the polynomial: quarter z until it holds, then double the angle as often. With s = sin √z/√z and
- * c = cos √z up to a common factor (only their ratio counts), s(4z) = s c, c(4z) = c² − z s²; divided by
+/* For z beyond the range of the polynomial: quarters z until it is within, then doubles the angle as often. With s =
+ * sin √z/√z and c = cos √z up to a common factor (only their ratio counts), s(4z) = s c, c(4z) = c² − z s²; divided by
  * c² + |z| s² they stay of the order of 1 for either sign of z. */
 RARE_AND_OPAQUE half_angle large_half_angle(real z, real along, real across) {
     half_angle a;
@@ -31,7 +31,7 @@ RARE_AND_OPAQUE half_angle large_half_angle(real z, real along, real across) {
     return a;
 }
 
-/* |ζ + δ|² − |ζ|² = δ·(2ζ + δ) should be 0: take the excess off along ζ + δ. */
+/* δ, corrected along ζ + δ so that the rotation keeps the length: |ζ + δ|² − |ζ|² = δ·(2ζ + δ) must be 0. */
 RARE_AND_OPAQUE vector length_kept(vector zeta, vector delta) {
     const vector end = plus(zeta, delta);
     const real excess = dot(delta, plus(zeta, end)), length = square(end);
@@ -39,9 +39,9 @@ RARE_AND_OPAQUE vector length_kept(vector zeta, vector delta) {
     return minus(delta, scaled(R(0.5) * excess / length, end));
 }
 
-/* Free motion turns ζ about w by the angle ψ with ψ' = |w| g·ζ. As a Riccati equation for u = tan(ψ/2) it has
- * the solution u(h) = |w| along T/(1 − across T), T = tan √z/√z, with along = ½h g·ζ, across = ½h g·(ζ×w),
- * z = (½h)²[(g·ζ)(2(g·w)(w·ζ) − |w|² g·ζ) − (g·(ζ×w))²], either sign. */
+/* Free motion rotates ζ about w by the angle ψ with ψ' = |w| g·ζ. The Riccati equation for u = tan(ψ/2) has the
+ * solution u(h) = |w| along T/(1 − across T), T = tan √z/√z, with along = ½h g·ζ, across = ½h g·(ζ×w),
+ * z = (½h)²[(g·ζ)(2(g·w)(w·ζ) − |w|² g·ζ) − (g·(ζ×w))²] of either sign. */
 INLINE half_angle half_angle_after(const laconic_model *m, real half_step, vector zeta) {
     const real along = half_step * dot(vec(m->nu_of_zeta[2]), zeta);
     const real across = half_step * dot(vec(m->spin_gain), zeta);
@@ -55,7 +55,7 @@ INLINE half_angle half_angle_after(const laconic_model *m, real half_step, vecto
     return large_half_angle(z, along, across);
 }
 
-/* ζ⁺ − ζ = 2 τ/(1 + |w|²τ²) (ζ×w + τ (ζ×w)×w), τ = numerator/denominator: |ζ| stays to rounding. */
+/* ζ⁺ − ζ = 2 τ/(1 + |w|²τ²) (ζ×w + τ (ζ×w)×w), τ = numerator/denominator: |ζ| is kept to rounding. */
 INLINE vector free_flow(const laconic_model *m, real half_step, vector zeta) {
     const vector w = vec(m->gyro), zeta_cross_w = cross(zeta, w);
     const half_angle a = half_angle_after(m, half_step, zeta);
@@ -68,12 +68,13 @@ INLINE vector free_flow(const laconic_model *m, real half_step, vector zeta) {
     return aside > R(0.0625) * ahead ? length_kept(zeta, delta) : delta;
 }
 
-/* Damping and drive alone, exact. */
+/* The exact increment under damping and forcing, without the gyroscopic term. */
 INLINE vector linear_flow(const laconic_model *m, const laconic_decay *d, vector zeta, const parabola *b) {
     return times(vec(d->gain), minus(equivalent_constant(b, d), damping(m, zeta)));
 }
 
-/* The two halves of a parabola: s(s − 1) over half the range is a quarter of itself and a ramp. */
+/* The two halves of a parabola, each with s from 0 to 1: s(s − 1) over half the range is a quarter of s(s − 1) and a
+ * ramp. */
 static inline void split(parabola *early, parabola *late, const parabola *b) {
     const vector quarter = scaled(R(0.25), b->curve), even = scaled(R(0.5), b->change);
     early->start = b->start;
@@ -84,7 +85,7 @@ static inline void split(parabola *early, parabola *late, const parabola *b) {
     early->varies = late->varies = true;
 }
 
-/* Drive for h/2, free motion for h, drive for h/2. */
+/* Strang splitting: damping and forcing for h/2, free motion for h, damping and forcing for h/2. */
 INLINE increment flow_base(const laconic_model *m, const laconic_integrator *integrator, int level, vector zeta,
                            const parabola *b) {
     const real half_step = integrator->step_s * (level == 0 ? R(0.5) : R(0.25));

@@ -1,14 +1,14 @@
-/* Exponential Kahan: one 3×3 solve, exact for damping and drive alone, keeps every steady state. Second order, and
- * extrapolated to fourth, which is the one that is good everywhere. */
+/* Exponential Kahan: one 3×3 solve, exact for damping and constant forcing alone, keeps every steady state. Second
+ * order, and extrapolated to fourth order, which is accurate with slow and with fast damping. */
 #include "step_internals.h"
 
 typedef struct matrix {
     vector row0, row1, row2;
 } matrix;
 
-/* Cramer's rule: M⁻¹ rhs = (rhs_x c₀ + rhs_y c₁ + rhs_z c₂)/det. Where det M is next to 0 the increment is not
- * finite or so long that the step would gain energy: that is how it is noticed. Of 8 million steps at h|ν| up to
- * 1000 in single precision the energy refused 1.1 million; a test of det M against rounding found one more. */
+/* Cramer's rule: M⁻¹ rhs = (rhs_x c₀ + rhs_y c₁ + rhs_z c₂)/det. Where det M is almost 0, the increment is not finite
+ * or so long that the step would gain energy, and the check of the energy refuses it. Of 8 million steps at h|ν| up to
+ * 1000 in single precision that check refused 1.1 million; a test of det M against rounding found one more. */
 typedef struct solver {
     vector c0, c1, c2;
     real inverse_determinant;
@@ -38,9 +38,9 @@ INLINE matrix implicit_matrix(vector inverse_gain, vector g, vector w, real yaw,
     return m;
 }
 
-/* Where damping is fast beside the step, ζ follows b at once, and q with it: q(ζ,ζ⁺) is its mean, but what ζ
- * is at the step's end hangs on q there. So q, too, goes linearly from q(ζ,ζ) to q(ζ⁺,ζ⁺): beside its mean it
- * is worth the constant (κ − ½)·(their difference), and joins the change of b for mean and slope of ζ. Without
+/* Where damping is fast beside the step, ζ⁺ depends on q at the end of the step rather than on its mean q(ζ,ζ⁺). So q
+ * is taken to vary linearly from q(ζ,ζ) to q(ζ⁺,ζ⁺): besides the mean that is equivalent to the constant (mean −
+ * ½)·(their difference), with `mean` of laconic_decay, and for mean and slope of ζ it is a further change of b. Without
  * it a stiff vehicle lags by h/r times the change of q; with it by (h/r)². */
 INLINE vector follow_inlined(parabola *b, const laconic_model *m, const laconic_decay *d, const solver *s, vector zeta,
                              vector delta) {
@@ -83,13 +83,13 @@ INLINE increment kahan_increment(const laconic_model *m, const laconic_integrato
     return by;
 }
 
-/* For programs with several base steps. */
+/* For methods with several base steps. */
 INLINE increment kahan_base(const laconic_model *m, const laconic_integrator *integrator, int level, vector zeta,
                             const parabola *b) {
     return kahan_increment(m, integrator, level, zeta, b, follow);
 }
 
-/* Smaller where a program has but one: that of the second-order method where nothing varies. */
+/* Smaller where a program has a single base step: the second-order method where b never varies. */
 INLINE increment only_kahan_base(const laconic_model *m, const laconic_integrator *integrator, int level, vector zeta,
                                  const parabola *b) {
     return kahan_increment(m, integrator, level, zeta, b, follow_inlined);

@@ -1,4 +1,5 @@
-/* What the list of vehicle.h says of a field: its name in FMUs, its place in a scene, its traits. */
+/* The texts and traits that the list of vehicle.h gives each field: its name in FMUs, its key in a scene, its
+ * traits. */
 #include "internal.h"
 
 #define TEXT_OF(table, number) ((unsigned)(number) < LACONIC_FIELD_COUNT && table[number] != NULL ? table[number] : "")

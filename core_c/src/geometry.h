@@ -1,4 +1,4 @@
-/* What the vehicle's geometry gives: the body with its payload, rows of Ξ, constraint rows. */
+/* From a vehicle's geometry: the body with its payload, rows of Ξ, constraint rows. */
 #ifndef LACONIC_GEOMETRY_H
 #define LACONIC_GEOMETRY_H
 
@@ -19,8 +19,8 @@ void laconic_body_of(body *b, const laconic_vehicle *vehicle);
 /* Row i of Ξ: χ_i' = row · ν (4.3–4.4). */
 void laconic_wheel_row(real row[3], const body *b, const laconic_wheel *wheel);
 
-/* The constraints row · ν = 0 of one wheel: a fixed one's centre does not move along its axle (velocity over R); then a
- * locked one does not turn (its row of Ξ). Returns how many there are, 0 to 2. */
+/* The constraints row · ν = 0 of one wheel: the centre of a fixed one does not move along its axle (velocity over R);
+ * then a locked one does not rotate (its row of Ξ). Returns how many there are, 0 to 2. */
 int32_t laconic_constraint_rows(real rows[2][3], const body *b, const laconic_wheel *wheel);
 
 /* Direction in which a wheel's ground reaction acts, body axes: its roller's axis; of a fixed wheel its

@@ -1,4 +1,4 @@
-/* Did the ground bear what the no-slip model asked of it? First and worst instant of slipping and of lifting. */
+/* Could the ground supply the reactions of the no-slip model? First and worst instant of slipping and of lifting. */
 #include "elementary.h"
 #include "internal.h"
 
@@ -11,7 +11,7 @@ static real needed(const laconic_reactions *r, int32_t wheel) {
     return laconic_root(r->along_N[wheel] * r->along_N[wheel] + r->lateral_N[wheel] * r->lateral_N[wheel]);
 }
 
-/* Written so that a number that is none counts as a fault. */
+/* NaN counts as worse than every number. */
 static void keep_worse(finding *found, int32_t index, real value, real limit) {
     if (value >= limit || (found->point != 0 && value >= found->by_N)) return;
     found->point = index + 1;
@@ -23,7 +23,7 @@ static finding worst_slip(const laconic_contact *c, const laconic_reactions *r, 
     if (r->no_slip_margin_N >= -rounding_N || !(c->friction_coefficient > R(0))) return found;
     for (int32_t i = 0; i < wheels; i++) {
         const real needed_N = needed(r, i);
-        if (needed_N <= rounding_N) continue; /* it may lift, but nothing is there to slip */
+        if (needed_N <= rounding_N) continue; /* it may lift, but without a reaction it does not slip */
         keep_worse(&found, i, c->friction_coefficient * r->normal_N[i] - needed_N, -rounding_N);
     }
     return found;

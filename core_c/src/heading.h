@@ -37,15 +37,16 @@ static inline direction direction_of_binary_angle(laconic_binary_angle angle) {
 
 #define HALF_TURN_BIT ((laconic_binary_angle)1 << (BINARY_ANGLE_BITS - 1))
 
-/* The largest angle one step may turn: whole turns must fit signed_binary_angle. */
+/* The largest yaw of one step: its whole turns must fit signed_binary_angle. */
 #define LARGEST_YAW_CHANGE_RAD (HALF_TURN * R(2))
 
-/* A step begins only within 2⁶² turns: what it adds, below 2⁶² turns as well, then fits the count. */
+/* A step begins only within 2⁶² turns and adds less than 2⁶², so the count does not overflow. */
 static inline bool heading_has_room(const laconic_heading *heading) {
     return !LACONIC_WITH_POSE || (uint64_t)heading->turns + ((uint64_t)1 << 62) < (uint64_t)1 << 63;
 }
 
-/* Turns on by an angle and returns the heading half-way, as a turn: where the mid-step pose looks. */
+/* Adds an angle below LARGEST_YAW_CHANGE_RAD; returns the heading at half of it, in whose axes a step's displacement
+ * is. */
 INLINE laconic_binary_angle heading_advance(laconic_heading *heading, real angle_rad) {
     const real turns = angle_rad * R(0.1591549430918953358); /* 1/2π */
     const signed_binary_angle whole = (signed_binary_angle)turns;

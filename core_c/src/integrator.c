@@ -2,14 +2,14 @@
 #include "step_internals.h"
 
 /* h·r_max. On the way to a steady state exact-flow-4 errs 0.6 times as much as exponential-kahan-4 (median of 100
- * random robots), but it misses the steady state of a turning robot: at h·r = 0.1, 0.3, 1 and 3 by 4e-9, 3e-7, 3e-5 and
- * 2e-3 of the speed (median of 60; the worst ten times that), where exponential-kahan-4 has it exactly. */
+ * random robots), but the steady state of a yawing robot is inexact: at h·r = 0.1, 0.3, 1 and 3 by 4e-9, 3e-7, 3e-5 and
+ * 2e-3 of the speed (median of 60; the worst ten times that), where exponential-kahan-4 is exact. */
 #define FAST_DAMPING R(0.3)
 
 laconic_status laconic_integrator_prepare(laconic_integrator *integrator, const laconic_method *method,
                                           const laconic_model *model, laconic_real step_s, laconic_refusal *why) {
     laconic_integrator prepared = {0};
-    if (method == NULL || method->prepare == NULL) /* none, or one that only auto chooses */
+    if (method == NULL || method->prepare == NULL) /* no method, or one that only auto chooses */
         return refuse(why, LACONIC_METHOD_UNKNOWN, LACONIC_FIELD_METHOD, 0, R(0), R(0));
     if (!is_finite(step_s)) return refuse(why, LACONIC_NOT_FINITE, LACONIC_FIELD_STEP, 0, step_s, R(0));
     if (!(step_s > R(0))) return refuse(why, LACONIC_NOT_POSITIVE, LACONIC_FIELD_STEP, 0, step_s, R(0));
@@ -42,12 +42,12 @@ real laconic_fastest_decay(const laconic_model *model) {
     return fastest;
 }
 
-/* Factors of exponential steps: increments, not exponentials, so that single precision loses
- * nothing; mean and first moment of ζ' = −rζ + b with b quadratic over the step. */
+/* Factors of exponential steps: increment, mean and first moment of ζ' = −rζ + b with b quadratic over the step. They
+ * give the increment, not ζ⁺ = e^−a ζ + …, whose rounding would be relative to ζ. */
 
 /* Response of ζ to b = s^k/k!: the increment is h φk+1, the mean h φk+2, 12 times the first moment about the
- * middle 12 h (φk+2/2 − φk+3); s(s − 1) = 2·s²/2! − s. What the increment explains of mean and moment of a
- * constant b it explains of any b; the rest goes beside it. All exact for the linear equation. */
+ * middle 12 h (φk+2/2 − φk+3); s(s − 1) = 2·s²/2! − s. Mean and slope are the increment times their
+ * factor for a constant b, plus a term for change and curve of b. All are exact for the linear equation. */
 static void axis_factors(laconic_decay *d, int k, real h, real rate) {
     real phi[6], ramp, bend, mean, slope;
     laconic_phi(phi, h * rate);
@@ -78,7 +78,8 @@ void laconic_decay_levels(laconic_integrator *integrator, const laconic_model *m
     }
 }
 
-/* Tries the method's own limits rather than knowing them: prepare and the gyroscopic limit say it. */
+/* Finds the limits by a trial: laconic_integrator_prepare() refuses with the damping limit and sets the gyroscopic
+ * limit. */
 laconic_real laconic_largest_stable_step_s(const laconic_method *method, const laconic_model *model,
                                            const laconic_state *state) {
     laconic_integrator trial = {0};
@@ -96,7 +97,8 @@ laconic_real laconic_largest_stable_step_s(const laconic_method *method, const l
     return step < LARGEST_STEP_S ? step : R(0);
 }
 
-/* Compared in units of the step, never of the time: so the tolerance does not widen as time goes on. */
+/* The comparison is in units of the step, not of the interval, so that long intervals are held to the same
+ * tolerance. */
 laconic_status laconic_steps_in(double interval_s, double step_s, uint64_t *steps, laconic_refusal *why) {
     const double ratio = interval_s / step_s;
     if (!(interval_s <= DBL_MAX) || !(interval_s > 0.0))

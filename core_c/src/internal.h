@@ -8,14 +8,14 @@ typedef laconic_real real;
 
 #define R(x) ((real)(x)) /* a literal in the scalar type, converted by the compiler */
 
-/* For the parts of a step, which compilers find too large to inline: a vector passed through memory stalls. */
+/* For the parts of a step, which compilers would not inline by themselves: vectors passed through memory cost time. */
 #if defined(__GNUC__) && !defined(LACONIC_PLAIN_INLINE) /* coverage counts each function once */
 #define INLINE static inline __attribute__((always_inline))
 #else
 #define INLINE static inline
 #endif
 
-/* For what would only be in the way of the usual case. */
+/* For code that steps seldom run: inlined, it would take registers from the usual case. */
 #if defined(__GNUC__) && !defined(LACONIC_PLAIN_INLINE)
 #define RARE static __attribute__((noinline))
 #else
@@ -30,7 +30,7 @@ typedef laconic_real real;
 #define RARE_AND_OPAQUE RARE
 #endif
 
-/* |x| as an instruction: x < 0 ? -x : x would have to mind the sign of zero. */
+/* |x| in one instruction, which compilers do not make of x < 0 ? -x : x, since that keeps the sign of zero. */
 static inline real magnitude(real x) {
 #if defined(__GNUC__) && defined(LACONIC_SINGLE)
     return __builtin_fabsf(x);
@@ -43,10 +43,10 @@ static inline real magnitude(real x) {
 
 static inline bool is_finite(real x) { return magnitude(x) <= LACONIC_REAL_MAX; /* false for NaN too */ }
 
-/* 0, or NaN where x is not finite: a sum of these asks of many numbers at once. */
+/* 0, or NaN where x is not finite: a sum of these checks many numbers with one comparison. */
 static inline real zero_if_finite(real x) { return x - x; }
 
-/* Kahan's sum: what `value` is too coarse to take goes to `rest` and joins the next addend. */
+/* Compensated sum: what is too small for `value` to take up is kept in `rest` and added with the next addend. */
 static inline void sum_add(laconic_sum *sum, real addend) {
     const real wanted = addend + sum->rest;
     const real value = sum->value + wanted;
@@ -59,7 +59,7 @@ static inline laconic_sum sum_of(real value) {
     return sum;
 }
 
-/* Says why and passes the status on, so that a refusal is one line where it happens. */
+/* Fills `why`, which may be NULL, and returns the status: a refusal is one line in its caller. */
 static inline laconic_status refuse(laconic_refusal *why, laconic_status status, laconic_field field, int32_t item,
                                     real value, real limit) {
     if (why != NULL) {

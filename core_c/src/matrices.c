@@ -1,4 +1,4 @@
-/* Ξ, A, A⁻¹ and the constraint rows as the paper writes them: for people, not for stepping. */
+/* Ξ, A, A⁻¹ and the constraint rows as the paper writes them, to read and for reactions; steps do not need them. */
 #include "geometry.h"
 #include "vector.h"
 
@@ -9,7 +9,7 @@ static void collect_rows(laconic_matrices *x, const body *b, const laconic_vehic
     }
 }
 
-/* A = E + λ² ΞᵀΞ (4.6); a locked wheel counts: it is the constraint that keeps it from turning. */
+/* A = E + λ² ΞᵀΞ (4.6); with the rows of locked wheels, whose rotation the constraints prevent. */
 static void form_inertia(laconic_matrices *x, const body *b, int32_t wheel_count) {
     for (int32_t r = 0; r < 3; r++)
         for (int32_t c = 0; c < 3; c++) {
@@ -19,7 +19,7 @@ static void form_inertia(laconic_matrices *x, const body *b, int32_t wheel_count
         }
 }
 
-/* Rows of locked wheels and constraint rows are not in the model: they may be larger than it. */
+/* The check of the model does not cover rows of locked wheels and constraint rows, which it does not contain. */
 static real matrices_size(const laconic_matrices *x, int32_t wheel_count) {
     return rows_size(x->wheel_rows, wheel_count) + rows_size(x->inertia, 3) + rows_size(x->inverse_inertia, 3) +
            rows_size(x->constraint_rows, x->constraint_count) + x->lambda_wheel;

@@ -1,5 +1,5 @@
-/* What a motion looks like from outside: velocities, position and pose, wheels, energy; how they change along a
- * variation; and all of it at once. */
+/* The outputs of a state: velocities, position and pose, wheels, energy; their derivatives along a variation; and all
+ * of them together. */
 #include "step_internals.h"
 
 /* ----------------------------------------------------------------------------- velocities -- */
@@ -30,7 +30,7 @@ void laconic_position(const laconic_state *state, laconic_real *x_m, laconic_rea
     *heading_rad = heading_unwrapped(&state->heading);
 }
 
-/* The body's origin is at (x, y) − Rot(θ) s, s = QS. */
+/* The body's origin Q is at (x, y) − Rot(θ) s, with s the vector from Q to S in body axes. */
 void laconic_pose_of(laconic_pose *pose, const laconic_model *model, const laconic_state *state) {
     const direction heading = laconic_direction_of_binary_angle(state->heading.fraction);
     const real sx = model->com_x_m, sy = model->com_y_m;
@@ -53,7 +53,7 @@ void laconic_wheel_speeds(const laconic_model *model, const laconic_state *state
     speeds_of(model, zeta_of(state), speed_rad_per_s);
 }
 
-/* χ' = wheel_of_zeta · ζ, so χ is the same row of ∫ζ dt: no work per wheel in a step. */
+/* χ' = wheel_of_zeta · ζ, hence χ = wheel_of_zeta · ∫ζ dt: a step needs no operation for each wheel. */
 void laconic_wheel_angles(const laconic_model *model, const laconic_state *state, laconic_real *angle_rad) {
     const vector travel = {state->travel[0].value, state->travel[1].value, state->travel[2].value};
     const vector rest = {state->travel[0].rest, state->travel[1].rest, state->travel[2].rest};
@@ -84,7 +84,7 @@ void laconic_wheel_torques(const laconic_model *model, const laconic_state *stat
 
 /* ------------------------------------------------------ the two integrals of the free motion -- */
 
-/* 2T = M R² νᵀAν = M R² |ζ|²; of two motions, half their product under A. */
+/* M R² ζ·ζ = M R² νᵀAν = 2T; of two different motions, the bilinear form. */
 static real energy_of(const laconic_model *model, vector zeta, vector other) {
     return dot(zeta, other) * (model->mass_kg * model->wheel_radius_m * model->wheel_radius_m);
 }
@@ -116,7 +116,7 @@ void laconic_outputs_of(laconic_outputs *outputs, const laconic_plant *plant, co
     outputs->input = *input;
 }
 
-/* All but origin and energy are linear in ζ and the input: they change as they are. */
+/* All but origin and energy are linear in ζ and the input: the derivative is the same function of the variation. */
 void laconic_motion_tangent(laconic_motion_change *change, const laconic_model *model, const laconic_motion *at,
                             const laconic_variation *by) {
     const direction heading = laconic_direction_of_angle(at->heading_rad);

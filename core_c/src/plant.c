@@ -1,4 +1,4 @@
-/* vehicle, model, integrator and state in one piece, with its integer count of steps. */
+/* The plant: vehicle, model, integrator and state together, with an integer count of steps. */
 #include "internal.h"
 
 laconic_status laconic_plant_start(laconic_plant *plant, const laconic_vehicle *vehicle, const laconic_method *method,

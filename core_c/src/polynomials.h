@@ -1,13 +1,13 @@
-/* Minimax polynomials (Remez, computed in 50 digits) of the functions that a step needs close to 0. In single precision
- * they have fewer terms. */
+/* Minimax polynomials (Remez, computed in 50 digits) of functions that a step needs for small arguments. In single
+ * precision they have fewer terms. */
 #ifndef LACONIC_POLYNOMIALS_H
 #define LACONIC_POLYNOMIALS_H
 
 #include "internal.h"
 
-/* Bounds up to which the polynomials hold: a step that turns by less than a quarter of a radian, as most do. */
-#define CHORD_SMALL R(0.015625)   /* z = α² of poly_sinc and poly_j1, α half the turn */
-#define TANGENT_SMALL R(0.015625) /* |z| of poly_tangent, √z half of Ω times the turn */
+/* Bounds up to which the polynomials hold: steps with a yaw below a quarter of a radian, as most have. */
+#define CHORD_SMALL R(0.015625)   /* z = α² of poly_sinc and poly_j1, α half the yaw */
+#define TANGENT_SMALL R(0.015625) /* |z| of poly_tangent, exact_flow.c defines its z */
 
 #ifdef LACONIC_SINGLE
 
@@ -49,7 +49,7 @@ static inline real poly_sin(real x, real z) {
                                    z * (R(-2.5050758387924907033e-8) + z * R(1.5896811979428936059e-10))))));
 }
 
-/* cos x on |x| <= π/4, z = x²: error 8e-17, half a unit in the last place */
+/* cos x on |x| <= π/4, z = x²: error 8e-17, below the rounding of the sum */
 static inline real poly_cos(real z) {
     return R(1) - z * R(0.5) +
            z * z *
@@ -66,7 +66,7 @@ static inline real poly_sinc(real z) {
                                                                                      z * R(2.7547780343214621122e-6))));
 }
 
-/* (sin α − α cos α)/α³ on z = α² <= 1/64: error 3e-12, and what it multiplies is itself of second order */
+/* (sin α − α cos α)/α³ on z = α² <= 1/64: error 3e-12; its factors are themselves of second order in h */
 static inline real poly_j1(real z) {
     return R(0.33333333333070619568) + z * (R(-0.033333330306691614816) + z * R(0.0011899596015826127739));
 }

@@ -1,5 +1,5 @@
-/* vehicle → model: an orthonormal basis of the motions that the constraints leave, turned so that ΞᵀΞ,
- * and with it inertia A = E + λ²ΞᵀΞ and damping, become diagonal in it. */
+/* vehicle → model: an orthonormal basis of the motions that the constraints leave, rotated so that ΞᵀΞ, and with it the
+ * inertia A = E + λ²ΞᵀΞ and the damping, are diagonal in it. */
 #include "geometry.h"
 #include "vector.h"
 
@@ -22,12 +22,12 @@ static void remove_component(real v[3], const real unit[3]) {
     for (int k = 0; k < 3; k++) v[k] -= along * unit[k];
 }
 
-/* What the row adds to the constraints known so far; false: nothing beyond rounding. */
+/* Makes of a row its direction beyond the known constraints; false where it depends on them but for rounding. */
 static bool new_direction(real v[3], const basis *known) {
     if (!normalise(v)) return false;
     for (int32_t k = 0; k < known->count; k++) remove_component(v, known->axis[k]);
     if (!(dot(vec(v), vec(v)) > LACONIC_RANK_TOLERANCE * LACONIC_RANK_TOLERANCE)) return false;
-    for (int32_t k = 0; k < known->count; k++) remove_component(v, known->axis[k]); /* twice is enough */
+    for (int32_t k = 0; k < known->count; k++) remove_component(v, known->axis[k]); /* again, for rounding */
     return normalise(v);
 }
 
@@ -49,7 +49,7 @@ static void collect_constraints(basis *known, const body *b, const laconic_vehic
     }
 }
 
-/* Completes the constraints to a basis of space; what is added spans the allowed motions. */
+/* Completes the constraints to a basis of all motions; the axes that are added span the allowed motions. */
 static void allowed_motions(basis *allowed, const basis *constraints) {
     basis all = *constraints;
     for (int32_t axis = 0; axis < 3; axis++) {
@@ -63,7 +63,7 @@ static void allowed_motions(basis *allowed, const basis *constraints) {
     }
 }
 
-/* One-sided Jacobi: turns pairs of basis vectors until the columns of Ξ V are orthogonal. It never forms
+/* One-sided Jacobi: rotates pairs of basis vectors until the columns of Ξ V are orthogonal. It never forms
  * ΞᵀΞ, so small rates keep their digits beside large ones. */
 typedef struct pair {
     real aa, bb, ab;
@@ -104,8 +104,9 @@ static bool make_orthogonal(laconic_model *m, basis *v, int32_t a, int32_t b) {
 
 static void find_principal_axes(laconic_model *m, basis *v) {
     bool rotated = true;
-    /* Two to seven sweeps do all that counts. The threshold of make_orthogonal lies below what rounding leaves of a
-     * product of columns, so about one robot in ten goes on turning by angles of that size: 30 ends it. */
+    /* Two to seven sweeps reach the precision of the scalar type. The threshold of make_orthogonal is below the
+     * rounding of column_products, so for about one robot in ten rotations by such small angles would go on for ever:
+     * 30 ends them. */
     for (int sweep = 0; sweep < 30 && rotated; sweep++) {
         rotated = false;
         for (int32_t a = 0; a < v->count; a++)
@@ -139,7 +140,7 @@ static void clear_axis(laconic_model *m, int32_t k) {
     for (int i = 0; i < 3; i++) m->nu_of_zeta[i][k] = R(0);
 }
 
-/* w, and what the closed form of the free motion (exact_flow.c) makes of it. */
+/* w, and the constants that the closed form of the free motion (exact_flow.c) computes from w. */
 static void derive_gyro(laconic_model *m) {
     const vector g = vec(m->nu_of_zeta[2]);
     const vector w = scaled(R(1) / m->yaw_scale, cross(vec(m->nu_of_zeta[0]), vec(m->nu_of_zeta[1])));
@@ -180,11 +181,11 @@ laconic_real laconic_condition_number(const laconic_model *model) {
     return most / least;
 }
 
-/* A scale by which some formulas multiply and others divide. */
+/* The size of a scale and of its inverse: some formulas multiply by a scale, others divide by it. */
 static real scale_size(real scale) { return magnitude(scale) + R(1) / magnitude(scale); }
 
-/* Numbers so far apart that a constant left the range, or that a product of two would, turn into NaN later: say so
- * now. Every constant is looked at, those too that only outputs or a change of the vehicle use. */
+/* No constant, and no product of two, is beyond the range: else steps or outputs would become NaN. The check covers
+ * every constant, also those that only outputs or a change of the vehicle use. */
 static bool usable(const laconic_model *m) {
     const real vectors = size(vec(m->inertia)) + size(vec(m->decay_per_s)) + size(vec(m->gyro)) +
                          size(vec(m->spin_gain)) + size(vec(m->spin_curve)) + size(vec(m->yaw_rate_of_zeta));

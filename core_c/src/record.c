@@ -1,7 +1,7 @@
-/* Steps along a schedule of inputs, with rows of chosen outputs and a watch on the ground. */
+/* Steps along a schedule of inputs; records rows of chosen outputs and watches the grip. */
 #include "internal.h"
 
-/* The number that stands so many bytes into a struct that holds nothing but numbers. */
+/* The number at an offset in bytes of a struct of numbers. */
 static const real *number_at(const void *numbers, uint32_t offset) {
     return (const real *)(const void *)((const unsigned char *)numbers + offset);
 }
@@ -33,8 +33,8 @@ void laconic_record_row(laconic_recorder *recorder, const laconic_plant *plant, 
     observe(recorder, plant, input, true);
 }
 
-/* Looks where there is something to look for; returns how many of `left` steps may pass before the next look, 0 where
- * a row has no room. */
+/* Observes where a row or the watch is due; returns how many of `left` steps may pass before the next observation, 0
+ * where a row has no room. */
 static uint64_t steps_until_observation(laconic_recorder *recorder, const laconic_plant *plant,
                                         const laconic_input *input, uint64_t left) {
     if (recorder == NULL) return left;

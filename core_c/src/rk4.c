@@ -1,18 +1,18 @@
-/* Classical Runge-Kutta for ζ. Its mean, which θ, the pose and the wheel angles follow, comes from the same stages:
+/* Classical Runge-Kutta for ζ. The mean of ζ, of which pose and wheel angles are computed, comes from the same stages:
  * h(ζ1 + 2ζ2 + 2ζ3 + ζ4)/6 = h(ζ + h(k1 + k2 + k3)/6). */
 #include "step_internals.h"
 
 #define LARGEST_DAMPING R(2.785)  /* h·r: |Σ (−a)ⁿ/n!| to n = 4 exceeds 1 from a = 2.7853 on */
-#define LARGEST_ROTATION R(2.828) /* h·|w||g·ζ|: |Σ (ia)ⁿ/n!|, the turning of free motion, from 2√2 on */
+#define LARGEST_ROTATION R(2.828) /* h·|w||g·ζ|: |Σ (ia)ⁿ/n!|, the rotation of free motion, from 2√2 on */
 
-/* The angle that a stage has turned on, for forces fixed in the world. */
+/* Yaw from the step's start to a stage, for forces fixed in the world. */
 static inline real yaw_change_rad(const laconic_model *m, real h, vector zeta) {
     return LACONIC_WITH_WORLD_FORCE ? h * dot(vec(m->yaw_rate_of_zeta), zeta) : R(0);
 }
 
 static inline vector along(vector zeta, real h, vector rate) { return plus(zeta, scaled(h, rate)); }
 
-/* Simpson's weights for the increment, and for the mean with what the stages know of it. */
+/* Increment by Simpson's weights, and the mean by the same stages. */
 INLINE increment simpson(real h, vector z1, vector k1, vector k2, vector k3, vector k4) {
     const real sixth = h * (R(1) / R(6));
     const vector inner = plus(k2, k3), forth = scaled(sixth, plus(k1, inner));
@@ -33,7 +33,7 @@ INLINE increment steady_stages(const laconic_model *m, real h, vector z1, vector
     return simpson(h, z1, k1, k2, k3, k4);
 }
 
-/* The same, each stage under its own b: for samples, and for forces that turn with the heading. */
+/* The same, each stage under its own b: for samples, and for forces fixed in the world. */
 RARE increment varying_stages(const laconic_model *m, real h, vector z1, const laconic_heading *heading,
                               const laconic_forcing_samples *samples) {
     const laconic_forcing *const forcing[4] = {samples->start, samples->middle, samples->middle, samples->end};

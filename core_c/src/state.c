@@ -1,4 +1,4 @@
-/* Physical start values, or the numbers of an outer integrator → state; a motion carried over to a changed vehicle. */
+/* Start values, or the numbers of an outer integrator → state; a motion carried over to a changed vehicle. */
 #include "step_internals.h"
 
 static laconic_status check_start(const laconic_start *start, laconic_refusal *why) {
@@ -27,7 +27,7 @@ static laconic_status check_allowed(const laconic_model *m, const laconic_state 
             worst = magnitude(nu[k] - nearest[k]);
             item = k;
         }
-    /* all three motions allowed: whatever differs is rounding */
+    /* with three degrees of freedom the difference is rounding */
     if (m->dof == 3 || worst <= LACONIC_RANK_TOLERANCE * size(vec(nu))) return LACONIC_OK;
     if (magnitude(nearest[item]) <= LACONIC_RANK_TOLERANCE * size(vec(nu))) nearest[item] = R(0);
     return refuse(why, LACONIC_START_AGAINST_CONSTRAINTS, LACONIC_FIELD_START_NU, item + 1, nu[item], nearest[item]);
@@ -48,7 +48,7 @@ laconic_status laconic_state_set(laconic_state *state, const laconic_model *mode
     return LACONIC_OK;
 }
 
-/* Whatever an outer integrator has let ν drift off the constraints is projected away. */
+/* zeta_of_nu projects ν onto the allowed motions. */
 laconic_status laconic_state_project(laconic_state *state, const laconic_model *model, const laconic_start *motion,
                                      laconic_refusal *why) {
     laconic_start at_rest = *motion;
@@ -65,7 +65,8 @@ laconic_status laconic_state_project(laconic_state *state, const laconic_model *
     return status;
 }
 
-/* Two models that each fit may together leave the range: a centre of mass far from the old one, a much larger Λ. */
+/* Between two prepared models numbers may still leave the range: by a centre of mass far from the old one, a larger
+ * Λ. */
 static bool carried_in_range(const laconic_state *state, const real *angle, int32_t wheel_count) {
     real zero = zero_if_finite(state->x_m.value) + zero_if_finite(state->x_m.rest) + zero_if_finite(state->y_m.value) +
                 zero_if_finite(state->y_m.rest);
@@ -73,7 +74,8 @@ static bool carried_in_range(const laconic_state *state, const real *angle, int3
     return zero == R(0) && square(zeta_of(state)) <= LARGEST_SPEED * LARGEST_SPEED;
 }
 
-/* v_Q = v_S − θ' e_z × s stays, s = QS; so do θ' and the place of Q: x_S = x_Q + Rot(θ) s. */
+/* The body's origin Q keeps its position and velocity, v_Q = v_S − θ' e_z × s with s from Q to S; x_S = x_Q + Rot(θ)
+ * s. */
 laconic_status laconic_state_carry(laconic_state *state, const laconic_model *from, const laconic_model *to) {
     const direction heading = laconic_direction_of_binary_angle(state->heading.fraction);
     const real dx = to->com_x_m - from->com_x_m, dy = to->com_y_m - from->com_y_m;

@@ -32,13 +32,13 @@ laconic_status laconic_step(const laconic_model *model, const laconic_integrator
     return status;
 }
 
-/* What some methods never look at: a world force in the middle, which those of second order turn from the start's to
- * the end's; and where a force of 0 acts. */
+/* Some methods do not use the world force in the middle (those of second order) or the point of a force of 0; without
+ * this check they would accept an input that is not finite. */
 static inline bool world_forces_are_finite(const laconic_input *start, const laconic_input *middle,
                                            const laconic_input *end) {
     const real force = LACONIC_WITH_WORLD_FORCE ? middle->world_force_N[0] + middle->world_force_N[1] : R(0);
-    const real places = world_force_point(start) + world_force_point(middle) + world_force_point(end);
-    return zero_if_finite(force + places) == R(0);
+    const real points = world_force_point(start) + world_force_point(middle) + world_force_point(end);
+    return zero_if_finite(force + points) == R(0);
 }
 
 laconic_status laconic_step_sampled(const laconic_model *model, const laconic_integrator *integrator,

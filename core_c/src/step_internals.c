@@ -11,7 +11,7 @@ vector laconic_forcing_after_yaw(const laconic_forcing *forcing, const laconic_h
     return forcing_at(forcing, laconic_direction_of_binary_angle(angle));
 }
 
-/* ∫b·ζ over the step, divided by h: b through its values at start, middle and end, ζ by mean and slope. */
+/* (1/h)∫b·ζ dt over the step, with b the parabola through its three values and ζ given by its mean and slope. */
 static real work(vector start, vector middle, vector end, const increment *by) {
     const vector change = minus(end, start);
     const vector mean = scaled(R(1) / R(6), plus(plus(start, end), scaled(R(4), middle)));

@@ -1,6 +1,6 @@
-/* What the methods share, in the order in which a step uses it: ζ and its rate, what acts on it, what a method finds
- * out, the energy it may gain, the next state; then what the symmetric methods share, and what methods need to be
- * prepared. Inlined into each method, so that a step is one function and nothing travels through memory. */
+/* What the methods share, in the order in which a step uses it: ζ and its rate, the forcing b, the increment and the
+ * energy that it may gain, the next state; then base steps and their extrapolation, and preparation. All of it is
+ * inlined into each method, so that vectors stay in registers. */
 #ifndef LACONIC_STEP_INTERNALS_H
 #define LACONIC_STEP_INTERNALS_H
 
@@ -10,7 +10,7 @@
 
 /* ------------------------------------------------------------- ζ, and equation (4.7) in it -- */
 
-/* Beyond this a square would leave the range within a few steps: no vehicle moves like that. */
+/* Of |ζ|: beyond it squares would leave the range within a few steps. No vehicle is as fast. */
 #ifdef LACONIC_SINGLE
 #define LARGEST_SPEED R(1e9)
 #else
@@ -34,7 +34,7 @@ static inline void set_zeta(laconic_state *state, vector zeta) {
     state->zeta[2] = sum_of(zeta.z);
 }
 
-/* diag(r)ζ, what the motors' damping takes off ζ'. */
+/* diag(r)ζ, by which the motors' damping lessens ζ'. */
 static inline vector damping(const laconic_model *m, vector z) {
     return LACONIC_WITH_DAMPING ? times(vec(m->decay_per_s), z) : none;
 }
@@ -45,18 +45,18 @@ static inline vector zeta_rate(const laconic_model *m, vector z, vector b) {
     return plus(minus(gyroscopic, damping(m, z)), b);
 }
 
-/* Free motion turns faster than an explicit method bears. */
+/* |g·ζ| is beyond the gyroscopic limit of an explicit method. */
 static inline bool beyond_rotation(const laconic_model *m, const laconic_integrator *integrator, vector zeta) {
     return magnitude(dot(vec(m->nu_of_zeta[2]), zeta)) > integrator->gyro_limit;
 }
 
-/* ----------------------------------------------------------------- what acts: input → b -- */
+/* ----------------------------------------------------------------- forcing: input → b -- */
 
-/* Anything that acts at all. */
+/* 0 in a build without any input: b = 0. */
 #define LACONIC_WITH_FORCING \
     (LACONIC_WITH_VOLTAGE || LACONIC_WITH_AXLE_TORQUE || LACONIC_WITH_BODY_WRENCH || LACONIC_WITH_WORLD_FORCE)
 
-/* Ξᵀ(c1 U + T)/(M R²): power of a wheel's torque is torque · χ'. */
+/* GᵀΞᵀ(c1 U + T)/(M R²), since the power of a wheel's torque is torque · χ'. */
 static inline vector b_of_torques(const laconic_model *m, const laconic_input *in) {
     vector b = none;
     for (int32_t i = 0; i < LACONIC_WHEELS(m); i++) {
@@ -78,10 +78,10 @@ static inline void add_world_force(laconic_forcing *forcing, const laconic_model
     store(forcing->sine, minus(scaled(fy, along), scaled(fx, across)));
 }
 
-/* What does not act costs nothing. Written so that NaN counts as acting and is noticed in the step. */
+/* An input of 0 costs no operations. NaN counts as acting, so that the step is refused. */
 static inline bool acts(real a, real b, real c) { return !(a == R(0) && b == R(0) && c == R(0)); }
 
-/* A force of 0 is not looked at, but where it acts must be a place all the same. NaN or infinity where it is none. */
+/* A step does not use the point of a force of 0, but that must be finite, too. NaN or infinity where it is not. */
 static inline real world_force_point(const laconic_input *input) {
     return LACONIC_WITH_WORLD_FORCE ? input->world_force_point_m[0] + input->world_force_point_m[1] : R(0);
 }
@@ -97,47 +97,47 @@ static inline void forcing_of(laconic_forcing *forcing, const laconic_model *mod
     if (LACONIC_WITH_WORLD_FORCE && forcing->rotates) add_world_force(forcing, model, input);
 }
 
-/* b of a forcing that turns. */
+/* b of a forcing that rotates with the heading. */
 static inline vector forcing_at(const laconic_forcing *forcing, direction heading) {
     return plus(vec(forcing->constant),
                 plus(scaled(heading.cosine, vec(forcing->cosine)), scaled(heading.sine, vec(forcing->sine))));
 }
 
-/* The same at the heading of a state, turned on by an angle. */
+/* The same at the heading of a state after a further yaw. */
 vector laconic_forcing_after_yaw(const laconic_forcing *forcing, const laconic_heading *heading, real yaw_change_rad);
 
-/* b of any forcing; the heading is looked at only where a force turns with it. */
+/* b of any forcing; the heading is used only where the forcing rotates. */
 INLINE vector forcing_after_yaw(const laconic_forcing *forcing, const laconic_heading *heading, real yaw_change_rad) {
     if (LACONIC_WITH_WORLD_FORCE && forcing->rotates)
         return laconic_forcing_after_yaw(forcing, heading, yaw_change_rad);
     return vec(forcing->constant);
 }
 
-/* Known beforehand, it leaves of the code below a base step and nothing else. */
+/* A build in which b never varies keeps only base steps of the code below. */
 #define ONLY_STEADY (!LACONIC_WITH_WORLD_FORCE && !LACONIC_WITH_SAMPLED_INPUT)
 
 static inline bool steady_over(const laconic_forcing_samples *samples) { return ONLY_STEADY || samples->steady; }
 
 /* ---------------------------------------------------- what a method finds out about a step -- */
 
-/* What a method finds out about one step. */
+/* The result of a method for one step. */
 typedef struct increment {
     vector delta; /* ζ(t+h) − ζ(t)                                                            */
     vector mean;  /* mean of ζ over the step                                                  */
     vector slope; /* 12/h² times the first moment of ζ about the middle of the step: = delta
-                     where ζ changes evenly, 0 where it jumps at once                         */
+                     where ζ changes linearly, 0 where it jumps at the start                  */
 } increment;
 
 /* 2⁻¹⁰, relative to |ζ|² + |ζ⁺|². Of 850 free steps of the two Kahan methods none with an error below 1e-3 of |ζ|
- * gained as much, while those whose error exceeds |ζ| nearly all did: a step that is refused was worth little. */
+ * gained as much, while those whose error exceeds |ζ| nearly all did: steps that are refused are inaccurate. */
 #define ENERGY_TOLERANCE R(0.0009765625)
 
-/* What `passive` asks, with all that the loads do over the step. */
+/* Decides as `passive`, with b as it varies over the step. */
 bool laconic_growth_is_forced(const laconic_model *model, const laconic_state *state, real step_s,
                               const laconic_forcing_samples *samples, const increment *by);
 
-/* Exactly: |ζ⁺|² − |ζ|² = 2∫(b·ζ − ζ·diag(r)ζ)dt <= 2∫ b·ζ dt. Tried first as if b were held; false for NaN, and
- * in free motion for infinity. */
+/* Does a step gain no more energy than the forcing supplies? Exactly, |ζ⁺|² − |ζ|² = 2∫(b·ζ − ζ·diag(r)ζ)dt <= 2∫ b·ζ
+ * dt. Tested first with b at the start. False for NaN, and in free motion for infinity. */
 INLINE bool passive(const laconic_model *model, const laconic_state *state, real step_s,
                     const laconic_forcing_samples *samples, vector zeta, increment by) {
     const real before = square(zeta), after = square(plus(zeta, by.delta));
@@ -148,7 +148,7 @@ INLINE bool passive(const laconic_model *model, const laconic_state *state, real
     return laconic_growth_is_forced(model, state, step_s, samples, &by);
 }
 
-/* What to say of a step that is not. */
+/* The status of a step that is not passive. */
 static inline laconic_status not_passive(increment by) {
     return is_finite(size(by.delta)) ? LACONIC_STEP_GAINS_ENERGY : LACONIC_STEP_SINGULAR;
 }
@@ -160,7 +160,7 @@ typedef struct pose_change { /* over one step */
     real yaw_change_rad;
 } pose_change;
 
-/* sinc α and ½ j₁(α), α half the turn of the step. */
+/* sinc α and ½ j₁(α), with α half the yaw of the step. */
 INLINE void chord_factors(real *sinc, real *half_j1, real alpha) {
     const real z = alpha * alpha;
     if (z <= CHORD_SMALL) {
@@ -200,8 +200,8 @@ INLINE void add_to_sums(laconic_sum sums[3], vector v) {
     sum_add(&sums[2], v.z);
 }
 
-/* Far below what has decayed for good, but so that its square is still a normal number: processors are many times
- * slower with subnormal ones. Added and taken away again, it leaves nothing of what is smaller. */
+/* A component of ζ far below AT_REST becomes 0 when AT_REST is added and subtracted. Otherwise a decaying motion would
+ * end in subnormal numbers, with which many processors are slow; the square of AT_REST is still a normal number. */
 #ifdef LACONIC_SINGLE
 #define AT_REST R(1e-18)
 #else
@@ -214,7 +214,7 @@ static inline void flush_decayed(laconic_sum sums[3]) {
     sums[2].value = (sums[2].value + AT_REST) - AT_REST;
 }
 
-/* Looked at first: model and step are bounded when they are prepared, so with ζ in range all that follows is finite. */
+/* Precondition of all that follows in a step: as model and step are bounded, it is then finite. */
 static inline bool in_range(vector zeta, vector delta) {
     return square(zeta) + square(plus(zeta, delta)) <= LARGEST_SPEED * LARGEST_SPEED;
 }
@@ -240,7 +240,7 @@ INLINE laconic_status advance(laconic_state *state, const laconic_model *model, 
     return accept_step(state, by.delta, path, moved);
 }
 
-/* For methods that can go wrong: no energy out of nothing, and no increment that is none. */
+/* For methods whose increment may gain energy or not be finite: such a step is refused. */
 INLINE laconic_status advance_if_passive(laconic_state *state, const laconic_model *model, real step_s,
                                          const laconic_forcing_samples *samples, vector zeta, increment by) {
     if (!passive(model, state, step_s, samples, zeta, by)) return not_passive(by);
@@ -252,14 +252,14 @@ INLINE laconic_status advance_if_passive(laconic_state *state, const laconic_mod
 /* b over one base step: start + change·s + curve·s(s − 1), s from 0 to 1. */
 typedef struct parabola {
     vector start, change, curve;
-    bool varies; /* false: change and curve are 0 and not looked at */
+    bool varies; /* false: change and curve are 0 and not set */
 } parabola;
 
 /* A second-order symmetric step of size step_s/2^level from ζ under b. */
 typedef increment (*base_step)(const laconic_model *model, const laconic_integrator *integrator, int level, vector zeta,
                                const parabola *b);
 
-/* What a b that varies adds to one that does not. */
+/* What change and curve of b add, with the factors `ramp` and `bend` of laconic_decay. */
 static inline vector response(const real ramp[3], const real bend[3], const parabola *b) {
     return plus(times(vec(ramp), b->change), times(vec(bend), b->curve));
 }
@@ -269,7 +269,7 @@ INLINE vector equivalent_constant(const parabola *b, const laconic_decay *d) {
     return b->varies ? plus(b->start, response(d->mean, d->bend, b)) : b->start;
 }
 
-/* Mean and first moment of ζ over the step from its increment: exact for damping and drive alone, and
+/* Mean and first moment of ζ over the step from its increment: exact for damping and forcing alone, and
  * symmetric, so that they gain two orders by extrapolation as the increment does. */
 INLINE increment increment_of(const laconic_decay *d, vector zeta, vector delta, const parabola *b) {
     increment by;
@@ -283,8 +283,8 @@ INLINE increment increment_of(const laconic_decay *d, vector zeta, vector delta,
     return by;
 }
 
-/* (4 · two half steps − one full step)/3: the base's error has only even powers of h, so this is fourth order.
- * The slope of the two halves together is 3/2 of the height between their means, plus a quarter of each own. */
+/* (4 · two half steps − one full step)/3: the base's error has only even powers of h, so this is of fourth order. The
+ * slope of two halves together is 3/2 of the difference of their means, plus a quarter of the slope of each. */
 INLINE increment combine(increment whole, increment first, increment second) {
     const real third = R(1) / R(3);
     const vector delta = plus(first.delta, second.delta);
@@ -309,7 +309,7 @@ INLINE increment base_alone(base_step base, const laconic_model *m, const laconi
     return base(m, integrator, 0, zeta, &b);
 }
 
-/* Written out, so that what the whole step and its first half share is computed once. */
+/* Written out, so that compilers compute common parts of the whole step and its first half once. */
 INLINE increment extrapolated(base_step base, const laconic_model *m, const laconic_integrator *integrator, vector zeta,
                               const laconic_forcing_samples *samples) {
     const parabola b = held(samples);
@@ -319,7 +319,7 @@ INLINE increment extrapolated(base_step base, const laconic_model *m, const laco
 
 /* ------------------------------------------------------------------------- b varies ----- */
 
-/* A base step within a step: its size, where it begins, what acts. */
+/* A base step within a step: its size, its start and its forcing. */
 typedef struct substep {
     int level;
     vector zeta;
@@ -327,14 +327,14 @@ typedef struct substep {
     const laconic_forcing *start, *end;
 } substep;
 
-/* 2 (b₀ + b₁ − 2 b½): the parabola through three samples; its half bends a quarter as much. Of a force fixed in
- * the world it sees nothing: that one is followed by its heading. */
+/* 2 (b₀ + b₁ − 2 b½): the parabola through three samples; the curve of its half is a quarter. Without forces
+ * fixed in the world: their b is computed from the heading. */
 INLINE vector curve_of(const laconic_forcing_samples *samples, int level) {
     const vector ends = plus(vec(samples->start->constant), vec(samples->end->constant));
     return scaled(level == 0 ? R(2) : R(0.5), minus(ends, scaled(R(2), vec(samples->middle->constant))));
 }
 
-/* b at the substep's start, and how it goes on as far as the inputs say. */
+/* b over a substep, as far as it does not depend on the heading at the end. */
 INLINE parabola parabola_of(const laconic_heading *heading, const laconic_forcing_samples *samples, const substep *p) {
     parabola b;
     b.varies = true;
@@ -345,8 +345,8 @@ INLINE parabola parabola_of(const laconic_heading *heading, const laconic_forcin
 }
 
 /* One base step; zeta and yaw_change_rad move on to its end. A force fixed in the world makes b depend on the heading
- * there, which the step itself decides: iterate. Three rounds leave an error of h⁷, so symmetry, which extrapolation
- * rests on, is kept. */
+ * there, which is a result of the step: hence the iteration. Three rounds leave an error of h⁷, so the step is
+ * symmetric as far as extrapolation needs it. */
 INLINE increment take_substep(base_step base, const laconic_model *m, const laconic_integrator *integrator,
                               const laconic_heading *heading, const laconic_forcing_samples *samples, substep *p) {
     const bool rotates = LACONIC_WITH_WORLD_FORCE && (p->start->rotates || p->end->rotates);
@@ -371,7 +371,7 @@ INLINE increment base_alone_varying(base_step base, const laconic_model *m, cons
     return take_substep(base, m, integrator, &state->heading, samples, &whole);
 }
 
-/* A loop, so that the base is inlined once: the halves follow each other from where the whole began. */
+/* A loop, so that the base step is inlined once: the whole step, then the two halves, from the same start. */
 INLINE increment extrapolated_varying(base_step base, const laconic_model *m, const laconic_integrator *integrator,
                                       const laconic_state *state, const laconic_forcing_samples *samples) {
     increment parts[3];
@@ -393,14 +393,14 @@ INLINE increment extrapolated_varying(base_step base, const laconic_model *m, co
 /* A build whose integrator is a prepared constant leaves preparation out. */
 #define PREPARE(function) (LACONIC_WITH_PREPARE ? (function) : NULL)
 
-#define SMALLEST_STEP_S (R(8) * LACONIC_REAL_MIN) /* one over a quarter of it is still a number */
-#define LARGEST_STEP_S R(1e9)                     /* thirty years: beyond, products with speeds would leave the range */
+#define SMALLEST_STEP_S (R(8) * LACONIC_REAL_MIN) /* 1/(a quarter of it) is finite */
+#define LARGEST_STEP_S R(1e9)                     /* beyond it products with speeds would leave the range */
 
 /* max r_k */
 real laconic_fastest_decay(const laconic_model *model);
 
-/* Sets how fast a motion an explicit method bears, from where its stability ends on the real and on the imaginary
- * axis; refuses a step that is too large for the damping. */
+/* Sets the gyroscopic limit of an explicit method, and refuses a step beyond its damping limit. `largest_damping` and
+ * `largest_rotation`: the ends of its stability interval on the real and on the imaginary axis. */
 laconic_status laconic_explicit_limits(laconic_integrator *integrator, const laconic_model *model, real largest_damping,
                                        real largest_rotation, laconic_refusal *why);
 

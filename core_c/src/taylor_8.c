@@ -1,12 +1,12 @@
 /* Taylor series of order 8. (4.7) is quadratic, so each coefficient of ζ follows from the earlier ones by one product
  * of series: with ζ = Σ ζn sⁿ over the step (s from 0 to 1),
  *     (n + 1) ζn+1 = h [ Σj (g·ζj)(ζn−j × w) − diag(r) ζn + bn ].
- * θ follows term by term, and the pose by a quadrature of the same order. Explicit: for large steps of vehicles whose
- * damping is slow beside them, where it is far more exact than anything else of its cost. */
+ * θ follows term by term, and the pose by a quadrature of the same order. Explicit: for large steps of vehicles
+ * whose damping is slow beside the step, where its error is far below that of any other method of its cost. */
 #include "step_internals.h"
 
 #define LARGEST_DAMPING R(4.313)  /* h·r: |Σ (−a)ⁿ/n!| to n = 8 exceeds 1 from a = 4.3136 on   */
-#define LARGEST_ROTATION R(3.395) /* h·|w||g·ζ|: |Σ (ia)ⁿ/n!|, the turning of free motion, from 3.3951 on */
+#define LARGEST_ROTATION R(3.395) /* h·|w||g·ζ|: |Σ (ia)ⁿ/n!|, the rotation of free motion, from 3.3951 on */
 
 /* -------------------------------------------------------- the motion over one step as a series -- */
 
@@ -21,10 +21,10 @@ typedef struct motion_series {
 static const real inverse[ORDER + 1] = {R(1),       R(1.0 / 2), R(1.0 / 3), R(1.0 / 4), R(1.0 / 5),
                                         R(1.0 / 6), R(1.0 / 7), R(1.0 / 8), R(1.0 / 9)}; /* 1/(n + 1) */
 
-/* g·ζ is Λ times the yaw rate: this times it is what the heading turns in a step. */
+/* h/Λ: the yaw of a step is h/Λ times the mean of ν3 = g·ζ. */
 static inline real yaw_per_nu3(const laconic_model *m, real h) { return h / m->yaw_scale; }
 
-/* ---- b as a series: parabolas through the samples, and the heading that turns a force fixed in the world -- */
+/* ---- b as a series: parabolas through the samples, and the heading for a force fixed in the world -- */
 
 typedef struct forcing_series {
     vector constant[3], cosine[3], sine[3];
@@ -45,7 +45,7 @@ static forcing_series forcing_series_of(const laconic_forcing_samples *samples, 
     forcing_series f;
     parabola_terms(f.constant, at[0]->constant, at[1]->constant, at[2]->constant);
     f.rotates = LACONIC_WITH_WORLD_FORCE && (at[0]->rotates || at[1]->rotates || at[2]->rotates);
-    if (!f.rotates) return f; /* the rest is not looked at */
+    if (!f.rotates) return f; /* the rest is not used */
     for (int k = 0; k < 3; k++)
         if (!at[k]->rotates) at[k] = &still;
     parabola_terms(f.cosine, at[0]->cosine, at[1]->cosine, at[2]->cosine);
@@ -67,7 +67,7 @@ static void add_heading_term(forcing_series *f, const motion_series *c, real per
     f->heading_sine[n] = per_nu3 * inverse[n - 1] * sine;
 }
 
-/* b0: what acts before anything has moved. */
+/* b0: b at the step's start. */
 static vector first_forcing(const forcing_series *f) {
     const vector b = f->constant[0];
     if (!f->rotates) return b;
@@ -86,8 +86,8 @@ static vector forcing_term(forcing_series *f, const motion_series *c, real per_n
 
 /* --------------------------------------------------------------------------- the terms of ζ -- */
 
-/* The Jacobian of the rate at the step's start, by rows: of the product of series, and of the damping, it is the part
- * that the newest coefficient takes. */
+/* Rows of the Jacobian of the rate at the step's start. In the recursion it multiplies the newest coefficient ζn: the
+ * terms j = 0 and j = n of the product, and the damping. */
 typedef struct jacobian {
     vector x, y, z;
 } jacobian;
@@ -119,7 +119,7 @@ INLINE vector first_term(motion_series *c, vector zeta_cross_w[ORDER + 1], const
     return scaled(h, plus(minus(scaled(c->yaw[0], zeta_cross_w[0]), damping(m, zeta)), b));
 }
 
-/* Keeps ζn, returns ζn+1. Only the last two operations wait for ζn. */
+/* Stores ζn, returns ζn+1. Only the last two operations depend on ζn, so that processors can overlap the others. */
 INLINE vector next_term(motion_series *c, vector zeta_cross_w[ORDER + 1], const laconic_model *m, const jacobian *at,
                         real h, int n, vector zeta, vector b) {
     vector older = b;
@@ -148,7 +148,7 @@ RARE void varying_series(motion_series *c, const laconic_model *m, real h, vecto
 
 /* ------------------------------------------------ the pose: a quadrature of the same order -- */
 
-#define NODES 4 /* of Gauss, exact to degree 7 */
+#define NODES 4 /* of Gauss' quadrature, exact to degree 7 */
 
 static const real node[NODES] = {R(0.069431844202973712388), R(0.33000947820757186760), R(0.66999052179242813240),
                                  R(0.93056815579702628761)};
@@ -166,14 +166,14 @@ static inline real zeta_z(const motion_series *c, int n) { return c->zeta[n].z; 
 
 static inline real mean_yaw(const motion_series *c, int n) { return inverse[n] * c->yaw[n]; }
 
-/* A polynomial at all nodes at once: compilers take them two or four at a time. */
+/* A polynomial at all nodes in one loop, which compilers vectorise. */
 INLINE void at_nodes(real value[NODES], const motion_series *c, polynomial coefficient) {
     for (int k = 0; k < NODES; k++) value[k] = coefficient(c, ORDER);
     for (int n = ORDER - 1; n >= 0; n--)
         for (int k = 0; k < NODES; k++) value[k] = node[k] * value[k] + coefficient(c, n);
 }
 
-/* All at once, too, where they are small. */
+/* In one loop, too, where the angles are small. */
 static inline void directions_at_nodes(real cosine[NODES], real sine[NODES], const real angle[NODES]) {
     real sum = R(0);
     for (int k = 0; k < NODES; k++) sum += magnitude(angle[k]);

@@ -1,4 +1,4 @@
-/* Three numbers at a time. Written out, not looped: at -O2 compilers keep loops of three as loops. */
+/* Vectors of three numbers. Written out, since at -O2 compilers do not unroll loops of three. */
 #ifndef LACONIC_VECTOR_H
 #define LACONIC_VECTOR_H
 

@@ -1,4 +1,4 @@
-/* Is every number of a vehicle usable? Tests are written so that NaN fails them. */
+/* Checks that every number of a vehicle is usable. */
 #include "elementary.h"
 
 typedef struct checked_number {
@@ -20,8 +20,7 @@ static const checked_number of_support[] = {LACONIC_SUPPORT_FIELDS(IN_SUPPORT, )
 
 #define COUNT(array) (sizeof(array) / sizeof(array)[0])
 
-/* Beyond it, neighbouring numbers are further apart than the smallest angle that counts: there is no direction any
- * more. */
+/* Beyond it neighbouring numbers differ by more than the smallest angle that counts, so the direction is not known. */
 #define LARGEST_ANGLE (LACONIC_SMALLEST_ROLLER_SINE / LACONIC_EPSILON)
 
 static laconic_status check_number(real value, const checked_number *number, int32_t item, laconic_refusal *why) {

@@ -16,7 +16,7 @@ static inline vector b_of_wrench(const laconic_model *m, wrench w) {
     return scaled(m->torque_scale, plus(along, plus(across, scaled(w.moment, vec(m->yaw_rate_of_zeta)))));
 }
 
-/* The world force turned into body axes. */
+/* The world force in body axes, as a wrench about S. */
 static inline wrench world_force_seen(const laconic_input *in, direction heading) {
     const real *f = in->world_force_N, *r = in->world_force_point_m;
     const real along = heading.cosine * f[0] + heading.sine * f[1];
@@ -30,7 +30,7 @@ static inline wrench wrench_of(const laconic_input *in, direction heading) {
     return (wrench){in->body_force_N[0] + w.along, in->body_force_N[1] + w.across, in->body_moment_Nm + w.moment};
 }
 
-/* Its change: a body that turns by dθ sees a force that is fixed in the world turn by −dθ. */
+/* Its derivative along a variation: when the body yaws by dθ, a world force rotates by −dθ in body axes. */
 static inline wrench wrench_change(const laconic_input *in, direction heading, const laconic_variation *by) {
     const real *r = in->world_force_point_m, *dr = by->input.world_force_point_m;
     const wrench force = world_force_seen(in, heading), change = world_force_seen(&by->input, heading);
