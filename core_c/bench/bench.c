@@ -1,4 +1,4 @@
-/* The steps of the bench: through the scene's segments, again and again. */
+/* Takes the steps of the bench, through the scene's segments in a cycle. */
 #include "bench.h"
 
 static laconic_state state;

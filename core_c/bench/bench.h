@@ -1,7 +1,7 @@
 /* A scene's steps in a loop: the same code is timed on the host, counted there and on a Cortex-M.
  *
- * Model, integrator and start are generated constants (`laconic trim`), and so are the segments here, so what the
- * linker keeps is what a control loop needs. */
+ * Model, integrator and start are generated constants (`laconic trim`), and so are the segments here, so the
+ * linker keeps only what a control loop needs. */
 #ifndef BENCH_H
 #define BENCH_H
 
@@ -10,7 +10,7 @@
 typedef struct bench_segment { /* some steps with the input held, or one step with it sampled */
     uint32_t steps;
     bool sampled;
-    laconic_input start, middle, end; /* held: start alone */
+    laconic_input start, middle, end; /* held: only start is used */
 } bench_segment;
 
 extern const bench_segment bench_segments[];
@@ -21,10 +21,10 @@ void bench_reset(void);
 /* One step of the current segment. */
 laconic_status bench_step(void);
 
-/* Steps on through the segments, again and again. The last refusal is returned, and the run goes on. */
+/* Takes steps through the segments in a cycle. A refusal does not end the run; the last one is returned. */
 laconic_status bench_run(uint32_t steps);
 
-/* Where the vehicle is now. */
+/* The present state. */
 const laconic_state *bench_state(void);
 
 #endif

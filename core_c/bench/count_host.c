@@ -1,4 +1,4 @@
-/* count STEPS: takes that many steps and writes the state; instructions a step are I(2n) − I(n), over n. */
+/* count STEPS: takes that many steps and writes the state; a step takes (I(2n) − I(n))/n instructions. */
 #include "write_state.h"
 
 #include <stdio.h>

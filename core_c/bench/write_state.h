@@ -1,4 +1,4 @@
-/* The state as text, to the bit: `name hexadecimal`, one number a line. */
+/* Writes every bit of a state as text: `name hexadecimal`, one number a line. */
 #ifndef WRITE_STATE_H
 #define WRITE_STATE_H
 

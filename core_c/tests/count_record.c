@@ -1,6 +1,6 @@
 /* count_record KIND EVERY WATCH STEPS: a mecanum carriage along a schedule, so that instructions can be counted. KIND
  * held or sampled; EVERY: steps between two rows of its usual outputs, 0: none; WATCH: 0 nothing of the ground, 1 the
- * no-slip margin in the rows, 2 watched at every step. Differences of two counts are what a step or a row costs. */
+ * no-slip margin in the rows, 2 watched at every step. The difference of two counts is the cost of a step or a row. */
 #include "vehicles.h"
 
 #include <stdio.h>

@@ -1,5 +1,5 @@
 /* Runs the self-test under a mode of the processor (nearest, up, down, zero, ftz, daz) and prints what it finds.
- * Compiled by host_tests with options that spoil arithmetic. */
+ * host_tests compiles it with options that break the arithmetic. */
 #include <fenv.h>
 #include <stdio.h>
 #include <string.h>

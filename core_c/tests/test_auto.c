@@ -63,8 +63,8 @@ static void what_exact_flow_cannot_take_is_refused(void) {
     assert_step_refused(&laconic_auto, v, start_with(0, 0, 0), input, 1.0, LACONIC_OVERFLOW);
 }
 
-/* A force fixed in the world varies as the vehicle turns. */
-static void a_load_that_varies_is_followed_by_the_series(void) {
+/* b of a force fixed in the world varies as the vehicle yaws. */
+static void forcing_that_varies_is_stepped_by_taylor_8(void) {
     const laconic_model m = model_of(with_motors(three_wheels()));
     const laconic_input input = every_input();
     laconic_state a = moving(&m, 1, 2, 3), b = a;
@@ -73,7 +73,7 @@ static void a_load_that_varies_is_followed_by_the_series(void) {
     TEST_ASSERT_EQUAL_MEMORY(&b, &a, sizeof a);
 }
 
-static void but_not_when_it_turns_fast(void) {
+static void but_not_while_the_vehicle_yaws_fast(void) {
     const laconic_model m = model_of(with_motors(three_wheels()));
     const laconic_input input = every_input();
     laconic_state a = moving(&m, 1, 2, 300), b = a;
@@ -112,8 +112,8 @@ int main(void) {
     RUN_TEST(a_stiff_vehicle_reaches_its_steady_motion);
     RUN_TEST(is_of_fourth_order_under_everything_that_can_act);
     RUN_TEST(a_step_that_cannot_be_taken_is_taken_by_exact_flow);
-    RUN_TEST(a_load_that_varies_is_followed_by_the_series);
-    RUN_TEST(but_not_when_it_turns_fast);
+    RUN_TEST(forcing_that_varies_is_stepped_by_taylor_8);
+    RUN_TEST(but_not_while_the_vehicle_yaws_fast);
     RUN_TEST(what_exact_flow_cannot_take_is_refused);
     RUN_TEST(a_step_that_cannot_be_taken_is_taken_by_exact_flow_while_damping_is_fast);
     RUN_TEST(what_exact_flow_cannot_take_is_refused_while_damping_is_fast);

@@ -30,7 +30,7 @@ static laconic_start turning_start(double nu1, double nu2, double nu3) {
     return start;
 }
 
-/* M v_S' = Σ reactions + F and I_S θ'' = Σ r × reactions + τ, from rates that know nothing of reactions. */
+/* M v_S' = Σ reactions + F and I_S θ'' = Σ r × reactions + τ, from rates that are computed without reactions. */
 static void forces_balance(const scene *s) {
     laconic_rates rates;
     laconic_real nu[3];
@@ -114,7 +114,7 @@ static void a_roller_wheels_reaction_is_torque_less_its_own_inertia(void) {
     }
 }
 
-/* A sideways force F_η on a standing caster is taken by its wheel alone, along the axle (0, −1). */
+/* The wheel of a standing caster alone supplies the reaction to a sideways force F_η, along the axle (0, −1). */
 static void a_fixed_wheel_takes_a_push_along_its_axle(void) {
     scene s;
     laconic_input input = no_input();
@@ -145,7 +145,7 @@ static void a_brake_holds_what_the_motor_gives(void) {
     ASSERT_NEAR(EITHER(1e-12, 1e-5), 0, s.out.along_N[0]);
 }
 
-/* A push of 8 N along ξ against a braked wheel: the ground holds it, and so does the brake, with R F. */
+/* A push of 8 N along ξ against a braked wheel: the ground's reaction is 8 N, the brake's torque R F. */
 static void a_brake_holds_a_push(void) {
     scene s;
     laconic_vehicle v = caster();
@@ -176,7 +176,7 @@ static void three_points_of_support_are_the_lever_law(void) {
 }
 
 /* Accelerating along ξ with a, S at height z: the front pair loses M a z/(2·2·0.2) each, the rear pair gains it. */
-static void acceleration_shifts_load_to_the_rear(void) {
+static void acceleration_shifts_normal_load_to_the_rear(void) {
     scene s;
     laconic_vehicle v = with_motors(mecanum());
     laconic_input input = no_input();
@@ -206,13 +206,13 @@ static void the_no_slip_margin_is_the_least_of_all_wheels(void) {
     ASSERT_NEAR(EITHER(1e-12, 1e-4), least, s.out.no_slip_margin_N);
 }
 
-static void without_wheels_there_is_no_margin_to_lose(void) {
+static void without_wheels_the_margin_is_zero(void) {
     scene s;
     judge(&s, bare_body(), start_with(1, 2, 3), no_input());
     TEST_ASSERT_EQUAL_DOUBLE(0.0, (double)s.out.no_slip_margin_N);
 }
 
-static void points_so_far_away_that_their_loads_would_be_none_are_refused(void) {
+static void points_so_far_away_that_constants_leave_the_range_are_refused(void) {
     laconic_vehicle v = three_wheels();
     laconic_contact contact;
     v.support_count = 1;
@@ -223,7 +223,7 @@ static void points_so_far_away_that_their_loads_would_be_none_are_refused(void) 
     ASSERT_REFUSED(LACONIC_OVERFLOW, LACONIC_FIELD_NONE, 0, laconic_contact_prepare(&contact, &v, &why), why);
 }
 
-static void a_margin_that_has_no_number_is_not_taken_for_a_large_one(void) {
+static void a_margin_that_is_nan_does_not_count_as_large(void) {
     scene s;
     laconic_input input = no_input();
     input.voltage_V[1] = LACONIC_REAL_MAX;
@@ -253,11 +253,11 @@ int main(void) {
     RUN_TEST(a_brake_holds_a_push);
     RUN_TEST(standing_on_four_wheels_each_carries_a_quarter);
     RUN_TEST(three_points_of_support_are_the_lever_law);
-    RUN_TEST(acceleration_shifts_load_to_the_rear);
+    RUN_TEST(acceleration_shifts_normal_load_to_the_rear);
     RUN_TEST(the_no_slip_margin_is_the_least_of_all_wheels);
-    RUN_TEST(without_wheels_there_is_no_margin_to_lose);
-    RUN_TEST(points_so_far_away_that_their_loads_would_be_none_are_refused);
-    RUN_TEST(a_margin_that_has_no_number_is_not_taken_for_a_large_one);
+    RUN_TEST(without_wheels_the_margin_is_zero);
+    RUN_TEST(points_so_far_away_that_constants_leave_the_range_are_refused);
+    RUN_TEST(a_margin_that_is_nan_does_not_count_as_large);
     RUN_TEST(a_refused_vehicle_changes_nothing);
     return UNITY_END();
 }

@@ -17,14 +17,14 @@ static void the_square_root_is_right_to_the_last_bits_over_the_whole_range(void)
     TEST_ASSERT_EQUAL_DOUBLE(0.5, (double)laconic_root(REAL(0.25)));
 }
 
-static void the_root_of_nothing_or_less_is_zero_and_of_infinity_infinity(void) {
+static void the_root_of_zero_or_less_is_zero_and_of_infinity_infinity(void) {
     TEST_ASSERT_EQUAL_DOUBLE(0.0, (double)laconic_root(REAL(0)));
     TEST_ASSERT_EQUAL_DOUBLE(0.0, (double)laconic_root(REAL(-4)));
     TEST_ASSERT_EQUAL_DOUBLE(0.0, (double)laconic_root(NOT_A_NUMBER));
     TEST_ASSERT_TRUE(isinf(laconic_root(INFINITE)));
 }
 
-static void the_exponential_decays_as_libm_says(void) {
+static void the_exponential_agrees_with_libms(void) {
     for (double a = 0; a < EITHER(700, 80); a += 0.037) {
         const double exact = exp(-(double)REAL(a));
         TEST_ASSERT_TRUE(relative(exact, (double)laconic_decaying_exponential(REAL(a))) < 8 * (double)LACONIC_EPSILON);
@@ -44,7 +44,7 @@ static void sine_and_cosine_of_an_angle_are_libms_to_the_last_digits(void) {
 }
 
 /* 2π·2²⁰ + 1: beyond the range of the fast reduction. */
-static void very_large_angles_are_as_good_as_the_angle_itself(void) {
+static void the_direction_of_a_very_large_angle_is_as_exact_as_the_angle(void) {
     const laconic_real angle = REAL(6.283185307179586 * 1048576.0 * 4.0 + 1.0);
     const direction d = laconic_direction_of_angle(angle), back = laconic_direction_of_angle(-angle);
     const double tolerance = 4 * (double)angle * (double)LACONIC_EPSILON;
@@ -63,7 +63,7 @@ static void a_quarter_turn_is_exact(void) {
     }
 }
 
-static void turns_and_angles_agree(void) {
+static void angles_and_binary_angles_agree(void) {
     for (double angle = -20; angle < 20; angle += 0.0173) {
         const direction d = laconic_direction_of_binary_angle(laconic_binary_angle_of(REAL(angle)));
         ASSERT_NEAR(EITHER(4e-15, 3e-6), cos((double)REAL(angle)), d.cosine);
@@ -113,12 +113,12 @@ static void phi_functions_stay_finite_for_any_damping(void) {
 int main(void) {
     UNITY_BEGIN();
     RUN_TEST(the_square_root_is_right_to_the_last_bits_over_the_whole_range);
-    RUN_TEST(the_root_of_nothing_or_less_is_zero_and_of_infinity_infinity);
-    RUN_TEST(the_exponential_decays_as_libm_says);
+    RUN_TEST(the_root_of_zero_or_less_is_zero_and_of_infinity_infinity);
+    RUN_TEST(the_exponential_agrees_with_libms);
     RUN_TEST(sine_and_cosine_of_an_angle_are_libms_to_the_last_digits);
-    RUN_TEST(very_large_angles_are_as_good_as_the_angle_itself);
+    RUN_TEST(the_direction_of_a_very_large_angle_is_as_exact_as_the_angle);
     RUN_TEST(a_quarter_turn_is_exact);
-    RUN_TEST(turns_and_angles_agree);
+    RUN_TEST(angles_and_binary_angles_agree);
     RUN_TEST(an_angle_without_a_direction_counts_as_zero);
     RUN_TEST(phi_functions_agree_with_their_integrals);
     RUN_TEST(phi_functions_stay_finite_for_any_damping);

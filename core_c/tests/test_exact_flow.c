@@ -1,5 +1,5 @@
 /* Tests of exact_flow.c: order, energy and K, free motion in closed form, refusals. */
-#include "exact_flow.c" /* its turns by large angles are nobody else's business */
+#include "exact_flow.c" /* for its static functions of large angles */
 
 #include "stiff.h"
 
@@ -19,7 +19,7 @@ static void free_motion_is_exact_at_any_step(laconic_vehicle v, laconic_start st
     }
 }
 
-/* Petals (ν3 keeps its sign), a vehicle that comes to straight motion, and one that goes straight at once. */
+/* A periodic motion in which ν3 keeps its sign, one that tends to straight motion, and one that is straight at once. */
 static void free_motion_is_exact_of_every_kind(void) {
     free_motion_is_exact_at_any_step(three_wheels(), start_with(0.5, 0.3, 4), 5);
     free_motion_is_exact_at_any_step(three_wheels(), start_with(2, 3, 0.4), 5);
@@ -29,7 +29,7 @@ static void free_motion_is_exact_of_every_kind(void) {
     free_motion_is_exact_at_any_step(bare_body(), start_with(1, 2, 3), 5);
 }
 
-/* With heading as the variable, (ν1, ν2)(φ) turns with Ω = √det P about P S₂, and ν3 follows from K. */
+/* With heading as the variable, (ν1, ν2)(φ) rotates with Ω = √det P about P S₂, and ν3 follows from K. */
 static void free_motion_is_the_papers_closed_form(void) {
     const laconic_vehicle v = three_wheels();
     const laconic_model m = model_of(v);
@@ -107,7 +107,7 @@ static void more_turns_in_a_step_than_can_be_counted_are_refused(void) {
                         LACONIC_OVERFLOW);
 }
 
-static void a_large_turn_is_cleared_of_what_changes_its_length(void) {
+static void a_rotation_by_a_large_angle_keeps_the_length(void) {
     const vector zeta = {REAL(3), REAL(4), REAL(0)};
     const vector off = {REAL(-6), REAL(0.001), REAL(0)}; /* −3, 4.001: longer than 5 */
     const vector turned = plus(zeta, length_kept(zeta, off));
@@ -115,7 +115,7 @@ static void a_large_turn_is_cleared_of_what_changes_its_length(void) {
     TEST_ASSERT_TRUE(length_kept(none, none).x == 0);
 }
 
-static void an_angle_beyond_every_number_is_none(void) {
+static void an_infinite_angle_gives_no_finite_result(void) {
     const real most = LACONIC_REAL_MAX;
     TEST_ASSERT_FALSE(is_finite(large_half_angle(most * REAL(2), REAL(1), REAL(1)).denominator));
     TEST_ASSERT_TRUE(is_finite(large_half_angle(most, REAL(1), REAL(1)).denominator));
@@ -136,7 +136,7 @@ static void is_of_fourth_order_under_everything_that_can_act(void) {
     assert_order(&laconic_exact_flow_4, &v, start_with(2, 1, 4), &input, 2.0, EITHER(40, 8), 4);
 }
 
-static void is_of_fourth_order_when_nothing_turns_with_the_world(void) {
+static void is_of_fourth_order_without_a_world_force(void) {
     const laconic_vehicle v = with_motors(mecanum());
     laconic_input input = every_input();
     input.world_force_N[0] = input.world_force_N[1] = 0;
@@ -157,7 +157,7 @@ static void energy_and_k_stay_to_rounding_in_the_extrapolated(void) {
     TEST_ASSERT_TRUE(d.yaw_integral < EITHER(1e-13, 2e-5));
 }
 
-static void a_step_that_makes_energy_out_of_nothing_is_refused(void) {
+static void a_step_that_gains_energy_is_refused(void) {
     start_that_gains_energy(&laconic_exact_flow_4, bare_body(), every_input(), 1.0, 10);
 }
 
@@ -170,15 +170,15 @@ int main(void) {
     RUN_TEST(energy_stays_even_at_steps_of_many_turns);
     RUN_TEST(damped_motion_loses_energy_at_every_step_size);
     RUN_TEST(a_stiff_vehicle_stays_bounded);
-    RUN_TEST(an_angle_beyond_every_number_is_none);
-    RUN_TEST(a_large_turn_is_cleared_of_what_changes_its_length);
+    RUN_TEST(an_infinite_angle_gives_no_finite_result);
+    RUN_TEST(a_rotation_by_a_large_angle_keeps_the_length);
     RUN_TEST(a_method_that_only_auto_chooses_is_not_prepared);
     RUN_TEST(numbers_beyond_the_range_are_refused);
     RUN_TEST(more_turns_in_a_step_than_can_be_counted_are_refused);
     RUN_TEST(is_of_fourth_order_under_everything_that_can_act);
-    RUN_TEST(is_of_fourth_order_when_nothing_turns_with_the_world);
+    RUN_TEST(is_of_fourth_order_without_a_world_force);
     RUN_TEST(free_motion_is_exact);
     RUN_TEST(energy_and_k_stay_to_rounding_in_the_extrapolated);
-    RUN_TEST(a_step_that_makes_energy_out_of_nothing_is_refused);
+    RUN_TEST(a_step_that_gains_energy_is_refused);
     return UNITY_END();
 }

@@ -9,19 +9,19 @@ static void is_of_second_order_under_everything_that_can_act(void) {
     assert_order(&laconic_exponential_kahan, &v, start_with(2, 1, 4), &input, 2.0, EITHER(100, 40), 2);
 }
 
-static void is_of_second_order_when_nothing_turns_with_the_world(void) {
+static void is_of_second_order_without_a_world_force(void) {
     const laconic_vehicle v = with_motors(mecanum());
     laconic_input input = every_input();
     input.world_force_N[0] = input.world_force_N[1] = 0;
     assert_order(&laconic_exponential_kahan, &v, start_with(2, 1, 4), &input, 1.0, EITHER(100, 40), 2);
 }
 
-static void damping_and_drive_alone_are_exact(void) {
+static void damping_and_forcing_alone_are_exact(void) {
     const laconic_vehicle v = with_motors(three_wheels());
     laconic_input input = no_input();
     errors e;
     input.voltage_V[0] = REAL(1);
-    input.voltage_V[1] = REAL(-1); /* straight along η: nothing turns */
+    input.voltage_V[1] = REAL(-1); /* straight along η, without yaw */
     e = errors_of(&laconic_exponential_kahan, &v, start_with(0, 1, 0), &input, 1.0, 1);
     TEST_ASSERT_TRUE(e.nu < EITHER(1e-13, 4e-6));
     TEST_ASSERT_TRUE(e.wheels < EITHER(1e-13, 4e-6));
@@ -43,7 +43,7 @@ static void energy_and_k_nearly_stay(void) {
     TEST_ASSERT_TRUE(d.yaw_integral < 1e-3);
 }
 
-static void a_step_that_makes_energy_out_of_nothing_is_refused(void) {
+static void a_step_that_gains_energy_is_refused(void) {
     start_that_gains_energy(&laconic_exponential_kahan, three_wheels(), every_input(), 0.1, 500);
 }
 
@@ -53,7 +53,7 @@ static void a_step_without_a_solution_is_refused(void) {
 
 static void numbers_beyond_the_range_are_refused(void) {
     laconic_input input = no_input();
-    input.body_force_N[0] = REAL(EITHER(1e100, 1e15)); /* a caster goes straight on: no energy out of nothing */
+    input.body_force_N[0] = REAL(EITHER(1e100, 1e15)); /* a caster moves straight on: the forcing supplies the energy */
     assert_step_refused(&laconic_exponential_kahan, caster(), start_with(0, 0, 0), input, 1.0, LACONIC_OVERFLOW);
 }
 
@@ -65,7 +65,7 @@ static void is_of_fourth_order_under_everything_that_can_act(void) {
     assert_order(&laconic_exponential_kahan_4, &v, start_with(2, 1, 4), &input, 2.0, EITHER(40, 8), 4);
 }
 
-static void is_of_fourth_order_when_nothing_turns_with_the_world(void) {
+static void is_of_fourth_order_without_a_world_force(void) {
     const laconic_vehicle v = with_motors(mecanum());
     laconic_input input = every_input();
     input.world_force_N[0] = input.world_force_N[1] = 0;
@@ -88,7 +88,7 @@ static void energy_and_k_nearly_stay_in_the_extrapolated(void) {
     TEST_ASSERT_TRUE(d.yaw_integral < EITHER(1e-6, 2e-5));
 }
 
-static void a_step_that_makes_energy_out_of_nothing_is_refused_in_the_extrapolated(void) {
+static void a_step_that_gains_energy_is_refused_in_the_extrapolated(void) {
     start_that_gains_energy(&laconic_exponential_kahan_4, three_wheels(), no_input(), 0.1, 500);
 }
 
@@ -100,20 +100,20 @@ static void a_whole_or_half_step_without_a_solution_is_refused(void) {
 int main(void) {
     UNITY_BEGIN();
     RUN_TEST(is_of_second_order_under_everything_that_can_act);
-    RUN_TEST(is_of_second_order_when_nothing_turns_with_the_world);
-    RUN_TEST(damping_and_drive_alone_are_exact);
+    RUN_TEST(is_of_second_order_without_a_world_force);
+    RUN_TEST(damping_and_forcing_alone_are_exact);
     RUN_TEST(a_steady_motion_stays_at_any_step);
     RUN_TEST(a_stiff_vehicle_reaches_its_steady_motion);
     RUN_TEST(energy_and_k_nearly_stay);
-    RUN_TEST(a_step_that_makes_energy_out_of_nothing_is_refused);
+    RUN_TEST(a_step_that_gains_energy_is_refused);
     RUN_TEST(a_step_without_a_solution_is_refused);
     RUN_TEST(numbers_beyond_the_range_are_refused);
     RUN_TEST(is_of_fourth_order_under_everything_that_can_act);
-    RUN_TEST(is_of_fourth_order_when_nothing_turns_with_the_world);
+    RUN_TEST(is_of_fourth_order_without_a_world_force);
     RUN_TEST(a_steady_motion_stays_at_any_step_in_the_extrapolated);
     RUN_TEST(a_stiff_vehicle_reaches_its_steady_motion_in_the_extrapolated);
     RUN_TEST(energy_and_k_nearly_stay_in_the_extrapolated);
-    RUN_TEST(a_step_that_makes_energy_out_of_nothing_is_refused_in_the_extrapolated);
+    RUN_TEST(a_step_that_gains_energy_is_refused_in_the_extrapolated);
     RUN_TEST(a_whole_or_half_step_without_a_solution_is_refused);
     return UNITY_END();
 }

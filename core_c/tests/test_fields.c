@@ -1,4 +1,4 @@
-/* Tests of fields.c: names, places and traits of the vehicle's fields. */
+/* Tests of fields.c: names, paths and traits of the vehicle's fields. */
 #include "check.h"
 
 #define NUMBER(of, number, ...) (laconic_field) number,
@@ -55,7 +55,7 @@ static void fields_are_found_where_scenes_have_them(void) {
     TEST_ASSERT_EQUAL_STRING("vehicle.motor.rotor_inertia_kgm2", laconic_field_path(LACONIC_FIELD_ROTOR_INERTIA));
 }
 
-static void traits_say_kind_rule_need_and_items(void) {
+static void traits_are_kind_rule_need_and_items(void) {
     const laconic_field_traits *mass = laconic_field_traits_of(LACONIC_FIELD_MASS);
     const laconic_field_traits *locked = laconic_field_traits_of(LACONIC_FIELD_WHEEL_LOCKED);
     TEST_ASSERT_EQUAL_INT(LACONIC_KIND_REAL, mass->kind);
@@ -70,8 +70,8 @@ static void traits_say_kind_rule_need_and_items(void) {
     TEST_ASSERT_EQUAL_INT(LACONIC_MAX_SUPPORTS, laconic_field_traits_of(LACONIC_FIELD_SUPPORT_Y)->items);
 }
 
-/* They are those of value tables, of logs and of other people's tools. */
-static void numbers_stay_for_good(void) {
+/* Value tables, logs and users' tools contain them. */
+static void numbers_of_fields_never_change(void) {
     TEST_ASSERT_EQUAL_INT(5, LACONIC_FIELD_COM_Z);
     TEST_ASSERT_EQUAL_INT(6, LACONIC_FIELD_WHEEL_RADIUS);
     TEST_ASSERT_EQUAL_INT(21, LACONIC_FIELD_WHEEL_LOCKED);
@@ -79,7 +79,7 @@ static void numbers_stay_for_good(void) {
     TEST_ASSERT_EQUAL_INT(42, LACONIC_FIELD_ROTOR_INERTIA);
 }
 
-static void numbers_that_are_none_are_survived(void) {
+static void a_number_of_no_field_gives_no_text_and_no_traits(void) {
     const int none[] = {LACONIC_FIELD_NONE, LACONIC_FIELD_COUNT, 1000};
     for (int k = 0; k < 3; k++) {
         TEST_ASSERT_EQUAL_STRING("", laconic_field_name((laconic_field)none[k]));
@@ -94,8 +94,8 @@ int main(void) {
     RUN_TEST(a_path_ends_in_the_key_that_the_name_ends_in);
     RUN_TEST(fields_are_called_as_fmus_call_them);
     RUN_TEST(fields_are_found_where_scenes_have_them);
-    RUN_TEST(traits_say_kind_rule_need_and_items);
-    RUN_TEST(numbers_stay_for_good);
-    RUN_TEST(numbers_that_are_none_are_survived);
+    RUN_TEST(traits_are_kind_rule_need_and_items);
+    RUN_TEST(numbers_of_fields_never_change);
+    RUN_TEST(a_number_of_no_field_gives_no_text_and_no_traits);
     return UNITY_END();
 }

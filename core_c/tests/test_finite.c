@@ -1,9 +1,10 @@
-/* Whatever is accepted is finite: constants, states, and what is worked out from two models when a vehicle changes. */
+/* Tests that all results of accepted vehicles are finite: constants, states, and what is computed from two models when
+ * a vehicle changes. */
 #include "vehicles.h"
 
 static uint64_t seed;
 
-static double chance(void) { /* from 0 to 1: xorshift, so the same everywhere */
+static double chance(void) { /* from 0 to 1, by xorshift: the same on all platforms */
     seed ^= seed << 13;
     seed ^= seed >> 7;
     seed ^= seed << 17;
@@ -12,7 +13,7 @@ static double chance(void) { /* from 0 to 1: xorshift, so the same everywhere */
 
 static bool one_in(int count) { return chance() * count < 1; }
 
-/* Any size that the scalar type has, and its ends; every third of a size that robots have. */
+/* Any size that the scalar type has, with its ends; one number in three has a size that is usual for robots. */
 static laconic_real extreme(void) {
     const double decades = EITHER(307, 37);
     if (one_in(30)) return LACONIC_REAL_MAX;
@@ -68,7 +69,7 @@ static void assert_finite(const laconic_real *numbers, size_t count) {
 #define ASSERT_FINITE(array) assert_finite((const laconic_real *)(array), sizeof(array) / (sizeof(laconic_real)))
 
 static void assert_model_finite(const laconic_model *m) {
-    const size_t first = offsetof(laconic_model, nu_of_zeta); /* nothing but numbers from there on */
+    const size_t first = offsetof(laconic_model, nu_of_zeta); /* from there on all members are numbers */
     assert_finite(&m->nu_of_zeta[0][0], (sizeof *m - first) / sizeof(laconic_real));
 }
 
@@ -103,7 +104,7 @@ static void assert_contact_finite(const laconic_vehicle *v) {
     ASSERT_FINITE(c.inertia);
 }
 
-static int accepted; /* so that a test that refuses everything is noticed */
+static int accepted; /* counted, so that refusing everything fails the test */
 
 static void change_and_step(laconic_plant *plant, laconic_vehicle v) {
     const laconic_plant before = *plant;
@@ -138,7 +139,7 @@ static void extreme_vehicles_and_changes_are_refused_or_finite(void) {
     TEST_ASSERT_TRUE(accepted > 2000);
 }
 
-/* The two that were found first: Λ became infinite, and then ν. */
+/* The first two that were found: Λ became infinite, and then ν. */
 static void a_payload_whose_inertia_leaves_the_range_is_refused_in_motion(void) {
     const laconic_start start = start_with(1, 0, 0);
     laconic_vehicle v = bare_body();
@@ -158,7 +159,7 @@ static void a_payload_whose_inertia_leaves_the_range_is_refused_in_motion(void) 
     TEST_ASSERT_EQUAL_MEMORY(&before, &plant, sizeof plant);
 }
 
-/* Each of the two vehicles is good; the motion of the one is none of the other. */
+/* Both vehicles are accepted, but the motion of the one is out of range in the other. */
 static void a_motion_that_the_new_vehicle_cannot_have_is_refused(void) {
     const laconic_start start = start_with(0, 0, EITHER(1e60, 1e8));
     laconic_vehicle v = bare_body();

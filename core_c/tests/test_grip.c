@@ -31,7 +31,7 @@ static laconic_reactions look_at(scene *s, laconic_input input, uint64_t steps) 
     return found;
 }
 
-/* All wheels pull forward with the same voltage, the first with some more. */
+/* All wheels pull forward with the same voltage, the first with a little more. */
 static laconic_input forward(double volts) {
     laconic_input input = no_input();
     for (int i = 0; i < 4; i++) input.voltage_V[i] = REAL(volts);
@@ -39,7 +39,7 @@ static laconic_input forward(double volts) {
     return input;
 }
 
-static void a_gentle_run_leaves_nothing_but_the_count(void) {
+static void a_gentle_run_counts_instants_and_nothing_else(void) {
     scene s = scene_of(with_motors(mecanum()), 0.8, 0.05);
     look_at(&s, forward(0.1), 0);
     look_at(&s, forward(0.2), 1);
@@ -72,7 +72,7 @@ static void without_friction_nothing_slips(void) {
     TEST_ASSERT_EQUAL_UINT64(0, s.grip.slipping);
 }
 
-static void a_wheel_that_would_lift_is_kept_with_its_load(void) {
+static void a_wheel_that_would_lift_is_kept_with_its_normal_load(void) {
     scene s = scene_of(with_motors(mecanum()), 0.0, 1.0);
     const laconic_reactions found = look_at(&s, forward(6), 3);
     TEST_ASSERT_EQUAL_UINT64(1, s.grip.lifting);
@@ -85,7 +85,7 @@ static void a_wheel_that_would_lift_is_kept_with_its_load(void) {
 static void a_support_that_would_lift_has_a_number_after_the_wheels(void) {
     laconic_vehicle v = with_motors(differential_drive());
     scene s;
-    v.support_count = 1; /* beyond the centre of mass, seen from the axle: the load on it is below zero */
+    v.support_count = 1; /* beyond the centre of mass, seen from the axle: its normal load is below zero */
     v.support[0].y_m = REAL(-0.1);
     s = scene_of(v, 0.0, 0.0);
     look_at(&s, no_input(), 0);
@@ -93,7 +93,7 @@ static void a_support_that_would_lift_has_a_number_after_the_wheels(void) {
     TEST_ASSERT_TRUE(s.grip.first_lift.needed_N == REAL(0));
 }
 
-static void what_is_within_rounding_of_nothing_neither_lifts_nor_slips(void) {
+static void what_is_within_rounding_of_zero_neither_lifts_nor_slips(void) {
     scene s = scene_of(with_motors(mecanum()), 0.8, 0.05);
     laconic_reactions found = look_at(&s, no_input(), 0);
     found.normal_N[2] = REAL(-1e-3) * LACONIC_RANK_TOLERANCE * REAL(MASS * GRAVITY);
@@ -109,7 +109,7 @@ static void what_is_within_rounding_of_nothing_neither_lifts_nor_slips(void) {
     TEST_ASSERT_EQUAL_UINT64(1, s.grip.lifting);
 }
 
-static void a_wheel_that_lifts_and_needs_nothing_does_not_slip(void) {
+static void a_wheel_that_lifts_without_a_reaction_does_not_slip(void) {
     laconic_vehicle v = with_motors(mecanum());
     scene s;
     v.com_x_m = REAL(0.3); /* beyond the wheels */
@@ -122,7 +122,7 @@ static void a_wheel_that_lifts_and_needs_nothing_does_not_slip(void) {
     TEST_ASSERT_TRUE(s.grip.first_slip.needed_N > REAL(0));
 }
 
-static void what_is_no_number_is_a_fault(void) {
+static void nan_counts_as_slip_and_as_lift(void) {
     scene s = scene_of(with_motors(mecanum()), 0.8, 0.05);
     laconic_reactions found = look_at(&s, forward(0.1), 0);
     found.along_N[2] = NOT_A_NUMBER;
@@ -136,13 +136,13 @@ static void what_is_no_number_is_a_fault(void) {
 
 int main(void) {
     UNITY_BEGIN();
-    RUN_TEST(a_gentle_run_leaves_nothing_but_the_count);
+    RUN_TEST(a_gentle_run_counts_instants_and_nothing_else);
     RUN_TEST(the_first_and_the_worst_slip_are_kept_with_what_was_needed);
     RUN_TEST(without_friction_nothing_slips);
-    RUN_TEST(a_wheel_that_would_lift_is_kept_with_its_load);
+    RUN_TEST(a_wheel_that_would_lift_is_kept_with_its_normal_load);
     RUN_TEST(a_support_that_would_lift_has_a_number_after_the_wheels);
-    RUN_TEST(what_is_within_rounding_of_nothing_neither_lifts_nor_slips);
-    RUN_TEST(a_wheel_that_lifts_and_needs_nothing_does_not_slip);
-    RUN_TEST(what_is_no_number_is_a_fault);
+    RUN_TEST(what_is_within_rounding_of_zero_neither_lifts_nor_slips);
+    RUN_TEST(a_wheel_that_lifts_without_a_reaction_does_not_slip);
+    RUN_TEST(nan_counts_as_slip_and_as_lift);
     return UNITY_END();
 }

@@ -1,4 +1,4 @@
-/* heading.h and the compensated sums of internal.h */
+/* Tests of heading.h, and of the compensated sums of internal.h. */
 #include "heading.h"
 
 #include "check.h"

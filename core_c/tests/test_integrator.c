@@ -18,7 +18,7 @@ static void refuses(const laconic_method *method, double step, laconic_status st
     TEST_ASSERT_EQUAL_MEMORY(&before, &in, sizeof in);
 }
 
-static void steps_that_are_none_are_refused(void) {
+static void steps_that_are_not_positive_and_finite_are_refused(void) {
     for (int32_t i = 0; i < LACONIC_METHOD_COUNT; i++) {
         const laconic_method *method = laconic_method_by_number(i);
         refuses(method, 0, LACONIC_NOT_POSITIVE, LACONIC_FIELD_STEP);
@@ -43,7 +43,7 @@ static void a_step_whose_parts_have_no_inverse_is_refused_with_the_shortest_ther
     TEST_ASSERT_TRUE(isfinite((double)in.decay[2].inverse_gain[0]));
 }
 
-static void no_method_is_refused(void) { refuses(NULL, 0.01, LACONIC_METHOD_UNKNOWN, LACONIC_FIELD_METHOD); }
+static void a_null_method_is_refused(void) { refuses(NULL, 0.01, LACONIC_METHOD_UNKNOWN, LACONIC_FIELD_METHOD); }
 
 static void a_good_step_is_kept_with_its_method(void) {
     const laconic_model m = model_of(with_motors(three_wheels()));
@@ -77,7 +77,7 @@ static double driven(const axis *a, double t) {
     return a->start + a->change * s + a->curve * s * (s - 1);
 }
 
-/* ζ at the next node from the one before: within a node's width b is a parabola and Simpson's rule exact enough. */
+/* ζ at the next node from the one before: within a node's width b is a parabola and Simpson's rule is exact for it. */
 static double next(const axis *a, double zeta, double t, double dt) {
     const double decay = exp(-a->rate * dt), half = exp(-a->rate * dt / 2);
     return decay * zeta + dt / 6 * (decay * driven(a, t) + 4 * half * driven(a, t + dt / 2) + driven(a, t + dt));
@@ -124,7 +124,7 @@ static void levels_are_halved_steps(void) {
     TEST_ASSERT_EQUAL_MEMORY(&half, &in.decay[2], sizeof half);
 }
 
-static void the_limits_are_even_changes_and_jumps(void) {
+static void without_damping_zeta_changes_linearly_and_with_fast_damping_it_jumps(void) {
     laconic_model m;
     laconic_decay d;
     memset(&m, 0, sizeof m);
@@ -146,7 +146,7 @@ static void an_explicit_method_is_limited_by_damping(void) {
     ASSERT_NEAR(limit * 4 * ROUNDING, 2.785 / fastest, limit);
 }
 
-/* The limit is the border: a little less is taken, a little more refused. */
+/* A step a little below the limit is taken, one a little above is refused. */
 static void an_explicit_method_is_limited_by_fast_turning(laconic_vehicle v) {
     const laconic_model m = model_of(v);
     laconic_state state = moving(&m, 1, 1, 400);
@@ -159,12 +159,12 @@ static void an_explicit_method_is_limited_by_fast_turning(laconic_vehicle v) {
     ASSERT_STATUS(LACONIC_OK, laconic_step(&m, &in, &state, &input));
 }
 
-static void fast_turning_limits_free_and_damped_vehicles(void) {
+static void a_fast_yaw_limits_the_step_with_and_without_damping(void) {
     an_explicit_method_is_limited_by_fast_turning(three_wheels());
     an_explicit_method_is_limited_by_fast_turning(with_motors(three_wheels()));
 }
 
-static void the_implicit_methods_bear_any_step(void) {
+static void the_implicit_methods_take_any_step(void) {
     const laconic_model m = model_of(with_motors(three_wheels()));
     const laconic_state state = moving(&m, 10, 10, 400);
     TEST_ASSERT_EQUAL_DOUBLE(0.0, (double)laconic_largest_stable_step_s(&laconic_auto, &m, &state));
@@ -172,7 +172,7 @@ static void the_implicit_methods_bear_any_step(void) {
         TEST_ASSERT_EQUAL_DOUBLE(0.0, (double)laconic_largest_stable_step_s(laconic_method_by_number(i), &m, &state));
 }
 
-static void a_vehicle_without_damping_at_rest_bears_any_step(void) {
+static void without_damping_and_at_rest_any_step_is_stable(void) {
     const laconic_model m = model_of(three_wheels());
     const laconic_state rest = moving(&m, 0, 0, 0);
     TEST_ASSERT_EQUAL_DOUBLE(0.0, (double)laconic_largest_stable_step_s(&laconic_rk4, &m, &rest));
@@ -217,7 +217,7 @@ static void the_tolerance_is_of_the_step_not_of_the_time(void) {
     TEST_ASSERT_EQUAL_UINT64(1000000, steps);
 }
 
-static void intervals_and_steps_that_are_none_are_refused(void) {
+static void intervals_and_steps_that_are_not_positive_and_finite_are_refused(void) {
     const double bad[] = {0, -1, (double)NAN, HUGE_VAL, -HUGE_VAL};
     uint64_t steps = 0;
     for (size_t i = 0; i < 5; i++) {
@@ -232,23 +232,23 @@ static void intervals_and_steps_that_are_none_are_refused(void) {
 
 int main(void) {
     UNITY_BEGIN();
-    RUN_TEST(steps_that_are_none_are_refused);
+    RUN_TEST(steps_that_are_not_positive_and_finite_are_refused);
     RUN_TEST(a_step_of_decades_is_refused_with_the_longest_there_is);
     RUN_TEST(a_step_whose_parts_have_no_inverse_is_refused_with_the_shortest_there_is);
-    RUN_TEST(no_method_is_refused);
+    RUN_TEST(a_null_method_is_refused);
     RUN_TEST(a_good_step_is_kept_with_its_method);
     RUN_TEST(the_fastest_decay_is_the_largest_of_all_axes);
     RUN_TEST(factors_are_those_of_the_damped_axis);
     RUN_TEST(levels_are_halved_steps);
-    RUN_TEST(the_limits_are_even_changes_and_jumps);
+    RUN_TEST(without_damping_zeta_changes_linearly_and_with_fast_damping_it_jumps);
     RUN_TEST(an_explicit_method_is_limited_by_damping);
-    RUN_TEST(fast_turning_limits_free_and_damped_vehicles);
-    RUN_TEST(the_implicit_methods_bear_any_step);
-    RUN_TEST(a_vehicle_without_damping_at_rest_bears_any_step);
+    RUN_TEST(a_fast_yaw_limits_the_step_with_and_without_damping);
+    RUN_TEST(the_implicit_methods_take_any_step);
+    RUN_TEST(without_damping_and_at_rest_any_step_is_stable);
     RUN_TEST(damping_near_the_end_of_the_range_still_has_a_limit);
     RUN_TEST(whole_numbers_of_steps_are_counted);
     RUN_TEST(an_interval_of_no_whole_number_of_steps_is_refused_with_one_that_fits);
     RUN_TEST(the_tolerance_is_of_the_step_not_of_the_time);
-    RUN_TEST(intervals_and_steps_that_are_none_are_refused);
+    RUN_TEST(intervals_and_steps_that_are_not_positive_and_finite_are_refused);
     return UNITY_END();
 }

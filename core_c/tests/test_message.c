@@ -1,4 +1,4 @@
-/* Tests of message.c: a refusal in words, numbers included. */
+/* Tests of message.c: the texts of refusals, with their numbers. */
 #include "check.h"
 
 #include <stdio.h>
@@ -39,17 +39,17 @@ static void an_explanation_is_the_message_without_its_field(void) {
     TEST_ASSERT_EQUAL_STRING("-1 is negative; give 0 or a value above it", text);
 }
 
-static void without_a_field_only_the_reason_is_said(void) {
+static void without_a_field_only_the_explanation_is_given(void) {
     TEST_ASSERT_EQUAL_STRING("ok", message(LACONIC_OK, LACONIC_FIELD_NONE, 0, 0, 0));
 }
 
-static void every_status_has_a_text_and_a_number_that_is_none_too(void) {
+static void every_status_has_a_text_and_so_has_an_unknown_number(void) {
     for (int status = 1; status < LACONIC_STATUS_COUNT; status++)
         TEST_ASSERT_TRUE(strlen(message((laconic_status)status, LACONIC_FIELD_NONE, 0, 1, 2)) > 10);
     TEST_ASSERT_EQUAL_STRING("unknown status", message((laconic_status)1000, LACONIC_FIELD_NONE, 0, 0, 0));
 }
 
-static void every_status_has_words_of_its_own(void) {
+static void every_status_has_a_text_of_its_own(void) {
     for (int a = 0; a < LACONIC_STATUS_COUNT; a++) {
         TEST_ASSERT_NOT_EQUAL(0, strlen(laconic_status_name((laconic_status)a)));
         for (int b = 0; b < a; b++)
@@ -63,7 +63,7 @@ static void every_status_has_words_of_its_own(void) {
     TEST_ASSERT_EQUAL_STRING("unknown status", laconic_status_name((laconic_status)1000));
 }
 
-/* The number as a message shows it. */
+/* The number as a message writes it. */
 static const char *shown(double value) {
     const char *end = strstr(message(LACONIC_NOT_POSITIVE, LACONIC_FIELD_NONE, 0, value, 0), " is not positive");
     TEST_ASSERT_NOT_NULL(end);
@@ -71,7 +71,7 @@ static const char *shown(double value) {
     return text;
 }
 
-static void numbers_look_as_printf_would_show_them(void) {
+static void numbers_are_written_as_printf_writes_them(void) {
     const double values[] = {1,      -1,     0.1,     123456,   999999, 1e6,   1.5e6,  0.0001, 0.000123456, 0.00001,
                              2.5e-5, -3e-7,  3.14159, 100,      1e10,   1e30,  -1e-30, 0.5,    42.25,       999999.7,
                              12.5,   0.0625, 1234.5,  0.999999, 0.0099, 65536, 7e-12,  -8,     31.4159};
@@ -105,7 +105,7 @@ static void the_ends_of_the_range_are_shown(void) {
     ASSERT_NEAR(1e-4, 1.0, read / (double)LACONIC_REAL_MIN);
 }
 
-static void a_short_buffer_gets_what_fits_and_the_whole_length_is_told(void) {
+static void a_short_buffer_gets_what_fits_and_the_whole_length_is_returned(void) {
     const laconic_refusal why = {LACONIC_NEGATIVE, LACONIC_FIELD_MOTOR_DAMPING, 0, REAL(-1), 0};
     const size_t length = laconic_message(&why, text, sizeof text);
     char little[8] = "#######";
@@ -119,13 +119,13 @@ int main(void) {
     RUN_TEST(a_refusal_names_field_item_value_and_remedy);
     RUN_TEST(a_field_without_the_item_it_could_have_is_named_as_a_whole);
     RUN_TEST(an_explanation_is_the_message_without_its_field);
-    RUN_TEST(without_a_field_only_the_reason_is_said);
-    RUN_TEST(every_status_has_words_of_its_own);
-    RUN_TEST(every_status_has_a_text_and_a_number_that_is_none_too);
-    RUN_TEST(numbers_look_as_printf_would_show_them);
+    RUN_TEST(without_a_field_only_the_explanation_is_given);
+    RUN_TEST(every_status_has_a_text_of_its_own);
+    RUN_TEST(every_status_has_a_text_and_so_has_an_unknown_number);
+    RUN_TEST(numbers_are_written_as_printf_writes_them);
     RUN_TEST(a_number_that_rounds_up_to_the_next_power_stays_right);
     RUN_TEST(zero_infinity_and_nan_are_written_out);
     RUN_TEST(the_ends_of_the_range_are_shown);
-    RUN_TEST(a_short_buffer_gets_what_fits_and_the_whole_length_is_told);
+    RUN_TEST(a_short_buffer_gets_what_fits_and_the_whole_length_is_returned);
     return UNITY_END();
 }

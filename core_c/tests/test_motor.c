@@ -3,7 +3,7 @@
 
 static laconic_refusal why;
 
-/* R_a = 2 Ω, k_t = 0.1, k_e = 0.12, G = 5, b = 0.001, J_rotor = 2e-5 */
+/* R_a = 2 Ω, k_t = 0.1, k_e = 0.12, n = 5, d = 0.001, J_rotor = 2e-5 */
 static laconic_motor good_motor(void) {
     laconic_motor m = {REAL(2), REAL(0.1), REAL(0.12), REAL(5), REAL(0.001), REAL(2e-5)};
     return m;
@@ -18,7 +18,7 @@ static void the_data_sheet_becomes_gain_damping_and_inertia(void) {
     ASSERT_NEAR(ROUNDING, 0.009 + 25 * 2e-5, v.wheel_inertia_kgm2);
 }
 
-static void a_gear_that_reverses_turns_the_gain_round(void) {
+static void a_gear_that_reverses_negates_the_gain(void) {
     laconic_vehicle v = three_wheels();
     laconic_motor m = good_motor();
     m.gear_ratio = REAL(-5);
@@ -64,7 +64,7 @@ static void friction_and_rotor_inertia_must_not_be_negative(void) {
     refuses(m, LACONIC_NEGATIVE, LACONIC_FIELD_ROTOR_INERTIA);
 }
 
-static void a_motor_whose_numbers_leave_the_range_or_drive_it_by_themselves_is_refused(void) {
+static void a_motor_whose_constants_leave_the_range_or_add_energy_is_refused(void) {
     laconic_motor m = good_motor();
     m.gear_ratio = REAL(EITHER(1e200, 1e25));
     refuses(m, LACONIC_OVERFLOW, LACONIC_FIELD_GEAR_RATIO);
@@ -91,11 +91,11 @@ static void a_negative_wheel_inertia_is_refused_before_the_rotors_inertia_hides_
 int main(void) {
     UNITY_BEGIN();
     RUN_TEST(the_data_sheet_becomes_gain_damping_and_inertia);
-    RUN_TEST(a_gear_that_reverses_turns_the_gain_round);
+    RUN_TEST(a_gear_that_reverses_negates_the_gain);
     RUN_TEST(every_number_that_is_not_finite_is_named);
     RUN_TEST(resistance_must_be_positive_and_the_gear_not_zero);
     RUN_TEST(friction_and_rotor_inertia_must_not_be_negative);
-    RUN_TEST(a_motor_whose_numbers_leave_the_range_or_drive_it_by_themselves_is_refused);
+    RUN_TEST(a_motor_whose_constants_leave_the_range_or_add_energy_is_refused);
     RUN_TEST(a_back_emf_of_the_wrong_sign_is_refused_even_where_friction_outweighs_it);
     RUN_TEST(a_negative_wheel_inertia_is_refused_before_the_rotors_inertia_hides_it);
     return UNITY_END();

@@ -53,7 +53,7 @@ static void the_origin_lies_where_the_heading_puts_it(void) {
 
 /* ---------------------------------------------------------------------------------- position -- */
 
-static void it_is_the_pose_to_the_last_bit(void) {
+static void the_position_is_that_of_the_pose_to_the_last_bit(void) {
     laconic_vehicle v = three_wheels();
     laconic_start start = start_with(1, 2, 3);
     laconic_model m = model_of(v);
@@ -73,7 +73,7 @@ static void it_is_the_pose_to_the_last_bit(void) {
 
 /* ------------------------------------------------------------------------------ wheel speeds -- */
 
-static void wheels_turn_as_xi_says(void) {
+static void wheel_speeds_are_xi_nu(void) {
     const laconic_model m = model_of(three_wheels());
     const laconic_state state = moving(&m, 0.7, -0.4, 1.9);
     const double expected[3] = {-0.4 + SIGMA * 1.9, 0.4 + SIGMA * 1.9, -0.7 + RHO * 1.9};
@@ -82,7 +82,7 @@ static void wheels_turn_as_xi_says(void) {
     ASSERT_NEAR_ALL(4 * ROUNDING, expected, speed, 3);
 }
 
-static void a_wheel_with_its_axle_to_the_right_turns_forward_when_the_vehicle_does(void) {
+static void a_wheel_with_its_axle_to_the_right_rolls_forward_when_the_vehicle_moves_forward(void) {
     const laconic_model m = model_of(caster());
     const laconic_state state = moving(&m, 2, 0, 0);
     laconic_real speed[1];
@@ -90,7 +90,7 @@ static void a_wheel_with_its_axle_to_the_right_turns_forward_when_the_vehicle_do
     ASSERT_NEAR(ROUNDING, 2, speed[0]);
 }
 
-static void a_locked_wheel_stands(void) {
+static void a_locked_wheel_has_no_speed(void) {
     laconic_vehicle v = three_wheels();
     laconic_model m;
     laconic_state state;
@@ -117,7 +117,7 @@ static void angles_start_at_zero_and_can_be_set(void) {
     ASSERT_NEAR_ALL(0, wanted, angle, 3);
 }
 
-/* Straight ahead at ν = (2, 0, 0) a caster's wheel turns by 2 rad a second. */
+/* Straight ahead at ν = (2, 0, 0) a caster's wheel rotates by 2 rad a second. */
 static void angles_grow_with_the_wheels_speed_from_what_they_were_set_to(void) {
     const laconic_model m = model_of(caster());
     const laconic_input input = no_input();
@@ -171,7 +171,7 @@ static void without_motors_only_the_applied_torque_is_left(void) {
 
 /* -------------------------------------------------------------- integrals of the free motion -- */
 
-/* ½ M v² + ½ I_S θ'² + Σ ½ J χ'², from physical velocities alone. */
+/* ½ M v² + ½ I_S θ'² + Σ ½ J χ'², from velocities in m/s and rad/s alone. */
 static void energy_is_that_of_the_moving_masses(laconic_vehicle v, double nu1, double nu2, double nu3) {
     const laconic_model m = model_of(v);
     const laconic_state state = moving(&m, nu1, nu2, nu3);
@@ -203,7 +203,7 @@ static void the_second_integral_is_the_third_component_of_a_nu(void) {
 
 static laconic_refusal why;
 
-static void they_are_what_the_single_functions_give(void) {
+static void all_outputs_are_those_of_the_single_functions(void) {
     laconic_plant plant;
     laconic_outputs out;
     laconic_pose pose;
@@ -235,10 +235,10 @@ int main(void) {
     RUN_TEST(velocity_is_r_nu_and_yaw_rate_nu3_over_lambda);
     RUN_TEST(a_constrained_vehicle_shows_its_dependent_component);
     RUN_TEST(the_origin_lies_where_the_heading_puts_it);
-    RUN_TEST(it_is_the_pose_to_the_last_bit);
-    RUN_TEST(wheels_turn_as_xi_says);
-    RUN_TEST(a_wheel_with_its_axle_to_the_right_turns_forward_when_the_vehicle_does);
-    RUN_TEST(a_locked_wheel_stands);
+    RUN_TEST(the_position_is_that_of_the_pose_to_the_last_bit);
+    RUN_TEST(wheel_speeds_are_xi_nu);
+    RUN_TEST(a_wheel_with_its_axle_to_the_right_rolls_forward_when_the_vehicle_moves_forward);
+    RUN_TEST(a_locked_wheel_has_no_speed);
     RUN_TEST(angles_start_at_zero_and_can_be_set);
     RUN_TEST(angles_grow_with_the_wheels_speed_from_what_they_were_set_to);
     RUN_TEST(the_angle_of_a_locked_wheel_stays);
@@ -246,6 +246,6 @@ int main(void) {
     RUN_TEST(without_motors_only_the_applied_torque_is_left);
     RUN_TEST(energy_counts_body_and_wheels);
     RUN_TEST(the_second_integral_is_the_third_component_of_a_nu);
-    RUN_TEST(they_are_what_the_single_functions_give);
+    RUN_TEST(all_outputs_are_those_of_the_single_functions);
     return UNITY_END();
 }

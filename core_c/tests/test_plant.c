@@ -42,7 +42,7 @@ static void a_refused_start_changes_nothing(void) {
 static void a_refused_step_stops_the_run_after_what_was_taken(void) {
     laconic_plant plant = plant_of(three_wheels(), &laconic_rk4, 0.1);
     laconic_input input = no_input();
-    input.body_moment_Nm = REAL(10); /* turns faster and faster until rk4 cannot follow */
+    input.body_moment_Nm = REAL(10); /* yaws faster and faster until the step is beyond rk4's gyroscopic limit */
     ASSERT_REFUSED(LACONIC_STEP_BEYOND_GYROSCOPIC_LIMIT, LACONIC_FIELD_STEP, 0,
                    laconic_plant_run(&plant, &input, 100000, &why), why);
     TEST_ASSERT_TRUE(plant.steps > 0 && plant.steps < 100000);
@@ -56,7 +56,7 @@ static void an_input_that_is_not_finite_is_named(void) {
     ASSERT_REFUSED(LACONIC_NOT_FINITE, LACONIC_FIELD_BODY_FORCE, 2, laconic_plant_run(&plant, &input, 1, &why), why);
 }
 
-static void another_step_size_goes_on_counting(void) {
+static void the_count_of_steps_goes_on_with_another_step_size(void) {
     laconic_plant plant = plant_of(with_motors(three_wheels()), &laconic_rk4, 0.01), before;
     const laconic_input input = no_input();
     ASSERT_STATUS(LACONIC_OK, laconic_plant_run(&plant, &input, 5, &why));
@@ -102,7 +102,7 @@ int main(void) {
     RUN_TEST(a_refused_start_changes_nothing);
     RUN_TEST(a_refused_step_stops_the_run_after_what_was_taken);
     RUN_TEST(an_input_that_is_not_finite_is_named);
-    RUN_TEST(another_step_size_goes_on_counting);
+    RUN_TEST(the_count_of_steps_goes_on_with_another_step_size);
     RUN_TEST(a_payload_in_motion_leaves_the_body_where_it_is);
     RUN_TEST(a_refused_change_changes_nothing);
     return UNITY_END();

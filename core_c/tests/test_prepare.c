@@ -1,4 +1,4 @@
-/* Tests of prepare.c: the basis of the allowed motions, and what cannot be prepared. */
+/* Tests of prepare.c: the basis of the allowed motions, and vehicles that cannot be prepared. */
 #include "vehicles.h"
 
 static laconic_refusal why;
@@ -49,7 +49,7 @@ static void every_constraint_is_built_in(void) {
         }
 }
 
-/* ν2 stands alone there: X22 = 2. The others are the 2×2 problem of [[1, −ρ], [−ρ, 2σ² + ρ²]]. */
+/* There ν2 is decoupled: X22 = 2. The others are the 2×2 problem of [[1, −ρ], [−ρ, 2σ² + ρ²]]. */
 static void damping_rates_of_the_three_wheel_example_are_the_closed_form(void) {
     const laconic_model m = model_of(with_motors(three_wheels()));
     const double c = DAMPING / UNIT_INERTIA, square = SMALL_LAMBDA * SMALL_LAMBDA;
@@ -96,13 +96,13 @@ static void axle_lines_that_agree_to_rounding_count_once(void) {
     TEST_ASSERT_EQUAL_INT(1, model_of(v).dof);
 }
 
-static void a_locked_wheel_does_not_turn(void) {
+static void a_locked_wheel_does_not_rotate(void) {
     laconic_vehicle v = three_wheels();
     v.wheel[1].locked = true;
     for (int k = 0; k < 3; k++) TEST_ASSERT_EQUAL_DOUBLE(0.0, (double)model_of(v).wheel_of_zeta[1][k]);
 }
 
-static void three_fixed_wheels_whose_axles_do_not_meet_leave_nothing_that_moves(void) {
+static void three_fixed_wheels_whose_axles_do_not_meet_prevent_every_motion(void) {
     laconic_vehicle v = bare_body();
     laconic_model model, before;
     memset(&model, 5, sizeof model);
@@ -126,7 +126,7 @@ static void what_the_vehicle_check_refuses_is_refused(void) {
 static void inertias_too_far_apart_for_the_precision_are_refused(void) {
     laconic_vehicle v = three_wheels();
     laconic_model model;
-    v.wheel[2].kind = LACONIC_WHEEL_FIXED; /* so that wheels do not turn in every motion */
+    v.wheel[2].kind = LACONIC_WHEEL_FIXED; /* so that not every motion rotates the wheels */
     v.wheel_count = 1;
     v.wheel_inertia_kgm2 = REAL(EITHER(1e28, 1e11));
     ASSERT_REFUSED(LACONIC_ILL_CONDITIONED, LACONIC_FIELD_NONE, 0, laconic_prepare(&model, &v, &why), why);
@@ -157,7 +157,7 @@ static void numbers_that_leave_the_range_are_refused(void) {
     ASSERT_REFUSED(LACONIC_OVERFLOW, LACONIC_FIELD_NONE, 0, laconic_prepare(&model, &v, &why), why);
 }
 
-static void a_wheel_at_the_end_of_the_range_is_refused_not_turned_into_nan(void) {
+static void a_wheel_at_the_end_of_the_range_is_refused_and_never_gives_nan(void) {
     laconic_vehicle v = differential_drive();
     laconic_model model;
     v.wheel[0].x_m = LACONIC_REAL_MAX;
@@ -165,9 +165,9 @@ static void a_wheel_at_the_end_of_the_range_is_refused_not_turned_into_nan(void)
     ASSERT_REFUSED(LACONIC_OVERFLOW, LACONIC_FIELD_NONE, 0, laconic_prepare(&model, &v, &why), why);
 }
 
-/* Rates many decades apart: every one keeps its digits, since ΞᵀΞ is never formed. */
+/* Rates many decades apart all keep their digits, since ΞᵀΞ is never formed. */
 static void a_slow_rate_keeps_its_digits_beside_a_fast_one(void) {
-    const double small = EITHER(1e-9, 1e-5); /* tilt of the second wheel's pull against the first's */
+    const double small = EITHER(1e-9, 1e-5); /* angle between the rolling directions of the two wheels */
     laconic_vehicle v = with_motors(bare_body());
     laconic_model m;
     v.wheel_inertia_kgm2 = 0;
@@ -214,12 +214,12 @@ int main(void) {
     RUN_TEST(degrees_of_freedom_are_counted);
     RUN_TEST(columns_beyond_the_degrees_of_freedom_are_zero);
     RUN_TEST(axle_lines_that_agree_to_rounding_count_once);
-    RUN_TEST(a_locked_wheel_does_not_turn);
-    RUN_TEST(three_fixed_wheels_whose_axles_do_not_meet_leave_nothing_that_moves);
+    RUN_TEST(a_locked_wheel_does_not_rotate);
+    RUN_TEST(three_fixed_wheels_whose_axles_do_not_meet_prevent_every_motion);
     RUN_TEST(what_the_vehicle_check_refuses_is_refused);
     RUN_TEST(inertias_too_far_apart_for_the_precision_are_refused);
     RUN_TEST(numbers_that_leave_the_range_are_refused);
-    RUN_TEST(a_wheel_at_the_end_of_the_range_is_refused_not_turned_into_nan);
+    RUN_TEST(a_wheel_at_the_end_of_the_range_is_refused_and_never_gives_nan);
     RUN_TEST(a_slow_rate_keeps_its_digits_beside_a_fast_one);
     RUN_TEST(sixteen_wheels_and_none_are_both_a_vehicle);
     RUN_TEST(wheels_far_away_or_all_on_one_spot_give_numbers);

@@ -1,4 +1,4 @@
-/* Tests of record.c: runs along a schedule have the bits of runs by hand. */
+/* Tests of record.c: runs along a schedule have the bits of the same steps taken one by one. */
 #include "vehicles.h"
 
 #define STEPS 60
@@ -192,7 +192,7 @@ static void a_full_recorder_stops_the_run_where_it_can_go_on(void) {
     stops_before_a_row_without_room(sampled());
 }
 
-static void nothing_recorded_is_only_run(void) {
+static void without_rows_and_watch_the_plant_only_steps(void) {
     laconic_plant plant = plant_of(with_motors(mecanum()), 0.01);
     const laconic_schedule schedule = held();
     film f;
@@ -201,7 +201,7 @@ static void nothing_recorded_is_only_run(void) {
     TEST_ASSERT_EQUAL_UINT64(STEPS, plant.steps);
 }
 
-static void a_refused_step_leaves_what_was_taken_and_says_why(void) {
+static void a_refused_step_keeps_the_steps_taken_and_gives_the_reason(void) {
     laconic_plant plant = plant_of(with_motors(mecanum()), 0.01);
     laconic_schedule schedule = sampled();
     film f;
@@ -213,7 +213,7 @@ static void a_refused_step_leaves_what_was_taken_and_says_why(void) {
     TEST_ASSERT_EQUAL_UINT64(10, f.recorder.row_count);
     plant = plant_of(three_wheels(), 0.01);
     schedule = held();
-    schedule.value = &sampled_values[9][1][0]; /* a stretch whose second value is no number */
+    schedule.value = &sampled_values[9][1][0]; /* a stretch whose second value is not finite */
     ASSERT_REFUSED(LACONIC_NOT_FINITE, LACONIC_FIELD_BODY_MOMENT, 0,
                    laconic_plant_follow(&plant, &schedule, STEPS, NULL, &why), why);
     TEST_ASSERT_EQUAL_UINT64(0, plant.steps);
@@ -227,7 +227,7 @@ int main(void) {
     RUN_TEST(a_later_piece_of_a_sampled_run_has_a_schedule_of_its_own);
     RUN_TEST(a_held_schedule_may_begin_at_any_step_of_the_plant);
     RUN_TEST(a_full_recorder_stops_the_run_where_it_can_go_on);
-    RUN_TEST(nothing_recorded_is_only_run);
-    RUN_TEST(a_refused_step_leaves_what_was_taken_and_says_why);
+    RUN_TEST(without_rows_and_watch_the_plant_only_steps);
+    RUN_TEST(a_refused_step_keeps_the_steps_taken_and_gives_the_reason);
     return UNITY_END();
 }

@@ -51,7 +51,7 @@ static void just_below_the_damping_limit_motion_dies_out(void) {
     TEST_ASSERT_TRUE((double)laconic_energy_J(&m, &state) < 1e-3 * before);
 }
 
-static void a_vehicle_that_turns_too_fast_for_the_step_is_refused(void) {
+static void a_yaw_too_fast_for_the_step_is_refused(void) {
     const laconic_model m = model_of(three_wheels());
     const laconic_integrator in = integrator_of(&laconic_rk4, &m, 0.1);
     const laconic_input input = no_input();
@@ -60,14 +60,14 @@ static void a_vehicle_that_turns_too_fast_for_the_step_is_refused(void) {
     TEST_ASSERT_EQUAL_MEMORY(&before, &state, sizeof state);
 }
 
-static void a_vehicle_that_never_turns_by_itself_has_no_gyroscopic_limit(void) {
+static void a_vehicle_without_gyroscopic_term_has_no_gyroscopic_limit(void) {
     const laconic_model m = model_of(caster());
     const laconic_input input = no_input();
     laconic_state state = moving(&m, 1, 0, 1000);
     take_steps(&laconic_rk4, &m, &state, &input, 1.0, 3);
 }
 
-static void a_step_that_makes_energy_out_of_nothing_is_refused(void) {
+static void a_step_that_gains_energy_is_refused(void) {
     start_that_gains_energy(&laconic_rk4, bare_body(), every_input(), 1.0, 5);
 }
 
@@ -79,8 +79,8 @@ int main(void) {
     RUN_TEST(a_steady_motion_stays);
     RUN_TEST(a_step_beyond_the_damping_limit_is_refused_with_the_largest_stable_one);
     RUN_TEST(just_below_the_damping_limit_motion_dies_out);
-    RUN_TEST(a_vehicle_that_turns_too_fast_for_the_step_is_refused);
-    RUN_TEST(a_vehicle_that_never_turns_by_itself_has_no_gyroscopic_limit);
-    RUN_TEST(a_step_that_makes_energy_out_of_nothing_is_refused);
+    RUN_TEST(a_yaw_too_fast_for_the_step_is_refused);
+    RUN_TEST(a_vehicle_without_gyroscopic_term_has_no_gyroscopic_limit);
+    RUN_TEST(a_step_that_gains_energy_is_refused);
     return UNITY_END();
 }

@@ -24,7 +24,7 @@ static void every_other_rounding_mode_is_found(void) {
     TEST_ASSERT_EQUAL_INT(LACONIC_ARITHMETIC_SOUND, laconic_self_test());
 }
 
-static void subnormal_numbers_that_count_as_none_are_found(void) {
+static void subnormal_numbers_that_are_flushed_to_zero_are_found(void) {
 #if defined(__SSE__)
     const unsigned modes[] = {0x8000U, 0x0040U, 0x8040U}; /* flush to zero, denormals are zero, both */
     const unsigned before = _mm_getcsr();
@@ -40,9 +40,9 @@ static void subnormal_numbers_that_count_as_none_are_found(void) {
 #endif
 }
 
-/* --------------------------------------------------------------------------------- its words -- */
+/* --------------------------------------------------------------------------------- its texts -- */
 
-static void every_finding_has_words_of_its_own(void) {
+static void every_finding_has_a_text_of_its_own(void) {
     for (int a = 0; a < LACONIC_ARITHMETIC_COUNT; a++) {
         const char *text = laconic_arithmetic_text((laconic_arithmetic)a);
         TEST_ASSERT_TRUE(strlen(text) >= 5);
@@ -57,7 +57,7 @@ static void every_fault_comes_with_its_remedy(void) {
     TEST_ASSERT_NOT_NULL(strstr(laconic_arithmetic_text(LACONIC_ARITHMETIC_FLUSHED), "flush-to-zero"));
 }
 
-static void a_number_that_is_none_is_survived(void) {
+static void an_unknown_number_has_a_text(void) {
     TEST_ASSERT_EQUAL_STRING("unknown", laconic_arithmetic_text(LACONIC_ARITHMETIC_COUNT));
     TEST_ASSERT_EQUAL_STRING("unknown", laconic_arithmetic_text((laconic_arithmetic)1000));
 }
@@ -66,9 +66,9 @@ int main(void) {
     UNITY_BEGIN();
     RUN_TEST(arithmetic_as_this_build_has_it_is_sound);
     RUN_TEST(every_other_rounding_mode_is_found);
-    RUN_TEST(subnormal_numbers_that_count_as_none_are_found);
-    RUN_TEST(every_finding_has_words_of_its_own);
+    RUN_TEST(subnormal_numbers_that_are_flushed_to_zero_are_found);
+    RUN_TEST(every_finding_has_a_text_of_its_own);
     RUN_TEST(every_fault_comes_with_its_remedy);
-    RUN_TEST(a_number_that_is_none_is_survived);
+    RUN_TEST(an_unknown_number_has_a_text);
     return UNITY_END();
 }

@@ -50,7 +50,7 @@ static void every_number_that_is_not_finite_is_named(void) {
     refuses(start, LACONIC_NOT_FINITE, LACONIC_FIELD_START_HEADING, 0);
 }
 
-static void a_heading_or_velocity_without_meaning_is_refused(void) {
+static void a_heading_or_velocity_beyond_the_range_is_refused(void) {
     laconic_start start = start_with(0, 0, 0);
     start.heading_rad = REAL(1e30);
     refuses(start, LACONIC_OVERFLOW, LACONIC_FIELD_START_HEADING, 0);
@@ -77,7 +77,7 @@ static void a_start_that_slides_a_fixed_wheel_is_refused_with_the_nearest_that_d
     ASSERT_STATUS(LACONIC_OK, laconic_state_set(&state, &m, &start, &why));
 }
 
-static void a_start_that_turns_a_locked_wheel_is_refused(void) {
+static void a_start_that_rotates_a_locked_wheel_is_refused(void) {
     laconic_vehicle v = three_wheels();
     laconic_start start = start_with(1, 0, 0);
     laconic_state state;
@@ -96,7 +96,7 @@ static void rest_is_always_allowed(void) {
     ASSERT_STATUS(LACONIC_OK, laconic_state_set(&state, &m, &start, &why));
 }
 
-/* A payload set down at (0.3, −0.1): S moves by (0.1, −0.04). The body itself must not notice. */
+/* A payload set down at (0.3, −0.1): S moves by (0.1, −0.04). The motion of the body must not change. */
 static void a_changed_vehicle_moves_on_where_the_old_one_was(void) {
     laconic_vehicle v = three_wheels();
     const laconic_model from = model_of(v);
@@ -175,7 +175,7 @@ static void refuses_placed(laconic_start motion, laconic_status status, laconic_
     TEST_ASSERT_EQUAL_MEMORY(&before, &state, sizeof state);
 }
 
-static void numbers_that_are_none_are_refused(void) {
+static void numbers_that_are_not_finite_are_refused(void) {
     laconic_start motion = start_with(0, 0, 0);
     refuses_placed(start_with(0, (double)NAN, 0), LACONIC_NOT_FINITE, LACONIC_FIELD_START_NU, 2);
     refuses_placed(start_with((double)LACONIC_REAL_MAX, 0, (double)LACONIC_REAL_MAX), LACONIC_OVERFLOW,
@@ -188,14 +188,14 @@ int main(void) {
     UNITY_BEGIN();
     RUN_TEST(what_is_set_is_what_is_read);
     RUN_TEST(every_number_that_is_not_finite_is_named);
-    RUN_TEST(a_heading_or_velocity_without_meaning_is_refused);
+    RUN_TEST(a_heading_or_velocity_beyond_the_range_is_refused);
     RUN_TEST(a_velocity_of_any_size_is_refused_before_it_becomes_nan);
     RUN_TEST(a_start_that_slides_a_fixed_wheel_is_refused_with_the_nearest_that_does_not);
-    RUN_TEST(a_start_that_turns_a_locked_wheel_is_refused);
+    RUN_TEST(a_start_that_rotates_a_locked_wheel_is_refused);
     RUN_TEST(rest_is_always_allowed);
     RUN_TEST(a_changed_vehicle_moves_on_where_the_old_one_was);
     RUN_TEST(what_the_constraints_forbid_is_projected_away_and_the_rest_stays);
     RUN_TEST(allowed_motions_are_set_as_they_are);
-    RUN_TEST(numbers_that_are_none_are_refused);
+    RUN_TEST(numbers_that_are_not_finite_are_refused);
     return UNITY_END();
 }

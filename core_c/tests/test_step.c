@@ -3,7 +3,7 @@
 
 /* -------------------------------------------------------------------------------------- held -- */
 
-/* What each method says itself differs; laconic_step_refusal finds the number. */
+/* The methods refuse with different statuses; laconic_step_refusal finds the number. */
 static void refuses(const laconic_method *method, const laconic_input *input, laconic_field field, int item) {
     const laconic_model m = model_of(with_motors(three_wheels()));
     const laconic_integrator in = integrator_of(method, &m, 0.1);
@@ -37,7 +37,7 @@ static void an_input_that_is_not_finite_leaves_the_state_as_it_was_whatever_the_
         input = every_input();
         input.world_force_point_m[1] = INFINITE;
         refuses(method, &input, LACONIC_FIELD_WORLD_FORCE_POINT, 2);
-        input.world_force_N[0] = input.world_force_N[1] = 0; /* a force of none at no point */
+        input.world_force_N[0] = input.world_force_N[1] = 0; /* a force of 0 at a point that is not finite */
         refuses(method, &input, LACONIC_FIELD_WORLD_FORCE_POINT, 2);
         input = no_input();
         input.world_force_point_m[0] = NOT_A_NUMBER;
@@ -45,7 +45,7 @@ static void an_input_that_is_not_finite_leaves_the_state_as_it_was_whatever_the_
     }
 }
 
-/* The voltage beyond the last wheel is nobody's. */
+/* The voltage beyond the last wheel belongs to no wheel. */
 static void what_lies_beyond_the_last_wheel_is_not_read(void) {
     const laconic_model m = model_of(with_motors(three_wheels()));
     laconic_state state = moving(&m, 1, 2, 3);
@@ -72,7 +72,7 @@ static void a_circle_is_exact_at_any_step(void) {
     }
 }
 
-/* Free puck: S goes straight in the world, whatever the heading does. */
+/* Free puck: S moves straight in the world at any yaw rate. */
 static void a_free_puck_goes_straight(void) {
     const laconic_model m = model_of(bare_body());
     const laconic_input input = no_input();
@@ -87,14 +87,14 @@ static void a_free_puck_goes_straight(void) {
     ASSERT_NEAR(EITHER(1e-9, 1e-4), 10 * RADIUS * (2 * sin(0.4) - cos(0.4)), pose.y_m);
 }
 
-/* Two fixed wheels with S between them: nothing turns ζ, so every method takes every step. */
+/* Two fixed wheels with S between them: there is no gyroscopic term, so every method takes every step. */
 static laconic_model spinning_drive(void) {
     laconic_vehicle v = differential_drive();
     v.com_y_m = 0;
     return model_of(v);
 }
 
-/* A step adds fewer than 2⁶² turns: it may begin within 2⁶² turns, and the count never overflows. */
+/* A step begins only within 2⁶² turns and adds less than 2⁶², so the count never overflows. */
 static void a_heading_of_more_turns_than_can_be_counted_is_refused_whatever_the_method(void) {
     const laconic_model m = spinning_drive();
     const laconic_input input = no_input();
@@ -113,7 +113,7 @@ static void a_heading_of_more_turns_than_can_be_counted_is_refused_whatever_the_
         }
 }
 
-static void the_fastest_turning_there_is_ends_in_a_refusal_never_in_a_jump(void) {
+static void the_fastest_yaw_ends_in_a_refusal_never_in_a_jump(void) {
     const laconic_input input = no_input();
     laconic_vehicle v = bare_body();
     laconic_model m;
@@ -178,7 +178,7 @@ static double error_under_a_sine(const laconic_method *method, int steps) {
     return fabs((double)nu[1] - exact);
 }
 
-/* Up to the fourth, which is as far as three samples tell of a step. */
+/* Up to the fourth order, as far as three samples determine the input over a step. */
 static void a_sampled_sine_keeps_every_methods_order(void) {
     for (int32_t i = 0; i < LACONIC_METHOD_COUNT; i++) {
         const laconic_method *method = laconic_method_by_number(i);
@@ -188,7 +188,7 @@ static void a_sampled_sine_keeps_every_methods_order(void) {
     }
 }
 
-/* A world force that grows from nothing in the step pushes half as far as one that is there all the time. */
+/* A world force that grows linearly from 0 over the step adds half the velocity that the constant force adds. */
 static void a_world_force_may_begin_or_end_within_a_step(void) {
     const laconic_model m = model_of(bare_body());
     laconic_input none = no_input(), half = no_input(), full = no_input();
@@ -207,7 +207,7 @@ static void a_world_force_may_begin_or_end_within_a_step(void) {
     }
 }
 
-/* Simpson's rule over three samples: what fourth order sees of a push; second order sees the ends. */
+/* The weights of the samples are Simpson's in methods of fourth order; those of second order use the ends only. */
 static void a_world_force_at_one_sample_alone_counts_by_its_weight(void) {
     const laconic_model m = model_of(bare_body());
     laconic_input none = no_input(), push = no_input();
@@ -253,7 +253,7 @@ static void refuses_at_each_sample(const laconic_method *method, const laconic_m
     }
 }
 
-static void a_number_that_is_none_at_any_sample_is_refused(void) {
+static void a_number_that_is_not_finite_at_any_sample_is_refused(void) {
     const laconic_model slow = model_of(with_motors(three_wheels())), fast = model_of(stiff());
     const laconic_real numbers[] = {NOT_A_NUMBER, INFINITE, -INFINITE};
     const laconic_input rest = no_input(), all = every_input();
@@ -263,7 +263,7 @@ static void a_number_that_is_none_at_any_sample_is_refused(void) {
                 const laconic_method *method = laconic_method_by_number(number);
                 refuses_at_each_sample(method, &slow, rest, with_number(rest, which, numbers[i]));
                 refuses_at_each_sample(method, &slow, all, with_number(all, which, numbers[i]));
-                if (method == &laconic_auto) /* which then chooses another */
+                if (method == &laconic_auto) /* auto then takes the step by another method */
                     refuses_at_each_sample(method, &fast, all, with_number(all, which, numbers[i]));
             }
 }
@@ -316,7 +316,7 @@ static void an_input_that_is_not_finite_is_found(void) {
                    why);
 }
 
-static void every_sample_of_a_step_is_looked_at(void) {
+static void every_sample_of_a_step_is_checked(void) {
     const laconic_model m = model_of(with_motors(three_wheels()));
     for (int32_t i = 0; i < LACONIC_METHOD_COUNT; i++)
         for (int32_t k = 0; k < 3; k++) {
@@ -332,7 +332,7 @@ static void every_sample_of_a_step_is_looked_at(void) {
         }
 }
 
-static void turning_too_fast_comes_with_the_largest_step(void) {
+static void a_refusal_at_the_gyroscopic_limit_gives_the_largest_step(void) {
     const laconic_model m = model_of(three_wheels());
     const laconic_state state = moving(&m, 1, 1, 500);
     const laconic_input input = no_input();
@@ -342,7 +342,7 @@ static void turning_too_fast_comes_with_the_largest_step(void) {
     ASSERT_NEAR(ROUNDING, 0.1, why.value);
 }
 
-static void other_failures_come_with_half_the_step(void) {
+static void other_refusals_give_half_the_step(void) {
     const laconic_input input = no_input();
     ASSERT_REFUSED(LACONIC_STEP_GAINS_ENERGY, LACONIC_FIELD_STEP, 0,
                    explain(&laconic_exponential_kahan, LACONIC_STEP_GAINS_ENERGY, &input), why);
@@ -355,7 +355,7 @@ static void other_failures_come_with_half_the_step(void) {
     TEST_ASSERT_EQUAL_DOUBLE(0.0, (double)why.limit);
 }
 
-static void nobody_need_ask_why(void) {
+static void the_refusal_may_be_null(void) {
     const laconic_model m = model_of(three_wheels());
     const laconic_integrator in = integrator_of(&laconic_rk4, &m, 0.1);
     const laconic_state state = moving(&m, 1, 1, 500);
@@ -370,20 +370,20 @@ int main(void) {
     RUN_TEST(a_circle_is_exact_at_any_step);
     RUN_TEST(a_free_puck_goes_straight);
     RUN_TEST(a_heading_of_more_turns_than_can_be_counted_is_refused_whatever_the_method);
-    RUN_TEST(the_fastest_turning_there_is_ends_in_a_refusal_never_in_a_jump);
+    RUN_TEST(the_fastest_yaw_ends_in_a_refusal_never_in_a_jump);
     RUN_TEST(an_input_that_does_not_vary_gives_the_motion_of_a_held_one);
     RUN_TEST(a_sampled_sine_keeps_every_methods_order);
     RUN_TEST(a_world_force_may_begin_or_end_within_a_step);
     RUN_TEST(a_world_force_at_one_sample_alone_counts_by_its_weight);
-    RUN_TEST(a_number_that_is_none_at_any_sample_is_refused);
+    RUN_TEST(a_number_that_is_not_finite_at_any_sample_is_refused);
     model = model_of(three_wheels());
     RUN_TEST(a_finite_input_is_accepted);
     RUN_TEST(what_lies_beyond_the_last_wheel_is_not_read_input);
     RUN_TEST(every_number_that_is_not_finite_is_named);
     RUN_TEST(an_input_that_is_not_finite_is_found);
-    RUN_TEST(every_sample_of_a_step_is_looked_at);
-    RUN_TEST(turning_too_fast_comes_with_the_largest_step);
-    RUN_TEST(other_failures_come_with_half_the_step);
-    RUN_TEST(nobody_need_ask_why);
+    RUN_TEST(every_sample_of_a_step_is_checked);
+    RUN_TEST(a_refusal_at_the_gyroscopic_limit_gives_the_largest_step);
+    RUN_TEST(other_refusals_give_half_the_step);
+    RUN_TEST(the_refusal_may_be_null);
     return UNITY_END();
 }

@@ -3,9 +3,9 @@
 
 #include "vehicles.h"
 
-/* --------------------------------------------------------------------------------- what acts -- */
+/* --------------------------------------------------------------------------------- forcing -- */
 
-/* b = Gᵀ(Ξᵀ(c1 U + T) + w)/(M R²), written out with the matrices for people. */
+/* b = Gᵀ(Ξᵀ(c1 U + T) + w)/(M R²), computed with the matrices of laconic_matrices_of(). */
 static void expected_forcing(double b[3], const laconic_vehicle *v, const laconic_input *in, double heading) {
     const laconic_model m = model_of(*v);
     laconic_matrices x;
@@ -89,7 +89,7 @@ static void either_component_of_a_world_force_rotates_the_forcing_and_so_does_na
 
 /* -------------------------------------------------- a force fixed in the world, at a heading -- */
 
-/* b = constant + cos θ · cosine + sin θ · sine, at the heading of a state and an angle further on. */
+/* b = constant + cos θ · cosine + sin θ · sine, at the heading of a state and after a further yaw. */
 static void a_force_fixed_in_the_world_rotates_against_the_body(void) {
     const laconic_model m = model_of(three_wheels());
     const laconic_input input = every_input();
@@ -117,8 +117,8 @@ static void a_force_fixed_in_the_world_rotates_against_the_body(void) {
 
 /* ------------------------------------------------------------------------------------ energy -- */
 
-/* ζ goes from 1 to 1.2 along the first axis in 0.1 s: |ζ|² grows by 0.44, which takes a mean drive of 2. */
-static bool growth_is_driven_by(real start, real middle, real end, real grown) {
+/* ζ goes from 1 to 1.2 along the first axis in 0.1 s: |ζ|² grows by 0.44, which takes a mean b of 2. */
+static bool growth_is_supplied_by(real start, real middle, real end, real grown) {
     const laconic_model m = model_of(bare_body());
     const increment by = {{grown, 0, 0}, {REAL(1) + grown / 2, 0, 0}, {grown, 0, 0}};
     laconic_forcing forcing[3];
@@ -133,25 +133,25 @@ static bool growth_is_driven_by(real start, real middle, real end, real grown) {
     return passive(&m, &state, REAL(0.1), &samples, (vector){REAL(1), 0, 0}, by);
 }
 
-static void growth_that_the_drive_pays_for_is_allowed(void) {
-    TEST_ASSERT_TRUE(growth_is_driven_by(REAL(2), REAL(2), REAL(2), REAL(0.2)));
-    TEST_ASSERT_TRUE(growth_is_driven_by(REAL(0), REAL(2), REAL(4), REAL(0.2)));
-    TEST_ASSERT_TRUE(growth_is_driven_by(REAL(5), REAL(5), REAL(5), REAL(0.2)));
+static void growth_that_the_forcing_supplies_is_allowed(void) {
+    TEST_ASSERT_TRUE(growth_is_supplied_by(REAL(2), REAL(2), REAL(2), REAL(0.2)));
+    TEST_ASSERT_TRUE(growth_is_supplied_by(REAL(0), REAL(2), REAL(4), REAL(0.2)));
+    TEST_ASSERT_TRUE(growth_is_supplied_by(REAL(5), REAL(5), REAL(5), REAL(0.2)));
 }
 
-static void growth_out_of_nothing_is_not(void) {
-    TEST_ASSERT_FALSE(growth_is_driven_by(REAL(0), REAL(0), REAL(0), REAL(0.2)));
-    TEST_ASSERT_FALSE(growth_is_driven_by(REAL(-2), REAL(-2), REAL(-2), REAL(0.2)));
-    TEST_ASSERT_FALSE(growth_is_driven_by(REAL(1), REAL(1), REAL(1), REAL(0.2)));
+static void growth_beyond_the_forcing_is_not(void) {
+    TEST_ASSERT_FALSE(growth_is_supplied_by(REAL(0), REAL(0), REAL(0), REAL(0.2)));
+    TEST_ASSERT_FALSE(growth_is_supplied_by(REAL(-2), REAL(-2), REAL(-2), REAL(0.2)));
+    TEST_ASSERT_FALSE(growth_is_supplied_by(REAL(1), REAL(1), REAL(1), REAL(0.2)));
 }
 
 static void a_loss_is_always_allowed(void) {
-    TEST_ASSERT_TRUE(growth_is_driven_by(REAL(0), REAL(0), REAL(0), REAL(-0.2)));
+    TEST_ASSERT_TRUE(growth_is_supplied_by(REAL(0), REAL(0), REAL(0), REAL(-0.2)));
 }
 
 static void nan_is_not_passive(void) {
-    TEST_ASSERT_FALSE(growth_is_driven_by(REAL(2), REAL(2), REAL(2), NOT_A_NUMBER));
-    TEST_ASSERT_FALSE(growth_is_driven_by(NOT_A_NUMBER, REAL(2), REAL(2), REAL(0.2)));
+    TEST_ASSERT_FALSE(growth_is_supplied_by(REAL(2), REAL(2), REAL(2), NOT_A_NUMBER));
+    TEST_ASSERT_FALSE(growth_is_supplied_by(NOT_A_NUMBER, REAL(2), REAL(2), REAL(0.2)));
 }
 
 int main(void) {
@@ -161,8 +161,8 @@ int main(void) {
     RUN_TEST(every_part_of_a_wrench_counts_alone);
     RUN_TEST(either_component_of_a_world_force_rotates_the_forcing_and_so_does_nan);
     RUN_TEST(a_force_fixed_in_the_world_rotates_against_the_body);
-    RUN_TEST(growth_that_the_drive_pays_for_is_allowed);
-    RUN_TEST(growth_out_of_nothing_is_not);
+    RUN_TEST(growth_that_the_forcing_supplies_is_allowed);
+    RUN_TEST(growth_beyond_the_forcing_is_not);
     RUN_TEST(a_loss_is_always_allowed);
     RUN_TEST(nan_is_not_passive);
     return UNITY_END();

@@ -1,4 +1,4 @@
-/* The analytic linearisation against central differences, along directions that vary everything at once. */
+/* Tests of the analytic derivatives against central differences, along directions that vary all states and inputs. */
 #include "vehicles.h"
 
 #define SMALL EITHER(1e-5, 5e-3)
@@ -65,7 +65,7 @@ static laconic_motion motion_of(const point *p) {
     return at;
 }
 
-/* All numbers that may be compared at a point, in a row. */
+/* All outputs that are compared at a point, in one array. */
 typedef struct numbers {
     double n[80];
     int count;
@@ -227,7 +227,7 @@ static void reactions_of_every_vehicle_are_linearised(void) {
     reactions_change_as_differences_say(bare_body(), 0);
 }
 
-static void a_wheel_that_needs_nothing_from_the_ground_is_given_no_change(void) {
+static void a_reaction_of_zero_counts_as_constant(void) {
     laconic_vehicle v = three_wheels();
     const laconic_model m = model_of(v);
     const laconic_state rest = moving(&m, 0, 0, 0);
@@ -247,6 +247,6 @@ int main(void) {
     UNITY_BEGIN();
     RUN_TEST(every_vehicle_is_linearised);
     RUN_TEST(reactions_of_every_vehicle_are_linearised);
-    RUN_TEST(a_wheel_that_needs_nothing_from_the_ground_is_given_no_change);
+    RUN_TEST(a_reaction_of_zero_counts_as_constant);
     return UNITY_END();
 }

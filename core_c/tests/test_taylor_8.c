@@ -27,7 +27,8 @@ static void energy_and_k_drift_only_by_the_truncation_error(void) {
 
 static void a_steady_motion_stays(void) { assert_steady_motion_stays(&laconic_taylor_8, 0.1); }
 
-/* A puck that spins flies straight on, though its axes turn by 2 rad in each step: 2⁸/8! is what that costs. */
+/* A spinning puck moves straight on, though its axes rotate by 2 rad in each step; the error is of the order of
+ * 2⁸/8!. */
 static void a_spinning_puck_flies_straight(void) {
     const laconic_model m = model_of(bare_body());
     const laconic_input input = no_input();
@@ -65,18 +66,18 @@ static void just_below_the_damping_limit_motion_dies_out(void) {
     TEST_ASSERT_TRUE((double)laconic_energy_J(&m, &state) < 1e-3 * before);
 }
 
-static void a_vehicle_that_turns_too_fast_for_the_step_is_refused(void) {
+static void a_yaw_too_fast_for_the_step_is_refused(void) {
     assert_step_refused(&laconic_taylor_8, three_wheels(), start_with(1, 1, 500), no_input(), 0.1,
                         LACONIC_STEP_BEYOND_GYROSCOPIC_LIMIT);
 }
 
-static void a_step_that_makes_energy_out_of_nothing_is_refused(void) {
+static void a_step_that_gains_energy_is_refused(void) {
     start_that_gains_energy(&laconic_taylor_8, bare_body(), every_input(), 1.0, 5);
 }
 
 static void numbers_beyond_the_range_are_refused(void) {
     laconic_input input = no_input();
-    input.body_force_N[0] = REAL(EITHER(1e100, 1e15)); /* a caster goes straight on: no energy out of nothing */
+    input.body_force_N[0] = REAL(EITHER(1e100, 1e15)); /* a caster moves straight on: the forcing supplies the energy */
     assert_step_refused(&laconic_taylor_8, caster(), start_with(0, 0, 0), input, 1.0, LACONIC_OVERFLOW);
 }
 
@@ -89,8 +90,8 @@ int main(void) {
     RUN_TEST(a_spinning_puck_flies_straight);
     RUN_TEST(a_step_beyond_the_damping_limit_is_refused_with_the_largest_stable_one);
     RUN_TEST(just_below_the_damping_limit_motion_dies_out);
-    RUN_TEST(a_vehicle_that_turns_too_fast_for_the_step_is_refused);
-    RUN_TEST(a_step_that_makes_energy_out_of_nothing_is_refused);
+    RUN_TEST(a_yaw_too_fast_for_the_step_is_refused);
+    RUN_TEST(a_step_that_gains_energy_is_refused);
     RUN_TEST(numbers_beyond_the_range_are_refused);
     return UNITY_END();
 }

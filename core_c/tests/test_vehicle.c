@@ -1,4 +1,4 @@
-/* Tests of vehicle.c: every number that cannot be used is named. */
+/* Tests of vehicle.c: every number that is not usable is refused with its field. */
 #include "vehicles.h"
 
 static laconic_refusal why;
@@ -19,8 +19,8 @@ static void zero_inertia_of_wheels_and_negative_gain_are_accepted(void) {
     ASSERT_STATUS(LACONIC_OK, laconic_vehicle_check(&v, &why));
 }
 
-/* Sets one number of a good vehicle to `value` and says what the check then answers. */
-typedef laconic_real *(*place)(laconic_vehicle *v);
+/* One number of a vehicle. */
+typedef laconic_real *(*number_of)(laconic_vehicle *v);
 
 static laconic_real *mass(laconic_vehicle *v) { return &v->mass_kg; }
 static laconic_real *yaw_inertia(laconic_vehicle *v) { return &v->yaw_inertia_kgm2; }
@@ -44,7 +44,7 @@ static laconic_real *second_support_x(laconic_vehicle *v) { return &v->support[1
 static laconic_real *second_support_y(laconic_vehicle *v) { return &v->support[1].y_m; }
 
 typedef struct number {
-    place where;
+    number_of where;
     laconic_field field;
     int item;
 } number;
@@ -120,7 +120,7 @@ static void a_roller_along_the_axle_is_refused_just_below_the_limit(void) {
 
 static void an_angle_too_large_to_have_a_direction_is_refused_for_axle_and_roller_alike(void) {
     const double largest = (double)LACONIC_SMALLEST_ROLLER_SINE / (double)LACONIC_EPSILON;
-    const place angle[] = {second_axle, second_roller};
+    const number_of angle[] = {second_axle, second_roller};
     const laconic_field field[] = {LACONIC_FIELD_AXLE, LACONIC_FIELD_ROLLER};
     for (int k = 0; k < 2; k++) {
         laconic_vehicle v = three_wheels();
@@ -139,7 +139,7 @@ static void the_roller_of_a_fixed_wheel_is_not_read(void) {
     ASSERT_STATUS(LACONIC_OK, laconic_vehicle_check(&v, &why));
 }
 
-static void a_forgotten_wheel_is_noticed(void) {
+static void a_forgotten_wheel_is_refused(void) {
     laconic_vehicle v = three_wheels();
     v.wheel_count = 4;
     ASSERT_REFUSED(LACONIC_WHEEL_NOT_SET, LACONIC_FIELD_WHEEL_KIND, 4, laconic_vehicle_check(&v, &why), why);
@@ -191,7 +191,7 @@ int main(void) {
     RUN_TEST(a_roller_along_the_axle_is_refused_just_below_the_limit);
     RUN_TEST(an_angle_too_large_to_have_a_direction_is_refused_for_axle_and_roller_alike);
     RUN_TEST(the_roller_of_a_fixed_wheel_is_not_read);
-    RUN_TEST(a_forgotten_wheel_is_noticed);
+    RUN_TEST(a_forgotten_wheel_is_refused);
     RUN_TEST(an_unknown_kind_is_named_with_its_number);
     RUN_TEST(the_wheel_count_stays_within_its_bounds);
     RUN_TEST(the_support_count_stays_within_its_bounds);

@@ -1,5 +1,5 @@
-/* Prints one number that depends on every bit of many trajectories: every method, roller and fixed wheels, stiff and
- * free, everything that can act. Builds of the core that differ in compiler, optimisation or processor must print the
+/* Prints one number that depends on every bit of many trajectories: every method, roller and fixed wheels, slow and
+ * fast damping, every input. Builds of the core that differ in compiler, optimisation or processor must print the
  * same (same_bits.py compares them). */
 #include <inttypes.h>
 #include <stdio.h>

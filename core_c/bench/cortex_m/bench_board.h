@@ -1,8 +1,8 @@
-/* What a bench image needs of its board: a text channel, an end and a clock that counts instructions.
+/* The functions of a board for bench images: text, an end and a clock that counts instructions.
  *
  * Text and end go through ARM semihosting, so no board needs a UART driver. The clock is SysTick on the
  * processor clock; under `qemu-system-arm -icount shift=8` every instruction lasts 256 ns, so ticks are
- * instructions times a constant that board_calibrate() finds out. The counter has 24 bits. */
+ * instructions times a constant that board_calibrate() measures. The counter has 24 bits. */
 #ifndef BENCH_BOARD_H
 #define BENCH_BOARD_H
 

@@ -13,7 +13,7 @@ void peer_reset(void) {
     memcpy(state, peer_start, sizeof peer_start);
 }
 
-/* `steps` steps, `steps_per_second` of them a second, through the voltages again and again. */
+/* `steps` steps, `steps_per_second` of them a second, through the voltages in a cycle. */
 void peer_run(long steps, long steps_per_second) {
     const double *arg[PEER_CASADI_ARGUMENTS] = {state};
     double *res[PEER_CASADI_RESULTS] = {next};

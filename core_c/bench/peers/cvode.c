@@ -1,4 +1,4 @@
-/* SUNDIALS CVODE as its manual shows it: dense Newton for BDF, fixed-point iteration for Adams, one vector,
+/* SUNDIALS CVODE as its manual sets it up: dense Newton for BDF, fixed-point iteration for Adams, one vector,
  * restarted where the voltages jump. */
 #include "peer.h"
 
@@ -62,7 +62,7 @@ static int one_segment(solver *s, int segment, double *t) {
     return CVode(s->memory, end, s->state, &reached, CV_NORMAL) < 0;
 }
 
-/* The whole schedule once; `states` takes the state at each segment's end. 0: done. */
+/* The whole schedule once; `states` gets the state at each segment's end. Returns 0 iff it is done. */
 int peer_cvode(int bdf, double rtol, double atol, double *states) {
     solver s;
     double t = 0;

@@ -1,4 +1,4 @@
-/* What every peer integrates: the equations (4.7) with pose and wheel angles, held voltages, one right-hand side.
+/* The equations that every peer integrates: (4.7) with pose and wheel angles, held voltages, one right-hand side.
  *
  * peer_scene.h is generated for a scene: PEER_WHEELS, PEER_SEGMENTS, the constant matrices and the voltages.
  * State: ν1 ν2 ν3, x, y, θ, χ1 … χN. */

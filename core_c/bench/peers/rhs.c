@@ -1,4 +1,4 @@
-/* The right-hand side as a careful user would write it for a general solver: constant matrices, straight loops. */
+/* The right-hand side as a user would write it for a general solver, with constant matrices. */
 #include "peer.h"
 
 #include <math.h>
@@ -31,7 +31,7 @@ void peer_derivative(const double *state, const double *voltage_V, double *rates
     }
 }
 
-/* The signature compiled integrators in Python take; `voltage_V` travels as their parameter array. */
+/* The signature that compiled integrators in Python require; `voltage_V` is their parameter array. */
 void peer_rhs(double t, double *state, double *rates, double *voltage_V) {
     (void)t;
     peer_derivative(state, voltage_V, rates);

@@ -1,4 +1,4 @@
-/* Comparisons for both scalar types, and what every test program needs of Unity. */
+/* Comparisons for both scalar types, by Unity. */
 #ifndef LACONIC_TEST_CHECK_H
 #define LACONIC_TEST_CHECK_H
 

@@ -1,4 +1,5 @@
-/* Where Kahan's equations have no solution: det(E − ½h[(g·ζ)(·×w) + (ζ×w)(g·)]) = 0, a cubic in the size of ζ. */
+/* The motions at which the equations of Kahan's method have no solution: det(E − ½h[(g·ζ)(·×w) + (ζ×w)(g·)]) = 0, a
+ * cubic in the size of ζ. */
 #ifndef LACONIC_TEST_KAHAN_H
 #define LACONIC_TEST_KAHAN_H
 
@@ -46,7 +47,7 @@ static inline double singular_scale(const laconic_model *m, double half_step) {
     return high;
 }
 
-/* Wherever the determinant is within rounding of 0, the increment is none: too long, or not finite. */
+/* Where the determinant is within rounding of 0, the step is refused: its increment is too long or not finite. */
 static inline void assert_singular_step_refused(const laconic_method *method, double half_step) {
     const laconic_model m = model_of(three_wheels());
     const laconic_integrator in = integrator_of(method, &m, 1.0);

@@ -1,4 +1,4 @@
-/* Promises that methods make, each checked the same way for all of them. */
+/* Checks that the tests of several methods share: order, drift, steady motions. */
 #ifndef LACONIC_TEST_METHODS_H
 #define LACONIC_TEST_METHODS_H
 

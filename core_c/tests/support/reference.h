@@ -1,5 +1,5 @@
-/* The carriage of (4.6) and (4.7) in plain doubles, straight from the paper's formulas: no basis, no ζ, libm's sine.
- * For roller-carrying wheels; the constrained vehicles have closed equations of their own in the tests. */
+/* The carriage of (4.6) and (4.7) in plain doubles, by the paper's formulas: without ζ, with libm's sine.
+ * For roller-carrying wheels; the tests of vehicles with constraints have equations of their own. */
 #ifndef LACONIC_TEST_REFERENCE_H
 #define LACONIC_TEST_REFERENCE_H
 
@@ -83,7 +83,7 @@ static inline void reference_rate(const reference *p, const double *y, const lac
     rate[5] = y[2] / p->big_lambda;
 }
 
-/* Classical Runge–Kutta with steps so small that what is left is rounding. */
+/* Classical Runge–Kutta with steps so small that the error is rounding. */
 static inline void reference_run(const reference *p, double *y, const laconic_input *in, double time, int steps) {
     const int n = 6 + p->wheels;
     const double h = time / steps;

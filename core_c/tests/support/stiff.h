@@ -1,4 +1,4 @@
-/* A vehicle with strong motors on slow steps: h·r is in the hundreds. */
+/* A vehicle whose damping is fast beside the step: h·r is in the hundreds. */
 #ifndef LACONIC_TEST_STIFF_H
 #define LACONIC_TEST_STIFF_H
 
@@ -35,8 +35,8 @@ static inline void assert_step_refused(const laconic_method *method, laconic_veh
     TEST_ASSERT_EQUAL_MEMORY(&before, &state, sizeof state);
 }
 
-/* Looks through scattered starts for one whose step of `step` is refused since it would gain energy: such states are
- * rare, and where they lie is no promise, but that they are noticed and nothing changes then is one. */
+/* Searches random starts for one whose step of `step` is refused since it would gain energy. Such states are rare, and
+ * which they are is not promised; that they are refused and the state then stays as it was, is. */
 static inline laconic_start start_that_gains_energy(const laconic_method *method, laconic_vehicle v,
                                                     laconic_input input, double step, double speed) {
     const laconic_model m = model_of(v);

@@ -111,7 +111,7 @@ static inline laconic_input no_input(void) {
     return input;
 }
 
-/* Voltages, torques, wrench in the body and in the world: everything that can act. */
+/* Every input: voltages, torques, a wrench in body axes and a world force. */
 static inline laconic_input every_input(void) {
     laconic_input input = no_input();
     for (int i = 0; i < LACONIC_MAX_WHEELS; i++) {
