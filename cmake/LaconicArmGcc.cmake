@@ -1,7 +1,7 @@
-# laconic_arm_gcc_lacks(<variable>): what keeps LACONIC_ARM_GCC from building firmware, as one line; "" when nothing does.
+# laconic_arm_gcc_lacks(<variable>): the reason why LACONIC_ARM_GCC cannot build firmware, in one line; "" if it can.
 #
-# Distributions ship the compiler apart from its C library (newlib, nano.specs) and from the library's variants for the
-# single processors, so all that the images need is tried: headers, the small library, linking, for each processor.
+# Distributions package the compiler, its C library (newlib, nano.specs) and the library's variants for each processor
+# separately, so headers, the small library and linking are tried for each processor.
 
 find_program(LACONIC_ARM_GCC arm-none-eabi-gcc)
 
@@ -24,9 +24,9 @@ function(laconic_arm_gcc_lacks variable)
         execute_process(
             COMMAND "${LACONIC_ARM_GCC}" -std=c99 -mthumb ${arm_${cpu}} --specs=nano.specs -nostartfiles -Wl,-e,probe
                     probe.c -o probe.elf
-            WORKING_DIRECTORY "${folder}" RESULT_VARIABLE failed OUTPUT_VARIABLE said ERROR_VARIABLE said)
+            WORKING_DIRECTORY "${folder}" RESULT_VARIABLE failed OUTPUT_VARIABLE output ERROR_VARIABLE output)
         if(NOT failed STREQUAL "0")
-            string(REGEX MATCH "[^\n]*(error|cannot|No such)[^\n]*" first "${said}")
+            string(REGEX MATCH "[^\n]*(error|cannot|No such)[^\n]*" first "${output}")
             set(${variable} "arm-none-eabi-gcc cannot link with newlib (${first}); install libnewlib-arm-none-eabi"
                 PARENT_SCOPE)
             return()

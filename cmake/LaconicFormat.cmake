@@ -1,4 +1,4 @@
-# Target `c_format` lays out all C files; the test `c_style` fails where one is not laid out. By the locked clang-format.
+# Target `c_format` formats all C files with the locked clang-format; the test `c_style` fails if one is not formatted.
 
 file(GLOB_RECURSE c_files CONFIGURE_DEPENDS
     "${PROJECT_SOURCE_DIR}/core_c/*.[ch]" "${PROJECT_SOURCE_DIR}/fmu/*.[ch]" "${PROJECT_SOURCE_DIR}/firmware_stub/*.[ch]")

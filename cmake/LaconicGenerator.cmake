@@ -1,4 +1,4 @@
-# Make is CMake's own choice. Where there is only Ninja, say the one thing that helps instead of CMake's several.
+# CMake's default generator is Make. Where only Ninja is installed, the message names the remedy; CMake's own does not.
 find_program(LACONIC_MAKE NAMES make gmake)
 find_program(LACONIC_NINJA NAMES ninja ninja-build)
 mark_as_advanced(LACONIC_MAKE LACONIC_NINJA)

@@ -1,7 +1,7 @@
 # laconic_purity(<real>): the build fails when the core's sources or objects are not pure (cmake/check_purity.py).
 #
-# Checked: the library as it ships, and the same sources for x86-64-v3, where a compiler is tempted to fuse
-# multiply-add. Instrumented builds (sanitizers, coverage) call their run-time libraries, so they are not checked.
+# Checked are the library and the same sources compiled for x86-64-v3, which has fused multiply-add instructions.
+# Instrumented builds (sanitizers, coverage) call their run-time libraries, so they are not checked.
 
 include(CheckCCompilerFlag)
 find_program(LACONIC_OBJDUMP NAMES "${CMAKE_OBJDUMP}" objdump llvm-objdump)

@@ -3,8 +3,8 @@
 # Depend on the target, not on the stamp file: Make would run the rule once in every target that names the file.
 #
 # It holds exactly what host_tests/requirements.txt locks, and our own packages, editable: `laconic`, and those that make
-# tables, pages and archives for the FMUs and the node. A build tree whose LACONIC_VENV is another tree's only uses it;
-# the other tree keeps it up to date.
+# tables, pages and archives for the FMUs and the node. A build tree whose LACONIC_VENV lies in another tree only uses that
+# environment; the other tree keeps it up to date.
 
 find_package(Python3 3.10 COMPONENTS Interpreter)
 if(NOT Python3_Interpreter_FOUND)
@@ -33,6 +33,6 @@ if(venv_is_ours)
         DEPENDS "${PROJECT_SOURCE_DIR}/cmake/make_venv.py" "${host}/requirements.txt" ${own_projects}
         COMMENT "Python environment" USES_TERMINAL VERBATIM)
 elseif(NOT EXISTS "${LACONIC_VENV_STAMP}")
-    message(FATAL_ERROR "laconic: LACONIC_VENV=${LACONIC_VENV} is not there: build the tree it belongs to first")
+    message(FATAL_ERROR "laconic: LACONIC_VENV=${LACONIC_VENV} does not exist: build the tree that it belongs to first")
 endif()
 add_custom_target(laconic_venv DEPENDS "${LACONIC_VENV_STAMP}")

@@ -1,4 +1,4 @@
-# The README's C example, compiled as it stands and run; its output must be what the README says.
+# The README's C example, compiled unchanged and run; its output must be that in the README.
 
 set(readme "${PROJECT_SOURCE_DIR}/README.md")
 set(readme_script "${PROJECT_SOURCE_DIR}/cmake/readme_example.py")

@@ -1,10 +1,10 @@
 # -DLACONIC_SCENE=scenes/X.toml: the core for that scene alone, as target `laconic_scene` (lib/liblaconic_scene.a).
 #
-# `laconic trim` reads off the scene what a build can leave out (laconic_scene.h) and prepares its model
-# (laconic_scene_model.c), so the linker brings in one method and no preparation. Users of the target get the same
-# constants. Cross builds borrow a host build's environment: name it with -DLACONIC_VENV=<host build>/venv.
+# `laconic trim` finds from the scene what a build can leave out (laconic_scene.h) and prepares its model
+# (laconic_scene_model.c), so the linker takes one method and no preparation. Users of the target get the same constants.
+# Cross builds use the environment of a host build: name it with -DLACONIC_VENV=<host build>/venv.
 
-set(LACONIC_SCENE_REAL "" CACHE STRING "double or single; empty: what the scene says")
+set(LACONIC_SCENE_REAL "" CACHE STRING "double or single; empty: as in the scene")
 
 cmake_path(ABSOLUTE_PATH LACONIC_SCENE BASE_DIRECTORY "${PROJECT_SOURCE_DIR}" NORMALIZE OUTPUT_VARIABLE scene_file)
 if(NOT EXISTS "${scene_file}")
@@ -12,8 +12,8 @@ if(NOT EXISTS "${scene_file}")
 endif()
 set(scene_real "${LACONIC_SCENE_REAL}")
 if(NOT scene_real)
-    file(STRINGS "${scene_file}" says_single REGEX "^real *= *[\"']single[\"']")
-    if(says_single)
+    file(STRINGS "${scene_file}" single_line REGEX "^real *= *[\"']single[\"']")
+    if(single_line)
         set(scene_real single)
     else()
         set(scene_real double)

@@ -1,5 +1,5 @@
-# laconic_strict(<target>): the warnings we keep clean, the arithmetic that gives the same bits everywhere, and a section
-# for each function and table, so that the linker leaves out what a program does not call.
+# laconic_strict(<target>): warnings, which must not occur, arithmetic that gives the same bits everywhere, and a section for each
+# function and table, so that the linker leaves out what a program does not call.
 #
 # -ffp-contract=off alone is not enough: gcc 12's SLP vectoriser fuses multiply-add in spite of it.
 
@@ -19,7 +19,7 @@ function(laconic_strict target)
     laconic_instrument(${target})
 endfunction()
 
-# Sanitizers and coverage, when asked for; for targets that are not ours to be strict with (Unity).
+# Sanitizers and coverage where LACONIC_SANITIZE and LACONIC_COVERAGE set them, also for code that is not ours.
 function(laconic_instrument target)
     if(LACONIC_SANITIZE)
         target_compile_options(${target} PRIVATE -fsanitize=${LACONIC_SANITIZE} -fno-sanitize-recover=all -g)

@@ -1,7 +1,7 @@
 # Unity, the C test framework, as target `laconic_unity`; and laconic_unity_test() to use it.
 #
-# Looked for as an installed package, in -DUNITY_DIR, then fetched at build time with its hashes checked
-# (cmake/fetch_parts.py: the project's own site, else a source archive on the configured package index).
+# It comes from -DUNITY_DIR, else from an installed package, else it is fetched at build time with its hashes checked
+# (cmake/fetch_parts.py: from the project's own site, else from a source archive on the configured package index).
 
 set(UNITY_DIR "" CACHE PATH "Folder that holds unity.c, unity.h and unity_internals.h")
 find_package(unity CONFIG QUIET)

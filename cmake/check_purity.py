@@ -1,8 +1,8 @@
 """Fail the build when the core includes or calls what it must not (docs: the core depends on nothing).
 
 Sources: only <float.h>, <stdbool.h>, <stddef.h>, <stdint.h> and the core's own headers.
-Objects: nothing undefined but memcpy, memmove and memset, which compilers put in by themselves (so no libm, no heap,
-no stdio); nothing writable (so no globals); no fused multiply-add, which would change the last bit.
+Objects: no undefined symbols but memcpy, memmove and memset, which compilers call by themselves (so no libm, no heap,
+no stdio); no writable data (so no globals); no fused multiply-add, which would change the last bit.
 """
 
 from __future__ import annotations
@@ -17,8 +17,8 @@ STANDARD = {"float.h", "stdbool.h", "stddef.h", "stdint.h"}
 SCENE_MACRO = "LACONIC_SCENE_HEADER"  # the one include whose name a build chooses
 COMPILER_MAY_CALL = {"memcpy", "memmove", "memset", "_GLOBAL_OFFSET_TABLE_"}
 SOFT_FLOAT = re.compile(r"__(aeabi_|[a-z]+(?:[sdt]f|[sd]i)\d?[a-z0-9]*$)")  # libgcc's arithmetic, without an FPU
-# Allowed, with plain C beside them: |x| as one instruction (never a call, which the objects show), and inlining
-# asked for or forbidden (noipa: with all that gcc concludes from one function about another)
+# Allowed where plain C is the alternative: |x| as one instruction (a call would show in the objects), and attributes
+# that force or forbid inlining (noipa also forbids all conclusions of gcc from one function about another)
 FORBIDDEN_WORDS = re.compile(
     r"\b(?:__builtin_(?!fabsf?\b)\w+|__attribute__(?!\(\((?:always_inline|noinline|noipa)\)\))|asm|__asm__|_Pragma|static_assert)\b"
     r"|#\s*pragma"

@@ -1,8 +1,8 @@
 """Fetch the third-party C sources that the build needs: Unity for the tests, the FMI headers for the FMUs.
 
-Each part is looked for on its project's own site first, then where the Python environment can get at it. What comes
-is taken only when its SHA-256 is the one written here (FMPy's own copies of the FMI 2 headers are covered by the
-hashes of the Python lock file instead). Run by the environment's Python at build time.
+Each part is searched on its project's own site first, then in the package index or in FMPy. A file is accepted only
+with the SHA-256 written here (the hash of FMPy in the Python lock file covers its copies of the FMI headers).
+Run at build time by the environment's Python.
 """
 
 from __future__ import annotations
@@ -39,7 +39,7 @@ FMI_3 = {
 
 
 class Unavailable(Exception):
-    """A place does not have the part, or cannot be reached."""
+    """A source does not have the part, or cannot be reached."""
 
 
 def main() -> int:
@@ -47,14 +47,14 @@ def main() -> int:
     parser.add_argument("part", choices=("unity", "fmi"))
     parser.add_argument("folder", type=Path)
     arguments = parser.parse_args()
-    places, remedy = {
+    sources, remedy = {
         "unity": ((unity_from_site, unity_from_archive), "-DUNITY_DIR=<folder with unity.c>"),
         "fmi": ((fmi_from_site, fmi_from_fmpy), "-DFMI_HEADERS_DIR=<folder with fmi2Functions.h and fmi3Functions.h>"),
     }[arguments.part]
     reasons = []
-    for place in places:
+    for source in sources:
         try:
-            write(arguments.folder, place())
+            write(arguments.folder, source())
             return 0
         except Unavailable as reason:
             reasons.append(str(reason))
@@ -70,7 +70,7 @@ def write(folder: Path, files: dict[str, bytes]) -> None:
 
 def checked(content: bytes, name: str, sha256: str) -> bytes:
     if hashlib.sha256(content).hexdigest() != sha256:
-        raise Unavailable(f"{name} is not the file it should be")
+        raise Unavailable(f"{name} has another SHA-256 than expected")
     return content
 
 
@@ -101,9 +101,9 @@ def unity_from_archive() -> dict[str, bytes]:
 
 
 def source_archive(project: str, version: str) -> bytes:
-    """A source archive as it lies on the configured package index.
+    """A source archive, unchanged, from the configured package index.
 
-    `pip download` would build it first, which needs compilers for another machine; so ask pip's own finder where it is.
+    `pip download` would build the package, which needs compilers for another machine; so pip's finder finds it.
     """
     from pip._internal.commands import create_command
     from pip._internal.exceptions import PipError

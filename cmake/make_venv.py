@@ -35,7 +35,7 @@ def parse() -> argparse.Namespace:
 
 
 def create(directory: Path) -> None:
-    """A fresh environment; one that an earlier attempt left half made is replaced."""
+    """A new environment; one that an earlier attempt left incomplete is replaced."""
     if any(path.exists() for path in candidates(directory)):
         return
     shutil.rmtree(directory, ignore_errors=True)
@@ -47,7 +47,7 @@ def candidates(directory: Path) -> list[Path]:
 
 
 def install_locked(python: Path, requirements: Path) -> None:
-    """Install the lock file, and say how far we are: this can take a minute."""
+    """Install the lock file and show the progress: this can take a minute."""
     wanted = len(re.findall(r"^[a-z0-9].*==", requirements.read_text(), re.MULTILINE | re.IGNORECASE))
     command = [str(python), "-m", "pip", "install", "--require-hashes", "--no-input", "-r", str(requirements)]
     seen, lines = 0, []
@@ -77,7 +77,7 @@ def pip(python: Path, *arguments: str) -> None:
 
 
 def reason(failure: subprocess.CalledProcessError) -> str:
-    """The one line of the failed command's output that says why."""
+    """The line of the failed command's output that gives the reason."""
     text = failure.output if isinstance(failure.output, str) else (failure.output or b"").decode(errors="replace")
     lines = [line.strip() for line in text.splitlines() if line.strip()]
     errors = [line for line in lines if line.startswith("ERROR")]

@@ -1,4 +1,4 @@
-"""The README's C example: take it out of the README, or check that its program prints what the README says."""
+"""The README's C example: extract it, or check that its program prints the output in the README."""
 
 from __future__ import annotations
 
@@ -23,7 +23,7 @@ def main() -> int:
     printed = subprocess.run([str(arguments.check.resolve())], capture_output=True, text=True, check=True).stdout
     if printed == output:
         return 0
-    print(f"laconic: the README promises\n{output}but its example prints\n{printed}", file=sys.stderr)
+    print(f"laconic: the README shows\n{output}but its example prints\n{printed}", file=sys.stderr)
     return 1
 
 

@@ -18,7 +18,7 @@ import cantools
 
 DBC = Path(__file__).with_name("laconic.dbc")
 BASE = 0x680          # of the identifiers in the DBC
-REPEAT_S = 0.1        # without an answer for so long, the same frame goes out again
+REPEAT_S = 0.1        # without an answer for this long, the same frame is sent again
 MOTION = ("VOLTAGE", "VOLTAGE_FD", "RAW_INPUT", "RAW_INPUT_FD", "SYNC")
 WHEEL_FIXED = 2
 BURGER = {"MASS": 0.883, "YAW_INERTIA": 2.39e-3, "WHEEL_RADIUS": 0.033, "WHEEL_INERTIA": 2.07e-5, "MOTOR_GAIN": 0.125,
@@ -27,7 +27,7 @@ BURGER = {"MASS": 0.883, "YAW_INERTIA": 2.39e-3, "WHEEL_RADIUS": 0.033, "WHEEL_I
 
 
 def crc(value, data, polynomial, bits):
-    """The CRC register after these bytes, each from its highest bit on."""
+    """The CRC register after these bytes, each with its highest bit first."""
     for byte in data:
         value ^= byte << bits - 8
         for _ in range(8):
@@ -94,7 +94,7 @@ class Client:
         return None
 
     def ask(self, frame, answer, seconds=2.0, **wanted):
-        """Sends a frame until the answer has come that belongs to it."""
+        """Sends a frame, again and again, until its answer has come; TimeoutError when none comes."""
         end = time.monotonic() + seconds
         while time.monotonic() < end:
             self.bus.send(frame)
@@ -105,7 +105,7 @@ class Client:
         raise TimeoutError(f"no {answer} with {wanted} within {seconds} s")
 
     def open(self):
-        """Sign of life, HELLO, OPEN: the node stands still and listens to nobody else."""
+        """Waits for a frame of the node, then HELLO and OPEN: it stops its run and accepts this session only."""
         while self.receive(1.0) is None:
             print("waiting for a node")
         nonce = self.ask(self.frame("HELLO", 1), "CHALLENGE", request=1)["nonce"]
@@ -145,7 +145,7 @@ class Client:
             self.count[name] = 0
 
     def move(self, name, **signals):
-        """A frame that moves the vehicle. The first of its kind after START is for reference only: sent twice."""
+        """A motion frame. The node does not act on the first of its kind after START, so it is sent twice."""
         for _ in range(2 if self.count[name] == 0 else 1):
             self.count[name] += 1
             self.bus.send(self.frame(name, self.count[name], self.run_key, **signals))
@@ -155,7 +155,7 @@ class Client:
         while (got := self.receive(seconds)) is not None:
             if got[0] == name:
                 return got[1]
-        raise TimeoutError(f"no {name}: the node says {self.last['HEARTBEAT']}")
+        raise TimeoutError(f"no {name}: the node's last HEARTBEAT is {self.last['HEARTBEAT']}")
 
 
 def main():

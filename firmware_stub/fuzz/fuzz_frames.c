@@ -1,6 +1,6 @@
-/* Any frames at any time, most of them with right protection so that they get past it: the node keeps its promises.
+/* Any frames at any time, most of them with right protection so that the node accepts them: the node stays as documented.
  *
- * Input: records of 10 bytes: [identifier offset and what to spoil] [time that passes] [payload]. */
+ * Input: records of 10 bytes: [identifier offset and what to make wrong] [time that passes] [payload]. */
 #include "laconic_node/node.h"
 #include "laconic_node/protection.h"
 #include "laconic_wire.h"
@@ -21,7 +21,7 @@ static void must(bool holds) {
     if (!holds) abort();
 }
 
-/* A small vehicle, so that the running states are reached at once. */
+/* A small vehicle, so that the first frames can start a run. */
 static void load(laconic_node *node) {
     const laconic_vehicle vehicle = {
         .mass_kg = 1,
@@ -51,7 +51,7 @@ static void fill(laconic_frame *frame, const uint8_t *record, uint16_t id_base) 
     for (uint8_t k = 0; k < frame->length; k++) frame->data[k] = record[2 + k % 8];
 }
 
-/* As a rig would that has lost no answer: each frame is the next of its kind. */
+/* Protects a frame as a rig that has lost no answer: each frame has the next count of its kind. */
 static void protect(const bench *bench, laconic_frame *frame, uint8_t offset) {
     const laconic_node_session *session = &bench->node.session;
     if (offset >= LACONIC_WIRE_RIG_OFFSETS) return;
@@ -69,7 +69,7 @@ static void protect(const bench *bench, laconic_frame *frame, uint8_t offset) {
     }
 }
 
-/* The handshake, so that the corpus reaches what lies behind it at once. */
+/* The handshake, so that the inputs need not find it. */
 static void open_session(bench *bench) {
     laconic_frame frame;
     uint8_t record[10] = {LACONIC_WIRE_HELLO};
@@ -82,7 +82,7 @@ static void open_session(bench *bench) {
     must(bench->node.session.open);
 }
 
-/* What the documents promise of every state. */
+/* Properties that docs/wire.md states for every state. */
 static void check(const laconic_node *node) {
     const bool moves = node->state == LACONIC_WIRE_STATE_LOCKSTEP || node->state == LACONIC_WIRE_STATE_FREE_RUN;
     must(node->state <= LACONIC_WIRE_STATE_FAULT);

@@ -1,4 +1,4 @@
-/* Any parameters: the loader writes only where a parameter lives, and whatever comes out of it the core takes or refuses.
+/* Any parameters: the loader writes only into its parameters, and the core accepts or refuses every result.
  *
  * Input: records of 7 bytes: the payload of PARAMETER from byte 2 on, and its upper half flag. */
 #include "laconic_node/loader.h"

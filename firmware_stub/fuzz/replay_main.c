@@ -1,4 +1,4 @@
-/* Runs every file of the folders named on the command line through a fuzz target: for compilers without libFuzzer. */
+/* Runs a fuzz target with every file of the folders on the command line, for compilers without libFuzzer. */
 #include <dirent.h>
 #include <stdint.h>
 #include <stdio.h>

@@ -1,4 +1,4 @@
-"""What the tools read of the contract: the database, the attributes of its messages and the limits of its signals."""
+"""Reads the wire contract: the database, the attributes of its messages, limits and value tables of its signals."""
 
 from __future__ import annotations
 

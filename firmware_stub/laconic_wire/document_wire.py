@@ -100,10 +100,10 @@ def spaced(data: bytes) -> str:
     return data.hex(" ").upper()
 
 
-def example(client: reference.Client, name: str, count: int, key: int | None, said: str, **signals: object) -> str:
+def example(client: reference.Client, name: str, count: int, key: int | None, title: str, **signals: object) -> str:
     """One frame in hex, with what leads to it."""
     frame = client.frame(name, count, key, **signals)
-    text = f"* {said}: "
+    text = f"* {title}: "
     if key is not None:
         chosen = reference.mix(reference.mix(key, frame.arbitration_id - reference.BASE), count)
         text += f"count {count}, hash 0x{chosen:08X}: "

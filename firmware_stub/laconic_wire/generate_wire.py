@@ -2,7 +2,7 @@
 
     python -m laconic_wire.generate_wire laconic.dbc OUTPUT_DIRECTORY
 
-writes laconic_wire.h and laconic_wire.c. What cantools' own packers cannot know (protection, saturation) is here.
+writes laconic_wire.h and laconic_wire.c, which add to cantools' packers what these lack: protection and saturation.
 """
 
 from __future__ import annotations
@@ -16,7 +16,7 @@ from .contract import attribute, limits, load
 
 ID_BASE = 1664
 NOTE = "/* Generated from laconic.dbc. */\n"
-KEYS = ("none", "nonce", "session", "run")  # how a frame's protection is keyed
+KEYS = ("none", "nonce", "session", "run")  # what keys a frame's protection
 
 
 def data_ids(message: Message) -> list[int]:

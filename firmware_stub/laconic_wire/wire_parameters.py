@@ -1,7 +1,7 @@
-"""What each PARAMETER means: its unit, whether it is a number or an integer, and when it must come.
+"""The meaning of each PARAMETER: its key in a scene, its unit or "integer", and when it is required.
 
-Field in the DBC → (key in a scene file, unit, item, required). What a node takes follows from the core's list of fields
-(vehicle.h) and modelDescription.xml; the test test_wire_page.py holds `required` against the node itself.
+Field in the DBC → (key in a scene file, unit, item, required). The fields of a node follow from the core's list
+(vehicle.h) and modelDescription.xml; the test test_wire_page.py compares `required` with the node.
 """
 
 from __future__ import annotations
@@ -29,7 +29,7 @@ def units() -> dict[str, str]:
 
 
 def row(field: Field, unit: str) -> tuple[str, str, str, str]:
-    """One that a node takes."""
+    """The entry of a field that a node accepts."""
     key = f"how many [[{field.path}]]" if field.counts else field.path.removesuffix("[#]")
     tables = {"vehicle.wheel[#]": WHEEL, "vehicle.support[#]": SUPPORT}
     item = tables.get(field.table, COMPONENT if field.items else NONE)
@@ -39,7 +39,7 @@ def row(field: Field, unit: str) -> tuple[str, str, str, str]:
 
 
 def taken() -> dict[str, tuple[str, str, str, str]]:
-    """Those that a node takes."""
+    """The entries of all fields that a node accepts."""
     unit = units()
     return {field.identifier: row(field, unit[field.name] if field.kind == "REAL" else "integer")
             for field in load().fields if field.table and field.table != "vehicle.motor"}

@@ -1,7 +1,7 @@
 /* The three checksums of the wire: CRC-8 and CRC-16 of the frames, CRC-32 of a loaded vehicle. */
 #include "laconic_node/crc.h"
 
-/* A nibble at a time: two look-ups a byte, and 112 bytes of tables for all three. */
+/* Each look-up takes four bits: two look-ups a byte, and 112 bytes of tables for all three. */
 
 static const uint8_t table8[16] = {0x00, 0x2F, 0x5E, 0x71, 0xBC, 0x93, 0xE2, 0xCD,
                                    0x57, 0x78, 0x09, 0x26, 0xEB, 0xC4, 0xB5, 0x9A};

@@ -45,7 +45,7 @@ static laconic_e2e_status accept(laconic_e2e_receiver *receiver, uint8_t counter
     return lost == 0 ? LACONIC_E2E_OK : LACONIC_E2E_OK_SOME_LOST;
 }
 
-/* A refused frame is remembered apart from the reference, so that a burst of old frames cannot rewind it. */
+/* The counter of a refused frame is kept apart from the reference, so that old frames cannot change the reference. */
 static laconic_e2e_status stray(laconic_e2e_receiver *receiver, uint8_t counter, uint8_t mask) {
     const bool follows = receiver->stray_count > 0 && counter == ((receiver->stray + 1U) & mask);
     receiver->stray_count = (uint8_t)(follows ? receiver->stray_count + 1U : 1U);

@@ -1,4 +1,4 @@
-/* One PARAMETER frame after the other becomes a vehicle, its start and its run. */
+/* Stores the numbers of PARAMETER frames as a vehicle, its start and its run. */
 #include "laconic_node/loader.h"
 
 #include "laconic_dbc.h"
@@ -10,7 +10,7 @@
 typedef struct location {
     uint8_t field;
     uint8_t kind_and_need; /* laconic_field_kind, 16 · laconic_field_need */
-    uint8_t items;         /* 0: the field is no list */
+    uint8_t items;         /* 0: the field is a single number */
     uint8_t stride;
     uint16_t offset;
 } location;
@@ -44,7 +44,7 @@ static const location *find(uint8_t field, uint8_t item) {
     return NULL;
 }
 
-/* Numbers for which the contract has a field and the core has no use yet. */
+/* Fields that laconic.dbc has for numbers which the core does not use yet. */
 static bool is_reserved(uint8_t field) {
     return field >= LACONIC_WIRE_FIELD_RESISTANCE && field <= LACONIC_WIRE_FIELD_START_WHEEL_SPEED;
 }
@@ -56,7 +56,7 @@ static void refuse(laconic_loader *loader, uint8_t status, uint8_t field, uint8_
     loader->item = item;
 }
 
-/* Value bits arrive in 32-bit pieces; a double is complete with its upper half. False: more to come, or refused. */
+/* Joins the 32-bit halves of a number. False: the upper half of a double is still to come, or the frame is refused. */
 static bool assemble(laconic_loader *loader, const struct laconic_dbc_parameter_t *frame, laconic_real *value) {
     if (sizeof(laconic_real) == sizeof(uint32_t)) {
         if (frame->upper_half) refuse(loader, LACONIC_WIRE_STATUS_OUT_OF_RANGE, frame->field, frame->item);
@@ -64,7 +64,7 @@ static bool assemble(laconic_loader *loader, const struct laconic_dbc_parameter_
         return !frame->upper_half;
     }
     if (!frame->upper_half) {
-        if (loader->half_field != 0) /* the half before this one never got its upper part */
+        if (loader->half_field != 0) /* the upper half of the double before did not come */
             refuse(loader, LACONIC_WIRE_STATUS_INPUT_INCOMPLETE, loader->half_field, loader->half_item);
         loader->half = frame->value;
         loader->half_field = frame->field;
@@ -128,7 +128,7 @@ void laconic_loader_take(laconic_loader *loader, const uint8_t data[8]) {
 
 static laconic_field_need need_of(const location *where) { return (laconic_field_need)(where->kind_and_need >> 4); }
 
-/* Whether anything that is needed so has come. */
+/* Whether any field with that need has come. */
 static bool any_given(const laconic_loader *loader, laconic_field_need need) {
     uint32_t given = 0;
     for (size_t k = 0; k < LACONIC_LOADER_FIELDS; k++)
@@ -136,8 +136,8 @@ static bool any_given(const laconic_loader *loader, laconic_field_need need) {
     return given != 0;
 }
 
-/* Whether this item of the field must have come. Beyond the largest number of wheels or supports the count itself is
- * wrong, which the core says. */
+/* Whether this item of a field with that need must have come. The core refuses counts beyond the largest number of wheels
+ * or supports. */
 static bool is_needed(const laconic_loader *loader, laconic_field_need need, int32_t item) {
     const laconic_vehicle *vehicle = &loader->parameters.vehicle;
     switch (need) {

@@ -43,7 +43,7 @@ static bool dispatch(laconic_node *node, uint8_t offset, const uint8_t *data, ui
     return laconic_node_raw(node, data + 4, data[3], 255, 60);
 }
 
-/* True iff the frame is one that the rig sends now. The handshake checks its own. */
+/* True iff the frame is one that the rig sends now. HELLO and OPEN are checked by their own functions. */
 static bool takes(laconic_node *node, uint8_t offset, const uint8_t *data) {
     const uint8_t key = laconic_wire[offset].key;
     if (key == LACONIC_WIRE_KEY_SESSION) return laconic_node_takes_command(node, offset, data);
@@ -52,7 +52,7 @@ static bool takes(laconic_node *node, uint8_t offset, const uint8_t *data) {
 
 void laconic_node_on_frame(laconic_node *node, const laconic_frame *frame, uint32_t now_us) {
     const uint32_t offset = frame->id - node->config.id_base;
-    if (frame->extended || offset >= LACONIC_NODE_ID_STRIDE) return; /* somebody else's */
+    if (frame->extended || offset >= LACONIC_NODE_ID_STRIDE) return; /* for another node */
     if (offset >= LACONIC_WIRE_RIG_OFFSETS || !is_well_formed(frame, &laconic_wire[offset])) {
         count(&node->counters.malformed);
         return;
@@ -72,11 +72,11 @@ void laconic_node_on_tick(laconic_node *node, uint32_t now_us) {
         laconic_node_run_free(node, now_us);
 }
 
-/* True iff this frame has more parts to follow: wheel groups, counter pages, raw segments. */
+/* Counts the part that was sent; true iff the frame has more parts: wheel groups, counter pages, raw segments. */
 static bool has_more(laconic_node *node, uint8_t offset) {
     switch (offset) {
     case LACONIC_WIRE_RESULT:
-        node->answers_due = (uint16_t)(node->answers_due & (node->answers_due - 1U)); /* the lowest is done */
+        node->answers_due = (uint16_t)(node->answers_due & (node->answers_due - 1U)); /* clears the lowest bit */
         return node->answers_due != 0;
     case LACONIC_WIRE_WHEEL_SPEED: node->wheel_group++; return 3 * node->wheel_group < node->plant.model.wheel_count;
     case LACONIC_WIRE_COUNTERS:

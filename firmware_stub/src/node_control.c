@@ -1,4 +1,4 @@
-/* The node's life: who it is, what it plays, when it runs. */
+/* Frames that configure the node: CONTROL, PARAMETER, COMMIT and SELECT, each answered by RESULT. */
 #include "node_internal.h"
 
 #include "laconic_dbc.h"
@@ -26,7 +26,7 @@ static uint8_t begin(laconic_node *node) {
     return 0;
 }
 
-/* A new run: nothing that was sent for an earlier one passes its check any more. */
+/* Begins a run with a new key: motion frames that were sent for an earlier run no longer pass. */
 static uint8_t start(laconic_node *node, uint8_t state) {
     if (node->state != LACONIC_WIRE_STATE_READY) return LACONIC_WIRE_STATUS_WRONG_STATE;
     laconic_node_begin_run(node);
@@ -36,11 +36,11 @@ static uint8_t start(laconic_node *node, uint8_t state) {
     return 0;
 }
 
-/* Periods of whole steps, 1 to 1000 a second; rate 0: one step a period. In the core's own arithmetic, so that a board
- * without double needs none for this. */
+/* Periods of a whole number of steps, 1 to 1000 periods a second; rate 0: one step a period. Computed in laconic_real, so
+ * that an image in single precision needs no arithmetic in double. */
 static bool choose_rate(laconic_node_free_run *run, uint16_t rate_Hz, laconic_real step_s) {
     const laconic_real half = (laconic_real)0.5;
-    const laconic_real slack = (laconic_real)1e-4; /* of a step: many times what rounding makes */
+    const laconic_real slack = (laconic_real)1e-4; /* of a step: far more than rounding errors */
     const laconic_real own_rate_Hz = 1 / step_s;
     if (!(own_rate_Hz < (laconic_real)1e6)) return false;
     run->rate_Hz = rate_Hz > 0 ? rate_Hz : (uint32_t)(own_rate_Hz + half);
@@ -112,7 +112,7 @@ void laconic_node_control(laconic_node *node, const uint8_t *data, uint32_t now_
     laconic_node_answer(node, LACONIC_WIRE_CONTROL, frame.command, status, field, item);
 }
 
-/* Answered each by itself, so that a lost one is missed at once; the first refusal stays until BEGIN. */
+/* Each PARAMETER has its own answer, so that the rig notices a lost one at once. The first refusal stays until BEGIN. */
 void laconic_node_parameter(laconic_node *node, const uint8_t *data) {
     const laconic_loader *loader = &node->loader;
     laconic_loader_take(&node->loader, data);

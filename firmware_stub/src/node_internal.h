@@ -1,4 +1,4 @@
-/* What the node's files share with each other. */
+/* Helpers and functions that the node's files share. */
 #ifndef LACONIC_NODE_INTERNAL_H
 #define LACONIC_NODE_INTERNAL_H
 
@@ -34,12 +34,12 @@ static inline bool listens_to_voltages(const laconic_node *node) {
     return node->state == LACONIC_WIRE_STATE_LOCKSTEP || node->state == LACONIC_WIRE_STATE_FREE_RUN;
 }
 
-/* node_session.c: the handshake, and whether a frame may be carried out. */
+/* node_session.c: the handshake, and whether a frame is executed. */
 void laconic_node_hello(laconic_node *node, const uint8_t *data, uint32_t now_us);
 void laconic_node_open(laconic_node *node, const uint8_t *data, uint32_t now_us);
 bool laconic_node_takes_command(laconic_node *node, uint8_t offset, const uint8_t *data);
 bool laconic_node_takes_motion(laconic_node *node, uint8_t offset, const uint8_t *data);
-/* From now on motion frames are keyed by the START that was taken last. */
+/* Motion frames are keyed by the last accepted START from now on. */
 void laconic_node_begin_run(laconic_node *node);
 
 /* node_control.c: CONTROL, PARAMETER, COMMIT and SELECT, each answered by RESULT. */
@@ -47,7 +47,7 @@ void laconic_node_control(laconic_node *node, const uint8_t *data, uint32_t now_
 void laconic_node_parameter(laconic_node *node, const uint8_t *data);
 void laconic_node_commit(laconic_node *node, const uint8_t *data);
 void laconic_node_select(laconic_node *node, const uint8_t *data);
-/* At rest for a new session: stopped, nothing half loaded, nothing selected, nothing to say. */
+/* For a new session: stops the run and clears the loader, the selection and the frames to be sent. */
 void laconic_node_make_idle(laconic_node *node);
 /* The RESULT to a frame of this offset, whose request is set already. */
 void laconic_node_answer(laconic_node *node, uint8_t offset, uint8_t command, uint8_t status, uint8_t field,
@@ -67,7 +67,7 @@ void laconic_node_run_free(laconic_node *node, uint32_t now_us);
 void laconic_node_clear_inputs(laconic_node *node);
 void laconic_node_publish(laconic_node *node);
 
-/* node_pack.c: payload of one frame; protection is put on afterwards. */
+/* node_pack.c: writes the payload of one frame; its protection follows. */
 void laconic_node_pack(laconic_node *node, uint8_t offset, uint8_t *data);
 
 #endif

@@ -9,7 +9,7 @@
 
 #define MOST_STEPS 1000000U /* of one SYNC */
 
-/* Everything the vehicle needs has come: the watchdog is content. */
+/* Resets the watchdog when the voltages of all groups have come. */
 static void feed(laconic_node *node, uint8_t group, uint32_t now_us) {
     const int32_t wheels = node->plant.model.wheel_count;
     const int32_t groups = wheels > 3 ? (wheels + 2) / 3 : 1;

@@ -30,7 +30,7 @@ static void pack_result(const laconic_node *node, uint8_t *data) {
     data[6] = node->state;
 }
 
-/* LACONIC_VERSION is text, "major.minor.patch"; on the wire six bits each, the patch lowest. */
+/* LACONIC_VERSION is the text "major.minor.patch"; the frame has six bits for each, the patch in the lowest. */
 static uint32_t version(void) {
     uint32_t whole = 0;
     uint32_t part = 0;
@@ -60,7 +60,7 @@ static void pack_challenge(const laconic_node *node, uint8_t *data) {
     put32(data + 2, node->session.nonce);
 }
 
-/* Three numbers of 16 bits from byte 2 on, and the flag at bit 12: NU, POSE and WHEEL_SPEED. */
+/* NU, POSE and WHEEL_SPEED have three numbers of 16 bits from byte 2 on, and the flag at bit 12. */
 static void put_scaled(uint8_t *data, uint8_t index, laconic_real value, int32_t per_unit, int32_t largest) {
     uint8_t overrange = 0;
     put16(data + 2 + 2 * index, (uint32_t)scaled(value, per_unit, largest, &overrange));
@@ -101,13 +101,13 @@ static void pack_heartbeat(const laconic_node *node, uint8_t *data) {
     put16(data + 6, (late > MOST_LATENESS ? MOST_LATENESS : late) | deaf);
 }
 
-/* The counters stand in the order of the pages, three to a page, and the target is little-endian (raw_frames.c). */
+/* The counters have the order of the pages, three to a page, and the target is little-endian (raw_frames.c). */
 static void pack_counters(const laconic_node *node, uint8_t *data) {
     data[1] = (uint8_t)(node->counter_page << 4);
     memcpy(data + 2, (const uint8_t *)&node->counters + 6 * node->counter_page, 6);
 }
 
-/* By hand: seven numbers and sixteen wheels in a row need no packer of 300 lines. */
+/* Packed by hand: the generated packer for these numbers would have 300 lines. */
 static void pack_state_fd(const laconic_node *node, uint8_t *data) {
     laconic_real nu[3];
     laconic_real speed[LACONIC_MAX_WHEELS];

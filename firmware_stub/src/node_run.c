@@ -1,4 +1,4 @@
-/* Time passes: steps in lockstep and in free run. The stepping itself is the core's. */
+/* Steps in lockstep and in free run, and the watchdog. */
 #include "node_internal.h"
 
 #include <string.h>
@@ -8,7 +8,7 @@ void laconic_node_clear_inputs(laconic_node *node) {
     laconic_raw_restart(&node->raw_input);
 }
 
-/* The chosen frames, from the state of this moment. */
+/* Makes the frames that SELECT has chosen due, with outputs of the present state. */
 void laconic_node_publish(laconic_node *node) {
     if (node->send & LACONIC_NODE_SEND_NU) node->pending |= BIT(LACONIC_WIRE_NU);
     if (node->send & LACONIC_NODE_SEND_POSE) node->pending |= BIT(LACONIC_WIRE_POSE);
@@ -63,8 +63,8 @@ void laconic_node_run_lockstep(laconic_node *node) {
     if (node->lockstep.steps_due == 0) laconic_node_publish(node);
 }
 
-/* Commands have stopped coming: coast without voltage until the rig says STOP and START again. A frame may be stamped
- * after the tick that follows it, so the difference has a sign. */
+/* The watchdog: without new voltages for too long the vehicle coasts without voltage until the rig sends STOP and START.
+ * The time of a frame may be later than that of the tick that follows it, so the difference has a sign. */
 static void watch(laconic_node *node, uint32_t now_us) {
     const laconic_node_free_run *run = &node->free_run;
     if (node->state != LACONIC_WIRE_STATE_FREE_RUN || run->watchdog_us == 0) return;
@@ -82,7 +82,7 @@ static void schedule_next(laconic_node_free_run *run) {
     }
 }
 
-/* No step is ever left out: one that comes more than a period late is taken late, and counted. */
+/* No step is ever left out: a period that is late is computed late, and counted when it is late by a period or more. */
 void laconic_node_run_free(laconic_node *node, uint32_t now_us) {
     laconic_node_free_run *run = &node->free_run;
     laconic_refusal why = {0};

@@ -1,10 +1,10 @@
-/* Whether a frame is one that the rig sends now: handshake, commands one by one, motion two in a row. */
+/* Handshake, and whether a frame is one that the rig sends now: the next command, or the second right motion frame. */
 #include "node_internal.h"
 
 #include <string.h>
 
-/* The first HELLO draws the nonce, since its instant is the one thing that no two power-ups share where the port has no
- * seed. A later one changes nothing: a stale HELLO must not disturb a handshake. */
+/* The first HELLO makes the nonce, since without a seed of the port only the instant of this frame differs between two
+ * power-ups. Later ones change nothing: a stale HELLO must not disturb a handshake. */
 void laconic_node_hello(laconic_node *node, const uint8_t *data, uint32_t now_us) {
     laconic_node_session *session = &node->session;
     if (!laconic_plain_is_right(LACONIC_WIRE_HELLO, data)) {
@@ -38,7 +38,7 @@ static void begin_session(laconic_node *node, uint32_t number, uint32_t now_us) 
     session->nonce = laconic_mix(laconic_mix(nonce, number), now_us);
 }
 
-/* A repeated OPEN, whose answer was lost, finds the nonce of before: it is answered again, not carried out again. */
+/* An OPEN that is repeated because its answer was lost has the nonce before: it is answered, but not executed again. */
 void laconic_node_open(laconic_node *node, const uint8_t *data, uint32_t now_us) {
     laconic_node_session *session = &node->session;
     const uint32_t number = word32(data + 4);
@@ -56,7 +56,7 @@ void laconic_node_open(laconic_node *node, const uint8_t *data, uint32_t now_us)
     node->answer[LACONIC_WIRE_OPEN].request = laconic_counter_of(LACONIC_WIRE_OPEN, data);
 }
 
-/* How many counts a frame is ahead of the last of its kind, if its protection is right for that; else −1. */
+/* By how many counts the frame is ahead of the last one of its kind; −1: its protection is wrong. */
 static int ahead_of_last(const laconic_node *node, uint8_t offset, const uint8_t *data, uint32_t key) {
     const uint8_t mask = LACONIC_NODE_CAN_FD && laconic_wire[offset].fd ? 255U : 15U;
     const uint32_t last = node->session.count[offset];
@@ -75,7 +75,7 @@ static bool accept(laconic_node *node, uint8_t offset, int ahead) {
     return true;
 }
 
-/* Commands stop and wait: the next has the next count. The last once more means that its answer was lost. */
+/* The rig waits for each answer, so a new command has the next count. A repeated one means that its answer was lost. */
 bool laconic_node_takes_command(laconic_node *node, uint8_t offset, const uint8_t *data) {
     const int ahead = ahead_of_last(node, offset, data, node->session.key);
     if (ahead == 0 && node->session.count[offset] > 0) {
@@ -96,16 +96,16 @@ void laconic_node_begin_run(laconic_node *node) {
     memset(&session->count[LACONIC_WIRE_RUN_FIRST], 0, LACONIC_WIRE_RUN_OFFSETS * sizeof session->count[0]);
 }
 
-/* Two in a row: a frame acts when the one before it was right, too, and its count is the next. So one stale frame that
- * happens to pass does not move the vehicle, and nothing brings a lost count back but START. Where new frames follow by
- * themselves some lost ones are forgiven: the one after the gap is for reference. */
+/* A motion frame acts only if the frame before it was right, too, and had the count before. So a single stale frame whose
+ * CRC is right by chance does not move the vehicle, and only START restores a lost count. In free run, where frames follow
+ * regularly, a few may be lost: then the first one after the gap does not act either. */
 bool laconic_node_takes_motion(laconic_node *node, uint8_t offset, const uint8_t *data) {
     laconic_node_session *session = &node->session;
     const int most = node->state == LACONIC_WIRE_STATE_FREE_RUN ? laconic_wire[offset].max_delta : 1;
     const int ahead = ahead_of_last(node, offset, data, session->run_key);
     const uint32_t bit = BIT(offset);
     const bool was_armed = (session->armed & bit) != 0;
-    if (ahead == 0) { /* the bus itself may double a frame: no reason for distrust */
+    if (ahead == 0) { /* a CAN bus may transmit a frame twice */
         count(&node->counters.repeated);
         return false;
     }

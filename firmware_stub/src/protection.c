@@ -1,16 +1,16 @@
-/* Which start and DataID the CRC of a frame has, and so which frames are right now. */
+/* Start value and DataID of the CRC of plain and keyed frames. */
 #include "laconic_node/protection.h"
 
 #include "laconic_node/e2e.h"
 #include "laconic_node/frame.h"
 #include "laconic_wire.h"
 
-/* Offsets of identifiers are below it, counts of a START behind it: no key of a run is one of a frame. */
+/* Offsets of identifiers are below RUN and the counts of a START are added to it, so both never mix the same number. */
 #define RUN 32U
 #define CLASSIC_BYTES 8 /* of every classic frame of the contract */
 
-/* A bijection of 32 bits in which every bit of x turns about half of the result's (odd factors, chosen by trial for the
- * least bias). */
+/* A bijection of 32 bits; flipping a bit of x flips about half of the bits of the result (odd factors, chosen by trial for
+ * the least bias). */
 static uint32_t stir(uint32_t x) {
     x ^= x >> 16;
     x *= 0xA5C6E92DU;

@@ -1,9 +1,9 @@
-/* The bytes of RAW_INPUT to numbers of the input, and numbers of the plant to the bytes of RAW_OUTPUT. */
+/* Raw frames: bytes of RAW_INPUT become numbers of the input, and outputs of the plant become bytes of RAW_OUTPUT. */
 #include "laconic_node/raw_frames.h"
 
 #include <string.h>
 
-/* Both ways the numbers are little-endian; a big-endian target would have to turn them round here. */
+/* Numbers on the bus are little-endian; a big-endian target would have to reverse their bytes here. */
 #if defined(__BYTE_ORDER__) && __BYTE_ORDER__ != __ORDER_LITTLE_ENDIAN__
 #error "laconic: raw frames are written for little-endian targets"
 #endif
@@ -17,7 +17,7 @@ void laconic_raw_restart(laconic_raw_input *raw) {
     raw->broken = false;
 }
 
-/* Where number k of one input lives; NULL behind the last. */
+/* Address of number k of one input; NULL beyond the last. */
 static laconic_real *slot_in(laconic_input *input, uint8_t take, int32_t wheel_count, int32_t k) {
     if (take & LACONIC_RAW_VOLTAGE) {
         if (k < wheel_count) return &input->voltage_V[k];

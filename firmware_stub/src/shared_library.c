@@ -1,4 +1,4 @@
-/* What tests and the in-process rig call beside the node's own functions. */
+/* Functions for tests and the in-process rig, beside those of the node. */
 #include "shared_library.h"
 
 #include "laconic_node/node.h"

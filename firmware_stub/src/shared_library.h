@@ -1,11 +1,11 @@
-/* The node as a shared library, for tests and the in-process rig: what Python sees of it. */
+/* The node as a shared library for tests and the in-process rig: the declarations that Python reads. */
 #ifndef LACONIC_NODE_SHARED_LIBRARY_H
 #define LACONIC_NODE_SHARED_LIBRARY_H
 
 #include "laconic_node/frame.h"
 
 struct laconic_node;
-/* The functions of node.h, once more: cffi needs no more of the node than its name. */
+/* The functions of node.h again, with an incomplete type: cffi needs only the name of the struct. */
 void laconic_node_on_frame(struct laconic_node *node, const laconic_frame *frame, uint32_t now_us);
 void laconic_node_on_tick(struct laconic_node *node, uint32_t now_us);
 bool laconic_node_next_frame(struct laconic_node *node, laconic_frame *frame);
@@ -18,12 +18,12 @@ uint32_t laconic_node_idle_us(const struct laconic_node *node, uint32_t now_us);
 #include "laconic_node/protection.h"
 #include "laconic_node/slcan.h"
 
-/* A node in memory that the caller provides (that many bytes, aligned to 8), with all methods. */
+/* Bytes of a node, and its start with all methods in memory that the caller provides, aligned to 8 bytes. */
 uint32_t laconic_library_node_size(void);
 bool laconic_library_node_init(struct laconic_node *node, uint16_t id_base, bool can_fd, uint32_t nonce_seed,
                                uint32_t now_us);
 
-/* What a test may look at from outside. */
+/* The part of the node's state that tests check. */
 typedef struct laconic_library_view {
     uint8_t state;
     bool deaf;
@@ -34,10 +34,10 @@ typedef struct laconic_library_view {
 
 void laconic_library_inspect(const struct laconic_node *node, laconic_library_view *view);
 
-/* Over every error of one, two and three bits in this 8-byte frame of profile 22, counted by what happens to it:
- * outcome 0 found by the CRC, 1 found by the counter, 2 accepted. The receiver has just taken the frame before. */
+/* Counts of all errors of one, two and three bits in an 8-byte frame of profile 22 by their outcome: 0 found by the CRC,
+ * 1 found by the counter, 2 accepted. The receiver has just accepted the frame before. */
 typedef struct laconic_error_census {
-    uint64_t counter_kept[3]; /* errors that leave the counter alone */
+    uint64_t counter_kept[3]; /* errors outside the counter */
     uint64_t counter_changed[3];
 } laconic_error_census;
 

@@ -1,4 +1,4 @@
-/* Lines of SLCAN to frames and commands, and frames to lines. */
+/* Parses lines of SLCAN as frames and commands, and writes frames as lines. */
 #include "laconic_node/slcan.h"
 
 static const uint8_t fd_lengths[16] = {0, 1, 2, 3, 4, 5, 6, 7, 8, 12, 16, 20, 24, 32, 48, 64};
@@ -40,7 +40,7 @@ static bool kind_of(char letter, laconic_frame *frame) {
     return kind == 't' || frame->remote || frame->fd;
 }
 
-/* The line must have exactly the length that its DLC asks for. */
+/* The line must have exactly the length that its DLC states. */
 static bool parse_frame(const char *line, size_t length, laconic_frame *frame) {
     laconic_frame read = {0};
     uint32_t dlc;

@@ -23,7 +23,7 @@ static inline void bench_send_count(uint8_t offset, const uint8_t *payload, uint
     laconic_node_on_frame(&node, &frame, now_us);
 }
 
-/* The next frame of its kind; before the first that moves the vehicle, one for reference. */
+/* The next frame of its kind. The first motion frame after START does not act, so it is sent twice. */
 static inline void bench_send(uint8_t offset, const uint8_t *payload) {
     if (laconic_wire[offset].key == LACONIC_WIRE_KEY_RUN && sent[offset] == 0)
         bench_send_count(offset, payload, ++sent[offset]);

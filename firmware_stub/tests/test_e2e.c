@@ -31,7 +31,7 @@ static void a_frame_too_short_for_its_header_is_never_right(void) {
     TEST_ASSERT_FALSE(laconic_e2e_p05_crc_is_right(data, 2, fd));
 }
 
-static void profile_5_finds_each_turned_bit(void) {
+static void profile_5_finds_each_flipped_bit(void) {
     uint8_t data[64];
     memset(data, 0xA5, sizeof data);
     laconic_e2e_p05_protect(data, 64, fd, 9);
@@ -74,7 +74,7 @@ int main(void) {
     UNITY_BEGIN();
     RUN_TEST(profile_2_gives_the_published_headers);
     RUN_TEST(a_frame_too_short_for_its_header_is_never_right);
-    RUN_TEST(profile_5_finds_each_turned_bit);
+    RUN_TEST(profile_5_finds_each_flipped_bit);
     RUN_TEST(the_status_machine_never_moves_for_a_refused_frame);
     RUN_TEST(lost_frames_are_counted_up_to_max_delta);
     RUN_TEST(three_frames_in_a_row_make_a_new_reference);

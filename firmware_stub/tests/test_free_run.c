@@ -44,7 +44,7 @@ static void steps_that_come_late_are_taken_late_and_counted(void) {
     TEST_ASSERT_EQUAL_UINT16(4, node.counters.late_periods);
 }
 
-static void the_watchdog_wants_all_voltages_and_latches(void) {
+static void the_watchdog_needs_all_voltages_and_latches(void) {
     start(1000, 10);
     for (int k = 0; k < 4; k++) {
         bench_voltage(0, 500, 0);
@@ -75,7 +75,7 @@ static void a_frame_stamped_after_the_tick_that_follows_it_feeds_the_watchdog(vo
     TEST_ASSERT_EQUAL_UINT8(LACONIC_WIRE_STATE_FREE_RUN, node.state);
 }
 
-static void a_sync_has_no_place_in_free_run(void) {
+static void a_sync_is_refused_in_free_run(void) {
     uint8_t data[LACONIC_FRAME_BYTES];
     start(1000, 0);
     bench_voltage(0, 500, 1);
@@ -100,9 +100,9 @@ int main(void) {
     RUN_TEST(every_period_takes_its_steps_though_the_time_wraps);
     RUN_TEST(rates_that_are_no_whole_steps_are_refused);
     RUN_TEST(steps_that_come_late_are_taken_late_and_counted);
-    RUN_TEST(the_watchdog_wants_all_voltages_and_latches);
+    RUN_TEST(the_watchdog_needs_all_voltages_and_latches);
     RUN_TEST(a_frame_stamped_after_the_tick_that_follows_it_feeds_the_watchdog);
-    RUN_TEST(a_sync_has_no_place_in_free_run);
+    RUN_TEST(a_sync_is_refused_in_free_run);
     RUN_TEST(the_heartbeat_beats_in_every_state);
     return UNITY_END();
 }

@@ -1,4 +1,4 @@
-/* Tests of loader.c: a vehicle arrives number by number, or what is wrong is named. */
+/* Tests of loader.c: a vehicle arrives number by number, or the refusal names the field. */
 #include "laconic_dbc.h"
 #include "laconic_node/crc.h"
 #include "laconic_node/loader.h"
@@ -27,7 +27,7 @@ static void send_real(int field, uint8_t item, laconic_real value) {
     if (sizeof value == 8) send(1, field, item, words[1]);
 }
 
-static uint8_t field, item; /* what the last check was about */
+static uint8_t field, item; /* of the last check */
 
 static uint8_t check(void) {
     return laconic_loader_check(&loader, loader.frame_count, loader.checksum ^ LACONIC_CRC32_END, &field, &item);

@@ -17,7 +17,7 @@ static void id_bases_are_multiples_of_32(void) {
     TEST_ASSERT_TRUE(laconic_node_init(&node, &config, 0));
 }
 
-static void the_node_says_who_it_is(void) {
+static void the_node_identifies_itself(void) {
     uint8_t data[LACONIC_FRAME_BYTES];
     struct laconic_dbc_identity_t identity;
     laconic_frame frame = {.id = LACONIC_WIRE_ID_BASE + LACONIC_WIRE_HELLO, .length = 8};
@@ -162,7 +162,7 @@ static void can_fd_is_refused_where_there_is_none(void) {
 int main(void) {
     UNITY_BEGIN();
     RUN_TEST(id_bases_are_multiples_of_32);
-    RUN_TEST(the_node_says_who_it_is);
+    RUN_TEST(the_node_identifies_itself);
     RUN_TEST(nothing_starts_without_a_vehicle);
     RUN_TEST(a_sync_steps_and_is_answered_with_what_was_selected);
     RUN_TEST(a_sync_of_no_steps_or_too_many_or_without_its_inputs_is_refused);

@@ -1,4 +1,4 @@
-/* Tests of node_pack.c: what the node's frames say, and when they say overrange. */
+/* Tests of node_pack.c: the content of the node's frames, and when they set overrange. */
 #include "bench.h"
 #include "unity.h"
 

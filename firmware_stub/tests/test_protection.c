@@ -8,27 +8,27 @@
 void setUp(void) {}
 void tearDown(void) {}
 
-/* By an implementation of its own in Python. */
+/* The vectors come from an independent implementation in Python. */
 static void the_mixing_function_gives_its_test_vectors(void) {
     TEST_ASSERT_EQUAL_HEX32(0x42F6FD56U, laconic_mix(0, 0));
     TEST_ASSERT_EQUAL_HEX32(0x21E3D16FU, laconic_mix(1, 2));
     TEST_ASSERT_EQUAL_HEX32(0xA7F1CA87U, laconic_mix(0xDEADBEEFU, 0xCAFEF00DU));
 }
 
-static void every_bit_of_both_sides_turns_about_half_of_the_result(void) {
-    uint32_t turned[64] = {0};
+static void every_bit_of_both_sides_flips_about_half_of_the_result(void) {
+    uint32_t flipped[64] = {0};
     for (uint32_t k = 0; k < 4096; k++) {
         const uint32_t a = k * 0x9E3779B9U;
         const uint32_t b = ~k * 0x85EBCA6BU;
         for (int bit = 0; bit < 64; bit++) {
             const uint32_t other = bit < 32 ? laconic_mix(a ^ 1U << bit, b) : laconic_mix(a, b ^ 1U << (bit - 32));
-            turned[bit] += (uint32_t)__builtin_popcount(laconic_mix(a, b) ^ other);
+            flipped[bit] += (uint32_t)__builtin_popcount(laconic_mix(a, b) ^ other);
         }
     }
-    for (int bit = 0; bit < 64; bit++) TEST_ASSERT_UINT32_WITHIN(4096 / 4, 4096 * 16, turned[bit]);
+    for (int bit = 0; bit < 64; bit++) TEST_ASSERT_UINT32_WITHIN(4096 / 4, 4096 * 16, flipped[bit]);
 }
 
-/* Frames of sixteen (256) counts ago show the same counter. */
+/* Frames whose counts differ by a multiple of 16 (FD: 256) have the same counter. */
 static void a_frame_passes_with_its_own_key_and_count_only(void) {
     uint8_t data[LACONIC_WIRE_OFFSETS * 2] = {1, 2, 3, 4, 5, 6, 7, 8};
     uint32_t classic = 0, fd = 0;
@@ -60,7 +60,7 @@ static void a_plain_frame_is_that_of_the_profile(void) {
 int main(void) {
     UNITY_BEGIN();
     RUN_TEST(the_mixing_function_gives_its_test_vectors);
-    RUN_TEST(every_bit_of_both_sides_turns_about_half_of_the_result);
+    RUN_TEST(every_bit_of_both_sides_flips_about_half_of_the_result);
     RUN_TEST(a_frame_passes_with_its_own_key_and_count_only);
     RUN_TEST(a_plain_frame_is_that_of_the_profile);
     return UNITY_END();

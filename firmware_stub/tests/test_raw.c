@@ -25,7 +25,7 @@ static uint16_t send(int count, int32_t wheels) {
     return segments;
 }
 
-static void every_input_has_its_place_in_the_stream(void) {
+static void every_input_has_its_position_in_the_stream(void) {
     raw.take = LACONIC_RAW_VOLTAGE | LACONIC_RAW_AXLE_TORQUE | LACONIC_RAW_BODY_WRENCH | LACONIC_RAW_WORLD_FORCE;
     const uint16_t frames = send(2 + 2 + 3 + 4, 2);
     TEST_ASSERT_TRUE(raw.complete && laconic_raw_is_whole(&raw, frames));
@@ -70,7 +70,7 @@ static void nothing_chosen_takes_nothing(void) {
 
 int main(void) {
     UNITY_BEGIN();
-    RUN_TEST(every_input_has_its_place_in_the_stream);
+    RUN_TEST(every_input_has_its_position_in_the_stream);
     RUN_TEST(sampled_inputs_fill_start_middle_and_end);
     RUN_TEST(a_missing_segment_breaks_the_stream_until_it_begins_anew);
     RUN_TEST(one_segment_too_many_is_refused);

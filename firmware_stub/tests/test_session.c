@@ -1,4 +1,4 @@
-/* What the node makes of handshakes, repetitions and stale frames. */
+/* Tests of node_session.c: handshakes, repetitions and stale frames. */
 #include "bench.h"
 #include "unity.h"
 
@@ -163,7 +163,7 @@ static void in_free_run_two_lost_frames_are_forgiven_in_lockstep_none(void) {
     TEST_ASSERT_TRUE(node.input[0].voltage_V[0] == 0);
 }
 
-/* CONTROL frames of another session, all counts: how many of 65,536 are carried out. */
+/* CONTROL frames of another session, with any count: of 65,536 about one in 256 passes the CRC-8 by chance. */
 static void stale_commands_pass_at_the_rate_of_their_crc(void) {
     const struct laconic_dbc_control_t begin = {.command = LACONIC_WIRE_COMMAND_BEGIN};
     uint8_t data[LACONIC_FRAME_BYTES];

@@ -1,4 +1,4 @@
-/* The three checksums of the wire contract. Time depends on the length only, tables are 16 entries long. */
+/* The three checksums of the wire contract. Their run time depends only on the length. */
 #ifndef LACONIC_NODE_CRC_H
 #define LACONIC_NODE_CRC_H
 

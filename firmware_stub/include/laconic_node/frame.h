@@ -6,7 +6,7 @@
 #include <stdint.h>
 
 #ifndef LACONIC_NODE_CAN_FD
-#define LACONIC_NODE_CAN_FD 1 /* 0 leaves the code and the room for CAN FD out */
+#define LACONIC_NODE_CAN_FD 1 /* 0 leaves out the code and the memory for CAN FD */
 #endif
 #if LACONIC_NODE_CAN_FD
 #define LACONIC_FRAME_BYTES 64

@@ -1,5 +1,5 @@
-/* A CAN node that plays the vehicle. Pure: it knows neither clock nor bus; a port feeds it frames and the time and
- * fetches frames to send.
+/* A CAN node that simulates the vehicle. It accesses neither clock nor bus: a port passes frames and the time to it and
+ * fetches the frames that it sends.
  *
  *     for (;;) {
  *         while (receive(&frame)) laconic_node_on_frame(&node, &frame, now());
@@ -7,11 +7,11 @@
  *         while (laconic_node_next_frame(&node, &frame)) send(&frame);
  *     }
  *
- * No heap, no blocking, no queue: answers are made from the newest state at the moment they are fetched, so nothing
- * stale is ever sent. A call handles one frame, or at most LACONIC_NODE_STEPS_PER_TICK steps.
+ * No heap, no blocking, no queue: a frame is made from the newest state when it is fetched, so none is ever stale. A call
+ * handles one frame, or at most LACONIC_NODE_STEPS_PER_TICK steps.
  *
  * Time is a count of microseconds that may wrap: only differences are used, and on_tick must be called at least
- * every half hour. What the frames mean is in laconic.dbc. */
+ * every half hour. laconic.dbc defines the frames. */
 #ifndef LACONIC_NODE_H
 #define LACONIC_NODE_H
 
@@ -31,17 +31,17 @@
 typedef struct laconic_node_config {
     uint16_t id_base;                                /* multiple of 32, at most 0x7E0             */
     bool can_fd;                                     /* the bus and the controller can do CAN FD  */
-    const laconic_method *(*method)(int32_t number); /* which methods are linked; as
+    const laconic_method *(*method)(int32_t number); /* the methods that are linked; as
                                                          laconic_method_by_number                  */
-    uint32_t nonce_seed;                             /* other at each power-up, as far as the port can: from a
-                                                         hardware generator, noise, a boot counter; 0: none  */
+    uint32_t nonce_seed;                             /* different at each power-up, from a hardware
+                                                         generator, noise or a boot counter; 0: none         */
 } laconic_node_config;
 
 typedef struct laconic_node_result {
     uint8_t request, command, status, field, item;
 } laconic_node_result;
 
-/* Lockstep: steps that are due, and which request asked for them. */
+/* Lockstep: steps that are due, and the request of their SYNC. */
 typedef struct laconic_node_lockstep {
     uint32_t steps_due;
     uint8_t request;
@@ -51,7 +51,7 @@ typedef struct laconic_node_free_run {
     uint32_t rate_Hz, watchdog_us; /* watchdog 0: none                                             */
     uint32_t steps_per_period;
     uint32_t next_us, next_rest; /* when the next period begins: next_us + next_rest/rate        */
-    uint32_t fed_us;             /* last time that all voltages had come                         */
+    uint32_t fed_us;             /* when the voltages of all wheels had last come                */
     uint32_t worst_lateness_us;
 } laconic_node_free_run;
 
@@ -60,20 +60,20 @@ typedef struct laconic_node {
     uint8_t state; /* LACONIC_WIRE_STATE_…                                     */
     uint8_t send;  /* chosen frames: LACONIC_NODE_SEND_…                       */
     bool raw_fd;
-    uint32_t pending;    /* frames to be fetched: bit = offset of the identifier     */
+    uint32_t pending;    /* frames to be sent: bit = offset of the identifier        */
     uint8_t wheel_group; /* next WHEEL_SPEED group                                   */
     uint8_t counter_page;
     uint8_t groups_seen; /* VOLTAGE groups since the watchdog was fed                */
     uint32_t heartbeat_us;
-    uint16_t answers_due;                                 /* RESULTs to be fetched: bit = offset of what is answered  */
-    laconic_node_result answer[LACONIC_WIRE_RIG_OFFSETS]; /* the last to each kind; sent again when its frame is */
+    uint16_t answers_due; /* RESULTs to be sent: bit = offset of the answered frame    */
+    laconic_node_result answer[LACONIC_WIRE_RIG_OFFSETS]; /* the last to each kind, for when its frame is repeated */
     laconic_node_session session;
     laconic_node_lockstep lockstep;
     laconic_node_free_run free_run;
     laconic_node_counters counters;
-    uint8_t sent[LACONIC_WIRE_NODE_OFFSETS]; /* counters of what was sent                             */
+    uint8_t sent[LACONIC_WIRE_NODE_OFFSETS]; /* counts of the frames that were sent                   */
     laconic_loader loader;
-    laconic_start start; /* what RESET returns to                                    */
+    laconic_start start; /* RESET returns to it                                      */
     laconic_plant plant;
     laconic_input input[3]; /* held: [0]; sampled: start, middle, end                   */
     laconic_raw_input raw_input;

@@ -1,9 +1,9 @@
-/* What makes a recorded frame worthless: the rig's frames are protected with numbers that depend on a key and on a
- * count that the wire shows only in part. This is against stale traffic (queues, gateways, loggers), not against an
- * attacker: the algorithm is public and the key is built from numbers that go over the bus in clear.
+/* Protection against recorded and delayed frames: the CRC of the rig's frames depends on a key and on a count, of which a
+ * frame contains only the lower bits. It protects against stale traffic (queues, gateways, loggers), not against an
+ * attacker: the algorithm is public, and the key follows from numbers that the bus transmits unencrypted.
  *
- *     nonce      drawn by the node, said in CHALLENGE                          keys OPEN
- *     session    drawn by the rig, said in OPEN; key = mix(session, nonce)     keys CONTROL, PARAMETER, COMMIT, SELECT
+ *     nonce      drawn by the node, sent in CHALLENGE                          keys OPEN
+ *     session    drawn by the rig, sent in OPEN; key = mix(session, nonce)     keys CONTROL, PARAMETER, COMMIT, SELECT
  *     run key    mix(key, count of the START + 32)                             keys the frames that move the vehicle
  *
  * hash = mix(mix(key, offset of the identifier), count) chooses where the CRC starts and which DataID it ends with:
@@ -18,15 +18,15 @@
 #include <stdbool.h>
 #include <stdint.h>
 
-/* Every bit of the result depends on every bit of both. For a given a, different b give different results, and the
- * other way round. mix(0, 0) = 0x42F6FD56. */
+/* Every bit of the result depends on every bit of a and b. For a fixed a, different b give different results, and for a
+ * fixed b different a do. mix(0, 0) = 0x42F6FD56. */
 uint32_t laconic_mix(uint32_t a, uint32_t b);
 
-/* Key of a run from the session's and the count of the START that began it. */
+/* Key of a run, from the key of the session and the count of the START that began the run. */
 uint32_t laconic_run_key(uint32_t key, uint32_t start_count);
 
-/* `offset`: of the identifier, which must be one of the contract's; `data`: as many bytes as its frame has.
- * Counter and CRC are written. The lower bits of `count` (4 classic, 8 FD) are the counter. */
+/* Write counter and CRC into `data`, which has the length of the frame. `offset` is that of the identifier and must be one
+ * of laconic.dbc. The counter is the lower bits of `count` (4 classic, 8 FD). */
 void laconic_protect_plain(uint8_t offset, uint8_t *data, uint8_t counter);
 void laconic_protect_keyed(uint8_t offset, uint8_t *data, uint32_t key, uint32_t count);
 

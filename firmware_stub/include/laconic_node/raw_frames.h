@@ -4,14 +4,14 @@
 
 #include "laconic/laconic.h"
 
-/* What RAW_INPUT holds; the numbers of one input follow in this order. */
+/* Bits of SELECT for the numbers in RAW_INPUT; those of one input follow in this order. */
 #define LACONIC_RAW_VOLTAGE 1U     /* N numbers                             */
 #define LACONIC_RAW_AXLE_TORQUE 2U /* N numbers                             */
 #define LACONIC_RAW_BODY_WRENCH 4U /* force ξ, η, moment                    */
 #define LACONIC_RAW_WORLD_FORCE 8U /* force X, Y, point ξ, η                */
 #define LACONIC_RAW_SAMPLED 128U   /* three inputs: start, middle, end      */
 
-/* What RAW_OUTPUT holds, in this order. */
+/* Bits of SELECT for the numbers in RAW_OUTPUT, which follow in this order. */
 #define LACONIC_RAW_NU 1U          /* 3 */
 #define LACONIC_RAW_POSE 2U        /* x, y, heading (unwrapped) */
 #define LACONIC_RAW_WHEEL_SPEED 4U /* N */
@@ -21,23 +21,23 @@
 
 typedef struct laconic_raw_input {
     uint8_t take;      /* mask                                                */
-    uint8_t filled;    /* bytes of `number` that are there                    */
+    uint8_t filled;    /* bytes of `number` that have come                    */
     uint16_t position; /* numbers stored since the last SYNC                  */
     bool complete;     /* all of them have come since the last SYNC           */
-    bool broken;       /* a segment was out of order: wait for segment 0      */
+    bool broken;       /* a segment was out of order: only segment 0 mends it */
     uint8_t segment;   /* next one expected                                   */
-    uint16_t frames;   /* taken since the last SYNC                           */
+    uint16_t frames;   /* accepted since the last SYNC                        */
     uint8_t number[sizeof(laconic_real)];
 } laconic_raw_input;
 
-/* Forget what came since the last SYNC. */
+/* Drops the numbers since the last SYNC. */
 void laconic_raw_restart(laconic_raw_input *raw);
 
-/* Bytes of one segment. False iff it is out of order or one too many; the stream is then broken until segment 0. */
+/* Accepts the bytes of one segment. False iff it is out of order or one too many; then only segment 0 is accepted next. */
 bool laconic_raw_take(laconic_raw_input *raw, laconic_input input[3], int32_t wheel_count, uint8_t segment,
                       uint8_t segment_mask, const uint8_t *bytes, uint8_t count);
 
-/* True iff a SYNC that speaks of so many frames may use the inputs: nothing came, or everything did. */
+/* Whether a SYNC with that input_frames may use the inputs: none or all of their numbers have come, in so many frames. */
 bool laconic_raw_is_whole(const laconic_raw_input *raw, uint16_t frames);
 
 typedef struct laconic_raw_output {
@@ -51,7 +51,7 @@ typedef struct laconic_raw_output {
 /* Reads the chosen outputs of the plant, all of one instant, and begins at the first byte. */
 void laconic_raw_collect(laconic_raw_output *raw, const laconic_plant *plant);
 
-/* Copies the next bytes, at most `room`, zeros behind the last; returns false iff that was all. */
+/* Copies the next bytes, at most `room`, and fills up with zeros; false iff these were the last. */
 bool laconic_raw_give(laconic_raw_output *raw, uint8_t *bytes, uint8_t room);
 
 #endif

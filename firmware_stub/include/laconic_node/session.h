@@ -1,5 +1,4 @@
-/* Who may speak: the handshake with a rig and the counts of what it sends. Internal to the node; its promises are those
- * of protection.h. */
+/* State of the handshake with a rig and counts of the rig's frames. Internal to the node; protection.h describes their use. */
 #ifndef LACONIC_NODE_SESSION_H
 #define LACONIC_NODE_SESSION_H
 
@@ -12,10 +11,10 @@ typedef struct laconic_node_session {
     bool has_nonce;             /* a HELLO has come since power-up                                     */
     bool open;                  /* an OPEN has been accepted since power-up                            */
     uint8_t request;            /* of the last HELLO                                                   */
-    uint32_t nonce, last_nonce; /* for the next OPEN; of the last one that was accepted                */
+    uint32_t nonce, last_nonce; /* for the next OPEN; of the last accepted OPEN                        */
     uint32_t number, key, run_key;
     uint32_t count[LACONIC_WIRE_RIG_OFFSETS]; /* of the last right frame; 0: none since OPEN or START       */
-    uint32_t armed, deaf;                     /* motion frames, bit = offset: the last was right; was refused        */
+    uint32_t armed, deaf;                     /* motion frames, bit = offset: the last one was right; was refused    */
 } laconic_node_session;
 
 #endif

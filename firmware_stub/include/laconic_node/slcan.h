@@ -1,10 +1,10 @@
-/* SLCAN (Lawicel's ASCII protocol): CAN frames on a serial line, as python-can's `slcan` interface speaks it.
+/* SLCAN (Lawicel's ASCII protocol): CAN frames on a serial line, compatible with python-can's interface `slcan`.
  *
  * Understood   O L C open, listen only, close; S0…S8, sxxyy bit rate; t T r R classic frames; d D b B CAN FD frames
  *              (the CANable extension); Y2 Y5 data bit rate; V v N F Z0 Z1 version, number, flags, time stamps.
  * Answered     CR for done, BEL for refused. Frames that the node sends are written as t/T/d/b lines.
  *
- * The reader is fed byte by byte, holds one line, and drops a line that is too long up to its end. */
+ * The reader gets one byte at a time and keeps one line; it drops a line that is too long, up to its end. */
 #ifndef LACONIC_NODE_SLCAN_H
 #define LACONIC_NODE_SLCAN_H
 
@@ -16,7 +16,7 @@
 #define LACONIC_SLCAN_LINE (1 + 8 + 1 + 2 * LACONIC_FRAME_BYTES + 1)
 
 typedef enum laconic_slcan_event {
-    LACONIC_SLCAN_NOTHING = 0, /* the line goes on                                         */
+    LACONIC_SLCAN_NOTHING = 0, /* the line is not complete                                 */
     LACONIC_SLCAN_FRAME,       /* *frame holds a frame                                     */
     LACONIC_SLCAN_REPLY        /* reply[] holds the answer to a command; *frame unchanged  */
 } laconic_slcan_event;
@@ -24,19 +24,19 @@ typedef enum laconic_slcan_event {
 typedef struct laconic_slcan {
     bool open;
     bool listen_only;
-    char required_rate; /* '0' … '8': only this S command is right, others shut the channel; 0: any */
-    bool rate_is_wrong; /* the wrong one was chosen: frames neither come nor go                    */
+    char required_rate; /* '0' … '8': with another S command no frame passes; 0: any */
+    bool rate_is_wrong; /* the client has chosen another rate: no frame passes        */
     uint16_t length;    /* of the line so far; LACONIC_SLCAN_LINE: too long, drop it               */
     char line[LACONIC_SLCAN_LINE];
-    char reply[8]; /* text of the last REPLY, closed with 0                                   */
+    char reply[8]; /* text of the last REPLY, ends with 0                        */
 } laconic_slcan;
 
 void laconic_slcan_init(laconic_slcan *slcan, char required_rate);
 
-/* A byte came. A frame is only reported while the channel is open and not listen-only. */
+/* To be called for each byte received. Returns a frame only while the channel is open and not listen-only. */
 laconic_slcan_event laconic_slcan_feed(laconic_slcan *slcan, char byte, laconic_frame *frame);
 
-/* Writes the frame as a line with its CR and returns the length; 0 iff the channel is shut. */
+/* Writes the frame as a line with its CR and returns the length; 0 iff the channel is closed or the rate wrong. */
 size_t laconic_slcan_write(const laconic_slcan *slcan, const laconic_frame *frame, char text[LACONIC_SLCAN_LINE]);
 
 #endif

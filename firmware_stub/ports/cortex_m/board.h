@@ -1,4 +1,4 @@
-/* What a board gives to the node: bytes in, bytes out, the time. Everything else of the port is the same for all. */
+/* The functions of a board: receive and send bytes, the time. The rest of the port is the same for all boards. */
 #ifndef BOARD_H
 #define BOARD_H
 
@@ -15,12 +15,12 @@ bool board_send(char byte);
 /* Microseconds since start; wraps. To be called at least every two minutes. */
 uint32_t board_now_us(void);
 
-/* For laconic_node_config.nonce_seed: other at each power-up; 0 where the board has nothing that is. */
+/* For laconic_node_config.nonce_seed: different at each power-up; 0 if the board has no source for that. */
 uint32_t board_nonce_seed(void);
 
-/* Called by the board's interrupt, room first: an interrupt that was pending already comes once more after it has been
- * switched off, and a byte that it took then would overwrite one that waits. No room: leave the byte where it is and
- * switch the interrupt off until board_resume. */
+/* The board's receive interrupt calls port_has_room first, each time: one that is already pending still runs after the
+ * interrupt is disabled, and its byte would overwrite one in the ring. Without room the interrupt leaves the byte in the UART
+ * and disables itself until board_resume. */
 bool port_has_room(void);
 void port_received(char byte);
 void board_resume(void);

@@ -1,4 +1,4 @@
-/* How many instructions the node takes for a frame and for a step: run under QEMU with -icount, prints and ends. */
+/* Counts the instructions of the node for a frame and for a step, under QEMU with -icount; prints them and ends. */
 #include "bench_board.h"
 #include "laconic_node/node.h"
 #include "laconic_node/protection.h"
@@ -28,7 +28,7 @@ static const laconic_vehicle vehicle = {
                (laconic_real)1.5707963267948966}},
 };
 
-static void report(const char *what, uint32_t ticks, uint32_t times) {
+static void print_count(const char *what, uint32_t ticks, uint32_t times) {
     board_write_number(what, (uint64_t)ticks * 65536U / ticks_of_65536 / times);
 }
 
@@ -84,10 +84,10 @@ int main(void) {
         laconic_slcan_write(&slcan, &out, line);
         writing += board_clock_since(begin);
     }
-    report("read_line", reading, TIMES);
-    report("on_frame", on_frame, TIMES);
-    report("on_tick_with_step", on_tick, TIMES);
-    report("next_frame", next, TIMES);
-    report("write_line", writing, TIMES);
+    print_count("read_line", reading, TIMES);
+    print_count("on_frame", on_frame, TIMES);
+    print_count("on_tick_with_step", on_tick, TIMES);
+    print_count("next_frame", next, TIMES);
+    print_count("write_line", writing, TIMES);
     return node.plant.steps == TIMES ? 0 : 1;
 }

@@ -51,7 +51,7 @@ static void queue_reply(const char *text) {
     }
 }
 
-/* One line out at a time; the node is asked for its next frame only when there is room for it. */
+/* Sends one line at a time and fetches the next frame when the line is sent; true: bytes are left. */
 static bool send_some(void) {
     laconic_frame frame;
     if (line_sent == line_length) {
@@ -78,7 +78,7 @@ static bool receive_some(void) {
     return false;
 }
 
-/* With interrupts masked, WFI still wakes when one is pending: no byte can slip in between test and sleep. */
+/* WFI also wakes for a masked interrupt, so a byte that comes between the test and WFI ends the sleep. */
 static void sleep_until_interrupt(void) {
     __asm volatile("cpsid i" ::: "memory");
     if (ring_head == ring_tail) __asm volatile("wfi");
@@ -88,7 +88,7 @@ static void sleep_until_interrupt(void) {
 #define RESET_CONTROL REGISTER(0xE000ED0CU)
 #define RESET_REQUEST 0x05FA0004U
 
-/* A fault restarts the board: the rig sees the state "empty" and says so. */
+/* A fault restarts the board: the rig then finds the state EMPTY and reports it. */
 void board_fault(void) {
     RESET_CONTROL = RESET_REQUEST;
     for (;;) {

@@ -1,4 +1,4 @@
-/* The two functions that a compiler may call by itself, small instead of fast: the C library's take 470 bytes. */
+/* The two functions that compilers call by themselves, for small code: the C library's take 470 bytes. */
 #include <stddef.h>
 #include <stdint.h>
 

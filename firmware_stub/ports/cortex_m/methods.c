@@ -1,4 +1,4 @@
-/* Which integrators an image holds: all, or the one that LACONIC_NODE_ONE_METHOD names by number and symbol. */
+/* The methods in an image: all, or the one that LACONIC_NODE_ONE_METHOD and LACONIC_NODE_ONE_METHOD_NUMBER name. */
 #include "methods.h"
 
 const laconic_method *port_method(int32_t number) {

@@ -1,4 +1,4 @@
-/* Which integrators this image holds. */
+/* The methods in this image. */
 #ifndef METHODS_H
 #define METHODS_H
 

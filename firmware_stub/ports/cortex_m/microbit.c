@@ -89,7 +89,7 @@ static void uart_handler(void) {
     }
 }
 
-/* A comparison that is set for an instant already past would come 71 minutes later: set again until it lies ahead. */
+/* A compare value that is already past would match 71 minutes later, so it is set again until it lies in the future. */
 static void wake_handler(void) {
     uint32_t wake_us;
     TIMER_EVENT_1 = 0;

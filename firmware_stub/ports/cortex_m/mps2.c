@@ -41,7 +41,7 @@ bool board_send(char byte) {
     return true;
 }
 
-/* The counter runs down from 2^32 − 1; whole microseconds are counted up and the rest is kept. */
+/* The hardware counter runs down from 2^32 − 1. Ticks that make no whole microsecond are kept for the next call. */
 uint32_t board_now_us(void) {
     const uint32_t value = CLOCK_VALUE;
     const uint32_t ticks = last_value - value + odd_ticks;
@@ -51,7 +51,7 @@ uint32_t board_now_us(void) {
     return time_us;
 }
 
-/* The MPS2 has no generator and no clock that goes on without power: the first HELLO's instant must do. */
+/* The MPS2 has neither a random number generator nor a battery clock: only the instant of the first HELLO differs. */
 uint32_t board_nonce_seed(void) { return 0; }
 
 static void uart_handler(void) {
@@ -64,7 +64,7 @@ static void uart_handler(void) {
     }
 }
 
-/* A byte that came while the interrupt was off has raised none: fetch it as the interrupt would have. */
+/* A byte that came while the interrupt was disabled has raised none, so it is fetched here. */
 void board_resume(void) {
     __asm volatile("cpsid i" ::: "memory");
     UART_CONTROL = TX_ENABLE | RX_ENABLE | RX_INTERRUPT;

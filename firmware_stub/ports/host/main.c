@@ -1,9 +1,9 @@
-/* The node as a process: SLCAN on a TCP socket, so that python-can's `slcan` reaches it as it would reach a board.
+/* The node as a process: SLCAN on a TCP socket, so that python-can's `slcan` connects to it as to a board.
  *
  *     laconic-node-double [--port N] [--id-base 0xNNN] [--bitrate N] [--once]
  *
- * Prints "listening on 127.0.0.1:PORT" (port 0: any free one). The vehicle lives on between clients, as it would on a
- * board. A serial line has one other end, so there is one client at a time; a second one is told so and let go. */
+ * Prints "listening on 127.0.0.1:PORT" (port 0: any free one). The node keeps its vehicle between clients, as a board does.
+ * Like a serial line it has one client at a time; a second one gets a line of text and is disconnected. */
 #define _GNU_SOURCE
 #include "laconic_node/node.h"
 #include "laconic_node/slcan.h"
@@ -33,8 +33,8 @@ typedef struct board {
     laconic_node node;
     laconic_slcan slcan;
     int socket;         /* of the client, -1: none */
-    int refused;        /* of the last client that was one too many */
-    char out[OUT_SIZE]; /* what waits for the socket */
+    int refused;        /* of the last refused client, -1: none */
+    char out[OUT_SIZE]; /* bytes to be sent */
     size_t out_count;
 } board;
 
@@ -52,7 +52,7 @@ static const char help[] =
     "\n"
     "Drive it:  laconic rig SCENE --interface slcan --channel socket://127.0.0.1:PORT\n";
 
-/* BELL is SLCAN's error; the rest is no frame, so that a client skips it and a person reads it. */
+/* BELL is SLCAN's error. The rest is no frame, so a program skips it, but a person can read it. */
 static const char occupied[] = "\aoccupied: this line has one client at a time, and another one is on it\r";
 
 static int complain(const char *what, const char *remedy) {
@@ -66,7 +66,7 @@ static uint32_t now_us(void) {
     return (uint32_t)((uint64_t)time.tv_sec * 1000000U + (uint64_t)time.tv_nsec / 1000U);
 }
 
-/* Other at each start, so that a recorded handshake fits no later process. */
+/* Different at each start, so that a recorded handshake does not open a session with a later process. */
 static uint32_t nonce_seed(void) {
     uint32_t seed = (uint32_t)time(NULL) ^ (uint32_t)getpid() << 16;
     FILE *noise = fopen("/dev/urandom", "rb");
@@ -84,7 +84,7 @@ static void flush_out(board *port) {
 }
 
 static void put(board *port, const char *text, size_t length) {
-    if (port->out_count + length > OUT_SIZE) return; /* the client does not read: as on a full bus, it is lost */
+    if (port->out_count + length > OUT_SIZE) return; /* the client does not read: the line is lost, as on a full bus */
     memcpy(port->out + port->out_count, text, length);
     port->out_count += length;
 }
@@ -115,8 +115,8 @@ static void take_bytes(board *port, const char *bytes, ssize_t count) {
     }
 }
 
-/* False iff the client has gone. Reads up to what waits, so that the end of a line is seen before the next client, who
- * may be there already; but not for ever, since time passes for the node, too. */
+/* False iff the client has disconnected. Reads all waiting bytes, so that a disconnection is noticed before the next client
+ * is refused; at most 16 blocks, since the node must be stepped in time. */
 static bool read_client(board *port) {
     char bytes[4096];
     ssize_t count = 1;
@@ -136,24 +136,27 @@ static void wait_for_work(const board *port, int listening) {
     ppoll(fds, 3, &timeout, NULL);
 }
 
-static void say_occupied(int client) { (void)send(client, occupied, sizeof occupied - 1, MSG_DONTWAIT | MSG_NOSIGNAL); }
+static void send_occupied(int client) {
+    (void)send(client, occupied, sizeof occupied - 1, MSG_DONTWAIT | MSG_NOSIGNAL);
+}
 
-/* A client that got no answer would look for its fault elsewhere. */
+/* Accepts a second client only to send it the reason; without an answer its user would search for another fault. */
 static void refuse_second(board *port, int listening) {
     const int second = accept(listening, NULL, NULL);
     if (second < 0) return;
     if (port->refused >= 0) close(port->refused);
     port->refused = second;
-    say_occupied(second);
+    send_occupied(second);
 }
 
-/* Once more when it speaks, since a serial line is often flushed when it is opened; then the line ends. The socket
- * stays until the client goes: closed earlier, it would reset the connection, and with it take the words away. */
+/* Sends the reason again when the refused client sends something, since programs often flush a serial line after opening
+ * it, and then ends the connection. The socket stays open until the client disconnects: closing it earlier would reset the
+ * connection, and the client would lose the text. */
 static void answer_refused(board *port) {
     char rest[256];
     const ssize_t count = port->refused < 0 ? -1 : recv(port->refused, rest, sizeof rest, MSG_DONTWAIT);
     if (count > 0) {
-        say_occupied(port->refused);
+        send_occupied(port->refused);
         shutdown(port->refused, SHUT_WR);
     } else if (port->refused >= 0 && (count == 0 || (errno != EAGAIN && errno != EINTR))) {
         close(port->refused);
