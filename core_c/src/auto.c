@@ -3,7 +3,7 @@
  *   h·r_max < 0.3    exact-flow-4          damping is slow beside the step: the error of the splitting is least, and
  *                                          free motion keeps its energy
  *                    taylor-8              instead, in steps over which b varies, while h·|w||g·ζ| < 0.5: there
- *                                          nothing is conserved, and the series is cheaper and more exact
+ *                                          nothing is conserved, and taylor-8 is cheaper and more exact
  *   otherwise        exponential-kahan-4   keeps the steady state that fast damping leads to
  *   and where the chosen one refuses a step (it would gain energy or has no solution: h·|ν3| is large), that
  *   step is taken by exact-flow, which every step suits.
@@ -40,5 +40,5 @@ static laconic_status auto_prepare(laconic_integrator *integrator, const laconic
     return laconic_explicit_limits(integrator, model, LACONIC_REAL_MAX, SERIES_ROTATION, why);
 }
 
-/* Its own step is never taken: `chosen` is always one of the two. */
+/* No step function: `chosen` is always one of the two above. */
 const laconic_method laconic_auto = {"auto", 4, PREPARE(auto_prepare), NULL};

@@ -41,8 +41,8 @@ static void pseudo_inverse(real out[3][3], const real matrix[3][3]) {
             s.vector[r][c] = r == c ? R(1) : R(0);
             out[r][c] = R(0);
         }
-    /* After four sweeps what is left off the diagonal is below 1e-17 of it (4,000 random matrices, rows over 12
-     * decades); the others cost a preparation nothing that matters. */
+    /* After four sweeps the rest off the diagonal is below 1e-17 of it (4,000 random matrices, rows over 12
+     * decades); the other eight are a reserve that costs little in a preparation. */
     for (int k = 0; k < 12; k++) {
         rotate(&s, 0, 1);
         rotate(&s, 0, 2);
@@ -165,23 +165,23 @@ static void fill_instant(instant *now, const laconic_model *m, const laconic_sta
 /* A ν' − Λ⁻¹a − (MR²)⁻¹(Ξᵀ M_i + F) = Cᵀκ: the part of the balance that the multipliers κ supply. */
 static vector imbalance(const laconic_contact *c, const laconic_model *m, const instant *now) {
     const real force = m->torque_scale * m->wheel_radius_m;
-    vector left = {dot(vec(c->inertia[0]), vec(now->nu_rate)), dot(vec(c->inertia[1]), vec(now->nu_rate)),
-                   dot(vec(c->inertia[2]), vec(now->nu_rate))};
-    left.x -= now->gyro[0] + force * now->outer.along;
-    left.y -= now->gyro[1] + force * now->outer.across;
-    left.z -= m->torque_scale * now->outer.moment / m->yaw_scale;
+    vector remainder = {dot(vec(c->inertia[0]), vec(now->nu_rate)), dot(vec(c->inertia[1]), vec(now->nu_rate)),
+                        dot(vec(c->inertia[2]), vec(now->nu_rate))};
+    remainder.x -= now->gyro[0] + force * now->outer.along;
+    remainder.y -= now->gyro[1] + force * now->outer.across;
+    remainder.z -= m->torque_scale * now->outer.moment / m->yaw_scale;
     for (int32_t i = 0; i < m->wheel_count; i++)
-        left = minus(left, scaled(m->torque_scale * now->torque_Nm[i], vec(c->wheel_rows[i])));
-    return left;
+        remainder = minus(remainder, scaled(m->torque_scale * now->torque_Nm[i], vec(c->wheel_rows[i])));
+    return remainder;
 }
 
 static void wheel_reaction(laconic_reactions *out, const laconic_contact *c, const laconic_model *m, const instant *now,
-                           vector left, int32_t i) {
+                           vector remainder, int32_t i) {
     const real unit_N = m->mass_kg * m->wheel_radius_m;
     const int32_t lateral = c->lateral_row[i], brake = c->brake_row[i];
     real acceleration = R(0);
-    out->lateral_N[i] = lateral >= 0 ? dot(vec(c->multiplier[lateral]), left) * unit_N : R(0);
-    out->brake_Nm[i] = brake >= 0 ? dot(vec(c->multiplier[brake]), left) * (unit_N * m->wheel_radius_m) : R(0);
+    out->lateral_N[i] = lateral >= 0 ? dot(vec(c->multiplier[lateral]), remainder) * unit_N : R(0);
+    out->brake_Nm[i] = brake >= 0 ? dot(vec(c->multiplier[brake]), remainder) * (unit_N * m->wheel_radius_m) : R(0);
     if (brake < 0) acceleration = dot(vec(c->wheel_rows[i]), vec(now->nu_rate));
     out->along_N[i] =
         (now->torque_Nm[i] + out->brake_Nm[i] - m->wheel_inertia_kgm2 * acceleration) * c->inverse_arm_per_m[i];
@@ -204,8 +204,8 @@ static void normal_loads(laconic_reactions *out, const laconic_contact *c, const
 /* All but the margin, which is not linear. */
 static void linear_reactions(laconic_reactions *out, const laconic_contact *c, const laconic_model *m,
                              const instant *now) {
-    const vector left = imbalance(c, m, now);
-    for (int32_t i = 0; i < m->wheel_count; i++) wheel_reaction(out, c, m, now, left, i);
+    const vector remainder = imbalance(c, m, now);
+    for (int32_t i = 0; i < m->wheel_count; i++) wheel_reaction(out, c, m, now, remainder, i);
     normal_loads(out, c, m, now->weight_N);
 }
 

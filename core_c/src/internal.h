@@ -22,8 +22,8 @@ typedef laconic_real real;
 #define RARE static
 #endif
 
-/* The same, and gcc concludes nothing from it about its callers, as if it stood in another file: where the usual case
- * is short of registers, it is faster when the call beside it is an ordinary one. */
+/* The same, and gcc optimises neither it nor its callers by knowledge of the other, as if they were in different files:
+ * faster where the usual case is short of registers. */
 #if defined(__GNUC__) && !defined(__clang__) && __GNUC__ >= 8
 #define RARE_AND_OPAQUE static __attribute__((noipa))
 #else

@@ -1,4 +1,4 @@
-/* The list of all methods: links them all, so firmware that knows its method names that one instead. */
+/* The list of all methods. It links every method; firmware with one fixed method uses that one's name instead. */
 #include "internal.h"
 
 static const laconic_method *const methods[LACONIC_METHOD_COUNT] = {

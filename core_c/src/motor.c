@@ -39,7 +39,7 @@ laconic_status laconic_motor_fit(laconic_vehicle *vehicle, const laconic_motor *
     const real inertia = ratio * ratio * motor->rotor_inertia_kgm2;
     if (zero_if_finite(gain) + zero_if_finite(damping) + zero_if_finite(inertia) != R(0))
         return refuse(why, LACONIC_OVERFLOW, LACONIC_FIELD_GEAR_RATIO, 0, ratio, R(0));
-    if (per_volt * motor->back_emf_Vs_per_rad < R(0)) /* a motor that drives itself */
+    if (per_volt * motor->back_emf_Vs_per_rad < R(0)) /* its damping would add energy */
         return refuse(why, LACONIC_NEGATIVE, LACONIC_FIELD_BACK_EMF, 0, motor->back_emf_Vs_per_rad, R(0));
     vehicle->motor_gain_Nm_per_V = gain;
     vehicle->motor_damping_Nms = damping;

@@ -1,6 +1,7 @@
-/* Is arithmetic, as compiled and as it is set now, the arithmetic that the core's bits rest on? Each fault is sought
- * with numbers that only that fault, or one sought before it, gets wrong. Faults are counted, not looked for one by
- * one: without branches there is none that a sound build never takes. */
+/* The self-test: does arithmetic, with the options of this file and the modes of this thread, give the core's bits? The
+ * numbers of each check are wrong only under its own fault or one that is checked before it. Each check adds up its
+ * wrong results instead of branching, since a sound build would never take the branches and no test would cover
+ * them. */
 #include "internal.h"
 
 /* Rounded to its type, and unknown when this is compiled. */
@@ -30,7 +31,7 @@ static bool sums_in_another_order(void) {
     return sum - huge != R(0);
 }
 
-/* x87, or float computed as double: what overflows comes back. */
+/* x87, or float computed as double: a product that overflows stays finite and can be halved. */
 static bool keeps_more_than_the_type(void) {
     return is_finite(opaque(LACONIC_REAL_MAX) * opaque(R(2)) * opaque(R(0.5)));
 }
@@ -46,8 +47,8 @@ RARE void multiply(couple *out, const couple *a, const couple *b) { /* as comple
     out->second = x.second * y.first + x.first * y.second;
 }
 
-/* (1 + ε)(1 − ε) rounds to 1; fused with the subtraction it does not, and −ε² is left. Each product is used once:
- * compilers leave a product alone that is needed for itself. */
+/* (1 + ε)(1 − ε) rounds to 1; fused with the subtraction it does not, and −ε² is left. Each product is used
+ * once: compilers do not fuse a product that is also needed by itself. */
 static bool fuses_multiply_and_add(void) {
     const real one = opaque(R(1)), more = R(1) + LACONIC_EPSILON, less = R(1) - LACONIC_EPSILON;
     const couple a = {opaque(more), opaque(less)}, b = {a.second, a.first};
@@ -57,14 +58,15 @@ static bool fuses_multiply_and_add(void) {
     return (left != R(0)) + (right != R(0)) + (product.first != R(0)) > 0;
 }
 
-/* -freciprocal-math, of which clang's macros say nothing: 107 · (1/107) is 1 neither in double nor in single. */
+/* -freciprocal-math, for which clang has no macro: 107 · (1/107) is 1 neither in double nor in single. */
 static bool divides_by_reciprocals(void) {
     const real number = R(107), divisor = opaque(number);
     const real once = opaque(number) / divisor, twice = opaque(R(2) * number) / divisor;
     return (once != R(1)) + (twice != R(2)) + (opaque(number) / R(107) != R(1)) > 0;
 }
 
-/* Half of the smallest normal number is subnormal: flushed as a result or as an operand, it does not come back. */
+/* Half of the smallest normal number is subnormal: flushed to 0 as a result or as an operand, it cannot be doubled
+ * back. */
 static bool flushes_small_numbers(void) {
     const real half = opaque(opaque(LACONIC_REAL_MIN) * opaque(R(0.5)));
     return opaque(half * opaque(R(2))) != LACONIC_REAL_MIN;
