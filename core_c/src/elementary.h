@@ -2,7 +2,7 @@
 #ifndef LACONIC_ELEMENTARY_H
 #define LACONIC_ELEMENTARY_H
 
-#include "internal.h"
+#include "common.h"
 
 typedef struct direction {
     real cosine, sine;

@@ -1,6 +1,6 @@
 /* The texts and traits that the list of vehicle.h gives each field: its name in FMUs, its key in a scene, its
  * traits. */
-#include "internal.h"
+#include "common.h"
 
 #define TEXT_OF(table, number) ((unsigned)(number) < LACONIC_FIELD_COUNT && table[number] != NULL ? table[number] : "")
 

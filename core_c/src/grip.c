@@ -1,6 +1,6 @@
 /* Could the ground supply the reactions of the no-slip model? First and worst instant of slipping and of lifting. */
+#include "common.h"
 #include "elementary.h"
-#include "internal.h"
 
 typedef struct finding { /* the worst point of one instant */
     int32_t point;

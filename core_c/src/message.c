@@ -1,5 +1,5 @@
 /* The texts of a refusal: the name of its status, and one line with field, item, fault and remedy. */
-#include "internal.h"
+#include "common.h"
 
 typedef struct writer {
     char *text;

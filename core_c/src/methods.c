@@ -1,5 +1,5 @@
 /* The list of all methods. It links every method; firmware with one fixed method uses that one's name instead. */
-#include "internal.h"
+#include "common.h"
 
 static const laconic_method *const methods[LACONIC_METHOD_COUNT] = {
     &laconic_auto,       &laconic_rk4,          &laconic_exponential_kahan, &laconic_exponential_kahan_4,

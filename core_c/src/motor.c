@@ -1,5 +1,5 @@
 /* From a motor's data sheet to c1, c2 and J: c1 = n k_t/R_a, c2 = n² (k_t k_e/R_a + d). */
-#include "internal.h"
+#include "common.h"
 
 #define RULE_OF(of, number, IDENTIFIER, member, name, KIND, RULE, NEED) {number, LACONIC_RULE_##RULE},
 #define VALUE_OF(motor, number, IDENTIFIER, member, name, KIND, RULE, NEED) motor->member,

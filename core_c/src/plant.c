@@ -1,5 +1,5 @@
 /* The plant: vehicle, model, integrator and state together, with an integer count of steps. */
-#include "internal.h"
+#include "common.h"
 
 laconic_status laconic_plant_start(laconic_plant *plant, const laconic_vehicle *vehicle, const laconic_method *method,
                                    laconic_real step_s, const laconic_start *start, laconic_refusal *why) {

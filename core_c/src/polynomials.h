@@ -3,7 +3,7 @@
 #ifndef LACONIC_POLYNOMIALS_H
 #define LACONIC_POLYNOMIALS_H
 
-#include "internal.h"
+#include "common.h"
 
 /* Bounds up to which the polynomials hold: steps with a yaw below a quarter of a radian, as most have. */
 #define CHORD_SMALL R(0.015625)   /* z = α² of poly_sinc and poly_j1, α half the yaw */

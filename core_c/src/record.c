@@ -1,5 +1,5 @@
 /* Steps along a schedule of inputs; records rows of chosen outputs and watches the grip. */
-#include "internal.h"
+#include "common.h"
 
 /* The number at an offset in bytes of a struct of numbers. */
 static const real *number_at(const void *numbers, uint32_t offset) {

@@ -2,7 +2,7 @@
  * numbers of each check are wrong only under its own fault or one that is checked before it. Each check adds up its
  * wrong results instead of branching, since a sound build would never take the branches and no test would cover
  * them. */
-#include "internal.h"
+#include "common.h"
 
 /* Rounded to its type, and unknown when this is compiled. */
 static real opaque(real x) {

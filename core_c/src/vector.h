@@ -2,7 +2,7 @@
 #ifndef LACONIC_VECTOR_H
 #define LACONIC_VECTOR_H
 
-#include "internal.h"
+#include "common.h"
 
 typedef struct vector {
     real x, y, z;

@@ -1,4 +1,4 @@
-/* Tests of heading.h, and of the compensated sums of internal.h. */
+/* Tests of heading.h, and of the compensated sums of common.h. */
 #include "heading.h"
 
 #include "check.h"

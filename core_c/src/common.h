@@ -1,6 +1,6 @@
-/* What the core's files share: short names, 3-vectors, compensated sums. Not for users. */
-#ifndef LACONIC_INTERNAL_H
-#define LACONIC_INTERNAL_H
+/* What the files of the core share: names, inlining, checks of numbers, compensated sums, refusals. Not for users. */
+#ifndef LACONIC_COMMON_H
+#define LACONIC_COMMON_H
 
 #include "laconic/laconic.h"
 
