@@ -1,4 +1,4 @@
-/* One FMU instance, whatever the FMI version and the model behind it.
+/* One FMU instance, the same for both FMI versions and both FMU models.
  *
  *     importer -> fmi2.c | fmi3.c  (translate types)
  *                   |
@@ -72,11 +72,11 @@ struct fmu_instance {
     uint64_t token_hash;
     uint32_t warnings_given;         /* bit per warning that was logged in this run */
     uint32_t warnings_pending;       /* bit per warning of a step that may still be refused */
-    fmu_between_steps between_steps; /* NULL: the importer wants no intermediate updates */
+    fmu_between_steps between_steps; /* NULL: no intermediate updates */
     fmu_clock clock;
     fmu_model model;
     fmu_model initial;      /* right after instantiation, for reset                        */
-    fmu_list read, written; /* the last good lists of reals (cached_reals.c)                      */
+    fmu_list read, written; /* the last valid lists of reals (cached_reals.c)                      */
 };
 
 typedef struct fmu_request {
