@@ -71,10 +71,10 @@ def state_row(plant: Plant) -> np.ndarray:
     return np.concatenate([plant.nu, [pose.x_m, pose.y_m, pose.heading_rad], plant.wheel_angles()]).astype(float)
 
 
-def follow(scene: Scene, real: str, truth: Truth) -> np.ndarray:
-    """The core's states at the truth's instants."""
+def follow(scene: Scene, real: str, at_s: np.ndarray) -> np.ndarray:
+    """The core's states at some instants, one row each."""
     plant, drive, rows, done = scene.plant(load(real)), scene.drive(), [], 0
-    for tick in np.rint(truth.at_s / scene.run.step_s).astype(int):
+    for tick in np.rint(at_s / scene.run.step_s).astype(int):
         advance_plant(plant, drive, done, int(tick) - done)
         done = int(tick)
         rows.append(state_row(plant))
@@ -120,7 +120,7 @@ def one_run(scene: Scene, real: str, truth: Truth) -> dict[str, Any]:
     row: dict[str, Any] = {"scene": scene.path.stem, "real": real, "method": scene.run.method,
                            "step_s": scene.run.step_s}
     try:
-        states = follow(scene, real, truth)
+        states = follow(scene, real, truth.at_s)
     except Refused as refused:
         return row | {"status": refused.status}
     kinds = {"error_nu": slice(0, 3), "error_pose": slice(3, 6), "error_wheel": slice(6, None)}

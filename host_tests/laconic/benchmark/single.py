@@ -6,7 +6,7 @@ from typing import Any
 
 import numpy as np
 
-from laconic.benchmark.accuracy import Truth, follow
+from laconic.benchmark.accuracy import follow
 from laconic.core import load
 from laconic.scene import Scene
 from laconic.verification.reference import reference_states
@@ -20,12 +20,12 @@ def s1_rows(scene: Scene, methods: tuple[str, ...]) -> list[dict[str, Any]]:
     rows = []
     for step_s in (0.01, 0.001):
         fixed = scene.with_run(step_s=step_s)
-        truth = Truth(ends, reference_states(fixed, ends))
+        truth = reference_states(fixed, ends)
         for method in methods:
-            found = follow(fixed.with_run(method=method), "single", truth)
-            error = np.max(np.abs(found[:, :3] - truth.states[:, :3]), axis=1)
+            found = follow(fixed.with_run(method=method), "single", ends)
+            error = np.max(np.abs(found[:, :3] - truth[:, :3]), axis=1)
             rows.append({"method": method, "step_s": step_s, "error_nu": float(error[-1]), "error_anywhere":
-                         float(np.max(error)), "largest_nu": float(np.max(np.abs(truth.states[:, :3])))})
+                         float(np.max(error)), "largest_nu": float(np.max(np.abs(truth[:, :3])))})
     return rows
 
 

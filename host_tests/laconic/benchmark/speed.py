@@ -85,7 +85,7 @@ def _core_rows(scene: Scene, method: str, real: str, seconds_per_step: float, tr
     for step_s in LADDER_S:
         run = scene.with_run(method=method, step_s=step_s)
         if fits(run, truth):
-            error = float(np.max(np.abs(follow(run, real, truth)[:, :3] - truth.states[:, :3])))
+            error = float(np.max(np.abs(follow(run, real, truth.at_s)[:, :3] - truth.states[:, :3])))
             rows.append({"who": method, "real": real, "setting": step_s, "error_nu": error,
                          "ms": seconds_per_step * 1e3 * scene.run.duration_s / step_s})
     return rows

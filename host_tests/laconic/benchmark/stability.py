@@ -9,13 +9,11 @@ from typing import Any
 
 import numpy as np
 
-from laconic.benchmark.accuracy import relative, state_row
+from laconic.benchmark.accuracy import follow, relative
 from laconic.benchmark.stiff_reference import stiff_states
-from laconic.core import load
 from laconic.errors import Refused
 from laconic.scene import METHODS, Scene
 from laconic.scene.drive import Input
-from laconic.simulation import advance_plant
 from laconic.verification.reference import Reference, totals_of
 
 SEGMENT_S, SEGMENTS = 0.25, 4
@@ -73,14 +71,10 @@ def map_rows(scene: Scene, methods: Sequence[str] = METHODS, factors: Sequence[f
 
 def _map_run(scene: Scene, ends: np.ndarray, expected: np.ndarray) -> dict[str, Any]:
     try:
-        plant, drive, found, done = scene.plant(load("double")), scene.drive(), [], 0
-        for tick in np.rint(ends / scene.run.step_s).astype(int):
-            advance_plant(plant, drive, done, int(tick) - done)
-            done = int(tick)
-            found.append(plant.nu)
+        states = follow(scene, "double", ends)
     except Refused as refused:
         return {"status": refused.status}
-    return {"status": "ok", "error_nu": relative(np.array(found), expected[:, :3])}
+    return {"status": "ok", "error_nu": relative(states[:, :3], expected[:, :3])}
 
 
 def path_error(found: np.ndarray, expected: np.ndarray) -> float:
@@ -108,13 +102,8 @@ def stiff_rows(scenes: Sequence[Scene], factors: Sequence[float] = STIFF_FACTORS
 def _stiff_run(scene: Scene, drive_name: str, factor: float, at_s: np.ndarray, expected: np.ndarray) -> dict[str, Any]:
     row = {"scene": Path(scene.path).stem, "factor": factor, "drive": drive_name, "step_s": scene.run.step_s}
     try:
-        plant, drive, found, done = scene.plant(load("double")), scene.drive(), [], 0
-        for tick in np.rint(at_s / scene.run.step_s).astype(int):
-            advance_plant(plant, drive, done, int(tick) - done)
-            done = int(tick)
-            found.append(state_row(plant))
+        states = follow(scene, "double", at_s)
     except Refused as refused:
         return row | {"status": refused.status}
-    states = np.array(found)
     nu = float(np.max(np.abs(states[-1, :3] - expected[-1, :3])) / np.max(np.abs(expected[-1, :3])))
     return row | {"status": "ok", "error_nu": nu, "error_path": path_error(states, expected)}

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import ast
 import importlib
 import logging
 import os
@@ -20,7 +21,7 @@ from laconic.errors import BadInput, LaconicError, nearest_of, reason_of
 
 
 class LazyCommands(click.Group):
-    """Finds subcommands by file name, so that adding one touches no common file."""
+    """Finds subcommands by file name; a module is imported only when its command runs or explains itself."""
 
     def list_commands(self, ctx: click.Context) -> list[str]:
         names = (module.name for module in pkgutil.iter_modules(laconic.cli.commands.__path__))
@@ -30,6 +31,10 @@ class LazyCommands(click.Group):
         if cmd_name not in self.list_commands(ctx):
             raise click.UsageError(f"no command {cmd_name}; {nearest_of(cmd_name, self.list_commands(ctx))}", ctx)
         return importlib.import_module(f"laconic.cli.commands.{cmd_name}").command
+
+    def format_commands(self, ctx: click.Context, formatter: click.HelpFormatter) -> None:
+        with formatter.section("Commands"):
+            formatter.write_dl([(name, summary(name)) for name in self.list_commands(ctx)])
 
     def invoke(self, ctx: click.Context) -> Any:
         """Runs the command; what click and Python would make of an error is made ours before they see it."""
@@ -41,6 +46,12 @@ class LazyCommands(click.Group):
             raise Ended(*stop_status(stopped)) from None
         except Exception as error:
             raise unexpected(error) from error
+
+
+def summary(command: str) -> str:
+    """What `laconic --help` says of a command: the docstring of its module, read from the source without an import."""
+    source = Path(laconic.cli.commands.__path__[0], f"{command}.py").read_text(encoding="utf-8")
+    return ast.get_docstring(ast.parse(source)) or ""
 
 
 class Ended(LaconicError):

@@ -7,7 +7,6 @@ from pathlib import Path
 from tempfile import TemporaryDirectory
 from typing import Any
 
-from laconic.demo.fmu_rows import fmu_rows
 from laconic.demo.node_rows import node_rows
 from laconic.demo.rows import Rows, core_rows, difference
 from laconic.demo.work import Point, Target, measure_all, target_of
@@ -60,6 +59,8 @@ def rows_of(who: str, scene: Scene, folder: Path) -> Rows:
     """One participant's rows for the whole run."""
     if who == "node":
         return node_rows(scene, scene.steps(), NODE_EVERY)
+    from laconic.demo.fmu_rows import fmu_rows
+
     version = int(who[-1])
     fmu = make_fmu(scene, folder / f"{scene.path.stem}_fmi{version}.fmu", version=version)
     return fmu_rows(scene, fmu, scene.steps())

@@ -7,7 +7,8 @@ import time
 from collections.abc import Callable
 from typing import Any
 
-from laconic.benchmark.fault_matrix import Row, run_matrix
+from laconic.benchmark.fault_matrix import run_matrix
+from laconic.benchmark.watched_ends import Row
 
 
 def soak(minutes: float, seed: int, advance: Callable[[float], None]) -> dict[str, Any]:

@@ -14,7 +14,6 @@ from itertools import pairwise
 from typing import Any
 
 import numpy as np
-from scipy.integrate import solve_ivp
 
 from laconic.scene import Scene
 from laconic.scene.drive import Drive
@@ -144,6 +143,8 @@ class Reference:
     def solve(self, state: np.ndarray, begin_s: float, at_s: np.ndarray, values: Callable[[float], Values] | Values,
               rtol: float, atol: float) -> np.ndarray:
         """States at some instants after `begin_s`, with inputs that are smooth from there to the last instant."""
+        from scipy.integrate import solve_ivp  # SciPy takes long to load
+
         if callable(values):
             def right(t: float, y: np.ndarray) -> np.ndarray:
                 return self.rates(y, self.drive_terms(values(t)))

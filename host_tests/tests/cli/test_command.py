@@ -48,11 +48,33 @@ def test_no_command_is_bad_input(capsys):
     assert "Usage:" in capsys.readouterr().err
 
 
-def test_a_command_loads_no_more_than_it_needs():
-    script = ("import sys; from laconic.cli.main import run; assert run(['simulate', 's1']) == 0; "
-              "print([m for m in ('sympy', 'matplotlib', 'can', 'fmpy', 'scipy') if m in sys.modules])")
+def loaded_by(*arguments: str, status: int = 0) -> set[str]:
+    """The modules that a command line loads, in a process of its own."""
+    script = (f"import sys; from laconic.cli.main import run; assert run({[*arguments]!r}) == {status}; "
+              "print(*sys.modules)")
     done = subprocess.run([sys.executable, "-c", script], capture_output=True, text=True, check=True)
-    assert done.stdout.splitlines()[-1] == "[]"
+    return set(done.stdout.splitlines()[-1].split())
+
+
+HEAVY = {"scipy", "sympy", "matplotlib", "fmpy"}
+
+
+@pytest.mark.parametrize("arguments, status", [(["--help"], 0), (["--version"], 0), (["simulat"], 2), (["--hlep"], 2)])
+def test_what_concerns_no_command_loads_no_command(arguments, status):
+    loaded = loaded_by(*arguments, status=status)
+    assert not loaded & {*HEAVY, "numpy", "rich", "can"}
+    assert not any(name.startswith("laconic.cli.commands.") for name in loaded)
+
+
+def test_a_command_that_explains_itself_loads_no_heavy_library():
+    script = ("import sys; from laconic.cli.main import commands, run; "
+              "assert all(run([name, '--help']) == 0 for name in commands.list_commands(None)); print(*sys.modules)")
+    done = subprocess.run([sys.executable, "-c", script], capture_output=True, text=True, check=True)
+    assert not HEAVY & set(done.stdout.splitlines()[-1].split())
+
+
+def test_a_command_loads_no_more_than_it_needs():
+    assert not loaded_by("simulate", "s1") & {*HEAVY, "can"}
 
 
 def test_what_is_not_built_is_said_with_the_remedy(monkeypatch, tmp_path):

@@ -1,4 +1,4 @@
-"""laconic analyse: what can be said about a scene's motions."""
+"""Steady motions, stability, free motion, traction."""
 
 from __future__ import annotations
 
@@ -19,7 +19,7 @@ if TYPE_CHECKING:
 PARTS = ("geometry", "free", "steady", "bifurcation", "traction")
 
 
-@click.command("analyse", short_help="Steady motions, stability, free motion, traction.")
+@click.command("analyse")
 @click.argument("scene", type=SceneName())
 @click.option("--out", type=OutputFolder(), metavar="DIR",
               help="Write report.md, report.json and pictures there.")

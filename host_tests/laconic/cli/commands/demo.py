@@ -1,4 +1,4 @@
-"""laconic demo: the main job."""
+"""The main job: real robots through core, FMUs and node."""
 
 from __future__ import annotations
 
@@ -27,7 +27,7 @@ SHOWN_METHODS = ("auto", "rk4")
 SHOWN_FACTORS = (1, 10, 50)
 
 
-@click.command(name="demo", short_help="The main job: real robots through core, FMUs and node.")
+@click.command("demo")
 @click.argument("scenes", type=SceneName(), nargs=-1, metavar="[SCENE]...")
 @click.option("--out", type=OutputFolder(), metavar="DIR",
               help="Where pictures and figures go; demo/ of the build tree if not given.")

@@ -1,4 +1,4 @@
-"""laconic derive: a vehicle's equations of motion by the paper's method."""
+"""The equations of motion, by the paper's method."""
 
 from __future__ import annotations
 
@@ -22,7 +22,7 @@ ALL_ENDINGS = tuple(ending for endings in ENDINGS.values() for ending in endings
 AGREEMENT = 1e-12  # between the three forms, relative, at random numbers
 
 
-@click.command("derive", short_help="The equations of motion, by the paper's method.")
+@click.command("derive")
 @click.argument("scene", type=SceneName(), required=False)
 @click.option("--example", type=click.Choice(EXAMPLES), help="A worked system in symbols, instead of a scene.")
 @click.option("--latex", is_flag=True, help="Print LaTeX.")

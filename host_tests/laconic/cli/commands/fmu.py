@@ -1,4 +1,4 @@
-"""laconic fmu: an FMU with a scene's vehicle."""
+"""Write an FMU of a scene's vehicle."""
 
 from __future__ import annotations
 
@@ -17,7 +17,7 @@ from laconic.outputs import check_ending, claim_file, is_special
 from laconic.scene import read_scene
 
 
-@click.command(name="fmu", short_help="Write an FMU of a scene's vehicle.")
+@click.command("fmu")
 @click.argument("scene", type=SceneName())
 @click.option("--fmi", "version", type=click.Choice(("2", "3")), required=True, help="FMI 2.0 or 3.0.")
 @click.option("--scalar", is_flag=True, help="FMI 3.0 without arrays, for importers that handle them badly.")

@@ -1,4 +1,4 @@
-"""laconic replay: a recorded robot run against the model."""
+"""Compare a recorded run with the model."""
 
 from __future__ import annotations
 
@@ -15,7 +15,7 @@ from laconic.errors import BadInput
 from laconic.outputs import write_text
 
 
-@click.command("replay", short_help="Compare a recorded run with the model.")
+@click.command("replay")
 @click.argument("log", type=InputPath())
 @click.argument("scene", type=SceneName())
 @click.option("--fit", "fit_on", type=InputPath(), multiple=True, metavar="RUN.csv",

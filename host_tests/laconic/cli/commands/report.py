@@ -1,4 +1,4 @@
-"""laconic report: what accuracy costs, measured."""
+"""Error against run time, sizes, stability: an HTML page."""
 
 from __future__ import annotations
 
@@ -12,17 +12,14 @@ from rich.console import Console, JustifyMethod
 from rich.markup import escape
 from rich.table import Table
 
-from laconic.benchmark.collect import collect
 from laconic.benchmark.page import TEXT, TITLES, shown
-from laconic.benchmark.robot import collect_robots
-from laconic.benchmark.writing import write
 from laconic.cli.options import OutputFolder, SceneName, json_flag
 from laconic.errors import BadInput, reason_of
 from laconic.paths import build_dir, scene_names
 from laconic.scene import read_scene
 
 
-@click.command(name="report", short_help="Error against run time, sizes, stability: an HTML page.")
+@click.command("report")
 @click.option("--scene", "scenes", type=SceneName(), multiple=True, metavar="SCENE",
               help="About this robot, instead of the project; may be given several times.")
 @click.option("--out", type=OutputFolder(), metavar="DIR", help="Folder; build/report where none is given.")
@@ -36,6 +33,10 @@ def command(scenes: tuple[str, ...], out: Path | None, quick: bool, json_wanted:
     offline), report.json and a CSV for each table; the folder work beside them keeps the programs that were measured,
     for looks of your own. What is not installed is left out and named.
     """
+    from laconic.benchmark.collect import collect
+    from laconic.benchmark.robot import collect_robots
+    from laconic.benchmark.writing import write
+
     folder = out or build_dir() / "report"
     read = [read_scene(name) for name in scenes or scene_names()]
     try:

@@ -1,4 +1,4 @@
-"""laconic rig: drive a node over CAN and judge it."""
+"""Drive a node over CAN and judge it."""
 
 from __future__ import annotations
 
@@ -25,7 +25,7 @@ from laconic.scene import METHODS, Scene, read_scene
 CONNECTION = ("--interface", "--channel", "--bitrate", "--bus-option", "--id-base")
 
 
-@click.command(name="rig", short_help="Drive a node over CAN and judge it.")
+@click.command("rig")
 @click.argument("scene_name", type=SceneName(), metavar="[SCENE]", required=False)
 @click.option("--interface", help="python-can's name of the interface: slcan, socketcan, pcan, kvaser, faulty …")
 @click.option("--channel", help="Which one: socket://127.0.0.1:PORT, /dev/ttyACM0, can0 …")

@@ -1,4 +1,4 @@
-"""laconic simulate: one scene through the core."""
+"""Run one scene through the core."""
 
 from __future__ import annotations
 
@@ -19,7 +19,7 @@ from laconic.simulation import Trajectory, input_signals, simulate, usual_signal
 from laconic.simulation.csv_text import csv_text
 
 
-@click.command(name="simulate", short_help="Run one scene through the core.")
+@click.command("simulate")
 @click.argument("scene", type=SceneName())
 @click.option("--method", type=click.Choice(METHODS), help="Instead of the scene's.")
 @click.option("--step", "step_s", type=float, metavar="H", help="Step in seconds instead of the scene's.")

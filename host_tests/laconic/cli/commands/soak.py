@@ -1,4 +1,4 @@
-"""laconic soak: long fuzz, fault and endurance runs."""
+"""Long fuzz, fault and endurance runs."""
 
 from __future__ import annotations
 
@@ -22,7 +22,7 @@ def kinds() -> dict[str, str]:
     return {name.replace("_", "-"): name for name in found}
 
 
-@click.command(name="soak", short_help="Long fuzz, fault and endurance runs.")
+@click.command("soak")
 @click.argument("what")
 @click.option("--minutes", type=float, default=10.0, show_default=True, metavar="N", help="How long.")
 @click.option("--seed", type=int, help="For the random numbers; printed when not given.")

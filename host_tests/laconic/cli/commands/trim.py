@@ -1,4 +1,4 @@
-"""laconic trim: the core for one scene alone."""
+"""Write the C that builds the core for one scene alone."""
 
 from __future__ import annotations
 
@@ -13,7 +13,7 @@ from laconic.scene import read_scene
 from laconic.trim import trimmed
 
 
-@click.command(name="trim", short_help="Write the C that builds the core for one scene alone.")
+@click.command("trim")
 @click.argument("scene", type=SceneName())
 @click.option("--real", type=click.Choice(REALS), help="Scalar type; the scene's own where none is given.")
 @click.option("--out", type=OutputFolder(), metavar="DIR", default=Path(), show_default=True,

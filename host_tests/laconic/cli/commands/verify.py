@@ -1,4 +1,4 @@
-"""laconic verify: the core against reference trajectories."""
+"""Compare the core with reference trajectories."""
 
 from __future__ import annotations
 
@@ -18,7 +18,7 @@ from laconic.scene import METHODS
 from laconic.verification.trajectories import CaseResult, as_json, read_reference, verify_case
 
 
-@click.command(name="verify", short_help="Compare the core with reference trajectories.")
+@click.command("verify")
 @click.argument("reference", type=InputPath())
 @click.option("--method", type=click.Choice(METHODS), default="auto", show_default=True)
 @click.option("--step", "step_s", type=float, default=1e-3, show_default=True, metavar="H", help="Step in seconds.")
