@@ -11,7 +11,7 @@ from rich.console import Console
 from rich.progress import BarColumn, MofNCompleteColumn, Progress, TextColumn, TimeRemainingColumn
 
 Advance = Callable[..., None]
-FIRST_WORD_S = 0.5  # after so long a log is told how long the work takes,
+FIRST_WORD_S = 0.5  # after so long stderr states how long the work takes,
 LONG_S = 60.0       # if that is longer than this
 
 

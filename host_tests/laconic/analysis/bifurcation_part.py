@@ -22,7 +22,7 @@ from laconic.analysis.speeds import command_text, motion_text, wheel_radius_m
 from laconic.analysis.steady import steady_motions
 
 CYCLE_SHARES = (0.97,)  # of the way from the branch's other end to the Hopf point
-NO_SIZE = 1e-4          # of that way: so close to the Hopf point a cycle (its size goes with the root) is not told
+NO_SIZE = 1e-4          # of that way: no cycle is reported so close to the Hopf point, where its size vanishes
 
 
 def bifurcation_part(result: Study, wishes: Wishes) -> None:

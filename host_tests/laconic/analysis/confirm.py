@@ -14,7 +14,7 @@ from laconic.analysis.steady import SteadyMotion
 from laconic.core.plant import Plant
 
 STEPS_PER_FASTEST = 60  # steps per 1/|fastest eigenvalue|
-MOST_STEPS = 2_000_000  # of a steady motion's simulation: beyond, rounding and the method's error tell nothing
+MOST_STEPS = 2_000_000  # of a steady motion's simulation: beyond, rounding and the method's error hide the motion
 MOST_PERIODS = 4000     # of a cycle's
 TELLING = 4.0           # growth times periods after which a motion has clearly left a cycle, or come back
 
@@ -25,7 +25,7 @@ class Confirmation:
 
     holds: bool
     words: str
-    simulated: bool = True  # False: nothing that could be told by simulating
+    simulated: bool = True  # False: a simulation cannot confirm or refute it
 
 
 def plant_at(subject: Subject, nu: np.ndarray, step_s: float) -> Plant:
@@ -49,7 +49,7 @@ def steady_motion(subject: Subject, inputs: Inputs, field: Field, motion: Steady
     duration = 1.0 / abs(float(values[k].real))
     steps = max(int(np.ceil(duration / step_for(field, motion.zeta))), 1)
     if steps > MOST_STEPS:
-        return Confirmation(True, f"a push takes {duration:.3g} s to change: too long to tell by simulating", False)
+        return Confirmation(True, f"a push takes {duration:.3g} s to change: too long to confirm by simulating", False)
     push = 1e-6 * max(1.0, float(np.abs(motion.zeta).max())) * (vectors[:, k].real / np.linalg.norm(vectors[:, k].real))
     plant = plant_at(subject, field.nu(motion.zeta + push), duration / steps)
     plant.run(subject.core.input(inputs), steps)
@@ -72,7 +72,7 @@ def limit_cycle(subject: Subject, inputs: Inputs, field: Field, cycle: LimitCycl
     gap = float(np.abs(plant.nu - start).max()) / cycle.size
     if growth_per_period(cycle) * MOST_PERIODS < TELLING:
         return Confirmation(bool(gap < 1e-5), f"core: one period closes to {gap:.1e} of the cycle's size; motions "
-                                              "beside it change too slowly to tell by simulating")
+                                              "beside it change too slowly to confirm by simulating")
     inside, outside = (distance_after(subject, inputs, field, cycle, centre, share, step_s) for share in (0.9, 1.1))
     leaves = inside < 0.5 < 1.5 < outside
     holds = bool(gap < 1e-5 and (cycle.stable or leaves))

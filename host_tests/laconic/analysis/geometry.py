@@ -1,4 +1,4 @@
-"""What the wheels can do with the body: which motions they drive or feel, how evenly, and how well they turn it.
+"""What the wheels can do with the body: which motions they drive or damp, how evenly, and how well they yaw it.
 
 Ξ is judged in metres per second: rim speeds R χ' against the body's (v_ξ, v_η, ℓ θ'), where ℓ is the wheels' root mean
 square distance from their middle. Its rank says which motions the motors do not see at all. The rank misses the

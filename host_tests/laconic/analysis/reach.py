@@ -1,6 +1,6 @@
 """How fast a vehicle of this kind can go: what its motors do under the largest inputs of its scene.
 
-A bifurcation far beyond that is a property of the equations, not of the robot: it is told, but not drawn.
+A bifurcation far beyond that is a property of the equations, not of the robot: it is reported, but not drawn.
 """
 
 from __future__ import annotations

@@ -1,4 +1,4 @@
-"""Steady motions under the held inputs: found, confirmed by the core, told."""
+"""Steady motions under the held inputs: found, confirmed by the core, described in sentences."""
 
 from __future__ import annotations
 

@@ -47,7 +47,7 @@ class Size:
 
 
 def count_on_board(workshop: Workshop, target: Target, variant: Variant) -> BoardRun:
-    """Runs a variant on a board, with as many steps as its counter bears."""
+    """Runs a variant on a board, with as many steps as its counter can count."""
     for steps in target.windows(variant.real):
         if found := run_on_board(target, workshop.board_image(target, variant, steps)):
             return found

@@ -140,7 +140,7 @@ class Workshop:
         return folder, files
 
     def definitions(self, variant: Variant, folder: Path) -> list[str]:
-        """What the preprocessor is told."""
+        """The definitions for the preprocessor."""
         found = ["-DLACONIC_SINGLE"] if variant.real == "single" else []
         if variant.trim:
             found.append(f'-DLACONIC_SCENE_HEADER="{folder / "laconic_scene.h"}"')

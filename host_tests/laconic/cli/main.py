@@ -77,7 +77,7 @@ def main(arguments: list[str] | None = None) -> None:
     guard()
     logging.getLogger("matplotlib").setLevel(logging.ERROR)  # its advice on a home that it cannot write is not ours
     status = run(sys.argv[1:] if arguments is None else arguments)
-    with suppress(ReaderGone, BadInput):  # text before an error, which is already told
+    with suppress(ReaderGone, BadInput):  # text before an error that stderr already states
         sys.stdout.flush()
     sys.exit(status)
 

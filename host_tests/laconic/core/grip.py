@@ -1,7 +1,7 @@
 """Was the no-slip model true? What a run asked of the ground, against what the ground gives.
 
 A wheel slips where the reaction it needs exceeds friction coefficient times normal load; it lifts where its normal load
-would have to be below zero. The model does neither: from there on it tells of another robot.
+would have to be below zero. The model does neither: from there on it describes another robot.
 """
 
 from __future__ import annotations

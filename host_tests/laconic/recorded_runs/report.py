@@ -63,7 +63,7 @@ def _run_table(replay: Replay) -> list[str]:
         lines.append(f"| {c.recording.name} | {_whole_deg(r.direction_deg)} | {r.speed_m_per_s:.1f} | {r.rolled_m:.3f} "
                      f"| {camera} | {ratio} | {_whole_deg(r.rolled_direction_deg)} | {went} |{currents}")
     if any((c.recording.set_speed_rad_per_s == 0.0).all(axis=0).any() for c in replay.comparisons):
-        lines += ["", "The log has no sign for the current of a wheel that is told to stand; it counts as zero."]
+        lines += ["", "The log has no sign for the current of a wheel that is commanded to stand; it counts as zero."]
     return lines
 
 
@@ -115,7 +115,7 @@ def _transient_words(replay: Replay) -> str:
     if min(shares) < 25.0:
         return sentence
     return (f"{sentence} The motors' torque is almost all spent on friction, and what is left to accelerate is a small "
-            "difference of large numbers: with none of these constant friction laws does the current tell the speed.")
+            "difference of large numbers: with none of these constant friction laws does the current give the speed.")
 
 
 def _slip_words(replay: Replay) -> str:

@@ -76,7 +76,7 @@ def compare_all(subject: Subject, runs: list[Recording], fit_names: list[str], s
         raise BadInput(f"{subject.scene.path}: has {subject.wheel_count} wheels, the column map "
                        f"{runs[0].wheel_angle_rad.shape[1]}; give the scene of the recorded robot")
     if np.linalg.matrix_rank(subject.matrices.wheel_rows) < 3:
-        raise BadInput(f"{subject.scene.path}: its wheel speeds do not tell the body's motion; replay needs wheels "
+        raise BadInput(f"{subject.scene.path}: its wheel speeds leave the body's motion open; replay needs wheels "
                        "that drive all three directions")
     fitting = [recording for recording in runs if recording.name in fit_names]
     models = [fit(subject, fitting, model) for model in MODELS]

@@ -69,7 +69,7 @@ class NodeClient:
 
     def _wait_for_life(self) -> None:
         """Frames that are sent while a board starts are lost, and so may be what opened the channel to it. Its
-        HEARTBEAT tells the state, too."""
+        HEARTBEAT states the state, too."""
         deadline_us, alive = self.link.deadline_us(self.timeout_s), False
         while True:
             until_us = min(self.link.deadline_us(3 * REPEAT_S), deadline_us)

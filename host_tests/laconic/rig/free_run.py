@@ -85,7 +85,7 @@ def follow(run: FreeRun, voltages: Voltages, held: Held, start_us: int, end_us: 
     node, rig = voltages.node, run.punctuality
     clock, step_s = node.link.clock, held.step_s
     while (now_us := clock.now_us()) < end_us:
-        if rig.is_late():  # what has come meanwhile tells how far the node is
+        if rig.is_late():  # what has come meanwhile shows how far the node is
             catch_up(run, node, now_us + rig.cycle_us)
         if rig.is_due():
             tick = int((clock.now_us() - start_us) / 1e6 / step_s)

@@ -1,5 +1,5 @@
 """Signals during a run. The first one is kept until the rig waits for a frame, so that no frame and no log entry is cut
-in two and what was judged so far is told; a second one ends at once whatever goes on."""
+in two and what was judged so far is reported; a second one ends at once whatever goes on."""
 
 from __future__ import annotations
 

@@ -42,7 +42,7 @@ class SameBits(Trial):
 
 
 class Scaled(Trial):
-    """Lockstep with scaled frames against a twin that gets the same integers: half a last place."""
+    """Lockstep with scaled frames against a twin that gets the same integers, to half the resolution."""
 
     mode = "lockstep"
 
@@ -72,7 +72,7 @@ def judge_same_bits(node: NodeClient, scene: Scene, steps: int | None, *, every:
 
 def judge_scaled(node: NodeClient, scene: Scene, steps: int | None, tolerances: dict[str, float],
                  moved: Moved = lambda _: None) -> Judgement:
-    """Lockstep with scaled frames against a twin that gets the same integers: half a last place."""
+    """Lockstep with scaled frames against a twin that gets the same integers, to half the resolution."""
     return driven(Scaled(node, scene, steps, tolerances), moved)
 
 

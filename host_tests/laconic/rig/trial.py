@@ -12,7 +12,7 @@ from laconic.rig.errors import ENDINGS
 from laconic.rig.verdict import Judgement
 from laconic.scene import Scene
 
-Moved = Callable[[float], None]  # told how many steps the run has come further
+Moved = Callable[[float], None]  # called with the number of further steps that the run has taken
 
 
 class Trial(ABC):

@@ -14,7 +14,7 @@ RADIUS = "all wheels have one radius, vehicle.wheel_radius_m; what only carries 
 MOTOR = "all wheels have the same motor, [vehicle.motor]; a wheel without voltage is driven by axle_torque_Nm"
 LEVEL = ("the ground is level; on a slope give the downhill part of the weight as world_force_N, see docs/scenes.md")
 RIGID = "the vehicle is rigid, without suspension; normal loads are those of its mass at rest and in motion"
-SLIP = ("wheels roll without slip; friction_coefficient tells where they could not, and the run goes on as if they did")
+SLIP = ("wheels roll without slip; friction_coefficient shows where they could not, and the run goes on as if they did")
 FIXED = "a wheel that is neither omni nor mecanum is \"fixed\", driven or not"
 
 OF_WHEELS = {

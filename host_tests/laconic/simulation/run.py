@@ -99,7 +99,7 @@ def simulate(scene: Scene, signals: tuple[str, ...] = (), progress: bool = False
 
 def run_window(scene: Scene, plant: Plant, drive: Drive, first: int, count: int,
                moved: Advance = lambda _: None, recorder: Recorder | None = None) -> None:
-    """Some steps; a refusal is told with file and time."""
+    """Some steps; a refusal names file and time."""
     try:
         for begin in range(first, first + count, CHUNK):
             steps = min(CHUNK, first + count - begin)

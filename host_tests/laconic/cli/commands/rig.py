@@ -47,7 +47,7 @@ CONNECTION = ("--interface", "--channel", "--bitrate", "--bus-option", "--id-bas
 @click.option("--method", type=click.Choice(METHODS), help="Instead of the scene's.")
 @click.option("--real", type=click.Choice(REALS), help="Instead of the scene's: what the node computes in.")
 @click.option("--tolerance", "tolerances", multiple=True, metavar="SIGNAL=VALUE",
-              help="Allowed difference; half a last place otherwise.")
+              help="Allowed difference; half the resolution of the signal's frame where none is given.")
 @click.option("--log", "logs", multiple=True, type=OutputFile(*LOGS), help="Log all frames: .blf, .asc.")
 @click.option("--replay", type=InputPath(), help="Judge a log of a scaled lockstep run, without a node.")
 @click.option("--live", is_flag=True, help="Show the signals while it runs.")

@@ -36,7 +36,7 @@ def command(scene: str, method: str | None, step_s: float | None, real: str | No
 
     Inputs of kind "steps" are held over each step; a step that one of them changes within is refused. Where the scene
     gives a friction coefficient or the height of the centre of mass, the ground is watched: the first wheel that
-    would slip or lift is told on stderr.
+    would slip or lift is named on stderr.
     """
     if step_s is not None and not 0.0 < step_s < float("inf"):
         raise BadInput(f"--step: {step_s:g} s is not usable; give a finite number above zero")
