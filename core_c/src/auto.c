@@ -16,8 +16,8 @@
 
 static laconic_status auto_slow_step(const laconic_model *model, const laconic_integrator *integrator,
                                      laconic_state *state, const laconic_forcing_samples *samples) {
-    laconic_status status = LACONIC_STEP_BEYOND_GYROSCOPIC_LIMIT;
-    if (!steady_over(samples)) status = laconic_taylor_8.step(model, integrator, state, samples);
+    laconic_status status = LACONIC_STEP_SINGULAR; /* none has taken the step yet */
+    if (!constant_over(samples)) status = laconic_taylor_8.step(model, integrator, state, samples);
     if (status != LACONIC_OK) status = laconic_exact_flow_4.step(model, integrator, state, samples);
     if (status != LACONIC_OK) status = laconic_exact_flow.step(model, integrator, state, samples);
     return status;

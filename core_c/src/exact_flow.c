@@ -1,5 +1,6 @@
-/* Exact-flow splitting: keeps energy and K of the free motion to rounding. Second order, which takes every step, and
- * extrapolated to fourth order, which is exact for free motion and most accurate while damping is slow. */
+/* Exact-flow splitting: ζ of the free motion is exact, so energy and K stay to rounding; heading, position and wheel
+ * angles are of the method's order. Second order, which takes every step, and extrapolated to fourth order, which is
+ * most accurate while damping is slow. */
 #include "step_internals.h"
 
 /* ζ rotates about w by the angle ψ over a step: tan(ψ/2) = |w| numerator/denominator. */
@@ -34,9 +35,9 @@ RARE_AND_OPAQUE half_angle large_half_angle(real z, real along, real across) {
 /* δ, corrected along ζ + δ so that the rotation keeps the length: |ζ + δ|² − |ζ|² = δ·(2ζ + δ) must be 0. */
 RARE_AND_OPAQUE vector length_kept(vector zeta, vector delta) {
     const vector end = plus(zeta, delta);
-    const real excess = dot(delta, plus(zeta, end)), length = square(end);
-    if (!(length > R(0))) return delta;
-    return minus(delta, scaled(R(0.5) * excess / length, end));
+    const real excess = dot(delta, plus(zeta, end)), end_square = square(end);
+    if (!(end_square > R(0))) return delta;
+    return minus(delta, scaled(R(0.5) * excess / end_square, end));
 }
 
 /* Free motion rotates ζ about w by the angle ψ with ψ' = |w| g·ζ. The Riccati equation for u = tan(ψ/2) has the
@@ -116,8 +117,8 @@ RARE increment flow_varying(const laconic_model *model, const laconic_integrator
 static laconic_status exact_flow_step(const laconic_model *model, const laconic_integrator *integrator,
                                       laconic_state *state, const laconic_forcing_samples *samples) {
     const vector zeta = zeta_of(state);
-    const increment by = steady_over(samples) ? base_alone(flow_base, model, integrator, zeta, samples)
-                                              : flow_varying(model, integrator, state, samples);
+    const increment by = constant_over(samples) ? base_alone(flow_base, model, integrator, zeta, samples)
+                                                : flow_varying(model, integrator, state, samples);
     return advance(state, model, integrator->step_s, zeta, by);
 }
 
@@ -140,8 +141,8 @@ RARE increment flow_4_varying(const laconic_model *model, const laconic_integrat
 static laconic_status exact_flow_4_step(const laconic_model *model, const laconic_integrator *integrator,
                                         laconic_state *state, const laconic_forcing_samples *samples) {
     const vector zeta = zeta_of(state);
-    const increment by = steady_over(samples) ? extrapolated(flow_base, model, integrator, zeta, samples)
-                                              : flow_4_varying(model, integrator, state, samples);
+    const increment by = constant_over(samples) ? extrapolated(flow_base, model, integrator, zeta, samples)
+                                                : flow_4_varying(model, integrator, state, samples);
     return advance_if_passive(state, model, integrator->step_s, samples, zeta, by);
 }
 

@@ -8,12 +8,13 @@ typedef struct matrix {
 
 /* Cramer's rule: M⁻¹ rhs = (rhs_x c₀ + rhs_y c₁ + rhs_z c₂)/det. Where det M is almost 0, the increment is not finite
  * or so long that the step would gain energy, and the check of the energy refuses it. Of 8 million steps at h|ν| up to
- * 1000 in single precision that check refused 1.1 million; a test of det M against rounding found one more. */
+ * 1000 in single precision that check refused 1.1 million; a test of det M against rounding refused one step besides. */
 typedef struct solver {
     vector c0, c1, c2;
     real inverse_determinant;
 } solver;
 
+/* Cofactors and determinant of M. */
 INLINE solver factorise(const matrix *m) {
     solver s;
     s.c0 = cross(m->row1, m->row2);
@@ -41,7 +42,7 @@ INLINE matrix implicit_matrix(vector inverse_gain, vector g, vector w, real yaw,
 /* Where damping is fast beside the step, ζ⁺ depends on q at the end of the step rather than on its mean q(ζ,ζ⁺). So q
  * is taken to vary linearly from q(ζ,ζ) to q(ζ⁺,ζ⁺): besides the mean that is equivalent to the constant (mean −
  * ½)·(their difference), with `mean` of laconic_decay, and for mean and slope of ζ it is a further change of b. Without
- * it a stiff vehicle lags by h/r times the change of q; with it by (h/r)². */
+ * it ζ of a stiff vehicle lags by half the change of q over the step, divided by r; with it by one order of h less. */
 INLINE vector follow_inlined(parabola *b, const laconic_model *m, const laconic_decay *d, const solver *s, vector zeta,
                              vector delta) {
     const vector g = vec(m->nu_of_zeta[2]), w = vec(m->gyro), end = plus(zeta, delta);
@@ -61,7 +62,7 @@ static vector follow(parabola *b, const laconic_model *m, const laconic_decay *d
     return follow_inlined(b, m, d, s, zeta, delta);
 }
 
-/* ζ⁺ = e^{hL}ζ + hφ1(hL)[q(ζ,ζ⁺) + b], written for the increment Δ = ζ⁺ − ζ: (D⁻¹ − Q)Δ = ζ'(ζ). */
+/* ζ⁺ = e^{−hr}ζ + hφ1(−hr)[q(ζ,ζ⁺) + b] on each axis, written for Δ = ζ⁺ − ζ: (D⁻¹ − Q)Δ = ζ'(ζ). */
 INLINE increment kahan_increment(const laconic_model *m, const laconic_integrator *integrator, int level, vector zeta,
                                  const parabola *b, follower following) {
     const laconic_decay *d = &integrator->decay[level];
@@ -105,9 +106,9 @@ RARE increment kahan_varying(const laconic_model *model, const laconic_integrato
 static laconic_status exponential_kahan_step(const laconic_model *model, const laconic_integrator *integrator,
                                              laconic_state *state, const laconic_forcing_samples *samples) {
     const vector zeta = zeta_of(state);
-    const increment by = steady_over(samples)
-                             ? base_alone(ONLY_STEADY ? only_kahan_base : kahan_base, model, integrator, zeta, samples)
-                             : kahan_varying(model, integrator, state, samples);
+    const increment by = constant_over(samples) ? base_alone(ONLY_CONSTANT ? only_kahan_base : kahan_base, model,
+                                                             integrator, zeta, samples)
+                                                : kahan_varying(model, integrator, state, samples);
     return advance_if_passive(state, model, integrator->step_s, samples, zeta, by);
 }
 
@@ -131,8 +132,8 @@ RARE increment kahan_4_varying(const laconic_model *model, const laconic_integra
 static laconic_status exponential_kahan_4_step(const laconic_model *model, const laconic_integrator *integrator,
                                                laconic_state *state, const laconic_forcing_samples *samples) {
     const vector zeta = zeta_of(state);
-    const increment by = steady_over(samples) ? extrapolated(kahan_base, model, integrator, zeta, samples)
-                                              : kahan_4_varying(model, integrator, state, samples);
+    const increment by = constant_over(samples) ? extrapolated(kahan_base, model, integrator, zeta, samples)
+                                                : kahan_4_varying(model, integrator, state, samples);
     return advance_if_passive(state, model, integrator->step_s, samples, zeta, by);
 }
 

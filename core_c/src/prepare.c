@@ -9,9 +9,9 @@ typedef struct basis {
 } basis;
 
 static bool normalise(real v[3]) {
-    const real largest = size(vec(v));
-    if (!(largest > R(0))) return false;
-    for (int k = 0; k < 3; k++) v[k] /= largest; /* first, so that squares neither overflow nor vanish */
+    const real scale = size(vec(v));
+    if (!(scale > R(0))) return false;
+    for (int k = 0; k < 3; k++) v[k] /= scale; /* first, so that squares neither overflow nor vanish */
     const real length = laconic_root(dot(vec(v), vec(v)));
     for (int k = 0; k < 3; k++) v[k] /= length;
     return true;

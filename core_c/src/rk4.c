@@ -24,7 +24,7 @@ INLINE increment simpson(real h, vector z1, vector k1, vector k2, vector k3, vec
 }
 
 /* b held. */
-INLINE increment steady_stages(const laconic_model *m, real h, vector z1, vector b) {
+INLINE increment held_stages(const laconic_model *m, real h, vector z1, vector b) {
     const real half = R(0.5) * h;
     const vector k1 = zeta_rate(m, z1, b);
     const vector k2 = zeta_rate(m, along(z1, half, k1), b);
@@ -53,8 +53,8 @@ static laconic_status rk4_step(const laconic_model *model, const laconic_integra
     const vector zeta = zeta_of(state);
     increment by;
     if (beyond_rotation(model, integrator, zeta)) return LACONIC_STEP_BEYOND_GYROSCOPIC_LIMIT;
-    by = steady_over(samples) ? steady_stages(model, h, zeta, vec(samples->start->constant))
-                              : varying_stages(model, h, zeta, &state->heading, samples);
+    by = constant_over(samples) ? held_stages(model, h, zeta, vec(samples->start->constant))
+                                : varying_stages(model, h, zeta, &state->heading, samples);
     return advance_if_passive(state, model, h, samples, zeta, by);
 }
 

@@ -12,7 +12,7 @@ uint64_t laconic_run(const laconic_model *model, const laconic_integrator *integ
         return 0;
     }
     forcing_of(&forcing, model, held);
-    samples.steady = !forcing.rotates;
+    samples.is_constant = !forcing.rotates;
     for (left = steps; left > 0; left--) {
         if (!heading_has_room(&state->heading)) {
             last = LACONIC_OVERFLOW;

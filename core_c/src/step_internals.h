@@ -22,7 +22,7 @@ static inline vector zeta_of(const laconic_state *state) {
     return zeta;
 }
 
-/* ν → ζ: as GᵀAG = 1 and G diagonalises A, ζ = diag(1 + λ²x) Gᵀ ν, the projection onto the allowed motions. */
+/* ν → ζ: as GᵀAG = E and G diagonalises A, ζ = diag(inertia) Gᵀ ν, the projection onto the allowed motions. */
 static inline vector zeta_of_nu(const laconic_model *m, const real nu[3]) {
     const vector first = scaled(nu[0], vec(m->nu_of_zeta[0])), second = scaled(nu[1], vec(m->nu_of_zeta[1]));
     return times(vec(m->inertia), plus(plus(first, second), scaled(nu[2], vec(m->nu_of_zeta[2]))));
@@ -114,9 +114,11 @@ INLINE vector forcing_after_yaw(const laconic_forcing *forcing, const laconic_he
 }
 
 /* A build in which b never varies keeps only base steps of the code below. */
-#define ONLY_STEADY (!LACONIC_WITH_WORLD_FORCE && !LACONIC_WITH_SAMPLED_INPUT)
+#define ONLY_CONSTANT (!LACONIC_WITH_WORLD_FORCE && !LACONIC_WITH_SAMPLED_INPUT)
 
-static inline bool steady_over(const laconic_forcing_samples *samples) { return ONLY_STEADY || samples->steady; }
+static inline bool constant_over(const laconic_forcing_samples *samples) {
+    return ONLY_CONSTANT || samples->is_constant;
+}
 
 /* ---------------------------------------------------- what a method finds out about a step -- */
 
@@ -124,7 +126,7 @@ static inline bool steady_over(const laconic_forcing_samples *samples) { return 
 typedef struct increment {
     vector delta; /* ζ(t+h) − ζ(t)                                                            */
     vector mean;  /* mean of ζ over the step                                                  */
-    vector slope; /* 12/h² times the first moment of ζ about the middle of the step: = delta
+    vector slope; /* 12/h² times the first moment of ζ about the middle of the step: delta
                      where ζ changes linearly, 0 where it jumps at the start                  */
 } increment;
 
@@ -144,7 +146,7 @@ INLINE bool passive(const laconic_model *model, const laconic_state *state, real
     const real excess = (R(1) - ENERGY_TOLERANCE) * after - (R(1) + ENERGY_TOLERANCE) * before;
     if (excess <= R(0)) return true;
     if (excess <= R(2) * step_s * dot(vec(samples->start->constant), by.mean)) return true;
-    if (steady_over(samples)) return false;
+    if (constant_over(samples)) return false;
     return laconic_growth_is_forced(model, state, step_s, samples, &by);
 }
 
@@ -156,7 +158,7 @@ static inline laconic_status not_passive(increment by) {
 /* ---------------------------------------------------------------------- the next state -- */
 
 typedef struct pose_change { /* over one step */
-    real along_m, across_m;  /* displacement in axes at the mid-step heading */
+    real along_m, across_m;  /* displacement along and across the heading half-way between start and end */
     real yaw_change_rad;
 } pose_change;
 
@@ -269,8 +271,8 @@ INLINE vector equivalent_constant(const parabola *b, const laconic_decay *d) {
     return b->varies ? plus(b->start, response(d->mean, d->bend, b)) : b->start;
 }
 
-/* Mean and first moment of ζ over the step from its increment: exact for damping and forcing alone, and
- * symmetric, so that they gain two orders by extrapolation as the increment does. */
+/* Mean and first moment of ζ over the step from its increment: exact for damping and forcing alone, and symmetric, so
+ * that the mean gains two orders by extrapolation as the increment does. */
 INLINE increment increment_of(const laconic_decay *d, vector zeta, vector delta, const parabola *b) {
     increment by;
     by.delta = delta;
@@ -284,7 +286,7 @@ INLINE increment increment_of(const laconic_decay *d, vector zeta, vector delta,
 }
 
 /* (4 · two half steps − one full step)/3: the base's error has only even powers of h, so this is of fourth order. The
- * slope of two halves together is 3/2 of the difference of their means, plus a quarter of the slope of each. */
+ * slope is not extrapolated, the pose needs it at second order alone; that of two halves together is 3/2 of the difference of their means, plus a quarter of the slope of each. */
 INLINE increment combine(increment whole, increment first, increment second) {
     const real third = R(1) / R(3);
     const vector delta = plus(first.delta, second.delta);

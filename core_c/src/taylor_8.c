@@ -230,7 +230,7 @@ static laconic_status taylor_8_step(const laconic_model *model, const laconic_in
     increment by;
     motion_series c;
     if (beyond_rotation(model, integrator, zeta)) return LACONIC_STEP_BEYOND_GYROSCOPIC_LIMIT;
-    if (steady_over(samples))
+    if (constant_over(samples))
         steady_series(&c, model, h, zeta, vec(samples->start->constant));
     else
         varying_series(&c, model, h, zeta, samples, &state->heading);

@@ -53,7 +53,7 @@ static void free_motion_is_the_papers_closed_form(void) {
     expected[1] = c * 0.3 + s * (p[1][0] * 0.3 - p[1][1] * 0.5);
     expected[2] =
         (k - (double)x.inertia[0][2] * expected[0] - (double)x.inertia[1][2] * expected[1]) / (double)x.inertia[2][2];
-    ASSERT_NEAR_ALL(EITHER(1e-6, 2e-5), expected, nu, 3); /* the heading is a fourth-order quadrature */
+    ASSERT_NEAR_ALL(EITHER(1e-6, 2e-5), expected, nu, 3); /* the heading is of second order */
 }
 
 static void energy_and_k_stay_to_rounding(void) {

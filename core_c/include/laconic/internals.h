@@ -27,7 +27,7 @@ typedef struct laconic_decay {
 /* The forcing at the start, middle and end of a step. Held inputs: three times the same pointer. */
 typedef struct laconic_forcing_samples {
     const struct laconic_forcing *start, *middle, *end;
-    bool steady; /* b is constant over the step: start->constant                                  */
+    bool is_constant; /* b over the step: start->constant */
 } laconic_forcing_samples;
 
 /* The values of laconic_integrator.chosen for laconic_auto; they cannot be prepared by themselves. */

@@ -6,12 +6,12 @@
  * numbers are that paper's.
  *
  *     vehicle  --prepare-->  model  --step-->  state  -->  outputs
- *      (SI)                (constants)           ^
- *                                              input
+ *      (SI)                (constants)   ^
+ *                                      input
  *
  * Memory   the caller owns every struct; no heap, no globals, and no pointer to the caller's memory is kept.
- *          All structs are plain data without pointers to each other: copy them to save and restore.
- *          (laconic_integrator points to its method, which is constant.)
+ *          Vehicle, model, state and plant are plain data: copy them to save and restore. (laconic_integrator points
+ *          to its method, which is constant; laconic_schedule and laconic_recorder point to arrays of the caller.)
  * Threads  functions touch only their arguments; different structs may be used at the same time.
  * Errors   a function that can refuse returns a laconic_status and changes nothing when it does.
  *          Where `why` is given (it may be NULL), it gets the field, the item and the value at fault;
@@ -146,7 +146,7 @@ typedef struct laconic_model {
     laconic_real spin_gain[3];                         /* w × g: (spin_gain · ζ)(g·ζ) = rate of g·ζ in free motion */
     laconic_real spin_curve[3];                        /* 2(g·w)w − |w|²g                           */
     laconic_real decay_per_s[3];                       /* r_k ≥ 0, damping rates                    */
-    laconic_real inertia[3];                           /* 1 + λ² x_k, principal values of A         */
+    laconic_real inertia[3];                           /* 1 + λ² |Ξ axis_k|², principal values of A */
     laconic_real velocity_of_zeta[2][3];               /* R G₀, R G₁: v_S in body axes              */
     laconic_real yaw_rate_of_zeta[3];                  /* g/Λ                                       */
     laconic_real wheel_of_zeta[LACONIC_MAX_WHEELS][3]; /* Ξ G: χ' = Ξ ν                           */
@@ -256,7 +256,7 @@ typedef struct laconic_integrator {
     const struct laconic_method *chosen; /* takes the steps; another than `method` only for auto  */
     laconic_real step_s;                 /* h                                                     */
     laconic_decay decay[3];              /* for h, h/2, h/4, as far as the method needs them      */
-    laconic_real gyro_limit;             /* largest |g·ζ| that an explicit method takes; 0: any   */
+    laconic_real gyro_limit;             /* largest |g·ζ| that an explicit method takes; not read by others */
     bool stiff;                          /* damping is fast beside the step: h·r_max >= 0.3       */
 } laconic_integrator;
 
