@@ -1,7 +1,7 @@
 # The headers of FMI 2 and FMI 3 as target `laconic_fmi_headers` (SYSTEM includes).
 #
-# They come from -DFMI_HEADERS_DIR, else they are fetched at build time (cmake/fetch_parts.py: from the standard's own site
-# with hashes checked, else from the copies in the installed FMPy).
+# They come from -DFMI_HEADERS_DIR, else they are fetched at build time (cmake/fetch_parts.py: from the standard's own
+# site with hashes checked, else from the copies in the installed FMPy).
 
 set(FMI_HEADERS_DIR "" CACHE PATH "Folder that holds fmi2Functions.h, fmi3Functions.h and what they include")
 add_library(laconic_fmi_headers INTERFACE)

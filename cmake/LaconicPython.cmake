@@ -2,9 +2,9 @@
 #
 # Depend on the target, not on the stamp file: Make would run the rule once in every target that names the file.
 #
-# It holds exactly what host_tests/requirements.txt locks, and our own packages, editable: `laconic`, and those that make
-# tables, pages and archives for the FMUs and the node. A build tree whose LACONIC_VENV lies in another tree only uses that
-# environment; the other tree keeps it up to date.
+# It holds exactly what host_tests/requirements.txt locks, and our own packages, editable: `laconic`, and those that
+# make tables, pages and archives for the FMUs and the node. A build tree whose LACONIC_VENV lies in another tree only
+# uses that environment; the other tree keeps it up to date.
 
 find_package(Python3 3.10 COMPONENTS Interpreter)
 if(NOT Python3_Interpreter_FOUND)

@@ -1,8 +1,8 @@
 # -DLACONIC_SCENE=scenes/X.toml: the core for that scene alone, as target `laconic_scene` (lib/liblaconic_scene.a).
 #
 # `laconic trim` finds from the scene what a build can leave out (laconic_scene.h) and prepares its model
-# (laconic_scene_model.c), so the linker takes one method and no preparation. Users of the target get the same constants.
-# Cross builds use the environment of a host build: name it with -DLACONIC_VENV=<host build>/venv.
+# (laconic_scene_model.c), so the linker takes one method and no preparation. Users of the target get the same
+# constants. Cross builds use the environment of a host build: name it with -DLACONIC_VENV=<host build>/venv.
 
 set(LACONIC_SCENE_REAL "" CACHE STRING "double or single; empty: as in the scene")
 

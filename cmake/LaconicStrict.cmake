@@ -1,5 +1,5 @@
-# laconic_strict(<target>): warnings, which must not occur, arithmetic that gives the same bits everywhere, and a section for each
-# function and table, so that the linker leaves out what a program does not call.
+# laconic_strict(<target>): warnings, which must not occur, arithmetic that gives the same bits everywhere, and a
+# section for each function and table, so that the linker leaves out what a program does not call.
 #
 # -ffp-contract=off alone is not enough: gcc 12's SLP vectoriser fuses multiply-add in spite of it.
 

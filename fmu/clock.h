@@ -26,8 +26,9 @@ bool fmu_clock_passes_stop(const fmu_clock *clock, double time_s, double step_s)
 /* Whether that time lies before the run began, by more than rounding. */
 bool fmu_clock_is_before_start(const fmu_clock *clock, double time_s);
 
-/* Whether a solver may evaluate the model at that time beyond the stop time: solvers that choose their steps (CVODE) do so
- * and interpolate back. Allowed up to a fiftieth of the run, after the first completed step and until the stop time. */
+/* Whether a solver may evaluate the model at that time beyond the stop time: solvers that choose their steps (CVODE)
+ * do so and interpolate back. Allowed up to a fiftieth of the run, after the first completed step and until the stop
+ * time. */
 bool fmu_clock_allows_overshoot(const fmu_clock *clock, double time_s);
 
 /* From the present time on, steps have another size. */

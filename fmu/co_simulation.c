@@ -31,9 +31,9 @@ static double internal_step(const fmu_instance *instance, double step_s) {
 
 static double magnitude(double value) { return value < 0.0 ? -value : value; }
 
-/* How far the importer's time may differ from the model's: half an internal step. With step_s = 0 the importer chooses the
- * step and half of it would be too much; there it is a thousandth of the step, plus the rounding of an importer that has
- * added up all steps since the start, and half a step at most. */
+/* How far the importer's time may differ from the model's: half an internal step. With step_s = 0 the importer
+ * chooses the step and half of it would be too much; there it is a thousandth of the step, plus the rounding of an
+ * importer that has added up all steps since the start, and half a step at most. */
 static double time_tolerance(const fmu_instance *instance, double at_s, double internal_s) {
     const fmu_clock *clock = &instance->clock;
     const double half_s = 0.5 * internal_s, last_s = clock->step_s > 0.0 ? clock->step_s : internal_s;

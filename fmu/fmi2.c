@@ -23,8 +23,8 @@ static const fmu_callbacks_2 *callbacks(const fmu_instance *instance) {
     return (const fmu_callbacks_2 *)(const void *)&instance->callback_storage;
 }
 
-/* The logger formats like printf, and no arguments are passed to it: each % must be doubled. Importers that print the text
- * as it is show both. */
+/* The logger formats like printf, and no arguments are passed to it: each % must be doubled. Importers that print
+ * the text as it is show both. */
 static void log_message(const fmu_instance *instance, fmu_status status, const char *category, const char *text) {
     char safe[1024];
     size_t used = 0;

@@ -9,8 +9,8 @@
  *     model_interface.h   (the FMU model: vehicle/ or controller/)
  *
  * The numbers of fmu_status are those of fmi2Status and fmi3Status. A refused call changes nothing and gives the reason
- * through the importer's logger. Memory is allocated only to make an instance and to save and serialize states. Different
- * instances may be used in different threads at the same time. */
+ * through the importer's logger. Memory is allocated only to make an instance and to save and serialize states.
+ * Different instances may be used in different threads at the same time. */
 #ifndef LACONIC_FMU_INSTANCE_H
 #define LACONIC_FMU_INSTANCE_H
 

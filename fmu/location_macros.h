@@ -1,6 +1,6 @@
-/* Macros with which a model gives the location of each variable: FMU_LOCATION(name, offset, stride, group, tangent offset)
- * in an enumeration. The generated table uses the four constants of each variable of the description, so a variable
- * without a location does not compile. */
+/* Macros with which a model gives the location of each variable: FMU_LOCATION(name, offset, stride, group, tangent
+ * offset) in an enumeration. The generated table uses the four constants of each variable of the description, so a
+ * variable without a location does not compile. */
 #ifndef LACONIC_FMU_LOCATION_MACROS_H
 #define LACONIC_FMU_LOCATION_MACROS_H
 

@@ -59,7 +59,8 @@ static unsigned category_bit(const char *name) {
     return 0;
 }
 
-/* No categories mean all. FMI 2: `on` selects these and no others, off none. FMI 3: `on` adds these, off removes them. */
+/* No categories mean all. FMI 2: `on` selects these and no others, off none. FMI 3: `on` adds these, off removes
+ * them. */
 fmu_status fmu_set_logging(fmu_instance *instance, bool on, size_t count, const char *const names[]) {
     unsigned wanted = count == 0 ? FMU_LOG_ALL : 0;
     if (count > 0 && names == NULL)

@@ -1,7 +1,7 @@
-/* The functions of an FMU model, which vehicle/model.c and controller/model.c implement for the glue. The struct fmu_model
- * (model.h) is plain data, so that it can be copied. Each model has the members `start_needed`, `change_needed`,
- * `states_changed`, `time_s` and `stale` (bits of the groups that must be computed before they are read), and the macros
- * FMU_MODEL_ARRAY_SIZE, FMU_MODEL_LARGEST_ARRAY and FMU_MODEL_TAKES_SLOPES. */
+/* The functions of an FMU model, which vehicle/model.c and controller/model.c implement for the glue. The struct
+ * fmu_model (model.h) is plain data, so that it can be copied. Each model has the members `start_needed`,
+ * `change_needed`, `states_changed`, `time_s` and `stale` (bits of the groups that must be computed before they are
+ * read), and the macros FMU_MODEL_ARRAY_SIZE, FMU_MODEL_LARGEST_ARRAY and FMU_MODEL_TAKES_SLOPES. */
 #ifndef LACONIC_FMU_MODEL_INTERFACE_H
 #define LACONIC_FMU_MODEL_INTERFACE_H
 
@@ -30,13 +30,15 @@ fmu_status fmu_model_count_steps(fmu_instance *instance, double step_s, double o
 /* Takes `steps` internal steps. When the core refuses one, the state is that after the *taken steps before it. */
 fmu_status fmu_model_run(fmu_instance *instance, uint64_t steps, uint64_t *taken);
 
-/* Logs the warnings of a communication step (fmu_instance.warnings_pending) if the step is accepted, else drops them. */
+/* Logs the warnings of a communication step (fmu_instance.warnings_pending) if the step is accepted, else drops
+ * them. */
 void fmu_model_settle_warnings(fmu_instance *instance, bool accepted);
 
 /* To be called when Model Exchange has completed a step: logs the warnings about the state it has reached. */
 void fmu_model_completed_step(fmu_instance *instance);
 
-/* Copies everything that steps change, and restores it when a communication step is refused after some internal steps. */
+/* Copies everything that steps change, and restores it when a communication step is refused after some internal
+ * steps. */
 void fmu_model_save_motion(const fmu_model *model, fmu_model_motion *motion);
 void fmu_model_restore_motion(fmu_model *model, const fmu_model_motion *motion);
 
@@ -49,11 +51,13 @@ void fmu_model_before_set_state(fmu_instance *instance);
 void fmu_model_get_rates(fmu_instance *instance, double *values);
 void fmu_model_get_nominals(const fmu_model *model, double *values);
 
-/* Directional derivative: `tangent` has the seeds at the `tangent` offsets of the variable table, and gets the outputs'. */
+/* Directional derivative: `tangent` has the seeds at the `tangent` offsets of the variable table, and gets the
+ * outputs'. */
 void fmu_model_tangent(fmu_instance *instance, fmu_tangent *tangent);
 /* Writes the seeds of the time derivative: rates of the states and slopes of the inputs. */
 void fmu_model_motion_seed(fmu_instance *instance, fmu_tangent *tangent);
-/* Sets du/dt of one input in the next communication step (FMI 2); `tangent_offset` is that of the input in fmu_tangent. */
+/* Sets du/dt of one input in the next communication step (FMI 2); `tangent_offset` is that of the input in
+ * fmu_tangent. */
 void fmu_model_set_slope(fmu_model *model, uint32_t tangent_offset, double slope);
 
 /* Writes or reads the whole model (stream.h). False: the bytes are too few, or a value is impossible. */

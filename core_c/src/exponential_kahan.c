@@ -8,7 +8,8 @@ typedef struct matrix {
 
 /* Cramer's rule: M⁻¹ rhs = (rhs_x c₀ + rhs_y c₁ + rhs_z c₂)/det. Where det M is almost 0, the increment is not finite
  * or so long that the step would gain energy, and the check of the energy refuses it. Of 8 million steps at h|ν| up to
- * 1000 in single precision that check refused 1.1 million; a test of det M against rounding refused one step besides. */
+ * 1000 in single precision that check refused 1.1 million; a test of det M against rounding refused one step
+ * besides. */
 typedef struct solver {
     vector c0, c1, c2;
     real inverse_determinant;

@@ -286,7 +286,8 @@ INLINE increment increment_of(const laconic_decay *d, vector zeta, vector delta,
 }
 
 /* (4 · two half steps − one full step)/3: the base's error has only even powers of h, so this is of fourth order. The
- * slope is not extrapolated, the pose needs it at second order alone; that of two halves together is 3/2 of the difference of their means, plus a quarter of the slope of each. */
+ * slope is not extrapolated, the pose needs it at second order alone; that of two halves together is 3/2 of the
+ * difference of their means, plus a quarter of the slope of each. */
 INLINE increment combine(increment whole, increment first, increment second) {
     const real third = R(1) / R(3);
     const vector delta = plus(first.delta, second.delta);

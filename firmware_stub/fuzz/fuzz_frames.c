@@ -1,4 +1,5 @@
-/* Any frames at any time, most of them with right protection so that the node accepts them: the node stays as documented.
+/* Any frames at any time, most of them with right protection so that the node accepts them: the node stays as
+ * documented.
  *
  * Input: records of 10 bytes: [identifier offset and what to make wrong] [time that passes] [payload]. */
 #include "laconic_node/node.h"

@@ -1,4 +1,5 @@
-/* Any bytes on the serial line: the reader stays within its buffers, and a frame that is written reads back the same. */
+/* Any bytes on the serial line: the reader stays within its buffers, and a frame that is written reads back the
+ * same. */
 #include "laconic_node/slcan.h"
 
 #include <stdlib.h>

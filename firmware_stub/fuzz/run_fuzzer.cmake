@@ -1,4 +1,5 @@
-# Replays the kept corpus, then libFuzzer searches for SECONDS seconds and keeps new inputs in a folder of the build tree.
+# Replays the kept corpus, then libFuzzer searches for SECONDS seconds and keeps new inputs in a folder of the build
+# tree.
 file(MAKE_DIRECTORY "${FRESH}")
 execute_process(
     COMMAND "${PROGRAM}" -max_total_time=${SECONDS} -max_len=2000 -rss_limit_mb=1024 -print_final_stats=1

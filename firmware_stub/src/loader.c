@@ -136,8 +136,8 @@ static bool any_given(const laconic_loader *loader, laconic_field_need need) {
     return given != 0;
 }
 
-/* Whether this item of a field with that need must have come. The core refuses counts beyond the largest number of wheels
- * or supports. */
+/* Whether this item of a field with that need must have come. The core refuses counts beyond the largest number of
+ * wheels or supports. */
 static bool is_needed(const laconic_loader *loader, laconic_field_need need, int32_t item) {
     const laconic_vehicle *vehicle = &loader->parameters.vehicle;
     switch (need) {

@@ -36,8 +36,8 @@ static uint8_t start(laconic_node *node, uint8_t state) {
     return 0;
 }
 
-/* Periods of a whole number of steps, 1 to 1000 periods a second; rate 0: one step a period. Computed in laconic_real, so
- * that an image in single precision needs no arithmetic in double. */
+/* Periods of a whole number of steps, 1 to 1000 periods a second; rate 0: one step a period. Computed in
+ * laconic_real, so that an image in single precision needs no arithmetic in double. */
 static bool choose_rate(laconic_node_free_run *run, uint16_t rate_Hz, laconic_real step_s) {
     const laconic_real half = (laconic_real)0.5;
     const laconic_real slack = (laconic_real)1e-4; /* of a step: far more than rounding errors */
@@ -112,7 +112,8 @@ void laconic_node_control(laconic_node *node, const uint8_t *data, uint32_t now_
     laconic_node_answer(node, LACONIC_WIRE_CONTROL, frame.command, status, field, item);
 }
 
-/* Each PARAMETER has its own answer, so that the rig notices a lost one at once. The first refusal stays until BEGIN. */
+/* Each PARAMETER has its own answer, so that the rig notices a lost one at once. The first refusal stays until
+ * BEGIN. */
 void laconic_node_parameter(laconic_node *node, const uint8_t *data) {
     const laconic_loader *loader = &node->loader;
     laconic_loader_take(&node->loader, data);

@@ -63,8 +63,8 @@ void laconic_node_run_lockstep(laconic_node *node) {
     if (node->lockstep.steps_due == 0) laconic_node_publish(node);
 }
 
-/* The watchdog: without new voltages for too long the vehicle coasts without voltage until the rig sends STOP and START.
- * The time of a frame may be later than that of the tick that follows it, so the difference has a sign. */
+/* The watchdog: without new voltages for too long the vehicle coasts without voltage until the rig sends STOP and
+ * START. The time of a frame may be later than that of the tick that follows it, so the difference has a sign. */
 static void watch(laconic_node *node, uint32_t now_us) {
     const laconic_node_free_run *run = &node->free_run;
     if (node->state != LACONIC_WIRE_STATE_FREE_RUN || run->watchdog_us == 0) return;

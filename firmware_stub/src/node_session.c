@@ -96,9 +96,9 @@ void laconic_node_begin_run(laconic_node *node) {
     memset(&session->count[LACONIC_WIRE_RUN_FIRST], 0, LACONIC_WIRE_RUN_OFFSETS * sizeof session->count[0]);
 }
 
-/* A motion frame acts only if the frame before it was right, too, and had the count before. So a single stale frame whose
- * CRC is right by chance does not move the vehicle, and only START restores a lost count. In free run, where frames follow
- * regularly, a few may be lost: then the first one after the gap does not act either. */
+/* A motion frame acts only if the frame before it was right, too, and had the count before. So a single stale frame
+ * whose CRC is right by chance does not move the vehicle, and only START restores a lost count. In free run, where
+ * frames follow regularly, a few may be lost: then the first one after the gap does not act either. */
 bool laconic_node_takes_motion(laconic_node *node, uint8_t offset, const uint8_t *data) {
     laconic_node_session *session = &node->session;
     const int most = node->state == LACONIC_WIRE_STATE_FREE_RUN ? laconic_wire[offset].max_delta : 1;

@@ -9,8 +9,8 @@
 #define RUN 32U
 #define CLASSIC_BYTES 8 /* of every classic frame of the contract */
 
-/* A bijection of 32 bits; flipping a bit of x flips about half of the bits of the result (odd factors, chosen by trial for
- * the least bias). */
+/* A bijection of 32 bits; flipping a bit of x flips about half of the bits of the result (odd factors, chosen by
+ * trial for the least bias). */
 static uint32_t stir(uint32_t x) {
     x ^= x >> 16;
     x *= 0xA5C6E92DU;

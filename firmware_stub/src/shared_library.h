@@ -34,8 +34,8 @@ typedef struct laconic_library_view {
 
 void laconic_library_inspect(const struct laconic_node *node, laconic_library_view *view);
 
-/* Counts of all errors of one, two and three bits in an 8-byte frame of profile 22 by their outcome: 0 found by the CRC,
- * 1 found by the counter, 2 accepted. The receiver has just accepted the frame before. */
+/* Counts of all errors of one, two and three bits in an 8-byte frame of profile 22 by their outcome: 0 found by the
+ * CRC, 1 found by the counter, 2 accepted. The receiver has just accepted the frame before. */
 typedef struct laconic_error_census {
     uint64_t counter_kept[3]; /* errors outside the counter */
     uint64_t counter_changed[3];

@@ -1,5 +1,5 @@
-/* A minimal FMU: six first-order lags, checks of call order and references, references resolved by a switch. Its cost is the
- * least that the calls of FMI 2 and FMI 3 cost in any FMU that makes these checks. */
+/* A minimal FMU: six first-order lags, checks of call order and references, references resolved by a switch. Its
+ * cost is the least that the calls of FMI 2 and FMI 3 cost in any FMU that makes these checks. */
 #include <stdbool.h>
 #include <stddef.h>
 #include <stdint.h>

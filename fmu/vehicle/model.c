@@ -142,7 +142,8 @@ fmu_status fmu_model_set_step(fmu_instance *instance, double step_s) {
     return FMU_OK;
 }
 
-/* The whole number of internal steps nearest to step_s that does not pass the stop time, in seconds; 0: there is none. */
+/* The whole number of internal steps nearest to step_s that does not pass the stop time, in seconds; 0: there is
+ * none. */
 static double nearest_step(const fmu_instance *instance, double step_s, double own_s) {
     const double ratio = step_s / own_s;
     if (!(ratio < MOST_STEPS)) return 0.0;

@@ -68,8 +68,8 @@ static void serialize_continuous(fmu_stream *s, fmu_model *self) {
     fmu_stream_reals(s, self->wheel_angle_rad, LACONIC_MAX_WHEELS);
 }
 
-/* After reading, outputs are stale. In Model Exchange the continuous states are not: they are stored, and `follows` states
- * whether the plant's state must still be computed from them. */
+/* After reading, outputs are stale. In Model Exchange the continuous states are not: they are stored, and `follows`
+ * states whether the plant's state must still be computed from them. */
 static void serialize_stale(fmu_stream *s, fmu_model *self) {
     bool follows = (self->stale & FMU_GROUP_STATE) != 0;
     fmu_stream_bool(s, &follows);

@@ -1,5 +1,6 @@
-/* For each variable of modelDescription.xml its offset in fmu_model, the group that must be computed before it is read, and
- * the offset of its derivative in fmu_tangent. Parameters and inputs follow from the core's list of fields. */
+/* For each variable of modelDescription.xml its offset in fmu_model, the group that must be computed before it is
+ * read, and the offset of its derivative in fmu_tangent. Parameters and inputs follow from the core's list of
+ * fields. */
 #ifndef LACONIC_FMU_VEHICLE_VARIABLE_LOCATIONS_H
 #define LACONIC_FMU_VEHICLE_VARIABLE_LOCATIONS_H
 

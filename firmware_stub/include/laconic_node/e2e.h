@@ -42,8 +42,8 @@ typedef enum laconic_e2e_status {
 } laconic_e2e_status;
 
 /* The rig's receiver of one kind of plain frame. All zero: nothing received yet, the first right frame is OK.
- * A refused frame never changes `counter`. When LACONIC_E2E_RESYNC refused frames in a row have a right CRC and consecutive
- * counters, the last of them is OK and its counter the new reference. */
+ * A refused frame never changes `counter`. When LACONIC_E2E_RESYNC refused frames in a row have a right CRC and
+ * consecutive counters, the last of them is OK and its counter the new reference. */
 #define LACONIC_E2E_RESYNC 3
 
 typedef struct laconic_e2e_receiver {

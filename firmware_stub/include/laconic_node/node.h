@@ -7,8 +7,8 @@
  *         while (laconic_node_next_frame(&node, &frame)) send(&frame);
  *     }
  *
- * No heap, no blocking, no queue: a frame is made from the newest state when it is fetched, so none is ever stale. A call
- * handles one frame, or at most LACONIC_NODE_STEPS_PER_TICK steps.
+ * No heap, no blocking, no queue: a frame is made from the newest state when it is fetched, so none is ever stale. A
+ * call handles one frame, or at most LACONIC_NODE_STEPS_PER_TICK steps.
  *
  * Time is a count of microseconds that may wrap: only differences are used, and on_tick must be called at least
  * every half hour. laconic.dbc defines the frames. */

@@ -1,6 +1,6 @@
-/* Protection against recorded and delayed frames: the CRC of the rig's frames depends on a key and on a count, of which a
- * frame contains only the lower bits. It protects against stale traffic (queues, gateways, loggers), not against an
- * attacker: the algorithm is public, and the key follows from numbers that the bus transmits unencrypted.
+/* Protection against recorded and delayed frames: the CRC of the rig's frames depends on a key and on a count, of
+ * which a frame contains only the lower bits. It protects against stale traffic (queues, gateways, loggers), not
+ * against an attacker: the algorithm is public, and the key follows from numbers that the bus transmits unencrypted.
  *
  *     nonce      drawn by the node, sent in CHALLENGE                          keys OPEN
  *     session    drawn by the rig, sent in OPEN; key = mix(session, nonce)     keys CONTROL, PARAMETER, COMMIT, SELECT
@@ -25,8 +25,8 @@ uint32_t laconic_mix(uint32_t a, uint32_t b);
 /* Key of a run, from the key of the session and the count of the START that began the run. */
 uint32_t laconic_run_key(uint32_t key, uint32_t start_count);
 
-/* Write counter and CRC into `data`, which has the length of the frame. `offset` is that of the identifier and must be one
- * of laconic.dbc. The counter is the lower bits of `count` (4 classic, 8 FD). */
+/* Write counter and CRC into `data`, which has the length of the frame. `offset` is that of the identifier and must
+ * be one of laconic.dbc. The counter is the lower bits of `count` (4 classic, 8 FD). */
 void laconic_protect_plain(uint8_t offset, uint8_t *data, uint8_t counter);
 void laconic_protect_keyed(uint8_t offset, uint8_t *data, uint32_t key, uint32_t count);
 

@@ -33,11 +33,13 @@ typedef struct laconic_raw_input {
 /* Drops the numbers since the last SYNC. */
 void laconic_raw_restart(laconic_raw_input *raw);
 
-/* Accepts the bytes of one segment. False iff it is out of order or one too many; then only segment 0 is accepted next. */
+/* Accepts the bytes of one segment. False iff it is out of order or one too many; then only segment 0 is accepted
+ * next. */
 bool laconic_raw_take(laconic_raw_input *raw, laconic_input input[3], int32_t wheel_count, uint8_t segment,
                       uint8_t segment_mask, const uint8_t *bytes, uint8_t count);
 
-/* Whether a SYNC with that input_frames may use the inputs: none or all of their numbers have come, in so many frames. */
+/* Whether a SYNC with that input_frames may use the inputs: none or all of their numbers have come, in so many
+ * frames. */
 bool laconic_raw_is_whole(const laconic_raw_input *raw, uint16_t frames);
 
 typedef struct laconic_raw_output {

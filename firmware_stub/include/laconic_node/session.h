@@ -1,4 +1,5 @@
-/* State of the handshake with a rig and counts of the rig's frames. Internal to the node; protection.h describes their use. */
+/* State of the handshake with a rig and counts of the rig's frames. Internal to the node; protection.h describes
+ * their use. */
 #ifndef LACONIC_NODE_SESSION_H
 #define LACONIC_NODE_SESSION_H
 

@@ -19,8 +19,8 @@ uint32_t board_now_us(void);
 uint32_t board_nonce_seed(void);
 
 /* The board's receive interrupt calls port_has_room first, each time: one that is already pending still runs after the
- * interrupt is disabled, and its byte would overwrite one in the ring. Without room the interrupt leaves the byte in the UART
- * and disables itself until board_resume. */
+ * interrupt is disabled, and its byte would overwrite one in the ring. Without room the interrupt leaves the byte in
+ * the UART and disables itself until board_resume. */
 bool port_has_room(void);
 void port_received(char byte);
 void board_resume(void);

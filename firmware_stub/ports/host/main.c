@@ -2,8 +2,8 @@
  *
  *     laconic-node-double [--port N] [--id-base 0xNNN] [--bitrate N] [--once]
  *
- * Prints "listening on 127.0.0.1:PORT" (port 0: any free one). The node keeps its vehicle between clients, as a board does.
- * Like a serial line it has one client at a time; a second one gets a line of text and is disconnected. */
+ * Prints "listening on 127.0.0.1:PORT" (port 0: any free one). The node keeps its vehicle between clients, as a
+ * board does. Like a serial line it has one client at a time; a second one gets a line of text and is disconnected. */
 #define _GNU_SOURCE
 #include "laconic_node/node.h"
 #include "laconic_node/slcan.h"
@@ -115,8 +115,8 @@ static void take_bytes(board *port, const char *bytes, ssize_t count) {
     }
 }
 
-/* False iff the client has disconnected. Reads all waiting bytes, so that a disconnection is noticed before the next client
- * is refused; at most 16 blocks, since the node must be stepped in time. */
+/* False iff the client has disconnected. Reads all waiting bytes, so that a disconnection is noticed before the next
+ * client is refused; at most 16 blocks, since the node must be stepped in time. */
 static bool read_client(board *port) {
     char bytes[4096];
     ssize_t count = 1;
@@ -149,9 +149,9 @@ static void refuse_second(board *port, int listening) {
     send_occupied(second);
 }
 
-/* Sends the reason again when the refused client sends something, since programs often flush a serial line after opening
- * it, and then ends the connection. The socket stays open until the client disconnects: closing it earlier would reset the
- * connection, and the client would lose the text. */
+/* Sends the reason again when the refused client sends something, since programs often flush a serial line after
+ * opening it, and then ends the connection. The socket stays open until the client disconnects: closing it earlier
+ * would reset the connection, and the client would lose the text. */
 static void answer_refused(board *port) {
     char rest[256];
     const ssize_t count = port->refused < 0 ? -1 : recv(port->refused, rest, sizeof rest, MSG_DONTWAIT);

@@ -122,6 +122,12 @@ def test_no_source_file_is_longer_than_a_reader_can_hold():
     assert longer <= {"laconic.h"}  # the manual of the core, read from top to bottom
 
 
+def test_no_line_of_c_is_too_long():  # clang-format does not wrap comments, ruff watches Python
+    long = [f"{path.relative_to(ROOT)}:{number}" for path in SOURCES if path.suffix in (".c", ".h")
+            for number, line in enumerate(path.read_text(encoding="utf-8").splitlines(), 1) if len(line) > 120]
+    assert long == []
+
+
 def test_nothing_generated_is_committed():
     if not (ROOT / ".git").exists() or shutil.which("git") is None:
         pytest.skip("no checkout, or no git")
