@@ -16,8 +16,8 @@ from laconic.paths import SOURCE_DIR
 PAGE = (SOURCE_DIR / "docs" / "integrators.md").read_text(encoding="utf-8")
 DIGITS = 50
 TOLERANCE = 2e-14  # of the largest number of a state: some ten roundings
-METHODS = {"rk4": "rk4", "taylor-8": "taylor", "exponential-kahan": "kahan", "exact-flow": "exact_flow",
-           "exponential-kahan-4": "kahan", "exact-flow-4": "exact_flow"}
+METHODS = {"rk4": "rk4", "taylor-8": "taylor", "exponential-kahan": "kahan_increment", "exact-flow": "flow_base",
+           "exponential-kahan-4": "kahan_increment", "exact-flow-4": "flow_base"}
 # damping, step, wheels: hardly damped; damped beside the step (h r about 1.5, `stiff`); free; two fixed wheels
 CASES = {"weak": (0.02, 0.05, "omni"), "stiff": (0.3, 0.06, "omni"), "free": (0.0, 0.1, "omni"),
          "constrained": (0.1, 0.1, "fixed")}
@@ -78,7 +78,7 @@ class Case:
         return {
             "h": sp.Float(self.step_s, DIGITS), "zeta": vector(*(part.value for part in c.state.zeta)),
             "g": vector(*numbers(c.model.nu_of_zeta, 3, 3)[2]), "w": vector(*numbers(c.model.gyro)),
-            "r": vector(*numbers(c.model.decay_per_s)), "yaw": vector(*numbers(c.model.yaw_rate_of_zeta)),
+            "r": vector(*numbers(c.model.decay_per_s)), "yaw_rate": vector(*numbers(c.model.yaw_rate_of_zeta)),
             "along": vector(*numbers(c.model.velocity_of_zeta, 2, 3)[0]),
             "across": vector(*numbers(c.model.velocity_of_zeta, 2, 3)[1]), "stiff": c.integrator.stiff,
             "b0": forcing[0], "bm": forcing[1], "b1": forcing[2],
@@ -90,7 +90,7 @@ class Case:
             "exp": sp.exp, "sin": sp.sin, "cos": sp.cos, "tan": sp.tan, "sqrt": sp.sqrt, "factorial": sp.factorial}
 
     def by_the_page(self, page: str) -> tuple[dict[str, Any], np.ndarray]:
-        """The formulas run, and ζ⁺ with the mean of ζ over the step; for all but taylor-8 displacement and angle."""
+        """The formulas run, and ζ⁺ with the mean of ζ over the step; for all but taylor-8 displacement and yaw."""
         names = self.names()
         exec(formulas(page), names)
         base, samples = names[METHODS[self.method]], (names["b0"], names["bm"], names["b1"])
@@ -102,9 +102,9 @@ class Case:
             delta, mean, slope = base(names["zeta"], names["h"], names["parabola"](*samples))
         found = [*(names["zeta"] + delta), *mean]
         if self.method != "taylor-8":
-            moved, turned = names["displacement"](mean, slope)
-            moved = sp.expand((moved * sp.exp(sp.I * (sp.Float(0.4, DIGITS) + turned / 2))).evalf(DIGITS))
-            found += [*moved.as_real_imag(), turned]
+            moved, yaw_change = names["displacement"](mean, slope)
+            moved = sp.expand((moved * sp.exp(sp.I * (sp.Float(0.4, DIGITS) + yaw_change / 2))).evalf(DIGITS))
+            found += [*moved.as_real_imag(), yaw_change]
         return names, np.array([float(sp.re(sp.N(each, DIGITS))) for each in found])
 
     def by_the_core(self) -> np.ndarray:
@@ -142,7 +142,7 @@ def test_the_equation_of_the_page_is_the_one_of_the_paper(name):
     case = Case(name, "exact-flow", False)
     names, core, c = case.names(), case.core, case.plant.c
     exec(formulas(PAGE), names)
-    zeta_rate = names["rate"](names["zeta"], names["b0"])
+    zeta_rate = names["zeta_rate"](names["zeta"], names["b0"])
     by_page = core.numbers(c.model.nu_of_zeta, 3, 3) @ np.array([float(each) for each in zeta_rate])
     matrices, nu = core.matrices(core.ffi.addressof(c, "vehicle")), case.plant.nu
     wheels = matrices.wheel_rows
@@ -153,13 +153,33 @@ def test_the_equation_of_the_page_is_the_one_of_the_paper(name):
     assert np.abs(by_page - matrices.inverse_inertia @ right).max() < 1e-12 * np.abs(by_page).max()
 
 
+@pytest.mark.parametrize("method, order", [("exact-flow", 2), ("exact-flow-4", 4)])
+def test_in_free_motion_exact_flow_has_zeta_to_rounding_and_pose_and_travel_to_its_order(method, order):
+    def after(method: str, steps: int) -> tuple[np.ndarray, np.ndarray]:
+        case = Case("free", method, False)
+        plant = case.core.plant(case.core.ffi.addressof(case.plant.c, "vehicle"), method, 0.8 / steps,
+                                nu_rad_per_s=[3.0, -2.0, 4.0])
+        plant.run(case.core.input({}), steps)
+        pose, state = plant.pose, plant.c.state
+        return (np.array([each.value for each in state.zeta]),
+                np.array([pose.x_m, pose.y_m, pose.heading_rad, *(each.value for each in state.travel)]))
+
+    zeta, quadratures = after("taylor-8", 400)
+    errors = []
+    for steps in (16, 32):
+        found = after(method, steps)
+        assert np.abs(found[0] - zeta).max() < TOLERANCE * np.abs(zeta).max()
+        errors.append(np.abs(found[1] - quadratures).max())
+    assert np.log2(errors[0] / errors[1]) == pytest.approx(order, abs=0.1)
+
+
 WRONG = {  # method → what is put instead of what
     "rk4": ("2 * k2 + 2 * k3", "2 * k2 + 3 * k3"), "taylor-8": ("h / (n + 1)", "h / (n + 2)"),
     "exponential-kahan": ("cross(x, w)) / 2", "cross(x, w)) / 3"),
-    "exact-flow": ("(1 - across * t)", "(1 + across * t)"),
+    "exact-flow": ("(1 - across * tangent)", "(1 + across * tangent)"),
     "exponential-kahan-4": ("(mean - whole[1]) / 3", "(mean - whole[1]) / 4"),
     "exact-flow-4": ("- times(p2, change)", "+ times(p2, change)"),
-    "the pose": ("dot(yaw, slope) / 12", "dot(yaw, slope) / 6")}
+    "the pose": ("dot(yaw_rate, slope) / 12", "dot(yaw_rate, slope) / 6")}
 
 
 @pytest.mark.parametrize("what", WRONG)
