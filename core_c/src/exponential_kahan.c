@@ -43,7 +43,8 @@ INLINE matrix implicit_matrix(vector inverse_gain, vector g, vector w, real yaw,
 /* Where damping is fast beside the step, ζ⁺ depends on q at the end of the step rather than on its mean q(ζ,ζ⁺). So q
  * is taken to vary linearly from q(ζ,ζ) to q(ζ⁺,ζ⁺): besides the mean that is equivalent to the constant (mean −
  * ½)·(their difference), with `mean` of laconic_decay, and for mean and slope of ζ it is a further change of b. Without
- * it ζ of a stiff vehicle lags by half the change of q over the step, divided by r; with it by one order of h less. */
+ * it ζ of a stiff vehicle lags by half the change of q over the step, divided by r, which is of first order in h; with
+ * it the lag is of second order. */
 INLINE vector follow_inlined(parabola *b, const laconic_model *m, const laconic_decay *d, const solver *s, vector zeta,
                              vector delta) {
     const vector g = vec(m->nu_of_zeta[2]), w = vec(m->gyro), end = plus(zeta, delta);

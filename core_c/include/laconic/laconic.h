@@ -146,7 +146,7 @@ typedef struct laconic_model {
     laconic_real spin_gain[3];                         /* w × g: (spin_gain · ζ)(g·ζ) = rate of g·ζ in free motion */
     laconic_real spin_curve[3];                        /* 2(g·w)w − |w|²g                           */
     laconic_real decay_per_s[3];                       /* r_k ≥ 0, damping rates                    */
-    laconic_real inertia[3];                           /* 1 + λ² |Ξ axis_k|², principal values of A */
+    laconic_real inertia[3];                           /* 1 + λ² x_k, principal values of A         */
     laconic_real velocity_of_zeta[2][3];               /* R G₀, R G₁: v_S in body axes              */
     laconic_real yaw_rate_of_zeta[3];                  /* g/Λ                                       */
     laconic_real wheel_of_zeta[LACONIC_MAX_WHEELS][3]; /* Ξ G: χ' = Ξ ν                           */
