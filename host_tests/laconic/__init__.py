@@ -30,7 +30,7 @@ if TYPE_CHECKING:  # for type checkers and editors; the table below is what runs
 __all__ = ["METHODS", "BadInput", "Core", "Plant", "Refused", "Scene", "Trajectory", "load_core", "make_fmu",
            "read_scene", "scene_names", "simulate"]
 
-_PLACES = {  # name → where it is, and as what if not by the same name
+_MODULES = {  # name → where it is, and as what if not by the same name
     "METHODS": "scene", "BadInput": "errors", "Core": "core", "Plant": "core.plant", "Refused": "errors",
     "Scene": "scene", "Trajectory": "simulation", "load_core": "core:load", "make_fmu": "fmu", "read_scene": "scene",
     "scene_names": "paths", "simulate": "simulation"}
@@ -39,9 +39,9 @@ _PLACES = {  # name → where it is, and as what if not by the same name
 if not TYPE_CHECKING:  # a type checker would take every name for one that this function knows
 
     def __getattr__(name: str) -> Any:
-        if name not in _PLACES:
+        if name not in _MODULES:
             raise AttributeError(f"module 'laconic' has no attribute {name!r}; its names are {', '.join(__all__)}")
-        module, _, inside = _PLACES[name].partition(":")
+        module, _, inside = _MODULES[name].partition(":")
         found = globals()[name] = getattr(import_module(f"laconic.{module}"), inside or name)
         return found
 

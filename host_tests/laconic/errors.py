@@ -20,22 +20,22 @@ class ResultFails(LaconicError):
 
 
 class BadInput(LaconicError):
-    """Something the user gave cannot be used: say where, which field, and what would do."""
+    """Something the user gave cannot be used: the message names the file, the field and the remedy."""
 
     exit_status = 2
 
 
 class Refused(BadInput):
-    """The core refused: with its status, the field and item (wheel, component; from 1), and its own words."""
+    """The core refused: with its status, the field and item (wheel, component; from 1), and its message."""
 
     def __init__(self, status: str, field: str, item: int, message: str, *, value: float = 0.0, limit: float = 0.0):
         super().__init__(message)
         self.status, self.field, self.item, self.message = status, field, item, message
         self.value, self.limit = value, limit
 
-    def at(self, place: object) -> Refused:
+    def at(self, location: object) -> Refused:
         """The same refusal with the file it comes from in front."""
-        text = f"{place}: {self.message}"
+        text = f"{location}: {self.message}"
         return Refused(self.status, self.field, self.item, text, value=self.value, limit=self.limit)
 
 

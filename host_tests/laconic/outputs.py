@@ -28,7 +28,7 @@ OF_RUN = "laconic.outputs"  # where click keeps the claims of the running comman
 
 @dataclass
 class Claims:
-    """The files of one run: what it reads, what its options say it writes, what it has written."""
+    """The files of one run: what it reads, what its options claim, what it has written."""
 
     inputs: list[Path] = field(default_factory=list)
     outputs: list[tuple[str, Path]] = field(default_factory=list)
@@ -103,13 +103,13 @@ def claim_file(option: str, path: Path, endings: tuple[str, ...] = (), context: 
     check_ending(option, path, endings)
     claims(context).claim(option, path)
     if not is_stdout(path):
-        _check_place(option, path, is_folder=False)
+        _check_writable(option, path, is_folder=False)
     return path
 
 
 def claim_folder(option: str, path: Path) -> Path:
     """An output folder, which is made with its first file; BadInput where there cannot be one."""
-    _check_place(option, path, is_folder=True)
+    _check_writable(option, path, is_folder=True)
     return path
 
 
@@ -120,7 +120,7 @@ def check_ending(option: str, path: Path, endings: tuple[str, ...]) -> None:
                        f"{' or '.join([', '.join(endings[:-1]), endings[-1]] if endings[1:] else endings)}")
 
 
-def _check_place(option: str, path: Path, is_folder: bool) -> None:
+def _check_writable(option: str, path: Path, is_folder: bool) -> None:
     """What can be known beforehand: a folder is no file, a file no folder, and one may write there."""
     try:
         if path.exists():
@@ -128,15 +128,15 @@ def _check_place(option: str, path: Path, is_folder: bool) -> None:
                 there = "folder" if path.is_dir() else "file"
                 raise BadInput(f"{option} {path}: cannot be written (there is a {there} of that name); "
                                "choose another name")
-            place = path
+            existing = path
         else:
-            place = next(each for each in (path.parent, *path.parent.parents, Path()) if each.exists())
-            if not place.is_dir():
-                raise BadInput(f"{option} {path}: cannot be written ({place} is no folder); choose another place")
+            existing = next(each for each in (path.parent, *path.parent.parents, Path()) if each.exists())
+            if not existing.is_dir():
+                raise BadInput(f"{option} {path}: cannot be written ({existing} is no folder); choose another place")
     except (OSError, ValueError) as error:
         raise _cannot(path, error) from None
-    if not os.access(place, os.W_OK):
-        raise BadInput(f"{option} {path}: cannot be written ({place} is read-only); choose another place")
+    if not os.access(existing, os.W_OK):
+        raise BadInput(f"{option} {path}: cannot be written ({existing} is read-only); choose another place")
 
 
 def _cannot(path: Path, error: OSError | ValueError) -> BadInput:

@@ -21,7 +21,7 @@ def build_dir() -> Path:
 
 
 def built(relative: str) -> Path:
-    """A file of the build tree; says how to make it when it is not there."""
+    """A file of the build tree; BadInput with the command that makes it when it is not there."""
     path = build_dir() / relative
     if not path.exists():
         raise BadInput(f"{path}: not built yet; run `cmake --workflow --preset demo` in {SOURCE_DIR}, "

@@ -1,4 +1,4 @@
-"""A progress bar on stderr for work that takes long; silent where nobody watches."""
+"""A progress bar on stderr for work that takes long; without a terminal nothing is drawn."""
 
 from __future__ import annotations
 
@@ -16,14 +16,14 @@ LONG_S = 60.0       # if that is longer than this
 
 
 @contextmanager
-def progress_bar(what: str, total: float, *, told: bool = False) -> Iterator[Advance]:
-    """Yields advance(amount=1, what=None): moves the bar on, and may rename what it says.
+def progress_bar(what: str, total: float, *, forecasts: bool = False) -> Iterator[Advance]:
+    """Yields advance(amount=1, what=None): moves the bar on, and may rename it.
 
-    `told`: where stderr is no terminal, one line says how long it takes if that is long.
+    `forecasts`: where stderr is no terminal, one line states how long the work takes, if that is long.
     """
     console = Console(stderr=True)
     if not console.is_terminal:
-        yield forecast(what, total) if told else lambda amount=1, what=None: None
+        yield forecast(what, total) if forecasts else lambda amount=1, what=None: None
         return
     columns = (TextColumn("{task.description}", markup=False), BarColumn(), MofNCompleteColumn(), TimeRemainingColumn())
     with Progress(*columns, console=console, transient=True) as bar:
@@ -36,16 +36,16 @@ def progress_bar(what: str, total: float, *, told: bool = False) -> Iterator[Adv
 
 
 def forecast(what: str, total: float, clock: Callable[[], float] = time.monotonic) -> Advance:
-    """An advance(amount) that says once, on stderr, how long work takes that will take long."""
-    began, done, said = clock(), 0.0, False
+    """An advance(amount) that states once, on stderr, how long long work takes."""
+    began, done, stated = clock(), 0.0, False
 
     def advance(amount: float = 1, what_now: str | None = None) -> None:
-        nonlocal done, said
+        nonlocal done, stated
         done += amount
         elapsed_s = clock() - began
-        if said or done <= 0 or elapsed_s < FIRST_WORD_S:
+        if stated or done <= 0 or elapsed_s < FIRST_WORD_S:
             return
-        said, whole_s = True, elapsed_s * total / done
+        stated, whole_s = True, elapsed_s * total / done
         if whole_s > LONG_S:
             print(f"laconic: {what_now or what}: takes about {duration_text(whole_s)}; Ctrl-C ends it",
                   file=sys.stderr, flush=True)

@@ -6,14 +6,14 @@ import numpy as np
 
 from laconic.analysis.findings import Wishes
 from laconic.analysis.from_core import Subject
-from laconic.analysis.motions import allowed_columns, straight_columns
+from laconic.analysis.motions import straight_columns
 from laconic.analysis.speeds import ROUNDING, without_rest
 from laconic.errors import BadInput
 
 
 def check(subject: Subject, wishes: Wishes) -> None:
     """BadInput when the constraints forbid a ν that was asked for; it names the nearest that they allow."""
-    columns = allowed_columns(subject)
+    columns = subject.allowed_columns
     if wishes.start is not None:
         _fits("--start: the constraints forbid this ν", np.array(wishes.start), columns)
     if wishes.straight is not None:

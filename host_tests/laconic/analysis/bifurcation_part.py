@@ -39,12 +39,12 @@ def bifurcation_part(result: Study, wishes: Wishes) -> None:
     thresholds = straight_thresholds(parameter) if parameter.name in ("nu1", "nu2") else []
     cycles = [part for hopf in found.hopf for part in _cycles_of(parameter, found, hopf)]
     result.bifurcation = BifurcationPart(parameter, low, high, found, thresholds, cycles)
-    _tell_bifurcation(result, result.bifurcation)
+    _describe_bifurcation(result, result.bifurcation)
 
 
 def _no_diagram(subject: Subject, wishes: Wishes) -> str | None:
     if float(subject.model.motor_damping_Nms) == 0.0 or not subject.field({}).decay_per_s.any():
-        return "No bifurcation diagram: the motors do not damp (c2 = 0), so constant inputs have no steady answer."
+        return "No bifurcation diagram: the motors do not damp (c2 = 0), so constant inputs have no steady motion."
     if pushed.world_force_acts(subject):
         return "No bifurcation diagram: a force fixed in the world acts."
     inputs_zero = not any(subject.inputs.values())
@@ -76,7 +76,7 @@ def _cycles_of(parameter: Parameter, found: Diagram, hopf: HopfPoint) -> list[Cy
 
 
 def _reach_of_branch(found: Diagram, hopf: HopfPoint) -> float:
-    """How far the branch of a Hopf point goes on from there, in the parameter."""
+    """Length of the branch beyond a Hopf point, in the parameter."""
     branch = min(found.branches, key=lambda b: float(np.abs(b.nu() - hopf.nu).sum(axis=1).min()))
     return max(abs(p - hopf.parameter) for p in branch.parameter)
 
@@ -88,7 +88,7 @@ def _stands_at(part: BifurcationPart) -> HopfPoint | None:
 
 
 def _range_text(subject: Subject, part: BifurcationPart) -> str:
-    """From where to where, a commanded ν in m/s too."""
+    """The range of the parameter; of a commanded ν in m/s, too."""
     shown = f"{part.low:.6g} to {part.high:.6g}"
     if part.parameter.name not in ("nu1", "nu2"):
         return shown
@@ -105,7 +105,7 @@ def _threshold_text(subject: Subject, part: BifurcationPart, value: float) -> st
             f"inputs of this scene give {reach:.4g} rad/s ({wheel_radius_m(subject) * reach:.4g} m/s).")
 
 
-def _tell_bifurcation(result: Study, part: BifurcationPart) -> None:
+def _describe_bifurcation(result: Study, part: BifurcationPart) -> None:
     name, subject = part.parameter.name, result.subject
     count = len(part.diagram.branches)
     result.say("bifurcation", f"Steady motions for {name} from {_range_text(subject, part)}: {count} "
@@ -118,7 +118,7 @@ def _tell_bifurcation(result: Study, part: BifurcationPart) -> None:
     for hopf in part.diagram.hopf:
         born = "an unstable limit cycle around the stable motion" if hopf.lyapunov > 0.0 else "a stable limit cycle"
         result.say("bifurcation", f"Andronov–Hopf point at {command_text(subject, name, hopf.parameter)}, "
-                                  f"ν3 = {hopf.nu[2]:.6g} rad/s, where it swings at {hopf.frequency_rad_per_s:.6g} "
+                                  f"ν3 = {hopf.nu[2]:.6g} rad/s, with swings at {hopf.frequency_rad_per_s:.6g} "
                                   f"rad/s: first Lyapunov coefficient {hopf.lyapunov:+.3e}, {hopf.kind}: {born} is "
                                   "born.")
     if at_hopf := _stands_at(part):

@@ -1,4 +1,4 @@
-"""Confirms by simulating with the core what the analysis says about steady motions and limit cycles."""
+"""Confirms by simulating with the core what the analysis finds about steady motions and limit cycles."""
 
 from __future__ import annotations
 
@@ -16,7 +16,7 @@ from laconic.core.plant import Plant
 STEPS_PER_FASTEST = 60  # steps per 1/|fastest eigenvalue|
 MOST_STEPS = 2_000_000  # of a steady motion's simulation: beyond, rounding and the method's error hide the motion
 MOST_PERIODS = 4000     # of a cycle's
-TELLING = 4.0           # growth times periods after which a motion has clearly left a cycle, or come back
+CLEAR_GROWTH = 4.0      # growth times periods after which a motion has clearly left a cycle, or returned
 
 
 @dataclass(frozen=True)
@@ -70,7 +70,7 @@ def limit_cycle(subject: Subject, inputs: Inputs, field: Field, cycle: LimitCycl
     held = subject.core.input(inputs)
     plant.run(held, steps)
     gap = float(np.abs(plant.nu - start).max()) / cycle.size
-    if growth_per_period(cycle) * MOST_PERIODS < TELLING:
+    if growth_per_period(cycle) * MOST_PERIODS < CLEAR_GROWTH:
         return Confirmation(bool(gap < 1e-5), f"core: one period closes to {gap:.1e} of the cycle's size; motions "
                                               "beside it change too slowly to confirm by simulating")
     inside, outside = (distance_after(subject, inputs, field, cycle, centre, share, step_s) for share in (0.9, 1.1))
@@ -83,7 +83,7 @@ def limit_cycle(subject: Subject, inputs: Inputs, field: Field, cycle: LimitCycl
 
 
 def growth_per_period(cycle: LimitCycle) -> float:
-    """How fast motions beside a cycle leave it, or come back: |ln| of the largest multiplier but the one along it."""
+    """How fast motions beside a cycle leave it, or returned: |ln| of the largest multiplier but the one along it."""
     along = int(np.argmin(np.abs(cycle.multipliers - 1.0)))
     return abs(float(np.log(np.abs(np.delete(cycle.multipliers, along)).max(initial=1e-300))))
 
@@ -92,7 +92,7 @@ def distance_after(subject: Subject, inputs: Inputs, field: Field, cycle: LimitC
                    step_s: float) -> float:
     """Distance from the steady motion, over the cycle's size, after a start at `share` of the cycle's way from it.
 
-    Runs until the distance has fallen below 0.3 or risen above 2 at its largest over a period, or long enough to tell.
+    Runs until the distance has fallen below 0.3 or risen above 2 at its largest over a period, or long enough.
     """
     held = subject.core.input(inputs)
     plant = plant_at(subject, field.nu(centre + share * (cycle.start_zeta - centre)), step_s)

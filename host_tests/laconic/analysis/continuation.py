@@ -86,7 +86,7 @@ class Curve:
         return float(poly.polyval(point[1], poly.polyder(self.coefficients(point[0]), order)))
 
     def gradient(self, point: np.ndarray) -> np.ndarray:
-        """By central differences in u: the parameter may be anything."""
+        """By central differences in u: ∂P/∂parameter has no closed form."""
         step = np.array([1e-6, 0.0])
         by_parameter = (self.value(point + step) - self.value(point - step)) / 2e-6
         return np.array([by_parameter, self.by_yaw(point)])
@@ -120,10 +120,10 @@ def follow(curve: Curve, start: np.ndarray, direction: float, step: float, most:
         size = np.linalg.norm(slope)
         if size == 0.0:
             break
-        turn = np.array([-slope[1], slope[0]]) / size
-        forward = np.sign(turn[0]) * direction if tangent is None else np.sign(turn @ tangent)
-        turn = turn * (forward or 1.0)
-        found = curve.correct(points[-1] + step * turn, turn)
+        along = np.array([-slope[1], slope[0]]) / size
+        forward = np.sign(along[0]) * direction if tangent is None else np.sign(along @ tangent)
+        along = along * (forward or 1.0)
+        found = curve.correct(points[-1] + step * along, along)
         if found is None or np.linalg.norm(found - points[-1]) > 3.0 * step:
             break
         tangent = found - points[-1]
@@ -152,13 +152,13 @@ def diagram(field_of: FieldOf, low: float, high: float, *, grid: int = 41, step:
     """All branches of steady motions for low ≤ parameter ≤ high."""
     values = np.linspace(low, high, grid)
     seeds = [(value, motion) for value in values for motion in steady_motions(field_of(value))]
-    largest = max((abs(motion.nu[2]) for _, motion in seeds if motion.turns), default=0.0)
+    largest = max((abs(motion.nu[2]) for _, motion in seeds if motion.is_turning), default=0.0)
     straight = _always_straight(field_of, values)
     curve = Curve(field_of, low, high, largest if largest > 0.0 else 1.0, straight)
     tracks: list[list[np.ndarray]] = []
     for value, motion in seeds:
         point = np.array([(value - low) / (high - low), motion.nu[2] / curve.yaw_scale])
-        if not (straight and not motion.turns) and not _covered(tracks, point, 0.2 * step):
+        if not (straight and not motion.is_turning) and not _covered(tracks, point, 0.2 * step):
             back = follow(curve, point, -1.0, step)
             tracks.append(back[::-1] + follow(curve, point, 1.0, step)[1:])
     if straight:
@@ -173,9 +173,9 @@ def _always_straight(field_of: FieldOf, values: np.ndarray) -> bool:
         field = field_of(value)
         r = field.decay_per_s.copy()
         r[field.dof :] = 1.0
-        terms = field.yaw_row * field.drive * np.array([r[1] * r[2], r[2] * r[0], r[0] * r[1]])
+        terms = field.yaw_row * field.forcing * np.array([r[1] * r[2], r[2] * r[0], r[0] * r[1]])
         lowest.append(abs(terms.sum()))
-        size = max(size, float(np.abs(terms).max()), float(r.max() ** 2 * np.abs(field.drive).max() * 1e-3))
+        size = max(size, float(np.abs(terms).max()), float(r.max() ** 2 * np.abs(field.forcing).max() * 1e-3))
     return max(lowest) <= 1e-10 * size
 
 
@@ -201,7 +201,7 @@ def _read_all(curve: Curve, tracks: list[list[np.ndarray]]) -> Diagram:
 
 
 def _fold_at(curve: Curve, points: list[np.ndarray], k: int) -> list[Special]:
-    """A fold near points[k], where the parameter turns back; Newton on P = ∂P/∂v = 0."""
+    """A fold near points[k], where the parameter reverses; Newton on P = ∂P/∂v = 0."""
     if k + 1 >= len(points) or (points[k][0] - points[k - 1][0]) * (points[k + 1][0] - points[k][0]) >= 0.0:
         return []
     point = points[k].copy()

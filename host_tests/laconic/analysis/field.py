@@ -21,7 +21,7 @@ class Field:
     nu_of_zeta: np.ndarray    # G
     gyro: np.ndarray          # w
     decay_per_s: np.ndarray   # r
-    drive: np.ndarray         # b
+    forcing: np.ndarray       # b
     lambda_yaw: float         # Λ
 
     @cached_property
@@ -42,15 +42,15 @@ class Field:
         return -np.diag(self.decay_per_s[: self.dof])
 
     def quadratic(self, u: np.ndarray, v: np.ndarray) -> np.ndarray:
-        """q(u, v), symmetric and bilinear; complex vectors are welcome. On the first `dof` components."""
+        """q(u, v), symmetric and bilinear; the vectors may be complex. On the first `dof` components."""
         g, cross = self.yaw_row[: self.dof], self.cross_matrix
         return 0.5 * ((g @ u) * (cross @ v) + (g @ v) * (cross @ u))
 
     def rates(self, zeta: np.ndarray) -> np.ndarray:
         """ζ'."""
         m = self.dof
-        turned = self.cross_matrix @ zeta
-        return (self.yaw_row[:m] @ zeta) * turned - self.decay_per_s[:m] * zeta + self.drive[:m]
+        rotated = self.cross_matrix @ zeta
+        return (self.yaw_row[:m] @ zeta) * rotated - self.decay_per_s[:m] * zeta + self.forcing[:m]
 
     def jacobian(self, zeta: np.ndarray) -> np.ndarray:
         """∂ζ'/∂ζ."""

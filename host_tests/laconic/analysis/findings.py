@@ -15,11 +15,10 @@ from laconic.analysis.from_core import Subject
 from laconic.analysis.geometry import Geometry
 from laconic.analysis.hopf import HopfPoint
 from laconic.analysis.motions import Parameter
+from laconic.analysis.parts import PARTS
 from laconic.analysis.portrait import Portrait
 from laconic.analysis.steady import Family, SteadyMotion
 from laconic.analysis.traction import Traction
-
-PARTS = ("geometry", "free", "steady", "bifurcation", "traction")
 
 
 @dataclass

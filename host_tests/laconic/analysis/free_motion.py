@@ -5,7 +5,7 @@ With the heading as independent variable the system is linear: for φ = θ − �
 and the time is elementary, t = Λ ∫ dφ/ν3. With constraints the same holds with G Gᵀ in place of A⁻¹; where Ω = 0
 (a caster, an axle through the centre of mass) the sines become powers of φ.
 
-This is an evaluator of its own, independent of the core's `exact-flow`, and checks it.
+It shares no code with the core's `exact-flow` and checks it.
 """
 
 from __future__ import annotations
@@ -36,8 +36,8 @@ class FreeMotion:
     def harmonics(self) -> tuple[float, float, float]:
         """n0, a, b of ν3(φ) = n0 + a cos Ωφ + b sin Ωφ."""
         omega, pull = self.petal_rate, self.inverse_inertia[2, :2] @ S2
-        turned = self.inverse_inertia[:2, :2] @ S2 @ self.start_nu[:2]
-        a = -float(pull @ turned) / omega**2
+        rotated = self.inverse_inertia[:2, :2] @ S2 @ self.start_nu[:2]
+        a = -float(pull @ rotated) / omega**2
         return float(self.start_nu[2]) - a, a, float(pull @ self.start_nu[:2]) / omega
 
     @property
@@ -67,7 +67,7 @@ class FreeMotion:
         return self.nu_at_angle(self._angle_limit()) if self.kind == "asymptotic" else self.start_nu
 
     def _slope(self) -> float:
-        """dν3/dφ at the start; 0 where it is nothing but rounding."""
+        """dν3/dφ at the start; 0 where only rounding is left."""
         pull = self.inverse_inertia[2, :2] @ S2
         size = np.abs(self.inverse_inertia).max() * np.abs(self.start_nu).max()
         slope = float(pull @ self.start_nu[:2])
@@ -80,22 +80,22 @@ class FreeMotion:
     # ---- evaluation
 
     def nu_at_angle(self, angle_rad: float | np.ndarray) -> np.ndarray:
-        """ν after the heading has turned by φ; one row per angle."""
+        """ν after the heading has changed by φ; one row per angle."""
         phi = np.asarray(angle_rad, dtype=float)[..., None]
         omega, block = self.petal_rate, self.inverse_inertia[:2, :2]
-        start, turned = self.start_nu[:2], block @ S2 @ self.start_nu[:2]
+        start, rotated = self.start_nu[:2], block @ S2 @ self.start_nu[:2]
         if self._omega_is_zero():
             cos, sine, versine = np.ones_like(phi), phi, 0.5 * phi**2
         else:
             cos, sine = np.cos(omega * phi), np.sin(omega * phi) / omega
             versine = 2.0 * np.sin(0.5 * omega * phi) ** 2 / omega**2
-        plane = cos * start + sine * turned
-        integral = sine * start + versine * turned
+        plane = cos * start + sine * rotated
+        integral = sine * start + versine * rotated
         yaw = self.start_nu[2] + integral @ (self.inverse_inertia[2, :2] @ S2)
         return np.concatenate([plane, yaw[..., None]], axis=-1)
 
     def angle_at(self, time_s: float | np.ndarray) -> np.ndarray:
-        """φ(t): the half-angle's tangent, with half turns counted."""
+        """φ(t): by the tangent of Ωφ/2, with whole petals counted."""
         time = np.asarray(time_s, dtype=float)
         if self.kind == "straight":
             return np.zeros_like(time)
@@ -105,9 +105,9 @@ class FreeMotion:
         r, stretched = n0 + a, 0.5 * self.petal_rate * time / self.lambda_yaw
         root = np.sqrt(abs(self.discriminant))
         if self.discriminant > 0.0:
-            turns = np.floor(stretched * root / np.pi)
-            rest = stretched * root - np.pi * turns
-            half = np.pi * turns + np.arctan2(abs(r) * np.sin(rest) / root, np.cos(rest) - b * np.sin(rest) / root)
+            petals = np.floor(stretched * root / np.pi)
+            rest = stretched * root - np.pi * petals
+            half = np.pi * petals + np.arctan2(abs(r) * np.sin(rest) / root, np.cos(rest) - b * np.sin(rest) / root)
             return 2.0 * np.sign(r) * half / self.petal_rate
         tangent = np.tanh(stretched * root) / root if root > 0.0 else stretched
         return 2.0 * np.arctan2(r * tangent, 1.0 - b * tangent) / self.petal_rate
@@ -118,7 +118,7 @@ class FreeMotion:
         return yaw_rate * (time if rate == 0.0 else np.expm1(rate * time) / rate)
 
     def _angle_limit(self) -> float:
-        """The heading that an asymptotic motion turns by in all."""
+        """The whole change of heading of an asymptotic motion."""
         if self._omega_is_zero():
             return -self.start_nu[2] / self._slope()
         n0, a, b = self.harmonics()
@@ -144,6 +144,6 @@ class FreeMotion:
 
 
 def yaw_by_integral(inertia: np.ndarray, start_nu: np.ndarray, nu: np.ndarray) -> np.ndarray:
-    """ν3 = (K − A13 ν1 − A23 ν2)/A33: the other way to it, by the integral K (no constraints)."""
+    """ν3 = (K − A13 ν1 − A23 ν2)/A33: the same by the integral K (without constraints)."""
     k = inertia[2] @ start_nu
     return (k - nu[..., 0] * inertia[2, 0] - nu[..., 1] * inertia[2, 1]) / inertia[2, 2]

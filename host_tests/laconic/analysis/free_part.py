@@ -13,7 +13,7 @@ from laconic.analysis.portrait import portrait
 from laconic.analysis.speeds import motion_text
 from laconic.simulation import run_window
 
-MOST_LOOKS = 500  # at the scene's run, for the moment to cut its motors off
+MOST_CHECKS = 500  # of ν along the scene's run, to find the instant at which the motors are cut off
 
 
 def coasting(subject: Subject) -> Any:
@@ -29,7 +29,7 @@ def _start_of_free_motion(subject: Subject) -> tuple[np.ndarray, float]:
     if np.abs(start).max() > 0.0:
         return start, 0.0
     plant, drive = subject.scene.plant(subject.core), subject.scene.drive()
-    ticks = sorted({*range(0, drive.steps, max(1, drive.steps // MOST_LOOKS)), *drive.changes, drive.steps})
+    ticks = sorted({*range(0, drive.steps, max(1, drive.steps // MOST_CHECKS)), *drive.changes, drive.steps})
     rows = [plant.nu]
     for first, last in zip(ticks[:-1], ticks[1:], strict=True):
         run_window(subject.scene, plant, drive, first, last - first)
@@ -56,7 +56,7 @@ def free_part(result: Study, wishes: Wishes) -> None:
         energy_J=scale * float(start @ np.linalg.lstsq(subject.matrices.inverse_inertia, start, rcond=None)[0]),
         integral=integral, portrait=portrait(subject, start), path_time_s=times,
         path_m=motion.path(times, float(subject.model.wheel_radius_m)), **numbers)
-    _tell_free(result, result.free, wishes)
+    _describe_free(result, result.free, wishes)
 
 
 def _free_duration(subject: Subject, motion: FreeMotion) -> float:
@@ -89,29 +89,29 @@ def _kind_in_words(subject: Subject, free: FreePart) -> str:
     """What becomes of the motion."""
     motion = free.motion
     if motion.kind == "straight":
-        return "It does not turn: straight uniform motion for ever."
+        return "It does not yaw: straight uniform motion for ever."
     if motion.kind == "uniform":
-        return "It turns at a constant rate: nothing couples turning to the motion of the centre of mass."
+        return "It yaws at a constant rate: yaw is not coupled to the motion of the centre of mass."
     if motion.kind == "asymptotic":
-        return ("It tends to straight uniform motion: the yaw rate dies away and never changes its sign; it tends to "
+        return ("It tends to straight uniform motion: the yaw rate decays and never changes its sign; it tends to "
                 f"{motion_text(subject, motion.limit_nu())}.")
     periodic = f"It is periodic in ν with period {motion.period_s:.6g} s"
     if free.portrait is None:
-        return f"{periodic}; ν3 is constant, ν turns evenly against the body."
+        return f"{periodic}; ν3 is constant, ν rotates evenly against the body."
     petal_deg = np.degrees(2.0 * np.pi / motion.petal_rate)
     return f"{periodic}: the path has petals, one every {petal_deg:.2f}° of heading."
 
 
-def _tell_free(result: Study, free: FreePart, wishes: Wishes) -> None:
+def _describe_free(result: Study, free: FreePart, wishes: Wishes) -> None:
     motion, subject = free.motion, result.subject
     if wishes.start:
         where = "from the given start"
     else:
-        cut = f"with the motors cut off at {free.since_s:.4g} s, the run's fastest moment"
+        cut = f"with the motors cut off at {free.since_s:.4g} s, the fastest instant of the run"
         where = cut if free.since_s else "from the scene's start"
-    told = f"Free motion {where}: {motion_text(subject, motion.start_nu)}; energy {free.energy_J:.6g} J"
-    result.say("free", f"{told}; with constraints there is no second integral K." if free.integral is None else
-               f"{told}, K = {free.integral:.6g} rad/s.")
+    start = f"Free motion {where}: {motion_text(subject, motion.start_nu)}; energy {free.energy_J:.6g} J"
+    result.say("free", f"{start}; with constraints there is no second integral K." if free.integral is None else
+               f"{start}, K = {free.integral:.6g} rad/s.")
     result.say("free", _kind_in_words(subject, free))
     drift = f"energy drifts by {free.energy_drift:.1e}"
     if free.integral_drift is not None:

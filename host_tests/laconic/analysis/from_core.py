@@ -29,7 +29,7 @@ class Subject:
     model: Any                # laconic_model
     matrices: Matrices
     inputs: dict[str, float]  # held: signal → value
-    held: str = ""            # which moment of the scene's inputs that is, in words; "": they never vary
+    held: str = ""            # a sentence with the instant of these inputs; "": the inputs never vary
 
     @property
     def wheel_count(self) -> int:
@@ -41,8 +41,13 @@ class Subject:
         return np.array([self.inputs.get(f"voltage_V[{i + 1}]", 0.0) for i in range(self.wheel_count)])
 
     def field(self, inputs: Inputs | None = None) -> Field:
-        """The vector field under the given constant inputs (nothing said: the subject's own)."""
+        """The vector field under the given constant inputs (None: the subject's own)."""
         return field_of(self.core, self.model, self.inputs if inputs is None else inputs)
+
+    @property
+    def allowed_columns(self) -> np.ndarray:
+        """The columns of G, which span the ν that the constraints allow: shape (3, m)."""
+        return self.core.numbers(self.model.nu_of_zeta, 3, 3)[:, : self.model.dof]
 
     def start_nu(self) -> np.ndarray:
         """ν at the scene's start."""
@@ -86,23 +91,23 @@ def changed(subject: Subject, key: str, value: float) -> Subject:
 
 
 def nu_rates(core: Core, model: Any, nu: Sequence[float] | np.ndarray, heading_rad: float, held: Any) -> np.ndarray:
-    """ν' of (4.7) by the core. The struct is kept by name: its array alone would not keep it alive."""
+    """ν' of (4.7) by the core. A variable holds the struct, since its array alone would not keep it alive."""
     rates = core.derivative(model, nu, heading_rad, held)
     return core.numbers(rates.nu_rad_per_s2)
 
 
 def field_of(core: Core, model: Any, inputs: Inputs) -> Field:
-    """Reads the prepared model and the load of constant inputs; a force fixed in the world has no constant load."""
+    """The field of a model under constant inputs; BadInput for a force fixed in the world: its forcing varies."""
     forcing = core.ffi.new("laconic_forcing *")
     core.lib.laconic_forcing_of(forcing, model, core.input(inputs))
     if forcing.rotates:
-        raise BadInput("a force fixed in the world acts: it turns against the body with the heading, so there are no "
+        raise BadInput("a force fixed in the world acts: it rotates against the body with the heading, so there are no "
                        "steady motions; leave it out of the scene, or use `laconic simulate`")
     return Field(
         dof=int(model.dof),
         nu_of_zeta=core.numbers(model.nu_of_zeta, 3, 3),
         gyro=core.numbers(model.gyro),
         decay_per_s=core.numbers(model.decay_per_s),
-        drive=core.numbers(forcing.constant),
+        forcing=core.numbers(forcing.constant),
         lambda_yaw=float(model.yaw_scale),
     )

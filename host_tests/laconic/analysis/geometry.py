@@ -1,10 +1,10 @@
 """What the wheels can do with the body: which motions they drive or damp, how evenly, and how well they yaw it.
 
 Ξ is judged in metres per second: rim speeds R χ' against the body's (v_ξ, v_η, ℓ θ'), where ℓ is the wheels' root mean
-square distance from their middle. Its rank says which motions the motors do not see at all. The rank misses the
+square distance from their middle. Its null space holds the motions that no motor drives or damps. The rank misses the
 classic mistake, mecanum wheels mounted in the wrong diagonal: it leaves full rank (unless the wheels stand in a square)
-and next to no leverage for turning. So turning has its own measure, the yaw authority: the least rim speed (root mean
-square) that a turn at 1 rad/s about any point needs, over ℓ. About 1 is usual, near 0 is a mistake.
+and almost no lever arm in yaw. So yaw has a measure of its own, the yaw authority: the least rim speed (root mean
+square) that goes with a yaw rate of 1 rad/s about any point, over ℓ. About 1 is usual, near 0 is a mistake.
 """
 
 from __future__ import annotations
@@ -19,7 +19,7 @@ from laconic.analysis.from_core import Subject
 RANK_TOLERANCE = 1e-9
 WEAK_YAW = 0.5            # below this fraction of what mirrored rollers would give, the mounting is called wrong
 STRONG_YAW = 2.0          # above, the yaw authority is as unusual as below 1/2
-MEANING = ("that is the rims' speed in a turn, over the yaw rate times the wheels' distance from their middle; about 1 "
+MEANING = ("that is the rim speed in yaw, over the yaw rate times the wheels' distance from their middle; about 1 "
            "is usual")
 ILL_CONDITIONED = 100.0   # rim speeds for one direction this many times those for another
 
@@ -40,8 +40,7 @@ class Geometry:
 
 def diagnose(subject: Subject) -> Geometry:
     """Everything about the geometry of one vehicle."""
-    places = wheel_places(subject)
-    length = _spread(places)
+    length = _spread(wheel_positions_m(subject))
     allowed = _allowed_motions(subject, length)
     rows = _rim_rows(subject, subject.matrices.wheel_rows, length) @ allowed
     values, undriven = _null_motions(rows, allowed)
@@ -55,17 +54,17 @@ def diagnose(subject: Subject) -> Geometry:
     return result
 
 
-def wheel_places(subject: Subject) -> np.ndarray:
+def wheel_positions_m(subject: Subject) -> np.ndarray:
     """Wheel centres in the body frame [m], one row each."""
     wheels = subject.vehicle.wheel
     return np.array([[wheels[i].x_m, wheels[i].y_m] for i in range(subject.wheel_count)]).reshape(-1, 2)
 
 
-def _spread(places: np.ndarray) -> float:
+def _spread(positions_m: np.ndarray) -> float:
     """ℓ; 1 m where the wheels have no extent."""
-    if len(places) == 0:
+    if len(positions_m) == 0:
         return 1.0
-    distance = np.sqrt(((places - places.mean(axis=0)) ** 2).sum(axis=1).mean())
+    distance = np.sqrt(((positions_m - positions_m.mean(axis=0)) ** 2).sum(axis=1).mean())
     return float(distance) if distance > 0.0 else 1.0
 
 
@@ -82,13 +81,12 @@ def _rim_rows(subject: Subject, wheel_rows: np.ndarray, length: float) -> np.nda
 
 def _allowed_motions(subject: Subject, length: float) -> np.ndarray:
     """Orthonormal columns of (v_ξ, v_η, ℓ θ') that the constraints allow, as the core found them."""
-    model = subject.model
-    columns = subject.core.numbers(model.nu_of_zeta, 3, 3)[:, : model.dof] * _body_of_nu(subject, length)[:, None]
+    columns = subject.allowed_columns * _body_of_nu(subject, length)[:, None]
     return np.linalg.svd(columns, full_matrices=False)[0]
 
 
 def _null_motions(rows: np.ndarray, allowed: np.ndarray) -> tuple[np.ndarray, list[np.ndarray]]:
-    """Singular values, and the allowed motions that turn no wheel."""
+    """Singular values, and the allowed motions that rotate no wheel."""
     if len(rows) == 0:
         return np.zeros(0), list(np.eye(3) @ allowed.T if allowed.shape[1] == 3 else allowed.T)
     _, values, right = np.linalg.svd(rows)
@@ -111,7 +109,7 @@ def _tidied(columns: np.ndarray) -> list[np.ndarray]:
 
 
 def _yaw_authority(rows: np.ndarray, allowed: np.ndarray) -> float:
-    """Root mean square rim speed of the gentlest allowed motion with ℓ θ' = 1; 0 where nothing can turn."""
+    """Root mean square rim speed of the allowed motion with ℓ θ' = 1 that needs least; 0 where nothing can yaw."""
     pull = allowed[2]
     if len(rows) == 0 or np.abs(pull).max() < 1e-12:
         return 0.0
@@ -124,7 +122,7 @@ def _yaw_authority(rows: np.ndarray, allowed: np.ndarray) -> float:
 
 
 def _mirrored_authority(subject: Subject, length: float, allowed: np.ndarray) -> float | None:
-    """The yaw authority if every mecanum roller leaned the other way."""
+    """The yaw authority if every mecanum roller angle had the other sign."""
     vehicle, core = subject.vehicle, subject.core
     roller = core.lib.LACONIC_WHEEL_ROLLER
     other: Any = core.ffi.new("laconic_vehicle *", vehicle[0])
@@ -140,13 +138,13 @@ def _mirrored_authority(subject: Subject, length: float, allowed: np.ndarray) ->
 
 
 def motion_words(motion: np.ndarray, subject: Subject, length: float) -> str:
-    """(v_ξ, v_η, ℓ θ') as words: a direction, or a turn about a point of the body."""
-    along, across, turn = motion / np.abs(motion).max()
-    if abs(turn) < 1e-9:
+    """(v_ξ, v_η, ℓ θ') as words: a direction, or a turning motion about a point of the body."""
+    along, across, yaw = motion / np.abs(motion).max()
+    if abs(yaw) < 1e-9:
         return direction_words(along, across)
-    yaw_rate = turn / length
-    place = (float(subject.model.com_x_m) - across / yaw_rate, float(subject.model.com_y_m) + along / yaw_rate)
-    x, y = (0.0 if abs(metres) < 1e-9 * length else metres for metres in place)
+    yaw_rate = yaw / length
+    centre_m = (float(subject.model.com_x_m) - across / yaw_rate, float(subject.model.com_y_m) + along / yaw_rate)
+    x, y = (0.0 if abs(metres) < 1e-9 * length else metres for metres in centre_m)
     if abs(along) < 1e-9 and abs(across) < 1e-9:
         return "turning about the centre of mass"
     return f"turning about the body's point ({x:.3g}, {y:.3g}) m"
@@ -169,12 +167,12 @@ def _words(subject: Subject, found: Geometry, allowed: np.ndarray, length: float
     if found.not_driven:
         words.append(f"The wheels neither drive nor feel {' and '.join(found.not_driven)}.")
     else:
-        words.append(f"Every motion that is possible turns at least one wheel, {_reach_words(subject)}.")
+        words.append(f"Every motion that is possible rotates at least one wheel, {_reach_words(subject)}.")
     if np.isfinite(found.condition) and found.condition > ILL_CONDITIONED:
         words.append(f"The geometry is lopsided: one direction needs {found.condition:.0f} times the rim speed of "
                      f"another.")
     if np.abs(allowed[2]).max() < 1e-12:
-        return [*words, "The body cannot turn at all."]
+        return [*words, "The body cannot yaw."]
     return [*words, *_yaw_words(found)]
 
 
@@ -185,16 +183,16 @@ def _yaw_words(found: Geometry) -> list[str]:
                 f"roller leaning the other way it would be {mirrored:.3g}. Swap the left and right wheels of each "
                 "axle, or negate the roller angles if only the description is wrong."]
     if value < 1e-9:
-        return ["The wheels have no hold on turning (yaw authority 0): only an outer force turns the body."]
+        return ["The wheels cannot yaw the body (yaw authority 0): only an outer force does."]
     if value < 0.1:
-        return [f"The wheels hardly turn the body: the yaw authority is {value:.3g}, {MEANING}. Check the places, axle "
-                "and roller angles of the wheels."]
+        return [f"The wheels hardly yaw the body: the yaw authority is {value:.3g}, {MEANING}. Check the positions, "
+                "axle and roller angles of the wheels."]
     words = f"The yaw authority is {value:.3g}"
     if value > STRONG_YAW:
-        return [f"{words}, {MEANING}: turning is strong but slow. Where that is not meant, check the places and axle "
+        return [f"{words}, {MEANING}: yaw is strong but slow. Where that is not meant, check the positions and axle "
                 "angles of the wheels."]
     if value < WEAK_YAW:
-        return [f"{words}, {MEANING}: turning is quick but weak. Where that is not meant, check the places, axle and "
+        return [f"{words}, {MEANING}: yaw is quick but weak. Where that is not meant, check the positions, axle and "
                 "roller angles of the wheels."]
     return [f"{words}, {MEANING}."]
 

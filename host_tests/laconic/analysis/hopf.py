@@ -1,4 +1,4 @@
-"""Andronov–Hopf points: where they lie, and the first Lyapunov coefficient, whose sign says where a cycle exists.
+"""Andronov–Hopf points: where they lie, and the first Lyapunov coefficient, whose sign decides where a cycle exists.
 
 The vector field is exactly quadratic, so the coefficient needs no third derivatives:
     l1 = Re[ −2 ⟨p, B(q, J⁻¹ B(q, q̄))⟩ + ⟨p, B(q̄, (2iΩ − J)⁻¹ B(q, q))⟩ ] / (2Ω),

@@ -29,42 +29,37 @@ class Parameter:
     subject_of: Callable[[float], Subject]
     inputs_of: Callable[[float], Inputs]
     field_of: Callable[[float], Field]   # the vector field at a value
-    reach: float = float("inf")          # the largest size that a vehicle of this kind gets to
+    reach: float = float("inf")          # the largest value that the vehicle can reach
 
 
-def drive_line(subject: Subject, inputs_of: Callable[[float], Inputs]) -> Callable[[float], Field]:
-    """The field where only the inputs vary, evenly with the parameter: the core is asked at 0 and 1 only."""
+def field_line(subject: Subject, inputs_of: Callable[[float], Inputs]) -> Callable[[float], Field]:
+    """The field where only the inputs vary, linearly with the parameter, so the core computes it at 0 and 1 only."""
     start, end = (field_of(subject.core, subject.model, inputs_of(value)) for value in (0.0, 1.0))
-    return lambda value: replace(start, drive=start.drive + value * (end.drive - start.drive))
+    return lambda value: replace(start, forcing=start.forcing + value * (end.forcing - start.forcing))
 
 
 def straight_torques(subject: Subject, nu: np.ndarray) -> Inputs:
-    """What the motors must be given for the straight motion ν⁰ to be steady: c1 U = c2 Ξ ν⁰ as axle torques.
+    """Axle torques with which the straight motion ν⁰ is steady: c1 U = c2 Ξ ν⁰.
 
-    Given as torques, since then it works for c1 = 0 too; U = (c2/c1) Ξ ν⁰ is the same thing.
+    Torques also serve where c1 = 0; elsewhere the voltages U = (c2/c1) Ξ ν⁰ do the same.
     """
     damping = float(subject.model.motor_damping_Nms)
     return {f"axle_torque_Nm[{i + 1}]": float(v) for i, v in enumerate(damping * (subject.matrices.wheel_rows @ nu))}
 
 
-def allowed_columns(subject: Subject) -> np.ndarray:
-    """What spans the ν that the constraints allow: three rows."""
-    return subject.core.numbers(subject.model.nu_of_zeta, 3, 3)[:, : subject.model.dof]
-
-
 def straight_columns(subject: Subject) -> np.ndarray:
     """What spans the straight motions (ν1, ν2) that the constraints allow: two rows, a column each; perhaps none."""
-    columns = allowed_columns(subject)
+    columns = subject.allowed_columns
     return (columns @ null_space(columns[2:]))[:2]
 
 
 def commanded_straight(subject: Subject) -> np.ndarray | None:
-    """ν⁰ of the straight motion that the held inputs ask for; None when they ask for a turn."""
+    """ν⁰ of the straight motion that the held inputs command; None when they command a turning motion."""
     field = subject.field()
     m = field.dof
     if not (field.decay_per_s[:m] > 0.0).all():
         return None
-    nu = field.nu(field.drive[:m] / field.decay_per_s[:m])
+    nu = field.nu(field.forcing[:m] / field.decay_per_s[:m])
     return nu if abs(nu[2]) <= 1e-9 * max(1.0, float(np.abs(nu).max())) else None
 
 
@@ -78,7 +73,7 @@ def command_parameter(subject: Subject, name: str, straight: np.ndarray) -> Para
         return straight_torques(subject, nu)
 
     label = f"commanded straight motion $\\nu_{which + 1}^0$ [rad/s]"
-    return Parameter(name, label, float(straight[which]), lambda _: subject, inputs_of, drive_line(subject, inputs_of),
+    return Parameter(name, label, float(straight[which]), lambda _: subject, inputs_of, field_line(subject, inputs_of),
                      reach_rad_per_s(subject, which, float(straight[which])))
 
 
@@ -89,7 +84,7 @@ def scale_parameter(subject: Subject) -> Parameter:
         return {name: value * v for name, v in subject.inputs.items()}
 
     label = "factor on the inputs [–]"
-    return Parameter("input_scale", label, 1.0, lambda _: subject, inputs_of, drive_line(subject, inputs_of))
+    return Parameter("input_scale", label, 1.0, lambda _: subject, inputs_of, field_line(subject, inputs_of))
 
 
 def vehicle_parameter(subject: Subject, key: str) -> Parameter:
@@ -104,9 +99,9 @@ def vehicle_parameter(subject: Subject, key: str) -> Parameter:
 
 
 def _farthest_wheel_m(subject: Subject) -> float:
-    """How far a centre of mass may wander: half the way to the wheel that is farthest off; infinite without wheels."""
-    places = [np.hypot(wheel.x_m, wheel.y_m) for wheel in subject.vehicle.wheel[0 : subject.wheel_count]]
-    return 0.5 * max(places, default=0.0) or float("inf")
+    """Largest offset of a centre of mass: half the distance of the farthest wheel; infinite without wheels."""
+    distances_m = [np.hypot(wheel.x_m, wheel.y_m) for wheel in subject.vehicle.wheel[0 : subject.wheel_count]]
+    return 0.5 * max(distances_m, default=0.0) or float("inf")
 
 
 def parameter_named(subject: Subject, name: str | None, straight: np.ndarray | None) -> Parameter:
@@ -117,7 +112,7 @@ def parameter_named(subject: Subject, name: str | None, straight: np.ndarray | N
         name = "nu2" if abs(straight[1]) >= abs(straight[0]) and _is_possible(subject, "nu2") else "nu1"
     if name in COMMANDS:
         if straight is None:
-            raise BadInput(f"--parameter {name}: the inputs ask for no straight motion; give one with --straight NU1 "
+            raise BadInput(f"--parameter {name}: the inputs command no straight motion; give one with --straight NU1 "
                            f"NU2")
         if not _is_possible(subject, name):
             raise BadInput(f"--parameter {name}: the constraints forbid straight motion that way; vary another number")
@@ -140,7 +135,7 @@ def straight_thresholds(parameter: Parameter) -> list[float]:
     def determinant(value: float) -> float:
         field = parameter.field_of(value)
         m = field.dof
-        return float(np.linalg.det(field.jacobian(field.drive[:m] / field.decay_per_s[:m])))
+        return float(np.linalg.det(field.jacobian(field.forcing[:m] / field.decay_per_s[:m])))
 
     return _real_roots(determinant, 3, max(1.0, abs(parameter.at_scene)))
 

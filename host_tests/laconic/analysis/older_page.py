@@ -10,7 +10,7 @@ from pathlib import Path
 def pictures_of_older_page(folder: Path, drawn: Sequence[Path]) -> list[Path]:
     """Pictures in the folder that the report.json there lists and this run has not drawn.
 
-    A file is the tool's own only when it has one of its pictures' names and that page says that it wrote it; all else
+    A file is the tool's own only when it has one of its pictures' names and that page lists it; all else
     in the folder is the user's.
     """
     from laconic.analysis.pictures import PICTURES

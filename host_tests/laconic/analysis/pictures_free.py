@@ -9,7 +9,7 @@ from matplotlib.figure import Figure
 from laconic.analysis.findings import FreePart, Study
 from laconic.analysis.picture_parts import BOLD, THIN, head, keys, legend_below, speed_axes
 from laconic.analysis.portrait import half_curves
-from laconic.pictures.method_style import look
+from laconic.pictures.method_style import style_of
 from laconic.pictures.plotting import figure
 
 ACROSS = r"$\nu_\perp$: the part of ($\nu_1$, $\nu_2$) across the direction that turning is coupled to"
@@ -93,7 +93,7 @@ def path_picture(study: Study) -> Figure | None:
     axes = picture.subplots()
     axes.plot(*free.path_m.T, color="0.75", lw=3.0, label="closed form")
     every = max(1, len(free.path_m) // 120)
-    axes.plot(*free.core_path_m[::every].T, **look("exact-flow", 4.0, linestyle="none", label="core, exact-flow"))
+    axes.plot(*free.core_path_m[::every].T, **style_of("exact-flow", 4.0, linestyle="none", label="core, exact-flow"))
     axes.plot(0.0, 0.0, "o", color="tab:green", label="start")
     axes.set_aspect("equal", adjustable="datalim")
     axes.set(xlabel="x [m]", ylabel="y [m]", title=head(study, _path_title(free)))
@@ -107,5 +107,5 @@ def _path_title(free: FreePart) -> str:
     if kind == "periodic":
         periods = free.path_time_s[-1] / free.motion.period_s
         return f"path of the centre of mass in free motion: {periods:.0f} periods of ν"
-    tail = {"asymptotic": "tends to a straight line", "straight": "straight", "uniform": "turns evenly"}[kind]
+    tail = {"asymptotic": "tends to a straight line", "straight": "straight", "uniform": "yaws evenly"}[kind]
     return f"path of the centre of mass in free motion: {tail}"

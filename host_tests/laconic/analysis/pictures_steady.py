@@ -117,8 +117,8 @@ def eigenvalue_picture(study: Study) -> Figure | None:
         _loci(axes, study.bifurcation)
     for number, motion in enumerate(steady.motions):
         colour = COLOURS[motion.stability]
-        shape = "turning" if motion.turns else "straight"
-        yaw_rate = motion.nu[2] / big if motion.turns else 0.0
+        shape = "turning" if motion.is_turning else "straight"
+        yaw_rate = motion.nu[2] / big if motion.is_turning else 0.0
         text = f"{shape}, ω = {yaw_rate:.3g} rad/s: {motion.stability}"
         axes.plot(motion.eigenvalues.real, motion.eigenvalues.imag, markers[number % 5], color=colour,
                   ms=6 + 6 * (count - 1 - number), mfc="none", mew=1.6, ls="", label=text, zorder=4)
@@ -144,7 +144,7 @@ def driven_picture(study: Study) -> Figure | None:
     """Motions under the held inputs, run by the core, around the steady ones."""
     steady, subject = study.steady, study.subject
     direction = across_direction(subject)
-    if steady is None or not steady.motions or direction is None or not any(motion.turns for motion in steady.motions):
+    if steady is None or not steady.motions or direction is None or not any(m.is_turning for m in steady.motions):
         return None
     across, label = direction
     picture = figure(7.2, 5.8)

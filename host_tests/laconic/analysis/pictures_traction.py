@@ -80,8 +80,8 @@ def _rows(study: Study, found: Traction) -> Figure:
     values, names = _values(study, found), _names(study, found)
     height = 1.2 + len(values) * max(2.0, 0.13 * len(names))
     picture = figure(8.0, height)
-    places = picture.subplots(len(values), 1, sharex=True)
-    for axes, table, label in zip(places, values, QUANTITIES, strict=False):
+    panels = picture.subplots(len(values), 1, sharex=True)
+    for axes, table, label in zip(panels, values, QUANTITIES, strict=False):
         is_use = label == QUANTITIES[2]
         lowest = float(min(0.0, np.nanmin(np.where(np.isfinite(table), table, 0.0))))
         mesh = axes.pcolormesh(found.time_s, np.arange(1, table.shape[1] + 1), table.T, shading="nearest",
@@ -91,12 +91,12 @@ def _rows(study: Study, found: Traction) -> Figure:
         if is_use:
             _outline_slip(axes, found.time_s, table)
             bar.ax.axhline(1.0, color="tab:cyan", lw=2.0)
-        _mark_slip(axes, found, label=axes is places[0])
-    places[0].set_title(head(study, "what the ground must deliver"))
-    places[-1].set_xlabel("time [s]")
+        _mark_slip(axes, found, label=axes is panels[0])
+    panels[0].set_title(head(study, "what the ground must deliver"))
+    panels[-1].set_xlabel("time [s]")
     if len(values) == 3:
-        places[0].plot([], [], color="tab:cyan", lw=2.0, label="inside: a wheel slips (use above 1)")
-    handles = places[0].get_legend_handles_labels()
+        panels[0].plot([], [], color="tab:cyan", lw=2.0, label="inside: a wheel slips (use above 1)")
+    handles = panels[0].get_legend_handles_labels()
     if handles[0]:
         picture.legend(*handles, loc="outside lower center", ncols=2, fontsize=9)
     return picture

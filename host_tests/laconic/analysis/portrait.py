@@ -41,7 +41,7 @@ def across_direction(subject: Subject) -> tuple[np.ndarray, str] | None:
     else:
         if subject.model.dof == 1:
             return None
-        basis = subject.core.numbers(subject.model.nu_of_zeta, 3, 3)[:, :2]
+        basis = subject.allowed_columns
         straight = basis @ np.array([basis[2, 1], -basis[2, 0]])
         if np.abs(straight[:2]).max() < 1e-12:
             return None

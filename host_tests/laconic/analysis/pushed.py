@@ -32,7 +32,7 @@ class PushedHeading:
 
 
 def world_force_acts(subject: Subject) -> bool:
-    """Whether the held inputs hold a force fixed in the world."""
+    """Whether the held inputs contain a force fixed in the world."""
     return any(subject.inputs.get(f"world_force_N[{k}]", 0.0) for k in (1, 2))
 
 

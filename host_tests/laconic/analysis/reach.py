@@ -10,7 +10,7 @@ import numpy as np
 from laconic.analysis.from_core import Subject
 from laconic.scene.drive import Input
 
-HEADROOM = 2.0  # over the run's largest inputs: a scene seldom asks for all that its motors could take
+HEADROOM = 2.0  # over the run's largest inputs: a scene seldom uses the full range of its motors
 WORLD = "world_force"
 
 
@@ -31,15 +31,15 @@ def largest_nu(subject: Subject) -> np.ndarray:
         if not size or given.signal.startswith(WORLD):
             continue
         field = subject.field({given.signal: size})
-        drive, decay = field.drive[: field.dof], field.decay_per_s[: field.dof]
+        forcing, decay = field.forcing[: field.dof], field.decay_per_s[: field.dof]
         damped = decay > 0.0
-        total += np.abs(field.nu(np.where(damped, drive, 0.0) / np.where(damped, decay, 1.0)))
-        if np.any(drive[~damped] != 0.0):
+        total += np.abs(field.nu(np.where(damped, forcing, 0.0) / np.where(damped, decay, 1.0)))
+        if np.any(forcing[~damped] != 0.0):
             return np.full(3, np.inf)
     return total
 
 
 def reach_rad_per_s(subject: Subject, which: int, commanded: float) -> float:
-    """The largest |ν1| or |ν2| (which: 0, 1) worth looking at; at least some headroom over the commanded one."""
+    """The largest |ν1| or |ν2| (which: 0, 1) worth showing; at least some headroom over the commanded one."""
     found = float(largest_nu(subject)[which])
     return HEADROOM * max(found if np.isfinite(found) else 0.0, abs(commanded))

@@ -11,11 +11,9 @@ import numpy as np
 
 from laconic.analysis.findings import BifurcationPart, FreePart, SteadyPart, Study
 from laconic.analysis.from_core import Subject
+from laconic.analysis.parts import TITLES
 from laconic.analysis.speeds import of_driver, wheel_radius_m
 from laconic.analysis.traction import Traction
-
-TITLES = {"geometry": "Geometry", "free": "Free motion", "steady": "Steady motions", "bifurcation": "Bifurcations",
-          "traction": "Traction"}
 
 
 def as_text(study: Study, pictures: list[Path]) -> str:
@@ -57,7 +55,7 @@ def _free(free: FreePart, subject: Subject) -> dict[str, Any]:
 
 def _motion(motion: Any, subject: Subject) -> dict[str, Any]:
     return {"nu_rad_per_s": motion.nu, **of_driver(subject, motion.nu), "stability": motion.stability,
-            "turns": motion.turns, "eigenvalues_per_s": motion.eigenvalues}
+            "turns": motion.is_turning, "eigenvalues_per_s": motion.eigenvalues}
 
 
 def _steady(steady: SteadyPart, subject: Subject) -> dict[str, Any]:

@@ -2,7 +2,7 @@
 
 For a given n = ν3 a steady motion solves the linear system (diag(r) − n [·×w]) ζ = b; what remains is one scalar
 equation, a polynomial of degree 3 in n:  n det(diag(r) − n [·×w]) = g·adj(diag(r) − n [·×w]) b.  So none is missed.
-Where damping lacks a direction, whole lines of steady motions exist; they are returned as families.
+Where a direction has no damping, whole lines of steady motions exist; they are returned as families.
 """
 
 from __future__ import annotations
@@ -27,8 +27,8 @@ class SteadyMotion:
     stability: str             # "stable", "unstable", "neutral"
 
     @property
-    def turns(self) -> bool:
-        """True when the vehicle goes round."""
+    def is_turning(self) -> bool:
+        """Whether the vehicle yaws."""
         return abs(self.nu[2]) > 1e-9 * max(1.0, float(np.abs(self.nu).max()))
 
 
@@ -49,7 +49,7 @@ def steady_polynomial(field: Field) -> np.ndarray:
     """
     r, w = field.decay_per_s.copy(), field.gyro
     r[field.dof :] = 1.0
-    g, b = field.yaw_row, field.drive
+    g, b = field.yaw_row, field.forcing
     others = np.array([r[1] * r[2], r[2] * r[0], r[0] * r[1]])
     return np.array([
         -float(g @ (others * b)),
@@ -75,7 +75,7 @@ def steady_at_yaw(field: Field, n: float) -> np.ndarray | None:
     matrix = np.diag(field.decay_per_s[:m]) - n * field.cross_matrix
     if not np.linalg.cond(matrix) < 1e11:
         return None
-    return np.linalg.solve(matrix, field.drive[:m])
+    return np.linalg.solve(matrix, field.forcing[:m])
 
 
 def _polished(field: Field, zeta: np.ndarray) -> np.ndarray | None:
@@ -89,7 +89,7 @@ def _polished(field: Field, zeta: np.ndarray) -> np.ndarray | None:
         zeta = zeta - step
         if np.abs(step).max() < 1e-14 * scale:
             break
-    size = np.abs(field.drive).max() + np.abs(field.decay_per_s).max() * scale + np.abs(field.gyro).max() * scale**2
+    size = np.abs(field.forcing).max() + np.abs(field.decay_per_s).max() * scale + np.abs(field.gyro).max() * scale**2
     return zeta if np.abs(field.rates(zeta)).max() <= 1e-10 * max(size, 1e-300) else None
 
 
@@ -115,15 +115,15 @@ def steady_motions(field: Field) -> list[SteadyMotion]:
 def families(field: Field) -> list[Family]:
     """Whole lines and planes of steady motions, where damping lacks a direction."""
     m = field.dof
-    decay, drive, g = field.decay_per_s[:m], field.drive[:m], field.yaw_row[:m]
+    decay, forcing, g = field.decay_per_s[:m], field.forcing[:m], field.yaw_row[:m]
     fastest = decay.max(initial=0.0)
     undamped = decay <= 1e-12 * fastest
     if not undamped.any():
         return []
     out = []
-    if np.all(np.abs(drive[undamped]) <= 1e-12 * max(np.abs(drive).max(initial=0.0), 1e-300)):
-        out += _straight_family(field, undamped, decay, drive, g)
-    if fastest == 0.0 and not drive.any() and np.abs(field.gyro).max() > 0.0:
+    if np.all(np.abs(forcing[undamped]) <= 1e-12 * max(np.abs(forcing).max(initial=0.0), 1e-300)):
+        out += _straight_family(field, undamped, decay, forcing, g)
+    if fastest == 0.0 and not forcing.any() and np.abs(field.gyro).max() > 0.0:
         axis = field.gyro[:m] if m == 3 else np.zeros(m)
         if m == 3 and abs(g @ axis) > 0.0:
             words = "turning on the spot, or along a circle, at any rate (the axis of the free motion)"
@@ -131,10 +131,10 @@ def families(field: Field) -> list[Family]:
     return out
 
 
-def _straight_family(field: Field, undamped: np.ndarray, decay: np.ndarray, drive: np.ndarray,
+def _straight_family(field: Field, undamped: np.ndarray, decay: np.ndarray, forcing: np.ndarray,
                      g: np.ndarray) -> list[Family]:
-    """Straight motions ν3 = 0: the damped components are fixed by the drive, the others free but for g·ζ = 0."""
-    base = np.where(undamped, 0.0, drive / np.where(undamped, 1.0, decay))
+    """Straight motions ν3 = 0: the damped components are fixed by the forcing, the others free but for g·ζ = 0."""
+    base = np.where(undamped, 0.0, forcing / np.where(undamped, 1.0, decay))
     free = np.flatnonzero(undamped)
     pull = g[free]
     shift = -(g @ base)

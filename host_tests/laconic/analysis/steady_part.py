@@ -21,7 +21,7 @@ def _studied_inputs(subject: Subject, wishes: Wishes) -> Inputs:
 def steady_part(result: Study, wishes: Wishes) -> None:
     subject, inputs = result.subject, _studied_inputs(result.subject, wishes)
     if wishes.straight is None and pushed.world_force_acts(subject):
-        _tell_pushed(result)
+        _describe_pushed(result)
         return
     if wishes.straight is None and subject.held:
         result.say("steady", subject.held)
@@ -31,7 +31,7 @@ def steady_part(result: Study, wishes: Wishes) -> None:
     result.steady = SteadyPart(motions, confirmations, families(found), inputs=dict(inputs))
     for motion, confirmation in zip(motions, confirmations, strict=True):
         rates = ", ".join(_complex_text(v) for v in motion.eigenvalues)
-        shape = "circle" if motion.turns else "straight"
+        shape = "circle" if motion.is_turning else "straight"
         result.say("steady", f"{shape}, {motion.stability}: {motion_text(subject, motion.nu)}; eigenvalues {rates} "
                              f"1/s; {confirmation.words}.")
         if not confirmation.holds:
@@ -49,11 +49,11 @@ def _complex_text(value: complex) -> str:
     return f"{value.real:.5g}" if abs(value.imag) < 1e-12 * abs(value) else f"{value.real:.5g} {value.imag:+.5g}i"
 
 
-def _tell_pushed(result: Study) -> None:
+def _describe_pushed(result: Study) -> None:
     found = pushed.headings(result.subject)
     result.steady = SteadyPart([], [], [], pushed=found)
-    result.say("steady", "A force fixed in the world acts: it turns against the body, so ν has no steady value of its "
-               "own; the question is which heading the vehicle keeps.")
+    result.say("steady", "A force fixed in the world acts: it rotates against the body, so ν has no steady value; "
+               "the question is which heading the vehicle keeps.")
     if found is None:
         result.say("steady", "With damping or a gyroscopic term the heading depends on the speed; see `laconic "
                              "simulate`.")

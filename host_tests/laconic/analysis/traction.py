@@ -14,7 +14,7 @@ from typing import Any
 import numpy as np
 
 from laconic.analysis.from_core import Subject, nu_rates
-from laconic.analysis.geometry import wheel_places
+from laconic.analysis.geometry import wheel_positions_m
 from laconic.core.plant import Plant
 from laconic.scene.drive import Drive
 from laconic.simulation import run_window
@@ -39,8 +39,8 @@ class Traction:
     first_slip_s: float | None
     slipping_wheels: list[int]       # from 1, at that moment
     lifting: dict[str, float]        # "wheel 2" → first time of a negative normal load
-    static_normal_N: np.ndarray      # loads at rest
-    statics_hold: bool               # whether the contact points can carry the weight without tipping
+    static_normal_N: np.ndarray      # at rest
+    statics_hold: bool               # whether the contact points can balance the weight
     words: list[str] = field(default_factory=list)
 
 
@@ -68,7 +68,7 @@ def _sample(sampler: _Sampler, drive: Drive, tick: int) -> None:
 
 
 def _retaken(sampler: _Sampler, drive: Drive, ticks: list[int], at: int) -> bool:
-    """When the newest sample is the first that slips: takes the steps since the one before again, one by one."""
+    """Repeats the steps before the first sample that slips one by one, to find the slip; True if it slips."""
     if not sampler.slips():
         sampler.keep = (sampler.plant.save(), at)
         return False
@@ -96,7 +96,7 @@ class _Sampler:
         core, n = subject.core, subject.wheel_count
         self.pull = core.numbers(self.contact.pull, -1, 2)[:n]
         self.axle = core.numbers(self.contact.axle, -1, 2)[:n]
-        self.place = core.numbers(self.contact.point_m, -1, 2)[:n]
+        self.positions_m = core.numbers(self.contact.point_m, -1, 2)[:n]
         self.worst_N = self.worst_Nm = 0.0
         self.keep: Any = None  # the state at the newest sample that does not slip, and its tick
 
@@ -131,9 +131,9 @@ class _Sampler:
         acceleration = radius * np.array([rate[0] - nu[1] * yaw_rate, rate[1] + nu[0] * yaw_rate])
         ground = along[:, None] * self.pull + lateral[:, None] * self.axle
         force, moment = outer_wrench(inputs, heading)
-        turned = self.place[:, 0] @ ground[:, 1] - self.place[:, 1] @ ground[:, 0]
+        ground_Nm = self.positions_m[:, 0] @ ground[:, 1] - self.positions_m[:, 1] @ ground[:, 0]
         left_N = mass * acceleration - ground.sum(axis=0) - force
-        left_Nm = mass * radius**2 * big * rate[2] - turned - moment
+        left_Nm = mass * radius**2 * big * rate[2] - ground_Nm - moment
         self.worst_N = max(self.worst_N, float(np.abs(left_N).max()))
         self.worst_Nm = max(self.worst_Nm, abs(float(left_Nm)))
 
@@ -173,12 +173,12 @@ def _judged(subject: Subject, sampler: _Sampler) -> Traction:
         time, along, lateral, brake, normal, use, nu, pose, sampler.worst_N, sampler.worst_Nm,
         None if first is None else float(time[first]),
         [] if first is None else [i + 1 for i in range(n) if use[first, i] > 1.0],
-        lifting, *static_loads(subject))
+        lifting, *static_normal_loads(subject))
     result.words.extend(_words(subject, result, friction))
     return result
 
 
-def static_loads(subject: Subject) -> tuple[np.ndarray, bool]:
+def static_normal_loads(subject: Subject) -> tuple[np.ndarray, bool]:
     """Normal loads at rest, and whether they balance the weight (one wheel, or wheels in a line, cannot)."""
     contact, model = _prepared_contact(subject), subject.model
     count = int(contact.point_count)
@@ -199,12 +199,12 @@ def _words(subject: Subject, found: Traction, friction: float) -> list[str]:
     if not found.statics_hold:
         alone = "One point of contact" if points == 1 else f"{points} points of contact in a line"
         words.append(f"{alone} cannot hold the body upright; the normal loads are the nearest that statics allows and "
-                     "say little. Add [[vehicle.support]] points.")
+                     "mean little. Add [[vehicle.support]] points.")
     elif points > 3:
-        words.append(f"{points} points share the weight: statics alone does not settle the loads; the least-squares "
-                     "share is shown, which is that of equally soft suspensions.")
+        words.append(f"{points} points share the weight: statics alone does not give the normal loads; the least-norm "
+                     "distribution is shown, which is that of equally soft suspensions.")
     for name, when in found.lifting.items():
-        words.append(f"{name.capitalize()} would lift off at {when:.4g} s: its load falls below zero.")
+        words.append(f"{name.capitalize()} would lift off at {when:.4g} s: its normal load falls below zero.")
     shared = _shared_lateral(subject)
     if shared:
         words.append(f"Fixed wheels {', '.join(map(str, shared))} stand on one axle line: only the sum of their "
@@ -217,7 +217,7 @@ def _words(subject: Subject, found: Traction, friction: float) -> list[str]:
     if found.first_slip_s is None:
         return [*words, f"No wheel slips: the friction cone is used to {100.0 * most:.0f} % at most."]
     which = ", ".join(str(i) for i in found.slipping_wheels)
-    worst = "a wheel pulls without any load"
+    worst = "a wheel pulls without any normal load"
     if np.isfinite(most):
         worst = f"up to {100.0 * most:.0f} % of the friction cone"
     wheels = f"wheel{'s' if len(found.slipping_wheels) > 1 else ''} {which}"
@@ -229,12 +229,12 @@ def _shared_lateral(subject: Subject) -> list[int]:
     """Fixed wheels on one common axle line, from 1."""
     wheels, fixed = subject.vehicle.wheel, subject.core.lib.LACONIC_WHEEL_FIXED
     numbers = [i for i in range(subject.wheel_count) if wheels[i].kind == fixed]
-    places = wheel_places(subject)
+    positions_m = wheel_positions_m(subject)
     shared: set[int] = set()
     for a in numbers:
         axle = np.array([np.cos(wheels[a].axle_rad), np.sin(wheels[a].axle_rad)])
         for b in numbers:
-            apart = places[b] - places[a]
+            apart = positions_m[b] - positions_m[a]
             parallel = abs(np.sin(wheels[b].axle_rad - wheels[a].axle_rad)) < 1e-9
             off_line = abs(axle[0] * apart[1] - axle[1] * apart[0])
             if a != b and parallel and off_line < 1e-9 * max(1.0, float(np.abs(apart).max())):

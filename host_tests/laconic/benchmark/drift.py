@@ -12,7 +12,7 @@ from laconic.core.plant import Plant
 from laconic.errors import Refused
 from laconic.scene import METHODS, Scene
 
-STEP_S, STEPS, LOOKS = 0.1, 1_000_000, 60
+STEP_S, STEPS, CHECKS = 0.1, 1_000_000, 60
 NORM_STEPS_S = (1e-6, 1e-4, 1e-2, 0.1, 1.0, 10.0, 1e3)
 
 
@@ -34,24 +34,24 @@ def drift_rows(scene: Scene, reals: tuple[str, ...], methods: tuple[str, ...] = 
                advance: Any = lambda: None) -> list[dict[str, Any]]:
     """Largest relative change of energy and K up to some numbers of steps."""
     still = free(scene).with_run(step_s=STEP_S, duration_s=STEP_S * steps)
-    looks = np.unique(np.rint(np.logspace(0, np.log10(steps), LOOKS)).astype(int))
+    checks = np.unique(np.rint(np.logspace(0, np.log10(steps), CHECKS)).astype(int))
     rows = []
     for real in reals:
         for method in methods:
-            rows += _drift_of(still.with_run(method=method), real, looks)
+            rows += _drift_of(still.with_run(method=method), real, checks)
             advance()
     return rows
 
 
-def _drift_of(scene: Scene, real: str, looks: np.ndarray) -> list[dict[str, Any]]:
+def _drift_of(scene: Scene, real: str, checks: np.ndarray) -> list[dict[str, Any]]:
     core = load(real)
     row = {"real": real, "method": scene.run.method}
     try:
         plant = scene.plant(core)
         begin, worst, rows, done, held = invariants(plant), np.zeros(2), [], 0, core.input()
-        for look in looks:
-            plant.run(held, int(look) - done)
-            done = int(look)
+        for check in checks:
+            plant.run(held, int(check) - done)
+            done = int(check)
             worst = np.maximum(worst, np.abs(invariants(plant) / begin - 1.0))
             rows.append(row | {"steps": done, "status": "ok", "energy": float(worst[0]), "K": float(worst[1])})
         return rows

@@ -18,7 +18,7 @@ from laconic.verification.reference import Reference
 
 STEP_S, STEPS = 0.01, 100
 RTOL, ATOL = 1e-12, 1e-14
-METHOD_ERROR = 1e-6  # what the step may cost; rounding may cost as many digits as the condition number says
+METHOD_ERROR = 1e-6  # what the step may cost; rounding may cost as many digits as the condition number has
 
 Vehicle = dict[str, Any]
 Change = Callable[[Vehicle], None]

@@ -11,8 +11,8 @@ from matplotlib.colors import LogNorm
 from matplotlib.figure import Figure
 
 from laconic.benchmark.svg import SIZE, TITLE_LETTERS, svg
-from laconic.pictures.curve_style import nested, taking_turns, wrapped
-from laconic.pictures.method_style import look
+from laconic.pictures.curve_style import alternating_markers, nested, wrapped
+from laconic.pictures.method_style import style_of
 from laconic.pictures.plotting import figure
 from laconic.scene import METHODS
 
@@ -41,8 +41,8 @@ def error_against_time(rows: Sequence[Row], scene: str, title: str = "") -> str:
     for method in METHODS:
         for real, style, name in (("double", "-", method), ("single", "--", None)):
             chosen = [r for r in mine if (r["method"], r["real"]) == (method, real)]
-            _lines(axes, chosen, "us_per_second", "error_nu", look(method, MARKS, label=name, linestyle=style)
-                   if method != "auto" else look(method, MARKS, label=name))
+            _lines(axes, chosen, "us_per_second", "error_nu", style_of(method, MARKS, label=name, linestyle=style)
+                   if method != "auto" else style_of(method, MARKS, label=name))
     axes.plot([], [], "-", color="0.4", label="double")
     axes.plot([], [], "--", color="0.4", label="single")
     own = [r for r in mine if r.get("own")]
@@ -65,12 +65,12 @@ def precision(rows: Sequence[Row]) -> str:
     axes = picture.add_subplot()
     for method in METHODS[1:]:
         mine = [r for r in rows if r["who"] == method and r["real"] == "double"]
-        _lines(axes, mine, "ms", "error_nu", look(method, MARKS))
+        _lines(axes, mine, "ms", "error_nu", style_of(method, MARKS))
     others = sorted({r["who"] for r in rows} - set(METHODS))
     greys = np.linspace(0.15, 0.75, max(1, len(others)))
     for name, grey, marker in zip(others, greys, "xxxx1234+*"[: len(others)].ljust(len(others), "x"), strict=True):
         _lines(axes, [r for r in rows if r["who"] == name], "ms", "error_nu",
-               look(name, MARKS + 1.0, color=str(round(float(grey), 2)), linestyle=":", marker=marker))
+               style_of(name, MARKS + 1.0, color=str(round(float(grey), 2)), linestyle=":", marker=marker))
     axes.axhline(1e-6, color="0.6", linewidth=0.8, label="error of 1e-6")
     axes.set(xlabel="run time of all ten seconds [ms]", ylabel="largest error of ν [rad/s]", title="S1")
     _legend_below(picture, axes)
@@ -122,7 +122,7 @@ def drift(rows: Sequence[Row], real: str, what: str) -> str:
     count = len(METHODS[1:])
     for order, method in enumerate(METHODS[1:]):
         mine = [r for r in rows if r["method"] == method and r["real"] == real and r["status"] == "ok"]
-        _lines(axes, mine, "steps", what, look(method, MARKS + 1.0, markevery=taking_turns(order, count),
+        _lines(axes, mine, "steps", what, style_of(method, MARKS + 1.0, markevery=alternating_markers(order, count),
                                            **nested(order, count)))
     name = {"K": "the yaw integral K = (Aν)₃"}.get(what, what)
     axes.set(xlabel="steps of 0.1 s", ylabel="relative change so far", title=f"{name}, {real}")

@@ -1,4 +1,4 @@
-"""What a page about somebody's robot says, section by section."""
+"""The sections of a page about the user's robot."""
 
 from __future__ import annotations
 

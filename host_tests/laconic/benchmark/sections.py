@@ -1,4 +1,4 @@
-"""What the project's page says, section by section, and its goals, which are a page of their own."""
+"""The sections of the project's page, and its goals, which are a page of their own."""
 
 from __future__ import annotations
 

@@ -17,14 +17,14 @@ Terms = Callable[[float], tuple[np.ndarray, ...]]
 
 def jacobian(reference: Reference, state: np.ndarray) -> np.ndarray:
     """Derivative of the rates by the state, for drives without forces fixed in the world."""
-    (n1, n2, n3), turn = state[:3], 1.0 / reference.yaw_scale
+    (n1, n2, n3), per_yaw = state[:3], 1.0 / reference.yaw_scale
     cosine, sine, radius = np.cos(state[5]), np.sin(state[5]), reference.totals.wheel_radius_m
     out = np.zeros((len(state), len(state)))
-    turning = turn * np.array([[0.0, n3, n2], [-n3, 0.0, -n1], [0.0, 0.0, 0.0]])
+    turning = per_yaw * np.array([[0.0, n3, n2], [-n3, 0.0, -n1], [0.0, 0.0, 0.0]])
     out[:3, :3] = reference.mobility @ turning - reference.damping
     out[3, :3], out[4, :3] = (radius * cosine, -radius * sine, 0.0), (radius * sine, radius * cosine, 0.0)
     out[3, 5], out[4, 5] = radius * (-n1 * sine - n2 * cosine), radius * (n1 * cosine - n2 * sine)
-    out[5, 2] = turn
+    out[5, 2] = per_yaw
     out[6:, :3] = reference.rows
     return out
 

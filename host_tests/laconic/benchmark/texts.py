@@ -1,4 +1,4 @@
-"""What the report's page says above its pictures and tables, by section; paragraphs are separated by empty lines."""
+"""The texts of the report's page above its pictures and tables, by section; paragraphs are separated by empty lines."""
 
 from __future__ import annotations
 

@@ -83,7 +83,7 @@ class WatchedNode(NodeOnBus):
         for name in ("crc_errors", "sequence_errors", "repeated", "lost", "malformed", "refused"):
             if after[name] > before[name]:
                 self.row.detected_by[name] += after[name] - before[name]
-        self.look()
+        self.refresh()
 
     @staticmethod
     def takes_once(message: can.Message) -> bool:
@@ -96,10 +96,10 @@ class WatchedNode(NodeOnBus):
 
     def pump(self) -> bool:
         busy = super().pump()
-        self.look()
+        self.refresh()
         return busy
 
-    def look(self) -> None:
+    def refresh(self) -> None:
         """The invariants."""
         view, before = self.node.look(), self.view
         strange = [v for v in view["voltage_V"] if v not in self.allowed_V]

@@ -49,7 +49,7 @@ class LazyCommands(click.Group):
 
 
 def summary(command: str) -> str:
-    """What `laconic --help` says of a command: the docstring of its module, read from the source without an import."""
+    """The line of `laconic --help` for a command: the docstring of its module, read without an import."""
     source = Path(laconic.cli.commands.__path__[0], f"{command}.py").read_text(encoding="utf-8")
     return ast.get_docstring(ast.parse(source)) or ""
 
@@ -102,7 +102,7 @@ def run(arguments: list[str]) -> int:
 
 
 def usage(error: click.ClickException) -> str:
-    """What click says, in one line, with where to read more."""
+    """The message of click in one line, with the help to read."""
     context = getattr(error, "ctx", None)
     more = f"; see {context.command_path} --help" if context else ""
     return error.format_message().rstrip(".") + more
@@ -115,7 +115,7 @@ def unexpected(error: Exception) -> LaconicError:
     if isinstance(error, OSError) and error.strerror:
         return BadInput(f"{error.filename}: {reason_of(error)}" if error.filename else f"error: {reason_of(error)}")
     if isinstance(error, MemoryError):
-        return BadInput("there is not enough memory for this; ask for fewer steps or outputs")
+        return BadInput("there is not enough memory for this; run fewer steps or outputs")
     if isinstance(error, ModuleNotFoundError):
         return BadInput(f"the Python environment has no {error.name}; build again, which brings it up to date")
     last = traceback.extract_tb(error.__traceback__)[-1]
@@ -129,7 +129,7 @@ def _kind(error: Exception) -> str:
 
 
 def fail(message: str, status: int) -> int:
-    """Says why on stderr, in one line."""
+    """Prints the reason on stderr, in one line."""
     with suppress(OSError):  # nobody reads stderr either
         line = " ".join(message.split())
         click.echo("laconic: " + "".join(c if c.isprintable() else ascii(c)[1:-1] for c in line), err=True)

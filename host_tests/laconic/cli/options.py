@@ -20,7 +20,7 @@ PICTURES = (".png", ".svg", ".pdf")
 
 
 class InputPath(click.ParamType[Path]):
-    """A file or folder that a command reads; whoever reads it says what is wrong with it."""
+    """A file or folder that a command reads; what reads it reports what is wrong with it."""
 
     name = "path"
 
@@ -108,7 +108,7 @@ def belongs_to(flag: str, is_on: bool, *options: str) -> None:
     for parameter in context.command.params:
         given = context.get_parameter_source(parameter.name) is ParameterSource.COMMANDLINE
         if given and not is_on and parameter.opts[0] in options:
-            raise BadInput(f"{parameter.opts[0]}: says something to {flag} alone; leave it out, or add {flag}")
+            raise BadInput(f"{parameter.opts[0]}: has a meaning with {flag} alone; leave it out, or add {flag}")
 
 
 def goes_with(flag: str, *options: str) -> None:

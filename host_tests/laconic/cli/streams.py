@@ -1,4 +1,4 @@
-"""stdout that says what is wrong with it, warnings on stderr, and signals that end a command in order.
+"""stdout that reports why a write fails, warnings on stderr, and signals that end a command in order.
 
 Python turns a reader that has closed the pipe into exceptions that libraries catch and take for failures of their own;
 here it is one that nothing but the command line catches.
@@ -17,7 +17,7 @@ import click
 from laconic.errors import BadInput, reason_of
 
 ENDING_SIGNALS = ("SIGINT", "SIGTERM", "SIGHUP")
-SHELL_SIGNAL = 128  # a shell says 128 + signal of what a signal ended
+SHELL_SIGNAL = 128  # a shell reports 128 + signal for a process that a signal ended
 SIGPIPE = 13        # on every system that has it; Windows has not
 
 
@@ -53,7 +53,7 @@ class Stdout(io.FileIO):
 
 
 def guard() -> None:
-    """Puts our stdout and our handlers of signals in place; for the process that the command line is."""
+    """Installs our stdout and signal handlers; only for the process of the command line."""
     open_standard()
     encoding = getattr(sys.stdout, "encoding", "utf-8")
     raw = Stdout(1, "w", closefd=False)
@@ -84,7 +84,7 @@ def warn(message: str) -> None:
 
 
 def stop(number: int, _: FrameType | None) -> None:
-    """What a signal does."""
+    """The handler of the signals."""
     raise Stopped(number)
 
 

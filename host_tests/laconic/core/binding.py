@@ -1,4 +1,4 @@
-"""The shipping C core from Python: loads the shared library and speaks numpy; physics is only on the other side.
+"""The shipping C core from Python: loads the shared library and gives numpy arrays; all physics is in the library.
 
     core = load("double")
     vehicle = core.vehicle({"mass_kg": 10.0, "wheel": [{"kind": "omni", "x_m": 0.1}], …})
@@ -53,7 +53,7 @@ def load(real: str = "double") -> Core:
 
 
 class Core:
-    """The C functions of one scalar type with Python's manners."""
+    """The C functions of one scalar type, with Python's types and exceptions."""
 
     def __init__(self, real: str, ffi: FFI, lib: Any):
         self.real, self.ffi, self.lib = real, ffi, lib
@@ -72,7 +72,7 @@ class Core:
         return tuple(self.text(m.name) for m in methods if m != self.ffi.NULL)
 
     def _input_fields(self) -> dict[str, tuple[int, int]]:
-        """Name → (place, length) in laconic_input seen as one row of numbers: it holds nothing else."""
+        """Name → (offset, length) in laconic_input seen as one row of numbers: it holds nothing else."""
         found = {}
         for name, field in self.ffi.typeof("laconic_input").fields:
             length = field.type.length if field.type.kind == "array" else 1
@@ -110,26 +110,26 @@ class Core:
     def vehicle(self, data: Mapping[str, Any]) -> Any:
         """A laconic_vehicle from a mapping with the keys of `[vehicle]`; `motor` is fitted, nothing else is checked.
 
-        Wheels beyond the core's room are only counted, so that the check refuses them.
+        Wheels beyond the core's array are only counted, so that the check refuses them.
         """
         plain = {key: value for key, value in data.items() if key not in ("wheel", "support", "motor")}
         wheels, supports = data.get("wheel", []), data.get("support", [])
         vehicle = self.ffi.new("laconic_vehicle *", plain)
         vehicle.wheel_count, vehicle.support_count = len(wheels), len(supports)
-        for place, wheel in zip(vehicle.wheel, wheels, strict=False):
-            self._set_wheel(place, wheel)
-        for place, support in zip(vehicle.support, supports, strict=False):
+        for target, wheel in zip(vehicle.wheel, wheels, strict=False):
+            self._set_wheel(target, wheel)
+        for target, support in zip(vehicle.support, supports, strict=False):
             for field in self.fields_of("vehicle.support[#]"):
-                setattr(place, field.key, support[field.key])
+                setattr(target, field.key, support[field.key])
         if motor := data.get("motor"):
             self._fit_motor(vehicle, motor)
         return vehicle
 
-    def _set_wheel(self, place: Any, wheel: Mapping[str, Any]) -> None:
+    def _set_wheel(self, target: Any, wheel: Mapping[str, Any]) -> None:
         kind = getattr(self.lib, f"LACONIC_WHEEL_{WHEEL_KINDS[wheel['kind']]}")
         given = {"roller_rad": OMNI_ROLLER_RAD, **wheel, "kind": kind}
         for field in self.fields_of("vehicle.wheel[#]"):
-            setattr(place, field.key, given.get(field.key, 0))
+            setattr(target, field.key, given.get(field.key, 0))
 
     def _fit_motor(self, vehicle: Any, motor: Mapping[str, float]) -> None:
         why = self.why()
@@ -162,7 +162,7 @@ class Core:
 
     # ---- input
 
-    def input_place(self, signal: str) -> int:
+    def input_offset(self, signal: str) -> int:
         """Where a signal such as voltage_V[2] stands in a row of input numbers."""
         name, _, index = signal.partition("[")
         start, _ = self.input_fields[name]
@@ -173,7 +173,7 @@ class Core:
         """A row of input numbers from {"voltage_V": [1, 2], "voltage_V[2]": 3, "body_moment_Nm": 4 …}."""
         row = np.zeros(self.input_length, self.dtype)
         for signal, value in values.items():
-            start = self.input_place(signal)
+            start = self.input_offset(signal)
             many = np.atleast_1d(np.asarray(value, self.dtype))
             row[start : start + len(many)] = many
         return row

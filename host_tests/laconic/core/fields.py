@@ -9,7 +9,7 @@ from __future__ import annotations
 from dataclasses import dataclass
 from typing import Any
 
-COUNTED = ("wheel", "support")  # tables of which there are several; the field of that name says how many
+COUNTED = ("wheel", "support")  # tables of which there are several; the field of that name counts them
 ITEM = "[#]"
 
 
@@ -38,18 +38,18 @@ class Field:
 
     @property
     def counts(self) -> bool:
-        """Whether it says how many tables there are, so that no scene has it as a key."""
+        """Whether it counts tables, so that no scene has it as a key."""
         return self.table == "vehicle" and self.key in COUNTED
 
     def values(self, root: Any) -> list[float]:
         """Its numbers in a laconic_vehicle or laconic_start: of all items that there is room for."""
         if self.counts:
             return [int(getattr(root, f"{self.key}_count"))]
-        places = [root]
+        structs = [root]
         for name in self.table.split(".")[1:]:
             inner = getattr(root, name.removesuffix(ITEM))
-            places = list(inner) if name.endswith(ITEM) else [inner]
-        found = [getattr(place, self.key) for place in places]
+            structs = list(inner) if name.endswith(ITEM) else [inner]
+        found = [getattr(struct, self.key) for struct in structs]
         if self.path.endswith(ITEM):
             found = list(found[0])
         return [float(each) if self.kind == "REAL" else int(each) for each in found]

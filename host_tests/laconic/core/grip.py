@@ -1,4 +1,4 @@
-"""Was the no-slip model true? What a run asked of the ground, against what the ground gives.
+"""Whether a run fits the no-slip model: the reactions that it needs against the grip that is available.
 
 A wheel slips where the reaction it needs exceeds friction coefficient times normal load; it lifts where its normal load
 would have to be below zero. The model does neither: from there on it describes another robot.
@@ -31,7 +31,7 @@ class Grip:
     """What the watch found over a run; events are None where there was none."""
 
     friction_coefficient: float | None  # None: not given, so that slip cannot be judged
-    looks: int                          # instants that were looked at: the start of every step, and the end
+    looks: int                          # instants that were checked: the start of every step, and the end
     slipping: int
     lifting: int
     first_slip: GripEvent | None
@@ -49,7 +49,7 @@ class Grip:
 
     @property
     def holds(self) -> bool:
-        """Whether the ground gave what the model took at every instant."""
+        """Whether the ground gave the needed reactions at every instant."""
         return not (self.slipping or self.lifting)
 
     def as_json(self) -> dict[str, Any]:
@@ -57,7 +57,7 @@ class Grip:
         return {"holds": self.holds, **asdict(self)}
 
     def warning(self) -> str:
-        """What there is to say, in one line for people; "" where the ground gave all."""
+        """The events in one line; "" where every reaction was available."""
         found = []
         if self.first_slip and self.worst_slip:
             first, worst = self.first_slip, self.worst_slip

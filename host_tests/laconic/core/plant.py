@@ -34,7 +34,7 @@ class Plant:
 
     @property
     def chosen_method(self) -> str:
-        """The method that works: differs from the one asked for only with auto."""
+        """The method that steps; it differs from the given one only with auto."""
         return self.core.text(self.c.integrator.chosen.name)
 
     def run(self, held: Any, steps: int = 1) -> None:

@@ -17,7 +17,7 @@ MEMBERS = {  # of laconic_outputs, where they are not called as the signal is
     "wheel_reaction_N": ("reactions", "along_N"), "wheel_lateral_N": ("reactions", "lateral_N"),
     "no_slip_margin_N": ("reactions", "no_slip_margin_N"),
 }
-GROUND = ("wheel_reaction_N", "wheel_lateral_N", "no_slip_margin_N")  # what only the reactions tell
+GROUND = ("wheel_reaction_N", "wheel_lateral_N", "no_slip_margin_N")  # what needs the reactions
 
 
 class Recorder:
@@ -27,12 +27,12 @@ class Recorder:
         core, ffi = plant.core, plant.core.ffi
         self._plant, self.signals = plant, signals
         self._table = np.zeros((rows, len(signals)), core.dtype)
-        self._places = np.array([place_of(core, signal) for signal in signals], np.uint32)
+        self._offsets = np.array([offset_of(core, signal) for signal in signals], np.uint32)
         ground = watched or any(signal.partition("[")[0] in GROUND for signal in signals)
         self._grip = ffi.new("laconic_grip *") if watched else ffi.NULL
         self.c: Any = ffi.new("laconic_recorder *", {
             "contact": plant.contact if ground else ffi.NULL, "grip": self._grip, "every": every,
-            "column_count": len(signals), "column": ffi.from_buffer("uint32_t[]", self._places),
+            "column_count": len(signals), "column": ffi.from_buffer("uint32_t[]", self._offsets),
             "row": ffi.from_buffer("laconic_real[]", self._table, require_writable=True), "row_room": rows})
 
     def take_last(self, held: Any) -> None:
@@ -51,7 +51,7 @@ class Recorder:
         return Grip.of(self._grip, self._plant, step_s) if self._grip else None
 
 
-def place_of(core: Any, signal: str) -> int:
+def offset_of(core: Any, signal: str) -> int:
     """Where a signal stands in laconic_outputs, in bytes; the index counts from 1."""
     name, _, index = signal.partition("[")
     member = ("input", name) if name in core.input_fields else MEMBERS.get(name, (name,))

@@ -17,7 +17,7 @@ class Schedule:
     """Values of some signals over steps from `first_step` on; every other input is zero.
 
     Held: `values` (stretch, signal), and `until_step`, where each stretch ends. Sampled: `values` (step,
-    start|middle|end, signal). `signals` are places in a row of input numbers, see Core.input_place.
+    start|middle|end, signal). `signals` are offsets in a row of input numbers, see Core.input_offset.
     """
 
     @np.errstate(over="ignore")  # the core names a number that is too large for its scalar type

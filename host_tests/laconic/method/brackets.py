@@ -35,9 +35,9 @@ class Bracketed:
         out = []
         for alpha, omega in enumerate(self.pseudo_velocities):
             momentum = sp.diff(self.lagrangian, omega)
-            places = (*self.pseudo_velocities, *self.coordinates)
+            variables = (*self.pseudo_velocities, *self.coordinates)
             rates = (*self.pseudo_rates, *self.velocities)
-            change = sp.Add(*(sp.diff(momentum, s) * rate for s, rate in zip(places, rates, strict=True)))
+            change = sp.Add(*(sp.diff(momentum, s) * rate for s, rate in zip(variables, rates, strict=True)))
             out.append(tidy(change + self.slopes[alpha] - gyroscopic[alpha]) - self.forces[alpha])
         return out
 

@@ -1,7 +1,7 @@
 """Laconic equations (2.3) and (2.4) and Maggi's equations (1.2) of one system.
 
 Every function returns the list of left side minus right side, one entry for each pseudo-velocity: the equations
-of motion say that all of them vanish. All quantities are plain symbols; time derivatives are written out by
+of motion are that all of them vanish. All quantities are plain symbols; time derivatives are written out by
 the chain rule, so the three forms share no step but the differentiation itself.
 """
 
@@ -88,7 +88,7 @@ def laconic_2_3(system: System) -> list[sp.Expr]:
 
 
 def formal_pseudo_momenta(system: System) -> list[sp.Expr]:
-    """P_α(q, p) from the identity P_α ω_α = p_i v_i; asks for constraints linear in ω and free of t."""
+    """P_α(q, p) from the identity P_α ω_α = p_i v_i; needs constraints linear in ω and free of t."""
     formal_work = sp.Add(*(p * v for p, v in zip(system.momenta, system.velocities, strict=True)))
     pseudo = [sp.diff(formal_work, omega) for omega in system.pseudo_velocities]
     rest = sp.expand(formal_work - sp.Add(*(P * w for P, w in zip(pseudo, system.pseudo_velocities, strict=True))))

@@ -85,13 +85,13 @@ def c_name(name: str) -> str:
 
 
 def _c_symbols(count: int) -> dict[sp.Symbol, sp.Symbol]:
-    places = {"nu_1": "nu[0]", "nu_2": "nu[1]", "nu_3": "nu[2]", "theta": "heading_rad"}
-    places |= {"F_xi": "wrench[0]", "F_eta": "wrench[1]", "tau": "wrench[2]"}
-    places |= {"F_X": "world_force_N[0]", "F_Y": "world_force_N[1]"}
-    places |= {"r_xi": "force_point_m[0]", "r_eta": "force_point_m[1]"}
-    places |= {f"U_{i + 1}": f"voltage_V[{i}]" for i in range(count)}
-    places |= {f"T_{i + 1}": f"axle_torque_Nm[{i}]" for i in range(count)}
-    return {sp.Symbol(name, real=True): sp.Symbol(place, real=True) for name, place in places.items()}
+    targets = {"nu_1": "nu[0]", "nu_2": "nu[1]", "nu_3": "nu[2]", "theta": "heading_rad"}
+    targets |= {"F_xi": "wrench[0]", "F_eta": "wrench[1]", "tau": "wrench[2]"}
+    targets |= {"F_X": "world_force_N[0]", "F_Y": "world_force_N[1]"}
+    targets |= {"r_xi": "force_point_m[0]", "r_eta": "force_point_m[1]"}
+    targets |= {f"U_{i + 1}": f"voltage_V[{i}]" for i in range(count)}
+    targets |= {f"T_{i + 1}": f"axle_torque_Nm[{i}]" for i in range(count)}
+    return {sp.Symbol(name, real=True): sp.Symbol(target, real=True) for name, target in targets.items()}
 
 
 _C_HEAD = """\

@@ -37,8 +37,8 @@ class VehicleNumbers:
         values |= {sp.Symbol("lambda", positive=True): self.lambda_wheel}
         symbols = wheel_rows(len(self.wheel_rows))
         rows = plain_rows(self.wheel_rows)
-        places = ((i, s) for i in range(len(self.wheel_rows)) for s in range(3) if rows[i, s] == symbols[i, s])
-        values |= {symbols[i, s]: self.wheel_rows[i, s] for i, s in places}
+        entries = ((i, s) for i in range(len(self.wheel_rows)) for s in range(3) if rows[i, s] == symbols[i, s])
+        values |= {symbols[i, s]: self.wheel_rows[i, s] for i, s in entries}
         return {symbol: sp.Float(float(value), 17) for symbol, value in values.items()}
 
 

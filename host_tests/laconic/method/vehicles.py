@@ -80,7 +80,7 @@ def carriage(rows: sp.Matrix) -> System:
 
 
 def geometry_row(alpha: sp.Expr, beta: sp.Expr, gamma: sp.Expr, delta: sp.Expr) -> list[sp.Expr]:
-    """One row of Ξ by (4.3) and (4.4): polar place (δ R, α) from Q, axle β, roller γ; S is at Δ R on Qη."""
+    """One row of Ξ by (4.3) and (4.4): polar position (δ R, α) from Q, axle β, roller γ; S is at Δ R on Qη."""
     offset, lambda_yaw = sp.Symbol("Delta", real=True), sp.Symbol("Lambda", positive=True)
     lever = offset * sp.cos(beta + gamma) + delta * sp.sin(beta + gamma - alpha)
     return [entry / sp.sin(gamma) for entry in (sp.cos(beta + gamma), sp.sin(beta + gamma), lever / lambda_yaw)]
@@ -145,7 +145,7 @@ def tractor_with_trailer() -> System:
     trailer += (sideways - hitch * rates[2] - back * trailer_turn * sp.cos(fold)) ** 2
     turning = yaw_inertia * rates[2] ** 2 + trailer_inertia * trailer_turn**2
     turning += wheel_inertia * (rates[4] ** 2 + rates[5] ** 2)
-    # the hitch moves with v e_θ − a ω e_θ⊥; what of that lies across the trailer turns the trailer
+    # the hitch moves with v e_θ − a ω e_θ⊥; what of that lies across the trailer yaws the trailer
     trailer_yaw = (speed * sp.sin(fold) - hitch * yaw_rate * sp.cos(fold)) / drawbar
     return System(
         name="tractor with trailer",

@@ -10,7 +10,7 @@ THICK, THIN = 3.6, 0.9  # points: the first of curves that coincide, and the las
 
 
 def nested(order: int, count: int) -> dict[str, Any]:
-    """Line width and place of curve `order` (from 0) of `count`: each later one is thinner and lies on top.
+    """Line width and height in the picture of curve `order` (from 0) of `count`: later ones are thinner and lie on top.
 
     So where curves coincide, the earlier ones show on both sides of the later ones.
     """
@@ -18,15 +18,15 @@ def nested(order: int, count: int) -> dict[str, Any]:
     return {"linewidth": THICK + share * (THIN - THICK), "zorder": 2.0 + share}
 
 
-def taking_turns(order: int, count: int) -> tuple[int, int]:
+def alternating_markers(order: int, count: int) -> tuple[int, int]:
     """`markevery` of curve `order` of `count`: where curves coincide, their markers do not."""
     return order % count, count
 
 
-def wrapped(name: str, letters: int, said: str = "") -> str:
+def wrapped(name: str, letters: int, addition: str = "") -> str:
     """A title in lines as wide as so many letters: a long name is wrapped, one of too many lines ends in an ellipsis.
 
-    What is `said` of the name follows it after a colon and is never cut off.
+    The `addition` follows the name after a colon and is never cut off.
     """
     lines: list[str] = []
     words = " ".join(name.split())
@@ -36,10 +36,10 @@ def wrapped(name: str, letters: int, said: str = "") -> str:
         words = words[len(line):].lstrip()
     if words:
         lines[-1] = _fitting(lines[-1], letters - 1, at_a_space=False) + "…"
-    if said and lines:
-        is_short = _width(f"{lines[-1]}: {said}") <= letters
-        lines[-1:] = [f"{lines[-1]}: {said}"] if is_short else [f"{lines[-1]}:", said]
-    return "\n".join(lines) or said
+    if addition and lines:
+        is_short = _width(f"{lines[-1]}: {addition}") <= letters
+        lines[-1:] = [f"{lines[-1]}: {addition}"] if is_short else [f"{lines[-1]}:", addition]
+    return "\n".join(lines) or addition
 
 
 def _fitting(words: str, letters: int, at_a_space: bool = True) -> str:

@@ -13,7 +13,7 @@ from matplotlib.colors import CenteredNorm
 from matplotlib.lines import Line2D
 
 MOST_CURVES = 8       # beyond, colours are hard to tell apart
-STRIPES = 60          # stretches of the axis, in which coinciding curves take turns on top
+STRIPES = 60          # stretches of the axis, in which coinciding curves alternate on top
 SAME = 0.012          # of the axis' height: closer curves hide each other
 FLAT = 1e-9           # a curve that varies less is flat: its scale is 1, so that its rounding is not shown
 MOST_CELLS = 1000     # instants in a picture of rows
@@ -35,12 +35,12 @@ def stripes(columns: np.ndarray) -> list[tuple[int, int, int]]:
     near = SAME * max(float(np.ptp(finite, axis=None)) if finite.size else 0.0, FLAT)
     edges = np.unique(np.linspace(0, len(columns) - 1, STRIPES + 1).astype(int))
     found = []
-    for turn, (first, last) in enumerate(zip(edges, edges[1:], strict=False)):
+    for stretch, (first, last) in enumerate(zip(edges, edges[1:], strict=False)):
         part = finite[first : last + 1]
         apart = np.max(np.abs(part[:, :, None] - part[:, None, :]), axis=0)
         for k in range(columns.shape[1]):
             together = np.flatnonzero(apart[k] <= near)
-            if len(together) > 1 and together[turn % len(together)] == k:
+            if len(together) > 1 and together[stretch % len(together)] == k:
                 found.append((int(first), int(last) + 1, k))
     return found
 

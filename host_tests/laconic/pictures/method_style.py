@@ -1,7 +1,7 @@
-"""How a method looks in every picture of the project: one colour and one marker each, in this one table.
+"""How a method is drawn in every picture of the project: one colour and one marker each, in this one table.
 
-    axes.loglog(times, errors, **look("rk4"))              # line and markers, with the method's name as the label
-    axes.plot(t, y, **look("rk4", marker="", label=None))  # whatever is given replaces what the table says
+    axes.loglog(times, errors, **style_of("rk4"))              # line and markers, with the method's name as the label
+    axes.plot(t, y, **style_of("rk4", marker="", label=None))  # a keyword replaces the one of the table
 
 `auto` gives the numbers of the method that it picks, so its points lie on that method's. Its markers are large and
 hollow, lie on top and have no line, so that both are seen.
@@ -36,7 +36,7 @@ METHOD_STYLES = {
 FOREIGN = MethodStyle("#777777", "x")  # somebody else's integrator
 
 
-def look(method: str, size: float = MARKER_SIZE, **replaced: Any) -> dict[str, Any]:
+def style_of(method: str, size: float = MARKER_SIZE, **replaced: Any) -> dict[str, Any]:
     """Keywords for matplotlib's plot functions: colour, marker and label of a method. `size`: marker size in points."""
     style = METHOD_STYLES.get(method, FOREIGN)
     keywords: dict[str, Any] = {"color": style.colour, "marker": style.marker, "markersize": size, "label": method}

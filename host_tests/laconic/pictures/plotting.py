@@ -14,7 +14,7 @@ import numpy as np
 from laconic.outputs import whole_file
 from laconic.pictures.curve_style import wrapped
 from laconic.pictures.curves import MOST_CURVES, head, keep_scale, plot_curves, plot_rows, share_zero
-from laconic.pictures.method_style import look
+from laconic.pictures.method_style import style_of
 
 if TYPE_CHECKING:
     from laconic.simulation import Trajectory
@@ -36,7 +36,7 @@ LETTERS = 110  # in a line of a run's title
 ERROR_CAPTION = (
     "Error: the largest difference to an independent integrator of tight tolerance, over max(1, the largest value).\n"
     "ν: pseudo-velocities. Each point is a step size; a smaller step takes more time and lies further right. In the\n"
-    "grey band, that integrator's own error is as large as the difference, which then says nothing more.")
+    "grey band, that integrator's own error is as large as the difference, which then means nothing more.")
 SLIPS, LIFTS = "#c1121f", "#7b2cbf"
 
 
@@ -131,7 +131,7 @@ def plot_wheel_speeds(axes: Axes, run: Trajectory) -> None:
     head(axes, "Wheel speeds", handles)
 
 
-def mark_ground(places: Mapping[str, Axes], run: Trajectory) -> None:
+def mark_ground(panels: Mapping[str, Axes], run: Trajectory) -> None:
     """The first instants at which a wheel would slip and one would lift, along the path and over time."""
     if run.grip is None:
         return
@@ -140,13 +140,13 @@ def mark_ground(places: Mapping[str, Axes], run: Trajectory) -> None:
         if event is None:
             continue
         x, y = (np.interp(event.time_s, run.time_s, run.columns[name]) for name in ("x_m", "y_m"))
-        places["path"].plot(x, y, "X", ms=size, color=colour, mec="white", zorder=6,
+        panels["path"].plot(x, y, "X", ms=size, color=colour, mec="white", zorder=6,
                             label=f"{event.where} {word} first, {event.time_s:g} s")
         for name in ("velocities", "wheels"):
-            if name in places:
-                places[name].axvline(event.time_s, color=colour, lw=size / 5.0, zorder=1.5)
-                places[name].plot(event.time_s, 0.04, "X", ms=size, color=colour, mec="white", zorder=6,
-                                  transform=places[name].get_xaxis_transform())
+            if name in panels:
+                panels[name].axvline(event.time_s, color=colour, lw=size / 5.0, zorder=1.5)
+                panels[name].plot(event.time_s, 0.04, "X", ms=size, color=colour, mec="white", zorder=6,
+                                  transform=panels[name].get_xaxis_transform())
 
 
 def plot_error_against_time(axes: Axes, points: Mapping[str, Sequence[tuple[float, float]]], floor: float) -> None:
@@ -154,7 +154,7 @@ def plot_error_against_time(axes: Axes, points: Mapping[str, Sequence[tuple[floa
     for name, pairs in points.items():
         if pairs:
             times, errors = zip(*pairs, strict=True)
-            axes.loglog(times, np.maximum(errors, 1e-17), **look(name))
+            axes.loglog(times, np.maximum(errors, 1e-17), **style_of(name))
     axes.set_ylim(bottom=0.3 * min(axes.dataLim.y0, floor))
     axes.axhspan(1e-17, floor, color="0.5", alpha=0.15, lw=0, label="below the\nreference's error")
     axes.set(xlabel="run time per simulated second [µs]", ylabel="largest relative error [–]")
@@ -165,23 +165,23 @@ def plot_error_against_time(axes: Axes, points: Mapping[str, Sequence[tuple[floa
 
 
 def simulation_picture(run: Trajectory, path: Path) -> None:
-    """Path, velocities and wheel speeds of one run, and where the ground could not give what it asks."""
+    """Path, velocities and wheel speeds of one run, and where the ground could not give what it needs."""
     picture = figure(12.0, 7.0)
     below = "wheels" if run.scene.wheel_count else "velocities"
-    places = picture.subplot_mosaic([["path", "velocities"], ["path", below]], width_ratios=(1.0, 1.25))
+    panels = picture.subplot_mosaic([["path", "velocities"], ["path", below]], width_ratios=(1.0, 1.25))
     title(picture, f"{run.method}, step {run.scene.run.step_s:g} s, {run.scene.run.real}", run)
-    plot_velocities(places["velocities"], run)
+    plot_velocities(panels["velocities"], run)
     if run.scene.wheel_count:
-        plot_wheel_speeds(places["wheels"], run)
-    mark_ground(places, run)
-    plot_path(places["path"], run)
+        plot_wheel_speeds(panels["wheels"], run)
+    mark_ground(panels, run)
+    plot_path(panels["path"], run)
     save(picture, path)
 
 
 def title(picture: Figure, text: str, run: Trajectory) -> None:
-    """The picture's title: the scene's name and what is said of it; at the foot in red what the ground cannot give."""
-    said = run.grip.warning() if run.grip else ""
-    lines = textwrap.wrap(f"The ground cannot give what this run asks: {said}" if said else "", 150)
+    """The picture's title: the scene's name and `text`; at the foot in red what the ground cannot give."""
+    missing = run.grip.warning() if run.grip else ""
+    lines = textwrap.wrap(f"The ground cannot give what this run needs: {missing}" if missing else "", 150)
     picture.suptitle(wrapped(run.scene.name, LETTERS, text))
     if lines:
         picture.supxlabel("\n".join(lines), color=SLIPS, fontsize=9)

@@ -166,7 +166,7 @@ class RawStream:
                 samples = self.drive.samples(first, count)
                 rows = np.zeros((count, 3, self.core.input_length), self.core.dtype)
                 for column, signal in enumerate(self.drive.signals):
-                    rows[:, :, self.core.input_place(signal)] = samples[:, :, column]
+                    rows[:, :, self.core.input_offset(signal)] = samples[:, :, column]
                 yield from ((first + k, 1, rows[k]) for k in range(count))
             return
         edges = sorted({*range(0, steps, every), *(c for c in self.drive.changes if c < steps), steps})

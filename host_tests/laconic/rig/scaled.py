@@ -43,7 +43,7 @@ def check_voltages_only(scene: Scene) -> None:
     """Scaled frames carry voltages and nothing else."""
     for each in scene.inputs:
         if not each.signal.startswith("voltage_V"):
-            raise BadInput(f"{scene.path}: {each.place}.signal: {each.signal} has no scaled frame; use --same-bits, "
+            raise BadInput(f"{scene.path}: {each.location}.signal: {each.signal} has no scaled frame; use --same-bits, "
                            "which sends every input")
 
 

@@ -1,4 +1,4 @@
-"""Scenes: TOML files that say a vehicle, its start, what acts on it and how it is run."""
+"""Scenes: TOML files that describe a vehicle, its start, its inputs and its run."""
 
 from laconic.scene.scene import METHODS, MOST_STEPS, Outputs, Scene, read_scene
 

@@ -33,11 +33,11 @@ STEPS_A_PERIOD = 4  # of a sine at least: the parabola through start, middle and
 
 @dataclass(frozen=True)
 class Input:
-    """One `[[input]]`: `place` is its name in the file, for messages."""
+    """One `[[input]]`: `location` is its name in the file, for messages."""
 
     signal: str
     kind: str
-    place: str
+    location: str
     t_s: tuple[float, ...] = ()
     value: tuple[float, ...] = ()
     amplitude: float = 0.0
@@ -80,7 +80,7 @@ class Drive:
     steps: int
     signals: tuple[str, ...] = ()
     changes: tuple[int, ...] = ()
-    _ticks: dict[str, np.ndarray] = field(default_factory=dict)   # where each `steps` input changes, by its place
+    _ticks: dict[str, np.ndarray] = field(default_factory=dict)   # where each `steps` input changes, by its location
     _levels: dict[str, np.ndarray] = field(default_factory=dict)  # its values, with the zero before the first
     _made: dict[str, Window] = field(default_factory=dict)        # the last schedule for each scalar type
 
@@ -89,8 +89,9 @@ class Drive:
                 grid_s: Sequence[float] = ()) -> Drive:
         """Puts the changes on the grid; BadInput where one falls inside a step, with a step that fits `grid_s` too."""
         grid: list[float | Fraction] = [*grid_s, Fraction(repr(step_s)) * steps]
-        ticks = {each.place: change_ticks(path, each, step_s, steps, grid) for each in inputs if each.kind == "steps"}
-        levels = {each.place: np.array([0.0, *each.value]) for each in inputs if each.kind == "steps"}
+        stepped = [each for each in inputs if each.kind == "steps"]
+        ticks = {each.location: change_ticks(path, each, step_s, steps, grid) for each in stepped}
+        levels = {each.location: np.array([0.0, *each.value]) for each in stepped}
         within = {int(t) for ends in ticks.values() for t in ends if t < steps}
         signals = tuple(dict.fromkeys(each.signal for each in inputs))
         return cls(path, inputs, step_s, steps, signals, tuple(sorted({0} | within)), ticks, levels)
@@ -124,13 +125,13 @@ class Drive:
 
     def _window(self, core: Core, step: int) -> Window:
         """All stretches of a held scene; of a sampled one as many steps as are made ready at once."""
-        places = [core.input_place(signal) for signal in self.signals]
+        offsets = [core.input_offset(signal) for signal in self.signals]
         if self.is_held:
             held = self._rows(np.array(self.changes), np.array([0.0]))[:, 0]
-            return Window(0, FOR_EVER, Schedule(core, places, held, [*self.changes[1:], FOR_EVER]))
+            return Window(0, FOR_EVER, Schedule(core, offsets, held, [*self.changes[1:], FOR_EVER]))
         first = step - step % CHUNK
         end = min(first + CHUNK, self.steps) if step < self.steps else first + CHUNK
-        return Window(first, end, Schedule(core, places, self.samples(first, end - first), first_step=first))
+        return Window(first, end, Schedule(core, offsets, self.samples(first, end - first), first_step=first))
 
     @np.errstate(over="ignore", invalid="ignore")
     def _rows(self, ticks: np.ndarray, parts: np.ndarray) -> np.ndarray:
@@ -142,7 +143,7 @@ class Drive:
         return rows
 
     def _steps_at(self, each: Input, ticks: np.ndarray) -> np.ndarray:
-        return self._levels[each.place][np.searchsorted(self._ticks[each.place], ticks, side="right")]
+        return self._levels[each.location][np.searchsorted(self._ticks[each.location], ticks, side="right")]
 
 
 def check_resolved(path: Path, inputs: tuple[Input, ...], step_s: float, grid_s: Sequence[float]) -> None:
@@ -151,8 +152,8 @@ def check_resolved(path: Path, inputs: tuple[Input, ...], step_s: float, grid_s:
     if fastest is None or abs(fastest.frequency_Hz) * step_s * STEPS_A_PERIOD <= 1.0 + ON_THE_GRID:
         return
     remedy = step_remedy(grid_s, 1 / abs(STEPS_A_PERIOD * Fraction(repr(fastest.frequency_Hz))))
-    raise BadInput(f"{path}: {fastest.place}.frequency_Hz: {fastest.frequency_Hz:g} Hz has fewer than {STEPS_A_PERIOD} "
-                   f"steps of {step_s:g} s a period, too few to follow it; {remedy}")
+    raise BadInput(f"{path}: {fastest.location}.frequency_Hz: {fastest.frequency_Hz:g} Hz has fewer than "
+                   f"{STEPS_A_PERIOD} steps of {step_s:g} s a period, too few to follow it; {remedy}")
 
 
 def change_ticks(path: Path, each: Input, step_s: float, steps: int, grid: Sequence[float | Fraction]) -> np.ndarray:
@@ -163,7 +164,7 @@ def change_ticks(path: Path, each: Input, step_s: float, steps: int, grid: Seque
     late = instants >= steps * step_s
     for instant in instants[off & ~late]:
         remedy = step_remedy([*instants[~late], *grid], step_s)
-        raise BadInput(f"{path}: {each.place}.t_s: {instant:g} s falls inside a step of {step_s:g} s; {remedy}")
+        raise BadInput(f"{path}: {each.location}.t_s: {instant:g} s falls inside a step of {step_s:g} s; {remedy}")
     return np.where(late, np.maximum(ticks, steps), ticks).astype(np.int64)
 
 

@@ -1,4 +1,4 @@
-"""The one thing that the core does not know of a scene file: which angles it gives in degrees. Places and keys are the
+"""The one thing that the core does not know of a scene file: which angles it gives in degrees. Tables and keys are the
 core's own (laconic_field_path)."""
 
 from __future__ import annotations

@@ -1,16 +1,16 @@
-"""What people look for in a scene and the model does not have: each with what to do instead."""
+"""What people write in a scene and the model does not have: each with what to do instead."""
 
 from __future__ import annotations
 
 from collections.abc import Mapping
 
-SUPPORT = ("a caster carries load, nothing else, in this model: give it as [[vehicle.support]] with its x_m and y_m, "
-           "and its mass within vehicle.mass_kg")
+SUPPORT = ("a caster carries a normal load, nothing else, in this model: give it as [[vehicle.support]] with its x_m "
+           "and y_m, and its mass within vehicle.mass_kg")
 STEERED = ("wheels that are steered in motion are not modelled; for a constant steering angle give a \"fixed\" wheel "
            "with its axle at that angle (axle_deg), see docs/scenes.md")
 SKID = ("skid steering and tracks live on slip, which is not modelled; give one \"fixed\" wheel a side, at the track "
         "width that measured turns show, see docs/scenes.md")
-RADIUS = "all wheels have one radius, vehicle.wheel_radius_m; what only carries load is a [[vehicle.support]]"
+RADIUS = "all wheels have one radius, vehicle.wheel_radius_m; what only carries a normal load is a [[vehicle.support]]"
 MOTOR = "all wheels have the same motor, [vehicle.motor]; a wheel without voltage is driven by axle_torque_Nm"
 LEVEL = ("the ground is level; on a slope give the downhill part of the weight as world_force_N, see docs/scenes.md")
 RIGID = "the vehicle is rigid, without suspension; normal loads are those of its mass at rest and in motion"

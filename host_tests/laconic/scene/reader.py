@@ -63,7 +63,7 @@ def read_vehicle(table: Table) -> dict[str, Any]:
 
 
 def read_field(table: Table, field: Field, default: Any = ..., *, finite: bool = False) -> Any:
-    """One key of a table by what the core says of it; what the number must be is left to the core."""
+    """One key of a table by its row in the core's list of fields; the core checks its value."""
     if field.kind == "FLAG":
         return table.flag(field.key, default if default is ... else bool(default))
     if field.key.endswith("_rad"):
@@ -88,7 +88,7 @@ def read_motor(table: Table, direct: Sequence[Field]) -> dict[str, Any]:
 def read_wheel(table: Table) -> dict[str, Any]:
     """One `[[vehicle.wheel]]`: an omni wheel's roller angle is π/2 unless it is given."""
     kind = table.choice("kind", WHEEL_KINDS, hints=KINDS_OF_WHEELS)
-    wheel: dict[str, Any] = {"kind": kind, **read_place(table)}
+    wheel: dict[str, Any] = {"kind": kind, **read_position(table)}
     fields = {field.key: field for field in load().fields_of("vehicle.wheel[#]") if field.key not in wheel}
     roller = fields.pop("roller_rad")
     wheel |= {key: read_field(table, field) for key, field in fields.items() if field.need == "EACH_WHEEL"}
@@ -103,7 +103,7 @@ def read_wheel(table: Table) -> dict[str, Any]:
     return wheel
 
 
-def read_place(table: Table) -> dict[str, float]:
+def read_position(table: Table) -> dict[str, float]:
     """x_m and y_m, or distance_m and a bearing from the ξ axis."""
     polar = [key for key in ("distance_m", "bearing_rad", "bearing_deg") if table.has(key)]
     plain = [key for key in ("x_m", "y_m") if table.has(key)]
@@ -123,7 +123,7 @@ def read_point(table: Table) -> dict[str, float]:
 
 
 def read_initial(table: Table) -> dict[str, Any]:
-    """`[initial]`: ν, or velocity and yaw rate; standing still at the world's origin where nothing is said."""
+    """`[initial]`: ν, or velocity and yaw rate; by default at rest at the world's origin."""
     start: dict[str, Any] = {}
     velocity = [key for key in ("velocity_body_m_per_s", "yaw_rate_rad_per_s") if table.has(key)]
     if table.has("nu_rad_per_s"):
@@ -164,11 +164,11 @@ def read_input(table: Table, wheel_count: int) -> Input:
     check_signal(table, "signal", signal, LENGTHS, PER_WHEEL, wheel_count)
     if kind == "sine":
         phase = table.angle("phase", 0.0)
-        found = Input(signal, kind, table.place, amplitude=table.number("amplitude"),
+        found = Input(signal, kind, table.location, amplitude=table.number("amplitude"),
                       frequency_Hz=table.number("frequency_Hz"), phase_rad=phase)
     else:
         t_s = table.numbers("t_s")
-        found = Input(signal, kind, table.place, t_s=t_s, value=table.numbers("value", len(t_s)))
+        found = Input(signal, kind, table.location, t_s=t_s, value=table.numbers("value", len(t_s)))
         check_instants(table, t_s)
     table.done()
     return found
@@ -188,7 +188,7 @@ def check_instants(table: Table, t_s: Sequence[float]) -> None:
 def check_motor(top: Table, each: Input, vehicle: dict[str, Any]) -> None:
     """Fails for a voltage where no motor makes a torque of it."""
     if "motor" not in vehicle and vehicle["motor_gain_Nm_per_V"] == 0.0 and each.signal.startswith("voltage_V"):
-        top.fail(f"{each.place}.signal", f"{each.signal} would do nothing, the vehicle has no motor; give "
+        top.fail(f"{each.location}.signal", f"{each.signal} would do nothing, the vehicle has no motor; give "
                  "[vehicle.motor] or vehicle.motor_gain_Nm_per_V, or drive the wheel by axle_torque_Nm")
 
 
@@ -199,8 +199,8 @@ def check_end(top: Table, each: Input, duration_s: float) -> None:
     reached = [t for t in each.t_s if t <= duration_s * (1.0 + 1e-12)]
     beyond = each.t_s[len(reached) + (each.kind == "table" and bool(reached)):]
     if beyond:
-        top.fail(f"{each.place}.t_s", f"{beyond[0]:g} s lies beyond the run of {duration_s:g} s and would do nothing; "
-                 "take it out or make run.duration_s longer")
+        top.fail(f"{each.location}.t_s", f"{beyond[0]:g} s lies beyond the run of {duration_s:g} s and would do "
+                 "nothing; take it out or make run.duration_s longer")
 
 
 def read_run(table: Table, methods: Sequence[str], reals: Sequence[str]) -> dict[str, Any]:
@@ -227,8 +227,8 @@ def read_outputs(table: Table, wheel_count: int, duration_s: float) -> dict[str,
         else:
             check_signal(table, "signals", signal, OUTPUT_LENGTHS, OUTPUTS_PER_WHEEL, wheel_count)
             signals.append(signal)
-    for place, signal in enumerate(signals):
-        if signal in signals[:place]:
+    for number, signal in enumerate(signals):
+        if signal in signals[:number]:
             table.fail("signals", f"names {signal} twice; keep one of them")
     every = table.number("every_s", None)
     if every is not None and every <= 0:

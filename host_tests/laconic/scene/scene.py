@@ -43,7 +43,7 @@ class Initial:
         return (forward, sideways, model.yaw_scale * self.yaw_rate_rad_per_s)
 
     def refusal(self, refused: Refused, model: Any) -> Refused:
-        """A start that slides a wheel, by the key that the scene gives: the core speaks of ν."""
+        """A start that slides a wheel, by the key that the scene gives: the core names ν."""
         name, scale = f"nu_rad_per_s[{refused.item}]", 1.0
         if self.nu_rad_per_s is None and refused.item < 3:
             name, scale = f"velocity_body_m_per_s[{refused.item}]", model.wheel_radius_m
@@ -67,7 +67,7 @@ class Run:
 
 @dataclass(frozen=True)
 class Outputs:
-    """What to write, and how often; nothing said: the usual signals, every step."""
+    """What to write, and how often; by default the usual signals, every step."""
 
     signals: tuple[str, ...] = ()
     every_s: float | None = None
@@ -122,7 +122,7 @@ class Scene:
             core.check_vehicle(vehicle)
             return vehicle
         except Refused as refused:
-            raise self.told(refused) from None
+            raise self.refusal_in_file(refused) from None
 
     def model(self, core: Core) -> Any:
         """The prepared laconic_model."""
@@ -130,7 +130,7 @@ class Scene:
         try:
             return core.prepare(vehicle)
         except Refused as refused:
-            raise self.told(refused) from None
+            raise self.refusal_in_file(refused) from None
 
     def c_start(self, core: Core) -> Any:
         """The laconic_start."""
@@ -147,9 +147,9 @@ class Scene:
         except Refused as refused:
             if refused.status == "start against constraints":
                 raise start.refusal(refused, model).at(self.path) from None
-            raise self.told(refused) from None
+            raise self.refusal_in_file(refused) from None
 
-    def told(self, refused: Refused, when: str = "") -> Refused:
+    def refusal_in_file(self, refused: Refused, when: str = "") -> Refused:
         """A refusal of the core with this file in front, by the names that the file has."""
         if refused.status == "overflow" and not refused.field:
             refused = refused.at("vehicle")  # of its numbers together

@@ -39,16 +39,16 @@ def read_toml(path: Path) -> Table:
 
 
 class Table:
-    """One table of a file; remembers what was asked for, so that `done` can find what nobody knows."""
+    """One table of a file; keeps which keys were read, so that `done` finds unknown ones."""
 
-    def __init__(self, path: Path, place: str, entries: dict[str, Any], in_degrees: set[str] | None = None):
-        self.path, self.place, self._entries = path, place, entries
+    def __init__(self, path: Path, location: str, entries: dict[str, Any], in_degrees: set[str] | None = None):
+        self.path, self.location, self._entries = path, location, entries
         self.in_degrees = set() if in_degrees is None else in_degrees  # names of the angles that are given so
         self._known: set[str] = set()
 
     def name(self, key: str) -> str:
         """The key with the tables around it."""
-        return f"{self.place}.{key}" if self.place else key
+        return f"{self.location}.{key}" if self.location else key
 
     def fail(self, key: str, message: str) -> NoReturn:
         """Raises BadInput for a key of this table."""
@@ -60,7 +60,7 @@ class Table:
         return key in self._entries
 
     def done(self, hints: Mapping[str, str] = NO_HINTS) -> None:
-        """Raises BadInput for the first key that nobody asked for; hints as in laconic.scene.not_modelled."""
+        """Raises BadInput for the first key that was not read; hints as in laconic.scene.not_modelled."""
         for key in self._entries:
             if key not in self._known:
                 self.fail(key, f"is no known key here; {nearest_of(key, self._known, instead_of(key, hints))}")

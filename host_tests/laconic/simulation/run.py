@@ -89,7 +89,7 @@ def simulate(scene: Scene, signals: tuple[str, ...] = (), progress: bool = False
     ticks = np.append(np.arange(0, steps, every), steps)  # the last row is the end of the run, wherever it falls
     recorder = Recorder(plant, signals or wanted_signals(scene), every, len(ticks), watched=is_watched(scene))
     began = time.perf_counter()
-    with progress_bar(scene.name, steps if progress else 0, told=progress) as moved:
+    with progress_bar(scene.name, steps if progress else 0, forecasts=progress) as moved:
         run_window(scene, plant, drive, 0, steps, moved, recorder)
     recorder.take_last(core.input(drive.held_at(steps)))
     seconds = time.perf_counter() - began
@@ -106,4 +106,4 @@ def run_window(scene: Scene, plant: Plant, drive: Drive, first: int, count: int,
             advance_plant(plant, drive, begin, steps, recorder)
             moved(steps)
     except Refused as refused:
-        raise scene.told(refused, f"at t = {plant.steps * scene.run.step_s:g} s") from None
+        raise scene.refusal_in_file(refused, f"at t = {plant.steps * scene.run.step_s:g} s") from None

@@ -97,13 +97,13 @@ def test_without_motors_nothing_is_said_to_drive_or_damp(tmp_path):
 
 def test_the_yaw_authority_says_what_it_is_and_an_unusual_one_what_to_do(tmp_path):
     usual = " ".join(diagnose(subject_from(tmp_path, offset_mecanum())).words)
-    assert "1.41, that is the rims' speed in a turn, over" in usual
+    assert "1.41, that is the rim speed in yaw, over" in usual
     assert "check" not in usual
     wheels = "".join(f'[[vehicle.wheel]]\nkind = "mecanum"\nx_m = {x}\ny_m = {y}\naxle_deg = -90\nroller_deg = {r}\n'
                      for x, y, r in ((0.3, 0.3, 15), (0.3, -0.3, -15), (-0.3, 0.3, -15), (-0.3, -0.3, 15)))
     text = re.sub(r"\[\[vehicle.wheel\]\].*?\[vehicle.p", wheels + "[vehicle.p", offset_mecanum(), flags=re.DOTALL)
     unusual = " ".join(diagnose(subject_from(tmp_path, text)).words)
-    assert "strong but slow" in unusual and "check the places" in unusual
+    assert "strong but slow" in unusual and "check the positions" in unusual
 
 
 @pytest.mark.parametrize("name", ODD_NAMES.values(), ids=ODD_NAMES)

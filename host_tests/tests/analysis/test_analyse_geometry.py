@@ -5,7 +5,7 @@ import pytest
 
 from laconic.analysis.from_core import subject_of
 from laconic.analysis.geometry import diagnose
-from laconic.analysis.traction import static_loads, study
+from laconic.analysis.traction import static_normal_loads, study
 from laconic.paths import SCENE_DIR
 from laconic.scene import read_scene
 from laconic.simulation import advance_plant
@@ -107,7 +107,7 @@ THREE = wheels("omni", (0.2, 0.0, 0.0), (-0.1, 0.15, 2.0), (-0.1, -0.15, -2.0))
 
 def test_normal_loads_of_three_wheels_are_those_of_statics(tmp_path):
     subject = scene_with(tmp_path, BODY + "com_x_m = 0.03\ncom_y_m = 0.02\n" + THREE)
-    loads, hold = static_loads(subject)
+    loads, hold = static_normal_loads(subject)
     places = np.array([[0.2, 0.0], [-0.1, 0.15], [-0.1, -0.15]])
     weight = 12.0 * 9.80665
     assert hold
@@ -117,7 +117,7 @@ def test_normal_loads_of_three_wheels_are_those_of_statics(tmp_path):
 
 def test_normal_loads_of_four_wheels_are_the_least_squares_share(tmp_path):
     subject = scene_with(tmp_path, BODY + "com_x_m = 0.05\n" + mecanum(0.2, 0.15, 1))
-    loads, hold = static_loads(subject)
+    loads, hold = static_normal_loads(subject)
     places = np.array([[0.2, 0.15], [0.2, -0.15], [-0.2, 0.15], [-0.2, -0.15]])
     balance = np.vstack([np.ones(4), places.T])
     weight = 12.0 * 9.80665
@@ -127,7 +127,7 @@ def test_normal_loads_of_four_wheels_are_the_least_squares_share(tmp_path):
 
 def test_wheels_in_a_line_cannot_hold_the_body_and_this_is_said(tmp_path):
     subject = scene_with(tmp_path, BODY + wheels("fixed", (0.0, 0.2, -np.pi / 2), (0.0, -0.2, -np.pi / 2)))
-    assert not static_loads(subject)[1]
+    assert not static_normal_loads(subject)[1]
     assert any("cannot hold the body upright" in sentence for sentence in study(subject).words)
 
 

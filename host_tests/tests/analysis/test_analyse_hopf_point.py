@@ -1,4 +1,4 @@
-"""A scene that stands at a bifurcation, or a little beside it, is told as it is and never "not confirmed"."""
+"""A scene that stands at a bifurcation, or a little beside it, is reported as it is and never "not confirmed"."""
 
 import numpy as np
 import pytest

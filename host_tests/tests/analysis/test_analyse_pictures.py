@@ -10,7 +10,7 @@ from laconic.analysis.findings import Wishes
 from laconic.analysis.from_core import subject_of
 from laconic.analysis.pictures import PICTURES
 from laconic.analysis.study import study
-from laconic.pictures.curve_style import nested, taking_turns, wrapped
+from laconic.pictures.curve_style import alternating_markers, nested, wrapped
 from laconic.scene import read_scene
 
 LONG_NAME = "A robot of many wheels whose maker gave it a name that is longer than any picture is wide, almost twice"
@@ -114,7 +114,7 @@ def test_wheels_whose_curves_coincide_are_drawn_one_inside_the_other():
     assert widths == sorted(widths, reverse=True)
     assert min(np.diff(widths[::-1])) > 0.5
     assert len({nested(i, 12)["linewidth"] for i in range(12)}) == 12
-    assert len({taking_turns(i, 6) for i in range(6)}) == 6
+    assert len({alternating_markers(i, 6) for i in range(6)}) == 6
 
 
 @pytest.mark.parametrize(("name", "beside"), [("portrait", "m/s"), ("driven_portrait", "m/s"), ("bifurcation", "m/s")])

@@ -20,7 +20,7 @@ SPEED = VOLTS / (0.06 * 20.0)  # of a wheel whose motor balances its own back-EM
 
 @pytest.fixture
 def base(tmp_path):
-    """A mecanum base of 135 kg with strong motors, told to go ahead."""
+    """A mecanum base of 135 kg with strong motors, that drives ahead."""
     wheels = "".join(f'[[vehicle.wheel]]\nkind = "mecanum"\nx_m = {x}\ny_m = {y}\naxle_deg = -90.0\n'
                      f'roller_deg = {g}.0\n' for x, y, g in MECANUM)
     inputs = "".join(f'[[input]]\nsignal = "voltage_V[{i}]"\nkind = "steps"\nt_s = [0.0]\nvalue = [{VOLTS}]\n'
@@ -57,7 +57,7 @@ def test_a_bases_bifurcation_range_is_what_its_motors_reach_and_not_kilometres_a
     assert abs(found["straight_thresholds"][0]) > 100.0 * found["to"]  # it exists, and stays in the numbers
 
 
-def test_a_change_of_stability_out_of_reach_is_told_with_its_speed_and_not_drawn(base, capsys):
+def test_a_change_of_stability_out_of_reach_is_reported_with_its_speed_and_not_drawn(base, capsys):
     assert cli.run(["analyse", str(base), "--only", "bifurcation"]) == 0
     out = capsys.readouterr().out
     assert "out of reach" in out
@@ -74,10 +74,10 @@ def test_steady_and_free_motions_are_told_in_metres_a_second_too(base):
 def test_reach_counts_every_input_at_its_largest_whatever_its_kind_and_sign():
     subject = subject_of(read_scene("s1"))
     field = subject.field({"voltage_V[1]": 2.0})
-    expected = np.abs(field.nu(field.drive / field.decay_per_s))
+    expected = np.abs(field.nu(field.forcing / field.decay_per_s))
     for name, value in (("voltage_V[2]", 2.0), ("voltage_V[3]", 1.0)):
         field = subject.field({name: value})
-        expected += np.abs(field.nu(field.drive / field.decay_per_s))
+        expected += np.abs(field.nu(field.forcing / field.decay_per_s))
     assert largest_nu(subject) == pytest.approx(expected)
 
 

@@ -81,14 +81,14 @@ def test_voltages_for_straight_motion_keep_it_and_wheels_1_and_2_turn_oppositely
 def test_erratum_3_straight_motion_is_stable_exactly_below_2_c_lambda_sigma_squared_over_rho(example, nu_1):
     for factor, stability in ((-3.0, "stable"), (0.999, "stable"), (1.001, "unstable"), (4.0, "unstable")):
         motions = steady_motions(example.field(nu_1, factor * example.threshold))
-        straight = [motion for motion in motions if not motion.turns]
+        straight = [motion for motion in motions if not motion.is_turning]
         assert [motion.stability for motion in straight] == [stability]
 
 
 def test_erratum_3_the_printed_threshold_without_c_is_wrong_in_si_units():
     printed = 2.0 * PAPER.big * PAPER.sigma**2 / PAPER.rho
     between = 0.5 * (printed + PAPER.threshold)
-    straight = [m for m in steady_motions(PAPER.field(0.0, between)) if not m.turns]
+    straight = [m for m in steady_motions(PAPER.field(0.0, between)) if not m.is_turning]
     assert PAPER.threshold < between < printed
     assert straight[0].stability == "unstable"  # the printed formula would call it stable
 
@@ -265,7 +265,7 @@ def test_eigenvalues_are_confirmed_by_the_core_for_every_steady_motion():
 def test_confirmation_fails_for_a_wrong_eigenvalue():
     subject = subject_of(read_scene("paper_three_wheel_driven"))
     field = subject.field()
-    slower = Field(field.dof, field.nu_of_zeta, field.gyro, 0.8 * field.decay_per_s, field.drive, field.lambda_yaw)
+    slower = Field(field.dof, field.nu_of_zeta, field.gyro, 0.8 * field.decay_per_s, field.forcing, field.lambda_yaw)
     assert not confirm.steady_motion(subject, subject.inputs, slower, steady_motions(field)[0]).holds
 
 

@@ -1,4 +1,4 @@
-"""A cross compiler without its C library (Debian's bare gcc-arm-none-eabi) is told apart from a whole one."""
+"""A cross compiler without its C library (Debian's bare gcc-arm-none-eabi) is distinguished from a whole one."""
 
 from __future__ import annotations
 

@@ -126,7 +126,7 @@ def test_an_input_that_is_not_finite_is_refused_and_the_state_stays(core):
 def test_a_number_that_is_not_finite_in_any_sample_of_a_step_is_named(core, sample):
     plant = core.plant(core.vehicle(VEHICLE), "auto", 0.01)
     rows = np.zeros((4, 3, core.input_length))
-    rows[2, sample, core.input_place("axle_torque_Nm[3]")] = math.inf
+    rows[2, sample, core.input_offset("axle_torque_Nm[3]")] = math.inf
     with pytest.raises(Refused) as caught:
         plant.run_sampled(rows)
     assert (caught.value.status, caught.value.field, caught.value.item) == ("not finite", "axle_torque_Nm", 3)

@@ -59,7 +59,7 @@ def test_every_column_has_the_bits_of_the_cores_own_functions(tmp_path, name, re
             samples = drive.samples(plant.steps, tick - plant.steps)
             rows = np.zeros((len(samples), 3, plant.core.input_length), plant.core.dtype)
             for column, signal in enumerate(drive.signals):
-                rows[:, :, plant.core.input_place(signal)] = samples[:, :, column]
+                rows[:, :, plant.core.input_offset(signal)] = samples[:, :, column]
             plant.run_sampled(rows)
         else:
             while plant.steps < tick:

@@ -1,9 +1,9 @@
-"""A method looks the same in every picture."""
+"""A method is drawn the same in every picture."""
 
 from __future__ import annotations
 
 from laconic.core import load
-from laconic.pictures.method_style import METHOD_STYLES, look
+from laconic.pictures.method_style import METHOD_STYLES, style_of
 from laconic.scene import METHODS
 
 
@@ -14,10 +14,10 @@ def test_every_method_of_the_core_has_a_colour_and_a_marker_of_its_own():
 
 
 def test_what_auto_lies_upon_stays_visible():
-    assert look("auto")["markerfacecolor"] == "none"
-    assert look("auto")["markersize"] > look("exact-flow-4")["markersize"]
+    assert style_of("auto")["markerfacecolor"] == "none"
+    assert style_of("auto")["markersize"] > style_of("exact-flow-4")["markersize"]
 
 
 def test_what_a_caller_gives_replaces_the_table():
-    assert look("rk4", label=None, linestyle="--") == {
+    assert style_of("rk4", label=None, linestyle="--") == {
         "color": "#d1495b", "marker": "s", "markersize": 5.0, "label": None, "linestyle": "--"}

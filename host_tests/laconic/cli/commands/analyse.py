@@ -8,6 +8,7 @@ from typing import TYPE_CHECKING
 
 import click
 
+from laconic.analysis.parts import PARTS
 from laconic.cli.options import OutputFolder, SceneName, json_flag
 from laconic.errors import BadInput, ResultFails
 from laconic.outputs import write_text
@@ -16,7 +17,6 @@ if TYPE_CHECKING:
     from laconic.analysis.findings import Study
     from laconic.progress import Advance
 
-PARTS = ("geometry", "free", "steady", "bifurcation", "traction")
 
 
 @click.command("analyse")
@@ -39,7 +39,7 @@ def command(scene: str, out: Path | None, only: tuple[str, ...], at_s: float, st
             high: float | None, json_wanted: bool) -> None:
     """Analyses SCENE: geometry, free motion, steady motions and their stability, bifurcations, traction.
 
-    Exit status 1 when a simulation with the core does not confirm what the analysis says.
+    Exit status 1 when a simulation with the core does not confirm a result of the analysis.
     """
     from laconic.analysis.findings import Wishes
     from laconic.analysis.from_core import subject_of

@@ -76,7 +76,7 @@ def show(results: list[SceneResult], out: Path, seconds: float) -> None:
             console.print(f"[red]{escape(f'{each.name}: {difference}')}")
     for each in results:
         if each.ground:
-            console.print(f"{each.name}: the ground cannot give what this run asks: {each.ground}", markup=False,
+            console.print(f"{each.name}: the ground cannot give what this run needs: {each.ground}", markup=False,
                           highlight=False)
     console.print(f"Pictures, demo.json and errors.csv (all methods and steps): {escape(str(out))}   ({seconds:.0f} s)")
 

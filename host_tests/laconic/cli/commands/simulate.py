@@ -52,9 +52,9 @@ def command(scene: str, method: str | None, step_s: float | None, real: str | No
     if json_wanted:
         click.echo(json.dumps(summary(run, out, plot), indent=1))
     elif not (out and is_stdout(out)):
-        tell(run, out, plot)
+        print_summary(run, out, plot)
     if run.grip and not run.grip.holds:
-        warn(f"{given.path}: the ground cannot give what this run asks: {run.grip.warning()}")
+        warn(f"{given.path}: the ground cannot give what this run needs: {run.grip.warning()}")
 
 
 def write_csv(run: Trajectory, signals: tuple[str, ...], path: Path) -> None:
@@ -76,7 +76,7 @@ def summary(run: Trajectory, out: Path | None, plot: Path | None) -> dict[str, A
         "files": [str(path) for path in (out, plot) if path]}
 
 
-def tell(run: Trajectory, out: Path | None, plot: Path | None) -> None:
+def print_summary(run: Trajectory, out: Path | None, plot: Path | None) -> None:
     """The same for people."""
     asked, picked = run.scene.run.method, run.method
     method = asked if asked == picked else f"{asked} (picked {picked})"

@@ -1,0 +1,5 @@
+"""The parts of an analysis in their order, without the libraries that they need."""
+
+TITLES = {"geometry": "Geometry", "free": "Free motion", "steady": "Steady motions", "bifurcation": "Bifurcations",
+          "traction": "Traction"}
+PARTS = tuple(TITLES)
