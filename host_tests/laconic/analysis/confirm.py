@@ -21,7 +21,7 @@ CLEAR_GROWTH = 4.0      # growth times periods after which a motion has clearly 
 
 @dataclass(frozen=True)
 class Confirmation:
-    """What the core did."""
+    """The outcome of a simulation with the core."""
 
     holds: bool
     words: str

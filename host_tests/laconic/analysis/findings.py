@@ -73,7 +73,7 @@ class BifurcationPart:
 
 @dataclass
 class Study:
-    """Everything that was found; a part that makes no sense for the scene is None, with the reason in `words`."""
+    """Everything that was found; a part that does not apply to the scene is None, with the reason in `words`."""
 
     subject: Subject
     geometry: Geometry | None = None

@@ -63,7 +63,7 @@ class FreeMotion:
         return float(2.0 * np.pi * self.lambda_yaw / (self.petal_rate * np.sqrt(self.discriminant)))
 
     def limit_nu(self) -> np.ndarray:
-        """What an asymptotic motion tends to."""
+        """The limit of ν in an asymptotic motion."""
         return self.nu_at_angle(self._angle_limit()) if self.kind == "asymptotic" else self.start_nu
 
     def _slope(self) -> float:

@@ -86,7 +86,7 @@ def _core_coasting(subject: Subject, motion: FreeMotion, times: np.ndarray) -> d
 
 
 def _kind_in_words(subject: Subject, free: FreePart) -> str:
-    """What becomes of the motion."""
+    """The kind of the motion as a sentence."""
     motion = free.motion
     if motion.kind == "straight":
         return "It does not yaw: straight uniform motion for ever."

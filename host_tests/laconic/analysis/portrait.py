@@ -20,7 +20,7 @@ SIZES = (0.2, 0.4, 0.6, 0.8, 1.0, 1.25, 1.6)  # of the ellipse that touches ν3 
 
 @dataclass(frozen=True)
 class Portrait:
-    """What is to be drawn."""
+    """The curves of one portrait."""
 
     across: np.ndarray         # direction of ν⊥ in (ν1, ν2)
     label: str                 # its name

@@ -25,7 +25,7 @@ TIMED_STEPS, TIMED_REPETITIONS = 4000, 5
 
 @dataclass(frozen=True)
 class Truth:
-    """Where a scene is, at some instants."""
+    """The states of a scene at some instants."""
 
     at_s: np.ndarray
     states: np.ndarray
@@ -116,7 +116,7 @@ def cost_per_step(scene: Scene, real: str, method: str) -> float:
 
 
 def one_run(scene: Scene, real: str, truth: Truth) -> dict[str, Any]:
-    """Errors of one run, or why there is none."""
+    """Errors of one run, or the refusal."""
     row: dict[str, Any] = {"scene": scene.path.stem, "real": real, "method": scene.run.method,
                            "step_s": scene.run.step_s}
     try:

@@ -25,7 +25,7 @@ class Report:
 
     results: dict[str, list[dict[str, Any]]] = field(default_factory=dict)
     notes: list[str] = field(default_factory=list)
-    robots: list[Scene] = field(default_factory=list)  # whom it is about; none: the project's own scenes and goals
+    robots: list[Scene] = field(default_factory=list)  # robots of the report; none: the project's scenes and goals
 
 
 def collect(scenes: Sequence[Scene], folder: Path, quick: bool = False) -> Report:
@@ -43,7 +43,7 @@ def collect(scenes: Sequence[Scene], folder: Path, quick: bool = False) -> Repor
 
 
 def _amount(scenes: Sequence[Scene], quick: bool) -> int:
-    """How often the bar is moved on."""
+    """Number of moves of the progress bar."""
     numeric = 2 * len(METHODS) * len(scenes) + 2 * len(METHODS[1:])
     board_count = 1 if quick else len(BOARDS)
     sizes = 2 * len(METHODS[1:]) * board_count + 2 * len(scenes)

@@ -23,7 +23,7 @@ DOUBLE_HELPER = re.compile(r"^__(aeabi_(d|cd|u?[ilf]2d)|(add|sub|mul|div|eq|lt|g
 
 @dataclass(frozen=True)
 class BoardRun:
-    """What a board said: steps it took, instructions for each, the stack, and the state, line by line."""
+    """The output of a board: steps taken, instructions for each, the stack, and the state, line by line."""
 
     steps: int
     instructions: float
@@ -34,7 +34,7 @@ class BoardRun:
 
 @dataclass(frozen=True)
 class Size:
-    """Bytes of what a step brings in: the code it runs, all flash with constants, RAM of the state, worst stack."""
+    """Bytes of one step: the code that runs, all flash with constants, RAM of the state, worst stack."""
 
     step_code: int
     flash: int

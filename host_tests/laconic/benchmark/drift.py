@@ -90,11 +90,11 @@ def norm_rows(reals: tuple[str, ...], methods: tuple[str, ...] = METHODS, vehicl
 
 
 class _NormCount:
-    """What one method did to all those norms."""
+    """Growth of the norm over all cases of one method."""
 
     def __init__(self, real: str, method: str) -> None:
         self.real, self.method, self.taken, self.worst_ulp = real, method, 0, 0.0
-        self.refused: dict[str, int] = {}  # how often, by the refusal's name
+        self.refused: dict[str, int] = {}  # number of refusals by their names
 
     def one(self, core: Core, vehicle: dict[str, Any], method: str, nu: np.ndarray, step_s: float) -> None:
         """One vehicle, one state, one step."""
@@ -118,6 +118,6 @@ class _NormCount:
 
 
 def _norm(plant: Plant) -> np.longdouble:
-    """|ζ| = √(νᵀAν), value and rest, in more digits than the core has: its own rounding must not count."""
+    """|ζ| = √(νᵀAν), value and rest, in more digits than the core has, so that the sum adds no rounding."""
     zeta = [np.longdouble(part.value) + np.longdouble(part.rest) for part in plant.c.state.zeta]
     return np.sqrt(np.sum(np.square(np.array(zeta))))

@@ -63,7 +63,7 @@ def functions_of(image: Path) -> dict[str, Function]:
         if literal := re.search(r"ldr\s+(r\d+), \[pc.*@ \(([0-9a-f]+) ", line):
             literals[literal[1]] = int(words.get(literal[2], "0"), 16)
         elif (added := re.search(r"add\s+sp, (r\d+)", line)) and literals.get(added[1], 0) >> 31:
-            current.frame += 2**32 - literals[added[1]]  # below zero: room is taken, not given back
+            current.frame += 2**32 - literals[added[1]]  # negative: the stack grows
         if header := re.match(r"([0-9a-f]{8}) <(\S+)>:", line):
             current = found.setdefault(header[2], Function(header[2], int(header[1], 16)))
         elif code := re.match(r"\s*[0-9a-f]+:\s+(\S+)\s*(.*)", line):

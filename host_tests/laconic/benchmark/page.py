@@ -85,7 +85,7 @@ def prepared(table: Table) -> dict[str, Any]:
 
 @dataclass(frozen=True)
 class Document:
-    """One page: what stands above its sections, and the other pages it leads to (title → file)."""
+    """One page: the text above its sections, and the other pages it leads to (title → file)."""
 
     title: str
     lead: str

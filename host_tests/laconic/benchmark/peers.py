@@ -1,4 +1,4 @@
-"""Other people's integrators on the same equations: CasADi's generated RK4, CVODE from C, compiled DOP853, SciPy.
+"""Integrators of other projects on the same equations: CasADi's generated RK4, CVODE from C, compiled DOP853, SciPy.
 
 What is not installed is left out and said so. C sources are in core_c/bench/peers; the matrices of the vehicle and,
 for CasADi, the whole step are generated here, from the same numpy reference that SciPy integrates.
@@ -40,7 +40,7 @@ class Course:
 
 @dataclass(frozen=True)
 class Solution:
-    """What one run gave: states at the segments' ends and the thread CPU time it took."""
+    """Result of a run: states at the segments' ends and the thread CPU time it took."""
 
     states: np.ndarray
     seconds: float
@@ -69,7 +69,7 @@ def _rows(rows: Any) -> str:
 
 
 def scene_header(course: Course, casadi_work: Sequence[int] = (2, 1, 1, 1)) -> str:
-    """peer_scene.h: the constants of one vehicle and its drive."""
+    """peer_scene.h: the constants of one vehicle and its inputs."""
     r, t = course.reference, course.reference.totals
     numbers = {"yaw_scale": r.yaw_scale, "radius": t.wheel_radius_m, "gain": r.scale * t.motor_gain_Nm_per_V,
                "damping": r.scale * t.motor_damping_Nms}

@@ -28,7 +28,7 @@ def _lines(axes: Axes, rows: Sequence[Row], x: str, y: str, style: Row) -> None:
 
 
 def _legend_below(picture: Figure, axes: Axes, columns: int = 2) -> None:
-    """Outside of the axes, where it covers no curve; three columns would be cut on a phone."""
+    """A legend outside of the axes, where it covers no curve; three columns would be cut on a phone."""
     handles, labels = axes.get_legend_handles_labels()
     picture.legend(handles, labels, fontsize=LETTERS, loc="outside lower center", ncols=columns)
 
@@ -60,7 +60,7 @@ def error_against_time(rows: Sequence[Row], scene: str, title: str = "") -> str:
 
 
 def precision(rows: Sequence[Row]) -> str:
-    """S1 with other people's integrators."""
+    """S1 with integrators of other projects."""
     picture = figure(SIZE[0], SIZE[1] + 0.9)
     axes = picture.add_subplot()
     for method in METHODS[1:]:

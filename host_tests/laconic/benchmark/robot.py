@@ -1,4 +1,4 @@
-"""What a report about somebody's robot measures: that robot alone, first and only, with a progress bar."""
+"""What a report about the user's robot measures: that robot alone, first and only, with a progress bar."""
 
 from __future__ import annotations
 
@@ -59,7 +59,7 @@ def _distinct(scenes: Sequence[Scene]) -> None:
 
 
 def robot_row(scene: Scene) -> Row:
-    """What the robot is, as the core has prepared it."""
+    """The constants of the robot that the core has prepared."""
     core = load("double")
     plant = scene.with_run(real="double").plant(core)
     model = plant.c.model

@@ -1,4 +1,4 @@
-"""S1 against other people's integrators, in one interleaved run."""
+"""S1 against integrators of other projects, in one interleaved run."""
 
 from __future__ import annotations
 

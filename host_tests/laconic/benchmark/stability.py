@@ -25,7 +25,7 @@ SINE_HZ, STIFF_S = 0.5, 3.0
 
 
 def strengthened(scene: Scene, factor: float, inputs: Sequence[Input], duration_s: float) -> Scene:
-    """Motor gain and damping times a factor (the same speeds, reached sooner), another drive, from rest."""
+    """Motor gain and damping times a factor (the same speeds, reached sooner), with other inputs, from rest."""
     totals = totals_of(scene.vehicle)
     vehicle = {k: v for k, v in scene.vehicle.items() if k != "motor"}
     vehicle |= {"motor_gain_Nm_per_V": factor * totals.motor_gain_Nm_per_V,
@@ -42,7 +42,7 @@ def four_steps(wheels: int) -> list[Input]:
 
 
 def constant(wheels: int) -> list[Input]:
-    """Voltages that stay."""
+    """Constant voltages."""
     return [Input(f"voltage_V[{i + 1}]", "steps", f"input[{i + 1}]", (0.0,), (PATTERN[i % 4],)) for i in range(wheels)]
 
 
@@ -78,7 +78,7 @@ def _map_run(scene: Scene, ends: np.ndarray, expected: np.ndarray) -> dict[str, 
 
 
 def path_error(found: np.ndarray, expected: np.ndarray) -> float:
-    """Distance off at the end over the length of the path so far (chords between the instants)."""
+    """Error of the position at the end over the length of the path so far (chords between the instants)."""
     legs = np.diff(np.vstack([np.zeros(2), expected[:, 3:5]]), axis=0)
     length = float(np.sum(np.hypot(legs[:, 0], legs[:, 1])))
     return float(np.hypot(*(found[-1, 3:5] - expected[-1, 3:5]))) / length

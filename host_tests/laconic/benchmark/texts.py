@@ -12,18 +12,18 @@ ACCURACY = """
 Each point is one step size, from 1 to 100 ms (or parts and multiples of a step that fits none of these). Full lines:
 double; dashed: single. The error is the largest of the
 three components of ν at twenty instants or fewer of the first ten seconds, over max(1, largest ν), against a separate
-numpy reference, which itself is good to about 1e-11. Run time: thread CPU time of a step with held inputs, pose and
+numpy reference with an error of about 1e-11. Run time: thread CPU time of a step with held inputs, pose and
 wheel angles included. `auto` picks one of the methods, so its large hollow circles lie on that method's points. In
 the grey band the error may be the reference's own.
 
-Read it from the left: take the lowest point that you can afford. A point that is missing was refused by the core.
+Choose the lowest point that fits your run time. The core refused steps without a point.
 """
 
 PEERS = """
 Scene S1 (three omni wheels, all voltages a square wave of 1 s), steps of 10 ms, gcc -O2. Both sides in one run,
 interleaved, thread CPU time, the least of many rounds; `ratio` is the time over that of CasADi's generated RK4 of the
-same nine states. Instructions by cachegrind, as I(2n) − I(n). The core works a held input out once for all the steps
-it is held over, CasADi's step gets it every time.
+same nine states. Instructions by cachegrind, as I(2n) − I(n). The core computes the forcing of a held input once for
+all its steps, CasADi's step computes it every time.
 
 The general solvers restart at every jump of the voltages. Adams and BDF are CVODE's, from C.
 """
@@ -37,8 +37,8 @@ The table: auto on very stiff vehicles. Sinusoids are sampled at the start, midd
 
 CONSERVED = """
 Free motion of the paper's three-wheel carriage in steps of 0.1 s. Both integrals of the motion, the energy and K =
-(Aν)₃, the third component of inertia times velocity, should stay. Curves that coincide are drawn one inside the
-other.
+(Aν)₃, the third component of inertia times velocity, should stay constant.
+Curves that coincide are drawn one inside the other.
 
 The table: one step with U = 0 of ten thousand random vehicles in random states, h from 1e-6 to 1e3 s; the A-norm
 √(νᵀAν) may not grow. Methods other than exact-flow refuse the step when it grows by more than their error allows

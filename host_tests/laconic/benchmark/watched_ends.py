@@ -38,7 +38,7 @@ Multiset = Counter[tuple[int, bytes]]  # frames, with how often they were sent a
 
 
 class WatchedLink(Link):
-    """A link that knows what the node really sent, and what itself sent."""
+    """A link that records the frames of the node and its own."""
 
     def __init__(self, *arguments: Any, row: Row, sent: Multiset, node_sent: Multiset, **options: Any):
         super().__init__(*arguments, **options)
@@ -62,7 +62,7 @@ class WatchedLink(Link):
 
 
 class WatchedNode(NodeOnBus):
-    """The node's end, with an eye on everything that must not happen."""
+    """The node's end; checks the invariants after every frame."""
 
     def __init__(self, node: LibraryNode, bus: can.BusABC, clock: VirtualClock, row: Row):
         super().__init__(node, bus, clock)
@@ -87,7 +87,7 @@ class WatchedNode(NodeOnBus):
 
     @staticmethod
     def takes_once(message: can.Message) -> bool:
-        """HELLO changes nothing, so by contract it may come any number of times; spoilt ones are refused as all are."""
+        """HELLO changes no state, so the contract allows duplicates; a corrupted HELLO is refused as any frame."""
         return message.arbitration_id != ID_BASE + wire()["HELLO"].offset
 
     def sent_frame(self, message: can.Message) -> None:

@@ -1,4 +1,4 @@
-"""The paper's section 6: a further linear constraint costs nothing but linear combinations.
+"""The paper's section 6: a further linear constraint needs only linear combinations.
 
 A system is kept as what (2.4) needs of it once the brackets are done: L*, the table {P_α, P_μ}*, {P_α, L*}* and
 the generalised forces. A further constraint ω = G η gives P̃ = Gᵀ P, and since the bracket is bilinear, the new

@@ -35,7 +35,7 @@ class System:
 
     @property
     def momenta(self) -> tuple[sp.Symbol, ...]:
-        """Formal momenta p_i; they get their meaning only at the very end."""
+        """Formal momenta p_i; their values are put in after all brackets are done."""
         return tuple(sp.Symbol(f"p_{q.name}") for q in self.coordinates)
 
     def with_constraints(self, expression: sp.Expr) -> sp.Expr:

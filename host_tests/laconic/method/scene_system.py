@@ -31,7 +31,7 @@ class VehicleNumbers:
     constraint_rows: np.ndarray      # C, any number × 3
 
     def symbol_values(self) -> dict[sp.Symbol, sp.Expr]:
-        """Numbers for the symbols that the derivation is left with."""
+        """Numbers for the symbols that remain in the derivation."""
         values = {sp.Symbol("M", positive=True): self.mass_kg, sp.Symbol("R", positive=True): self.wheel_radius_m}
         values |= {sp.Symbol("Lambda", positive=True): self.lambda_yaw}
         values |= {sp.Symbol("lambda", positive=True): self.lambda_wheel}

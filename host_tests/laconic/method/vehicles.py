@@ -1,4 +1,4 @@
-"""The paper's vehicles, and one that it does not have, as systems for the laconic equations."""
+"""The paper's vehicles and a further one, as systems for the laconic equations."""
 
 from __future__ import annotations
 

@@ -1,1 +1,1 @@
-"""Pictures of runs: curves, and how methods look in them."""
+"""Pictures of runs: curves, and the style of each method."""

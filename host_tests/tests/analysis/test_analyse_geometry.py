@@ -2,6 +2,7 @@
 
 import numpy as np
 import pytest
+from scene_text import constant, wheel
 
 from laconic.analysis.from_core import subject_of
 from laconic.analysis.geometry import diagnose
@@ -30,12 +31,12 @@ wheel_inertia_kgm2 = 0.003
 def mecanum(long_m, wide_m, sign):
     """Four wheels; sign +1 as in `mecanum4` of the reference data, −1 every roller the other way."""
     corners = [(1, 1, 1), (1, -1, -1), (-1, 1, -1), (-1, -1, 1)]
-    return "".join(f'[[vehicle.wheel]]\nkind = "mecanum"\nx_m = {x * long_m}\ny_m = {y * wide_m}\n'
-                   f"axle_deg = -90.0\nroller_deg = {45.0 * g * sign}\n" for x, y, g in corners)
+    return "".join(wheel("mecanum", x * long_m, y * wide_m, axle_deg=-90.0, roller_deg=45.0 * g * sign)
+                   for x, y, g in corners)
 
 
-def wheels(kind, *places):
-    return "".join(f'[[vehicle.wheel]]\nkind = "{kind}"\nx_m = {x}\ny_m = {y}\naxle_rad = {a}\n' for x, y, a in places)
+def wheels(kind, *mounted):
+    return "".join(wheel(kind, x, y, axle_rad=a) for x, y, a in mounted)
 
 
 def test_mecanum_wheels_mounted_right_have_full_rank_and_good_yaw_authority(tmp_path):
@@ -147,12 +148,7 @@ signal = "world_force_N[2]"
 kind = "steps"
 t_s = [0.0, 0.4]
 value = [3.0, -5.0]
-[[input]]
-signal = "world_force_point_m[1]"
-kind = "steps"
-t_s = [0.0]
-value = [0.12]
-"""
+""" + constant("world_force_point_m[1]", 0.12)
 MOTORS = "motor_gain_Nm_per_V = 0.4\nmotor_damping_Nms = 0.02\nfriction_coefficient = 0.5\ncom_z_m = 0.05\n"
 LOCKED = mecanum(0.2, 0.15, 1).replace("roller_deg = 45.0", "roller_deg = 45.0\nlocked = true", 1)
 MIXED = wheels("fixed", (0.0, 0.2, -np.pi / 2), (0.0, -0.2, -np.pi / 2)) + wheels("omni", (0.2, 0.0, 0.4))
@@ -196,8 +192,7 @@ def test_first_slip_is_the_first_step_at_which_a_reaction_leaves_the_friction_co
 def test_lifting_wheel_is_named(tmp_path):
     """A tall body that brakes hard lifts its rear wheel."""
     tall = BODY + MOTORS.replace("com_z_m = 0.05", "com_z_m = 0.6") + THREE
-    step = '[[input]]\nsignal = "voltage_V[{}]"\nkind = "steps"\nt_s = [0.0]\nvalue = [{}]\n'
-    found = study(scene_with(tmp_path, tall, step.format(2, 40.0) + step.format(3, -40.0)))
+    found = study(scene_with(tmp_path, tall, constant("voltage_V[2]", 40.0) + constant("voltage_V[3]", -40.0)))
     assert found.lifting
     assert any("would lift off" in sentence for sentence in found.words)
 

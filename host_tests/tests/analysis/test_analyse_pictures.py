@@ -5,6 +5,7 @@ import math
 import numpy as np
 import pytest
 from matplotlib import pyplot as plt
+from scene_text import constant, table
 
 from laconic.analysis.findings import Wishes
 from laconic.analysis.from_core import subject_of
@@ -18,10 +19,11 @@ LONG_NAME = "A robot of many wheels whose maker gave it a name that is longer th
 
 def ring(count: int, path) -> str:
     """A scene with so many omni wheels on a ring, that slips."""
-    wheels = "".join(f'[[vehicle.wheel]]\nkind = "omni"\ndistance_m = 0.4\nbearing_deg = {360 / count * k}\n'
-                     f'axle_deg = {360 / count * k}\n' for k in range(count))
-    inputs = "".join(f'[[input]]\nsignal = "voltage_V[{k + 1}]"\nkind = "steps"\nt_s = [0.0]\n'
-                     f'value = [{6 * math.cos(2 * math.pi * k / count) + 0.5:.4f}]\n' for k in range(count))
+    angles = [360 / count * k for k in range(count)]
+    wheels = "".join(table("[[vehicle.wheel]]", kind="omni", distance_m=0.4, bearing_deg=angle, axle_deg=angle)
+                     for angle in angles)
+    inputs = "".join(constant(f"voltage_V[{k + 1}]", round(6 * math.cos(math.radians(angle)) + 0.5, 4))
+                     for k, angle in enumerate(angles))
     path.write_text(f"""name = "{LONG_NAME}"
 source = "numbers of this test"
 [vehicle]

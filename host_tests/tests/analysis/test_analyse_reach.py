@@ -4,6 +4,7 @@ import json
 
 import numpy as np
 import pytest
+from scene_text import constant, wheel
 
 from laconic.analysis.findings import Wishes
 from laconic.analysis.from_core import subject_of
@@ -21,10 +22,8 @@ SPEED = VOLTS / (0.06 * 20.0)  # of a wheel whose motor balances its own back-EM
 @pytest.fixture
 def base(tmp_path):
     """A mecanum base of 135 kg with strong motors, that drives ahead."""
-    wheels = "".join(f'[[vehicle.wheel]]\nkind = "mecanum"\nx_m = {x}\ny_m = {y}\naxle_deg = -90.0\n'
-                     f'roller_deg = {g}.0\n' for x, y, g in MECANUM)
-    inputs = "".join(f'[[input]]\nsignal = "voltage_V[{i}]"\nkind = "steps"\nt_s = [0.0]\nvalue = [{VOLTS}]\n'
-                     for i in range(1, 5))
+    wheels = "".join(wheel("mecanum", x, y, axle_deg=-90.0, roller_deg=g) for x, y, g in MECANUM)
+    inputs = "".join(constant(f"voltage_V[{i}]", VOLTS) for i in range(1, 5))
     path = tmp_path / "base.toml"
     path.write_text(f"""name = "base"
 source = "numbers of this test"

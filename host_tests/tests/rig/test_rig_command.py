@@ -12,6 +12,7 @@ from xml.etree import ElementTree
 
 import can
 import pytest
+from scene_text import wheel
 
 from laconic.cli.main import run
 from laconic.paths import built
@@ -28,7 +29,7 @@ from laconic.scene import read_scene
 NU = wire()["NU"].offset
 SAMPLED = """
 name = "sampled"
-source = "this test: a rolling cart with a sine on one wheel and a wind that turns with the world"
+source = "this test: a rolling cart with a sine on one wheel and a wind that is fixed in the world"
 [vehicle]
 mass_kg = 4.0
 yaw_inertia_kgm2 = 0.2
@@ -36,16 +37,7 @@ wheel_radius_m = 0.05
 wheel_inertia_kgm2 = 1e-4
 motor_gain_Nm_per_V = 0.05
 motor_damping_Nms = 0.01
-[[vehicle.wheel]]
-kind = "fixed"
-x_m = 0.0
-y_m = 0.1
-axle_rad = -1.5707963267948966
-[[vehicle.wheel]]
-kind = "fixed"
-x_m = 0.0
-y_m = -0.1
-axle_rad = -1.5707963267948966
+""" + wheel("fixed", 0.0, 0.1, axle_deg=-90) + wheel("fixed", 0.0, -0.1, axle_deg=-90) + """
 [[input]]
 signal = "voltage_V[1]"
 kind = "sine"

@@ -7,6 +7,7 @@ import json
 from pathlib import Path
 
 import pytest
+from scene_text import wheel
 
 from laconic.cli.main import run
 
@@ -18,16 +19,7 @@ wheel_radius_m = 0.04
 wheel_inertia_kgm2 = 0.0005
 motor_gain_Nm_per_V = 0.2
 motor_damping_Nms = 0.05
-[[vehicle.wheel]]
-kind = "fixed"
-x_m = 0
-y_m = 0.1
-axle_deg = -90
-[[vehicle.wheel]]
-kind = "fixed"
-x_m = 0
-y_m = -0.1
-axle_deg = -90
+""" + wheel("fixed", 0, 0.1, axle_deg=-90) + wheel("fixed", 0, -0.1, axle_deg=-90) + """
 [[input]]
 signal = "voltage_V[1]"
 """
