@@ -10,6 +10,7 @@ from pathlib import Path
 from cantools.database.can import Database, Message, Signal
 
 import reference_client as reference
+from laconic.scene import METHODS
 
 from .contract import attribute, choices, limits, load
 from .wire_parameters import PARAMETERS
@@ -17,7 +18,6 @@ from .wire_parameters import PARAMETERS
 HERE = Path(__file__).resolve().parent
 PAGE = HERE.parents[1] / "docs" / "wire.md"
 
-METHODS = ("auto", "rk4", "exponential-kahan", "exponential-kahan-4", "exact-flow", "exact-flow-4", "taylor-8")
 NONCE, SESSION, STARTS = 0x0123ABCD, 0xC0FFEE11, 9
 ENUMERATED = ("command", "state", "status", "field")  # have a chapter of their own
 STATUSES = {

@@ -21,6 +21,6 @@ def rates_of_peer(scene: Scene, folder: Path, states: int = 20, seed: int = 1) -
         rates, held = np.empty_like(state), course.voltages_V[0].copy()
         library.peer_derivative(*(ctypes.c_void_p(a.ctypes.data) for a in (state, held, rates)))
         found.append(rates)
-        terms = course.reference.drive_terms(dict(zip(names, held, strict=True)))
+        terms = course.reference.forcing_terms(dict(zip(names, held, strict=True)))
         expected.append(course.reference.rates(state, terms))
     return np.array(found), np.array(expected)

@@ -125,7 +125,7 @@ def run_case(fault: str, frame: str, seed: int) -> Row:
             row.problems += [] if case.bus.model.injected else [f"without a fault: {error}"]
             case.pump()
         listen(case, client, SILENCE_S)
-        row.injected, row.state = case.bus.model.injected, case.node.node.look()["state"]
+        row.injected, row.state = case.bus.model.injected, case.node.node.inspect()["state"]
         if row.state not in EXPECTED[row.stage]:
             row.problems.append(f"state {row.state} after {row.stage}")
         case.bus.model.active = False

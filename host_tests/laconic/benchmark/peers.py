@@ -249,7 +249,7 @@ def scipy_runner(course: Course, solver: str) -> Callable[[float], Solution]:
     def run(rtol: float) -> Solution:
         state, states, start = course.start, [], time.thread_time_ns()
         for duration, voltages in zip(course.durations_s, course.voltages_V, strict=True):
-            terms = course.reference.drive_terms(dict(zip(names, voltages, strict=True)))
+            terms = course.reference.forcing_terms(dict(zip(names, voltages, strict=True)))
             found = solve_ivp(lambda _t, y, b=terms: course.reference.rates(y, b), (0.0, duration), state, solver,
                               rtol=rtol, atol=rtol * 1e-2)
             state = found.y[:, -1]

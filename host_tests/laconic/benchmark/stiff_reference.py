@@ -47,9 +47,9 @@ def stiff_states(scene: Scene, at_s: np.ndarray) -> np.ndarray:
 def _terms(reference: Reference, scene: Scene, begun: float) -> Terms:
     drive = scene.drive()
     if drive.is_held:
-        held = reference.drive_terms(values_at(drive, begun, begun))
+        held = reference.forcing_terms(values_at(drive, begun, begun))
         return lambda t: held
-    return lambda t: reference.drive_terms(values_at(drive, t, begun))
+    return lambda t: reference.forcing_terms(values_at(drive, t, begun))
 
 
 def _stretch(reference: Reference, terms: Terms, state: np.ndarray, begin: float, end: float) -> np.ndarray:

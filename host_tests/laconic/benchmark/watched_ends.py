@@ -70,12 +70,12 @@ class WatchedNode(NodeOnBus):
         self.rig_sent: Multiset = Counter()
         self.sent: Multiset = Counter()
         self.allowed_V: set[float] = {0.0}
-        self.view = node.look()
+        self.view = node.inspect()
 
     def deliver(self, message: can.Message) -> None:
-        before = self.node.look()
+        before = self.node.inspect()
         super().deliver(message)
-        after = self.node.look()
+        after = self.node.inspect()
         key = (message.arbitration_id, bytes(message.data))
         if after["accepted"] > before["accepted"]:
             self.row.undetected += self.rig_sent[key] <= 0
@@ -101,7 +101,7 @@ class WatchedNode(NodeOnBus):
 
     def refresh(self) -> None:
         """The invariants."""
-        view, before = self.node.look(), self.view
+        view, before = self.node.inspect(), self.view
         strange = [v for v in view["voltage_V"] if v not in self.allowed_V]
         if strange:
             self.row.problems.append(f"voltage {strange[0]} was never sent")

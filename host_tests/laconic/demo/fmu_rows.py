@@ -1,4 +1,4 @@
-"""A scene's FMU driven by FMPy: one doStep an exchange, inputs set where they change, a row of outputs after each."""
+"""A scene's FMU driven by FMPy: one doStep per exchange, inputs set where they change, a row of outputs after each."""
 
 from __future__ import annotations
 
@@ -22,7 +22,7 @@ from laconic.scene.reader import LENGTHS, PER_WHEEL
 
 FMI_ERROR = 3  # and fatal, 4, in FMI 2 and FMI 3
 OUTPUTS = ("nu_rad_per_s", "x_m", "y_m", "heading_rad")
-OUTPUTS_PER_WHEEL = ("wheel_speed_rad_per_s", "wheel_angle_rad")  # not there in an FMU without wheels
+OUTPUTS_PER_WHEEL = ("wheel_speed_rad_per_s", "wheel_angle_rad")  # absent in an FMU without wheels
 
 
 def elements(name: str, length: int) -> list[str]:
@@ -39,20 +39,20 @@ def input_arrays(drive: Drive, tick: int, wheel_count: int) -> dict[str, list[fl
 
 
 class Log:
-    """What an FMU says: warnings are kept, errors go to stderr as well. FMPy would print them where the results go."""
+    """The log of an FMU: all lines are kept, errors go to stderr as well. FMPy would print them to stdout."""
 
     def __init__(self) -> None:
         self.lines: list[str] = []
 
     def take(self, status: int, text: bytes) -> None:
-        """One message."""
+        """Keeps one message."""
         self.lines.append(text.decode(errors="replace"))
         if status >= FMI_ERROR:
             click.echo(f"laconic: FMU: {self.lines[-1]}", err=True)
 
     def fmi2_callbacks(self) -> fmi2.fmi2CallbackFunctions:
-        """For FMI 2, whose messages are whole texts here. FMPy's proxy for formats with arguments has room for one
-        logger in a process and calls it for every FMU that comes later, when it has long gone: it is left out."""
+        """Callbacks of FMI 2. FMPy's proxy for messages with arguments is not used: it keeps one logger per process and
+        calls it for later FMUs, when it no longer exists. These FMUs send whole messages."""
         callbacks = fmi2.fmi2CallbackFunctions()
         callbacks.logger = fmi2.fmi2CallbackLoggerTYPE(
             lambda environment, instance, status, category, text: self.take(status, text))
@@ -69,14 +69,14 @@ class Slave2:
         self.outputs = [references[name] for name in row_names(wheel_count)]
 
     def start(self, end_s: float) -> None:
-        """Up to step mode."""
+        """Initializes up to step mode."""
         self.slave.instantiate(callbacks=self.log.fmi2_callbacks())
         self.slave.setupExperiment(startTime=0.0, stopTime=end_s)
         self.slave.enterInitializationMode()
         self.slave.exitInitializationMode()
 
     def set(self, base: str, values: list[float]) -> None:
-        """One input with all its elements."""
+        """Sets one input with all its elements."""
         names = elements(base, LENGTHS.get(base, len(values)))
         self.slave.setReal([self.references[name] for name in names], values)
 
@@ -94,13 +94,13 @@ class Slave3:
         self.count = 6 + 2 * wheel_count
 
     def start(self, end_s: float) -> None:
-        """Up to step mode."""
+        """Initializes up to step mode."""
         self.slave.instantiate(logMessage=lambda _, status, category, text: self.log.take(status, text))
         self.slave.enterInitializationMode(startTime=0.0, stopTime=end_s)
         self.slave.exitInitializationMode()
 
     def set(self, base: str, values: list[float]) -> None:
-        """One input with all its elements."""
+        """Sets one input with all its elements."""
         self.slave.setFloat64([self.references[base]], values)
 
     def get(self) -> list[float]:
@@ -126,7 +126,7 @@ def fmu_rows(scene: Scene, fmu: Path, steps: int, every: int = 1,
 
 
 def run(slave: Any, scene: Scene, steps: int, every: int, moved: Callable[[int], None]) -> Rows:
-    """From start to end; time is a whole number of steps times the step, as a master should count it."""
+    """From start to end; time is the number of steps times the step, without accumulated rounding."""
     drive, step_s = scene.drive(), scene.run.step_s
     slave.start(steps * step_s)
     changes, ticks, rows, began = set(drive.changes), [], [], time.perf_counter()

@@ -34,9 +34,9 @@ class SceneResult:
     points: list[Point] = field(default_factory=list)
     floor: float = 0.0
     picture: str = ""
-    log: dict[str, tuple[str, ...]] = field(default_factory=dict)  # participant → what it said
-    no_slip: dict[str, Any] | None = None  # Grip.as_json; None: the scene says nothing of the ground
-    ground: str = ""                       # in words what the ground cannot give
+    log: dict[str, tuple[str, ...]] = field(default_factory=dict)  # participant → lines of its log
+    no_slip: dict[str, Any] | None = None  # Grip.as_json; None: the scene has no data of the ground
+    ground: str = ""                       # warning where the ground cannot provide the reactions
 
     @property
     def passed(self) -> bool:
@@ -49,7 +49,7 @@ class SceneResult:
 
 
 def steps_of(scene: Scene) -> Scene:
-    """The scene, run on with its last inputs where it is shorter than 10,000 steps."""
+    """The scene, continued with its last inputs where it is shorter than 10,000 steps."""
     if scene.steps() >= LEAST_STEPS:
         return scene
     return scene.with_run(duration_s=LEAST_STEPS * scene.run.step_s)
@@ -91,7 +91,7 @@ def run_scene(given: Scene, out: Path, moved: Advance) -> SceneResult:
 
 
 def draw_scene(scene: Scene, result: SceneResult, out: Path) -> None:
-    """The scene's picture, and what the run asks of the ground."""
+    """Draws the scene's picture and adds the result about the ground."""
     from laconic.demo.pictures import draw
     picture = out / f"{scene.path.stem}.png"
     run = simulate(scene, usual_signals(scene))

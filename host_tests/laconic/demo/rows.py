@@ -1,4 +1,4 @@
-"""What every participant hands over: one row of numbers after each exchange, in the same order for all.
+"""The result of every participant: one row of numbers after each exchange, in the same order for all.
 
 A row is ν(3), x, y, heading, wheel speeds (N), wheel angles (N), in the core's scalar type.
 """
@@ -23,11 +23,11 @@ class Rows:
     ticks: np.ndarray
     rows: np.ndarray
     seconds: float = 0.0
-    log: tuple[str, ...] = ()  # what the participant said
+    log: tuple[str, ...] = ()  # the participant's log
 
 
 def row_names(wheel_count: int) -> list[str]:
-    """What stands where in a row."""
+    """Names of the numbers of a row."""
     wheels = range(1, wheel_count + 1)
     return ["nu_rad_per_s[1]", "nu_rad_per_s[2]", "nu_rad_per_s[3]", "x_m", "y_m", "heading_rad",
             *(f"wheel_speed_rad_per_s[{i}]" for i in wheels), *(f"wheel_angle_rad[{i}]" for i in wheels)]
@@ -41,9 +41,9 @@ def exchanges(drive: Drive, steps: int, every: int) -> Iterator[tuple[int, int]]
 
 
 def core_rows(scene: Scene, steps: int, every: int = 1, hold: bool = False) -> Rows:
-    """The core itself: what the others are held against.
+    """The rows of the core, with which the others are compared.
 
-    `hold`: with every input held over the step at its value at the start, as an FMU gets it.
+    `hold`: every input is held over the step at its value at the start, as in an FMU.
     """
     plant, drive = scene.plant(scene.core()), scene.drive()
     ticks, rows = [], []
@@ -59,10 +59,10 @@ def core_rows(scene: Scene, steps: int, every: int = 1, hold: bool = False) -> R
 
 def difference(found: Rows, expected: Rows, wheel_count: int) -> str:
     """"" where all bits are the same at every exchange of `found`; else the first difference in words."""
-    places = np.searchsorted(expected.ticks, found.ticks)
-    if np.any(places >= len(expected.ticks)) or np.any(expected.ticks[places] != found.ticks):
+    at = np.searchsorted(expected.ticks, found.ticks)
+    if np.any(at >= len(expected.ticks)) or np.any(expected.ticks[at] != found.ticks):
         return f"{found.who} stops at steps where {expected.who} does not"
-    want, have = expected.rows[places], found.rows
+    want, have = expected.rows[at], found.rows
     if have.shape != want.shape or have.dtype != want.dtype:
         return f"{found.who} gives {have.shape} {have.dtype}, {expected.who} {want.shape} {want.dtype}"
     bits = f"u{have.dtype.itemsize}"

@@ -18,8 +18,8 @@ from laconic.simulation import advance_plant
 from laconic.verification.reference import reference_states
 from laconic.verification.trajectories import error_of
 
-FACTORS = (1, 2, 5, 10, 20, 50, 100)  # steps, as multiples of the scene's; 100 of them between two looks
-LOOK = 100
+FACTORS = (1, 2, 5, 10, 20, 50, 100)  # of the scene's step
+COMPARED_EVERY = 100  # steps of the scene between two states that are compared
 REPETITIONS = 5
 TIMED_STEPS = 5000
 KINDS = (slice(0, 3), slice(3, 6), slice(6, None))  # ν, pose, wheel angles in a row of states
@@ -27,7 +27,7 @@ KINDS = (slice(0, 3), slice(3, 6), slice(6, None))  # ν, pose, wheel angles in 
 
 @dataclass(frozen=True)
 class Point:
-    """One run; a refused one has the refusal's words instead of numbers."""
+    """One run; a refused one has the refusal instead of numbers."""
 
     method: str
     chosen: str
@@ -48,7 +48,7 @@ class Point:
 
 @dataclass(frozen=True)
 class Target:
-    """States (ν, x, y, θ, χ) of the reference at some instants, and how far they can be trusted."""
+    """States (ν, x, y, θ, χ) of the reference at some instants, and their own error (floor)."""
 
     ticks: np.ndarray
     states: np.ndarray
@@ -60,9 +60,9 @@ class Target:
 
 
 def target_of(scene: Scene) -> Target:
-    """The reference every 100 steps of the scene and at its end; its floor is what another tolerance changes."""
+    """The reference every 100 steps of the scene and at its end; its floor is the change under another tolerance."""
     steps = scene.steps()
-    ticks = np.unique([*range(0, steps, LOOK), steps])
+    ticks = np.unique([*range(0, steps, COMPARED_EVERY), steps])
     instants = ticks * scene.run.step_s
     states = reference_states(scene, instants, rtol=1e-13, atol=1e-14)
     looser = reference_states(scene, instants)
@@ -71,9 +71,9 @@ def target_of(scene: Scene) -> Target:
 
 
 def usable_factors(scene: Scene) -> list[int]:
-    """Multiples of the scene's step that keep every change of the inputs and every look on a step."""
+    """Multiples of the scene's step that keep every change of the inputs and every compared state on a step."""
     drive = scene.drive()
-    marks = [LOOK, scene.steps(), *drive.changes]
+    marks = [COMPARED_EVERY, scene.steps(), *drive.changes]
     return [factor for factor in FACTORS if all(mark % factor == 0 for mark in marks)]
 
 
@@ -90,7 +90,7 @@ def measure(scene: Scene, target: Target, method: str, factor: int) -> tuple[Poi
 
 
 def states_at(scene: Scene, drive: Drive, ticks: np.ndarray) -> tuple[np.ndarray, str]:
-    """States after so many steps, and the method that worked."""
+    """States after so many steps, and the method that was used."""
     plant = scene.plant(scene.core())
     states = np.empty((len(ticks), 6 + 2 * scene.wheel_count))
     for row, tick in enumerate(ticks):
@@ -105,15 +105,15 @@ def without_speeds(rows: np.ndarray, wheel_count: int) -> np.ndarray:
 
 
 class Stopwatch:
-    """Seconds a step of the core's loop costs: the least time of a run, less the least time of its bare calls."""
+    """Seconds per step of the core's loop: the least time of a run, less the least time of its calls with 0 steps."""
 
     def __init__(self, scene: Scene, drive: Drive):
         self.scene, self.drive = scene, drive
-        self.cycles = -(-TIMED_STEPS // drive.steps)  # a short run goes on, again and again from where it ended
+        self.cycles = -(-TIMED_STEPS // drive.steps)  # a short run is continued from its end, so many times
         self.run_s = self.empty_s = float("inf")
 
     def measure(self) -> None:
-        """Once more."""
+        """Times one more run."""
         plant = self.scene.plant(self.scene.core())
         if not self.drive.is_held:
             began, self.cycles, self.empty_s = time.thread_time(), 1, 0.0
@@ -124,7 +124,7 @@ class Stopwatch:
                      for each in self.drive.segments()]
         try:
             self.run_s = min(self.run_s, call_time(plant, self.cycles * stretches))
-        except Refused:  # going on leads to where the step is too large
+        except Refused:  # continuing leads to states where the step is too large
             self.cycles, self.run_s = 1, float("inf")
             self.run_s = call_time(self.scene.plant(self.scene.core()), stretches)
         bare = self.cycles * [(held, 0) for held, _ in stretches]
@@ -132,7 +132,7 @@ class Stopwatch:
 
     @property
     def step_s(self) -> float:
-        """What was found."""
+        """Seconds per step."""
         return (self.run_s - self.empty_s) / (self.cycles * self.drive.steps)
 
 
@@ -145,7 +145,7 @@ def call_time(plant: Plant, stretches: Sequence[tuple[Any, int]]) -> float:
 
 
 def measure_all(scene: Scene, target: Target) -> list[Point]:
-    """Every method with every usable step; timed in turns, so that what else the machine does hits all alike."""
+    """Every method with every usable step; timed alternately, so that other work of the machine affects all alike."""
     points, watches = [], []
     for method, factor in product(METHODS, usable_factors(scene)):
         point, coarse, drive = measure(scene, target, method, factor)

@@ -38,16 +38,16 @@ def start_values(scene: Scene) -> dict[str, list[float]]:
 
 
 def content_of(scene: Scene, name: str, text: str, values: dict[str, Any]) -> Content:
-    """What an FMU of the scene says, with the scene's own duration and step."""
+    """Content of an FMU of the scene, with the scene's duration and step."""
     return Content(name, text, values, scene.run.duration_s, scene.run.step_s)
 
 
 def make_fmu(scene: Scene, out: Path, *, version: int, scalar: bool = False, sources: bool = True,
              enumerations: bool = True) -> Path:
-    """Writes the scene's FMU; BadInput when the scene cannot be one."""
+    """Writes the scene's FMU; BadInput when the scene has no such FMU."""
     if scene.wheel_count == 0 and version == 3 and not scalar:
         raise BadInput(f"{scene.path}: vehicle.wheel: a vehicle without wheels has no arrays; use --scalar or --fmi 2")
-    scene.plant(load("double"))  # what cannot start is refused here, with the field's name
+    scene.plant(load("double"))  # refuses a scene that cannot start, naming the field
     content = content_of(scene, scene.name, f"Dynamics of a wheeled robot; its numbers: {scene.source}",
                          start_values(scene))
     with whole_file(out) as fresh:

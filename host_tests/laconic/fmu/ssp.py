@@ -1,7 +1,7 @@
 """A vehicle and its wheel-speed controller as one system: two FMUs connected in an SSP 1.0 archive.
 
-Names are identifiers, which is more than SSP asks for and what OMSimulator needs; only the FMUs' own variables keep
-their names. The FMUs are of FMI 2, the one that SSP 1.0 knows.
+Names are identifiers, which SSP does not require but OMSimulator does; only the FMUs' own variables keep their names.
+The FMUs are of FMI 2, the only version of SSP 1.0.
 """
 
 from __future__ import annotations
@@ -31,7 +31,7 @@ POSE = ("x_m", "y_m", "heading_rad")
 
 @dataclass(frozen=True)
 class Wire:
-    """A connection; an element's name, or "" for the system itself."""
+    """A connection of a variable between two elements; "" is the system itself."""
 
     variable: str
     start: str
@@ -72,14 +72,14 @@ def connector_name(variable: str, wheel: int, element: str) -> str:
 
 
 def _ends(wires: Iterable[Wire], element: str, wheels: int) -> Iterator[tuple[str, str, str]]:
-    """Connectors of an element: name, kind, variable. What goes into the system comes out of its input connector."""
+    """Connectors of an element: name, kind, variable. Inside the system its input connector is a source."""
     seen = set()
     for wire in wires:
         starts, ends = (wire.start, "output" if wire.start else "input"), (wire.end, "input" if wire.end else "output")
-        for place, kind in (starts, ends):
+        for owner, kind in (starts, ends):
             for wheel in wire.wheels(wheels):
                 name = connector_name(wire.variable, wheel, element)
-                if place == element and name not in seen:
+                if owner == element and name not in seen:
                     seen.add(name)
                     yield name, kind, wire.variable
 
@@ -121,7 +121,7 @@ def _units(parent: ET.Element, used: Iterable[str], exponents: dict[str, ET.Elem
 
 
 def structure(scene: Scene) -> str:
-    """SystemStructure.ssd: set points in, wheel speeds and pose out, the loop closed inside."""
+    """SystemStructure.ssd: set points in, wheel speeds and pose out, the control loop closed inside."""
     ET.register_namespace("ssd", SSD)
     ET.register_namespace("ssc", SSC)
     wheels, (units, exponents) = scene.wheel_count, _units_of((read(CONTROLLER), read(DESCRIPTION)))
@@ -144,7 +144,7 @@ def structure(scene: Scene) -> str:
 def make_ssp(scene: Scene, out: Path, *, version: int = 2, sources: bool = True, enumerations: bool = True) -> Path:
     """Writes the archive: both FMUs and how they are connected; BadInput where there can be none."""
     if version != 2:
-        raise BadInput("--ssp: SSP 1.0 knows no FMUs of FMI 3; use --fmi 2")
+        raise BadInput("--ssp: SSP 1.0 has no FMUs of FMI 3; use --fmi 2")
     if scene.wheel_count == 0:
         raise BadInput(f"{scene.path}: vehicle.wheel: there is nothing to control without wheels; leave out --ssp")
     options: dict[str, Any] = {"version": version, "sources": sources, "enumerations": enumerations}

@@ -13,8 +13,8 @@ from laconic.recorded_runs.log import Recording
 
 STEP_S = 0.002
 TRANSIENT_S = 1.0
-SETTLED_S = 1.5     # after the start the motion counts as steady
-BLOCK_S = 1.0       # means over such stretches are taken as independent
+SETTLED_S = 1.5     # after the start, from then on the motion counts as steady
+BLOCK_S = 1.0       # length of the blocks whose means count as independent
 
 
 @dataclass(frozen=True)
@@ -37,14 +37,14 @@ class Rolled:
     rolled_m: float
     camera_m: float
     ratio: Mean | None             # rolled over camera; None without a camera
-    rolled_direction_deg: float    # where pure rolling would have led
-    camera_direction_deg: float    # where the robot went
+    rolled_direction_deg: float    # direction of travel by pure rolling
+    camera_direction_deg: float    # direction of travel by the camera
     path_m: np.ndarray             # rolled x, y in the robot's frame, summed
 
 
 @dataclass(frozen=True)
 class Prediction:
-    """What one friction model says about one run."""
+    """The prediction of one friction model for one run."""
 
     model: str
     speed_rad_per_s: np.ndarray    # at the samples' times, from the core; nan where it was not run
@@ -56,7 +56,7 @@ class Prediction:
 
 @dataclass(frozen=True)
 class Comparison:
-    """Everything about one run."""
+    """All results of one run."""
 
     recording: Recording
     rolled: Rolled
@@ -77,7 +77,7 @@ def compare(subject: Subject, recording: Recording, models: list[Friction], whol
 
 
 def start_index(recording: Recording) -> int:
-    """The last sample before the wheels turn."""
+    """The last sample before the wheels rotate."""
     moving = np.abs(recording.wheel_angle_rad - recording.wheel_angle_rad[0]).max(axis=1) > 0.02
     return max(int(np.argmax(moving)) - 1, 0) if moving.any() else 0
 
@@ -89,7 +89,7 @@ def _settled(recording: Recording) -> np.ndarray:
 
 
 def block_mean(time_s: np.ndarray, values: np.ndarray) -> Mean:
-    """Mean and interval from means over stretches of BLOCK_S."""
+    """Mean and interval from the means of blocks of BLOCK_S."""
     number = ((time_s - time_s[0]) / BLOCK_S).astype(int)
     means = np.array([values[number == k].mean() for k in np.unique(number) if (number == k).sum() > 5])
     if len(means) < 2:
@@ -119,7 +119,7 @@ def bearing_deg(vector: np.ndarray) -> float:
 
 
 def _ratio(time_s: np.ndarray, path: np.ndarray, seen: np.ndarray, unit: np.ndarray) -> Mean:
-    """Rolled over camera, along the direction of travel, from stretches of one second each."""
+    """Rolled over camera, along the direction of travel, from blocks of BLOCK_S."""
     edges = np.searchsorted(time_s, np.arange(time_s[0] + SETTLED_S, time_s[-1], BLOCK_S))
     shares = []
     for first, last in zip(edges[:-1], edges[1:], strict=True):
@@ -149,7 +149,7 @@ def _prediction(subject: Subject, recording: Recording, model: Friction, steady:
 def predicted_speeds(subject: Subject, recording: Recording, model: Friction, until_s: float = np.inf) -> np.ndarray:
     """Wheel speeds at the samples' times: the core driven by the measured currents as torques, less the friction.
 
-    Damping is the core's c2; dry friction and drag are torques put in at every step from the core's own speeds.
+    Damping is the core's c2; dry friction and drag are axle torques, computed at every step from the core's speeds.
     """
     core = subject.core
     vehicle = core.ffi.new("laconic_vehicle *", subject.vehicle[0])

@@ -1,12 +1,12 @@
-"""What the recorded currents say about friction: least squares on the wheel torques, with confidence intervals.
+"""Friction from the recorded currents: least squares on the wheel torques, with confidence intervals.
 
 What (4.7) leaves to friction is y = τ − M, with the motor's torque τ = G k_t I on each wheel and the torque M that the
-recorded motion needs, M = Ξ⁺ᵀ M R² (A ν' − Λ⁻¹ a). Three explanations are fitted, each holding the one before:
+recorded motion needs, M = Ξ⁺ᵀ M R² (A ν' − Λ⁻¹ a). Three models are fitted, each containing the one before:
     ideal           y_i = c2 χ_i'               (4.7) alone
     dry             … + T_i sign χ_i'           a dry-friction torque for each wheel
-    dry and drag    … + its share of a force of constant size against the travel (rollers that turn hard, or slip)
+    dry and drag    … + its share of a force of constant size against the travel (rollers with friction, or slip)
 The intervals take each run as one observation of its own (cluster-robust, Student's t with runs − 1 degrees of
-freedom), because samples within a run repeat each other.
+freedom), because samples within a run are not independent.
 """
 
 from __future__ import annotations
@@ -23,14 +23,14 @@ from laconic.errors import BadInput
 from laconic.recorded_runs.log import Recording
 
 MODELS = ("ideal", "dry", "dry and drag")
-SOFT_SPEED = 0.3   # rad/s at the wheel: below it dry friction fades out, so that standing still is not torn apart
+SOFT_SPEED = 0.3   # rad/s at the wheel: below it dry friction falls to zero, so that a wheel at rest does not chatter
 SOFT_TRAVEL = 0.01  # m/s: the same for the drag force
 CONFIDENCE = 0.95
 
 
 @dataclass(frozen=True)
 class Friction:
-    """One fitted explanation."""
+    """One fitted model."""
 
     model: str
     names: tuple[str, ...]
@@ -39,7 +39,7 @@ class Friction:
     residual_Nm: float          # root mean square over the samples fitted
 
     def part(self, name: str) -> float:
-        """A fitted value; 0 for one that the model has not."""
+        """A fitted value; 0 for one that the model does not have."""
         return float(self.values[self.names.index(name)]) if name in self.names else 0.0
 
     def torque(self, subject: Subject, speed: np.ndarray) -> np.ndarray:

@@ -1,4 +1,4 @@
-"""Reads a recorded run: a CSV file and a small TOML file that says which column is what."""
+"""Reads a recorded run: a CSV file and a small TOML file that maps its columns."""
 
 from __future__ import annotations
 
@@ -18,7 +18,7 @@ SMOOTHING = 2  # samples to either side for a speed from positions
 
 @dataclass(frozen=True)
 class ColumnMap:
-    """Where each quantity stands in the file, and its factor to SI units at the wheel."""
+    """The columns of each quantity, and the factors to SI units at the wheel."""
 
     separator: str
     header_lines: int
@@ -117,11 +117,11 @@ def _values(path: Path, columns: ColumnMap, head: list[str], rows: list[list[Any
     missing = [column for column in wanted if column not in head]
     if missing:
         raise BadInput(f"{path}: has no column {missing[0]!r} (for {name}); correct the column map with --map")
-    places = [head.index(column) for column in wanted]
-    out = np.empty((len(rows), len(places)))
+    indices = [head.index(column) for column in wanted]
+    out = np.empty((len(rows), len(indices)))
     for number, row in enumerate(rows):
         try:
-            out[number] = [float(row[place]) for place in places]
+            out[number] = [float(row[index]) for index in indices]
         except (ValueError, IndexError):
             line = number + columns.header_lines + 1
             raise BadInput(f"{path}: line {line}: no number for {name}; remove the line or repair it") from None

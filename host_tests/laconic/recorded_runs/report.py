@@ -1,4 +1,4 @@
-"""What a replay found: tables for people, numbers for machines, pictures."""
+"""Results of a replay: a Markdown report, numbers for JSON, pictures."""
 
 from __future__ import annotations
 
@@ -63,7 +63,7 @@ def _run_table(replay: Replay) -> list[str]:
         lines.append(f"| {c.recording.name} | {_whole_deg(r.direction_deg)} | {r.speed_m_per_s:.1f} | {r.rolled_m:.3f} "
                      f"| {camera} | {ratio} | {_whole_deg(r.rolled_direction_deg)} | {went} |{currents}")
     if any((c.recording.set_speed_rad_per_s == 0.0).all(axis=0).any() for c in replay.comparisons):
-        lines += ["", "The log has no sign for the current of a wheel that is commanded to stand; it counts as zero."]
+        lines += ["", "The log has no sign for the current of a wheel with set speed 0; it counts as zero."]
     return lines
 
 
@@ -93,7 +93,7 @@ def _mean(replay: Replay, model: int, what: str) -> float:
 
 
 def in_words(replay: Replay) -> list[str]:
-    """What the ideal model explains and what it does not; every number is computed."""
+    """Sentences on what the ideal model explains and what it does not; every number is computed."""
     words = [sentence for sentence in (_slip_words(replay), _direction_words(replay)) if sentence]
     ideal, dry, drag = (_mean(replay, k, "steady_error_A") for k in range(3))
     size = float(np.mean([np.sqrt(np.mean([m.value**2 for m in c.steady_current_A])) for c in replay.judged()]))
@@ -110,8 +110,8 @@ def in_words(replay: Replay) -> list[str]:
 
 def _transient_words(replay: Replay) -> str:
     shares = [100.0 * _mean(replay, k, "transient_error_share") for k in range(3)]
-    told = ", ".join(f"{share:.0f} % ({model.model})" for share, model in zip(shares, replay.models, strict=True))
-    sentence = f"Wheel speeds of the first second, driven by the measured currents alone, are wrong by {told}."
+    listed = ", ".join(f"{share:.0f} % ({model.model})" for share, model in zip(shares, replay.models, strict=True))
+    sentence = f"Wheel speeds of the first second, driven by the measured currents alone, are wrong by {listed}."
     if min(shares) < 25.0:
         return sentence
     return (f"{sentence} The motors' torque is almost all spent on friction, and what is left to accelerate is a small "
@@ -140,12 +140,12 @@ def _damping_words(dry: Friction) -> str:
 
 def _drag_words(drag: Friction) -> str:
     torques, halves = drag.values[1:-1], drag.half_widths[1:-1]
-    told = ", ".join(_pm(v, h) for v, h in zip(torques, halves, strict=True))
+    listed = ", ".join(_pm(v, h) for v, h in zip(torques, halves, strict=True))
     sentence = (f"With a drag of {_pm(drag.values[-1], drag.half_widths[-1])} N against the travel, the wheels' own "
-                f"dry torques become {told} N·m")
+                f"dry torques become {listed} N·m")
     if (np.abs(torques) > halves).any():
         return f"{sentence}: both kinds of loss are there."
-    return (f"{sentence}, none beyond its interval: the loss is in the contact, where the rollers slip or turn hard, "
+    return (f"{sentence}, none beyond its interval: the loss is in the contact, where the rollers slip or rub, "
             "rather than in the gears.")
 
 
@@ -158,15 +158,15 @@ def _direction_words(replay: Replay) -> str | None:
         return abs((a - b + 180.0) % 360.0 - 180.0)
 
     worst = max(seen, key=lambda r: off(r.camera_direction_deg, r.direction_deg))
-    asked, went, rolled = (_whole_deg(angle) for angle in (worst.direction_deg, worst.camera_direction_deg,
+    wanted, went, rolled = (_whole_deg(angle) for angle in (worst.direction_deg, worst.camera_direction_deg,
                                                            worst.rolled_direction_deg))
     return (f"The direction of travel is off by up to {off(worst.camera_direction_deg, worst.direction_deg):.0f}° "
-            f"(asked for {asked}°, went to {went}°; the wheels rolled to {rolled}°): slip is not the same in all "
+            f"(set {wanted}°, went to {went}°; the wheels rolled to {rolled}°): slip is not the same in all "
             "directions.")
 
 
 def as_numbers(replay: Replay) -> dict[str, Any]:
-    """For machines."""
+    """All results for JSON."""
     from laconic.analysis.report import plain
 
     models = [{"model": m.model, "residual_Nm": m.residual_Nm,
@@ -196,7 +196,7 @@ def _numbers(c: Comparison) -> dict[str, Any]:
 
 
 def draw(replay: Replay, folder: Path) -> list[Path]:
-    """Measured and predicted with residuals, rolled over camera, steady currents."""
+    """Draws wheel speeds with residuals, rolled over camera distance, and steady currents."""
     makers = {"replay": _speeds_picture, "rolled": _rolled_picture, "currents": _currents_picture}
     drawn = []
     for name, make in makers.items():
@@ -208,7 +208,7 @@ def draw(replay: Replay, folder: Path) -> list[Path]:
 
 
 def _speeds_picture(replay: Replay) -> Figure:
-    """Wheel speeds of one run, measured and predicted, and what is left over."""
+    """Wheel speeds of one run, measured and predicted, and the residuals."""
     shown, count = replay.shown, replay.subject.wheel_count
     picture = figure(9.0, 2.0 * (count + 1))
     rows = picture.subplots(count + 1, 1, sharex=True)

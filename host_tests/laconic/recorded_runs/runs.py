@@ -19,7 +19,7 @@ from laconic.recorded_runs.log import ColumnMap, Recording, read_log
 
 @dataclass
 class Replay:
-    """What was fitted on what, and what that says about the others."""
+    """Models fitted on some runs, and their predictions of the others."""
 
     subject: Subject
     fitted_on: list[str]
@@ -40,7 +40,7 @@ def natural(path: Path) -> list[object]:
 
 
 def gather(given: Path, fit_on: tuple[Path, ...], columns: ColumnMap) -> tuple[list[Recording], list[str], list[str]]:
-    """(all runs, names of those to fit on, files that are no such runs)."""
+    """(all runs, names of those to fit on, files without the columns of the map)."""
     if not (exists(given) and given.is_dir()):
         runs, skipped = [read_log(given, columns)], list[str]()
     else:
@@ -76,7 +76,7 @@ def compare_all(subject: Subject, runs: list[Recording], fit_names: list[str], s
         raise BadInput(f"{subject.scene.path}: has {subject.wheel_count} wheels, the column map "
                        f"{runs[0].wheel_angle_rad.shape[1]}; give the scene of the recorded robot")
     if np.linalg.matrix_rank(subject.matrices.wheel_rows) < 3:
-        raise BadInput(f"{subject.scene.path}: its wheel speeds leave the body's motion open; replay needs wheels "
+        raise BadInput(f"{subject.scene.path}: its wheel speeds do not determine its motion; replay needs wheels "
                        "that drive all three directions")
     fitting = [recording for recording in runs if recording.name in fit_names]
     models = [fit(subject, fitting, model) for model in MODELS]

@@ -25,7 +25,7 @@ ON_THE_GRID = 1e-6  # of a step, as for inputs
 
 @dataclass(frozen=True)
 class SignalLog:
-    """Columns over time; time begins at 0, `begin_s` is where it began in the file."""
+    """Columns over time; time begins at 0, `begin_s` is the first time in the file."""
 
     path: Path
     begin_s: float
@@ -35,18 +35,18 @@ class SignalLog:
 
 @dataclass(frozen=True)
 class Difference:
-    """Of one signal between file and model."""
+    """Difference of one signal between file and model."""
 
     signal: str
     largest: float
-    at_s: float                # where it is largest
+    at_s: float                # instant of the largest difference
     root_mean_square: float
     size: float                # the largest value in the file
 
 
 @dataclass(frozen=True)
 class SignalReplay:
-    """What was compared, and how far apart it is."""
+    """The signals compared, and their differences."""
 
     scene: Scene
     log: SignalLog
@@ -76,8 +76,8 @@ def read_signal_log(path: Path) -> SignalLog:
     except (UnicodeDecodeError, csv.Error):
         raise BadInput(f"{path}: is no CSV text; give a recorded run as CSV") from None
     head = [name.strip() for name in head]
-    for place, name in enumerate(head):
-        if name in head[:place]:
+    for index, name in enumerate(head):
+        if name in head[:index]:
             raise BadInput(f"{path}: has two columns {name!r}; keep one of them")
     if len(rows) < 2:
         raise BadInput(f"{path}: has {len(rows)} rows of numbers; give at least two")

@@ -1,4 +1,4 @@
-"""What the replay of a run with columns by signal name found: for people, for machines, as a picture."""
+"""Results of the replay of a run whose columns are signals: a report, numbers for JSON, a picture."""
 
 from __future__ import annotations
 
@@ -36,7 +36,7 @@ def _inputs(found: SignalReplay) -> str:
 
 
 def as_numbers(found: SignalReplay) -> dict[str, Any]:
-    """For machines."""
+    """All results for JSON."""
     how = ("held" if found.held else "linear") if found.inputs else "of the scene"
     return {
         "scene": str(found.scene.path), "log": str(found.log.path), "rows": len(found.log.time_s),
@@ -48,7 +48,7 @@ def as_numbers(found: SignalReplay) -> dict[str, Any]:
 
 
 def draw(found: SignalReplay, folder: Path) -> list[Path]:
-    """The signals that are furthest apart for their size: file and model over time."""
+    """Draws the signals with the largest relative difference: file and model over time."""
     from laconic.pictures.plotting import figure, save
 
     apart = sorted(found.differences, key=lambda d: d.largest / max(d.size, 1e-300), reverse=True)[:MOST_PANELS]

@@ -42,9 +42,9 @@ KINDS = ("virtual", "process", *BOARDS)
 
 
 def why_no_emulation() -> str | None:
-    """What is missing for emulated boards; None when nothing is."""
+    """Message on what emulated boards lack here; None when nothing is missing."""
     if shutil.which(QEMU) is None:
-        return f"no {QEMU} here: install the package qemu-system-arm"
+        return f"{QEMU} is missing: install the package qemu-system-arm"
     if not (build_dir() / "firmware" / "laconic-node-an386.elf").exists():
         return "no firmware images: install gcc-arm-none-eabi and libnewlib-arm-none-eabi, and build again"
     return None
@@ -67,7 +67,7 @@ def emulated(name: str) -> Iterator[int]:
     serial = f"tcp:127.0.0.1:{port},server=on,wait=off,nodelay=on"
     command = [QEMU, "-M", board.machine, "-kernel", str(image), "-display", "none", "-monitor", "none",
                "-serial", serial]
-    # in a session of its own: Ctrl-C is for the rig, which brings the node to rest before it ends it
+    # in another session: Ctrl-C goes to the rig only, which brings the node to rest before it ends it
     with subprocess.Popen(command, stdin=subprocess.DEVNULL, stderr=subprocess.PIPE, text=True,
                           start_new_session=True) as process:
         try:

@@ -1,5 +1,5 @@
-"""The options of python-can's interfaces. Most of them take any name and ignore those that they do not know; a bus
-without the faults that were asked for would be green for nothing, so names are checked here."""
+"""The options of python-can's interfaces. Most of them accept any name and ignore unknown ones; a run without
+the faults that the user wanted would pass wrongly, so names are checked here."""
 
 from __future__ import annotations
 
@@ -21,7 +21,7 @@ NOT_FOR_TEXT = {"self", "kwargs", "timing", "can_filters", "inner", "clock", *OF
 
 
 def read_bus_options(given: Iterable[str], interface: str) -> dict[str, str | int | float | bool]:
-    """{"loss": "0.1"} from ["loss=0.1"]; BadInput for what the interface does not know."""
+    """{"loss": "0.1"} from ["loss=0.1"]; BadInput for an option that the interface does not have."""
     found: dict[str, str | int | float | bool] = {}
     for text in given:
         name, equals, value = text.partition("=")
@@ -39,12 +39,12 @@ def read_bus_options(given: Iterable[str], interface: str) -> dict[str, str | in
 
 
 def plain_value(text: str) -> str | int | float | bool:
-    """A number or truth where it reads as one: `fd=false` as a text would count as true."""
+    """A number or truth value where the text is one: the text `false` would count as true."""
     return can.util.cast_from_string(text)
 
 
 def check_names(options: dict[str, str | int | float | bool], interface: str) -> None:
-    """BadInput with the nearest name for an option that nobody would look at."""
+    """BadInput with the nearest name for an option that would be ignored."""
     under = str(options.get("under", "virtual"))
     known = known_options(interface)
     if interface == FAULTY and known is not None:
@@ -58,7 +58,7 @@ def check_names(options: dict[str, str | int | float | bool], interface: str) ->
 
 
 def remedy_for(name: str, interface: str, under: str, known: set[str]) -> str:
-    """What to give instead of an option that is not known."""
+    """The remedy for an unknown option."""
     if name in OF_THE_RIG:
         return f"has an option of its own; give {OF_THE_RIG[name]}"
     if interface == FAULTY:
@@ -69,8 +69,8 @@ def remedy_for(name: str, interface: str, under: str, known: set[str]) -> str:
 
 
 def known_options(interface: str) -> set[str] | None:
-    """What an interface's constructor and those of its bases take: named, described, or looked up in their **kwargs.
-    None where the interface cannot be loaded: opening it says that better."""
+    """Options of an interface's constructor and those of its bases: named, documented, or read from their **kwargs.
+    None where the interface cannot be loaded: opening it gives the better message."""
     bus_class = class_of(interface)
     if bus_class is None:
         return None
@@ -79,13 +79,13 @@ def known_options(interface: str) -> set[str] | None:
         constructor = each.__dict__.get("__init__")
         if inspect.isfunction(constructor):
             names |= names_in(inspect.unwrap(constructor))
-    if "timing" in names:  # the library makes it of its parts
+    if "timing" in names:  # python-can makes it of these
         names |= {*BitTimingDict.__annotations__, *BitTimingFdDict.__annotations__}
     return {name for name in names - NOT_FOR_TEXT if not name.startswith("_")}
 
 
 def names_in(constructor: Callable[..., None]) -> set[str]:
-    """Parameters by signature and by documentation, and texts that are looked up in **kwargs."""
+    """Parameters by signature and by documentation, and keys that are read from **kwargs."""
     parameters = inspect.signature(constructor).parameters.values()
     names = {each.name for each in parameters if each.kind not in (each.VAR_KEYWORD, each.VAR_POSITIONAL)}
     names |= set(re.findall(r":param\s+(?:[^:\n]*\s)?(\w+)\s*:", constructor.__doc__ or ""))
@@ -95,7 +95,7 @@ def names_in(constructor: Callable[..., None]) -> set[str]:
 
 
 def class_of(interface: str) -> type | None:
-    """The bus class; None when its library is missing or it does not exist: opening the bus says so better."""
+    """The bus class; None when it or its library is missing: opening the bus gives the better message."""
     if interface not in BACKENDS:
         return None
     module, name = BACKENDS[interface]

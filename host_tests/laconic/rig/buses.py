@@ -25,7 +25,7 @@ _channel_numbers = itertools.count()
 
 
 def open_bus(interface: str, channel: str | None, *, bitrate: int | None = None, **options: Any) -> can.BusABC:
-    """A python-can bus; CannotReach says what was tried and what may help."""
+    """A python-can bus; CannotReach names the interface, the channel and a remedy."""
     is_socket = str(channel).startswith("socket://")
     port = re.fullmatch(r"socket://[^/]+:(\d+)(\D.*)?", str(channel))
     if is_socket and not (port and 0 < int(port[1]) <= LARGEST_PORT):
@@ -37,25 +37,25 @@ def open_bus(interface: str, channel: str | None, *, bitrate: int | None = None,
     try:
         bus = can.Bus(interface=interface, channel=channel, **options)
     except can.CanInterfaceNotImplementedError as error:
-        raise BadInput(f"--interface {interface}: {error}; python-can knows {', '.join(sorted(can.VALID_INTERFACES))}"
+        raise BadInput(f"--interface {interface}: {error}; python-can has {', '.join(sorted(can.VALID_INTERFACES))}"
                        ) from None
     except (can.CanError, OSError, ValueError, TypeError) as error:
         if channel is None:
             raise BadInput(f"--interface {interface}: cannot be opened without --channel; give can0, /dev/ttyACM0, "
-                           "socket://127.0.0.1:PORT or what else it is") from None
+                           "socket://127.0.0.1:PORT or another one") from None
         raise CannotReach(f"--interface {interface} --channel {channel}: cannot open the bus ({error}); check that "
-                          "the node or adapter is there and no other program has it") from None
+                          "the node or adapter is there and no other program uses it") from None
     read_in_chunks(bus)
     return bus
 
 
 def next_channel() -> str:
-    """A name that no other virtual bus has."""
+    """A channel name that no other virtual bus has."""
     return f"laconic-{next(_channel_numbers)}"
 
 
 class VirtualClock(Clock):
-    """Time that passes only when somebody waits."""
+    """A clock that advances only while the rig waits."""
 
     def __init__(self) -> None:
         self.time_us = 0
@@ -65,7 +65,7 @@ class VirtualClock(Clock):
 
 
 class NodeOnBus:
-    """A node in this process at the other end of a bus; `pump` lets it take what has come and send its answers."""
+    """A node in this process at the other end of a bus; `pump` gives it the frames received and sends its answers."""
 
     def __init__(self, node: LibraryNode, bus: can.BusABC, clock: VirtualClock):
         self.node, self.bus, self.clock = node, bus, clock
@@ -95,7 +95,7 @@ class NodeOnBus:
         self.bus.send(message)
 
     def send_all(self) -> bool:
-        """Sends what the node has to say."""
+        """Sends the frames of the node; whether there was one."""
         sent = False
         while (frame := self.node.take_frame()) is not None:
             identifier, data, fd = frame
@@ -120,13 +120,13 @@ def node_process(real: str = "double", id_base: int = ID_BASE, *arguments: str) 
     """A node in a process of its own; yields its TCP port."""
     program = built(f"bin/laconic-node-{real}")
     command = [str(program), "--id-base", hex(id_base), *arguments]
-    # in a session of its own: Ctrl-C is for the rig, which brings the node to rest before it ends it
+    # in another session: Ctrl-C goes to the rig only, which brings the node to rest before it ends it
     with subprocess.Popen(command, stdout=subprocess.PIPE, text=True, start_new_session=True) as process:
         try:
             line = process.stdout.readline() if process.stdout else ""
             found = re.search(r":(\d+)", line)
             if not found:
-                raise CannotReach(f"{program}: did not start (it said {line.strip()!r})")
+                raise CannotReach(f"{program}: did not start (its output: {line.strip()!r})")
             yield int(found.group(1))
         finally:
             process.terminate()

@@ -1,4 +1,4 @@
-"""A node's life seen from the rig: open a session, load a vehicle, choose frames, start, stop, reset."""
+"""A client of a node: opens a session, loads a vehicle, selects frames, starts, stops and resets."""
 
 from __future__ import annotations
 
@@ -16,12 +16,12 @@ from laconic.rig.link import Link, Received
 from laconic.rig.parameters import Parameter, parameter_words, parameters_of
 from laconic.rig.wire import Frame, wire
 
-REPEAT_S = 0.1  # how long to wait for an answer before the same frame goes out again
+REPEAT_S = 0.1  # wait for an answer before the same frame is sent again
 
 
 @dataclass(frozen=True)
 class Identity:
-    """Who answered."""
+    """What IDENTITY states about a node."""
 
     version: str
     real: str
@@ -68,8 +68,8 @@ class NodeClient:
     identify = open
 
     def _wait_for_life(self) -> None:
-        """Frames that are sent while a board starts are lost, and so may be what opened the channel to it. Its
-        HEARTBEAT states the state, too."""
+        """Waits for a frame of the node: what is sent while a board starts is lost, perhaps also the command that
+        opened the serial channel. HEARTBEAT gives the node's state."""
         deadline_us, alive = self.link.deadline_us(self.timeout_s), False
         while True:
             until_us = min(self.link.deadline_us(3 * REPEAT_S), deadline_us)
@@ -82,10 +82,10 @@ class NodeClient:
                 return
             if self.link.clock.now_us() >= deadline_us:
                 raise self._unreachable("no frame of a node comes")
-            self.link.knock()
+            self.link.reopen_channel()
 
     def _greet(self, deadline_us: int) -> int:
-        """HELLO until CHALLENGE; the nonce."""
+        """Repeats HELLO until CHALLENGE comes; returns its nonce."""
         while True:
             self._greetings += 1
             data = self.wire["HELLO"].pack()
@@ -98,7 +98,7 @@ class NodeClient:
                 raise self._unreachable("no node answers")
 
     def _is_identified(self, deadline_us: int) -> bool:
-        """IDENTITY comes before CHALLENGE; only where it was lost there is something to wait for."""
+        """Whether IDENTITY has come. It precedes CHALLENGE; where it was lost, the next one is awaited."""
         until_us = min(self.link.deadline_us(REPEAT_S), deadline_us)
         while self.identity is None and (received := self.link.receive_until(until_us)) is not None:
             self._take(received)
@@ -123,7 +123,7 @@ class NodeClient:
 
     def command(self, name: str, number: int | None = None, **fields: int) -> dict[str, int]:
         """One command and its RESULT, in a session that is opened where there is none; NodeRefused when it is a
-        refusal. `number`: what RESULT calls it, where its frame's name does not say."""
+        refusal. `number`: the number of the command in RESULT, where the frame's name does not give it."""
         if not self.link.session.is_open:
             self.open()
         frame = self.wire[name]
@@ -133,13 +133,13 @@ class NodeClient:
                                 command=self.wire.number("RESULT", "command", name) if number is None else number,
                                 request=count & 15)
         if result is None:
-            self.link.session.is_open = False  # whether it was taken is not known: the next begins anew
-            raise NodeSilent(f"the node does not answer {self._spoken(name, number)} within {self.timeout_s:g} s; "
+            self.link.session.is_open = False  # the node may or may not have acted: the next command opens a session
+            raise NodeSilent(f"the node does not answer {self._name_of(name, number)} within {self.timeout_s:g} s; "
                              f"faults seen: {dict(self.link.faults) or 'none'}")
         self.check(result)
         return result
 
-    def _spoken(self, name: str, number: int | None) -> str:
+    def _name_of(self, name: str, number: int | None) -> str:
         return name.lower() if number is None else self.wire.choice("CONTROL", "command", number)
 
     def check(self, result: dict[str, int]) -> None:
@@ -151,18 +151,18 @@ class NodeClient:
                               self.wire.choice("RESULT", "field", result["field"]), result["item"], self.state)
 
     def notice(self, frame: Frame, data: bytes) -> None:
-        """A frame that came while a lockstep answer was due: raises a refusal, remembers the last sign of life."""
+        """A frame that came while a lockstep answer was due: raises a refusal, keeps the last HEARTBEAT."""
         if frame.name == "RESULT":
             self.check(frame.unpack(data))
         elif frame.name == "HEARTBEAT":
             self._heartbeat = frame.unpack(data)
 
-    def excuse(self) -> str:
-        """Why a lockstep answer may not have come: what the last HEARTBEAT says (it may itself be late, so it is no
-        reason to give up early), and what the link has seen."""
+    def likely_cause(self) -> str:
+        """Why a lockstep answer may be missing, from the last HEARTBEAT and the link's faults. (HEARTBEAT may itself be
+        late, so it does not shorten the wait.)"""
         heartbeat, faults = self._heartbeat, f"faults seen: {dict(self.link.faults) or 'none'}"
         if heartbeat is None:
-            return f"no sign of life either; {faults}"
+            return f"no HEARTBEAT came either; {faults}"
         state = self.wire.choice("HEARTBEAT", "state", heartbeat["state"])
         if state != "lockstep":
             return f"the node is in state {state}" + (": it has restarted" if state == "empty" else "")
@@ -171,7 +171,7 @@ class NodeClient:
 
     def _wait_for(self, name: str, message: Any, deadline_us: int, tries: int = 0, **wanted: int
                   ) -> dict[str, int] | None:
-        """Sends a message until the answer comes that holds what is wanted; None: not in time, or not in `tries`."""
+        """Sends a message until an answer with the wanted values comes; None: not in time, or not after `tries`."""
         sent = 0
         while not (tries and sent == tries) and (sent == 0 or self.link.clock.now_us() < deadline_us):
             self.link.send_message(message)
@@ -230,7 +230,7 @@ class NodeClient:
         self.link.session.begin_run()
 
     def stop(self) -> None:
-        """Stands still, voltages zero, whatever went before; where STOP is not heard, by a new session."""
+        """Stops the node and sets its voltages to zero; where STOP is not answered, by opening a new session."""
         try:
             if self.link.session.is_open:
                 self.control("STOP")
@@ -248,7 +248,7 @@ class NodeClient:
 
 
 def identity_of(values: dict[str, int]) -> Identity:
-    """IDENTITY in plain terms."""
+    """Identity from the raw values of IDENTITY."""
     version = ".".join(str(values[f"version_{part}"]) for part in ("major", "minor", "patch"))
     real = {4: "single", 8: "double"}.get(values["scalar_bytes"], f"{values['scalar_bytes']} bytes")
     return Identity(version, real, values["max_wheels"], values["methods"], bool(values["can_fd"]), values["protocol"])

@@ -1,4 +1,4 @@
-"""What can go wrong on a bus, in words for the user."""
+"""Errors on a bus, with messages for the user."""
 
 from __future__ import annotations
 
@@ -8,7 +8,7 @@ from laconic.errors import BadInput, LaconicError, ResultFails
 
 
 class CannotReach(BadInput):
-    """The bus could not be opened, or nobody answers on it."""
+    """The bus could not be opened, or no node answers on it."""
 
 
 class NodeSilent(ResultFails):
@@ -21,7 +21,7 @@ class NodeRefused(ResultFails):
     def __init__(self, command: str, status: str, field: str, item: int, state: str):
         where = f", {field}" if field != "none" else ""
         where += f" {item}" if item else ""
-        remedy = "; it holds other methods, choose one with --method" if status == "method unknown" else ""
+        remedy = "; it contains other methods, choose one with --method" if status == "method unknown" else ""
         super().__init__(f"the node refuses {command}: {status}{where} (its state: {state}){remedy}")
         self.command, self.status, self.field, self.item, self.state = command, status, field, item, state
 
@@ -31,7 +31,7 @@ class BusDied(ResultFails):
 
 
 def in_words(error: BaseException) -> str:
-    """What a library says, and behind it what the system said to the library."""
+    """The message of a library, and after it that of the system error that caused it."""
     text, last = str(error) or type(error).__name__, error
     while last.__cause__ is not None:
         last = last.__cause__
@@ -39,7 +39,7 @@ def in_words(error: BaseException) -> str:
 
 
 class Interrupted(LaconicError):
-    """A signal has ended the run; the exit status is what a shell gives it: 130 for SIGINT, 143 for SIGTERM."""
+    """A signal has ended the run; the exit status is the shell's for that signal: 130 for SIGINT, 143 for SIGTERM."""
 
     def __init__(self, number: int):
         super().__init__(f"interrupted by {signal.Signals(number).name}")

@@ -1,6 +1,7 @@
-"""Faults on purpose, seeded: what happens to each frame on its way. Pure: frames and instants in, the same out.
+"""Deliberate faults from a seed: what happens to each frame on the bus. No bus and no clock: frames and instants in
+and out.
 
-A model sees both directions of one wire. Its random numbers depend on the seed and on the order of the frames only.
+A model handles both directions of one bus. Its random numbers depend on the seed and on the order of the frames only.
 """
 
 from __future__ import annotations
@@ -19,23 +20,23 @@ OUT, IN = "out", "in"
 
 @dataclass(frozen=True)
 class Faults:
-    """What goes wrong, and how often. Probabilities are per frame; times in seconds; all zero: nothing."""
+    """Faults and their frequency. Probabilities are per frame; times in seconds; all zero: no fault."""
 
     loss: float = 0.0                # the frame disappears
     duplication: float = 0.0         # it arrives twice
-    reordering: float = 0.0          # it arrives behind the one after it
+    reordering: float = 0.0          # it arrives after the next frame
     delay_s: float = 0.0             # it takes longer
     jitter_s: float = 0.0            # … by up to this much more
-    corruption: float = 0.0          # bits of the payload turn over (what a controller's CRC would not catch)
+    corruption: float = 0.0          # bits of the payload are inverted, unnoticed by the controller's CRC
     corrupted_bits: int = 1          # how many
     stuck: float = 0.0               # from then on its identifier repeats the payload of that moment
-    wrong_length: float = 0.0        # a byte is missing or one too many
+    wrong_length: float = 0.0        # a byte is missing
     foreign: float = 0.0             # a random frame comes after it
     babble_per_s: float = 0.0        # a node that sends identifier 0 without pause, so many frames a second
     bus_off_after: int = 0           # so many frames, then nothing goes through …
     bus_off_s: float = 0.0           # … for this long; 0: for ever
-    keep_queue: bool = False         # what was sent meanwhile is kept and comes out on recovery, stale
-    bitrate: int = 0                 # bits per second of the wire, with arbitration by identifier; 0: endless
+    keep_queue: bool = False         # frames sent meanwhile are kept and sent on recovery, stale
+    bitrate: int = 0                 # bits per second of the wire, with arbitration by identifier; 0: no limit
     direction: str = "both"          # out, in or both, seen from the user of the bus
     only_id: int = -1                # only this identifier; −1: all
     from_s: float = 0.0              # faults happen from here …
@@ -47,7 +48,7 @@ FIELD_TYPES: dict[str, type[Any]] = {field.name: type(field.default) for field i
 
 
 def faults_from(options: Mapping[str, object]) -> Faults:
-    """From options that may be texts; ValueError names one that is of no use."""
+    """Faults from options that may be texts; ValueError names a wrong option."""
     faults = Faults(**{name: value_of(name, value) for name, value in options.items()})
     for name in ("loss", "duplication", "reordering", "corruption", "stuck", "wrong_length", "foreign"):
         if not 0.0 <= getattr(faults, name) <= 1.0:
@@ -80,11 +81,11 @@ Delivery = tuple[float, int, str, can.Message]
 
 
 class FaultModel:
-    """Takes frames in, gives them out when their time has come."""
+    """Accepts frames and releases them, changed or not, at the time of their arrival."""
 
     def __init__(self, faults: Faults):
         self.faults = faults
-        self.injected = 0            # faults done so far
+        self.injected = 0            # number of faults so far
         self.first_injection_s: float | None = None
         self.active = True
         self._random = random.Random(faults.seed)
@@ -102,7 +103,7 @@ class FaultModel:
     # ---- in
 
     def put(self, message: can.Message, direction: str, now_s: float) -> None:
-        """A frame sets out."""
+        """Accepts a frame at the start of its way."""
         if not self._applies(message, direction, now_s):
             self._travel(message, direction, now_s)
             return
@@ -142,7 +143,7 @@ class FaultModel:
         return True
 
     def _mangled(self, message: can.Message, direction: str, now_s: float) -> list[can.Message]:
-        """The frames that go on in place of this one."""
+        """The frames that continue instead of this one."""
         faults = self.faults
         if self._happens(faults.loss, now_s):
             return []
@@ -163,7 +164,7 @@ class FaultModel:
         return frames
 
     def corrupted(self, message: can.Message) -> can.Message:
-        """With some bits turned over."""
+        """The frame with some bits inverted."""
         bits = 8 * len(message.data)
         data = bytearray(message.data)
         for bit in self._random.sample(range(bits), min(self.faults.corrupted_bits, bits)):
@@ -171,7 +172,7 @@ class FaultModel:
         return replaced(message, data)
 
     def of_wrong_length(self, message: can.Message) -> can.Message:
-        """A classic frame loses a byte; an FD frame goes down to the next length there is."""
+        """A classic frame loses a byte; an FD frame gets the next shorter length of CAN FD."""
         shorter = {64: 48, 48: 32, 32: 24, 24: 20, 20: 16, 16: 12, 12: 8}.get(len(message.data))
         length = shorter if message.is_fd and shorter else max(0, len(message.data) - 1)
         return replaced(message, message.data[:length])
@@ -186,7 +187,7 @@ class FaultModel:
         return message
 
     def foreign(self) -> can.Message:
-        """Any frame at all."""
+        """A frame with random identifier, length and payload."""
         length = self._random.randrange(9)
         return can.Message(arbitration_id=self._random.randrange(0x800), is_extended_id=False,
                            data=self._random.randbytes(length))
@@ -221,7 +222,7 @@ class FaultModel:
         return arrived
 
     def _recover(self, now_s: float) -> None:
-        """After bus-off: a queue that was kept comes out now, all of it stale."""
+        """After bus-off: sends the frames of a kept queue now, all of them stale."""
         off_s = 0.0 if self._off_since is None else now_s - self._off_since
         over = self.faults.bus_off_s and off_s >= self.faults.bus_off_s
         if over or not self.active:
@@ -242,7 +243,7 @@ class FaultModel:
             self._next_babble_s += 1.0 / faults.babble_per_s
 
     def _arbitrate(self, now_s: float) -> None:
-        """One frame at a time; of those that wait when the wire falls free, the lowest identifier goes first."""
+        """One frame at a time; of those that wait when the bus becomes idle, the lowest identifier is first."""
         while self._waiting:
             begin = max(self._wire_free_s, min(each[0] for each in self._waiting))
             if begin > now_s:
@@ -253,7 +254,7 @@ class FaultModel:
             heapq.heappush(self._due, (self._wire_free_s, chosen[2], chosen[3], chosen[4]))
 
     def next_s(self) -> float:
-        """When the next frame arrives; infinite: none on its way."""
+        """Instant at which the next frame arrives; infinite: none is on its way."""
         waiting = min((each[0] for each in self._waiting), default=float("inf"))
         return min(self._due[0][0] if self._due else float("inf"), max(waiting, self._wire_free_s))
 
@@ -265,7 +266,7 @@ def replaced(message: can.Message, data: bytearray) -> can.Message:
 
 
 def frame_seconds(message: can.Message, bitrate: int) -> float:
-    """Time on the wire of a frame with the most stuff bits it can have (FD frames as if at one rate)."""
+    """Transmission time of a frame with the most stuff bits possible (FD frames as if at one rate)."""
     length = len(message.data)
     stuffed = (54 if message.is_extended_id else 34) + 8 * length
     return (stuffed + (stuffed - 1) // 4 + 13) / bitrate

@@ -3,7 +3,7 @@
     can.Bus(interface="faulty", channel="can0", under="socketcan", loss=0.01, seed=7)
 
 `under` names the interface beneath, `channel` and unknown options go to it; the faults are those of
-laconic.rig.faults.Faults. With the entry point `can.interface` any program that uses python-can can have it.
+laconic.rig.faults.Faults. The entry point `can.interface` offers it to every program that uses python-can.
 """
 
 from __future__ import annotations
@@ -18,7 +18,7 @@ from laconic.rig.faults import FIELD_TYPES, IN, OUT, FaultModel, faults_from
 
 
 class FaultyBus(can.BusABC):
-    """A bus with faults; the bus beneath is `inner`, what goes wrong is in `model`."""
+    """A bus with faults; `inner` is the bus beneath, `model` makes the faults."""
 
     def __init__(self, channel: Any = None, under: str = "virtual", inner: can.BusABC | None = None,
                  clock: Callable[[], float] | None = None, **options: Any):
@@ -37,16 +37,16 @@ class FaultyBus(can.BusABC):
         super().__init__(channel=channel)
 
     def now_s(self) -> float:
-        """Seconds since the bus was opened: the time that from_s and until_s mean."""
+        """Seconds since the bus was opened: the time scale of from_s and until_s."""
         return self._now() - self._start
 
     def send(self, msg: can.Message, timeout: float | None = None) -> None:
-        """Sets the frame on its way."""
+        """Hands the frame to the model."""
         self.model.put(msg, OUT, self.now_s())
         self.move()
 
     def move(self) -> None:
-        """Lets everything arrive whose time has come."""
+        """Delivers every frame that arrives by now."""
         for direction, message in self.model.take(self.now_s()):
             if direction == OUT:
                 self.inner.send(message)
@@ -70,13 +70,13 @@ class FaultyBus(can.BusABC):
                 self.model.put(message, IN, self.now_s())
 
     def shutdown(self) -> None:
-        """Closes the bus beneath too."""
+        """Closes the bus beneath, too."""
         super().shutdown()
         self.inner.shutdown()
 
     @property
     def state(self) -> can.BusState:
-        """That of the bus beneath."""
+        """State of the bus beneath."""
         return self.inner.state
 
     @state.setter

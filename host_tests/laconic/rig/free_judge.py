@@ -1,7 +1,7 @@
-"""What there is to say about a free run.
+"""Verdicts of a free run.
 
-When a voltage takes effect is only known to within the time on the wire: the twin is run once for every delay up to
-`latency_s`, and a value must lie between what these twins say.
+The period in which a voltage takes effect is known only to within the delay on the bus: one twin is run for each of
+several delays up to `latency_s`, and each answer must lie between the values of these twins.
 """
 
 from __future__ import annotations
@@ -14,7 +14,7 @@ from laconic.rig.client import NodeClient
 from laconic.rig.free_run import CYCLE_S, DEFAULT_FRAMES, FreeRun, run_free
 from laconic.rig.judge import link_verdict
 from laconic.rig.latency import period_figures
-from laconic.rig.scaled import expected_raw, half_a_place
+from laconic.rig.scaled import expected_raw, rounding_limit
 from laconic.rig.trial import Moved, Trial, driven
 from laconic.rig.verdict import Judgement, Verdict
 from laconic.rig.wire import Frame
@@ -24,7 +24,7 @@ TwinValues = dict[tuple[int, str, int], dict[str, float]]  # (step, frame, group
 
 
 def twin_values(scene: Scene, run: FreeRun, delay: int, per_period: int) -> TwinValues:
-    """What a twin whose commands act so many periods later says to every answer."""
+    """The values, for every answer, of a twin on which commands act `delay` periods later."""
     plant: Plant = scene.plant(scene.core())
     wanted: dict[int, list[tuple[str, int, Frame]]] = {}
     for step, frame, data in run.answers:
@@ -44,7 +44,7 @@ def twin_values(scene: Scene, run: FreeRun, delay: int, per_period: int) -> Twin
 
 
 class Free(Trial):
-    """A free run against twins with every possible delay."""
+    """A free run against twins with delays from 0 to the latency."""
 
     def __init__(self, node: NodeClient, scene: Scene, duration_s: float, rate_Hz: int, watchdog_ms: int,
                  tolerances: dict[str, float], latency_s: float = 0.02):
@@ -78,12 +78,12 @@ class Free(Trial):
 
 def judge_free_run(node: NodeClient, scene: Scene, duration_s: float, rate_Hz: int, watchdog_ms: int,
                    tolerances: dict[str, float], latency_s: float = 0.02, moved: Moved = lambda _: None) -> Judgement:
-    """A free run and what there is to say about it."""
+    """Runs free and judges."""
     return driven(Free(node, scene, duration_s, rate_Hz, watchdog_ms, tolerances, latency_s), moved)
 
 
 def twins_of(scene: Scene, run: FreeRun, latency_s: float) -> list[TwinValues]:
-    """What twins with each delay up to the latency say."""
+    """The values of twins with delays from 0 to the latency."""
     per_period = max(1, round(1.0 / (run.rate_Hz * scene.run.step_s)))
     delays = sorted({0, 1, *np.linspace(0, max(1, round(latency_s * run.rate_Hz)), 6).astype(int).tolist()})
     return [twin_values(scene, run, delay, per_period) for delay in delays]
@@ -91,8 +91,8 @@ def twins_of(scene: Scene, run: FreeRun, latency_s: float) -> list[TwinValues]:
 
 def envelope_verdicts(run: FreeRun, twins: list[TwinValues], tolerances: dict[str, float],
                       dtype: np.dtype) -> list[Verdict]:
-    """One per signal: between the twins, give or take half a last place and the most that ever lay between them: each
-    command has a delay of its own, and what one of them has left behind in the pose stays."""
+    """One per signal: between the twins, with a slack of the rounding limit and of the largest spread of the twins so
+    far: each command has its own delay, and the error that it causes in the pose remains."""
     spread: dict[str, float] = {}
     worst: dict[str, tuple[float, float, int]] = {}
     for step, frame, data in run.answers:
@@ -100,12 +100,12 @@ def envelope_verdicts(run: FreeRun, twins: list[TwinValues], tolerances: dict[st
         group = raw.get("group", 0)
         for name in twins[0].get((step, frame.name, group), ()):
             values = np.array([twin[step, frame.name, group][name] for twin in twins])
-            if name == "heading":  # nearest turn
+            if name == "heading":  # of all equal angles, the one nearest to the answer
                 turn = 2 * np.pi / frame.fields[name].scale
                 values -= turn * np.round((values - raw[name]) / turn)
             scale, label = frame.fields[name].scale, f"{frame.name}.{name}"
             spread[label] = max(spread.get(label, 0.0), float(np.ptp(values)))
-            slack = half_a_place(raw[name], dtype) + spread[label]
+            slack = rounding_limit(raw[name], dtype) + spread[label]
             slack += tolerances.get(label, tolerances.get(name, 0.0)) / scale
             beyond = max(values.min() - slack - raw[name], raw[name] - values.max() - slack)
             off = float(np.min(np.abs(values - raw[name]))) * scale
@@ -116,7 +116,7 @@ def envelope_verdicts(run: FreeRun, twins: list[TwinValues], tolerances: dict[st
 
 
 def steps_verdict(run: FreeRun) -> Verdict:
-    """The node took every step, late or not; what was under way at the end may be missing."""
+    """The node took every step, late or not; frames on their way at the end may be missing."""
     expected = run.elapsed_s * run.rate_Hz
     missing = expected - run.steps
     allowed = 0.05 * run.rate_Hz + 2
@@ -126,7 +126,7 @@ def steps_verdict(run: FreeRun) -> Verdict:
 
 
 def clock_verdict(run: FreeRun) -> Verdict:
-    """The node's clock goes as fast as the rig's: by its steps, so that an answer lost on the way is not its fault."""
+    """The node's clock is as fast as the rig's, by the steps of answers, so that lost answers do not matter."""
     if len(run.instants_s) < 2:
         return Verdict("clock", False, "no two answers came")
     rate = (run.instant_steps[-1] - run.instant_steps[0]) / (run.instants_s[-1] - run.instants_s[0])

@@ -1,4 +1,4 @@
-"""Free run: the node steps by its own clock, the rig sends voltages in their cycle and takes what comes.
+"""Free run: the node steps by its own clock, the rig sends voltages in their cycle and receives answers.
 
 Every period sends one NU, so counting them (and those that the counter says are missing) gives the step of each answer.
 """
@@ -20,7 +20,7 @@ from laconic.rig.silence import Silence
 from laconic.rig.wire import Frame, wire
 from laconic.scene import Scene
 
-CYCLE_S = 0.01          # of VOLTAGE, as the contract says
+CYCLE_S = 0.01          # of VOLTAGE, as in the contract
 LONGEST_CATCH_UP_US = 1_000_000
 DEFAULT_FRAMES = ("NU", "POSE")
 MOST_COMPARED = 5000    # periods; of a longer run every n-th
@@ -28,14 +28,14 @@ MOST_COMPARED = 5000    # periods; of a longer run every n-th
 
 @dataclass
 class FreeRun:
-    """What was sent and what came."""
+    """Commands sent and frames received."""
 
     rate_Hz: int = 0
-    keep: int = 1           # every so many periods are compared with the twins
+    keep: int = 1           # every keep-th period is compared with the twins
     commands: list[tuple[int, np.ndarray]] = field(default_factory=list)    # (steps seen when it was sent, input row)
     answers: list[tuple[int, Frame, bytes]] = field(default_factory=list)   # (step, frame, payload)
     instants_s: list[float] = field(default_factory=list)                   # of NU
-    instant_steps: list[int] = field(default_factory=list)                  # the step that each of these belongs to
+    instant_steps: list[int] = field(default_factory=list)                  # the step of each of these instants
     steps: int = 0
     elapsed_s: float = 0.0
     node_steps: int = 0
@@ -43,17 +43,17 @@ class FreeRun:
     late_periods: int = 0
     state: str = "ready"
     overranges: int = 0
-    fed_answers: int = 0    # how many answers had come when the node last said that it follows the rig's voltages
+    fed_answers: int = 0    # number of answers at the last HEARTBEAT by which the node followed the rig's voltages
     deaf_heartbeats: int = 0  # in a row
-    punctuality: Punctuality = field(init=False)  # of the rig; these two from START on
+    punctuality: Punctuality = field(init=False)  # of the rig; this and `silence` are set at START
     silence: Silence = field(init=False)          # of the node
 
 
 def run_free(node: NodeClient, scene: Scene, duration_s: float, rate_Hz: int = 0, watchdog_ms: int = 100,
              frames: tuple[str, ...] = DEFAULT_FRAMES, moved: Callable[[float], None] = lambda _: None,
              run: FreeRun | None = None) -> FreeRun:
-    """Loads a scene and lets the node run for so long. What comes is put into `run`, where one is given, so that it is
-    there even if the run breaks off."""
+    """Loads a scene and lets the node run for so long. Frames are put into `run`, where one is given, so that they are
+    kept even if the run ends early."""
     check_voltages_only(scene)
     if "NU" not in frames:
         raise BadInput(f"{scene.path}: rig.frames: a free run counts its steps by NU; add it")
@@ -85,7 +85,7 @@ def follow(run: FreeRun, voltages: Voltages, held: Held, start_us: int, end_us: 
     node, rig = voltages.node, run.punctuality
     clock, step_s = node.link.clock, held.step_s
     while (now_us := clock.now_us()) < end_us:
-        if rig.is_late():  # what has come meanwhile shows how far the node is
+        if rig.is_late():  # frames that wait to be read give the node's present step
             catch_up(run, node, now_us + rig.cycle_us)
         if rig.is_due():
             tick = int((clock.now_us() - start_us) / 1e6 / step_s)
@@ -100,7 +100,7 @@ def follow(run: FreeRun, voltages: Voltages, held: Held, start_us: int, end_us: 
 
 
 def catch_up(run: FreeRun, node: NodeClient, until_us: int) -> None:
-    """Takes what waits to be read, as long as there is any, and no longer than that."""
+    """Reads the frames that wait, until none is left or `until_us` has passed."""
     clock = node.link.clock
     while clock.now_us() < until_us and listen(run, node, clock.now_us()):
         pass
@@ -113,7 +113,7 @@ def listen(run: FreeRun, node: NodeClient, until_us: int) -> bool:
     run.punctuality.listened(until_us)
     if received is None:
         return False
-    run.silence.heard(received[0].name, run.punctuality.now_us())
+    run.silence.received(received[0].name, run.punctuality.now_us())
     take(run, node, *received)
     return True
 
@@ -147,19 +147,19 @@ def take(run: FreeRun, node: NodeClient, frame: Frame, data: bytes) -> None:
 
 
 def take_heartbeat(run: FreeRun, values: dict[str, int]) -> None:
-    """What the node says about itself; NodeSilent where it has stopped or no longer follows."""
+    """Keeps what HEARTBEAT states; NodeSilent where the node has stopped or no longer follows the voltages."""
     run.node_steps, run.worst_lateness_us = values["steps"], values["worst_lateness"]
     run.state = wire().choice("HEARTBEAT", "state", values["state"])
     run.deaf_heartbeats = run.deaf_heartbeats + 1 if values["deaf"] else 0
     if run.state == "fault":
         raise NodeSilent(f"the node has gone into state fault after {run.node_steps} steps")
     if run.state == "timeout":
-        del run.answers[run.fed_answers :]  # since then it may have coasted: no twin knows from where on
+        del run.answers[run.fed_answers :]  # it may have coasted since, from an unknown step on
         raise NodeSilent(f"the node's watchdog has stopped it after {run.node_steps} steps, "
                          f"{run.punctuality.explains_timeout()}")
-    if run.deaf_heartbeats > 1:  # once may be one bad frame
+    if run.deaf_heartbeats > 1:  # a single one may be due to one bad frame
         del run.answers[run.fed_answers :]
         raise NodeSilent("the node refuses the rig's voltages: more of them in a row were lost on the way than its "
-                         "counters can bridge, and nothing but STOP and START makes it listen again")
+                         "counters can bridge, and it accepts them again only after STOP and START")
     if run.state == "free run" and not values["deaf"]:
         run.fed_answers = len(run.answers)

@@ -1,5 +1,5 @@
 """Signals during a run. The first one is kept until the rig waits for a frame, so that no frame and no log entry is cut
-in two and what was judged so far is reported; a second one ends at once whatever goes on."""
+in two and what was judged so far is reported; a second one ends the run at once."""
 
 from __future__ import annotations
 
@@ -16,7 +16,7 @@ ENDING = ("SIGINT", "SIGTERM", "SIGHUP")  # Windows has no SIGHUP
 
 
 class Interruption:
-    """Catches the signals that end a program, in the main thread; elsewhere it does nothing."""
+    """Catches the signals that end a program, in the main thread; in other threads it does nothing."""
 
     def __init__(self) -> None:
         self.number = 0
@@ -27,7 +27,7 @@ class Interruption:
         if threading.current_thread() is threading.main_thread():
             numbers = [getattr(signal, name) for name in ENDING if hasattr(signal, name)]
             self._before = {number: signal.signal(number, self._take) for number in numbers
-                            if signal.getsignal(number) is not signal.SIG_IGN}  # as nohup wants it
+                            if signal.getsignal(number) is not signal.SIG_IGN}  # nohup ignores SIGHUP: it stays ignored
         return self
 
     def __exit__(self, kind: type[BaseException] | None, error: BaseException | None,
@@ -47,7 +47,7 @@ class Interruption:
 
     @contextmanager
     def shielded(self) -> Iterator[None]:
-        """In here no signal breaks anything off: what brings the node to rest is bounded by itself."""
+        """No signal interrupts this context. It brings the node to rest, which has timeouts of its own."""
         self._shields += 1
         try:
             yield

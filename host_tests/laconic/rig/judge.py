@@ -7,7 +7,7 @@ import numpy as np
 from laconic.rig.client import NodeClient
 from laconic.rig.latency import latency_figures
 from laconic.rig.lockstep import LockstepRun, run_lockstep, twin_states
-from laconic.rig.scaled import Comparison, ScaledRun, half_a_place, run_scaled
+from laconic.rig.scaled import Comparison, ScaledRun, rounding_limit, run_scaled
 from laconic.rig.trial import Moved, Trial, driven
 from laconic.rig.verdict import Judgement, Verdict, same_bits, within
 from laconic.scene import Scene
@@ -84,7 +84,7 @@ def signal_verdicts(comparison: Comparison, tolerances: dict[str, float]) -> lis
         twin = np.array(record.twin)
         limit: np.ndarray | float | None = tolerances.get(name, tolerances.get(short))
         if limit is None:
-            limit = half_a_place(twin / record.scale, record.dtype) * record.scale
+            limit = rounding_limit(twin / record.scale, record.dtype) * record.scale
         verdicts.append(within(name, np.array(record.measured), twin, limit, np.array(record.ticks)))
     return verdicts
 

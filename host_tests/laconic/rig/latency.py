@@ -1,4 +1,4 @@
-"""How long answers take: figures over all exchanges of a run."""
+"""Latency of answers: figures over all exchanges of a run."""
 
 from __future__ import annotations
 
@@ -19,7 +19,7 @@ def latency_figures(seconds: Sequence[float]) -> dict[str, float]:
 
 
 def period_figures(instants_s: Sequence[float], period_s: float) -> dict[str, float]:
-    """How far the distances between cyclic frames are from their period, in microseconds."""
+    """Deviation of the intervals between cyclic frames from their period, in microseconds."""
     if len(instants_s) < 2:
         return {}
     off = 1e6 * (np.diff(np.asarray(instants_s, float)) - period_s)

@@ -1,4 +1,4 @@
-"""Protected frames over any python-can bus: puts protection on, takes it off, and counts what was wrong."""
+"""Protected frames over any python-can bus: protects what is sent, checks what is received, counts faults."""
 
 from __future__ import annotations
 
@@ -15,11 +15,11 @@ from laconic.rig.session import Session
 from laconic.rig.wire import ID_BASE, Frame, wire
 
 Received = tuple[Frame, bytes]
-LONGEST_WAIT_S = 0.1  # then a wait looks up whether it may go on
+LONGEST_WAIT_S = 0.1  # then a wait calls may_go_on
 
 
 class Clock:
-    """The clock of a real bus: it passes by itself. A virtual one has `wait` move it."""
+    """The clock of a real bus. A virtual clock (laconic.rig.buses) advances only while the rig waits."""
 
     def now_us(self) -> int:
         """Microseconds since some start."""
@@ -27,7 +27,7 @@ class Clock:
 
 
 class Link:
-    """One end of the wire. `pump`, where given, lets a node in this process work; it returns False when idle."""
+    """One end of the wire. `pump`, where given, runs a node in this process; it returns False when idle."""
 
     def __init__(self, bus: can.BusABC, id_base: int = ID_BASE, *, clock: Clock | None = None,
                  pump: Callable[[], bool] | None = None):
@@ -40,18 +40,18 @@ class Link:
         self.may_go_on: Callable[[], None] = lambda: None  # called before each wait; raises what ends it
         self._receivers = {offset: self.library.receiver() for offset in wire().by_offset}
         self._counters: dict[int, int] = {}  # of the last frame taken of each kind
-        self._lost: dict[int, int] = {}      # before it
+        self._lost: dict[int, int] = {}      # frames of each kind that are missing before that one
         self._by_offset = wire().by_offset
         self._check = self.library.lib.laconic_e2e_check
 
     def forget_counters(self) -> None:
-        """The node's frames may begin anywhere: it may have been switched on since, or be another."""
+        """Accepts any counter next: the node may have restarted, or be another one."""
         self._receivers = {offset: self.library.receiver() for offset in self._by_offset}
         self._counters.clear()
 
     def send(self, frame: Frame, data: bytearray) -> int:
         """Protects a payload for the open session and sends it; returns its count. The first of its kind after START
-        is for reference only, so it goes out twice."""
+        serves the node only as reference for the counter, so it is sent twice."""
         count = self.session.protect(frame, data)
         self.send_message(self.message(frame, data))
         return self.send(frame, data) if frame.key == "run" and count == 1 else count
@@ -61,7 +61,7 @@ class Link:
         return can.Message(arbitration_id=self.id_base + frame.offset, is_extended_id=False, data=bytearray(data),
                            is_fd=frame.fd, bitrate_switch=frame.fd)
 
-    def knock(self) -> None:
+    def reopen_channel(self) -> None:
         """Opens a serial line's channel once more, for a board that was not up yet when the bus was opened."""
         if isinstance(self.bus, slcanBus):
             self.bus.open()
@@ -81,11 +81,11 @@ class Link:
         return self.receive_until(self.deadline_us(timeout_s))
 
     def deadline_us(self, timeout_s: float) -> int:
-        """So long from now, in the link's time."""
+        """The instant so long from now, on the link's clock."""
         return self.clock.now_us() + int(1e6 * timeout_s)
 
     def receive_until(self, deadline_us: int) -> Received | None:
-        """As receive, for callers that skip frames: a heartbeat must not prolong their patience."""
+        """As receive, for callers that skip frames: a HEARTBEAT must not extend their wait."""
         while True:
             message = self._next_message(deadline_us)
             if message is None:

@@ -1,4 +1,4 @@
-"""What goes over the bus, on the terminal, while it goes: one line a frame, as many as the terminal has room for."""
+"""The frames on the bus, live on the terminal: one line a frame, as many as the terminal has lines for."""
 
 from __future__ import annotations
 
@@ -37,7 +37,7 @@ class View:
         self._order = itertools.count()
 
     def moved(self, steps: float) -> None:
-        """The run has come so much further."""
+        """Notes that the run has taken so many more steps."""
         self.done += steps
 
     def take(self, message: can.Message) -> None:
@@ -63,7 +63,7 @@ class View:
         yield table
 
     def _newest_of(self, keys: list[Key], room: int) -> list[Key]:
-        """Where they are too many, those that came last; in the order of their identifiers."""
+        """The `room` latest ones, in the order of their identifiers."""
         newest = sorted(keys, key=lambda key: self._newest.get(key, 0), reverse=True)
         return sorted(newest[:max(1, room)])
 
@@ -76,7 +76,7 @@ class View:
         return frame.name if frame else f"0x{key[0] + self.link.id_base:X}"
 
     def text_of(self, key: Key) -> str:
-        """The signals of a frame with their values; the bytes of one that is none of the contract's."""
+        """The signals of a frame with their values; the bytes of a frame that the contract does not have."""
         message, frame = self._last[key], wire().by_offset.get(key[0])
         if frame is None or message.is_extended_id or len(message.data) != frame.length:
             return bytes(message.data).hex(" ")
@@ -99,28 +99,28 @@ def signals_text(frame: Frame, part: int, raw: dict[str, int]) -> str:
         if frame.fields[name].bits == 1:
             texts += [name] if value else []
             continue
-        base, _, place = name.rpartition("_")
-        number = f"_{wheel_of(frame, part, int(place))}" if place.isdigit() else ""
+        base, _, digits = name.rpartition("_")
+        number = f"_{wheel_of(frame, part, int(digits))}" if digits.isdigit() else ""
         base = base if number else name
         texts.append(f"{'' if base == base_before else base}{number} {value_text(frame, name, value)}")
         base_before = base
     return "  ".join(texts)
 
 
-def wheel_of(frame: Frame, part: int, place: int) -> int:
-    """The number of a wheel, from its place in its group."""
-    return WHEELS_A_GROUP * part + place if "group" in frame.fields else place
+def wheel_of(frame: Frame, part: int, number: int) -> int:
+    """The number of a wheel, from its number in its group."""
+    return WHEELS_A_GROUP * part + number if "group" in frame.fields else number
 
 
 def value_text(frame: Frame, name: str, raw: int) -> str:
-    """What a value table calls it, or the number in its unit."""
+    """Its name in the value table, or the number in its unit."""
     field = frame.fields[name]
     return wire().choice(frame.name, name, raw) if field.choices else f"{raw * field.scale:.6g}"
 
 
 @contextmanager
 def live_view(link: Link, what: str, steps: int) -> Iterator[Callable[[float], None]]:
-    """Shows a link's frames until the end of the context; yields what to call when the run has moved on."""
+    """Shows a link's frames until the end of the context; yields a function to call after steps of the run."""
     view = View(link, what, steps)
     link.listeners.append(view.take)
     with Live(view, console=Console(stderr=True), refresh_per_second=REFRESHES_PER_S):

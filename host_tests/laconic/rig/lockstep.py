@@ -2,8 +2,8 @@
 
     with virtual_node(scene.run.real) as node:
         run = run_lockstep(node, scene, steps=10_000)
-    run.states[k]    ν, x, y, heading, wheel speeds, wheel angles after the k-th exchange, in the core's scalar type:
-                     what Plant.row() gives
+    run.states[k]    ν, x, y, heading, wheel speeds, wheel angles after the k-th exchange, in the core's scalar type,
+                     in the order of Plant.row()
 """
 
 from __future__ import annotations
@@ -35,14 +35,14 @@ OUTPUTS = ("raw_nu", "raw_pose", "raw_wheel_speed", "raw_wheel_angle")
 
 @dataclass
 class LockstepRun:
-    """What came back, one row an exchange, as far as the run came."""
+    """The node's answers, one row an exchange, up to the end of the run, early or not."""
 
     exchanges: list[tuple[int, np.ndarray]] = field(default_factory=list)  # steps taken, row
     latencies_s: list[float] = field(default_factory=list)
     seconds: float = 0.0
     frames_out: int = 0
     frames_in: int = 0
-    twin: Plant = field(init=False)  # a plant of the core at the start, not stepped; from loading on
+    twin: Plant = field(init=False)  # plant of the core, at the start; set when the scene is loaded
 
     @cached_property
     def ticks(self) -> np.ndarray:
@@ -99,7 +99,7 @@ class RawStream:
         self.groups = [bit for bit, fields in INPUT_GROUPS.items() if names & set(fields)]
         self.row_length = 6 + 2 * scene.wheel_count
         self.sampled = not self.drive.is_held
-        self.places = self._places(scene.wheel_count)
+        self.columns = self._columns(scene.wheel_count)
         self.fd = fd
         self._in = wire()["RAW_INPUT_FD" if fd else "RAW_INPUT"]
         self._out = "RAW_OUTPUT_FD" if fd else "RAW_OUTPUT"
@@ -107,24 +107,24 @@ class RawStream:
         self._sync = wire()["SYNC"]
         self._sent = 0  # frames since the last SYNC
 
-    def _places(self, wheel_count: int) -> np.ndarray:
-        """Where the stream's numbers stand in a row of laconic_input."""
-        places: list[int] = []
+    def _columns(self, wheel_count: int) -> np.ndarray:
+        """Indices of the stream's numbers in a row of laconic_input."""
+        columns: list[int] = []
         for bit in self.groups:
             for name in INPUT_GROUPS[bit]:
                 start, length = self.core.input_fields[name]
                 per_wheel = name in ("voltage_V", "axle_torque_Nm")
-                places += range(start, start + (wheel_count if per_wheel else length))
-        return np.array(places, dtype=int)
+                columns += range(start, start + (wheel_count if per_wheel else length))
+        return np.array(columns, dtype=int)
 
     def select(self) -> None:
-        """Tells the node which numbers go over the wire, and to send nothing else."""
+        """Selects the numbers that go over the bus; the node sends nothing else."""
         bits = dict.fromkeys([*self.groups, *OUTPUTS], 1)
         self.node.select(**bits, take_sampled=int(self.sampled and bool(self.groups)), raw_fd=int(self.fd))
 
     def send_inputs(self, rows: np.ndarray) -> None:
-        """One row of laconic_input numbers, or three."""
-        stream = np.ascontiguousarray(np.atleast_2d(rows)[:, self.places]).tobytes()
+        """Sends one row of laconic_input numbers; three rows (start, middle, end of a step) for sampled inputs."""
+        stream = np.ascontiguousarray(np.atleast_2d(rows)[:, self.columns]).tobytes()
         link, frame, chunk = self.node.link, self._in, self._chunk
         for segment, at in enumerate(range(0, len(stream), chunk)):
             self._sent += 1
@@ -134,7 +134,7 @@ class RawStream:
             link.send(frame, data)
 
     def sync(self, steps: int) -> None:
-        """Lets the node step."""
+        """Makes the node take so many steps."""
         self.node.link.send(self._sync, self._sync.pack(step_count=steps, input_frames=self._sent))
         self._sent = 0
 
@@ -147,7 +147,7 @@ class RawStream:
             received = self.node.link.receive_until(deadline_us)
             if received is None:
                 raise NodeSilent(f"the node does not answer a SYNC within {self.node.timeout_s:g} s; "
-                                 f"{self.node.excuse()}")
+                                 f"{self.node.likely_cause()}")
             frame, data = received
             self.node.notice(frame, data)
             if frame.name == self._out:
@@ -159,7 +159,7 @@ class RawStream:
         return np.frombuffer(stream[:needed], self.core.dtype)
 
     def exchanges(self, steps: int, every: int) -> Iterator[tuple[int, int, np.ndarray | None]]:
-        """(first step, how many, input rows to send or None) for a whole run; at most `every` steps each."""
+        """(first step, number of steps, input rows to send or None) for a whole run; at most `every` steps each."""
         if self.sampled:
             for first in range(0, steps, 1000):
                 count = min(1000, steps - first)
@@ -179,8 +179,8 @@ class RawStream:
 def run_lockstep(node: NodeClient, scene: Scene, steps: int | None = None, *, every: int = 1, fd: bool = False,
                  resend: bool = False, moved: Callable[[int], None] = lambda _: None,
                  run: LockstepRun | None = None) -> LockstepRun:
-    """Loads a scene and runs it with raw frames. Held inputs are sent where they change (`resend`: every time). What
-    comes is put into `run`, where one is given, so that it is there even if the run breaks off."""
+    """Loads a scene and runs it with raw frames. Held inputs are sent where they change (`resend`: every time). The
+    answers are put into `run`, where one is given, so that they are kept even if the run ends early."""
     run = run or LockstepRun()
     run.twin = load_scene(node, scene)
     if steps is not None and steps > scene.steps():
@@ -208,7 +208,7 @@ def run_lockstep(node: NodeClient, scene: Scene, steps: int | None = None, *, ev
 
 
 def twin_states(scene: Scene, run: LockstepRun) -> np.ndarray:
-    """What the core says at the same steps."""
+    """The rows of the twin at the same steps."""
     if run.steps > scene.steps():
         scene = scene.with_run(duration_s=run.steps * scene.run.step_s)
     plant, drive, rows, done = run.twin, scene.drive(), [], 0

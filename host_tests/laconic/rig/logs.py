@@ -1,4 +1,4 @@
-"""Logs of everything on the bus, complete up to the last frame: BLF, ASC or what else python-can writes."""
+"""Logs of everything on the bus, complete up to the last frame: BLF, ASC or another format of python-can."""
 
 from __future__ import annotations
 
@@ -33,11 +33,11 @@ def open_log(path: Path) -> can.io.generic.MessageWriter:
     except ValueError as error:
         raise BadInput(f"--log {path}: {error}; use a name that ends in .blf or .asc") from None
     except OSError as error:
-        raise BadInput(f"--log {path}: cannot be written ({reason_of(error)}); choose another place") from None
+        raise BadInput(f"--log {path}: cannot be written ({reason_of(error)}); choose another path") from None
 
 
 def stamped(writer: can.io.generic.MessageWriter, link: Link) -> Callable[[can.Message], None]:
-    """Gives frames that carry no time (those we send, those of a virtual clock) the link's."""
+    """Stamps frames with the link's time: those sent, and those of a virtual clock, contain none."""
 
     def write(message: can.Message) -> None:
         is_received = message.timestamp > 0.0
@@ -60,22 +60,22 @@ def read_log(path: Path) -> list[can.Message]:
         raise BadInput(f"{path}: {reason_of(error)}; give a .blf or .asc file") from None
     except BadInput:
         raise
-    except Exception as error:  # a parser that meets what it did not expect raises anything
+    except Exception as error:  # a parser may raise any exception on unexpected bytes
         raise BadInput(f"{path}: cannot be read as a log ({str(error) or type(error).__name__}); give a .blf or .asc "
                        "file as it was written") from None
 
 
 class Doubts(logging.Handler):
-    """What a reader would only have written to its own log: it leaves frames out."""
+    """Raises where a reader would leave out frames and only write a warning to its own log."""
 
     def emit(self, record: logging.LogRecord) -> None:
-        """A doubt is an error."""
+        """Raises the warning as an error."""
         raise ValueError(record.getMessage())
 
 
 @contextmanager
 def doubts_are_errors() -> Iterator[None]:
-    """No warning of python-can is passed over in here."""
+    """Every warning of python-can in this context is an error."""
     logger, handler = logging.getLogger("can"), Doubts(logging.WARNING)
     propagate, logger.propagate = logger.propagate, False
     logger.addHandler(handler)
@@ -87,14 +87,14 @@ def doubts_are_errors() -> Iterator[None]:
 
 
 def check_whole(path: Path, reader: can.io.generic.MessageReader) -> None:
-    """python-can reads a cut-off BLF up to the cut and says nothing."""
-    said, there = getattr(reader, "file_size", 0), path.stat().st_size
-    if isinstance(reader, can.BLFReader) and there < said:
-        raise BadInput(f"{path}: is cut off: {there} of {said} bytes are there; copy it again")
+    """BadInput for a truncated BLF, which python-can reads without a warning."""
+    stated, actual = getattr(reader, "file_size", 0), path.stat().st_size
+    if isinstance(reader, can.BLFReader) and actual < stated:
+        raise BadInput(f"{path}: is cut off: {actual} of {stated} bytes are there; copy it again")
 
 
 def was_closed(path: Path) -> bool:
-    """Whether whoever wrote a log has come to its end: what was killed leaves frames out."""
+    """Whether the program that wrote a log has closed it: one that was killed leaves out frames."""
     if path.suffix.lower() == ".blf":
         with can.BLFReader(path) as reader:
             return reader.file_size >= path.stat().st_size

@@ -1,4 +1,4 @@
-"""The shipping node as a shared library: protection for the link, and a node in this process for the virtual bus."""
+"""The node's C code as a shared library: protection for the link, and a node in this process for the virtual bus."""
 
 from __future__ import annotations
 
@@ -59,13 +59,11 @@ def node_library(real: str = "double") -> NodeLibrary:
 
 
 E2E_STATUS = ("ok", "ok some lost", "repeated", "wrong sequence", "error", "no new data")
-
-
 NODE_STATES = ("empty", "ready", "lockstep", "free run", "timeout", "fault")
 
 
 class LibraryNode:
-    """A node in this process. It has no clock: whoever calls says what time it is."""
+    """A node in this process. It has no clock: the caller passes the time."""
 
     def __init__(self, real: str = "double", id_base: int = ID_BASE, can_fd: bool = True, nonce_seed: int = 0):
         self.library = node_library(real)
@@ -81,13 +79,13 @@ class LibraryNode:
         self.restart(id_base, can_fd, 0, nonce_seed)
 
     def restart(self, id_base: int = ID_BASE, can_fd: bool = True, now_us: int = 0, nonce_seed: int = 0) -> None:
-        """As after power-up."""
+        """Initializes the node as after power-up."""
         if not self.library.lib.laconic_library_node_init(self.c, id_base, can_fd, nonce_seed, now_us & 0xFFFFFFFF):
             raise ValueError(f"ID base 0x{id_base:X} is no multiple of 32 from 0 to 0x7E0")
 
     def on_frame(self, arbitration_id: int, data: bytes, now_us: int, *, fd: bool = False, extended: bool = False,
                  remote: bool = False) -> None:
-        """A frame came."""
+        """Gives the node a received frame."""
         frame = self.frame
         frame.id, frame.length = arbitration_id, len(data)
         frame.extended, frame.remote, frame.fd, frame.bit_rate_switch = extended, remote, fd, False
@@ -95,12 +93,12 @@ class LibraryNode:
         self._on_frame(self.c, frame, now_us & 0xFFFFFFFF)
 
     def tick(self, now_us: int) -> None:
-        """Time has come this far; takes all steps that are due."""
+        """Takes all steps that are due at this time."""
         self._on_tick(self.c, now_us & 0xFFFFFFFF)
         while self._busy(self.c):
             self._on_tick(self.c, now_us & 0xFFFFFFFF)
 
-    def look(self) -> dict[str, Any]:
+    def inspect(self) -> dict[str, Any]:
         """State, steps, voltages and counters, for tests."""
         view = self._view
         self.library.lib.laconic_library_inspect(self.c, view)

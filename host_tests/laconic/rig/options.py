@@ -1,4 +1,4 @@
-"""What the command line of `laconic rig` says, and the node that it leads to."""
+"""The options of `laconic rig`, and the node that they choose."""
 
 from __future__ import annotations
 
@@ -47,40 +47,39 @@ class Options:
 def read_id_base(given: str | None, scene: Scene | None) -> int:
     """--id-base, the scene's, or the contract's own."""
     of_scene = scene.rig.id_base if scene is not None else None
-    place = f"--id-base {given}" if given is not None else f"{scene.path if scene else ''}: rig.id_base"
+    where = f"--id-base {given}" if given is not None else f"{scene.path if scene else ''}: rig.id_base"
     try:
         base = int(given, 0) if given is not None else ID_BASE if of_scene is None else of_scene
     except ValueError:
-        raise BadInput(f"{place}: no number; give one such as 0x{ID_BASE + ID_STRIDE:X}") from None
+        raise BadInput(f"{where}: no number; give one such as 0x{ID_BASE + ID_STRIDE:X}") from None
     if base % ID_STRIDE or not 0 <= base <= LARGEST_BASE:
-        raise BadInput(f"{place}: {in_hex(base)} cannot be the base of a node's {ID_STRIDE} identifiers; give a "
+        raise BadInput(f"{where}: {in_hex(base)} cannot be the base of a node's {ID_STRIDE} identifiers; give a "
                        f"multiple of {ID_STRIDE} from 0 to 0x{LARGEST_BASE:X}")
     return base
 
 
 def in_hex(number: int) -> str:
-    """As identifiers are written."""
+    """A hexadecimal number, as identifiers are written."""
     return f"{'-' if number < 0 else ''}0x{abs(number):X}"
 
 
 @contextmanager
 def node_for(options: Options, real: str, id_base: int) -> Iterator[NodeClient]:
-    """A client on the chosen bus, or a node of our own."""
+    """A client on the chosen bus, or of a node that is started here."""
     if options.bitrate is not None and options.bitrate <= 0:
         raise BadInput(f"--bitrate {options.bitrate}: must be above 0; give bits per second, such as 500000")
     if options.interface is None:
         if options.channel is not None:
-            raise BadInput(f"--channel {options.channel}: say which --interface it belongs to, such as slcan")
+            raise BadInput(f"--channel {options.channel}: give its --interface as well, such as slcan")
         if options.bitrate is not None:
-            raise BadInput(f"--bitrate {options.bitrate}: say which --interface it is for, such as socketcan or slcan")
+            raise BadInput(f"--bitrate {options.bitrate}: give its --interface as well, such as socketcan")
         if options.bus_options:
-            raise BadInput(f"--bus-option {options.bus_options[0]}: say which --interface it is for, such as faulty "
-                           "(NAME=VALUE)")
+            raise BadInput(f"--bus-option {options.bus_options[0]}: give its --interface as well, such as faulty")
         with own_node(options.board or "virtual", real, id_base) as node:
             yield node
         return
     if options.board is not None:
-        raise BadInput(f"--board {options.board}: starts a node of its own; leave --interface out")
+        raise BadInput(f"--board {options.board}: starts a node itself; leave out --interface")
     more = read_bus_options(options.bus_options, options.interface)
     with connected(options.interface, options.channel, id_base, bitrate=options.bitrate, **more) as node:
         yield node

@@ -1,4 +1,4 @@
-"""A vehicle, its start and its run as the numbers that PARAMETER frames carry."""
+"""A vehicle, its start and its run as the numbers of PARAMETER frames."""
 
 from __future__ import annotations
 
@@ -15,7 +15,7 @@ Parameter = tuple[str, int, float | int]  # field (name in the value table), ite
 
 
 def parameters_of(plant: Plant, start: Any) -> Iterator[Parameter]:
-    """Everything a node needs to play this plant, zeros left out where they need not be said."""
+    """All parameters of this plant; zeros are left out where the node does not require the field."""
     vehicle, core = plant.c.vehicle, plant.core
     has_payload = any(value for field in core.fields_of("vehicle.payload") for value in field.values(vehicle))
     for field in core.fields:
@@ -23,16 +23,16 @@ def parameters_of(plant: Plant, start: Any) -> Iterator[Parameter]:
         if root not in ("vehicle", "initial") or field.table == "vehicle.motor":
             continue
         values = field.values(vehicle if root == "vehicle" else start)[:in_use(field, vehicle)]
-        said = field.need not in ("NEVER", "WITH_SUPPORTS") and (field.need != "WITH_PAYLOAD" or has_payload)
+        required = field.need not in ("NEVER", "WITH_SUPPORTS") and (field.need != "WITH_PAYLOAD" or has_payload)
         for item, value in enumerate(values, start=int(field.items > 0)):
-            if value != 0 or said:
+            if value != 0 or required:
                 yield field.identifier, item, value
     yield "METHOD", 0, method_number(core, plant.c.integrator.method)
     yield "STEP", 0, plant.step_s
 
 
 def in_use(field: Field, vehicle: Any) -> int | None:
-    """How many of the items there are; None: all."""
+    """Number of items that the vehicle uses; None: all."""
     counts = {"vehicle.wheel[#]": vehicle.wheel_count, "vehicle.support[#]": vehicle.support_count}
     return counts.get(field.table)
 

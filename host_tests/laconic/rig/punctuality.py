@@ -1,4 +1,4 @@
-"""How punctual the rig itself is. A PC that stalls sends late and listens late; the node must not be blamed for it."""
+"""How punctual the rig itself is. A PC that stalls sends late and reads late, which must not count against the node."""
 
 from __future__ import annotations
 
@@ -8,7 +8,7 @@ from laconic.rig.wire import wire
 
 
 class Punctuality:
-    """When the voltages were due and when they went out, and how long the rig did not listen.
+    """Instants at which voltages were due and were sent, and the time in which the rig did not listen.
 
     `now_us` is the time that has passed while the rig was listening: frames that wait in a queue while the PC stalls
     are not late in it.
@@ -22,22 +22,22 @@ class Punctuality:
         self.left_out = 0           # cycles in which no voltages went out
         self.next_us = clock.now_us()
         self._longest_pause_us = 0
-        self._sent_us: int | None = self.next_us  # START feeds the watchdog, too
-        self._deaf_us = 0
+        self._sent_us: int | None = self.next_us  # START restarts the watchdog, too
+        self._not_listening_us = 0
         self._listened_us: int | None = None
 
     # ---- sending
 
     def is_due(self) -> bool:
-        """Whether the next voltages have to go out."""
+        """Whether the next voltages are due."""
         return self.clock.now_us() >= self.next_us
 
     def is_late(self) -> bool:
-        """Whether they should have gone long ago."""
+        """Whether they are overdue by more than half a cycle."""
         return self.clock.now_us() - self.next_us > self.cycle_us // 2
 
     def sent(self) -> None:
-        """They have gone out. Cycles that have passed by meanwhile are left out, not made up for in a burst."""
+        """Notes that voltages were sent. Cycles that have passed meanwhile are left out, not sent in a burst."""
         now_us = self.clock.now_us()
         lateness = now_us - self.next_us
         missed = max(0, lateness // self.cycle_us)
@@ -48,7 +48,7 @@ class Punctuality:
         self._sent_us = now_us
 
     def longest_pause_us(self) -> int:
-        """Between two sets of voltages, the one that lasts included."""
+        """Longest pause between two sets of voltages, the present one included."""
         lasting = 0 if self._sent_us is None else self.clock.now_us() - self._sent_us
         return max(self._longest_pause_us, lasting)
 
@@ -59,28 +59,28 @@ class Punctuality:
     # ---- listening
 
     def listens(self) -> None:
-        """The rig begins to wait for a frame: since it ended the last wait it was deaf."""
+        """The rig begins to wait for a frame; it did not listen since the last wait ended."""
         now_us = self.clock.now_us()
         if self._listened_us is not None:
-            self._deaf_us += now_us - self._listened_us
+            self._not_listening_us += now_us - self._listened_us
 
     def listened(self, until_us: int) -> None:
-        """The wait is over, and should have been at `until_us` at the latest."""
+        """The wait is over; it was to end at `until_us` at the latest."""
         self._listened_us = self.clock.now_us()
-        self._deaf_us += max(0, self._listened_us - until_us)
+        self._not_listening_us += max(0, self._listened_us - until_us)
 
     def now_us(self) -> int:
-        """Time spent listening, and what it began with."""
-        return self.clock.now_us() - self._deaf_us
+        """The clock less the time in which the rig did not listen."""
+        return self.clock.now_us() - self._not_listening_us
 
-    # ---- what there is to say
+    # ---- results
 
     def was_too_late(self) -> bool:
-        """Whether the rig alone has given cause for a timeout."""
+        """Whether the rig itself has caused a timeout."""
         return self.longest_pause_us() > self.allowed_us
 
     def explains_timeout(self) -> str:
-        """Whose fault it is that the node's watchdog has struck."""
+        """Why the node's watchdog has expired: the rig was late, or its frames were lost."""
         pause_ms = self.longest_pause_us() / 1000.0
         if self.was_too_late():
             return (f"because the rig sent no voltages for {pause_ms:.0f} ms (watchdog {self.watchdog_ms} ms): this PC "
@@ -89,7 +89,7 @@ class Punctuality:
                 f"{self.watchdog_ms} ms): they did not arrive")
 
     def verdict(self) -> Verdict:
-        """Apart from the node's: whether the rig has kept its own cycle."""
+        """Whether the rig has kept its own cycle; no verdict on the node."""
         pause_us = self.longest_pause_us()
         detail = (f"voltages at most {self.worst_lateness_us / 1000.0:.1f} ms late, longest pause "
                   f"{pause_us / 1000.0:.1f} ms of {self.allowed_us / 1000.0:.0f} ms, {self.left_out} cycles left out")

@@ -15,7 +15,7 @@ from laconic.rig.judge import link_verdict, signal_verdicts
 from laconic.rig.link import Link
 from laconic.rig.logs import read_log, was_closed
 from laconic.rig.scaled import Comparison
-from laconic.rig.session import Follower, Heard
+from laconic.rig.session import Effect, Follower
 from laconic.rig.verdict import Judgement, Verdict
 from laconic.rig.wire import wire
 from laconic.scene import Scene
@@ -45,13 +45,13 @@ class LogPlayer:
             if received is not None and self.running and frame.name in ("NU", "POSE", "WHEEL_SPEED", "STATE_FD"):
                 self.comparison.take(*received, self.plant)
             return
-        heard = self._follower.hears(frame, bytearray(message.data))
-        self.wrong_commands += heard is Heard.WRONG
-        if heard is Heard.ACTS:
+        effect = self._follower.effect_of(frame, bytearray(message.data))
+        self.wrong_commands += effect is Effect.WRONG
+        if effect is Effect.ACTS:
             self._command(frame.name, frame.unpack(message.data))
 
     def end(self) -> None:
-        """Tells the link what the counts of the rig say to be missing: the twin did not get it either."""
+        """Adds the frames of the rig that are missing by its counts to the link's faults: the twin lacks them, too."""
         for name, count in self._follower.missing.items():
             self.link.faults[f"{name} missing"] += count
 

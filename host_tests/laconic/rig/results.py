@@ -27,7 +27,7 @@ def as_json(judgement: Judgement) -> str:
 
 
 def in_json(values: dict[str, Any]) -> dict[str, Any]:
-    """Plain numbers, and null for those that JSON has no word for: NaN and the infinities."""
+    """Plain numbers; null for NaN and the infinities, which JSON does not have."""
     plain = {name: value.item() if isinstance(value, np.generic) else value for name, value in values.items()}
     return {name: None if isinstance(value, float) and not math.isfinite(value) else value
             for name, value in plain.items()}

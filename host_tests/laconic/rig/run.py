@@ -25,9 +25,9 @@ def run(scene: Scene, options: Options) -> Judgement:
     """One run against a node. What ends it early, a signal included, is a verdict beside those about all that came
     before; the log is complete, and the node is at rest where it can be reached."""
     limits, base = read_tolerances(options.tolerances, scene), read_id_base(options.id_base, scene)
-    with (Interruption() as told, node_for(options, scene.run.real, base) as node, logged(node.link, options.logs),
+    with (Interruption() as signals, node_for(options, scene.run.real, base) as node, logged(node.link, options.logs),
           shown(node, scene, options) as moved):
-        node.link.may_go_on = told.check  # between frames: none of them and no entry of a log is cut in two
+        node.link.may_go_on = signals.check  # between frames, so that no frame and no log entry is cut in two
         trial, notes, is_over = trial_of(node, scene, options, limits), [], False
         try:
             found = stop_running(node)
@@ -39,7 +39,7 @@ def run(scene: Scene, options: Options) -> Judgement:
             trial.ending = ending
         finally:
             if not is_over:
-                with told.shielded():
+                with signals.shielded():
                     notes += after_early_end(node)
     judgement = trial.judge()
     judgement.notes += notes
@@ -57,7 +57,7 @@ def trial_of(node: NodeClient, scene: Scene, options: Options, limits: dict[str,
 
 
 def after_early_end(node: NodeClient) -> list[str]:
-    """Stops the node; what there is to say about it."""
+    """Stops the node; returns notes on its state and on faulty frames."""
     failure = come_to_rest(node)
     state = "is at rest" if failure is None else f"could not be stopped ({failure}): try laconic rig --stop"
     return [f"the node {state}", f"faulty frames: {dict(node.link.faults) or 'none'}"]

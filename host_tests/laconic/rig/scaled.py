@@ -26,12 +26,12 @@ ALWAYS_SENT = ("HEARTBEAT",)
 
 
 def select_bits(frames: Iterable[str]) -> dict[str, int]:
-    """What SELECT must say for these frames to come."""
+    """The bits of SELECT that make the node send these frames."""
     return {SELECT_BIT[name]: 1 for name in frames if name not in ALWAYS_SENT}
 
 
 def wanted_frames(scene: Scene) -> tuple[str, ...]:
-    """The frames that [rig] asks for, or the usual ones."""
+    """The frames that [rig] lists, or the default ones."""
     for name in scene.rig.frames:
         if name not in SELECT_BIT and name not in ALWAYS_SENT:
             known = ", ".join((*SELECT_BIT, *ALWAYS_SENT))
@@ -40,7 +40,7 @@ def wanted_frames(scene: Scene) -> tuple[str, ...]:
 
 
 def check_voltages_only(scene: Scene) -> None:
-    """Scaled frames carry voltages and nothing else."""
+    """BadInput for a scene with other inputs: scaled frames contain voltages only."""
     for each in scene.inputs:
         if not each.signal.startswith("voltage_V"):
             raise BadInput(f"{scene.path}: {each.location}.signal: {each.signal} has no scaled frame; use --same-bits, "
@@ -71,7 +71,7 @@ def groups_of(wheel_count: int) -> int:
 
 
 class Held:
-    """A drive's values at the start of each step, looked up anew only where they can change."""
+    """A drive's values at the start of each step, evaluated only where they can change."""
 
     def __init__(self, drive: Drive):
         self.step_s = drive.step_s
@@ -86,7 +86,7 @@ class Held:
 
 
 class Voltages:
-    """Scaled voltages: what is sent, and the same numbers for the twin."""
+    """Sends scaled voltages; returns the same rounded numbers for the twin."""
 
     def __init__(self, node: NodeClient, scene: Scene):
         self.node, self.core = node, scene.core()
@@ -117,7 +117,7 @@ class Voltages:
 
 
 def expected_raw(plant: Plant, frame: Frame, group: int = 0) -> dict[str, float]:
-    """What the twin would put into a frame, before rounding, in units of the raw values."""
+    """The twin's values of a frame, in units of the raw values, before rounding."""
     pose = plant.pose
     if frame.name == "NU":
         values = dict(zip(("nu_1", "nu_2", "nu_3"), plant.nu, strict=True))
@@ -134,15 +134,15 @@ def expected_raw(plant: Plant, frame: Frame, group: int = 0) -> dict[str, float]
     return {name: float(value) / frame.fields[name].scale for name, value in values.items()}
 
 
-def half_a_place(raw: np.ndarray | float, dtype: np.dtype) -> np.ndarray | float:
-    """How far a right answer may lie from the value that it stands for, in units of the raw values: half of the last
-    place, and what the node's own arithmetic adds when it scales and rounds: twice half a spacing of its numbers."""
+def rounding_limit(raw: np.ndarray | float, dtype: np.dtype) -> np.ndarray | float:
+    """Largest difference between a right raw value and the exact one, in units of the raw value: 0.5 from rounding to
+    an integer, and two roundings of the node's scalar type when it scales and adds."""
     return 0.5 + 1e-6 + np.finfo(dtype).eps * np.abs(raw)
 
 
 @dataclass
 class SignalRecord:
-    """One signal over a run, in its unit: what came and what the twin says."""
+    """One signal over a run, in its unit: the node's values and the twin's."""
 
     scale: float
     dtype: np.dtype
@@ -152,7 +152,7 @@ class SignalRecord:
 
 
 class Comparison:
-    """Collects answers next to the twin's values."""
+    """Pairs of the node's answers and the twin's values."""
 
     def __init__(self, wheel_count: int):
         self.wheel_count = wheel_count
@@ -186,7 +186,7 @@ class Comparison:
 
 @dataclass
 class ScaledRun:
-    """A lockstep run with scaled frames, as far as it came."""
+    """A lockstep run with scaled frames, up to its end, early or not."""
 
     exchanges: list[tuple[np.ndarray, list[tuple[Frame, bytes]]]] = field(default_factory=list)  # inputs, answers
     latencies_s: list[float] = field(default_factory=list)
@@ -194,7 +194,7 @@ class ScaledRun:
     frames_out: int = 0
     frames_in: int = 0
     voltage_overranges: int = 0
-    twin: Plant = field(init=False)  # of the core, at the start until compared; from loading on
+    twin: Plant = field(init=False)  # set when the scene is loaded; `comparison` steps it
 
     @property
     def steps(self) -> int:
@@ -203,7 +203,7 @@ class ScaledRun:
 
     @cached_property
     def comparison(self) -> Comparison:
-        """All answers next to the twin's values."""
+        """All answers paired with the twin's values."""
         comparison = Comparison(int(self.twin.c.vehicle.wheel_count))
         for row, answer in self.exchanges:
             self.twin.run(self.twin.core.input(row))
@@ -220,13 +220,13 @@ def frames_per_answer(scene: Scene, frames: tuple[str, ...]) -> int:
 
 def run_scaled(node: NodeClient, scene: Scene, steps: int | None = None,
                moved: Callable[[int], None] = lambda _: None, run: ScaledRun | None = None) -> ScaledRun:
-    """Lockstep with scaled frames: voltages with sync flag out, the chosen frames in. What comes is put into `run`,
-    where one is given, so that it is there even if the run breaks off."""
+    """Lockstep with scaled frames: voltages with sync flag out, the chosen frames in. The answers are put into
+    `run`, where one is given, so that they are kept even if the run ends early."""
     check_voltages_only(scene)
     frames = wanted_frames(scene)
     awaited = frames_per_answer(scene, frames)
     if not awaited:
-        raise BadInput(f"{scene.path}: rig.frames: {', '.join(frames)} never answer a step; add NU")
+        raise BadInput(f"{scene.path}: rig.frames: the node never answers a step with {', '.join(frames)}; add NU")
     run = run or ScaledRun()
     run.twin = load_scene(node, scene)
     node.select(**select_bits(frames))
@@ -254,7 +254,8 @@ def await_answers(node: NodeClient, count: int) -> list[tuple[Frame, bytes]]:
     while len(answers) < count:
         received = node.link.receive_until(deadline_us)
         if received is None:
-            raise NodeSilent(f"{len(answers)} of {count} answers came within {node.timeout_s:g} s; {node.excuse()}")
+            raise NodeSilent(f"{len(answers)} of {count} answers came within {node.timeout_s:g} s; "
+                             f"{node.likely_cause()}")
         node.notice(*received)
         if received[0].name in ("NU", "POSE", "WHEEL_SPEED", "STATE_FD"):
             answers.append(received)

@@ -1,4 +1,4 @@
-"""Which key and which count protects a frame of the rig: kept by the one who sends, or followed in a log."""
+"""The key and the count that protect a frame of the rig: kept by the sender, or reconstructed from a log."""
 
 from __future__ import annotations
 
@@ -41,20 +41,20 @@ class Session:
         return count
 
 
-class Heard(Enum):
-    """What the node makes of a frame of the rig."""
+class Effect(Enum):
+    """The effect of a frame of the rig on the node."""
 
     WRONG = "wrong"  # CRC, key or count
-    AGAIN = "again"  # right, but it does not act: repeated, or a motion frame that is for reference
+    NONE = "none"    # right, but repeated, or a motion frame that only serves the receiver as reference
     ACTS = "acts"
 
 
 class Follower:
-    """Somebody who listens: finds the keys in what goes over the bus and says what each frame of the rig does."""
+    """A listener: derives the keys from the frames on the bus and finds the effect of each frame of the rig."""
 
     def __init__(self, library: NodeLibrary):
         self.library, self.session = library, Session(library)
-        self.missing: Counter[str] = Counter()  # frames of the rig by name, as its own counts tell
+        self.missing: Counter[str] = Counter()  # frames of the rig by name, from gaps in its counts
         self._nonces: list[int] = []
         self._armed: set[int] = set()
 
@@ -62,26 +62,26 @@ class Follower:
         """A CHALLENGE of the node; a rig may still answer the one before it."""
         self._nonces = [*self._nonces[-1:], wire()["CHALLENGE"].unpack(data)["nonce"]]
 
-    def hears(self, frame: Frame, data: bytearray) -> Heard:
-        """One frame of the rig."""
+    def effect_of(self, frame: Frame, data: bytearray) -> Effect:
+        """The effect of one frame of the rig, which the listener takes note of."""
         if frame.key == "none":
-            return Heard.ACTS if self.library.plain_is_right(frame.offset, data) else Heard.WRONG
+            return Effect.ACTS if self.library.plain_is_right(frame.offset, data) else Effect.WRONG
         if frame.key == "nonce":
             return self._open(frame, data)
         return self._moves(frame, data) if frame.key == "run" else self._commands(frame, data)
 
-    def _open(self, frame: Frame, data: bytearray) -> Heard:
+    def _open(self, frame: Frame, data: bytearray) -> Effect:
         for nonce in self._nonces:
             if self.library.keyed_is_right(frame.offset, data, nonce, frame.counter_of(data)):
                 number = frame.unpack(data)["session"]
-                again = self.session.is_open and self.session.key == self.library.lib.laconic_mix(number, nonce)
-                if not again:
+                repeated = self.session.is_open and self.session.key == self.library.lib.laconic_mix(number, nonce)
+                if not repeated:
                     self.session.open(number, nonce)
-                return Heard.AGAIN if again else Heard.ACTS
-        return Heard.WRONG
+                return Effect.NONE if repeated else Effect.ACTS
+        return Effect.WRONG
 
     def _ahead(self, frame: Frame, data: bytearray, key: int) -> int:
-        """Counts since the last of its kind, which this one becomes; -1: wrong."""
+        """Counts since the last frame of its kind, which this frame becomes; -1: the frame is wrong."""
         session, last = self.session, self.session.counts[frame.offset]
         ahead = (frame.counter_of(data) - last) & (255 if frame.fd else 15)
         if not session.is_open or not self.library.keyed_is_right(frame.offset, data, key, last + ahead):
@@ -90,20 +90,20 @@ class Follower:
         self.missing[frame.name] += max(0, ahead - 1)
         return ahead
 
-    def _commands(self, frame: Frame, data: bytearray) -> Heard:
+    def _commands(self, frame: Frame, data: bytearray) -> Effect:
         ahead = self._ahead(frame, data, self.session.key)
         if ahead < 1:
-            return Heard.WRONG if ahead < 0 else Heard.AGAIN
+            return Effect.WRONG if ahead < 0 else Effect.NONE
         if frame.name == "CONTROL" and wire().choice("CONTROL", "command", data[2]).startswith("start"):
             self.session.begin_run()
             self._armed.clear()
-        return Heard.ACTS
+        return Effect.ACTS
 
-    def _moves(self, frame: Frame, data: bytearray) -> Heard:
+    def _moves(self, frame: Frame, data: bytearray) -> Effect:
         ahead = self._ahead(frame, data, self.session.run_key)
         if ahead < 0:
             self._armed.discard(frame.offset)
-            return Heard.WRONG
+            return Effect.WRONG
         acts = ahead == 1 and frame.offset in self._armed
         self._armed.add(frame.offset)
-        return Heard.ACTS if acts else Heard.AGAIN
+        return Effect.ACTS if acts else Effect.NONE

@@ -1,7 +1,7 @@
-"""Notices a node that has fallen silent, by the contract's own cycle times and timeouts.
+"""Detects a node that sends no more, by the contract's cycle times and timeouts.
 
 A cyclic frame that is missing for its GenMsgTimeout fails the verdict `timeouts`. When one is missing for the timeout
-of HEARTBEAT, too, the node counts as dead and the run ends. All on the rig's listening time: see Punctuality.
+of HEARTBEAT, too, the node counts as dead and the run ends. All times are the rig's listening time: see Punctuality.
 """
 
 from __future__ import annotations
@@ -16,7 +16,7 @@ ONCE_A_PERIOD = ("NU", "POSE", "WHEEL_SPEED", "STATE_FD")
 
 
 class Silence:
-    """When each cyclic frame came last, and the longest that it was missing."""
+    """Instant of the last frame of each cyclic kind, and the longest gap between two of them."""
 
     def __init__(self, names: Iterable[str], period_s: float, now_us: int):
         self.allowed_us = {name: timeout_us(name, period_s) for name in names}
@@ -24,8 +24,8 @@ class Silence:
         self._last_us = dict.fromkeys(self.allowed_us, now_us)
         self._dead_us = timeout_us("HEARTBEAT", period_s)
 
-    def heard(self, name: str, now_us: int) -> None:
-        """A frame came."""
+    def received(self, name: str, now_us: int) -> None:
+        """Notes the instant of a frame."""
         if name in self._last_us:
             self.longest_us[name] = max(self.longest_us[name], now_us - self._last_us[name])
             self._last_us[name] = now_us
@@ -49,7 +49,7 @@ class Silence:
 
 
 def timeout_us(name: str, period_s: float) -> int:
-    """GenMsgTimeout; where the node's period is longer than GenMsgCycleTime, as many periods as that were cycles."""
+    """GenMsgTimeout; longer in proportion where the node's period is longer than GenMsgCycleTime."""
     attributes = wire()[name].attributes
     timeout_ms, cycle_ms = float(attributes["GenMsgTimeout"]), float(attributes["GenMsgCycleTime"])
     stretch = max(1.0, 1000.0 * period_s / cycle_ms) if name in ONCE_A_PERIOD else 1.0

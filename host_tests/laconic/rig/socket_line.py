@@ -1,7 +1,7 @@
-"""A serial line over a socket that is read in whole chunks.
+"""A serial line over a socket that is read in large chunks.
 
 pyserial's socket:// handler asks the system twice for every byte, which limits python-can's slcan to a few hundred
-frames a second; this stands in for it with the few calls that slcan makes.
+frames a second; this class replaces it and has the methods that slcan calls.
 """
 
 from __future__ import annotations
@@ -14,7 +14,7 @@ from typing import Any
 
 
 class SocketLine:
-    """What slcan needs of a serial port."""
+    """A serial port with the methods that slcan calls."""
 
     def __init__(self, line: socket.socket, timeout_s: float, forget: Callable[[], None]):
         self._socket, self.timeout, self._forget = line, timeout_s, forget
@@ -49,11 +49,11 @@ class SocketLine:
         try:
             self._socket.sendall(data)
         except (BrokenPipeError, ConnectionResetError):
-            raise OSError(closed_with(self._last_words())) from None
+            raise OSError(closed_with(self._rest_of_input())) from None
         return len(data)
 
-    def _last_words(self) -> bytes:
-        """What came before the other end closed the connection."""
+    def _rest_of_input(self) -> bytes:
+        """Bytes received before the other end closed the connection."""
         rest = self._buffer[self._at :]
         with suppress(OSError):
             while select.select([self._socket], [], [], 0.0)[0] and (more := self._socket.recv(65536)):
@@ -61,10 +61,10 @@ class SocketLine:
         return rest
 
     def flush(self) -> None:
-        """Nothing is held back."""
+        """Does nothing: write() keeps nothing back."""
 
     def reset_input_buffer(self) -> None:
-        """Forgets what has come."""
+        """Discards the bytes received."""
         while self.in_waiting:
             self._at = len(self._buffer)
 
@@ -79,10 +79,10 @@ class SocketLine:
 
 
 def closed_with(last: bytes) -> str:
-    """What to tell of a closed connection: a line behind a BELL, SLCAN's error, says why in words."""
+    """Message for a closed connection; text after a BELL, the error sign of SLCAN, gives the reason."""
     _, bell, words = last.rpartition(b"\a")
     text = words.strip().decode("ascii", "replace") if bell else ""
-    return "the other end has closed the connection" + (f" and says: {text}" if text else "")
+    return "the other end has closed the connection" + (f" because: {text}" if text else "")
 
 
 def read_in_chunks(bus: Any) -> None:

@@ -6,14 +6,14 @@ from laconic.rig.client import NodeClient
 from laconic.rig.errors import BusDied, CannotReach, NodeRefused, NodeSilent
 
 ATTEMPTS = 4
-PATIENCE_S = 0.25  # for one answer: a run that ends must not take long over it
+PATIENCE_S = 0.25  # wait for one answer: a run that ends must not take long
 RUNNING = ("lockstep", "free run", "timeout")
 
 
 def come_to_rest(node: NodeClient) -> str | None:
-    """STOP until it is answered; what went wrong, if it never was."""
+    """Sends STOP until it is answered; returns None, or the last error where no answer came."""
     patience_s, node.timeout_s = node.timeout_s, min(node.timeout_s, PATIENCE_S)
-    why = "nobody has tried"
+    why = "no attempt was made"
     try:
         for _ in range(ATTEMPTS):
             try:
@@ -29,8 +29,8 @@ def come_to_rest(node: NodeClient) -> str | None:
 
 
 def stop_running(node: NodeClient) -> str:
-    """Opens a session, which stops a node that runs; the state in which it was found. CannotReach when nobody is
-    there, or the line does not lead to it."""
+    """Opens a session, which stops a node that runs; the state in which it was found. CannotReach when no
+    node answers on the bus."""
     try:
         node.open()
     except (BusDied, NodeSilent, NodeRefused) as error:

@@ -1,5 +1,5 @@
-"""A run and its judgement, apart from each other: the node can be brought to rest between them, and what ends a run
-early leaves everything to be judged that came before."""
+"""A run, and its judgement as a separate step: the node is brought to rest between them, and a run that ends early is
+judged up to its end."""
 
 from __future__ import annotations
 
@@ -26,14 +26,14 @@ class Trial(ABC):
         self.ending: LaconicError | None = None
 
     def drive(self, moved: Moved = lambda _: None) -> None:
-        """Runs to the end, or to what ends it early; that is kept in `ending`."""
+        """Runs to the end; an error that ends the run early is kept in `ending`."""
         try:
             self.run_it(moved)
         except ENDINGS as ending:
             self.ending = ending
 
     def judge(self) -> Judgement:
-        """What there is to say about everything that came."""
+        """Judges every step that was answered."""
         judgement = Judgement(self.scene.name, self.mode)
         if self.done():
             self.judge_it(judgement)
@@ -54,6 +54,6 @@ class Trial(ABC):
 
 
 def driven(trial: Trial, moved: Moved = lambda _: None) -> Judgement:
-    """Both, one after the other."""
+    """Runs and judges."""
     trial.drive(moved)
     return trial.judge()

@@ -1,4 +1,4 @@
-"""What the rig says in the end: one verdict per signal, with the worst difference and what was allowed."""
+"""Results of the rig: one verdict per signal, with the worst difference and the limit."""
 
 from __future__ import annotations
 
@@ -39,7 +39,7 @@ class Judgement:
 
     @property
     def passed(self) -> bool:
-        """Whether every verdict is good; a run without verdict is not."""
+        """Whether there is a verdict and every verdict is passed."""
         return bool(self.verdicts) and all(each.passed for each in self.verdicts)
 
     @property
@@ -55,7 +55,7 @@ class Judgement:
             self.verdicts.insert(0, Verdict("run", False, f"{ending}; after step {step} of {steps}", step=step))
 
     def add(self, *verdicts: Verdict) -> None:
-        """More of them."""
+        """Adds verdicts at the end."""
         self.verdicts.extend(verdicts)
 
 

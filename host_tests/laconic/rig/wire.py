@@ -22,14 +22,14 @@ ID_STRIDE = 32
 
 @dataclass(frozen=True)
 class Field:
-    """One signal: where it is and what it means."""
+    """One signal: its bits, its scale and its value table."""
 
     name: str
     start: int
     bits: int
     signed: bool
     scale: float
-    largest: int          # of the raw value, either sign, as the contract allows
+    largest: int          # largest magnitude of the raw value that the contract allows
     choices: dict[int, str]
 
     @property
@@ -89,7 +89,7 @@ class Frame:
 
 
 def field_of(signal: Any) -> Field:
-    """A cantools signal in our terms; the contract is little-endian throughout."""
+    """A Field from a cantools signal; every signal of the contract is little-endian."""
     if signal.byte_order != "little_endian":
         raise ValueError(f"{DBC}: {signal.name}: big-endian signals are not part of the contract")
     scale = float(signal.scale)
@@ -112,12 +112,12 @@ class Wire:
         return self.frames[name]
 
     def number(self, name: str, field: str, choice: str) -> int:
-        """The raw value that a value table calls by that name."""
+        """The raw value of a name in a value table."""
         table = self.frames[name].fields[field].choices
         return next(number for number, text in table.items() if text == choice)
 
     def choice(self, name: str, field: str, number: int) -> str:
-        """What a value table calls a raw value, in plain words."""
+        """The name of a raw value in a value table, in lower case with spaces."""
         text = self.frames[name].fields[field].choices.get(number, str(number))
         return text.lower().replace("_", " ")
 

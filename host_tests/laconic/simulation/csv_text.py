@@ -1,4 +1,4 @@
-"""Tables of numbers as CSV text: of each number the shortest digits that read back as the same number."""
+"""Tables of numbers as CSV text: each number with the fewest digits that are read back as the same number."""
 
 from __future__ import annotations
 
@@ -14,7 +14,7 @@ def csv_text(table: np.ndarray) -> Iterator[str]:
     """Lines of a table (row, column), many at a time.
 
     A table in JSON is the same digits between brackets, and its writer is ten times faster than Python's. JSON has no
-    word for a number that is not finite, so rows with one are written as Python writes them: nan, inf.
+    NaN and no infinities, so rows with them are written as Python writes them: nan, inf.
     """
     for first in range(0, len(table), ROWS_AT_ONCE):
         part = np.ascontiguousarray(table[first : first + ROWS_AT_ONCE], np.float64)

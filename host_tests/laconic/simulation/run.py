@@ -1,4 +1,4 @@
-"""Runs a scene through the core and keeps what it puts out."""
+"""Runs a scene through the core and keeps its outputs."""
 
 from __future__ import annotations
 
@@ -19,7 +19,7 @@ from laconic.scene.reader import LENGTHS, OUTPUT_LENGTHS, OUTPUTS_PER_WHEEL, PER
 USUAL = ("nu_rad_per_s", "x_m", "y_m", "heading_rad", "velocity_body_m_per_s", "yaw_rate_rad_per_s",
          "wheel_speed_rad_per_s", "wheel_angle_rad", "energy_J")
 MOST_ROWS = 10**7  # of outputs that are kept: some gigabytes
-CHUNK = 1 << 18    # steps between two looks at the progress bar and at Ctrl-C: a tenth of a second, watched a third
+CHUNK = 1 << 18    # steps between updates of the progress bar and checks for Ctrl-C: 0.1 s, or 0.3 s with grip
 
 
 @dataclass
@@ -32,7 +32,7 @@ class Trajectory:
     seconds: float
     time_s: np.ndarray
     columns: dict[str, np.ndarray]
-    grip: Grip | None = None  # None: the scene says nothing of the ground
+    grip: Grip | None = None  # None: the scene has no data of the ground
 
     def columns_of(self, name: str) -> np.ndarray:
         """All columns of one signal, side by side."""
@@ -40,7 +40,7 @@ class Trajectory:
 
 
 def wanted_signals(scene: Scene) -> tuple[str, ...]:
-    """The scene's output signals, or the usual ones."""
+    """The scene's output signals, or the default ones."""
     return scene.outputs.signals or usual_signals(scene)
 
 
@@ -61,7 +61,7 @@ def input_signals(scene: Scene) -> tuple[str, ...]:
 
 
 def is_watched(scene: Scene) -> bool:
-    """Whether the scene says enough of the ground: its friction, or how high the centre of mass is."""
+    """Whether the ground is checked: the scene gives its friction, or the height of the centre of mass."""
     vehicle = scene.vehicle
     return bool(scene.wheel_count and (vehicle["friction_coefficient"] or vehicle["com_z_m"]))
 
@@ -78,7 +78,7 @@ def advance_plant(plant: Plant, drive: Drive, first: int, count: int, recorder: 
 def simulate(scene: Scene, signals: tuple[str, ...] = (), progress: bool = False) -> Trajectory:
     """Runs a scene from its start to its end; Refused names file and time when a step is refused.
 
-    Keeps the given signals (outputs, or inputs), else the scene's outputs, else the usual ones.
+    Keeps the given signals (outputs, or inputs), else the scene's outputs, else the default ones.
     """
     core, steps = scene.core(), scene.steps()
     every = 1 if scene.outputs.every_s is None else scene.steps_in("outputs.every_s", scene.outputs.every_s)
@@ -86,7 +86,7 @@ def simulate(scene: Scene, signals: tuple[str, ...] = (), progress: bool = False
         raise BadInput(f"{scene.path}: outputs.every_s: {steps // every} rows are too many to keep; make it longer, "
                        f"for {MOST_ROWS} or fewer")
     plant, drive = scene.plant(core), scene.drive()
-    ticks = np.append(np.arange(0, steps, every), steps)  # the last row is the end of the run, wherever it falls
+    ticks = np.append(np.arange(0, steps, every), steps)  # the last row is the end of the run, on the grid or not
     recorder = Recorder(plant, signals or wanted_signals(scene), every, len(ticks), watched=is_watched(scene))
     began = time.perf_counter()
     with progress_bar(scene.name, steps if progress else 0, forecasts=progress) as moved:
@@ -99,7 +99,7 @@ def simulate(scene: Scene, signals: tuple[str, ...] = (), progress: bool = False
 
 def run_window(scene: Scene, plant: Plant, drive: Drive, first: int, count: int,
                moved: Advance = lambda _: None, recorder: Recorder | None = None) -> None:
-    """Some steps; a refusal names file and time."""
+    """Takes `count` steps from step `first` on; a refusal names file and time."""
     try:
         for begin in range(first, first + count, CHUNK):
             steps = min(CHUNK, first + count - begin)

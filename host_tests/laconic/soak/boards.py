@@ -18,8 +18,8 @@ from laconic.rig.boards import BOARDS, emulated_node, why_no_emulation
 from laconic.rig.lockstep import run_lockstep, twin_states
 from laconic.scene import read_scene
 
-SCENES = ("kuka_youbot", "turtlebot3_burger", "s1")  # the first takes the most numbers to load
-METHOD = "rk4"                                       # which every image holds
+SCENES = ("kuka_youbot", "turtlebot3_burger", "s1")  # the first has the most parameters
+METHOD = "rk4"                                       # every image contains it
 STEPS = 20
 BUSY = (sys.executable, "-c", "while True: pass")
 
@@ -44,7 +44,7 @@ def soak(minutes: float, seed: int, advance: Callable[[float], None]) -> dict[st
 
 
 def start(name: str, scene_name: str) -> str | None:
-    """One start of a board and a short run on it; what went wrong."""
+    """Starts a board and runs a scene briefly; returns the error, or None."""
     scene = read_scene(scene_name).with_run(real=BOARDS[name].real, method=METHOD)
     try:
         with emulated_node(name) as node:
@@ -56,7 +56,7 @@ def start(name: str, scene_name: str) -> str | None:
 
 @contextmanager
 def busy_cores(count: int) -> Iterator[None]:
-    """So many processes that do nothing but use time."""
+    """Runs so many processes that only use processor time."""
     processes = [subprocess.Popen(BUSY) for _ in range(count)]
     try:
         yield

@@ -1,4 +1,4 @@
-"""The fault matrix again and again, with new seeds."""
+"""The fault matrix repeatedly, with new seeds."""
 
 from __future__ import annotations
 
@@ -12,7 +12,7 @@ from laconic.benchmark.watched_ends import Row
 
 
 def soak(minutes: float, seed: int, advance: Callable[[float], None]) -> dict[str, Any]:
-    """Stops at the first matrix that ends after the time is up."""
+    """Runs the matrix, with a new seed each time, until the time is up."""
     source, cases, injected, bad = random.Random(seed), 0, 0, []
     began = last = time.monotonic()
     while time.monotonic() - began < 60.0 * minutes:

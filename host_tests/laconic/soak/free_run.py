@@ -14,7 +14,7 @@ RATE_HZ = 1000
 
 
 def soak(minutes: float, seed: int, advance: Callable[[float], None]) -> dict[str, Any]:
-    """One long run; the seed has nothing to choose here."""
+    """One long run; the seed has no effect."""
     scene = read_scene(SCENE).with_run(step_s=1.0 / RATE_HZ, duration_s=60.0 * minutes)
     with own_node("process", scene.run.real) as node:
         judgement = judge_free_run(node, scene, 60.0 * minutes, RATE_HZ, 200, {}, moved=advance)

@@ -16,7 +16,7 @@ SLICE_S = 5.0
 
 
 def soak(minutes: float, seed: int, advance: Callable[[float], None]) -> dict[str, Any]:
-    """So many minutes for each target; what is found new is kept in build/fuzz, beside the corpus of the sources."""
+    """Runs each target so many minutes; new inputs are kept in build/fuzz, apart from the corpus of the sources."""
     result: dict[str, Any] = {"passed": True}
     for number, target in enumerate(TARGETS):
         runs, coverage, crash = fuzz(target, 60.0 * minutes, seed + number, lambda s: advance(s / len(TARGETS)))
@@ -26,7 +26,7 @@ def soak(minutes: float, seed: int, advance: Callable[[float], None]) -> dict[st
 
 
 def fuzz(target: str, seconds: float, seed: int, advance: Callable[[float], None]) -> tuple[int, int, str]:
-    """(inputs tried, edges covered, file that breaks it or nothing)."""
+    """(inputs tried, edges covered, file with the input that fails, or "")."""
     program, fresh = built(f"fuzz/fuzz_{target}"), build_dir() / "fuzz" / target
     fresh.mkdir(exist_ok=True)
     command = [str(program), f"-max_total_time={max(1, round(seconds))}", f"-seed={seed % 2**31 or 1}", "-max_len=2000",

@@ -1,4 +1,4 @@
-"""All scenes in lockstep on the virtual bus with the bits of the core, again and again."""
+"""All scenes in lockstep on the virtual bus, compared with the bits of the core, repeatedly."""
 
 from __future__ import annotations
 

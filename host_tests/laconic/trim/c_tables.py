@@ -9,7 +9,7 @@ import numpy as np
 
 
 def c_literal(value: float, single: bool) -> str:
-    """A literal that gives back the same bits."""
+    """A C literal that is compiled to the same bits."""
     if not math.isfinite(value):
         raise ValueError(f"a table cannot hold {value}")
     text = str(np.float32(value)) if single else repr(float(value))
@@ -19,9 +19,9 @@ def c_literal(value: float, single: bool) -> str:
 
 
 def initializer(ffi: Any, value: Any, names: dict[int, str]) -> str:
-    """A C initializer for a struct, array or number; zeros are left out, pointers are looked up in `names`.
+    """A C initializer for a struct, array or number; zeros are left out, pointers become the names in `names`.
 
-    Leaving zeros out also lets a table fit a build whose arrays are shorter (LACONIC_MAX_WHEELS).
+    Without zeros a table also fits a build whose arrays are shorter (LACONIC_MAX_WHEELS).
     """
     kind = ffi.typeof(value) if isinstance(value, ffi.CData) else None
     if kind is None:
@@ -34,7 +34,7 @@ def initializer(ffi: Any, value: Any, names: dict[int, str]) -> str:
         return names[int(ffi.cast("uintptr_t", value))]
     else:
         raise TypeError(f"cannot write {kind.cname}")
-    return "{" + (", ".join(f"{place} = {text}" for place, text in parts if text) or "0") + "}"
+    return "{" + (", ".join(f"{designator} = {text}" for designator, text in parts if text) or "0") + "}"
 
 
 def _member(ffi: Any, struct: Any, name: str, kind: Any, names: dict[int, str]) -> str:

@@ -1,11 +1,11 @@
-"""What one scene needs of the core, as C: constants that make the compiler drop the rest, and a prepared model.
+"""The core for one scene, as C: constants by which the compiler removes the rest, and a prepared model.
 
     files = trimmed(read_scene("s1"), "single")
     files.header    laconic_scene.h: LACONIC_SCENE_HEADER of real.h
     files.table_h   laconic_scene_model.h, files.table_c: model, integrator and start as constants
 
-Prepared here, so that neither preparation nor validation is in flash; the numbers are those the core prepares on the
-target, because every platform gives the same bits.
+The model is prepared here, so that flash contains neither preparation nor checks; the target would compute the same
+numbers, because every platform gives the same bits.
 """
 
 from __future__ import annotations
@@ -25,7 +25,7 @@ POSE = ("x_m", "y_m", "heading_rad", "heading_wrapped_rad", "origin_x_m", "origi
 
 @dataclass(frozen=True)
 class Needs:
-    """What acts on the scene's vehicle and what is followed: LACONIC_WITH_… of real.h."""
+    """Inputs that the scene uses and quantities that it computes: LACONIC_WITH_… of real.h."""
 
     voltage: bool
     axle_torque: bool
@@ -49,7 +49,7 @@ class Trimmed:
     table_c: str
 
     def write(self, folder: Path) -> None:
-        """Writes those files that have changed, so that nothing is compiled again without need."""
+        """Writes those files that have changed, so that unchanged files are not compiled again."""
         names = {"laconic_scene.h": self.header, "laconic_scene_model.h": self.table_h,
                  "laconic_scene_model.c": self.table_c}
         for name, text in names.items():
@@ -59,7 +59,7 @@ class Trimmed:
 
 
 def holds(path: Path, text: str) -> bool:
-    """Whether a file is there with just this text."""
+    """Whether the file exists and has exactly this text."""
     try:
         return path.read_text(encoding="utf-8") == text
     except (OSError, UnicodeDecodeError):
@@ -67,7 +67,7 @@ def holds(path: Path, text: str) -> bool:
 
 
 def needs_of(scene: Scene) -> Needs:
-    """Read from the scene's inputs and outputs; without `[outputs] signals`, pose and wheel angles are followed."""
+    """Read from the scene's inputs and outputs; without `[outputs] signals`, pose and wheel angles are computed."""
     acting = {each.signal.partition("[")[0] for each in scene.inputs}
     wanted = {name.partition("[")[0] for name in scene.outputs.signals}
     world_force = "world_force_N" in acting
@@ -91,7 +91,7 @@ def trimmed(scene: Scene, real: str) -> Trimmed:
 
 
 def method_steps(scene: Scene, chosen: str) -> tuple[str, ...]:
-    """The method's own step function; for auto that of the pair it chose and those that the pair calls."""
+    """The method's own step function; for auto that of the chosen pair of methods and those that this pair calls."""
     own = f"{chosen.replace('-', '_')}_step"
     if scene.run.method != "auto":
         return (own,)

@@ -1,8 +1,8 @@
-"""An independent reference: the equations once more, in numpy, integrated by SciPy with tight tolerances.
+"""An independent reference: the equations again, in NumPy, integrated by SciPy with tight tolerances.
 
 Nothing here touches the core. It works in the paper's pseudo-velocities ν with plain dense algebra (Ξ, A, a basis G of
 the motions that the constraints leave), the core in principal axes; it restarts at every change of an input, the core
-does not know that inputs change. So the two agree only if both are right.
+does not. So the two agree only if both are right.
 """
 
 from __future__ import annotations
@@ -40,12 +40,12 @@ class Totals:
 def totals_of(vehicle: Mapping[str, Any]) -> Totals:
     """Robot and payload about their common centre of mass (parallel axes), motor data at the wheel."""
     mass, com = vehicle["mass_kg"], np.array([vehicle.get("com_x_m", 0.0), vehicle.get("com_y_m", 0.0)])
-    load = vehicle.get("payload", {"mass_kg": 0.0, "x_m": 0.0, "y_m": 0.0, "yaw_inertia_kgm2": 0.0})
-    place = np.array([load["x_m"], load["y_m"]])
-    total = mass + load["mass_kg"]
-    common = (mass * com + load["mass_kg"] * place) / total
-    yaw = vehicle["yaw_inertia_kgm2"] + load["yaw_inertia_kgm2"]
-    yaw += mass * np.sum((com - common) ** 2) + load["mass_kg"] * np.sum((place - common) ** 2)
+    payload = vehicle.get("payload", {"mass_kg": 0.0, "x_m": 0.0, "y_m": 0.0, "yaw_inertia_kgm2": 0.0})
+    payload_m = np.array([payload["x_m"], payload["y_m"]])
+    total = mass + payload["mass_kg"]
+    common = (mass * com + payload["mass_kg"] * payload_m) / total
+    yaw = vehicle["yaw_inertia_kgm2"] + payload["yaw_inertia_kgm2"]
+    yaw += mass * np.sum((com - common) ** 2) + payload["mass_kg"] * np.sum((payload_m - common) ** 2)
     gain, damping = vehicle.get("motor_gain_Nm_per_V", 0.0), vehicle.get("motor_damping_Nms", 0.0)
     wheel_inertia = vehicle["wheel_inertia_kgm2"]
     if motor := vehicle.get("motor"):
@@ -80,7 +80,7 @@ class Reference:
         return np.array([math.cos(along), math.sin(along), lever]) / math.sin(angle_rad)
 
     def _lateral(self, wheel: Mapping[str, Any]) -> np.ndarray:
-        """Velocity of a fixed wheel's centre along its axle: it must be zero."""
+        """Velocity of a fixed wheel's centre along its axle: the constraint keeps it at zero."""
         arm = np.array([wheel["x_m"], wheel["y_m"]]) - self.totals.com_m
         cosine, sine = math.cos(wheel["axle_rad"]), math.sin(wheel["axle_rad"])
         lever = (arm[0] * sine - arm[1] * cosine) / (self.totals.wheel_radius_m * self.yaw_scale)
@@ -108,8 +108,8 @@ class Reference:
         velocity = np.array(start.velocity_body_m_per_s) / self.totals.wheel_radius_m
         return np.array([*velocity, self.yaw_scale * start.yaw_rate_rad_per_s])
 
-    def drive_terms(self, values: Values) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
-        """What inputs do to ν': a constant, and what turns with cos θ and sin θ (a force fixed in the world)."""
+    def forcing_terms(self, values: Values) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
+        """Forcing of ν' by the inputs: a constant, and the factors of cos θ and sin θ (force given in the world)."""
         t = self.totals
         numbers = range(1, len(self.wheels) + 1)
         torque = np.array([t.motor_gain_Nm_per_V * values.get(f"voltage_V[{i}]", 0.0)
@@ -118,8 +118,8 @@ class Reference:
         world = np.array([values.get(f"world_force_N[{i}]", 0.0) for i in (1, 2)])
         point = np.array([values.get(f"world_force_point_m[{i}]", 0.0) for i in (1, 2)])
         constant = self.rows.T @ torque + self._wrench(body, values.get("body_moment_Nm", 0.0))
-        turned = np.array([world[1], -world[0]])  # world force in body axes: cos θ · world + sin θ · turned
-        parts = [self._wrench(f, point[0] * f[1] - point[1] * f[0]) for f in (world, turned)]
+        rotated = np.array([world[1], -world[0]])  # world force in body axes: cos θ · world + sin θ · rotated
+        parts = [self._wrench(f, point[0] * f[1] - point[1] * f[0]) for f in (world, rotated)]
         return tuple(self.mobility @ (self.scale * part) for part in (constant, *parts))
 
     def _wrench(self, force: np.ndarray, moment: float) -> np.ndarray:
@@ -130,9 +130,9 @@ class Reference:
         """d/dt of (ν, x, y, θ, χ)."""
         nu, (constant, cosine_part, sine_part) = state[:3], terms
         cosine, sine = math.cos(state[5]), math.sin(state[5])
-        turning = np.array([nu[1] * nu[2], -nu[0] * nu[2], 0.0]) / self.yaw_scale
+        gyroscopic = np.array([nu[1] * nu[2], -nu[0] * nu[2], 0.0]) / self.yaw_scale
         out = np.empty_like(state)
-        out[:3] = self.mobility @ turning - self.damping @ nu + constant + cosine * cosine_part + sine * sine_part
+        out[:3] = self.mobility @ gyroscopic - self.damping @ nu + constant + cosine * cosine_part + sine * sine_part
         radius = self.totals.wheel_radius_m
         out[3] = radius * (nu[0] * cosine - nu[1] * sine)
         out[4] = radius * (nu[0] * sine + nu[1] * cosine)
@@ -143,19 +143,19 @@ class Reference:
     def solve(self, state: np.ndarray, begin_s: float, at_s: np.ndarray, values: Callable[[float], Values] | Values,
               rtol: float, atol: float) -> np.ndarray:
         """States at some instants after `begin_s`, with inputs that are smooth from there to the last instant."""
-        from scipy.integrate import solve_ivp  # SciPy takes long to load
+        from scipy.integrate import solve_ivp  # slow to import
 
         if callable(values):
             def right(t: float, y: np.ndarray) -> np.ndarray:
-                return self.rates(y, self.drive_terms(values(t)))
+                return self.rates(y, self.forcing_terms(values(t)))
         else:
-            terms = self.drive_terms(values)
+            terms = self.forcing_terms(values)
 
             def right(t: float, y: np.ndarray) -> np.ndarray:
                 return self.rates(y, terms)
         stiff = self.fastest_decay_per_s() * (at_s[-1] - begin_s) > STIFF_DECAYS
         rows, first_step = [], None
-        for end in at_s:  # one call an instant: what the solver interpolates between its steps is less exact
+        for end in at_s:  # one call per instant: the solver's interpolation between its steps is less accurate
             found = solve_ivp(right, (begin_s, end), state, "LSODA" if stiff else "DOP853", rtol=rtol, atol=atol,
                               first_step=first_step and min(first_step, end - begin_s))
             if not found.success:
@@ -207,5 +207,5 @@ def reference_states(scene: Scene, at_s: np.ndarray, rtol: float = 1e-12, atol: 
 
 
 def roller_of(wheel: Mapping[str, Any]) -> float:
-    """γ; a fixed wheel rolls like an omni wheel and is bound besides."""
+    """γ; a fixed wheel rolls like an omni wheel, with a constraint added."""
     return math.pi / 2 if wheel["kind"] == "fixed" else wheel.get("roller_rad", math.pi / 2)

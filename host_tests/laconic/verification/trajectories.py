@@ -21,7 +21,7 @@ from laconic.scene.table import Table
 
 @dataclass(frozen=True)
 class CaseResult:
-    """What one case gave; errors are relative to max(1, largest reference value of the kind), None when refused."""
+    """Result of one case; errors are relative to max(1, largest reference value of the kind), None when refused."""
 
     name: str
     status: str
@@ -46,7 +46,7 @@ def read_reference(path: Path) -> list[Table]:
     except (ValueError, RecursionError) as error:
         raise BadInput(f"{path}: is no valid JSON: {error}; give a reference file") from None
     if not isinstance(content, dict):
-        raise BadInput(f"{path}: holds no object with cases; give a reference file")
+        raise BadInput(f"{path}: contains no object with cases; give a reference file")
     top = Table(path, "", content)
     if top.whole("format") != 1:
         top.fail("format", f"is {top.whole('format')}; this program reads format 1")
@@ -70,7 +70,7 @@ def vehicle_of(case: Table) -> dict[str, Any]:
 
 
 def wheel_of(table: Table, locked: bool) -> dict[str, Any]:
-    """Polar place from Q, axle β, roller γ."""
+    """A wheel with polar position from Q, axle β and roller γ."""
     kind = table.choice("kind", ("roller", "fixed"))
     delta, alpha = table.number("delta"), table.number("alpha")
     wheel = {"kind": kind, "locked": locked, "x_m": delta * math.cos(alpha), "y_m": delta * math.sin(alpha),
@@ -79,7 +79,7 @@ def wheel_of(table: Table, locked: bool) -> dict[str, Any]:
 
 
 def held_of(segment: Table, wheel_count: int) -> dict[str, Any]:
-    """What acts during a segment, by the names of the core's input."""
+    """Inputs of a segment, by the names of laconic_input."""
     held: dict[str, Any] = {}
     if segment.has("U"):
         held["voltage_V"] = segment.numbers("U", wheel_count)
@@ -93,7 +93,7 @@ def held_of(segment: Table, wheel_count: int) -> dict[str, Any]:
 
 
 def step_that_fits(duration_s: float, step_s: float) -> tuple[int, float]:
-    """The number of steps in a segment, and the step: shortened to the next that divides the segment."""
+    """The number of steps in a segment, and the step: shortened, where necessary, to divide the segment."""
     nearest = max(1, round(duration_s / step_s))
     fits = abs(nearest * step_s - duration_s) <= 1e-6 * step_s
     steps = nearest if fits else math.ceil(duration_s / step_s)
@@ -176,5 +176,5 @@ def verify_case(core: Core, case: Table, method: str, step_s: float, advance: Ca
 
 
 def as_json(results: list[CaseResult], method: str, step_s: float, real: str) -> dict[str, Any]:
-    """The machine-readable answer."""
+    """All results for JSON."""
     return {"method": method, "step_s": step_s, "real": real, "cases": [asdict(each) for each in results]}

@@ -15,24 +15,24 @@ from laconic.rig.buses import node_process
 @pytest.mark.parametrize("real", ["double", "single"])
 @pytest.mark.parametrize("flag", ["--help", "-h"])
 def test_the_node_says_how_it_is_started(real: str, flag: str) -> None:
-    told = subprocess.run([built(f"bin/laconic-node-{real}"), "--port", "x", flag], capture_output=True, text=True)
-    assert told.returncode == 0 and told.stderr == ""
-    assert all(word in told.stdout for word in ("usage:", "--port", "--id-base", "--bitrate", "--once", "laconic rig"))
+    ran = subprocess.run([built(f"bin/laconic-node-{real}"), "--port", "x", flag], capture_output=True, text=True)
+    assert ran.returncode == 0 and ran.stderr == ""
+    assert all(word in ran.stdout for word in ("usage:", "--port", "--id-base", "--bitrate", "--once", "laconic rig"))
 
 
 def test_a_wrong_option_of_the_node_is_one_line_that_names_it() -> None:
-    told = subprocess.run([built("bin/laconic-node-double"), "--prot", "1"], capture_output=True, text=True)
-    assert told.returncode == 2 and told.stderr.count("\n") == 1 and "--prot" in told.stderr and "--help" in told.stderr
+    ran = subprocess.run([built("bin/laconic-node-double"), "--prot", "1"], capture_output=True, text=True)
+    assert ran.returncode == 2 and ran.stderr.count("\n") == 1 and "--prot" in ran.stderr and "--help" in ran.stderr
 
 
 def test_a_second_client_is_told_that_the_line_is_occupied_and_the_first_is_not_disturbed() -> None:
     with node_process() as port, socket.create_connection(("127.0.0.1", port)) as first:
         first.sendall(b"V\r")
         assert first.recv(16) == b"V1010\r"
-        with socket.create_connection(("127.0.0.1", port), timeout=10.0) as second, second.makefile("rb") as told:
-            assert told.read(9) == b"\aoccupied"  # at once, for a person
+        with socket.create_connection(("127.0.0.1", port), timeout=10.0) as second, second.makefile("rb") as line:
+            assert line.read(9) == b"\aoccupied"  # at once, for a person
             second.sendall(b"O\r")
-            assert told.read().count(b"\aoccupied") == 1  # again, for who has flushed the line; then it ends
+            assert line.read().count(b"\aoccupied") == 1  # again, for who has flushed the line; then it ends
         first.sendall(b"V\r")
         assert first.recv(16) == b"V1010\r"
 

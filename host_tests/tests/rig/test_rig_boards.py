@@ -76,10 +76,10 @@ def test_bytes_that_come_faster_than_the_processor_reads_are_not_overwritten(nam
             link.send(wire()["PARAMETER"], data)
         count = link.send(wire()["COMMIT"], wire()["COMMIT"].pack(frame_count=140, checksum=checksum)) & 15
         link.bus.serialPortOrig.write("".join(lines).encode())
-        asked = wire().number("RESULT", "command", "COMMIT")
+        command = wire().number("RESULT", "command", "COMMIT")
         while (received := link.receive(5.0)) is not None:
             values = received[0].unpack(received[1])
-            if received[0].name == "RESULT" and (values["command"], values["request"]) == (asked, count):
+            if received[0].name == "RESULT" and (values["command"], values["request"]) == (command, count):
                 break
         assert received is not None and wire().choice("RESULT", "status", values["status"]) == UNFIT[name]
 

@@ -80,10 +80,10 @@ def test_a_run_is_logged_to_the_last_frame_replayed_and_told_to_ci(tmp_path: Pat
     logs = [tmp_path / "run.blf", tmp_path / "run.asc"]
     arguments = ["rig", "s1", "--steps", "50", "--junit", str(tmp_path / "run.xml"), "--json"]
     assert run([*arguments, *(word for path in logs for word in ("--log", str(path)))]) == 0
-    told = json.loads(capsys.readouterr().out)
-    assert told["passed"] and told["figures"]["steps"] == 50
+    result = json.loads(capsys.readouterr().out)
+    assert result["passed"] and result["figures"]["steps"] == 50
     suite = ElementTree.parse(tmp_path / "run.xml").getroot()
-    assert int(suite.get("tests")) == len(told["verdicts"]) and suite.get("failures") == "0"
+    assert int(suite.get("tests")) == len(result["verdicts"]) and suite.get("failures") == "0"
     for path in logs:
         assert sum(m.arbitration_id == ID_BASE + NU for m in read_log(path)) == 50
         assert run(["rig", "s1", "--replay", str(path)]) == 0
@@ -101,7 +101,7 @@ def test_a_tolerance_decides() -> None:
     assert [each.name for each in judgement.verdicts if not each.passed] == ["NU.nu_1"]
 
 
-@pytest.mark.parametrize("arguments, says", [
+@pytest.mark.parametrize("arguments, words", [
     (["--interface", "slcan", "--channel", "socket://127.0.0.1:1"], "cannot open the bus"),
     (["--interface", "nosuch"], "nosuch"),
     (["--id-base", "0x210"], "multiple of 32"),
@@ -111,10 +111,10 @@ def test_a_tolerance_decides() -> None:
     (["--bus-option", "loss"], "NAME=VALUE"),
     (["--log", "/dev/null/a.blf"], "/dev/null/a.blf"),
     (["--board", "virtual", "--interface", "virtual"], "leave --interface out")])
-def test_bad_input_is_one_line_and_status_2(arguments: list[str], says: str, capsys: object) -> None:
+def test_bad_input_is_one_line_and_status_2(arguments: list[str], words: str, capsys: object) -> None:
     assert run(["rig", "s1", "--steps", "5", *arguments]) == 2
     error = capsys.readouterr().err
-    assert error.count("\n") == 1 and says in error
+    assert error.count("\n") == 1 and words in error
 
 
 def test_a_scene_with_forces_has_no_scaled_frames(tmp_path: Path, capsys: object) -> None:
@@ -158,8 +158,8 @@ def test_a_bus_that_dies_in_the_run_is_a_verdict_and_the_log_is_whole(tmp_path: 
     assert rig_on(port, "--log", str(tmp_path / "run.blf"), "--json") == 1
     node.wait()
     node.stdout.close()
-    told = json.loads(capsys.readouterr().out)
-    assert told["verdicts"][0]["name"] == "run" and "died" in told["verdicts"][0]["detail"]
+    result = json.loads(capsys.readouterr().out)
+    assert result["verdicts"][0]["name"] == "run" and "died" in result["verdicts"][0]["detail"]
     names = [wire().by_offset[message.arbitration_id - ID_BASE].name for message in read_log(tmp_path / "run.blf")]
     asked, answered = names.count("VOLTAGE") - 1, names.count("NU")  # the first is for reference
     assert asked > 5 and abs(asked - answered) <= 1

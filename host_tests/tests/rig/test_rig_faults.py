@@ -1,4 +1,4 @@
-"""Faults on purpose: the plug-in does what it says, the whole matrix holds, and field bugs of others stay out."""
+"""Deliberate faults: the plug-in makes the faults it is given, the whole matrix holds, known field bugs stay out."""
 
 from __future__ import annotations
 
@@ -151,14 +151,14 @@ def test_stale_queue_voltages_that_waited_through_an_emergency_stop_do_not_move_
         for message in stale:
             near.send(message)
         drive_nothing(client, 0.05)
-        assert end.node.look()["voltage_V"] == [0.0, 0.0, 0.0] and end.node.look()["state"] == "ready"
+        assert end.node.inspect()["voltage_V"] == [0.0, 0.0, 0.0] and end.node.inspect()["state"] == "ready"
         client.start_free_run(100, 0)
-        before = end.node.look()["crc_errors"]
+        before = end.node.inspect()["crc_errors"]
         for message in stale:
             near.send(message)
         drive_nothing(client, 0.05)
-        assert end.node.look()["voltage_V"] == [0.0, 0.0, 0.0]
-        assert end.node.look()["crc_errors"] == before + len(stale)
+        assert end.node.inspect()["voltage_V"] == [0.0, 0.0, 0.0]
+        assert end.node.inspect()["crc_errors"] == before + len(stale)
 
 
 def drive_nothing(client: NodeClient, seconds: float) -> None:
@@ -178,7 +178,7 @@ def test_a_stale_start_does_not_start_the_vehicle_again() -> None:
         for message in recorded:  # STOP, START and STOP of before
             near.send(message)
             drive_nothing(client, 0.01)
-            assert end.node.look()["state"] == "ready"
+            assert end.node.inspect()["state"] == "ready"
 
 
 def test_counter_rewind_a_rejected_burst_does_not_open_the_door_for_what_follows_it() -> None:
@@ -190,11 +190,11 @@ def test_counter_rewind_a_rejected_burst_does_not_open_the_door_for_what_follows
         for message in recorded[1:5]:
             near.send(message)
         drive_nothing(client, 0.001)
-        assert end.node.look()["voltage_V"] == [1.0, 1.0, 1.0]
-        before = end.node.look()
+        assert end.node.inspect()["voltage_V"] == [1.0, 1.0, 1.0]
+        before = end.node.inspect()
         drive(client, 1.5, 0.02)  # the first is for reference
-        assert end.node.look()["voltage_V"] == [1.5, 1.5, 1.5]
-        assert end.node.look()["sequence_errors"] == before["sequence_errors"]
+        assert end.node.inspect()["voltage_V"] == [1.5, 1.5, 1.5]
+        assert end.node.inspect()["sequence_errors"] == before["sequence_errors"]
 
 
 VOLTAGE = wire()["VOLTAGE"].offset
@@ -204,7 +204,7 @@ def test_invalid_frames_do_not_feed_the_watchdog() -> None:
     for fault in ({"corruption": 1.0}, {"stuck": 1.0}, {"wrong_length": 1.0}):
         with free_running(only_id=ID_BASE + VOLTAGE, direction="out", **fault) as (client, end, near):
             drive(client, 2.0, 0.2)
-            view = end.node.look()
+            view = end.node.inspect()
             assert view["state"] == "timeout" and view["voltage_V"] == [0.0, 0.0, 0.0], fault
 
 
@@ -212,19 +212,19 @@ def test_timeout_is_latched_until_stop_and_start() -> None:
     with free_running() as (client, end, near):
         drive(client, 2.0, 0.1)
         drive_nothing(client, 0.1)
-        assert end.node.look()["state"] == "timeout"
+        assert end.node.inspect()["state"] == "timeout"
         drive(client, 2.0, 0.1)
-        assert end.node.look()["state"] == "timeout" and end.node.look()["voltage_V"] == [0.0, 0.0, 0.0]
+        assert end.node.inspect()["state"] == "timeout" and end.node.inspect()["voltage_V"] == [0.0, 0.0, 0.0]
         client.stop()
         client.start_free_run(100, 50)
         drive(client, 2.0, 0.1)
-        assert end.node.look()["state"] == "free run" and end.node.look()["voltage_V"] == [2.0, 2.0, 2.0]
+        assert end.node.inspect()["state"] == "free run" and end.node.inspect()["voltage_V"] == [2.0, 2.0, 2.0]
 
 
 def test_bus_off_stops_the_vehicle_and_recovers() -> None:
     with free_running(bus_off_after=30, bus_off_s=0.3) as (client, end, near):
         drive(client, 2.0, 0.5)
-        assert end.node.look()["state"] == "timeout"
+        assert end.node.inspect()["state"] == "timeout"
         client.stop()
         scene = read_scene("s1")
         run = run_lockstep(client, scene, 20)

@@ -92,15 +92,15 @@ def test_an_interrupted_run_tells_every_verdict_up_to_its_last_step_as_json_and_
     at_step(monkeypatch, lambda: os.kill(os.getpid(), signal.SIGTERM))
     assert run(["rig", "s1", *on(port), *MODES[mode], "--steps", "100000", "--json", "--junit",
                 str(tmp_path / "run.xml")]) == 143
-    told = json.loads(capsys.readouterr().out)
-    first, *others = told["verdicts"]
+    result = json.loads(capsys.readouterr().out)
+    first, *others = result["verdicts"]
     assert first["name"] == "run" and "SIGTERM" in first["detail"] and "of 100000" in first["detail"]
     by_run_or_machine = ("steps", "clock")  # too few, as it was stopped; behind the clock on a busy machine
     assert len(others) >= 5 and [each for each in others
                                  if not each["passed"] and each["name"] not in by_run_or_machine] == []
-    assert abs(told["figures"]["last_step"] - step) <= (0 if mode != "free run" else 150)
+    assert abs(result["figures"]["last_step"] - step) <= (0 if mode != "free run" else 150)
     suite = ElementTree.parse(tmp_path / "run.xml").getroot()
-    assert int(suite.get("tests")) == len(told["verdicts"]) and int(suite.get("failures")) >= 1
+    assert int(suite.get("tests")) == len(result["verdicts"]) and int(suite.get("failures")) >= 1
 
 
 def test_a_node_that_dies_in_lockstep_leaves_the_verdicts_of_the_steps_before(
@@ -109,10 +109,10 @@ def test_a_node_that_dies_in_lockstep_leaves_the_verdicts_of_the_steps_before(
         number = int(node.stdout.readline().rpartition(":")[2])
         at_step(monkeypatch, node.kill)
         assert run(["rig", "s1", *on(number), "--steps", "1000", "--json"]) == 1
-    told = json.loads(capsys.readouterr().out)
-    assert LAST <= told["figures"]["last_step"] <= LAST + 1 and told["figures"]["steps_wanted"] == 1000
-    assert [each["name"] for each in told["verdicts"] if not each["passed"]] == ["run"]
-    assert any("could not be stopped" in note for note in told["notes"])
+    result = json.loads(capsys.readouterr().out)
+    assert LAST <= result["figures"]["last_step"] <= LAST + 1 and result["figures"]["steps_wanted"] == 1000
+    assert [each["name"] for each in result["verdicts"] if not each["passed"]] == ["run"]
+    assert any("could not be stopped" in note for note in result["notes"])
 
 
 def raising(step: int, what: str) -> list[str]:
@@ -165,7 +165,7 @@ def test_a_stop_that_is_lost_again_and_again_still_reaches_the_node(mode: str) -
         trial = Scaled(node, scene, 20, {}) if mode == "lockstep" else Free(node, scene, 0.1, 100, 0, {})
         trial.drive()
         assert len(lost) == 4 and trial.ending is None
-        assert node.link.pump.__self__.node.look()["state"] == "ready"
+        assert node.link.pump.__self__.node.inspect()["state"] == "ready"
 
 
 def test_a_process_that_is_terminated_leaves_whole_logs_and_a_node_at_rest(port: int, tmp_path: Path,

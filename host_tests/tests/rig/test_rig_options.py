@@ -1,4 +1,4 @@
-"""What the command line of laconic rig refuses: options that nobody would look at, and those that have no meaning."""
+"""What the command line of laconic rig refuses: options that would be ignored, and those without meaning."""
 
 from __future__ import annotations
 
@@ -12,7 +12,7 @@ from laconic.rig.bus_options import known_options, read_bus_options
 from laconic.rig.faults import faults_from
 
 
-@pytest.mark.parametrize("arguments, says", [
+@pytest.mark.parametrize("arguments, words", [
     (["--interface", "faulty", "--bus-option", "los=0.1"], "did you mean loss?"),
     (["--interface", "slcan", "--channel", "x", "--bus-option", "loss=0.1"], "--interface faulty"),
     (["--interface", "virtual", "--channel", "x", "--bus-option", "nosuch=1"], "no such option"),
@@ -24,10 +24,10 @@ from laconic.rig.faults import faults_from
     (["--interface", "faulty", "--bus-option", "delay_s=nan"], "zero or more"),
     (["--interface", "faulty", "--bus-option", "keep_queue=perhaps"], "true or false")])
 def test_a_bus_option_that_nobody_would_look_at_is_refused_with_the_nearest_name(
-        arguments: list[str], says: str, capsys: pytest.CaptureFixture[str]) -> None:
+        arguments: list[str], words: str, capsys: pytest.CaptureFixture[str]) -> None:
     assert run(["rig", "s1", "--steps", "5", *arguments]) == 2
     error = capsys.readouterr().err
-    assert error.count("\n") == 1 and "--bus-option" in error and says in error
+    assert error.count("\n") == 1 and "--bus-option" in error and words in error
 
 
 def test_options_that_an_interface_only_looks_up_in_its_keyword_arguments_are_known() -> None:
@@ -51,11 +51,11 @@ def test_a_replay_refuses_what_has_a_meaning_for_a_node_alone(option: list[str],
     assert error.startswith(f"laconic: {option[0]}: ") and "--replay" in error and error.count("\n") == 1
 
 
-@pytest.mark.parametrize("given, told", [("0x210", "0x210"), ("700", "0x2BC"), ("-32", "-0x20"), ("0x800", "0x800")])
-def test_a_wrong_id_base_is_echoed_as_identifiers_are_written(given: str, told: str,
+@pytest.mark.parametrize("given, shown", [("0x210", "0x210"), ("700", "0x2BC"), ("-32", "-0x20"), ("0x800", "0x800")])
+def test_a_wrong_id_base_is_echoed_as_identifiers_are_written(given: str, shown: str,
                                                               capsys: pytest.CaptureFixture[str]) -> None:
     assert run(["rig", "s1", "--id-base", given]) == 2
-    assert f"--id-base {given}: {told} cannot" in capsys.readouterr().err
+    assert f"--id-base {given}: {shown} cannot" in capsys.readouterr().err
 
 
 def test_a_wrong_id_base_of_the_scene_is_echoed_so_too(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
@@ -76,21 +76,21 @@ def test_a_scene_is_asked_for_where_one_is_needed(capsys: pytest.CaptureFixture[
     assert "--free-run: has no meaning beside --stop" in capsys.readouterr().err
 
 
-@pytest.mark.parametrize("arguments, says", [
+@pytest.mark.parametrize("arguments, words", [
     (["--free-run", "--watchdog", "10"], "every 10 ms"),
-    (["--bitrate", "500000"], "--bitrate 500000: say which --interface"),
+    (["--bitrate", "500000"], "--bitrate 500000: give its --interface"),
     (["--bitrate", "-5"], "--bitrate -5: must be above 0"),
     (["--interface", "slcan", "--channel", "socket://127.0.0.1:1", "--bitrate", "0"], "must be above 0"),
     (["--interface", "slcan", "--channel", "socket://127.0.0.1:99999"], "from 1 to 65535"),
     (["--interface", "slcan", "--channel", "socket://127.0.0.1"], "names no port")])
-def test_numbers_that_cannot_work_are_refused_before_anything_is_sent(arguments: list[str], says: str,
+def test_numbers_that_cannot_work_are_refused_before_anything_is_sent(arguments: list[str], words: str,
                                                                      capsys: pytest.CaptureFixture[str]) -> None:
     assert run(["rig", "s1", *arguments]) == 2
     error = capsys.readouterr().err
-    assert error.count("\n") == 1 and says in error
+    assert error.count("\n") == 1 and words in error
 
 
 def test_a_free_run_tells_its_results_as_json(capsys: pytest.CaptureFixture[str]) -> None:
     assert run(["rig", "s1", "--free-run", "--steps", "50", "--json"]) == 0
-    told = json.loads(capsys.readouterr().out)
-    assert told["passed"] is True and {"rig", "timeouts"} <= {each["name"] for each in told["verdicts"]}
+    result = json.loads(capsys.readouterr().out)
+    assert result["passed"] is True and {"rig", "timeouts"} <= {each["name"] for each in result["verdicts"]}

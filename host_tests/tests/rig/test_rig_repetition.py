@@ -100,7 +100,7 @@ def test_every_third_frame_lost_costs_time_and_nothing_else() -> None:
         chance = Random(5)  # not hash(), which Python seeds anew in each process
         end.lost = lambda kind, count: kind != "HEARTBEAT" and chance.random() < 1 / 3
         life(client)
-        assert client.state == "ready" and end.node.look()["repeated"] > 10
+        assert client.state == "ready" and end.node.inspect()["repeated"] > 10
 
 
 def test_a_command_that_is_never_answered_ends_in_one_line_and_the_next_one_begins_anew() -> None:
@@ -111,10 +111,10 @@ def test_a_command_that_is_never_answered_ends_in_one_line_and_the_next_one_begi
         with pytest.raises(NodeSilent, match="does not answer start lockstep within 1 s"):
             client.start_lockstep()
         assert client.link.clock.now_us() - began_us < 1.2e6
-        assert end.node.look()["state"] == "lockstep"  # it was heard
+        assert end.node.inspect()["state"] == "lockstep"  # it was heard
         end.lost = lambda kind, count: False
         client.stop()
-        assert end.node.look()["state"] == "ready"
+        assert end.node.inspect()["state"] == "ready"
         run = run_lockstep(client, SCENE, 3)
         assert run.states.tobytes() == twin_states(SCENE, run).tobytes()
 
@@ -129,11 +129,11 @@ def test_a_fresh_rig_finds_the_node_in_any_state_and_stops_it(state: str) -> Non
         elif state in ("free run", "timeout"):
             client.start_free_run(watchdog_ms=50 if state == "timeout" else 0)
             client.link.receive(0.2)
-            while client.link.receive(0.2) is not None and end.node.look()["state"] != state:
+            while client.link.receive(0.2) is not None and end.node.inspect()["state"] != state:
                 pass
         fresh = NodeClient(Link(client.link.bus, clock=client.link.clock, pump=client.link.pump))
         fresh.stop()
-        assert fresh.found == state and end.node.look()["state"] == ("empty" if state == "empty" else "ready")
+        assert fresh.found == state and end.node.inspect()["state"] == ("empty" if state == "empty" else "ready")
         fresh.stop()
         run = run_lockstep(fresh, SCENE, 3)
         assert run.states.tobytes() == twin_states(SCENE, run).tobytes()
@@ -150,7 +150,7 @@ def test_a_rig_of_before_is_not_heard_any_more() -> None:
         old.link.session.protect(wire()["CONTROL"], data)
         old.link.send_message(old.link.message(wire()["CONTROL"], data))
         old.link.receive(0.01)
-        assert end.node.look()["state"] == "free run" and end.node.look()["crc_errors"] == 1
+        assert end.node.inspect()["state"] == "free run" and end.node.inspect()["crc_errors"] == 1
 
 
 def test_the_rig_speaks_only_after_a_sign_of_life() -> None:
@@ -193,4 +193,4 @@ def test_a_late_answer_is_not_taken_for_that_to_the_next_command() -> None:
             assert client.control("BEGIN")["status"] == 0
             with pytest.raises(NodeRefused, match="refuses reset: wrong state"):
                 client.reset()
-        assert end.node.look()["repeated"] >= 60
+        assert end.node.inspect()["repeated"] >= 60

@@ -7,7 +7,7 @@ import pytest
 
 from laconic.rig.boards import own_node
 from laconic.rig.judge import judge_scaled
-from laconic.rig.scaled import half_a_place
+from laconic.rig.scaled import rounding_limit
 from laconic.scene import read_scene
 
 
@@ -19,17 +19,17 @@ def as_the_node_rounds(value: np.ndarray, per_unit: int) -> np.ndarray:
 
 @pytest.mark.parametrize("real", ["float32", "float64"])
 @pytest.mark.parametrize(("per_unit", "largest"), [(200, 163.0), (1000, 32.0), (10000, 3.14)])
-def test_whatever_the_node_rounds_is_within_half_a_place(real: str, per_unit: int, largest: float) -> None:
+def test_whatever_the_node_rounds_is_within_the_rounding_limit(real: str, per_unit: int, largest: float) -> None:
     values = np.random.default_rng(7).uniform(-largest, largest, 400_000).astype(real)
     exact = values.astype(float) * per_unit
     off = np.abs(as_the_node_rounds(values, per_unit) - exact)
-    assert np.all(off <= half_a_place(exact, np.dtype(real)))
-    assert np.max(off) > 0.499  # half a place is needed
+    assert np.all(off <= rounding_limit(exact, np.dtype(real)))
+    assert np.max(off) > 0.499  # a limit below 0.5 would be too small
 
 
-def test_half_a_place_stays_half_where_numbers_are_fine() -> None:
-    assert half_a_place(32767.0, np.dtype("float64")) < 0.50001
-    assert half_a_place(32767.0, np.dtype("float32")) < 0.505
+def test_the_rounding_limit_stays_half_where_numbers_are_fine() -> None:
+    assert rounding_limit(32767.0, np.dtype("float64")) < 0.50001
+    assert rounding_limit(32767.0, np.dtype("float32")) < 0.505
 
 
 def test_a_long_run_of_a_node_in_single_precision_passes() -> None:

@@ -105,7 +105,7 @@ class Trial:
 
     def moved(self) -> bool:
         """Whether a voltage of the recording has arrived."""
-        return any(abs(volts) > VOLTS / 2 for volts in self.node.look()["voltage_V"])
+        return any(abs(volts) > VOLTS / 2 for volts in self.node.inspect()["voltage_V"])
 
 
 @contextmanager
@@ -151,10 +151,10 @@ def test_forty_voltages_of_an_earlier_run_do_not_move_the_vehicle(where: str) ->
         if where != "the same session, another run":
             trial.open()
         trial.start()
-        before = trial.node.look()["accepted"]
+        before = trial.node.inspect()["accepted"]
         for frame in stale:
             trial.deliver(frame)
-        single += trial.node.look()["accepted"] - before
+        single += trial.node.inspect()["accepted"] - before
         executed += trial.moved()
     # each of the forty shows the count that is due, or one of the two after it, in 3 of 16 cases
     assert within_4_sigma(single, 40 * trials, 2.0**-8 * 3 / 16)
@@ -188,7 +188,7 @@ def test_sixteen_frames_replayed_in_a_ring_do_not_feed_the_watchdog() -> None:
                 trial.deliver(frame)
                 trial.now_us += 10_000
                 trial.node.tick(trial.now_us)
-        alive += trial.node.look()["state"] == "free run"
+        alive += trial.node.inspect()["state"] == "free run"
     assert alive <= 2  # it takes a right frame every 100 ms
 
 
@@ -201,9 +201,9 @@ def test_a_stale_control_of_another_session_is_carried_out_at_the_rate_of_its_cr
         trial.open()
         trial.start()
         for frame in stale:
-            before = trial.node.look()["accepted"]
+            before = trial.node.inspect()["accepted"]
             trial.deliver(frame)
-            carried_out += trial.node.look()["accepted"] - before
+            carried_out += trial.node.inspect()["accepted"] - before
         trial.answers()
     assert within_4_sigma(carried_out, trials // 16, 2.0**-8)  # one of the sixteen is the one that is due
 
@@ -217,10 +217,10 @@ def test_a_recorded_handshake_opens_nothing() -> None:
     trial.deliver = deliver
     trial.open()
     trial.start()
-    state, key = trial.node.look()["state"], trial.session.key
+    state, key = trial.node.inspect()["state"], trial.session.key
     for frame in recorded:
         trial.deliver(frame)
-    assert trial.node.look()["state"] == state and trial.session.key == key
+    assert trial.node.inspect()["state"] == state and trial.session.key == key
     assert trial.control("STOP") == 0  # the session of before goes on
 
 
@@ -235,7 +235,7 @@ def test_stale_frames_between_live_ones_act_rarely_and_not_for_long() -> None:
         hits += trial.moved()
         for _ in range(5):  # one that was spoilt needs one for reference; one taken for the third next, four
             trial.deliver(trial.voltage(1.0))
-        assert trial.node.look()["voltage_V"] == [1.0, 1.0, 1.0]
+        assert trial.node.inspect()["voltage_V"] == [1.0, 1.0, 1.0]
     assert within_4_sigma(hits, trials, 2.0**-12)
 
 
