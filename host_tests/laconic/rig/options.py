@@ -74,12 +74,12 @@ def node_for(options: Options, real: str, id_base: int) -> Iterator[NodeClient]:
         if options.bitrate is not None:
             raise BadInput(f"--bitrate {options.bitrate}: give its --interface as well, such as socketcan")
         if options.bus_options:
-            raise BadInput(f"--bus-option {options.bus_options[0]}: give its --interface as well, such as faulty")
+            raise BadInput(f"--bus-option {options.bus_options[0]}: NAME=VALUE needs --interface as well, such as faulty")
         with own_node(options.board or "virtual", real, id_base) as node:
             yield node
         return
     if options.board is not None:
-        raise BadInput(f"--board {options.board}: starts a node itself; leave out --interface")
+        raise BadInput(f"--board {options.board}: starts a node itself; leave --interface out")
     more = read_bus_options(options.bus_options, options.interface)
     with connected(options.interface, options.channel, id_base, bitrate=options.bitrate, **more) as node:
         yield node
