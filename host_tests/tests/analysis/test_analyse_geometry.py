@@ -2,7 +2,7 @@
 
 import numpy as np
 import pytest
-from scene_text import constant, wheel
+from scene_text import constant, table, wheel
 
 from laconic.analysis.from_core import subject_of
 from laconic.analysis.geometry import diagnose
@@ -132,23 +132,10 @@ def test_wheels_in_a_line_cannot_hold_the_body_and_this_is_said(tmp_path):
     assert any("cannot hold the body upright" in sentence for sentence in study(subject).words)
 
 
-PUSH = """
-[[input]]
-signal = "body_force_N[1]"
-kind = "table"
-t_s = [0.0, 1.0]
-value = [0.0, 60.0]
-[[input]]
-signal = "body_moment_Nm"
-kind = "sine"
-amplitude = 0.8
-frequency_Hz = 3.0
-[[input]]
-signal = "world_force_N[2]"
-kind = "steps"
-t_s = [0.0, 0.4]
-value = [3.0, -5.0]
-""" + constant("world_force_point_m[1]", 0.12)
+PUSH = (table("[[input]]", signal="body_force_N[1]", kind="table", t_s=[0.0, 1.0], value=[0.0, 60.0])
+        + table("[[input]]", signal="body_moment_Nm", kind="sine", amplitude=0.8, frequency_Hz=3.0)
+        + table("[[input]]", signal="world_force_N[2]", kind="steps", t_s=[0.0, 0.4], value=[3.0, -5.0])
+        + constant("world_force_point_m[1]", 0.12))
 MOTORS = "motor_gain_Nm_per_V = 0.4\nmotor_damping_Nms = 0.02\nfriction_coefficient = 0.5\ncom_z_m = 0.05\n"
 LOCKED = mecanum(0.2, 0.15, 1).replace("roller_deg = 45.0", "roller_deg = 45.0\nlocked = true", 1)
 MIXED = wheels("fixed", (0.0, 0.2, -np.pi / 2), (0.0, -0.2, -np.pi / 2)) + wheels("omni", (0.2, 0.0, 0.4))
