@@ -74,7 +74,7 @@ def node_for(options: Options, real: str, id_base: int) -> Iterator[NodeClient]:
         if options.bitrate is not None:
             raise BadInput(f"--bitrate {options.bitrate}: give its --interface as well, such as socketcan")
         if options.bus_options:
-            raise BadInput(f"--bus-option {options.bus_options[0]}: NAME=VALUE needs --interface as well, such as faulty")
+            raise BadInput(f"--bus-option {options.bus_options[0]}: NAME=VALUE needs an --interface, such as faulty")
         with own_node(options.board or "virtual", real, id_base) as node:
             yield node
         return

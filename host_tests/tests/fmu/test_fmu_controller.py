@@ -102,5 +102,5 @@ def test_every_scene_name_becomes_an_identifier(text: str, name: str) -> None:
 def test_an_ssp_of_fmi_3_is_refused_with_one_line(scalar: bool, tmp_path: Path, capsys) -> None:
     words = ["fmu", "robotino2", "--fmi", "3", "--ssp", "-o", str(tmp_path / "x.ssp")]
     assert run([*words, "--scalar"] if scalar else words) == 2
-    assert capsys.readouterr().err.splitlines() == ["laconic: --ssp: SSP 1.0 knows no FMUs of FMI 3; use --fmi 2"]
+    assert capsys.readouterr().err.splitlines() == ["laconic: --ssp: SSP 1.0 has no FMUs of FMI 3; use --fmi 2"]
     assert not (tmp_path / "x.ssp").exists()
