@@ -113,6 +113,9 @@ class Core:
         Wheels beyond the core's array are only counted, so that the check refuses them.
         """
         plain = {key: value for key, value in data.items() if key not in ("wheel", "support", "motor")}
+        known = [name for name, _ in self.ffi.typeof("laconic_vehicle").fields] + ["motor"]
+        if unknown := [key for key in plain if key not in known]:
+            raise BadInput(f"vehicle.{unknown[0]}: unknown key; {nearest_of(unknown[0], known)}")
         wheels, supports = data.get("wheel", []), data.get("support", [])
         vehicle = self.ffi.new("laconic_vehicle *", plain)
         vehicle.wheel_count, vehicle.support_count = len(wheels), len(supports)
@@ -126,8 +129,11 @@ class Core:
         return vehicle
 
     def _set_wheel(self, target: Any, wheel: Mapping[str, Any]) -> None:
-        kind = getattr(self.lib, f"LACONIC_WHEEL_{WHEEL_KINDS[wheel['kind']]}")
-        given = {"roller_rad": OMNI_ROLLER_RAD, **wheel, "kind": kind}
+        kind = wheel["kind"]
+        if kind not in WHEEL_KINDS:
+            raise BadInput(f"vehicle.wheel.kind: there is no {kind!r}; {nearest_of(kind, WHEEL_KINDS)}")
+        number = getattr(self.lib, f"LACONIC_WHEEL_{WHEEL_KINDS[kind]}")
+        given = {"roller_rad": OMNI_ROLLER_RAD, **wheel, "kind": number}
         for field in self.fields_of("vehicle.wheel[#]"):
             setattr(target, field.key, given.get(field.key, 0))
 
@@ -164,23 +170,44 @@ class Core:
 
     def input_offset(self, signal: str) -> int:
         """Where a signal such as voltage_V[2] stands in a row of input numbers."""
+        return self._input_slots(signal).start
+
+    def _input_slots(self, signal: str) -> range:
+        """The numbers that a signal may set; BadInput where there is no such signal or item."""
         name, _, index = signal.partition("[")
-        start, _ = self.input_fields[name]
-        return start + (int(index.rstrip("]")) - 1 if index else 0)
+        if name not in self.input_fields:
+            raise BadInput(f"{signal}: there is no such input; {nearest_of(name, self.input_fields)}")
+        start, length = self.input_fields[name]
+        if not index:
+            return range(start, start + length)
+        item = index.removesuffix("]")
+        if not item.isdecimal() or not 1 <= int(item) <= length:
+            raise BadInput(f"{signal}: there is no such item; give 1 to {length}")
+        return range(start + int(item) - 1, start + int(item))
 
     @np.errstate(over="ignore")  # the core names a number that is too large for its scalar type
     def input_row(self, values: Mapping[str, float | Sequence[float]]) -> np.ndarray:
-        """A row of input numbers from {"voltage_V": [1, 2], "voltage_V[2]": 3, "body_moment_Nm": 4 …}."""
+        """A row of input numbers from {"voltage_V": [1, 2], "voltage_V[2]": 3, "body_moment_Nm": 4 …}.
+
+        Wheels that a list leaves out get 0. BadInput for what is no signal, no number, or more than the signal has.
+        """
         row = np.zeros(self.input_length, self.dtype)
         for signal, value in values.items():
-            start = self.input_offset(signal)
-            many = np.atleast_1d(np.asarray(value, self.dtype))
-            row[start : start + len(many)] = many
+            slots = self._input_slots(signal)
+            try:
+                many = np.atleast_1d(np.asarray(value)).astype(self.dtype, casting="same_kind")
+            except (TypeError, ValueError) as error:
+                raise BadInput(f"{signal}: {value!r} is no number and no list of numbers") from error
+            if many.ndim != 1 or len(many) > len(slots) or (len(many) < len(slots) and len(slots) != self.max_wheels):
+                raise BadInput(f"{signal}: {value!r} are not its numbers, of which there are {len(slots)}")
+            row[slots.start : slots.start + len(many)] = many
         return row
 
     def input(self, values: Mapping[str, float | Sequence[float]] | np.ndarray | None = None) -> Any:
         """A laconic_input; from names, or from a row of input numbers."""
         row = values if isinstance(values, np.ndarray) else self.input_row(values or {})
+        if row.shape != (self.input_length,):
+            raise BadInput(f"input: a row has {self.input_length} numbers, this array has the shape {row.shape}")
         held = self.ffi.new("laconic_input *")
         self.ffi.memmove(held, row.astype(self.dtype).tobytes(), self.ffi.sizeof("laconic_input"))
         return held

@@ -76,6 +76,14 @@ def test_every_file_and_name_that_the_page_mentions_exists():
         assert (PAGE.parent / link).exists(), link
 
 
+def test_every_c_name_that_the_page_mentions_stands_in_the_sources():
+    sources = [path for part in ("core_c", "fmu", "firmware_stub") for path in (ROOT / part).rglob("*.[ch]")]
+    words = set(re.findall(r"\w+", "\n".join(path.read_text(encoding="utf-8") for path in sources)))
+    names = re.findall(r"`((?:laconic|fmu|fmi\d|LACONIC)_?\w+)`", PAGE.read_text(encoding="utf-8"))
+    packages = {"laconic_fmu", "laconic_wire"}
+    assert len(names) > 20 and set(names) - words - packages == set()
+
+
 def test_every_page_can_be_reached_from_the_readme():
     seen, todo = set(), [ROOT / "README.md"]
     while todo:
