@@ -132,16 +132,16 @@ def _check_writable(option: str, path: Path, is_folder: bool) -> None:
         else:
             existing = next(each for each in (path.parent, *path.parent.parents, Path()) if each.exists())
             if not existing.is_dir():
-                raise BadInput(f"{option} {path}: cannot be written ({existing} is no folder); choose another place")
+                raise BadInput(f"{option} {path}: cannot be written ({existing} is no folder); choose another path")
     except (OSError, ValueError) as error:
         raise _cannot(path, error) from None
     if not os.access(existing, os.W_OK):
-        raise BadInput(f"{option} {path}: cannot be written ({existing} is read-only); choose another place")
+        raise BadInput(f"{option} {path}: cannot be written ({existing} is read-only); choose another path")
 
 
 def _cannot(path: Path, error: OSError | ValueError) -> BadInput:
     reason = reason_of(error) if isinstance(error, OSError) else str(error)
-    return BadInput(f"{path}: cannot be written ({reason}); choose another place")
+    return BadInput(f"{path}: cannot be written ({reason}); choose another path")
 
 
 @contextmanager

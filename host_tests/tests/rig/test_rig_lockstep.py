@@ -1,4 +1,4 @@
-"""Lockstep over a bus: the node is the core, bit for bit, and the scaled frames say so to half a last place."""
+"""Lockstep over a bus: the node is the core, bit for bit, and the scaled frames agree to half of their resolution."""
 
 from __future__ import annotations
 
