@@ -72,4 +72,9 @@ static inline laconic_status refuse(laconic_refusal *why, laconic_status status,
     return status;
 }
 
+/* The number at an offset in bytes of a struct. */
+static inline const real *number_at(const void *of, uint32_t offset) {
+    return (const real *)(const void *)((const unsigned char *)of + offset);
+}
+
 #endif

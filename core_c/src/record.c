@@ -1,11 +1,6 @@
 /* Steps along a schedule of inputs; records rows of chosen outputs and watches the grip. */
 #include "common.h"
 
-/* The number at an offset in bytes of a struct of numbers. */
-static const real *number_at(const void *numbers, uint32_t offset) {
-    return (const real *)(const void *)((const unsigned char *)numbers + offset);
-}
-
 static void set_signals(laconic_input *input, const laconic_schedule *schedule, const real *value) {
     for (int32_t k = 0; k < schedule->signal_count; k++)
         *(real *)(void *)((unsigned char *)input + schedule->signal[k]) = value[k];

@@ -45,8 +45,7 @@ static laconic_status check_numbers(const void *of, const checked_number *number
                                     uint8_t last, int32_t item, laconic_refusal *why) {
     for (size_t k = 0; k < count; k++) {
         if (numbers[k].rule < first || numbers[k].rule > last) continue;
-        const laconic_status status =
-            check_number(*(const real *)((const char *)of + numbers[k].offset), &numbers[k], item, why);
+        const laconic_status status = check_number(*number_at(of, numbers[k].offset), &numbers[k], item, why);
         if (status != LACONIC_OK) return status;
     }
     return LACONIC_OK;
