@@ -5,6 +5,7 @@ from __future__ import annotations
 import os
 import sys
 from pathlib import Path
+from typing import Any
 
 from laconic.errors import BadInput, nearest_of
 
@@ -29,6 +30,14 @@ def built(relative: str) -> Path:
     return path
 
 
+def as_path(name: str, given: Any) -> Path:
+    """A path from a text or path; BadInput names what was given for anything else."""
+    try:
+        return Path(given)
+    except TypeError:
+        raise BadInput(f"{name}: {given!r} is no path; give one as text or as a Path") from None
+
+
 def exists(path: Path) -> bool:
     """Whether it is there; no file has a name that is too long."""
     try:
@@ -44,7 +53,7 @@ def scene_names() -> list[str]:
 
 def named_scene(given: str | Path) -> Path | None:
     """The file of a scene by its path, or by its name among those that come with the project; None: there is none."""
-    path, named = Path(given), SCENE_DIR / f"{given}.toml"
+    path, named = as_path("scene", given), SCENE_DIR / f"{given}.toml"
     if exists(path):
         return path
     return named if path.name == str(given) and exists(named) else None

@@ -21,6 +21,7 @@ import numpy as np
 from cffi import FFI
 
 from laconic.core.fields import Field, fields_from
+from laconic.core.given import c_object, items, number, numbers, shown, table
 from laconic.core.plant import Plant
 from laconic.errors import BadInput, Refused, nearest_of
 from laconic.paths import built
@@ -112,30 +113,37 @@ class Core:
 
         Wheels beyond the core's array are only counted, so that the check refuses them.
         """
-        plain = {key: value for key, value in data.items() if key not in ("wheel", "support", "motor")}
-        known = [name for name, _ in self.ffi.typeof("laconic_vehicle").fields] + ["motor"]
-        if unknown := [key for key in plain if key not in known]:
-            raise BadInput(f"vehicle.{unknown[0]}: unknown key; {nearest_of(unknown[0], known)}")
-        wheels, supports = data.get("wheel", []), data.get("support", [])
+        parts = ("wheel", "support", "motor", "payload")
+        plain: dict[str, Any] = table(self, "vehicle", "vehicle", data, parts)
+        if payload := data.get("payload"):
+            plain["payload"] = table(self, "vehicle.payload", "vehicle.payload", payload)
         vehicle = self.ffi.new("laconic_vehicle *", plain)
+        wheels = list(items("vehicle.wheel", data.get("wheel", ())))
+        supports = list(items("vehicle.support", data.get("support", ())))
         vehicle.wheel_count, vehicle.support_count = len(wheels), len(supports)
-        for target, wheel in zip(vehicle.wheel, wheels, strict=False):
-            self._set_wheel(target, wheel)
-        for target, support in zip(vehicle.support, supports, strict=False):
-            for field in self.fields_of("vehicle.support[#]"):
-                setattr(target, field.key, support[field.key])
+        for target, (name, wheel) in zip(vehicle.wheel, wheels, strict=False):
+            self._set_wheel(target, name, wheel)
+        for target, (name, support) in zip(vehicle.support, supports, strict=False):
+            self._set_support(target, name, support)
         if motor := data.get("motor"):
-            self._fit_motor(vehicle, motor)
+            self._fit_motor(vehicle, table(self, "vehicle.motor", "vehicle.motor", motor))
         return vehicle
 
-    def _set_wheel(self, target: Any, wheel: Mapping[str, Any]) -> None:
-        kind = wheel["kind"]
+    def _set_wheel(self, target: Any, name: str, wheel: Mapping[str, Any]) -> None:
+        given = {"roller_rad": OMNI_ROLLER_RAD, **table(self, "vehicle.wheel[#]", name, wheel, ("kind",))}
+        kind = wheel.get("kind")
         if kind not in WHEEL_KINDS:
-            raise BadInput(f"vehicle.wheel.kind: there is no {kind!r}; {nearest_of(kind, WHEEL_KINDS)}")
-        number = getattr(self.lib, f"LACONIC_WHEEL_{WHEEL_KINDS[kind]}")
-        given = {"roller_rad": OMNI_ROLLER_RAD, **wheel, "kind": number}
-        for field in self.fields_of("vehicle.wheel[#]"):
-            setattr(target, field.key, given.get(field.key, 0))
+            raise BadInput(f"{name}.kind: there is no {kind!r}; {nearest_of(str(kind), WHEEL_KINDS)}")
+        target.kind = getattr(self.lib, f"LACONIC_WHEEL_{WHEEL_KINDS[kind]}")
+        for key, value in given.items():
+            setattr(target, key, value)
+
+    def _set_support(self, target: Any, name: str, support: Mapping[str, Any]) -> None:
+        given = table(self, "vehicle.support[#]", name, support)
+        for field in self.fields_of("vehicle.support[#]"):
+            if field.key not in given:
+                raise BadInput(f"{name}.{field.key}: is missing; give a number")
+            setattr(target, field.key, given[field.key])
 
     def _fit_motor(self, vehicle: Any, motor: Mapping[str, float]) -> None:
         why = self.why()
@@ -144,18 +152,18 @@ class Core:
     def check_vehicle(self, vehicle: Any) -> None:
         """Raises Refused unless every number of the vehicle is usable."""
         why = self.why()
-        self.check(self.lib.laconic_vehicle_check(vehicle, why), why)
+        self.check(self.lib.laconic_vehicle_check(c_object(self, "vehicle", vehicle), why), why)
 
     def prepare(self, vehicle: Any) -> Any:
         """The prepared laconic_model."""
         model, why = self.ffi.new("laconic_model *"), self.why()
-        self.check(self.lib.laconic_prepare(model, vehicle, why), why)
+        self.check(self.lib.laconic_prepare(model, c_object(self, "vehicle", vehicle), why), why)
         return model
 
     def matrices(self, vehicle: Any) -> Matrices:
         """Ξ, A, A⁻¹, C, Λ, λ."""
         found, why = self.ffi.new("laconic_matrices *"), self.why()
-        self.check(self.lib.laconic_matrices_of(found, vehicle, why), why)
+        self.check(self.lib.laconic_matrices_of(found, c_object(self, "vehicle", vehicle), why), why)
         return Matrices(
             self.numbers(found.wheel_rows, self.max_wheels, 3)[: vehicle.wheel_count],
             self.numbers(found.inertia, 3, 3), self.numbers(found.inverse_inertia, 3, 3),
@@ -191,6 +199,9 @@ class Core:
 
         Wheels that a list leaves out get 0. BadInput for what is no signal, no number, or more than the signal has.
         """
+        if not isinstance(values, Mapping):
+            raise BadInput(f"input: {shown(values)} is no mapping from signals to numbers; "
+                           "give one such as {\"voltage_V\": [1, 2]}")
         row = np.zeros(self.input_length, self.dtype)
         for signal, value in values.items():
             slots = self._input_slots(signal)
@@ -205,7 +216,7 @@ class Core:
 
     def input(self, values: Mapping[str, float | Sequence[float]] | np.ndarray | None = None) -> Any:
         """A laconic_input; from names, or from a row of input numbers."""
-        row = values if isinstance(values, np.ndarray) else self.input_row(values or {})
+        row = values if isinstance(values, np.ndarray) else self.input_row({} if values is None else values)
         if row.shape != (self.input_length,):
             raise BadInput(f"input: a row has {self.input_length} numbers, this array has the shape {row.shape}")
         held = self.ffi.new("laconic_input *")
@@ -216,29 +227,32 @@ class Core:
 
     def method(self, name: str) -> Any:
         """The laconic_method of that name."""
-        method = self.lib.laconic_method_by_name(name.encode())
-        if method == self.ffi.NULL:
-            raise BadInput(f"method: there is no {name!r}; {nearest_of(name, self.method_names)}")
-        return method
+        if name not in self.method_names:
+            raise BadInput(f"method: there is no {shown(name)}; {nearest_of(str(name), self.method_names)}")
+        return self.lib.laconic_method_by_name(name.encode())
 
     def plant(self, vehicle: Any, method: str, step_s: float, *, nu_rad_per_s: Sequence[float] = (0.0, 0.0, 0.0),
               x_m: float = 0.0, y_m: float = 0.0, heading_rad: float = 0.0) -> Plant:
         """A vehicle that stands at its start, ready to step."""
         start = self.ffi.new("laconic_start *", {
-            "nu_rad_per_s": [float(v) for v in nu_rad_per_s], "x_m": x_m, "y_m": y_m, "heading_rad": heading_rad})
+            "nu_rad_per_s": numbers("nu_rad_per_s", nu_rad_per_s, 3), "x_m": number("x_m", x_m),
+            "y_m": number("y_m", y_m), "heading_rad": number("heading_rad", heading_rad)})
         plant, why = self.ffi.new("laconic_plant *"), self.why()
-        self.check(self.lib.laconic_plant_start(plant, vehicle, self.method(method), step_s, start, why), why)
+        self.check(self.lib.laconic_plant_start(
+            plant, c_object(self, "vehicle", vehicle), self.method(method), number("step_s", step_s), start, why), why)
         return Plant(self, plant)
 
     def steps_in(self, interval_s: float, step_s: float) -> int:
         """The whole number of steps in an interval; Refused when it is none."""
         steps, why = self.ffi.new("uint64_t *"), self.why()
+        interval_s, step_s = number("interval_s", interval_s), number("step_s", step_s)
         self.check(self.lib.laconic_steps_in(interval_s, step_s, steps, why), why)
         return int(steps[0])
 
     def derivative(self, model: Any, nu_rad_per_s: Sequence[float] | np.ndarray, heading_rad: float, held: Any) -> Any:
         """The laconic_rates of (4.7) for Model Exchange and tests."""
         rates = self.ffi.new("laconic_rates *")
-        nu = self.ffi.new("laconic_real[3]", [float(v) for v in nu_rad_per_s])
-        self.lib.laconic_derivative(rates, model, nu, heading_rad, held)
+        nu = self.ffi.new("laconic_real[3]", numbers("nu_rad_per_s", nu_rad_per_s, 3))
+        self.lib.laconic_derivative(rates, c_object(self, "model", model), nu, number("heading_rad", heading_rad),
+                                    c_object(self, "input", held))
         return rates

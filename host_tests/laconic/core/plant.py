@@ -6,7 +6,9 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
+from laconic.core.given import c_object, number, step_count
 from laconic.core.schedule import Schedule
+from laconic.errors import BadInput
 
 if TYPE_CHECKING:
     from laconic.core import Core
@@ -40,27 +42,32 @@ class Plant:
     def run(self, held: Any, steps: int = 1) -> None:
         """Steps with the input held; Refused leaves the state before the refused step."""
         why = self.core.why()
+        held, steps = c_object(self.core, "input", held), step_count("steps", steps)
         self.core.check(self.core.lib.laconic_plant_run(self.c, held, steps, why), why)
 
     def run_sampled(self, samples: np.ndarray) -> None:
         """One step per samples[k] = rows of input numbers at the step's start, middle and end."""
-        every_signal = range(self.core.input_length)
-        self.follow(Schedule(self.core, every_signal, samples, first_step=self.steps), self.steps + len(samples))
+        width = self.core.input_length
+        if np.ndim(samples) != 3 or np.shape(samples)[1:] != (3, width):
+            raise BadInput(f"samples: has the shape {np.shape(samples)}; give (steps, 3, {width})")
+        self.follow(Schedule(self.core, range(width), samples, first_step=self.steps), self.steps + len(samples))
 
     def follow(self, schedule: Schedule, until_step: int, recorder: Recorder | None = None) -> None:
         """Steps along a schedule, recorded on the way; Refused leaves the state before the refused step."""
         why = self.core.why()
+        until_step = step_count("until_step", until_step)
         record = recorder.c if recorder else self.core.ffi.NULL
         self.core.check(self.core.lib.laconic_plant_follow(self.c, schedule.c, until_step, record, why), why)
 
     def set_step(self, step_s: float) -> None:
         """Another step size from here on."""
         why = self.core.why()
-        self.core.check(self.core.lib.laconic_plant_set_step(self.c, step_s, why), why)
+        self.core.check(self.core.lib.laconic_plant_set_step(self.c, number("step_s", step_s), why), why)
 
     def change(self, vehicle: Any) -> None:
         """Another payload, motor … while it moves; the wheels must stay as they are."""
         why = self.core.why()
+        vehicle = c_object(self.core, "vehicle", vehicle)
         self.core.check(self.core.lib.laconic_plant_change(self.c, vehicle, why), why)
         self._contact = None
 
@@ -70,7 +77,7 @@ class Plant:
 
     def restore(self, state: Any, steps: int) -> None:
         """Back to a saved state."""
-        self.c.state, self.c.steps = state[0], steps
+        self.c.state, self.c.steps = c_object(self.core, "state", state)[0], step_count("steps", steps)
 
     # ---- outputs
 
@@ -113,7 +120,7 @@ class Plant:
 
     def wheel_torques(self, held: Any) -> np.ndarray:
         """Torque on each axle: motor and applied [N·m]."""
-        return self._per_wheel(self.core.lib.laconic_wheel_torques, held)
+        return self._per_wheel(self.core.lib.laconic_wheel_torques, c_object(self.core, "input", held))
 
     def wheel_angles(self) -> np.ndarray:
         """χ [rad]."""
@@ -143,5 +150,6 @@ class Plant:
     def reactions(self, held: Any) -> Any:
         """The laconic_reactions of this state and input."""
         found = self.core.ffi.new("laconic_reactions *")
+        held = c_object(self.core, "input", held)
         self.core.lib.laconic_reactions_of(found, self.contact, self._at("model"), self._at("state"), held)
         return found

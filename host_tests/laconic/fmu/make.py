@@ -11,12 +11,13 @@ from typing import Any
 from laconic.core import load
 from laconic.errors import BadInput
 from laconic.outputs import whole_file
-from laconic.paths import SOURCE_DIR, built
-from laconic.scene import METHODS, Scene
+from laconic.paths import SOURCE_DIR, as_path, built
+from laconic.scene import METHODS, Scene, check_scene
 from laconic_fmu.archive import Content, Variant, scene_fmu
 from laconic_fmu.page import vehicle_parts
 
 DESCRIPTION = SOURCE_DIR / "modelDescription.xml"
+VERSIONS = (2, 3)  # of FMI
 
 
 def generic_fmu(version: int) -> Path:
@@ -42,15 +43,19 @@ def content_of(scene: Scene, name: str, text: str, values: dict[str, Any]) -> Co
     return Content(name, text, values, scene.run.duration_s, scene.run.step_s)
 
 
-def make_fmu(scene: Scene, out: Path, *, version: int, scalar: bool = False, sources: bool = True,
+def make_fmu(scene: Scene, out: str | Path, *, version: int, scalar: bool = False, sources: bool = True,
              enumerations: bool = True) -> Path:
     """Writes the scene's FMU; BadInput when the scene has no such FMU."""
+    check_scene(scene)
+    if version not in VERSIONS:
+        raise BadInput(f"version: there is no FMI {version!r}; give {' or '.join(map(str, VERSIONS))}")
+    path = as_path("out", out)
     if scene.wheel_count == 0 and version == 3 and not scalar:
         raise BadInput(f"{scene.path}: vehicle.wheel: a vehicle without wheels has no arrays; use --scalar or --fmi 2")
     scene.plant(load("double"))  # refuses a scene that cannot start, naming the field
     content = content_of(scene, scene.name, f"Dynamics of a wheeled robot; its numbers: {scene.source}",
                          start_values(scene))
-    with whole_file(out) as fresh:
+    with whole_file(path) as fresh:
         scene_fmu(generic_fmu(version), DESCRIPTION, content, fresh,
                   Variant(version, scalar, enumerations, sources), vehicle_parts)
-    return out
+    return path

@@ -218,18 +218,7 @@ def read_run(table: Table, methods: Sequence[str], reals: Sequence[str]) -> dict
 
 def read_outputs(table: Table, wheel_count: int, duration_s: float) -> dict[str, Any]:
     """`[outputs]`: a signal without its index stands for all of them."""
-    signals: list[str] = []
-    for signal in table.texts("signals", ()):
-        if "[" not in signal and signal in OUTPUTS_PER_WHEEL:
-            signals += [f"{signal}[{i}]" for i in range(1, wheel_count + 1)]
-        elif OUTPUT_LENGTHS.get(signal):
-            signals += [f"{signal}[{i}]" for i in range(1, OUTPUT_LENGTHS[signal] + 1)]
-        else:
-            check_signal(table, "signals", signal, OUTPUT_LENGTHS, OUTPUTS_PER_WHEEL, wheel_count)
-            signals.append(signal)
-    for number, signal in enumerate(signals):
-        if signal in signals[:number]:
-            table.fail("signals", f"names {signal} twice; keep one of them")
+    signals = read_signals(table, OUTPUT_LENGTHS, OUTPUTS_PER_WHEEL, wheel_count)
     every = table.number("every_s", None)
     if every is not None and every <= 0:
         table.fail("every_s", f"is {every:g}; give a number above zero")
@@ -238,7 +227,24 @@ def read_outputs(table: Table, wheel_count: int, duration_s: float) -> dict[str,
     if table.has("signals") and not signals:
         table.fail("signals", "is empty; name some, or take it out for the usual ones")
     table.done()
-    return {"signals": tuple(signals), "every_s": every}
+    return {"signals": signals, "every_s": every}
+
+
+def read_signals(table: Table, lengths: dict[str, int], per_wheel: Sequence[str], wheel_count: int) -> tuple[str, ...]:
+    """The list `signals`; none is named twice."""
+    signals: list[str] = []
+    for signal in table.texts("signals", ()):
+        if "[" not in signal and signal in per_wheel:
+            signals += [f"{signal}[{i}]" for i in range(1, wheel_count + 1)]
+        elif lengths.get(signal):
+            signals += [f"{signal}[{i}]" for i in range(1, lengths[signal] + 1)]
+        else:
+            check_signal(table, "signals", signal, lengths, per_wheel, wheel_count)
+            signals.append(signal)
+    for number, signal in enumerate(signals):
+        if signal in signals[:number]:
+            table.fail("signals", f"names {signal} twice; keep one of them")
+    return tuple(signals)
 
 
 def read_rig(table: Table) -> dict[str, Any]:

@@ -7,7 +7,7 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass, field, replace
+from dataclasses import asdict, dataclass, field, replace
 from pathlib import Path
 from typing import Any
 
@@ -17,8 +17,8 @@ from laconic.errors import BadInput, Refused
 from laconic.paths import scene_path
 from laconic.scene.drive import Drive, Input, check_resolved, step_remedy
 from laconic.scene.names import in_file
-from laconic.scene.reader import read_parts
-from laconic.scene.table import read_toml
+from laconic.scene.reader import read_parts, read_run
+from laconic.scene.table import Table, plain, read_toml
 
 MOST_STEPS = 9e15  # as laconic_steps_in
 METHODS = ("auto", "rk4", "exponential-kahan", "exponential-kahan-4", "exact-flow", "exact-flow-4", "taylor-8")
@@ -103,9 +103,10 @@ class Scene:
 
     def with_run(self, *, method: str | None = None, step_s: float | None = None, real: str | None = None,
                  duration_s: float | None = None) -> Scene:
-        """The scene with some of `[run]` replaced."""
+        """The scene with some of `[run]` replaced; what the file could not have there is BadInput as if it had."""
         given: dict[str, Any] = {"method": method, "step_s": step_s, "real": real, "duration_s": duration_s}
-        return replace(self, run=replace(self.run, **{k: v for k, v in given.items() if v is not None}))
+        entries = asdict(self.run) | {key: plain(value) for key, value in given.items() if value is not None}
+        return replace(self, run=Run(**read_run(Table(self.path, "run", entries), METHODS, REALS)))
 
     def core(self) -> Core:
         """The core in the scene's scalar type."""
@@ -183,6 +184,13 @@ class Scene:
         steps, instants = self.steps(), self.instants()
         check_resolved(self.path, self.inputs, self.run.step_s, instants)
         return Drive.on_grid(self.path, self.inputs, self.run.step_s, steps, instants)
+
+
+def check_scene(given: Any) -> Scene:
+    """A scene as it is; BadInput for a path, a name or anything else."""
+    if not isinstance(given, Scene):
+        raise BadInput(f"scene: {given!r} is no Scene; give read_scene(path or name)")
+    return given
 
 
 def read_scene(given: str | Path) -> Scene:

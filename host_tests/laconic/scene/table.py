@@ -179,6 +179,11 @@ def _line_of(text: str, error: Exception) -> str:
     return f", {_short(lines[int(found[1]) - 1].strip())!r}"
 
 
+def plain(value: Any) -> Any:
+    """A value as TOML would give it: numpy's scalars as Python's."""
+    return value.item() if hasattr(value, "item") and not getattr(value, "shape", ()) else value
+
+
 def _float(value: Any) -> Any:
     if value is None:
         return None

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import time
+from collections.abc import Sequence
 from dataclasses import dataclass
 
 import numpy as np
@@ -12,9 +13,17 @@ from laconic.core.plant import Plant
 from laconic.core.recording import Recorder
 from laconic.errors import BadInput, Refused
 from laconic.progress import Advance, progress_bar
-from laconic.scene import Scene
+from laconic.scene import Scene, check_scene
 from laconic.scene.drive import Drive
-from laconic.scene.reader import LENGTHS, OUTPUT_LENGTHS, OUTPUTS_PER_WHEEL, PER_WHEEL, signal_names
+from laconic.scene.reader import (
+    LENGTHS,
+    OUTPUT_LENGTHS,
+    OUTPUTS_PER_WHEEL,
+    PER_WHEEL,
+    read_signals,
+    signal_names,
+)
+from laconic.scene.table import Table
 
 USUAL = ("nu_rad_per_s", "x_m", "y_m", "heading_rad", "velocity_body_m_per_s", "yaw_rate_rad_per_s",
          "wheel_speed_rad_per_s", "wheel_angle_rad", "energy_J")
@@ -75,11 +84,19 @@ def advance_plant(plant: Plant, drive: Drive, first: int, count: int, recorder: 
         plant.follow(schedule.from_origin(origin), origin + first, recorder)
 
 
-def simulate(scene: Scene, signals: tuple[str, ...] = (), progress: bool = False) -> Trajectory:
+def kept_signals(scene: Scene, given: Sequence[str]) -> tuple[str, ...]:
+    """Those of a run: the given outputs and inputs, a signal without its index standing for all of them."""
+    table = Table(scene.path, "", {"signals": given})
+    lengths, per_wheel = OUTPUT_LENGTHS | LENGTHS, (*OUTPUTS_PER_WHEEL, *PER_WHEEL)
+    return read_signals(table, lengths, per_wheel, scene.wheel_count) or wanted_signals(scene)
+
+
+def simulate(scene: Scene, signals: Sequence[str] = (), progress: bool = False) -> Trajectory:
     """Runs a scene from its start to its end; Refused names file and time when a step is refused.
 
     Keeps the given signals (outputs, or inputs), else the scene's outputs, else the default ones.
     """
+    kept = kept_signals(check_scene(scene), signals)
     core, steps = scene.core(), scene.steps()
     every = 1 if scene.outputs.every_s is None else scene.steps_in("outputs.every_s", scene.outputs.every_s)
     if steps / every > MOST_ROWS:
@@ -87,7 +104,7 @@ def simulate(scene: Scene, signals: tuple[str, ...] = (), progress: bool = False
                        f"for {MOST_ROWS} or fewer")
     plant, drive = scene.plant(core), scene.drive()
     ticks = np.append(np.arange(0, steps, every), steps)  # the last row is the end of the run, on the grid or not
-    recorder = Recorder(plant, signals or wanted_signals(scene), every, len(ticks), watched=is_watched(scene))
+    recorder = Recorder(plant, kept, every, len(ticks), watched=is_watched(scene))
     began = time.perf_counter()
     with progress_bar(scene.name, steps if progress else 0, forecasts=progress) as moved:
         run_window(scene, plant, drive, 0, steps, moved, recorder)

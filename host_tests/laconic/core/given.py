@@ -1,0 +1,90 @@
+"""What a Python program gives to the core: what does not fit is refused by its name, before cffi speaks of C types."""
+
+from __future__ import annotations
+
+import math
+import operator
+from collections.abc import Iterator, Mapping, Sequence
+from typing import TYPE_CHECKING, Any
+
+from laconic.errors import BadInput, nearest_of
+
+if TYPE_CHECKING:
+    from laconic.core import Core
+
+MAKERS = {"input": "core.input({…})", "vehicle": "core.vehicle({…})", "model": "core.prepare(vehicle)",
+          "state": "plant.save()"}
+MOST_STEPS = 2**64 - 1
+LONGEST_SHOWN = 60  # of a value in a message
+
+
+def shown(value: Any) -> str:
+    """A value in a message."""
+    text = repr(value)
+    return text if len(text) <= LONGEST_SHOWN else f"{text[:LONGEST_SHOWN]}…"
+
+
+def number(name: str, value: Any) -> float:
+    """A number; one beyond all floats becomes infinite, which the core refuses."""
+    try:
+        return float("no number" if isinstance(value, str | bytes) else value)
+    except OverflowError:
+        return math.inf if value > 0 else -math.inf
+    except (TypeError, ValueError):
+        raise BadInput(f"{name}: {shown(value)} is no number; give one") from None
+
+
+def numbers(name: str, values: Any, count: int) -> list[float]:
+    """So many numbers."""
+    try:
+        many = list(values)
+    except TypeError:
+        many = []
+    if len(many) != count or isinstance(values, str):
+        raise BadInput(f"{name}: {shown(values)} is no list of {count} numbers; give one")
+    return [number(f"{name}[{item}]", value) for item, value in enumerate(many, start=1)]
+
+
+def step_count(name: str, value: Any) -> int:
+    """A whole number of steps."""
+    try:
+        count = operator.index(value)
+    except TypeError:
+        raise BadInput(f"{name}: {shown(value)} is no whole number (int); give one, such as 100") from None
+    if not 0 <= count <= MOST_STEPS:
+        raise BadInput(f"{name}: {count} steps cannot be taken; give a number from 0 to {MOST_STEPS}")
+    return count
+
+
+def c_object(core: Core, kind: str, given: Any) -> Any:
+    """A pointer to laconic_`kind` as it is; anything else, also one of the other scalar type, is BadInput."""
+    ffi = core.ffi
+    if not isinstance(given, ffi.CData) or ffi.typeof(given) is not ffi.typeof(f"laconic_{kind} *"):
+        raise BadInput(f"{kind}: {shown(given)} is no laconic_{kind} of this core; make it with {MAKERS[kind]}")
+    return given
+
+
+def table(core: Core, path: str, name: str, given: Any, others: Sequence[str] = ()) -> dict[str, float | bool]:
+    """The numbers of one table of a vehicle by the core's list of fields; `others` are keys that the caller reads.
+
+    BadInput names a key that is unknown or that holds no number.
+    """
+    if not isinstance(given, Mapping):
+        raise BadInput(f"{name}: {shown(given)} is no table; give a mapping from keys to numbers")
+    fields = {field.key: field for field in core.fields_of(path)}
+    known = [*fields, *others]
+    if unknown := [key for key in given if key not in known]:
+        raise BadInput(f"{name}.{unknown[0]}: unknown key; {nearest_of(str(unknown[0]), known)}")
+    found: dict[str, float | bool] = {}
+    for key in given:
+        if key not in others:
+            value = number(f"{name}.{key}", given[key])
+            found[key] = bool(value) if fields[key].kind == "FLAG" else value
+    return found
+
+
+def items(name: str, given: Any) -> Iterator[tuple[str, Any]]:
+    """The tables of a list with their names, numbered from 1."""
+    if isinstance(given, str | Mapping) or not isinstance(given, Sequence):
+        raise BadInput(f"{name}: {shown(given)} is no list; give a list of tables")
+    return ((f"{name}[{item}]", each) for item, each in enumerate(given, start=1))

@@ -1,0 +1,90 @@
+"""What a Python program gives wrongly to the public interface is refused in one line that names it and the remedy."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+import pytest
+
+import laconic
+from laconic.errors import BadInput
+
+ROBOT = {"mass_kg": 1.0, "yaw_inertia_kgm2": 0.1, "wheel_radius_m": 0.05}
+
+
+def scene() -> Any:
+    return laconic.read_scene("s1")
+
+
+def core() -> Any:
+    return laconic.load_core("double")
+
+
+def plant() -> Any:
+    return core().plant(core().vehicle(ROBOT), "rk4", 0.01)
+
+
+WRONG: list[tuple[Callable[[], Any], str]] = [
+    (lambda: scene().with_run(step_s=0), "s1.toml: run.step_s: is 0; give a number above zero"),
+    (lambda: scene().with_run(step_s=float("nan")), "s1.toml: run.step_s: is nan; give a finite number"),
+    (lambda: scene().with_run(duration_s="3"), 's1.toml: run.duration_s: is the text "3", not a number'),
+    (lambda: scene().with_run(method="nope"), "s1.toml: run.method: there is no 'nope'; known are auto"),
+    (lambda: scene().with_run(real="dobule"), "s1.toml: run.real: there is no 'dobule'; did you mean double?"),
+    (lambda: laconic.simulate(scene(), ["nope"]), "s1.toml: signals: there is no signal 'nope'"),
+    (lambda: laconic.simulate(scene(), "x_m"), 's1.toml: signals: is the text "x_m", not a list'),  # type: ignore
+    (lambda: laconic.simulate(scene(), ["x_m", "x_m"]), "s1.toml: signals: names x_m twice"),
+    (lambda: laconic.simulate("s1"), "scene: 's1' is no Scene; give read_scene("),  # type: ignore[arg-type]
+    (lambda: laconic.read_scene(None), "scene: None is no path"),  # type: ignore[arg-type]
+    (lambda: laconic.make_fmu("s1", "s1.fmu", version=3), "scene: 's1' is no Scene"),  # type: ignore[arg-type]
+    (lambda: laconic.make_fmu(scene(), "s1.fmu", version=4), "version: there is no FMI 4; give 2 or 3"),
+    (lambda: laconic.make_fmu(scene(), None, version=3), "out: None is no path"),  # type: ignore[arg-type]
+    (lambda: plant().run(core().input(), 2.5), "steps: 2.5 is no whole number"),
+    (lambda: plant().run(core().input(), -1), "steps: -1 steps cannot be taken"),
+    (lambda: plant().run({"voltage_V": [1]}), "input: {'voltage_V': [1]} is no laconic_input of this core; make it "
+                                              "with core.input("),
+    (lambda: plant().run(laconic.load_core("single").input()), "is no laconic_input of this core"),
+    (lambda: plant().run_sampled(np.zeros((3, 3))), "samples: has the shape (3, 3); give (steps, 3, "),
+    (lambda: plant().set_step("x"), "step_s: 'x' is no number"),
+    (lambda: plant().change(ROBOT), "is no laconic_vehicle of this core; make it with core.vehicle("),
+    (lambda: plant().restore(None, 3), "state: None is no laconic_state of this core; make it with plant.save()"),
+    (lambda: core().plant(ROBOT, "rk4", 0.01), "is no laconic_vehicle of this core"),
+    (lambda: core().plant(core().vehicle(ROBOT), None, 0.01), "method: there is no None"),
+    (lambda: core().plant(core().vehicle(ROBOT), "rk4", 0.01, nu_rad_per_s=(1, 2)), "nu_rad_per_s: (1, 2) is no list"),
+    (lambda: core().input([1, 2]), "input: [1, 2] is no mapping from signals to numbers"),
+    (lambda: core().vehicle([1]), "vehicle: [1] is no table"),
+    (lambda: core().vehicle({"mass_kg": "1"}), "vehicle.mass_kg: '1' is no number"),
+    (lambda: core().vehicle({"wheel": {"x_m": 1}}), "vehicle.wheel: {'x_m': 1} is no list"),
+    (lambda: core().vehicle({"wheel": [{}]}), "vehicle.wheel[1].kind: there is no None; known are fixed"),
+    (lambda: core().vehicle({"wheel": [{"kind": "omni", "xm": 1}]}), "vehicle.wheel[1].xm: unknown key; did you mean"),
+    (lambda: core().vehicle({"support": [{"x_m": 1}]}), "vehicle.support[1].y_m: is missing; give a number"),
+    (lambda: core().vehicle({"payload": {"mass": 1}}), "vehicle.payload.mass: unknown key; did you mean mass_kg?"),
+    (lambda: core().vehicle({"motor": {"gears": 1}}), "vehicle.motor.gears: unknown key"),
+]
+
+
+@pytest.mark.parametrize("call, message", WRONG, ids=[message for _, message in WRONG])
+def test_a_wrong_argument_is_refused_in_one_line_by_its_name(call: Callable[[], Any], message: str) -> None:
+    with pytest.raises(BadInput) as refused:
+        call()
+    assert message in str(refused.value)
+
+
+def test_numbers_of_numpy_are_numbers() -> None:
+    run = scene().with_run(step_s=np.float32(0.25), duration_s=np.int64(3)).run
+    assert (run.step_s, run.duration_s) == (0.25, 3.0)
+    one = plant()
+    one.run(core().input(), np.uint8(3))
+    assert one.steps == 3
+
+
+def test_a_signal_without_its_index_stands_for_all_of_them() -> None:
+    found = laconic.simulate(scene().with_run(duration_s=0.1), ["x_m", "nu_rad_per_s", "voltage_V"]).columns
+    assert [*found][:4] == ["x_m", "nu_rad_per_s[1]", "nu_rad_per_s[2]", "nu_rad_per_s[3]"]
+    assert len(found) == 4 + scene().wheel_count
+
+
+def test_an_fmu_is_written_to_a_path_that_is_text(tmp_path: Path) -> None:
+    assert laconic.make_fmu(scene(), str(tmp_path / "s1.fmu"), version=2).stat().st_size > 1000
