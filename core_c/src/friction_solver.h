@@ -1,0 +1,51 @@
+/* The convex problem of one step on ground with friction. It knows wheels by their rows only, not vehicles.
+ *
+ * Unknowns are the body's three speeds ν and the speed s_i of each wheel. Each contact slips by two numbers, both linear
+ * in them: x_i = along·ν − rim_along s along the roller axis, and k (across·ν − rim_across s) across it, k the roller's
+ * drag. The speeds after the step minimise
+ *
+ *     ½|ν − ν*|² + Σ_i [ ½ j (s − s*)² + V(s) + ½ viscous s² + axle |s| + grip |slip| ],     V' = −motor impulse
+ *
+ * ν*, s* being the speeds that all other forces would lead to. The minimum exists and is unique. All terms stand in units
+ * of the body's energy M R²; speeds in rad/s. */
+#ifndef LACONIC_FRICTION_SOLVER_H
+#define LACONIC_FRICTION_SOLVER_H
+
+#include "vector.h"
+
+/* What stays the same from step to step. The caller fills the first part, laconic_friction_prepare() the second. */
+typedef struct friction_wheel {
+    real along[3], across[3];     /* ν → velocity of the contact point over R, along u_i and w_i = e_z × u_i */
+    real rim_along, rim_across;   /* R_i sin γ / R, R_i cos γ / R */
+    real inertia;                 /* j = J_i / (M R²) > 0 */
+    real drag;                    /* k, from 0 to 1; 1 for a fixed wheel */
+    vector row[2];                /* along, k across */
+    real rim[2];                  /* rim_along, k rim_across */
+    real inverse_mass;            /* W: by how much a unit impulse at the contact changes the slip, at most */
+    real rolling[2], rim_squared; /* direction of rim[] and its square */
+    real lateral_mass;            /* 1 / |rows across `rolling`|² */
+    real row_mass[2];             /* 1 / |row|² */
+} friction_wheel;
+
+/* One wheel in one step, all but the speed as impulses: force times step. */
+typedef struct friction_load {
+    real grip; /* h μN / (M R) >= 0; LACONIC_REAL_MAX: the contact is rigid */
+    real axle; /* h T / (M R²) >= 0: dry friction of the axle */
+    real drive, drive_slope,
+        drive_limit; /* motor: drive − drive_slope s, cut to ±drive_limit (LACONIC_REAL_MAX: not) */
+    real viscous;    /* >= 0: −viscous s beside the motor's */
+    real free_speed; /* s* */
+} friction_load;
+
+void laconic_friction_prepare(friction_wheel *wheel);
+
+/* Finds nu[3] and speed[count], and the impulses that the contacts give to the ground: |impulse[i]| <= grip, the robot
+ * gets −impulse[i][0] along u_i, −k impulse[i][1] along w_i, and the wheel rim·impulse. On entry all three hold a guess: the
+ * values of the step before, or 0. Returns the number of passes, or 0 if it refuses: not converged within
+ * FRICTION_MOST_PASSES or not finite, and then the contents of nu, speed and impulse mean nothing. count is at most
+ * LACONIC_MAX_WHEELS. Accepted results have a residual of at most 1e-9 (1e-5 in single) of the size of (ν*, s* + motor/j). */
+#define FRICTION_MOST_PASSES 15
+int32_t laconic_friction_solve(const friction_wheel wheels[], const friction_load loads[], int32_t count,
+                               const real free_nu[3], real nu[3], real speed[], real impulse[][2]);
+
+#endif
