@@ -32,9 +32,10 @@ RARE_AND_OPAQUE half_angle large_half_angle(real z, real along, real across) {
     return a;
 }
 
-/* δ, corrected along ζ + δ so that the rotation keeps the length: |ζ + δ|² − |ζ|² = δ·(2ζ + δ) must be 0. */
-RARE_AND_OPAQUE vector length_kept(vector zeta, vector delta) {
-    const vector end = plus(zeta, delta);
+/* δ, corrected along ζ + δ so that the rotation keeps the length: |ζ + δ|² − |ζ|² = δ·(2ζ + δ) must be 0. ζ is given by
+ * its components: as a struct it would be written to memory for this call in every step, also where none is made. */
+RARE_AND_OPAQUE vector length_kept(real zeta_x, real zeta_y, real zeta_z, vector delta) {
+    const vector zeta = {zeta_x, zeta_y, zeta_z}, end = plus(zeta, delta);
     const real excess = dot(delta, plus(zeta, end)), end_square = square(end);
     if (!(end_square > R(0))) return delta;
     return minus(delta, scaled(R(0.5) * excess / end_square, end));
@@ -48,7 +49,7 @@ INLINE half_angle half_angle_after(const laconic_model *m, real half_step, vecto
     const real across = half_step * dot(vec(m->spin_gain), zeta);
     const real curve = half_step * dot(vec(m->spin_curve), zeta);
     const real z = along * curve - across * across;
-    if (z <= TANGENT_SMALL && z >= -TANGENT_SMALL) {
+    if (magnitude(z) <= TANGENT_SMALL) {
         const real tangent = poly_tangent(z);
         const half_angle a = {along * tangent, R(1) - across * tangent};
         return a;
@@ -66,7 +67,7 @@ INLINE vector free_flow(const laconic_model *m, real half_step, vector zeta) {
         scaled(factor, plus(scaled(a.denominator, zeta_cross_w), scaled(a.numerator, cross(zeta_cross_w, w))));
     /* tan²(ψ/2) is 1/16 at ψ = 0.49: up to there |δ| is at most half of |ζ|, and rounding δ costs less than rounding
      * ζ⁺. */
-    return aside > R(0.0625) * ahead ? length_kept(zeta, delta) : delta;
+    return aside > R(0.0625) * ahead ? length_kept(zeta.x, zeta.y, zeta.z, delta) : delta;
 }
 
 /* The exact increment under damping and forcing, without the gyroscopic term. */

@@ -23,9 +23,9 @@ bool laconic_growth_is_forced(const laconic_model *model, const laconic_state *s
     const vector zeta = zeta_of(state);
     const laconic_heading *heading = &state->heading;
     const real yaw_change = step_s * dot(vec(model->yaw_rate_of_zeta), by->mean);
-    const vector start = forcing_after_yaw(samples->start, heading, R(0));
-    const vector middle = forcing_after_yaw(samples->middle, heading, R(0.5) * yaw_change);
-    const vector end = forcing_after_yaw(samples->end, heading, yaw_change);
+    const laconic_forcing *const forcing[3] = {samples->start, samples->middle, samples->end};
+    vector b[3];
+    for (int i = 0; i < 3; i++) b[i] = forcing_after_yaw(forcing[i], heading, R(0.5) * (real)i * yaw_change);
     const real before = square(zeta), gain = R(2) * dot(zeta, by->delta) + square(by->delta);
-    return gain - R(2) * step_s * work(start, middle, end, by) <= ENERGY_TOLERANCE * (R(2) * before + gain);
+    return gain - R(2) * step_s * work(b[0], b[1], b[2], by) <= ENERGY_TOLERANCE * (R(2) * before + gain);
 }

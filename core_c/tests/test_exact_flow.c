@@ -110,9 +110,9 @@ static void more_turns_in_a_step_than_can_be_counted_are_refused(void) {
 static void a_rotation_by_a_large_angle_keeps_the_length(void) {
     const vector zeta = {REAL(3), REAL(4), REAL(0)};
     const vector off = {REAL(-6), REAL(0.001), REAL(0)}; /* −3, 4.001: longer than 5 */
-    const vector turned = plus(zeta, length_kept(zeta, off));
+    const vector turned = plus(zeta, length_kept(zeta.x, zeta.y, zeta.z, off));
     ASSERT_NEAR(1e-6, 5.0, sqrt((double)square(turned)));
-    TEST_ASSERT_TRUE(length_kept(none, none).x == 0);
+    TEST_ASSERT_TRUE(length_kept(REAL(0), REAL(0), REAL(0), none).x == 0);
 }
 
 static void an_infinite_angle_gives_no_finite_result(void) {
