@@ -20,7 +20,8 @@ SOFT_FLOAT = re.compile(r"__(aeabi_|[a-z]+(?:[sdt]f|[sd]i)\d?[a-z0-9]*$)")  # li
 # Allowed where plain C is the alternative: |x| as one instruction (a call would show in the objects), and attributes
 # that force or forbid inlining (noipa also forbids all conclusions of gcc from one function about another)
 FORBIDDEN_WORDS = re.compile(
-    r"\b(?:__builtin_(?!fabsf?\b)\w+|__attribute__(?!\(\((?:always_inline|noinline|noipa)\)\))|asm|__asm__|_Pragma|static_assert)\b"
+    r"\b(?:__builtin_(?!fabsf?\b)\w+|__attribute__(?!\(\((?:always_inline|noinline|noipa)\)\))"
+    r"|asm|__asm__|_Pragma|static_assert)\b"
     r"|#\s*pragma"
 )
 WRITABLE = re.compile(r"^\s*\d+\s+(\.(?:data|bss|tdata|tbss|sdata|sbss|lbss|ldata)\S*|COMMON)\s+([0-9a-f]+)\s")

@@ -8,6 +8,7 @@ from pathlib import Path
 
 from . import archive, fmi2
 from .description import parse, read, token_in, token_of, with_token
+from .field_list import missing_variable
 from .package import pack
 from .tables import tables
 
@@ -19,6 +20,8 @@ def make_tables(arguments: argparse.Namespace) -> None:
         sys.exit(f"{arguments.description}: its token does not belong to its text any more: "
                  f"python -m laconic_fmu renew-token {arguments.description}")
     description = parse(text_3)
+    if arguments.fields and (fault := missing_variable(arguments.fields, arguments.description, description)):
+        sys.exit(fault)
     text_2 = fmi2.describe(description, [*arguments.sources, "fmi2.c"])
     out: Path = arguments.out
     out.mkdir(parents=True, exist_ok=True)
@@ -62,6 +65,7 @@ def main() -> None:
     command.add_argument("description", type=Path)
     command.add_argument("--out", type=Path, required=True)
     command.add_argument("--sources", nargs="*", default=[])
+    command.add_argument("--fields", type=Path, help="the core's list of fields, each of which must be a variable")
     command.set_defaults(run=make_tables)
     command = commands.add_parser("pack")
     command.add_argument("--version", type=int, choices=(2, 3), required=True)

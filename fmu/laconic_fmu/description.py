@@ -159,7 +159,8 @@ def number(value: float, tag: str) -> str:
 
 def as_double(text: str) -> float:
     """A start value as the double that the FMU keeps it in."""
-    return {"true": 1.0, "false": 0.0}.get(text) if text in ("true", "false") else float(text)  # type: ignore[return-value]
+    truths = {"true": 1.0, "false": 0.0}
+    return truths[text] if text in truths else float(text)
 
 
 def start_values(description: Description) -> list[tuple[int, float]]:

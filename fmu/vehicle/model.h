@@ -26,6 +26,18 @@
 #define FMU_GROUPS_OF_INPUT (FMU_GROUP_TORQUES | FMU_GROUP_GROUND | FMU_GROUP_RATES)
 #define FMU_GROUPS_OF_CONTINUOUS_STATES (FMU_GROUP_MOTION | FMU_GROUP_ANGLES)
 
+/* The continuous states and the outputs: values as members of fmu_model, derivatives as members of fmu_tangent. */
+#define FMU_MOVING_MEMBERS \
+    double nu[3], x_m, y_m, heading_rad; \
+    double wheel_angle_rad[LACONIC_MAX_WHEELS]; \
+    laconic_pose pose; \
+    double velocity_m_per_s[2], yaw_rate_rad_per_s; \
+    double wheel_speed_rad_per_s[LACONIC_MAX_WHEELS]; \
+    double wheel_torque_Nm[LACONIC_MAX_WHEELS]; \
+    double energy_J; \
+    laconic_reactions ground; \
+    laconic_rates rates
+
 typedef struct fmu_model {
     bool start_needed;   /* parameters were set since the last start          */
     bool change_needed;  /* tunable parameters were set since */
@@ -48,17 +60,7 @@ typedef struct fmu_model {
     laconic_grip_event pending_slip, pending_lift; /* valid where fmu_instance.warnings_pending has their bit */
     double slip_s, lift_s;                         /* their times                      */
 
-    double nu[3]; /* the continuous states; in Model Exchange the plant's state follows them */
-    double x_m, y_m, heading_rad;
-    double wheel_angle_rad[LACONIC_MAX_WHEELS];
-
-    laconic_pose pose;
-    double velocity_m_per_s[2], yaw_rate_rad_per_s;
-    double wheel_speed_rad_per_s[LACONIC_MAX_WHEELS];
-    double wheel_torque_Nm[LACONIC_MAX_WHEELS];
-    double energy_J;
-    laconic_reactions ground;
-    laconic_rates rates;
+    FMU_MOVING_MEMBERS; /* in Model Exchange the plant's state follows the continuous states */
 } fmu_model;
 
 /* What steps change. */
@@ -70,15 +72,8 @@ typedef struct fmu_model_motion {
 
 /* Derivatives of states, inputs and outputs along one direction. */
 typedef struct fmu_tangent {
-    double nu[3], x_m, y_m, heading_rad, wheel_angle_rad[LACONIC_MAX_WHEELS];
     laconic_input input;
-    laconic_rates rates;
-    laconic_pose pose;
-    double velocity_m_per_s[2], yaw_rate_rad_per_s;
-    double wheel_speed_rad_per_s[LACONIC_MAX_WHEELS];
-    double wheel_torque_Nm[LACONIC_MAX_WHEELS];
-    double energy_J;
-    laconic_reactions ground;
+    FMU_MOVING_MEMBERS;
 } fmu_tangent;
 
 #endif
