@@ -4,20 +4,20 @@ from __future__ import annotations
 
 import numpy as np
 
-from laconic.analysis.findings import Wishes
+from laconic.analysis.findings import StudyOptions
 from laconic.analysis.from_core import Subject
 from laconic.analysis.motions import straight_columns
 from laconic.analysis.speeds import ROUNDING, without_rest
 from laconic.errors import BadInput
 
 
-def check(subject: Subject, wishes: Wishes) -> None:
+def check(subject: Subject, options: StudyOptions) -> None:
     """BadInput when the constraints forbid a ν that was asked for; it names the nearest that they allow."""
     columns = subject.allowed_columns
-    if wishes.start is not None:
-        _fits("--start: the constraints forbid this ν", np.array(wishes.start), columns)
-    if wishes.straight is not None:
-        _fits("--straight: the constraints forbid this motion", np.array(wishes.straight), straight_columns(subject))
+    if options.start is not None:
+        _fits("--start: the constraints forbid this ν", np.array(options.start), columns)
+    if options.straight is not None:
+        _fits("--straight: the constraints forbid this motion", np.array(options.straight), straight_columns(subject))
 
 
 def _fits(refusal: str, nu: np.ndarray, columns: np.ndarray) -> None:

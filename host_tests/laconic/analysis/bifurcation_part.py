@@ -7,7 +7,7 @@ import numpy as np
 from laconic.analysis import confirm, pushed
 from laconic.analysis.continuation import Diagram, diagram
 from laconic.analysis.cycle import cycle_near
-from laconic.analysis.findings import BifurcationPart, CyclePart, Study, Wishes
+from laconic.analysis.findings import BifurcationPart, CyclePart, Study, StudyOptions
 from laconic.analysis.from_core import Subject
 from laconic.analysis.hopf import HopfPoint
 from laconic.analysis.motions import (
@@ -25,16 +25,16 @@ CYCLE_SHARES = (0.97,)  # of the way from the branch's other end to the Hopf poi
 NO_SIZE = 1e-4          # of that way: no cycle is reported so close to the Hopf point, where its size vanishes
 
 
-def bifurcation_part(result: Study, wishes: Wishes) -> None:
+def bifurcation_part(result: Study, options: StudyOptions) -> None:
     subject = result.subject
-    reason = _no_diagram(subject, wishes)
+    reason = _no_diagram(subject, options)
     if reason:
-        result.say("bifurcation", reason)
+        result.add("bifurcation", reason)
         return
-    straight = np.array([*wishes.straight, 0.0]) if wishes.straight else commanded_straight(subject)
-    parameter = parameter_named(subject, wishes.parameter, straight)
+    straight = np.array([*options.straight, 0.0]) if options.straight else commanded_straight(subject)
+    parameter = parameter_named(subject, options.parameter, straight)
     low, high = default_range(parameter)
-    low, high = (low if wishes.low is None else wishes.low), (high if wishes.high is None else wishes.high)
+    low, high = (low if options.low is None else options.low), (high if options.high is None else options.high)
     found = diagram(parameter.field_of, low, high)
     thresholds = straight_thresholds(parameter) if parameter.name in ("nu1", "nu2") else []
     cycles = [part for hopf in found.hopf for part in _cycles_of(parameter, found, hopf)]
@@ -42,13 +42,13 @@ def bifurcation_part(result: Study, wishes: Wishes) -> None:
     _describe_bifurcation(result, result.bifurcation)
 
 
-def _no_diagram(subject: Subject, wishes: Wishes) -> str | None:
+def _no_diagram(subject: Subject, options: StudyOptions) -> str | None:
     if float(subject.model.motor_damping_Nms) == 0.0 or not subject.field({}).decay_per_s.any():
         return "No bifurcation diagram: the motors do not damp (c2 = 0), so constant inputs have no steady motion."
     if pushed.world_force_acts(subject):
         return "No bifurcation diagram: a force fixed in the world acts."
     inputs_zero = not any(subject.inputs.values())
-    if inputs_zero and wishes.straight is None and wishes.parameter in (None, "input_scale"):
+    if inputs_zero and options.straight is None and options.parameter in (None, "input_scale"):
         return ("No bifurcation diagram: all inputs are zero at this instant; choose another with --at, or give a "
                 "straight motion with --straight NU1 NU2.")
     return None
@@ -108,30 +108,30 @@ def _threshold_text(subject: Subject, part: BifurcationPart, value: float) -> st
 def _describe_bifurcation(result: Study, part: BifurcationPart) -> None:
     name, subject = part.parameter.name, result.subject
     count = len(part.diagram.branches)
-    result.say("bifurcation", f"Steady motions for {name} from {_range_text(subject, part)}: {count} "
+    result.add("bifurcation", f"Steady motions for {name} from {_range_text(subject, part)}: {count} "
                               f"branch{'es' if count != 1 else ''}.")
     for value in part.thresholds:
-        result.say("bifurcation", _threshold_text(subject, part, value))
+        result.add("bifurcation", _threshold_text(subject, part, value))
     for special in part.diagram.specials:
-        result.say("bifurcation", f"{special.kind.capitalize()} at {command_text(subject, name, special.parameter)}: "
+        result.add("bifurcation", f"{special.kind.capitalize()} at {command_text(subject, name, special.parameter)}: "
                                   f"{motion_text(subject, special.nu)}.")
     for hopf in part.diagram.hopf:
         born = "an unstable limit cycle around the stable motion" if hopf.lyapunov > 0.0 else "a stable limit cycle"
-        result.say("bifurcation", f"Andronov–Hopf point at {command_text(subject, name, hopf.parameter)}, "
+        result.add("bifurcation", f"Andronov–Hopf point at {command_text(subject, name, hopf.parameter)}, "
                                   f"ν3 = {hopf.nu[2]:.6g} rad/s, with swings at {hopf.frequency_rad_per_s:.6g} "
                                   f"rad/s: first Lyapunov coefficient {hopf.lyapunov:+.3e}, {hopf.kind}: {born} is "
                                   "born.")
     if at_hopf := _stands_at(part):
         where = command_text(subject, name, at_hopf.parameter)
-        result.say("bifurcation", f"The scene itself stands at the Andronov–Hopf point {where}: there the limit cycle "
+        result.add("bifurcation", f"The scene itself stands at the Andronov–Hopf point {where}: there the limit cycle "
                                   "has no size yet, and the linearised turning motion is neither stable nor unstable.")
     for item in part.cycles:
         multipliers = ", ".join(f"{abs(m):.6g}" for m in item.cycle.multipliers)
         where = command_text(subject, name, item.cycle.parameter, 6)
-        result.say("bifurcation", f"Limit cycle at {where} about ν3 = {item.centre_nu[2]:.6g} rad/s: "
+        result.add("bifurcation", f"Limit cycle at {where} about ν3 = {item.centre_nu[2]:.6g} rad/s: "
                    f"period {item.cycle.period_s:.6g} s, multipliers {multipliers}: "
                    f"{'stable' if item.cycle.stable else 'unstable'}; {item.confirmation.words}.")
         if not item.confirmation.holds:
             result.failures.append(f"limit cycle at {name} = {item.cycle.parameter:.6g}: {item.confirmation.words}")
     if not part.diagram.hopf:
-        result.say("bifurcation", "No Andronov–Hopf point in this range.")
+        result.add("bifurcation", "No Andronov–Hopf point in this range.")

@@ -1,4 +1,4 @@
-"""What an analysis finds, part by part, and what the user asked for."""
+"""What an analysis finds, part by part, and the options that it was given."""
 
 from __future__ import annotations
 
@@ -84,14 +84,14 @@ class Study:
     words: dict[str, list[str]] = field(default_factory=dict)
     failures: list[str] = field(default_factory=list)
 
-    def say(self, part: str, sentence: str) -> None:
+    def add(self, part: str, sentence: str) -> None:
         """Adds a sentence to a part of the report."""
         self.words.setdefault(part, []).append(sentence)
 
 
 @dataclass(frozen=True)
-class Wishes:
-    """What the user asked for."""
+class StudyOptions:
+    """The parts to study, and what the command was given for them; None: the study chooses."""
 
     parts: tuple[str, ...] = PARTS
     parameter: str | None = None

@@ -6,7 +6,7 @@ from typing import Any
 
 import numpy as np
 
-from laconic.analysis.findings import FreePart, Study, Wishes
+from laconic.analysis.findings import FreePart, Study, StudyOptions
 from laconic.analysis.free_motion import FreeMotion
 from laconic.analysis.from_core import Subject
 from laconic.analysis.portrait import portrait
@@ -28,23 +28,23 @@ def _start_of_free_motion(subject: Subject) -> tuple[np.ndarray, float]:
     start = subject.start_nu()
     if np.abs(start).max() > 0.0:
         return start, 0.0
-    plant, drive = subject.scene.plant(subject.core), subject.scene.drive()
-    ticks = sorted({*range(0, drive.steps, max(1, drive.steps // MOST_CHECKS)), *drive.changes, drive.steps})
+    plant, inputs = subject.scene.plant(subject.core), subject.scene.inputs_on_grid()
+    ticks = sorted({*range(0, inputs.steps, max(1, inputs.steps // MOST_CHECKS)), *inputs.changes, inputs.steps})
     rows = [plant.nu]
     for first, last in zip(ticks[:-1], ticks[1:], strict=True):
-        run_window(subject.scene, plant, drive, first, last - first)
+        run_window(subject.scene, plant, inputs, first, last - first)
         rows.append(plant.nu)
     nu = np.array(rows)
     turning = np.abs(nu[:, 2]) > 1e-6 * np.abs(nu).max()
     k = int(np.argmax(np.linalg.norm(nu, axis=1) * (1.0 + 10.0 * turning)))
-    return nu[k], ticks[k] * drive.step_s
+    return nu[k], ticks[k] * inputs.step_s
 
 
-def free_part(result: Study, wishes: Wishes) -> None:
+def free_part(result: Study, options: StudyOptions) -> None:
     subject = result.subject
-    start, since_s = _start_of_free_motion(subject) if wishes.start is None else (np.array(wishes.start), 0.0)
+    start, since_s = _start_of_free_motion(subject) if options.start is None else (np.array(options.start), 0.0)
     if not np.abs(start).max() > 0.0:
-        result.say("free", "The vehicle stands still all through its run: there is no free motion to show.")
+        result.add("free", "The vehicle stands still all through its run: there is no free motion to show.")
         return
     motion = FreeMotion(start, subject.matrices.inverse_inertia, subject.matrices.lambda_yaw)
     times = np.linspace(0.0, _free_duration(subject, motion), 1201)[1:]
@@ -56,7 +56,7 @@ def free_part(result: Study, wishes: Wishes) -> None:
         energy_J=scale * float(start @ np.linalg.lstsq(subject.matrices.inverse_inertia, start, rcond=None)[0]),
         integral=integral, portrait=portrait(subject, start), path_time_s=times,
         path_m=motion.path(times, float(subject.model.wheel_radius_m)), **numbers)
-    _describe_free(result, result.free, wishes)
+    _describe_free(result, result.free, options)
 
 
 def _free_duration(subject: Subject, motion: FreeMotion) -> float:
@@ -102,26 +102,26 @@ def _kind_in_words(subject: Subject, free: FreePart) -> str:
     return f"{periodic}: the path has petals, one every {petal_deg:.2f}° of heading."
 
 
-def _describe_free(result: Study, free: FreePart, wishes: Wishes) -> None:
+def _describe_free(result: Study, free: FreePart, options: StudyOptions) -> None:
     motion, subject = free.motion, result.subject
-    if wishes.start:
+    if options.start:
         where = "from the given start"
     else:
         cut = f"with the motors cut off at {free.since_s:.4g} s, the fastest instant of the run"
         where = cut if free.since_s else "from the scene's start"
     start = f"Free motion {where}: {motion_text(subject, motion.start_nu)}; energy {free.energy_J:.6g} J"
-    result.say("free", f"{start}; with constraints there is no second integral K." if free.integral is None else
+    result.add("free", f"{start}; with constraints there is no second integral K." if free.integral is None else
                f"{start}, K = {free.integral:.6g} rad/s.")
-    result.say("free", _kind_in_words(subject, free))
+    result.add("free", _kind_in_words(subject, free))
     drift = f"energy drifts by {free.energy_drift:.1e}"
     if free.integral_drift is not None:
         drift += f", K by {free.integral_drift:.1e}"
-    result.say("free", f"Closed form and the core's exact-flow differ by {free.core_gap:.1e} over "
+    result.add("free", f"Closed form and the core's exact-flow differ by {free.core_gap:.1e} over "
                        f"{free.path_time_s[-1]:.4g} s; {drift} (relative).")
     if free.core_gap > 1e-9:
         result.failures.append(f"closed form and exact-flow differ by {free.core_gap:.1e}")
     if free.portrait is None:
-        result.say("free", "No phase portrait: ν3 does not change in free motion of this vehicle.")
+        result.add("free", "No phase portrait: ν3 does not change in free motion of this vehicle.")
     elif subject.model.dof == 3:
-        result.say("free", f"On the plane of ν3 and the velocity across, motions of this K lie on ellipses about "
+        result.add("free", f"On the plane of ν3 and the velocity across, motions of this K lie on ellipses about "
                    f"ν3 = K/A33 = {free.portrait.centre:.6g} rad/s.")

@@ -70,13 +70,13 @@ def subject_of(scene: Scene, at_s: float = 0.0) -> Subject:
     scene = scene.with_run(real="double")
     core = scene.core()
     vehicle, model = scene.c_vehicle(core), scene.model(core)
-    drive = scene.drive()
+    inputs = scene.inputs_on_grid()
     if not 0.0 <= at_s <= scene.run.duration_s:
         raise BadInput(f"{scene.path}: --at {at_s:g} s lies outside the run; give 0 to {scene.run.duration_s:g} s")
     tick = int(np.floor(at_s / scene.run.step_s + 1e-6))
-    varying = not drive.is_held or len(drive.changes) > 1
+    varying = not inputs.is_held or len(inputs.changes) > 1
     held = f"The inputs are held as they are at {at_s:g} s (--at takes another instant)." if varying else ""
-    return Subject(scene, core, vehicle, model, core.matrices(vehicle), drive.held_at(tick), held)
+    return Subject(scene, core, vehicle, model, core.matrices(vehicle), inputs.held_at(tick), held)
 
 
 def changed(subject: Subject, key: str, value: float) -> Subject:

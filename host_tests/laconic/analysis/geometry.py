@@ -198,7 +198,7 @@ def _yaw_words(found: Geometry) -> list[str]:
 
 
 def _reach_words(subject: Subject) -> str:
-    """What reaches the wheels: motors with a drive or only with damping, or none."""
+    """What reaches the wheels: motors with a gain, motors with damping only, or none."""
     if float(subject.model.motor_gain_Nm_per_V):
         return "so the motors drive and damp all of them" if float(subject.model.motor_damping_Nms) else (
             "so the motors drive all of them; they damp none")

@@ -71,7 +71,7 @@ def _meaning(part: BifurcationPart) -> str:
     """What a commanded motion is, in words."""
     if part.parameter.name not in COMMANDS:
         return ""
-    return "Commanded: the straight motion that the constant voltages ask for. The vehicle may turn by itself."
+    return "Commanded: the straight motion that the constant voltages would hold. The vehicle may yaw by itself."
 
 
 def _marks(axes: Axes, part: BifurcationPart) -> list[Line2D]:

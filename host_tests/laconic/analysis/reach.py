@@ -8,7 +8,7 @@ from __future__ import annotations
 import numpy as np
 
 from laconic.analysis.from_core import Subject
-from laconic.scene.drive import Input
+from laconic.scene.inputs import Input
 
 HEADROOM = 2.0  # over the run's largest inputs: a scene seldom uses the full range of its motors
 WORLD = "world_force"

@@ -5,26 +5,26 @@ from __future__ import annotations
 import numpy as np
 
 from laconic.analysis import confirm, pushed
-from laconic.analysis.findings import SteadyPart, Study, Wishes
+from laconic.analysis.findings import SteadyPart, Study, StudyOptions
 from laconic.analysis.from_core import Inputs, Subject
 from laconic.analysis.motions import straight_torques
 from laconic.analysis.speeds import motion_text
 from laconic.analysis.steady import families, steady_motions
 
 
-def _studied_inputs(subject: Subject, wishes: Wishes) -> Inputs:
-    if wishes.straight is None:
+def _studied_inputs(subject: Subject, options: StudyOptions) -> Inputs:
+    if options.straight is None:
         return subject.inputs
-    return straight_torques(subject, np.array([*wishes.straight, 0.0]))
+    return straight_torques(subject, np.array([*options.straight, 0.0]))
 
 
-def steady_part(result: Study, wishes: Wishes) -> None:
-    subject, inputs = result.subject, _studied_inputs(result.subject, wishes)
-    if wishes.straight is None and pushed.world_force_acts(subject):
+def steady_part(result: Study, options: StudyOptions) -> None:
+    subject, inputs = result.subject, _studied_inputs(result.subject, options)
+    if options.straight is None and pushed.world_force_acts(subject):
         _describe_pushed(result)
         return
-    if wishes.straight is None and subject.held:
-        result.say("steady", subject.held)
+    if options.straight is None and subject.held:
+        result.add("steady", subject.held)
     found = subject.field(inputs)
     motions = steady_motions(found)
     confirmations = [confirm.steady_motion(subject, inputs, found, motion) for motion in motions]
@@ -32,17 +32,17 @@ def steady_part(result: Study, wishes: Wishes) -> None:
     for motion, confirmation in zip(motions, confirmations, strict=True):
         rates = ", ".join(_complex_text(v) for v in motion.eigenvalues)
         shape = "circle" if motion.is_turning else "straight"
-        result.say("steady", f"{shape}, {motion.stability}: {motion_text(subject, motion.nu)}; eigenvalues {rates} "
+        result.add("steady", f"{shape}, {motion.stability}: {motion_text(subject, motion.nu)}; eigenvalues {rates} "
                              f"1/s; {confirmation.words}.")
         if not confirmation.holds:
             result.failures.append(f"steady motion, {motion_text(subject, motion.nu)}: {confirmation.words}")
     for family in result.steady.families:
-        result.say("steady", f"{family.words}.")
+        result.add("steady", f"{family.words}.")
     if not motions and not result.steady.families:
-        result.say("steady", "There is no steady motion: a direction without damping is driven and speeds up without "
+        result.add("steady", "There is no steady motion: a direction without damping is driven and speeds up without "
                              "end.")
     if not subject.field(inputs).decay_per_s.any():
-        result.say("steady", "The motors do not damp (c2 = 0), so nothing is asymptotically stable.")
+        result.add("steady", "The motors do not damp (c2 = 0), so nothing is asymptotically stable.")
 
 
 def _complex_text(value: complex) -> str:
@@ -52,10 +52,10 @@ def _complex_text(value: complex) -> str:
 def _describe_pushed(result: Study) -> None:
     found = pushed.headings(result.subject)
     result.steady = SteadyPart([], [], [], pushed=found)
-    result.say("steady", "A force fixed in the world acts: it rotates against the body, so ν has no steady value; "
+    result.add("steady", "A force fixed in the world acts: it rotates against the body, so ν has no steady value; "
                "the question is which heading the vehicle keeps.")
     if found is None:
-        result.say("steady", "With damping or a gyroscopic term the heading depends on the speed; see `laconic "
+        result.add("steady", "With damping or a gyroscopic term the heading depends on the speed; see `laconic "
                              "simulate`.")
     for heading in found or []:
-        result.say("steady", heading.words + ".")
+        result.add("steady", heading.words + ".")

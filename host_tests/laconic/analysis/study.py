@@ -6,7 +6,7 @@ from collections.abc import Callable
 
 from laconic.analysis.allowed import check
 from laconic.analysis.bifurcation_part import bifurcation_part
-from laconic.analysis.findings import Study, Wishes
+from laconic.analysis.findings import Study, StudyOptions
 from laconic.analysis.free_part import free_part
 from laconic.analysis.from_core import Subject
 from laconic.analysis.geometry import diagnose
@@ -14,12 +14,12 @@ from laconic.analysis.steady_part import steady_part
 from laconic.analysis.traction import study as study_traction
 
 
-def study(subject: Subject, wishes: Wishes, advance: Callable[[float, str], None]) -> Study:
-    """All parts that were asked for, one after another."""
-    check(subject, wishes)
+def study(subject: Subject, options: StudyOptions, advance: Callable[[float, str], None]) -> Study:
+    """All parts of the options, one after another."""
+    check(subject, options)
     result = Study(subject)
-    share = 1.0 / len(wishes.parts)
-    for part in wishes.parts:
+    share = 1.0 / len(options.parts)
+    for part in options.parts:
         advance(0.0, part)
         if part == "geometry":
             result.geometry = diagnose(subject)
@@ -28,6 +28,6 @@ def study(subject: Subject, wishes: Wishes, advance: Callable[[float, str], None
             result.traction = study_traction(subject)
             result.words["traction"] = list(result.traction.words)
         else:
-            {"free": free_part, "steady": steady_part, "bifurcation": bifurcation_part}[part](result, wishes)
+            {"free": free_part, "steady": steady_part, "bifurcation": bifurcation_part}[part](result, options)
         advance(share, part)
     return result

@@ -16,7 +16,7 @@ import numpy as np
 from laconic.analysis.from_core import Subject, nu_rates
 from laconic.analysis.geometry import wheel_positions_m
 from laconic.core.plant import Plant
-from laconic.scene.drive import Drive
+from laconic.scene.inputs import InputsOnGrid
 from laconic.simulation import run_window
 
 MOST_SAMPLES = 1500
@@ -47,27 +47,27 @@ class Traction:
 def study(subject: Subject, progress: Callable[[float], None] | None = None) -> Traction:
     """Runs the scene and judges it at no more than about MOST_SAMPLES instants; the first slip is found to the step."""
     scene = subject.scene
-    plant, drive = scene.plant(subject.core), scene.drive()
-    total, sampler = drive.steps, _Sampler(subject, plant)
-    ticks = sorted({*range(0, total, max(1, -(-total // MOST_SAMPLES))), *drive.changes, total})
+    plant, inputs = scene.plant(subject.core), scene.inputs_on_grid()
+    total, sampler = inputs.steps, _Sampler(subject, plant)
+    ticks = sorted({*range(0, total, max(1, -(-total // MOST_SAMPLES))), *inputs.changes, total})
     slipped = False
     for first, last in zip(ticks[:-1], ticks[1:], strict=True):
-        _sample(sampler, drive, first)
-        slipped = slipped or _retaken(sampler, drive, ticks, first)
-        run_window(scene, plant, drive, first, last - first)
+        _sample(sampler, inputs, first)
+        slipped = slipped or _retaken(sampler, inputs, ticks, first)
+        run_window(scene, plant, inputs, first, last - first)
         if progress is not None:
             progress(last / total)
-    _sample(sampler, drive, total)
+    _sample(sampler, inputs, total)
     return _judged(subject, sampler)
 
 
-def _sample(sampler: _Sampler, drive: Drive, tick: int) -> None:
+def _sample(sampler: _Sampler, inputs: InputsOnGrid, tick: int) -> None:
     """One sample with the inputs at a tick."""
-    values = np.array(list(drive.held_at(tick).values()))
-    sampler.take(tick * drive.step_s, values, drive.signals)
+    values = np.array(list(inputs.held_at(tick).values()))
+    sampler.take(tick * inputs.step_s, values, inputs.signals)
 
 
-def _retaken(sampler: _Sampler, drive: Drive, ticks: list[int], at: int) -> bool:
+def _retaken(sampler: _Sampler, inputs: InputsOnGrid, ticks: list[int], at: int) -> bool:
     """Repeats the steps before the first sample that slips one by one, to find the slip; True if it slips."""
     if not sampler.slips():
         sampler.keep = (sampler.plant.save(), at)
@@ -77,8 +77,8 @@ def _retaken(sampler: _Sampler, drive: Drive, ticks: list[int], at: int) -> bool
         saved, start = sampler.keep
         sampler.plant.restore(saved, start)
         for tick in range(start, at - 1):
-            run_window(sampler.subject.scene, sampler.plant, drive, tick, 1)
-            _sample(sampler, drive, tick + 1)
+            run_window(sampler.subject.scene, sampler.plant, inputs, tick, 1)
+            _sample(sampler, inputs, tick + 1)
             if sampler.slips():
                 break
         sampler.plant.restore(state, steps)

@@ -73,9 +73,9 @@ def state_row(plant: Plant) -> np.ndarray:
 
 def follow(scene: Scene, real: str, at_s: np.ndarray) -> np.ndarray:
     """The core's states at some instants, one row each."""
-    plant, drive, rows, done = scene.plant(load(real)), scene.drive(), [], 0
+    plant, inputs, rows, done = scene.plant(load(real)), scene.inputs_on_grid(), [], 0
     for tick in np.rint(at_s / scene.run.step_s).astype(int):
-        advance_plant(plant, drive, done, int(tick) - done)
+        advance_plant(plant, inputs, done, int(tick) - done)
         done = int(tick)
         rows.append(state_row(plant))
     return np.array(rows)
@@ -87,7 +87,7 @@ def fits(scene: Scene, truth: Truth) -> bool:
     if np.max(np.abs(ticks - np.rint(ticks))) > 1e-6:
         return False
     try:
-        scene.drive()
+        scene.inputs_on_grid()
     except BadInput:
         return False
     return True
@@ -96,7 +96,7 @@ def fits(scene: Scene, truth: Truth) -> bool:
 def seconds_per_step(scene: Scene, real: str) -> float:
     """Thread CPU time of one step with its inputs held, the least of some runs."""
     core, best = load(real), float("inf")
-    held = core.input(scene.drive().held_at(0))
+    held = core.input(scene.inputs_on_grid().held_at(0))
     for _ in range(TIMED_REPETITIONS):
         plant = scene.plant(core)
         start = time.thread_time_ns()

@@ -104,7 +104,7 @@ def size_of_step(workshop: Workshop, target: Target, variant: Variant) -> Size:
     symbols = _symbols(target, image)
     folder, files = workshop.files(variant)
     graph = CallGraph.read(workshop.archive(target, variant, folder).parent)
-    entry = "laconic_step" if variant.scene.drive().is_held else "laconic_step_sampled"
+    entry = "laconic_step" if variant.scene.inputs_on_grid().is_held else "laconic_step_sampled"
     method = [title for title in graph.stack if title.rpartition(":")[2] in files.method_steps]
     reached = graph.reached(entry, method)
     text, data, bss = _sections(target, image)

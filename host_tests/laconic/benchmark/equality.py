@@ -1,4 +1,4 @@
-"""Do peers integrate the same equations? Their C right-hand side beside the numpy reference, state by state."""
+"""Compares the C right-hand side of the peers with the numpy reference: all integrate the same equations."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""The fault matrix: every fault × every frame, in virtual time, with what the node and the rig made of it.
+"""The fault matrix: every fault × every frame, in virtual time, with what the node and the rig did then.
 
 Each case runs one script (open, load, scaled lockstep, raw lockstep, free run, stop) over a `faulty` bus whose
 fault hits one kind of frame; then the rig falls silent for a while, the fault ends, and a fresh rig takes over. Watched
@@ -73,7 +73,7 @@ class Case:
         return NodeClient(link, PATIENCE_S, random_bits=self.random.getrandbits)
 
     def pump(self) -> bool:
-        """The node works; the time of the first sign of the fault is taken down."""
+        """The node works; the time of the first sign of the fault is noted."""
         busy = self.node.pump()
         row, first = self.row, self.bus.model.first_injection_s
         if row.detection_ms is None and first is not None and row.detected_by:
@@ -134,7 +134,7 @@ def run_case(fault: str, frame: str, seed: int) -> Row:
 
 
 def script(client: NodeClient, case: Case, fd: bool) -> None:
-    """A whole life of a rig."""
+    """The whole script of one rig."""
     row, scene = case.row, case.scene
     volts = marker_voltages(scene)
     client.open()
@@ -195,7 +195,7 @@ def free_run_part(client: NodeClient, case: Case, fd: bool) -> None:
 
 
 def listen(case: Case, client: NodeClient, seconds: float) -> None:
-    """Receives whatever comes for so long."""
+    """Receives all frames for a given time."""
     end_us = case.clock.time_us + int(1e6 * seconds)
     while case.clock.time_us < end_us:
         client.link.receive((end_us - case.clock.time_us) / 1e6)

@@ -23,7 +23,7 @@ TITLES = {
     "who": "integrator", "as_good": "reached", "us_per_second": "µs a second",
     "fastest_decay_per_s": "fastest damping r [1/s]", "wanted_error": "error at most", "ratio": "over CasADi's"}
 TEXT = {"goal", "scene", "method", "real", "processor", "build", "optimisation", "status", "who", "case",
-        "why", "outcome", "drive", "fact", "value", "refused", "verdict", "chosen", "same_bits", "as_good"}
+        "why", "outcome", "inputs", "fact", "value", "refused", "verdict", "chosen", "same_bits", "as_good"}
 STYLED = {"verdict", "outcome", "same_bits", "as_good"}
 
 

@@ -1,7 +1,7 @@
 """Integrators of other projects on the same equations: CasADi's generated RK4, CVODE from C, compiled DOP853, SciPy.
 
-What is not installed is left out and said so. C sources are in core_c/bench/peers; the matrices of the vehicle and,
-for CasADi, the whole step are generated here, from the same numpy reference that SciPy integrates.
+A peer that is not installed is left out and named. C sources are in core_c/bench/peers; the matrices of the vehicle
+and, for CasADi, the whole step are generated here, from the same numpy reference that SciPy integrates.
 """
 
 from __future__ import annotations
@@ -49,7 +49,7 @@ class Solution:
 def course_of(scene: Scene) -> Course:
     """From a scene whose only inputs are voltages in steps."""
     reference, wheels = Reference(scene.vehicle), range(1, scene.wheel_count + 1)
-    segments = list(scene.drive().segments())
+    segments = list(scene.inputs_on_grid().segments())
     at = scene.initial
     start = np.concatenate([reference.nu(scene), [at.x_m, at.y_m, at.heading_rad], np.zeros(scene.wheel_count)])
     voltages = [[segment.values.get(f"voltage_V[{i}]", 0.0) for i in wheels] for segment in segments]

@@ -13,7 +13,7 @@ from laconic.scene.table import Table
 from laconic.verification.trajectories import read_reference, verify_case
 
 STEPS_S = (1e-4, 1e-3, 1e-2, 2.5e-2, 5e-2)
-# Errors of ν of an earlier prototype: (case, step) → method → error; None: it blew up.
+# Errors of ν of an earlier prototype: (case, step) → method → error; None: the run diverged.
 PROTOTYPE: dict[tuple[str, float], dict[str, float | None]] = {
     ("omni3-free-periodic", 0.1): {"rk4": 3.9e-7, "exponential-kahan": 2.0e-3, "exponential-kahan-4": 1.4e-7,
                                    "exact-flow-4": 7e-15},
@@ -77,5 +77,5 @@ def table_rows(advance: Any = lambda: None) -> list[dict[str, Any]]:
 def beats(error: float | None, prototype: float | None) -> bool:
     """Reproduced (within the rounding of the printed digits, and of the last place) or better."""
     if error is None:
-        return prototype is None or prototype >= 1.0  # refused where the prototype blew up or was of no use
+        return prototype is None or prototype >= 1.0  # refused where the prototype diverged or had no correct digit
     return prototype is None or error <= 1.1 * prototype + 2e-14 or math.isclose(error, prototype, rel_tol=0.1)

@@ -42,7 +42,7 @@ def _peers(results: dict[str, list[Row]]) -> Section:
 
 def _stability(results: dict[str, list[Row]]) -> Section:
     drawn = [pictures.stability(results["map"], method) for method in METHODS] if results["map"] else []
-    fields = ("scene", "factor", "drive", "step_s", "status", "error_nu", "error_path")
+    fields = ("scene", "factor", "inputs", "step_s", "status", "error_nu", "error_path")
     return _section("stability", "Stability map", drawn, Table(results["stiff"], fields))
 
 

@@ -34,7 +34,7 @@ def heading_after_many_turns(scene: Scene, steps: int = 1000) -> bool:
     core = load("single")
     near, far = (scene.with_run(step_s=0.01).plant(core) for _ in range(2))
     far.c.state.heading.turns = TURNS
-    held = core.input(scene.with_run(step_s=0.01).drive().held_at(0))
+    held = core.input(scene.with_run(step_s=0.01).inputs_on_grid().held_at(0))
     for plant in (near, far):
         plant.run(held, steps)
     a, b = near.c.state.heading, far.c.state.heading

@@ -1,4 +1,4 @@
-"""Stiffness: one vehicle whose motors get stronger, over steps from milliseconds to a tenth of a second and more."""
+"""Stiffness: one vehicle with ever stronger motors, over steps from milliseconds to a tenth of a second and more."""
 
 from __future__ import annotations
 
@@ -13,7 +13,7 @@ from laconic.benchmark.accuracy import follow, relative
 from laconic.benchmark.stiff_reference import stiff_states
 from laconic.errors import Refused
 from laconic.scene import METHODS, Scene
-from laconic.scene.drive import Input
+from laconic.scene.inputs import Input
 from laconic.verification.reference import Reference, totals_of
 
 SEGMENT_S, SEGMENTS = 0.25, 4
@@ -99,8 +99,8 @@ def stiff_rows(scenes: Sequence[Scene], factors: Sequence[float] = STIFF_FACTORS
     return rows
 
 
-def _stiff_run(scene: Scene, drive_name: str, factor: float, at_s: np.ndarray, expected: np.ndarray) -> dict[str, Any]:
-    row = {"scene": Path(scene.path).stem, "factor": factor, "drive": drive_name, "step_s": scene.run.step_s}
+def _stiff_run(scene: Scene, inputs_name: str, factor: float, at_s: np.ndarray, expected: np.ndarray) -> dict[str, Any]:
+    row = {"scene": Path(scene.path).stem, "factor": factor, "inputs": inputs_name, "step_s": scene.run.step_s}
     try:
         states = follow(scene, "double", at_s)
     except Refused as refused:

@@ -16,7 +16,7 @@ Terms = Callable[[float], tuple[np.ndarray, ...]]
 
 
 def jacobian(reference: Reference, state: np.ndarray) -> np.ndarray:
-    """Derivative of the rates by the state, for drives without forces fixed in the world."""
+    """Derivative of the rates by the state, for inputs without forces fixed in the world."""
     (n1, n2, n3), per_yaw = state[:3], 1.0 / reference.yaw_scale
     cosine, sine, radius = np.cos(state[5]), np.sin(state[5]), reference.totals.wheel_radius_m
     out = np.zeros((len(state), len(state)))
@@ -31,11 +31,11 @@ def jacobian(reference: Reference, state: np.ndarray) -> np.ndarray:
 
 def stiff_states(scene: Scene, at_s: np.ndarray) -> np.ndarray:
     """States (ν, x, y, θ, χ) of a scene at some instants, ascending and after 0."""
-    reference, drive, start = Reference(scene.vehicle), scene.drive(), scene.initial
+    reference, inputs, start = Reference(scene.vehicle), scene.inputs_on_grid(), scene.initial
     state = np.concatenate([reference.nu(scene), [start.x_m, start.y_m, start.heading_rad],
                             np.zeros(len(reference.wheels))])
-    edges = np.unique(np.concatenate([[0.0], kinks(drive), at_s]))
-    jumps, found = {0.0, *kinks(drive)}, {}
+    edges = np.unique(np.concatenate([[0.0], kinks(inputs), at_s]))
+    jumps, found = {0.0, *kinks(inputs)}, {}
     begun = 0.0
     for begin, end in zip(edges, edges[1:], strict=False):
         begun = begin if begin in jumps else begun
@@ -45,11 +45,11 @@ def stiff_states(scene: Scene, at_s: np.ndarray) -> np.ndarray:
 
 
 def _terms(reference: Reference, scene: Scene, begun: float) -> Terms:
-    drive = scene.drive()
-    if drive.is_held:
-        held = reference.forcing_terms(values_at(drive, begun, begun))
+    inputs = scene.inputs_on_grid()
+    if inputs.is_held:
+        held = reference.forcing_terms(values_at(inputs, begun, begun))
         return lambda t: held
-    return lambda t: reference.forcing_terms(values_at(drive, t, begun))
+    return lambda t: reference.forcing_terms(values_at(inputs, t, begun))
 
 
 def _stretch(reference: Reference, terms: Terms, state: np.ndarray, begin: float, end: float) -> np.ndarray:

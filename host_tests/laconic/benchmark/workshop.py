@@ -103,14 +103,14 @@ def run_tool(command: Sequence[str], where: Path | None = None) -> str:
 
 def segments_source(core: Core, scene: Scene, names: dict[int, str] | None = None) -> str:
     """bench_segments.c: the scene's inputs."""
-    drive, rows = scene.drive(), []
-    if drive.is_held:
-        for segment in drive.segments():
+    inputs, rows = scene.inputs_on_grid(), []
+    if inputs.is_held:
+        for segment in inputs.segments():
             held = initializer(core.ffi, core.input(segment.values)[0], names or {})
             rows.append(f"{{.steps = {segment.steps}, .start = {held}}}")
     else:
-        for sample in drive.samples(0, SAMPLED_STEPS):
-            at = [initializer(core.ffi, core.input(dict(zip(drive.signals, row.tolist(), strict=True)))[0], {})
+        for sample in inputs.samples(0, SAMPLED_STEPS):
+            at = [initializer(core.ffi, core.input(dict(zip(inputs.signals, row.tolist(), strict=True)))[0], {})
                   for row in sample]
             rows.append(f"{{.steps = 1, .sampled = true, .start = {at[0]}, .middle = {at[1]}, .end = {at[2]}}}")
     table = ",\n    ".join(rows)
@@ -190,7 +190,7 @@ class Workshop:
 
     def step_image(self, target: Target, variant: Variant) -> Path:
         """What laconic_step with the scene's constants brings into flash, and nothing else."""
-        entry = "laconic_step" if variant.scene.drive().is_held else "laconic_step_sampled"
+        entry = "laconic_step" if variant.scene.inputs_on_grid().is_held else "laconic_step_sampled"
         keep = [f"-Wl,-u,{name}" for name in ("laconic_scene_model", "laconic_scene_integrator", "bench_state_bytes")]
         flags = ["-nostartfiles", "-ffreestanding", f"-Wl,-e,{entry}", "-Wl,-Ttext=0x1000", *keep]
         return self._link(target, variant, "step.elf", [], flags)

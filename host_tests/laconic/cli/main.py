@@ -37,7 +37,7 @@ class LazyCommands(click.Group):
             formatter.write_dl([(name, summary(name)) for name in self.list_commands(ctx)])
 
     def invoke(self, ctx: click.Context) -> Any:
-        """Runs the command; what click and Python would make of an error is made ours before they see it."""
+        """Runs the command; an error becomes our one line before click or Python print it in theirs."""
         try:
             return super().invoke(ctx)
         except (LaconicError, click.ClickException, click.exceptions.Exit, click.Abort):
@@ -75,7 +75,7 @@ def main(arguments: list[str] | None = None) -> None:
     130 after Ctrl-C, 143 after SIGTERM; 141 when the reader of stdout has gone (| head -1), silently, as for any tool.
     """
     guard()
-    logging.getLogger("matplotlib").setLevel(logging.ERROR)  # its advice on a home that it cannot write is not ours
+    logging.getLogger("matplotlib").setLevel(logging.ERROR)  # it warns of a home folder that it cannot write
     status = run(sys.argv[1:] if arguments is None else arguments)
     with suppress(ReaderGone, BadInput):  # text before an error that stderr already states
         sys.stdout.flush()

@@ -20,7 +20,7 @@ PICTURES = (".png", ".svg", ".pdf")
 
 
 class InputPath(click.ParamType[Path]):
-    """A file or folder that a command reads; what reads it reports what is wrong with it."""
+    """A file or folder that a command reads; the reader names what is wrong with it."""
 
     name = "path"
 

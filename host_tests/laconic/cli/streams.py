@@ -22,11 +22,11 @@ SIGPIPE = 13        # on every system that has it; Windows has not
 
 
 class ReaderGone(BaseException):
-    """Nobody reads stdout any more; no exception of the usual kind, so that no library takes it for its own."""
+    """Nobody reads stdout any more. It derives from BaseException, which libraries do not catch."""
 
 
 class Stopped(KeyboardInterrupt):
-    """A signal ends the command; what is cleaned up after Ctrl-C is after any of them."""
+    """A signal ends the command; the cleaning up after Ctrl-C follows every signal."""
 
     def __init__(self, number: int = signal.SIGINT):
         super().__init__()
@@ -48,7 +48,7 @@ class Stdout(io.FileIO):
             raise BadInput(f"stdout: cannot be written ({reason_of(error)}); redirect it to another place") from None
 
     def silence(self) -> None:
-        """What is still in buffers goes nowhere."""
+        """Discards the text in buffers, which Python would write at the end of the process."""
         os.dup2(os.open(os.devnull, os.O_WRONLY), self.fileno())
 
 
@@ -84,12 +84,12 @@ def warn(message: str) -> None:
 
 
 def stop(number: int, _: FrameType | None) -> None:
-    """The handler of the signals."""
+    """Handles a signal: raises Stopped with its number."""
     raise Stopped(number)
 
 
 def stop_status(stopped: BaseException) -> tuple[str, int]:
-    """The line and the exit status for what ended by a signal."""
+    """The message and the exit status of a command that a signal has ended."""
     number = getattr(stopped, "number", signal.SIGINT)
     who = "the user" if number == signal.SIGINT else signal.Signals(number).name
     return f"stopped by {who}", SHELL_SIGNAL + number

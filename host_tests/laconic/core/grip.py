@@ -31,7 +31,7 @@ class Grip:
     """What the watch found over a run; events are None where there was none."""
 
     friction_coefficient: float | None  # None: not given, so that slip cannot be judged
-    looks: int                          # instants that were checked: the start of every step, and the end
+    instants: int                       # instants that were checked: the start of every step, and the end
     slipping: int
     lifting: int
     first_slip: GripEvent | None
@@ -72,7 +72,7 @@ class Grip:
 
     def _more(self, first: GripEvent, worst: GripEvent, count: int, size: str) -> str:
         at_worst = "" if worst == first else f"; at worst {size}, {worst.where} at {worst.time_s:g} s"
-        return f"{at_worst}; {percent(count, self.looks)} of the run"
+        return f"{at_worst}; {percent(count, self.instants)} of the run"
 
 
 def percent(count: int, of: int) -> str:

@@ -17,7 +17,7 @@ from fmpy.fmi3 import FMU3Slave
 
 from laconic.demo.rows import Rows, exchanges, row_names
 from laconic.scene import Scene
-from laconic.scene.drive import Drive
+from laconic.scene.inputs import InputsOnGrid
 from laconic.scene.reader import LENGTHS, PER_WHEEL
 
 FMI_ERROR = 3  # and fatal, 4, in FMI 2 and FMI 3
@@ -30,10 +30,10 @@ def elements(name: str, length: int) -> list[str]:
     return [f"{name}[{i}]" for i in range(1, length + 1)] if length else [name]
 
 
-def input_arrays(drive: Drive, tick: int, wheel_count: int) -> dict[str, list[float]]:
+def input_arrays(inputs: InputsOnGrid, tick: int, wheel_count: int) -> dict[str, list[float]]:
     """All elements of every input that the scene uses, at the start of a step."""
-    values = drive.held_at(tick)
-    bases = dict.fromkeys(signal.partition("[")[0] for signal in drive.signals)
+    values = inputs.held_at(tick)
+    bases = dict.fromkeys(signal.partition("[")[0] for signal in inputs.signals)
     lengths = {base: wheel_count if base in PER_WHEEL else LENGTHS[base] for base in bases}
     return {base: [values.get(name, 0.0) for name in elements(base, length)] for base, length in lengths.items()}
 
@@ -127,12 +127,12 @@ def fmu_rows(scene: Scene, fmu: Path, steps: int, every: int = 1,
 
 def run(slave: Any, scene: Scene, steps: int, every: int, moved: Callable[[int], None]) -> Rows:
     """From start to end; time is the number of steps times the step, without accumulated rounding."""
-    drive, step_s = scene.drive(), scene.run.step_s
+    inputs, step_s = scene.inputs_on_grid(), scene.run.step_s
     slave.start(steps * step_s)
-    changes, ticks, rows, began = set(drive.changes), [], [], time.perf_counter()
-    for first, count in exchanges(drive, steps, every if drive.is_held else 1):
-        if first in changes or not drive.is_held:
-            for base, values in input_arrays(drive, first, scene.wheel_count).items():
+    changes, ticks, rows, began = set(inputs.changes), [], [], time.perf_counter()
+    for first, count in exchanges(inputs, steps, every if inputs.is_held else 1):
+        if first in changes or not inputs.is_held:
+            for base, values in input_arrays(inputs, first, scene.wheel_count).items():
                 slave.set(base, values)
         slave.slave.doStep(first * step_s, count * step_s)
         rows.append(slave.get())

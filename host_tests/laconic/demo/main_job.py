@@ -70,7 +70,7 @@ def run_scene(given: Scene, out: Path, moved: Advance) -> SceneResult:
     """Everything for one scene."""
     scene = steps_of(given)
     core = core_rows(scene, scene.steps())
-    held = core if scene.drive().is_held else core_rows(scene, scene.steps(), hold=True)
+    held = core if scene.inputs_on_grid().is_held else core_rows(scene, scene.steps(), hold=True)
     result = SceneResult(scene.name, str(scene.path), scene.steps(), scene.plant(scene.core()).chosen_method)
     with TemporaryDirectory() as folder:
         for who in PARTICIPANTS:

@@ -11,7 +11,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from laconic.scene import Scene
-from laconic.scene.drive import Drive
+from laconic.scene.inputs import InputsOnGrid
 from laconic.simulation import advance_plant
 
 
@@ -33,9 +33,9 @@ def row_names(wheel_count: int) -> list[str]:
             *(f"wheel_speed_rad_per_s[{i}]" for i in wheels), *(f"wheel_angle_rad[{i}]" for i in wheels)]
 
 
-def exchanges(drive: Drive, steps: int, every: int) -> Iterator[tuple[int, int]]:
+def exchanges(inputs: InputsOnGrid, steps: int, every: int) -> Iterator[tuple[int, int]]:
     """(first step, how many): at most `every` at once, and never across a change of the inputs."""
-    edges = sorted({*range(0, steps, every), *(c for c in drive.changes if c < steps), steps})
+    edges = sorted({*range(0, steps, every), *(c for c in inputs.changes if c < steps), steps})
     for begin, end in zip(edges, edges[1:], strict=False):
         yield begin, end - begin
 
@@ -45,13 +45,13 @@ def core_rows(scene: Scene, steps: int, every: int = 1, hold: bool = False) -> R
 
     `hold`: every input is held over the step at its value at the start, as in an FMU.
     """
-    plant, drive = scene.plant(scene.core()), scene.drive()
+    plant, inputs = scene.plant(scene.core()), scene.inputs_on_grid()
     ticks, rows = [], []
-    for first, count in exchanges(drive, steps, 1 if hold else every):
+    for first, count in exchanges(inputs, steps, 1 if hold else every):
         if hold:
-            plant.run(plant.core.input(drive.held_at(first)), count)
+            plant.run(plant.core.input(inputs.held_at(first)), count)
         else:
-            advance_plant(plant, drive, first, count)
+            advance_plant(plant, inputs, first, count)
         ticks.append(first + count)
         rows.append(plant.row())
     return Rows("core", np.array(ticks), np.array(rows))

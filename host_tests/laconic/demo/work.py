@@ -13,7 +13,7 @@ import numpy as np
 from laconic.core.plant import Plant
 from laconic.errors import Refused
 from laconic.scene import METHODS, Scene
-from laconic.scene.drive import Drive
+from laconic.scene.inputs import InputsOnGrid
 from laconic.simulation import advance_plant
 from laconic.verification.reference import reference_states
 from laconic.verification.trajectories import error_of
@@ -72,29 +72,29 @@ def target_of(scene: Scene) -> Target:
 
 def usable_factors(scene: Scene) -> list[int]:
     """Multiples of the scene's step that keep every change of the inputs and every compared state on a step."""
-    drive = scene.drive()
-    marks = [COMPARED_EVERY, scene.steps(), *drive.changes]
+    inputs = scene.inputs_on_grid()
+    marks = [COMPARED_EVERY, scene.steps(), *inputs.changes]
     return [factor for factor in FACTORS if all(mark % factor == 0 for mark in marks)]
 
 
-def measure(scene: Scene, target: Target, method: str, factor: int) -> tuple[Point, Scene, Drive]:
+def measure(scene: Scene, target: Target, method: str, factor: int) -> tuple[Point, Scene, InputsOnGrid]:
     """One method with one step: errors, and what is needed to time it."""
     coarse = scene.with_run(method=method, step_s=scene.run.step_s * factor)
-    drive = Drive.on_grid(scene.path, scene.inputs, coarse.run.step_s, scene.steps() // factor)
+    inputs = InputsOnGrid.on_grid(scene.path, scene.inputs, coarse.run.step_s, scene.steps() // factor)
     try:
-        states, chosen = states_at(coarse, drive, target.ticks // factor)
+        states, chosen = states_at(coarse, inputs, target.ticks // factor)
     except Refused as refused:
-        return Point(method, method, coarse.run.step_s, refusal=refused.status), coarse, drive
+        return Point(method, method, coarse.run.step_s, refusal=refused.status), coarse, inputs
     nu, pose, wheel = (target.error(states, part) for part in KINDS)
-    return Point(method, chosen, coarse.run.step_s, nu, pose, wheel), coarse, drive
+    return Point(method, chosen, coarse.run.step_s, nu, pose, wheel), coarse, inputs
 
 
-def states_at(scene: Scene, drive: Drive, ticks: np.ndarray) -> tuple[np.ndarray, str]:
+def states_at(scene: Scene, inputs: InputsOnGrid, ticks: np.ndarray) -> tuple[np.ndarray, str]:
     """States after so many steps, and the method that was used."""
     plant = scene.plant(scene.core())
     states = np.empty((len(ticks), 6 + 2 * scene.wheel_count))
     for row, tick in enumerate(ticks):
-        advance_plant(plant, drive, plant.steps, int(tick) - plant.steps)
+        advance_plant(plant, inputs, plant.steps, int(tick) - plant.steps)
         states[row] = plant.row()
     return without_speeds(states, scene.wheel_count), plant.chosen_method
 
@@ -107,21 +107,21 @@ def without_speeds(rows: np.ndarray, wheel_count: int) -> np.ndarray:
 class Stopwatch:
     """Seconds per step of the core's loop: the least time of a run, less the least time of its calls with 0 steps."""
 
-    def __init__(self, scene: Scene, drive: Drive):
-        self.scene, self.drive = scene, drive
-        self.cycles = -(-TIMED_STEPS // drive.steps)  # a short run is continued from its end, so many times
+    def __init__(self, scene: Scene, inputs: InputsOnGrid):
+        self.scene, self.inputs = scene, inputs
+        self.cycles = -(-TIMED_STEPS // inputs.steps)  # a short run is continued from its end, so many times
         self.run_s = self.empty_s = float("inf")
 
     def measure(self) -> None:
         """Times one more run."""
         plant = self.scene.plant(self.scene.core())
-        if not self.drive.is_held:
+        if not self.inputs.is_held:
             began, self.cycles, self.empty_s = time.thread_time(), 1, 0.0
-            advance_plant(plant, self.drive, 0, self.drive.steps)
+            advance_plant(plant, self.inputs, 0, self.inputs.steps)
             self.run_s = min(self.run_s, time.thread_time() - began)
             return
         stretches = [(plant.core.input(plant.core.input_row(each.values)), each.steps)
-                     for each in self.drive.segments()]
+                     for each in self.inputs.segments()]
         try:
             self.run_s = min(self.run_s, call_time(plant, self.cycles * stretches))
         except Refused:  # continuing leads to states where the step is too large
@@ -133,7 +133,7 @@ class Stopwatch:
     @property
     def step_s(self) -> float:
         """Seconds per step."""
-        return (self.run_s - self.empty_s) / (self.cycles * self.drive.steps)
+        return (self.run_s - self.empty_s) / (self.cycles * self.inputs.steps)
 
 
 def call_time(plant: Plant, stretches: Sequence[tuple[Any, int]]) -> float:
@@ -148,9 +148,9 @@ def measure_all(scene: Scene, target: Target) -> list[Point]:
     """Every method with every usable step; timed alternately, so that other work of the machine affects all alike."""
     points, watches = [], []
     for method, factor in product(METHODS, usable_factors(scene)):
-        point, coarse, drive = measure(scene, target, method, factor)
+        point, coarse, inputs = measure(scene, target, method, factor)
         points.append(point)
-        watches.append(None if point.refusal else Stopwatch(coarse, drive))
+        watches.append(None if point.refusal else Stopwatch(coarse, inputs))
     for _, watch in product(range(REPETITIONS), watches):
         if watch:
             watch.measure()

@@ -111,9 +111,9 @@ def motor_torques(numbers: VehicleNumbers) -> dict[sp.Symbol, sp.Expr]:
     torques = {}
     for i, row in enumerate(numbers.wheel_rows, start=1):
         speed = sp.Add(*(_number(float(s)) * v for s, v in zip(row, nu, strict=True)))
-        drive = sp.Float(numbers.motor_gain_Nm_per_V, 17) * sp.Symbol(f"U_{i}", real=True)
-        brake = sp.Float(numbers.motor_damping_Nms, 17) * speed
-        torques[sp.Symbol(f"M_{i}", real=True)] = drive - brake + sp.Symbol(f"T_{i}", real=True)
+        driving = sp.Float(numbers.motor_gain_Nm_per_V, 17) * sp.Symbol(f"U_{i}", real=True)
+        damping = sp.Float(numbers.motor_damping_Nms, 17) * speed
+        torques[sp.Symbol(f"M_{i}", real=True)] = driving - damping + sp.Symbol(f"T_{i}", real=True)
     return torques
 
 
@@ -125,7 +125,7 @@ def explicit_rates(numbers: VehicleNumbers, system: Bracketed) -> list[sp.Expr]:
     matrix = [[float(sp.diff(e, rate).xreplace(values)) for rate in system.pseudo_rates] for e in equations]
     inverse = np.linalg.inv(np.array(matrix))
     size = np.sqrt(np.outer(np.diag(inverse), np.diag(inverse)))
-    inverse = sp.Matrix(np.where(np.abs(inverse) < 1e-15 * size, 0.0, inverse))  # rounding's rest would be printed
+    inverse = sp.Matrix(np.where(np.abs(inverse) < 1e-15 * size, 0.0, inverse))  # a rest of rounding would be printed
     basis, _ = solve_constraints(numbers.constraint_rows)
     right = sp.Matrix([(-e).xreplace(at_rest).xreplace(values).xreplace(motor_torques(numbers)) for e in equations])
     return list((sp.Matrix(basis) * inverse * right).applyfunc(sp.expand))

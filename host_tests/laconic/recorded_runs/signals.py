@@ -15,7 +15,7 @@ import numpy as np
 
 from laconic.errors import BadInput, reason_of
 from laconic.scene import Outputs, Scene
-from laconic.scene.drive import Input, step_remedy
+from laconic.scene.inputs import Input, step_remedy
 from laconic.scene.reader import LENGTHS, OUTPUT_LENGTHS, OUTPUTS_PER_WHEEL, PER_WHEEL, signal_names
 from laconic.simulation import simulate
 
@@ -116,7 +116,7 @@ def ticks_of(log: SignalLog, scene: Scene) -> np.ndarray:
 
 def replay_signals(scene: Scene, log: SignalLog) -> SignalReplay:
     """Runs the model along the file and compares."""
-    count, held = scene.wheel_count, scene.drive().is_held
+    count, held = scene.wheel_count, scene.inputs_on_grid().is_held
     known_inputs = list(signal_names(LENGTHS, PER_WHEEL, count))
     known_outputs = list(signal_names(OUTPUT_LENGTHS, OUTPUTS_PER_WHEEL, count))
     inputs = tuple(name for name in log.columns if name in known_inputs)

@@ -62,7 +62,7 @@ def run_free(node: NodeClient, scene: Scene, duration_s: float, rate_Hz: int = 0
     run.keep = max(1, round(duration_s * run.rate_Hz / MOST_COMPARED))
     load_scene(node, scene)
     node.select(**select_bits({*frames, "COUNTERS"}))
-    voltages, held = Voltages(node, scene), Held(scene.drive())
+    voltages, held = Voltages(node, scene), Held(scene.inputs_on_grid())
     start_us = node.link.clock.now_us()
     start_clock(node, scene, rate_Hz, watchdog_ms)
     run.punctuality = Punctuality(node.link.clock, CYCLE_S, watchdog_ms)

@@ -23,7 +23,7 @@ from laconic.rig.client import NodeClient
 from laconic.rig.errors import NodeSilent
 from laconic.rig.wire import wire
 from laconic.scene import Scene
-from laconic.scene.drive import Drive
+from laconic.scene.inputs import InputsOnGrid
 from laconic.simulation import advance_plant
 
 INPUT_GROUPS = {  # bit of SELECT → numbers of one input, in the order of the stream
@@ -94,11 +94,11 @@ class RawStream:
 
     def __init__(self, node: NodeClient, scene: Scene, fd: bool = False):
         self.node, self.core = node, scene.core()
-        self.drive: Drive = scene.drive()
-        names = {signal.partition("[")[0] for signal in self.drive.signals}
+        self.inputs: InputsOnGrid = scene.inputs_on_grid()
+        names = {signal.partition("[")[0] for signal in self.inputs.signals}
         self.groups = [bit for bit, fields in INPUT_GROUPS.items() if names & set(fields)]
         self.row_length = 6 + 2 * scene.wheel_count
-        self.sampled = not self.drive.is_held
+        self.sampled = not self.inputs.is_held
         self.columns = self._columns(scene.wheel_count)
         self.fd = fd
         self._in = wire()["RAW_INPUT_FD" if fd else "RAW_INPUT"]
@@ -163,16 +163,16 @@ class RawStream:
         if self.sampled:
             for first in range(0, steps, 1000):
                 count = min(1000, steps - first)
-                samples = self.drive.samples(first, count)
+                samples = self.inputs.samples(first, count)
                 rows = np.zeros((count, 3, self.core.input_length), self.core.dtype)
-                for column, signal in enumerate(self.drive.signals):
+                for column, signal in enumerate(self.inputs.signals):
                     rows[:, :, self.core.input_offset(signal)] = samples[:, :, column]
                 yield from ((first + k, 1, rows[k]) for k in range(count))
             return
-        edges = sorted({*range(0, steps, every), *(c for c in self.drive.changes if c < steps), steps})
-        changes = {0, *self.drive.changes}
+        edges = sorted({*range(0, steps, every), *(c for c in self.inputs.changes if c < steps), steps})
+        changes = {0, *self.inputs.changes}
         for begin, end in itertools.pairwise(edges):
-            row = self.core.input_row(self.drive.held_at(begin)) if begin in changes else None
+            row = self.core.input_row(self.inputs.held_at(begin)) if begin in changes else None
             yield begin, end - begin, row
 
 
@@ -211,9 +211,9 @@ def twin_states(scene: Scene, run: LockstepRun) -> np.ndarray:
     """The rows of the twin at the same steps."""
     if run.steps > scene.steps():
         scene = scene.with_run(duration_s=run.steps * scene.run.step_s)
-    plant, drive, rows, done = run.twin, scene.drive(), [], 0
+    plant, inputs, rows, done = run.twin, scene.inputs_on_grid(), [], 0
     for tick in run.ticks:
-        advance_plant(plant, drive, done, int(tick) - done)
+        advance_plant(plant, inputs, done, int(tick) - done)
         rows.append(plant.row())
         done = int(tick)
     return np.array(rows)

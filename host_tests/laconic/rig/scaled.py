@@ -17,7 +17,7 @@ from laconic.rig.errors import NodeSilent
 from laconic.rig.lockstep import load_scene
 from laconic.rig.wire import Frame, wire
 from laconic.scene import Scene
-from laconic.scene.drive import Drive
+from laconic.scene.inputs import InputsOnGrid
 
 DEFAULT_FRAMES = ("NU", "POSE", "WHEEL_SPEED")
 SELECT_BIT = {"NU": "send_nu", "POSE": "send_pose", "WHEEL_SPEED": "send_wheel_speed", "COUNTERS": "send_counters",
@@ -71,17 +71,17 @@ def groups_of(wheel_count: int) -> int:
 
 
 class Held:
-    """A drive's values at the start of each step, evaluated only where they can change."""
+    """The inputs' values at the start of each step, evaluated only where they can change."""
 
-    def __init__(self, drive: Drive):
-        self.step_s = drive.step_s
-        self._drive, self._changes = drive, set(drive.changes)
+    def __init__(self, inputs: InputsOnGrid):
+        self.step_s = inputs.step_s
+        self._inputs, self._changes = inputs, set(inputs.changes)
         self._values: dict[str, float] = {}
 
     def at(self, tick: int) -> dict[str, float]:
-        """By signal; after the end of the drive, its last values."""
-        if tick < self._drive.steps and (tick in self._changes or not self._drive.is_held or not self._values):
-            self._values = self._drive.held_at(tick)
+        """By signal; after their end, their last values."""
+        if tick < self._inputs.steps and (tick in self._changes or not self._inputs.is_held or not self._values):
+            self._values = self._inputs.held_at(tick)
         return self._values
 
 
@@ -231,7 +231,7 @@ def run_scaled(node: NodeClient, scene: Scene, steps: int | None = None,
     run.twin = load_scene(node, scene)
     node.select(**select_bits(frames))
     node.start_lockstep()
-    held, voltages, link = Held(scene.drive()), Voltages(node, scene), node.link
+    held, voltages, link = Held(scene.inputs_on_grid()), Voltages(node, scene), node.link
     frames_out, frames_in, began = link.frames_out, link.frames_in, time.perf_counter()
     try:
         for tick in range(steps or scene.steps()):

@@ -71,11 +71,11 @@ class Window:
 
 
 @dataclass(frozen=True)
-class Drive:
+class InputsOnGrid:
     """A scene's inputs on the grid of `step_s`, for `steps` steps."""
 
     path: Path
-    inputs: tuple[Input, ...]
+    given: tuple[Input, ...]
     step_s: float
     steps: int
     signals: tuple[str, ...] = ()
@@ -86,7 +86,7 @@ class Drive:
 
     @classmethod
     def on_grid(cls, path: Path, inputs: tuple[Input, ...], step_s: float, steps: int,
-                grid_s: Sequence[float] = ()) -> Drive:
+                grid_s: Sequence[float] = ()) -> InputsOnGrid:
         """Puts the changes on the grid; BadInput where one falls inside a step, with a step that fits `grid_s` too."""
         grid: list[float | Fraction] = [*grid_s, Fraction(repr(step_s)) * steps]
         stepped = [each for each in inputs if each.kind == "steps"]
@@ -99,7 +99,7 @@ class Drive:
     @property
     def is_held(self) -> bool:
         """Whether every input holds its values over each step."""
-        return all(each.kind == "steps" for each in self.inputs)
+        return all(each.kind == "steps" for each in self.given)
 
     def held_at(self, tick: int) -> dict[str, float]:
         """Values at the start of a step, for those that hold them over it (FMU, node, held scenes)."""
@@ -137,7 +137,7 @@ class Drive:
     def _rows(self, ticks: np.ndarray, parts: np.ndarray) -> np.ndarray:
         rows = np.zeros((len(ticks), len(parts), len(self.signals)))
         time_s = (ticks[:, None] + parts[None, :]) * self.step_s
-        for each in self.inputs:
+        for each in self.given:
             column = rows[:, :, self.signals.index(each.signal)]
             column += self._steps_at(each, ticks)[:, None] if each.kind == "steps" else each.at(time_s)
         return rows

@@ -9,7 +9,7 @@ from typing import Any
 
 from laconic.core import Field, load
 from laconic.errors import nearest_of
-from laconic.scene.drive import Input
+from laconic.scene.inputs import Input
 from laconic.scene.not_modelled import KINDS_OF_WHEELS, OF_VEHICLES, OF_WHEELS
 from laconic.scene.table import Table
 

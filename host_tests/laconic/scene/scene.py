@@ -2,7 +2,7 @@
 
     scene = read_scene("scenes/robotino2.toml")
     plant = scene.plant(load(scene.run.real))
-    drive = scene.drive()
+    inputs = scene.inputs_on_grid()
 """
 
 from __future__ import annotations
@@ -15,7 +15,7 @@ from laconic.core import REALS, Core, load
 from laconic.core.plant import Plant
 from laconic.errors import BadInput, Refused
 from laconic.paths import scene_path
-from laconic.scene.drive import Drive, Input, check_resolved, step_remedy
+from laconic.scene.inputs import Input, InputsOnGrid, check_resolved, step_remedy
 from laconic.scene.names import in_file
 from laconic.scene.reader import read_parts, read_run
 from laconic.scene.table import Table, plain, read_toml
@@ -179,11 +179,11 @@ class Scene:
         changes = [t for each in self.inputs if each.kind == "steps" for t in each.t_s if t < self.run.duration_s]
         return [self.run.duration_s, *([self.outputs.every_s] if self.outputs.every_s else []), *changes]
 
-    def drive(self) -> Drive:
+    def inputs_on_grid(self) -> InputsOnGrid:
         """The inputs on the grid of the scene's steps."""
         steps, instants = self.steps(), self.instants()
         check_resolved(self.path, self.inputs, self.run.step_s, instants)
-        return Drive.on_grid(self.path, self.inputs, self.run.step_s, steps, instants)
+        return InputsOnGrid.on_grid(self.path, self.inputs, self.run.step_s, steps, instants)
 
 
 def check_scene(given: Any) -> Scene:

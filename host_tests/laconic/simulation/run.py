@@ -14,7 +14,7 @@ from laconic.core.recording import Recorder
 from laconic.errors import BadInput, Refused
 from laconic.progress import Advance, progress_bar
 from laconic.scene import Scene, check_scene
-from laconic.scene.drive import Drive
+from laconic.scene.inputs import InputsOnGrid
 from laconic.scene.reader import (
     LENGTHS,
     OUTPUT_LENGTHS,
@@ -75,11 +75,11 @@ def is_watched(scene: Scene) -> bool:
     return bool(scene.wheel_count and (vehicle["friction_coefficient"] or vehicle["com_z_m"]))
 
 
-def advance_plant(plant: Plant, drive: Drive, first: int, count: int, recorder: Recorder | None = None) -> None:
-    """Steps `first` … `first + count − 1` of a drive."""
+def advance_plant(plant: Plant, inputs: InputsOnGrid, first: int, count: int, recorder: Recorder | None = None) -> None:
+    """Steps `first` … `first + count − 1` of a run with these inputs."""
     origin, last = plant.steps - first, first + count
     while first < last:
-        schedule, end = drive.schedule(plant.core, first)
+        schedule, end = inputs.schedule(plant.core, first)
         first = min(last, end)
         plant.follow(schedule.from_origin(origin), origin + first, recorder)
 
@@ -102,25 +102,25 @@ def simulate(scene: Scene, signals: Sequence[str] = (), progress: bool = False) 
     if steps / every > MOST_ROWS:
         raise BadInput(f"{scene.path}: outputs.every_s: {steps // every} rows are too many to keep; make it longer, "
                        f"for {MOST_ROWS} or fewer")
-    plant, drive = scene.plant(core), scene.drive()
+    plant, inputs = scene.plant(core), scene.inputs_on_grid()
     ticks = np.append(np.arange(0, steps, every), steps)  # the last row is the end of the run, on the grid or not
     recorder = Recorder(plant, kept, every, len(ticks), watched=is_watched(scene))
     began = time.perf_counter()
     with progress_bar(scene.name, steps if progress else 0, forecasts=progress) as moved:
-        run_window(scene, plant, drive, 0, steps, moved, recorder)
-    recorder.take_last(core.input(drive.held_at(steps)))
+        run_window(scene, plant, inputs, 0, steps, moved, recorder)
+    recorder.take_last(core.input(inputs.held_at(steps)))
     seconds = time.perf_counter() - began
     return Trajectory(scene, plant.chosen_method, steps, seconds, ticks * scene.run.step_s, recorder.columns(),
                       recorder.grip(scene.run.step_s))
 
 
-def run_window(scene: Scene, plant: Plant, drive: Drive, first: int, count: int,
+def run_window(scene: Scene, plant: Plant, inputs: InputsOnGrid, first: int, count: int,
                moved: Advance = lambda _: None, recorder: Recorder | None = None) -> None:
     """Takes `count` steps from step `first` on; a refusal names file and time."""
     try:
         for begin in range(first, first + count, CHUNK):
             steps = min(CHUNK, first + count - begin)
-            advance_plant(plant, drive, begin, steps, recorder)
+            advance_plant(plant, inputs, begin, steps, recorder)
             moved(steps)
     except Refused as refused:
         raise scene.refusal_in_file(refused, f"at t = {plant.steps * scene.run.step_s:g} s") from None

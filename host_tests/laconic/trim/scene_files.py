@@ -74,7 +74,7 @@ def needs_of(scene: Scene) -> Needs:
     return Needs(
         voltage="voltage_V" in acting, axle_torque="axle_torque_Nm" in acting,
         body_wrench=bool(acting & {"body_force_N", "body_moment_Nm"}), world_force=world_force,
-        sampled_input=not scene.drive().is_held,
+        sampled_input=not scene.inputs_on_grid().is_held,
         pose=world_force or not wanted or not wanted.isdisjoint(POSE),
         wheel_angles=scene.wheel_count > 0 and (not wanted or "wheel_angle_rad" in wanted),
         damping=any(scene.plant(load("double")).c.model.decay_per_s))

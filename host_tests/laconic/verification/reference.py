@@ -16,7 +16,7 @@ from typing import Any
 import numpy as np
 
 from laconic.scene import Scene
-from laconic.scene.drive import Drive
+from laconic.scene.inputs import InputsOnGrid
 
 RANK_TOLERANCE = 1e-9
 STIFF_DECAYS = 2e4      # decay rate times duration above which an explicit solver would take too long
@@ -166,17 +166,17 @@ class Reference:
         return np.array(rows)
 
 
-def kinks(drive: Drive) -> list[float]:
+def kinks(inputs: InputsOnGrid) -> list[float]:
     """Instants within the run where an input jumps or bends."""
-    end = drive.steps * drive.step_s
-    times = {t for each in drive.inputs for t in each.t_s if 0.0 < t < end * (1.0 - 1e-12)}
+    end = inputs.steps * inputs.step_s
+    times = {t for each in inputs.given for t in each.t_s if 0.0 < t < end * (1.0 - 1e-12)}
     return sorted(times)
 
 
-def values_at(drive: Drive, time_s: float, from_s: float) -> Values:
+def values_at(inputs: InputsOnGrid, time_s: float, from_s: float) -> Values:
     """Input values at an instant of the smooth stretch that begins at `from_s`."""
-    found = dict.fromkeys(drive.signals, 0.0)
-    for each in drive.inputs:
+    found = dict.fromkeys(inputs.signals, 0.0)
+    for each in inputs.given:
         if each.kind == "steps":
             passed = np.searchsorted(each.t_s, from_s * (1.0 + 1e-12), side="right")
             found[each.signal] += each.value[passed - 1] if passed else 0.0
@@ -187,19 +187,19 @@ def values_at(drive: Drive, time_s: float, from_s: float) -> Values:
 
 def reference_states(scene: Scene, at_s: np.ndarray, rtol: float = 1e-12, atol: float = 1e-13) -> np.ndarray:
     """States (ν, x, y, θ, χ) of a scene at some instants, ascending, the first not before 0."""
-    reference, drive, start = Reference(scene.vehicle), scene.drive(), scene.initial
+    reference, inputs, start = Reference(scene.vehicle), scene.inputs_on_grid(), scene.initial
     state = np.concatenate([reference.nu(scene), [start.x_m, start.y_m, start.heading_rad],
                             np.zeros(len(reference.wheels))])
     rows = np.empty((len(at_s), len(state)))
     rows[at_s == 0.0] = state
-    edges = [0.0, *kinks(drive), float(max(at_s[-1], 0.0))]
+    edges = [0.0, *kinks(inputs), float(max(at_s[-1], 0.0))]
     for begin, end in pairwise(edges):
         if end <= begin:
             continue
         inside = (at_s > begin) & (at_s <= end)
         instants = np.unique(np.append(at_s[inside], end))
-        held = values_at(drive, begin, begin)
-        values = held if drive.is_held else (lambda t, begin=begin: values_at(drive, t, begin))
+        held = values_at(inputs, begin, begin)
+        values = held if inputs.is_held else (lambda t, begin=begin: values_at(inputs, t, begin))
         states = reference.solve(state, begin, instants, values, rtol, atol)
         rows[inside] = states[np.searchsorted(instants, at_s[inside])]
         state = states[-1]

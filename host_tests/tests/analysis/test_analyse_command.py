@@ -6,7 +6,7 @@ import time
 import pytest
 from matplotlib import image
 
-from laconic.analysis.findings import Wishes
+from laconic.analysis.findings import StudyOptions
 from laconic.analysis.from_core import subject_of
 from laconic.analysis.pictures_steady import driven_picture
 from laconic.analysis.study import study
@@ -32,7 +32,7 @@ def test_analyse_answers_for_every_scene_in_under_ten_seconds_of_processor_time(
     assert status == 0
     assert found["failures"] == []
     for part in ("geometry", "free", "steady", "bifurcation", "traction"):
-        assert found["words"][part], f"nothing said about {part}"
+        assert found["words"][part], f"no sentence about {part}"
 
 
 def test_analyse_writes_report_and_pictures_that_can_be_opened(capsys, tmp_path):
@@ -56,7 +56,7 @@ def test_fig_4_is_one_command_with_ellipses_about_k_over_a33(capsys, tmp_path):
     assert (tmp_path / "portrait.png").exists()
 
 
-def test_fig_5_is_one_command_with_the_vertex_where_the_formula_says(capsys, tmp_path):
+def test_fig_5_is_one_command_with_the_vertex_where_the_formula_states(capsys, tmp_path):
     status, out, _ = run(capsys, "analyse", "paper_three_wheel_driven", "--only", "bifurcation", "--straight", "3",
                          "12", "--out", str(tmp_path), "--json")
     found = json.loads(out)["bifurcation"]
@@ -102,7 +102,7 @@ def test_question_that_makes_no_sense_gets_clear_words(capsys, scene, part, word
 
 
 def test_one_steady_motion_alone_is_drawn_with_motions_that_lead_to_it():
-    found = study(subject_of(read_scene("paper_differential_drive"), 5.0), Wishes(("steady",)), lambda *_: None)
+    found = study(subject_of(read_scene("paper_differential_drive"), 5.0), StudyOptions(("steady",)), lambda *_: None)
     (steady,) = found.steady.motions
     (axes,) = driven_picture(found).axes
     runs = [line.get_xdata() for line in axes.lines if len(line.get_xdata()) > 100]

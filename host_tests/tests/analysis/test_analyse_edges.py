@@ -10,7 +10,7 @@ import pytest
 from matplotlib import pyplot as plt
 
 from laconic.analysis.bifurcation_part import bifurcation_part
-from laconic.analysis.findings import Study, Wishes
+from laconic.analysis.findings import Study, StudyOptions
 from laconic.analysis.from_core import Subject, subject_of
 from laconic.analysis.geometry import diagnose
 from laconic.analysis.pictures_steady import bifurcation_picture
@@ -61,9 +61,9 @@ def test_a_name_with_dollars_that_is_no_formula_is_drawn_in_a_page_too():
 
 def test_a_straight_motion_that_turns_by_rounding_alone_has_no_yaw_rate(tmp_path):
     found = Study(subject_from(tmp_path, offset_mecanum()))
-    bifurcation_part(found, Wishes(("bifurcation",)))
+    bifurcation_part(found, StudyOptions(("bifurcation",)))
     raw = np.array([motion.nu[2] for branch in found.bifurcation.diagram.branches for motion in branch.motion])
-    assert raw.any()  # else this scene tells nothing
+    assert raw.any()  # else this scene tests nothing
     picture = bifurcation_picture(found)
     yaw = np.concatenate([line.get_ydata() for line in picture.axes[0].lines if len(line.get_ydata()) > 2])
     low, high = picture.axes[0].get_ylim()
@@ -76,10 +76,10 @@ def test_a_straight_motion_that_turns_by_rounding_alone_has_no_yaw_rate(tmp_path
                                                                                      "0 0 0")])
 def test_motion_that_the_constraints_forbid_is_refused_with_the_nearest_they_allow(capsys, option, nearest):
     assert cli.run(["analyse", *SIDEWAYS, *option]) == 2
-    said = capsys.readouterr()
-    assert said.out == ""
+    printed = capsys.readouterr()
+    assert printed.out == ""
     assert re.fullmatch(rf"laconic: {option[0]}: the constraints forbid .*; the nearest allowed one is {nearest}\n",
-                        said.err)
+                        printed.err)
 
 
 def test_varying_a_motion_that_the_constraints_forbid_is_refused(capsys):
@@ -88,14 +88,14 @@ def test_varying_a_motion_that_the_constraints_forbid_is_refused(capsys):
     assert "--parameter nu2: the constraints forbid" in capsys.readouterr().err
 
 
-def test_without_motors_nothing_is_said_to_drive_or_damp(tmp_path):
+def test_without_motors_no_sentence_lets_them_drive_or_damp(tmp_path):
     text = re.sub(r"motor_.*\n", "", offset_mecanum()).split("[[input]]")[0]
-    said = " ".join(diagnose(subject_from(tmp_path, text + "[run]\nduration_s = 1.0\nstep_s = 0.01\n")).words)
-    assert "there are no motors" in said
-    assert "the motors" not in said
+    words = " ".join(diagnose(subject_from(tmp_path, text + "[run]\nduration_s = 1.0\nstep_s = 0.01\n")).words)
+    assert "there are no motors" in words
+    assert "the motors" not in words
 
 
-def test_the_yaw_authority_says_what_it_is_and_an_unusual_one_what_to_do(tmp_path):
+def test_the_yaw_authority_is_explained_and_an_unusual_one_has_its_remedy(tmp_path):
     usual = " ".join(diagnose(subject_from(tmp_path, offset_mecanum())).words)
     assert "1.41, that is the rim speed in yaw, over" in usual
     assert "check" not in usual
@@ -118,7 +118,7 @@ def test_a_title_of_any_name_stays_within_the_picture_and_ends_in_an_ellipsis(na
     assert "…: what it shows" in text.get_text().replace("\n", " ")
 
 
-def test_a_short_name_stands_in_one_line_with_what_is_said_of_it():
+def test_a_short_name_stands_in_one_line_with_its_description():
     assert wrapped("Robot", 40, "rk4, step 0.01 s") == "Robot: rk4, step 0.01 s"
 
 
@@ -131,6 +131,6 @@ def test_a_new_page_takes_away_the_older_pages_pictures_and_nothing_else(capsys,
     capsys.readouterr()
     assert cli.run(["analyse", "paper_three_wheel_free", "--only", "geometry", "--out", str(tmp_path)]) == 0
     assert {path.name for path in tmp_path.glob("*.png")} == {"bifurcation.png", "mine.png"}
-    said = capsys.readouterr().err
-    assert all(name in said for name in older)
+    printed = capsys.readouterr().err
+    assert all(name in printed for name in older)
     assert json.loads((tmp_path / "report.json").read_text())["pictures"] == []

@@ -87,7 +87,7 @@ def test_near_parallel_rollers_are_called_lopsided(tmp_path):
     assert any("lopsided" in sentence for sentence in found.words)
 
 
-def test_fixed_wheels_say_what_motion_the_constraints_leave(tmp_path):
+def test_fixed_wheels_are_reported_with_the_motion_that_the_constraints_leave(tmp_path):
     two = BODY + wheels("fixed", (0.0, 0.2, -np.pi / 2), (0.0, -0.2, -np.pi / 2))
     found = diagnose(scene_with(tmp_path, two))
     assert found.dof == 2
@@ -95,7 +95,7 @@ def test_fixed_wheels_say_what_motion_the_constraints_leave(tmp_path):
     assert "turning about" in found.words[0]
 
 
-def test_no_wheels_is_said_in_words(tmp_path):
+def test_a_vehicle_without_wheels_is_reported_in_words(tmp_path):
     found = diagnose(scene_with(tmp_path, BODY))
     assert (found.rank, found.dof) == (0, 3)
     assert any("no wheels" in sentence for sentence in found.words)
@@ -126,7 +126,7 @@ def test_normal_loads_of_four_wheels_are_the_least_squares_share(tmp_path):
     assert loads == pytest.approx(np.linalg.pinv(balance) @ (weight * np.array([1.0, 0.05, 0.0])))
 
 
-def test_wheels_in_a_line_cannot_hold_the_body_and_this_is_said(tmp_path):
+def test_wheels_in_a_line_cannot_hold_the_body_and_this_is_reported(tmp_path):
     subject = scene_with(tmp_path, BODY + wheels("fixed", (0.0, 0.2, -np.pi / 2), (0.0, -0.2, -np.pi / 2)))
     assert not static_normal_loads(subject)[1]
     assert any("cannot hold the body upright" in sentence for sentence in study(subject).words)
@@ -165,12 +165,12 @@ def test_first_slip_is_the_first_step_at_which_a_reaction_leaves_the_friction_co
     """A force along x that grows evenly on locked-free omni wheels: reactions grow with it; checked step by step."""
     subject = scene_with(tmp_path, BODY + MOTORS + mecanum(0.2, 0.15, 1), PUSH.replace("60.0", "4000.0"))
     found = study(subject)
-    plant, drive = subject.scene.plant(subject.core), subject.scene.drive()
-    for tick in range(drive.steps):
-        held = subject.core.input(drive.held_at(tick))
+    plant, inputs = subject.scene.plant(subject.core), subject.scene.inputs_on_grid()
+    for tick in range(inputs.steps):
+        held = subject.core.input(inputs.held_at(tick))
         if plant.reactions(held).no_slip_margin_N < 0.0:
             break
-        advance_plant(plant, drive, tick, 1)
+        advance_plant(plant, inputs, tick, 1)
     assert 0 < tick < 999
     assert found.first_slip_s == pytest.approx(tick * 0.001, abs=1e-9)
     assert found.slipping_wheels
@@ -184,7 +184,7 @@ def test_lifting_wheel_is_named(tmp_path):
     assert any("would lift off" in sentence for sentence in found.words)
 
 
-def test_shared_lateral_force_is_said_to_be_split(tmp_path):
+def test_shared_lateral_force_is_reported_as_split(tmp_path):
     found = study(scene_with(tmp_path, BODY + MIXED))
     assert any("only the sum of their lateral forces" in sentence for sentence in found.words)
 

@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 
 from laconic.analysis.continuation import diagram
-from laconic.analysis.findings import Wishes
+from laconic.analysis.findings import StudyOptions
 from laconic.analysis.from_core import subject_of
 from laconic.analysis.motions import command_parameter
 from laconic.analysis.study import study
@@ -23,7 +23,7 @@ def hopf(subject) -> float:
 
 
 def at(subject, command):
-    return study(subject, Wishes(("steady", "bifurcation"), straight=(0.0, command)), lambda *_: None)
+    return study(subject, StudyOptions(("steady", "bifurcation"), straight=(0.0, command)), lambda *_: None)
 
 
 @pytest.mark.parametrize("beside", [0.0, -1e-6, 1e-6, -1e-4, 1e-4])
@@ -31,7 +31,7 @@ def test_a_scene_at_a_hopf_point_or_a_little_beside_it_is_not_a_failure(subject,
     assert at(subject, hopf * (1.0 + beside)).failures == []
 
 
-def test_a_scene_at_a_hopf_point_is_told_so_and_gets_no_cycle_without_size(subject, hopf):
+def test_a_scene_at_a_hopf_point_is_reported_and_gets_no_cycle_without_size(subject, hopf):
     found = at(subject, hopf)
     assert any("stands at the Andronov–Hopf point" in words for words in found.words["bifurcation"])
     assert all(abs(item.cycle.parameter - hopf) > 1.0 for item in found.bifurcation.cycles)

@@ -7,7 +7,7 @@ import pytest
 from matplotlib import pyplot as plt
 from scene_text import constant, table
 
-from laconic.analysis.findings import Wishes
+from laconic.analysis.findings import StudyOptions
 from laconic.analysis.from_core import subject_of
 from laconic.analysis.pictures import PICTURES
 from laconic.analysis.study import study
@@ -48,16 +48,16 @@ step_s = 0.01
 def many(tmp_path_factory):
     """Twelve wheels."""
     path = ring(12, tmp_path_factory.mktemp("ring") / "ring.toml")
-    return study(subject_of(read_scene(path)), Wishes(), lambda *_: None)
+    return study(subject_of(read_scene(path)), StudyOptions(), lambda *_: None)
 
 
 @pytest.fixture(scope="module")
 def hopf():
     """Turning motions, with no limit cycle beside them: those take long."""
-    wishes = Wishes(("free", "steady", "bifurcation"))
+    options = StudyOptions(("free", "steady", "bifurcation"))
     with pytest.MonkeyPatch.context() as patch:
         patch.setattr("laconic.analysis.bifurcation_part.cycle_near", lambda *_: None)
-        return study(subject_of(read_scene("paper_three_wheel_hopf")), wishes, lambda *_: None)
+        return study(subject_of(read_scene("paper_three_wheel_hopf")), options, lambda *_: None)
 
 
 @pytest.fixture(scope="module")
@@ -110,7 +110,7 @@ def test_where_a_wheel_slips_its_row_is_outlined(many, drawn):
 
 def test_wheels_whose_curves_coincide_are_drawn_one_inside_the_other():
     subject = subject_of(read_scene("kuka_youbot").with_run(duration_s=0.5))
-    picture = PICTURES["traction"](study(subject, Wishes(("traction",)), lambda *_: None))
+    picture = PICTURES["traction"](study(subject, StudyOptions(("traction",)), lambda *_: None))
     widths = [line.get_linewidth() for line in picture.axes[1].lines[:4]]
     plt.close(picture)
     assert widths == sorted(widths, reverse=True)
@@ -133,7 +133,7 @@ def test_axes_in_rad_per_second_have_one_in_metres_per_second_with_the_same_zero
             assert max(map(abs, there)) == pytest.approx(0.05 * max(map(abs, here)))  # times the wheel radius
 
 
-def test_a_portrait_says_what_its_symbols_mean(hopf, drawn):
+def test_a_portrait_explains_its_symbols(hopf, drawn):
     (legend,) = drawn(hopf, "portrait").legends
     words = legend.get_title().get_text()
     assert "stays in free motion" in words

@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 from scene_text import constant, wheel
 
-from laconic.analysis.findings import Wishes
+from laconic.analysis.findings import StudyOptions
 from laconic.analysis.from_core import subject_of
 from laconic.analysis.motions import command_parameter, default_range, vehicle_parameter
 from laconic.analysis.reach import HEADROOM, largest_nu
@@ -64,8 +64,8 @@ def test_a_change_of_stability_out_of_reach_is_reported_with_its_speed_and_not_d
     assert "Fold" not in out
 
 
-def test_steady_and_free_motions_are_told_in_metres_a_second_too(base):
-    found = study(subject_of(read_scene(base)), Wishes(("steady", "free")), lambda *_: None)
+def test_steady_and_free_motions_are_reported_in_metres_a_second_too(base):
+    found = study(subject_of(read_scene(base)), StudyOptions(("steady", "free")), lambda *_: None)
     assert any(f"({ROLL_M * SPEED:.4g}, 0) m/s" in words for words in found.words["steady"])
     assert all("m/s" in words[0] for words in found.words.values())
 
@@ -80,7 +80,7 @@ def test_reach_counts_every_input_at_its_largest_whatever_its_kind_and_sign():
     assert largest_nu(subject) == pytest.approx(expected)
 
 
-def test_a_straight_motion_that_the_user_asks_for_is_always_within_the_range():
+def test_a_straight_motion_that_the_user_gives_is_always_within_the_range():
     subject = subject_of(read_scene("turtlebot3_burger"))
     low, high = default_range(command_parameter(subject, "nu1", np.array([500.0, 0.0, 0.0])))
     assert low < 0.0 < 500.0 < high <= HEADROOM * 500.0

@@ -290,7 +290,7 @@ def test_turning_motion_loses_stability_where_a1_a2_equals_a0_a3(hopf_scene):
         assert point.parameter == pytest.approx(HEAVY_MIDDLE.turning(0.0, point.nu[2])[1], rel=1e-9)
 
 
-def test_first_lyapunov_coefficient_says_subcritical(hopf_scene):
+def test_first_lyapunov_coefficient_is_that_of_a_subcritical_point(hopf_scene):
     _, _, found = hopf_scene
     assert all(point.lyapunov > 0.0 and point.kind == "subcritical" for point in found.hopf)
 

@@ -22,7 +22,7 @@ exit 1
 
 
 def lacking(compiler: Path | str, folder: Path) -> str:
-    """What CMake says that a compiler lacks."""
+    """What a compiler lacks, in the words of CMake."""
     script = folder / "try.cmake"
     script.write_text(f'include("{SOURCE_DIR}/cmake/LaconicArmGcc.cmake")\nlaconic_arm_gcc_lacks(it)\n'
                       'message(STATUS "lacks ${it}")\n')
@@ -41,12 +41,12 @@ def bare(tmp_path) -> Path:
     return path
 
 
-def test_a_compiler_without_newlib_builds_no_firmware_and_one_line_says_why(bare, tmp_path):
-    said = lacking(bare, tmp_path)
-    assert "nano.specs" in said and "install libnewlib-arm-none-eabi" in said
+def test_a_compiler_without_newlib_builds_no_firmware_and_one_line_reports_why(bare, tmp_path):
+    message = lacking(bare, tmp_path)
+    assert "nano.specs" in message and "install libnewlib-arm-none-eabi" in message
 
 
-def test_no_compiler_is_said_in_one_line(tmp_path):
+def test_no_compiler_is_reported_in_one_line(tmp_path):
     assert lacking("LACONIC_ARM_GCC-NOTFOUND", tmp_path) == f"no {COMPILER}"
 
 

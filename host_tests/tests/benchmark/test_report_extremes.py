@@ -1,4 +1,4 @@
-"""Numbers at the edge give a right answer or a refusal that says why: never something not finite, never silence."""
+"""Numbers at the edge give a right answer or a refusal with its reason, never a number that is not finite."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""What `laconic report` measures holds on small samples, and its page opens offline with all it says."""
+"""What `laconic report` measures holds on small samples, and its page opens offline with all its parts."""
 
 from __future__ import annotations
 
@@ -64,7 +64,7 @@ def test_no_method_lets_the_norm_of_random_vehicles_grow_unnoticed(real: str):
 
 def test_auto_follows_very_stiff_vehicles_under_voltages_that_vary_inside_the_step():
     rows = stability.stiff_rows([read_scene("robotino2")], factors=(1e3,))
-    assert {row["drive"] for row in rows} == {"constant", "sine 0.5 Hz"}
+    assert {row["inputs"] for row in rows} == {"constant", "sine 0.5 Hz"}
     for row in rows:
         assert row["status"] == "ok", row
         assert row["error_nu"] < 1e-3

@@ -77,7 +77,7 @@ def test_a_command_loads_no_more_than_it_needs():
     assert not loaded_by("simulate", "s1") & {*HEAVY, "can"}
 
 
-def test_what_is_not_built_is_said_with_the_remedy(monkeypatch, tmp_path):
+def test_what_is_not_built_is_reported_with_the_remedy(monkeypatch, tmp_path):
     monkeypatch.setenv("LACONIC_BUILD_DIR", str(tmp_path))
     assert build_dir() == tmp_path
     with pytest.raises(BadInput, match="cmake --workflow --preset demo"):

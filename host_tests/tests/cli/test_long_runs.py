@@ -12,15 +12,15 @@ from laconic.core.grip import Grip, GripEvent
 from laconic.progress import forecast
 
 
-@pytest.mark.parametrize(("per_call_s", "said"), [(0.6, "about 14 days"), (1e-9, "")])
-def test_long_work_is_foretold_once(capsys, per_call_s, said):
+@pytest.mark.parametrize(("per_call_s", "words"), [(0.6, "about 14 days"), (1e-9, "")])
+def test_long_work_is_foretold_once(capsys, per_call_s, words):
     now = [0.0]
     advance = forecast("robot", 2e6, lambda: now[0])
     for _ in range(5):
         now[0] += per_call_s
         advance(1)
     err = capsys.readouterr().err
-    assert (said in err) and err.count("\n") == bool(said)
+    assert (words in err) and err.count("\n") == bool(words)
 
 
 @pytest.mark.skipif(os.name == "nt", reason="closes streams as a Unix shell does")
@@ -38,7 +38,7 @@ def test_a_home_that_cannot_be_written_is_no_matter_for_stderr(tmp_path):
     assert (done.returncode, done.stderr) == (0, "")
 
 
-def test_the_worst_slip_is_told_by_its_margin_and_all_of_a_run_is_100_percent():
+def test_the_worst_slip_is_shown_with_its_margin_and_all_of_a_run_is_100_percent():
     first, worst = (GripEvent(t, 0, "wheel 1", needed, has, 1.0, has - needed)
                     for t, needed, has in ((0.0, 659.0, 330.0), (1.0, 338.0, 0.0)))
     text = Grip(0.5, 3, 3, 0, first, worst, None, None).warning()

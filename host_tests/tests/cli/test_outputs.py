@@ -31,10 +31,10 @@ def scene(tmp_path, monkeypatch) -> Path:
 def refused(capsys, *arguments: object) -> str:
     """The one line of a command line that is refused."""
     assert run([str(each) for each in arguments]) == 2, arguments
-    said = capsys.readouterr()
-    assert said.out == ""
-    assert said.err.startswith("laconic: ") and said.err.count("\n") == 1
-    return said.err
+    printed = capsys.readouterr()
+    assert printed.out == ""
+    assert printed.err.startswith("laconic: ") and printed.err.count("\n") == 1
+    return printed.err
 
 
 def parameters() -> list[tuple[str, click.Parameter]]:
@@ -52,7 +52,7 @@ def test_no_option_names_a_file_without_the_rule():
             assert isinstance(each.type, options.SceneName), f"{name} {each.opts}"
         if "--out" in each.opts:
             assert isinstance(each.type, (options.OutputFile, options.OutputFolder)), name
-        if "--json" in each.opts and name != "derive":  # derive writes its JSON where --out says
+        if "--json" in each.opts and name != "derive":  # derive writes its JSON to --out
             assert each.callback is not None, f"{name}: take json_flag"
 
 
@@ -225,8 +225,8 @@ def test_devices_take_any_number_of_outputs_of_any_name(capsys):
     ("fmu", SCENE, "--fmi", "2", "-o"), ("rig", "s1", "--steps", "2", "--junit")], ids=" ".join)
 def test_a_full_device_is_one_line(capsys, arguments):
     assert run([*arguments, "/dev/full"]) == 2
-    said = capsys.readouterr().err
-    assert "/dev/full: cannot be written (no space left on device)" in said and said.count("\n") == 1
+    printed = capsys.readouterr().err
+    assert "/dev/full: cannot be written (no space left on device)" in printed and printed.count("\n") == 1
 
 
 def test_a_file_is_written_once_in_a_run_and_never_over_an_input(tmp_path):

@@ -92,9 +92,9 @@ def test_any_error_is_one_line_and_status_2(error, words, monkeypatch, capsys):
 
     monkeypatch.setattr(command, "read_scene", fails)
     assert cli.run(["simulate", "s1"]) == 2
-    said = capsys.readouterr()
-    assert said.out == ""
-    assert words in said.err and said.err.startswith("laconic: ") and said.err.count("\n") == 1
+    printed = capsys.readouterr()
+    assert printed.out == ""
+    assert words in printed.err and printed.err.startswith("laconic: ") and printed.err.count("\n") == 1
     monkeypatch.setenv("LACONIC_TRACEBACK", "1")
     assert cli.run(["simulate", "s1"]) == 2
     assert "Traceback" in capsys.readouterr().err

@@ -99,11 +99,11 @@ def test_a_wrong_command_line_is_one_line_and_changes_nothing(line, workplace, m
     monkeypatch.chdir(workplace)
     before = snapshot(workplace)
     assert run(shlex.split(line)) == 2
-    said = capsys.readouterr()
-    assert said.out == ""
-    assert "unexpected" not in said.err.replace("unexpected extra", "")
-    assert WRONG[line] in said.err
-    assert said.err.count("\n") == 1
+    printed = capsys.readouterr()
+    assert printed.out == ""
+    assert "unexpected" not in printed.err.replace("unexpected extra", "")
+    assert WRONG[line] in printed.err
+    assert printed.err.count("\n") == 1
     assert snapshot(workplace) == before
 
 
@@ -118,8 +118,8 @@ def test_a_letter_that_cannot_be_printed_is_refused_in_the_field_that_has_it(
     path.write_text(f'{key} = "a{letter}b"\n{text}')
     for command in ("fmu {} --fmi 2 --ssp -o x.ssp", "fmu {} --fmi 3 -o x.fmu", "simulate {}", "trim {}"):
         assert run(command.format(path).split()) == 2
-        assert f"x.toml: {key}: holds {LETTERS[letter]}" in (said := capsys.readouterr().err)
-        assert said.count("\n") == 1
+        assert f"x.toml: {key}: holds {LETTERS[letter]}" in (printed := capsys.readouterr().err)
+        assert printed.count("\n") == 1
 
 
 def test_a_key_with_control_characters_is_shown_without_them(tmp_path, capsys):
@@ -150,6 +150,6 @@ def test_a_name_of_any_letters_is_shown_as_it_stands(tmp_path, capsys):
     assert run(["simulate", str(path), "--plot", str(picture)]) == 0
     assert picture.stat().st_size > 0
     assert run(["rig", str(path), "--steps", "2"]) == 0
-    said = capsys.readouterr()
-    assert said.err == ""
-    assert said.out.count("[/red] [bold] $x^$ {0} %s") == 2
+    printed = capsys.readouterr()
+    assert printed.err == ""
+    assert printed.out.count("[/red] [bold] $x^$ {0} %s") == 2

@@ -28,7 +28,7 @@ def core(request):
 
 
 def refused(core, **changes) -> Refused:
-    """What the core says to a vehicle with some fields changed."""
+    """The refusal of a vehicle with some fields changed."""
     with pytest.raises(Refused) as caught:
         core.prepare(core.vehicle({**VEHICLE, **changes}))
     return caught.value
@@ -151,10 +151,10 @@ def test_near_the_largest_condition_number_two_digits_of_an_acceleration_are_rig
             exact = mpmath.lu_solve(matrix, mpmath.matrix(wrench.tolist()))
             error = mpmath.matrix(list(found)) - exact
             assert mpmath.sqrt((error.T * matrix * error)[0] / (exact.T * matrix * exact)[0]) < 0.02
-    said = refused(core, **vehicle, wheel_inertia_kgm2=1.5 * inertia)
-    assert said.status == "ill-conditioned"
-    assert said.value == pytest.approx(1.5 * (0.009 / epsilon) ** 2, rel=0.02)
-    assert "leaves fewer than two correct digits" in str(said)
+    refusal = refused(core, **vehicle, wheel_inertia_kgm2=1.5 * inertia)
+    assert refusal.status == "ill-conditioned"
+    assert refusal.value == pytest.approx(1.5 * (0.009 / epsilon) ** 2, rel=0.02)
+    assert "leaves fewer than two correct digits" in str(refusal)
 
 
 def test_steps_are_counted_and_do_not_change_what_many_at_once_give(core):

@@ -32,7 +32,7 @@ def test_what_is_no_input_is_refused_by_its_name(real: str, values: Any, message
 
 
 @pytest.mark.parametrize("real", ["double", "single"])
-def test_numbers_of_an_input_go_where_their_names_say(real: str) -> None:
+def test_numbers_of_an_input_go_where_their_names_state(real: str) -> None:
     held = load(real).input({"voltage_V": np.array([1, 2]), "voltage_V[3]": 3, "body_moment_Nm": 4,
                              "body_force_N": (5, 6)})
     assert list(held.voltage_V)[:4] == [1, 2, 3, 0] and held.body_moment_Nm == 4 and list(held.body_force_N) == [5, 6]

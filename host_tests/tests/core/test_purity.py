@@ -32,7 +32,7 @@ def test_a_pure_file_passes(tmp_path):
 
 
 @pytest.mark.parametrize(
-    ("text", "says"),
+    ("text", "message"),
     [
         ("#include <math.h>\n", "includes math.h"),
         ('#include "fmi3Functions.h"\n', "includes fmi3Functions.h"),
@@ -40,15 +40,15 @@ def test_a_pure_file_passes(tmp_path):
         ("double f(double x) { return __builtin_sqrt(x); }\n", "__builtin_sqrt"),
     ],
 )
-def test_a_source_that_reaches_outside_is_named(tmp_path, text, says):
+def test_a_source_that_reaches_outside_is_named(tmp_path, text, message):
     verdict = judge(tmp_path, text, build=False)
     assert verdict.returncode == 1
-    assert says in verdict.stderr
+    assert message in verdict.stderr
 
 
 @needs_tools
 @pytest.mark.parametrize(
-    ("text", "says"),
+    ("text", "message"),
     [
         ("double sin(double); double f(double x) { return sin(x) + 1.0; }\n", "calls sin"),
         ("void *malloc(unsigned long); void *f(void) { return malloc(8); }\n", "calls malloc"),
@@ -56,10 +56,10 @@ def test_a_source_that_reaches_outside_is_named(tmp_path, text, says):
         ("int f(void) { static int n; return n++; }\n", "writable data in .bss"),
     ],
 )
-def test_an_object_that_reaches_outside_is_named(tmp_path, text, says):
+def test_an_object_that_reaches_outside_is_named(tmp_path, text, message):
     verdict = judge(tmp_path, text)
     assert verdict.returncode == 1
-    assert says in verdict.stderr
+    assert message in verdict.stderr
 
 
 @needs_tools

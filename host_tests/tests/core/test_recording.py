@@ -15,7 +15,7 @@ import pytest
 
 from laconic.core.plant import Plant
 from laconic.scene import Scene, read_scene
-from laconic.scene.drive import CHUNK
+from laconic.scene.inputs import CHUNK
 from laconic.scene.reader import OUTPUT_LENGTHS, OUTPUTS_PER_WHEEL, signal_names
 from laconic.scene.table import tomllib
 from laconic.simulation import input_signals, simulate
@@ -53,20 +53,20 @@ def test_every_column_has_the_bits_of_the_cores_own_functions(tmp_path, name, re
     scene = replace(scene, outputs=replace(scene.outputs, every_s=41 * scene.run.step_s))
     signals = (*signal_names(OUTPUT_LENGTHS, OUTPUTS_PER_WHEEL, scene.wheel_count), *input_signals(scene))
     run = simulate(scene, signals)
-    plant, drive = scene.plant(scene.core()), scene.drive()
+    plant, inputs = scene.plant(scene.core()), scene.inputs_on_grid()
     for row, tick in enumerate([*range(0, scene.steps(), 41), scene.steps()]):
         if sampled:
-            samples = drive.samples(plant.steps, tick - plant.steps)
+            samples = inputs.samples(plant.steps, tick - plant.steps)
             rows = np.zeros((len(samples), 3, plant.core.input_length), plant.core.dtype)
-            for column, signal in enumerate(drive.signals):
+            for column, signal in enumerate(inputs.signals):
                 rows[:, :, plant.core.input_offset(signal)] = samples[:, :, column]
             plant.run_sampled(rows)
         else:
             while plant.steps < tick:
-                plant.run(plant.core.input(drive.held_at(plant.steps)))
-        inputs = drive.held_at(tick)
-        expected = outputs_by_hand(plant, plant.core.input(inputs)) | {signal: 0.0 for signal in input_signals(scene)}
-        expected |= {signal: float(plant.core.dtype.type(value)) for signal, value in inputs.items()}
+                plant.run(plant.core.input(inputs.held_at(plant.steps)))
+        held = inputs.held_at(tick)
+        expected = outputs_by_hand(plant, plant.core.input(held)) | {signal: 0.0 for signal in input_signals(scene)}
+        expected |= {signal: float(plant.core.dtype.type(value)) for signal, value in held.items()}
         assert {signal: run.columns[signal][row] for signal in signals} == {s: expected[s] for s in signals}
     assert len(run.time_s) == row + 1
 

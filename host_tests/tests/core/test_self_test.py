@@ -29,7 +29,7 @@ def processor_has(flag: str) -> bool:
 
 
 def compiled(compiler: str, options: list[str], folder: Path) -> subprocess.CompletedProcess[str]:
-    """What the compiler says to the self-test with its driver."""
+    """The messages of the compiler about the self-test with its driver."""
     return subprocess.run([compiler, "-w", "-I", str(CORE / "include"), *options, *map(str, SOURCES), "-lm",
                            "-o", str(folder / "self_test")], capture_output=True, text=True, check=False)
 

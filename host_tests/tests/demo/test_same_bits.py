@@ -109,9 +109,9 @@ def test_minus_zero_is_not_zero_and_a_missing_step_is_noticed():
 
 
 def test_exchanges_never_straddle_a_change_of_the_inputs():
-    drive = read_scene("s1").drive()
-    windows = list(exchanges(drive, 10_000, 7))
+    inputs = read_scene("s1").inputs_on_grid()
+    windows = list(exchanges(inputs, 10_000, 7))
     assert sum(count for _, count in windows) == 10_000
     assert max(count for _, count in windows) == 7
     starts = {first for first, _ in windows}
-    assert set(drive.changes) <= starts
+    assert set(inputs.changes) <= starts

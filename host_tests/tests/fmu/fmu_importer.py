@@ -139,7 +139,7 @@ class Importer:
         return self
 
     def step(self, at_s: float, step_s: float) -> int:
-        """One communication step; its status. FMI 3: what it says is in `end`."""
+        """One communication step; its status. FMI 3: its results are in `end`."""
         if self.version == 2:
             return self.call("DoStep", at_s, step_s, 1)
         ffi = self.ffi

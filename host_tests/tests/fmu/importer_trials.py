@@ -180,7 +180,7 @@ def alone(trial: Trial, fmu: Path) -> Outcome:
 
 
 def verdict(trial: Trial, fmu: Path, expected: list[float]) -> str:
-    """What the page says of it."""
+    """The sentence of the page about it."""
     try:
         outcome = alone(trial, fmu) if trial.ends_process and not fmu.stem.startswith("fmi2") else trial.run(fmu)
     except Exception:  # whatever the importer's way of refusing

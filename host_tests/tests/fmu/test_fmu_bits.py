@@ -24,7 +24,7 @@ def signal_name(name: str, values: list[float], index: int) -> str:
 
 
 def outputs_of(plant: object, held: object) -> list[float]:
-    """What the core says, in the order that fmu_row asks for."""
+    """The outputs of the core, in the order of fmu_row."""
     pose, reactions = plant.pose, plant.reactions(held)
     velocity, yaw_rate = plant.body_velocity()
     n = plant.wheel_count

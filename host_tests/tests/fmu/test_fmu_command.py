@@ -1,4 +1,4 @@
-"""laconic fmu: what it writes to, what it says, and what it says in time."""
+"""laconic fmu: what it writes to, what it prints, and which warnings come before the work."""
 
 from __future__ import annotations
 
@@ -16,12 +16,12 @@ from laconic.paths import scene_path
 @pytest.mark.parametrize("as_json", [False, True])
 def test_a_device_takes_the_archive_as_it_is(options: str, as_json: bool, capsys) -> None:
     assert run(["fmu", "robotino2", *options.split(), "-o", "/dev/null", *(["--json"] if as_json else [])]) == 0
-    said = capsys.readouterr()
-    assert said.err == ""
+    printed = capsys.readouterr()
+    assert printed.err == ""
     if as_json:
-        assert json.loads(said.out)["bytes"] is None
+        assert json.loads(printed.out)["bytes"] is None
     else:
-        assert said.out == "wrote /dev/null: Festo Robotino 2, 3 wheels\n"
+        assert printed.out == "wrote /dev/null: Festo Robotino 2, 3 wheels\n"
 
 
 @pytest.mark.parametrize(("given", "ending"), [("--fmi 3 -o x.zip", ".fmu"), ("--fmi 3 -o x.ssp", ".fmu"),
@@ -34,14 +34,14 @@ def test_the_ending_that_is_offered_is_the_one_that_is_taken(
     assert list(tmp_path.iterdir()) == []
 
 
-def test_a_scene_in_single_precision_is_told_that_fmus_compute_in_double(tmp_path: Path, capsys) -> None:
+def test_a_scene_in_single_precision_gets_the_warning_that_fmus_compute_in_double(tmp_path: Path, capsys) -> None:
     path = tmp_path / "small.toml"
     path.write_text(scene_path("robotino2").read_text().replace("[run]", '[run]\nreal = "single"'))
     assert run(["fmu", str(path), "--fmi", "3", "-o", str(tmp_path / "x.fmu"), "--json"]) == 0
-    said = capsys.readouterr()
-    assert said.err == f'laconic: warning: {path}: run.real: is "single", but FMUs compute in double precision\n'
-    told = json.loads(said.out)
-    assert (told["real"], told["scene_real"]) == ("double", "single")
+    printed = capsys.readouterr()
+    assert printed.err == f'laconic: warning: {path}: run.real: is "single", but FMUs compute in double precision\n'
+    found = json.loads(printed.out)
+    assert (found["real"], found["scene_real"]) == ("double", "single")
     assert run(["fmu", "robotino2", "--fmi", "3", "-o", str(tmp_path / "x.fmu")]) == 0
     assert capsys.readouterr().err == ""
 

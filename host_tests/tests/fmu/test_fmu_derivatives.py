@@ -99,7 +99,7 @@ def test_adjoint_derivatives_are_the_transpose(point: Importer) -> None:
     np.testing.assert_allclose(list(result), seed @ matrix, rtol=1e-12, atol=1e-12 * np.abs(matrix).max())
 
 
-def test_what_depends_on_what_is_as_the_description_says(point: Importer) -> None:
+def test_what_depends_on_what_is_as_the_description_states(point: Importer) -> None:
     by_reference = {v.valueReference: v.name for v in point.variables.values()}
     for unknown in (*point.description.outputs, *point.description.derivatives):
         name, listed = unknown.variable.name, {v.name for v in unknown.dependencies}

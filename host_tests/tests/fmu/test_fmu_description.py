@@ -75,7 +75,7 @@ def test_the_generic_vehicle_is_mounted_right(tmp_path: Path) -> None:
     assert found.rank == 3
 
 
-def test_the_fmu_of_a_scene_says_what_it_is_and_where_its_numbers_come_from(fmus: list[Path]) -> None:
+def test_the_fmu_of_a_scene_reports_what_it_is_and_where_its_numbers_come_from(fmus: list[Path]) -> None:
     for fmu in fmus[2:]:
         root = fmpy.read_model_description(str(fmu))
         scene = read_scene(fmu.name.rpartition("_")[0])
@@ -107,8 +107,8 @@ def test_fmpy_validates_every_variant_without_a_message(fmus: list[Path]) -> Non
 def test_the_manipulation_toolbox_has_no_finding(fmus: list[Path]) -> None:
     tool = Path(sys.executable).parent / "fmutool"
     for fmu in fmus[:5]:
-        said = subprocess.run([str(tool), "-input", str(fmu), "-check"], capture_output=True, text=True, check=True)
-        lines = (said.stdout + said.stderr).splitlines()
+        done = subprocess.run([str(tool), "-input", str(fmu), "-check"], capture_output=True, text=True, check=True)
+        lines = (done.stdout + done.stderr).splitlines()
         assert any("compliant with FMI" in line for line in lines), lines
         assert any("No semantic error" in line for line in lines), lines
         assert not [line for line in lines if line.startswith(("WARNING", "ERROR", "CRITICAL"))]

@@ -16,7 +16,7 @@ BOTH = pytest.mark.parametrize("version", [2, 3])
 
 
 def refused_at_exit(importer: Importer) -> str:
-    """Initializes a vehicle that cannot start; what the log says."""
+    """Initializes a vehicle that cannot start; the last message of its log."""
     if importer.version == 2:
         importer.must("EnterInitializationMode")
     else:
@@ -30,26 +30,26 @@ def refused_at_exit(importer: Importer) -> str:
 def test_parameters_that_cannot_be_are_refused_by_the_core_with_the_fields_name(version: int, name: str) -> None:
     with Importer(generic(version)) as importer:
         assert importer.set(name, 0.0) == OK
-        said = refused_at_exit(importer)
-        assert name in said
+        message = refused_at_exit(importer)
+        assert name in message
         assert importer.set(name, 1.0) == OK
         importer.must("ExitInitializationMode")
 
 
 @BOTH
-@pytest.mark.parametrize(("name", "value", "says"), [
+@pytest.mark.parametrize(("name", "value", "message"), [
     ("mass_kg", -1.0, "-1 is outside its range: at least 0"), ("wheel_inertia_kgm2", -1.0, "at least 0"),
     ("com_z_m", -5.0, "at least 0"), ("payload_mass_kg", -2.0, "at least 0"), ("step_s", -1e-3, "at least 0"),
     ("friction_coefficient", -0.1, "at least 0"), ("method", 17, "17 is outside its range: 0 to 6"),
     ("method", -1, "0 to 6"), ("support_count", 9, "0 to 4"), ("motor_damping_Nms", math.nan, "not a finite number")])
 def test_a_parameter_outside_its_declared_range_is_refused_when_it_is_set(
-        version: int, name: str, value: float, says: str) -> None:
+        version: int, name: str, value: float, message: str) -> None:
     with Importer(generic(version)) as importer:
         if version == 3:
             before = importer.get(name)
         assert importer.set(name, value) == ERROR
         assert importer.log[-1][2].startswith(f"{name}: ")
-        assert says in importer.log[-1][2]
+        assert message in importer.log[-1][2]
         if version == 3:
             assert importer.get(name) == before
         importer.initialize()
@@ -59,9 +59,9 @@ def test_a_parameter_outside_its_declared_range_is_refused_when_it_is_set(
 def test_a_wheel_whose_rollers_lie_along_its_axle_is_named(version: int) -> None:
     with Importer(generic(version)) as importer:
         assert importer.set("roller_rad", -0.7, 0.7, 0.0, -0.7) == OK
-        said = refused_at_exit(importer)
-        assert "roller_rad" in said
-        assert "3" in said
+        message = refused_at_exit(importer)
+        assert "roller_rad" in message
+        assert "3" in message
 
 
 def test_more_wheels_than_were_set_are_refused() -> None:
@@ -70,9 +70,9 @@ def test_more_wheels_than_were_set_are_refused() -> None:
         assert importer.set("wheel_count", 6) == OK
         importer.must("ExitConfigurationMode")
         importer.wheels = 6
-        said = refused_at_exit(importer)
-        assert "wheel_kind" in said
-        assert "5" in said
+        message = refused_at_exit(importer)
+        assert "wheel_kind" in message
+        assert "5" in message
         for name, values in (("wheel_kind", [1] * 6), ("wheel_x_m", [0.2, 0.2, 0, 0, -0.2, -0.2]),
                              ("wheel_y_m", [0.1, -0.1] * 3), ("axle_rad", [-math.pi / 2] * 6),
                              ("roller_rad", [0.7, -0.7] * 3), ("wheel_locked", [False] * 6)):
@@ -93,16 +93,16 @@ def test_wheels_beyond_those_of_a_scene_are_unset_and_no_wheels_of_another_robot
         importer.must("ExitConfigurationMode")
         for each in ("wheel_kind", "wheel_x_m", "wheel_y_m", "axle_rad"):
             assert importer.get(each)[first - 1:] == [0] * more
-        said = refused_at_exit(importer)
-        assert f"wheel_kind[{first}]: this wheel was never set" in said
+        message = refused_at_exit(importer)
+        assert f"wheel_kind[{first}]: this wheel was never set" in message
 
 
-@pytest.mark.parametrize(("count", "said"), [(0, "0"), (17, "17"), (1 << 40, "1099511627776"), ((1 << 64) - 1, "-1")])
-def test_a_wheel_count_that_does_not_fit_is_refused_at_once_as_it_was_given(count: int, said: str) -> None:
+@pytest.mark.parametrize(("count", "shown"), [(0, "0"), (17, "17"), (1 << 40, "1099511627776"), ((1 << 64) - 1, "-1")])
+def test_a_wheel_count_that_does_not_fit_is_refused_at_once_as_it_was_given(count: int, shown: str) -> None:
     with Importer(generic(3)) as importer:
         importer.must("EnterConfigurationMode")
         assert importer.set("wheel_count", count) == ERROR
-        assert importer.log[-1][2] == f"wheel_count: {said} is outside its range: 1 to 16"
+        assert importer.log[-1][2] == f"wheel_count: {shown} is outside its range: 1 to 16"
 
 
 def test_scalar_fmus_have_no_configuration_mode(tmp_path: Path) -> None:
@@ -173,19 +173,20 @@ def test_a_scene_fmu_without_its_resources_is_refused(version: int, tmp_path: Pa
 
 @BOTH
 def test_an_instance_without_a_name_or_a_token_is_refused_with_a_line(version: int) -> None:
-    for given, said in (({"name": ""}, "no name (an empty text)"), ({"name": None}, "no name (NULL)"),
+    for given, message in (({"name": ""}, "no name (an empty text)"), ({"name": None}, "no name (NULL)"),
                         ({"token": None}, "token is missing (NULL)")):
         importer = Importer(generic(version), **given)
         assert importer.instance == importer.ffi.NULL
-        assert said in importer.log[-1][2]
+        assert message in importer.log[-1][2]
         importer.close()
 
 
-@pytest.mark.parametrize(("wanted", "said"), [((31, 51), None), ((31, 777), "777"), ((2,), "mass_kg"), (None, "NULL")])
-def test_intermediate_variables_that_have_no_intermediate_update_are_refused(wanted, said) -> None:
+@pytest.mark.parametrize(("wanted", "message"), [
+    ((31, 51), None), ((31, 777), "777"), ((2,), "mass_kg"), (None, "NULL")])
+def test_intermediate_variables_that_have_no_intermediate_update_are_refused(wanted, message) -> None:
     importer = Importer(generic(3), update=lambda *_: None, intermediate=wanted)
-    assert (importer.instance == importer.ffi.NULL) == bool(said)
-    assert said is None or said in importer.log[-1][2]
+    assert (importer.instance == importer.ffi.NULL) == bool(message)
+    assert message is None or message in importer.log[-1][2]
     importer.close()
 
 
@@ -301,13 +302,13 @@ def test_an_unknown_kind_of_fmu_is_refused_with_a_line() -> None:
         assert "no such fmuType" in importer.log[-1][2]
 
 
-@pytest.mark.parametrize(("count", "said"), [
+@pytest.mark.parametrize(("count", "shown"), [
     (1 << 63, "9.22337203685478e+18"), ((1 << 64) - (1 << 32), "1.84467440694146e+19"), ((1 << 64) - 7, "-7")])
-def test_a_large_wheel_count_is_shown_as_it_was_given(count: int, said: str) -> None:
+def test_a_large_wheel_count_is_shown_as_it_was_given(count: int, shown: str) -> None:
     with Importer(generic(3)) as importer:
         importer.must("EnterConfigurationMode")
         assert importer.set("wheel_count", count) == ERROR
-        assert importer.log[-1][2] == f"wheel_count: {said} is outside its range: 1 to 16"
+        assert importer.log[-1][2] == f"wheel_count: {shown} is outside its range: 1 to 16"
 
 
 UNTOUCHED = 77.0

@@ -1,4 +1,4 @@
-"""Event mode: an iteration in which the continuous states change says so once, whatever applied the change."""
+"""Event mode: an iteration in which the continuous states change reports it once, whatever call applied the change."""
 
 from __future__ import annotations
 
@@ -10,7 +10,7 @@ KINDS = pytest.mark.parametrize(("version", "kind"), [
 
 
 def states_changed(importer: Importer) -> bool:
-    """Ends an event iteration; what it says of the continuous states."""
+    """Ends an event iteration; whether it reports a change of the continuous states."""
     if importer.version == 2:
         event = importer.ffi.new("fmi2EventInfo *")
         importer.must("NewDiscreteStates", event)
@@ -40,7 +40,7 @@ def read(importer: Importer, what: str) -> list[float]:
 
 @KINDS
 @pytest.mark.parametrize("what", [None, "x_m", "energy_J", "nu_rad_per_s", "states"])
-def test_a_changed_parameter_is_told_once_even_if_a_value_is_read_first(
+def test_a_changed_parameter_is_reported_once_even_if_a_value_is_read_first(
         version: int, kind: str, what: str | None) -> None:
     with in_event(version, kind) as importer:
         before = importer.get("nu_rad_per_s") + importer.get("x_m")
@@ -66,14 +66,14 @@ def test_a_change_that_is_refused_changes_no_states_and_the_mended_one_does(vers
 
 
 @KINDS
-def test_an_iteration_without_a_change_says_so(version: int, kind: str) -> None:
+def test_an_iteration_without_a_change_reports_none(version: int, kind: str) -> None:
     with in_event(version, kind) as importer:
         importer.get("energy_J")
         assert not states_changed(importer)
 
 
 @pytest.mark.parametrize("version", [2, 3])
-def test_a_state_that_is_set_in_an_event_is_told(version: int) -> None:
+def test_a_state_that_is_set_in_an_event_is_reported(version: int) -> None:
     with in_event(version, "ModelExchange") as importer:
         assert importer.set("x_m", 3.0) == OK
         assert states_changed(importer)
@@ -82,7 +82,7 @@ def test_a_state_that_is_set_in_an_event_is_told(version: int) -> None:
 
 
 @KINDS
-def test_a_saved_event_tells_what_it_had_to_tell(version: int, kind: str) -> None:
+def test_a_saved_event_reports_what_it_had_to_report(version: int, kind: str) -> None:
     suffix = "FMUstate" if version == 2 else "FMUState"
     with in_event(version, kind) as importer:
         state = importer.ffi.new("void **")

@@ -31,7 +31,7 @@ def drive(importer: Importer, steps: int, size: int = 1, first: int = 0) -> None
 
 @BOTH
 @pytest.mark.parametrize("size", [1, 10])
-def test_a_run_that_needs_more_grip_says_when_which_wheel_and_how_much_once(version: int, size: int) -> None:
+def test_a_run_that_needs_more_grip_reports_when_which_wheel_and_how_much_once(version: int, size: int) -> None:
     with Importer(generic(version)) as importer:
         assert importer.set("step_s", 0.01) == OK
         assert importer.set("com_z_m", 0.0) == OK  # no wheel lifts
@@ -88,7 +88,7 @@ def judge(importer: Importer, kind: str) -> None:
 
 
 @BOTH
-def test_nothing_is_said_without_a_friction_coefficient_or_when_warnings_are_off(version: int) -> None:
+def test_no_warning_comes_without_a_friction_coefficient_or_when_warnings_are_off(version: int) -> None:
     for given, off in ((0.0, False), (0.6, True)):
         with Importer(generic(version)) as importer:
             assert importer.set("friction_coefficient", given) == OK
@@ -102,7 +102,7 @@ def test_nothing_is_said_without_a_friction_coefficient_or_when_warnings_are_off
 
 
 @BOTH
-def test_it_is_said_again_after_a_reset_and_not_after_a_rollback(version: int) -> None:
+def test_the_warning_comes_again_after_a_reset_and_not_after_a_rollback(version: int) -> None:
     with Importer(generic(version)) as importer:
         suffix = "FMUstate" if version == 2 else "FMUState"
         state = importer.ffi.new("void **")
@@ -148,7 +148,7 @@ def test_slopes_within_a_step_are_judged_too() -> None:
         assert 0.0 < float(line.split()[1]) < 1.0
 
 
-def test_the_fmu_says_what_simulate_says(tmp_path: Path) -> None:
+def test_the_fmu_reports_what_simulate_reports(tmp_path: Path) -> None:
     scene = read_scene("robotino2").with_run(method="rk4", step_s=0.01)
     plant, core = scene.plant(load("double")), load("double")
     voltage = (6.0, -4.0, 3.0)
@@ -172,7 +172,7 @@ def test_the_demos_own_importer_prints_nothing_where_a_robot_slips(version: int,
 
 @BOTH
 @pytest.mark.parametrize("size", [1, 10])
-def test_a_step_that_is_refused_says_nothing_of_grip_and_the_one_that_is_taken_does(version: int, size: int) -> None:
+def test_a_step_that_is_refused_reports_nothing_of_grip_and_the_one_that_is_taken_does(version: int, size: int) -> None:
     with Importer(generic(version)) as importer:
         assert importer.set("step_s", 0.01) == OK
         importer.initialize()
@@ -199,7 +199,7 @@ def test_a_vehicle_that_tips_over_at_rest_lifts_and_does_not_slip(version: int) 
 
 
 @BOTH
-def test_forces_beyond_all_numbers_are_told_in_words(version: int) -> None:
+def test_forces_beyond_all_numbers_are_reported_in_words(version: int) -> None:
     with Importer(generic(version)) as importer:
         importer.initialize()
         assert importer.set("voltage_V", *(1e160,) * 4) == OK

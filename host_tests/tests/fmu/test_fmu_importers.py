@@ -1,4 +1,4 @@
-"""One motion in every importer at hand, compared with the core's own and with what docs/fmu-importers.md says of it.
+"""One motion in every importer at hand, compared with the core's own and with docs/fmu-importers.md.
 
 FMPy, ecospy, libcosimpy and the FMU toolbox come with the project's environment; CasADi with requirements-peers.txt.
 """
@@ -79,7 +79,7 @@ def test_the_page_has_a_row_for_every_importer_and_a_column_for_every_variant() 
 
 @pytest.mark.parametrize("column", VARIANTS)
 @pytest.mark.parametrize("trial", TRIALS, ids=lambda trial: trial.title)
-def test_the_importer_does_with_the_fmu_what_the_page_says(
+def test_the_importer_does_with_the_fmu_what_the_page_states(
         trial: Trial, column: str, fmus: dict[str, Path], expected: list[float]) -> None:
     if not is_here(trial):
         pytest.skip(f"{trial.package} cannot be imported here")

@@ -1,4 +1,4 @@
-"""The state machine: every call in every mode is taken or refused as the table in fmu/lifecycle.c says."""
+"""The state machine: every call in every mode is taken or refused as in the table of fmu/lifecycle.c."""
 
 from __future__ import annotations
 
@@ -135,7 +135,7 @@ CASES = [(version, kind) for version in (2, 3) for kind in ("ModelExchange", "Co
 
 @pytest.mark.parametrize("mode", MODES)
 @pytest.mark.parametrize(("version", "kind"), CASES)
-def test_each_call_is_taken_or_refused_as_the_standard_says(version: int, kind: str, mode: str) -> None:
+def test_each_call_is_taken_or_refused_as_the_standard_states(version: int, kind: str, mode: str) -> None:
     column = CASES.index((version, kind))
     for call, columns in ALLOWED.items():
         allowed = columns[column]

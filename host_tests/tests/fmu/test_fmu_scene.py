@@ -168,9 +168,9 @@ def test_without_enumerations_the_numbers_are_whole_numbers_with_their_meaning(
         assert importer.get("nu_rad_per_s") == other.get("nu_rad_per_s")
 
 
-def test_the_command_says_what_it_made(tmp_path: Path, capsys) -> None:
+def test_the_command_reports_what_it_made(tmp_path: Path, capsys) -> None:
     assert run(["fmu", "robotino2", "--fmi", "2", "--no-enumerations", "--json", "-o", str(tmp_path / "x.fmu")]) == 0
-    said = json.loads(capsys.readouterr().out)
-    assert said["enumerations"] is False
+    printed = json.loads(capsys.readouterr().out)
+    assert printed["enumerations"] is False
     assert run(["fmu", "robotino2", "--fmi", "2", "-o", str(tmp_path / "x.txt")]) == 2
     assert not (tmp_path / "x.txt").exists()

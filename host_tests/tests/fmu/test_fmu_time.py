@@ -144,7 +144,7 @@ def test_model_exchange_knows_its_stop_time_too(version: int) -> None:
         assert "beyond the stop time 10 s" in importer.log[-1][2]
         importer.must("SetTime", 9.9)
         importer.must("CompletedIntegratorStep", 1, flags, flags + 1)
-        for time, status in ((10.2, OK), (10.23, ERROR)):  # a solver looks a fiftieth of the run ahead, and goes back
+        for time, status in ((10.2, OK), (10.23, ERROR)):  # a solver steps a fiftieth of the run ahead, and back
             assert importer.call("SetTime", time) == status
         assert importer.call("CompletedIntegratorStep", 1, flags, flags + 1) == ERROR
         assert "CompletedIntegratorStep: 10.2 s is beyond" in importer.log[-1][2]
@@ -233,7 +233,7 @@ def test_intermediate_updates_see_every_internal_step_and_may_return_early() -> 
 
 @BOTH
 @pytest.mark.parametrize("value", [math.nan, math.inf, -math.inf])
-def test_a_time_or_a_step_that_is_no_number_is_said_to_be_none(version: int, value: float) -> None:
+def test_a_time_or_a_step_that_is_no_number_is_refused_as_none(version: int, value: float) -> None:
     with Importer(generic(version)) as importer:
         importer.initialize()
         for at_s, step_s in ((0.0, value), (value, 0.1)):
@@ -262,13 +262,13 @@ def test_an_advised_step_is_one_that_is_taken(
         if at_s:
             assert importer.step(0.0, at_s) == OK
         assert importer.step(at_s, wrong_s) == ERROR
-        said = importer.log[-1][2]
-        assert ("nearest that is" in said) == (advised_s is not None)
+        message = importer.log[-1][2]
+        assert ("nearest that is" in message) == (advised_s is not None)
         if advised_s is None:
-            assert "cannot be taken in internal steps" in said
+            assert "cannot be taken in internal steps" in message
         else:
-            assert float(said.split("nearest that is: ")[1].removesuffix(" s")) == pytest.approx(advised_s)
-            assert importer.step(at_s, float(said.split("nearest that is: ")[1].removesuffix(" s"))) == OK
+            assert float(message.split("nearest that is: ")[1].removesuffix(" s")) == pytest.approx(advised_s)
+            assert importer.step(at_s, float(message.split("nearest that is: ")[1].removesuffix(" s"))) == OK
 
 
 @BOTH

@@ -72,8 +72,8 @@ def test_legends_of_the_demo_never_cover_curves(tmp_path, drawn):
               for method in METHODS for k in (1, 2)]
     demo_pictures.draw(ring(tmp_path, 4), points, 1e-13, tmp_path / "demo.png")
     assert_legends_stand_apart(drawn[0])
-    said = " ".join(text.get_text() for axes in drawn[0].axes for text in axes.texts)
-    assert "independent integrator" in said and "grey" in said
+    texts = " ".join(text.get_text() for axes in drawn[0].axes for text in axes.texts)
+    assert "independent integrator" in texts and "grey" in texts
 
 
 def test_curves_that_coincide_take_turns_on_top():

@@ -1,4 +1,4 @@
-"""docs/architecture.md says what is true of the tree."""
+"""docs/architecture.md is true of the tree."""
 
 from __future__ import annotations
 

@@ -33,7 +33,7 @@ def output_of(code: str) -> str:
 
 
 @pytest.mark.parametrize("code, promised", EXAMPLES)
-def test_an_example_of_the_page_prints_what_the_page_says(code: str, promised: str) -> None:
+def test_an_example_of_the_page_prints_what_the_page_states(code: str, promised: str) -> None:
     assert output_of(code) == promised
 
 

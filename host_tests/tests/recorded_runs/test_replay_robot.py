@@ -162,7 +162,7 @@ def test_command_writes_report_and_pictures(folder, tmp_path, capsys):
     assert "rolled / camera" in (tmp_path / "out" / "report.md").read_text()
 
 
-def test_single_run_is_said_to_be_fitted_and_judged_on_itself(folder, capsys):
+def test_single_run_is_reported_as_fitted_and_judged_on_itself(folder, capsys):
     assert cli.run(["replay", str(folder / "run0.csv"), "robotino2"]) == 0
     assert "a fit, no prediction" in capsys.readouterr().out
 
@@ -263,7 +263,7 @@ def test_robotino_damping_does_not_differ_from_zero_once_dry_friction_is_allowed
 
 
 @needs_records
-def test_robotino_currents_alone_do_not_tell_the_wheel_speeds_and_the_report_says_so(recorded):
+def test_robotino_currents_alone_do_not_give_the_wheel_speeds_and_the_report_states_it(recorded):
     shares = np.array([[p.transient_error_share for p in c.predictions] for c in recorded.judged()]).mean(axis=0)
     assert shares.min() > 0.25
     assert any("small difference of large numbers" in sentence for sentence in report.in_words(recorded))

@@ -1,4 +1,4 @@
-"""`laconic replay` of what `laconic simulate` wrote: no map is needed, and it says what it compared."""
+"""`laconic replay` of what `laconic simulate` wrote: no map is needed, and it lists what it compared."""
 
 from __future__ import annotations
 
@@ -44,7 +44,7 @@ def test_the_inputs_of_a_run_give_the_run_again(written, tmp_path, capsys):
     assert max(each["largest_difference"] for each in found["compared"]) == 0.0
 
 
-def test_another_vehicle_differs_and_it_is_said_where(written, tmp_path, capsys):
+def test_another_vehicle_differs_and_the_report_names_where(written, tmp_path, capsys):
     scene = scene_without_inputs(tmp_path)
     text = scene.read_text()
     mass = next(line for line in text.splitlines() if line.startswith("mass_kg"))
@@ -55,7 +55,7 @@ def test_another_vehicle_differs_and_it_is_said_where(written, tmp_path, capsys)
     assert 0.0 < worst["at_s"] <= 10.0
 
 
-def test_the_report_says_what_was_compared(written, tmp_path, capsys):
+def test_the_report_lists_what_was_compared(written, tmp_path, capsys):
     table = [line.split(",") for line in written.read_text().splitlines()]
     moved = [["time_s", *table[0][1:], "battery_V"], *([repr(float(t) + 5.0), *rest, "12.6"] for t, *rest in table[1:])]
     written.write_text("\n".join(map(",".join, moved)))
@@ -109,8 +109,8 @@ def test_a_file_that_cannot_be_replayed_is_one_line(text, words, tmp_path, capsy
     path = tmp_path / "run.csv"
     path.write_text(text)
     assert run(["replay", str(path), "s1"]) == 2
-    said = capsys.readouterr()
-    assert words in said.err and str(path) in said.err and said.err.count("\n") == 1 and said.out == ""
+    printed = capsys.readouterr()
+    assert words in printed.err and str(path) in printed.err and printed.err.count("\n") == 1 and printed.out == ""
 
 
 def test_friction_cannot_be_fitted_without_currents(written, capsys):

@@ -17,7 +17,7 @@ COMPILERS = [name for name in ("gcc", "clang") if shutil.which(name)]
 
 
 def compiled(compiler: str, *definitions: str, only: str = "*.c") -> str:
-    """What the compiler says to the files of the node."""
+    """The messages of the compiler about the files of the node."""
     files = [str(path) for path in sorted((FIRMWARE / "src").glob(only)) if path.name != "shared_library.c"]
     where = [word for path in INCLUDES for word in ("-I", str(path))]
     where += ["-isystem", str(build_dir() / "firmware_stub" / "wire")]

@@ -14,7 +14,7 @@ from laconic.rig.buses import node_process
 
 @pytest.mark.parametrize("real", ["double", "single"])
 @pytest.mark.parametrize("flag", ["--help", "-h"])
-def test_the_node_says_how_it_is_started(real: str, flag: str) -> None:
+def test_the_node_reports_how_it_is_started(real: str, flag: str) -> None:
     ran = subprocess.run([built(f"bin/laconic-node-{real}"), "--port", "x", flag], capture_output=True, text=True)
     assert ran.returncode == 0 and ran.stderr == ""
     assert all(word in ran.stdout for word in ("usage:", "--port", "--id-base", "--bitrate", "--once", "laconic rig"))
@@ -25,7 +25,7 @@ def test_a_wrong_option_of_the_node_is_one_line_that_names_it() -> None:
     assert ran.returncode == 2 and ran.stderr.count("\n") == 1 and "--prot" in ran.stderr and "--help" in ran.stderr
 
 
-def test_a_second_client_is_told_that_the_line_is_occupied_and_the_first_is_not_disturbed() -> None:
+def test_a_second_client_learns_that_the_line_is_occupied_and_the_first_is_not_disturbed() -> None:
     with node_process() as port, socket.create_connection(("127.0.0.1", port)) as first:
         first.sendall(b"V\r")
         assert first.recv(16) == b"V1010\r"
@@ -37,7 +37,7 @@ def test_a_second_client_is_told_that_the_line_is_occupied_and_the_first_is_not_
         assert first.recv(16) == b"V1010\r"
 
 
-def test_a_rig_that_is_the_second_client_says_why_it_cannot_reach_the_node(capsys: pytest.CaptureFixture[str]) -> None:
+def test_a_rig_that_is_the_second_client_names_why_it_cannot_reach_the_node(capsys: pytest.CaptureFixture[str]) -> None:
     with node_process() as port, socket.create_connection(("127.0.0.1", port)) as first:
         first.sendall(b"V\r")
         first.recv(16)

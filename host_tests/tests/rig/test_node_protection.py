@@ -117,12 +117,12 @@ def test_the_residual_of_larger_deltas_stays_what_is_documented(capsys: pytest.C
 
 
 def statuses(frames: list[tuple[bool, int]], max_delta: int = 1, mask: int = 15) -> list[str]:
-    """What a fresh receiver says to (CRC right?, counter) one after the other."""
+    """The outcomes of a fresh receiver for pairs (CRC right?, counter), one after the other."""
     receiver = NODE.receiver()
     return [E2E_STATUS[LIB.laconic_e2e_check(receiver, right, counter, mask, max_delta)] for right, counter in frames]
 
 
-def test_the_status_machine_says_what_happened() -> None:
+def test_the_status_machine_reports_what_happened() -> None:
     assert statuses([(True, 7), (True, 8), (True, 8), (True, 11), (False, 9), (True, 9)]) == [
         "ok", "ok", "repeated", "wrong sequence", "error", "ok"]
     assert statuses([(True, 14), (True, 1)], max_delta=3) == ["ok", "ok some lost"]

@@ -45,7 +45,7 @@ def test_all_scenes_give_the_bits_of_the_host_core_on_an_emulated_board(name: st
     with emulated_node(name) as node:
         for scene_name in scene_names():
             scene = read_scene(scene_name).with_run(real=BOARDS[name].real)
-            steps = STEPS.get(name, 10_000) if scene.drive().is_held else 300  # sampled inputs take one SYNC a step
+            steps = STEPS.get(name, 10_000) if scene.inputs_on_grid().is_held else 300  # sampled: a SYNC for each step
             run = run_lockstep(node, scene, steps, every=STEPS_PER_SYNC)
             assert run.states.tobytes() == twin_states(scene, run).tobytes(), scene_name
             node.stop()
@@ -104,7 +104,7 @@ def test_one_command_and_one_answer_a_step_run_at_150_steps_a_second_or_more() -
     assert judgement.figures["steps_per_s"] >= 150
 
 
-def test_a_board_without_the_scenes_method_says_what_to_do() -> None:
+def test_a_board_without_the_scenes_method_names_the_remedy() -> None:
     scene = read_scene("kuka_youbot").with_run(real="single", method="exact-flow")
     with emulated_node("an386-small") as node, pytest.raises(NodeRefused, match="method unknown.*--method"):
         run_lockstep(node, scene, 10)

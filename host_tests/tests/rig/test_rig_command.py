@@ -76,7 +76,7 @@ def test_inputs_of_every_kind_sampled_within_the_step_reach_the_node_bit_for_bit
     assert judgement.passed, judgement.verdicts
 
 
-def test_a_run_is_logged_to_the_last_frame_replayed_and_told_to_ci(tmp_path: Path, capsys: object) -> None:
+def test_a_run_is_logged_to_the_last_frame_replayed_and_reported_to_ci(tmp_path: Path, capsys: object) -> None:
     logs = [tmp_path / "run.blf", tmp_path / "run.asc"]
     arguments = ["rig", "s1", "--steps", "50", "--junit", str(tmp_path / "run.xml"), "--json"]
     assert run([*arguments, *(word for path in logs for word in ("--log", str(path)))]) == 0
@@ -133,7 +133,7 @@ def rig_on(port: int, *more: str) -> int:
     return run(["rig", "s1", "--interface", "slcan", "--channel", channel, "--steps", "200000", *more])
 
 
-def test_a_wrong_bit_rate_is_told(capsys: object) -> None:
+def test_a_wrong_bit_rate_is_refused(capsys: object) -> None:
     with node_process("double", ID_BASE, "--bitrate", "500000") as port:
         assert rig_on(port, "--bitrate", "250000") == 2
         assert "bit rate" in capsys.readouterr().err
@@ -161,8 +161,8 @@ def test_a_bus_that_dies_in_the_run_is_a_verdict_and_the_log_is_whole(tmp_path: 
     result = json.loads(capsys.readouterr().out)
     assert result["verdicts"][0]["name"] == "run" and "died" in result["verdicts"][0]["detail"]
     names = [wire().by_offset[message.arbitration_id - ID_BASE].name for message in read_log(tmp_path / "run.blf")]
-    asked, answered = names.count("VOLTAGE") - 1, names.count("NU")  # the first is for reference
-    assert asked > 5 and abs(asked - answered) <= 1
+    sent, answered = names.count("VOLTAGE") - 1, names.count("NU")  # the first is for reference
+    assert sent > 5 and abs(sent - answered) <= 1
     assert names[-1] in ("CONTROL", "VOLTAGE", "NU", "POSE", "WHEEL_SPEED", "HEARTBEAT")  # CONTROL: a STOP in vain
 
 

@@ -87,7 +87,7 @@ def test_faulty_is_a_plug_in_that_python_can_finds_by_name() -> None:
     ({"bitrate": 50_000}, lambda got: 70 < len(got) < 110),
     ({"loss": 1.0, "only_id": 0x101}, lambda got: {m.arbitration_id for m in got} == {0x100, 0x102}),
     ({"loss": 1.0, "direction": "in"}, lambda got: len(got) == 200)])
-def test_each_fault_does_what_its_name_says(fault: dict[str, object], holds: object) -> None:
+def test_each_fault_does_what_its_name_states(fault: dict[str, object], holds: object) -> None:
     assert holds(arrivals(*bus_pair(seed=3, **fault)))
 
 
@@ -103,7 +103,7 @@ def test_on_a_busy_wire_the_lowest_identifier_goes_first() -> None:
     far.shutdown()
 
 
-def test_an_option_of_no_use_is_told_by_name() -> None:
+def test_an_option_of_no_use_is_refused_by_name() -> None:
     with pytest.raises(can.CanInitializationError, match="loss=often"):
         can.Bus(interface="faulty", channel="x", under="virtual", loss="often")
     with pytest.raises(can.CanInitializationError, match="probability"):

@@ -144,7 +144,7 @@ def test_spoilt_answers_fail_the_verdict_about_frames_and_not_the_one_about_the_
     assert abs(found["clock"].worst) < 0.002
 
 
-def test_a_free_run_without_fault_says_that_all_frames_were_right() -> None:
+def test_a_free_run_without_fault_reports_that_all_frames_were_right() -> None:
     with own_node("virtual", "double") as node:
         found = verdicts(judge_free_run(node, SCENE, 0.2, 1000, 100, {}))
     assert all(each.passed for each in found.values()) and found["frames"].detail.endswith("all right")

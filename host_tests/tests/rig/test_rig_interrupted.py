@@ -86,7 +86,7 @@ def test_an_interrupted_run_leaves_the_node_at_rest_and_the_next_one_works(
 
 
 @pytest.mark.parametrize("mode, step", [("lockstep", LAST), ("same bits", LAST), ("free run", 10 * LAST)])
-def test_an_interrupted_run_tells_every_verdict_up_to_its_last_step_as_json_and_to_ci(
+def test_an_interrupted_run_reports_every_verdict_up_to_its_last_step_as_json_and_to_ci(
         mode: str, step: int, port: int, tmp_path: Path, monkeypatch: pytest.MonkeyPatch,
         capsys: pytest.CaptureFixture[str]) -> None:
     at_step(monkeypatch, lambda: os.kill(os.getpid(), signal.SIGTERM))
@@ -199,7 +199,8 @@ def test_a_node_that_somebody_has_left_running_is_stopped_by_command(flag: str, 
     assert "found in state free run, now " + state in capsys.readouterr().out
 
 
-def test_a_run_recovers_a_node_that_it_finds_running_and_says_so(port: int, capsys: pytest.CaptureFixture[str]) -> None:
+def test_a_run_recovers_a_node_that_it_finds_running_with_a_note(
+        port: int, capsys: pytest.CaptureFixture[str]) -> None:
     leave_running(port)
     assert run(["rig", "s1", *on(port), "--steps", "10", "--json"]) == 0
     assert "found in state free run" in json.loads(capsys.readouterr().out)["notes"][0]

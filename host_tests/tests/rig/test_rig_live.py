@@ -51,7 +51,7 @@ def test_each_group_of_wheels_has_a_line_with_the_wheels_numbers(view: View) -> 
     assert len(lines) == 2 and "voltage_1" in lines[0] and "voltage_4" in lines[1]
 
 
-def test_more_kinds_of_frames_than_lines_leave_out_the_oldest_and_say_so(view: View) -> None:
+def test_more_kinds_of_frames_than_lines_leave_out_the_oldest_and_show_how_many(view: View) -> None:
     for k in range(40):
         view.take(can.Message(arbitration_id=0x700 + k, is_extended_id=False, data=b"\1"))
     for frame in (wire()["NU"], wire()["HEARTBEAT"]):

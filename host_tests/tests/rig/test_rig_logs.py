@@ -59,7 +59,7 @@ def test_a_log_that_was_never_closed_fails_the_verdict_about_the_log_alone(tmp_p
     assert [each["name"] for each in failed] == ["log"] and "never closed" in failed[0]["detail"]
 
 
-def test_a_voltage_that_is_missing_in_a_log_is_told_by_the_counter_of_the_rig(
+def test_a_voltage_that_is_missing_in_a_log_is_reported_by_the_counter_of_the_rig(
         tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
     path = recorded(tmp_path, ".asc")
     lines = path.read_text(encoding="utf-8").splitlines(keepends=True)

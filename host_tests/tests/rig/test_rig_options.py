@@ -23,7 +23,7 @@ from laconic.rig.faults import faults_from
     (["--interface", "faulty", "--bus-option", "delay_s=-1"], "zero or more"),
     (["--interface", "faulty", "--bus-option", "delay_s=nan"], "zero or more"),
     (["--interface", "faulty", "--bus-option", "keep_queue=perhaps"], "true or false")])
-def test_a_bus_option_that_nobody_would_look_at_is_refused_with_the_nearest_name(
+def test_a_bus_option_that_nobody_would_read_is_refused_with_the_nearest_name(
         arguments: list[str], words: str, capsys: pytest.CaptureFixture[str]) -> None:
     assert run(["rig", "s1", "--steps", "5", *arguments]) == 2
     error = capsys.readouterr().err
@@ -67,7 +67,7 @@ def test_a_wrong_id_base_of_the_scene_is_echoed_so_too(tmp_path: Path, capsys: p
     assert "rig.id_base: 0x2BC cannot" in error and str(path) in error
 
 
-def test_a_scene_is_asked_for_where_one_is_needed(capsys: pytest.CaptureFixture[str]) -> None:
+def test_a_missing_scene_is_refused_where_one_is_needed(capsys: pytest.CaptureFixture[str]) -> None:
     assert run(["rig"]) == 2
     assert "SCENE" in capsys.readouterr().err
     assert run(["rig", "--stop"]) == 2
@@ -90,7 +90,7 @@ def test_numbers_that_cannot_work_are_refused_before_anything_is_sent(arguments:
     assert error.count("\n") == 1 and words in error
 
 
-def test_a_free_run_tells_its_results_as_json(capsys: pytest.CaptureFixture[str]) -> None:
+def test_a_free_run_reports_its_results_as_json(capsys: pytest.CaptureFixture[str]) -> None:
     assert run(["rig", "s1", "--free-run", "--steps", "50", "--json"]) == 0
     result = json.loads(capsys.readouterr().out)
     assert result["passed"] is True and {"rig", "timeouts"} <= {each["name"] for each in result["verdicts"]}

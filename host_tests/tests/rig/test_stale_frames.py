@@ -44,14 +44,14 @@ class Trial:
             client.stop()
 
     def deliver(self, frame: tuple[int, bytes, bool]) -> None:
-        """A frame comes; what the node says to it is dropped."""
+        """A frame comes; the answers of the node are dropped."""
         offset, data, fd = frame
         self.now_us += 10
         self.node.on_frame(ID_BASE + offset, data, self.now_us, fd=fd)
         self.node.tick(self.now_us)
 
     def answers(self) -> dict[str, dict[str, int]]:
-        """What the node has to say, by name."""
+        """The frames that the node sends, by name."""
         found = {}
         while (frame := self.node.take_frame()) is not None:
             message = wire().by_offset[frame[0] - ID_BASE]

@@ -1,4 +1,4 @@
-"""docs/wire.md is what the contract says, its examples are what the node computes, and what it requires the node
+"""docs/wire.md is made of the contract, its examples are what the node computes, and what it requires the node
 does."""
 
 from __future__ import annotations
@@ -59,7 +59,7 @@ def test_every_enumeration_and_every_frame_stands_on_the_page() -> None:
     assert all(f"{number} {name}" in PAGE for number, name in enumerate(METHODS))
 
 
-def test_the_node_requires_what_the_page_says_and_nothing_else() -> None:
+def test_the_node_requires_what_the_page_states_and_nothing_else() -> None:
     """Each number of a vehicle that has all of them is left out once."""
     scene = read_scene("s1")
     plant: Plant = scene.plant(scene.core())

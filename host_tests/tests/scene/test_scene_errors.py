@@ -44,7 +44,7 @@ duration_s = 1.0
 step_s = 0.01
 """
 
-# what is changed in the good scene, and what the line must say
+# what is changed in the good scene, and what the line must contain
 BAD = {
     "missing field": (("mass_kg = 20.0\n", ""), ("vehicle.mass_kg", "missing")),
     "missing table": (("[run]\nduration_s = 1.0\nstep_s = 0.01\n", ""), ("run", "missing")),
@@ -140,7 +140,7 @@ BAD = {
 
 
 def complaint(capsys: pytest.CaptureFixture[str], arguments: list[str]) -> str:
-    """The one line that a command with bad input says."""
+    """The one line that a command prints for bad input."""
     assert run(arguments) == 2
     captured = capsys.readouterr()
     assert captured.out == ""
@@ -175,7 +175,7 @@ def test_an_input_beyond_single_precision_is_named_with_its_time(kind, t_s, valu
     assert f"{path}: at t = 0.5 s: voltage_V[1]: infinity is not a finite number" in line
 
 
-def test_analyse_says_when_a_step_is_refused(tmp_path, capsys):
+def test_analyse_reports_when_a_step_is_refused(tmp_path, capsys):
     path = tmp_path / "scene.toml"
     path.write_text(GOOD.replace("-3.0", "-1e300"))
     assert f"{path}: at t = 0.5 s: " in complaint(capsys, ["analyse", str(path), "--only", "traction"])
@@ -189,7 +189,7 @@ def test_a_start_that_slides_a_fixed_wheel(tmp_path, capsys):
     assert "initial.nu_rad_per_s[" in line
 
 
-def test_a_start_that_slides_a_fixed_wheel_is_told_by_the_keys_that_were_given(tmp_path, capsys):
+def test_a_start_that_slides_a_fixed_wheel_is_reported_by_the_keys_that_were_given(tmp_path, capsys):
     path = tmp_path / "scene.toml"
     start = "[initial]\nvelocity_body_m_per_s = [0.2, 0.1]\n"
     path.write_text(GOOD.replace('"omni"', '"fixed"').replace("axle_deg = 180", "axle_deg = 90") + start)

@@ -88,7 +88,7 @@ def test_the_step_that_a_replay_proposes_fits_the_scene_too(tmp_path, capsys):
     assert "a step of 0.01 s would do" in capsys.readouterr().err
 
 
-def test_a_file_that_is_no_log_is_told_what_its_first_column_must_be(tmp_path, capsys):
+def test_a_file_that_is_no_log_is_refused_with_what_its_first_column_must_be(tmp_path, capsys):
     log = tmp_path / "log.csv"
     log.write_text("t;x\n0;0\n1;0\n")
     assert run(["replay", str(log), str(scene_file(tmp_path, INPUTS["table"][0]))]) == 2

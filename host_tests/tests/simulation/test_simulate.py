@@ -51,10 +51,10 @@ def test_csv_holds_every_bit_of_the_cores_outputs(tmp_path, capsys):
     header, numbers = rows_of(out)
     scene = read_scene("s1")
     assert header == ["time_s", *usual_signals(scene)]
-    plant, drive = scene.plant(scene.core()), scene.drive()
+    plant, inputs = scene.plant(scene.core()), scene.inputs_on_grid()
     for row in range(0, len(numbers) - 1, 97):
         while plant.steps < 10 * row:
-            plant.run(plant.core.input(plant.core.input_row(drive.held_at(plant.steps))), 1)
+            plant.run(plant.core.input(plant.core.input_row(inputs.held_at(plant.steps))), 1)
         assert numbers[row, 1:4].tolist() == plant.nu.tolist()
         assert numbers[row, 4:6].tolist() == [plant.pose.x_m, plant.pose.y_m]
     assert numbers[:, 0].tolist() == [0.001 * tick for tick in range(0, 10_001, 10)]
@@ -80,7 +80,7 @@ def test_csv_to_stdout_is_nothing_but_csv(capsys):
     assert len(lines) == 1002
 
 
-def test_json_says_what_was_run_and_where_it_ended(capsys):
+def test_json_reports_what_was_run_and_where_it_ended(capsys):
     assert run(["simulate", "turtlebot3_burger", "--json"]) == 0
     answer = json.loads(capsys.readouterr().out)
     assert (answer["method"], answer["chosen"], answer["steps"]) == ("auto", "exponential-kahan-4", 12_000)
@@ -89,7 +89,7 @@ def test_json_says_what_was_run_and_where_it_ended(capsys):
 
 
 @pytest.mark.parametrize(("name", "chosen"), [("s1", "exact-flow-4"), ("turtlebot3_burger", "exponential-kahan-4")])
-def test_people_are_told_which_method_auto_picked(name, chosen, capsys):
+def test_people_are_shown_which_method_auto_picked(name, chosen, capsys):
     assert run(["simulate", name]) == 0
     assert f"auto (picked {chosen})" in capsys.readouterr().out
 
@@ -158,7 +158,7 @@ def test_the_run_ends_at_its_end_even_between_two_outputs(tmp_path):
     assert simulate(read_scene(path)).time_s.tolist() == pytest.approx([0.0, 0.3, 0.6, 0.9, 1.0])
 
 
-def test_a_step_that_is_refused_on_the_way_says_when(tmp_path, capsys):
+def test_a_step_that_is_refused_on_the_way_reports_when(tmp_path, capsys):
     spinning = force("steps", "t_s=[0.0]\nvalue=[20.0]").replace("body_force_N[1]", "body_moment_Nm")
     path = scene_file(tmp_path, spinning, "duration_s = 10.0\nstep_s = 0.1\n")
     assert run(["simulate", str(path), "--method", "rk4"]) == 2

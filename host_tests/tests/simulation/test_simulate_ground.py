@@ -1,4 +1,4 @@
-"""`laconic simulate` says once where the ground could not give what the no-slip model asks of it."""
+"""`laconic simulate` warns once where the ground cannot give the reactions that the no-slip model needs."""
 
 from __future__ import annotations
 
@@ -34,21 +34,21 @@ def mecanum(tmp_path: Path, ground: str = "friction_coefficient = 0.6\ncom_z_m =
     return str(path)
 
 
-def test_a_run_without_enough_grip_says_so_once_with_instant_wheel_and_newtons(tmp_path, capsys):
+def test_a_run_without_enough_grip_is_warned_of_once_with_instant_wheel_and_newtons(tmp_path, capsys):
     scene = mecanum(tmp_path, ground="friction_coefficient = 0.6")
     assert run(["simulate", scene]) == 0
-    said = capsys.readouterr().err
-    assert len(said.splitlines()) == 1
-    assert "slips at 0.5 s (needs " in said and " N of grip, has 191 N" in said
-    assert "lifts" not in said
+    printed = capsys.readouterr().err
+    assert len(printed.splitlines()) == 1
+    assert "slips at 0.5 s (needs " in printed and " N of grip, has 191 N" in printed
+    assert "lifts" not in printed
 
 
-def test_a_wheel_that_lifts_is_told_with_its_normal_load(tmp_path, capsys):
+def test_a_wheel_that_lifts_is_reported_with_its_normal_load(tmp_path, capsys):
     assert run(["simulate", mecanum(tmp_path, ground="com_z_m = 0.6"), "--json"]) == 0
-    told = capsys.readouterr()
-    assert len(told.err.splitlines()) == 1 and "slips" not in told.err
-    assert "lifts at 0.5 s (normal load -" in told.err
-    found = json.loads(told.out)["no_slip"]
+    printed = capsys.readouterr()
+    assert len(printed.err.splitlines()) == 1 and "slips" not in printed.err
+    assert "lifts at 0.5 s (normal load -" in printed.err
+    found = json.loads(printed.out)["no_slip"]
     assert found["first_lift"]["normal_N"] < 0 and found["first_lift"]["where"] in ("wheel 1", "wheel 2")
     assert found["friction_coefficient"] is None and found["slipping"] == 0
 
@@ -57,14 +57,14 @@ def test_json_has_first_and_worst_instant_between_the_recorded_rows_too(tmp_path
     assert run(["simulate", mecanum(tmp_path), "--json"]) == 0
     found = json.loads(capsys.readouterr().out)["no_slip"]
     scene = read_scene(tmp_path / "mecanum.toml")
-    plant, drive = scene.plant(scene.core()), scene.drive()
+    plant, inputs = scene.plant(scene.core()), scene.inputs_on_grid()
     margins = []
     for tick in range(scene.steps()):
-        held = plant.core.input(drive.held_at(tick))
+        held = plant.core.input(inputs.held_at(tick))
         margins.append(plant.reactions(held).no_slip_margin_N)
         plant.run(held)
     margins.append(plant.reactions(held).no_slip_margin_N)
-    assert found["holds"] is False and found["looks"] == 1001
+    assert found["holds"] is False and found["instants"] == 1001
     assert found["slipping"] == sum(margin < 0.0 for margin in margins)
     assert found["first_slip"]["step"] == next(k for k, margin in enumerate(margins) if margin < 0.0)
     assert found["worst_slip"]["margin_N"] == min(margins)
@@ -73,17 +73,17 @@ def test_json_has_first_and_worst_instant_between_the_recorded_rows_too(tmp_path
 
 
 @pytest.mark.parametrize("kind", ["steps", "table"])
-def test_a_gentle_run_says_nothing(tmp_path, capsys, kind):
+def test_a_gentle_run_prints_no_warning(tmp_path, capsys, kind):
     assert run(["simulate", mecanum(tmp_path, volts=2.0, kind=kind), "--json"]) == 0
-    told = capsys.readouterr()
-    assert told.err == ""
-    assert json.loads(told.out)["no_slip"]["holds"] is True
+    printed = capsys.readouterr()
+    assert printed.err == ""
+    assert json.loads(printed.out)["no_slip"]["holds"] is True
 
 
-def test_a_scene_that_says_nothing_of_the_ground_is_not_watched(tmp_path, capsys):
+def test_a_scene_without_data_of_the_ground_is_not_watched(tmp_path, capsys):
     assert run(["simulate", mecanum(tmp_path, ground=""), "--json"]) == 0
-    told = capsys.readouterr()
-    assert told.err == "" and json.loads(told.out)["no_slip"] is None
+    printed = capsys.readouterr()
+    assert printed.err == "" and json.loads(printed.out)["no_slip"] is None
 
 
 def test_single_precision_watches_as_well(tmp_path):
@@ -117,7 +117,7 @@ def test_a_slip_and_a_lift_of_one_instant_are_told_apart(tmp_path, capsys):
 
 
 @pytest.mark.parametrize("version", [2, 3])
-def test_what_an_fmu_says_in_the_demo_is_kept_and_does_not_run_into_the_results(tmp_path, capfd, version):
+def test_what_an_fmu_reports_in_the_demo_is_kept_and_does_not_run_into_the_results(tmp_path, capfd, version):
     scene = read_scene(mecanum(tmp_path)).with_run(duration_s=0.6)
     fmu = make_fmu(scene, tmp_path / f"m{version}.fmu", version=version)
     rows = fmu_rows(scene, fmu, scene.steps(), every=100)

@@ -17,7 +17,7 @@ from laconic.core import load
 from laconic.errors import ResultFails
 from laconic.paths import build_dir
 from laconic.scene import METHODS, Outputs, Scene, read_scene
-from laconic.scene.drive import Input
+from laconic.scene.inputs import Input
 from laconic.trim import needs_of, trimmed
 
 needs_gcc = pytest.mark.skipif(not HOST.present, reason="no gcc here")
@@ -47,7 +47,7 @@ def test_damping_is_left_out_only_where_motors_do_not_damp():
     assert not needs_of(read_scene("paper_three_wheel_free")).damping
 
 
-def test_pose_and_wheel_angles_are_left_out_only_where_outputs_say_so():
+def test_pose_and_wheel_angles_are_left_out_only_where_outputs_name_neither():
     scene = read_scene("s1")
     everything, little = needs_of(scene), needs_of(nu_only(scene))
     assert (everything.pose, everything.wheel_angles) == (True, True)
@@ -129,11 +129,11 @@ def test_on_a_cortex_m4f_the_bits_are_the_hosts_and_nothing_foreign_is_linked(wo
     assert row["stack_measured"] <= row["worst_stack"] + 32  # the caller's own frame is measured, too
 
 
-def test_the_command_says_what_it_wrote_and_left_out(tmp_path: Path, capsys: pytest.CaptureFixture[str]):
+def test_the_command_reports_what_it_wrote_and_left_out(tmp_path: Path, capsys: pytest.CaptureFixture[str]):
     assert run(["trim", "s1", "--real", "single", "--out", str(tmp_path)]) == 0
-    said = capsys.readouterr().out
-    assert str(tmp_path / "laconic_scene.h") in said
-    assert said.endswith("left out: axle torque, body wrench, world force, sampled input\n")
+    printed = capsys.readouterr().out
+    assert str(tmp_path / "laconic_scene.h") in printed
+    assert printed.endswith("left out: axle torque, body wrench, world force, sampled input\n")
 
 
 @needs_gcc

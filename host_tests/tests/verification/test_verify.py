@@ -1,4 +1,4 @@
-"""`laconic verify`: the core holds against reference trajectories of 25 digits, and the command says so honestly."""
+"""`laconic verify`: the core agrees with reference trajectories of 25 digits, and a fault is reported."""
 
 from __future__ import annotations
 

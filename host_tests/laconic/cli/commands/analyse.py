@@ -41,7 +41,7 @@ def command(scene: str, out: Path | None, only: tuple[str, ...], at_s: float, st
 
     Exit status 1 when a simulation with the core does not confirm a result of the analysis.
     """
-    from laconic.analysis.findings import Wishes
+    from laconic.analysis.findings import StudyOptions
     from laconic.analysis.from_core import subject_of
     from laconic.analysis.older_page import pictures_of_older_page
     from laconic.analysis.report import as_numbers, as_text
@@ -50,10 +50,10 @@ def command(scene: str, out: Path | None, only: tuple[str, ...], at_s: float, st
     from laconic.scene import read_scene
 
     _check(low, high, straight, start)
-    wishes = Wishes(tuple(p for p in PARTS if not only or p in only), parameter, low, high, straight, start)
+    options = StudyOptions(tuple(p for p in PARTS if not only or p in only), parameter, low, high, straight, start)
     subject = subject_of(read_scene(scene), at_s)
     with progress_bar("analysing", 100) as advance:
-        found = study(subject, wishes, lambda share, part: advance(90 * share, what=part))
+        found = study(subject, options, lambda share, part: advance(90 * share, what=part))
         pictures = _draw(found, out, advance)
     numbers = as_numbers(found, pictures)
     if out is not None:

@@ -100,8 +100,8 @@ def bits_table(results: list[SceneResult]) -> Table:
 def work_table(results: list[SceneResult]) -> Table:
     """Error against run time for some steps of some methods; the rest is in errors.csv."""
     table = Table(title="Largest relative error (ν, pose, wheel angles) against an independent reference @ run time "
-                        "per step", title_justify="left", caption="h: the scene's step; floor: what the reference "
-                        "itself is worth", caption_justify="left")
+                        "per step", title_justify="left", caption="h: the scene's step; floor: the error of the "
+                        "reference itself", caption_justify="left")
     for heading in ("scene", "method"):
         table.add_column(heading)
     for heading in ("h", *(f"{factor} h" if factor > 1 else "h" for factor in SHOWN_FACTORS), "floor"):

@@ -25,7 +25,7 @@ from laconic.scene import read_scene
 @click.option("--no-enumerations", is_flag=True, help="Whole numbers instead, for importers that know no enumerations.")
 @click.option("--ssp", is_flag=True, help="An SSP archive (--fmi 2): the vehicle with a wheel-speed controller.")
 @click.option("-o", "--out", type=OutputFile(), metavar="F.fmu",
-              help="Where to; SCENE_fmi3.fmu if not given.")
+              help="File to write; SCENE_fmi3.fmu if not given.")
 @json_flag()
 def command(scene: str, version: str, scalar: bool, without_sources: bool, no_enumerations: bool, ssp: bool,
             out: Path | None, json_wanted: bool) -> None:

@@ -19,7 +19,7 @@ from laconic.outputs import write_text
 @click.argument("log", type=InputPath())
 @click.argument("scene", type=SceneName())
 @click.option("--fit", "fit_on", type=InputPath(), multiple=True, metavar="RUN.csv",
-              help="Fit friction on this run; may be given several times. Nothing said: every other run of a folder.")
+              help="Fit friction on this run; may be given several times. By default every other run of a folder.")
 @click.option("--map", "map_path", type=InputPath(), metavar="MAP.toml",
               help="Which column is what; the default is that of the Robotino's runs; a file "
               "whose columns have names of signals needs none.")
@@ -32,8 +32,8 @@ def command(log: Path, scene: str, fit_on: tuple[Path, ...], map_path: Path | No
 
     A file whose first column is time_s and whose others have names of signals, as `simulate --out F.csv --inputs`
     writes it, needs no map: its inputs drive the core, and every other signal in it is compared. Otherwise the map says
-    what the columns are: the measured wheel speeds are rolled and set beside the camera; friction is fitted by least
-    squares; and the core, driven by the measured currents as torques, predicts the wheel speeds.
+    what the columns are: the path that the measured wheel speeds give is compared with the camera's; friction is fitted
+    by least squares; and the core, driven by the measured currents as torques, predicts the wheel speeds.
     """
     from laconic.recorded_runs.signals import is_signal_log
 

@@ -30,8 +30,8 @@ def command(scenes: tuple[str, ...], out: Path | None, quick: bool, json_wanted:
 
     With --scene the page is about that robot. Without, it is about the project, and measures drift, extremes and other
     integrators besides; the project's goals are a page of their own, goals.html. Writes index.html (one file, opens
-    offline), report.json and a CSV for each table; the folder work beside them keeps the programs that were measured,
-    for looks of your own. What is not installed is left out and named.
+    offline), report.json and a CSV for each table; the folder work beside them keeps the programs that were measured.
+    A measurement whose tools are not installed is left out and named.
     """
     from laconic.benchmark.collect import collect
     from laconic.benchmark.robot import collect_robots

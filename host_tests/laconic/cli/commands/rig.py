@@ -28,10 +28,10 @@ CONNECTION = ("--interface", "--channel", "--bitrate", "--bus-option", "--id-bas
 @click.command("rig")
 @click.argument("scene_name", type=SceneName(), metavar="[SCENE]", required=False)
 @click.option("--interface", help="python-can's name of the interface: slcan, socketcan, pcan, kvaser, faulty …")
-@click.option("--channel", help="Which one: socket://127.0.0.1:PORT, /dev/ttyACM0, can0 …")
+@click.option("--channel", help="Channel of the interface: socket://127.0.0.1:PORT, /dev/ttyACM0, can0 …")
 @click.option("--bitrate", type=int, help="Bits per second, where the interface sets it.")
 @click.option("--bus-option", "bus_options", multiple=True, metavar="NAME=VALUE",
-              help="More for the interface, such as under=slcan or loss=0.01 for faulty.")
+              help="Further setting of the interface, such as under=slcan or loss=0.01 for faulty.")
 @click.option("--id-base", help="The node's first CAN identifier, a multiple of 32.  [default: the scene's, or 0x680]")
 @click.option("--board", type=click.Choice(KINDS), help="Start a node for this run: here, as process, or emulated.")
 @click.option("--lockstep", is_flag=True, help="One step to one command (default).")
@@ -44,8 +44,8 @@ CONNECTION = ("--interface", "--channel", "--bitrate", "--bus-option", "--id-bas
               help="Periods a second in free run, of whole steps.  [default: one step each]")
 @click.option("--watchdog", type=click.IntRange(0, 65535), default=100, show_default=True, metavar="MS",
               help="Longest time between commands in free run; 0: none.")
-@click.option("--method", type=click.Choice(METHODS), help="Instead of the scene's.")
-@click.option("--real", type=click.Choice(REALS), help="Instead of the scene's: what the node computes in.")
+@click.option("--method", type=click.Choice(METHODS), help="Method instead of the scene's.")
+@click.option("--real", type=click.Choice(REALS), help="Scalar type instead of the scene's; that of the node.")
 @click.option("--tolerance", "tolerances", multiple=True, metavar="SIGNAL=VALUE",
               help="Allowed difference; half the resolution of the signal's frame where none is given.")
 @click.option("--log", "logs", multiple=True, type=OutputFile(*LOGS), help="Log all frames: .blf, .asc.")
@@ -79,7 +79,7 @@ def command(scene_name: str | None, lockstep: bool, same_bits: bool, free_run: b
 
 
 def drive(scene: Scene, options: Options) -> int:
-    """A run or a replay, and its results in every form that was asked for."""
+    """A run or a replay, and its results in every form that the options choose."""
     began = time.perf_counter()
     if options.replay is not None:
         goes_with("--replay", "--lockstep", "--id-base", "--method", "--real", "--tolerance", "--junit", "--json")

@@ -21,7 +21,7 @@ from laconic.simulation.csv_text import csv_text
 
 @click.command("simulate")
 @click.argument("scene", type=SceneName())
-@click.option("--method", type=click.Choice(METHODS), help="Instead of the scene's.")
+@click.option("--method", type=click.Choice(METHODS), help="Method instead of the scene's.")
 @click.option("--step", "step_s", type=float, metavar="H", help="Step in seconds instead of the scene's.")
 @click.option("--real", type=click.Choice(REALS), help="Scalar type instead of the scene's.")
 @click.option("--out", type=OutputFile(".csv", stdout=True), metavar="F.csv", help="Write the outputs; - for stdout.")
@@ -78,8 +78,8 @@ def summary(run: Trajectory, out: Path | None, plot: Path | None) -> dict[str, A
 
 def print_summary(run: Trajectory, out: Path | None, plot: Path | None) -> None:
     """The same for people."""
-    asked, picked = run.scene.run.method, run.method
-    method = asked if asked == picked else f"{asked} (picked {picked})"
+    given, picked = run.scene.run.method, run.method
+    method = given if given == picked else f"{given} (picked {picked})"
     click.echo(f"{run.scene.name}: {run.steps} steps of {run.scene.run.step_s:g} s by {method}, {run.scene.run.real}, "
                f"in {run.seconds:.2f} s")
     click.echo(f"at {run.time_s[-1]:g} s:")

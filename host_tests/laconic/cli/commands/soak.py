@@ -25,7 +25,7 @@ def kinds() -> dict[str, str]:
 @click.command("soak")
 @click.argument("what")
 @click.option("--minutes", type=float, default=10.0, show_default=True, metavar="N", help="How long.")
-@click.option("--seed", type=int, help="For the random numbers; printed when not given.")
+@click.option("--seed", type=int, help="Seed of the random numbers; printed when not given.")
 @json_flag()
 def command(what: str, minutes: float, seed: int | None, json_wanted: bool) -> int:
     """Runs WHAT for a long time and reports what was found.
