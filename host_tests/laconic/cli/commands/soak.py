@@ -34,6 +34,7 @@ def command(what: str, minutes: float, seed: int | None, json_wanted: bool) -> i
     boards    emulated boards started anew, idle and with all cores busy
     faults    the fault matrix of the rig, with new seeds
     fmu       random use of the FMUs' C interface, under sanitizers
+    friction  the friction solver against a conic one with 40 digits, and driven motions
     free-run  the node process at 1 kHz: no step may be lost
     fuzz      SLCAN reader, frame handler and parameter loader under libFuzzer
     rig       all scenes in lockstep on the virtual bus, same bits

@@ -20,8 +20,8 @@ from laconic.verification.friction.problem import StepProblem
 
 GOAL = 1e-30           # of the scaled equations
 CERTAIN = 1e-14
-MOST_MODE_SETS = 40
-MOST_PASSES = 40
+MOST_MODE_SETS = 25
+MOST_PASSES = 25
 
 
 @dataclass

@@ -28,8 +28,14 @@ def residual(problem: StepProblem, z: np.ndarray, slip_impulse: np.ndarray) -> f
         worst = max(worst, _natural(p, row @ z, grip, weight) if weight > 0.0 else float(np.hypot(*p)))
     for tau, speed, bound, inertia in zip(axle, z[3:], problem.axle, mass[3:], strict=True):
         worst = max(worst, _natural(np.array([tau]), np.array([speed]), bound, 1.0 / inertia))
-    size = float(np.sqrt(np.sum(rhs**2 / mass)))
+    size = size_of(problem, z)
     return worst / size if size > 0.0 else worst
+
+
+def size_of(problem: StepProblem, z: np.ndarray) -> float:
+    """|M⁻¹ rhs|_M: the size of the step's free motion, the motors as they are at z."""
+    mass, rhs = _balance(problem, z[3:])
+    return float(np.sqrt(np.sum(rhs**2 / mass)))
 
 
 def _balance(problem: StepProblem, speed: np.ndarray) -> tuple[np.ndarray, np.ndarray]:

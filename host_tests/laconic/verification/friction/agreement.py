@@ -1,0 +1,68 @@
+"""The core's friction solver against the oracle, one step at a time, and along driven motions with warm starts."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, field
+
+import numpy as np
+
+from laconic.verification.friction.core_solver import CoreSolution, solve_in_core
+from laconic.verification.friction.polish import polish
+from laconic.verification.friction.problem import StepProblem
+from laconic.verification.friction.residual import residual
+
+LIMIT = 1e-9
+FEW = 4   # wheels: for refusals, vehicles with more are counted apart
+
+
+@dataclass
+class Count:
+    """What was found in many steps; `bad` are the worst, each with its problem."""
+
+    solved: int = 0
+    refused: int = 0
+    many_solved: int = 0        # vehicles of more than FEW wheels
+    many_refused: int = 0
+    unsure: int = 0             # the oracle did not finish
+    residual: float = 0.0
+    difference: float = 0.0
+    bad: list[tuple[str, StepProblem]] = field(default_factory=list)
+
+    def refuse_or_take(self, problem: StepProblem, core: CoreSolution) -> bool:
+        """Counts the step; whether the core took it."""
+        taken, few = core.passes > 0, problem.wheels <= FEW
+        name = ("" if few else "many_") + ("solved" if taken else "refused")
+        setattr(self, name, getattr(self, name) + 1)
+        return taken
+
+    def may_refuse(self, share: float) -> bool:
+        """Whether steps with few wheels were refused no more often than this; one of a small sample always may be."""
+        return self.refused <= max(1.0, share * (self.solved + self.refused))
+
+    def texts(self, label: str) -> dict[str, str]:
+        """For a report."""
+        few, many = self.solved + self.refused, self.many_solved + self.many_refused
+        return {f"{label}: steps": f"{few} with up to {FEW} wheels, {many} with more",
+                f"{label}: refused": f"{self.refused} ({self.refused / max(1, few):.1e}) and {self.many_refused}",
+                f"{label}: worst": f"residual {self.residual:.1e}, difference {self.difference:.1e}, "
+                                   f"oracle not sure of {self.unsure}"}
+
+
+def difference(core: np.ndarray, exact: np.ndarray) -> float:
+    """The largest difference of a speed, relative to the larger of 1 rad/s and the largest speed."""
+    return float(np.max(np.abs(core - exact)) / max(1.0, float(np.max(np.abs(exact)))))
+
+
+def compare(problem: StepProblem, count: Count, name: str = "") -> None:
+    """One cold step: refused, or its residual and its difference from the oracle are counted."""
+    core = solve_in_core(problem)
+    if not count.refuse_or_take(problem, core):
+        count.bad.append((f"{name} refused", problem))
+        return
+    rest = residual(problem, core.z, core.slip_impulse)
+    exact = polish(problem)
+    count.unsure += not exact.certain
+    away = difference(core.z, exact.z) if exact.certain else 0.0
+    if not max(rest, away) <= LIMIT:
+        count.bad.append((f"{name} residual {rest:.1e} difference {away:.1e}", problem))
+    count.residual, count.difference = max(count.residual, rest), max(count.difference, away)
