@@ -1,8 +1,8 @@
 /* The convex problem of one step on ground with friction. It knows wheels by their rows only, not vehicles.
  *
  * Unknowns are the body's three speeds ν and the speed s_i of each wheel. Each contact slips by two numbers, both linear
- * in them: x_i = along·ν − rim_along s along the roller axis, and k (across·ν − rim_across s) across it, k the roller's
- * drag. The speeds after the step minimise
+ * in them: along·ν − rim_along s along the roller axis, and k (across·ν − rim_across s) across it, k the roller's drag.
+ * The speeds after the step minimise
  *
  *     ½|ν − ν*|² + Σ_i [ ½ j (s − s*)² + V(s) + ½ viscous s² + axle |s| + grip |slip| ],     V' = −motor impulse
  *
@@ -15,16 +15,17 @@
 
 /* What stays the same from step to step. The caller fills the first part, laconic_friction_prepare() the second. */
 typedef struct friction_wheel {
-    real along[3], across[3];     /* ν → velocity of the contact point over R, along u_i and w_i = e_z × u_i */
-    real rim_along, rim_across;   /* R_i sin γ / R, R_i cos γ / R */
-    real inertia;                 /* j = J_i / (M R²) > 0 */
-    real drag;                    /* k, from 0 to 1; 1 for a fixed wheel */
-    vector row[2];                /* along, k across */
-    real rim[2];                  /* rim_along, k rim_across */
-    real inverse_mass;            /* W: by how much a unit impulse at the contact changes the slip, at most */
-    real rolling[2], rim_squared; /* direction of rim[] and its square */
-    real lateral_mass;            /* 1 / |rows across `rolling`|² */
-    real row_mass[2];             /* 1 / |row|² */
+    real along[3], across[3];   /* ν → velocity of the contact point over R, along u_i and w_i = e_z × u_i */
+    real rim_along, rim_across; /* R_i sin γ / R, R_i cos γ / R */
+    real inertia;               /* j = J_i / (M R²) > 0 */
+    real drag;                  /* k, from 0 to 1; 1 for a fixed wheel */
+
+    vector row[2];             /* along, k across */
+    real rim[2];               /* rim_along, k rim_across */
+    real rolling[2], rim_size; /* rim[] as direction and length */
+    real mobility;             /* W: the most slip that a unit impulse at the contact causes */
+    real lateral_mass;         /* 1 / (what an impulse square to `rolling` causes); 0 where there is no such row */
+    real row_mass[2];          /* the same for each row, with the wheel held */
 } friction_wheel;
 
 /* One wheel in one step, all but the speed as impulses: force times step. */
@@ -39,12 +40,12 @@ typedef struct friction_load {
 
 void laconic_friction_prepare(friction_wheel *wheel);
 
-/* Finds nu[3] and speed[count], and the impulses that the contacts give to the ground: |impulse[i]| <= grip, the robot
- * gets −impulse[i][0] along u_i, −k impulse[i][1] along w_i, and the wheel rim·impulse. On entry all three hold a guess: the
- * values of the step before, or 0. Returns the number of passes, or 0 if it refuses: not converged within
- * FRICTION_MOST_PASSES or not finite, and then the contents of nu, speed and impulse mean nothing. count is at most
- * LACONIC_MAX_WHEELS. Accepted results have a residual of at most 1e-9 (1e-5 in single) of the size of (ν*, s* + motor/j). */
-#define FRICTION_MOST_PASSES 15
+/* Finds nu[3], speed[count] and the impulses that the contacts give to the ground: |impulse[i]| <= grip; the robot gets
+ * −impulse[i][0] along u_i and −k impulse[i][1] along w_i, the wheel's axis rim·impulse. On entry impulse holds a guess:
+ * that of the step before, or 0. Returns the number of passes, at least 1; or 0 if it refuses because the numbers are not
+ * finite or FRICTION_MOST_PASSES did not suffice, and then the contents of nu, speed and impulse mean nothing. count is at
+ * most LACONIC_MAX_WHEELS. Accepted results have a residual of at most 1e-9 (2e-5 in single), relative to (ν*, s*). */
+#define FRICTION_MOST_PASSES 19
 int32_t laconic_friction_solve(const friction_wheel wheels[], const friction_load loads[], int32_t count,
                                const real free_nu[3], real nu[3], real speed[], real impulse[][2]);
 

@@ -1,0 +1,98 @@
+/* What the two kinds of pass of the friction solver share: the three equations for ν, and a wheel's own equation. */
+#ifndef LACONIC_FRICTION_INTERNALS_H
+#define LACONIC_FRICTION_INTERNALS_H
+
+#include "elementary.h"
+#include "friction_solver.h"
+
+/* Stiffness of the penalty in contacts that stick, over that of their own inertia: brings the impulses of redundant
+ * contacts that many times nearer in each pass, and takes as many digits of the sums. */
+#ifdef LACONIC_SINGLE
+#define PENALTY R(1e3)
+#else
+#define PENALTY R(1e5)
+#endif
+
+/* The problem and where the search for its solution stands. */
+typedef struct friction_search {
+    const friction_wheel *wheel;
+    const friction_load *load;
+    int32_t count;
+    vector free, nu;
+    real *speed, (*impulse)[2];
+    real scale; /* twice the energy of the free motion */
+} friction_search;
+
+static inline real cut(real x, real limit) { return x > limit ? limit : (x < -limit ? -limit : x); }
+
+static inline real drive_at(const friction_load *l, real speed) {
+    return cut(l->drive - l->drive_slope * speed, l->drive_limit);
+}
+
+static inline vector combined(const vector rows[2], real first, real second) {
+    return plus(scaled(first, rows[0]), scaled(second, rows[1]));
+}
+
+/* A wheel's speed, and how its resistance grows with it: inertia, viscous and motor, where it turns at all. */
+typedef struct turning {
+    real speed, slope;
+    bool held;
+} turning;
+
+/* Solves (inertia + viscous + added) s + axle sign(s) − motor(s) = push: monotone and linear by pieces. */
+static inline turning turning_of(const friction_wheel *w, const friction_load *l, real added, real axle, real push) {
+    const real own = w->inertia + l->viscous, start = push + cut(l->drive, l->drive_limit);
+    const real driven = push + (start > R(0) ? -axle : axle);
+    turning out = {R(0), own + l->drive_slope, magnitude(start) <= axle};
+    real motor;
+    if (out.held) return out;
+    out.speed = (driven + l->drive) / (out.slope + added);
+    motor = l->drive - l->drive_slope * out.speed;
+    if (magnitude(motor) > l->drive_limit) { /* the straight line left the limits, so the wheel is beyond them too */
+        out.slope = own;
+        out.speed = (driven + cut(motor, l->drive_limit)) / (own + added);
+    }
+    return out;
+}
+
+/* (1 + Σ stiffness row rowᵀ) δν = ν* − ν − Σ rows·impulse */
+typedef struct equations {
+    vector rest;
+    real xx, xy, xz, yy, yz, zz;
+} equations;
+
+static inline equations no_wheels(const friction_search *at) {
+    const equations k = {minus(at->free, at->nu), R(1), R(0), R(0), R(1), R(0), R(1)};
+    return k;
+}
+
+/* Adds first secondᵀ, one of a sum that is symmetric. */
+static inline void add_product(equations *k, vector first, vector second) {
+    k->xx += first.x * second.x;
+    k->xy += first.x * second.y;
+    k->xz += first.x * second.z;
+    k->yy += first.y * second.y;
+    k->yz += first.y * second.z;
+    k->zz += first.z * second.z;
+}
+
+/* By Cholesky's decomposition without roots: L D Lᵀ. */
+static inline vector solved(const equations *k) {
+    const real lxy = k->xy / k->xx, lxz = k->xz / k->xx;
+    const real dy = k->yy - lxy * k->xy, below = k->yz - lxz * k->xy, lyz = below / dy;
+    const real dz = k->zz - lxz * k->xz - lyz * below;
+    const real y = k->rest.y - lxy * k->rest.x, z = k->rest.z - lxz * k->rest.x - lyz * y;
+    vector out;
+    out.z = z / dz;
+    out.y = y / dy - lyz * out.z;
+    out.x = k->rest.x / k->xx - lxy * out.y - lxz * out.z;
+    return out;
+}
+
+/* The speeds to which the impulses lead: the dual point's primal one. */
+void laconic_friction_follow(friction_search *at);
+
+/* Passes on the smoothed problem, for states from which the exact one does not converge. Returns their number. */
+int32_t laconic_friction_smooth(friction_search *at);
+
+#endif
