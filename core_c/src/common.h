@@ -72,6 +72,9 @@ static inline laconic_status refuse(laconic_refusal *why, laconic_status status,
     return status;
 }
 
+/* Where an array of the model has the value of a wheel: all have one place where all wheels are alike. */
+static inline int32_t own(int32_t wheel) { return LACONIC_WITH_OWN_WHEELS ? wheel : 0; }
+
 /* The number at an offset in bytes of a struct. */
 static inline const real *number_at(const void *of, uint32_t offset) {
     return (const real *)(const void *)((const unsigned char *)of + offset);

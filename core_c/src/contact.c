@@ -71,13 +71,14 @@ static void least_norm(real solver[][3], const real rows[][3], int32_t count) {
             solver[i][c] = rows[i][0] * inverse[0][c] + rows[i][1] * inverse[1][c] + rows[i][2] * inverse[2][c];
 }
 
-static void fill_wheels(laconic_contact *contact, const laconic_vehicle *vehicle, const body *b) {
+static void fill_wheels(laconic_contact *contact, const laconic_vehicle *vehicle) {
     int32_t row = 0;
     for (int32_t i = 0; i < vehicle->wheel_count; i++) {
         const laconic_wheel *wheel = &vehicle->wheel[i];
         const direction axle = laconic_direction_of_angle(wheel->axle_rad);
         direction pull;
-        contact->inverse_arm_per_m[i] = R(1) / (b->radius_m * laconic_pull_direction(&pull, wheel));
+        contact->inverse_arm_per_m[i] =
+            R(1) / (laconic_wheel_values(vehicle, i).radius_m * laconic_pull_direction(&pull, wheel));
         contact->pull[i][0] = pull.cosine;
         contact->pull[i][1] = pull.sine;
         contact->axle[i][0] = axle.cosine;
@@ -117,7 +118,7 @@ laconic_status laconic_contact_prepare(laconic_contact *contact, const laconic_v
     const laconic_status status = laconic_matrices_of(&matrices, vehicle, why);
     if (status != LACONIC_OK) return status;
     laconic_body_of(&b, vehicle);
-    fill_wheels(&fresh, vehicle, &b);
+    fill_wheels(&fresh, vehicle);
     fill_points(&fresh, vehicle, &b);
     fresh.constraint_count = matrices.constraint_count;
     least_norm(fresh.multiplier, (const real(*)[3])matrices.constraint_rows, matrices.constraint_count);
@@ -184,7 +185,7 @@ static void wheel_reaction(laconic_reactions *out, const laconic_contact *c, con
     out->brake_Nm[i] = brake >= 0 ? dot(vec(c->multiplier[brake]), remainder) * (unit_N * m->wheel_radius_m) : R(0);
     if (brake < 0) acceleration = dot(vec(c->wheel_rows[i]), vec(now->nu_rate));
     out->along_N[i] =
-        (now->torque_Nm[i] + out->brake_Nm[i] - m->wheel_inertia_kgm2 * acceleration) * c->inverse_arm_per_m[i];
+        (now->torque_Nm[i] + out->brake_Nm[i] - m->wheel_inertia_kgm2[own(i)] * acceleration) * c->inverse_arm_per_m[i];
 }
 
 /* Σ N = M g; about S the normal loads balance the ground's horizontal force, which acts com_z below it (outer forces

@@ -16,6 +16,7 @@ const char *laconic_field_name(laconic_field field) {
 #define PATH_PAYLOAD(member) "vehicle.payload." #member
 #define PATH_COUNT(member) "vehicle." #member
 #define PATH_WHEEL(member) "vehicle.wheel[#]." #member
+#define PATH_OWN(member) PATH_WHEEL(member)
 #define PATH_SUPPORT(member) "vehicle.support[#]." #member
 #define PATH_START_ARRAY(member) "initial." #member "[#]"
 #define PATH_START(member) "initial." #member
@@ -34,6 +35,7 @@ const char *laconic_field_path(laconic_field field) {
 #define ITEMS_PAYLOAD(member) 0
 #define ITEMS_COUNT(member) 0
 #define ITEMS_WHEEL(member) LACONIC_MAX_WHEELS
+#define ITEMS_OWN(member) LACONIC_MAX_WHEELS
 #define ITEMS_SUPPORT(member) LACONIC_MAX_SUPPORTS
 #define ITEMS_START_ARRAY(member) sizeof(((laconic_start *)NULL)->member) / sizeof(real)
 #define ITEMS_START(member) 0

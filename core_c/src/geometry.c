@@ -1,6 +1,35 @@
 /* A checked vehicle → the body with its payload, rows of Ξ and constraint rows. */
 #include "geometry.h"
 
+wheel_values laconic_wheel_values(const laconic_vehicle *vehicle, int32_t wheel) {
+    const laconic_wheel *w = &vehicle->wheel[wheel];
+    wheel_values v = {vehicle->wheel_radius_m, vehicle->wheel_inertia_kgm2, vehicle->motor_gain_Nm_per_V,
+                      vehicle->motor_damping_Nms};
+    if (!LACONIC_WITH_OWN_WHEELS) return v;
+    if (w->own_radius_m != R(0)) v.radius_m = w->own_radius_m;
+    if (w->own_inertia_kgm2 != R(0)) v.inertia_kgm2 = w->own_inertia_kgm2;
+    if (w->own_motor_gain_Nm_per_V != R(0)) v.motor_gain_Nm_per_V = w->own_motor_gain_Nm_per_V;
+    if (w->own_motor_damping_Nms != R(0)) v.motor_damping_Nms = w->own_motor_damping_Nms;
+    if (w->undriven) v.motor_gain_Nm_per_V = v.motor_damping_Nms = R(0);
+    return v;
+}
+
+/* Without wheels the vehicle's. */
+static real largest_inertia(const laconic_vehicle *vehicle) {
+    real largest = vehicle->wheel_count > 0 ? R(0) : vehicle->wheel_inertia_kgm2;
+    for (int32_t i = 0; i < vehicle->wheel_count; i++) {
+        const real inertia = laconic_wheel_values(vehicle, i).inertia_kgm2;
+        if (inertia > largest) largest = inertia;
+    }
+    return largest;
+}
+
+void laconic_inertia_shares(real share[], const laconic_vehicle *vehicle) {
+    const real largest = largest_inertia(vehicle);
+    for (int32_t i = 0; i < vehicle->wheel_count; i++)
+        share[i] = largest > R(0) ? laconic_wheel_values(vehicle, i).inertia_kgm2 / largest : R(1);
+}
+
 /* Parallel axes: two bodies at distance d add m₁m₂/(m₁+m₂) d² to their own inertias. */
 void laconic_body_of(body *b, const laconic_vehicle *vehicle) {
     const laconic_payload *payload = &vehicle->payload;
@@ -14,7 +43,7 @@ void laconic_body_of(body *b, const laconic_vehicle *vehicle) {
     b->com_y_m = vehicle->com_y_m + share * dy;
     b->radius_m = vehicle->wheel_radius_m;
     b->yaw_scale = laconic_root(inertia / total) / b->radius_m;
-    b->wheel_scale_square = vehicle->wheel_inertia_kgm2 / total / b->radius_m / b->radius_m;
+    b->wheel_scale_square = largest_inertia(vehicle) / total / b->radius_m / b->radius_m;
 }
 
 real laconic_pull_direction(direction *pull, const laconic_wheel *wheel) {
@@ -36,7 +65,8 @@ static void line_row(real row[3], const body *b, const laconic_wheel *wheel, dir
 
 void laconic_wheel_row(real row[3], const body *b, const laconic_wheel *wheel) {
     direction pull;
-    const real sine = laconic_pull_direction(&pull, wheel);
+    real sine = laconic_pull_direction(&pull, wheel);
+    if (LACONIC_WITH_OWN_WHEELS && wheel->own_radius_m != R(0)) sine *= wheel->own_radius_m / b->radius_m;
     line_row(row, b, wheel, pull);
     row[0] /= sine;
     row[1] /= sine;

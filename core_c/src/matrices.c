@@ -9,12 +9,15 @@ static void collect_rows(laconic_matrices *x, const body *b, const laconic_vehic
     }
 }
 
-/* A = E + λ² ΞᵀΞ (4.6); with the rows of locked wheels, whose rotation the constraints prevent. */
-static void form_inertia(laconic_matrices *x, const body *b, int32_t wheel_count) {
+/* A = E + Σ J_i/(M R²) Ξ_iᵀ Ξ_i (4.6); with the rows of locked wheels, whose rotation the constraints prevent. */
+static void form_inertia(laconic_matrices *x, const body *b, const laconic_vehicle *vehicle) {
+    real share[LACONIC_MAX_WHEELS];
+    laconic_inertia_shares(share, vehicle);
     for (int32_t r = 0; r < 3; r++)
         for (int32_t c = 0; c < 3; c++) {
             real sum = R(0);
-            for (int32_t i = 0; i < wheel_count; i++) sum += x->wheel_rows[i][r] * x->wheel_rows[i][c];
+            for (int32_t i = 0; i < vehicle->wheel_count; i++)
+                sum += share[i] * x->wheel_rows[i][r] * x->wheel_rows[i][c];
             x->inertia[r][c] = (r == c ? R(1) : R(0)) + b->wheel_scale_square * sum;
         }
 }
@@ -33,7 +36,7 @@ laconic_status laconic_matrices_of(laconic_matrices *matrices, const laconic_veh
     if (status != LACONIC_OK) return status;
     laconic_body_of(&b, vehicle);
     collect_rows(&x, &b, vehicle);
-    form_inertia(&x, &b, vehicle->wheel_count);
+    form_inertia(&x, &b, vehicle);
     for (int r = 0; r < 3; r++)
         for (int c = 0; c < 3; c++) x.inverse_inertia[r][c] = dot(vec(model.nu_of_zeta[r]), vec(model.nu_of_zeta[c]));
     x.lambda_yaw = b.yaw_scale;

@@ -27,12 +27,43 @@ static laconic_status check_motor(const laconic_motor *m, laconic_refusal *why) 
     return status;
 }
 
+/* How many wheels there are to look at; the count is checked later. */
+static int32_t wheels_of(const laconic_vehicle *vehicle) {
+    return vehicle->wheel_count < LACONIC_MAX_WHEELS ? vehicle->wheel_count : LACONIC_MAX_WHEELS;
+}
+
+/* Before the rotor's inertia hides the sign. */
+static laconic_status check_inertias(const laconic_vehicle *vehicle, laconic_refusal *why) {
+    if (vehicle->wheel_inertia_kgm2 < R(0))
+        return refuse(why, LACONIC_NEGATIVE, LACONIC_FIELD_WHEEL_INERTIA, 0, vehicle->wheel_inertia_kgm2, R(0));
+    for (int32_t i = 0; i < wheels_of(vehicle); i++) {
+        const real own_inertia = vehicle->wheel[i].own_inertia_kgm2;
+        if (own_inertia < R(0))
+            return refuse(why, LACONIC_NEGATIVE, LACONIC_FIELD_OWN_INERTIA, i + 1, own_inertia, R(0));
+    }
+    return LACONIC_OK;
+}
+
+/* The driven wheels get the rotor. Beside a wheel without a motor the vehicle's J stays that of a wheel alone, and each
+ * driven wheel gets its own. */
+static void add_rotors(laconic_vehicle *vehicle, real rotor_inertia) {
+    bool all_driven = true;
+    for (int32_t i = 0; i < wheels_of(vehicle); i++) all_driven = all_driven && !vehicle->wheel[i].undriven;
+    for (int32_t i = 0; i < wheels_of(vehicle); i++) {
+        laconic_wheel *wheel = &vehicle->wheel[i];
+        if (wheel->undriven || (all_driven && wheel->own_inertia_kgm2 == R(0))) continue;
+        if (wheel->own_inertia_kgm2 == R(0)) wheel->own_inertia_kgm2 = vehicle->wheel_inertia_kgm2;
+        wheel->own_inertia_kgm2 += rotor_inertia;
+    }
+    if (all_driven) vehicle->wheel_inertia_kgm2 += rotor_inertia;
+}
+
 laconic_status laconic_motor_fit(laconic_vehicle *vehicle, const laconic_motor *motor, laconic_refusal *why) {
     const laconic_status status = check_motor(motor, why);
     const real ratio = motor->gear_ratio;
     if (status != LACONIC_OK) return status;
-    if (vehicle->wheel_inertia_kgm2 < R(0)) /* before the rotor's inertia hides the sign */
-        return refuse(why, LACONIC_NEGATIVE, LACONIC_FIELD_WHEEL_INERTIA, 0, vehicle->wheel_inertia_kgm2, R(0));
+    const laconic_status inertias = check_inertias(vehicle, why);
+    if (inertias != LACONIC_OK) return inertias;
     const real per_volt = motor->torque_constant_Nm_per_A / motor->resistance_ohm;
     const real gain = ratio * per_volt;
     const real damping = ratio * ratio * (per_volt * motor->back_emf_Vs_per_rad + motor->viscous_friction_Nms);
@@ -43,6 +74,6 @@ laconic_status laconic_motor_fit(laconic_vehicle *vehicle, const laconic_motor *
         return refuse(why, LACONIC_NEGATIVE, LACONIC_FIELD_BACK_EMF, 0, motor->back_emf_Vs_per_rad, R(0));
     vehicle->motor_gain_Nm_per_V = gain;
     vehicle->motor_damping_Nms = damping;
-    vehicle->wheel_inertia_kgm2 += inertia;
+    add_rotors(vehicle, inertia);
     return LACONIC_OK;
 }

@@ -68,12 +68,12 @@ void laconic_wheel_angles_set(const laconic_model *model, laconic_state *state, 
     for (int32_t i = 0; i < 3; i++) state->travel[i] = sum_of(R(0));
 }
 
-/* M_i = c1 U_i − c2 χ_i' + T_i */
+/* M_i = c1_i U_i − c2_i χ_i' + T_i */
 static void torques_of(const laconic_model *model, const real *speed_rad_per_s, const laconic_input *input,
                        real *torque_Nm) {
     for (int32_t i = 0; i < LACONIC_WHEELS(model); i++)
-        torque_Nm[i] = model->motor_gain_Nm_per_V * input->voltage_V[i] -
-                       model->motor_damping_Nms * speed_rad_per_s[i] + input->axle_torque_Nm[i];
+        torque_Nm[i] = model->motor_gain_Nm_per_V[own(i)] * input->voltage_V[i] -
+                       model->motor_damping_Nms[own(i)] * speed_rad_per_s[i] + input->axle_torque_Nm[i];
 }
 
 void laconic_wheel_torques(const laconic_model *model, const laconic_state *state, const laconic_input *input,
@@ -94,10 +94,14 @@ laconic_real laconic_energy_J(const laconic_model *model, const laconic_state *s
     return R(0.5) * energy_of(model, zeta, zeta);
 }
 
-/* A G = V diag(√(1 + λ²x)) = G diag(1 + λ²x), as G = V diag(1/√(1 + λ²x)). */
+/* A G is the transpose of G⁺; where one rotation made the axes, A G = V diag(√(1 + λ²x)) = G diag(1 + λ²x), as
+ * G = V diag(1/√(1 + λ²x)). */
 laconic_real laconic_yaw_integral(const laconic_model *model, const laconic_state *state) {
     real sum = R(0);
-    for (int k = 0; k < 3; k++) sum += model->nu_of_zeta[2][k] * model->inertia[k] * state->zeta[k].value;
+    for (int k = 0; k < 3; k++) {
+        const real row = rotated_twice(model) ? inverse_row(model, k)[2] : model->nu_of_zeta[2][k] * model->inertia[k];
+        sum += row * state->zeta[k].value;
+    }
     return sum;
 }
 

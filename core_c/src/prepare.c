@@ -1,7 +1,8 @@
-/* vehicle → model: an orthonormal basis of the motions that the constraints leave, rotated so that ΞᵀΞ, and with it the
- * inertia A = E + λ²ΞᵀΞ and the damping, are diagonal in it. */
+/* vehicle → model: an orthonormal basis of the motions that the constraints leave, rotated so that Σ J_i Ξ_iᵀΞ_i, and
+ * with it the inertia A = E + Σ J_i/(M R²) Ξ_iᵀΞ_i, is diagonal in it. Where c2_i : J_i is the same for all wheels, the
+ * damping Σ c2_i/(M R²) Ξ_iᵀΞ_i then is diagonal, too; else the axes, scaled so that A is 1, are rotated once more. */
 #include "geometry.h"
-#include "vector.h"
+#include "step_internals.h"
 
 typedef struct basis {
     int32_t count;
@@ -63,19 +64,34 @@ static void allowed_motions(basis *allowed, const basis *constraints) {
     }
 }
 
-/* One-sided Jacobi: rotates pairs of basis vectors until the columns of Ξ V are orthogonal. It never forms
- * ΞᵀΞ, so small rates keep their digits beside large ones. */
+/* What the wheels contribute to a form: value_i = largest · share_i. */
+typedef struct contributions {
+    real largest;
+    real share[LACONIC_MAX_WHEELS]; /* exactly 1 for wheels that are alike, also where all values are 0 */
+} contributions;
+
+static contributions of_damping(const laconic_model *m) {
+    contributions c = {R(0), {R(0)}};
+    for (int32_t i = 0; i < m->wheel_count; i++)
+        if (m->motor_damping_Nms[own(i)] > c.largest) c.largest = m->motor_damping_Nms[own(i)];
+    for (int32_t i = 0; i < m->wheel_count; i++)
+        c.share[i] = c.largest > R(0) ? m->motor_damping_Nms[own(i)] / c.largest : R(1);
+    return c;
+}
+
+/* One-sided Jacobi: rotates pairs of axes until the columns of Ξ V, weighted by the wheels' shares, are orthogonal. It
+ * never forms the 3×3 matrix, so small rates keep their digits beside large ones. */
 typedef struct pair {
     real aa, bb, ab;
 } pair;
 
-static pair column_products(const laconic_model *m, int32_t a, int32_t b) {
+static pair column_products(const laconic_model *m, const real share[], int32_t a, int32_t b) {
     pair p = {R(0), R(0), R(0)};
     for (int32_t i = 0; i < m->wheel_count; i++) {
         const real *row = m->wheel_of_zeta[i];
-        p.aa += row[a] * row[a];
-        p.bb += row[b] * row[b];
-        p.ab += row[a] * row[b];
+        p.aa += share[i] * row[a] * row[a];
+        p.bb += share[i] * row[b] * row[b];
+        p.ab += share[i] * row[a] * row[b];
     }
     return p;
 }
@@ -86,8 +102,14 @@ static void rotate_pair(real *a, real *b, direction d) {
     *b = d.sine * old + d.cosine * *b;
 }
 
-static bool make_orthogonal(laconic_model *m, basis *v, int32_t a, int32_t b) {
-    const pair p = column_products(m, a, b);
+/* The columns of G, and the rows of G⁺, which turn with them. */
+typedef struct axes {
+    basis scaled;
+    real inverse[3][3];
+} axes;
+
+static bool make_orthogonal(laconic_model *m, axes *v, const real share[], int32_t a, int32_t b) {
+    const pair p = column_products(m, share, a, b);
     direction d;
     if (!(magnitude(p.ab) > R(0.25) * LACONIC_EPSILON * laconic_root(p.aa) * laconic_root(p.bb))) return false;
     const real cotangent = (p.bb - p.aa) / (R(2) * p.ab);
@@ -98,19 +120,20 @@ static bool make_orthogonal(laconic_model *m, basis *v, int32_t a, int32_t b) {
     d.cosine = R(1) - tangent * tangent / (q * (q + R(1))); /* 1/q, but rounded once */
     d.sine = tangent / q;
     for (int32_t i = 0; i < m->wheel_count; i++) rotate_pair(&m->wheel_of_zeta[i][a], &m->wheel_of_zeta[i][b], d);
-    for (int32_t i = 0; i < 3; i++) rotate_pair(&v->axis[a][i], &v->axis[b][i], d);
+    for (int32_t i = 0; i < 3; i++) rotate_pair(&v->scaled.axis[a][i], &v->scaled.axis[b][i], d);
+    for (int32_t i = 0; i < 3; i++) rotate_pair(&v->inverse[a][i], &v->inverse[b][i], d);
     return true;
 }
 
-static void find_principal_axes(laconic_model *m, basis *v) {
+static void find_principal_axes(laconic_model *m, axes *v, const real share[]) {
     bool rotated = true;
     /* Two to seven sweeps reach the precision of the scalar type. The threshold of make_orthogonal is below the
      * rounding of column_products, so for about one robot in ten rotations by such small angles would go on for ever:
      * 30 ends them. */
     for (int sweep = 0; sweep < 30 && rotated; sweep++) {
         rotated = false;
-        for (int32_t a = 0; a < v->count; a++)
-            for (int32_t b = a + 1; b < v->count; b++) rotated = make_orthogonal(m, v, a, b) || rotated;
+        for (int32_t a = 0; a < m->dof; a++)
+            for (int32_t b = a + 1; b < m->dof; b++) rotated = make_orthogonal(m, v, share, a, b) || rotated;
     }
 }
 
@@ -123,21 +146,50 @@ static void project_wheels(laconic_model *m, const basis *v, const body *b, cons
     }
 }
 
-/* Scales axis k so that its kinetic energy is ζ²/2 (in units of M R²). */
-static void scale_axis(laconic_model *m, const basis *v, const body *b, int32_t k) {
-    const real x = column_products(m, k, k).aa;
+/* Scales axis k so that its kinetic energy is ζ²/2 (in units of M R²). The rate holds where damping has the shares. */
+static void scale_axis(laconic_model *m, axes *v, const body *b, const real share[], real largest_damping, int32_t k) {
+    const real x = column_products(m, share, k, k).aa;
     const real inertia = R(1) + b->wheel_scale_square * x;
     const real root = laconic_root(inertia);
     m->inertia[k] = inertia;
-    m->decay_per_s[k] = m->motor_damping_Nms * m->torque_scale * x / inertia;
-    for (int32_t i = 0; i < 3; i++) m->nu_of_zeta[i][k] = v->axis[k][i] / root;
+    m->decay_per_s[k] = largest_damping * m->torque_scale * x / inertia;
+    for (int32_t i = 0; i < 3; i++) v->inverse[k][i] = v->scaled.axis[k][i] * root;
+    for (int32_t i = 0; i < 3; i++) v->scaled.axis[k][i] /= root;
     for (int32_t i = 0; i < m->wheel_count; i++) m->wheel_of_zeta[i][k] /= root;
 }
 
-static void clear_axis(laconic_model *m, int32_t k) {
-    m->inertia[k] = R(1);
-    m->decay_per_s[k] = R(0);
-    for (int i = 0; i < 3; i++) m->nu_of_zeta[i][k] = R(0);
+static bool same_shares(const real a[], const real b[], int32_t count) {
+    for (int32_t i = 0; i < count; i++)
+        if (a[i] < b[i] || a[i] > b[i]) return false;
+    return true;
+}
+
+/* The second rotation, among axes for which A is 1: damping becomes diagonal, and A stays 1. */
+static void rotate_to_damping(laconic_model *m, axes *v, const contributions *damping) {
+    find_principal_axes(m, v, damping->share);
+    for (int32_t k = 0; k < m->dof; k++)
+        m->decay_per_s[k] = damping->largest * m->torque_scale * column_products(m, damping->share, k, k).aa;
+#if LACONIC_WITH_OWN_WHEELS
+    m->rotated_twice = true;
+    for (int32_t k = 0; k < m->dof; k++)
+        for (int32_t i = 0; i < 3; i++) m->zeta_of_nu[k][i] = v->inverse[k][i];
+#endif
+}
+
+/* Both rotations. Where no wheel has inertia, A is 1 from the start: the first rotation makes the damping diagonal. */
+static void diagonalise(laconic_model *m, axes *v, const body *b, const laconic_vehicle *vehicle) {
+    const contributions damping = of_damping(m);
+    real share[LACONIC_MAX_WHEELS];
+    const bool inert = b->wheel_scale_square > R(0);
+    laconic_inertia_shares(share, vehicle);
+    const real *first = inert ? share : damping.share;
+    find_principal_axes(m, v, first);
+    for (int32_t k = 0; k < m->dof; k++) scale_axis(m, v, b, first, damping.largest, k);
+    if (damping.largest > R(0) && !same_shares(first, damping.share, m->wheel_count)) rotate_to_damping(m, v, &damping);
+    for (int32_t k = 0; k < 3; k++) {
+        if (k >= m->dof) m->inertia[k] = R(1);
+        for (int32_t i = 0; i < 3; i++) m->nu_of_zeta[i][k] = k < m->dof ? v->scaled.axis[k][i] : R(0);
+    }
 }
 
 /* w, and the constants that the closed form of the free motion (exact_flow.c) computes from w. */
@@ -158,13 +210,18 @@ static void derive_rows(laconic_model *m) {
     }
 }
 
+static void fill_wheel(laconic_model *m, wheel_values values, int32_t i) {
+    m->voltage_scale[i] = values.motor_gain_Nm_per_V * m->torque_scale;
+    m->motor_gain_Nm_per_V[i] = values.motor_gain_Nm_per_V;
+    m->motor_damping_Nms[i] = values.motor_damping_Nms;
+    m->wheel_inertia_kgm2[i] = values.inertia_kgm2;
+}
+
 static void fill_constants(laconic_model *m, const laconic_vehicle *vehicle, const body *b) {
     m->wheel_count = vehicle->wheel_count;
     m->torque_scale = R(1) / (b->mass_kg * b->radius_m * b->radius_m);
-    m->voltage_scale = vehicle->motor_gain_Nm_per_V * m->torque_scale;
-    m->motor_gain_Nm_per_V = vehicle->motor_gain_Nm_per_V;
-    m->motor_damping_Nms = vehicle->motor_damping_Nms;
-    m->wheel_inertia_kgm2 = vehicle->wheel_inertia_kgm2;
+    for (int32_t i = 0; i < LACONIC_OWN_WHEELS && i < m->wheel_count; i++)
+        fill_wheel(m, laconic_wheel_values(vehicle, i), i);
     m->mass_kg = b->mass_kg;
     m->wheel_radius_m = b->radius_m;
     m->yaw_scale = b->yaw_scale;
@@ -193,32 +250,30 @@ static bool usable(const laconic_model *m) {
         rows_size(m->nu_of_zeta, 3) + rows_size(m->velocity_of_zeta, 2) + rows_size(m->wheel_of_zeta, m->wheel_count);
     const real scales =
         scale_size(m->mass_kg) + scale_size(m->wheel_radius_m) + scale_size(m->yaw_scale) + scale_size(m->torque_scale);
-    const real others = m->gyro_square + magnitude(m->voltage_scale) + magnitude(m->motor_gain_Nm_per_V) +
-                        m->motor_damping_Nms + m->wheel_inertia_kgm2 + magnitude(m->com_x_m) + magnitude(m->com_y_m);
+    real others = m->gyro_square + magnitude(m->com_x_m) + magnitude(m->com_y_m);
+    for (int32_t i = 0; i < LACONIC_OWN_WHEELS; i++)
+        others += magnitude(m->voltage_scale[i]) + magnitude(m->motor_gain_Nm_per_V[i]) + m->motor_damping_Nms[i] +
+                  m->wheel_inertia_kgm2[i];
+    for (int k = 0; k < 3 && rotated_twice(m); k++) others += size(vec(inverse_row(m, k)));
     return fits_squared(vectors + rows + scales + others);
 }
 
 laconic_status laconic_prepare(laconic_model *model, const laconic_vehicle *vehicle, laconic_refusal *why) {
     const laconic_status status = laconic_vehicle_check(vehicle, why);
     laconic_model m = {0};
-    basis constraints = {0}, motions = {0};
+    basis constraints = {0};
+    axes motions = {0};
     body b;
     if (status != LACONIC_OK) return status;
     laconic_body_of(&b, vehicle);
     fill_constants(&m, vehicle, &b);
     collect_constraints(&constraints, &b, vehicle);
-    allowed_motions(&motions, &constraints);
-    if (motions.count == 0)
+    allowed_motions(&motions.scaled, &constraints);
+    if (motions.scaled.count == 0)
         return refuse(why, LACONIC_NOTHING_MOVES, LACONIC_FIELD_WHEEL_KIND, 0, R(constraints.count), R(0));
-    m.dof = motions.count;
-    project_wheels(&m, &motions, &b, vehicle);
-    find_principal_axes(&m, &motions);
-    for (int32_t k = 0; k < 3; k++) {
-        if (k < m.dof)
-            scale_axis(&m, &motions, &b, k);
-        else
-            clear_axis(&m, k);
-    }
+    m.dof = motions.scaled.count;
+    project_wheels(&m, &motions.scaled, &b, vehicle);
+    diagonalise(&m, &motions, &b, vehicle);
     derive_gyro(&m);
     derive_rows(&m);
     if (!usable(&m)) return refuse(why, LACONIC_OVERFLOW, LACONIC_FIELD_NONE, 0, R(0), R(0));

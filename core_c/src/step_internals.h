@@ -22,8 +22,28 @@ static inline vector zeta_of(const laconic_state *state) {
     return zeta;
 }
 
-/* ν → ζ: as GᵀAG = E and G diagonalises A, ζ = diag(inertia) Gᵀ ν, the projection onto the allowed motions. */
+/* Whether the axes of the model came from two rotations, and then row k of G⁺ = (GᵀG)⁻¹Gᵀ. */
+static inline bool rotated_twice(const laconic_model *m) {
+#if LACONIC_WITH_OWN_WHEELS
+    return m->rotated_twice;
+#else
+    return (void)m, false;
+#endif
+}
+
+static inline const real *inverse_row(const laconic_model *m, int k) {
+#if LACONIC_WITH_OWN_WHEELS
+    return m->zeta_of_nu[k];
+#else
+    return m->nu_of_zeta[k]; /* not reached */
+#endif
+}
+
+/* ν → ζ = G⁺ν, the projection onto the allowed motions. Where G diagonalises A, G⁺ = diag(inertia) Gᵀ, as GᵀAG = E. */
 static inline vector zeta_of_nu(const laconic_model *m, const real nu[3]) {
+    if (rotated_twice(m))
+        return (vector){dot(vec(inverse_row(m, 0)), vec(nu)), dot(vec(inverse_row(m, 1)), vec(nu)),
+                        dot(vec(inverse_row(m, 2)), vec(nu))};
     const vector first = scaled(nu[0], vec(m->nu_of_zeta[0])), second = scaled(nu[1], vec(m->nu_of_zeta[1]));
     return times(vec(m->inertia), plus(plus(first, second), scaled(nu[2], vec(m->nu_of_zeta[2]))));
 }
@@ -56,11 +76,11 @@ static inline bool beyond_rotation(const laconic_model *m, const laconic_integra
 #define LACONIC_WITH_FORCING \
     (LACONIC_WITH_VOLTAGE || LACONIC_WITH_AXLE_TORQUE || LACONIC_WITH_BODY_WRENCH || LACONIC_WITH_WORLD_FORCE)
 
-/* GᵀΞᵀ(c1 U + T)/(M R²), since the power of a wheel's torque is torque · χ'. */
+/* GᵀΞᵀ(c1_i U_i + T_i)/(M R²), since the power of a wheel's torque is torque · χ'. */
 static inline vector b_of_torques(const laconic_model *m, const laconic_input *in) {
     vector b = none;
     for (int32_t i = 0; i < LACONIC_WHEELS(m); i++) {
-        const real motor = LACONIC_WITH_VOLTAGE ? m->voltage_scale * in->voltage_V[i] : R(0);
+        const real motor = LACONIC_WITH_VOLTAGE ? m->voltage_scale[own(i)] * in->voltage_V[i] : R(0);
         const real torque = LACONIC_WITH_AXLE_TORQUE ? motor + m->torque_scale * in->axle_torque_Nm[i] : motor;
         b = plus(b, scaled(torque, vec(m->wheel_of_zeta[i])));
     }

@@ -10,12 +10,14 @@ typedef struct checked_number {
     {offsetof(laconic_vehicle, prefix member), number, LACONIC_RULE_##RULE},
 #define IN_WHEEL(prefix, number, IDENTIFIER, member, name, KIND, RULE, NEED) \
     {offsetof(laconic_wheel, member), number, LACONIC_RULE_##RULE},
+#define IN_OWN(prefix, number, IDENTIFIER, member, name, KIND, RULE, NEED) \
+    {offsetof(laconic_wheel, own_##member), number, LACONIC_RULE_##RULE},
 #define IN_SUPPORT(prefix, number, IDENTIFIER, member, name, KIND, RULE, NEED) \
     {offsetof(laconic_support, member), number, LACONIC_RULE_##RULE},
 
 static const checked_number of_body[] = {LACONIC_VEHICLE_FIELDS(IN_VEHICLE, )
                                              LACONIC_PAYLOAD_FIELDS(IN_VEHICLE, payload.)};
-static const checked_number of_wheel[] = {LACONIC_WHEEL_FIELDS(IN_WHEEL, )};
+static const checked_number of_wheel[] = {LACONIC_WHEEL_FIELDS(IN_WHEEL, ) LACONIC_OWN_WHEEL_FIELDS(IN_OWN, )};
 static const checked_number of_support[] = {LACONIC_SUPPORT_FIELDS(IN_SUPPORT, )};
 
 #define COUNT(array) (sizeof(array) / sizeof(array)[0])

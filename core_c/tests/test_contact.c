@@ -91,6 +91,37 @@ static void reactions_and_outer_forces_make_the_motion(void) {
     forces_balance(&s);
 }
 
+static void reactions_balance_with_the_radius_and_the_inertia_of_each_wheel(void) {
+    scene s;
+    laconic_vehicle v;
+    judge(&s, with_own_wheels(with_motors(mecanum())), turning_start(0.7, -0.4, 1.9), every_input());
+    forces_balance(&s);
+    judge(&s, with_own_wheels(with_motors(differential_drive())), turning_start(-DELTA / BIG_LAMBDA * 1.5, 0.8, 1.5),
+          every_input());
+    forces_balance(&s);
+    v = with_own_wheels(with_motors(three_wheels()));
+    v.wheel[2].locked = true;
+    judge(&s, v, turning_start(RHO * 1.9, -0.4, 1.9), every_input());
+    forces_balance(&s);
+    v = with_own_wheels(with_motors(differential_drive()));
+    v.wheel[1].locked = true;
+    judge(&s, v, turning_start(-DELTA / BIG_LAMBDA * 1.5, DRIVE_SIGMA * 1.5, 1.5), every_input());
+    forces_balance(&s);
+}
+
+/* A push of 8 N against a braked wheel of 0.2 m, four times the vehicle's radius: the torque is R_i F. */
+static void the_brake_of_a_wheel_holds_with_its_own_arm(void) {
+    scene s;
+    laconic_vehicle v = caster();
+    laconic_input input = no_input();
+    v.wheel[0].locked = true;
+    v.wheel[0].own_radius_m = REAL(0.2);
+    input.body_force_N[0] = REAL(8);
+    judge(&s, v, start_with(0, 0, 0), input);
+    ASSERT_NEAR(EITHER(1e-13, 1e-5), -8, s.out.along_N[0]);
+    ASSERT_NEAR(EITHER(1e-13, 1e-5), 8 * -0.2, s.out.brake_Nm[0]);
+}
+
 /* f = (M_i − J χ'')/(R sin γ) */
 static void a_roller_wheels_reaction_is_torque_less_its_own_inertia(void) {
     scene s;
@@ -246,6 +277,8 @@ static void a_refused_vehicle_changes_nothing(void) {
 int main(void) {
     UNITY_BEGIN();
     RUN_TEST(reactions_and_outer_forces_make_the_motion);
+    RUN_TEST(reactions_balance_with_the_radius_and_the_inertia_of_each_wheel);
+    RUN_TEST(the_brake_of_a_wheel_holds_with_its_own_arm);
     RUN_TEST(a_roller_wheels_reaction_is_torque_less_its_own_inertia);
     RUN_TEST(a_fixed_wheel_takes_a_push_along_its_axle);
     RUN_TEST(wheels_on_one_axle_line_share_its_force_equally);

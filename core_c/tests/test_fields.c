@@ -34,6 +34,8 @@ static void fields_are_called_as_fmus_call_them(void) {
     TEST_ASSERT_EQUAL_STRING("mass_kg", laconic_field_name(LACONIC_FIELD_MASS));
     TEST_ASSERT_EQUAL_STRING("payload_yaw_inertia_kgm2", laconic_field_name(LACONIC_FIELD_PAYLOAD_YAW_INERTIA));
     TEST_ASSERT_EQUAL_STRING("roller_rad", laconic_field_name(LACONIC_FIELD_ROLLER));
+    TEST_ASSERT_EQUAL_STRING("own_motor_damping_Nms", laconic_field_name(LACONIC_FIELD_OWN_MOTOR_DAMPING));
+    TEST_ASSERT_EQUAL_STRING("wheel_undriven", laconic_field_name(LACONIC_FIELD_DRIVEN));
     TEST_ASSERT_EQUAL_STRING("support_y_m", laconic_field_name(LACONIC_FIELD_SUPPORT_Y));
     TEST_ASSERT_EQUAL_STRING("start_heading_rad", laconic_field_name(LACONIC_FIELD_START_HEADING));
     TEST_ASSERT_EQUAL_STRING("step_s", laconic_field_name(LACONIC_FIELD_STEP));
@@ -46,6 +48,7 @@ static void fields_are_found_where_scenes_have_them(void) {
     TEST_ASSERT_EQUAL_STRING("vehicle.payload.x_m", laconic_field_path(LACONIC_FIELD_PAYLOAD_X));
     TEST_ASSERT_EQUAL_STRING("vehicle.wheel", laconic_field_path(LACONIC_FIELD_WHEEL_COUNT));
     TEST_ASSERT_EQUAL_STRING("vehicle.wheel[#].roller_rad", laconic_field_path(LACONIC_FIELD_ROLLER));
+    TEST_ASSERT_EQUAL_STRING("vehicle.wheel[#].radius_m", laconic_field_path(LACONIC_FIELD_OWN_RADIUS));
     TEST_ASSERT_EQUAL_STRING("vehicle.support", laconic_field_path(LACONIC_FIELD_SUPPORT_COUNT));
     TEST_ASSERT_EQUAL_STRING("initial.heading_rad", laconic_field_path(LACONIC_FIELD_START_HEADING));
     TEST_ASSERT_EQUAL_STRING("initial.nu_rad_per_s[#]", laconic_field_path(LACONIC_FIELD_START_NU));
@@ -77,6 +80,8 @@ static void numbers_of_fields_never_change(void) {
     TEST_ASSERT_EQUAL_INT(21, LACONIC_FIELD_WHEEL_LOCKED);
     TEST_ASSERT_EQUAL_INT(34, LACONIC_FIELD_BODY_MOMENT);
     TEST_ASSERT_EQUAL_INT(42, LACONIC_FIELD_ROTOR_INERTIA);
+    TEST_ASSERT_EQUAL_INT(43, LACONIC_FIELD_OWN_RADIUS);
+    TEST_ASSERT_EQUAL_INT(47, LACONIC_FIELD_DRIVEN);
 }
 
 static void a_number_of_no_field_gives_no_text_and_no_traits(void) {

@@ -167,6 +167,8 @@ static void every_vehicle_is_linearised(void) {
     rates_and_outputs_change_as_differences_say(with_motors(mecanum()));
     rates_and_outputs_change_as_differences_say(with_motors(differential_drive()));
     rates_and_outputs_change_as_differences_say(caster());
+    rates_and_outputs_change_as_differences_say(with_own_wheels(with_motors(mecanum())));
+    rates_and_outputs_change_as_differences_say(with_own_wheels(with_motors(differential_drive())));
     rates_and_outputs_change_as_differences_say(bare_body());
     rates_and_outputs_change_as_differences_say(locked);
 }
@@ -220,6 +222,7 @@ static void reactions_of_every_vehicle_are_linearised(void) {
     v.wheel[2].locked = true;
     reactions_change_as_differences_say(v, 0);
     reactions_change_as_differences_say(with_motors(mecanum()), 3);
+    reactions_change_as_differences_say(with_own_wheels(with_motors(mecanum())), 3);
     v = with_motors(differential_drive());
     v.support_count = 1;
     v.support[0].y_m = REAL(0.1);

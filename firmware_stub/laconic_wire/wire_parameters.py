@@ -17,7 +17,8 @@ NEEDS = {
     "EACH_ROLLER": "each wheel of kind 1", "EACH_SUPPORT": "each support"}
 RESERVED = "not yet: NOT_SUPPORTED"
 NONE, WHEEL, SUPPORT, COMPONENT = "0", "wheel", "support", "1, 2, 3"
-NOTES = {"WHEEL_KIND": ": 1 rollers (omni, mecanum), 2 fixed", "WHEEL_LOCKED": ": 0 or 1", "METHOD": ": see below"}
+NOTES = {"WHEEL_KIND": ": 1 rollers (omni, mecanum), 2 fixed", "WHEEL_LOCKED": ": 0 or 1",
+         "DRIVEN": ": 0 or 1; 1 where it is not sent", "METHOD": ": see below"}
 
 
 def units() -> dict[str, str]:
@@ -52,11 +53,6 @@ PARAMETERS = {
     "GEAR_RATIO": ("vehicle.motor.gear_ratio", "1", NONE, RESERVED),
     "VISCOUS_FRICTION": ("vehicle.motor.viscous_friction_Nms", "N m s", NONE, RESERVED),
     "ROTOR_INERTIA": ("vehicle.motor.rotor_inertia_kgm2", "kg m²", NONE, RESERVED),
-    "OWN_RADIUS": ("a wheel's own radius_m", "m", WHEEL, RESERVED),
-    "OWN_INERTIA": ("a wheel's own inertia_kgm2", "kg m²", WHEEL, RESERVED),
-    "OWN_MOTOR_GAIN": ("a wheel's own motor_gain_Nm_per_V", "N m/V", WHEEL, RESERVED),
-    "OWN_MOTOR_DAMPING": ("a wheel's own motor_damping_Nms", "N m s", WHEEL, RESERVED),
-    "DRIVEN": ("a wheel has a motor: 0 or 1", "integer", WHEEL, RESERVED),
     "WHEEL_FRICTION_COEFFICIENT": ("a wheel's own friction_coefficient", "1", WHEEL, RESERVED),
     "WHEEL_ROLLER_DRAG": ("a wheel's own roller_drag", "1", WHEEL, RESERVED),
     "WHEEL_AXLE_FRICTION": ("a wheel's own axle_friction_Nm", "N m", WHEEL, RESERVED),

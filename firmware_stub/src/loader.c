@@ -20,6 +20,7 @@ typedef struct location {
 #define IN_PAYLOAD(member) 0, 0, AT(vehicle.payload.member)
 #define IN_COUNT(member) 0, 0, AT(vehicle.member##_count)
 #define IN_WHEEL(member) LACONIC_MAX_WHEELS, sizeof(laconic_wheel), AT(vehicle.wheel[0].member)
+#define IN_OWN(member) LACONIC_MAX_WHEELS, sizeof(laconic_wheel), AT(vehicle.wheel[0].own_##member)
 #define IN_SUPPORT(member) LACONIC_MAX_SUPPORTS, sizeof(laconic_support), AT(vehicle.support[0].member)
 #define IN_START_ARRAY(member) \
     sizeof(((laconic_start *)NULL)->member) / sizeof(laconic_real), sizeof(laconic_real), AT(start.member)
@@ -88,8 +89,8 @@ static void store_real(laconic_loader *loader, void *to, const struct laconic_db
 
 static void store_integer(laconic_loader *loader, void *to, uint8_t kind, const struct laconic_dbc_parameter_t *frame) {
     const int32_t number = (int32_t)frame->value;
-    const bool flag = frame->value != 0;
-    const uint32_t largest = kind == LACONIC_KIND_FLAG ? 1U : kind == LACONIC_KIND_WHEEL_KIND ? 127U : UINT32_MAX;
+    const bool flag = (frame->value != 0) != (kind == LACONIC_KIND_ABSENCE);
+    const uint32_t largest = kind == LACONIC_KIND_WHEEL_KIND ? 127U : kind == LACONIC_KIND_INTEGER ? UINT32_MAX : 1U;
     if (frame->upper_half || frame->value > largest) {
         refuse(loader, LACONIC_WIRE_STATUS_OUT_OF_RANGE, frame->field, frame->item);
     } else if (kind == LACONIC_KIND_INTEGER) {

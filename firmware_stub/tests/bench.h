@@ -85,7 +85,7 @@ static inline void bench_load(int32_t wheels) {
     laconic_vehicle vehicle = {.mass_kg = 1, .yaw_inertia_kgm2 = 1, .wheel_radius_m = 1, .motor_gain_Nm_per_V = 1};
     vehicle.wheel_count = wheels;
     for (int32_t i = 0; i < wheels; i++) {
-        const laconic_wheel wheel = {LACONIC_WHEEL_FIXED, false, 0, (laconic_real)(i + 1), 0, 0};
+        const laconic_wheel wheel = {.kind = LACONIC_WHEEL_FIXED, .y_m = (laconic_real)(i + 1)};
         vehicle.wheel[i] = wheel;
     }
     laconic_plant_start(&node.plant, &vehicle, &laconic_rk4, (laconic_real)0.001, &node.start, NULL);

@@ -86,6 +86,7 @@ static void part_of_a_payload_or_support_is_not_enough(void) {
 
 static void numbers_that_the_core_has_no_use_for_yet_are_refused_by_name(void) {
     for (uint8_t k = LACONIC_WIRE_FIELD_RESISTANCE; k <= LACONIC_WIRE_FIELD_START_WHEEL_SPEED; k++) {
+        if (k >= LACONIC_FIELD_OWN_RADIUS && k <= LACONIC_FIELD_DRIVEN) continue;
         laconic_loader_begin(&loader);
         send(0, k, 1, 0);
         TEST_ASSERT_EQUAL_UINT8(LACONIC_WIRE_STATUS_NOT_SUPPORTED, check());
@@ -111,6 +112,25 @@ static void numbers_arrive_bit_for_bit_where_they_belong(void) {
     TEST_ASSERT_EQUAL(LACONIC_WHEEL_FIXED, loader.parameters.vehicle.wheel[1].kind);
     TEST_ASSERT_TRUE(loader.parameters.vehicle.wheel[1].locked);
     TEST_ASSERT_EQUAL_INT32(2, loader.parameters.vehicle.wheel_count);
+}
+
+static void a_wheels_own_values_arrive_and_driven_0_means_no_motor(void) {
+    send_cart_without(0, 0);
+    send_real(LACONIC_FIELD_OWN_RADIUS, 2, (laconic_real)0.07);
+    send_real(LACONIC_FIELD_OWN_INERTIA, 2, (laconic_real)0.01);
+    send_real(LACONIC_FIELD_OWN_MOTOR_GAIN, 1, (laconic_real)-0.3);
+    send_real(LACONIC_FIELD_OWN_MOTOR_DAMPING, 1, (laconic_real)0.02);
+    send(0, LACONIC_FIELD_DRIVEN, 1, 1);
+    send(0, LACONIC_FIELD_DRIVEN, 2, 0);
+    TEST_ASSERT_EQUAL_UINT8(0, check());
+    TEST_ASSERT_TRUE(loader.parameters.vehicle.wheel[1].own_radius_m == (laconic_real)0.07);
+    TEST_ASSERT_TRUE(loader.parameters.vehicle.wheel[1].own_inertia_kgm2 == (laconic_real)0.01);
+    TEST_ASSERT_TRUE(loader.parameters.vehicle.wheel[0].own_motor_gain_Nm_per_V == (laconic_real)-0.3);
+    TEST_ASSERT_TRUE(loader.parameters.vehicle.wheel[0].own_motor_damping_Nms == (laconic_real)0.02);
+    TEST_ASSERT_FALSE(loader.parameters.vehicle.wheel[0].undriven);
+    TEST_ASSERT_TRUE(loader.parameters.vehicle.wheel[1].undriven);
+    send(0, LACONIC_FIELD_DRIVEN, 2, 2);
+    TEST_ASSERT_EQUAL_UINT8(LACONIC_WIRE_STATUS_OUT_OF_RANGE, check());
 }
 
 static void a_field_or_item_that_is_not_there_is_remembered(void) {
@@ -153,6 +173,7 @@ static void checksum_and_count_must_both_be_right(void) {
 int main(void) {
     UNITY_BEGIN();
     RUN_TEST(numbers_arrive_bit_for_bit_where_they_belong);
+    RUN_TEST(a_wheels_own_values_arrive_and_driven_0_means_no_motor);
     RUN_TEST(a_field_or_item_that_is_not_there_is_remembered);
     RUN_TEST(items_end_where_the_list_ends);
     RUN_TEST(numbers_out_of_their_range_are_refused);

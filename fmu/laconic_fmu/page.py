@@ -14,6 +14,9 @@ VEHICLE_MARK = "<!-- the vehicle of a scene -->"
 """The comment in the template that the vehicle's part replaces."""
 SUPPORTS = ("support_x_m", "support_y_m")
 WHEEL_COLUMNS = ("wheel_kind", "wheel_x_m", "wheel_y_m", "axle_rad", "roller_rad", "wheel_locked")
+OWN_COLUMNS = ("wheel_undriven", "own_radius_m", "own_inertia_kgm2", "own_motor_gain_Nm_per_V",
+               "own_motor_damping_Nms")
+"""Shown only where a wheel has a value of its own."""
 
 
 def vehicle_parts(parts: Mapping[str, bytes], description: Description, version: int) -> dict[str, bytes]:
@@ -43,14 +46,15 @@ def _page(template: str, description: Description, drawing: str) -> str:
 def _tables(description: Description) -> str:
     units = _units(description.root)
     plain = [v for v in description.variables
-             if v.causality == "parameter" and v.name not in (*WHEEL_COLUMNS, *SUPPORTS)]
+             if v.causality == "parameter" and v.name not in (*WHEEL_COLUMNS, *OWN_COLUMNS, *SUPPORTS)]
     rows = "".join(f"<tr><th><code>{escape(v.name)}</code></th><td>{_values(description, v)}"
                    f"{_unit(units, v)}</td><td>{escape(v.description)}</td></tr>\n" for v in plain)
     return f'<h2>Its numbers</h2>\n<table class="wide">\n{rows}</table>\n{_wheels(description)}{_supports(description)}'
 
 
 def _wheels(description: Description) -> str:
-    columns = [description.variable(name) for name in WHEEL_COLUMNS]
+    columns = [description.variable(name) for name in (*WHEEL_COLUMNS, *OWN_COLUMNS)]
+    columns = [v for v in columns if v.name in WHEEL_COLUMNS or any(as_double(text) for text in v.start)]
     count = description.array_size
     if count == 0:
         return "<p>It has no wheels.</p>\n"

@@ -6,8 +6,10 @@
 #define SERIALIZE_ARRAY(of, number, IDENTIFIER, member, name, KIND, RULE, NEED) \
     fmu_stream_reals(s, (of).member, sizeof(of).member / sizeof(double));
 #define SERIALIZE(of, number, IDENTIFIER, member, name, KIND, RULE, NEED) SERIALIZE_##KIND(s, &(of).member);
+#define SERIALIZE_OWN(of, number, IDENTIFIER, member, name, KIND, RULE, NEED) SERIALIZE_##KIND(s, &(of).own_##member);
 #define SERIALIZE_REAL(stream, number) fmu_stream_reals(stream, number, 1)
 #define SERIALIZE_INTEGER(stream, number) fmu_stream_i32(stream, number, INT32_MIN, INT32_MAX)
+#define SERIALIZE_ABSENCE(stream, flag) fmu_stream_bool(stream, flag)
 #define SERIALIZE_FLAG(stream, flag) fmu_stream_bool(stream, flag)
 #define SERIALIZE_WHEEL_KIND(stream, kind) serialize_kind(stream, kind)
 
@@ -23,6 +25,7 @@ static void serialize_vehicle(fmu_stream *s, laconic_vehicle *v) {
     fmu_stream_i32(s, &v->wheel_count, 0, LACONIC_MAX_WHEELS);
     for (int32_t i = 0; i < LACONIC_MAX_WHEELS; i++) {
         LACONIC_WHEEL_FIELDS(SERIALIZE, v->wheel[i])
+        LACONIC_OWN_WHEEL_FIELDS(SERIALIZE_OWN, v->wheel[i])
     }
     fmu_stream_i32(s, &v->support_count, INT32_MIN, INT32_MAX);
     for (int32_t i = 0; i < LACONIC_MAX_SUPPORTS; i++) {

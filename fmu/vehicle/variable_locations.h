@@ -11,6 +11,7 @@
 #define IN_PAYLOAD(member) FMU_PLAIN(vehicle.payload.member)
 #define IN_COUNT(member) FMU_PLAIN(vehicle.member##_count)
 #define IN_WHEEL(member) FMU_AT(vehicle.wheel[0].member), sizeof(laconic_wheel), 0, FMU_NO_TANGENT
+#define IN_OWN(member) FMU_AT(vehicle.wheel[0].own_##member), sizeof(laconic_wheel), 0, FMU_NO_TANGENT
 #define IN_SUPPORT(member) FMU_AT(vehicle.support[0].member), sizeof(laconic_support), 0, FMU_NO_TANGENT
 #define IN_START_ARRAY(member) FMU_AT(start.member), sizeof(double), 0, FMU_ALONG(nu) /* ν is the only array */
 #define IN_START(member) FMU_AT(start.member), sizeof(double), 0, FMU_ALONG(member)

@@ -25,18 +25,20 @@
  *
  * Symbols  docs/glossary.md has all of them. Those that the comments use:
  *          S             centre of mass of the robot with its wheels and payload
- *          M, R, J       mass of all of it; radius of each wheel; inertia of a wheel about its axle
+ *          M, R, J       mass of all of it; radius of a wheel; inertia of a wheel about its axle. A wheel i may have its
+ *                        own R_i, J_i; R is then the vehicle's, in which ν is measured
  *          Λ, λ          I_S = Λ² M R² and J = λ² M R²: the yaw inertia about S, and J, without a unit
  *          ν             pseudo-velocities [rad/s]: v_S = R (ν1 e_ξ + ν2 e_η), yaw rate θ' = ν3/Λ
  *          χ             own rotation of a wheel; positive χ' drives the hub along (−sin β, cos β), with β the axle's
  *                        direction. So a wheel that rolls along +ξ has β = −π/2, left and right alike.
- *          Ξ             wheel matrix (4.3, 4.4): χ' = Ξν
- *          A             inertia matrix E + λ²ΞᵀΞ (4.6): the kinetic energy is ½ M R² νᵀAν
+ *          Ξ             wheel matrix (4.3, 4.4): χ' = Ξν; the row of a wheel has the factor R/R_i
+ *          A             inertia matrix E + Σ J_i/(M R²) Ξ_iᵀΞ_i (4.6), E + λ²ΞᵀΞ for equal wheels: the kinetic energy
+ *                        is ½ M R² νᵀAν
  *          K             (Aν)₃, which free motion without constraints conserves beside the energy
  *          ζ, G, g       the velocity in principal coordinates, ν = Gζ; g is the third row of G, so ν3 = g·ζ
  *          w, r, b       of ζ' = (g·ζ)(ζ × w) − diag(r)ζ + b: axis of the gyroscopic term, damping rates, forcing
  *          κ             multipliers of the constraints [rad/s²]: M R κ is a force, M R² κ the torque of a brake
- *          c1, c2        a motor gives its wheel the torque c1 U − c2 χ' at the voltage U
+ *          c1, c2        a motor gives its wheel the torque c1 U − c2 χ' at the voltage U; a wheel may have its own
  *
  * Limits   what the model does not do, and what to do instead:
  *          slip             wheels and rollers roll without slip. no_slip_margin_N is below 0 where the ground cannot
@@ -45,9 +47,7 @@
  *                           springs. On more than three points they are those of an evenly soft ground.
  *          level ground     a slope's pull along it is a world_force_N at S, (M g sin slope) down the slope; normal
  *                           loads stay those of level ground.
- *          one wheel radius R, J, c1 and c2 are common to all wheels: give the driven wheels'. Wheels that neither
- *                           drive nor guide may be supports.
- *          one motor        a DC motor without inductance, dry friction or limits. Any other torque is given as
+ *          motors           a DC motor without inductance, dry friction or limits. Any other torque is given as
  *                           axle_torque_Nm, with c1 = c2 = 0 where it replaces the motor's.
  *          swivel casters   a support: it carries a normal load; its inertia and its swivelling are left out. (A single
  *                           fixed wheel is no swivel caster: it does not swivel.)
@@ -127,8 +127,9 @@ const char *laconic_arithmetic_text(laconic_arithmetic found);
 /* OK iff every number of the vehicle is usable; else the first that is not. O(N). */
 laconic_status laconic_vehicle_check(const laconic_vehicle *vehicle, laconic_refusal *why);
 
-/* c1 = n k_t/R_a, c2 = n² (k_t k_e/R_a + d) set in the vehicle; n² J_rotor added to J, so call it once. Refuses
- * OVERFLOW (gear_ratio) where one of these leaves the range, NEGATIVE (back_emf) where damping is below 0. */
+/* c1 = n k_t/R_a, c2 = n² (k_t k_e/R_a + d) set in the vehicle; a wheel's own c1 and c2 stay. n² J_rotor is added to the
+ * J, own ones too, of all wheels that are driven: own_inertia_kgm2 is before the call without the rotor, after it with.
+ * So call it once, with the wheels set. Refuses NEGATIVE (wheel_inertia, own_inertia) where J is below 0, OVERFLOW (gear_ratio) where one of these leaves the range, NEGATIVE (back_emf) where damping is below 0. */
 laconic_status laconic_motor_fit(laconic_vehicle *vehicle, const laconic_motor *motor, laconic_refusal *why);
 
 /* ---------------------------------------------------------------------------------- model -- */
@@ -139,25 +140,29 @@ laconic_status laconic_motor_fit(laconic_vehicle *vehicle, const laconic_motor *
  * With fewer than three degrees of freedom the columns of G beyond `dof` are zero. */
 typedef struct laconic_model {
     int32_t wheel_count;
-    int32_t dof;                                       /* m = 1 … 3                                 */
-    laconic_real nu_of_zeta[3][3];                     /* G                                         */
-    laconic_real gyro[3];                              /* w = G₀ × G₁ / Λ                           */
-    laconic_real gyro_square;                          /* |w|²                                      */
-    laconic_real spin_gain[3];                         /* w × g: (spin_gain · ζ)(g·ζ) = rate of g·ζ in free motion */
-    laconic_real spin_curve[3];                        /* 2(g·w)w − |w|²g                           */
-    laconic_real decay_per_s[3];                       /* r_k ≥ 0, damping rates                    */
-    laconic_real inertia[3];                           /* 1 + λ² x_k, principal values of A         */
-    laconic_real velocity_of_zeta[2][3];               /* R G₀, R G₁: v_S in body axes              */
-    laconic_real yaw_rate_of_zeta[3];                  /* g/Λ                                       */
-    laconic_real wheel_of_zeta[LACONIC_MAX_WHEELS][3]; /* Ξ G: χ' = Ξ ν                           */
-    laconic_real torque_scale;                         /* 1/(M R²)                                  */
-    laconic_real voltage_scale;                        /* c1/(M R²)                                 */
-    laconic_real motor_gain_Nm_per_V;                  /* c1                                        */
-    laconic_real motor_damping_Nms;                    /* c2                                        */
-    laconic_real wheel_inertia_kgm2;                   /* J                                         */
-    laconic_real mass_kg, wheel_radius_m;              /* M with payload, R                         */
-    laconic_real yaw_scale;                            /* Λ                                         */
-    laconic_real com_x_m, com_y_m;                     /* S in the body frame, with payload         */
+    int32_t dof;                                          /* m = 1 … 3                                 */
+    laconic_real nu_of_zeta[3][3];                        /* G                                         */
+    laconic_real gyro[3];                                 /* w = G₀ × G₁ / Λ                           */
+    laconic_real gyro_square;                             /* |w|²                                      */
+    laconic_real spin_gain[3];                            /* w × g: (spin_gain · ζ)(g·ζ) = rate of g·ζ in free motion */
+    laconic_real spin_curve[3];                           /* 2(g·w)w − |w|²g                           */
+    laconic_real decay_per_s[3];                          /* r_k ≥ 0, damping rates                    */
+    laconic_real inertia[3];                              /* principal values of A; 1 + λ² x_k for equal wheels */
+    laconic_real velocity_of_zeta[2][3];                  /* R G₀, R G₁: v_S in body axes              */
+    laconic_real yaw_rate_of_zeta[3];                     /* g/Λ                                       */
+    laconic_real wheel_of_zeta[LACONIC_MAX_WHEELS][3];    /* Ξ G: χ' = Ξ ν                           */
+    laconic_real torque_scale;                            /* 1/(M R²)                                  */
+    laconic_real voltage_scale[LACONIC_OWN_WHEELS];       /* c1_i/(M R²)                               */
+    laconic_real motor_gain_Nm_per_V[LACONIC_OWN_WHEELS]; /* c1_i                                   */
+    laconic_real motor_damping_Nms[LACONIC_OWN_WHEELS];   /* c2_i                                   */
+    laconic_real wheel_inertia_kgm2[LACONIC_OWN_WHEELS];  /* J_i                                    */
+#if LACONIC_WITH_OWN_WHEELS
+    bool rotated_twice;            /* c2_i : J_i differ, so A and the damping have different axes       */
+    laconic_real zeta_of_nu[3][3]; /* then G⁺ = (GᵀG)⁻¹Gᵀ: ζ = G⁺ν; else 0                              */
+#endif
+    laconic_real mass_kg, wheel_radius_m; /* M with payload, R                         */
+    laconic_real yaw_scale;               /* Λ                                         */
+    laconic_real com_x_m, com_y_m;        /* S in the body frame, with payload         */
 } laconic_model;
 
 /* Checks the vehicle and fills the model: rows of Ξ (4.3–4.4), constraints of fixed and locked wheels, principal axes
@@ -177,7 +182,7 @@ laconic_real laconic_condition_number(const laconic_model *model);
 /* The matrices of the paper, to read; steps do not need them. */
 typedef struct laconic_matrices {
     laconic_real wheel_rows[LACONIC_MAX_WHEELS][3];          /* Ξ (4.3–4.4)                            */
-    laconic_real inertia[3][3];                              /* A = E + λ² ΞᵀΞ (4.6)                   */
+    laconic_real inertia[3][3];                              /* A = E + Σ J_i/(M R²) Ξ_iᵀ Ξ_i (4.6)    */
     laconic_real inverse_inertia[3][3];                      /* A⁻¹; with constraints G Gᵀ             */
     int32_t constraint_count;                                /* rows below, with the dependent ones    */
     laconic_real constraint_rows[2 * LACONIC_MAX_WHEELS][3]; /* c with cᵀν = 0: for each wheel
@@ -379,7 +384,7 @@ typedef struct laconic_contact {
     laconic_real multiplier[2 * LACONIC_MAX_WHEELS][3]; /* κ = multiplier · (Aν' − …): least norm,
                                                  so wheels that share a constraint share its force */
     laconic_real wheel_rows[LACONIC_MAX_WHEELS][3];     /* Ξ                                       */
-    laconic_real inverse_arm_per_m[LACONIC_MAX_WHEELS]; /* 1/(R sin γ_i)                           */
+    laconic_real inverse_arm_per_m[LACONIC_MAX_WHEELS]; /* 1/(R_i sin γ_i)                         */
     laconic_real pull[LACONIC_MAX_WHEELS][2];           /* unit vector along which along_N acts, body axes   */
     laconic_real axle[LACONIC_MAX_WHEELS][2];           /* unit vector of the axle, body axes                */
     laconic_real inertia[3][3];                         /* A                                                 */

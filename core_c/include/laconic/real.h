@@ -70,6 +70,14 @@ typedef uint64_t laconic_binary_angle; /* angle in units of 2^-64 turn */
 #endif
 
 /* Inputs and outputs of the build. A scene's header sets to 0 what the scene does not use. */
+#ifndef LACONIC_WITH_OWN_WHEELS /* 0: all wheels have the vehicle's values; own ones are not read */
+#define LACONIC_WITH_OWN_WHEELS 1
+#endif
+#if LACONIC_WITH_OWN_WHEELS /* how many items an array of a model has that holds a value for each wheel */
+#define LACONIC_OWN_WHEELS LACONIC_MAX_WHEELS
+#else
+#define LACONIC_OWN_WHEELS 1
+#endif
 #ifndef LACONIC_WITH_VOLTAGE
 #define LACONIC_WITH_VOLTAGE 1
 #endif

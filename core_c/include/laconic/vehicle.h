@@ -25,6 +25,13 @@ typedef struct laconic_wheel {
                                 1e-3) are refused                                                */
     laconic_real roller_rad; /* γ_i, from axle to roller axis (the roller that touches the ground):
                                 π/2 omni, ±π/4 mecanum; not read for fixed wheels                 */
+    /* The wheel's own values where they differ from the vehicle's; 0: the vehicle's value. A wheel whose own value is 0
+     * while the vehicle's is not: set the vehicle's to 0 and give it to all other wheels as theirs. */
+    laconic_real own_radius_m;            /* R_i                                                 */
+    laconic_real own_inertia_kgm2;        /* J_i                                                 */
+    laconic_real own_motor_gain_Nm_per_V; /* c1_i                                                */
+    laconic_real own_motor_damping_Nms;   /* c2_i                                                */
+    bool undriven; /* no motor: c1_i = c2_i = 0, whatever the values above and the vehicle's; J_i is without a rotor */
 } laconic_wheel;
 
 /* A mass fastened to the body. All zero: no payload. */
@@ -44,7 +51,7 @@ typedef struct laconic_vehicle {
     laconic_real yaw_inertia_kgm2;     /* I_S, about the vertical through the centre of mass     */
     laconic_real com_x_m, com_y_m;     /* centre of mass S in the body frame, without payload    */
     laconic_real com_z_m;              /* height of S above the ground, >= 0; for normal loads only */
-    laconic_real wheel_radius_m;       /* R, common to all wheels                                */
+    laconic_real wheel_radius_m;       /* R: of wheels without an own one; the unit in which ν is measured */
     laconic_real wheel_inertia_kgm2;   /* J, one wheel with its gear and rotor about the axle    */
     laconic_real motor_gain_Nm_per_V;  /* c1: torque on a wheel is c1 U − c2 χ' + axle torque    */
     laconic_real motor_damping_Nms;    /* c2                                                     */
@@ -88,7 +95,9 @@ typedef enum laconic_field_kind {
     LACONIC_KIND_REAL,
     LACONIC_KIND_INTEGER,    /* int32_t            */
     LACONIC_KIND_WHEEL_KIND, /* laconic_wheel_kind */
-    LACONIC_KIND_FLAG        /* bool               */
+    LACONIC_KIND_FLAG,       /* bool               */
+    LACONIC_KIND_ABSENCE     /* bool, true where something is absent that wheels usually have: so all zero is the usual
+                                wheel. On the wire, and as the key of a scene, 1 and true mean that it is there     */
 } laconic_field_kind;
 
 /* What a number must satisfy; all but UNCHECKED must be finite. laconic_vehicle_check() goes through a vehicle's own
@@ -122,9 +131,10 @@ typedef enum laconic_field_need {
 /* One row for each field, in the order in which numbers are checked:
  *     X(of, number, IDENTIFIER, member, name, KIND, RULE, NEED)
  * of           the argument of the list, passed through: the name of a table, or what else X needs
- * number       on the wire, never changed; laconic.dbc reserves 43 to 59 for fields to come
+ * number       on the wire, never changed; laconic.dbc reserves 48 to 59 for fields to come
  * IDENTIFIER   LACONIC_FIELD_IDENTIFIER; also the text in the value tables of laconic.dbc
- * member       in the struct that the list is for, and the key in a scene
+ * member       in the struct that the list is for, and the key in a scene; in the list of a wheel's own values the
+ *              struct's member has own_ before it
  * name         of the variable in modelDescription.xml, and of laconic_field_name()
  * KIND …       LACONIC_KIND_…, LACONIC_RULE_…, LACONIC_NEED_… */
 /* clang-format off */
@@ -156,7 +166,15 @@ typedef enum laconic_field_need {
     X(of, 18, WHEEL_Y,      y_m,        wheel_y_m,    REAL,       FINITE,    EACH_WHEEL) \
     X(of, 19, AXLE,         axle_rad,   axle_rad,     REAL,       ANGLE,     EACH_WHEEL) \
     X(of, 20, ROLLER,       roller_rad, roller_rad,   REAL,       ROLLER,    EACH_ROLLER) \
-    X(of, 21, WHEEL_LOCKED, locked,     wheel_locked, FLAG,       UNCHECKED, NEVER)
+    X(of, 21, WHEEL_LOCKED, locked,     wheel_locked, FLAG,       UNCHECKED, NEVER) \
+    X(of, 47, DRIVEN,       undriven,   wheel_undriven, ABSENCE,  UNCHECKED, NEVER)
+
+/* A wheel's own values; 0: the vehicle's. */
+#define LACONIC_OWN_WHEEL_FIELDS(X, of) \
+    X(of, 43, OWN_RADIUS,        radius_m,            own_radius_m,            REAL, NOT_NEGATIVE, NEVER) \
+    X(of, 44, OWN_INERTIA,       inertia_kgm2,        own_inertia_kgm2,        REAL, NOT_NEGATIVE, NEVER) \
+    X(of, 45, OWN_MOTOR_GAIN,    motor_gain_Nm_per_V, own_motor_gain_Nm_per_V, REAL, FINITE,       NEVER) \
+    X(of, 46, OWN_MOTOR_DAMPING, motor_damping_Nms,   own_motor_damping_Nms,   REAL, NOT_NEGATIVE, NEVER)
 
 #define LACONIC_SUPPORT_COUNT_FIELD(X, of) \
     X(of, 22, SUPPORT_COUNT, support, support_count, INTEGER, UNCHECKED, WITH_SUPPORTS)
@@ -200,7 +218,7 @@ typedef enum laconic_field_need {
 /* What a plant starts with: vehicle, start, method and step. */
 #define LACONIC_PARAMETER_FIELDS(X) \
     LACONIC_VEHICLE_FIELDS(X, VEHICLE) LACONIC_PAYLOAD_FIELDS(X, PAYLOAD) \
-    LACONIC_WHEEL_COUNT_FIELD(X, COUNT) LACONIC_WHEEL_FIELDS(X, WHEEL) \
+    LACONIC_WHEEL_COUNT_FIELD(X, COUNT) LACONIC_WHEEL_FIELDS(X, WHEEL) LACONIC_OWN_WHEEL_FIELDS(X, OWN) \
     LACONIC_SUPPORT_COUNT_FIELD(X, COUNT) LACONIC_SUPPORT_FIELDS(X, SUPPORT) \
     LACONIC_START_ARRAY_FIELDS(X, START_ARRAY) LACONIC_START_FIELDS(X, START) LACONIC_RUN_FIELDS(X, RUN)
 
@@ -215,7 +233,7 @@ typedef enum laconic_field_need {
 /* The fields a refusal can name: LACONIC_FIELD_MASS = 1 … */
 typedef enum laconic_field {
     LACONIC_FIELD_NONE = 0,
-    LACONIC_ALL_FIELDS(LACONIC_FIELD_NUMBER) LACONIC_FIELD_COUNT = 43 /* one more than the largest number above */
+    LACONIC_ALL_FIELDS(LACONIC_FIELD_NUMBER) LACONIC_FIELD_COUNT = 48 /* one more than the largest number above */
 } laconic_field;
 
 #endif

@@ -6,8 +6,9 @@
 #include "vehicles.h"
 
 typedef struct reference {
-    double big_lambda, lambda_square, unit_inertia, radius, gain, damping;
+    double big_lambda, unit_inertia, radius;
     int wheels;
+    double inertia[LACONIC_MAX_WHEELS], gain[LACONIC_MAX_WHEELS], damping[LACONIC_MAX_WHEELS]; /* J_i, c1_i, c2_i */
     double row[LACONIC_MAX_WHEELS][3];
     double inverse[3][3];
 } reference;
@@ -32,9 +33,12 @@ static inline void reference_inertia(const reference *p, double a[3][3]) {
     for (int r = 0; r < 3; r++)
         for (int c = 0; c < 3; c++) {
             a[r][c] = r == c ? 1.0 : 0.0;
-            for (int i = 0; i < p->wheels; i++) a[r][c] += p->lambda_square * p->row[i][r] * p->row[i][c];
+            for (int i = 0; i < p->wheels; i++)
+                a[r][c] += p->inertia[i] / p->unit_inertia * p->row[i][r] * p->row[i][c];
         }
 }
+
+static inline double own_or(laconic_real own, laconic_real common) { return (double)(own != 0 ? own : common); }
 
 static inline reference reference_of(const laconic_vehicle *v) {
     reference p;
@@ -42,17 +46,18 @@ static inline reference reference_of(const laconic_vehicle *v) {
     p.radius = (double)v->wheel_radius_m;
     p.unit_inertia = (double)v->mass_kg * p.radius * p.radius;
     p.big_lambda = sqrt((double)v->yaw_inertia_kgm2 / p.unit_inertia);
-    p.lambda_square = (double)v->wheel_inertia_kgm2 / p.unit_inertia;
-    p.gain = (double)v->motor_gain_Nm_per_V;
-    p.damping = (double)v->motor_damping_Nms;
     p.wheels = v->wheel_count;
     for (int i = 0; i < p.wheels; i++) {
         const laconic_wheel *w = &v->wheel[i];
         const double s = (double)w->axle_rad + (double)w->roller_rad, sine = sin((double)w->roller_rad);
         const double px = (double)w->x_m - (double)v->com_x_m, py = (double)w->y_m - (double)v->com_y_m;
-        p.row[i][0] = cos(s) / sine;
-        p.row[i][1] = sin(s) / sine;
-        p.row[i][2] = (px * sin(s) - py * cos(s)) / (p.radius * p.big_lambda * sine);
+        const double size = p.radius / (own_or(w->own_radius_m, v->wheel_radius_m) * sine);
+        p.row[i][0] = cos(s) * size;
+        p.row[i][1] = sin(s) * size;
+        p.row[i][2] = (px * sin(s) - py * cos(s)) / (p.radius * p.big_lambda) * size;
+        p.inertia[i] = own_or(w->own_inertia_kgm2, v->wheel_inertia_kgm2);
+        p.gain[i] = w->undriven ? 0 : own_or(w->own_motor_gain_Nm_per_V, v->motor_gain_Nm_per_V);
+        p.damping[i] = w->undriven ? 0 : own_or(w->own_motor_damping_Nms, v->motor_damping_Nms);
     }
     reference_inertia(&p, a);
     invert3(p.inverse, a);
@@ -69,7 +74,8 @@ static inline void reference_rate(const reference *p, const double *y, const lac
     right[2] = ((double)in->body_moment_Nm + rx * across - ry * along) / p->big_lambda;
     for (int i = 0; i < p->wheels; i++) {
         const double speed = p->row[i][0] * y[0] + p->row[i][1] * y[1] + p->row[i][2] * y[2];
-        const double torque = p->gain * (double)in->voltage_V[i] - p->damping * speed + (double)in->axle_torque_Nm[i];
+        const double torque =
+            p->gain[i] * (double)in->voltage_V[i] - p->damping[i] * speed + (double)in->axle_torque_Nm[i];
         for (int k = 0; k < 3; k++) right[k] += p->row[i][k] * torque;
         rate[6 + i] = speed;
     }

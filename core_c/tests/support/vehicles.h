@@ -79,6 +79,18 @@ static inline laconic_vehicle mecanum(void) {
     return v;
 }
 
+/* Every wheel unlike the others: another radius, inertia, gain and damping; the second has no motor. */
+static inline laconic_vehicle with_own_wheels(laconic_vehicle v) {
+    v.wheel[0].own_radius_m = REAL(0.04);
+    v.wheel[0].own_inertia_kgm2 = REAL(0.004);
+    v.wheel[0].own_motor_damping_Nms = REAL(0.05);
+    v.wheel[1].own_radius_m = REAL(0.065);
+    v.wheel[1].own_inertia_kgm2 = REAL(0.012);
+    v.wheel[1].undriven = true;
+    if (v.wheel_count > 2) v.wheel[2].own_motor_gain_Nm_per_V = REAL(-0.3);
+    return v;
+}
+
 static inline laconic_model model_of(laconic_vehicle v) {
     laconic_model model;
     laconic_refusal why;

@@ -43,7 +43,7 @@ def bifurcation_part(result: Study, options: StudyOptions) -> None:
 
 
 def _no_diagram(subject: Subject, options: StudyOptions) -> str | None:
-    if float(subject.model.motor_damping_Nms) == 0.0 or not subject.field({}).decay_per_s.any():
+    if not subject.of_wheels("motor_damping_Nms").any() or not subject.field({}).decay_per_s.any():
         return "No bifurcation diagram: the motors do not damp (c2 = 0), so constant inputs have no steady motion."
     if pushed.world_force_acts(subject):
         return "No bifurcation diagram: a force fixed in the world acts."

@@ -20,6 +20,8 @@ def coasting(subject: Subject) -> Any:
     """The same vehicle with its motors cut off."""
     vehicle = subject.core.ffi.new("laconic_vehicle *", subject.vehicle[0])
     vehicle.motor_gain_Nm_per_V = vehicle.motor_damping_Nms = 0.0
+    for wheel in vehicle.wheel:
+        wheel.own_motor_gain_Nm_per_V = wheel.own_motor_damping_Nms = 0.0
     return vehicle
 
 

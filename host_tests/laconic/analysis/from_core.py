@@ -53,15 +53,26 @@ class Subject:
         """ν at the scene's start."""
         return np.array(self.scene.initial.nu(self.model), dtype=float)
 
+    def of_wheels(self, name: str) -> np.ndarray:
+        """A member of the model that has a value for each wheel: motor_gain_Nm_per_V …"""
+        return self.core.numbers(getattr(self.model, name))[: self.wheel_count]
+
+    @property
+    def wheels_differ(self) -> bool:
+        """Whether damping and inertia have axes of their own, as c2_i : J_i is not common to all wheels."""
+        return bool(self.model.rotated_twice)
+
     def numbers(self) -> VehicleNumbers:
         """The vehicle for the derivation."""
         from laconic.method.scene_system import VehicleNumbers
 
+        inertia = self.of_wheels("wheel_inertia_kgm2")
+        share = np.sqrt(inertia / (inertia.max(initial=0.0) or 1.0)) if inertia.any() else np.ones_like(inertia)
         return VehicleNumbers(
             name=self.scene.name, mass_kg=float(self.model.mass_kg), wheel_radius_m=float(self.model.wheel_radius_m),
-            lambda_yaw=self.matrices.lambda_yaw, lambda_wheel=self.matrices.lambda_wheel,
-            motor_gain_Nm_per_V=float(self.model.motor_gain_Nm_per_V),
-            motor_damping_Nms=float(self.model.motor_damping_Nms),
+            lambda_yaw=self.matrices.lambda_yaw, lambda_wheel=self.matrices.lambda_wheel * share,
+            motor_gain_Nm_per_V=self.of_wheels("motor_gain_Nm_per_V"),
+            motor_damping_Nms=self.of_wheels("motor_damping_Nms"),
             wheel_rows=self.matrices.wheel_rows, constraint_rows=self.matrices.constraint_rows)
 
 

@@ -199,10 +199,14 @@ def _yaw_words(found: Geometry) -> list[str]:
 
 def _reach_words(subject: Subject) -> str:
     """What reaches the wheels: motors with a gain, motors with damping only, or none."""
-    if float(subject.model.motor_gain_Nm_per_V):
-        return "so the motors drive and damp all of them" if float(subject.model.motor_damping_Nms) else (
+    gain, damping = subject.of_wheels("motor_gain_Nm_per_V"), subject.of_wheels("motor_damping_Nms")
+    if gain.any() and not (gain.all() and (damping.all() or not damping.any())):
+        return (f"of which motors drive those of {np.count_nonzero(gain)} and damp those of "
+                f"{np.count_nonzero(damping)} wheels")
+    if gain.any():
+        return "so the motors drive and damp all of them" if damping.any() else (
             "so the motors drive all of them; they damp none")
-    if float(subject.model.motor_damping_Nms):
+    if damping.any():
         return "so the motors' damping brakes all of them; no voltage drives them"
     return "but there are no motors to drive or damp it: only forces and axle torques do"
 

@@ -39,11 +39,11 @@ def field_line(subject: Subject, inputs_of: Callable[[float], Inputs]) -> Callab
 
 
 def straight_torques(subject: Subject, nu: np.ndarray) -> Inputs:
-    """Axle torques with which the straight motion ν⁰ is steady: c1 U = c2 Ξ ν⁰.
+    """Axle torques with which the straight motion ν⁰ is steady: c1_i U_i = c2_i Ξ_i ν⁰.
 
-    Torques also serve where c1 = 0; elsewhere the voltages U = (c2/c1) Ξ ν⁰ do the same.
+    Torques also serve where c1_i = 0; elsewhere the voltages U_i = (c2_i/c1_i) Ξ_i ν⁰ do the same.
     """
-    damping = float(subject.model.motor_damping_Nms)
+    damping = subject.of_wheels("motor_damping_Nms")
     return {f"axle_torque_Nm[{i + 1}]": float(v) for i, v in enumerate(damping * (subject.matrices.wheel_rows @ nu))}
 
 

@@ -20,7 +20,7 @@ from typing import Any
 import numpy as np
 from cffi import FFI
 
-from laconic.core.fields import Field, fields_from
+from laconic.core.fields import Field, fields_from, set_own_zeros
 from laconic.core.given import c_object, items, number, numbers, shown, table
 from laconic.core.plant import Plant
 from laconic.errors import BadInput, Refused, nearest_of
@@ -84,6 +84,10 @@ class Core:
         """The fields that are keys of a scene's table: "vehicle", "vehicle.payload", "vehicle.wheel[#]" …"""
         return [field for field in self.fields if field.table == table and not field.counts]
 
+    def own_fields(self, stem: str = "") -> list[Field]:
+        """The values that a wheel may have of its own, whose keys begin with `stem`."""
+        return [field for field in self.fields_of("vehicle.wheel[#]") if field.is_own and field.key.startswith(stem)]
+
     def text(self, chars: Any) -> str:
         """A C string."""
         return self.ffi.string(chars).decode()
@@ -125,8 +129,11 @@ class Core:
             self._set_wheel(target, name, wheel)
         for target, (name, support) in zip(vehicle.support, supports, strict=False):
             self._set_support(target, name, support)
+        given = [wheel for _, wheel in wheels]
+        set_own_zeros(vehicle, given, self.own_fields("inertia_"))  # before the rotor's is added
         if motor := data.get("motor"):
             self._fit_motor(vehicle, table(self, "vehicle.motor", "vehicle.motor", motor))
+        set_own_zeros(vehicle, given, self.own_fields("motor_"))
         return vehicle
 
     def _set_wheel(self, target: Any, name: str, wheel: Mapping[str, Any]) -> None:
@@ -135,8 +142,12 @@ class Core:
         if kind not in WHEEL_KINDS:
             raise BadInput(f"{name}.kind: there is no {kind!r}; {nearest_of(str(kind), WHEEL_KINDS)}")
         target.kind = getattr(self.lib, f"LACONIC_WHEEL_{WHEEL_KINDS[kind]}")
+        fields = {field.key: field for field in self.fields_of("vehicle.wheel[#]")}
         for key, value in given.items():
-            setattr(target, key, value)
+            setattr(target, fields[key].member, not value if fields[key].kind == "ABSENCE" else value)
+        if "radius_m" in given and target.own_radius_m == 0:  # there it would mean the vehicle's
+            raise BadInput(f"{name}.radius_m: {given['radius_m']:g} is not positive; give a value above 0, or take it "
+                           "out for the vehicle's wheel_radius_m")
 
     def _set_support(self, target: Any, name: str, support: Mapping[str, Any]) -> None:
         given = table(self, "vehicle.support[#]", name, support)

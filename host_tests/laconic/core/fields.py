@@ -6,11 +6,14 @@
 
 from __future__ import annotations
 
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from typing import Any
 
 COUNTED = ("wheel", "support")  # tables of which there are several; the field of that name counts them
 ITEM = "[#]"
+WHEEL = "vehicle.wheel[#]"
+OWN = "own_"
 
 
 @dataclass(frozen=True)
@@ -33,8 +36,24 @@ class Field:
 
     @property
     def key(self) -> str:
-        """"x_m"."""
-        return self.path.rpartition(".")[2].removesuffix(ITEM)
+        """"x_m"; of what a wheel may lack the name of its presence, "driven"."""
+        key = self.path.rpartition(".")[2].removesuffix(ITEM)
+        return key.removeprefix("un") if self.kind == "ABSENCE" else key
+
+    @property
+    def is_own(self) -> bool:
+        """Whether it is a wheel's own value, which is 0 where the vehicle's holds."""
+        return self.table == WHEEL and self.name.startswith(OWN)
+
+    @property
+    def member(self) -> str:
+        """"x_m", "own_radius_m", "undriven": in the struct."""
+        return self.name if self.is_own else self.path.rpartition(".")[2].removesuffix(ITEM)
+
+    @property
+    def vehicle_key(self) -> str:
+        """Of a wheel's own value the vehicle's that it stands for."""
+        return f"wheel_{self.key}" if self.key in ("radius_m", "inertia_kgm2") else self.key
 
     @property
     def counts(self) -> bool:
@@ -49,7 +68,7 @@ class Field:
         for name in self.table.split(".")[1:]:
             inner = getattr(root, name.removesuffix(ITEM))
             structs = list(inner) if name.endswith(ITEM) else [inner]
-        found = [getattr(struct, self.key) for struct in structs]
+        found = [getattr(struct, self.member) for struct in structs]
         if self.path.endswith(ITEM):
             found = list(found[0])
         return [float(each) if self.kind == "REAL" else int(each) for each in found]
@@ -72,3 +91,21 @@ def fields_from(ffi: Any, lib: Any) -> tuple[Field, ...]:
 def _end(ffi: Any, traits: Any, what: str) -> str:
     """The enumerator's name without what all of its kind begin with."""
     return ffi.typeof(f"laconic_field_{what}").elements[getattr(traits, what)].removeprefix(f"LACONIC_{what.upper()}_")
+
+
+def set_own_zeros(vehicle: Any, wheels: Sequence[Mapping[str, Any]], fields: Sequence[Field]) -> None:
+    """Lets a wheel's own 0 hold in a laconic_vehicle, where 0 means the vehicle's value.
+
+    Where a wheel of `wheels` gives 0 and the vehicle's value is another, the vehicle's becomes 0 and all other wheels
+    get it as their own.
+    """
+    for field in fields:
+        common = getattr(vehicle, field.vehicle_key)
+        given = [(target, field.key in wheel) for target, wheel in zip(vehicle.wheel, wheels, strict=False)]
+        has_zero = any(is_given and getattr(target, field.member) == 0 for target, is_given in given)
+        if not has_zero or common == 0 or (field.rule == "NOT_NEGATIVE" and not common > 0):  # the core refuses it
+            continue
+        for target, is_given in given:
+            if not is_given:
+                setattr(target, field.member, common)
+        setattr(vehicle, field.vehicle_key, 0.0)

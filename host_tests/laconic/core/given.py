@@ -14,6 +14,7 @@ if TYPE_CHECKING:
 
 MAKERS = {"input": "core.input({…})", "vehicle": "core.vehicle({…})", "model": "core.prepare(vehicle)",
           "state": "plant.save()"}
+FLAGS = ("FLAG", "ABSENCE")
 MOST_STEPS = 2**64 - 1
 LONGEST_SHOWN = 60  # of a value in a message
 
@@ -79,7 +80,7 @@ def table(core: Core, path: str, name: str, given: Any, others: Sequence[str] = 
     for key in given:
         if key not in others:
             value = number(f"{name}.{key}", given[key])
-            found[key] = bool(value) if fields[key].kind == "FLAG" else value
+            found[key] = bool(value) if fields[key].kind in FLAGS else value
     return found
 
 

@@ -37,13 +37,15 @@ def rounded(expression: sp.Basic, digits: int) -> sp.Basic:
 def sides(system: Bracketed) -> list[tuple[sp.Expr, sp.Expr]]:
     """The equations of motion (a carriage's over M R², as in (4.6)): (what holds the rates, the rest)."""
     wheel = sp.Symbol("lambda", positive=True)
-    is_carriage = system.lagrangian.has(wheel) or system.name.startswith("carriage")
+    own = sorted((s for s in system.lagrangian.free_symbols if s.name.startswith("lambda_")), key=str)
+    is_carriage = system.lagrangian.has(wheel, *own) or system.name.startswith("carriage")
+    by = [s**2 for s in own] if own else wheel**2
     scale = sp.Symbol("M", positive=True) * sp.Symbol("R", positive=True) ** 2 if is_carriage else sp.Integer(1)
     at_rest = {rate: sp.Integer(0) for rate in system.pseudo_rates}
     out = []
     for equation in system.equations():
         rest = sp.expand(-equation.xreplace(at_rest) / scale)
-        weights = [sp.collect(sp.expand(sp.diff(equation, rate) / scale), wheel**2) for rate in system.pseudo_rates]
+        weights = [sp.collect(sp.expand(sp.diff(equation, rate) / scale), by) for rate in system.pseudo_rates]
         left = sp.Add(*(weight * rate for weight, rate in zip(weights, system.pseudo_rates, strict=True)))
         out.append((left, rest))
     return out

@@ -9,7 +9,8 @@ import numpy as np
 import sympy as sp
 
 from laconic.method.brackets import Bracketed, bracketed, impose
-from laconic.method.vehicles import carriage, wheel_rows
+from laconic.method.equations import System
+from laconic.method.vehicles import carriage, wheel_rows, wheel_symbols
 
 Row = Sequence[float] | np.ndarray
 
@@ -24,17 +25,25 @@ class VehicleNumbers:
     mass_kg: float
     wheel_radius_m: float
     lambda_yaw: float                # Λ
-    lambda_wheel: float              # λ
-    motor_gain_Nm_per_V: float       # c1
-    motor_damping_Nms: float         # c2
+    lambda_wheel: np.ndarray         # λ of each wheel
+    motor_gain_Nm_per_V: np.ndarray  # c1 of each wheel
+    motor_damping_Nms: np.ndarray    # c2 of each wheel
     wheel_rows: np.ndarray           # Ξ, N × 3
     constraint_rows: np.ndarray      # C, any number × 3
+
+    @property
+    def inertias_differ(self) -> bool:
+        """Whether the wheels have not all the same J."""
+        return len(set(self.lambda_wheel)) > 1
 
     def symbol_values(self) -> dict[sp.Symbol, sp.Expr]:
         """Numbers for the symbols that remain in the derivation."""
         values = {sp.Symbol("M", positive=True): self.mass_kg, sp.Symbol("R", positive=True): self.wheel_radius_m}
         values |= {sp.Symbol("Lambda", positive=True): self.lambda_yaw}
-        values |= {sp.Symbol("lambda", positive=True): self.lambda_wheel}
+        if self.inertias_differ:
+            values |= dict(zip(wheel_symbols(len(self.wheel_rows)), self.lambda_wheel, strict=True))
+        else:
+            values |= {sp.Symbol("lambda", positive=True): self.lambda_wheel[0] if len(self.wheel_rows) else 0.0}
         symbols = wheel_rows(len(self.wheel_rows))
         rows = plain_rows(self.wheel_rows)
         entries = ((i, s) for i in range(len(self.wheel_rows)) for s in range(3) if rows[i, s] == symbols[i, s])
@@ -94,9 +103,14 @@ def plain_rows(rows: np.ndarray) -> sp.Matrix:
     return sp.Matrix(len(rows), 3, entry)
 
 
+def carriage_of(numbers: VehicleNumbers) -> System:
+    """The scene's carriage in symbols, without its constraints."""
+    return carriage(plain_rows(numbers.wheel_rows), numbers.inertias_differ)
+
+
 def derive(numbers: VehicleNumbers) -> Bracketed:
     """Equations of the scene's vehicle in symbols; the constraints' coefficients are numbers."""
-    free = bracketed(carriage(plain_rows(numbers.wheel_rows)))
+    free = bracketed(carriage_of(numbers))
     basis, kept = solve_constraints(numbers.constraint_rows)
     if len(kept) == 3:
         return free
@@ -106,13 +120,13 @@ def derive(numbers: VehicleNumbers) -> Bracketed:
 
 
 def motor_torques(numbers: VehicleNumbers) -> dict[sp.Symbol, sp.Expr]:
-    """M_i = c1 U_i − c2 Ξ_i ν + T_i: what the motors (and a torque besides) put in for the axle torques."""
+    """M_i = c1_i U_i − c2_i Ξ_i ν + T_i: what the motors (and a torque besides) put in for the axle torques."""
     nu = sp.Matrix(sp.symbols("nu_1 nu_2 nu_3", real=True))
     torques = {}
     for i, row in enumerate(numbers.wheel_rows, start=1):
         speed = sp.Add(*(_number(float(s)) * v for s, v in zip(row, nu, strict=True)))
-        driving = sp.Float(numbers.motor_gain_Nm_per_V, 17) * sp.Symbol(f"U_{i}", real=True)
-        damping = sp.Float(numbers.motor_damping_Nms, 17) * speed
+        driving = sp.Float(float(numbers.motor_gain_Nm_per_V[i - 1]), 17) * sp.Symbol(f"U_{i}", real=True)
+        damping = sp.Float(float(numbers.motor_damping_Nms[i - 1]), 17) * speed
         torques[sp.Symbol(f"M_{i}", real=True)] = driving - damping + sp.Symbol(f"T_{i}", real=True)
     return torques
 

@@ -41,24 +41,28 @@ def wheel_rows(wheel_count: int) -> sp.Matrix:
     return sp.Matrix(wheel_count, 3, lambda i, s: sp.Symbol(f"sigma_{i + 1}{s + 1}", real=True))
 
 
-def carriage(rows: sp.Matrix) -> System:
+def carriage(rows: sp.Matrix, wheels_differ: bool = False) -> System:
     """Section 4: N roller-carrying wheels with Ξ = rows, axle torques M_i, an outer force and moment.
 
     The force (F_xi, F_eta) is given in body axes and acts at the centre of mass, with the moment tau; the force
-    (F_X, F_Y) is fixed in the world and acts at the body point (r_xi, r_eta), seen from the centre of mass.
+    (F_X, F_Y) is fixed in the world and acts at the body point (r_xi, r_eta), seen from the centre of mass. With
+    `wheels_differ` each wheel has an inertia of its own, lambda_i**2 M R**2; a radius of its own is in its row.
     """
     count = rows.shape[0]
-    mass, radius, lambda_yaw, lambda_wheel = _positive("M R Lambda lambda")
+    mass, radius, lambda_yaw, _ = _positive("M R Lambda lambda")
     x, y, theta = _real("x y theta")
     chi = tuple(sp.Symbol(f"chi_{i + 1}", real=True) for i in range(count))
     chi_rates = tuple(sp.Symbol(f"chi_{i + 1}'", real=True) for i in range(count))
     torques = tuple(sp.Symbol(f"M_{i + 1}", real=True) for i in range(count))
     nu = _real("nu_1 nu_2 nu_3")
     rates = (*_real("x' y' theta'"), *chi_rates)
-    yaw_inertia, wheel_inertia = lambda_yaw**2 * mass * radius**2, lambda_wheel**2 * mass * radius**2
+    yaw_inertia, unit = lambda_yaw**2 * mass * radius**2, mass * radius**2
     cos, sin = sp.cos(theta), sp.sin(theta)
     energy = mass * (rates[0] ** 2 + rates[1] ** 2) + yaw_inertia * rates[2] ** 2
-    energy += wheel_inertia * sp.Add(*(rate**2 for rate in chi_rates))
+    if wheels_differ:
+        energy += unit * sp.Add(*(s**2 * rate**2 for s, rate in zip(wheel_symbols(count), chi_rates, strict=True)))
+    else:
+        energy += sp.Symbol("lambda", positive=True) ** 2 * unit * sp.Add(*(rate**2 for rate in chi_rates))
     velocities = (radius * (cos * nu[0] - sin * nu[1]), radius * (sin * nu[0] + cos * nu[1]), nu[2] / lambda_yaw)
     body_xi, body_eta, moment, world_x, world_y, arm_xi, arm_eta = _real("F_xi F_eta tau F_X F_Y r_xi r_eta")
     lever_x, lever_y = cos * arm_xi - sin * arm_eta, sin * arm_xi + cos * arm_eta
@@ -77,6 +81,11 @@ def carriage(rows: sp.Matrix) -> System:
             *torques,
         ),
     )
+
+
+def wheel_symbols(count: int) -> list[sp.Symbol]:
+    """lambda_1 … of wheels that differ: J_i = lambda_i**2 M R**2."""
+    return [sp.Symbol(f"lambda_{i + 1}", positive=True) for i in range(count)]
 
 
 def geometry_row(alpha: sp.Expr, beta: sp.Expr, gamma: sp.Expr, delta: sp.Expr) -> list[sp.Expr]:

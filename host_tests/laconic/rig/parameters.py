@@ -26,7 +26,7 @@ def parameters_of(plant: Plant, start: Any) -> Iterator[Parameter]:
         required = field.need not in ("NEVER", "WITH_SUPPORTS") and (field.need != "WITH_PAYLOAD" or has_payload)
         for item, value in enumerate(values, start=int(field.items > 0)):
             if value != 0 or required:
-                yield field.identifier, item, value
+                yield field.identifier, item, 1 - int(value) if field.kind == "ABSENCE" else value
     yield "METHOD", 0, method_number(core, plant.c.integrator.method)
     yield "STEP", 0, plant.step_s
 

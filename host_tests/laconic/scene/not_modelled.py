@@ -10,15 +10,18 @@ STEERED = ("wheels that are steered in motion are not modelled; for a constant s
            "with its axle at that angle (axle_deg), see docs/scenes.md")
 SKID = ("skid steering and tracks live on slip, which is not modelled; give one \"fixed\" wheel a side, at the track "
         "width that measured turns show, see docs/scenes.md")
-RADIUS = "all wheels have one radius, vehicle.wheel_radius_m; what only carries a normal load is a [[vehicle.support]]"
-MOTOR = "all wheels have the same motor, [vehicle.motor]; a wheel without voltage is driven by axle_torque_Nm"
+RADIUS = "vehicle.wheel_radius_m is the radius of all wheels but those that give their own radius_m"
+MOTOR = ("[vehicle.motor] is the motor of all wheels but those that give their own motor_gain_Nm_per_V and "
+         "motor_damping_Nms, or driven = false; inertia_kgm2 of a wheel is about its axle")
+IDLER = "a wheel without a motor is one of the kinds \"omni\", \"mecanum\", \"roller\" or \"fixed\" with driven = false"
 LEVEL = ("the ground is level; on a slope give the downhill part of the weight as world_force_N, see docs/scenes.md")
 RIGID = "the vehicle is rigid, without suspension; normal loads are those of its mass at rest and in motion"
 SLIP = ("wheels roll without slip; friction_coefficient shows where they could not, and the run goes on as if they did")
 FIXED = "a wheel that is neither omni nor mecanum is \"fixed\", driven or not"
 
 OF_WHEELS = {
-    "caster castor swivel ball idler": SUPPORT,
+    "caster castor swivel ball": SUPPORT,
+    "idler passive undriven": IDLER,
     "steer ackermann": STEERED,
     "skid track crawler": SKID,
     "radius diameter": RADIUS,

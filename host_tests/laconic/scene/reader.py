@@ -64,7 +64,7 @@ def read_vehicle(table: Table) -> dict[str, Any]:
 
 def read_field(table: Table, field: Field, default: Any = ..., *, finite: bool = False) -> Any:
     """One key of a table by its row in the core's list of fields; the core checks its value."""
-    if field.kind == "FLAG":
+    if field.kind in ("FLAG", "ABSENCE"):
         return table.flag(field.key, default if default is ... else bool(default))
     if field.key.endswith("_rad"):
         return table.angle(field.key.removesuffix("_rad"), default, finite=finite)
@@ -98,9 +98,22 @@ def read_wheel(table: Table) -> dict[str, Any]:
                 table.fail(key, "is given for a fixed wheel, which has no rollers; take it out")
     else:
         wheel["roller_rad"] = read_field(table, roller, math.pi / 2 if kind == "omni" else ...)
-    wheel |= {key: read_field(table, field, 0.0) for key, field in fields.items() if field.need == "NEVER"}
+    usual = {"locked": False, "driven": True}
+    wheel |= {key: read_field(table, fields[key], default) for key, default in usual.items()}
+    wheel |= read_own(table, [field for field in fields.values() if field.is_own])
     table.done(OF_WHEELS)
     return wheel
+
+
+def read_own(table: Table, fields: Sequence[Field]) -> dict[str, float]:
+    """Values that the wheel has instead of the vehicle's: only those that are given, as 0 is a value, too."""
+    own = {field.key: read_field(table, field) for field in fields if table.has(field.key)}
+    motor = [key for key in own if key.startswith("motor_")]
+    if motor and not table.flag("driven", True):
+        table.fail(motor[0], "is given for a wheel without a motor; take it out, or driven = false")
+    if own.get("radius_m") == 0.0:
+        table.fail("radius_m", "is 0; give a value above 0, or take it out for the vehicle's wheel_radius_m")
+    return own
 
 
 def read_position(table: Table) -> dict[str, float]:
@@ -187,7 +200,15 @@ def check_instants(table: Table, t_s: Sequence[float]) -> None:
 
 def check_motor(top: Table, each: Input, vehicle: dict[str, Any]) -> None:
     """Fails for a voltage where no motor makes a torque of it."""
-    if "motor" not in vehicle and vehicle["motor_gain_Nm_per_V"] == 0.0 and each.signal.startswith("voltage_V"):
+    if not each.signal.startswith("voltage_V"):
+        return
+    number = int(each.signal.partition("[")[2].removesuffix("]"))
+    wheel = vehicle["wheel"][number - 1]
+    common = 1.0 if "motor" in vehicle else vehicle["motor_gain_Nm_per_V"]
+    if not wheel["driven"]:
+        top.fail(f"{each.location}.signal", f"{each.signal} would do nothing, wheel {number} has no motor; take out "
+                 "its driven = false, or drive it by axle_torque_Nm")
+    if wheel.get("motor_gain_Nm_per_V", common) == 0.0:
         top.fail(f"{each.location}.signal", f"{each.signal} would do nothing, the vehicle has no motor; give "
                  "[vehicle.motor] or vehicle.motor_gain_Nm_per_V, or drive the wheel by axle_torque_Nm")
 

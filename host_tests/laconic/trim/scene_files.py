@@ -20,6 +20,8 @@ from laconic.outputs import write_text
 from laconic.scene import Scene
 from laconic.trim.c_tables import initializer
 
+OF_EACH_WHEEL = ("voltage_scale", "motor_gain_Nm_per_V", "motor_damping_Nms", "wheel_inertia_kgm2")
+"""Members of laconic_model that have one item where all wheels are alike."""
 POSE = ("x_m", "y_m", "heading_rad", "heading_wrapped_rad", "origin_x_m", "origin_y_m")
 
 
@@ -35,6 +37,7 @@ class Needs:
     pose: bool
     wheel_angles: bool
     damping: bool
+    own_wheels: bool  # some wheel has values of its own
 
 
 @dataclass(frozen=True)
@@ -71,13 +74,16 @@ def needs_of(scene: Scene) -> Needs:
     acting = {each.signal.partition("[")[0] for each in scene.inputs}
     wanted = {name.partition("[")[0] for name in scene.outputs.signals}
     world_force = "world_force_N" in acting
+    plant = scene.plant(load("double"))
     return Needs(
         voltage="voltage_V" in acting, axle_torque="axle_torque_Nm" in acting,
         body_wrench=bool(acting & {"body_force_N", "body_moment_Nm"}), world_force=world_force,
         sampled_input=not scene.inputs_on_grid().is_held,
         pose=world_force or not wanted or not wanted.isdisjoint(POSE),
         wheel_angles=scene.wheel_count > 0 and (not wanted or "wheel_angle_rad" in wanted),
-        damping=any(scene.plant(load("double")).c.model.decay_per_s))
+        damping=any(plant.c.model.decay_per_s),
+        own_wheels=any(wheel.undriven or any(getattr(wheel, field.member) for field in plant.core.own_fields())
+                       for wheel in plant.c.vehicle.wheel))
 
 
 def trimmed(scene: Scene, real: str) -> Trimmed:
@@ -87,7 +93,7 @@ def trimmed(scene: Scene, real: str) -> Trimmed:
     method = plant.chosen_method
     needs = needs_of(scene)
     return Trimmed(needs, method, method_steps(scene, method), header_of(scene, real, needs),
-                   table_header(scene, real), tables(core, plant, scene))
+                   table_header(scene, real), tables(core, plant, scene, needs))
 
 
 def method_steps(scene: Scene, chosen: str) -> tuple[str, ...]:
@@ -135,13 +141,24 @@ def table_header(scene: Scene, real: str) -> str:
         "extern const laconic_state laconic_scene_start;", "", "#endif", ""])
 
 
-def tables(core: Core, plant: Plant, scene: Scene) -> str:
+def model_of(core: Core, plant: Plant, needs: Needs) -> Any:
+    """The prepared model as the trimmed build has it."""
+    model = core.ffi.new("laconic_model *", plant.c.model)
+    for name in () if needs.own_wheels else OF_EACH_WHEEL:
+        values = getattr(model, name)
+        for i in range(1, len(values)):
+            values[i] = 0.0  # zeros are left out, so the table fits arrays of one item
+    return model
+
+
+def tables(core: Core, plant: Plant, scene: Scene, needs: Needs) -> str:
     """laconic_scene_model.c: the plant's constants and start, to the last bit."""
     integrator = core.ffi.new("laconic_integrator *", plant.c.integrator)
     integrator.method = integrator.chosen
     names = method_symbols(core, integrator)
+    model = model_of(core, plant, needs)
     values: dict[str, tuple[str, Any]] = {
-        "laconic_scene_model": ("laconic_model", plant.c.model),
+        "laconic_scene_model": ("laconic_model", model[0]),
         "laconic_scene_integrator": ("laconic_integrator", integrator[0]),
         "laconic_scene_start": ("laconic_state", plant.c.state)}
     lines = [f"/* {scene.path.name}, prepared. Generated. */", '#include "laconic_scene_model.h"', ""]

@@ -8,7 +8,7 @@ does not. So the two agree only if both are right.
 from __future__ import annotations
 
 import math
-from collections.abc import Callable, Mapping
+from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass
 from itertools import pairwise
 from typing import Any
@@ -26,7 +26,8 @@ Values = Mapping[str, float]
 
 @dataclass(frozen=True)
 class Totals:
-    """The vehicle with its payload: mass, centre of mass, yaw inertia about it, motor constants, wheel inertia."""
+    """The vehicle with its payload: mass, centre of mass, yaw inertia about it; then what all wheels have in common,
+    and what each wheel has."""
 
     mass_kg: float
     com_m: np.ndarray
@@ -35,6 +36,10 @@ class Totals:
     wheel_inertia_kgm2: float
     motor_gain_Nm_per_V: float
     motor_damping_Nms: float
+    radii_m: np.ndarray
+    inertias_kgm2: np.ndarray
+    gains_Nm_per_V: np.ndarray
+    dampings_Nms: np.ndarray
 
 
 def totals_of(vehicle: Mapping[str, Any]) -> Totals:
@@ -47,18 +52,31 @@ def totals_of(vehicle: Mapping[str, Any]) -> Totals:
     yaw = vehicle["yaw_inertia_kgm2"] + payload["yaw_inertia_kgm2"]
     yaw += mass * np.sum((com - common) ** 2) + payload["mass_kg"] * np.sum((payload_m - common) ** 2)
     gain, damping = vehicle.get("motor_gain_Nm_per_V", 0.0), vehicle.get("motor_damping_Nms", 0.0)
-    wheel_inertia = vehicle["wheel_inertia_kgm2"]
+    wheel_inertia, rotor = vehicle["wheel_inertia_kgm2"], 0.0
     if motor := vehicle.get("motor"):
         ratio, resistance = motor["gear_ratio"], motor["resistance_ohm"]
         gain = ratio * motor["torque_constant_Nm_per_A"] / resistance
         braking = motor["torque_constant_Nm_per_A"] * motor["back_emf_Vs_per_rad"] / resistance
         damping = ratio**2 * (braking + motor["viscous_friction_Nms"])
-        wheel_inertia += ratio**2 * motor["rotor_inertia_kgm2"]
-    return Totals(total, common, float(yaw), vehicle["wheel_radius_m"], wheel_inertia, gain, damping)
+        rotor = ratio**2 * motor["rotor_inertia_kgm2"]
+    wheels = vehicle["wheel"]
+    driven = np.array([float(wheel.get("driven", True)) for wheel in wheels])
+    return Totals(
+        total, common, float(yaw), vehicle["wheel_radius_m"], wheel_inertia + rotor, gain, damping,
+        own_or_common(wheels, "radius_m", vehicle["wheel_radius_m"]),
+        own_or_common(wheels, "inertia_kgm2", wheel_inertia) + driven * rotor,
+        driven * own_or_common(wheels, "motor_gain_Nm_per_V", gain),
+        driven * own_or_common(wheels, "motor_damping_Nms", damping))
+
+
+def own_or_common(wheels: Sequence[Mapping[str, Any]], key: str, common: float) -> np.ndarray:
+    """Each wheel's own value, else the vehicle's."""
+    return np.array([float(wheel.get(key, common)) for wheel in wheels])
 
 
 class Reference:
-    """ν' = G (GᵀAG)⁻¹ Gᵀ [Λ⁻¹a(ν) + (MR²)⁻¹(Ξᵀ(c1 U + T) − c2 ΞᵀΞν + w)], with pose and wheel angles (4.1–4.7)."""
+    """ν' = G (GᵀAG)⁻¹ Gᵀ [Λ⁻¹a(ν) + (MR²)⁻¹(Ξᵀ(c1 U + T) − Ξᵀ c2 Ξν + w)], with pose and wheel angles (4.1–4.7);
+    J, c1 and c2 are diagonal, with each wheel's value."""
 
     def __init__(self, vehicle: Mapping[str, Any]):
         self.totals = totals_of(vehicle)
@@ -66,11 +84,12 @@ class Reference:
         t = self.totals
         self.scale = 1.0 / (t.mass_kg * t.wheel_radius_m**2)
         self.yaw_scale = math.sqrt(t.yaw_inertia_kgm2 * self.scale)  # Λ
-        self.rows = np.array([self._row(w, roller_of(w)) for w in self.wheels]).reshape(-1, 3)  # Ξ
-        self.inertia = np.eye(3) + t.wheel_inertia_kgm2 * self.scale * self.rows.T @ self.rows  # A
+        rows = np.array([self._row(w, roller_of(w)) for w in self.wheels]).reshape(-1, 3)
+        self.rows = rows * (t.wheel_radius_m / t.radii_m)[:, None]  # Ξ
+        self.inertia = np.eye(3) + self.scale * self.rows.T @ (t.inertias_kgm2[:, None] * self.rows)  # A
         basis = self._basis()
         self.mobility = basis @ np.linalg.inv(basis.T @ self.inertia @ basis) @ basis.T
-        self.damping = self.mobility @ (self.scale * t.motor_damping_Nms * self.rows.T @ self.rows)
+        self.damping = self.mobility @ (self.scale * self.rows.T @ (t.dampings_Nms[:, None] * self.rows))
 
     def _row(self, wheel: Mapping[str, Any], angle_rad: float) -> np.ndarray:
         """Velocity of the wheel's centre along β + angle, over R sin(angle)."""
@@ -112,7 +131,7 @@ class Reference:
         """Forcing of ν' by the inputs: a constant, and the factors of cos θ and sin θ (force given in the world)."""
         t = self.totals
         numbers = range(1, len(self.wheels) + 1)
-        torque = np.array([t.motor_gain_Nm_per_V * values.get(f"voltage_V[{i}]", 0.0)
+        torque = np.array([t.gains_Nm_per_V[i - 1] * values.get(f"voltage_V[{i}]", 0.0)
                            + values.get(f"axle_torque_Nm[{i}]", 0.0) for i in numbers])
         body = np.array([values.get(f"body_force_N[{i}]", 0.0) for i in (1, 2)])
         world = np.array([values.get(f"world_force_N[{i}]", 0.0) for i in (1, 2)])

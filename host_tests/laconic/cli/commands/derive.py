@@ -74,8 +74,7 @@ def _of_scene(given: str, form: str) -> tuple[str, dict[str, float]]:
     from laconic.method import printing
     from laconic.method.checks import forms_difference
     from laconic.method.scene_check import core_difference
-    from laconic.method.scene_system import derive, plain_rows
-    from laconic.method.vehicles import carriage
+    from laconic.method.scene_system import carriage_of, derive
     from laconic.scene import read_scene
 
     subject = subject_of(read_scene(given))
@@ -85,7 +84,7 @@ def _of_scene(given: str, form: str) -> tuple[str, dict[str, float]]:
     text = writers[form](system)
     if not form:
         text += "\n" + _numbers_text(numbers)
-    checks = {"(2.3), (2.4) and (1.2) differ at most by": forms_difference(carriage(plain_rows(numbers.wheel_rows)))}
+    checks = {"(2.3), (2.4) and (1.2) differ at most by": forms_difference(carriage_of(numbers))}
     checks["derived equations and the C core's derivative differ at most by"] = core_difference(subject, system)
     return text, checks
 
@@ -95,6 +94,12 @@ def _numbers_text(numbers: VehicleNumbers) -> str:
     values = numbers.symbol_values()
     shown = {str(s): float(v) for s, v in values.items()}
     lines = [f"  {name} = {value:.9g}" for name, value in shown.items()]
-    lines.append("  M_i = c1 U_i - c2 chi_i' + T_i,"
-                 f"  c1 = {numbers.motor_gain_Nm_per_V:.9g} N m/V,  c2 = {numbers.motor_damping_Nms:.9g} N m s")
+    motors = list(zip(numbers.motor_gain_Nm_per_V, numbers.motor_damping_Nms, strict=True))
+    if len(set(motors)) > 1:
+        lines.append("  M_i = c1_i U_i - c2_i chi_i' + T_i,")
+        lines += [f"  c1_{i} = {gain:.9g} N m/V,  c2_{i} = {damping:.9g} N m s"
+                  for i, (gain, damping) in enumerate(motors, start=1)]
+    else:
+        gain, damping = motors[0] if motors else (0.0, 0.0)
+        lines.append(f"  M_i = c1 U_i - c2 chi_i' + T_i,  c1 = {gain:.9g} N m/V,  c2 = {damping:.9g} N m s")
     return f"with, for {numbers.name},\n" + "\n".join(lines) + "\n"
