@@ -26,7 +26,7 @@ def test_every_member_of_a_struct_has_its_row_in_the_list(table: str) -> None:
     core = load()
     members = {name for name, _ in core.ffi.typeof(STRUCTS[table]).fields}
     inner = {"payload", *COUNTED, *(f"{name}_count" for name in COUNTED)} if table == "vehicle" else set()
-    assert {field.key for field in core.fields_of(table)} == members - inner, "vehicle.h: member without a row"
+    assert {field.member for field in core.fields_of(table)} == members - inner, "vehicle.h: member without a row"
 
 
 def test_a_list_has_room_for_as_many_items_as_its_struct() -> None:

@@ -65,6 +65,9 @@ def test_the_node_requires_what_the_page_states_and_nothing_else() -> None:
     plant: Plant = scene.plant(scene.core())
     vehicle = plant.c.vehicle
     vehicle.payload.mass_kg, vehicle.support_count, vehicle.wheel[0].locked = 1.0, 1, True
+    vehicle.wheel[1].undriven = True
+    for field in scene.core().own_fields():
+        setattr(vehicle.wheel[0], field.member, 0.05)
     for field in scene.core().fields_of("vehicle"):
         if field.need == "NEVER":
             setattr(vehicle, field.key, 0.5)

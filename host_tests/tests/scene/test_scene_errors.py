@@ -82,7 +82,7 @@ BAD = {
     "plain wheel": (('kind = "mecanum"', 'kind = "standard"'), ("wheel[1].kind", '"fixed"')),
     "table of casters": (("[run]", "[[vehicle.caster]]\nx_m = 0\n[run]"), ("vehicle.caster", "[[vehicle.support]]")),
     "steering of a wheel": (("axle_deg = 180", "axle_deg = 180\nsteer_deg = 5"), ("wheel[2].steer_deg", "steered")),
-    "radius of a wheel": (("axle_deg = 180", "axle_deg = 180\nradius = 1"), ("wheel[2].radius", "one radius")),
+    "radius of a wheel": (("axle_deg = 180", "axle_deg = 180\nradius = 1"), ("wheel[2].radius:", "radius_m")),
     "slope": (("mass_kg = 20.0", "mass_kg = 20.0\nslope_deg = 5"), ("vehicle.slope_deg", "world_force_N")),
     "suspension": (("mass_kg = 20.0", "mass_kg = 20.0\nspring_N_per_m = 5"), ("vehicle.spring_N_per_m", "rigid")),
     "output twice": (
@@ -100,7 +100,7 @@ BAD = {
     "unknown key": (("mass_kg = 20.0", "mass_kg = 20.0\nmas_kg = 1"), ("vehicle.mas_kg", "did you mean mass_kg?")),
     "mistyped key": (("mass_kg = 20.0", "mas_kg = 20.0"), ("vehicle.mass_kg", "is missing", "you wrote mas_kg")),
     "unknown key at the top": (('name = "Four', 'colour = "red"\nname = "Four'), ("colour", "no known key")),
-    "unknown key of a wheel": (("axle_deg = 180", "axle_deg = 180\nradius_m = 1"), ("wheel[2].radius_m", "known key")),
+    "unknown key of a wheel": (("axle_deg = 180", "axle_deg = 180\nwidth_m = 1"), ("wheel[2].width_m", "known key")),
     "wheel count mismatch": (("voltage_V[1]", "voltage_V[3]"), ("input[1].signal", "2 wheels", "voltage_V[2]")),
     "unknown signal": (("voltage_V[1]", "volts[1]"), ("input[1].signal", "volts[1]")),
     "unknown input kind": (('"steps"', '"ramp"'), ("input[1].kind", "ramp")),
