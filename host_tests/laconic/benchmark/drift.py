@@ -19,7 +19,9 @@ NORM_STEPS_S = (1e-6, 1e-4, 1e-2, 0.1, 1.0, 10.0, 1e3)
 def free(scene: Scene) -> Scene:
     """The scene without motors and inputs."""
     vehicle = {k: v for k, v in scene.vehicle.items() if k != "motor"}
-    return replace(scene, vehicle=vehicle | {"motor_gain_Nm_per_V": 0.0, "motor_damping_Nms": 0.0}, inputs=())
+    vehicle |= {"motor_gain_Nm_per_V": 0.0, "motor_damping_Nms": 0.0}
+    vehicle["wheel"] = [{k: v for k, v in wheel.items() if not k.startswith("motor_")} for wheel in vehicle["wheel"]]
+    return replace(scene, vehicle=vehicle, inputs=())
 
 
 def invariants(plant: Plant) -> np.ndarray:

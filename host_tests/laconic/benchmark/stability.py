@@ -22,6 +22,7 @@ FACTORS = tuple(float(f) for f in 10.0 ** np.arange(-1.0, 6.01, 0.5))
 PATTERN, SIGNS = (6.0, -2.0, 4.0, 1.0), (1.0, -0.7, 0.5, -1.0)
 STIFF_STEPS_S, STIFF_FACTORS = (1e-3, 5e-3, 0.02, 0.1), (1e3, 1e6)
 SINE_HZ, STIFF_S = 0.5, 3.0
+OWN = {"inertia_kgm2", "motor_gain_Nm_per_V", "motor_damping_Nms"}  # of a wheel, what the motors bring
 
 
 def strengthened(scene: Scene, factor: float, inputs: Sequence[Input], duration_s: float) -> Scene:
@@ -31,6 +32,11 @@ def strengthened(scene: Scene, factor: float, inputs: Sequence[Input], duration_
     vehicle |= {"motor_gain_Nm_per_V": factor * totals.motor_gain_Nm_per_V,
                 "motor_damping_Nms": factor * totals.motor_damping_Nms,
                 "wheel_inertia_kgm2": totals.wheel_inertia_kgm2}
+    if any(OWN & wheel.keys() or not wheel["driven"] for wheel in vehicle["wheel"]):
+        own = zip(vehicle["wheel"], totals.inertias_kgm2, factor * totals.gains_Nm_per_V,
+                  factor * totals.dampings_Nms, strict=True)
+        vehicle["wheel"] = [wheel | {"inertia_kgm2": inertia, "motor_gain_Nm_per_V": gain, "motor_damping_Nms": damping}
+                            for wheel, inertia, gain, damping in own]
     return replace(scene, vehicle=vehicle, inputs=tuple(inputs)).with_run(duration_s=duration_s)
 
 

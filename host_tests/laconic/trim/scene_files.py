@@ -10,6 +10,7 @@ numbers, because every platform gives the same bits.
 
 from __future__ import annotations
 
+import re
 from dataclasses import asdict, dataclass
 from pathlib import Path
 from typing import Any
@@ -93,7 +94,7 @@ def trimmed(scene: Scene, real: str) -> Trimmed:
     method = plant.chosen_method
     needs = needs_of(scene)
     return Trimmed(needs, method, method_steps(scene, method), header_of(scene, real, needs),
-                   table_header(scene, real), tables(core, plant, scene, needs))
+                   table_header(scene, real), tables(core, plant, scene))
 
 
 def method_steps(scene: Scene, chosen: str) -> tuple[str, ...]:
@@ -141,28 +142,30 @@ def table_header(scene: Scene, real: str) -> str:
         "extern const laconic_state laconic_scene_start;", "", "#endif", ""])
 
 
-def model_of(core: Core, plant: Plant, needs: Needs) -> Any:
-    """The prepared model as the trimmed build has it."""
-    model = core.ffi.new("laconic_model *", plant.c.model)
-    for name in () if needs.own_wheels else OF_EACH_WHEEL:
-        values = getattr(model, name)
-        for i in range(1, len(values)):
-            values[i] = 0.0  # zeros are left out, so the table fits arrays of one item
-    return model
+EACH_WHEEL = (
+    "", "/* A value of each wheel; a build for wheels that are alike has room for the first one's. */",
+    "#if LACONIC_WITH_OWN_WHEELS", "#define EACH_WHEEL(first, ...) {first, __VA_ARGS__}", "#else",
+    "#define EACH_WHEEL(first, ...) {first}", "#endif")
 
 
-def tables(core: Core, plant: Plant, scene: Scene, needs: Needs) -> str:
+def for_each_wheel(text: str) -> str:
+    """The model's initializer with EACH_WHEEL, so that it fits the trimmed build and the whole one."""
+    members = "|".join(OF_EACH_WHEEL)
+    return re.sub(rf"\.({members}) = {{(\[0\] = [^,}}]+), ([^}}]+)}}", r".\1 = EACH_WHEEL(\2, \3)", text)
+
+
+def tables(core: Core, plant: Plant, scene: Scene) -> str:
     """laconic_scene_model.c: the plant's constants and start, to the last bit."""
     integrator = core.ffi.new("laconic_integrator *", plant.c.integrator)
     integrator.method = integrator.chosen
     names = method_symbols(core, integrator)
-    model = model_of(core, plant, needs)
     values: dict[str, tuple[str, Any]] = {
-        "laconic_scene_model": ("laconic_model", model[0]),
+        "laconic_scene_model": ("laconic_model", plant.c.model),
         "laconic_scene_integrator": ("laconic_integrator", integrator[0]),
         "laconic_scene_start": ("laconic_state", plant.c.state)}
-    lines = [f"/* {scene.path.name}, prepared. Generated. */", '#include "laconic_scene_model.h"', ""]
-    lines += [f"const {kind} {name} = {initializer(core.ffi, value, names)};" for name, (kind, value) in values.items()]
+    lines = [f"/* {scene.path.name}, prepared. Generated. */", '#include "laconic_scene_model.h"', *EACH_WHEEL, ""]
+    lines += [f"const {kind} {name} = {for_each_wheel(initializer(core.ffi, value, names))};"
+              for name, (kind, value) in values.items()]
     return "\n".join([*lines, ""])
 
 

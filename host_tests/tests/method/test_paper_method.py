@@ -130,7 +130,16 @@ def roller(x_m, y_m, axle, gamma):
     return {"kind": "roller", "x_m": x_m, "y_m": y_m, "axle_rad": axle, "roller_rad": gamma}
 
 
+OWN = ({"radius_m": 0.05, "inertia_kgm2": 0.002, "motor_damping_Nms": 0.09}, {"driven": False},
+       {"radius_m": 0.075, "motor_gain_Nm_per_V": -0.7}, {"inertia_kgm2": 0.0, "motor_damping_Nms": 0.0})
+
 VEHICLES = {
+    "four mecanum wheels, each unlike the others": vehicle_of([
+        roller(x, y, -np.pi / 2, turn) | own for (x, y, turn), own in zip(
+            ((0.2, 0.15, 0.8), (0.2, -0.15, -0.8), (-0.2, 0.15, -0.7), (-0.2, -0.15, 0.9)), OWN, strict=True)]),
+    "two fixed wheels of two sizes": vehicle_of([
+        {"kind": "fixed", "x_m": 0.0, "y_m": s * 0.2, "axle_rad": -np.pi / 2} | own
+        for s, own in zip((1, -1), OWN, strict=False)]),
     "puck": vehicle_of([]),
     "three omni wheels": vehicle_of([roller(0.2 * np.cos(a), 0.2 * np.sin(a), a, np.pi / 2) for a in (0.3, 2.2, 4.5)]),
     "four mecanum wheels": vehicle_of([
