@@ -174,7 +174,8 @@ def as_numbers(replay: Replay) -> dict[str, Any]:
                               for name, value, half in zip(m.names, m.values, m.half_widths, strict=True)}}
               for m in replay.models]
     return plain({"scene": str(replay.subject.scene.path), "fitted_on": replay.fitted_on, "models": models,
-                  "runs": [_numbers(c) for c in replay.comparisons], "words": in_words(replay),
+                  "runs": [e.as_json() | _numbers(c) for c, e in zip(replay.comparisons, replay.errors, strict=True)],
+                  "words": in_words(replay),
                   "skipped": replay.skipped})
 
 

@@ -2,19 +2,20 @@
 
 from __future__ import annotations
 
-import re
-from collections.abc import Callable
-from dataclasses import dataclass, field
+from collections.abc import Callable, Sequence
+from dataclasses import dataclass, field, replace
 from pathlib import Path
 
 import numpy as np
 
 from laconic.analysis.from_core import Subject
 from laconic.errors import BadInput
-from laconic.paths import exists
+from laconic.logs import Log, gather_logs
 from laconic.recorded_runs.compare import Comparison, compare
 from laconic.recorded_runs.friction import MODELS, Friction, fit
-from laconic.recorded_runs.log import ColumnMap, Recording, read_log
+from laconic.recorded_runs.log import recording_of
+from laconic.recorded_runs.measures import RunErrors, all_errors
+from laconic.recorded_runs.rolling import rolling_of
 
 
 @dataclass
@@ -27,6 +28,7 @@ class Replay:
     comparisons: list[Comparison]
     shown: Comparison               # the run of the picture, predicted from end to end
     skipped: list[str] = field(default_factory=list)
+    errors: list[RunErrors] = field(default_factory=list)
 
     def judged(self) -> list[Comparison]:
         """The runs that were not fitted on; all of them when there are no others."""
@@ -34,44 +36,21 @@ class Replay:
         return others or self.comparisons
 
 
-def natural(path: Path) -> list[object]:
-    """Sorting key: numbers inside names by their value."""
-    return [int(part) if part.isdigit() else part for part in re.split(r"(\d+)", path.name)]
+def gather(given: Sequence[Path], fit_on: tuple[Path, ...],
+           map_path: Path | None = None) -> tuple[list[Log], list[str], list[str]]:
+    """(all runs, names of those to fit on, files of folders that are no runs)."""
+    logs, skipped = gather_logs(given, map_path)
+    known = {log.stem for log in logs}
+    extra = gather_logs([path for path in fit_on if path.stem not in known], map_path)[0] if set(
+        path.stem for path in fit_on) - known else []
+    names = [path.stem for path in fit_on] or [log.stem for log in logs[::2]]
+    return [*logs, *extra], names, [path.name for path in skipped]
 
 
-def gather(given: Path, fit_on: tuple[Path, ...], columns: ColumnMap) -> tuple[list[Recording], list[str], list[str]]:
-    """(all runs, names of those to fit on, files without the columns of the map)."""
-    if not (exists(given) and given.is_dir()):
-        runs, skipped = [read_log(given, columns)], list[str]()
-    else:
-        runs, skipped = _folder(given, columns)
-    known = {run.name: run for run in runs}
-    extra = [read_log(path, columns) for path in fit_on if path.stem not in known]
-    if fit_on:
-        names = [path.stem for path in fit_on]
-    else:
-        names = [run.name for run in runs[::2]] if len(runs) > 1 else [runs[0].name]
-    return [*runs, *extra], names, skipped
-
-
-def _folder(given: Path, columns: ColumnMap) -> tuple[list[Recording], list[str]]:
-    """Every CSV file of a folder that has the wanted columns; the others are named."""
-    runs, skipped = [], []
-    for path in sorted(given.glob("*.csv"), key=natural):
-        try:
-            runs.append(read_log(path, columns))
-        except BadInput as reason:
-            if "has no column" not in str(reason):
-                raise
-            skipped.append(path.name)
-    if not runs:
-        raise BadInput(f"{given}: holds no CSV file with the columns of the map; give another folder, or --map")
-    return runs, skipped
-
-
-def compare_all(subject: Subject, runs: list[Recording], fit_names: list[str], skipped: list[str],
+def compare_all(subject: Subject, logs: list[Log], fit_names: list[str], skipped: list[str],
                 advance: Callable[..., None]) -> Replay:
     """Fits, then compares run by run."""
+    runs = [recording_of(log) for log in logs]
     if runs[0].wheel_angle_rad.shape[1] != subject.wheel_count:
         raise BadInput(f"{subject.scene.path}: has {subject.wheel_count} wheels, the column map "
                        f"{runs[0].wheel_angle_rad.shape[1]}; give the scene of the recorded robot")
@@ -87,4 +66,13 @@ def compare_all(subject: Subject, runs: list[Recording], fit_names: list[str], s
     others = [recording for recording in runs if recording.name not in fit_names] or runs
     shown = compare(subject, others[0], models, whole=True)
     advance(1, what="drawing")
-    return Replay(subject, fit_names, models, comparisons, shown, skipped)
+    return Replay(subject, fit_names, models, comparisons, shown, skipped, rolled_errors(subject, logs, comparisons))
+
+
+def rolled_errors(subject: Subject, logs: list[Log], comparisons: list[Comparison]) -> list[RunErrors]:
+    """Paths by pure rolling; wheel speeds and steady currents by the ideal model, which is the first."""
+    rolling = rolling_of(subject.core, subject.scene.vehicle, subject.scene.path)
+    rows = all_errors(logs, (rolling.path(log) for log in logs))
+    ideal = [c.predictions[0] for c in comparisons]
+    return [replace(row, wheel_speed_error=p.transient_error_share, current_error_A=p.steady_error_A)
+            for row, p in zip(rows, ideal, strict=True)]

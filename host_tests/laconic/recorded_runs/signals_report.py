@@ -6,6 +6,7 @@ from pathlib import Path
 from typing import Any
 
 from laconic.pictures.curve_style import wrapped
+from laconic.recorded_runs.measures import RunErrors
 from laconic.recorded_runs.signals import SignalReplay
 
 MOST_PANELS = 6
@@ -39,6 +40,7 @@ def as_numbers(found: SignalReplay) -> dict[str, Any]:
     """All results for JSON."""
     how = ("held" if found.held else "linear") if found.inputs else "of the scene"
     return {
+        "runs": [RunErrors(found.log.path.stem, "").as_json()],
         "scene": str(found.scene.path), "log": str(found.log.path), "rows": len(found.log.time_s),
         "begin_s": found.log.begin_s, "end_s": found.log.begin_s + float(found.log.time_s[-1]),
         "step_s": found.scene.run.step_s, "inputs": list(found.inputs), "inputs_between_rows": how,

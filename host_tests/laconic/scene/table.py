@@ -81,6 +81,10 @@ class Table:
         close = difflib.get_close_matches(key, unread, n=1)
         return f" (you wrote {close[0]}, which is no known key here)" if close else ""
 
+    def value(self, key: str, default: Any, kinds: tuple[type, ...], what: str) -> Any:
+        """A value of one of some kinds, which `what` names in the message."""
+        return self._get(key, default, kinds, what)
+
     def number(self, key: str, default: Any = ..., *, finite: bool = True) -> Any:
         """A number; what the core checks itself may be anything a float can be."""
         value = self._get(key, default, (int, float), "a number")

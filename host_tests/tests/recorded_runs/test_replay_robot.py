@@ -6,11 +6,11 @@ from pathlib import Path
 
 import numpy as np
 import pytest
+from recorded_data import recorded
 
 from laconic.analysis.from_core import subject_of
 from laconic.cli import main as cli
 from laconic.errors import BadInput
-from laconic.paths import SOURCE_DIR
 from laconic.recorded_runs import report
 from laconic.recorded_runs.compare import block_mean, compare, predicted_speeds, rolled
 from laconic.recorded_runs.friction import MODELS, Friction, fit, parameter_names, torque_per_ampere
@@ -18,7 +18,7 @@ from laconic.recorded_runs.log import DEFAULT_MAP, read_log, read_map
 from laconic.recorded_runs.runs import compare_all, gather
 from laconic.scene import read_scene
 
-RECORDED = SOURCE_DIR.parent / "shared" / "robotino"
+RECORDED = recorded("robotino")
 needs_records = pytest.mark.skipif(not (RECORDED / "gray_exp00.csv").exists(),
                                    reason=f"no recorded Robotino runs at {RECORDED}: they are not part of the project")
 TICKS_PER_RAD = 1.0 / 1.989e-4
@@ -206,7 +206,7 @@ def test_bad_arguments_are_one_clear_line(folder, tmp_path, capsys, arguments, w
     ('columns = ["m1vel", "m2vel", "m3vel"]', "columns = []", "wheel_speed.columns: has 0 entries; give 3"),
     ('columns = ["m1setvel", "m2setvel", "m3setvel"]', "columns = []", "set_speed.columns: has 0 entries; give one"),
     ('columns = ["m1cur", "m2cur", "m3cur"]', 'columns = ["m1cur"]', "current.columns: has 1 entries; give 3"),
-    ('columns = ["dx", "dy", "dang"]', 'columns = ["dx", "dy"]', "camera.columns: has 2 entries; give 3")])
+    ('columns = ["dx", "dy", "dang"]', 'columns = ["dx", "dy"]', "pose.columns: has 2 entries; give 3")])
 def test_map_that_cannot_be_is_named_by_its_key(tmp_path, old, new, words):
     path = tmp_path / "map.toml"
     path.write_text(DEFAULT_MAP.read_text().replace(old, new))
@@ -226,22 +226,22 @@ def test_map_with_an_unknown_key_names_it(tmp_path):
 
 
 @pytest.fixture(scope="module")
-def recorded(robot):
-    found, names, skipped = gather(RECORDED, (), read_map(DEFAULT_MAP))
+def real_runs(robot):
+    found, names, skipped = gather([RECORDED], ())
     return compare_all(robot, found, names, skipped, lambda *_, **__: None)
 
 
 @needs_records
-def test_robotino_wheels_roll_1_2_to_1_9_times_the_cameras_distance_in_every_run(recorded):
-    ratios = {c.recording.name: c.rolled.ratio for c in recorded.comparisons}
+def test_robotino_wheels_roll_1_2_to_1_9_times_the_cameras_distance_in_every_run(real_runs):
+    ratios = {c.recording.name: c.rolled.ratio for c in real_runs.comparisons}
     assert len(ratios) == 12
     assert all(1.2 < ratio.value < 1.9 and ratio.value - ratio.half_width > 1.0 for ratio in ratios.values())
     assert ratios["gray_exp72"].value > ratios["gray_exp90"].value + 0.3   # along x the wheels slip more than along y
 
 
 @needs_records
-def test_robotino_steady_currents_hardly_depend_on_speed(recorded):
-    along_y = {c.rolled.speed_m_per_s: c.steady_current_A[1].value for c in recorded.comparisons
+def test_robotino_steady_currents_hardly_depend_on_speed(real_runs):
+    along_y = {c.rolled.speed_m_per_s: c.steady_current_A[1].value for c in real_runs.comparisons
                if c.rolled.direction_deg == pytest.approx(90.0, abs=1.0)}
     assert len(along_y) == 3
     assert np.ptp(list(along_y.values())) < 0.1
@@ -249,26 +249,26 @@ def test_robotino_steady_currents_hardly_depend_on_speed(recorded):
 
 
 @needs_records
-def test_robotino_fitted_on_some_runs_dry_friction_predicts_the_others_currents_better(recorded):
-    assert set(recorded.fitted_on).isdisjoint(c.recording.name for c in recorded.judged())
-    errors = np.array([[p.steady_error_A for p in c.predictions] for c in recorded.judged()]).mean(axis=0)
+def test_robotino_fitted_on_some_runs_dry_friction_predicts_the_others_currents_better(real_runs):
+    assert set(real_runs.fitted_on).isdisjoint(c.recording.name for c in real_runs.judged())
+    errors = np.array([[p.steady_error_A for p in c.predictions] for c in real_runs.judged()]).mean(axis=0)
     assert errors[1] < 0.7 * errors[0]
     assert errors[2] < 0.3 * errors[0]
 
 
 @needs_records
-def test_robotino_damping_does_not_differ_from_zero_once_dry_friction_is_allowed(recorded):
-    dry = recorded.models[1]
+def test_robotino_damping_does_not_differ_from_zero_once_dry_friction_is_allowed(real_runs):
+    dry = real_runs.models[1]
     assert abs(dry.values[0]) < dry.half_widths[0]
 
 
 @needs_records
-def test_robotino_currents_alone_do_not_give_the_wheel_speeds_and_the_report_states_it(recorded):
-    shares = np.array([[p.transient_error_share for p in c.predictions] for c in recorded.judged()]).mean(axis=0)
+def test_robotino_currents_alone_do_not_give_the_wheel_speeds_and_the_report_states_it(real_runs):
+    shares = np.array([[p.transient_error_share for p in c.predictions] for c in real_runs.judged()]).mean(axis=0)
     assert shares.min() > 0.25
-    assert any("small difference of large numbers" in sentence for sentence in report.in_words(recorded))
+    assert any("small difference of large numbers" in sentence for sentence in report.in_words(real_runs))
 
 
 @needs_records
-def test_robotino_files_that_are_no_runs_are_named(recorded):
-    assert recorded.skipped == ["motor_identification.csv"]
+def test_robotino_files_that_are_no_runs_are_named(real_runs):
+    assert real_runs.skipped == ["motor_identification.csv"]

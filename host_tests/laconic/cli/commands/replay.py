@@ -1,4 +1,4 @@
-"""Compare a recorded run with the model."""
+"""Compare recorded runs with the model."""
 
 from __future__ import annotations
 
@@ -11,39 +11,40 @@ from typing import Any
 import click
 
 from laconic.cli.options import InputPath, OutputFolder, SceneName, json_flag
+from laconic.cli.options_of_logs import map_option
 from laconic.errors import BadInput
 from laconic.outputs import write_text
 
+INPUTS = ("wheel-speeds", "currents", "voltages", "set-speeds")
+
 
 @click.command("replay")
-@click.argument("log", type=InputPath())
+@click.argument("logs", type=InputPath(), nargs=-1, required=True, metavar="LOG...")
 @click.argument("scene", type=SceneName())
+@click.option("--inputs", type=click.Choice(INPUTS),
+              help="What of the log drives the model. By default currents where the log has them, voltages where "
+              "its columns are signals, else the wheels' speeds.")
 @click.option("--fit", "fit_on", type=InputPath(), multiple=True, metavar="RUN.csv",
               help="Fit friction on this run; may be given several times. By default every other run of a folder.")
-@click.option("--map", "map_path", type=InputPath(), metavar="MAP.toml",
-              help="Which column is what; the default is that of the Robotino's runs; a file "
-              "whose columns have names of signals needs none.")
+@map_option
 @click.option("--out", type=OutputFolder(), metavar="DIR",
               help="Write report.md, report.json and pictures there.")
 @json_flag("Machine-readable result on stdout.")
-def command(log: Path, scene: str, fit_on: tuple[Path, ...], map_path: Path | None, out: Path | None,
-            json_wanted: bool) -> None:
-    """Compares LOG, a recorded run as CSV or a folder of them, with the model of SCENE.
+def command(logs: tuple[Path, ...], scene: str, inputs: str | None, fit_on: tuple[Path, ...], map_path: Path | None,
+            out: Path | None, json_wanted: bool) -> None:
+    """Compares LOG..., recorded runs or folders of them, with the model of SCENE, which comes last.
 
-    A file whose first column is time_s and whose others have names of signals, as `simulate --out F.csv --inputs`
-    writes it, needs no map: its inputs drive the core, and every other signal in it is compared. Otherwise the map says
-    what the columns are: the path that the measured wheel speeds give is compared with the camera's; friction is fitted
-    by least squares; and the core, driven by the measured currents as torques, predicts the wheel speeds.
+    \b
+    wheel-speeds  the recorded rotation of the wheels is rolled without slip and set beside the true path
+    currents      friction is fitted by least squares, and the core, driven by the measured currents as
+                  torques, predicts wheel speeds and steady currents
+    voltages      a file whose first column is time_s and whose others have names of signals, as
+                  `simulate --out F.csv --inputs` writes it: its inputs drive the core, and every other
+                  signal in it is compared
+
+    Maps that come with the project recognise their logs; --map names the map of others (docs/logs.md).
     """
-    from laconic.recorded_runs.signals import is_signal_log
-
-    if map_path is None and is_signal_log(log):
-        if fit_on:
-            raise BadInput("--fit: needs measured currents; leave it out for a file whose columns are signals, or give "
-                           "its --map")
-        text, numbers, draw = _by_signals(log, scene)
-    else:
-        text, numbers, draw = _by_map(log, scene, fit_on, map_path)
+    text, numbers, draw = _replayed(logs, scene, inputs, fit_on, map_path)
     if out is not None:
         images = "".join(f"![{path.stem}]({path.name})\n" for path in draw(out))
         write_text(out / "report.md", f"{text}\n## Pictures\n\n{images}")
@@ -55,6 +56,27 @@ Found = tuple[str, dict[str, Any], Callable[[Path], list[Path]]]
 """Text, numbers, and what draws the pictures into a folder."""
 
 
+def _replayed(logs: tuple[Path, ...], scene: str, inputs: str | None, fit_on: tuple[Path, ...],
+              map_path: Path | None) -> Found:
+    from laconic.recorded_runs.signals import is_signal_log
+
+    if fit_on and inputs not in (None, "currents"):
+        raise BadInput(f"--fit: needs measured currents; leave it out beside --inputs {inputs}")
+    if inputs == "set-speeds":
+        raise BadInput("--inputs set-speeds: needs the robot's own speed controller, which a scene does not describe; "
+                       "take --inputs wheel-speeds, or currents")
+    is_of_signals = len(logs) == 1 and map_path is None and is_signal_log(logs[0])
+    if inputs == "voltages" and not is_of_signals:
+        raise BadInput(f"--inputs voltages: {logs[0]} has no columns with names of signals; give one file as "
+                       "`laconic simulate --out F.csv --inputs` writes it")
+    if is_of_signals and inputs in (None, "voltages"):
+        if fit_on:
+            raise BadInput("--fit: needs measured currents; leave it out for a file whose columns are signals, or give "
+                           "its --map")
+        return _by_signals(logs[0], scene)
+    return _by_map(logs, scene, inputs, fit_on, map_path)
+
+
 def _by_signals(log: Path, scene: str) -> Found:
     from laconic.recorded_runs import signals_report as report
     from laconic.recorded_runs.signals import read_signal_log, replay_signals
@@ -64,22 +86,32 @@ def _by_signals(log: Path, scene: str) -> Found:
     return report.as_text(found), report.as_numbers(found), partial(report.draw, found)
 
 
-def _by_map(log: Path, scene: str, fit_on: tuple[Path, ...], map_path: Path | None) -> Found:
+def _by_map(paths: tuple[Path, ...], scene: str, inputs: str | None, fit_on: tuple[Path, ...],
+            map_path: Path | None) -> Found:
+    from laconic.recorded_runs.runs import gather
+    from laconic.scene import read_scene
+
+    given = read_scene(scene)
+    logs, names, skipped = gather(paths, fit_on, map_path)
+    has_currents = logs[0].current_A is not None
+    if inputs == "currents" and not has_currents:
+        raise BadInput(f"--inputs currents: {logs[0].path} has none; name their columns in the map, or take "
+                       "--inputs wheel-speeds")
+    if inputs == "currents" or fit_on or (inputs is None and has_currents):
+        return _by_currents(given, logs, names, skipped)
+    from laconic.recorded_runs import rolled_paths
+
+    found = rolled_paths.roll(given, logs, [Path(name) for name in skipped])
+    return rolled_paths.as_text(found), rolled_paths.as_numbers(found), partial(rolled_paths.draw, found)
+
+
+def _by_currents(scene: Any, logs: list[Any], names: list[str], skipped: list[str]) -> Found:
     from laconic.analysis.from_core import subject_of
     from laconic.progress import progress_bar
     from laconic.recorded_runs import report
-    from laconic.recorded_runs.log import DEFAULT_MAP, read_map
-    from laconic.recorded_runs.runs import compare_all, gather
-    from laconic.scene import read_scene
+    from laconic.recorded_runs.runs import compare_all
 
-    subject = subject_of(read_scene(scene))
-    try:
-        runs, names, skipped = gather(log, fit_on, read_map(map_path or DEFAULT_MAP))
-    except BadInput as error:
-        if map_path is not None or not log.is_file():
-            raise
-        raise BadInput(f"{error}; or, for a file without a map, call its first column time_s, the others as signals, "
-                       "with commas between them") from None
-    with progress_bar("replaying", len(runs) + 1) as advance:
-        found = compare_all(subject, runs, names, skipped, advance)
+    subject = subject_of(scene)
+    with progress_bar("replaying", len(logs) + 1) as advance:
+        found = compare_all(subject, logs, names, skipped, advance)
     return report.as_text(found), report.as_numbers(found), partial(report.draw, found)

@@ -1,0 +1,105 @@
+"""`laconic replay --inputs wheel-speeds`: the paths that pure rolling gives, beside the true ones."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+
+from laconic.errors import BadInput
+from laconic.logs import Log
+from laconic.logs.read import for_wheels
+from laconic.recorded_runs.measures import RunErrors, all_errors, grand_mean, session_means
+from laconic.recorded_runs.rolling import rolling_of
+from laconic.scene import Scene
+
+MOST_PANELS = 9
+
+
+@dataclass(frozen=True)
+class RolledPaths:
+    """The predicted path of each run, and its errors."""
+
+    scene: Scene
+    logs: list[Log]
+    paths: list[np.ndarray]
+    errors: list[RunErrors]
+    skipped: list[str]
+
+
+def roll(scene: Scene, logs: Sequence[Log], skipped: Sequence[Path] = ()) -> RolledPaths:
+    """Pure rolling of every run; BadInput where no log has a true pose."""
+    rolling = rolling_of(scene.core(), scene.vehicle, scene.path)
+    fitting = [for_wheels(log, scene.wheel_count) for log in logs]
+    if all(log.pose is None for log in fitting):
+        raise BadInput(f"{fitting[0].path}: has no true pose to compare with; name its columns in the map, table "
+                       "[pose]")
+    paths = [rolling.path(log) for log in fitting]
+    return RolledPaths(scene, fitting, paths, all_errors(fitting, paths), [path.name for path in skipped])
+
+
+def as_numbers(found: RolledPaths) -> dict[str, Any]:
+    """For JSON."""
+    return {"runs": [each.as_json() for each in found.errors]}
+
+
+def as_text(found: RolledPaths) -> str:
+    """A report in Markdown."""
+    lines = [f"# {len(found.logs)} runs beside {found.scene.name}", "",
+             "Inputs: the recorded rotation of the wheels, rolled without slip.", "", *error_table(found.errors)]
+    if found.skipped:
+        lines += ["", f"Left out, no logs that the map recognises: {', '.join(dict.fromkeys(found.skipped))}."]
+    return "\n".join([*lines, ""])
+
+
+def error_table(errors: Sequence[RunErrors]) -> list[str]:
+    """A row for each run, the mean of each session, and the mean over the sessions."""
+    lines = ["| session | run | path error [%] | displacement error [%] | heading at the end [rad] |",
+             "| --- " * 5 + "|"]
+    means = {each.session: each for each in session_means(errors)}
+    for session, mean in means.items():
+        lines += [_row(each) for each in errors if each.session == session]
+        if sum(each.session == session for each in errors) > 1:
+            lines.append(_row(mean))
+    return [*lines, _row(grand_mean(errors))] if len(means) > 1 else lines
+
+
+def _row(each: RunErrors) -> str:
+    cells = [_share(each.path_error), _share(each.displacement_error), _number(each.heading_error_rad)]
+    name = f"**{each.run}**" if each.run.startswith("mean") else each.run
+    return f"| {each.session} | {name} | {' | '.join(cells)} |"
+
+
+def _share(value: float | None) -> str:
+    return "–" if value is None else f"{100.0 * value:.3f}"
+
+
+def _number(value: float | None) -> str:
+    return "–" if value is None else f"{value:.4f}"
+
+
+def draw(found: RolledPaths, folder: Path) -> list[Path]:
+    """The paths of the first runs: true and rolled."""
+    from laconic.pictures.plotting import figure, save
+
+    shown = [(log, path, each) for log, path, each in zip(found.logs, found.paths, found.errors, strict=True)
+             if log.pose is not None][:MOST_PANELS]
+    columns = min(3, len(shown))
+    rows = -(-len(shown) // columns)
+    picture = figure(4.0 * columns, 3.6 * rows + 0.6)
+    panels = picture.subplots(rows, columns, squeeze=False).ravel()
+    for axes, (log, path, each) in zip(panels, shown, strict=False):
+        assert log.pose is not None
+        axes.plot(log.pose[:, 0], log.pose[:, 1], color="k", lw=2.4, alpha=0.35, label="true")
+        axes.plot(path[:, 0], path[:, 1], color="tab:blue", lw=1.0, label="rolled")
+        axes.set_aspect("equal", "datalim")
+        axes.set_title(f"{each.session}\n{each.run}: {_share(each.path_error)} %", fontsize=7)
+    for axes in panels[len(shown):]:
+        axes.remove()
+    panels[0].set(xlabel="x [m]", ylabel="y [m]")
+    picture.legend(handles=panels[0].get_legend_handles_labels()[0], loc="outside lower center", ncols=2, fontsize=9)
+    save(picture, folder / "paths.png")
+    return [folder / "paths.png"]

@@ -1,0 +1,94 @@
+"""Pure rolling: the path that the recorded rotation of the wheels gives, by the core's own matrices.
+
+The wheels' speeds are s = Ξ ν for every ν that the constraints C allow. With more wheels than directions the recorded
+ones never fit exactly; the motion is then the one that fits them best in the least-squares sense of distances on the
+ground, R_i s_i. Between two samples the body's velocity is taken as constant and the pose follows exactly.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import dataclass
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+
+from laconic.core import Core
+from laconic.errors import BadInput
+from laconic.logs.log import POINTS, Log
+
+
+@dataclass(frozen=True)
+class Rolling:
+    """What makes rotations of the wheels motions of the body: (x, y [m], angle [rad]) = per_rotation · rotations."""
+
+    per_rotation: np.ndarray       # 3 × N, of the body's origin
+    centre_of_mass: np.ndarray     # x, y in the body's frame
+
+    def moved(self, rotation_rad: np.ndarray, point: str = POINTS[0]) -> np.ndarray:
+        """Displacements of a point from sample to sample in the body's frame, one row each."""
+        steps: np.ndarray = rotation_rad @ self.per_rotation.T
+        if point == "centre_of_mass":
+            x, y = self.centre_of_mass
+            steps = steps + steps[:, 2:] * np.array([-y, x, 0.0])
+        return steps
+
+    def path(self, log: Log, start: np.ndarray | None = None) -> np.ndarray:
+        """Predicted poses x, y, heading at the samples' times, from the true first pose (or from `start`)."""
+        if start is None:
+            start = np.zeros(3) if log.pose is None else log.pose[0]
+        return path_of(self.moved(log.rotation_rad(), log.pose_point), start)
+
+
+def path_of(moved: np.ndarray, start: np.ndarray) -> np.ndarray:
+    """Poses from displacements that are twists held from sample to sample: the exact arc for each."""
+    half = 0.5 * moved[:, 2]
+    heading = start[2] + np.concatenate([[0.0], np.cumsum(moved[:, 2])])
+    middle = heading[:-1] + half
+    chord = np.sinc(half / np.pi)  # sin(x)/x
+    cos, sin = chord * np.cos(middle), chord * np.sin(middle)
+    x = np.concatenate([[0.0], np.cumsum(cos * moved[:, 0] - sin * moved[:, 1])])
+    y = np.concatenate([[0.0], np.cumsum(sin * moved[:, 0] + cos * moved[:, 1])])
+    return np.column_stack([start[0] + x, start[1] + y, heading])
+
+
+def rolling_of(core: Core, vehicle: Mapping[str, Any], path: Path) -> Rolling:
+    """Pure rolling of a vehicle (the keys of `[vehicle]`); BadInput where its wheels do not determine its motion."""
+    c_vehicle = core.vehicle(vehicle)
+    matrices = core.matrices(c_vehicle)
+    reference = float(c_vehicle.wheel_radius_m)
+    radii = wheel_radii(vehicle)
+    allowed = _null_space(matrices.constraint_rows)
+    distance_rows = (radii / reference)[:, None] * _own_rows(core, matrices.wheel_rows, radii / reference) @ allowed
+    if np.linalg.matrix_rank(distance_rows, tol=1e-9) < allowed.shape[1]:
+        raise BadInput(f"{path}: its wheel speeds do not determine its motion; rolling needs wheels that "
+                       "turn whatever the motion")
+    nu = allowed @ np.linalg.pinv(distance_rows) * (radii / reference)  # ν per rotation
+    centre = np.array([float(c_vehicle.com_x_m), float(c_vehicle.com_y_m)])
+    angle = nu[2] / matrices.lambda_yaw
+    # the origin's velocity is the centre of mass's less that of turning about it: v_O = v_S − θ' × c
+    origin = [reference * nu[0] + angle * centre[1], reference * nu[1] - angle * centre[0], angle]
+    return Rolling(np.array(origin), centre)
+
+
+def wheel_radii(vehicle: Mapping[str, Any]) -> np.ndarray:
+    """The radius of each wheel: its own, or the vehicle's."""
+    return np.array([wheel.get("own_radius_m") or wheel.get("radius_m") or vehicle["wheel_radius_m"]
+                     for wheel in vehicle["wheel"]], dtype=float)
+
+
+def _own_rows(core: Core, rows: np.ndarray, ratio: np.ndarray) -> np.ndarray:
+    """Ξ with each wheel's own radius."""
+    knows = any(name == "own_radius_m" for name, _ in core.ffi.typeof("laconic_wheel").fields)
+    return rows if knows else rows / ratio[:, None]
+
+
+def _null_space(rows: np.ndarray) -> np.ndarray:
+    """The ν that the constraints allow, as columns."""
+    if not len(rows):
+        return np.eye(3)
+    _, size, right = np.linalg.svd(rows)
+    rank = int((size > 1e-9 * size[0]).sum())
+    found: np.ndarray = right[rank:].T
+    return found
