@@ -2,18 +2,18 @@
  *
  * |slip| becomes w = √(|slip|² + τ²), so p = grip slip/w is smooth; |s| of the axle's friction likewise. Newton's method
  * on p w = grip slip with p as an unknown of its own converges from far away, where the one on speeds alone overshoots
- * (Chan, Golub and Mulet 1999). τ = softness/grip makes the energy that the rounding adds the same for each contact,
- * as on the central path of an interior-point method, and shrinks from pass to pass. */
+ * (Chan, Golub and Mulet 1999). τ = softness/grip (at most 1 rad/s) makes the energy that the rounding adds the same
+ * for each contact, as on the central path of an interior-point method, and shrinks from pass to pass. */
 #include "friction_internals.h"
 
-/* The softness starts at a thousandth of the free motion's energy, since a guess of the impulses is there, and ends
- * where a step of the exact method is safe: ten thousand random states up to four wheels, 1 in 5,000 refused. */
-#define FIRST_SOFTNESS R(1e-3)
+/* Of the free motion's energy. Softer at first would forget the guess, which exact passes made; less soft, or faster, goes
+ * in circles too; softer at last leaves more to exact passes. Of random states up to four wheels 1 in 700 is refused. */
+#define FIRST_SOFTNESS R(1e-5)
 #define SOFTER R(0.1)
 #ifdef LACONIC_SINGLE
 #define SMOOTH_PASSES 5 /* beyond it the rounding errors of the sums show */
 #else
-#define SMOOTH_PASSES 8
+#define SMOOTH_PASSES 7
 #endif
 
 /* A contact's linear law p += G rows·δν and s += turn·rows·δν, and the axle's q += grow δs. */
@@ -29,8 +29,8 @@ typedef struct soft_law {
 
 static soft_law law_of(const friction_wheel *w, const friction_load *l, const real slip[2], const real p[2],
                        real softness) {
-    const real tau = softness / l->grip;
-    const real size = laconic_root(slip[0] * slip[0] + slip[1] * slip[1] + tau * tau);
+    const real tau = softness / (l->grip + softness);
+    const real size = quick_root(slip[0] * slip[0] + slip[1] * slip[1] + tau * tau);
     const real x = slip[0] / size, y = slip[1] / size;
     soft_law law;
     if (l->grip < LACONIC_REAL_MAX) {
@@ -54,7 +54,7 @@ static void eliminate(soft_contact *c, const friction_wheel *w, const friction_l
                       real axle, real softness) {
     const real x = h->xx * w->rim[0] + h->xy * w->rim[1], y = h->xy * w->rim[0] + h->yy * w->rim[1];
     const real rim = w->rim[0] * x + w->rim[1] * y, area = h->xx * h->yy - h->xy * h->xy;
-    const real tau = softness / (l->axle + LACONIC_REAL_MIN), size = laconic_root(speed * speed + tau * tau);
+    const real tau = softness / (l->axle + softness), size = quick_root(speed * speed + tau * tau);
     real own, all;
     turning wheel;
     c->axle = l->axle * (speed / size);
@@ -77,7 +77,7 @@ static void eliminate(soft_contact *c, const friction_wheel *w, const friction_l
 static void project(real p[2], real grip) {
     const real size = p[0] * p[0] + p[1] * p[1];
     if (grip < LACONIC_REAL_MAX && size > grip * grip) {
-        const real by = grip / laconic_root(size);
+        const real by = grip / quick_root(size);
         p[0] *= by;
         p[1] *= by;
     }

@@ -49,7 +49,7 @@ void laconic_friction_prepare(friction_wheel *w) {
     w->row[1] = scaled(w->drag, vec(w->across));
     w->rim[0] = w->rim_along;
     w->rim[1] = w->drag * w->rim_across;
-    w->rim_size = laconic_root(w->rim[0] * w->rim[0] + w->rim[1] * w->rim[1]);
+    w->rim_size = quick_root(w->rim[0] * w->rim[0] + w->rim[1] * w->rim[1]);
     for (int m = 0; m < 2; m++) {
         w->rolling[m] = w->rim[m] / w->rim_size;
         w->row_mass[m] = inverse(square(w->row[m]));
@@ -68,7 +68,7 @@ INLINE real look(contact *c, const friction_wheel *w, const friction_load *l, ve
     c->length = R(0);
     size = c->t[0] * c->t[0] + c->t[1] * c->t[1];
     if (l->grip < LACONIC_REAL_MAX && size > l->grip * l->grip) {
-        c->length = laconic_root(size);
+        c->length = quick_root(size);
         inside = l->grip / c->length;
     }
     for (int m = 0; m < 2; m++) off[m] = inside * c->t[m] - p[m];

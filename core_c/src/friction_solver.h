@@ -43,9 +43,11 @@ void laconic_friction_prepare(friction_wheel *wheel);
 /* Finds nu[3], speed[count] and the impulses that the contacts give to the ground: |impulse[i]| <= grip; the robot gets
  * −impulse[i][0] along u_i and −k impulse[i][1] along w_i, the wheel's axis rim·impulse. On entry impulse holds a guess:
  * that of the step before, or 0. Returns the number of passes, at least 1; or 0 if it refuses because the numbers are not
- * finite or FRICTION_MOST_PASSES did not suffice, and then the contents of nu, speed and impulse mean nothing. count is at
- * most LACONIC_MAX_WHEELS. Accepted results have a residual of at most 1e-9 (2e-5 in single), relative to (ν*, s*). */
-#define FRICTION_MOST_PASSES 19
+ * finite or FRICTION_MOST_PASSES did not suffice, and then the contents of nu, speed and impulse mean nothing. count is
+ * at most LACONIC_MAX_WHEELS.
+ * Accepted results have a residual of at most 1e-9 (2e-5 in single), relative to the free motion (ν*, s* + motor/j).
+ * Speeds below 1e-10 (2e-6) of it are made exactly 0, and so is a free motion below 1e-142 rad/s (1e-13). */
+#define FRICTION_MOST_PASSES 16
 int32_t laconic_friction_solve(const friction_wheel wheels[], const friction_load loads[], int32_t count,
                                const real free_nu[3], real nu[3], real speed[], real impulse[][2]);
 
