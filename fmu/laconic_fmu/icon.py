@@ -60,6 +60,12 @@ def _wheel(values: Mapping[str, Sequence[float]], i: int, length: float) -> list
     return parts
 
 
+def _radii(values: Mapping[str, Sequence[float]], count: int) -> list[float]:
+    """Of each wheel: its own radius, else the vehicle's."""
+    common = values["wheel_radius_m"][0]
+    return [own or common for own in values.get("own_radius_m", [0.0] * count)][:count]
+
+
 def _drawing(values: Mapping[str, Sequence[float]]) -> list[tuple[Colour, list[Point]]]:
     """Everything but the frame, in body axes and metres."""
     supports = [(values["support_x_m"][i], values["support_y_m"][i]) for i in range(int(values["support_count"][0]))]
@@ -67,11 +73,12 @@ def _drawing(values: Mapping[str, Sequence[float]]) -> list[tuple[Colour, list[P
     centre = (values["com_x_m"][0], values["com_y_m"][0])
     points = [*wheels, *supports, centre]
     extent = max(hypot(x - centre[0], y - centre[1]) for x, y in points)
+    lengths = [max(2 * radius, SMALLEST * 2 * extent) for radius in _radii(values, len(wheels))]
     length = max(2 * values["wheel_radius_m"][0], SMALLEST * 2 * extent)
     body = _hull([corner for x, y in points for corner in _disc(x, y, 0.45 * length)])
     parts: list[tuple[Colour, list[Point]]] = [(BLUE, body), (LIGHT, _smaller(body, 0.06 * length))]
     parts += [(GREY, _disc(*support, 0.22 * length)) for support in supports]
-    parts += [part for i in range(len(wheels)) for part in _wheel(values, i, length)]
+    parts += [part for i in range(len(wheels)) for part in _wheel(values, i, lengths[i])]
     reach = max(0.5 * length, 0.45 * extent)
     tip = (centre[0] + reach, centre[1])
     parts.append((ORANGE, _bar((centre[0] + 0.4 * reach, centre[1]), 0.0, 0.8 * reach, 0.14 * reach)))

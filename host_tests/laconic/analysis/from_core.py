@@ -57,6 +57,11 @@ class Subject:
         """A member of the model that has a value for each wheel: motor_gain_Nm_per_V …"""
         return self.core.numbers(getattr(self.model, name))[: self.wheel_count]
 
+    def radii_m(self) -> np.ndarray:
+        """R_i [m]."""
+        common = float(self.vehicle.wheel_radius_m)
+        return np.array([float(w.own_radius_m) or common for w in self.vehicle.wheel[0 : self.wheel_count]])
+
     @property
     def wheels_differ(self) -> bool:
         """Whether damping and inertia have axes of their own, as c2_i : J_i is not common to all wheels."""

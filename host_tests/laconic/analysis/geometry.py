@@ -1,10 +1,10 @@
 """What the wheels can do with the body: which motions they drive or damp, how evenly, and how well they yaw it.
 
-Ξ is judged in metres per second: rim speeds R χ' against the body's (v_ξ, v_η, ℓ θ'), where ℓ is the wheels' root mean
-square distance from their middle. Its null space holds the motions that no motor drives or damps. The rank misses the
-classic mistake, mecanum wheels mounted in the wrong diagonal: it leaves full rank (unless the wheels stand in a square)
-and almost no lever arm in yaw. So yaw has a measure of its own, the yaw authority: the least rim speed (root mean
-square) that goes with a yaw rate of 1 rad/s about any point, over ℓ. About 1 is usual, near 0 is a mistake.
+Ξ is judged in metres per second: rim speeds R_i χ_i' against the body's (v_ξ, v_η, ℓ θ'), where ℓ is the wheels' root
+mean square distance from their middle. Its null space holds the motions that no motor drives or damps. The rank misses
+the classic mistake, mecanum wheels mounted in the wrong diagonal: it leaves full rank (unless the wheels stand in a
+square) and almost no lever arm in yaw. So yaw has a measure of its own, the yaw authority: the least rim speed (root
+mean square) that goes with a yaw rate of 1 rad/s about any point, over ℓ. About 1 is usual, near 0 is a mistake.
 """
 
 from __future__ import annotations
@@ -75,8 +75,8 @@ def _body_of_nu(subject: Subject, length: float) -> np.ndarray:
 
 
 def _rim_rows(subject: Subject, wheel_rows: np.ndarray, length: float) -> np.ndarray:
-    """R Ξ against (v_ξ, v_η, ℓ θ')."""
-    return float(subject.model.wheel_radius_m) * wheel_rows / _body_of_nu(subject, length)
+    """R_i Ξ_i against (v_ξ, v_η, ℓ θ')."""
+    return subject.radii_m()[:, None] * wheel_rows / _body_of_nu(subject, length)
 
 
 def _allowed_motions(subject: Subject, length: float) -> np.ndarray:

@@ -11,6 +11,7 @@ import pytest
 from scipy.linalg import eigh
 
 from laconic.analysis.from_core import nu_rates, subject_of
+from laconic.analysis.geometry import diagnose
 from laconic.cli.main import run
 from laconic.core import load
 from laconic.errors import BadInput
@@ -164,6 +165,16 @@ def test_a_bad_value_of_a_wheel_is_one_line_with_its_key(old: str, new: str, wor
     assert run(["simulate", str(path)]) == 2
     line = capsys.readouterr().err
     assert words in line and line.count("\n") == 1
+
+
+def test_rim_speeds_do_not_depend_on_which_key_gives_the_radius(tmp_path: Path) -> None:
+    text = read_scene("turtlebot3_burger").path.read_text(encoding="utf-8")
+    radius = read_scene("turtlebot3_burger").vehicle["wheel_radius_m"]
+    path = tmp_path / "own.toml"
+    path.write_text(text.replace(f"wheel_radius_m = {radius}", "wheel_radius_m = 1.0").replace(
+        'kind = "fixed"', f'kind = "fixed"\nradius_m = {radius}'), encoding="utf-8")
+    found = [diagnose(subject_of(read_scene(each))).yaw_authority for each in ("turtlebot3_burger", path)]
+    assert found[0] == pytest.approx(found[1], rel=1e-12)
 
 
 def test_derive_shows_what_each_wheel_has(capsys: pytest.CaptureFixture[str]) -> None:

@@ -94,7 +94,7 @@ def test_a_workshop_may_be_named_by_a_relative_path(tmp_path: Path, monkeypatch:
 
 @needs_gcc
 @pytest.mark.parametrize(("name", "real"), [("s1", "double"), ("paper_caster", "double"),
-                                            ("turtlebot3_burger", "single")])
+                                            ("turtlebot3_burger", "single"), ("example_two_wheel_sizes", "double")])
 def test_a_trimmed_core_gives_the_same_bits_as_the_whole_one(workshop: Workshop, name: str, real: str):
     scene = read_scene(name)
     whole, trim = (workshop.host_program(Variant(scene, real, "-O0", trim)) for trim in (False, True))
