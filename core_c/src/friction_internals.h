@@ -10,7 +10,7 @@
 /* Stiffness of the penalty in contacts that stick, over that of their own inertia: brings the impulses of redundant
  * contacts that many times nearer in each pass, and takes as many digits of the sums. */
 #ifdef LACONIC_SINGLE
-#define PENALTY R(1e3)
+#define PENALTY R(300)
 #define HERON_ROUNDS 3
 #else
 #define PENALTY R(1e5)

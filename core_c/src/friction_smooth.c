@@ -7,7 +7,7 @@
 #include "friction_internals.h"
 
 /* Of the free motion's energy. Softer at first would forget the guess, which exact passes made; less soft, or faster, goes
- * in circles too; softer at last leaves more to exact passes. Of random states up to four wheels 1 in 700 is refused. */
+ * in circles too; softer at last leaves more to exact passes. Of random states up to four wheels 1 in 450 is refused. */
 #define FIRST_SOFTNESS R(1e-5)
 #define SOFTER R(0.1)
 #ifdef LACONIC_SINGLE
@@ -27,7 +27,7 @@ typedef struct soft_law {
     real xx, xy, yy, impulse[2];
 } soft_law;
 
-static soft_law law_of(const friction_wheel *w, const friction_load *l, const real slip[2], const real p[2],
+INLINE soft_law law_of(const friction_wheel *w, const friction_load *l, const real slip[2], const real p[2],
                        real softness) {
     const real tau = softness / (l->grip + softness);
     const real size = quick_root(slip[0] * slip[0] + slip[1] * slip[1] + tau * tau);
@@ -50,8 +50,8 @@ static soft_law law_of(const friction_wheel *w, const friction_load *l, const re
 }
 
 /* Eliminates the wheel's speed: G = H − H rim rimᵀ H / d, written so that nothing cancels. */
-static void eliminate(soft_contact *c, const friction_wheel *w, const friction_load *l, const soft_law *h, real speed,
-                      real axle, real softness) {
+INLINE void eliminate(soft_contact *restrict c, const friction_wheel *w, const friction_load *l, const soft_law *h,
+                      real speed, real axle, real softness) {
     const real x = h->xx * w->rim[0] + h->xy * w->rim[1], y = h->xy * w->rim[0] + h->yy * w->rim[1];
     const real rim = w->rim[0] * x + w->rim[1] * y, area = h->xx * h->yy - h->xy * h->xy;
     const real tau = softness / (l->axle + softness), size = quick_root(speed * speed + tau * tau);
@@ -74,10 +74,11 @@ static void eliminate(soft_contact *c, const friction_wheel *w, const friction_l
     c->g[2] = (own * h->yy + area * w->rim[0] * w->rim[0]) / all;
 }
 
-static void project(real p[2], real grip) {
-    const real size = p[0] * p[0] + p[1] * p[1];
-    if (grip < LACONIC_REAL_MAX && size > grip * grip) {
-        const real by = grip / quick_root(size);
+/* Into the disc, by one of Heron's rounds instead of a root: exact at the border, a little inside beyond it. */
+INLINE void put_inside(real p[2], real grip) {
+    const real size = p[0] * p[0] + p[1] * p[1], border = grip * grip;
+    if (grip < LACONIC_REAL_MAX && size > border) {
+        const real by = R(2) * border / (border + size);
         p[0] *= by;
         p[1] *= by;
     }
@@ -107,7 +108,7 @@ static void smooth_pass(friction_search *at, real axle[], real softness) {
         axle[i] = cut(c->axle + c->grow * (at->speed[i] - before), at->load[i].axle);
         at->impulse[i][0] = c->impulse[0] + c->g[0] * x + c->g[1] * y;
         at->impulse[i][1] = c->impulse[1] + c->g[1] * x + c->g[2] * y;
-        project(at->impulse[i], at->load[i].grip);
+        put_inside(at->impulse[i], at->load[i].grip);
     }
 }
 
@@ -115,7 +116,7 @@ int32_t laconic_friction_smooth(friction_search *at) {
     real axle[LACONIC_MAX_WHEELS], softness = FIRST_SOFTNESS * at->scale;
     for (int32_t i = 0; i < at->count; i++) {
         axle[i] = R(0);
-        project(at->impulse[i], at->load[i].grip);
+        put_inside(at->impulse[i], at->load[i].grip);
     }
     laconic_friction_follow(at);
     for (int32_t pass = 0; pass < SMOOTH_PASSES; pass++) {

@@ -17,8 +17,8 @@
 
 /* The residual that a result must reach, and the speed that counts as rest, both relative to the free motion. */
 #ifdef LACONIC_SINGLE
-#define TOLERANCE R(4e-6)
-#define SNAP R(2e-6)
+#define TOLERANCE R(1e-5)
+#define SNAP R(2e-5)
 #else
 #define TOLERANCE R(2e-10)
 #define SNAP R(1e-10)
@@ -26,9 +26,9 @@
 
 #define SMALLEST_ENERGY (LACONIC_REAL_MIN / (TOLERANCE * TOLERANCE)) /* below it squares of residuals underflow */
 #define MOST_STRESS R(100) /* the impulses that steps ask for are a few times the free motion's; squared */
-#define EXACT_PASSES 4     /* of warm steps 1 in 100 needs more */
+#define EXACT_PASSES 3     /* of warm steps 1 in 50 needs more */
 
-/* A contact in a pass: how it stands, then its linear law p += e_m stiffness_m (row_m·δν), and s with the first row. */
+/* A contact in a pass: how it stands, then its linear law p += gain_m (row_m·δν), and s with the first row. */
 typedef struct contact {
     real moved[2];     /* rows·ν: slip if the wheel stood still */
     real t[2], length; /* impulse + slip/W; length 0 where it sticks */
@@ -37,7 +37,7 @@ typedef struct contact {
 
     int32_t rank; /* of the law: number of rows */
     vector row[2];
-    real e[2][2], stiffness[2], turn;
+    real stiffness[2], gain[2][2], turn;
     real impulse[2], speed;
 } contact;
 
@@ -59,7 +59,8 @@ void laconic_friction_prepare(friction_wheel *w) {
 }
 
 /* Looks at a contact with the speeds and impulses of the pass before. Returns the square of its residual. */
-INLINE real look(contact *c, const friction_wheel *w, const friction_load *l, vector nu, real speed, const real p[2]) {
+INLINE real look(contact *restrict c, const friction_wheel *w, const friction_load *l, vector nu, real speed,
+                 const real p[2]) {
     real inside = R(1), off[2], axle, pushed, size;
     for (int m = 0; m < 2; m++) {
         c->moved[m] = dot(w->row[m], nu);
@@ -81,7 +82,7 @@ INLINE real look(contact *c, const friction_wheel *w, const friction_load *l, ve
 }
 
 /* Along n the impulse is the grip; across n it turns with the slip. */
-INLINE void slips(contact *c, const friction_wheel *w, const friction_load *l, const real p[2]) {
+INLINE void slips(contact *restrict c, const friction_wheel *w, const friction_load *l, const real p[2]) {
     const real n[2] = {c->t[0] / c->length, c->t[1] / c->length};
     const real rim = n[0] * w->rim[1] - n[1] * w->rim[0], moved = n[0] * c->moved[1] - n[1] * c->moved[0];
     real h = l->grip / ((c->length - l->grip) * w->mobility), most, across = R(0);
@@ -100,29 +101,28 @@ INLINE void slips(contact *c, const friction_wheel *w, const friction_load *l, c
     c->speed = wheel.speed;
     c->impulse[0] = l->grip * n[0] - across * n[1];
     c->impulse[1] = l->grip * n[1] + across * n[0];
-    c->e[0][0] = -n[1];
-    c->e[0][1] = n[0];
-    c->stiffness[0] = h;
     c->turn = R(0);
     if (!wheel.held) {
-        c->stiffness[0] = h * wheel.slope / (wheel.slope + h * rim * rim);
         c->turn = h * rim / (wheel.slope + h * rim * rim);
+        h *= wheel.slope / (wheel.slope + h * rim * rim);
     }
+    c->stiffness[0] = h;
+    c->gain[0][0] = -h * n[1];
+    c->gain[0][1] = h * n[0];
 }
 
-INLINE void stays_locked(contact *c, const friction_wheel *w, const real p[2]) {
+INLINE void stays_locked(contact *restrict c, const friction_wheel *w, const real p[2]) {
     c->rank = 2;
     c->speed = c->turn = R(0);
     for (int m = 0; m < 2; m++) {
         c->row[m] = w->row[m];
-        c->e[m][m] = R(1);
-        c->e[m][1 - m] = R(0);
-        c->stiffness[m] = PENALTY * w->row_mass[m];
+        c->stiffness[m] = c->gain[m][m] = PENALTY * w->row_mass[m];
+        c->gain[m][1 - m] = R(0);
         c->impulse[m] = p[m] + c->stiffness[m] * c->moved[m];
     }
 }
 
-INLINE void rolls(contact *c, const friction_wheel *w, const friction_load *l, const real p[2]) {
+INLINE void rolls(contact *restrict c, const friction_wheel *w, const friction_load *l, const real p[2]) {
     const real *e = w->rolling;
     const real own = w->inertia + l->viscous, speed = (e[0] * c->moved[0] + e[1] * c->moved[1]) / w->rim_size;
     const real motor = l->drive - l->drive_slope * speed;
@@ -131,16 +131,16 @@ INLINE void rolls(contact *c, const friction_wheel *w, const friction_load *l, c
     real across = e[0] * p[1] - e[1] * p[0];
     c->rank = 1;
     c->row[0] = combined(w->row, e[0], e[1]);
-    c->e[0][0] = e[0];
-    c->e[0][1] = e[1];
     c->stiffness[0] = (limited ? own : own + l->drive_slope) / (w->rim_size * w->rim_size);
+    c->gain[0][0] = c->stiffness[0] * e[0];
+    c->gain[0][1] = c->stiffness[0] * e[1];
     c->turn = R(1) / w->rim_size;
     if (w->lateral_mass > R(0)) {
         c->rank = 2;
         c->row[1] = combined(w->row, -e[1], e[0]);
-        c->e[1][0] = -e[1];
-        c->e[1][1] = e[0];
         c->stiffness[1] = PENALTY * w->lateral_mass;
+        c->gain[1][0] = -c->stiffness[1] * e[1];
+        c->gain[1][1] = c->stiffness[1] * e[0];
         across += c->stiffness[1] * (e[0] * c->moved[1] - e[1] * c->moved[0]);
     }
     c->speed = speed;
@@ -164,16 +164,15 @@ static vector imbalance(const friction_search *at) {
 }
 
 INLINE void move(const contact *c, vector by, real *speed, real p[2]) {
-    real turned = R(0);
-    p[0] = c->impulse[0];
-    p[1] = c->impulse[1];
-    for (int32_t m = 0; m < c->rank; m++) {
-        const real moved = dot(c->row[m], by);
-        p[0] += c->e[m][0] * (c->stiffness[m] * moved);
-        p[1] += c->e[m][1] * (c->stiffness[m] * moved);
-        if (m == 0) turned = c->turn * moved;
+    const real first = dot(c->row[0], by);
+    p[0] = c->impulse[0] + c->gain[0][0] * first;
+    p[1] = c->impulse[1] + c->gain[0][1] * first;
+    *speed = c->speed + c->turn * first;
+    if (c->rank > 1) {
+        const real second = dot(c->row[1], by);
+        p[0] += c->gain[1][0] * second;
+        p[1] += c->gain[1][1] * second;
     }
-    *speed = c->speed + turned;
 }
 
 static void exact_pass(friction_search *at, contact contacts[]) {
@@ -188,7 +187,8 @@ static void exact_pass(friction_search *at, contact contacts[]) {
         else
             rolls(c, &at->wheel[i], &at->load[i], at->impulse[i]);
         k.rest = minus(k.rest, combined(at->wheel[i].row, c->impulse[0], c->impulse[1]));
-        for (int32_t m = 0; m < c->rank; m++) add_product(&k, scaled(c->stiffness[m], c->row[m]), c->row[m]);
+        add_product(&k, scaled(c->stiffness[0], c->row[0]), c->row[0]);
+        if (c->rank > 1) add_product(&k, scaled(c->stiffness[1], c->row[1]), c->row[1]);
     }
     by = solved(&k);
     at->nu = plus(at->nu, by);
@@ -235,10 +235,16 @@ static void snap(friction_search *at) {
     for (int32_t i = 0; i < at->count; i++) at->speed[i] = R(0);
 }
 
+static bool is_solved(const friction_search *at, real residual) {
+    const real most = TOLERANCE * TOLERANCE * at->scale;
+    if (residual > most) return false;
+    return residual + square(imbalance(at)) <= most;
+}
+
 static int32_t search(friction_search *at) {
     contact contacts[LACONIC_MAX_WHEELS];
     for (int32_t pass = 1; pass <= FRICTION_MOST_PASSES; pass++) {
-        if (look_at_all(at, contacts) + square(imbalance(at)) <= TOLERANCE * TOLERANCE * at->scale) {
+        if (is_solved(at, look_at_all(at, contacts))) {
             snap(at);
             return pass;
         }

@@ -1,7 +1,7 @@
 /* Tests of friction_solver.c: cases with known results, and random ones judged by a second routine. */
 #include "friction.h"
 
-#define ACCEPTED EITHER(1e-9, 2e-5)
+#define ACCEPTED EITHER(1e-9, 4e-5)
 #define NO_MOTION EITHER(1e-285, 1e-26) /* energies that count as rest */
 
 /* One fixed wheel at the body's centre that rolls along x. */
@@ -66,8 +66,8 @@ static void rigid_contacts_with_free_rollers_give_the_model_without_slip(void) {
         double left[3], largest = 0;
         memset(&p, 0, sizeof p);
         for (int i = 0; i < 4; i++) {
-            put_wheel(&p, i & 1 ? 1 : -1, i & 2 ? 0.7 : -0.7, i & 2 ? PI / 2 : -PI / 2, uniform(0.3, 2.8), 0,
-                      decades(1e-2, 1));
+            const double gamma = uniform(0.3, 2.8);
+            put_wheel(&p, i & 1 ? 1 : -1, i & 2 ? 0.7 : -0.7, i & 2 ? PI / 2 : -PI / 2, gamma, 0, decades(1e-2, 1));
             p.load[i].grip = p.load[i].drive_limit = LACONIC_REAL_MAX;
         }
         random_motion(&p);

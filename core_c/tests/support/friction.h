@@ -63,9 +63,10 @@ static inline void random_vehicle(problem *p, int count) {
             put_wheel(p, count < 3 ? 0 : front, left, side, PI / 2, 1, inertia);
         else if (kind == 3 && i < 2)
             put_wheel(p, 0, i ? 0.7 : -0.7, i ? PI / 2 : -PI / 2, PI / 2, 1, inertia);
-        else
-            put_wheel(p, either_sign(arm), either_sign(arm), either_sign(PI), uniform(0.3, 2.8), drag,
-                      inertia * decades(0.3, 3));
+        else { /* one after the other, as compilers choose the order of arguments */
+            const double x = either_sign(arm), y = either_sign(arm), beta = either_sign(PI), gamma = uniform(0.3, 2.8);
+            put_wheel(p, x, y, beta, gamma, drag, inertia * decades(0.3, 3));
+        }
     }
 }
 
