@@ -7,7 +7,7 @@
 #include "friction_internals.h"
 
 /* Of the free motion's energy. Softer at first would forget the guess, which exact passes made; less soft, or faster, goes
- * in circles too; softer at last leaves more to exact passes. Of random states up to four wheels 1 in 450 is refused. */
+ * in circles too; softer at last leaves more to exact passes. Of random states up to four wheels 1 in 700 is refused. */
 #define FIRST_SOFTNESS R(1e-5)
 #define SOFTER R(0.1)
 #ifdef LACONIC_SINGLE

@@ -16,13 +16,16 @@
 #include "friction_internals.h"
 
 /* The residual that a result must reach, and the speed that counts as rest, both relative to the free motion. Redundant
- * contacts let the speeds be off by some ten times the residual, and speeds shall be right to 1e-9. */
+ * contacts let the speeds be off by some ten times the residual, and speeds shall be right to 1e-9. From (|t|/grip)² =
+ * BORDER on, slip outwards tells that a contact slips; in single it would tell rounding errors. */
 #ifdef LACONIC_SINGLE
 #define TOLERANCE R(1e-5)
 #define SNAP R(2e-5)
+#define BORDER R(1)
 #else
 #define TOLERANCE R(1e-11)
 #define SNAP R(1e-10)
+#define BORDER R(0.998)
 #endif
 
 #define SMALLEST_ENERGY (LACONIC_REAL_MIN / (TOLERANCE * TOLERANCE)) /* below it squares of residuals underflow */
@@ -69,9 +72,10 @@ INLINE real look(contact *restrict c, const friction_wheel *w, const friction_lo
     }
     c->length = R(0);
     size = c->t[0] * c->t[0] + c->t[1] * c->t[1];
-    if (l->grip < LACONIC_REAL_MAX && size > l->grip * l->grip) {
-        c->length = quick_root(size);
-        inside = l->grip / c->length;
+    if (l->grip < LACONIC_REAL_MAX && size > BORDER * l->grip * l->grip) {
+        const real length = quick_root(size), outwards = c->t[0] * (c->t[0] - p[0]) + c->t[1] * (c->t[1] - p[1]);
+        if (length > l->grip) inside = l->grip / length;
+        if (length > l->grip || outwards > R(0)) c->length = length;
     }
     for (int m = 0; m < 2; m++) off[m] = inside * c->t[m] - p[m];
     axle = w->rim[0] * p[0] + w->rim[1] * p[1] + w->inertia * (l->free_speed - speed) - l->viscous * speed +
@@ -86,12 +90,15 @@ INLINE real look(contact *restrict c, const friction_wheel *w, const friction_lo
 INLINE void slips(contact *restrict c, const friction_wheel *w, const friction_load *l, const real p[2]) {
     const real n[2] = {c->t[0] / c->length, c->t[1] / c->length};
     const real rim = n[0] * w->rim[1] - n[1] * w->rim[0], moved = n[0] * c->moved[1] - n[1] * c->moved[0];
-    real h = l->grip / ((c->length - l->grip) * w->mobility), most, across = R(0);
+    const real beyond = (c->length - l->grip) * w->mobility;
+    real h, most, across = R(0);
     turning wheel;
     c->rank = 1;
     c->row[0] = combined(w->row, -n[1], n[0]);
     most = PENALTY / (square(c->row[0]) + rim * rim / w->inertia + LACONIC_REAL_MIN);
-    if (!(h < most)) { /* almost no slip: a penalty, as where it sticks */
+    if (most * beyond > l->grip) {
+        h = l->grip / beyond;
+    } else { /* almost no slip: a penalty, as where it sticks */
         h = most;
         across = n[0] * p[1] - n[1] * p[0];
     }
