@@ -34,6 +34,8 @@ def read_log(path: Path, columns: ColumnMap) -> Log:
     for name in PER_WHEEL:
         if name in columns.quantities:
             found[MEMBERS[name]] = _at_wheel(columns.quantities[name], source, figure)
+    if columns.group:
+        _fill_groups(found)
     _check_widths(path, columns, found)
     if columns.quantities.get("current") and columns.quantities["current"].sign_from_set_speed:
         found["current_A"] = _signed(path, found)
@@ -162,6 +164,14 @@ def _check_time(path: Path, time: np.ndarray, lines: list[int] | None) -> None:
         where = f"line {lines[row]}" if lines else f"row {row + 1}"
         raise BadInput(f"{path}: {where}: time does not grow ({time[row - 1]:.9g} s, then {time[row]:.9g} s); needs "
                        f"at least {LEAST_SAMPLES} samples with increasing time, so remove the line or repair it")
+
+
+def _fill_groups(found: dict[str, Any]) -> None:
+    """A group of wheels of which no frame came is zero, as the node takes it."""
+    width = max((value.shape[1] for value in found.values() if value is not None), default=0)
+    for member, value in found.items():
+        if value is not None:
+            found[member] = np.pad(value, ((0, 0), (0, width - value.shape[1])))
 
 
 def _check_widths(path: Path, columns: ColumnMap, found: dict[str, Any]) -> None:

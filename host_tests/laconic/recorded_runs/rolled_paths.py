@@ -69,7 +69,7 @@ def error_table(errors: Sequence[RunErrors]) -> list[str]:
 
 def _row(each: RunErrors) -> str:
     cells = [_share(each.path_error), _share(each.displacement_error), _number(each.heading_error_rad)]
-    name = f"**{each.run}**" if each.run.startswith("mean") else each.run
+    name = f"**{each.run}**" if each.run.startswith("mean") else each.run.removeprefix(f"{each.session}/")
     return f"| {each.session} | {name} | {' | '.join(cells)} |"
 
 

@@ -57,14 +57,13 @@ def rolling_of(core: Core, vehicle: Mapping[str, Any], path: Path) -> Rolling:
     """Pure rolling of a vehicle (the keys of `[vehicle]`); BadInput where its wheels do not determine its motion."""
     c_vehicle = core.vehicle(vehicle)
     matrices = core.matrices(c_vehicle)
-    reference = float(c_vehicle.wheel_radius_m)
-    radii = wheel_radii(vehicle)
+    radii, reference = wheel_radii(vehicle), float(c_vehicle.wheel_radius_m)
     allowed = _null_space(matrices.constraint_rows)
-    distance_rows = (radii / reference)[:, None] * _own_rows(core, matrices.wheel_rows, radii / reference) @ allowed
-    if np.linalg.matrix_rank(distance_rows, tol=1e-9) < allowed.shape[1]:
+    distance_rows = radii[:, None] * (matrices.wheel_rows @ allowed)
+    if np.linalg.matrix_rank(distance_rows, tol=1e-9 * reference) < allowed.shape[1]:
         raise BadInput(f"{path}: its wheel speeds do not determine its motion; rolling needs wheels that "
                        "turn whatever the motion")
-    nu = allowed @ np.linalg.pinv(distance_rows) * (radii / reference)  # ν per rotation
+    nu = allowed @ np.linalg.pinv(distance_rows) * radii  # ν per rotation
     centre = np.array([float(c_vehicle.com_x_m), float(c_vehicle.com_y_m)])
     angle = nu[2] / matrices.lambda_yaw
     # the origin's velocity is the centre of mass's less that of turning about it: v_O = v_S − θ' × c
@@ -72,16 +71,20 @@ def rolling_of(core: Core, vehicle: Mapping[str, Any], path: Path) -> Rolling:
     return Rolling(np.array(origin), centre)
 
 
+def rotations_of(core: Core, vehicle: Mapping[str, Any], moved: np.ndarray) -> np.ndarray:
+    """Rotation of each wheel (columns) for displacements x, y, angle of the body's origin, one row each."""
+    c_vehicle = core.vehicle(vehicle)
+    matrices = core.matrices(c_vehicle)
+    x, y = float(c_vehicle.com_x_m), float(c_vehicle.com_y_m)
+    centre = moved + moved[:, 2:] * np.array([-y, x, 0.0])
+    nu = centre * np.array([1.0, 1.0, matrices.lambda_yaw * c_vehicle.wheel_radius_m]) / c_vehicle.wheel_radius_m
+    found: np.ndarray = nu @ matrices.wheel_rows.T
+    return found
+
+
 def wheel_radii(vehicle: Mapping[str, Any]) -> np.ndarray:
     """The radius of each wheel: its own, or the vehicle's."""
-    return np.array([wheel.get("own_radius_m") or wheel.get("radius_m") or vehicle["wheel_radius_m"]
-                     for wheel in vehicle["wheel"]], dtype=float)
-
-
-def _own_rows(core: Core, rows: np.ndarray, ratio: np.ndarray) -> np.ndarray:
-    """Ξ with each wheel's own radius."""
-    knows = any(name == "own_radius_m" for name, _ in core.ffi.typeof("laconic_wheel").fields)
-    return rows if knows else rows / ratio[:, None]
+    return np.array([wheel.get("radius_m", vehicle["wheel_radius_m"]) for wheel in vehicle["wheel"]], dtype=float)
 
 
 def _null_space(rows: np.ndarray) -> np.ndarray:

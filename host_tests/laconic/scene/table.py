@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import copy
 import difflib
 import math
 import re
@@ -58,6 +59,10 @@ class Table:
         """Whether the key is there; it counts as known from now on."""
         self._known.add(key)
         return key in self._entries
+
+    def plain(self) -> dict[str, Any]:
+        """A copy of all that the table holds, as it was read."""
+        return copy.deepcopy(self._entries)
 
     def done(self, hints: Mapping[str, str] = NO_HINTS) -> None:
         """Raises BadInput for the first key that was not read; hints as in laconic.scene.not_modelled."""

@@ -37,6 +37,7 @@ def command(what: str, minutes: float, seed: int | None, json_wanted: bool) -> i
     friction  the friction solver against a conic one with 40 digits, and driven motions
     free-run  the node process at 1 kHz: no step may be lost
     fuzz      SLCAN reader, frame handler and parameter loader under libFuzzer
+    identify  a thousand made-up robots: what their intervals hold
     rig       all scenes in lockstep on the virtual bus, same bits
     slcan     all scenes over SLCAN to a node process
 

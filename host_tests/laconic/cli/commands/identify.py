@@ -1,0 +1,71 @@
+"""Find parameters of a robot from recorded runs."""
+
+from __future__ import annotations
+
+import json
+from pathlib import Path
+
+import click
+
+from laconic.cli.options import InputPath, OutputFile, SceneName, json_flag
+from laconic.cli.options_of_logs import map_option
+from laconic.errors import BadInput
+from laconic.outputs import write_text
+
+LEFT_OUT = ("session", "run")
+
+
+@click.command("identify")
+@click.argument("logs", type=InputPath(), nargs=-1, required=True, metavar="LOG...")
+@click.option("--scene", type=SceneName(), required=True, help="The robot with its nominal values.")
+@click.option("-o", "--out", type=OutputFile(".toml", stdout=True), metavar="FITTED.toml",
+              help="Write the scene with the values found; - for stdout.")
+@click.option("--free", default="radius,distance", show_default=True, metavar="NAMES",
+              help="What may move: radius (of each wheel), distance (of all wheels, one factor), place and heading (of "
+              "all wheels together against the true pose), axle, roller (angles of each wheel).")
+@click.option("--prior", "prior_percent", type=float, default=10.0, show_default=True, metavar="PERCENT",
+              help="How far radii and distances may be from nominal beforehand (standard deviation).")
+@map_option
+@click.option("--judge", type=InputPath(), multiple=True, metavar="LOG",
+              help="Other runs, replayed with the values found; may be given several times.")
+@click.option("--leave-out", type=click.Choice(LEFT_OUT),
+              help="Judge each session (folder) or run by a fit on the others.")
+@json_flag("Machine-readable result on stdout.")
+def command(logs: tuple[Path, ...], scene: str, out: Path | None, free: str, prior_percent: float,
+            map_path: Path | None, judge: tuple[Path, ...], leave_out: str | None, json_wanted: bool) -> None:
+    """Finds parameters of a scene from LOG..., recorded runs with a true pose, or folders of them.
+
+    Robust nonlinear least squares on the distance between the rolled and the true path. Each value comes with a 95 %
+    interval; what the runs do not tell stays nominal, and it is stated which run would. FITTED.toml is a complete
+    scene, with sources and intervals in comments.
+    """
+    from laconic.identification import report
+    from laconic.identification.fitted_toml import fitted_text
+    from laconic.identification.geometry import geometry_of
+    from laconic.identification.study import identify
+    from laconic.logs import gather_logs
+    from laconic.progress import progress_bar
+    from laconic.scene import read_scene
+
+    if not 0.0 < prior_percent <= 100.0:
+        raise BadInput(f"--prior: {prior_percent:g} % is not usable; give a number above 0, at most 100")
+    given = read_scene(scene)
+    parameters = geometry_of(given, names_in(free), prior_percent / 100.0)
+    runs, _ = gather_logs(logs, map_path)
+    others = gather_logs(judge, map_path)[0] if judge else []
+    with progress_bar("identifying", 1 + len(runs)) as advance:
+        study = identify(given, runs, parameters, judge=others, leave_out=leave_out, advance=advance)
+    if out is not None:
+        write_text(out, fitted_text(study))
+    if json_wanted:
+        click.echo(json.dumps(report.as_numbers(study), indent=1))
+    elif out is None or str(out) != "-":
+        click.echo(report.as_text(study))
+
+
+def names_in(free: str) -> tuple[str, ...]:
+    """The names of --free; BadInput for none or one twice."""
+    names = tuple(name.strip() for name in free.split(","))
+    if not all(names) or len(set(names)) != len(names):
+        raise BadInput(f"--free {free!r}: give names with commas between them, each once")
+    return names

@@ -1,0 +1,1 @@
+"""`laconic identify`: parameters of a scene from recorded runs, each with its interval."""

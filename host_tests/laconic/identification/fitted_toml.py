@@ -1,0 +1,109 @@
+"""The fitted scene as TOML: the one it came from with the values found, their sources and intervals in comments."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Iterator, Mapping
+from typing import Any
+
+from laconic.identification.parameter import Parameter
+from laconic.identification.study import Study, fitted_scene, parts
+from laconic.scene.table import read_toml
+
+Comments = dict[tuple[str, ...], str]
+
+
+def fitted_text(study: Study) -> str:
+    """A complete scene."""
+    data = read_toml(study.scene.path).plain()
+    data["source"] = f"{data.get('source', '')}; identified".removeprefix("; ")
+    comments: Comments = {}
+    for index, wheel in enumerate(data["vehicle"]["wheel"]):
+        _rewrite(study, index, wheel, comments)
+    head = [f"# {study.scene.path.name}, with parameters identified by `laconic identify` from recorded runs:"]
+    head += [f"#   {', '.join(log.path.name for log in part)} of {part[0].session}"
+             for part in parts(study.logs, "session")]
+    head += ["# Intervals hold the true value with 95 %, if the rest of the model is right. In words:"]
+    head += [f"#   {word}" for word in study.words]
+    return "\n".join([*head, *_lines(data, (), comments)]) + "\n"
+
+
+def _rewrite(study: Study, index: int, wheel: dict[str, Any], comments: Comments) -> None:
+    """The keys of one wheel that parameters have moved; the others stay as they were written."""
+    before, after = (scene.vehicle["wheel"][index] for scene in (study.scene, fitted_scene(study.scene, study.found)))
+    location = ("vehicle", "wheel", str(index))
+    if after.get("radius_m") != before.get("radius_m"):
+        wheel["radius_m"] = after["radius_m"]
+        comments[(*location, "radius_m")] = _interval(study, f"vehicle.wheel[{index + 1}].radius_m")
+    moved = [p for p in study.found.parameters.each if p.group in ("distance", "place", "heading")]
+    if (after["x_m"], after["y_m"]) != (before["x_m"], before["y_m"]):
+        for key in ("distance_m", "bearing_rad", "bearing_deg"):
+            wheel.pop(key, None)
+        wheel["x_m"], wheel["y_m"] = after["x_m"], after["y_m"]
+        comments[(*location, "x_m")] = "; ".join(_interval(study, p.path) for p in moved)
+        comments[(*location, "y_m")] = f"nominal {before['x_m']:.6g}, {before['y_m']:.6g}"
+    for key in ("axle_rad", "roller_rad"):
+        if after.get(key) != before.get(key):
+            _write_angle(wheel, key, after[key])
+            path = f"vehicle.wheel[{index + 1}].{key}"
+            comments[(*location, key)] = comments[(*location, key.replace("_rad", "_deg"))] = _interval(study, path)
+
+
+def _write_angle(wheel: dict[str, Any], key: str, value: float) -> None:
+    """In the unit that the scene has."""
+    degrees = key.replace("_rad", "_deg")
+    if degrees in wheel:
+        wheel[degrees] = math.degrees(value)
+    else:
+        wheel[key] = value
+
+
+def _interval(study: Study, path: str) -> str:
+    found = study.found
+    for parameter, value, half in zip(found.parameters.each, found.values, found.half_widths, strict=True):
+        if parameter.path == path:
+            return interval_text(parameter, float(value), float(half))
+    return "turned with all wheels"
+
+
+def interval_text(parameter: Parameter, value: float, half: float) -> str:
+    """"radius of wheel 1: 0.0491 ± 0.0007 m, nominal 0.051"."""
+    unit = f" {parameter.unit}" if parameter.unit else ""
+    if parameter.group == "distance":
+        return f"{parameter.name}: {value:.5g} ± {half:.2g} times the nominal ones"
+    return f"{parameter.name}: {value:.5g} ± {half:.2g}{unit}, nominal {parameter.nominal:.5g}"
+
+
+def _lines(table: Mapping[str, Any], location: tuple[str, ...], comments: Comments) -> Iterator[str]:
+    """A table's own keys, then its tables."""
+    inner = {key: value for key, value in table.items() if _is_table(value) or _is_tables(value)}
+    for key, value in table.items():
+        if key not in inner:
+            comment = comments.get((*location, key), "")
+            yield f"{key} = {_value(value)}" + (f"  # {comment}" if comment else "")
+    for key, value in inner.items():
+        name = ".".join(part for part in (*location, key) if not part.isdigit())
+        for number, each in enumerate(value if _is_tables(value) else [value]):
+            yield ""
+            yield f"[[{name}]]" if _is_tables(value) else f"[{name}]"
+            deeper = (*location, key, str(number)) if _is_tables(value) else (*location, key)
+            yield from _lines(each, deeper, comments)
+
+
+def _is_table(value: Any) -> bool:
+    return isinstance(value, dict)
+
+
+def _is_tables(value: Any) -> bool:
+    return isinstance(value, list) and bool(value) and all(isinstance(each, dict) for each in value)
+
+
+def _value(value: Any) -> str:
+    if isinstance(value, bool):
+        return "true" if value else "false"
+    if isinstance(value, str):
+        escaped = "".join(c if c >= " " and c not in '"\\\x7f' else f"\\u{ord(c):04x}" for c in value)
+        return f'"{escaped}"'
+    if isinstance(value, list):
+        return f"[{', '.join(_value(each) for each in value)}]"
+    return repr(value) if isinstance(value, (int, float)) else str(value)

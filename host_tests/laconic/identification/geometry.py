@@ -1,0 +1,102 @@
+"""The parameters of rolling: radii, places and angles of the wheels."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Callable, Sequence
+
+from laconic.errors import BadInput, nearest_of
+from laconic.identification.parameter import Parameter, Parameters, Vehicle
+from laconic.recorded_runs.rolling import wheel_radii
+from laconic.scene import Scene
+
+RELATIVE_SD = 0.1                     # of a radius and of the distances, unless --prior says otherwise
+PLACE_SD_M = 0.03
+ANGLE_SD_RAD = math.radians(2.0)
+GROUPS = ("radius", "distance", "place", "heading", "axle", "roller")
+USUAL = ("radius", "distance")
+
+
+def geometry_of(scene: Scene, free: Sequence[str], relative_sd: float = RELATIVE_SD) -> Parameters:
+    """The parameters that --free names; BadInput for a name that is none or that this vehicle has not."""
+    makers: dict[str, Callable[[Scene, float], list[Parameter]]] = {
+        "radius": _radii, "distance": _distance, "place": _place, "heading": _heading, "axle": _axles,
+        "roller": _rollers}
+    found: list[Parameter] = []
+    for name in GROUPS:
+        if name in free:
+            made = makers[name](scene, relative_sd)
+            if not made:
+                raise BadInput(f"--free {name}: {scene.path} has no wheel with one that could move; leave it out")
+            found += made
+    if unknown := [name for name in free if name not in makers]:
+        raise BadInput(f"--free: there is no {unknown[0]!r}; {nearest_of(unknown[0], GROUPS)}")
+    return Parameters(tuple(found))
+
+
+def _radii(scene: Scene, relative_sd: float) -> list[Parameter]:
+    """One for each wheel. Their deviations have a part in common: wheels of one make are worn and mis-stated alike."""
+    def writer(index: int) -> Callable[[Vehicle, float], None]:
+        def write(vehicle: Vehicle, value: float) -> None:
+            vehicle["wheel"][index]["radius_m"] = value
+        return write
+
+    return [Parameter(f"radius of wheel {i + 1}", f"vehicle.wheel[{i + 1}].radius_m", "radius", "m", radius,
+                      relative_sd * radius, writer(i), relative_sd * radius)
+            for i, radius in enumerate(wheel_radii(scene.vehicle))]
+
+
+def _distance(scene: Scene, relative_sd: float) -> list[Parameter]:
+    """One factor for the places of all wheels about the origin of the body frame."""
+    def write(vehicle: Vehicle, value: float) -> None:
+        for wheel in vehicle["wheel"]:
+            wheel["x_m"] *= value
+            wheel["y_m"] *= value
+
+    if not any(math.hypot(wheel["x_m"], wheel["y_m"]) > 0.0 for wheel in scene.vehicle["wheel"]):
+        return []
+    return [Parameter("distance of the wheels", "vehicle.wheel[*].distance", "distance", "", 1.0, relative_sd, write)]
+
+
+def _place(scene: Scene, relative_sd: float) -> list[Parameter]:
+    """Where all wheels together stand against the point whose pose the log gives."""
+    def writer(key: str) -> Callable[[Vehicle, float], None]:
+        def write(vehicle: Vehicle, value: float) -> None:
+            for wheel in vehicle["wheel"]:
+                wheel[key] += value
+        return write
+
+    return [Parameter(f"place of the wheels, {key[0]}", f"vehicle.wheel[*].{key}", "place", "m", 0.0, PLACE_SD_M,
+                      writer(key)) for key in ("x_m", "y_m") if scene.vehicle["wheel"]]
+
+
+def _heading(scene: Scene, relative_sd: float) -> list[Parameter]:
+    """How far all wheels together are turned against the frame whose pose the log gives."""
+    def write(vehicle: Vehicle, value: float) -> None:
+        cos, sin = math.cos(value), math.sin(value)
+        for wheel in vehicle["wheel"]:
+            x, y = wheel["x_m"], wheel["y_m"]
+            wheel["x_m"], wheel["y_m"] = cos * x - sin * y, sin * x + cos * y
+            wheel["axle_rad"] += value
+
+    return [Parameter("heading of the wheels", "vehicle.wheel[*].heading", "heading", "rad", 0.0, ANGLE_SD_RAD, write)
+            for _ in scene.vehicle["wheel"][:1]]
+
+
+def _axles(scene: Scene, relative_sd: float) -> list[Parameter]:
+    """Each wheel with rollers; the axles of fixed wheels must stay on one line, or nothing moves."""
+    return [_angle(scene, i, "axle", "axle_rad") for i, wheel in enumerate(scene.vehicle["wheel"])
+            if wheel["kind"] != "fixed"]
+
+
+def _rollers(scene: Scene, relative_sd: float) -> list[Parameter]:
+    return [_angle(scene, i, "roller", "roller_rad") for i, wheel in enumerate(scene.vehicle["wheel"])
+            if wheel["kind"] != "fixed"]
+
+
+def _angle(scene: Scene, index: int, what: str, key: str) -> Parameter:
+    def write(vehicle: Vehicle, value: float) -> None:
+        vehicle["wheel"][index][key] = value
+
+    return Parameter(f"{what} of wheel {index + 1}", f"vehicle.wheel[{index + 1}].{key}", what, "rad",
+                     float(scene.vehicle["wheel"][index][key]), ANGLE_SD_RAD, write)

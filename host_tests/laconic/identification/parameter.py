@@ -1,0 +1,77 @@
+"""A parameter that may move: its path in the scene, its nominal value, and how far it may be from that beforehand.
+
+Parameters are values θ with a normal prior of the nominal values and a covariance; what is solved for is z, in which
+the prior is the unit ball: θ = nominal + L z, L Lᵀ the covariance.
+"""
+
+from __future__ import annotations
+
+import copy
+from collections.abc import Callable, Mapping, Sequence
+from dataclasses import dataclass
+from typing import Any
+
+import numpy as np
+
+Vehicle = dict[str, Any]
+"""The keys of `[vehicle]`, as a Scene has them."""
+
+
+@dataclass(frozen=True)
+class Parameter:
+    """One number; `write` sets it in a vehicle (angles in rad, wheels in x and y)."""
+
+    name: str                                    # "radius of wheel 1"
+    path: str                                    # "vehicle.wheel[1].radius_m"
+    group: str                                   # what --free calls it
+    unit: str
+    nominal: float
+    prior_sd: float                              # its own, independent of the others'
+    write: Callable[[Vehicle, float], None]
+    shared_sd: float = 0.0                       # that it has in common with the others of its group
+
+
+@dataclass(frozen=True)
+class Parameters:
+    """Several, with their prior."""
+
+    each: tuple[Parameter, ...]
+
+    def __len__(self) -> int:
+        return len(self.each)
+
+    @property
+    def nominal(self) -> np.ndarray:
+        """Nominal values."""
+        return np.array([p.nominal for p in self.each])
+
+    @property
+    def covariance(self) -> np.ndarray:
+        """Of the prior."""
+        found = np.diag([p.prior_sd**2 for p in self.each])
+        for i, one in enumerate(self.each):
+            for j, other in enumerate(self.each):
+                if one.group == other.group:
+                    found[i, j] += one.shared_sd * other.shared_sd
+        return found
+
+    @property
+    def factor(self) -> np.ndarray:
+        """L."""
+        return np.linalg.cholesky(self.covariance) if self.each else np.zeros((0, 0))
+
+    def values(self, z: np.ndarray) -> np.ndarray:
+        """θ of z."""
+        found: np.ndarray = self.nominal + self.factor @ z
+        return found
+
+    def vehicle(self, base: Mapping[str, Any], values: np.ndarray) -> Vehicle:
+        """A copy of the vehicle with these values in it, written in order."""
+        vehicle = copy.deepcopy(dict(base))
+        for parameter, value in zip(self.each, values, strict=True):
+            parameter.write(vehicle, float(value))
+        return vehicle
+
+    def without(self, names: Sequence[str]) -> Parameters:
+        """The others."""
+        return Parameters(tuple(p for p in self.each if p.name not in names))

@@ -1,0 +1,57 @@
+"""The result of an identification as text and as numbers."""
+
+from __future__ import annotations
+
+from typing import Any
+
+import numpy as np
+
+from laconic.identification.study import Study
+from laconic.recorded_runs.measures import RunErrors, grand_mean
+from laconic.recorded_runs.rolled_paths import error_table
+
+
+def as_text(study: Study) -> str:
+    """A report in Markdown."""
+    lines = [f"# {study.scene.name}, from {len(study.logs)} runs", "",
+             "| parameter | nominal | found | 95 % interval | prior ± |", "| --- " * 5 + "|", *_rows(study), "",
+             *(f"* {word}" for word in study.words), "", *_summary(study), ""]
+    for title, errors in (("Fitted on", study.fitted), ("Left out", study.left_out), ("Judged", study.judged)):
+        if errors:
+            lines += [f"## {title}", "", *error_table(errors), ""]
+    return "\n".join(lines)
+
+
+def _rows(study: Study) -> list[str]:
+    found = study.found
+    return [f"| {p.name} [{p.unit or '–'}] | {p.nominal:.6g} | {value:.6g} | {value - half:.6g} … {value + half:.6g} | "
+            f"{np.hypot(p.prior_sd, p.shared_sd):.2g} |"
+            for p, value, half in zip(found.parameters.each, found.values, found.half_widths, strict=True)]
+
+
+def _summary(study: Study) -> list[str]:
+    rows = (("nominal, on the runs of the fit", study.nominal), ("fitted, on the same runs", study.fitted),
+            ("left out of the fit", study.left_out), ("nominal, on the runs to judge", study.judged_nominal),
+            ("fitted, on the runs to judge", study.judged))
+    lines = ["| path error, mean over sessions | % |", "| --- | --- |"]
+    return lines + [f"| {name} | {100.0 * _path_error(errors):.3f} |" for name, errors in rows if errors]
+
+
+def _path_error(errors: list[RunErrors]) -> float:
+    value = grand_mean(errors).path_error
+    return float("nan") if value is None else value
+
+
+def as_numbers(study: Study) -> dict[str, Any]:
+    """For JSON; `runs` are those to judge, or those of the fit where there are none."""
+    found = study.found
+    parameters = [{"name": p.name, "path": p.path, "unit": p.unit, "nominal": p.nominal, "value": float(value),
+                   "low": float(value - half), "high": float(value + half),
+                   "prior_sd": float(np.hypot(p.prior_sd, p.shared_sd))}
+                  for p, value, half in zip(found.parameters.each, found.values, found.half_widths, strict=True)]
+    means = {name: grand_mean(errors).as_json() for name, errors in (
+        ("nominal", study.nominal), ("fitted", study.fitted), ("left_out", study.left_out), ("judged", study.judged),
+        ("judged_nominal", study.judged_nominal)) if errors}
+    return {"scene": str(study.scene.path), "parameters": parameters, "nominal_kept": list(found.untold),
+            "words": study.words, "means": means, "runs": [e.as_json() for e in study.judged or study.fitted],
+            "left_out": [each.as_json() for each in study.left_out]}

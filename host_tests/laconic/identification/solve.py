@@ -1,0 +1,156 @@
+"""Robust nonlinear least squares with a prior, and 95 % intervals that do not trust the residuals to be independent.
+
+Evidence gives for each run a residual whose sum of squares is the run's squared error. Every session counts as one
+observation, its runs share that: what a model leaves out (floor, marker, load) repeats in all runs of a session, so
+more of them tell less than more sessions. The error's size σ is estimated along with the parameters; a run whose error
+is more than OUTLIER times the median counts as Huber's function has it. With J the weighted Jacobian in z,
+
+    H = JᵀJ/σ² + 1        covariance of z = H⁻¹ (S/σ⁴ + 1) H⁻¹
+
+where S is the covariance of the score Jᵀr. Its parts, which the evidence names, are independent of each other: errors
+of single stretches of a run, not residuals, which a path has summed.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass, replace
+from typing import Any, Protocol
+
+import numpy as np
+from scipy.optimize import least_squares
+from scipy.stats import t as student
+
+from laconic.identification.parameter import Parameters, Vehicle
+
+CONFIDENCE = 0.95
+OUTLIER = 3.0
+MOST_ROUNDS = 12
+SETTLED = 1e-3       # relative change of σ
+SMALLEST_SCALE = 1e-9
+STEP = 1e-4          # of z, for derivatives
+UNTOLD = 0.99        # a parameter whose sd is more than this share of the prior's is not told by the runs
+
+
+class Evidence(Protocol):
+    """What runs say about parameters."""
+
+    @property
+    def sessions(self) -> Sequence[str]:
+        """Of each run."""
+
+    @property
+    def directions(self) -> int:
+        """Independent components of a residual at one instant."""
+
+    def residuals(self, vehicle: Vehicle) -> list[np.ndarray]:
+        """Of each run: numbers whose sum of squares is the run's squared error."""
+
+    def scores(self, vehicle: Vehicle, jacobians: list[np.ndarray]) -> list[np.ndarray]:
+        """Of each run: the independent parts of Jᵀr, one row each."""
+
+
+@dataclass(frozen=True)
+class Fit:
+    """The values found, and how well the runs tell them."""
+
+    parameters: Parameters
+    values: np.ndarray
+    covariance: np.ndarray          # of the values
+    information: np.ndarray         # JᵀJ/σ² in z: what the runs say, in units of the prior
+    scale: float                    # σ, of the run's error
+    observations: int               # independent parts of the score
+    weights: np.ndarray             # of each run by Huber, 1: whole
+    untold: tuple[str, ...] = ()    # names of parameters that stay nominal
+
+    @property
+    def half_widths(self) -> np.ndarray:
+        """Of the 95 % intervals."""
+        freedom = max(self.observations - len(self.parameters), 1)
+        widths: np.ndarray = student.ppf(0.5 + CONFIDENCE / 2.0, freedom) * np.sqrt(np.diag(self.covariance))
+        return widths
+
+
+def fit(base: dict[str, Any], parameters: Parameters, evidence: Evidence) -> Fit:
+    """The parameters that the runs tell; the others stay nominal to the digit."""
+    untold: tuple[str, ...] = ()
+    while True:
+        found = _fit(base, parameters, evidence)
+        share = told_share(found)
+        lost = tuple(p.name for p, s in zip(parameters.each, share, strict=True) if s > UNTOLD)
+        untold, parameters = untold + lost, parameters.without(lost)
+        if not len(parameters):
+            nothing = np.zeros((0, 0))
+            return replace(found, parameters=parameters, values=np.zeros(0), covariance=nothing, information=nothing,
+                           untold=untold)
+        if not lost:
+            return replace(found, untold=untold)
+
+
+def told_share(found: Fit) -> np.ndarray:
+    """Standard deviation of each parameter after the runs, over that before."""
+    inner = np.linalg.inv(found.information + np.eye(len(found.parameters)))
+    factor = found.parameters.factor
+    share: np.ndarray = np.sqrt(np.diag(factor @ inner @ factor.T) / np.diag(found.parameters.covariance))
+    return share
+
+
+def _fit(base: dict[str, Any], parameters: Parameters, evidence: Evidence) -> Fit:
+    sessions = list(evidence.sessions)
+    in_session = np.array([1.0 / sessions.count(name) for name in sessions])
+    freedom = len(set(sessions)) * evidence.directions
+    weights, z = np.ones(len(sessions)), np.zeros(len(parameters))
+
+    def stacked(z: np.ndarray, factors: np.ndarray) -> np.ndarray:
+        blocks = evidence.residuals(parameters.vehicle(base, parameters.values(z)))
+        return np.concatenate([block * factor for block, factor in zip(blocks, factors, strict=True)])
+
+    scale = _scale(stacked(z, np.sqrt(in_session)), freedom)
+    for _ in range(MOST_ROUNDS):
+        factors = np.sqrt(in_session * weights)
+        z = least_squares(lambda z, f=factors, s=scale: np.concatenate([stacked(z, f) / s, z]), z, x_scale=1.0).x
+        blocks = evidence.residuals(parameters.vehicle(base, parameters.values(z)))
+        before, scale = scale, _scale(np.concatenate([b * f for b, f in zip(blocks, factors, strict=True)]), freedom)
+        weights = _huber(np.array([np.sqrt(block @ block) for block in blocks]))
+        if abs(scale / before - 1.0) < SETTLED:
+            break
+    return _judged(base, parameters, evidence, z, scale, in_session * weights, weights)
+
+
+def _scale(residual: np.ndarray, freedom: int) -> float:
+    return max(float(np.sqrt(residual @ residual / freedom)), SMALLEST_SCALE)
+
+
+def _huber(errors: np.ndarray) -> np.ndarray:
+    limit = OUTLIER * float(np.median(errors))
+    weights: np.ndarray = np.minimum(1.0, limit / np.maximum(errors, 1e-300)) if limit > 0.0 else np.ones(len(errors))
+    return weights
+
+
+def _judged(base: dict[str, Any], parameters: Parameters, evidence: Evidence, z: np.ndarray, scale: float,
+            squares: np.ndarray, weights: np.ndarray) -> Fit:
+    """Intervals at the solution; `squares`: what multiplies each run's squared error."""
+    jacobians = jacobians_of(base, parameters, evidence, z)
+    count = len(parameters)
+    information = sum((w * j.T @ j for w, j in zip(squares, jacobians, strict=True)), np.zeros((count, count)))
+    vehicle = parameters.vehicle(base, parameters.values(z))
+    parts = [w * s for w, s in zip(squares, evidence.scores(vehicle, jacobians), strict=True)]
+    rows = np.concatenate(parts) if parts else np.zeros((0, count))
+    correction = len(rows) / max(len(rows) - count, 1)
+    inverse = np.linalg.inv(information / scale**2 + np.eye(count))
+    of_z = inverse @ (correction * rows.T @ rows / scale**4 + np.eye(count)) @ inverse
+    factor = parameters.factor
+    return Fit(parameters, parameters.values(z), factor @ of_z @ factor.T, information / scale**2, scale, len(rows),
+               weights)
+
+
+def jacobians_of(base: dict[str, Any], parameters: Parameters, evidence: Evidence, z: np.ndarray) -> list[np.ndarray]:
+    """Of each run's residual in z, by central differences."""
+    columns = []
+    for index in range(len(parameters)):
+        step = np.zeros(len(parameters))
+        step[index] = STEP
+        ahead, behind = (evidence.residuals(parameters.vehicle(base, parameters.values(z + s))) for s in (step, -step))
+        columns.append([(a - b) / (2.0 * STEP) for a, b in zip(ahead, behind, strict=True)])
+    return [np.column_stack([column[run] for column in columns]) if columns else np.zeros((1, 0))
+            for run in range(len(evidence.sessions))]

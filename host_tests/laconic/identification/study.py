@@ -1,0 +1,78 @@
+"""A whole identification: fit, judgement on other runs, and on each session that was left out."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Sequence
+from dataclasses import dataclass, replace
+
+from laconic.errors import BadInput
+from laconic.identification.parameter import Parameters
+from laconic.identification.rolling_evidence import RollingEvidence
+from laconic.identification.solve import Fit, fit
+from laconic.identification.words import in_words
+from laconic.logs import Log
+from laconic.logs.read import for_wheels
+from laconic.recorded_runs.measures import RunErrors
+from laconic.recorded_runs.rolled_paths import roll
+from laconic.scene import Scene
+
+LEFT_OUT = ("session", "run")
+
+
+@dataclass(frozen=True)
+class Study:
+    """The fit, and the errors of runs before and after."""
+
+    scene: Scene
+    logs: list[Log]
+    found: Fit
+    words: list[str]
+    nominal: list[RunErrors]             # of the runs fitted on, with the scene as it was
+    fitted: list[RunErrors]
+    left_out: list[RunErrors]            # each judged by a fit without it and its like; empty: not asked for
+    judged: list[RunErrors]              # other runs, with the fitted scene
+    judged_nominal: list[RunErrors]
+
+
+def identify(scene: Scene, logs: Sequence[Log], parameters: Parameters, *, judge: Sequence[Log] = (),
+             leave_out: str | None = None, advance: Callable[..., None] = lambda *_, **__: None) -> Study:
+    """Fits, then judges; BadInput where the logs cannot be of this vehicle or say nothing about it."""
+    runs = [for_wheels(log, scene.wheel_count) for log in logs]
+    others = [for_wheels(log, scene.wheel_count) for log in judge]
+    found = _fit(scene, runs, parameters)
+    advance()
+    fitted = fitted_scene(scene, found)
+    left = _left_out(scene, runs, parameters, leave_out, advance) if leave_out else []
+    return Study(scene, runs, found, in_words(scene, found), roll(scene, runs).errors, roll(fitted, runs).errors, left,
+                 roll(fitted, others).errors if others else [], roll(scene, others).errors if others else [])
+
+
+def fitted_scene(scene: Scene, found: Fit) -> Scene:
+    """The scene with the values found."""
+    return replace(scene, vehicle=found.parameters.vehicle(scene.vehicle, found.values))
+
+
+def parts(logs: Sequence[Log], leave_out: str) -> list[list[Log]]:
+    """What is left out together: the runs of each session, or each run."""
+    if leave_out == "run":
+        return [[log] for log in logs]
+    folders = dict.fromkeys(log.path.resolve().parent for log in logs)
+    return [[log for log in logs if log.path.resolve().parent == folder] for folder in folders]
+
+
+def _fit(scene: Scene, logs: Sequence[Log], parameters: Parameters) -> Fit:
+    return fit(scene.vehicle, parameters, RollingEvidence(scene.core(), scene.path, logs))
+
+
+def _left_out(scene: Scene, logs: Sequence[Log], parameters: Parameters, leave_out: str,
+              advance: Callable[..., None]) -> list[RunErrors]:
+    apart = parts(logs, leave_out)
+    if len(apart) < 2:
+        raise BadInput(f"--leave-out {leave_out}: there is one {leave_out} only; give logs of several")
+    by_path: dict[object, RunErrors] = {}
+    for part in apart:
+        rest = [log for log in logs if log not in part]
+        errors = roll(fitted_scene(scene, _fit(scene, rest, parameters)), logs).errors
+        by_path.update({log.path: each for log, each in zip(logs, errors, strict=True) if log in part})
+        advance()
+    return [by_path[log.path] for log in logs]
