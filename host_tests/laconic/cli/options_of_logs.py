@@ -21,5 +21,24 @@ class MapPath(InputPath):
         return super().convert(str(named_map(Path(value))) if str(value) else value, param, ctx)
 
 
+class SeveralAfter(click.Command):
+    """A command whose option --judge takes every word up to the next option, so that the shell's * may stand there."""
+
+    several = "--judge"
+
+    def parse_args(self, ctx: click.Context, args: list[str]) -> list[str]:
+        """Names the option before each of its words."""
+        spread, is_open = list[str](), False
+        for word in args:
+            if word.startswith("-") and word != "-":
+                is_open = word == self.several
+                spread += [] if is_open else [word]
+            else:
+                spread += [self.several, word] if is_open else [word]
+        if args and args[-1] == self.several:
+            spread.append(self.several)  # click says what is missing
+        return super().parse_args(ctx, spread)
+
+
 map_option = click.option("--map", "map_path", type=MapPath(), metavar="MAP.toml",
                           help="Which column is what; a map that comes with the project recognises its logs by itself.")

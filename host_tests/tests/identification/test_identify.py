@@ -131,6 +131,16 @@ def test_the_command_finds_a_radius_writes_a_scene_and_judges_other_runs_with_it
     assert "radius of wheel 1: 0.0345" in fitted.read_text() and "run.csv of one" in fitted.read_text()
 
 
+def test_judge_takes_all_logs_up_to_the_next_option(tmp_path, capsys):
+    one, two, three = (str(simulated(tmp_path, name, 0.034)) for name in ("one", "two", "three"))
+    capsys.readouterr()
+    assert run(["identify", one, "--judge", two, three, "--scene", "turtlebot3_burger", "--json"]) == 0
+    numbers = json.loads(capsys.readouterr().out)
+    assert [each["run"] for each in numbers["runs"]] == ["two/run", "three/run"]
+    assert run(["identify", one, "--scene", "turtlebot3_burger", "--judge"]) == 2
+    assert "--judge" in capsys.readouterr().err
+
+
 def test_what_was_not_asked_for_keeps_every_bit(tmp_path, capsys):
     log, fitted = simulated(tmp_path, "one", 0.034), tmp_path / "fitted.toml"
     assert run(["identify", str(log), "--scene", "turtlebot3_burger", "--free", "radius", "-o", str(fitted)]) == 0

@@ -8,14 +8,14 @@ from pathlib import Path
 import click
 
 from laconic.cli.options import InputPath, OutputFile, SceneName, json_flag
-from laconic.cli.options_of_logs import map_option
+from laconic.cli.options_of_logs import SeveralAfter, map_option
 from laconic.errors import BadInput
 from laconic.outputs import write_text
 
 LEFT_OUT = ("session", "run")
 
 
-@click.command("identify")
+@click.command("identify", cls=SeveralAfter)
 @click.argument("logs", type=InputPath(), nargs=-1, required=True, metavar="LOG...")
 @click.option("--scene", type=SceneName(), required=True, help="The robot with its nominal values.")
 @click.option("-o", "--out", type=OutputFile(".toml", stdout=True), metavar="FITTED.toml",
@@ -26,8 +26,8 @@ LEFT_OUT = ("session", "run")
 @click.option("--prior", "prior_percent", type=float, default=10.0, show_default=True, metavar="PERCENT",
               help="How far radii and distances may be from nominal beforehand (standard deviation).")
 @map_option
-@click.option("--judge", type=InputPath(), multiple=True, metavar="LOG",
-              help="Other runs, replayed with the values found; may be given several times.")
+@click.option("--judge", type=InputPath(), multiple=True, metavar="LOG...",
+              help="Other runs, replayed with the values found: all words up to the next option.")
 @click.option("--leave-out", type=click.Choice(LEFT_OUT),
               help="Judge each session (folder) or run by a fit on the others.")
 @json_flag("Machine-readable result on stdout.")
