@@ -10,9 +10,13 @@
  * in circles too; softer at last leaves more to exact passes. Of random states up to four wheels 1 in 700 is refused. */
 #define FIRST_SOFTNESS R(1e-5)
 #define SOFTER R(0.1)
+/* A contact that sticks has the stiffness grip/τ. Above this multiple of what its row meets, rounding errors of the
+ * speeds, times it, would bring energy; much below, it sticks too softly for exact passes to see what is at its border. */
 #ifdef LACONIC_SINGLE
+#define STIFFEST R(3e5)
 #define SMOOTH_PASSES 5 /* beyond it the rounding errors of the sums show */
 #else
+#define STIFFEST R(1e8)
 #define SMOOTH_PASSES 7
 #endif
 
@@ -29,7 +33,8 @@ typedef struct soft_law {
 
 INLINE soft_law law_of(const friction_wheel *w, const friction_load *l, const real slip[2], const real p[2],
                        real softness) {
-    const real tau = softness / (l->grip + softness);
+    const real wanted = softness / (l->grip + softness), least = l->grip / (STIFFEST * w->row_mass[0]);
+    const real tau = wanted > least ? wanted : least;
     const real size = quick_root(slip[0] * slip[0] + slip[1] * slip[1] + tau * tau);
     const real x = slip[0] / size, y = slip[1] / size;
     soft_law law;

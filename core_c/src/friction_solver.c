@@ -13,24 +13,29 @@
  *
  * The natural map and its augmented Lagrangian: Alart and Curnier 1991; semismooth Newton: Qi and Sun 1993; as
  * primal-dual active set: Hintermüller, Ito and Kunisch 2002. */
+#include "friction_solver.h"
 #include "friction_internals.h"
 
 /* The residual that a result must reach, and the speed that counts as rest, both relative to the free motion. Redundant
  * contacts let the speeds be off by some ten times the residual, and speeds shall be right to 1e-9. From (|t|/grip)² =
- * BORDER on, slip outwards tells that a contact slips; in single it would tell rounding errors. */
+ * BORDER on, slip outwards tells that a contact slips; in single it would tell rounding errors. An impulse is rounded by
+ * up to HIDDEN of itself, and what that hides counts as residual. */
 #ifdef LACONIC_SINGLE
 #define TOLERANCE R(1e-5)
 #define SNAP R(2e-5)
 #define BORDER R(1)
+#define HIDDEN R(1e-8)
 #else
 #define TOLERANCE R(1e-11)
 #define SNAP R(1e-10)
 #define BORDER R(0.998)
+#define HIDDEN R(1e-16)
 #endif
 
 #define SMALLEST_ENERGY (LACONIC_REAL_MIN / (TOLERANCE * TOLERANCE)) /* below it squares of residuals underflow */
 #define MOST_STRESS R(100) /* the impulses that steps ask for are a few times the free motion's; squared */
-#define EXACT_PASSES 3     /* of warm steps 1 in 50 needs more */
+#define NO_SLIP R(1e-30) /* a direction without slip, as across free rollers, has this share of the mobility or less */
+#define EXACT_PASSES 3   /* of warm steps 1 in 50 needs more */
 
 /* A contact in a pass: how it stands, then its linear law p += gain_m (row_m·δν), and s with the first row. */
 typedef struct contact {
@@ -83,7 +88,8 @@ INLINE real look(contact *restrict c, const friction_wheel *w, const friction_lo
     pushed = axle + w->inertia * speed;
     c->locked = magnitude(pushed) < l->axle;
     c->axle = cut(pushed, l->axle);
-    return (off[0] * off[0] + off[1] * off[1]) * w->mobility + (axle - c->axle) * (axle - c->axle) / w->inertia;
+    return (off[0] * off[0] + off[1] * off[1] + HIDDEN * HIDDEN * size) * w->mobility +
+           (axle - c->axle) * (axle - c->axle) / w->inertia;
 }
 
 /* Along n the impulse is the grip; across n it turns with the slip. */
@@ -91,11 +97,12 @@ INLINE void slips(contact *restrict c, const friction_wheel *w, const friction_l
     const real n[2] = {c->t[0] / c->length, c->t[1] / c->length};
     const real rim = n[0] * w->rim[1] - n[1] * w->rim[0], moved = n[0] * c->moved[1] - n[1] * c->moved[0];
     const real beyond = (c->length - l->grip) * w->mobility;
-    real h, most, across = R(0);
+    real h, most, turns, across = R(0);
     turning wheel;
     c->rank = 1;
     c->row[0] = combined(w->row, -n[1], n[0]);
-    most = PENALTY / (square(c->row[0]) + rim * rim / w->inertia + LACONIC_REAL_MIN);
+    turns = square(c->row[0]) + rim * rim / w->inertia;
+    most = turns > NO_SLIP * w->mobility ? PENALTY / turns : R(0);
     if (most * beyond > l->grip) {
         h = l->grip / beyond;
     } else { /* almost no slip: a penalty, as where it sticks */
