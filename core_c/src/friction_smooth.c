@@ -1,17 +1,19 @@
 /* The friction problem with its corners rounded: the way to the solution from where the exact passes go in circles.
  *
- * |slip| becomes w = √(|slip|² + τ²), so p = grip slip/w is smooth; |s| of the axle's friction likewise. Newton's method
- * on p w = grip slip with p as an unknown of its own converges from far away, where the one on speeds alone overshoots
- * (Chan, Golub and Mulet 1999). τ = softness/grip (at most 1 rad/s) makes the energy that the rounding adds the same
- * for each contact, as on the central path of an interior-point method, and shrinks from pass to pass. */
+ * |slip| becomes w = √(|slip|² + τ²), so p = grip slip/w is smooth; |s| of the axle's friction likewise. Newton's
+ * method on p w = grip slip with p as an unknown of its own converges from far away, where the one on speeds alone
+ * overshoots (Chan, Golub and Mulet 1999). τ = softness/grip (at most 1 rad/s) makes the energy that the rounding
+ * adds the same for each contact, as on the central path of an interior-point method, and shrinks from pass to pass. */
 #include "friction_internals.h"
 
-/* Of the free motion's energy. Softer at first would forget the guess, which exact passes made; less soft, or faster, goes
- * in circles too; softer at last leaves more to exact passes. Of random states up to four wheels 1 in 700 is refused. */
+/* Of the free motion's energy. Softer at first would forget the guess, which exact passes made; less soft, or faster,
+ * goes in circles too; softer at last leaves more to exact passes. Of random states up to four wheels 1 in 700 is
+ * refused. */
 #define FIRST_SOFTNESS R(1e-5)
 #define SOFTER R(0.1)
 /* A contact that sticks has the stiffness grip/τ. Above this multiple of what its row meets, rounding errors of the
- * speeds, times it, would bring energy; much below, it sticks too softly for exact passes to see what is at its border. */
+ * speeds, times it, would bring energy; much below, it sticks too softly for exact passes to see what is at its
+ * border. */
 #ifdef LACONIC_SINGLE
 #define STIFFEST R(3e5)
 #define SMOOTH_PASSES 5 /* beyond it the rounding errors of the sums show */

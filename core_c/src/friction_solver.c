@@ -3,13 +3,13 @@
  * At the solution each contact's impulse p satisfies p = Π(p + slip/W), Π being the projection onto the disc of radius
  * grip: where the argument t stays inside, the contact sticks; where it leaves, the contact slips. A pass takes each
  * contact as its t says and replaces it by a linear law:
- *     slips    p = grip n + h n⊥n⊥ᵀ slip, n = t/|t|: grip/|slip| as h would be the curvature of the norm, h is that seen
- *              from t, which has the same limit and stays bounded
+ *     slips    p = grip n + h n⊥n⊥ᵀ slip, n = t/|t|: grip/|slip| as h would be the curvature of the norm, h is that
+ *              seen from t, which has the same limit and stays bounded
  *     rolls    no slip along the rolling direction, so that p carries the wheel's own equation; square to it a penalty
  *              whose multiplier is p itself
  *     locked   no slip and no turning, as the axle's friction holds the wheel: penalties in both directions
- * Then each wheel's speed is eliminated, which leaves three equations for ν. If a few passes do not suffice, the smoothed
- * problem leads nearer to the solution (friction_smooth.c), and exact passes finish.
+ * Then each wheel's speed is eliminated, which leaves three equations for ν. If a few passes do not suffice, the
+ * smoothed problem leads nearer to the solution (friction_smooth.c), and exact passes finish.
  *
  * The natural map and its augmented Lagrangian: Alart and Curnier 1991; semismooth Newton: Qi and Sun 1993; as
  * primal-dual active set: Hintermüller, Ito and Kunisch 2002. */
@@ -18,8 +18,8 @@
 
 /* The residual that a result must reach, and the speed that counts as rest, both relative to the free motion. Redundant
  * contacts let the speeds be off by some ten times the residual, and speeds shall be right to 1e-9. From (|t|/grip)² =
- * BORDER on, slip outwards tells that a contact slips; in single it would tell rounding errors. An impulse is rounded by
- * up to HIDDEN of itself, and what that hides counts as residual. */
+ * BORDER on, slip outwards tells that a contact slips; in single it would tell rounding errors. An impulse is rounded
+ * by up to HIDDEN of itself, and what that hides counts as residual. */
 #ifdef LACONIC_SINGLE
 #define TOLERANCE R(1e-5)
 #define SNAP R(2e-5)

@@ -29,7 +29,8 @@ void laconic_body_of(body *b, const laconic_vehicle *vehicle);
 /* Row i of Ξ: χ_i' = row · ν (4.3–4.4), with R/R_i for a wheel of another radius. */
 void laconic_wheel_row(real row[3], const body *b, const laconic_wheel *wheel);
 
-/* J_i over the largest J: exactly 1 for wheels that are alike, also where J = 0. With it A = E + λ² Σ share_i Ξ_iᵀ Ξ_i. */
+/* J_i over the largest J: exactly 1 for wheels that are alike, also where J = 0.
+ * With it A = E + λ² Σ share_i Ξ_iᵀ Ξ_i. */
 void laconic_inertia_shares(real share[], const laconic_vehicle *vehicle);
 
 /* The constraints row · ν = 0 of one wheel: the centre of a fixed one does not move along its axle (velocity over R);

@@ -1,8 +1,8 @@
 /* One call of the friction solver for host_tests/laconic/verification/friction: plain arrays in, plain arrays out.
  *
- * `data` holds one row of FRICTION_PROBE_NUMBERS numbers a wheel: along, across (3 each), rim_along, rim_across, inertia,
- * drag, grip, axle, drive, drive_slope, drive_limit, viscous, free_speed. Infinite numbers stand for LACONIC_REAL_MAX.
- * Returns the passes, or 0 if the solver refuses. */
+ * `data` holds one row of FRICTION_PROBE_NUMBERS numbers a wheel: along, across (3 each), rim_along, rim_across,
+ * inertia, drag, grip, axle, drive, drive_slope, drive_limit, viscous, free_speed. Infinite numbers stand for
+ * LACONIC_REAL_MAX. Returns the passes, or 0 if the solver refuses. */
 #include "friction_solver.h"
 
 #define FRICTION_PROBE_NUMBERS 17

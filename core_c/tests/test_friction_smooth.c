@@ -1,4 +1,4 @@
-/* Tests of friction_smooth.c: problems in which the exact passes go in circles, and the smoothed passes by themselves. */
+/* Tests of friction_smooth.c: problems in which the exact passes go in circles, and the smoothed passes alone. */
 #include "friction.h"
 #include "friction_internals.h"
 

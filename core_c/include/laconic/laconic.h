@@ -25,8 +25,8 @@
  *
  * Symbols  docs/glossary.md has all of them. Those that the comments use:
  *          S             centre of mass of the robot with its wheels and payload
- *          M, R, J       mass of all of it; radius of a wheel; inertia of a wheel about its axle. A wheel i may have its
- *                        own R_i, J_i; R is then the vehicle's, in which ν is measured
+ *          M, R, J       mass of all of it; radius of a wheel; inertia of a wheel about its axle. A wheel i may have
+ *                        its own R_i, J_i; R is then the vehicle's, in which ν is measured
  *          Λ, λ          I_S = Λ² M R² and J = λ² M R²: the yaw inertia about S, and J, without a unit
  *          ν             pseudo-velocities [rad/s]: v_S = R (ν1 e_ξ + ν2 e_η), yaw rate θ' = ν3/Λ
  *          χ             own rotation of a wheel; positive χ' drives the hub along (−sin β, cos β), with β the axle's
@@ -127,9 +127,10 @@ const char *laconic_arithmetic_text(laconic_arithmetic found);
 /* OK iff every number of the vehicle is usable; else the first that is not. O(N). */
 laconic_status laconic_vehicle_check(const laconic_vehicle *vehicle, laconic_refusal *why);
 
-/* c1 = n k_t/R_a, c2 = n² (k_t k_e/R_a + d) set in the vehicle; a wheel's own c1 and c2 stay. n² J_rotor is added to the
- * J, own ones too, of all wheels that are driven: own_inertia_kgm2 is before the call without the rotor, after it with.
- * So call it once, with the wheels set. Refuses NEGATIVE (wheel_inertia, own_inertia) where J is below 0, OVERFLOW (gear_ratio) where one of these leaves the range, NEGATIVE (back_emf) where damping is below 0. */
+/* c1 = n k_t/R_a, c2 = n² (k_t k_e/R_a + d) set in the vehicle; a wheel's own c1 and c2 stay. n² J_rotor is added to
+ * the J, own ones too, of all wheels that are driven: own_inertia_kgm2 is before the call without the rotor, after it
+ * with. So call it once, with the wheels set. Refuses NEGATIVE (wheel_inertia, own_inertia) where J is below 0,
+ * OVERFLOW (gear_ratio) where one of these leaves the range, NEGATIVE (back_emf) where damping is below 0. */
 laconic_status laconic_motor_fit(laconic_vehicle *vehicle, const laconic_motor *motor, laconic_refusal *why);
 
 /* ---------------------------------------------------------------------------------- model -- */

@@ -1,4 +1,4 @@
-/* Random problems for the solver of a friction step, and its residual by a second routine that shares no code with it. */
+/* Random problems for the solver of a friction step, and its residual by a second routine without code of it. */
 #ifndef LACONIC_TEST_FRICTION_H
 #define LACONIC_TEST_FRICTION_H
 

@@ -89,7 +89,8 @@ Key = tuple[str, int]
 def _decoded(path: Path, number: int, message: Message, data: Any, group: str) -> tuple[Key, dict[str, float]]:
     """The key of a frame and its signals, "MESSAGE.signal"; in a group the signals' numbers go on counting."""
     try:
-        decoded: dict[str, Any] = dict(message.decode(bytes(data), decode_choices=False, scaling=True))  # type: ignore[arg-type]
+        signals: Any = message.decode(bytes(data), decode_choices=False, scaling=True)
+        decoded: dict[str, Any] = dict(signals)
     except Exception as error:  # a decoder may raise any exception on unexpected bytes
         raise BadInput(f"{path}: frame {number}: {message.name} cannot be decoded ({error}); correct the map's "
                        "dbc") from None
