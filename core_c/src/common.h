@@ -75,6 +75,23 @@ static inline laconic_status refuse(laconic_refusal *why, laconic_status status,
 /* Where an array of the model has the value of a wheel: all have one place where all wheels are alike. */
 static inline int32_t own(int32_t wheel) { return LACONIC_WITH_OWN_WHEELS ? wheel : 0; }
 
+/* Some wheel can slip; motors have limits or another circuit. Either makes a vehicle one of the friction step. */
+bool laconic_vehicle_slips(const laconic_vehicle *vehicle);
+bool laconic_vehicle_has_drive(const laconic_vehicle *vehicle);
+
+/* Of a plant with friction. */
+void laconic_friction_outputs_of(laconic_outputs *outputs, const laconic_plant *plant, const laconic_input *input);
+void laconic_friction_reactions_of(laconic_reactions *reactions, const laconic_plant *plant,
+                                   const laconic_input *input);
+
+/* Wheels with these speeds and angles, at a moment at which nothing is known of their forces. */
+void laconic_slip_take_over(laconic_slip *slip, const laconic_friction *friction, const laconic_real speed[],
+                            const laconic_real angle_rad[]);
+
+/* The model as on ideal ground, whatever the vehicle's: laconic_prepare() makes that of the body alone where the vehicle
+ * has friction. */
+laconic_status laconic_prepare_ideal(laconic_model *model, const laconic_vehicle *vehicle, laconic_refusal *why);
+
 /* The number at an offset in bytes of a struct. */
 static inline const real *number_at(const void *of, uint32_t offset) {
     return (const real *)(const void *)((const unsigned char *)of + offset);

@@ -1,75 +1,9 @@
 /* Reactions of the ground, torques of brakes, normal loads, the no-slip margin; and their derivatives along a
  * variation. */
 #include "geometry.h"
+#include "least_norm.h"
 #include "step_internals.h"
 #include "wrench.h"
-
-/* Least-norm solution of Cᵀκ = f for rows C (n×3) of any rank: κ = C (CᵀC)⁺ f. The 3×3 pseudo-inverse comes
- * from the eigenvectors of S = CᵀC by cyclic Jacobi. */
-typedef struct symmetric3 {
-    real value[3][3], vector[3][3];
-} symmetric3;
-
-static void rotate(symmetric3 *s, int p, int q) {
-    const real off = s->value[p][q];
-    if (off == R(0)) return;
-    const real cotangent = (s->value[q][q] - s->value[p][p]) / (R(2) * off);
-    real tangent = R(1) / (magnitude(cotangent) + laconic_root(R(1) + cotangent * cotangent));
-    if (cotangent < R(0)) tangent = -tangent;
-    const real c = R(1) / laconic_root(R(1) + tangent * tangent);
-    const real d = c * tangent;
-    for (int k = 0; k < 3; k++) {
-        const real kp = s->value[k][p], kq = s->value[k][q];
-        s->value[k][p] = c * kp - d * kq;
-        s->value[k][q] = d * kp + c * kq;
-    }
-    for (int k = 0; k < 3; k++) {
-        const real pk = s->value[p][k], qk = s->value[q][k], vp = s->vector[k][p], vq = s->vector[k][q];
-        s->value[p][k] = c * pk - d * qk;
-        s->value[q][k] = d * pk + c * qk;
-        s->vector[k][p] = c * vp - d * vq;
-        s->vector[k][q] = d * vp + c * vq;
-    }
-}
-
-static void pseudo_inverse(real out[3][3], const real matrix[3][3]) {
-    symmetric3 s;
-    real largest = R(0);
-    for (int r = 0; r < 3; r++)
-        for (int c = 0; c < 3; c++) {
-            s.value[r][c] = matrix[r][c];
-            s.vector[r][c] = r == c ? R(1) : R(0);
-            out[r][c] = R(0);
-        }
-    /* After four sweeps the rest off the diagonal is below 1e-17 of it (4,000 random matrices, rows over 12
-     * decades); the other eight are a reserve that costs little in a preparation. */
-    for (int k = 0; k < 12; k++) {
-        rotate(&s, 0, 1);
-        rotate(&s, 0, 2);
-        rotate(&s, 1, 2);
-    }
-    for (int k = 0; k < 3; k++)
-        if (s.value[k][k] > largest) largest = s.value[k][k];
-    for (int k = 0; k < 3; k++) {
-        if (!(s.value[k][k] > LACONIC_RANK_TOLERANCE * largest)) continue;
-        for (int r = 0; r < 3; r++)
-            for (int c = 0; c < 3; c++) out[r][c] += s.vector[r][k] * s.vector[c][k] / s.value[k][k];
-    }
-}
-
-/* rows (n×3) → solver (n×3) with κ = solver · f. */
-static void least_norm(real solver[][3], const real rows[][3], int32_t count) {
-    real gram[3][3], inverse[3][3];
-    for (int32_t r = 0; r < 3; r++)
-        for (int32_t c = 0; c < 3; c++) {
-            gram[r][c] = R(0);
-            for (int32_t i = 0; i < count; i++) gram[r][c] += rows[i][r] * rows[i][c];
-        }
-    pseudo_inverse(inverse, (const real(*)[3])gram);
-    for (int32_t i = 0; i < count; i++)
-        for (int32_t c = 0; c < 3; c++)
-            solver[i][c] = rows[i][0] * inverse[0][c] + rows[i][1] * inverse[1][c] + rows[i][2] * inverse[2][c];
-}
 
 static void fill_wheels(laconic_contact *contact, const laconic_vehicle *vehicle) {
     int32_t row = 0;
@@ -99,7 +33,7 @@ static void fill_points(laconic_contact *contact, const laconic_vehicle *vehicle
         rows[i][1] = contact->point_m[i][0];
         rows[i][2] = contact->point_m[i][1];
     }
-    least_norm(contact->normal_load_of_wrench, (const real(*)[3])rows, contact->point_count);
+    laconic_least_norm(contact->normal_load_of_wrench, (const real(*)[3])rows, contact->point_count);
 }
 
 /* Of the constants that laconic_matrices_of() has not checked. */
@@ -121,12 +55,14 @@ laconic_status laconic_contact_prepare(laconic_contact *contact, const laconic_v
     fill_wheels(&fresh, vehicle);
     fill_points(&fresh, vehicle, &b);
     fresh.constraint_count = matrices.constraint_count;
-    least_norm(fresh.multiplier, (const real(*)[3])matrices.constraint_rows, matrices.constraint_count);
+    laconic_least_norm(fresh.multiplier, (const real(*)[3])matrices.constraint_rows, matrices.constraint_count);
     for (int32_t i = 0; i < 3; i++)
         for (int32_t k = 0; k < 3; k++) fresh.inertia[i][k] = matrices.inertia[i][k];
     for (int32_t i = 0; i < vehicle->wheel_count; i++)
         for (int32_t k = 0; k < 3; k++) fresh.wheel_rows[i][k] = matrices.wheel_rows[i][k];
     fresh.com_z_m = vehicle->com_z_m;
+    fresh.gravity_m_per_s2 =
+        R(LACONIC_GRAVITY_M_PER_S2) * laconic_direction_of_angle(vehicle->ground.slope_rad).cosine;
     fresh.friction_coefficient = vehicle->friction_coefficient;
     if (!fits_squared(contact_size(&fresh, vehicle->wheel_count)))
         return refuse(why, LACONIC_OVERFLOW, LACONIC_FIELD_NONE, 0, R(0), R(0));
@@ -145,7 +81,7 @@ typedef struct instant {
     real weight_N;
 } instant;
 
-static void fill_instant(instant *now, const laconic_model *m, const laconic_state *state, const laconic_input *in) {
+static void fill_instant(instant *now, const laconic_contact *c, const laconic_model *m, const laconic_state *state, const laconic_input *in) {
     const vector zeta = zeta_of(state);
     laconic_forcing forcing;
     real nu[3], yaw_rate;
@@ -158,8 +94,8 @@ static void fill_instant(instant *now, const laconic_model *m, const laconic_sta
     yaw_rate = nu[2] / m->yaw_scale;
     now->gyro[0] = yaw_rate * nu[1];
     now->gyro[1] = -yaw_rate * nu[0];
-    now->outer = wrench_of(in, laconic_direction_of_binary_angle(state->heading.fraction));
-    now->weight_N = m->mass_kg * R(LACONIC_GRAVITY_M_PER_S2);
+    now->outer = wrench_of(m, in, laconic_direction_of_binary_angle(state->heading.fraction));
+    now->weight_N = m->mass_kg * c->gravity_m_per_s2;
     laconic_wheel_torques(m, state, in, now->torque_Nm);
 }
 
@@ -226,7 +162,7 @@ static void no_slip_margin(laconic_reactions *out, const laconic_contact *c, con
 void laconic_reactions_of(laconic_reactions *reactions, const laconic_contact *contact, const laconic_model *model,
                           const laconic_state *state, const laconic_input *input) {
     instant now;
-    fill_instant(&now, model, state, input);
+    fill_instant(&now, contact, model, state, input);
     linear_reactions(reactions, contact, model, &now);
     no_slip_margin(reactions, contact, model);
 }
@@ -245,7 +181,7 @@ static void fill_change(instant *change, const laconic_model *m, const laconic_m
     for (int32_t i = 0; i < m->wheel_count; i++) change->torque_Nm[i] = outputs.wheel_torque_Nm[i];
     change->gyro[0] = d_rate * dot(vec(m->nu_of_zeta[1]), zeta) + rate * dot(vec(m->nu_of_zeta[1]), d_zeta);
     change->gyro[1] = -(d_rate * dot(vec(m->nu_of_zeta[0]), zeta) + rate * dot(vec(m->nu_of_zeta[0]), d_zeta));
-    change->outer = wrench_change(input, laconic_direction_of_angle(at->heading_rad), by);
+    change->outer = wrench_change(m, input, laconic_direction_of_angle(at->heading_rad), by);
     change->weight_N = R(0);
 }
 

@@ -15,6 +15,8 @@ const char *laconic_field_name(laconic_field field) {
 #define PATH_VEHICLE(member) "vehicle." #member
 #define PATH_PAYLOAD(member) "vehicle.payload." #member
 #define PATH_COUNT(member) "vehicle." #member
+#define PATH_GROUND(member) "ground." #member
+#define PATH_DRIVE(member) "vehicle.drive." #member
 #define PATH_WHEEL(member) "vehicle.wheel[#]." #member
 #define PATH_OWN(member) PATH_WHEEL(member)
 #define PATH_SUPPORT(member) "vehicle.support[#]." #member
@@ -34,6 +36,8 @@ const char *laconic_field_path(laconic_field field) {
 #define ITEMS_VEHICLE(member) 0
 #define ITEMS_PAYLOAD(member) 0
 #define ITEMS_COUNT(member) 0
+#define ITEMS_GROUND(member) 0
+#define ITEMS_DRIVE(member) 0
 #define ITEMS_WHEEL(member) LACONIC_MAX_WHEELS
 #define ITEMS_OWN(member) LACONIC_MAX_WHEELS
 #define ITEMS_SUPPORT(member) LACONIC_MAX_SUPPORTS

@@ -13,20 +13,8 @@
 
 #include "vector.h"
 
-/* What stays the same from step to step. The caller fills the first part, laconic_friction_prepare() the second. */
-typedef struct friction_wheel {
-    real along[3], across[3];   /* ν → velocity of the contact point over R, along u_i and w_i = e_z × u_i */
-    real rim_along, rim_across; /* R_i sin γ / R, R_i cos γ / R */
-    real inertia;               /* j = J_i / (M R²) > 0 */
-    real drag;                  /* k, from 0 to 1; 1 for a fixed wheel */
-
-    vector row[2];             /* along, k across */
-    real rim[2];               /* rim_along, k rim_across */
-    real rolling[2], rim_size; /* rim[] as direction and length */
-    real mobility;             /* W: the most slip that a unit impulse at the contact causes */
-    real lateral_mass;         /* 1 / (what an impulse square to `rolling` causes); 0 where there is no such row */
-    real row_mass[2];          /* the same for each row, with the wheel held */
-} friction_wheel;
+/* What stays the same from step to step: its first part is given, the second is laconic_friction_prepare()'s. */
+typedef laconic_friction_wheel friction_wheel;
 
 /* One wheel in one step, all but the speed as impulses: force times step. */
 typedef struct friction_load {

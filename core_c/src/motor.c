@@ -1,4 +1,4 @@
-/* From a motor's data sheet to c1, c2 and J: c1 = n k_t/R_a, c2 = n² (k_t k_e/R_a + d). */
+/* From a motor's data sheet to c1, c2 and J: c1 = n k_t/R_a, c2 = n² (k_t k_e/R_a + d); R_a and n² d for the drive. */
 #include "common.h"
 
 #define RULE_OF(of, number, IDENTIFIER, member, name, KIND, RULE, NEED) {number, LACONIC_RULE_##RULE},
@@ -75,5 +75,7 @@ laconic_status laconic_motor_fit(laconic_vehicle *vehicle, const laconic_motor *
     vehicle->motor_gain_Nm_per_V = gain;
     vehicle->motor_damping_Nms = damping;
     add_rotors(vehicle, inertia);
+    vehicle->drive.winding_resistance_ohm = motor->resistance_ohm;
+    vehicle->drive.viscous_friction_Nms = ratio * ratio * motor->viscous_friction_Nms;
     return LACONIC_OK;
 }

@@ -1,47 +1,140 @@
-/* The plant: vehicle, model, integrator and state together, with an integer count of steps. */
+/* The plant: vehicle, model, integrator and state together, with an integer count of steps. A vehicle with friction is
+ * stepped by the friction step, any other by its integrator's method. */
 #include "common.h"
+
+static bool slips(const laconic_plant *plant) { return LACONIC_WITH_FRICTION && plant->friction.acts; }
+
+/* ----------------------------------------------------------------------------- preparation -- */
+
+/* What an integrator of a plant with friction chooses; adapters that step it without the wheels are refused. */
+static laconic_status refuse_step(const laconic_model *model, const laconic_integrator *integrator,
+                                  laconic_state *state, const laconic_forcing_samples *samples) {
+    (void)model;
+    (void)integrator;
+    (void)state;
+    (void)samples;
+    return LACONIC_METHOD_WITHOUT_FRICTION;
+}
+
+static const laconic_method friction_method = {"friction", 1, NULL, refuse_step};
+
+/* All of a plant that follows from its vehicle, method and step. */
+typedef struct constants {
+    laconic_model model;
+    laconic_integrator integrator;
+    laconic_friction friction;
+} constants;
+
+static laconic_status prepare_friction(constants *c, const laconic_vehicle *vehicle, const laconic_method *method,
+                                       laconic_refusal *why) {
+    if (method != NULL && method != &laconic_auto)
+        return refuse(why, LACONIC_METHOD_WITHOUT_FRICTION, LACONIC_FIELD_METHOD, 0, R(0), R(0));
+    return laconic_friction_of(&c->friction, &c->model, vehicle, why);
+}
+
+static laconic_status prepare(constants *c, const laconic_vehicle *vehicle, const laconic_method *method, real step_s,
+                              laconic_refusal *why) {
+    const bool has_friction = laconic_vehicle_has_friction(vehicle);
+    laconic_status status = laconic_prepare(&c->model, vehicle, why);
+    c->friction.acts = false;
+    if (status == LACONIC_OK && has_friction) status = prepare_friction(c, vehicle, method, why);
+    if (status == LACONIC_OK) status = laconic_integrator_prepare(&c->integrator, method, &c->model, step_s, why);
+    if (status == LACONIC_OK && has_friction) c->integrator.chosen = &friction_method;
+    return status;
+}
+
+static void adopt(laconic_plant *plant, const laconic_vehicle *vehicle, const constants *c) {
+    plant->vehicle = *vehicle;
+    plant->model = c->model;
+    plant->integrator = c->integrator;
+    plant->friction = c->friction;
+}
 
 laconic_status laconic_plant_start(laconic_plant *plant, const laconic_vehicle *vehicle, const laconic_method *method,
                                    laconic_real step_s, const laconic_start *start, laconic_refusal *why) {
-    laconic_model model;
-    laconic_integrator integrator;
-    laconic_status status = laconic_prepare(&model, vehicle, why);
-    if (status == LACONIC_OK) status = laconic_integrator_prepare(&integrator, method, &model, step_s, why);
-    if (status == LACONIC_OK) status = laconic_state_set(&plant->state, &model, start, why);
+    constants c;
+    laconic_state state;
+    laconic_status status = prepare(&c, vehicle, method, step_s, why);
+    if (status == LACONIC_OK) status = laconic_state_set(&state, &c.model, start, why);
+    if (status == LACONIC_OK && c.friction.acts)
+        status = laconic_slip_set(&plant->slip, &c.friction, vehicle, start, why);
     if (status != LACONIC_OK) return status;
-    plant->vehicle = *vehicle;
-    plant->model = model;
-    plant->integrator = integrator;
+    adopt(plant, vehicle, &c);
+    plant->state = state;
     plant->steps = 0;
     return LACONIC_OK;
+}
+
+laconic_status laconic_plant_set_step(laconic_plant *plant, laconic_real step_s, laconic_refusal *why) {
+    const laconic_status status =
+        laconic_integrator_prepare(&plant->integrator, plant->integrator.method, &plant->model, step_s, why);
+    if (status == LACONIC_OK && slips(plant)) plant->integrator.chosen = &friction_method;
+    return status;
+}
+
+/* ------------------------------------------------------------------------------------ steps -- */
+
+static uint64_t run(laconic_plant *plant, const laconic_input *held, uint64_t steps, laconic_status *status) {
+    uint64_t taken;
+    if (!slips(plant)) return laconic_run(&plant->model, &plant->integrator, &plant->state, held, steps, status);
+    *status = LACONIC_OK;
+    for (taken = 0; taken < steps; taken++) {
+        *status = laconic_friction_step(&plant->friction, &plant->model, plant->integrator.step_s, &plant->state,
+                                        &plant->slip, held);
+        if (*status != LACONIC_OK) break;
+    }
+    return taken;
+}
+
+/* The refusal that belongs to the status of a refused step. */
+static laconic_status refused(const laconic_plant *plant, laconic_status status, const laconic_input *inputs,
+                              int32_t count, laconic_refusal *why) {
+    laconic_refusal found;
+    laconic_step_refusal(&found, status, &plant->model, &plant->integrator, &plant->state, inputs, count);
+    return refuse(why, found.status, found.field, found.item, found.value, found.limit);
 }
 
 laconic_status laconic_plant_run(laconic_plant *plant, const laconic_input *held, uint64_t steps,
                                  laconic_refusal *why) {
     laconic_status status;
-    laconic_refusal found;
-    plant->steps += laconic_run(&plant->model, &plant->integrator, &plant->state, held, steps, &status);
-    if (status == LACONIC_OK) return status;
-    laconic_step_refusal(&found, status, &plant->model, &plant->integrator, &plant->state, held, 1);
-    return refuse(why, found.status, found.field, found.item, found.value, found.limit);
+    plant->steps += run(plant, held, steps, &status);
+    return status == LACONIC_OK ? status : refused(plant, status, held, 1, why);
 }
 
-laconic_status laconic_plant_set_step(laconic_plant *plant, laconic_real step_s, laconic_refusal *why) {
-    return laconic_integrator_prepare(&plant->integrator, plant->integrator.method, &plant->model, step_s, why);
+laconic_status laconic_plant_run_sampled(laconic_plant *plant, const laconic_input samples[3], laconic_refusal *why) {
+    laconic_status status;
+    if (slips(plant))
+        run(plant, &samples[1], 1, &status);
+    else
+        status = laconic_step_sampled(&plant->model, &plant->integrator, &plant->state, &samples[0], &samples[1],
+                                      &samples[2]);
+    if (status != LACONIC_OK) return refused(plant, status, samples, 3, why);
+    plant->steps++;
+    return LACONIC_OK;
+}
+
+/* ----------------------------------------------------------------------------------- change -- */
+
+/* Speeds and angles of the wheels, from wherever the plant has them. */
+static void wheels_of(const laconic_plant *plant, real speed[], real angle_rad[]) {
+    laconic_wheel_speeds(&plant->model, &plant->state, speed);
+    laconic_wheel_angles(&plant->model, &plant->state, angle_rad);
+    for (int32_t i = 0; slips(plant) && i < plant->friction.wheel_count; i++) {
+        speed[i] = plant->slip.wheel_speed_rad_per_s[i];
+        angle_rad[i] = plant->slip.wheel_angle_rad[i].value;
+    }
 }
 
 laconic_status laconic_plant_change(laconic_plant *plant, const laconic_vehicle *vehicle, laconic_refusal *why) {
-    laconic_model model;
-    laconic_integrator integrator;
-    laconic_status status = laconic_prepare(&model, vehicle, why);
-    if (status == LACONIC_OK)
-        status =
-            laconic_integrator_prepare(&integrator, plant->integrator.method, &model, plant->integrator.step_s, why);
+    constants c;
+    real speed[LACONIC_MAX_WHEELS], angle_rad[LACONIC_MAX_WHEELS];
+    laconic_status status = prepare(&c, vehicle, plant->integrator.method, plant->integrator.step_s, why);
     if (status != LACONIC_OK) return status;
-    status = laconic_state_carry(&plant->state, &plant->model, &model);
+    wheels_of(plant, speed, angle_rad);
+    status = laconic_state_carry(&plant->state, &plant->model, &c.model);
     if (status != LACONIC_OK) return refuse(why, status, LACONIC_FIELD_NONE, 0, R(0), R(0));
-    plant->vehicle = *vehicle;
-    plant->model = model;
-    plant->integrator = integrator;
+    if (slips(plant) && !c.friction.acts) laconic_wheel_angles_set(&c.model, &plant->state, angle_rad);
+    if (!slips(plant) && c.friction.acts) laconic_slip_take_over(&plant->slip, &c.friction, speed, angle_rad);
+    adopt(plant, vehicle, &c);
     return LACONIC_OK;
 }

@@ -258,7 +258,24 @@ static bool usable(const laconic_model *m) {
     return fits_squared(vectors + rows + scales + others);
 }
 
-laconic_status laconic_prepare(laconic_model *model, const laconic_vehicle *vehicle, laconic_refusal *why) {
+/* Downhill: what pulls at the centre of mass, in world axes. */
+static void fill_slope(laconic_model *m, const laconic_ground *ground) {
+#if LACONIC_WITH_SLOPE
+    const direction incline = laconic_direction_of_angle(ground->slope_rad);
+    const direction uphill = laconic_direction_of_angle(ground->slope_heading_rad);
+    const real pull = m->mass_kg * R(LACONIC_GRAVITY_M_PER_S2) * incline.sine;
+    m->sloped = ground->slope_rad > R(0);
+    m->slope_force_N[0] = m->sloped ? -pull * uphill.cosine : R(0);
+    m->slope_force_N[1] = m->sloped ? -pull * uphill.sine : R(0);
+#else
+    (void)m;
+    (void)ground;
+#endif
+}
+
+/* `on_wheels`: without them the model is that of the body alone. */
+static laconic_status prepare(laconic_model *model, const laconic_vehicle *vehicle, bool on_wheels,
+                              laconic_refusal *why) {
     const laconic_status status = laconic_vehicle_check(vehicle, why);
     laconic_model m = {0};
     basis constraints = {0};
@@ -267,12 +284,13 @@ laconic_status laconic_prepare(laconic_model *model, const laconic_vehicle *vehi
     if (status != LACONIC_OK) return status;
     laconic_body_of(&b, vehicle);
     fill_constants(&m, vehicle, &b);
-    collect_constraints(&constraints, &b, vehicle);
+    fill_slope(&m, &vehicle->ground);
+    if (on_wheels) collect_constraints(&constraints, &b, vehicle);
     allowed_motions(&motions.scaled, &constraints);
     if (motions.scaled.count == 0)
         return refuse(why, LACONIC_NOTHING_MOVES, LACONIC_FIELD_WHEEL_KIND, 0, R(constraints.count), R(0));
     m.dof = motions.scaled.count;
-    project_wheels(&m, &motions.scaled, &b, vehicle);
+    if (on_wheels) project_wheels(&m, &motions.scaled, &b, vehicle);
     diagonalise(&m, &motions, &b, vehicle);
     derive_gyro(&m);
     derive_rows(&m);
@@ -281,4 +299,12 @@ laconic_status laconic_prepare(laconic_model *model, const laconic_vehicle *vehi
         return refuse(why, LACONIC_ILL_CONDITIONED, LACONIC_FIELD_NONE, 0, laconic_condition_number(&m), R(0));
     *model = m;
     return LACONIC_OK;
+}
+
+laconic_status laconic_prepare(laconic_model *model, const laconic_vehicle *vehicle, laconic_refusal *why) {
+    return prepare(model, vehicle, !laconic_vehicle_has_friction(vehicle), why);
+}
+
+laconic_status laconic_prepare_ideal(laconic_model *model, const laconic_vehicle *vehicle, laconic_refusal *why) {
+    return prepare(model, vehicle, true, why);
 }

@@ -15,7 +15,7 @@ static void copy_columns(laconic_recorder *recorder, const laconic_outputs *now)
 static void observe(laconic_recorder *recorder, const laconic_plant *plant, const laconic_input *input, bool row_due) {
     laconic_outputs now;
     if (recorder->contact != NULL && (row_due || recorder->grip != NULL)) {
-        laconic_reactions_of(&now.reactions, recorder->contact, &plant->model, &plant->state, input);
+        laconic_plant_reactions(&now.reactions, plant, recorder->contact, input);
         if (recorder->grip != NULL)
             laconic_grip_watch(recorder->grip, recorder->contact, &plant->model, &now.reactions, plant->steps);
     }
@@ -88,18 +88,12 @@ static laconic_status follow_sampled(laconic_plant *plant, const laconic_schedul
     const uint64_t numbers = (uint64_t)schedule->signal_count;
     const laconic_input none = {0};
     laconic_input input[3] = {none, none, none};
-    laconic_refusal found;
     while (plant->steps < until_step && plant->steps - schedule->first_step < schedule->count) {
         const real *value = schedule->value + 3 * numbers * (plant->steps - schedule->first_step);
         for (uint64_t k = 0; k < 3; k++) set_signals(&input[k], schedule, value + k * numbers);
         if (steps_until_observation(recorder, plant, input, 1) == 0) break;
-        const laconic_status status =
-            laconic_step_sampled(&plant->model, &plant->integrator, &plant->state, input, input + 1, input + 2);
-        if (status != LACONIC_OK) {
-            laconic_step_refusal(&found, status, &plant->model, &plant->integrator, &plant->state, input, 3);
-            return refuse(why, found.status, found.field, found.item, found.value, found.limit);
-        }
-        plant->steps++;
+        const laconic_status status = laconic_plant_run_sampled(plant, input, why);
+        if (status != LACONIC_OK) return status;
     }
     return LACONIC_OK;
 }

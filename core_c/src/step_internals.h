@@ -98,6 +98,22 @@ static inline void add_world_force(laconic_forcing *forcing, const laconic_model
     store(forcing->sine, minus(scaled(fy, along), scaled(fx, across)));
 }
 
+static inline bool sloped(const laconic_model *m) {
+#if LACONIC_WITH_SLOPE
+    return m->sloped;
+#else
+    return (void)m, false;
+#endif
+}
+
+/* The slope's pull at S, as a world force. */
+static inline void add_slope(laconic_forcing *forcing, const laconic_model *m) {
+    const real fx = m->torque_scale * slope_force(m)[0], fy = m->torque_scale * slope_force(m)[1];
+    const vector along = vec(m->velocity_of_zeta[0]), across = vec(m->velocity_of_zeta[1]);
+    store(forcing->cosine, plus(vec(forcing->cosine), plus(scaled(fx, along), scaled(fy, across))));
+    store(forcing->sine, plus(vec(forcing->sine), minus(scaled(fy, along), scaled(fx, across))));
+}
+
 /* An input of 0 costs no operations. NaN counts as acting, so that the step is refused. */
 static inline bool acts(real a, real b, real c) { return !(a == R(0) && b == R(0) && c == R(0)); }
 
@@ -113,8 +129,10 @@ static inline void forcing_of(laconic_forcing *forcing, const laconic_model *mod
         b = plus(b,
                  b_of_wrench(model, (wrench){input->body_force_N[0], input->body_force_N[1], input->body_moment_Nm}));
     store(forcing->constant, b);
-    forcing->rotates = LACONIC_WITH_WORLD_FORCE && acts(input->world_force_N[0], input->world_force_N[1], R(0));
+    forcing->rotates =
+        LACONIC_WITH_WORLD_FORCE && (acts(input->world_force_N[0], input->world_force_N[1], R(0)) || sloped(model));
     if (LACONIC_WITH_WORLD_FORCE && forcing->rotates) add_world_force(forcing, model, input);
+    if (LACONIC_WITH_WORLD_FORCE && sloped(model)) add_slope(forcing, model);
 }
 
 /* b of a forcing that rotates with the heading. */

@@ -4,9 +4,7 @@
 
 #include "common.h"
 
-typedef struct vector {
-    real x, y, z;
-} vector;
+typedef laconic_vector vector;
 
 static const vector none = {R(0), R(0), R(0)};
 

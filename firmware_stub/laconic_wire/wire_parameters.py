@@ -18,7 +18,8 @@ NEEDS = {
 RESERVED = "not yet: NOT_SUPPORTED"
 NONE, WHEEL, SUPPORT, COMPONENT = "0", "wheel", "support", "1, 2, 3"
 NOTES = {"WHEEL_KIND": ": 1 rollers (omni, mecanum), 2 fixed", "WHEEL_LOCKED": ": 0 or 1",
-         "DRIVEN": ": 0 or 1; 1 where it is not sent", "METHOD": ": see below"}
+         "DRIVEN": ": 0 or 1; 1 where it is not sent", "MOTOR_CIRCUIT": ": 0 driven, 1 open, 2 shorted",
+         "METHOD": ": see below"}
 
 
 def units() -> dict[str, str]:
@@ -33,7 +34,8 @@ def row(field: Field, unit: str) -> tuple[str, str, str, str]:
     """The entry of a field that a node accepts."""
     key = f"how many [[{field.path}]]" if field.counts else field.path.removesuffix("[#]")
     tables = {"vehicle.wheel[#]": WHEEL, "vehicle.support[#]": SUPPORT}
-    item = tables.get(field.table, COMPONENT if field.items else NONE)
+    components = WHEEL if field.items == load().max_wheels else COMPONENT
+    item = tables.get(field.table, components if field.items else NONE)
     if item in (WHEEL, SUPPORT):
         key = f"{item}.{field.key}"
     return key + NOTES.get(field.identifier, ""), unit, item, NEEDS[field.need]
@@ -53,16 +55,4 @@ PARAMETERS = {
     "GEAR_RATIO": ("vehicle.motor.gear_ratio", "1", NONE, RESERVED),
     "VISCOUS_FRICTION": ("vehicle.motor.viscous_friction_Nms", "N m s", NONE, RESERVED),
     "ROTOR_INERTIA": ("vehicle.motor.rotor_inertia_kgm2", "kg m²", NONE, RESERVED),
-    "WHEEL_FRICTION_COEFFICIENT": ("a wheel's own friction_coefficient", "1", WHEEL, RESERVED),
-    "WHEEL_ROLLER_DRAG": ("a wheel's own roller_drag", "1", WHEEL, RESERVED),
-    "WHEEL_AXLE_FRICTION": ("a wheel's own axle_friction_Nm", "N m", WHEEL, RESERVED),
-    "GROUND_FRICTION_COEFFICIENT": ("the ground's friction_coefficient", "1", NONE, RESERVED),
-    "GROUND_ROLLER_DRAG": ("the ground's roller_drag", "1", NONE, RESERVED),
-    "GROUND_AXLE_FRICTION": ("the ground's axle_friction_Nm", "N m", NONE, RESERVED),
-    "SLOPE": ("the ground's slope_rad", "rad", NONE, RESERVED),
-    "SLOPE_HEADING": ("the ground's slope_heading_rad, of steepest ascent", "rad", NONE, RESERVED),
-    "SUPPLY_VOLTAGE": ("the drive's supply_V", "V", NONE, RESERVED),
-    "SUPPLY_RESISTANCE": ("the drive's supply_resistance_ohm", "Ω", NONE, RESERVED),
-    "CURRENT_LIMIT": ("the drive's current_limit_A", "A", NONE, RESERVED),
-    "START_WHEEL_SPEED": ("a wheel's speed at the start", "rad/s", WHEEL, RESERVED),
 } | taken()

@@ -20,7 +20,9 @@ typedef struct location {
 #define IN_PAYLOAD(member) 0, 0, AT(vehicle.payload.member)
 #define IN_COUNT(member) 0, 0, AT(vehicle.member##_count)
 #define IN_WHEEL(member) LACONIC_MAX_WHEELS, sizeof(laconic_wheel), AT(vehicle.wheel[0].member)
-#define IN_OWN(member) LACONIC_MAX_WHEELS, sizeof(laconic_wheel), AT(vehicle.wheel[0].own_##member)
+#define IN_OWN(member) IN_WHEEL(own_##member)
+#define IN_GROUND(member) 0, 0, AT(vehicle.ground.member)
+#define IN_DRIVE(member) 0, 0, AT(vehicle.drive.member)
 #define IN_SUPPORT(member) LACONIC_MAX_SUPPORTS, sizeof(laconic_support), AT(vehicle.support[0].member)
 #define IN_START_ARRAY(member) \
     sizeof(((laconic_start *)NULL)->member) / sizeof(laconic_real), sizeof(laconic_real), AT(start.member)
@@ -47,7 +49,7 @@ static const location *find(uint8_t field, uint8_t item) {
 
 /* Fields that laconic.dbc has for numbers which the core does not use yet. */
 static bool is_reserved(uint8_t field) {
-    return field >= LACONIC_WIRE_FIELD_RESISTANCE && field <= LACONIC_WIRE_FIELD_START_WHEEL_SPEED;
+    return field >= LACONIC_WIRE_FIELD_RESISTANCE && field <= LACONIC_WIRE_FIELD_ROTOR_INERTIA;
 }
 
 static void refuse(laconic_loader *loader, uint8_t status, uint8_t field, uint8_t item) {

@@ -85,8 +85,7 @@ static void part_of_a_payload_or_support_is_not_enough(void) {
 }
 
 static void numbers_that_the_core_has_no_use_for_yet_are_refused_by_name(void) {
-    for (uint8_t k = LACONIC_WIRE_FIELD_RESISTANCE; k <= LACONIC_WIRE_FIELD_START_WHEEL_SPEED; k++) {
-        if (k >= LACONIC_FIELD_OWN_RADIUS && k <= LACONIC_FIELD_DRIVEN) continue;
+    for (uint8_t k = LACONIC_WIRE_FIELD_RESISTANCE; k <= LACONIC_WIRE_FIELD_ROTOR_INERTIA; k++) {
         laconic_loader_begin(&loader);
         send(0, k, 1, 0);
         TEST_ASSERT_EQUAL_UINT8(LACONIC_WIRE_STATUS_NOT_SUPPORTED, check());

@@ -10,7 +10,7 @@ void tearDown(void) {}
 
 /* One step at these pseudo-velocities, with everything selected. */
 static void publish(laconic_real nu_2, laconic_real x_m, laconic_real heading_rad) {
-    const laconic_start start = {{0, nu_2, 0}, x_m, 0, heading_rad};
+    const laconic_start start = {{0, nu_2, 0}, x_m, 0, heading_rad, {0}};
     bench_select(LACONIC_NODE_SEND_NU | LACONIC_NODE_SEND_POSE | LACONIC_NODE_SEND_WHEEL_SPEED |
                      LACONIC_NODE_SEND_STATE_FD | LACONIC_NODE_SEND_COUNTERS,
                  0, 0);

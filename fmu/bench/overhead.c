@@ -200,7 +200,7 @@ static laconic_plant plant;
 static laconic_input input;
 
 static void start_core(void) {
-    const laconic_start start = {{0.0, 0.0, 0.0}, 0.0, 0.0, 0.0};
+    const laconic_start start = {0};
     const fmu_start_value *value = fmu_built_in_starts;
     fmu_instance *instance = calloc(1, sizeof *instance);
     for (size_t k = 0; k < fmu_built_in_start_count; k++)

@@ -89,7 +89,7 @@ void fmu_model_input_changed(fmu_model *model) { model->stale |= FMU_GROUPS_OF_I
 /* ---------------------------------------------------------------------------------- outputs -- */
 
 static void refresh_state(fmu_model *self) {
-    laconic_start motion = {{self->nu[0], self->nu[1], self->nu[2]}, self->x_m, self->y_m, self->heading_rad};
+    laconic_start motion = {{self->nu[0], self->nu[1], self->nu[2]}, self->x_m, self->y_m, self->heading_rad, {0.0}};
     /* cannot be refused: fmu_set_states has already refused every number that would be */
     (void)laconic_state_project(&self->plant.state, &self->plant.model, &motion, NULL);
     laconic_wheel_angles_set(&self->plant.model, &self->plant.state, self->wheel_angle_rad);

@@ -22,6 +22,8 @@ static void serialize_kind(fmu_stream *s, laconic_wheel_kind *kind) {
 static void serialize_vehicle(fmu_stream *s, laconic_vehicle *v) {
     LACONIC_VEHICLE_FIELDS(SERIALIZE, *v)
     LACONIC_PAYLOAD_FIELDS(SERIALIZE, v->payload)
+    LACONIC_GROUND_FIELDS(SERIALIZE, v->ground)
+    LACONIC_DRIVE_FIELDS(SERIALIZE, v->drive)
     fmu_stream_i32(s, &v->wheel_count, 0, LACONIC_MAX_WHEELS);
     for (int32_t i = 0; i < LACONIC_MAX_WHEELS; i++) {
         LACONIC_WHEEL_FIELDS(SERIALIZE, v->wheel[i])

@@ -11,9 +11,13 @@
 #define IN_PAYLOAD(member) FMU_PLAIN(vehicle.payload.member)
 #define IN_COUNT(member) FMU_PLAIN(vehicle.member##_count)
 #define IN_WHEEL(member) FMU_AT(vehicle.wheel[0].member), sizeof(laconic_wheel), 0, FMU_NO_TANGENT
-#define IN_OWN(member) FMU_AT(vehicle.wheel[0].own_##member), sizeof(laconic_wheel), 0, FMU_NO_TANGENT
+#define IN_OWN(member) IN_WHEEL(own_##member)
+#define IN_GROUND(member) FMU_PLAIN(vehicle.ground.member)
+#define IN_DRIVE(member) FMU_PLAIN(vehicle.drive.member)
 #define IN_SUPPORT(member) FMU_AT(vehicle.support[0].member), sizeof(laconic_support), 0, FMU_NO_TANGENT
-#define IN_START_ARRAY(member) FMU_AT(start.member), sizeof(double), 0, FMU_ALONG(nu) /* ν is the only array */
+#define IN_START_ARRAY(member) FMU_AT(start.member), sizeof(double), 0, START_ALONG_##member
+#define START_ALONG_nu_rad_per_s FMU_ALONG(nu)
+#define START_ALONG_wheel_speed_rad_per_s FMU_NO_TANGENT
 #define IN_START(member) FMU_AT(start.member), sizeof(double), 0, FMU_ALONG(member)
 #define IN_RUN(member) FMU_PLAIN(member)
 #define IN_INPUT_ARRAY(member) FMU_MOVING(input.member, 0)

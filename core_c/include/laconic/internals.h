@@ -9,6 +9,15 @@
 extern "C" {
 #endif
 
+/* A compensated sum, which keeps in `rest` what is too small for `value` to take up: it stands for value + rest. */
+typedef struct laconic_sum {
+    laconic_real value, rest;
+} laconic_sum;
+
+typedef struct laconic_vector {
+    laconic_real x, y, z;
+} laconic_vector;
+
 /* Factors of one exponential sub-step, per axis k, a = h r_k, φ at −a: docs/integrators.md derives them.
  * b over the sub-step: start + change·s + curve·s(s − 1), s from 0 to 1. */
 typedef struct laconic_decay {

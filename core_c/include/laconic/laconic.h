@@ -58,6 +58,7 @@
 #ifndef LACONIC_H
 #define LACONIC_H
 
+#include "laconic/friction.h" /* laconic_friction, laconic_slip */
 #include "laconic/internals.h"
 #include "laconic/real.h"
 #include "laconic/status.h"  /* laconic_status, laconic_arithmetic */
@@ -164,6 +165,10 @@ typedef struct laconic_model {
     laconic_real mass_kg, wheel_radius_m; /* M with payload, R                         */
     laconic_real yaw_scale;               /* Λ                                         */
     laconic_real com_x_m, com_y_m;        /* S in the body frame, with payload         */
+#if LACONIC_WITH_SLOPE
+    bool sloped;
+    laconic_real slope_force_N[2]; /* M g sin α, downhill at S, world axes                    */
+#endif
 } laconic_model;
 
 /* Checks the vehicle and fills the model: rows of Ξ (4.3–4.4), constraints of fixed and locked wheels, principal axes
@@ -171,7 +176,8 @@ typedef struct laconic_model {
  * division by a given number. Refuses as laconic_vehicle_check does, and with NOTHING_MOVES, ILL_CONDITIONED (value:
  * the condition number of A, refused from 2·10²⁷ on, in single from 7·10⁹), and OVERFLOW where a constant or the
  * inverse of a scale is beyond 10¹⁵⁴ (single: 10¹⁹), so that the product of two would leave the range: every number of
- * a prepared model is finite. */
+ * a prepared model is finite. Where the vehicle has friction (laconic_vehicle_has_friction) the model is that of the body
+ * alone: without constraints, G = E, rows of wheels 0. */
 laconic_status laconic_prepare(laconic_model *model, const laconic_vehicle *vehicle, laconic_refusal *why);
 
 /* Condition number of A on the motions that the constraints leave: largest over smallest inertia. Measured as energy
@@ -211,11 +217,6 @@ typedef struct laconic_forcing {
 void laconic_forcing_of(laconic_forcing *forcing, const laconic_model *model, const laconic_input *input);
 
 /* ---------------------------------------------------------------------------------- state -- */
-
-/* A compensated sum, which keeps in `rest` what is too small for `value` to take up: it stands for value + rest. */
-typedef struct laconic_sum {
-    laconic_real value, rest;
-} laconic_sum;
 
 /* θ = 2π (turns + (fraction + 2 rest)·2⁻⁶⁴), 2⁻³² in single: wraps exactly, with the same resolution after any
  * number of turns. */
@@ -393,6 +394,7 @@ typedef struct laconic_contact {
     laconic_real point_m[LACONIC_MAX_WHEELS + LACONIC_MAX_SUPPORTS][2];               /* from S, body axes       */
     laconic_real normal_load_of_wrench[LACONIC_MAX_WHEELS + LACONIC_MAX_SUPPORTS][3]; /* least-norm statics */
     laconic_real com_z_m, friction_coefficient;
+    laconic_real gravity_m_per_s2; /* g cos α: across the ground                                        */
 } laconic_contact;
 
 /* Refuses as laconic_prepare does, and OVERFLOW for these constants (supports, com_z_m). */
@@ -454,8 +456,41 @@ typedef struct laconic_plant {
     laconic_model model;
     laconic_integrator integrator;
     laconic_state state;
+    laconic_friction friction; /* where the vehicle has friction; else `acts` is false and the rest is not set */
+    laconic_slip slip;
     uint64_t steps; /* taken since the start: time is steps · step_s */
 } laconic_plant;
+
+/* Constants of a vehicle with friction; `model`: that of laconic_prepare(). Refuses OVERFLOW where a constant leaves the
+ * range, and for a drive on ideal ground as laconic_prepare does for a vehicle without friction. */
+laconic_status laconic_friction_of(laconic_friction *friction, const laconic_model *model,
+                                   const laconic_vehicle *vehicle, laconic_refusal *why);
+
+/* Wheels at their start: with its wheel_speed_rad_per_s, or as they roll at its ν. Refuses NOT_FINITE and OVERFLOW
+ * (start_wheel_speed), and on ideal ground as laconic_state_set. */
+laconic_status laconic_slip_set(laconic_slip *slip, const laconic_friction *friction, const laconic_vehicle *vehicle,
+                                const laconic_start *start, laconic_refusal *why);
+
+/* One step with the input held. Refuses STEP_UNSOLVED (also in eight parts), and OVERFLOW as laconic_step does; state
+ * and slip are then as they were. */
+laconic_status laconic_friction_step(const laconic_friction *friction, const laconic_model *model, laconic_real step_s,
+                                     laconic_state *state, laconic_slip *slip, const laconic_input *held);
+
+/* Kinetic energy of body and wheels. */
+laconic_real laconic_friction_energy_J(const laconic_friction *friction, const laconic_state *state,
+                                       const laconic_slip *slip);
+
+/* Width of the smooth law below: friction has 71 % of its size at this slip. Robots move at 0.1 m/s and more, beside
+ * which creeping at 1 mm/s is small, and the rate at which slip decays, μ g/ε ~ 5,000 1/s, is what stiff integrators
+ * take without effort. */
+#define LACONIC_SMOOTH_SLIP_M_PER_S 1e-3
+
+/* Right-hand side for Model Exchange, by a smooth law: forces along slip/√(slip² + ε²). It has no rest: on a slope a
+ * vehicle creeps by some ε. Normal loads are statics at this moment; a drive on ideal ground has no such law. */
+void laconic_friction_derivative(laconic_rates *rates, laconic_real wheel_rate_rad_per_s2[],
+                                 const laconic_friction *friction, const laconic_model *model,
+                                 const laconic_real nu_rad_per_s[3], laconic_real heading_rad,
+                                 const laconic_real wheel_speed_rad_per_s[], const laconic_input *input);
 
 /* vehicle → model, method and step → integrator, start → state. A refusal changes nothing. */
 laconic_status laconic_plant_start(laconic_plant *plant, const laconic_vehicle *vehicle, const laconic_method *method,
@@ -464,10 +499,15 @@ laconic_status laconic_plant_start(laconic_plant *plant, const laconic_vehicle *
 /* `steps` steps with the input held. When step k is refused, plant->steps has grown by k − 1. */
 laconic_status laconic_plant_run(laconic_plant *plant, const laconic_input *held, uint64_t steps, laconic_refusal *why);
 
+/* One step with the input sampled at its start, middle and end (three in a row): laconic_step_sampled; with friction the
+ * input in the middle is held. */
+laconic_status laconic_plant_run_sampled(laconic_plant *plant, const laconic_input samples[3], laconic_refusal *why);
+
 /* Another step size from now on; plant->steps goes on counting. */
 laconic_status laconic_plant_set_step(laconic_plant *plant, laconic_real step_s, laconic_refusal *why);
 
-/* Another payload, motor, mass … while the vehicle moves (laconic_state_carry). The wheels must stay as they are. */
+/* Another payload, motor, motor_circuit, mass … while the vehicle moves (laconic_state_carry). The wheels must stay as
+ * they are; body velocity, wheel speeds and angles stay. */
 laconic_status laconic_plant_change(laconic_plant *plant, const laconic_vehicle *vehicle, laconic_refusal *why);
 
 /* -------------------------------------------------------------------------------- recording -- */
@@ -482,11 +522,17 @@ typedef struct laconic_outputs {
     laconic_real wheel_angle_rad[LACONIC_MAX_WHEELS];
     laconic_real wheel_torque_Nm[LACONIC_MAX_WHEELS];
     laconic_reactions reactions; /* set only where a contact is given                            */
+    laconic_friction_outputs friction; /* set only where the vehicle has friction                */
     laconic_input input;         /* what acts from this moment on                                */
 } laconic_outputs;
 
 /* Fills the outputs but the reactions. Items beyond the model's wheels stay as they were. One sine and cosine, O(N). */
 void laconic_outputs_of(laconic_outputs *outputs, const laconic_plant *plant, const laconic_input *input);
+
+/* laconic_reactions_of, and for a vehicle with friction the forces of the last step; lateral_N is then the force along
+ * u turned by −90°, the axle of a fixed wheel, and brake_Nm the torque that holds a locked one. */
+void laconic_plant_reactions(laconic_reactions *reactions, const laconic_plant *plant, const laconic_contact *contact,
+                             const laconic_input *input);
 
 /* One instant at which a wheel needed more than the friction available, or a point would have lifted. */
 typedef struct laconic_grip_event {

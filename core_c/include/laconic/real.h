@@ -93,6 +93,12 @@ typedef uint64_t laconic_binary_angle; /* angle in units of 2^-64 turn */
 #ifndef LACONIC_WITH_DAMPING
 #define LACONIC_WITH_DAMPING 1
 #endif
+#ifndef LACONIC_WITH_SLOPE
+#define LACONIC_WITH_SLOPE 1
+#endif
+#ifndef LACONIC_WITH_FRICTION /* 0: ideal ground and motors without limits alone */
+#define LACONIC_WITH_FRICTION 1
+#endif
 #ifndef LACONIC_WITH_PREPARE /* 0: model and integrator are constants made by the host */
 #define LACONIC_WITH_PREPARE 1
 #endif

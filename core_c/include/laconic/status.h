@@ -49,7 +49,19 @@
     X(STEP_SINGULAR, "step singular", \
       "in this state a step of # s has no solution; use @ s or less, or auto, or exact-flow") \
     X(OVERFLOW, "overflow", \
-      "a result leaves the range of " LACONIC_REAL_NAME " precision; check inputs and units")
+      "a result leaves the range of " LACONIC_REAL_NAME " precision; check inputs and units") \
+    X(ABOVE_LIMIT, "above limit", \
+      "# is above @; give @ or less") \
+    X(MOTOR_CIRCUIT_UNKNOWN, "motor circuit unknown", \
+      "# is no motor circuit; use 0 (driven), 1 (open) or 2 (shorted)") \
+    X(FRICTION_TWICE, "friction twice", /* the vehicle's friction coefficient besides the ground's */ \
+      "# is given besides ground.friction_coefficient, by which wheels slip; take this one out") \
+    X(FRICTION_MISSING, "friction missing", /* drag or axle friction on ideal ground */ \
+      "# has no effect on ideal ground; give ground.friction_coefficient, too") \
+    X(METHOD_WITHOUT_FRICTION, "method without friction", \
+      "this method knows neither ground friction nor limits of a drive; use auto") \
+    X(STEP_UNSOLVED, "step unsolved", /* friction: the contact forces of a step were not found */ \
+      "in this state the contact forces over a step of # s were not found; use @ s or less")
 
 /* X(IDENTIFIER, explanation with the remedy): what laconic_self_test() finds. */
 #define LACONIC_ARITHMETICS(X) \

@@ -16,6 +16,13 @@ typedef enum laconic_wheel_kind {
     LACONIC_WHEEL_FIXED = 2   /* ordinary, not steered: does not move along its axle               */
 } laconic_wheel_kind;
 
+/* What a wheel's motor is connected to. */
+typedef enum laconic_motor_circuit {
+    LACONIC_MOTOR_DRIVEN = 0, /* to its controller, which sets voltage_V                            */
+    LACONIC_MOTOR_OPEN = 1,   /* to nothing: only its viscous friction is left                      */
+    LACONIC_MOTOR_SHORTED = 2 /* its terminals to each other: brakes by its back-EMF, without current limit */
+} laconic_motor_circuit;
+
 typedef struct laconic_wheel {
     laconic_wheel_kind kind;
     bool locked;             /* held by a brake: χ' = 0                                           */
@@ -32,6 +39,11 @@ typedef struct laconic_wheel {
     laconic_real own_motor_gain_Nm_per_V; /* c1_i                                                */
     laconic_real own_motor_damping_Nms;   /* c2_i                                                */
     bool undriven; /* no motor: c1_i = c2_i = 0, whatever the values above and the vehicle's; J_i is without a rotor */
+    /* The wheel's own values where they differ from the ground's; 0: the ground's value. */
+    laconic_real own_friction_coefficient; /* μ_i                                                 */
+    laconic_real own_roller_drag;          /* k_i, 0 … 1; not read for fixed wheels, whose k is 1 */
+    laconic_real own_axle_friction_Nm;     /* T_i                                                 */
+    int32_t motor_circuit;                 /* laconic_motor_circuit                               */
 } laconic_wheel;
 
 /* A mass fastened to the body. All zero: no payload. */
@@ -45,6 +57,26 @@ typedef struct laconic_support { /* a ball caster: carries a normal load, nothin
     laconic_real x_m, y_m;
 } laconic_support;
 
+/* The ground under the wheels. All zero: level, and it holds every wheel (the ideal model (4.7)). With a friction
+ * coefficient above 0 wheels slip and rollers drag: docs/friction.md. */
+typedef struct laconic_ground {
+    laconic_real friction_coefficient; /* μ: of each wheel without an own one; 0: ideal ground      */
+    laconic_real roller_drag;          /* k: 0, rollers turn freely, … 1, they do not turn         */
+    laconic_real axle_friction_Nm;     /* T: dry friction of each axle                             */
+    laconic_real slope_rad;            /* 0 … below π/2                                            */
+    laconic_real slope_heading_rad;    /* direction of steepest ascent, world axes                 */
+} laconic_ground;
+
+/* Limits of motors and their supply. All zero: none. Winding resistance and viscous friction are those that
+ * laconic_motor_fit() takes from the motor: with a limit the resistance must be above 0. */
+typedef struct laconic_drive {
+    laconic_real supply_V;              /* voltages are cut to it; 0: no limit                      */
+    laconic_real supply_resistance_ohm; /* by which the supply sags under the motors' currents      */
+    laconic_real current_limit_A;       /* of each motor; 0: no limit                               */
+    laconic_real winding_resistance_ohm; /* R_a: a motor's torque on its wheel is c1 R_a per ampere */
+    laconic_real viscous_friction_Nms;   /* n² d, at the wheel: the part of c2 that is no back-EMF  */
+} laconic_drive;
+
 /* What the user knows of the robot. Start from all zero and set what applies. M and I_S include the wheels. */
 typedef struct laconic_vehicle {
     laconic_real mass_kg;              /* M, without payload                                     */
@@ -57,6 +89,8 @@ typedef struct laconic_vehicle {
     laconic_real motor_damping_Nms;    /* c2                                                     */
     laconic_real friction_coefficient; /* μ, for the no-slip margin only                         */
     laconic_payload payload;
+    laconic_ground ground;
+    laconic_drive drive;
     int32_t wheel_count; /* N, 0 … LACONIC_MAX_WHEELS; 0 is a sliding puck         */
     laconic_wheel wheel[LACONIC_MAX_WHEELS];
     int32_t support_count; /* 0 … LACONIC_MAX_SUPPORTS, for normal loads only        */
@@ -87,6 +121,8 @@ typedef struct laconic_start {
     laconic_real nu_rad_per_s[3];
     laconic_real x_m, y_m; /* of the centre of mass */
     laconic_real heading_rad;
+    laconic_real wheel_speed_rad_per_s[LACONIC_MAX_WHEELS]; /* read where the ground has friction; all 0: as the wheels
+                                                               roll at this ν                       */
 } laconic_start;
 
 /* ---------------------------------------------------------------------------- traits of a field -- */
@@ -106,6 +142,8 @@ typedef enum laconic_field_rule {
     LACONIC_RULE_UNCHECKED, /* has a check of its own, or every value is valid */
     LACONIC_RULE_POSITIVE,
     LACONIC_RULE_NOT_NEGATIVE,
+    LACONIC_RULE_SHARE,      /* 0 … 1                                              */
+    LACONIC_RULE_INCLINE,    /* 0 … below π/2                                      */
     LACONIC_RULE_FINITE,
     LACONIC_RULE_NOT_ZERO,
     LACONIC_RULE_ANGLE,  /* small enough that its direction is known             */
@@ -131,7 +169,7 @@ typedef enum laconic_field_need {
 /* One row for each field, in the order in which numbers are checked:
  *     X(of, number, IDENTIFIER, member, name, KIND, RULE, NEED)
  * of           the argument of the list, passed through: the name of a table, or what else X needs
- * number       on the wire, never changed; laconic.dbc reserves 48 to 59 for fields to come
+ * number       on the wire, never changed
  * IDENTIFIER   LACONIC_FIELD_IDENTIFIER; also the text in the value tables of laconic.dbc
  * member       in the struct that the list is for, and the key in a scene; in the list of a wheel's own values the
  *              struct's member has own_ before it
@@ -156,6 +194,20 @@ typedef enum laconic_field_need {
     X(of, 13, PAYLOAD_Y,           y_m,              payload_y_m,              REAL, FINITE,       WITH_PAYLOAD) \
     X(of, 14, PAYLOAD_YAW_INERTIA, yaw_inertia_kgm2, payload_yaw_inertia_kgm2, REAL, NOT_NEGATIVE, WITH_PAYLOAD)
 
+#define LACONIC_GROUND_FIELDS(X, of) \
+    X(of, 51, GROUND_FRICTION_COEFFICIENT, friction_coefficient, ground_friction_coefficient, REAL, NOT_NEGATIVE, NEVER) \
+    X(of, 52, GROUND_ROLLER_DRAG,          roller_drag,          ground_roller_drag,          REAL, SHARE,        NEVER) \
+    X(of, 53, GROUND_AXLE_FRICTION,        axle_friction_Nm,     ground_axle_friction_Nm,     REAL, NOT_NEGATIVE, NEVER) \
+    X(of, 54, SLOPE,                       slope_rad,            slope_rad,                   REAL, INCLINE,      NEVER) \
+    X(of, 55, SLOPE_HEADING,               slope_heading_rad,    slope_heading_rad,           REAL, ANGLE,        NEVER)
+
+#define LACONIC_DRIVE_FIELDS(X, of) \
+    X(of, 56, SUPPLY_VOLTAGE,         supply_V,               supply_V,                   REAL, NOT_NEGATIVE, NEVER) \
+    X(of, 57, SUPPLY_RESISTANCE,      supply_resistance_ohm,  supply_resistance_ohm,      REAL, NOT_NEGATIVE, NEVER) \
+    X(of, 58, CURRENT_LIMIT,          current_limit_A,        current_limit_A,            REAL, NOT_NEGATIVE, NEVER) \
+    X(of, 60, WINDING_RESISTANCE,     winding_resistance_ohm, winding_resistance_ohm,     REAL, NOT_NEGATIVE, NEVER) \
+    X(of, 61, DRIVE_VISCOUS_FRICTION, viscous_friction_Nms,   drive_viscous_friction_Nms, REAL, NOT_NEGATIVE, NEVER)
+
 /* How many wheels or supports are given; member: their array. */
 #define LACONIC_WHEEL_COUNT_FIELD(X, of) \
     X(of, 15, WHEEL_COUNT, wheel, wheel_count, INTEGER, UNCHECKED, ALWAYS)
@@ -167,14 +219,18 @@ typedef enum laconic_field_need {
     X(of, 19, AXLE,         axle_rad,   axle_rad,     REAL,       ANGLE,     EACH_WHEEL) \
     X(of, 20, ROLLER,       roller_rad, roller_rad,   REAL,       ROLLER,    EACH_ROLLER) \
     X(of, 21, WHEEL_LOCKED, locked,     wheel_locked, FLAG,       UNCHECKED, NEVER) \
-    X(of, 47, DRIVEN,       undriven,   wheel_undriven, ABSENCE,  UNCHECKED, NEVER)
+    X(of, 47, DRIVEN,       undriven,   wheel_undriven, ABSENCE,  UNCHECKED, NEVER) \
+    X(of, 62, MOTOR_CIRCUIT, motor_circuit, motor_circuit, INTEGER, UNCHECKED, NEVER)
 
-/* A wheel's own values; 0: the vehicle's. */
+/* A wheel's own values; 0: the vehicle's, or the ground's. */
 #define LACONIC_OWN_WHEEL_FIELDS(X, of) \
-    X(of, 43, OWN_RADIUS,        radius_m,            own_radius_m,            REAL, NOT_NEGATIVE, NEVER) \
-    X(of, 44, OWN_INERTIA,       inertia_kgm2,        own_inertia_kgm2,        REAL, NOT_NEGATIVE, NEVER) \
-    X(of, 45, OWN_MOTOR_GAIN,    motor_gain_Nm_per_V, own_motor_gain_Nm_per_V, REAL, FINITE,       NEVER) \
-    X(of, 46, OWN_MOTOR_DAMPING, motor_damping_Nms,   own_motor_damping_Nms,   REAL, NOT_NEGATIVE, NEVER)
+    X(of, 43, OWN_RADIUS,                 radius_m,             own_radius_m,             REAL, NOT_NEGATIVE, NEVER) \
+    X(of, 44, OWN_INERTIA,                inertia_kgm2,         own_inertia_kgm2,         REAL, NOT_NEGATIVE, NEVER) \
+    X(of, 45, OWN_MOTOR_GAIN,             motor_gain_Nm_per_V,  own_motor_gain_Nm_per_V,  REAL, FINITE,       NEVER) \
+    X(of, 46, OWN_MOTOR_DAMPING,          motor_damping_Nms,    own_motor_damping_Nms,    REAL, NOT_NEGATIVE, NEVER) \
+    X(of, 48, WHEEL_FRICTION_COEFFICIENT, friction_coefficient, own_friction_coefficient, REAL, NOT_NEGATIVE, NEVER) \
+    X(of, 49, WHEEL_ROLLER_DRAG,          roller_drag,          own_roller_drag,          REAL, SHARE,        NEVER) \
+    X(of, 50, WHEEL_AXLE_FRICTION,        axle_friction_Nm,     own_axle_friction_Nm,     REAL, NOT_NEGATIVE, NEVER)
 
 #define LACONIC_SUPPORT_COUNT_FIELD(X, of) \
     X(of, 22, SUPPORT_COUNT, support, support_count, INTEGER, UNCHECKED, WITH_SUPPORTS)
@@ -185,7 +241,8 @@ typedef enum laconic_field_need {
 
 /* Arrays of laconic_start, then its single numbers. laconic_state_set() checks them. */
 #define LACONIC_START_ARRAY_FIELDS(X, of) \
-    X(of, 25, START_NU, nu_rad_per_s, start_nu_rad_per_s, REAL, FINITE, NEVER)
+    X(of, 25, START_NU,          nu_rad_per_s,          start_nu_rad_per_s,          REAL, FINITE, NEVER) \
+    X(of, 59, START_WHEEL_SPEED, wheel_speed_rad_per_s, start_wheel_speed_rad_per_s, REAL, FINITE, NEVER)
 #define LACONIC_START_FIELDS(X, of) \
     X(of, 26, START_X,       x_m,         start_x_m,         REAL, FINITE, NEVER) \
     X(of, 27, START_Y,       y_m,         start_y_m,         REAL, FINITE, NEVER) \
@@ -218,6 +275,7 @@ typedef enum laconic_field_need {
 /* What a plant starts with: vehicle, start, method and step. */
 #define LACONIC_PARAMETER_FIELDS(X) \
     LACONIC_VEHICLE_FIELDS(X, VEHICLE) LACONIC_PAYLOAD_FIELDS(X, PAYLOAD) \
+    LACONIC_GROUND_FIELDS(X, GROUND) LACONIC_DRIVE_FIELDS(X, DRIVE) \
     LACONIC_WHEEL_COUNT_FIELD(X, COUNT) LACONIC_WHEEL_FIELDS(X, WHEEL) LACONIC_OWN_WHEEL_FIELDS(X, OWN) \
     LACONIC_SUPPORT_COUNT_FIELD(X, COUNT) LACONIC_SUPPORT_FIELDS(X, SUPPORT) \
     LACONIC_START_ARRAY_FIELDS(X, START_ARRAY) LACONIC_START_FIELDS(X, START) LACONIC_RUN_FIELDS(X, RUN)
@@ -233,7 +291,7 @@ typedef enum laconic_field_need {
 /* The fields a refusal can name: LACONIC_FIELD_MASS = 1 … */
 typedef enum laconic_field {
     LACONIC_FIELD_NONE = 0,
-    LACONIC_ALL_FIELDS(LACONIC_FIELD_NUMBER) LACONIC_FIELD_COUNT = 48 /* one more than the largest number above */
+    LACONIC_ALL_FIELDS(LACONIC_FIELD_NUMBER) LACONIC_FIELD_COUNT = 63 /* one more than the largest number above */
 } laconic_field;
 
 #endif

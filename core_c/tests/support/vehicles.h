@@ -99,7 +99,7 @@ static inline laconic_model model_of(laconic_vehicle v) {
 }
 
 static inline laconic_start start_with(double nu1, double nu2, double nu3) {
-    laconic_start start = {{0, 0, 0}, 0, 0, 0};
+    laconic_start start = {{0}, 0, 0, 0, {0}};
     start.nu_rad_per_s[0] = REAL(nu1);
     start.nu_rad_per_s[1] = REAL(nu2);
     start.nu_rad_per_s[2] = REAL(nu3);

@@ -20,7 +20,7 @@ from typing import Any
 import numpy as np
 from cffi import FFI
 
-from laconic.core.fields import Field, fields_from, set_own_zeros
+from laconic.core.fields import OF_GROUND, Field, fields_from, set_own_zeros
 from laconic.core.given import c_object, items, number, numbers, shown, table
 from laconic.core.plant import Plant
 from laconic.errors import BadInput, Refused, nearest_of
@@ -117,10 +117,13 @@ class Core:
 
         Wheels beyond the core's array are only counted, so that the check refuses them.
         """
-        parts = ("wheel", "support", "motor", "payload")
+        parts = ("wheel", "support", "motor", "payload", "ground", "drive")
         plain: dict[str, Any] = table(self, "vehicle", "vehicle", data, parts)
         if payload := data.get("payload"):
             plain["payload"] = table(self, "vehicle.payload", "vehicle.payload", payload)
+        for part, path in (("ground", "ground"), ("drive", "vehicle.drive")):
+            if part in data:
+                plain[part] = table(self, path, path, data[part])
         vehicle = self.ffi.new("laconic_vehicle *", plain)
         wheels = list(items("vehicle.wheel", data.get("wheel", ())))
         supports = list(items("vehicle.support", data.get("support", ())))
@@ -133,7 +136,8 @@ class Core:
         set_own_zeros(vehicle, given, self.own_fields("inertia_"))  # before the rotor's is added
         if motor := data.get("motor"):
             self._fit_motor(vehicle, table(self, "vehicle.motor", "vehicle.motor", motor))
-        set_own_zeros(vehicle, given, self.own_fields("motor_"))
+        for stem in ("motor_", *OF_GROUND):
+            set_own_zeros(vehicle, given, self.own_fields(stem))
         return vehicle
 
     def _set_wheel(self, target: Any, name: str, wheel: Mapping[str, Any]) -> None:
@@ -243,11 +247,14 @@ class Core:
         return self.lib.laconic_method_by_name(name.encode())
 
     def plant(self, vehicle: Any, method: str, step_s: float, *, nu_rad_per_s: Sequence[float] = (0.0, 0.0, 0.0),
-              x_m: float = 0.0, y_m: float = 0.0, heading_rad: float = 0.0) -> Plant:
+              x_m: float = 0.0, y_m: float = 0.0, heading_rad: float = 0.0,
+              wheel_speed_rad_per_s: Sequence[float] = ()) -> Plant:
         """A vehicle that stands at its start, ready to step."""
         start = self.ffi.new("laconic_start *", {
             "nu_rad_per_s": numbers("nu_rad_per_s", nu_rad_per_s, 3), "x_m": number("x_m", x_m),
-            "y_m": number("y_m", y_m), "heading_rad": number("heading_rad", heading_rad)})
+            "y_m": number("y_m", y_m), "heading_rad": number("heading_rad", heading_rad),
+            "wheel_speed_rad_per_s": numbers("wheel_speed_rad_per_s", wheel_speed_rad_per_s,
+                                             len(wheel_speed_rad_per_s))})
         plant, why = self.ffi.new("laconic_plant *"), self.why()
         self.check(self.lib.laconic_plant_start(
             plant, c_object(self, "vehicle", vehicle), self.method(method), number("step_s", step_s), start, why), why)

@@ -14,6 +14,8 @@ COUNTED = ("wheel", "support")  # tables of which there are several; the field o
 ITEM = "[#]"
 WHEEL = "vehicle.wheel[#]"
 OWN = "own_"
+GROUND, GROUND_OF = "ground", "vehicle.ground"  # a table of scenes, and where the core has it
+OF_GROUND = ("friction_coefficient", "roller_drag", "axle_friction_Nm")  # that a wheel may have of its own
 
 
 @dataclass(frozen=True)
@@ -41,6 +43,16 @@ class Field:
         return key.removeprefix("un") if self.kind == "ABSENCE" else key
 
     @property
+    def struct(self) -> str:
+        """The table as the core nests its structs: the ground is the vehicle's."""
+        return GROUND_OF if self.table == GROUND else self.table
+
+    @property
+    def root(self) -> str:
+        """"vehicle", "initial", "run": the struct that holds it all."""
+        return self.struct.partition(".")[0]
+
+    @property
     def is_own(self) -> bool:
         """Whether it is a wheel's own value, which is 0 where the vehicle's holds."""
         return self.table == WHEEL and self.name.startswith(OWN)
@@ -52,7 +64,7 @@ class Field:
 
     @property
     def vehicle_key(self) -> str:
-        """Of a wheel's own value the vehicle's that it stands for."""
+        """Of a wheel's own value the vehicle's, or its ground's, that it stands for."""
         return f"wheel_{self.key}" if self.key in ("radius_m", "inertia_kgm2") else self.key
 
     @property
@@ -65,7 +77,7 @@ class Field:
         if self.counts:
             return [int(getattr(root, f"{self.key}_count"))]
         structs = [root]
-        for name in self.table.split(".")[1:]:
+        for name in self.struct.split(".")[1:]:
             inner = getattr(root, name.removesuffix(ITEM))
             structs = list(inner) if name.endswith(ITEM) else [inner]
         found = [getattr(struct, self.member) for struct in structs]
@@ -100,7 +112,8 @@ def set_own_zeros(vehicle: Any, wheels: Sequence[Mapping[str, Any]], fields: Seq
     get it as their own.
     """
     for field in fields:
-        common = getattr(vehicle, field.vehicle_key)
+        owner = vehicle.ground if field.key in OF_GROUND else vehicle
+        common = getattr(owner, field.vehicle_key)
         given = [(target, field.key in wheel) for target, wheel in zip(vehicle.wheel, wheels, strict=False)]
         has_zero = any(is_given and getattr(target, field.member) == 0 for target, is_given in given)
         if not has_zero or common == 0 or (field.rule == "NOT_NEGATIVE" and not common > 0):  # the core refuses it
@@ -108,4 +121,4 @@ def set_own_zeros(vehicle: Any, wheels: Sequence[Mapping[str, Any]], fields: Seq
         for target, is_given in given:
             if not is_given:
                 setattr(target, field.member, common)
-        setattr(vehicle, field.vehicle_key, 0.0)
+        setattr(owner, field.vehicle_key, 0.0)

@@ -13,7 +13,7 @@ if TYPE_CHECKING:
     from laconic.core import Core
 
 MAKERS = {"input": "core.input({…})", "vehicle": "core.vehicle({…})", "model": "core.prepare(vehicle)",
-          "state": "plant.save()"}
+          "state": "plant.save()", "plant": "plant.save()"}
 FLAGS = ("FLAG", "ABSENCE")
 MOST_STEPS = 2**64 - 1
 LONGEST_SHOWN = 60  # of a value in a message
@@ -80,7 +80,8 @@ def table(core: Core, path: str, name: str, given: Any, others: Sequence[str] = 
     for key in given:
         if key not in others:
             value = number(f"{name}.{key}", given[key])
-            found[key] = bool(value) if fields[key].kind in FLAGS else value
+            kind = fields[key].kind
+            found[key] = bool(value) if kind in FLAGS else int(value) if kind == "INTEGER" else value
     return found
 
 

@@ -72,12 +72,19 @@ class Plant:
         self._contact = None
 
     def save(self) -> Any:
-        """A copy of the state."""
+        """A copy of the state; with friction of the whole plant, whose wheels have states of their own."""
+        if self.has_friction:
+            return self.core.ffi.new("laconic_plant *", self.c[0])
         return self.core.ffi.new("laconic_state *", self.c.state)
 
     def restore(self, state: Any, steps: int) -> None:
         """Back to a saved state."""
-        self.c.state, self.c.steps = c_object(self.core, "state", state)[0], step_count("steps", steps)
+        steps = step_count("steps", steps)
+        if self.has_friction:
+            saved = c_object(self.core, "plant", state)
+            self.c.state, self.c.slip, self.c.steps = saved.state, saved.slip, steps
+        else:
+            self.c.state, self.c.steps = c_object(self.core, "state", state)[0], steps
 
     # ---- outputs
 
@@ -88,6 +95,18 @@ class Plant:
     def wheel_count(self) -> int:
         """N."""
         return int(self.c.model.wheel_count)
+
+    @property
+    def has_friction(self) -> bool:
+        """Whether it is stepped by the friction step: ground with friction, or motors with limits."""
+        return bool(self.c.friction.acts)
+
+    def outputs(self, held: Any) -> Any:
+        """The laconic_outputs with the reactions; its `friction` where the vehicle has friction."""
+        found = self.core.ffi.new("laconic_outputs *")
+        self.core.lib.laconic_outputs_of(found, self.c, c_object(self.core, "input", held))
+        found.reactions = self.reactions(held)[0]
+        return found
 
     @property
     def nu(self) -> np.ndarray:
@@ -116,14 +135,21 @@ class Plant:
 
     def wheel_speeds(self) -> np.ndarray:
         """χ' [rad/s]."""
+        if self.has_friction:
+            return self.core.numbers(self.c.slip.wheel_speed_rad_per_s)[: self.wheel_count]
         return self._per_wheel(self.core.lib.laconic_wheel_speeds)
 
     def wheel_torques(self, held: Any) -> np.ndarray:
         """Torque on each axle: motor and applied [N·m]."""
+        if self.has_friction:
+            return self.core.numbers(self.outputs(held).wheel_torque_Nm)[: self.wheel_count]
         return self._per_wheel(self.core.lib.laconic_wheel_torques, c_object(self.core, "input", held))
 
     def wheel_angles(self) -> np.ndarray:
         """χ [rad]."""
+        if self.has_friction:
+            angles = [each.value for each in self.c.slip.wheel_angle_rad]
+            return np.array(angles[: self.wheel_count], self.core.dtype)
         return self._per_wheel(self.core.lib.laconic_wheel_angles)
 
     def row(self) -> np.ndarray:
@@ -136,6 +162,9 @@ class Plant:
 
     def energy_J(self) -> float:
         """Kinetic energy."""
+        if self.has_friction:
+            parts = (self._at("friction"), self._at("state"), self._at("slip"))
+            return float(self.core.lib.laconic_friction_energy_J(*parts))
         return float(self.core.lib.laconic_energy_J(self._at("model"), self._at("state")))
 
     @property
@@ -151,5 +180,5 @@ class Plant:
         """The laconic_reactions of this state and input."""
         found = self.core.ffi.new("laconic_reactions *")
         held = c_object(self.core, "input", held)
-        self.core.lib.laconic_reactions_of(found, self.contact, self._at("model"), self._at("state"), held)
+        self.core.lib.laconic_plant_reactions(found, self.c, self.contact, held)
         return found

@@ -17,6 +17,7 @@ MEMBERS = {  # of laconic_outputs, where they are not called as the signal is
     "wheel_reaction_N": ("reactions", "along_N"), "wheel_lateral_N": ("reactions", "lateral_N"),
     "no_slip_margin_N": ("reactions", "no_slip_margin_N"),
 }
+FRICTION = "friction"  # the member of laconic_outputs with what only a vehicle with friction shows
 GROUND = ("wheel_reaction_N", "wheel_lateral_N", "no_slip_margin_N")  # what needs the reactions
 
 
@@ -54,6 +55,9 @@ class Recorder:
 def offset_of(core: Any, signal: str) -> int:
     """Where a signal stands in laconic_outputs, in bytes; the index counts from 1."""
     name, _, index = signal.partition("[")
+    of_friction = dict(core.ffi.typeof("laconic_friction_outputs").fields)
     member = ("input", name) if name in core.input_fields else MEMBERS.get(name, (name,))
+    if name in of_friction:
+        member = (FRICTION, name)
     element = (int(index.rstrip("]")) - 1,) if index else ()
     return core.ffi.offsetof("laconic_outputs", *member, *element)

@@ -31,9 +31,9 @@ def start_values(scene: Scene) -> dict[str, list[float]]:
     roots = {"vehicle": scene.c_vehicle(core), "initial": scene.c_start(core)}
     values: dict[str, list[float]] = {}
     for field in core.fields:
-        root = field.path.partition(".")[0]
+        root = field.root
         if root in roots and field.table != "vehicle.motor":
-            of_wheels = field.table == "vehicle.wheel[#]"
+            of_wheels = field.items == core.max_wheels
             values[field.name] = field.values(roots[root])[:scene.wheel_count if of_wheels else None]
     return values | {"method": [METHODS.index(scene.run.method)], "step_s": [scene.run.step_s]}
 

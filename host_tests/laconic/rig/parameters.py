@@ -19,7 +19,7 @@ def parameters_of(plant: Plant, start: Any) -> Iterator[Parameter]:
     vehicle, core = plant.c.vehicle, plant.core
     has_payload = any(value for field in core.fields_of("vehicle.payload") for value in field.values(vehicle))
     for field in core.fields:
-        root = field.path.partition(".")[0]
+        root = field.root
         if root not in ("vehicle", "initial") or field.table == "vehicle.motor":
             continue
         values = field.values(vehicle if root == "vehicle" else start)[:in_use(field, vehicle)]

@@ -9,6 +9,8 @@ from typing import Any
 
 from laconic.core import Field, load
 from laconic.errors import nearest_of
+from laconic.scene.fields import read_field
+from laconic.scene.ground import check_friction, has_friction, read_circuit, read_drive, read_ground
 from laconic.scene.inputs import Input
 from laconic.scene.not_modelled import KINDS_OF_WHEELS, OF_VEHICLES, OF_WHEELS
 from laconic.scene.table import Table
@@ -23,6 +25,12 @@ OUTPUT_LENGTHS = {
     "nu_rad_per_s": 3, "velocity_body_m_per_s": 2, "x_m": 0, "y_m": 0, "heading_rad": 0, "heading_wrapped_rad": 0,
     "origin_x_m": 0, "origin_y_m": 0, "yaw_rate_rad_per_s": 0, "no_slip_margin_N": 0, "energy_J": 0}
 
+FRICTION_PER_WHEEL = ("slip_along_m_per_s", "slip_across_m_per_s", "contact_state", "drive_limit", "motor_current_A")
+FRICTION_LENGTHS = dict.fromkeys(
+    ("supply_current_A", "supply_voltage_V", "supply_energy_J", "outer_work_J", "slip_loss_J", "axle_loss_J",
+     "motor_loss_J", "supply_loss_J", "numerical_loss_J"), 0)
+"""Outputs of scenes with ground friction or a drive with limits alone."""
+
 
 def read_parts(top: Table, methods: Sequence[str], reals: Sequence[str]) -> dict[str, Any]:
     """Everything a scene consists of, as plain values."""
@@ -30,14 +38,17 @@ def read_parts(top: Table, methods: Sequence[str], reals: Sequence[str]) -> dict
     if not parts["name"].strip():
         top.fail("name", "is empty; give a name, or take it out for the file's own")
     parts["vehicle"] = read_vehicle(top.table("vehicle", required=True))
+    if top.has("ground"):
+        parts["vehicle"]["ground"] = read_ground(top.table("ground"))
+    check_friction(top, parts["vehicle"])
     wheel_count = len(parts["vehicle"]["wheel"])
-    parts["initial"] = read_initial(top.table("initial"))
+    parts["initial"] = read_initial(top.table("initial"), wheel_count)
     parts["inputs"] = [read_input(each, wheel_count) for each in top.tables("input")]
     parts["run"] = read_run(top.table("run", required=True), methods, reals)
     for each in parts["inputs"]:
         check_motor(top, each, parts["vehicle"])
         check_end(top, each, parts["run"]["duration_s"])
-    parts["outputs"] = read_outputs(top.table("outputs"), wheel_count, parts["run"]["duration_s"])
+    parts["outputs"] = read_outputs(top.table("outputs"), parts["vehicle"], parts["run"]["duration_s"])
     parts["rig"] = read_rig(top.table("rig"))
     top.done()
     parts["in_degrees"] = frozenset(top.in_degrees)
@@ -53,6 +64,8 @@ def read_vehicle(table: Table) -> dict[str, Any]:
     needed = ... if vehicle["wheel"] else 0.0
     vehicle |= {field.key: read_field(table, field, needed) for field in fields if field.need == "WITH_WHEELS"}
     vehicle |= read_motor(table, [field for field in fields if field.need == "WITH_MOTOR"])
+    if table.has("drive"):
+        vehicle["drive"] = read_drive(table)
     vehicle["support"] = [read_point(each) for each in table.tables("support")]
     if table.has("payload"):
         payload = table.table("payload")
@@ -60,15 +73,6 @@ def read_vehicle(table: Table) -> dict[str, Any]:
         payload.done()
     table.done(OF_VEHICLES)
     return vehicle
-
-
-def read_field(table: Table, field: Field, default: Any = ..., *, finite: bool = False) -> Any:
-    """One key of a table by its row in the core's list of fields; the core checks its value."""
-    if field.kind in ("FLAG", "ABSENCE"):
-        return table.flag(field.key, default if default is ... else bool(default))
-    if field.key.endswith("_rad"):
-        return table.angle(field.key.removesuffix("_rad"), default, finite=finite)
-    return table.number(field.key, default, finite=finite)
 
 
 def read_motor(table: Table, direct: Sequence[Field]) -> dict[str, Any]:
@@ -100,6 +104,7 @@ def read_wheel(table: Table) -> dict[str, Any]:
         wheel["roller_rad"] = read_field(table, roller, math.pi / 2 if kind == "omni" else ...)
     usual = {"locked": False, "driven": True}
     wheel |= {key: read_field(table, fields[key], default) for key, default in usual.items()}
+    wheel["motor_circuit"] = read_circuit(table)
     wheel |= read_own(table, [field for field in fields.values() if field.is_own])
     table.done(OF_WHEELS)
     return wheel
@@ -135,7 +140,7 @@ def read_point(table: Table) -> dict[str, float]:
     return point
 
 
-def read_initial(table: Table) -> dict[str, Any]:
+def read_initial(table: Table, wheel_count: int) -> dict[str, Any]:
     """`[initial]`: ν, or velocity and yaw rate; by default at rest at the world's origin."""
     start: dict[str, Any] = {}
     velocity = [key for key in ("velocity_body_m_per_s", "yaw_rate_rad_per_s") if table.has(key)]
@@ -146,6 +151,8 @@ def read_initial(table: Table) -> dict[str, Any]:
     if "velocity_body_m_per_s" in velocity:
         start["velocity_body_m_per_s"] = table.numbers("velocity_body_m_per_s", 2)
     start["yaw_rate_rad_per_s"] = table.number("yaw_rate_rad_per_s", 0.0)
+    if table.has("wheel_speed_rad_per_s"):
+        start["wheel_speed_rad_per_s"] = table.numbers("wheel_speed_rad_per_s", wheel_count)
     single = [field for field in load().fields_of("initial") if field.items == 0]
     start |= {field.key: read_field(table, field, 0.0, finite=True) for field in single}
     table.done()
@@ -237,9 +244,16 @@ def read_run(table: Table, methods: Sequence[str], reals: Sequence[str]) -> dict
     return run
 
 
-def read_outputs(table: Table, wheel_count: int, duration_s: float) -> dict[str, Any]:
+def output_signals(vehicle: dict[str, Any]) -> tuple[dict[str, int], tuple[str, ...]]:
+    """What a vehicle shows: names with their lengths, and names with one item for each wheel."""
+    if has_friction(vehicle):
+        return OUTPUT_LENGTHS | FRICTION_LENGTHS, (*OUTPUTS_PER_WHEEL, *FRICTION_PER_WHEEL)
+    return OUTPUT_LENGTHS, OUTPUTS_PER_WHEEL
+
+
+def read_outputs(table: Table, vehicle: dict[str, Any], duration_s: float) -> dict[str, Any]:
     """`[outputs]`: a signal without its index stands for all of them."""
-    signals = read_signals(table, OUTPUT_LENGTHS, OUTPUTS_PER_WHEEL, wheel_count)
+    signals = read_signals(table, *output_signals(vehicle), len(vehicle["wheel"]))
     every = table.number("every_s", None)
     if every is not None and every <= 0:
         table.fail("every_s", f"is {every:g}; give a number above zero")

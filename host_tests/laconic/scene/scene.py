@@ -34,6 +34,7 @@ class Initial:
     x_m: float = 0.0
     y_m: float = 0.0
     heading_rad: float = 0.0
+    wheel_speed_rad_per_s: tuple[float, ...] = ()  # as the wheels roll where none is given
 
     def nu(self, model: Any) -> tuple[float, ...]:
         """ν for a prepared model: v_S = R (ν1, ν2), ν3 = Λ θ'."""
@@ -144,7 +145,8 @@ class Scene:
         nu, vehicle = start.nu(model), self.c_vehicle(core)
         try:
             return core.plant(vehicle, self.run.method, self.run.step_s, nu_rad_per_s=nu, x_m=start.x_m,
-                              y_m=start.y_m, heading_rad=start.heading_rad)
+                              y_m=start.y_m, heading_rad=start.heading_rad,
+                              wheel_speed_rad_per_s=start.wheel_speed_rad_per_s)
         except Refused as refused:
             if refused.status == "start against constraints":
                 raise start.refusal(refused, model).at(self.path) from None

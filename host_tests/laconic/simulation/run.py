@@ -14,12 +14,14 @@ from laconic.core.recording import Recorder
 from laconic.errors import BadInput, Refused
 from laconic.progress import Advance, progress_bar
 from laconic.scene import Scene, check_scene
+from laconic.scene.ground import slips
 from laconic.scene.inputs import InputsOnGrid
 from laconic.scene.reader import (
     LENGTHS,
     OUTPUT_LENGTHS,
     OUTPUTS_PER_WHEEL,
     PER_WHEEL,
+    output_signals,
     read_signals,
     signal_names,
 )
@@ -72,7 +74,7 @@ def input_signals(scene: Scene) -> tuple[str, ...]:
 def is_watched(scene: Scene) -> bool:
     """Whether the ground is checked: the scene gives its friction, or the height of the centre of mass."""
     vehicle = scene.vehicle
-    return bool(scene.wheel_count and (vehicle["friction_coefficient"] or vehicle["com_z_m"]))
+    return bool(scene.wheel_count and (vehicle["friction_coefficient"] or vehicle["com_z_m"] or slips(vehicle)))
 
 
 def advance_plant(plant: Plant, inputs: InputsOnGrid, first: int, count: int, recorder: Recorder | None = None) -> None:
@@ -87,8 +89,8 @@ def advance_plant(plant: Plant, inputs: InputsOnGrid, first: int, count: int, re
 def kept_signals(scene: Scene, given: Sequence[str]) -> tuple[str, ...]:
     """Those of a run: the given outputs and inputs, a signal without its index standing for all of them."""
     table = Table(scene.path, "", {"signals": given})
-    lengths, per_wheel = OUTPUT_LENGTHS | LENGTHS, (*OUTPUTS_PER_WHEEL, *PER_WHEEL)
-    return read_signals(table, lengths, per_wheel, scene.wheel_count) or wanted_signals(scene)
+    lengths, per_wheel = output_signals(scene.vehicle)
+    return read_signals(table, lengths | LENGTHS, (*per_wheel, *PER_WHEEL), scene.wheel_count) or wanted_signals(scene)
 
 
 def simulate(scene: Scene, signals: Sequence[str] = (), progress: bool = False) -> Trajectory:

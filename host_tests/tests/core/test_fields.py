@@ -12,7 +12,8 @@ from laconic.scene.reader import LENGTHS, PER_WHEEL
 from laconic_fmu.description import read
 
 STRUCTS = {"vehicle": "laconic_vehicle", "vehicle.payload": "laconic_payload", "vehicle.wheel[#]": "laconic_wheel",
-           "vehicle.support[#]": "laconic_support", "vehicle.motor": "laconic_motor", "initial": "laconic_start",
+           "vehicle.support[#]": "laconic_support", "ground": "laconic_ground", "vehicle.drive": "laconic_drive",
+           "vehicle.motor": "laconic_motor", "initial": "laconic_start",
            "": "laconic_input"}
 """Table of a scene → struct of the core."""
 
@@ -25,7 +26,8 @@ def parameters() -> list[Field]:
 def test_every_member_of_a_struct_has_its_row_in_the_list(table: str) -> None:
     core = load()
     members = {name for name, _ in core.ffi.typeof(STRUCTS[table]).fields}
-    inner = {"payload", *COUNTED, *(f"{name}_count" for name in COUNTED)} if table == "vehicle" else set()
+    counted = {*COUNTED, *(f"{name}_count" for name in COUNTED)}
+    inner = {"payload", "ground", "drive", *counted} if table == "vehicle" else set()
     assert {field.member for field in core.fields_of(table)} == members - inner, "vehicle.h: member without a row"
 
 

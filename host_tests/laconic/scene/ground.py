@@ -1,0 +1,82 @@
+"""The keys of a scene about ground with friction, slopes, and drives with limits; the core checks their values."""
+
+from __future__ import annotations
+
+from typing import Any
+
+from laconic.core import load
+from laconic.core.fields import OF_GROUND
+from laconic.scene.fields import read_field
+from laconic.scene.table import Table
+
+MOTOR_CIRCUITS = ("driven", "open", "shorted")  # laconic_motor_circuit
+OF_MOTOR = ("winding_resistance_ohm", "viscous_friction_Nms")  # of a drive, that laconic_motor_fit() fills
+
+
+def has_friction(vehicle: dict[str, Any]) -> bool:
+    """Whether the core steps the vehicle by its friction step (laconic_vehicle_has_friction)."""
+    circuits = any(wheel.get("motor_circuit") for wheel in vehicle["wheel"])
+    return bool(vehicle["wheel"]) and (slips(vehicle) or circuits or "drive" in vehicle)
+
+
+def slips(vehicle: dict[str, Any]) -> bool:
+    """Whether a wheel can slip."""
+    own = any(wheel.get("friction_coefficient") for wheel in vehicle["wheel"])
+    return own or "friction_coefficient" in vehicle.get("ground", {})
+
+
+def read_ground(table: Table) -> dict[str, float]:
+    """`[ground]`: friction, or a slope, or both."""
+    ground = {field.key: read_field(table, field) for field in load().fields_of("ground") if has(table, field.key)}
+    if "friction_coefficient" in ground and not ground["friction_coefficient"] > 0.0:
+        table.fail("friction_coefficient", f"is {ground['friction_coefficient']:g}; give a value above 0, or take "
+                   "[ground]'s friction out for ideal ground")
+    for key in OF_GROUND[1:]:
+        if key in ground and "friction_coefficient" not in ground:
+            table.fail(key, "has no effect on ideal ground; give friction_coefficient, too")
+    if "slope_heading_rad" in ground and "slope_rad" not in ground:
+        table.fail("slope_heading_rad", "has no effect on level ground; give slope_rad, too")
+    table.done()
+    return ground
+
+
+def has(table: Table, key: str) -> bool:
+    """Whether a key is given, an angle also in degrees."""
+    there = [table.has(key)]
+    if key.endswith("_rad"):
+        there.append(table.has(f"{key.removesuffix('_rad')}_deg"))
+    return any(there)
+
+
+def read_drive(vehicle: Table) -> dict[str, float]:
+    """`[vehicle.drive]`: limits of the motors in `[vehicle.motor]`."""
+    table = vehicle.table("drive")
+    fields = [field for field in load().fields_of("vehicle.drive") if field.key not in OF_MOTOR]
+    drive = {field.key: read_field(table, field) for field in fields if table.has(field.key)}
+    table.done()
+    if not drive:
+        vehicle.fail("drive", "is empty; give supply_V or current_limit_A, or take it out")
+    if not vehicle.has("motor"):
+        vehicle.fail("drive", "limits the currents of motors, which need [vehicle.motor]; give it instead of "
+                     "motor_gain_Nm_per_V, or take [vehicle.drive] out")
+    for key in ("supply_V", "current_limit_A"):
+        if key in drive and drive[key] == 0.0:
+            table.fail(key, "is 0; give a value above 0, or take it out for no limit")
+    if "supply_resistance_ohm" in drive and "supply_V" not in drive:
+        table.fail("supply_resistance_ohm", "has no effect without supply_V; give it, too")
+    return drive
+
+
+def read_circuit(wheel: Table) -> int:
+    """What the wheel's motor is connected to."""
+    return MOTOR_CIRCUITS.index(wheel.choice("motor_circuit", MOTOR_CIRCUITS, "driven"))
+
+
+def check_friction(top: Table, vehicle: dict[str, Any]) -> None:
+    """Fails for keys that contradict each other or have no effect."""
+    if "friction_coefficient" in vehicle.get("ground", {}) and top.table("vehicle").has("friction_coefficient"):
+        top.fail("vehicle.friction_coefficient", "is given besides ground.friction_coefficient, by which wheels slip; "
+                 "keep one of them")
+    if top.table("initial").has("wheel_speed_rad_per_s") and not slips(vehicle):
+        top.fail("initial.wheel_speed_rad_per_s", "has no effect on ideal ground, where wheels roll; give "
+                 "ground.friction_coefficient, too")
