@@ -88,8 +88,8 @@ void laconic_friction_reactions_of(laconic_reactions *reactions, const laconic_p
 void laconic_slip_take_over(laconic_slip *slip, const laconic_friction *friction, const laconic_real speed[],
                             const laconic_real angle_rad[]);
 
-/* The model as on ideal ground, whatever the vehicle's: laconic_prepare() makes that of the body alone where the vehicle
- * has friction. */
+/* The model as on ideal ground, whatever the vehicle's: laconic_prepare() makes that of the body alone where the
+ * vehicle has friction. */
 laconic_status laconic_prepare_ideal(laconic_model *model, const laconic_vehicle *vehicle, laconic_refusal *why);
 
 /* The number at an offset in bytes of a struct. */

@@ -61,8 +61,7 @@ laconic_status laconic_contact_prepare(laconic_contact *contact, const laconic_v
     for (int32_t i = 0; i < vehicle->wheel_count; i++)
         for (int32_t k = 0; k < 3; k++) fresh.wheel_rows[i][k] = matrices.wheel_rows[i][k];
     fresh.com_z_m = vehicle->com_z_m;
-    fresh.gravity_m_per_s2 =
-        R(LACONIC_GRAVITY_M_PER_S2) * laconic_direction_of_angle(vehicle->ground.slope_rad).cosine;
+    fresh.gravity_m_per_s2 = R(LACONIC_GRAVITY_M_PER_S2) * laconic_direction_of_angle(vehicle->ground.slope_rad).cosine;
     fresh.friction_coefficient = vehicle->friction_coefficient;
     if (!fits_squared(contact_size(&fresh, vehicle->wheel_count)))
         return refuse(why, LACONIC_OVERFLOW, LACONIC_FIELD_NONE, 0, R(0), R(0));
@@ -81,7 +80,8 @@ typedef struct instant {
     real weight_N;
 } instant;
 
-static void fill_instant(instant *now, const laconic_contact *c, const laconic_model *m, const laconic_state *state, const laconic_input *in) {
+static void fill_instant(instant *now, const laconic_contact *c, const laconic_model *m, const laconic_state *state,
+                         const laconic_input *in) {
     const vector zeta = zeta_of(state);
     laconic_forcing forcing;
     real nu[3], yaw_rate;

@@ -39,7 +39,8 @@ void laconic_derivative_tangent(laconic_rates *change, const laconic_model *mode
                                 const laconic_input *input, const laconic_variation *by) {
     const direction heading = laconic_direction_of_angle(at->heading_rad);
     const vector zeta = zeta_of_nu(model, at->nu_rad_per_s), d_zeta = zeta_of_nu(model, by->nu_rad_per_s);
-    const vector d_b = plus(b_of_torques(model, &by->input), b_of_wrench(model, wrench_change(model, input, heading, by)));
+    const vector d_b =
+        plus(b_of_torques(model, &by->input), b_of_wrench(model, wrench_change(model, input, heading, by)));
     const real along = dot(vec(model->velocity_of_zeta[0]), zeta), across = dot(vec(model->velocity_of_zeta[1]), zeta);
     const real d_along = dot(vec(model->velocity_of_zeta[0]), d_zeta) - by->heading_rad * across;
     const real d_across = dot(vec(model->velocity_of_zeta[1]), d_zeta) + by->heading_rad * along;

@@ -1,4 +1,4 @@
-/* A vehicle with friction → the constants of its contacts, motors and axles; and the state in which its wheels start. */
+/* A vehicle with friction → the constants of its contacts, motors and axles; the state in which its wheels start. */
 #include "friction_vehicle.h"
 
 #include "geometry.h"
@@ -37,15 +37,16 @@ static void fill_axle(laconic_friction *f, const laconic_vehicle *vehicle, int32
     const wheel_values own = laconic_wheel_values(vehicle, i);
     laconic_friction_axle *a = &f->axle[i];
     const real per_ampere = own.motor_gain_Nm_per_V * drive->winding_resistance_ohm / f->energy_J;
-    const bool has_motor = own.motor_gain_Nm_per_V != R(0) || own.motor_damping_Nms > R(0);
-    const real viscous = has_motor ? drive->viscous_friction_Nms : R(0);
+    const bool is_part = drive->viscous_friction_Nms < own.motor_damping_Nms;
+    const real viscous = is_part ? drive->viscous_friction_Nms : own.motor_damping_Nms;
     a->circuit = wheel->motor_circuit;
     a->locked = wheel->locked;
     a->gain = own.motor_gain_Nm_per_V / f->energy_J;
     a->back_emf = (own.motor_damping_Nms - viscous) / f->energy_J;
     a->viscous = viscous / f->energy_J;
-    a->torque_limit =
-        drive->current_limit_A > R(0) && per_ampere != R(0) ? magnitude(per_ampere) * drive->current_limit_A : LACONIC_REAL_MAX;
+    a->torque_limit = drive->current_limit_A > R(0) && per_ampere != R(0)
+                          ? magnitude(per_ampere) * drive->current_limit_A
+                          : LACONIC_REAL_MAX;
     a->ampere = per_ampere != R(0) ? R(1) / per_ampere : R(0);
     a->dry = f->slips ? own_or(wheel->own_axle_friction_Nm, vehicle->ground.axle_friction_Nm) / f->energy_J : R(0);
     a->friction_coefficient = f->slips ? own_or(wheel->own_friction_coefficient, vehicle->ground.friction_coefficient)
@@ -69,8 +70,8 @@ static bool usable(const laconic_friction *f) {
     for (int32_t i = 0; i < f->wheel_count; i++) {
         const laconic_friction_wheel *w = &f->wheel[i];
         const laconic_friction_axle *a = &f->axle[i];
-        sum += size(vec(w->along)) + size(vec(w->across)) + w->mobility + w->rim_size + R(1) / w->inertia +
-               w->inertia + w->lateral_mass + w->row_mass[0] + w->row_mass[1];
+        sum += size(vec(w->along)) + size(vec(w->across)) + w->mobility + w->rim_size + R(1) / w->inertia + w->inertia +
+               w->lateral_mass + w->row_mass[0] + w->row_mass[1];
         sum += magnitude(a->gain) + a->back_emf + a->viscous + magnitude(a->ampere) + a->dry + a->friction_coefficient;
     }
     return fits_squared(sum);
@@ -96,8 +97,8 @@ laconic_status laconic_friction_of(laconic_friction *friction, const laconic_mod
     f.impulse_N = model->mass_kg * b.radius_m;
     f.energy_J = f.impulse_N * b.radius_m;
     f.com_z_m = vehicle->com_z_m;
-    f.weight_N = model->mass_kg * R(LACONIC_GRAVITY_M_PER_S2) *
-                 laconic_direction_of_angle(vehicle->ground.slope_rad).cosine;
+    f.weight_N =
+        model->mass_kg * R(LACONIC_GRAVITY_M_PER_S2) * laconic_direction_of_angle(vehicle->ground.slope_rad).cosine;
     f.supply_V = vehicle->drive.supply_V;
     f.supply_resistance_ohm = vehicle->drive.supply_resistance_ohm;
     f.winding_resistance_ohm = vehicle->drive.winding_resistance_ohm;

@@ -67,12 +67,12 @@ void laconic_friction_reactions_of(laconic_reactions *out, const laconic_plant *
         const laconic_friction_axle *a = &f->axle[i];
         const real along = -s->grip_N[i][0], across = -f->wheel[i].drag * s->grip_N[i][1];
         const real carried = s->normal_N[i] > R(0) ? s->normal_N[i] : R(0);
-        const real margin = a->friction_coefficient * carried - laconic_root(along * along + across * across);
+        const real dragged = f->wheel[i].drag > R(0) ? s->grip_N[i][1] : R(0); /* the law's force: an ellipse's */
+        const real margin = a->friction_coefficient * carried - laconic_root(along * along + dragged * dragged);
         out->along_N[i] = along;
         out->lateral_N[i] = -across;
         out->brake_Nm[i] = R(0);
-        if (a->locked)
-            out->brake_Nm[i] = a->arm_m[0] * along + a->arm_m[1] * across - torque_on_axle(plant, input, i);
+        if (a->locked) out->brake_Nm[i] = a->arm_m[0] * along + a->arm_m[1] * across - torque_on_axle(plant, input, i);
         if (i == 0 || margin < out->no_slip_margin_N || margin != margin) out->no_slip_margin_N = margin;
     }
 }
@@ -131,8 +131,8 @@ void laconic_friction_derivative(laconic_rates *rates, laconic_real wheel_rate_r
     const real yaw_rate = nu.z * model->yaw_rate_of_zeta[2];
     const real along = f->radius_m * nu.x, across = f->radius_m * nu.y;
     real force[LACONIC_SLIP_WHEELS][2];
-    vector rate = plus((vector){yaw_rate * nu.y, -yaw_rate * nu.x, R(0)},
-                       b_of_wrench(model, wrench_of(model, input, heading)));
+    vector rate =
+        plus((vector){yaw_rate * nu.y, -yaw_rate * nu.x, R(0)}, b_of_wrench(model, wrench_of(model, input, heading)));
     smooth_forces(force, f, nu, speed);
     for (int32_t i = 0; i < f->wheel_count; i++) {
         const laconic_friction_wheel *w = &f->wheel[i];

@@ -1,4 +1,4 @@
-/* The friction step: backward Euler for body and wheels together, first order, of which the energy never grows by itself.
+/* The friction step: backward Euler for body and wheels together, first order; the energy never grows by itself.
  *
  *   1. normal loads, by statics with the ground's forces of the step before
  *   2. (ν1, ν2) rotated by h ν3/Λ: the velocity, unchanged in the world, in the axes at the step's end; there outer
@@ -53,7 +53,8 @@ static bool turns_with_heading(const part *p) {
 static void move_freely(part *p, const laconic_state *state) {
     const real angle = p->h * p->old.z * p->m->yaw_rate_of_zeta[2];
     const direction by = laconic_direction_of_angle(angle);
-    p->rotated = (vector){by.cosine * p->old.x + by.sine * p->old.y, by.cosine * p->old.y - by.sine * p->old.x, p->old.z};
+    p->rotated =
+        (vector){by.cosine * p->old.x + by.sine * p->old.y, by.cosine * p->old.y - by.sine * p->old.x, p->old.z};
     p->end = (direction){R(1), R(0)};
     if (turns_with_heading(p))
         p->end = laconic_direction_of_binary_angle(
@@ -78,10 +79,11 @@ static void load_wheel(part *p, const laconic_slip *slip, int32_t i) {
     if (a->circuit == LACONIC_MOTOR_DRIVEN && a->torque_limit < LACONIC_REAL_MAX)
         l->drive_limit = p->h * a->torque_limit;
     l->viscous = p->h * a->viscous;
-    l->free_speed = slip->wheel_speed_rad_per_s[i] +
-                    p->h * p->m->torque_scale * p->in->axle_torque_Nm[i] / p->f->wheel[i].inertia;
+    l->free_speed =
+        slip->wheel_speed_rad_per_s[i] + p->h * p->m->torque_scale * p->in->axle_torque_Nm[i] / p->f->wheel[i].inertia;
     if (!a->locked) return;
-    l->axle = LACONIC_REAL_MAX; /* the brake */
+    l->axle = LACONIC_REAL_MAX; /* the brake: as dry friction, more than the contact can overcome */
+    if (p->f->slips) l->axle = R(2) * p->f->wheel[i].rim_size * l->grip + p->f->wheel[i].inertia;
     l->drive = l->drive_slope = l->viscous = l->free_speed = R(0);
 }
 

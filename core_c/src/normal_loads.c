@@ -44,8 +44,8 @@ RARE void share_again(normal_loads *loads, const laconic_friction *f, const bala
 }
 
 void laconic_normal_loads(normal_loads *loads, const laconic_friction *friction, const real ground_N[2]) {
-    const balance b = {{friction->radius_m * friction->weight_N, -friction->com_z_m * ground_N[0],
-                        -friction->com_z_m * ground_N[1]}};
+    const balance b = {
+        {friction->radius_m * friction->weight_N, -friction->com_z_m * ground_N[0], -friction->com_z_m * ground_N[1]}};
     bool lifted[LACONIC_SLIP_POINTS] = {false};
     if (share(loads, friction, friction->normal_load_of_wrench, &b, lifted))
         share_again(loads, friction, &b, lifted);

@@ -15,10 +15,8 @@ typedef struct checked_number {
 #define IN_SUPPORT(prefix, number, IDENTIFIER, member, name, KIND, RULE, NEED) \
     {offsetof(laconic_support, member), number, LACONIC_RULE_##RULE},
 
-static const checked_number of_body[] = {LACONIC_VEHICLE_FIELDS(IN_VEHICLE, )
-                                             LACONIC_PAYLOAD_FIELDS(IN_VEHICLE, payload.)
-                                                 LACONIC_GROUND_FIELDS(IN_VEHICLE, ground.)
-                                                     LACONIC_DRIVE_FIELDS(IN_VEHICLE, drive.)};
+static const checked_number of_body[] = {LACONIC_VEHICLE_FIELDS(IN_VEHICLE, ) LACONIC_PAYLOAD_FIELDS(
+    IN_VEHICLE, payload.) LACONIC_GROUND_FIELDS(IN_VEHICLE, ground.) LACONIC_DRIVE_FIELDS(IN_VEHICLE, drive.)};
 static const checked_number of_wheel[] = {LACONIC_WHEEL_FIELDS(IN_WHEEL, ) LACONIC_OWN_WHEEL_FIELDS(IN_OWN, )};
 static const checked_number of_support[] = {LACONIC_SUPPORT_FIELDS(IN_SUPPORT, )};
 
@@ -40,8 +38,7 @@ static laconic_status check_number(real value, const checked_number *number, int
         return refuse(why, LACONIC_OVERFLOW, field, item, value, LACONIC_REAL_MIN);
     if (rule >= LACONIC_RULE_NOT_NEGATIVE && rule <= LACONIC_RULE_INCLINE && value < R(0))
         return refuse(why, LACONIC_NEGATIVE, field, item, value, R(0));
-    if (rule == LACONIC_RULE_SHARE && value > R(1))
-        return refuse(why, LACONIC_ABOVE_LIMIT, field, item, value, R(1));
+    if (rule == LACONIC_RULE_SHARE && value > R(1)) return refuse(why, LACONIC_ABOVE_LIMIT, field, item, value, R(1));
     if (rule == LACONIC_RULE_INCLINE && value > LARGEST_INCLINE)
         return refuse(why, LACONIC_ABOVE_LIMIT, field, item, value, LARGEST_INCLINE);
     if (rule >= LACONIC_RULE_ANGLE && magnitude(value) > LARGEST_ANGLE)
@@ -131,20 +128,13 @@ static laconic_status check_ideal_ground(const laconic_vehicle *v, laconic_refus
     return LACONIC_OK;
 }
 
-/* Limits are of currents, which follow from torques by the winding's resistance; viscous friction is a part of c2. */
+/* Limits are of currents, which follow from torques by the winding's resistance. */
 static laconic_status check_drive(const laconic_vehicle *v, laconic_refusal *why) {
     const laconic_drive *d = &v->drive;
     if ((d->supply_V > R(0) || d->current_limit_A > R(0)) && !(d->winding_resistance_ohm > R(0)))
         return refuse(why, LACONIC_NOT_POSITIVE, LACONIC_FIELD_WINDING_RESISTANCE, 0, d->winding_resistance_ohm, R(0));
     if (d->supply_resistance_ohm > R(0) && !(d->supply_V > R(0)))
         return refuse(why, LACONIC_NOT_POSITIVE, LACONIC_FIELD_SUPPLY_VOLTAGE, 0, d->supply_V, R(0));
-    for (int32_t i = 0; i < v->wheel_count; i++) {
-        const wheel_values own = laconic_wheel_values(v, i);
-        const bool has_motor = own.motor_gain_Nm_per_V != R(0) || own.motor_damping_Nms > R(0);
-        if (has_motor && d->viscous_friction_Nms > own.motor_damping_Nms)
-            return refuse(why, LACONIC_ABOVE_LIMIT, LACONIC_FIELD_DRIVE_VISCOUS_FRICTION, 0, d->viscous_friction_Nms,
-                          own.motor_damping_Nms);
-    }
     return LACONIC_OK;
 }
 
@@ -152,8 +142,7 @@ static laconic_status check_drive(const laconic_vehicle *v, laconic_refusal *why
 static laconic_status check_inertias(const laconic_vehicle *v, laconic_refusal *why) {
     for (int32_t i = 0; i < v->wheel_count; i++) {
         const real inertia = laconic_wheel_values(v, i).inertia_kgm2;
-        if (!(inertia > R(0)))
-            return refuse(why, LACONIC_NOT_POSITIVE, LACONIC_FIELD_WHEEL_INERTIA, 0, inertia, R(0));
+        if (!(inertia > R(0))) return refuse(why, LACONIC_NOT_POSITIVE, LACONIC_FIELD_WHEEL_INERTIA, 0, inertia, R(0));
     }
     return LACONIC_OK;
 }

@@ -176,8 +176,8 @@ typedef struct laconic_model {
  * division by a given number. Refuses as laconic_vehicle_check does, and with NOTHING_MOVES, ILL_CONDITIONED (value:
  * the condition number of A, refused from 2·10²⁷ on, in single from 7·10⁹), and OVERFLOW where a constant or the
  * inverse of a scale is beyond 10¹⁵⁴ (single: 10¹⁹), so that the product of two would leave the range: every number of
- * a prepared model is finite. Where the vehicle has friction (laconic_vehicle_has_friction) the model is that of the body
- * alone: without constraints, G = E, rows of wheels 0. */
+ * a prepared model is finite. Where the vehicle has friction (laconic_vehicle_has_friction) the model is that of the
+ * body alone: without constraints, G = E, rows of wheels 0. */
 laconic_status laconic_prepare(laconic_model *model, const laconic_vehicle *vehicle, laconic_refusal *why);
 
 /* Condition number of A on the motions that the constraints leave: largest over smallest inertia. Measured as energy
@@ -461,8 +461,8 @@ typedef struct laconic_plant {
     uint64_t steps; /* taken since the start: time is steps · step_s */
 } laconic_plant;
 
-/* Constants of a vehicle with friction; `model`: that of laconic_prepare(). Refuses OVERFLOW where a constant leaves the
- * range, and for a drive on ideal ground as laconic_prepare does for a vehicle without friction. */
+/* Constants of a vehicle with friction; `model`: that of laconic_prepare(). Refuses OVERFLOW where a constant leaves
+ * the range, and for a drive on ideal ground as laconic_prepare does for a vehicle without friction. */
 laconic_status laconic_friction_of(laconic_friction *friction, const laconic_model *model,
                                    const laconic_vehicle *vehicle, laconic_refusal *why);
 
@@ -499,8 +499,8 @@ laconic_status laconic_plant_start(laconic_plant *plant, const laconic_vehicle *
 /* `steps` steps with the input held. When step k is refused, plant->steps has grown by k − 1. */
 laconic_status laconic_plant_run(laconic_plant *plant, const laconic_input *held, uint64_t steps, laconic_refusal *why);
 
-/* One step with the input sampled at its start, middle and end (three in a row): laconic_step_sampled; with friction the
- * input in the middle is held. */
+/* One step with the input sampled at its start, middle and end (three in a row): laconic_step_sampled; with friction
+ * the input in the middle is held. */
 laconic_status laconic_plant_run_sampled(laconic_plant *plant, const laconic_input samples[3], laconic_refusal *why);
 
 /* Another step size from now on; plant->steps goes on counting. */
@@ -521,9 +521,9 @@ typedef struct laconic_outputs {
     laconic_real wheel_speed_rad_per_s[LACONIC_MAX_WHEELS];
     laconic_real wheel_angle_rad[LACONIC_MAX_WHEELS];
     laconic_real wheel_torque_Nm[LACONIC_MAX_WHEELS];
-    laconic_reactions reactions; /* set only where a contact is given                            */
+    laconic_reactions reactions;       /* set only where a contact is given                            */
     laconic_friction_outputs friction; /* set only where the vehicle has friction                */
-    laconic_input input;         /* what acts from this moment on                                */
+    laconic_input input;               /* what acts from this moment on                                */
 } laconic_outputs;
 
 /* Fills the outputs but the reactions. Items beyond the model's wheels stay as they were. One sine and cosine, O(N). */

@@ -70,11 +70,13 @@ typedef struct laconic_ground {
 /* Limits of motors and their supply. All zero: none. Winding resistance and viscous friction are those that
  * laconic_motor_fit() takes from the motor: with a limit the resistance must be above 0. */
 typedef struct laconic_drive {
-    laconic_real supply_V;              /* voltages are cut to it; 0: no limit                      */
-    laconic_real supply_resistance_ohm; /* by which the supply sags under the motors' currents      */
-    laconic_real current_limit_A;       /* of each motor; 0: no limit                               */
+    laconic_real supply_V;               /* voltages are cut to it; 0: no limit                      */
+    laconic_real supply_resistance_ohm;  /* by which the supply sags under the motors' currents      */
+    laconic_real current_limit_A;        /* of each motor; 0: no limit                               */
     laconic_real winding_resistance_ohm; /* R_a: a motor's torque on its wheel is c1 R_a per ampere */
-    laconic_real viscous_friction_Nms;   /* n² d, at the wheel: the part of c2 that is no back-EMF  */
+    laconic_real
+        viscous_friction_Nms; /* n² d, at the wheel: the part of c2 that is no back-EMF; all of c2 where that is
+                                            less */
 } laconic_drive;
 
 /* What the user knows of the robot. Start from all zero and set what applies. M and I_S include the wheels. */
@@ -142,8 +144,8 @@ typedef enum laconic_field_rule {
     LACONIC_RULE_UNCHECKED, /* has a check of its own, or every value is valid */
     LACONIC_RULE_POSITIVE,
     LACONIC_RULE_NOT_NEGATIVE,
-    LACONIC_RULE_SHARE,      /* 0 … 1                                              */
-    LACONIC_RULE_INCLINE,    /* 0 … below π/2                                      */
+    LACONIC_RULE_SHARE,   /* 0 … 1                                              */
+    LACONIC_RULE_INCLINE, /* 0 … below π/2                                      */
     LACONIC_RULE_FINITE,
     LACONIC_RULE_NOT_ZERO,
     LACONIC_RULE_ANGLE,  /* small enough that its direction is known             */
@@ -195,11 +197,12 @@ typedef enum laconic_field_need {
     X(of, 14, PAYLOAD_YAW_INERTIA, yaw_inertia_kgm2, payload_yaw_inertia_kgm2, REAL, NOT_NEGATIVE, WITH_PAYLOAD)
 
 #define LACONIC_GROUND_FIELDS(X, of) \
-    X(of, 51, GROUND_FRICTION_COEFFICIENT, friction_coefficient, ground_friction_coefficient, REAL, NOT_NEGATIVE, NEVER) \
-    X(of, 52, GROUND_ROLLER_DRAG,          roller_drag,          ground_roller_drag,          REAL, SHARE,        NEVER) \
-    X(of, 53, GROUND_AXLE_FRICTION,        axle_friction_Nm,     ground_axle_friction_Nm,     REAL, NOT_NEGATIVE, NEVER) \
-    X(of, 54, SLOPE,                       slope_rad,            slope_rad,                   REAL, INCLINE,      NEVER) \
-    X(of, 55, SLOPE_HEADING,               slope_heading_rad,    slope_heading_rad,           REAL, ANGLE,        NEVER)
+    X(of, 51, GROUND_FRICTION_COEFFICIENT, friction_coefficient, ground_friction_coefficient, REAL, NOT_NEGATIVE, \
+      NEVER) \
+    X(of, 52, GROUND_ROLLER_DRAG,   roller_drag,       ground_roller_drag,      REAL, SHARE,        NEVER) \
+    X(of, 53, GROUND_AXLE_FRICTION, axle_friction_Nm,  ground_axle_friction_Nm, REAL, NOT_NEGATIVE, NEVER) \
+    X(of, 54, SLOPE,                slope_rad,         slope_rad,               REAL, INCLINE,      NEVER) \
+    X(of, 55, SLOPE_HEADING,        slope_heading_rad, slope_heading_rad,       REAL, ANGLE,        NEVER)
 
 #define LACONIC_DRIVE_FIELDS(X, of) \
     X(of, 56, SUPPLY_VOLTAGE,         supply_V,               supply_V,                   REAL, NOT_NEGATIVE, NEVER) \

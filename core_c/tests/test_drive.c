@@ -1,0 +1,78 @@
+/* Tests of drive.c: limits of voltage and current, and the supply that sags. */
+#include "slipping.h"
+
+#include "friction_vehicle.h"
+
+static laconic_friction drive_of(double supply_V, double resistance_ohm, double limit_A) {
+    laconic_vehicle v = with_drive(robotino(0.5, 0, 0));
+    laconic_friction f;
+    v.drive.supply_V = REAL(supply_V);
+    v.drive.supply_resistance_ohm = REAL(resistance_ohm);
+    v.drive.current_limit_A = REAL(limit_A);
+    v.wheel[2].motor_circuit = LACONIC_MOTOR_OPEN;
+    const laconic_model model = model_of(v);
+    ASSERT_STATUS(LACONIC_OK, laconic_friction_of(&f, &model, &v, &why));
+    return f;
+}
+
+static void voltages_are_cut_to_the_supply_s(void) {
+    const laconic_friction f = drive_of(12, 0, 0);
+    const motor_state above = laconic_motor_at(&f, 0, 20, 0, 12), below = laconic_motor_at(&f, 0, -20, 0, 12);
+    const motor_state within = laconic_motor_at(&f, 0, 5, 4, 12), free = laconic_motor_at(&f, 0, 20, 0, -1);
+    ASSERT_NEAR(ROUNDING * 10, 6, above.current_A);
+    ASSERT_NEAR(ROUNDING * 10, -6, below.current_A);
+    ASSERT_NEAR(ROUNDING * 10, (5 * 0.5 - 0.25 * 4), within.current_A);
+    ASSERT_NEAR(ROUNDING * 10, 10, free.current_A);
+    TEST_ASSERT_EQUAL_INT(LACONIC_LIMIT_VOLTAGE, above.limit);
+    TEST_ASSERT_EQUAL_INT(LACONIC_LIMIT_NONE, within.limit);
+}
+
+static void a_limited_motor_has_the_voltage_of_its_current(void) {
+    const laconic_friction f = drive_of(24, 0, 3);
+    const motor_state m = laconic_motor_at(&f, 1, -20, 2, 24);
+    TEST_ASSERT_EQUAL_INT(LACONIC_LIMIT_CURRENT, m.limit);
+    ASSERT_NEAR(EITHER(1e-14, 1e-5), -3, m.current_A);
+    ASSERT_NEAR(EITHER(1e-13, 1e-5), -3 * 2 + 0.5 * 2, m.voltage_V);
+}
+
+static void an_open_motor_takes_no_current(void) {
+    const laconic_friction f = drive_of(24, 0, 3);
+    const motor_state m = laconic_motor_at(&f, 2, 20, 7, 24);
+    TEST_ASSERT_TRUE(m.current_A == 0 && m.torque == 0 && m.voltage_V == 0);
+}
+
+/* At stall two motors of 2 Ω in parallel hang on the supply: V = V₀ 1/(1 + R_s). */
+static void the_supply_sags_under_the_currents_of_all_motors(void) {
+    const laconic_friction f = drive_of(24, 0.5, 0), stiff = drive_of(24, 0, 0), none = drive_of(0, 0, 3);
+    const laconic_real at_rest[3] = {0, 0, 0};
+    laconic_input input = no_input();
+    input.voltage_V[0] = 30;
+    input.voltage_V[1] = -30;
+    ASSERT_NEAR(EITHER(1e-12, 1e-5), 24 / 1.5, laconic_supply_voltage(&f, &input, at_rest, 24));
+    ASSERT_NEAR(EITHER(1e-12, 1e-5), 24 / 1.5, laconic_supply_voltage(&f, &input, at_rest, 0));
+    ASSERT_NEAR(0, 24, laconic_supply_voltage(&stiff, &input, at_rest, 24));
+    TEST_ASSERT_TRUE(laconic_supply_voltage(&none, &input, at_rest, 24) < 0);
+    input.voltage_V[0] = 10; /* V = 24 − 0.5 · 10/V · 5 A: a converter takes what its motor takes */
+    input.voltage_V[1] = 0;
+    const double volts = (double)laconic_supply_voltage(&f, &input, at_rest, 24);
+    ASSERT_NEAR(EITHER(1e-6, 1e-4), 24 - 0.5 * 50 / volts, volts);
+}
+
+/* A supply that is far too weak still leaves a voltage above 0. */
+static void a_supply_that_breaks_down_stays_above_0(void) {
+    const laconic_friction f = drive_of(24, 1000, 0);
+    const laconic_real fast[3] = {-400, 0, 0};
+    laconic_input input = no_input();
+    input.voltage_V[0] = 30;
+    TEST_ASSERT_TRUE(laconic_supply_voltage(&f, &input, fast, 24) > 0);
+}
+
+int main(void) {
+    UNITY_BEGIN();
+    RUN_TEST(voltages_are_cut_to_the_supply_s);
+    RUN_TEST(a_limited_motor_has_the_voltage_of_its_current);
+    RUN_TEST(an_open_motor_takes_no_current);
+    RUN_TEST(the_supply_sags_under_the_currents_of_all_motors);
+    RUN_TEST(a_supply_that_breaks_down_stays_above_0);
+    return UNITY_END();
+}

@@ -1,0 +1,237 @@
+/* Tests of friction.c, and of plant.c and vehicle.c where a vehicle has friction. */
+#include "methods.h"
+#include "slipping.h"
+
+static void what_contradicts_itself_is_refused_by_name(void) {
+    laconic_vehicle v = robotino(0.5, 1.5, 0);
+    ASSERT_REFUSED(LACONIC_ABOVE_LIMIT, LACONIC_FIELD_GROUND_ROLLER_DRAG, 0, laconic_vehicle_check(&v, &why), why);
+    v = robotino(0.5, -0.1, 0);
+    ASSERT_REFUSED(LACONIC_NEGATIVE, LACONIC_FIELD_GROUND_ROLLER_DRAG, 0, laconic_vehicle_check(&v, &why), why);
+    v = robotino(0.5, 0, -1);
+    ASSERT_REFUSED(LACONIC_NEGATIVE, LACONIC_FIELD_GROUND_AXLE_FRICTION, 0, laconic_vehicle_check(&v, &why), why);
+    v = robotino(-0.5, 0, 0);
+    ASSERT_REFUSED(LACONIC_NEGATIVE, LACONIC_FIELD_GROUND_FRICTION_COEFFICIENT, 0, laconic_vehicle_check(&v, &why),
+                   why);
+    v = robotino(0.5, 0, 0);
+    v.friction_coefficient = REAL(0.4);
+    ASSERT_REFUSED(LACONIC_FRICTION_TWICE, LACONIC_FIELD_FRICTION_COEFFICIENT, 0, laconic_vehicle_check(&v, &why), why);
+    v = robotino(0, 0.5, 0);
+    ASSERT_REFUSED(LACONIC_FRICTION_MISSING, LACONIC_FIELD_GROUND_ROLLER_DRAG, 0, laconic_vehicle_check(&v, &why), why);
+    v = robotino(0, 0, 0.5);
+    ASSERT_REFUSED(LACONIC_FRICTION_MISSING, LACONIC_FIELD_GROUND_AXLE_FRICTION, 0, laconic_vehicle_check(&v, &why),
+                   why);
+    v = robotino(0, 0, 0);
+    v.wheel[1].own_roller_drag = REAL(0.5);
+    ASSERT_REFUSED(LACONIC_FRICTION_MISSING, LACONIC_FIELD_WHEEL_ROLLER_DRAG, 2, laconic_vehicle_check(&v, &why), why);
+    v.wheel[1].own_roller_drag = 0;
+    v.wheel[2].own_axle_friction_Nm = REAL(0.5);
+    ASSERT_REFUSED(LACONIC_FRICTION_MISSING, LACONIC_FIELD_WHEEL_AXLE_FRICTION, 3, laconic_vehicle_check(&v, &why),
+                   why);
+    v = robotino(0.5, 0, 0);
+    v.wheel_inertia_kgm2 = 0;
+    ASSERT_REFUSED(LACONIC_NOT_POSITIVE, LACONIC_FIELD_WHEEL_INERTIA, 0, laconic_vehicle_check(&v, &why), why);
+    v = robotino(0, 0, 0);
+    v.ground.slope_rad = REAL(1.6);
+    ASSERT_REFUSED(LACONIC_ABOVE_LIMIT, LACONIC_FIELD_SLOPE, 0, laconic_vehicle_check(&v, &why), why);
+    v.ground.slope_rad = REAL(-0.1);
+    ASSERT_REFUSED(LACONIC_NEGATIVE, LACONIC_FIELD_SLOPE, 0, laconic_vehicle_check(&v, &why), why);
+    v = robotino(0, 0, 0);
+    v.drive.supply_V = 12;
+    ASSERT_REFUSED(LACONIC_NOT_POSITIVE, LACONIC_FIELD_WINDING_RESISTANCE, 0, laconic_vehicle_check(&v, &why), why);
+    v.drive.supply_V = 0;
+    v.drive.current_limit_A = 3;
+    ASSERT_REFUSED(LACONIC_NOT_POSITIVE, LACONIC_FIELD_WINDING_RESISTANCE, 0, laconic_vehicle_check(&v, &why), why);
+    v = with_drive(robotino(0, 0, 0));
+    v.drive.supply_resistance_ohm = 1;
+    ASSERT_REFUSED(LACONIC_NOT_POSITIVE, LACONIC_FIELD_SUPPLY_VOLTAGE, 0, laconic_vehicle_check(&v, &why), why);
+    v = robotino(0, 0, 0);
+    v.wheel[1].motor_circuit = 3;
+    ASSERT_REFUSED(LACONIC_MOTOR_CIRCUIT_UNKNOWN, LACONIC_FIELD_MOTOR_CIRCUIT, 2, laconic_vehicle_check(&v, &why), why);
+    v.wheel[1].motor_circuit = -1;
+    ASSERT_REFUSED(LACONIC_MOTOR_CIRCUIT_UNKNOWN, LACONIC_FIELD_MOTOR_CIRCUIT, 2, laconic_vehicle_check(&v, &why), why);
+}
+
+static void friction_is_what_a_wheel_a_limit_or_a_circuit_gives(void) {
+    laconic_vehicle v = robotino(0, 0, 0);
+    TEST_ASSERT_FALSE(laconic_vehicle_has_friction(&v));
+    v.wheel[2].own_friction_coefficient = REAL(0.3);
+    TEST_ASSERT_TRUE(laconic_vehicle_has_friction(&v));
+    v = robotino(0, 0, 0);
+    v.wheel[0].motor_circuit = LACONIC_MOTOR_OPEN;
+    TEST_ASSERT_TRUE(laconic_vehicle_has_friction(&v));
+    v = with_drive(robotino(0, 0, 0));
+    v.drive.current_limit_A = 1;
+    TEST_ASSERT_TRUE(laconic_vehicle_has_friction(&v));
+    v.wheel_count = 0;
+    TEST_ASSERT_FALSE(laconic_vehicle_has_friction(&v));
+    v = robotino(0.5, 0, 0);
+    v.wheel_count = 0;
+    TEST_ASSERT_FALSE(laconic_vehicle_has_friction(&v));
+}
+
+static void only_auto_knows_friction(void) {
+    const laconic_vehicle v = robotino(0.5, 0, 0);
+    const laconic_start start = start_with(0, 0, 0);
+    laconic_plant plant;
+    ASSERT_REFUSED(LACONIC_METHOD_WITHOUT_FRICTION, LACONIC_FIELD_METHOD, 0,
+                   laconic_plant_start(&plant, &v, &laconic_rk4, REAL(0.01), &start, &why), why);
+    ASSERT_REFUSED(LACONIC_METHOD_UNKNOWN, LACONIC_FIELD_METHOD, 0,
+                   laconic_plant_start(&plant, &v, NULL, REAL(0.01), &start, &why), why);
+    plant = started(v, 0.01, 0, 0, 0);
+    const laconic_input input = no_input();
+    ASSERT_STATUS(LACONIC_METHOD_WITHOUT_FRICTION, laconic_step(&plant.model, &plant.integrator, &plant.state, &input));
+    ASSERT_STATUS(LACONIC_OK, laconic_plant_set_step(&plant, REAL(0.02), &why));
+    TEST_ASSERT_EQUAL_STRING("friction", plant.integrator.chosen->name);
+    ASSERT_STATUS(LACONIC_NOT_POSITIVE, laconic_plant_set_step(&plant, 0, &why));
+}
+
+static void wheels_start_as_they_roll_or_as_they_are_given(void) {
+    laconic_plant plant = started(robotino(0.5, 0, 0), 1e-3, 3, 0, 0);
+    laconic_model ideal;
+    const laconic_vehicle level = robotino(0, 0, 0);
+    laconic_real rolling[3];
+    laconic_start start = start_with(3, 0, 0);
+    ASSERT_STATUS(LACONIC_OK, laconic_prepare(&ideal, &level, &why));
+    const laconic_state state = state_of(&ideal, start);
+    laconic_wheel_speeds(&ideal, &state, rolling);
+    ASSERT_NEAR_ALL(10 * ROUNDING, rolling, plant.slip.wheel_speed_rad_per_s, 3);
+    laconic_vehicle v = robotino(0.5, 0, 0);
+    v.wheel[1].locked = true;
+    start.wheel_speed_rad_per_s[0] = 7;
+    start.wheel_speed_rad_per_s[1] = 9;
+    ASSERT_STATUS(LACONIC_OK, laconic_plant_start(&plant, &v, &laconic_auto, REAL(1e-3), &start, &why));
+    TEST_ASSERT_TRUE(plant.slip.wheel_speed_rad_per_s[0] == 7 && plant.slip.wheel_speed_rad_per_s[1] == 0);
+    start.wheel_speed_rad_per_s[2] = INFINITE;
+    ASSERT_REFUSED(LACONIC_NOT_FINITE, LACONIC_FIELD_START_WHEEL_SPEED, 3,
+                   laconic_plant_start(&plant, &v, &laconic_auto, REAL(1e-3), &start, &why), why);
+    start.wheel_speed_rad_per_s[2] = EITHER(REAL(1e200), REAL(1e30));
+    ASSERT_REFUSED(LACONIC_OVERFLOW, LACONIC_FIELD_START_WHEEL_SPEED, 3,
+                   laconic_plant_start(&plant, &v, &laconic_auto, REAL(1e-3), &start, &why), why);
+}
+
+static void a_drive_on_ideal_ground_starts_only_as_its_wheels_allow(void) {
+    laconic_vehicle v = with_drive(robotino(0, 0, 0));
+    laconic_start start = start_with(0, 3, 0);
+    laconic_plant plant;
+    v.wheel_count = 0;
+    add_wheel(&v, LACONIC_WHEEL_FIXED, 0, 0.1, -PI / 2, 0);
+    add_wheel(&v, LACONIC_WHEEL_FIXED, 0, -0.1, -PI / 2, 0);
+    v.drive.supply_V = 12;
+    ASSERT_REFUSED(LACONIC_START_AGAINST_CONSTRAINTS, LACONIC_FIELD_START_NU, 2,
+                   laconic_plant_start(&plant, &v, &laconic_auto, REAL(1e-3), &start, &why), why);
+    laconic_plant moving = started(v, 1e-3, 3, 0, 1);
+    laconic_input input = no_input();
+    input.voltage_V[0] = 20;
+    run(&moving, &input, 200);
+    TEST_ASSERT_TRUE(fabs((double)moving.state.zeta[1].value) < EITHER(1e-8, 1e-3));
+    TEST_ASSERT_EQUAL_INT(LACONIC_LIMIT_VOLTAGE, moving.slip.limit[0]);
+}
+
+static void numbers_too_far_apart_overflow_by_name(void) {
+    laconic_vehicle v = robotino(0.5, 0, 0);
+    const laconic_start start = start_with(0, 0, 0);
+    laconic_plant plant;
+    v.com_z_m = EITHER(REAL(1e200), REAL(1e30));
+    ASSERT_REFUSED(LACONIC_OVERFLOW, LACONIC_FIELD_NONE, 0,
+                   laconic_plant_start(&plant, &v, &laconic_auto, REAL(1e-3), &start, &why), why);
+}
+
+static void a_change_in_motion_keeps_body_and_wheels(void) {
+    laconic_vehicle v = with_drive(robotino(0.5, 0.4, 0.05));
+    laconic_plant plant = started(v, 1e-3, 5, 3, 4);
+    laconic_input input = no_input();
+    input.voltage_V[0] = 6;
+    run(&plant, &input, 100);
+    const laconic_slip before = plant.slip;
+    laconic_real velocity[2], then[2];
+    laconic_body_velocity(&plant.model, &plant.state, velocity);
+    v.payload.mass_kg = 5;
+    v.wheel[1].motor_circuit = LACONIC_MOTOR_OPEN;
+    ASSERT_STATUS(LACONIC_OK, laconic_plant_change(&plant, &v, &why));
+    laconic_body_velocity(&plant.model, &plant.state, then);
+    ASSERT_NEAR_ALL(10 * ROUNDING, velocity, then, 2);
+    TEST_ASSERT_EQUAL_MEMORY(&before, &plant.slip, sizeof before);
+    v.wheel_inertia_kgm2 = 0;
+    ASSERT_STATUS(LACONIC_NOT_POSITIVE, laconic_plant_change(&plant, &v, &why));
+}
+
+/* A motor that is switched off in motion on ideal ground, and on again. */
+static void wheels_are_taken_over_from_the_ideal_model_and_back(void) {
+    laconic_vehicle v = with_drive(robotino(0, 0, 0));
+    laconic_plant plant = started(v, 1e-3, 5, 3, 4);
+    const laconic_input input = no_input();
+    laconic_real speed[3], angle[3], after[3];
+    run(&plant, &input, 50);
+    laconic_wheel_speeds(&plant.model, &plant.state, speed);
+    laconic_wheel_angles(&plant.model, &plant.state, angle);
+    v.wheel[0].motor_circuit = LACONIC_MOTOR_OPEN;
+    ASSERT_STATUS(LACONIC_OK, laconic_plant_change(&plant, &v, &why));
+    ASSERT_NEAR_ALL(10 * ROUNDING, speed, plant.slip.wheel_speed_rad_per_s, 3);
+    for (int i = 0; i < 3; i++) ASSERT_NEAR(10 * ROUNDING, angle[i], plant.slip.wheel_angle_rad[i].value);
+    run(&plant, &input, 50);
+    for (int i = 0; i < 3; i++) angle[i] = plant.slip.wheel_angle_rad[i].value;
+    for (int i = 0; i < 3; i++) speed[i] = plant.slip.wheel_speed_rad_per_s[i];
+    v.wheel[0].motor_circuit = LACONIC_MOTOR_DRIVEN;
+    ASSERT_STATUS(LACONIC_OK, laconic_plant_change(&plant, &v, &why));
+    TEST_ASSERT_FALSE(plant.friction.acts);
+    laconic_wheel_speeds(&plant.model, &plant.state, after);
+    ASSERT_NEAR_ALL(EITHER(1e-8, 1e-3), speed, after, 3);
+    laconic_wheel_angles(&plant.model, &plant.state, after);
+    ASSERT_NEAR_ALL(10 * ROUNDING, angle, after, 3);
+}
+
+static void the_sampled_step_holds_the_input_of_the_middle(void) {
+    laconic_plant held = started(robotino(0.5, 0.2, 0), 1e-3, 1, 2, 3), sampled = held;
+    laconic_input three[3] = {no_input(), no_input(), no_input()};
+    three[1].body_force_N[0] = 10;
+    run(&held, &three[1], 1);
+    ASSERT_STATUS(LACONIC_OK, laconic_plant_run_sampled(&sampled, three, &why));
+    TEST_ASSERT_EQUAL_MEMORY(&held.slip, &sampled.slip, sizeof held.slip);
+    three[1].body_force_N[0] = NOT_A_NUMBER;
+    ASSERT_REFUSED(LACONIC_NOT_FINITE, LACONIC_FIELD_BODY_FORCE, 1, laconic_plant_run_sampled(&sampled, three, &why),
+                   why);
+}
+
+/* A slope in the ideal model is the downhill force that users gave until now. */
+static void a_slope_is_a_downhill_force_and_a_lighter_load(void) {
+    laconic_vehicle v = robotino(0, 0, 0);
+    laconic_input force = no_input();
+    const laconic_input none = no_input();
+    laconic_plant level = started(v, 1e-3, 2, 1, 3);
+    v.ground.slope_rad = REAL(0.2);
+    v.ground.slope_heading_rad = REAL(0.7);
+    laconic_plant sloped = started(v, 1e-3, 2, 1, 3);
+    const double pull = 20 * LACONIC_GRAVITY_M_PER_S2 * sin(0.2);
+    force.world_force_N[0] = REAL(-pull * cos(0.7));
+    force.world_force_N[1] = REAL(-pull * sin(0.7));
+    laconic_contact on_level, on_slope;
+    const laconic_vehicle flat = robotino(0, 0, 0);
+    ASSERT_STATUS(LACONIC_OK, laconic_contact_prepare(&on_level, &flat, &why));
+    ASSERT_STATUS(LACONIC_OK, laconic_contact_prepare(&on_slope, &v, &why));
+    laconic_reactions a, b;
+    laconic_plant_reactions(&a, &level, &on_level, &force);
+    laconic_plant_reactions(&b, &sloped, &on_slope, &none);
+    ASSERT_NEAR_ALL(EITHER(1e-11, 1e-3), a.along_N, b.along_N, 3);
+    double sum = 0;
+    for (int i = 0; i < 3; i++) sum += (double)b.normal_N[i];
+    ASSERT_NEAR(EITHER(1e-10, 1e-3), 20 * LACONIC_GRAVITY_M_PER_S2 * cos(0.2), sum);
+    run(&level, &force, 300);
+    run(&sloped, &none, 300);
+    for (int k = 0; k < 3; k++) ASSERT_NEAR(EITHER(1e-11, 1e-3), level.state.zeta[k].value, sloped.state.zeta[k].value);
+    ASSERT_NEAR(EITHER(1e-11, 1e-4), level.state.x_m.value, sloped.state.x_m.value);
+}
+
+int main(void) {
+    UNITY_BEGIN();
+    RUN_TEST(what_contradicts_itself_is_refused_by_name);
+    RUN_TEST(friction_is_what_a_wheel_a_limit_or_a_circuit_gives);
+    RUN_TEST(only_auto_knows_friction);
+    RUN_TEST(wheels_start_as_they_roll_or_as_they_are_given);
+    RUN_TEST(a_drive_on_ideal_ground_starts_only_as_its_wheels_allow);
+    RUN_TEST(numbers_too_far_apart_overflow_by_name);
+    RUN_TEST(a_change_in_motion_keeps_body_and_wheels);
+    RUN_TEST(wheels_are_taken_over_from_the_ideal_model_and_back);
+    RUN_TEST(the_sampled_step_holds_the_input_of_the_middle);
+    RUN_TEST(a_slope_is_a_downhill_force_and_a_lighter_load);
+    return UNITY_END();
+}

@@ -1,0 +1,115 @@
+/* Tests of friction_outputs.c: outputs, reactions and the smooth law of a vehicle with friction. */
+#include "slipping.h"
+
+static void contacts_that_slip_stick_and_lift_are_told_apart(void) {
+    laconic_vehicle v = skid(0.3);
+    laconic_input input = no_input();
+    v.com_z_m = REAL(0.35);
+    laconic_plant plant = started(v, 1e-3, 0, 0, 0);
+    run(&plant, &input, 2);
+    laconic_outputs out = outputs_with(&plant, &input);
+    for (int i = 0; i < 4; i++) TEST_ASSERT_TRUE(out.friction.contact_state[i] == 0);
+    input.body_force_N[1] = 300;
+    run(&plant, &input, 100);
+    out = outputs_with(&plant, &input);
+    for (int i = 0; i < 4; i++) TEST_ASSERT_TRUE(out.friction.contact_state[i] == 1);
+    TEST_ASSERT_TRUE(out.friction.slip_across_m_per_s[0] > 0 || out.friction.slip_across_m_per_s[0] < 0);
+    v.ground.friction_coefficient = 3;
+    plant = started(v, 1e-3, 0, 0, 0);
+    input.body_force_N[1] = 200;
+    run(&plant, &input, 20);
+    out = outputs_with(&plant, &input);
+    TEST_ASSERT_TRUE(out.friction.contact_state[0] == 2 || out.friction.contact_state[1] == 2);
+    TEST_ASSERT_TRUE(out.reactions.normal_N[0] < 0 || out.reactions.normal_N[1] < 0);
+}
+
+/* M v' = F + Σ of the wheels' forces, along u and along u turned by −90°. */
+static void the_reactions_move_the_body(void) {
+    laconic_input input = no_input();
+    laconic_plant plant = started(robotino(0.3, 0.5, 0.05), 1e-4, 8, 4, 0);
+    input.body_force_N[0] = 3;
+    run(&plant, &input, 1);
+    const laconic_outputs out = outputs_with(&plant, &input);
+    double force[2] = {3, 0};
+    const double start[2] = {8, 4};
+    for (int i = 0; i < 3; i++) {
+        const laconic_real *u = plant.friction.axle[i].pull;
+        force[0] += (double)(out.reactions.along_N[i] * u[0] + out.reactions.lateral_N[i] * u[1]);
+        force[1] += (double)(out.reactions.along_N[i] * u[1] - out.reactions.lateral_N[i] * u[0]);
+    }
+    for (int k = 0; k < 2; k++)
+        ASSERT_NEAR(EITHER(1e-6, 0.5), force[k], 20 * 0.04 * ((double)plant.state.zeta[k].value - start[k]) / 1e-4);
+    TEST_ASSERT_TRUE((double)out.reactions.no_slip_margin_N < 1e-3);
+}
+
+static void a_brake_holds_its_wheel_against_motor_and_ground(void) {
+    laconic_vehicle v = with_drive(robotino(0.4, 0, 0));
+    laconic_input input = no_input();
+    v.wheel[0].locked = true;
+    laconic_plant plant = started(v, 1e-3, 0, 0, 0);
+    input.voltage_V[0] = 4;
+    input.axle_torque_Nm[0] = 1;
+    run(&plant, &input, 1);
+    const laconic_outputs out = outputs_with(&plant, &input);
+    ASSERT_NEAR(EITHER(1e-12, 1e-5), 3, out.wheel_torque_Nm[0]);
+    ASSERT_NEAR(EITHER(1e-6, 1e-3), -3 + 0.04 * (double)out.reactions.along_N[0], out.reactions.brake_Nm[0]);
+    v.drive.supply_V = 6;
+    plant = started(v, 1e-3, 0, 0, 0);
+    input.voltage_V[1] = 20;
+    ASSERT_NEAR(EITHER(1e-12, 1e-5), 3, outputs_with(&plant, &input).wheel_torque_Nm[1]);
+}
+
+static void outputs_are_those_of_the_wheels_own_states(void) {
+    laconic_input input = no_input();
+    laconic_vehicle v = with_drive(robotino(0.4, 0.3, 0.02));
+    v.drive.supply_V = 12;
+    v.drive.supply_resistance_ohm = REAL(0.1);
+    laconic_plant plant = started(v, 1e-3, 0, 0, 0);
+    input.voltage_V[0] = 30;
+    run(&plant, &input, 100);
+    const laconic_outputs out = outputs_with(&plant, &input);
+    TEST_ASSERT_TRUE(out.wheel_speed_rad_per_s[0] == plant.slip.wheel_speed_rad_per_s[0]);
+    TEST_ASSERT_TRUE(out.wheel_angle_rad[0] == plant.slip.wheel_angle_rad[0].value);
+    TEST_ASSERT_TRUE(out.friction.drive_limit[0] == LACONIC_LIMIT_VOLTAGE && out.friction.drive_limit[1] == 0);
+    TEST_ASSERT_TRUE(out.friction.supply_voltage_V < 12 && out.friction.supply_current_A > 0);
+    ASSERT_NEAR(EITHER(1e-3, 1e-3), 12 - 0.1 * (double)out.friction.supply_current_A, out.friction.supply_voltage_V);
+    TEST_ASSERT_TRUE((double)out.energy_J == kinetic_J(&plant));
+}
+
+/* The smooth law integrated by small Euler steps goes where the friction step goes. */
+static void the_smooth_law_follows_the_friction_step(void) {
+    laconic_vehicle v = with_drive(robotino(0.4, 0.5, 0.05));
+    laconic_input input = no_input();
+    v.wheel[2].locked = true;
+    v.com_z_m = REAL(0.05);
+    const double h = 2e-5;
+    laconic_plant plant = started(v, h, 6, 2, 4);
+    laconic_real nu[3] = {6, 2, 4}, speed[3], heading = 0;
+    double x = 0;
+    input.voltage_V[0] = 5;
+    input.axle_torque_Nm[1] = REAL(0.2);
+    for (int i = 0; i < 3; i++) speed[i] = plant.slip.wheel_speed_rad_per_s[i];
+    for (int n = 0; n < 5000; n++) {
+        laconic_rates rates;
+        laconic_real wheel_rate[3];
+        laconic_friction_derivative(&rates, wheel_rate, &plant.friction, &plant.model, nu, heading, speed, &input);
+        for (int k = 0; k < 3; k++) nu[k] += REAL(h) * rates.nu_rad_per_s2[k];
+        for (int k = 0; k < 3; k++) speed[k] += REAL(h) * wheel_rate[k];
+        heading += REAL(h) * rates.yaw_rate_rad_per_s;
+        x += h * (double)rates.x_m_per_s;
+        TEST_ASSERT_TRUE(rates.wheel_speed_rad_per_s[2] == 0);
+    }
+    run(&plant, &input, 5000);
+    for (int k = 0; k < 3; k++) ASSERT_NEAR(0.15, plant.state.zeta[k].value, nu[k]);
+    ASSERT_NEAR(1e-3, plant.state.x_m.value, x);
+}
+
+int main(void) {
+    UNITY_BEGIN();
+    RUN_TEST(contacts_that_slip_stick_and_lift_are_told_apart);
+    RUN_TEST(the_reactions_move_the_body);
+    RUN_TEST(a_brake_holds_its_wheel_against_motor_and_ground);
+    RUN_TEST(outputs_are_those_of_the_wheels_own_states);
+    RUN_TEST(the_smooth_law_follows_the_friction_step);
+    return UNITY_END();
+}

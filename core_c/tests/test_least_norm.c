@@ -1,0 +1,31 @@
+/* Tests of least_norm.c. */
+#include "check.h"
+#include "least_norm.h"
+
+static void the_solution_is_exact_where_there_is_one_and_the_shortest(void) {
+    const laconic_real rows[4][3] = {{1, 1, 0}, {1, -1, 0}, {1, 0, 2}, {1, 0, -1}};
+    const laconic_real wanted[3] = {4, REAL(0.5), 1};
+    laconic_real solver[4][3], found[3] = {0, 0, 0};
+    laconic_least_norm(solver, rows, 4);
+    for (int i = 0; i < 4; i++) {
+        laconic_real x = 0;
+        for (int c = 0; c < 3; c++) x += solver[i][c] * wanted[c];
+        for (int c = 0; c < 3; c++) found[c] += rows[i][c] * x;
+    }
+    ASSERT_NEAR_ALL(EITHER(1e-14, 1e-5), wanted, found, 3);
+}
+
+static void rows_of_zero_carry_nothing(void) {
+    const laconic_real rows[2][3] = {{0, 0, 0}, {2, 0, 0}};
+    laconic_real solver[2][3];
+    laconic_least_norm(solver, rows, 2);
+    TEST_ASSERT_TRUE(solver[0][0] == 0 && solver[1][1] == 0);
+    ASSERT_NEAR(ROUNDING, 0.5, solver[1][0]);
+}
+
+int main(void) {
+    UNITY_BEGIN();
+    RUN_TEST(the_solution_is_exact_where_there_is_one_and_the_shortest);
+    RUN_TEST(rows_of_zero_carry_nothing);
+    return UNITY_END();
+}

@@ -1,0 +1,71 @@
+/* Tests of normal_loads.c: statics with points that lift. */
+#include "slipping.h"
+
+#include "friction_vehicle.h"
+
+static laconic_friction friction_of(laconic_vehicle v) {
+    const laconic_model model = model_of(v);
+    laconic_friction f;
+    ASSERT_STATUS(LACONIC_OK, laconic_friction_of(&f, &model, &v, &why));
+    return f;
+}
+
+static double sum_of_loads(const laconic_friction *f, const normal_loads *loads) {
+    double sum = 0;
+    for (int32_t i = 0; i < f->point_count; i++) sum += (double)loads->carried_N[i];
+    return sum;
+}
+
+static void at_rest_three_wheels_share_the_weight(void) {
+    const laconic_friction f = friction_of(robotino(0.5, 0, 0));
+    const laconic_real none_N[2] = {0, 0};
+    normal_loads loads;
+    laconic_normal_loads(&loads, &f, none_N);
+    for (int i = 0; i < 3; i++) ASSERT_NEAR(EITHER(1e-12, 1e-4), 20 * LACONIC_GRAVITY_M_PER_S2 / 3, loads.carried_N[i]);
+}
+
+static void the_ground_s_pull_below_the_centre_of_mass_moves_load(void) {
+    const laconic_friction f = friction_of(skid(0.5));
+    const laconic_real forward_N[2] = {40, 0};
+    normal_loads loads;
+    laconic_normal_loads(&loads, &f, forward_N);
+    ASSERT_NEAR(EITHER(1e-11, 1e-4), -40 * 0.1 / (2 * 0.3),
+                (double)loads.carried_N[0] - 20 * LACONIC_GRAVITY_M_PER_S2 / 4);
+    ASSERT_NEAR(EITHER(1e-11, 1e-3), 20 * LACONIC_GRAVITY_M_PER_S2, sum_of_loads(&f, &loads));
+}
+
+static void a_wheel_that_lifts_carries_nothing_and_the_others_carry_the_weight(void) {
+    laconic_vehicle v = robotino(0.5, 0, 0);
+    const laconic_real forward_N[2] = {400, 0};
+    normal_loads loads;
+    v.com_z_m = REAL(0.3);
+    const laconic_friction f = friction_of(v);
+    laconic_normal_loads(&loads, &f, forward_N);
+    int lifted = 0;
+    for (int i = 0; i < 3; i++) {
+        if (loads.statics_N[i] < 0) TEST_ASSERT_TRUE(loads.carried_N[i] == 0);
+        lifted += loads.statics_N[i] < 0;
+        TEST_ASSERT_TRUE(loads.carried_N[i] >= 0);
+    }
+    TEST_ASSERT_TRUE(lifted > 0);
+    ASSERT_NEAR(EITHER(1e-10, 1e-3), 20 * LACONIC_GRAVITY_M_PER_S2, sum_of_loads(&f, &loads));
+}
+
+static void on_a_slope_only_the_part_across_the_ground_loads(void) {
+    laconic_vehicle v = robotino(0.5, 0, 0);
+    const laconic_real none_N[2] = {0, 0};
+    normal_loads loads;
+    v.ground.slope_rad = REAL(0.5);
+    const laconic_friction f = friction_of(v);
+    laconic_normal_loads(&loads, &f, none_N);
+    ASSERT_NEAR(EITHER(1e-10, 1e-3), 20 * LACONIC_GRAVITY_M_PER_S2 * cos(0.5), sum_of_loads(&f, &loads));
+}
+
+int main(void) {
+    UNITY_BEGIN();
+    RUN_TEST(at_rest_three_wheels_share_the_weight);
+    RUN_TEST(the_ground_s_pull_below_the_centre_of_mass_moves_load);
+    RUN_TEST(a_wheel_that_lifts_carries_nothing_and_the_others_carry_the_weight);
+    RUN_TEST(on_a_slope_only_the_part_across_the_ground_loads);
+    return UNITY_END();
+}
