@@ -1,7 +1,7 @@
 /* Tests of drive.c: limits of voltage and current, and the supply that sags. */
-#include "slipping.h"
-
 #include "friction_vehicle.h"
+
+#include "slipping.h"
 
 static laconic_friction drive_of(double supply_V, double resistance_ohm, double limit_A) {
     laconic_vehicle v = with_drive(robotino(0.5, 0, 0));
@@ -43,7 +43,7 @@ static void an_open_motor_takes_no_current(void) {
 
 /* At stall two motors of 2 Ω in parallel hang on the supply: V = V₀ 1/(1 + R_s). */
 static void the_supply_sags_under_the_currents_of_all_motors(void) {
-    const laconic_friction f = drive_of(24, 0.5, 0), stiff = drive_of(24, 0, 0), none = drive_of(0, 0, 3);
+    const laconic_friction f = drive_of(24, 0.5, 0), stiff = drive_of(24, 0, 0), unlimited = drive_of(0, 0, 3);
     const laconic_real at_rest[3] = {0, 0, 0};
     laconic_input input = no_input();
     input.voltage_V[0] = 30;
@@ -51,7 +51,7 @@ static void the_supply_sags_under_the_currents_of_all_motors(void) {
     ASSERT_NEAR(EITHER(1e-12, 1e-5), 24 / 1.5, laconic_supply_voltage(&f, &input, at_rest, 24));
     ASSERT_NEAR(EITHER(1e-12, 1e-5), 24 / 1.5, laconic_supply_voltage(&f, &input, at_rest, 0));
     ASSERT_NEAR(0, 24, laconic_supply_voltage(&stiff, &input, at_rest, 24));
-    TEST_ASSERT_TRUE(laconic_supply_voltage(&none, &input, at_rest, 24) < 0);
+    TEST_ASSERT_TRUE(laconic_supply_voltage(&unlimited, &input, at_rest, 24) < 0);
     input.voltage_V[0] = 10; /* V = 24 − 0.5 · 10/V · 5 A: a converter takes what its motor takes */
     input.voltage_V[1] = 0;
     const double volts = (double)laconic_supply_voltage(&f, &input, at_rest, 24);

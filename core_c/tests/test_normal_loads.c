@@ -1,7 +1,7 @@
 /* Tests of normal_loads.c: statics with points that lift. */
-#include "slipping.h"
-
 #include "friction_vehicle.h"
+
+#include "slipping.h"
 
 static laconic_friction friction_of(laconic_vehicle v) {
     const laconic_model model = model_of(v);

@@ -17,6 +17,7 @@ from typing import Any
 
 from laconic.core import Core, load
 from laconic.core.plant import Plant
+from laconic.errors import BadInput
 from laconic.outputs import write_text
 from laconic.scene import Scene
 from laconic.trim.c_tables import initializer
@@ -38,6 +39,8 @@ class Needs:
     pose: bool
     wheel_angles: bool
     damping: bool
+    slope: bool
+    friction: bool
     own_wheels: bool  # some wheel has values of its own
 
 
@@ -74,15 +77,16 @@ def needs_of(scene: Scene) -> Needs:
     """Read from the scene's inputs and outputs; without `[outputs] signals`, pose and wheel angles are computed."""
     acting = {each.signal.partition("[")[0] for each in scene.inputs}
     wanted = {name.partition("[")[0] for name in scene.outputs.signals}
-    world_force = "world_force_N" in acting
     plant = scene.plant(load("double"))
+    slope = bool(plant.c.model.sloped)
+    world_force = "world_force_N" in acting or slope
     return Needs(
         voltage="voltage_V" in acting, axle_torque="axle_torque_Nm" in acting,
         body_wrench=bool(acting & {"body_force_N", "body_moment_Nm"}), world_force=world_force,
         sampled_input=not scene.inputs_on_grid().is_held,
         pose=world_force or not wanted or not wanted.isdisjoint(POSE),
         wheel_angles=scene.wheel_count > 0 and (not wanted or "wheel_angle_rad" in wanted),
-        damping=any(plant.c.model.decay_per_s),
+        damping=any(plant.c.model.decay_per_s), slope=slope, friction=plant.has_friction,
         own_wheels=any(wheel.undriven or any(getattr(wheel, field.member) for field in plant.core.own_fields())
                        for wheel in plant.c.vehicle.wheel))
 
@@ -91,6 +95,9 @@ def trimmed(scene: Scene, real: str) -> Trimmed:
     """Everything a build for this scene alone consists of."""
     core = load(real)
     plant = scene.plant(core)
+    if plant.has_friction:
+        raise BadInput(f"{scene.path}: a trimmed core has neither ground friction nor limits of a drive; take "
+                       "[ground]'s friction, [vehicle.drive] and motor_circuit out")
     method = plant.chosen_method
     needs = needs_of(scene)
     return Trimmed(needs, method, method_steps(scene, method), header_of(scene, real, needs),
