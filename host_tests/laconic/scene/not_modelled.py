@@ -14,7 +14,7 @@ RADIUS = "vehicle.wheel_radius_m is the radius of all wheels but those that give
 MOTOR = ("[vehicle.motor] is the motor of all wheels but those that give their own motor_gain_Nm_per_V and "
          "motor_damping_Nms, or driven = false; inertia_kgm2 of a wheel is about its axle")
 IDLER = "a wheel without a motor is one of the kinds \"omni\", \"mecanum\", \"roller\" or \"fixed\" with driven = false"
-LEVEL = ("the ground is level; on a slope give the downhill part of the weight as world_force_N, see docs/scenes.md")
+LEVEL = "a slope is the ground's: give [ground] slope_rad, or slope_deg"
 RIGID = "the vehicle is rigid, without suspension; normal loads are those of its mass at rest and in motion"
 SLIP = ("wheels roll without slip; friction_coefficient shows where they could not, and the run goes on as if they did")
 FIXED = "a wheel that is neither omni nor mecanum is \"fixed\", driven or not"

@@ -39,9 +39,9 @@ class Needs:
     pose: bool
     wheel_angles: bool
     damping: bool
+    own_wheels: bool  # some wheel has values of its own
     slope: bool
     friction: bool
-    own_wheels: bool  # some wheel has values of its own
 
 
 @dataclass(frozen=True)

@@ -83,7 +83,7 @@ BAD = {
     "table of casters": (("[run]", "[[vehicle.caster]]\nx_m = 0\n[run]"), ("vehicle.caster", "[[vehicle.support]]")),
     "steering of a wheel": (("axle_deg = 180", "axle_deg = 180\nsteer_deg = 5"), ("wheel[2].steer_deg", "steered")),
     "radius of a wheel": (("axle_deg = 180", "axle_deg = 180\nradius = 1"), ("wheel[2].radius:", "radius_m")),
-    "slope": (("mass_kg = 20.0", "mass_kg = 20.0\nslope_deg = 5"), ("vehicle.slope_deg", "world_force_N")),
+    "slope": (("mass_kg = 20.0", "mass_kg = 20.0\nslope_deg = 5"), ("vehicle.slope_deg", "[ground] slope_rad")),
     "suspension": (("mass_kg = 20.0", "mass_kg = 20.0\nspring_N_per_m = 5"), ("vehicle.spring_N_per_m", "rigid")),
     "output twice": (
         ("[run]", '[outputs]\nsignals = ["x_m", "y_m", "x_m"]\n[run]'), ("outputs.signals: names x_m twice",)),

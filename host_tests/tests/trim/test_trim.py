@@ -133,7 +133,7 @@ def test_the_command_reports_what_it_wrote_and_left_out(tmp_path: Path, capsys: 
     assert run(["trim", "s1", "--real", "single", "--out", str(tmp_path)]) == 0
     printed = capsys.readouterr().out
     assert str(tmp_path / "laconic_scene.h") in printed
-    assert printed.endswith("left out: axle torque, body wrench, world force, sampled input, own wheels\n")
+    assert printed.endswith("left out: axle torque, body wrench, world force, sampled input, own wheels, slope, friction\n")
 
 
 @needs_gcc
