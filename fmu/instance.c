@@ -84,6 +84,7 @@ fmu_instance *fmu_create(const fmu_request *request) {
         return NULL;
     }
     instance->token_hash = fmu_token_hash(request->token);
+    fmu_model_made(&instance->model);
     instance->model.start_needed = true;
     instance->initial = instance->model;
     fmu_enter(instance, FMU_INSTANTIATED);

@@ -146,7 +146,8 @@ typedef enum fmu_access { /* who sets it, and when (variables.c) */
                           FMU_FIXED,
                           FMU_TUNABLE,
                           FMU_INPUT,
-                          FMU_STATE, /* an output that is a continuous state */
+                          FMU_STATE,          /* an output that is a continuous state */
+                          FMU_OPTIONAL_STATE, /* one where FMU_MODEL_HAS_OPTIONAL_STATES, else an output */
                           FMU_OUTPUT,
                           FMU_LOCAL
 } fmu_access;
@@ -191,6 +192,12 @@ typedef struct fmu_slot {
     const fmu_variable *variable;
     uint32_t first, count;
 } fmu_slot;
+
+/* Its access in this instance: never FMU_OPTIONAL_STATE. */
+static inline fmu_access fmu_access_of(const fmu_instance *instance, const fmu_variable *variable) {
+    if (variable->access != FMU_OPTIONAL_STATE) return (fmu_access)variable->access;
+    return FMU_MODEL_HAS_OPTIONAL_STATES(&instance->model) ? FMU_STATE : FMU_OUTPUT;
+}
 
 bool fmu_find(const fmu_instance *instance, uint32_t reference, fmu_slot *slot);
 

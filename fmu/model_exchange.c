@@ -52,7 +52,7 @@ fmu_status fmu_set_states(fmu_instance *instance, const double *values, size_t c
 }
 
 fmu_status fmu_get_rates(fmu_instance *instance, double *values, size_t count) {
-    double rates[6 + FMU_MODEL_LARGEST_ARRAY];
+    double rates[FMU_MODEL_MOST_STATES];
     fmu_status status = check_count(instance, values, count);
     if (status == FMU_OK) status = fmu_apply_parameters(instance);
     if (status != FMU_OK) return status;

@@ -1,12 +1,16 @@
 /* The functions of an FMU model, which vehicle/model.c and controller/model.c implement for the glue. The struct
  * fmu_model (model.h) is plain data, so that it can be copied. Each model has the members `start_needed`,
  * `change_needed`, `states_changed`, `time_s` and `stale` (bits of the groups that must be computed before they are
- * read), and the macros FMU_MODEL_ARRAY_SIZE, FMU_MODEL_LARGEST_ARRAY and FMU_MODEL_TAKES_SLOPES. */
+ * read), and the macros FMU_MODEL_ARRAY_SIZE, FMU_MODEL_LARGEST_ARRAY, FMU_MODEL_MOST_STATES,
+ * FMU_MODEL_HAS_OPTIONAL_STATES and FMU_MODEL_TAKES_SLOPES. */
 #ifndef LACONIC_FMU_MODEL_INTERFACE_H
 #define LACONIC_FMU_MODEL_INTERFACE_H
 
 #include "instance.h"
 #include "stream.h"
+
+/* To be called when the FMU's own start values are in the model, before the importer sets any. */
+void fmu_model_made(fmu_model *model);
 
 /* Prepares the model from its parameters and sets the initial state. The log gives the reason of a refusal. */
 fmu_status fmu_model_start(fmu_instance *instance);
@@ -51,6 +55,8 @@ void fmu_model_before_set_state(fmu_instance *instance);
 void fmu_model_get_rates(fmu_instance *instance, double *values);
 void fmu_model_get_nominals(const fmu_model *model, double *values);
 
+/* Whether the model has partial derivatives as it is now; the log gives the reason if not. */
+fmu_status fmu_model_check_tangent(const fmu_instance *instance);
 /* Directional derivative: `tangent` has the seeds at the `tangent` offsets of the variable table, and gets the
  * outputs'. */
 void fmu_model_tangent(fmu_instance *instance, fmu_tangent *tangent);

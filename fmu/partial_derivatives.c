@@ -13,7 +13,7 @@ static double *tangent_at(fmu_tangent *tangent, const fmu_slot *slot, uint32_t e
  * which nothing depends. */
 static bool is_known(const fmu_instance *instance, const fmu_variable *variable) {
     if (variable->access == FMU_INDEPENDENT || variable->access == FMU_INPUT) return true;
-    if (variable->access == FMU_STATE) return true;
+    if (fmu_access_of(instance, variable) == FMU_STATE) return true;
     return variable->tangent != NO_TANGENT && variable->access == FMU_FIXED && instance->mode == FMU_INITIALIZATION;
 }
 
@@ -49,7 +49,8 @@ static fmu_status check_counts(fmu_instance *instance, fmu_references unknowns, 
     if (status == FMU_OK) status = count_known(instance, knowns, true, &total);
     if (status == FMU_OK && total != known_values)
         status = fmu_refuse(instance, "%zu values for knowns that have %zu", known_values, total);
-    return status == FMU_OK ? fmu_apply_parameters(instance) : status;
+    if (status == FMU_OK) status = fmu_apply_parameters(instance);
+    return status == FMU_OK ? fmu_model_check_tangent(instance) : status;
 }
 
 static fmu_status refuse_result(const fmu_instance *instance, const fmu_variable *variable) {

@@ -33,12 +33,12 @@ static double load(const fmu_instance *instance, const fmu_slot *slot, uint32_t 
     }
 }
 
-static double least_of(const fmu_variable *variable) {
-    return variable->access == FMU_STATE ? -FMU_LARGEST_STATE : variable->least;
+static double least_of(const fmu_instance *instance, const fmu_variable *variable) {
+    return fmu_access_of(instance, variable) == FMU_STATE ? -FMU_LARGEST_STATE : variable->least;
 }
 
-static double most_of(const fmu_variable *variable) {
-    return variable->access == FMU_STATE ? FMU_LARGEST_STATE : variable->most;
+static double most_of(const fmu_instance *instance, const fmu_variable *variable) {
+    return fmu_access_of(instance, variable) == FMU_STATE ? FMU_LARGEST_STATE : variable->most;
 }
 
 #define NAME_LENGTH 80U
@@ -58,7 +58,7 @@ static fmu_status refuse_result(const fmu_instance *instance, const fmu_slot *sl
 
 static fmu_status refuse_value(const fmu_instance *instance, const fmu_slot *slot, uint32_t element, double value) {
     const fmu_variable *variable = slot->variable;
-    const double least = least_of(variable), most = most_of(variable);
+    const double least = least_of(instance, variable), most = most_of(instance, variable);
     char name[NAME_LENGTH];
     name_element(name, slot, element);
     if (!fmu_is_finite(value)) return fmu_refuse(instance, "%s: %g is not a finite number", name, value);
@@ -67,8 +67,8 @@ static fmu_status refuse_value(const fmu_instance *instance, const fmu_slot *slo
 }
 
 /* Whether the value lies in the range that the description declares; NaN does not. The model checks the rest. */
-static bool acceptable(const fmu_variable *variable, double value) {
-    return value >= least_of(variable) && value <= most_of(variable);
+static bool acceptable(const fmu_instance *instance, const fmu_variable *variable, double value) {
+    return value >= least_of(instance, variable) && value <= most_of(instance, variable);
 }
 
 static void store(fmu_instance *instance, const fmu_slot *slot, uint32_t element, double value) {
@@ -148,10 +148,11 @@ static fmu_status copy_out(fmu_instance *instance, const fmu_slot *slot, const e
 }
 
 static fmu_status check_settable(fmu_instance *instance, const fmu_variable *variable) {
-    if (!(instance->settable >> variable->access & 1U))
+    const fmu_access access = fmu_access_of(instance, variable);
+    if (!(instance->settable >> access & 1U))
         return fmu_refuse(instance, "%s cannot be set in %s: %s", variable->name, fmu_mode_names[instance->mode],
-                          who_sets((fmu_access)variable->access));
-    return variable->access == FMU_STATE ? fmu_apply_parameters(instance) : FMU_OK;
+                          who_sets(access));
+    return access == FMU_STATE ? fmu_apply_parameters(instance) : FMU_OK;
 }
 
 static fmu_status check_set(fmu_instance *instance, const fmu_slot *slot, const exchange *values, size_t used) {
@@ -159,7 +160,7 @@ static fmu_status check_set(fmu_instance *instance, const fmu_slot *slot, const 
     if (status == FMU_OK) status = check_room(instance, slot, values, used);
     for (uint32_t i = 0; status == FMU_OK && i < slot->count; i++) {
         const double value = values->read(values->given, used + i);
-        if (!acceptable(slot->variable, value)) status = refuse_value(instance, slot, i, value);
+        if (!acceptable(instance, slot->variable, value)) status = refuse_value(instance, slot, i, value);
     }
     return status;
 }
@@ -177,9 +178,10 @@ static void note_change(fmu_instance *instance, fmu_access access) {
 }
 
 static fmu_status copy_in(fmu_instance *instance, const fmu_slot *slot, const exchange *values, size_t used) {
-    if (slot->variable->access == FMU_STATE) fmu_model_before_set_state(instance);
+    const fmu_access access = fmu_access_of(instance, slot->variable);
+    if (access == FMU_STATE) fmu_model_before_set_state(instance);
     for (uint32_t i = 0; i < slot->count; i++) store(instance, slot, i, values->read(values->given, used + i));
-    note_change(instance, (fmu_access)slot->variable->access);
+    note_change(instance, access);
     return FMU_OK;
 }
 
@@ -248,7 +250,7 @@ bool fmu_set_start_value(fmu_instance *instance, uint32_t reference, double valu
     if (slot.variable->access >= FMU_STATE) return false;
     if (slot.variable->access == FMU_STRUCTURAL && value == 0.0) /* without wheels it is a constant */
         instance->scalar = true;
-    else if (!acceptable(slot.variable, value))
+    else if (!acceptable(instance, slot.variable, value))
         return false;
     store(instance, &slot, 0, value);
     return true;

@@ -92,15 +92,19 @@ static void smooth_force(real force[2], const laconic_friction *f, int32_t i, ve
     force[1] = -per_slip * slip[1] * w->drag;
 }
 
-static void smooth_forces(real force[][2], const laconic_friction *f, vector nu, const real speed[]) {
-    normal_loads loads;
+/* Loads move forces and forces loads, each time by μ z_S over the wheels' distance, usually less than 0.3: after these
+ * rounds some 1e-5 is left. A fixed number, so that the law stays smooth. */
+#define LOAD_ROUNDS 10
+
+static void smooth_forces(real force[][2], normal_loads *loads, const laconic_friction *f, vector nu,
+                          const real speed[]) {
     real ground_N[2] = {R(0), R(0)};
-    for (int round = 0; round < 2; round++) { /* loads at rest, then those under the forces that these give */
-        laconic_normal_loads(&loads, f, ground_N);
+    for (int round = 0; round < LOAD_ROUNDS; round++) { /* loads at rest, then those under the forces that these give */
+        laconic_normal_loads(loads, f, ground_N);
         ground_N[0] = ground_N[1] = R(0);
         for (int32_t i = 0; i < f->wheel_count; i++) {
             real here[2];
-            smooth_force(force[i], f, i, nu, speed[i], loads.carried_N[i]);
+            smooth_force(force[i], f, i, nu, speed[i], loads->carried_N[i]);
             force_in_body(here, &f->axle[i], force[i]);
             ground_N[0] += here[0] * f->impulse_N;
             ground_N[1] += here[1] * f->impulse_N;
@@ -131,9 +135,10 @@ void laconic_friction_derivative(laconic_rates *rates, laconic_real wheel_rate_r
     const real yaw_rate = nu.z * model->yaw_rate_of_zeta[2];
     const real along = f->radius_m * nu.x, across = f->radius_m * nu.y;
     real force[LACONIC_SLIP_WHEELS][2];
+    normal_loads loads;
     vector rate =
         plus((vector){yaw_rate * nu.y, -yaw_rate * nu.x, R(0)}, b_of_wrench(model, wrench_of(model, input, heading)));
-    smooth_forces(force, f, nu, speed);
+    smooth_forces(force, &loads, f, nu, speed);
     for (int32_t i = 0; i < f->wheel_count; i++) {
         const laconic_friction_wheel *w = &f->wheel[i];
         rate = plus(rate, plus(scaled(force[i][0], vec(w->along)), scaled(force[i][1], vec(w->across))));
@@ -144,4 +149,34 @@ void laconic_friction_derivative(laconic_rates *rates, laconic_real wheel_rate_r
     rates->x_m_per_s = along * heading.cosine - across * heading.sine;
     rates->y_m_per_s = along * heading.sine + across * heading.cosine;
     rates->yaw_rate_rad_per_s = yaw_rate;
+}
+
+/* The currents of the motors at these speeds, and the supply's, by the power that they take. */
+static void smooth_drive(laconic_slip *slip, const laconic_friction *f, const laconic_input *input) {
+    const real terminal_V = laconic_supply_voltage(f, input, slip->wheel_speed_rad_per_s, R(0));
+    real power_W = R(0);
+    for (int32_t i = 0; i < f->wheel_count; i++) {
+        const real speed = slip->wheel_speed_rad_per_s[i];
+        const motor_state motor = laconic_motor_at(f, i, input->voltage_V[i], speed, terminal_V);
+        slip->current_A[i] = motor.current_A;
+        slip->limit[i] = (int32_t)motor.limit;
+        power_W += motor.voltage_V * motor.current_A;
+    }
+    slip->supply_voltage_V = terminal_V > R(0) ? terminal_V : R(0);
+    slip->supply_current_A = terminal_V > R(0) ? power_W / terminal_V : R(0);
+}
+
+void laconic_slip_smooth(laconic_slip *slip, const laconic_friction *friction, const laconic_state *state,
+                         const laconic_input *input) {
+    const laconic_friction *f = friction;
+    real force[LACONIC_SLIP_WHEELS][2];
+    normal_loads loads;
+    smooth_forces(force, &loads, f, zeta_of(state), slip->wheel_speed_rad_per_s);
+    for (int32_t i = 0; i < f->point_count; i++) slip->normal_N[i] = loads.statics_N[i];
+    for (int32_t i = 0; i < f->wheel_count; i++) { /* of the robot on the ground, and across it over k */
+        const real drag = f->wheel[i].drag;
+        slip->grip_N[i][0] = -force[i][0] * f->impulse_N;
+        slip->grip_N[i][1] = drag > R(0) ? -force[i][1] / drag * f->impulse_N : R(0);
+    }
+    smooth_drive(slip, f, input);
 }

@@ -34,6 +34,8 @@ static fmu_status check(const fmu_instance *instance) {
     return FMU_OK;
 }
 
+void fmu_model_made(fmu_model *model) { (void)model; /* all controllers have the same states */ }
+
 fmu_status fmu_model_start(fmu_instance *instance) {
     fmu_model *self = &instance->model;
     const fmu_status status = check(instance);
@@ -135,6 +137,11 @@ void fmu_model_get_nominals(const fmu_model *model, double *values) {
 }
 
 /* The controller is linear; a limited voltage and a stopped integral are constant, so their derivatives are 0. */
+fmu_status fmu_model_check_tangent(const fmu_instance *instance) {
+    (void)instance;
+    return FMU_OK;
+}
+
 void fmu_model_tangent(fmu_instance *instance, fmu_tangent *t) {
     const fmu_model *self = &instance->model;
     for (uint32_t i = 0; i < FMU_MODEL_ARRAY_SIZE(self); i++) {

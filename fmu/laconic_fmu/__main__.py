@@ -6,9 +6,10 @@ import argparse
 import sys
 from pathlib import Path
 
-from . import archive, fmi2
+from . import archive, fmi2, fmi3
 from .description import parse, read, token_in, token_of, with_token
 from .field_list import missing_variable
+from .friction import for_vehicle
 from .package import pack
 from .tables import tables
 
@@ -22,7 +23,10 @@ def make_tables(arguments: argparse.Namespace) -> None:
     description = parse(text_3)
     if arguments.fields and (fault := missing_variable(arguments.fields, arguments.description, description)):
         sys.exit(fault)
-    text_2 = fmi2.describe(description, [*arguments.sources, "fmi2.c"])
+    generic = for_vehicle(description)
+    if generic is not description:
+        text_3 = fmi3.describe(generic)
+    text_2 = fmi2.describe(generic, [*arguments.sources, "fmi2.c"])
     out: Path = arguments.out
     out.mkdir(parents=True, exist_ok=True)
     (out / "variable_table.c").write_text(tables(description, text_3, text_2), encoding="utf-8")

@@ -11,6 +11,7 @@ from pathlib import Path
 from . import fmi2, fmi3
 from .description import Description, parse, start_values, token_in, with_values
 from .enumerations import without_enumerations
+from .friction import for_vehicle, has_friction
 from .package import pack, start_file
 from .scalars import elements_of
 
@@ -121,6 +122,17 @@ def _describe(parts: Mapping[str, bytes], description: Description, variant: Var
     return fmi2.describe(description, files)
 
 
+CORE_OPTIONS = "sources/laconic/real.h"
+WITH_FRICTION = b"#define LACONIC_WITH_FRICTION "
+
+
+def without_friction(header: bytes) -> bytes:
+    """The core's options for sources that leave the friction step out."""
+    if header.count(WITH_FRICTION + b"1\n") != 1:
+        raise ValueError(f"{CORE_OPTIONS}: {WITH_FRICTION.decode()}1 must occur exactly once")
+    return header.replace(WITH_FRICTION + b"1\n", WITH_FRICTION + b"0\n")
+
+
 Shown = Callable[[Mapping[str, bytes], Description, int], Mapping[str, bytes]]
 """From the generic FMU's parts, the description and the FMI version to the parts that show the scene."""
 
@@ -130,13 +142,15 @@ def scene_fmu(generic: Path, source: Path, content: Content, out: Path, variant:
     parts = {name: data for name, data in read_parts(generic).items()
              if variant.sources or not name.startswith("sources/")}
     given = parse(source.read_text(encoding="utf-8"))
-    description = with_values(given, content.values, content.name, content.text)
+    description = for_vehicle(with_values(given, content.values, content.name, content.text))
     experiment = description.root.find("DefaultExperiment")
     if experiment is not None:
         experiment.set("stopTime", repr(float(content.duration_s)))
         experiment.set("stepSize", repr(output_step(content.duration_s, content.step_s)))
     if shown is not None:
         parts |= shown(parts, description, variant.version)
+    if CORE_OPTIONS in parts and not has_friction(description):
+        parts[CORE_OPTIONS] = without_friction(parts[CORE_OPTIONS])
     if not variant.enumerations:
         description = without_enumerations(description)
     xml = _describe(parts, description, variant)

@@ -20,7 +20,9 @@ def element_reference(reference: int, element: int) -> int:
 
 ELEMENTWISE = {("wheel_torque_Nm", "voltage_V"), ("wheel_torque_Nm", "axle_torque_Nm")} | {
     (unknown, known) for unknown in ("voltage_V", "der(angle_error_rad)")
-    for known in ("setpoint_rad_per_s", "wheel_speed_rad_per_s", "angle_error_rad")}
+    for known in ("setpoint_rad_per_s", "wheel_speed_rad_per_s", "angle_error_rad")} | {
+    (unknown, "wheel_speed_rad_per_s")
+    for unknown in ("der(wheel_angle_rad)", "slip_along_m_per_s", "slip_across_m_per_s")}
 """Outputs (first) of which each element depends on the same element of the other array only."""
 
 INTERFACE_ATTRIBUTES = ("causality", "variability", "initial", "intermediateUpdate", "declaredType", "min", "max",

@@ -19,7 +19,9 @@ HEADER = ("modelName", "description", "author", "version", "copyright", "license
 def _interface(parent: ET.Element, tag: str, source: ET.Element, extra: dict[str, str],
                source_files: Sequence[str]) -> None:
     attributes = {"modelIdentifier": source.get("modelIdentifier", ""), "canGetAndSetFMUstate": "true",
-                  "canSerializeFMUstate": "true", "providesDirectionalDerivative": "true", **extra}
+                  "canSerializeFMUstate": "true", **extra}
+    if source.get("providesDirectionalDerivatives") == "true":
+        attributes["providesDirectionalDerivative"] = "true"
     element = ET.SubElement(parent, tag, attributes)
     if source_files:
         files = ET.SubElement(element, "SourceFiles")

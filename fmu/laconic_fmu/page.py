@@ -15,7 +15,8 @@ VEHICLE_MARK = "<!-- the vehicle of a scene -->"
 SUPPORTS = ("support_x_m", "support_y_m")
 WHEEL_COLUMNS = ("wheel_kind", "wheel_x_m", "wheel_y_m", "axle_rad", "roller_rad", "wheel_locked")
 OWN_COLUMNS = ("wheel_undriven", "own_radius_m", "own_inertia_kgm2", "own_motor_gain_Nm_per_V",
-               "own_motor_damping_Nms")
+               "own_motor_damping_Nms", "motor_circuit", "own_friction_coefficient", "own_roller_drag",
+               "own_axle_friction_Nm", "start_wheel_speed_rad_per_s")
 """Shown only where a wheel has a value of its own."""
 
 
@@ -53,7 +54,7 @@ def _tables(description: Description) -> str:
 
 
 def _wheels(description: Description) -> str:
-    columns = [description.variable(name) for name in (*WHEEL_COLUMNS, *OWN_COLUMNS)]
+    columns = [v for name in (*WHEEL_COLUMNS, *OWN_COLUMNS) for v in description.variables if v.name == name]
     columns = [v for v in columns if v.name in WHEEL_COLUMNS or any(as_double(text) for text in v.start)]
     count = description.array_size
     if count == 0:

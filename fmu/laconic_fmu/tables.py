@@ -3,16 +3,18 @@
 from __future__ import annotations
 
 import re
+from collections.abc import Mapping
 
 from .description import Description, Variable, start_values, token_in
+from .friction import STATE_RATE, for_vehicle
 
 TYPES = {"Float64": "FMU_REAL", "Int32": "FMU_INT32", "UInt64": "FMU_UINT64", "Enumeration": "FMU_ENUMERATION",
          "Boolean": "FMU_BOOLEAN"}
 
 
-def _access(variable: Variable, states: set[str]) -> str:
+def _access(variable: Variable, states: Mapping[str, str]) -> str:
     if str(variable.reference) in states:
-        return "FMU_STATE"
+        return "FMU_OPTIONAL_STATE" if states[str(variable.reference)] == STATE_RATE else "FMU_STATE"
     if variable.causality == "parameter":
         return "FMU_TUNABLE" if variable.attributes.get("variability") == "tunable" else "FMU_FIXED"
     return {"independent": "FMU_INDEPENDENT", "structuralParameter": "FMU_STRUCTURAL", "input": "FMU_INPUT",
@@ -29,7 +31,7 @@ def _range(description: Description, variable: Variable) -> str:
     return f"{variable.attributes.get('min', least)}, {variable.attributes.get('max', most)}"
 
 
-def _row(description: Description, variable: Variable, states: set[str]) -> str:
+def _row(description: Description, variable: Variable, states: Mapping[str, str]) -> str:
     symbol = re.sub(r"\W+", "_", variable.name).strip("_")
     size = 1 if variable.size is None else 0 if isinstance(variable.size, str) else variable.size
     return (f'    ROW({symbol}, "{variable.name}", {size}, {TYPES[variable.tag]}, {_access(variable, states)}, '
@@ -46,8 +48,8 @@ def _fits(description: Description) -> list[str]:
 
 def tables(description: Description, text_3: str, text_2: str) -> str:
     """The C file that fmu/variables.c and fmu/start_file.c link with."""
-    starts = start_values(description)
-    states = {v.attributes["derivative"] for v in description.variables if "derivative" in v.attributes}
+    starts = start_values(for_vehicle(description))
+    states = {v.attributes["derivative"]: v.name for v in description.variables if "derivative" in v.attributes}
     lines = [
         "/* Made from the model description when the project is built. */",
         "#include <float.h>",

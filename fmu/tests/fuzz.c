@@ -67,7 +67,9 @@ static size_t next_list(source *s) {
     if (choice > 240) count = next_word(s) % NUMBERS;
     for (size_t k = 0; k < count; k++) {
         const unsigned kind = k < 64 ? next(s) : (unsigned)(k % 251);
-        references[k] = k >= 64 ? (fmi3ValueReference)(k % 60) : kind < 200 ? next(s) % 60 : next_word(s);
+        references[k] = k >= 64      ? (fmi3ValueReference)(k % fmu_variable_count)
+                        : kind < 200 ? next(s) % fmu_variable_count
+                                     : next_word(s);
         if (k < 64 && kind % 2) references[k] = references[k] << 10 | (next(s) % 18);
     }
     return count;
@@ -118,6 +120,16 @@ static void update_3(fmi3InstanceEnvironment e, fmi3Float64 time, fmi3Boolean se
 
 static const char *const token_names[] = {NULL, "", "{wrong %s %n}"};
 
+/* Makes it one of a scene with ground friction and a drive with limits. */
+static void give_friction(fmu_instance *instance) {
+    static const fmu_start_value given[] = {{11, 0.0}, {63, 0.6}, {64, 0.2}, {65, 0.01}, {68, 12.0},
+                                            {69, 0.1}, {70, 5.0}, {71, 0.5}, {72, 0.01}};
+    for (size_t k = 0; k < sizeof given / sizeof given[0]; k++)
+        fmu_set_start_value(instance, given[k].reference, given[k].value);
+    fmu_model_made(&instance->model);
+    instance->initial = instance->model;
+}
+
 static void create(source *s, live *l) {
     static const fmi2CallbackFunctions with_log = {log_2, calloc, free, NULL, NULL};
     static const fmi2CallbackFunctions without_log = {NULL, NULL, NULL, NULL, NULL};
@@ -141,6 +153,7 @@ static void create(source *s, live *l) {
                           : fmi3InstantiateModelExchange(name, token, resources, false, choice % 7 == 0, NULL, log);
         l->version = l->instance != NULL ? 3 : 0;
     }
+    if (l->instance != NULL && choice % 17 < 6) give_friction(l->instance);
 }
 
 /* Brings a new instance into step mode or continuous-time mode, so that many inputs reach the calls allowed there. */

@@ -5,10 +5,11 @@ static void warn_of_lift(const fmu_instance *instance) {
     const laconic_grip_event *event = &instance->model.pending_lift;
     const int wheels = (int)instance->model.plant.model.wheel_count, point = (int)event->point;
     fmu_log(instance, FMU_WARNING, FMU_LOG_WARNING,
-            "at %.9g s %s %d lifts: its normal load would be %.4g N; the model keeps all wheels on the ground, so its "
-            "motion no longer holds (logged once)",
-            instance->model.lift_s, point <= wheels ? "wheel" : "support", point <= wheels ? point : point - wheels,
-            event->normal_N);
+            "at %.9g s %s %d lifts: its normal load would be %.4g N; %s (logged once)", instance->model.lift_s,
+            point <= wheels ? "wheel" : "support", point <= wheels ? point : point - wheels, event->normal_N,
+            fmu_wheels_slip(&instance->model)
+                ? "it carries nothing, the others share its load, and the model knows no tilt"
+                : "the model keeps all wheels on the ground, so its motion no longer holds");
 }
 
 static void warn_of_slip(const fmu_instance *instance) {
@@ -48,7 +49,7 @@ void fmu_model_settle_warnings(fmu_instance *instance, bool accepted) {
 
 void fmu_grip_check(fmu_instance *instance, const laconic_reactions *ground, double time_s) {
     fmu_model *self = &instance->model;
-    const uint32_t known = instance->warnings_given | instance->warnings_pending;
+    const uint32_t known = fmu_warnings_done(instance);
     laconic_grip now = {0};
     laconic_grip_watch(&now, &self->contact, &self->plant.model, ground, self->plant.steps);
     if (now.slipping && !(known & FMU_SLIP_WARNING)) {

@@ -1,6 +1,7 @@
 /* The vehicle as an FMU model: starts and steps the core's plant, and computes outputs when they are read. */
 #include <stdio.h>
 
+#include "friction_part.h"
 #include "grip_warning.h"
 #include "model_interface.h"
 
@@ -35,15 +36,19 @@ static fmu_status discard_with(const fmu_instance *instance, const laconic_refus
                    fmu_clock_now(&instance->clock), text);
 }
 
+void fmu_model_made(fmu_model *model) { model->wheels_have_states = fmu_vehicle_slips(&model->vehicle); }
+
 /* Without step_s, Co-Simulation knows its internal step only at its first communication step, and Model Exchange never.
- * Until then the integrator is prepared for exact-flow, which accepts every step. */
+ * Until then the integrator is prepared for exact-flow, which accepts every step; a vehicle with friction has one
+ * method only, which does. */
 static laconic_status start_plant(fmu_model *self, laconic_refusal *why) {
     const laconic_method *method = laconic_method_by_number(self->method);
     const bool known = self->step_s > 0.0 && !self->continuous;
+    const bool any_step = known || laconic_vehicle_has_friction(&self->vehicle);
     if (method == NULL || self->step_s < 0.0) /* the core refuses both and gives the reason */
         return laconic_plant_start(&self->plant, &self->vehicle, method, self->step_s, &self->start, why);
     const laconic_status status =
-        laconic_plant_start(&self->plant, &self->vehicle, known ? method : &laconic_exact_flow,
+        laconic_plant_start(&self->plant, &self->vehicle, any_step ? method : &laconic_exact_flow,
                             known ? self->step_s : 1.0, &self->start, why);
     self->stand_in = !known;
     if (status == LACONIC_OK && !known) self->plant.integrator.method = method;
@@ -55,11 +60,12 @@ fmu_status fmu_model_start(fmu_instance *instance) {
     laconic_refusal why = {LACONIC_OK, LACONIC_FIELD_NONE, 0, 0.0, 0.0};
     self->continuous = instance->kind == FMU_MODEL_EXCHANGE;
     laconic_status status = start_plant(self, &why);
-    if (status == LACONIC_OK) status = laconic_contact_prepare(&self->contact, &self->vehicle, &why);
+    if (status == LACONIC_OK) status = fmu_friction_prepare(&self->vehicle, &self->contact, &self->rolling, &why);
     if (status != LACONIC_OK) return refuse_with(instance, &why, "this vehicle cannot start");
+    if (self->continuous && fmu_friction_refuses(instance, &self->vehicle)) return FMU_ERROR;
     self->start_needed = self->change_needed = false;
     self->stale = FMU_GROUPS_ALL & ~FMU_GROUP_STATE;
-    if (self->continuous) fmu_model_refresh(instance, FMU_GROUPS_OF_CONTINUOUS_STATES);
+    if (self->continuous) fmu_model_refresh(instance, FMU_GROUPS_OF_CONTINUOUS_STATES(self));
     return FMU_OK;
 }
 
@@ -67,19 +73,22 @@ fmu_status fmu_model_change(fmu_instance *instance) {
     fmu_model *self = &instance->model;
     laconic_plant plant;
     laconic_contact contact;
+    laconic_model rolling = self->rolling;
     laconic_refusal why = {LACONIC_OK, LACONIC_FIELD_NONE, 0, 0.0, 0.0};
+    if (self->continuous && fmu_friction_refuses(instance, &self->vehicle)) return FMU_ERROR;
     fmu_model_refresh(instance, FMU_GROUP_STATE);
     plant = self->plant;
-    if (self->stand_in) plant.integrator.method = &laconic_exact_flow;
+    if (self->stand_in && !laconic_vehicle_has_friction(&self->vehicle)) plant.integrator.method = &laconic_exact_flow;
     laconic_status status = laconic_plant_change(&plant, &self->vehicle, &why);
-    if (status == LACONIC_OK) status = laconic_contact_prepare(&contact, &self->vehicle, &why);
+    if (status == LACONIC_OK) status = fmu_friction_prepare(&self->vehicle, &contact, &rolling, &why);
     if (status != LACONIC_OK) return refuse_with(instance, &why, "the changed vehicle is refused");
     plant.integrator.method = self->plant.integrator.method;
     self->plant = plant;
     self->contact = contact;
+    self->rolling = rolling;
     self->change_needed = false;
     self->stale = FMU_GROUPS_ALL & ~FMU_GROUP_STATE;
-    if (self->continuous) fmu_model_refresh(instance, FMU_GROUPS_OF_CONTINUOUS_STATES);
+    if (self->continuous) fmu_model_refresh(instance, FMU_GROUPS_OF_CONTINUOUS_STATES(self));
     return fmu_log(instance, FMU_OK, FMU_LOG_EVENTS,
                    "the vehicle changed: mass %g kg, its body keeps velocity and position", plant.model.mass_kg);
 }
@@ -90,13 +99,35 @@ void fmu_model_input_changed(fmu_model *model) { model->stale |= FMU_GROUPS_OF_I
 
 static void refresh_state(fmu_model *self) {
     laconic_start motion = {{self->nu[0], self->nu[1], self->nu[2]}, self->x_m, self->y_m, self->heading_rad, {0.0}};
+    if (fmu_friction_rolls(self)) fmu_friction_project(self, motion.nu_rad_per_s);
     /* cannot be refused: fmu_set_states has already refused every number that would be */
     (void)laconic_state_project(&self->plant.state, &self->plant.model, &motion, NULL);
-    laconic_wheel_angles_set(&self->plant.model, &self->plant.state, self->wheel_angle_rad);
+    if (self->plant.friction.acts)
+        fmu_friction_set_wheels(self);
+    else
+        laconic_wheel_angles_set(&self->plant.model, &self->plant.state, self->wheel_angle_rad);
 }
 
-static void refresh_angles(fmu_model *self) {
-    laconic_wheel_angles(&self->plant.model, &self->plant.state, self->wheel_angle_rad);
+/* The groups about wheels, ground and energy where the wheels follow from ν. */
+static void refresh_ideal(fmu_model *self, uint32_t groups) {
+    const laconic_model *m = &self->plant.model;
+    const laconic_state *s = &self->plant.state;
+    if (groups & FMU_GROUP_ANGLES) laconic_wheel_angles(m, s, self->wheel_angle_rad);
+    if (groups & FMU_GROUP_SPEEDS) laconic_wheel_speeds(m, s, self->wheel_speed_rad_per_s);
+    if (groups & FMU_GROUP_TORQUES) laconic_wheel_torques(m, s, &self->input, self->wheel_torque_Nm);
+    if (groups & FMU_GROUP_GROUND) laconic_reactions_of(&self->ground, &self->contact, m, s, &self->input);
+    if (groups & FMU_GROUP_ENERGY) self->energy_J = laconic_energy_J(m, s);
+}
+
+static void refresh_rates(fmu_instance *instance) {
+    fmu_model *self = &instance->model;
+    const bool friction = self->plant.friction.acts;
+    const uint32_t of_wheels = fmu_friction_rolls(self) ? FMU_GROUP_TORQUES : FMU_GROUP_SPEEDS;
+    fmu_model_refresh(instance, FMU_GROUP_MOTION | (friction ? of_wheels : 0U));
+    if (friction)
+        fmu_friction_rates(self);
+    else
+        laconic_derivative(&self->rates, &self->plant.model, self->nu, self->heading_rad, &self->input);
 }
 
 void fmu_model_refresh(fmu_instance *instance, uint32_t groups) {
@@ -118,17 +149,13 @@ void fmu_model_refresh(fmu_instance *instance, uint32_t groups) {
         }
     }
     if (groups & FMU_GROUP_POSE) laconic_pose_of(&self->pose, m, s);
-    if (groups & FMU_GROUP_ANGLES) refresh_angles(self);
     if (groups & FMU_GROUP_VELOCITY) self->yaw_rate_rad_per_s = laconic_body_velocity(m, s, self->velocity_m_per_s);
-    if (groups & FMU_GROUP_SPEEDS) laconic_wheel_speeds(m, s, self->wheel_speed_rad_per_s);
-    if (groups & FMU_GROUP_TORQUES) laconic_wheel_torques(m, s, &self->input, self->wheel_torque_Nm);
-    if (groups & FMU_GROUP_GROUND) laconic_reactions_of(&self->ground, &self->contact, m, s, &self->input);
-    if (groups & FMU_GROUP_ENERGY) self->energy_J = laconic_energy_J(m, s);
+    if (self->plant.friction.acts)
+        fmu_friction_refresh(self, groups);
+    else
+        refresh_ideal(self, groups);
     self->stale &= ~groups;
-    if (groups & FMU_GROUP_RATES) {
-        fmu_model_refresh(instance, FMU_GROUP_MOTION);
-        laconic_derivative(&self->rates, m, self->nu, self->heading_rad, &self->input);
-    }
+    if (groups & FMU_GROUP_RATES) refresh_rates(instance);
 }
 
 /* ------------------------------------------------------------------------------------ steps -- */
@@ -191,16 +218,11 @@ static laconic_status run_sloped(fmu_instance *instance, uint64_t steps, laconic
     for (uint64_t n = 0; n < steps; n++) {
         for (int k = 0; k < 3; k++) shift_input(&at[k], self, ((double)n + 0.5 * k) * h);
         if (fmu_grip_is_watched(instance)) {
-            laconic_reactions_of(&self->ground, &self->contact, &self->plant.model, &self->plant.state, &at[0]);
+            laconic_plant_reactions(&self->ground, &self->plant, &self->contact, &at[0]);
             fmu_grip_check(instance, &self->ground, start_s + (double)n * h);
         }
-        const laconic_status status = laconic_step_sampled(&self->plant.model, &self->plant.integrator,
-                                                           &self->plant.state, &at[0], &at[1], &at[2]);
-        if (status != LACONIC_OK) {
-            laconic_step_refusal(why, status, &self->plant.model, &self->plant.integrator, &self->plant.state, at, 3);
-            return status;
-        }
-        self->plant.steps++;
+        const laconic_status status = laconic_plant_run_sampled(&self->plant, at, why);
+        if (status != LACONIC_OK) return status;
     }
     shift_input(&self->input, self, (double)steps * h);
     self->sloped = false; /* slopes hold for one communication step */
@@ -234,6 +256,7 @@ static fmu_status run_several_steps(fmu_instance *instance, uint64_t steps, uint
 
 /* One step with held inputs: what most importers need at every communication step. */
 static bool run_one(fmu_model *self) {
+    if (self->plant.friction.acts) return false;
     if (laconic_step(&self->plant.model, &self->plant.integrator, &self->plant.state, &self->input) != LACONIC_OK)
         return false;
     self->plant.steps++;
@@ -250,12 +273,14 @@ fmu_status fmu_model_run(fmu_instance *instance, uint64_t steps, uint64_t *taken
 
 void fmu_model_save_motion(const fmu_model *model, fmu_model_motion *motion) {
     motion->state = model->plant.state;
+    if (model->plant.friction.acts) motion->slip = model->plant.slip;
     motion->steps = model->plant.steps;
     motion->input = model->input;
 }
 
 void fmu_model_restore_motion(fmu_model *model, const fmu_model_motion *motion) {
     model->plant.state = motion->state;
+    if (model->plant.friction.acts) model->plant.slip = motion->slip;
     model->plant.steps = motion->steps;
     model->input = motion->input;
     model->stale = FMU_GROUPS_ALL & ~FMU_GROUP_STATE;
@@ -263,42 +288,55 @@ void fmu_model_restore_motion(fmu_model *model, const fmu_model_motion *motion) 
 
 /* ------------------------------------------------------------------------ continuous states -- */
 
-uint32_t fmu_model_state_count(const fmu_model *model) { return 6U + FMU_MODEL_ARRAY_SIZE(model); }
+/* ν, x, y, heading, wheel angles; and where wheels slip their speeds. */
+uint32_t fmu_model_state_count(const fmu_model *model) {
+    return 6U + (model->wheels_have_states ? 2U : 1U) * FMU_MODEL_ARRAY_SIZE(model);
+}
 
 void fmu_model_get_states(fmu_instance *instance, double *values) {
     const fmu_model *self = &instance->model;
-    fmu_model_refresh(instance, FMU_GROUPS_OF_CONTINUOUS_STATES);
+    const uint32_t wheels = FMU_MODEL_ARRAY_SIZE(self);
+    fmu_model_refresh(instance, FMU_GROUPS_OF_CONTINUOUS_STATES(self));
     for (uint32_t i = 0; i < 3; i++) values[i] = self->nu[i];
     values[3] = self->x_m;
     values[4] = self->y_m;
     values[5] = self->heading_rad;
-    for (uint32_t i = 0; i < FMU_MODEL_ARRAY_SIZE(self); i++) values[6 + i] = self->wheel_angle_rad[i];
+    for (uint32_t i = 0; i < wheels; i++) values[6 + i] = self->wheel_angle_rad[i];
+    for (uint32_t i = 0; i < wheels && self->wheels_have_states; i++)
+        values[6 + wheels + i] = self->wheel_speed_rad_per_s[i];
 }
 
 void fmu_model_before_set_state(fmu_instance *instance) {
-    fmu_model_refresh(instance, FMU_GROUPS_OF_CONTINUOUS_STATES);
-    instance->model.stale = FMU_GROUPS_ALL & ~FMU_GROUPS_OF_CONTINUOUS_STATES;
+    const uint32_t states = FMU_GROUPS_OF_CONTINUOUS_STATES(&instance->model);
+    fmu_model_refresh(instance, states);
+    instance->model.stale = FMU_GROUPS_ALL & ~states;
 }
 
 void fmu_model_set_states(fmu_instance *instance, const double *values) {
     fmu_model *self = &instance->model;
+    const uint32_t wheels = FMU_MODEL_ARRAY_SIZE(self);
     for (uint32_t i = 0; i < 3; i++) self->nu[i] = values[i];
     self->x_m = values[3];
     self->y_m = values[4];
     self->heading_rad = values[5];
-    for (uint32_t i = 0; i < FMU_MODEL_ARRAY_SIZE(self); i++) self->wheel_angle_rad[i] = values[6 + i];
-    self->stale = FMU_GROUPS_ALL & ~FMU_GROUPS_OF_CONTINUOUS_STATES;
+    for (uint32_t i = 0; i < wheels; i++) self->wheel_angle_rad[i] = values[6 + i];
+    for (uint32_t i = 0; i < wheels && self->wheels_have_states; i++)
+        self->wheel_speed_rad_per_s[i] = values[6 + wheels + i];
+    self->stale = FMU_GROUPS_ALL & ~FMU_GROUPS_OF_CONTINUOUS_STATES(self);
 }
 
 void fmu_model_get_rates(fmu_instance *instance, double *values) {
-    const laconic_rates *rates = &instance->model.rates;
+    const fmu_model *self = &instance->model;
+    const laconic_rates *rates = &self->rates;
+    const uint32_t wheels = FMU_MODEL_ARRAY_SIZE(self);
     fmu_model_refresh(instance, FMU_GROUP_RATES);
     for (uint32_t i = 0; i < 3; i++) values[i] = rates->nu_rad_per_s2[i];
     values[3] = rates->x_m_per_s;
     values[4] = rates->y_m_per_s;
     values[5] = rates->yaw_rate_rad_per_s;
-    for (uint32_t i = 0; i < FMU_MODEL_ARRAY_SIZE(&instance->model); i++)
-        values[6 + i] = rates->wheel_speed_rad_per_s[i];
+    for (uint32_t i = 0; i < wheels; i++) values[6 + i] = rates->wheel_speed_rad_per_s[i];
+    for (uint32_t i = 0; i < wheels && self->wheels_have_states; i++)
+        values[6 + wheels + i] = self->wheel_rate_rad_per_s2[i];
 }
 
 void fmu_model_get_nominals(const fmu_model *model, double *values) {

@@ -6,10 +6,14 @@
 #include "laconic/laconic.h"
 
 #define FMU_MODEL_LARGEST_ARRAY LACONIC_MAX_WHEELS
+#define FMU_MODEL_MOST_STATES (6 + 2 * LACONIC_MAX_WHEELS)
 #define FMU_MODEL_TAKES_SLOPES true
 
 /* Number of elements of the arrays that have one for each wheel, at most FMU_MODEL_LARGEST_ARRAY. */
 #define FMU_MODEL_ARRAY_SIZE(model) ((uint32_t)(model)->vehicle.wheel_count)
+
+/* Whether wheel speeds are continuous states: the FMU was made for ground with friction. */
+#define FMU_MODEL_HAS_OPTIONAL_STATES(model) ((model)->wheels_have_states)
 
 /* Groups of variables that are computed together before one is read: bits in fmu_variable.group and fmu_model.stale. */
 #define FMU_GROUP_STATE 1U  /* Model Exchange: the plant's state, computed from the continuous states */
@@ -21,10 +25,12 @@
 #define FMU_GROUP_GROUND 128U
 #define FMU_GROUP_ENERGY 256U
 #define FMU_GROUP_RATES 512U
-#define FMU_GROUP_POSE 1024U /* the rest of the pose: origin, wrapped heading */
-#define FMU_GROUPS_ALL 2043U
-#define FMU_GROUPS_OF_INPUT (FMU_GROUP_TORQUES | FMU_GROUP_GROUND | FMU_GROUP_RATES)
-#define FMU_GROUPS_OF_CONTINUOUS_STATES (FMU_GROUP_MOTION | FMU_GROUP_ANGLES)
+#define FMU_GROUP_POSE 1024U     /* the rest of the pose: origin, wrapped heading */
+#define FMU_GROUP_FRICTION 2048U /* what only vehicles with friction or limits of a drive show */
+#define FMU_GROUPS_ALL 4091U
+#define FMU_GROUPS_OF_INPUT (FMU_GROUP_TORQUES | FMU_GROUP_GROUND | FMU_GROUP_RATES | FMU_GROUP_FRICTION)
+#define FMU_GROUPS_OF_CONTINUOUS_STATES(model) \
+    (FMU_GROUP_MOTION | FMU_GROUP_ANGLES | ((model)->wheels_have_states ? FMU_GROUP_SPEEDS : 0U))
 
 /* The continuous states and the outputs: values as members of fmu_model, derivatives as members of fmu_tangent. */
 #define FMU_MOVING_MEMBERS \
@@ -38,12 +44,21 @@
     laconic_reactions ground; \
     laconic_rates rates
 
+/* laconic_friction_outputs with the same length of arrays in every build. */
+typedef struct fmu_friction_outputs {
+    double slip_along_m_per_s[LACONIC_MAX_WHEELS], slip_across_m_per_s[LACONIC_MAX_WHEELS];
+    double contact_state[LACONIC_MAX_WHEELS], drive_limit[LACONIC_MAX_WHEELS], motor_current_A[LACONIC_MAX_WHEELS];
+    double supply_current_A, supply_voltage_V, supply_energy_J, outer_work_J;
+    double slip_loss_J, axle_loss_J, motor_loss_J, supply_loss_J, numerical_loss_J;
+} fmu_friction_outputs;
+
 typedef struct fmu_model {
-    bool start_needed;   /* parameters were set since the last start          */
-    bool change_needed;  /* tunable parameters were set since */
-    bool states_changed; /* by an event that no event iteration has reported yet */
-    bool continuous;     /* Model Exchange                                */
-    bool stand_in;       /* the step is not known yet: the integrator is prepared for exact-flow */
+    bool start_needed;       /* parameters were set since the last start          */
+    bool change_needed;      /* tunable parameters were set since */
+    bool states_changed;     /* by an event that no event iteration has reported yet */
+    bool continuous;         /* Model Exchange                                */
+    bool stand_in;           /* the step is not known yet: the integrator is prepared for exact-flow */
+    bool wheels_have_states; /* by the start values of the FMU */
     double time_s;
     uint32_t stale;
 
@@ -57,15 +72,19 @@ typedef struct fmu_model {
 
     laconic_plant plant;
     laconic_contact contact;
+    laconic_model rolling; /* of a drive with limits on ideal ground: the vehicle without its motors */
     laconic_grip_event pending_slip, pending_lift; /* valid where fmu_instance.warnings_pending has their bit */
     double slip_s, lift_s;                         /* their times                      */
 
     FMU_MOVING_MEMBERS; /* in Model Exchange the plant's state follows the continuous states */
+    double wheel_rate_rad_per_s2[LACONIC_MAX_WHEELS];
+    fmu_friction_outputs friction;
 } fmu_model;
 
 /* What steps change. */
 typedef struct fmu_model_motion {
     laconic_state state;
+    laconic_slip slip; /* of a vehicle with friction */
     uint64_t steps;
     laconic_input input;
 } fmu_model_motion;

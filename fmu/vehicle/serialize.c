@@ -1,6 +1,6 @@
 /* All members of the vehicle's fmu_model to and from bytes. Prepared constants are not stored but prepared again, which
  * gives the same bits. */
-#include "model_interface.h"
+#include "friction_part.h"
 
 /* One field of a struct: an array of numbers, or one by its kind. */
 #define SERIALIZE_ARRAY(of, number, IDENTIFIER, member, name, KIND, RULE, NEED) \
@@ -71,6 +71,7 @@ static void serialize_continuous(fmu_stream *s, fmu_model *self) {
     fmu_stream_reals(s, &self->y_m, 1);
     fmu_stream_reals(s, &self->heading_rad, 1);
     fmu_stream_reals(s, self->wheel_angle_rad, LACONIC_MAX_WHEELS);
+    if (self->wheels_have_states) fmu_stream_reals(s, self->wheel_speed_rad_per_s, LACONIC_MAX_WHEELS);
 }
 
 /* After reading, outputs are stale. In Model Exchange the continuous states are not: they are stored, and `follows`
@@ -80,7 +81,7 @@ static void serialize_stale(fmu_stream *s, fmu_model *self) {
     fmu_stream_bool(s, &follows);
     if (s->from == NULL) return;
     self->stale = FMU_GROUPS_ALL & ~FMU_GROUP_STATE;
-    if (self->continuous) self->stale &= ~FMU_GROUPS_OF_CONTINUOUS_STATES;
+    if (self->continuous) self->stale &= ~FMU_GROUPS_OF_CONTINUOUS_STATES(self);
     if (self->continuous && follows) self->stale |= FMU_GROUP_STATE;
 }
 
@@ -90,16 +91,38 @@ static int32_t method_number(const laconic_method *method) {
     return 0;
 }
 
+static void serialize_slip(fmu_stream *s, laconic_slip *slip) {
+    const size_t wheels = LACONIC_SLIP_WHEELS;
+    fmu_stream_reals(s, slip->wheel_speed_rad_per_s, wheels);
+    serialize_sums(s, slip->wheel_angle_rad, wheels);
+    fmu_stream_reals(s, &slip->grip_N[0][0], 2 * wheels);
+    fmu_stream_reals(s, slip->normal_N, LACONIC_SLIP_POINTS);
+    fmu_stream_reals(s, slip->current_A, wheels);
+    for (size_t i = 0; i < wheels; i++) fmu_stream_i32(s, &slip->limit[i], LACONIC_LIMIT_NONE, LACONIC_LIMIT_CURRENT);
+    fmu_stream_reals(s, &slip->supply_current_A, 1);
+    fmu_stream_reals(s, &slip->supply_voltage_V, 1);
+    serialize_sums(s, &slip->supply_energy_J, 1);
+    serialize_sums(s, &slip->outer_work_J, 1);
+    serialize_sums(s, &slip->slip_loss_J, 1);
+    serialize_sums(s, &slip->axle_loss_J, 1);
+    serialize_sums(s, &slip->motor_loss_J, 1);
+    serialize_sums(s, &slip->supply_loss_J, 1);
+    serialize_sums(s, &slip->numerical_loss_J, 1);
+}
+
 /* Prepares model, integrator and contact from the vehicle, the method and the step that were in use. */
 static bool prepare_again(fmu_model *self, int32_t number, double step_s) {
     laconic_plant *plant = &self->plant;
     const laconic_method *method = laconic_method_by_number(number);
     if (laconic_prepare(&plant->model, &plant->vehicle, NULL) != LACONIC_OK) return false;
-    if (laconic_contact_prepare(&self->contact, &plant->vehicle, NULL) != LACONIC_OK) return false;
+    if (fmu_friction_prepare(&plant->vehicle, &self->contact, &self->rolling, NULL) != LACONIC_OK) return false;
     if (plant->vehicle.wheel_count != self->vehicle.wheel_count) return false;
-    if (laconic_integrator_prepare(&plant->integrator, self->stand_in ? &laconic_exact_flow : method, &plant->model,
-                                   step_s, NULL) != LACONIC_OK)
+    plant->friction.acts = false;
+    if (laconic_vehicle_has_friction(&plant->vehicle) &&
+        laconic_friction_of(&plant->friction, &plant->model, &plant->vehicle, NULL) != LACONIC_OK)
         return false;
+    plant->integrator.method = self->stand_in && !plant->friction.acts ? &laconic_exact_flow : method;
+    if (laconic_plant_set_step(plant, step_s, NULL) != LACONIC_OK) return false;
     plant->integrator.method = method;
     return true;
 }
@@ -109,6 +132,7 @@ static void serialize_plant(fmu_stream *s, fmu_model *self) {
     double step_s = self->plant.integrator.step_s;
     serialize_vehicle(s, &self->plant.vehicle);
     serialize_state(s, &self->plant.state);
+    if (laconic_vehicle_has_friction(&self->plant.vehicle)) serialize_slip(s, &self->plant.slip);
     fmu_stream_u64(s, &self->plant.steps);
     fmu_stream_i32(s, &method, 0, LACONIC_METHOD_COUNT - 1);
     fmu_stream_reals(s, &step_s, 1);
@@ -122,6 +146,7 @@ bool fmu_model_serialize(fmu_stream *stream, fmu_model *model) {
     fmu_stream_bool(stream, &model->states_changed);
     fmu_stream_bool(stream, &model->continuous);
     fmu_stream_bool(stream, &model->stand_in);
+    fmu_stream_bool(stream, &model->wheels_have_states);
     fmu_stream_reals(stream, &model->time_s, 1);
     serialize_vehicle(stream, &model->vehicle);
     serialize_start(stream, &model->start);

@@ -30,6 +30,13 @@ static void put_motion(fmu_tangent *t, const laconic_motion_change *change, int3
     }
 }
 
+fmu_status fmu_model_check_tangent(const fmu_instance *instance) {
+    if (!instance->model.plant.friction.acts) return FMU_OK;
+    return fmu_refuse(instance,
+                      "a vehicle with ground friction or limits of its drive has no partial derivatives, since "
+                      "its forces have kinks; the description does not offer them");
+}
+
 void fmu_model_tangent(fmu_instance *instance, fmu_tangent *tangent) {
     const fmu_model *self = &instance->model;
     const laconic_model *m = &self->plant.model;

@@ -24,6 +24,8 @@
 #define IN_INPUT(member) FMU_MOVING(input.member, 0)
 #define FIELD(of, number, IDENTIFIER, member, name, KIND, RULE, NEED) FMU_LOCATION(name, IN_##of(member))
 #define OUTPUT(name, member, group) FMU_LOCATION(name, FMU_MOVING(member, group))
+#define FMU_FRICTION(member, group) FMU_AT(member), sizeof(double), group, FMU_NO_TANGENT
+#define OF_FRICTION(name) FMU_LOCATION(name, FMU_FRICTION(friction.name, FMU_GROUP_FRICTION))
 
 /* clang-format off */
 enum fmu_locations {
@@ -53,6 +55,22 @@ enum fmu_locations {
     OUTPUT(der_y_m, rates.y_m_per_s, FMU_GROUP_RATES)
     OUTPUT(der_heading_rad, rates.yaw_rate_rad_per_s, FMU_GROUP_RATES)
     OUTPUT(der_wheel_angle_rad, rates.wheel_speed_rad_per_s, FMU_GROUP_RATES)
+
+    FMU_LOCATION(der_wheel_speed_rad_per_s, FMU_FRICTION(wheel_rate_rad_per_s2, FMU_GROUP_RATES))
+    OF_FRICTION(slip_along_m_per_s)
+    OF_FRICTION(slip_across_m_per_s)
+    OF_FRICTION(contact_state)
+    OF_FRICTION(drive_limit)
+    OF_FRICTION(motor_current_A)
+    OF_FRICTION(supply_current_A)
+    OF_FRICTION(supply_voltage_V)
+    OF_FRICTION(supply_energy_J)
+    OF_FRICTION(outer_work_J)
+    OF_FRICTION(slip_loss_J)
+    OF_FRICTION(axle_loss_J)
+    OF_FRICTION(motor_loss_J)
+    OF_FRICTION(supply_loss_J)
+    OF_FRICTION(numerical_loss_J)
 };
 /* clang-format on */
 

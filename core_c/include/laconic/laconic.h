@@ -492,6 +492,11 @@ void laconic_friction_derivative(laconic_rates *rates, laconic_real wheel_rate_r
                                  const laconic_real nu_rad_per_s[3], laconic_real heading_rad,
                                  const laconic_real wheel_speed_rad_per_s[], const laconic_input *input);
 
+/* What that law gives at one moment, where the friction step would leave what it found: forces, loads, currents and the
+ * supply, from ν and the slip's own wheel speeds. Energies stay as they are. */
+void laconic_slip_smooth(laconic_slip *slip, const laconic_friction *friction, const laconic_state *state,
+                         const laconic_input *input);
+
 /* vehicle → model, method and step → integrator, start → state. A refusal changes nothing. */
 laconic_status laconic_plant_start(laconic_plant *plant, const laconic_vehicle *vehicle, const laconic_method *method,
                                    laconic_real step_s, const laconic_start *start, laconic_refusal *why);

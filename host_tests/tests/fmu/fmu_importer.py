@@ -214,16 +214,22 @@ class Importer:
         self.must("GetRealStatus", 2, value)
         return value[0]
 
+    @property
+    def state_count(self) -> int:
+        """How many continuous states there are: those of the wheels' speeds only on ground with friction."""
+        slips = any(name.startswith("der(wheel_speed_rad_per_s") for name in self.variables)
+        return 6 + self.wheels * (2 if slips else 1)
+
     def states(self) -> list[float]:
         """The continuous states."""
-        count = 6 + self.wheels
+        count = self.state_count
         values = self.ffi.new("double[]", count)
         self.must("GetContinuousStates", values, count)
         return list(values)
 
     def rates(self) -> list[float]:
         """Their derivatives."""
-        count = 6 + self.wheels
+        count = self.state_count
         values = self.ffi.new("double[]", count)
         self.must("GetDerivatives" if self.version == 2 else "GetContinuousStateDerivatives", values, count)
         return list(values)

@@ -7,6 +7,7 @@ from pathlib import Path
 import numpy as np
 import pytest
 from fmu_importer import DISCARD, ERROR, OK, Importer, generic
+from friction_scenes import PARTS, friction_scene
 
 from laconic.fmu import make_fmu
 from laconic.scene import read_scene
@@ -19,10 +20,10 @@ OUTPUTS = (*STATES, "heading_wrapped_rad", "origin_x_m", "origin_y_m", "velocity
            "energy_J")
 
 
-@pytest.fixture(params=["robotino2", "turtlebot3_burger", "kuka_youbot"])
+@pytest.fixture(params=["robotino2", "turtlebot3_burger", "kuka_youbot", "omni_on_a_slope"])
 def point(request: pytest.FixtureRequest, tmp_path: Path) -> Importer:
     """A Model Exchange instance at a point where everything acts."""
-    scene = read_scene(request.param)
+    scene = friction_scene(request.param, tmp_path) if request.param in PARTS else read_scene(request.param)
     importer = Importer(make_fmu(scene, tmp_path / "x.fmu", version=3), "ModelExchange")
     importer.initialize()
     importer.must("EnterContinuousTimeMode")
