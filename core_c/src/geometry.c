@@ -16,6 +16,7 @@ wheel_values laconic_wheel_values(const laconic_vehicle *vehicle, int32_t wheel)
 
 /* Without wheels the vehicle's. */
 static real largest_inertia(const laconic_vehicle *vehicle) {
+    if (!LACONIC_WITH_OWN_WHEELS) return vehicle->wheel_inertia_kgm2;
     real largest = vehicle->wheel_count > 0 ? R(0) : vehicle->wheel_inertia_kgm2;
     for (int32_t i = 0; i < vehicle->wheel_count; i++) {
         const real inertia = laconic_wheel_values(vehicle, i).inertia_kgm2;

@@ -2,7 +2,10 @@
  * stepped by the friction step, any other by its integrator's method. */
 #include "common.h"
 
-static bool slips(const laconic_plant *plant) { return LACONIC_WITH_FRICTION && plant->friction.acts; }
+/* A constant in builds without friction, so that they link nothing of it. */
+static bool acts(const laconic_friction *friction) { return LACONIC_WITH_FRICTION && friction->acts; }
+
+static bool slips(const laconic_plant *plant) { return acts(&plant->friction); }
 
 /* ----------------------------------------------------------------------------- preparation -- */
 
@@ -42,9 +45,9 @@ static laconic_status prepare_friction(constants *c, const laconic_vehicle *vehi
 
 static laconic_status prepare(constants *c, const laconic_vehicle *vehicle, const laconic_method *method, real step_s,
                               laconic_refusal *why) {
-    const bool has_friction = laconic_vehicle_has_friction(vehicle);
+    const bool has_friction = LACONIC_WITH_FRICTION && laconic_vehicle_has_friction(vehicle);
     laconic_status status = laconic_prepare(&c->model, vehicle, why);
-    c->friction.acts = false;
+    if (LACONIC_WITH_FRICTION) c->friction.acts = false;
     if (status == LACONIC_OK && has_friction) status = prepare_friction(c, vehicle, method, why);
     if (status == LACONIC_OK) status = laconic_integrator_prepare(&c->integrator, method, &c->model, step_s, why);
     if (status == LACONIC_OK && has_friction) c->integrator.chosen = &friction_method;
@@ -55,7 +58,7 @@ static void adopt(laconic_plant *plant, const laconic_vehicle *vehicle, const co
     plant->vehicle = *vehicle;
     plant->model = c->model;
     plant->integrator = c->integrator;
-    plant->friction = c->friction;
+    if (LACONIC_WITH_FRICTION) plant->friction = c->friction;
 }
 
 laconic_status laconic_plant_start(laconic_plant *plant, const laconic_vehicle *vehicle, const laconic_method *method,
@@ -64,11 +67,22 @@ laconic_status laconic_plant_start(laconic_plant *plant, const laconic_vehicle *
     laconic_state state;
     laconic_status status = prepare(&c, vehicle, method, step_s, why);
     if (status == LACONIC_OK) status = laconic_state_set(&state, &c.model, start, why);
-    if (status == LACONIC_OK && c.friction.acts)
+    if (status == LACONIC_OK && acts(&c.friction))
         status = laconic_slip_set(&plant->slip, &c.friction, vehicle, start, why);
     if (status != LACONIC_OK) return status;
     adopt(plant, vehicle, &c);
     plant->state = state;
+    plant->steps = 0;
+    return LACONIC_OK;
+}
+
+laconic_status laconic_plant_restart(laconic_plant *plant, const laconic_start *start, laconic_refusal *why) {
+    laconic_slip slip;
+    laconic_status status = LACONIC_OK;
+    if (slips(plant)) status = laconic_slip_set(&slip, &plant->friction, &plant->vehicle, start, why);
+    if (status == LACONIC_OK) status = laconic_state_set(&plant->state, &plant->model, start, why);
+    if (status != LACONIC_OK) return status;
+    if (slips(plant)) plant->slip = slip;
     plant->steps = 0;
     return LACONIC_OK;
 }
@@ -99,14 +113,15 @@ static laconic_status refused(const laconic_plant *plant, laconic_status status,
                               int32_t count, laconic_refusal *why) {
     laconic_refusal found;
     laconic_step_refusal(&found, status, &plant->model, &plant->integrator, &plant->state, inputs, count);
-    return refuse(why, found.status, found.field, found.item, found.value, found.limit);
+    if (why != NULL) *why = found;
+    return found.status;
 }
 
 laconic_status laconic_plant_run(laconic_plant *plant, const laconic_input *held, uint64_t steps,
                                  laconic_refusal *why) {
     laconic_status status;
     plant->steps += run(plant, held, steps, &status);
-    return status == LACONIC_OK ? status : refused(plant, status, held, 1, why);
+    return status == LACONIC_OK ? LACONIC_OK : refused(plant, status, held, 1, why);
 }
 
 laconic_status laconic_plant_run_sampled(laconic_plant *plant, const laconic_input samples[3], laconic_refusal *why) {
@@ -121,28 +136,38 @@ laconic_status laconic_plant_run_sampled(laconic_plant *plant, const laconic_inp
     return LACONIC_OK;
 }
 
-/* ----------------------------------------------------------------------------------- change -- */
+/* --------------------------------------------------------------- the wheels, wherever they are -- */
 
-/* Speeds and angles of the wheels, from wherever the plant has them. */
-static void wheels_of(const laconic_plant *plant, real speed[], real angle_rad[]) {
-    laconic_wheel_speeds(&plant->model, &plant->state, speed);
-    laconic_wheel_angles(&plant->model, &plant->state, angle_rad);
-    for (int32_t i = 0; slips(plant) && i < plant->friction.wheel_count; i++) {
-        speed[i] = plant->slip.wheel_speed_rad_per_s[i];
-        angle_rad[i] = plant->slip.wheel_angle_rad[i].value;
-    }
+void laconic_plant_wheel_speeds(const laconic_plant *plant, laconic_real *speed_rad_per_s) {
+    if (!slips(plant)) laconic_wheel_speeds(&plant->model, &plant->state, speed_rad_per_s);
+    for (int32_t i = 0; slips(plant) && i < plant->friction.wheel_count; i++)
+        speed_rad_per_s[i] = plant->slip.wheel_speed_rad_per_s[i];
 }
+
+void laconic_plant_wheel_angles(const laconic_plant *plant, laconic_real *angle_rad) {
+    if (!slips(plant)) laconic_wheel_angles(&plant->model, &plant->state, angle_rad);
+    for (int32_t i = 0; slips(plant) && i < plant->friction.wheel_count; i++)
+        angle_rad[i] = plant->slip.wheel_angle_rad[i].value;
+}
+
+laconic_real laconic_plant_energy_J(const laconic_plant *plant) {
+    return slips(plant) ? laconic_friction_energy_J(&plant->friction, &plant->state, &plant->slip)
+                        : laconic_energy_J(&plant->model, &plant->state);
+}
+
+/* ----------------------------------------------------------------------------------- change -- */
 
 laconic_status laconic_plant_change(laconic_plant *plant, const laconic_vehicle *vehicle, laconic_refusal *why) {
     constants c;
     real speed[LACONIC_MAX_WHEELS], angle_rad[LACONIC_MAX_WHEELS];
     laconic_status status = prepare(&c, vehicle, plant->integrator.method, plant->integrator.step_s, why);
     if (status != LACONIC_OK) return status;
-    wheels_of(plant, speed, angle_rad);
+    laconic_plant_wheel_speeds(plant, speed);
+    laconic_plant_wheel_angles(plant, angle_rad);
     status = laconic_state_carry(&plant->state, &plant->model, &c.model);
     if (status != LACONIC_OK) return refuse(why, status, LACONIC_FIELD_NONE, 0, R(0), R(0));
-    if (slips(plant) && !c.friction.acts) laconic_wheel_angles_set(&c.model, &plant->state, angle_rad);
-    if (!slips(plant) && c.friction.acts) laconic_slip_take_over(&plant->slip, &c.friction, speed, angle_rad);
+    if (slips(plant) && !acts(&c.friction)) laconic_wheel_angles_set(&c.model, &plant->state, angle_rad);
+    if (!slips(plant) && acts(&c.friction)) laconic_slip_take_over(&plant->slip, &c.friction, speed, angle_rad);
     adopt(plant, vehicle, &c);
     return LACONIC_OK;
 }

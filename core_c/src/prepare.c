@@ -67,11 +67,16 @@ static void allowed_motions(basis *allowed, const basis *constraints) {
 /* What the wheels contribute to a form: value_i = largest · share_i. */
 typedef struct contributions {
     real largest;
-    real share[LACONIC_MAX_WHEELS]; /* exactly 1 for wheels that are alike, also where all values are 0 */
+    real share[LACONIC_OWN_WHEELS]; /* exactly 1 for wheels that are alike, also where all values are 0; builds for such
+                                       wheels alone do not read it */
 } contributions;
 
 static contributions of_damping(const laconic_model *m) {
     contributions c = {R(0), {R(0)}};
+    if (!LACONIC_WITH_OWN_WHEELS) {
+        c.largest = m->wheel_count > 0 ? m->motor_damping_Nms[0] : R(0);
+        return c;
+    }
     for (int32_t i = 0; i < m->wheel_count; i++)
         if (m->motor_damping_Nms[own(i)] > c.largest) c.largest = m->motor_damping_Nms[own(i)];
     for (int32_t i = 0; i < m->wheel_count; i++)
@@ -88,10 +93,10 @@ typedef struct pair {
 static pair column_products(const laconic_model *m, const real share[], int32_t a, int32_t b) {
     pair p = {R(0), R(0), R(0)};
     for (int32_t i = 0; i < m->wheel_count; i++) {
-        const real *row = m->wheel_of_zeta[i];
-        p.aa += share[i] * row[a] * row[a];
-        p.bb += share[i] * row[b] * row[b];
-        p.ab += share[i] * row[a] * row[b];
+        const real *row = m->wheel_of_zeta[i], weight = LACONIC_WITH_OWN_WHEELS ? share[i] : R(1);
+        p.aa += weight * row[a] * row[a];
+        p.bb += weight * row[b] * row[b];
+        p.ab += weight * row[a] * row[b];
     }
     return p;
 }
@@ -121,7 +126,7 @@ static bool make_orthogonal(laconic_model *m, axes *v, const real share[], int32
     d.sine = tangent / q;
     for (int32_t i = 0; i < m->wheel_count; i++) rotate_pair(&m->wheel_of_zeta[i][a], &m->wheel_of_zeta[i][b], d);
     for (int32_t i = 0; i < 3; i++) rotate_pair(&v->scaled.axis[a][i], &v->scaled.axis[b][i], d);
-    for (int32_t i = 0; i < 3; i++) rotate_pair(&v->inverse[a][i], &v->inverse[b][i], d);
+    for (int32_t i = 0; LACONIC_WITH_OWN_WHEELS && i < 3; i++) rotate_pair(&v->inverse[a][i], &v->inverse[b][i], d);
     return true;
 }
 
@@ -153,7 +158,7 @@ static void scale_axis(laconic_model *m, axes *v, const body *b, const real shar
     const real root = laconic_root(inertia);
     m->inertia[k] = inertia;
     m->decay_per_s[k] = largest_damping * m->torque_scale * x / inertia;
-    for (int32_t i = 0; i < 3; i++) v->inverse[k][i] = v->scaled.axis[k][i] * root;
+    for (int32_t i = 0; LACONIC_WITH_OWN_WHEELS && i < 3; i++) v->inverse[k][i] = v->scaled.axis[k][i] * root;
     for (int32_t i = 0; i < 3; i++) v->scaled.axis[k][i] /= root;
     for (int32_t i = 0; i < m->wheel_count; i++) m->wheel_of_zeta[i][k] /= root;
 }
@@ -179,13 +184,14 @@ static void rotate_to_damping(laconic_model *m, axes *v, const contributions *da
 /* Both rotations. Where no wheel has inertia, A is 1 from the start: the first rotation makes the damping diagonal. */
 static void diagonalise(laconic_model *m, axes *v, const body *b, const laconic_vehicle *vehicle) {
     const contributions damping = of_damping(m);
-    real share[LACONIC_MAX_WHEELS];
+    real share[LACONIC_OWN_WHEELS] = {R(0)};
     const bool inert = b->wheel_scale_square > R(0);
-    laconic_inertia_shares(share, vehicle);
+    if (LACONIC_WITH_OWN_WHEELS) laconic_inertia_shares(share, vehicle);
     const real *first = inert ? share : damping.share;
     find_principal_axes(m, v, first);
     for (int32_t k = 0; k < m->dof; k++) scale_axis(m, v, b, first, damping.largest, k);
-    if (damping.largest > R(0) && !same_shares(first, damping.share, m->wheel_count)) rotate_to_damping(m, v, &damping);
+    if (LACONIC_WITH_OWN_WHEELS && damping.largest > R(0) && !same_shares(first, damping.share, m->wheel_count))
+        rotate_to_damping(m, v, &damping);
     for (int32_t k = 0; k < 3; k++) {
         if (k >= m->dof) m->inertia[k] = R(1);
         for (int32_t i = 0; i < 3; i++) m->nu_of_zeta[i][k] = k < m->dof ? v->scaled.axis[k][i] : R(0);

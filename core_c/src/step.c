@@ -80,7 +80,8 @@ void laconic_step_refusal(laconic_refusal *why, laconic_status status, const lac
         if (laconic_input_check(model, &inputs[i], why) != LACONIC_OK) return;
     if (status == LACONIC_STEP_BEYOND_GYROSCOPIC_LIMIT)
         limit = laconic_largest_stable_step_s(integrator->method, model, state);
-    if (status == LACONIC_STEP_GAINS_ENERGY || status == LACONIC_STEP_SINGULAR || status == LACONIC_STEP_UNSOLVED)
+    if (status == LACONIC_STEP_GAINS_ENERGY || status == LACONIC_STEP_SINGULAR ||
+        (LACONIC_WITH_FRICTION && status == LACONIC_STEP_UNSOLVED))
         limit = R(0.5) * integrator->step_s;
     refuse(why, status, LACONIC_FIELD_STEP, 0, integrator->step_s, limit);
 }

@@ -7,13 +7,13 @@ typedef struct checked_number {
 } checked_number;
 
 #define IN_VEHICLE(prefix, number, IDENTIFIER, member, name, KIND, RULE, NEED) \
-    {offsetof(laconic_vehicle, prefix member), number, LACONIC_RULE_##RULE},
+    LACONIC_ROW_OF(number)({offsetof(laconic_vehicle, prefix member), number, LACONIC_RULE_##RULE},)
 #define IN_WHEEL(prefix, number, IDENTIFIER, member, name, KIND, RULE, NEED) \
-    {offsetof(laconic_wheel, member), number, LACONIC_RULE_##RULE},
+    LACONIC_ROW_OF(number)({offsetof(laconic_wheel, member), number, LACONIC_RULE_##RULE},)
 #define IN_OWN(prefix, number, IDENTIFIER, member, name, KIND, RULE, NEED) \
-    {offsetof(laconic_wheel, own_##member), number, LACONIC_RULE_##RULE},
+    LACONIC_ROW_OF(number)({offsetof(laconic_wheel, own_##member), number, LACONIC_RULE_##RULE},)
 #define IN_SUPPORT(prefix, number, IDENTIFIER, member, name, KIND, RULE, NEED) \
-    {offsetof(laconic_support, member), number, LACONIC_RULE_##RULE},
+    LACONIC_ROW_OF(number)({offsetof(laconic_support, member), number, LACONIC_RULE_##RULE},)
 
 static const checked_number of_body[] = {LACONIC_VEHICLE_FIELDS(IN_VEHICLE, ) LACONIC_PAYLOAD_FIELDS(
     IN_VEHICLE, payload.) LACONIC_GROUND_FIELDS(IN_VEHICLE, ground.) LACONIC_DRIVE_FIELDS(IN_VEHICLE, drive.)};
@@ -38,8 +38,9 @@ static laconic_status check_number(real value, const checked_number *number, int
         return refuse(why, LACONIC_OVERFLOW, field, item, value, LACONIC_REAL_MIN);
     if (rule >= LACONIC_RULE_NOT_NEGATIVE && rule <= LACONIC_RULE_INCLINE && value < R(0))
         return refuse(why, LACONIC_NEGATIVE, field, item, value, R(0));
-    if (rule == LACONIC_RULE_SHARE && value > R(1)) return refuse(why, LACONIC_ABOVE_LIMIT, field, item, value, R(1));
-    if (rule == LACONIC_RULE_INCLINE && value > LARGEST_INCLINE)
+    if (LACONIC_WITH_FRICTION && rule == LACONIC_RULE_SHARE && value > R(1))
+        return refuse(why, LACONIC_ABOVE_LIMIT, field, item, value, R(1));
+    if (LACONIC_WITH_SLOPE && rule == LACONIC_RULE_INCLINE && value > LARGEST_INCLINE)
         return refuse(why, LACONIC_ABOVE_LIMIT, field, item, value, LARGEST_INCLINE);
     if (rule >= LACONIC_RULE_ANGLE && magnitude(value) > LARGEST_ANGLE)
         return refuse(why, LACONIC_OVERFLOW, field, item, value, LARGEST_ANGLE);
@@ -73,7 +74,7 @@ static laconic_status check_wheel(const laconic_wheel *w, int32_t item, laconic_
         return refuse(why, LACONIC_WHEEL_NOT_SET, LACONIC_FIELD_WHEEL_KIND, item, R(0), R(0));
     if (w->kind != LACONIC_WHEEL_ROLLER && w->kind != LACONIC_WHEEL_FIXED)
         return refuse(why, LACONIC_WHEEL_KIND_UNKNOWN, LACONIC_FIELD_WHEEL_KIND, item, (real)w->kind, R(0));
-    if (w->motor_circuit < LACONIC_MOTOR_DRIVEN || w->motor_circuit > LACONIC_MOTOR_SHORTED)
+    if (LACONIC_WITH_FRICTION && (w->motor_circuit < LACONIC_MOTOR_DRIVEN || w->motor_circuit > LACONIC_MOTOR_SHORTED))
         return refuse(why, LACONIC_MOTOR_CIRCUIT_UNKNOWN, LACONIC_FIELD_MOTOR_CIRCUIT, item, (real)w->motor_circuit,
                       R(0));
     return check_numbers(w, of_wheel, COUNT(of_wheel), LACONIC_RULE_POSITIVE, last, item, why);
@@ -147,9 +148,19 @@ static laconic_status check_inertias(const laconic_vehicle *v, laconic_refusal *
     return LACONIC_OK;
 }
 
+/* A build without friction must not step a vehicle with it as if it had none. */
+static laconic_status check_left_out(const laconic_vehicle *v, laconic_refusal *why) {
+    real sum = v->ground.friction_coefficient + v->drive.supply_V + v->drive.current_limit_A;
+    for (int32_t i = 0; i < v->wheel_count; i++) sum += v->wheel[i].own_friction_coefficient + (real)v->wheel[i].motor_circuit;
+    if (sum > R(0))
+        return refuse(why, LACONIC_FRICTION_LEFT_OUT, LACONIC_FIELD_GROUND_FRICTION_COEFFICIENT, 0, sum, R(0));
+    return LACONIC_OK;
+}
+
 static laconic_status check_friction(const laconic_vehicle *v, laconic_refusal *why) {
     const bool slips = laconic_vehicle_slips(v);
     laconic_status status = LACONIC_OK;
+    if (!LACONIC_WITH_FRICTION) return check_left_out(v, why);
     if (slips && v->friction_coefficient > R(0))
         return refuse(why, LACONIC_FRICTION_TWICE, LACONIC_FIELD_FRICTION_COEFFICIENT, 0, v->friction_coefficient,
                       R(0));

@@ -29,7 +29,7 @@ typedef struct location {
 #define IN_START(member) 0, 0, AT(start.member)
 #define IN_RUN(member) 0, 0, AT(member)
 #define LOCATION(of, number, IDENTIFIER, member, name, KIND, RULE, NEED) \
-    {number, LACONIC_KIND_##KIND | LACONIC_NEED_##NEED << 4, IN_##of(member)},
+    LACONIC_ROW_OF(number)({number, LACONIC_KIND_##KIND | LACONIC_NEED_##NEED << 4, IN_##of(member)}, )
 
 static const location locations[LACONIC_LOADER_FIELDS] = {LACONIC_PARAMETER_FIELDS(LOCATION)};
 
@@ -47,9 +47,14 @@ static const location *find(uint8_t field, uint8_t item) {
     return NULL;
 }
 
-/* Fields that laconic.dbc has for numbers which the core does not use yet. */
-static bool is_reserved(uint8_t field) {
-    return field >= LACONIC_WIRE_FIELD_RESISTANCE && field <= LACONIC_WIRE_FIELD_ROTOR_INERTIA;
+/* Fields of laconic.dbc that are not in the table: of a motor, which the rig fits, and what this build leaves out. */
+static bool is_left_out(uint8_t field) {
+    const bool of_slope = field == LACONIC_FIELD_SLOPE || field == LACONIC_FIELD_SLOPE_HEADING;
+    const bool of_motor = field >= LACONIC_WIRE_FIELD_RESISTANCE && field <= LACONIC_WIRE_FIELD_ROTOR_INERTIA;
+    const bool of_wheel = field >= LACONIC_FIELD_OWN_RADIUS && field <= LACONIC_FIELD_DRIVEN;
+    const bool of_friction = field >= LACONIC_FIELD_WHEEL_FRICTION_COEFFICIENT && field < LACONIC_FIELD_COUNT;
+    return of_motor || (!LACONIC_WITH_OWN_WHEELS && of_wheel) || (!LACONIC_WITH_SLOPE && of_slope) ||
+           (!LACONIC_WITH_FRICTION && of_friction && !of_slope);
 }
 
 static void refuse(laconic_loader *loader, uint8_t status, uint8_t field, uint8_t item) {
@@ -114,7 +119,7 @@ void laconic_loader_take(laconic_loader *loader, const uint8_t data[8]) {
     const location *where = find(frame.field, frame.item);
     if (where == NULL) {
         refuse(loader,
-               is_reserved(frame.field) ? LACONIC_WIRE_STATUS_NOT_SUPPORTED : LACONIC_WIRE_STATUS_PARAMETER_UNKNOWN,
+               is_left_out(frame.field) ? LACONIC_WIRE_STATUS_NOT_SUPPORTED : LACONIC_WIRE_STATUS_PARAMETER_UNKNOWN,
                frame.field, frame.item);
         return;
     }

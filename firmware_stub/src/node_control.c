@@ -85,9 +85,8 @@ void laconic_node_make_idle(laconic_node *node) {
 static uint8_t reset(laconic_node *node, uint8_t *field, uint8_t *item) {
     laconic_refusal why = {0};
     if (node->state == LACONIC_WIRE_STATE_EMPTY) return LACONIC_WIRE_STATUS_WRONG_STATE;
-    const laconic_status status = laconic_state_set(&node->plant.state, &node->plant.model, &node->start, &why);
+    const laconic_status status = laconic_plant_restart(&node->plant, &node->start, &why);
     stop(node);
-    node->plant.steps = 0;
     node->state = LACONIC_WIRE_STATE_READY;
     memset(&node->counters, 0, sizeof node->counters);
     *field = (uint8_t)why.field;

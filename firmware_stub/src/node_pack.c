@@ -86,7 +86,7 @@ static void pack_pose(const laconic_node *node, uint8_t *data) {
 
 static void pack_wheel_speed(const laconic_node *node, uint8_t *data) {
     laconic_real speed[LACONIC_MAX_WHEELS + 3] = {0};
-    laconic_wheel_speeds(&node->plant.model, &node->plant.state, speed);
+    laconic_plant_wheel_speeds(&node->plant, speed);
     data[1] = (uint8_t)(node->wheel_group << 5);
     for (uint8_t k = 0; k < 3; k++) PUT(k, speed[3 * node->wheel_group + k], WHEEL_SPEED_WHEEL_SPEED_1);
 }
@@ -116,7 +116,7 @@ static void pack_state_fd(const laconic_node *node, uint8_t *data) {
     memset(data, 0, 64);
     laconic_nu(&node->plant.model, &node->plant.state, nu);
     laconic_pose_of(&pose, &node->plant.model, &node->plant.state);
-    laconic_wheel_speeds(&node->plant.model, &node->plant.state, speed);
+    laconic_plant_wheel_speeds(&node->plant, speed);
     put32(data + 4, (uint32_t)node->plant.steps);
     for (int k = 0; k < 3; k++) put32(data + 8 + 4 * k, (uint32_t)SCALED(nu[k], STATE_FD_NU_1, &over));
     put32(data + 20, (uint32_t)SCALED(pose.x_m, STATE_FD_X, &over));

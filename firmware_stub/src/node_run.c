@@ -31,26 +31,13 @@ static void fail(laconic_node *node, const laconic_refusal *why, uint8_t request
                         (uint8_t)why->item);
 }
 
-static laconic_status step_sampled(laconic_node *node, laconic_refusal *why) {
-    laconic_plant *plant = &node->plant;
-    const laconic_input *input = node->input;
-    const laconic_status status =
-        laconic_step_sampled(&plant->model, &plant->integrator, &plant->state, &input[0], &input[1], &input[2]);
-    if (status == LACONIC_OK) {
-        plant->steps++;
-    } else {
-        laconic_step_refusal(why, status, &plant->model, &plant->integrator, &plant->state, input, 3);
-    }
-    return status;
-}
-
 void laconic_node_run_lockstep(laconic_node *node) {
     laconic_refusal why = {0};
     laconic_status status;
     uint32_t steps = node->lockstep.steps_due;
     if (steps == 0) return;
     if (node->raw_input.take & LACONIC_RAW_SAMPLED) {
-        status = step_sampled(node, &why);
+        status = laconic_plant_run_sampled(&node->plant, node->input, &why);
     } else {
         if (steps > LACONIC_NODE_STEPS_PER_TICK) steps = LACONIC_NODE_STEPS_PER_TICK;
         status = laconic_plant_run(&node->plant, &node->input[0], steps, &why);

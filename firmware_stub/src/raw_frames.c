@@ -94,14 +94,14 @@ void laconic_raw_collect(laconic_raw_output *raw, const laconic_plant *plant) {
     }
     if (raw->send & LACONIC_RAW_POSE) to = collect_pose(to, plant);
     if (raw->send & LACONIC_RAW_WHEEL_SPEED) {
-        laconic_wheel_speeds(&plant->model, &plant->state, to);
+        laconic_plant_wheel_speeds(plant, to);
         to += n;
     }
     if (raw->send & LACONIC_RAW_WHEEL_ANGLE) {
-        laconic_wheel_angles(&plant->model, &plant->state, to);
+        laconic_plant_wheel_angles(plant, to);
         to += n;
     }
-    if (raw->send & LACONIC_RAW_ENERGY) *to++ = laconic_energy_J(&plant->model, &plant->state);
+    if (raw->send & LACONIC_RAW_ENERGY) *to++ = laconic_plant_energy_J(plant);
     raw->size = (uint16_t)((size_t)(to - raw->number) * sizeof(laconic_real));
     raw->position = 0;
     raw->segment = 0;

@@ -508,6 +508,14 @@ laconic_status laconic_plant_run(laconic_plant *plant, const laconic_input *held
  * the input in the middle is held. */
 laconic_status laconic_plant_run_sampled(laconic_plant *plant, const laconic_input samples[3], laconic_refusal *why);
 
+/* Back to a start with the same vehicle, method and step; plant->steps is 0 again. A refusal changes nothing. */
+laconic_status laconic_plant_restart(laconic_plant *plant, const laconic_start *start, laconic_refusal *why);
+
+/* Speed and angle of each wheel, and the kinetic energy of body and wheels, with friction or without. */
+void laconic_plant_wheel_speeds(const laconic_plant *plant, laconic_real *speed_rad_per_s);
+void laconic_plant_wheel_angles(const laconic_plant *plant, laconic_real *angle_rad);
+laconic_real laconic_plant_energy_J(const laconic_plant *plant);
+
 /* Another step size from now on; plant->steps goes on counting. */
 laconic_status laconic_plant_set_step(laconic_plant *plant, laconic_real step_s, laconic_refusal *why);
 

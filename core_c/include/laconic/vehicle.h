@@ -289,6 +289,42 @@ typedef enum laconic_field_need {
 
 /* clang-format on */
 
+/* ------------------------------------------------------------------------ what a build leaves out -- */
+
+/* LACONIC_ROW_OF(number)(row) is the row of a table, or nothing where the build leaves out what the field is for: small
+ * images need the bytes. The field's names stay, for refusals. */
+#define LACONIC_A_ROW(...) __VA_ARGS__
+#define LACONIC_NO_ROW(...)
+#define LACONIC_SECOND_OF(...) LACONIC_THE_SECOND(__VA_ARGS__)
+#define LACONIC_THE_SECOND(first, second, ...) second
+#define LACONIC_ROW_OF(number) LACONIC_SECOND_OF(LACONIC_LEFT_OUT_##number, LACONIC_A_ROW, ~)
+#if !LACONIC_WITH_OWN_WHEELS
+#define LACONIC_LEFT_OUT_43 ~, LACONIC_NO_ROW
+#define LACONIC_LEFT_OUT_44 ~, LACONIC_NO_ROW
+#define LACONIC_LEFT_OUT_45 ~, LACONIC_NO_ROW
+#define LACONIC_LEFT_OUT_46 ~, LACONIC_NO_ROW
+#define LACONIC_LEFT_OUT_47 ~, LACONIC_NO_ROW
+#endif
+#if !LACONIC_WITH_FRICTION
+#define LACONIC_LEFT_OUT_48 ~, LACONIC_NO_ROW
+#define LACONIC_LEFT_OUT_49 ~, LACONIC_NO_ROW
+#define LACONIC_LEFT_OUT_50 ~, LACONIC_NO_ROW
+#define LACONIC_LEFT_OUT_51 ~, LACONIC_NO_ROW
+#define LACONIC_LEFT_OUT_52 ~, LACONIC_NO_ROW
+#define LACONIC_LEFT_OUT_53 ~, LACONIC_NO_ROW
+#define LACONIC_LEFT_OUT_56 ~, LACONIC_NO_ROW
+#define LACONIC_LEFT_OUT_57 ~, LACONIC_NO_ROW
+#define LACONIC_LEFT_OUT_58 ~, LACONIC_NO_ROW
+#define LACONIC_LEFT_OUT_59 ~, LACONIC_NO_ROW
+#define LACONIC_LEFT_OUT_60 ~, LACONIC_NO_ROW
+#define LACONIC_LEFT_OUT_61 ~, LACONIC_NO_ROW
+#define LACONIC_LEFT_OUT_62 ~, LACONIC_NO_ROW
+#endif
+#if !LACONIC_WITH_SLOPE
+#define LACONIC_LEFT_OUT_54 ~, LACONIC_NO_ROW
+#define LACONIC_LEFT_OUT_55 ~, LACONIC_NO_ROW
+#endif
+
 #define LACONIC_FIELD_NUMBER(of, number, IDENTIFIER, ...) LACONIC_FIELD_##IDENTIFIER = number,
 
 /* The fields a refusal can name: LACONIC_FIELD_MASS = 1 … */

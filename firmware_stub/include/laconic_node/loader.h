@@ -12,7 +12,7 @@ typedef struct laconic_parameters {
 } laconic_parameters;
 
 /* Number of fields that the loader receives. */
-#define LACONIC_LOADER_ONE(of, number, ...) +1
+#define LACONIC_LOADER_ONE(of, number, ...) LACONIC_ROW_OF(number)(+1)
 #define LACONIC_LOADER_FIELDS (0 LACONIC_PARAMETER_FIELDS(LACONIC_LOADER_ONE))
 
 typedef struct laconic_loader {
