@@ -13,14 +13,17 @@ from laconic.rig.wire import wire
 
 Parameter = tuple[str, int, float | int]  # field (name in the value table), item, value
 
+DRIVE = "vehicle.drive"  # has numbers of every motor, but only the friction step reads them
+
 
 def parameters_of(plant: Plant, start: Any) -> Iterator[Parameter]:
     """All parameters of this plant; zeros are left out where the node does not require the field."""
     vehicle, core = plant.c.vehicle, plant.core
     has_payload = any(value for field in core.fields_of("vehicle.payload") for value in field.values(vehicle))
+    left_out = ("vehicle.motor",) if plant.has_friction else ("vehicle.motor", DRIVE)
     for field in core.fields:
         root = field.root
-        if root not in ("vehicle", "initial") or field.table == "vehicle.motor":
+        if root not in ("vehicle", "initial") or field.table in left_out:
             continue
         values = field.values(vehicle if root == "vehicle" else start)[:in_use(field, vehicle)]
         required = field.need not in ("NEVER", "WITH_SUPPORTS") and (field.need != "WITH_PAYLOAD" or has_payload)

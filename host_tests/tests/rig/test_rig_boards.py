@@ -16,6 +16,7 @@ from laconic.rig.lockstep import load_scene, run_lockstep, twin_states
 from laconic.rig.wire import wire
 from laconic.scene import Scene, read_scene
 from laconic.soak import boards as boards_soak
+from laconic.trim import needs_of
 
 pytestmark = pytest.mark.skipif(why_no_emulation() is not None, reason=why_no_emulation() or "")
 FULL = [name for name in BOARDS if name != "an386-small"]
@@ -27,8 +28,9 @@ UNFIT = dict.fromkeys(FULL, "parameter missing") | {"an500": "input incomplete"}
 
 
 def fits_small_image(scene: Scene) -> bool:
-    """Four wheels and voltages only."""
-    return scene.wheel_count <= 4 and all(each.signal.startswith("voltage_V") for each in scene.inputs)
+    """At most four wheels, all alike, one support, and voltages only."""
+    is_small = scene.wheel_count <= 4 and len(scene.vehicle["support"]) <= 1 and not needs_of(scene).own_wheels
+    return is_small and all(each.signal.startswith("voltage_V") for each in scene.inputs)
 
 
 def rk4_can(scene: Scene) -> bool:

@@ -68,13 +68,11 @@ def test_the_node_requires_what_the_page_states_and_nothing_else() -> None:
     vehicle.wheel[1].undriven = True
     for field in scene.core().own_fields():
         setattr(vehicle.wheel[0], field.member, 0.05)
-    for field in scene.core().fields_of("vehicle"):
-        if field.need == "NEVER":
-            setattr(vehicle, field.key, 0.5)
-    for path, struct in (("ground", vehicle.ground), ("vehicle.drive", vehicle.drive)):
-        for field in scene.core().fields_of(path):
-            setattr(struct, field.key, 0.5)
-    vehicle.wheel[0].motor_circuit = 1
+    for table, struct in (("vehicle", vehicle), ("ground", vehicle.ground), ("vehicle.drive", vehicle.drive)):
+        for field in scene.core().fields_of(table):
+            if field.need == "NEVER":
+                setattr(struct, field.key, 0.5)
+    plant.c.friction.acts, vehicle.wheel[0].motor_circuit = True, 1
     start = start_of(scene)
     start.wheel_speed_rad_per_s[0] = 1.0
     start.x_m = start.y_m = start.heading_rad = start.nu_rad_per_s[0] = 1.0
