@@ -27,4 +27,11 @@ laconic_status bench_run(uint32_t steps);
 /* The present state. */
 const laconic_state *bench_state(void);
 
+#ifdef LACONIC_SCENE_SLIPS /* wheels have states of their own */
+#define BENCH_STATE_BYTES (sizeof(laconic_state) + sizeof(laconic_slip))
+const laconic_slip *bench_slip(void);
+#else
+#define BENCH_STATE_BYTES sizeof(laconic_state)
+#endif
+
 #endif

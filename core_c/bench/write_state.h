@@ -21,6 +21,13 @@ static inline void write_state(write_bits write, const laconic_state *state) {
     }
     if (LACONIC_WITH_WHEEL_ANGLES)
         for (int k = 0; k < 3; k++) write_sum(write, "travel", &state->travel[k]);
+#ifdef LACONIC_SCENE_SLIPS
+    for (int32_t i = 0; i < laconic_scene_friction.wheel_count; i++) {
+        const laconic_real *speed = &bench_slip()->wheel_speed_rad_per_s[i];
+        write("wheel_speed", speed, sizeof *speed);
+        write_sum(write, "wheel_angle", &bench_slip()->wheel_angle_rad[i]);
+    }
+#endif
 }
 
 #endif

@@ -10,12 +10,13 @@ from dataclasses import dataclass
 from functools import lru_cache
 from pathlib import Path
 
-from laconic.benchmark.workshop import Target, Variant, Workshop, run_tool
+from laconic.benchmark.workshop import Target, Variant, Workshop, entry_of, run_tool
 from laconic.errors import ResultFails
 
 CALIBRATED_INSTRUCTIONS = 65536
 LARGEST_COUNTER = 2**24
-STATE_LINES = ("zeta", "x", "y", "turns", "heading", "travel")
+STATE_LINES = ("zeta", "x", "y", "turns", "heading", "travel", "wheel_speed", "wheel_angle")
+CONSTANTS = ("laconic_scene_model", "laconic_scene_integrator", "laconic_scene_friction")
 HEAP = re.compile(r"^(malloc|free|calloc|realloc|_sbrk|_malloc_r)$")
 DOUBLE_HELPER = re.compile(r"^__(aeabi_(d|cd|u?[ilf]2d)|(add|sub|mul|div|eq|lt|gt|le|ge|ne|unord|neg)df|float.*df"
                            r"|fix.*df|extendsfdf|truncdfsf)")
@@ -104,12 +105,12 @@ def size_of_step(workshop: Workshop, target: Target, variant: Variant) -> Size:
     symbols = _symbols(target, image)
     folder, files = workshop.files(variant)
     graph = CallGraph.read(workshop.archive(target, variant, folder).parent)
-    entry = "laconic_step" if variant.scene.inputs_on_grid().is_held else "laconic_step_sampled"
+    entry = entry_of(files, variant.scene)
     method = [title for title in graph.stack if title.rpartition(":")[2] in files.method_steps]
     reached = graph.reached(entry, method)
     text, data, bss = _sections(target, image)
-    tables = sum(symbols.get(name, 0) for name in ("laconic_scene_model", "laconic_scene_integrator"))
-    outside = symbols.get("laconic_scene_start", 0) + symbols.get("bench_state_bytes", 0)
+    tables = sum(symbols.get(name, 0) for name in CONSTANTS)
+    outside = sum(symbols.get(name, 0) for name in ("laconic_scene_start", "laconic_scene_slip", "bench_state_bytes"))
     return Size(
         step_code=sum(symbols.get(name.rpartition(":")[2], 0) for name in reached), flash=text + data - outside,
         tables=tables, state=symbols["bench_state_bytes"], static_ram=data + bss,

@@ -116,7 +116,14 @@ def segments_source(core: Core, scene: Scene, names: dict[int, str] | None = Non
     table = ",\n    ".join(rows)
     return (f'#include "bench.h"\n\nconst bench_segment bench_segments[] = {{\n    {table}}};\n'
             f"const uint32_t bench_segment_count = {len(rows)};\n"
-            "const char bench_state_bytes[sizeof(laconic_state)] = {0};\n")
+            "const char bench_state_bytes[BENCH_STATE_BYTES] = {0};\n")
+
+
+def entry_of(files: Trimmed, scene: Scene) -> str:
+    """The function of the core that takes a step of the scene."""
+    if files.needs.friction:
+        return "laconic_friction_step"
+    return "laconic_step" if scene.inputs_on_grid().is_held else "laconic_step_sampled"
 
 
 class Workshop:
@@ -190,7 +197,9 @@ class Workshop:
 
     def step_image(self, target: Target, variant: Variant) -> Path:
         """What laconic_step with the scene's constants brings into flash, and nothing else."""
-        entry = "laconic_step" if variant.scene.inputs_on_grid().is_held else "laconic_step_sampled"
-        keep = [f"-Wl,-u,{name}" for name in ("laconic_scene_model", "laconic_scene_integrator", "bench_state_bytes")]
+        _, files = self.files(variant)
+        entry, slips = entry_of(files, variant.scene), ["laconic_scene_friction"] if files.needs.friction else []
+        kept = ["laconic_scene_model", "laconic_scene_integrator", "bench_state_bytes", *slips]
+        keep = [f"-Wl,-u,{name}" for name in kept]
         flags = ["-nostartfiles", "-ffreestanding", f"-Wl,-e,{entry}", "-Wl,-Ttext=0x1000", *keep]
         return self._link(target, variant, "step.elf", [], flags)

@@ -17,13 +17,13 @@ from typing import Any
 
 from laconic.core import Core, load
 from laconic.core.plant import Plant
-from laconic.errors import BadInput
 from laconic.outputs import write_text
 from laconic.scene import Scene
 from laconic.trim.c_tables import initializer
 
 OF_EACH_WHEEL = ("voltage_scale", "motor_gain_Nm_per_V", "motor_damping_Nms", "wheel_inertia_kgm2")
 """Members of laconic_model that have one item where all wheels are alike."""
+FRICTION = "friction"  # the method that a plant with friction chooses
 POSE = ("x_m", "y_m", "heading_rad", "heading_wrapped_rad", "origin_x_m", "origin_y_m")
 
 
@@ -41,7 +41,7 @@ class Needs:
     damping: bool
     own_wheels: bool  # some wheel has values of its own
     slope: bool
-    friction: bool
+    friction: bool  # stepped by laconic_friction_step: wheels slip, or motors have limits
 
 
 @dataclass(frozen=True)
@@ -79,33 +79,34 @@ def needs_of(scene: Scene) -> Needs:
     wanted = {name.partition("[")[0] for name in scene.outputs.signals}
     plant = scene.plant(load("double"))
     slope = bool(plant.c.model.sloped)
-    world_force = "world_force_N" in acting or slope
+    world_force = slope or "world_force_N" in acting  # either turns with the heading
     return Needs(
         voltage="voltage_V" in acting, axle_torque="axle_torque_Nm" in acting,
         body_wrench=bool(acting & {"body_force_N", "body_moment_Nm"}), world_force=world_force,
         sampled_input=not scene.inputs_on_grid().is_held,
         pose=world_force or not wanted or not wanted.isdisjoint(POSE),
         wheel_angles=scene.wheel_count > 0 and (not wanted or "wheel_angle_rad" in wanted),
-        damping=any(plant.c.model.decay_per_s), slope=slope, friction=plant.has_friction,
+        damping=any(plant.c.model.decay_per_s),
         own_wheels=any(wheel.undriven or any(getattr(wheel, field.member) for field in plant.core.own_fields())
-                       for wheel in plant.c.vehicle.wheel))
+                       for wheel in plant.c.vehicle.wheel),
+        slope=slope, friction=plant.has_friction)
 
 
 def trimmed(scene: Scene, real: str) -> Trimmed:
     """Everything a build for this scene alone consists of."""
     core = load(real)
     plant = scene.plant(core)
-    if plant.has_friction:
-        raise BadInput(f"{scene.path}: a trimmed core has neither ground friction nor limits of a drive; take "
-                       "[ground]'s friction, [vehicle.drive] and motor_circuit out")
     method = plant.chosen_method
     needs = needs_of(scene)
     return Trimmed(needs, method, method_steps(scene, method), header_of(scene, real, needs),
-                   table_header(scene, real), tables(core, plant, scene))
+                   table_header(scene, real, needs), tables(core, plant, scene))
 
 
 def method_steps(scene: Scene, chosen: str) -> tuple[str, ...]:
-    """The method's own step function; for auto that of the chosen pair of methods and those that this pair calls."""
+    """The method's own step function; for auto that of the chosen pair of methods and those that this pair calls; none
+    with friction, whose step calls nothing by a pointer."""
+    if chosen == FRICTION:
+        return ()
     own = f"{chosen.replace('-', '_')}_step"
     if scene.run.method != "auto":
         return (own,)
@@ -116,10 +117,10 @@ def method_steps(scene: Scene, chosen: str) -> tuple[str, ...]:
 
 def header_of(scene: Scene, real: str, needs: Needs) -> str:
     """laconic_scene.h."""
-    n = scene.wheel_count
+    n, supports = scene.wheel_count, max(1, len(scene.vehicle["support"]) if needs.friction else 0)
     lines = [f"/* {scene.path.name}: what this build of the core is for ({real}). Generated. */",
              "#ifndef LACONIC_SCENE_H", "#define LACONIC_SCENE_H", *real_check(scene, real),
-             f"#define LACONIC_MAX_WHEELS {max(1, n)}", "#define LACONIC_MAX_SUPPORTS 1",
+             f"#define LACONIC_MAX_WHEELS {max(1, n)}", f"#define LACONIC_MAX_SUPPORTS {supports}",
              f"#define LACONIC_WHEELS(model) ((void)(model), {n})", "#define LACONIC_WITH_PREPARE 0"]
     lines += [f"#define LACONIC_WITH_{name.upper()} {int(value)}" for name, value in asdict(needs).items()]
     return "\n".join([*lines, "#endif", ""])
@@ -132,13 +133,11 @@ def real_check(scene: Scene, real: str) -> list[str]:
             f'#error "laconic: {scene.path.name} was prepared for {real}: compile {hint} LACONIC_SINGLE"', "#endif"]
 
 
-def table_header(scene: Scene, real: str) -> str:
+def table_header(scene: Scene, real: str, needs: Needs) -> str:
     """laconic_scene_model.h."""
     single = "-DLACONIC_SINGLE " if real == "single" else ""
     return "\n".join([
-        f"/* {scene.path.name}, prepared: step it with",
-        " *     laconic_state state = laconic_scene_start;",
-        " *     laconic_step(&laconic_scene_model, &laconic_scene_integrator, &state, &input);",
+        f"/* {scene.path.name}, prepared: step it with", *(FRICTION_STEPS if needs.friction else STEPS),
         " * The structs are those of the library: what links the trimmed one is compiled like it, with",
         f" *     {single}-DLACONIC_SCENE_HEADER='\"laconic_scene.h\"'",
         " * Generated. */",
@@ -146,7 +145,22 @@ def table_header(scene: Scene, real: str) -> str:
         '#include "laconic/laconic.h"', "",
         "extern const laconic_model laconic_scene_model;",
         "extern const laconic_integrator laconic_scene_integrator;",
-        "extern const laconic_state laconic_scene_start;", "", "#endif", ""])
+        "extern const laconic_state laconic_scene_start;",
+        *(FRICTION_TABLES if needs.friction else ()), "", "#endif", ""])
+
+
+STEPS = (
+    " *     laconic_state state = laconic_scene_start;",
+    " *     laconic_step(&laconic_scene_model, &laconic_scene_integrator, &state, &input);")
+FRICTION_STEPS = (
+    " *     laconic_state state = laconic_scene_start;",
+    " *     laconic_slip slip = laconic_scene_slip;",
+    " *     laconic_friction_step(&laconic_scene_friction, &laconic_scene_model, laconic_scene_integrator.step_s,",
+    " *                           &state, &slip, &input);",
+    " * An input that varies within the step is taken in its middle.")
+FRICTION_TABLES = (
+    "", "#define LACONIC_SCENE_SLIPS", "extern const laconic_friction laconic_scene_friction;",
+    "extern const laconic_slip laconic_scene_slip;")
 
 
 EACH_WHEEL = (
@@ -165,11 +179,16 @@ def tables(core: Core, plant: Plant, scene: Scene) -> str:
     """laconic_scene_model.c: the plant's constants and start, to the last bit."""
     integrator = core.ffi.new("laconic_integrator *", plant.c.integrator)
     integrator.method = integrator.chosen
-    names = method_symbols(core, integrator)
+    if plant.has_friction:
+        integrator.method = integrator.chosen = core.ffi.NULL
+    names = {} if plant.has_friction else method_symbols(core, integrator)
     values: dict[str, tuple[str, Any]] = {
         "laconic_scene_model": ("laconic_model", plant.c.model),
         "laconic_scene_integrator": ("laconic_integrator", integrator[0]),
         "laconic_scene_start": ("laconic_state", plant.c.state)}
+    if plant.has_friction:
+        values |= {"laconic_scene_friction": ("laconic_friction", plant.c.friction),
+                   "laconic_scene_slip": ("laconic_slip", plant.c.slip)}
     lines = [f"/* {scene.path.name}, prepared. Generated. */", '#include "laconic_scene_model.h"', *EACH_WHEEL, ""]
     lines += [f"const {kind} {name} = {for_each_wheel(initializer(core.ffi, value, names))};"
               for name, (kind, value) in values.items()]

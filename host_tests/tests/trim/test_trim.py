@@ -4,10 +4,13 @@ from __future__ import annotations
 
 import shutil
 import sys
+from collections.abc import Callable
 from dataclasses import replace
 from pathlib import Path
 
+import numpy as np
 import pytest
+from friction_scenes import skid_steering, slipping
 
 from laconic.benchmark.boards import board_row
 from laconic.benchmark.counting import host_state
@@ -18,6 +21,7 @@ from laconic.errors import ResultFails
 from laconic.paths import build_dir
 from laconic.scene import METHODS, Outputs, Scene, read_scene
 from laconic.scene.inputs import Input
+from laconic.simulation import advance_plant
 from laconic.trim import needs_of, trimmed
 
 needs_gcc = pytest.mark.skipif(not HOST.present, reason="no gcc here")
@@ -102,6 +106,41 @@ def test_a_trimmed_core_gives_the_same_bits_as_the_whole_one(workshop: Workshop,
 
 
 @needs_gcc
+@pytest.mark.parametrize(("made", "real"), [(skid_steering, "double"), (slipping, "single")],
+                         ids=["skid_steering", "slipping"])
+def test_a_trimmed_core_with_friction_gives_the_same_bits_as_the_whole_one(
+        workshop: Workshop, made: Callable[[Path], Scene], real: str, tmp_path: Path):
+    scene = made(tmp_path)
+    whole, trim = (host_state(workshop.host_program(Variant(scene, real, "-O0", trim)), 700) for trim in (False, True))
+    assert whole == trim
+    assert sum(line.startswith("wheel_speed") for line in whole) == scene.wheel_count
+
+
+@needs_gcc
+def test_a_trimmed_core_with_friction_ends_where_the_plant_does(workshop: Workshop, tmp_path: Path):
+    scene = slipping(tmp_path)
+    lines = host_state(workshop.host_program(Variant(scene, "double", "-O0", True)), 700)
+    plant, inputs = scene.plant(load("double")), scene.inputs_on_grid()
+    advance_plant(plant, inputs, 0, 700)
+    speeds = [line.split()[1] for line in lines if line.startswith("wheel_speed")]
+    assert speeds == [np.array(speed).byteswap().tobytes().hex() for speed in plant.wheel_speeds()]
+
+
+@needs_board
+def test_on_a_cortex_m4f_a_friction_step_has_the_hosts_bits_and_nothing_foreign_is_linked(
+        workshop: Workshop, tmp_path: Path):
+    row = board_row(workshop, M4F, Variant(slipping(tmp_path), "single", "-Os", True))
+    assert row["same_bits"] and row["chosen"] == "friction"
+    assert row["double_helpers"] == 0 and row["heap"] == 0 and row["static_ram"] == 0
+
+
+@needs_gcc
+def test_a_scene_without_friction_links_nothing_of_it(workshop: Workshop):
+    program = workshop.host_program(Variant(read_scene("s1"), "double", "-O0", True))
+    assert not [name for name in run_tool(["nm", str(program)]).split() if "friction" in name]
+
+
+@needs_gcc
 def test_without_pose_the_velocities_still_have_the_same_bits(workshop: Workshop, tmp_path: Path):
     scene = read_scene("paper_three_wheel_free")
     whole = host_state(workshop.host_program(Variant(scene, "double", "-O0")), 500)
@@ -133,7 +172,8 @@ def test_the_command_reports_what_it_wrote_and_left_out(tmp_path: Path, capsys: 
     assert run(["trim", "s1", "--real", "single", "--out", str(tmp_path)]) == 0
     printed = capsys.readouterr().out
     assert str(tmp_path / "laconic_scene.h") in printed
-    assert printed.endswith("left out: axle torque, body wrench, world force, sampled input, own wheels, slope, friction\n")
+    assert printed.endswith("left out: axle torque, body wrench, world force, sampled input, own wheels, slope, "
+                            "friction\n")
 
 
 @needs_gcc
