@@ -7,13 +7,13 @@ typedef struct checked_number {
 } checked_number;
 
 #define IN_VEHICLE(prefix, number, IDENTIFIER, member, name, KIND, RULE, NEED) \
-    LACONIC_ROW_OF(number)({offsetof(laconic_vehicle, prefix member), number, LACONIC_RULE_##RULE},)
+    LACONIC_ROW_OF(number)({offsetof(laconic_vehicle, prefix member), number, LACONIC_RULE_##RULE}, )
 #define IN_WHEEL(prefix, number, IDENTIFIER, member, name, KIND, RULE, NEED) \
-    LACONIC_ROW_OF(number)({offsetof(laconic_wheel, member), number, LACONIC_RULE_##RULE},)
+    LACONIC_ROW_OF(number)({offsetof(laconic_wheel, member), number, LACONIC_RULE_##RULE}, )
 #define IN_OWN(prefix, number, IDENTIFIER, member, name, KIND, RULE, NEED) \
-    LACONIC_ROW_OF(number)({offsetof(laconic_wheel, own_##member), number, LACONIC_RULE_##RULE},)
+    LACONIC_ROW_OF(number)({offsetof(laconic_wheel, own_##member), number, LACONIC_RULE_##RULE}, )
 #define IN_SUPPORT(prefix, number, IDENTIFIER, member, name, KIND, RULE, NEED) \
-    LACONIC_ROW_OF(number)({offsetof(laconic_support, member), number, LACONIC_RULE_##RULE},)
+    LACONIC_ROW_OF(number)({offsetof(laconic_support, member), number, LACONIC_RULE_##RULE}, )
 
 static const checked_number of_body[] = {LACONIC_VEHICLE_FIELDS(IN_VEHICLE, ) LACONIC_PAYLOAD_FIELDS(
     IN_VEHICLE, payload.) LACONIC_GROUND_FIELDS(IN_VEHICLE, ground.) LACONIC_DRIVE_FIELDS(IN_VEHICLE, drive.)};
@@ -151,7 +151,8 @@ static laconic_status check_inertias(const laconic_vehicle *v, laconic_refusal *
 /* A build without friction must not step a vehicle with it as if it had none. */
 static laconic_status check_left_out(const laconic_vehicle *v, laconic_refusal *why) {
     real sum = v->ground.friction_coefficient + v->drive.supply_V + v->drive.current_limit_A;
-    for (int32_t i = 0; i < v->wheel_count; i++) sum += v->wheel[i].own_friction_coefficient + (real)v->wheel[i].motor_circuit;
+    for (int32_t i = 0; i < v->wheel_count; i++)
+        sum += v->wheel[i].own_friction_coefficient + (real)v->wheel[i].motor_circuit;
     if (sum > R(0))
         return refuse(why, LACONIC_FRICTION_LEFT_OUT, LACONIC_FIELD_GROUND_FRICTION_COEFFICIENT, 0, sum, R(0));
     return LACONIC_OK;

@@ -12,6 +12,7 @@ from laconic.core import load
 from laconic.core.plant import Plant
 from laconic.errors import BadInput, Refused
 from laconic.scene import METHODS, Scene
+from laconic.scene.ground import has_friction
 from laconic.simulation import advance_plant
 from laconic.verification.reference import reference_states
 
@@ -20,6 +21,7 @@ CHECKPOINTS = 20
 GRID_S = 0.1  # every step of the ladder divides it
 OWN_FACTORS = (0.1, 0.2, 0.25, 0.5, 1.0, 2.0, 5.0, 10.0)  # of a step that does not divide it
 LONGEST_S = 10.0
+FINE_STEPS = 4000  # in the grid's spacing: forty times finer than the finest of the ladder
 TIMED_STEPS, TIMED_REPETITIONS = 4000, 5
 
 
@@ -39,7 +41,18 @@ def shortened(scene: Scene, grid_s: float = GRID_S) -> Scene:
 def truth_of(scene: Scene, grid_s: float = GRID_S) -> Truth:
     """Reference states at evenly spaced instants."""
     at_s = checkpoints(scene.run.duration_s, grid_s)
-    return Truth(at_s, reference_states(scene, at_s))
+    states = fine_states(scene, at_s, grid_s) if has_friction(scene.vehicle) else reference_states(scene, at_s)
+    return Truth(at_s, states)
+
+
+def fine_states(scene: Scene, at_s: np.ndarray, grid_s: float) -> np.ndarray:
+    """With friction no closed solution and no other routine is known: the same step, much finer."""
+    return follow(scene.with_run(step_s=grid_s / FINE_STEPS), "double", at_s)
+
+
+def methods_of(scene: Scene, methods: tuple[str, ...]) -> tuple[str, ...]:
+    """Those that can step the scene at all: with friction there is one."""
+    return ("auto",) if has_friction(scene.vehicle) else methods
 
 
 def checkpoints(duration_s: float, grid_s: float = GRID_S) -> np.ndarray:
@@ -136,7 +149,7 @@ def rows_of(scene: Scene, reals: tuple[str, ...], methods: tuple[str, ...] = MET
     truth, rows = truth_of(short, grid_s), []
     steps = [h for h in ladder if fits(replace(short, run=replace(short.run, step_s=h)), truth)]
     for real in reals:
-        for method in methods:
+        for method in methods_of(scene, methods):
             cost = cost_per_step(short, real, method)
             for step_s in steps:
                 row = one_run(short.with_run(method=method, step_s=step_s), real, truth)

@@ -7,7 +7,20 @@ from dataclasses import dataclass, field, replace
 from pathlib import Path
 from typing import Any
 
-from laconic.benchmark import accuracy, boards, drift, extremes, peers, referenced, single, speed, stability, targets
+from laconic.benchmark import (
+    accuracy,
+    boards,
+    drift,
+    extremes,
+    friction_accuracy,
+    friction_cost,
+    peers,
+    referenced,
+    single,
+    speed,
+    stability,
+    targets,
+)
 from laconic.benchmark.workshop import BOARDS, M4F, Variant, Workshop
 from laconic.progress import progress_bar
 from laconic.scene import METHODS, Outputs, Scene, read_scene
@@ -16,7 +29,8 @@ REALS = ("double", "single")
 MAP_SCENE, BENCH_SCENE, FREE_SCENE = "kuka_youbot", "s1", "paper_three_wheel_free"
 STIFF_SCENES = ("robotino2", "kuka_youbot")
 PARTS = ("targets", "robots", "take", "accuracy", "drift", "norm", "map", "stiff", "extremes", "verified", "prototype",
-         "single", "long", "steps", "precision", "boards", "scenes", "smallest")  # all that report.json may hold
+         "single", "long", "steps", "precision", "boards", "scenes", "smallest",
+         "friction_cost", "friction_order", "friction_extremes")  # all that report.json may hold
 
 
 @dataclass
@@ -32,7 +46,7 @@ def collect(scenes: Sequence[Scene], folder: Path, quick: bool = False) -> Repor
     """Everything. `quick` takes fewer repetitions and vehicles (for tests; the figures are then rough)."""
     bench = read_scene(BENCH_SCENE).with_run(step_s=speed.STEP_S)
     workshop, report = Workshop(folder / "bench"), Report({name: [] for name in PARTS})
-    sections = (_numeric, _stiffness, _edges, _speed, _boards)
+    sections = (_numeric, _stiffness, _edges, _speed, _boards, _friction)
     with progress_bar("report", _amount(scenes, quick)) as advance:
         for section in sections:
             report.results |= section(report, scenes, bench, workshop, folder, quick, advance)
@@ -47,7 +61,8 @@ def _amount(scenes: Sequence[Scene], quick: bool) -> int:
     numeric = 2 * len(METHODS) * len(scenes) + 2 * len(METHODS[1:])
     board_count = 1 if quick else len(BOARDS)
     sizes = 2 * len(METHODS[1:]) * board_count + 2 * len(scenes)
-    return numeric + len(stability.FACTORS) + 8 + 2 * len(extremes.CASES) + 2 + sizes
+    costs = len(REALS) * len(friction_cost.cost_scenes())
+    return numeric + len(stability.FACTORS) + 8 + 2 * len(extremes.CASES) + 2 + sizes + costs
 
 
 def _numeric(report: Report, scenes: Sequence[Scene], bench: Scene, workshop: Workshop, folder: Path, quick: bool,
@@ -109,3 +124,11 @@ def _boards(report: Report, scenes: Sequence[Scene], bench: Scene, workshop: Wor
             "scenes": boards.scene_rows(workshop, scenes, REALS, advance=advance),
             "smallest": [boards.board_row(Workshop(folder / "smallest"), M4F,
                                           Variant(smallest, "single", "-Os", True))]}
+
+
+def _friction(report: Report, scenes: Sequence[Scene], bench: Scene, workshop: Workshop, folder: Path, quick: bool,
+              advance: Any) -> dict[str, list[dict[str, Any]]]:
+    advance(0, "ground with friction")
+    costs = friction_cost.cost_rows(workshop, M4F if M4F.present else None, REALS, advance)
+    return {"friction_order": friction_accuracy.order_rows(),
+            "friction_extremes": friction_accuracy.extreme_rows(REALS), "friction_cost": costs}

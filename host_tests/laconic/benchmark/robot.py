@@ -16,10 +16,12 @@ from laconic.core import load
 from laconic.errors import BadInput, Refused
 from laconic.progress import progress_bar
 from laconic.scene import METHODS, Scene
+from laconic.scene.ground import has_friction
 from laconic.verification.reference import totals_of
 
 QUICK_FACTORS = tuple(float(10**k) for k in range(-1, 7))
 WANTED = (1e-3, 1e-6, 1e-9)
+WANTED_SLIPPING = (1e-1, 1e-2, 1e-3)  # of the friction step, which is of first order
 ERRORS = ("error_nu", "error_pose", "error_wheel")
 
 Row = dict[str, Any]
@@ -69,8 +71,9 @@ def robot_row(scene: Scene) -> Row:
     supports = len(scene.vehicle["support"])
     return {"scene": scene.path.stem, "name": scene.name, "mass_kg": float(model.mass_kg),
             "wheels": wheels + (f", {supports} support{'s' if supports > 1 else ''}" if supports else ""),
-            "dof": int(model.dof), "method": scene.run.method, "works": plant.chosen_method, "real": scene.run.real,
-            "step_s": scene.run.step_s, "fastest_decay_per_s": float(rates.max(initial=0.0)),
+            "dof": int(model.dof), "method": scene.run.method,
+            "works": "the friction step" if plant.has_friction else plant.chosen_method,
+            "real": scene.run.real, "step_s": scene.run.step_s, "fastest_decay_per_s": float(rates.max(initial=0.0)),
             "h_r": scene.run.step_s * float(rates.max(initial=0.0))}
 
 
@@ -83,12 +86,12 @@ def ladder_rows(scene: Scene, advance: Any = lambda: None) -> list[Row]:
 
 def advice(rows: Sequence[Row], scene: Scene) -> list[Row]:
     """For some accuracies: the quickest method and step that reach it in ν, pose and wheel angles, in each type."""
-    found = []
-    for wanted in WANTED:
+    found, slips = [], all(row["method"] == "auto" for row in rows if row["scene"] == scene.path.stem)
+    for wanted in WANTED_SLIPPING if slips else WANTED:
         for real in REALS:
             good = [(row["us_per_second"], worst_error(row), row) for row in rows
                     if (row["scene"], row["real"], row["status"]) == (scene.path.stem, real, "ok")
-                    and row["method"] != "auto" and worst_error(row) <= wanted]
+                    and (row["method"] != "auto" or slips) and worst_error(row) <= wanted]
             _, error, row = min(good, key=lambda each: each[:2], default=(None, None, {}))
             found.append({"scene": scene.path.stem, "wanted_error": wanted, "real": real,
                           "method": row.get("method", "none of the ladder"), "step_s": row.get("step_s"),
@@ -104,6 +107,8 @@ def worst_error(row: Row) -> float:
 
 def map_rows(scene: Scene, factors: Sequence[float], advance: Any = lambda: None) -> list[Row]:
     """The stability map of this robot with weaker and stronger motors; none where no motor drives and damps it."""
+    if has_friction(scene.vehicle):  # its step damps whatever the motors do
+        return []
     totals = totals_of(scene.vehicle)
     if not (scene.wheel_count and totals.motor_gain_Nm_per_V and totals.motor_damping_Nms):
         return []

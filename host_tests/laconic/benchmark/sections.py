@@ -12,7 +12,7 @@ from laconic.scene import METHODS
 def project_sections(results: dict[str, list[Row]]) -> list[Section]:
     """In order."""
     return [_accuracy(results), _peers(results), _stability(results), _conserved(results), _boards(results),
-            _scenes(results), _references(results), _extremes(results)]
+            _scenes(results), _references(results), _extremes(results), _friction(results)]
 
 
 def goal_sections(results: dict[str, list[Row]]) -> list[Section]:
@@ -82,3 +82,13 @@ def _references(results: dict[str, list[Row]]) -> Section:
 def _extremes(results: dict[str, list[Row]]) -> Section:
     fields = ("case", "real", "outcome", "error", "digits_lost", "why")
     return _section("extremes", "Extremes", (), Table(results["extremes"], fields))
+
+
+def _friction(results: dict[str, list[Row]]) -> Section:
+    cost = ("run", "processor", "real", "wheels", "median_ideal", "p99_ideal", "worst_ideal", "median_instructions",
+            "worst_instructions", "flash", "worst_stack")
+    return _section("friction", "Ground with friction", (),
+                    Table(results["friction_cost"], cost, "Cost of a step, in ideal steps and in instructions"),
+                    Table(results["friction_order"], ("what", "step_s", "error_nu", "order"), "Observed order"),
+                    Table(results["friction_extremes"], ("case", "real", "steps_taken", "refused", "finite", "speed"),
+                          "Extreme grounds, with voltages that change every ten steps"))

@@ -181,8 +181,26 @@ def board_targets(results: Results) -> list[Target]:
     return [*found, at_most("same bits", "board images whose state differs from the host's", differ, 0)]
 
 
+def friction_targets(results: Results) -> list[Target]:
+    """What a friction step costs, in ideal RK4 steps; nothing is refused or lost on extreme grounds."""
+    found = []
+    for wheels, limit in ((3, 10.0), (4, 14.0)):
+        for row in select(results["friction_cost"], wheels=wheels):
+            what = f"{wheels} wheels, {row['run']}, {row['processor']}, {row['real']}"
+            if row["processor"] == "host" or row["real"] == "single":
+                found.append(at_most("friction", f"{what}: median of a step [ideal steps]", row["median_ideal"], limit))
+                found.append(at_most("friction", f"{what}: worst step [ideal steps]", row["worst_ideal"], 45.0))
+    extremes = results["friction_extremes"]
+    lost = float(sum(not row["finite"] for row in extremes)) if extremes else None
+    tried = sum(row["steps_taken"] for row in extremes)
+    refused = sum(row["refused"] for row in extremes) / tried if tried else None
+    return [*found, at_most("friction", "extreme grounds: runs that end in NaN or infinity", lost, 0.0),
+            at_most("friction", "extreme grounds: share of steps that are refused", refused, 1e-3)]
+
+
 GROUPS: tuple[Callable[[Results], list[Target]], ...] = (
-    order_targets, structure_targets, reference_targets, single_targets, speed_targets, board_targets)
+    order_targets, structure_targets, reference_targets, single_targets, speed_targets, board_targets,
+    friction_targets)
 
 
 def targets(results: Results) -> list[Row]:

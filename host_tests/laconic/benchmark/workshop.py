@@ -187,13 +187,13 @@ class Workshop:
         """The bench as a shared library: bench_reset, bench_run."""
         return self._link(HOST, variant, "bench.so", [BENCH / "bench.c"], ["-shared", "-Wl,-Bsymbolic"], ["-fPIC"])
 
-    def board_image(self, target: Target, variant: Variant, steps: int) -> Path:
-        """The image that counts so many steps on a board."""
+    def board_image(self, target: Target, variant: Variant, steps: int, program: str = "count") -> Path:
+        """The image that counts so many steps on a board: all together, or each by itself (`spread`)."""
         board, startup = BENCH / "cortex_m", BENCH.parent / "cortex_m"
-        sources = [BENCH / "bench.c", startup / "startup.c", board / "bench_board.c", board / "count.c"]
+        sources = [BENCH / "bench.c", startup / "startup.c", board / "bench_board.c", board / f"{program}.c"]
         flags = [f"-DBENCH_STEPS={steps}", f"-I{board}", f"-I{startup}", "-ffreestanding", "-nostartfiles",
                  f"-L{startup}", f"-T{target.script}"]
-        return self._link(target, variant, "count.elf", sources, flags)
+        return self._link(target, variant, f"{program}.elf", sources, flags)
 
     def step_image(self, target: Target, variant: Variant) -> Path:
         """What laconic_step with the scene's constants brings into flash, and nothing else."""
