@@ -64,7 +64,7 @@ def rolling_of(core: Core, vehicle: Mapping[str, Any], path: Path) -> Rolling:
         raise BadInput(f"{path}: its wheel speeds do not determine its motion; rolling needs wheels that "
                        "turn whatever the motion")
     nu = allowed @ np.linalg.pinv(distance_rows) * radii  # ν per rotation
-    centre = np.array([float(c_vehicle.com_x_m), float(c_vehicle.com_y_m)])
+    centre = centre_of_mass(core, c_vehicle)
     angle = nu[2] / matrices.lambda_yaw
     # the origin's velocity is the centre of mass's less that of turning about it: v_O = v_S − θ' × c
     origin = [reference * nu[0] + angle * centre[1], reference * nu[1] - angle * centre[0], angle]
@@ -75,11 +75,17 @@ def rotations_of(core: Core, vehicle: Mapping[str, Any], moved: np.ndarray) -> n
     """Rotation of each wheel (columns) for displacements x, y, angle of the body's origin, one row each."""
     c_vehicle = core.vehicle(vehicle)
     matrices = core.matrices(c_vehicle)
-    x, y = float(c_vehicle.com_x_m), float(c_vehicle.com_y_m)
+    x, y = centre_of_mass(core, c_vehicle)
     centre = moved + moved[:, 2:] * np.array([-y, x, 0.0])
     nu = centre * np.array([1.0, 1.0, matrices.lambda_yaw * c_vehicle.wheel_radius_m]) / c_vehicle.wheel_radius_m
     found: np.ndarray = nu @ matrices.wheel_rows.T
     return found
+
+
+def centre_of_mass(core: Core, c_vehicle: Any) -> np.ndarray:
+    """x, y [m] in the body's frame, with the payload: the point to whose motion the core's matrices refer."""
+    model = core.prepare(c_vehicle)
+    return np.array([float(model.com_x_m), float(model.com_y_m)])
 
 
 def wheel_radii(vehicle: Mapping[str, Any]) -> np.ndarray:

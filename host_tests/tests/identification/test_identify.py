@@ -52,6 +52,17 @@ def test_rolling_undoes_what_the_wheels_did_with_unequal_radii_and_the_centre_of
     assert rolling_of(scene.core(), vehicle, scene.path).moved(rotation) == pytest.approx(moved, abs=1e-14)
 
 
+def test_a_payload_does_not_change_how_the_robots_origin_rolls():
+    scene = read_scene("kuka_youbot")
+    payload = {"mass_kg": 20.0, "x_m": 0.1, "y_m": -0.05, "yaw_inertia_kgm2": 0.2}
+    moved = np.array([[0.02, 0.01, 0.03]])
+    alone, laden = (rolling_of(scene.core(), vehicle, scene.path)
+                    for vehicle in (scene.vehicle, {**scene.vehicle, "payload": payload}))
+    assert laden.per_rotation == pytest.approx(alone.per_rotation, abs=1e-14)
+    assert rotations_of(scene.core(), {**scene.vehicle, "payload": payload}, moved) == pytest.approx(
+        rotations_of(scene.core(), scene.vehicle, moved), abs=1e-13)
+
+
 def test_95_percent_intervals_hold_the_truth_in_about_95_percent_of_50_made_up_robots():
     held = [each for trial in trials(50, seed=1) for each in trial.held()]
     three_sigma = 3.0 * np.sqrt(0.95 * 0.05 / len(held))
