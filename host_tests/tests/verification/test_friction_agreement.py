@@ -6,15 +6,18 @@ import numpy as np
 import pytest
 
 import laconic.soak.friction
+from laconic.soak import StoppedEarly
 from laconic.soak.friction import MOST_COLD_REFUSED, MOST_WARM_REFUSED
-from laconic.verification.friction.agreement import LIMIT, Count, compare
+from laconic.verification.friction.agreement import LIMIT, Count, compare, energy_difference
 from laconic.verification.friction.core_solver import CoreSolution, solve_in_core
 from laconic.verification.friction.driven import drive, energy_gain
+from laconic.verification.friction.hard import KINDS, hard_problem
 from laconic.verification.friction.polish import polish
 from laconic.verification.friction.problem import StepProblem
+from laconic.verification.friction.residual import size_of
 from laconic.verification.friction.vehicles import random_problem, random_vehicle
 
-COLD, VEHICLES, STEPS = 100, 15, 40
+COLD, HARD, VEHICLES, STEPS = 120, 12, 30, 40
 
 
 def problems(count):
@@ -43,6 +46,15 @@ def test_driven_vehicles_never_gain_energy_from_a_warm_step_nor_leave_the_residu
     assert count.solved > 0.5 * VEHICLES * STEPS
 
 
+def test_accepted_hard_steps_agree_with_the_oracle_to_1e9_in_the_norm_of_the_energy_and_have_that_residual():
+    count = Count()
+    for number in range(HARD):
+        kind = KINDS[number % len(KINDS)]
+        compare(hard_problem(kind, np.random.default_rng(number)), count, kind, energy_difference)
+    assert [text for text, _ in count.bad if "refused" not in text] == []
+    assert count.solved > 0.8 * HARD
+
+
 def test_in_single_precision_cold_steps_agree_with_the_oracle_to_its_digits():
     worst, refused, tried = 0.0, 0, 0
     for problem in problems(60):
@@ -57,6 +69,16 @@ def test_in_single_precision_cold_steps_agree_with_the_oracle_to_its_digits():
             worst = max(worst, np.linalg.norm(mass * (core.z - exact)) / size if size > 0.0 else 0.0)
     assert worst <= 1e-3
     assert refused <= 0.1 * tried
+
+
+def test_an_error_in_the_norm_of_the_energy_counts_by_what_the_speed_carries():
+    problem = next(problems(1))
+    exact = polish(problem).z
+    for place, mass in enumerate(problem.masses()):
+        off = exact.copy()
+        off[place] += 1e-3
+        assert energy_difference(problem, off, exact) == pytest.approx(
+            1e-3 * mass**0.5 / size_of(problem, exact), rel=1e-6)
 
 
 def test_a_wrong_solution_of_the_core_is_found(monkeypatch):
@@ -91,3 +113,18 @@ def test_the_soak_judges_and_writes_its_cases(monkeypatch, tmp_path):
     result = laconic.soak.friction.soak(0.3 / 60, 1, moved.append)
     assert sum(moved) == pytest.approx(0.3, abs=1.0)
     assert {"cold: steps", "hard: refused", "warm: worst"} <= set(result)
+
+
+def test_a_soak_that_is_stopped_tells_what_it_found_until_then(monkeypatch, tmp_path):
+    monkeypatch.setattr(laconic.soak.friction, "build_dir", lambda: tmp_path)
+    done = []
+
+    def advance(seconds):
+        done.append(seconds)
+        if len(done) == 6:
+            raise KeyboardInterrupt
+
+    with pytest.raises(StoppedEarly) as stopped:
+        laconic.soak.friction.soak(10.0, 1, advance)
+    assert isinstance(stopped.value.__cause__, KeyboardInterrupt)
+    assert {"passed", "cold: steps", "hard: refused", "warm: worst"} <= set(stopped.value.result)

@@ -6,6 +6,7 @@ import importlib
 import json
 import pkgutil
 import random
+from typing import Any
 
 import click
 from rich.console import Console
@@ -34,7 +35,8 @@ def command(what: str, minutes: float, seed: int | None, json_wanted: bool) -> i
     boards    emulated boards started anew, idle and with all cores busy
     faults    the fault matrix of the rig, with new seeds
     fmu       random use of the FMUs' C interface, under sanitizers
-    friction  the friction solver against a conic one with 40 digits, and driven motions
+    friction  the friction solver against a conic one with 40 digits, and driven motions;
+              Ctrl-C prints what was found until then
     free-run  the node process at 1 kHz: no step may be lost
     fuzz      SLCAN reader, frame handler and parameter loader under libFuzzer
     identify  a thousand made-up robots: what their intervals hold
@@ -50,13 +52,22 @@ def command(what: str, minutes: float, seed: int | None, json_wanted: bool) -> i
         raise BadInput(f"--minutes: {minutes:g} is not usable; give a finite number above zero")
     chosen = random.SystemRandom().randrange(2**31) if seed is None else seed
     module = importlib.import_module(f"laconic.soak.{modules[what]}")
-    with progress_bar(f"soak {what}", 60.0 * minutes) as advance:
-        result = module.soak(minutes, chosen, advance)
-    result = {"what": what, "minutes": minutes, "seed": chosen, **result}
+    stopped: BaseException | None = None
+    try:
+        with progress_bar(f"soak {what}", 60.0 * minutes) as advance:
+            result = module.soak(minutes, chosen, advance)
+    except laconic.soak.StoppedEarly as early:
+        result, stopped = {"stopped": "early, so this is what was found until then", **early.result}, early.__cause__
+    _show({"what": what, "minutes": minutes, "seed": chosen, **result}, json_wanted)
+    if stopped is not None:
+        raise stopped
+    return 0 if result["passed"] else 1
+
+
+def _show(result: dict[str, Any], json_wanted: bool) -> None:
     if json_wanted:
         click.echo(json.dumps(result, indent=1))
-    else:
-        console = Console()
-        for name, value in result.items():
-            console.print(f"{name:>24}  {value}")
-    return 0 if result["passed"] else 1
+        return
+    console = Console()
+    for name, value in result.items():
+        console.print(f"{name:>24}  {value}")
