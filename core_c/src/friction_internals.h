@@ -18,7 +18,7 @@
 /* √x for x from the least normal number on, some units in the last place; below, a number below 1e-150 (1e-18); not for
  * infinity. It costs a quarter of laconic_root(), which does not use IEEE's layout: half the exponent's bits are the
  * guess, 3.5 % off at most, and each of Heron's rounds squares that: 6e-4, 2e-7, 2e-14, then rounding. */
-static inline real quick_root(real x) {
+static inline real root_in(int rounds, real x) {
 #ifdef LACONIC_SINGLE
     union {
         real number;
@@ -32,9 +32,14 @@ static inline real quick_root(real x) {
     } guess = {x};
     guess.bits = (guess.bits >> 1) + 0x1ff769e5b00908bcU;
 #endif
-    for (int round = 0; round < HERON_ROUNDS; round++) guess.number = R(0.5) * (guess.number + x / guess.number);
+    for (int round = 0; round < rounds; round++) guess.number = R(0.5) * (guess.number + x / guess.number);
     return guess.number;
 }
+
+static inline real quick_root(real x) { return root_in(HERON_ROUNDS, x); }
+
+/* To 2e-7, which is enough on the way: smoothed passes end where exact ones go on. */
+static inline real rough_root(real x) { return root_in(2, x); }
 
 /* The problem and where the search for its solution stands. */
 typedef struct friction_search {

@@ -18,24 +18,26 @@
 
 /* The residual that a result must reach, and the speed that counts as rest, both relative to the free motion. Redundant
  * contacts let the speeds be off by some ten times the residual, and speeds shall be right to 1e-9. From (|t|/grip)² =
- * BORDER on, slip outwards tells that a contact slips; in single it would tell rounding errors. An impulse is rounded
- * by up to HIDDEN of itself, and what that hides counts as residual. */
+ * BORDER on, slip outwards tells that a contact slips; in single it would tell rounding errors. Rounding
+ * hides some HIDDEN of each impulse, which counts as residual. Contacts may hold each other with many times the
+ * free motion's impulse, of which MOST_STRESS is the square: above it rounding would hide more than TOLERANCE. */
 #ifdef LACONIC_SINGLE
 #define TOLERANCE R(1e-5)
 #define SNAP R(2e-5)
 #define BORDER R(1)
 #define HIDDEN R(1e-8)
+#define MOST_STRESS R(1e4)
 #else
 #define TOLERANCE R(1e-11)
 #define SNAP R(1e-10)
 #define BORDER R(0.998)
 #define HIDDEN R(1e-16)
+#define MOST_STRESS R(1e8)
 #endif
 
 #define SMALLEST_ENERGY (LACONIC_REAL_MIN / (TOLERANCE * TOLERANCE)) /* below it squares of residuals underflow */
-#define MOST_STRESS R(100) /* the impulses that steps ask for are a few times the free motion's; squared */
 #define NO_SLIP R(1e-30) /* a direction without slip, as across free rollers, has this share of the mobility or less */
-#define EXACT_PASSES 3   /* of warm steps 1 in 50 needs more */
+#define EXACT_PASSES 3   /* of warm steps 1 in 60 needs more */
 
 /* A contact in a pass: how it stands, then its linear law p += gain_m (row_m·δν), and s with the first row. */
 typedef struct contact {
