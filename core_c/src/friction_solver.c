@@ -212,13 +212,17 @@ static void exact_pass(friction_search *at, contact contacts[]) {
     for (int32_t i = 0; i < at->count; i++) move(&contacts[i], by, &at->speed[i], at->impulse[i]);
 }
 
-/* Twice the energy of the motion without the contacts; NaN where a limit is, which comparisons would pass over. */
+/* Twice the energy of the motion without the contacts, with the motors' damping as inertia, which is what a step's
+ * implicit motor is: without it a result could be far less accurate than the motion of a damped wheel. NaN where a
+ * limit is, which comparisons would pass over. */
 static real free_energy(const friction_search *at) {
     real energy = square(at->free);
     for (int32_t i = 0; i < at->count; i++) {
         const friction_load *l = &at->load[i];
-        const real speed = l->free_speed + drive_at(l, R(0)) / at->wheel[i].inertia;
-        energy += at->wheel[i].inertia * speed * speed;
+        const real inertia = at->wheel[i].inertia, push = inertia * l->free_speed + drive_at(l, R(0));
+        const real slope = magnitude(l->drive) < l->drive_limit ? l->drive_slope : R(0);
+        energy += push * push / (inertia + l->viscous + slope);
+        energy += zero_if_finite(l->viscous) + zero_if_finite(l->drive_slope);
         energy += zero_if_finite(l->grip) + zero_if_finite(l->axle) + zero_if_finite(l->drive_limit);
     }
     return energy;
