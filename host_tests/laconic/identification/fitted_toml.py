@@ -20,12 +20,34 @@ def fitted_text(study: Study) -> str:
     comments: Comments = {}
     for index, wheel in enumerate(data["vehicle"]["wheel"]):
         _rewrite(study, index, wheel, comments)
+    _rewrite_vehicle(study, data, comments)
     head = [f"# {study.scene.path.name}, with parameters identified by `laconic identify` from recorded runs:"]
     head += [f"#   {', '.join(log.path.name for log in part)} of {part[0].session}"
              for part in parts(study.logs, "session")]
     head += ["# Intervals hold the true value with 95 %, if the rest of the model is right. In words:"]
     head += [f"#   {word}" for word in study.words]
     return "\n".join([*head, *_lines(data, (), comments)]) + "\n"
+
+
+def _rewrite_vehicle(study: Study, data: dict[str, Any], comments: Comments) -> None:
+    """Keys that are no wheel's: [vehicle] wheel_radius_m, [vehicle.motor] viscous_friction_Nms, [ground], [speed_controller]."""
+    after = fitted_scene(study.scene, study.found).vehicle
+    tables = {("vehicle",): data["vehicle"], ("vehicle", "motor"): data["vehicle"].get("motor", {})}
+    if any(p.path.startswith("ground.") for p in study.found.parameters.each) and "ground" in after:
+        data["vehicle"].pop("friction_coefficient", None)  # ground.friction_coefficient says it
+        tables["ground",] = data.setdefault("ground", {})
+        tables["ground",].update({key: after["ground"][key] for key in after["ground"] if not key.startswith("slope_")})
+    for parameter in study.found.parameters.each:
+        *location, key = parameter.path.split(".")
+        if tuple(location) in tables:
+            values = after
+            for part in location[location[0] == "vehicle":]:
+                values = values[part]
+            tables[tuple(location)][key] = values[key]
+            comments[(*location, key)] = _interval(study, parameter.path)
+    if study.controller is not None:
+        data["speed_controller"] = study.controller.values()
+        comments.update({("speed_controller", key): text for key, text in study.controller.comments().items()})
 
 
 def _rewrite(study: Study, index: int, wheel: dict[str, Any], comments: Comments) -> None:

@@ -6,6 +6,7 @@ import math
 from collections.abc import Callable, Sequence
 
 from laconic.errors import BadInput, nearest_of
+from laconic.identification import ground
 from laconic.identification.parameter import Parameter, Parameters, Vehicle
 from laconic.recorded_runs.rolling import wheel_radii
 from laconic.scene import Scene
@@ -13,15 +14,15 @@ from laconic.scene import Scene
 RELATIVE_SD = 0.1                     # of a radius and of the distances, unless --prior says otherwise
 PLACE_SD_M = 0.03
 ANGLE_SD_RAD = math.radians(2.0)
-GROUPS = ("radius", "distance", "place", "heading", "axle", "roller")
+GROUPS = ("radius", "common-radius", "distance", "place", "heading", "axle", "roller", *ground.GROUPS)
 USUAL = ("radius", "distance")
 
 
 def geometry_of(scene: Scene, free: Sequence[str], relative_sd: float = RELATIVE_SD) -> Parameters:
     """The parameters that --free names; BadInput for a name that is none or that this vehicle has not."""
     makers: dict[str, Callable[[Scene, float], list[Parameter]]] = {
-        "radius": _radii, "distance": _distance, "place": _place, "heading": _heading, "axle": _axles,
-        "roller": _rollers}
+        "radius": _radii, "common-radius": _common_radius, "distance": _distance, "place": _place, "heading": _heading, "axle": _axles,
+        "roller": _rollers, **ground.MAKERS}
     found: list[Parameter] = []
     for name in GROUPS:
         if name in free:
@@ -44,6 +45,18 @@ def _radii(scene: Scene, relative_sd: float) -> list[Parameter]:
     return [Parameter(f"radius of wheel {i + 1}", f"vehicle.wheel[{i + 1}].radius_m", "radius", "m", radius,
                       relative_sd * radius, writer(i), relative_sd * radius)
             for i, radius in enumerate(wheel_radii(scene.vehicle))]
+
+
+def _common_radius(scene: Scene, relative_sd: float) -> list[Parameter]:
+    """One for all wheels: how far they roll in one turn, which on ground with slip may be less than the wheel's size."""
+    def write(vehicle: Vehicle, value: float) -> None:
+        vehicle["wheel_radius_m"] = value
+
+    nominal = scene.vehicle.get("wheel_radius_m", 0.0)
+    if not nominal or any(wheel.get("radius_m") for wheel in scene.vehicle["wheel"]):
+        return []
+    return [Parameter("radius of the wheels", "vehicle.wheel_radius_m", "common-radius", "m", nominal,
+                      relative_sd * nominal, write)]
 
 
 def _distance(scene: Scene, relative_sd: float) -> list[Parameter]:

@@ -14,7 +14,7 @@ from laconic.recorded_runs.rolled_paths import error_table
 def as_text(study: Study) -> str:
     """A report in Markdown."""
     lines = [f"# {study.scene.name}, from {len(study.logs)} runs", "",
-             "| parameter | nominal | found | 95 % interval | prior ± |", "| --- " * 5 + "|", *_rows(study), "",
+             "| parameter | nominal | found | 95 % interval | prior ± |", "| --- " * 5 + "|", *_rows(study), *_controller_rows(study), "",
              *(f"* {word}" for word in study.words), "", *_summary(study), ""]
     for title, errors in (("Fitted on", study.fitted), ("Left out", study.left_out), ("Judged", study.judged)):
         if errors:
@@ -27,6 +27,12 @@ def _rows(study: Study) -> list[str]:
     return [f"| {p.name} [{p.unit or '–'}] | {p.nominal:.6g} | {value:.6g} | {value - half:.6g} … {value + half:.6g} | "
             f"{np.hypot(p.prior_sd, p.shared_sd):.2g} |"
             for p, value, half in zip(found.parameters.each, found.values, found.half_widths, strict=True)]
+
+
+def _controller_rows(study: Study) -> list[str]:
+    return [] if study.controller is None else [
+        f"| {name} | – | {value:.6g} | {value - half:.6g} … {value + half:.6g} | – |"
+        for name, value, half in study.controller.rows()]
 
 
 def _summary(study: Study) -> list[str]:
@@ -49,6 +55,9 @@ def as_numbers(study: Study) -> dict[str, Any]:
                    "low": float(value - half), "high": float(value + half),
                    "prior_sd": float(np.hypot(p.prior_sd, p.shared_sd))}
                   for p, value, half in zip(found.parameters.each, found.values, found.half_widths, strict=True)]
+    if study.controller is not None:
+        parameters += [{"name": name, "path": f"speed_controller.{name}", "value": value, "low": value - half,
+                        "high": value + half} for name, value, half in study.controller.rows()]
     means = {name: grand_mean(errors).as_json() for name, errors in (
         ("nominal", study.nominal), ("fitted", study.fitted), ("left_out", study.left_out), ("judged", study.judged),
         ("judged_nominal", study.judged_nominal)) if errors}

@@ -40,6 +40,7 @@ class RollingEvidence:
     """Runs with a true pose, for `solve.fit`."""
 
     directions = 2
+    difference = 0.0
 
     def __init__(self, core: Core, scene_path: Path, logs: Sequence[Log]):
         self._core, self._path = core, scene_path
@@ -49,8 +50,7 @@ class RollingEvidence:
     def residuals(self, vehicle: Vehicle) -> list[np.ndarray]:
         """Distances x, y between rolled and true path."""
         rolling = rolling_of(self._core, vehicle, self._path)
-        return [((path_of(rolling.moved(run.rotation_rad, run.point), run.pose[0]) - run.pose)[run.taken, :2]
-                 * run.scale).ravel() for run in self.runs]
+        return [path_residual(run, path_of(rolling.moved(run.rotation_rad, run.point), run.pose[0])) for run in self.runs]
 
     def scores(self, vehicle: Vehicle, jacobians: list[np.ndarray]) -> list[np.ndarray]:
         """Of each stretch: its error, carried to all points of the path after it, times the Jacobian there."""
@@ -58,7 +58,7 @@ class RollingEvidence:
         found = []
         for run, jacobian in zip(self.runs, jacobians, strict=True):
             path = path_of(rolling.moved(run.rotation_rad, run.point), run.pose[0])
-            found.append(_stretch_scores(run, path, jacobian.reshape(len(run.taken), 2, -1)))
+            found.append(stretch_scores(run, path, jacobian.reshape(len(run.taken), 2, -1)))
         return found
 
 
@@ -74,7 +74,13 @@ def run_of(log: Log) -> Run:
     return Run(log.rotation_rad(), pose, log.pose_point, taken, cuts, 1.0 / (length * np.sqrt(len(taken))))
 
 
-def _stretch_scores(run: Run, path: np.ndarray, jacobian: np.ndarray) -> np.ndarray:
+def path_residual(run: Run, path: np.ndarray) -> np.ndarray:
+    """Distances x, y of the compared points, over the path's length; their squares sum to the squared path error."""
+    found: np.ndarray = ((path - run.pose)[run.taken, :2] * run.scale).ravel()
+    return found
+
+
+def stretch_scores(run: Run, path: np.ndarray, jacobian: np.ndarray) -> np.ndarray:
     """jacobian: points × 2 × parameters."""
     error = _relative(path, run.cuts) - _relative(run.pose, run.cuts)
     found = []

@@ -13,7 +13,7 @@ of single stretches of a run, not residuals, which a path has summed.
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass, replace
 from typing import Any, Protocol
 
@@ -26,6 +26,7 @@ from laconic.identification.parameter import Parameters, Vehicle
 CONFIDENCE = 0.95
 OUTLIER = 3.0
 MOST_ROUNDS = 12
+ROUGHLY_SETTLED = 0.01
 SETTLED = 1e-3       # relative change of σ
 SMALLEST_SCALE = 1e-9
 STEP = 1e-4          # of z, for derivatives
@@ -42,6 +43,10 @@ class Evidence(Protocol):
     @property
     def directions(self) -> int:
         """Independent components of a residual at one instant."""
+
+    @property
+    def difference(self) -> float:
+        """Step of z for derivatives by differences; 0: residuals are exact, as small a one as numbers allow."""
 
     def residuals(self, vehicle: Vehicle) -> list[np.ndarray]:
         """Of each run: numbers whose sum of squares is the run's squared error."""
@@ -71,11 +76,11 @@ class Fit:
         return widths
 
 
-def fit(base: dict[str, Any], parameters: Parameters, evidence: Evidence) -> Fit:
-    """The parameters that the runs tell; the others stay nominal to the digit."""
+def fit(base: dict[str, Any], parameters: Parameters, evidence: Evidence, start: Fit | None = None) -> Fit:
+    """The parameters that the runs tell; the others stay nominal to the digit. `start`: a fit to begin from."""
     untold: tuple[str, ...] = ()
     while True:
-        found = _fit(base, parameters, evidence)
+        found = _fit(base, parameters, evidence, _start(parameters, start))
         share = told_share(found)
         lost = tuple(p.name for p, s in zip(parameters.each, share, strict=True) if s > UNTOLD)
         untold, parameters = untold + lost, parameters.without(lost)
@@ -95,11 +100,18 @@ def told_share(found: Fit) -> np.ndarray:
     return share
 
 
-def _fit(base: dict[str, Any], parameters: Parameters, evidence: Evidence) -> Fit:
+def _start(parameters: Parameters, start: Fit | None) -> np.ndarray:
+    """z of the values of another fit; nominal where it has none."""
+    known = {} if start is None else dict(zip((p.name for p in start.parameters.each), start.values, strict=True))
+    off = np.array([known.get(p.name, p.nominal) - p.nominal for p in parameters.each])
+    return np.linalg.solve(parameters.factor, off) if len(parameters) else off
+
+
+def _fit(base: dict[str, Any], parameters: Parameters, evidence: Evidence, z: np.ndarray) -> Fit:
     sessions = list(evidence.sessions)
     in_session = np.array([1.0 / sessions.count(name) for name in sessions])
     freedom = len(set(sessions)) * evidence.directions
-    weights, z = np.ones(len(sessions)), np.zeros(len(parameters))
+    weights = np.ones(len(sessions))
 
     def stacked(z: np.ndarray, factors: np.ndarray) -> np.ndarray:
         blocks = evidence.residuals(parameters.vehicle(base, parameters.values(z)))
@@ -108,13 +120,28 @@ def _fit(base: dict[str, Any], parameters: Parameters, evidence: Evidence) -> Fi
     scale = _scale(stacked(z, np.sqrt(in_session)), freedom)
     for _ in range(MOST_ROUNDS):
         factors = np.sqrt(in_session * weights)
-        z = least_squares(lambda z, f=factors, s=scale: np.concatenate([stacked(z, f) / s, z]), z, x_scale=1.0).x
+        z = _least(base, parameters, evidence, z, factors, scale, stacked)
         blocks = evidence.residuals(parameters.vehicle(base, parameters.values(z)))
         before, scale = scale, _scale(np.concatenate([b * f for b, f in zip(blocks, factors, strict=True)]), freedom)
         weights = _huber(np.array([np.sqrt(block @ block) for block in blocks]))
-        if abs(scale / before - 1.0) < SETTLED:
+        if abs(scale / before - 1.0) < (ROUGHLY_SETTLED if evidence.difference else SETTLED):
             break
     return _judged(base, parameters, evidence, z, scale, in_session * weights, weights)
+
+
+def _least(base: dict[str, Any], parameters: Parameters, evidence: Evidence, z: np.ndarray, factors: np.ndarray,
+           scale: float, stacked: Callable[[np.ndarray, np.ndarray], np.ndarray]) -> np.ndarray:
+    """The least squares for given weights; where residuals carry a solver's tolerance, with differences beyond it."""
+    def residual(z: np.ndarray) -> np.ndarray:
+        return np.concatenate([stacked(z, factors) / scale, z])
+
+    def jacobian(z: np.ndarray) -> np.ndarray:
+        each = jacobians_of(base, parameters, evidence, z, evidence.difference)
+        return np.vstack([*(j * f / scale for j, f in zip(each, factors, strict=True)), np.eye(len(z))])
+
+    found: np.ndarray = least_squares(residual, z, x_scale=1.0).x if not evidence.difference else least_squares(
+        residual, z, jac=jacobian, x_scale=1.0, ftol=1e-4, xtol=1e-3, max_nfev=12).x
+    return found
 
 
 def _scale(residual: np.ndarray, freedom: int) -> float:
@@ -144,13 +171,14 @@ def _judged(base: dict[str, Any], parameters: Parameters, evidence: Evidence, z:
                weights)
 
 
-def jacobians_of(base: dict[str, Any], parameters: Parameters, evidence: Evidence, z: np.ndarray) -> list[np.ndarray]:
+def jacobians_of(base: dict[str, Any], parameters: Parameters, evidence: Evidence, z: np.ndarray,
+                 difference: float = 0.0) -> list[np.ndarray]:
     """Of each run's residual in z, by central differences."""
-    columns = []
+    columns, width = [], difference or evidence.difference or STEP
     for index in range(len(parameters)):
         step = np.zeros(len(parameters))
-        step[index] = STEP
+        step[index] = width
         ahead, behind = (evidence.residuals(parameters.vehicle(base, parameters.values(z + s))) for s in (step, -step))
-        columns.append([(a - b) / (2.0 * STEP) for a, b in zip(ahead, behind, strict=True)])
+        columns.append([(a - b) / (2.0 * width) for a, b in zip(ahead, behind, strict=True)])
     return [np.column_stack([column[run] for column in columns]) if columns else np.zeros((1, 0))
             for run in range(len(evidence.sessions))]

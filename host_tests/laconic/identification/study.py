@@ -7,7 +7,8 @@ from dataclasses import dataclass, replace
 
 from laconic.errors import BadInput
 from laconic.identification.parameter import Parameters
-from laconic.identification.rolling_evidence import RollingEvidence
+from laconic.identification.controller import FoundController, controller_of
+from laconic.identification.ground import base_of, evidence_of, need_currents
 from laconic.identification.solve import Fit, fit
 from laconic.identification.words import in_words
 from laconic.logs import Log
@@ -32,24 +33,27 @@ class Study:
     left_out: list[RunErrors]            # each judged by a fit without it and its like; empty: not asked for
     judged: list[RunErrors]              # other runs, with the fitted scene
     judged_nominal: list[RunErrors]
+    controller: FoundController | None = None
 
 
 def identify(scene: Scene, logs: Sequence[Log], parameters: Parameters, *, judge: Sequence[Log] = (),
-             leave_out: str | None = None, advance: Callable[..., None] = lambda *_, **__: None) -> Study:
+             leave_out: str | None = None, with_controller: bool = False, advance: Callable[..., None] = lambda *_, **__: None) -> Study:
     """Fits, then judges; BadInput where the logs cannot be of this vehicle or say nothing about it."""
     runs = [for_wheels(log, scene.wheel_count) for log in logs]
     others = [for_wheels(log, scene.wheel_count) for log in judge]
+    need_currents(parameters, runs, scene)
     found = _fit(scene, runs, parameters)
     advance()
+    controller = controller_of(runs) if with_controller else None
     fitted = fitted_scene(scene, found)
-    left = _left_out(scene, runs, parameters, leave_out, advance) if leave_out else []
+    left = _left_out(scene, runs, parameters, found, leave_out, advance) if leave_out else []
     return Study(scene, runs, found, in_words(scene, found), roll(scene, runs).errors, roll(fitted, runs).errors, left,
-                 roll(fitted, others).errors if others else [], roll(scene, others).errors if others else [])
+                 roll(fitted, others).errors if others else [], roll(scene, others).errors if others else [], controller)
 
 
 def fitted_scene(scene: Scene, found: Fit) -> Scene:
     """The scene with the values found."""
-    return replace(scene, vehicle=found.parameters.vehicle(scene.vehicle, found.values))
+    return replace(scene, vehicle=found.parameters.vehicle(base_of(scene, found.parameters), found.values))
 
 
 def parts(logs: Sequence[Log], leave_out: str) -> list[list[Log]]:
@@ -60,11 +64,11 @@ def parts(logs: Sequence[Log], leave_out: str) -> list[list[Log]]:
     return [[log for log in logs if log.path.resolve().parent == folder] for folder in folders]
 
 
-def _fit(scene: Scene, logs: Sequence[Log], parameters: Parameters) -> Fit:
-    return fit(scene.vehicle, parameters, RollingEvidence(scene.core(), scene.path, logs))
+def _fit(scene: Scene, logs: Sequence[Log], parameters: Parameters, start: Fit | None = None) -> Fit:
+    return fit(base_of(scene, parameters), parameters, evidence_of(scene, logs, parameters), start)
 
 
-def _left_out(scene: Scene, logs: Sequence[Log], parameters: Parameters, leave_out: str,
+def _left_out(scene: Scene, logs: Sequence[Log], parameters: Parameters, found: Fit, leave_out: str,
               advance: Callable[..., None]) -> list[RunErrors]:
     apart = parts(logs, leave_out)
     if len(apart) < 2:
@@ -72,7 +76,7 @@ def _left_out(scene: Scene, logs: Sequence[Log], parameters: Parameters, leave_o
     by_path: dict[object, RunErrors] = {}
     for part in apart:
         rest = [log for log in logs if log not in part]
-        errors = roll(fitted_scene(scene, _fit(scene, rest, parameters)), logs).errors
+        errors = roll(fitted_scene(scene, _fit(scene, rest, parameters, found)), logs).errors
         by_path.update({log.path: each for log, each in zip(logs, errors, strict=True) if log in part})
         advance()
     return [by_path[log.path] for log in logs]

@@ -7,8 +7,8 @@ from pathlib import Path
 import numpy as np
 
 from laconic.core import Core
+from laconic.identification.ground import base_of, evidence_of
 from laconic.identification.parameter import Parameters
-from laconic.identification.rolling_evidence import RollingEvidence
 from laconic.identification.solve import Fit, jacobians_of
 from laconic.logs import Log
 from laconic.recorded_runs.rolling import path_of, rotations_of
@@ -63,8 +63,8 @@ def candidate_information(scene: Scene, parameters: Parameters) -> dict[str, np.
     for name, velocity in MOTIONS.items():
         if is_held and velocity[1] != 0.0:
             continue
-        evidence = RollingEvidence(core, scene.path, [_motion(core, scene, np.array(velocity))])
-        jacobian = jacobians_of(scene.vehicle, parameters, evidence, np.zeros(len(parameters)))[0]
+        evidence = evidence_of(scene, [_motion(core, scene, np.array(velocity))], parameters)
+        jacobian = jacobians_of(base_of(scene, parameters), parameters, evidence, np.zeros(len(parameters)))[0]
         found[name] = jacobian.T @ jacobian
     return found
 
@@ -77,4 +77,4 @@ def _motion(core: Core, scene: Scene, velocity: np.ndarray) -> Log:
     rotation = rotations_of(core, scene.vehicle, moved)
     angle = np.vstack([np.zeros(rotation.shape[1]), np.cumsum(rotation, axis=0)])
     return Log(Path("motion"), "motion", PERIOD_S * np.arange(SAMPLES + 1), wheel_angle_rad=angle,
-               pose=path_of(moved, np.zeros(3)))
+               current_A=np.zeros((SAMPLES + 1, rotation.shape[1])), pose=path_of(moved, np.zeros(3)))

@@ -25,7 +25,7 @@ class RunErrors:
     displacement_error: float | None = None     # distance at the end over the true displacement
     heading_error_rad: float | None = None      # at the end
     wheel_speed_error: float | None = None      # root mean square, over that of the recorded speeds
-    current_error_A: float | None = None        # root mean square over the wheels, of steady currents
+    current_error_A: float | None = None        # mean over the wheels, of steady currents
 
     def as_json(self) -> dict[str, Any]:
         """Without the session, which its own table has."""

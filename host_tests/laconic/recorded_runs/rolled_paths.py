@@ -1,4 +1,4 @@
-"""`laconic replay --inputs wheel-speeds`: the paths that pure rolling gives, beside the true ones."""
+"""`laconic replay`: what the model predicts from a log, beside what the log has: paths, wheel speeds, steady currents."""
 
 from __future__ import annotations
 
@@ -12,11 +12,18 @@ import numpy as np
 from laconic.errors import BadInput
 from laconic.logs import Log
 from laconic.logs.read import for_wheels
-from laconic.recorded_runs.measures import RunErrors, all_errors, grand_mean, session_means
-from laconic.recorded_runs.rolling import rolling_of
+from laconic.recorded_runs.measures import RunErrors, grand_mean, session_means
+from laconic.recorded_runs.predicted import predict
 from laconic.scene import Scene
+from laconic.scene.ground import slips
 
-MOST_PANELS = 9
+MOST_PANELS = 12
+SAID = {
+    "wheel-speeds": "the recorded rotation of the wheels, rolled without slip",
+    "held": "the recorded rotation of the wheels, held by strong motors on ground with friction",
+    "currents": "the recorded currents, as torques",
+    "voltages": "the recorded voltages",
+    "set-speeds": "the recorded set speeds, through the speed controller of the scene"}
 
 
 @dataclass(frozen=True)
@@ -28,17 +35,18 @@ class RolledPaths:
     paths: list[np.ndarray]
     errors: list[RunErrors]
     skipped: list[str]
+    inputs: str = "wheel-speeds"
 
 
-def roll(scene: Scene, logs: Sequence[Log], skipped: Sequence[Path] = ()) -> RolledPaths:
-    """Pure rolling of every run; BadInput where no log has a true pose."""
-    rolling = rolling_of(scene.core(), scene.vehicle, scene.path)
+def roll(scene: Scene, logs: Sequence[Log], skipped: Sequence[Path] = (), inputs: str = "wheel-speeds") -> RolledPaths:
+    """A prediction for every run; BadInput where no log has a true pose to compare a path with."""
     fitting = [for_wheels(log, scene.wheel_count) for log in logs]
-    if all(log.pose is None for log in fitting):
+    if inputs == "wheel-speeds" and all(log.pose is None for log in fitting):
         raise BadInput(f"{fitting[0].path}: has no true pose to compare with; name its columns in the map, table "
                        "[pose]")
-    paths = [rolling.path(log) for log in fitting]
-    return RolledPaths(scene, fitting, paths, all_errors(fitting, paths), [path.name for path in skipped])
+    found = predict(scene, fitting, inputs)
+    return RolledPaths(scene, fitting, [path for path, _ in found], [errors for _, errors in found],
+                       [path.name for path in skipped], inputs)
 
 
 def as_numbers(found: RolledPaths) -> dict[str, Any]:
@@ -49,16 +57,22 @@ def as_numbers(found: RolledPaths) -> dict[str, Any]:
 def as_text(found: RolledPaths) -> str:
     """A report in Markdown."""
     lines = [f"# {len(found.logs)} runs beside {found.scene.name}", "",
-             "Inputs: the recorded rotation of the wheels, rolled without slip.", "", *error_table(found.errors)]
+             f"Inputs: {_said(found)}.", "", *error_table(found.errors)]
     if found.skipped:
         lines += ["", f"Left out, no logs that the map recognises: {', '.join(dict.fromkeys(found.skipped))}."]
     return "\n".join([*lines, ""])
 
 
+def _said(found: RolledPaths) -> str:
+    if found.inputs != "wheel-speeds":
+        return SAID[found.inputs]
+    return SAID["held"] if slips(found.scene.vehicle) else SAID["wheel-speeds"]
+
+
 def error_table(errors: Sequence[RunErrors]) -> list[str]:
     """A row for each run, the mean of each session, and the mean over the sessions."""
-    lines = ["| session | run | path error [%] | displacement error [%] | heading at the end [rad] |",
-             "| --- " * 5 + "|"]
+    lines = ["| session | run | path error [%] | displacement error [%] | heading at the end [rad] | wheel speeds [%] | "
+             "steady currents [A] |", "| --- " * 7 + "|"]
     means = {each.session: each for each in session_means(errors)}
     for session, mean in means.items():
         lines += [_row(each) for each in errors if each.session == session]
@@ -68,7 +82,8 @@ def error_table(errors: Sequence[RunErrors]) -> list[str]:
 
 
 def _row(each: RunErrors) -> str:
-    cells = [_share(each.path_error), _share(each.displacement_error), _number(each.heading_error_rad)]
+    cells = [_share(each.path_error), _share(each.displacement_error), _number(each.heading_error_rad),
+             _share(each.wheel_speed_error), _number(each.current_error_A)]
     name = f"**{each.run}**" if each.run.startswith("mean") else each.run.removeprefix(f"{each.session}/")
     return f"| {each.session} | {name} | {' | '.join(cells)} |"
 
@@ -82,7 +97,7 @@ def _number(value: float | None) -> str:
 
 
 def draw(found: RolledPaths, folder: Path) -> list[Path]:
-    """The paths of the first runs: true and rolled."""
+    """The paths of the first runs: true and predicted."""
     from laconic.pictures.plotting import figure, save
 
     shown = [(log, path, each) for log, path, each in zip(found.logs, found.paths, found.errors, strict=True)
@@ -94,7 +109,7 @@ def draw(found: RolledPaths, folder: Path) -> list[Path]:
     for axes, (log, path, each) in zip(panels, shown, strict=False):
         assert log.pose is not None
         axes.plot(log.pose[:, 0], log.pose[:, 1], color="k", lw=2.4, alpha=0.35, label="true")
-        axes.plot(path[:, 0], path[:, 1], color="tab:blue", lw=1.0, label="rolled")
+        axes.plot(path[:, 0], path[:, 1], color="tab:blue", lw=1.0, label="predicted")
         axes.set_aspect("equal", "datalim")
         axes.set_title(f"{each.session}\n{each.run}: {_share(each.path_error)} %", fontsize=7)
     for axes in panels[len(shown):]:

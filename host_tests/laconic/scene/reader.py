@@ -13,6 +13,7 @@ from laconic.scene.fields import read_field
 from laconic.scene.ground import check_friction, has_friction, read_circuit, read_drive, read_ground
 from laconic.scene.inputs import Input
 from laconic.scene.not_modelled import KINDS_OF_WHEELS, OF_VEHICLES, OF_WHEELS
+from laconic.scene.speed_controller import read_speed_controller
 from laconic.scene.table import Table
 
 WHEEL_KINDS = ("omni", "mecanum", "roller", "fixed")
@@ -41,6 +42,7 @@ def read_parts(top: Table, methods: Sequence[str], reals: Sequence[str]) -> dict
     if top.has("ground"):
         parts["vehicle"]["ground"] = read_ground(top.table("ground"))
     check_friction(top, parts["vehicle"])
+    parts["speed_controller"] = read_speed_controller(top, parts["vehicle"])
     wheel_count = len(parts["vehicle"]["wheel"])
     parts["initial"] = read_initial(top.table("initial"), wheel_count)
     parts["inputs"] = [read_input(each, wheel_count) for each in top.tables("input")]

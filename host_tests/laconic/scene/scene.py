@@ -18,6 +18,7 @@ from laconic.paths import scene_path
 from laconic.scene.inputs import Input, InputsOnGrid, check_resolved, step_remedy
 from laconic.scene.names import in_file
 from laconic.scene.reader import read_parts, read_run
+from laconic.scene.speed_controller import SpeedController
 from laconic.scene.table import Table, plain, read_toml
 
 MOST_STEPS = 9e15  # as laconic_steps_in
@@ -95,6 +96,7 @@ class Scene:
     run: Run
     outputs: Outputs = field(default_factory=Outputs)
     rig: Rig = field(default_factory=Rig)
+    speed_controller: SpeedController | None = None
     in_degrees: frozenset[str] = frozenset()  # angles that the file gives so, by their name in rad
 
     @property
@@ -202,4 +204,5 @@ def read_scene(given: str | Path) -> Scene:
     return Scene(
         path=path, name=parts["name"], source=parts["source"], vehicle=parts["vehicle"],
         initial=Initial(**parts["initial"]), inputs=tuple(parts["inputs"]), run=Run(**parts["run"]),
-        outputs=Outputs(**parts["outputs"]), rig=Rig(**parts["rig"]), in_degrees=parts["in_degrees"])
+        outputs=Outputs(**parts["outputs"]), rig=Rig(**parts["rig"]), speed_controller=parts["speed_controller"],
+        in_degrees=parts["in_degrees"])

@@ -22,7 +22,9 @@ LEFT_OUT = ("session", "run")
               help="Write the scene with the values found; - for stdout.")
 @click.option("--free", default="radius,distance", show_default=True, metavar="NAMES",
               help="What may move: radius (of each wheel), distance (of all wheels, one factor), place and heading (of "
-              "all wheels together against the true pose), axle, roller (angles of each wheel).")
+              "all wheels together against the true pose), axle, roller (angles of each wheel), common-radius (one of all "
+              "wheels); on ground with friction drag (of rollers), friction, axle-friction, viscous (of motors); controller "
+              "(of the wheels' speeds).")
 @click.option("--prior", "prior_percent", type=float, default=10.0, show_default=True, metavar="PERCENT",
               help="How far radii and distances may be from nominal beforehand (standard deviation).")
 @map_option
@@ -35,7 +37,8 @@ def command(logs: tuple[Path, ...], scene: str, out: Path | None, free: str, pri
             map_path: Path | None, judge: tuple[Path, ...], leave_out: str | None, json_wanted: bool) -> None:
     """Finds parameters of a scene from LOG..., recorded runs with a true pose, or folders of them.
 
-    Robust nonlinear least squares on the distance between the rolled and the true path. Each value comes with a 95 %
+    Robust nonlinear least squares on the distance between the rolled and the true path; on ground with friction the
+    core moves, its wheels held at the recorded speeds, and steady currents count as well. Each value comes with a 95 %
     interval; what the runs do not tell stays nominal, and it is stated which run would. FITTED.toml is a complete
     scene, with sources and intervals in comments.
     """
@@ -50,11 +53,13 @@ def command(logs: tuple[Path, ...], scene: str, out: Path | None, free: str, pri
     if not 0.0 < prior_percent <= 100.0:
         raise BadInput(f"--prior: {prior_percent:g} % is not usable; give a number above 0, at most 100")
     given = read_scene(scene)
-    parameters = geometry_of(given, names_in(free), prior_percent / 100.0)
+    names = names_in(free)
+    parameters = geometry_of(given, [name for name in names if name != "controller"], prior_percent / 100.0)
     runs, _ = gather_logs(logs, map_path)
     others = gather_logs(judge, map_path)[0] if judge else []
     with progress_bar("identifying", 1 + len(runs)) as advance:
-        study = identify(given, runs, parameters, judge=others, leave_out=leave_out, advance=advance)
+        study = identify(given, runs, parameters, judge=others, leave_out=leave_out, with_controller="controller" in names,
+                         advance=advance)
     if out is not None:
         write_text(out, fitted_text(study))
     if json_wanted:

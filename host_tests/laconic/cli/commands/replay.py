@@ -22,8 +22,8 @@ INPUTS = ("wheel-speeds", "currents", "voltages", "set-speeds")
 @click.argument("logs", type=InputPath(), nargs=-1, required=True, metavar="LOG...")
 @click.argument("scene", type=SceneName())
 @click.option("--inputs", type=click.Choice(INPUTS),
-              help="What of the log drives the model. By default currents where the log has them, voltages where "
-              "its columns are signals, else the wheels' speeds.")
+              help="What of the log drives the model. By default voltages where its columns are signals; currents "
+              "where the log has them and the ground no friction; else the wheels' speeds.")
 @click.option("--fit", "fit_on", type=InputPath(), multiple=True, metavar="RUN.csv",
               help="Fit friction on this run; may be given several times. By default every other run of a folder.")
 @map_option
@@ -35,12 +35,14 @@ def command(logs: tuple[Path, ...], scene: str, inputs: str | None, fit_on: tupl
     """Compares LOG..., recorded runs or folders of them, with the model of SCENE, which comes last.
 
     \b
-    wheel-speeds  the recorded rotation of the wheels is rolled without slip and set beside the true path
-    currents      friction is fitted by least squares, and the core, driven by the measured currents as
-                  torques, predicts wheel speeds and steady currents
-    voltages      a file whose first column is time_s and whose others have names of signals, as
-                  `simulate --out F.csv --inputs` writes it: its inputs drive the core, and every other
-                  signal in it is compared
+    wheel-speeds  the recorded rotation of the wheels is rolled without slip and set beside the true path;
+                  with friction in [ground] the core moves, its wheels held at these speeds
+    currents      the core, driven by the measured currents as torques, predicts wheel speeds and steady
+                  currents; without friction in [ground], friction is fitted by least squares before
+    set-speeds    the same through the scene's [speed_controller], which makes currents of them
+    voltages      the same by the motors' voltages; or a file whose first column is time_s and whose others
+                  have names of signals, as `simulate --out F.csv --inputs` writes it: its inputs drive the
+                  core, and every other signal in it is compared
 
     Maps that come with the project recognise their logs; --map names the map of others (docs/logs.md).
     """
@@ -62,13 +64,7 @@ def _replayed(logs: tuple[Path, ...], scene: str, inputs: str | None, fit_on: tu
 
     if fit_on and inputs not in (None, "currents"):
         raise BadInput(f"--fit: needs measured currents; leave it out beside --inputs {inputs}")
-    if inputs == "set-speeds":
-        raise BadInput("--inputs set-speeds: needs the robot's own speed controller, which a scene does not describe; "
-                       "take --inputs wheel-speeds, or currents")
     is_of_signals = len(logs) == 1 and map_path is None and is_signal_log(logs[0])
-    if inputs == "voltages" and not is_of_signals:
-        raise BadInput(f"--inputs voltages: {logs[0]} has no columns with names of signals; give one file as "
-                       "`laconic simulate --out F.csv --inputs` writes it")
     if is_of_signals and inputs in (None, "voltages"):
         if fit_on:
             raise BadInput("--fit: needs measured currents; leave it out for a file whose columns are signals, or give "
@@ -90,19 +86,29 @@ def _by_map(paths: tuple[Path, ...], scene: str, inputs: str | None, fit_on: tup
             map_path: Path | None) -> Found:
     from laconic.recorded_runs.runs import gather
     from laconic.scene import read_scene
+    from laconic.scene.ground import slips
 
     given = read_scene(scene)
     logs, names, skipped = gather(paths, fit_on, map_path)
+    _check_inputs(logs, inputs)
     has_currents = logs[0].current_A is not None
-    if inputs == "currents" and not has_currents:
-        raise BadInput(f"--inputs currents: {logs[0].path} has none; name their columns in the map, or take "
-                       "--inputs wheel-speeds")
-    if inputs == "currents" or fit_on or (inputs is None and has_currents):
+    if fit_on and slips(given.vehicle):
+        raise BadInput(f"--fit: {given.path} has a [ground] with friction already; leave --fit out, or let `laconic identify` "
+                       "find its numbers")
+    if not slips(given.vehicle) and (inputs == "currents" or fit_on or (inputs is None and has_currents)):
         return _by_currents(given, logs, names, skipped)
     from laconic.recorded_runs import rolled_paths
 
-    found = rolled_paths.roll(given, logs, [Path(name) for name in skipped])
+    found = rolled_paths.roll(given, logs, [Path(name) for name in skipped], inputs or "wheel-speeds")
     return rolled_paths.as_text(found), rolled_paths.as_numbers(found), partial(rolled_paths.draw, found)
+
+
+def _check_inputs(logs: list[Any], inputs: str | None) -> None:
+    """BadInput where the first log has not what drives the model."""
+    member = {"currents": "current_A", "voltages": "voltage_V", "set-speeds": "set_speed_rad_per_s"}.get(inputs or "")
+    if member and getattr(logs[0], member) is None:
+        raise BadInput(f"--inputs {inputs}: {logs[0].path} has none; name their columns in the map, or take "
+                       "--inputs wheel-speeds")
 
 
 def _by_currents(scene: Any, logs: list[Any], names: list[str], skipped: list[str]) -> Found:

@@ -1,0 +1,64 @@
+"""Steady currents of the motors: what the contacts ask of them, and the friction of motor and axle."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import Any
+
+import numpy as np
+
+from laconic.core import Core
+from laconic.logs import Log
+from laconic.recorded_runs.held_wheels import Held
+
+SETTLED_S = 1.5      # after the wheels begin to turn
+END_S = 0.3          # before the end, where the motion may stop already
+STANDS = 0.02        # share of the fastest wheel's speed below which a wheel stands
+
+
+@dataclass(frozen=True)
+class Axles:
+    """What lies between contact and current, one for each wheel, from the core's prepared constants."""
+
+    dry_Nm: np.ndarray
+    viscous_Nms: np.ndarray
+    torque_per_A_Nm: np.ndarray
+
+    def current_A(self, load_Nm: np.ndarray, speed_rad_per_s: np.ndarray) -> np.ndarray:
+        """Of wheels at constant speed; one that stands may be held by its axle's friction alone."""
+        stands = np.abs(speed_rad_per_s) <= STANDS * np.abs(speed_rad_per_s).max(initial=0.0)
+        dry = np.where(stands, -np.clip(load_Nm, -self.dry_Nm, self.dry_Nm), np.sign(speed_rad_per_s) * self.dry_Nm)
+        current: np.ndarray = (load_Nm + dry + self.viscous_Nms * speed_rad_per_s) / self.torque_per_A_Nm
+        return current
+
+
+def axles_of(core: Core, vehicle: dict[str, Any]) -> Axles | None:
+    """None for a vehicle whose motors' constants are not known."""
+    friction = core.plant(core.vehicle(vehicle), "auto", 0.01).c.friction
+    each = [friction.axle[i] for i in range(friction.wheel_count)]
+    if not each or any(axle.ampere == 0.0 for axle in each):
+        return None
+    energy = friction.energy_J
+    return Axles(*(energy * np.array(values) for values in (
+        [axle.dry for axle in each], [axle.viscous for axle in each], [1.0 / axle.ampere for axle in each])))
+
+
+def settled(log: Log, time_s: np.ndarray) -> np.ndarray:
+    """Which instants lie in steady motion; all of them in a run that is too short for it."""
+    rotation = np.abs(np.cumsum(log.rotation_rad(), axis=0)).max(axis=1)
+    begin = log.time_s[int(np.argmax(rotation > 0.02))] + SETTLED_S
+    found: np.ndarray = (time_s > begin) & (time_s < log.time_s[-1] - END_S)
+    return found if found.any() else np.ones(len(time_s), dtype=bool)
+
+
+def steady_parts(log: Log, held: Held) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
+    """Means over the steady motion, one for each wheel: load, speed, recorded current."""
+    now, then = settled(log, held.time_s), settled(log, log.time_s)
+    current = log.needs("current_A", "the comparison of currents")
+    return held.load_Nm[now].mean(axis=0), held.speed_rad_per_s[now].mean(axis=0), current[then].mean(axis=0)
+
+
+def current_error_A(axles: Axles, log: Log, held: Held) -> float:
+    """Mean over the wheels of the distance between predicted and recorded steady current."""
+    load, speed, current = steady_parts(log, held)
+    return float(np.abs(axles.current_A(load, speed) - current).mean())
