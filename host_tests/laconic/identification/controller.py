@@ -63,7 +63,7 @@ def controller_of(logs: Sequence[Log]) -> FoundController:
 
 
 def _steady(log: Log) -> tuple[np.ndarray, ...]:
-    """Of each wheel that is set to turn: mean deviation, mean current, integral of the deviation, gain of the current."""
+    """Of each wheel that is set to turn: mean deviation and current, what I integrates, slope of the current."""
     wanted, current = log.needs("set_speed_rad_per_s", WANTED), log.needs("current_A", WANTED)
     time, speed = mean_speeds(log)
     now, then = settled(log, time), settled(log, log.time_s)

@@ -30,7 +30,7 @@ def fitted_text(study: Study) -> str:
 
 
 def _rewrite_vehicle(study: Study, data: dict[str, Any], comments: Comments) -> None:
-    """Keys that are no wheel's: [vehicle] wheel_radius_m, [vehicle.motor] viscous_friction_Nms, [ground], [speed_controller]."""
+    """Keys that are no wheel's: of [vehicle], [vehicle.motor], [ground] and [speed_controller]."""
     after = fitted_scene(study.scene, study.found).vehicle
     tables = {("vehicle",): data["vehicle"], ("vehicle", "motor"): data["vehicle"].get("motor", {})}
     if any(p.path.startswith("ground.") for p in study.found.parameters.each) and "ground" in after:

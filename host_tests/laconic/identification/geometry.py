@@ -21,8 +21,8 @@ USUAL = ("radius", "distance")
 def geometry_of(scene: Scene, free: Sequence[str], relative_sd: float = RELATIVE_SD) -> Parameters:
     """The parameters that --free names; BadInput for a name that is none or that this vehicle has not."""
     makers: dict[str, Callable[[Scene, float], list[Parameter]]] = {
-        "radius": _radii, "common-radius": _common_radius, "distance": _distance, "place": _place, "heading": _heading, "axle": _axles,
-        "roller": _rollers, **ground.MAKERS}
+        "radius": _radii, "common-radius": _common_radius, "distance": _distance, "place": _place,
+        "heading": _heading, "axle": _axles, "roller": _rollers, **ground.MAKERS}
     found: list[Parameter] = []
     for name in GROUPS:
         if name in free:
@@ -48,7 +48,7 @@ def _radii(scene: Scene, relative_sd: float) -> list[Parameter]:
 
 
 def _common_radius(scene: Scene, relative_sd: float) -> list[Parameter]:
-    """One for all wheels: how far they roll in one turn, which on ground with slip may be less than the wheel's size."""
+    """One for all wheels: how far they roll in one turn, which may be less than the wheel's size."""
     def write(vehicle: Vehicle, value: float) -> None:
         vehicle["wheel_radius_m"] = value
 

@@ -1,7 +1,7 @@
 """The parameters of ground with friction, and what runs say about them through the core's own friction step.
 
-Wheels are held at the recorded speeds (recorded_runs.held_wheels). The path then tells the radius and the rollers' drag, as
-the contacts' law has no scale of its own; steady currents tell the size of the forces, and what the axles take.
+Wheels are held at the recorded speeds (recorded_runs.held_wheels). The path then tells the radius and the rollers'
+drag, as the contacts' law has no scale of its own; steady currents tell how large forces and axle friction are.
 """
 
 from __future__ import annotations
@@ -75,7 +75,8 @@ def _viscous(scene: Scene, relative_sd: float) -> list[Parameter]:
 
 MAKERS: dict[str, Callable[[Scene, float], list[Parameter]]] = {
     "drag": _of_ground("roller_drag", "drag of the rollers", "drag", "", USUAL_DRAG, 0.3),
-    "friction": _of_ground("friction_coefficient", "friction coefficient of the ground", "friction", "", USUAL_FRICTION, 3.0),
+    "friction": _of_ground("friction_coefficient", "friction coefficient of the ground", "friction", "", USUAL_FRICTION,
+                           3.0),
     "axle-friction": _of_ground("axle_friction_Nm", "dry friction of the axles", "axle-friction", "N·m", 0.0, 0.3),
     "viscous": _viscous}
 GROUPS = tuple(MAKERS)
@@ -123,7 +124,7 @@ class GroundEvidence(RollingEvidence):
 
 
 def _rounded(off: np.ndarray) -> np.ndarray:
-    """Numbers whose squares are pseudo-Huber's: a current that the model cannot explain does not outweigh the others."""
+    """Numbers whose squares are pseudo-Huber's: a current that the model cannot explain outweighs no other."""
     size = np.sqrt(1.0 + (off / ROUNDED) ** 2) - 1.0
     found: np.ndarray = CURRENT_SHARE * np.sign(off) * ROUNDED * np.sqrt(2.0 * size / max(len(off), 1))
     return found
@@ -135,5 +136,5 @@ def need_currents(parameters: Parameters, logs: Sequence[Log], scene: Scene) -> 
     if asked and not any(log.current_A is not None for log in logs):
         raise BadInput(f"--free {asked[0].group}: only currents tell it, and {logs[0].path} has none; leave it out")
     if asked and not scene.vehicle.get("motor"):
-        raise BadInput(f"--free {asked[0].group}: {scene.path}: vehicle.motor is missing, which makes torques of currents; "
-                       "give it, or leave the name out")
+        raise BadInput(f"--free {asked[0].group}: {scene.path}: vehicle.motor is missing, which makes torques of "
+                       "currents; give it, or leave the name out")

@@ -14,7 +14,8 @@ from laconic.recorded_runs.rolled_paths import error_table
 def as_text(study: Study) -> str:
     """A report in Markdown."""
     lines = [f"# {study.scene.name}, from {len(study.logs)} runs", "",
-             "| parameter | nominal | found | 95 % interval | prior ± |", "| --- " * 5 + "|", *_rows(study), *_controller_rows(study), "",
+             "| parameter | nominal | found | 95 % interval | prior ± |", "| --- " * 5 + "|", *_rows(study),
+             *_controller_rows(study), "",
              *(f"* {word}" for word in study.words), "", *_summary(study), ""]
     for title, errors in (("Fitted on", study.fitted), ("Left out", study.left_out), ("Judged", study.judged)):
         if errors:

@@ -50,7 +50,8 @@ class RollingEvidence:
     def residuals(self, vehicle: Vehicle) -> list[np.ndarray]:
         """Distances x, y between rolled and true path."""
         rolling = rolling_of(self._core, vehicle, self._path)
-        return [path_residual(run, path_of(rolling.moved(run.rotation_rad, run.point), run.pose[0])) for run in self.runs]
+        return [path_residual(run, path_of(rolling.moved(run.rotation_rad, run.point), run.pose[0]))
+                for run in self.runs]
 
     def scores(self, vehicle: Vehicle, jacobians: list[np.ndarray]) -> list[np.ndarray]:
         """Of each stretch: its error, carried to all points of the path after it, times the Jacobian there."""

@@ -6,9 +6,9 @@ from collections.abc import Callable, Sequence
 from dataclasses import dataclass, replace
 
 from laconic.errors import BadInput
-from laconic.identification.parameter import Parameters
 from laconic.identification.controller import FoundController, controller_of
 from laconic.identification.ground import base_of, evidence_of, need_currents
+from laconic.identification.parameter import Parameters
 from laconic.identification.solve import Fit, fit
 from laconic.identification.words import in_words
 from laconic.logs import Log
@@ -37,7 +37,8 @@ class Study:
 
 
 def identify(scene: Scene, logs: Sequence[Log], parameters: Parameters, *, judge: Sequence[Log] = (),
-             leave_out: str | None = None, with_controller: bool = False, advance: Callable[..., None] = lambda *_, **__: None) -> Study:
+             leave_out: str | None = None, with_controller: bool = False,
+             advance: Callable[..., None] = lambda *_, **__: None) -> Study:
     """Fits, then judges; BadInput where the logs cannot be of this vehicle or say nothing about it."""
     runs = [for_wheels(log, scene.wheel_count) for log in logs]
     others = [for_wheels(log, scene.wheel_count) for log in judge]
@@ -48,7 +49,8 @@ def identify(scene: Scene, logs: Sequence[Log], parameters: Parameters, *, judge
     fitted = fitted_scene(scene, found)
     left = _left_out(scene, runs, parameters, found, leave_out, advance) if leave_out else []
     return Study(scene, runs, found, in_words(scene, found), roll(scene, runs).errors, roll(fitted, runs).errors, left,
-                 roll(fitted, others).errors if others else [], roll(scene, others).errors if others else [], controller)
+                 roll(fitted, others).errors if others else [], roll(scene, others).errors if others else [],
+                 controller)
 
 
 def fitted_scene(scene: Scene, found: Fit) -> Scene:

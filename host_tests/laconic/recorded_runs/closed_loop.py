@@ -1,8 +1,8 @@
 """A recorded run through the robot's own speed controller: set speeds → currents → the core → wheel speeds.
 
-The controller asks each motor for the current P (set − s) + I ∫(set − s) dt, some time after the set speed is given. P acts
-within a step like the damping of a motor whose voltage is the set speed, so the core takes it as one: implicitly, with the
-current limit of `[vehicle.drive]`. The integral is renewed at each sample of the log.
+The controller asks each motor for the current P (set − s) + I ∫(set − s) dt, some time after the set speed is given. P
+acts within a step like the damping of a motor whose voltage is the set speed, so the core takes it as one: implicitly,
+with the current limit of `[vehicle.drive]`. The integral is renewed at each sample of the log.
 """
 
 from __future__ import annotations

@@ -19,9 +19,9 @@ from laconic.errors import Refused
 from laconic.logs import Log
 
 STEP_S = 0.01
-DIVIDED = (1, 4, 16, 64)   # of the step, where the core does not find the contact forces
+DIVIDED = (1, 1.4, 2, 5, 16)   # of the step, where the core does not find the contact forces
 APART_S = 0.09             # least length of an interval: drives send their counts at another pace than a log has rows
-HOLDING = 1e4              # inertia of a held wheel, in M R²
+HOLDING = 3e3              # inertia of a held wheel, in M R²: contacts change its speed by thousandths
 
 Vehicle = dict[str, Any]
 

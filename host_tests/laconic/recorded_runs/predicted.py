@@ -43,8 +43,8 @@ def _predictor(scene: Scene, inputs: str) -> Callable[[str, Log], Prediction]:
     if inputs == "wheel-speeds":
         return lambda name, log: _held(core, scene, name, log)
     if inputs == "set-speeds" and scene.speed_controller is None:
-        raise BadInput(f"{scene.path}: speed_controller: is missing, which --inputs set-speeds needs; let `laconic identify "
-                       "--free controller` find it, or take --inputs wheel-speeds")
+        raise BadInput(f"{scene.path}: speed_controller: is missing, which --inputs set-speeds needs; let `laconic "
+                       "identify --free controller` find it, or take --inputs wheel-speeds")
     drive = {"currents": motor_driven.by_currents, "voltages": motor_driven.by_voltages}.get(inputs)
     if drive is None:
         controller = scene.speed_controller

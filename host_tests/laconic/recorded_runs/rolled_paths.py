@@ -1,4 +1,4 @@
-"""`laconic replay`: what the model predicts from a log, beside what the log has: paths, wheel speeds, steady currents."""
+"""`laconic replay`: what the model predicts from a log beside what it has: paths, wheel speeds, currents."""
 
 from __future__ import annotations
 
@@ -71,8 +71,8 @@ def _said(found: RolledPaths) -> str:
 
 def error_table(errors: Sequence[RunErrors]) -> list[str]:
     """A row for each run, the mean of each session, and the mean over the sessions."""
-    lines = ["| session | run | path error [%] | displacement error [%] | heading at the end [rad] | wheel speeds [%] | "
-             "steady currents [A] |", "| --- " * 7 + "|"]
+    lines = ["| session | run | path error [%] | displacement error [%] | heading at the end [rad] | "
+             "wheel speeds [%] | steady currents [A] |", "| --- " * 7 + "|"]
     means = {each.session: each for each in session_means(errors)}
     for session, mean in means.items():
         lines += [_row(each) for each in errors if each.session == session]
@@ -117,4 +117,8 @@ def draw(found: RolledPaths, folder: Path) -> list[Path]:
     panels[0].set(xlabel="x [m]", ylabel="y [m]")
     picture.legend(handles=panels[0].get_legend_handles_labels()[0], loc="outside lower center", ncols=2, fontsize=9)
     save(picture, folder / "paths.png")
+    if slips(found.scene.vehicle):
+        from laconic.recorded_runs.picture_of_drag import draw_drag
+
+        return [folder / "paths.png", draw_drag(found.scene, found.logs, folder)]
     return [folder / "paths.png"]

@@ -26,7 +26,8 @@ def read_speed_controller(top: Table, vehicle: dict[str, Any]) -> SpeedControlle
         return None
     table = top.table("speed_controller")
     if not vehicle.get("motor"):
-        top.fail("speed_controller", "gives currents, which need [vehicle.motor]; give it, or take [speed_controller] out")
+        top.fail("speed_controller", "gives currents, which need [vehicle.motor]; give it, or take "
+                 "[speed_controller] out")
     gain = table.number("gain_As_per_rad")
     rest = {key: table.number(key, 0.0) for key in ("integral_gain_A_per_rad", "dead_time_s")}
     table.done()

@@ -22,9 +22,9 @@ LEFT_OUT = ("session", "run")
               help="Write the scene with the values found; - for stdout.")
 @click.option("--free", default="radius,distance", show_default=True, metavar="NAMES",
               help="What may move: radius (of each wheel), distance (of all wheels, one factor), place and heading (of "
-              "all wheels together against the true pose), axle, roller (angles of each wheel), common-radius (one of all "
-              "wheels); on ground with friction drag (of rollers), friction, axle-friction, viscous (of motors); controller "
-              "(of the wheels' speeds).")
+              "all wheels together against the true pose), axle, roller (angles of each wheel), common-radius (one of "
+              "all wheels); on ground with friction drag (of rollers), friction, axle-friction, viscous (of motors); "
+              "controller (of the wheels' speeds).")
 @click.option("--prior", "prior_percent", type=float, default=10.0, show_default=True, metavar="PERCENT",
               help="How far radii and distances may be from nominal beforehand (standard deviation).")
 @map_option
@@ -58,8 +58,8 @@ def command(logs: tuple[Path, ...], scene: str, out: Path | None, free: str, pri
     runs, _ = gather_logs(logs, map_path)
     others = gather_logs(judge, map_path)[0] if judge else []
     with progress_bar("identifying", 1 + len(runs)) as advance:
-        study = identify(given, runs, parameters, judge=others, leave_out=leave_out, with_controller="controller" in names,
-                         advance=advance)
+        study = identify(given, runs, parameters, judge=others, leave_out=leave_out,
+                         with_controller="controller" in names, advance=advance)
     if out is not None:
         write_text(out, fitted_text(study))
     if json_wanted:

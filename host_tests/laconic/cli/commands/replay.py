@@ -93,8 +93,8 @@ def _by_map(paths: tuple[Path, ...], scene: str, inputs: str | None, fit_on: tup
     _check_inputs(logs, inputs)
     has_currents = logs[0].current_A is not None
     if fit_on and slips(given.vehicle):
-        raise BadInput(f"--fit: {given.path} has a [ground] with friction already; leave --fit out, or let `laconic identify` "
-                       "find its numbers")
+        raise BadInput(f"--fit: {given.path} has a [ground] with friction already; leave --fit out, or let "
+                       "`laconic identify` find its numbers")
     if not slips(given.vehicle) and (inputs == "currents" or fit_on or (inputs is None and has_currents)):
         return _by_currents(given, logs, names, skipped)
     from laconic.recorded_runs import rolled_paths
