@@ -21,7 +21,9 @@ from laconic.logs import Log
 STEP_S = 0.01
 DIVIDED = (1, 1.4, 2, 5, 16)   # of the step, where the core does not find the contact forces
 APART_S = 0.09             # least length of an interval: drives send their counts at another pace than a log has rows
-HOLDING = 3e3              # inertia of a held wheel, in M R²: contacts change its speed by thousandths
+HOLDINGS = (3e3, 1e4, 1e3)
+"""Inertia of a held wheel, in M R²: contacts change its speed by thousandths. The others: where the core finds no contact
+forces, as at a standstill with one wheel that creeps by a tick."""
 
 Vehicle = dict[str, Any]
 
@@ -70,8 +72,19 @@ def mean_speeds(log: Log) -> tuple[np.ndarray, np.ndarray]:
 def hold(core: Core, vehicle: Vehicle, log: Log) -> Held:
     """The whole run; Refused where the core finds no contact forces even in small steps."""
     time, speed = mean_speeds(log)
-    held = core.vehicle(_held_vehicle(vehicle))
-    found: Held = in_small_steps(lambda step_s: _run(core, held, time, speed, log.pose_point, step_s), STEP_S)
+
+    def run(holding: float) -> Callable[[float], Held]:
+        held = core.vehicle(_held_vehicle(vehicle, holding))
+        return lambda step_s: _run(core, held, time, speed, log.pose_point, step_s)
+
+    found: Held
+    for holding in HOLDINGS[:-1]:
+        try:
+            found = in_small_steps(run(holding), STEP_S)
+            return found
+        except Refused:
+            continue
+    found = in_small_steps(run(HOLDINGS[-1]), STEP_S)
     return found
 
 
@@ -85,10 +98,10 @@ def in_small_steps(run: Callable[[float], Any], step_s: float) -> Any:
     return run(step_s / DIVIDED[-1])
 
 
-def _held_vehicle(vehicle: Vehicle) -> Vehicle:
+def _held_vehicle(vehicle: Vehicle, holding: float) -> Vehicle:
     found = copy.deepcopy({key: value for key, value in vehicle.items() if key not in ("motor", "drive")})
     found["motor_gain_Nm_per_V"] = found["motor_damping_Nms"] = 0.0
-    found["wheel_inertia_kgm2"] = HOLDING * found["mass_kg"] * found["wheel_radius_m"] ** 2
+    found["wheel_inertia_kgm2"] = holding * found["mass_kg"] * found["wheel_radius_m"] ** 2
     for wheel in found["wheel"]:
         for key in ("inertia_kgm2", "motor_gain_Nm_per_V", "motor_damping_Nms", "motor_circuit", "driven"):
             wheel.pop(key, None)
