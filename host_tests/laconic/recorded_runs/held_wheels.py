@@ -22,8 +22,8 @@ STEP_S = 0.01
 DIVIDED = (1, 1.4, 2, 5, 16)   # of the step, where the core does not find the contact forces
 APART_S = 0.09             # least length of an interval: drives send their counts at another pace than a log has rows
 HOLDINGS = (3e3, 1e4, 1e3)
-"""Inertia of a held wheel, in M R²: contacts change its speed by thousandths. The others: where the core finds no contact
-forces, as at a standstill with one wheel that creeps by a tick."""
+"""Inertia of a held wheel, in M R²: contacts change its speed by thousandths. The others: where the core finds no
+contact forces, as at a standstill with one wheel that creeps by a tick."""
 
 Vehicle = dict[str, Any]
 
