@@ -17,7 +17,7 @@ import numpy as np
 
 from laconic.paths import build_dir
 from laconic.soak import StoppedEarly
-from laconic.verification.friction.agreement import Count, compare, energy_difference
+from laconic.verification.friction.agreement import ENERGY_LIMIT, Count, compare, energy_difference
 from laconic.verification.friction.driven import drive
 from laconic.verification.friction.hard import KINDS, hard_problem
 from laconic.verification.friction.vehicles import random_problem, random_vehicle
@@ -81,7 +81,8 @@ def _cold(seed: int, count: Count) -> Iterator[None]:
 def _hard(seed: int, count: Count) -> Iterator[None]:
     for number in numbers():
         kind = KINDS[number % len(KINDS)]
-        compare(hard_problem(kind, np.random.default_rng([seed, number])), count, kind, energy_difference)
+        problem = hard_problem(kind, np.random.default_rng([seed, number]))
+        compare(problem, count, kind, energy_difference, ENERGY_LIMIT)
         yield
 
 
