@@ -45,6 +45,15 @@ static real contact_size(const laconic_contact *c, int32_t wheel_count) {
     return sum;
 }
 
+/* Square to the ground. */
+static real gravity_on(const laconic_vehicle *vehicle) {
+#if LACONIC_WITH_SLOPE
+    return R(LACONIC_GRAVITY_M_PER_S2) * laconic_direction_of_angle(vehicle->ground.slope_rad).cosine;
+#else
+    return (void)vehicle, R(LACONIC_GRAVITY_M_PER_S2);
+#endif
+}
+
 laconic_status laconic_contact_prepare(laconic_contact *contact, const laconic_vehicle *vehicle, laconic_refusal *why) {
     laconic_matrices matrices;
     laconic_contact fresh = {0};
@@ -61,7 +70,7 @@ laconic_status laconic_contact_prepare(laconic_contact *contact, const laconic_v
     for (int32_t i = 0; i < vehicle->wheel_count; i++)
         for (int32_t k = 0; k < 3; k++) fresh.wheel_rows[i][k] = matrices.wheel_rows[i][k];
     fresh.com_z_m = vehicle->com_z_m;
-    fresh.gravity_m_per_s2 = R(LACONIC_GRAVITY_M_PER_S2) * laconic_direction_of_angle(vehicle->ground.slope_rad).cosine;
+    fresh.gravity_m_per_s2 = gravity_on(vehicle);
     fresh.friction_coefficient = vehicle->friction_coefficient;
     if (!fits_squared(contact_size(&fresh, vehicle->wheel_count)))
         return refuse(why, LACONIC_OVERFLOW, LACONIC_FIELD_NONE, 0, R(0), R(0));

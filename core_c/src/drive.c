@@ -1,6 +1,7 @@
 /* Motors with limits: what each does at a speed of its wheel, and how the supply sags under all of them. */
 #include "friction_vehicle.h"
 
+#if LACONIC_WITH_FRICTION
 static real cut(real x, real limit) { return x > limit ? limit : x < -limit ? -limit : x; }
 
 /* Torque c1 U − c2ₑ s within the current limit; c2ₑ/c1 is the back-EMF per speed, so U − that is R_a times the
@@ -57,3 +58,5 @@ real laconic_supply_voltage(const laconic_friction *friction, const laconic_inpu
     }
     return volts;
 }
+
+#endif

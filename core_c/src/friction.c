@@ -4,6 +4,7 @@
 #include "geometry.h"
 #include "least_norm.h"
 
+#if LACONIC_WITH_FRICTION
 static real own_or(real own, real common) { return own > R(0) ? own : common; }
 
 static void fill_contact(laconic_friction *f, const laconic_vehicle *vehicle, const body *b, int32_t i) {
@@ -168,3 +169,5 @@ void laconic_slip_take_over(laconic_slip *slip, const laconic_friction *friction
         slip->wheel_angle_rad[i] = sum_of(angle_rad[i]);
     }
 }
+
+#endif

@@ -1,6 +1,7 @@
 /* The outputs of a vehicle with friction, and its right-hand side by a smooth law. */
 #include "friction_vehicle.h"
 
+#if LACONIC_WITH_FRICTION
 static real torque_on_axle(const laconic_plant *plant, const laconic_input *input, int32_t i) {
     const laconic_friction *f = &plant->friction;
     const real speed = plant->slip.wheel_speed_rad_per_s[i];
@@ -180,3 +181,5 @@ void laconic_slip_smooth(laconic_slip *slip, const laconic_friction *friction, c
     }
     smooth_drive(slip, f, input);
 }
+
+#endif

@@ -9,6 +9,7 @@
  * A step that the solver refuses is taken in 2, 4 or 8 parts before it is refused. */
 #include "friction_vehicle.h"
 
+#if LACONIC_WITH_FRICTION
 #define MOST_PARTS 8
 
 /* One part of a step while it is computed. */
@@ -241,3 +242,5 @@ laconic_status laconic_friction_step(const laconic_friction *friction, const lac
     }
     return status;
 }
+
+#endif

@@ -2,15 +2,18 @@
 #include "geometry.h"
 
 wheel_values laconic_wheel_values(const laconic_vehicle *vehicle, int32_t wheel) {
-    const laconic_wheel *w = &vehicle->wheel[wheel];
     wheel_values v = {vehicle->wheel_radius_m, vehicle->wheel_inertia_kgm2, vehicle->motor_gain_Nm_per_V,
                       vehicle->motor_damping_Nms};
-    if (!LACONIC_WITH_OWN_WHEELS) return v;
+#if LACONIC_WITH_OWN_WHEELS
+    const laconic_wheel *w = &vehicle->wheel[wheel];
     if (w->own_radius_m != R(0)) v.radius_m = w->own_radius_m;
     if (w->own_inertia_kgm2 != R(0)) v.inertia_kgm2 = w->own_inertia_kgm2;
     if (w->own_motor_gain_Nm_per_V != R(0)) v.motor_gain_Nm_per_V = w->own_motor_gain_Nm_per_V;
     if (w->own_motor_damping_Nms != R(0)) v.motor_damping_Nms = w->own_motor_damping_Nms;
     if (w->undriven) v.motor_gain_Nm_per_V = v.motor_damping_Nms = R(0);
+#else
+    (void)wheel;
+#endif
     return v;
 }
 
@@ -67,7 +70,9 @@ static void line_row(real row[3], const body *b, const laconic_wheel *wheel, dir
 void laconic_wheel_row(real row[3], const body *b, const laconic_wheel *wheel) {
     direction pull;
     real sine = laconic_pull_direction(&pull, wheel);
-    if (LACONIC_WITH_OWN_WHEELS && wheel->own_radius_m != R(0)) sine *= wheel->own_radius_m / b->radius_m;
+#if LACONIC_WITH_OWN_WHEELS
+    if (wheel->own_radius_m != R(0)) sine *= wheel->own_radius_m / b->radius_m;
+#endif
     line_row(row, b, wheel, pull);
     row[0] /= sine;
     row[1] /= sine;

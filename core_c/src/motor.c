@@ -27,20 +27,24 @@ static laconic_status check_motor(const laconic_motor *m, laconic_refusal *why) 
     return status;
 }
 
+#if LACONIC_WITH_OWN_WHEELS
 /* How many wheels there are to look at; the count is checked later. */
 static int32_t wheels_of(const laconic_vehicle *vehicle) {
     return vehicle->wheel_count < LACONIC_MAX_WHEELS ? vehicle->wheel_count : LACONIC_MAX_WHEELS;
 }
+#endif
 
 /* Before the rotor's inertia hides the sign. */
 static laconic_status check_inertias(const laconic_vehicle *vehicle, laconic_refusal *why) {
     if (vehicle->wheel_inertia_kgm2 < R(0))
         return refuse(why, LACONIC_NEGATIVE, LACONIC_FIELD_WHEEL_INERTIA, 0, vehicle->wheel_inertia_kgm2, R(0));
+#if LACONIC_WITH_OWN_WHEELS
     for (int32_t i = 0; i < wheels_of(vehicle); i++) {
         const real own_inertia = vehicle->wheel[i].own_inertia_kgm2;
         if (own_inertia < R(0))
             return refuse(why, LACONIC_NEGATIVE, LACONIC_FIELD_OWN_INERTIA, i + 1, own_inertia, R(0));
     }
+#endif
     return LACONIC_OK;
 }
 
@@ -48,6 +52,7 @@ static laconic_status check_inertias(const laconic_vehicle *vehicle, laconic_ref
  * driven wheel gets its own. */
 static void add_rotors(laconic_vehicle *vehicle, real rotor_inertia) {
     bool all_driven = true;
+#if LACONIC_WITH_OWN_WHEELS
     for (int32_t i = 0; i < wheels_of(vehicle); i++) all_driven = all_driven && !vehicle->wheel[i].undriven;
     for (int32_t i = 0; i < wheels_of(vehicle); i++) {
         laconic_wheel *wheel = &vehicle->wheel[i];
@@ -55,6 +60,7 @@ static void add_rotors(laconic_vehicle *vehicle, real rotor_inertia) {
         if (wheel->own_inertia_kgm2 == R(0)) wheel->own_inertia_kgm2 = vehicle->wheel_inertia_kgm2;
         wheel->own_inertia_kgm2 += rotor_inertia;
     }
+#endif
     if (all_driven) vehicle->wheel_inertia_kgm2 += rotor_inertia;
 }
 
@@ -75,7 +81,9 @@ laconic_status laconic_motor_fit(laconic_vehicle *vehicle, const laconic_motor *
     vehicle->motor_gain_Nm_per_V = gain;
     vehicle->motor_damping_Nms = damping;
     add_rotors(vehicle, inertia);
+#if LACONIC_WITH_FRICTION
     vehicle->drive.winding_resistance_ohm = motor->resistance_ohm;
     vehicle->drive.viscous_friction_Nms = ratio * ratio * motor->viscous_friction_Nms;
+#endif
     return LACONIC_OK;
 }

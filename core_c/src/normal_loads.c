@@ -2,6 +2,7 @@
 #include "friction_vehicle.h"
 #include "least_norm.h"
 
+#if LACONIC_WITH_FRICTION
 /* Below it, relative to the weight, a negative load is rounding. */
 #define LIFTS (-LACONIC_RANK_TOLERANCE)
 
@@ -52,3 +53,5 @@ void laconic_normal_loads(normal_loads *loads, const laconic_friction *friction,
     else
         carry_weight(loads, friction);
 }
+
+#endif

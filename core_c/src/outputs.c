@@ -117,16 +117,21 @@ void laconic_outputs_of(laconic_outputs *outputs, const laconic_plant *plant, co
     laconic_wheel_speeds(model, state, outputs->wheel_speed_rad_per_s);
     laconic_wheel_angles(model, state, outputs->wheel_angle_rad);
     laconic_wheel_torques(model, state, input, outputs->wheel_torque_Nm);
-    if (LACONIC_WITH_FRICTION && plant->friction.acts) laconic_friction_outputs_of(outputs, plant, input);
+#if LACONIC_WITH_FRICTION
+    if (plant->friction.acts) laconic_friction_outputs_of(outputs, plant, input);
+#endif
     outputs->input = *input;
 }
 
 void laconic_plant_reactions(laconic_reactions *reactions, const laconic_plant *plant, const laconic_contact *contact,
                              const laconic_input *input) {
-    if (LACONIC_WITH_FRICTION && plant->friction.acts)
+#if LACONIC_WITH_FRICTION
+    if (plant->friction.acts) {
         laconic_friction_reactions_of(reactions, plant, input);
-    else
-        laconic_reactions_of(reactions, contact, &plant->model, &plant->state, input);
+        return;
+    }
+#endif
+    laconic_reactions_of(reactions, contact, &plant->model, &plant->state, input);
 }
 
 /* All but origin and energy are linear in ζ and the input: the derivative is the same function of the variation. */

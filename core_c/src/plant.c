@@ -2,10 +2,18 @@
  * stepped by the friction step, any other by its integrator's method. */
 #include "common.h"
 
-/* A constant in builds without friction, so that they link nothing of it. */
+/* Builds without friction have no room for it, and never come to where these are used. */
+#if LACONIC_WITH_FRICTION
+#define FRICTION_OF(it) (&(it)->friction)
+#define SLIP_OF(plant) (&(plant)->slip)
+#else
+#define FRICTION_OF(it) ((void)(it), (laconic_friction *)NULL)
+#define SLIP_OF(plant) ((void)(plant), (laconic_slip *)NULL)
+#endif
+
 static bool acts(const laconic_friction *friction) { return LACONIC_WITH_FRICTION && friction->acts; }
 
-static bool slips(const laconic_plant *plant) { return acts(&plant->friction); }
+static bool slips(const laconic_plant *plant) { return acts(FRICTION_OF(plant)); }
 
 /* ----------------------------------------------------------------------------- preparation -- */
 
@@ -25,7 +33,9 @@ static const laconic_method friction_method = {"friction", 1, NULL, refuse_step}
 typedef struct constants {
     laconic_model model;
     laconic_integrator integrator;
+#if LACONIC_WITH_FRICTION
     laconic_friction friction;
+#endif
 } constants;
 
 /* By its name: its address would link every method that auto chooses from. */
@@ -40,14 +50,14 @@ static laconic_status prepare_friction(constants *c, const laconic_vehicle *vehi
                                        laconic_refusal *why) {
     if (method != NULL && !is_auto(method))
         return refuse(why, LACONIC_METHOD_WITHOUT_FRICTION, LACONIC_FIELD_METHOD, 0, R(0), R(0));
-    return laconic_friction_of(&c->friction, &c->model, vehicle, why);
+    return laconic_friction_of(FRICTION_OF(c), &c->model, vehicle, why);
 }
 
 static laconic_status prepare(constants *c, const laconic_vehicle *vehicle, const laconic_method *method, real step_s,
                               laconic_refusal *why) {
     const bool has_friction = LACONIC_WITH_FRICTION && laconic_vehicle_has_friction(vehicle);
     laconic_status status = laconic_prepare(&c->model, vehicle, why);
-    if (LACONIC_WITH_FRICTION) c->friction.acts = false;
+    if (LACONIC_WITH_FRICTION) FRICTION_OF(c)->acts = false;
     if (status == LACONIC_OK && has_friction) status = prepare_friction(c, vehicle, method, why);
     if (status == LACONIC_OK) status = laconic_integrator_prepare(&c->integrator, method, &c->model, step_s, why);
     if (status == LACONIC_OK && has_friction) c->integrator.chosen = &friction_method;
@@ -58,7 +68,7 @@ static void adopt(laconic_plant *plant, const laconic_vehicle *vehicle, const co
     plant->vehicle = *vehicle;
     plant->model = c->model;
     plant->integrator = c->integrator;
-    if (LACONIC_WITH_FRICTION) plant->friction = c->friction;
+    if (LACONIC_WITH_FRICTION) *FRICTION_OF(plant) = *FRICTION_OF(c);
 }
 
 laconic_status laconic_plant_start(laconic_plant *plant, const laconic_vehicle *vehicle, const laconic_method *method,
@@ -67,8 +77,8 @@ laconic_status laconic_plant_start(laconic_plant *plant, const laconic_vehicle *
     laconic_state state;
     laconic_status status = prepare(&c, vehicle, method, step_s, why);
     if (status == LACONIC_OK) status = laconic_state_set(&state, &c.model, start, why);
-    if (status == LACONIC_OK && acts(&c.friction))
-        status = laconic_slip_set(&plant->slip, &c.friction, vehicle, start, why);
+    if (status == LACONIC_OK && acts(FRICTION_OF(&c)))
+        status = laconic_slip_set(SLIP_OF(plant), FRICTION_OF(&c), vehicle, start, why);
     if (status != LACONIC_OK) return status;
     adopt(plant, vehicle, &c);
     plant->state = state;
@@ -79,10 +89,10 @@ laconic_status laconic_plant_start(laconic_plant *plant, const laconic_vehicle *
 laconic_status laconic_plant_restart(laconic_plant *plant, const laconic_start *start, laconic_refusal *why) {
     laconic_slip slip;
     laconic_status status = LACONIC_OK;
-    if (slips(plant)) status = laconic_slip_set(&slip, &plant->friction, &plant->vehicle, start, why);
+    if (slips(plant)) status = laconic_slip_set(&slip, FRICTION_OF(plant), &plant->vehicle, start, why);
     if (status == LACONIC_OK) status = laconic_state_set(&plant->state, &plant->model, start, why);
     if (status != LACONIC_OK) return status;
-    if (slips(plant)) plant->slip = slip;
+    if (slips(plant)) *SLIP_OF(plant) = slip;
     plant->steps = 0;
     return LACONIC_OK;
 }
@@ -101,8 +111,8 @@ static uint64_t run(laconic_plant *plant, const laconic_input *held, uint64_t st
     if (!slips(plant)) return laconic_run(&plant->model, &plant->integrator, &plant->state, held, steps, status);
     *status = LACONIC_OK;
     for (taken = 0; taken < steps; taken++) {
-        *status = laconic_friction_step(&plant->friction, &plant->model, plant->integrator.step_s, &plant->state,
-                                        &plant->slip, held);
+        *status = laconic_friction_step(FRICTION_OF(plant), &plant->model, plant->integrator.step_s, &plant->state,
+                                        SLIP_OF(plant), held);
         if (*status != LACONIC_OK) break;
     }
     return taken;
@@ -140,18 +150,18 @@ laconic_status laconic_plant_run_sampled(laconic_plant *plant, const laconic_inp
 
 void laconic_plant_wheel_speeds(const laconic_plant *plant, laconic_real *speed_rad_per_s) {
     if (!slips(plant)) laconic_wheel_speeds(&plant->model, &plant->state, speed_rad_per_s);
-    for (int32_t i = 0; slips(plant) && i < plant->friction.wheel_count; i++)
-        speed_rad_per_s[i] = plant->slip.wheel_speed_rad_per_s[i];
+    for (int32_t i = 0; slips(plant) && i < FRICTION_OF(plant)->wheel_count; i++)
+        speed_rad_per_s[i] = SLIP_OF(plant)->wheel_speed_rad_per_s[i];
 }
 
 void laconic_plant_wheel_angles(const laconic_plant *plant, laconic_real *angle_rad) {
     if (!slips(plant)) laconic_wheel_angles(&plant->model, &plant->state, angle_rad);
-    for (int32_t i = 0; slips(plant) && i < plant->friction.wheel_count; i++)
-        angle_rad[i] = plant->slip.wheel_angle_rad[i].value;
+    for (int32_t i = 0; slips(plant) && i < FRICTION_OF(plant)->wheel_count; i++)
+        angle_rad[i] = SLIP_OF(plant)->wheel_angle_rad[i].value;
 }
 
 laconic_real laconic_plant_energy_J(const laconic_plant *plant) {
-    return slips(plant) ? laconic_friction_energy_J(&plant->friction, &plant->state, &plant->slip)
+    return slips(plant) ? laconic_friction_energy_J(FRICTION_OF(plant), &plant->state, SLIP_OF(plant))
                         : laconic_energy_J(&plant->model, &plant->state);
 }
 
@@ -166,8 +176,9 @@ laconic_status laconic_plant_change(laconic_plant *plant, const laconic_vehicle 
     laconic_plant_wheel_angles(plant, angle_rad);
     status = laconic_state_carry(&plant->state, &plant->model, &c.model);
     if (status != LACONIC_OK) return refuse(why, status, LACONIC_FIELD_NONE, 0, R(0), R(0));
-    if (slips(plant) && !acts(&c.friction)) laconic_wheel_angles_set(&c.model, &plant->state, angle_rad);
-    if (!slips(plant) && acts(&c.friction)) laconic_slip_take_over(&plant->slip, &c.friction, speed, angle_rad);
+    if (slips(plant) && !acts(FRICTION_OF(&c))) laconic_wheel_angles_set(&c.model, &plant->state, angle_rad);
+    if (!slips(plant) && acts(FRICTION_OF(&c)))
+        laconic_slip_take_over(SLIP_OF(plant), FRICTION_OF(&c), speed, angle_rad);
     adopt(plant, vehicle, &c);
     return LACONIC_OK;
 }

@@ -265,8 +265,9 @@ static bool usable(const laconic_model *m) {
 }
 
 /* Downhill: what pulls at the centre of mass, in world axes. */
-static void fill_slope(laconic_model *m, const laconic_ground *ground) {
+static void fill_slope(laconic_model *m, const laconic_vehicle *vehicle) {
 #if LACONIC_WITH_SLOPE
+    const laconic_ground *ground = &vehicle->ground;
     const direction incline = laconic_direction_of_angle(ground->slope_rad);
     const direction uphill = laconic_direction_of_angle(ground->slope_heading_rad);
     const real pull = m->mass_kg * R(LACONIC_GRAVITY_M_PER_S2) * incline.sine;
@@ -275,7 +276,7 @@ static void fill_slope(laconic_model *m, const laconic_ground *ground) {
     m->slope_force_N[1] = m->sloped ? -pull * uphill.sine : R(0);
 #else
     (void)m;
-    (void)ground;
+    (void)vehicle;
 #endif
 }
 
@@ -290,7 +291,7 @@ static laconic_status prepare(laconic_model *model, const laconic_vehicle *vehic
     if (status != LACONIC_OK) return status;
     laconic_body_of(&b, vehicle);
     fill_constants(&m, vehicle, &b);
-    fill_slope(&m, &vehicle->ground);
+    fill_slope(&m, vehicle);
     if (on_wheels) collect_constraints(&constraints, &b, vehicle);
     allowed_motions(&motions.scaled, &constraints);
     if (motions.scaled.count == 0)

@@ -74,9 +74,11 @@ static laconic_status check_wheel(const laconic_wheel *w, int32_t item, laconic_
         return refuse(why, LACONIC_WHEEL_NOT_SET, LACONIC_FIELD_WHEEL_KIND, item, R(0), R(0));
     if (w->kind != LACONIC_WHEEL_ROLLER && w->kind != LACONIC_WHEEL_FIXED)
         return refuse(why, LACONIC_WHEEL_KIND_UNKNOWN, LACONIC_FIELD_WHEEL_KIND, item, (real)w->kind, R(0));
-    if (LACONIC_WITH_FRICTION && (w->motor_circuit < LACONIC_MOTOR_DRIVEN || w->motor_circuit > LACONIC_MOTOR_SHORTED))
+#if LACONIC_WITH_FRICTION
+    if (w->motor_circuit < LACONIC_MOTOR_DRIVEN || w->motor_circuit > LACONIC_MOTOR_SHORTED)
         return refuse(why, LACONIC_MOTOR_CIRCUIT_UNKNOWN, LACONIC_FIELD_MOTOR_CIRCUIT, item, (real)w->motor_circuit,
                       R(0));
+#endif
     return check_numbers(w, of_wheel, COUNT(of_wheel), LACONIC_RULE_POSITIVE, last, item, why);
 }
 
@@ -94,6 +96,7 @@ static laconic_status check_supports(const laconic_vehicle *v, laconic_refusal *
 
 /* ------------------------------------------------------- what ground and drive need of each other -- */
 
+#if LACONIC_WITH_FRICTION
 bool laconic_vehicle_slips(const laconic_vehicle *vehicle) {
     bool slips = vehicle->ground.friction_coefficient > R(0);
     for (int32_t i = 0; i < vehicle->wheel_count; i++)
@@ -148,20 +151,9 @@ static laconic_status check_inertias(const laconic_vehicle *v, laconic_refusal *
     return LACONIC_OK;
 }
 
-/* A build without friction must not step a vehicle with it as if it had none. */
-static laconic_status check_left_out(const laconic_vehicle *v, laconic_refusal *why) {
-    real sum = v->ground.friction_coefficient + v->drive.supply_V + v->drive.current_limit_A;
-    for (int32_t i = 0; i < v->wheel_count; i++)
-        sum += v->wheel[i].own_friction_coefficient + (real)v->wheel[i].motor_circuit;
-    if (sum > R(0))
-        return refuse(why, LACONIC_FRICTION_LEFT_OUT, LACONIC_FIELD_GROUND_FRICTION_COEFFICIENT, 0, sum, R(0));
-    return LACONIC_OK;
-}
-
 static laconic_status check_friction(const laconic_vehicle *v, laconic_refusal *why) {
     const bool slips = laconic_vehicle_slips(v);
     laconic_status status = LACONIC_OK;
-    if (!LACONIC_WITH_FRICTION) return check_left_out(v, why);
     if (slips && v->friction_coefficient > R(0))
         return refuse(why, LACONIC_FRICTION_TWICE, LACONIC_FIELD_FRICTION_COEFFICIENT, 0, v->friction_coefficient,
                       R(0));
@@ -170,6 +162,13 @@ static laconic_status check_friction(const laconic_vehicle *v, laconic_refusal *
     if (status == LACONIC_OK && laconic_vehicle_has_friction(v)) status = check_inertias(v, why);
     return status;
 }
+#else
+bool laconic_vehicle_has_friction(const laconic_vehicle *vehicle) { return (void)vehicle, false; }
+
+static laconic_status check_friction(const laconic_vehicle *v, laconic_refusal *why) {
+    return (void)v, (void)why, LACONIC_OK;
+}
+#endif
 
 laconic_status laconic_vehicle_check(const laconic_vehicle *vehicle, laconic_refusal *why) {
     laconic_status status = check_body(vehicle, why);

@@ -456,8 +456,10 @@ typedef struct laconic_plant {
     laconic_model model;
     laconic_integrator integrator;
     laconic_state state;
+#if LACONIC_WITH_FRICTION
     laconic_friction friction; /* where the vehicle has friction; else `acts` is false and the rest is not set */
     laconic_slip slip;
+#endif
     uint64_t steps; /* taken since the start: time is steps · step_s */
 } laconic_plant;
 

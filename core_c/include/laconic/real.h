@@ -69,7 +69,8 @@ typedef uint64_t laconic_binary_angle; /* angle in units of 2^-64 turn */
 #define LACONIC_WHEELS(model) ((model)->wheel_count)
 #endif
 
-/* Inputs and outputs of the build. A scene's header sets to 0 what the scene does not use. */
+/* Inputs and outputs of the build. A scene's header sets to 0 what the scene does not use. Structs then have no members
+ * for it, so that what cannot act cannot be set either. */
 #ifndef LACONIC_WITH_OWN_WHEELS /* 0: all wheels have the vehicle's values; own ones are not read */
 #define LACONIC_WITH_OWN_WHEELS 1
 #endif

@@ -61,9 +61,7 @@
     X(METHOD_WITHOUT_FRICTION, "method without friction", \
       "this method knows neither ground friction nor limits of a drive; use auto") \
     X(STEP_UNSOLVED, "step unsolved", /* friction: the contact forces of a step were not found */ \
-      "in this state the contact forces over a step of # s were not found; use @ s or less") \
-    X(FRICTION_LEFT_OUT, "friction left out", \
-      "this build has neither ground friction nor limits of a drive; build it with LACONIC_WITH_FRICTION 1")
+      "in this state the contact forces over a step of # s were not found; use @ s or less")
 
 /* X(IDENTIFIER, explanation with the remedy): what laconic_self_test() finds. */
 #define LACONIC_ARITHMETICS(X) \

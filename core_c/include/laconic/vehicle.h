@@ -32,6 +32,7 @@ typedef struct laconic_wheel {
                                 1e-3) are refused                                                */
     laconic_real roller_rad; /* γ_i, from axle to roller axis (the roller that touches the ground):
                                 π/2 omni, ±π/4 mecanum; not read for fixed wheels                 */
+#if LACONIC_WITH_OWN_WHEELS
     /* The wheel's own values where they differ from the vehicle's; 0: the vehicle's value. A wheel whose own value is 0
      * while the vehicle's is not: set the vehicle's to 0 and give it to all other wheels as theirs. */
     laconic_real own_radius_m;            /* R_i                                                 */
@@ -39,11 +40,14 @@ typedef struct laconic_wheel {
     laconic_real own_motor_gain_Nm_per_V; /* c1_i                                                */
     laconic_real own_motor_damping_Nms;   /* c2_i                                                */
     bool undriven; /* no motor: c1_i = c2_i = 0, whatever the values above and the vehicle's; J_i is without a rotor */
+#endif
+#if LACONIC_WITH_FRICTION
     /* The wheel's own values where they differ from the ground's; 0: the ground's value. */
     laconic_real own_friction_coefficient; /* μ_i                                                 */
     laconic_real own_roller_drag;          /* k_i, 0 … 1; not read for fixed wheels, whose k is 1 */
     laconic_real own_axle_friction_Nm;     /* T_i                                                 */
     int32_t motor_circuit;                 /* laconic_motor_circuit                               */
+#endif
 } laconic_wheel;
 
 /* A mass fastened to the body. All zero: no payload. */
@@ -91,8 +95,12 @@ typedef struct laconic_vehicle {
     laconic_real motor_damping_Nms;    /* c2                                                     */
     laconic_real friction_coefficient; /* μ, for the no-slip margin only                         */
     laconic_payload payload;
+#if LACONIC_WITH_FRICTION || LACONIC_WITH_SLOPE
     laconic_ground ground;
+#endif
+#if LACONIC_WITH_FRICTION
     laconic_drive drive;
+#endif
     int32_t wheel_count; /* N, 0 … LACONIC_MAX_WHEELS; 0 is a sliding puck         */
     laconic_wheel wheel[LACONIC_MAX_WHEELS];
     int32_t support_count; /* 0 … LACONIC_MAX_SUPPORTS, for normal loads only        */
@@ -123,8 +131,10 @@ typedef struct laconic_start {
     laconic_real nu_rad_per_s[3];
     laconic_real x_m, y_m; /* of the centre of mass */
     laconic_real heading_rad;
+#if LACONIC_WITH_FRICTION
     laconic_real wheel_speed_rad_per_s[LACONIC_MAX_WHEELS]; /* read where the ground has friction; all 0: as the wheels
                                                                roll at this ν                       */
+#endif
 } laconic_start;
 
 /* ---------------------------------------------------------------------------- traits of a field -- */

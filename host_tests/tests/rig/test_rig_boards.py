@@ -15,6 +15,7 @@ from laconic.rig.judge import judge_scaled
 from laconic.rig.lockstep import load_scene, run_lockstep, twin_states
 from laconic.rig.wire import wire
 from laconic.scene import Scene, read_scene
+from laconic.scene.ground import has_friction
 from laconic.soak import boards as boards_soak
 from laconic.trim import needs_of
 
@@ -28,9 +29,11 @@ UNFIT = dict.fromkeys(FULL, "parameter missing") | {"an500": "input incomplete"}
 
 
 def fits_small_image(scene: Scene) -> bool:
-    """At most four wheels, all alike, one support, and voltages only."""
-    is_small = scene.wheel_count <= 4 and len(scene.vehicle["support"]) <= 1 and not needs_of(scene).own_wheels
-    return is_small and all(each.signal.startswith("voltage_V") for each in scene.inputs)
+    """At most four wheels, all alike, on level ideal ground; one support; voltages only."""
+    if scene.wheel_count > 4 or len(scene.vehicle["support"]) > 1 or has_friction(scene.vehicle):
+        return False
+    needs = needs_of(scene)
+    return not (needs.own_wheels or needs.slope or needs.axle_torque or needs.body_wrench or needs.world_force)
 
 
 def rk4_can(scene: Scene) -> bool:
@@ -47,6 +50,8 @@ def test_all_scenes_give_the_bits_of_the_host_core_on_an_emulated_board(name: st
     with emulated_node(name) as node:
         for scene_name in scene_names():
             scene = read_scene(scene_name).with_run(real=BOARDS[name].real)
+            if name == "microbit" and has_friction(scene.vehicle):  # left out of that image
+                continue
             steps = STEPS.get(name, 10_000) if scene.inputs_on_grid().is_held else 300  # sampled: a SYNC for each step
             run = run_lockstep(node, scene, steps, every=STEPS_PER_SYNC)
             assert run.states.tobytes() == twin_states(scene, run).tobytes(), scene_name

@@ -80,7 +80,8 @@ def test_a_node_refuses_by_name_what_ground_and_drive_cannot_be(
 
 
 @pytest.mark.skipif(why_no_emulation() is not None, reason=why_no_emulation() or "")
-def test_an_image_without_friction_refuses_its_parameters_by_name(tmp_path: Path) -> None:
+@pytest.mark.parametrize("board", ["an386-small", "microbit"])
+def test_an_image_without_friction_refuses_its_parameters_by_name(board: str, tmp_path: Path) -> None:
     scene = skid_steering(tmp_path).with_run(real="single")
-    with emulated_node("an386-small") as node, pytest.raises(NodeRefused, match="not supported, ground friction"):
+    with emulated_node(board) as node, pytest.raises(NodeRefused, match="not supported, ground friction"):
         load_scene(node, scene)
