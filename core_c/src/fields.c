@@ -49,7 +49,7 @@ const char *laconic_field_path(laconic_field field) {
 #define ITEMS_MOTOR(member) 0
 #define TRAITS(of, number, IDENTIFIER, member, name, KIND, RULE, NEED) \
     LACONIC_ROW_OF( \
-        number)([number] = {LACONIC_KIND_##KIND, LACONIC_RULE_##RULE, LACONIC_NEED_##NEED, ITEMS_##of(member)},)
+        number)([number] = {LACONIC_KIND_##KIND, LACONIC_RULE_##RULE, LACONIC_NEED_##NEED, ITEMS_##of(member)}, )
 
 const laconic_field_traits *laconic_field_traits_of(laconic_field field) {
     static const laconic_field_traits traits[LACONIC_FIELD_COUNT] = {LACONIC_ALL_FIELDS(TRAITS)};
