@@ -12,7 +12,7 @@ from laconic.scene import read_scene
 from laconic.simulation import simulate
 
 LOSSES = ("slip_loss_J", "axle_loss_J", "motor_loss_J", "supply_loss_J", "numerical_loss_J")
-SKID = "example_skid_steer"
+SKID = Path(__file__).parents[1] / "data/skid_steer.toml"
 
 
 def scene_with(tmp_path: Path, *changes: tuple[str, str]) -> Path:
