@@ -104,6 +104,27 @@ static void the_smooth_law_follows_the_friction_step(void) {
     ASSERT_NEAR(1e-3, plant.state.x_m.value, x);
 }
 
+/* Where wheels slip fast, forces of the smooth law are those of the friction step, and so is what the motors draw. */
+static void the_smooth_laws_outputs_are_those_of_the_friction_step(void) {
+    for (int supplied = 0; supplied < 2; supplied++) {
+        laconic_vehicle v = with_drive(robotino(0.1, supplied ? 0.5 : 0, 0));
+        laconic_input input = no_input();
+        v.drive.supply_V = supplied ? 24 : 0;
+        laconic_plant plant = started(v, 1e-5, 0, 0, 0);
+        for (int i = 0; i < 3; i++) plant.slip.wheel_speed_rad_per_s[i] = 40;
+        input.voltage_V[0] = 30;
+        run(&plant, &input, 1);
+        laconic_slip smooth = plant.slip;
+        laconic_slip_smooth(&smooth, &plant.friction, &plant.state, &input);
+        for (int i = 0; i < 3; i++)
+            for (int k = 0; k < 2; k++) ASSERT_NEAR(0.02, plant.slip.grip_N[i][k], smooth.grip_N[i][k]);
+        for (int i = 0; i < 3; i++) ASSERT_NEAR(EITHER(1e-9, 1e-3), plant.slip.current_A[i], smooth.current_A[i]);
+        ASSERT_NEAR(EITHER(1e-9, 1e-3), plant.slip.supply_current_A, smooth.supply_current_A);
+        TEST_ASSERT_TRUE(smooth.limit[0] == (supplied ? LACONIC_LIMIT_VOLTAGE : LACONIC_LIMIT_NONE));
+        TEST_ASSERT_TRUE((double)smooth.supply_voltage_V == (supplied ? 24 : 0));
+    }
+}
+
 int main(void) {
     UNITY_BEGIN();
     RUN_TEST(contacts_that_slip_stick_and_lift_are_told_apart);
@@ -111,5 +132,6 @@ int main(void) {
     RUN_TEST(a_brake_holds_its_wheel_against_motor_and_ground);
     RUN_TEST(outputs_are_those_of_the_wheels_own_states);
     RUN_TEST(the_smooth_law_follows_the_friction_step);
+    RUN_TEST(the_smooth_laws_outputs_are_those_of_the_friction_step);
     return UNITY_END();
 }

@@ -234,6 +234,27 @@ static void a_locked_wheel_does_not_turn(void) {
     TEST_ASSERT_TRUE(plant.slip.wheel_angle_rad[1].value == 0);
 }
 
+/* −most … most, the same from every compiler. */
+static double uniform(uint32_t *seed, double most) {
+    *seed = *seed * 1664525U + 1013904223U;
+    return most * ((double)(*seed >> 8) / 8388608.0 - 1.0);
+}
+
+/* In double precision the last of these steps is one that the solver refuses as a whole. */
+static void a_step_that_the_solver_refuses_is_taken_in_parts(void) {
+    uint32_t seed = 12;
+    laconic_input input = no_input();
+    laconic_plant plant = started(with_drive(robotino(0.3, 0.002, 0.05)), 1e-3, 0, 0, 0);
+    for (int n = 0; n < 690; n++) {
+        if (n % 25 == 0) {
+            for (int i = 0; i < 3; i++) input.voltage_V[i] = REAL(uniform(&seed, 6));
+            input.body_force_N[1] = REAL(uniform(&seed, 20));
+        }
+        run(&plant, &input, 1);
+    }
+    TEST_ASSERT_EQUAL_UINT64(690, plant.steps);
+}
+
 int main(void) {
     UNITY_BEGIN();
     RUN_TEST(rest_below_breakaway_holds_to_the_last_bit);
@@ -249,5 +270,6 @@ int main(void) {
     RUN_TEST(a_step_that_cannot_be_taken_changes_nothing);
     RUN_TEST(a_step_too_far_is_refused);
     RUN_TEST(a_locked_wheel_does_not_turn);
+    RUN_TEST(a_step_that_the_solver_refuses_is_taken_in_parts);
     return UNITY_END();
 }

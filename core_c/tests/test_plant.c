@@ -96,6 +96,33 @@ static void a_refused_change_changes_nothing(void) {
     TEST_ASSERT_EQUAL_MEMORY(&before, &plant, sizeof plant);
 }
 
+/* A vehicle with friction, too: its wheels start again. */
+static void a_restart_begins_again_with_the_same_vehicle(void) {
+    const laconic_input input = no_input();
+    laconic_start start = start_with(1, 2, 3);
+    for (int friction = 0; friction < 2; friction++) {
+        laconic_vehicle v = three_wheels();
+        if (friction) v.ground.friction_coefficient = REAL(0.5);
+        laconic_plant plant = plant_of(v, &laconic_auto, 0.001), fresh = plant, before;
+        ASSERT_STATUS(LACONIC_OK, laconic_plant_run(&plant, &input, 5, &why));
+        TEST_ASSERT_TRUE(friction || memcmp(&plant.state, &fresh.state, sizeof fresh.state) != 0);
+        ASSERT_STATUS(LACONIC_OK, laconic_plant_restart(&plant, &start, &why));
+        TEST_ASSERT_EQUAL_MEMORY(&fresh, &plant, sizeof plant);
+        ASSERT_NEAR(ROUNDING, laconic_plant_energy_J(&fresh), laconic_plant_energy_J(&plant));
+        before = plant;
+        start.x_m = NOT_A_NUMBER;
+        ASSERT_REFUSED(LACONIC_NOT_FINITE, LACONIC_FIELD_START_X, 0, laconic_plant_restart(&plant, &start, &why), why);
+        start.x_m = 0;
+        if (friction) {
+            start.wheel_speed_rad_per_s[1] = NOT_A_NUMBER;
+            ASSERT_REFUSED(LACONIC_NOT_FINITE, LACONIC_FIELD_START_WHEEL_SPEED, 2,
+                           laconic_plant_restart(&plant, &start, &why), why);
+        }
+        TEST_ASSERT_EQUAL_MEMORY(&before, &plant, sizeof plant);
+        start = start_with(1, 2, 3);
+    }
+}
+
 int main(void) {
     UNITY_BEGIN();
     RUN_TEST(running_is_stepping);
@@ -105,5 +132,6 @@ int main(void) {
     RUN_TEST(the_count_of_steps_goes_on_with_another_step_size);
     RUN_TEST(a_payload_in_motion_leaves_the_body_where_it_is);
     RUN_TEST(a_refused_change_changes_nothing);
+    RUN_TEST(a_restart_begins_again_with_the_same_vehicle);
     return UNITY_END();
 }
