@@ -4,6 +4,15 @@ from __future__ import annotations
 
 import json
 
+from laconic.paths import scene_names
+from laconic.scene import read_scene
+from laconic.scene.ground import has_friction
+
+
+def ideal_scene_names() -> list[str]:
+    """Names of the project's scenes on ideal ground, whose equation is (4.7)."""
+    return [name for name in scene_names() if not has_friction(read_scene(name).vehicle)]
+
 
 def table(head: str, **entries: object) -> str:
     """A table such as "[vehicle]"; values are numbers, texts, flags or lists."""

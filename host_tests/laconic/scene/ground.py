@@ -2,12 +2,16 @@
 
 from __future__ import annotations
 
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 from laconic.core import load
 from laconic.core.fields import OF_GROUND
+from laconic.errors import BadInput
 from laconic.scene.fields import read_field
 from laconic.scene.table import Table
+
+if TYPE_CHECKING:
+    from laconic.scene.scene import Scene
 
 MOTOR_CIRCUITS = ("driven", "open", "shorted")  # laconic_motor_circuit
 OF_MOTOR = ("winding_resistance_ohm", "viscous_friction_Nms")  # of a drive, that laconic_motor_fit() fills
@@ -23,6 +27,13 @@ def slips(vehicle: dict[str, Any]) -> bool:
     """Whether a wheel can slip."""
     own = any(wheel.get("friction_coefficient") for wheel in vehicle["wheel"])
     return own or "friction_coefficient" in vehicle.get("ground", {})
+
+
+def check_ideal_ground(scene: Scene, command: str) -> None:
+    """BadInput where a command that treats (4.7) gets a vehicle with friction or limits of its drives."""
+    if has_friction(scene.vehicle):
+        raise BadInput(f"{scene.path}: laconic {command} treats ideal ground and motors without limits; give a scene "
+                       "without friction in [ground], without [vehicle.drive] and motor_circuit")
 
 
 def read_ground(table: Table) -> dict[str, float]:

@@ -5,16 +5,16 @@ import time
 
 import pytest
 from matplotlib import image
+from scene_text import ideal_scene_names
 
 from laconic.analysis.findings import StudyOptions
 from laconic.analysis.from_core import subject_of
 from laconic.analysis.pictures_steady import driven_picture
 from laconic.analysis.study import study
 from laconic.cli import main as cli
-from laconic.paths import SCENE_DIR
 from laconic.scene import read_scene
 
-SCENES = sorted(path.stem for path in SCENE_DIR.glob("*.toml"))
+SCENES = ideal_scene_names()
 
 
 def run(capsys, *arguments):
@@ -167,3 +167,11 @@ def test_derive_prints_the_worked_examples(capsys, example):
     assert status == 0
     assert "laconic equations (2.4)" in found["text"]
     assert all(value < 1e-12 for value in found["checks"].values())
+
+
+@pytest.mark.parametrize("command", ["analyse", "derive"])
+def test_a_vehicle_with_friction_is_refused_in_one_line(command, capsys):
+    assert cli.run([command, "robotino_grey"]) == 2
+    (line,) = capsys.readouterr().err.strip().splitlines()
+    assert "robotino_grey.toml" in line
+    assert "ideal ground" in line

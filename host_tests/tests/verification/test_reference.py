@@ -6,8 +6,8 @@ from pathlib import Path
 
 import numpy as np
 import pytest
+from scene_text import ideal_scene_names
 
-from laconic.paths import scene_names
 from laconic.scene import read_scene
 from laconic.simulation import simulate, usual_signals
 from laconic.verification.reference import Reference, reference_states
@@ -136,8 +136,8 @@ def test_core_agrees_with_motor_payload_and_every_kind_of_input(inputs, change, 
     assert max(agreement(read_scene(path))) < 3e-9
 
 
-@pytest.mark.parametrize("name", scene_names())
-def test_core_agrees_with_the_reference_on_every_scene(name):
+@pytest.mark.parametrize("name", ideal_scene_names())
+def test_core_agrees_with_the_reference_on_every_scene_on_ideal_ground(name):
     scene = read_scene(name)
     short = scene.with_run(duration_s=min(scene.run.duration_s, 4000 * scene.run.step_s))
     assert max(agreement(short)) < 2e-9

@@ -48,10 +48,13 @@ def command(scene: str, out: Path | None, only: tuple[str, ...], at_s: float, st
     from laconic.analysis.study import study
     from laconic.progress import progress_bar
     from laconic.scene import read_scene
+    from laconic.scene.ground import check_ideal_ground
 
     _check(low, high, straight, start)
     options = StudyOptions(tuple(p for p in PARTS if not only or p in only), parameter, low, high, straight, start)
-    subject = subject_of(read_scene(scene), at_s)
+    given = read_scene(scene)
+    check_ideal_ground(given, "analyse")
+    subject = subject_of(given, at_s)
     with progress_bar("analysing", 100) as advance:
         found = study(subject, options, lambda share, part: advance(90 * share, what=part))
         pictures = _draw(found, out, advance)

@@ -76,8 +76,11 @@ def _of_scene(given: str, form: str) -> tuple[str, dict[str, float]]:
     from laconic.method.scene_check import core_difference
     from laconic.method.scene_system import carriage_of, derive
     from laconic.scene import read_scene
+    from laconic.scene.ground import check_ideal_ground
 
-    subject = subject_of(read_scene(given))
+    scene = read_scene(given)
+    check_ideal_ground(scene, "derive")
+    subject = subject_of(scene)
     numbers = subject.numbers()
     system = derive(numbers)
     writers = {"latex": printing.as_latex, "c": lambda s: printing.as_c(numbers, s), "": printing.as_text}
