@@ -83,5 +83,6 @@ def unknown(path: Path, maps: Sequence[ColumnMap]) -> BadInput:
             return BadInput(f"{path}: is empty, so it has no samples; give a recorded run")
     except BadInput as reason:
         return reason
-    return BadInput(f"{path}: no map recognises it (known are {', '.join(each.name for each in maps)}); give the map "
-                    "of its columns with --map")
+    return BadInput(f"{path}: no map recognises it (known are {', '.join(each.name for each in maps)}); a CSV of "
+                    "signals has the first column time_s and commas between columns, other columns need their map: "
+                    "give it with --map")
