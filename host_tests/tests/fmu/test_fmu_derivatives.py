@@ -6,8 +6,8 @@ from pathlib import Path
 
 import numpy as np
 import pytest
+from fmu_friction_scenes import PARTS, friction_scene
 from fmu_importer import DISCARD, ERROR, OK, Importer, generic
-from friction_scenes import PARTS, friction_scene
 
 from laconic.fmu import make_fmu
 from laconic.scene import read_scene

@@ -7,8 +7,8 @@ from pathlib import Path
 from typing import Any
 
 import pytest
+from fmu_friction_scenes import PARTS, friction_scene
 from fmu_importer import DISCARD, ERROR, OK, Importer, generic
-from friction_scenes import PARTS, friction_scene
 from test_fmu_bits import NAMES, VARIANTS, outputs_of, random_inputs, signal_name
 from test_fmu_state import SUFFIX, deserialize, save, serialize
 

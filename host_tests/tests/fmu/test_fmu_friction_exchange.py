@@ -9,8 +9,8 @@ import fmpy
 import numpy as np
 import pytest
 from fmpy.validation import validate_fmu
+from fmu_friction_scenes import friction_scene
 from fmu_importer import ERROR, OK, Importer, generic
-from friction_scenes import friction_scene
 from test_fmu_bits import VARIANTS
 from test_fmu_friction import VERSIONS, VOLTAGE_V, everything, fmu_of, held_voltages
 from test_fmu_state import deserialize, serialize
