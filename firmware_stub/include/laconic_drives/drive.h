@@ -1,0 +1,90 @@
+/* A motor drive as a controller sees it over the bus, without its protocol: cascaded loops for position, speed and current
+ * with their limits, and an encoder at the motor's shaft.
+ *
+ *     target (of a protocol) --position loop--> speed --speed loop--> current --limits--> torque of the wheel's axle
+ *                                                                                             |
+ *     measured position, speed and current  <------ encoder <---- wheel <---- laconic_plant --+
+ *
+ * A drive replaces the motor of the vehicle: the plant is prepared without motor gain, and with no motor damping but
+ * viscous friction; the drive's torque is the plant's axle torque, held for one step of the core. All values of a drive
+ * are at the motor's shaft: a wheel that turns by 1 turns the shaft by gear_ratio. */
+#ifndef LACONIC_DRIVES_DRIVE_H
+#define LACONIC_DRIVES_DRIVE_H
+
+#include "laconic/laconic.h"
+
+/* Constants of one drive. */
+typedef struct laconic_drive_settings {
+    int32_t node_id;                          /* of this drive on the bus; its meaning is the protocol's        */
+    int32_t encoder_counts;                   /* of one turn of the shaft, > 0                                  */
+    laconic_real gear_ratio;                  /* turns of the shaft for one of the wheel, not 0; < 0: reversed  */
+    laconic_real torque_constant_Nm_per_A;    /* > 0                                                            */
+    laconic_real current_limit_A;             /* > 0                                                            */
+    laconic_real speed_limit_rad_per_s;       /* of position and speed control; 0: none                         */
+    laconic_real supply_V;                    /* the current is limited to what this voltage drives through     */
+    laconic_real winding_resistance_ohm;      /* ... this resistance against the back-EMF; either 0: no limit   */
+    laconic_real current_bandwidth_rad_per_s; /* first-order lag of the current; 0: follows at once          */
+    laconic_real position_gain_per_s;         /* speed for an error of the position                          */
+    laconic_real speed_gain_As;               /* current for an error of the speed [A/(rad/s)]               */
+    laconic_real speed_integral_gain_A;       /* current for the integral of that error [A/rad]              */
+} laconic_drive_settings;
+
+typedef enum laconic_drive_mode {
+    LACONIC_DRIVE_OFF = 0, /* no current: the wheel coasts */
+    LACONIC_DRIVE_CURRENT,
+    LACONIC_DRIVE_SPEED,
+    LACONIC_DRIVE_POSITION
+} laconic_drive_mode;
+
+/* What a protocol asks of a drive; it stays until it is changed. */
+typedef struct laconic_drive_target {
+    laconic_drive_mode mode;
+    int64_t position_count; /* POSITION: counts of the encoder, and a share of a count, 0 to 1          */
+    laconic_real position_rest;
+    laconic_real speed_rad_per_s; /* SPEED; POSITION: feed-forward                                            */
+    laconic_real current_A;       /* CURRENT; SPEED, POSITION: feed-forward                                   */
+} laconic_drive_target;
+
+/* What goes wrong in a drive, whoever caused it: bits of laconic_drive.faults. A drive with a fault is off until the
+ * protocol clears it with laconic_drive_clear(). */
+#define LACONIC_DRIVE_FAULT_ENCODER 1U     /* the encoder is lost                    */
+#define LACONIC_DRIVE_FAULT_STALL 2U       /* no motion at the limit of the current  */
+#define LACONIC_DRIVE_FAULT_TEMPERATURE 4U /* only by order: drives have no thermal model */
+#define LACONIC_DRIVE_FAULT_OVERSPEED 8U
+#define LACONIC_DRIVE_FAULT_SUPPLY 16U
+#define LACONIC_DRIVE_FAULT_WATCHDOG 32U  /* the controller is silent; set by the protocol */
+#define LACONIC_DRIVE_FAULT_FOLLOWING 64U /* position error too large; set by the protocol */
+
+/* Limits that the last step met: bits of laconic_drive.limits. */
+#define LACONIC_DRIVE_AT_CURRENT 1U
+#define LACONIC_DRIVE_AT_SPEED 2U
+#define LACONIC_DRIVE_AT_SUPPLY 4U
+
+typedef struct laconic_drive {
+    laconic_drive_settings settings; /* protocols may change gains and limits */
+    laconic_drive_target target;
+    uint32_t faults, limits;
+    laconic_real integral_A; /* of the speed loop */
+    /* measured at the end of the last step */
+    int64_t count;     /* of the encoder since the start, not wrapped */
+    laconic_real rest; /* share of a count beyond it, 0 to 1; the encoder does not show it */
+    laconic_real speed_rad_per_s;
+    laconic_real current_A;
+    laconic_real torque_Nm; /* at the wheel's axle, as the plant got it */
+} laconic_drive;
+
+/* All zero but the settings: off, at count 0. */
+void laconic_drive_start(laconic_drive *drive, const laconic_drive_settings *settings);
+
+/* The torque at the wheel's axle for the next step_s, from target and measured values. */
+laconic_real laconic_drive_act(laconic_drive *drive, laconic_real step_s);
+
+/* Takes the wheel's motion in the step just done: its mean speed turned the encoder, its speed at the end is measured. */
+void laconic_drive_measure(laconic_drive *drive, laconic_real turned_rad, laconic_real wheel_speed_rad_per_s);
+
+/* Sets a fault: the drive is off until it is cleared. */
+void laconic_drive_fail(laconic_drive *drive, uint32_t fault);
+/* Clears all faults but those whose cause remains; the drive stays off until the protocol gives a target. */
+void laconic_drive_clear(laconic_drive *drive);
+
+#endif

@@ -1,0 +1,35 @@
+/* What a protocol of drives is to a node: constant functions and the memory of its axes. */
+#ifndef LACONIC_DRIVES_PROTOCOL_H
+#define LACONIC_DRIVES_PROTOCOL_H
+
+#include "laconic_drives/drive.h"
+#include "laconic_node/frame.h"
+
+/* The drives of one vehicle on one bus: drive i turns wheel i. */
+typedef struct laconic_drives {
+    const struct laconic_drive_protocol *protocol; /* NULL: none */
+    void *axes;                                    /* memory of the protocol: protocol->axis_bytes for each drive */
+    int32_t count;
+    laconic_real step_s;
+    laconic_drive drive[LACONIC_MAX_WHEELS];
+} laconic_drives;
+
+/* A protocol translates frames into targets and measured values into frames; it has neither clock nor bus. Time is a
+ * count of microseconds that may wrap. Functions touch only `drives` and its axes. */
+typedef struct laconic_drive_protocol {
+    const char *name;
+    uint16_t axis_bytes; /* of one drive's state of the protocol */
+    /* As after power-up. The axes are all zero. */
+    void (*start)(laconic_drives *drives, uint32_t now_us);
+    /* Takes a frame from the bus; frames for others are passed over. */
+    void (*on_frame)(laconic_drives *drives, const laconic_frame *frame, uint32_t now_us);
+    /* Once before each step of the core: ramps, watchdogs, and which cyclic frames are due. */
+    void (*on_step)(laconic_drives *drives, uint32_t now_us);
+    /* The next frame to send, made from the newest values; false iff there is none. */
+    bool (*next_frame)(laconic_drives *drives, laconic_frame *frame);
+} laconic_drive_protocol;
+
+/* By number, as parameter DRIVE_PROTOCOL has them: 1 canopen, 2 odrive, 3 robomaster, 4 moteus. */
+extern const laconic_drive_protocol laconic_canopen, laconic_odrive, laconic_robomaster, laconic_moteus;
+
+#endif
