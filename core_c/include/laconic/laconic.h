@@ -41,20 +41,21 @@
  *          c1, c2        a motor gives its wheel the torque c1 U − c2 χ' at the voltage U; a wheel may have its own
  *
  * Limits   what the model does not do, and what to do instead:
- *          slip             wheels and rollers roll without slip. no_slip_margin_N is below 0 where the ground cannot
- *                           hold a wheel; from there on the run is not true. Nothing models a wheel that slips.
+ *          slip             without a ground.friction_coefficient wheels and rollers roll without slip, and
+ *                           no_slip_margin_N is below 0 where the ground cannot hold a wheel; from there on the run is
+ *                           not true. With one, contacts stick and slip (friction.h).
  *          suspension       the body is rigid and its height constant; normal loads are least-norm statics, without
  *                           springs. On more than three points they are those of an evenly soft ground.
- *          level ground     a slope's pull along it is a world_force_N at S, (M g sin slope) down the slope; normal
- *                           loads stay those of level ground.
- *          motors           a DC motor without inductance, dry friction or limits. Any other torque is given as
- *                           axle_torque_Nm, with c1 = c2 = 0 where it replaces the motor's.
+ *          hills            the ground is one plane, level or with the slope of vehicle.ground.
+ *          motors           a DC motor without inductance; vehicle.drive adds supply and limits, ground.axle_friction_Nm
+ *                           dry friction. Any other torque is given as axle_torque_Nm, with c1 = c2 = 0 where it
+ *                           replaces the motor's.
  *          swivel casters   a support: it carries a normal load; its inertia and its swivelling are left out. (A single
  *                           fixed wheel is no swivel caster: it does not swivel.)
  *          steered wheels   a fixed wheel keeps its axle; a constant steering angle is its axle_rad. (4.7) does not
  *                           describe Ackermann and swerve drives that steer while they move.
- *          skid steering    fixed wheels on more than one axle line are refused or cannot yaw: give one axle line in
- *                           the middle, a track width fitted to what the robot does, and the others as supports. */
+ *          skid steering    on ideal ground fixed wheels on more than one axle line cannot yaw: give the ground its
+ *                           friction, or one axle line in the middle with the others as supports. */
 #ifndef LACONIC_H
 #define LACONIC_H
 
