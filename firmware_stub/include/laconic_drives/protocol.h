@@ -11,6 +11,7 @@ typedef struct laconic_drives {
     void *axes;                                    /* memory of the protocol: protocol->axis_bytes for each drive */
     int32_t count;
     laconic_real step_s;
+    laconic_real watchdog_s; /* of silence of the controller that the drives bear; 0: what the protocol says */
     laconic_drive drive[LACONIC_MAX_WHEELS];
 } laconic_drives;
 
