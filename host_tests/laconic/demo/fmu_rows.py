@@ -122,7 +122,8 @@ def fmu_rows(scene: Scene, fmu: Path, steps: int, every: int = 1,
         try:
             return run(ours(slave, references, scene.wheel_count), scene, steps, every, moved)
         finally:
-            slave.freeLibrary()
+            # It closes the library, too. Closed twice, the loader would count down in memory that is others' by now.
+            slave.freeInstance()
 
 
 def run(slave: Any, scene: Scene, steps: int, every: int, moved: Callable[[int], None]) -> Rows:
@@ -140,6 +141,5 @@ def run(slave: Any, scene: Scene, steps: int, every: int, moved: Callable[[int],
         moved(count)
     seconds = time.perf_counter() - began
     slave.slave.terminate()
-    slave.slave.freeInstance()
     version = "FMI 2" if isinstance(slave, Slave2) else "FMI 3"
     return Rows(version, np.array(ticks), np.array(rows, dtype=float), seconds, tuple(slave.log.lines))
