@@ -8,7 +8,9 @@ from typing import Any
 import click
 
 from laconic.cli.options import InputPath
-from laconic.logs.column_map import named_map
+from laconic.errors import BadInput, nearest_of
+from laconic.logs.column_map import map_names, named_map
+from laconic.paths import exists
 
 
 class MapPath(InputPath):
@@ -18,7 +20,11 @@ class MapPath(InputPath):
 
     def convert(self, value: Any, param: click.Parameter | None, ctx: click.Context | None) -> Path:
         """The path of its file, noted as an input."""
-        return super().convert(str(named_map(Path(value))) if str(value) else value, param, ctx)
+        path = super().convert(str(named_map(Path(value))) if str(value) else value, param, ctx)
+        if str(value) == path.name and not path.suffix and not exists(path):
+            raise BadInput(f"--map {value}: there is no such file, nor a map of the project with this name; "
+                           f"{nearest_of(str(value), map_names())}")
+        return path
 
 
 class SeveralAfter(click.Command):

@@ -90,7 +90,7 @@ def _slope(pairs: Sequence[tuple[np.ndarray, np.ndarray]]) -> tuple[float, float
 def _dead_time(log: Log) -> float:
     """From the first set speed to the first motion, less half a sample."""
     wanted = log.needs("set_speed_rad_per_s", WANTED)
-    begin = log.time_s[int(np.argmax(np.abs(wanted).max(axis=1) > LEAST_SET))]
-    rotation = np.abs(np.cumsum(log.rotation_rad(), axis=0)).max(axis=1)
+    begin = log.time_s[int(np.argmax(np.nanmax(np.abs(wanted), axis=1) > LEAST_SET))]
+    rotation = np.nanmax(np.abs(np.cumsum(log.rotation_rad(), axis=0)), axis=1)
     moved = int(np.argmax(rotation > LEAST_TURN_RAD))
     return float(max(0.5 * (log.time_s[moved] + log.time_s[moved + 1]) - begin, 0.0))

@@ -40,8 +40,8 @@ def identify(scene: Scene, logs: Sequence[Log], parameters: Parameters, *, judge
              leave_out: str | None = None, with_controller: bool = False,
              advance: Callable[..., None] = lambda *_, **__: None) -> Study:
     """Fits, then judges; BadInput where the logs cannot be of this vehicle or say nothing about it."""
-    runs = [for_wheels(log, scene.wheel_count) for log in logs]
-    others = [for_wheels(log, scene.wheel_count) for log in judge]
+    runs = [for_wheels(log, scene.vehicle["wheel"]) for log in logs]
+    others = [for_wheels(log, scene.vehicle["wheel"]) for log in judge]
     need_currents(parameters, runs, scene)
     found = _fit(scene, runs, parameters)
     advance()

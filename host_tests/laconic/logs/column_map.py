@@ -14,7 +14,11 @@ from laconic.scene.table import Table, read_toml
 
 MAPS = Path(__file__).with_name("maps")
 FORMATS = ("text", "can")
-QUANTITIES = (*PER_WHEEL, "pose")
+DECIMALS = (".", ",")
+OF_TEXT = ("separator", "header_lines", "names_line", "decimal", "time")
+OF_CAN = ("dbc", "group")
+YAW_RATE = "yaw_rate"
+QUANTITIES = (*PER_WHEEL, "pose", YAW_RATE)
 KINDS = {"wheel_angle": ("absolute", "increments"), "pose": ("absolute", "increments", "body-increments")}
 NUMBERED = "#"  # in a column's name: one column for each wheel, counted from 1
 
@@ -52,6 +56,7 @@ class ColumnMap:
     separator: str
     header_lines: int
     names_line: int
+    decimal: str                       # the sign before the decimals of a number, one of DECIMALS
     quantities: dict[str, Quantity]
     metadata: str = ""                 # name of the file beside the log
     dbc: str = ""
@@ -64,6 +69,11 @@ def project_maps() -> list[ColumnMap]:
     return [read_map(path) for path in sorted(MAPS.glob("*.toml"))]
 
 
+def map_names() -> list[str]:
+    """The names by which --map takes the project's maps."""
+    return [path.stem for path in sorted(MAPS.glob("*.toml"))]
+
+
 def named_map(given: Path) -> Path:
     """A map by its path, or by the name of one that comes with the project."""
     named = MAPS / f"{given}.toml"
@@ -74,10 +84,12 @@ def read_map(path: Path) -> ColumnMap:
     """A column map; BadInput names the file and the key that is wrong."""
     table = read_toml(path)
     form = table.choice("format", FORMATS, "text")
+    _refuse_keys_of_others(table, form)
     name = table.text("name", path.stem)
     separator = table.text("separator", ",", allowed="\t")
     header_lines = table.whole("header_lines", 1)
     names_line = table.whole("names_line", min(1, header_lines))
+    decimal = table.choice("decimal", DECIMALS, ".")
     dbc, group = table.text("dbc", ""), table.text("group", "")
     if form == "can" and not dbc:
         table.fail("dbc", "is missing; give the DBC file that names the signals of a CAN log")
@@ -86,23 +98,34 @@ def read_map(path: Path) -> ColumnMap:
     count: int | None = None
     for each in QUANTITIES:
         if table.has(each):
-            found = _quantity(table.table(each), each, count)
+            inner = table.table(each)
+            found = _yaw_rate(inner) if each == YAW_RATE else _quantity(inner, each, count)
             quantities[each] = found
-            if each != "pose" and not found.first and not _is_numbered(found.columns):
+            if each in PER_WHEEL and not found.first and not _is_numbered(found.columns):
                 count = count or len(found.columns)
     recognise = _recognise(table)
     table.done()
     if len(separator) != 1:
         table.fail("separator", f"is {separator!r}; give one character")
+    if separator == decimal:
+        table.fail("decimal", f"is {decimal!r}, which separates the columns, too; give the log's own separator")
     if not 0 <= names_line <= header_lines:
         raise BadInput(f"{path}: names_line: is {names_line}; give a line from 1 to header_lines")
     if len(quantities) == 1:
         raise BadInput(f"{path}: {QUANTITIES[1]}: is missing; give the columns of at least one of "
                        f"{', '.join(QUANTITIES)}")
-    found_map = ColumnMap(path, name, form, separator, header_lines, names_line, quantities, metadata, dbc, group,
-                          recognise)
+    found_map = ColumnMap(path, name, form, separator, header_lines, names_line, decimal, quantities, metadata, dbc,
+                          group, recognise)
     _check_columns(table, found_map)
     return found_map
+
+
+def _refuse_keys_of_others(table: Table, form: str) -> None:
+    """A key that this format would not read."""
+    for key in OF_TEXT if form == "can" else OF_CAN:
+        if table.has(key):
+            table.fail(key, f'has a meaning only with format = "{"text" if form == "can" else "can"}"; take it out, or '
+                       "give that format")
 
 
 def _metadata(table: Table) -> str:
@@ -128,7 +151,21 @@ def _time(table: Table, form: str) -> Quantity:
     column = _column(inner, "column")
     unit, scale = _units(inner, "time", 1), inner.number("scale", 1.0)
     inner.done()
+    if not scale > 0.0:
+        inner.fail("scale", f"is {scale:g}; give a factor above 0, or leave it out")
     return Quantity("time", (column,), unit, (scale,))
+
+
+def _yaw_rate(table: Table) -> Quantity:
+    """Of a gyro: one column."""
+    column, unit, sign = _column(table, "column"), _units(table, YAW_RATE, 1), table.number("sign", 1.0)
+    scale, offset = table.number("scale", 1.0), table.number("offset", 0.0)
+    if abs(sign) != 1.0 or scale == 0.0:
+        table.fail("scale" if scale == 0.0 else "sign", "holds no factor that keeps the values; give sign 1 or -1, "
+                   "and a scale that is not 0")
+    is_optional = table.flag("optional", False)
+    table.done()
+    return Quantity(YAW_RATE, (column,), unit, (sign * scale,), (offset,), is_optional=is_optional)
 
 
 def _column(table: Table, key: str) -> Column:
@@ -151,10 +188,13 @@ def _quantity(table: Table, name: str, count: int | None) -> Quantity:
     if any(abs(sign) != 1.0 for sign in signs):
         table.fail("sign", "holds a number that is neither 1 nor -1; use scale for other factors")
     factors = _product(scales, signs)
+    if 0.0 in scales:
+        table.fail("scale", "is 0, which would make every value the same; give the column's factor, or leave it out")
     kind = table.choice("kind", KINDS.get(name, ("absolute",)), "absolute")
-    wheels = tuple(int(w) for w in table.numbers("wheels", length)) if table.has("wheels") else ()
-    if sorted(wheels) != list(range(1, len(wheels) + 1)):
-        table.fail("wheels", f"is {list(wheels)}; give each wheel of the scene once, counted from 1")
+    given = table.numbers("wheels", length) if table.has("wheels") else ()
+    wheels = tuple(int(each) for each in given)
+    if len(set(wheels)) < len(wheels) or min(wheels, default=1) < 1 or wheels != given:
+        table.fail("wheels", f"is {[*map(plain_number, given)]}; give each wheel of the scene once, counted from 1")
     units = _units(table, name, 3 if name == "pose" else 1)
     ticks, gear = _figure(table, "ticks_per_turn"), _figure(table, "gear_ratio")
     if TICK in units and ticks is None:
@@ -189,6 +229,11 @@ def _columns(table: Table, name: str, count: int | None) -> tuple[tuple[Column, 
         if column in columns[:number]:
             table.fail("columns", f"names {column!r} twice; give each column once")
     return columns, 0
+
+
+def plain_number(value: float) -> float:
+    """As it was written: 2, not 2.0."""
+    return int(value) if value == int(value) else value
 
 
 def _is_numbered(columns: tuple[Column, ...]) -> bool:

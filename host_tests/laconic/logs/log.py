@@ -29,6 +29,8 @@ class Log:
     voltage_V: np.ndarray | None = None
     pose: np.ndarray | None = None          # true x, y [m], heading [rad, unwrapped] in the world
     pose_point: str = "origin"              # which point of the vehicle the pose is of, one of POINTS
+    yaw_rate_rad_per_s: np.ndarray | None = None  # of a gyro
+    is_ordered: bool = False                # the map says which wheel of the scene each column is of
     moved: np.ndarray | None = None         # the displacements that the log has instead of a pose, summed: x, y, angle
     names: dict[str, str] = field(default_factory=dict)  # quantity → how the log calls its columns, for messages
 

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable
+from collections.abc import Callable, Mapping, Sequence
 from dataclasses import replace
 from pathlib import Path
 from typing import Any
@@ -10,7 +10,7 @@ from typing import Any
 import numpy as np
 
 from laconic.errors import BadInput
-from laconic.logs.column_map import NUMBERED, Column, ColumnMap, Quantity, angle_unit
+from laconic.logs.column_map import NUMBERED, YAW_RATE, Column, ColumnMap, Quantity, angle_unit
 from laconic.logs.log import LEAST_SAMPLES, PER_WHEEL, Log, wheels_of
 from laconic.logs.text_table import TextTable, metadata_number, metadata_of, read_text
 from laconic.logs.units import OF_QUANTITY, SPEED
@@ -39,23 +39,39 @@ def read_log(path: Path, columns: ColumnMap) -> Log:
     _check_widths(path, columns, found)
     if columns.quantities.get("current") and columns.quantities["current"].sign_from_set_speed:
         found["current_A"] = _signed(path, found)
-    log = Log(path, columns.name, time - time[0], **found)
+    if YAW_RATE in columns.quantities and (rate := source(columns.quantities[YAW_RATE])) is not None:
+        found["yaw_rate_rad_per_s"] = _scaled(columns.quantities[YAW_RATE], rate)[:, 0]
+    is_ordered = any(quantity.wheels for quantity in columns.quantities.values())
+    log = Log(path, columns.name, time - time[0], is_ordered=is_ordered, **found)
     return _with_pose(log, columns, source)
 
 
-def for_wheels(log: Log, count: int) -> Log:
-    """The log for a vehicle of so many wheels; BadInput where it has another number of them.
+def for_wheels(log: Log, wheels: Sequence[Mapping[str, Any]]) -> Log:
+    """The log for a vehicle with these wheels; BadInput where it has another number of them.
 
-    Frames on a bus have room for more wheels than there are; those beyond the vehicle's must be silent.
+    A wheel without a motor may have no encoder either: its columns are NaN then. Frames on a bus have room for more
+    wheels than there are; those beyond the vehicle's must be silent.
     """
-    there = wheels_of(log)
+    there, count = wheels_of(log), len(wheels)
     if there == count:
         return log
     parts = {member: getattr(log, member) for member in MEMBERS.values() if getattr(log, member) is not None}
-    is_silent = all(not value[:, count:].any() for value in parts.values())
-    if there < count or not (is_silent and log.map_name == "rig"):
-        raise BadInput(f"{log.path}: has {there} wheels, the scene {count}; give the scene of the recorded robot")
-    return replace(log, **{member: value[:, :count] for member, value in parts.items()})
+    if there > count and log.map_name == "rig" and all(not value[:, count:].any() for value in parts.values()):
+        return replace(log, **{member: value[:, :count] for member, value in parts.items()})
+    driven = [index for index, wheel in enumerate(wheels) if wheel.get("driven", True)]
+    places = list(range(there)) if log.is_ordered else driven
+    if there != len(places) or not set(driven) <= set(places) <= set(range(count)):
+        raise BadInput(f"{log.path}: has {there} wheels, the scene {count}; give the scene of the recorded robot, or "
+                       "driven = false for a wheel that the log has not")
+    spread: dict[str, Any] = {member: _spread(value, places, count) for member, value in parts.items()}
+    return replace(log, **spread)
+
+
+def _spread(values: np.ndarray, places: Sequence[int], count: int) -> np.ndarray:
+    """Columns at their places among so many; the others are NaN."""
+    found = np.full((len(values), count), np.nan)
+    found[:, places] = values
+    return found
 
 
 def _text_source(table: TextTable, columns: ColumnMap) -> tuple[np.ndarray, Columns, list[int]]:
@@ -150,8 +166,7 @@ def _at_wheel(quantity: Quantity, source: Columns, figure: Callable[[Any], float
     if quantity.kind == "increments":
         out[0] = 0.0  # since a line that is not there
         out = np.cumsum(out, axis=0)
-    order = np.argsort(quantity.wheels) if quantity.wheels else slice(None)
-    return out[:, order]
+    return _spread(out, [wheel - 1 for wheel in quantity.wheels], max(quantity.wheels)) if quantity.wheels else out
 
 
 def _check_time(path: Path, time: np.ndarray, lines: list[int] | None) -> None:

@@ -16,6 +16,8 @@ from laconic.logs.column_map import Column, ColumnMap
 
 GZIP = b"\x1f\x8b"
 LONGEST_SHOWN = 40
+MOST_LISTED = 20
+UTF_16 = (b"\xff\xfe", b"\xfe\xff")
 
 
 @dataclass(frozen=True)
@@ -26,6 +28,7 @@ class TextTable:
     names: list[str]
     rows: list[list[str]]
     lines: list[int]
+    decimal: str = "."
 
     def index_of(self, column: Column, quantity: str) -> int:
         """Where a column stands, from 0; BadInput names the quantity that needs it."""
@@ -35,9 +38,9 @@ class TextTable:
                                f"{column} (for {quantity}); correct the column map with --map")
             return column - 1
         if column not in self.names:
-            near = nearest_of(column, self.names) if self.names and len(self.names) < 40 else ""
-            raise BadInput(f"{self.path}: has no column {column!r} (for {quantity}); correct the column map with --map"
-                           + (f" ({near})" if near.startswith("did") else ""))
+            near = nearest_of(column, self.names, f"it has {_listed(self.names)}")
+            raise BadInput(f"{self.path}: has no column {column!r} (for {quantity}); correct the column map with --map "
+                           f"({near})")
         return self.names.index(column)
 
     def numbers(self, indices: Sequence[int], quantity: str) -> np.ndarray:
@@ -45,32 +48,53 @@ class TextTable:
         out = np.empty((len(self.rows), len(indices)))
         for row, (line, texts) in enumerate(zip(self.lines, self.rows, strict=True)):
             try:
-                out[row] = [float(texts[index]) for index in indices]
+                out[row] = [number_of(texts[index], self.decimal) for index in indices]
             except (ValueError, IndexError):
                 raise BadInput(f"{self.path}: line {line}: no number for {quantity} "
-                               f"({_wrong(texts, indices)}); remove the line or repair it") from None
+                               f"({self._wrong(texts, indices)}); remove the line or repair it") from None
         if not np.isfinite(out).all():
             line = self.lines[int(np.argmax(~np.isfinite(out).all(axis=1)))]
             raise BadInput(f"{self.path}: line {line}: {quantity} is not finite; remove the line or repair it")
         return out
 
+    def _wrong(self, texts: Sequence[str], indices: Sequence[int]) -> str:
+        for index in indices:
+            if index >= len(texts):
+                return f"the line has {len(texts)} columns"
+            try:
+                number_of(texts[index], self.decimal)
+            except ValueError:
+                return f"{texts[index][:LONGEST_SHOWN]!r}{self._other_decimal(texts[index])}"
+        return "overflow"
 
-def _wrong(texts: Sequence[str], indices: Sequence[int]) -> str:
-    for index in indices:
-        if index >= len(texts):
-            return f"the line has {len(texts)} columns"
+    def _other_decimal(self, text: str) -> str:
+        """What to write in the map where the decimals are of the other kind."""
+        other = "," if self.decimal == "." else "."
         try:
-            math.fsum([float(texts[index])])
+            number_of(text, other)
         except ValueError:
-            return repr(texts[index][:LONGEST_SHOWN])
-    return "overflow"
+            return ""
+        return f'; decimal = "{other}" in the map reads it'
+
+
+def number_of(text: str, decimal: str) -> float:
+    """ValueError for what is no number with this sign before its decimals."""
+    if "_" in text or (decimal != "." and "." in text):
+        raise ValueError(text)
+    return float(text.replace(decimal, "."))
+
+
+def _listed(names: Sequence[str]) -> str:
+    """The names of columns, the first of them where there are many."""
+    shown = [repr(name) for name in names if name]
+    return ", ".join(shown[:MOST_LISTED]) + (" …" if len(shown) > MOST_LISTED else "") or "no names"
 
 
 def text_of(path: Path) -> str:
     """The file's text; one packed by gzip is unpacked."""
     try:
         data = path.read_bytes()
-        text = (gzip.decompress(data) if data.startswith(GZIP) else data).decode("utf-8-sig")
+        text = _decoded(gzip.decompress(data) if data.startswith(GZIP) else data)
     except (gzip.BadGzipFile, EOFError, OSError) as error:
         if isinstance(error, OSError) and error.strerror:
             raise BadInput(f"{path}: cannot be read ({reason_of(error)}); give the path of a recorded run") from None
@@ -82,6 +106,18 @@ def text_of(path: Path) -> str:
     if "\0" in text:
         raise BadInput(f"{path}: is no CSV text; give a recorded run as CSV")
     return text
+
+
+def _decoded(data: bytes) -> str:
+    """UTF-8, UTF-16 with its mark, or the 8 bits of Western Windows; UnicodeDecodeError for what is no text."""
+    if data.startswith(UTF_16):
+        return data.decode("utf-16")
+    try:
+        return data.decode("utf-8-sig")
+    except UnicodeDecodeError:
+        if any(byte < 32 and byte not in b"\t\n\r\f" for byte in data):
+            raise
+        return data.decode("cp1252")
 
 
 def rows_of(path: Path, separator: str) -> list[list[str]]:
@@ -101,7 +137,16 @@ def read_text(path: Path, columns: ColumnMap) -> TextTable:
     if not numbered:
         raise BadInput(f"{path}: has no samples after {head} header lines; give a recorded run")
     names = [name.strip() for name in lines[columns.names_line - 1]] if columns.names_line else []
-    return TextTable(path, names, [row for _, row in numbered], [number for number, _ in numbered])
+    _refuse_surplus(path, numbered, "the line of names" if names else "the first line", len(names or numbered[0][1]))
+    return TextTable(path, names, [row for _, row in numbered], [number for number, _ in numbered], columns.decimal)
+
+
+def _refuse_surplus(path: Path, numbered: Sequence[tuple[int, list[str]]], first: str, width: int) -> None:
+    """A line with more cells than there are columns: two lines in one, or a separator inside a number."""
+    for number, row in numbered:
+        if any(cell.strip() for cell in row[width:]):
+            raise BadInput(f"{path}: line {number}: has {len(row)} columns, {first} {width}; repair the "
+                           "line, or the separator in the map")
 
 
 def metadata_of(path: Path) -> dict[str, list[str]]:

@@ -14,5 +14,5 @@ TICK = "tick"  # of an encoder: an angle once the map gives ticks_per_turn
 
 OF_QUANTITY = {
     "time": (TIME,), "set_speed": (SPEED,), "wheel_angle": (ANGLE,), "wheel_speed": (SPEED,), "current": (CURRENT,),
-    "voltage": (VOLTAGE,), "pose": (LENGTH, LENGTH, ANGLE)}
+    "voltage": (VOLTAGE,), "yaw_rate": (SPEED,), "pose": (LENGTH, LENGTH, ANGLE)}
 """The units of each quantity; of a pose one for each of x, y and heading."""

@@ -7,7 +7,6 @@ with the current limit of `[vehicle.drive]`. The integral is renewed at each sam
 
 from __future__ import annotations
 
-import copy
 from dataclasses import dataclass
 from typing import Any
 
@@ -17,7 +16,7 @@ from laconic.core import Core
 from laconic.errors import BadInput
 from laconic.logs import Log
 from laconic.recorded_runs.held_wheels import Vehicle, in_small_steps, intervals, mean_speeds, point_pose
-from laconic.recorded_runs.steady_currents import Axles, axles_of, settled
+from laconic.recorded_runs.steady_currents import Axles, axles_of, settled, with_torques
 from laconic.scene.speed_controller import SpeedController
 
 STEP_S = 0.002
@@ -35,7 +34,7 @@ class Followed:
 
 def follow(core: Core, vehicle: Vehicle, controller: SpeedController, log: Log) -> Followed:
     """The whole run from rest; BadInput without the motors' constants."""
-    wanted = log.needs("set_speed_rad_per_s", "--inputs set-speeds")
+    wanted = np.nan_to_num(log.needs("set_speed_rad_per_s", "--inputs set-speeds"))
     axles = axles_of(core, vehicle)
     if axles is None:
         raise BadInput("--inputs set-speeds: the controller gives currents, which need [vehicle.motor] in the scene")
@@ -71,14 +70,10 @@ def _follow(step_s: float, core: Core, vehicle: Any, controller: SpeedController
 
 def _controlled(vehicle: Vehicle, controller: SpeedController, axles: Axles) -> Vehicle:
     """The motors with the controller in them: gain and damping P · torque per ampere, voltage: the set speed."""
-    found: dict[str, Any] = copy.deepcopy(vehicle)
-    motor = found.pop("motor")
-    found["wheel_inertia_kgm2"] += motor["gear_ratio"] ** 2 * motor["rotor_inertia_kgm2"]
-    found["motor_gain_Nm_per_V"] = controller.gain_As_per_rad * float(axles.torque_per_A_Nm[0])
-    found["motor_damping_Nms"] = found["motor_gain_Nm_per_V"] + float(axles.viscous_Nms[0])
-    limit = found.pop("drive", {}).get("current_limit_A", 0.0)
+    found = with_torques(vehicle, axles, controller.gain_As_per_rad)
+    limit = vehicle.get("drive", {}).get("current_limit_A", 0.0)
     if limit:
-        found["drive"] = {"current_limit_A": limit, "viscous_friction_Nms": float(axles.viscous_Nms[0]),
+        found["drive"] = {"current_limit_A": limit, "viscous_friction_Nms": float(np.nanmax(axles.viscous_Nms)),
                           "winding_resistance_ohm": 1.0 / controller.gain_As_per_rad}
     return found
 
@@ -86,11 +81,12 @@ def _controlled(vehicle: Vehicle, controller: SpeedController, axles: Axles) -> 
 def wheel_speed_error(log: Log, followed: Followed) -> float:
     """Root mean square over all wheels and intervals, over that of the recorded speeds."""
     recorded = mean_speeds(log)[1]
-    return float(np.sqrt(((followed.speed_rad_per_s - recorded) ** 2).sum() / (recorded**2).sum()))
+    off = followed.speed_rad_per_s - recorded
+    return float(np.sqrt(np.nansum(off**2) / max(np.nansum(recorded**2), 1e-300)))
 
 
 def current_error_A(log: Log, followed: Followed) -> float:
     """Mean over the wheels of the distance between predicted and recorded steady current."""
     now, then = settled(log, followed.time_s), settled(log, log.time_s)
     recorded = log.needs("current_A", "the comparison of currents")[then].mean(axis=0)
-    return float(np.abs(followed.current_A[now].mean(axis=0) - recorded).mean())
+    return float(np.nanmean(np.abs(followed.current_A[now].mean(axis=0) - recorded)))

@@ -72,9 +72,10 @@ def mean_speeds(log: Log) -> tuple[np.ndarray, np.ndarray]:
 def hold(core: Core, vehicle: Vehicle, log: Log) -> Held:
     """The whole run; Refused where the core finds no contact forces even in small steps."""
     time, speed = mean_speeds(log)
+    measured = ~np.isnan(speed).any(axis=0)
 
     def run(holding: float) -> Callable[[float], Held]:
-        held = core.vehicle(_held_vehicle(vehicle, holding))
+        held = core.vehicle(_held_vehicle(vehicle, holding, measured))
         return lambda step_s: _run(core, held, time, speed, log.pose_point, step_s)
 
     found: Held
@@ -98,13 +99,18 @@ def in_small_steps(run: Callable[[float], Any], step_s: float) -> Any:
     return run(step_s / DIVIDED[-1])
 
 
-def _held_vehicle(vehicle: Vehicle, holding: float) -> Vehicle:
+def _held_vehicle(vehicle: Vehicle, holding: float, measured: np.ndarray) -> Vehicle:
+    """Wheels that the log does not have stay as they are: those without a motor roll freely."""
     found = copy.deepcopy({key: value for key, value in vehicle.items() if key not in ("motor", "drive")})
     found["motor_gain_Nm_per_V"] = found["motor_damping_Nms"] = 0.0
-    found["wheel_inertia_kgm2"] = holding * found["mass_kg"] * found["wheel_radius_m"] ** 2
-    for wheel in found["wheel"]:
+    usual, found["wheel_inertia_kgm2"] = (
+        found["wheel_inertia_kgm2"], holding * found["mass_kg"] * found["wheel_radius_m"] ** 2)
+    for wheel, is_held in zip(found["wheel"], measured, strict=True):
+        own = wheel.get("inertia_kgm2", usual)
         for key in ("inertia_kgm2", "motor_gain_Nm_per_V", "motor_damping_Nms", "motor_circuit", "driven"):
             wheel.pop(key, None)
+        if not is_held:
+            wheel["inertia_kgm2"] = own
     return found
 
 
@@ -117,8 +123,8 @@ def _run(core: Core, vehicle: Any, time: np.ndarray, speed: np.ndarray, point: s
     for k in range(1, len(time)):
         count = max(1, round((time[k] - time[k - 1]) / step_s))
         plant.set_step((time[k] - time[k - 1]) / count)
-        for i, value in enumerate(speed[k]):
-            slip.wheel_speed_rad_per_s[i] = value
+        for i in np.flatnonzero(~np.isnan(speed[k])):
+            slip.wheel_speed_rad_per_s[i] = speed[k, i]
         plant.run(resting, count)
         pose[k] = point_pose(plant, point)
         load[k] = [-(arm[0] * slip.grip_N[i][0] + arm[1] * slip.grip_N[i][1]) for i, arm in enumerate(arms)]

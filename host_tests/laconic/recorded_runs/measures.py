@@ -13,6 +13,7 @@ from laconic.logs.log import Log, run_names
 APART_S = 0.2        # between the samples whose distances add up to a path's length, so that noise adds none
 ROUNDING_S = 1e-9
 LEAST_LENGTH_M = 1e-3
+CLOSED = 0.02        # displacement over length of a path below which it ends where it began
 
 
 @dataclass(frozen=True)
@@ -45,7 +46,7 @@ def path_length(time_s: np.ndarray, pose: np.ndarray) -> float:
 
 
 def path_errors(name: str, log: Log, predicted: np.ndarray) -> RunErrors:
-    """The errors of a predicted path; a path or displacement of no length has none."""
+    """The errors of a predicted path; one of no length has none, and a closed one no displacement to compare with."""
     if log.pose is None:
         return RunErrors(name, log.session)
     off = predicted - log.pose
@@ -54,7 +55,7 @@ def path_errors(name: str, log: Log, predicted: np.ndarray) -> RunErrors:
     return RunErrors(
         name, log.session,
         float(np.sqrt((distance**2).mean()) / length) if length > LEAST_LENGTH_M else None,
-        float(distance[-1] / displacement) if displacement > LEAST_LENGTH_M else None,
+        float(distance[-1] / displacement) if displacement > max(LEAST_LENGTH_M, CLOSED * length) else None,
         float(abs(off[-1, 2])))
 
 

@@ -2,9 +2,6 @@
 
 from __future__ import annotations
 
-import copy
-from typing import Any
-
 import numpy as np
 
 from laconic.core import Core
@@ -12,7 +9,7 @@ from laconic.errors import BadInput
 from laconic.logs import Log
 from laconic.recorded_runs.closed_loop import Followed
 from laconic.recorded_runs.held_wheels import Vehicle, in_small_steps, intervals, point_pose
-from laconic.recorded_runs.steady_currents import Axles, axles_of
+from laconic.recorded_runs.steady_currents import axles_of, with_torques
 
 STEP_S = 0.002
 
@@ -23,24 +20,15 @@ def by_currents(core: Core, vehicle: Vehicle, log: Log) -> Followed:
     if axles is None:
         raise BadInput("--inputs currents: the torque of a current needs [vehicle.motor] in the scene")
     current = log.needs("current_A", "--inputs currents")
-    found = _run(core, without_motors(vehicle, axles), log, "axle_torque_Nm", current * axles.torque_per_A_Nm)
+    torque = np.nan_to_num(current * axles.torque_per_A_Nm)
+    found = _run(core, with_torques(vehicle, axles), log, "axle_torque_Nm", torque)
     return Followed(found.time_s, found.speed_rad_per_s, current[intervals(log.time_s)], found.pose)
 
 
 def by_voltages(core: Core, vehicle: Vehicle, log: Log) -> Followed:
     """The scene's motors at the recorded voltages; between samples they are linear."""
-    voltage = log.needs("voltage_V", "--inputs voltages")
+    voltage = np.nan_to_num(log.needs("voltage_V", "--inputs voltages"))
     return _run(core, vehicle, log, "voltage_V", voltage)
-
-
-def without_motors(vehicle: Vehicle, axles: Axles) -> Vehicle:
-    """Only what the motors' viscous friction and rotors do; their torque comes from outside."""
-    found: dict[str, Any] = copy.deepcopy(vehicle)
-    found.pop("drive", None)
-    motor = found.pop("motor")
-    found["wheel_inertia_kgm2"] += motor["gear_ratio"] ** 2 * motor["rotor_inertia_kgm2"]
-    found["motor_gain_Nm_per_V"], found["motor_damping_Nms"] = 0.0, float(axles.viscous_Nms[0])
-    return found
 
 
 def _run(core: Core, vehicle: Vehicle, log: Log, signal: str, values: np.ndarray) -> Followed:

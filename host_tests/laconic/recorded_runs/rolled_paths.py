@@ -40,7 +40,7 @@ class RolledPaths:
 
 def roll(scene: Scene, logs: Sequence[Log], skipped: Sequence[Path] = (), inputs: str = "wheel-speeds") -> RolledPaths:
     """A prediction for every run; BadInput where no log has a true pose to compare a path with."""
-    fitting = [for_wheels(log, scene.wheel_count) for log in logs]
+    fitting = [for_wheels(log, scene.vehicle["wheel"]) for log in logs]
     if inputs == "wheel-speeds" and all(log.pose is None for log in fitting):
         raise BadInput(f"{fitting[0].path}: has no true pose to compare with; name its columns in the map, table "
                        "[pose]")

@@ -23,12 +23,32 @@ from laconic.logs.log import POINTS, Log
 class Rolling:
     """What makes rotations of the wheels motions of the body: (x, y [m], angle [rad]) = per_rotation · rotations."""
 
-    per_rotation: np.ndarray       # 3 × N, of the body's origin
+    scene_path: Path
+    radii_m: np.ndarray            # of each wheel
+    distance_rows: np.ndarray      # N × k: distances on the ground for each of the k motions that are allowed
+    origin: np.ndarray             # 3 × k: x, y [m], angle [rad] of the body's origin for each of them
     centre_of_mass: np.ndarray     # x, y in the body's frame
 
+    @property
+    def per_rotation(self) -> np.ndarray:
+        """3 × N, of the body's origin, from all wheels."""
+        return self.from_wheels(np.full(len(self.radii_m), True))
+
+    def from_wheels(self, measured: np.ndarray) -> np.ndarray:
+        """3 × N from some of the wheels, 0 for the others; BadInput where those do not determine the motion."""
+        rows = self.distance_rows[measured]
+        if np.linalg.matrix_rank(rows, tol=1e-9 * self.radii_m.max(initial=0.0)) < rows.shape[1]:
+            which = "wheel" if measured.all() else "measured wheel"
+            raise BadInput(f"{self.scene_path}: its {which} speeds do not determine its motion; rolling needs wheels "
+                           "that turn whatever the motion")
+        found = np.zeros((3, len(measured)))
+        found[:, measured] = self.origin @ np.linalg.pinv(rows) * self.radii_m[measured]
+        return found
+
     def moved(self, rotation_rad: np.ndarray, point: str = POINTS[0]) -> np.ndarray:
-        """Displacements of a point from sample to sample in the body's frame, one row each."""
-        steps: np.ndarray = rotation_rad @ self.per_rotation.T
+        """Displacements of a point from sample to sample in the body's frame, one row each; NaN: not measured."""
+        measured = ~np.isnan(rotation_rad).any(axis=0)
+        steps: np.ndarray = np.where(measured, rotation_rad, 0.0) @ self.from_wheels(measured).T
         if point == "centre_of_mass":
             x, y = self.centre_of_mass
             steps = steps + steps[:, 2:] * np.array([-y, x, 0.0])
@@ -60,15 +80,13 @@ def rolling_of(core: Core, vehicle: Mapping[str, Any], path: Path) -> Rolling:
     radii, reference = wheel_radii(vehicle), float(c_vehicle.wheel_radius_m)
     allowed = _null_space(matrices.constraint_rows)
     distance_rows = radii[:, None] * (matrices.wheel_rows @ allowed)
-    if np.linalg.matrix_rank(distance_rows, tol=1e-9 * reference) < allowed.shape[1]:
-        raise BadInput(f"{path}: its wheel speeds do not determine its motion; rolling needs wheels that "
-                       "turn whatever the motion")
-    nu = allowed @ np.linalg.pinv(distance_rows) * radii  # ν per rotation
     centre = centre_of_mass(core, c_vehicle)
-    angle = nu[2] / matrices.lambda_yaw
+    angle = allowed[2] / matrices.lambda_yaw
     # the origin's velocity is the centre of mass's less that of turning about it: v_O = v_S − θ' × c
-    origin = [reference * nu[0] + angle * centre[1], reference * nu[1] - angle * centre[0], angle]
-    return Rolling(np.array(origin), centre)
+    origin = [reference * allowed[0] + angle * centre[1], reference * allowed[1] - angle * centre[0], angle]
+    found = Rolling(path, radii, distance_rows, np.array(origin), centre)
+    found.from_wheels(np.full(len(radii), True))  # BadInput here, not with the first log
+    return found
 
 
 def rotations_of(core: Core, vehicle: Mapping[str, Any], moved: np.ndarray) -> np.ndarray:

@@ -8,6 +8,7 @@ from __future__ import annotations
 
 import csv
 import math
+from collections.abc import Sequence
 from dataclasses import dataclass, replace
 from pathlib import Path
 
@@ -15,7 +16,7 @@ import numpy as np
 
 from laconic.errors import BadInput, reason_of
 from laconic.scene import Outputs, Scene
-from laconic.scene.inputs import Input, step_remedy
+from laconic.scene.inputs import Input, step_in_words, step_remedy
 from laconic.scene.reader import LENGTHS, OUTPUT_LENGTHS, OUTPUTS_PER_WHEEL, PER_WHEEL, signal_names
 from laconic.simulation import simulate
 
@@ -101,22 +102,42 @@ def _numbers(path: Path, head: list[str], line: int, row: list[str]) -> list[flo
     return [float(text) for text in row]
 
 
-def ticks_of(log: SignalLog, scene: Scene) -> np.ndarray:
-    """The rows' times in steps; BadInput for a row inside a step."""
+def _changes(scene: Scene, end_s: float) -> list[float]:
+    """When the scene's own inputs change."""
+    return [t for each in scene.inputs if each.kind == "steps" for t in each.t_s if t < end_s]
+
+
+def ticks_of(log: SignalLog, scene: Scene, changes: Sequence[float]) -> np.ndarray:
+    """The rows' times in steps; BadInput for a row inside a step, with a step that suits these instants, too."""
     step_s = scene.run.step_s
     ticks = np.rint(log.time_s / step_s)
-    off = np.abs(ticks * step_s - log.time_s) > ON_THE_GRID * step_s
+    off = is_inside(log.time_s, step_s)
     if off.any():
         row = int(np.argmax(off))
-        few = [round(float(t), 9) for t in log.time_s[1:]]
         raise BadInput(f"{log.path}: line {row + 2}: {TIME} {log.begin_s + log.time_s[row]:g} s falls inside a step of "
-                       f"{step_s:g} s; change run.step_s: {step_remedy([*few, *scene.instants()], step_s)}")
+                       f"{step_s:g} s; change run.step_s: {_remedy(log, scene.run.step_s, changes)}")
     return ticks.astype(np.int64)
+
+
+def is_inside(time_s: np.ndarray, step_s: float) -> np.ndarray:
+    """Which instants lie inside a step."""
+    found: np.ndarray = np.abs(np.rint(time_s / step_s) * step_s - time_s) > ON_THE_GRID * step_s
+    return found
+
+
+def _remedy(log: SignalLog, longest_s: float, changes: Sequence[float]) -> str:
+    """A part of the rows' usual distance, which need not be a short decimal number, or of all times as written."""
+    end, usual = float(log.time_s[-1]), float(np.median(np.diff(log.time_s)))
+    between = end / max(round(end / usual), 1)
+    step_s = between / math.ceil(between / longest_s)
+    if not is_inside(np.array([*log.time_s, *changes]), step_s).any():
+        return step_in_words(step_s)
+    return step_remedy([*(round(float(t), 9) for t in log.time_s[1:]), *changes], longest_s)
 
 
 def replay_signals(scene: Scene, log: SignalLog) -> SignalReplay:
     """Runs the model along the file and compares."""
-    count, held = scene.wheel_count, scene.inputs_on_grid().is_held
+    count, held = scene.wheel_count, all(each.kind == "steps" for each in scene.inputs)
     known_inputs = list(signal_names(LENGTHS, PER_WHEEL, count))
     known_outputs = list(signal_names(OUTPUT_LENGTHS, OUTPUTS_PER_WHEEL, count))
     inputs = tuple(name for name in log.columns if name in known_inputs)
@@ -127,7 +148,7 @@ def replay_signals(scene: Scene, log: SignalLog) -> SignalReplay:
     if log.begin_s != 0.0 and not inputs:
         raise BadInput(f"{log.path}: begins at {log.begin_s:g} s, the scene's inputs at 0; give the inputs as "
                        "columns, as simulate --inputs writes them")
-    ticks = ticks_of(log, scene)
+    ticks = ticks_of(log, scene, () if inputs else _changes(scene, float(log.time_s[-1])))
     every = int(np.gcd.reduce(np.diff(ticks)))
     run = scene.with_run(duration_s=int(ticks[-1]) * scene.run.step_s)
     run = replace(run, outputs=Outputs(outputs, every * scene.run.step_s))

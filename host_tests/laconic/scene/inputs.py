@@ -173,7 +173,12 @@ def step_remedy(instants_s: Iterable[float | Fraction], step_s: float | Fraction
     exact = [as_written(t) for t in instants_s]
     whole = math.lcm(*(t.denominator for t in exact))
     grid = Fraction(math.gcd(*(int(t * whole) for t in exact)), whole)
-    return f"a step of {float(grid / math.ceil(grid / as_written(step_s))):.9g} s would do"
+    return step_in_words(float(grid / math.ceil(grid / as_written(step_s))))
+
+
+def step_in_words(step_s: float) -> str:
+    """With all digits, as the same number taken from the message must fit."""
+    return f"a step of {step_s!r} s would do"
 
 
 def as_written(number: float | Fraction) -> Fraction:

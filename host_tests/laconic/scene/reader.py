@@ -118,8 +118,8 @@ def read_own(table: Table, fields: Sequence[Field]) -> dict[str, float]:
     motor = [key for key in own if key.startswith("motor_")]
     if motor and not table.flag("driven", True):
         table.fail(motor[0], "is given for a wheel without a motor; take it out, or driven = false")
-    if own.get("radius_m") == 0.0:
-        table.fail("radius_m", "is 0; give a value above 0, or take it out for the vehicle's wheel_radius_m")
+    if (radius := own.get("radius_m", 1.0)) <= 0.0:
+        table.fail("radius_m", f"is {radius:g}; give a value above 0, or take it out for the vehicle's wheel_radius_m")
     return own
 
 

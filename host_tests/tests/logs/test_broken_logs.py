@@ -130,7 +130,12 @@ MAPPED = {
     "metadata that is not there": ('file = "metadata.csv"', 'file = "meta.csv"', "meta.csv: cannot be read"),
     "a wheel twice": ('unit = "tick"', 'unit = "tick"\nwheels = [1, 1]', "wheel_angle.wheels: is [1, 1]"),
     "no TOML": ("[time]", "[time", "is no valid TOML"),
-    "a DBC for no reason": ("header_lines = 0", 'format = "can"', "dbc: is missing"),
+    "columns for CAN": ("header_lines = 0", 'format = "can"\ndbc = "x.dbc"', "time: has a meaning only with format"),
+    "a DBC without CAN": ("header_lines = 0", 'header_lines = 0\ndbc = "x.dbc"', "dbc: has a meaning only with format"),
+    "a scale of 0": ('unit = "tick"', 'unit = "tick"\nscale = 0', "wheel_angle.scale: is 0"),
+    "time by a scale of 0": ("column = 1", "column = 1\nscale = 0", "time.scale: is 0; give a factor above 0"),
+    "a decimal that separates": ("header_lines = 0", 'header_lines = 0\ndecimal = ","', "decimal: is ',', which"),
+    "half a wheel": ('unit = "tick"', 'unit = "tick"\nwheels = [1, 2.5]', "wheel_angle.wheels: is [1, 2.5]"),
 }
 
 

@@ -38,7 +38,7 @@ def written(path):
 @pytest.mark.parametrize("ending", [".blf", ".asc"])
 def test_a_rigs_log_becomes_rows_with_all_groups_of_wheels(ending, tmp_path):
     (log,), skipped = gather_logs([written(tmp_path / f"run{ending}")])
-    log, k = for_wheels(log, WHEELS), np.arange(ROWS)
+    log, k = for_wheels(log, [{}] * WHEELS), np.arange(ROWS)
     assert skipped == [] and log.map_name == "rig" and log.pose_point == "centre_of_mass"
     assert log.wheel_speed_rad_per_s == pytest.approx(0.005 * np.column_stack([k, -k, 7 + 0 * k, 3 * k]))
     assert log.pose[:, 0] == pytest.approx(0.002 * k)
@@ -57,6 +57,7 @@ WRONG = {
     "a message that is none": ("WHEEL_SPEED.", "WHEEL_SPEEDS.", "the DBC has no message 'WHEEL_SPEEDS'"),
     "a signal that is none": ("POSE.heading", "POSE.angle", "POSE has no signal 'angle'"),
     "a column without message": ('"POSE.x"', '"x"', "pose.columns: holds 'x'; give MESSAGE.signal"),
+    "no DBC": ('dbc = "laconic.dbc"', "", "dbc: is missing"),
     "a DBC that is not there": ("laconic.dbc", "robot.dbc", "robot.dbc cannot be read"),
 }
 

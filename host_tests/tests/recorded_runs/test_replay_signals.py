@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import json
+import re
 from pathlib import Path
 
 import pytest
@@ -116,3 +117,15 @@ def test_a_file_that_cannot_be_replayed_is_one_line(text, words, tmp_path, capsy
 def test_friction_cannot_be_fitted_without_currents(written, capsys):
     assert run(["replay", str(written), "s1", "--fit", str(written)]) == 2
     assert "--fit: needs measured currents" in capsys.readouterr().err
+
+
+def test_the_step_that_a_refusal_advises_is_taken_for_rows_at_30_a_second(tmp_path, capsys):
+    path, scene = tmp_path / "run.csv", tmp_path / "scene.toml"
+    path.write_text("time_s,x_m,voltage_V[1]\n" + "".join(f"{k / 30!r},0,0\n" for k in range(3000)))
+    scene.write_text(scene_without_inputs(tmp_path).read_text())
+    assert run(["replay", str(path), str(scene)]) == 2
+    advised = re.search(r"a step of (\S+) s would do", capsys.readouterr().err)[1]
+    old = next(line for line in scene.read_text().splitlines() if line.startswith("step_s"))
+    scene.write_text(scene.read_text().replace(old, f"step_s = {advised}"))
+    assert 0.0 < float(advised) <= 0.001
+    assert run(["replay", str(path), str(scene)]) == 0
