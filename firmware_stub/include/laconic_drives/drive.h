@@ -45,7 +45,7 @@ typedef struct laconic_drive_target {
     laconic_real current_A;       /* CURRENT; SPEED, POSITION: feed-forward                                   */
 } laconic_drive_target;
 
-/* What goes wrong in a drive, whoever caused it: bits of laconic_drive.faults. A drive with a fault is off until the
+/* What goes wrong in a drive, whoever caused it: bits of laconic_wheel_drive.faults. A drive with a fault is off until the
  * protocol clears it with laconic_drive_clear(). */
 #define LACONIC_DRIVE_FAULT_ENCODER 1U     /* the encoder is lost                    */
 #define LACONIC_DRIVE_FAULT_STALL 2U       /* no motion at the limit of the current  */
@@ -55,12 +55,12 @@ typedef struct laconic_drive_target {
 #define LACONIC_DRIVE_FAULT_WATCHDOG 32U  /* the controller is silent; set by the protocol */
 #define LACONIC_DRIVE_FAULT_FOLLOWING 64U /* position error too large; set by the protocol */
 
-/* Limits that the last step met: bits of laconic_drive.limits. */
+/* Limits that the last step met: bits of laconic_wheel_drive.limits. */
 #define LACONIC_DRIVE_AT_CURRENT 1U
 #define LACONIC_DRIVE_AT_SPEED 2U
 #define LACONIC_DRIVE_AT_SUPPLY 4U
 
-typedef struct laconic_drive {
+typedef struct laconic_wheel_drive {
     laconic_drive_settings settings; /* protocols may change gains and limits */
     laconic_drive_target target;
     uint32_t faults, limits;
@@ -71,20 +71,20 @@ typedef struct laconic_drive {
     laconic_real speed_rad_per_s;
     laconic_real current_A;
     laconic_real torque_Nm; /* at the wheel's axle, as the plant got it */
-} laconic_drive;
+} laconic_wheel_drive;
 
 /* All zero but the settings: off, at count 0. */
-void laconic_drive_start(laconic_drive *drive, const laconic_drive_settings *settings);
+void laconic_drive_start(laconic_wheel_drive *drive, const laconic_drive_settings *settings);
 
 /* The torque at the wheel's axle for the next step_s, from target and measured values. */
-laconic_real laconic_drive_act(laconic_drive *drive, laconic_real step_s);
+laconic_real laconic_drive_act(laconic_wheel_drive *drive, laconic_real step_s);
 
 /* Takes the wheel's motion in the step just done: its mean speed turned the encoder, its speed at the end is measured. */
-void laconic_drive_measure(laconic_drive *drive, laconic_real turned_rad, laconic_real wheel_speed_rad_per_s);
+void laconic_drive_measure(laconic_wheel_drive *drive, laconic_real turned_rad, laconic_real wheel_speed_rad_per_s);
 
 /* Sets a fault: the drive is off until it is cleared. */
-void laconic_drive_fail(laconic_drive *drive, uint32_t fault);
+void laconic_drive_fail(laconic_wheel_drive *drive, uint32_t fault);
 /* Clears all faults but those whose cause remains; the drive stays off until the protocol gives a target. */
-void laconic_drive_clear(laconic_drive *drive);
+void laconic_drive_clear(laconic_wheel_drive *drive);
 
 #endif

@@ -12,7 +12,7 @@ typedef struct laconic_drives {
     int32_t count;
     laconic_real step_s;
     laconic_real watchdog_s; /* of silence of the controller that the drives bear; 0: what the protocol says */
-    laconic_drive drive[LACONIC_MAX_WHEELS];
+    laconic_wheel_drive drive[LACONIC_MAX_WHEELS];
 } laconic_drives;
 
 /* A protocol translates frames into targets and measured values into frames; it has neither clock nor bus. Time is a
