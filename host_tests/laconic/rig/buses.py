@@ -86,8 +86,7 @@ class NodeOnBus:
     def deliver(self, message: can.Message) -> None:
         """A frame reaches the node."""
         now = self.clock.time_us
-        self.node.on_frame(message.arbitration_id, message.data, now, fd=message.is_fd,
-                           extended=message.is_extended_id, remote=message.is_remote_frame)
+        self.node.give(message, now)
         self.node.tick(now)
 
     def sent_frame(self, message: can.Message) -> None:
@@ -97,10 +96,8 @@ class NodeOnBus:
     def send_all(self) -> bool:
         """Sends the frames of the node; whether there was one."""
         sent = False
-        while (frame := self.node.take_frame()) is not None:
-            identifier, data, fd = frame
-            self.sent_frame(can.Message(arbitration_id=identifier, is_extended_id=False, data=data, is_fd=fd,
-                                        bitrate_switch=fd))
+        while (message := self.node.take_message()) is not None:
+            self.sent_frame(message)
             sent = True
         return sent
 

@@ -6,17 +6,25 @@ import logging
 from collections.abc import Callable, Iterator
 from contextlib import ExitStack, contextmanager
 from pathlib import Path
+from typing import Protocol
 
 import can
 
 from laconic.errors import BadInput, reason_of
-from laconic.rig.link import Link
+from laconic.rig.link import Clock
 
 LOGS = (".blf", ".asc", ".log", ".trc")
 
 
+class Heard(Protocol):
+    """A place where frames pass: a link to a node, or the bus of a controller."""
+
+    clock: Clock
+    listeners: list[Callable[[can.Message], None]]
+
+
 @contextmanager
-def logged(link: Link, paths: tuple[Path, ...]) -> Iterator[None]:
+def logged(link: Heard, paths: tuple[Path, ...]) -> Iterator[None]:
     """Writes every frame that is sent or received; the files are closed even when the run dies."""
     with ExitStack() as open_logs:
         for path in paths:
@@ -36,7 +44,7 @@ def open_log(path: Path) -> can.io.generic.MessageWriter:
         raise BadInput(f"--log {path}: cannot be written ({reason_of(error)}); choose another path") from None
 
 
-def stamped(writer: can.io.generic.MessageWriter, link: Link) -> Callable[[can.Message], None]:
+def stamped(writer: can.io.generic.MessageWriter, link: Heard) -> Callable[[can.Message], None]:
     """Stamps frames with the link's time: those sent, and those of a virtual clock, contain none."""
 
     def write(message: can.Message) -> None:

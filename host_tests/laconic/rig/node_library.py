@@ -5,9 +5,11 @@ from __future__ import annotations
 from functools import cache
 from typing import Any
 
+import can
 from cffi import FFI
 
 from laconic.paths import built
+from laconic.rig.frames import FrameBox
 from laconic.rig.wire import ID_BASE
 
 
@@ -70,8 +72,7 @@ class LibraryNode:
         ffi, lib = self.library.ffi, self.library.lib
         self._memory = ffi.new("uint64_t[]", (lib.laconic_library_node_size() + 7) // 8)
         self.c = ffi.cast("struct laconic_node *", self._memory)
-        self.frame = ffi.new("laconic_frame *")
-        self._bytes = ffi.buffer(self.frame.data)
+        self.frame = FrameBox(ffi)
         self._view = ffi.new("laconic_library_view *")
         self._counter_names = dir(self._view.counters)
         self._on_frame, self._on_tick = lib.laconic_node_on_frame, lib.laconic_node_on_tick
@@ -86,11 +87,12 @@ class LibraryNode:
     def on_frame(self, arbitration_id: int, data: bytes, now_us: int, *, fd: bool = False, extended: bool = False,
                  remote: bool = False) -> None:
         """Gives the node a received frame."""
-        frame = self.frame
-        frame.id, frame.length = arbitration_id, len(data)
-        frame.extended, frame.remote, frame.fd, frame.bit_rate_switch = extended, remote, fd, False
-        self._bytes[: len(data)] = data
+        frame = self.frame.fill(arbitration_id, data, fd=fd, extended=extended, remote=remote)
         self._on_frame(self.c, frame, now_us & 0xFFFFFFFF)
+
+    def give(self, message: can.Message, now_us: int) -> None:
+        """Gives the node a frame of the bus as it is."""
+        self._on_frame(self.c, self.frame.put(message), now_us & 0xFFFFFFFF)
 
     def tick(self, now_us: int) -> None:
         """Takes all steps that are due at this time."""
@@ -112,7 +114,10 @@ class LibraryNode:
 
     def take_frame(self) -> tuple[int, bytes, bool] | None:
         """The next frame to send: identifier, payload, whether it is FD."""
-        if not self._next(self.c, self.frame):
+        if not self._next(self.c, self.frame.c):
             return None
-        frame = self.frame
-        return frame.id, self._bytes[: frame.length], frame.fd
+        return self.frame.c.id, self.frame.data, bool(self.frame.c.fd)
+
+    def take_message(self) -> can.Message | None:
+        """The next frame to send as a message of the bus."""
+        return self.frame.message() if self._next(self.c, self.frame.c) else None

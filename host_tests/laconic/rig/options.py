@@ -63,11 +63,16 @@ def in_hex(number: int) -> str:
     return f"{'-' if number < 0 else ''}0x{abs(number):X}"
 
 
+def check_bitrate(bitrate: int | None) -> None:
+    """BadInput for a rate that no bus has."""
+    if bitrate is not None and bitrate <= 0:
+        raise BadInput(f"--bitrate {bitrate}: must be above 0; give bits per second, such as 500000")
+
+
 @contextmanager
 def node_for(options: Options, real: str, id_base: int) -> Iterator[NodeClient]:
     """A client on the chosen bus, or of a node that is started here."""
-    if options.bitrate is not None and options.bitrate <= 0:
-        raise BadInput(f"--bitrate {options.bitrate}: must be above 0; give bits per second, such as 500000")
+    check_bitrate(options.bitrate)
     if options.interface is None:
         if options.channel is not None:
             raise BadInput(f"--channel {options.channel}: give its --interface as well, such as slcan")

@@ -33,13 +33,13 @@ def in_json(values: dict[str, Any]) -> dict[str, Any]:
             for name, value in plain.items()}
 
 
-def write_junit(judgement: Judgement, path: Path, seconds: float) -> None:
+def write_junit(judgement: Judgement, path: Path, seconds: float, command: str = "rig") -> None:
     """One test case per verdict."""
     failures = sum(not each.passed for each in judgement.verdicts)
-    suite = ElementTree.Element("testsuite", name=f"laconic rig {judgement.scene} {judgement.mode}",
+    suite = ElementTree.Element("testsuite", name=f"laconic {command} {judgement.scene} {judgement.mode}",
                                 tests=str(len(judgement.verdicts)), failures=str(failures), time=f"{seconds:.3f}")
     for each in judgement.verdicts:
-        case = ElementTree.SubElement(suite, "testcase", classname=f"rig.{judgement.mode}", name=each.name)
+        case = ElementTree.SubElement(suite, "testcase", classname=f"{command}.{judgement.mode}", name=each.name)
         if not each.passed:
             ElementTree.SubElement(case, "failure", message=each.detail).text = each.detail
     with opened(path, "wb") as file:

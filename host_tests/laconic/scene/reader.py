@@ -9,6 +9,7 @@ from typing import Any
 
 from laconic.core import Field, load
 from laconic.errors import nearest_of
+from laconic.scene.drives import read_drives
 from laconic.scene.fields import read_field
 from laconic.scene.ground import check_friction, has_friction, read_circuit, read_drive, read_ground
 from laconic.scene.inputs import Input
@@ -51,7 +52,7 @@ def read_parts(top: Table, methods: Sequence[str], reals: Sequence[str]) -> dict
         check_motor(top, each, parts["vehicle"])
         check_end(top, each, parts["run"]["duration_s"])
     parts["outputs"] = read_outputs(top.table("outputs"), parts["vehicle"], parts["run"]["duration_s"])
-    parts["rig"] = read_rig(top.table("rig"))
+    parts["rig"] = read_rig(top.table("rig"), parts["vehicle"]["wheel"])
     top.done()
     parts["in_degrees"] = frozenset(top.in_degrees)
     return parts
@@ -284,11 +285,12 @@ def read_signals(table: Table, lengths: dict[str, int], per_wheel: Sequence[str]
     return tuple(signals)
 
 
-def read_rig(table: Table) -> dict[str, Any]:
-    """`[rig]`: the first CAN identifier and the frames to use."""
+def read_rig(table: Table, wheels: Sequence[dict[str, Any]]) -> dict[str, Any]:
+    """`[rig]`: the first CAN identifier, the frames to use, and the drives of a vehicle that is played."""
     id_base = table.whole("id_base", None)
     if id_base is not None and not 0 <= id_base <= 0x7FF:
         table.fail("id_base", f"is {id_base}; give an 11-bit identifier, 0 to 0x7FF")
     frames = table.texts("frames", ())
+    drives = read_drives(table.table("drives"), wheels) if table.has("drives") else None
     table.done()
-    return {"id_base": id_base, "frames": frames}
+    return {"id_base": id_base, "frames": frames, "drives": drives}

@@ -15,6 +15,7 @@ from laconic.core import REALS, Core, load
 from laconic.core.plant import Plant
 from laconic.errors import BadInput, Refused
 from laconic.paths import scene_path
+from laconic.scene.drives import Drives
 from laconic.scene.inputs import Input, InputsOnGrid, check_resolved, step_remedy
 from laconic.scene.names import in_file
 from laconic.scene.reader import read_parts, read_run
@@ -81,6 +82,7 @@ class Rig:
 
     id_base: int | None = None
     frames: tuple[str, ...] = ()
+    drives: Drives | None = None
 
 
 @dataclass(frozen=True)

@@ -1,0 +1,56 @@
+"""Play the vehicle on a CAN bus for a controller that someone else wrote."""
+
+from __future__ import annotations
+
+import time
+from typing import Any
+
+import click
+
+from laconic.cli.options import InputPath, OutputFile, SceneName, json_flag
+from laconic.core import REALS
+from laconic.play.options import PlayOptions
+from laconic.play.session import play
+from laconic.rig.logs import LOGS
+from laconic.rig.results import as_json, show, write_junit
+from laconic.scene import METHODS, read_scene
+
+
+@click.command("play")
+@click.argument("scene_name", type=SceneName(), metavar="SCENE")
+@click.option("--interface", help="python-can's name of the controller's bus: socketcan, slcan, pcan, faulty …")
+@click.option("--channel", help="Channel of the interface: can0, /dev/ttyACM0, socket://127.0.0.1:PORT …")
+@click.option("--bitrate", type=int, help="Bits per second, where the interface sets it.")
+@click.option("--bus-option", "bus_options", multiple=True, metavar="NAME=VALUE",
+              help="Further setting of the interface, such as under=slcan or loss=0.01 for faulty.")
+@click.option("--listen", type=int, metavar="PORT",
+              help="Instead of an interface: SLCAN on a TCP port of this machine; 0: any free one, printed.")
+@click.option("--dbc", type=InputPath(), help="The messages of the controller; with --map.")
+@click.option("--map", "map_path", type=InputPath(), metavar="MAP.toml",
+              help="Which signal of the DBC is which input or output of the model.")
+@click.option("--duration", "duration_s", type=float, metavar="SECONDS", help="How long.  [default: until Ctrl-C]")
+@click.option("--method", type=click.Choice(METHODS), help="Method instead of the scene's.")
+@click.option("--real", type=click.Choice(REALS), help="Scalar type instead of the scene's.")
+@click.option("--step", "step_s", type=float, metavar="SECONDS", help="Step and period instead of the scene's.")
+@click.option("--log", "logs", multiple=True, type=OutputFile(*LOGS), help="Log all frames: .blf, .asc.")
+@click.option("--live", is_flag=True, help="Show the frames while it plays.")
+@click.option("--junit", type=OutputFile(".xml"), help="Results for CI.")
+@json_flag()
+def command(scene_name: str, method: str | None, real: str | None, step_s: float | None, junit: Any,
+            json_wanted: bool, **given: Any) -> int:
+    """Plays the vehicle of SCENE on a CAN bus in real time, for a controller that someone else wrote.
+
+    --dbc and --map say what the controller's frames mean. Without an interface of your own, --listen 0 prints a port at
+    which python-can's slcan connects. Lateness is printed at the end. Exit status 0 when the user or --duration has
+    ended it, 1 when the bus died, a step was refused or a watchdog fired, 2 for bad input.
+    """
+    scene = read_scene(scene_name).with_run(method=method, step_s=step_s, real=real)
+    began = time.perf_counter()
+    judgement = play(scene, PlayOptions(**given), say=lambda text: click.echo(text, err=json_wanted))
+    if junit:
+        write_junit(judgement, junit, time.perf_counter() - began, "play")
+    if json_wanted:
+        click.echo(as_json(judgement))
+    else:
+        show(judgement)
+    return judgement.exit_status

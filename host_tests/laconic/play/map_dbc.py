@@ -1,0 +1,130 @@
+"""A DBC behind a map: its messages and signals by name, raw values, and the pages of multiplexed messages."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Mapping
+from pathlib import Path
+from typing import Any, NoReturn
+
+import cantools.database
+from cantools.database.can import Database, Message
+from cantools.database.can.signal import Signal
+
+from laconic.errors import BadInput, nearest_of, reason_of
+
+Page = tuple[tuple[str, int], ...]
+"""The multiplexers that select a part of a message, outer ones first, with their values."""
+
+
+def load_dbc(path: Path) -> Database:
+    """The database; BadInput for a file that is none."""
+    try:
+        found = cantools.database.load_file(path)
+    except OSError as error:
+        raise BadInput(f"--dbc {path}: cannot be read ({reason_of(error)}); give a DBC file") from None
+    except Exception as error:  # a parser may raise any exception on unexpected text
+        raise BadInput(f"--dbc {path}: is no DBC file ({error or type(error).__name__}); give one") from None
+    if not isinstance(found, Database):
+        raise BadInput(f"--dbc {path}: describes no CAN frames; give a DBC file")
+    return found
+
+
+class DbcMessage:
+    """One message of a DBC as a map uses it; `where` names the map's entry in messages."""
+
+    def __init__(self, dbc: Path, database: Database, where: str, name: str, key: str = "message"):
+        self.dbc, self.where = dbc, where
+        by_name = {each.name: each for each in database.messages}
+        if name not in by_name:
+            raise BadInput(f"{where}.{key}: {dbc.name} has no message {name!r}; {nearest_of(name, by_name)}")
+        self.c: Message = by_name[name]
+        if self.c.is_container:
+            self.fail("message", "is a container, which a map cannot join; name a message that carries signals")
+        self.signals: dict[str, Signal] = {each.name: each for each in self.c.signals}
+
+    @property
+    def key(self) -> tuple[int, bool]:
+        """Identifier, and whether it has 29 bits."""
+        return self.c.frame_id, self.c.is_extended_frame
+
+    def fail(self, key: str, text: str, where: str | None = None) -> NoReturn:
+        """BadInput that names map, DBC and message; a text that begins with a dot goes on with a signal."""
+        space = "" if text.startswith(".") else " "
+        raise BadInput(f"{where or self.where}.{key}: {self.dbc.name}: {self.c.name}{space}{text}")
+
+    def signal(self, name: str, key: str = "name", where: str | None = None) -> Signal:
+        """A signal by its name."""
+        if name not in self.signals:
+            self.fail(key, f"has no signal {name!r}; {nearest_of(name, self.signals)}", where)
+        return self.signals[name]
+
+    # ---- multiplexers
+
+    def pages_of(self, name: str) -> set[Page]:
+        """The pages that carry a signal; the empty one: it is in every frame."""
+        signal = self.signals[name]
+        if signal.multiplexer_signal is None:
+            return {()}
+        outer = self.pages_of(signal.multiplexer_signal)
+        return {(*page, (signal.multiplexer_signal, value)) for page in outer for value in signal.multiplexer_ids or ()}
+
+    def pages(self, names: Iterable[str]) -> list[Page]:
+        """The pages that together carry these signals, in ascending order; a page within another stands for both."""
+        found = set().union(*(self.pages_of(name) for name in names))
+        whole = [page for page in found if not any(page != other and page == other[: len(page)] for other in found)]
+        return sorted(whole, key=lambda page: [value for _, value in page])
+
+    def is_on(self, name: str, page: Page) -> bool:
+        """Whether a signal is part of a page."""
+        return any(each == page[: len(each)] for each in self.pages_of(name))
+
+    # ---- raw values
+
+    def initial(self, page: Page) -> dict[str, int | float]:
+        """Raw start values of all signals on a page: those of the DBC, else 0."""
+        fixed = dict(page)
+        return {name: fixed.get(name, start_value(signal)) for name, signal in self.signals.items()
+                if self.is_on(name, page)}
+
+    def encode(self, raw: Mapping[str, int | float]) -> bytearray:
+        """The payload of raw values, which fit their signals."""
+        return bytearray(self.c.encode(dict(raw), scaling=False, strict=False, padding=False))
+
+    def decode(self, data: bytes) -> dict[str, float]:
+        """Scaled values of the signals on the page that came."""
+        values: Any = self.c.decode(data, decode_choices=False, scaling=True, allow_excess=False)
+        return {name: float(value) for name, value in values.items()}
+
+    def decode_raw(self, data: bytes) -> dict[str, Any]:
+        """Raw values."""
+        values: Any = self.c.decode(data, decode_choices=False, scaling=False)
+        return dict(values)
+
+
+def start_value(signal: Signal) -> int | float:
+    """The DBC's raw start value, else 0."""
+    value = signal.raw_initial
+    return 0 if value is None else value if isinstance(value, (int, float)) else 0
+
+
+def raw_range(signal: Signal) -> tuple[float, float]:
+    """The least and largest raw value: what the bits can hold, less where the DBC says less."""
+    if signal.is_float:
+        largest = {16: 65504.0, 32: 3.4028234663852886e38}.get(signal.length, 1.7976931348623157e308)
+        return -largest, largest
+    low, high = (-(1 << signal.length - 1), (1 << signal.length - 1) - 1) if signal.is_signed else (
+        0, (1 << signal.length) - 1)
+    if signal.minimum is not None and signal.maximum is not None and signal.minimum < signal.maximum:
+        ends = sorted((float(limit) - signal.offset) / signal.scale for limit in (signal.minimum, signal.maximum))
+        low, high = max(low, round(ends[0])), min(high, round(ends[1]))
+    return float(low), float(high)
+
+
+def byte_slice(message: DbcMessage, signal: Signal) -> slice | None:
+    """The whole bytes that a signal fills; None where it fills none exactly."""
+    if signal.length % 8:
+        return None
+    count = signal.length // 8
+    if signal.byte_order == "little_endian":
+        return slice(signal.start // 8, signal.start // 8 + count) if signal.start % 8 == 0 else None
+    return slice(signal.start // 8, signal.start // 8 + count) if signal.start % 8 == 7 else None

@@ -1,0 +1,237 @@
+"""Messages of a map joined to a DBC: payloads from model values, model values from payloads."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Callable, Iterator, Mapping
+from dataclasses import dataclass
+
+from cantools.database.can.signal import Signal
+
+from laconic.play.checksums import E2E_WIDTHS, SUMS
+from laconic.play.map_dbc import DbcMessage, Page, byte_slice, raw_range
+from laconic.play.map_file import Conversion, Joint, MessageMap, Received, Sent
+from laconic.play.map_signals import OF_ANGLE
+
+TURN_RAD = 2.0 * math.pi
+
+
+def to_model(conversion: Conversion, model: str, value: float) -> float:
+    """A signal's value as the model's input."""
+    found = (conversion.factor * value + conversion.offset) / conversion.gear
+    return found * TURN_RAD / conversion.counts_per_turn if conversion.counts_per_turn else found
+
+
+def from_model(conversion: Conversion, value: float) -> float:
+    """An output of the model as a signal's value, not yet rounded."""
+    turned = value * conversion.gear
+    if conversion.counts_per_turn:
+        turned *= conversion.counts_per_turn / TURN_RAD
+    return conversion.factor * turned + conversion.offset
+
+
+class Protected:
+    """What a message of either direction has: counter and checksum."""
+
+    def __init__(self, given: MessageMap, message: DbcMessage):
+        self.given, self.message = given, message
+        self.counter_signal = self._counter()
+        self.checksum_signal = self._checksum()
+        self.modulo = 0
+        if self.counter_signal is not None and given.counter is not None:
+            self.modulo = given.counter.modulo or 1 << self.counter_signal.length
+
+    def _counter(self) -> Signal | None:
+        counter = self.given.counter
+        if counter is None:
+            return None
+        signal = self.message.signal(counter.signal, "counter.signal")
+        if signal.is_float or signal.multiplexer_signal is not None:
+            self.message.fail("counter.signal", f"has {signal.name} as a number with a fraction or on a page; a "
+                              "counter is a whole number that is in every frame")
+        if counter.modulo is not None and counter.modulo > 1 << signal.length:
+            self.message.fail("counter.modulo", f"has {signal.length} bits for {signal.name}, too few to count up to "
+                              f"{counter.modulo}; give {1 << signal.length} or less")
+        return signal
+
+    def _checksum(self) -> Signal | None:
+        checksum = self.given.checksum
+        if checksum is None:
+            return None
+        signal = self.message.signal(checksum.signal, "checksum.signal")
+        if signal.is_float or signal.multiplexer_signal is not None:
+            self.message.fail("checksum.signal", f"has {signal.name} as a number with a fraction or on a page; a "
+                              "checksum is a whole number that is in every frame")
+        bytes_of = byte_slice(self.message, signal)
+        if checksum.kind not in SUMS and (signal.length != checksum.width or bytes_of is None):
+            self.message.fail("checksum.kind", f"has {signal.length} bits for {signal.name}; {checksum.kind} needs "
+                              f"{checksum.width} in whole bytes")
+        if checksum.kind in E2E_WIDTHS and bytes_of is not None and bytes_of.start != 0:
+            self.message.fail("checksum.kind", f"has {signal.name} in byte {bytes_of.start}; {checksum.kind} has its "
+                              "checksum in byte 0")
+        return signal
+
+    def checksum_of(self, raw: Mapping[str, int | float], payload: bytes | None = None) -> int | None:
+        """The checksum of raw values, or of a payload that came with them; None: there is none."""
+        checksum, signal = self.given.checksum, self.checksum_signal
+        if checksum is None or signal is None:
+            return None
+        plain = self.message.encode({**raw, signal.name: 0})
+        at = byte_slice(self.message, signal)
+        if payload is not None:
+            plain = without(payload, bytes(plain), bytes(self.message.encode({**raw, signal.name: all_ones(signal)})))
+        found = checksum.of(bytes(plain), self.message.c.frame_id, at or slice(0, 0))
+        if signal.byte_order == "big_endian" and checksum.kind in E2E_WIDTHS and at is not None:
+            found = int.from_bytes(found.to_bytes(at.stop - at.start, "little"), "big")
+        found &= (1 << signal.length) - 1
+        return found - (1 << signal.length) if signal.is_signed and found >> signal.length - 1 else found
+
+
+def all_ones(signal: Signal) -> int:
+    """The raw value whose bits are all set."""
+    return -1 if signal.is_signed else (1 << signal.length) - 1
+
+
+def without(payload: bytes, zeros: bytes, ones: bytes) -> bytearray:
+    """A payload with the bits cleared in which two others differ."""
+    return bytearray(p & ~(z ^ o) & 0xFF for p, z, o in zip(payload, zeros, ones, strict=True))
+
+
+class Receiver(Protected):
+    """A message of the controller: its payloads become inputs of the model."""
+
+    def __init__(self, given: Received, message: DbcMessage):
+        super().__init__(given, message)
+        self.received = given
+        for joint in given.joints:
+            message.signal(joint.signal, "name", joint.where)
+        self._last: int | None = None
+
+    def take(self, payload: bytes) -> tuple[dict[str, float], str | None]:
+        """Inputs by name; or the reason why the frame is refused."""
+        try:
+            values, raw = self.message.decode(payload), self.message.decode_raw(payload)
+        except Exception:  # a decoder may raise any exception on unexpected bytes
+            return {}, "wrong length or page"
+        if self.checksum_signal and self.checksum_of(raw, payload) != raw[self.checksum_signal.name]:
+            return {}, "wrong checksum"
+        if self.counter_signal and (reason := self._counts(int(raw[self.counter_signal.name]))):
+            return {}, reason
+        return {joint.model: to_model(joint.conversion, joint.model, values[joint.signal])
+                for joint in self.given.joints if joint.signal in values}, None
+
+    def _counts(self, count: int) -> str | None:
+        """Why a frame with this count is refused; it is the reference for the next one in any case."""
+        last, self._last = self._last, count
+        if last is None:
+            return None
+        delta, counter = (count - last) % self.modulo, self.given.counter
+        if delta == 0:
+            return "repeated"
+        limit = counter.max_delta if counter else None
+        return "wrong count" if limit is not None and delta > limit else None
+
+
+@dataclass
+class Cut:
+    """How often a value did not fit its signal and was cut to its end."""
+
+    count: int = 0
+
+
+class Sender(Protected):
+    """A message of the vehicle: its payloads are made of outputs of the model."""
+
+    def __init__(self, given: Sent, message: DbcMessage):
+        super().__init__(given, message)
+        self.sent, self.cut = given, Cut()
+        for joint in given.joints:
+            message.signal(joint.signal, "name", joint.where)
+            if joint.constant is not None and self.raw_of(joint, joint.constant) is None:
+                message.fail("value", f"cannot hold {joint.constant:g} in {joint.signal}; give a value of its range",
+                             joint.where)
+            if message.signals[joint.signal].is_float and joint.wrap:
+                message.fail("wrap", f"has {joint.signal} as a number with a fraction, which does not wrap; take it "
+                             "out", joint.where)
+        self.pages = self._pages()
+        self._next_page, self._count = 0, -1
+
+    def _pages(self) -> list[Page]:
+        """The pages that carry the joined signals; a constant multiplexer chooses among them."""
+        fixed = {joint.signal: self.raw_of(joint, joint.constant) for joint in self.given.joints
+                 if joint.constant is not None and self.message.signals[joint.signal].is_multiplexer}
+        for joint in self.given.joints:
+            if joint.constant is None and self.message.signals[joint.signal].is_multiplexer:
+                self.message.fail("from", f"has {joint.signal} as its multiplexer, which follows from the signals that "
+                                  "are joined; give value, or take it out", joint.where)
+        names = [joint.signal for joint in self.given.joints]
+        pages = [page for page in self.message.pages(names)
+                 if all(fixed.get(name, value) == value for name, value in page)]
+        lone = [name for name in fixed if not any(name == each for page in pages for each, _ in page)]
+        if not pages:
+            self.message.fail("signal", "has no page with all of these signals and the multiplexer's value; correct "
+                              "the value")
+        if lone:  # its value alone chooses the page
+            pages = [(*page, *((name, int(fixed[name] or 0)) for name in lone)) for page in pages]
+        for joint in self.given.joints:
+            if not any(self.message.is_on(joint.signal, page) for page in pages):
+                self.message.fail("name", f"has no {joint.signal} where its multiplexer has the value that is given; "
+                                  "correct one of them", joint.where)
+        return pages
+
+    def raw_of(self, joint: Joint, value: float) -> int | float | None:
+        """A value in the signal's unit as its raw value; None where it does not fit."""
+        signal = self.message.signals[joint.signal]
+        raw = (value - signal.offset) / signal.scale
+        low, high = raw_range(signal)
+        if not signal.is_float:
+            raw = round(raw) if math.isfinite(raw) else raw
+        return raw if low <= raw <= high else None
+
+    def payloads(self, read: Callable[[str], float]) -> Iterator[bytes]:
+        """The frames of one instant; `read` gives an output of the model by name."""
+        pages = self.pages
+        if self.sent.pages == "in turn":
+            pages = [self.pages[self._next_page]]
+            self._next_page = (self._next_page + 1) % len(self.pages)
+        for page in pages:
+            yield self._payload(page, read)
+
+    def _payload(self, page: Page, read: Callable[[str], float]) -> bytes:
+        raw = self.message.initial(page)
+        for joint in self.given.joints:
+            if joint.signal in raw and joint.signal not in dict(page):
+                raw[joint.signal] = self._raw(joint, read)
+        if self.counter_signal is not None:
+            self._count = (self._count + 1) % self.modulo
+            raw[self.counter_signal.name] = wrapped(self.counter_signal, self._count, math.inf)
+        if (checksum := self.checksum_of(raw)) is not None and self.checksum_signal is not None:
+            raw[self.checksum_signal.name] = checksum
+        return bytes(self.message.encode(raw))
+
+    def _raw(self, joint: Joint, read: Callable[[str], float]) -> int | float:
+        """A joined signal's raw value: counts in whole ones, everything else rounded; cut where it does not fit."""
+        signal = self.message.signals[joint.signal]
+        if joint.constant is not None:
+            return self.raw_of(joint, joint.constant) or 0
+        exact = (from_model(joint.conversion, read(joint.model)) - signal.offset) / signal.scale
+        if signal.is_float:
+            raw: int | float = exact
+        else:
+            is_count = bool(joint.conversion.counts_per_turn) and OF_ANGLE.match(joint.model) is not None
+            raw = math.floor(exact) if is_count else round(exact)
+        if joint.wrap:
+            return wrapped(signal, int(raw), joint.wrap)
+        low, high = raw_range(signal)
+        if not low <= raw <= high:
+            self.cut.count += 1
+            raw = min(max(raw, low), high)
+        return raw if signal.is_float else int(raw)
+
+
+def wrapped(signal: Signal, raw: int, modulo: float) -> int:
+    """A raw value that begins again: at the modulo, else where its bits end."""
+    if math.isfinite(modulo):
+        return raw % int(modulo)
+    raw &= (1 << signal.length) - 1
+    return raw - (1 << signal.length) if signal.is_signed and raw >> signal.length - 1 else raw

@@ -1,0 +1,74 @@
+"""The options of `laconic play`, and the controller's bus that they choose."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from contextlib import contextmanager, suppress
+from dataclasses import dataclass
+from pathlib import Path
+
+import can
+
+from laconic.errors import BadInput
+from laconic.play.listener import ListeningBus
+from laconic.rig.bus_options import read_bus_options
+from laconic.rig.buses import open_bus
+from laconic.rig.options import check_bitrate
+
+
+@dataclass(frozen=True)
+class PlayOptions:
+    """The options by name."""
+
+    interface: str | None = None
+    channel: str | None = None
+    bitrate: int | None = None
+    bus_options: tuple[str, ...] = ()
+    listen: int | None = None
+    drives: str | None = None
+    dbc: Path | None = None
+    map_path: Path | None = None
+    board: str | None = None
+    id_base: str | None = None
+    duration_s: float | None = None
+    logs: tuple[Path, ...] = ()
+    live: bool = False
+
+
+def check_options(options: PlayOptions) -> None:
+    """BadInput for options that exclude each other or lack their counterpart."""
+    if options.listen is not None and options.interface is not None:
+        raise BadInput(f"--listen {options.listen}: serves a bus itself; leave --interface out")
+    for name, value in (("--channel", options.channel), ("--bitrate", options.bitrate),
+                        ("--bus-option", " ".join(options.bus_options) or None)):
+        if value is not None and options.interface is None:
+            raise BadInput(f"{name} {value}: give its --interface as well, such as socketcan")
+    if options.listen is None and options.interface is None:
+        raise BadInput("--interface: is missing; give it with --channel for the bus of the controller, or --listen 0 "
+                       "for a port that it can connect to")
+    if (options.dbc is None) != (options.map_path is None):
+        raise BadInput("--map: is missing; it says which signal of --dbc is what" if options.map_path is None else
+                       "--dbc: is missing; it has the messages of --map")
+    if options.dbc is not None and options.drives is not None:
+        raise BadInput(f"--drives {options.drives}: speaks the protocol of drives, --dbc its own; give one of them")
+    if options.dbc is not None and options.board not in (None, "virtual"):
+        raise BadInput(f"--board {options.board}: a vehicle with --dbc runs in this process; leave --board out")
+    if options.duration_s is not None and not 0.0 < options.duration_s < 1e9:
+        raise BadInput(f"--duration {options.duration_s:g}: give seconds above 0, or leave it out to play until "
+                       "Ctrl-C")
+    check_bitrate(options.bitrate)
+
+
+@contextmanager
+def controller_bus(options: PlayOptions) -> Iterator[can.BusABC]:
+    """The bus on which the controller is."""
+    if options.listen is not None:
+        bus: can.BusABC = ListeningBus(options.listen)
+    else:
+        more = read_bus_options(options.bus_options, options.interface or "")
+        bus = open_bus(options.interface or "", options.channel, bitrate=options.bitrate, **more)
+    try:
+        yield bus
+    finally:
+        with suppress(can.CanError, OSError):
+            bus.shutdown()

@@ -1,0 +1,70 @@
+"""The protocols of drives as the host knows them: node ids, the identifiers that they use, and the usual motor."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Callable, Mapping
+from dataclasses import dataclass, field
+
+from laconic.scene.drives import DRIVE_PROTOCOLS
+
+Identifiers = Callable[[int], frozenset[int]]
+
+
+@dataclass(frozen=True)
+class DriveProtocol:
+    """One protocol; `usual` are the settings of a drive that neither the scene nor its motor gives."""
+
+    name: str
+    first_id: int                      # of the usual node ids, which count up from here
+    smallest_id: int
+    largest_id: int
+    identifiers: Identifiers           # 11-bit identifiers that a drive with this node id sends or listens to
+    usual: Mapping[str, float] = field(default_factory=dict)
+    why_usual: str = ""
+
+    @property
+    def number(self) -> int:
+        """On the wire, in DRIVE_PROTOCOL."""
+        return DRIVE_PROTOCOLS.index(self.name) + 1
+
+
+def _canopen(node_id: int) -> frozenset[int]:
+    """NMT, SYNC and EMCY, four PDOs each way, SDO and heartbeat (CiA 301, table of the predefined connection set)."""
+    return frozenset({0x000, 0x080, *(base + node_id for base in range(0x080, 0x680, 0x080)), 0x700 + node_id})
+
+
+def _odrive(node_id: int) -> frozenset[int]:
+    """32 messages each."""
+    return frozenset(range(node_id << 5, (node_id + 1) << 5))
+
+
+def _robomaster(node_id: int) -> frozenset[int]:
+    """Commands for four drives each, and one feedback."""
+    return frozenset({0x200, 0x1FF, 0x200 + node_id})
+
+
+def _moteus(_: int) -> frozenset[int]:
+    """29-bit identifiers only, or none below 0x100 as short ones."""
+    return frozenset()
+
+
+M3508_GEAR = 3591.0 / 187.0
+PROTOCOLS: Mapping[str, DriveProtocol] = {each.name: each for each in (
+    DriveProtocol("canopen", 1, 1, 127, _canopen,
+                  {"encoder_counts": 4096, "gear_ratio": 1.0, "torque_constant_Nm_per_A": 0.05,
+                   "current_limit_A": 10.0}, "an assumption: CANopen names no motor"),
+    DriveProtocol("odrive", 0, 0, 63, _odrive,
+                  {"encoder_counts": 8192, "gear_ratio": 1.0, "torque_constant_Nm_per_A": 8.27 / 270.0,
+                   "current_limit_A": 10.0, "supply_V": 24.0}, "an ODrive v3.6 with its D5065 motor of 270 rpm/V"),
+    DriveProtocol("robomaster", 1, 1, 8, _robomaster,
+                  {"encoder_counts": 8192, "gear_ratio": M3508_GEAR, "torque_constant_Nm_per_A": 0.3 / M3508_GEAR,
+                   "current_limit_A": 20.0, "supply_V": 24.0, "winding_resistance_ohm": 0.194},
+                  "a C620 with its M3508"),
+    DriveProtocol("robomaster-c610", 1, 1, 8, _robomaster,
+                  {"encoder_counts": 8192, "gear_ratio": 36.0, "torque_constant_Nm_per_A": 0.18 / 36.0,
+                   "current_limit_A": 10.0, "supply_V": 24.0, "winding_resistance_ohm": 0.461},
+                  "a C610 with its M2006"),
+    DriveProtocol("moteus", 1, 1, 126, _moteus,
+                  {"encoder_counts": 16384, "gear_ratio": 1.0, "torque_constant_Nm_per_A": 30.0 / math.pi / 330.0,
+                   "current_limit_A": 20.0, "supply_V": 24.0}, "a moteus r4.11 with its motor of 330 rpm/V"))}

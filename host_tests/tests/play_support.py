@@ -1,0 +1,82 @@
+"""Controllers for played vehicles in tests: stations on a virtual bus that are called in the loop's virtual time."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from pathlib import Path
+from typing import Any
+
+import can
+import cantools
+from crccheck.crc import Crc8SaeJ1850
+
+from laconic.play.options import PlayOptions
+from laconic.play.session import play
+from laconic.rig.buses import VirtualClock, next_channel
+from laconic.rig.verdict import Judgement
+from laconic.scene import read_scene
+
+PLAY = Path(__file__).parent / "play"
+DBC = PLAY / "transporter.dbc"
+PERIOD_US = 10_000
+
+
+class Controller:
+    """Sends what `commands` gives every 10 ms, and keeps all frames of the vehicle with their times."""
+
+    def __init__(self, bus: can.BusABC, commands: Callable[[float], list[can.Message]]):
+        self.bus, self.commands = bus, commands
+        self.heard: list[tuple[float, can.Message]] = []
+        self._next_us = 0
+
+    def __call__(self, now_us: int) -> int:
+        while (message := self.bus.recv(0)) is not None:
+            self.heard.append((now_us / 1e6, message))
+        if now_us >= self._next_us:
+            self._next_us += PERIOD_US
+            for message in self.commands(now_us / 1e6):
+                self.bus.send(message)
+        return self._next_us
+
+    def of(self, identifier: int) -> list[tuple[float, can.Message]]:
+        """The frames with an identifier."""
+        return [each for each in self.heard if each[1].arbitration_id == identifier]
+
+
+class Codec:
+    """Messages of the test's DBC by cantools alone, with a checksum of crccheck."""
+
+    def __init__(self, dbc: Path = DBC):
+        self.database: Any = cantools.database.load_file(dbc)
+        self._count = 0
+
+    def command(self, left_V: float, right_V: float, *, step: int = 1, spoil: int = 0) -> can.Message:
+        """WHEEL_COMMAND with its counter and SAE J1850 checksum."""
+        self._count = (self._count + step) % 16
+        values = {"VoltageLeft": left_V, "VoltageRight": right_V, "Counter": self._count, "Checksum": 0}
+        message = self.database.get_message_by_name("WHEEL_COMMAND")
+        data = bytearray(message.encode(values))
+        data[7] = Crc8SaeJ1850.calc(bytes(data[:7])) ^ spoil
+        return can.Message(arbitration_id=message.frame_id, is_extended_id=False, data=data)
+
+    def encode(self, name: str, **values: float) -> can.Message:
+        """Any message."""
+        message = self.database.get_message_by_name(name)
+        return can.Message(arbitration_id=message.frame_id, is_extended_id=message.is_extended_frame,
+                           data=message.encode(values))
+
+    def decode(self, message: can.Message) -> dict[str, float]:
+        """The signals of a frame."""
+        return dict(self.database.decode_message(message.arbitration_id, message.data))
+
+
+def played(scene: str | Path, duration_s: float, commands: Callable[[float], list[can.Message]],
+           **options: Any) -> tuple[Judgement, Controller]:
+    """Plays a scene in virtual time for a controller."""
+    channel = next_channel()
+    settings = PlayOptions(interface="virtual", channel=channel, duration_s=duration_s, **options)
+    with can.Bus(interface="virtual", channel=channel) as bus:
+        controller = Controller(bus, commands)
+        judgement = play(read_scene(scene), settings, clock=VirtualClock(), others=[controller])
+        controller(10**12)  # what is still on the bus
+    return judgement, controller
