@@ -7,6 +7,7 @@ import math
 from collections.abc import Mapping
 from typing import Any
 
+from laconic.errors import BadInput
 from laconic.play.settings import DriveSettings
 from laconic.rig.node_library import node_library
 
@@ -14,53 +15,65 @@ OFF, CURRENT, SPEED, POSITION = range(4)  # laconic_drive_mode
 WHOLE = ("encoder_counts",)
 
 
+class WheelDrive:
+    """One laconic_wheel_drive; `seen` is what it measured at the end of the last step."""
+
+    def __init__(self, lib: Any, ffi: Any, numbers: Mapping[str, float], node_id: int):
+        self._lib, self.encoder_counts = lib, int(numbers["encoder_counts"])
+        self.gear_ratio = numbers["gear_ratio"]
+        self._memory = ffi.new("uint64_t[]", (lib.laconic_library_wheel_drive_size() + 7) // 8)
+        self.c = ffi.cast("struct laconic_wheel_drive *", self._memory)
+        whole = {key: int(value) if key in WHOLE else value for key, value in numbers.items()}
+        lib.laconic_library_wheel_drive_start(
+            self.c, ffi.new("laconic_library_drive_settings *", {"node_id": node_id, **whole}))
+        self.seen: Any = ffi.new("laconic_library_drive *")
+        self._look()
+
+    def _look(self) -> None:
+        self._lib.laconic_library_wheel_drive_view(self.c, self.seen)
+
+    def aim(self, mode: int, position_rad: float = 0.0, speed_rad_per_s: float = 0.0, current_A: float = 0.0) -> None:
+        """Its target, at the motor's shaft."""
+        exact = position_rad * self.encoder_counts / (2.0 * math.pi)
+        count = math.floor(exact)
+        self._lib.laconic_library_wheel_drive_aim(self.c, mode, count, exact - count, speed_rad_per_s, current_A)
+
+    def clear(self) -> None:
+        """Clears the faults whose cause has gone."""
+        self._lib.laconic_library_wheel_drive_clear(self.c)
+
+    def act(self, step_s: float) -> float:
+        """The torque at the wheel's axle for the next step."""
+        return float(self._lib.laconic_library_wheel_drive_act(self.c, step_s))
+
+    def measure(self, turned_rad: float, speed_rad_per_s: float) -> None:
+        """What its wheel did in the step just taken."""
+        self._lib.laconic_library_wheel_drive_measure(self.c, turned_rad, speed_rad_per_s)
+        self._look()
+
+
 class DriveGroup:
-    """One laconic_wheel_drive for each wheel that has one."""
+    """One drive for each wheel that has one, by the wheel's number from 0."""
 
     def __init__(self, settings: DriveSettings, real: str, step_s: float):
-        self.settings, self.step_s = settings, step_s
-        self._library = node_library(real)
-        self._lib = self._library.lib
-        self.drives: dict[int, Any] = {}
-        for wheel, has_drive in enumerate(settings.driven):
-            if has_drive:
-                self.drives[wheel] = self._started(wheel)
-
-    def _started(self, wheel: int) -> Any:
-        ffi = self._library.ffi
-        numbers = {key: int(value) if key in WHOLE else value for key, value in self.settings.of_wheel(wheel).items()}
-        given = ffi.new("laconic_drive_settings *", {"node_id": self.settings.node_ids[wheel], **numbers})
-        drive = ffi.new("laconic_wheel_drive *")
-        self._lib.laconic_drive_start(drive, given)
-        return drive
+        self.step_s, library = step_s, node_library(real)
+        if not hasattr(library.lib, "laconic_library_wheel_drive_start"):
+            raise BadInput("drives: this build of the node has none; build it with LACONIC_NODE_WITH_DRIVES=1")
+        self.drives = {
+            wheel: WheelDrive(library.lib, library.ffi, settings.of_wheel(wheel), settings.node_ids[wheel])
+            for wheel, has_drive in enumerate(settings.driven) if has_drive}
 
     def aim(self, wheel: int, targets: Mapping[str, float]) -> None:
         """What one drive shall do: position before speed before current, each with the others fed forward."""
-        drive = self.drives[wheel]
-        target = drive.target
-        target.speed_rad_per_s = targets.get("drive_speed_rad_per_s", 0.0)
-        target.current_A = targets.get("drive_current_A", 0.0)
-        if "drive_position_rad" in targets:
-            exact = targets["drive_position_rad"] * float(drive.settings.encoder_counts) / (2.0 * math.pi)
-            target.position_count = math.floor(exact)
-            target.position_rest = exact - math.floor(exact)
-            target.mode = POSITION
-        else:
-            target.mode = SPEED if "drive_speed_rad_per_s" in targets else CURRENT
-
-    def switch_off(self, wheel: int) -> None:
-        """No current: the wheel coasts."""
-        self.drives[wheel].target.mode = OFF
-
-    def clear(self, wheel: int) -> None:
-        """Clears the faults whose cause has gone."""
-        self._lib.laconic_drive_clear(self.drives[wheel])
+        mode = POSITION if "drive_position_rad" in targets else SPEED if "drive_speed_rad_per_s" in targets else CURRENT
+        self.drives[wheel].aim(mode, targets.get("drive_position_rad", 0.0), targets.get("drive_speed_rad_per_s", 0.0),
+                               targets.get("drive_current_A", 0.0))
 
     def torques(self) -> dict[int, float]:
         """At each wheel's axle, for the next step."""
-        return {wheel: float(self._lib.laconic_drive_act(drive, self.step_s)) for wheel, drive in self.drives.items()}
+        return {wheel: drive.act(self.step_s) for wheel, drive in self.drives.items()}
 
     def measure(self, turned_rad: Any, speeds_rad_per_s: Any) -> None:
         """What the wheels did in the step just taken."""
         for wheel, drive in self.drives.items():
-            self._lib.laconic_drive_measure(drive, float(turned_rad[wheel]), float(speeds_rad_per_s[wheel]))
+            drive.measure(float(turned_rad[wheel]), float(speeds_rad_per_s[wheel]))

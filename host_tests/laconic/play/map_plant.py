@@ -8,7 +8,7 @@ from typing import Any
 import numpy as np
 
 from laconic.core.plant import Plant
-from laconic.play.drives import DriveGroup
+from laconic.play.drives import OFF, DriveGroup
 from laconic.play.map_signals import ENABLE, OF_DRIVES, TARGETS, split
 from laconic.play.settings import DriveSettings
 from laconic.scene import Scene
@@ -50,11 +50,11 @@ class MapPlant:
         for wheel in drives.drives:
             on = self._is_on(wheel)
             if not on:
-                drives.switch_off(wheel)
+                drives.drives[wheel].aim(OFF)
                 self._were_on.discard(wheel)
                 continue
             if wheel not in self._were_on:
-                drives.clear(wheel)
+                drives.drives[wheel].clear()
                 self._were_on.add(wheel)
             drives.aim(wheel, self._targets(wheel))
 
@@ -94,13 +94,13 @@ class MapPlant:
         turned = self._angles - before
         drives.measure(turned, self.plant.wheel_speeds())
         for wheel, drive in drives.drives.items():
-            self._turned[wheel] = self._turned.get(wheel, 0.0) + float(turned[wheel]) * drive.settings.gear_ratio
+            self._turned[wheel] = self._turned.get(wheel, 0.0) + float(turned[wheel]) * drive.gear_ratio
 
     # ---- outputs
 
     def drive(self, wheel: int) -> Any:
-        """The laconic_wheel_drive of a wheel."""
-        return self.drives.drives[wheel] if self.drives is not None else None
+        """What the drive of a wheel measured: a laconic_library_drive."""
+        return self.drives.drives[wheel].seen if self.drives is not None else None
 
     def drive_angle_rad(self, wheel: int) -> float:
         """How far the motor's shaft has turned."""

@@ -35,7 +35,7 @@ DRIVE_OUTPUTS: Mapping[str, Reader] = {
     "drive_speed_rad_per_s": lambda plant, i: float(plant.drive(i).speed_rad_per_s),
     "drive_current_A": lambda plant, i: float(plant.drive(i).current_A),
     "drive_torque_Nm": lambda plant, i: float(plant.drive(i).torque_Nm),
-    "drive_enabled": lambda plant, i: float(plant.drive(i).target.mode != 0 and not plant.drive(i).faults),
+    "drive_enabled": lambda plant, i: float(plant.drive(i).mode != 0 and not plant.drive(i).faults),
     "drive_faults": lambda plant, i: float(plant.drive(i).faults)}
 BODY_OUTPUTS: Mapping[str, tuple[int, Reader]] = {
     **{name: (0, _pose(name)) for name in ("x_m", "y_m", "heading_rad", "heading_wrapped_rad", "origin_x_m",
