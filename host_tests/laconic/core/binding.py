@@ -63,6 +63,7 @@ class Core:
         self.max_wheels: int = fields["wheel"].type.length
         self.max_supports: int = fields["support"].type.length
         self.fields = fields_from(ffi, lib)
+        self._of_table: dict[str, list[Field]] = {}  # asked for whenever a vehicle is made
         self.method_names = self._method_names()
         self.input_fields = self._input_fields()
         self.input_length = ffi.sizeof("laconic_input") // self.dtype.itemsize
@@ -82,7 +83,9 @@ class Core:
 
     def fields_of(self, table: str) -> list[Field]:
         """The fields that are keys of a scene's table: "vehicle", "vehicle.payload", "vehicle.wheel[#]" …"""
-        return [field for field in self.fields if field.table == table and not field.counts]
+        if table not in self._of_table:
+            self._of_table[table] = [field for field in self.fields if field.table == table and not field.counts]
+        return self._of_table[table]
 
     def own_fields(self, stem: str = "") -> list[Field]:
         """The values that a wheel may have of its own, whose keys begin with `stem`."""

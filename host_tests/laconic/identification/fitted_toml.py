@@ -7,6 +7,7 @@ from collections.abc import Iterator, Mapping
 from typing import Any
 
 from laconic.identification.parameter import Parameter
+from laconic.identification.report import judgement
 from laconic.identification.study import Study, fitted_scene, parts
 from laconic.scene.table import read_toml
 
@@ -26,6 +27,7 @@ def fitted_text(study: Study) -> str:
              for part in parts(study.logs, "session")]
     head += ["# Intervals hold the true value with 95 %, if the rest of the model is right. In words:"]
     head += [f"#   {word}" for word in study.words]
+    head += [f"# {line}" for line in judgement(study)]
     return "\n".join([*head, *_lines(data, (), comments)]) + "\n"
 
 
@@ -37,6 +39,7 @@ def _rewrite_vehicle(study: Study, data: dict[str, Any], comments: Comments) -> 
         data["vehicle"].pop("friction_coefficient", None)  # ground.friction_coefficient says it
         tables["ground",] = data.setdefault("ground", {})
         tables["ground",].update({key: after["ground"][key] for key in after["ground"] if not key.startswith("slope_")})
+    _rewrite_places(study, data["vehicle"], after, comments)
     for parameter in study.found.parameters.each:
         *location, key = parameter.path.split(".")
         if tuple(location) in tables:
@@ -50,6 +53,27 @@ def _rewrite_vehicle(study: Study, data: dict[str, Any], comments: Comments) -> 
         comments.update({("speed_controller", key): text for key, text in study.controller.comments().items()})
 
 
+def _that_move(study: Study) -> list[Parameter]:
+    """The parameters by which parts of the robot are elsewhere."""
+    return [p for p in study.found.parameters.each if p.group in ("distance", "place", "heading")]
+
+
+def _rewrite_places(study: Study, data: dict[str, Any], after: dict[str, Any], comments: Comments) -> None:
+    """The centre of mass, supports and payload of a robot that has another place in its frame."""
+    before = study.scene.vehicle
+    why = "moved with the robot: " + "; ".join(_interval(study, p.path) for p in _that_move(study))
+    for key in ("com_x_m", "com_y_m"):
+        if after[key] != before[key]:
+            data[key], comments["vehicle", key] = after[key], why
+    if after.get("payload") != before.get("payload"):
+        data["payload"].update({key: after["payload"][key] for key in ("x_m", "y_m")})
+        comments["vehicle", "payload", "x_m"] = why
+    if after["support"] != before["support"]:
+        for index, (point, moved) in enumerate(zip(data["support"], after["support"], strict=True)):
+            point.update(moved)
+            comments["vehicle", "support", str(index), "x_m"] = why
+
+
 def _rewrite(study: Study, index: int, wheel: dict[str, Any], comments: Comments) -> None:
     """The keys of one wheel that parameters have moved; the others stay as they were written."""
     before, after = (scene.vehicle["wheel"][index] for scene in (study.scene, fitted_scene(study.scene, study.found)))
@@ -57,7 +81,7 @@ def _rewrite(study: Study, index: int, wheel: dict[str, Any], comments: Comments
     if after.get("radius_m") != before.get("radius_m"):
         wheel["radius_m"] = after["radius_m"]
         comments[(*location, "radius_m")] = _interval(study, f"vehicle.wheel[{index + 1}].radius_m")
-    moved = [p for p in study.found.parameters.each if p.group in ("distance", "place", "heading")]
+    moved = _that_move(study)
     if (after["x_m"], after["y_m"]) != (before["x_m"], before["y_m"]):
         for key in ("distance_m", "bearing_rad", "bearing_deg"):
             wheel.pop(key, None)

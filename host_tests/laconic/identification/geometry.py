@@ -14,7 +14,8 @@ from laconic.scene import Scene
 RELATIVE_SD = 0.1                     # of a radius and of the distances, unless --prior says otherwise
 PLACE_SD_M = 0.03
 ANGLE_SD_RAD = math.radians(2.0)
-GROUPS = ("radius", "common-radius", "distance", "place", "heading", "axle", "roller", *ground.GROUPS)
+GROUPS = ("radius", "common-radius", "distance", "centre-of-mass", "place", "heading", "axle", "roller", *ground.GROUPS)
+LEAST_SHARE = 0.05                    # of a nominal radius or distance: below it no wheel can be
 USUAL = ("radius", "distance")
 
 
@@ -22,7 +23,7 @@ def geometry_of(scene: Scene, free: Sequence[str], relative_sd: float = RELATIVE
     """The parameters that --free names; BadInput for a name that is none or that this vehicle has not."""
     makers: dict[str, Callable[[Scene, float], list[Parameter]]] = {
         "radius": _radii, "common-radius": _common_radius, "distance": _distance, "place": _place,
-        "heading": _heading, "axle": _axles, "roller": _rollers, **ground.MAKERS}
+        "heading": _heading, "centre-of-mass": _centre_of_mass, "axle": _axles, "roller": _rollers, **ground.MAKERS}
     found: list[Parameter] = []
     for name in GROUPS:
         if name in free:
@@ -43,7 +44,7 @@ def _radii(scene: Scene, relative_sd: float) -> list[Parameter]:
         return write
 
     return [Parameter(f"radius of wheel {i + 1}", f"vehicle.wheel[{i + 1}].radius_m", "radius", "m", radius,
-                      relative_sd * radius, writer(i), relative_sd * radius)
+                      relative_sd * radius, writer(i), relative_sd * radius, low=LEAST_SHARE * radius)
             for i, radius in enumerate(wheel_radii(scene.vehicle))]
 
 
@@ -56,7 +57,7 @@ def _common_radius(scene: Scene, relative_sd: float) -> list[Parameter]:
     if not nominal or any(wheel.get("radius_m") for wheel in scene.vehicle["wheel"]):
         return []
     return [Parameter("radius of the wheels", "vehicle.wheel_radius_m", "common-radius", "m", nominal,
-                      relative_sd * nominal, write)]
+                      relative_sd * nominal, write, low=LEAST_SHARE * nominal)]
 
 
 def _distance(scene: Scene, relative_sd: float) -> list[Parameter]:
@@ -68,31 +69,56 @@ def _distance(scene: Scene, relative_sd: float) -> list[Parameter]:
 
     if not any(math.hypot(wheel["x_m"], wheel["y_m"]) > 0.0 for wheel in scene.vehicle["wheel"]):
         return []
-    return [Parameter("distance of the wheels", "vehicle.wheel[*].distance", "distance", "", 1.0, relative_sd, write)]
+    return [Parameter("distance of the wheels", "vehicle.wheel[*].distance", "distance", "", 1.0, relative_sd, write,
+                      low=LEAST_SHARE)]
 
 
 def _place(scene: Scene, relative_sd: float) -> list[Parameter]:
-    """Where all wheels together stand against the point whose pose the log gives."""
+    """Where the robot stands in its frame, against the point whose pose the log gives.
+
+    All of it moves: the wheels, and with them the centre of mass, the supports and the payload, whose places are given
+    in the same frame. So the robot stays the robot that it was, and only the marker is another.
+    """
     def writer(key: str) -> Callable[[Vehicle, float], None]:
         def write(vehicle: Vehicle, value: float) -> None:
-            for wheel in vehicle["wheel"]:
-                wheel[key] += value
+            vehicle[f"com_{key}"] += value
+            for part in parts_of(vehicle):
+                part[key] += value
         return write
 
-    return [Parameter(f"place of the wheels, {key[0]}", f"vehicle.wheel[*].{key}", "place", "m", 0.0, PLACE_SD_M,
+    return [Parameter(f"place of the robot, {key[0]}", f"vehicle.*.{key}", "place", "m", 0.0, PLACE_SD_M,
                       writer(key)) for key in ("x_m", "y_m") if scene.vehicle["wheel"]]
 
 
+def parts_of(vehicle: Vehicle) -> list[dict[str, float]]:
+    """What has a place of its own in the frame, beside the centre of mass."""
+    return [*vehicle["wheel"], *vehicle.get("support", []), *([vehicle["payload"]] if "payload" in vehicle else [])]
+
+
+def _centre_of_mass(scene: Scene, relative_sd: float) -> list[Parameter]:
+    """Of the robot without payload, against its wheels."""
+    def writer(key: str) -> Callable[[Vehicle, float], None]:
+        def write(vehicle: Vehicle, value: float) -> None:
+            vehicle[key] = value
+        return write
+
+    return [Parameter(f"centre of mass, {key[4]}", f"vehicle.{key}", "centre-of-mass", "m", scene.vehicle[key],
+                      PLACE_SD_M, writer(key)) for key in ("com_x_m", "com_y_m") if scene.vehicle["wheel"]]
+
+
 def _heading(scene: Scene, relative_sd: float) -> list[Parameter]:
-    """How far all wheels together are turned against the frame whose pose the log gives."""
+    """How far the whole robot is turned in the frame whose pose the log gives."""
     def write(vehicle: Vehicle, value: float) -> None:
         cos, sin = math.cos(value), math.sin(value)
+        x, y = vehicle["com_x_m"], vehicle["com_y_m"]
+        vehicle["com_x_m"], vehicle["com_y_m"] = cos * x - sin * y, sin * x + cos * y
+        for part in parts_of(vehicle):
+            x, y = part["x_m"], part["y_m"]
+            part["x_m"], part["y_m"] = cos * x - sin * y, sin * x + cos * y
         for wheel in vehicle["wheel"]:
-            x, y = wheel["x_m"], wheel["y_m"]
-            wheel["x_m"], wheel["y_m"] = cos * x - sin * y, sin * x + cos * y
             wheel["axle_rad"] += value
 
-    return [Parameter("heading of the wheels", "vehicle.wheel[*].heading", "heading", "rad", 0.0, ANGLE_SD_RAD, write)
+    return [Parameter("heading of the robot", "vehicle.*.heading", "heading", "rad", 0.0, ANGLE_SD_RAD, write)
             for _ in scene.vehicle["wheel"][:1]]
 
 

@@ -7,6 +7,7 @@ drag, as the contacts' law has no scale of its own; steady currents tell how lar
 from __future__ import annotations
 
 import copy
+import math
 from collections.abc import Callable, Sequence
 from pathlib import Path
 
@@ -15,7 +16,12 @@ import numpy as np
 from laconic.core import Core
 from laconic.errors import BadInput
 from laconic.identification.parameter import Parameter, Parameters, Vehicle
-from laconic.identification.rolling_evidence import RollingEvidence, path_residual, stretch_scores
+from laconic.identification.rolling_evidence import (
+    RollingEvidence,
+    path_residual,
+    stretch_errors,
+    stretch_scores,
+)
 from laconic.logs import Log
 from laconic.recorded_runs.held_wheels import Held, hold
 from laconic.recorded_runs.steady_currents import axles_of, steady_parts
@@ -49,12 +55,13 @@ def evidence_of(scene: Scene, logs: Sequence[Log], parameters: Parameters) -> Ro
 def _of_ground(key: str, name: str, group: str, unit: str, usual: float, sd: float) -> Callable[[Scene, float],
                                                                                           list[Parameter]]:
     def write(vehicle: Vehicle, value: float) -> None:
-        bounded = max(value, LEAST[key])
-        vehicle["ground"][key] = min(bounded, 1.0) if key == "roller_drag" else bounded
+        vehicle["ground"][key] = value
 
     def make(scene: Scene, relative_sd: float) -> list[Parameter]:
         nominal = scene.vehicle.get("ground", {}).get(key, scene.vehicle.get(key) or usual)
-        return [Parameter(name, f"ground.{key}", group, unit, nominal, sd, write)] if scene.vehicle["wheel"] else []
+        high = 1.0 if key == "roller_drag" else math.inf
+        return [Parameter(name, f"ground.{key}", group, unit, nominal, sd, write, low=LEAST[key], high=high)
+                for _ in scene.vehicle["wheel"][:1]]
 
     return make
 
@@ -66,11 +73,11 @@ def _viscous(scene: Scene, relative_sd: float) -> list[Parameter]:
         return []
 
     def write(vehicle: Vehicle, value: float) -> None:
-        vehicle["motor"] = {**vehicle["motor"], "viscous_friction_Nms": max(value, 0.0)}
+        vehicle["motor"] = {**vehicle["motor"], "viscous_friction_Nms": value}
 
     sd = 0.02 / motor["gear_ratio"] ** 2
     return [Parameter("viscous friction of the motors", "vehicle.motor.viscous_friction_Nms", "viscous", "N·m·s",
-                      motor["viscous_friction_Nms"], sd, write)]
+                      motor["viscous_friction_Nms"], sd, write, low=0.0)]
 
 
 MAKERS: dict[str, Callable[[Scene, float], list[Parameter]]] = {
@@ -110,6 +117,10 @@ class GroundEvidence(RollingEvidence):
         """Path residuals, then those of the currents."""
         return [np.concatenate([path_residual(run, path), _rounded(off)])
                 for run, (path, off) in zip(self.runs, self._parts(vehicle), strict=True)]
+
+    def errors(self, vehicle: Vehicle) -> list[np.ndarray]:
+        """Of each stretch of each run."""
+        return [stretch_errors(run, path) for run, (path, _) in zip(self.runs, self._parts(vehicle), strict=True)]
 
     def scores(self, vehicle: Vehicle, jacobians: list[np.ndarray]) -> list[np.ndarray]:
         """Of each stretch of the path, and of the currents of each run together."""

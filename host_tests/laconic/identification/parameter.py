@@ -7,6 +7,7 @@ the prior is the unit ball: θ = nominal + L z, L Lᵀ the covariance.
 from __future__ import annotations
 
 import copy
+import math
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass
 from typing import Any
@@ -29,6 +30,8 @@ class Parameter:
     prior_sd: float                              # its own, independent of the others'
     write: Callable[[Vehicle, float], None]
     shared_sd: float = 0.0                       # that it has in common with the others of its group
+    low: float = -math.inf                       # bounds of what is possible
+    high: float = math.inf
 
 
 @dataclass(frozen=True)
@@ -61,9 +64,14 @@ class Parameters:
         return np.linalg.cholesky(self.covariance) if self.each else np.zeros((0, 0))
 
     def values(self, z: np.ndarray) -> np.ndarray:
-        """θ of z."""
-        found: np.ndarray = self.nominal + self.factor @ z
+        """θ of z, within what is possible."""
+        found: np.ndarray = np.clip(self.nominal + self.factor @ z, [p.low for p in self.each],
+                                    [p.high for p in self.each])
         return found
+
+    def at_bounds(self, values: np.ndarray) -> list[str]:
+        """Names of those that lie at a bound."""
+        return [p.name for p, value in zip(self.each, values, strict=True) if value in (p.low, p.high)]
 
     def vehicle(self, base: Mapping[str, Any], values: np.ndarray) -> Vehicle:
         """A copy of the vehicle with these values in it, written in order."""

@@ -44,6 +44,12 @@ def _summary(study: Study) -> list[str]:
     return lines + [f"| {name} | {100.0 * _path_error(errors):.3f} |" for name, errors in rows if errors]
 
 
+def judgement(study: Study) -> list[str]:
+    """The summary as lines of text."""
+    rows = [line.strip("| ").replace(" | ", ": ") for line in _summary(study)[2:]]
+    return ["Path error, mean over sessions, in per cent:", *(f"  {row}" for row in rows)]
+
+
 def _path_error(errors: list[RunErrors]) -> float:
     value = grand_mean(errors).path_error
     return float("nan") if value is None else value

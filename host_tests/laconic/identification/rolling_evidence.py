@@ -62,6 +62,12 @@ class RollingEvidence:
             found.append(stretch_scores(run, path, jacobian.reshape(len(run.taken), 2, -1)))
         return found
 
+    def errors(self, vehicle: Vehicle) -> list[np.ndarray]:
+        """Of each stretch of each run: displacement ahead and to the left, turn."""
+        rolling = rolling_of(self._core, vehicle, self._path)
+        return [stretch_errors(run, path_of(rolling.moved(run.rotation_rad, run.point), run.pose[0]))
+                for run in self.runs]
+
 
 def run_of(log: Log) -> Run:
     """BadInput for a log without a true pose, or whose true path has no length."""
@@ -83,7 +89,7 @@ def path_residual(run: Run, path: np.ndarray) -> np.ndarray:
 
 def stretch_scores(run: Run, path: np.ndarray, jacobian: np.ndarray) -> np.ndarray:
     """jacobian: points × 2 × parameters."""
-    error = _relative(path, run.cuts) - _relative(run.pose, run.cuts)
+    error = stretch_errors(run, path)
     found = []
     for index, (begin, end) in enumerate(zip(run.cuts[:-1], run.cuts[1:], strict=True)):
         after = run.taken >= end
@@ -94,6 +100,11 @@ def stretch_scores(run: Run, path: np.ndarray, jacobian: np.ndarray) -> np.ndarr
         moved = shift + turn * np.column_stack([-lever[:, 1], lever[:, 0]])
         found.append(np.einsum("kcp,kc->p", jacobian[after], moved) * run.scale)
     return np.array(found)
+
+
+def stretch_errors(run: Run, path: np.ndarray) -> np.ndarray:
+    """What the motion of each stretch is off by, in the body's frame at its beginning."""
+    return _relative(path, run.cuts) - _relative(run.pose, run.cuts)
 
 
 def _relative(pose: np.ndarray, cuts: np.ndarray) -> np.ndarray:

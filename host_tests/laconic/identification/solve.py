@@ -7,8 +7,9 @@ is more than OUTLIER times the median counts as Huber's function has it. With J 
 
     H = JᵀJ/σ² + 1        covariance of z = H⁻¹ (S/σ⁴ + 1) H⁻¹
 
-where S is the covariance of the score Jᵀr. Its parts, which the evidence names, are independent of each other: errors
-of single stretches of a run, not residuals, which a path has summed.
+where S is the covariance of the score Jᵀr. Its parts, which the evidence names, are errors of single stretches of a
+run, not residuals, which a path has summed. Where neighbouring stretches err alike, sums over longer blocks take their
+place (identification.structure).
 """
 
 from __future__ import annotations
@@ -22,6 +23,7 @@ from scipy.optimize import least_squares
 from scipy.stats import t as student
 
 from laconic.identification.parameter import Parameters, Vehicle
+from laconic.identification.structure import Structure, block_sums, likeness_of, unexplained
 
 CONFIDENCE = 0.95
 OUTLIER = 3.0
@@ -51,6 +53,9 @@ class Evidence(Protocol):
     def residuals(self, vehicle: Vehicle) -> list[np.ndarray]:
         """Of each run: numbers whose sum of squares is the run's squared error."""
 
+    def errors(self, vehicle: Vehicle) -> list[np.ndarray]:
+        """Of each run: the errors of its stretches one after the other, stretches × components."""
+
     def scores(self, vehicle: Vehicle, jacobians: list[np.ndarray]) -> list[np.ndarray]:
         """Of each run: the independent parts of Jᵀr, one row each."""
 
@@ -63,31 +68,30 @@ class Fit:
     values: np.ndarray
     covariance: np.ndarray          # of the values
     information: np.ndarray         # JᵀJ/σ² in z: what the runs say, in units of the prior
+    half_widths: np.ndarray         # of the 95 % intervals
     scale: float                    # σ, of the run's error
-    observations: int               # independent parts of the score
     weights: np.ndarray             # of each run by Huber, 1: whole
+    structure: Structure            # whether neighbouring stretches err alike
     untold: tuple[str, ...] = ()    # names of parameters that stay nominal
-
-    @property
-    def half_widths(self) -> np.ndarray:
-        """Of the 95 % intervals."""
-        freedom = max(self.observations - len(self.parameters), 1)
-        widths: np.ndarray = student.ppf(0.5 + CONFIDENCE / 2.0, freedom) * np.sqrt(np.diag(self.covariance))
-        return widths
+    asked: Parameters | None = None             # those that were free, with what the runs say about all of them
+    asked_information: np.ndarray | None = None
 
 
 def fit(base: dict[str, Any], parameters: Parameters, evidence: Evidence, start: Fit | None = None) -> Fit:
     """The parameters that the runs tell; the others stay nominal to the digit. `start`: a fit to begin from."""
     untold: tuple[str, ...] = ()
+    asked, information = parameters, None
     while True:
         found = _fit(base, parameters, evidence, _start(parameters, start))
+        information = found.information if information is None else information
+        found = replace(found, asked=asked, asked_information=information)
         share = told_share(found)
         lost = tuple(p.name for p, s in zip(parameters.each, share, strict=True) if s > UNTOLD)
         untold, parameters = untold + lost, parameters.without(lost)
         if not len(parameters):
             nothing = np.zeros((0, 0))
-            return replace(found, parameters=parameters, values=np.zeros(0), covariance=nothing, information=nothing,
-                           untold=untold)
+            return replace(found, parameters=parameters, values=np.zeros(0), half_widths=np.zeros(0),
+                           covariance=nothing, information=nothing, untold=untold)
         if not lost:
             return replace(found, untold=untold)
 
@@ -136,11 +140,12 @@ def _least(base: dict[str, Any], parameters: Parameters, evidence: Evidence, z: 
         return np.concatenate([stacked(z, factors) / scale, z])
 
     def jacobian(z: np.ndarray) -> np.ndarray:
-        each = jacobians_of(base, parameters, evidence, z, evidence.difference)
+        each = jacobians_of(base, parameters, evidence, z)
         return np.vstack([*(j * f / scale for j, f in zip(each, factors, strict=True)), np.eye(len(z))])
 
-    found: np.ndarray = least_squares(residual, z, x_scale=1.0).x if not evidence.difference else least_squares(
-        residual, z, jac=jacobian, x_scale=1.0, ftol=1e-4, xtol=1e-3, max_nfev=12).x
+    solved = least_squares(residual, z, x_scale=1.0, xtol=1e-5) if not evidence.difference else least_squares(
+        residual, z, jac=jacobian, x_scale=1.0, ftol=1e-4, xtol=1e-3, max_nfev=12)
+    found: np.ndarray = solved.x
     return found
 
 
@@ -162,23 +167,50 @@ def _judged(base: dict[str, Any], parameters: Parameters, evidence: Evidence, z:
     information = sum((w * j.T @ j for w, j in zip(squares, jacobians, strict=True)), np.zeros((count, count)))
     vehicle = parameters.vehicle(base, parameters.values(z))
     parts = [w * s for w, s in zip(squares, evidence.scores(vehicle, jacobians), strict=True)]
-    rows = np.concatenate(parts) if parts else np.zeros((0, count))
-    correction = len(rows) / max(len(rows) - count, 1)
     inverse = np.linalg.inv(information / scale**2 + np.eye(count))
-    of_z = inverse @ (correction * rows.T @ rows / scale**4 + np.eye(count)) @ inverse
-    factor = parameters.factor
-    return Fit(parameters, parameters.values(z), factor @ of_z @ factor.T, information / scale**2, scale, len(rows),
-               weights)
+
+    def covariance(rows: np.ndarray) -> np.ndarray:
+        correction = len(rows) / max(len(rows) - count, 1)
+        of_z = inverse @ (correction * rows.T @ rows / scale**4 + np.eye(count)) @ inverse
+        return parameters.factor @ of_z @ parameters.factor.T
+
+    def half_widths(rows: np.ndarray) -> np.ndarray:
+        freedom = max(len(rows) - count, 1)
+        widths: np.ndarray = student.ppf(0.5 + CONFIDENCE / 2.0, freedom) * np.sqrt(np.diag(covariance(rows)))
+        return widths
+
+    rows = np.concatenate(parts)
+    plain = widest = half_widths(rows)
+    likeness, is_found = likeness_of(_unexplained(base, parameters, evidence, z))
+    is_found &= scale > SMALLEST_SCALE  # rounding repeats, too
+    if is_found:
+        widest = np.max([plain, *(half_widths(each) for each in block_sums(parts, evidence.sessions, count))], axis=0)
+    structure = Structure(likeness, is_found, float((widest / plain).max(initial=1.0)))
+    return Fit(parameters, parameters.values(z), covariance(rows), information / scale**2, widest, scale, weights,
+               structure)
 
 
-def jacobians_of(base: dict[str, Any], parameters: Parameters, evidence: Evidence, z: np.ndarray,
-                 difference: float = 0.0) -> list[np.ndarray]:
-    """Of each run's residual in z, by central differences."""
-    columns, width = [], difference or evidence.difference or STEP
+def _unexplained(base: dict[str, Any], parameters: Parameters, evidence: Evidence, z: np.ndarray) -> list[np.ndarray]:
+    """The errors of stretches; where derivatives cost little, less what parameters near by would explain."""
+    errors = evidence.errors(parameters.vehicle(base, parameters.values(z)))
+    if evidence.difference or not len(parameters):
+        return errors
+    return unexplained(errors, differences(base, parameters, evidence.errors, z, STEP))
+
+
+def jacobians_of(base: dict[str, Any], parameters: Parameters, evidence: Evidence, z: np.ndarray) -> list[np.ndarray]:
+    """Of each run's residual in z."""
+    found = differences(base, parameters, evidence.residuals, z, evidence.difference or STEP)
+    return found if len(parameters) else [np.zeros((1, 0))] * len(evidence.sessions)
+
+
+def differences(base: dict[str, Any], parameters: Parameters, of: Callable[[Vehicle], list[np.ndarray]],
+                z: np.ndarray, width: float) -> list[np.ndarray]:
+    """Derivatives in z, along a new last axis, of numbers of each run, by central differences."""
+    columns: list[list[np.ndarray]] = []
     for index in range(len(parameters)):
         step = np.zeros(len(parameters))
         step[index] = width
-        ahead, behind = (evidence.residuals(parameters.vehicle(base, parameters.values(z + s))) for s in (step, -step))
+        ahead, behind = (of(parameters.vehicle(base, parameters.values(z + s))) for s in (step, -step))
         columns.append([(a - b) / (2.0 * width) for a, b in zip(ahead, behind, strict=True)])
-    return [np.column_stack([column[run] for column in columns]) if columns else np.zeros((1, 0))
-            for run in range(len(evidence.sessions))]
+    return [np.stack(each, axis=-1) for each in zip(*columns, strict=True)]

@@ -11,6 +11,7 @@ from laconic.identification.ground import base_of, evidence_of, need_currents
 from laconic.identification.parameter import Parameters
 from laconic.identification.solve import Fit, fit
 from laconic.identification.words import in_words
+from laconic.identification.words_of_errors import of_errors
 from laconic.logs import Log
 from laconic.logs.read import for_wheels
 from laconic.recorded_runs.measures import RunErrors
@@ -48,9 +49,10 @@ def identify(scene: Scene, logs: Sequence[Log], parameters: Parameters, *, judge
     controller = controller_of(runs) if with_controller else None
     fitted = fitted_scene(scene, found)
     left = _left_out(scene, runs, parameters, found, leave_out, advance) if leave_out else []
-    return Study(scene, runs, found, in_words(scene, found), roll(scene, runs).errors, roll(fitted, runs).errors, left,
-                 roll(fitted, others).errors if others else [], roll(scene, others).errors if others else [],
-                 controller)
+    study = Study(scene, runs, found, in_words(scene, found, runs), roll(scene, runs).errors,
+                  roll(fitted, runs).errors, left, roll(fitted, others).errors if others else [],
+                  roll(scene, others).errors if others else [], controller)
+    return replace(study, words=[*study.words, *of_errors(study, others)])
 
 
 def fitted_scene(scene: Scene, found: Fit) -> Scene:

@@ -2,41 +2,69 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from pathlib import Path
 
 import numpy as np
 
 from laconic.core import Core
 from laconic.identification.ground import base_of, evidence_of
-from laconic.identification.parameter import Parameters
 from laconic.identification.solve import Fit, jacobians_of
 from laconic.logs import Log
+from laconic.recorded_runs.held_wheels import hold
+from laconic.recorded_runs.measures import path_length
 from laconic.recorded_runs.rolling import path_of, rotations_of
+from laconic.recorded_runs.steady_currents import axles_of
 from laconic.scene import Scene
+from laconic.scene.ground import slips
 
 WEAK = 1.0            # information in units of the prior: below it the runs say less than was known beforehand
 PARTS = 0.35          # a parameter is named where its share in a combination is at least so much of the largest
+HELPS = 0.9           # of the uncertainty: a run that leaves more is no advice
 SAMPLES, PERIOD_S = 200, 0.05
 MOTIONS = {
-    "straight ahead": (0.3, 0.0, 0.0), "sideways": (0.0, 0.3, 0.0), "rotation on the spot": (0.0, 0.0, 0.8),
+    "straight ahead": (0.3, 0.0, 0.0), "straight sideways": (0.0, 0.3, 0.0), "rotation on the spot": (0.0, 0.0, 0.8),
     "a circle to the left": (0.3, 0.0, 0.4), "a circle to the right": (0.3, 0.0, -0.4),
     "a circle sideways": (0.0, 0.3, 0.4)}
 
 
-def in_words(scene: Scene, found: Fit) -> list[str]:
-    """Sentences; every number is computed."""
-    words = [f"{name}: the runs do not tell it, so it stays nominal." for name in found.untold]
+def in_words(scene: Scene, found: Fit, runs: Sequence[Log]) -> list[str]:
+    """Sentences; every number is computed. `runs`: those of the fit, as the next one will be of their kind."""
+    assert found.asked is not None and found.asked_information is not None
     size, directions = np.linalg.eigh(found.information)
-    candidates = candidate_information(scene, found.parameters)
-    for strength, direction in zip(size, directions.T, strict=True):
-        if strength < WEAK:
-            words.append(_weak(found, strength, direction, candidates))
+    weak = [each for each in zip(size, directions.T, strict=True) if each[0] < WEAK]
+    candidates = candidate_information(scene, found, runs) if weak or found.untold else {}
+    words = [_untold(name, found, candidates) for name in found.untold]
+    words += [_weak(found, strength, direction, candidates) for strength, direction in weak]
+    words += [f"{name}: lies at the bound of what is possible, {value:.4g}; its interval means little."
+              for name, value in _at_bounds(found)]
+    if found.structure.is_found:
+        words.append(_structured(found))
     if found.weights.min() < 1.0:
         words.append(f"{int((found.weights < 1.0).sum())} of {len(found.weights)} runs are far worse than the others "
                      f"and count less (the least by a factor of {found.weights.min():.2g}).")
-    if not words:
-        words.append("The runs tell every parameter better than it was known before.")
-    return words
+    return words or ["The runs tell every parameter better than it was known before."]
+
+
+def _at_bounds(found: Fit) -> list[tuple[str, float]]:
+    names = found.parameters.at_bounds(found.values)
+    return [(p.name, float(v)) for p, v in zip(found.parameters.each, found.values, strict=True) if p.name in names]
+
+
+def _structured(found: Fit) -> str:
+    """Errors that are no chance."""
+    return (f"Neighbouring stretches of a run err alike (correlation {found.structure.likeness:.2g}), which chance does "
+            "not explain: the model lacks something, and errors repeat. The intervals are therefore built from longer "
+            f"blocks, which made them up to {found.structure.widening:.2g} times as wide.")
+
+
+def _untold(name: str, found: Fit, candidates: dict[str, np.ndarray]) -> str:
+    """A parameter that stays nominal, and the run that would tell it."""
+    assert found.asked is not None
+    index = [p.name for p in found.asked.each].index(name)
+    remedy = advice(found, found.asked.factor[index] / np.linalg.norm(found.asked.factor[index]), candidates)
+    reason = remedy or "; nor would a run of this kind, whatever its motion"
+    return f"{name}: the runs do not tell it, so it stays nominal{reason}."
 
 
 def _weak(found: Fit, strength: float, direction: np.ndarray, candidates: dict[str, np.ndarray]) -> str:
@@ -47,34 +75,83 @@ def _weak(found: Fit, strength: float, direction: np.ndarray, candidates: dict[s
     named = [f"{p.name} {'larger' if s * sign > 0.0 else 'smaller'}"
              for p, s in zip(found.parameters.each, share, strict=True) if abs(s) >= PARTS * np.abs(share).max()]
     known = f"{100.0 / np.sqrt(1.0 + strength):.0f} % of the uncertainty beforehand is left"
-    best = max(candidates, key=lambda name: float(direction @ candidates[name] @ direction), default="")
     if len(named) == 1:
         what = f"{named[0].rpartition(' ')[0]}: the runs hardly tell it"
     else:
         what = f"{', '.join(named[:-1])} and {named[-1]} together: the runs hardly tell this from nothing"
-    remedy = f"; {best} would tell most about it" if best and direction @ candidates[best] @ direction > 0.0 else ""
-    return f"{what} ({known}){remedy}."
+    return f"{what} ({known}){advice(found, _in_asked(found, change), candidates)}."
 
 
-def candidate_information(scene: Scene, parameters: Parameters) -> dict[str, np.ndarray]:
-    """What each motion that the wheels allow would say about the parameters, in z, all with one size of error."""
-    core, found = scene.core(), {}
+def _in_asked(found: Fit, change: np.ndarray) -> np.ndarray:
+    """A change of the parameters found as a direction in the z of all that were asked for."""
+    assert found.asked is not None
+    names = [p.name for p in found.asked.each]
+    whole = np.zeros(len(names))
+    whole[[names.index(p.name) for p in found.parameters.each]] = change
+    z = np.linalg.solve(found.asked.factor, whole)
+    z /= np.linalg.norm(z)
+    return z
+
+
+def advice(found: Fit, direction: np.ndarray, candidates: dict[str, np.ndarray]) -> str:
+    """The motion after which least uncertainty in this direction of z is left, whatever the other parameters are.
+
+    The inverse of the whole information does that: what a run says about a parameter counts only as far as no other
+    parameter that is free could say the same.
+    """
+    assert found.asked_information is not None
+    now = found.asked_information + np.eye(len(direction))
+
+    def left(more: np.ndarray) -> float:
+        return float(direction @ np.linalg.solve(now + more, direction))
+
+    before = left(np.zeros_like(now))
+    best = min(candidates, key=lambda name: left(candidates[name]), default="")
+    after = np.sqrt(left(candidates[best]) / before) if best else 1.0
+    if after > HELPS:
+        return ""
+    return f"; one more run, {best}, would tell most about it and leave {100.0 * after:.0f} % of what is uncertain now"
+
+
+def candidate_information(scene: Scene, found: Fit, runs: Sequence[Log]) -> dict[str, np.ndarray]:
+    """What one more session of each motion that the wheels allow would say about all that was asked, in z.
+
+    Its error has the size of that of the runs in metres, not as a share of its path: a run on the spot is not seen more
+    sharply for being short.
+    """
+    usual_m = float(np.median([path_length(log.time_s, log.needs("pose", "identify")) for log in runs]))
+    assert found.asked is not None
+    core, parameters, information = scene.core(), found.asked, {}
+    base = base_of(scene, parameters)
     is_held = bool(len(core.matrices(core.vehicle(scene.vehicle)).constraint_rows))
     for name, velocity in MOTIONS.items():
         if is_held and velocity[1] != 0.0:
             continue
-        evidence = evidence_of(scene, [_motion(core, scene, np.array(velocity))], parameters)
-        jacobian = jacobians_of(base_of(scene, parameters), parameters, evidence, np.zeros(len(parameters)))[0]
-        found[name] = jacobian.T @ jacobian
-    return found
+        log = _motion(core, base, np.array(velocity), runs[0])
+        evidence = evidence_of(scene, [log], parameters)
+        jacobian = jacobians_of(base, parameters, evidence, np.zeros(len(parameters)))[0]
+        share = path_length(log.time_s, log.needs("pose", "identify")) / usual_m
+        information[name] = jacobian.T @ jacobian * (share / found.scale) ** 2
+    return information
 
 
-def _motion(core: Core, scene: Scene, velocity: np.ndarray) -> Log:
+def _motion(core: Core, vehicle: dict[str, object], velocity: np.ndarray, like: Log) -> Log:
     """A run at a constant velocity; one on the spot moves a little, so that its path has a length."""
     moved = np.tile(PERIOD_S * velocity, (SAMPLES, 1))
     if velocity[0] == velocity[1] == 0.0:
         moved[:, 0] = PERIOD_S * 0.02
-    rotation = rotations_of(core, scene.vehicle, moved)
+    rotation = rotations_of(core, vehicle, moved)
     angle = np.vstack([np.zeros(rotation.shape[1]), np.cumsum(rotation, axis=0)])
-    return Log(Path("motion"), "motion", PERIOD_S * np.arange(SAMPLES + 1), wheel_angle_rad=angle,
-               current_A=np.zeros((SAMPLES + 1, rotation.shape[1])), pose=path_of(moved, np.zeros(3)))
+    log = Log(Path("motion"), "motion", PERIOD_S * np.arange(SAMPLES + 1), wheel_angle_rad=angle,
+              pose=path_of(moved, np.zeros(3)), pose_point=like.pose_point)
+    return log if like.current_A is None or not slips(vehicle) else _with_currents(core, vehicle, log)
+
+
+def _with_currents(core: Core, vehicle: dict[str, object], log: Log) -> Log:
+    """The steady currents that the vehicle itself would take."""
+    axles, held = axles_of(core, vehicle), hold(core, vehicle, log)
+    if axles is None:
+        return log
+    steady = axles.current_A(held.load_Nm[len(held.load_Nm) // 2:].mean(axis=0), held.speed_rad_per_s[-1])
+    return Log(log.path, log.map_name, log.time_s, wheel_angle_rad=log.wheel_angle_rad, pose=log.pose,
+               pose_point=log.pose_point, current_A=np.tile(steady, (len(log.time_s), 1)))

@@ -9,6 +9,7 @@ from __future__ import annotations
 
 from collections.abc import Mapping
 from dataclasses import dataclass
+from functools import cached_property
 from pathlib import Path
 from typing import Any
 
@@ -29,7 +30,7 @@ class Rolling:
     origin: np.ndarray             # 3 × k: x, y [m], angle [rad] of the body's origin for each of them
     centre_of_mass: np.ndarray     # x, y in the body's frame
 
-    @property
+    @cached_property
     def per_rotation(self) -> np.ndarray:
         """3 × N, of the body's origin, from all wheels."""
         return self.from_wheels(np.full(len(self.radii_m), True))
@@ -48,7 +49,8 @@ class Rolling:
     def moved(self, rotation_rad: np.ndarray, point: str = POINTS[0]) -> np.ndarray:
         """Displacements of a point from sample to sample in the body's frame, one row each; NaN: not measured."""
         measured = ~np.isnan(rotation_rad).any(axis=0)
-        steps: np.ndarray = np.where(measured, rotation_rad, 0.0) @ self.from_wheels(measured).T
+        steps: np.ndarray = rotation_rad @ self.per_rotation.T if measured.all() else (
+            np.where(measured, rotation_rad, 0.0) @ self.from_wheels(measured).T)
         if point == "centre_of_mass":
             x, y = self.centre_of_mass
             steps = steps + steps[:, 2:] * np.array([-y, x, 0.0])
@@ -85,7 +87,7 @@ def rolling_of(core: Core, vehicle: Mapping[str, Any], path: Path) -> Rolling:
     # the origin's velocity is the centre of mass's less that of turning about it: v_O = v_S − θ' × c
     origin = [reference * allowed[0] + angle * centre[1], reference * allowed[1] - angle * centre[0], angle]
     found = Rolling(path, radii, distance_rows, np.array(origin), centre)
-    found.from_wheels(np.full(len(radii), True))  # BadInput here, not with the first log
+    assert found.per_rotation.shape == (3, len(radii))  # BadInput here, not with the first log
     return found
 
 

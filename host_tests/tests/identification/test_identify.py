@@ -8,38 +8,22 @@ from pathlib import Path
 
 import numpy as np
 import pytest
+from made_up_runs import exact_run, found_from, simulated
 from recorded_data import recorded
 
 from laconic.cli.main import run
 from laconic.identification.geometry import geometry_of
-from laconic.identification.rolling_evidence import RollingEvidence
-from laconic.identification.solve import fit
 from laconic.identification.study import identify
 from laconic.identification.synthetic import made_up, trials
 from laconic.identification.words import in_words
-from laconic.logs import Log, gather_logs
-from laconic.paths import scene_path
+from laconic.logs import gather_logs
 from laconic.recorded_runs.measures import grand_mean
-from laconic.recorded_runs.rolling import path_of, rolling_of, rotations_of
+from laconic.recorded_runs.rolling import rolling_of, rotations_of
 from laconic.scene import read_scene
 
 RECORDED = recorded("optiodom")
 needs_records = pytest.mark.skipif(not RECORDED.exists(),
                                    reason=f"no recorded runs at {RECORDED}: they are not part of the project")
-
-
-def exact_run(scene, vehicle, velocity, name="run", samples=200) -> Log:
-    """A run without noise at a constant velocity of the origin."""
-    moved = np.tile(0.05 * np.array(velocity), (samples, 1))
-    rotation = rotations_of(scene.core(), vehicle, moved)
-    angle = np.vstack([np.zeros(rotation.shape[1]), np.cumsum(rotation, axis=0)])
-    return Log(Path(f"/made-up/{name}/run.csv"), "exact", 0.05 * np.arange(samples + 1), wheel_angle_rad=angle,
-               pose=path_of(moved, np.zeros(3)))
-
-
-def found_from(scene, logs, free):
-    parameters = geometry_of(scene, free)
-    return fit(scene.vehicle, parameters, RollingEvidence(scene.core(), scene.path, logs))
 
 
 @pytest.mark.parametrize("name", ["optiodom_diff", "optiodom_omni3", "optiodom_omni4", "kuka_youbot", "s1"])
@@ -101,7 +85,7 @@ def test_what_only_a_combination_tells_is_named_with_the_run_that_would_tell_it(
     circles = [exact_run(scene, scene.vehicle, (0.3, 0.0, 0.4), str(i)) for i in range(3)]
     noisy = [replace(log, pose=log.pose + np.cumsum(1e-3 * random.standard_normal(log.pose.shape), axis=0))
              for log in circles]
-    (word,) = in_words(scene, found_from(scene, noisy, ("radius", "distance")))
+    (word,) = in_words(scene, found_from(scene, noisy, ("radius", "distance")), noisy)
     assert named in word and "the runs hardly tell" in word
     assert advice in word.partition(";")[2] and "would tell most about it" in word
 
@@ -113,15 +97,6 @@ def test_one_run_that_went_wrong_hardly_moves_the_result():
     clean, spoilt = (found_from(scene, runs, ("radius", "distance")) for runs in (logs, [wrong, *logs[1:]]))
     assert spoilt.weights[0] < 0.2 and (spoilt.weights[1:] == 1.0).all()
     assert np.abs(spoilt.values / clean.values - 1.0).max() < 0.03
-
-
-def simulated(folder: Path, name: str, radius: float) -> Path:
-    """A run of a TurtleBot whose wheels have another radius, as `laconic simulate` writes it."""
-    text = scene_path("turtlebot3_burger").read_text().replace("wheel_radius_m = 0.033", f"wheel_radius_m = {radius}")
-    (folder / "true.toml").write_text(text)
-    out = folder / name / "run.csv"
-    assert run(["simulate", str(folder / "true.toml"), "--out", str(out)]) == 0
-    return out
 
 
 def test_the_command_finds_a_radius_writes_a_scene_and_judges_other_runs_with_it(tmp_path, capsys):

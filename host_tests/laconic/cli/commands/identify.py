@@ -9,8 +9,8 @@ import click
 
 from laconic.cli.options import InputPath, OutputFile, SceneName, json_flag
 from laconic.cli.options_of_logs import SeveralAfter, map_option
-from laconic.errors import BadInput
-from laconic.outputs import write_text
+from laconic.errors import BadInput, ResultFails
+from laconic.outputs import is_stdout, write_text
 
 LEFT_OUT = ("session", "run")
 
@@ -21,9 +21,9 @@ LEFT_OUT = ("session", "run")
 @click.option("-o", "--out", type=OutputFile(".toml", stdout=True), metavar="FITTED.toml",
               help="Write the scene with the values found; - for stdout.")
 @click.option("--free", default="radius,distance", show_default=True, metavar="NAMES",
-              help="What may move: radius (of each wheel), distance (of all wheels, one factor), place and heading (of "
-              "all wheels together against the true pose), axle, roller (angles of each wheel), common-radius (one of "
-              "all wheels); on ground with friction drag (of rollers), friction, axle-friction, viscous (of motors); "
+              help="What may move: radius (of each wheel), distance (of all wheels, one factor), centre-of-mass, place and "
+              "heading (of the whole robot against the true pose), axle, roller (angles of each wheel), common-radius (one "
+              "of all wheels); on ground with friction drag (of rollers), friction, axle-friction, viscous (of motors); "
               "controller (of the wheels' speeds).")
 @click.option("--prior", "prior_percent", type=float, default=10.0, show_default=True, metavar="PERCENT",
               help="How far radii and distances may be from nominal beforehand (standard deviation).")
@@ -40,12 +40,14 @@ def command(logs: tuple[Path, ...], scene: str, out: Path | None, free: str, pri
     Robust nonlinear least squares on the distance between the rolled and the true path; on ground with friction the
     core moves, its wheels held at the recorded speeds, and steady currents count as well. Each value comes with a 95 %
     interval; what the runs do not tell stays nominal, and it is stated which run would. FITTED.toml is a complete
-    scene, with sources and intervals in comments.
+    scene, with sources and intervals in comments. Exit status 1 where the values found are worse than the nominal ones
+    on runs to judge or left out; with -o - the report goes to stderr.
     """
     from laconic.identification import report
     from laconic.identification.fitted_toml import fitted_text
     from laconic.identification.geometry import geometry_of
     from laconic.identification.study import identify
+    from laconic.identification.words_of_errors import failures
     from laconic.logs import gather_logs
     from laconic.progress import progress_bar
     from laconic.scene import read_scene
@@ -64,8 +66,10 @@ def command(logs: tuple[Path, ...], scene: str, out: Path | None, free: str, pri
         write_text(out, fitted_text(study))
     if json_wanted:
         click.echo(json.dumps(report.as_numbers(study), indent=1))
-    elif out is None or str(out) != "-":
-        click.echo(report.as_text(study))
+    else:
+        click.echo(report.as_text(study), err=out is not None and is_stdout(out))
+    if worse := failures(study):
+        raise ResultFails(worse[0])
 
 
 def names_in(free: str) -> tuple[str, ...]:
