@@ -53,9 +53,9 @@ def _at_bounds(found: Fit) -> list[tuple[str, float]]:
 
 def _structured(found: Fit) -> str:
     """Errors that are no chance."""
-    return (f"Neighbouring stretches of a run err alike (correlation {found.structure.likeness:.2g}), which chance does "
-            "not explain: the model lacks something, and errors repeat. The intervals are therefore built from longer "
-            f"blocks, which made them up to {found.structure.widening:.2g} times as wide.")
+    return (f"Neighbouring stretches of a run err alike (correlation {found.structure.likeness:.2g}), which chance "
+            "does not explain: the model lacks something, and errors repeat. The intervals are therefore built from "
+            f"longer blocks, which made them up to {found.structure.widening:.2g} times as wide.")
 
 
 def _untold(name: str, found: Fit, candidates: dict[str, np.ndarray]) -> str:

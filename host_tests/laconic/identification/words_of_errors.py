@@ -30,8 +30,8 @@ def failures(study: Study) -> list[str]:
                                  ("the runs left out of the fit", study.nominal, study.left_out)):
         before, now = _path(nominal), _path(after)
         if after and now > before:
-            found.append(f"On {what} the values found are worse than the nominal ones: path error {_percent(now)} instead "
-                         f"of {_percent(before)}. Do not use them for such runs.")
+            found.append(f"On {what} the values found are worse than the nominal ones: path error {_percent(now)} "
+                         f"instead of {_percent(before)}. Do not use them for such runs.")
     return found
 
 

@@ -21,10 +21,10 @@ LEFT_OUT = ("session", "run")
 @click.option("-o", "--out", type=OutputFile(".toml", stdout=True), metavar="FITTED.toml",
               help="Write the scene with the values found; - for stdout.")
 @click.option("--free", default="radius,distance", show_default=True, metavar="NAMES",
-              help="What may move: radius (of each wheel), distance (of all wheels, one factor), centre-of-mass, place and "
-              "heading (of the whole robot against the true pose), axle, roller (angles of each wheel), common-radius (one "
-              "of all wheels); on ground with friction drag (of rollers), friction, axle-friction, viscous (of motors); "
-              "controller (of the wheels' speeds).")
+              help="What may move: radius (of each wheel), distance (of all wheels, one factor), centre-of-mass, place "
+              "and heading (of the whole robot against the true pose), axle, roller (angles of each wheel), "
+              "common-radius (one of all wheels); on ground with friction drag (of rollers), friction, axle-friction, "
+              "viscous (of motors); controller (of the wheels' speeds).")
 @click.option("--prior", "prior_percent", type=float, default=10.0, show_default=True, metavar="PERCENT",
               help="How far radii and distances may be from nominal beforehand (standard deviation).")
 @map_option
