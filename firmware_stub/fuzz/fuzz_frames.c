@@ -101,7 +101,8 @@ static void drain(bench *bench) {
 
 int LLVMFuzzerTestOneInput(const uint8_t *data, size_t size) {
     static bench bench;
-    const laconic_node_config config = {LACONIC_WIRE_ID_BASE, true, laconic_method_by_number, 0};
+    const laconic_node_config config = {LACONIC_WIRE_ID_BASE, true, laconic_method_by_number, 0,
+                                        laconic_drive_protocol_by_number};
     memset(&bench, 0, sizeof bench);
     laconic_node_init(&bench.node, &config, 0);
     open_session(&bench);

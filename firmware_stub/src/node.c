@@ -52,7 +52,12 @@ static bool takes(laconic_node *node, uint8_t offset, const uint8_t *data) {
 
 void laconic_node_on_frame(laconic_node *node, const laconic_frame *frame, uint32_t now_us) {
     const uint32_t offset = frame->id - node->config.id_base;
-    if (frame->extended || offset >= LACONIC_NODE_ID_STRIDE) return; /* for another node */
+    if (frame->extended || offset >= LACONIC_NODE_ID_STRIDE) { /* for another node, or for a drive */
+#if LACONIC_NODE_WITH_DRIVES
+        if (plays_drives(node)) laconic_drives_on_frame(&node->drives, frame, now_us);
+#endif
+        return;
+    }
     if (offset >= LACONIC_WIRE_RIG_OFFSETS || !is_well_formed(frame, &laconic_wire[offset])) {
         count(&node->counters.malformed);
         return;
@@ -61,12 +66,20 @@ void laconic_node_on_frame(laconic_node *node, const laconic_frame *frame, uint3
     if (!dispatch(node, (uint8_t)offset, frame->data, now_us)) count(&node->counters.refused);
 }
 
+/* A controller of drives has the bus for itself, unless a rig asks for frames. */
+static bool is_silent(const laconic_node *node) {
+    return plays_drives(node) && node->send == 0 && node->raw_output.send == 0;
+}
+
 void laconic_node_on_tick(laconic_node *node, uint32_t now_us) {
     if ((int32_t)(now_us - node->heartbeat_us) >= (int32_t)LACONIC_NODE_HEARTBEAT_US) {
         node->heartbeat_us += LACONIC_NODE_HEARTBEAT_US;
-        node->pending |= BIT(LACONIC_WIRE_HEARTBEAT);
+        if (!is_silent(node)) node->pending |= BIT(LACONIC_WIRE_HEARTBEAT);
         if (node->send & LACONIC_NODE_SEND_COUNTERS) node->pending |= BIT(LACONIC_WIRE_COUNTERS);
     }
+#if LACONIC_NODE_WITH_DRIVES
+    if (plays_drives(node)) laconic_node_run_drives(node, now_us);
+#endif
     if (node->state == LACONIC_WIRE_STATE_LOCKSTEP) laconic_node_run_lockstep(node);
     if (node->state == LACONIC_WIRE_STATE_FREE_RUN || node->state == LACONIC_WIRE_STATE_TIMEOUT)
         laconic_node_run_free(node, now_us);
@@ -88,9 +101,18 @@ static bool has_more(laconic_node *node, uint8_t offset) {
     }
 }
 
+static bool frame_of_drives(laconic_node *node, laconic_frame *frame) {
+#if LACONIC_NODE_WITH_DRIVES
+    if (plays_drives(node)) return laconic_drives_next_frame(&node->drives, frame);
+#endif
+    (void)node;
+    (void)frame;
+    return false;
+}
+
 bool laconic_node_next_frame(laconic_node *node, laconic_frame *frame) {
     uint8_t offset = LACONIC_WIRE_RESULT;
-    if (node->pending == 0) return false;
+    if (node->pending == 0) return frame_of_drives(node, frame);
     while ((node->pending & BIT(offset)) == 0) offset++;
     const laconic_wire_row *row = &laconic_wire[offset];
     frame->id = (uint32_t)node->config.id_base + offset;
@@ -110,7 +132,8 @@ bool laconic_node_is_busy(const laconic_node *node) { return node->lockstep.step
 uint32_t laconic_node_idle_us(const laconic_node *node, uint32_t now_us) {
     const uint32_t heartbeat = node->heartbeat_us + LACONIC_NODE_HEARTBEAT_US - now_us;
     uint32_t idle = (int32_t)heartbeat < 0 ? 0U : heartbeat;
-    if (node->state == LACONIC_WIRE_STATE_FREE_RUN || node->state == LACONIC_WIRE_STATE_TIMEOUT) {
+    if (node->state == LACONIC_WIRE_STATE_FREE_RUN || node->state == LACONIC_WIRE_STATE_TIMEOUT ||
+        plays_drives(node)) {
         const int32_t step = (int32_t)(node->free_run.next_us - now_us);
         if (step < (int32_t)idle) idle = step < 0 ? 0U : (uint32_t)step;
     }

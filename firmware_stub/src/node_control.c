@@ -56,15 +56,27 @@ static uint8_t start_free_run(laconic_node *node, const struct laconic_dbc_contr
     laconic_node_free_run run = {0};
     if (node->state != LACONIC_WIRE_STATE_READY) return LACONIC_WIRE_STATUS_WRONG_STATE;
     if (!choose_rate(&run, frame->rate, node->plant.integrator.step_s)) return LACONIC_WIRE_STATUS_OUT_OF_RANGE;
-    run.watchdog_us = 1000U * (uint32_t)frame->watchdog;
-    run.fed_us = now_us;
-    run.next_us = now_us + 1000000U / run.rate_Hz;
-    run.next_rest = 1000000U % run.rate_Hz;
-    node->free_run = run;
+    node->free_run.watchdog_us = 1000U * (uint32_t)frame->watchdog;
+    laconic_node_begin_periods(node, run.rate_Hz, run.steps_per_period, now_us);
     return start(node, LACONIC_WIRE_STATE_FREE_RUN);
 }
 
+static uint8_t start_drives(laconic_node *node, uint32_t now_us, uint8_t *field) {
+#if LACONIC_NODE_WITH_DRIVES
+    const uint8_t status = laconic_node_start_drives(node, now_us, field);
+    return status == 0 ? start(node, LACONIC_WIRE_STATE_DRIVES) : status;
+#else
+    (void)node;
+    (void)now_us;
+    (void)field;
+    return LACONIC_WIRE_STATUS_NOT_SUPPORTED;
+#endif
+}
+
 static uint8_t stop(laconic_node *node) {
+#if LACONIC_NODE_WITH_DRIVES
+    if (plays_drives(node)) laconic_drives_off(&node->drives);
+#endif
     if (is_running(node)) node->state = LACONIC_WIRE_STATE_READY;
     node->lockstep.steps_due = 0;
     node->session.deaf = 0;
@@ -104,6 +116,7 @@ void laconic_node_control(laconic_node *node, const uint8_t *data, uint32_t now_
     case LACONIC_WIRE_COMMAND_BEGIN: status = begin(node); break;
     case LACONIC_WIRE_COMMAND_START_LOCKSTEP: status = start(node, LACONIC_WIRE_STATE_LOCKSTEP); break;
     case LACONIC_WIRE_COMMAND_START_FREE_RUN: status = start_free_run(node, &frame, now_us); break;
+    case LACONIC_WIRE_COMMAND_START_DRIVES: status = start_drives(node, now_us, &field); break;
     case LACONIC_WIRE_COMMAND_STOP: status = stop(node); break;
     case LACONIC_WIRE_COMMAND_RESET: status = reset(node, &field, &item); break;
     default: status = LACONIC_WIRE_STATUS_UNKNOWN_COMMAND; break;
@@ -129,11 +142,18 @@ static uint8_t adopt(laconic_node *node, uint8_t *field, uint8_t *item) {
         *field = LACONIC_FIELD_METHOD;
         return LACONIC_METHOD_UNKNOWN;
     }
+#if LACONIC_NODE_WITH_DRIVES
+    const uint8_t refused = laconic_node_check_drives(node, &new->drives, new->vehicle.wheel_count, field, item);
+    if (refused != 0) return refused;
+#endif
     const laconic_status status =
         laconic_plant_start(&node->plant, &new->vehicle, method, new->step_s, &new->start, &why);
     *field = (uint8_t)why.field;
     *item = (uint8_t)why.item;
     if (status != LACONIC_OK) return (uint8_t)status;
+#if LACONIC_NODE_WITH_DRIVES
+    node->drive_plan = new->drives;
+#endif
     node->start = new->start;
     node->state = LACONIC_WIRE_STATE_READY;
     memset(node->input, 0, sizeof node->input);

@@ -25,9 +25,13 @@ static inline void put32(uint8_t *to, uint32_t value) {
 
 static inline void count(uint16_t *counter) { *counter = (uint16_t)(*counter + (*counter < UINT16_MAX)); }
 
+static inline bool plays_drives(const laconic_node *node) {
+    return LACONIC_NODE_WITH_DRIVES && node->state == LACONIC_WIRE_STATE_DRIVES;
+}
+
 static inline bool is_running(const laconic_node *node) {
     return node->state == LACONIC_WIRE_STATE_LOCKSTEP || node->state == LACONIC_WIRE_STATE_FREE_RUN ||
-           node->state == LACONIC_WIRE_STATE_TIMEOUT;
+           node->state == LACONIC_WIRE_STATE_TIMEOUT || plays_drives(node);
 }
 
 static inline bool listens_to_voltages(const laconic_node *node) {
@@ -64,8 +68,23 @@ void laconic_node_sync(laconic_node *node, uint32_t steps, uint16_t input_frames
 /* node_run.c */
 void laconic_node_run_lockstep(laconic_node *node);
 void laconic_node_run_free(laconic_node *node, uint32_t now_us);
+/* Periods of `steps_per_period` steps, the first of them one period from now. */
+void laconic_node_begin_periods(laconic_node *node, uint32_t rate_Hz, uint32_t steps_per_period, uint32_t now_us);
+/* True iff a period begins at this time or began before it; counts its lateness. */
+bool laconic_node_period_is_due(laconic_node *node, uint32_t now_us);
+void laconic_node_end_period(laconic_node *node);
+/* A step that the core refuses ends the run; the state stays as it was before that step. */
+void laconic_node_fail(laconic_node *node, const laconic_refusal *why, uint8_t request);
 void laconic_node_clear_inputs(laconic_node *node);
 void laconic_node_publish(laconic_node *node);
+
+/* node_drives.c: motor drives between the bus and the wheels. Statuses as RESULT has them. */
+#if LACONIC_NODE_WITH_DRIVES
+uint8_t laconic_node_check_drives(const laconic_node *node, const laconic_drive_plan *plan, int32_t wheel_count,
+                                  uint8_t *field, uint8_t *item);
+uint8_t laconic_node_start_drives(laconic_node *node, uint32_t now_us, uint8_t *field);
+void laconic_node_run_drives(laconic_node *node, uint32_t now_us);
+#endif
 
 /* node_pack.c: writes the payload of one frame; its protection follows. */
 void laconic_node_pack(laconic_node *node, uint8_t offset, uint8_t *data);

@@ -21,8 +21,7 @@ void laconic_node_publish(laconic_node *node) {
         node->pending |= node->raw_fd ? BIT(LACONIC_WIRE_RAW_OUTPUT_FD) : BIT(LACONIC_WIRE_RAW_OUTPUT);
 }
 
-/* A step that the core refuses ends the run; the state stays as it was before that step. */
-static void fail(laconic_node *node, const laconic_refusal *why, uint8_t request) {
+void laconic_node_fail(laconic_node *node, const laconic_refusal *why, uint8_t request) {
     node->lockstep.steps_due = 0;
     node->state = LACONIC_WIRE_STATE_FAULT;
     laconic_node_clear_inputs(node);
@@ -43,7 +42,7 @@ void laconic_node_run_lockstep(laconic_node *node) {
         status = laconic_plant_run(&node->plant, &node->input[0], steps, &why);
     }
     if (status != LACONIC_OK) {
-        fail(node, &why, node->lockstep.request);
+        laconic_node_fail(node, &why, node->lockstep.request);
         return;
     }
     node->lockstep.steps_due -= steps;
@@ -60,29 +59,45 @@ static void watch(laconic_node *node, uint32_t now_us) {
     laconic_node_clear_inputs(node);
 }
 
-static void schedule_next(laconic_node_free_run *run) {
+void laconic_node_begin_periods(laconic_node *node, uint32_t rate_Hz, uint32_t steps_per_period, uint32_t now_us) {
+    laconic_node_free_run *run = &node->free_run;
+    run->rate_Hz = rate_Hz;
+    run->steps_per_period = steps_per_period;
+    run->fed_us = now_us;
+    run->next_us = now_us + 1000000U / rate_Hz;
+    run->next_rest = 1000000U % rate_Hz;
+    run->worst_lateness_us = 0;
+}
+
+/* No period is ever left out: one that is late is computed late, and counted when it is late by a period or more. */
+bool laconic_node_period_is_due(laconic_node *node, uint32_t now_us) {
+    laconic_node_free_run *run = &node->free_run;
+    const uint32_t late = now_us - run->next_us;
+    if ((int32_t)late < 0) return false;
+    if (late > run->worst_lateness_us) run->worst_lateness_us = late;
+    if (late >= 1000000U / run->rate_Hz) count(&node->counters.late_periods);
+    return true;
+}
+
+void laconic_node_end_period(laconic_node *node) {
+    laconic_node_free_run *run = &node->free_run;
     run->next_us += 1000000U / run->rate_Hz;
     run->next_rest += 1000000U % run->rate_Hz;
     if (run->next_rest >= run->rate_Hz) {
         run->next_rest -= run->rate_Hz;
         run->next_us++;
     }
+    laconic_node_publish(node);
 }
 
-/* No step is ever left out: a period that is late is computed late, and counted when it is late by a period or more. */
 void laconic_node_run_free(laconic_node *node, uint32_t now_us) {
-    laconic_node_free_run *run = &node->free_run;
     laconic_refusal why = {0};
-    const uint32_t late = now_us - run->next_us;
     watch(node, now_us);
-    if ((int32_t)late < 0) return;
-    if (late > run->worst_lateness_us) run->worst_lateness_us = late;
-    if (late >= 1000000U / run->rate_Hz) count(&node->counters.late_periods);
-    const laconic_status status = laconic_plant_run(&node->plant, &node->input[0], run->steps_per_period, &why);
-    if (status != LACONIC_OK) {
-        fail(node, &why, 0);
-        return;
-    }
-    schedule_next(run);
-    laconic_node_publish(node);
+    if (!laconic_node_period_is_due(node, now_us)) return;
+    const laconic_status status =
+        laconic_plant_run(&node->plant, &node->input[0], node->free_run.steps_per_period, &why);
+    if (status != LACONIC_OK)
+        laconic_node_fail(node, &why, 0);
+    else
+        laconic_node_end_period(node);
 }

@@ -8,7 +8,8 @@ uint32_t laconic_library_node_size(void) { return (uint32_t)sizeof(laconic_node)
 
 bool laconic_library_node_init(laconic_node *node, uint16_t id_base, bool can_fd, uint32_t nonce_seed,
                                uint32_t now_us) {
-    const laconic_node_config config = {id_base, can_fd, laconic_method_by_number, nonce_seed};
+    const laconic_node_config config = {id_base, can_fd, laconic_method_by_number, nonce_seed,
+                                        laconic_drive_protocol_by_number};
     return laconic_node_init(node, &config, now_us);
 }
 

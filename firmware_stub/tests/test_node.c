@@ -9,7 +9,7 @@ void setUp(void) { bench_begin(); }
 void tearDown(void) {}
 
 static void id_bases_are_multiples_of_32(void) {
-    laconic_node_config config = {0x210, true, laconic_method_by_number, 0};
+    laconic_node_config config = {0x210, true, laconic_method_by_number, 0, NULL};
     TEST_ASSERT_FALSE(laconic_node_init(&node, &config, 0));
     config.id_base = 0x800;
     TEST_ASSERT_FALSE(laconic_node_init(&node, &config, 0));

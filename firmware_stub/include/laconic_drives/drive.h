@@ -19,6 +19,7 @@ typedef struct laconic_drive_settings {
     int32_t encoder_counts;                   /* of one turn of the shaft, > 0                                  */
     laconic_real gear_ratio;                  /* turns of the shaft for one of the wheel, not 0; < 0: reversed  */
     laconic_real torque_constant_Nm_per_A;    /* > 0                                                            */
+    laconic_real back_emf_Vs_per_rad;         /* 0: as the torque constant                                      */
     laconic_real current_limit_A;             /* > 0                                                            */
     laconic_real speed_limit_rad_per_s;       /* of position and speed control; 0: none                         */
     laconic_real supply_V;                    /* the current is limited to what this voltage drives through     */
@@ -27,6 +28,7 @@ typedef struct laconic_drive_settings {
     laconic_real position_gain_per_s;         /* speed for an error of the position                          */
     laconic_real speed_gain_As;               /* current for an error of the speed [A/(rad/s)]               */
     laconic_real speed_integral_gain_A;       /* current for the integral of that error [A/rad]              */
+    laconic_real stall_time_s;                /* so long at a limit of the current without motion is a stall; 0: none */
 } laconic_drive_settings;
 
 typedef enum laconic_drive_mode {
@@ -36,7 +38,7 @@ typedef enum laconic_drive_mode {
     LACONIC_DRIVE_POSITION
 } laconic_drive_mode;
 
-/* What a protocol asks of a drive; it stays until it is changed. */
+/* What a protocol asks of a drive; it stays until it is changed. Its numbers must be finite. */
 typedef struct laconic_drive_target {
     laconic_drive_mode mode;
     int64_t position_count; /* POSITION: counts of the encoder, and a share of a count, 0 to 1          */
@@ -46,7 +48,7 @@ typedef struct laconic_drive_target {
 } laconic_drive_target;
 
 /* What goes wrong in a drive, whoever caused it: bits of laconic_wheel_drive.faults. A drive with a fault is off until the
- * protocol clears it with laconic_drive_clear(). */
+ * protocol clears it with laconic_drive_clear(). The drive itself finds ENCODER, STALL and TARGET. */
 #define LACONIC_DRIVE_FAULT_ENCODER 1U     /* the encoder is lost                    */
 #define LACONIC_DRIVE_FAULT_STALL 2U       /* no motion at the limit of the current  */
 #define LACONIC_DRIVE_FAULT_TEMPERATURE 4U /* only by order: drives have no thermal model */
@@ -54,6 +56,7 @@ typedef struct laconic_drive_target {
 #define LACONIC_DRIVE_FAULT_SUPPLY 16U
 #define LACONIC_DRIVE_FAULT_WATCHDOG 32U  /* the controller is silent; set by the protocol */
 #define LACONIC_DRIVE_FAULT_FOLLOWING 64U /* position error too large; set by the protocol */
+#define LACONIC_DRIVE_FAULT_TARGET 128U   /* the target or a gain asks for a current that is no number */
 
 /* Limits that the last step met: bits of laconic_wheel_drive.limits. */
 #define LACONIC_DRIVE_AT_CURRENT 1U
@@ -64,27 +67,45 @@ typedef struct laconic_wheel_drive {
     laconic_drive_settings settings; /* protocols may change gains and limits */
     laconic_drive_target target;
     uint32_t faults, limits;
-    laconic_real integral_A; /* of the speed loop */
+    uint32_t causes;         /* faults by order that clearing does not end: laconic_drive_break()             */
+    laconic_real brake_Nm;   /* by order: up to this torque holds the wheel, so that the drive stalls; 0: none */
+    laconic_real integral_A; /* of the speed loop                                                             */
+    laconic_real stalled_s;  /* how long the current has been at its limit without motion                     */
+    int64_t stalled_count;   /* the count when that began                                                     */
     /* measured at the end of the last step */
     int64_t count;     /* of the encoder since the start, not wrapped */
     laconic_real rest; /* share of a count beyond it, 0 to 1; the encoder does not show it */
     laconic_real speed_rad_per_s;
     laconic_real current_A;
-    laconic_real torque_Nm; /* at the wheel's axle, as the plant got it */
+    laconic_real torque_Nm; /* of the motor at the wheel's axle, without the brake by order */
 } laconic_wheel_drive;
 
 /* All zero but the settings: off, at count 0. */
 void laconic_drive_start(laconic_wheel_drive *drive, const laconic_drive_settings *settings);
 
-/* The torque at the wheel's axle for the next step_s, from target and measured values. */
+/* The torque at the wheel's axle for the next step_s, from target and measured values. Sets the faults STALL and TARGET.
+ * Off, the current is 0 at once. */
 laconic_real laconic_drive_act(laconic_wheel_drive *drive, laconic_real step_s);
 
-/* Takes the wheel's motion in the step just done: its mean speed turned the encoder, its speed at the end is measured. */
+/* Takes the wheel's motion in the step just done: how far it turned, and its speed at the end. A lost encoder shows
+ * neither. A step of 2^31 counts and more sets the fault ENCODER. */
 void laconic_drive_measure(laconic_wheel_drive *drive, laconic_real turned_rad, laconic_real wheel_speed_rad_per_s);
 
-/* Sets a fault: the drive is off until it is cleared. */
-void laconic_drive_fail(laconic_wheel_drive *drive, uint32_t fault);
+/* The place within one turn of the shaft: count modulo encoder_counts, 0 to encoder_counts − 1. The encoder's index is
+ * at 0. */
+int32_t laconic_drive_shaft_count(const laconic_wheel_drive *drive);
+
+/* Off, without a fault. */
+void laconic_drive_off(laconic_wheel_drive *drive);
+
+/* Sets faults: the drive is off until they are cleared. */
+void laconic_drive_fail(laconic_wheel_drive *drive, uint32_t faults);
 /* Clears all faults but those whose cause remains; the drive stays off until the protocol gives a target. */
 void laconic_drive_clear(laconic_wheel_drive *drive);
+
+/* For tests and scripts of faults: sets faults that remain, whatever the protocol clears, until they are mended (and
+ * then cleared). While ENCODER is there the count stands still and the speed is 0. */
+void laconic_drive_break(laconic_wheel_drive *drive, uint32_t faults);
+void laconic_drive_mend(laconic_wheel_drive *drive, uint32_t faults);
 
 #endif

@@ -5,21 +5,26 @@
 #include "laconic_drives/drive.h"
 #include "laconic_node/frame.h"
 
-/* The drives of one vehicle on one bus: drive i turns wheel i. */
+/* The drives of one vehicle on one bus, in the order of their wheels. A wheel without motor has none, so drive k turns
+ * wheel[k]. */
 typedef struct laconic_drives {
     const struct laconic_drive_protocol *protocol; /* NULL: none */
     void *axes;                                    /* memory of the protocol: protocol->axis_bytes for each drive */
     int32_t count;
     laconic_real step_s;
     laconic_real watchdog_s; /* of silence of the controller that the drives bear; 0: what the protocol says */
+    uint32_t now_us;         /* of the protocol's last call */
+    uint8_t wheel[LACONIC_MAX_WHEELS];
     laconic_wheel_drive drive[LACONIC_MAX_WHEELS];
 } laconic_drives;
 
 /* A protocol translates frames into targets and measured values into frames; it has neither clock nor bus. Time is a
- * count of microseconds that may wrap. Functions touch only `drives` and its axes. */
+ * count of microseconds that may wrap and never runs backwards; a late period comes late, so on_step may come twice at
+ * the same time. Functions touch only `drives` and its axes. */
 typedef struct laconic_drive_protocol {
     const char *name;
-    uint16_t axis_bytes; /* of one drive's state of the protocol */
+    uint16_t axis_bytes;        /* of one drive's state of the protocol; at most LACONIC_NODE_AXIS_BYTES */
+    int16_t first_id, last_id;  /* what settings.node_id may be; two drives have two ids                    */
     /* As after power-up. The axes are all zero. */
     void (*start)(laconic_drives *drives, uint32_t now_us);
     /* Takes a frame from the bus; frames for others are passed over. */
@@ -30,7 +35,12 @@ typedef struct laconic_drive_protocol {
     bool (*next_frame)(laconic_drives *drives, laconic_frame *frame);
 } laconic_drive_protocol;
 
-/* By number, as parameter DRIVE_PROTOCOL has them: 1 canopen, 2 odrive, 3 robomaster, 4 moteus. */
-extern const laconic_drive_protocol laconic_canopen, laconic_odrive, laconic_robomaster, laconic_moteus;
+/* By number, as parameter DRIVE_PROTOCOL has them: 1 canopen, 2 odrive, 3 robomaster (C620), 4 moteus, 5 robomaster-c610.
+ */
+extern const laconic_drive_protocol laconic_canopen, laconic_odrive, laconic_robomaster, laconic_moteus,
+    laconic_robomaster_c610;
+
+/* All protocols of this build, for adapters that choose by number; NULL if there is none. Links every protocol. */
+const laconic_drive_protocol *laconic_drive_protocol_by_number(int32_t number);
 
 #endif

@@ -11,10 +11,16 @@
  * call handles one frame, or at most LACONIC_NODE_STEPS_PER_TICK steps.
  *
  * Time is a count of microseconds that may wrap: only differences are used, and on_tick must be called at least
- * every half hour. laconic.dbc defines the frames. */
+ * every half hour. laconic.dbc defines the frames.
+ *
+ * START_DRIVES puts motor drives between the bus and the wheels: the node then takes one step a period, every frame
+ * that is not for its identifiers goes to the chosen protocol of drives (protocol.h), and that protocol's frames are
+ * fetched among the node's own. So a controller that speaks that protocol drives the vehicle, and a rig that shares
+ * its bus goes on reading the node's frames. */
 #ifndef LACONIC_NODE_H
 #define LACONIC_NODE_H
 
+#include "laconic_drives/drives.h"
 #include "laconic_node/counters.h"
 #include "laconic_node/frame.h"
 #include "laconic_node/loader.h"
@@ -24,6 +30,9 @@
 
 #ifndef LACONIC_NODE_STEPS_PER_TICK
 #define LACONIC_NODE_STEPS_PER_TICK 64
+#endif
+#ifndef LACONIC_NODE_AXIS_BYTES
+#define LACONIC_NODE_AXIS_BYTES 1024 /* room for what a protocol keeps of one drive */
 #endif
 #define LACONIC_NODE_HEARTBEAT_US 100000U
 #define LACONIC_NODE_ID_STRIDE 32U /* a node uses 32 identifiers from its base */
@@ -35,6 +44,8 @@ typedef struct laconic_node_config {
                                                          laconic_method_by_number                  */
     uint32_t nonce_seed;                             /* different at each power-up, from a hardware
                                                          generator, noise or a boot counter; 0: none         */
+    const laconic_drive_protocol *(*protocol)(int32_t number); /* the protocols of drives that are linked, as
+                                                         laconic_drive_protocol_by_number; NULL: none        */
 } laconic_node_config;
 
 typedef struct laconic_node_result {
@@ -78,6 +89,11 @@ typedef struct laconic_node {
     laconic_input input[3]; /* held: [0]; sampled: start, middle, end                   */
     laconic_raw_input raw_input;
     laconic_raw_output raw_output;
+#if LACONIC_NODE_WITH_DRIVES
+    laconic_drive_plan drive_plan; /* of the vehicle, for START_DRIVES                         */
+    laconic_drives drives;
+    uint64_t axes[(LACONIC_MAX_WHEELS * LACONIC_NODE_AXIS_BYTES + 7) / 8]; /* of the protocol */
+#endif
 } laconic_node;
 
 #define LACONIC_NODE_SEND_NU 1U

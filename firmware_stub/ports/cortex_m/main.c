@@ -7,6 +7,7 @@
 #include "laconic_node/slcan.h"
 #include "laconic_wire.h"
 #include "methods.h"
+#include "protocols.h"
 
 #define RING_SIZE 256U /* 11 classic frames; a power of two */
 
@@ -103,7 +104,7 @@ void board_end(int status) {
 int main(void) {
     board_init();
     const laconic_node_config config = {LACONIC_WIRE_ID_BASE, LACONIC_NODE_CAN_FD != 0, port_method,
-                                        board_nonce_seed()};
+                                        board_nonce_seed(), port_protocol};
     laconic_slcan_init(&slcan, 0);
     laconic_node_init(&node, &config, board_now_us());
     for (;;) {

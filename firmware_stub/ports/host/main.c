@@ -262,7 +262,8 @@ int main(int count, char **words) {
     if (asks_for_help(count, words)) return printf(help, (unsigned)LACONIC_WIRE_ID_BASE) < 0;
     const int bad = parse(count, words, &settings);
     if (bad != 0) return bad;
-    const laconic_node_config config = {(uint16_t)settings.id_base, true, laconic_method_by_number, nonce_seed()};
+    const laconic_node_config config = {(uint16_t)settings.id_base, true, laconic_method_by_number, nonce_seed(),
+                                        laconic_drive_protocol_by_number};
     laconic_node_init(&port.node, &config, now_us());
     const int listening = open_listener(settings.port, &chosen);
     if (listening < 0) return complain(strerror(errno), "the port is taken or not allowed; choose another --port");

@@ -1,0 +1,172 @@
+/* One motor drive: its loops and limits, its encoder, its faults. */
+#include "laconic_drives/drive.h"
+
+#include <string.h>
+
+#define R(number) ((laconic_real)(number))
+#define TURN_RAD R(6.28318530717958647693)
+#define MOST_COUNTS R(2147483520.0) /* of one step; the largest number below 2^31 of single precision */
+
+void laconic_drive_start(laconic_wheel_drive *drive, const laconic_drive_settings *settings) {
+    const laconic_drive_settings kept = *settings; /* which may be the drive's own */
+    memset(drive, 0, sizeof *drive);
+    drive->settings = kept;
+}
+
+/* --------------------------------------------------------------------------------- limits -- */
+
+/* The value within its bounds; sets the limit's bit where it was beyond. NaN stays NaN. */
+static laconic_real within(laconic_real value, laconic_real least, laconic_real most, uint32_t limit,
+                           uint32_t *limits) {
+    if (value >= least && value <= most) return value;
+    *limits |= limit;
+    return value < least ? least : value > most ? most : value;
+}
+
+/* The currents that the supply drives through the winding against the back-EMF. Beyond the speed at which the back-EMF
+ * reaches the supply these are braking currents alone, as the diodes of a bridge let them flow. The current's own limit
+ * comes last, so it always holds. */
+static laconic_real limit_current(laconic_wheel_drive *drive, laconic_real current_A) {
+    const laconic_drive_settings *s = &drive->settings;
+    if (s->supply_V > 0 && s->winding_resistance_ohm > 0) {
+        const laconic_real constant = s->back_emf_Vs_per_rad > 0 ? s->back_emf_Vs_per_rad : s->torque_constant_Nm_per_A;
+        const laconic_real back_emf_V = constant * drive->speed_rad_per_s;
+        current_A = within(current_A, (-s->supply_V - back_emf_V) / s->winding_resistance_ohm,
+                           (s->supply_V - back_emf_V) / s->winding_resistance_ohm, LACONIC_DRIVE_AT_SUPPLY,
+                           &drive->limits);
+    }
+    return within(current_A, -s->current_limit_A, s->current_limit_A, LACONIC_DRIVE_AT_CURRENT, &drive->limits);
+}
+
+/* ---------------------------------------------------------------------------------- loops -- */
+
+/* Set speed of the position loop. The difference of the counts is exact, however far the shaft has turned. */
+static laconic_real position_loop(const laconic_wheel_drive *drive) {
+    const laconic_drive_target *target = &drive->target;
+    const int64_t counts = (int64_t)((uint64_t)target->position_count - (uint64_t)drive->count);
+    const laconic_real error_rad =
+        ((laconic_real)counts + target->position_rest) * (TURN_RAD / (laconic_real)drive->settings.encoder_counts);
+    return drive->settings.position_gain_per_s * error_rad + target->speed_rad_per_s;
+}
+
+/* Wanted current of the speed loop. The integral takes up no error while a limit holds the current back from what that
+ * error asks for, so it does not wind up. */
+static laconic_real speed_loop(laconic_wheel_drive *drive, laconic_real set_rad_per_s, laconic_real step_s) {
+    const laconic_drive_settings *s = &drive->settings;
+    if (s->speed_limit_rad_per_s > 0)
+        set_rad_per_s = within(set_rad_per_s, -s->speed_limit_rad_per_s, s->speed_limit_rad_per_s,
+                               LACONIC_DRIVE_AT_SPEED, &drive->limits);
+    const laconic_real error = set_rad_per_s - drive->speed_rad_per_s;
+    const laconic_real integral = drive->integral_A + s->speed_integral_gain_A * error * step_s;
+    const laconic_real wanted = s->speed_gain_As * error + drive->target.current_A + integral;
+    const laconic_real given = limit_current(drive, wanted);
+    if (wanted == given || (wanted - given) * error < 0) drive->integral_A = integral;
+    return given;
+}
+
+static laconic_real set_current(laconic_wheel_drive *drive, laconic_real step_s) {
+    if (drive->target.mode == LACONIC_DRIVE_POSITION) return speed_loop(drive, position_loop(drive), step_s);
+    if (drive->target.mode == LACONIC_DRIVE_SPEED) return speed_loop(drive, drive->target.speed_rad_per_s, step_s);
+    drive->integral_A = 0;
+    return limit_current(drive, drive->target.current_A);
+}
+
+/* The current follows its set value by an implicit Euler step, which no bandwidth makes overshoot. */
+static laconic_real current_loop(laconic_wheel_drive *drive, laconic_real set_A, laconic_real step_s) {
+    const laconic_real gain = drive->settings.current_bandwidth_rad_per_s * step_s;
+    if (!(gain > 0)) return set_A;
+    return limit_current(drive, drive->current_A + (set_A - drive->current_A) * (gain / (1 + gain)));
+}
+
+/* No motion for the settings' time though the current is at a limit. */
+static void watch_for_stall(laconic_wheel_drive *drive, laconic_real step_s) {
+    const int64_t moved = drive->count - drive->stalled_count;
+    const bool pushes = (drive->limits & (LACONIC_DRIVE_AT_CURRENT | LACONIC_DRIVE_AT_SUPPLY)) != 0;
+    if (drive->settings.stall_time_s > 0 && pushes && moved >= -1 && moved <= 1) {
+        drive->stalled_s += step_s;
+        if (drive->stalled_s >= drive->settings.stall_time_s) laconic_drive_fail(drive, LACONIC_DRIVE_FAULT_STALL);
+    } else {
+        drive->stalled_s = 0;
+        drive->stalled_count = drive->count;
+    }
+}
+
+void laconic_drive_off(laconic_wheel_drive *drive) {
+    drive->target.mode = LACONIC_DRIVE_OFF;
+    drive->limits = 0;
+    drive->integral_A = 0;
+    drive->current_A = 0;
+    drive->torque_Nm = 0;
+}
+
+laconic_real laconic_drive_act(laconic_wheel_drive *drive, laconic_real step_s) {
+    watch_for_stall(drive, step_s);
+    drive->limits = 0;
+    if (drive->faults != 0 || drive->target.mode == LACONIC_DRIVE_OFF) {
+        laconic_drive_off(drive);
+        return 0;
+    }
+    const laconic_real current_A = current_loop(drive, set_current(drive, step_s), step_s);
+    const laconic_real torque_Nm = drive->settings.torque_constant_Nm_per_A * current_A * drive->settings.gear_ratio;
+    if (!(torque_Nm - torque_Nm == 0)) { /* not finite */
+        laconic_drive_fail(drive, LACONIC_DRIVE_FAULT_TARGET);
+        return 0;
+    }
+    drive->current_A = current_A;
+    drive->torque_Nm = torque_Nm;
+    return torque_Nm;
+}
+
+/* -------------------------------------------------------------------------------- encoder -- */
+
+/* Whole counts and the part of a count are added apart, so that neither a fast shaft nor a far one costs resolution. */
+static void turn_encoder(laconic_wheel_drive *drive, laconic_real counts) {
+    if (!(counts >= -MOST_COUNTS && counts <= MOST_COUNTS)) {
+        laconic_drive_fail(drive, LACONIC_DRIVE_FAULT_ENCODER);
+        return;
+    }
+    const int32_t whole = (int32_t)counts;
+    laconic_real rest = drive->rest + (counts - (laconic_real)whole); /* above −1, below 2 */
+    const int32_t carry = rest >= 1 ? 1 : rest < 0 ? -1 : 0;
+    rest -= (laconic_real)carry;
+    const bool rounded_up = rest >= 1; /* a tiny negative part, taken from 1 */
+    drive->rest = rounded_up ? 0 : rest;
+    drive->count += (int64_t)whole + carry + (rounded_up ? 1 : 0);
+}
+
+void laconic_drive_measure(laconic_wheel_drive *drive, laconic_real turned_rad, laconic_real wheel_speed_rad_per_s) {
+    const laconic_drive_settings *s = &drive->settings;
+    if (drive->causes & LACONIC_DRIVE_FAULT_ENCODER) {
+        drive->speed_rad_per_s = 0;
+        return;
+    }
+    turn_encoder(drive, turned_rad * (s->gear_ratio * (laconic_real)s->encoder_counts / TURN_RAD));
+    drive->speed_rad_per_s = wheel_speed_rad_per_s * s->gear_ratio;
+}
+
+int32_t laconic_drive_shaft_count(const laconic_wheel_drive *drive) {
+    const int64_t counts = drive->settings.encoder_counts;
+    const int64_t within_turn = drive->count % counts;
+    return (int32_t)(within_turn < 0 ? within_turn + counts : within_turn);
+}
+
+/* --------------------------------------------------------------------------------- faults -- */
+
+void laconic_drive_fail(laconic_wheel_drive *drive, uint32_t faults) {
+    drive->faults |= faults;
+    laconic_drive_off(drive);
+}
+
+void laconic_drive_clear(laconic_wheel_drive *drive) {
+    laconic_drive_off(drive);
+    drive->faults = drive->causes;
+    drive->stalled_s = 0;
+    drive->stalled_count = drive->count;
+}
+
+void laconic_drive_break(laconic_wheel_drive *drive, uint32_t faults) {
+    drive->causes |= faults;
+    laconic_drive_fail(drive, faults);
+}
+
+void laconic_drive_mend(laconic_wheel_drive *drive, uint32_t faults) { drive->causes &= ~faults; }

@@ -1,0 +1,131 @@
+/* RoboMaster C620 and C610: brushless speed controllers of current, four to a frame. From "RoboMaster C620 Brushless DC
+ * Motor Speed Controller User Guide" V1.01 and "RoboMaster C610 …" V1.00, chapters on CAN communication:
+ *
+ *   commands   standard frames 0x200 (controllers 1 to 4) and 0x1FF (5 to 8) of eight bytes, at 1 Mbit/s: a signed
+ *              16-bit number for each controller in turn, high byte first; ±16384 is ±20 A (C620), ±10000 is ±10 A (C610)
+ *   feedback   0x200 + number, by default a thousand times a second: angle of the rotor (0 to 8191 for a turn), its
+ *              speed in rpm, torque current in the units of the command, each of two bytes, high byte first; byte 6:
+ *              temperature of the motor in °C (C620; 0 of a C610); byte 7: 0
+ *
+ * They have no speed loop: the controller on the bus closes it, at each feedback. They have no command to clear a fault;
+ * what a fault of a drive is here ends only when it is mended, and the drive then follows the next command. Angle and
+ * current are those of one moment; temperature is constant, since drives have no thermal model. The manuals do not state
+ * what follows when commands cease: without DRIVE_WATCHDOG the last command stays, with it the drives go off, and on
+ * again by the next command. */
+#include "laconic_drives/protocol.h"
+
+enum { COMMAND_1_TO_4 = 0x200, COMMAND_5_TO_8 = 0x1FF, FEEDBACK = 0x200, TURN = 8192, PERIOD_US = 1000 };
+
+#define TEMPERATURE_C 25U
+
+typedef struct kind {
+    int32_t full_scale; /* of the command */
+    laconic_real full_scale_A;
+    uint8_t temperature_C;
+} kind;
+
+static const kind c620 = {16384, 20, TEMPERATURE_C};
+static const kind c610 = {10000, 10, 0};
+
+/* Of all drives; kept as that of the first axis. */
+typedef struct group {
+    uint32_t next_us;     /* when feedback is due                     */
+    uint32_t fed_us;      /* when the last command came               */
+    uint32_t watchdog_us; /* 0: none                                  */
+    uint32_t due;         /* feedback to send: bit = drive            */
+} group;
+
+static const kind *kind_of(const laconic_drives *drives) {
+    return drives->protocol == &laconic_robomaster ? &c620 : &c610;
+}
+
+static void start(laconic_drives *drives, uint32_t now_us) {
+    group *all = drives->axes;
+    if (drives->count == 0) return;
+    all->next_us = now_us + PERIOD_US;
+    all->fed_us = now_us;
+    all->watchdog_us = (uint32_t)(drives->watchdog_s * (laconic_real)1e6);
+}
+
+static void command(laconic_wheel_drive *drive, const kind *of, const uint8_t *data) {
+    const int16_t raw = (int16_t)(data[0] << 8 | data[1]);
+    const int32_t most = of->full_scale;
+    const int32_t value = raw > most ? most : raw < -most ? -most : raw;
+    if (drive->faults & ~drive->causes) laconic_drive_clear(drive);
+    drive->target.mode = LACONIC_DRIVE_CURRENT;
+    drive->target.current_A = (laconic_real)value * (of->full_scale_A / (laconic_real)most);
+}
+
+static void on_frame(laconic_drives *drives, const laconic_frame *frame, uint32_t now_us) {
+    group *all = drives->axes;
+    const bool low = frame->id == COMMAND_1_TO_4;
+    if ((!low && frame->id != COMMAND_5_TO_8) || frame->extended || frame->remote || frame->fd) return;
+    if (frame->length != 8 || drives->count == 0) return;
+    for (int32_t k = 0; k < drives->count; k++) {
+        const int32_t place = drives->drive[k].settings.node_id - (low ? 1 : 5);
+        if (place >= 0 && place < 4) command(&drives->drive[k], kind_of(drives), &frame->data[2 * place]);
+    }
+    all->fed_us = now_us;
+}
+
+static void on_step(laconic_drives *drives, uint32_t now_us) {
+    group *all = drives->axes;
+    if (drives->count == 0) return;
+    if (all->watchdog_us > 0 && now_us - all->fed_us > all->watchdog_us)
+        for (int32_t k = 0; k < drives->count; k++) laconic_drive_fail(&drives->drive[k], LACONIC_DRIVE_FAULT_WATCHDOG);
+    if ((int32_t)(now_us - all->next_us) < 0) return;
+    all->next_us += PERIOD_US;
+    all->due = ((uint32_t)1 << drives->count) - 1U;
+}
+
+static void put16(uint8_t *to, laconic_real value) {
+    const laconic_real half = (laconic_real)0.5;
+    const laconic_real bounded = value > 32767 ? 32767 : value < -32768 ? -32768 : value;
+    const int32_t number = (int32_t)(bounded < 0 ? bounded - half : bounded + half);
+    to[0] = (uint8_t)((uint32_t)number >> 8 & 255U);
+    to[1] = (uint8_t)((uint32_t)number & 255U);
+}
+
+/* The encoder of a motor has its own number of counts; its turn is told in 8192 parts. */
+static laconic_real angle_of(const laconic_wheel_drive *drive) {
+    const int64_t parts = (int64_t)laconic_drive_shaft_count(drive) * TURN / drive->settings.encoder_counts;
+    return (laconic_real)parts;
+}
+
+static void feedback(const laconic_wheel_drive *drive, const kind *of, laconic_frame *frame) {
+    const laconic_real rpm_per_rad_per_s = (laconic_real)9.54929658551372014613;
+    const laconic_frame empty = {.id = FEEDBACK + (uint32_t)drive->settings.node_id, .length = 8};
+    *frame = empty;
+    put16(&frame->data[0], angle_of(drive));
+    put16(&frame->data[2], drive->speed_rad_per_s * rpm_per_rad_per_s);
+    put16(&frame->data[4], drive->current_A * ((laconic_real)of->full_scale / of->full_scale_A));
+    frame->data[6] = of->temperature_C;
+}
+
+static bool next_frame(laconic_drives *drives, laconic_frame *frame) {
+    group *all = drives->axes;
+    if (drives->count == 0 || all->due == 0) return false;
+    int32_t k = 0;
+    while ((all->due >> k & 1U) == 0) k++;
+    all->due &= all->due - 1U;
+    feedback(&drives->drive[k], kind_of(drives), frame);
+    return true;
+}
+
+const laconic_drive_protocol laconic_robomaster = {.name = "robomaster",
+                                                   .axis_bytes = sizeof(group),
+                                                   .first_id = 1,
+                                                   .last_id = 8,
+                                                   .start = start,
+                                                   .on_frame = on_frame,
+                                                   .on_step = on_step,
+                                                   .next_frame = next_frame};
+
+const laconic_drive_protocol laconic_robomaster_c610 = {.name = "robomaster-c610",
+                                                        .axis_bytes = sizeof(group),
+                                                        .first_id = 1,
+                                                        .last_id = 8,
+                                                        .start = start,
+                                                        .on_frame = on_frame,
+                                                        .on_step = on_step,
+                                                        .next_frame = next_frame};

@@ -1,0 +1,31 @@
+/* The drives of one vehicle between a protocol and the plant. A step of all of them is
+ *
+ *     protocol->on_step;  torque of each drive, held;  laconic_plant_run, one step;  measured motion of each wheel
+ *
+ * so the plant moves as one that is fed with these torques, bit for bit. */
+#ifndef LACONIC_DRIVES_DRIVES_H
+#define LACONIC_DRIVES_DRIVES_H
+
+#include "laconic_drives/settings.h"
+
+/* As after power-up, from a plan that laconic_drive_plan_check() has accepted: every drive is off at count 0 and
+ * measures its wheel's speed. `axes`: memory for protocol->axis_bytes of each drive, aligned to 8 bytes. */
+void laconic_drives_start(laconic_drives *drives, const laconic_drive_plan *plan,
+                          const laconic_drive_protocol *protocol, void *axes, const laconic_plant *plant,
+                          uint32_t now_us);
+
+/* A frame from the bus, for the protocol. */
+void laconic_drives_on_frame(laconic_drives *drives, const laconic_frame *frame, uint32_t now_us);
+
+/* One step of the plant with which the drives were started. Writes the axle torques of the wheels that have a drive into `held`
+ * and leaves its other numbers. A refusal is that of laconic_plant_run; the drives are then off. */
+laconic_status laconic_drives_step(laconic_drives *drives, laconic_plant *plant, laconic_input *held, uint32_t now_us,
+                                   laconic_refusal *why);
+
+/* The next frame of the protocol; false iff there is none. */
+bool laconic_drives_next_frame(laconic_drives *drives, laconic_frame *frame);
+
+/* Every drive off. */
+void laconic_drives_off(laconic_drives *drives);
+
+#endif

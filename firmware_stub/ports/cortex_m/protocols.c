@@ -1,0 +1,16 @@
+/* The protocols of drives in an image: all, the one that LACONIC_NODE_ONE_PROTOCOL and LACONIC_NODE_ONE_PROTOCOL_NUMBER
+ * name, or none in a node without drives. */
+#include "protocols.h"
+
+#include "laconic_drives/settings.h"
+
+const laconic_drive_protocol *port_protocol(int32_t number) {
+#if !LACONIC_NODE_WITH_DRIVES
+    (void)number;
+    return NULL;
+#elif defined(LACONIC_NODE_ONE_PROTOCOL)
+    return number == LACONIC_NODE_ONE_PROTOCOL_NUMBER ? &LACONIC_NODE_ONE_PROTOCOL : NULL;
+#else
+    return laconic_drive_protocol_by_number(number);
+#endif
+}
