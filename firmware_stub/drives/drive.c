@@ -31,9 +31,9 @@ static laconic_real limit_current(laconic_wheel_drive *drive, laconic_real curre
     if (s->supply_V > 0 && s->winding_resistance_ohm > 0) {
         const laconic_real constant = s->back_emf_Vs_per_rad > 0 ? s->back_emf_Vs_per_rad : s->torque_constant_Nm_per_A;
         const laconic_real back_emf_V = constant * drive->speed_rad_per_s;
-        current_A = within(current_A, (-s->supply_V - back_emf_V) / s->winding_resistance_ohm,
-                           (s->supply_V - back_emf_V) / s->winding_resistance_ohm, LACONIC_DRIVE_AT_SUPPLY,
-                           &drive->limits);
+        current_A =
+            within(current_A, (-s->supply_V - back_emf_V) / s->winding_resistance_ohm,
+                   (s->supply_V - back_emf_V) / s->winding_resistance_ohm, LACONIC_DRIVE_AT_SUPPLY, &drive->limits);
     }
     return within(current_A, -s->current_limit_A, s->current_limit_A, LACONIC_DRIVE_AT_CURRENT, &drive->limits);
 }

@@ -19,6 +19,7 @@ HERE = Path(__file__).resolve().parent
 PAGE = HERE.parents[1] / "docs" / "wire.md"
 
 NONCE, SESSION, STARTS = 0x0123ABCD, 0xC0FFEE11, 9
+PROTOCOLS = "1 canopen, 2 odrive, 3 robomaster (C620), 4 moteus, 5 robomaster-c610"
 ENUMERATED = ("command", "state", "status", "field")  # have a chapter of their own
 STATUSES = {
     "OK": "done", "NOT_FINITE": "a number is infinite or NaN", "NOT_POSITIVE": "must be above zero",
@@ -148,6 +149,7 @@ def page() -> str:
         "data_ids": "\n".join(f"| {m.name} | `{attribute(m, 'E2EDataID')}` |" for m in messages),
         "parameters": parameter_rows(database),
         "methods": ", ".join(f"{number} {name}" for number, name in enumerate(METHODS)),
+        "protocols": PROTOCOLS,
         "states": choices_text(result.get_signal_by_name("state")),
         "control": choices_text(database.get_message_by_name("CONTROL").get_signal_by_name("command")),
         "results": choices_text(result.get_signal_by_name("command")),

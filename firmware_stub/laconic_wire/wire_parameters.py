@@ -11,6 +11,8 @@ import xml.etree.ElementTree as ET
 from laconic.core import Field, load
 from laconic.paths import SOURCE_DIR
 
+from .drive_parameters import drive_parameters
+
 NEEDS = {
     "NEVER": "", "ALWAYS": "always", "WITH_WHEELS": "with wheels", "WITH_MOTOR": "with the other of the motor",
     "WITH_PAYLOAD": "with any of the payload", "WITH_SUPPORTS": "with any support", "EACH_WHEEL": "each wheel",
@@ -55,4 +57,4 @@ PARAMETERS = {
     "GEAR_RATIO": ("vehicle.motor.gear_ratio", "1", NONE, RESERVED),
     "VISCOUS_FRICTION": ("vehicle.motor.viscous_friction_Nms", "N m s", NONE, RESERVED),
     "ROTOR_INERTIA": ("vehicle.motor.rotor_inertia_kgm2", "kg m²", NONE, RESERVED),
-} | taken()
+} | taken() | drive_parameters()

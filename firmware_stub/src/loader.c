@@ -33,8 +33,8 @@ typedef struct location {
 #define LOCATION(of, number, IDENTIFIER, member, name, KIND, RULE, NEED) \
     LACONIC_ROW_OF(number)({number, LACONIC_KIND_##KIND | LACONIC_NEED_##NEED << 4, IN_##of(member)}, )
 
-static const location locations[LACONIC_LOADER_FIELDS] = {
-    LACONIC_PARAMETER_FIELDS(LOCATION) LACONIC_LOADER_DRIVES(LOCATION)};
+static const location locations[LACONIC_LOADER_FIELDS] = {LACONIC_PARAMETER_FIELDS(LOCATION)
+                                                              LACONIC_LOADER_DRIVES(LOCATION)};
 
 void laconic_loader_begin(laconic_loader *loader) {
     memset(loader, 0, sizeof *loader);

@@ -132,8 +132,7 @@ bool laconic_node_is_busy(const laconic_node *node) { return node->lockstep.step
 uint32_t laconic_node_idle_us(const laconic_node *node, uint32_t now_us) {
     const uint32_t heartbeat = node->heartbeat_us + LACONIC_NODE_HEARTBEAT_US - now_us;
     uint32_t idle = (int32_t)heartbeat < 0 ? 0U : heartbeat;
-    if (node->state == LACONIC_WIRE_STATE_FREE_RUN || node->state == LACONIC_WIRE_STATE_TIMEOUT ||
-        plays_drives(node)) {
+    if (node->state == LACONIC_WIRE_STATE_FREE_RUN || node->state == LACONIC_WIRE_STATE_TIMEOUT || plays_drives(node)) {
         const int32_t step = (int32_t)(node->free_run.next_us - now_us);
         if (step < (int32_t)idle) idle = step < 0 ? 0U : (uint32_t)step;
     }

@@ -61,17 +61,12 @@ static uint8_t start_free_run(laconic_node *node, const struct laconic_dbc_contr
     return start(node, LACONIC_WIRE_STATE_FREE_RUN);
 }
 
-static uint8_t start_drives(laconic_node *node, uint32_t now_us, uint8_t *field) {
 #if LACONIC_NODE_WITH_DRIVES
+static uint8_t start_drives(laconic_node *node, uint32_t now_us, uint8_t *field) {
     const uint8_t status = laconic_node_start_drives(node, now_us, field);
     return status == 0 ? start(node, LACONIC_WIRE_STATE_DRIVES) : status;
-#else
-    (void)node;
-    (void)now_us;
-    (void)field;
-    return LACONIC_WIRE_STATUS_NOT_SUPPORTED;
-#endif
 }
+#endif
 
 static uint8_t stop(laconic_node *node) {
 #if LACONIC_NODE_WITH_DRIVES
@@ -116,7 +111,9 @@ void laconic_node_control(laconic_node *node, const uint8_t *data, uint32_t now_
     case LACONIC_WIRE_COMMAND_BEGIN: status = begin(node); break;
     case LACONIC_WIRE_COMMAND_START_LOCKSTEP: status = start(node, LACONIC_WIRE_STATE_LOCKSTEP); break;
     case LACONIC_WIRE_COMMAND_START_FREE_RUN: status = start_free_run(node, &frame, now_us); break;
+#if LACONIC_NODE_WITH_DRIVES
     case LACONIC_WIRE_COMMAND_START_DRIVES: status = start_drives(node, now_us, &field); break;
+#endif
     case LACONIC_WIRE_COMMAND_STOP: status = stop(node); break;
     case LACONIC_WIRE_COMMAND_RESET: status = reset(node, &field, &item); break;
     default: status = LACONIC_WIRE_STATUS_UNKNOWN_COMMAND; break;

@@ -25,6 +25,56 @@ void laconic_library_inspect(const laconic_node *node, laconic_library_view *vie
     *view = seen;
 }
 
+int32_t laconic_library_drive_count(const laconic_node *node) { return node->drives.count; }
+
+bool laconic_library_drive_view(const laconic_node *node, int32_t drive, laconic_library_drive *view) {
+    laconic_real speed[LACONIC_MAX_WHEELS];
+    laconic_real angle[LACONIC_MAX_WHEELS];
+    if (drive < 0 || drive >= node->drives.count) return false;
+    const laconic_wheel_drive *it = &node->drives.drive[drive];
+    const int32_t wheel = node->drives.wheel[drive];
+    laconic_plant_wheel_speeds(&node->plant, speed);
+    laconic_plant_wheel_angles(&node->plant, angle);
+    const laconic_library_drive seen = {
+        .wheel = wheel,
+        .node_id = it->settings.node_id,
+        .mode = (int32_t)it->target.mode,
+        .target_count = it->target.position_count,
+        .target_rest = (double)it->target.position_rest,
+        .target_speed_rad_per_s = (double)it->target.speed_rad_per_s,
+        .target_current_A = (double)it->target.current_A,
+        .faults = it->faults,
+        .limits = it->limits,
+        .count = it->count,
+        .rest = (double)it->rest,
+        .speed_rad_per_s = (double)it->speed_rad_per_s,
+        .current_A = (double)it->current_A,
+        .integral_A = (double)it->integral_A,
+        .torque_Nm = (double)it->torque_Nm,
+        .axle_torque_Nm = (double)node->input[0].axle_torque_Nm[wheel],
+        .wheel_speed_rad_per_s = (double)speed[wheel],
+        .wheel_angle_rad = (double)angle[wheel],
+    };
+    *view = seen;
+    return true;
+}
+
+void laconic_library_drive_fail(laconic_node *node, int32_t drive, uint32_t faults) {
+    laconic_drive_fail(&node->drives.drive[drive], faults);
+}
+
+void laconic_library_drive_break(laconic_node *node, int32_t drive, uint32_t faults) {
+    laconic_drive_break(&node->drives.drive[drive], faults);
+}
+
+void laconic_library_drive_mend(laconic_node *node, int32_t drive, uint32_t faults) {
+    laconic_drive_mend(&node->drives.drive[drive], faults);
+}
+
+void laconic_library_drive_brake(laconic_node *node, int32_t drive, double torque_Nm) {
+    node->drives.drive[drive].brake_Nm = (laconic_real)torque_Nm;
+}
+
 static void try_error(laconic_error_census *census, const uint8_t frame[8], uint64_t error, const uint8_t data_ids[16],
                       uint8_t max_delta) {
     uint8_t data[8];

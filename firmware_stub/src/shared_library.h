@@ -34,6 +34,34 @@ typedef struct laconic_library_view {
 
 void laconic_library_inspect(const struct laconic_node *node, laconic_library_view *view);
 
+/* One drive at the end of the last step. */
+typedef struct laconic_library_drive {
+    int32_t wheel; /* from 0 */
+    int32_t node_id;
+    int32_t mode; /* laconic_drive_mode of the target */
+    int64_t target_count;
+    double target_rest, target_speed_rad_per_s, target_current_A;
+    uint32_t faults, limits;
+    int64_t count; /* of the encoder */
+    double rest, speed_rad_per_s, current_A, integral_A;
+    double torque_Nm;                              /* of the motor, at the wheel's axle        */
+    double axle_torque_Nm;                         /* which the plant got, with a brake's      */
+    double wheel_speed_rad_per_s, wheel_angle_rad; /* of the plant                             */
+} laconic_library_drive;
+
+/* How many drives the node has: 0 before the first START_DRIVES of a vehicle with drives. Drives are in the order of
+ * their wheels. */
+int32_t laconic_library_drive_count(const struct laconic_node *node);
+/* False iff there is no such drive. */
+bool laconic_library_drive_view(const struct laconic_node *node, int32_t drive, laconic_library_drive *view);
+
+/* Faults by order, of a drive that exists: bits of laconic_wheel_drive.faults. laconic_drive_fail sets faults that the
+ * protocol may clear; _break faults that remain until _mend; a brake holds the wheel by up to this torque, 0: none. */
+void laconic_library_drive_fail(struct laconic_node *node, int32_t drive, uint32_t faults);
+void laconic_library_drive_break(struct laconic_node *node, int32_t drive, uint32_t faults);
+void laconic_library_drive_mend(struct laconic_node *node, int32_t drive, uint32_t faults);
+void laconic_library_drive_brake(struct laconic_node *node, int32_t drive, double torque_Nm);
+
 /* Counts of all errors of one, two and three bits in an 8-byte frame of profile 22 by their outcome: 0 found by the
  * CRC, 1 found by the counter, 2 accepted. The receiver has just accepted the frame before. */
 typedef struct laconic_error_census {

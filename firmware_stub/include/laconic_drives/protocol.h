@@ -23,8 +23,8 @@ typedef struct laconic_drives {
  * the same time. Functions touch only `drives` and its axes. */
 typedef struct laconic_drive_protocol {
     const char *name;
-    uint16_t axis_bytes;        /* of one drive's state of the protocol; at most LACONIC_NODE_AXIS_BYTES */
-    int16_t first_id, last_id;  /* what settings.node_id may be; two drives have two ids                    */
+    uint16_t axis_bytes;       /* of one drive's state of the protocol; at most LACONIC_NODE_AXIS_BYTES */
+    int16_t first_id, last_id; /* what settings.node_id may be; two drives have two ids                    */
     /* As after power-up. The axes are all zero. */
     void (*start)(laconic_drives *drives, uint32_t now_us);
     /* Takes a frame from the bus; frames for others are passed over. */

@@ -17,16 +17,14 @@ typedef struct laconic_parameters {
 
 /* The rows of drives, in a node that has them. */
 #if LACONIC_NODE_WITH_DRIVES
-#define LACONIC_LOADER_DRIVES(X) \
-    LACONIC_DRIVES_GROUP_ROWS(X, DRIVES) LACONIC_DRIVES_WHEEL_ROWS(X, DRIVES_WHEEL)
+#define LACONIC_LOADER_DRIVES(X) LACONIC_DRIVES_GROUP_ROWS(X, DRIVES) LACONIC_DRIVES_WHEEL_ROWS(X, DRIVES_WHEEL)
 #else
 #define LACONIC_LOADER_DRIVES(X)
 #endif
 
 /* Number of fields that the loader receives. */
 #define LACONIC_LOADER_ONE(of, number, ...) LACONIC_ROW_OF(number)(+1)
-#define LACONIC_LOADER_FIELDS \
-    (0 LACONIC_PARAMETER_FIELDS(LACONIC_LOADER_ONE) LACONIC_LOADER_DRIVES(LACONIC_LOADER_ONE))
+#define LACONIC_LOADER_FIELDS (0 LACONIC_PARAMETER_FIELDS(LACONIC_LOADER_ONE) LACONIC_LOADER_DRIVES(LACONIC_LOADER_ONE))
 
 typedef struct laconic_loader {
     laconic_parameters parameters;

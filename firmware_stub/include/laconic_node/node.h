@@ -44,8 +44,10 @@ typedef struct laconic_node_config {
                                                          laconic_method_by_number                  */
     uint32_t nonce_seed;                             /* different at each power-up, from a hardware
                                                          generator, noise or a boot counter; 0: none         */
+#if LACONIC_NODE_WITH_DRIVES
     const laconic_drive_protocol *(*protocol)(int32_t number); /* the protocols of drives that are linked, as
                                                          laconic_drive_protocol_by_number; NULL: none        */
+#endif
 } laconic_node_config;
 
 typedef struct laconic_node_result {

@@ -44,7 +44,8 @@ static void voltage_frame(laconic_frame *frame, uint8_t counter) {
 }
 
 static bool start(void) {
-    const laconic_node_config config = {LACONIC_WIRE_ID_BASE, false, port_method, 0, port_protocol};
+    laconic_node_config config = {.id_base = LACONIC_WIRE_ID_BASE, .method = port_method};
+    port_add_protocols(&config);
     const laconic_start rest = {0};
     laconic_node_init(&node, &config, 0);
     if (laconic_plant_start(&node.plant, &vehicle, port_method(1), (laconic_real)0.001, &rest, NULL) != LACONIC_OK)

@@ -103,8 +103,11 @@ void board_end(int status) {
 
 int main(void) {
     board_init();
-    const laconic_node_config config = {LACONIC_WIRE_ID_BASE, LACONIC_NODE_CAN_FD != 0, port_method,
-                                        board_nonce_seed(), port_protocol};
+    laconic_node_config config = {.id_base = LACONIC_WIRE_ID_BASE,
+                                  .can_fd = LACONIC_NODE_CAN_FD != 0,
+                                  .method = port_method,
+                                  .nonce_seed = board_nonce_seed()};
+    port_add_protocols(&config);
     laconic_slcan_init(&slcan, 0);
     laconic_node_init(&node, &config, board_now_us());
     for (;;) {

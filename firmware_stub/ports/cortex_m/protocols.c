@@ -1,8 +1,5 @@
-/* The protocols of drives in an image: all, the one that LACONIC_NODE_ONE_PROTOCOL and LACONIC_NODE_ONE_PROTOCOL_NUMBER
- * name, or none in a node without drives. */
+/* Which protocols of drives an image links. */
 #include "protocols.h"
-
-#include "laconic_drives/settings.h"
 
 const laconic_drive_protocol *port_protocol(int32_t number) {
 #if !LACONIC_NODE_WITH_DRIVES

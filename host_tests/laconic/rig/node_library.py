@@ -61,7 +61,7 @@ def node_library(real: str = "double") -> NodeLibrary:
 
 
 E2E_STATUS = ("ok", "ok some lost", "repeated", "wrong sequence", "error", "no new data")
-NODE_STATES = ("empty", "ready", "lockstep", "free run", "timeout", "fault")
+NODE_STATES = ("empty", "ready", "lockstep", "free run", "timeout", "fault", "drives")
 
 
 class LibraryNode:

@@ -7,7 +7,7 @@ from laconic.rig.errors import BusDied, CannotReach, NodeRefused, NodeSilent
 
 ATTEMPTS = 4
 PATIENCE_S = 0.25  # wait for one answer: a run that ends must not take long
-RUNNING = ("lockstep", "free run", "timeout")
+RUNNING = ("lockstep", "free run", "timeout", "drives")
 
 
 def come_to_rest(node: NodeClient) -> str | None:
