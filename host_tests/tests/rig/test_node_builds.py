@@ -12,13 +12,14 @@ from laconic.paths import SOURCE_DIR, build_dir
 FIRMWARE = SOURCE_DIR / "firmware_stub"
 STRICT = ("-std=c99", "-Wall", "-Wextra", "-Wconversion", "-Wshadow", "-Wdouble-promotion", "-Werror",
           "-ffp-contract=off", "-fsyntax-only")
-INCLUDES = (SOURCE_DIR / "core_c" / "include", FIRMWARE / "include", FIRMWARE / "src")
+INCLUDES = (SOURCE_DIR / "core_c" / "include", FIRMWARE / "include", FIRMWARE / "src", FIRMWARE / "drives")
 COMPILERS = [name for name in ("gcc", "clang") if shutil.which(name)]
 
 
 def compiled(compiler: str, *definitions: str, only: str = "*.c") -> str:
     """The messages of the compiler about the files of the node."""
-    files = [str(path) for path in sorted((FIRMWARE / "src").glob(only)) if path.name != "shared_library.c"]
+    paths = [path for room in ("src", "drives") for path in sorted((FIRMWARE / room).rglob(only))]
+    files = [str(path) for path in paths if path.name != "shared_library.c"]
     where = [word for path in INCLUDES for word in ("-I", str(path))]
     where += ["-isystem", str(build_dir() / "firmware_stub" / "wire")]
     done = subprocess.run([compiler, *STRICT, *where, *(f"-D{each}" for each in definitions), *files],
@@ -28,7 +29,7 @@ def compiled(compiler: str, *definitions: str, only: str = "*.c") -> str:
 
 @pytest.mark.parametrize("compiler", COMPILERS)
 @pytest.mark.parametrize("definitions", [
-    (), ("LACONIC_MAX_WHEELS=24",),
+    (), ("LACONIC_MAX_WHEELS=24",), ("LACONIC_NODE_WITH_DRIVES=0", "LACONIC_WITH_AXLE_TORQUE=0"),
     ("LACONIC_SINGLE", "LACONIC_NODE_CAN_FD=0", "LACONIC_MAX_WHEELS=4", "LACONIC_MAX_SUPPORTS=1")], ids=" ".join)
 def test_the_node_compiles_without_a_warning(compiler: str, definitions: tuple[str, ...]) -> None:
     assert compiled(compiler, *definitions) == ""
