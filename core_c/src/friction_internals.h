@@ -18,7 +18,7 @@
 /* √x for x from the least normal number on, some units in the last place; below, a number below 1e-150 (1e-18); not for
  * infinity. It costs a quarter of laconic_root(), which does not use IEEE's layout: half the exponent's bits are the
  * guess, 3.5 % off at most, and each of Heron's rounds squares that: 6e-4, 2e-7, 2e-14, then rounding. */
-static inline real root_in(int rounds, real x) {
+static inline real quick_root(real x) {
 #ifdef LACONIC_SINGLE
     union {
         real number;
@@ -32,14 +32,9 @@ static inline real root_in(int rounds, real x) {
     } guess = {x};
     guess.bits = (guess.bits >> 1) + 0x1ff769e5b00908bcU;
 #endif
-    for (int round = 0; round < rounds; round++) guess.number = R(0.5) * (guess.number + x / guess.number);
+    for (int round = 0; round < HERON_ROUNDS; round++) guess.number = R(0.5) * (guess.number + x / guess.number);
     return guess.number;
 }
-
-static inline real quick_root(real x) { return root_in(HERON_ROUNDS, x); }
-
-/* To 2e-7, which is enough on the way: smoothed passes end where exact ones go on. */
-static inline real rough_root(real x) { return root_in(2, x); }
 
 /* The problem and where the search for its solution stands. */
 typedef struct friction_search {
@@ -104,11 +99,14 @@ static inline void add_product(equations *k, vector first, vector second) {
     k->zz += first.z * second.z;
 }
 
+/* The body's own mass is 1, so no pivot is less but by rounding errors. */
+static inline real pivot(real x) { return x > R(1) ? x : R(1); }
+
 /* By Cholesky's decomposition without roots: L D Lᵀ. */
 static inline vector solved(const equations *k) {
     const real lxy = k->xy / k->xx, lxz = k->xz / k->xx;
-    const real dy = k->yy - lxy * k->xy, below = k->yz - lxz * k->xy, lyz = below / dy;
-    const real dz = k->zz - lxz * k->xz - lyz * below;
+    const real dy = pivot(k->yy - lxy * k->xy), below = k->yz - lxz * k->xy, lyz = below / dy;
+    const real dz = pivot(k->zz - lxz * k->xz - lyz * below);
     const real y = k->rest.y - lxy * k->rest.x, z = k->rest.z - lxz * k->rest.x - lyz * y;
     vector out;
     out.z = z / dz;
@@ -120,7 +118,16 @@ static inline vector solved(const equations *k) {
 /* The speeds to which the impulses lead: the dual point's primal one. */
 void laconic_friction_follow(friction_search *at);
 
-/* Passes on the smoothed problem, for states from which the exact one does not converge. Returns their number. */
-int32_t laconic_friction_smooth(friction_search *at);
+/* Where the search stands on the central path of the smoothed problem, beside speeds and contacts' impulses. */
+typedef struct friction_path {
+    real softness, fastest;                                   /* fastest: the size of the free motion, rad/s */
+    real axle[LACONIC_MAX_WHEELS], motor[LACONIC_MAX_WHEELS]; /* impulses */
+} friction_path;
+
+/* Starts from the impulses that the search has, cut to what the contacts can bear. */
+void laconic_friction_start_path(friction_search *at, friction_path *path);
+
+/* One pass of Newton's method, then the softness falls. */
+void laconic_friction_follow_path(friction_search *at, friction_path *path);
 
 #endif

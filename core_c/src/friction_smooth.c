@@ -1,135 +1,171 @@
 /* The friction problem with its corners rounded: the way to the solution from where the exact passes go in circles.
  *
- * |slip| becomes w = √(|slip|² + τ²), so p = grip slip/w is smooth; |s| of the axle's friction likewise. Newton's
- * method on p w = grip slip with p as an unknown of its own converges from far away, where the one on speeds alone
- * overshoots (Chan, Golub and Mulet 1999). τ = softness/grip (at most 1 rad/s) makes the energy that the rounding
- * adds the same for each contact, as on the central path of an interior-point method, and shrinks from pass to pass. */
+ * Contacts, axles and motors at their limit are dry friction of one kind: an impulse of at most `bound` against a
+ * speed. |speed| becomes w = √(|speed|² + τ²), so that impulse = bound speed/w is smooth. Newton's method on
+ * impulse w = bound speed with the impulse as an unknown of its own converges from far away, where the one on speeds
+ * alone overshoots (Chan, Golub and Mulet 1999). τ = softness/bound makes the energy that the rounding adds the same
+ * for all of them: solutions for falling softness are the central path of an interior-point method for this cone
+ * program (Boyd and Vandenberghe 2004, chapter 11). The problem is strongly convex, so the path exists and is unique
+ * whatever the contacts, also where their impulses are not; it ends in the solution. The softness falls as fast as
+ * the passes follow: by much where all impulses are near to what the path asks, by little where one is far off. */
 #include "friction_internals.h"
 
-/* Of the free motion's energy. Softer at first would forget the guess, which exact passes made; less soft, or faster,
- * goes in circles too; softer at last leaves more to exact passes. One pass fewer doubles the refusals: in double 1 in
- * 900 of random states up to four wheels, in single 1 in 140. */
+/* Softness over the free motion's energy. Softer at first would forget the guess, which exact passes made. */
 #define FIRST_SOFTNESS R(1e-5)
-#define SOFTER R(0.1)
+#define FALL_NEAR R(0.01)
+#define FALL_ASIDE R(0.05)
+#define FALL_FAR R(0.3)
+#define NEAR R(0.0625) /* (1/4)²: of the bound, squared */
 
-/* A contact that sticks has the stiffness grip/τ. Above this multiple of what its row meets, rounding errors of the
- * speeds, times it, would be all that is left of the impulse; much below, a vehicle that is held by an impulse many
- * times that of its motion still creeps when exact passes take over. */
+/* Something that sticks has the stiffness bound/τ. Above this multiple of the mass that it holds, the sums of the
+ * equations would keep nothing of what else acts on the body. */
 #ifdef LACONIC_SINGLE
-#define STIFFEST R(3e5)
-#define SMOOTH_PASSES 5 /* beyond it the rounding errors of the sums show */
+#define STIFFEST R(1e7)
+#define LEAST_SOFTNESS R(1e-14)
 #else
-#define STIFFEST R(1e15)
-#define SMOOTH_PASSES 7
+#define STIFFEST R(1e14)
+#define LEAST_SOFTNESS R(1e-24)
 #endif
 
-/* A contact's linear law p += G rows·δν and s += turn·rows·δν, and the axle's q += grow δs. */
-typedef struct soft_contact {
-    real g[3], turn[2];
-    real impulse[2], speed, axle, grow;
-} soft_contact;
-
-/* A symmetric matrix H, and the impulse where its wheel turns as in the pass before. */
-typedef struct soft_law {
-    real xx, xy, yy, impulse[2];
-} soft_law;
-
-INLINE soft_law law_of(const friction_wheel *w, const friction_load *l, const real slip[2], const real p[2],
-                       real softness) {
-    const real wanted = softness / (l->grip + softness), least = l->grip / (STIFFEST * w->row_mass[0]);
-    const real tau = wanted > least ? wanted : least;
-    const real size = rough_root(slip[0] * slip[0] + slip[1] * slip[1] + tau * tau);
-    const real x = slip[0] / size, y = slip[1] / size;
-    soft_law law;
-    if (l->grip < LACONIC_REAL_MAX) {
-        law.xx = (l->grip - p[0] * x) / size;
-        law.yy = (l->grip - p[1] * y) / size;
-        law.xy = R(-0.5) * (p[0] * y + p[1] * x) / size;
-        law.impulse[0] = l->grip * x;
-        law.impulse[1] = l->grip * y;
-    } else {
-        law.xx = PENALTY * w->row_mass[0];
-        law.yy = PENALTY * w->row_mass[1];
-        law.xy = R(0);
-        law.impulse[0] = p[0] + law.xx * slip[0];
-        law.impulse[1] = p[1] + law.yy * slip[1];
-    }
-    return law;
+/* `mass`: which the bound's impulse can move, in the direction where nothing but it gives way. */
+static real tau_of(const friction_path *path, real bound, real mass) {
+    const real wanted = path->softness / (bound + path->softness / path->fastest), least = bound / (STIFFEST * mass);
+    return wanted > least ? wanted : least;
 }
 
-/* Eliminates the wheel's speed: G = H − H rim rimᵀ H / d, written so that nothing cancels. */
-INLINE void eliminate(soft_contact *restrict c, const friction_wheel *w, const friction_load *l, const soft_law *h,
-                      real speed, real axle, real softness) {
-    const real x = h->xx * w->rim[0] + h->xy * w->rim[1], y = h->xy * w->rim[0] + h->yy * w->rim[1];
-    const real rim = w->rim[0] * x + w->rim[1] * y, area = h->xx * h->yy - h->xy * h->xy;
-    const real tau = softness / (l->axle + softness), size = rough_root(speed * speed + tau * tau);
-    real own, all;
-    turning wheel;
-    c->axle = l->axle * (speed / size);
-    c->grow = (l->axle - axle * (speed / size)) / size;
-    wheel = turning_of(w, l, rim + c->grow, R(0),
-                       w->inertia * l->free_speed + w->rim[0] * h->impulse[0] + w->rim[1] * h->impulse[1] - c->axle +
-                           (rim + c->grow) * speed);
-    c->speed = wheel.speed;
-    c->impulse[0] = h->impulse[0] - x * (wheel.speed - speed);
-    c->impulse[1] = h->impulse[1] - y * (wheel.speed - speed);
-    own = wheel.slope + c->grow;
-    all = own + rim;
+static real fall_at(real off, real bound) {
+    return off > bound * bound ? FALL_FAR : (off > NEAR * bound * bound ? FALL_ASIDE : FALL_NEAR);
+}
+
+/* One wheel in a pass: its impulses at the speeds of the pass before, and how they grow. */
+typedef struct soft_wheel {
+    real xx, xy, yy, impulse[2]; /* of the contact, with slip: a symmetric matrix H */
+    real axle, axle_growth, motor, motor_fall;
+    real turn[2], excess; /* wheel speed per slip of a standing wheel, and by itself */
+    real fall;            /* of the softness */
+} soft_wheel;
+
+INLINE void soften_contact(soft_wheel *restrict c, const friction_wheel *w, real grip, const real slip[2],
+                           const real p[2], const friction_path *path) {
+    if (grip < LACONIC_REAL_MAX) {
+        const real tau = tau_of(path, grip, w->lateral_mass > R(0) ? w->lateral_mass : w->row_mass[0]);
+        const real size = quick_root(slip[0] * slip[0] + slip[1] * slip[1] + tau * tau);
+        const real x = slip[0] / size, y = slip[1] / size, off[2] = {p[0] - grip * x, p[1] - grip * y};
+        c->xx = (grip - p[0] * x) / size;
+        c->yy = (grip - p[1] * y) / size;
+        c->xy = R(-0.5) * (p[0] * y + p[1] * x) / size;
+        c->impulse[0] = grip * x;
+        c->impulse[1] = grip * y;
+        c->fall = fall_at(off[0] * off[0] + off[1] * off[1], grip);
+    } else {
+        c->xx = PENALTY * w->row_mass[0];
+        c->yy = PENALTY * w->row_mass[1];
+        c->xy = R(0);
+        c->impulse[0] = p[0] + c->xx * slip[0];
+        c->impulse[1] = p[1] + c->yy * slip[1];
+        c->fall = FALL_NEAR;
+    }
+}
+
+INLINE real dry_impulse(soft_wheel *restrict c, real *growth, real bound, real speed, real now, real tau) {
+    const real size = quick_root(speed * speed + tau * tau), x = speed / size, impulse = bound * x;
+    const real off = now - impulse, fall = fall_at(off * off, bound);
+    *growth = (bound - now * x) / size;
+    if (fall > c->fall) c->fall = fall;
+    return impulse;
+}
+
+/* A motor with a limit: a damper in series with dry friction, whose speed is what the damper leaves. */
+INLINE void soften_motor(soft_wheel *restrict c, const friction_load *l, real speed, real now,
+                         const friction_path *path) {
+    c->motor = drive_at(l, speed);
+    c->motor_fall = l->drive_slope;
+    if (l->drive_slope > R(0) && l->drive_limit < LACONIC_REAL_MAX) {
+        const real left = (l->drive - l->drive_slope * speed - now) / l->drive_slope;
+        real growth;
+        const real limited =
+            dry_impulse(c, &growth, l->drive_limit, left, now, tau_of(path, l->drive_limit, l->drive_slope));
+        const real share = l->drive_slope / (l->drive_slope + growth);
+        c->motor = now + share * (limited - now);
+        c->motor_fall = share * growth;
+    }
+}
+
+/* Takes the wheel's speed out of the equations: G = H − H rim rimᵀ H / all, written so that nothing cancels. */
+INLINE void eliminate(soft_wheel *restrict c, equations *k, const friction_wheel *w, const friction_load *l,
+                      real speed) {
+    const real own = w->inertia + l->viscous + c->motor_fall + c->axle_growth, area = c->xx * c->yy - c->xy * c->xy;
+    const real lateral = area > R(0) ? area : R(0); /* rounding errors could make it negative, and G indefinite */
+    const real x = c->xx * w->rim[0] + c->xy * w->rim[1], y = c->xy * w->rim[0] + c->yy * w->rim[1];
+    const real all = own + w->rim[0] * x + w->rim[1] * y;
+    const real g[3] = {(own * c->xx + lateral * w->rim[1] * w->rim[1]) / all,
+                       (own * c->xy - lateral * w->rim[0] * w->rim[1]) / all,
+                       (own * c->yy + lateral * w->rim[0] * w->rim[0]) / all};
+    c->excess = (w->inertia * (l->free_speed - speed) - l->viscous * speed + c->motor - c->axle +
+                 w->rim[0] * c->impulse[0] + w->rim[1] * c->impulse[1]) /
+                all;
     c->turn[0] = x / all;
     c->turn[1] = y / all;
-    c->g[0] = (own * h->xx + area * w->rim[1] * w->rim[1]) / all;
-    c->g[1] = (own * h->xy - area * w->rim[0] * w->rim[1]) / all;
-    c->g[2] = (own * h->yy + area * w->rim[0] * w->rim[0]) / all;
+    k->rest = minus(k->rest, combined(w->row, c->impulse[0] - x * c->excess, c->impulse[1] - y * c->excess));
+    add_product(k, w->row[0], combined(w->row, g[0], g[1]));
+    add_product(k, w->row[1], combined(w->row, g[1], g[2]));
 }
 
-/* Into the disc, by one of Heron's rounds instead of a root: exact at the border, a little inside beyond it. */
-INLINE void put_inside(real p[2], real grip) {
-    const real size = p[0] * p[0] + p[1] * p[1], border = grip * grip;
-    if (grip < LACONIC_REAL_MAX && size > border) {
-        const real by = R(2) * border / (border + size);
+static void put_inside(real p[2], real grip) {
+    const real size = p[0] * p[0] + p[1] * p[1];
+    if (grip < LACONIC_REAL_MAX && size > grip * grip) {
+        const real by = grip / quick_root(size);
         p[0] *= by;
         p[1] *= by;
     }
 }
 
-static void smooth_pass(friction_search *at, real axle[], real softness) {
-    soft_contact contacts[LACONIC_MAX_WHEELS];
+static void move(const soft_wheel *c, friction_search *at, friction_path *path, int32_t i, vector by) {
+    const friction_wheel *w = &at->wheel[i];
+    const real x = dot(w->row[0], by), y = dot(w->row[1], by);
+    const real turned = c->excess + c->turn[0] * x + c->turn[1] * y;
+    const real slip[2] = {x - w->rim[0] * turned, y - w->rim[1] * turned};
+    at->speed[i] += turned;
+    at->impulse[i][0] = c->impulse[0] + c->xx * slip[0] + c->xy * slip[1];
+    at->impulse[i][1] = c->impulse[1] + c->xy * slip[0] + c->yy * slip[1];
+    put_inside(at->impulse[i], at->load[i].grip);
+    path->axle[i] = cut(c->axle + c->axle_growth * turned, at->load[i].axle);
+    path->motor[i] = cut(c->motor - c->motor_fall * turned, at->load[i].drive_limit);
+}
+
+void laconic_friction_follow_path(friction_search *at, friction_path *path) {
+    soft_wheel wheels[LACONIC_MAX_WHEELS];
     equations k = no_wheels(at);
+    const real least = LEAST_SOFTNESS * at->scale;
+    real fall = FALL_NEAR;
     vector by;
     for (int32_t i = 0; i < at->count; i++) {
         const friction_wheel *w = &at->wheel[i];
-        const real slip[2] = {dot(w->row[0], at->nu) - w->rim[0] * at->speed[i],
-                              dot(w->row[1], at->nu) - w->rim[1] * at->speed[i]};
-        const soft_law law = law_of(w, &at->load[i], slip, at->impulse[i], softness);
-        soft_contact *c = &contacts[i];
-        eliminate(c, w, &at->load[i], &law, at->speed[i], axle[i], softness);
-        k.rest = minus(k.rest, combined(w->row, c->impulse[0], c->impulse[1]));
-        add_product(&k, w->row[0], combined(w->row, c->g[0], c->g[1]));
-        add_product(&k, w->row[1], combined(w->row, c->g[1], c->g[2]));
+        const friction_load *l = &at->load[i];
+        const real speed = at->speed[i];
+        const real slip[2] = {dot(w->row[0], at->nu) - w->rim[0] * speed, dot(w->row[1], at->nu) - w->rim[1] * speed};
+        soft_wheel *c = &wheels[i];
+        soften_contact(c, w, l->grip, slip, at->impulse[i], path);
+        c->axle = dry_impulse(c, &c->axle_growth, l->axle, speed, path->axle[i],
+                              tau_of(path, l->axle, w->inertia + w->rim_size * w->rim_size));
+        soften_motor(c, l, speed, path->motor[i], path);
+        eliminate(c, &k, w, l, speed);
+        if (c->fall > fall) fall = c->fall;
     }
     by = solved(&k);
     at->nu = plus(at->nu, by);
-    for (int32_t i = 0; i < at->count; i++) {
-        const soft_contact *c = &contacts[i];
-        const real x = dot(at->wheel[i].row[0], by), y = dot(at->wheel[i].row[1], by), before = at->speed[i];
-        at->speed[i] = c->speed + c->turn[0] * x + c->turn[1] * y;
-        axle[i] = cut(c->axle + c->grow * (at->speed[i] - before), at->load[i].axle);
-        at->impulse[i][0] = c->impulse[0] + c->g[0] * x + c->g[1] * y;
-        at->impulse[i][1] = c->impulse[1] + c->g[1] * x + c->g[2] * y;
-        put_inside(at->impulse[i], at->load[i].grip);
-    }
+    for (int32_t i = 0; i < at->count; i++) move(&wheels[i], at, path, i, by);
+    path->softness *= fall;
+    if (path->softness < least) path->softness = least;
 }
 
-int32_t laconic_friction_smooth(friction_search *at) {
-    real axle[LACONIC_MAX_WHEELS], softness = FIRST_SOFTNESS * at->scale;
-    for (int32_t i = 0; i < at->count; i++) {
-        axle[i] = R(0);
-        put_inside(at->impulse[i], at->load[i].grip);
-    }
+void laconic_friction_start_path(friction_search *at, friction_path *path) {
+    path->fastest = quick_root(at->scale);
+    path->softness = FIRST_SOFTNESS * at->scale;
+    for (int32_t i = 0; i < at->count; i++) put_inside(at->impulse[i], at->load[i].grip);
     laconic_friction_follow(at);
-    for (int32_t pass = 0; pass < SMOOTH_PASSES; pass++) {
-        smooth_pass(at, axle, softness);
-        softness *= SOFTER;
+    for (int32_t i = 0; i < at->count; i++) {
+        path->axle[i] = R(0);
+        path->motor[i] = drive_at(&at->load[i], at->speed[i]);
     }
-    return SMOOTH_PASSES;
 }

@@ -8,8 +8,9 @@
  *     rolls    no slip along the rolling direction, so that p carries the wheel's own equation; square to it a penalty
  *              whose multiplier is p itself
  *     locked   no slip and no turning, as the axle's friction holds the wheel: penalties in both directions
- * Then each wheel's speed is eliminated, which leaves three equations for ν. If a few passes do not suffice, the
- * smoothed problem leads nearer to the solution (friction_smooth.c), and exact passes finish.
+ * Then each wheel's speed is eliminated, which leaves three equations for ν. Near the solution this converges within
+ * few passes; from elsewhere it may go in circles, as it does not look at what it minimises. Then passes along the
+ * central path of the smoothed problem (friction_smooth.c) lead on, and exact ones are tried from it now and then.
  *
  * The natural map and its augmented Lagrangian: Alart and Curnier 1991; semismooth Newton: Qi and Sun 1993; as
  * primal-dual active set: Hintermüller, Ito and Kunisch 2002. */
@@ -17,18 +18,25 @@
 #include "friction_internals.h"
 
 /* The residual that a result must reach, and the speed that counts as rest, both relative to the free motion. Redundant
- * contacts let the speeds be off by some ten times the residual, and speeds shall be right to 1e-9. From (|t|/grip)² =
- * BORDER on, slip outwards tells that a contact slips; in single it would tell rounding errors. Rounding
- * hides some HIDDEN of each impulse, which counts as residual. Contacts may hold each other with many times the
- * free motion's impulse, of which MOST_STRESS is the square: above it rounding would hide more than TOLERANCE. */
+ * contacts and light wheels let a speed be off by some three hundred times the residual, and speeds shall be right to
+ * 1e-9. From (|t|/grip)² = BORDER on, slip outwards tells that a contact slips; in single it would tell rounding
+ * errors. Rounding hides some HIDDEN of each impulse, which counts as residual. Contacts may hold each other with many
+ * times the free motion's impulse, of which MOST_STRESS is the square: above it rounding would hide more than
+ * TOLERANCE. Where neither kind of pass brings the residual to TOLERANCE any more, RESOLVED of the free motion and
+ * ROUNDED of the contacts' impulses are all that the scalar type can tell: near breakaway, where little of the free
+ * motion is left, and where contacts hold each other. */
 #ifdef LACONIC_SINGLE
 #define TOLERANCE R(1e-5)
+#define RESOLVED R(4e-5)
+#define ROUNDED R(3e-7)
 #define SNAP R(2e-5)
 #define BORDER R(1)
 #define HIDDEN R(1e-8)
 #define MOST_STRESS R(1e4)
 #else
-#define TOLERANCE R(1e-11)
+#define TOLERANCE R(1e-12)
+#define RESOLVED R(3e-11)
+#define ROUNDED R(1e-16)
 #define SNAP R(1e-10)
 #define BORDER R(0.998)
 #define HIDDEN R(1e-16)
@@ -37,7 +45,11 @@
 
 #define SMALLEST_ENERGY (LACONIC_REAL_MIN / (TOLERANCE * TOLERANCE)) /* below it squares of residuals underflow */
 #define NO_SLIP R(1e-30) /* a direction without slip, as across free rollers, has this share of the mobility or less */
-#define EXACT_PASSES 3   /* of warm steps 1 in 60 needs more */
+#define EXACT_PASSES 4   /* of warm steps 1 in 100 needs more */
+#define FIRST_AHEAD 5    /* passes along the central path, before exact ones are tried */
+#define AHEAD 3          /* and before each time after that */
+#define TRIED 3          /* exact passes at a time */
+#define WORTH_IT R(0.1)  /* of the residual, squared: an exact pass that does not bring it down to this leads nowhere */
 
 /* A contact in a pass: how it stands, then its linear law p += gain_m (row_m·δν), and s with the first row. */
 typedef struct contact {
@@ -262,20 +274,74 @@ static bool is_solved(const friction_search *at, real residual) {
     return residual + square(imbalance(at)) <= most;
 }
 
-static int32_t search(friction_search *at) {
-    contact contacts[LACONIC_MAX_WHEELS];
-    for (int32_t pass = 1; pass <= FRICTION_MOST_PASSES; pass++) {
-        if (is_solved(at, look_at_all(at, contacts))) {
-            snap(at);
-            return pass;
-        }
-        if (pass == EXACT_PASSES + 1) {
-            pass += laconic_friction_smooth(at);
-            look_at_all(at, contacts);
-        }
+/* All that rounding leaves to find, where contacts hold each other with many times the free motion. */
+static bool is_resolved(const friction_search *at, real residual) {
+    real stress = R(0);
+    for (int32_t i = 0; i < at->count; i++) {
+        const real *p = at->impulse[i];
+        stress += (p[0] * p[0] + p[1] * p[1]) * at->wheel[i].mobility;
+    }
+    return residual + square(imbalance(at)) <= RESOLVED * RESOLVED * at->scale + ROUNDED * ROUNDED * stress;
+}
+
+/* Exact passes, at most so many; from the second on each must bring the residual down to `fall` of what it was. */
+static bool pass_exactly(friction_search *at, contact contacts[], int32_t most, real fall, int32_t *passes) {
+    real before = LACONIC_REAL_MAX;
+    for (int32_t pass = 0;; pass++) {
+        const real residual = look_at_all(at, contacts);
+        ++*passes;
+        if (is_solved(at, residual)) return true;
+        if (pass == most || (pass > 1 && residual > fall * before)) return false;
+        before = residual;
         exact_pass(at, contacts);
     }
-    return 0;
+}
+
+typedef struct kept_search {
+    vector nu;
+    real speed[LACONIC_MAX_WHEELS], impulse[LACONIC_MAX_WHEELS][2];
+} kept_search;
+
+static void keep(kept_search *kept, const friction_search *at) {
+    kept->nu = at->nu;
+    for (int32_t i = 0; i < at->count; i++) {
+        kept->speed[i] = at->speed[i];
+        for (int m = 0; m < 2; m++) kept->impulse[i][m] = at->impulse[i][m];
+    }
+}
+
+static void go_back(friction_search *at, const kept_search *kept) {
+    at->nu = kept->nu;
+    for (int32_t i = 0; i < at->count; i++) {
+        at->speed[i] = kept->speed[i];
+        for (int m = 0; m < 2; m++) at->impulse[i][m] = kept->impulse[i][m];
+    }
+}
+
+/* Passes along the central path, and from time to time exact ones: they finish at once where they converge. */
+RARE bool search_along_path(friction_search *at, contact contacts[], int32_t *passes) {
+    friction_path path;
+    kept_search kept;
+    laconic_friction_start_path(at, &path);
+    for (int32_t ahead = FIRST_AHEAD; *passes + ahead + TRIED + 1 <= FRICTION_MOST_PASSES; ahead = AHEAD) {
+        for (int32_t pass = 0; pass < ahead; pass++) laconic_friction_follow_path(at, &path);
+        *passes += ahead;
+        keep(&kept, at);
+        if (pass_exactly(at, contacts, TRIED, WORTH_IT, passes)) return true;
+        go_back(at, &kept);
+        if (ahead == AHEAD && is_resolved(at, look_at_all(at, contacts))) return true;
+    }
+    return false;
+}
+
+static int32_t search(friction_search *at) {
+    contact contacts[LACONIC_MAX_WHEELS];
+    int32_t passes = 0;
+    if (!pass_exactly(at, contacts, EXACT_PASSES, LACONIC_REAL_MAX, &passes) &&
+        !search_along_path(at, contacts, &passes))
+        return 0;
+    snap(at);
+    return passes;
 }
 
 int32_t laconic_friction_solve(const friction_wheel wheels[], const friction_load loads[], int32_t count,

@@ -88,25 +88,19 @@ static void load_wheel(part *p, const laconic_slip *slip, int32_t i) {
     l->drive = l->drive_slope = l->viscous = l->free_speed = R(0);
 }
 
-/* From the forces of the step before, or from none. */
-static bool find_speeds(part *p, const laconic_slip *slip, real nu[3], bool from_forces) {
-    const real to_impulse = from_forces ? p->h / p->f->impulse_N : R(0);
-    real free[3];
+/* The search begins with the forces of the step before. */
+static laconic_status solve(part *p, const laconic_slip *slip) {
+    const real to_impulse = p->h / p->f->impulse_N;
+    real free[3], nu[3];
     store(free, plus(p->rotated, p->forcing));
     store(nu, p->rotated);
     for (int32_t i = 0; i < p->f->wheel_count; i++) {
+        load_wheel(p, slip, i);
         p->speed[i] = slip->wheel_speed_rad_per_s[i];
         for (int k = 0; k < 2; k++) p->impulse[i][k] = slip->grip_N[i][k] * to_impulse;
     }
-    return laconic_friction_solve(p->f->wheel, p->load, p->f->wheel_count, free, nu, p->speed, p->impulse) > 0;
-}
-
-/* Contacts that hold more than statics can tell apart keep stress among them, with which the search may go in circles:
- * then it begins without. */
-static laconic_status solve(part *p, const laconic_slip *slip) {
-    real nu[3];
-    for (int32_t i = 0; i < p->f->wheel_count; i++) load_wheel(p, slip, i);
-    if (!find_speeds(p, slip, nu, true) && !find_speeds(p, slip, nu, false)) return LACONIC_STEP_UNSOLVED;
+    if (laconic_friction_solve(p->f->wheel, p->load, p->f->wheel_count, free, nu, p->speed, p->impulse) == 0)
+        return LACONIC_STEP_UNSOLVED;
     p->nu = vec(nu);
     return square(p->nu) <= LARGEST_SPEED * LARGEST_SPEED ? LACONIC_OK : LACONIC_OVERFLOW;
 }

@@ -26,7 +26,6 @@ from laconic.recorded_runs.steady_currents import axles_of, current_error_A
 from laconic.scene import read_scene
 from laconic.scene.speed_controller import SpeedController
 
-DATA = Path(__file__).parents[1] / "data"
 needs_records = pytest.mark.skipif(not recorded("robotino").exists(), reason="no recorded runs beside the project")
 GROUND = {"friction_coefficient": 0.65, "roller_drag": 0.5, "axle_friction_Nm": 0.15}
 CONTROLLER = SpeedController(1.8, 0.0, 0.1)
@@ -136,7 +135,7 @@ def test_controller_without_motor_or_with_a_negative_part_is_one_line(tmp_path, 
 @pytest.mark.parametrize(("floor", "displacement", "current"), [("grey", 0.19, 0.10), ("green", 0.26, 0.15)])
 def test_identified_robotino_goes_where_the_recorded_one_went(floor, displacement, current, capsys):
     runs = recorded("robotino" if floor == "grey" else "robotino_green")
-    scene = scene_path("robotino_grey") if floor == "grey" else DATA / "robotino_green.toml"
+    scene = scene_path(f"robotino_{floor}")
     means = {}
     for inputs in ("wheel-speeds", "set-speeds"):
         assert run(["replay", str(runs), str(scene), "--inputs", inputs, "--json"]) == 0
@@ -146,6 +145,16 @@ def test_identified_robotino_goes_where_the_recorded_one_went(floor, displacemen
     assert means["wheel-speeds"]["displacement_error"] < displacement
     assert means["wheel-speeds"]["current_error_A"] < current
     assert means["set-speeds"]["wheel_speed_error"] < 0.15
+
+
+@needs_records
+@pytest.mark.parametrize("floor", ["grey", "green"])
+def test_the_currents_of_every_recorded_run_are_replayed_without_a_refused_step(floor, capsys):
+    runs = recorded("robotino" if floor == "grey" else "robotino_green")
+    assert run(["replay", str(runs), f"robotino_{floor}", "--inputs", "currents", "--json"]) == 0
+    found = json.loads(capsys.readouterr().out)["runs"]
+    assert len(found) == (12 if floor == "grey" else 3)
+    assert all(np.isfinite(each["wheel_speed_error"]) for each in found)
 
 
 @needs_records

@@ -8,11 +8,12 @@ import numpy as np
 import pytest
 
 from laconic.cli.main import run
+from laconic.paths import scene_path
 from laconic.scene import read_scene
 from laconic.simulation import simulate
 
 LOSSES = ("slip_loss_J", "axle_loss_J", "motor_loss_J", "supply_loss_J", "numerical_loss_J")
-SKID = Path(__file__).parents[1] / "data/skid_steer.toml"
+SKID = scene_path("skid_steer")
 
 
 def scene_with(tmp_path: Path, *changes: tuple[str, str]) -> Path:
