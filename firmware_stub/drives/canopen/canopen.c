@@ -1,0 +1,196 @@
+/* CANopen drives after CiA 301 and CiA 402, one node for each drive: frames to nodes, network management, heartbeats,
+ * and the order in which frames are sent. */
+#include "canopen.h"
+#include "objects.h"
+
+#include <string.h>
+
+enum { NMT_START = 1, NMT_STOP = 2, NMT_PRE_OPERATIONAL = 128, NMT_RESET_NODE = 129, NMT_RESET_COMMUNICATION = 130 };
+
+static canopen_node node_at(laconic_drives *drives, int i, uint32_t now_us) {
+    const canopen_node on = {(canopen_axis *)drives->axes + i, &drives->drive[i], drives->step_s, now_us};
+    return on;
+}
+
+/* --- resets --------------------------------------------------------------------------------------------------------- */
+
+#define NOTHING(...)
+#define RESET(index, sub, last, type, access, member, initial, name) \
+    if ((initial) != 0) axis->member = initial;
+
+/* The communication's objects as after power-up; boot-up, then pre-operational. */
+static void reset_communication(const canopen_node *on) {
+    canopen_axis *axis = on->axis;
+    const uint8_t error_register = axis->error_register;
+    axis->consumer = axis->producer_ms = axis->behaviour = 0;
+    axis->sdo_step = 0;
+    axis->trouble = 0;
+    CANOPEN_DEVICE_OBJECTS(NOTHING, RESET, NOTHING, NOTHING)
+    axis->error_register = error_register;
+    axis->sync_id = 0x80;
+    axis->emergency_id = (uint16_t)(0x80 + canopen_id(on));
+    canopen_start_pdos(axis, canopen_id(on));
+    axis->due = CANOPEN_DUE_BOOT;
+    axis->nmt = CANOPEN_PRE_OPERATIONAL;
+}
+
+static void reset_node(const canopen_node *on) {
+    canopen_axis *axis = on->axis;
+    const laconic_real rated_A = axis->rated_A;
+    memset(axis, 0, sizeof *axis);
+    CANOPEN_DRIVE_OBJECTS(NOTHING, RESET, NOTHING, NOTHING)
+    axis->rated_A = rated_A;
+    axis->ending = CANOPEN_NO_ENDING;
+    on->drive->settings.current_limit_A = rated_A;
+    on->drive->target.mode = LACONIC_DRIVE_OFF;
+    laconic_drive_clear(on->drive);
+    reset_communication(on);
+}
+
+static void start(laconic_drives *drives, uint32_t now_us) {
+    for (int i = 0; i < drives->count; i++) {
+        const canopen_node on = node_at(drives, i, now_us);
+        on.axis->rated_A = on.drive->settings.current_limit_A;
+        reset_node(&on);
+    }
+}
+
+/* --- network management --------------------------------------------------------------------------------------------- */
+
+void canopen_set_nmt(const canopen_node *on, uint8_t nmt) {
+    canopen_axis *axis = on->axis;
+    const uint8_t before = axis->nmt;
+    axis->nmt = nmt;
+    if (nmt == CANOPEN_STOPPED) axis->due &= CANOPEN_DUE_BOOT | CANOPEN_DUE_HEARTBEAT;
+    if (nmt == CANOPEN_PRE_OPERATIONAL) axis->due &= (uint8_t)~(15U * CANOPEN_DUE_TPDO);
+    if (nmt == CANOPEN_OPERATIONAL && before != nmt) canopen_pdos_begin(on);
+}
+
+static void command(const canopen_node *on, uint8_t code) {
+    const bool moves = on->axis->state == CANOPEN_ENABLED || on->axis->state == CANOPEN_QUICK_STOP;
+    switch (code) {
+    case NMT_START: canopen_set_nmt(on, CANOPEN_OPERATIONAL); break;
+    case NMT_STOP:
+        if (moves) canopen_connection_option(on, 0x8100);
+        canopen_set_nmt(on, CANOPEN_STOPPED);
+        break;
+    case NMT_PRE_OPERATIONAL: canopen_set_nmt(on, CANOPEN_PRE_OPERATIONAL); break;
+    case NMT_RESET_NODE: reset_node(on); break;
+    case NMT_RESET_COMMUNICATION:
+        if (moves) canopen_connection_option(on, 0x8100);
+        reset_communication(on);
+        break;
+    default: break;
+    }
+}
+
+/* --- heartbeats ----------------------------------------------------------------------------------------------------- */
+
+static bool take_heartbeat(const canopen_node *on, uint32_t id) {
+    canopen_axis *axis = on->axis;
+    const uint32_t watched = axis->consumer >> 16 & 127U;
+    if (watched == 0 || id != 0x700U + watched) return false;
+    axis->consumer_us = on->now_us;
+    if ((axis->consumer & 0xFFFFU) != 0) axis->trouble |= CANOPEN_LISTENS;
+    axis->trouble &= (uint8_t)~CANOPEN_TROUBLE_SILENCE;
+    canopen_all_clear(axis);
+    return true;
+}
+
+static void check_heartbeats(const canopen_node *on) {
+    canopen_axis *axis = on->axis;
+    const uint32_t producer_us = 1000U * axis->producer_ms;
+    if (producer_us != 0 && on->now_us - axis->producer_us >= producer_us) {
+        axis->producer_us += producer_us;
+        axis->due |= CANOPEN_DUE_HEARTBEAT;
+    }
+    if ((axis->trouble & CANOPEN_LISTENS) == 0) return;
+    if (on->now_us - axis->consumer_us <= 1000U * (axis->consumer & 0xFFFFU)) return;
+    axis->trouble &= (uint8_t)~CANOPEN_LISTENS;
+    canopen_connection_lost(on, 0x8130);
+}
+
+/* --- the protocol's functions --------------------------------------------------------------------------------------- */
+
+static bool take_frame(const canopen_node *on, const laconic_frame *frame) {
+    canopen_axis *axis = on->axis;
+    const bool operational = axis->nmt == CANOPEN_OPERATIONAL;
+    bool taken = !frame->remote && take_heartbeat(on, frame->id);
+    if (axis->nmt == CANOPEN_STOPPED) return taken;
+    if (!frame->remote && frame->id == 0x600U + canopen_id(on) && frame->length == 8) {
+        canopen_sdo(on, frame->data);
+        return true;
+    }
+    if (!operational) return taken;
+    if (!frame->remote && frame->id == axis->sync_id) {
+        canopen_sync(on);
+        taken = true;
+    }
+    return canopen_take_pdo(on, frame) || taken;
+}
+
+static void on_frame(laconic_drives *drives, const laconic_frame *frame, uint32_t now_us) {
+    const bool is_command = frame->id == 0 && !frame->remote && frame->length == 2;
+    if (frame->extended || frame->fd) return;
+    for (int i = 0; i < drives->count; i++) {
+        const canopen_node on = node_at(drives, i, now_us);
+        const bool for_it = is_command && (frame->data[1] == 0 || frame->data[1] == canopen_id(&on));
+        if (for_it) command(&on, frame->data[0]);
+        if (frame->id != 0 && take_frame(&on, frame) && on.axis->nmt == CANOPEN_OPERATIONAL) canopen_find_due_pdos(&on);
+    }
+}
+
+static void on_step(laconic_drives *drives, uint32_t now_us) {
+    for (int i = 0; i < drives->count; i++) {
+        const canopen_node on = node_at(drives, i, now_us);
+        canopen_watch_drive(&on);
+        check_heartbeats(&on);
+        if (on.axis->nmt == CANOPEN_OPERATIONAL) canopen_check_deadlines(&on);
+        canopen_move(&on);
+        if (on.axis->nmt == CANOPEN_OPERATIONAL) canopen_find_due_pdos(&on);
+    }
+}
+
+static void send(const canopen_node *on, uint8_t what, laconic_frame *frame) {
+    canopen_axis *axis = on->axis;
+    frame->id = 0x700U + canopen_id(on);
+    frame->length = 1;
+    frame->data[0] = what == CANOPEN_DUE_BOOT ? CANOPEN_BOOT : axis->nmt;
+    if (what == CANOPEN_DUE_EMERGENCY) {
+        canopen_send_emergency(on, frame);
+    } else if (what == CANOPEN_DUE_SDO) {
+        frame->id = 0x580U + canopen_id(on);
+        frame->length = 8;
+        memcpy(frame->data, axis->sdo_answer, 8);
+    } else if (what >= CANOPEN_DUE_TPDO && what < CANOPEN_DUE_SDO) {
+        int k = 0;
+        while ((CANOPEN_DUE_TPDO << k) != what) k++;
+        canopen_send_pdo(on, k, frame);
+    }
+}
+
+/* The most urgent kind of frame first, of the first node that has one: near what the identifiers would decide on a bus. */
+static bool next_frame(laconic_drives *drives, laconic_frame *frame) {
+    for (uint32_t what = CANOPEN_DUE_BOOT; what <= CANOPEN_DUE_HEARTBEAT; what <<= 1) {
+        for (int i = 0; i < drives->count; i++) {
+            const canopen_node on = node_at(drives, i, 0);
+            if ((on.axis->due & what) == 0) continue;
+            on.axis->due &= (uint8_t)~what;
+            memset(frame, 0, sizeof *frame);
+            send(&on, (uint8_t)what, frame);
+            return true;
+        }
+    }
+    return false;
+}
+
+const laconic_drive_protocol laconic_canopen = {
+    .name = "canopen",
+    .axis_bytes = sizeof(canopen_axis),
+    .first_id = 1,
+    .last_id = 127,
+    .start = start,
+    .on_frame = on_frame,
+    .on_step = on_step,
+    .next_frame = next_frame,
+};

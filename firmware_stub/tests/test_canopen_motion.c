@@ -1,0 +1,231 @@
+/* Tests of motion.c: each mode of operation, in counts and counts/s, and following errors. */
+#include "canopen_bench.h"
+
+void setUp(void) { power_up(); }
+void tearDown(void) {}
+
+static void profile_velocity_ramps_up_and_down_and_turns_back(void) {
+    set(0x6083, 0, 50000);
+    set(0x6084, 0, 100000);
+    enable(3);
+    set(0x60FF, 0, 10000);
+    step(100);
+    TEST_ASSERT_INT_WITHIN(60, 5000, get(0x606B, 0));
+    TEST_ASSERT_BITS_LOW(1024, statusword());
+    step(300);
+    TEST_ASSERT_EQUAL(10000, get(0x606B, 0));
+    TEST_ASSERT_INT_WITHIN(100, 10000, get(0x606C, 0));
+    TEST_ASSERT_BITS_HIGH(1024, statusword());
+    TEST_ASSERT_BITS_LOW(4096, statusword());
+    set(0x60FF, 0, -10000);
+    step(100);
+    TEST_ASSERT_INT_WITHIN(110, 0, get(0x606B, 0));
+    step(200);
+    TEST_ASSERT_EQUAL(-10000, get(0x606B, 0));
+    set(0x60FF, 0, 0);
+    step(600);
+    TEST_ASSERT_BITS_HIGH(1024 | 4096, statusword());
+}
+
+static void profile_velocity_stays_below_607F(void) {
+    set(0x607F, 0, 3000);
+    enable(3);
+    set(0x60FF, 0, -10000);
+    step(500);
+    TEST_ASSERT_EQUAL(-3000, get(0x606B, 0));
+}
+
+static void cyclic_velocity_takes_target_and_offset_at_once(void) {
+    enable(9);
+    set(0x60FF, 0, 4000);
+    set(0x60B1, 0, -500);
+    step(1);
+    TEST_ASSERT_EQUAL(3500, get(0x606B, 0));
+    step(400);
+    TEST_ASSERT_INT_WITHIN(30, 3500, get(0x606C, 0));
+    TEST_ASSERT_BITS_HIGH(4096, statusword());
+}
+
+static void cyclic_torque_is_thousandths_of_the_rated_torque(void) {
+    enable(10);
+    set(0x6071, 0, 250);
+    set(0x60B2, 0, 50);
+    step(1);
+    TEST_ASSERT_EQUAL(300, get(0x6077, 0) & 0xFFFF);
+    TEST_ASSERT_EQUAL(300, get(0x6078, 0) & 0xFFFF);
+    TEST_ASSERT_DOUBLE_WITHIN(1e-6, 0.3, (double)on.drives.drive[0].torque_Nm); /* 3 A, 0.1 Nm/A */
+    TEST_ASSERT_EQUAL(10000, get(0x6075, 0));
+    TEST_ASSERT_EQUAL(1000, get(0x6076, 0));
+}
+
+static void max_torque_limits_every_mode_and_shows_in_the_statusword(void) {
+    set(0x6072, 0, 100);
+    enable(10);
+    set(0x6071, 0, -800);
+    step(1);
+    TEST_ASSERT_EQUAL(-100, get(0x6077, 0));
+    TEST_ASSERT_BITS_HIGH(2048, statusword());
+    set(0x6060, 0, 9);
+    set(0x60FF, 0, 100000);
+    step(1);
+    TEST_ASSERT_EQUAL(100, get(0x6077, 0));
+    set(0x6072, 0, 1000);
+    step(1);
+    TEST_ASSERT_EQUAL(1000, get(0x6077, 0));
+}
+
+static void cyclic_position_goes_straight_from_target_to_target(void) {
+    set(0x60C2, 1, 10);
+    set(0x60C2, 2, -3);
+    enable(8);
+    for (int k = 1; k <= 20; k++) {
+        set(0x607A, 0, 50 * k);
+        step(5);
+        TEST_ASSERT_INT_WITHIN(1, 50 * k - 25, get(0x6062, 0));
+        TEST_ASSERT_EQUAL(5000, get(0x606B, 0));
+        step(5);
+        TEST_ASSERT_EQUAL(50 * k, get(0x6062, 0));
+    }
+    step(1); /* no target came: it stays where the last one was */
+    TEST_ASSERT_EQUAL(0, get(0x606B, 0));
+    step(1000);
+    TEST_ASSERT_EQUAL(1000, get(0x6062, 0));
+    TEST_ASSERT_INT_WITHIN(3, 1000, get(0x6064, 0));
+}
+
+static void cyclic_position_does_not_move_before_a_target_came(void) {
+    set(0x607A, 0, 100000);
+    enable(8);
+    step(100);
+    TEST_ASSERT_EQUAL(0, get(0x6062, 0));
+    TEST_ASSERT_EQUAL(0, get(0x6064, 0));
+}
+
+static void cyclic_position_goes_on_beyond_the_end_of_32_bits(void) {
+    on.drives.drive[0].count = INT32_MAX - 20;
+    enable(8);
+    for (int k = 1; k <= 40; k++) {
+        set(0x607A, 0, (int32_t)((uint32_t)(INT32_MAX - 20) + (uint32_t)k));
+        step(1);
+    }
+    TEST_ASSERT_EQUAL(INT32_MIN + 19, get(0x6062, 0));
+    TEST_ASSERT_TRUE(on.axes[0].demand == (int64_t)INT32_MAX + 20);
+}
+
+static void a_following_error_stops_the_drive(void) {
+    set(0x6065, 0, 500);
+    set(0x6066, 0, 20);
+    set(0x6072, 0, 10);
+    enable(8);
+    set(0x607A, 0, 20000);
+    step(3);
+    TEST_ASSERT_BITS_HIGH(8192, statusword());
+    TEST_ASSERT_EQUAL_HEX16(ENABLED, state());
+    TEST_ASSERT_INT_WITHIN(100, 20000, get(0x60F4, 0));
+    step(30);
+    TEST_ASSERT_EQUAL_HEX16(0x8611, get(0x603F, 0) & 0xFFFF);
+    step(500);
+    TEST_ASSERT_EQUAL_HEX16(FAULT, state());
+}
+
+/* --- profile position ----------------------------------------------------------------------------------------------- */
+
+static int steps_until_reached(int most) {
+    int steps = 0;
+    while ((statusword() & 1024) == 0 && steps < most) {
+        step(1);
+        steps++;
+    }
+    TEST_ASSERT_LESS_THAN(most, steps);
+    return steps;
+}
+
+static void prepare_profile_position(void) {
+    set(0x6081, 0, 20000);
+    set(0x6083, 0, 200000);
+    set(0x6084, 0, 100000);
+    set(0x6067, 0, 10);
+    enable(1);
+}
+
+static void profile_position_goes_to_its_target_by_ramps(void) {
+    prepare_profile_position();
+    set(0x607A, 0, 12000);
+    step(10);
+    TEST_ASSERT_EQUAL(0, get(0x6064, 0)); /* no set-point yet */
+    control(15 | 16);
+    TEST_ASSERT_BITS_HIGH(4096, statusword());
+    control(15);
+    TEST_ASSERT_BITS_LOW(4096, statusword());
+    step(100);
+    TEST_ASSERT_EQUAL(20000, get(0x606B, 0)); /* reached after 0.1 s */
+    /* 0.1 s to speed over 1000 counts, 0.2 s to rest over 2000, 9000 at speed: 0.75 s */
+    while (get(0x6062, 0) < 12000) step(1);
+    TEST_ASSERT_INT_WITHIN(12, 750, (int)(on.now_us / 1000) - 10);
+    steps_until_reached(1000);
+    TEST_ASSERT_INT_WITHIN(10, 12000, get(0x6064, 0));
+    control(15 | 16 | 64); /* relative, and back */
+    set(0x607A, 0, -2000);
+    control(15);
+    control(15 | 16 | 64);
+    step(2);
+    steps_until_reached(2000);
+    TEST_ASSERT_INT_WITHIN(10, 12000 - 2000 + 12000, get(0x6064, 0));
+}
+
+static void a_second_set_point_waits_and_one_at_once_does_not(void) {
+    prepare_profile_position();
+    set(0x607A, 0, 4000);
+    control(15 | 16);
+    control(15);
+    set(0x607A, 0, 1000);
+    control(15 | 16);
+    control(15);
+    TEST_ASSERT_BITS_HIGH(4096, statusword()); /* no room for a third */
+    int32_t largest = 0;
+    for (int k = 0; k < 1500; k++) {
+        step(1);
+        if (get(0x6062, 0) > largest) largest = get(0x6062, 0);
+    }
+    TEST_ASSERT_EQUAL(4000, largest);
+    TEST_ASSERT_EQUAL(1000, get(0x6062, 0));
+    set(0x607A, 0, 9000);
+    control(15 | 16);
+    control(15);
+    step(20);
+    set(0x607A, 0, -500);
+    control(15 | 16 | 32);
+    for (int k = 0; k < 1500; k++) {
+        step(1);
+        TEST_ASSERT_LESS_THAN(4000, get(0x6062, 0));
+    }
+    TEST_ASSERT_EQUAL(-500, get(0x6062, 0));
+}
+
+static void another_mode_begins_where_the_wheel_is(void) {
+    enable(9);
+    set(0x60FF, 0, 5000);
+    step(500);
+    set(0x6060, 0, 8);
+    TEST_ASSERT_EQUAL(8, get(0x6061, 0));
+    TEST_ASSERT_EQUAL(get(0x6064, 0), get(0x6062, 0));
+    set(0x6060, 0, 0); /* no change */
+    TEST_ASSERT_EQUAL(8, get(0x6061, 0));
+}
+
+int main(void) {
+    UNITY_BEGIN();
+    RUN_TEST(profile_velocity_ramps_up_and_down_and_turns_back);
+    RUN_TEST(profile_velocity_stays_below_607F);
+    RUN_TEST(cyclic_velocity_takes_target_and_offset_at_once);
+    RUN_TEST(cyclic_torque_is_thousandths_of_the_rated_torque);
+    RUN_TEST(max_torque_limits_every_mode_and_shows_in_the_statusword);
+    RUN_TEST(cyclic_position_goes_straight_from_target_to_target);
+    RUN_TEST(cyclic_position_does_not_move_before_a_target_came);
+    RUN_TEST(cyclic_position_goes_on_beyond_the_end_of_32_bits);
+    RUN_TEST(a_following_error_stops_the_drive);
+    RUN_TEST(profile_position_goes_to_its_target_by_ramps);
+    RUN_TEST(a_second_set_point_waits_and_one_at_once_does_not);
+    RUN_TEST(another_mode_begins_where_the_wheel_is);
+    return UNITY_END();
+}

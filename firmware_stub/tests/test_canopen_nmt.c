@@ -1,0 +1,182 @@
+/* Tests of canopen.c: network management, heartbeats, the order of frames, and a controller that goes silent. */
+#include "canopen_bench.h"
+
+void setUp(void) { power_up(); }
+void tearDown(void) {}
+
+enum { HEARTBEAT = 0x700 + ID, MASTER = 1 };
+
+#define BYTES(...) ((const uint8_t[8]){__VA_ARGS__})
+
+static void each_node_boots_up_and_is_pre_operational(void) {
+    TEST_ASSERT_EQUAL(2, on.count);
+    TEST_ASSERT_EQUAL_HEX32(HEARTBEAT, on.sent[0].id);
+    TEST_ASSERT_EQUAL_HEX32(0x700 + OTHER_ID, on.sent[1].id);
+    TEST_ASSERT_EQUAL(1, on.sent[0].length);
+    TEST_ASSERT_EQUAL_HEX8(0, on.sent[0].data[0]);
+    TEST_ASSERT_EQUAL(CANOPEN_PRE_OPERATIONAL, on.axes[0].nmt);
+}
+
+static void commands_move_one_node_or_all(void) {
+    static const struct {
+        uint8_t command, state;
+    } commands[] = {{1, 5},    {2, 4}, {1, 5},     {128, 127}, {2, 4},    {128, 127},
+                    {99, 127}, {1, 5}, {129, 127}, {1, 5},     {130, 127}};
+    for (size_t k = 0; k < sizeof commands / sizeof commands[0]; k++) {
+        nmt(commands[k].command, ID);
+        TEST_ASSERT_EQUAL(commands[k].state, on.axes[0].nmt);
+        TEST_ASSERT_EQUAL(127, on.axes[1].nmt);
+    }
+    start_nodes();
+    TEST_ASSERT_EQUAL(5, on.axes[1].nmt);
+    deliver(0, BYTES(2, 0, 0), 3); /* too long for a command */
+    TEST_ASSERT_EQUAL(5, on.axes[1].nmt);
+}
+
+static void a_stopped_node_answers_nothing_but_its_heartbeat(void) {
+    set(0x1017, 0, 10);
+    nmt(2, ID);
+    forget();
+    TEST_ASSERT_NULL(request(BYTES(0x40, 0, 0x10, 0)));
+    step(25);
+    TEST_ASSERT_EQUAL(2, count_of(HEARTBEAT));
+    TEST_ASSERT_EQUAL(2, on.count);
+    TEST_ASSERT_EQUAL_HEX8(4, on.sent[0].data[0]);
+}
+
+static void heartbeats_come_every_1017_milliseconds_with_the_state(void) {
+    set(0x1017, 0, 20);
+    forget();
+    step(100);
+    TEST_ASSERT_EQUAL(5, on.count);
+    TEST_ASSERT_EQUAL_HEX8(127, on.sent[4].data[0]);
+    start_nodes();
+    forget();
+    step(20);
+    TEST_ASSERT_EQUAL_HEX8(5, last(HEARTBEAT)->data[0]);
+    set(0x1017, 0, 0);
+    forget();
+    step(60);
+    TEST_ASSERT_EQUAL(0, count_of(HEARTBEAT));
+}
+
+static void node_guarding_is_not_answered(void) {
+    laconic_frame ask = {.id = HEARTBEAT, .length = 1, .remote = true};
+    forget();
+    laconic_canopen.on_frame(&on.drives, &ask, 0);
+    collect();
+    TEST_ASSERT_EQUAL(0, on.count);
+}
+
+static void resetting_the_communication_keeps_the_drives_objects_and_resetting_the_node_does_not(void) {
+    set(0x1017, 0, 500);
+    set(0x6083, 0, 77);
+    set(0x1801, 2, 9);
+    forget();
+    nmt(130, ID);
+    TEST_ASSERT_EQUAL_HEX8(0, last(HEARTBEAT)->data[0]);
+    TEST_ASSERT_EQUAL(0, get(0x1017, 0));
+    TEST_ASSERT_EQUAL(1, get(0x1801, 2));
+    TEST_ASSERT_EQUAL(77, get(0x6083, 0));
+    set(0x6072, 0, 10);
+    nmt(129, ID);
+    TEST_ASSERT_EQUAL(100000, get(0x6083, 0));
+    TEST_ASSERT_EQUAL(1000, get(0x6072, 0));
+    TEST_ASSERT_TRUE(on.drives.drive[0].settings.current_limit_A == 10);
+}
+
+static void urgent_frames_are_sent_first(void) {
+    set(0x1017, 0, 10);
+    start_nodes();
+    forget();
+    laconic_frame frame = {.id = 0x600 + ID, .length = 8, .data = {0x40, 0, 0x10, 0}};
+    on.now_us += 10000;
+    laconic_drive_fail(&on.drives.drive[0], LACONIC_DRIVE_FAULT_STALL);
+    laconic_canopen.on_frame(&on.drives, &frame, on.now_us);
+    laconic_canopen.on_step(&on.drives, on.now_us);
+    collect();
+    TEST_ASSERT_EQUAL(4, on.count);
+    static const uint32_t order[4] = {0x80 + ID, 0x180 + ID, 0x580 + ID, HEARTBEAT};
+    for (int k = 0; k < 4; k++) TEST_ASSERT_EQUAL_HEX32(order[k], on.sent[k].id);
+}
+
+/* --- a controller that goes silent ---------------------------------------------------------------------------------- */
+
+static void drive_under_watch(int option, int behaviour) {
+    power_up();
+    set(0x1016, 1, MASTER << 16 | 50);
+    set(0x1029, 1, behaviour);
+    set(0x6007, 0, option);
+    set(0x60FF, 0, 20000);
+    start_nodes();
+    step(100); /* the watch begins with the first heartbeat */
+    TEST_ASSERT_EQUAL_HEX16(SWITCH_ON_DISABLED, state());
+    enable(3);
+    for (int k = 0; k < 20; k++) {
+        deliver(0x700 + MASTER, BYTES(5), 1);
+        step(40);
+    }
+    TEST_ASSERT_INT_WITHIN(50, 20000, get(0x606C, 0));
+    forget();
+    step(9);
+    TEST_ASSERT_EQUAL(0, count_of(0x80 + ID));
+    step(2);
+}
+
+static void silence_is_a_fault_by_default_and_the_drive_brakes(void) {
+    drive_under_watch(1, 0);
+    TEST_ASSERT_EQUAL(1, count_of(0x80 + ID));
+    TEST_ASSERT_EQUAL_HEX16(0x8130, canopen_get(last(0x80 + ID)->data, 2));
+    TEST_ASSERT_EQUAL(CANOPEN_PRE_OPERATIONAL, on.axes[0].nmt);
+    TEST_ASSERT_EQUAL_HEX16(REACTION, state());
+    step(300);
+    TEST_ASSERT_EQUAL_HEX16(FAULT, state());
+    TEST_ASSERT_INT_WITHIN(300, 0, get(0x606C, 0));
+    TEST_ASSERT_EQUAL_HEX16(0x8130, get(0x603F, 0) & 0xFFFF);
+}
+
+static void option_codes_say_what_silence_does(void) {
+    drive_under_watch(0, 1);
+    TEST_ASSERT_EQUAL_HEX16(0x8130, canopen_get(last(0x80 + ID)->data, 2));
+    step(100);
+    TEST_ASSERT_EQUAL_HEX16(ENABLED, state());
+    TEST_ASSERT_EQUAL(CANOPEN_OPERATIONAL, on.axes[0].nmt);
+    deliver(0x700 + MASTER, BYTES(5), 1);
+    TEST_ASSERT_EQUAL_HEX16(0, canopen_get(last(0x80 + ID)->data, 2)); /* it is back */
+    drive_under_watch(2, 1);
+    TEST_ASSERT_EQUAL_HEX16(SWITCH_ON_DISABLED, state());
+    drive_under_watch(3, 1);
+    TEST_ASSERT_EQUAL_HEX16(QUICK_STOP, state());
+    drive_under_watch(1, 2);
+    TEST_ASSERT_EQUAL(CANOPEN_STOPPED, on.axes[0].nmt);
+}
+
+static void stopping_a_node_that_drives_is_a_lost_connection(void) {
+    set(0x60FF, 0, 20000);
+    start_nodes();
+    enable(9);
+    step(100);
+    nmt(2, ID);
+    step(400);
+    nmt(128, ID);
+    TEST_ASSERT_EQUAL_HEX16(FAULT, state());
+    power_up();
+    nmt(2, ID); /* nothing moved */
+    nmt(128, ID);
+    TEST_ASSERT_EQUAL_HEX16(SWITCH_ON_DISABLED, state());
+}
+
+int main(void) {
+    UNITY_BEGIN();
+    RUN_TEST(each_node_boots_up_and_is_pre_operational);
+    RUN_TEST(commands_move_one_node_or_all);
+    RUN_TEST(a_stopped_node_answers_nothing_but_its_heartbeat);
+    RUN_TEST(heartbeats_come_every_1017_milliseconds_with_the_state);
+    RUN_TEST(node_guarding_is_not_answered);
+    RUN_TEST(resetting_the_communication_keeps_the_drives_objects_and_resetting_the_node_does_not);
+    RUN_TEST(urgent_frames_are_sent_first);
+    RUN_TEST(silence_is_a_fault_by_default_and_the_drive_brakes);
+    RUN_TEST(option_codes_say_what_silence_does);
+    RUN_TEST(stopping_a_node_that_drives_is_a_lost_connection);
+    return UNITY_END();
+}
