@@ -2,6 +2,7 @@
 #include "laconic_drives/protocol.h"
 
 static const laconic_drive_protocol *const protocols[] = {
+    [1] = &laconic_canopen,
     [3] = &laconic_robomaster,
     [5] = &laconic_robomaster_c610,
 };
