@@ -1,4 +1,4 @@
-"""SLCAN reader, frame handler and parameter loader under libFuzzer with sanitizers, the time shared evenly."""
+"""SLCAN reader, frame handler, parameter loader and drives under libFuzzer with sanitizers, the time shared evenly."""
 
 from __future__ import annotations
 
@@ -11,7 +11,7 @@ from typing import Any
 from laconic.errors import BadInput
 from laconic.paths import SOURCE_DIR, build_dir, built
 
-TARGETS = ("slcan", "frames", "loader")
+TARGETS = ("slcan", "frames", "loader", "canopen")
 SLICE_S = 5.0
 
 
