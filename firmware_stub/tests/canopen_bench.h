@@ -78,7 +78,7 @@ static inline void nmt(uint8_t command, uint8_t id) {
 
 static inline void start_nodes(void) { nmt(1, 0); }
 
-/* --- SDO ------------------------------------------------------------------------------------------------------------ */
+/* --- SDO --------------------------------------------------------------------------------------------------------- */
 
 static inline const uint8_t *request(const uint8_t data[8]) {
     forget();
@@ -134,7 +134,7 @@ static inline int32_t get(uint16_t index, uint8_t sub) {
     return (int32_t)((abort_free ^ sign) - sign);
 }
 
-/* --- the drive ------------------------------------------------------------------------------------------------------ */
+/* --- the drive --------------------------------------------------------------------------------------------------- */
 
 static inline uint16_t statusword(void) { return (uint16_t)get(0x6041, 0); }
 
@@ -164,7 +164,7 @@ static inline void enable(int mode) {
     TEST_ASSERT_EQUAL_HEX16(ENABLED, state());
 }
 
-/* --- frames --------------------------------------------------------------------------------------------------------- */
+/* --- frames ------------------------------------------------------------------------------------------------------ */
 
 static inline const laconic_frame *last(uint32_t id) {
     for (int k = on.count - 1; k >= 0; k--) {

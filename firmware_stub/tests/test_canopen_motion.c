@@ -128,7 +128,7 @@ static void a_following_error_stops_the_drive(void) {
     TEST_ASSERT_EQUAL_HEX16(FAULT, state());
 }
 
-/* --- profile position ----------------------------------------------------------------------------------------------- */
+/* --- profile position -------------------------------------------------------------------------------------------- */
 
 static int steps_until_reached(int most) {
     int steps = 0;

@@ -100,7 +100,7 @@ static void urgent_frames_are_sent_first(void) {
     for (int k = 0; k < 4; k++) TEST_ASSERT_EQUAL_HEX32(order[k], on.sent[k].id);
 }
 
-/* --- a controller that goes silent ---------------------------------------------------------------------------------- */
+/* --- a controller that goes silent ------------------------------------------------------------------------------- */
 
 static void drive_under_watch(int option, int behaviour) {
     power_up();

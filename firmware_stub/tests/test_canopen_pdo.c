@@ -114,7 +114,7 @@ static void identifiers_of_pdos_can_be_changed_and_swapped(void) {
     TEST_ASSERT_EQUAL_HEX16(READY, state());
 }
 
-/* --- receiving ------------------------------------------------------------------------------------------------------ */
+/* --- receiving --------------------------------------------------------------------------------------------------- */
 
 static void synchronous_data_take_effect_at_the_next_sync_together(void) {
     const uint32_t speed = 0x60FF0020;
@@ -153,7 +153,7 @@ static void a_value_that_an_object_refuses_leaves_it_as_it_was(void) {
     TEST_ASSERT_EQUAL(500, get(0x6072, 0));
 }
 
-/* --- sending -------------------------------------------------------------------------------------------------------- */
+/* --- sending ----------------------------------------------------------------------------------------------------- */
 
 static void synchronous_data_are_sent_at_every_nth_sync(void) {
     set(0x1801, 2, 3);

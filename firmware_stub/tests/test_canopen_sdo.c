@@ -131,7 +131,7 @@ static void a_refused_request_changes_nothing(void) {
     TEST_ASSERT_EQUAL_HEX8_ARRAY(&before, &after, sizeof before);
 }
 
-/* --- frames of transfers -------------------------------------------------------------------------------------------- */
+/* --- frames of transfers ----------------------------------------------------------------------------------------- */
 
 static void expect(const uint8_t sent[8], const uint8_t wanted[8]) {
     const uint8_t *answer = request(sent);

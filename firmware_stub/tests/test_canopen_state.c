@@ -55,7 +55,7 @@ static void only_operation_enabled_gives_torque(void) {
     }
 }
 
-/* The whole story of a stop, by option code: which state it is in while it slows down, where it ends, how long it takes. */
+/* A stop by option code: in which state the drive is while it slows down, where it ends, how many steps it takes. */
 static int steps_of_stop(uint16_t index, int option, uint16_t word, uint16_t during, uint16_t after) {
     power_up();
     set(index, 0, option);
@@ -133,7 +133,7 @@ static void halt_slows_down_and_going_on_needs_no_new_command(void) {
     TEST_ASSERT_INT_WITHIN(50, 20000, get(0x606C, 0));
 }
 
-/* --- faults --------------------------------------------------------------------------------------------------------- */
+/* --- faults ------------------------------------------------------------------------------------------------------ */
 
 static void check_emergency(uint16_t code, uint8_t register_) {
     const laconic_frame *frame = last(0x80 + ID);

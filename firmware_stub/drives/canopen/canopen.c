@@ -12,7 +12,7 @@ static canopen_node node_at(laconic_drives *drives, int i, uint32_t now_us) {
     return on;
 }
 
-/* --- resets --------------------------------------------------------------------------------------------------------- */
+/* --- resets ------------------------------------------------------------------------------------------------------ */
 
 #define NOTHING(...)
 #define RESET(index, sub, last, type, access, member, initial, name) \
@@ -55,7 +55,7 @@ static void start(laconic_drives *drives, uint32_t now_us) {
     }
 }
 
-/* --- network management --------------------------------------------------------------------------------------------- */
+/* --- network management ------------------------------------------------------------------------------------------ */
 
 void canopen_set_nmt(const canopen_node *on, uint8_t nmt) {
     canopen_axis *axis = on->axis;
@@ -84,7 +84,7 @@ static void command(const canopen_node *on, uint8_t code) {
     }
 }
 
-/* --- heartbeats ----------------------------------------------------------------------------------------------------- */
+/* --- heartbeats -------------------------------------------------------------------------------------------------- */
 
 static bool take_heartbeat(const canopen_node *on, uint32_t id) {
     canopen_axis *axis = on->axis;
@@ -110,7 +110,7 @@ static void check_heartbeats(const canopen_node *on) {
     canopen_connection_lost(on, 0x8130);
 }
 
-/* --- the protocol's functions --------------------------------------------------------------------------------------- */
+/* --- the protocol's functions ------------------------------------------------------------------------------------ */
 
 static bool take_frame(const canopen_node *on, const laconic_frame *frame) {
     canopen_axis *axis = on->axis;
@@ -169,7 +169,7 @@ static void send(const canopen_node *on, uint8_t what, laconic_frame *frame) {
     }
 }
 
-/* The most urgent kind of frame first, of the first node that has one: near what the identifiers would decide on a bus. */
+/* The most urgent kind of frame first, of the first node that has one: near what identifiers decide on a bus. */
 static bool next_frame(laconic_drives *drives, laconic_frame *frame) {
     for (uint32_t what = CANOPEN_DUE_BOOT; what <= CANOPEN_DUE_HEARTBEAT; what <<= 1) {
         for (int i = 0; i < drives->count; i++) {

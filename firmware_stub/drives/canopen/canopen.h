@@ -171,8 +171,8 @@ const canopen_row *canopen_row_at(uint8_t number);
 uint8_t canopen_find(uint16_t index, uint8_t sub, uint32_t *abort);
 uint8_t canopen_size(const canopen_row *row); /* bytes; 0: a string */
 const char *canopen_text(uint16_t index);     /* of a string */
-/* Values as unsigned numbers of 32 bits, the lower bytes of which are the object. Index and sub may differ from those of
- * the row, which can stand for several. Each gives an abort code, 0 iff done. */
+/* Values as unsigned numbers of 32 bits, the lower bytes of which are the object. Index and sub may differ from those
+ * of the row, which can stand for several. Each gives an abort code, 0 iff done. */
 uint32_t canopen_read(const canopen_node *on, const canopen_row *row, uint16_t index, uint8_t sub, uint32_t *value);
 uint32_t canopen_write(const canopen_node *on, const canopen_row *row, uint16_t index, uint8_t sub, uint32_t value);
 /* A COB-ID as the dictionary shows it, and back: abort code, 0 iff the identifier is free for use. */

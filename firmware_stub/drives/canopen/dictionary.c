@@ -57,7 +57,7 @@ uint32_t canopen_get(const uint8_t *bytes, uint8_t count) {
     return value;
 }
 
-/* --- reading -------------------------------------------------------------------------------------------------------- */
+/* --- reading ----------------------------------------------------------------------------------------------------- */
 
 uint32_t canopen_cob_id(uint16_t stored) {
     return (stored & 0x7FFU) | (stored & CANOPEN_OFF ? 1U << 31 : 0U) | (stored & CANOPEN_NO_REMOTE ? 1U << 30 : 0U);
@@ -124,7 +124,7 @@ uint32_t canopen_read(const canopen_node *on, const canopen_row *row, uint16_t i
     return 0;
 }
 
-/* --- writing -------------------------------------------------------------------------------------------------------- */
+/* --- writing ----------------------------------------------------------------------------------------------------- */
 
 static int32_t as_signed(uint32_t value, uint8_t size) {
     const uint32_t sign = 1U << (8U * size - 1U);

@@ -66,7 +66,7 @@ void canopen_begin_motion(const canopen_node *on) {
     axis->trouble &= (uint8_t)~CANOPEN_FOLLOWS_BADLY;
 }
 
-/* --- ramps ---------------------------------------------------------------------------------------------------------- */
+/* --- ramps ------------------------------------------------------------------------------------------------------- */
 
 /* The speed one step later, on the way from `from` to `to`. */
 static laconic_real ramp(laconic_real from, laconic_real to, laconic_real up, laconic_real down) {
@@ -81,7 +81,7 @@ static void slow_down(const canopen_node *on, int which) {
     axis->speed = ramp(axis->speed, 0, 0, rate * on->step_s);
 }
 
-/* --- modes ---------------------------------------------------------------------------------------------------------- */
+/* --- modes ------------------------------------------------------------------------------------------------------- */
 
 static void profile_velocity(const canopen_node *on) {
     canopen_axis *axis = on->axis;
@@ -176,7 +176,7 @@ static void cyclic_position(const canopen_node *on) {
     }
 }
 
-/* --- the drive's target --------------------------------------------------------------------------------------------- */
+/* --- the drive's target ------------------------------------------------------------------------------------------ */
 
 static laconic_real amperes(const canopen_axis *axis, int32_t permille) {
     return axis->rated_A * (laconic_real)permille / 1000;
@@ -221,7 +221,7 @@ static void run_mode(const canopen_node *on) {
     }
 }
 
-/* --- supervision ---------------------------------------------------------------------------------------------------- */
+/* --- supervision ------------------------------------------------------------------------------------------------- */
 
 static laconic_real following_error(const canopen_node *on) {
     const canopen_axis *axis = on->axis;
@@ -248,8 +248,8 @@ static bool stands(const canopen_node *on) {
     return axis->speed == 0 && is_within(canopen_actual_speed(on->drive), (laconic_real)axis->speed_threshold);
 }
 
-/* Stopping, from whatever mode, is a ramp of the speed to 0; it ends when the wheel stands, too. A halt that ends lets a position mode go on from where the
- * wheel is. */
+/* Stopping, from whatever mode, is a ramp of the speed to 0; it ends when the wheel stands, too. A halt that ends lets
+ * a position mode go on from where the wheel is. */
 void canopen_move(const canopen_node *on) {
     canopen_axis *axis = on->axis;
     if (axis->state < CANOPEN_ENABLED || axis->state == CANOPEN_FAULT) return;

@@ -20,7 +20,7 @@ static uint8_t length_of(const canopen_pdo *pdo) {
     return bytes;
 }
 
-/* --- after a reset -------------------------------------------------------------------------------------------------- */
+/* --- after a reset ----------------------------------------------------------------------------------------------- */
 
 typedef struct preset {
     uint16_t cob_id, timer_ms;
@@ -58,7 +58,7 @@ void canopen_start_pdos(canopen_axis *axis, uint8_t id) {
     axis->received = 0;
 }
 
-/* --- configuration -------------------------------------------------------------------------------------------------- */
+/* --- configuration ----------------------------------------------------------------------------------------------- */
 
 static uint32_t mapping_of(const canopen_pdo *pdo, uint8_t k) {
     const canopen_row *row = canopen_row_at(pdo->row[k]);
@@ -141,7 +141,7 @@ uint32_t canopen_pdo_write(const canopen_node *on, uint16_t index, uint8_t sub, 
     }
 }
 
-/* --- receiving ------------------------------------------------------------------------------------------------------ */
+/* --- receiving --------------------------------------------------------------------------------------------------- */
 
 /* A value that its object refuses is passed over: the object keeps what it had. */
 static void apply(const canopen_node *on, const canopen_pdo *pdo) {
@@ -202,7 +202,7 @@ void canopen_check_deadlines(const canopen_node *on) {
     }
 }
 
-/* --- sending -------------------------------------------------------------------------------------------------------- */
+/* --- sending ----------------------------------------------------------------------------------------------------- */
 
 static void pack(const canopen_node *on, const canopen_pdo *pdo, uint8_t data[8]) {
     memset(data, 0, 8);
