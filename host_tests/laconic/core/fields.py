@@ -8,6 +8,7 @@ from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
+from functools import cached_property
 from typing import Any
 
 COUNTED = ("wheel", "support")  # tables of which there are several; the field of that name counts them
@@ -20,7 +21,10 @@ OF_GROUND = ("friction_coefficient", "roller_drag", "axle_friction_Nm")  # that 
 
 @dataclass(frozen=True)
 class Field:
-    """One row of the list; kind, rule and need are the ends of LACONIC_KIND_…, LACONIC_RULE_… and LACONIC_NEED_…."""
+    """One row of the list; kind, rule and need are the ends of LACONIC_KIND_…, LACONIC_RULE_… and LACONIC_NEED_….
+
+    Names are worked out once, as every vehicle that is made asks for them.
+    """
 
     number: int      # on the wire
     identifier: str  # "WHEEL_X", as in the value table of PARAMETER.field
@@ -31,33 +35,33 @@ class Field:
     need: str
     items: int       # how many numbers there may be; 0: the field is no list
 
-    @property
+    @cached_property
     def table(self) -> str:
         """"vehicle.wheel[#]"; empty for inputs."""
         return self.path.rpartition(".")[0]
 
-    @property
+    @cached_property
     def key(self) -> str:
         """"x_m"; of what a wheel may lack the name of its presence, "driven"."""
         key = self.path.rpartition(".")[2].removesuffix(ITEM)
         return key.removeprefix("un") if self.kind == "ABSENCE" else key
 
-    @property
+    @cached_property
     def struct(self) -> str:
         """The table as the core nests its structs: the ground is the vehicle's."""
         return GROUND_OF if self.table == GROUND else self.table
 
-    @property
+    @cached_property
     def root(self) -> str:
         """"vehicle", "initial", "run": the struct that holds it all."""
         return self.struct.partition(".")[0]
 
-    @property
+    @cached_property
     def is_own(self) -> bool:
         """Whether it is a wheel's own value, which is 0 where the vehicle's holds."""
         return self.table == WHEEL and self.name.startswith(OWN)
 
-    @property
+    @cached_property
     def member(self) -> str:
         """"x_m", "own_radius_m", "undriven": in the struct."""
         return self.name if self.is_own else self.path.rpartition(".")[2].removesuffix(ITEM)

@@ -40,6 +40,9 @@ def _rewrite_vehicle(study: Study, data: dict[str, Any], comments: Comments) -> 
         tables["ground",] = data.setdefault("ground", {})
         tables["ground",].update({key: after["ground"][key] for key in after["ground"] if not key.startswith("slope_")})
     _rewrite_places(study, data["vehicle"], after, comments)
+    for key, value in after.get("motor", {}).items():  # the back-EMF's constant follows the torque's
+        if value != study.scene.vehicle["motor"][key]:
+            data["vehicle"]["motor"][key] = value
     for parameter in study.found.parameters.each:
         *location, key = parameter.path.split(".")
         if tuple(location) in tables:

@@ -6,7 +6,7 @@ import math
 from collections.abc import Callable, Sequence
 
 from laconic.errors import BadInput, nearest_of
-from laconic.identification import ground
+from laconic.identification import ground, motion
 from laconic.identification.parameter import Parameter, Parameters, Vehicle
 from laconic.recorded_runs.rolling import wheel_radii
 from laconic.scene import Scene
@@ -14,7 +14,8 @@ from laconic.scene import Scene
 RELATIVE_SD = 0.1                     # of a radius and of the distances, unless --prior says otherwise
 PLACE_SD_M = 0.03
 ANGLE_SD_RAD = math.radians(2.0)
-GROUPS = ("radius", "common-radius", "distance", "centre-of-mass", "place", "heading", "axle", "roller", *ground.GROUPS)
+GROUPS = ("radius", "common-radius", "distance", "centre-of-mass", "place", "heading", "axle", "roller",
+          *ground.GROUPS, *motion.GROUPS)
 LEAST_SHARE = 0.05                    # of a nominal radius or distance: below it no wheel can be
 USUAL = ("radius", "distance")
 
@@ -23,7 +24,8 @@ def geometry_of(scene: Scene, free: Sequence[str], relative_sd: float = RELATIVE
     """The parameters that --free names; BadInput for a name that is none or that this vehicle has not."""
     makers: dict[str, Callable[[Scene, float], list[Parameter]]] = {
         "radius": _radii, "common-radius": _common_radius, "distance": _distance, "place": _place,
-        "heading": _heading, "centre-of-mass": _centre_of_mass, "axle": _axles, "roller": _rollers, **ground.MAKERS}
+        "heading": _heading, "centre-of-mass": _centre_of_mass, "axle": _axles, "roller": _rollers, **ground.MAKERS,
+        **motion.MAKERS}
     found: list[Parameter] = []
     for name in GROUPS:
         if name in free:

@@ -46,12 +46,6 @@ def base_of(scene: Scene, parameters: Parameters) -> Vehicle:
     return vehicle
 
 
-def evidence_of(scene: Scene, logs: Sequence[Log], parameters: Parameters) -> RollingEvidence:
-    """By rolling, or by the friction step where the ground has friction."""
-    with_friction = slips(base_of(scene, parameters))
-    return (GroundEvidence if with_friction else RollingEvidence)(scene.core(), scene.path, logs)
-
-
 def _of_ground(key: str, name: str, group: str, unit: str, usual: float, sd: float) -> Callable[[Scene, float],
                                                                                           list[Parameter]]:
     def write(vehicle: Vehicle, value: float) -> None:

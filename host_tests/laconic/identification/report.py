@@ -6,6 +6,7 @@ from typing import Any
 
 import numpy as np
 
+from laconic.identification.evidence import SAID
 from laconic.identification.study import Study
 from laconic.recorded_runs.measures import RunErrors, grand_mean
 from laconic.recorded_runs.rolled_paths import error_table
@@ -40,19 +41,21 @@ def _summary(study: Study) -> list[str]:
     rows = (("nominal, on the runs of the fit", study.nominal), ("fitted, on the same runs", study.fitted),
             ("left out of the fit", study.left_out), ("nominal, on the runs to judge", study.judged_nominal),
             ("fitted, on the runs to judge", study.judged))
-    lines = ["| path error, mean over sessions | % |", "| --- | --- |"]
-    return lines + [f"| {name} | {100.0 * _path_error(errors):.3f} |" for name, errors in rows if errors]
+    what, factor, unit = SAID[study.measure]
+    lines = [f"| {what}, mean over sessions | {unit} |", "| --- | --- |"]
+    return lines + [f"| {name} | {factor * mean_error(errors, study.measure):.3f} |" for name, errors in rows if errors]
 
 
 def judgement(study: Study) -> list[str]:
     """The summary as lines of text."""
-    rows = [line.strip("| ").replace(" | ", ": ") for line in _summary(study)[2:]]
-    return ["Path error, mean over sessions, in per cent:", *(f"  {row}" for row in rows)]
+    head, _, *rows = (line.strip("| ").replace(" | ", ": ") for line in _summary(study))
+    return [head, *(f"  {row}" for row in rows)]
 
 
-def _path_error(errors: list[RunErrors]) -> float:
-    value = grand_mean(errors).path_error
-    return float("nan") if value is None else value
+def mean_error(errors: list[RunErrors], measure: str) -> float:
+    """Over the sessions; NaN where no log tells it."""
+    value = getattr(grand_mean(errors), measure) if errors else None
+    return float("nan") if value is None else float(value)
 
 
 def as_numbers(study: Study) -> dict[str, Any]:

@@ -28,6 +28,7 @@ from laconic.identification.structure import Structure, block_sums, likeness_of,
 CONFIDENCE = 0.95
 OUTLIER = 3.0
 MOST_ROUNDS = 12
+FAR_FROM_SETTLED = 0.2
 ROUGHLY_SETTLED = 0.01
 SETTLED = 1e-3       # relative change of σ
 SMALLEST_SCALE = 1e-9
@@ -127,8 +128,10 @@ def _fit(base: dict[str, Any], parameters: Parameters, evidence: Evidence, z: np
         z = _least(base, parameters, evidence, z, factors, scale, stacked)
         blocks = evidence.residuals(parameters.vehicle(base, parameters.values(z)))
         before, scale = scale, _scale(np.concatenate([b * f for b, f in zip(blocks, factors, strict=True)]), freedom)
-        weights = _huber(np.array([np.sqrt(block @ block) for block in blocks]))
-        if abs(scale / before - 1.0) < (ROUGHLY_SETTLED if evidence.difference else SETTLED):
+        change = abs(scale / before - 1.0)
+        if change < FAR_FROM_SETTLED:  # before, what a strong prior leaves of a run is no outlier
+            weights = _huber(np.array([np.sqrt(block @ block) for block in blocks]))
+        if change < (ROUGHLY_SETTLED if evidence.difference else SETTLED):
             break
     return _judged(base, parameters, evidence, z, scale, in_session * weights, weights)
 

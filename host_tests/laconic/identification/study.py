@@ -7,7 +7,8 @@ from dataclasses import dataclass, replace
 
 from laconic.errors import BadInput
 from laconic.identification.controller import FoundController, controller_of
-from laconic.identification.ground import base_of, evidence_of, need_currents
+from laconic.identification.evidence import MEASURE, errors_of, evidence_of, kind_of
+from laconic.identification.ground import base_of, need_currents
 from laconic.identification.parameter import Parameters
 from laconic.identification.solve import Fit, fit
 from laconic.identification.words import in_words
@@ -15,8 +16,9 @@ from laconic.identification.words_of_errors import of_errors
 from laconic.logs import Log
 from laconic.logs.read import for_wheels
 from laconic.recorded_runs.measures import RunErrors
-from laconic.recorded_runs.rolled_paths import roll
+from laconic.recorded_runs.predicted import predict
 from laconic.scene import Scene
+from laconic.scene.speed_controller import SpeedController
 
 LEFT_OUT = ("session", "run")
 
@@ -35,6 +37,7 @@ class Study:
     judged: list[RunErrors]              # other runs, with the fitted scene
     judged_nominal: list[RunErrors]
     controller: FoundController | None = None
+    measure: str = "path_error"          # which of the errors the fit is about
 
 
 def identify(scene: Scene, logs: Sequence[Log], parameters: Parameters, *, judge: Sequence[Log] = (),
@@ -48,10 +51,11 @@ def identify(scene: Scene, logs: Sequence[Log], parameters: Parameters, *, judge
     advance()
     controller = controller_of(runs) if with_controller else None
     fitted = fitted_scene(scene, found)
-    left = _left_out(scene, runs, parameters, found, leave_out, advance) if leave_out else []
-    study = Study(scene, runs, found, in_words(scene, found, runs), roll(scene, runs).errors,
-                  roll(fitted, runs).errors, left, roll(fitted, others).errors if others else [],
-                  roll(scene, others).errors if others else [], controller)
+    left = _left_out(scene, runs, parameters, found, leave_out, advance, with_controller) if leave_out else []
+    study = Study(scene, runs, found, in_words(scene, found, runs), errors_of(scene, runs, parameters),
+                  errors_of(fitted, runs, parameters), left, errors_of(fitted, others, parameters) if others else [],
+                  errors_of(scene, others, parameters) if others else [], controller,
+                  MEASURE[kind_of(runs, parameters)])
     return replace(study, words=[*study.words, *of_errors(study, others)])
 
 
@@ -73,14 +77,25 @@ def _fit(scene: Scene, logs: Sequence[Log], parameters: Parameters, start: Fit |
 
 
 def _left_out(scene: Scene, logs: Sequence[Log], parameters: Parameters, found: Fit, leave_out: str,
-              advance: Callable[..., None]) -> list[RunErrors]:
+              advance: Callable[..., None], with_controller: bool) -> list[RunErrors]:
     apart = parts(logs, leave_out)
     if len(apart) < 2:
         raise BadInput(f"--leave-out {leave_out}: there is one {leave_out} only; give logs of several")
     by_path: dict[object, RunErrors] = {}
     for part in apart:
         rest = [log for log in logs if log not in part]
-        errors = roll(fitted_scene(scene, _fit(scene, rest, parameters, found)), logs).errors
-        by_path.update({log.path: each for log, each in zip(logs, errors, strict=True) if log in part})
+        fitted = fitted_scene(scene, _fit(scene, rest, parameters, found))
+        errors = errors_of(fitted, part, parameters)
+        if with_controller:
+            errors = _with_wheel_speeds(fitted, rest, part, errors)
+        by_path.update({log.path: each for log, each in zip(part, errors, strict=True)})
         advance()
     return [by_path[log.path] for log in logs]
+
+
+def _with_wheel_speeds(fitted: Scene, rest: Sequence[Log], part: Sequence[Log],
+                       errors: Sequence[RunErrors]) -> list[RunErrors]:
+    """With those in closed loop, through the speed controller that the other runs give."""
+    scene = replace(fitted, speed_controller=SpeedController(**controller_of(rest).values()))
+    return [replace(each, wheel_speed_error=looped.wheel_speed_error)
+            for each, (_, looped) in zip(errors, predict(scene, part, "set-speeds"), strict=True)]

@@ -8,7 +8,10 @@ from pathlib import Path
 import numpy as np
 
 from laconic.core import Core
-from laconic.identification.ground import base_of, evidence_of
+from laconic.identification.evidence import evidence_of, kind_of, like
+from laconic.identification.ground import base_of
+from laconic.identification.motion import ELECTRIC, inputs_of, stepping
+from laconic.identification.parameter import Parameters
 from laconic.identification.solve import Fit, jacobians_of
 from laconic.logs import Log
 from laconic.recorded_runs.held_wheels import hold
@@ -79,7 +82,11 @@ def _weak(found: Fit, strength: float, direction: np.ndarray, candidates: dict[s
         what = f"{named[0].rpartition(' ')[0]}: the runs hardly tell it"
     else:
         what = f"{', '.join(named[:-1])} and {named[-1]} together: the runs hardly tell this from nothing"
-    return f"{what} ({known}){advice(found, _in_asked(found, change), candidates)}."
+    remedy = advice(found, _in_asked(found, change), candidates)
+    if not remedy and any(p.group in ELECTRIC for p in found.parameters.each):
+        remedy = ("; voltages tell forces in units of each other alone: take one of these out of --free, or record "
+                  "currents and leave the electric ones out")
+    return f"{what} ({known}){remedy}."
 
 
 def _in_asked(found: Fit, change: np.ndarray) -> np.ndarray:
@@ -119,20 +126,44 @@ def candidate_information(scene: Scene, found: Fit, runs: Sequence[Log]) -> dict
     Its error has the size of that of the runs in metres, not as a share of its path: a run on the spot is not seen more
     sharply for being short.
     """
-    usual_m = float(np.median([path_length(log.time_s, log.needs("pose", "identify")) for log in runs]))
     assert found.asked is not None
     core, parameters, information = scene.core(), found.asked, {}
-    base = base_of(scene, parameters)
+    z = _z_of_found(found)
+    base, vehicle = base_of(scene, parameters), parameters.vehicle(base_of(scene, parameters), parameters.values(z))
     is_held = bool(len(core.matrices(core.vehicle(scene.vehicle)).constraint_rows))
     for name, velocity in MOTIONS.items():
-        if is_held and velocity[1] != 0.0:
+        if (is_held and velocity[1] != 0.0) or (kind_of(runs, parameters) == "turn" and velocity[2] == 0.0):
             continue
-        log = _motion(core, base, np.array(velocity), runs[0])
+        log = _candidate(scene, vehicle, parameters, np.array(velocity), runs)
         evidence = evidence_of(scene, [log], parameters)
-        jacobian = jacobians_of(base, parameters, evidence, np.zeros(len(parameters)))[0]
-        share = path_length(log.time_s, log.needs("pose", "identify")) / usual_m
-        information[name] = jacobian.T @ jacobian * (share / found.scale) ** 2
+        jacobian = jacobians_of(base, parameters, evidence, z)[0]
+        information[name] = jacobian.T @ jacobian * (_length(log) / _usual_length(runs) / found.scale) ** 2
     return information
+
+
+def _z_of_found(found: Fit) -> np.ndarray:
+    """The values found, in the z of all that were asked for; those that stay nominal are 0."""
+    assert found.asked is not None
+    values = dict(zip((p.name for p in found.parameters.each), found.values, strict=True))
+    off = np.array([values.get(p.name, p.nominal) - p.nominal for p in found.asked.each])
+    return np.linalg.solve(found.asked.factor, off) if len(off) else off
+
+
+def _candidate(scene: Scene, vehicle: dict[str, object], parameters: Parameters, velocity: np.ndarray,
+               runs: Sequence[Log]) -> Log:
+    """A run of the kind that was recorded: driven to and fro by voltages, or held at a velocity."""
+    if kind_of(runs, parameters) == "motion":
+        inputs = inputs_of(scene, runs, [p.group for p in parameters.each])
+        return stepping(scene.core(), vehicle, velocity, SAMPLES * PERIOD_S, inputs)
+    return like(runs, _motion(scene.core(), vehicle, velocity, runs[0]), float(velocity[2]))
+
+
+def _length(log: Log) -> float:
+    return 1.0 if log.pose is None else path_length(log.time_s, log.pose)
+
+
+def _usual_length(runs: Sequence[Log]) -> float:
+    return float(np.median([_length(log) for log in runs]))
 
 
 def _motion(core: Core, vehicle: dict[str, object], velocity: np.ndarray, like: Log) -> Log:

@@ -77,7 +77,7 @@ def map_names() -> list[str]:
 def named_map(given: Path) -> Path:
     """A map by its path, or by the name of one that comes with the project."""
     named = MAPS / f"{given}.toml"
-    return named if given.name == str(given) and not given.exists() and named.exists() else given
+    return named if given.name == str(given) and not given.is_file() and named.exists() else given
 
 
 def read_map(path: Path) -> ColumnMap:

@@ -69,9 +69,10 @@ def _followed(name: str, log: Log, followed: Followed, is_given: bool = False) -
     """is_given: the currents are the log's own."""
     path, errors = _with_path(name, log, placed_at(followed.pose, _start(log)))
     turns = log.wheel_angle_rad is not None or log.wheel_speed_rad_per_s is not None
+    compares = not is_given and log.current_A is not None and not np.isnan(followed.current_A).all()
     return path, replace(
         errors, wheel_speed_error=closed_loop.wheel_speed_error(log, followed) if turns else None,
-        current_error_A=None if is_given or log.current_A is None else closed_loop.current_error_A(log, followed))
+        current_error_A=closed_loop.current_error_A(log, followed) if compares else None)
 
 
 def _start(log: Log) -> np.ndarray:

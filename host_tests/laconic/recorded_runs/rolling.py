@@ -80,7 +80,7 @@ def rolling_of(core: Core, vehicle: Mapping[str, Any], path: Path) -> Rolling:
     c_vehicle = core.vehicle(vehicle)
     matrices = core.matrices(c_vehicle)
     radii, reference = wheel_radii(vehicle), float(c_vehicle.wheel_radius_m)
-    allowed = _null_space(matrices.constraint_rows)
+    allowed = null_space(matrices.constraint_rows)
     distance_rows = radii[:, None] * (matrices.wheel_rows @ allowed)
     centre = centre_of_mass(core, c_vehicle)
     angle = allowed[2] / matrices.lambda_yaw
@@ -113,7 +113,7 @@ def wheel_radii(vehicle: Mapping[str, Any]) -> np.ndarray:
     return np.array([wheel.get("radius_m", vehicle["wheel_radius_m"]) for wheel in vehicle["wheel"]], dtype=float)
 
 
-def _null_space(rows: np.ndarray) -> np.ndarray:
+def null_space(rows: np.ndarray) -> np.ndarray:
     """The ν that the constraints allow, as columns."""
     if not len(rows):
         return np.eye(3)

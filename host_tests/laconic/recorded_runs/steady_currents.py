@@ -35,7 +35,10 @@ class Axles:
 
 def axles_of(core: Core, vehicle: dict[str, Any]) -> Axles | None:
     """None for a vehicle whose motors' constants are not known."""
-    friction = core.plant(core.vehicle(vehicle), "auto", 0.01).c.friction
+    plant = core.plant(core.vehicle(vehicle), "auto", 0.01)
+    if not plant.has_friction:
+        return _without_friction(vehicle)
+    friction = plant.c.friction
     each = [friction.axle[i] for i in range(friction.wheel_count)]
     driven = [wheel.get("driven", True) for wheel in vehicle["wheel"]]
     if not any(driven) or any(axle.ampere == 0.0 for axle, has_motor in zip(each, driven, strict=True) if has_motor):
@@ -44,6 +47,20 @@ def axles_of(core: Core, vehicle: dict[str, Any]) -> Axles | None:
     return Axles(*(energy * np.array(values) for values in (
         [axle.dry for axle in each], [axle.viscous for axle in each], [1.0 / axle.ampere if axle.ampere else np.nan
                                                                 for axle in each])))
+
+
+def _without_friction(vehicle: dict[str, Any]) -> Axles | None:
+    """On ideal ground, from the motors' constants and what a wheel has of its own."""
+    motor = vehicle.get("motor")
+    if motor is None:
+        return None
+    ratio, ohm, emf = motor["gear_ratio"], motor["resistance_ohm"], motor["back_emf_Vs_per_rad"]
+    usual = ratio * motor["torque_constant_Nm_per_A"] / ohm
+    gain = np.array([wheel.get("motor_gain_Nm_per_V", usual) if wheel.get("driven", True) else np.nan
+                     for wheel in vehicle["wheel"]])
+    own = [wheel.get("motor_damping_Nms", ratio * emf * gain[i] + ratio**2 * motor["viscous_friction_Nms"])
+           for i, wheel in enumerate(vehicle["wheel"])]
+    return Axles(np.zeros(len(gain)), np.array(own) - ratio * emf * gain, ohm * gain)
 
 
 def with_torques(vehicle: dict[str, Any], axles: Axles, gain_As_per_rad: float = 0.0) -> dict[str, Any]:

@@ -97,7 +97,7 @@ def test_a_poor_fit_and_a_session_that_spoils_the_others_are_named():
     assert any(word.startswith("Session day0 fits far worse than the others") for word in words)
     mirrored = [replace(log, pose=log.pose * np.array([1.0, -1.0, -1.0])) for log in logs]
     words = identify(scene, mirrored, geometry_of(scene, ("radius", "distance"))).words
-    assert any(word.startswith("The fit is poor: a path error of") and "signs" in word for word in words)
+    assert any(word.startswith("The fit is poor: of") and "signs" in word for word in words)
     assert not any("poor" in word or "Session" in word for word in identify(
         scene, logs, geometry_of(scene, ("radius", "distance"))).words)
 

@@ -13,8 +13,8 @@ from recorded_data import recorded
 
 from laconic.cli.main import run
 from laconic.identification.controller import controller_of
+from laconic.identification.evidence import evidence_of
 from laconic.identification.geometry import geometry_of
-from laconic.identification.ground import evidence_of
 from laconic.identification.solve import fit
 from laconic.identification.study import identify
 from laconic.logs import Log
@@ -162,3 +162,10 @@ def test_friction_that_is_left_free_without_currents_is_refused_by_its_name(robo
     log = replace(made_up(robot, 0.0), current_A=None)
     with pytest.raises(Exception, match="--free friction: only currents tell it"):
         identify(robot, [log], geometry_of(robot, ("friction",)))
+
+
+def test_runs_left_out_are_judged_in_closed_loop_by_the_controller_of_the_others(robot):
+    logs = [made_up(robot, d, f"run{d}", v) for d, v in ((0.0, 0.1), (40.0, 0.2), (90.0, 0.3))]
+    study = identify(robot, logs, geometry_of(robot, ("common-radius",)), leave_out="run", with_controller=True)
+    assert [each.wheel_speed_error for each in study.left_out] == pytest.approx([0.0] * 3, abs=0.08)
+    assert all(each.wheel_speed_error > 0.0 for each in study.left_out)

@@ -24,7 +24,8 @@ LEFT_OUT = ("session", "run")
               help="What may move: radius (of each wheel), distance (of all wheels, one factor), centre-of-mass, place "
               "and heading (of the whole robot against the true pose), axle, roller (angles of each wheel), "
               "common-radius (one of all wheels); on ground with friction drag (of rollers), friction, axle-friction, "
-              "viscous (of motors); controller (of the wheels' speeds).")
+              "viscous (of motors); controller (of the wheels' speeds); from voltages or currents mass, yaw-inertia, "
+              "wheel-inertia, motor-gain, motor-damping, resistance, torque-constant.")
 @click.option("--prior", "prior_percent", type=float, default=10.0, show_default=True, metavar="PERCENT",
               help="How far radii and distances may be from nominal beforehand (standard deviation).")
 @map_option
@@ -35,13 +36,14 @@ LEFT_OUT = ("session", "run")
 @json_flag("Machine-readable result on stdout.")
 def command(logs: tuple[Path, ...], scene: str, out: Path | None, free: str, prior_percent: float,
             map_path: Path | None, judge: tuple[Path, ...], leave_out: str | None, json_wanted: bool) -> None:
-    """Finds parameters of a scene from LOG..., recorded runs with a true pose, or folders of them.
+    """Finds parameters of a scene from LOG..., recorded runs or folders of them.
 
-    Robust nonlinear least squares on the distance between the rolled and the true path; on ground with friction the
-    core moves, its wheels held at the recorded speeds, and steady currents count as well. Each value comes with a 95 %
-    interval; what the runs do not tell stays nominal, and it is stated which run would. FITTED.toml is a complete
-    scene, with sources and intervals in comments. Exit status 1 where the values found are worse than the nominal ones
-    on runs to judge or left out; with -o - the report goes to stderr.
+    Robust nonlinear least squares on the distance between the rolled and the true path, without a true pose on the
+    turn that a gyro felt; on ground with friction the core moves, its wheels held at the recorded speeds, and steady
+    currents count as well. Masses and motors are found from the wheel speeds that recorded voltages or currents give.
+    Each value comes with a 95 % interval; what the runs do not tell stays nominal, and it is stated which run would.
+    FITTED.toml is a complete scene, with sources and intervals in comments. Exit status 1 where the values found are
+    worse than the nominal ones on runs to judge or left out; with -o - the report goes to stderr.
     """
     from laconic.identification import report
     from laconic.identification.fitted_toml import fitted_text
