@@ -26,11 +26,11 @@ class WheelDrive:
         whole = {key: int(value) if key in WHOLE else value for key, value in numbers.items()}
         lib.laconic_library_wheel_drive_start(
             self.c, ffi.new("laconic_library_drive_settings *", {"node_id": node_id, **whole}))
-        self.seen: Any = ffi.new("laconic_library_drive *")
+        self.seen: Any = ffi.new("laconic_library_measured *")
         self._look()
 
     def _look(self) -> None:
-        self._lib.laconic_library_wheel_drive_view(self.c, self.seen)
+        self._lib.laconic_library_wheel_drive_measured(self.c, self.seen)
 
     def aim(self, mode: int, position_rad: float = 0.0, speed_rad_per_s: float = 0.0, current_A: float = 0.0) -> None:
         """Its target, at the motor's shaft."""

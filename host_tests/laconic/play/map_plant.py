@@ -99,7 +99,7 @@ class MapPlant:
     # ---- outputs
 
     def drive(self, wheel: int) -> Any:
-        """What the drive of a wheel measured: a laconic_library_drive."""
+        """What the drive of a wheel measured: a laconic_library_measured."""
         return self.drives.drives[wheel].seen if self.drives is not None else None
 
     def drive_angle_rad(self, wheel: int) -> float:

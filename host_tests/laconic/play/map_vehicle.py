@@ -23,7 +23,7 @@ MOST_STEPS_AT_ONCE = 64  # then frames are read again
 class MapVehicle:
     """Takes the controller's messages, steps the plant by the clock and sends the vehicle's messages."""
 
-    def __init__(self, scene: Scene, settings: DriveSettings | None, joined: Joined, now_us: int):
+    def __init__(self, scene: Scene, settings: DriveSettings | None, joined: Joined):
         self.scene, self.joined = scene, joined
         self.plant = MapPlant(scene, settings, joined.inputs)
         self.lateness = Lateness()
@@ -31,12 +31,16 @@ class MapVehicle:
         self.timeouts: Counter[str] = Counter()  # by message
         self._ending: LaconicError | None = None
         self._period_us = 1e6 * self.plant.plant.step_s
-        self._start_us, self._periods = now_us, 1
+        self._start_us, self._periods = 0, 1
         self._heard_us: dict[Key, int] = {}
         self._silent: set[Key] = set()
         self._asked: list[Sender] = []
         self._due_s = [each.sent.first_s for each in joined.senders]
         self._readers: dict[str, Callable[[MapPlant], float]] = {}
+
+    def begin(self, now_us: int) -> None:
+        """The first period ends one step from now."""
+        self._start_us = now_us
 
     # ---- in
 

@@ -4,20 +4,17 @@ from __future__ import annotations
 
 from collections.abc import Callable, Iterator, Sequence
 from contextlib import contextmanager
-from typing import Protocol
 
 import can
 
 from laconic.errors import LaconicError
 from laconic.play.listener import ListeningBus
 from laconic.play.live import live_traffic
-from laconic.play.loop import Lateness, Loop, Seconds, Traffic, Vehicle
-from laconic.play.map_file import read_map
-from laconic.play.map_join import check_map, join
-from laconic.play.map_vehicle import MapVehicle
-from laconic.play.options import PlayOptions, check_options, controller_bus
-from laconic.play.settings import DriveSettings, drive_settings
-from laconic.play.vehicle import check_playable, played
+from laconic.play.loop import Loop, Seconds, Traffic
+from laconic.play.options import PlayOptions, check_options
+from laconic.play.places import Place, Played, place_of
+from laconic.play.settings import DriveSettings
+from laconic.play.vehicle import check_playable
 from laconic.rig.errors import BusDied, Interrupted
 from laconic.rig.interruption import Interruption
 from laconic.rig.link import Clock
@@ -29,51 +26,39 @@ Others = Sequence[Callable[[int], int | None]]
 Say = Callable[[str], None]
 
 
-class Played(Vehicle, Protocol):
-    """A vehicle that can be judged."""
-
-    lateness: Lateness
-
-    def watchdogs(self) -> list[str]:
-        """The watchdogs that fired, in words."""
-
-    def notes(self) -> list[str]:
-        """What else there is to say."""
-
-
 def play(scene: Scene, options: PlayOptions, *, clock: Clock | None = None, others: Others = (),
          say: Say = lambda _: None) -> Judgement:
     """Plays the vehicle until it is stopped or `options.duration_s` is over. `others` are called in its loop, in tests
     controllers in virtual time; `say` gets the lines that a person wants to read at the start."""
     check_options(options)
     check_playable(scene)
+    place = place_of(scene, options)
     traffic, seconds = Traffic(clock or Clock()), Seconds()
-    with Interruption() as signals, vehicle_of(scene, options, traffic, say) as vehicle, \
-            controller_bus(options) as bus, logged(traffic, options.logs), shown(traffic, scene, options) as moved:
+    with Interruption() as signals, place.opened(traffic.clock) as (vehicle, bus), logged(traffic, options.logs), \
+            shown(traffic, scene, options) as moved:
         traffic.may_go_on = signals.check
-        say(where(bus))
-        ending = Loop(vehicle, bus, traffic, others).run(options.duration_s, moved)
-        return judged(scene, options, vehicle, traffic, seconds, ending, bus)
+        for line in introduction(place, bus):
+            say(line)
+        with place.playing(vehicle):
+            ending = Loop(vehicle, bus, traffic, others).run(options.duration_s, moved)
+            signals.number = 0  # it has been heard
+        return judged(scene, place, vehicle, traffic, seconds, ending, bus)
 
 
-@contextmanager
-def vehicle_of(scene: Scene, options: PlayOptions, traffic: Traffic, say: Say) -> Iterator[Played]:
-    """The vehicle with its drives: a map's, in this process."""
-    assert options.dbc is not None and options.map_path is not None
-    joined = join(read_map(options.map_path, scene.wheel_count), options.dbc)
-    settings: DriveSettings | None = None
-    if joined.has_drives:
-        settings = drive_settings(scene, options.drives or "canopen")
-        scene = played(scene)
-    check_map(scene, joined)
-    yield MapVehicle(scene, settings, joined, traffic.clock.now_us())
+def introduction(place: Place, bus: can.BusABC) -> Iterator[str]:
+    """What a person must know: the drives with their settings, and how to connect a controller."""
+    if place.settings is not None:
+        yield drives_text(place.settings)
+        yield "the drives are the motors: the vehicle has no motor gain, and viscous friction as its only motor damping"
+    yield place.where(bus)
 
 
-def where(bus: can.BusABC) -> str:
-    """What a person must know to connect a controller."""
-    if isinstance(bus, ListeningBus):
-        return f"listening on 127.0.0.1:{bus.port}: interface slcan, channel socket://127.0.0.1:{bus.port}"
-    return f"on {bus.channel_info}"
+def drives_text(settings: DriveSettings) -> str:
+    """A line for each key, with its origin."""
+    rows = [(key, value, f"({origin})") for key, value, origin in settings.rows()]
+    widths = [max(len(row[column]) for row in rows) for column in range(2)]
+    lines = (f"  {key:{widths[0]}}  {value:{widths[1]}}  {origin}" for key, value, origin in rows)
+    return "\n".join([f"drives: {settings.protocol.name}", *lines])
 
 
 @contextmanager
@@ -86,13 +71,13 @@ def shown(traffic: Traffic, scene: Scene, options: PlayOptions) -> Iterator[Call
         yield moved
 
 
-def judged(scene: Scene, options: PlayOptions, vehicle: Played, traffic: Traffic, seconds: Seconds,
+def judged(scene: Scene, place: Place, vehicle: Played, traffic: Traffic, seconds: Seconds,
            ending: LaconicError | None, bus: can.BusABC) -> Judgement:
     """Verdicts and figures."""
-    judgement = Judgement(scene.name, "dbc" if options.dbc else "drives")
+    judgement = Judgement(scene.name, place.name)
     died, late = isinstance(ending, BusDied), vehicle.lateness
-    judgement.add(Verdict("bus", not died, str(ending) if died else f"{traffic.frames_in} frames from the controller, "
-                          f"{traffic.frames_out} from the vehicle"))
+    judgement.add(Verdict("bus", not died, str(ending) if died else f"{traffic.frames_in} frames heard, "
+                          f"{traffic.frames_out} sent by the vehicle"))
     fired = vehicle.watchdogs()
     judgement.add(Verdict("watchdog", not fired, "; ".join(fired) or "never fired"))
     if ending is not None and not isinstance(ending, (BusDied, Interrupted)):

@@ -63,16 +63,19 @@ class VirtualClock(Clock):
     def now_us(self) -> int:
         return self.time_us
 
+    def pass_time(self, microseconds: int) -> None:
+        self.time_us += microseconds
+
 
 class NodeOnBus:
     """A node in this process at the other end of a bus; `pump` gives it the frames received and sends its answers."""
 
-    def __init__(self, node: LibraryNode, bus: can.BusABC, clock: VirtualClock):
+    def __init__(self, node: LibraryNode, bus: can.BusABC, clock: Clock):
         self.node, self.bus, self.clock = node, bus, clock
 
     def pump(self) -> bool:
         """True iff anything happened; else time moves on to the node's next event."""
-        node, bus, now = self.node, self.bus, self.clock.time_us
+        node, bus, now = self.node, self.bus, self.clock.now_us()
         busy = False
         while (message := bus.recv(0)) is not None:
             self.deliver(message)
@@ -80,12 +83,12 @@ class NodeOnBus:
         node.tick(now)
         busy = self.send_all() or busy
         if not busy:
-            self.clock.time_us += max(1, min(node.idle_us(now), 1000))
+            self.clock.pass_time(max(1, min(node.idle_us(now), 1000)))
         return busy
 
     def deliver(self, message: can.Message) -> None:
         """A frame reaches the node."""
-        now = self.clock.time_us
+        now = self.clock.now_us()
         self.node.give(message, now)
         self.node.tick(now)
 
@@ -103,13 +106,20 @@ class NodeOnBus:
 
 
 @contextmanager
-def virtual_node(real: str = "double", id_base: int = ID_BASE, **node_options: Any) -> Iterator[NodeClient]:
-    """A node in this process on python-can's virtual bus, in virtual time."""
-    channel = next_channel()
-    clock = VirtualClock()
+def node_in_process(real: str = "double", id_base: int = ID_BASE, clock: Clock | None = None,
+                    **node_options: Any) -> Iterator[tuple[NodeClient, NodeOnBus]]:
+    """A node in this process on python-can's virtual bus, in virtual time unless there is a clock; with its end."""
+    channel, clock = next_channel(), clock or VirtualClock()
     with can.Bus(interface="virtual", channel=channel) as ours, can.Bus(interface="virtual", channel=channel) as its:
         end = NodeOnBus(LibraryNode(real, id_base, **node_options), its, clock)
-        yield NodeClient(Link(ours, id_base, clock=clock, pump=end.pump))
+        yield NodeClient(Link(ours, id_base, clock=clock, pump=end.pump)), end
+
+
+@contextmanager
+def virtual_node(real: str = "double", id_base: int = ID_BASE, **node_options: Any) -> Iterator[NodeClient]:
+    """A node in this process on python-can's virtual bus, in virtual time."""
+    with node_in_process(real, id_base, **node_options) as (client, _):
+        yield client
 
 
 @contextmanager

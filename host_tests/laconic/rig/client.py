@@ -196,9 +196,10 @@ class NodeClient:
 
     # ---- vehicle
 
-    def load(self, plant: Plant, start: Any) -> None:
-        """Sends a plant's vehicle, method and step, and a laconic_start; the node adopts them or refuses."""
-        self.load_parameters(parameters_of(plant, start), plant.core.dtype)
+    def load(self, plant: Plant, start: Any, more: Iterable[Parameter] = ()) -> None:
+        """Sends a plant's vehicle, method and step, a laconic_start, and more where there is more; the node adopts them
+        or refuses."""
+        self.load_parameters((*parameters_of(plant, start), *more), plant.core.dtype)
 
     def load_parameters(self, parameters: Iterable[Parameter], dtype: np.dtype) -> None:
         """BEGIN, PARAMETER …, COMMIT."""
@@ -228,6 +229,10 @@ class NodeClient:
         """From now on the node steps by its own clock."""
         self.control("START_FREE_RUN", rate=rate_Hz, watchdog=watchdog_ms)
         self.link.session.begin_run()
+
+    def start_drives(self) -> None:
+        """From now on the node steps by its own clock, for a controller that speaks the protocol of its drives."""
+        self.control("START_DRIVES")
 
     def stop(self) -> None:
         """Stops the node and sets its voltages to zero; where STOP is not answered, by opening a new session."""

@@ -25,6 +25,10 @@ class Clock:
         """Microseconds since some start."""
         return time.perf_counter_ns() // 1000
 
+    def pass_time(self, microseconds: int) -> None:
+        """Waits so long."""
+        time.sleep(microseconds / 1e6)
+
 
 class Link:
     """One end of the wire. `pump`, where given, runs a node in this process; it returns False when idle."""

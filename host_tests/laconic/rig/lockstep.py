@@ -10,7 +10,7 @@ from __future__ import annotations
 
 import itertools
 import time
-from collections.abc import Callable, Iterator
+from collections.abc import Callable, Iterable, Iterator
 from dataclasses import dataclass, field
 from functools import cached_property
 from typing import Any
@@ -21,6 +21,7 @@ from laconic.core.plant import Plant
 from laconic.errors import BadInput
 from laconic.rig.client import NodeClient
 from laconic.rig.errors import NodeSilent
+from laconic.rig.parameters import Parameter
 from laconic.rig.wire import wire
 from laconic.scene import Scene
 from laconic.scene.inputs import InputsOnGrid
@@ -75,8 +76,9 @@ def start_of(scene: Scene) -> Any:
     return scene.c_start(scene.core())
 
 
-def load_scene(node: NodeClient, scene: Scene) -> Plant:
-    """Sends a scene's vehicle, start and run to a node; returns its twin, a plant of the core at the same start."""
+def load_scene(node: NodeClient, scene: Scene, more: Iterable[Parameter] = ()) -> Plant:
+    """Sends a scene's vehicle, start and run to a node, and more parameters where there are more; returns its twin, a
+    plant of the core at the same start."""
     identity = (node.identity if node.link.session.is_open else None) or node.open()
     if identity.real != scene.run.real:
         raise BadInput(f"{scene.path}: run.real is {scene.run.real}, the node computes in {identity.real}; "
@@ -85,7 +87,7 @@ def load_scene(node: NodeClient, scene: Scene) -> Plant:
         raise BadInput(f"{scene.path}: vehicle.wheel: {scene.wheel_count} of them, the node has room for "
                        f"{identity.max_wheels}; use a build with more")
     twin = scene.plant(scene.core())
-    node.load(twin, start_of(scene))
+    node.load(twin, start_of(scene), more)
     return twin
 
 

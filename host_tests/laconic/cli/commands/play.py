@@ -10,10 +10,13 @@ import click
 from laconic.cli.options import InputPath, OutputFile, SceneName, json_flag
 from laconic.core import REALS
 from laconic.play.options import PlayOptions
+from laconic.play.places import ON_BUS
 from laconic.play.session import play
+from laconic.rig.boards import KINDS
 from laconic.rig.logs import LOGS
 from laconic.rig.results import as_json, show, write_junit
 from laconic.scene import METHODS, read_scene
+from laconic.scene.drives import DRIVE_PROTOCOLS
 
 
 @click.command("play")
@@ -25,6 +28,11 @@ from laconic.scene import METHODS, read_scene
               help="Further setting of the interface, such as under=slcan or loss=0.01 for faulty.")
 @click.option("--listen", type=int, metavar="PORT",
               help="Instead of an interface: SLCAN on a TCP port of this machine; 0: any free one, printed.")
+@click.option("--drives", type=click.Choice(DRIVE_PROTOCOLS), help="Protocol instead of the scene's [rig.drives].")
+@click.option("--board", type=click.Choice((*KINDS, ON_BUS)),
+              help="Where the vehicle runs: here, as process, emulated, or a node that is on the bus.  "
+                   "[default: virtual]")
+@click.option("--id-base", help="The node's first CAN identifier, a multiple of 32.  [default: the scene's, or 0x680]")
 @click.option("--dbc", type=InputPath(), help="The messages of the controller; with --map.")
 @click.option("--map", "map_path", type=InputPath(), metavar="MAP.toml",
               help="Which signal of the DBC is which input or output of the model.")
@@ -40,9 +48,10 @@ def command(scene_name: str, method: str | None, real: str | None, step_s: float
             json_wanted: bool, **given: Any) -> int:
     """Plays the vehicle of SCENE on a CAN bus in real time, for a controller that someone else wrote.
 
-    --dbc and --map say what the controller's frames mean. Without an interface of your own, --listen 0 prints a port at
-    which python-can's slcan connects. Lateness is printed at the end. Exit status 0 when the user or --duration has
-    ended it, 1 when the bus died, a step was refused or a watchdog fired, 2 for bad input.
+    --drives speaks the protocol of its motor drives, or --dbc and --map say what its frames mean. Without an interface
+    of your own, --listen 0 prints a port at which python-can's slcan connects. Lateness is printed at the end. Exit
+    status 0 when the user or --duration has ended it, 1 when the bus died, a step was refused or a watchdog fired, 2
+    for bad input.
     """
     scene = read_scene(scene_name).with_run(method=method, step_s=step_s, real=real)
     began = time.perf_counter()

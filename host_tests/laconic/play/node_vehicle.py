@@ -1,0 +1,221 @@
+"""The vehicle in a node, whose C code speaks the protocol of the drives: in this process, in another one, on a board,
+or a node that is on the controller's bus already.
+
+The node's own frames are the channel by which play loads, starts and watches it; the controller hears nothing of them
+but where the node itself is on its bus.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from contextlib import contextmanager, suppress
+
+import can
+
+from laconic.errors import BadInput, LaconicError, ResultFails
+from laconic.play.loop import Lateness
+from laconic.play.parameters import drive_parameters
+from laconic.play.settings import DriveSettings
+from laconic.play.vehicle import played
+from laconic.rig.buses import NodeOnBus
+from laconic.rig.client import NodeClient
+from laconic.rig.errors import BusDied, NodeRefused, NodeSilent
+from laconic.rig.link import Received
+from laconic.rig.lockstep import load_scene
+from laconic.rig.stopping import RUNNING, come_to_rest, stop_running
+from laconic.rig.wire import ID_STRIDE, Frame, wire
+from laconic.scene import Scene
+
+MOST_STEPS_AT_ONCE = 64
+POLL_US = 500                 # a node behind a serial line is asked so often
+LOOK_US = 10_000              # drives in this process are looked at so often
+PATIENCE_S = 0.5              # for the figures at the end
+FAULT_WATCHDOG = 32           # LACONIC_DRIVE_FAULT_WATCHDOG
+
+
+class NodeVehicle:
+    """A node that plays. `client` is the way to it."""
+
+    def __init__(self, client: NodeClient, scene: Scene, settings: DriveSettings):
+        self.client, self.scene, self.settings = client, scene, settings
+        self.lateness = Lateness()
+        self.truth: list[Received] = []      # frames of the node that the harness has chosen, until somebody takes them
+        self._own = range(client.link.id_base, client.link.id_base + ID_STRIDE)
+        self._fired: set[str] = set()
+        self._ending: LaconicError | None = None
+        self._notes: list[str] = []
+
+    def start(self) -> None:
+        """Loads vehicle and drives, and starts them."""
+        found = stop_running(self.client)
+        if found in RUNNING:
+            self._notes.append(f"the node was found in state {found} and has been stopped before")
+        try:
+            load_scene(self.client, played(self.scene), drive_parameters(self.settings))
+            self.choose_frames()
+            self.client.start_drives()
+        except NodeRefused as refused:
+            raise BadInput(f"{self.scene.path}: rig.drives: {refused}; {remedy(refused, self.scene)}") from None
+
+    def choose_frames(self, *names: str) -> None:
+        """The frames of the node that come from now on; none: it is silent."""
+        self.client.select(**{f"send_{name.lower()}": 1 for name in names})
+
+    def is_own(self, message: can.Message) -> bool:
+        """Whether a frame is one of the node's own, not of its drives."""
+        return message.arbitration_id in self._own and not message.is_extended_id
+
+    def take_own(self, message: can.Message) -> None:
+        """A frame of the node itself."""
+        received = self.client.link.take(message)
+        if received is not None:
+            self._look_at(*received)
+            self.truth.append(received)
+
+    def _look_at(self, frame: Frame, data: bytes) -> None:
+        if frame.name != "HEARTBEAT":
+            return
+        values = frame.unpack(data)
+        state = wire().choice("HEARTBEAT", "state", values["state"])
+        if state not in ("drives", "ready"):
+            self._ending = ResultFails(f"the node went into state {state} after {values['steps']} steps")
+
+    def ending(self) -> LaconicError | None:
+        """A step that the core refused."""
+        return self._ending
+
+    def watchdogs(self) -> list[str]:
+        """Drives whose controller was silent."""
+        return sorted(self._fired)
+
+    def notes(self) -> list[str]:
+        """What else there is to say."""
+        return self._notes
+
+    def finish(self) -> None:
+        """Asks for the figures of lateness and stops the node."""
+        with suppress(NodeSilent, NodeRefused, BusDied):
+            self._read_figures()
+        if (failure := come_to_rest(self.client)) is not None:
+            self._notes.append(f"the node could not be stopped: {failure}")
+
+    def _read_figures(self) -> None:
+        link, wanted = self.client.link, {"HEARTBEAT", "COUNTERS"}
+        self.choose_frames("COUNTERS")
+        deadline_us = link.deadline_us(PATIENCE_S)
+        while wanted and (received := link.receive_until(deadline_us)) is not None:
+            frame, data = received
+            values = frame.unpack(data)
+            if frame.name == "HEARTBEAT":
+                self.lateness.periods, self.lateness.worst_us = values["steps"], values["worst_lateness"]
+                wanted.discard(frame.name)
+            elif frame.name == "COUNTERS" and "late_periods" in values:
+                self.lateness.late_periods = values["late_periods"]
+                wanted.discard(frame.name)
+
+
+def remedy(refused: NodeRefused, scene: Scene) -> str:
+    """What to do about a refusal of drives."""
+    if refused.status == "not supported":
+        return "this build of the node does not speak that protocol; choose another --drives or --board"
+    if refused.status == "out of range":
+        return (f"drives step once a period, so 1 / step must be a whole number from 1 to 10000, and run.step_s is "
+                f"{scene.run.step_s:g}; give another --step")
+    return "correct that key, see docs/play.md"
+
+
+class InProcess(NodeVehicle):
+    """A node in this process: its C code is called directly, no frame passes another bus than the controller's."""
+
+    def __init__(self, client: NodeClient, end: NodeOnBus, scene: Scene, settings: DriveSettings):
+        super().__init__(client, scene, settings)
+        self.node = end.node
+        self._view = self.node.library.ffi.new("laconic_library_drive *")
+        self._next_look_us = 0
+
+    def on_message(self, message: can.Message, now_us: int) -> None:
+        """A frame of the controller; the node's own identifiers are not for it."""
+        if not self.is_own(message):
+            self.node.give(message, now_us)
+
+    def advance(self, now_us: int) -> Iterator[can.Message]:
+        """Periods that are due, and the frames of the drives after each."""
+        for _ in range(MOST_STEPS_AT_ONCE):
+            self.node.tick(now_us)
+            yield from self._frames()
+            if self.node.idle_us(now_us) > 0:
+                break
+        if now_us >= self._next_look_us:
+            self._next_look_us = now_us + LOOK_US
+            self._look_at_drives()
+
+    def _frames(self) -> Iterator[can.Message]:
+        while (message := self.node.take_message()) is not None:
+            if self.is_own(message):
+                self.take_own(message)
+            else:
+                yield message
+
+    def idle_us(self, now_us: int) -> int:
+        """Microseconds to the next period."""
+        return self.node.idle_us(now_us)
+
+    def _look_at_drives(self) -> None:
+        lib, view = self.node.library.lib, self._view
+        for number in range(len(self.settings.node_ids)):
+            if not lib.laconic_library_drive_view(self.node.c, number, view):
+                break
+            if view.faults & FAULT_WATCHDOG:
+                self._fired.add(f"drive {view.node_id} heard no controller in time")
+        state = self.node.inspect()["state"]
+        if state != "drives":
+            self._ending = ResultFails(f"the node went into state {state}: the core refused a step")
+
+
+class Bridged(NodeVehicle):
+    """A node behind a line of its own, such as SLCAN to a process or an emulated board: frames are passed on."""
+
+    def on_message(self, message: can.Message, now_us: int) -> None:
+        """To the node."""
+        if not self.is_own(message):
+            self.client.link.bus.send(message)
+
+    def advance(self, now_us: int) -> Iterator[can.Message]:
+        """What the node has sent."""
+        bus = self.client.link.bus
+        while (message := bus.recv(0)) is not None:
+            if self.is_own(message):
+                self.take_own(message)
+            else:
+                yield message
+
+    def idle_us(self, now_us: int) -> int:
+        """The node has its own clock; it is asked in short intervals."""
+        return POLL_US
+
+
+class OnBus(NodeVehicle):
+    """A node that is a station of the controller's own bus: play only watches."""
+
+    def on_message(self, message: can.Message, now_us: int) -> None:
+        """A frame of anybody."""
+        if self.is_own(message):
+            self.take_own(message)
+
+    def advance(self, now_us: int) -> Iterator[can.Message]:
+        """Nothing: the node sends for itself."""
+        return iter(())
+
+    def idle_us(self, now_us: int) -> int:
+        """Nothing is ever due."""
+        return LOOK_US
+
+
+@contextmanager
+def running(vehicle: NodeVehicle) -> Iterator[NodeVehicle]:
+    """A node that plays, and is at rest at the end."""
+    vehicle.start()
+    try:
+        yield vehicle
+    finally:
+        vehicle.finish()

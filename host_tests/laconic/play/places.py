@@ -1,0 +1,127 @@
+"""Where the vehicle runs and how it comes to the controller's bus. Everything that can be wrong with the input is found
+when a place is made, before a bus is opened."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from contextlib import AbstractContextManager, contextmanager, nullcontext
+from typing import Any, Protocol
+
+import can
+
+from laconic.play.listener import ListeningBus
+from laconic.play.loop import Lateness, Vehicle
+from laconic.play.map_file import read_map
+from laconic.play.map_join import check_map, join
+from laconic.play.map_vehicle import MapVehicle
+from laconic.play.node_vehicle import Bridged, InProcess, NodeVehicle, OnBus, running
+from laconic.play.options import PlayOptions, controller_bus
+from laconic.play.settings import DriveSettings, drive_settings
+from laconic.play.vehicle import played
+from laconic.rig.boards import own_node
+from laconic.rig.buses import node_in_process
+from laconic.rig.client import NodeClient
+from laconic.rig.link import Clock, Link
+from laconic.rig.options import read_id_base
+from laconic.scene import Scene
+
+ON_BUS = "bus"  # --board: the node is on the controller's bus already
+
+
+class Played(Vehicle, Protocol):
+    """A vehicle that can be judged."""
+
+    lateness: Lateness
+
+    def watchdogs(self) -> list[str]:
+        """The watchdogs that fired, in words."""
+
+    def notes(self) -> list[str]:
+        """What else there is to say."""
+
+
+class Place:
+    """One kind of place."""
+
+    name = ""
+    settings: DriveSettings | None = None
+
+    def opened(self, clock: Clock) -> AbstractContextManager[tuple[Any, can.BusABC]]:
+        """The vehicle and the controller's bus."""
+        raise NotImplementedError
+
+    def playing(self, vehicle: Any) -> AbstractContextManager[Any]:
+        """A context in which the vehicle moves."""
+        return nullcontext(vehicle)
+
+    def where(self, bus: can.BusABC) -> str:
+        """What a person must know to connect a controller."""
+        if isinstance(bus, ListeningBus):
+            return listening_text(bus.port)
+        return f"on {bus.channel_info}"
+
+
+def listening_text(port: int) -> str:
+    """Where a controller can connect."""
+    return f"listening on 127.0.0.1:{port}: interface slcan, channel socket://127.0.0.1:{port}"
+
+
+class OfMap(Place):
+    """Frames of a DBC, by a plant in this process."""
+
+    name = "dbc"
+
+    def __init__(self, scene: Scene, options: PlayOptions):
+        assert options.dbc is not None and options.map_path is not None
+        self.options, self.scene = options, scene
+        self.joined = join(read_map(options.map_path, scene.wheel_count), options.dbc)
+        if self.joined.has_drives:
+            self.settings = drive_settings(scene, None if scene.rig.drives and scene.rig.drives.protocol else "canopen")
+            self.scene = played(scene)
+        check_map(self.scene, self.joined)
+
+    @contextmanager
+    def opened(self, clock: Clock) -> Iterator[tuple[Any, can.BusABC]]:
+        """The plant."""
+        self._clock = clock
+        with controller_bus(self.options) as bus:
+            yield MapVehicle(self.scene, self.settings, self.joined), bus
+
+    @contextmanager
+    def playing(self, vehicle: MapVehicle) -> Iterator[Any]:
+        """The plant moves from now on."""
+        vehicle.begin(self._clock.now_us())
+        yield vehicle
+
+
+class OfNode(Place):
+    """Drives of a protocol, by a node."""
+
+    def __init__(self, scene: Scene, options: PlayOptions):
+        self.options, self.scene = options, scene
+        self.settings: DriveSettings = drive_settings(scene, options.drives)
+        self.name = self.settings.protocol.name
+        self.id_base = read_id_base(options.id_base, scene)
+
+    @contextmanager
+    def opened(self, clock: Clock) -> Iterator[tuple[Any, can.BusABC]]:
+        """The node that the options choose."""
+        kind, real = self.options.board or "virtual", self.scene.run.real
+        with controller_bus(self.options) as bus:
+            if kind == ON_BUS:
+                yield OnBus(NodeClient(Link(bus, self.id_base, clock=clock)), self.scene, self.settings), bus
+            elif kind == "virtual":
+                with node_in_process(real, self.id_base, clock) as (client, end):
+                    yield InProcess(client, end, self.scene, self.settings), bus
+            else:
+                with own_node(kind, real, self.id_base) as client:
+                    yield Bridged(client, self.scene, self.settings), bus
+
+    def playing(self, vehicle: NodeVehicle) -> AbstractContextManager[Any]:
+        """The node plays, and is at rest at the end."""
+        return running(vehicle)
+
+
+def place_of(scene: Scene, options: PlayOptions) -> Place:
+    """The place that the options choose; BadInput for what is wrong with scene, drives, DBC or map."""
+    return OfMap(scene, options) if options.dbc is not None else OfNode(scene, options)
