@@ -1,18 +1,19 @@
 /* The node as a process: SLCAN on a TCP socket, so that python-can's `slcan` connects to it as to a board.
  *
- *     laconic-node-double [--port N] [--id-base 0xNNN] [--bitrate N] [--once]
+ *     laconic-node-double [--port N] [--id-base 0xNNN] [--bitrate N] [--once] [--shared]
  *
  * Prints "listening on 127.0.0.1:PORT" (port 0: any free one). The node keeps its vehicle between clients, as a
- * board does. Like a serial line it has one client at a time; a second one gets a line of text and is disconnected. */
+ * board does. Like a serial line it has one client at a time; a second one gets a line of text and is disconnected.
+ * With --shared its port is a bus: clients are stations that hear each other, and the node's own frames go to those
+ * alone that have spoken to it, so that a controller hears nothing but its drives. */
 #define _GNU_SOURCE
 #include "laconic_node/node.h"
-#include "laconic_node/slcan.h"
 #include "laconic_wire.h"
+#include "station.h"
 
 #include <arpa/inet.h>
 #include <errno.h>
 #include <netinet/in.h>
-#include <netinet/tcp.h>
 #include <poll.h>
 #include <stdio.h>
 #include <stdlib.h>
@@ -21,25 +22,24 @@
 #include <time.h>
 #include <unistd.h>
 
-enum { BAD_INPUT = 2, OUT_SIZE = 1 << 16 };
+enum { BAD_INPUT = 2, MOST_STATIONS = 4 };
 
 typedef struct options {
     unsigned long port, id_base;
     char rate; /* '0' … '8', 0: any */
-    bool once;
+    bool once, shared;
 } options;
 
 typedef struct board {
     laconic_node node;
-    laconic_slcan slcan;
-    int socket;         /* of the client, -1: none */
-    int refused;        /* of the last refused client, -1: none */
-    char out[OUT_SIZE]; /* bytes to be sent */
-    size_t out_count;
+    station station[MOST_STATIONS];
+    int stations; /* that there is room for: 1, or all with --shared  */
+    int refused;  /* socket of the last refused client, -1: none     */
 } board;
 
 static const char help[] =
     "usage: laconic-node-double|laconic-node-single [--port N] [--id-base 0xNNN] [--bitrate N] [--once]\n"
+    "       [--shared]\n"
     "\n"
     "The CAN node as a process, computing in double or single precision: SLCAN on a TCP socket of this machine.\n"
     "Prints \"listening on 127.0.0.1:PORT\" and serves one client at a time until it is ended (Ctrl-C, SIGTERM).\n"
@@ -48,6 +48,7 @@ static const char help[] =
     "  --id-base 0xNNN  the node's first CAN identifier, a multiple of 32 up to 0x7E0 (default: 0x%X)\n"
     "  --bitrate N      answer only clients that set this rate, as a real bus would (default: any rate)\n"
     "  --once           end when the first client leaves\n"
+    "  --shared         serve up to four clients, which hear each other as stations of a bus do\n"
     "  -h, --help       this text\n"
     "\n"
     "Drive it:  laconic rig SCENE --interface slcan --channel socket://127.0.0.1:PORT\n";
@@ -76,24 +77,24 @@ static uint32_t nonce_seed(void) {
     return seed;
 }
 
-static void flush_out(board *port) {
-    const ssize_t sent = send(port->socket, port->out, port->out_count, MSG_DONTWAIT | MSG_NOSIGNAL);
-    if (sent <= 0) return;
-    port->out_count -= (size_t)sent;
-    memmove(port->out, port->out + sent, port->out_count);
+static bool is_own(const laconic_node *node, const laconic_frame *frame) {
+    return !frame->extended && frame->id - node->config.id_base < LACONIC_NODE_ID_STRIDE;
 }
 
-static void put(board *port, const char *text, size_t length) {
-    if (port->out_count + length > OUT_SIZE) return; /* the client does not read: the line is lost, as on a full bus */
-    memcpy(port->out + port->out_count, text, length);
-    port->out_count += length;
+/* Every frame is fetched as long as somebody has room for it; who has none loses it. */
+static bool has_room(const board *port) {
+    for (int k = 0; k < port->stations; k++)
+        if (station_has_room(&port->station[k])) return true;
+    return false;
 }
 
 static void fetch_frames(board *port) {
-    char line[LACONIC_SLCAN_LINE];
     laconic_frame frame;
-    while (port->out_count + LACONIC_SLCAN_LINE < OUT_SIZE && laconic_node_next_frame(&port->node, &frame))
-        put(port, line, laconic_slcan_write(&port->slcan, &frame, line));
+    while (has_room(port) && laconic_node_next_frame(&port->node, &frame)) {
+        const bool own = is_own(&port->node, &frame);
+        for (int k = 0; k < port->stations; k++)
+            if (!own || port->stations == 1 || port->station[k].is_rig) station_write(&port->station[k], &frame);
+    }
 }
 
 static void step_node(board *port) {
@@ -101,15 +102,21 @@ static void step_node(board *port) {
     fetch_frames(port);
 }
 
-static void take_bytes(board *port, const char *bytes, ssize_t count) {
+/* A frame of one station goes to the node and to all other stations. */
+static void take_frame(board *port, station *sender, const laconic_frame *frame) {
+    if (is_own(&port->node, frame)) sender->is_rig = true;
+    for (int k = 0; k < port->stations; k++)
+        if (&port->station[k] != sender) station_write(&port->station[k], frame);
+    laconic_node_on_frame(&port->node, frame, now_us());
+    step_node(port);
+}
+
+static void take_bytes(board *port, station *sender, const char *bytes, ssize_t count) {
     laconic_frame frame;
     for (ssize_t k = 0; k < count; k++) {
-        switch (laconic_slcan_feed(&port->slcan, bytes[k], &frame)) {
-        case LACONIC_SLCAN_FRAME:
-            laconic_node_on_frame(&port->node, &frame, now_us());
-            step_node(port);
-            break;
-        case LACONIC_SLCAN_REPLY: put(port, port->slcan.reply, strlen(port->slcan.reply)); break;
+        switch (laconic_slcan_feed(&sender->slcan, bytes[k], &frame)) {
+        case LACONIC_SLCAN_FRAME: take_frame(port, sender, &frame); break;
+        case LACONIC_SLCAN_REPLY: station_reply(sender); break;
         default: break;
         }
     }
@@ -117,12 +124,12 @@ static void take_bytes(board *port, const char *bytes, ssize_t count) {
 
 /* False iff the client has disconnected. Reads all waiting bytes, so that a disconnection is noticed before the next
  * client is refused; at most 16 blocks, since the node must be stepped in time. */
-static bool read_client(board *port) {
+static bool read_client(board *port, station *client) {
     char bytes[4096];
     ssize_t count = 1;
     for (int rounds = 0; rounds < 16 && count > 0; rounds++) {
-        count = recv(port->socket, bytes, sizeof bytes, MSG_DONTWAIT);
-        take_bytes(port, bytes, count);
+        count = station_read(client, bytes, sizeof bytes);
+        take_bytes(port, client, bytes, count);
     }
     return count > 0 || (count < 0 && (errno == EAGAIN || errno == EINTR));
 }
@@ -130,10 +137,12 @@ static bool read_client(board *port) {
 static void wait_for_work(const board *port, int listening) {
     const uint32_t idle_us = laconic_node_idle_us(&port->node, now_us());
     const struct timespec timeout = {idle_us / 1000000U, (long)(idle_us % 1000000U) * 1000L};
-    struct pollfd fds[3] = {
-        {port->socket, POLLIN, 0}, {listening, POLLIN, 0}, {port->refused, POLLIN, 0}}; /* -1: none */
-    if (port->out_count > 0) fds[0].events |= POLLOUT;
-    ppoll(fds, 3, &timeout, NULL);
+    struct pollfd fds[MOST_STATIONS + 2] = {{listening, POLLIN, 0}, {port->refused, POLLIN, 0}}; /* -1: none */
+    for (int k = 0; k < port->stations; k++) {
+        const short events = port->station[k].out_count > 0 ? POLLIN | POLLOUT : POLLIN;
+        fds[2 + k] = (struct pollfd){port->station[k].socket, events, 0};
+    }
+    ppoll(fds, (nfds_t)(2 + port->stations), &timeout, NULL);
 }
 
 static void send_occupied(int client) {
@@ -164,33 +173,37 @@ static void answer_refused(board *port) {
     }
 }
 
-static void try_accept(board *port, int listening, char rate) {
-    const int on = 1;
-    port->socket = accept(listening, NULL, NULL);
-    if (port->socket < 0) return;
-    setsockopt(port->socket, IPPROTO_TCP, TCP_NODELAY, &on, sizeof on);
-    laconic_slcan_init(&port->slcan, rate);
-    port->out_count = 0;
+/* True iff a client has left. */
+static bool serve_station(board *port, station *it, int listening, char rate) {
+    if (it->socket < 0) {
+        station_accept(it, listening, rate);
+        return false;
+    }
+    if (read_client(port, it)) return false;
+    close(it->socket);
+    station_clear(it, rate);
+    return true;
+}
+
+static bool is_full(const board *port) {
+    for (int k = 0; k < port->stations; k++)
+        if (port->station[k].socket < 0) return false;
+    return true;
 }
 
 static void serve(board *port, int listening, const options *settings) {
-    port->socket = -1;
+    port->stations = settings->shared ? MOST_STATIONS : 1;
     port->refused = -1;
+    for (int k = 0; k < MOST_STATIONS; k++) station_clear(&port->station[k], settings->rate);
     for (;;) {
         wait_for_work(port, listening);
-        if (port->socket < 0) {
-            try_accept(port, listening, settings->rate);
-        } else if (!read_client(port)) {
-            close(port->socket);
-            port->socket = -1;
-            laconic_slcan_init(&port->slcan, settings->rate);
-            if (settings->once) return;
-        } else {
-            refuse_second(port, listening);
-        }
+        const bool was_full = is_full(port);
+        for (int k = 0; k < port->stations; k++)
+            if (serve_station(port, &port->station[k], listening, settings->rate) && settings->once) return;
+        if (was_full && is_full(port)) refuse_second(port, listening);
         answer_refused(port);
         step_node(port);
-        if (port->out_count > 0 && port->socket >= 0) flush_out(port);
+        for (int k = 0; k < port->stations; k++) station_flush(&port->station[k]);
     }
 }
 
@@ -237,6 +250,8 @@ static int parse(int count, char **words, options *settings) {
         const char *value = k + 1 < count ? words[k + 1] : "";
         if (strcmp(words[k], "--once") == 0) {
             settings->once = true;
+        } else if (strcmp(words[k], "--shared") == 0) {
+            settings->shared = true;
         } else if (strcmp(words[k], "--port") == 0) {
             if (!number(value, 65535, &settings->port)) return complain("--port", "give a number from 0 to 65535");
             k++;

@@ -14,8 +14,8 @@ import can
 
 from laconic.errors import LaconicError
 from laconic.rig.buses import VirtualClock
-from laconic.rig.errors import BusDied, Interrupted, in_words
-from laconic.rig.link import Clock
+from laconic.rig.errors import BusDied, Interrupted
+from laconic.rig.link import Clock, receive_on, send_on
 
 LONGEST_WAIT_US = 20_000   # then a wait looks whether a signal has come
 MOST_AT_ONCE = 256         # frames that are read before the vehicle steps again
@@ -86,10 +86,8 @@ class Loop:
                 moved((now - last) / 1e6)
                 last = now
                 self._wait(min(until_us, due_us, self.clock.now_us() + LONGEST_WAIT_US))
-        except Interrupted as signal:
-            return signal
-        except (can.CanError, OSError, ValueError, IndexError) as error:
-            return BusDied(f"the bus died: {in_words(error)}")
+        except (Interrupted, BusDied) as ending:
+            return ending
         return None
 
     def _call_others(self, now_us: int) -> int:
@@ -100,12 +98,12 @@ class Loop:
         """Frames that are there, then steps that are due, then their frames; whether there were any."""
         before = self.traffic.frames_out
         for _ in range(MOST_AT_ONCE):
-            message = self.bus.recv(0)
+            message = receive_on(self.bus, 0.0)
             if message is None:
                 break
             self._take(message, now_us)
         for message in self.vehicle.advance(now_us):
-            self.bus.send(message)
+            send_on(self.bus, message)
             self.traffic.sent(message)
         return self.traffic.frames_out > before
 
@@ -123,7 +121,7 @@ class Loop:
         if self.is_virtual:
             self.clock.time_us += left_us  # type: ignore[attr-defined]
             return
-        message = self.bus.recv(left_us / 1e6)
+        message = receive_on(self.bus, left_us / 1e6)
         if message is not None:
             self._take(message, self.clock.now_us())
 

@@ -20,7 +20,7 @@ from laconic.play.vehicle import played
 from laconic.rig.buses import NodeOnBus
 from laconic.rig.client import NodeClient
 from laconic.rig.errors import BusDied, NodeRefused, NodeSilent
-from laconic.rig.link import Received
+from laconic.rig.link import Received, receive_on, send_on
 from laconic.rig.lockstep import load_scene
 from laconic.rig.stopping import RUNNING, come_to_rest, stop_running
 from laconic.rig.wire import ID_STRIDE, Frame, wire
@@ -34,7 +34,9 @@ FAULT_WATCHDOG = 32           # LACONIC_DRIVE_FAULT_WATCHDOG
 
 
 class NodeVehicle:
-    """A node that plays. `client` is the way to it."""
+    """A node that plays. `client` is the way to it; `watched` are frames of its own that come while it plays."""
+
+    watched: tuple[str, ...] = ("COUNTERS",)  # and with any of them HEARTBEAT
 
     def __init__(self, client: NodeClient, scene: Scene, settings: DriveSettings):
         self.client, self.scene, self.settings = client, scene, settings
@@ -52,7 +54,7 @@ class NodeVehicle:
             self._notes.append(f"the node was found in state {found} and has been stopped before")
         try:
             load_scene(self.client, played(self.scene), drive_parameters(self.settings))
-            self.choose_frames()
+            self.choose_frames(*self.watched)
             self.client.start_drives()
         except NodeRefused as refused:
             raise BadInput(f"{self.scene.path}: rig.drives: {refused}; {remedy(refused, self.scene)}") from None
@@ -73,9 +75,12 @@ class NodeVehicle:
             self.truth.append(received)
 
     def _look_at(self, frame: Frame, data: bytes) -> None:
+        """HEARTBEAT tells the state, and by `deaf` whether a watchdog of the drives has fired."""
         if frame.name != "HEARTBEAT":
             return
         values = frame.unpack(data)
+        if values["deaf"]:
+            self._fired.add("a drive heard no controller in time")
         state = wire().choice("HEARTBEAT", "state", values["state"])
         if state not in ("drives", "ready"):
             self._ending = ResultFails(f"the node went into state {state} after {values['steps']} steps")
@@ -106,6 +111,7 @@ class NodeVehicle:
         while wanted and (received := link.receive_until(deadline_us)) is not None:
             frame, data = received
             values = frame.unpack(data)
+            self._look_at(*received)
             if frame.name == "HEARTBEAT":
                 self.lateness.periods, self.lateness.worst_us = values["steps"], values["worst_lateness"]
                 wanted.discard(frame.name)
@@ -126,6 +132,8 @@ def remedy(refused: NodeRefused, scene: Scene) -> str:
 
 class InProcess(NodeVehicle):
     """A node in this process: its C code is called directly, no frame passes another bus than the controller's."""
+
+    watched = ()  # its drives are looked at
 
     def __init__(self, client: NodeClient, end: NodeOnBus, scene: Scene, settings: DriveSettings):
         super().__init__(client, scene, settings)
@@ -167,8 +175,7 @@ class InProcess(NodeVehicle):
                 break
             if view.faults & FAULT_WATCHDOG:
                 self._fired.add(f"drive {view.node_id} heard no controller in time")
-        state = self.node.inspect()["state"]
-        if state != "drives":
+        if (state := self.node.inspect()["state"]) != "drives":
             self._ending = ResultFails(f"the node went into state {state}: the core refused a step")
 
 
@@ -178,12 +185,12 @@ class Bridged(NodeVehicle):
     def on_message(self, message: can.Message, now_us: int) -> None:
         """To the node."""
         if not self.is_own(message):
-            self.client.link.bus.send(message)
+            send_on(self.client.link.bus, message)
 
     def advance(self, now_us: int) -> Iterator[can.Message]:
         """What the node has sent."""
         bus = self.client.link.bus
-        while (message := bus.recv(0)) is not None:
+        while (message := receive_on(bus, 0.0)) is not None:
             if self.is_own(message):
                 self.take_own(message)
             else:
@@ -196,6 +203,11 @@ class Bridged(NodeVehicle):
 
 class OnBus(NodeVehicle):
     """A node that is a station of the controller's own bus: play only watches."""
+
+    def __init__(self, client: NodeClient, scene: Scene, settings: DriveSettings, *, hears_alone: bool = False):
+        super().__init__(client, scene, settings)
+        if not hears_alone:
+            self.watched = ()  # they would come to the controller, too
 
     def on_message(self, message: can.Message, now_us: int) -> None:
         """A frame of anybody."""

@@ -9,7 +9,7 @@ from typing import Any, Protocol
 
 import can
 
-from laconic.play.listener import ListeningBus
+from laconic.play.listener import ListeningBus, listening_socket
 from laconic.play.loop import Lateness, Vehicle
 from laconic.play.map_file import read_map
 from laconic.play.map_join import check_map, join
@@ -19,7 +19,7 @@ from laconic.play.options import PlayOptions, controller_bus
 from laconic.play.settings import DriveSettings, drive_settings
 from laconic.play.vehicle import played
 from laconic.rig.boards import own_node
-from laconic.rig.buses import node_in_process
+from laconic.rig.buses import connected, node_in_process, node_process
 from laconic.rig.client import NodeClient
 from laconic.rig.link import Clock, Link
 from laconic.rig.options import read_id_base
@@ -97,6 +97,8 @@ class OfMap(Place):
 class OfNode(Place):
     """Drives of a protocol, by a node."""
 
+    port: int | None = None  # of the process, where the controller connects to it
+
     def __init__(self, scene: Scene, options: PlayOptions):
         self.options, self.scene = options, scene
         self.settings: DriveSettings = drive_settings(scene, options.drives)
@@ -107,6 +109,10 @@ class OfNode(Place):
     def opened(self, clock: Clock) -> Iterator[tuple[Any, can.BusABC]]:
         """The node that the options choose."""
         kind, real = self.options.board or "virtual", self.scene.run.real
+        if kind == "process" and self.options.listen is not None:
+            with self._shared_port(self.options.listen) as found:
+                yield found
+            return
         with controller_bus(self.options) as bus:
             if kind == ON_BUS:
                 yield OnBus(NodeClient(Link(bus, self.id_base, clock=clock)), self.scene, self.settings), bus
@@ -116,6 +122,19 @@ class OfNode(Place):
             else:
                 with own_node(kind, real, self.id_base) as client:
                     yield Bridged(client, self.scene, self.settings), bus
+
+    @contextmanager
+    def _shared_port(self, wanted: int) -> Iterator[tuple[Any, can.BusABC]]:
+        """The process serves the port itself: controller and play are stations of its bus, and no frame of the
+        controller waits for Python."""
+        listening_socket(wanted).close()  # a port that is taken is named so
+        with node_process(self.scene.run.real, self.id_base, "--shared", "--port", str(wanted)) as self.port, \
+                connected("slcan", f"socket://127.0.0.1:{self.port}", self.id_base) as client:
+            yield OnBus(client, self.scene, self.settings, hears_alone=True), client.link.bus
+
+    def where(self, bus: can.BusABC) -> str:
+        """The port of the process, where it serves one."""
+        return super().where(bus) if self.port is None else listening_text(self.port)
 
     def playing(self, vehicle: NodeVehicle) -> AbstractContextManager[Any]:
         """The node plays, and is at rest at the end."""

@@ -111,7 +111,7 @@ def node_in_process(real: str = "double", id_base: int = ID_BASE, clock: Clock |
     """A node in this process on python-can's virtual bus, in virtual time unless there is a clock; with its end."""
     channel, clock = next_channel(), clock or VirtualClock()
     with can.Bus(interface="virtual", channel=channel) as ours, can.Bus(interface="virtual", channel=channel) as its:
-        end = NodeOnBus(LibraryNode(real, id_base, **node_options), its, clock)
+        end = NodeOnBus(LibraryNode(real, id_base, now_us=clock.now_us(), **node_options), its, clock)
         yield NodeClient(Link(ours, id_base, clock=clock, pump=end.pump)), end
 
 

@@ -30,6 +30,22 @@ class Clock:
         time.sleep(microseconds / 1e6)
 
 
+def send_on(bus: can.BusABC, message: can.Message) -> None:
+    """Sends a frame; BusDied where the interface cannot."""
+    try:
+        bus.send(message)
+    except (can.CanError, OSError, ValueError) as error:
+        raise BusDied(f"the bus died while sending: {in_words(error)}") from None
+
+
+def receive_on(bus: can.BusABC, timeout_s: float) -> can.Message | None:
+    """The next frame; None when none comes in time. BusDied where the interface fails, by any error that one raises."""
+    try:
+        return bus.recv(timeout_s)
+    except (can.CanError, OSError, ValueError, IndexError) as error:
+        raise BusDied(f"the bus died while receiving: {in_words(error)}") from None
+
+
 class Link:
     """One end of the wire. `pump`, where given, runs a node in this process; it returns False when idle."""
 
@@ -72,10 +88,7 @@ class Link:
 
     def send_message(self, message: can.Message) -> None:
         """Sends a frame as it is."""
-        try:
-            self.bus.send(message)
-        except (can.CanError, OSError) as error:
-            raise BusDied(f"the bus died while sending: {in_words(error)}") from None
+        send_on(self.bus, message)
         self.frames_out += 1
         for listener in self.listeners:
             listener(message)
@@ -98,21 +111,18 @@ class Link:
                 return received
 
     def _next_message(self, deadline_us: int) -> can.Message | None:
-        try:
-            self.may_go_on()
-            if self.pump is None:
-                return self._wait(deadline_us)
-            message = self.bus.recv(0)
-            while message is None and (self.pump() or self.clock.now_us() < deadline_us):
-                message = self.bus.recv(0)
-            return message
-        except (can.CanError, OSError, ValueError, IndexError) as error:
-            raise BusDied(f"the bus died while receiving: {in_words(error)}") from None
+        self.may_go_on()
+        if self.pump is None:
+            return self._wait(deadline_us)
+        message = receive_on(self.bus, 0.0)
+        while message is None and (self.pump() or self.clock.now_us() < deadline_us):
+            message = receive_on(self.bus, 0.0)
+        return message
 
     def _wait(self, deadline_us: int) -> can.Message | None:
         while True:
             left_s = max(0.0, (deadline_us - self.clock.now_us()) / 1e6)
-            message = self.bus.recv(min(left_s, LONGEST_WAIT_S))
+            message = receive_on(self.bus, min(left_s, LONGEST_WAIT_S))
             if message is not None or left_s <= LONGEST_WAIT_S:
                 return message
             self.may_go_on()

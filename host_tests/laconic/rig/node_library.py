@@ -67,7 +67,8 @@ NODE_STATES = ("empty", "ready", "lockstep", "free run", "timeout", "fault", "dr
 class LibraryNode:
     """A node in this process. It has no clock: the caller passes the time."""
 
-    def __init__(self, real: str = "double", id_base: int = ID_BASE, can_fd: bool = True, nonce_seed: int = 0):
+    def __init__(self, real: str = "double", id_base: int = ID_BASE, can_fd: bool = True, nonce_seed: int = 0,
+                 now_us: int = 0):
         self.library = node_library(real)
         ffi, lib = self.library.ffi, self.library.lib
         self._memory = ffi.new("uint64_t[]", (lib.laconic_library_node_size() + 7) // 8)
@@ -77,7 +78,7 @@ class LibraryNode:
         self._counter_names = dir(self._view.counters)
         self._on_frame, self._on_tick = lib.laconic_node_on_frame, lib.laconic_node_on_tick
         self._next, self._busy = lib.laconic_node_next_frame, lib.laconic_node_is_busy
-        self.restart(id_base, can_fd, 0, nonce_seed)
+        self.restart(id_base, can_fd, now_us, nonce_seed)
 
     def restart(self, id_base: int = ID_BASE, can_fd: bool = True, now_us: int = 0, nonce_seed: int = 0) -> None:
         """Initializes the node as after power-up."""

@@ -1,0 +1,51 @@
+/* One client of the node's port. */
+#define _GNU_SOURCE
+#include "station.h"
+
+#include <netinet/in.h>
+#include <netinet/tcp.h>
+#include <string.h>
+#include <sys/socket.h>
+
+void station_clear(station *it, char rate) {
+    it->socket = -1;
+    it->is_rig = false;
+    it->out_count = 0;
+    laconic_slcan_init(&it->slcan, rate);
+}
+
+void station_accept(station *it, int listening, char rate) {
+    const int on = 1;
+    const int client = accept(listening, NULL, NULL);
+    if (client < 0) return;
+    station_clear(it, rate);
+    it->socket = client;
+    setsockopt(client, IPPROTO_TCP, TCP_NODELAY, &on, sizeof on);
+}
+
+ssize_t station_read(const station *it, char *bytes, size_t size) {
+    return recv(it->socket, bytes, size, MSG_DONTWAIT);
+}
+
+bool station_has_room(const station *it) { return it->out_count + LACONIC_SLCAN_LINE < STATION_OUT_SIZE; }
+
+static void put(station *it, const char *text, size_t length) {
+    if (it->out_count + length > STATION_OUT_SIZE) return;
+    memcpy(it->out + it->out_count, text, length);
+    it->out_count += length;
+}
+
+void station_write(station *it, const laconic_frame *frame) {
+    char line[LACONIC_SLCAN_LINE];
+    put(it, line, laconic_slcan_write(&it->slcan, frame, line));
+}
+
+void station_reply(station *it) { put(it, it->slcan.reply, strlen(it->slcan.reply)); }
+
+void station_flush(station *it) {
+    if (it->socket < 0 || it->out_count == 0) return;
+    const ssize_t sent = send(it->socket, it->out, it->out_count, MSG_DONTWAIT | MSG_NOSIGNAL);
+    if (sent <= 0) return;
+    it->out_count -= (size_t)sent;
+    memmove(it->out, it->out + sent, it->out_count);
+}
