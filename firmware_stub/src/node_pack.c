@@ -93,9 +93,18 @@ static void pack_wheel_speed(const laconic_node *node, uint8_t *data) {
 
 #define MOST_LATENESS 32767U
 
+/* While drives play there is no rig to be deaf to; the bit then tells that a drive has heard no controller in time. */
+static bool is_deaf(const laconic_node *node) {
+#if LACONIC_NODE_WITH_DRIVES
+    for (int32_t k = 0; plays_drives(node) && k < node->drives.count; k++)
+        if (node->drives.drive[k].faults & LACONIC_DRIVE_FAULT_WATCHDOG) return true;
+#endif
+    return node->session.deaf != 0;
+}
+
 static void pack_heartbeat(const laconic_node *node, uint8_t *data) {
     const uint32_t late = node->free_run.worst_lateness_us;
-    const uint32_t deaf = node->session.deaf != 0 ? 0x8000U : 0U;
+    const uint32_t deaf = is_deaf(node) ? 0x8000U : 0U;
     data[1] = (uint8_t)(node->state << 4);
     put32(data + 2, (uint32_t)node->plant.steps);
     put16(data + 6, (late > MOST_LATENESS ? MOST_LATENESS : late) | deaf);

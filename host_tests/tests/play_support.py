@@ -14,7 +14,7 @@ from laconic.play.options import PlayOptions
 from laconic.play.session import play
 from laconic.rig.buses import VirtualClock, next_channel
 from laconic.rig.verdict import Judgement
-from laconic.scene import read_scene
+from laconic.scene import Scene, read_scene
 
 PLAY = Path(__file__).parent / "play"
 DBC = PLAY / "transporter.dbc"
@@ -70,13 +70,14 @@ class Codec:
         return dict(self.database.decode_message(message.arbitration_id, message.data))
 
 
-def played(scene: str | Path, duration_s: float, commands: Callable[[float], list[can.Message]],
+def played(scene: str | Path | Scene, duration_s: float, commands: Callable[[float], list[can.Message]],
            **options: Any) -> tuple[Judgement, Controller]:
     """Plays a scene in virtual time for a controller."""
     channel = next_channel()
     settings = PlayOptions(interface="virtual", channel=channel, duration_s=duration_s, **options)
     with can.Bus(interface="virtual", channel=channel) as bus:
         controller = Controller(bus, commands)
-        judgement = play(read_scene(scene), settings, clock=VirtualClock(), others=[controller])
+        given = scene if isinstance(scene, Scene) else read_scene(scene)
+        judgement = play(given, settings, clock=VirtualClock(), others=[controller])
         controller(10**12)  # what is still on the bus
     return judgement, controller

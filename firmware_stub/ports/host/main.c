@@ -4,8 +4,8 @@
  *
  * Prints "listening on 127.0.0.1:PORT" (port 0: any free one). The node keeps its vehicle between clients, as a
  * board does. Like a serial line it has one client at a time; a second one gets a line of text and is disconnected.
- * With --shared its port is a bus: clients are stations that hear each other, and the node's own frames go to those
- * alone that have spoken to it, so that a controller hears nothing but its drives. */
+ * With --shared its port is a bus: clients are stations that hear each other; frames to and from the node itself pass
+ * among the first client and those that have spoken to the node, so that a controller hears nothing but its drives. */
 #define _GNU_SOURCE
 #include "laconic_node/node.h"
 #include "laconic_wire.h"
@@ -93,7 +93,7 @@ static void fetch_frames(board *port) {
     while (has_room(port) && laconic_node_next_frame(&port->node, &frame)) {
         const bool own = is_own(&port->node, &frame);
         for (int k = 0; k < port->stations; k++)
-            if (!own || port->stations == 1 || port->station[k].is_rig) station_write(&port->station[k], &frame);
+            if (!own || port->station[k].is_rig) station_write(&port->station[k], &frame);
     }
 }
 
@@ -102,11 +102,12 @@ static void step_node(board *port) {
     fetch_frames(port);
 }
 
-/* A frame of one station goes to the node and to all other stations. */
+/* A frame of one station goes to the node and to all other stations; what a rig tells the node, to rigs only. */
 static void take_frame(board *port, station *sender, const laconic_frame *frame) {
-    if (is_own(&port->node, frame)) sender->is_rig = true;
+    const bool own = is_own(&port->node, frame);
+    if (own) sender->is_rig = true;
     for (int k = 0; k < port->stations; k++)
-        if (&port->station[k] != sender) station_write(&port->station[k], frame);
+        if (&port->station[k] != sender && (!own || port->station[k].is_rig)) station_write(&port->station[k], frame);
     laconic_node_on_frame(&port->node, frame, now_us());
     step_node(port);
 }
@@ -177,6 +178,7 @@ static void answer_refused(board *port) {
 static bool serve_station(board *port, station *it, int listening, char rate) {
     if (it->socket < 0) {
         station_accept(it, listening, rate);
+        it->is_rig = it == port->station; /* a rig waits for the node's sign of life before it speaks */
         return false;
     }
     if (read_client(port, it)) return false;

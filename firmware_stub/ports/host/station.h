@@ -10,7 +10,7 @@ enum { STATION_OUT_SIZE = 1 << 16 };
 
 typedef struct station {
     int socket;  /* -1: there is no client                                              */
-    bool is_rig; /* it has sent a frame to the node itself, so it gets the node's own  */
+    bool is_rig; /* it gets the node's own frames, not only those of its drives */
     laconic_slcan slcan;
     char out[STATION_OUT_SIZE];
     size_t out_count;

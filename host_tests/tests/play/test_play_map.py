@@ -110,3 +110,24 @@ def test_the_vehicle_coasts_to_rest_when_the_commands_cease_and_the_watchdog_is_
               if "SpeedLeft" in codec.decode(each)]
     assert max(speed for t, speed in speeds if t < 0.6) > 3.0
     assert abs(speeds[-1][1]) < 0.01
+
+
+def test_signals_that_are_targets_of_drives_go_through_the_drives_c_code():
+    codec = Codec()
+    pages = ({"Page": 0, "SpeedLeft": 600.0}, {"Page": 1, "SpeedRight": -300.0})
+
+    def commands(t: float) -> list[can.Message]:
+        return [codec.encode("DRIVE_COMMAND", Enable=t >= 0.5, **page) for page in pages]
+
+    judgement, controller = played("robotino2", 3.0, commands, dbc=DBC, map_path=PLAY / "transporter_drives.toml")
+    assert judgement.exit_status == 0, judgement
+    states = [(t, codec.decode(message)) for t, message in controller.of(WHEEL_STATE)]
+    left = [(t, values["SpeedLeft"]) for t, values in states if "SpeedLeft" in values]
+    assert all(speed == 0.0 for t, speed in left if t < 0.5)  # not enabled
+    rad_per_s = 2 * np.pi / 60 / 16  # of a wheel for one rpm of the shaft
+    assert abs(left[-1][1] - 600.0 * rad_per_s) < 0.02
+    right = [values["SpeedRight"] for _, values in states if "SpeedRight" in values]
+    assert abs(right[-1] + 300.0 * rad_per_s) < 0.02
+    counts = [(t, values["CountLeft"]) for t, values in states if "CountLeft" in values]
+    (before_s, before), (after_s, after) = counts[-2:]
+    assert abs((after - before) % 65536 - 10.0 * 4096 * (after_s - before_s)) <= 2
