@@ -64,6 +64,13 @@ static void allowed_motions(basis *allowed, const basis *constraints) {
     }
 }
 
+/* Whether fixed wheels on parallel axle lines hold the heading. Lines that meet leave a rotation about their point. */
+static bool goes_straight_only(const basis *allowed, const laconic_vehicle *vehicle) {
+    for (int32_t i = 0; i < vehicle->wheel_count; i++)
+        if (vehicle->wheel[i].locked) return false;
+    return allowed->count == 1 && magnitude(allowed->axis[0][2]) < LACONIC_RANK_TOLERANCE;
+}
+
 /* What the wheels contribute to a form: value_i = largest · share_i. */
 typedef struct contributions {
     real largest;
@@ -296,6 +303,8 @@ static laconic_status prepare(laconic_model *model, const laconic_vehicle *vehic
     allowed_motions(&motions.scaled, &constraints);
     if (motions.scaled.count == 0)
         return refuse(why, LACONIC_NOTHING_MOVES, LACONIC_FIELD_WHEEL_KIND, 0, R(constraints.count), R(0));
+    if (goes_straight_only(&motions.scaled, vehicle))
+        return refuse(why, LACONIC_STRAIGHT_ONLY, LACONIC_FIELD_WHEEL_KIND, 0, R(0), R(0));
     m.dof = motions.scaled.count;
     if (on_wheels) project_wheels(&m, &motions.scaled, &b, vehicle);
     diagonalise(&m, &motions, &b, vehicle);

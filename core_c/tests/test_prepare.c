@@ -115,6 +115,29 @@ static void three_fixed_wheels_whose_axles_do_not_meet_prevent_every_motion(void
     TEST_ASSERT_EQUAL_MEMORY(&before, &model, sizeof model);
 }
 
+static void fixed_wheels_on_parallel_axle_lines_are_refused_unless_they_slip(void) {
+    laconic_vehicle v = bare_body();
+    laconic_model model;
+    add_wheel(&v, LACONIC_WHEEL_FIXED, 0.15, 0.2, -PI / 2, 0.0);
+    add_wheel(&v, LACONIC_WHEEL_FIXED, 0.15, -0.2, PI / 2, 0.0);
+    ASSERT_STATUS(LACONIC_OK, laconic_prepare(&model, &v, &why));
+    add_wheel(&v, LACONIC_WHEEL_FIXED, -0.15, 0.2, -PI / 2, 0.0);
+    ASSERT_REFUSED(LACONIC_STRAIGHT_ONLY, LACONIC_FIELD_WHEEL_KIND, 0, laconic_prepare(&model, &v, &why), why);
+    v.wheel[2].axle_rad = REAL(-0.4); /* its line meets the others': the vehicle rotates about that point */
+    TEST_ASSERT_EQUAL_INT(1, model_of(v).dof);
+    v.wheel[2].axle_rad = REAL(-PI / 2);
+    v.ground.friction_coefficient = REAL(0.5);
+    ASSERT_STATUS(LACONIC_OK, laconic_prepare(&model, &v, &why));
+}
+
+static void a_brake_may_leave_straight_motion_alone(void) {
+    laconic_vehicle v = bare_body();
+    add_wheel(&v, LACONIC_WHEEL_FIXED, 0.0, 0.0, -PI / 2, 0.0);
+    add_wheel(&v, LACONIC_WHEEL_ROLLER, 0.3, 0.0, 0.0, PI / 2);
+    v.wheel[1].locked = true;
+    TEST_ASSERT_EQUAL_INT(1, model_of(v).dof);
+}
+
 static void what_the_vehicle_check_refuses_is_refused(void) {
     laconic_vehicle v = three_wheels();
     laconic_model model;
@@ -216,6 +239,8 @@ int main(void) {
     RUN_TEST(axle_lines_that_agree_to_rounding_count_once);
     RUN_TEST(a_locked_wheel_does_not_rotate);
     RUN_TEST(three_fixed_wheels_whose_axles_do_not_meet_prevent_every_motion);
+    RUN_TEST(fixed_wheels_on_parallel_axle_lines_are_refused_unless_they_slip);
+    RUN_TEST(a_brake_may_leave_straight_motion_alone);
     RUN_TEST(what_the_vehicle_check_refuses_is_refused);
     RUN_TEST(inertias_too_far_apart_for_the_precision_are_refused);
     RUN_TEST(numbers_that_leave_the_range_are_refused);

@@ -80,12 +80,12 @@ static inline void bench_sync(uint32_t steps) {
     bench_send(LACONIC_WIRE_SYNC, data);
 }
 
-/* A cart with `wheels` fixed wheels side by side, ready. */
+/* A cart with `wheels` fixed wheels on one axle, ready. */
 static inline void bench_load(int32_t wheels) {
     laconic_vehicle vehicle = {.mass_kg = 1, .yaw_inertia_kgm2 = 1, .wheel_radius_m = 1, .motor_gain_Nm_per_V = 1};
     vehicle.wheel_count = wheels;
     for (int32_t i = 0; i < wheels; i++) {
-        const laconic_wheel wheel = {.kind = LACONIC_WHEEL_FIXED, .y_m = (laconic_real)(i + 1)};
+        const laconic_wheel wheel = {.kind = LACONIC_WHEEL_FIXED, .x_m = (laconic_real)(i + 1)};
         vehicle.wheel[i] = wheel;
     }
     laconic_plant_start(&node.plant, &vehicle, &laconic_rk4, (laconic_real)0.001, &node.start, NULL);

@@ -28,8 +28,8 @@
     X(TOO_MANY_SUPPORTS, "too many supports", /* below 0, too */ \
       "# supports, but this build takes 0 to @; lower it or build with a larger LACONIC_MAX_SUPPORTS") \
     X(NOTHING_MOVES, "nothing moves", /* three independent constraints */ \
-      "fixed and locked wheels prevent every motion; the axle lines of all fixed wheels must meet in one point or " \
-      "all be parallel; else release a locked wheel") \
+      "fixed and locked wheels prevent every motion; let the axle lines of all fixed wheels be one line or meet in " \
+      "one point, release a locked wheel, or give ground.friction_coefficient, so that wheels slip") \
     X(ILL_CONDITIONED, "ill-conditioned", /* ε √cond(A) >= 0.01 */ \
       "masses and lengths are too far apart for " LACONIC_REAL_NAME " precision: the condition number # leaves fewer " \
       "than two correct digits; check the units") \
@@ -61,7 +61,10 @@
     X(METHOD_WITHOUT_FRICTION, "method without friction", \
       "this method knows neither ground friction nor limits of a drive; use auto") \
     X(STEP_UNSOLVED, "step unsolved", /* friction: the contact forces of a step were not found */ \
-      "in this state the contact forces over a step of # s were not found; use @ s or less")
+      "in this state the contact forces over a step of # s were not found; use @ s or less") \
+    X(STRAIGHT_ONLY, "straight only", /* fixed wheels on parallel axle lines, on ideal ground */ \
+      "fixed wheels on parallel axle lines only drive straight, whatever their motors do; for skid steering give " \
+      "ground.friction_coefficient, so that wheels slip; else place them on one axle line")
 
 /* X(IDENTIFIER, explanation with the remedy): what laconic_self_test() finds. */
 #define LACONIC_ARITHMETICS(X) \

@@ -8,15 +8,16 @@ SUPPORT = ("a caster carries a normal load, nothing else, in this model: give it
            "and y_m, and its mass within vehicle.mass_kg")
 STEERED = ("wheels that are steered in motion are not modelled; for a constant steering angle give a \"fixed\" wheel "
            "with its axle at that angle (axle_deg), see docs/scenes.md")
-SKID = ("skid steering and tracks live on slip, which is not modelled; give one \"fixed\" wheel a side, at the track "
-        "width that measured turns show, see docs/scenes.md")
+SKID = ("skid steering and tracks turn by slip: give \"fixed\" wheels and [ground] friction_coefficient; or on ideal "
+        "ground one \"fixed\" wheel a side, at the track width that measured turns show, see docs/scenes.md")
 RADIUS = "vehicle.wheel_radius_m is the radius of all wheels but those that give their own radius_m"
 MOTOR = ("[vehicle.motor] is the motor of all wheels but those that give their own motor_gain_Nm_per_V and "
          "motor_damping_Nms, or driven = false; inertia_kgm2 of a wheel is about its axle")
 IDLER = "a wheel without a motor is one of the kinds \"omni\", \"mecanum\", \"roller\" or \"fixed\" with driven = false"
 LEVEL = "a slope is the ground's: give [ground] slope_rad, or slope_deg"
 RIGID = "the vehicle is rigid, without suspension; normal loads are those of its mass at rest and in motion"
-SLIP = ("wheels roll without slip; friction_coefficient shows where they could not, and the run goes on as if they did")
+SLIP = ("wheels slip on ground with [ground] friction_coefficient, which a wheel's own friction_coefficient overrides; "
+        "without it they roll without slip, and [vehicle] friction_coefficient shows where they could not")
 FIXED = "a wheel that is neither omni nor mecanum is \"fixed\", driven or not"
 
 OF_WHEELS = {

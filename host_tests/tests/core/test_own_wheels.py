@@ -104,7 +104,7 @@ def test_a_run_agrees_with_the_independent_reference_in_every_method() -> None:
 
 def fitted(wheels: list[dict[str, Any]], **more: Any) -> Any:
     core = load("double")
-    places = [{"kind": "fixed", "x_m": 0.0, "y_m": y, "axle_rad": 0.0} for y in (0.1, -0.1, 0.3)]
+    places = [{"kind": "fixed", "x_m": 0.0, "y_m": y, "axle_rad": -1.5707963267948966} for y in (0.1, -0.1, 0.3)]
     vehicle = core.vehicle({**COMMON, **more, "wheel": [p | w for p, w in zip(places, wheels, strict=True)]})
     model = core.prepare(vehicle)
     names = ("wheel_inertia_kgm2", "motor_gain_Nm_per_V", "motor_damping_Nms")

@@ -78,7 +78,7 @@ BAD = {
     "caster": (('kind = "mecanum"', 'kind = "caster"'), ("wheel[1].kind", "[[vehicle.support]]")),
     "swivel caster": (('kind = "omni"', 'kind = "swivel-caster"'), ("wheel[2].kind", "[[vehicle.support]]")),
     "steered wheel": (('kind = "mecanum"', 'kind = "steered"'), ("wheel[1].kind", "constant steering angle")),
-    "skid-steered wheel": (('kind = "mecanum"', 'kind = "skid"'), ("wheel[1].kind", "track width")),
+    "skid-steered wheel": (('kind = "mecanum"', 'kind = "skid"'), ("wheel[1].kind", "[ground] friction_coefficient")),
     "plain wheel": (('kind = "mecanum"', 'kind = "standard"'), ("wheel[1].kind", '"fixed"')),
     "table of casters": (("[run]", "[[vehicle.caster]]\nx_m = 0\n[run]"), ("vehicle.caster", "[[vehicle.support]]")),
     "steering of a wheel": (("axle_deg = 180", "axle_deg = 180\nsteer_deg = 5"), ("wheel[2].steer_deg", "steered")),
