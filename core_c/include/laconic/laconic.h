@@ -47,9 +47,9 @@
  *          suspension       the body is rigid and its height constant; normal loads are least-norm statics, without
  *                           springs. On more than three points they are those of an evenly soft ground.
  *          hills            the ground is one plane, level or with the slope of vehicle.ground.
- *          motors           a DC motor without inductance; vehicle.drive adds supply and limits, ground.axle_friction_Nm
- *                           dry friction. Any other torque is given as axle_torque_Nm, with c1 = c2 = 0 where it
- *                           replaces the motor's.
+ *          motors           a DC motor without inductance; vehicle.drive adds supply and limits, and
+ *                           ground.axle_friction_Nm dry friction. Any other torque is given as axle_torque_Nm, with
+ *                           c1 = c2 = 0 where it replaces the motor's.
  *          swivel casters   a support: it carries a normal load; its inertia and its swivelling are left out. (A single
  *                           fixed wheel is no swivel caster: it does not swivel.)
  *          steered wheels   a fixed wheel keeps its axle; a constant steering angle is its axle_rad. (4.7) does not

@@ -28,8 +28,8 @@
     X(TOO_MANY_SUPPORTS, "too many supports", /* below 0, too */ \
       "# supports, but this build takes 0 to @; lower it or build with a larger LACONIC_MAX_SUPPORTS") \
     X(NOTHING_MOVES, "nothing moves", /* three independent constraints */ \
-      "fixed and locked wheels prevent every motion; let the axle lines of all fixed wheels be one line or meet in " \
-      "one point, release a locked wheel, or give ground.friction_coefficient, so that wheels slip") \
+      "fixed and locked wheels prevent every motion; the axle lines of all fixed wheels must meet in one point or be " \
+      "one line, or with ground.friction_coefficient the wheels slip; else release a locked wheel") \
     X(ILL_CONDITIONED, "ill-conditioned", /* ε √cond(A) >= 0.01 */ \
       "masses and lengths are too far apart for " LACONIC_REAL_NAME " precision: the condition number # leaves fewer " \
       "than two correct digits; check the units") \
