@@ -27,24 +27,24 @@ typedef struct kind {
 static const kind c620 = {16384, 20, TEMPERATURE_C};
 static const kind c610 = {10000, 10, 0};
 
-/* Of all drives; kept as that of the first axis. */
-typedef struct group {
-    uint32_t next_us;     /* when feedback is due                     */
-    uint32_t fed_us;      /* when the last command came               */
-    uint32_t watchdog_us; /* 0: none                                  */
-    uint32_t due;         /* feedback to send: bit = drive            */
-} group;
+/* Of one controller. */
+typedef struct axis {
+    uint32_t next_us; /* when feedback is due         */
+    uint32_t fed_us;  /* when the last command came   */
+    uint32_t is_due;  /* feedback is to be sent       */
+} axis;
+
+static axis *axis_of(const laconic_drives *drives, int32_t k) { return (axis *)drives->axes + k; }
 
 static const kind *kind_of(const laconic_drives *drives) {
     return drives->protocol == &laconic_robomaster ? &c620 : &c610;
 }
 
 static void start(laconic_drives *drives, uint32_t now_us) {
-    group *all = drives->axes;
-    if (drives->count == 0) return;
-    all->next_us = now_us + PERIOD_US;
-    all->fed_us = now_us;
-    all->watchdog_us = (uint32_t)(drives->watchdog_s * (laconic_real)1e6);
+    for (int32_t k = 0; k < drives->count; k++) {
+        axis_of(drives, k)->next_us = now_us + PERIOD_US;
+        axis_of(drives, k)->fed_us = now_us;
+    }
 }
 
 static void command(laconic_wheel_drive *drive, const kind *of, const uint8_t *data) {
@@ -57,25 +57,33 @@ static void command(laconic_wheel_drive *drive, const kind *of, const uint8_t *d
 }
 
 static void on_frame(laconic_drives *drives, const laconic_frame *frame, uint32_t now_us) {
-    group *all = drives->axes;
     const bool low = frame->id == COMMAND_1_TO_4;
     if ((!low && frame->id != COMMAND_5_TO_8) || frame->extended || frame->remote || frame->fd) return;
-    if (frame->length != 8 || drives->count == 0) return;
+    if (frame->length != 8) return;
     for (int32_t k = 0; k < drives->count; k++) {
         const int32_t place = drives->drive[k].settings.node_id - (low ? 1 : 5);
-        if (place >= 0 && place < 4) command(&drives->drive[k], kind_of(drives), &frame->data[2 * place]);
+        if (place < 0 || place > 3) continue;
+        command(&drives->drive[k], kind_of(drives), &frame->data[2 * place]);
+        axis_of(drives, k)->fed_us = now_us;
     }
-    all->fed_us = now_us;
+}
+
+/* A vehicle whose step is longer than a millisecond has nothing new in between: its feedback comes each step. */
+static bool feedback_is_due(const laconic_drives *drives, axis *of, uint32_t now_us) {
+    if (drives->step_s * (laconic_real)1e6 >= PERIOD_US) return true;
+    if ((int32_t)(now_us - of->next_us) < 0) return false;
+    of->next_us += PERIOD_US;
+    return true;
 }
 
 static void on_step(laconic_drives *drives, uint32_t now_us) {
-    group *all = drives->axes;
-    if (drives->count == 0) return;
-    if (all->watchdog_us > 0 && now_us - all->fed_us > all->watchdog_us)
-        for (int32_t k = 0; k < drives->count; k++) laconic_drive_fail(&drives->drive[k], LACONIC_DRIVE_FAULT_WATCHDOG);
-    if ((int32_t)(now_us - all->next_us) < 0) return;
-    all->next_us += PERIOD_US;
-    all->due = ((uint32_t)1 << drives->count) - 1U;
+    const uint32_t watchdog_us = (uint32_t)(drives->watchdog_s * (laconic_real)1e6);
+    for (int32_t k = 0; k < drives->count; k++) {
+        axis *of = axis_of(drives, k);
+        if (watchdog_us > 0 && now_us - of->fed_us > watchdog_us)
+            laconic_drive_fail(&drives->drive[k], LACONIC_DRIVE_FAULT_WATCHDOG);
+        if (feedback_is_due(drives, of, now_us)) of->is_due = 1;
+    }
 }
 
 static void put16(uint8_t *to, laconic_real value) {
@@ -103,17 +111,17 @@ static void feedback(const laconic_wheel_drive *drive, const kind *of, laconic_f
 }
 
 static bool next_frame(laconic_drives *drives, laconic_frame *frame) {
-    group *all = drives->axes;
-    if (drives->count == 0 || all->due == 0) return false;
-    int32_t k = 0;
-    while ((all->due >> k & 1U) == 0) k++;
-    all->due &= all->due - 1U;
-    feedback(&drives->drive[k], kind_of(drives), frame);
-    return true;
+    for (int32_t k = 0; k < drives->count; k++) {
+        if (!axis_of(drives, k)->is_due) continue;
+        axis_of(drives, k)->is_due = 0;
+        feedback(&drives->drive[k], kind_of(drives), frame);
+        return true;
+    }
+    return false;
 }
 
 const laconic_drive_protocol laconic_robomaster = {.name = "robomaster",
-                                                   .axis_bytes = sizeof(group),
+                                                   .axis_bytes = sizeof(axis),
                                                    .first_id = 1,
                                                    .last_id = 8,
                                                    .start = start,
@@ -122,7 +130,7 @@ const laconic_drive_protocol laconic_robomaster = {.name = "robomaster",
                                                    .next_frame = next_frame};
 
 const laconic_drive_protocol laconic_robomaster_c610 = {.name = "robomaster-c610",
-                                                        .axis_bytes = sizeof(group),
+                                                        .axis_bytes = sizeof(axis),
                                                         .first_id = 1,
                                                         .last_id = 8,
                                                         .start = start,

@@ -1,0 +1,208 @@
+/* Tests of node_drives.c: a node that plays drives, its periods, its bus and its ends. */
+#include "bench.h"
+#include "drive_scene.h"
+#include "node_internal.h"
+#include "unity.h"
+
+static void load(laconic_real step_s) {
+    const laconic_vehicle vehicle = scene_vehicle(0);
+    memset(&node.start, 0, sizeof node.start);
+    laconic_plant_start(&node.plant, &vehicle, &laconic_auto, step_s, &node.start, NULL);
+    node.drive_plan = scene_plan(3);
+    node.state = LACONIC_WIRE_STATE_READY;
+}
+
+void setUp(void) {
+    bench_begin();
+    load(SCENE_STEP_S);
+}
+void tearDown(void) {}
+
+static uint8_t start(void) { return bench_control(LACONIC_WIRE_COMMAND_START_DRIVES, 0, 0); }
+
+static void pass(uint32_t microseconds, uint32_t each_us) {
+    for (uint32_t k = 0; k < microseconds; k += each_us) {
+        now_us += each_us;
+        laconic_node_on_tick(&node, now_us);
+    }
+}
+
+static void command(int raw) {
+    laconic_frame frame = {.id = 0x200, .length = 8};
+    for (int k = 0; k < 4; k++) {
+        frame.data[2 * k] = (uint8_t)((unsigned)raw >> 8 & 255U);
+        frame.data[2 * k + 1] = (uint8_t)((unsigned)raw & 255U);
+    }
+    laconic_node_on_frame(&node, &frame, now_us);
+}
+
+/* Frames that wait: of the protocol, and of the node itself. */
+static void fetch(int *of_drives, int *of_node) {
+    laconic_frame frame;
+    *of_drives = *of_node = 0;
+    while (laconic_node_next_frame(&node, &frame)) ++*(frame.id < 0x210 ? of_drives : of_node);
+}
+
+static void one_step_is_taken_each_period(void) {
+    TEST_ASSERT_EQUAL_UINT8(0, start());
+    TEST_ASSERT_EQUAL_UINT8(LACONIC_WIRE_STATE_DRIVES, node.state);
+    command(1000);
+    pass(50000, 100);
+    TEST_ASSERT_EQUAL_UINT64(50, node.plant.steps);
+    TEST_ASSERT_TRUE(node.drives.drive[0].count > 0 && node.counters.late_periods == 0);
+    TEST_ASSERT_EQUAL_UINT32(1000, laconic_node_idle_us(&node, now_us));
+}
+
+static void ten_thousand_steps_a_second_are_taken(void) {
+    load(REAL(0.0001));
+    TEST_ASSERT_EQUAL_UINT8(0, start());
+    pass(100000, 100);
+    TEST_ASSERT_EQUAL_UINT64(1000, node.plant.steps);
+    load(REAL(1.0 / 3000));
+    TEST_ASSERT_EQUAL_UINT8(0, start());
+    pass(100000, 50);
+    TEST_ASSERT_EQUAL_UINT64(300, node.plant.steps);
+}
+
+static void steps_without_a_whole_rate_are_refused(void) {
+    uint8_t data[LACONIC_FRAME_BYTES];
+    static const double steps_s[] = {0.0007, 0.00009, 1.5, 2};
+    for (size_t k = 0; k < sizeof steps_s / sizeof steps_s[0]; k++) {
+        load((laconic_real)steps_s[k]);
+        const struct laconic_dbc_control_t frame = {.command = LACONIC_WIRE_COMMAND_START_DRIVES};
+        laconic_dbc_control_pack(data, &frame, 8);
+        bench_send(LACONIC_WIRE_CONTROL, data);
+        TEST_ASSERT_TRUE(bench_receive(LACONIC_WIRE_RESULT, data));
+        TEST_ASSERT_EQUAL_UINT8(LACONIC_WIRE_STATUS_OUT_OF_RANGE, data[3]);
+        TEST_ASSERT_EQUAL_UINT8(LACONIC_FIELD_STEP, data[4]);
+    }
+    load(1);
+    TEST_ASSERT_EQUAL_UINT8(0, start());
+}
+
+static void late_periods_are_counted_and_none_is_left_out(void) {
+    start();
+    now_us += 5500;
+    for (int k = 0; k < 10; k++) laconic_node_on_tick(&node, now_us);
+    TEST_ASSERT_EQUAL_UINT64(5, node.plant.steps);
+    TEST_ASSERT_EQUAL_UINT32(4500, node.free_run.worst_lateness_us);
+    TEST_ASSERT_EQUAL_UINT16(4, node.counters.late_periods);
+}
+
+static void a_node_that_plays_sends_the_protocols_frames_alone(void) {
+    int of_drives, of_node;
+    start();
+    fetch(&of_drives, &of_node);
+    pass(300000, 1000);
+    fetch(&of_drives, &of_node);
+    TEST_ASSERT_EQUAL_INT(4, of_drives); /* the newest of each */
+    TEST_ASSERT_EQUAL_INT(0, of_node);
+    bench_control(LACONIC_WIRE_COMMAND_STOP, 0, 0);
+    pass(100000, 1000);
+    fetch(&of_drives, &of_node);
+    TEST_ASSERT_TRUE(of_drives == 0 && of_node == 1); /* HEARTBEAT again */
+}
+
+static void a_rig_may_select_frames_while_drives_play(void) {
+    uint8_t data[LACONIC_FRAME_BYTES];
+    int of_drives, of_node;
+    start();
+    command(2000);
+    TEST_ASSERT_EQUAL_UINT8(0, bench_select(LACONIC_NODE_SEND_NU, 0, 0));
+    pass(5000, 1000);
+    TEST_ASSERT_TRUE(bench_receive(LACONIC_WIRE_NU, data));
+    pass(100000, 1000);
+    TEST_ASSERT_TRUE(bench_receive(LACONIC_WIRE_HEARTBEAT, data));
+    TEST_ASSERT_EQUAL_UINT8(LACONIC_WIRE_STATE_DRIVES, data[1] >> 4);
+    TEST_ASSERT_TRUE(node.drives.drive[0].count > 1000); /* SELECT has not stopped it */
+    fetch(&of_drives, &of_node);
+}
+
+static void frames_for_drives_do_nothing_before_they_play(void) {
+    command(1000);
+    TEST_ASSERT_EQUAL_INT(0, node.drives.count);
+    start();
+    TEST_ASSERT_EQUAL_INT(LACONIC_DRIVE_OFF, node.drives.drive[0].target.mode);
+    TEST_ASSERT_EQUAL_UINT16(0, node.counters.malformed);
+}
+
+static void stop_switches_the_drives_off_and_a_start_is_their_power_up(void) {
+    start();
+    command(2000);
+    pass(100000, 1000);
+    const uint64_t steps = node.plant.steps;
+    bench_control(LACONIC_WIRE_COMMAND_STOP, 0, 0);
+    TEST_ASSERT_EQUAL_UINT8(LACONIC_WIRE_STATE_READY, node.state);
+    TEST_ASSERT_TRUE(node.drives.drive[0].torque_Nm == 0 && node.input[0].axle_torque_Nm[0] == 0);
+    pass(10000, 1000);
+    TEST_ASSERT_EQUAL_UINT64(steps, node.plant.steps);
+    TEST_ASSERT_EQUAL_UINT8(0, start());
+    TEST_ASSERT_TRUE(node.drives.drive[0].count == 0 && node.drives.drive[0].speed_rad_per_s > 1);
+}
+
+static void a_refused_step_is_a_fault_with_the_drives_off(void) {
+    uint8_t data[LACONIC_FRAME_BYTES];
+    start();
+    command(2000);
+    pass(3000, 1000);
+    node.input[0].body_moment_Nm = LACONIC_REAL_MAX * 2;
+    pass(1000, 1000);
+    TEST_ASSERT_EQUAL_UINT8(LACONIC_WIRE_STATE_FAULT, node.state);
+    TEST_ASSERT_TRUE(bench_receive(LACONIC_WIRE_RESULT, data));
+    TEST_ASSERT_EQUAL_UINT8(LACONIC_WIRE_COMMAND_SYNC, data[2]);
+    TEST_ASSERT_EQUAL_UINT8(LACONIC_FIELD_BODY_MOMENT, data[4]);
+    TEST_ASSERT_EQUAL_UINT64(3, node.plant.steps);
+    TEST_ASSERT_EQUAL_INT(LACONIC_DRIVE_OFF, node.drives.drive[0].target.mode);
+}
+
+static void start_needs_a_vehicle_with_drives_that_is_ready(void) {
+    node.drive_plan.protocol = 0;
+    TEST_ASSERT_EQUAL_UINT8(LACONIC_WIRE_STATUS_PARAMETER_MISSING, start());
+    node.drive_plan.protocol = 3;
+    start();
+    TEST_ASSERT_EQUAL_UINT8(LACONIC_WIRE_STATUS_WRONG_STATE, start());
+}
+
+static void voltages_and_syncs_of_a_rig_do_not_act_while_drives_play(void) {
+    start();
+    bench_voltage(0, 500, 0);
+    pass(5000, 1000);
+    TEST_ASSERT_TRUE(node.input[0].voltage_V[0] == 0);
+}
+
+static void a_plan_is_checked_against_the_protocols_that_are_linked(void) {
+    uint8_t field = 0;
+    uint8_t item = 0;
+    laconic_drive_plan plan = scene_plan(3);
+    TEST_ASSERT_EQUAL_UINT8(0, laconic_node_check_drives(&node, &plan, 4, &field, &item));
+    plan.drive[1].encoder_counts = 0;
+    TEST_ASSERT_EQUAL_UINT8(LACONIC_NOT_POSITIVE, laconic_node_check_drives(&node, &plan, 4, &field, &item));
+    TEST_ASSERT_TRUE(field == LACONIC_DRIVES_FIELD_ENCODER_COUNTS && item == 2);
+    plan.protocol = 77;
+    TEST_ASSERT_EQUAL_UINT8(LACONIC_WIRE_STATUS_NOT_SUPPORTED,
+                            laconic_node_check_drives(&node, &plan, 4, &field, &item));
+    TEST_ASSERT_EQUAL_UINT8(LACONIC_DRIVES_FIELD_DRIVE_PROTOCOL, field);
+    plan.protocol = 0; /* numbers of drives that are not there do not count */
+    TEST_ASSERT_EQUAL_UINT8(0, laconic_node_check_drives(&node, &plan, 4, &field, &item));
+    node.config.protocol = NULL;
+    plan.protocol = 3;
+    TEST_ASSERT_EQUAL_UINT8(LACONIC_WIRE_STATUS_NOT_SUPPORTED,
+                            laconic_node_check_drives(&node, &plan, 4, &field, &item));
+}
+
+int main(void) {
+    UNITY_BEGIN();
+    RUN_TEST(one_step_is_taken_each_period);
+    RUN_TEST(ten_thousand_steps_a_second_are_taken);
+    RUN_TEST(steps_without_a_whole_rate_are_refused);
+    RUN_TEST(late_periods_are_counted_and_none_is_left_out);
+    RUN_TEST(a_node_that_plays_sends_the_protocols_frames_alone);
+    RUN_TEST(a_rig_may_select_frames_while_drives_play);
+    RUN_TEST(frames_for_drives_do_nothing_before_they_play);
+    RUN_TEST(stop_switches_the_drives_off_and_a_start_is_their_power_up);
+    RUN_TEST(a_refused_step_is_a_fault_with_the_drives_off);
+    RUN_TEST(start_needs_a_vehicle_with_drives_that_is_ready);
+    RUN_TEST(voltages_and_syncs_of_a_rig_do_not_act_while_drives_play);
+    RUN_TEST(a_plan_is_checked_against_the_protocols_that_are_linked);
+    return UNITY_END();
+}
