@@ -1,7 +1,8 @@
 /* Tests of node_drives.c: a node that plays drives, its periods, its bus and its ends. */
+#include "node_internal.h" /* before the bench, whose `node` would be shadowed */
+
 #include "bench.h"
 #include "drive_scene.h"
-#include "node_internal.h"
 #include "unity.h"
 
 static void load(laconic_real step_s) {

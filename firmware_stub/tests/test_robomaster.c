@@ -58,7 +58,8 @@ static void a_c610_has_half_the_current_and_no_temperature(void) {
     laconic_frame frame;
     begin(&laconic_robomaster_c610, 0);
     command(0x200, 0, 10000);
-    TEST_ASSERT_TRUE(drives.drive[0].target.current_A > REAL(9.9999) && drives.drive[0].target.current_A < REAL(10.0001));
+    TEST_ASSERT_TRUE(drives.drive[0].target.current_A > REAL(9.9999) &&
+                     drives.drive[0].target.current_A < REAL(10.0001));
     step(1);
     TEST_ASSERT_TRUE(laconic_drives_next_frame(&drives, &frame));
     TEST_ASSERT_EQUAL_INT(10000, frame.data[4] << 8 | frame.data[5]);
@@ -97,7 +98,8 @@ static void feedback_comes_every_millisecond_with_angle_speed_and_current(void) 
             TEST_ASSERT_TRUE(frame.length == 8 && !frame.extended && !frame.remote && !frame.fd);
             TEST_ASSERT_EQUAL_INT((int)drives.drive[i].count & 8191, word_of(&frame, 0));
             const laconic_real rpm = drives.drive[i].speed_rad_per_s * REAL(60 / 6.28318530717958647693);
-            TEST_ASSERT_TRUE((laconic_real)word_of(&frame, 2) - rpm < REAL(0.51) && (laconic_real)word_of(&frame, 2) - rpm > REAL(-0.51));
+            TEST_ASSERT_TRUE((laconic_real)word_of(&frame, 2) - rpm < REAL(0.51) &&
+                             (laconic_real)word_of(&frame, 2) - rpm > REAL(-0.51));
             TEST_ASSERT_EQUAL_INT(i == 0 ? -1639 : 0, word_of(&frame, 4));
             TEST_ASSERT_TRUE(frame.data[6] == 25 && frame.data[7] == 0);
         }
