@@ -1,17 +1,18 @@
-/* RoboMaster C620 and C610: brushless speed controllers of current, four to a frame. From "RoboMaster C620 Brushless DC
- * Motor Speed Controller User Guide" V1.01 and "RoboMaster C610 …" V1.00, chapters on CAN communication:
+/* RoboMaster C620 and C610: brushless speed controllers that take a current each, four in a frame. From the user guides
+ * "RoboMaster C620 Brushless DC Motor Speed Controller" and "RoboMaster C610 Brushless DC Motor Speed Controller",
+ * chapters "CAN Communication Protocol":
  *
  *   commands   standard frames 0x200 (controllers 1 to 4) and 0x1FF (5 to 8) of eight bytes, at 1 Mbit/s: a signed
- *              16-bit number for each controller in turn, high byte first; ±16384 is ±20 A (C620), ±10000 is ±10 A (C610)
- *   feedback   0x200 + number, by default a thousand times a second: angle of the rotor (0 to 8191 for a turn), its
+ *              16-bit number for each controller in turn, high byte first; ±16384 is ±20 A (C620), ±10000 is ±10 A
+ *              (C610)
+ *   feedback   0x200 + number, a thousand times a second by default: angle of the rotor (0 to 8191 for a turn), its
  *              speed in rpm, torque current in the units of the command, each of two bytes, high byte first; byte 6:
- *              temperature of the motor in °C (C620; 0 of a C610); byte 7: 0
+ *              temperature of the motor in °C (C620), nothing (C610); byte 7: nothing
  *
- * They have no speed loop: the controller on the bus closes it, at each feedback. They have no command to clear a fault;
- * what a fault of a drive is here ends only when it is mended, and the drive then follows the next command. Angle and
- * current are those of one moment; temperature is constant, since drives have no thermal model. The manuals do not state
- * what follows when commands cease: without DRIVE_WATCHDOG the last command stays, with it the drives go off, and on
- * again by the next command. */
+ * They have no speed loop: the controller on the bus closes it, at each feedback. They have no command that clears a
+ * fault, so a fault that has no cause any more ends at the next command. The temperature is constant, since drives have
+ * no thermal model. The guides do not state what follows when commands cease: without DRIVE_WATCHDOG the last command
+ * stays, with it the drive goes off, and on again by the next command. */
 #include "laconic_drives/protocol.h"
 
 enum { COMMAND_1_TO_4 = 0x200, COMMAND_5_TO_8 = 0x1FF, FEEDBACK = 0x200, TURN = 8192, PERIOD_US = 1000 };

@@ -1,5 +1,5 @@
-/* A motor drive as a controller sees it over the bus, without its protocol: cascaded loops for position, speed and current
- * with their limits, and an encoder at the motor's shaft.
+/* A motor drive as a controller sees it over the bus, without its protocol: cascaded loops for position, speed and
+ * current with their limits, and an encoder at the motor's shaft.
  *
  *     target (of a protocol) --position loop--> speed --speed loop--> current --limits--> torque of the wheel's axle
  *                                                                                             |
@@ -47,8 +47,8 @@ typedef struct laconic_drive_target {
     laconic_real current_A;       /* CURRENT; SPEED, POSITION: feed-forward                                   */
 } laconic_drive_target;
 
-/* What goes wrong in a drive, whoever caused it: bits of laconic_wheel_drive.faults. A drive with a fault is off until the
- * protocol clears it with laconic_drive_clear(). The drive itself finds ENCODER, STALL and TARGET. */
+/* What goes wrong in a drive, whoever caused it: bits of laconic_wheel_drive.faults. A drive with a fault is off until
+ * the protocol clears it with laconic_drive_clear(). The drive itself finds ENCODER, STALL and TARGET. */
 #define LACONIC_DRIVE_FAULT_ENCODER 1U     /* the encoder is lost                    */
 #define LACONIC_DRIVE_FAULT_STALL 2U       /* no motion at the limit of the current  */
 #define LACONIC_DRIVE_FAULT_TEMPERATURE 4U /* only by order: drives have no thermal model */
@@ -83,8 +83,8 @@ typedef struct laconic_wheel_drive {
 /* All zero but the settings: off, at count 0. */
 void laconic_drive_start(laconic_wheel_drive *drive, const laconic_drive_settings *settings);
 
-/* The torque at the wheel's axle for the next step_s, from target and measured values. Sets the faults STALL and TARGET.
- * Off, the current is 0 at once. */
+/* The torque at the wheel's axle for the next step_s, from target and measured values. Sets the faults STALL and
+ * TARGET. Off, the current is 0 at once. */
 laconic_real laconic_drive_act(laconic_wheel_drive *drive, laconic_real step_s);
 
 /* Takes the wheel's motion in the step just done: how far it turned, and its speed at the end. A lost encoder shows

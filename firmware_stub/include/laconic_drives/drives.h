@@ -17,8 +17,8 @@ void laconic_drives_start(laconic_drives *drives, const laconic_drive_plan *plan
 /* A frame from the bus, for the protocol. */
 void laconic_drives_on_frame(laconic_drives *drives, const laconic_frame *frame, uint32_t now_us);
 
-/* One step of the plant with which the drives were started. Writes the axle torques of the wheels that have a drive into `held`
- * and leaves its other numbers. A refusal is that of laconic_plant_run; the drives are then off. */
+/* One step of the plant with which the drives were started. Writes the axle torques of the wheels that have a drive
+ * into `held` and leaves its other numbers. A refusal is that of laconic_plant_run; the drives are then off. */
 laconic_status laconic_drives_step(laconic_drives *drives, laconic_plant *plant, laconic_input *held, uint32_t now_us,
                                    laconic_refusal *why);
 

@@ -35,8 +35,8 @@ typedef struct laconic_drive_protocol {
     bool (*next_frame)(laconic_drives *drives, laconic_frame *frame);
 } laconic_drive_protocol;
 
-/* By number, as parameter DRIVE_PROTOCOL has them: 1 canopen, 2 odrive, 3 robomaster (C620), 4 moteus, 5 robomaster-c610.
- */
+/* By number, as parameter DRIVE_PROTOCOL has them: 1 canopen, 2 odrive, 3 robomaster (C620), 4 moteus,
+ * 5 robomaster-c610. */
 extern const laconic_drive_protocol laconic_canopen, laconic_odrive, laconic_robomaster, laconic_moteus,
     laconic_robomaster_c610;
 

@@ -1,7 +1,7 @@
 /* The numbers of drives as a client of a node sends them: the one list of these parameters.
  *
- * A new number changes four files, as one of vehicle.h does: here its member and its row; laconic.dbc, its number in the
- * value tables of PARAMETER.field and RESULT.field; firmware_stub/laconic_wire/drive_parameters.py, its unit; and
+ * A new number changes four files, as one of vehicle.h does: here its member and its row; laconic.dbc, its number in
+ * the value tables of PARAMETER.field and RESULT.field; firmware_stub/laconic_wire/drive_parameters.py, its unit; and
  * docs/wire.md, made from these. */
 #ifndef LACONIC_DRIVES_SETTINGS_H
 #define LACONIC_DRIVES_SETTINGS_H
@@ -30,21 +30,23 @@ typedef struct laconic_drive_plan {
 
 /* Of each wheel that has a drive: the wheels for which DRIVE_NODE_ID is sent. */
 #define LACONIC_DRIVES_WHEEL_ROWS(X, of) \
-    X(of, 65, DRIVE_NODE_ID,          node_id,                  drive_node_id,                  INTEGER, UNCHECKED, NEVER) \
-    X(of, 66, ENCODER_COUNTS,         encoder_counts,           encoder_counts,                 INTEGER, POSITIVE,  NEVER) \
-    X(of, 67, DRIVE_GEAR_RATIO,       gear_ratio,               drive_gear_ratio,               REAL, NOT_ZERO,     NEVER) \
-    X(of, 68, DRIVE_TORQUE_CONSTANT,  torque_constant_Nm_per_A, drive_torque_constant_Nm_per_A, REAL, POSITIVE,     NEVER) \
-    X(of, 69, DRIVE_CURRENT_LIMIT,    current_limit_A,          drive_current_limit_A,          REAL, POSITIVE,     NEVER) \
-    X(of, 70, DRIVE_SPEED_LIMIT,      speed_limit_rad_per_s,    drive_speed_limit_rad_per_s,    REAL, NOT_NEGATIVE, NEVER) \
-    X(of, 71, DRIVE_SUPPLY,           supply_V,                 drive_supply_V,                 REAL, NOT_NEGATIVE, NEVER) \
-    X(of, 72, DRIVE_WINDING_RESISTANCE, winding_resistance_ohm, drive_winding_resistance_ohm,   REAL, NOT_NEGATIVE, NEVER) \
+    X(of, 65, DRIVE_NODE_ID, node_id, drive_node_id, INTEGER, UNCHECKED, NEVER) \
+    X(of, 66, ENCODER_COUNTS, encoder_counts, encoder_counts, INTEGER, POSITIVE, NEVER) \
+    X(of, 67, DRIVE_GEAR_RATIO, gear_ratio, drive_gear_ratio, REAL, NOT_ZERO, NEVER) \
+    X(of, 68, DRIVE_TORQUE_CONSTANT, torque_constant_Nm_per_A, drive_torque_constant_Nm_per_A, REAL, POSITIVE, NEVER) \
+    X(of, 69, DRIVE_CURRENT_LIMIT, current_limit_A, drive_current_limit_A, REAL, POSITIVE, NEVER) \
+    X(of, 70, DRIVE_SPEED_LIMIT, speed_limit_rad_per_s, drive_speed_limit_rad_per_s, REAL, NOT_NEGATIVE, NEVER) \
+    X(of, 71, DRIVE_SUPPLY, supply_V, drive_supply_V, REAL, NOT_NEGATIVE, NEVER) \
+    X(of, 72, DRIVE_WINDING_RESISTANCE, winding_resistance_ohm, drive_winding_resistance_ohm, REAL, \
+      NOT_NEGATIVE, NEVER) \
     X(of, 73, DRIVE_CURRENT_BANDWIDTH, current_bandwidth_rad_per_s, drive_current_bandwidth_rad_per_s, REAL, \
       NOT_NEGATIVE, NEVER) \
-    X(of, 74, DRIVE_POSITION_GAIN,    position_gain_per_s,      drive_position_gain_per_s,      REAL, NOT_NEGATIVE, NEVER) \
-    X(of, 75, DRIVE_SPEED_GAIN,       speed_gain_As,            drive_speed_gain_As,            REAL, NOT_NEGATIVE, NEVER) \
-    X(of, 76, DRIVE_SPEED_INTEGRAL_GAIN, speed_integral_gain_A, drive_speed_integral_gain_A,    REAL, NOT_NEGATIVE, NEVER) \
-    X(of, 78, DRIVE_STALL_TIME,       stall_time_s,             drive_stall_time_s,             REAL, NOT_NEGATIVE, NEVER) \
-    X(of, 79, DRIVE_BACK_EMF,         back_emf_Vs_per_rad,      drive_back_emf_Vs_per_rad,      REAL, NOT_NEGATIVE, NEVER)
+    X(of, 74, DRIVE_POSITION_GAIN, position_gain_per_s, drive_position_gain_per_s, REAL, NOT_NEGATIVE, NEVER) \
+    X(of, 75, DRIVE_SPEED_GAIN, speed_gain_As, drive_speed_gain_As, REAL, NOT_NEGATIVE, NEVER) \
+    X(of, 76, DRIVE_SPEED_INTEGRAL_GAIN, speed_integral_gain_A, drive_speed_integral_gain_A, REAL, \
+      NOT_NEGATIVE, NEVER) \
+    X(of, 78, DRIVE_STALL_TIME, stall_time_s, drive_stall_time_s, REAL, NOT_NEGATIVE, NEVER) \
+    X(of, 79, DRIVE_BACK_EMF, back_emf_Vs_per_rad, drive_back_emf_Vs_per_rad, REAL, NOT_NEGATIVE, NEVER)
 /* clang-format on */
 
 #define LACONIC_DRIVES_FIELD_NUMBER(of, number, IDENTIFIER, ...) LACONIC_DRIVES_FIELD_##IDENTIFIER = number,

@@ -1,5 +1,6 @@
-/* The protocols of drives in this image: all, the one that LACONIC_NODE_ONE_PROTOCOL and LACONIC_NODE_ONE_PROTOCOL_NUMBER
- * name, or none in a node without drives, whose configuration has no place for them. */
+/* The protocols of drives in this image: all, the one that LACONIC_NODE_ONE_PROTOCOL and
+ * LACONIC_NODE_ONE_PROTOCOL_NUMBER name, or none in a node without drives, whose configuration has no place for them.
+ */
 #ifndef PROTOCOLS_H
 #define PROTOCOLS_H
 
