@@ -12,6 +12,7 @@ bool laconic_node_next_frame(struct laconic_node *node, laconic_frame *frame);
 bool laconic_node_is_busy(const struct laconic_node *node);
 uint32_t laconic_node_idle_us(const struct laconic_node *node, uint32_t now_us);
 
+#include "canopen/describe.h"
 #include "laconic_node/counters.h"
 #include "laconic_node/crc.h"
 #include "laconic_node/e2e.h"

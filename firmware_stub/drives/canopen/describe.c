@@ -31,7 +31,14 @@ typedef struct limit {
 static const limit limits[] = {CANOPEN_LIMITS(ONE_LIMIT)};
 
 /* A fresh node, as after power-up: what it answers is the default. */
-static bool value_after_power_up(laconic_canopen_object *object, const laconic_drive_settings *settings) {
+static bool value_after_power_up(laconic_canopen_object *object, const laconic_canopen_drive *of) {
+    const laconic_drive_settings settings = {
+        .node_id = of->node_id,
+        .encoder_counts = of->encoder_counts,
+        .torque_constant_Nm_per_A = (laconic_real)of->torque_constant_Nm_per_A,
+        .current_limit_A = (laconic_real)of->current_limit_A,
+        .supply_V = (laconic_real)of->supply_V,
+    };
     canopen_axis axis;
     laconic_drives drives;
     uint32_t value = 0, abort = 0;
@@ -39,7 +46,7 @@ static bool value_after_power_up(laconic_canopen_object *object, const laconic_d
     memset(&drives, 0, sizeof drives);
     drives.axes = &axis;
     drives.count = 1;
-    laconic_drive_start(&drives.drive[0], settings);
+    laconic_drive_start(&drives.drive[0], &settings);
     laconic_canopen.start(&drives, 0);
     const canopen_node on = {&axis, &drives.drive[0], 1, 0};
     const canopen_row *row = canopen_row_at(canopen_find(object->index, object->sub, &abort));
@@ -79,7 +86,7 @@ static bool expand(const entry *of, uint32_t n, laconic_canopen_object *object) 
     return true;
 }
 
-bool laconic_canopen_describe(uint32_t number, const laconic_drive_settings *settings, laconic_canopen_object *object) {
+bool laconic_canopen_describe(uint32_t number, const laconic_canopen_drive *of_drive, laconic_canopen_object *object) {
     for (size_t k = 0; k < sizeof entries / sizeof entries[0]; k++) {
         const entry *of = &entries[k];
         uint32_t n = 0;
@@ -92,9 +99,10 @@ bool laconic_canopen_describe(uint32_t number, const laconic_drive_settings *set
         object->type = of->form & 15U;
         object->access = of->form & 0xF0U;
         object->name = of->name;
+        object->is_one_of_many = of->last > of->sub;
         add_group(object, of->index);
         add_limits(object);
-        object->has_value = value_after_power_up(object, settings);
+        object->has_value = value_after_power_up(object, of_drive);
         return true;
     }
     return false;
