@@ -2,9 +2,8 @@
 #include "laconic_drives/protocol.h"
 
 static const laconic_drive_protocol *const protocols[] = {
-    [1] = &laconic_canopen,
-    [3] = &laconic_robomaster,
-    [5] = &laconic_robomaster_c610,
+    [1] = &laconic_canopen, [2] = &laconic_odrive,          [3] = &laconic_robomaster,
+    [4] = &laconic_moteus,  [5] = &laconic_robomaster_c610,
 };
 
 const laconic_drive_protocol *laconic_drive_protocol_by_number(int32_t number) {

@@ -44,9 +44,9 @@ def _robomaster(node_id: int) -> frozenset[int]:
     return frozenset({0x200, 0x1FF, 0x200 + node_id})
 
 
-def _moteus(_: int) -> frozenset[int]:
-    """29-bit identifiers only, or none below 0x100 as short ones."""
-    return frozenset()
+def _moteus(node_id: int) -> frozenset[int]:
+    """From and to a controller with id 0; a command that wants a reply has a 29-bit identifier."""
+    return frozenset({node_id, node_id << 8} & set(range(0x800)))
 
 
 M3508_GEAR = 3591.0 / 187.0
@@ -54,7 +54,7 @@ PROTOCOLS: Mapping[str, DriveProtocol] = {each.name: each for each in (
     DriveProtocol("canopen", 1, 1, 127, _canopen,
                   {"encoder_counts": 4096, "gear_ratio": 1.0, "torque_constant_Nm_per_A": 0.05,
                    "current_limit_A": 10.0}, "an assumption: CANopen names no motor"),
-    DriveProtocol("odrive", 0, 0, 63, _odrive,
+    DriveProtocol("odrive", 0, 0, 62, _odrive,
                   {"encoder_counts": 8192, "gear_ratio": 1.0, "torque_constant_Nm_per_A": 8.27 / 270.0,
                    "current_limit_A": 10.0, "supply_V": 24.0}, "an ODrive v3.6 with its D5065 motor of 270 rpm/V"),
     DriveProtocol("robomaster", 1, 1, 8, _robomaster,

@@ -1,0 +1,128 @@
+/* States of an axis: procedures, closed loop, and the errors that disarm it. */
+#include "odrive.h"
+
+#include <string.h>
+
+/* A calibrated drive that calibrates again: the procedure takes this long and changes nothing. */
+enum { PROCEDURE_US = 200000 };
+
+/* States that are procedures of a drive which has motor and encoder: 3 full calibration, 4 motor calibration, 6 index
+ * search, 7 encoder offset, 10 direction find, 12 and 13 hall calibrations. */
+static bool is_procedure(uint32_t state) { return state <= 13 && 0x34D8U >> state & 1U; }
+
+static void enter(odrive_axis *axis, odrive_state state, odrive_result result) {
+    axis->state = (uint8_t)state;
+    axis->result = (uint8_t)result;
+    axis->travelling = false;
+}
+
+static void release(laconic_wheel_drive *drive) { memset(&drive->target, 0, sizeof drive->target); }
+
+void odrive_disarm(odrive_axis *axis, laconic_wheel_drive *drive, uint32_t error) {
+    axis->errors |= error;
+    if (axis->state != ODRIVE_IDLE) {
+        axis->disarm_reason |= error;
+        enter(axis, ODRIVE_IDLE, ODRIVE_DISARMED);
+    }
+    release(drive);
+}
+
+void odrive_clear_errors(odrive_axis *axis, laconic_wheel_drive *drive) {
+    axis->errors = axis->disarm_reason = 0;
+    axis->result = axis->state == ODRIVE_IDLE ? ODRIVE_SUCCESS : axis->result;
+    if (drive->faults) laconic_drive_clear(drive);
+}
+
+static bool is_modelled(uint32_t control_mode, uint32_t input_mode) {
+    const bool control = control_mode >= ODRIVE_TORQUE && control_mode <= ODRIVE_POSITION;
+    return control &&
+           (input_mode <= ODRIVE_POS_FILTER || input_mode == ODRIVE_TRAP_TRAJ || input_mode == ODRIVE_TORQUE_RAMP);
+}
+
+/* Position control begins where the shaft is (Controller::control_mode_updated of 0.5.6). */
+static void begin_where_it_is(odrive_axis *axis, const laconic_wheel_drive *drive) {
+    if (axis->control_mode == ODRIVE_POSITION) axis->input_place = axis->place = odrive_place(axis, drive);
+    axis->travelling = false;
+}
+
+/* Numbers of the modes beyond 255 are no modes either. */
+void odrive_set_mode(odrive_axis *axis, const laconic_wheel_drive *drive, uint32_t control_mode, uint32_t input_mode) {
+    axis->control_mode = (uint8_t)(control_mode > UINT8_MAX ? UINT8_MAX : control_mode);
+    axis->input_mode = (uint8_t)(input_mode > UINT8_MAX ? UINT8_MAX : input_mode);
+    begin_where_it_is(axis, drive);
+}
+
+/* Axis::start_closed_loop_control of 0.5.6. Errors are cleared first: its motor disarms again as long as one is set. */
+static void close_loop(odrive_axis *axis, laconic_wheel_drive *drive, uint32_t now_us) {
+    if (axis->errors != 0) {
+        enter(axis, ODRIVE_IDLE, ODRIVE_DISARMED);
+        return;
+    }
+    begin_where_it_is(axis, drive);
+    axis->speed = axis->torque = 0;
+    axis->fed_us = now_us;
+    drive->integral_A = 0;
+    enter(axis, ODRIVE_CLOSED_LOOP_CONTROL, ODRIVE_BUSY);
+}
+
+void odrive_request(laconic_drives *drives, int32_t i, uint32_t state, uint32_t now_us) {
+    odrive_axis *axis = odrive_axis_of(drives, i);
+    laconic_wheel_drive *drive = &drives->drive[i];
+    if (state == ODRIVE_UNDEFINED || (state == ODRIVE_CLOSED_LOOP_CONTROL && axis->state == state)) return;
+    const bool was_busy = axis->state != ODRIVE_IDLE;
+    release(drive);
+    axis->state_us = now_us;
+    if (state == ODRIVE_CLOSED_LOOP_CONTROL)
+        close_loop(axis, drive, now_us);
+    else if (is_procedure(state))
+        enter(axis, (odrive_state)state, ODRIVE_BUSY);
+    else if (state == ODRIVE_IDLE)
+        enter(axis, ODRIVE_IDLE, was_busy ? ODRIVE_CANCELLED : ODRIVE_SUCCESS);
+    else if (state == ODRIVE_STARTUP_SEQUENCE) /* nothing is configured to run at startup */
+        enter(axis, ODRIVE_IDLE, ODRIVE_SUCCESS);
+    else
+        enter(axis, ODRIVE_IDLE, state == ODRIVE_HOMING ? ODRIVE_HOMING_WITHOUT_ENDSTOP : ODRIVE_INVALID_STATE);
+}
+
+static uint32_t errors_of(uint32_t faults) {
+    static const struct {
+        uint32_t fault, error;
+    } rows[] = {
+        {LACONIC_DRIVE_FAULT_ENCODER, ODRIVE_MISSING_ESTIMATE},
+        {LACONIC_DRIVE_FAULT_STALL, ODRIVE_SPINOUT_DETECTED},
+        {LACONIC_DRIVE_FAULT_TEMPERATURE, ODRIVE_INVERTER_OVER_TEMP},
+        {LACONIC_DRIVE_FAULT_OVERSPEED, ODRIVE_VELOCITY_LIMIT_VIOLATION},
+        {LACONIC_DRIVE_FAULT_SUPPLY, ODRIVE_DC_BUS_UNDER_VOLTAGE},
+        {LACONIC_DRIVE_FAULT_WATCHDOG, ODRIVE_WATCHDOG_TIMER_EXPIRED},
+        {LACONIC_DRIVE_FAULT_FOLLOWING, ODRIVE_POSITION_LIMIT_VIOLATION},
+        {LACONIC_DRIVE_FAULT_TARGET, ODRIVE_BAD_CONFIG},
+    };
+    uint32_t errors = 0;
+    for (size_t k = 0; k < sizeof rows / sizeof rows[0]; k++)
+        if (faults & rows[k].fault) errors |= rows[k].error;
+    return errors;
+}
+
+static bool is_silent(const laconic_drives *drives, const odrive_axis *axis, uint32_t now_us) {
+    return drives->watchdog_s > 0 && (laconic_real)(now_us - axis->fed_us) > drives->watchdog_s * 1000000;
+}
+
+/* controller.config.vel_limit_tolerance is 1.2. */
+static bool is_too_fast(const odrive_axis *axis, const laconic_wheel_drive *drive) {
+    const laconic_real limit = axis->speed_limit * (2 * ODRIVE_PI) * (laconic_real)1.2;
+    return drive->speed_rad_per_s > limit || drive->speed_rad_per_s < -limit;
+}
+
+void odrive_supervise(laconic_drives *drives, int32_t i, uint32_t now_us) {
+    odrive_axis *axis = odrive_axis_of(drives, i);
+    laconic_wheel_drive *drive = &drives->drive[i];
+    if (axis->state == ODRIVE_CLOSED_LOOP_CONTROL && is_silent(drives, axis, now_us))
+        laconic_drive_fail(drive, LACONIC_DRIVE_FAULT_WATCHDOG);
+    if (drive->faults) odrive_disarm(axis, drive, errors_of(drive->faults));
+    if (axis->state == ODRIVE_CLOSED_LOOP_CONTROL) {
+        if (is_too_fast(axis, drive)) odrive_disarm(axis, drive, ODRIVE_VELOCITY_LIMIT_VIOLATION);
+        if (!is_modelled(axis->control_mode, axis->input_mode)) odrive_disarm(axis, drive, ODRIVE_BAD_CONFIG);
+    } else if (axis->state != ODRIVE_IDLE && now_us - axis->state_us >= PROCEDURE_US) {
+        enter(axis, ODRIVE_IDLE, ODRIVE_SUCCESS);
+    }
+}
