@@ -42,15 +42,28 @@ def interface(version: int) -> cffi.FFI:
     return ffi
 
 
+_unpacked: dict[tuple[Path, int, int], tuple[tempfile.TemporaryDirectory[str], Any]] = {}
+
+
+def unpacked(fmu: Path) -> tuple[Path, Any]:
+    """Its files and its description, unpacked once: instances share both, as they do in an importer."""
+    about = fmu.stat()
+    key = (fmu, about.st_mtime_ns, about.st_size)
+    if key not in _unpacked:
+        folder = tempfile.TemporaryDirectory()
+        fmpy.extract(str(fmu), unzipdir=folder.name)
+        _unpacked[key] = folder, fmpy.read_model_description(folder.name, validate=False)
+    folder, description = _unpacked[key]
+    return Path(folder.name), description
+
+
 class Importer:
     """One instance of an FMU. `call("DoStep", …)` calls fmi2DoStep or fmi3DoStep and returns its status."""
 
     def __init__(self, fmu: Path, kind: str = "CoSimulation", *, logging: bool = False, event_mode: bool = False,
                  early_return: bool = False, update: Any = None, token: str | None = "", name: str | None = "vehicle",
                  resources: Path | None = None, intermediate: Sequence[int] | None = ()):
-        self.folder = Path(tempfile.mkdtemp())
-        fmpy.extract(str(fmu), unzipdir=str(self.folder))
-        self.description = fmpy.read_model_description(str(self.folder), validate=False)
+        self.folder, self.description = unpacked(fmu)
         self.version = 2 if self.description.fmiVersion == "2.0" else 3
         self.ffi = interface(self.version)
         platform = "linux64" if self.version == 2 else "x86_64-linux"
@@ -105,12 +118,11 @@ class Importer:
         self.close()
 
     def close(self) -> None:
-        """Frees the instance, forgets the files."""
+        """Frees the instance."""
         if self.instance:
             self.function("FreeInstance")(self.instance)
             self.instance = None
         self.ffi.dlclose(self.library)
-        shutil.rmtree(self.folder, ignore_errors=True)
 
     def function(self, name: str) -> Any:
         """fmi2<name> or fmi3<name>."""
