@@ -31,6 +31,7 @@ MOST_ROUNDS = 12
 FAR_FROM_SETTLED = 0.2
 ROUGHLY_SETTLED = 0.01
 SETTLED = 1e-3       # relative change of σ
+SAME_WEIGHT = 0.02
 SMALLEST_SCALE = 1e-9
 STEP = 1e-4          # of z, for derivatives
 UNTOLD = 0.99        # a parameter whose sd is more than this share of the prior's is not told by the runs
@@ -128,10 +129,11 @@ def _fit(base: dict[str, Any], parameters: Parameters, evidence: Evidence, z: np
         z = _least(base, parameters, evidence, z, factors, scale, stacked)
         blocks = evidence.residuals(parameters.vehicle(base, parameters.values(z)))
         before, scale = scale, _scale(np.concatenate([b * f for b, f in zip(blocks, factors, strict=True)]), freedom)
-        change = abs(scale / before - 1.0)
+        change, taken = abs(scale / before - 1.0), weights
         if change < FAR_FROM_SETTLED:  # before, what a strong prior leaves of a run is no outlier
             weights = _huber(np.array([np.sqrt(block @ block) for block in blocks]))
-        if change < (ROUGHLY_SETTLED if evidence.difference else SETTLED):
+        is_settled = change < (ROUGHLY_SETTLED if evidence.difference else SETTLED)
+        if is_settled and np.abs(weights - taken).max() < SAME_WEIGHT:
             break
     return _judged(base, parameters, evidence, z, scale, in_session * weights, weights)
 

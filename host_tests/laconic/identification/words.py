@@ -58,7 +58,11 @@ def _structured(found: Fit) -> str:
     """Errors that are no chance."""
     return (f"Neighbouring stretches of a run err alike (correlation {found.structure.likeness:.2g}), which chance "
             "does not explain: the model lacks something, and errors repeat. The intervals are therefore built from "
-            f"longer blocks, which made them up to {found.structure.widening:.2g} times as wide.")
+            f"longer blocks, too, {_widened(found.structure.widening)}.")
+
+
+def _widened(factor: float) -> str:
+    return f"which made them up to {factor:.2g} times as wide" if factor > 1.05 else "which are hardly wider"
 
 
 def _untold(name: str, found: Fit, candidates: dict[str, np.ndarray]) -> str:

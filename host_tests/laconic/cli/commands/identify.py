@@ -7,7 +7,7 @@ from pathlib import Path
 
 import click
 
-from laconic.cli.options import InputPath, OutputFile, SceneName, json_flag
+from laconic.cli.options import PICTURES, InputPath, OutputFile, SceneName, json_flag
 from laconic.cli.options_of_logs import SeveralAfter, map_option
 from laconic.errors import BadInput, ResultFails
 from laconic.outputs import is_stdout, write_text
@@ -33,9 +33,12 @@ LEFT_OUT = ("session", "run")
               help="Other runs, replayed with the values found: all words up to the next option.")
 @click.option("--leave-out", type=click.Choice(LEFT_OUT),
               help="Judge each session (folder) or run by a fit on the others.")
+@click.option("--plot", type=OutputFile(*PICTURES), metavar="F.png",
+              help="Draw true, nominal and identified paths, the first run of each session.")
 @json_flag("Machine-readable result on stdout.")
 def command(logs: tuple[Path, ...], scene: str, out: Path | None, free: str, prior_percent: float,
-            map_path: Path | None, judge: tuple[Path, ...], leave_out: str | None, json_wanted: bool) -> None:
+            map_path: Path | None, judge: tuple[Path, ...], leave_out: str | None, plot: Path | None,
+            json_wanted: bool) -> None:
     """Finds parameters of a scene from LOG..., recorded runs or folders of them.
 
     Robust nonlinear least squares on the distance between the rolled and the true path, without a true pose on the
@@ -48,6 +51,7 @@ def command(logs: tuple[Path, ...], scene: str, out: Path | None, free: str, pri
     from laconic.identification import report
     from laconic.identification.fitted_toml import fitted_text
     from laconic.identification.geometry import geometry_of
+    from laconic.identification.picture import draw
     from laconic.identification.study import identify
     from laconic.identification.words_of_errors import failures
     from laconic.logs import gather_logs
@@ -66,6 +70,8 @@ def command(logs: tuple[Path, ...], scene: str, out: Path | None, free: str, pri
                          with_controller="controller" in names, advance=advance)
     if out is not None:
         write_text(out, fitted_text(study))
+    if plot is not None:
+        draw(study, plot)
     if json_wanted:
         click.echo(json.dumps(report.as_numbers(study), indent=1))
     else:
