@@ -71,12 +71,13 @@ class Codec:
 
 
 def played(scene: str | Path | Scene, duration_s: float, commands: Callable[[float], list[can.Message]],
-           **options: Any) -> tuple[Judgement, Controller]:
-    """Plays a scene in virtual time for a controller."""
+           made: Callable[[Controller], None] = lambda _: None, **options: Any) -> tuple[Judgement, Controller]:
+    """Plays a scene in virtual time for a controller, which `made` gets before it begins."""
     channel = next_channel()
     settings = PlayOptions(interface="virtual", channel=channel, duration_s=duration_s, **options)
     with can.Bus(interface="virtual", channel=channel) as bus:
         controller = Controller(bus, commands)
+        made(controller)
         given = scene if isinstance(scene, Scene) else read_scene(scene)
         judgement = play(given, settings, clock=VirtualClock(), others=[controller])
         controller(10**12)  # what is still on the bus

@@ -42,6 +42,12 @@ class WheelDrive:
         """Clears the faults whose cause has gone."""
         self._lib.laconic_library_wheel_drive_clear(self.c)
 
+    def break_down(self, faults: int, *, is_broken: bool) -> None:
+        """Faults begin that nobody clears, or end."""
+        lib = self._lib
+        change = lib.laconic_library_wheel_drive_break if is_broken else lib.laconic_library_wheel_drive_mend
+        change(self.c, faults)
+
     def act(self, step_s: float) -> float:
         """The torque at the wheel's axle for the next step."""
         return float(self._lib.laconic_library_wheel_drive_act(self.c, step_s))

@@ -44,6 +44,7 @@ class Traffic:
 
     clock: Clock
     listeners: list[Callable[[can.Message], None]] = field(default_factory=list)
+    of_controller: list[Callable[[can.Message], None]] = field(default_factory=list)  # get the controller's alone
     may_go_on: Callable[[], None] = lambda: None
     frames_in: int = 0
     frames_out: int = 0
@@ -51,7 +52,7 @@ class Traffic:
     def heard(self, message: can.Message) -> None:
         """A frame of the controller."""
         self.frames_in += 1
-        for listener in self.listeners:
+        for listener in (*self.of_controller, *self.listeners):
             listener(message)
 
     def sent(self, message: can.Message) -> None:

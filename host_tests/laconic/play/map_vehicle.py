@@ -6,8 +6,10 @@ from collections import Counter
 from collections.abc import Callable, Iterator
 
 import can
+import numpy as np
 
 from laconic.errors import LaconicError, Refused, ResultFails
+from laconic.play.faults import FAULT_BITS, DriveFault
 from laconic.play.loop import Lateness
 from laconic.play.map_file import REMOTE
 from laconic.play.map_join import Joined, Key
@@ -133,6 +135,16 @@ class MapVehicle:
         if name not in self._readers:
             self._readers[name] = reader_of(name)
         return self._readers[name](self.plant)
+
+    def speed(self) -> tuple[float, float]:
+        """Of the centre of mass and in yaw."""
+        velocity, yaw_rate = self.plant.plant.body_velocity()
+        return float(np.hypot(*velocity)), abs(float(yaw_rate))
+
+    def break_drive(self, fault: DriveFault, *, is_broken: bool) -> None:
+        """A fault of a drive begins, or ends."""
+        if self.plant.drives is not None:
+            self.plant.drives.drives[fault.wheel - 1].break_down(FAULT_BITS[fault.kind], is_broken=is_broken)
 
     def watchdogs(self) -> list[str]:
         """Messages that did not come in time."""

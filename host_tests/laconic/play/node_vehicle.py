@@ -7,12 +7,15 @@ but where the node itself is on its bus.
 
 from __future__ import annotations
 
+import math
 from collections.abc import Iterator
 from contextlib import contextmanager, suppress
+from typing import Any
 
 import can
 
 from laconic.errors import BadInput, LaconicError, ResultFails
+from laconic.play.faults import BRAKE_NM, BUS_OFF, FAULT_BITS, STALL, DriveFault, concerns
 from laconic.play.loop import Lateness
 from laconic.play.parameters import drive_parameters
 from laconic.play.settings import DriveSettings
@@ -20,7 +23,7 @@ from laconic.play.vehicle import played
 from laconic.rig.buses import NodeOnBus
 from laconic.rig.client import NodeClient
 from laconic.rig.errors import BusDied, NodeRefused, NodeSilent
-from laconic.rig.link import Received, receive_on, send_on
+from laconic.rig.link import receive_on, send_on
 from laconic.rig.lockstep import load_scene
 from laconic.rig.stopping import RUNNING, come_to_rest, stop_running
 from laconic.rig.wire import ID_STRIDE, Frame, wire
@@ -41,23 +44,36 @@ class NodeVehicle:
     def __init__(self, client: NodeClient, scene: Scene, settings: DriveSettings):
         self.client, self.scene, self.settings = client, scene, settings
         self.lateness = Lateness()
-        self.truth: list[Received] = []      # frames of the node that the harness has chosen, until somebody takes them
+        self._last_nu: tuple[Frame, bytes] | None = None
         self._own = range(client.link.id_base, client.link.id_base + ID_STRIDE)
         self._fired: set[str] = set()
         self._ending: LaconicError | None = None
         self._notes: list[str] = []
+        self._model: Any = None
+        self._early: list[can.Message] = []  # what the drives said before the loop began, such as a boot-up message
 
     def start(self) -> None:
         """Loads vehicle and drives, and starts them."""
         found = stop_running(self.client)
         if found in RUNNING:
             self._notes.append(f"the node was found in state {found} and has been stopped before")
+        self.client.link.listeners.append(self._hear_early)
         try:
             load_scene(self.client, played(self.scene), drive_parameters(self.settings))
             self.choose_frames(*self.watched)
             self.client.start_drives()
         except NodeRefused as refused:
             raise BadInput(f"{self.scene.path}: rig.drives: {refused}; {remedy(refused, self.scene)}") from None
+        finally:
+            self.client.link.listeners.remove(self._hear_early)
+
+    def _hear_early(self, message: can.Message) -> None:
+        if not self.is_own(message):
+            self._early.append(message)
+
+    def _take_early(self) -> list[can.Message]:
+        early, self._early = self._early, []
+        return early
 
     def choose_frames(self, *names: str) -> None:
         """The frames of the node that come from now on; none: it is silent."""
@@ -72,10 +88,11 @@ class NodeVehicle:
         received = self.client.link.take(message)
         if received is not None:
             self._look_at(*received)
-            self.truth.append(received)
 
     def _look_at(self, frame: Frame, data: bytes) -> None:
-        """HEARTBEAT tells the state, and by `deaf` whether a watchdog of the drives has fired."""
+        """HEARTBEAT tells the state, and by `deaf` whether a watchdog of the drives has fired; NU the motion."""
+        if frame.name == "NU":
+            self._last_nu = (frame, data)
         if frame.name != "HEARTBEAT":
             return
         values = frame.unpack(data)
@@ -88,6 +105,17 @@ class NodeVehicle:
     def ending(self) -> LaconicError | None:
         """A step that the core refused."""
         return self._ending
+
+    def speed(self) -> tuple[float, float]:
+        """Of the centre of mass and in yaw, from the node's own NU; 0 before the first one."""
+        if self._last_nu is None:
+            return 0.0, 0.0
+        frame, data = self._last_nu
+        raw = frame.unpack(data)
+        ahead, sideways, turning = (raw[f"nu_{k}"] * frame.fields[f"nu_{k}"].scale for k in (1, 2, 3))
+        if self._model is None:
+            self._model = self.scene.model(self.scene.core())
+        return self._model.wheel_radius_m * math.hypot(ahead, sideways), abs(turning / self._model.yaw_scale)
 
     def watchdogs(self) -> list[str]:
         """Drives whose controller was silent."""
@@ -139,15 +167,47 @@ class InProcess(NodeVehicle):
         super().__init__(client, scene, settings)
         self.node = end.node
         self._view = self.node.library.ffi.new("laconic_library_drive *")
+        self._off_bus: set[int] = set()  # node ids of drives that neither hear nor are heard
+        self._silent: set[int] = set()   # node ids of drives without a sign of life
         self._next_look_us = 0
+
+    def start(self) -> None:
+        """As for every node; what came behind the answer to START is the controller's, too."""
+        super().start()
+        while (message := receive_on(self.client.link.bus, 0.0)) is not None:
+            self._hear_early(message)
 
     def on_message(self, message: can.Message, now_us: int) -> None:
         """A frame of the controller; the node's own identifiers are not for it."""
-        if not self.is_own(message):
+        if not self.is_own(message) and not self._is_lost(message):
             self.node.give(message, now_us)
+
+    def _is_lost(self, message: can.Message) -> bool:
+        """Whether a drive that is off the bus, or silent, is the only one that this frame is from or to."""
+        protocol = self.settings.protocol
+        return any(concerns(protocol, message, each) for each in self._off_bus) or any(
+            protocol.sign_of_life is not None and message.arbitration_id in protocol.sign_of_life(each)
+            for each in self._silent)
+
+    def break_drive(self, fault: DriveFault, *, is_broken: bool) -> None:
+        """A fault of a drive begins, or ends."""
+        lib, c = self.node.library.lib, self.node.c
+        node_id = self.settings.node_ids[fault.wheel - 1]
+        number = sum(self.settings.driven[: fault.wheel - 1])
+        change = lib.laconic_library_drive_break if is_broken else lib.laconic_library_drive_mend
+        if fault.kind in FAULT_BITS:
+            change(c, number, FAULT_BITS[fault.kind])
+        elif fault.kind == STALL:
+            lib.laconic_library_drive_brake(c, number, BRAKE_NM if is_broken else 0.0)
+        else:
+            ids = self._off_bus if fault.kind == BUS_OFF else self._silent
+            (ids.add if is_broken else ids.discard)(node_id)
+            if fault.kind == BUS_OFF and self.settings.protocol.commands_groups:
+                change(c, number, FAULT_WATCHDOG)  # the group's command does not reach it
 
     def advance(self, now_us: int) -> Iterator[can.Message]:
         """Periods that are due, and the frames of the drives after each."""
+        yield from self._take_early()
         for _ in range(MOST_STEPS_AT_ONCE):
             self.node.tick(now_us)
             yield from self._frames()
@@ -161,7 +221,7 @@ class InProcess(NodeVehicle):
         while (message := self.node.take_message()) is not None:
             if self.is_own(message):
                 self.take_own(message)
-            else:
+            elif not self._is_lost(message):
                 yield message
 
     def idle_us(self, now_us: int) -> int:
@@ -189,6 +249,7 @@ class Bridged(NodeVehicle):
 
     def advance(self, now_us: int) -> Iterator[can.Message]:
         """What the node has sent."""
+        yield from self._take_early()
         bus = self.client.link.bus
         while (message := receive_on(bus, 0.0)) is not None:
             if self.is_own(message):

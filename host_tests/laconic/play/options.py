@@ -11,6 +11,7 @@ import can
 
 from laconic.errors import BadInput
 from laconic.play.listener import ListeningBus
+from laconic.play.stopping import Limits
 from laconic.rig.bus_options import read_bus_options
 from laconic.rig.buses import open_bus
 from laconic.rig.options import check_bitrate
@@ -24,6 +25,7 @@ class PlayOptions:
     channel: str | None = None
     bitrate: int | None = None
     bus_options: tuple[str, ...] = ()
+    can_fd: bool = False
     listen: int | None = None
     drives: str | None = None
     dbc: Path | None = None
@@ -33,6 +35,16 @@ class PlayOptions:
     duration_s: float | None = None
     logs: tuple[Path, ...] = ()
     live: bool = False
+    faults: tuple[str, ...] = ()
+    bus_faults: tuple[str, ...] = ()
+    seed: int = 1
+    stop_within_s: float | None = None
+    stop_distance_m: float | None = None
+
+    @property
+    def limits(self) -> Limits:
+        """How soon the vehicle must stop."""
+        return Limits(self.stop_within_s, self.stop_distance_m)
 
 
 def check_options(options: PlayOptions) -> None:
@@ -40,9 +52,10 @@ def check_options(options: PlayOptions) -> None:
     if options.listen is not None and options.interface is not None:
         raise BadInput(f"--listen {options.listen}: serves a bus itself; leave --interface out")
     for name, value in (("--channel", options.channel), ("--bitrate", options.bitrate),
-                        ("--bus-option", " ".join(options.bus_options) or None)):
+                        ("--bus-option", " ".join(options.bus_options) or None),
+                        ("--can-fd", "" if options.can_fd else None)):
         if value is not None and options.interface is None:
-            raise BadInput(f"{name} {value}: give its --interface as well, such as socketcan")
+            raise BadInput(f"{f'{name} {value}'.strip()}: give its --interface as well, such as socketcan")
     if options.listen is None and options.interface is None:
         raise BadInput("--interface: is missing; give it with --channel for the bus of the controller, or --listen 0 "
                        "for a port that it can connect to")
@@ -57,6 +70,17 @@ def check_options(options: PlayOptions) -> None:
         raise BadInput(f"--duration {options.duration_s:g}: give seconds above 0, or leave it out to play until "
                        "Ctrl-C")
     check_bitrate(options.bitrate)
+    options.limits.check()
+    if options.faults and options.board not in (None, "virtual"):
+        raise BadInput(f"--fault {options.faults[0]}: breaks drives in this process alone; leave --board out, or give "
+                       "--bus-fault")
+    served = options.board == "bus" or (options.board == "process" and options.listen is not None)
+    if options.limits.are_given and served:
+        raise BadInput(f"--stop-within, --stop-distance: with --board {options.board} the frames of the controller and "
+                       "of the drives cannot be told apart; leave --board out")
+    if options.bus_faults and served:
+        raise BadInput(f"--bus-fault {options.bus_faults[0]}: with --board {options.board} frames do not pass through "
+                       "this process; leave --board out")
 
 
 @contextmanager
@@ -66,6 +90,8 @@ def controller_bus(options: PlayOptions) -> Iterator[can.BusABC]:
         bus: can.BusABC = ListeningBus(options.listen)
     else:
         more = read_bus_options(options.bus_options, options.interface or "")
+        if options.can_fd:
+            more["fd"] = True
         bus = open_bus(options.interface or "", options.channel, bitrate=options.bitrate, **more)
     try:
         yield bus

@@ -9,6 +9,7 @@ from typing import Any, Protocol
 
 import can
 
+from laconic.play.faults import FAULT_BITS, KINDS, DriveFault
 from laconic.play.listener import ListeningBus, listening_socket
 from laconic.play.loop import Lateness, Vehicle
 from laconic.play.map_file import read_map
@@ -33,6 +34,12 @@ class Played(Vehicle, Protocol):
 
     lateness: Lateness
 
+    def speed(self) -> tuple[float, float]:
+        """Of the centre of mass [m/s], and yaw rate [rad/s], both without sign."""
+
+    def break_drive(self, fault: DriveFault, *, is_broken: bool) -> None:
+        """A fault of a drive begins, or ends."""
+
     def watchdogs(self) -> list[str]:
         """The watchdogs that fired, in words."""
 
@@ -45,6 +52,7 @@ class Place:
 
     name = ""
     settings: DriveSettings | None = None
+    can_fail: tuple[str, ...] = KINDS  # faults of drives that are possible there
 
     def opened(self, clock: Clock) -> AbstractContextManager[tuple[Any, can.BusABC]]:
         """The vehicle and the controller's bus."""
@@ -70,6 +78,7 @@ class OfMap(Place):
     """Frames of a DBC, by a plant in this process."""
 
     name = "dbc"
+    can_fail = tuple(FAULT_BITS)  # its frames are not those of single drives
 
     def __init__(self, scene: Scene, options: PlayOptions):
         assert options.dbc is not None and options.map_path is not None
@@ -138,6 +147,8 @@ class OfNode(Place):
 
     def playing(self, vehicle: NodeVehicle) -> AbstractContextManager[Any]:
         """The node plays, and is at rest at the end."""
+        if self.options.limits.are_given:
+            vehicle.watched = (*vehicle.watched, "NU")
         return running(vehicle)
 
 

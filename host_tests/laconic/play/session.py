@@ -8,12 +8,14 @@ from contextlib import contextmanager
 import can
 
 from laconic.errors import LaconicError
+from laconic.play.faults import read_bus_faults, read_faults
 from laconic.play.listener import ListeningBus
 from laconic.play.live import live_traffic
 from laconic.play.loop import Loop, Seconds, Traffic
 from laconic.play.options import PlayOptions, check_options
 from laconic.play.places import Place, Played, place_of
 from laconic.play.settings import DriveSettings
+from laconic.play.trouble import Trouble
 from laconic.play.vehicle import check_playable
 from laconic.rig.errors import BusDied, Interrupted
 from laconic.rig.interruption import Interruption
@@ -33,16 +35,19 @@ def play(scene: Scene, options: PlayOptions, *, clock: Clock | None = None, othe
     check_options(options)
     check_playable(scene)
     place = place_of(scene, options)
+    read_faults(options.faults, place.settings, place.can_fail, options.duration_s, options.seed)
+    read_bus_faults(options.bus_faults, options.seed)
     traffic, seconds = Traffic(clock or Clock()), Seconds()
     with Interruption() as signals, place.opened(traffic.clock) as (vehicle, bus), logged(traffic, options.logs), \
             shown(traffic, scene, options) as moved:
         traffic.may_go_on = signals.check
         for line in introduction(place, bus):
             say(line)
+        trouble = Trouble(place, options, vehicle, traffic, bus)
         with place.playing(vehicle):
-            ending = Loop(vehicle, bus, traffic, others).run(options.duration_s, moved)
+            ending = Loop(vehicle, trouble.bus, traffic, [*trouble.others, *others]).run(options.duration_s, moved)
             signals.number = 0  # it has been heard
-        return judged(scene, place, vehicle, traffic, seconds, ending, bus)
+        return judged(scene, place, vehicle, traffic, seconds, ending, bus, trouble)
 
 
 def introduction(place: Place, bus: can.BusABC) -> Iterator[str]:
@@ -72,14 +77,19 @@ def shown(traffic: Traffic, scene: Scene, options: PlayOptions) -> Iterator[Call
 
 
 def judged(scene: Scene, place: Place, vehicle: Played, traffic: Traffic, seconds: Seconds,
-           ending: LaconicError | None, bus: can.BusABC) -> Judgement:
+           ending: LaconicError | None, bus: can.BusABC, trouble: Trouble) -> Judgement:
     """Verdicts and figures."""
     judgement = Judgement(scene.name, place.name)
     died, late = isinstance(ending, BusDied), vehicle.lateness
     judgement.add(Verdict("bus", not died, str(ending) if died else f"{traffic.frames_in} frames heard, "
                           f"{traffic.frames_out} sent by the vehicle"))
     fired = vehicle.watchdogs()
-    judgement.add(Verdict("watchdog", not fired, "; ".join(fired) or "never fired"))
+    if trouble.is_wanted:
+        judgement.notes += [f"watchdog: {each}" for each in fired]
+        judgement.notes += [f"fault: {each}" for each in trouble.faults]
+    else:
+        judgement.add(Verdict("watchdog", not fired, "; ".join(fired) or "never fired"))
+    judgement.add(*trouble.verdicts())
     if ending is not None and not isinstance(ending, (BusDied, Interrupted)):
         judgement.add(Verdict("vehicle", False, str(ending)))
     judgement.figures |= {

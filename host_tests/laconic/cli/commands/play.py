@@ -9,6 +9,7 @@ import click
 
 from laconic.cli.options import InputPath, OutputFile, SceneName, json_flag
 from laconic.core import REALS
+from laconic.play.faults import KINDS as FAULTS
 from laconic.play.options import PlayOptions
 from laconic.play.places import ON_BUS
 from laconic.play.session import play
@@ -26,6 +27,7 @@ from laconic.scene.drives import DRIVE_PROTOCOLS
 @click.option("--bitrate", type=int, help="Bits per second, where the interface sets it.")
 @click.option("--bus-option", "bus_options", multiple=True, metavar="NAME=VALUE",
               help="Further setting of the interface, such as under=slcan or loss=0.01 for faulty.")
+@click.option("--can-fd", is_flag=True, help="The interface opens its channel for CAN FD, as moteus needs it.")
 @click.option("--listen", type=int, metavar="PORT",
               help="Instead of an interface: SLCAN on a TCP port of this machine; 0: any free one, printed.")
 @click.option("--drives", type=click.Choice(DRIVE_PROTOCOLS), help="Protocol instead of the scene's [rig.drives].")
@@ -37,6 +39,14 @@ from laconic.scene.drives import DRIVE_PROTOCOLS
 @click.option("--map", "map_path", type=InputPath(), metavar="MAP.toml",
               help="Which signal of the DBC is which input or output of the model.")
 @click.option("--duration", "duration_s", type=float, metavar="SECONDS", help="How long.  [default: until Ctrl-C]")
+@click.option("--fault", "faults", multiple=True, metavar="KIND:WHEEL@SECONDS[+SECONDS]",
+              help=f"A drive that fails: {', '.join(FAULTS)}; or random, by --seed.")
+@click.option("--bus-fault", "bus_faults", multiple=True, metavar="NAME=VALUE",
+              help="A fault of the controller's bus, such as loss=0.01: those of the interface faulty.")
+@click.option("--seed", type=int, default=1, show_default=True, help="Of random faults.")
+@click.option("--stop-within", "stop_within_s", type=float, metavar="SECONDS",
+              help="The vehicle must stand so soon after the first fault, or else the controller's last frame.")
+@click.option("--stop-distance", "stop_distance_m", type=float, metavar="METRES", help="... and so near.")
 @click.option("--method", type=click.Choice(METHODS), help="Method instead of the scene's.")
 @click.option("--real", type=click.Choice(REALS), help="Scalar type instead of the scene's.")
 @click.option("--step", "step_s", type=float, metavar="SECONDS", help="Step and period instead of the scene's.")

@@ -1,0 +1,140 @@
+"""Drives that fail, by script or by seed: what fails, which drive, when and for how long.
+
+    stall:1@2           from 2 s on a brake holds wheel 1
+    encoder:2@1.5+0.5   the encoder of wheel 2 is lost at 1.5 s, for half a second
+    random              one of them, its wheel and its instant by the seed
+"""
+
+from __future__ import annotations
+
+import random
+import re
+from collections.abc import Callable, Sequence
+from dataclasses import dataclass
+from typing import Protocol
+
+import can
+
+from laconic.errors import BadInput, nearest_of
+from laconic.play.protocols import DriveProtocol
+from laconic.play.settings import DriveSettings
+from laconic.rig.faults import FIELD_TYPES
+from laconic.rig.faulty import FaultyBus
+
+FAULT_BITS = {"encoder": 1, "temperature": 4, "overspeed": 8, "supply": 16}  # LACONIC_DRIVE_FAULT_…
+STALL, BUS_OFF, SILENT = "stall", "bus-off", "silent"
+KINDS = (STALL, *FAULT_BITS, BUS_OFF, SILENT)
+RANDOM = "random"
+FORM = re.compile(r"(?P<kind>[a-z-]+)(:(?P<wheel>\d+))?@(?P<at>[^+]+)(\+(?P<for>.+))?")
+BRAKE_NM = 1e4  # holds any wheel
+
+
+@dataclass(frozen=True)
+class DriveFault:
+    """One fault of the drive of one wheel, counted from 1."""
+
+    kind: str
+    wheel: int
+    at_s: float
+    for_s: float | None = None
+
+    def __str__(self) -> str:
+        return f"{self.kind}:{self.wheel}@{self.at_s:g}" + (f"+{self.for_s:g}" if self.for_s is not None else "")
+
+
+class Breakable(Protocol):
+    """A vehicle whose drives can be broken."""
+
+    def break_drive(self, fault: DriveFault, *, is_broken: bool) -> None:
+        """The fault begins, or ends."""
+
+
+def read_faults(given: Sequence[str], settings: DriveSettings | None, possible: Sequence[str],
+                duration_s: float | None, seed: int) -> tuple[DriveFault, ...]:
+    """The faults of --fault, of the kinds that are possible; BadInput for one that cannot be."""
+    if given and settings is None:
+        raise BadInput(f"--fault {given[0]}: breaks drives, and this map has none; give --bus-fault for the bus")
+    return tuple(_read(text, settings, possible, duration_s, seed + number) for number, text in enumerate(given)
+                 if settings is not None)
+
+
+def _read(text: str, settings: DriveSettings, possible: Sequence[str], duration_s: float | None, seed: int
+          ) -> DriveFault:
+    wheels = [wheel for wheel, has_drive in enumerate(settings.driven, start=1) if has_drive]
+    kinds = [kind for kind in possible if kind != SILENT or settings.protocol.sign_of_life is not None]
+    if text == RANDOM:
+        if duration_s is None:
+            raise BadInput("--fault random: needs --duration, in whose middle half it happens")
+        chance = random.Random(seed)
+        kind, wheel = chance.choice(kinds), chance.choice(wheels)
+        return DriveFault(kind, wheel, round(chance.uniform(0.25, 0.75) * duration_s, 3))
+    form = FORM.fullmatch(text)
+    if form is None:
+        raise BadInput(f"--fault {text}: give KIND:WHEEL@SECONDS, such as stall:1@2 or encoder:2@1.5+0.5, or random")
+    if form["kind"] not in kinds:
+        raise BadInput(f"--fault {text}: there is no such fault here; "
+                       f"{nearest_of(form['kind'], kinds)}")
+    wheel = int(form["wheel"] or wheels[0])
+    if wheel not in wheels:
+        raise BadInput(f"--fault {text}: wheel {wheel} has no drive; give one of {', '.join(map(str, wheels))}")
+    at_s, for_s = _seconds(text, form["at"]), _seconds(text, form["for"]) if form["for"] else None
+    if duration_s is not None and at_s >= duration_s:
+        raise BadInput(f"--fault {text}: would come after the end; give an instant before {duration_s:g} s")
+    return DriveFault(form["kind"], wheel, at_s, for_s)
+
+
+def _seconds(text: str, number: str) -> float:
+    try:
+        value = float(number)
+    except ValueError:
+        value = -1.0
+    if not 0.0 <= value < 1e9:
+        raise BadInput(f"--fault {text}: {number} is no time; give seconds from 0 on")
+    return value
+
+
+def read_bus_faults(given: Sequence[str], seed: int) -> dict[str, str]:
+    """The faults of --bus-fault by name; FaultyBus reads their values."""
+    found = {}
+    for text in given:
+        name, equals, value = text.partition("=")
+        if not equals or name not in FIELD_TYPES:
+            raise BadInput(f"--bus-fault {text}: give NAME=VALUE, such as loss=0.01; {nearest_of(name, FIELD_TYPES)}")
+        found[name] = value
+    return {"seed": str(seed), **found} if found else {}
+
+
+def faulty_bus(bus: can.BusABC, faults: dict[str, str], now_s: Callable[[], float]) -> FaultyBus:
+    """The controller's bus with these faults in front of it."""
+    try:
+        return FaultyBus(inner=bus, clock=now_s, **faults)
+    except can.CanInitializationError as error:
+        raise BadInput(f"--bus-fault {str(error).removeprefix('faulty: ')}") from None
+
+
+def concerns(protocol: DriveProtocol, message: can.Message, node_id: int) -> bool:
+    """Whether a frame is from or to one drive alone."""
+    identifier = message.arbitration_id
+    if protocol.of_drive is None:  # moteus: source and destination are parts of the identifier
+        return node_id in (identifier & 0x7F, identifier >> 8 & 0x7F)
+    return not message.is_extended_id and identifier in protocol.of_drive(node_id)
+
+
+class Saboteur:
+    """Begins and ends faults in time; called in the loop."""
+
+    def __init__(self, vehicle: Breakable, faults: Sequence[DriveFault]):
+        self.vehicle = vehicle
+        self.first_s: float | None = None  # since the start, when the first fault began
+        self._start_us: int | None = None
+        self._due = sorted([(fault.at_s, True, fault) for fault in faults]
+                           + [(fault.at_s + fault.for_s, False, fault) for fault in faults if fault.for_s is not None],
+                           key=lambda each: each[0])
+
+    def __call__(self, now_us: int) -> int | None:
+        self._start_us = now_us if self._start_us is None else self._start_us
+        while self._due and self._start_us + 1e6 * self._due[0][0] <= now_us:
+            at_s, is_broken, fault = self._due.pop(0)
+            self.vehicle.break_drive(fault, is_broken=is_broken)
+            self.first_s = at_s if self.first_s is None else self.first_s
+        return self._start_us + round(1e6 * self._due[0][0]) if self._due else None

@@ -1,0 +1,50 @@
+"""What goes wrong on purpose in a run, and the verdict on whether the vehicle stopped."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+
+import can
+
+from laconic.play.faults import Saboteur, faulty_bus, read_bus_faults, read_faults
+from laconic.play.loop import Traffic
+from laconic.play.options import PlayOptions
+from laconic.play.places import Place, Played
+from laconic.play.stopping import Witness
+from laconic.rig.faulty import FaultyBus
+from laconic.rig.verdict import Verdict
+
+
+class Trouble:
+    """Faults of drives and bus; `bus` is the controller's with its faults, `others` are called in the loop."""
+
+    def __init__(self, place: Place, options: PlayOptions, vehicle: Played, traffic: Traffic, bus: can.BusABC):
+        self.limits, self.bus = options.limits, bus
+        self.faults = read_faults(options.faults, place.settings, place.can_fail, options.duration_s, options.seed)
+        bus_faults = read_bus_faults(options.bus_faults, options.seed)
+        if bus_faults:
+            self.bus = faulty_bus(bus, bus_faults, lambda: traffic.clock.now_us() / 1e6)
+        self.others: list[Callable[[int], int | None]] = []
+        self._saboteur = Saboteur(vehicle, self.faults) if self.faults else None
+        if self._saboteur is not None:
+            self.others.append(self._saboteur)
+        self._witness: Witness | None = None
+        if self.limits.are_given:
+            has_faults = bool(self.faults or bus_faults)
+            self._witness = Witness(vehicle, self._first_fault if has_faults else None)
+            self.others.append(self._witness)
+            traffic.of_controller.append(self._witness.heard)
+
+    @property
+    def is_wanted(self) -> bool:
+        """Whether a watchdog that fires is what the run is about."""
+        return self.limits.are_given or self._saboteur is not None or isinstance(self.bus, FaultyBus)
+
+    def _first_fault(self) -> float | None:
+        found = [self._saboteur.first_s if self._saboteur is not None else None,
+                 self.bus.model.first_injection_s if isinstance(self.bus, FaultyBus) else None]
+        return min((each for each in found if each is not None), default=None)
+
+    def verdicts(self) -> list[Verdict]:
+        """On the vehicle's stop, where it is wanted."""
+        return [self._witness.verdict(self.limits)] if self._witness is not None else []
