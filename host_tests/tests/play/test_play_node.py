@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import struct
 import threading
+from dataclasses import replace
 from pathlib import Path
 
 import can
@@ -14,6 +15,7 @@ from laconic.cli.main import run
 from laconic.errors import BadInput
 from laconic.play.node_vehicle import FAULT_WATCHDOG, InProcess
 from laconic.play.options import PlayOptions
+from laconic.play.protocols import PROTOCOLS
 from laconic.play.session import play
 from laconic.play.settings import drive_settings
 from laconic.rig.buses import node_in_process, node_process, open_bus
@@ -153,3 +155,18 @@ def test_options_that_cannot_work_are_refused_in_one_line(arguments: list[str], 
     assert run(["play", "robotino2", *duration, *arguments]) == 2
     error = capsys.readouterr().err
     assert error.count("\n") == 1 and all(word in error for word in words), error
+
+
+@pytest.mark.parametrize("name", PROTOCOLS)
+def test_the_node_ids_that_the_host_takes_are_those_of_the_protocol_in_c(name: str) -> None:
+    scene, protocol = read_scene("robotino2"), PROTOCOLS[name]
+    settings = drive_settings(scene, name)
+
+    def start(first: int, last: int) -> None:
+        with node_in_process("double") as (client, end):
+            InProcess(client, end, scene, replace(settings, node_ids=(first, first + 1, last))).start()
+
+    start(protocol.smallest_id, protocol.largest_id)
+    for wrong in {max(protocol.smallest_id - 1, 0), protocol.largest_id + 1} - {protocol.smallest_id}:
+        with pytest.raises(BadInput):
+            start(protocol.smallest_id + 1, wrong)
