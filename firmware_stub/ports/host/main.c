@@ -5,7 +5,8 @@
  * Prints "listening on 127.0.0.1:PORT" (port 0: any free one). The node keeps its vehicle between clients, as a
  * board does. Like a serial line it has one client at a time; a second one gets a line of text and is disconnected.
  * With --shared its port is a bus: clients are stations that hear each other; frames to and from the node itself pass
- * among the first client and those that have spoken to the node, so that a controller hears nothing but its drives. */
+ * among those that have spoken to it, and whoever comes while there is none of these, so that a controller hears nothing
+ * but its drives. */
 #define _GNU_SOURCE
 #include "laconic_node/node.h"
 #include "laconic_wire.h"
@@ -174,11 +175,18 @@ static void answer_refused(board *port) {
     }
 }
 
+static bool has_rig(const board *port) {
+    for (int k = 0; k < port->stations; k++)
+        if (port->station[k].is_rig) return true;
+    return false;
+}
+
 /* True iff a client has left. */
 static bool serve_station(board *port, station *it, int listening, char rate) {
     if (it->socket < 0) {
+        const bool first = !has_rig(port); /* a rig waits for the node's sign of life before it speaks */
         station_accept(it, listening, rate);
-        it->is_rig = it == port->station; /* a rig waits for the node's sign of life before it speaks */
+        it->is_rig = first && it->socket >= 0;
         return false;
     }
     if (read_client(port, it)) return false;

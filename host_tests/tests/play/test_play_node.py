@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import struct
 import threading
+from collections.abc import Callable
 from dataclasses import replace
 from pathlib import Path
 
@@ -18,7 +19,7 @@ from laconic.play.options import PlayOptions
 from laconic.play.protocols import PROTOCOLS
 from laconic.play.session import play
 from laconic.play.settings import drive_settings
-from laconic.rig.buses import node_in_process, node_process, open_bus
+from laconic.rig.buses import connected, next_channel, node_in_process, node_process, open_bus
 from laconic.rig.wire import ID_BASE, wire
 from laconic.scene import read_scene
 
@@ -91,38 +92,75 @@ def test_stations_of_a_shared_process_hear_each_other_and_only_rigs_hear_the_nod
         assert {other.recv(2.0).arbitration_id for _ in range(2)} >= {ID_BASE + wire()["HEARTBEAT"].offset}
 
 
+class Station(threading.Thread):
+    """A controller in a thread of its own: commands currents, and keeps what the drives say."""
+
+    def __init__(self, interface: str, channel: Callable[[], str], wanted: int):
+        super().__init__()
+        self.interface, self.channel, self.wanted = interface, channel, wanted
+        self.heard: list[can.Message] = []
+        self.may_begin, self.is_over = threading.Event(), threading.Event()
+
+    def run(self) -> None:
+        self.may_begin.wait(20.0)
+        with open_bus(self.interface, self.channel()) as bus:
+            while not self.is_over.is_set() and len(self.heard) < self.wanted:
+                bus.send(currents(0.2, 0.2, 0.2))
+                if (message := bus.recv(0.001)) is not None:
+                    self.heard.append(message)
+
+    def __enter__(self) -> Station:
+        self.start()
+        return self
+
+    def __exit__(self, *_: object) -> None:
+        self.may_begin.set()
+        self.is_over.set()
+        self.join()
+
+
 def test_a_process_serves_the_port_itself_and_its_lateness_is_told() -> None:
     said: list[str] = []
-    heard: list[can.Message] = []
-    listening, done = threading.Event(), threading.Event()
 
     def say(line: str) -> None:
         said.append(line)
         if "listening" in line:
-            listening.set()
+            station.may_begin.set()
 
-    def controller() -> None:
-        listening.wait(20.0)
-        port = said[-1].partition("127.0.0.1:")[2].partition(":")[0]
-        with open_bus("slcan", f"socket://127.0.0.1:{port}") as bus:
-            while not done.is_set() and len(heard) < 300:
-                bus.send(currents(0.2, 0.2, 0.2))
-                if (message := bus.recv(0.001)) is not None:
-                    heard.append(message)
+    def channel() -> str:
+        return "socket://" + said[-1].partition("socket://")[2]
 
-    thread = threading.Thread(target=controller)
-    thread.start()
-    try:
+    with Station("slcan", channel, 300) as station:
         options = PlayOptions(listen=0, board="process", drives="robomaster", duration_s=0.8)
         judgement = play(read_scene("robotino2"), options, say=say)
-    finally:
-        done.set()
-        thread.join()
     assert judgement.exit_status == 0, judgement
-    assert len(heard) == 300 and {each.arbitration_id for each in heard} == {0x201, 0x202, 0x203}
-    assert rpm_of(heard[-1]) > 0
+    assert len(station.heard) == 300 and {each.arbitration_id for each in station.heard} == {0x201, 0x202, 0x203}
+    assert rpm_of(station.heard[-1]) > 0
     assert judgement.figures["periods"] >= 700 and "late_periods" in judgement.figures
     assert judgement.figures["worst_lateness_ms"] > 0.0
+
+
+def test_a_process_behind_a_line_of_its_own_plays_on_any_interface() -> None:
+    name = next_channel()
+    with can.Bus(interface="virtual", channel=name), Station("virtual", lambda: name, 100) as station:
+        station.may_begin.set()
+        options = PlayOptions(interface="virtual", channel=name, board="process", drives="robomaster", duration_s=0.5)
+        judgement = play(read_scene("robotino2"), options)
+    assert judgement.exit_status == 0, judgement
+    assert len(station.heard) == 100 and {each.arbitration_id for each in station.heard} == {0x201, 0x202, 0x203}
+
+
+def test_a_node_that_is_on_the_bus_of_the_controller_is_loaded_started_and_stopped_there() -> None:
+    with node_process("double", ID_BASE, "--shared") as port:
+        channel = f"socket://127.0.0.1:{port}"
+        with Station("slcan", lambda: channel, 100) as station:
+            options = PlayOptions(interface="slcan", channel=channel, board="bus", drives="robomaster", duration_s=0.5)
+            judgement = play(read_scene("robotino2"), options, say=lambda _: station.may_begin.set())
+        assert judgement.exit_status == 0, judgement
+        assert len([each for each in station.heard if each.arbitration_id == FIRST_FEEDBACK]) > 20
+        with connected("slcan", channel) as client:
+            client.open()
+            assert client.state == "ready"
 
 
 def test_a_frame_log_holds_both_sides_of_the_bus(tmp_path: Path) -> None:
