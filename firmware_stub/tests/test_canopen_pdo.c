@@ -245,6 +245,25 @@ static void a_received_pdo_that_stops_coming_counts_as_a_lost_controller(void) {
     TEST_ASSERT_EQUAL(CANOPEN_PRE_OPERATIONAL, on.axes[0].nmt);
 }
 
+static void a_scenes_watchdog_is_the_deadline_of_the_targets(void) {
+    on.drives.watchdog_s = (laconic_real)0.08;
+    nmt(129, ID);
+    TEST_ASSERT_EQUAL(0, get(0x1400, 5));
+    TEST_ASSERT_EQUAL(80, get(0x1401, 5));
+    TEST_ASSERT_EQUAL(80, get(0x1403, 5));
+    start_nodes();
+    enable(9);
+    deliver(RPDO2, BYTES(0, 0x10), 4);
+    step(80);
+    TEST_ASSERT_EQUAL(0, on.drives.drive[0].faults);
+    step(60);
+    TEST_ASSERT_EQUAL_HEX16(FAULT, state());
+    TEST_ASSERT_EQUAL(LACONIC_DRIVE_FAULT_WATCHDOG, on.drives.drive[0].faults);
+    control(0);
+    control(128);
+    TEST_ASSERT_EQUAL_HEX16(SWITCH_ON_DISABLED, state());
+}
+
 int main(void) {
     UNITY_BEGIN();
     RUN_TEST(after_power_up_the_usual_objects_are_mapped);
@@ -262,5 +281,6 @@ int main(void) {
     RUN_TEST(the_inhibit_time_holds_back_events_but_not_their_last_value);
     RUN_TEST(a_remote_request_is_answered_iff_the_pdo_allows_it);
     RUN_TEST(a_received_pdo_that_stops_coming_counts_as_a_lost_controller);
+    RUN_TEST(a_scenes_watchdog_is_the_deadline_of_the_targets);
     return UNITY_END();
 }

@@ -8,7 +8,8 @@
 enum { NMT_START = 1, NMT_STOP = 2, NMT_PRE_OPERATIONAL = 128, NMT_RESET_NODE = 129, NMT_RESET_COMMUNICATION = 130 };
 
 static canopen_node node_at(laconic_drives *drives, int i, uint32_t now_us) {
-    const canopen_node on = {(canopen_axis *)drives->axes + i, &drives->drive[i], drives->step_s, now_us};
+    const canopen_node on = {(canopen_axis *)drives->axes + i, &drives->drive[i], drives->step_s, now_us,
+                             drives->watchdog_s};
     return on;
 }
 
@@ -29,7 +30,7 @@ static void reset_communication(const canopen_node *on) {
     axis->error_register = error_register;
     axis->sync_id = 0x80;
     axis->emergency_id = (uint16_t)(0x80 + canopen_id(on));
-    canopen_start_pdos(axis, canopen_id(on));
+    canopen_start_pdos(on);
     axis->due = CANOPEN_DUE_BOOT;
     axis->nmt = CANOPEN_PRE_OPERATIONAL;
 }

@@ -153,6 +153,7 @@ typedef struct canopen_node {
     laconic_wheel_drive *drive;
     laconic_real step_s;
     uint32_t now_us;
+    laconic_real watchdog_s; /* of the scene: the deadline of RPDO 2 to 4 after a reset; 0: none */
 } canopen_node;
 
 typedef struct canopen_row {
@@ -185,7 +186,7 @@ uint32_t canopen_get(const uint8_t *bytes, uint8_t count);
 void canopen_sdo(const canopen_node *on, const uint8_t request[8]);
 
 /* pdo.c */
-void canopen_start_pdos(canopen_axis *axis, uint8_t id);
+void canopen_start_pdos(const canopen_node *on);
 uint32_t canopen_pdo_read(const canopen_axis *axis, uint16_t index, uint8_t sub, uint32_t *value);
 uint32_t canopen_pdo_write(const canopen_node *on, uint16_t index, uint8_t sub, uint32_t value);
 void canopen_pdos_begin(const canopen_node *on); /* at the transition to operational */

@@ -48,7 +48,7 @@ static bool value_after_power_up(laconic_canopen_object *object, const laconic_c
     drives.count = 1;
     laconic_drive_start(&drives.drive[0], &settings);
     laconic_canopen.start(&drives, 0);
-    const canopen_node on = {&axis, &drives.drive[0], 1, 0};
+    const canopen_node on = {&axis, &drives.drive[0], 1, 0, 0};
     const canopen_row *row = canopen_row_at(canopen_find(object->index, object->sub, &abort));
     if (row == NULL || canopen_size(row) == 0) return false;
     if (canopen_read(&on, row, object->index, object->sub, &value) != 0) return false;

@@ -39,17 +39,22 @@ static const preset presets[2][CANOPEN_PDOS] = {
      {0x480 | CANOPEN_OFF, 0, 1, {0x60F4, 0x6061}}},
 };
 
-void canopen_start_pdos(canopen_axis *axis, uint8_t id) {
+/* A scene's watchdog watches the targets, which a controller sends all the time; the controlword it may send once. */
+void canopen_start_pdos(const canopen_node *on) {
+    canopen_axis *axis = on->axis;
+    const laconic_real wanted_ms = on->watchdog_s * 1000 + (laconic_real)0.5;
+    const uint16_t watchdog_ms = wanted_ms < UINT16_MAX ? (uint16_t)wanted_ms : UINT16_MAX;
     for (int k = 0; k < 2 * CANOPEN_PDOS; k++) {
         const preset *from = &presets[k / CANOPEN_PDOS][k % CANOPEN_PDOS];
         canopen_pdo *pdo = k < CANOPEN_PDOS ? &axis->rpdo[k] : &axis->tpdo[k - CANOPEN_PDOS];
         uint32_t abort;
         memset(pdo, 0, sizeof *pdo);
         memset(pdo->row, CANOPEN_NO_ROW, sizeof pdo->row);
-        pdo->cob_id = (uint16_t)(from->cob_id + id);
+        pdo->cob_id = (uint16_t)(from->cob_id + canopen_id(on));
         if (k >= CANOPEN_PDOS) pdo->cob_id |= CANOPEN_NO_REMOTE;
         pdo->type = from->type;
         pdo->timer_ms = from->timer_ms;
+        if (k > 0 && k < CANOPEN_PDOS) pdo->timer_ms = watchdog_ms;
         while (pdo->count < 2 && from->index[pdo->count] != 0) {
             pdo->row[pdo->count] = canopen_find(from->index[pdo->count], 0, &abort);
             pdo->count++;
@@ -222,9 +227,10 @@ static void set_due(const canopen_node *on, int k) {
 }
 
 static bool has_changed(const canopen_node *on, const canopen_pdo *pdo) {
-    uint8_t now[8];
+    uint8_t now[8], differences = 0;
     pack(on, pdo, now);
-    return memcmp(now, pdo->data, 8) != 0;
+    for (int k = 0; k < 8; k++) differences |= now[k] ^ pdo->data[k];
+    return differences != 0;
 }
 
 void canopen_sync(const canopen_node *on) {

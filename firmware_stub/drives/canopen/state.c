@@ -22,6 +22,15 @@ static command command_of(uint16_t word) {
     return (word & 8U) == 0 ? SWITCH_ON : ENABLE;
 }
 
+/* Faults that CANopen finds are faults of the drive, too, for whoever watches drives of all protocols. */
+static void tell_drive(const canopen_node *on) {
+    const uint16_t code = on->axis->error_code;
+    if (code == 0x8611)
+        laconic_drive_fail(on->drive, LACONIC_DRIVE_FAULT_FOLLOWING);
+    else if (code >= 0x8100 && code < 0x8300)
+        laconic_drive_fail(on->drive, LACONIC_DRIVE_FAULT_WATCHDOG);
+}
+
 void canopen_go(const canopen_node *on, uint8_t state) {
     canopen_axis *axis = on->axis;
     const uint8_t before = axis->state;
@@ -32,6 +41,7 @@ void canopen_go(const canopen_node *on, uint8_t state) {
     } else if (state < CANOPEN_ENABLED || state == CANOPEN_FAULT) {
         on->drive->target.mode = LACONIC_DRIVE_OFF;
         axis->speed = 0;
+        if (state == CANOPEN_FAULT) tell_drive(on);
     } else if (before < CANOPEN_ENABLED) {
         axis->speed = canopen_actual_speed(on->drive);
     }
