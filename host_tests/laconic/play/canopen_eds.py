@@ -6,7 +6,10 @@ from collections.abc import Iterator
 from dataclasses import dataclass
 from typing import Any
 
+from laconic.errors import BadInput
+from laconic.play.settings import drive_settings
 from laconic.rig.node_library import node_library
+from laconic.scene import Scene
 
 READ, WRITE, SENT, RECEIVED = 16, 32, 64, 128  # laconic_canopen_object.access
 VARIABLE = 7                                   # object type of CiA 301
@@ -66,6 +69,17 @@ def eds_text(node_id: int | None = None, drive: EdsDrive | None = None) -> str:
     for index in indices:
         lines += index_sections([each for each in described if each.index == index])
     return "\n".join(lines)
+
+
+def eds_of_scene(scene: Scene, protocol: str | None = None) -> str:
+    """The EDS of a scene's drives: of the first, where their encoders and currents differ."""
+    settings = drive_settings(scene, protocol)
+    if settings.protocol.name != "canopen":
+        raise BadInput(f"--eds: describes CANopen drives, and those of {scene.path} speak {settings.protocol.name}; "
+                       "give --drives canopen")
+    numbers = settings.of_wheel(settings.driven.index(True))
+    return eds_text(drive=EdsDrive(int(numbers["encoder_counts"]), numbers["torque_constant_Nm_per_A"],
+                                   numbers["current_limit_A"], numbers["supply_V"]))
 
 
 def dictionary(drive: EdsDrive) -> Iterator[EdsObject]:

@@ -14,7 +14,7 @@ import can
 import canopen
 from can.interfaces.virtual import VirtualBus
 
-from laconic.play.canopen_eds import EdsDrive, eds_text
+from laconic.play.canopen_eds import eds_of_scene
 from laconic.play.node_vehicle import InProcess, running
 from laconic.play.settings import drive_settings
 from laconic.rig.buses import VirtualClock, node_in_process
@@ -93,10 +93,8 @@ class AnsweringBus(VirtualBus):
 def played_on_canopen(scene: Scene, folder: Path) -> Iterator[Played]:
     """A vehicle that plays, and a network of the client on its bus."""
     settings, clock, channel = drive_settings(scene, "canopen"), VirtualClock(), f"canopen {folder}"
-    numbers = settings.of_wheel(0)
     eds = folder / "drive.eds"
-    eds.write_text(eds_text(drive=EdsDrive(int(numbers["encoder_counts"]), numbers["torque_constant_Nm_per_A"],
-                                           numbers["current_limit_A"], numbers["supply_V"])), encoding="ascii")
+    eds.write_text(eds_of_scene(scene, "canopen"), encoding="ascii")
     with ExitStack() as stack:
         client, end = stack.enter_context(node_in_process(scene.run.real, ID_BASE, clock))
         vehicle = InProcess(client, end, scene, settings)

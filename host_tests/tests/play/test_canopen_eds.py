@@ -9,6 +9,7 @@ import pytest
 from canopen.objectdictionary import ODVariable
 from canopen_bus import Played, download, played_on_canopen
 
+from laconic.cli.main import run
 from laconic.paths import SCENE_DIR
 from laconic.play.canopen_eds import EdsDrive, eds_text
 from laconic.scene import read_scene
@@ -100,3 +101,11 @@ def test_cob_ids_of_the_file_follow_the_node_id(tmp_path: Path) -> None:
     assert od[0x1014].default == 0x87 and od[0x608F][1].default == 10000
     other = canopen.import_od(str(path), node_id=9)
     assert other[0x1A03][1].default == 0x60F40020 and other[0x1803][1].default == 0xC0000489
+
+
+def test_play_writes_the_file_for_the_drives_of_a_scene_and_refuses_other_protocols(tmp_path: Path, capsys) -> None:
+    path = tmp_path / "own.eds"
+    assert run(["play", "canopen_agv", "--eds", str(path)]) == 0
+    assert canopen.import_od(str(path), node_id=4)[0x608F][1].default == 30
+    assert run(["play", "robomaster_mecanum", "--eds", str(path)]) == 2
+    assert "--drives canopen" in capsys.readouterr().err

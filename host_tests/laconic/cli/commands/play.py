@@ -9,6 +9,7 @@ import click
 
 from laconic.cli.options import InputPath, OutputFile, SceneName, json_flag
 from laconic.core import REALS
+from laconic.play.canopen_eds import eds_of_scene
 from laconic.play.faults import KINDS as FAULTS
 from laconic.play.options import PlayOptions
 from laconic.play.places import ON_BUS
@@ -52,10 +53,12 @@ from laconic.scene.drives import DRIVE_PROTOCOLS
 @click.option("--step", "step_s", type=float, metavar="SECONDS", help="Step and period instead of the scene's.")
 @click.option("--log", "logs", multiple=True, type=OutputFile(*LOGS), help="Log all frames: .blf, .asc.")
 @click.option("--live", is_flag=True, help="Show the frames while it plays.")
+@click.option("--eds", type=OutputFile(".eds"), metavar="FILE",
+              help="Write the EDS file of the CANopen drives, for the controller's configuration, and play nothing.")
 @click.option("--junit", type=OutputFile(".xml"), help="Results for CI.")
 @json_flag()
 def command(scene_name: str, method: str | None, real: str | None, step_s: float | None, junit: Any,
-            json_wanted: bool, **given: Any) -> int:
+            eds: Any, json_wanted: bool, **given: Any) -> int:
     """Plays the vehicle of SCENE on a CAN bus in real time, for a controller that someone else wrote.
 
     --drives speaks the protocol of its motor drives, or --dbc and --map say what its frames mean. Without an interface
@@ -64,6 +67,9 @@ def command(scene_name: str, method: str | None, real: str | None, step_s: float
     for bad input.
     """
     scene = read_scene(scene_name).with_run(method=method, step_s=step_s, real=real)
+    if eds:
+        eds.write_text(eds_of_scene(scene, given["drives"]), encoding="ascii")
+        return 0
     began = time.perf_counter()
     judgement = play(scene, PlayOptions(**given), say=lambda text: click.echo(text, err=json_wanted))
     if junit:
