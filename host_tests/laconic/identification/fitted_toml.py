@@ -84,6 +84,10 @@ def _rewrite(study: Study, index: int, wheel: dict[str, Any], comments: Comments
     if after.get("radius_m") != before.get("radius_m"):
         wheel["radius_m"] = after["radius_m"]
         comments[(*location, "radius_m")] = _interval(study, f"vehicle.wheel[{index + 1}].radius_m")
+    if after.get("friction_coefficient") != before.get("friction_coefficient"):
+        wheel["friction_coefficient"] = after["friction_coefficient"]
+        comments[(*location, "friction_coefficient")] = _interval(
+            study, f"vehicle.wheel[{index + 1}].friction_coefficient")
     moved = _that_move(study)
     if (after["x_m"], after["y_m"]) != (before["x_m"], before["y_m"]):
         for key in ("distance_m", "bearing_rad", "bearing_deg"):

@@ -74,14 +74,31 @@ def _viscous(scene: Scene, relative_sd: float) -> list[Parameter]:
                       motor["viscous_friction_Nms"], sd, write, low=0.0)]
 
 
+def _of_each_wheel(scene: Scene, relative_sd: float) -> list[Parameter]:
+    """How much more or less than the others each wheel holds: loads and floor are not alike below all of them."""
+    def writer(index: int) -> Callable[[Vehicle, float], None]:
+        def write(vehicle: Vehicle, value: float) -> None:
+            usual = vehicle["ground"]["friction_coefficient"]
+            vehicle["wheel"][index]["friction_coefficient"] = value * usual
+        return write
+
+    if any(wheel.get("friction_coefficient") for wheel in scene.vehicle["wheel"]):
+        return []
+    return [Parameter(f"friction of wheel {i + 1}, share of the ground's",
+                      f"vehicle.wheel[{i + 1}].friction_coefficient", "wheel-friction", "", 1.0, WHEEL_SHARE_SD,
+                      writer(i), low=0.05)
+            for i in range(len(scene.vehicle["wheel"]))]
+
+
 MAKERS: dict[str, Callable[[Scene, float], list[Parameter]]] = {
     "drag": _of_ground("roller_drag", "drag of the rollers", "drag", "", USUAL_DRAG, 0.3),
     "friction": _of_ground("friction_coefficient", "friction coefficient of the ground", "friction", "", USUAL_FRICTION,
                            3.0),
     "axle-friction": _of_ground("axle_friction_Nm", "dry friction of the axles", "axle-friction", "N·m", 0.0, 0.3),
-    "viscous": _viscous}
+    "viscous": _viscous, "wheel-friction": _of_each_wheel}
 GROUPS = tuple(MAKERS)
 BY_CURRENTS = ("friction", "axle-friction", "viscous")
+WHEEL_SHARE_SD = 0.3
 
 
 class GroundEvidence(RollingEvidence):

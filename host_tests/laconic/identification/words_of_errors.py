@@ -18,6 +18,8 @@ POOR = {"path_error": 0.02, "wheel_speed_error": 0.1}  # what a good model does 
 REMEDIES = {
     "path_error": "Wheels that roll leave less than {}: look at the order, signs and gear in the map, at the place of "
                   "the marker (--free place), or at slip ([ground] with --free drag).",
+    "friction": "Real floors seldom let more be said by this law; look at the loads (--free centre-of-mass, "
+                "wheel-friction), and trust no prediction beyond the directions and speeds of these runs.",
     "wheel_speed_error": "A good model leaves less than {}: look at the order, signs and units in the map, at dry "
                          "friction ([ground] axle_friction_Nm), or at limits of the supply ([vehicle.drive])."}
 HARDLY = 0.9          # of the nominal error: a fit that leaves more has explained little
@@ -49,7 +51,8 @@ def _fit(study: Study) -> list[str]:
     what = f"The fit is poor: of {_said(study, before)} {name} {_said(study, after)} are left"
     if after > HARDLY * before:
         what += ", so what is free hardly explains it"
-    return [f"{what}. {REMEDIES[study.measure].format(limit)}"]
+    slipping = any(p.path.startswith("ground.") for p in study.found.parameters.each)
+    return [f"{what}. {REMEDIES['friction' if slipping else study.measure].format(limit)}"]
 
 
 def _sessions(study: Study) -> list[str]:

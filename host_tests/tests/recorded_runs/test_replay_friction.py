@@ -169,3 +169,13 @@ def test_runs_left_out_are_judged_in_closed_loop_by_the_controller_of_the_others
     study = identify(robot, logs, geometry_of(robot, ("common-radius",)), leave_out="run", with_controller=True)
     assert [each.wheel_speed_error for each in study.left_out] == pytest.approx([0.0] * 3, abs=0.08)
     assert all(each.wheel_speed_error > 0.0 for each in study.left_out)
+
+
+def test_friction_of_each_wheel_is_a_share_of_the_grounds(robot):
+    parameters = geometry_of(robot, ("friction", "wheel-friction"))
+    vehicle = parameters.vehicle(robot.vehicle, np.array([0.8, 0.5, 1.0, 1.5]))
+    assert vehicle["ground"]["friction_coefficient"] == 0.8
+    assert [wheel["friction_coefficient"] for wheel in vehicle["wheel"]] == pytest.approx([0.4, 0.8, 1.2])
+    assert len(geometry_of(replace(robot, vehicle=vehicle), ("friction",))) == 1
+    with pytest.raises(Exception, match="--free wheel-friction"):
+        geometry_of(replace(robot, vehicle=vehicle), ("wheel-friction",))

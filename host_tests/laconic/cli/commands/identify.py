@@ -24,8 +24,9 @@ LEFT_OUT = ("session", "run")
               help="What may move: radius (of each wheel), distance (of all wheels, one factor), centre-of-mass, place "
               "and heading (of the whole robot against the true pose), axle, roller (angles of each wheel), "
               "common-radius (one of all wheels); on ground with friction drag (of rollers), friction, axle-friction, "
-              "viscous (of motors); controller (of the wheels' speeds); from voltages or currents mass, yaw-inertia, "
-              "wheel-inertia, motor-gain, motor-damping, resistance, torque-constant.")
+              "wheel-friction (of each, as a share), viscous (of motors); controller (of the wheels' speeds); from "
+              "voltages or currents mass, yaw-inertia, wheel-inertia, motor-gain, motor-damping, resistance, "
+              "torque-constant.")
 @click.option("--prior", "prior_percent", type=float, default=10.0, show_default=True, metavar="PERCENT",
               help="How far radii and distances may be from nominal beforehand (standard deviation).")
 @map_option
