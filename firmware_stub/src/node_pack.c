@@ -97,7 +97,7 @@ static void pack_wheel_speed(const laconic_node *node, uint8_t *data) {
 static bool is_deaf(const laconic_node *node) {
 #if LACONIC_NODE_WITH_DRIVES
     for (int32_t k = 0; plays_drives(node) && k < node->drives.count; k++)
-        if (node->drives.drive[k].faults & LACONIC_DRIVE_FAULT_WATCHDOG) return true;
+        if (laconic_drive_is_unheard(&node->drives.drive[k])) return true;
 #endif
     return node->session.deaf != 0;
 }

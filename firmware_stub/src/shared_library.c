@@ -43,7 +43,7 @@ bool laconic_library_drive_view(const laconic_node *node, int32_t drive, laconic
         .target_rest = (double)it->target.position_rest,
         .target_speed_rad_per_s = (double)it->target.speed_rad_per_s,
         .target_current_A = (double)it->target.current_A,
-        .faults = it->faults,
+        .faults = it->faults | (laconic_drive_is_unheard(it) ? LACONIC_DRIVE_FAULT_WATCHDOG : 0),
         .limits = it->limits,
         .count = it->count,
         .rest = (double)it->rest,

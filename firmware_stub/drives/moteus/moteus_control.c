@@ -177,7 +177,7 @@ static uint8_t fault_of(uint32_t faults) {
 }
 
 /* Silence is noticed in the modes that move the wheel to places. */
-static void supervise(moteus_axis *axis, const laconic_wheel_drive *drive, laconic_real step_s) {
+static void supervise(moteus_axis *axis, laconic_wheel_drive *drive, laconic_real step_s) {
     if (drive->faults && axis->mode != MOTEUS_FAULT) {
         axis->mode = MOTEUS_FAULT;
         axis->fault = fault_of(drive->faults);
@@ -186,6 +186,7 @@ static void supervise(moteus_axis *axis, const laconic_wheel_drive *drive, lacon
         axis->timeout_left_s = real_within(axis->timeout_left_s - step_s, 0, LACONIC_REAL_MAX);
     if ((axis->mode == MOTEUS_POSITION || axis->mode == MOTEUS_STAY_WITHIN) && axis->timeout_left_s <= 0) {
         axis->mode = MOTEUS_TIMEOUT;
+        drive->silent = true;
         moteus_forget_control(axis);
     }
 }

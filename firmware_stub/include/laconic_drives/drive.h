@@ -67,6 +67,7 @@ typedef struct laconic_wheel_drive {
     laconic_drive_settings settings; /* protocols may change gains and limits */
     laconic_drive_target target;
     uint32_t faults, limits;
+    bool silent;             /* the controller is, but the drive goes on by itself: by the protocol           */
     uint32_t causes;         /* faults by order that clearing does not end: laconic_drive_break()             */
     laconic_real brake_Nm;   /* by order: up to this torque holds the wheel, so that the drive stalls; 0: none */
     laconic_real integral_A; /* of the speed loop                                                             */
@@ -97,6 +98,11 @@ int32_t laconic_drive_shaft_count(const laconic_wheel_drive *drive);
 
 /* Off, without a fault. */
 void laconic_drive_off(laconic_wheel_drive *drive);
+
+/* Whether a watchdog of this drive has fired, off or not. */
+static inline bool laconic_drive_is_unheard(const laconic_wheel_drive *drive) {
+    return drive->silent || (drive->faults & LACONIC_DRIVE_FAULT_WATCHDOG) != 0;
+}
 
 /* Sets faults: the drive is off until they are cleared. */
 void laconic_drive_fail(laconic_wheel_drive *drive, uint32_t faults);
