@@ -67,7 +67,7 @@ class ListeningBus(can.BusABC):
     """The bus; `port` is the one that it listens at. Port 0: any free one."""
 
     def __init__(self, channel: Any = 0, **_: Any):
-        self._selector = selectors.DefaultSelector()
+        self._selector = selectors.SelectSelector()  # waits in microseconds; others round up to milliseconds
         self._listener = listening_socket(int(channel))
         self.port = int(self._listener.getsockname()[1])
         self._selector.register(self._listener, selectors.EVENT_READ)

@@ -8,7 +8,7 @@ from dataclasses import dataclass
 
 from cantools.database.can.signal import Signal
 
-from laconic.play.checksums import E2E_WIDTHS, SUMS
+from laconic.play.checksums import COUNTS_TO_14, E2E_WIDTHS, SUMS
 from laconic.play.map_dbc import DbcMessage, Page, byte_slice, raw_range
 from laconic.play.map_file import Conversion, Joint, MessageMap, Received, Sent
 from laconic.play.map_signals import OF_ANGLE
@@ -39,7 +39,7 @@ class Protected:
         self.checksum_signal = self._checksum()
         self.modulo = 0
         if self.counter_signal is not None and given.counter is not None:
-            self.modulo = given.counter.modulo or 1 << self.counter_signal.length
+            self.modulo = given.counter.modulo or self._most_counts(self.counter_signal)
 
     def _counter(self) -> Signal | None:
         counter = self.given.counter
@@ -49,10 +49,15 @@ class Protected:
         if signal.is_float or signal.multiplexer_signal is not None:
             self.message.fail("counter.signal", f"has {signal.name} as a number with a fraction or on a page; a "
                               "counter is a whole number that is in every frame")
-        if counter.modulo is not None and counter.modulo > 1 << signal.length:
+        if counter.modulo is not None and counter.modulo > self._most_counts(signal):
             self.message.fail("counter.modulo", f"has {signal.length} bits for {signal.name}, too few to count up to "
-                              f"{counter.modulo}; give {1 << signal.length} or less")
+                              f"{counter.modulo}; give {self._most_counts(signal)} or less")
         return signal
+
+    def _most_counts(self, signal: Signal) -> int:
+        """How many counts a counter has, by its bits and its profile."""
+        checksum = self.given.checksum
+        return min(1 << signal.length, 15 if checksum is not None and checksum.kind in COUNTS_TO_14 else 1 << 64)
 
     def _checksum(self) -> Signal | None:
         checksum = self.given.checksum

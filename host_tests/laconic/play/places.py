@@ -110,7 +110,7 @@ class OfNode(Place):
 
     def __init__(self, scene: Scene, options: PlayOptions):
         self.options, self.scene = options, scene
-        self.settings: DriveSettings = drive_settings(scene, options.drives)
+        self.settings: DriveSettings = drive_settings(scene, options.drives, options.id_base)
         self.name = self.settings.protocol.name
         self.id_base = read_id_base(options.id_base, scene)
 

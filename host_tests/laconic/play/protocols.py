@@ -26,6 +26,11 @@ class DriveProtocol:
     why_usual: str = ""
 
     @property
+    def why_no_watchdog(self) -> str:
+        """How a drive watches its controller where a time in its settings does not say so."""
+        return "its heartbeat consumer, object 1016h, is set by the controller" if self.name == "canopen" else ""
+
+    @property
     def commands_groups(self) -> bool:
         """Whether one frame commands several drives."""
         return self.name.startswith("robomaster")

@@ -14,7 +14,7 @@ from laconic.play.live import live_traffic
 from laconic.play.loop import Loop, Seconds, Traffic
 from laconic.play.options import PlayOptions, check_options
 from laconic.play.places import Place, Played, place_of
-from laconic.play.settings import DriveSettings
+from laconic.play.settings import DriveSettings, as_values
 from laconic.play.trouble import Trouble
 from laconic.play.vehicle import check_playable
 from laconic.rig.errors import BusDied, Interrupted
@@ -95,6 +95,8 @@ def judged(scene: Scene, place: Place, vehicle: Played, traffic: Traffic, second
     judgement.figures |= {
         "seconds": seconds.passed(), "periods": late.periods, "late_periods": late.late_periods,
         "worst_lateness_ms": late.worst_us / 1000.0, "frames_in": traffic.frames_in, "frames_out": traffic.frames_out}
+    if place.settings is not None:
+        judgement.facts["drives"] = as_values(place.settings)
     if isinstance(ending, Interrupted):
         judgement.notes.append("stopped by the user")
     if isinstance(bus, ListeningBus) and not bus.joined:

@@ -55,15 +55,19 @@ class DriveSettings:
             yield "watchdog_s", f"{self.watchdog_s:g}", self.origins["watchdog_s"]
 
 
-def drive_settings(scene: Scene, protocol: str | None) -> DriveSettings:
-    """The drives of a scene; `protocol` is that of the command line. BadInput names the key that nobody gives."""
+def drive_settings(scene: Scene, protocol: str | None, id_base: str | None = None) -> DriveSettings:
+    """The drives of a scene; `protocol` and `id_base` are those of the command line. BadInput names the key that nobody
+    gives."""
     given = scene.rig.drives or Drives(driven=tuple(bool(each.get("driven", True)) for each in scene.vehicle["wheel"]))
     chosen = PROTOCOLS[protocol_of(scene, given, protocol)]
     if not any(given.driven):
         raise BadInput(f"{scene.path}: vehicle.wheel: none is driven, so there is nothing that a drive could turn; "
                        "take driven = false out of one")
+    if given.watchdog_s and chosen.why_no_watchdog:
+        raise BadInput(f"{scene.path}: rig.drives.watchdog_s: has no effect with {chosen.name}, "
+                       f"{chosen.why_no_watchdog}; take it out")
     ids, ids_origin = node_ids(scene, given, chosen)
-    check_identifiers(scene, chosen, ids, given.driven)
+    check_identifiers(scene, chosen, ids, given.driven, id_base)
     numbers: dict[str, tuple[float, ...]] = {}
     origins = {"node_ids": ids_origin, "watchdog_s": "rig.drives"}
     for key in NUMBERS:
@@ -102,15 +106,16 @@ def node_ids(scene: Scene, given: Drives, protocol: DriveProtocol) -> tuple[tupl
     return ids, origin
 
 
-def check_identifiers(scene: Scene, protocol: DriveProtocol, ids: tuple[int, ...], driven: tuple[bool, ...]) -> None:
+def check_identifiers(scene: Scene, protocol: DriveProtocol, ids: tuple[int, ...], driven: tuple[bool, ...],
+                      id_base: str | None) -> None:
     """BadInput where a drive and the node's own frames would use the same identifier."""
-    base = read_id_base(None, scene)
+    base = read_id_base(id_base, scene)
     own = range(base, base + ID_STRIDE)
     for node_id, has_drive in zip(ids, driven, strict=True):
         if has_drive and (both := [each for each in protocol.identifiers(node_id) if each in own]):
             raise BadInput(f"{scene.path}: rig.drives.node_ids: drive {node_id} of {protocol.name} uses "
                            f"{in_hex(min(both))}, which is one of the node's own from {in_hex(base)}; give another "
-                           "node id, or [rig] id_base")
+                           "node id, --id-base or [rig] id_base")
 
 
 def origin_of(scene: Scene, given: Drives, protocol: DriveProtocol, key: str,

@@ -22,7 +22,7 @@ def as_json(judgement: Judgement) -> str:
     """Everything, machine-readable."""
     whole = {"scene": judgement.scene, "mode": judgement.mode, "passed": judgement.passed,
              "verdicts": [in_json(asdict(each)) for each in judgement.verdicts],
-             "figures": in_json(judgement.figures), "notes": judgement.notes}
+             "figures": in_json(judgement.figures), "notes": judgement.notes, **judgement.facts}
     return json.dumps(whole, indent=1, allow_nan=False)
 
 

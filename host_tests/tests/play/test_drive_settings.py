@@ -45,6 +45,7 @@ def settings_of(tmp_path: Path, keys: str, name: str = "robotino2", protocol: st
     ("current_limit_A = inf", ("current_limit_A", "finite")),
     ("supply_V = -24", ("supply_V", "0 or more")),
     ("watchdog_s = -1", ("watchdog_s", "0 for none")),
+    ('protocol = "canopen"\nwatchdog_s = 0.5', ("watchdog_s", "1016h", "take it out")),
     ("gear = 3", ("rig.drives.gear", "no known key"))])
 def test_a_wrong_key_of_the_drives_is_refused_in_one_line(keys: str, words: tuple[str, ...], tmp_path: Path) -> None:
     with pytest.raises(BadInput) as refused:

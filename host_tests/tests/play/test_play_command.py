@@ -46,6 +46,7 @@ def test_json_goes_to_stdout_alone(capsys: pytest.CaptureFixture[str]) -> None:
     captured = capsys.readouterr()
     found = json.loads(captured.out)
     assert found["mode"] == "canopen" and found["passed"] and found["figures"]["periods"] >= 40
+    assert found["drives"]["protocol"] == "canopen" and found["drives"]["gear_ratio"] == [-14.0, 14.0]
     assert "socket://127.0.0.1:" in captured.err
 
 
