@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import struct
-from collections.abc import Callable
 
 import can
 import pytest
@@ -92,7 +91,10 @@ def test_a_bus_that_loses_every_frame_counts_as_a_fault_and_its_first_frame_is_t
 
 def test_silence_of_the_controller_is_the_mark_where_nothing_fails() -> None:
     codec = Codec()
-    commands: Callable[[float], list[can.Message]] = lambda t: [codec.command(6.0, -6.0)] if t < 0.5 else []  # noqa: E731
+
+    def commands(time_s: float) -> list[can.Message]:
+        return [codec.command(6.0, -6.0)] if time_s < 0.5 else []
+
     judgement, _ = played("turtlebot3_burger", 2.0, commands, dbc=DBC, map_path=PLAY / "transporter.toml",
                           stop_within_s=1.0)
     verdict, = [each for each in judgement.verdicts if each.name == "stopped"]
