@@ -23,8 +23,8 @@
  * errors. Rounding hides some HIDDEN of each impulse, which counts as residual. Contacts may hold each other with many
  * times the free motion's impulse, of which MOST_STRESS is the square: above it rounding would hide more than
  * TOLERANCE. Where neither kind of pass brings the residual to TOLERANCE any more, RESOLVED of the free motion and
- * ROUNDED of the contacts' impulses (after exact passes: the root of CLOSE, times TOLERANCE) are all that the scalar type
- * can tell: near breakaway, where little of the free motion is left, and where contacts hold each other. */
+ * ROUNDED of the contacts' impulses (after exact passes: the root of CLOSE, times TOLERANCE) are all that the scalar
+ * type can tell: near breakaway, where little of the free motion is left, and where contacts hold each other. */
 #ifdef LACONIC_SINGLE
 #define TOLERANCE R(1e-5)
 #define RESOLVED R(4e-5)
