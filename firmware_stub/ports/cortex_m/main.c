@@ -52,7 +52,7 @@ static void queue_reply(const char *text) {
     }
 }
 
-/* Sends one line at a time and fetches the next frame when the line is sent; true: bytes are left. */
+/* Sends one line at a time and fetches the next frame when the line is sent; true: there may be more to send. */
 static bool send_some(void) {
     laconic_frame frame;
     if (line_sent == line_length) {
@@ -61,7 +61,13 @@ static bool send_some(void) {
         if (laconic_node_next_frame(&node, &frame)) line_length = (uint16_t)laconic_slcan_write(&slcan, &frame, line);
     }
     while (line_sent < line_length && board_send(line[line_sent])) line_sent++;
-    return line_sent < line_length;
+    return line_length > 0;
+}
+
+/* Steps that are due, of drives also the next period, which may be shorter than the interval of the wake-up. */
+static bool has_steps(void) {
+    if (LACONIC_NODE_WITH_DRIVES) return laconic_node_idle_us(&node, board_now_us()) == 0;
+    return laconic_node_is_busy(&node);
 }
 
 static bool receive_some(void) {
@@ -114,6 +120,6 @@ int main(void) {
         const bool received = receive_some();
         laconic_node_on_tick(&node, board_now_us());
         const bool sending = send_some();
-        if (!received && !sending && node.pending == 0 && !laconic_node_is_busy(&node)) sleep_until_interrupt();
+        if (!received && !sending && node.pending == 0 && !has_steps()) sleep_until_interrupt();
     }
 }

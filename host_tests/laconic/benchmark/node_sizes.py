@@ -18,7 +18,9 @@ from laconic.rig.boards import BOARDS, QEMU
 
 OBJDUMP, SIZE = "arm-none-eabi-objdump", "arm-none-eabi-size"
 EXCEPTION_FRAME = {"an385": 32, "microbit": 32}  # without FPU; with: 104
-METHOD_FUNCTION = re.compile(r"^(?!laconic_).*_(prepare|increment|step)(\.|$)")  # what laconic_method points to
+METHOD_FUNCTION = re.compile(r"^(?!laconic_|on_).*_(prepare|increment|step)(\.|$)")  # what laconic_method points to
+PROTOCOL_FUNCTION = re.compile(r"^(start|on_frame|on_step|next_frame)(\.|$)")  # what laconic_drive_protocol points to
+NODE_FUNCTION = re.compile(r"^laconic_(node|drives)_")  # these call what a port links, and protocols
 REGISTER_BYTES = {"s": 4, "d": 8}
 
 
@@ -114,12 +116,17 @@ def deepest(name: str, functions: dict[str, Function], pointers: set[str], done:
         raise BadInput(f"{' → '.join((*path, name))}: recursion, so the stack has no bound")
     calls = set(function.calls)
     if function.calls_pointer and len(pointers & {*path, name}) < 2:
-        calls |= {"port_method"} if name.startswith("laconic_node") else pointers
+        calls |= of_port(functions) if NODE_FUNCTION.match(name) else pointers
     calls -= {*path, name}
     below = max((deepest(each, functions, pointers, done, (*path, name)) for each in calls), default=0)
     if not pointers & set(path):
         done[name] = function.frame + below
     return function.frame + below
+
+
+def of_port(functions: dict[str, Function]) -> set[str]:
+    """What the node calls through pointers: how a port finds methods and protocols, and a protocol's functions."""
+    return {"port_method", "port_protocol"} | {name for name in functions if PROTOCOL_FUNCTION.match(name)}
 
 
 def worst_stack(image: Path, board: str) -> int:
@@ -146,5 +153,5 @@ def cost_of(board: str) -> Cost:
     """All figures of one board."""
     image = built(f"firmware/laconic-node-{board}.elf")
     text, data, bss = (int(n) for n in tool(SIZE, str(image)).splitlines()[1].split()[:3])
-    counted = instructions_of(board) if board != "an386-small" else {}
+    counted = instructions_of(board) if "-" not in board else {}
     return Cost(board, text + data, data + bss, worst_stack(image, board), counted)
