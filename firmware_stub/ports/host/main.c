@@ -1,6 +1,6 @@
 /* The node as a process: SLCAN on a TCP socket, so that python-can's `slcan` connects to it as to a board.
  *
- *     laconic-node-double [--port N] [--id-base 0xNNN] [--bitrate N] [--once] [--shared]
+ *     laconic-node-double [--port N] [--id-base 0xNNN] [--bitrate N] [--once] [--shared] | --socketcan can0
  *
  * Prints "listening on 127.0.0.1:PORT" (port 0: any free one). The node keeps its vehicle between clients, as a
  * board does. Like a serial line it has one client at a time; a second one gets a line of text and is disconnected.
@@ -10,6 +10,7 @@
 #define _GNU_SOURCE
 #include "laconic_node/node.h"
 #include "laconic_wire.h"
+#include "socketcan.h"
 #include "station.h"
 
 #include <arpa/inet.h>
@@ -23,12 +24,13 @@
 #include <time.h>
 #include <unistd.h>
 
-enum { BAD_INPUT = 2, MOST_STATIONS = 4 };
+enum { BUS_DIED = 1, BAD_INPUT = 2, MOST_STATIONS = 4 };
 
 typedef struct options {
     unsigned long port, id_base;
     char rate; /* '0' … '8', 0: any */
     bool once, shared;
+    const char *interface; /* of SocketCAN, NULL: none */
 } options;
 
 typedef struct board {
@@ -40,7 +42,7 @@ typedef struct board {
 
 static const char help[] =
     "usage: laconic-node-double|laconic-node-single [--port N] [--id-base 0xNNN] [--bitrate N] [--once]\n"
-    "       [--shared]\n"
+    "       [--shared] | --socketcan can0\n"
     "\n"
     "The CAN node as a process, computing in double or single precision: SLCAN on a TCP socket of this machine.\n"
     "Prints \"listening on 127.0.0.1:PORT\" and serves one client at a time until it is ended (Ctrl-C, SIGTERM).\n"
@@ -50,6 +52,7 @@ static const char help[] =
     "  --bitrate N      answer only clients that set this rate, as a real bus would (default: any rate)\n"
     "  --once           end when the first client leaves\n"
     "  --shared         serve up to four clients, which hear each other as stations of a bus do\n"
+    "  --socketcan IF   serve a CAN interface of Linux instead, such as can0, which must be up: no port is opened\n"
     "  -h, --help       this text\n"
     "\n"
     "Drive it:  laconic rig SCENE --interface slcan --channel socket://127.0.0.1:PORT\n";
@@ -262,6 +265,10 @@ static int parse(int count, char **words, options *settings) {
             settings->once = true;
         } else if (strcmp(words[k], "--shared") == 0) {
             settings->shared = true;
+        } else if (strcmp(words[k], "--socketcan") == 0) {
+            if (*value == 0) return complain("--socketcan", "name a CAN interface, such as can0");
+            settings->interface = value;
+            k++;
         } else if (strcmp(words[k], "--port") == 0) {
             if (!number(value, 65535, &settings->port)) return complain("--port", "give a number from 0 to 65535");
             k++;
@@ -280,6 +287,22 @@ static int parse(int count, char **words, options *settings) {
     return 0;
 }
 
+/* The exit status: an interface can be refused and can go, but it does not end by itself. */
+static int serve_interface(laconic_node *node, const char *interface) {
+    socketcan_port port = {.node = node, .socket = socketcan_open(interface)};
+    if (port.socket < 0) {
+        fprintf(stderr, "laconic-node: --socketcan %s: cannot be opened: %s; see `ip link show type can`\n", interface,
+                strerror(errno));
+        return BAD_INPUT;
+    }
+    printf("serving %s\n", interface);
+    fflush(stdout);
+    socketcan_serve(&port, now_us);
+    fprintf(stderr, "laconic-node: %s: %s\n", interface, strerror(errno));
+    close(port.socket);
+    return BUS_DIED;
+}
+
 int main(int count, char **words) {
     static board port;
     options settings = {.id_base = LACONIC_WIRE_ID_BASE};
@@ -290,6 +313,7 @@ int main(int count, char **words) {
     const laconic_node_config config = {(uint16_t)settings.id_base, true, laconic_method_by_number, nonce_seed(),
                                         laconic_drive_protocol_by_number};
     laconic_node_init(&port.node, &config, now_us());
+    if (settings.interface != NULL) return serve_interface(&port.node, settings.interface);
     const int listening = open_listener(settings.port, &chosen);
     if (listening < 0) return complain(strerror(errno), "the port is taken or not allowed; choose another --port");
     printf("listening on 127.0.0.1:%lu\n", chosen);

@@ -1,5 +1,5 @@
-/* The node on a CAN interface of Linux (SocketCAN): frames to and from the kernel's structs, and one round of the node on
- * such a socket. */
+/* The node on a CAN interface of Linux (SocketCAN): frames to and from the kernel's structs, and one round of the node
+ * on such a socket. */
 #ifndef LACONIC_HOST_SOCKETCAN_H
 #define LACONIC_HOST_SOCKETCAN_H
 
