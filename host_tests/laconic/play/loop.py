@@ -34,6 +34,9 @@ class Vehicle(Protocol):
     def idle_us(self, now_us: int) -> int:
         """Microseconds until something is due."""
 
+    def is_private(self, message: can.Message) -> bool:
+        """Whether a frame that came is between play and the vehicle's node alone: the controller does not get it."""
+
     def ending(self) -> LaconicError | None:
         """Why the vehicle ends the run: a watchdog, a refused step; None: it goes on."""
 
@@ -109,7 +112,8 @@ class Loop:
         return self.traffic.frames_out > before
 
     def _take(self, message: can.Message, now_us: int) -> None:
-        self.traffic.heard(message)
+        if not self.vehicle.is_private(message):
+            self.traffic.heard(message)
         if not message.is_error_frame:
             self.vehicle.on_message(message, now_us)
 

@@ -90,6 +90,10 @@ class MapVehicle:
     def _next_us(self) -> int:
         return self._start_us + round(self._periods * self._period_us)
 
+    def is_private(self, message: can.Message) -> bool:
+        """Never."""
+        return False
+
     def ending(self) -> LaconicError | None:
         """A watchdog that ends the run, or a step that the core refused."""
         return self._ending

@@ -102,6 +102,10 @@ class NodeVehicle:
         if state not in ("drives", "ready"):
             self._ending = ResultFails(f"the node went into state {state} after {values['steps']} steps")
 
+    def is_private(self, message: can.Message) -> bool:
+        """Never, where play and controller have a bus each."""
+        return False
+
     def ending(self) -> LaconicError | None:
         """A step that the core refused."""
         return self._ending
@@ -267,8 +271,13 @@ class OnBus(NodeVehicle):
 
     def __init__(self, client: NodeClient, scene: Scene, settings: DriveSettings, *, hears_alone: bool = False):
         super().__init__(client, scene, settings)
+        self._hears_alone = hears_alone
         if not hears_alone:
             self.watched = ()  # they would come to the controller, too
+
+    def is_private(self, message: can.Message) -> bool:
+        """Frames of the node itself, on a port that gives them to play alone."""
+        return self._hears_alone and self.is_own(message)
 
     def on_message(self, message: can.Message, now_us: int) -> None:
         """A frame of anybody."""

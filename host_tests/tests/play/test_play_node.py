@@ -20,6 +20,7 @@ from laconic.play.protocols import PROTOCOLS
 from laconic.play.session import play
 from laconic.play.settings import drive_settings
 from laconic.rig.buses import connected, next_channel, node_in_process, node_process, open_bus
+from laconic.rig.logs import read_log
 from laconic.rig.wire import ID_BASE, wire
 from laconic.scene import read_scene
 
@@ -119,7 +120,8 @@ class Station(threading.Thread):
         self.join()
 
 
-def test_a_process_serves_the_port_itself_and_its_lateness_is_told() -> None:
+def test_a_process_serves_the_port_itself_and_its_lateness_is_told(tmp_path: Path) -> None:
+    log = tmp_path / "run.blf"
     said: list[str] = []
 
     def say(line: str) -> None:
@@ -131,13 +133,14 @@ def test_a_process_serves_the_port_itself_and_its_lateness_is_told() -> None:
         return "socket://" + said[-1].partition("socket://")[2]
 
     with Station("slcan", channel, 300) as station:
-        options = PlayOptions(listen=0, board="process", drives="robomaster", duration_s=0.8)
+        options = PlayOptions(listen=0, board="process", drives="robomaster", duration_s=0.8, logs=(log,))
         judgement = play(read_scene("robotino2"), options, say=say)
     assert judgement.exit_status == 0, judgement
     assert len(station.heard) == 300 and {each.arbitration_id for each in station.heard} == {0x201, 0x202, 0x203}
     assert rpm_of(station.heard[-1]) > 0
     assert judgement.figures["periods"] >= 700 and "late_periods" in judgement.figures
     assert judgement.figures["worst_lateness_ms"] > 0.0
+    assert {each.arbitration_id for each in read_log(log)} == {0x200, 0x201, 0x202, 0x203}
 
 
 def test_a_process_behind_a_line_of_its_own_plays_on_any_interface() -> None:

@@ -7,7 +7,7 @@ from typing import Any
 
 import click
 
-from laconic.cli.options import InputPath, OutputFile, SceneName, json_flag
+from laconic.cli.options import InputPath, OutputFile, SceneName, goes_with, json_flag
 from laconic.core import REALS
 from laconic.play.canopen_eds import eds_of_scene
 from laconic.play.faults import KINDS as FAULTS
@@ -68,6 +68,7 @@ def command(scene_name: str, method: str | None, real: str | None, step_s: float
     """
     scene = read_scene(scene_name).with_run(method=method, step_s=step_s, real=real)
     if eds:
+        goes_with("--eds", "--drives", "--real", "--step")
         eds.write_text(eds_of_scene(scene, given["drives"]), encoding="ascii")
         return 0
     began = time.perf_counter()
