@@ -2,6 +2,8 @@
 #include "friction_vehicle.h"
 
 #if LACONIC_WITH_FRICTION
+static real cut(real x, real limit) { return x > limit ? limit : x < -limit ? -limit : x; }
+
 /* Torque c1 U − c2ₑ s within the current limit; c2ₑ/c1 is the back-EMF per speed, so U − that is R_a times the
  * current. A limited motor has the voltage at its terminals that its controller sets for the limit. */
 motor_state laconic_motor_at(const laconic_friction *friction, int32_t wheel, real command_V, real speed,

@@ -98,10 +98,7 @@ static laconic_status check_supports(const laconic_vehicle *v, laconic_refusal *
 
 #if LACONIC_WITH_FRICTION
 bool laconic_vehicle_slips(const laconic_vehicle *vehicle) {
-    bool slips = vehicle->ground.friction_coefficient > R(0);
-    for (int32_t i = 0; i < vehicle->wheel_count; i++)
-        slips = slips || vehicle->wheel[i].own_friction_coefficient > R(0);
-    return slips && vehicle->wheel_count > 0;
+    return vehicle->ground.friction_coefficient > R(0) && vehicle->wheel_count > 0;
 }
 
 bool laconic_vehicle_has_drive(const laconic_vehicle *vehicle) {
@@ -115,7 +112,8 @@ bool laconic_vehicle_has_friction(const laconic_vehicle *vehicle) {
     return LACONIC_WITH_FRICTION && (laconic_vehicle_slips(vehicle) || laconic_vehicle_has_drive(vehicle));
 }
 
-/* On ideal ground drag and axle friction would do nothing. */
+/* On ideal ground drag and axle friction would do nothing; and a wheel's own coefficient alone would leave all others
+ * without friction. */
 static laconic_status check_ideal_ground(const laconic_vehicle *v, laconic_refusal *why) {
     const laconic_status without = LACONIC_FRICTION_MISSING;
     if (v->ground.roller_drag > R(0))
@@ -124,6 +122,9 @@ static laconic_status check_ideal_ground(const laconic_vehicle *v, laconic_refus
         return refuse(why, without, LACONIC_FIELD_GROUND_AXLE_FRICTION, 0, v->ground.axle_friction_Nm, R(0));
     for (int32_t i = 0; i < v->wheel_count; i++) {
         const laconic_wheel *w = &v->wheel[i];
+        if (w->own_friction_coefficient > R(0))
+            return refuse(why, without, LACONIC_FIELD_WHEEL_FRICTION_COEFFICIENT, i + 1, w->own_friction_coefficient,
+                          R(0));
         if (w->own_roller_drag > R(0))
             return refuse(why, without, LACONIC_FIELD_WHEEL_ROLLER_DRAG, i + 1, w->own_roller_drag, R(0));
         if (w->own_axle_friction_Nm > R(0))

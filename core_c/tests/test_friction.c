@@ -54,8 +54,13 @@ static void what_contradicts_itself_is_refused_by_name(void) {
 static void friction_is_what_a_wheel_a_limit_or_a_circuit_gives(void) {
     laconic_vehicle v = robotino(0, 0, 0);
     TEST_ASSERT_FALSE(laconic_vehicle_has_friction(&v));
-    v.wheel[2].own_friction_coefficient = REAL(0.3);
+    v.wheel[2].own_friction_coefficient = REAL(0.3); /* needs the ground's */
+    TEST_ASSERT_FALSE(laconic_vehicle_has_friction(&v));
+    ASSERT_REFUSED(LACONIC_FRICTION_MISSING, LACONIC_FIELD_WHEEL_FRICTION_COEFFICIENT, 3,
+                   laconic_vehicle_check(&v, &why), why);
+    v.ground.friction_coefficient = REAL(0.5);
     TEST_ASSERT_TRUE(laconic_vehicle_has_friction(&v));
+    TEST_ASSERT_EQUAL(LACONIC_OK, laconic_vehicle_check(&v, &why));
     v = robotino(0, 0, 0);
     v.wheel[0].motor_circuit = LACONIC_MOTOR_OPEN;
     TEST_ASSERT_TRUE(laconic_vehicle_has_friction(&v));

@@ -12,13 +12,13 @@ from dataclasses import replace
 
 from .description import Description, Unknown, Variable, as_double
 
-COEFFICIENTS = ("ground_friction_coefficient", "own_friction_coefficient")
+COEFFICIENT = "ground_friction_coefficient"
 DRIVE = ("supply_V", "current_limit_A", "motor_circuit")
 """Above 0: the wheels slip, or the drive has limits; as laconic_vehicle_has_friction() has it."""
 
-PARAMETERS = (*COEFFICIENTS, *DRIVE, "ground_roller_drag", "ground_axle_friction_Nm", "own_roller_drag",
-              "own_axle_friction_Nm", "supply_resistance_ohm", "winding_resistance_ohm", "drive_viscous_friction_Nms",
-              "start_wheel_speed_rad_per_s")
+PARAMETERS = (COEFFICIENT, "own_friction_coefficient", *DRIVE, "ground_roller_drag", "ground_axle_friction_Nm",
+              "own_roller_drag", "own_axle_friction_Nm", "supply_resistance_ohm", "winding_resistance_ohm",
+              "drive_viscous_friction_Nms", "start_wheel_speed_rad_per_s")
 OUTPUTS = ("slip_along_m_per_s", "slip_across_m_per_s", "contact_state", "drive_limit", "motor_current_A",
            "supply_current_A", "supply_voltage_V", "supply_energy_J", "outer_work_J", "slip_loss_J", "axle_loss_J",
            "motor_loss_J", "supply_loss_J", "numerical_loss_J")
@@ -44,7 +44,7 @@ OF_SLIPPING: Dependencies = {
 
 def slips(description: Description) -> bool:
     """Whether a wheel of the described vehicle can slip."""
-    return _above_0(description, COEFFICIENTS)
+    return _above_0(description, (COEFFICIENT,))
 
 
 def has_friction(description: Description) -> bool:
@@ -59,7 +59,7 @@ def _above_0(description: Description, names: tuple[str, ...]) -> bool:
 
 def for_vehicle(description: Description) -> Description:
     """The description without what its vehicle does not need."""
-    if not any(v.name in COEFFICIENTS for v in description.variables):
+    if not any(v.name == COEFFICIENT for v in description.variables):
         return description  # of another model
     if slips(description):
         return _rebuilt(description, lambda v: True, OF_SLIPPING)

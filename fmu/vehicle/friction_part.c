@@ -3,10 +3,7 @@
 #include "friction_part.h"
 
 bool fmu_vehicle_slips(const laconic_vehicle *vehicle) {
-    bool slips = vehicle->ground.friction_coefficient > 0.0;
-    for (int32_t i = 0; i < vehicle->wheel_count; i++)
-        slips = slips || vehicle->wheel[i].own_friction_coefficient > 0.0;
-    return slips && vehicle->wheel_count > 0;
+    return vehicle->ground.friction_coefficient > 0.0 && vehicle->wheel_count > 0;
 }
 
 bool fmu_friction_refuses(const fmu_instance *instance, const laconic_vehicle *vehicle) {

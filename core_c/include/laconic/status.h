@@ -56,12 +56,12 @@
       "# is no motor circuit; use 0 (driven), 1 (open) or 2 (shorted)") \
     X(FRICTION_TWICE, "friction twice", /* the vehicle's friction coefficient besides the ground's */ \
       "# is given besides ground.friction_coefficient, by which wheels slip; take this one out") \
-    X(FRICTION_MISSING, "friction missing", /* drag or axle friction on ideal ground */ \
+    X(FRICTION_MISSING, "friction missing", /* of a wheel, its rollers or an axle, on ideal ground */ \
       "# has no effect on ideal ground; give ground.friction_coefficient, too") \
     X(METHOD_WITHOUT_FRICTION, "method without friction", \
       "this method knows neither ground friction nor limits of a drive; use auto") \
     X(STEP_UNSOLVED, "step unsolved", /* friction: the contact forces of a step were not found */ \
-      "in this state the contact forces over a step of # s were not found; use @ s or less") \
+      "no contact forces found for a step of # s; try another step or more roller_drag") \
     X(STRAIGHT_ONLY, "straight only", /* fixed wheels on parallel axle lines, on ideal ground */ \
       "fixed wheels on parallel axle lines only drive straight, whatever their motors do; for skid steering give " \
       "ground.friction_coefficient, so that wheels slip; else place them on one axle line")

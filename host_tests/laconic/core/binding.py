@@ -20,7 +20,7 @@ from typing import Any
 import numpy as np
 from cffi import FFI
 
-from laconic.core.fields import OF_GROUND, Field, fields_from, set_own_zeros
+from laconic.core.fields import ABOVE_0, OF_GROUND, Field, fields_from, set_own_zeros
 from laconic.core.given import c_object, items, number, numbers, shown, table
 from laconic.core.plant import Plant
 from laconic.errors import BadInput, Refused, nearest_of
@@ -152,9 +152,10 @@ class Core:
         fields = {field.key: field for field in self.fields_of("vehicle.wheel[#]")}
         for key, value in given.items():
             setattr(target, fields[key].member, not value if fields[key].kind == "ABSENCE" else value)
-        if "radius_m" in given and target.own_radius_m == 0:  # there it would mean the vehicle's
-            raise BadInput(f"{name}.radius_m: {given['radius_m']:g} is not positive; give a value above 0, or take it "
-                           "out for the vehicle's wheel_radius_m")
+        for key, whose in ABOVE_0.items():
+            if key in given and getattr(target, fields[key].member) <= 0:  # there it would mean the vehicle's
+                raise BadInput(f"{name}.{key}: {given[key]:g} is not positive; give a value above 0, or take it out "
+                               f"for {whose}")
 
     def _set_support(self, target: Any, name: str, support: Mapping[str, Any]) -> None:
         given = table(self, "vehicle.support[#]", name, support)

@@ -18,6 +18,9 @@ OWN = "own_"
 GROUND, GROUND_OF = "ground", "vehicle.ground"  # a table of scenes, and where the core has it
 OF_GROUND = ("friction_coefficient", "roller_drag", "axle_friction_Nm")  # that a wheel may have of its own
 
+ABOVE_0 = {"radius_m": "the vehicle's wheel_radius_m", "friction_coefficient": "the ground's"}
+"""What a wheel's own value cannot be 0 of, and whose value it has without one of its own."""
+
 
 @dataclass(frozen=True)
 class Field:
@@ -116,6 +119,8 @@ def set_own_zeros(vehicle: Any, wheels: Sequence[Mapping[str, Any]], fields: Seq
     get it as their own.
     """
     for field in fields:
+        if field.key in ABOVE_0:
+            continue
         owner = vehicle.ground if field.key in OF_GROUND else vehicle
         common = getattr(owner, field.vehicle_key)
         given = [(target, field.key in wheel) for target, wheel in zip(vehicle.wheel, wheels, strict=False)]

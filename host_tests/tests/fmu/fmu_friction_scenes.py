@@ -15,7 +15,8 @@ viscous_friction_Nms = 1e-5
 rotor_inertia_kgm2 = 1e-6
 """
 DRIVE = "[vehicle.drive]\nsupply_V = 12.0\nsupply_resistance_ohm = 0.1\ncurrent_limit_A = 5.0\n"
-GROUND = "[ground]\nfriction_coefficient = 0.6\nroller_drag = 0.1\naxle_friction_Nm = 0.05\n"
+GROUND = "[ground]\nfriction_coefficient = 0.6\naxle_friction_Nm = 0.05\n"
+DRAG = "roller_drag = 0.1\n"
 SLOPE = "slope_rad = 0.1\nslope_heading_rad = 0.4\n"
 FIXED = "".join(f'[[vehicle.wheel]]\nkind = "fixed"\nx_m = {x}\ny_m = {y}\naxle_deg = -90.0\n'
                 for x in (0.2, -0.2) for y in (0.2, -0.2))
@@ -24,7 +25,7 @@ OMNI = "".join(f'[[vehicle.wheel]]\nkind = "omni"\ndistance_m = 0.2\nbearing_deg
 
 PARTS = {
     "skid_steering": FIXED + MOTOR + DRIVE + GROUND + SLOPE,
-    "omni_on_friction": OMNI + MOTOR + GROUND,
+    "omni_on_friction": OMNI + MOTOR + GROUND + DRAG,
     "omni_with_limits": OMNI + MOTOR + DRIVE,
     "omni_on_a_slope": OMNI + MOTOR + "[ground]\n" + SLOPE,
 }

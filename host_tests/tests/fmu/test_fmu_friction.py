@@ -220,7 +220,7 @@ def test_a_value_outside_its_range_is_refused_in_one_line(version: int, name: st
 
 CANNOT_START = {
     "friction_coefficient": ([0.5], "0.5 is given besides ground.friction_coefficient"),
-    "ground_friction_coefficient": ([0.0], "roller_drag"),
+    "ground_friction_coefficient": ([0.0], "axle_friction_Nm"),
     "winding_resistance_ohm": ([0.0], "0 is not positive; give a value above 0"),
     "method": ([1], "use auto"),
 }
