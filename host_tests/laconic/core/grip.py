@@ -38,14 +38,18 @@ class Grip:
     worst_slip: GripEvent | None
     first_lift: GripEvent | None
     worst_lift: GripEvent | None
+    slip_loss_J: float | None = None    # given where wheels slip by the ground's friction: then nothing must not slip
 
     @classmethod
     def of(cls, grip: Any, plant: Plant, step_s: float) -> Grip:
         """From a laconic_grip; `step_s` as it was given, which single precision does not keep."""
         events = {name: event_of(getattr(grip, name), plant, step_s)
                   for name in ("first_slip", "worst_slip", "first_lift", "worst_lift")}
-        return cls(float(plant.c.vehicle.friction_coefficient) or None, int(grip.instants), int(grip.slipping),
-                   int(grip.lifting), **events)
+        vehicle, loss_J = plant.c.vehicle, None
+        if plant.has_friction and plant.c.friction.slips:
+            loss_J = float(plant.c.slip.slip_loss_J.value)
+        return cls(float(vehicle.friction_coefficient or vehicle.ground.friction_coefficient) or None,
+                   int(grip.instants), int(grip.slipping), int(grip.lifting), **events, slip_loss_J=loss_J)
 
     @property
     def holds(self) -> bool:
@@ -53,8 +57,9 @@ class Grip:
         return not (self.slipping or self.lifting)
 
     def as_json(self) -> dict[str, Any]:
-        """Machine-readable."""
-        return {"holds": self.holds, **asdict(self)}
+        """Machine-readable. Where wheels slip by the ground's friction, there is no condition to hold: null."""
+        found = {"holds": self.holds, **asdict(self)}
+        return found if self.slip_loss_J is None else found | {"holds": None, "slipping": None}
 
     def warning(self) -> str:
         """The events in one line; "" where every reaction was available."""

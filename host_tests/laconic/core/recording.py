@@ -42,6 +42,18 @@ class Recorder:
             raise IndexError("the recorder has no room for another row")
         self._plant.core.lib.laconic_record_row(self.c, self._plant.c, held)
 
+    def take_refused(self, held: Any) -> None:
+        """The row of the state that a refused step has left, unless it was taken before that step."""
+        steps, every = self._plant.steps, int(self.c.every)
+        if not self.c.row_count or (int(self.c.row_count) - 1) * every < steps:
+            self.c.grip = self._plant.core.ffi.NULL  # this instant was watched before the step
+            self.take_last(held)
+
+    @property
+    def row_count(self) -> int:
+        """How many rows were taken."""
+        return int(self.c.row_count)
+
     def columns(self) -> dict[str, np.ndarray]:
         """What was taken, by signal name."""
         table = self._table[: self.c.row_count].astype(float, copy=False)

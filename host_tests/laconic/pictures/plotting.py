@@ -179,9 +179,11 @@ def simulation_picture(run: Trajectory, path: Path) -> None:
 
 
 def title(picture: Figure, text: str, run: Trajectory) -> None:
-    """The picture's title: the scene's name and `text`; at the foot in red what the ground cannot give."""
+    """The picture's title: the scene's name and `text`; at the foot in red what is wrong with the run."""
     missing = run.grip.warning() if run.grip else ""
-    lines = textwrap.wrap(f"The ground cannot give what this run needs: {missing}" if missing else "", 150)
+    at_foot = [f"The ground cannot give what this run needs: {missing}"] if missing else []
+    at_foot += [f"The run ends before its time: {run.refused}"] if run.refused else []
+    lines = [line for each in at_foot for line in textwrap.wrap(each, 150)]
     picture.suptitle(wrapped(run.scene.name, LETTERS, text))
     if lines:
         picture.supxlabel("\n".join(lines), color=SLIPS, fontsize=9)

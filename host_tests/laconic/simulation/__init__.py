@@ -1,6 +1,7 @@
 """Runs of scenes through the core, and their signals over time."""
 
 from laconic.simulation.run import (
+    RunRefused,
     Trajectory,
     advance_plant,
     input_signals,
@@ -10,4 +11,5 @@ from laconic.simulation.run import (
     wanted_signals,
 )
 
-__all__ = ["Trajectory", "advance_plant", "input_signals", "run_window", "simulate", "usual_signals", "wanted_signals"]
+__all__ = ["RunRefused", "Trajectory", "advance_plant", "input_signals", "run_window", "simulate", "usual_signals",
+           "wanted_signals"]

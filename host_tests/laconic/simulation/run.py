@@ -44,10 +44,22 @@ class Trajectory:
     time_s: np.ndarray
     columns: dict[str, np.ndarray]
     grip: Grip | None = None  # None: the scene has no data of the ground
+    refused: Refused | None = None  # what ended it before its time
 
     def columns_of(self, name: str) -> np.ndarray:
         """All columns of one signal, side by side."""
         return np.column_stack([v for k, v in self.columns.items() if k.partition("[")[0] == name])
+
+
+class RunRefused(Refused):
+    """A step was refused on the way: `run` is the motion up to it. The result is there and fails."""
+
+    exit_status = 1
+
+    def __init__(self, refused: Refused, run: Trajectory):
+        super().__init__(refused.status, refused.field, refused.item, refused.message, value=refused.value,
+                         limit=refused.limit)
+        self.run = run
 
 
 def wanted_signals(scene: Scene) -> tuple[str, ...]:
@@ -94,9 +106,11 @@ def kept_signals(scene: Scene, given: Sequence[str]) -> tuple[str, ...]:
 
 
 def simulate(scene: Scene, signals: Sequence[str] = (), progress: bool = False) -> Trajectory:
-    """Runs a scene from its start to its end; Refused names file and time when a step is refused.
+    """Runs a scene from its start to its end.
 
-    Keeps the given signals (outputs, or inputs), else the scene's outputs, else the default ones.
+    Keeps the given signals (outputs, or inputs), else the scene's outputs, else the default ones. Refused names file
+    and time when the first step is refused or an input is no number; RunRefused, when a later step is refused, has the
+    motion up to it.
     """
     kept = kept_signals(check_scene(scene), signals)
     core, steps = scene.core(), scene.steps()
@@ -108,12 +122,26 @@ def simulate(scene: Scene, signals: Sequence[str] = (), progress: bool = False) 
     ticks = np.append(np.arange(0, steps, every), steps)  # the last row is the end of the run, on the grid or not
     recorder = Recorder(plant, kept, every, len(ticks), watched=is_watched(scene))
     began = time.perf_counter()
-    with progress_bar(scene.name, steps if progress else 0, forecasts=progress) as moved:
-        run_window(scene, plant, inputs, 0, steps, moved, recorder)
-    recorder.take_last(core.input(inputs.held_at(steps)))
-    seconds = time.perf_counter() - began
-    return Trajectory(scene, plant.chosen_method, steps, seconds, ticks * scene.run.step_s, recorder.columns(),
-                      recorder.grip(scene.run.step_s))
+    refused = None
+    try:
+        with progress_bar(scene.name, steps if progress else 0, forecasts=progress) as moved:
+            run_window(scene, plant, inputs, 0, steps, moved, recorder)
+        recorder.take_last(core.input(inputs.held_at(steps)))
+    except Refused as why:
+        if not plant.steps or why.status == "not finite":  # an input that the file should not have
+            raise
+        refused, ticks = why, take_end(plant, inputs, recorder, every)
+    run = Trajectory(scene, plant.chosen_method, plant.steps, time.perf_counter() - began, ticks * scene.run.step_s,
+                     recorder.columns(), recorder.grip(scene.run.step_s), refused)
+    if refused:
+        raise RunRefused(refused, run) from None
+    return run
+
+
+def take_end(plant: Plant, inputs: InputsOnGrid, recorder: Recorder, every: int) -> np.ndarray:
+    """Ends the rows where a step was refused; returns the steps that they belong to."""
+    recorder.take_refused(plant.core.input(inputs.held_at(plant.steps)))
+    return np.append(np.arange(recorder.row_count - 1) * every, plant.steps)
 
 
 def run_window(scene: Scene, plant: Plant, inputs: InputsOnGrid, first: int, count: int,

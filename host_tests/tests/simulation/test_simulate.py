@@ -15,7 +15,7 @@ from laconic.cli.main import run
 from laconic.core import load
 from laconic.paths import SOURCE_DIR
 from laconic.scene import read_scene
-from laconic.simulation import simulate, usual_signals
+from laconic.simulation import RunRefused, simulate, usual_signals
 
 PNG = b"\x89PNG\r\n\x1a\n"
 
@@ -158,15 +158,53 @@ def test_the_run_ends_at_its_end_even_between_two_outputs(tmp_path):
     assert simulate(read_scene(path)).time_s.tolist() == pytest.approx([0.0, 0.3, 0.6, 0.9, 1.0])
 
 
-def test_a_step_that_is_refused_on_the_way_reports_when(tmp_path, capsys):
+def spun_up(tmp_path: Path, outputs: str = "") -> Path:
+    """A moment spins the puck up until rk4 refuses its step."""
     spinning = force("steps", "t_s=[0.0]\nvalue=[20.0]").replace("body_force_N[1]", "body_moment_Nm")
-    path = scene_file(tmp_path, spinning, "duration_s = 10.0\nstep_s = 0.1\n")
-    assert run(["simulate", str(path), "--method", "rk4"]) == 2
+    return scene_file(tmp_path, spinning + outputs, 'duration_s = 10.0\nstep_s = 0.1\nmethod = "rk4"\n')
+
+
+def test_a_step_that_is_refused_on_the_way_reports_when(tmp_path, capsys):
+    path = spun_up(tmp_path)
+    assert run(["simulate", str(path)]) == 1
     line = capsys.readouterr().err
     assert "at t = " in line
     assert str(path) in line
     assert line.count("\n") == 1
     assert run(["simulate", str(path), "--method", "auto"]) == 0
+
+
+@pytest.mark.parametrize("every", [1, 2, 4])
+def test_what_was_simulated_before_a_refused_step_is_written(every, tmp_path, capsys):
+    path, out, picture = spun_up(tmp_path, f"[outputs]\nevery_s = 0.{every}"), tmp_path / "a.csv", tmp_path / "a.png"
+    assert run(["simulate", str(path), "--out", str(out), "--plot", str(picture), "--json"]) == 1
+    printed = capsys.readouterr()
+    answer = json.loads(printed.out)
+    steps = answer["refused"]["step"]
+    assert 0 < steps == answer["steps"] < 100
+    assert answer["refused"]["time_s"] == answer["final"]["time_s"] == pytest.approx(0.1 * steps)
+    assert answer["refused"]["message"] in printed.err and str(out) in printed.err
+    header, numbers = rows_of(out)
+    as_far = simulate(read_scene(path).with_run(duration_s=0.1 * steps))
+    assert header[1:] == list(as_far.columns)
+    assert numbers[:, 0].tolist() == as_far.time_s.tolist()
+    assert numbers[:, 1:].tolist() == np.column_stack(list(as_far.columns.values())).tolist()
+    assert picture.read_bytes().startswith(PNG)
+
+
+def test_a_program_gets_the_motion_up_to_a_refused_step(tmp_path):
+    with pytest.raises(RunRefused) as refused:
+        simulate(read_scene(spun_up(tmp_path)))
+    assert refused.value.status == "step beyond gyroscopic limit"
+    assert len(refused.value.run.time_s) == refused.value.run.steps + 1
+
+
+def test_a_run_whose_first_step_is_refused_has_no_result(tmp_path, capsys):
+    out = tmp_path / "run.csv"
+    path = scene_file(tmp_path, "[initial]\nyaw_rate_rad_per_s = 1e3", "duration_s = 1.0\nstep_s = 0.1\n")
+    assert run(["simulate", str(path), "--method", "rk4", "--out", str(out)]) == 2
+    assert "at t = 0 s: " in capsys.readouterr().err
+    assert not out.exists()
 
 
 def test_velocity_and_yaw_rate_start_the_motion_they_name():

@@ -123,3 +123,11 @@ def test_what_an_fmu_reports_in_the_demo_is_kept_and_does_not_run_into_the_resul
     rows = fmu_rows(scene, fmu, scene.steps(), every=100)
     assert any("grip" in line for line in rows.log)
     assert capfd.readouterr().out == ""
+
+
+def test_a_run_whose_wheels_slip_is_not_said_to_hold_the_ground(tmp_path, capsys):
+    assert run(["simulate", "skid_steer", "--json"]) == 0
+    found = json.loads(capsys.readouterr().out)["no_slip"]
+    assert found["holds"] is None and found["slipping"] is None
+    assert found["friction_coefficient"] == 0.6
+    assert found["slip_loss_J"] > 10.0

@@ -27,6 +27,8 @@ SHOWN_METHODS = ("auto", "rk4")
 SHOWN_FACTORS = (1, 10, 50)
 
 
+GROUND = {True: "hold", False: "[yellow]exceeded", None: "wheels slip"}  # of the no-slip model; None: another model
+
 @click.command("demo")
 @click.argument("scenes", type=SceneName(), nargs=-1, metavar="[SCENE]...")
 @click.option("--out", type=OutputFolder(), metavar="DIR",
@@ -92,7 +94,7 @@ def bits_table(results: list[SceneResult]) -> Table:
     for each in results:
         words = ["yes" if not each.same_bits[who] else "[red]NO" for who in PARTICIPANTS]
         shown = [f"{word} ({each.compared[who]:,} exchanges)" for word, who in zip(words, PARTICIPANTS, strict=True)]
-        ground = "not watched" if each.no_slip is None else "hold" if each.no_slip["holds"] else "[yellow]exceeded"
+        ground = "not watched" if each.no_slip is None else GROUND[each.no_slip["holds"]]
         table.add_row(escape(each.name), f"{each.steps:,}", *shown, ground)
     return table
 

@@ -12,10 +12,10 @@ import numpy as np
 from laconic.cli.options import PICTURES, OutputFile, SceneName, belongs_to, json_flag
 from laconic.cli.streams import warn
 from laconic.core import REALS
-from laconic.errors import BadInput
+from laconic.errors import BadInput, Refused, ResultFails
 from laconic.outputs import is_stdout, opened
-from laconic.scene import METHODS, read_scene
-from laconic.simulation import Trajectory, input_signals, simulate, usual_signals, wanted_signals
+from laconic.scene import METHODS, Scene, read_scene
+from laconic.simulation import RunRefused, Trajectory, input_signals, simulate, usual_signals, wanted_signals
 from laconic.simulation.csv_text import csv_text
 
 
@@ -36,14 +36,16 @@ def command(scene: str, method: str | None, step_s: float | None, real: str | No
 
     Inputs of kind "steps" are held over each step; a step that one of them changes within is refused. Where the scene
     gives a friction coefficient or the height of the centre of mass, the ground is watched: the first wheel that
-    would slip or lift is named on stderr.
+    would slip or lift is named on stderr. Where a step on the way is refused, everything is written up to it, and
+    the exit status is 1.
     """
     if step_s is not None and not 0.0 < step_s < float("inf"):
         raise BadInput(f"--step: {step_s:g} s is not usable; give a finite number above zero")
     belongs_to("--out", bool(out), "--inputs")
     given = read_scene(scene).with_run(method=method, step_s=step_s, real=real)
     written = (*wanted_signals(given), *(input_signals(given) if inputs_wanted else ()))
-    run = simulate(given, tuple(dict.fromkeys((*written, *(usual_signals(given) if plot else ())))), progress=True)
+    signals = tuple(dict.fromkeys((*written, *(usual_signals(given) if plot else ()))))
+    run = as_far_as_it_goes(given, signals)
     if out:
         write_csv(run, written, out)
     if plot:
@@ -55,6 +57,22 @@ def command(scene: str, method: str | None, step_s: float | None, real: str | No
         print_summary(run, out, plot)
     if run.grip and not run.grip.holds:
         warn(f"{given.path}: the ground cannot give what this run needs: {run.grip.warning()}")
+    if run.refused:
+        raise ResultFails(f"{run.refused}{kept_in(out, plot)}")
+
+
+def as_far_as_it_goes(scene: Scene, signals: tuple[str, ...]) -> Trajectory:
+    """The run, to its end or to the step that is refused."""
+    try:
+        return simulate(scene, signals, progress=True)
+    except RunRefused as cut_short:
+        return cut_short.run
+
+
+def kept_in(*paths: Path | None) -> str:
+    """Where the motion up to a refused step is."""
+    files = [str(path) for path in paths if path and not is_stdout(path)]
+    return f" (the run up to there is in {' and '.join(files)})" if files else ""
 
 
 def write_csv(run: Trajectory, signals: tuple[str, ...], path: Path) -> None:
@@ -73,14 +91,22 @@ def summary(run: Trajectory, out: Path | None, plot: Path | None) -> dict[str, A
         "step_s": run.scene.run.step_s, "real": run.scene.run.real, "steps": run.steps, "seconds": run.seconds,
         "final": {"time_s": run.time_s[-1], **{name: values[-1] for name, values in run.columns.items()}},
         "no_slip": run.grip.as_json() if run.grip else None,
+        "refused": in_words(run.refused, run) if run.refused else None,
         "files": [str(path) for path in (out, plot) if path]}
+
+
+def in_words(refused: Refused, run: Trajectory) -> dict[str, Any]:
+    """Why a run ended before its time, and where."""
+    return {"time_s": run.steps * run.scene.run.step_s, "step": run.steps, "status": refused.status,
+            "message": str(refused)}
 
 
 def print_summary(run: Trajectory, out: Path | None, plot: Path | None) -> None:
     """The same for people."""
     given, picked = run.scene.run.method, run.method
     method = given if given == picked else f"{given} (picked {picked})"
-    click.echo(f"{run.scene.name}: {run.steps} steps of {run.scene.run.step_s:g} s by {method}, {run.scene.run.real}, "
+    taken = f"{run.steps} of {run.scene.steps()}" if run.refused else f"{run.steps}"
+    click.echo(f"{run.scene.name}: {taken} steps of {run.scene.run.step_s:g} s by {method}, {run.scene.run.real}, "
                f"in {run.seconds:.2f} s")
     click.echo(f"at {run.time_s[-1]:g} s:")
     for name, values in run.columns.items():
