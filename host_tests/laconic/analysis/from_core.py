@@ -12,10 +12,12 @@ from laconic.analysis.field import Field
 from laconic.core import Core, Matrices
 from laconic.errors import BadInput, Refused
 from laconic.scene import Scene
+from laconic.scene.ground import on_ideal_ground, slips
 
 if TYPE_CHECKING:
     from laconic.method.scene_system import VehicleNumbers  # brings SymPy, which takes a while
 
+BY_SLIP_ALONE = ("nothing moves", "straight only")  # why ideal ground holds a robot that skids
 Inputs = Mapping[str, float | Sequence[float]]
 
 
@@ -93,6 +95,17 @@ def subject_of(scene: Scene, at_s: float = 0.0) -> Subject:
     varying = not inputs.is_held or len(inputs.changes) > 1
     held = f"The inputs are held as they are at {at_s:g} s (--at takes another instant)." if varying else ""
     return Subject(scene, core, vehicle, model, core.matrices(vehicle), inputs.held_at(tick), held)
+
+
+def rolling_subject(scene: Scene, at_s: float = 0.0) -> Subject:
+    """The same on ideal ground: what the wheels can do with the body does not depend on the ground, but for those that
+    move by slip alone (skid steering), which stay on theirs."""
+    try:
+        return subject_of(on_ideal_ground(scene), at_s)
+    except Refused as refused:
+        if refused.status not in BY_SLIP_ALONE or not slips(scene.vehicle):
+            raise
+        return subject_of(scene, at_s)
 
 
 def changed(subject: Subject, key: str, value: float) -> Subject:

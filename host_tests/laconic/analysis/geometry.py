@@ -15,6 +15,7 @@ from typing import Any
 import numpy as np
 
 from laconic.analysis.from_core import Subject
+from laconic.scene.ground import slips
 
 RANK_TOLERANCE = 1e-9
 WEAK_YAW = 0.5            # below this fraction of what mirrored rollers would give, the mounting is called wrong
@@ -213,6 +214,8 @@ def _reach_words(subject: Subject) -> str:
 
 def _freedom_words(subject: Subject, allowed: np.ndarray, length: float) -> str:
     count = allowed.shape[1]
+    if count == 3 and slips(subject.scene.vehicle):
+        return "By slipping alone the body moves anywhere in the plane: three degrees of freedom."
     if count == 3:
         return "The body moves freely in the plane: three degrees of freedom."
     motions = " and ".join(motion_words(motion, subject, length) for motion in _tidied(allowed))

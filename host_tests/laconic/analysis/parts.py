@@ -1,5 +1,6 @@
 """The parts of an analysis in their order, without the libraries that they need."""
 
-TITLES = {"geometry": "Geometry", "free": "Free motion", "steady": "Steady motions", "bifurcation": "Bifurcations",
+GEOMETRY = "geometry"
+TITLES = {GEOMETRY: "Geometry", "free": "Free motion", "steady": "Steady motions", "bifurcation": "Bifurcations",
           "traction": "Traction"}
 PARTS = tuple(TITLES)

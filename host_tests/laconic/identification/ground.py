@@ -42,8 +42,15 @@ def base_of(scene: Scene, parameters: Parameters) -> Vehicle:
         return scene.vehicle
     vehicle = copy.deepcopy(scene.vehicle)
     coefficient = vehicle.pop("friction_coefficient", 0.0) or USUAL_FRICTION
-    vehicle["ground"] = {**vehicle.get("ground", {}), "friction_coefficient": coefficient, "roller_drag": USUAL_DRAG}
+    vehicle["ground"] = {**vehicle.get("ground", {}), "friction_coefficient": coefficient}
+    if has_rollers(scene):
+        vehicle["ground"]["roller_drag"] = USUAL_DRAG
     return vehicle
+
+
+def has_rollers(scene: Scene) -> bool:
+    """Whether any wheel has rollers, which may drag."""
+    return any(wheel["kind"] != "fixed" for wheel in scene.vehicle["wheel"])
 
 
 def _of_ground(key: str, name: str, group: str, unit: str, usual: float, sd: float) -> Callable[[Scene, float],
@@ -55,7 +62,7 @@ def _of_ground(key: str, name: str, group: str, unit: str, usual: float, sd: flo
         nominal = scene.vehicle.get("ground", {}).get(key, scene.vehicle.get(key) or usual)
         high = 1.0 if key == "roller_drag" else math.inf
         return [Parameter(name, f"ground.{key}", group, unit, nominal, sd, write, low=LEAST[key], high=high)
-                for _ in scene.vehicle["wheel"][:1]]
+                for _ in scene.vehicle["wheel"][:1] if key != "roller_drag" or has_rollers(scene)]
 
     return make
 

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
 from typing import TYPE_CHECKING, Any
 
 from laconic.core import load
@@ -25,15 +26,22 @@ def has_friction(vehicle: dict[str, Any]) -> bool:
 
 def slips(vehicle: dict[str, Any]) -> bool:
     """Whether a wheel can slip."""
-    own = any(wheel.get("friction_coefficient") for wheel in vehicle["wheel"])
-    return own or "friction_coefficient" in vehicle.get("ground", {})
+    return "friction_coefficient" in vehicle.get("ground", {})
 
 
-def check_ideal_ground(scene: Scene, command: str) -> None:
+def check_ideal_ground(scene: Scene, command: str, instead: str = "") -> None:
     """BadInput where a command that treats (4.7) gets a vehicle with friction or limits of its drives."""
     if has_friction(scene.vehicle):
         raise BadInput(f"{scene.path}: laconic {command} treats ideal ground and motors without limits; give a scene "
-                       "without friction in [ground], without [vehicle.drive] and motor_circuit")
+                       f"without friction in [ground], without [vehicle.drive] and motor_circuit{instead}")
+
+
+def on_ideal_ground(scene: Scene) -> Scene:
+    """The scene without ground friction, slope and limits of its drives."""
+    vehicle = {key: value for key, value in scene.vehicle.items() if key not in ("ground", "drive")}
+    of_friction = (*OF_GROUND, "motor_circuit")
+    wheels = [{key: value for key, value in wheel.items() if key not in of_friction} for wheel in vehicle["wheel"]]
+    return replace(scene, vehicle=vehicle | {"wheel": wheels})
 
 
 def read_ground(table: Table) -> dict[str, float]:
@@ -46,17 +54,21 @@ def read_ground(table: Table) -> dict[str, float]:
         if key in ground and "friction_coefficient" not in ground:
             table.fail(key, "has no effect on ideal ground; give friction_coefficient, too")
     if "slope_heading_rad" in ground and "slope_rad" not in ground:
-        table.fail("slope_heading_rad", "has no effect on level ground; give slope_rad, too")
+        key = spelled(table, "slope_heading_rad")
+        table.fail(key, f"has no effect on level ground; give {key.replace('_heading', '')}, too")
     table.done()
     return ground
 
 
 def has(table: Table, key: str) -> bool:
     """Whether a key is given, an angle also in degrees."""
-    there = [table.has(key)]
-    if key.endswith("_rad"):
-        there.append(table.has(f"{key.removesuffix('_rad')}_deg"))
-    return any(there)
+    return table.has(key) or table.has(spelled(table, key))
+
+
+def spelled(table: Table, key: str) -> str:
+    """The key as the file has it: an angle that is given in degrees by that name."""
+    in_degrees = f"{key.removesuffix('_rad')}_deg"
+    return in_degrees if key.endswith("_rad") and table.has(in_degrees) else key
 
 
 def read_drive(vehicle: Table) -> dict[str, float]:
@@ -71,8 +83,8 @@ def read_drive(vehicle: Table) -> dict[str, float]:
         vehicle.fail("drive", "limits the currents of motors, which need [vehicle.motor]; give it instead of "
                      "motor_gain_Nm_per_V, or take [vehicle.drive] out")
     for key in ("supply_V", "current_limit_A"):
-        if key in drive and drive[key] == 0.0:
-            table.fail(key, "is 0; give a value above 0, or take it out for no limit")
+        if drive.get(key, 1.0) <= 0.0:
+            table.fail(key, f"is {drive[key]:g}; give a value above 0, or take it out for no limit")
     if "supply_resistance_ohm" in drive and "supply_V" not in drive:
         table.fail("supply_resistance_ohm", "has no effect without supply_V; give it, too")
     return drive

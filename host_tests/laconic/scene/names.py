@@ -16,8 +16,21 @@ def in_file(refused: Refused, in_degrees: Collection[str]) -> Refused:
     key, _, text = refused.message.partition(": ")
     if key not in in_degrees:
         return refused
-    text = text.replace(f"{refused.value:.6g} rad", f"{math.degrees(refused.value):.6g} degrees")
+    text = in_degrees_of(text, refused)
     for radians, degrees in DEGREES.items():
         text = text.replace(radians, degrees)
     text = f"{key.removesuffix('_rad')}_deg: {text}"
     return Refused(refused.status, refused.field, refused.item, text, value=refused.value, limit=refused.limit)
+
+
+def in_degrees_of(text: str, refused: Refused) -> str:
+    """A text whose numbers are the refusal's value and limit, in degrees; the limit rounded so that it is within."""
+    value, limit = (f"{number:.6g}" for number in (refused.value, refused.limit))
+    if text.startswith(f"with {value} rad"):
+        return text.replace(f"{value} rad", f"{math.degrees(refused.value):.6g} degrees", 1)
+    if not text.startswith(f"{value} is"):
+        return text
+    verdict = text.removeprefix(value)
+    if refused.limit:
+        verdict = verdict.replace(limit, f"{math.floor(1e3 * math.degrees(refused.limit)) / 1e3:.6g}")
+    return f"{math.degrees(refused.value):.6g}{verdict}"

@@ -10,6 +10,7 @@ from typing import Any
 from laconic.core import Field, load
 from laconic.errors import nearest_of
 from laconic.scene.drives import read_drives
+from laconic.scene.effects import check_ground, check_input, check_start, check_wheel
 from laconic.scene.fields import read_field
 from laconic.scene.ground import check_friction, has_friction, read_circuit, read_drive, read_ground
 from laconic.scene.inputs import Input
@@ -43,14 +44,15 @@ def read_parts(top: Table, methods: Sequence[str], reals: Sequence[str]) -> dict
     if top.has("ground"):
         parts["vehicle"]["ground"] = read_ground(top.table("ground"))
     check_friction(top, parts["vehicle"])
+    check_ground(top, parts["vehicle"])
     parts["speed_controller"] = read_speed_controller(top, parts["vehicle"])
     wheel_count = len(parts["vehicle"]["wheel"])
     parts["initial"] = read_initial(top.table("initial"), wheel_count)
+    check_start(top, parts["initial"], parts["vehicle"])
     parts["inputs"] = [read_input(each, wheel_count) for each in top.tables("input")]
     parts["run"] = read_run(top.table("run", required=True), methods, reals)
     for each in parts["inputs"]:
-        check_motor(top, each, parts["vehicle"])
-        check_end(top, each, parts["run"]["duration_s"])
+        check_input(top, each, parts["vehicle"], parts["run"]["duration_s"])
     parts["outputs"] = read_outputs(top.table("outputs"), parts["vehicle"], parts["run"]["duration_s"])
     parts["rig"] = read_rig(top.table("rig"), parts["vehicle"]["wheel"])
     top.done()
@@ -99,29 +101,20 @@ def read_wheel(table: Table) -> dict[str, Any]:
     fields = {field.key: field for field in load().fields_of("vehicle.wheel[#]") if field.key not in wheel}
     roller = fields.pop("roller_rad")
     wheel |= {key: read_field(table, field) for key, field in fields.items() if field.need == "EACH_WHEEL"}
-    if kind == "fixed":
-        for key in ("roller_rad", "roller_deg"):
-            if table.has(key):
-                table.fail(key, "is given for a fixed wheel, which has no rollers; take it out")
-    else:
+    if kind != "fixed":
         wheel["roller_rad"] = read_field(table, roller, math.pi / 2 if kind == "omni" else ...)
     usual = {"locked": False, "driven": True}
     wheel |= {key: read_field(table, fields[key], default) for key, default in usual.items()}
     wheel["motor_circuit"] = read_circuit(table)
     wheel |= read_own(table, [field for field in fields.values() if field.is_own])
+    check_wheel(table, wheel)
     table.done(OF_WHEELS)
     return wheel
 
 
 def read_own(table: Table, fields: Sequence[Field]) -> dict[str, float]:
     """Values that the wheel has instead of the vehicle's: only those that are given, as 0 is a value, too."""
-    own = {field.key: read_field(table, field) for field in fields if table.has(field.key)}
-    motor = [key for key in own if key.startswith("motor_")]
-    if motor and not table.flag("driven", True):
-        table.fail(motor[0], "is given for a wheel without a motor; take it out, or driven = false")
-    if (radius := own.get("radius_m", 1.0)) <= 0.0:
-        table.fail("radius_m", f"is {radius:g}; give a value above 0, or take it out for the vehicle's wheel_radius_m")
-    return own
+    return {field.key: read_field(table, field) for field in fields if table.has(field.key)}
 
 
 def read_position(table: Table) -> dict[str, float]:
@@ -206,32 +199,6 @@ def check_instants(table: Table, t_s: Sequence[float]) -> None:
     for before, after in pairwise(t_s):
         if after <= before:
             table.fail("t_s", f"goes from {before:g} to {after:g} s; give instants in ascending order")
-
-
-def check_motor(top: Table, each: Input, vehicle: dict[str, Any]) -> None:
-    """Fails for a voltage where no motor makes a torque of it."""
-    if not each.signal.startswith("voltage_V"):
-        return
-    number = int(each.signal.partition("[")[2].removesuffix("]"))
-    wheel = vehicle["wheel"][number - 1]
-    common = 1.0 if "motor" in vehicle else vehicle["motor_gain_Nm_per_V"]
-    if not wheel["driven"]:
-        top.fail(f"{each.location}.signal", f"{each.signal} would do nothing, wheel {number} has no motor; take out "
-                 "its driven = false, or drive it by axle_torque_Nm")
-    if wheel.get("motor_gain_Nm_per_V", common) == 0.0:
-        top.fail(f"{each.location}.signal", f"{each.signal} would do nothing, the vehicle has no motor; give "
-                 "[vehicle.motor] or vehicle.motor_gain_Nm_per_V, or drive the wheel by axle_torque_Nm")
-
-
-def check_end(top: Table, each: Input, duration_s: float) -> None:
-    """Fails for instants that the run never comes to; a table may lead to one that lies beyond its end."""
-    if each.kind == "sine":
-        return
-    reached = [t for t in each.t_s if t <= duration_s * (1.0 + 1e-12)]
-    beyond = each.t_s[len(reached) + (each.kind == "table" and bool(reached)):]
-    if beyond:
-        top.fail(f"{each.location}.t_s", f"{beyond[0]:g} s lies beyond the run of {duration_s:g} s and would do "
-                 "nothing; take it out or make run.duration_s longer")
 
 
 def read_run(table: Table, methods: Sequence[str], reals: Sequence[str]) -> dict[str, Any]:

@@ -1,10 +1,11 @@
 """Geometry diagnosis and traction: rank, yaw authority, wheels in the wrong diagonal, loads, reactions, first slip."""
 
+import friction_scenes
 import numpy as np
 import pytest
 from scene_text import constant, table, wheel
 
-from laconic.analysis.from_core import subject_of
+from laconic.analysis.from_core import rolling_subject, subject_of
 from laconic.analysis.geometry import diagnose
 from laconic.analysis.traction import static_normal_loads, study
 from laconic.paths import SCENE_DIR
@@ -194,3 +195,15 @@ def test_every_scene_gets_a_diagnosis_without_a_false_alarm(path):
     found = diagnose(subject_of(read_scene(path)))
     assert found.words
     assert not any("wrong diagonal" in sentence for sentence in found.words)
+
+
+def test_the_geometry_of_a_robot_does_not_depend_on_ground_and_drives(tmp_path):
+    on_ground = friction_scenes.slipping(tmp_path)
+    assert diagnose(rolling_subject(on_ground)) == diagnose(subject_of(read_scene("robotino2")))
+    assert diagnose(rolling_subject(friction_scenes.limited(tmp_path))).rank == 3
+
+
+def test_a_robot_that_turns_by_slip_alone_drives_straight_and_yaw(tmp_path):
+    found = diagnose(rolling_subject(friction_scenes.skid_steering(tmp_path)))
+    assert (found.dof, found.rank, found.not_driven) == (3, 2, ["moving straight along y"])
+    assert found.words[0].startswith("By slipping alone")

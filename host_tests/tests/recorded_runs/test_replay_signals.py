@@ -91,6 +91,18 @@ def test_inputs_that_vary_are_linear_between_rows(tmp_path, capsys):
         assert each["largest_difference"] <= 1e-3 * max(each["largest_value"], 1e-2), each
 
 
+def test_what_only_a_vehicle_with_friction_shows_is_compared_too(tmp_path, capsys):
+    text, path, out = scene_path("skid_steer").read_text(), tmp_path / "skid.toml", tmp_path / "run.csv"
+    signals = ["slip_along_m_per_s", "contact_state", "motor_current_A[2]", "supply_voltage_V", "slip_loss_J"]
+    path.write_text(text.replace("[run]", f"[outputs]\nsignals = {signals}\n[run]"))
+    assert run(["simulate", str(path), "--out", str(out), "--inputs"]) == 0
+    capsys.readouterr()
+    found = compared(capsys, out, path)
+    assert found["left_out"] == []
+    assert len(found["compared"]) == 4 + 4 + 3
+    assert max(each["largest_difference"] for each in found["compared"]) == 0.0
+
+
 HEAD = "time_s,x_m,voltage_V[1]\n"
 BAD = {
     "no rows": (HEAD + "0,0,0\n", "has 1 rows"),

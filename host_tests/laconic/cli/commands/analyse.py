@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING
 
 import click
 
-from laconic.analysis.parts import PARTS
+from laconic.analysis.parts import GEOMETRY, PARTS
 from laconic.cli.options import OutputFolder, SceneName, json_flag
 from laconic.errors import BadInput, ResultFails
 from laconic.outputs import write_text
@@ -42,7 +42,7 @@ def command(scene: str, out: Path | None, only: tuple[str, ...], at_s: float, st
     Exit status 1 when a simulation with the core does not confirm a result of the analysis.
     """
     from laconic.analysis.findings import StudyOptions
-    from laconic.analysis.from_core import subject_of
+    from laconic.analysis.from_core import rolling_subject, subject_of
     from laconic.analysis.older_page import pictures_of_older_page
     from laconic.analysis.report import as_numbers, as_text
     from laconic.analysis.study import study
@@ -53,8 +53,11 @@ def command(scene: str, out: Path | None, only: tuple[str, ...], at_s: float, st
     _check(low, high, straight, start)
     options = StudyOptions(tuple(p for p in PARTS if not only or p in only), parameter, low, high, straight, start)
     given = read_scene(scene)
-    check_ideal_ground(given, "analyse")
-    subject = subject_of(given, at_s)
+    if set(options.parts) <= {GEOMETRY}:
+        subject = rolling_subject(given, at_s)
+    else:
+        check_ideal_ground(given, "analyse", f"; laconic analyse --only {GEOMETRY} takes this one, too")
+        subject = subject_of(given, at_s)
     with progress_bar("analysing", 100) as advance:
         found = study(subject, options, lambda share, part: advance(90 * share, what=part))
         pictures = _draw(found, out, advance)
