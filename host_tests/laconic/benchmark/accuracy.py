@@ -22,6 +22,8 @@ GRID_S = 0.1  # every step of the ladder divides it
 OWN_FACTORS = (0.1, 0.2, 0.25, 0.5, 1.0, 2.0, 5.0, 10.0)  # of a step that does not divide it
 LONGEST_S = 10.0
 FINE_STEPS = 4000  # in the grid's spacing: forty times finer than the finest of the ladder
+FINER = (1, 2, 3)  # times that, where such a step is refused
+KINDS = {"error_nu": slice(0, 3), "error_pose": slice(3, 6), "error_wheel": slice(6, None)}
 TIMED_STEPS, TIMED_REPETITIONS = 4000, 5
 
 
@@ -31,6 +33,7 @@ class Truth:
 
     at_s: np.ndarray
     states: np.ndarray
+    error: dict[str, float] | None = None  # of each kind, where the reference is no better than its step
 
 
 def shortened(scene: Scene, grid_s: float = GRID_S) -> Scene:
@@ -41,13 +44,25 @@ def shortened(scene: Scene, grid_s: float = GRID_S) -> Scene:
 def truth_of(scene: Scene, grid_s: float = GRID_S) -> Truth:
     """Reference states at evenly spaced instants."""
     at_s = checkpoints(scene.run.duration_s, grid_s)
-    states = fine_states(scene, at_s, grid_s) if has_friction(scene.vehicle) else reference_states(scene, at_s)
-    return Truth(at_s, states)
+    return fine_truth(scene, at_s, grid_s) if has_friction(scene.vehicle) else Truth(
+        at_s, reference_states(scene, at_s))
 
 
-def fine_states(scene: Scene, at_s: np.ndarray, grid_s: float) -> np.ndarray:
-    """With friction no closed solution and no other routine is known: the same step, much finer."""
-    return follow(scene.with_run(step_s=grid_s / FINE_STEPS), "double", at_s)
+def fine_truth(scene: Scene, at_s: np.ndarray, grid_s: float) -> Truth:
+    """With friction no closed solution and no other routine is known: the same step, much finer.
+
+    As that step is of first order, it is off by what it differs from a run of twice the step (Richardson). Refused
+    where no such step is taken.
+    """
+    for finer in FINER:
+        try:
+            fine, coarser = (follow(scene.with_run(step_s=grid_s / (FINE_STEPS * finer) * factor), "double", at_s)
+                             for factor in (1, 2))
+        except Refused as refused:
+            last = refused
+            continue
+        return Truth(at_s, fine, {kind: relative(coarser[:, part], fine[:, part]) for kind, part in KINDS.items()})
+    raise last.at(scene.path)
 
 
 def methods_of(scene: Scene, methods: tuple[str, ...]) -> tuple[str, ...]:
@@ -136,8 +151,9 @@ def one_run(scene: Scene, real: str, truth: Truth) -> dict[str, Any]:
         states = follow(scene, real, truth.at_s)
     except Refused as refused:
         return row | {"status": refused.status}
-    kinds = {"error_nu": slice(0, 3), "error_pose": slice(3, 6), "error_wheel": slice(6, None)}
-    errors = {name: relative(states[:, part], truth.states[:, part]) for name, part in kinds.items()}
+    errors: dict[str, Any] = {name: relative(states[:, part], truth.states[:, part]) for name, part in KINDS.items()}
+    if truth.error:
+        errors["reference_error_nu"] = truth.error["error_nu"]
     return row | {"status": "ok"} | errors
 
 
@@ -145,8 +161,14 @@ def rows_of(scene: Scene, reals: tuple[str, ...], methods: tuple[str, ...] = MET
             advance: Any = lambda: None, ladder: tuple[float, ...] = STEPS_S,
             grid_s: float = GRID_S) -> list[dict[str, Any]]:
     """The whole ladder of one scene."""
-    short = shortened(scene, grid_s)
-    truth, rows = truth_of(short, grid_s), []
+    short, rows = shortened(scene, grid_s), []
+    try:
+        truth = truth_of(short, grid_s)
+    except Refused as refused:
+        advance(len(reals) * len(methods_of(scene, methods)))
+        return [{"scene": scene.path.stem, "real": real, "method": method, "step_s": scene.run.step_s,
+                 "status": "no reference", "why": str(refused)} for real in reals
+                for method in methods_of(scene, methods)]
     steps = [h for h in ladder if fits(replace(short, run=replace(short.run, step_s=h)), truth)]
     for real in reals:
         for method in methods_of(scene, methods):

@@ -38,11 +38,17 @@ def error_against_time(rows: Sequence[Row], scene: str, title: str = "") -> str:
     picture = figure(*SIZE)
     axes = picture.add_subplot()
     mine = [r for r in rows if r["scene"] == scene]
+    alone = all(r["method"] == "auto" for r in mine)  # else its points lie on another method's, and have no line
     for method in METHODS:
-        for real, style, name in (("double", "-", method), ("single", "--", None)):
+        for real, line, name in (("double", "-", method), ("single", "--", None)):
             chosen = [r for r in mine if (r["method"], r["real"]) == (method, real)]
-            _lines(axes, chosen, "us_per_second", "error_nu", style_of(method, MARKS, label=name, linestyle=style)
-                   if method != "auto" else style_of(method, MARKS, label=name))
+            style = style_of(method, MARKS, label=name)
+            if alone:
+                style |= {"linestyle": line, "markersize": MARKS * (2.0 if real == "double" else 1.2),
+                          "markerfacecolor": "none" if real == "double" else style["color"]}
+            elif method != "auto":
+                style["linestyle"] = line
+            _lines(axes, chosen, "us_per_second", "error_nu", style)
     axes.plot([], [], "-", color="0.4", label="double")
     axes.plot([], [], "--", color="0.4", label="single")
     own = [r for r in mine if r.get("own")]
@@ -50,13 +56,23 @@ def error_against_time(rows: Sequence[Row], scene: str, title: str = "") -> str:
         _lines(axes, own, "us_per_second", "error_nu", {
             "marker": "o", "markersize": 12, "color": "#f2dc7e", "linestyle": "none", "zorder": 0.5,
             "label": f"the scene's own step, {own[0]['step_s']:g} s"})
-    low = 0.3 * min(axes.dataLim.y0, REFERENCE)
-    axes.set_ylim(bottom=low)
-    axes.axhspan(low, REFERENCE, color="0.5", alpha=0.15, lw=0, label="error of the reference itself")
+    mark_reference(axes, mine)
     axes.set(xlabel="run time per simulated second [µs]", ylabel="error of ν, relative",
              title=wrapped(title or scene, TITLE_LETTERS))
     _legend_below(picture, axes)
     return svg(picture)
+
+
+def mark_reference(axes: Axes, rows: Sequence[Row]) -> None:
+    """The band in which an error may be the reference's own: of a run in finer steps what that is found to be."""
+    errors = [r["error_nu"] for r in rows if r.get("error_nu") is not None and np.isfinite(r["error_nu"])]
+    if not errors:
+        return
+    reference = max((r["reference_error_nu"] for r in rows if "reference_error_nu" in r), default=REFERENCE)
+    reference = max(reference, FLOOR)
+    low, high = 0.3 * min(*errors, reference), 3.0 * max(*errors, reference)
+    axes.set_ylim(max(low, 0.3 * FLOOR), high)
+    axes.axhspan(max(low, 0.3 * FLOOR), reference, color="0.5", alpha=0.15, lw=0, label="error of the reference itself")
 
 
 def precision(rows: Sequence[Row]) -> str:

@@ -38,6 +38,8 @@ def collect_robots(scenes: Sequence[Scene], folder: Path, quick: bool = False) -
         report.results["robots"] = [robot_row(scene) for scene in scenes]
         advance(0, "error against run time")
         report.results["accuracy"] = [row for scene in scenes for row in ladder_rows(scene, advance)]
+        report.notes += [f"Not compared, as the reference was refused: {why}" for why in
+                         dict.fromkeys(row["why"] for row in report.results["accuracy"] if "why" in row)]
         report.results["take"] = [row for scene in scenes for row in advice(report.results["accuracy"], scene)]
         advance(0, "stability map")
         report.results["map"] = [row for scene in scenes for row in map_rows(scene, factors, advance)]
@@ -61,7 +63,8 @@ def _distinct(scenes: Sequence[Scene]) -> None:
 
 
 def robot_row(scene: Scene) -> Row:
-    """The constants of the robot that the core has prepared."""
+    """The constants of the robot that the core has prepared. With friction the model is that of the body alone, which
+    no motor damps: then there is no rate."""
     core = load("double")
     plant = scene.with_run(real="double").plant(core)
     model = plant.c.model
@@ -73,8 +76,9 @@ def robot_row(scene: Scene) -> Row:
             "wheels": wheels + (f", {supports} support{'s' if supports > 1 else ''}" if supports else ""),
             "dof": int(model.dof), "method": scene.run.method,
             "works": "the friction step" if plant.has_friction else plant.chosen_method,
-            "real": scene.run.real, "step_s": scene.run.step_s, "fastest_decay_per_s": float(rates.max(initial=0.0)),
-            "h_r": scene.run.step_s * float(rates.max(initial=0.0))}
+            "real": scene.run.real, "step_s": scene.run.step_s} | (
+                {} if plant.has_friction else {"fastest_decay_per_s": float(rates.max(initial=0.0)),
+                                               "h_r": scene.run.step_s * float(rates.max(initial=0.0))})
 
 
 def ladder_rows(scene: Scene, advance: Any = lambda: None) -> list[Row]:

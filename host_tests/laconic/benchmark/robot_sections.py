@@ -36,8 +36,9 @@ def _facts(row: Row) -> list[Row]:
     works = "" if row["works"] == row["method"] else f", which picks {row['works']}"
     named = {"wheels": row["wheels"], "mass": f"{row['mass_kg']:.6g} kg", "degrees of freedom": str(row["dof"]),
              "method of the scene": row["method"] + works, "scalar type": row["real"],
-             "its own step h": f"{row['step_s']:g} s",
-             "fastest damping r": f"{row['fastest_decay_per_s']:.4g} 1/s, h·r = {row['h_r']:.3g}"}
+             "its own step h": f"{row['step_s']:g} s"}
+    if "h_r" in row:
+        named["fastest damping r"] = f"{row['fastest_decay_per_s']:.4g} 1/s, h·r = {row['h_r']:.3g}"
     return [{"name": row["name"], "fact": fact, "value": value} for fact, value in named.items()]
 
 
@@ -57,7 +58,7 @@ def _stability(scenes: Sequence[Scene], results: Results) -> Section:
         own = next(row for row in results["robots"] if row["scene"] == scene.path.stem)
         whose = f", {scene.path.stem}" if len(scenes) > 1 else ""
         drawn += [pictures.stability(rows, method, (own["step_s"], own["fastest_decay_per_s"]), whose)
-                  for method in METHODS if rows]
+                  for method in (METHODS if rows else ())]
     return Section("stability", "Stability map", texts.paragraphs(texts.ROBOT_STABILITY), drawn)
 
 

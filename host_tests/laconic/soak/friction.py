@@ -8,6 +8,7 @@ only told, as no vehicle is like that. What fails is written to build/friction, 
 
 from __future__ import annotations
 
+import time
 from collections.abc import Callable, Iterator
 from itertools import count as numbers
 from typing import Any
@@ -16,7 +17,6 @@ import numpy as np
 
 from laconic.paths import build_dir
 from laconic.soak import StoppedEarly
-from laconic.soak._turns import in_turns
 from laconic.verification.friction.agreement import ENERGY_LIMIT, Count, compare, energy_difference
 from laconic.verification.friction.driven import drive
 from laconic.verification.friction.hard import KINDS, hard_problem
@@ -34,10 +34,23 @@ def soak(minutes: float, seed: int, advance: Callable[[float], None]) -> dict[st
     parts = {"cold": _cold(seed, counts["cold"]), "hard": _hard(seed, counts["hard"]),
              "warm": _warm(seed, counts["warm"])}
     try:
-        in_turns(parts, {"cold": 0.4, "hard": 0.2, "warm": 0.4}, 60.0 * minutes, advance)
+        _run(parts, {"cold": 0.4, "hard": 0.2, "warm": 0.4}, 60.0 * minutes, advance)
     except KeyboardInterrupt as stopped:
         raise StoppedEarly(_result(counts)) from stopped
     return _result(counts)
+
+
+def _run(parts: dict[str, Iterator[None]], share: dict[str, float], time_s: float,
+         advance: Callable[[float], None]) -> None:
+    """Takes the part that is furthest behind its share of the time, one item after the other."""
+    spent = dict.fromkeys(parts, 0.0)
+    while sum(spent.values()) < time_s:
+        name = min(parts, key=lambda part: spent[part] / share[part])
+        began = time.monotonic()
+        next(parts[name])
+        took = time.monotonic() - began
+        spent[name] += took
+        advance(took)
 
 
 def _result(counts: dict[str, Count]) -> dict[str, Any]:
