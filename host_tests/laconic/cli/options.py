@@ -119,3 +119,9 @@ def goes_with(flag: str, *options: str) -> None:
         name = parameter.opts[0]
         if given and isinstance(parameter, click.Option) and name != flag and name not in options:
             raise BadInput(f"{name}: has no meaning beside {flag}; leave one of them out")
+
+
+def check_step(step_s: float | None) -> None:
+    """BadInput for a --step that no run can take."""
+    if step_s is not None and not 0.0 < step_s < float("inf"):
+        raise BadInput(f"--step: {step_s:g} s is not usable; give a finite number above zero")

@@ -7,7 +7,7 @@ from typing import Any
 
 import click
 
-from laconic.cli.options import InputPath, OutputFile, SceneName, goes_with, json_flag
+from laconic.cli.options import InputPath, OutputFile, SceneName, check_step, goes_with, json_flag
 from laconic.core import REALS
 from laconic.play.canopen_eds import eds_of_scene
 from laconic.play.faults import KINDS as FAULTS
@@ -66,6 +66,7 @@ def command(scene_name: str, method: str | None, real: str | None, step_s: float
     status 0 when the user or --duration has ended it, 1 when the bus died, a step was refused or a watchdog fired, 2
     for bad input.
     """
+    check_step(step_s)
     scene = read_scene(scene_name).with_run(method=method, step_s=step_s, real=real)
     if eds:
         goes_with("--eds", "--drives", "--real", "--step")

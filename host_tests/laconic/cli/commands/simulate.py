@@ -9,10 +9,10 @@ from typing import Any
 import click
 import numpy as np
 
-from laconic.cli.options import PICTURES, OutputFile, SceneName, belongs_to, json_flag
+from laconic.cli.options import PICTURES, OutputFile, SceneName, belongs_to, check_step, json_flag
 from laconic.cli.streams import warn
 from laconic.core import REALS
-from laconic.errors import BadInput, Refused, ResultFails
+from laconic.errors import Refused, ResultFails
 from laconic.outputs import is_stdout, opened
 from laconic.scene import METHODS, Scene, read_scene
 from laconic.simulation import RunRefused, Trajectory, input_signals, simulate, usual_signals, wanted_signals
@@ -39,8 +39,7 @@ def command(scene: str, method: str | None, step_s: float | None, real: str | No
     would slip or lift is named on stderr. Where a step on the way is refused, everything is written up to it, and
     the exit status is 1.
     """
-    if step_s is not None and not 0.0 < step_s < float("inf"):
-        raise BadInput(f"--step: {step_s:g} s is not usable; give a finite number above zero")
+    check_step(step_s)
     belongs_to("--out", bool(out), "--inputs")
     given = read_scene(scene).with_run(method=method, step_s=step_s, real=real)
     written = (*wanted_signals(given), *(input_signals(given) if inputs_wanted else ()))
