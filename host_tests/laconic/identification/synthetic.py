@@ -43,19 +43,19 @@ class Trial:
                 zip(self.found.parameters.each, self.found.values, self.found.half_widths, strict=True)]
 
 
-def trials(count: int, seed: int, robots: Sequence[str] = ROBOTS) -> Iterator[Trial]:
+def trials(count: int, seed: int, robots: Sequence[str] = ROBOTS, runs: int = RUNS) -> Iterator[Trial]:
     """Robots in turn, each time with other true values, runs and noise."""
     for number in range(count):
         name = robots[number % len(robots)]
-        yield trial(read_scene(name), name, np.random.default_rng([seed, number]))
+        yield trial(read_scene(name), name, np.random.default_rng([seed, number]), runs)
 
 
-def trial(scene: Scene, name: str, random: np.random.Generator) -> Trial:
+def trial(scene: Scene, name: str, random: np.random.Generator, runs: int = RUNS) -> Trial:
     """One robot, its runs, and what is found from them."""
     core, parameters = scene.core(), geometry_of(scene, USUAL)
     truth = parameters.values(TRUTH_SHARE * random.standard_normal(len(parameters)))
     vehicle = parameters.vehicle(scene.vehicle, truth)
-    logs = [made_up(core, vehicle, Path(f"/made-up/{number}/run.csv"), random) for number in range(RUNS)]
+    logs = [made_up(core, vehicle, Path(f"/made-up/{number}/run.csv"), random) for number in range(runs)]
     found = fit(scene.vehicle, parameters, RollingEvidence(core, scene.path, logs))
     return Trial(name, _named(parameters, truth), found)
 
