@@ -148,8 +148,8 @@ def _least(base: dict[str, Any], parameters: Parameters, evidence: Evidence, z: 
         each = jacobians_of(base, parameters, evidence, z)
         return np.vstack([*(j * f / scale for j, f in zip(each, factors, strict=True)), np.eye(len(z))])
 
-    solved = least_squares(residual, z, x_scale=1.0, ftol=1e-6, xtol=1e-5) if not evidence.difference else least_squares(
-        residual, z, jac=jacobian, x_scale=1.0, ftol=1e-4, xtol=1e-3, max_nfev=12)
+    solved = least_squares(residual, z, ftol=1e-6, xtol=1e-5) if not evidence.difference else least_squares(
+        residual, z, jac=jacobian, ftol=1e-4, xtol=1e-3, max_nfev=12)
     found: np.ndarray = solved.x
     return found
 

@@ -179,3 +179,19 @@ def test_friction_of_each_wheel_is_a_share_of_the_grounds(robot):
     assert len(geometry_of(replace(robot, vehicle=vehicle), ("friction",))) == 1
     with pytest.raises(Exception, match="--free wheel-friction"):
         geometry_of(replace(robot, vehicle=vehicle), ("wheel-friction",))
+
+
+@needs_records
+def test_axle_friction_from_driven_runs_is_that_of_the_log_whose_wheels_turn_free():
+    text = (recorded("robotino") / "motor_identification.csv").read_text().splitlines()[3:]
+    rows = np.array([[float(cell) for cell in line.split(";")[:13]] for line in text])
+    starts = np.flatnonzero(np.abs(np.diff(rows[:, 1])) > 1.0) + 1
+    steps = [part[len(part) // 2:] for part in np.split(rows, starts) if len(part) > 20 and abs(part[0, 1]) > 1.0]
+    speed = np.concatenate([np.abs(part[:, 7:10].mean(axis=0)) for part in steps])
+    current = np.concatenate([part[:, 10:13].mean(axis=0) for part in steps])
+    slope, at_rest = np.polyfit(speed, current, 1)
+    scene = read_scene("robotino_grey").vehicle
+    constant, ratio = scene["motor"]["torque_constant_Nm_per_A"], scene["motor"]["gear_ratio"]
+    assert len(steps) == 14
+    assert ratio * constant * at_rest == pytest.approx(scene["ground"]["axle_friction_Nm"], rel=0.05)
+    assert constant * slope == pytest.approx(1.86e-5, rel=0.01)
