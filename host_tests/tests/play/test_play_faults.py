@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import struct
+from pathlib import Path
 
 import can
 import pytest
@@ -152,3 +153,40 @@ def test_faults_that_cannot_be_are_refused_in_one_line(arguments: list[str], wor
     assert run(["play", "canopen_agv", "--listen", "0", "--duration", "5", *arguments]) == 2
     error = capsys.readouterr().err
     assert error.count("\n") == 1 and all(word in error for word in words), error
+
+
+MATRIX = {
+    "loss": ("loss=0.2",), "duplication": ("duplication=0.2",), "reordering": ("reordering=0.2",),
+    "delay": ("delay_s=0.004",), "jitter": ("jitter_s=0.01",), "corruption": ("corruption=0.2", "corrupted_bits=3"),
+    "stuck": ("stuck=0.01",), "wrong length": ("wrong_length=0.2",), "foreign": ("foreign=0.3",),
+    "babble": ("babble_per_s=2000",), "bus-off": ("bus_off_after=50", "bus_off_s=0.1"),
+    "bus-off for ever": ("bus_off_after=50",), "stale queue": ("bus_off_after=50", "bus_off_s=0.1", "keep_queue=true"),
+    "slow wire": ("bitrate=125000",)}
+
+
+@pytest.mark.parametrize("kind", MATRIX)
+def test_every_fault_of_the_matrix_stands_between_vehicle_and_controller_and_the_run_goes_on(kind: str) -> None:
+    """Twice: what a seed does to a run is the same each time."""
+    command = can.Message(arbitration_id=0x200, is_extended_id=False, data=struct.pack(">4h", 300, 300, 300, 0))
+    runs = []
+    for _ in range(2):
+        judgement, controller = played("robotino2", 0.3, lambda t: [command], drives="robomaster",
+                                       bus_faults=MATRIX[kind], seed=3)
+        assert judgement.exit_status == 0 and judgement.figures["late_periods"] == 0, judgement
+        runs.append([(at_s, message.arbitration_id, bytes(message.data)) for at_s, message in controller.heard])
+    assert runs[0] == runs[1]
+    _, undisturbed = played("robotino2", 0.3, lambda t: [command], drives="robomaster")
+    whole = [(at_s, message.arbitration_id, bytes(message.data)) for at_s, message in undisturbed.heard]
+    assert runs[0] != whole and len(runs[0]) > 0
+
+
+def test_wheels_without_a_drive_are_passed_over_and_a_fault_finds_its_wheel(tmp_path: Path) -> None:
+    path = tmp_path / "two.toml"
+    path.write_text(Path(read_scene("robotino2").path).read_text(encoding="utf-8")
+                    + '\n[rig.drives]\nprotocol = "robomaster"\nnode_ids = [false, 5, 6]\n', encoding="utf-8")
+    command = can.Message(arbitration_id=0x1FF, is_extended_id=False, data=struct.pack(">4h", 300, 300, 0, 0))
+    judgement, controller = played(path, 0.4, lambda t: [command], faults=("temperature:3@0.2",))
+    assert judgement.exit_status == 0
+    assert {message.arbitration_id for _, message in controller.heard} == {0x205, 0x206}
+    current = {number: struct.unpack(">h", controller.of(number)[-1][1].data[4:6])[0] for number in (0x205, 0x206)}
+    assert current[0x205] != 0 and current[0x206] == 0
