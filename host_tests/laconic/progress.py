@@ -1,4 +1,4 @@
-"""A progress bar on stderr for work that takes long; without a terminal nothing is drawn."""
+"""A progress bar on stderr for work that takes long; without a terminal a line each minute."""
 
 from __future__ import annotations
 
@@ -19,11 +19,12 @@ LONG_S = 60.0       # if that is longer than this
 def progress_bar(what: str, total: float, *, forecasts: bool = False) -> Iterator[Advance]:
     """Yields advance(amount=1, what=None): moves the bar on, and may rename it.
 
-    `forecasts`: where stderr is no terminal, one line states how long the work takes, if that is long.
+    Where stderr is no terminal, a line a minute states how far the work is; `forecasts`: one line how long it takes, if
+    that is long.
     """
     console = Console(stderr=True)
     if not console.is_terminal:
-        yield forecast(what, total) if forecasts else lambda amount=1, what=None: None
+        yield forecast(what, total) if forecasts else each_minute(what, total)
         return
     columns = (TextColumn("{task.description}", markup=False), BarColumn(), MofNCompleteColumn(), TimeRemainingColumn())
     with Progress(*columns, console=console, transient=True) as bar:
@@ -49,6 +50,22 @@ def forecast(what: str, total: float, clock: Callable[[], float] = time.monotoni
         if whole_s > LONG_S:
             print(f"laconic: {what_now or what}: takes about {duration_text(whole_s)}; Ctrl-C ends it",
                   file=sys.stderr, flush=True)
+
+    return advance
+
+
+def each_minute(task: str, total: float, clock: Callable[[], float] = time.monotonic) -> Advance:
+    """An advance(amount, what) that states on stderr, at most once a minute, how far the work is."""
+    began = last = clock()
+    done, name = 0.0, task
+
+    def advance(amount: float = 1, what: str | None = None) -> None:
+        nonlocal last, done, name
+        now, done, name = clock(), done + amount, f"{task}, {what}" if what else name
+        if now - last >= LONG_S:
+            last = now
+            print(f"laconic: {name}: {done:.0f} of {total:.0f} after {duration_text(now - began)}", file=sys.stderr,
+                  flush=True)
 
     return advance
 

@@ -13,6 +13,7 @@ from laconic.benchmark.counting import (
     size_of_step,
 )
 from laconic.benchmark.workshop import BOARDS, HOST, M4F, Target, Variant, Workshop
+from laconic.core import load
 from laconic.errors import Refused
 from laconic.scene import METHODS, Scene
 
@@ -35,6 +36,9 @@ def board_row(workshop: Workshop, target: Target, variant: Variant) -> dict[str,
     except Refused as refused:
         return row | {"status": refused.status}
     size, ran = size_of_step(workshop, target, variant), count_on_board(workshop, target, variant)
+    if ran.status:
+        core = load(variant.real)
+        return row | {"status": core.text(core.lib.laconic_status_name(ran.status))}
     host = host_state(workshop.host_program(variant), ran.steps)
     row |= {"status": "ok", "chosen": files.method, "instructions": round(ran.instructions, 1),
             "stack_measured": ran.stack_bytes} | asdict(size)

@@ -7,6 +7,7 @@ import re
 from dataclasses import replace
 from types import SimpleNamespace
 
+import friction_scenes
 import numpy as np
 import pytest
 from matplotlib import pyplot as plt
@@ -15,7 +16,9 @@ from laconic.benchmark import accuracy, pictures, robot
 from laconic.benchmark.collect import PARTS
 from laconic.benchmark.plan import plan
 from laconic.benchmark.svg import SIZE, svg
+from laconic.benchmark.writing import write
 from laconic.cli import main as cli
+from laconic.errors import Refused
 from laconic.paths import SCENE_DIR
 from laconic.pictures.method_style import METHOD_STYLES
 from laconic.scene import METHODS, read_scene
@@ -113,6 +116,49 @@ def test_every_scene_has_steps_to_compare_its_own_among_them(duration, own):
     assert len(fitting) >= 5
     assert len(truth.at_s) <= accuracy.CHECKPOINTS
     assert truth.at_s[-1] <= duration * (1.0 + 1e-9)
+
+
+@pytest.fixture
+def slipping(tmp_path):
+    """A short run with friction."""
+    return friction_scenes.skid_steering(tmp_path).with_run(duration_s=0.2)
+
+
+def test_the_reference_of_a_scene_with_friction_is_as_good_as_its_step(slipping):
+    truth = accuracy.truth_of(slipping)
+    better = accuracy.follow(slipping.with_run(step_s=0.1 / accuracy.FINE_STEPS / 4), "double", truth.at_s)
+    found = accuracy.relative(truth.states[:, :3], better[:, :3])
+    assert 0.5 * found < truth.error["error_nu"] < 3.0 * found
+    rows = accuracy.rows_of(slipping, ("double",), ladder=(0.002, 0.02))
+    assert [row["reference_error_nu"] for row in rows] == [truth.error["error_nu"]] * 2
+    assert all(row["error_nu"] > truth.error["error_nu"] > 1e-9 for row in rows)
+
+
+def test_a_refused_reference_leaves_a_page_that_names_the_file(slipping, monkeypatch, tmp_path):
+    def refuse(*_: object) -> None:
+        raise Refused("step unsolved", "step_s", 0, "run.step_s: no contact forces found for a step of 1e-05 s")
+
+    monkeypatch.setattr(accuracy, "follow", refuse)
+    monkeypatch.setattr(robot, "M4F", SimpleNamespace(present=False))
+    report = robot.collect_robots([slipping], tmp_path, quick=True)
+    assert {row["status"] for row in report.results["accuracy"]} == {"no reference"}
+    assert any(str(slipping.path) in note and "no contact forces found" in note for note in report.notes)
+    page = write(report, tmp_path / "out", "0")
+    assert str(slipping.path) in page.read_text(encoding="utf-8")
+
+
+def test_the_page_of_a_scene_with_friction_tells_no_damping_and_both_types_apart(slipping, monkeypatch):
+    row = robot.robot_row(slipping)
+    assert "h_r" not in row and "fastest_decay_per_s" not in row
+    rows = [{"scene": "x", "method": "auto", "real": real, "step_s": h, "us_per_second": 1.0 / h, "error_nu": h,
+             "reference_error_nu": 2e-5, "own": False} for real in ("double", "single") for h in (0.001, 0.01, 0.1)]
+    monkeypatch.setattr(pictures, "svg", without_layout)
+    dashes = [pictures.error_against_time(some, "x").count("stroke-dasharray: ") for some in (rows, rows[:3])]
+    assert dashes[0] == dashes[1] + 1  # the curve of single; the legend has its dashes in both
+    axes = plt.figure().add_subplot()
+    pictures.mark_reference(axes, rows)
+    assert axes.get_ylim() == pytest.approx((0.3 * 2e-5, 3.0 * 0.1))  # no empty decades, and no point at the edge
+    plt.close()
 
 
 # ---- the pictures

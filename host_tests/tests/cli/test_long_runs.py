@@ -9,7 +9,7 @@ import sys
 import pytest
 
 from laconic.core.grip import Grip, GripEvent
-from laconic.progress import forecast
+from laconic.progress import each_minute, forecast
 
 
 @pytest.mark.parametrize(("per_call_s", "words"), [(0.6, "about 14 days"), (1e-9, "")])
@@ -21,6 +21,18 @@ def test_long_work_is_foretold_once(capsys, per_call_s, words):
         advance(1)
     err = capsys.readouterr().err
     assert (words in err) and err.count("\n") == bool(words)
+
+
+def test_long_work_says_each_minute_how_far_it_is(capsys):
+    now = [0.0]
+    advance = each_minute("report", 40, lambda: now[0])
+    for step in range(1, 11):
+        now[0] += 30.0
+        advance(1, what="extremes" if step == 6 else None)
+    lines = capsys.readouterr().err.splitlines()
+    assert len(lines) == 5
+    assert lines[0] == "laconic: report: 2 of 40 after 60 seconds"
+    assert lines[-1] == "laconic: report, extremes: 10 of 40 after 5 minutes"
 
 
 @pytest.mark.skipif(os.name == "nt", reason="closes streams as a Unix shell does")
