@@ -93,6 +93,15 @@ static void cyclic_position_goes_straight_from_target_to_target(void) {
     TEST_ASSERT_INT_WITHIN(3, 1000, get(0x6064, 0));
 }
 
+static void a_step_longer_than_the_interpolation_feeds_forward_no_more_than_its_own_speed(void) {
+    on.drives.step_s = (laconic_real)0.01;
+    enable(8);
+    set(0x607A, 0, 100);
+    step(1);
+    TEST_ASSERT_EQUAL(100, get(0x6062, 0));
+    TEST_ASSERT_EQUAL(10000, get(0x606B, 0));
+}
+
 static void cyclic_position_does_not_move_before_a_target_came(void) {
     set(0x607A, 0, 100000);
     enable(8);
@@ -221,6 +230,7 @@ int main(void) {
     RUN_TEST(cyclic_torque_is_thousandths_of_the_rated_torque);
     RUN_TEST(max_torque_limits_every_mode_and_shows_in_the_statusword);
     RUN_TEST(cyclic_position_goes_straight_from_target_to_target);
+    RUN_TEST(a_step_longer_than_the_interpolation_feeds_forward_no_more_than_its_own_speed);
     RUN_TEST(cyclic_position_does_not_move_before_a_target_came);
     RUN_TEST(cyclic_position_goes_on_beyond_the_end_of_32_bits);
     RUN_TEST(a_following_error_stops_the_drive);

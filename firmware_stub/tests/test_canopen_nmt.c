@@ -54,6 +54,10 @@ static void heartbeats_come_every_1017_milliseconds_with_the_state(void) {
     forget();
     step(20);
     TEST_ASSERT_EQUAL_HEX8(5, last(HEARTBEAT)->data[0]);
+    on.now_us += 1000000; /* a board that was busy makes up for none */
+    forget();
+    step(20);
+    TEST_ASSERT_EQUAL(1, count_of(HEARTBEAT));
     set(0x1017, 0, 0);
     forget();
     step(60);

@@ -107,7 +107,10 @@ static void identifiers_of_pdos_can_be_changed_and_swapped(void) {
     set(0x1400, 1, 0x80000000U | (0x200 + ID));
     set(0x1400, 1, 0x80000000U | 0x321);
     set(0x1400, 1, 0x321);
+    set(0x1401, 1, 0x40000300 + ID); /* bit 30 is that of sent ones */
     start_nodes();
+    deliver(RPDO2, BYTES(9), 4);
+    TEST_ASSERT_EQUAL(9, get(0x60FF, 0));
     deliver(RPDO1, BYTES(6, 0, 9), 3);
     TEST_ASSERT_EQUAL_HEX16(SWITCH_ON_DISABLED, state());
     deliver(0x321, BYTES(6, 0, 9), 3);

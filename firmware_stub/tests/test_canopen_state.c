@@ -98,6 +98,21 @@ static void quick_stops_that_stay_hold_the_wheel_and_let_the_drive_be_enabled_ag
     TEST_ASSERT_INT_WITHIN(50, 20000, get(0x606C, 0));
 }
 
+static void a_command_that_comes_with_its_mode_again_and_again_does_not_slow_down_a_stop(void) {
+    static const uint8_t quick_stop[3] = {2, 0, 9};
+    set(0x60FF, 0, 20000);
+    set(0x6085, 0, 400000);
+    enable(9);
+    start_nodes();
+    step(600);
+    for (int k = 0; k < 65; k++) {
+        deliver(0x200 + ID, quick_stop, 3);
+        step(1);
+    }
+    TEST_ASSERT_EQUAL_HEX16(SWITCH_ON_DISABLED, state());
+    TEST_ASSERT_INT_WITHIN(100, 0, get(0x606C, 0));
+}
+
 static void a_quick_stop_that_does_not_stay_cannot_be_taken_back(void) {
     set(0x605A, 0, 2);
     set(0x60FF, 0, 20000);
@@ -231,6 +246,7 @@ int main(void) {
     RUN_TEST(only_operation_enabled_gives_torque);
     RUN_TEST(option_codes_say_how_the_drive_stops);
     RUN_TEST(quick_stops_that_stay_hold_the_wheel_and_let_the_drive_be_enabled_again);
+    RUN_TEST(a_command_that_comes_with_its_mode_again_and_again_does_not_slow_down_a_stop);
     RUN_TEST(a_quick_stop_that_does_not_stay_cannot_be_taken_back);
     RUN_TEST(enabling_again_ends_a_ramp_to_another_state);
     RUN_TEST(halt_slows_down_and_going_on_needs_no_new_command);

@@ -103,6 +103,7 @@ static void check_heartbeats(const canopen_node *on) {
     const uint32_t producer_us = 1000U * axis->producer_ms;
     if (producer_us != 0 && on->now_us - axis->producer_us >= producer_us) {
         axis->producer_us += producer_us;
+        if (on->now_us - axis->producer_us >= producer_us) axis->producer_us = on->now_us; /* none is made up for */
         axis->due |= CANOPEN_DUE_HEARTBEAT;
     }
     if ((axis->trouble & CANOPEN_LISTENS) == 0) return;

@@ -220,6 +220,7 @@ int32_t canopen_rounded(laconic_real value);
 uint16_t canopen_mode_bits(const canopen_node *on);
 bool canopen_has_mode(int8_t mode);
 void canopen_begin_motion(const canopen_node *on);
+void canopen_take_mode(const canopen_node *on); /* of 0x6060 */
 void canopen_new_set_point(const canopen_node *on, uint16_t before);
 void canopen_move(const canopen_node *on);
 

@@ -171,7 +171,7 @@ static uint32_t write_axis(const canopen_node *on, const canopen_row *row, uint8
     case 0x1016: on->axis->trouble &= (uint8_t)~CANOPEN_LISTENS; break; /* the next heartbeat starts the watch */
     case 0x1017: on->axis->producer_us = on->now_us; break;
     case 0x6040: canopen_control(on, before); break;
-    case 0x6060: canopen_begin_motion(on); break;
+    case 0x6060: canopen_take_mode(on); break;
     case 0x6072: on->drive->settings.current_limit_A = on->axis->rated_A * (laconic_real)value / 1000; break;
     case 0x607A: on->axis->set_point |= CANOPEN_TARGET_IS_NEW; break;
     default: break;

@@ -48,22 +48,24 @@ static void advance(canopen_axis *axis, laconic_real counts) {
     axis->demand_rest = sum - (laconic_real)whole;
 }
 
-/* At the transition to operation enabled, and with another mode: the demand begins where the wheel is. Mode 0 changes
- * nothing. */
+/* At the transition to operation enabled, and with another mode: the demand begins where the wheel is. */
 void canopen_begin_motion(const canopen_node *on) {
     canopen_axis *axis = on->axis;
-    const int8_t before = axis->mode_display;
-    if (axis->mode != 0) axis->mode_display = axis->mode;
-    if (axis->state == CANOPEN_ENABLED && axis->mode_display == before && axis->ending == CANOPEN_NO_ENDING &&
-        on->drive->target.mode != LACONIC_DRIVE_OFF)
-        return;
-    axis->speed = axis->state >= CANOPEN_ENABLED ? canopen_actual_speed(on->drive) : 0;
+    axis->speed = canopen_actual_speed(on->drive);
     axis->demand = on->drive->count;
     axis->demand_rest = on->drive->rest;
     axis->goal = (int32_t)axis->demand;
     axis->left_s = 0;
     axis->set_point = 0;
     axis->trouble &= (uint8_t)~CANOPEN_FOLLOWS_BADLY;
+}
+
+/* Mode 0 and the mode that there is change nothing; a drive that slows down goes on doing so. */
+void canopen_take_mode(const canopen_node *on) {
+    canopen_axis *axis = on->axis;
+    if (axis->mode == 0 || axis->mode == axis->mode_display) return;
+    axis->mode_display = axis->mode;
+    if (axis->state == CANOPEN_ENABLED && axis->ending == CANOPEN_NO_ENDING) canopen_begin_motion(on);
 }
 
 /* --- ramps ------------------------------------------------------------------------------------------------------- */
@@ -163,6 +165,7 @@ static void cyclic_position(const canopen_node *on) {
         axis->set_point = 0;
         axis->goal = axis->target_position;
         axis->left_s = interpolation_period_s(axis);
+        if (axis->left_s < on->step_s) axis->left_s = on->step_s;
     }
     axis->speed = 0;
     if (axis->left_s <= 0) return;

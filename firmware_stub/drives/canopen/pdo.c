@@ -185,7 +185,8 @@ bool canopen_take_pdo(const canopen_node *on, const laconic_frame *frame) {
     canopen_axis *axis = on->axis;
     bool taken = false;
     for (int k = 0; k < CANOPEN_PDOS; k++) {
-        if (!frame->remote && axis->rpdo[k].cob_id == frame->id) {
+        const uint16_t awaited = axis->rpdo[k].cob_id & (CANOPEN_OFF | 0x7FF); /* bit 30 means nothing here */
+        if (!frame->remote && awaited == frame->id) {
             take(on, k, frame);
             taken = true;
         }
