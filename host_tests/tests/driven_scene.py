@@ -13,7 +13,8 @@ import can
 import numpy as np
 
 from laconic.core import load
-from laconic.play.node_vehicle import InProcess, running
+from laconic.play.node_in_process import InProcess
+from laconic.play.node_vehicle import running
 from laconic.play.settings import drive_settings
 from laconic.play.vehicle import played
 from laconic.rig.buses import VirtualClock, next_channel, node_in_process

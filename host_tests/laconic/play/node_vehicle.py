@@ -1,4 +1,4 @@
-"""The vehicle in a node, whose C code speaks the protocol of the drives: in this process, in another one, on a board,
+"""The vehicle in a node, whose C code speaks the protocol of the drives: in another process, on a board,
 or a node that is on the controller's bus already.
 
 The node's own frames are the channel by which play loads, starts and watches it; the controller hears nothing of them
@@ -15,12 +15,10 @@ from typing import Any
 import can
 
 from laconic.errors import BadInput, LaconicError, ResultFails
-from laconic.play.faults import BRAKE_NM, BUS_OFF, FAULT_BITS, STALL, DriveFault, concerns
 from laconic.play.loop import Lateness
 from laconic.play.parameters import drive_parameters
 from laconic.play.settings import DriveSettings
 from laconic.play.vehicle import played
-from laconic.rig.buses import NodeOnBus
 from laconic.rig.client import NodeClient
 from laconic.rig.errors import BusDied, NodeRefused, NodeSilent
 from laconic.rig.link import receive_on, send_on
@@ -29,7 +27,6 @@ from laconic.rig.stopping import RUNNING, come_to_rest, stop_running
 from laconic.rig.wire import ID_STRIDE, Frame, wire
 from laconic.scene import Scene
 
-MOST_STEPS_AT_ONCE = 64
 POLL_US = 500                 # a node behind a serial line is asked so often
 LOOK_US = 10_000              # drives in this process are looked at so often
 PATIENCE_S = 0.5              # for the figures at the end
@@ -160,87 +157,6 @@ def remedy(refused: NodeRefused, scene: Scene) -> str:
         return (f"drives step once a period, so 1 / step must be a whole number from 1 to 10000, and run.step_s is "
                 f"{scene.run.step_s:g}; give another --step")
     return "correct that key, see docs/play.md"
-
-
-class InProcess(NodeVehicle):
-    """A node in this process: its C code is called directly, no frame passes another bus than the controller's."""
-
-    watched = ()  # its drives are looked at
-
-    def __init__(self, client: NodeClient, end: NodeOnBus, scene: Scene, settings: DriveSettings):
-        super().__init__(client, scene, settings)
-        self.node = end.node
-        self._view = self.node.library.ffi.new("laconic_library_drive *")
-        self._off_bus: set[int] = set()  # node ids of drives that neither hear nor are heard
-        self._silent: set[int] = set()   # node ids of drives without a sign of life
-        self._next_look_us = 0
-
-    def start(self) -> None:
-        """As for every node; what came behind the answer to START is the controller's, too."""
-        super().start()
-        while (message := receive_on(self.client.link.bus, 0.0)) is not None:
-            self._hear_early(message)
-
-    def on_message(self, message: can.Message, now_us: int) -> None:
-        """A frame of the controller; the node's own identifiers are not for it."""
-        if not self.is_own(message) and not self._is_lost(message):
-            self.node.give(message, now_us)
-
-    def _is_lost(self, message: can.Message) -> bool:
-        """Whether a drive that is off the bus, or silent, is the only one that this frame is from or to."""
-        protocol = self.settings.protocol
-        return any(concerns(protocol, message, each) for each in self._off_bus) or any(
-            protocol.sign_of_life is not None and message.arbitration_id in protocol.sign_of_life(each)
-            for each in self._silent)
-
-    def break_drive(self, fault: DriveFault, *, is_broken: bool) -> None:
-        """A fault of a drive begins, or ends."""
-        lib, c = self.node.library.lib, self.node.c
-        node_id = self.settings.node_ids[fault.wheel - 1]
-        number = sum(self.settings.driven[: fault.wheel - 1])
-        change = lib.laconic_library_drive_break if is_broken else lib.laconic_library_drive_mend
-        if fault.kind in FAULT_BITS:
-            change(c, number, FAULT_BITS[fault.kind])
-        elif fault.kind == STALL:
-            lib.laconic_library_drive_brake(c, number, BRAKE_NM if is_broken else 0.0)
-        else:
-            ids = self._off_bus if fault.kind == BUS_OFF else self._silent
-            (ids.add if is_broken else ids.discard)(node_id)
-            if fault.kind == BUS_OFF and self.settings.protocol.commands_groups:
-                change(c, number, FAULT_WATCHDOG)  # the group's command does not reach it
-
-    def advance(self, now_us: int) -> Iterator[can.Message]:
-        """Periods that are due, and the frames of the drives after each."""
-        yield from self._take_early()
-        for _ in range(MOST_STEPS_AT_ONCE):
-            self.node.tick(now_us)
-            yield from self._frames()
-            if self.node.idle_us(now_us) > 0:
-                break
-        if now_us >= self._next_look_us:
-            self._next_look_us = now_us + LOOK_US
-            self._look_at_drives()
-
-    def _frames(self) -> Iterator[can.Message]:
-        while (message := self.node.take_message()) is not None:
-            if self.is_own(message):
-                self.take_own(message)
-            elif not self._is_lost(message):
-                yield message
-
-    def idle_us(self, now_us: int) -> int:
-        """Microseconds to the next period."""
-        return self.node.idle_us(now_us)
-
-    def _look_at_drives(self) -> None:
-        lib, view = self.node.library.lib, self._view
-        for number in range(len(self.settings.node_ids)):
-            if not lib.laconic_library_drive_view(self.node.c, number, view):
-                break
-            if view.faults & FAULT_WATCHDOG:
-                self._fired.add(f"drive {view.node_id} heard no controller in time")
-        if (state := self.node.inspect()["state"]) != "drives":
-            self._ending = ResultFails(f"the node went into state {state}: the core refused a step")
 
 
 class Bridged(NodeVehicle):

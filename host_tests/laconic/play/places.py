@@ -15,7 +15,8 @@ from laconic.play.loop import Lateness, Vehicle
 from laconic.play.map_file import read_map
 from laconic.play.map_join import check_map, join
 from laconic.play.map_vehicle import MapVehicle
-from laconic.play.node_vehicle import Bridged, InProcess, NodeVehicle, OnBus, running
+from laconic.play.node_in_process import InProcess
+from laconic.play.node_vehicle import Bridged, NodeVehicle, OnBus, running
 from laconic.play.options import PlayOptions, controller_bus
 from laconic.play.settings import DriveSettings, drive_settings
 from laconic.play.vehicle import played

@@ -15,7 +15,8 @@ import canopen
 from can.interfaces.virtual import VirtualBus
 
 from laconic.play.canopen_eds import eds_of_scene
-from laconic.play.node_vehicle import InProcess, running
+from laconic.play.node_in_process import InProcess
+from laconic.play.node_vehicle import running
 from laconic.play.settings import drive_settings
 from laconic.rig.buses import VirtualClock, node_in_process
 from laconic.rig.wire import ID_BASE

@@ -14,7 +14,8 @@ from play_support import played
 
 from laconic.cli.main import run
 from laconic.errors import BadInput
-from laconic.play.node_vehicle import FAULT_WATCHDOG, InProcess
+from laconic.play.node_in_process import InProcess
+from laconic.play.node_vehicle import FAULT_WATCHDOG
 from laconic.play.options import PlayOptions
 from laconic.play.protocols import PROTOCOLS
 from laconic.play.session import play
