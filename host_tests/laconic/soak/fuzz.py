@@ -11,7 +11,7 @@ from typing import Any
 from laconic.errors import BadInput
 from laconic.paths import SOURCE_DIR, build_dir, built
 
-TARGETS = ("slcan", "frames", "loader", "canopen", "odrive", "moteus")
+TARGETS = ("slcan", "frames", "loader", "canopen", "odrive", "robomaster", "moteus")
 SLICE_S = 5.0
 
 
