@@ -41,6 +41,8 @@ static inline real magnitude(real x) {
 #endif
 }
 
+static inline real cut(real x, real limit) { return x > limit ? limit : (x < -limit ? -limit : x); }
+
 static inline bool is_finite(real x) { return magnitude(x) <= LACONIC_REAL_MAX; /* false for NaN too */ }
 
 /* 0, or NaN where x is not finite: a sum of these checks many numbers with one comparison. */

@@ -2,8 +2,6 @@
 #include "friction_vehicle.h"
 
 #if LACONIC_WITH_FRICTION
-static real cut(real x, real limit) { return x > limit ? limit : x < -limit ? -limit : x; }
-
 /* Torque c1 U − c2ₑ s within the current limit; c2ₑ/c1 is the back-EMF per speed, so U − that is R_a times the
  * current. A limited motor has the voltage at its terminals that its controller sets for the limit. */
 motor_state laconic_motor_at(const laconic_friction *friction, int32_t wheel, real command_V, real speed,
@@ -26,8 +24,16 @@ motor_state laconic_motor_at(const laconic_friction *friction, int32_t wheel, re
 }
 
 /* V = V₀ − R_s Σ I_i U_i/V: each motor takes the share of the supply's voltage that its controller gives it. Newton's
- * method; its slope counts the motors that get the whole voltage, and with them alone one round is exact. */
+ * method: a motor that gets the whole voltage takes more with it, any other one less, as its power stays. From the step
+ * before it takes two rounds, the second to see that the first sufficed. */
 #define SAG_ROUNDS 6
+#define LEAST_SLOPE R(0.5) /* nearer to the most that the supply can give, Newton's steps would leave the range */
+
+#ifdef LACONIC_SINGLE
+#define FOUND R(3e-7)
+#else
+#define FOUND R(1e-15)
+#endif
 
 static real drawn_A(const laconic_friction *f, const laconic_input *input, const real speed[], real terminal_V,
                     real *per_volt) {
@@ -37,8 +43,12 @@ static real drawn_A(const laconic_friction *f, const laconic_input *input, const
         const motor_state m = laconic_motor_at(f, i, input->voltage_V[i], speed[i], terminal_V);
         const bool whole = m.limit == LACONIC_LIMIT_VOLTAGE;
         const real duty = whole ? (input->voltage_V[i] > R(0) ? R(1) : R(-1)) : m.voltage_V / terminal_V;
-        sum += m.current_A * duty;
-        if (whole && f->axle[i].gain != R(0)) *per_volt += R(1) / f->winding_resistance_ohm;
+        const real current = m.current_A * duty;
+        sum += current;
+        if (!whole)
+            *per_volt -= current / terminal_V;
+        else if (f->axle[i].gain != R(0))
+            *per_volt += R(1) / f->winding_resistance_ohm;
     }
     return sum;
 }
@@ -53,8 +63,10 @@ real laconic_supply_voltage(const laconic_friction *friction, const laconic_inpu
         real per_volt = R(0);
         const real current = drawn_A(f, input, speed, volts, &per_volt);
         const real off = f->supply_V - f->supply_resistance_ohm * current - volts;
-        const real next = volts + off / (R(1) + f->supply_resistance_ohm * per_volt);
+        const real slope = R(1) + f->supply_resistance_ohm * per_volt;
+        const real next = volts + off / (slope > LEAST_SLOPE ? slope : LEAST_SLOPE);
         volts = next > R(0.5) * volts ? next : R(0.5) * volts; /* stays above 0 */
+        if (magnitude(off) <= FOUND * volts) break;
     }
     return volts;
 }

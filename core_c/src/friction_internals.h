@@ -46,8 +46,6 @@ typedef struct friction_search {
     real scale; /* twice the energy of the free motion */
 } friction_search;
 
-static inline real cut(real x, real limit) { return x > limit ? limit : (x < -limit ? -limit : x); }
-
 static inline real drive_at(const friction_load *l, real speed) {
     return cut(l->drive - l->drive_slope * speed, l->drive_limit);
 }

@@ -27,8 +27,11 @@
 #define LEAST_SOFTNESS R(1e-24)
 #endif
 
+/* What is rare need not be fast: one copy in flash. */
+RARE real root_of(real x) { return quick_root(x); }
+
 /* `mass`: which the bound's impulse can move, in the direction where nothing but it gives way. */
-static real tau_of(const friction_path *path, real bound, real mass) {
+RARE real tau_of(const friction_path *path, real bound, real mass) {
     const real wanted = path->softness / (bound + path->softness / path->fastest), least = bound / (STIFFEST * mass);
     return wanted > least ? wanted : least;
 }
@@ -45,11 +48,11 @@ typedef struct soft_wheel {
     real fall;            /* of the softness */
 } soft_wheel;
 
-INLINE void soften_contact(soft_wheel *restrict c, const friction_wheel *w, real grip, const real slip[2],
-                           const real p[2], const friction_path *path) {
+RARE void soften_contact(soft_wheel *restrict c, const friction_wheel *w, real grip, const real slip[2],
+                         const real p[2], const friction_path *path) {
     if (grip < LACONIC_REAL_MAX) {
         const real tau = tau_of(path, grip, w->lateral_mass > R(0) ? w->lateral_mass : w->row_mass[0]);
-        const real size = quick_root(slip[0] * slip[0] + slip[1] * slip[1] + tau * tau);
+        const real size = root_of(slip[0] * slip[0] + slip[1] * slip[1] + tau * tau);
         const real x = slip[0] / size, y = slip[1] / size, off[2] = {p[0] - grip * x, p[1] - grip * y};
         c->xx = (grip - p[0] * x) / size;
         c->yy = (grip - p[1] * y) / size;
@@ -67,8 +70,8 @@ INLINE void soften_contact(soft_wheel *restrict c, const friction_wheel *w, real
     }
 }
 
-INLINE real dry_impulse(soft_wheel *restrict c, real *growth, real bound, real speed, real now, real tau) {
-    const real size = quick_root(speed * speed + tau * tau), x = speed / size, impulse = bound * x;
+RARE real dry_impulse(soft_wheel *restrict c, real *growth, real bound, real speed, real now, real tau) {
+    const real size = root_of(speed * speed + tau * tau), x = speed / size, impulse = bound * x;
     const real off = now - impulse, fall = fall_at(off * off, bound);
     *growth = (bound - now * x) / size;
     if (fall > c->fall) c->fall = fall;
@@ -111,10 +114,10 @@ INLINE void eliminate(soft_wheel *restrict c, equations *k, const friction_wheel
     add_product(k, w->row[1], combined(w->row, g[1], g[2]));
 }
 
-static void put_inside(real p[2], real grip) {
+RARE void put_inside(real p[2], real grip) {
     const real size = p[0] * p[0] + p[1] * p[1];
     if (grip < LACONIC_REAL_MAX && size > grip * grip) {
-        const real by = grip / quick_root(size);
+        const real by = grip / root_of(size);
         p[0] *= by;
         p[1] *= by;
     }
@@ -160,7 +163,7 @@ void laconic_friction_follow_path(friction_search *at, friction_path *path) {
 }
 
 void laconic_friction_start_path(friction_search *at, friction_path *path) {
-    path->fastest = quick_root(at->scale);
+    path->fastest = root_of(at->scale);
     path->softness = FIRST_SOFTNESS * at->scale;
     for (int32_t i = 0; i < at->count; i++) put_inside(at->impulse[i], at->load[i].grip);
     laconic_friction_follow(at);

@@ -18,18 +18,19 @@
 #include "friction_internals.h"
 
 /* The residual that a result must reach, and the speed that counts as rest, both relative to the free motion. Redundant
- * contacts and light wheels let a speed be off by some three hundred times the residual, and speeds shall be right to
+ * contacts and light wheels let a speed be off by many times the residual, and speeds shall be right to
  * 1e-9. From (|t|/grip)² = BORDER on, slip outwards tells that a contact slips; in single it would tell rounding
  * errors. Rounding hides some HIDDEN of each impulse, which counts as residual. Contacts may hold each other with many
  * times the free motion's impulse, of which MOST_STRESS is the square: above it rounding would hide more than
  * TOLERANCE. Where neither kind of pass brings the residual to TOLERANCE any more, RESOLVED of the free motion and
- * ROUNDED of the contacts' impulses are all that the scalar type can tell: near breakaway, where little of the free
- * motion is left, and where contacts hold each other. */
+ * ROUNDED of the contacts' impulses (after exact passes: the root of CLOSE, times TOLERANCE) are all that the scalar
+ * type can tell: near breakaway, where little of the free motion is left, and where contacts hold each other. */
 #ifdef LACONIC_SINGLE
 #define TOLERANCE R(1e-5)
 #define RESOLVED R(4e-5)
 #define ROUNDED R(3e-7)
-#define SNAP R(2e-5)
+#define CLOSE R(9)
+#define SNAP R(1e-4)
 #define BORDER R(1)
 #define HIDDEN R(1e-8)
 #define MOST_STRESS R(1e4)
@@ -37,6 +38,7 @@
 #define TOLERANCE R(1e-12)
 #define RESOLVED R(3e-11)
 #define ROUNDED R(1e-16)
+#define CLOSE R(900)
 #define SNAP R(1e-10)
 #define BORDER R(0.998)
 #define HIDDEN R(1e-16)
@@ -45,7 +47,7 @@
 
 #define SMALLEST_ENERGY (LACONIC_REAL_MIN / (TOLERANCE * TOLERANCE)) /* below it squares of residuals underflow */
 #define NO_SLIP R(1e-30) /* a direction without slip, as across free rollers, has this share of the mobility or less */
-#define EXACT_PASSES 4   /* of warm steps 1 in 100 needs more */
+#define EXACT_PASSES 6   /* of warm steps 1 in 100 needs more */
 #define FIRST_AHEAD 5    /* passes along the central path, before exact ones are tried */
 #define AHEAD 3          /* and before each time after that */
 #define TRIED 3          /* exact passes at a time */
@@ -56,6 +58,7 @@ typedef struct contact {
     real moved[2];     /* rows·ν: slip if the wheel stood still */
     real t[2], length; /* impulse + slip/W; length 0 where it sticks */
     real axle;         /* impulse of the axle's friction, as its own projection */
+    real firm;         /* residual of a slip to which no wheel gives way, which light wheels would hide otherwise */
     bool locked;
 
     int32_t rank; /* of the law: number of rows */
@@ -102,7 +105,13 @@ INLINE real look(contact *restrict c, const friction_wheel *w, const friction_lo
     pushed = axle + w->inertia * speed;
     c->locked = magnitude(pushed) < l->axle;
     c->axle = cut(pushed, l->axle);
-    return (off[0] * off[0] + off[1] * off[1] + HIDDEN * HIDDEN * size) * w->mobility +
+    c->firm = R(0);
+    if (inside >= R(1)) {
+        const real lateral = w->rolling[0] * off[1] - w->rolling[1] * off[0];
+        const real slip = c->locked ? off[0] * off[0] + off[1] * off[1] : lateral * lateral;
+        c->firm = slip * w->mobility * w->mobility * (c->locked ? w->row_mass[0] : w->lateral_mass);
+    }
+    return (off[0] * off[0] + off[1] * off[1] + HIDDEN * HIDDEN * size) * w->mobility + c->firm +
            (axle - c->axle) * (axle - c->axle) / w->inertia;
 }
 
@@ -268,30 +277,32 @@ static void snap(friction_search *at) {
     for (int32_t i = 0; i < at->count; i++) at->speed[i] = R(0);
 }
 
-static bool is_solved(const friction_search *at, real residual) {
-    const real most = TOLERANCE * TOLERANCE * at->scale;
+static bool is_solved(const friction_search *at, real residual, real times) {
+    const real most = times * TOLERANCE * TOLERANCE * at->scale;
     if (residual > most) return false;
     return residual + square(imbalance(at)) <= most;
 }
 
-/* All that rounding leaves to find, where contacts hold each other with many times the free motion. */
-static bool is_resolved(const friction_search *at, real residual) {
+/* All that rounding leaves to find, where contacts hold each other with many times the free motion, or rollers drag so
+ * little that single does not tell it from nothing. */
+static bool is_resolved(const friction_search *at, const contact contacts[], real residual) {
     real stress = R(0);
     for (int32_t i = 0; i < at->count; i++) {
         const real *p = at->impulse[i];
         stress += (p[0] * p[0] + p[1] * p[1]) * at->wheel[i].mobility;
+        residual -= contacts[i].firm;
     }
     return residual + square(imbalance(at)) <= RESOLVED * RESOLVED * at->scale + ROUNDED * ROUNDED * stress;
 }
 
-/* Exact passes, at most so many; from the second on each must bring the residual down to `fall` of what it was. */
-static bool pass_exactly(friction_search *at, contact contacts[], int32_t most, real fall, int32_t *passes) {
+/* Exact passes, at most so many, as long as each but the first is worth it. */
+static bool pass_exactly(friction_search *at, contact contacts[], int32_t most, int32_t *passes) {
     real before = LACONIC_REAL_MAX;
     for (int32_t pass = 0;; pass++) {
         const real residual = look_at_all(at, contacts);
         ++*passes;
-        if (is_solved(at, residual)) return true;
-        if (pass == most || (pass > 1 && residual > fall * before)) return false;
+        if (is_solved(at, residual, R(1))) return true;
+        if (pass == most || (pass > 1 && residual > WORTH_IT * before)) return false;
         before = residual;
         exact_pass(at, contacts);
     }
@@ -327,9 +338,10 @@ RARE bool search_along_path(friction_search *at, contact contacts[], int32_t *pa
         for (int32_t pass = 0; pass < ahead; pass++) laconic_friction_follow_path(at, &path);
         *passes += ahead;
         keep(&kept, at);
-        if (pass_exactly(at, contacts, TRIED, WORTH_IT, passes)) return true;
+        if (pass_exactly(at, contacts, TRIED, passes)) return true;
+        if (ahead == AHEAD && is_solved(at, look_at_all(at, contacts), CLOSE)) return true;
         go_back(at, &kept);
-        if (ahead == AHEAD && is_resolved(at, look_at_all(at, contacts))) return true;
+        if (ahead == AHEAD && is_resolved(at, contacts, look_at_all(at, contacts))) return true;
     }
     return false;
 }
@@ -337,9 +349,7 @@ RARE bool search_along_path(friction_search *at, contact contacts[], int32_t *pa
 static int32_t search(friction_search *at) {
     contact contacts[LACONIC_MAX_WHEELS];
     int32_t passes = 0;
-    if (!pass_exactly(at, contacts, EXACT_PASSES, LACONIC_REAL_MAX, &passes) &&
-        !search_along_path(at, contacts, &passes))
-        return 0;
+    if (!pass_exactly(at, contacts, EXACT_PASSES, &passes) && !search_along_path(at, contacts, &passes)) return 0;
     snap(at);
     return passes;
 }

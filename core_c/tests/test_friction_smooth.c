@@ -2,9 +2,9 @@
 #include "friction.h"
 #include "friction_internals.h"
 
-#define ACCEPTED EITHER(1e-9, 4e-5)
+#define ACCEPTED EITHER(1e-9, 1e-4)
 #define NEAR EITHER(1e-7, 3e-3) /* of the free motion */
-#define MOST_BY_EXACT_PASSES 5  /* four and the look at what they found */
+#define MOST_BY_EXACT_PASSES 7  /* six and the look at what they found */
 #define WHOLE_PATH EITHER(40, 25)
 
 /* A wheel's place, angles, drag, inertia, grip and free speed. */
@@ -189,7 +189,7 @@ static void stiff_vehicles_at_any_scale_are_solved(void) {
         else
             TEST_ASSERT_TRUE(residual_of(&p) < EITHER(1e-9, 1e-3));
     }
-    TEST_ASSERT_LESS_OR_EQUAL(EITHER(0, 8), refused);
+    TEST_ASSERT_LESS_OR_EQUAL(EITHER(0, 20), refused); /* 1 % */
 }
 
 int main(void) {

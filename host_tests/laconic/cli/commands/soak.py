@@ -37,6 +37,9 @@ def command(what: str, minutes: float, seed: int | None, json_wanted: bool) -> i
     fmu       random use of the FMUs' C interface, under sanitizers
     friction  the friction solver against a conic one with 40 digits, and driven motions;
               Ctrl-C prints what was found until then
+    friction-energy
+              whole vehicles that nothing drives: energy never grows, rest holds;
+              a minute takes millions of steps
     free-run  the node process at 1 kHz: no step may be lost
     fuzz      SLCAN reader, frame handler and parameter loader under libFuzzer
     identify  a thousand made-up robots: what their intervals hold

@@ -13,7 +13,6 @@ from laconic.verification.friction.problem import StepProblem
 from laconic.verification.friction.residual import residual, size_of
 
 LIMIT = 1e-9
-ENERGY_LIMIT = 1e-5   # above the root of 1e-11, to which the core solves: a residual bounds the energy's excess
 FEW = 4   # wheels: for refusals, vehicles with more are counted apart
 
 
@@ -41,11 +40,15 @@ class Count:
         """Whether steps with few wheels were refused no more often than this; one of a small sample always may be."""
         return self.refused <= max(1.0, share * (self.solved + self.refused))
 
+    def share_refused(self) -> str:
+        """Of vehicles with few wheels, and how many with more."""
+        return f"{self.refused} ({self.refused / max(1, self.solved + self.refused):.1e}) and {self.many_refused}"
+
     def texts(self, label: str) -> dict[str, str]:
         """For a report."""
         few, many = self.solved + self.refused, self.many_solved + self.many_refused
         return {f"{label}: steps": f"{few} with up to {FEW} wheels, {many} with more",
-                f"{label}: refused": f"{self.refused} ({self.refused / max(1, few):.1e}) and {self.many_refused}",
+                f"{label}: refused": self.share_refused(),
                 f"{label}: worst": f"residual {self.residual:.1e}, difference {self.difference:.1e}, "
                                    f"oracle not sure of {self.unsure}"}
 
@@ -72,8 +75,7 @@ def energy_difference(problem: StepProblem, core: np.ndarray, exact: np.ndarray)
 
 
 def compare(problem: StepProblem, count: Count, name: str = "",
-            differ: Callable[[StepProblem, np.ndarray, np.ndarray], float] = speed_difference,
-            limit: float = LIMIT) -> None:
+            differ: Callable[[StepProblem, np.ndarray, np.ndarray], float] = speed_difference) -> None:
     """One cold step: refused, or its residual and its difference from the oracle are counted."""
     core = solve_in_core(problem)
     if not count.refuse_or_take(problem, core):
@@ -83,6 +85,6 @@ def compare(problem: StepProblem, count: Count, name: str = "",
     exact = polish(problem)
     count.unsure += not exact.certain
     away = differ(problem, core.z, exact.z) if exact.certain else 0.0
-    if not (rest <= LIMIT and away <= limit):
+    if not (rest <= LIMIT and away <= LIMIT):
         count.bad.append((f"{name} residual {rest:.1e} difference {away:.1e}", problem))
     count.residual, count.difference = max(count.residual, rest), max(count.difference, away)
