@@ -14,7 +14,7 @@ from pathlib import Path
 import numpy as np
 
 from laconic.core import Core
-from laconic.errors import BadInput
+from laconic.errors import BadInput, Refused
 from laconic.identification.parameter import Parameter, Parameters, Vehicle
 from laconic.identification.rolling_evidence import (
     RollingEvidence,
@@ -123,13 +123,20 @@ class GroundEvidence(RollingEvidence):
         axles = axles_of(self._core, vehicle)
         found = []
         for log in self._logs:
-            held: Held = hold(self._core, vehicle, log)
+            held = self._held(vehicle, log)
             off = np.zeros(0)
             if axles is not None and log.current_A is not None:
                 load, speed, current = steady_parts(log, held)
                 off = (axles.current_A(load, speed) - current) / max(float(np.abs(current).mean()), 0.1)
             found.append((held.at(log.time_s, log.needs("pose", "identify")[0]), off))
         return found
+
+    def _held(self, vehicle: Vehicle, log: Log) -> Held:
+        """The run with held wheels; Refused names its log and the scene."""
+        try:
+            return hold(self._core, vehicle, log)
+        except Refused as refused:
+            raise refused.at(f"{log.path}: {self._path}, on the way to better values") from None
 
     def residuals(self, vehicle: Vehicle) -> list[np.ndarray]:
         """Path residuals, then those of the currents."""

@@ -8,13 +8,14 @@ import numpy as np
 
 from laconic.identification.evidence import SAID
 from laconic.identification.study import Study
+from laconic.logs.log import counted
 from laconic.recorded_runs.measures import RunErrors, grand_mean
 from laconic.recorded_runs.rolled_paths import error_table
 
 
 def as_text(study: Study) -> str:
     """A report in Markdown."""
-    lines = [f"# {study.scene.name}, from {len(study.logs)} runs", "",
+    lines = [f"# {study.scene.name}, from {counted(len(study.logs), 'run')}", "",
              "| parameter | nominal | found | 95 % interval | prior ± |", "| --- " * 5 + "|", *_rows(study),
              *_controller_rows(study), "",
              *(f"* {word}" for word in study.words), "", *_summary(study), ""]

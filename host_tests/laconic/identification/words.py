@@ -38,7 +38,8 @@ def in_words(scene: Scene, found: Fit, runs: Sequence[Log]) -> list[str]:
     weak = [each for each in zip(size, directions.T, strict=True) if each[0] < WEAK]
     candidates = candidate_information(scene, found, runs) if weak or found.untold else {}
     words = [_untold(name, found, candidates) for name in found.untold]
-    words += [_weak(found, strength, direction, candidates) for strength, direction in weak]
+    hint = _hint(found, runs)
+    words += [_weak(found, strength, direction, candidates, hint) for strength, direction in weak]
     words += [f"{name}: lies at the bound of what is possible, {value:.4g}; its interval means little."
               for name, value in _at_bounds(found)]
     if found.structure.is_found:
@@ -74,7 +75,16 @@ def _untold(name: str, found: Fit, candidates: dict[str, np.ndarray]) -> str:
     return f"{name}: the runs do not tell it, so it stays nominal{reason}."
 
 
-def _weak(found: Fit, strength: float, direction: np.ndarray, candidates: dict[str, np.ndarray]) -> str:
+def _hint(found: Fit, runs: Sequence[Log]) -> str:
+    """What no other motion would mend: other sensors would."""
+    assert found.asked is not None
+    if any(p.group in ELECTRIC for p in found.asked.each):
+        return ("; voltages tell forces in units of each other alone: take one of these out of --free, or record "
+                "currents and leave the electric ones out")
+    return "; a gyro tells no lengths: record a true pose" if kind_of(runs, found.asked) == "turn" else ""
+
+
+def _weak(found: Fit, strength: float, direction: np.ndarray, candidates: dict[str, np.ndarray], hint: str) -> str:
     """One combination that only the prior holds."""
     change = found.parameters.factor @ direction
     share = change / np.array([np.hypot(p.prior_sd, p.shared_sd) for p in found.parameters.each])
@@ -86,11 +96,7 @@ def _weak(found: Fit, strength: float, direction: np.ndarray, candidates: dict[s
         what = f"{named[0].rpartition(' ')[0]}: the runs hardly tell it"
     else:
         what = f"{', '.join(named[:-1])} and {named[-1]} together: the runs hardly tell this from nothing"
-    remedy = advice(found, _in_asked(found, change), candidates)
-    if not remedy and any(p.group in ELECTRIC for p in found.parameters.each):
-        remedy = ("; voltages tell forces in units of each other alone: take one of these out of --free, or record "
-                  "currents and leave the electric ones out")
-    return f"{what} ({known}){remedy}."
+    return f"{what} ({known}){advice(found, _in_asked(found, change), candidates) or hint}."
 
 
 def _in_asked(found: Fit, change: np.ndarray) -> np.ndarray:

@@ -66,6 +66,11 @@ def wheels_of(log: Log) -> int:
     return next((value.shape[1] for value in values if value is not None), 0)
 
 
+def counted(number: int, what: str) -> str:
+    """"1 run", "2 runs"."""
+    return f"{number} {what}" if number == 1 else f"{number} {what}s"
+
+
 def run_names(logs: Sequence[Log]) -> list[str]:
     """A name for each run: the file's, with its session in front where two files have the same."""
     stems = [log.stem for log in logs]

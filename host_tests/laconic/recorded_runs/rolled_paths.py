@@ -11,6 +11,7 @@ import numpy as np
 
 from laconic.errors import BadInput
 from laconic.logs import Log
+from laconic.logs.log import counted
 from laconic.logs.read import for_wheels
 from laconic.recorded_runs.measures import RunErrors, grand_mean, session_means
 from laconic.recorded_runs.predicted import predict
@@ -42,8 +43,10 @@ def roll(scene: Scene, logs: Sequence[Log], skipped: Sequence[Path] = (), inputs
     """A prediction for every run; BadInput where no log has a true pose to compare a path with."""
     fitting = [for_wheels(log, scene.vehicle["wheel"]) for log in logs]
     if inputs == "wheel-speeds" and all(log.pose is None for log in fitting):
+        other = next((f", or take --inputs {name}" for name, values in (
+            ("voltages", fitting[0].voltage_V), ("currents", fitting[0].current_A)) if values is not None), "")
         raise BadInput(f"{fitting[0].path}: has no true pose to compare with; name its columns in the map, table "
-                       "[pose]")
+                       f"[pose]{other}")
     found = predict(scene, fitting, inputs)
     return RolledPaths(scene, fitting, [path for path, _ in found], [errors for _, errors in found],
                        [path.name for path in skipped], inputs)
@@ -56,7 +59,7 @@ def as_numbers(found: RolledPaths) -> dict[str, Any]:
 
 def as_text(found: RolledPaths) -> str:
     """A report in Markdown."""
-    lines = [f"# {len(found.logs)} runs beside {found.scene.name}", "",
+    lines = [f"# {counted(len(found.logs), 'run')} beside {found.scene.name}", "",
              f"Inputs: {_said(found)}.", "", *error_table(found.errors)]
     if found.skipped:
         lines += ["", f"Left out, no logs that the map recognises: {', '.join(dict.fromkeys(found.skipped))}."]

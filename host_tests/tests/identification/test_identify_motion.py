@@ -110,7 +110,8 @@ def test_a_gyro_alone_tells_how_the_wheels_distance_fits_their_radii():
     assert study.measure == "heading_error_rad"
     assert study.fitted[0].heading_error_rad < 0.1 * study.nominal[0].heading_error_rad
     both = identify(scene, logs, geometry_of(scene, ("radius", "distance"))).words
-    assert any("together: the runs hardly tell this from nothing" in word for word in both)
+    assert any("together: the runs hardly tell this from nothing" in word and "a gyro tells no lengths" in word
+               for word in both)
 
 
 WRONG = {

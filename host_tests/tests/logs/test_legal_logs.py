@@ -149,3 +149,9 @@ def test_a_path_that_ends_where_it_began_has_no_displacement_error(tmp_path):
     errors = path_errors("run", closed, closed.pose + 0.01)
     assert errors.displacement_error is None and errors.path_error > 0.0
     assert json.loads(json.dumps(errors.as_json()))["displacement_error"] is None
+
+
+def test_a_log_without_a_pose_is_pointed_to_the_inputs_that_it_has(tmp_path, capsys):
+    log, mapped = written(tmp_path, change=[("[pose]", "[voltage]"), ("optional = true", "")])
+    assert run(["replay", str(log), "robotino2", "--map", str(mapped)]) == 2
+    assert "has no true pose to compare with" in (err := capsys.readouterr().err) and "--inputs voltages" in err
