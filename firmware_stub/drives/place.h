@@ -17,7 +17,7 @@ drive_place place_at(laconic_real turns, int32_t counts_per_turn);
 /* What place_at() turns into the place, but for rounding. */
 laconic_real place_turns(drive_place place, int32_t counts_per_turn);
 
-/* Moved by finite counts; more than 2^60 of them are taken as that many. */
+/* Moved by counts; more than 2^31 of them are taken as that many. */
 drive_place place_moved(drive_place place, laconic_real counts);
 
 drive_place place_sum(drive_place a, drive_place b);
@@ -28,9 +28,8 @@ laconic_real place_counts(drive_place place);
 typedef struct drive_motion {
     drive_place place, target;
     laconic_real speed, target_speed;
-    laconic_real speed_limit;  /* > 0; not finite: none */
-    laconic_real acceleration; /* > 0; not finite: at once */
-    laconic_real deceleration; /* > 0 */
+    laconic_real speed_limit;                /* > 0; not finite: none */
+    laconic_real acceleration, deceleration; /* > 0 */
 } drive_motion;
 
 /* One step of the motion, the target moving too. True once it has arrived: place and speed are the target's. */

@@ -120,7 +120,7 @@ void moteus_set_output(moteus_axis *axis, const laconic_wheel_drive *drive, laco
         const drive_place off = place_difference(place, place_difference(seen, axis->zero));
         const laconic_real turns = place_turns(off, counts);
         const drive_place whole =
-            place_at((laconic_real)(int64_t)(turns + (turns < 0 ? -1 : 1) / (laconic_real)2), counts);
+            place_at((laconic_real)(int32_t)bounded(turns + (turns < 0 ? -1 : 1) / (laconic_real)2), counts);
         place = place_sum(place_difference(seen, axis->zero), whole);
     }
     axis->zero = place_difference(seen, place);

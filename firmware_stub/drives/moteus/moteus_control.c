@@ -47,6 +47,17 @@ static void follow_velocity(moteus_axis *axis, const laconic_wheel_drive *drive,
     move_on(axis, drive, most == most ? before : axis->control_velocity, step_s);
 }
 
+/* A motion without limit of its acceleration: at the limit of the speed until the step that reaches the target. */
+static bool glide(drive_motion *motion, laconic_real step_s) {
+    const laconic_real distance = place_counts(place_difference(motion->target, motion->place));
+    const laconic_real most = motion->speed_limit * step_s;
+    const bool arrives = real_magnitude(distance) <= most;
+    motion->speed = distance < 0 ? -motion->speed_limit : motion->speed_limit;
+    motion->target = place_moved(motion->target, motion->target_speed * step_s);
+    motion->place = arrives ? motion->target : place_moved(motion->place, distance < 0 ? -most : most);
+    return arrives;
+}
+
 static void follow_place(moteus_axis *axis, const laconic_wheel_drive *drive, laconic_real step_s) {
     const moteus_command *command = &axis->acting;
     const laconic_real counts = moteus_counts(drive), size = real_magnitude(counts);
@@ -55,7 +66,8 @@ static void follow_place(moteus_axis *axis, const laconic_wheel_drive *drive, la
     motion.target_speed = command->velocity * counts;
     motion.speed_limit = command->velocity_limit * size;
     motion.acceleration = motion.deceleration = command->acceleration_limit * size;
-    axis->trajectory_complete = motion_step(&motion, step_s);
+    const bool gradual = is_finite(command->acceleration_limit);
+    axis->trajectory_complete = gradual ? motion_step(&motion, step_s) : glide(&motion, step_s);
     axis->control = motion.place;
     axis->target = motion.target;
     axis->control_velocity = axis->trajectory_complete ? command->velocity : motion.speed / counts;

@@ -25,7 +25,6 @@ typedef enum odrive_command {
     ODRIVE_ADDRESS = 0x06,
     ODRIVE_SET_AXIS_STATE = 0x07,
     ODRIVE_GET_ENCODER_ESTIMATES = 0x09,
-    ODRIVE_GET_ENCODER_COUNT = 0x0A, /* of 0.5; no message of 0.6 has this number */
     ODRIVE_SET_CONTROLLER_MODE = 0x0B,
     ODRIVE_SET_INPUT_POS = 0x0C,
     ODRIVE_SET_INPUT_VEL = 0x0D,
@@ -119,16 +118,12 @@ void odrive_clear_errors(odrive_axis *axis, laconic_wheel_drive *drive);
 void odrive_supervise(laconic_drives *drives, int32_t i, uint32_t now_us);
 
 /* odrive_control.c: from inputs to the drive's target, once a step in closed loop. */
+drive_place odrive_place(const odrive_axis *axis, const laconic_wheel_drive *drive); /* as the bus sees it */
 void odrive_follow(odrive_axis *axis, laconic_wheel_drive *drive, laconic_real step_s);
 
 /* odrive_messages.c: the messages that a drive sends, made from the newest values. */
 bool odrive_sends(uint32_t command);
 void odrive_message(const laconic_drives *drives, int32_t i, odrive_command command, laconic_frame *frame);
 uint64_t odrive_serial_number(int32_t i);
-
-static inline drive_place odrive_place(const odrive_axis *axis, const laconic_wheel_drive *drive) {
-    const drive_place seen = {drive->count, 0};
-    return place_difference(seen, axis->zero);
-}
 
 #endif

@@ -19,6 +19,14 @@ static bool read(const uint8_t *from, laconic_real least, laconic_real *value) {
     return true;
 }
 
+/* The same of the two numbers of a message; both or none. */
+static bool read_both(const laconic_frame *frame, laconic_real least, laconic_real *first, laconic_real *second) {
+    laconic_real value;
+    if (!read(frame->data, least, &value) || !read(frame->data + 4, least, second)) return false;
+    *first = value;
+    return true;
+}
+
 static laconic_wheel_drive *drive_of(laconic_drives *drives, int32_t i) { return &drives->drive[i]; }
 
 static void estop(laconic_drives *drives, int32_t i, const laconic_frame *frame, uint32_t now_us) {
@@ -59,10 +67,7 @@ static void input_pos(laconic_drives *drives, int32_t i, const laconic_frame *fr
 static void input_vel(laconic_drives *drives, int32_t i, const laconic_frame *frame, uint32_t now_us) {
     (void)now_us;
     odrive_axis *axis = odrive_axis_of(drives, i);
-    laconic_real speed, torque;
-    if (!read(frame->data, -most, &speed) || !read(frame->data + 4, -most, &torque)) return;
-    axis->input_speed = speed;
-    axis->input_torque = torque;
+    read_both(frame, -most, &axis->input_speed, &axis->input_torque);
 }
 
 static void input_torque(laconic_drives *drives, int32_t i, const laconic_frame *frame, uint32_t now_us) {
@@ -91,10 +96,7 @@ static void travel_speed(laconic_drives *drives, int32_t i, const laconic_frame 
 static void travel_accelerations(laconic_drives *drives, int32_t i, const laconic_frame *frame, uint32_t now_us) {
     (void)now_us;
     odrive_axis *axis = odrive_axis_of(drives, i);
-    laconic_real faster, slower;
-    if (!read(frame->data, LACONIC_EPSILON, &faster) || !read(frame->data + 4, LACONIC_EPSILON, &slower)) return;
-    axis->travel_acceleration = faster;
-    axis->travel_deceleration = slower;
+    read_both(frame, LACONIC_EPSILON, &axis->travel_acceleration, &axis->travel_deceleration);
 }
 
 static void inertia(laconic_drives *drives, int32_t i, const laconic_frame *frame, uint32_t now_us) {
@@ -139,7 +141,7 @@ static void speed_gains(laconic_drives *drives, int32_t i, const laconic_frame *
     (void)now_us;
     laconic_drive_settings *has = &drive_of(drives, i)->settings;
     laconic_real gain, integral;
-    if (!read(frame->data, 0, &gain) || !read(frame->data + 4, 0, &integral)) return;
+    if (!read_both(frame, 0, &gain, &integral)) return;
     const laconic_real torque_per_current = has->torque_constant_Nm_per_A * (2 * ODRIVE_PI);
     has->speed_gain_As = gain / torque_per_current;
     has->speed_integral_gain_A = integral / torque_per_current;
@@ -147,26 +149,31 @@ static void speed_gains(laconic_drives *drives, int32_t i, const laconic_frame *
 
 /* Messages that are not here, RxSdo and Enter_DFU_Mode among them, only feed the watchdog. */
 static const struct {
+    uint8_t command, extent; /* bytes that the message needs */
     action *act;
-    uint8_t extent; /* bytes that the message needs */
-} rows[ODRIVE_COMMANDS] = {
-    [ODRIVE_ESTOP] = {estop, EXTENT_NONE},
-    [ODRIVE_ADDRESS] = {address, EXTENT_ADDRESS},
-    [ODRIVE_SET_AXIS_STATE] = {axis_state, EXTENT_WORD},
-    [ODRIVE_SET_CONTROLLER_MODE] = {controller_mode, EXTENT_FULL},
-    [ODRIVE_SET_INPUT_POS] = {input_pos, EXTENT_FULL},
-    [ODRIVE_SET_INPUT_VEL] = {input_vel, EXTENT_FULL},
-    [ODRIVE_SET_INPUT_TORQUE] = {input_torque, EXTENT_WORD},
-    [ODRIVE_SET_LIMITS] = {limits, EXTENT_FULL},
-    [ODRIVE_SET_TRAJ_VEL_LIMIT] = {travel_speed, EXTENT_WORD},
-    [ODRIVE_SET_TRAJ_ACCEL_LIMITS] = {travel_accelerations, EXTENT_FULL},
-    [ODRIVE_SET_TRAJ_INERTIA] = {inertia, EXTENT_WORD},
-    [ODRIVE_REBOOT] = {reboot, EXTENT_NONE},
-    [ODRIVE_CLEAR_ERRORS] = {clear_errors, EXTENT_NONE},
-    [ODRIVE_SET_ABSOLUTE_POSITION] = {absolute_position, EXTENT_WORD},
-    [ODRIVE_SET_POS_GAIN] = {position_gain, EXTENT_WORD},
-    [ODRIVE_SET_VEL_GAINS] = {speed_gains, EXTENT_FULL},
+} rows[] = {
+    {ODRIVE_ESTOP, EXTENT_NONE, estop},
+    {ODRIVE_ADDRESS, EXTENT_ADDRESS, address},
+    {ODRIVE_SET_AXIS_STATE, EXTENT_WORD, axis_state},
+    {ODRIVE_SET_CONTROLLER_MODE, EXTENT_FULL, controller_mode},
+    {ODRIVE_SET_INPUT_POS, EXTENT_FULL, input_pos},
+    {ODRIVE_SET_INPUT_VEL, EXTENT_FULL, input_vel},
+    {ODRIVE_SET_INPUT_TORQUE, EXTENT_WORD, input_torque},
+    {ODRIVE_SET_LIMITS, EXTENT_FULL, limits},
+    {ODRIVE_SET_TRAJ_VEL_LIMIT, EXTENT_WORD, travel_speed},
+    {ODRIVE_SET_TRAJ_ACCEL_LIMITS, EXTENT_FULL, travel_accelerations},
+    {ODRIVE_SET_TRAJ_INERTIA, EXTENT_WORD, inertia},
+    {ODRIVE_REBOOT, EXTENT_NONE, reboot},
+    {ODRIVE_CLEAR_ERRORS, EXTENT_NONE, clear_errors},
+    {ODRIVE_SET_ABSOLUTE_POSITION, EXTENT_WORD, absolute_position},
+    {ODRIVE_SET_POS_GAIN, EXTENT_WORD, position_gain},
+    {ODRIVE_SET_VEL_GAINS, EXTENT_FULL, speed_gains},
 };
+
+static void act(laconic_drives *drives, int32_t i, const laconic_frame *frame, uint32_t command, uint32_t now_us) {
+    for (size_t k = 0; k < sizeof rows / sizeof rows[0]; k++)
+        if (rows[k].command == command && frame->length >= rows[k].extent) rows[k].act(drives, i, frame, now_us);
+}
 
 /* CANSimple::do_command of 0.5.6: every message to an axis feeds its watchdog, and a request is a remote frame or an
  * empty one. */
@@ -177,6 +184,6 @@ void odrive_take(laconic_drives *drives, int32_t i, const laconic_frame *frame, 
     axis->fed_us = now_us;
     if (request && odrive_sends(command))
         axis->pending |= 1U << command;
-    else if (!frame->remote && rows[command].act != NULL && frame->length >= rows[command].extent)
-        rows[command].act(drives, i, frame, now_us);
+    else if (!frame->remote)
+        act(drives, i, frame, command, now_us);
 }

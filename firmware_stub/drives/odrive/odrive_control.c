@@ -7,6 +7,11 @@ static const laconic_real speed_ramp = 1;                   /* vel_ramp_rate [tu
 static const laconic_real torque_ramp = (laconic_real)0.01; /* torque_ramp_rate [N·m/s]        */
 static const laconic_real filter_bandwidth_per_s = 2;       /* input_filter_bandwidth          */
 
+drive_place odrive_place(const odrive_axis *axis, const laconic_wheel_drive *drive) {
+    const drive_place seen = {drive->count, 0};
+    return place_difference(seen, axis->zero);
+}
+
 static laconic_real counts_of(const laconic_wheel_drive *drive, laconic_real turns) {
     return turns * (laconic_real)drive->settings.encoder_counts;
 }

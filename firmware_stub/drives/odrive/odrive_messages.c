@@ -42,14 +42,6 @@ static void encoder_estimates(const laconic_wheel_drive *drive, const odrive_axi
     octets_put_real(data + 4, drive->speed_rad_per_s / (2 * ODRIVE_PI));
 }
 
-/* 0.5: counts since the start, wrapped to 32 bits, and counts within the turn. */
-static void encoder_count(const laconic_wheel_drive *drive, const odrive_axis *axis, uint8_t *data) {
-    const int64_t count = odrive_place(axis, drive).count, turn = drive->settings.encoder_counts;
-    const int64_t within = count % turn;
-    octets_put_u32(data, (uint32_t)(uint64_t)count);
-    octets_put_u32(data + 4, (uint32_t)(within < 0 ? within + turn : within));
-}
-
 static void currents(const laconic_wheel_drive *drive, const odrive_axis *axis, uint8_t *data) {
     octets_put_real(data, axis->state == ODRIVE_CLOSED_LOOP_CONTROL ? drive->current_A : 0);
     octets_put_real(data + 4, drive->current_A);
@@ -85,7 +77,6 @@ static fill *const fills[ODRIVE_COMMANDS] = {
     [ODRIVE_HEARTBEAT] = heartbeat,
     [ODRIVE_GET_ERROR] = error,
     [ODRIVE_GET_ENCODER_ESTIMATES] = encoder_estimates,
-    [ODRIVE_GET_ENCODER_COUNT] = encoder_count,
     [ODRIVE_GET_IQ] = currents,
     [ODRIVE_GET_TEMPERATURE] = temperature,
     [ODRIVE_GET_BUS_VOLTAGE_CURRENT] = bus,

@@ -84,23 +84,22 @@ void odrive_request(laconic_drives *drives, int32_t i, uint32_t state, uint32_t 
         enter(axis, ODRIVE_IDLE, state == ODRIVE_HOMING ? ODRIVE_HOMING_WITHOUT_ENDSTOP : ODRIVE_INVALID_STATE);
 }
 
+/* Faults of the drive are bits 0 to 7. */
 static uint32_t errors_of(uint32_t faults) {
-    static const struct {
-        uint32_t fault, error;
-    } rows[] = {
-        {LACONIC_DRIVE_FAULT_ENCODER, ODRIVE_MISSING_ESTIMATE},
-        {LACONIC_DRIVE_FAULT_STALL, ODRIVE_SPINOUT_DETECTED},
-        {LACONIC_DRIVE_FAULT_TEMPERATURE, ODRIVE_INVERTER_OVER_TEMP},
-        {LACONIC_DRIVE_FAULT_OVERSPEED, ODRIVE_VELOCITY_LIMIT_VIOLATION},
-        {LACONIC_DRIVE_FAULT_SUPPLY, ODRIVE_DC_BUS_UNDER_VOLTAGE},
-        {LACONIC_DRIVE_FAULT_WATCHDOG, ODRIVE_WATCHDOG_TIMER_EXPIRED},
-        {LACONIC_DRIVE_FAULT_FOLLOWING, ODRIVE_POSITION_LIMIT_VIOLATION},
-        {LACONIC_DRIVE_FAULT_TARGET, ODRIVE_BAD_CONFIG},
+    static const uint32_t errors[] = {
+        ODRIVE_MISSING_ESTIMATE,         /* encoder     */
+        ODRIVE_SPINOUT_DETECTED,         /* stall       */
+        ODRIVE_INVERTER_OVER_TEMP,       /* temperature */
+        ODRIVE_VELOCITY_LIMIT_VIOLATION, /* overspeed   */
+        ODRIVE_DC_BUS_UNDER_VOLTAGE,     /* supply      */
+        ODRIVE_WATCHDOG_TIMER_EXPIRED,   /* watchdog    */
+        ODRIVE_POSITION_LIMIT_VIOLATION, /* following   */
+        ODRIVE_BAD_CONFIG,               /* target      */
     };
-    uint32_t errors = 0;
-    for (size_t k = 0; k < sizeof rows / sizeof rows[0]; k++)
-        if (faults & rows[k].fault) errors |= rows[k].error;
-    return errors;
+    uint32_t found = 0;
+    for (size_t k = 0; k < sizeof errors / sizeof errors[0]; k++)
+        if (faults >> k & 1U) found |= errors[k];
+    return found;
 }
 
 static bool is_silent(const laconic_drives *drives, const odrive_axis *axis, uint32_t now_us) {
