@@ -21,7 +21,7 @@ void odrive_restart(laconic_drives *drives, int32_t i, uint32_t now_us) {
     laconic_wheel_drive *drive = &drives->drive[i];
     const laconic_drive_settings saved = axis->saved;
     memset(axis, 0, sizeof *axis);
-    memset(&drive->target, 0, sizeof drive->target); /* off */
+    laconic_drive_off(drive);
     axis->saved = drive->settings = saved;
     set_defaults(axis);
     axis->node_id = (uint8_t)saved.node_id;

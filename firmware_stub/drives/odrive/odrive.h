@@ -98,7 +98,8 @@ typedef struct odrive_axis {
     uint32_t pending;                                                    /* bit c: message c waits to be sent */
     uint32_t errors, disarm_reason;
     uint32_t fed_us, state_us, heartbeat_us, encoder_us;
-    uint8_t node_id, state, result, control_mode, input_mode;
+    uint32_t control_mode, input_mode; /* as they were sent */
+    uint8_t node_id, state, result;
     bool travelling;
 } odrive_axis;
 
@@ -124,6 +125,8 @@ void odrive_follow(odrive_axis *axis, laconic_wheel_drive *drive, laconic_real s
 /* odrive_messages.c: the messages that a drive sends, made from the newest values. */
 bool odrive_sends(uint32_t command);
 void odrive_message(const laconic_drives *drives, int32_t i, odrive_command command, laconic_frame *frame);
-uint64_t odrive_serial_number(int32_t i);
+/* Of 48 bits: the high 16 are the same for all. */
+#define ODRIVE_SERIAL_NUMBER_HIGH 0x4C61U
+static inline uint32_t odrive_serial_number(int32_t i) { return 0x636F0000U + (uint32_t)i; }
 
 #endif

@@ -37,9 +37,9 @@ static void estop(laconic_drives *drives, int32_t i, const laconic_frame *frame,
 /* To every node: the drive with this serial number gets the node id. */
 static void address(laconic_drives *drives, int32_t i, const laconic_frame *frame, uint32_t now_us) {
     (void)now_us;
-    const uint64_t serial_number = octets_u32(frame->data + 1) | (uint64_t)octets_u16(frame->data + 5) << 32;
-    if (serial_number == odrive_serial_number(i) && frame->data[0] < ODRIVE_EVERY_NODE)
-        odrive_axis_of(drives, i)->node_id = frame->data[0];
+    const bool is_it = octets_u32(frame->data + 1) == odrive_serial_number(i) &&
+                       octets_u16(frame->data + 5) == ODRIVE_SERIAL_NUMBER_HIGH;
+    if (is_it && frame->data[0] < ODRIVE_EVERY_NODE) odrive_axis_of(drives, i)->node_id = frame->data[0];
 }
 
 static void axis_state(laconic_drives *drives, int32_t i, const laconic_frame *frame, uint32_t now_us) {

@@ -42,8 +42,10 @@ static void encoder_estimates(const laconic_wheel_drive *drive, const odrive_axi
     octets_put_real(data + 4, drive->speed_rad_per_s / (2 * ODRIVE_PI));
 }
 
+/* Set and measured are the same here, and 0 of a drive that is off. */
 static void currents(const laconic_wheel_drive *drive, const odrive_axis *axis, uint8_t *data) {
-    octets_put_real(data, axis->state == ODRIVE_CLOSED_LOOP_CONTROL ? drive->current_A : 0);
+    (void)axis;
+    octets_put_real(data, drive->current_A);
     octets_put_real(data + 4, drive->current_A);
 }
 
@@ -62,7 +64,8 @@ static void bus(const laconic_wheel_drive *drive, const odrive_axis *axis, uint8
 }
 
 static void torques(const laconic_wheel_drive *drive, const odrive_axis *axis, uint8_t *data) {
-    octets_put_real(data, axis->state == ODRIVE_CLOSED_LOOP_CONTROL ? torque(drive) : 0);
+    (void)axis;
+    octets_put_real(data, torque(drive));
     octets_put_real(data + 4, torque(drive));
 }
 
@@ -86,21 +89,16 @@ static fill *const fills[ODRIVE_COMMANDS] = {
 
 bool odrive_sends(uint32_t command) { return command == ODRIVE_ADDRESS || fills[command] != NULL; }
 
-uint64_t odrive_serial_number(int32_t i) { return 0x4C61636F0000U + (uint64_t)i; }
-
-static void put_address(uint8_t node_id, uint64_t serial_number, uint8_t *data) {
-    data[0] = node_id;
-    octets_put_u32(data + 1, (uint32_t)serial_number);
-    octets_put_u16(data + 5, (uint32_t)(serial_number >> 32));
-}
-
 void odrive_message(const laconic_drives *drives, int32_t i, odrive_command command, laconic_frame *frame) {
     const odrive_axis *axis = (const odrive_axis *)drives->axes + i;
     memset(frame, 0, sizeof *frame);
     frame->id = (uint32_t)axis->node_id << ODRIVE_COMMAND_BITS | (uint32_t)command;
     frame->length = 8;
-    if (command == ODRIVE_ADDRESS)
-        put_address(axis->node_id, odrive_serial_number(i), frame->data);
-    else
+    if (command == ODRIVE_ADDRESS) {
+        frame->data[0] = axis->node_id;
+        octets_put_u32(frame->data + 1, odrive_serial_number(i));
+        octets_put_u16(frame->data + 5, ODRIVE_SERIAL_NUMBER_HIGH);
+    } else {
         fills[command](&drives->drive[i], axis, frame->data);
+    }
 }

@@ -1,8 +1,6 @@
 /* States of an axis: procedures, closed loop, and the errors that disarm it. */
 #include "odrive.h"
 
-#include <string.h>
-
 /* A calibrated drive that calibrates again: the procedure takes this long and changes nothing. */
 enum { PROCEDURE_US = 200000 };
 
@@ -16,15 +14,13 @@ static void enter(odrive_axis *axis, odrive_state state, odrive_result result) {
     axis->travelling = false;
 }
 
-static void release(laconic_wheel_drive *drive) { memset(&drive->target, 0, sizeof drive->target); }
-
 void odrive_disarm(odrive_axis *axis, laconic_wheel_drive *drive, uint32_t error) {
     axis->errors |= error;
     if (axis->state != ODRIVE_IDLE) {
         axis->disarm_reason |= error;
         enter(axis, ODRIVE_IDLE, ODRIVE_DISARMED);
     }
-    release(drive);
+    laconic_drive_off(drive);
 }
 
 void odrive_clear_errors(odrive_axis *axis, laconic_wheel_drive *drive) {
@@ -33,10 +29,10 @@ void odrive_clear_errors(odrive_axis *axis, laconic_wheel_drive *drive) {
     if (drive->faults) laconic_drive_clear(drive);
 }
 
-static bool is_modelled(uint32_t control_mode, uint32_t input_mode) {
-    const bool control = control_mode >= ODRIVE_TORQUE && control_mode <= ODRIVE_POSITION;
-    return control &&
-           (input_mode <= ODRIVE_POS_FILTER || input_mode == ODRIVE_TRAP_TRAJ || input_mode == ODRIVE_TORQUE_RAMP);
+/* Of the input modes 0 to 3, 5 and 6. */
+static bool is_modelled(const odrive_axis *axis) {
+    const bool control = axis->control_mode - ODRIVE_TORQUE <= ODRIVE_POSITION - ODRIVE_TORQUE;
+    return control && axis->input_mode <= ODRIVE_TORQUE_RAMP && (0x6FU >> axis->input_mode & 1U) != 0;
 }
 
 /* Position control begins where the shaft is (Controller::control_mode_updated of 0.5.6). */
@@ -45,10 +41,9 @@ static void begin_where_it_is(odrive_axis *axis, const laconic_wheel_drive *driv
     axis->travelling = false;
 }
 
-/* Numbers of the modes beyond 255 are no modes either. */
 void odrive_set_mode(odrive_axis *axis, const laconic_wheel_drive *drive, uint32_t control_mode, uint32_t input_mode) {
-    axis->control_mode = (uint8_t)(control_mode > UINT8_MAX ? UINT8_MAX : control_mode);
-    axis->input_mode = (uint8_t)(input_mode > UINT8_MAX ? UINT8_MAX : input_mode);
+    axis->control_mode = control_mode;
+    axis->input_mode = input_mode;
     begin_where_it_is(axis, drive);
 }
 
@@ -61,7 +56,6 @@ static void close_loop(odrive_axis *axis, laconic_wheel_drive *drive, uint32_t n
     begin_where_it_is(axis, drive);
     axis->speed = axis->torque = 0;
     axis->fed_us = now_us;
-    drive->integral_A = 0;
     enter(axis, ODRIVE_CLOSED_LOOP_CONTROL, ODRIVE_BUSY);
 }
 
@@ -70,7 +64,7 @@ void odrive_request(laconic_drives *drives, int32_t i, uint32_t state, uint32_t 
     laconic_wheel_drive *drive = &drives->drive[i];
     if (state == ODRIVE_UNDEFINED || (state == ODRIVE_CLOSED_LOOP_CONTROL && axis->state == state)) return;
     const bool was_busy = axis->state != ODRIVE_IDLE;
-    release(drive);
+    laconic_drive_off(drive);
     axis->state_us = now_us;
     if (state == ODRIVE_CLOSED_LOOP_CONTROL)
         close_loop(axis, drive, now_us);
@@ -120,7 +114,7 @@ void odrive_supervise(laconic_drives *drives, int32_t i, uint32_t now_us) {
     if (drive->faults) odrive_disarm(axis, drive, errors_of(drive->faults));
     if (axis->state == ODRIVE_CLOSED_LOOP_CONTROL) {
         if (is_too_fast(axis, drive)) odrive_disarm(axis, drive, ODRIVE_VELOCITY_LIMIT_VIOLATION);
-        if (!is_modelled(axis->control_mode, axis->input_mode)) odrive_disarm(axis, drive, ODRIVE_BAD_CONFIG);
+        if (!is_modelled(axis)) odrive_disarm(axis, drive, ODRIVE_BAD_CONFIG);
     } else if (axis->state != ODRIVE_IDLE && now_us - axis->state_us >= PROCEDURE_US) {
         enter(axis, ODRIVE_IDLE, ODRIVE_SUCCESS);
     }
