@@ -12,12 +12,13 @@ from laconic.core.plant import Plant
 from laconic.errors import BadInput
 from laconic.logs import Log
 from laconic.recorded_runs.closed_loop import Followed
-from laconic.recorded_runs.held_wheels import APART_S, Vehicle, in_small_steps, intervals, point_pose
+from laconic.recorded_runs.held_wheels import Vehicle, in_small_steps, intervals, point_pose
 from laconic.recorded_runs.rolling import null_space
 from laconic.recorded_runs.steady_currents import axles_of, with_torques
 from laconic.scene.ground import slips
 
 STEP_S = 0.002
+AROUND_S = 0.2     # to either side of a sample, of which angles tell the speed there
 SAME_STEP = 1e-9   # of a step: times in a log carry their rounding
 
 
@@ -54,13 +55,13 @@ def _run_in(step_s: float, core: Core, vehicle: Vehicle, log: Log, signal: str, 
     """values: one row for each interval between samples."""
     c_vehicle, time = core.vehicle(vehicle), log.time_s
     plant, anew = core.plant(c_vehicle, "auto", step_s, **_start(core, vehicle, log)), restarts(time, restart_s)
-    recorded, before = _speeds(log) if restart_s < math.inf else None, np.zeros(values.shape[1])
+    before = np.zeros(values.shape[1])
     shape = (len(time), values.shape[1])
     angle, pose, current = np.zeros(shape), np.zeros((len(time), 3)), np.zeros(shape)
     pose[0], rows, last = point_pose(plant, log.pose_point), {}, 0.0
     for k in range(1, len(time)):
-        if recorded is not None and k - 1 in anew:
-            plant = core.plant(c_vehicle, "auto", step_s, **_moving(core, vehicle, recorded[k - 1]))
+        if k - 1 in anew:
+            plant = core.plant(c_vehicle, "auto", step_s, **_moving(core, vehicle, speed_at(log, k - 1)))
             before, last = angle[k - 1], 0.0
         length = time[k] - time[k - 1]
         count = max(1, round(length / step_s))
@@ -95,14 +96,17 @@ def _start(core: Core, vehicle: Vehicle, log: Log) -> dict[str, Any]:
         core, vehicle, log.wheel_speed_rad_per_s[0])
 
 
-def _speeds(log: Log) -> np.ndarray:
-    """Of the wheels at each sample, from their rotation over an interval to either side."""
-    rotation = log.rotation_rad()
-    angle, time = np.vstack([np.zeros(rotation.shape[1]), np.cumsum(rotation, axis=0)]), log.time_s
-    ahead, behind = np.minimum(time + APART_S, time[-1]), np.maximum(time - APART_S, time[0])
-    moved = [np.interp(ahead, time, column) - np.interp(behind, time, column) for column in angle.T]
-    found: np.ndarray = np.column_stack(moved) / (ahead - behind)[:, None]
-    return found
+def speed_at(log: Log, index: int) -> np.ndarray:
+    """Of the wheels at a sample: the slope of a cubic through their angles around it."""
+    time = log.time_s - log.time_s[index]
+    near = np.abs(time) <= AROUND_S
+    first = max(int(np.argmax(near)) - 1, 0)
+    taken = slice(first, int(np.flatnonzero(near)[-1]) + 2)
+    rotation = np.cumsum(log.rotation_rad()[taken.start:taken.stop - 1], axis=0)
+    angle = np.vstack([np.zeros(rotation.shape[1]), rotation])
+    measured = ~np.isnan(angle).any(axis=0)
+    slope: np.ndarray = np.polyfit(time[taken], np.where(measured, angle, 0.0), min(3, len(angle) - 1))[-2]
+    return np.where(measured, slope, np.nan)
 
 
 def _moving(core: Core, vehicle: Vehicle, speed: np.ndarray) -> dict[str, Any]:

@@ -18,7 +18,9 @@ from laconic.identification.geometry import geometry_of
 from laconic.identification.motion import stepping
 from laconic.identification.solve import fit
 from laconic.identification.study import identify
+from laconic.logs import Log
 from laconic.paths import scene_path
+from laconic.recorded_runs.motor_driven import speed_at
 from laconic.scene import read_scene
 
 STRAIGHT_AND_TURNING = ((1.0, 0.0, 0.0), (0.0, 0.0, 6.0), (0.5, 0.0, 3.0))
@@ -64,6 +66,14 @@ def test_currents_tell_mass_and_yaw_inertia_in_kilograms():
     found = fit(scene.vehicle, parameters, evidence_of(scene, logs, parameters))
     assert found.values == pytest.approx(truth, rel=0.01)
     assert (np.abs(found.values - truth) < found.half_widths).all()
+
+
+def test_speeds_at_a_sample_are_the_slope_of_the_angles_also_beside_a_wheel_that_was_not_measured():
+    time = np.linspace(0.0, 2.0, 67)
+    angle = np.column_stack([time**3 - time, np.full(67, np.nan), 2.0 * time])
+    log = Log(Path("run.csv"), "made up", time, wheel_angle_rad=angle)
+    for index in (1, 33, 65):
+        assert speed_at(log, index) == pytest.approx([3.0 * time[index]**2 - 1.0, np.nan, 2.0], nan_ok=True)
 
 
 def test_resistance_and_torque_constant_are_written_with_the_back_emf(tmp_path):
