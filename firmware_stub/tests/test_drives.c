@@ -89,19 +89,29 @@ static void a_wheel_without_a_node_id_has_no_drive(void) {
     TEST_ASSERT_TRUE(held.axle_torque_Nm[2] == drives.drive[1].torque_Nm && drives.drive[1].torque_Nm > 0);
 }
 
-static void drives_move_the_plant_as_torques_that_are_given_to_it_do(void) {
-    static laconic_plant fed;
-    const laconic_vehicle vehicle = scene_vehicle(0);
-    scene_plant(&fed, &vehicle);
-    for (int k = 0; k < 2000; k++) {
+/* Both plants from the same start, one behind drives, one fed with their torques. */
+static void move_both(laconic_plant *fed, laconic_real friction, int steps) {
+    const laconic_drive_plan plan = scene_plan(0);
+    const laconic_vehicle vehicle = scene_vehicle(friction);
+    load(friction, &plan);
+    scene_plant(fed, &vehicle);
+    for (int k = 0; k < steps; k++) {
+        laconic_input torques;
         for (int i = 0; i < 4; i++) ask(i, (laconic_real)((k / 300 + i) % 5) * 30);
         step(1);
-        laconic_input torques;
         memset(&torques, 0, sizeof torques);
         for (int i = 0; i < 4; i++) torques.axle_torque_Nm[i] = drives.drive[i].torque_Nm;
-        laconic_plant_run(&fed, &torques, 1, NULL);
+        laconic_plant_run(fed, &torques, 1, NULL);
     }
+}
+
+static void drives_move_the_plant_as_torques_that_are_given_to_it_do(void) {
+    static laconic_plant fed;
+    move_both(&fed, 0, 2000);
     TEST_ASSERT_EQUAL_MEMORY(&fed.state, &plant.state, sizeof fed.state);
+    move_both(&fed, REAL(0.3), 1000);
+    TEST_ASSERT_EQUAL_MEMORY(&fed.state, &plant.state, sizeof fed.state);
+    TEST_ASSERT_EQUAL_MEMORY(&fed.slip, &plant.slip, sizeof fed.slip);
 }
 
 /* Counts of the encoder against the plant's angle: 8192 · 20 counts a turn. */

@@ -17,7 +17,7 @@ from laconic.paths import SOURCE_DIR
 from laconic.play.parameters import drive_parameters
 from laconic.play.settings import drive_settings
 from laconic.play.vehicle import played
-from laconic.rig.boards import emulated_node, why_no_emulation
+from laconic.rig.boards import own_node, why_no_emulation
 from laconic.rig.buses import NodeOnBus, VirtualClock, next_channel
 from laconic.rig.client import NodeClient
 from laconic.rig.errors import NodeRefused
@@ -207,12 +207,14 @@ def test_numbers_that_no_drive_can_have_are_refused_by_field_and_wheel(
         assert (found.status, found.field, found.item) == (status, field.lower().replace("_", " "), item)
 
 
-@pytest.mark.skipif(why_no_emulation() is not None, reason=why_no_emulation() or "")
-def test_the_controller_of_the_page_drives_a_board_that_has_no_other_protocol() -> None:
-    """An emulated Cortex-M4F behind a serial line, 200 periods a second by its own clock."""
-    scene = played(read_scene("robomaster_mecanum").with_run(real="single", method="rk4", step_s=0.005))
+@pytest.mark.parametrize(("kind", "real"), [("process", "double"), pytest.param(
+    "an386-drives", "single", marks=pytest.mark.skipif(why_no_emulation() is not None, reason="no emulated boards"))])
+def test_the_controller_of_the_page_drives_a_process_and_a_board_that_has_no_other_protocol(
+        kind: str, real: str) -> None:
+    """Behind a serial line, 200 periods a second by a clock of their own."""
+    scene = played(read_scene("robomaster_mecanum").with_run(real=real, method="rk4", step_s=0.005))
     twin = scene.plant(scene.core())
-    with emulated_node("an386-drives") as client:
+    with own_node(kind, real) as client:
         client.open()
         client.load_parameters([*parameters_of(twin, start_of(scene)), *drive_parameters(drive_settings(scene, None))],
                                twin.core.dtype)
@@ -220,10 +222,10 @@ def test_the_controller_of_the_page_drives_a_board_that_has_no_other_protocol() 
         bus, heard = client.link.bus, 0
         loops = controller_of_the_page()(bus)
         loops.wanted_rad_per_s = wheel_speeds_for(scene, 0.4, 0.1, 0.2)
-        while heard < 1200 and (message := bus.recv(2.0)) is not None:
+        while heard < 800 and (message := bus.recv(2.0)) is not None:
             loops.hear(message)
             heard += 1
         wanted_rpm = np.array(loops.wanted_rad_per_s) * 60 / (2 * np.pi) * 3591 / 187
-        assert heard == 1200
+        assert heard == 800
         assert np.allclose(loops.rpm, wanted_rpm, rtol=0.02, atol=5)
         client.stop()
