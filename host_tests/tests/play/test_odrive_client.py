@@ -10,6 +10,14 @@ import can
 import pytest
 from driven_scene import DrivenScene, driven_scene
 
+from laconic.play.parameters import drive_parameters
+from laconic.play.settings import drive_settings
+from laconic.play.vehicle import played
+from laconic.rig.boards import emulated_node, why_no_emulation
+from laconic.rig.lockstep import start_of
+from laconic.rig.parameters import parameters_of
+from laconic.scene import read_scene
+
 odrive_can = pytest.importorskip("odrive_can", reason="odrive-can needs Python 3.11")
 from odrive_can.odrive import CanMsg, DriveError, ODriveCAN  # noqa: E402
 
@@ -200,3 +208,45 @@ def test_every_message_of_its_dbc_is_decoded_and_right():
                 "Set_Input_Torque", "Set_Input_Vel", "Set_Input_Pos", "Enter_DFU_Mode", "Estop", "Clear_Errors",
                 "Reboot"}
         assert names_of_the_dbc() == told | set(SENT) | set(UNANSWERED)
+
+
+class Lent:
+    """A bus that the client's destructor must not close."""
+
+    def __init__(self, bus: can.BusABC):
+        self._bus, self.channel_info = bus, bus.channel_info
+        self.recv, self.send = bus.recv, bus.send
+
+    def shutdown(self) -> None:
+        """Left to its owner."""
+
+
+@pytest.mark.skipif(why_no_emulation() is not None, reason=why_no_emulation() or "")
+def test_odrive_can_drives_a_board_that_has_no_other_protocol():
+    """An emulated Cortex-M4F behind a serial line, 200 periods a second by its own clock."""
+    async def control(bus: Any) -> float:
+        drive = ODriveCAN(1, bus)
+        await asyncio.wait_for(drive.start(), 5.0)
+        drive.clear_errors()
+        drive.set_controller_mode("VELOCITY_CONTROL", "PASSTHROUGH")
+        await drive.set_axis_state("CLOSED_LOOP_CONTROL")
+        speed = 0.0
+        for _ in range(60):
+            drive.set_input_vel(5.0)
+            await asyncio.sleep(0.05)
+            speed = (await drive.get_encoder_estimates())["Vel_Estimate"]
+            if abs(speed - 5.0) < 0.1:
+                break
+        drive.check_errors()
+        drive.stop()
+        return speed
+
+    scene = played(read_scene(SCENE).with_run(real="single", method="rk4", step_s=0.005))
+    twin = scene.plant(scene.core())
+    with emulated_node("an386-odrive") as client:
+        client.open()
+        settings = drive_settings(scene, "odrive")
+        client.load_parameters([*parameters_of(twin, start_of(scene)), *drive_parameters(settings)], twin.core.dtype)
+        client.control("START_DRIVES")
+        assert abs(asyncio.run(control(Lent(client.link.bus))) - 5.0) < 0.1
+        client.stop()
