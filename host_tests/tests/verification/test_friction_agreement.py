@@ -37,12 +37,13 @@ def test_cold_random_steps_agree_with_the_oracle_to_1e9_and_have_that_residual_a
     assert count.may_refuse(MOST_COLD_REFUSED)
 
 
-def test_driven_vehicles_never_gain_energy_from_a_warm_step_nor_leave_the_residual():
+def test_driven_vehicles_never_gain_energy_from_a_warm_step_nor_leave_the_residual_or_the_oracle():
     count = Count()
     for seed in range(VEHICLES):
         drive(seed, STEPS, count)
     assert [text for text, _ in count.bad if "refused" not in text] == []
     assert count.may_refuse(MOST_WARM_REFUSED)
+    assert 0.0 < count.difference <= LIMIT
     assert count.solved > 0.5 * VEHICLES * STEPS
 
 

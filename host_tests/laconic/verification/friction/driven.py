@@ -11,7 +11,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from laconic.verification.friction.agreement import LIMIT, Count
+from laconic.verification.friction.agreement import LIMIT, Count, difference
 from laconic.verification.friction.core_solver import CoreSolution, solve_in_core
 from laconic.verification.friction.polish import polish
 from laconic.verification.friction.problem import StepProblem
@@ -21,6 +21,7 @@ from laconic.verification.friction.vehicles import GRAVITY, random_vehicle, step
 HOLD_STEPS = 25             # a voltage is held so long
 ROUNDING = 1e-8             # of the step's energy: the solver's accuracy of 1e-9 in a speed, and some
 SMALLEST = 1e-140           # speeds whose squares underflow are rest
+COMPARED = 50               # one step of so many is compared with the oracle, the first of them in the middle
 
 
 @dataclass
@@ -68,6 +69,8 @@ class Driven:
         self.steps += 1
         if count.refuse_or_take(problem, core):
             judge(problem, core, count)
+            if self.steps % COMPARED == COMPARED // 2:
+                agree(problem, core, count)
             self.motion = Motion(core.z, core.slip_impulse)
         else:
             count.bad.append(("warm refused", problem))
@@ -88,6 +91,16 @@ def judge(problem: StepProblem, core: CoreSolution, count: Count) -> None:
         count.bad.append((f"residual {rest:.1e}", problem))
     if not gain <= ROUNDING:
         count.bad.append((f"energy grows by {gain:.1e}", problem))
+
+
+def agree(problem: StepProblem, core: CoreSolution, count: Count) -> None:
+    """Counts the difference from the oracle's speeds, and as bad a large one."""
+    exact = polish(problem)
+    count.unsure += not exact.certain
+    away = difference(core.z, exact.z) if exact.certain else 0.0
+    count.difference = max(count.difference, away)
+    if not away <= LIMIT:
+        count.bad.append((f"difference {away:.1e}", problem))
 
 
 def energy_gain(problem: StepProblem, z: np.ndarray) -> float:
