@@ -24,15 +24,17 @@ if TYPE_CHECKING:  # for type checkers and editors; the table below is what runs
     from laconic.scene import METHODS as METHODS
     from laconic.scene import Scene as Scene
     from laconic.scene import read_scene as read_scene
+    from laconic.simulation import RunRefused as RunRefused
     from laconic.simulation import Trajectory as Trajectory
     from laconic.simulation import simulate as simulate
 
-__all__ = ["METHODS", "BadInput", "Core", "Plant", "Refused", "Scene", "Trajectory", "load_core", "make_fmu",
-           "read_scene", "scene_names", "simulate"]
+__all__ = ["METHODS", "BadInput", "Core", "Plant", "Refused", "RunRefused", "Scene", "Trajectory", "load_core",
+           "make_fmu", "read_scene", "scene_names", "simulate"]
 
 _MODULES = {  # name → where it is, and as what if not by the same name
     "METHODS": "scene", "BadInput": "errors", "Core": "core", "Plant": "core.plant", "Refused": "errors",
-    "Scene": "scene", "Trajectory": "simulation", "load_core": "core:load", "make_fmu": "fmu", "read_scene": "scene",
+    "RunRefused": "simulation", "Scene": "scene", "Trajectory": "simulation", "load_core": "core:load",
+    "make_fmu": "fmu", "read_scene": "scene",
     "scene_names": "paths", "simulate": "simulation"}
 
 
