@@ -59,7 +59,7 @@ WRONG = {
     "verify number.json": "format", "replay nowhere.csv robotino2": "cannot be read", "replay '' robotino2": EMPTY,
     "replay empty.csv robotino2": "no samples", "replay binary.toml robotino2": "CSV",
     "replay folder robotino2": "no CSV file", "replay /dev/null robotino2": "no samples",
-    "replay empty.csv robotino2 --map good.toml": "time", "replay empty.csv robotino2 --map nowhere": "cannot be read",
+    "replay empty.csv robotino2 --map good.toml": "time", "replay empty.csv robotino2 --map nowhere": "no such file",
     "replay empty.csv robotino2 --map ''": EMPTY, "replay empty.csv robotino2 --fit ''": EMPTY,
     "identify nowhere.csv --scene robotino2": "cannot be read", "identify empty.csv": "--scene",
     "identify empty.csv --scene robotino2": "no samples", "identify --scene robotino2": "LOG",
