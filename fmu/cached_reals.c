@@ -80,7 +80,7 @@ static bool set_quickly(fmu_instance *instance, const uint32_t *references, size
     for (size_t i = 0; i < value_count; i++) finite &= fmu_is_finite(values[i]);
     if (!finite) return false;
     for (size_t i = 0; i < value_count; i++) *value_at(model, list->offset[i]) = values[i];
-    fmu_model_input_changed(model);
+    fmu_model_input_changed(instance);
     return true;
 }
 

@@ -18,8 +18,8 @@ fmu_status fmu_model_start(fmu_instance *instance);
 /* Prepares the model again after tunable parameters were set; the motion is carried over. */
 fmu_status fmu_model_change(fmu_instance *instance);
 
-/* To be called after an input was set: marks the groups that depend on inputs as stale. */
-void fmu_model_input_changed(fmu_model *model);
+/* To be called after an input was set: marks the groups that depend on inputs as stale; logs inputs without effect. */
+void fmu_model_input_changed(fmu_instance *instance);
 
 /* Computes those of the groups that are stale. */
 void fmu_model_refresh(fmu_instance *instance, uint32_t groups);

@@ -168,7 +168,7 @@ static fmu_status check_set(fmu_instance *instance, const fmu_slot *slot, const 
 /* A parameter that is set before initialization ends makes the model start anew; later the motion is carried over. */
 static void note_change(fmu_instance *instance, fmu_access access) {
     if (access == FMU_INPUT)
-        fmu_model_input_changed(&instance->model);
+        fmu_model_input_changed(instance);
     else if (access == FMU_STATE)
         instance->model.states_changed = instance->model.states_changed || instance->mode == FMU_EVENT;
     else if (instance->mode <= FMU_INITIALIZATION)

@@ -271,6 +271,28 @@ static bool usable(const laconic_model *m) {
     return fits_squared(vectors + rows + scales + others);
 }
 
+/* Names the wheel's own number that leaves the range by itself, if there is one. */
+static laconic_status refuse_range(const laconic_model *m, const laconic_vehicle *vehicle, laconic_refusal *why) {
+#if LACONIC_WITH_OWN_WHEELS
+    const real scale = fits_squared(m->torque_scale) ? R(1) + m->torque_scale : R(1);
+    for (int32_t i = 0; i < vehicle->wheel_count; i++) {
+        const laconic_wheel *w = &vehicle->wheel[i];
+        const real value[4] = {w->own_radius_m, w->own_inertia_kgm2, w->own_motor_gain_Nm_per_V,
+                               w->own_motor_damping_Nms};
+        for (int k = 0; k < 4; k++) {
+            const real size = magnitude(value[k]);
+            if (size > R(0) && !fits_squared(k == 0 ? m->wheel_radius_m / size : scale * size))
+                return refuse(why, LACONIC_OVERFLOW, (laconic_field)(LACONIC_FIELD_OWN_RADIUS + k), i + 1, value[k],
+                              R(0));
+        }
+    }
+#else
+    (void)m;
+    (void)vehicle;
+#endif
+    return refuse(why, LACONIC_OVERFLOW, LACONIC_FIELD_NONE, 0, R(0), R(0));
+}
+
 /* Downhill: what pulls at the centre of mass, in world axes. */
 static void fill_slope(laconic_model *m, const laconic_vehicle *vehicle) {
 #if LACONIC_WITH_SLOPE
@@ -310,7 +332,7 @@ static laconic_status prepare(laconic_model *model, const laconic_vehicle *vehic
     diagonalise(&m, &motions, &b, vehicle);
     derive_gyro(&m);
     derive_rows(&m);
-    if (!usable(&m)) return refuse(why, LACONIC_OVERFLOW, LACONIC_FIELD_NONE, 0, R(0), R(0));
+    if (!usable(&m)) return refuse_range(&m, vehicle, why);
     if (!(LACONIC_EPSILON * laconic_root(laconic_condition_number(&m)) < R(0.01)))
         return refuse(why, LACONIC_ILL_CONDITIONED, LACONIC_FIELD_NONE, 0, laconic_condition_number(&m), R(0));
     *model = m;

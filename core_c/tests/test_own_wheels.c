@@ -229,6 +229,24 @@ static void bad_values_are_refused_by_their_key_in_a_scene(void) {
             "vehicle.wheel[3].motor_damping_Nms: -1 is negative; give 0 or a value above it");
 }
 
+static void a_value_that_leaves_the_range_is_named(void) {
+    laconic_vehicle v = unlike();
+    laconic_model model;
+    v.wheel[1].own_radius_m = REAL(EITHER(1e-200, 1e-30));
+    ASSERT_REFUSED(LACONIC_OVERFLOW, LACONIC_FIELD_OWN_RADIUS, 2, laconic_prepare(&model, &v, &why), why);
+    v = unlike();
+    v.wheel[0].own_inertia_kgm2 = REAL(EITHER(1e200, 1e30));
+    ASSERT_REFUSED(LACONIC_OVERFLOW, LACONIC_FIELD_OWN_INERTIA, 1, laconic_prepare(&model, &v, &why), why);
+    v = unlike();
+    v.wheel[3].own_motor_gain_Nm_per_V = REAL(EITHER(-1e200, -1e30));
+    refuses(&v, LACONIC_OVERFLOW, LACONIC_FIELD_OWN_MOTOR_GAIN, 4,
+            "vehicle.wheel[4].motor_gain_Nm_per_V: a result leaves the range of " LACONIC_REAL_NAME
+            " precision; check inputs and units");
+    v = unlike();
+    v.mass_kg = REAL(EITHER(1e300, 1e35));
+    ASSERT_REFUSED(LACONIC_OVERFLOW, LACONIC_FIELD_NONE, 0, laconic_prepare(&model, &v, &why), why);
+}
+
 /* Wheels beyond wheel_count are not read, whatever stands there. */
 static void values_beyond_the_last_wheel_are_not_read(void) {
     laconic_vehicle v = unlike();
@@ -251,6 +269,7 @@ int main(void) {
     RUN_TEST(a_wheel_without_a_motor_takes_no_voltage_and_damps_nothing);
     RUN_TEST(the_rotor_goes_to_the_driven_wheels_only);
     RUN_TEST(bad_values_are_refused_by_their_key_in_a_scene);
+    RUN_TEST(a_value_that_leaves_the_range_is_named);
     RUN_TEST(values_beyond_the_last_wheel_are_not_read);
     return UNITY_END();
 }

@@ -54,7 +54,7 @@ fmu_status fmu_model_change(fmu_instance *instance) {
     return FMU_OK;
 }
 
-void fmu_model_input_changed(fmu_model *model) { model->stale = FMU_GROUPS_ALL; }
+void fmu_model_input_changed(fmu_instance *instance) { instance->model.stale = FMU_GROUPS_ALL; }
 
 void fmu_model_refresh(fmu_instance *instance, uint32_t groups) {
     fmu_model *self = &instance->model;

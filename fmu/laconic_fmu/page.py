@@ -18,6 +18,11 @@ OWN_COLUMNS = ("wheel_undriven", "own_radius_m", "own_inertia_kgm2", "own_motor_
                "own_motor_damping_Nms", "motor_circuit", "own_friction_coefficient", "own_roller_drag",
                "own_axle_friction_Nm", "start_wheel_speed_rad_per_s")
 """Shown only where a wheel has a value of its own."""
+COMMON = {"own_radius_m": "wheel_radius_m", "own_inertia_kgm2": "wheel_inertia_kgm2",
+          "own_motor_gain_Nm_per_V": "motor_gain_Nm_per_V", "own_motor_damping_Nms": "motor_damping_Nms",
+          "own_friction_coefficient": "ground_friction_coefficient", "own_roller_drag": "ground_roller_drag",
+          "own_axle_friction_Nm": "ground_axle_friction_Nm"}
+"""The variable that a wheel follows where its own value is 0."""
 
 
 def vehicle_parts(parts: Mapping[str, bytes], description: Description, version: int) -> dict[str, bytes]:
@@ -63,7 +68,16 @@ def _wheels(description: Description) -> str:
     cells = ("".join(f"<td>{_value(description, v, i)}</td>" for v in columns) for i in range(count))
     rows = "".join(f"<tr><th>{i}</th>{row}</tr>\n" for i, row in enumerate(cells, start=1))
     table = f"<table>\n<tr><th></th>{head}</tr>\n{rows}</table>"
-    return f"<h2>Its wheels</h2>\n<div style='overflow-x:auto'>{table}</div>\n"
+    return f"<h2>Its wheels</h2>\n<div style='overflow-x:auto'>{table}</div>\n{_without_effect(columns)}"
+
+
+def _without_effect(columns: list[Variable]) -> str:
+    """Names the variables of the vehicle that no wheel follows. (The radius stays the unit of ν.)"""
+    idle = [COMMON[v.name] for v in columns
+            if v.name in COMMON and v.name != "own_radius_m" and all(as_double(text) for text in v.start)]
+    names = ", ".join(f"<code>{name}</code>" for name in idle)
+    return (f"<p>Every wheel has a value of its own, so these have no effect before it is set to 0: {names}.</p>\n"
+            if idle else "")
 
 
 def _supports(description: Description) -> str:

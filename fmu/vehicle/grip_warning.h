@@ -6,7 +6,8 @@
 
 #define FMU_SLIP_WARNING 1U
 #define FMU_LIFT_WARNING 2U
-#define FMU_ALL_WARNINGS 3U
+#define FMU_ALL_WARNINGS 3U /* of the ground */
+#define FMU_IDLE_WARNING 4U /* of a voltage without effect; see idle_motors.h */
 
 static inline bool fmu_wheels_slip(const fmu_model *model) {
     return model->plant.friction.acts && model->plant.friction.slips;
@@ -22,7 +23,7 @@ static inline uint32_t fmu_warnings_done(const fmu_instance *instance) {
 static inline bool fmu_grip_is_watched(const fmu_instance *instance) {
     const fmu_model *model = &instance->model;
     return (model->contact.friction_coefficient > 0.0 || fmu_wheels_slip(model)) &&
-           fmu_warnings_done(instance) != FMU_ALL_WARNINGS && instance->deliver != NULL &&
+           (fmu_warnings_done(instance) & FMU_ALL_WARNINGS) != FMU_ALL_WARNINGS && instance->deliver != NULL &&
            (instance->log_categories & FMU_LOG_WARNING) != 0;
 }
 

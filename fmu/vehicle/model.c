@@ -3,6 +3,7 @@
 
 #include "friction_part.h"
 #include "grip_warning.h"
+#include "idle_motors.h"
 #include "model_interface.h"
 
 /* A larger quotient is no number of steps: laconic_steps_in refuses it. */
@@ -64,6 +65,8 @@ fmu_status fmu_model_start(fmu_instance *instance) {
     if (status != LACONIC_OK) return refuse_with(instance, &why, "this vehicle cannot start");
     if (self->continuous && fmu_friction_refuses(instance, &self->vehicle)) return FMU_ERROR;
     self->start_needed = self->change_needed = false;
+    fmu_idle_motors_find(self);
+    fmu_model_input_changed(instance);
     self->stale = FMU_GROUPS_ALL & ~FMU_GROUP_STATE;
     if (self->continuous) fmu_model_refresh(instance, FMU_GROUPS_OF_CONTINUOUS_STATES(self));
     return FMU_OK;
@@ -87,13 +90,18 @@ fmu_status fmu_model_change(fmu_instance *instance) {
     self->contact = contact;
     self->rolling = rolling;
     self->change_needed = false;
+    fmu_idle_motors_find(self);
     self->stale = FMU_GROUPS_ALL & ~FMU_GROUP_STATE;
     if (self->continuous) fmu_model_refresh(instance, FMU_GROUPS_OF_CONTINUOUS_STATES(self));
     return fmu_log(instance, FMU_OK, FMU_LOG_EVENTS,
                    "the vehicle changed: mass %g kg, its body keeps velocity and position", plant.model.mass_kg);
 }
 
-void fmu_model_input_changed(fmu_model *model) { model->stale |= FMU_GROUPS_OF_INPUT; }
+void fmu_model_input_changed(fmu_instance *instance) {
+    fmu_model *self = &instance->model;
+    self->stale |= FMU_GROUPS_OF_INPUT;
+    if (self->idle_wheels && !self->start_needed) fmu_idle_motors_check(instance);
+}
 
 /* ---------------------------------------------------------------------------------- outputs -- */
 

@@ -59,6 +59,7 @@ typedef struct fmu_model {
     bool continuous;         /* Model Exchange                                */
     bool stand_in;           /* the step is not known yet: the integrator is prepared for exact-flow */
     bool wheels_have_states; /* by the start values of the FMU */
+    bool idle_wheels;        /* some wheel has no motor       */
     double time_s;
     uint32_t stale;
 

@@ -1,6 +1,7 @@
 /* All members of the vehicle's fmu_model to and from bytes. Prepared constants are not stored but prepared again, which
  * gives the same bits. */
 #include "friction_part.h"
+#include "idle_motors.h"
 
 /* One field of a struct: an array of numbers, or one by its kind. */
 #define SERIALIZE_ARRAY(of, number, IDENTIFIER, member, name, KIND, RULE, NEED) \
@@ -124,6 +125,7 @@ static bool prepare_again(fmu_model *self, int32_t number, double step_s) {
     plant->integrator.method = self->stand_in && !plant->friction.acts ? &laconic_exact_flow : method;
     if (laconic_plant_set_step(plant, step_s, NULL) != LACONIC_OK) return false;
     plant->integrator.method = method;
+    fmu_idle_motors_find(self);
     return true;
 }
 

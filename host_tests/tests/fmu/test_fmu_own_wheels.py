@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import zipfile
 from pathlib import Path
 
 import numpy as np
@@ -83,3 +84,41 @@ def test_a_negative_own_value_is_refused_by_the_name_of_the_variable(version: in
         assert importer.set(name, 0.0, -1.0, 0.0, 0.0) == ERROR
         assert name in importer.log[-1][2]
         assert "outside its range: at least 0" in importer.log[-1][2]
+
+
+def idle_lines(importer: Importer) -> list[str]:
+    return [text for _, category, text in importer.log if category == "logStatusWarning" and "no motor" in text]
+
+
+@VERSIONS
+@pytest.mark.parametrize("kind", ["CoSimulation", "ModelExchange"])
+def test_a_voltage_of_a_wheel_without_motor_is_logged_once_with_the_wheel(version: int, kind: str, tmp_path: Path
+                                                                          ) -> None:
+    scene = read_scene(SCENE)
+    with Importer(make_fmu(scene, tmp_path / "scene.fmu", version=version), kind) as importer:
+        importer.initialize()
+        assert importer.set("voltage_V", *VOLTAGE_V) == OK
+        assert idle_lines(importer) == []
+        for volts in (5.0, 6.0):
+            assert importer.set("voltage_V", 3.0, 2.0, 0.0, volts) == OK
+        assert len(idle_lines(importer)) == 1
+        assert "voltage_V[4]: 5 V has no effect: wheel 4 has no motor" in idle_lines(importer)[0]
+
+
+@VERSIONS
+def test_a_voltage_without_motor_before_the_start_is_logged_when_the_vehicle_is_prepared(version: int, tmp_path: Path
+                                                                                         ) -> None:
+    with Importer(make_fmu(read_scene(SCENE), tmp_path / "scene.fmu", version=version)) as importer:
+        assert importer.set("voltage_V", 3.0, 2.0, 1.0, 0.0) == OK
+        assert idle_lines(importer) == []
+        importer.initialize()
+        assert "voltage_V[3]: 1 V" in idle_lines(importer)[0]
+
+
+def test_the_page_names_the_vehicles_variables_that_no_wheel_follows(tmp_path: Path) -> None:
+    with zipfile.ZipFile(make_fmu(read_scene(SCENE), tmp_path / "scene.fmu", version=3)) as archive:
+        page = archive.read("documentation/index.html").decode()
+    sentence = page.split("Every wheel has a value of its own")[1].split("</p>")[0]
+    assert "wheel_inertia_kgm2" in sentence and "motor_damping_Nms" not in sentence
+    with zipfile.ZipFile(make_fmu(read_scene("s1"), tmp_path / "s1.fmu", version=3)) as archive:
+        assert b"Every wheel has a value of its own" not in archive.read("documentation/index.html")
