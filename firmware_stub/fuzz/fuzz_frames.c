@@ -31,7 +31,7 @@ static void load(laconic_node *node) {
         .motor_gain_Nm_per_V = 1,
         .motor_damping_Nms = 1,
         .wheel_count = 2,
-        .wheel = {{LACONIC_WHEEL_FIXED, false, 0, 1, 0, 0}, {LACONIC_WHEEL_FIXED, false, 0, -1, 0, 0}},
+        .wheel = {{LACONIC_WHEEL_FIXED, false, 1, 0, 0, 0}, {LACONIC_WHEEL_FIXED, false, -1, 0, 0, 0}},
     };
     laconic_parameters *parameters = &node->loader.parameters;
     parameters->vehicle = vehicle;
