@@ -22,7 +22,7 @@ class MapPath(InputPath):
         """The path of its file, noted as an input."""
         path = super().convert(str(named_map(Path(value))) if str(value) else value, param, ctx)
         if str(value) == path.name and not path.suffix and not exists(path):
-            raise BadInput(f"--map {value}: there is no such file, nor a map of the project with this name; "
+            raise BadInput(f"--map {value}: cannot be read (no such file), and no map of the project has this name; "
                            f"{nearest_of(str(value), map_names())}")
         return path
 

@@ -175,7 +175,8 @@ def _judged(base: dict[str, Any], parameters: Parameters, evidence: Evidence, z:
     inverse = np.linalg.inv(information / scale**2 + np.eye(count))
 
     def covariance(rows: np.ndarray) -> np.ndarray:
-        correction = len(rows) / max(len(rows) - count, 1)
+        # a fit of whole paths does not make its stretches' errors smaller; sums over blocks it does
+        correction = 1.0 if rows is single else len(rows) / max(len(rows) - count, 1)
         of_z = inverse @ (correction * rows.T @ rows / scale**4 + np.eye(count)) @ inverse
         return parameters.factor @ of_z @ parameters.factor.T
 
@@ -184,14 +185,14 @@ def _judged(base: dict[str, Any], parameters: Parameters, evidence: Evidence, z:
         widths: np.ndarray = student.ppf(0.5 + CONFIDENCE / 2.0, freedom) * np.sqrt(np.diag(covariance(rows)))
         return widths
 
-    rows = np.concatenate(parts)
-    plain = widest = half_widths(rows)
+    single = np.concatenate(parts)
+    plain = widest = half_widths(single)
     likeness, is_found = likeness_of(_unexplained(base, parameters, evidence, z))
     is_found &= scale > SMALLEST_SCALE  # rounding repeats, too
     if is_found:
         widest = np.max([plain, *(half_widths(each) for each in block_sums(parts, evidence.sessions, count))], axis=0)
     structure = Structure(likeness, is_found, float((widest / plain).max(initial=1.0)))
-    return Fit(parameters, parameters.values(z), covariance(rows), information / scale**2, widest, scale, weights,
+    return Fit(parameters, parameters.values(z), covariance(single), information / scale**2, widest, scale, weights,
                structure)
 
 
