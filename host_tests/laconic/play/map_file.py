@@ -105,11 +105,11 @@ def read_map(path: Path, wheel_count: int) -> SignalMap:
 def _received(table: Table, wheel_count: int) -> Received:
     message, counter, checksum = _common(table)
     timeout_s = _positive(table, "timeout_s")
-    if table.has("at_timeout") and timeout_s is None:
-        table.fail("at_timeout", "has no effect without timeout_s; give it, too")
     at_timeout = table.choice("at_timeout", AT_TIMEOUT, "zero" if timeout_s is not None else "hold")
     joints = tuple(_input(each, wheel_count) for each in table.tables("signal"))
     table.done()
+    if table.has("at_timeout") and timeout_s is None:
+        table.fail("at_timeout", "has no effect without timeout_s; give it, too")
     if not joints and timeout_s is None:
         table.fail("signal", f"is missing, so {message} would do nothing; give [[receive.signal]]")
     return Received(table.location, message, joints, counter, checksum, timeout_s, at_timeout)

@@ -155,11 +155,19 @@ class Sender(Protected):
             if joint.constant is not None and self.raw_of(joint, joint.constant) is None:
                 message.fail("value", f"cannot hold {joint.constant:g} in {joint.signal}; give a value of its range",
                              joint.where)
-            if message.signals[joint.signal].is_float and joint.wrap:
-                message.fail("wrap", f"has {joint.signal} as a number with a fraction, which does not wrap; take it "
-                             "out", joint.where)
+            if joint.wrap:
+                self._check_wrap(joint, message.signals[joint.signal])
         self.pages = self._pages()
         self._next_page, self._count = 0, -1
+
+    def _check_wrap(self, joint: Joint, signal: Signal) -> None:
+        if signal.is_float:
+            self.message.fail("wrap", f"has {joint.signal} as a number with a fraction, which does not wrap; take it "
+                              "out", joint.where)
+        counts = raw_range(signal)[1] + 1
+        if math.isfinite(joint.wrap) and joint.wrap > counts:
+            self.message.fail("wrap", f"is {joint.wrap:.0f}, but {joint.signal} holds no more than {counts - 1:.0f}; "
+                              f"give {counts:.0f} or less, or true for where its bits end", joint.where)
 
     def _pages(self) -> list[Page]:
         """The pages that carry the joined signals; a constant multiplexer chooses among them."""

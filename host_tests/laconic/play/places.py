@@ -54,6 +54,7 @@ class Place:
     name = ""
     settings: DriveSettings | None = None
     can_fail: tuple[str, ...] = KINDS  # faults of drives that are possible there
+    serves_itself = False              # the vehicle's process serves the controller's port
 
     def opened(self, clock: Clock) -> AbstractContextManager[tuple[Any, can.BusABC]]:
         """The vehicle and the controller's bus."""
@@ -108,6 +109,11 @@ class OfNode(Place):
     """Drives of a protocol, by a node."""
 
     port: int | None = None  # of the process, where the controller connects to it
+
+    @property
+    def serves_itself(self) -> bool:  # type: ignore[override]
+        """Whether the node's process serves the controller's port."""
+        return self.port is not None
 
     def __init__(self, scene: Scene, options: PlayOptions):
         self.options, self.scene = options, scene

@@ -81,8 +81,12 @@ def judged(scene: Scene, place: Place, vehicle: Played, traffic: Traffic, second
     """Verdicts and figures."""
     judgement = Judgement(scene.name, place.name)
     died, late = isinstance(ending, BusDied), vehicle.lateness
-    judgement.add(Verdict("bus", not died, str(ending) if died else f"{traffic.frames_in} frames heard, "
-                          f"{traffic.frames_out} sent by the vehicle"))
+    frames = {"frames_in": traffic.frames_in, "frames_out": traffic.frames_out}
+    text = f"{traffic.frames_in} frames heard, {traffic.frames_out} sent by the vehicle"
+    if place.serves_itself:  # who sent a frame is known to the process alone
+        frames = {"frames": traffic.frames_in}
+        text = f"{traffic.frames_in} frames of controller and vehicle"
+    judgement.add(Verdict("bus", not died, str(ending) if died else text))
     fired = vehicle.watchdogs()
     if trouble.is_wanted:
         judgement.notes += [f"watchdog: {each}" for each in fired]
@@ -94,7 +98,7 @@ def judged(scene: Scene, place: Place, vehicle: Played, traffic: Traffic, second
         judgement.add(Verdict("vehicle", False, str(ending)))
     judgement.figures |= {
         "seconds": seconds.passed(), "periods": late.periods, "late_periods": late.late_periods,
-        "worst_lateness_ms": late.worst_us / 1000.0, "frames_in": traffic.frames_in, "frames_out": traffic.frames_out}
+        "worst_lateness_ms": late.worst_us / 1000.0, **frames}
     if place.settings is not None:
         judgement.facts["drives"] = as_values(place.settings)
     if isinstance(ending, Interrupted):

@@ -23,7 +23,7 @@ OF_MOTOR = {"gear_ratio": "gear_ratio", "torque_constant_Nm_per_A": "torque_cons
             "back_emf_Vs_per_rad": "back_emf_Vs_per_rad", "winding_resistance_ohm": "resistance_ohm"}
 OF_DRIVE = ("supply_V", "current_limit_A")
 MAY_BE_ZERO = {"speed_limit_rad_per_s": "none", "supply_V": "no limit", "winding_resistance_ohm": "no limit",
-               "current_bandwidth_rad_per_s": "follows at once", "back_emf_Vs_per_rad": "as the torque constant",
+               "current_bandwidth_rad_per_s": "follows at once",
                "stall_time_s": "no fault"}
 
 Origin = tuple[tuple[float, ...], str]
@@ -133,6 +133,8 @@ def origin_of(scene: Scene, given: Drives, protocol: DriveProtocol, key: str,
         return (limits[key],) * count, f"vehicle.drive.{key}"
     if key in protocol.usual and not (motor and key == "winding_resistance_ohm"):
         return (float(protocol.usual[key]),) * count, protocol.why_usual or f"usual with {protocol.name}"
+    if key == "back_emf_Vs_per_rad":
+        return before["torque_constant_Nm_per_A"], "as the torque constant"
     if key in MAY_BE_ZERO:
         return (0.0,) * count, MAY_BE_ZERO[key]
     where = " or [vehicle.motor]" if key in OF_MOTOR else " or [vehicle.drive]" if key in OF_DRIVE else ""

@@ -32,19 +32,18 @@ def command(what: str, minutes: float, seed: int | None, json_wanted: bool) -> i
     """Runs WHAT for a long time and reports what was found.
 
     \b
-    boards    emulated boards started anew, idle and with all cores busy
-    faults    the fault matrix of the rig, with new seeds
-    fmu       random use of the FMUs' C interface, under sanitizers
-    friction  the friction solver against a conic one with 40 digits, and driven motions;
-              Ctrl-C prints what was found until then
-    friction-energy
-              whole vehicles that nothing drives: energy never grows, rest holds;
-              a minute takes millions of steps
-    free-run  the node process at 1 kHz: no step may be lost
-    fuzz      SLCAN reader, frame handler and parameter loader under libFuzzer
-    identify  a thousand made-up robots: what their intervals hold
-    rig       all scenes in lockstep on the virtual bus, same bits
-    slcan     all scenes over SLCAN to a node process
+    boards           emulated boards started anew, idle and with all cores busy
+    faults           the fault matrix of the rig, with new seeds
+    fmu              random use of the FMUs' C interface, under sanitizers
+    friction         the friction solver against a conic one with 40 digits, and driven
+                     motions; Ctrl-C prints what was found until then
+    friction-energy  whole vehicles that nothing drives: energy never grows, rest holds;
+                     a minute takes millions of steps
+    free-run         the node process at 1 kHz: no step may be lost
+    fuzz             what reads frames (SLCAN, node, loader, protocols of drives) under libFuzzer
+    identify         a thousand made-up robots: what their intervals hold
+    rig              all scenes in lockstep on the virtual bus, same bits
+    slcan            all scenes over SLCAN to a node process
 
     Exit status 1 when something was found that must not be.
     """
