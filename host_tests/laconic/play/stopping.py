@@ -82,10 +82,12 @@ class Witness:
         if self._mark is None:
             return Verdict("stopped", False, "no fault came, so there was nothing to stop for"
                            if self.first_fault is not None else "no controller was heard")
+        if self._moved_s is None:
+            return Verdict("stopped", False, "the vehicle never moved, so there was nothing to stop")
         since_s, before_m = self._mark
-        took_s = max(0.0, (self._moved_s or 0.0) - since_s)
+        took_s = max(0.0, self._moved_s - since_s)
         way_m = self._way_m - before_m
-        stands = self._moved_s is None or self._moved_s < self._seconds()
+        stands = self._moved_s < self._seconds()
         what = "the first fault" if self.first_fault is not None else "the controller's last frame"
         detail = f"{took_s:.3g} s and {way_m:.3g} m after {what} at {since_s:.3g} s"
         if not stands:

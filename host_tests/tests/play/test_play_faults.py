@@ -103,6 +103,14 @@ def test_silence_of_the_controller_is_the_mark_where_nothing_fails() -> None:
     assert judgement.exit_status == 0 and any("watchdog" in note for note in judgement.notes)
 
 
+def test_a_vehicle_that_never_moved_has_not_stopped() -> None:
+    codec = Codec()
+    judgement, _ = played("turtlebot3_burger", 0.5, lambda _: [codec.command(0.0, 0.0)], dbc=DBC,
+                          map_path=PLAY / "transporter.toml", stop_within_s=1.0)
+    verdict, = [each for each in judgement.verdicts if each.name == "stopped"]
+    assert not verdict.passed and "never moved" in verdict.detail
+
+
 def test_a_drive_off_the_bus_is_not_heard_and_hears_nothing_until_it_is_back() -> None:
     command = can.Message(arbitration_id=0x200, is_extended_id=False, data=struct.pack(">4h", 200, 200, 200, 0))
     _, controller = played("robotino2", 1.0, lambda t: [command], drives="robomaster", faults=("bus-off:2@0.3+0.4",))
