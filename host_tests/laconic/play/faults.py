@@ -18,7 +18,7 @@ import can
 from laconic.errors import BadInput, nearest_of
 from laconic.play.protocols import DriveProtocol
 from laconic.play.settings import DriveSettings
-from laconic.rig.faults import FIELD_TYPES
+from laconic.rig.faults import FIELD_TYPES, FaultModel, faults_from
 from laconic.rig.faulty import FaultyBus
 
 FAULT_BITS = {"encoder": 1, "temperature": 4, "overspeed": 8, "supply": 16}  # LACONIC_DRIVE_FAULT_…
@@ -101,15 +101,19 @@ def read_bus_faults(given: Sequence[str], seed: int) -> dict[str, str]:
         if not equals or name not in FIELD_TYPES:
             raise BadInput(f"--bus-fault {text}: give NAME=VALUE, such as loss=0.01; {nearest_of(name, FIELD_TYPES)}")
         found[name] = value
-    return {"seed": str(seed), **found} if found else {}
+    if not found:
+        return {}
+    faults = {"seed": str(seed), **found}
+    try:
+        FaultModel(faults_from(dict(faults)))  # before a bus is opened
+    except ValueError as error:
+        raise BadInput(f"--bus-fault {error}") from None
+    return faults
 
 
 def faulty_bus(bus: can.BusABC, faults: dict[str, str], now_s: Callable[[], float]) -> FaultyBus:
-    """The controller's bus with these faults in front of it."""
-    try:
-        return FaultyBus(inner=bus, clock=now_s, **faults)
-    except can.CanInitializationError as error:
-        raise BadInput(f"--bus-fault {str(error).removeprefix('faulty: ')}") from None
+    """The controller's bus with these faults, which have been read, in front of it."""
+    return FaultyBus(inner=bus, clock=now_s, **faults)
 
 
 def concerns(protocol: DriveProtocol, message: can.Message, node_id: int) -> bool:

@@ -198,3 +198,14 @@ def test_wheels_without_a_drive_are_passed_over_and_a_fault_finds_its_wheel(tmp_
     assert {message.arbitration_id for _, message in controller.heard} == {0x205, 0x206}
     current = {number: struct.unpack(">h", controller.of(number)[-1][1].data[4:6])[0] for number in (0x205, 0x206)}
     assert current[0x205] != 0 and current[0x206] == 0
+
+
+def test_the_value_of_a_bus_fault_is_refused_before_a_port_is_open(capsys: pytest.CaptureFixture[str]) -> None:
+    assert run(["play", "canopen_agv", "--listen", "0", "--bus-fault", "loss=2"]) == 2
+    printed = capsys.readouterr()
+    assert "--bus-fault" in printed.err and "loss" in printed.err and "listening" not in printed.out
+
+
+def test_the_folder_of_an_eds_file_is_made(tmp_path: Path) -> None:
+    assert run(["play", "canopen_agv", "--eds", str(tmp_path / "new" / "drive.eds")]) == 0
+    assert (tmp_path / "new" / "drive.eds").read_text(encoding="ascii").startswith("[FileInfo]")

@@ -9,6 +9,7 @@ import click
 
 from laconic.cli.options import InputPath, OutputFile, SceneName, check_step, goes_with, json_flag
 from laconic.core import REALS
+from laconic.outputs import write_text
 from laconic.play.canopen_eds import eds_of_scene
 from laconic.play.faults import KINDS as FAULTS
 from laconic.play.options import PlayOptions
@@ -70,7 +71,7 @@ def command(scene_name: str, method: str | None, real: str | None, step_s: float
     scene = read_scene(scene_name).with_run(method=method, step_s=step_s, real=real)
     if eds:
         goes_with("--eds", "--drives", "--real", "--step")
-        eds.write_text(eds_of_scene(scene, given["drives"]), encoding="ascii")
+        write_text(eds, eds_of_scene(scene, given["drives"]))
         return 0
     began = time.perf_counter()
     judgement = play(scene, PlayOptions(**given), say=lambda text: click.echo(text, err=json_wanted))
