@@ -7,11 +7,11 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
 
-import cantools.database
 import numpy as np
 from cantools.database.can import Database, Message
 
-from laconic.errors import BadInput, nearest_of, reason_of
+from laconic.dbc_file import load_dbc
+from laconic.errors import BadInput, nearest_of
 from laconic.logs.column_map import NUMBERED, ColumnMap, Quantity
 from laconic.paths import SOURCE_DIR
 from laconic.rig.logs import read_log
@@ -31,15 +31,7 @@ def database_of(columns: ColumnMap) -> Database:
     """The DBC that a map names: beside the map, or the project's own by its name."""
     beside = columns.path.parent / columns.dbc
     path = OWN_DBC if not beside.exists() and columns.dbc == OWN_DBC.name else beside
-    try:
-        found = cantools.database.load_file(path)
-    except OSError as error:
-        raise BadInput(f"{columns.path}: dbc: {path} cannot be read ({reason_of(error)}); give a DBC file") from None
-    except Exception as error:  # a parser may raise any exception on unexpected text
-        raise BadInput(f"{columns.path}: dbc: {path} is no DBC file ({type(error).__name__}); give one") from None
-    if not isinstance(found, Database):
-        raise BadInput(f"{columns.path}: dbc: {path} describes no CAN frames; give a DBC file")
-    return found
+    return load_dbc(path, f"{columns.path}: dbc: {path}")
 
 
 def signal_names(columns: ColumnMap, quantity: Quantity, database: Database) -> list[str]:

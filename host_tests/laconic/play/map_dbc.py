@@ -6,27 +6,13 @@ from collections.abc import Iterable, Mapping
 from pathlib import Path
 from typing import Any, NoReturn
 
-import cantools.database
 from cantools.database.can import Database, Message
 from cantools.database.can.signal import Signal
 
-from laconic.errors import BadInput, nearest_of, reason_of
+from laconic.errors import BadInput, nearest_of
 
 Page = tuple[tuple[str, int], ...]
 """The multiplexers that select a part of a message, outer ones first, with their values."""
-
-
-def load_dbc(path: Path) -> Database:
-    """The database; BadInput for a file that is none."""
-    try:
-        found = cantools.database.load_file(path)
-    except OSError as error:
-        raise BadInput(f"--dbc {path}: cannot be read ({reason_of(error)}); give a DBC file") from None
-    except Exception as error:  # a parser may raise any exception on unexpected text
-        raise BadInput(f"--dbc {path}: is no DBC file ({error or type(error).__name__}); give one") from None
-    if not isinstance(found, Database):
-        raise BadInput(f"--dbc {path}: describes no CAN frames; give a DBC file")
-    return found
 
 
 class DbcMessage:

@@ -6,7 +6,8 @@ from dataclasses import dataclass, field, replace
 from pathlib import Path
 from typing import TypeVar
 
-from laconic.play.map_dbc import DbcMessage, load_dbc
+from laconic.dbc_file import load_dbc
+from laconic.play.map_dbc import DbcMessage
 from laconic.play.map_file import REMOTE, Joint, Received, Sent, SignalMap
 from laconic.play.map_messages import Receiver, Sender
 from laconic.play.map_signals import DRIVE_OUTPUTS, ENABLE, TARGETS, split
@@ -38,7 +39,7 @@ class Joined:
 
 def join(given: SignalMap, dbc: Path) -> Joined:
     """Joins a map to a DBC; BadInput names map, DBC, message and signal."""
-    database, joined = load_dbc(dbc), Joined(given)
+    database, joined = load_dbc(dbc, f"--dbc {dbc}:"), Joined(given)
     for received in given.received:
         where = f"{given.path}: {received.where}"
         message = DbcMessage(dbc, database, where, received.message)

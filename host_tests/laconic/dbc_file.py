@@ -1,0 +1,23 @@
+"""Reads a DBC file that somebody else wrote."""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+import cantools
+from cantools.database.can import Database
+
+from laconic.errors import BadInput, reason_of
+
+
+def load_dbc(path: Path, said: str) -> Database:
+    """The database. BadInput for a file that is none; `said` begins its message: the option or key, with the path."""
+    try:
+        found = cantools.database.load_file(path)
+    except OSError as error:
+        raise BadInput(f"{said} cannot be read ({reason_of(error)}); give a DBC file") from None
+    except Exception as error:  # a parser may raise any exception on unexpected text
+        raise BadInput(f"{said} is no DBC file ({error or type(error).__name__}); give one") from None
+    if not isinstance(found, Database):
+        raise BadInput(f"{said} describes no CAN frames; give a DBC file")
+    return found
