@@ -3,6 +3,7 @@ when a place is made, before a bus is opened."""
 
 from __future__ import annotations
 
+from abc import ABC, abstractmethod
 from collections.abc import Iterator
 from contextlib import AbstractContextManager, contextmanager, nullcontext
 from typing import Any, Protocol
@@ -48,7 +49,7 @@ class Played(Vehicle, Protocol):
         """What else there is to say."""
 
 
-class Place:
+class Place(ABC):
     """One kind of place."""
 
     name = ""
@@ -56,9 +57,9 @@ class Place:
     can_fail: tuple[str, ...] = KINDS  # faults of drives that are possible there
     serves_itself = False              # the vehicle's process serves the controller's port
 
+    @abstractmethod
     def opened(self, clock: Clock) -> AbstractContextManager[tuple[Any, can.BusABC]]:
         """The vehicle and the controller's bus."""
-        raise NotImplementedError
 
     def playing(self, vehicle: Any) -> AbstractContextManager[Any]:
         """A context in which the vehicle moves."""
@@ -110,23 +111,19 @@ class OfNode(Place):
 
     port: int | None = None  # of the process, where the controller connects to it
 
-    @property
-    def serves_itself(self) -> bool:  # type: ignore[override]
-        """Whether the node's process serves the controller's port."""
-        return self.port is not None
-
     def __init__(self, scene: Scene, options: PlayOptions):
         self.options, self.scene = options, scene
         self.settings: DriveSettings = drive_settings(scene, options.drives, options.id_base)
         self.name = self.settings.protocol.name
         self.id_base = read_id_base(options.id_base, scene)
+        self.serves_itself = options.board == "process" and options.listen is not None
 
     @contextmanager
     def opened(self, clock: Clock) -> Iterator[tuple[Any, can.BusABC]]:
         """The node that the options choose."""
         kind, real = self.options.board or "virtual", self.scene.run.real
-        if kind == "process" and self.options.listen is not None:
-            with self._shared_port(self.options.listen) as found:
+        if self.serves_itself:
+            with self._shared_port(self.options.listen or 0) as found:
                 yield found
             return
         with controller_bus(self.options) as bus:
