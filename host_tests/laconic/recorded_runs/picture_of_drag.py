@@ -20,20 +20,23 @@ SPEED_M_PER_S, SECONDS, PERIOD_S, STEADY_S = 0.2, 1.0, 0.1, 0.3
 
 
 def draw_drag(scene: Scene, logs: Sequence[Log], folder: Path) -> Path:
-    """Lines: the core with wheels held for straight motion; points: recorded runs, at the drag of the scene."""
+    """Lines: the core with wheels held for straight motion; points: recorded runs, at the drag of the scene.
+
+    A line and the points whose direction is nearest to its own have one colour.
+    """
     from laconic.pictures.plotting import figure, save
 
     picture = figure(6.4, 4.2)
     axes = picture.subplots()
-    for direction in DIRECTIONS_DEG:
-        axes.plot(DRAGS, [_ratio(scene, direction, drag) for drag in DRAGS], label=f"{direction:g}° by the model")
     drag = scene.vehicle["ground"].get("roller_drag", 0.0)
     found = [_recorded(scene, log) for log in logs if log.pose is not None]
-    marked = axes.scatter([drag] * len(found), [ratio for _, ratio in found], c=[d for d, _ in found], cmap="viridis",
-                          zorder=3, label="recorded runs")
-    picture.colorbar(marked, ax=axes, label="direction of travel from the x axis [°]")
+    for direction in DIRECTIONS_DEG:
+        line, = axes.plot(DRAGS, [_ratio(scene, direction, drag) for drag in DRAGS], label=f"{direction:g}°, the model")
+        near = [ratio for degrees, ratio in found if min(DIRECTIONS_DEG, key=lambda d: abs(d - degrees)) == direction]
+        if near:
+            axes.scatter([drag] * len(near), near, color=line.get_color(), zorder=3, label=f"{direction:g}°, recorded runs")
     axes.set(xlabel="drag of the rollers k", ylabel="rolled over travelled distance")
-    axes.legend(fontsize=8)
+    axes.legend(fontsize=8, title="direction of travel from the x axis", title_fontsize=8)
     save(picture, folder / "drag.png")
     return folder / "drag.png"
 

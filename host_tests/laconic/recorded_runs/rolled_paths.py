@@ -109,12 +109,14 @@ def draw(found: RolledPaths, folder: Path) -> list[Path]:
     rows = -(-len(shown) // columns)
     picture = figure(4.0 * columns, 3.6 * rows + 0.6)
     panels = picture.subplots(rows, columns, squeeze=False).ravel()
+    several = len({each.session for _, _, each in shown}) > 1
     for axes, (log, path, each) in zip(panels, shown, strict=False):
         assert log.pose is not None
         axes.plot(log.pose[:, 0], log.pose[:, 1], color="k", lw=2.4, alpha=0.35, label="true")
         axes.plot(path[:, 0], path[:, 1], color="tab:blue", lw=1.0, label="predicted")
         axes.set_aspect("equal", "datalim")
-        axes.set_title(f"{each.session}\n{each.run}: {_share(each.path_error)} %", fontsize=7)
+        session = f"{each.session}\n" if several else ""
+        axes.set_title(f"{session}{each.run}: {_share(each.path_error)} %", fontsize=11)
     for axes in panels[len(shown):]:
         axes.remove()
     panels[0].set(xlabel="x [m]", ylabel="y [m]")
