@@ -34,7 +34,7 @@ def draw_drag(scene: Scene, logs: Sequence[Log], folder: Path) -> Path:
         line, = axes.plot(DRAGS, [_ratio(scene, direction, drag) for drag in DRAGS], label=f"{direction:g}°, the model")
         near = [ratio for degrees, ratio in found if min(DIRECTIONS_DEG, key=lambda d: abs(d - degrees)) == direction]
         if near:
-            axes.scatter([drag] * len(near), near, color=line.get_color(), zorder=3, label=f"{direction:g}°, recorded runs")
+            axes.scatter([drag] * len(near), near, color=line.get_color(), zorder=3, label=f"{direction:g}°, the runs")
     axes.set(xlabel="drag of the rollers k", ylabel="rolled over travelled distance")
     axes.legend(fontsize=8, title="direction of travel from the x axis", title_fontsize=8)
     save(picture, folder / "drag.png")
