@@ -1,13 +1,15 @@
-/* The texts and traits that the list of vehicle.h gives each field: its name in FMUs, its key in a scene, its
- * traits. */
+/* The texts and traits that the lists of vehicle.h and sensors.h give each field: its name in FMUs, its key in a scene,
+ * its traits. */
 #include "common.h"
 
-#define TEXT_OF(table, number) ((unsigned)(number) < LACONIC_FIELD_COUNT && table[number] != NULL ? table[number] : "")
+#define EVERY_FIELD(X) LACONIC_ALL_FIELDS(X) LACONIC_SENSOR_FIELDS(X)
+#define TABLE_LENGTH LACONIC_SENSOR_FIELD_COUNT
+#define TEXT_OF(table, number) ((unsigned)(number) < TABLE_LENGTH && table[number] != NULL ? table[number] : "")
 
 #define NAME(of, number, IDENTIFIER, member, name, KIND, RULE, NEED) [number] = #name,
 
 const char *laconic_field_name(laconic_field field) {
-    static const char *const names[LACONIC_FIELD_COUNT] = {LACONIC_ALL_FIELDS(NAME)};
+    static const char *const names[TABLE_LENGTH] = {EVERY_FIELD(NAME)};
     return TEXT_OF(names, field);
 }
 
@@ -26,10 +28,14 @@ const char *laconic_field_name(laconic_field field) {
 #define PATH_INPUT_ARRAY(member) #member "[#]"
 #define PATH_INPUT(member) #member
 #define PATH_MOTOR(member) "vehicle.motor." #member
+#define PATH_IMU(member) "sensors.imu." #member
+#define PATH_IMU_ARRAY(member) PATH_IMU(member) "[#]"
+#define PATH_ENCODER(member) "sensors.encoder." #member
+#define PATH_WHEEL_ENCODER(member) PATH_ENCODER(member) "[#]"
 #define PATH(of, number, IDENTIFIER, member, name, KIND, RULE, NEED) [number] = PATH_##of(member),
 
 const char *laconic_field_path(laconic_field field) {
-    static const char *const paths[LACONIC_FIELD_COUNT] = {LACONIC_ALL_FIELDS(PATH)};
+    static const char *const paths[TABLE_LENGTH] = {EVERY_FIELD(PATH)};
     return TEXT_OF(paths, field);
 }
 
@@ -47,11 +53,15 @@ const char *laconic_field_path(laconic_field field) {
 #define ITEMS_INPUT_ARRAY(member) sizeof(((laconic_input *)NULL)->member) / sizeof(real)
 #define ITEMS_INPUT(member) 0
 #define ITEMS_MOTOR(member) 0
+#define ITEMS_IMU(member) 0
+#define ITEMS_IMU_ARRAY(member) sizeof(((laconic_imu_settings *)NULL)->member) / sizeof(real)
+#define ITEMS_ENCODER(member) 0
+#define ITEMS_WHEEL_ENCODER(member) LACONIC_MAX_WHEELS
 #define TRAITS(of, number, IDENTIFIER, member, name, KIND, RULE, NEED) \
     LACONIC_ROW_OF( \
         number)([number] = {LACONIC_KIND_##KIND, LACONIC_RULE_##RULE, LACONIC_NEED_##NEED, ITEMS_##of(member)}, )
 
 const laconic_field_traits *laconic_field_traits_of(laconic_field field) {
-    static const laconic_field_traits traits[LACONIC_FIELD_COUNT] = {LACONIC_ALL_FIELDS(TRAITS)};
+    static const laconic_field_traits traits[TABLE_LENGTH] = {EVERY_FIELD(TRAITS)};
     return *laconic_field_name(field) != '\0' ? &traits[field] : NULL;
 }

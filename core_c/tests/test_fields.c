@@ -2,13 +2,13 @@
 #include "check.h"
 
 #define NUMBER(of, number, ...) (laconic_field) number,
-static const laconic_field every_field[] = {LACONIC_ALL_FIELDS(NUMBER)};
+static const laconic_field every_field[] = {LACONIC_ALL_FIELDS(NUMBER) LACONIC_SENSOR_FIELDS(NUMBER)};
 #define FIELDS (sizeof every_field / sizeof every_field[0])
 
 static void every_field_has_a_name_a_path_and_traits_of_its_own(void) {
     for (size_t a = 0; a < FIELDS; a++) {
         const char *name = laconic_field_name(every_field[a]), *path = laconic_field_path(every_field[a]);
-        TEST_ASSERT_TRUE(every_field[a] > LACONIC_FIELD_NONE && every_field[a] < LACONIC_FIELD_COUNT);
+        TEST_ASSERT_TRUE(every_field[a] > LACONIC_FIELD_NONE && every_field[a] < LACONIC_SENSOR_FIELD_COUNT);
         TEST_ASSERT_TRUE(*name != '\0' && *path != '\0' && laconic_field_traits_of(every_field[a]) != NULL);
         for (size_t b = 0; b < a; b++) {
             TEST_ASSERT_TRUE(strcmp(name, laconic_field_name(every_field[b])) != 0);
@@ -56,6 +56,9 @@ static void fields_are_found_where_scenes_have_them(void) {
     TEST_ASSERT_EQUAL_STRING("body_moment_Nm", laconic_field_path(LACONIC_FIELD_BODY_MOMENT));
     TEST_ASSERT_EQUAL_STRING("run.step_s", laconic_field_path(LACONIC_FIELD_STEP));
     TEST_ASSERT_EQUAL_STRING("vehicle.motor.rotor_inertia_kgm2", laconic_field_path(LACONIC_FIELD_ROTOR_INERTIA));
+    TEST_ASSERT_EQUAL_STRING("sensors.imu.x_m", laconic_field_path((laconic_field)LACONIC_SENSOR_FIELD_IMU_X));
+    TEST_ASSERT_EQUAL_STRING("sensors.encoder.counts_per_turn[#]",
+                             laconic_field_path((laconic_field)LACONIC_SENSOR_FIELD_WHEEL_ENCODER_COUNTS));
 }
 
 static void traits_are_kind_rule_need_and_items(void) {
@@ -70,6 +73,7 @@ static void traits_are_kind_rule_need_and_items(void) {
     TEST_ASSERT_EQUAL_INT(3, laconic_field_traits_of(LACONIC_FIELD_START_NU)->items);
     TEST_ASSERT_EQUAL_INT(2, laconic_field_traits_of(LACONIC_FIELD_BODY_FORCE)->items);
     TEST_ASSERT_EQUAL_INT(LACONIC_MAX_WHEELS, laconic_field_traits_of(LACONIC_FIELD_VOLTAGE)->items);
+    TEST_ASSERT_EQUAL_INT(2, laconic_field_traits_of((laconic_field)LACONIC_SENSOR_FIELD_IMU_ACCELERATION_BIAS)->items);
     TEST_ASSERT_EQUAL_INT(LACONIC_MAX_SUPPORTS, laconic_field_traits_of(LACONIC_FIELD_SUPPORT_Y)->items);
 }
 
@@ -85,8 +89,8 @@ static void numbers_of_fields_never_change(void) {
 }
 
 static void a_number_of_no_field_gives_no_text_and_no_traits(void) {
-    const int none[] = {LACONIC_FIELD_NONE, LACONIC_FIELD_COUNT, 1000};
-    for (int k = 0; k < 3; k++) {
+    const int none[] = {LACONIC_FIELD_NONE, LACONIC_FIELD_COUNT, LACONIC_SENSOR_FIELD_COUNT, 1000};
+    for (int k = 0; k < 4; k++) {
         TEST_ASSERT_EQUAL_STRING("", laconic_field_name((laconic_field)none[k]));
         TEST_ASSERT_EQUAL_STRING("", laconic_field_path((laconic_field)none[k]));
         TEST_ASSERT_NULL(laconic_field_traits_of((laconic_field)none[k]));

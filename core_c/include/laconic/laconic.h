@@ -62,6 +62,7 @@
 #include "laconic/friction.h" /* laconic_friction, laconic_slip */
 #include "laconic/internals.h"
 #include "laconic/real.h"
+#include "laconic/sensors.h" /* laconic_sensors: IMU and encoders */
 #include "laconic/status.h"  /* laconic_status, laconic_arithmetic */
 #include "laconic/vehicle.h" /* laconic_vehicle, _motor, _input, _start; laconic_field */
 
@@ -541,9 +542,10 @@ typedef struct laconic_outputs {
     laconic_reactions reactions;       /* set only where a contact is given                            */
     laconic_friction_outputs friction; /* set only where the vehicle has friction                */
     laconic_input input;               /* what acts from this moment on                                */
+    laconic_sensor_outputs sensors;    /* set only where the recorder has sensors                      */
 } laconic_outputs;
 
-/* Fills the outputs but the reactions. Items beyond the model's wheels stay as they were. One sine and cosine, O(N). */
+/* Fills the outputs but reactions and sensors. Items beyond the model's wheels stay as they were. One sine and cosine, O(N). */
 void laconic_outputs_of(laconic_outputs *outputs, const laconic_plant *plant, const laconic_input *input);
 
 /* laconic_reactions_of, and for a vehicle with friction the forces of the last step; lateral_N is then the force along
@@ -592,6 +594,7 @@ typedef struct laconic_recorder {
     const uint32_t *column; /* offset of each in laconic_outputs, in bytes                  */
     laconic_real *row;      /* room for row_room rows of column_count numbers               */
     uint64_t row_count, row_room;
+    laconic_sensors *sensors; /* of this plant, which see every step; NULL: none            */
 } laconic_recorder;
 
 /* Takes steps along the schedule until `until_step` of the plant, the schedule's end, or the first row for which there
