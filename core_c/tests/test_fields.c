@@ -8,7 +8,7 @@ static const laconic_field every_field[] = {LACONIC_ALL_FIELDS(NUMBER) LACONIC_S
 static void every_field_has_a_name_a_path_and_traits_of_its_own(void) {
     for (size_t a = 0; a < FIELDS; a++) {
         const char *name = laconic_field_name(every_field[a]), *path = laconic_field_path(every_field[a]);
-        TEST_ASSERT_TRUE(every_field[a] > LACONIC_FIELD_NONE && every_field[a] < LACONIC_SENSOR_FIELD_COUNT);
+        TEST_ASSERT_TRUE(every_field[a] > LACONIC_FIELD_NONE && (int)every_field[a] < LACONIC_SENSOR_FIELD_COUNT);
         TEST_ASSERT_TRUE(*name != '\0' && *path != '\0' && laconic_field_traits_of(every_field[a]) != NULL);
         for (size_t b = 0; b < a; b++) {
             TEST_ASSERT_TRUE(strcmp(name, laconic_field_name(every_field[b])) != 0);
