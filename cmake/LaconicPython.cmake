@@ -21,7 +21,7 @@ set(LACONIC_COMMAND "${LACONIC_VENV_BIN}/laconic${CMAKE_EXECUTABLE_SUFFIX}")
 set(LACONIC_VENV_STAMP "${LACONIC_VENV}/laconic.stamp")
 
 set(host "${PROJECT_SOURCE_DIR}/host_tests")
-set(own_packages "${host}" "${PROJECT_SOURCE_DIR}/fmu" "${PROJECT_SOURCE_DIR}/firmware_stub")
+set(own_packages "${host}" "${PROJECT_SOURCE_DIR}/fmu" "${PROJECT_SOURCE_DIR}/firmware_stub" "${PROJECT_SOURCE_DIR}/page")
 set(own_projects ${own_packages})
 list(TRANSFORM own_projects APPEND "/pyproject.toml")
 cmake_path(IS_PREFIX CMAKE_BINARY_DIR "${LACONIC_VENV}" NORMALIZE venv_is_ours)

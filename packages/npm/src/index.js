@@ -1,0 +1,34 @@
+// Laconic, the dynamics of wheeled robots, in browsers and Node: the C core as WebAssembly.
+import { Module } from "./module.js";
+import { Refused } from "./refused.js";
+import { Robot } from "./robot.js";
+
+export { Refused, Robot };
+
+/** The loaded core. */
+export class Laconic {
+  /** @param {Module} module */
+  constructor(module) {
+    this.module = module;
+    this.version = module.text(module.c.laconic_web_version());
+    this.maxWheels = module.c.laconic_web_max_wheels();
+    this.methods = module.methods.map(({ name, order }) => ({ name, order }));
+    this.arithmeticIsSound = module.c.laconic_web_self_test() === 0;
+  }
+
+  /** @param {any} scene @param {{method?: string, step_s?: number}} [run] */
+  robot(scene, { method = scene.run?.method ?? "auto", step_s = scene.run?.step_s ?? 0.001 } = {}) {
+    return new Robot(this.module, scene, method, step_s);
+  }
+
+  /** The number that depends on every bit of many trajectories, as 16 hexadecimal digits. */
+  hash() {
+    this.hashed ??= BigInt.asUintN(64, this.module.c.laconic_web_hash()).toString(16).padStart(16, "0");
+    return this.hashed;
+  }
+}
+
+/** Loads the core; every call makes one of its own. */
+export async function load() {
+  return new Laconic(await Module.load());
+}

@@ -1,0 +1,36 @@
+/* What the core calls its fields, methods and refusals. */
+#include "web.h"
+
+WEB_EXPORT(laconic_web_field_path) const char *laconic_web_field_path(int32_t field) {
+    return laconic_field_path((laconic_field)field);
+}
+
+/* laconic_field_kind; −1 for a number that is no field. */
+WEB_EXPORT(laconic_web_field_kind) int32_t laconic_web_field_kind(int32_t field) {
+    const laconic_field_traits *traits = laconic_field_traits_of((laconic_field)field);
+    return traits != NULL ? (int32_t)traits->kind : -1;
+}
+
+WEB_EXPORT(laconic_web_field_count) int32_t laconic_web_field_count(void) { return LACONIC_FIELD_COUNT; }
+
+/* NULL beyond the last. */
+WEB_EXPORT(laconic_web_method_name) const char *laconic_web_method_name(int32_t number) {
+    const laconic_method *method = laconic_method_by_number(number);
+    return method != NULL ? method->name : NULL;
+}
+
+WEB_EXPORT(laconic_web_method_order) int32_t laconic_web_method_order(int32_t number) {
+    const laconic_method *method = laconic_method_by_number(number);
+    return method != NULL ? method->order : 0;
+}
+
+WEB_EXPORT(laconic_web_version) const char *laconic_web_version(void) { return LACONIC_VERSION; }
+
+WEB_EXPORT(laconic_web_max_wheels) int32_t laconic_web_max_wheels(void) { return LACONIC_MAX_WHEELS; }
+
+WEB_EXPORT(laconic_web_status_name) const char *laconic_web_status_name(int32_t status) {
+    return laconic_status_name((laconic_status)status);
+}
+
+/* laconic_arithmetic of the engine that runs this module; 0: sound. */
+WEB_EXPORT(laconic_web_self_test) int32_t laconic_web_self_test(void) { return (int32_t)laconic_self_test(); }

@@ -1,0 +1,32 @@
+"""python -m laconic_page npm|page …: what CMake calls, from packages/npm and page."""
+
+from __future__ import annotations
+
+import argparse
+from pathlib import Path
+
+from laconic_page.npm import make_package
+from laconic_page.page import make_page
+
+
+def main() -> None:
+    parser = argparse.ArgumentParser(prog="python -m laconic_page", description=__doc__)
+    commands = parser.add_subparsers(required=True)
+    npm = commands.add_parser("npm", help="the npm package: a folder and its archive")
+    npm.add_argument("--version", required=True)
+    npm.add_argument("--archive", type=Path, required=True)
+    npm.set_defaults(make=lambda a: make_package(a.sources, a.wasm, a.version, a.out, a.archive))
+    page = commands.add_parser("page", help="the page, one HTML file")
+    page.add_argument("--binding", type=Path, required=True, help="folder src of the npm package that was made")
+    page.add_argument("--scenes", type=Path, required=True)
+    page.add_argument("--native-hash", type=Path, required=True, help="what the native trajectory_hash printed")
+    page.set_defaults(make=lambda a: make_page(a.sources, a.binding, a.scenes, a.native_hash, a.out))
+    npm.add_argument("--wasm", type=Path, required=True)
+    for command in (npm, page):
+        command.add_argument("--sources", type=Path, required=True)
+        command.add_argument("--out", type=Path, required=True)
+    arguments = parser.parse_args()
+    arguments.make(arguments)
+
+
+main()

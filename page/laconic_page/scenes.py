@@ -1,0 +1,56 @@
+"""The scenes of the project for the page: as `laconic simulate` reads them, angles in rad, wheels in x and y."""
+
+from __future__ import annotations
+
+import dataclasses
+from pathlib import Path
+from typing import Any
+
+from laconic import read_scene
+
+NOTHING: tuple[Any, ...] = (0, False, "", None, (), (0.0, 0.0))
+
+
+def scenes_in(folder: Path) -> list[dict[str, Any]]:
+    """Every scene, sorted by its name."""
+    found = [plain_scene(path) for path in sorted(folder.glob("*.toml"))]
+    return sorted(found, key=lambda scene: (scene["id"].startswith("paper"), scene["name"].casefold()))
+
+
+def plain_scene(path: Path) -> dict[str, Any]:
+    """One scene by the keys of its file; what is 0 or absent is left out where that means the same."""
+    scene = read_scene(path)
+    vehicle = dict(scene.vehicle)
+    ground = vehicle.pop("ground", None)
+    wheels = [plain_wheel(wheel) for wheel in vehicle.pop("wheel")]
+    supports = vehicle.pop("support")
+    tables = {key: shortened(value) if isinstance(value, dict) else value for key, value in vehicle.items()}
+    plain: dict[str, Any] = {
+        "id": path.stem, "name": scene.name, "source": scene.source,
+        "vehicle": shortened(tables) | {"wheel": wheels} | ({"support": supports} if supports else {})}
+    if ground:
+        plain["ground"] = ground
+    if initial := shortened(dataclasses.asdict(scene.initial)):
+        plain["initial"] = initial
+    plain["input"] = [plain_input(each) for each in scene.inputs]
+    plain["run"] = {"duration_s": scene.run.duration_s, "step_s": scene.run.step_s, "method": scene.run.method}
+    return plain
+
+
+def plain_wheel(wheel: dict[str, Any]) -> dict[str, Any]:
+    """A wheel by the keys of a scene; what a wheel usually has is left out."""
+    circuit = ("driven", "open", "shorted")[wheel["motor_circuit"]]
+    left_out = {"motor_circuit", *(["driven"] if wheel["driven"] else []), *([] if wheel["locked"] else ["locked"])}
+    kept = {key: value for key, value in wheel.items() if key not in left_out}
+    return kept | ({} if circuit == "driven" else {"motor_circuit": circuit})
+
+
+def plain_input(given: Any) -> dict[str, Any]:
+    """One `[[input]]`."""
+    keys = ("amplitude", "frequency_Hz", "phase_rad") if given.kind == "sine" else ("t_s", "value")
+    return {"signal": given.signal, "kind": given.kind} | {key: getattr(given, key) for key in keys}
+
+
+def shortened(table: dict[str, Any]) -> dict[str, Any]:
+    """Without what is 0 or absent."""
+    return {key: value for key, value in table.items() if value not in NOTHING}
