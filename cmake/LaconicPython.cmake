@@ -21,16 +21,20 @@ set(LACONIC_COMMAND "${LACONIC_VENV_BIN}/laconic${CMAKE_EXECUTABLE_SUFFIX}")
 set(LACONIC_VENV_STAMP "${LACONIC_VENV}/laconic.stamp")
 
 set(host "${PROJECT_SOURCE_DIR}/host_tests")
-set(own_packages "${host}" "${PROJECT_SOURCE_DIR}/fmu" "${PROJECT_SOURCE_DIR}/firmware_stub" "${PROJECT_SOURCE_DIR}/page")
+set(own_packages "${host}" "${PROJECT_SOURCE_DIR}/fmu" "${PROJECT_SOURCE_DIR}/firmware_stub" "${PROJECT_SOURCE_DIR}/page"
+    "${PROJECT_SOURCE_DIR}/packages/python")
 set(own_projects ${own_packages})
 list(TRANSFORM own_projects APPEND "/pyproject.toml")
+# rewritten, and the packages installed anew, only when the version changes: it stands in their metadata
+set(version_file "${CMAKE_BINARY_DIR}/python-version.txt")
+file(CONFIGURE OUTPUT "${version_file}" CONTENT "${PROJECT_VERSION}\n")
 cmake_path(IS_PREFIX CMAKE_BINARY_DIR "${LACONIC_VENV}" NORMALIZE venv_is_ours)
 if(venv_is_ours)
     add_custom_command(
         OUTPUT "${LACONIC_VENV_STAMP}"
         COMMAND "${Python3_EXECUTABLE}" "${PROJECT_SOURCE_DIR}/cmake/make_venv.py" --venv "${LACONIC_VENV}"
                 --requirements "${host}/requirements.txt" --packages ${own_packages} --stamp "${LACONIC_VENV_STAMP}"
-        DEPENDS "${PROJECT_SOURCE_DIR}/cmake/make_venv.py" "${host}/requirements.txt" ${own_projects}
+        DEPENDS "${PROJECT_SOURCE_DIR}/cmake/make_venv.py" "${host}/requirements.txt" ${own_projects} "${version_file}"
         COMMENT "Python environment" USES_TERMINAL VERBATIM)
 elseif(NOT EXISTS "${LACONIC_VENV_STAMP}")
     message(FATAL_ERROR "laconic: LACONIC_VENV=${LACONIC_VENV} does not exist: build the tree that it belongs to first")

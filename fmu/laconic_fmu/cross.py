@@ -16,17 +16,23 @@ TARGETS = {
     "x86_64-darwin": "x86_64-macos",
     "aarch64-darwin": "aarch64-macos",
 }
-FLAGS = ("-std=c99", "-O2", "-g0", "-s", "-fvisibility=hidden", "-ffp-contract=off", "-fno-slp-vectorize")
+FLAGS = ("-std=c99", "-O2", "-g0", "-s", "-ffp-contract=off", "-fno-slp-vectorize")
 """The same arithmetic as in cmake/LaconicStrict.cmake; clang fuses multiply and add by default even with -std=c99."""
 
 
 def compile_for(platform: str, sources: Sequence[str], includes: Sequence[str], out: Path, *, shared: bool = True,
                 python: str = sys.executable) -> None:
-    """Links one binary for a platform; the compiler's own messages go to the terminal."""
-    out.parent.mkdir(parents=True, exist_ok=True)
+    """Links one binary of an FMU for a platform."""
     kind = ["-shared", *([] if platform.endswith("windows") else ["-fPIC"])] if shared else ["-static"]
-    command = [python, "-m", "ziglang", "cc", "-target", TARGETS[platform], *kind, *FLAGS,
-               *(f"-I{folder}" for folder in includes), *sources, "-o", str(out)]
+    compile_to(TARGETS[platform], sources, includes, out, [*kind, "-fvisibility=hidden"], python=python)
+
+
+def compile_to(target: str, sources: Sequence[str | Path], includes: Sequence[str | Path], out: Path,
+               flags: Sequence[str], *, python: str = sys.executable) -> None:
+    """Links one binary for one of zig's targets; the compiler's own messages go to the terminal."""
+    out.parent.mkdir(parents=True, exist_ok=True)
+    command = [python, "-m", "ziglang", "cc", "-target", target, *flags, *FLAGS,
+               *(f"-I{folder}" for folder in includes), *map(str, sources), "-o", str(out)]
     subprocess.run(command, check=True, env={**os.environ, "ZIG_PROGRESS": "off"})
 
 

@@ -1,4 +1,7 @@
-"""Where things are: the build tree (libraries, FMUs, node, results) and the scenes."""
+"""Where things are: what was built (libraries, FMUs, node), what it was built from, and where results go.
+
+A build tree holds them in its folders, an installed wheel in laconic/_built; nothing but this file knows which it is.
+"""
 
 from __future__ import annotations
 
@@ -9,25 +12,59 @@ from typing import Any
 
 from laconic.errors import BadInput, nearest_of
 
-SOURCE_DIR = Path(__file__).resolve().parents[2]
+WHEEL_DIR = Path(__file__).resolve().parent / "_built"
+IS_WHEEL = WHEEL_DIR.is_dir()
+SOURCE_DIR = WHEEL_DIR / "sources" if IS_WHEEL else Path(__file__).resolve().parents[2]
+"""The project's files; a wheel has those that commands read, at the same places."""
 SCENE_DIR = SOURCE_DIR / "scenes"
+FROM_CHECKOUT = ("get the project's sources, run `cmake --workflow --preset demo` there, and use its "
+                 "build/venv/bin/laconic")
+LIBRARY_NAMES = {"win32": "{}.dll", "darwin": "lib{}.dylib"}  # elsewhere lib….so
+
+
+def check_installation() -> None:
+    """BadInput for an installation with neither a build nor a way to one, as `pip install host_tests` makes it."""
+    if not IS_WHEEL and not (SCENE_DIR.is_dir() or os.environ.get("LACONIC_BUILD_DIR")):
+        raise BadInput(f"{Path(__file__).parent}: is installed without the compiled core; install a wheel "
+                       "(`cmake --build build --target laconic_wheel` makes build/wheel/*.whl)")
 
 
 def build_dir() -> Path:
-    """The build tree: LACONIC_BUILD_DIR, else the one this Python environment stands in, else build/ of the sources."""
+    """What was built: the wheel's, else LACONIC_BUILD_DIR, else the build tree that this Python environment stands in,
+    else build/ of the sources."""
+    if IS_WHEEL:
+        return WHEEL_DIR
     if given := os.environ.get("LACONIC_BUILD_DIR"):
         return Path(given)
     around = Path(sys.prefix).parent
     return around if (around / "lib").is_dir() and (around / "CMakeCache.txt").exists() else SOURCE_DIR / "build"
 
 
+def results_dir(name: str) -> Path:
+    """Where a command's results go by default: into the build tree; with a wheel into the current folder."""
+    return Path(f"laconic-{name}") if IS_WHEEL else build_dir() / name
+
+
 def built(relative: str) -> Path:
-    """A file of the build tree; BadInput with the command that makes it when it is not there."""
+    """A file that was built; BadInput with the remedy when it is not there."""
+    check_installation()
     path = build_dir() / relative
+    if not path.exists() and IS_WHEEL:
+        raise BadInput(f"{relative}: is not in the wheel for this system; {FROM_CHECKOUT}")
     if not path.exists():
         raise BadInput(f"{path}: not built yet; run `cmake --workflow --preset demo` in {SOURCE_DIR}, "
                        "or name the build tree in LACONIC_BUILD_DIR")
     return path
+
+
+def library(name: str) -> Path:
+    """A shared library that was built, by its name on every system: laconic_double, laconic_node_single …"""
+    return built("lib/" + LIBRARY_NAMES.get(sys.platform, "lib{}.so").format(name))
+
+
+def sources_missing() -> str:
+    """What a measurement that compiles the project's sources lacks here; empty where they are."""
+    return f"the project's sources ({FROM_CHECKOUT})" if IS_WHEEL else ""
 
 
 def as_path(name: str, given: Any) -> Path:

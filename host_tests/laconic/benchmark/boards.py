@@ -15,11 +15,14 @@ from laconic.benchmark.counting import (
 from laconic.benchmark.workshop import BOARDS, HOST, M4F, Target, Variant, Workshop
 from laconic.core import load
 from laconic.errors import Refused
+from laconic.paths import sources_missing
 from laconic.scene import METHODS, Scene
 
 
 def missing_tools() -> list[str]:
     """What is not installed of what boards and counts need."""
+    if missing := sources_missing():
+        return [missing]
     found = [] if all(board.present for board in BOARDS) else ["arm-none-eabi-gcc and qemu-system-arm"]
     found += [] if HOST.present else ["gcc"]
     return found if cachegrind_present() else [*found, "valgrind"]

@@ -21,7 +21,7 @@ from laconic.benchmark import (
     stability,
     targets,
 )
-from laconic.benchmark.workshop import BOARDS, M4F, Variant, Workshop
+from laconic.benchmark.workshop import BOARDS, HOST, M4F, Variant, Workshop
 from laconic.progress import progress_bar
 from laconic.scene import METHODS, Outputs, Scene, read_scene
 
@@ -103,7 +103,7 @@ def _speed(report: Report, scenes: Sequence[Scene], bench: Scene, workshop: Work
         report.notes.append(f"Not installed, so not compared: {', '.join(missing)} (see docs/performance.md).")
     if missing := boards.missing_tools():
         report.notes.append(f"Not installed, so not measured: {', '.join(missing)} (see docs/performance.md).")
-    if "gcc" in missing:
+    if not HOST.present:
         return {"steps": [], "precision": []}
     steps = speed.step_rows(workshop, bench, folder / "peers", 5 if quick else speed.ROUNDS)
     advance()

@@ -14,6 +14,7 @@ from laconic.benchmark.collect import PARTS, REALS, Report
 from laconic.benchmark.workshop import M4F, Workshop
 from laconic.core import load
 from laconic.errors import BadInput, Refused
+from laconic.paths import sources_missing
 from laconic.progress import progress_bar
 from laconic.scene import METHODS, Scene
 from laconic.scene.ground import has_friction
@@ -47,7 +48,8 @@ def collect_robots(scenes: Sequence[Scene], folder: Path, quick: bool = False) -
         if M4F.present:
             report.results["scenes"] = boards.scene_rows(workshop, scenes, reals, advance=advance)
         else:
-            report.notes.append("Not installed, so not measured: arm-none-eabi-gcc and qemu-system-arm "
+            report.notes.append("Not installed, so not measured: "
+                                f"{sources_missing() or 'arm-none-eabi-gcc and qemu-system-arm'} "
                                 "(see docs/performance.md).")
     if quick:
         report.notes.append("Made with --quick: a coarser stability map, and the microcontroller in single alone.")

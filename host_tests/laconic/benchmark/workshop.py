@@ -12,7 +12,7 @@ from tempfile import TemporaryDirectory
 
 from laconic.core import Core, load
 from laconic.errors import ResultFails
-from laconic.paths import SOURCE_DIR
+from laconic.paths import SOURCE_DIR, sources_missing
 from laconic.scene import Scene
 from laconic.trim import Trimmed, trimmed
 from laconic.trim.c_tables import initializer
@@ -40,7 +40,9 @@ class Target:
 
     @property
     def present(self) -> bool:
-        """Whether its compiler (with a C library, which comes apart) and emulator are installed."""
+        """Whether its compiler (with a C library, which comes apart), its emulator and our sources are here."""
+        if sources_missing():
+            return False
         emulator = not self.machine or shutil.which("qemu-system-arm") is not None
         return emulator and can_link(self.tool("gcc"), self.flags, bare=bool(self.machine))
 

@@ -18,6 +18,8 @@ import click
 import laconic.cli.commands
 from laconic.cli.streams import SHELL_SIGNAL, SIGPIPE, ReaderGone, guard, stop_status
 from laconic.errors import BadInput, LaconicError, nearest_of, reason_of
+from laconic.extras import missing_module
+from laconic.paths import check_installation
 
 
 class LazyCommands(click.Group):
@@ -30,6 +32,7 @@ class LazyCommands(click.Group):
     def get_command(self, ctx: click.Context, cmd_name: str) -> click.Command | None:
         if cmd_name not in self.list_commands(ctx):
             raise click.UsageError(f"no command {cmd_name}; {nearest_of(cmd_name, self.list_commands(ctx))}", ctx)
+        check_installation()
         return importlib.import_module(f"laconic.cli.commands.{cmd_name}").command
 
     def format_commands(self, ctx: click.Context, formatter: click.HelpFormatter) -> None:
@@ -117,7 +120,7 @@ def unexpected(error: Exception) -> LaconicError:
     if isinstance(error, MemoryError):
         return BadInput("there is not enough memory for this; run fewer steps or outputs")
     if isinstance(error, ModuleNotFoundError):
-        return BadInput(f"the Python environment has no {error.name}; build again, which brings it up to date")
+        return missing_module(error)
     last = traceback.extract_tb(error.__traceback__)[-1]
     return BadInput(f"unexpected {_kind(error)}: {error} ({Path(last.filename).name}:{last.lineno}); "
                     "LACONIC_TRACEBACK=1 in the environment shows more, for a report of the fault")

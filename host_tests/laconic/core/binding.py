@@ -24,7 +24,7 @@ from laconic.core.fields import ABOVE_0, OF_GROUND, Field, fields_from, set_own_
 from laconic.core.given import c_object, items, number, numbers, shown, table
 from laconic.core.plant import Plant
 from laconic.errors import BadInput, Refused, nearest_of
-from laconic.paths import built
+from laconic.paths import built, library
 
 REALS = ("double", "single")
 WHEEL_KINDS = {"omni": "ROLLER", "mecanum": "ROLLER", "roller": "ROLLER", "fixed": "FIXED", "unset": "UNSET"}
@@ -49,8 +49,8 @@ def load(real: str = "double") -> Core:
     if real not in REALS:
         raise BadInput(f"real: there is no {real!r}; {nearest_of(real, REALS)}")
     ffi = FFI()
-    ffi.cdef(built(f"lib/laconic_cdef_{real}.h").read_text())
-    return Core(real, ffi, ffi.dlopen(str(built(f"lib/liblaconic_{real}.so"))))
+    ffi.cdef(built(f"lib/laconic_cdef_{real}.h").read_text(encoding="utf-8"))
+    return Core(real, ffi, ffi.dlopen(str(library(f"laconic_{real}"))))
 
 
 class Core:

@@ -12,7 +12,7 @@ from dataclasses import dataclass
 from pathlib import Path
 
 from laconic.errors import BadInput, nearest_of
-from laconic.paths import build_dir, built
+from laconic.paths import build_dir, built, sources_missing
 from laconic.rig.buses import connected, process_node, virtual_node
 from laconic.rig.client import NodeClient
 from laconic.rig.errors import CannotReach
@@ -45,6 +45,8 @@ KINDS = ("virtual", "process", *BOARDS)
 
 def why_no_emulation() -> str | None:
     """Message on what emulated boards lack here; None when nothing is missing."""
+    if missing := sources_missing():
+        return f"images of boards are compiled from {missing}"
     if shutil.which(QEMU) is None:
         return f"{QEMU} is missing: install the package qemu-system-arm"
     if not (build_dir() / "firmware" / "laconic-node-an386.elf").exists():

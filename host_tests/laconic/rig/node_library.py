@@ -8,7 +8,7 @@ from typing import Any
 import can
 from cffi import FFI
 
-from laconic.paths import built
+from laconic.paths import built, library
 from laconic.rig.frames import FrameBox
 from laconic.rig.wire import ID_BASE
 
@@ -20,7 +20,7 @@ class NodeLibrary:
         self.real, self.ffi = real, FFI()
         declarations = built("lib/laconic_node_cdef.h").read_text(encoding="utf-8")
         self.ffi.cdef(without_inline_functions(declarations))
-        self.lib: Any = self.ffi.dlopen(str(built(f"lib/liblaconic_node_{real}.so")))
+        self.lib: Any = self.ffi.dlopen(str(library(f"laconic_node_{real}")))
 
     def protect_plain(self, offset: int, data: bytearray, counter: int) -> None:
         """Writes counter and CRC into a payload, by the profile alone."""

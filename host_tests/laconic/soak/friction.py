@@ -15,7 +15,7 @@ from typing import Any
 
 import numpy as np
 
-from laconic.paths import build_dir
+from laconic.paths import results_dir
 from laconic.soak import StoppedEarly
 from laconic.soak._turns import in_turns
 from laconic.verification.friction.agreement import Count, compare, energy_difference
@@ -53,7 +53,7 @@ def _result(counts: dict[str, Count], single: Count) -> dict[str, Any]:
 
 
 def _save(counts: dict[str, Count]) -> str:
-    folder = build_dir() / "friction"
+    folder = results_dir("friction")
     bad = [(label, text, problem) for label, count in counts.items() for text, problem in count.bad][:MOST_FILES]
     if not bad:
         return "none"

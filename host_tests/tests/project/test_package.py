@@ -16,7 +16,8 @@ from laconic.paths import SOURCE_DIR
 PAGE = (SOURCE_DIR / "docs" / "python.md").read_text(encoding="utf-8")
 EXAMPLES = re.findall(r"```python\n(.*?)```\n\n```text\n(.*?)```", PAGE, re.DOTALL)
 PACKAGES = [SOURCE_DIR / "host_tests" / "laconic", SOURCE_DIR / "fmu" / "laconic_fmu",
-            SOURCE_DIR / "firmware_stub" / "laconic_wire", SOURCE_DIR / "page" / "laconic_page"]
+            SOURCE_DIR / "firmware_stub" / "laconic_wire", SOURCE_DIR / "page" / "laconic_page",
+            SOURCE_DIR / "packages" / "python" / "laconic_wheel"]
 FILES = [path for package in PACKAGES for path in sorted(package.rglob("*.py"))]
 
 

@@ -17,7 +17,7 @@ from laconic.cli.options import OutputFolder, SceneName, json_flag
 from laconic.demo.main_job import PARTICIPANTS, STAGES, SceneResult, run_scene
 from laconic.demo.work import Point
 from laconic.outputs import claim_file, opened, write_text
-from laconic.paths import build_dir
+from laconic.paths import results_dir
 from laconic.progress import progress_bar
 from laconic.scene import read_scene
 
@@ -41,7 +41,7 @@ def command(scenes: tuple[str, ...], out: Path | None, json_wanted: bool) -> int
     The core is compared with an independent reference (SciPy, tight tolerance) for every method and several steps:
     error against run time, as a table, a CSV file and one picture a scene. Exit status 1 when any bit differs.
     """
-    out = out or build_dir() / "demo"
+    out = out or results_dir("demo")
     given = [read_scene(scene) for scene in scenes or SCENES]
     for scene in given:
         claim_file("demo:", out / f"{scene.path.stem}.png")

@@ -15,14 +15,14 @@ from rich.table import Table
 from laconic.benchmark.page import TEXT, TITLES, shown
 from laconic.cli.options import OutputFolder, SceneName, json_flag
 from laconic.errors import BadInput, reason_of
-from laconic.paths import build_dir, scene_names
+from laconic.paths import results_dir, scene_names
 from laconic.scene import read_scene
 
 
 @click.command("report")
 @click.option("--scene", "scenes", type=SceneName(), multiple=True, metavar="SCENE",
               help="About this robot, instead of the project; may be given several times.")
-@click.option("--out", type=OutputFolder(), metavar="DIR", help="Folder; build/report where none is given.")
+@click.option("--out", type=OutputFolder(), metavar="DIR", help="Folder; report/ of the build tree where none is given.")
 @click.option("--quick", is_flag=True, help="Fewer repetitions and one board: rough figures, much sooner.")
 @json_flag("Print what is shown as JSON.")
 def command(scenes: tuple[str, ...], out: Path | None, quick: bool, json_wanted: bool) -> None:
@@ -37,7 +37,7 @@ def command(scenes: tuple[str, ...], out: Path | None, quick: bool, json_wanted:
     from laconic.benchmark.robot import collect_robots
     from laconic.benchmark.writing import write
 
-    folder = out or build_dir() / "report"
+    folder = out or results_dir("report")
     read = [read_scene(name) for name in scenes or scene_names()]
     try:
         folder.mkdir(parents=True, exist_ok=True)

@@ -8,7 +8,7 @@ from functools import cache
 
 import numpy as np
 
-from laconic.paths import built
+from laconic.paths import library
 from laconic.verification.friction.problem import StepProblem
 
 COLUMNS = ("rim_along", "rim_across", "inertia", "drag", "grip", "axle", "drive", "drive_slope", "drive_limit",
@@ -26,7 +26,7 @@ class CoreSolution:
 
 @cache
 def _library(real: str) -> ctypes.CDLL:
-    library = ctypes.CDLL(str(built(f"lib/libfriction_probe_{real}.so")))
+    library = ctypes.CDLL(str(library(f"friction_probe_{real}")))
     library.friction_probe.restype = ctypes.c_int32
     return library
 

@@ -1,0 +1,44 @@
+"""What a wheel holds: our packages, what was compiled, and those of the project's files that commands read.
+
+A wheel's files are a mapping from their names in it to the files that they come from; laconic/_built has the layout
+of a build tree, laconic/_built/sources that of the project (host_tests/laconic/paths.py reads both).
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterable
+from pathlib import Path
+
+BUILT = "laconic/_built"
+PACKAGES = {"laconic": "host_tests/laconic", "laconic_fmu": "fmu/laconic_fmu"}
+READ_BY_COMMANDS = ("modelDescription.xml", "fmu/controller/modelDescription.xml", "firmware_stub/laconic.dbc")
+REALS = ("double", "single")
+LIBRARIES = tuple(f"laconic_{part}{real}" for part in ("", "node_") for real in REALS)
+PROGRAMS = tuple(f"laconic-node-{real}" for real in REALS)
+DECLARATIONS = ("laconic_cdef_double.h", "laconic_cdef_single.h", "laconic_node_cdef.h")
+FMUS = tuple(f"{name}_fmi{version}.fmu" for name in ("Laconic", "LaconicController") for version in (2, 3))
+
+
+def python_files(project: Path) -> dict[str, Path]:
+    """Our packages, with the data beside their modules."""
+    return {f"{package}/{path.relative_to(project / folder).as_posix()}": path
+            for package, folder in PACKAGES.items() for path in (project / folder).rglob("*")
+            if path.is_file() and "__pycache__" not in path.parts and "_built" not in path.parts}
+
+
+def project_files(project: Path) -> dict[str, Path]:
+    """Scenes and contracts."""
+    paths = [*(project / name for name in READ_BY_COMMANDS), *(project / "scenes").glob("*.toml")]
+    return {f"{BUILT}/sources/{path.relative_to(project).as_posix()}": path for path in paths}
+
+
+def for_every_platform(build: Path) -> dict[str, Path]:
+    """What of a build is the same on every platform: declarations for cffi, and the FMUs."""
+    found = {f"{BUILT}/lib/{name}": build / "lib" / name for name in DECLARATIONS}
+    return found | {f"{BUILT}/fmu/{name}": build / "fmu" / name for name in FMUS}
+
+
+def compiled(folder: Path, library: str, programs: Iterable[str]) -> dict[str, Path]:
+    """Libraries, named as the platform does, and programs, from the folders lib and bin of `folder`."""
+    names = [f"lib/{library.format(name)}" for name in LIBRARIES] + [f"bin/{name}" for name in programs]
+    return {f"{BUILT}/{name}": folder / name for name in names}

@@ -1,0 +1,38 @@
+"""Core, node library and node process for another platform, by the C compiler in the package ziglang.
+
+The compiler keeps what it has compiled: the node process takes what the node library's sources became before.
+"""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+from laconic_fmu.cross import compile_to
+from laconic_wheel.contents import REALS
+from laconic_wheel.platforms import Platform
+
+HOST_PORT = ("main.c", "station.c", "socketcan.c")
+
+
+def compile_all(platform: Platform, project: Path, wire: Path, out: Path, python: str) -> Path:
+    """Compiles into the folders lib and bin of `out`, which is returned."""
+    node_dir = project / "firmware_stub"
+    core = sorted((project / "core_c" / "src").glob("*.c"))
+    apart = [node_dir / "src" / name for name in ("shared_library.c", "library_drives.c")]
+    node = [path for path in sorted([*(node_dir / "src").glob("*.c"), *(node_dir / "drives").rglob("*.c")])
+            if path not in apart] + sorted(wire.glob("*.c"))
+    core_includes = [project / "core_c" / "include"]
+    includes = [*core_includes, node_dir / "include", node_dir / "src", node_dir / "drives", wire]
+    position = [] if platform.is_windows else ["-fPIC"]
+    for real in REALS:
+        flags = [*position, *(["-DLACONIC_SINGLE"] if real == "single" else [])]
+        whole = [*core, *node]
+        libraries = {f"laconic_{real}": (core, core_includes), f"laconic_node_{real}": ([*whole, *apart], includes)}
+        for name, (sources, folders) in libraries.items():
+            compile_to(platform.target, sources, folders, out / "lib" / platform.library.format(name),
+                       ["-shared", *flags], python=python)
+        if platform.has_node_process:
+            port = [node_dir / "ports" / "host" / name for name in HOST_PORT]
+            compile_to(platform.target, [*whole, *port], includes, out / "bin" / f"laconic-node-{real}", flags,
+                       python=python)
+    return out
