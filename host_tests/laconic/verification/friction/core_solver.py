@@ -26,9 +26,9 @@ class CoreSolution:
 
 @cache
 def _library(real: str) -> ctypes.CDLL:
-    library = ctypes.CDLL(str(library(f"friction_probe_{real}")))
-    library.friction_probe.restype = ctypes.c_int32
-    return library
+    loaded = ctypes.CDLL(str(library(f"friction_probe_{real}")))
+    loaded.friction_probe.restype = ctypes.c_int32
+    return loaded
 
 
 def solve_in_core(problem: StepProblem, real: str = "double", *, nu: np.ndarray | None = None,
