@@ -117,7 +117,7 @@ def test_a_case_read_from_its_file_is_the_same_to_the_last_bit(tmp_path):
 
 
 def test_the_soak_judges_and_writes_its_cases(monkeypatch, tmp_path):
-    monkeypatch.setattr(laconic.soak.friction, "build_dir", lambda: tmp_path)
+    monkeypatch.setattr(laconic.soak.friction, "results_dir", lambda name: tmp_path / name)
     moved = []
     result = laconic.soak.friction.soak(0.3 / 60, 1, moved.append)
     assert sum(moved) == pytest.approx(0.3, abs=1.0)
@@ -125,7 +125,7 @@ def test_the_soak_judges_and_writes_its_cases(monkeypatch, tmp_path):
 
 
 def test_a_soak_that_is_stopped_tells_what_it_found_until_then(monkeypatch, tmp_path):
-    monkeypatch.setattr(laconic.soak.friction, "build_dir", lambda: tmp_path)
+    monkeypatch.setattr(laconic.soak.friction, "results_dir", lambda name: tmp_path / name)
     done = []
 
     def advance(seconds):
