@@ -45,6 +45,9 @@ static inline real cut(real x, real limit) { return x > limit ? limit : (x < -li
 
 static inline bool is_finite(real x) { return magnitude(x) <= LACONIC_REAL_MAX; /* false for NaN too */ }
 
+/* Beyond it neighbouring angles differ by more than the smallest angle that counts, so the direction is not known. */
+#define LARGEST_ANGLE (LACONIC_SMALLEST_ROLLER_SINE / LACONIC_EPSILON)
+
 /* 0, or NaN where x is not finite: a sum of these checks many numbers with one comparison. */
 static inline real zero_if_finite(real x) { return x - x; }
 
@@ -80,6 +83,14 @@ static inline int32_t own(int32_t wheel) { return LACONIC_WITH_OWN_WHEELS ? whee
 /* Some wheel can slip; motors have limits or another circuit. Either makes a vehicle one of the friction step. */
 bool laconic_vehicle_slips(const laconic_vehicle *vehicle);
 bool laconic_vehicle_has_drive(const laconic_vehicle *vehicle);
+
+static inline bool has_friction(const laconic_plant *plant) {
+#if LACONIC_WITH_FRICTION
+    return plant->friction.acts;
+#else
+    return (void)plant, false;
+#endif
+}
 
 /* Of a plant with friction. */
 void laconic_friction_outputs_of(laconic_outputs *outputs, const laconic_plant *plant, const laconic_input *input);

@@ -21,6 +21,7 @@ static void observe(laconic_recorder *recorder, const laconic_plant *plant, cons
     }
     if (!row_due) return;
     laconic_outputs_of(&now, plant, input);
+    if (recorder->sensors != NULL) laconic_sensors_read(&now.sensors, recorder->sensors, plant, input);
     copy_columns(recorder, &now);
 }
 
@@ -42,6 +43,24 @@ static uint64_t steps_until_observation(laconic_recorder *recorder, const laconi
     return recorder->every - since_row;
 }
 
+static laconic_sensors *sensors_of(const laconic_recorder *recorder) {
+    return recorder != NULL ? recorder->sensors : NULL;
+}
+
+static laconic_status step(const laconic_recorder *recorder, laconic_plant *plant, const laconic_input *input,
+                           uint64_t steps, laconic_refusal *why) {
+    laconic_sensors *sensors = sensors_of(recorder);
+    return sensors != NULL ? laconic_sensors_run(sensors, plant, input, steps, why)
+                           : laconic_plant_run(plant, input, steps, why);
+}
+
+static laconic_status step_sampled(const laconic_recorder *recorder, laconic_plant *plant,
+                                   const laconic_input samples[3], laconic_refusal *why) {
+    laconic_sensors *sensors = sensors_of(recorder);
+    return sensors != NULL ? laconic_sensors_run_sampled(sensors, plant, samples, why)
+                           : laconic_plant_run_sampled(plant, samples, why);
+}
+
 /* One stretch, up to `until_step`; *full: a row had no room. */
 static laconic_status run_held(laconic_plant *plant, const laconic_input *input, uint64_t until_step,
                                laconic_recorder *recorder, bool *full, laconic_refusal *why) {
@@ -49,7 +68,7 @@ static laconic_status run_held(laconic_plant *plant, const laconic_input *input,
         const uint64_t steps = steps_until_observation(recorder, plant, input, until_step - plant->steps);
         *full = steps == 0;
         if (*full) return LACONIC_OK;
-        const laconic_status status = laconic_plant_run(plant, input, steps, why);
+        const laconic_status status = step(recorder, plant, input, steps, why);
         if (status != LACONIC_OK) return status;
     }
     return LACONIC_OK;
@@ -92,7 +111,7 @@ static laconic_status follow_sampled(laconic_plant *plant, const laconic_schedul
         const real *value = schedule->value + 3 * numbers * (plant->steps - schedule->first_step);
         for (uint64_t k = 0; k < 3; k++) set_signals(&input[k], schedule, value + k * numbers);
         if (steps_until_observation(recorder, plant, input, 1) == 0) break;
-        const laconic_status status = laconic_plant_run_sampled(plant, input, why);
+        const laconic_status status = step_sampled(recorder, plant, input, why);
         if (status != LACONIC_OK) return status;
     }
     return LACONIC_OK;

@@ -22,9 +22,6 @@ static const checked_number of_support[] = {LACONIC_SUPPORT_FIELDS(IN_SUPPORT, )
 
 #define COUNT(array) (sizeof(array) / sizeof(array)[0])
 
-/* Beyond it neighbouring numbers differ by more than the smallest angle that counts, so the direction is not known. */
-#define LARGEST_ANGLE (LACONIC_SMALLEST_ROLLER_SINE / LACONIC_EPSILON)
-
 /* 86°: beyond it nothing stands, and the normal load, cos α, is all rounding soon. */
 #define LARGEST_INCLINE R(1.5)
 

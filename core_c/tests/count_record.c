@@ -38,7 +38,7 @@ int main(int argc, char **argv) {
     laconic_grip grip = {0};
     laconic_contact contact;
     laconic_plant plant;
-    laconic_recorder recorder = {NULL, NULL, every, COLUMNS - 1, column, row, 0, MOST_STEPS};
+    laconic_recorder recorder = {NULL, NULL, every, COLUMNS - 1, column, row, 0, MOST_STEPS, NULL};
     if (steps > MOST_STEPS) return 2;
     for (size_t k = 0; k < sizeof value / sizeof value[0]; k++) value[k] = REAL(0.001) * (laconic_real)(k % 100);
     if (laconic_plant_start(&plant, &vehicle, &laconic_auto, REAL(0.01), &start, NULL) != LACONIC_OK) return 1;

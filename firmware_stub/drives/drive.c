@@ -5,7 +5,6 @@
 
 #define R(number) ((laconic_real)(number))
 #define TURN_RAD R(6.28318530717958647693)
-#define MOST_COUNTS R(2147483520.0) /* of one step; the largest number below 2^31 of single precision */
 
 void laconic_drive_start(laconic_wheel_drive *drive, const laconic_drive_settings *settings) {
     const laconic_drive_settings kept = *settings; /* which may be the drive's own */
@@ -43,7 +42,7 @@ static laconic_real limit_current(laconic_wheel_drive *drive, laconic_real curre
 /* Set speed of the position loop. The difference of the counts is exact, however far the shaft has turned. */
 static laconic_real position_loop(const laconic_wheel_drive *drive) {
     const laconic_drive_target *target = &drive->target;
-    const int64_t counts = (int64_t)((uint64_t)target->position_count - (uint64_t)drive->count);
+    const int64_t counts = (int64_t)((uint64_t)target->position_count - (uint64_t)drive->encoder.count);
     const laconic_real error_rad =
         ((laconic_real)counts + target->position_rest) * (TURN_RAD / (laconic_real)drive->settings.encoder_counts);
     return drive->settings.position_gain_per_s * error_rad + target->speed_rad_per_s;
@@ -80,14 +79,14 @@ static laconic_real current_loop(laconic_wheel_drive *drive, laconic_real set_A,
 
 /* No motion for the settings' time though the current is at a limit. */
 static void watch_for_stall(laconic_wheel_drive *drive, laconic_real step_s) {
-    const int64_t moved = drive->count - drive->stalled_count;
+    const int64_t moved = drive->encoder.count - drive->stalled_count;
     const bool pushes = (drive->limits & (LACONIC_DRIVE_AT_CURRENT | LACONIC_DRIVE_AT_SUPPLY)) != 0;
     if (drive->settings.stall_time_s > 0 && pushes && moved >= -1 && moved <= 1) {
         drive->stalled_s += step_s;
         if (drive->stalled_s >= drive->settings.stall_time_s) laconic_drive_fail(drive, LACONIC_DRIVE_FAULT_STALL);
     } else {
         drive->stalled_s = 0;
-        drive->stalled_count = drive->count;
+        drive->stalled_count = drive->encoder.count;
     }
 }
 
@@ -119,35 +118,20 @@ laconic_real laconic_drive_act(laconic_wheel_drive *drive, laconic_real step_s) 
 
 /* -------------------------------------------------------------------------------- encoder -- */
 
-/* Whole counts and the part of a count are added apart, so that neither a fast shaft nor a far one costs resolution. */
-static void turn_encoder(laconic_wheel_drive *drive, laconic_real counts) {
-    if (!(counts >= -MOST_COUNTS && counts <= MOST_COUNTS)) {
-        laconic_drive_fail(drive, LACONIC_DRIVE_FAULT_ENCODER);
-        return;
-    }
-    const int32_t whole = (int32_t)counts;
-    laconic_real rest = drive->rest + (counts - (laconic_real)whole); /* above −1, below 2 */
-    const int32_t carry = rest >= 1 ? 1 : rest < 0 ? -1 : 0;
-    rest -= (laconic_real)carry;
-    const bool rounded_up = rest >= 1; /* a tiny negative part, taken from 1 */
-    drive->rest = rounded_up ? 0 : rest;
-    drive->count += (int64_t)whole + carry + (rounded_up ? 1 : 0);
-}
-
 void laconic_drive_measure(laconic_wheel_drive *drive, laconic_real turned_rad, laconic_real wheel_speed_rad_per_s) {
     const laconic_drive_settings *s = &drive->settings;
     if (drive->causes & LACONIC_DRIVE_FAULT_ENCODER) {
         drive->speed_rad_per_s = 0;
         return;
     }
-    turn_encoder(drive, turned_rad * (s->gear_ratio * (laconic_real)s->encoder_counts / TURN_RAD));
+    const laconic_encoder_settings encoder = {s->encoder_counts, s->gear_ratio};
+    if (!laconic_encoder_turn(&drive->encoder, &encoder, turned_rad))
+        laconic_drive_fail(drive, LACONIC_DRIVE_FAULT_ENCODER);
     drive->speed_rad_per_s = wheel_speed_rad_per_s * s->gear_ratio;
 }
 
 int32_t laconic_drive_shaft_count(const laconic_wheel_drive *drive) {
-    const int64_t counts = drive->settings.encoder_counts;
-    const int64_t within_turn = drive->count % counts;
-    return (int32_t)(within_turn < 0 ? within_turn + counts : within_turn);
+    return laconic_encoder_place(&drive->encoder, drive->settings.encoder_counts);
 }
 
 /* --------------------------------------------------------------------------------- faults -- */
@@ -161,7 +145,7 @@ void laconic_drive_clear(laconic_wheel_drive *drive) {
     laconic_drive_off(drive);
     drive->faults = drive->causes;
     drive->stalled_s = 0;
-    drive->stalled_count = drive->count;
+    drive->stalled_count = drive->encoder.count;
 }
 
 void laconic_drive_break(laconic_wheel_drive *drive, uint32_t faults) {

@@ -25,50 +25,12 @@ void laconic_drives_off(laconic_drives *drives) {
 
 /* ------------------------------------------------------------------------------- wheels -- */
 
-static bool slips(const laconic_plant *plant) {
-#if LACONIC_WITH_FRICTION
-    return plant->friction.acts;
-#else
-    (void)plant;
-    return false;
-#endif
-}
-
-/* How far the wheels have turned, as the plant keeps it: of a plant on ideal ground three sums of which each angle is a
- * combination, else an angle for each wheel. */
-typedef struct odometer {
-    laconic_sum sum[LACONIC_MAX_WHEELS > 3 ? LACONIC_MAX_WHEELS : 3];
-} odometer;
-
-static void read_odometer(odometer *now, const laconic_plant *plant) {
-    if (!slips(plant)) memcpy(now->sum, plant->state.travel, sizeof plant->state.travel);
-#if LACONIC_WITH_FRICTION
-    if (slips(plant)) memcpy(now->sum, plant->slip.wheel_angle_rad, sizeof plant->slip.wheel_angle_rad);
-#endif
-}
-
-/* The parts of the sums that are too small for their values are compared, too: the difference of two angles would lose
- * them after many turns. */
-static laconic_real difference(const laconic_sum *now, const laconic_sum *before) {
-    return (now->value - before->value) + (now->rest - before->rest);
-}
-
-static laconic_real turned_rad(const laconic_plant *plant, const odometer *now, const odometer *before, int32_t wheel) {
-    laconic_real turned = 0;
-    if (slips(plant)) return difference(&now->sum[wheel], &before->sum[wheel]);
-    for (int32_t j = 0; j < 3; j++)
-        turned += plant->model.wheel_of_zeta[wheel][j] * difference(&now->sum[j], &before->sum[j]);
-    return turned;
-}
-
-static void measure(laconic_drives *drives, const laconic_plant *plant, const odometer *before) {
+static void measure(laconic_drives *drives, const laconic_plant *plant, const laconic_odometer *before) {
     laconic_real speed_rad_per_s[LACONIC_MAX_WHEELS];
-    odometer now;
-    read_odometer(&now, plant);
     laconic_plant_wheel_speeds(plant, speed_rad_per_s);
     for (int32_t k = 0; k < drives->count; k++) {
         const int32_t i = drives->wheel[k];
-        laconic_drive_measure(&drives->drive[k], turned_rad(plant, &now, before, i), speed_rad_per_s[i]);
+        laconic_drive_measure(&drives->drive[k], laconic_wheel_turned_rad(plant, before, i), speed_rad_per_s[i]);
     }
 }
 
@@ -77,7 +39,7 @@ static void measure(laconic_drives *drives, const laconic_plant *plant, const od
 void laconic_drives_start(laconic_drives *drives, const laconic_drive_plan *plan,
                           const laconic_drive_protocol *protocol, void *axes, const laconic_plant *plant,
                           uint32_t now_us) {
-    odometer here;
+    laconic_odometer here;
     memset(drives, 0, sizeof *drives);
     drives->protocol = protocol;
     drives->axes = axes;
@@ -89,7 +51,7 @@ void laconic_drives_start(laconic_drives *drives, const laconic_drive_plan *plan
         drives->wheel[drives->count] = (uint8_t)i;
         laconic_drive_start(&drives->drive[drives->count++], &plan->drive[i]);
     }
-    read_odometer(&here, plant);
+    laconic_odometer_of(&here, plant);
     measure(drives, plant, &here);
     memset(axes, 0, (size_t)drives->count * protocol->axis_bytes);
     protocol->start(drives, now_us);
@@ -101,7 +63,7 @@ void laconic_drives_start(laconic_drives *drives, const laconic_drive_plan *plan
 static laconic_real mobility(const laconic_plant *plant, int32_t wheel) {
     const laconic_real *row = plant->model.wheel_of_zeta[wheel];
 #if LACONIC_WITH_FRICTION
-    const laconic_real inertia = slips(plant) ? plant->friction.wheel[wheel].inertia : 0;
+    const laconic_real inertia = plant->friction.acts ? plant->friction.wheel[wheel].inertia : 0;
     if (inertia > 0) return plant->model.torque_scale / inertia;
 #endif
     return (row[0] * row[0] + row[1] * row[1] + row[2] * row[2]) * plant->model.torque_scale;
@@ -135,12 +97,12 @@ static void apply_brakes(const laconic_drives *drives, const laconic_plant *plan
 
 laconic_status laconic_drives_step(laconic_drives *drives, laconic_plant *plant, laconic_input *held, uint32_t now_us,
                                    laconic_refusal *why) {
-    odometer before;
+    laconic_odometer before;
     drives->protocol->on_step(drives, advance(drives, now_us));
     for (int32_t k = 0; k < drives->count; k++)
         held->axle_torque_Nm[drives->wheel[k]] = laconic_drive_act(&drives->drive[k], drives->step_s);
     apply_brakes(drives, plant, held);
-    read_odometer(&before, plant);
+    laconic_odometer_of(&before, plant);
     const laconic_status status = laconic_plant_run(plant, held, 1, why);
     if (status != LACONIC_OK) {
         laconic_drives_off(drives);

@@ -51,8 +51,8 @@ void laconic_library_wheel_drive_mend(laconic_wheel_drive *drive, uint32_t fault
 }
 
 void laconic_library_wheel_drive_measured(const laconic_wheel_drive *drive, laconic_library_measured *measured) {
-    const laconic_library_measured seen = {
-        (int32_t)drive->target.mode, drive->faults,           drive->count, (double)drive->speed_rad_per_s,
-        (double)drive->current_A,    (double)drive->torque_Nm};
+    const laconic_library_measured seen = {(int32_t)drive->target.mode, drive->faults,
+                                           drive->encoder.count,        (double)drive->speed_rad_per_s,
+                                           (double)drive->current_A,    (double)drive->torque_Nm};
     *measured = seen;
 }

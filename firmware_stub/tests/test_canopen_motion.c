@@ -111,7 +111,7 @@ static void cyclic_position_does_not_move_before_a_target_came(void) {
 }
 
 static void cyclic_position_goes_on_beyond_the_end_of_32_bits(void) {
-    on.drives.drive[0].count = INT32_MAX - 20;
+    on.drives.drive[0].encoder.count = INT32_MAX - 20;
     enable(8);
     for (int k = 1; k <= 40; k++) {
         set(0x607A, 0, (int32_t)((uint32_t)(INT32_MAX - 20) + (uint32_t)k));

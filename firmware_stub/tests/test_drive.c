@@ -83,7 +83,7 @@ static void the_speed_limit_holds_in_position_and_speed_control(void) {
     TEST_ASSERT_TRUE(drive.speed_rad_per_s > R(19.99) && drive.speed_rad_per_s < R(20.01));
     TEST_ASSERT_BITS(LACONIC_DRIVE_AT_SPEED, LACONIC_DRIVE_AT_SPEED, drive.limits);
     drive.target.mode = LACONIC_DRIVE_POSITION;
-    drive.target.position_count = drive.count + 10000000;
+    drive.target.position_count = drive.encoder.count + 10000000;
     run(500);
     TEST_ASSERT_TRUE(drive.speed_rad_per_s > R(19.99) && drive.speed_rad_per_s < R(20.01));
 }
@@ -140,40 +140,40 @@ static void the_position_loop_goes_to_its_count_and_stays(void) {
     drive.target.mode = LACONIC_DRIVE_POSITION;
     drive.target.position_count = 4096;
     run(3000);
-    TEST_ASSERT_INT_WITHIN(2, 4096, (int)drive.count);
+    TEST_ASSERT_INT_WITHIN(2, 4096, (int)drive.encoder.count);
     TEST_ASSERT_TRUE(wheel_rad_per_s < R(0.01) && wheel_rad_per_s > R(-0.01));
 }
 
 static void a_far_position_loses_no_count(void) {
-    drive.count = (int64_t)1 << 60;
+    drive.encoder.count = (int64_t)1 << 60;
     drive.target.mode = LACONIC_DRIVE_POSITION;
-    drive.target.position_count = drive.count + 1;
+    drive.target.position_count = drive.encoder.count + 1;
     run(3000);
-    TEST_ASSERT_INT_WITHIN(1, 1, (int)(drive.count - ((int64_t)1 << 60)));
+    TEST_ASSERT_INT_WITHIN(1, 1, (int)(drive.encoder.count - ((int64_t)1 << 60)));
 }
 
 /* 2^24 steps of a tenth of a count would be lost in single precision if counts were one number. */
 static void counts_keep_their_resolution_after_any_number_of_turns(void) {
     const laconic_real tenth_rad = R(0.1) * R(6.28318530717958647693) / (4096 * 10);
-    drive.count = (int64_t)1 << 40;
+    drive.encoder.count = (int64_t)1 << 40;
     for (int k = 0; k < 1000; k++) laconic_drive_measure(&drive, tenth_rad, 0);
-    TEST_ASSERT_INT_WITHIN(1, 100, (int)(drive.count - ((int64_t)1 << 40)));
+    TEST_ASSERT_INT_WITHIN(1, 100, (int)(drive.encoder.count - ((int64_t)1 << 40)));
     for (int k = 0; k < 2000; k++) laconic_drive_measure(&drive, -tenth_rad, 0);
-    TEST_ASSERT_INT_WITHIN(1, -100, (int)(drive.count - ((int64_t)1 << 40)));
-    TEST_ASSERT_TRUE(drive.rest >= 0 && drive.rest < 1);
+    TEST_ASSERT_INT_WITHIN(1, -100, (int)(drive.encoder.count - ((int64_t)1 << 40)));
+    TEST_ASSERT_TRUE(drive.encoder.rest >= 0 && drive.encoder.rest < 1);
 }
 
 static void a_tiny_turn_backwards_takes_a_whole_count_and_leaves_a_rest_below_one(void) {
     laconic_drive_measure(&drive, R(-1e-30), 0);
-    TEST_ASSERT_TRUE(drive.rest >= 0 && drive.rest < 1);
-    TEST_ASSERT_TRUE(drive.count == 0 || drive.count == -1);
+    TEST_ASSERT_TRUE(drive.encoder.rest >= 0 && drive.encoder.rest < 1);
+    TEST_ASSERT_TRUE(drive.encoder.count == 0 || drive.encoder.count == -1);
 }
 
 static void the_place_within_a_turn_wraps_in_both_directions(void) {
     const int64_t counts[] = {0, 1, 4095, 4096, -1, -4096, -4097};
     const int32_t places[] = {0, 1, 4095, 0, 4095, 0, 4095};
     for (int k = 0; k < 7; k++) {
-        drive.count = counts[k];
+        drive.encoder.count = counts[k];
         TEST_ASSERT_EQUAL_INT32(places[k], laconic_drive_shaft_count(&drive));
     }
 }
@@ -181,7 +181,7 @@ static void the_place_within_a_turn_wraps_in_both_directions(void) {
 static void a_step_beyond_the_range_of_counts_is_a_fault_of_the_encoder(void) {
     laconic_drive_measure(&drive, R(1e9), 0);
     TEST_ASSERT_EQUAL_UINT32(LACONIC_DRIVE_FAULT_ENCODER, drive.faults);
-    TEST_ASSERT_EQUAL_INT(0, (int)drive.count);
+    TEST_ASSERT_EQUAL_INT(0, (int)drive.encoder.count);
 }
 
 static void a_wheel_that_does_not_move_at_the_limit_is_a_stall_after_its_time(void) {
@@ -228,13 +228,13 @@ static void a_fault_whose_cause_remains_is_not_cleared(void) {
 static void a_lost_encoder_shows_no_motion(void) {
     wheel_rad_per_s = 3;
     run(100);
-    const int64_t count = drive.count;
+    const int64_t count = drive.encoder.count;
     laconic_drive_break(&drive, LACONIC_DRIVE_FAULT_ENCODER);
     run(100);
-    TEST_ASSERT_TRUE(drive.count == count && drive.speed_rad_per_s == 0);
+    TEST_ASSERT_TRUE(drive.encoder.count == count && drive.speed_rad_per_s == 0);
     laconic_drive_mend(&drive, LACONIC_DRIVE_FAULT_ENCODER);
     run(100);
-    TEST_ASSERT_TRUE(drive.count > count && drive.speed_rad_per_s == 30);
+    TEST_ASSERT_TRUE(drive.encoder.count > count && drive.speed_rad_per_s == 30);
 }
 
 static void a_target_that_is_no_number_is_a_fault_and_never_a_torque(void) {
@@ -253,7 +253,7 @@ static void a_reversed_gear_turns_the_shaft_against_the_wheel(void) {
     drive.settings.gear_ratio = -10;
     ask_speed(10);
     run(1000);
-    TEST_ASSERT_TRUE(drive.speed_rad_per_s > R(9.9) && wheel_rad_per_s < R(-0.99) && drive.count > 0);
+    TEST_ASSERT_TRUE(drive.speed_rad_per_s > R(9.9) && wheel_rad_per_s < R(-0.99) && drive.encoder.count > 0);
 }
 
 int main(void) {

@@ -69,10 +69,10 @@ static laconic_real wheel_angle(int wheel) {
 
 static void a_start_is_a_power_up_with_every_drive_off(void) {
     memset(axes, 255, sizeof axes);
-    drives.drive[0].count = 77;
+    drives.drive[0].encoder.count = 77;
     setUp();
     TEST_ASSERT_EQUAL_INT(4, drives.count);
-    TEST_ASSERT_TRUE(drives.drive[0].count == 0 && drives.drive[0].target.mode == LACONIC_DRIVE_OFF);
+    TEST_ASSERT_TRUE(drives.drive[0].encoder.count == 0 && drives.drive[0].target.mode == LACONIC_DRIVE_OFF);
     TEST_ASSERT_TRUE(axes[3] == 0 && axes[4] != 0 && drives.step_s == SCENE_STEP_S);
 }
 
@@ -120,7 +120,7 @@ static void counts_follow_the_wheels_angle(void) {
     for (int i = 0; i < 4; i++) ask(i, i % 2 ? 40 : -60);
     step(3000);
     for (int i = 0; i < 4; i++) {
-        const laconic_real off = wheel_angle(i) * counts_per_rad - (laconic_real)drives.drive[i].count;
+        const laconic_real off = wheel_angle(i) * counts_per_rad - (laconic_real)drives.drive[i].encoder.count;
         TEST_ASSERT_TRUE(off > -2 && off < 2);
     }
 }
@@ -130,9 +130,9 @@ static void counts_lose_nothing_after_many_turns(void) {
     for (int i = 0; i < 4; i++) ask(i, 400);
     step(3000);
     for (int j = 0; j < 3; j++) plant.state.travel[j].value += 100000;
-    const int64_t before = drives.drive[0].count;
+    const int64_t before = drives.drive[0].encoder.count;
     step(1000);
-    const int64_t turned = drives.drive[0].count - before;
+    const int64_t turned = drives.drive[0].encoder.count - before;
     TEST_ASSERT_INT_WITHIN(30, 521519, (int)turned); /* 400 rad of the shaft, 8192 counts a turn */
 }
 
@@ -144,7 +144,7 @@ static void on_ground_with_friction_drives_turn_and_measure_the_wheels_own_motio
     for (int i = 0; i < 4; i++)
         TEST_ASSERT_TRUE(drives.drive[i].speed_rad_per_s > 98 && drives.drive[i].speed_rad_per_s < 102);
     const laconic_real off =
-        wheel_angle(2) * REAL(8192.0 * 20 / 6.28318530717958647693) - (laconic_real)drives.drive[2].count;
+        wheel_angle(2) * REAL(8192.0 * 20 / 6.28318530717958647693) - (laconic_real)drives.drive[2].encoder.count;
     TEST_ASSERT_TRUE(off > -2 && off < 2);
 }
 
@@ -186,9 +186,9 @@ static void brakes_on_all_wheels_stop_the_vehicle_and_keep_it(void) {
         drives.drive[i].brake_Nm = 3;
     }
     step(2000);
-    const int64_t count = drives.drive[0].count;
+    const int64_t count = drives.drive[0].encoder.count;
     step(1000);
-    TEST_ASSERT_INT_WITHIN(1, 0, (int)(drives.drive[0].count - count));
+    TEST_ASSERT_INT_WITHIN(1, 0, (int)(drives.drive[0].encoder.count - count));
 }
 
 static void a_refused_step_switches_every_drive_off(void) {

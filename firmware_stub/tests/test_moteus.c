@@ -362,7 +362,7 @@ static void a_reversed_gear_turns_the_other_way(void) {
     hold(none, (laconic_real)0.5, 2000);
     near(0.5, read_float(0x02), 0.01);
     near((laconic_real)(0.5 * 6.2831853), bench_speed[0], 0.1);
-    TEST_ASSERT_TRUE(drives.drive[0].count < 0);
+    TEST_ASSERT_TRUE(drives.drive[0].encoder.count < 0);
 }
 
 static void malformed_frames_do_what_can_be_read_of_them(void) {

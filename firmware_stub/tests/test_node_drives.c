@@ -50,7 +50,7 @@ static void one_step_is_taken_each_period(void) {
     command(1000);
     pass(50000, 100);
     TEST_ASSERT_EQUAL_UINT64(50, node.plant.steps);
-    TEST_ASSERT_TRUE(node.drives.drive[0].count > 0 && node.counters.late_periods == 0);
+    TEST_ASSERT_TRUE(node.drives.drive[0].encoder.count > 0 && node.counters.late_periods == 0);
     TEST_ASSERT_EQUAL_UINT32(1000, laconic_node_idle_us(&node, now_us));
 }
 
@@ -115,7 +115,7 @@ static void a_rig_may_select_frames_while_drives_play(void) {
     pass(100000, 1000);
     TEST_ASSERT_TRUE(bench_receive(LACONIC_WIRE_HEARTBEAT, data));
     TEST_ASSERT_EQUAL_UINT8(LACONIC_WIRE_STATE_DRIVES, data[1] >> 4);
-    TEST_ASSERT_TRUE(node.drives.drive[0].count > 1000); /* SELECT has not stopped it */
+    TEST_ASSERT_TRUE(node.drives.drive[0].encoder.count > 1000); /* SELECT has not stopped it */
     fetch(&of_drives, &of_node);
 }
 
@@ -138,7 +138,7 @@ static void stop_switches_the_drives_off_and_a_start_is_their_power_up(void) {
     pass(10000, 1000);
     TEST_ASSERT_EQUAL_UINT64(steps, node.plant.steps);
     TEST_ASSERT_EQUAL_UINT8(0, start());
-    TEST_ASSERT_TRUE(node.drives.drive[0].count == 0 && node.drives.drive[0].speed_rad_per_s > 1);
+    TEST_ASSERT_TRUE(node.drives.drive[0].encoder.count == 0 && node.drives.drive[0].speed_rad_per_s > 1);
 }
 
 static void a_refused_step_is_a_fault_with_the_drives_off(void) {

@@ -96,7 +96,7 @@ static void feedback_comes_every_millisecond_with_angle_speed_and_current(void) 
             TEST_ASSERT_TRUE(laconic_drives_next_frame(&drives, &frame));
             TEST_ASSERT_EQUAL_HEX32(i < 3 ? 0x201U + (uint32_t)i : 0x206U, frame.id);
             TEST_ASSERT_TRUE(frame.length == 8 && !frame.extended && !frame.remote && !frame.fd);
-            TEST_ASSERT_EQUAL_INT((int)drives.drive[i].count & 8191, word_of(&frame, 0));
+            TEST_ASSERT_EQUAL_INT((int)drives.drive[i].encoder.count & 8191, word_of(&frame, 0));
             const laconic_real rpm = drives.drive[i].speed_rad_per_s * REAL(60 / 6.28318530717958647693);
             TEST_ASSERT_TRUE((laconic_real)word_of(&frame, 2) - rpm < REAL(0.51) &&
                              (laconic_real)word_of(&frame, 2) - rpm > REAL(-0.51));
@@ -105,13 +105,13 @@ static void feedback_comes_every_millisecond_with_angle_speed_and_current(void) 
         }
         TEST_ASSERT_FALSE(laconic_drives_next_frame(&drives, &frame));
     }
-    TEST_ASSERT_TRUE(drives.drive[0].count < -1000);
+    TEST_ASSERT_TRUE(drives.drive[0].encoder.count < -1000);
 }
 
 static void an_encoder_of_other_counts_is_told_in_8192_parts_of_a_turn(void) {
     laconic_frame frame;
     drives.drive[0].settings.encoder_counts = 1024;
-    drives.drive[0].count = 1024 * 5 + 512;
+    drives.drive[0].encoder.count = 1024 * 5 + 512;
     step(1);
     laconic_drives_next_frame(&drives, &frame);
     TEST_ASSERT_EQUAL_INT(4096, word_of(&frame, 0));

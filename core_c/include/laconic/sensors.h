@@ -126,9 +126,10 @@ typedef struct laconic_encoder {
     laconic_real rest;
 } laconic_encoder;
 
-/* Turns the encoder by a number of counts, which need not be whole. Whole counts and the share are added apart, so that
- * no number of turns costs resolution. False, and unchanged, iff `counts` is beyond ± 2³¹ or NaN. */
-bool laconic_encoder_turn(laconic_encoder *encoder, laconic_real counts);
+/* Turns the encoder with its wheel. Whole counts and the share are added apart, so that no number of turns costs
+ * resolution. False, and unchanged, iff that is NaN or beyond ± 2³¹ counts. */
+bool laconic_encoder_turn(laconic_encoder *encoder, const laconic_encoder_settings *settings,
+                          laconic_real wheel_turned_rad);
 
 /* The place within one turn of its shaft: 0 … counts_per_turn − 1; the index pulse is at 0. */
 int32_t laconic_encoder_place(const laconic_encoder *encoder, int32_t counts_per_turn);
@@ -138,6 +139,24 @@ int64_t laconic_encoder_turns(const laconic_encoder *encoder, int32_t counts_per
 
 /* What it shows: the count modulo `wrap`, or for 0 the lower 32 bits of the count as an int32_t. */
 int32_t laconic_encoder_shown(const laconic_encoder *encoder, int32_t wrap);
+
+#if LACONIC_MAX_WHEELS > 3
+#define LACONIC_TURNED_SUMS LACONIC_MAX_WHEELS
+#else
+#define LACONIC_TURNED_SUMS 3
+#endif
+
+/* How far the wheels have turned, as the plant keeps it: on ideal ground three sums of which each angle is a
+ * combination, else one a wheel. */
+typedef struct laconic_odometer {
+    laconic_sum sum[LACONIC_TURNED_SUMS];
+} laconic_odometer;
+
+void laconic_odometer_of(laconic_odometer *now, const struct laconic_plant *plant);
+
+/* How far a wheel has turned since `before` [rad], with the parts that the difference of two angles would lose after
+ * many turns. The vehicle must be the same. */
+laconic_real laconic_wheel_turned_rad(const struct laconic_plant *plant, const laconic_odometer *before, int32_t wheel);
 
 /* ----------------------------------------------------------------------------------- noise -- */
 
@@ -172,7 +191,8 @@ typedef struct laconic_sensor_outputs {
 } laconic_sensor_outputs;
 
 /* Sensors as after power-up, beside a plant that stands where it is: encoders at 0, and in the IMU's delay line the
- * sample of this moment. Refuses as laconic_sensor_settings_check() does, and changes nothing then. */
+ * sample of this moment, as of a vehicle that has moved so for long. Refuses as laconic_sensor_settings_check() does, and
+ * changes nothing then. */
 laconic_status laconic_sensors_start(laconic_sensors *sensors, const laconic_sensor_settings *settings,
                                      const struct laconic_plant *plant, struct laconic_refusal *why);
 
@@ -184,17 +204,10 @@ laconic_status laconic_sensors_run(laconic_sensors *sensors, struct laconic_plan
 laconic_status laconic_sensors_run_sampled(laconic_sensors *sensors, struct laconic_plant *plant,
                                            const laconic_input samples[3], struct laconic_refusal *why);
 
-#if LACONIC_MAX_WHEELS > 3
-#define LACONIC_TURNED_SUMS LACONIC_MAX_WHEELS
-#else
-#define LACONIC_TURNED_SUMS 3
-#endif
-
 /* For callers that step the plant themselves: before and after each step. */
 typedef struct laconic_sensor_moment {
-    laconic_sum turned[LACONIC_TURNED_SUMS]; /* how far the wheels have turned, as the plant keeps it: on ideal ground
-                                                three sums of which each angle is a combination, else one a wheel */
-    laconic_real velocity_m_per_s[2], yaw_rate_rad_per_s; /* of S, body axes              */
+    laconic_odometer odometer;
+    laconic_real velocity_m_per_s[2], yaw_rate_rad_per_s; /* of S, body axes */
 } laconic_sensor_moment;
 
 void laconic_sensors_before(laconic_sensor_moment *before, const struct laconic_plant *plant);
@@ -202,31 +215,35 @@ laconic_status laconic_sensors_after(laconic_sensors *sensors, const struct laco
                                      const laconic_input *held, const laconic_sensor_moment *before,
                                      struct laconic_refusal *why);
 
-/* How far a wheel has turned since `before` [rad], with the parts that are too small for a difference of two angles. */
-laconic_real laconic_wheel_turned_rad(const struct laconic_plant *plant, const laconic_sensor_moment *before,
-                                      int32_t wheel);
-
 /* Inertial acceleration of the body's origin in body axes, v' + ω × v. On ideal ground exactly that of this moment with
- * this input; of a vehicle with friction the mean over the last step, as contact forces there exist for a step alone
- * (0 before the first; `sensors` may be NULL only on ideal ground). */
+ * this input. Of a vehicle with friction the mean over the last step, since contact forces there exist for a step alone:
+ * the change of velocity over it, in the axes of its middle (before the first step as if it had gone on moving so;
+ * `sensors` may be NULL only on ideal ground). */
 void laconic_acceleration_body(laconic_real acceleration_m_per_s2[2], const laconic_sensors *sensors,
                                const struct laconic_plant *plant, const laconic_input *input);
 
-/* What the IMU shows: the sample of delay_steps ago with its errors; step_s: for the noise. */
+/* What the IMU shows: the sample of delay_steps ago with its errors. */
 void laconic_imu_read(const laconic_sensors *sensors, laconic_real step_s, laconic_real acceleration_m_per_s2[2],
                       laconic_real *yaw_rate_rad_per_s);
-
-/* A true sample with the errors of an IMU: for callers that make samples of their own (Model Exchange). */
-void laconic_imu_show(const laconic_imu_settings *imu, const laconic_imu_sample *sample, uint64_t number,
-                      laconic_real step_s, laconic_real acceleration_m_per_s2[2], laconic_real *yaw_rate_rad_per_s);
-
-/* What an IMU at its place feels on ideal ground, exactly, at this moment with this input. */
-void laconic_imu_feel(laconic_imu_sample *sample, const laconic_imu_settings *imu, const struct laconic_plant *plant,
-                      const laconic_input *input);
 
 /* Everything at once. */
 void laconic_sensors_read(laconic_sensor_outputs *outputs, const laconic_sensors *sensors,
                           const struct laconic_plant *plant, const laconic_input *input);
+
+/* ------------------------------------------------------------ for outer integrators (Model Exchange) -- */
+
+struct laconic_model;
+
+/* The same acceleration of the origin, and what an ideal IMU at its place feels, from ν and its derivative. */
+void laconic_acceleration_of_rates(laconic_real acceleration_m_per_s2[2], const struct laconic_model *model,
+                                   const laconic_real nu_rad_per_s[3], const laconic_real nu_rad_per_s2[3]);
+void laconic_imu_feel(laconic_imu_sample *sample, const laconic_imu_settings *imu, const struct laconic_model *model,
+                      const laconic_real nu_rad_per_s[3], const laconic_real nu_rad_per_s2[3],
+                      laconic_real heading_rad);
+
+/* A true sample with the errors of an IMU; `number` and step_s choose the noise and its size. */
+void laconic_imu_show(const laconic_imu_settings *imu, const laconic_imu_sample *sample, uint64_t number,
+                      laconic_real step_s, laconic_real acceleration_m_per_s2[2], laconic_real *yaw_rate_rad_per_s);
 
 #ifdef __cplusplus
 }

@@ -88,7 +88,7 @@ static uint32_t call(const canopen_node *on, uint16_t index, uint8_t sub) {
     case 0x1200: return (sub == 1 ? 0x600U : 0x580U) + canopen_id(on);
     case 0x6041: return canopen_statusword(on);
     case 0x6062: return (uint32_t)axis->demand;
-    case 0x6064: return (uint32_t)drive->count;
+    case 0x6064: return (uint32_t)drive->encoder.count;
     case 0x606B: return (uint32_t)canopen_rounded(axis->speed);
     case 0x606C: return (uint32_t)canopen_rounded(canopen_actual_speed(drive));
     case 0x6075: return milli(axis->rated_A);
@@ -97,7 +97,7 @@ static uint32_t call(const canopen_node *on, uint16_t index, uint8_t sub) {
     case 0x60A8: return 0x00B50000; /* increments, by the codes of CiA 303-2: */
     case 0x60A9: return 0x00B50300; /* ... per second */
     case 0x60AA: return 0x00B55700; /* ... per square second */
-    case 0x60F4: return (uint32_t)(axis->demand - drive->count);
+    case 0x60F4: return (uint32_t)(axis->demand - drive->encoder.count);
     case 0x6077:
     case 0x6078: return (uint32_t)permille(on);
     default: return (uint32_t)drive->settings.encoder_counts; /* 0x608F, 0x6092 */

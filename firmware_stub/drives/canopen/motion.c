@@ -52,8 +52,8 @@ static void advance(canopen_axis *axis, laconic_real counts) {
 void canopen_begin_motion(const canopen_node *on) {
     canopen_axis *axis = on->axis;
     axis->speed = canopen_actual_speed(on->drive);
-    axis->demand = on->drive->count;
-    axis->demand_rest = on->drive->rest;
+    axis->demand = on->drive->encoder.count;
+    axis->demand_rest = on->drive->encoder.rest;
     axis->goal = (int32_t)axis->demand;
     axis->left_s = 0;
     axis->set_point = 0;
@@ -228,7 +228,7 @@ static void run_mode(const canopen_node *on) {
 
 static laconic_real following_error(const canopen_node *on) {
     const canopen_axis *axis = on->axis;
-    return (laconic_real)(axis->demand - on->drive->count) + axis->demand_rest - on->drive->rest;
+    return (laconic_real)(axis->demand - on->drive->encoder.count) + axis->demand_rest - on->drive->encoder.rest;
 }
 
 static void watch_following(const canopen_node *on) {
@@ -264,8 +264,8 @@ void canopen_move(const canopen_node *on) {
     }
     slow_down(on, ends ? axis->ramp : axis->halt_option);
     set_target(on, LACONIC_DRIVE_SPEED, axis->speed, 0);
-    axis->demand = on->drive->count;
-    axis->demand_rest = on->drive->rest;
+    axis->demand = on->drive->encoder.count;
+    axis->demand_rest = on->drive->encoder.rest;
     axis->left_s = 0;
     if (ends && stands(on) && axis->ending != axis->state) canopen_go(on, axis->ending);
 }

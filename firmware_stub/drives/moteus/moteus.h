@@ -89,7 +89,7 @@ static inline laconic_real moteus_counts(const laconic_wheel_drive *drive) {
 }
 
 static inline drive_place moteus_seen(const laconic_wheel_drive *drive) {
-    const drive_place place = {drive->count, 0};
+    const drive_place place = {drive->encoder.count, 0};
     return place;
 }
 

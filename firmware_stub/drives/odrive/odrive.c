@@ -25,7 +25,7 @@ void odrive_restart(laconic_drives *drives, int32_t i, uint32_t now_us) {
     axis->saved = drive->settings = saved;
     set_defaults(axis);
     axis->node_id = (uint8_t)saved.node_id;
-    axis->zero.count = drive->count; /* an incremental encoder starts at 0 */
+    axis->zero.count = drive->encoder.count; /* an incremental encoder starts at 0 */
     axis->speed_limit = saved.speed_limit_rad_per_s / (2 * ODRIVE_PI);
     if (saved.speed_limit_rad_per_s == 0) axis->speed_limit = LACONIC_REAL_MAX;
     axis->heartbeat_us = axis->encoder_us = now_us;

@@ -74,8 +74,7 @@ typedef struct laconic_wheel_drive {
     laconic_real stalled_s;  /* how long the current has been at its limit without motion                     */
     int64_t stalled_count;   /* the count when that began                                                     */
     /* measured at the end of the last step */
-    int64_t count;     /* of the encoder since the start, not wrapped */
-    laconic_real rest; /* share of a count beyond it, 0 to 1; the encoder does not show it */
+    laconic_encoder encoder; /* the core's: an encoder has one meaning, of a drive or a wheel */
     laconic_real speed_rad_per_s;
     laconic_real current_A;
     laconic_real torque_Nm; /* of the motor at the wheel's axle, without the brake by order */
