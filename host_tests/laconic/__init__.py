@@ -14,28 +14,38 @@ from importlib import import_module
 from typing import TYPE_CHECKING, Any
 
 if TYPE_CHECKING:  # for type checkers and editors; the table below is what runs
+    from laconic.analysis.analyse import analyse as analyse
+    from laconic.analysis.findings import Study as Study
     from laconic.core import Core as Core
+    from laconic.core import Linearisation as Linearisation
+    from laconic.core import Matrices as Matrices
+    from laconic.core import Rates as Rates
+    from laconic.core import Vehicle as Vehicle
     from laconic.core import load as load_core
     from laconic.core.plant import Plant as Plant
     from laconic.errors import BadInput as BadInput
     from laconic.errors import Refused as Refused
     from laconic.fmu import make_fmu as make_fmu
     from laconic.paths import scene_names as scene_names
+    from laconic.pictures.plotting import plot as plot
     from laconic.scene import METHODS as METHODS
     from laconic.scene import Scene as Scene
+    from laconic.scene import build_scene as build_scene
     from laconic.scene import read_scene as read_scene
     from laconic.simulation import RunRefused as RunRefused
     from laconic.simulation import Trajectory as Trajectory
     from laconic.simulation import simulate as simulate
 
-__all__ = ["METHODS", "BadInput", "Core", "Plant", "Refused", "RunRefused", "Scene", "Trajectory", "load_core",
-           "make_fmu", "read_scene", "scene_names", "simulate"]
+__all__ = ["METHODS", "BadInput", "Core", "Linearisation", "Matrices", "Plant", "Rates", "Refused", "RunRefused",
+           "Scene", "Study", "Trajectory", "Vehicle", "analyse", "build_scene", "load_core", "make_fmu", "plot",
+           "read_scene", "scene_names", "simulate"]
 
 _MODULES = {  # name → where it is, and as what if not by the same name
-    "METHODS": "scene", "BadInput": "errors", "Core": "core", "Plant": "core.plant", "Refused": "errors",
-    "RunRefused": "simulation", "Scene": "scene", "Trajectory": "simulation", "load_core": "core:load",
-    "make_fmu": "fmu", "read_scene": "scene",
-    "scene_names": "paths", "simulate": "simulation"}
+    "METHODS": "scene", "BadInput": "errors", "Core": "core", "Linearisation": "core", "Matrices": "core",
+    "Plant": "core.plant", "Rates": "core", "Refused": "errors", "RunRefused": "simulation", "Scene": "scene",
+    "Study": "analysis.findings", "Trajectory": "simulation", "Vehicle": "core", "analyse": "analysis.analyse",
+    "build_scene": "scene", "load_core": "core:load", "make_fmu": "fmu", "plot": "pictures.plotting",
+    "read_scene": "scene", "scene_names": "paths", "simulate": "simulation"}
 
 
 if not TYPE_CHECKING:  # a type checker would take every name for one that this function knows
@@ -44,7 +54,12 @@ if not TYPE_CHECKING:  # a type checker would take every name for one that this 
         if name not in _MODULES:
             raise AttributeError(f"module 'laconic' has no attribute {name!r}; its names are {', '.join(__all__)}")
         module, _, inside = _MODULES[name].partition(":")
-        found = globals()[name] = getattr(import_module(f"laconic.{module}"), inside or name)
+        try:
+            room = import_module(f"laconic.{module}")
+        except ModuleNotFoundError as error:
+            from laconic.extras import missing_module
+            raise missing_module(error) from None
+        found = globals()[name] = getattr(room, inside or name)
         return found
 
 

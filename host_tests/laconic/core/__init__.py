@@ -2,5 +2,6 @@
 
 from laconic.core.binding import REALS, Core, Matrices, load
 from laconic.core.fields import Field
+from laconic.core.vehicle import Linearisation, Rates, Vehicle
 
-__all__ = ["REALS", "Core", "Field", "Matrices", "load"]
+__all__ = ["REALS", "Core", "Field", "Linearisation", "Matrices", "Rates", "Vehicle", "load"]

@@ -35,10 +35,10 @@ OMNI_ROLLER_RAD = math.pi / 2
 class Matrices:
     """The matrices of the paper for one vehicle."""
 
-    wheel_rows: np.ndarray        # Ξ, N × 3
-    inertia: np.ndarray           # A
-    inverse_inertia: np.ndarray   # A⁻¹; with constraints G Gᵀ
-    constraint_rows: np.ndarray   # C
+    wheel_rows: np.ndarray        # (N, 3)  Ξ
+    inertia: np.ndarray           # (3, 3)  A
+    inverse_inertia: np.ndarray   # (3, 3)  A⁻¹; with constraints G Gᵀ
+    constraint_rows: np.ndarray   # (constraints, 3)  C
     lambda_yaw: float             # Λ
     lambda_wheel: float           # λ
 

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Mapping
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
@@ -39,10 +40,13 @@ class Plant:
         """The method that steps; it differs from the given one only with auto."""
         return self.core.text(self.c.integrator.chosen.name)
 
-    def run(self, held: Any, steps: int = 1) -> None:
-        """Steps with the input held; Refused leaves the state before the refused step."""
+    def run(self, held: Any = None, steps: int = 1) -> None:
+        """Steps with the input held: {"voltage_V": [1.0, 2.0]}, None for none, or what `core.input` made.
+
+        Refused leaves the state before the refused step. A controller that steps often makes its input once.
+        """
         why = self.core.why()
-        held, steps = c_object(self.core, "input", held), step_count("steps", steps)
+        held, steps = self._input(held), step_count("steps", steps)
         self.core.check(self.core.lib.laconic_plant_run(self.c, held, steps, why), why)
 
     def run_sampled(self, samples: np.ndarray) -> None:
@@ -101,16 +105,21 @@ class Plant:
         """Whether it is stepped by the friction step: ground with friction, or motors with limits."""
         return bool(self.c.friction.acts)
 
-    def outputs(self, held: Any) -> Any:
-        """The laconic_outputs with the reactions; its `friction` where the vehicle has friction."""
-        found = self.core.ffi.new("laconic_outputs *")
-        self.core.lib.laconic_outputs_of(found, self.c, c_object(self.core, "input", held))
+    def _input(self, held: Any) -> Any:
+        """The laconic_input that is given, or that names and numbers make."""
+        made = self.core.input(held) if held is None or isinstance(held, Mapping) else held
+        return c_object(self.core, "input", made)
+
+    def outputs(self, held: Any = None) -> Any:
+        """The laconic_outputs with the reactions; its `friction` where the vehicle has friction. Input as for `run`."""
+        held, found = self._input(held), self.core.ffi.new("laconic_outputs *")
+        self.core.lib.laconic_outputs_of(found, self.c, held)
         found.reactions = self.reactions(held)[0]
         return found
 
     @property
     def nu(self) -> np.ndarray:
-        """ν1, ν2, ν3 [rad/s]."""
+        """ν1, ν2, ν3 [rad/s], shape (3,)."""
         nu = self.core.ffi.new("laconic_real[3]")
         self.core.lib.laconic_nu(self._at("model"), self._at("state"), nu)
         return self.core.numbers(nu)
@@ -123,7 +132,7 @@ class Plant:
         return pose
 
     def body_velocity(self) -> tuple[np.ndarray, float]:
-        """v_S in body axes [m/s] and the yaw rate [rad/s]."""
+        """v_S in body axes [m/s], shape (2,), and the yaw rate [rad/s]."""
         velocity = self.core.ffi.new("laconic_real[2]")
         yaw_rate = self.core.lib.laconic_body_velocity(self._at("model"), self._at("state"), velocity)
         return self.core.numbers(velocity), yaw_rate
@@ -134,19 +143,20 @@ class Plant:
         return self.core.numbers(room)[: self.wheel_count]
 
     def wheel_speeds(self) -> np.ndarray:
-        """χ' [rad/s]."""
+        """χ' [rad/s], shape (N,)."""
         if self.has_friction:
             return self.core.numbers(self.c.slip.wheel_speed_rad_per_s)[: self.wheel_count]
         return self._per_wheel(self.core.lib.laconic_wheel_speeds)
 
-    def wheel_torques(self, held: Any) -> np.ndarray:
-        """Torque on each axle: motor and applied [N·m]."""
+    def wheel_torques(self, held: Any = None) -> np.ndarray:
+        """Torque on each axle: motor and applied [N·m], shape (N,). Input as for `run`."""
+        held = self._input(held)
         if self.has_friction:
             return self.core.numbers(self.outputs(held).wheel_torque_Nm)[: self.wheel_count]
-        return self._per_wheel(self.core.lib.laconic_wheel_torques, c_object(self.core, "input", held))
+        return self._per_wheel(self.core.lib.laconic_wheel_torques, held)
 
     def wheel_angles(self) -> np.ndarray:
-        """χ [rad]."""
+        """χ [rad], shape (N,)."""
         if self.has_friction:
             angles = [each.value for each in self.c.slip.wheel_angle_rad]
             return np.array(angles[: self.wheel_count], self.core.dtype)
@@ -176,9 +186,8 @@ class Plant:
             self._contact = contact
         return self._contact
 
-    def reactions(self, held: Any) -> Any:
-        """The laconic_reactions of this state and input."""
-        found = self.core.ffi.new("laconic_reactions *")
-        held = c_object(self.core, "input", held)
+    def reactions(self, held: Any = None) -> Any:
+        """The laconic_reactions of this state and input, which is given as for `run`."""
+        held, found = self._input(held), self.core.ffi.new("laconic_reactions *")
         self.core.lib.laconic_plant_reactions(found, self.c, self.contact, held)
         return found

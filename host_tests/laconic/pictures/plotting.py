@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+import os
+import sys
 import textwrap
 import warnings
 from collections.abc import Mapping, Sequence
@@ -11,7 +13,9 @@ from typing import TYPE_CHECKING, Any
 import matplotlib
 import numpy as np
 
-from laconic.outputs import whole_file
+from laconic.errors import BadInput
+from laconic.outputs import check_ending, whole_file
+from laconic.paths import as_path
 from laconic.pictures.curve_style import wrapped
 from laconic.pictures.curves import MOST_CURVES, head, keep_scale, plot_curves, plot_rows, share_zero
 from laconic.pictures.method_style import style_of
@@ -19,7 +23,8 @@ from laconic.pictures.method_style import style_of
 if TYPE_CHECKING:
     from laconic.simulation import Trajectory
 
-matplotlib.use("Agg")
+if "MPLBACKEND" not in os.environ and "matplotlib.pyplot" not in sys.modules:  # a notebook keeps its own
+    matplotlib.use("Agg")
 from matplotlib import pyplot as plt  # noqa: E402  (the backend must be chosen first)
 from matplotlib.axes import Axes  # noqa: E402
 from matplotlib.figure import Figure  # noqa: E402
@@ -165,6 +170,31 @@ def plot_error_against_time(axes: Axes, points: Mapping[str, Sequence[tuple[floa
 
 
 def simulation_picture(run: Trajectory, path: Path) -> None:
+    """Writes the picture of one run."""
+    save(run_figure(run), path)
+
+
+def plot(run: Trajectory, path: str | Path | None = None) -> Figure:
+    """Path, velocities and wheel speeds of a run over time, as `laconic simulate --plot` draws them.
+
+    With `path` (.png, .svg or .pdf) the picture is written there, too. Raises BadInput for a run that has not kept the
+    usual signals, and for a path that cannot be written.
+    """
+    from laconic.simulation import usual_signals
+
+    if missing := [name for name in usual_signals(run.scene) if name not in run.columns]:
+        raise BadInput(f"run: has not kept {missing[0]}; simulate without `signals` and [outputs], or name it there")
+    target = None if path is None else as_path("path", path)
+    if target is not None:
+        check_ending("path", target, (".png", ".svg", ".pdf"))
+    picture = run_figure(run)
+    check_formulas(picture)
+    if target is not None:
+        save(picture, target)
+    return picture
+
+
+def run_figure(run: Trajectory) -> Figure:
     """Path, velocities and wheel speeds of one run, and where the ground could not give what it needs."""
     picture = figure(12.0, 7.0)
     below = "wheels" if run.scene.wheel_count else "velocities"
@@ -175,7 +205,7 @@ def simulation_picture(run: Trajectory, path: Path) -> None:
         plot_wheel_speeds(panels["wheels"], run)
     mark_ground(panels, run)
     plot_path(panels["path"], run)
-    save(picture, path)
+    return picture
 
 
 def title(picture: Figure, text: str, run: Trajectory) -> None:

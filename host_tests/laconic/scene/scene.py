@@ -201,10 +201,14 @@ def check_scene(given: Any) -> Scene:
 
 def read_scene(given: str | Path) -> Scene:
     """Reads a scene by its path, or by the name of one that comes with the project."""
-    path = scene_path(given)
-    parts = read_parts(read_toml(path), methods=METHODS, reals=REALS)
+    return scene_of(read_toml(scene_path(given)))
+
+
+def scene_of(top: Table) -> Scene:
+    """The scene in a file's top table."""
+    parts = read_parts(top, methods=METHODS, reals=REALS)
     return Scene(
-        path=path, name=parts["name"], source=parts["source"], vehicle=parts["vehicle"],
+        path=top.path, name=parts["name"], source=parts["source"], vehicle=parts["vehicle"],
         initial=Initial(**parts["initial"]), inputs=tuple(parts["inputs"]), run=Run(**parts["run"]),
         outputs=Outputs(**parts["outputs"]), rig=Rig(**parts["rig"]), speed_controller=parts["speed_controller"],
         in_degrees=parts["in_degrees"])

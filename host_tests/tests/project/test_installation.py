@@ -67,6 +67,13 @@ def test_what_an_extra_brings_is_named_with_the_extra(module, extra):
     assert str(error).endswith(f'is not installed; pip install "laconic[{extra}]"')
 
 
+def test_a_program_that_lacks_an_extra_is_told_which():
+    code = ("import sys; sys.modules['scipy'] = None; import laconic\n"
+            "try: laconic.analyse\nexcept laconic.BadInput as why: print(why)")
+    done = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True, check=True)
+    assert done.stdout == 'this needs scipy, which is not installed; pip install "laconic[analysis]"\n'
+
+
 def test_what_the_package_needs_anyway_belongs_to_no_extra():
     assert extra_of("numpy") == ""
 

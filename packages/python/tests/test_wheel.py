@@ -25,10 +25,17 @@ import numpy as np
 scene = laconic.read_scene("s1")
 run = laconic.simulate(scene, ("x_m",))
 last: float = float(run.columns["x_m"][-1])
-core: laconic.Core = laconic.load_core("double")
-plant: laconic.Plant = scene.plant(core)
-plant.run(core.input({"voltage_V": [1.0] * scene.wheel_count}), steps=10)
+robot = laconic.Vehicle.of(scene)
+plant: laconic.Plant = robot.plant(step_s=0.01)
+plant.run({"voltage_V": [1.0] * robot.wheel_count}, steps=10)
 nu: np.ndarray = plant.nu
+change: np.ndarray = robot.linearise(nu, inputs={"voltage_V[1]": 1.0}).state_matrix
+laconic.plot(run_of := laconic.simulate(scene), "picture.svg")
+laconic.make_fmu(run_of.scene, "robot.fmu", version=3)
+try:
+    laconic.build_scene({"name": "empty"})
+except laconic.BadInput as why:
+    print(why)
 print(repr(last), nu.shape)
 """
 

@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING
 
 import click
 
-from laconic.analysis.parts import GEOMETRY, PARTS
+from laconic.analysis.parts import PARTS
 from laconic.cli.options import OutputFolder, SceneName, json_flag
 from laconic.errors import BadInput, ResultFails
 from laconic.outputs import write_text
@@ -41,23 +41,18 @@ def command(scene: str, out: Path | None, only: tuple[str, ...], at_s: float, st
 
     Exit status 1 when a simulation with the core does not confirm a result of the analysis.
     """
+    from laconic.analysis.analyse import chosen_subject
     from laconic.analysis.findings import StudyOptions
-    from laconic.analysis.from_core import rolling_subject, subject_of
     from laconic.analysis.older_page import pictures_of_older_page
     from laconic.analysis.report import as_numbers, as_text
     from laconic.analysis.study import study
     from laconic.progress import progress_bar
     from laconic.scene import read_scene
-    from laconic.scene.ground import check_ideal_ground
 
     _check(low, high, straight, start)
     options = StudyOptions(tuple(p for p in PARTS if not only or p in only), parameter, low, high, straight, start)
     given = read_scene(scene)
-    if set(options.parts) <= {GEOMETRY}:
-        subject = rolling_subject(given, at_s)
-    else:
-        check_ideal_ground(given, "analyse", f"; laconic analyse --only {GEOMETRY} takes this one, too")
-        subject = subject_of(given, at_s)
+    subject = chosen_subject(given, options.parts, at_s)
     with progress_bar("analysing", 100) as advance:
         found = study(subject, options, lambda share, part: advance(90 * share, what=part))
         pictures = _draw(found, out, advance)
