@@ -154,3 +154,12 @@ void laconic_drive_break(laconic_wheel_drive *drive, uint32_t faults) {
 }
 
 void laconic_drive_mend(laconic_wheel_drive *drive, uint32_t faults) { drive->causes &= ~faults; }
+
+void laconic_drive_order(laconic_wheel_drive *drive, uint32_t orders) {
+    const uint32_t faults = orders & LACONIC_DRIVE_ORDER_FAULTS;
+    drive->off_bus = (orders & LACONIC_DRIVE_ORDER_OFF_BUS) != 0;
+    drive->mute = (orders & LACONIC_DRIVE_ORDER_SILENT) != 0;
+    drive->brake_Nm = orders & LACONIC_DRIVE_ORDER_HELD ? R(LACONIC_DRIVE_HOLDS_NM) : 0;
+    laconic_drive_mend(drive, LACONIC_DRIVE_ORDER_FAULTS & ~faults);
+    if (faults != 0) laconic_drive_break(drive, faults);
+}

@@ -2,7 +2,8 @@
  * their motors are numbers.
  *
  * Input: records. The first byte n: up to 127 it is followed by a frame, identifier (4 bytes; bit 31 remote, bit 30 FD,
- * bit 29 29-bit) and n modulo 65 bytes; from 128 on n − 127 steps are taken. */
+ * bit 29 29-bit) and n modulo 65 bytes; from 128 on n − 127 steps are taken. A frame that is both remote and FD, which
+ * no bus has, stands for faults by order: bit 0 of the identifier is the drive, the bits above are the orders. */
 #ifndef FUZZ_DRIVES_H
 #define FUZZ_DRIVES_H
 
@@ -93,6 +94,12 @@ static inline int fuzz(const laconic_drive_protocol *protocol, int32_t first_id,
         if (size < 4U + length) break;
         uint32_t id;
         memcpy(&id, data, 4);
+        if (id >> 30 == 3U) {
+            laconic_drive_order(&drives.drive[id & 1U], id >> 1 & LACONIC_DRIVE_ORDERS);
+            data += 4;
+            size -= 4;
+            continue;
+        }
         laconic_frame frame = {.id = id & 0x1FFFFFFFU};
         frame.remote = id >> 31;
         frame.fd = id >> 30 & 1U;

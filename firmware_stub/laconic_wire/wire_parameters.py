@@ -57,4 +57,5 @@ PARAMETERS = {
     "GEAR_RATIO": ("vehicle.motor.gear_ratio", "1", NONE, RESERVED),
     "VISCOUS_FRICTION": ("vehicle.motor.viscous_friction_Nms", "N m s", NONE, RESERVED),
     "ROTOR_INERTIA": ("vehicle.motor.rotor_inertia_kgm2", "kg m²", NONE, RESERVED),
+    "DRIVE_FAULTS": ("an order while the node plays, see Drives", "integer", WHEEL, "not of a vehicle"),
 } | taken() | drive_parameters()

@@ -125,6 +125,13 @@ void laconic_node_control(laconic_node *node, const uint8_t *data, uint32_t now_
  * BEGIN. */
 void laconic_node_parameter(laconic_node *node, const uint8_t *data) {
     const laconic_loader *loader = &node->loader;
+#if LACONIC_NODE_WITH_DRIVES && LACONIC_NODE_WITH_DRIVE_FAULTS
+    if (data[2] == LACONIC_WIRE_FIELD_DRIVE_FAULTS) { /* an order for now, no number of a vehicle */
+        const uint8_t status = laconic_node_order_drive(node, data);
+        laconic_node_answer(node, LACONIC_WIRE_PARAMETER, LACONIC_WIRE_COMMAND_PARAMETER, status, data[2], data[3]);
+        return;
+    }
+#endif
     laconic_loader_take(&node->loader, data);
     laconic_node_answer(node, LACONIC_WIRE_PARAMETER, LACONIC_WIRE_COMMAND_PARAMETER, loader->status, loader->field,
                         loader->item);

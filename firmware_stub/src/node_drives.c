@@ -55,6 +55,19 @@ void laconic_node_run_drives(laconic_node *node, uint32_t now_us) {
         laconic_node_end_period(node);
 }
 
+uint8_t laconic_node_order_drive(laconic_node *node, const uint8_t *data) {
+    const uint32_t orders = word32(data + 4);
+    const bool upper_half = (data[1] & 16U) != 0;
+    if (!plays_drives(node)) return LACONIC_WIRE_STATUS_WRONG_STATE;
+    for (int32_t k = 0; k < node->drives.count; k++) {
+        if (node->drives.wheel[k] + 1 != data[3]) continue;
+        if (upper_half || (orders & ~LACONIC_DRIVE_ORDERS) != 0) return LACONIC_WIRE_STATUS_OUT_OF_RANGE;
+        laconic_drive_order(&node->drives.drive[k], orders);
+        return 0;
+    }
+    return LACONIC_WIRE_STATUS_PARAMETER_UNKNOWN; /* that wheel has no drive */
+}
+
 #else
 typedef int laconic_node_has_no_drives; /* a file without a declaration is no C */
 #endif

@@ -84,6 +84,8 @@ uint8_t laconic_node_check_drives(const laconic_node *node, const laconic_drive_
                                   uint8_t *field, uint8_t *item);
 uint8_t laconic_node_start_drives(laconic_node *node, uint32_t now_us, uint8_t *field);
 void laconic_node_run_drives(laconic_node *node, uint32_t now_us);
+/* PARAMETER with DRIVE_FAULTS: the faults by order of one wheel's drive. */
+uint8_t laconic_node_order_drive(laconic_node *node, const uint8_t *data);
 #endif
 
 /* node_pack.c: writes the payload of one frame; its protection follows. */

@@ -75,6 +75,10 @@ void laconic_library_drive_brake(laconic_node *node, int32_t drive, double torqu
     node->drives.drive[drive].brake_Nm = (laconic_real)torque_Nm;
 }
 
+void laconic_library_drive_order(laconic_node *node, int32_t drive, uint32_t orders) {
+    laconic_drive_order(&node->drives.drive[drive], orders);
+}
+
 static void try_error(laconic_error_census *census, const uint8_t frame[8], uint64_t error, const uint8_t data_ids[16],
                       uint8_t max_delta) {
     uint8_t data[8];

@@ -191,6 +191,37 @@ static void a_plan_is_checked_against_the_protocols_that_are_linked(void) {
                             laconic_node_check_drives(&node, &plan, 4, &field, &item));
 }
 
+/* PARAMETER with DRIVE_FAULTS; the status of its RESULT. */
+static uint8_t order(uint8_t wheel, uint32_t faults, uint8_t upper_half) {
+    const struct laconic_dbc_parameter_t frame = {
+        .upper_half = upper_half, .field = LACONIC_WIRE_FIELD_DRIVE_FAULTS, .item = wheel, .value = faults};
+    uint8_t data[LACONIC_FRAME_BYTES];
+    laconic_dbc_parameter_pack(data, &frame, 8);
+    bench_send(LACONIC_WIRE_PARAMETER, data);
+    return bench_receive(LACONIC_WIRE_RESULT, data) ? data[3] : 255U;
+}
+
+static void faults_of_a_drive_are_ordered_by_its_wheel_while_it_plays(void) {
+    TEST_ASSERT_EQUAL_UINT8(LACONIC_WIRE_STATUS_WRONG_STATE, order(1, 4, 0));
+    start();
+    TEST_ASSERT_EQUAL_UINT8(0, order(2, LACONIC_DRIVE_FAULT_TEMPERATURE, 0));
+    TEST_ASSERT_TRUE(node.drives.drive[0].faults == 0 &&
+                     node.drives.drive[1].faults == LACONIC_DRIVE_FAULT_TEMPERATURE);
+    TEST_ASSERT_EQUAL_UINT8(0, order(2, LACONIC_DRIVE_ORDER_HELD, 0));
+    TEST_ASSERT_TRUE(node.drives.drive[1].causes == 0 && node.drives.drive[1].brake_Nm > 0);
+    TEST_ASSERT_EQUAL_UINT16(0, node.loader.frame_count); /* no number of a vehicle */
+    TEST_ASSERT_EQUAL_UINT8(0, node.loader.status);
+}
+
+static void an_order_that_cannot_be_is_refused_and_changes_nothing(void) {
+    start();
+    TEST_ASSERT_EQUAL_UINT8(LACONIC_WIRE_STATUS_OUT_OF_RANGE, order(1, LACONIC_DRIVE_FAULT_WATCHDOG, 0));
+    TEST_ASSERT_EQUAL_UINT8(LACONIC_WIRE_STATUS_OUT_OF_RANGE, order(1, 4, 1));
+    TEST_ASSERT_EQUAL_UINT8(LACONIC_WIRE_STATUS_PARAMETER_UNKNOWN, order(0, 4, 0));
+    TEST_ASSERT_EQUAL_UINT8(LACONIC_WIRE_STATUS_PARAMETER_UNKNOWN, order(9, 4, 0));
+    for (int k = 0; k < node.drives.count; k++) TEST_ASSERT_EQUAL_UINT32(0, node.drives.drive[k].faults);
+}
+
 int main(void) {
     UNITY_BEGIN();
     RUN_TEST(one_step_is_taken_each_period);
@@ -205,5 +236,7 @@ int main(void) {
     RUN_TEST(start_needs_a_vehicle_with_drives_that_is_ready);
     RUN_TEST(voltages_and_syncs_of_a_rig_do_not_act_while_drives_play);
     RUN_TEST(a_plan_is_checked_against_the_protocols_that_are_linked);
+    RUN_TEST(faults_of_a_drive_are_ordered_by_its_wheel_while_it_plays);
+    RUN_TEST(an_order_that_cannot_be_is_refused_and_changes_nothing);
     return UNITY_END();
 }

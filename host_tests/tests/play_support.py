@@ -2,7 +2,10 @@
 
 from __future__ import annotations
 
+import struct
+import threading
 from collections.abc import Callable
+from contextlib import suppress
 from pathlib import Path
 from typing import Any
 
@@ -12,13 +15,15 @@ from crccheck.crc import Crc8SaeJ1850
 
 from laconic.play.options import PlayOptions
 from laconic.play.session import play
-from laconic.rig.buses import VirtualClock, next_channel
+from laconic.rig.buses import VirtualClock, next_channel, open_bus
 from laconic.rig.verdict import Judgement
 from laconic.scene import Scene, read_scene
 
 PLAY = Path(__file__).parent / "play"
 DBC = PLAY / "transporter.dbc"
 PERIOD_US = 10_000
+CURRENTS = 0x200          # a command of a C620 group
+AMPERE = 16384 / 20.0     # of its currents
 
 
 class Controller:
@@ -82,3 +87,38 @@ def played(scene: str | Path | Scene, duration_s: float, commands: Callable[[flo
         judgement = play(given, settings, clock=VirtualClock(), others=[controller])
         controller(10**12)  # what is still on the bus
     return judgement, controller
+
+
+def currents(*amperes: float) -> can.Message:
+    """A command of a C620 group."""
+    raw = [round(AMPERE * each) for each in (*amperes, 0.0, 0.0, 0.0, 0.0)][:4]
+    return can.Message(arbitration_id=CURRENTS, is_extended_id=False, data=struct.pack(">4h", *raw))
+
+
+class Station(threading.Thread):
+    """A controller in a thread of its own: commands currents, and keeps what the drives say, until `wanted` frames."""
+
+    def __init__(self, interface: str, channel: Callable[[], str], wanted: int, last_command: int = 10**9):
+        super().__init__()
+        self.interface, self.channel, self.wanted = interface, channel, wanted
+        self.last_command = last_command  # it only listens once it has heard so many frames
+        self.heard: list[can.Message] = []
+        self.may_begin, self.is_over = threading.Event(), threading.Event()
+
+    def run(self) -> None:
+        self.may_begin.wait(20.0)
+        with open_bus(self.interface, self.channel()) as bus, suppress(can.CanError):  # the port ends before this does
+            while not self.is_over.is_set() and len(self.heard) < self.wanted:
+                if len(self.heard) < self.last_command:
+                    bus.send(currents(0.2, 0.2, 0.2))
+                if (message := bus.recv(0.001)) is not None:
+                    self.heard.append(message)
+
+    def __enter__(self) -> Station:
+        self.start()
+        return self
+
+    def __exit__(self, *_: object) -> None:
+        self.may_begin.set()
+        self.is_over.set()
+        self.join()

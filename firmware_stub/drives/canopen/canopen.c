@@ -136,6 +136,7 @@ static void on_frame(laconic_drives *drives, const laconic_frame *frame, uint32_
     if (frame->extended || frame->fd) return;
     for (int i = 0; i < drives->count; i++) {
         const canopen_node on = node_at(drives, i, now_us);
+        if (laconic_drive_is_off_bus(on.drive)) continue;
         const bool for_it = is_command && (frame->data[1] == 0 || frame->data[1] == canopen_id(&on));
         if (for_it) command(&on, frame->data[0]);
         if (frame->id != 0 && take_frame(&on, frame) && on.axis->nmt == CANOPEN_OPERATIONAL) canopen_find_due_pdos(&on);
@@ -150,6 +151,8 @@ static void on_step(laconic_drives *drives, uint32_t now_us) {
         if (on.axis->nmt == CANOPEN_OPERATIONAL) canopen_check_deadlines(&on);
         canopen_move(&on);
         if (on.axis->nmt == CANOPEN_OPERATIONAL) canopen_find_due_pdos(&on);
+        if (laconic_drive_is_mute(on.drive)) on.axis->due &= (uint8_t)~CANOPEN_DUE_HEARTBEAT;
+        if (laconic_drive_is_off_bus(on.drive)) on.axis->due = 0;
     }
 }
 

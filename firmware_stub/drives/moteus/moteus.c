@@ -23,6 +23,7 @@ static void on_frame(laconic_drives *drives, const laconic_frame *frame, uint32_
     if (frame->remote || frame->id >> 16 != 0) return;
     for (int32_t i = 0; i < drives->count; i++) {
         const uint8_t node_id = moteus_axis_of(drives, i)->node_id;
+        if (laconic_drive_is_off_bus(&drives->drive[i])) continue;
         if (destination == node_id || destination == MOTEUS_EVERY_ID) moteus_take(drives, i, frame);
     }
 }
@@ -39,6 +40,7 @@ static void on_step(laconic_drives *drives, uint32_t now_us) {
         moteus_axis *axis = moteus_axis_of(drives, i);
         count_milliseconds(axis, now_us);
         moteus_control(axis, &drives->drive[i], drives->step_s);
+        if (laconic_drive_is_off_bus(&drives->drive[i])) axis->waits = false;
     }
 }
 

@@ -42,7 +42,8 @@ static void on_frame(laconic_drives *drives, const laconic_frame *frame, uint32_
     if (frame->extended || frame->fd) return;
     const uint32_t node_id = frame->id >> ODRIVE_COMMAND_BITS;
     for (int32_t i = 0; i < drives->count; i++)
-        if (node_id == odrive_axis_of(drives, i)->node_id || node_id == ODRIVE_EVERY_NODE)
+        if ((node_id == odrive_axis_of(drives, i)->node_id || node_id == ODRIVE_EVERY_NODE) &&
+            !laconic_drive_is_off_bus(&drives->drive[i]))
             odrive_take(drives, i, frame, now_us);
 }
 
@@ -61,6 +62,8 @@ static void on_step(laconic_drives *drives, uint32_t now_us) {
         if (axis->state == ODRIVE_CLOSED_LOOP_CONTROL) odrive_follow(axis, &drives->drive[i], drives->step_s);
         announce(axis, ODRIVE_HEARTBEAT, &axis->heartbeat_us, HEARTBEAT_US, now_us);
         announce(axis, ODRIVE_GET_ENCODER_ESTIMATES, &axis->encoder_us, ENCODER_US, now_us);
+        if (laconic_drive_is_mute(&drives->drive[i])) axis->pending &= ~(1U << ODRIVE_HEARTBEAT);
+        if (laconic_drive_is_off_bus(&drives->drive[i])) axis->pending = 0;
     }
 }
 

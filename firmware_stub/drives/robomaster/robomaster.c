@@ -63,7 +63,7 @@ static void on_frame(laconic_drives *drives, const laconic_frame *frame, uint32_
     if (frame->length != 8) return;
     for (int32_t k = 0; k < drives->count; k++) {
         const int32_t place = drives->drive[k].settings.node_id - (low ? 1 : 5);
-        if (place < 0 || place > 3) continue;
+        if (place < 0 || place > 3 || laconic_drive_is_off_bus(&drives->drive[k])) continue;
         command(&drives->drive[k], kind_of(drives), &frame->data[2 * place]);
         axis_of(drives, k)->fed_us = now_us;
     }
@@ -84,6 +84,7 @@ static void on_step(laconic_drives *drives, uint32_t now_us) {
         if (watchdog_us > 0 && now_us - of->fed_us > watchdog_us)
             laconic_drive_fail(&drives->drive[k], LACONIC_DRIVE_FAULT_WATCHDOG);
         if (feedback_is_due(drives, of, now_us)) of->is_due = 1;
+        if (laconic_drive_is_off_bus(&drives->drive[k]) || laconic_drive_is_mute(&drives->drive[k])) of->is_due = 0;
     }
 }
 

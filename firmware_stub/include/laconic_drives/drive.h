@@ -13,6 +13,10 @@
 
 #include "laconic/laconic.h"
 
+#ifndef LACONIC_NODE_WITH_DRIVE_FAULTS
+#define LACONIC_NODE_WITH_DRIVE_FAULTS 1 /* 0 leaves faults by order out of the node: small images need the bytes */
+#endif
+
 /* Constants of one drive. */
 typedef struct laconic_drive_settings {
     int32_t node_id;                          /* of this drive on the bus; its meaning is the protocol's        */
@@ -58,6 +62,17 @@ typedef struct laconic_drive_target {
 #define LACONIC_DRIVE_FAULT_FOLLOWING 64U /* position error too large; set by the protocol */
 #define LACONIC_DRIVE_FAULT_TARGET 128U   /* the target or a gain asks for a current that is no number */
 
+/* Faults by order, laconic_drive_order(): those of the drive above that it does not find by itself, and these around it. */
+#define LACONIC_DRIVE_ORDER_OFF_BUS 256U /* it neither hears nor is heard                                   */
+#define LACONIC_DRIVE_ORDER_SILENT 512U  /* its sign of life ceases: heartbeat, cyclic feedback             */
+#define LACONIC_DRIVE_ORDER_HELD 1024U   /* a brake holds the wheel, whatever the drive does: it stalls     */
+#define LACONIC_DRIVE_ORDER_FAULTS \
+    (LACONIC_DRIVE_FAULT_ENCODER | LACONIC_DRIVE_FAULT_TEMPERATURE | LACONIC_DRIVE_FAULT_OVERSPEED | \
+     LACONIC_DRIVE_FAULT_SUPPLY)
+#define LACONIC_DRIVE_ORDERS \
+    (LACONIC_DRIVE_ORDER_FAULTS | LACONIC_DRIVE_ORDER_OFF_BUS | LACONIC_DRIVE_ORDER_SILENT | LACONIC_DRIVE_ORDER_HELD)
+#define LACONIC_DRIVE_HOLDS_NM 1e4 /* a brake by order holds any wheel */
+
 /* Limits that the last step met: bits of laconic_wheel_drive.limits. */
 #define LACONIC_DRIVE_AT_CURRENT 1U
 #define LACONIC_DRIVE_AT_SPEED 2U
@@ -68,6 +83,7 @@ typedef struct laconic_wheel_drive {
     laconic_drive_target target;
     uint32_t faults, limits;
     bool silent;             /* the controller is, but the drive goes on by itself: by the protocol           */
+    bool off_bus, mute;      /* by order: frames do not pass; there is no sign of life. Protocols obey these  */
     uint32_t causes;         /* faults by order that clearing does not end: laconic_drive_break()             */
     laconic_real brake_Nm;   /* by order: up to this torque holds the wheel, so that the drive stalls; 0: none */
     laconic_real integral_A; /* of the speed loop                                                             */
@@ -103,6 +119,14 @@ static inline bool laconic_drive_is_unheard(const laconic_wheel_drive *drive) {
     return drive->silent || (drive->faults & LACONIC_DRIVE_FAULT_WATCHDOG) != 0;
 }
 
+/* Whether an order keeps frames, or the sign of life, from the bus. */
+static inline bool laconic_drive_is_off_bus(const laconic_wheel_drive *drive) {
+    return LACONIC_NODE_WITH_DRIVE_FAULTS && drive->off_bus;
+}
+static inline bool laconic_drive_is_mute(const laconic_wheel_drive *drive) {
+    return LACONIC_NODE_WITH_DRIVE_FAULTS && drive->mute;
+}
+
 /* Sets faults: the drive is off until they are cleared. */
 void laconic_drive_fail(laconic_wheel_drive *drive, uint32_t faults);
 /* Clears all faults but those whose cause remains; the drive stays off until the protocol gives a target. */
@@ -112,5 +136,8 @@ void laconic_drive_clear(laconic_wheel_drive *drive);
  * then cleared). While ENCODER is there the count stands still and the speed is 0. */
 void laconic_drive_break(laconic_wheel_drive *drive, uint32_t faults);
 void laconic_drive_mend(laconic_wheel_drive *drive, uint32_t faults);
+
+/* All faults by order at once, bits of LACONIC_DRIVE_ORDERS: those that are not among them are mended. */
+void laconic_drive_order(laconic_wheel_drive *drive, uint32_t orders);
 
 #endif

@@ -2,6 +2,7 @@
 
     stall:1@2           from 2 s on a brake holds wheel 1
     encoder:2@1.5+0.5   the encoder of wheel 2 is lost at 1.5 s, for half a second
+    bus-off@2           the only station of a map's vehicle leaves the bus
     random              one of them, its wheel and its instant by the seed
 """
 
@@ -16,22 +17,17 @@ from typing import Protocol
 import can
 
 from laconic.errors import BadInput, nearest_of
-from laconic.play.protocols import DriveProtocol
-from laconic.play.settings import DriveSettings
+from laconic.play.can_fail import ERROR_FRAMES, CanFail
 from laconic.rig.faults import FIELD_TYPES, FaultModel, faults_from
 from laconic.rig.faulty import FaultyBus
 
-FAULT_BITS = {"encoder": 1, "temperature": 4, "overspeed": 8, "supply": 16}  # LACONIC_DRIVE_FAULT_…
-STALL, BUS_OFF, SILENT = "stall", "bus-off", "silent"
-KINDS = (STALL, *FAULT_BITS, BUS_OFF, SILENT)
 RANDOM = "random"
 FORM = re.compile(r"(?P<kind>[a-z-]+)(:(?P<wheel>\d+))?@(?P<at>[^+]+)(\+(?P<for>.+))?")
-BRAKE_NM = 1e4  # holds any wheel
 
 
 @dataclass(frozen=True)
 class DriveFault:
-    """One fault of the drive of one wheel, counted from 1."""
+    """One fault of the drive of one wheel, counted from 1; wheel 0: of the whole vehicle as a station of the bus."""
 
     kind: str
     wheel: int
@@ -39,7 +35,8 @@ class DriveFault:
     for_s: float | None = None
 
     def __str__(self) -> str:
-        return f"{self.kind}:{self.wheel}@{self.at_s:g}" + (f"+{self.for_s:g}" if self.for_s is not None else "")
+        wheel = f":{self.wheel}" if self.wheel else ""
+        return f"{self.kind}{wheel}@{self.at_s:g}" + (f"+{self.for_s:g}" if self.for_s is not None else "")
 
 
 class Breakable(Protocol):
@@ -49,38 +46,48 @@ class Breakable(Protocol):
         """The fault begins, or ends."""
 
 
-def read_faults(given: Sequence[str], settings: DriveSettings | None, possible: Sequence[str],
-                duration_s: float | None, seed: int) -> tuple[DriveFault, ...]:
-    """The faults of --fault, of the kinds that are possible; BadInput for one that cannot be."""
-    if given and settings is None:
-        raise BadInput(f"--fault {given[0]}: breaks drives, and this map has none; give --bus-fault for the bus")
-    return tuple(_read(text, settings, possible, duration_s, seed + number) for number, text in enumerate(given)
-                 if settings is not None)
+def read_faults(given: Sequence[str], can_fail: CanFail, duration_s: float | None, seed: int
+                ) -> tuple[DriveFault, ...]:
+    """The faults of --fault, of those that are possible; BadInput for one that cannot be."""
+    return tuple(_read(text, can_fail, duration_s, seed + number) for number, text in enumerate(given))
 
 
-def _read(text: str, settings: DriveSettings, possible: Sequence[str], duration_s: float | None, seed: int
-          ) -> DriveFault:
-    wheels = [wheel for wheel, has_drive in enumerate(settings.driven, start=1) if has_drive]
-    kinds = [kind for kind in possible if kind != SILENT or settings.protocol.sign_of_life is not None]
+def _read(text: str, can_fail: CanFail, duration_s: float | None, seed: int) -> DriveFault:
     if text == RANDOM:
-        if duration_s is None:
-            raise BadInput("--fault random: needs --duration, in whose middle half it happens")
-        chance = random.Random(seed)
-        kind, wheel = chance.choice(kinds), chance.choice(wheels)
-        return DriveFault(kind, wheel, round(chance.uniform(0.25, 0.75) * duration_s, 3))
+        return _random(can_fail, duration_s, seed)
     form = FORM.fullmatch(text)
     if form is None:
         raise BadInput(f"--fault {text}: give KIND:WHEEL@SECONDS, such as stall:1@2 or encoder:2@1.5+0.5, or random")
-    if form["kind"] not in kinds:
-        raise BadInput(f"--fault {text}: there is no such fault here; "
-                       f"{nearest_of(form['kind'], kinds)}")
-    wheel = int(form["wheel"] or wheels[0])
-    if wheel not in wheels:
-        raise BadInput(f"--fault {text}: wheel {wheel} has no drive; give one of {', '.join(map(str, wheels))}")
+    kind = form["kind"]
+    if kind not in can_fail.kinds:
+        reason = can_fail.why_not.get(kind) or f"there is no such fault here; {nearest_of(kind, can_fail.kinds)}"
+        raise BadInput(f"--fault {text}: {reason}")
+    wheel = _wheel(text, kind, form["wheel"], can_fail)
     at_s, for_s = _seconds(text, form["at"]), _seconds(text, form["for"]) if form["for"] else None
     if duration_s is not None and at_s >= duration_s:
         raise BadInput(f"--fault {text}: would come after the end; give an instant before {duration_s:g} s")
-    return DriveFault(form["kind"], wheel, at_s, for_s)
+    return DriveFault(kind, wheel, at_s, for_s)
+
+
+def _wheel(text: str, kind: str, number: str | None, can_fail: CanFail) -> int:
+    if kind in can_fail.of_whole:
+        if number is not None:
+            raise BadInput(f"--fault {text}: a map's vehicle is one station of the bus; give {kind}@SECONDS, no wheel")
+        return 0
+    wheel = int(number) if number is not None else can_fail.wheels[0]
+    if wheel not in can_fail.wheels:
+        raise BadInput(f"--fault {text}: wheel {wheel} has no drive; give one of "
+                       f"{', '.join(map(str, can_fail.wheels))}")
+    return wheel
+
+
+def _random(can_fail: CanFail, duration_s: float | None, seed: int) -> DriveFault:
+    if duration_s is None:
+        raise BadInput("--fault random: needs --duration, in whose middle half it happens")
+    chance = random.Random(seed)
+    kind = chance.choice(can_fail.kinds)
+    wheel = 0 if kind in can_fail.of_whole else chance.choice(can_fail.wheels)
+    return DriveFault(kind, wheel, round(chance.uniform(0.25, 0.75) * duration_s, 3))
 
 
 def _seconds(text: str, number: str) -> float:
@@ -93,13 +100,15 @@ def _seconds(text: str, number: str) -> float:
     return value
 
 
-def read_bus_faults(given: Sequence[str], seed: int) -> dict[str, str]:
+def read_bus_faults(given: Sequence[str], can_fail: CanFail, seed: int) -> dict[str, str]:
     """The faults of --bus-fault by name; FaultyBus reads their values."""
     found = {}
     for text in given:
         name, equals, value = text.partition("=")
         if not equals or name not in FIELD_TYPES:
             raise BadInput(f"--bus-fault {text}: give NAME=VALUE, such as loss=0.01; {nearest_of(name, FIELD_TYPES)}")
+        if name == "error_frames" and (why := can_fail.why_not.get(ERROR_FRAMES)) is not None:
+            raise BadInput(f"--bus-fault {text}: {why}")
         found[name] = value
     if not found:
         return {}
@@ -114,14 +123,6 @@ def read_bus_faults(given: Sequence[str], seed: int) -> dict[str, str]:
 def faulty_bus(bus: can.BusABC, faults: dict[str, str], now_s: Callable[[], float]) -> FaultyBus:
     """The controller's bus with these faults, which have been read, in front of it."""
     return FaultyBus(inner=bus, clock=now_s, **faults)
-
-
-def concerns(protocol: DriveProtocol, message: can.Message, node_id: int) -> bool:
-    """Whether a frame is from or to one drive alone."""
-    identifier = message.arbitration_id
-    if protocol.of_drive is None:  # moteus: source and destination are parts of the identifier
-        return node_id in (identifier & 0x7F, identifier >> 8 & 0x7F)
-    return not message.is_extended_id and identifier in protocol.of_drive(node_id)
 
 
 class Saboteur:

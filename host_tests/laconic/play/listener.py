@@ -24,6 +24,7 @@ LARGEST_PORT = 65535
 MOST_CLIENTS = 8
 MOST_WAITING = 1 << 16  # bytes that a client has not read; then frames for it are lost, as on a full receive buffer
 FRAME, REPLY = 1, 2     # LACONIC_SLCAN_…
+NO_FLAGS, BUS_ERROR = b"F00\r", b"F80\r"  # answers to SLCAN's F: bit 7 says that the bus had an error since the last F
 
 
 class Client:
@@ -38,6 +39,7 @@ class Client:
         self.library.lib.laconic_slcan_init(self._slcan, b"\0")
         self.waiting = bytearray()
         self.lost = 0  # frames that it did not read in time
+        self.has_error = False
 
     def frames(self, data: bytes, box: FrameBox) -> Iterator[can.Message]:
         """The frames in the bytes received; answers to commands wait to be sent."""
@@ -47,7 +49,15 @@ class Client:
             if event == FRAME:
                 yield box.message(time.time())
             elif event == REPLY:
-                self.waiting += self.library.ffi.string(self._slcan.reply)
+                self.waiting += self._reply()
+
+    def _reply(self) -> bytes:
+        """An answer to a command; SLCAN has no error frames, but a flag that tells of them once."""
+        text = self.library.ffi.string(self._slcan.reply)
+        if text != NO_FLAGS or not self.has_error:
+            return bytes(text)
+        self.has_error = False
+        return BUS_ERROR
 
     def write(self, frame: Any) -> None:
         """One frame more waits to be sent; none while the client has not opened its channel."""
@@ -80,6 +90,10 @@ class ListeningBus(can.BusABC):
 
     def send(self, msg: can.Message, timeout: float | None = None) -> None:
         """To all clients."""
+        if msg.is_error_frame:
+            for client in self._clients.values():
+                client.has_error = True
+            return
         self._to_clients(self._box.put(msg))
         self._flush()
 

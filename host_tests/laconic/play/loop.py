@@ -37,6 +37,9 @@ class Vehicle(Protocol):
     def is_private(self, message: can.Message) -> bool:
         """Whether a frame that came is between play and the vehicle's node alone: the controller does not get it."""
 
+    def has_sent(self, message: can.Message) -> bool:
+        """Whether a frame that came is the vehicle's own, of a node that is on the controller's bus."""
+
     def ending(self) -> LaconicError | None:
         """Why the vehicle ends the run: a watchdog, a refused step; None: it goes on."""
 
@@ -113,7 +116,7 @@ class Loop:
 
     def _take(self, message: can.Message, now_us: int) -> None:
         if not self.vehicle.is_private(message):
-            self.traffic.heard(message)
+            (self.traffic.sent if self.vehicle.has_sent(message) else self.traffic.heard)(message)
         if not message.is_error_frame:
             self.vehicle.on_message(message, now_us)
 

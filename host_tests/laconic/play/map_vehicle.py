@@ -9,7 +9,8 @@ import can
 import numpy as np
 
 from laconic.errors import LaconicError, Refused, ResultFails
-from laconic.play.faults import FAULT_BITS, DriveFault
+from laconic.play.can_fail import BUS_OFF, ERROR_FRAMES, ORDERS
+from laconic.play.faults import DriveFault
 from laconic.play.loop import Lateness
 from laconic.play.map_file import REMOTE
 from laconic.play.map_join import Joined, Key
@@ -17,6 +18,7 @@ from laconic.play.map_messages import Sender
 from laconic.play.map_plant import MapPlant
 from laconic.play.map_signals import reader_of
 from laconic.play.settings import DriveSettings
+from laconic.rig.faults import error_frame
 from laconic.scene import Scene
 
 MOST_STEPS_AT_ONCE = 64  # then frames are read again
@@ -32,6 +34,7 @@ class MapVehicle:
         self.refused: Counter[str] = Counter()   # frames of the controller, by "MESSAGE: reason"
         self.timeouts: Counter[str] = Counter()  # by message
         self._ending: LaconicError | None = None
+        self._faults: set[str] = set()  # of the vehicle as a station of the bus
         self._period_us = 1e6 * self.plant.plant.step_s
         self._start_us, self._periods = 0, 1
         self._heard_us: dict[Key, int] = {}
@@ -48,6 +51,8 @@ class MapVehicle:
 
     def on_message(self, message: can.Message, now_us: int) -> None:
         """A frame of the bus."""
+        if BUS_OFF in self._faults:
+            return
         key = (message.arbitration_id, message.is_extended_id)
         for sender in self.joined.requests.get(key, ()):
             if message.is_remote_frame == (sender.sent.on_request == REMOTE):
@@ -98,7 +103,19 @@ class MapVehicle:
         """A watchdog that ends the run, or a step that the core refused."""
         return self._ending
 
+    def has_sent(self, message: can.Message) -> bool:
+        """Never: what comes from the bus is the controller's."""
+        return False
+
     def advance(self, now_us: int) -> Iterator[can.Message]:
+        """What comes of the frames of the steps that are due, past the faults of the vehicle's station."""
+        for message in self._frames(now_us):
+            if not self._faults:
+                yield message
+            elif self._faults == {ERROR_FRAMES}:
+                yield from (error_frame(), message)
+
+    def _frames(self, now_us: int) -> Iterator[can.Message]:
         """Steps that are due with the cyclic messages at the end of each, then answers."""
         for _ in range(MOST_STEPS_AT_ONCE):
             late_us = now_us - self._next_us()
@@ -146,9 +163,11 @@ class MapVehicle:
         return float(np.hypot(*velocity)), abs(float(yaw_rate))
 
     def break_drive(self, fault: DriveFault, *, is_broken: bool) -> None:
-        """A fault of a drive begins, or ends."""
-        if self.plant.drives is not None:
-            self.plant.drives.drives[fault.wheel - 1].break_down(FAULT_BITS[fault.kind], is_broken=is_broken)
+        """A fault of a drive, or of the station, begins, or ends."""
+        if fault.wheel == 0:
+            (self._faults.add if is_broken else self._faults.discard)(fault.kind)
+        elif self.plant.drives is not None:
+            self.plant.drives.drives[fault.wheel - 1].break_down(ORDERS[fault.kind], is_broken=is_broken)
 
     def watchdogs(self) -> list[str]:
         """Messages that did not come in time."""

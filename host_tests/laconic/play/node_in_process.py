@@ -7,7 +7,6 @@ from collections.abc import Iterator
 import can
 
 from laconic.errors import ResultFails
-from laconic.play.faults import BRAKE_NM, BUS_OFF, FAULT_BITS, STALL, DriveFault, concerns
 from laconic.play.node_vehicle import FAULT_WATCHDOG, LOOK_US, NodeVehicle
 from laconic.play.settings import DriveSettings
 from laconic.rig.buses import NodeOnBus
@@ -27,8 +26,6 @@ class InProcess(NodeVehicle):
         super().__init__(client, scene, settings)
         self.node = end.node
         self._view = self.node.library.ffi.new("laconic_library_drive *")
-        self._off_bus: set[int] = set()  # node ids of drives that neither hear nor are heard
-        self._silent: set[int] = set()   # node ids of drives without a sign of life
         self._next_look_us = 0
 
     def start(self) -> None:
@@ -39,31 +36,13 @@ class InProcess(NodeVehicle):
 
     def on_message(self, message: can.Message, now_us: int) -> None:
         """A frame of the controller; the node's own identifiers are not for it."""
-        if not self.is_own(message) and not self._is_lost(message):
+        if not self.is_own(message):
             self.node.give(message, now_us)
 
-    def _is_lost(self, message: can.Message) -> bool:
-        """Whether a drive that is off the bus, or silent, is the only one that this frame is from or to."""
-        protocol = self.settings.protocol
-        return any(concerns(protocol, message, each) for each in self._off_bus) or any(
-            protocol.sign_of_life is not None and message.arbitration_id in protocol.sign_of_life(each)
-            for each in self._silent)
-
-    def break_drive(self, fault: DriveFault, *, is_broken: bool) -> None:
-        """A fault of a drive begins, or ends."""
-        lib, c = self.node.library.lib, self.node.c
-        node_id = self.settings.node_ids[fault.wheel - 1]
-        number = sum(self.settings.driven[: fault.wheel - 1])
-        change = lib.laconic_library_drive_break if is_broken else lib.laconic_library_drive_mend
-        if fault.kind in FAULT_BITS:
-            change(c, number, FAULT_BITS[fault.kind])
-        elif fault.kind == STALL:
-            lib.laconic_library_drive_brake(c, number, BRAKE_NM if is_broken else 0.0)
-        else:
-            ids = self._off_bus if fault.kind == BUS_OFF else self._silent
-            (ids.add if is_broken else ids.discard)(node_id)
-            if fault.kind == BUS_OFF and self.settings.protocol.commands_groups:
-                change(c, number, FAULT_WATCHDOG)  # the group's command does not reach it
+    def order(self, wheel: int, faults: int) -> None:
+        """As the node's own frames would order it, without them."""
+        number = sum(self.settings.driven[: wheel - 1])
+        self.node.library.lib.laconic_library_drive_order(self.node.c, number, faults)
 
     def advance(self, now_us: int) -> Iterator[can.Message]:
         """Periods that are due, and the frames of the drives after each."""
@@ -81,8 +60,8 @@ class InProcess(NodeVehicle):
         while (message := self.node.take_message()) is not None:
             if self.is_own(message):
                 self.take_own(message)
-            elif not self._is_lost(message):
-                yield message
+            else:
+                yield from self.disturbed(message)
 
     def idle_us(self, now_us: int) -> int:
         """Microseconds to the next period."""

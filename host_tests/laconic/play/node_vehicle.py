@@ -15,12 +15,17 @@ from typing import Any
 import can
 
 from laconic.errors import BadInput, LaconicError, ResultFails
+from laconic.play.can_fail import ERROR_FRAMES, ORDERS
+from laconic.play.faults import DriveFault
 from laconic.play.loop import Lateness
+from laconic.play.orders import Orders
 from laconic.play.parameters import drive_parameters
+from laconic.play.senders import Senders
 from laconic.play.settings import DriveSettings
 from laconic.play.vehicle import played
 from laconic.rig.client import NodeClient
 from laconic.rig.errors import BusDied, NodeRefused, NodeSilent
+from laconic.rig.faults import error_frame
 from laconic.rig.link import receive_on, send_on
 from laconic.rig.lockstep import load_scene
 from laconic.rig.stopping import RUNNING, come_to_rest, stop_running
@@ -47,6 +52,10 @@ class NodeVehicle:
         self._ending: LaconicError | None = None
         self._notes: list[str] = []
         self._model: Any = None
+        self._orders = Orders(client)
+        self._ordered: dict[int, int] = {}   # faults by order, by wheel
+        self._disturbed: set[int] = set()    # node ids whose frames meet errors
+        self._senders = Senders(settings)
         self._early: list[can.Message] = []  # what the drives said before the loop began, such as a boot-up message
 
     def start(self) -> None:
@@ -90,6 +99,8 @@ class NodeVehicle:
         """HEARTBEAT tells the state, and by `deaf` whether a watchdog of the drives has fired; NU the motion."""
         if frame.name == "NU":
             self._last_nu = (frame, data)
+        if frame.name == "RESULT":
+            self._orders.take(frame.unpack(data))
         if frame.name != "HEARTBEAT":
             return
         values = frame.unpack(data)
@@ -103,9 +114,33 @@ class NodeVehicle:
         """Never, where play and controller have a bus each."""
         return False
 
+    def has_sent(self, message: can.Message) -> bool:
+        """Never, where play and controller have a bus each."""
+        return False
+
     def ending(self) -> LaconicError | None:
-        """A step that the core refused."""
-        return self._ending
+        """A step that the core refused, or a fault that could not be ordered."""
+        return self._ending or self._orders.failure
+
+    def break_drive(self, fault: DriveFault, *, is_broken: bool) -> None:
+        """A fault of a drive begins, or ends."""
+        if fault.kind == ERROR_FRAMES:
+            node_id = self.settings.node_ids[fault.wheel - 1]
+            (self._disturbed.add if is_broken else self._disturbed.discard)(node_id)
+            return
+        bit, now = ORDERS[fault.kind], self._ordered.get(fault.wheel, 0)
+        self._ordered[fault.wheel] = now | bit if is_broken else now & ~bit
+        self.order(fault.wheel, self._ordered[fault.wheel])
+
+    def order(self, wheel: int, faults: int) -> None:
+        """All faults by order of a wheel's drive from now on."""
+        self._orders.give(wheel, faults)
+
+    def disturbed(self, message: can.Message) -> Iterator[can.Message]:
+        """A frame of a drive as the controller hears it."""
+        if self._disturbed and self._senders.node_of(message) in self._disturbed:
+            yield error_frame()
+        yield message
 
     def speed(self) -> tuple[float, float]:
         """Of the centre of mass and in yaw, from the node's own NU; 0 before the first one."""
@@ -169,13 +204,14 @@ class Bridged(NodeVehicle):
 
     def advance(self, now_us: int) -> Iterator[can.Message]:
         """What the node has sent."""
+        self._orders.go_on(now_us)
         yield from self._take_early()
         bus = self.client.link.bus
         while (message := receive_on(bus, 0.0)) is not None:
             if self.is_own(message):
                 self.take_own(message)
             else:
-                yield message
+                yield from self.disturbed(message)
 
     def idle_us(self, now_us: int) -> int:
         """The node has its own clock; it is asked in short intervals."""
@@ -200,8 +236,13 @@ class OnBus(NodeVehicle):
         if self.is_own(message):
             self.take_own(message)
 
+    def has_sent(self, message: can.Message) -> bool:
+        """Frames of the drives and of the node, by what their identifiers tell."""
+        return self.is_own(message) or self._senders.node_of(message) is not None
+
     def advance(self, now_us: int) -> Iterator[can.Message]:
         """Nothing: the node sends for itself."""
+        self._orders.go_on(now_us)
         return iter(())
 
     def idle_us(self, now_us: int) -> int:

@@ -42,6 +42,11 @@ class PlayOptions:
     stop_distance_m: float | None = None
 
     @property
+    def is_served(self) -> bool:
+        """Whether the node itself is on the controller's bus, so that frames do not pass through this process."""
+        return self.board == "bus" or (self.board == "process" and self.listen is not None)
+
+    @property
     def limits(self) -> Limits:
         """How soon the vehicle must stop."""
         return Limits(self.stop_within_s, self.stop_distance_m)
@@ -71,14 +76,7 @@ def check_options(options: PlayOptions) -> None:
                        "Ctrl-C")
     check_bitrate(options.bitrate)
     options.limits.check()
-    if options.faults and options.board not in (None, "virtual"):
-        raise BadInput(f"--fault {options.faults[0]}: breaks drives in this process alone; leave --board out, or give "
-                       "--bus-fault")
-    served = options.board == "bus" or (options.board == "process" and options.listen is not None)
-    if options.limits.are_given and served:
-        raise BadInput(f"--stop-within, --stop-distance: with --board {options.board} the frames of the controller and "
-                       "of the drives cannot be told apart; leave --board out")
-    if options.bus_faults and served:
+    if options.bus_faults and options.is_served:
         raise BadInput(f"--bus-fault {options.bus_faults[0]}: with --board {options.board} frames do not pass through "
                        "this process; leave --board out")
 

@@ -10,7 +10,8 @@ from typing import Any, Protocol
 
 import can
 
-from laconic.play.faults import FAULT_BITS, KINDS, DriveFault
+from laconic.play.can_fail import CanFail, drives_can_fail, map_can_fail
+from laconic.play.faults import DriveFault
 from laconic.play.listener import ListeningBus, listening_socket
 from laconic.play.loop import Lateness, Vehicle
 from laconic.play.map_file import read_map
@@ -54,7 +55,7 @@ class Place(ABC):
 
     name = ""
     settings: DriveSettings | None = None
-    can_fail: tuple[str, ...] = KINDS  # faults of drives that are possible there
+    can_fail: CanFail                  # what can go wrong on purpose there
     serves_itself = False              # the vehicle's process serves the controller's port
 
     @abstractmethod
@@ -81,7 +82,6 @@ class OfMap(Place):
     """Frames of a DBC, by a plant in this process."""
 
     name = "dbc"
-    can_fail = tuple(FAULT_BITS)  # its frames are not those of single drives
 
     def __init__(self, scene: Scene, options: PlayOptions):
         assert options.dbc is not None and options.map_path is not None
@@ -91,6 +91,7 @@ class OfMap(Place):
             self.settings = drive_settings(scene, None if scene.rig.drives and scene.rig.drives.protocol else "canopen")
             self.scene = played(scene)
         check_map(self.scene, self.joined)
+        self.can_fail = map_can_fail(scene, self.settings, options)
 
     @contextmanager
     def opened(self, clock: Clock) -> Iterator[tuple[Any, can.BusABC]]:
@@ -116,7 +117,8 @@ class OfNode(Place):
         self.settings: DriveSettings = drive_settings(scene, options.drives, options.id_base)
         self.name = self.settings.protocol.name
         self.id_base = read_id_base(options.id_base, scene)
-        self.serves_itself = options.board == "process" and options.listen is not None
+        self.serves_itself = options.is_served and options.listen is not None
+        self.can_fail = drives_can_fail(self.settings, options)
 
     @contextmanager
     def opened(self, clock: Clock) -> Iterator[tuple[Any, can.BusABC]]:

@@ -20,8 +20,7 @@ class DriveProtocol:
     smallest_id: int
     largest_id: int
     identifiers: Identifiers           # 11-bit identifiers that a drive with this node id sends or listens to
-    of_drive: Identifiers | None       # those of them that concern this drive alone; None: in 29-bit identifiers
-    sign_of_life: Identifiers | None   # what it sends to show that it is alive; None: only when it is asked
+    has_sign_of_life: bool             # a frame that it sends to show that it is alive, not only when it is asked
     usual: Mapping[str, float] = field(default_factory=dict)
     why_usual: str = ""
 
@@ -29,11 +28,6 @@ class DriveProtocol:
     def why_no_watchdog(self) -> str:
         """How a drive watches its controller where a time in its settings does not say so."""
         return "its heartbeat consumer, object 1016h, is set by the controller" if self.name == "canopen" else ""
-
-    @property
-    def commands_groups(self) -> bool:
-        """Whether one frame commands several drives."""
-        return self.name.startswith("robomaster")
 
     @property
     def number(self) -> int:
@@ -46,11 +40,6 @@ def _canopen(node_id: int) -> frozenset[int]:
     return frozenset({0x000, 0x080, *(base + node_id for base in range(0x080, 0x680, 0x080)), 0x700 + node_id})
 
 
-def _canopen_alone(node_id: int) -> frozenset[int]:
-    """All of them but NMT and SYNC."""
-    return _canopen(node_id) - {0x000, 0x080}
-
-
 def _odrive(node_id: int) -> frozenset[int]:
     """32 messages each."""
     return frozenset(range(node_id << 5, (node_id + 1) << 5))
@@ -61,11 +50,6 @@ def _robomaster(node_id: int) -> frozenset[int]:
     return frozenset({0x200, 0x1FF, 0x200 + node_id})
 
 
-def _feedback(node_id: int) -> frozenset[int]:
-    """A command is for a group, so only its feedback is a drive's own."""
-    return frozenset({0x200 + node_id})
-
-
 def _moteus(node_id: int) -> frozenset[int]:
     """From and to a controller with id 0; a command that wants a reply has a 29-bit identifier."""
     return frozenset({node_id, node_id << 8} & set(range(0x800)))
@@ -73,20 +57,20 @@ def _moteus(node_id: int) -> frozenset[int]:
 
 M3508_GEAR = 3591.0 / 187.0
 PROTOCOLS: Mapping[str, DriveProtocol] = {each.name: each for each in (
-    DriveProtocol("canopen", 1, 1, 127, _canopen, _canopen_alone, lambda node_id: frozenset({0x700 + node_id}),
+    DriveProtocol("canopen", 1, 1, 127, _canopen, True,
                   {"encoder_counts": 4096, "gear_ratio": 1.0, "torque_constant_Nm_per_A": 0.05,
                    "current_limit_A": 10.0}, "an assumption: CANopen names no motor"),
-    DriveProtocol("odrive", 0, 0, 62, _odrive, _odrive, lambda node_id: frozenset({node_id << 5 | 1}),
+    DriveProtocol("odrive", 0, 0, 62, _odrive, True,
                   {"encoder_counts": 8192, "gear_ratio": 1.0, "torque_constant_Nm_per_A": 8.27 / 270.0,
                    "current_limit_A": 10.0, "supply_V": 24.0}, "an ODrive v3.6 with its D5065 motor of 270 rpm/V"),
-    DriveProtocol("robomaster", 1, 1, 8, _robomaster, _feedback, _feedback,
+    DriveProtocol("robomaster", 1, 1, 8, _robomaster, True,
                   {"encoder_counts": 8192, "gear_ratio": M3508_GEAR, "torque_constant_Nm_per_A": 0.3 / M3508_GEAR,
                    "current_limit_A": 20.0, "supply_V": 24.0, "winding_resistance_ohm": 0.194},
                   "a C620 with its M3508"),
-    DriveProtocol("robomaster-c610", 1, 1, 8, _robomaster, _feedback, _feedback,
+    DriveProtocol("robomaster-c610", 1, 1, 8, _robomaster, True,
                   {"encoder_counts": 8192, "gear_ratio": 36.0, "torque_constant_Nm_per_A": 0.18 / 36.0,
                    "current_limit_A": 10.0, "supply_V": 24.0, "winding_resistance_ohm": 0.461},
                   "a C610 with its M2006"),
-    DriveProtocol("moteus", 1, 1, 126, _moteus, None, None,
+    DriveProtocol("moteus", 1, 1, 126, _moteus, False,
                   {"encoder_counts": 16384, "gear_ratio": 1.0, "torque_constant_Nm_per_A": 30.0 / math.pi / 330.0,
                    "current_limit_A": 20.0, "supply_V": 24.0}, "a moteus r4.11 with its motor of 330 rpm/V"))}

@@ -35,8 +35,8 @@ def play(scene: Scene, options: PlayOptions, *, clock: Clock | None = None, othe
     check_options(options)
     check_playable(scene)
     place = place_of(scene, options)
-    read_faults(options.faults, place.settings, place.can_fail, options.duration_s, options.seed)
-    read_bus_faults(options.bus_faults, options.seed)
+    read_faults(options.faults, place.can_fail, options.duration_s, options.seed)
+    read_bus_faults(options.bus_faults, place.can_fail, options.seed)
     traffic, seconds = Traffic(clock or Clock()), Seconds()
     with Interruption() as signals, place.opened(traffic.clock) as (vehicle, bus), logged(traffic, options.logs), \
             shown(traffic, scene, options) as moved:
@@ -81,11 +81,7 @@ def judged(scene: Scene, place: Place, vehicle: Played, traffic: Traffic, second
     """Verdicts and figures."""
     judgement = Judgement(scene.name, place.name)
     died, late = isinstance(ending, BusDied), vehicle.lateness
-    frames = {"frames_in": traffic.frames_in, "frames_out": traffic.frames_out}
     text = f"{traffic.frames_in} frames heard, {traffic.frames_out} sent by the vehicle"
-    if place.serves_itself:  # who sent a frame is known to the process alone
-        frames = {"frames": traffic.frames_in}
-        text = f"{traffic.frames_in} frames of controller and vehicle"
     judgement.add(Verdict("bus", not died, str(ending) if died else text))
     fired = vehicle.watchdogs()
     if trouble.is_wanted:
@@ -98,7 +94,8 @@ def judged(scene: Scene, place: Place, vehicle: Played, traffic: Traffic, second
         judgement.add(Verdict("vehicle", False, str(ending)))
     judgement.figures |= {
         "seconds": seconds.passed(), "periods": late.periods, "late_periods": late.late_periods,
-        "worst_lateness_ms": late.worst_us / 1000.0, **frames}
+        "worst_lateness_ms": late.worst_us / 1000.0,
+        "frames_in": traffic.frames_in, "frames_out": traffic.frames_out}
     if place.settings is not None:
         judgement.facts["drives"] = as_values(place.settings)
     if isinstance(ending, Interrupted):

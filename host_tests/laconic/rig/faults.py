@@ -32,6 +32,7 @@ class Faults:
     stuck: float = 0.0               # from then on its identifier repeats the payload of that moment
     wrong_length: float = 0.0        # a byte is missing
     foreign: float = 0.0             # a random frame comes after it
+    error_frames: float = 0.0        # the bus destroys it once: an error frame, then the frame again
     babble_per_s: float = 0.0        # a node that sends identifier 0 without pause, so many frames a second
     bus_off_after: int = 0           # so many frames, then nothing goes through …
     bus_off_s: float = 0.0           # … for this long; 0: for ever
@@ -50,7 +51,7 @@ FIELD_TYPES: dict[str, type[Any]] = {field.name: type(field.default) for field i
 def faults_from(options: Mapping[str, object]) -> Faults:
     """Faults from options that may be texts; ValueError names a wrong option."""
     faults = Faults(**{name: value_of(name, value) for name, value in options.items()})
-    for name in ("loss", "duplication", "reordering", "corruption", "stuck", "wrong_length", "foreign"):
+    for name in ("loss", "duplication", "reordering", "corruption", "stuck", "wrong_length", "foreign", "error_frames"):
         if not 0.0 <= getattr(faults, name) <= 1.0:
             raise ValueError(f"{name}={getattr(faults, name):g}: a probability is from 0 to 1")
     for name in ("delay_s", "jitter_s", "corrupted_bits", "babble_per_s", "bus_off_after", "bus_off_s", "bitrate",
@@ -155,6 +156,8 @@ class FaultModel:
         frames = [message, message] if self._happens(faults.duplication, now_s) else [message]
         if self._happens(faults.foreign, now_s):
             frames.append(self.foreign())
+        if self._happens(faults.error_frames, now_s):
+            frames.insert(0, error_frame())
         held = self._held.pop(direction, None)
         if held is not None:
             return [*frames, held]
@@ -257,6 +260,15 @@ class FaultModel:
         """Instant at which the next frame arrives; infinite: none is on its way."""
         waiting = min((each[0] for each in self._waiting), default=float("inf"))
         return min(self._due[0][0] if self._due else float("inf"), max(waiting, self._wire_free_s))
+
+
+ERROR_CLASS = 0x88                    # SocketCAN's: a violation of the protocol, an error on the bus
+DISTURBED = (0, 0, 4, 0, 0, 0, 0, 0)  # ... and its payload: a stuff error
+
+
+def error_frame() -> can.Message:
+    """What a station hears of a frame that the bus has destroyed; its sender repeats it."""
+    return can.Message(arbitration_id=ERROR_CLASS, is_extended_id=False, is_error_frame=True, data=DISTURBED)
 
 
 def replaced(message: can.Message, data: bytearray) -> can.Message:

@@ -16,6 +16,9 @@ import can
 
 from laconic.rig.faults import FIELD_TYPES, IN, OUT, FaultModel, faults_from
 
+# On the others the CAN controller makes error frames; one that a program sends would become some data frame.
+CARRY_ERROR_FRAMES = ("VirtualBus", "UdpMulticastBus", "ListeningBus")
+
 
 class FaultyBus(can.BusABC):
     """A bus with faults; `inner` is the bus beneath, `model` makes the faults."""
@@ -29,6 +32,7 @@ class FaultyBus(can.BusABC):
         except ValueError as error:
             raise can.CanInitializationError(f"faulty: {error}") from None
         self.inner = inner or can.Bus(interface=under, channel=channel, **options)
+        self._carries_error_frames = type(self.inner).__name__ in CARRY_ERROR_FRAMES
         self._now = clock or time.monotonic
         self._start = self._now()
         self._arrived: list[can.Message] = []
@@ -48,10 +52,11 @@ class FaultyBus(can.BusABC):
     def move(self) -> None:
         """Delivers every frame that arrives by now."""
         for direction, message in self.model.take(self.now_s()):
-            if direction == OUT:
-                self.inner.send(message)
-            else:
+            of_all = message.is_error_frame  # all stations hear it
+            if of_all or direction == IN:
                 self._arrived.append(message)
+            if direction == OUT if not of_all else self._carries_error_frames:
+                self.inner.send(message)
 
     def _recv_internal(self, timeout: float | None) -> tuple[can.Message | None, bool]:
         deadline = None if timeout is None else self._now() + timeout

@@ -10,7 +10,9 @@ import pytest
 from play_support import DBC, PLAY, Codec, played
 
 from laconic.cli.main import run
-from laconic.play.faults import KINDS, DriveFault, read_faults
+from laconic.play.can_fail import KINDS, drives_can_fail
+from laconic.play.faults import DriveFault, read_faults
+from laconic.play.options import PlayOptions
 from laconic.play.settings import drive_settings
 from laconic.scene import read_scene
 
@@ -133,12 +135,12 @@ def test_a_drive_that_fails_no_longer_turns_as_the_others_do(kind: str) -> None:
 
 
 def test_random_faults_follow_from_the_seed_and_can_be_repeated_by_script() -> None:
-    settings = drive_settings(read_scene("canopen_agv"), None)
-    found = [read_faults(("random",), settings, KINDS, 10.0, seed)[0] for seed in range(40)]
-    assert found == [read_faults(("random",), settings, KINDS, 10.0, seed)[0] for seed in range(40)]
+    can_fail = drives_can_fail(drive_settings(read_scene("canopen_agv"), None), PlayOptions(listen=0))
+    found = [read_faults(("random",), can_fail, 10.0, seed)[0] for seed in range(40)]
+    assert found == [read_faults(("random",), can_fail, 10.0, seed)[0] for seed in range(40)]
     assert {each.kind for each in found} == set(KINDS) and {each.wheel for each in found} == {1, 2}
     assert all(2.5 <= each.at_s <= 7.5 for each in found)
-    again = read_faults([str(each) for each in found], settings, KINDS, 10.0, 1)
+    again = read_faults([str(each) for each in found], can_fail, 10.0, 1)
     assert list(again) == found
     assert str(DriveFault("encoder", 2, 1.5, 0.5)) == "encoder:2@1.5+0.5"
 
@@ -150,12 +152,13 @@ def test_random_faults_follow_from_the_seed_and_can_be_repeated_by_script() -> N
     (["--fault", "stall:1@soon"], ("soon is no time",)),
     (["--fault", "stall:1@2+-1"], ("-1 is no time",)),
     (["--fault", "stall:1@9"], ("would come after the end",)),
-    (["--fault", "stall:1@1", "--board", "process"], ("in this process alone",)),
+    (["--fault", "error-frames:1@1", "--board", "process"], ("--fault error-frames:1@1", "do not pass through this")),
+    (["--bus-fault", "error_frames=1", "--board", "process"], ("--bus-fault", "leave --board out")),
+    (["--fault", "silent:1@1", "--drives", "moteus"], ("moteus has no sign of life",)),
     (["--bus-fault", "los=1"], ("--bus-fault los=1", "did you mean loss?")),
     (["--bus-fault", "loss=2"], ("--bus-fault loss=2", "from 0 to 1")),
     (["--bus-fault", "loss=1", "--board", "process"], ("--bus-fault", "leave --board out")),
-    (["--stop-within", "0"], ("--stop-within 0", "above 0")),
-    (["--stop-within", "1", "--board", "process"], ("--stop-within", "told apart"))])
+    (["--stop-within", "0"], ("--stop-within 0", "above 0"))])
 def test_faults_that_cannot_be_are_refused_in_one_line(arguments: list[str], words: tuple[str, ...],
                                                       capsys: pytest.CaptureFixture[str]) -> None:
     assert run(["play", "canopen_agv", "--listen", "0", "--duration", "5", *arguments]) == 2
@@ -169,7 +172,7 @@ MATRIX = {
     "stuck": ("stuck=0.01",), "wrong length": ("wrong_length=0.2",), "foreign": ("foreign=0.3",),
     "babble": ("babble_per_s=2000",), "bus-off": ("bus_off_after=50", "bus_off_s=0.1"),
     "bus-off for ever": ("bus_off_after=50",), "stale queue": ("bus_off_after=50", "bus_off_s=0.1", "keep_queue=true"),
-    "slow wire": ("bitrate=125000",)}
+    "slow wire": ("bitrate=125000",), "error frames": ("error_frames=0.2",)}
 
 
 @pytest.mark.parametrize("kind", MATRIX)

@@ -3,14 +3,12 @@
 from __future__ import annotations
 
 import struct
-import threading
-from collections.abc import Callable
 from dataclasses import replace
 from pathlib import Path
 
 import can
 import pytest
-from play_support import played
+from play_support import CURRENTS, Station, currents, played
 
 from laconic.cli.main import run
 from laconic.errors import BadInput
@@ -25,14 +23,7 @@ from laconic.rig.logs import read_log
 from laconic.rig.wire import ID_BASE, wire
 from laconic.scene import read_scene
 
-COMMAND, FIRST_FEEDBACK = 0x200, 0x201
-AMPERE = 16384 / 20.0  # of a C620's current command
-
-
-def currents(*amperes: float) -> can.Message:
-    """A command of a C620 group."""
-    raw = [round(AMPERE * each) for each in (*amperes, 0.0, 0.0, 0.0, 0.0)][:4]
-    return can.Message(arbitration_id=COMMAND, is_extended_id=False, data=struct.pack(">4h", *raw))
+FIRST_FEEDBACK = 0x201
 
 
 def rpm_of(message: can.Message) -> int:
@@ -85,40 +76,13 @@ def test_stations_of_a_shared_process_hear_each_other_and_only_rigs_hear_the_nod
             open_bus("slcan", f"socket://127.0.0.1:{port}") as other:
         assert rig.recv(2.0).arbitration_id == ID_BASE + wire()["HEARTBEAT"].offset
         one.send(currents(1.0))
-        assert other.recv(2.0).arbitration_id == COMMAND
+        assert other.recv(2.0).arbitration_id == CURRENTS
         own = can.Message(arbitration_id=ID_BASE, is_extended_id=False, data=bytes(8))
         rig.send(own)
         one.send(currents(2.0))  # after it on the same line: had the own frame passed, it would come first
-        assert other.recv(2.0).arbitration_id == COMMAND
+        assert other.recv(2.0).arbitration_id == CURRENTS
         other.send(own)  # from now on it counts as a rig
         assert {other.recv(2.0).arbitration_id for _ in range(2)} >= {ID_BASE + wire()["HEARTBEAT"].offset}
-
-
-class Station(threading.Thread):
-    """A controller in a thread of its own: commands currents, and keeps what the drives say."""
-
-    def __init__(self, interface: str, channel: Callable[[], str], wanted: int):
-        super().__init__()
-        self.interface, self.channel, self.wanted = interface, channel, wanted
-        self.heard: list[can.Message] = []
-        self.may_begin, self.is_over = threading.Event(), threading.Event()
-
-    def run(self) -> None:
-        self.may_begin.wait(20.0)
-        with open_bus(self.interface, self.channel()) as bus:
-            while not self.is_over.is_set() and len(self.heard) < self.wanted:
-                bus.send(currents(0.2, 0.2, 0.2))
-                if (message := bus.recv(0.001)) is not None:
-                    self.heard.append(message)
-
-    def __enter__(self) -> Station:
-        self.start()
-        return self
-
-    def __exit__(self, *_: object) -> None:
-        self.may_begin.set()
-        self.is_over.set()
-        self.join()
 
 
 def test_a_process_serves_the_port_itself_and_its_lateness_is_told(tmp_path: Path) -> None:

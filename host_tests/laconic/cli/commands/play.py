@@ -10,8 +10,8 @@ import click
 from laconic.cli.options import InputPath, OutputFile, SceneName, check_step, goes_with, json_flag
 from laconic.core import REALS
 from laconic.outputs import write_text
+from laconic.play.can_fail import KINDS as FAULTS
 from laconic.play.canopen_eds import eds_of_scene
-from laconic.play.faults import KINDS as FAULTS
 from laconic.play.options import PlayOptions
 from laconic.play.places import ON_BUS
 from laconic.play.session import play

@@ -27,12 +27,15 @@ def kinds() -> dict[str, str]:
 @click.argument("what")
 @click.option("--minutes", type=float, default=10.0, show_default=True, metavar="N", help="How long.")
 @click.option("--seed", type=int, help="Seed of the random numbers; printed when not given.")
+@click.option("--protocol", metavar="P", help="drive-frames: this one alone.")
 @json_flag()
-def command(what: str, minutes: float, seed: int | None, json_wanted: bool) -> int:
+def command(what: str, minutes: float, seed: int | None, protocol: str | None, json_wanted: bool) -> int:
     """Runs WHAT for a long time and reports what was found.
 
     \b
     boards           emulated boards started anew, idle and with all cores busy
+    drive-frames     frames of each protocol of drives with faults between, N minutes
+                     each, under libFuzzer; Ctrl-C keeps and prints what was found
     faults           the fault matrix of the rig, with new seeds
     fmu              random use of the FMUs' C interface, under sanitizers
     friction         the friction solver against a conic one with 40 digits, and driven
@@ -52,12 +55,15 @@ def command(what: str, minutes: float, seed: int | None, json_wanted: bool) -> i
         raise BadInput(f"soak: there is no {what}; {nearest_of(what, modules)}")
     if not 0.0 < minutes < float("inf"):
         raise BadInput(f"--minutes: {minutes:g} is not usable; give a finite number above zero")
+    if protocol is not None and what != "drive-frames":
+        raise BadInput(f"--protocol {protocol}: is of soak drive-frames; leave it out")
     chosen = random.SystemRandom().randrange(2**31) if seed is None else seed
     module = importlib.import_module(f"laconic.soak.{modules[what]}")
+    more = {} if protocol is None else {"protocol": protocol}
     stopped: BaseException | None = None
     try:
         with progress_bar(f"soak {what}", 60.0 * minutes) as advance:
-            result = module.soak(minutes, chosen, advance)
+            result = module.soak(minutes, chosen, advance, **more)
     except laconic.soak.StoppedEarly as early:
         result, stopped = {"stopped": "early, so this is what was found until then", **early.result}, early.__cause__
     _show({"what": what, "minutes": minutes, "seed": chosen, **result}, json_wanted)
