@@ -58,7 +58,8 @@ int32_t laconic_library_drive_count(const struct laconic_node *node);
 bool laconic_library_drive_view(const struct laconic_node *node, int32_t drive, laconic_library_drive *view);
 
 /* Faults by order, of a drive that exists: bits of laconic_wheel_drive.faults. laconic_drive_fail sets faults that the
- * protocol may clear; _break faults that remain until _mend; a brake holds the wheel by up to this torque, 0: none; _order: as laconic_drive_order. */
+ * protocol may clear; _break faults that remain until _mend; a brake holds the wheel by up to this torque, 0: none;
+ * _order: as laconic_drive_order. */
 void laconic_library_drive_fail(struct laconic_node *node, int32_t drive, uint32_t faults);
 void laconic_library_drive_break(struct laconic_node *node, int32_t drive, uint32_t faults);
 void laconic_library_drive_mend(struct laconic_node *node, int32_t drive, uint32_t faults);

@@ -62,7 +62,7 @@ typedef struct laconic_drive_target {
 #define LACONIC_DRIVE_FAULT_FOLLOWING 64U /* position error too large; set by the protocol */
 #define LACONIC_DRIVE_FAULT_TARGET 128U   /* the target or a gain asks for a current that is no number */
 
-/* Faults by order, laconic_drive_order(): those of the drive above that it does not find by itself, and these around it. */
+/* Faults by order, laconic_drive_order(): those above that the drive does not find by itself, and these around it. */
 #define LACONIC_DRIVE_ORDER_OFF_BUS 256U /* it neither hears nor is heard                                   */
 #define LACONIC_DRIVE_ORDER_SILENT 512U  /* its sign of life ceases: heartbeat, cyclic feedback             */
 #define LACONIC_DRIVE_ORDER_HELD 1024U   /* a brake holds the wheel, whatever the drive does: it stalls     */

@@ -19,6 +19,8 @@ import e2e.p11
 from laconic.scene.table import Table
 
 E2E_WIDTHS = {"e2e-profile-1": 8, "e2e-profile-2": 8, "e2e-profile-5": 16, "e2e-profile-11": 8}
+E2E_COUNTERS = {"e2e-profile-1": (8, 4), "e2e-profile-2": (8, 4), "e2e-profile-5": (16, 8), "e2e-profile-11": (8, 4)}
+"""First bit and bits of the counter, where AUTOSAR's usual offset 0 puts it."""
 COUNTS_TO_14 = ("e2e-profile-1", "e2e-profile-11")  # a counter of 15 is no counter there
 WIDTHS: Mapping[str, int] = {"crc8-sae-j1850": 8, "crc8-h2f": 8, "crc16-ccitt-false": 16, **E2E_WIDTHS}
 """Bits of the checksums whose signal must have so many, and whole bytes; sums take what their signal has."""

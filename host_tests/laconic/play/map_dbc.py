@@ -11,6 +11,9 @@ from cantools.database.can.signal import Signal
 
 from laconic.errors import BadInput, nearest_of
 
+FLOAT_BITS = (16, 32, 64)
+FD_LENGTHS = (12, 16, 20, 24, 32, 48, 64)
+
 Page = tuple[tuple[str, int], ...]
 """The multiplexers that select a part of a message, outer ones first, with their values."""
 
@@ -24,9 +27,41 @@ class DbcMessage:
         if name not in by_name:
             raise BadInput(f"{where}.{key}: {dbc.name} has no message {name!r}; {nearest_of(name, by_name)}")
         self.c: Message = by_name[name]
+        self._check(database)
         if self.c.is_container:
             self.fail("message", "is a container, which a map cannot join; name a message that carries signals")
         self.signals: dict[str, Signal] = {each.name: each for each in self.c.signals}
+
+    def _check(self, database: Database) -> None:
+        """BadInput for a message that no bus can carry, or that the DBC does not tell from others."""
+        name, length = self.c.name, self.c.length
+        if sum(each.name == name for each in database.messages) > 1:
+            self.fail("message", "is in the DBC twice; rename one of them there")
+        same = [each.name for each in database.messages if each is not self.c and each.frame_id == self.c.frame_id
+                and each.is_extended_frame == self.c.is_extended_frame]
+        if same:
+            self.fail("message", f"has the identifier of {same[0]}, too, so that a frame could be either; correct the "
+                      "DBC")
+        if length > 8 and length not in FD_LENGTHS or length > 8 and not self.c.is_fd:
+            self.fail("message", f"has {length} bytes, which {'CAN FD' if self.c.is_fd else 'classic CAN'} cannot "
+                      "send; correct the DBC" + ("" if self.c.is_fd else ", or its VFrameFormat for CAN FD"))
+        names = [each.name for each in self.c.signals]
+        if twice := [each for each in names if names.count(each) > 1]:
+            self.fail("message", f"has two signals {twice[0]} in the DBC; rename one of them there")
+        if odd := [each for each in self.c.signals if each.is_float and each.length not in FLOAT_BITS]:
+            self.fail("message", f"has {odd[0].name} as a float of {odd[0].length} bits; correct the DBC to 16, 32 or "
+                      "64")
+        self._check_multiplexers({each.name: each.multiplexer_signal for each in self.c.signals})
+
+    def _check_multiplexers(self, outer: Mapping[str, str | None]) -> None:
+        for name in outer:
+            seen = {name}
+            above = outer[name]
+            while above is not None:
+                if above in seen:
+                    self.fail("message", f"has multiplexers that select each other, such as {name}; correct the DBC")
+                seen.add(above)
+                above = outer[above]
 
     @property
     def key(self) -> tuple[int, bool]:
@@ -42,6 +77,8 @@ class DbcMessage:
         """A signal by its name."""
         if name not in self.signals:
             self.fail(key, f"has no signal {name!r}; {nearest_of(name, self.signals)}", where)
+        if not self.signals[name].scale:
+            self.fail(key, f"has the scale 0 for {name}, so that it says nothing; correct the DBC", where)
         return self.signals[name]
 
     # ---- multiplexers
@@ -62,7 +99,22 @@ class DbcMessage:
 
     def is_on(self, name: str, page: Page) -> bool:
         """Whether a signal is part of a page."""
-        return any(each == page[: len(each)] for each in self.pages_of(name))
+        return any(set(each) <= set(page) for each in self.pages_of(name))
+
+    def completed(self, page: Page) -> Page:
+        """The page with a value for each multiplexer that it leaves open: the DBC's start value where that is one of
+        its pages, else its first one."""
+        found = dict(page)
+        while (open_one := next((name for name, signal in self.signals.items() if signal.is_multiplexer
+                                 and name not in found and self.is_on(name, tuple(found.items()))), None)) is not None:
+            ids, start = self._ids(open_one), start_value(self.signals[open_one])
+            found[open_one] = int(start) if start in ids or not ids else min(ids)
+        return tuple(found.items())
+
+    def _ids(self, multiplexer: str) -> set[int]:
+        """The values of a multiplexer that select signals."""
+        return {each for signal in self.signals.values() if signal.multiplexer_signal == multiplexer
+                for each in signal.multiplexer_ids or ()}
 
     # ---- raw values
 

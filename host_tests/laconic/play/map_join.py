@@ -53,9 +53,12 @@ def join(given: SignalMap, dbc: Path) -> Joined:
         sender = Sender(located(given, sent), message)
         joined.senders.append(sender)
         if sent.on_request:
-            key = message.key if sent.on_request == REMOTE else DbcMessage(
-                dbc, database, f"{given.path}: {sent.where}", sent.on_request, "on_request").key
-            joined.requests.setdefault(key, []).append(sender)
+            asks = message if sent.on_request == REMOTE else DbcMessage(
+                dbc, database, f"{given.path}: {sent.where}", sent.on_request, "on_request")
+            joined.requests.setdefault(asks.key, []).append(sender)
+            if asks is not message and sent.on_request in {each.message for each in given.sent}:
+                message.fail("on_request", f"is asked for by {sent.on_request}, which the vehicle sends itself; name a "
+                             f'message of the controller, or "{REMOTE}"')
     check_once(joined)
     check_drives(joined)
     return joined
@@ -83,6 +86,18 @@ def check_once(joined: Joined) -> None:
             if joint.signal in names:
                 sender.message.fail("name", f"gets {joint.signal} twice; keep one of them", joint.where)
             names.add(joint.signal)
+    check_pages(joined)
+
+
+def check_pages(joined: Joined) -> None:
+    """BadInput where two parts send the same message, and not different pages of it: each would undo the other."""
+    seen: dict[Key, list[Sender]] = {}
+    for sender in joined.senders:
+        for other in seen.setdefault(sender.message.key, []):
+            if set(sender.pages) & set(other.pages):
+                sender.message.fail("message", f"is sent twice in this map, here and in {other.sent.where}; put all of "
+                                    "its signals under one [[send]]")
+        seen[sender.message.key].append(sender)
 
 
 def check_drives(joined: Joined) -> None:

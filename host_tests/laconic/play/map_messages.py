@@ -8,7 +8,7 @@ from dataclasses import dataclass
 
 from cantools.database.can.signal import Signal
 
-from laconic.play.checksums import COUNTS_TO_14, E2E_WIDTHS, SUMS
+from laconic.play.checksums import COUNTS_TO_14, E2E_COUNTERS, E2E_WIDTHS, SUMS
 from laconic.play.map_dbc import DbcMessage, Page, byte_slice, raw_range
 from laconic.play.map_file import Conversion, Joint, MessageMap, Received, Sent
 from laconic.play.map_signals import OF_ANGLE
@@ -40,15 +40,38 @@ class Protected:
         self.modulo = 0
         if self.counter_signal is not None and given.counter is not None:
             self.modulo = given.counter.modulo or self._most_counts(self.counter_signal)
+        self._check_protection()
+
+    def _check_protection(self) -> None:
+        """BadInput where counter, checksum and joined signals are in each other's way."""
+        counter, checksum, given = self.counter_signal, self.checksum_signal, self.given
+        if counter is not None and counter is checksum:
+            self.message.fail("checksum.signal", f"has {counter.name} as counter and as checksum; give two signals")
+        if given.counter is not None and (given.counter.max_delta or 0) >= self.modulo > 0:
+            self.message.fail("counter.max_delta", f"takes steps of {given.counter.max_delta}, but its counter has "
+                              f"{self.modulo} counts, so that every frame would pass; give less")
+        for joint in given.joints:
+            for signal, what in ((counter, "counter"), (checksum, "checksum")):
+                if signal is not None and joint.signal == signal.name:
+                    self.message.fail("name", f"has {joint.signal} as its {what}; take it out here", joint.where)
+        if checksum is None or given.checksum is None or given.checksum.kind not in E2E_COUNTERS:
+            return
+        start, length = E2E_COUNTERS[given.checksum.kind]
+        if counter is None:
+            self.message.fail("counter", f"has no counter, which {given.checksum.kind} needs; give "
+                              "counter = { signal = … }")
+        if lowest_bit(counter) != start or counter.length != length:
+            self.message.fail("counter.signal", f"has {counter.name} elsewhere than {given.checksum.kind}, whose "
+                              f"counter has {length} bits from bit {start} on; name the signal that is there")
 
     def _counter(self) -> Signal | None:
         counter = self.given.counter
         if counter is None:
             return None
         signal = self.message.signal(counter.signal, "counter.signal")
-        if signal.is_float or signal.multiplexer_signal is not None:
-            self.message.fail("counter.signal", f"has {signal.name} as a number with a fraction or on a page; a "
-                              "counter is a whole number that is in every frame")
+        if signal.is_float or signal.multiplexer_signal is not None or signal.is_multiplexer:
+            self.message.fail("counter.signal", f"has {signal.name} as a number with a fraction, on a page or as "
+                              "multiplexer; a counter is a whole number that is in every frame")
         if counter.modulo is not None and counter.modulo > self._most_counts(signal):
             self.message.fail("counter.modulo", f"has {signal.length} bits for {signal.name}, too few to count up to "
                               f"{counter.modulo}; give {self._most_counts(signal)} or less")
@@ -64,9 +87,9 @@ class Protected:
         if checksum is None:
             return None
         signal = self.message.signal(checksum.signal, "checksum.signal")
-        if signal.is_float or signal.multiplexer_signal is not None:
-            self.message.fail("checksum.signal", f"has {signal.name} as a number with a fraction or on a page; a "
-                              "checksum is a whole number that is in every frame")
+        if signal.is_float or signal.multiplexer_signal is not None or signal.is_multiplexer:
+            self.message.fail("checksum.signal", f"has {signal.name} as a number with a fraction, on a page or as "
+                              "multiplexer; a checksum is a whole number that is in every frame")
         bytes_of = byte_slice(self.message, signal)
         if checksum.kind not in SUMS and (signal.length != checksum.width or bytes_of is None):
             self.message.fail("checksum.kind", f"has {signal.length} bits for {signal.name}; {checksum.kind} needs "
@@ -90,6 +113,13 @@ class Protected:
             found = int.from_bytes(found.to_bytes(at.stop - at.start, "little"), "big")
         found &= (1 << signal.length) - 1
         return found - (1 << signal.length) if signal.is_signed and found >> signal.length - 1 else found
+
+
+def lowest_bit(signal: Signal) -> int:
+    """The place of a signal's lowest bit, as a little-endian DBC counts; it may cross bytes only in that order."""
+    if signal.byte_order == "little_endian" or signal.length > signal.start % 8 + 1:
+        return int(signal.start)
+    return int(signal.start - signal.length + 1)
 
 
 def all_ones(signal: Signal) -> int:
@@ -122,8 +152,9 @@ class Receiver(Protected):
             return {}, "wrong checksum"
         if self.counter_signal and (reason := self._counts(int(raw[self.counter_signal.name]))):
             return {}, reason
-        return {joint.model: to_model(joint.conversion, joint.model, values[joint.signal])
-                for joint in self.given.joints if joint.signal in values}, None
+        found = {joint.model: to_model(joint.conversion, joint.model, values[joint.signal])
+                 for joint in self.given.joints if joint.signal in values}
+        return (found, None) if all(map(math.isfinite, found.values())) else ({}, "a value that is not finite")
 
     def _counts(self, count: int) -> str | None:
         """Why a frame with this count is refused; it is the reference for the next one in any case."""
@@ -186,6 +217,7 @@ class Sender(Protected):
                               "the value")
         if lone:  # its value alone chooses the page
             pages = [(*page, *((name, int(fixed[name] or 0)) for name in lone)) for page in pages]
+        pages = [self.message.completed(page) for page in pages]
         for joint in self.given.joints:
             if not any(self.message.is_on(joint.signal, page) for page in pages):
                 self.message.fail("name", f"has no {joint.signal} where its multiplexer has the value that is given; "
@@ -228,6 +260,11 @@ class Sender(Protected):
         if joint.constant is not None:
             return self.raw_of(joint, joint.constant) or 0
         exact = (from_model(joint.conversion, read(joint.model)) - signal.offset) / signal.scale
+        low, high = raw_range(signal)
+        if not math.isfinite(exact):  # beyond every number, by the map's own factors
+            self.cut.count += 1
+            end = low if exact < 0.0 else high
+            return end if signal.is_float else int(end)
         if signal.is_float:
             raw: int | float = exact
         else:
@@ -235,7 +272,6 @@ class Sender(Protected):
             raw = math.floor(exact) if is_count else round(exact)
         if joint.wrap:
             return wrapped(signal, int(raw), joint.wrap)
-        low, high = raw_range(signal)
         if not low <= raw <= high:
             self.cut.count += 1
             raw = min(max(raw, low), high)
