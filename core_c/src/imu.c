@@ -1,5 +1,7 @@
 /* The inertial measurement unit: what a place of the body feels, and what the instrument makes of it. docs/sensors.md
  * has the formulae. */
+#include "imu.h"
+
 #include "step_internals.h"
 
 #define STREAM_OF_ACCELERATION 0U

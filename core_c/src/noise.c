@@ -3,8 +3,8 @@
 #include "heading.h"
 
 /* The generator is SplitMix64 (Steele, Lea, Flood: Fast splittable pseudorandom number generators, 2014): a count in
- * steps of an odd number, each value scrambled so that every bit depends on every bit of it. Since its state is a count,
- * any place of the sequence is reached at once. */
+ * steps of an odd number, each value scrambled so that every bit depends on every bit of it. Since its state is a
+ * count, any place of the sequence is reached at once. */
 #define GOLDEN UINT64_C(0x9E3779B97F4A7C15) /* 2^64 over the golden ratio */
 
 static uint64_t scrambled(uint64_t z) {

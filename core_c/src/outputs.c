@@ -30,6 +30,11 @@ void laconic_position(const laconic_state *state, laconic_real *x_m, laconic_rea
     *heading_rad = heading_unwrapped(&state->heading);
 }
 
+laconic_real laconic_angle_wrapped(laconic_real angle_rad) {
+    const laconic_heading heading = {0, laconic_binary_angle_of(angle_rad), R(0)};
+    return heading_wrapped(&heading);
+}
+
 /* The body's origin Q is at (x, y) − Rot(θ) s, with s the vector from Q to S in body axes. */
 void laconic_pose_of(laconic_pose *pose, const laconic_model *model, const laconic_state *state) {
     const direction heading = laconic_direction_of_binary_angle(state->heading.fraction);

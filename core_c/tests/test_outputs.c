@@ -51,6 +51,12 @@ static void the_origin_lies_where_the_heading_puts_it(void) {
     }
 }
 
+static void any_angle_is_wrapped_to_half_a_turn_on_either_side(void) {
+    for (double angle = -40; angle < 40; angle += 0.37)
+        ASSERT_NEAR(EITHER(1e-14, 5e-6), atan2(sin(angle), cos(angle)), laconic_angle_wrapped(REAL(angle)));
+    TEST_ASSERT_TRUE(laconic_angle_wrapped(0) == 0);
+}
+
 /* ---------------------------------------------------------------------------------- position -- */
 
 static void the_position_is_that_of_the_pose_to_the_last_bit(void) {
@@ -235,6 +241,7 @@ int main(void) {
     RUN_TEST(velocity_is_r_nu_and_yaw_rate_nu3_over_lambda);
     RUN_TEST(a_constrained_vehicle_shows_its_dependent_component);
     RUN_TEST(the_origin_lies_where_the_heading_puts_it);
+    RUN_TEST(any_angle_is_wrapped_to_half_a_turn_on_either_side);
     RUN_TEST(the_position_is_that_of_the_pose_to_the_last_bit);
     RUN_TEST(wheel_speeds_are_xi_nu);
     RUN_TEST(a_wheel_with_its_axle_to_the_right_rolls_forward_when_the_vehicle_moves_forward);

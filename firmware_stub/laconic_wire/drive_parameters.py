@@ -9,7 +9,8 @@ from laconic.paths import SOURCE_DIR
 LIST = SOURCE_DIR / "firmware_stub" / "include" / "laconic_drives" / "settings.h"
 ROW = re.compile(r"X\(of, +\d+, (\w+), +(\w+), +\w+, +(\w+),[\s\\]+(\w+),[\s\\]+\w+\)")
 UNITS = {"A": "A", "V": "V", "s": "s", "ohm": "Ω", "rad_per_s": "rad/s", "per_s": "1/s", "Nm_per_A": "N m/A",
-         "As": "A s", "Vs_per_rad": "V s/rad"}
+         "As": "A s", "Vs_per_rad": "V s/rad", "m": "m", "rad": "rad", "m_per_s2": "m/s²",
+         "m_per_s2_per_sqrt_Hz": "m/s²/√Hz", "rad_per_s_per_sqrt_Hz": "rad/s/√Hz"}
 NOTES = {"DRIVE_PROTOCOL": ": see below; 0 or not sent: no drives",
          "DRIVE_NODE_ID": ": of a wheel that has a drive; it is sent for no other wheel",
          "DRIVE_GEAR_RATIO": ": turns of the shaft for one of the wheel, below 0: reversed; not 0",

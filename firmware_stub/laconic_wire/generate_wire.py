@@ -16,6 +16,7 @@ from .contract import attribute, limits, load
 
 ID_BASE = 1664
 NOTE = "/* Generated from laconic.dbc. */\n"
+SMALL_IMAGES_LEAVE_OUT = ("WHEEL_ANGLE", "IMU", "ENCODER")  # the last frames of the DBC
 KEYS = ("none", "nonce", "session", "run")  # what keys a frame's protection
 
 
@@ -42,7 +43,14 @@ def constants(database: Database) -> list[str]:
     if max(rig) >= min(node):
         raise SystemExit("laconic.dbc: identifiers of the rig's frames must all lie below those of the node's")
     lines += [f"#define LACONIC_WIRE_RIG_OFFSETS {max(rig) + 1}", f"#define LACONIC_WIRE_NODE_FIRST {min(node)}"]
-    lines += [f"#define LACONIC_WIRE_NODE_OFFSETS {max(node) + 1 - min(node)}"]
+    kept, less = max(node), max(node) - len(SMALL_IMAGES_LEAVE_OUT)
+    if [m.name for m in database.messages[-len(SMALL_IMAGES_LEAVE_OUT):]] != list(SMALL_IMAGES_LEAVE_OUT):
+        raise SystemExit(f"laconic.dbc: {', '.join(SMALL_IMAGES_LEAVE_OUT)} must be the last frames")
+    classic = sum(not m.is_fd for m in database.messages)
+    lines += ["#ifndef LACONIC_NODE_WITH_SENSORS",
+              "#define LACONIC_NODE_WITH_SENSORS 1 /* 0: neither sensors nor their frames, for small images */",
+              "#endif", "#if LACONIC_NODE_WITH_SENSORS", *counts(min(node), kept, classic), "#else",
+              *counts(min(node), less, classic - len(SMALL_IMAGES_LEAVE_OUT)), "#endif"]
     moving = [m.frame_id - ID_BASE for m in database.messages if attribute(m, "E2EKey") == "run"]
     if sorted(moving) != list(range(min(moving), max(moving) + 1)):
         raise SystemExit("laconic.dbc: identifiers of the frames with E2EKey run must follow one another")
@@ -58,6 +66,18 @@ def constants(database: Database) -> list[str]:
             lines += scale(message, signal)
     lines += [f"#define LACONIC_WIRE_KEY_{key.upper()} {number}" for number, key in enumerate(KEYS)]
     return lines + [f"#define {name} {number}" for name, number in choices.items()]
+
+
+def counts(first: int, last: int, classic: int) -> list[str]:
+    """Macros for the lengths of tables: the node's identifiers reach from `first` to `last`."""
+    return [f"#define LACONIC_WIRE_NODE_OFFSETS {last + 1 - first}", f"#define LACONIC_WIRE_OFFSETS {last + 1}",
+            f"#define LACONIC_WIRE_CLASSIC {classic}"]
+
+
+def guarded(lines: list[str]) -> list[str]:
+    """Lines of a table, of which the last ones are those that small images leave out."""
+    at = -len(SMALL_IMAGES_LEAVE_OUT)
+    return [*lines[:at], "#if LACONIC_NODE_WITH_SENSORS", *lines[at:], "#endif"]
 
 
 def scale(message: Message, signal: Signal) -> list[str]:
@@ -81,16 +101,17 @@ def rows(database: Database) -> list[str]:
         row = (message.length, int(message.is_fd), int("RIG" in message.senders), key,
                attribute(message, "E2EMaxDeltaCounter"), lists.index(offset))
         lines.append(f"    [{offset}] = {{{', '.join(map(str, row))}}}, /* {message.name} */")
-    return lines
+    return guarded(lines)
 
 
 def tables(database: Database) -> list[str]:
     """DataID lists of the classic frames and DataIDs of the FD frames."""
     classic = [m for m in database.messages if not m.is_fd]
-    lines = [f"const uint8_t laconic_wire_data_ids[{len(classic)}][16] = {{"]
+    lists = []
     for message in classic:
         ids = ", ".join(f"0x{number:02X}" for number in data_ids(message))
-        lines.append(f"    {{{ids}}}, /* {message.name} */")
+        lists.append(f"    {{{ids}}}, /* {message.name} */")
+    lines = ["const uint8_t laconic_wire_data_ids[LACONIC_WIRE_CLASSIC][16] = {", *guarded(lists)]
     lines += ["};", "", "uint16_t laconic_wire_data_id(uint8_t offset) {", "    switch (offset) {"]
     for message in database.messages:
         if message.is_fd:
@@ -116,9 +137,8 @@ typedef struct laconic_wire_row {{
     uint8_t list;      /* classic: which DataID list */
 }} laconic_wire_row;
 
-#define LACONIC_WIRE_OFFSETS {offsets}
 extern const laconic_wire_row laconic_wire[LACONIC_WIRE_OFFSETS];
-extern const uint8_t laconic_wire_data_ids[{classic}][16]; /* profile 22 */
+extern const uint8_t laconic_wire_data_ids[LACONIC_WIRE_CLASSIC][16]; /* profile 22 */
 uint16_t laconic_wire_data_id(uint8_t offset);         /* profile 5  */
 
 #endif
@@ -128,10 +148,8 @@ uint16_t laconic_wire_data_id(uint8_t offset);         /* profile 5  */
 def main(dbc: str, directory: str) -> None:
     """Reads the DBC and writes the two files."""
     database = load(Path(dbc))
-    classic = sum(not m.is_fd for m in database.messages)
     out = Path(directory)
-    offsets = 1 + max(m.frame_id for m in database.messages) - ID_BASE
-    header = HEADER.format(constants="\n".join(constants(database)), classic=classic, offsets=offsets)
+    header = HEADER.format(constants="\n".join(constants(database)))
     out.joinpath("laconic_wire.h").write_text(NOTE + header, encoding="utf-8")
     body = ['#include "laconic_wire.h"', "", "const laconic_wire_row laconic_wire[LACONIC_WIRE_OFFSETS] = {"]
     body += [*rows(database), "};", "", *tables(database), ""]

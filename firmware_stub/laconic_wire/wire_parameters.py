@@ -12,6 +12,7 @@ from laconic.core import Field, load
 from laconic.paths import SOURCE_DIR
 
 from .drive_parameters import drive_parameters
+from .sensor_parameters import sensor_parameters
 
 NEEDS = {
     "NEVER": "", "ALWAYS": "always", "WITH_WHEELS": "with wheels", "WITH_MOTOR": "with the other of the motor",
@@ -58,4 +59,4 @@ PARAMETERS = {
     "VISCOUS_FRICTION": ("vehicle.motor.viscous_friction_Nms", "N m s", NONE, RESERVED),
     "ROTOR_INERTIA": ("vehicle.motor.rotor_inertia_kgm2", "kg m²", NONE, RESERVED),
     "DRIVE_FAULTS": ("an order while the node plays, see Drives", "integer", WHEEL, "not of a vehicle"),
-} | taken() | drive_parameters()
+} | taken() | drive_parameters() | sensor_parameters()

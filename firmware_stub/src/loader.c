@@ -30,11 +30,14 @@ typedef struct location {
 #define IN_RUN(member) 0, 0, AT(member)
 #define IN_DRIVES(member) 0, 0, AT(drives.member)
 #define IN_DRIVES_WHEEL(member) LACONIC_MAX_WHEELS, sizeof(laconic_drive_settings), AT(drives.drive[0].member)
+#define IN_IMU(member) 0, 0, AT(sensors.imu.member)
+#define IN_IMU_ARRAY(member) 2, sizeof(laconic_real), AT(sensors.imu.member)
+#define IN_ENCODER(member) 0, 0, AT(sensors.encoder_##member)
+#define IN_WHEEL_ENCODER(member) LACONIC_MAX_WHEELS, sizeof(laconic_encoder_settings), AT(sensors.encoder[0].member)
 #define LOCATION(of, number, IDENTIFIER, member, name, KIND, RULE, NEED) \
     LACONIC_ROW_OF(number)({number, LACONIC_KIND_##KIND | LACONIC_NEED_##NEED << 4, IN_##of(member)}, )
 
-static const location locations[LACONIC_LOADER_FIELDS] = {LACONIC_PARAMETER_FIELDS(LOCATION)
-                                                              LACONIC_LOADER_DRIVES(LOCATION)};
+static const location locations[LACONIC_LOADER_FIELDS] = {LACONIC_LOADER_EVERY(LOCATION)};
 
 void laconic_loader_begin(laconic_loader *loader) {
     memset(loader, 0, sizeof *loader);
@@ -59,9 +62,11 @@ static bool is_left_out(uint8_t field) {
     const bool of_motor = field >= LACONIC_WIRE_FIELD_RESISTANCE && field <= LACONIC_WIRE_FIELD_ROTOR_INERTIA;
     const bool of_wheel = field >= LACONIC_FIELD_OWN_RADIUS && field <= LACONIC_FIELD_DRIVEN;
     const bool of_drives = field >= LACONIC_DRIVES_FIELD_DRIVE_PROTOCOL && field <= LACONIC_DRIVES_FIELD_LAST;
+    const bool of_sensors = field >= LACONIC_SENSOR_FIELD_IMU_X && field < LACONIC_SENSOR_FIELD_COUNT;
     const bool of_friction = field >= LACONIC_FIELD_WHEEL_FRICTION_COEFFICIENT && field < LACONIC_FIELD_COUNT;
     return of_motor || (!LACONIC_WITH_OWN_WHEELS && of_wheel) || (!LACONIC_WITH_SLOPE && of_slope) ||
-           (!LACONIC_WITH_FRICTION && of_friction && !of_slope) || (!LACONIC_NODE_WITH_DRIVES && of_drives);
+           (!LACONIC_WITH_FRICTION && of_friction && !of_slope) || (!LACONIC_NODE_WITH_DRIVES && of_drives) ||
+           (!LACONIC_NODE_WITH_SENSORS && of_sensors);
 }
 
 static void refuse(laconic_loader *loader, uint8_t status, uint8_t field, uint8_t item) {

@@ -92,6 +92,12 @@ static bool has_more(laconic_node *node, uint8_t offset) {
         node->answers_due = (uint16_t)(node->answers_due & (node->answers_due - 1U)); /* clears the lowest bit */
         return node->answers_due != 0;
     case LACONIC_WIRE_WHEEL_SPEED: node->wheel_group++; return 3 * node->wheel_group < node->plant.model.wheel_count;
+#if LACONIC_NODE_WITH_SENSORS
+    case LACONIC_WIRE_WHEEL_ANGLE: node->angle_group++; return 3 * node->angle_group < node->plant.model.wheel_count;
+    case LACONIC_WIRE_ENCODER:
+        node->encoder_wheel = laconic_node_encoder_from(node, node->encoder_wheel + 1);
+        return node->encoder_wheel < LACONIC_MAX_WHEELS;
+#endif
     case LACONIC_WIRE_COUNTERS:
         node->counter_page = (uint8_t)((node->counter_page + 1U) % 3U);
         return node->counter_page != 0;

@@ -93,6 +93,9 @@ static uint8_t reset(laconic_node *node, uint8_t *field, uint8_t *item) {
     laconic_refusal why = {0};
     if (node->state == LACONIC_WIRE_STATE_EMPTY) return LACONIC_WIRE_STATUS_WRONG_STATE;
     const laconic_status status = laconic_plant_restart(&node->plant, &node->start, &why);
+#if LACONIC_NODE_WITH_SENSORS
+    laconic_node_start_sensors(node, &node->sensors.settings);
+#endif
     stop(node);
     node->state = LACONIC_WIRE_STATE_READY;
     memset(&node->counters, 0, sizeof node->counters);
@@ -150,11 +153,18 @@ static uint8_t adopt(laconic_node *node, uint8_t *field, uint8_t *item) {
     const uint8_t refused = laconic_node_check_drives(node, &new->drives, new->vehicle.wheel_count, field, item);
     if (refused != 0) return refused;
 #endif
-    const laconic_status status =
-        laconic_plant_start(&node->plant, &new->vehicle, method, new->step_s, &new->start, &why);
+    laconic_status status = LACONIC_OK;
+#if LACONIC_NODE_WITH_SENSORS
+    status = laconic_sensor_settings_check(&new->sensors, new->vehicle.wheel_count, &why);
+#endif
+    if (status == LACONIC_OK)
+        status = laconic_plant_start(&node->plant, &new->vehicle, method, new->step_s, &new->start, &why);
     *field = (uint8_t)why.field;
     *item = (uint8_t)why.item;
     if (status != LACONIC_OK) return (uint8_t)status;
+#if LACONIC_NODE_WITH_SENSORS
+    laconic_node_start_sensors(node, &new->sensors);
+#endif
 #if LACONIC_NODE_WITH_DRIVES
     node->drive_plan = new->drives;
 #endif
@@ -182,10 +192,12 @@ void laconic_node_select(laconic_node *node, const uint8_t *data) {
         status = LACONIC_WIRE_STATUS_WRONG_STATE;
     } else if ((raw_fd || data[2] & LACONIC_NODE_SEND_STATE_FD) && !node->config.can_fd) {
         status = LACONIC_WIRE_STATUS_NOT_SUPPORTED;
+    } else if (!LACONIC_NODE_WITH_SENSORS && ((data[2] & SENDS_OF_SENSORS) | (data[3] & RAW_OF_SENSORS)) != 0) {
+        status = LACONIC_WIRE_STATUS_NOT_SUPPORTED;
     } else {
         node->send = data[2];
         node->raw_fd = raw_fd != 0;
-        node->raw_output.send = data[3] & 0x1FU;
+        node->raw_output.send = data[3] & 0x7FU;
         node->raw_input.take = data[4];
         laconic_node_clear_inputs(node);
     }

@@ -46,10 +46,23 @@ uint8_t laconic_node_start_drives(laconic_node *node, uint32_t now_us, uint8_t *
     return 0;
 }
 
+static laconic_status step(laconic_node *node, uint32_t now_us, laconic_refusal *why) {
+#if LACONIC_NODE_WITH_SENSORS
+    if (laconic_node_watches(node)) {
+        laconic_sensor_moment before;
+        laconic_sensors_before(&before, &node->plant);
+        const laconic_status status = laconic_drives_step(&node->drives, &node->plant, &node->input[0], now_us, why);
+        if (status != LACONIC_OK) return status;
+        return laconic_sensors_after(&node->sensors, &node->plant, &node->input[0], &before, why);
+    }
+#endif
+    return laconic_drives_step(&node->drives, &node->plant, &node->input[0], now_us, why);
+}
+
 void laconic_node_run_drives(laconic_node *node, uint32_t now_us) {
     laconic_refusal why = {0};
     if (!laconic_node_period_is_due(node, now_us)) return;
-    if (laconic_drives_step(&node->drives, &node->plant, &node->input[0], now_us, &why) != LACONIC_OK)
+    if (step(node, now_us, &why) != LACONIC_OK)
         laconic_node_fail(node, &why, 0);
     else
         laconic_node_end_period(node);

@@ -34,6 +34,10 @@ static inline bool is_running(const laconic_node *node) {
            node->state == LACONIC_WIRE_STATE_TIMEOUT || plays_drives(node);
 }
 
+/* Bits of SELECT that ask for sensors: of `send`, and of the raw output. */
+#define SENDS_OF_SENSORS (LACONIC_NODE_SEND_WHEEL_ANGLE | LACONIC_NODE_SEND_IMU | LACONIC_NODE_SEND_ENCODER)
+#define RAW_OF_SENSORS (LACONIC_RAW_IMU | LACONIC_RAW_ENCODER)
+
 static inline bool listens_to_voltages(const laconic_node *node) {
     return node->state == LACONIC_WIRE_STATE_LOCKSTEP || node->state == LACONIC_WIRE_STATE_FREE_RUN;
 }
@@ -86,6 +90,18 @@ uint8_t laconic_node_start_drives(laconic_node *node, uint32_t now_us, uint8_t *
 void laconic_node_run_drives(laconic_node *node, uint32_t now_us);
 /* PARAMETER with DRIVE_FAULTS: the faults by order of one wheel's drive. */
 uint8_t laconic_node_order_drive(laconic_node *node, const uint8_t *data);
+#endif
+
+/* node_sensors.c: IMU and encoders beside the plant. */
+#if LACONIC_NODE_WITH_SENSORS
+/* Whether sensors must see the next steps. */
+bool laconic_node_watches(const laconic_node *node);
+/* As after power-up, beside the plant, with these settings. */
+void laconic_node_start_sensors(laconic_node *node, const laconic_sensor_settings *settings);
+/* Makes their chosen frames due, and reads what RAW_OUTPUT is to show of them. */
+void laconic_node_publish_sensors(laconic_node *node, laconic_sensor_outputs *sensed);
+/* The next wheel from `wheel` on that has an encoder; LACONIC_MAX_WHEELS: there is none. */
+uint8_t laconic_node_encoder_from(const laconic_node *node, int32_t wheel);
 #endif
 
 /* node_pack.c: writes the payload of one frame; its protection follows. */

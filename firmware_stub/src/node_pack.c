@@ -91,6 +91,34 @@ static void pack_wheel_speed(const laconic_node *node, uint8_t *data) {
     for (uint8_t k = 0; k < 3; k++) PUT(k, speed[3 * node->wheel_group + k], WHEEL_SPEED_WHEEL_SPEED_1);
 }
 
+#if LACONIC_NODE_WITH_SENSORS
+static void pack_wheel_angle(const laconic_node *node, uint8_t *data) {
+    laconic_real angle[LACONIC_MAX_WHEELS + 3] = {0};
+    laconic_plant_wheel_angles(&node->plant, angle);
+    for (uint8_t k = 0; k < 3; k++)
+        PUT(k, laconic_angle_wrapped(angle[3 * node->angle_group + k]), WHEEL_ANGLE_WHEEL_ANGLE_1);
+    data[1] = (uint8_t)(node->angle_group << 5);
+}
+
+static void pack_imu(const laconic_node *node, uint8_t *data) {
+    laconic_real acceleration[2];
+    laconic_real yaw_rate;
+    laconic_imu_read(&node->sensors, node->plant.integrator.step_s, acceleration, &yaw_rate);
+    PUT(0, acceleration[0], IMU_ACCELERATION_X);
+    PUT(1, acceleration[1], IMU_ACCELERATION_Y);
+    PUT(2, yaw_rate, IMU_YAW_RATE);
+}
+
+static void pack_encoder(const laconic_node *node, uint8_t *data) {
+    const laconic_sensor_settings *settings = &node->sensors.settings;
+    const laconic_encoder *encoder = &node->sensors.encoder[node->encoder_wheel];
+    const int32_t counts = settings->encoder[node->encoder_wheel].counts_per_turn;
+    data[1] = (uint8_t)(node->encoder_wheel << 4);
+    put32(data + 2, (uint32_t)laconic_encoder_shown(encoder, settings->encoder_wrap));
+    put16(data + 6, (uint32_t)laconic_encoder_turns(encoder, counts));
+}
+#endif
+
 #define MOST_LATENESS 32767U
 
 /* While drives play there is no rig to be deaf to; the bit then tells that a drive has heard no controller in time. */
@@ -158,6 +186,11 @@ void laconic_node_pack(laconic_node *node, uint8_t offset, uint8_t *data) {
     case LACONIC_WIRE_RAW_OUTPUT: pack_raw(node, data); break;
     case LACONIC_WIRE_HEARTBEAT: pack_heartbeat(node, data); break;
     case LACONIC_WIRE_COUNTERS: pack_counters(node, data); break;
+#if LACONIC_NODE_WITH_SENSORS
+    case LACONIC_WIRE_WHEEL_ANGLE: pack_wheel_angle(node, data); break;
+    case LACONIC_WIRE_IMU: pack_imu(node, data); break;
+    case LACONIC_WIRE_ENCODER: pack_encoder(node, data); break;
+#endif
     default:
         if (!LACONIC_NODE_CAN_FD) break;
         if (offset == LACONIC_WIRE_STATE_FD) pack_state_fd(node, data);

@@ -16,7 +16,13 @@ void laconic_node_publish(laconic_node *node) {
         node->pending |= BIT(LACONIC_WIRE_WHEEL_SPEED);
     if (node->send & LACONIC_NODE_SEND_STATE_FD) node->pending |= BIT(LACONIC_WIRE_STATE_FD);
     node->wheel_group = 0;
-    laconic_raw_collect(&node->raw_output, &node->plant);
+#if LACONIC_NODE_WITH_SENSORS
+    laconic_sensor_outputs sensed;
+    laconic_node_publish_sensors(node, &sensed);
+    laconic_raw_collect(&node->raw_output, &node->plant, &sensed);
+#else
+    laconic_raw_collect(&node->raw_output, &node->plant, NULL);
+#endif
     if (node->raw_output.size > 0)
         node->pending |= node->raw_fd ? BIT(LACONIC_WIRE_RAW_OUTPUT_FD) : BIT(LACONIC_WIRE_RAW_OUTPUT);
 }
@@ -30,16 +36,31 @@ void laconic_node_fail(laconic_node *node, const laconic_refusal *why, uint8_t r
                         (uint8_t)why->item);
 }
 
+static laconic_status step(laconic_node *node, uint64_t steps, laconic_refusal *why) {
+#if LACONIC_NODE_WITH_SENSORS
+    if (laconic_node_watches(node))
+        return laconic_sensors_run(&node->sensors, &node->plant, &node->input[0], steps, why);
+#endif
+    return laconic_plant_run(&node->plant, &node->input[0], steps, why);
+}
+
+static laconic_status step_sampled(laconic_node *node, laconic_refusal *why) {
+#if LACONIC_NODE_WITH_SENSORS
+    if (laconic_node_watches(node)) return laconic_sensors_run_sampled(&node->sensors, &node->plant, node->input, why);
+#endif
+    return laconic_plant_run_sampled(&node->plant, node->input, why);
+}
+
 void laconic_node_run_lockstep(laconic_node *node) {
     laconic_refusal why = {0};
     laconic_status status;
     uint32_t steps = node->lockstep.steps_due;
     if (steps == 0) return;
     if (node->raw_input.take & LACONIC_RAW_SAMPLED) {
-        status = laconic_plant_run_sampled(&node->plant, node->input, &why);
+        status = step_sampled(node, &why);
     } else {
         if (steps > LACONIC_NODE_STEPS_PER_TICK) steps = LACONIC_NODE_STEPS_PER_TICK;
-        status = laconic_plant_run(&node->plant, &node->input[0], steps, &why);
+        status = step(node, steps, &why);
     }
     if (status != LACONIC_OK) {
         laconic_node_fail(node, &why, node->lockstep.request);
@@ -94,8 +115,7 @@ void laconic_node_run_free(laconic_node *node, uint32_t now_us) {
     laconic_refusal why = {0};
     watch(node, now_us);
     if (!laconic_node_period_is_due(node, now_us)) return;
-    const laconic_status status =
-        laconic_plant_run(&node->plant, &node->input[0], node->free_run.steps_per_period, &why);
+    const laconic_status status = step(node, node->free_run.steps_per_period, &why);
     if (status != LACONIC_OK)
         laconic_node_fail(node, &why, 0);
     else

@@ -85,7 +85,18 @@ static laconic_real *collect_pose(laconic_real *to, const laconic_plant *plant) 
     return to;
 }
 
-void laconic_raw_collect(laconic_raw_output *raw, const laconic_plant *plant) {
+static laconic_real *collect_sensors(laconic_real *to, uint8_t send, int32_t wheel_count,
+                                     const laconic_sensor_outputs *sensed) {
+    if (send & LACONIC_RAW_IMU) {
+        for (int k = 0; k < 2; k++) *to++ = sensed->acceleration_body_m_per_s2[k];
+        for (int k = 0; k < 2; k++) *to++ = sensed->imu_acceleration_m_per_s2[k];
+        *to++ = sensed->imu_yaw_rate_rad_per_s;
+    }
+    for (int32_t i = 0; (send & LACONIC_RAW_ENCODER) && i < wheel_count; i++) *to++ = sensed->encoder_count[i];
+    return to;
+}
+
+void laconic_raw_collect(laconic_raw_output *raw, const laconic_plant *plant, const laconic_sensor_outputs *sensed) {
     laconic_real *to = raw->number;
     const int32_t n = plant->model.wheel_count;
     if (raw->send & LACONIC_RAW_NU) {
@@ -102,6 +113,7 @@ void laconic_raw_collect(laconic_raw_output *raw, const laconic_plant *plant) {
         to += n;
     }
     if (raw->send & LACONIC_RAW_ENERGY) *to++ = laconic_plant_energy_J(plant);
+    if (LACONIC_NODE_WITH_SENSORS) to = collect_sensors(to, raw->send, n, sensed);
     raw->size = (uint16_t)((size_t)(to - raw->number) * sizeof(laconic_real));
     raw->position = 0;
     raw->segment = 0;

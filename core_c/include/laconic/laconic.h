@@ -351,6 +351,9 @@ void laconic_pose_of(laconic_pose *pose, const laconic_model *model, const lacon
 /* The pose's x_m, y_m and heading_rad alone, without a sine: for callers that need them at every step. */
 void laconic_position(const laconic_state *state, laconic_real *x_m, laconic_real *y_m, laconic_real *heading_rad);
 
+/* An angle in (−π, π], as heading_wrapped_rad is, to the resolution of the given one. */
+laconic_real laconic_angle_wrapped(laconic_real angle_rad);
+
 /* v_S in body axes [m/s]; returns the yaw rate [rad/s]. */
 laconic_real laconic_body_velocity(const laconic_model *model, const laconic_state *state,
                                    laconic_real velocity_m_per_s[2]);
@@ -545,7 +548,8 @@ typedef struct laconic_outputs {
     laconic_sensor_outputs sensors;    /* set only where the recorder has sensors                      */
 } laconic_outputs;
 
-/* Fills the outputs but reactions and sensors. Items beyond the model's wheels stay as they were. One sine and cosine, O(N). */
+/* Fills the outputs but reactions and sensors. Items beyond the model's wheels stay as they were. One sine and cosine,
+ * O(N). */
 void laconic_outputs_of(laconic_outputs *outputs, const laconic_plant *plant, const laconic_input *input);
 
 /* laconic_reactions_of, and for a vehicle with friction the forces of the last step; lateral_N is then the force along

@@ -37,8 +37,8 @@ struct laconic_refusal;
 /* All zero: an ideal IMU at the body's origin, along the body's axes. A sample is
  *     (1 + scale error) · true value + bias + noise,     then held within ± range,
  * and is shown `delay_steps` steps after it was taken.
- * The noise is white. Its density is that of data sheets (one-sided, so a sample's standard deviation is density · √(1/(2
- * step_s)), the noise up to half the sample rate): so it does not depend on the step. */
+ * The noise is white. Its density is that of data sheets, one-sided: a sample's standard deviation is the density times
+ * the square root of half the sample rate, 1/(2 step_s), so the noise of a motion does not depend on the step. */
 typedef struct laconic_imu_settings {
     laconic_real x_m, y_m;    /* where it is, in the body frame                                          */
     laconic_real heading_rad; /* of its x axis in the body frame; its y axis is to the left of it         */
@@ -191,13 +191,13 @@ typedef struct laconic_sensor_outputs {
 } laconic_sensor_outputs;
 
 /* Sensors as after power-up, beside a plant that stands where it is: encoders at 0, and in the IMU's delay line the
- * sample of this moment, as of a vehicle that has moved so for long. Refuses as laconic_sensor_settings_check() does, and
- * changes nothing then. */
+ * sample of this moment, as of a vehicle that has moved so for long. Refuses as laconic_sensor_settings_check() does,
+ * and changes nothing then. */
 laconic_status laconic_sensors_start(laconic_sensors *sensors, const laconic_sensor_settings *settings,
                                      const struct laconic_plant *plant, struct laconic_refusal *why);
 
-/* laconic_plant_run() and laconic_plant_run_sampled() with sensors that watch. Steps are taken one by one where a sensor
- * must see each. Besides their refusals OVERFLOW where an encoder was turned by more than 2³¹ counts in a step
+/* laconic_plant_run() and laconic_plant_run_sampled() with sensors that watch. Steps are taken one by one where a
+ * sensor must see each. Besides their refusals OVERFLOW where an encoder was turned by more than 2³¹ counts in a step
  * (WHEEL_ENCODER_COUNTS, item: the wheel) or a sample left the range (IMU_X); that step has been taken. */
 laconic_status laconic_sensors_run(laconic_sensors *sensors, struct laconic_plant *plant, const laconic_input *held,
                                    uint64_t steps, struct laconic_refusal *why);
@@ -216,9 +216,9 @@ laconic_status laconic_sensors_after(laconic_sensors *sensors, const struct laco
                                      struct laconic_refusal *why);
 
 /* Inertial acceleration of the body's origin in body axes, v' + ω × v. On ideal ground exactly that of this moment with
- * this input. Of a vehicle with friction the mean over the last step, since contact forces there exist for a step alone:
- * the change of velocity over it, in the axes of its middle (before the first step as if it had gone on moving so;
- * `sensors` may be NULL only on ideal ground). */
+ * this input. Of a vehicle with friction the mean over the last step, since contact forces there exist for a step
+ * alone: the change of velocity over it, in the axes of its middle (before the first step as if it had gone on moving
+ * so; `sensors` may be NULL only on ideal ground). */
 void laconic_acceleration_body(laconic_real acceleration_m_per_s2[2], const laconic_sensors *sensors,
                                const struct laconic_plant *plant, const laconic_input *input);
 

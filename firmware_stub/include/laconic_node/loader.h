@@ -4,6 +4,7 @@
 
 #include "laconic/laconic.h"
 #include "laconic_drives/settings.h"
+#include "laconic_wire.h" /* LACONIC_NODE_WITH_SENSORS */
 
 typedef struct laconic_parameters {
     laconic_vehicle vehicle;
@@ -12,6 +13,9 @@ typedef struct laconic_parameters {
     int32_t method;
 #if LACONIC_NODE_WITH_DRIVES
     laconic_drive_plan drives;
+#endif
+#if LACONIC_NODE_WITH_SENSORS
+    laconic_sensor_settings sensors;
 #endif
 } laconic_parameters;
 
@@ -22,9 +26,17 @@ typedef struct laconic_parameters {
 #define LACONIC_LOADER_DRIVES(X)
 #endif
 
+/* The rows of sensors, in a node that has them. */
+#if LACONIC_NODE_WITH_SENSORS
+#define LACONIC_LOADER_SENSORS(X) LACONIC_SENSOR_FIELDS(X)
+#else
+#define LACONIC_LOADER_SENSORS(X)
+#endif
+
 /* Number of fields that the loader receives. */
 #define LACONIC_LOADER_ONE(of, number, ...) LACONIC_ROW_OF(number)(+1)
-#define LACONIC_LOADER_FIELDS (0 LACONIC_PARAMETER_FIELDS(LACONIC_LOADER_ONE) LACONIC_LOADER_DRIVES(LACONIC_LOADER_ONE))
+#define LACONIC_LOADER_EVERY(X) LACONIC_PARAMETER_FIELDS(X) LACONIC_LOADER_DRIVES(X) LACONIC_LOADER_SENSORS(X)
+#define LACONIC_LOADER_FIELDS (0 LACONIC_LOADER_EVERY(LACONIC_LOADER_ONE))
 
 typedef struct laconic_loader {
     laconic_parameters parameters;

@@ -75,6 +75,10 @@ typedef struct laconic_node {
     bool raw_fd;
     uint32_t pending;    /* frames to be sent: bit = offset of the identifier        */
     uint8_t wheel_group; /* next WHEEL_SPEED group                                   */
+#if LACONIC_NODE_WITH_SENSORS
+    uint8_t angle_group;   /* next WHEEL_ANGLE group                                  */
+    uint8_t encoder_wheel; /* of the next ENCODER                                     */
+#endif
     uint8_t counter_page;
     uint8_t groups_seen; /* VOLTAGE groups since the watchdog was fed                */
     uint32_t heartbeat_us;
@@ -96,13 +100,20 @@ typedef struct laconic_node {
     laconic_drives drives;
     uint64_t axes[(LACONIC_MAX_WHEELS * LACONIC_NODE_AXIS_BYTES + 7) / 8]; /* of the protocol */
 #endif
+#if LACONIC_NODE_WITH_SENSORS
+    laconic_sensors sensors; /* beside the plant */
+    bool has_sensors;        /* the vehicle came with settings of them: they watch every step */
+#endif
 } laconic_node;
 
 #define LACONIC_NODE_SEND_NU 1U
 #define LACONIC_NODE_SEND_POSE 2U
 #define LACONIC_NODE_SEND_WHEEL_SPEED 4U
+#define LACONIC_NODE_SEND_WHEEL_ANGLE 8U
 #define LACONIC_NODE_SEND_COUNTERS 16U
 #define LACONIC_NODE_SEND_STATE_FD 32U
+#define LACONIC_NODE_SEND_IMU 64U
+#define LACONIC_NODE_SEND_ENCODER 128U
 
 /* False iff the ID base is no multiple of 32 or beyond 0x7E0; the node is then not usable. */
 bool laconic_node_init(laconic_node *node, const laconic_node_config *config, uint32_t now_us);

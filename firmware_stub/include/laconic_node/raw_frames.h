@@ -3,6 +3,7 @@
 #define LACONIC_NODE_RAW_FRAMES_H
 
 #include "laconic/laconic.h"
+#include "laconic_wire.h" /* LACONIC_NODE_WITH_SENSORS */
 
 /* Bits of SELECT for the numbers in RAW_INPUT; those of one input follow in this order. */
 #define LACONIC_RAW_VOLTAGE 1U     /* N numbers                             */
@@ -17,7 +18,13 @@
 #define LACONIC_RAW_WHEEL_SPEED 4U /* N */
 #define LACONIC_RAW_WHEEL_ANGLE 8U /* N */
 #define LACONIC_RAW_ENERGY 16U     /* 1 */
+#define LACONIC_RAW_IMU 32U /* 5: acceleration of the body's origin ξ, η; the IMU's acceleration x, y; its yaw rate */
+#define LACONIC_RAW_ENCODER 64U /* N: count as shown, 0 where a wheel has none */
+#if LACONIC_NODE_WITH_SENSORS
+#define LACONIC_RAW_OUTPUTS (12 + 3 * LACONIC_MAX_WHEELS)
+#else
 #define LACONIC_RAW_OUTPUTS (7 + 2 * LACONIC_MAX_WHEELS)
+#endif
 
 typedef struct laconic_raw_input {
     uint8_t take;      /* mask                                                */
@@ -50,8 +57,9 @@ typedef struct laconic_raw_output {
     laconic_real number[LACONIC_RAW_OUTPUTS];
 } laconic_raw_output;
 
-/* Reads the chosen outputs of the plant, all of one instant, and begins at the first byte. */
-void laconic_raw_collect(laconic_raw_output *raw, const laconic_plant *plant);
+/* Reads the chosen outputs of the plant, all of one instant, and begins at the first byte. `sensed`: what sensors show
+ * then; read only where it is chosen. */
+void laconic_raw_collect(laconic_raw_output *raw, const laconic_plant *plant, const laconic_sensor_outputs *sensed);
 
 /* Copies the next bytes, at most `room`, and fills up with zeros; false iff these were the last. */
 bool laconic_raw_give(laconic_raw_output *raw, uint8_t *bytes, uint8_t room);
