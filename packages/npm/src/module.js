@@ -13,17 +13,18 @@ function bytesOf(text) {
 
 /** What the core calls its numbers, and where they are. */
 export class Module {
-  /** @param {Record<string, any>} exported */
-  constructor(exported) {
+  /** @param {Record<string, any>} exported @param {WebAssembly.Module} compiled */
+  constructor(exported, compiled) {
     this.c = exported;
+    this.compiled = compiled;
     this.fields = this.listFields();
     this.outputs = this.listOutputs();
     this.methods = this.listMethods();
   }
 
   static async load() {
-    const { instance } = await WebAssembly.instantiate(bytesOf(wasm));
-    return new Module(instance.exports);
+    const { instance, module } = await WebAssembly.instantiate(bytesOf(wasm));
+    return new Module(instance.exports, module);
   }
 
   /** @param {number} pointer */

@@ -1,0 +1,219 @@
+// How the robot is driven: sliders, keys and gamepad set a wanted velocity, or each wheel has a slider of its own.
+import { perWheel } from "./drive.js";
+import { byId, element, fixed, roundDown } from "./texts.js";
+
+export const DIRECTIONS = ["forward", "left", "turn"];
+const UNITS = { velocity: ["m/s", "m/s", "rad/s"], acceleration: ["m/s²", "m/s²", "rad/s²"] };
+const PUSH = [1, 1, 3]; // m/s² and rad/s² at the end of a slider, for robots without motors
+const USUAL_V = 12;
+const OF_KEYS = 0.7; // of a slider's end that a key gives
+const DEAD = 0.12; // of a gamepad's stick
+/** @type {Record<string, [number, number]>} */
+const KEYS = {
+  w: [0, 1], s: [0, -1], a: [1, 1], d: [1, -1], q: [2, 1], e: [2, -1],
+  arrowup: [0, 1], arrowdown: [0, -1], arrowleft: [2, 1], arrowright: [2, -1],
+};
+
+/** The drive panel for one robot. */
+export class Controls {
+  /** @param {{touched: (mode: string) => void}} owner */
+  constructor(owner) {
+    this.owner = owner;
+    this.mode = "scene";
+    this.wanted = [0, 0, 0];
+    this.most = [1, 1, 1];
+    /** @type {number[]} */
+    this.levels = [];
+    this.held = new Set();
+    this.stick = false;
+    this.scope = /** @type {HTMLElement} */ (byId("stage"));
+    this.listen();
+  }
+
+  listen() {
+    for (const [k, name] of DIRECTIONS.entries()) {
+      byId(name).addEventListener("input", (/** @type {any} */ event) => this.want(k, Number(event.target.value)));
+    }
+    for (const input of document.querySelectorAll("input[name=drive]"))
+      input.addEventListener("change", () => this.choose(/** @type {HTMLInputElement} */ (input).value));
+    byId("stop").addEventListener("click", () => this.stop());
+    document.addEventListener("keydown", (event) => this.key(event, true));
+    document.addEventListener("keyup", (event) => this.key(event, false));
+    window.addEventListener("blur", () => this.releaseKeys());
+  }
+
+  /** Fits sliders to a robot: which directions its wheels allow, and how fast. */
+  fit(/** @type {any} */ robot, /** @type {any} */ scene, /** @type {boolean} */ isSame) {
+    this.robot = robot;
+    this.hasMotors = scene.vehicle.wheel.some((/** @type {any} */ _, /** @type {number} */ i) => robot.motorGain(i) !== 0);
+    this.able = [0, 1, 2].map((k) => robot.allowed(...unit(k))[k] > 0.2 && scene.vehicle.wheel.length > 0);
+    if (scene.vehicle.wheel.length && !this.hasMotors) this.most = PUSH;
+    else this.most = [0, 1, 2].map((k) => this.fastest(k, mostVoltage(scene)));
+    if (!isSame) {
+      this.wanted = [0, 0, 0];
+      this.levels = scene.vehicle.wheel.map(() => 0);
+    }
+    this.fitVelocities();
+    this.fitWheels(scene);
+    this.show();
+  }
+
+  fastest(/** @type {number} */ k, /** @type {number} */ voltage) {
+    const needed = Math.max(0, ...this.robot.voltagesFor(...unit(k)).map(Math.abs));
+    return needed > 1e-9 ? roundDown(voltage / needed) : 1;
+  }
+
+  fitVelocities() {
+    for (const [k, name] of DIRECTIONS.entries()) {
+      const slider = byId(name);
+      slider.disabled = !this.able?.[k];
+      slider.min = String(-this.most[k]);
+      slider.max = String(this.most[k]);
+      slider.step = String(this.most[k] / 100);
+    }
+    byId("velocity-label").textContent = this.hasMotors ? "Velocity" : "Acceleration";
+  }
+
+  fitWheels(/** @type {any} */ scene) {
+    const most = this.hasMotors ? mostVoltage(scene) : roundDown(1.0001 * mostTorque(scene, this.robot));
+    this.wheelUnit = this.hasMotors ? "V" : "N·m";
+    this.levels.length = scene.vehicle.wheel.length;
+    const rows = scene.vehicle.wheel.map((/** @type {any} */ wheel, /** @type {number} */ i) => {
+      this.levels[i] = Math.max(-most, Math.min(most, this.levels[i] ?? 0));
+      const slider = element("input", { type: "range", id: `wheel-${i}`, min: -most, max: most, step: most / 100 });
+      slider.disabled = wheel.locked || (this.hasMotors && this.robot.motorGain(i) === 0);
+      slider.addEventListener("input", () => this.turnWheel(i, Number(slider.value)));
+      const label = element("label", { htmlFor: `wheel-${i}` }, `Wheel ${i + 1}`);
+      return element("div", { className: "slider" }, label, slider, element("output", { htmlFor: `wheel-${i}` }));
+    });
+    byId("wheel-sliders").replaceChildren(...rows);
+  }
+
+  choose(/** @type {string} */ mode, tells = true) {
+    this.mode = mode;
+    /** @type {any} */ (document.querySelector(`input[name=drive][value=${mode}]`)).checked = true;
+    this.show();
+    if (tells) this.owner.touched(mode);
+  }
+
+  want(/** @type {number} */ k, /** @type {number} */ value) {
+    if (!this.able?.[k] && value !== 0) return;
+    this.wanted[k] = value;
+    if (this.mode !== "velocity") this.choose("velocity");
+    this.show();
+    this.owner.touched("velocity");
+  }
+
+  turnWheel(/** @type {number} */ i, /** @type {number} */ value) {
+    this.levels[i] = value;
+    if (this.mode !== "wheels") this.choose("wheels");
+    this.show();
+    this.owner.touched("wheels");
+  }
+
+  stop() {
+    this.wanted = [0, 0, 0];
+    this.levels = this.levels.map(() => 0);
+    if (this.mode === "scene") this.choose("velocity");
+    this.show();
+    this.owner.touched(this.mode);
+  }
+
+  /** What acts on the robot now. @returns {Record<string, number>} */
+  signals() {
+    const name = this.hasMotors ? "voltage_V" : "axle_torque_Nm";
+    if (this.mode === "wheels") return perWheel(name, this.levels);
+    const find = this.hasMotors ? "voltagesFor" : "torquesFor";
+    return this.wanted.every((value) => value === 0) ? {} : perWheel(name, this.robot[find](...this.wanted));
+  }
+
+  /** Keys drive while nothing that takes keys itself has the focus. */
+  key(/** @type {KeyboardEvent} */ event, /** @type {boolean} */ isDown) {
+    const key = event.key.toLowerCase(), found = KEYS[key];
+    const isHere = document.activeElement === this.scope || document.activeElement === document.body;
+    if (!found || event.ctrlKey || event.metaKey || event.altKey || (isDown && !isHere)) return;
+    if (isDown) event.preventDefault();
+    if (isDown === this.held.has(key)) return;
+    isDown ? this.held.add(key) : this.held.delete(key);
+    this.followKeys(isSideless(this.able) && (key === "a" || key === "d"));
+  }
+
+  followKeys(usesTurn = false) {
+    const wanted = [0, 0, 0];
+    for (const key of this.held) {
+      const [k, sign] = KEYS[key];
+      wanted[k === 1 && isSideless(this.able) ? 2 : k] += sign;
+    }
+    wanted.forEach((sign, k) => (this.able?.[k] || usesTurn || this.wanted[k]) && this.want(k, sign * OF_KEYS * this.most[k]));
+  }
+
+  releaseKeys() {
+    if (this.held.size === 0) return;
+    this.held.clear();
+    this.followKeys();
+  }
+
+  /** The first gamepad's sticks; a stick that comes to rest stops what it drove. */
+  pollGamepad() {
+    const pad = navigator.getGamepads?.().find((each) => each);
+    byId("gamepad").hidden = !pad;
+    if (!pad) return;
+    const axes = [-(pad.axes[1] ?? 0), -(pad.axes[0] ?? 0), -(pad.axes[2] ?? 0)];
+    const values = axes.map((axis) => (Math.abs(axis) > DEAD ? axis : 0));
+    const isUsed = values.some((value) => value !== 0);
+    if (isUsed || this.stick) values.forEach((value, k) => value * this.most[k] !== this.wanted[k] && this.want(k, value * this.most[k]));
+    this.stick = isUsed;
+  }
+
+  /** Shows what the scene does to each wheel. */
+  follow(/** @type {Record<string, number>} */ signals) {
+    const name = this.hasMotors ? "voltage_V" : "axle_torque_Nm";
+    this.levels = this.levels.map((_, i) => signals[`${name}[${i + 1}]`] ?? 0);
+    this.show();
+  }
+
+  show() {
+    byId("velocity-sliders").hidden = this.mode !== "velocity";
+    byId("wheel-sliders").hidden = this.mode === "velocity";
+    byId("drive-hint").textContent = hint(this.mode, Boolean(this.hasMotors));
+    const units = UNITS[this.hasMotors ? "velocity" : "acceleration"];
+    for (const [k, name] of DIRECTIONS.entries()) setSlider(byId(name), this.wanted[k], units[k]);
+    this.levels.forEach((level, i) => setSlider(byId(`wheel-${i}`), level, this.wheelUnit ?? ""));
+  }
+}
+
+function hint(/** @type {string} */ mode, /** @type {boolean} */ hasMotors) {
+  if (mode === "scene") return "What the scene gives each wheel over time. Touch a slider or a key to take over.";
+  if (mode === "wheels") return hasMotors ? "The voltage of each motor." : "The torque on each axle.";
+  return hasMotors
+    ? "Velocity of the body’s origin. The core’s matrices give the least voltages that hold it without slip."
+    : "No motors here: the core’s matrices give the least torques on the axles that accelerate the body so.";
+}
+
+function isSideless(/** @type {boolean[] | undefined} */ able) {
+  return !able?.[1];
+}
+
+function unit(/** @type {number} */ k) {
+  return [0, 1, 2].map((each) => Number(each === k));
+}
+
+function setSlider(/** @type {any} */ slider, /** @type {number} */ value, /** @type {string} */ unitName) {
+  if (!slider) return;
+  slider.value = String(value);
+  const text = slider.disabled ? "not with these wheels" : `${fixed(value)} ${unitName}`;
+  slider.setAttribute("aria-valuetext", text);
+  slider.nextElementSibling.textContent = slider.disabled ? "–" : text;
+}
+
+/** The largest voltage that the scene gives, its supply, or 12 V. */
+function mostVoltage(/** @type {any} */ scene) {
+  const given = (scene.input ?? []).filter((/** @type {any} */ each) => each.signal.startsWith("voltage_V"));
+  const values = given.flatMap((/** @type {any} */ each) => each.value ?? [each.amplitude]).map(Math.abs);
+  return scene.vehicle.drive?.supply_V ?? (Math.max(0, ...values) || USUAL_V);
+}
+
+function mostTorque(/** @type {any} */ scene, /** @type {any} */ robot) {
+  const pushes = [0, 1, 2].flatMap((k) => robot.torquesFor(...unit(k).map((u) => u * PUSH[k])));
+  return Math.max(1e-3, ...pushes.map(Math.abs).filter(Number.isFinite));
+}
