@@ -88,7 +88,7 @@
     CALL(0x606B, 0, 0, CANOPEN_I32, CANOPEN_R | CANOPEN_TX, "Velocity demand value") \
     CALL(0x606C, 0, 0, CANOPEN_I32, CANOPEN_R | CANOPEN_TX, "Velocity actual value") \
     FIELD(0x606D, 0, 0, CANOPEN_U16, CANOPEN_R | CANOPEN_W, speed_window, 500, "Velocity window") \
-    FIELD(0x606F, 0, 0, CANOPEN_U16, CANOPEN_R | CANOPEN_W, speed_threshold, 100, "Velocity threshold") \
+    FIELD(0x606F, 0, 0, CANOPEN_U16, CANOPEN_R | CANOPEN_W, speed_threshold, 5, "Velocity threshold") \
     FIELD(0x6071, 0, 0, CANOPEN_I16, CANOPEN_R | CANOPEN_W | CANOPEN_RX, target_torque, 0, "Target torque") \
     FIELD(0x6072, 0, 0, CANOPEN_U16, CANOPEN_R | CANOPEN_W | CANOPEN_RX, max_torque, 1000, "Max torque") \
     CALL(0x6075, 0, 0, CANOPEN_U32, CANOPEN_R | CANOPEN_W, "Motor rated current") \

@@ -7,7 +7,7 @@ from pathlib import Path
 
 import can
 import pytest
-from play_support import DBC, PLAY, Codec, played
+from play_support import DBC, PLAY, Codec, played, sdo
 
 from laconic.cli.main import run
 from laconic.play.can_fail import KINDS, drives_can_fail
@@ -18,13 +18,6 @@ from laconic.scene import read_scene
 
 HEARTBEAT_S = 0.05
 LEFT, RIGHT = 4, 5  # node ids of canopen_agv
-
-
-def sdo(node_id: int, index: int, value: int, size: int) -> can.Message:
-    """An expedited download to subindex 0."""
-    head = {1: 0x2F, 2: 0x2B, 4: 0x23}[size]
-    return can.Message(arbitration_id=0x600 + node_id, is_extended_id=False,
-                       data=struct.pack("<BHBi", head, index, 0, value))
 
 
 class AgvMaster:
