@@ -79,7 +79,7 @@ static int steps_of_stop(uint16_t index, int option, uint16_t word, uint16_t dur
 static void option_codes_say_how_the_drive_stops(void) {
     TEST_ASSERT_EQUAL(0, steps_of_stop(0x605A, 0, 2, QUICK_STOP, SWITCH_ON_DISABLED));
     TEST_ASSERT_INT_WITHIN(8, 207, steps_of_stop(0x605A, 1, 2, QUICK_STOP, SWITCH_ON_DISABLED));
-    TEST_ASSERT_INT_WITHIN(8, 57, steps_of_stop(0x605A, 2, 2, QUICK_STOP, SWITCH_ON_DISABLED));
+    TEST_ASSERT_INT_WITHIN(8, 63, steps_of_stop(0x605A, 2, 2, QUICK_STOP, SWITCH_ON_DISABLED));
     TEST_ASSERT_EQUAL(0, steps_of_stop(0x605B, 0, 6, ENABLED, READY));
     TEST_ASSERT_INT_WITHIN(8, 207, steps_of_stop(0x605B, 1, 6, ENABLED, READY));
     TEST_ASSERT_EQUAL(0, steps_of_stop(0x605C, 0, 7, ENABLED, SWITCHED_ON));
@@ -105,12 +105,12 @@ static void a_command_that_comes_with_its_mode_again_and_again_does_not_slow_dow
     enable(9);
     start_nodes();
     step(600);
-    for (int k = 0; k < 65; k++) {
+    for (int k = 0; k < 80; k++) {
         deliver(0x200 + ID, quick_stop, 3);
         step(1);
     }
     TEST_ASSERT_EQUAL_HEX16(SWITCH_ON_DISABLED, state());
-    TEST_ASSERT_INT_WITHIN(100, 0, get(0x606C, 0));
+    TEST_ASSERT_INT_WITHIN(5, 0, get(0x606C, 0));
 }
 
 static void a_quick_stop_that_does_not_stay_cannot_be_taken_back(void) {
