@@ -3,15 +3,13 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Iterator, Mapping
 from typing import Any
 
 from laconic.identification.parameter import Parameter
 from laconic.identification.report import judgement
 from laconic.identification.study import Study, fitted_scene, parts
+from laconic.scene.scene_text import Comments, lines_of
 from laconic.scene.table import read_toml
-
-Comments = dict[tuple[str, ...], str]
 
 
 def fitted_text(study: Study) -> str:
@@ -28,7 +26,7 @@ def fitted_text(study: Study) -> str:
     head += ["# Intervals hold the true value with 95 %, if the rest of the model is right. In words:"]
     head += [f"#   {word}" for word in study.words]
     head += [f"# {line}" for line in judgement(study)]
-    return "\n".join([*head, *_lines(data, (), comments)]) + "\n"
+    return "\n".join([*head, *lines_of(data, comments)]) + "\n"
 
 
 def _rewrite_vehicle(study: Study, data: dict[str, Any], comments: Comments) -> None:
@@ -125,38 +123,3 @@ def interval_text(parameter: Parameter, value: float, half: float) -> str:
     if parameter.group == "distance":
         return f"{parameter.name}: {value:.5g} ± {half:.2g} times the nominal ones"
     return f"{parameter.name}: {value:.5g} ± {half:.2g}{unit}, nominal {parameter.nominal:.5g}"
-
-
-def _lines(table: Mapping[str, Any], location: tuple[str, ...], comments: Comments) -> Iterator[str]:
-    """A table's own keys, then its tables."""
-    inner = {key: value for key, value in table.items() if _is_table(value) or _is_tables(value)}
-    for key, value in table.items():
-        if key not in inner:
-            comment = comments.get((*location, key), "")
-            yield f"{key} = {_value(value)}" + (f"  # {comment}" if comment else "")
-    for key, value in inner.items():
-        name = ".".join(part for part in (*location, key) if not part.isdigit())
-        for number, each in enumerate(value if _is_tables(value) else [value]):
-            yield ""
-            yield f"[[{name}]]" if _is_tables(value) else f"[{name}]"
-            deeper = (*location, key, str(number)) if _is_tables(value) else (*location, key)
-            yield from _lines(each, deeper, comments)
-
-
-def _is_table(value: Any) -> bool:
-    return isinstance(value, dict)
-
-
-def _is_tables(value: Any) -> bool:
-    return isinstance(value, list) and bool(value) and all(isinstance(each, dict) for each in value)
-
-
-def _value(value: Any) -> str:
-    if isinstance(value, bool):
-        return "true" if value else "false"
-    if isinstance(value, str):
-        escaped = "".join(c if c >= " " and c not in '"\\\x7f' else f"\\u{ord(c):04x}" for c in value)
-        return f'"{escaped}"'
-    if isinstance(value, list):
-        return f"[{', '.join(_value(each) for each in value)}]"
-    return repr(value) if isinstance(value, (int, float)) else str(value)

@@ -1,0 +1,51 @@
+"""Which reader a file needs: by its ending, else by the element it begins with."""
+
+from __future__ import annotations
+
+from pathlib import Path
+from xml.etree import ElementTree
+
+from laconic.errors import BadInput, reason_of
+from laconic.robot_import.answers import Answers
+from laconic.robot_import.mjcf import read_mjcf
+from laconic.robot_import.robot_tree import Robot
+from laconic.robot_import.sdf import read_sdf
+from laconic.robot_import.urdf import read_urdf, read_xacro
+
+BY_ROOT = {"robot": "urdf", "mujoco": "mjcf", "sdf": "sdf"}
+ENDINGS = {".urdf": "urdf", ".xacro": "xacro", ".mjcf": "mjcf", ".sdf": "sdf", ".world": "sdf"}
+
+
+def read_robot(path: Path, answers: Answers) -> Robot:
+    """The tree of the file; BadInput, with the file's name, for one that cannot be used."""
+    form = ENDINGS.get(path.suffix.lower()) or _by_content(path)
+    if form == "xacro" or (form == "urdf" and _has_macros(path)):
+        return read_xacro(path, answers.xacro_arguments, answers.packages)
+    if answers.xacro_arguments:
+        raise BadInput(f"--set: {path} is no xacro file, so it takes no arguments; leave it out")
+    if form == "urdf":
+        return read_urdf(path, answers.packages)
+    if form == "mjcf":
+        return read_mjcf(path, answers.model)
+    return read_sdf(path, answers.packages, answers.model)
+
+
+def _by_content(path: Path) -> str:
+    try:
+        root = ElementTree.parse(path).getroot()
+    except OSError as error:
+        raise BadInput(f"{path}: {reason_of(error)}") from None
+    except ElementTree.ParseError:
+        raise BadInput(f"{path}: is no XML; give a URDF, xacro, MJCF or SDF file") from None
+    if root.tag not in BY_ROOT:
+        raise BadInput(f"{path}: begins with <{root.tag}>; a robot begins with <robot> (URDF, xacro), <mujoco> or "
+                       "<sdf>")
+    return BY_ROOT[root.tag]
+
+
+def _has_macros(path: Path) -> bool:
+    """A URDF by its ending that is a xacro by its content."""
+    try:
+        return b"xacro:" in path.read_bytes()
+    except OSError as error:
+        raise BadInput(f"{path}: {reason_of(error)}") from None

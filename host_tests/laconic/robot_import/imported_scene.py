@@ -1,0 +1,222 @@
+"""The scene of an imported robot: its numbers with their origin, and a mark at each that the file does not tell."""
+
+from __future__ import annotations
+
+import copy
+from collections.abc import Sequence
+from dataclasses import dataclass
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+
+from laconic.errors import BadInput
+from laconic.robot_import.answers import Answers
+from laconic.robot_import.formats import read_robot
+from laconic.robot_import.rigid_body import RigidBody, add_up
+from laconic.robot_import.robot_tree import Robot
+from laconic.robot_import.rollers import Kind, kinds_of
+from laconic.robot_import.supports import Support, find_supports
+from laconic.robot_import.wheels import FoundWheel, Ground, find_wheels
+from laconic.scene import Scene, scene_of
+from laconic.scene.scene_text import Comments, lines_of
+from laconic.scene.table import Table
+
+DIGITS = 9
+ACCELERATION_M_PER_S2 = 0.3
+PUSH_S = 1.0
+DURATION_S, STEP_S = 3.0, 0.01
+FRICTION_STEP_S = 0.001
+SHARED = {"radius_m": ("wheel_radius_m", "by the shapes of the wheels, unless said with --radius"),
+          "inertia_kgm2": ("wheel_inertia_kgm2", "about the axle, rollers included, without gear and rotor"),
+          "motor_damping_Nms": ("motor_damping_Nms", "damping of the joints")}
+MOTOR = ("# The file does not tell the motors. With them, voltage_V[i] drives wheel i; their data sheet gives:",
+         "#   [vehicle.motor]", "#   resistance_ohm = …", "#   torque_constant_Nm_per_A = …", "#   "
+                                                                                              "back_emf_Vs_per_rad = …",
+         "#   gear_ratio = …")
+
+
+@dataclass(frozen=True)
+class Imported:
+    """The scene as TOML text, and what the user should know of it, a line each."""
+
+    name: str
+    text: str
+    wheels: tuple[str, ...]
+    assumptions: tuple[str, ...]
+    remarks: tuple[str, ...]
+
+
+def import_robot(path: Path, answers: Answers) -> Imported:
+    """Reads URDF, xacro, MJCF or SDF; BadInput where the file cannot be used, or where something must be asked for."""
+    robot = read_robot(path, answers)
+    ground = find_wheels(robot, answers)
+    answers.check([wheel.name for wheel in ground.wheels])
+    kinds = kinds_of(str(path), ground.wheels, answers)
+    whole = add_up(robot.links.values())
+    if whole.mass_kg <= 0.0:
+        raise BadInput(f"{path}: all links are without mass; give them an <inertial>")
+    return _Writer(robot, ground, kinds, whole, find_supports(robot, ground), answers).imported()
+
+
+class _Writer:
+    """Collects the tables and their comments."""
+
+    def __init__(self, robot: Robot, ground: Ground, kinds: Sequence[Kind], whole: RigidBody,
+                 supports: Sequence[Support], answers: Answers):
+        self.robot, self.ground, self.kinds, self.whole = robot, ground, kinds, whole
+        self.supports, self.answers = supports, answers
+        self.comments: Comments = {}
+        self.remarks = [*robot.remarks, *ground.remarks]
+        for link in robot.links.values():
+            least, *_, most = np.linalg.eigvalsh(link.inertia_kgm2)
+            if least < -1e-9 * abs(most):
+                self.remarks.append(f"link {link.name} has a principal moment of {least:.3g} kg·m², which no body "
+                                    "has; it is "
+                                    "counted as it is given")
+
+    def imported(self) -> Imported:
+        """All tables, checked by the core."""
+        data: dict[str, Any] = {"name": self.robot.name, "source": f"{self.robot.path.name}, {self.robot.format}",
+                                "vehicle": self.vehicle()}
+        slips = self.answers.friction_coefficient is not None
+        if slips:
+            data["ground"] = {"friction_coefficient": self.answers.friction_coefficient}
+            self.comments["ground", "friction_coefficient"] = "said with --friction"
+        run = {"run": {"duration_s": DURATION_S, "step_s": FRICTION_STEP_S if slips else STEP_S}}
+        data |= {"input": self.push(self.checked(data | run))} | run
+        if slips:
+            data["outputs"] = {"every_s": STEP_S}
+        self.checked(data)
+        assumed = [f"{_path(where)}: {why}" for where, why in self.comments.items()
+                   if why.startswith("assumption") and where[-1] != "kind"]  # of kinds, words() tells
+        text = "\n".join([*self.head(), *lines_of(data, self.comments)]) + "\n"
+        return Imported(self.robot.name, text, tuple(self.words()), tuple(assumed), tuple(self.remarks))
+
+    def checked(self, data: dict[str, Any]) -> Scene:
+        """The scene that the tables make; what the core refuses is BadInput, by the robot's file."""
+        scene = scene_of(Table(self.robot.path, "", copy.deepcopy(data)))
+        scene.plant(scene.core())
+        return scene
+
+    def head(self) -> list[str]:
+        """What the scene is, and what was left open."""
+        told = [f"# {self.robot.name}, imported from {self.robot.path.name} ({self.robot.format}). The body frame is "
+                "that of link",
+                f"# {self.robot.base}; all joints are in their zero position.", *MOTOR]
+        if self.remarks:
+            told += ["# Seen on the way:", *(f"#   {remark}" for remark in self.remarks)]
+        return told
+
+    def vehicle(self) -> dict[str, Any]:
+        """`[vehicle]`: totals, what all wheels share, wheels, supports."""
+        wheels = [self.wheel(i, w, k) for i, (w, k) in enumerate(zip(self.ground.wheels, self.kinds, strict=True))]
+        vehicle = self.totals() | self.shared(wheels)
+        vehicle["wheel"] = wheels
+        if self.supports:
+            vehicle["support"] = [self.support(i, each) for i, each in enumerate(self.supports)]
+        return vehicle
+
+    def totals(self) -> dict[str, Any]:
+        """Mass, yaw inertia and centre of mass of the whole."""
+        whole, count = self.whole, sum(link.mass_kg > 0.0 for link in self.robot.links.values())
+        self.comments["vehicle", "mass_kg"] = f"sum of {count} links" if count > 1 else "of one link"
+        self.comments["vehicle", "yaw_inertia_kgm2"] = "of all links about their common centre of mass"
+        self.comments["vehicle", "com_z_m"] = "above the lowest point of the wheels"
+        massless = [link.name for link in self.robot.links.values() if not link.has_inertia and link.shapes]
+        if massless:
+            self.remarks.append(f"links without <inertial> count as without mass: {', '.join(massless)}")
+        yaw = float(whole.inertia_kgm2[2, 2])
+        if yaw <= 0.0:
+            raise BadInput(f"{self.robot.path}: the yaw inertia of all links is {yaw:g} kg·m²; give the links' "
+                           "<inertia>")
+        return {"mass_kg": _rounded(whole.mass_kg), "yaw_inertia_kgm2": _rounded(yaw),
+                "com_x_m": _rounded(whole.com_m[0]), "com_y_m": _rounded(whole.com_m[1]),
+                "com_z_m": _rounded(whole.com_m[2] - self.ground.height_m)}
+
+    def wheel(self, index: int, wheel: FoundWheel, kind: Kind) -> dict[str, Any]:
+        """One wheel, with a radius and an inertia of its own."""
+        where = ("vehicle", "wheel", str(index))
+        self.comments[(*where, "kind")] = f"{wheel.name}; {kind.why}" if kind.is_told else f"{kind.why} ({wheel.name})"
+        if wheel.inertia_kgm2 <= 0.0:
+            raise BadInput(f"{self.robot.path}: wheel {wheel.name} has no inertia about its axle; give its link an "
+                           "<inertia>, or "
+                           f"--wheel-inertia {wheel.name}=KGM2")
+        off = float(np.linalg.norm(wheel.hub_m - wheel.joint.point_m))
+        if off > 1e-3:
+            self.comments[(*where, "x_m")] = f"middle of its shape, {1e3 * off:.0f} mm along the axle from the joint"
+        table: dict[str, Any] = {"kind": kind.kind, "x_m": _rounded(wheel.hub_m[0]), "y_m": _rounded(wheel.hub_m[1]),
+                                 "axle_deg": _rounded(np.degrees(wheel.axle_rad))}
+        if kind.roller_deg is not None:
+            table["roller_deg"] = _rounded(kind.roller_deg)
+        table |= {"radius_m": _rounded(wheel.radius_m), "inertia_kgm2": _rounded(wheel.inertia_kgm2)}
+        if wheel.joint.damping_Nms > 0.0:
+            table["motor_damping_Nms"] = _rounded(wheel.joint.damping_Nms)
+        return table
+
+    def support(self, index: int, support: Support) -> dict[str, Any]:
+        """A point that carries a load."""
+        self.comments["vehicle", "support", str(index), "x_m"] = support.why
+        return {"x_m": _rounded(support.x_m), "y_m": _rounded(support.y_m)}
+
+    def shared(self, wheels: list[dict[str, Any]]) -> dict[str, float]:
+        """What most wheels share stands once, at the vehicle; it is taken out of these wheels."""
+        found = {}
+        for key, (of_all, why) in SHARED.items():
+            values = [wheel.get(key, 0.0) for wheel in wheels]
+            value = max(values, key=values.count)
+            if key == "motor_damping_Nms" and not any(values):
+                continue
+            found[of_all] = value
+            self.comments["vehicle", of_all] = why
+            for index, wheel in enumerate(wheels):
+                if wheel.get(key, 0.0) == value:
+                    wheel.pop(key, None)
+                elif key in SHARED:
+                    wheel[key] = values[index]
+        if "motor_damping_Nms" in found:
+            found["motor_gain_Nm_per_V"] = 0.0
+        return found
+
+    def push(self, scene: Scene) -> list[dict[str, Any]]:
+        """Torques that push the robot ahead, so that the scene shows a motion; none where it cannot roll ahead."""
+        rolling = rolling_ahead(scene)
+        if not rolling.any():
+            self.remarks.append("the wheels do not let the robot roll straight ahead; no inputs are given")
+            return []
+        scale = scene.vehicle["mass_kg"] * ACCELERATION_M_PER_S2 / float(rolling @ rolling)
+        inputs = []
+        self.comments["input", "0", "signal"] = (f"assumption: these torques push ahead with about "
+                                                 f"{ACCELERATION_M_PER_S2:g} m/s² "
+                                                 f"for {PUSH_S:g} s")
+        for index, rate in enumerate(rolling):
+            if abs(rate) > 1e-9 * np.abs(rolling).max():
+                inputs.append({"signal": f"axle_torque_Nm[{index + 1}]", "kind": "steps", "t_s": [0.0, PUSH_S],
+                               "value": [_rounded(scale * rate), 0.0]})
+        return inputs
+
+    def words(self) -> list[str]:
+        """A line for each wheel."""
+        return [f"wheel {index + 1}: {wheel.name}, {kind.kind}"
+                + (f" with rollers at {kind.roller_deg:.4g}°" if kind.roller_deg is not None else "")
+                + f", radius {wheel.radius_m:.4g} m at ({wheel.hub_m[0]:.4g}, {wheel.hub_m[1]:.4g}) m; {kind.why}"
+                for index, (wheel, kind) in enumerate(zip(self.ground.wheels, self.kinds, strict=True))]
+
+
+def rolling_ahead(scene: Scene) -> np.ndarray:
+    """Wheel speeds at 1 m/s ahead (rad/s); zeros where fixed wheels do not allow that motion."""
+    core = scene.core()
+    found = core.matrices(scene.c_vehicle(core))
+    if found.constraint_rows.size and np.abs(found.constraint_rows[:, 0]).max() > 1e-9:
+        return np.zeros(scene.wheel_count)
+    return np.asarray(found.wheel_rows[:, 0] / scene.vehicle["wheel_radius_m"])
+
+
+def _path(where: tuple[str, ...]) -> str:
+    """`vehicle.support[1].x_m`, as messages name a value."""
+    return "".join(f"[{int(part) + 1}]" if part.isdigit() else f".{part}" for part in where).lstrip(".")
+
+
+def _rounded(value: float) -> float:
+    number = float(f"{value:.{DIGITS}g}")
+    return 0.0 if abs(number) < 1e-9 else number

@@ -1,0 +1,102 @@
+"""MJCF, read by MuJoCo: its compiler resolves defaults, includes, frames and the inertia of geoms without a mass."""
+
+from __future__ import annotations
+
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+
+from laconic.errors import BadInput
+from laconic.robot_import.checked import words_of
+from laconic.robot_import.placement import Array, inverse, placement, point_of
+from laconic.robot_import.robot_tree import BALL, FIXED, HINGE, SLIDE, Joint, Link, Robot, Shape
+
+KINDS = {0: BALL, 1: BALL, 2: SLIDE, 3: HINGE}  # mjJNT_FREE, _BALL, _SLIDE, _HINGE
+SPHERE, CAPSULE, CYLINDER, BOX, MESH = 2, 3, 5, 6, 7  # mjtGeom
+
+
+def read_mjcf(path: Path, model_name: str | None) -> Robot:
+    """The heaviest body that stands in the world, or the one of this name, with all that hangs on it."""
+    import mujoco
+
+    try:
+        model = mujoco.MjModel.from_xml_path(str(path))
+    except (ValueError, OSError) as error:
+        raise BadInput(f"{path}: MuJoCo cannot read it: {words_of(error)}") from None
+    data = mujoco.MjData(model)
+    mujoco.mj_kinematics(model, data)
+    base = _base(path, model, model_name)
+    inside = [body for body in range(1, model.nbody) if _hangs_on(model, body, base)]
+    back = inverse(placement(data.xpos[base], data.xmat[base].reshape(3, 3)))
+    names = {body: model.body(body).name or f"body {body}" for body in inside}
+    links = {names[body]: _link(model, data, body, names[body], back) for body in inside}
+    joints: dict[str, Joint] = {}
+    for body in inside:
+        if body != base:
+            joint = _joint(path, model, data, body, names, back)
+            joints[joint.name] = joint
+    title = model.body(base).name or path.stem
+    return Robot(title, path, "MJCF", names[base], links, joints).check()
+
+
+def _base(path: Path, model: Any, name: str | None) -> int:
+    standing = {model.body(body).name: body for body in range(1, model.nbody) if model.body_parentid[body] == 0}
+    if not standing:
+        raise BadInput(f"{path}: has no body; a robot has one at least")
+    if name is None:
+        return max(standing.values(), key=lambda body: float(model.body_subtreemass[body]))
+    if name not in standing:
+        raise BadInput(f"--model {name}: no body of this name stands in the world; there are {', '.join(standing)}")
+    return standing[name]
+
+
+def _hangs_on(model: Any, body: int, base: int) -> bool:
+    while body not in (0, base):
+        body = int(model.body_parentid[body])
+    return body == base
+
+
+def _link(model: Any, data: Any, body: int, name: str, back: Array) -> Link:
+    turn = back[:3, :3] @ np.asarray(data.ximat[body]).reshape(3, 3)
+    first, count = int(model.body_geomadr[body]), int(model.body_geomnum[body])
+    shapes = tuple(shape for geom in range(first, first + count) if (shape := _shape(model, data, geom, back)))
+    inertia = turn @ np.diag(model.body_inertia[body]) @ turn.T
+    return Link(name, float(model.body_mass[body]), point_of(back, data.xipos[body]), inertia, shapes)
+
+
+def _shape(model: Any, data: Any, geom: int, back: Array) -> Shape | None:
+    kind, size = int(model.geom_type[geom]), model.geom_size[geom]
+    placed = back @ placement(data.geom_xpos[geom], np.asarray(data.geom_xmat[geom]).reshape(3, 3))
+    collides = bool(model.geom_contype[geom] or model.geom_conaffinity[geom])
+    if kind == SPHERE:
+        return Shape("sphere", placed, (float(size[0]),), collides=collides)
+    if kind in (CYLINDER, CAPSULE):
+        return Shape("cylinder", placed, (float(size[0]), float(size[1])), collides=collides)
+    if kind == BOX:
+        corners = size * np.array(np.meshgrid(*[[-1.0, 1.0]] * 3)).reshape(3, -1).T
+        return Shape("box", placed, points=point_of(placed, corners), collides=collides)
+    if kind == MESH:
+        mesh = int(model.geom_dataid[geom])
+        first, count = int(model.mesh_vertadr[mesh]), int(model.mesh_vertnum[mesh])
+        return Shape("mesh", placed, points=point_of(placed, model.mesh_vert[first:first + count]), collides=collides)
+    return None
+
+
+def _joint(path: Path, model: Any, data: Any, body: int, names: dict[int, str], back: Array) -> Joint:
+    """A body's joint; without one it is fixed. Of several, all but one must be slides (a suspension)."""
+    parent = names[int(model.body_parentid[body])]
+    first, count = int(model.body_jntadr[body]), int(model.body_jntnum[body])
+    hinges = [joint for joint in range(first, first + count) if KINDS[int(model.jnt_type[joint])] == HINGE]
+    if len(hinges) > 1:
+        raise BadInput(f"{path}: body {names[body]} turns on {len(hinges)} hinges; put a body between them, one for "
+                       "each")
+    if not count:
+        return Joint(f"{names[body]} (fixed)", FIXED, parent, names[body], point_of(back, data.xpos[body]), np.zeros(3))
+    joint = hinges[0] if hinges else first
+    name = model.joint(joint).name or names[body]
+    kind = KINDS[int(model.jnt_type[joint])]
+    damping = float(model.dof_damping[int(model.jnt_dofadr[joint])])
+    limited = bool(model.jnt_limited[joint]) and float(np.ptp(model.jnt_range[joint])) < 4.0 * np.pi
+    axis = back[:3, :3] @ data.xaxis[joint] if kind in (HINGE, SLIDE) else np.zeros(3)
+    return Joint(name, kind, parent, names[body], point_of(back, data.xanchor[joint]), axis, limited, damping)

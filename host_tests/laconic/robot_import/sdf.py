@@ -1,0 +1,207 @@
+"""SDF (SDFormat 1.4 to 1.12): one model of a file, its poses resolved by the frames they are relative to."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from pathlib import Path
+from types import SimpleNamespace
+from typing import Any
+from xml.etree import ElementTree
+
+import numpy as np
+
+from laconic.errors import BadInput, reason_of
+from laconic.robot_import.checked import finite, inertia_matrix, mass, unit_vector, words_of
+from laconic.robot_import.meshes import MeshFiles
+from laconic.robot_import.placement import (
+    IDENTITY,
+    Array,
+    inverse,
+    placement,
+    point_of,
+    rotation_of_quaternion,
+    rotation_of_rpy,
+)
+from laconic.robot_import.robot_tree import BALL, FIXED, HINGE, SLIDE, Joint, Link, Robot, Shape
+
+KINDS = {"revolute": HINGE, "continuous": HINGE, "prismatic": SLIDE, "fixed": FIXED, "ball": BALL, "universal": BALL,
+         "revolute2": BALL, "screw": SLIDE, "gearbox": FIXED}
+TEXTS = {"ixx": 1.0, "ixy": 0.0, "ixz": 0.0, "iyy": 1.0, "iyz": 0.0, "izz": 1.0}  # the format's own when not given
+NOT_LIMITED_RAD = 4.0 * np.pi
+Element = ElementTree.Element
+
+
+def read_sdf(path: Path, packages: Mapping[str, Path], model_name: str | None) -> Robot:
+    """The only model of the file, or the one of this name."""
+    try:
+        root = ElementTree.parse(path).getroot()
+    except OSError as error:
+        raise BadInput(f"{path}: {reason_of(error)}") from None
+    except ElementTree.ParseError as error:
+        raise BadInput(f"{path}: is no XML: {words_of(error)}") from None
+    return _Model(path, _model(path, root, model_name), MeshFiles(path, packages)).robot()
+
+
+def _model(path: Path, root: Element, name: str | None) -> Element:
+    if root.tag != "sdf":
+        raise BadInput(f"{path}: begins with <{root.tag}>; SDF begins with <sdf>")
+    models = [each for each in root.iter("model") if each.find("link") is not None]
+    if name is not None:
+        models = [each for each in models if each.get("name") == name]
+    if len(models) != 1:
+        names = ", ".join(str(each.get("name")) for each in models[:6])
+        raise BadInput(f"{path}: has {len(models)} models with links{f' ({names})' if names else ''}; name one with "
+                       "--model")
+    return models[0]
+
+
+class _Model:
+    """One <model>: its frames by name, in the frame of the model."""
+
+    def __init__(self, path: Path, model: Element, files: MeshFiles):
+        self.path, self.model, self.files = path, model, files
+        for nested in ("include", "model"):
+            if model.find(nested) is not None:
+                raise BadInput(f"{path}: model {model.get('name')} has an <{nested}>, which is not read; put its "
+                               "links into it")
+        self.links = {self._name(each): each for each in model.findall("link")}
+        self.joints = {self._name(each): each for each in model.findall("joint")}
+        frames = {self._name(each): each for each in model.findall("frame")}
+        self.frames = {**self.links, **frames, **self.joints}
+        if len(self.frames) < len(self.links) + len(frames) + len(self.joints):
+            raise BadInput(f"{path}: two links, joints or frames have one name; give each its own")
+        self.placed: dict[str, Array | None] = {}
+
+    def _name(self, element: Element) -> str:
+        name = element.get("name")
+        if not name:
+            raise BadInput(f"{self.path}: a <{element.tag}> has no name; give one")
+        return name
+
+    def frame(self, name: str) -> Array:
+        """Of a link, joint or frame, in the frame of the model."""
+        if name == "__model__":
+            return IDENTITY
+        if name not in self.frames:
+            raise BadInput(f"{self.path}: there is no link, joint or frame {name}; name one that is there")
+        if name not in self.placed:
+            self.placed[name] = None
+            element = self.frames[name]
+            default = {"joint": _text(element, "child"), "frame": element.get("attached_to")}.get(element.tag)
+            self.placed[name] = self.pose(element, default or "__model__")
+        placed = self.placed[name]
+        if placed is None:
+            raise BadInput(f"{self.path}: the pose of {name} is relative to itself; poses may not form a loop")
+        return placed
+
+    def pose(self, element: Element, default: str) -> Array:
+        """`<pose relative_to=…>` of an element, in the frame of the model."""
+        pose = element.find("pose")
+        if pose is None:
+            return self.frame(default)
+        where = f"{self.path}: {element.tag} {element.get('name', '')}"
+        return self.frame(pose.get("relative_to") or default) @ _placement(where, pose)
+
+    def robot(self) -> Robot:
+        """The tree, in the frame of its base."""
+        ends = {name: (_text(each, "parent") or "", _text(each, "child") or "") for name, each in self.joints.items()}
+        real = {name: end for name, end in ends.items() if end[0] != "world"}
+        roots = [name for name in self.links if name not in {child for _, child in real.values()}]
+        if len(roots) != 1:
+            raise BadInput(f"{self.path}: has {len(roots)} links that hang on no joint "
+                           f"({', '.join(roots[:4]) or 'a loop'}); a "
+                           "robot has one, its base")
+        back = inverse(self.frame(roots[0]))
+        links = {name: self._link(name, back) for name in self.links}
+        joints = {name: self._joint(name, *real[name], back) for name in real}
+        title = self.model.get("name") or self.path.stem
+        return Robot(title, self.path, "SDF", roots[0], links, joints, self.files.remarks()).check()
+
+    def _link(self, name: str, back: Array) -> Link:
+        element, where = self.links[name], f"{self.path}: link {name}"
+        frame = back @ self.frame(name)
+        shapes = tuple(shape for tag in ("collision", "visual") for part in element.findall(tag)
+                       if (shape := self._shape(f"{where}: geometry", part, frame, tag == "collision")))
+        inertial = element.find("inertial")
+        if inertial is None:
+            return Link(name, com_m=point_of(frame), shapes=shapes, has_inertia=False)
+        placed = frame @ _placement(where, inertial.find("pose"))
+        given = inertial.find("inertia")
+        moments = {key: _text(given, key) or usual for key, usual in TEXTS.items()} if given is not None else TEXTS
+        tensor = inertia_matrix(where, SimpleNamespace(**moments))
+        turn = placed[:3, :3]
+        return Link(name, mass(where, _text(inertial, "mass") or 1.0), point_of(placed), turn @ tensor @ turn.T, shapes)
+
+    def _shape(self, where: str, part: Element, frame: Array, collides: bool) -> Shape | None:
+        geometry = part.find("geometry")
+        solid = next(iter(geometry), None) if geometry is not None else None
+        if solid is None:
+            return None
+        placed = frame @ _placement(where, part.find("pose"))
+        if solid.tag in ("cylinder", "capsule"):
+            radius, length = finite(where, [_text(solid, "radius"), _text(solid, "length")], 2)
+            return Shape("cylinder", placed, (radius, length / 2.0), collides=collides)
+        if solid.tag == "sphere":
+            return Shape("sphere", placed, tuple(finite(where, [_text(solid, "radius")], 1)), collides=collides)
+        if solid.tag == "box":
+            half = np.array(finite(where, (_text(solid, "size") or "").split(), 3)) / 2.0
+            corners = half * np.array(np.meshgrid(*[[-1.0, 1.0]] * 3)).reshape(3, -1).T
+            return Shape("box", placed, points=point_of(placed, corners), collides=collides)
+        points = self.files.points(_text(solid, "uri") or "") if solid.tag == "mesh" else None
+        if points is None:
+            return None
+        scale = np.array(finite(where, (_text(solid, "scale") or "1 1 1").split(), 3))
+        return Shape("mesh", placed, points=point_of(placed, points * scale), collides=collides)
+
+    def _joint(self, name: str, parent: str, child: str, back: Array) -> Joint:
+        element, where = self.joints[name], f"{self.path}: joint {name}"
+        kind = KINDS.get(element.get("type", ""))
+        if kind is None:
+            raise BadInput(f"{where}: type {element.get('type')} is not known; known are {', '.join(KINDS)}")
+        frame, axis = back @ self.frame(name), np.zeros(3)
+        given = element.find("axis")
+        if kind in (HINGE, SLIDE):
+            xyz = given.find("xyz") if given is not None else None
+            direction = unit_vector(where, (xyz.text or "").split() if xyz is not None else [0.0, 0.0, 1.0])
+            axis = self._turn_of_axis(given, xyz, frame, back) @ direction
+        damping = finite(f"{where}: damping", [_text(given, "dynamics/damping") or 0.0], 1)[0]
+        return Joint(name, kind, parent, child, point_of(frame), axis, _is_limited(where, element, given), damping)
+
+    def _turn_of_axis(self, given: Any, xyz: Any, frame: Array, back: Array) -> Array:
+        """The axes that the axis is given in: the joint's, if the file does not say another."""
+        if xyz is not None and xyz.get("expressed_in"):
+            return np.asarray((back @ self.frame(xyz.get("expressed_in")))[:3, :3])
+        if given is not None and (_text(given, "use_parent_model_frame") or "").strip() in ("1", "true"):
+            return np.asarray(back[:3, :3])
+        return np.asarray(frame[:3, :3])
+
+
+def _is_limited(where: str, joint: Element, axis: Element | None) -> bool:
+    if joint.get("type") != "revolute" or axis is None or axis.find("limit") is None:
+        return False
+    lower, upper = finite(f"{where}: limit", [_bound(axis, "lower", -1e16), _bound(axis, "upper", 1e16)], 2)
+    return upper - lower < NOT_LIMITED_RAD
+
+
+def _bound(axis: Element, end: str, usual: float) -> Any:
+    text = _text(axis, f"limit/{end}")
+    return usual if text is None or text.lower().lstrip("+-") in ("inf", "infinity") else text
+
+
+def _text(element: Element | None, path: str) -> str | None:
+    """The text of an inner element, without blanks around it."""
+    found = element.find(path) if element is not None else None
+    return found.text.strip() if found is not None and found.text else None
+
+
+def _placement(where: str, pose: Element | None) -> Array:
+    """x y z and roll pitch yaw, in degrees where it says so, or a quaternion x y z w."""
+    if pose is None or not (pose.text or "").strip():
+        return IDENTITY
+    words = (pose.text or "").split()
+    if pose.get("rotation_format") == "quat_xyzw":
+        x, y, z, qx, qy, qz, qw = finite(f"{where}: pose", words, 7)
+        return placement((x, y, z), rotation_of_quaternion(qw, qx, qy, qz))
+    numbers = finite(f"{where}: pose", words, 6)
+    turn = np.radians(numbers[3:]) if pose.get("degrees") == "true" else numbers[3:]
+    return placement(numbers[:3], rotation_of_rpy(*turn))

@@ -1,0 +1,70 @@
+"""Robots as URDF text, put together from parts, and what MuJoCo says of their masses."""
+
+from __future__ import annotations
+
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+
+BOX = '<collision><geometry><box size="0.4 0.3 0.1"/></geometry></collision>'
+
+
+def inertial(mass: float, moments: tuple[float, float, float], xyz: str = "0 0 0", rpy: str = "0 0 0",
+             ixy: float = 0.0) -> str:
+    ixx, iyy, izz = moments
+    return (f'<inertial><origin xyz="{xyz}" rpy="{rpy}"/><mass value="{mass}"/>'
+            f'<inertia ixx="{ixx}" iyy="{iyy}" izz="{izz}" ixy="{ixy}" ixz="0" iyz="0"/></inertial>')
+
+
+def link(name: str, *parts: str) -> str:
+    return f'<link name="{name}">{"".join(parts)}</link>'
+
+
+def joint(name: str, kind: str, parent: str, child: str, xyz: str = "0 0 0", rpy: str = "0 0 0", axis: str = "0 1 0",
+          more: str = "") -> str:
+    return (f'<joint name="{name}" type="{kind}"><parent link="{parent}"/><child link="{child}"/>'
+            f'<origin xyz="{xyz}" rpy="{rpy}"/><axis xyz="{axis}"/>{more}</joint>')
+
+
+def wheel(name: str, parent: str, xyz: str, rpy: str = "0 0 0", axis: str = "0 1 0", radius: float = 0.05) -> str:
+    """A cylinder whose axis is y of the joint, where `axis` does not say otherwise."""
+    along = next(k for k, part in enumerate(axis.split()) if part != "0")
+    lie = ("0 1.5707963267948966 0", "1.5707963267948966 0 0", "0 0 0")[along]
+    moments = [4e-4, 4e-4, 4e-4]
+    moments[along] = 7e-4
+    shape = (f'<collision><origin rpy="{lie}"/><geometry><cylinder radius="{radius}" length="0.02"/></geometry>'
+             "</collision>")
+    return (link(f"{name}_link", inertial(0.5, (moments[0], moments[1], moments[2])), shape)
+            + joint(name, "continuous", parent, f"{name}_link", xyz, rpy, axis))
+
+
+def robot(*parts: str, name: str = "made_up") -> str:
+    return f'<robot name="{name}">{"".join(parts)}</robot>'
+
+
+TWO_WHEELS = (link("base", inertial(5.0, (0.1, 0.1, 0.08), "0.02 0.01 0.03"), BOX)
+              + wheel("left", "base", "0 0.2 -0.05") + wheel("right", "base", "0 -0.2 -0.05"))
+FOUR_WHEELS = (link("base", inertial(9.0, (0.2, 0.2, 0.3)), BOX)
+               + wheel("front_left", "base", "0.2 0.2 -0.05") + wheel("front_right", "base", "0.2 -0.2 -0.05")
+               + wheel("rear_left", "base", "-0.2 0.2 -0.05") + wheel("rear_right", "base", "-0.2 -0.2 -0.05"))
+
+
+def sums_by_mujoco(path: Path) -> tuple[float, np.ndarray, float]:
+    """Mass, centre of mass in the frame of the root link, and yaw inertia about it, by MuJoCo's reading of a URDF."""
+    import mujoco
+
+    spec: Any = mujoco.MjSpec.from_file(str(path))
+    spec.compiler.fusestatic = False
+    model = spec.compile()
+    data = mujoco.MjData(model)
+    mujoco.mj_kinematics(model, data)
+    mujoco.mj_comPos(model, data)
+    mass = model.body_mass
+    com = mass @ data.xipos / mass.sum()
+    yaw = 0.0
+    for body in range(model.nbody):
+        turn = data.ximat[body].reshape(3, 3)
+        off = data.xipos[body] - com
+        yaw += (turn @ np.diag(model.body_inertia[body]) @ turn.T)[2, 2] + mass[body] * (off[0] ** 2 + off[1] ** 2)
+    return float(mass.sum()), com, float(yaw)

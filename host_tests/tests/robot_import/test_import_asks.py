@@ -1,0 +1,105 @@
+"""What a file cannot tell is asked for, and a file that is wrong gives one line; never a guess, never a traceback."""
+
+from __future__ import annotations
+
+import re
+from pathlib import Path
+
+import pytest
+from made_up_robots import BOX, FOUR_WHEELS, TWO_WHEELS, inertial, joint, link, robot, wheel
+
+from laconic.cli.main import run
+
+GOOD = robot(TWO_WHEELS)
+NAMESPACE = 'xmlns:xacro="http://www.ros.org/wiki/xacro"'
+CYLINDER = '<geometry><cylinder radius="0.05" length="0.02"/></geometry>'
+STEERED = robot(link("base", inertial(5.0, (0.1, 0.1, 0.08)), BOX), link("fork"),
+                joint("steer", "continuous", "base", "fork", axis="0 0 1"), wheel("front", "fork", "0 0 -0.05"))
+
+WRONG: list[tuple[str, str, list[str], str]] = [
+    ("not XML", "robot", [], "is no URDF that can be read"),
+    ("empty", "", [], "is no URDF that can be read"),
+    ("cut off", GOOD[:300], [], "is no URDF that can be read"),
+    ("another root", "<sdf/>", [], "is no URDF that can be read"),
+    ("no links", "<robot name='r'/>", [], "has no <link>"),
+    ("two bases", GOOD.replace("</robot>", '<link name="loose"/></robot>'), [], "hang on no joint"),
+    ("a loop", GOOD.replace("</robot>", joint("back", "fixed", "left_link", "base") + "</robot>"), [],
+     "hang on no joint"),
+    ("two parents", GOOD.replace("</robot>", joint("again", "fixed", "base", "left_link") + "</robot>"), [],
+     "already hangs"),
+    ("link twice", GOOD.replace("</robot>", link("left_link") + "</robot>"), [], "is there twice"),
+    ("joint twice", GOOD.replace('name="right" ', 'name="left" '), [], "is there twice"),
+    ("joint to nothing", GOOD.replace('<child link="left_link"/>', '<child link="lost"/>'), [], "link"),
+    ("unknown type", GOOD.replace("continuous", "bouncing"), [], "bouncing"),
+    ("axis 0", GOOD.replace("0 1 0", "0 0 0"), [], "axis is 0"),
+    ("axis of two", GOOD.replace("0 1 0", "0 1"), [], "joint left: <axis> xyz: has 2 numbers; give 3"),
+    ("nan place", GOOD.replace("0 0.2 -0.05", "0 nan -0.05"), [], "<origin> xyz: must be finite"),
+    ("infinite mass", GOOD.replace("5.0", "inf"), [], "mass: must be finite"),
+    ("mass below 0", GOOD.replace("5.0", "-5.0"), [], "cannot be below 0"),
+    ("mass in words", GOOD.replace("5.0", "heavy"), [], "heavy"),
+    ("no mass at all", re.sub("<inertial>.*?</inertial>", "", GOOD), ["--wheel-inertia", "1e-3"],
+     "all links are without mass"),
+    ("no yaw inertia", re.sub("izz=\"[^\"]*\"", 'izz="-9"', GOOD), [], "yaw inertia of all links is"),
+    ("wheel without inertia", GOOD.replace('iyy="0.0007"', 'iyy="0"'), [], "--wheel-inertia left=KGM2"),
+    ("no shapes", re.sub("<collision>.*?</collision>", "", GOOD), [], "no shape tells the radius of left, right"),
+    ("one wheel without shape", GOOD.replace(CYLINDER, "<geometry><sphere radius='0'/></geometry>", 1).replace(
+        'name="left"', 'name="left_wheel"'), [], "no shape tells the wheel's radius"),
+    ("no wheels", GOOD.replace("continuous", "fixed"), [], "no joint turns round on a level axle"),
+    ("axles upright", GOOD.replace("0 1 0", "0 0 1"), [], "no joint turns round on a level axle"),
+    ("all steered", STEERED, [], "all wheels swivel (front)"),
+    ("four across", robot(FOUR_WHEELS), [], "--rollers none with --friction"),
+    ("skid without friction", robot(FOUR_WHEELS), ["--rollers", "none"], "ground.friction_coefficient"),
+    ("mecanum of two", GOOD, ["--rollers", "mecanum"], "is for four wheels at the corners"),
+    ("no such wheel", GOOD, ["--wheel", "lefft"], "did you mean left?"),
+    ("a wheel that is none", robot(TWO_WHEELS, link("lid"), joint("hinge", "fixed", "base", "lid")),
+     ["--wheel", "hinge"],
+     "does not turn on a level axle"),
+    ("radius of no wheel", GOOD, ["--radius", "middle=0.1"], "--radius middle=…: is no wheel"),
+    ("radius below 0", GOOD, ["--radius", "-1"], "--radius -1: must be above 0"),
+    ("radius in words", GOOD, ["--radius", "left=big"], "'big' is no number"),
+    ("radius twice", GOOD, ["--radius", "0.1", "--radius", "0.2"], "is given twice"),
+    ("unknown rollers", GOOD, ["--rollers", "balls"], "give none, omni, mecanum, or the angle"),
+    ("friction below 0", GOOD, ["--friction", "-0.1"], "--friction -0.1: must be above 0"),
+    ("arguments of no xacro", GOOD, ["--set", "a:=1"], "is no xacro file"),
+    ("argument without sign", GOOD, ["--set", "a=1"], "give NAME:=VALUE"),
+    ("package without folder", GOOD, ["--package", "kit"], "give NAME=VALUE"),
+]
+
+
+@pytest.mark.parametrize(("text", "options", "words"), [each[1:] for each in WRONG], ids=[each[0] for each in WRONG])
+def test_what_cannot_be_used_is_one_line(tmp_path: Path, capsys: pytest.CaptureFixture[str], text: str,
+                                         options: list[str], words: str) -> None:
+    (tmp_path / "robot.urdf").write_text(text, encoding="utf-8")
+    assert run(["import", str(tmp_path / "robot.urdf"), "-o", str(tmp_path / "robot.toml"), *options]) == 2
+    told = capsys.readouterr().err
+    assert words in told
+    assert told.count("\n") == 1
+    assert "unexpected" not in told
+    assert not (tmp_path / "robot.toml").exists()
+
+
+@pytest.mark.parametrize(("name", "text", "words"), [
+    ("robot.xacro", f"<robot {NAMESPACE}><xacro:lost/></robot>", "xacro cannot expand it"),
+    ("robot.xacro", f'<robot {NAMESPACE}><xacro:include filename="$(find kit)/a"/></robot>',
+     "package kit is not beside or above the file; give --package kit=FOLDER"),
+    ("robot.sdf", "<sdf version='1.9'/>", "has 0 models with links"),
+    ("robot.sdf", "<robot/>", "SDF begins with <sdf>"),
+    ("robot.sdf", "<sdf", "is no XML"),
+    ("robot.xml", "<mujoco><worldbody/></mujoco>", "has no body"),
+    ("robot.xml", "<mujoco><worldbody><body><geom/></body></worldbody></mujoco>", "MuJoCo cannot read it"),
+    ("robot.xml", "<html/>", "a robot begins with <robot> (URDF, xacro), <mujoco> or <sdf>"),
+    ("robot.txt", "wheels", "is no XML; give a URDF, xacro, MJCF or SDF file")])
+def test_other_formats_are_one_line_too(tmp_path: Path, capsys: pytest.CaptureFixture[str], name: str, text: str,
+                                        words: str) -> None:
+    (tmp_path / name).write_text(text, encoding="utf-8")
+    assert run(["import", str(tmp_path / name), "-o", str(tmp_path / "robot.toml")]) == 2
+    told = capsys.readouterr().err
+    assert words in told
+    assert told.count("\n") == 1
+    assert "unexpected" not in told
+
+
+def test_a_file_that_is_not_there_is_one_line(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    for name in ("lost.urdf", "lost.xacro", "lost.sdf", "lost.xml"):
+        assert run(["import", str(tmp_path / name), "-o", str(tmp_path / "robot.toml")]) == 2
+        assert capsys.readouterr().err.count("\n") == 1
