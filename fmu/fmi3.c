@@ -89,6 +89,11 @@ fmi3Instance fmi3InstantiateCoSimulation(fmi3String instanceName, fmi3String ins
         fmu_free(instance);
         return NULL;
     }
+    if (FMU_MODEL_PORTS > 0 && !eventModeUsed) {
+        fmu_refuse(instance, "Instantiate: the clocks of a bus need event mode; import the FMU with it");
+        fmu_free(instance);
+        return NULL;
+    }
     instance->event_mode_used = eventModeUsed;
     instance->early_return_allowed = earlyReturnAllowed;
     instance->between_steps = intermediateUpdate != NULL ? offer_update : NULL;
@@ -231,6 +236,7 @@ ABSENT_TYPE(Int16, fmi3Int16)
 ABSENT_TYPE(UInt16, fmi3UInt16)
 ABSENT_TYPE(UInt32, fmi3UInt32)
 ABSENT_TYPE(String, fmi3String)
+#if FMU_MODEL_PORTS == 0 /* else they are in network/fmi3_clocks.c */
 ABSENT(fmi3GetBinary, FMU_CALL_GET, "Binary", nValueReferences + nValues, ((void)valueSizes, (void)values),
        size_t valueSizes[], fmi3Binary values[], size_t nValues)
 ABSENT(fmi3SetBinary, FMU_CALL_SET_DISCRETE, "Binary", nValueReferences + nValues, ((void)valueSizes, (void)values),
@@ -253,6 +259,7 @@ NO_CLOCK(SetIntervalFraction, ((void)counters, (void)resolutions), const fmi3UIn
          const fmi3UInt64 resolutions[])
 NO_CLOCK(GetIntervalFraction, ((void)counters, (void)resolutions, (void)qualifiers), fmi3UInt64 counters[],
          fmi3UInt64 resolutions[], fmi3IntervalQualifier qualifiers[])
+#endif
 
 fmi3Status fmi3EvaluateDiscreteStates(fmi3Instance instance) {
     ALLOW(instance, FMU_CALL_UPDATE_DISCRETE_STATES);
@@ -450,7 +457,8 @@ fmi3Status fmi3DoStep(fmi3Instance instance, fmi3Float64 currentCommunicationPoi
     (void)noSetFMUStatePriorToCurrentPoint;
     ALLOW(instance, FMU_CALL_DO_STEP);
     const fmu_status status = fmu_do_step(SELF(instance), currentCommunicationPoint, communicationStepSize, &end);
-    if (eventHandlingNeeded != NULL) *eventHandlingNeeded = fmi3False;
+    if (eventHandlingNeeded != NULL)
+        *eventHandlingNeeded = FMU_MODEL_PORTS > 0 && fmu_model_needs_event(&SELF(instance)->model);
     if (terminateSimulation != NULL) *terminateSimulation = fmi3False;
     if (earlyReturn != NULL) *earlyReturn = end.early;
     if (lastSuccessfulTime != NULL) *lastSuccessfulTime = end.time_s;

@@ -66,6 +66,12 @@ static bool has_name_and_token(const fmu_instance *instance, const fmu_request *
     return false;
 }
 
+static bool offers_kind(const fmu_instance *instance) {
+    if (FMU_MODEL_PORTS == 0 || instance->kind == FMU_CO_SIMULATION) return true;
+    fmu_refuse(instance, "this FMU offers no Model Exchange");
+    return false;
+}
+
 fmu_instance *fmu_create(const fmu_request *request) {
     fmu_instance *instance = calloc(1, sizeof *instance);
     if (instance == NULL) return NULL;
@@ -78,7 +84,7 @@ fmu_instance *fmu_create(const fmu_request *request) {
     /* warnings are logged by default, since they state that results are invalid */
     instance->log_categories = request->logging_on ? FMU_LOG_ALL : FMU_LOG_ERROR | FMU_LOG_WARNING;
     instance->name = copy_text(request->instance_name != NULL ? request->instance_name : "");
-    if (instance->name == NULL || !has_name_and_token(instance, request) ||
+    if (instance->name == NULL || !has_name_and_token(instance, request) || !offers_kind(instance) ||
         !fmu_load_start_values(instance, request->token, request->resources)) {
         fmu_free(instance);
         return NULL;
@@ -128,6 +134,7 @@ fmu_status fmu_apply_parameters(fmu_instance *instance) {
 
 fmu_status fmu_update_discrete_states(fmu_instance *instance, bool *states_changed) {
     const fmu_status status = fmu_apply_parameters(instance);
+    if (FMU_MODEL_PORTS > 0 && status == FMU_OK) fmu_model_end_event(instance);
     *states_changed = instance->model.states_changed;
     instance->model.states_changed = false;
     return status;

@@ -137,7 +137,9 @@ typedef enum fmu_type {
     FMU_UINT64,
     FMU_ENUMERATION,
     FMU_BOOLEAN,
-    FMU_INTEGER /* in calls only: FMI 2's Integer, any of the three integer types above */
+    FMU_INTEGER, /* in calls only: FMI 2's Integer, any of the three integer types above */
+    FMU_BINARY,  /* of bus terminals (network/fmi3_clocks.c) */
+    FMU_CLOCK
 } fmu_type;
 
 typedef enum fmu_access { /* who sets it, and when (variables.c) */
@@ -177,6 +179,9 @@ typedef struct fmu_start_value {
 extern const fmu_start_value fmu_built_in_starts[];
 extern const size_t fmu_built_in_start_count;
 extern const char *const fmu_token_2, *const fmu_token_3; /* of the descriptions this was built with */
+
+/* From here on references are no variables: start values of FMUs with bus terminals. */
+#define FMU_PRIVATE_START 0x80000000U
 
 /* Reference v is all of row v, reference 1024·v + i its element i, from 1. The references of an array's elements are
  * consecutive, since some importers join them to an array again. Row 0, the time, has no elements. */

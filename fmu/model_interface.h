@@ -2,12 +2,22 @@
  * fmu_model (model.h) is plain data, so that it can be copied. Each model has the members `start_needed`,
  * `change_needed`, `states_changed`, `time_s` and `stale` (bits of the groups that must be computed before they are
  * read), and the macros FMU_MODEL_ARRAY_SIZE, FMU_MODEL_LARGEST_ARRAY, FMU_MODEL_MOST_STATES,
- * FMU_MODEL_HAS_OPTIONAL_STATES and FMU_MODEL_TAKES_SLOPES. */
+ * FMU_MODEL_HAS_OPTIONAL_STATES, FMU_MODEL_TAKES_SLOPES and FMU_MODEL_PORTS. Where FMU_MODEL_PORTS is not 0 it has bus
+ * terminals (network/network_port.h), is for Co-Simulation only, and takes its steps by network/step.c. */
 #ifndef LACONIC_FMU_MODEL_INTERFACE_H
 #define LACONIC_FMU_MODEL_INTERFACE_H
 
 #include "instance.h"
 #include "stream.h"
+
+/* Only of models with bus terminals. */
+
+/* Takes a start value that is no variable's (start_file.c): a reference from FMU_PRIVATE_START on, and 64 bits. */
+bool fmu_model_take_private(fmu_instance *instance, uint32_t reference, uint64_t bits);
+/* Ends an event iteration: takes what was received. */
+void fmu_model_end_event(fmu_instance *instance);
+/* Whether a step has made a triggered clock due. */
+bool fmu_model_needs_event(const fmu_model *model);
 
 /* To be called when the FMU's own start values are in the model, before the importer sets any. */
 void fmu_model_made(fmu_model *model);

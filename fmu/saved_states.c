@@ -95,9 +95,16 @@ static size_t whole_size(fmu_snapshot *snapshot) {
     return sizeof magic + counter.at + 8;
 }
 
+/* What is behind a bus terminal has parts that only this process can use. */
+static fmu_status check_bytes(const fmu_instance *instance) {
+    if (FMU_MODEL_PORTS == 0) return FMU_OK;
+    return fmu_refuse(instance, "the state of this FMU cannot be serialized, only kept by GetFMUState");
+}
+
 fmu_status fmu_serialized_size(fmu_instance *instance, const fmu_snapshot *snapshot, size_t *size) {
-    const fmu_status status = check_origin(instance, snapshot);
+    fmu_status status = check_origin(instance, snapshot);
     fmu_snapshot *copy = NULL;
+    if (status == FMU_OK) status = check_bytes(instance);
     if (status != FMU_OK) return status;
     if (size == NULL) return fmu_refuse(instance, "the pointer to the size is missing (NULL)");
     copy = malloc(sizeof *copy);
@@ -126,6 +133,7 @@ static fmu_status write_bytes(fmu_instance *instance, fmu_snapshot *copy, uint8_
 fmu_status fmu_serialize(fmu_instance *instance, const fmu_snapshot *snapshot, uint8_t *bytes, size_t size) {
     fmu_status status = check_origin(instance, snapshot);
     fmu_snapshot *copy;
+    if (status == FMU_OK) status = check_bytes(instance);
     if (status != FMU_OK) return status;
     if (bytes == NULL) return fmu_refuse(instance, "SerializeFMUState: the memory for the bytes is missing (NULL)");
     copy = malloc(sizeof *copy);
@@ -168,6 +176,7 @@ static fmu_status read_bytes(fmu_instance *instance, const uint8_t *bytes, size_
 
 fmu_status fmu_deserialize(fmu_instance *instance, const uint8_t *bytes, size_t size, fmu_snapshot **snapshot) {
     fmu_snapshot *made;
+    if (check_bytes(instance) != FMU_OK) return FMU_ERROR;
     if (bytes == NULL || snapshot == NULL)
         return fmu_refuse(instance, "DeserializeFMUState: the bytes or the pointer to the state are missing (NULL)");
     made = calloc(1, sizeof *made);

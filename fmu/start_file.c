@@ -3,7 +3,7 @@
  * An FMU of the build carries them in its code. One that `laconic fmu` makes for a scene has all of them in
  * resources/start.bin and uses none of the build's, so wheels that its scene lacks stay unset. The file: "LACSTART",
  * then numbers of 64 bits, little-endian: version, scalar, hash of the token, count, and for each value its
- * reference and its bits as a double; at the end the checksum of all before. */
+ * reference and its bits as a double; at the end the checksum of all before. FMUs with bus terminals have more there. */
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
@@ -66,6 +66,12 @@ static size_t read_file(const char *name, uint8_t *bytes, size_t size) {
     return got;
 }
 
+static inline bool take_private(fmu_instance *instance, uint32_t reference, double value) {
+    uint64_t bits;
+    memcpy(&bits, &value, sizeof bits);
+    return fmu_model_take_private(instance, reference, bits);
+}
+
 static bool parse(fmu_instance *instance, const uint8_t *bytes, size_t size, const char *token) {
     fmu_stream stream = {0};
     uint64_t version = 0, scalar = 0, hash = 0, count = 0, checksum = 0, reference = 0;
@@ -86,6 +92,10 @@ static bool parse(fmu_instance *instance, const uint8_t *bytes, size_t size, con
     for (uint64_t k = 0; k < count; k++) {
         fmu_stream_u64(&stream, &reference);
         fmu_stream_reals(&stream, &value, 1);
+        if (FMU_MODEL_PORTS > 0 && reference >= FMU_PRIVATE_START) {
+            if (!take_private(instance, (uint32_t)reference, value)) return false;
+            continue;
+        }
         if (!fmu_set_start_value(instance, (uint32_t)reference, value)) return false;
     }
     return !stream.failed;
@@ -106,7 +116,7 @@ static bool load_file(fmu_instance *instance, const char *token, const char *res
 }
 
 bool fmu_load_start_values(fmu_instance *instance, const char *token, const char *resources) {
-    instance->scalar = instance->version == 2;
+    instance->scalar = instance->version == 2 || FMU_MODEL_PORTS > 0;
     if (strcmp(token, instance->version == 2 ? fmu_token_2 : fmu_token_3) == 0) {
         apply(instance, fmu_built_in_starts, fmu_built_in_start_count);
         return true;

@@ -6,7 +6,11 @@
 #include "model_interface.h"
 
 static const char *const type_names[] = {"a Float64 (Real)", "an Int32 (Integer)", "a UInt64 (Integer)",
-                                         "an Enumeration",   "a Boolean",          "an Int32 (Integer)"};
+                                         "an Enumeration",   "a Boolean",          "an Int32 (Integer)",
+#if FMU_MODEL_PORTS
+                                         "a Binary",         "a Clock"
+#endif
+};
 
 bool fmu_find(const fmu_instance *instance, uint32_t reference, fmu_slot *slot) {
     const uint32_t row = fmu_row(reference), element = fmu_element(reference);

@@ -11,6 +11,7 @@
 #define FMU_MODEL_LARGEST_ARRAY 16
 #define FMU_MODEL_MOST_STATES FMU_MODEL_LARGEST_ARRAY
 #define FMU_MODEL_HAS_OPTIONAL_STATES(model) ((void)(model), false)
+#define FMU_MODEL_PORTS 0 /* bus terminals */
 #define FMU_MODEL_TAKES_SLOPES false
 #define FMU_MODEL_ARRAY_SIZE(model) ((uint32_t)(model)->wheel_count)
 #define FMU_GROUP_STATE_READ 1U /* nothing to compute, but not readable before initialization */

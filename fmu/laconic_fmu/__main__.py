@@ -26,9 +26,14 @@ def make_tables(arguments: argparse.Namespace) -> None:
     generic = for_vehicle(description)
     if generic is not description:
         text_3 = fmi3.describe(generic)
-    text_2 = fmi2.describe(generic, [*arguments.sources, "fmi2.c"])
     out: Path = arguments.out
     out.mkdir(parents=True, exist_ok=True)
+    if arguments.versions == ["3"]:  # bus terminals, without arrays
+        text_3 = fmi3.describe_scalar(description)
+        (out / "variable_table.c").write_text(tables(description, text_3, text_3), encoding="utf-8")
+        (out / "fmi3.xml").write_text(text_3, encoding="utf-8")
+        return
+    text_2 = fmi2.describe(generic, [*arguments.sources, "fmi2.c"])
     (out / "variable_table.c").write_text(tables(description, text_3, text_2), encoding="utf-8")
     (out / "fmi2.xml").write_text(text_2, encoding="utf-8")
     (out / "fmi3.xml").write_text(text_3, encoding="utf-8")
@@ -69,6 +74,7 @@ def main() -> None:
     command.add_argument("description", type=Path)
     command.add_argument("--out", type=Path, required=True)
     command.add_argument("--sources", nargs="*", default=[])
+    command.add_argument("--versions", nargs="*", default=["2", "3"], help="the FMI versions of this FMU")
     command.add_argument("--fields", type=Path, help="the core's list of fields, each of which must be a variable")
     command.set_defaults(run=make_tables)
     command = commands.add_parser("pack")

@@ -26,7 +26,7 @@ ELEMENTWISE = {("wheel_torque_Nm", "voltage_V"), ("wheel_torque_Nm", "axle_torqu
 """Outputs (first) of which each element depends on the same element of the other array only."""
 
 INTERFACE_ATTRIBUTES = ("causality", "variability", "initial", "intermediateUpdate", "declaredType", "min", "max",
-                        "nominal", "derivative")
+                        "nominal", "derivative", "intervalVariability", "clocks", "maxSize", "mimeType")
 
 
 @dataclass(frozen=True)

@@ -48,7 +48,9 @@ def describe_scalar(description: Description) -> str:
     assert variables is not None
     assert structure is not None
     for scalar in scalars(description):
-        ET.SubElement(variables, scalar.variable.tag, _attributes(scalar.variable, scalar))
+        element = ET.SubElement(variables, scalar.variable.tag, _attributes(scalar.variable, scalar))
+        if scalar.variable.tag == "Binary" and scalar.variable.causality == "input":
+            ET.SubElement(element, "Start", {"value": ""})
     for kind in KINDS:
         for entry in unknowns(description, kind):
             attributes = {"valueReference": str(entry.scalar.reference)}

@@ -20,11 +20,16 @@ def token_hash(token: str) -> int:
     return value
 
 
-def start_file(values: Iterable[tuple[int, float]], token: str, scalar: bool) -> bytes:
-    """resources/start.bin, as fmu/start_file.c describes it."""
-    rows = list(values)
-    body = b"LACSTART" + struct.pack("<QQQQ", 2, int(scalar), token_hash(token), len(rows))
-    body += b"".join(struct.pack("<Qd", reference, value) for reference, value in rows)
+PRIVATE_START = 0x8000_0000
+"""FMU_PRIVATE_START of fmu/instance.h: from here on references are no variables."""
+
+
+def start_file(values: Iterable[tuple[int, float]], token: str, scalar: bool,
+               private: Iterable[tuple[int, bytes]] = ()) -> bytes:
+    """resources/start.bin, as fmu/start_file.c describes it. `private`: 64 bits each for a model's own purpose."""
+    rows = [struct.pack("<Qd", reference, value) for reference, value in values]
+    rows += [struct.pack("<Q8s", PRIVATE_START + number, bits) for number, bits in private]
+    body = b"LACSTART" + struct.pack("<QQQQ", 2, int(scalar), token_hash(token), len(rows)) + b"".join(rows)
     return body + struct.pack("<Q", zlib.crc32(body))
 
 

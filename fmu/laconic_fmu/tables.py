@@ -9,7 +9,7 @@ from .description import Description, Variable, start_values, token_in
 from .friction import STATE_RATE, for_vehicle
 
 TYPES = {"Float64": "FMU_REAL", "Int32": "FMU_INT32", "UInt64": "FMU_UINT64", "Enumeration": "FMU_ENUMERATION",
-         "Boolean": "FMU_BOOLEAN"}
+         "Boolean": "FMU_BOOLEAN", "Binary": "FMU_BINARY", "Clock": "FMU_CLOCK"}
 
 
 def _access(variable: Variable, states: Mapping[str, str]) -> str:
@@ -23,7 +23,8 @@ def _access(variable: Variable, states: Mapping[str, str]) -> str:
 
 def _range(description: Description, variable: Variable) -> str:
     """Least and largest value of the variable, from the description or else its type."""
-    whole = {"Float64": ("-DBL_MAX", "DBL_MAX"), "Int32": ("INT32_MIN", "INT32_MAX"), "Boolean": ("0", "1")}
+    whole = {"Float64": ("-DBL_MAX", "DBL_MAX"), "Int32": ("INT32_MIN", "INT32_MAX"), "Boolean": ("0", "1"),
+             "Binary": ("0", "0"), "Clock": ("0", "0")}
     least, most = whole.get(variable.tag, ("", ""))
     if variable.tag == "Enumeration":
         items = description.items(variable)

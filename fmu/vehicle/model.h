@@ -7,6 +7,7 @@
 
 #define FMU_MODEL_LARGEST_ARRAY LACONIC_MAX_WHEELS
 #define FMU_MODEL_MOST_STATES (6 + 2 * LACONIC_MAX_WHEELS)
+#define FMU_MODEL_PORTS 0 /* bus terminals */
 #define FMU_MODEL_TAKES_SLOPES true
 
 /* Number of elements of the arrays that have one for each wheel, at most FMU_MODEL_LARGEST_ARRAY. */

@@ -11,10 +11,12 @@ import click
 from laconic.cli.options import OutputFile, SceneName, json_flag
 from laconic.cli.streams import warn
 from laconic.errors import BadInput
-from laconic.fmu import make_fmu
+from laconic.fmu import make_fmu, make_network_fmu
 from laconic.fmu.ssp import make_ssp
 from laconic.outputs import check_ending, claim_file, is_special
 from laconic.scene import read_scene
+from laconic.scene.drives import DRIVE_PROTOCOLS
+from laconic_fmu.network import TX_CLOCKS
 
 
 @click.command("fmu")
@@ -24,16 +26,25 @@ from laconic.scene import read_scene
 @click.option("--without-sources", is_flag=True, help="Binaries only: less than half the size.")
 @click.option("--no-enumerations", is_flag=True, help="Whole numbers instead, for importers that know no enumerations.")
 @click.option("--ssp", is_flag=True, help="An SSP archive (--fmi 2): the vehicle with a wheel-speed controller.")
+@click.option("--bus", type=click.Choice(("can",)),
+              help="The vehicle's CAN node as a network FMU by FMI-LS-BUS (--fmi 3), instead of its plain variables.")
+@click.option("--drives", type=click.Choice(DRIVE_PROTOCOLS),
+              help="With --bus: motor drives that play from the start; else the node speaks its own frames.")
+@click.option("--tx-clock", type=click.Choice(TX_CLOCKS),
+              help=f"With --bus: how it tells that it sends.  [default: {TX_CLOCKS[0]}]")
 @click.option("-o", "--out", type=OutputFile(), metavar="F.fmu",
               help="File to write; SCENE_fmi3.fmu if not given.")
 @json_flag()
 def command(scene: str, version: str, scalar: bool, without_sources: bool, no_enumerations: bool, ssp: bool,
-            out: Path | None, json_wanted: bool) -> None:
+            out: Path | None, bus: str | None, drives: str | None, tx_clock: str | None, json_wanted: bool) -> None:
     """Writes an FMU whose start values are SCENE's vehicle, start, method and step.
 
     Model Exchange and Co-Simulation are both in it. In FMI 3.0 the number of wheels is a structural parameter; in
-    FMI 2.0 and with --scalar it is a constant.
+    FMI 2.0 and with --scalar it is a constant. With --bus can it is the CAN node of SCENE, for co-simulation with other
+    FMUs on a bus.
     """
+    check_bus(version, bus, {"--scalar": scalar, "--ssp": ssp, "--no-enumerations": no_enumerations},
+              {"--drives": drives, "--tx-clock": tx_clock})
     if scalar and version == "2":
         raise BadInput("--scalar: FMI 2.0 has no arrays anyway; leave it out or use --fmi 3")
     ending = "ssp" if ssp else "fmu"
@@ -41,17 +52,36 @@ def command(scene: str, version: str, scalar: bool, without_sources: bool, no_en
         check_ending("--out", out, (f".{ending}",))
     given = read_scene(scene)
     if out is None:
-        out = claim_file("--out", Path(f"{given.path.stem}_fmi{version}{'_scalar' if scalar else ''}.{ending}"))
+        kind = "_scalar" if scalar else f"_{bus}" if bus else ""
+        out = claim_file("--out", Path(f"{given.path.stem}_fmi{version}{kind}.{ending}"))
     options: dict[str, Any] = {"version": int(version), "sources": not without_sources,
                                "enumerations": not no_enumerations}
-    made = make_ssp(given, out, **options) if ssp else make_fmu(given, out, scalar=scalar, **options)
+    if bus:
+        made = make_network_fmu(given, out, drives=drives, tx_clock=tx_clock or TX_CLOCKS[0],
+                                sources=not without_sources)
+    else:
+        made = make_ssp(given, out, **options) if ssp else make_fmu(given, out, scalar=scalar, **options)
     size = None if is_special(made) else made.stat().st_size
     if json_wanted:
         click.echo(json.dumps({"scene": str(given.path), "fmi": int(version), "scalar": scalar,
-                               "enumerations": not no_enumerations, "real": "double", "scene_real": given.run.real,
+                               "enumerations": not no_enumerations, "bus": bus, "drives": drives, "real": "double", "scene_real": given.run.real,
                                "file": str(made), "bytes": size}, indent=1))
     else:
         shown = "" if size is None else f" ({size / 1000:.0f} kB)"
         click.echo(f"wrote {made}{shown}: {given.name}, {given.wheel_count} wheels")
     if given.run.real != "double":
         warn(f'{given.path}: run.real: is "{given.run.real}", but FMUs compute in double precision')
+
+
+def check_bus(version: str, bus: str | None, others: dict[str, bool], needing: dict[str, str | None]) -> None:
+    """BadInput for options that do not go with --bus, or not without it."""
+    if bus is None:
+        for name, value in needing.items():
+            if value is not None:
+                raise BadInput(f"{name} {value}: is for a network FMU; give --bus can, or leave it out")
+        return
+    if version != "3":
+        raise BadInput(f"--bus {bus}: FMI {version}.0 has neither clocks nor binary variables; use --fmi 3")
+    for name, is_given in others.items():
+        if is_given:
+            raise BadInput(f"{name}: a network FMU has no such variant; leave it out")

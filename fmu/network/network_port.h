@@ -1,0 +1,34 @@
+/* A bus terminal of an FMU, and what the glue asks of a model that has some (its member `port`, FMU_MODEL_PORTS of
+ * them). The glue knows operations only as bytes. */
+#ifndef LACONIC_FMU_NETWORK_PORT_H
+#define LACONIC_FMU_NETWORK_PORT_H
+
+#include "ls_bus.h"
+
+typedef struct network_port {
+    bool rx_clock;  /* has been activated for this event iteration                                  */
+    bool tx_clock;  /* is active in this event iteration: the first `offered` bytes of tx are sent   */
+    bool is_due;    /* a triggered Tx_Clock activates in the next event iteration                    */
+    size_t offered; /* bytes of tx that this activation of Tx_Clock sends                            */
+    ls_bus_buffer rx, tx;
+} network_port;
+
+struct fmu_instance;
+
+/* Takes the operations in `rx` of all ports whose Rx_Clock is active. */
+void fmu_model_receive(struct fmu_instance *instance);
+/* Time passes from model.time_s to end_s. */
+void fmu_model_advance(struct fmu_instance *instance, double end_s);
+/* Seconds from now to the next instant at which the model may have something to send, more than 0; 0: not known. */
+double fmu_model_countdown(const struct fmu_instance *instance);
+
+/* A step has ended: what is to be sent is due at this communication point. */
+void network_ports_make_due(network_port *ports, size_t count);
+/* Whether a triggered Tx_Clock is to activate. */
+bool network_ports_are_due(const network_port *ports, size_t count);
+/* The event iteration ends: what was sent and received goes, and the clocks are inactive again. */
+void network_ports_settle(network_port *ports, size_t count);
+/* Tx_Clock activates, by the importer or by the model. */
+void network_port_activate(network_port *port);
+
+#endif
