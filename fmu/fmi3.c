@@ -367,7 +367,8 @@ fmi3Status fmi3UpdateDiscreteStates(fmi3Instance instance, fmi3Boolean *discrete
     bool changed;
     ALLOW(instance, FMU_CALL_UPDATE_DISCRETE_STATES);
     const fmu_status status = fmu_update_discrete_states(SELF(instance), &changed);
-    if (discreteStatesNeedUpdate != NULL) *discreteStatesNeedUpdate = fmi3False;
+    if (discreteStatesNeedUpdate != NULL)
+        *discreteStatesNeedUpdate = FMU_MODEL_PORTS > 0 && fmu_model_needs_update(&SELF(instance)->model);
     if (terminateSimulation != NULL) *terminateSimulation = fmi3False;
     if (nominalsOfContinuousStatesChanged != NULL) *nominalsOfContinuousStatesChanged = fmi3False;
     if (valuesOfContinuousStatesChanged != NULL) *valuesOfContinuousStatesChanged = changed;

@@ -16,6 +16,8 @@
 bool fmu_model_take_private(fmu_instance *instance, uint32_t reference, uint64_t bits);
 /* Ends an event iteration: takes what was received. */
 void fmu_model_end_event(fmu_instance *instance);
+/* Whether another event iteration must follow. */
+bool fmu_model_needs_update(const fmu_model *model);
 /* Whether a step has made a triggered clock due. */
 bool fmu_model_needs_event(const fmu_model *model);
 

@@ -5,10 +5,15 @@
 
 #include "model_interface.h"
 
-static const char *const type_names[] = {"a Float64 (Real)", "an Int32 (Integer)", "a UInt64 (Integer)",
-                                         "an Enumeration",   "a Boolean",          "an Int32 (Integer)",
+static const char *const type_names[] = {"a Float64 (Real)",
+                                         "an Int32 (Integer)",
+                                         "a UInt64 (Integer)",
+                                         "an Enumeration",
+                                         "a Boolean",
+                                         "an Int32 (Integer)",
 #if FMU_MODEL_PORTS
-                                         "a Binary",         "a Clock"
+                                         "a Binary",
+                                         "a Clock"
 #endif
 };
 

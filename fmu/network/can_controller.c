@@ -23,7 +23,8 @@ void can_controller_start(can_controller *controller, ls_bus_buffer *tx) {
 }
 
 bool can_controller_is_free(const can_controller *controller, const ls_bus_buffer *tx) {
-    return !controller->waits && controller->status != LS_BUS_BUS_OFF && ls_bus_has_room(tx, LS_BUS_LARGEST_OPERATION + ROOM_FOR_STATUS);
+    return !controller->waits && controller->status != LS_BUS_BUS_OFF &&
+           ls_bus_has_room(tx, LS_BUS_LARGEST_OPERATION + ROOM_FOR_STATUS);
 }
 
 static bool put_frame(const can_controller *controller, ls_bus_buffer *tx, const laconic_frame *frame) {

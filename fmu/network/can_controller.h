@@ -20,8 +20,8 @@ typedef struct can_controller {
     bool drops_lost;
     int32_t bit_rate_bit_per_s, fd_bit_rate_bit_per_s; /* FD 0: no CAN FD */
     /* state */
-    bool waits;          /* `on_its_way` has been sent and not confirmed */
-    bool again;          /* ... and must be sent once more               */
+    bool waits; /* `on_its_way` has been sent and not confirmed */
+    bool again; /* ... and must be sent once more               */
     laconic_frame on_its_way;
     int32_t transmit_errors, receive_errors;
     int32_t status; /* enum ls_bus_status */

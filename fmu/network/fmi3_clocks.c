@@ -1,8 +1,8 @@
 /* The functions of FMI 3.0 for clocks and binary variables, of FMUs with bus terminals.
  *
  * Tx_Clock is a triggered output or a countdown input, as the description says; the calls of either kind work. A
- * triggered one activates in the event iteration after a step, never within one, as FMI-LS-BUS demands. A countdown's
- * interval is given anew in each event iteration. Its resolution is a microsecond. */
+ * triggered one activates in event iterations after a step (network_port.h), never within one, as FMI-LS-BUS demands. A
+ * countdown's interval is given anew in each event iteration. Its resolution is a microsecond. */
 #include "fmi3Functions.h"
 
 #include "model_interface.h"
@@ -51,8 +51,8 @@ fmi3Status fmi3GetClock(fmi3Instance instance, const fmi3ValueReference valueRef
     for (size_t k = 0; k < nValueReferences; k++) {
         if (!find(self, FMU_CLOCK, valueReferences[k], &variable)) return fmi3Error;
         network_port *port = port_of(self, variable);
-        values[k] = is_rx_clock(self, variable) ? port->rx_clock : port->is_due; /* true once for each activation */
-        if (!is_rx_clock(self, variable) && port->is_due) network_port_activate(port);
+        values[k] = is_rx_clock(self, variable) ? port->rx_clock : port->is_ready; /* true once for each activation */
+        if (!is_rx_clock(self, variable) && port->is_ready) network_port_activate(port);
     }
     return fmi3OK;
 }

@@ -8,7 +8,10 @@
 typedef struct network_port {
     bool rx_clock;  /* has been activated for this event iteration                                  */
     bool tx_clock;  /* is active in this event iteration: the first `offered` bytes of tx are sent   */
-    bool is_due;    /* a triggered Tx_Clock activates in the next event iteration                    */
+    size_t due;     /* bytes of tx that a triggered Tx_Clock sends at this communication point       */
+    bool is_due;    /* ... which has still to activate                                               */
+    bool is_ready;  /* ... in this event iteration                                                   */
+    bool again;     /* another event iteration is needed                                             */
     size_t offered; /* bytes of tx that this activation of Tx_Clock sends                            */
     ls_bus_buffer rx, tx;
 } network_port;
@@ -26,8 +29,13 @@ double fmu_model_countdown(const struct fmu_instance *instance);
 void network_ports_make_due(network_port *ports, size_t count);
 /* Whether a triggered Tx_Clock is to activate. */
 bool network_ports_are_due(const network_port *ports, size_t count);
-/* The event iteration ends: what was sent and received goes, and the clocks are inactive again. */
+/* The event iteration ends: what was sent and received goes, and the clocks are inactive again.
+ *
+ * A triggered Tx_Clock activates in the second iteration of a communication point, and a third one follows. Importers
+ * differ in whether they give to the receiver what a clock sends in the same iteration or in the one after it; in the
+ * first iteration some (the FMU manipulation toolbox 2.0) have forgotten it when the receiver's turn comes. */
 void network_ports_settle(network_port *ports, size_t count);
+bool network_ports_need_update(const network_port *ports, size_t count);
 /* Tx_Clock activates, by the importer or by the model. */
 void network_port_activate(network_port *port);
 

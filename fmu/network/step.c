@@ -45,6 +45,8 @@ void fmu_model_end_event(fmu_instance *instance) {
     instance->model.stale = FMU_GROUPS_ALL;
 }
 
+bool fmu_model_needs_update(const fmu_model *model) { return network_ports_need_update(model->port, FMU_MODEL_PORTS); }
+
 bool fmu_model_needs_event(const fmu_model *model) { return network_ports_are_due(model->port, FMU_MODEL_PORTS); }
 
 /* ---------------------------------------------------------------- what these models do not have -- */

@@ -2,14 +2,16 @@
 #include "frame_time.h"
 
 enum {
-    STANDARD = 47,       /* start 1, identifier 11, RTR, IDE, r0, length 4, CRC 15, delimiter, acknowledge 2, end 7, gap 3 */
-    EXTENDED_MORE = 20,  /* SRR, IDE, 18 bits of identifier                                                               */
-    FD_ARBITRATION = 17, /* start 1, identifier 11, RRS, IDE, FDF, res, BRS                                               */
+    STANDARD = 47, /* start 1, identifier 11, RTR, IDE, r0, length 4, CRC 15, delimiter, acknowledge 2, end 7, gap 3 */
+    EXTENDED_MORE =
+        20, /* SRR, IDE, 18 bits of identifier                                                               */
+    FD_ARBITRATION =
+        17, /* start 1, identifier 11, RRS, IDE, FDF, res, BRS                                               */
     FD_EXTENDED_MORE = 19,
-    FD_END = 13,           /* delimiter, acknowledge 2, end 7, gap 3                    */
-    FD_HEAD = 5,           /* ESI, length 4                                             */
-    FD_CRC_SHORT = 27,     /* up to 16 bytes: stuff count 4, CRC 17, fixed stuff bits 6 */
-    FD_CRC_LONG = 32,      /* stuff count 4, CRC 21, fixed stuff bits 7                 */
+    FD_END = 13,       /* delimiter, acknowledge 2, end 7, gap 3                    */
+    FD_HEAD = 5,       /* ESI, length 4                                             */
+    FD_CRC_SHORT = 27, /* up to 16 bytes: stuff count 4, CRC 17, fixed stuff bits 6 */
+    FD_CRC_LONG = 32,  /* stuff count 4, CRC 21, fixed stuff bits 7                 */
     LARGEST_WITH_SHORT = 16
 };
 

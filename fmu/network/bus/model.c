@@ -162,7 +162,8 @@ static void begin_frame(fmu_instance *instance, double at_s) {
     if (best == FMU_MODEL_PORTS) return;
     if (bit_rate(self) == 0) {
         if (!self->rates_differ)
-            fmu_log(instance, FMU_WARNING, FMU_LOG_WARNING, "Node1 works at %u bit/s, Node2 at %u: the bus carries nothing",
+            fmu_log(instance, FMU_WARNING, FMU_LOG_WARNING,
+                    "Node1 works at %u bit/s, Node2 at %u: the bus carries nothing",
                     (unsigned)self->node[0].bit_rate_bit_per_s, (unsigned)self->node[1].bit_rate_bit_per_s);
         self->rates_differ = true;
         return;

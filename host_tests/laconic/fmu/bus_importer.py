@@ -24,8 +24,9 @@ from fmpy.fmi3 import FMU3Slave
 from laconic.errors import BadInput, ResultFails
 
 KIND = "org.fmi-ls-bus.network-terminal"
-NOT_YET_KNOWN = 0  # fmi3IntervalQualifier
+CHANGED = 2         # fmi3IntervalQualifier: the interval is a new one
 INSTANT_S = 1e-9   # times that differ by less are one
+MOST_ITERATIONS = 100
 
 Link = tuple[int, str, int, str]
 """Number of an FMU and name of its terminal, twice."""
@@ -91,14 +92,18 @@ class NetworkFmu:
         if data:
             self.slave.setBinary([terminal.rx_data], [data])
 
-    def send(self, terminal: Terminal, time_s: float) -> bytes | None:
-        """What a terminal sends in this event iteration; None: its clock does not tick."""
-        if terminal.is_countdown:
-            if terminal.ticks_at_s is None or terminal.ticks_at_s > time_s + INSTANT_S:
-                return None
-            self.slave.setClock([terminal.tx_clock], [True])
-        elif not self.slave.getClock([terminal.tx_clock])[0]:
-            return None
+    def ticks(self, terminal: Terminal, time_s: float) -> bool:
+        """Whether a terminal's Tx_Clock ticks in this event iteration; a countdown is told that it does."""
+        if not terminal.is_countdown:
+            return bool(self.slave.getClock([terminal.tx_clock])[0])
+        if terminal.ticks_at_s is None or terminal.ticks_at_s > time_s + INSTANT_S:
+            return False
+        self.slave.setClock([terminal.tx_clock], [True])
+        terminal.ticks_at_s = None
+        return True
+
+    def sent(self, terminal: Terminal) -> bytes:
+        """What a terminal sends whose Tx_Clock ticks."""
         return self.slave.getBinary([terminal.tx_data])[0] or b""
 
     def announce(self, time_s: float) -> None:
@@ -107,7 +112,8 @@ class NetworkFmu:
             if terminal.is_countdown:
                 interval, qualifier = (c_double * 1)(), (c_int * 1)()
                 self.slave.getIntervalDecimal((c_uint * 1)(terminal.tx_clock), interval, qualifier)
-                terminal.ticks_at_s = None if qualifier[0] == NOT_YET_KNOWN else time_s + interval[0]
+                if qualifier[0] == CHANGED:
+                    terminal.ticks_at_s = time_s + interval[0]
 
     def close(self) -> None:
         """Ends the instance."""
@@ -175,18 +181,31 @@ class Network:
                 if terminal.ticks_at_s is not None]
 
     def _handle_events(self) -> None:
-        """All FMUs are in event mode: what is sent is received, then the iteration ends."""
-        sent = [(number, name, data) for number, fmu in enumerate(self.fmus) for name, terminal in fmu.terminals.items()
-                if (data := fmu.send(terminal, self.time_s)) is not None]
-        for number, name, data in sent:
-            if self._heard is not None:
-                self._heard(self.time_s, number, name, data)
-            if (number, name) in self._other_end:
-                other, far = self._other_end[number, name]
-                self.fmus[other].receive(self.fmus[other].terminals[far], data)
+        """All FMUs are in event mode: iterations, in each of which what is sent is received."""
+        for _ in range(MOST_ITERATIONS):
+            self._exchange()
+            asking = [fmu for fmu in self.fmus if fmu.slave.updateDiscreteStates()[0]]
+            for fmu in self.fmus:
+                fmu.announce(self.time_s)
+            if not asking:
+                break
+        else:
+            raise ResultFails(f"{asking[0].path}: asks for event iterations at {self.time_s:g} s without end")
         for fmu in self.fmus:
-            again = fmu.slave.updateDiscreteStates()[0]
-            if again:
-                raise ResultFails(f"{fmu.path}: asks for another event iteration, which this importer does not have")
-            fmu.announce(self.time_s)
             fmu.slave.enterStepMode()
+
+    def _exchange(self) -> None:
+        """Countdowns come last: what is sent by them may depend on what comes at the same instant."""
+        ends = [(number, fmu, name, terminal) for number, fmu in enumerate(self.fmus)
+                for name, terminal in fmu.terminals.items()]
+        for is_countdown in (False, True):
+            ticking = [end for end in ends if end[3].is_countdown == is_countdown and end[1].ticks(end[3], self.time_s)]
+            for number, fmu, name, terminal in ticking:
+                self._deliver(number, name, fmu.sent(terminal))
+
+    def _deliver(self, number: int, name: str, data: bytes) -> None:
+        if self._heard is not None:
+            self._heard(self.time_s, number, name, data)
+        if (number, name) in self._other_end:
+            other, far = self._other_end[number, name]
+            self.fmus[other].receive(self.fmus[other].terminals[far], data)

@@ -64,8 +64,8 @@ def command(scene: str, version: str, scalar: bool, without_sources: bool, no_en
     size = None if is_special(made) else made.stat().st_size
     if json_wanted:
         click.echo(json.dumps({"scene": str(given.path), "fmi": int(version), "scalar": scalar,
-                               "enumerations": not no_enumerations, "bus": bus, "drives": drives, "real": "double", "scene_real": given.run.real,
-                               "file": str(made), "bytes": size}, indent=1))
+                               "enumerations": not no_enumerations, "bus": bus, "drives": drives, "real": "double",
+                               "scene_real": given.run.real, "file": str(made), "bytes": size}, indent=1))
     else:
         shown = "" if size is None else f" ({size / 1000:.0f} kB)"
         click.echo(f"wrote {made}{shown}: {given.name}, {given.wheel_count} wheels")
