@@ -3,7 +3,7 @@
  * An FMU of the build carries them in its code. One that `laconic fmu` makes for a scene has all of them in
  * resources/start.bin and uses none of the build's, so wheels that its scene lacks stay unset. The file: "LACSTART",
  * then numbers of 64 bits, little-endian: version, scalar, hash of the token, count, and for each value its
- * reference and its bits as a double; at the end the checksum of all before. FMUs with bus terminals have more there. */
+ * reference and its bits as a double; at the end the checksum of all before. More pairs are a model's own. */
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>

@@ -1,12 +1,12 @@
-/* What a CAN controller does between a node and its bus, in terms of bus operations: it says at which bit rate it works,
- * sends frames, repeats them where the bus says that they did not get through, counts errors and goes bus-off.
+/* What a CAN controller does between a node and its bus, in terms of bus operations: it says at which bit rate it
+ * works, sends frames, repeats them where the bus says that they did not get through, counts errors and goes bus-off.
  *
  * Without bus notifications (the standard's default) every frame counts as sent. With them one frame at a time is on
  * its way: the next one follows when the bus has confirmed it. A frame that lost arbitration or met a bus error is sent
  * again, unless `drops_lost` lets go of those that lost arbitration.
  *
- * Error counters after ISO 11898-1, as far as operations tell: a sender's counter rises by 8 with each error and falls by
- * 1 with each confirmed frame, a receiver's rises by 1 (8 where it was the first to notice) and falls by 1 with each
+ * Error counters after ISO 11898-1, as far as operations tell: a sender's counter rises by 8 with each error and falls
+ * by 1 with each confirmed frame, a receiver's rises by 1 (8 where it was the first to notice) and falls by 1 with each
  * frame heard; above 127 the node is error-passive, above 255 bus-off. It returns after 128 times 11 bits. */
 #ifndef LACONIC_FMU_NETWORK_CAN_CONTROLLER_H
 #define LACONIC_FMU_NETWORK_CAN_CONTROLLER_H

@@ -1,5 +1,5 @@
-/* A CAN bus between two nodes as a bus simulation FMU: frames take their time, the lower identifier goes first, and each
- * n-th frame can meet an error. */
+/* A CAN bus between two nodes as a bus simulation FMU: frames take their time, the lower identifier goes first, and
+ * each n-th frame can meet an error. */
 #ifndef LACONIC_FMU_NETWORK_BUS_MODEL_H
 #define LACONIC_FMU_NETWORK_BUS_MODEL_H
 
