@@ -26,8 +26,8 @@ from bus_operations import (
     operations,
 )
 
-from laconic.fmu import make_network_fmu
 from laconic.fmu.bus_importer import Network
+from laconic.fmu.network import make_network_fmu
 from laconic.paths import built
 from laconic.scene import read_scene
 

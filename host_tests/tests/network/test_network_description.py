@@ -14,7 +14,7 @@ from fmu_manipulation_toolbox.operations import FMU
 from lxml import etree
 
 from laconic.cli.main import run
-from laconic.fmu import make_network_fmu
+from laconic.fmu.network import make_network_fmu
 from laconic.paths import built, scene_path
 from laconic.scene import read_scene
 

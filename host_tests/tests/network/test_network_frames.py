@@ -9,8 +9,7 @@ from pathlib import Path
 import pytest
 from bus_operations import FORMAT_ERROR, ByHand, fd_frame, frame, frames_in, operation
 
-from laconic.fmu import make_network_fmu
-from laconic.fmu.network import loading_frames
+from laconic.fmu.network import loading_frames, make_network_fmu
 from laconic.play.settings import drive_settings
 from laconic.rig.node_library import LibraryNode
 from laconic.rig.session import Session

@@ -11,12 +11,14 @@ from pathlib import Path
 
 BUILT = "laconic/_built"
 PACKAGES = {"laconic": "host_tests/laconic", "laconic_fmu": "fmu/laconic_fmu"}
-READ_BY_COMMANDS = ("modelDescription.xml", "fmu/controller/modelDescription.xml", "firmware_stub/laconic.dbc")
+READ_BY_COMMANDS = ("modelDescription.xml", "fmu/controller/modelDescription.xml",
+                    "fmu/network/node/modelDescription.xml", "firmware_stub/laconic.dbc")
 REALS = ("double", "single")
 LIBRARIES = tuple(f"laconic_{part}{real}" for part in ("", "node_") for real in REALS)
 PROGRAMS = tuple(f"laconic-node-{real}" for real in REALS)
 DECLARATIONS = ("laconic_cdef_double.h", "laconic_cdef_single.h", "laconic_node_cdef.h")
-FMUS = tuple(f"{name}_fmi{version}.fmu" for name in ("Laconic", "LaconicController") for version in (2, 3))
+FMUS = tuple(f"{name}_fmi{version}.fmu" for name in ("Laconic", "LaconicController") for version in (2, 3)) + tuple(
+    f"{name}_fmi3.fmu" for name in ("LaconicNode", "LaconicCanBus", "LaconicCanController"))
 
 
 def python_files(project: Path) -> dict[str, Path]:

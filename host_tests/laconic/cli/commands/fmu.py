@@ -11,7 +11,7 @@ import click
 from laconic.cli.options import OutputFile, SceneName, json_flag
 from laconic.cli.streams import warn
 from laconic.errors import BadInput
-from laconic.fmu import make_fmu, make_network_fmu
+from laconic.fmu import make_fmu
 from laconic.fmu.ssp import make_ssp
 from laconic.outputs import check_ending, claim_file, is_special
 from laconic.scene import read_scene
@@ -57,6 +57,8 @@ def command(scene: str, version: str, scalar: bool, without_sources: bool, no_en
     options: dict[str, Any] = {"version": int(version), "sources": not without_sources,
                                "enumerations": not no_enumerations}
     if bus:
+        from laconic.fmu.network import make_network_fmu  # needs the extra `rig`, which other FMUs do not
+
         made = make_network_fmu(given, out, drives=drives, tx_clock=tx_clock or TX_CLOCKS[0],
                                 sources=not without_sources)
     else:
