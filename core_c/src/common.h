@@ -4,9 +4,32 @@
 
 #include "laconic/laconic.h"
 
+/* Options that compilers reveal by macros, gcc by all of these and clang by the first two; laconic_self_test() finds
+ * the other options when it runs. Only the core's own files are bound to them: a program that uses it may have any. */
+#if defined(__FAST_MATH__)
+#error "laconic: -ffast-math breaks the compensated sums and the tests for NaN; compile without it"
+#elif defined(__FINITE_MATH_ONLY__) && __FINITE_MATH_ONLY__ > 0
+#error "laconic: -ffinite-math-only disables every test for NaN; compile without it"
+#elif defined(__ASSOCIATIVE_MATH__)
+#error "laconic: -fassociative-math (-funsafe-math-optimizations) breaks the compensated sums; compile without it"
+#elif defined(__RECIPROCAL_MATH__)
+#error "laconic: -freciprocal-math rounds divisions twice, so the bits differ; compile without it"
+#endif
+#if defined(FLT_EVAL_METHOD) && FLT_EVAL_METHOD != 0 && FLT_EVAL_METHOD != 16
+#error "laconic: this target keeps excess precision (x87); compile with -msse2 -mfpmath=sse"
+#endif
+
 typedef laconic_real real;
 
 #define R(x) ((real)(x)) /* a literal in the scalar type, converted by the compiler */
+
+/* The core is also C++, in which one file of all (packages/c) may be compiled: C++ spells these two otherwise. */
+#ifdef __cplusplus
+#define restrict __restrict
+#define ALL_ZERO {}
+#else
+#define ALL_ZERO {0}
+#endif
 
 /* For the parts of a step, which compilers would not inline by themselves: vectors passed through memory cost time. */
 #if defined(__GNUC__) && !defined(LACONIC_PLAIN_INLINE) /* coverage counts each function once */

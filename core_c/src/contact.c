@@ -56,7 +56,7 @@ static real gravity_on(const laconic_vehicle *vehicle) {
 
 laconic_status laconic_contact_prepare(laconic_contact *contact, const laconic_vehicle *vehicle, laconic_refusal *why) {
     laconic_matrices matrices;
-    laconic_contact fresh = {0};
+    laconic_contact fresh = ALL_ZERO;
     body b;
     const laconic_status status = laconic_matrices_of(&matrices, vehicle, why);
     if (status != LACONIC_OK) return status;
@@ -109,7 +109,7 @@ static void fill_instant(instant *now, const laconic_contact *c, const laconic_m
 }
 
 /* A ν' − Λ⁻¹a − (MR²)⁻¹(Ξᵀ M_i + F) = Cᵀκ: the part of the balance that the multipliers κ supply. */
-static vector imbalance(const laconic_contact *c, const laconic_model *m, const instant *now) {
+static vector left_to_multipliers(const laconic_contact *c, const laconic_model *m, const instant *now) {
     const real force = m->torque_scale * m->wheel_radius_m;
     vector remainder = {dot(vec(c->inertia[0]), vec(now->nu_rate)), dot(vec(c->inertia[1]), vec(now->nu_rate)),
                         dot(vec(c->inertia[2]), vec(now->nu_rate))};
@@ -135,7 +135,7 @@ static void wheel_reaction(laconic_reactions *out, const laconic_contact *c, con
 
 /* Σ N = M g; about S the normal loads balance the ground's horizontal force, which acts com_z below it (outer forces
  * are taken to act at the height of S). Columns of `normal_load_of_wrench`: R Σ N, Σ N ξ, Σ N η. */
-static void normal_loads(laconic_reactions *out, const laconic_contact *c, const laconic_model *m, real weight_N) {
+static void fill_normal_loads(laconic_reactions *out, const laconic_contact *c, const laconic_model *m, real weight_N) {
     real wanted[3], ground[2] = {R(0), R(0)};
     for (int32_t i = 0; i < m->wheel_count; i++) {
         ground[0] += out->along_N[i] * c->pull[i][0] + out->lateral_N[i] * c->axle[i][0];
@@ -150,9 +150,9 @@ static void normal_loads(laconic_reactions *out, const laconic_contact *c, const
 /* All but the margin, which is not linear. */
 static void linear_reactions(laconic_reactions *out, const laconic_contact *c, const laconic_model *m,
                              const instant *now) {
-    const vector remainder = imbalance(c, m, now);
+    const vector remainder = left_to_multipliers(c, m, now);
     for (int32_t i = 0; i < m->wheel_count; i++) wheel_reaction(out, c, m, now, remainder, i);
-    normal_loads(out, c, m, now->weight_N);
+    fill_normal_loads(out, c, m, now->weight_N);
 }
 
 static real reaction_size(const laconic_reactions *r, int32_t i) {

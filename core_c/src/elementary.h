@@ -8,6 +8,11 @@ typedef struct direction {
     real cosine, sine;
 } direction;
 
+static inline direction direction_with(real cosine, real sine) {
+    const direction d = {cosine, sine};
+    return d;
+}
+
 /* √x for x >= 0 with an error of at most two units in the last place; 0 for x <= 0 and NaN. */
 real laconic_root(real x);
 

@@ -4,14 +4,36 @@
 
 #define EVERY_FIELD(X) LACONIC_ALL_FIELDS(X) LACONIC_SENSOR_FIELDS(X)
 #define TABLE_LENGTH LACONIC_SENSOR_FIELD_COUNT
-#define TEXT_OF(table, number) ((unsigned)(number) < TABLE_LENGTH && table[number] != NULL ? table[number] : "")
 
-#define NAME(of, number, IDENTIFIER, member, name, KIND, RULE, NEED) [number] = #name,
+/* RETURN_ROW(type, number, rows) ends a function that returns the row of a number, all zero where there is none. In C the
+ * rows are a table; C++ cannot name a row by its number, so there each is a case. */
+#ifdef __cplusplus
+#define ROW(type, number, ...) \
+    case number: { \
+        static const type row = __VA_ARGS__; \
+        return &row; \
+    }
+#define RETURN_ROW(type, number, rows) \
+    static const type zero = ALL_ZERO; \
+    switch ((int)(number)) { \
+        rows default : return &zero; \
+    }
+#else
+#define ROW(type, number, ...) [number] = __VA_ARGS__,
+#define RETURN_ROW(type, number, rows) \
+    static const type table[TABLE_LENGTH] = {rows}; \
+    return &table[(unsigned)(number) < TABLE_LENGTH ? (number) : 0]; /* no field has the number 0 */
+#endif
 
-const char *laconic_field_name(laconic_field field) {
-    static const char *const names[TABLE_LENGTH] = {EVERY_FIELD(NAME)};
-    return TEXT_OF(names, field);
-}
+typedef const char *text;
+
+static const char *text_or_empty(const text *row) { return *row != NULL ? *row : ""; }
+
+#define NAME(of, number, IDENTIFIER, member, name, KIND, RULE, NEED) ROW(text, number, #name)
+
+static const text *name_row(laconic_field field) { RETURN_ROW(text, field, EVERY_FIELD(NAME)) }
+
+const char *laconic_field_name(laconic_field field) { return text_or_empty(name_row(field)); }
 
 /* The key of a scene file. `#` stands for the number of the wheel, support or component. */
 #define PATH_VEHICLE(member) "vehicle." #member
@@ -32,12 +54,11 @@ const char *laconic_field_name(laconic_field field) {
 #define PATH_IMU_ARRAY(member) PATH_IMU(member) "[#]"
 #define PATH_ENCODER(member) "sensors.encoder." #member
 #define PATH_WHEEL_ENCODER(member) PATH_ENCODER(member) "[#]"
-#define PATH(of, number, IDENTIFIER, member, name, KIND, RULE, NEED) [number] = PATH_##of(member),
+#define PATH(of, number, IDENTIFIER, member, name, KIND, RULE, NEED) ROW(text, number, PATH_##of(member))
 
-const char *laconic_field_path(laconic_field field) {
-    static const char *const paths[TABLE_LENGTH] = {EVERY_FIELD(PATH)};
-    return TEXT_OF(paths, field);
-}
+static const text *path_row(laconic_field field) { RETURN_ROW(text, field, EVERY_FIELD(PATH)) }
+
+const char *laconic_field_path(laconic_field field) { return text_or_empty(path_row(field)); }
 
 #define ITEMS_VEHICLE(member) 0
 #define ITEMS_PAYLOAD(member) 0
@@ -59,9 +80,13 @@ const char *laconic_field_path(laconic_field field) {
 #define ITEMS_WHEEL_ENCODER(member) LACONIC_MAX_WHEELS
 #define TRAITS(of, number, IDENTIFIER, member, name, KIND, RULE, NEED) \
     LACONIC_ROW_OF( \
-        number)([number] = {LACONIC_KIND_##KIND, LACONIC_RULE_##RULE, LACONIC_NEED_##NEED, ITEMS_##of(member)}, )
+        number)(ROW(laconic_field_traits, number, \
+                    {LACONIC_KIND_##KIND, LACONIC_RULE_##RULE, LACONIC_NEED_##NEED, ITEMS_##of(member)}))
+
+static const laconic_field_traits *traits_row(laconic_field field) {
+    RETURN_ROW(laconic_field_traits, field, EVERY_FIELD(TRAITS))
+}
 
 const laconic_field_traits *laconic_field_traits_of(laconic_field field) {
-    static const laconic_field_traits traits[TABLE_LENGTH] = {EVERY_FIELD(TRAITS)};
-    return *laconic_field_name(field) != '\0' ? &traits[field] : NULL;
+    return *laconic_field_name(field) != '\0' ? traits_row(field) : NULL;
 }

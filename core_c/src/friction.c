@@ -54,7 +54,7 @@ static void fill_axle(laconic_friction *f, const laconic_vehicle *vehicle, int32
                                        : vehicle->friction_coefficient;
 }
 
-static void fill_points(laconic_friction *f, const laconic_vehicle *vehicle, const body *b) {
+static void place_points(laconic_friction *f, const laconic_vehicle *vehicle, const body *b) {
     const int32_t n = vehicle->wheel_count;
     f->point_count = n + vehicle->support_count;
     for (int32_t i = 0; i < f->point_count; i++) {
@@ -65,7 +65,7 @@ static void fill_points(laconic_friction *f, const laconic_vehicle *vehicle, con
     laconic_least_norm(f->normal_load_of_wrench, (const real(*)[3])f->point_row, f->point_count);
 }
 
-static bool usable(const laconic_friction *f) {
+static bool friction_in_range(const laconic_friction *f) {
     real sum = rows_size(f->point_row, f->point_count) + rows_size(f->normal_load_of_wrench, f->point_count) +
                f->weight_N + f->com_z_m + f->supply_V + f->supply_resistance_ohm + f->winding_resistance_ohm;
     for (int32_t i = 0; i < f->wheel_count; i++) {
@@ -86,7 +86,7 @@ static laconic_status check_ideal(const laconic_vehicle *vehicle, laconic_refusa
 
 laconic_status laconic_friction_of(laconic_friction *friction, const laconic_model *model,
                                    const laconic_vehicle *vehicle, laconic_refusal *why) {
-    laconic_friction f = {0};
+    laconic_friction f = ALL_ZERO;
     const laconic_status status = check_ideal(vehicle, why);
     body b;
     if (status != LACONIC_OK) return status;
@@ -107,8 +107,8 @@ laconic_status laconic_friction_of(laconic_friction *friction, const laconic_mod
         fill_contact(&f, vehicle, &b, i);
         fill_axle(&f, vehicle, i);
     }
-    fill_points(&f, vehicle, &b);
-    if (!usable(&f)) return refuse(why, LACONIC_OVERFLOW, LACONIC_FIELD_NONE, 0, R(0), R(0));
+    place_points(&f, vehicle, &b);
+    if (!friction_in_range(&f)) return refuse(why, LACONIC_OVERFLOW, LACONIC_FIELD_NONE, 0, R(0), R(0));
     *friction = f;
     return LACONIC_OK;
 }
@@ -116,7 +116,7 @@ laconic_status laconic_friction_of(laconic_friction *friction, const laconic_mod
 /* --------------------------------------------------------------------------------- the start -- */
 
 /* ν of the start must suit wheels that cannot slip. */
-static laconic_status check_start(const laconic_friction *f, const laconic_vehicle *vehicle, const laconic_start *start,
+static laconic_status check_wheel_start(const laconic_friction *f, const laconic_vehicle *vehicle, const laconic_start *start,
                                   laconic_refusal *why) {
     laconic_model ideal;
     laconic_state state;
@@ -140,7 +140,7 @@ static void roll(laconic_slip *slip, const laconic_friction *f, const real nu[3]
 
 static void set_at_rest(laconic_slip *slip, const laconic_friction *f) {
     const real none_N[2] = {R(0), R(0)};
-    const laconic_slip fresh = {0};
+    const laconic_slip fresh = ALL_ZERO;
     normal_loads loads;
     *slip = fresh;
     slip->supply_voltage_V = f->supply_V;
@@ -150,7 +150,7 @@ static void set_at_rest(laconic_slip *slip, const laconic_friction *f) {
 
 laconic_status laconic_slip_set(laconic_slip *slip, const laconic_friction *friction, const laconic_vehicle *vehicle,
                                 const laconic_start *start, laconic_refusal *why) {
-    const laconic_status status = check_start(friction, vehicle, start, why);
+    const laconic_status status = check_wheel_start(friction, vehicle, start, why);
     bool given = false;
     if (status != LACONIC_OK) return status;
     set_at_rest(slip, friction);

@@ -13,11 +13,11 @@ static real torque_on_axle(const laconic_plant *plant, const laconic_input *inpu
 static real contact_state(const laconic_friction *f, const laconic_slip *slip, int32_t i, const real slipped[2]) {
     const real *p = slip->grip_N[i], limit = f->axle[i].friction_coefficient * slip->normal_N[i];
     if (slip->normal_N[i] < R(0)) return R(2);
-    if (!f->slips || !(size((vector){slipped[0], f->wheel[i].drag * slipped[1], R(0)}) > R(0))) return R(0);
+    if (!f->slips || !(size(vector_of(slipped[0], f->wheel[i].drag * slipped[1], R(0))) > R(0))) return R(0);
     return p[0] * p[0] + p[1] * p[1] >= limit * limit * (R(1) - R(8) * LACONIC_RANK_TOLERANCE) ? R(1) : R(0);
 }
 
-static void fill_wheel(laconic_outputs *out, const laconic_plant *plant, const laconic_input *input, int32_t i,
+static void fill_wheel_outputs(laconic_outputs *out, const laconic_plant *plant, const laconic_input *input, int32_t i,
                        vector nu) {
     const laconic_friction *f = &plant->friction;
     const laconic_slip *s = &plant->slip;
@@ -45,7 +45,7 @@ void laconic_friction_outputs_of(laconic_outputs *outputs, const laconic_plant *
     const laconic_slip *s = &plant->slip;
     laconic_friction_outputs *out = &outputs->friction;
     const vector nu = zeta_of(&plant->state);
-    for (int32_t i = 0; i < plant->friction.wheel_count; i++) fill_wheel(outputs, plant, input, i, nu);
+    for (int32_t i = 0; i < plant->friction.wheel_count; i++) fill_wheel_outputs(outputs, plant, input, i, nu);
     outputs->energy_J = laconic_friction_energy_J(&plant->friction, &plant->state, s);
     out->supply_current_A = s->supply_current_A;
     out->supply_voltage_V = s->supply_voltage_V;
@@ -138,7 +138,7 @@ void laconic_friction_derivative(laconic_rates *rates, laconic_real wheel_rate_r
     real force[LACONIC_SLIP_WHEELS][2];
     normal_loads loads;
     vector rate =
-        plus((vector){yaw_rate * nu.y, -yaw_rate * nu.x, R(0)}, b_of_wrench(model, wrench_of(model, input, heading)));
+        plus(vector_of(yaw_rate * nu.y, -yaw_rate * nu.x, R(0)), b_of_wrench(model, wrench_of(model, input, heading)));
     smooth_forces(force, &loads, f, nu, speed);
     for (int32_t i = 0; i < f->wheel_count; i++) {
         const laconic_friction_wheel *w = &f->wheel[i];

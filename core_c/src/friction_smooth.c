@@ -123,7 +123,7 @@ RARE void put_inside(real p[2], real grip) {
     }
 }
 
-static void move(const soft_wheel *c, friction_search *at, friction_path *path, int32_t i, vector by) {
+static void move_softly(const soft_wheel *c, friction_search *at, friction_path *path, int32_t i, vector by) {
     const friction_wheel *w = &at->wheel[i];
     const real x = dot(w->row[0], by), y = dot(w->row[1], by);
     const real turned = c->excess + c->turn[0] * x + c->turn[1] * y;
@@ -157,7 +157,7 @@ void laconic_friction_follow_path(friction_search *at, friction_path *path) {
     }
     by = solved(&k);
     at->nu = plus(at->nu, by);
-    for (int32_t i = 0; i < at->count; i++) move(&wheels[i], at, path, i, by);
+    for (int32_t i = 0; i < at->count; i++) move_softly(&wheels[i], at, path, i, by);
     path->softness *= fall;
     if (path->softness < least) path->softness = least;
 }

@@ -68,7 +68,7 @@ typedef struct contact {
 } contact;
 
 /* 1/x, or 0 where there is nothing to act on. */
-static real inverse(real x) { return x > R(0) ? R(1) / x : R(0); }
+static real inverse_or_zero(real x) { return x > R(0) ? R(1) / x : R(0); }
 
 void laconic_friction_prepare(friction_wheel *w) {
     w->row[0] = vec(w->along);
@@ -78,10 +78,10 @@ void laconic_friction_prepare(friction_wheel *w) {
     w->rim_size = quick_root(w->rim[0] * w->rim[0] + w->rim[1] * w->rim[1]);
     for (int m = 0; m < 2; m++) {
         w->rolling[m] = w->rim[m] / w->rim_size;
-        w->row_mass[m] = inverse(square(w->row[m]));
+        w->row_mass[m] = inverse_or_zero(square(w->row[m]));
     }
     w->mobility = square(w->row[0]) + square(w->row[1]) + w->rim_size * w->rim_size / w->inertia;
-    w->lateral_mass = inverse(square(combined(w->row, -w->rolling[1], w->rolling[0])));
+    w->lateral_mass = inverse_or_zero(square(combined(w->row, -w->rolling[1], w->rolling[0])));
 }
 
 /* Looks at a contact with the speeds and impulses of the pass before. Returns the square of its residual. */

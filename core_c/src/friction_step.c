@@ -55,8 +55,8 @@ static void move_freely(part *p, const laconic_state *state) {
     const real angle = p->h * p->old.z * p->m->yaw_rate_of_zeta[2];
     const direction by = laconic_direction_of_angle(angle);
     p->rotated =
-        (vector){by.cosine * p->old.x + by.sine * p->old.y, by.cosine * p->old.y - by.sine * p->old.x, p->old.z};
-    p->end = (direction){R(1), R(0)};
+        vector_of(by.cosine * p->old.x + by.sine * p->old.y, by.cosine * p->old.y - by.sine * p->old.x, p->old.z);
+    p->end = direction_with(R(1), R(0));
     if (turns_with_heading(p))
         p->end = laconic_direction_of_binary_angle(
             (laconic_binary_angle)(state->heading.fraction + laconic_binary_angle_of(angle)));
@@ -89,7 +89,7 @@ static void load_wheel(part *p, const laconic_slip *slip, int32_t i) {
 }
 
 /* The search begins with the forces of the step before. */
-static laconic_status solve(part *p, const laconic_slip *slip) {
+static laconic_status solve_friction(part *p, const laconic_slip *slip) {
     const real to_impulse = p->h / p->f->impulse_N;
     real free[3], nu[3];
     store(free, plus(p->rotated, p->forcing));
@@ -140,8 +140,9 @@ static pose_change sloped_displacement(const part *p, const laconic_slip *slip, 
     const vector taken = grows ? p->nu : mean;
     const real reach = p->h * p->m->wheel_radius_m;
     *axes = p->end;
-    return (pose_change){reach * taken.x, reach * taken.y,
+    const pose_change moved = {reach * taken.x, reach * taken.y,
                          p->h * R(0.5) * (p->old.z + p->nu.z) * p->m->yaw_rate_of_zeta[2]};
+    return moved;
 }
 
 static pose_change level_displacement(const part *p) {
@@ -235,7 +236,7 @@ static laconic_status take(part *p, laconic_state *state, laconic_slip *slip) {
     find_loads(p, slip);
     move_freely(p, state);
     p->terminal_V = laconic_supply_voltage(p->f, p->in, slip->wheel_speed_rad_per_s, slip->supply_voltage_V);
-    laconic_status status = solve(p, slip);
+    laconic_status status = solve_friction(p, slip);
     if (status == LACONIC_OK) status = move_body(p, slip, state);
     if (status == LACONIC_OK) remember(p, slip);
     return status;

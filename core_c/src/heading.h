@@ -22,8 +22,8 @@ typedef int64_t signed_binary_angle;
 static inline direction direction_near(real x, unsigned quarters) {
     const real z = x * x, cosine = poly_cos(z), sine = poly_sin(x, z);
     direction d = {cosine, sine};
-    if (quarters & 1U) d = (direction){-sine, cosine};
-    if (quarters & 2U) d = (direction){-d.cosine, -d.sine};
+    if (quarters & 1U) d = direction_with(-sine, cosine);
+    if (quarters & 2U) d = direction_with(-d.cosine, -d.sine);
     return d;
 }
 

@@ -8,7 +8,7 @@
 
 laconic_status laconic_integrator_prepare(laconic_integrator *integrator, const laconic_method *method,
                                           const laconic_model *model, laconic_real step_s, laconic_refusal *why) {
-    laconic_integrator prepared = {0};
+    laconic_integrator prepared = ALL_ZERO;
     if (method == NULL || method->prepare == NULL) /* no method, or one that only auto chooses */
         return refuse(why, LACONIC_METHOD_UNKNOWN, LACONIC_FIELD_METHOD, 0, R(0), R(0));
     if (!is_finite(step_s)) return refuse(why, LACONIC_NOT_FINITE, LACONIC_FIELD_STEP, 0, step_s, R(0));
@@ -82,7 +82,7 @@ void laconic_decay_levels(laconic_integrator *integrator, const laconic_model *m
  * limit. */
 laconic_real laconic_largest_stable_step_s(const laconic_method *method, const laconic_model *model,
                                            const laconic_state *state) {
-    laconic_integrator trial = {0};
+    laconic_integrator trial = ALL_ZERO;
     laconic_refusal why;
     real step = LARGEST_STEP_S;
     if (laconic_integrator_prepare(&trial, method, model, step, &why) != LACONIC_OK) {

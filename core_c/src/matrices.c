@@ -29,7 +29,7 @@ static real matrices_size(const laconic_matrices *x, int32_t wheel_count) {
 }
 
 laconic_status laconic_matrices_of(laconic_matrices *matrices, const laconic_vehicle *vehicle, laconic_refusal *why) {
-    laconic_matrices x = {0};
+    laconic_matrices x = ALL_ZERO;
     laconic_model model;
     body b;
     const laconic_status status = laconic_prepare(&model, vehicle, why);

@@ -35,7 +35,7 @@ static int32_t wheels_of(const laconic_vehicle *vehicle) {
 #endif
 
 /* Before the rotor's inertia hides the sign. */
-static laconic_status check_inertias(const laconic_vehicle *vehicle, laconic_refusal *why) {
+static laconic_status check_bare_inertias(const laconic_vehicle *vehicle, laconic_refusal *why) {
     if (vehicle->wheel_inertia_kgm2 < R(0))
         return refuse(why, LACONIC_NEGATIVE, LACONIC_FIELD_WHEEL_INERTIA, 0, vehicle->wheel_inertia_kgm2, R(0));
 #if LACONIC_WITH_OWN_WHEELS
@@ -68,7 +68,7 @@ laconic_status laconic_motor_fit(laconic_vehicle *vehicle, const laconic_motor *
     const laconic_status status = check_motor(motor, why);
     const real ratio = motor->gear_ratio;
     if (status != LACONIC_OK) return status;
-    const laconic_status inertias = check_inertias(vehicle, why);
+    const laconic_status inertias = check_bare_inertias(vehicle, why);
     if (inertias != LACONIC_OK) return inertias;
     const real per_volt = motor->torque_constant_Nm_per_A / motor->resistance_ohm;
     const real gain = ratio * per_volt;

@@ -11,9 +11,9 @@
 #define SLIP_OF(plant) ((void)(plant), (laconic_slip *)NULL)
 #endif
 
-static bool acts(const laconic_friction *friction) { return LACONIC_WITH_FRICTION && friction->acts; }
+static bool friction_acts(const laconic_friction *friction) { return LACONIC_WITH_FRICTION && friction->acts; }
 
-static bool slips(const laconic_plant *plant) { return acts(FRICTION_OF(plant)); }
+static bool has_slip(const laconic_plant *plant) { return friction_acts(FRICTION_OF(plant)); }
 
 /* ----------------------------------------------------------------------------- preparation -- */
 
@@ -53,7 +53,7 @@ static laconic_status prepare_friction(constants *c, const laconic_vehicle *vehi
     return laconic_friction_of(FRICTION_OF(c), &c->model, vehicle, why);
 }
 
-static laconic_status prepare(constants *c, const laconic_vehicle *vehicle, const laconic_method *method, real step_s,
+static laconic_status prepare_constants(constants *c, const laconic_vehicle *vehicle, const laconic_method *method, real step_s,
                               laconic_refusal *why) {
     const bool has_friction = LACONIC_WITH_FRICTION && laconic_vehicle_has_friction(vehicle);
     laconic_status status = laconic_prepare(&c->model, vehicle, why);
@@ -75,9 +75,9 @@ laconic_status laconic_plant_start(laconic_plant *plant, const laconic_vehicle *
                                    laconic_real step_s, const laconic_start *start, laconic_refusal *why) {
     constants c;
     laconic_state state;
-    laconic_status status = prepare(&c, vehicle, method, step_s, why);
+    laconic_status status = prepare_constants(&c, vehicle, method, step_s, why);
     if (status == LACONIC_OK) status = laconic_state_set(&state, &c.model, start, why);
-    if (status == LACONIC_OK && acts(FRICTION_OF(&c)))
+    if (status == LACONIC_OK && friction_acts(FRICTION_OF(&c)))
         status = laconic_slip_set(SLIP_OF(plant), FRICTION_OF(&c), vehicle, start, why);
     if (status != LACONIC_OK) return status;
     adopt(plant, vehicle, &c);
@@ -89,10 +89,10 @@ laconic_status laconic_plant_start(laconic_plant *plant, const laconic_vehicle *
 laconic_status laconic_plant_restart(laconic_plant *plant, const laconic_start *start, laconic_refusal *why) {
     laconic_slip slip;
     laconic_status status = LACONIC_OK;
-    if (slips(plant)) status = laconic_slip_set(&slip, FRICTION_OF(plant), &plant->vehicle, start, why);
+    if (has_slip(plant)) status = laconic_slip_set(&slip, FRICTION_OF(plant), &plant->vehicle, start, why);
     if (status == LACONIC_OK) status = laconic_state_set(&plant->state, &plant->model, start, why);
     if (status != LACONIC_OK) return status;
-    if (slips(plant)) *SLIP_OF(plant) = slip;
+    if (has_slip(plant)) *SLIP_OF(plant) = slip;
     plant->steps = 0;
     return LACONIC_OK;
 }
@@ -100,7 +100,7 @@ laconic_status laconic_plant_restart(laconic_plant *plant, const laconic_start *
 laconic_status laconic_plant_set_step(laconic_plant *plant, laconic_real step_s, laconic_refusal *why) {
     const laconic_status status =
         laconic_integrator_prepare(&plant->integrator, plant->integrator.method, &plant->model, step_s, why);
-    if (status == LACONIC_OK && slips(plant)) plant->integrator.chosen = &friction_method;
+    if (status == LACONIC_OK && has_slip(plant)) plant->integrator.chosen = &friction_method;
     return status;
 }
 
@@ -108,7 +108,7 @@ laconic_status laconic_plant_set_step(laconic_plant *plant, laconic_real step_s,
 
 static uint64_t run(laconic_plant *plant, const laconic_input *held, uint64_t steps, laconic_status *status) {
     uint64_t taken;
-    if (!slips(plant)) return laconic_run(&plant->model, &plant->integrator, &plant->state, held, steps, status);
+    if (!has_slip(plant)) return laconic_run(&plant->model, &plant->integrator, &plant->state, held, steps, status);
     *status = LACONIC_OK;
     for (taken = 0; taken < steps; taken++) {
         *status = laconic_friction_step(FRICTION_OF(plant), &plant->model, plant->integrator.step_s, &plant->state,
@@ -136,7 +136,7 @@ laconic_status laconic_plant_run(laconic_plant *plant, const laconic_input *held
 
 laconic_status laconic_plant_run_sampled(laconic_plant *plant, const laconic_input samples[3], laconic_refusal *why) {
     laconic_status status;
-    if (slips(plant))
+    if (has_slip(plant))
         run(plant, &samples[1], 1, &status);
     else
         status = laconic_step_sampled(&plant->model, &plant->integrator, &plant->state, &samples[0], &samples[1],
@@ -149,19 +149,19 @@ laconic_status laconic_plant_run_sampled(laconic_plant *plant, const laconic_inp
 /* --------------------------------------------------------------- the wheels, wherever they are -- */
 
 void laconic_plant_wheel_speeds(const laconic_plant *plant, laconic_real *speed_rad_per_s) {
-    if (!slips(plant)) laconic_wheel_speeds(&plant->model, &plant->state, speed_rad_per_s);
-    for (int32_t i = 0; slips(plant) && i < FRICTION_OF(plant)->wheel_count; i++)
+    if (!has_slip(plant)) laconic_wheel_speeds(&plant->model, &plant->state, speed_rad_per_s);
+    for (int32_t i = 0; has_slip(plant) && i < FRICTION_OF(plant)->wheel_count; i++)
         speed_rad_per_s[i] = SLIP_OF(plant)->wheel_speed_rad_per_s[i];
 }
 
 void laconic_plant_wheel_angles(const laconic_plant *plant, laconic_real *angle_rad) {
-    if (!slips(plant)) laconic_wheel_angles(&plant->model, &plant->state, angle_rad);
-    for (int32_t i = 0; slips(plant) && i < FRICTION_OF(plant)->wheel_count; i++)
+    if (!has_slip(plant)) laconic_wheel_angles(&plant->model, &plant->state, angle_rad);
+    for (int32_t i = 0; has_slip(plant) && i < FRICTION_OF(plant)->wheel_count; i++)
         angle_rad[i] = SLIP_OF(plant)->wheel_angle_rad[i].value;
 }
 
 laconic_real laconic_plant_energy_J(const laconic_plant *plant) {
-    return slips(plant) ? laconic_friction_energy_J(FRICTION_OF(plant), &plant->state, SLIP_OF(plant))
+    return has_slip(plant) ? laconic_friction_energy_J(FRICTION_OF(plant), &plant->state, SLIP_OF(plant))
                         : laconic_energy_J(&plant->model, &plant->state);
 }
 
@@ -170,14 +170,14 @@ laconic_real laconic_plant_energy_J(const laconic_plant *plant) {
 laconic_status laconic_plant_change(laconic_plant *plant, const laconic_vehicle *vehicle, laconic_refusal *why) {
     constants c;
     real speed[LACONIC_MAX_WHEELS], angle_rad[LACONIC_MAX_WHEELS];
-    laconic_status status = prepare(&c, vehicle, plant->integrator.method, plant->integrator.step_s, why);
+    laconic_status status = prepare_constants(&c, vehicle, plant->integrator.method, plant->integrator.step_s, why);
     if (status != LACONIC_OK) return status;
     laconic_plant_wheel_speeds(plant, speed);
     laconic_plant_wheel_angles(plant, angle_rad);
     status = laconic_state_carry(&plant->state, &plant->model, &c.model);
     if (status != LACONIC_OK) return refuse(why, status, LACONIC_FIELD_NONE, 0, R(0), R(0));
-    if (slips(plant) && !acts(FRICTION_OF(&c))) laconic_wheel_angles_set(&c.model, &plant->state, angle_rad);
-    if (!slips(plant) && acts(FRICTION_OF(&c)))
+    if (has_slip(plant) && !friction_acts(FRICTION_OF(&c))) laconic_wheel_angles_set(&c.model, &plant->state, angle_rad);
+    if (!has_slip(plant) && friction_acts(FRICTION_OF(&c)))
         laconic_slip_take_over(SLIP_OF(plant), FRICTION_OF(&c), speed, angle_rad);
     adopt(plant, vehicle, &c);
     return LACONIC_OK;

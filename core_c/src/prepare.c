@@ -313,9 +313,9 @@ static void fill_slope(laconic_model *m, const laconic_vehicle *vehicle) {
 static laconic_status prepare(laconic_model *model, const laconic_vehicle *vehicle, bool on_wheels,
                               laconic_refusal *why) {
     const laconic_status status = laconic_vehicle_check(vehicle, why);
-    laconic_model m = {0};
-    basis constraints = {0};
-    axes motions = {0};
+    laconic_model m = ALL_ZERO;
+    basis constraints = ALL_ZERO;
+    axes motions = ALL_ZERO;
     body b;
     if (status != LACONIC_OK) return status;
     laconic_body_of(&b, vehicle);

@@ -89,7 +89,7 @@ static uint64_t stretch_at(const laconic_schedule *schedule, uint64_t step) {
 
 static laconic_status follow_held(laconic_plant *plant, const laconic_schedule *schedule, uint64_t until_step,
                                   laconic_recorder *recorder, laconic_refusal *why) {
-    laconic_input input = {0};
+    laconic_input input = ALL_ZERO;
     laconic_status status = LACONIC_OK;
     bool full = false;
     uint64_t k = stretch_at(schedule, plant->steps - schedule->first_step);
@@ -105,7 +105,7 @@ static laconic_status follow_held(laconic_plant *plant, const laconic_schedule *
 static laconic_status follow_sampled(laconic_plant *plant, const laconic_schedule *schedule, uint64_t until_step,
                                      laconic_recorder *recorder, laconic_refusal *why) {
     const uint64_t numbers = (uint64_t)schedule->signal_count;
-    const laconic_input none = {0};
+    const laconic_input none = ALL_ZERO;
     laconic_input input[3] = {none, none, none};
     while (plant->steps < until_step && plant->steps - schedule->first_step < schedule->count) {
         const real *value = schedule->value + 3 * numbers * (plant->steps - schedule->first_step);

@@ -35,7 +35,7 @@ static laconic_status check_allowed(const laconic_model *m, const laconic_state 
 
 laconic_status laconic_state_set(laconic_state *state, const laconic_model *model, const laconic_start *start,
                                  laconic_refusal *why) {
-    laconic_state fresh = {0};
+    laconic_state fresh = ALL_ZERO;
     laconic_status status = check_start(start, why);
     if (status != LACONIC_OK) return status;
     set_zeta(&fresh, zeta_of_nu(model, start->nu_rad_per_s));

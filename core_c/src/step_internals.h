@@ -42,8 +42,8 @@ static inline const real *inverse_row(const laconic_model *m, int k) {
 /* ν → ζ = G⁺ν, the projection onto the allowed motions. Where G diagonalises A, G⁺ = diag(inertia) Gᵀ, as GᵀAG = E. */
 static inline vector zeta_of_nu(const laconic_model *m, const real nu[3]) {
     if (rotated_twice(m))
-        return (vector){dot(vec(inverse_row(m, 0)), vec(nu)), dot(vec(inverse_row(m, 1)), vec(nu)),
-                        dot(vec(inverse_row(m, 2)), vec(nu))};
+        return vector_of(dot(vec(inverse_row(m, 0)), vec(nu)), dot(vec(inverse_row(m, 1)), vec(nu)),
+                        dot(vec(inverse_row(m, 2)), vec(nu)));
     const vector first = scaled(nu[0], vec(m->nu_of_zeta[0])), second = scaled(nu[1], vec(m->nu_of_zeta[1]));
     return times(vec(m->inertia), plus(plus(first, second), scaled(nu[2], vec(m->nu_of_zeta[2]))));
 }
@@ -127,7 +127,7 @@ static inline void forcing_of(laconic_forcing *forcing, const laconic_model *mod
     if (LACONIC_WITH_VOLTAGE || LACONIC_WITH_AXLE_TORQUE) b = b_of_torques(model, input);
     if (LACONIC_WITH_BODY_WRENCH && acts(input->body_force_N[0], input->body_force_N[1], input->body_moment_Nm))
         b = plus(b,
-                 b_of_wrench(model, (wrench){input->body_force_N[0], input->body_force_N[1], input->body_moment_Nm}));
+                 b_of_wrench(model, wrench_with(input->body_force_N[0], input->body_force_N[1], input->body_moment_Nm)));
     store(forcing->constant, b);
     forcing->rotates =
         LACONIC_WITH_WORLD_FORCE && (acts(input->world_force_N[0], input->world_force_N[1], R(0)) || sloped(model));
@@ -225,7 +225,8 @@ INLINE pose_change displacement(const laconic_model *m, vector path, vector bend
     chord_factors(&sinc, &half_j1, R(0.5) * yaw_change);
     const real aside_forth = half_j1 * dot(along, bend) - yaw_bend * forth;
     const real aside_left = half_j1 * dot(across, bend) - yaw_bend * left;
-    return (pose_change){sinc * forth - aside_left, sinc * left + aside_forth, yaw_change};
+    const pose_change moved = {sinc * forth - aside_left, sinc * left + aside_forth, yaw_change};
+    return moved;
 }
 
 INLINE void advance_pose(laconic_state *s, pose_change moved) {
@@ -340,7 +341,8 @@ INLINE increment combine(increment whole, increment first, increment second) {
 /* ------------------------------------------------------------------------- b held ------- */
 
 static inline parabola held(const laconic_forcing_samples *samples) {
-    return (parabola){vec(samples->start->constant), none, none, false};
+    const parabola b = {vec(samples->start->constant), none, none, false};
+    return b;
 }
 
 /* The base step itself as a method. */
@@ -420,7 +422,8 @@ INLINE increment extrapolated_varying(base_step base, const laconic_model *m, co
     for (int i = 0; i < 3; i++) {
         parts[i] = take_substep(base, m, integrator, &state->heading, samples, &p);
         if (i == 0) {
-            p = (substep){1, zeta_of(state), R(0), samples->start, samples->middle};
+            const substep half = {1, zeta_of(state), R(0), samples->start, samples->middle};
+            p = half;
         } else {
             p.start = samples->middle;
             p.end = samples->end;

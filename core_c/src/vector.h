@@ -8,6 +8,11 @@ typedef laconic_vector vector;
 
 static const vector none = {R(0), R(0), R(0)};
 
+static inline vector vector_of(real x, real y, real z) {
+    const vector out = {x, y, z};
+    return out;
+}
+
 static inline vector vec(const real v[3]) {
     const vector out = {v[0], v[1], v[2]};
     return out;

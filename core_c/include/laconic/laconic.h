@@ -116,7 +116,7 @@ const char *laconic_status_name(laconic_status status);
 /* ----------------------------------------------------------------------------- arithmetic -- */
 
 /* Optional, for the start of a program: does arithmetic give the bits and the refusals that this header promises?
- * Options that compilers reveal by macros are errors when compiling (real.h); this call finds the others and returns
+ * Options that compilers reveal by macros are errors when compiling (common.h); this call finds the others and returns
  * the first of LACONIC_ARITHMETICS that is wrong. It tests the options of its own file and the modes of the calling
  * thread: compile it with the core's options and call it in the thread that steps. Less than 1 KB in single on a
  * Cortex-M4. */

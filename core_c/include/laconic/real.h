@@ -12,21 +12,6 @@
 #include <stddef.h>
 #include <stdint.h>
 
-/* Options that compilers reveal by macros, gcc by all of these and clang by the first two; laconic_self_test() finds
- * the other options when it runs. */
-#if defined(__FAST_MATH__)
-#error "laconic: -ffast-math breaks the compensated sums and the tests for NaN; compile without it"
-#elif defined(__FINITE_MATH_ONLY__) && __FINITE_MATH_ONLY__ > 0
-#error "laconic: -ffinite-math-only disables every test for NaN; compile without it"
-#elif defined(__ASSOCIATIVE_MATH__)
-#error "laconic: -fassociative-math (-funsafe-math-optimizations) breaks the compensated sums; compile without it"
-#elif defined(__RECIPROCAL_MATH__)
-#error "laconic: -freciprocal-math rounds divisions twice, so the bits differ; compile without it"
-#endif
-#if defined(FLT_EVAL_METHOD) && FLT_EVAL_METHOD != 0 && FLT_EVAL_METHOD != 16
-#error "laconic: this target keeps excess precision (x87); compile with -msse2 -mfpmath=sse"
-#endif
-
 #ifdef LACONIC_SINGLE
 typedef float laconic_real;
 typedef uint32_t laconic_binary_angle; /* angle in units of 2^-32 turn */
