@@ -1,17 +1,15 @@
 # laconic_strict(<target>): warnings, which must not occur, arithmetic that gives the same bits everywhere, and a
-# section for each function and table, so that the linker leaves out what a program does not call.
-#
-# -ffp-contract=off alone is not enough: gcc 12's SLP vectoriser fuses multiply-add in spite of it.
+# section for each function and table.
 
-set(LACONIC_ARITHMETIC_FLAGS -ffp-contract=off -fno-tree-slp-vectorize)
-set(LACONIC_SECTION_FLAGS -ffunction-sections -fdata-sections)
+include("${CMAKE_CURRENT_LIST_DIR}/../core_c/cmake/LaconicArithmetic.cmake")
 set(LACONIC_WARNING_FLAGS -Wall -Wextra -Wpedantic -Wconversion -Wshadow -Wdouble-promotion)
 if(LACONIC_WERROR)
     list(APPEND LACONIC_WARNING_FLAGS -Werror)
 endif()
 
 function(laconic_strict target)
-    target_compile_options(${target} PRIVATE ${LACONIC_WARNING_FLAGS} ${LACONIC_ARITHMETIC_FLAGS} ${LACONIC_SECTION_FLAGS})
+    target_compile_options(${target} PRIVATE ${LACONIC_WARNING_FLAGS})
+    laconic_arithmetic(${target})
     get_target_property(kind ${target} TYPE)
     if(CMAKE_EXECUTABLE_FORMAT STREQUAL "ELF" AND kind MATCHES "EXECUTABLE|SHARED_LIBRARY|MODULE_LIBRARY")
         target_link_options(${target} PRIVATE -Wl,--gc-sections)

@@ -1,0 +1,23 @@
+# What the whole project makes of the core besides the library: shared libraries for Python, the header in a form that
+# cffi reads (preprocessed, without the compiler's own headers), the check of purity, the tests.
+
+function(laconic_development real)
+    add_library(laconic_shared_${real} SHARED $<TARGET_OBJECTS:laconic_objects_${real}>)
+    target_include_directories(laconic_shared_${real} PUBLIC include)
+    target_compile_definitions(laconic_shared_${real} PUBLIC $<$<STREQUAL:${real},single>:LACONIC_SINGLE>)
+    foreach(library laconic_core_${real} laconic_shared_${real})
+        laconic_instrument(${library})
+    endforeach()
+    set_target_properties(laconic_shared_${real} PROPERTIES OUTPUT_NAME laconic_${real}
+        LIBRARY_OUTPUT_DIRECTORY "${CMAKE_BINARY_DIR}/lib" RUNTIME_OUTPUT_DIRECTORY "${CMAKE_BINARY_DIR}/lib")
+
+    set(cdef "${CMAKE_BINARY_DIR}/lib/laconic_cdef_${real}.h")
+    add_custom_command(
+        OUTPUT "${cdef}"
+        COMMAND "${CMAKE_C_COMPILER}" -E -P -nostdinc $<$<STREQUAL:${real},single>:-DLACONIC_SINGLE>
+                -I "${CMAKE_CURRENT_SOURCE_DIR}/cdef" -I "${CMAKE_CURRENT_SOURCE_DIR}/include"
+                "${CMAKE_CURRENT_SOURCE_DIR}/include/laconic/laconic.h" -o "${cdef}"
+        DEPENDS ${core_headers} COMMAND_EXPAND_LISTS VERBATIM)
+    add_custom_target(laconic_cdef_${real} ALL DEPENDS "${cdef}")
+    laconic_purity(${real})
+endfunction()
