@@ -87,5 +87,5 @@ def test_the_lock_is_made_from_what_the_package_needs():
 
 
 def test_the_version_is_that_of_the_project():
-    text = (SOURCE_DIR / "CMakeLists.txt").read_text(encoding="utf-8")
-    assert f"project(laconic VERSION {version('laconic')} " in text
+    text = (SOURCE_DIR / "core_c/include/laconic/laconic.h").read_text(encoding="utf-8")
+    assert f'#define LACONIC_VERSION "{version("laconic")}"' in text
