@@ -18,6 +18,9 @@
 #if defined(FLT_EVAL_METHOD) && FLT_EVAL_METHOD != 0 && FLT_EVAL_METHOD != 16
 #error "laconic: this target keeps excess precision (x87); compile with -msse2 -mfpmath=sse"
 #endif
+#if !defined(LACONIC_SINGLE) && DBL_MANT_DIG != 53
+#error "laconic: this target's double has not 64 bits; compile with -DLACONIC_SINGLE, or take laconic_single.c"
+#endif
 
 typedef laconic_real real;
 
