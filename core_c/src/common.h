@@ -29,7 +29,9 @@ typedef laconic_real real;
 /* The core is also C++, in which one file of all (packages/c) may be compiled: C++ spells these two otherwise. */
 #ifdef __cplusplus
 #define restrict __restrict
-#define ALL_ZERO {}
+#define ALL_ZERO \
+    { \
+    }
 #else
 #define ALL_ZERO {0}
 #endif

@@ -15,9 +15,7 @@
     }
 #define RETURN_ROW(type, number, rows) \
     static const type zero = ALL_ZERO; \
-    switch ((int)(number)) { \
-        rows default : return &zero; \
-    }
+    switch ((int)(number)) { rows default : return &zero; }
 #else
 #define ROW(type, number, ...) [number] = __VA_ARGS__,
 #define RETURN_ROW(type, number, rows) \
@@ -79,9 +77,8 @@ const char *laconic_field_path(laconic_field field) { return text_or_empty(path_
 #define ITEMS_ENCODER(member) 0
 #define ITEMS_WHEEL_ENCODER(member) LACONIC_MAX_WHEELS
 #define TRAITS(of, number, IDENTIFIER, member, name, KIND, RULE, NEED) \
-    LACONIC_ROW_OF( \
-        number)(ROW(laconic_field_traits, number, \
-                    {LACONIC_KIND_##KIND, LACONIC_RULE_##RULE, LACONIC_NEED_##NEED, ITEMS_##of(member)}))
+    LACONIC_ROW_OF(number)(ROW(laconic_field_traits, number, \
+                               {LACONIC_KIND_##KIND, LACONIC_RULE_##RULE, LACONIC_NEED_##NEED, ITEMS_##of(member)}))
 
 static const laconic_field_traits *traits_row(laconic_field field) {
     RETURN_ROW(laconic_field_traits, field, EVERY_FIELD(TRAITS))

@@ -116,8 +116,8 @@ laconic_status laconic_friction_of(laconic_friction *friction, const laconic_mod
 /* --------------------------------------------------------------------------------- the start -- */
 
 /* ν of the start must suit wheels that cannot slip. */
-static laconic_status check_wheel_start(const laconic_friction *f, const laconic_vehicle *vehicle, const laconic_start *start,
-                                  laconic_refusal *why) {
+static laconic_status check_wheel_start(const laconic_friction *f, const laconic_vehicle *vehicle,
+                                        const laconic_start *start, laconic_refusal *why) {
     laconic_model ideal;
     laconic_state state;
     if (!f->slips && laconic_prepare_ideal(&ideal, vehicle, NULL) == LACONIC_OK)

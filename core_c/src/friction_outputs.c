@@ -18,7 +18,7 @@ static real contact_state(const laconic_friction *f, const laconic_slip *slip, i
 }
 
 static void fill_wheel_outputs(laconic_outputs *out, const laconic_plant *plant, const laconic_input *input, int32_t i,
-                       vector nu) {
+                               vector nu) {
     const laconic_friction *f = &plant->friction;
     const laconic_slip *s = &plant->slip;
     real slipped[2];

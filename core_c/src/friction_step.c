@@ -141,7 +141,7 @@ static pose_change sloped_displacement(const part *p, const laconic_slip *slip, 
     const real reach = p->h * p->m->wheel_radius_m;
     *axes = p->end;
     const pose_change moved = {reach * taken.x, reach * taken.y,
-                         p->h * R(0.5) * (p->old.z + p->nu.z) * p->m->yaw_rate_of_zeta[2]};
+                               p->h * R(0.5) * (p->old.z + p->nu.z) * p->m->yaw_rate_of_zeta[2]};
     return moved;
 }
 

@@ -17,10 +17,11 @@ typedef struct motion {
 
 static motion motion_of(const laconic_model *model, const real nu[3], const real rate[3]) {
     const real radius = model->wheel_radius_m;
-    return (motion){{radius * nu[0], radius * nu[1]},
-                    nu[2] / model->yaw_scale,
-                    {radius * rate[0], radius * rate[1]},
-                    rate[2] / model->yaw_scale};
+    const motion moved = {{radius * nu[0], radius * nu[1]},
+                          nu[2] / model->yaw_scale,
+                          {radius * rate[0], radius * rate[1]},
+                          rate[2] / model->yaw_scale};
+    return moved;
 }
 
 /* a_P = v' + ω × v + ω' × d − ω² d, with d from S to P. */

@@ -53,8 +53,8 @@ static laconic_status prepare_friction(constants *c, const laconic_vehicle *vehi
     return laconic_friction_of(FRICTION_OF(c), &c->model, vehicle, why);
 }
 
-static laconic_status prepare_constants(constants *c, const laconic_vehicle *vehicle, const laconic_method *method, real step_s,
-                              laconic_refusal *why) {
+static laconic_status prepare_constants(constants *c, const laconic_vehicle *vehicle, const laconic_method *method,
+                                        real step_s, laconic_refusal *why) {
     const bool has_friction = LACONIC_WITH_FRICTION && laconic_vehicle_has_friction(vehicle);
     laconic_status status = laconic_prepare(&c->model, vehicle, why);
     if (LACONIC_WITH_FRICTION) FRICTION_OF(c)->acts = false;
@@ -162,7 +162,7 @@ void laconic_plant_wheel_angles(const laconic_plant *plant, laconic_real *angle_
 
 laconic_real laconic_plant_energy_J(const laconic_plant *plant) {
     return has_slip(plant) ? laconic_friction_energy_J(FRICTION_OF(plant), &plant->state, SLIP_OF(plant))
-                        : laconic_energy_J(&plant->model, &plant->state);
+                           : laconic_energy_J(&plant->model, &plant->state);
 }
 
 /* ----------------------------------------------------------------------------------- change -- */
@@ -176,7 +176,8 @@ laconic_status laconic_plant_change(laconic_plant *plant, const laconic_vehicle 
     laconic_plant_wheel_angles(plant, angle_rad);
     status = laconic_state_carry(&plant->state, &plant->model, &c.model);
     if (status != LACONIC_OK) return refuse(why, status, LACONIC_FIELD_NONE, 0, R(0), R(0));
-    if (has_slip(plant) && !friction_acts(FRICTION_OF(&c))) laconic_wheel_angles_set(&c.model, &plant->state, angle_rad);
+    if (has_slip(plant) && !friction_acts(FRICTION_OF(&c)))
+        laconic_wheel_angles_set(&c.model, &plant->state, angle_rad);
     if (!has_slip(plant) && friction_acts(FRICTION_OF(&c)))
         laconic_slip_take_over(SLIP_OF(plant), FRICTION_OF(&c), speed, angle_rad);
     adopt(plant, vehicle, &c);

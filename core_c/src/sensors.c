@@ -3,10 +3,10 @@
 
 /* ------------------------------------------------------------------------------------- settings -- */
 
-typedef struct checked_number {
+typedef struct checked_setting {
     uint16_t offset; /* in the struct that the table is for */
     uint8_t field, kind, rule, items;
-} checked_number;
+} checked_setting;
 
 #define ROW(type, number, member, KIND, RULE, items) \
     {offsetof(type, member), number, LACONIC_KIND_##KIND, LACONIC_RULE_##RULE, items},
@@ -17,8 +17,8 @@ typedef struct checked_number {
 #define OF_WHEEL(of, number, IDENTIFIER, member, name, KIND, RULE, NEED) \
     ROW(laconic_encoder_settings, number, member, KIND, RULE, 1)
 
-static const checked_number of_imu[] = {LACONIC_IMU_FIELDS(OF_IMU, ) LACONIC_IMU_ARRAY_FIELDS(OF_IMU_ARRAY, )};
-static const checked_number of_wheel[] = {LACONIC_WHEEL_ENCODER_FIELDS(OF_WHEEL, )};
+static const checked_setting of_imu[] = {LACONIC_IMU_FIELDS(OF_IMU, ) LACONIC_IMU_ARRAY_FIELDS(OF_IMU_ARRAY, )};
+static const checked_setting of_encoder[] = {LACONIC_WHEEL_ENCODER_FIELDS(OF_WHEEL, )};
 
 #define COUNT(array) (sizeof(array) / sizeof(array)[0])
 
@@ -28,15 +28,15 @@ static laconic_status status_of(real value, uint8_t rule) {
     return rule == LACONIC_RULE_ANGLE && magnitude(value) > LARGEST_ANGLE ? LACONIC_OVERFLOW : LACONIC_OK;
 }
 
-static real value_of(const void *of, const checked_number *number, int32_t item) {
+static real value_of(const void *of, const checked_setting *number, int32_t item) {
     const unsigned char *at = (const unsigned char *)of + number->offset;
     if (number->kind == LACONIC_KIND_INTEGER) return (real)((const int32_t *)(const void *)at)[item];
     return ((const real *)(const void *)at)[item];
 }
 
 /* `item`: that of the struct; 0: the numbers of arrays are the items. */
-static laconic_status check_numbers(const void *of, const checked_number *numbers, size_t count, int32_t item,
-                                    laconic_refusal *why) {
+static laconic_status check_settings(const void *of, const checked_setting *numbers, size_t count, int32_t item,
+                                     laconic_refusal *why) {
     for (size_t k = 0; k < count; k++) {
         for (int32_t i = 0; i < numbers[k].items; i++) {
             const real value = value_of(of, &numbers[k], i);
@@ -63,7 +63,7 @@ static laconic_status check_encoders(const laconic_sensor_settings *settings, in
                       R(0));
     for (int32_t i = 0; i < LACONIC_MAX_WHEELS; i++) {
         const laconic_encoder_settings *encoder = &settings->encoder[i];
-        const laconic_status status = check_numbers(encoder, of_wheel, COUNT(of_wheel), i + 1, why);
+        const laconic_status status = check_settings(encoder, of_encoder, COUNT(of_encoder), i + 1, why);
         if (status != LACONIC_OK) return status;
         if (encoder->counts_per_turn > 0 && (i >= wheel_count || !LACONIC_WITH_WHEEL_ANGLES))
             return above(why, LACONIC_SENSOR_FIELD_WHEEL_ENCODER_COUNTS, i + 1, encoder->counts_per_turn, 0);
@@ -73,7 +73,7 @@ static laconic_status check_encoders(const laconic_sensor_settings *settings, in
 
 laconic_status laconic_sensor_settings_check(const laconic_sensor_settings *settings, int32_t wheel_count,
                                              laconic_refusal *why) {
-    const laconic_status status = check_numbers(&settings->imu, of_imu, COUNT(of_imu), 0, why);
+    const laconic_status status = check_settings(&settings->imu, of_imu, COUNT(of_imu), 0, why);
     if (status != LACONIC_OK) return status;
     if (settings->imu.delay_steps > LACONIC_IMU_MAX_DELAY)
         return above(why, LACONIC_SENSOR_FIELD_IMU_DELAY, 0, settings->imu.delay_steps, LACONIC_IMU_MAX_DELAY);
@@ -132,13 +132,14 @@ laconic_status laconic_sensors_after(laconic_sensors *sensors, const laconic_pla
 
 laconic_status laconic_sensors_start(laconic_sensors *sensors, const laconic_sensor_settings *settings,
                                      const laconic_plant *plant, laconic_refusal *why) {
-    const laconic_input without = {0};
+    const laconic_input without = ALL_ZERO;
+    const laconic_encoder fresh = ALL_ZERO;
     laconic_sensor_moment now;
     const laconic_status status = laconic_sensor_settings_check(settings, plant->model.wheel_count, why);
     if (status != LACONIC_OK) return status;
     const laconic_sensor_settings kept = *settings; /* which may be the sensors' own */
     sensors->settings = kept;
-    for (int32_t i = 0; i < LACONIC_MAX_WHEELS; i++) sensors->encoder[i] = (laconic_encoder){0, R(0)};
+    for (int32_t i = 0; i < LACONIC_MAX_WHEELS; i++) sensors->encoder[i] = fresh;
     for (int k = 0; k < 2; k++) sensors->acceleration_m_per_s2[k] = R(0);
     laconic_sensors_before(&now, plant);
     (void)enter_sample(sensors, plant, &without, &now, NULL); /* a sample out of range is refused by the first step */

@@ -43,7 +43,7 @@ static inline const real *inverse_row(const laconic_model *m, int k) {
 static inline vector zeta_of_nu(const laconic_model *m, const real nu[3]) {
     if (rotated_twice(m))
         return vector_of(dot(vec(inverse_row(m, 0)), vec(nu)), dot(vec(inverse_row(m, 1)), vec(nu)),
-                        dot(vec(inverse_row(m, 2)), vec(nu)));
+                         dot(vec(inverse_row(m, 2)), vec(nu)));
     const vector first = scaled(nu[0], vec(m->nu_of_zeta[0])), second = scaled(nu[1], vec(m->nu_of_zeta[1]));
     return times(vec(m->inertia), plus(plus(first, second), scaled(nu[2], vec(m->nu_of_zeta[2]))));
 }
@@ -126,8 +126,8 @@ static inline void forcing_of(laconic_forcing *forcing, const laconic_model *mod
     vector b = none;
     if (LACONIC_WITH_VOLTAGE || LACONIC_WITH_AXLE_TORQUE) b = b_of_torques(model, input);
     if (LACONIC_WITH_BODY_WRENCH && acts(input->body_force_N[0], input->body_force_N[1], input->body_moment_Nm))
-        b = plus(b,
-                 b_of_wrench(model, wrench_with(input->body_force_N[0], input->body_force_N[1], input->body_moment_Nm)));
+        b = plus(
+            b, b_of_wrench(model, wrench_with(input->body_force_N[0], input->body_force_N[1], input->body_moment_Nm)));
     store(forcing->constant, b);
     forcing->rotates =
         LACONIC_WITH_WORLD_FORCE && (acts(input->world_force_N[0], input->world_force_N[1], R(0)) || sloped(model));

@@ -49,7 +49,7 @@ static inline wrench slope_seen(const laconic_model *m, direction heading) {
 static inline wrench wrench_of(const laconic_model *m, const laconic_input *in, direction heading) {
     const wrench w = world_force_seen(in, heading), slope = slope_seen(m, heading);
     return wrench_with(in->body_force_N[0] + w.along + slope.along, in->body_force_N[1] + w.across + slope.across,
-                    in->body_moment_Nm + w.moment);
+                       in->body_moment_Nm + w.moment);
 }
 
 /* Its derivative along a variation: when the body yaws by dθ, a world force rotates by −dθ in body axes. */
@@ -61,9 +61,9 @@ static inline wrench wrench_change(const laconic_model *m, const laconic_input *
     const real along = change.along + by->heading_rad * force.across;
     const real across = change.across - by->heading_rad * force.along;
     return wrench_with(by->input.body_force_N[0] + along + by->heading_rad * slope.across,
-                    by->input.body_force_N[1] + across - by->heading_rad * slope.along,
-                    by->input.body_moment_Nm + (dr[0] * force.across - dr[1] * force.along) +
-                        (r[0] * across - r[1] * along));
+                       by->input.body_force_N[1] + across - by->heading_rad * slope.along,
+                       by->input.body_moment_Nm + (dr[0] * force.across - dr[1] * force.along) +
+                           (r[0] * across - r[1] * along));
 }
 
 #endif
