@@ -1,25 +1,40 @@
-"""`python -m laconic_packages amalgamation FOLDER`: the core as two files."""
+"""`python -m laconic_packages amalgamation FOLDER`: the core as two files; `packages FOLDER`: embedded tools' packages."""
 
 from __future__ import annotations
 
 import argparse
+import shutil
+from collections.abc import Mapping
 from pathlib import Path
 
 from laconic_packages.amalgamation import amalgamation
+from laconic_packages.embedded import TOOLS, archive, packages
 from laconic_packages.facts import facts
 
 
 def main() -> None:
     parser = argparse.ArgumentParser(prog="laconic_packages", description=__doc__)
-    parser.add_argument("what", choices=("amalgamation",))
+    parser.add_argument("what", choices=("amalgamation", "packages"))
     parser.add_argument("folder", type=Path)
     arguments = parser.parse_args()
-    write(arguments.folder, amalgamation(facts()))
+    if arguments.what == "amalgamation":
+        write(arguments.folder, amalgamation(facts()))
+    else:
+        write_packages(arguments.folder)
 
 
-def write(folder: Path, files: dict[str, str]) -> None:
-    folder.mkdir(parents=True, exist_ok=True)
+def write_packages(folder: Path) -> None:
+    """A folder for each tool, as it is used in place, and its archive beside it."""
+    shutil.rmtree(folder, ignore_errors=True)
+    for tool, files in packages(facts()).items():
+        write(folder / tool / TOOLS[tool].folder, files)
+        name, content = archive(tool, files, facts())
+        (folder / name).write_bytes(content)
+
+
+def write(folder: Path, files: Mapping[str, str]) -> None:
     for name, text in files.items():
+        (folder / name).parent.mkdir(parents=True, exist_ok=True)
         (folder / name).write_text(text, encoding="utf-8", newline="\n")
 
 
