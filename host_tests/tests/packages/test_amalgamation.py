@@ -81,7 +81,8 @@ int main(void) {
 
 def test_one_program_holds_both_scalar_types_by_the_pair_with_names_of_its_own(pair):
     (pair / "both.c").write_text(BOTH, encoding="utf-8")
-    run(CASES[0][0], *STRICT, "-I.", "both.c", "laconic/laconic.c", "laconic/laconic_single.c", "-o", "both", folder=pair)
+    files = ["both.c", "laconic/laconic.c", "laconic/laconic_single.c"]
+    run(CASES[0][0], *STRICT, "-I.", *files, "-o", "both", folder=pair)
     run("./both", folder=pair)
 
 

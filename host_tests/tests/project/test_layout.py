@@ -80,7 +80,7 @@ def test_the_fmu_decides_in_one_place_whether_a_number_is_finite():
 
 
 C_COMMENT = re.compile(r"/\*.*?\*/|//[^\n]*", re.DOTALL)
-PARTS = ("cmake", "core_c", "firmware_stub", "fmu", "host_tests")
+PARTS = ("cmake", "core_c", "firmware_stub", "fmu", "host_tests", "packages/c")
 SOURCES = [path for part in PARTS for path in (ROOT / part).rglob("*")
            if path.suffix in (".c", ".h", ".py", ".cmake") or path.name == "CMakeLists.txt"]
 

@@ -1,4 +1,4 @@
-"""`python -m laconic_packages amalgamation FOLDER`: the core as two files; `packages FOLDER`: embedded tools' packages."""
+"""`python -m laconic_packages amalgamation FOLDER`: the core as two files; `packages FOLDER`: embedded packages."""
 
 from __future__ import annotations
 

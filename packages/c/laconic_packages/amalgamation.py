@@ -22,21 +22,22 @@ HEADER_HEAD = """\
  *
  *     cc -O2 program.c {name}.c
  *
-{reals} * -ffunction-sections -fdata-sections, and -Wl,--gc-sections when linking, leave out what a program does not call.
- * laconic_self_test(), called when a program starts, tells whether its numbers will be those of every other platform, to
- * the last bit.
+{reals} *
+ * -ffunction-sections -fdata-sections, and -Wl,--gc-sections when linking, leave out what a program does not call.
+ * laconic_self_test(), called when a program starts, tells whether its numbers will be those of every other platform,
+ * to the last bit.
  *
 {licence} */
 """
 
 PLAIN_REALS = """\
- * -DLACONIC_SINGLE, for all files that see laconic.h, makes all numbers float instead of double. For a program with both
- * there is the pair laconic_single.h and laconic_single.c, with names of its own.
+ * -DLACONIC_SINGLE, for all files that see laconic.h, makes all numbers float instead of double. For a program with
+ * both there is the pair laconic_single.h and laconic_single.c, with names of its own.
 """
 
 SINGLE_REALS = """\
- * All numbers are float. All names begin with laconic_single_ or LACONIC_SINGLE_ where laconic.h has laconic_ or LACONIC_,
- * so that a program can hold both pairs.
+ * All numbers are float. All names begin with laconic_single_ or LACONIC_SINGLE_ where laconic.h has laconic_ or
+ * LACONIC_, so that a program can hold both pairs.
 """
 
 SOURCE_HEAD = """\
@@ -67,15 +68,19 @@ def amalgamation(facts: Facts) -> dict[str, str]:
     single = "#define LACONIC_SINGLE_SINGLE /* float, in each place that chooses the scalar type */\n" + renamed(header)
     return {
         "laconic.h": header_head(facts, "laconic", PLAIN_REALS) + header,
-        "laconic.c": SOURCE_HEAD.format(version=facts.version, name="laconic") + source + SOURCE_FOOT,
+        "laconic.c": source_head(facts, "laconic") + source + SOURCE_FOOT,
         "laconic_single.h": header_head(facts, "laconic_single", SINGLE_REALS) + single,
-        "laconic_single.c": SOURCE_HEAD.format(version=facts.version, name="laconic_single") + renamed(source) + SOURCE_FOOT,
+        "laconic_single.c": source_head(facts, "laconic_single") + renamed(source) + SOURCE_FOOT,
     }
 
 
 def header_head(facts: Facts, name: str, reals: str) -> str:
     licence = "".join(f" * {line}".rstrip() + "\n" for line in facts.licence.splitlines())
     return HEADER_HEAD.format(version=facts.version, sentence=facts.sentence, name=name, reals=reals, licence=licence)
+
+
+def source_head(facts: Facts, name: str) -> str:
+    return SOURCE_HEAD.format(version=facts.version, name=name)
 
 
 def public_headers() -> str:

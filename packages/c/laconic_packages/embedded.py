@@ -1,6 +1,7 @@
 """The packages of embedded tools: the files of the amalgamation, and what each tool wants beside them, from templates.
 
-In templates `@name@` stands for a fact (facts.py); `@robot@` and `@main@` for what all examples share (robot.h, main.h).
+In templates `@name@` stands for a fact (facts.py), `@robot@` and `@main@` for what all examples share (robot.c.in,
+main.c.in).
 """
 
 from __future__ import annotations
@@ -62,8 +63,8 @@ def values_of(facts: Facts) -> dict[str, str]:
         "keywords_json": json.dumps(facts.keywords),
         "keyword_elements": "".join(f"    <keyword>{escape(word)}</keyword>\n" for word in facts.keywords),
         "release": escape(first_change()),
-        "robot": (TEMPLATES / "robot.h").read_text(encoding="utf-8"),
-        "main": (TEMPLATES / "main.h").read_text(encoding="utf-8"),
+        "robot": (TEMPLATES / "robot.c.in").read_text(encoding="utf-8"),
+        "main": (TEMPLATES / "main.c.in").read_text(encoding="utf-8"),
     }
 
 
