@@ -133,13 +133,15 @@ laconic_status laconic_sensors_after(laconic_sensors *sensors, const laconic_pla
 laconic_status laconic_sensors_start(laconic_sensors *sensors, const laconic_sensor_settings *settings,
                                      const laconic_plant *plant, laconic_refusal *why) {
     const laconic_input without = ALL_ZERO;
-    const laconic_encoder fresh = ALL_ZERO;
     laconic_sensor_moment now;
     const laconic_status status = laconic_sensor_settings_check(settings, plant->model.wheel_count, why);
     if (status != LACONIC_OK) return status;
     const laconic_sensor_settings kept = *settings; /* which may be the sensors' own */
     sensors->settings = kept;
-    for (int32_t i = 0; i < LACONIC_MAX_WHEELS; i++) sensors->encoder[i] = fresh;
+    for (int32_t i = 0; i < LACONIC_MAX_WHEELS; i++) {
+        sensors->encoder[i].count = 0;
+        sensors->encoder[i].rest = R(0);
+    }
     for (int k = 0; k < 2; k++) sensors->acceleration_m_per_s2[k] = R(0);
     laconic_sensors_before(&now, plant);
     (void)enter_sample(sensors, plant, &without, &now, NULL); /* a sample out of range is refused by the first step */

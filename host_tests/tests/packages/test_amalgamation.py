@@ -42,14 +42,13 @@ def language(compiler: str) -> str:
 
 @pytest.mark.parametrize(("compiler", "standard"), CASES)
 def test_it_compiles_without_a_warning_in_every_language_that_it_promises(compiler, standard, pair):
-    for options in (["laconic.c"], ["-DLACONIC_SINGLE", "laconic.c"], ["laconic_single.c"]):
-        run(compiler, "-x", language(compiler), f"-std={standard}", *STRICT, "-fsyntax-only", *options,
+    for name in ("laconic.c", "laconic_single.c"):
+        run(compiler, "-x", language(compiler), f"-std={standard}", *STRICT, "-fsyntax-only", name,
             folder=pair / "laconic")
 
 
 @pytest.mark.parametrize(("compiler", "real", "effort"), [
-    ("gcc", "double", "-O2"), ("gcc", "single", "-O1"), ("clang", "double", "-O1"), ("g++", "single", "-O1"),
-    ("clang++", "single", "-O1")])
+    ("gcc", "double", "-O2"), ("clang", "double", "-O1"), ("g++", "single", "-O1")])
 def test_without_any_option_for_bits_it_has_the_bits_of_the_core(compiler, real, effort, pair):
     if shutil.which(compiler) is None:
         pytest.skip(f"no {compiler}")

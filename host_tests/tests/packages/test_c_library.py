@@ -110,9 +110,9 @@ def test_a_project_finds_the_installed_core_by_find_package(component, whole, tm
 @pytest.mark.parametrize(("package", "component"), [("laconic", "core"), ("laconic_single", "core_single")])
 def test_pkg_config_finds_it_where_it_was_moved_to(package, component, whole, tmp_path):
     source = user(tmp_path / "user", "", component)
-    command = f'cc user.c $(pkg-config --cflags --libs {package}) -o user'
+    command = f'eval "cc user.c $(pkg-config --cflags --libs {package}) -o user"'
     libraries = next(whole.glob("lib*/**/pkgconfig"))
-    subprocess.run(["sh", "-c", f"eval {command!r}"], cwd=source, check=True,
+    subprocess.run(["sh", "-c", command], cwd=source, check=True,
                    env={**os.environ, "PKG_CONFIG_PATH": str(libraries)})
     assert run(source / "user") == "sound\n"
     assert run("pkg-config", "--modversion", package, PKG_CONFIG_PATH=str(libraries)).strip() == version()

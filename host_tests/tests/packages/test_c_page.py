@@ -18,8 +18,8 @@ README = (SOURCE_DIR / "README.md").read_text(encoding="utf-8")
 def test_its_program_in_cpp_prints_what_the_readme_states(tmp_path):
     (tmp_path / "program.cpp").write_text(re.findall(r"```cpp\n(.*?)```", PAGE, re.DOTALL)[0], encoding="utf-8")
     shutil.copytree(built("amalgamation"), tmp_path / "laconic")
-    subprocess.run(["g++", "-std=c++11", "-Wall", "-Wextra", "-Wpedantic", "-Werror", "-I.", "program.cpp", "-x", "c",
-                    "-std=c99", "laconic/laconic.c", "-o", "program"], cwd=tmp_path, check=True)
+    subprocess.run(["g++", "-std=c++11", "-Wall", "-Wextra", "-Wpedantic", "-Werror", "-I.", "-x", "c++", "program.cpp",
+                    "laconic/laconic.c", "-o", "program"], cwd=tmp_path, check=True)
     printed = subprocess.run(["./program"], cwd=tmp_path, capture_output=True, text=True, check=True).stdout
     assert printed == re.findall(r"```text\n(.*?)```", README, re.DOTALL)[0]
 

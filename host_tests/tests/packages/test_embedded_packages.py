@@ -150,7 +150,7 @@ EXAMPLES = {"arduino": "examples/Curve/Curve.ino", "platformio": "examples/curve
 
 @pytest.fixture(scope="module")
 def compiled_core(tmp_path_factory: pytest.TempPathFactory) -> Path:
-    """laconic_single.o for a Cortex-M4F, as a framework with -std=gnu17 compiles it; all packages have the same file."""
+    """laconic_single.o for a Cortex-M4F, as a framework with -std=gnu17 compiles it; all packages hold the same."""
     out = tmp_path_factory.mktemp("core") / "laconic_single.o"
     subprocess.run(["arm-none-eabi-gcc", "-std=gnu17", *ARM, "-ffunction-sections", "-fdata-sections", "-c",
                     str(built("amalgamation/laconic_single.c")), "-o", str(out)], check=True)
