@@ -5,8 +5,8 @@
 #define EVERY_FIELD(X) LACONIC_ALL_FIELDS(X) LACONIC_SENSOR_FIELDS(X)
 #define TABLE_LENGTH LACONIC_SENSOR_FIELD_COUNT
 
-/* RETURN_ROW(type, number, rows) ends a function that returns the row of a number, all zero where there is none. In C the
- * rows are a table; C++ cannot name a row by its number, so there each is a case. */
+/* RETURN_ROW(type, number, rows) ends a function that returns the row of a number, all zero where there is none. In C
+ * the rows are a table; C++ cannot name a row by its number, so there each is a case. */
 #ifdef __cplusplus
 #define ROW(type, number, ...) \
     case number: { \

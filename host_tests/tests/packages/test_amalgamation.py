@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import os
 import re
 import shutil
 import subprocess
@@ -95,10 +96,8 @@ def test_options_that_break_its_promises_are_refused_and_only_in_its_own_file(pa
 
 
 def test_it_is_made_the_same_twice_by_python_alone_and_names_version_and_licence(pair, tmp_path):
-    maker = SOURCE_DIR / "packages" / "c"
-    subprocess.run([sys.executable, "-I", "-c", "import runpy, sys; sys.path.insert(0, sys.argv.pop(1));"
-                    "runpy.run_module('laconic_packages', run_name='__main__')", str(maker), "amalgamation",
-                    str(tmp_path)], check=True)
+    subprocess.run([sys.executable, "-S", "-m", "laconic_packages", "amalgamation", str(tmp_path)], check=True,
+                   env={**os.environ, "PYTHONPATH": str(SOURCE_DIR / "packages" / "c")})
     texts = {path.name: path.read_bytes() for path in sorted(tmp_path.iterdir())}
     assert texts == {path.name: path.read_bytes() for path in sorted((pair / "laconic").iterdir())}
     licence = (SOURCE_DIR / "LICENSE").read_text(encoding="utf-8").splitlines()
