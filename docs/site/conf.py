@@ -1,0 +1,24 @@
+"""Sphinx's configuration of the site."""
+
+import re
+from pathlib import Path
+
+ROOT = Path(__file__).resolve().parents[2]
+LISTS = (ROOT / "CMakeLists.txt").read_text(encoding="utf-8")
+
+project = "Laconic"
+author = "the authors of Laconic"
+release = re.search(r"project\(laconic VERSION ([\d.]+)", LISTS)[1]
+extensions = ["myst_parser", "sphinx.ext.autodoc"]
+myst_enable_extensions = ["colon_fence"]
+myst_heading_anchors = 4
+html_theme = "furo"
+html_title = f"Laconic {release}"
+html_static_path = [str(Path(__file__).parent / "static")]
+html_css_files = ["site.css"]
+html_show_sphinx = False
+html_copy_source = False
+highlight_language = "none"  # indented blocks are command lines
+autodoc_typehints = "description"
+autodoc_member_order = "bysource"
+nitpicky = False
