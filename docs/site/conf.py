@@ -4,11 +4,11 @@ import re
 from pathlib import Path
 
 ROOT = Path(__file__).resolve().parents[2]
-LISTS = (ROOT / "CMakeLists.txt").read_text(encoding="utf-8")
+HEADER = (ROOT / "core_c" / "include" / "laconic" / "laconic.h").read_text(encoding="utf-8")
 
 project = "Laconic"
 author = "the authors of Laconic"
-release = re.search(r"project\(laconic VERSION ([\d.]+)", LISTS)[1]
+release = re.search(r'#define LACONIC_VERSION "([^"]+)"', HEADER)[1]
 extensions = ["myst_parser", "sphinx.ext.autodoc"]
 myst_enable_extensions = ["colon_fence"]
 myst_heading_anchors = 4
