@@ -128,6 +128,17 @@ def bits(value: float) -> str:
 
 
 @pytest.mark.parametrize("name", PLATFORMS)
+def test_no_wheel_nor_an_fmu_in_it_holds_a_path_of_the_machine_that_made_it(name: str) -> None:
+    here = [str(PROJECT).encode(), str(WHEELS.parent).encode(), str(Path.home()).encode() + b"/"]
+    wheel = wheel_of(name)
+    found = [each for each in wheel.namelist() if any(path in wheel.read(each) for path in here)]
+    for fmu in (each for each in wheel.namelist() if each.endswith(".fmu")):
+        with zipfile.ZipFile(wheel.open(fmu)) as inside:
+            found += [f"{fmu}: {each}" for each in inside.namelist() if any(path in inside.read(each) for path in here)]
+    assert found == []
+
+
+@pytest.mark.parametrize("name", PLATFORMS)
 def test_every_wheel_holds_its_platforms_binaries_and_fmus_of_all(name: str) -> None:
     platform, wheel = PLATFORMS[name], wheel_of(name)
     names = wheel.namelist()
