@@ -20,7 +20,9 @@ import pytest
 from fresh_environment import PROJECT
 
 import laconic
+from laconic.fmu import make
 from laconic.paths import build_dir
+from laconic_fmu import archive
 from laconic_fmu.cross import compile_to
 from laconic_wheel.contents import LIBRARIES, PROGRAMS
 from laconic_wheel.platforms import PLATFORMS
@@ -35,7 +37,7 @@ FMU_BINARIES = {"x86_64-windows": "win64/Laconic.dll", "aarch64-linux": "aarch64
                 "x86_64-linux": "linux64/Laconic.so"}
 
 
-if not CROSS.exists():
+if not (CROSS.exists() and any(WHEELS.glob("laconic-*.whl"))):
     pytest.skip("no wheels of other platforms: cmake --workflow --preset wheels makes them", allow_module_level=True)
 
 
@@ -63,8 +65,10 @@ RUNNERS = (Runner("linux-x86_64", "x86_64-linux", ()), Runner("windows-x86_64", 
 
 
 def wheel_of(platform: str) -> zipfile.ZipFile:
-    (path,) = WHEELS.glob(f"laconic-*-{PLATFORMS[platform].tag}.whl")
-    return zipfile.ZipFile(path)
+    found = list(WHEELS.glob(f"laconic-*-{PLATFORMS[platform].tag}.whl"))
+    if not found:
+        pytest.skip(f"{WHEELS} has no wheel for {platform}")
+    return zipfile.ZipFile(*found)
 
 
 def run(runner: Runner, folder: Path, *arguments: str) -> list[str]:
@@ -111,10 +115,6 @@ def test_the_fmu_of_the_wheel_has_our_bits_on_its_platform(runner: Runner, tmp_p
 
 def scene_fmu_of_wheel(scene: laconic.Scene, folder: Path) -> Path:
     """The scene's FMU by the wheel's own generic one, unpacked."""
-    from laconic_fmu import archive
-
-    from laconic.fmu import make
-
     generic = folder / "laconic" / "_built" / "fmu" / "Laconic_fmi2.fmu"
     content = make.content_of(scene, scene.name, "for a test", make.start_values(scene))
     archive.scene_fmu(generic, make.DESCRIPTION, content, folder / "robot.fmu", archive.Variant(2), None)
