@@ -12,9 +12,11 @@ const LINES = [
 /** Velocities as lines; m/s and rad/s share the axis. */
 export function drawVelocities(/** @type {any[]} */ history) {
   const { pen, width, height } = surface(byId("velocities"));
-  const colour = /** @type {Record<string, string>} */ (colours()), end = history.at(-1).t_s;
+  const colour = /** @type {Record<string, string>} */ (colours()),
+    end = history.at(-1).t_s;
   const values = history.flatMap(({ out }) => LINES.map((line) => Math.abs(line.of(out)))).filter(Number.isFinite);
-  const most = niceTop(Math.max(0.05, ...values)), middle = height / 2;
+  const most = niceTop(Math.max(0.05, ...values)),
+    middle = height / 2;
   const x = (/** @type {number} */ t) => width - ((end - t) / SPAN_S) * width;
   const y = (/** @type {number} */ v) => middle - (v / most) * (middle - 8);
   rule(pen, 0, middle, width, colour.line);
@@ -36,7 +38,13 @@ function niceTop(/** @type {number} */ value) {
   return unit * ([1, 2, 5, 10].find((times) => times * unit >= value) ?? 10);
 }
 
-function rule(/** @type {any} */ pen, /** @type {number} */ x, /** @type {number} */ y, /** @type {number} */ width, /** @type {string} */ colour) {
+function rule(
+  /** @type {any} */ pen,
+  /** @type {number} */ x,
+  /** @type {number} */ y,
+  /** @type {number} */ width,
+  /** @type {string} */ colour,
+) {
   pen.strokeStyle = colour;
   pen.lineWidth = 1;
   pen.beginPath();
@@ -45,7 +53,13 @@ function rule(/** @type {any} */ pen, /** @type {number} */ x, /** @type {number
   pen.stroke();
 }
 
-function label(/** @type {any} */ pen, /** @type {string} */ text, /** @type {number} */ x, /** @type {number} */ y, /** @type {string} */ colour) {
+function label(
+  /** @type {any} */ pen,
+  /** @type {string} */ text,
+  /** @type {number} */ x,
+  /** @type {number} */ y,
+  /** @type {string} */ colour,
+) {
   pen.font = "11px system-ui, sans-serif";
   pen.textAlign = "left";
   pen.fillStyle = colour;
@@ -72,30 +86,51 @@ export function showGrip(/** @type {any} */ scene, /** @type {any} */ out) {
   const isJudged = scene.vehicle.wheel.some((/** @type {any} */ wheel) => frictionOf(scene, wheel) > 0);
   const margin = byId("margin");
   margin.textContent = isJudged ? `${fixed(out.no_slip_margin_N, 1)} N` : "–";
-  const isLost = out.contact_state ? out.contact_state.some((/** @type {number} */ s) => s > 0) : out.no_slip_margin_N < -1e-9;
-  byId("grip-note").textContent = !isJudged ? "no friction coefficient given" : isLost ? lossOf(out) : "every wheel holds";
+  const isLost = out.contact_state
+    ? out.contact_state.some((/** @type {number} */ s) => s > 0)
+    : out.no_slip_margin_N < -1e-9;
+  byId("grip-note").textContent = !isJudged
+    ? "no friction coefficient given"
+    : isLost
+      ? lossOf(out)
+      : "every wheel holds";
   byId("grip-note").classList.toggle("warn", isJudged && isLost);
   const list = byId("grip");
   const count = scene.vehicle.wheel.length;
   while (list.children.length > count) list.lastChild.remove();
   while (list.children.length < count) list.append(gripRow(list.children.length));
   scene.vehicle.wheel.forEach((/** @type {any} */ wheel, /** @type {number} */ i) =>
-    showWheel(list.children[i], out, i, frictionOf(scene, wheel)));
+    showWheelGrip(list.children[i], out, i, frictionOf(scene, wheel)),
+  );
 }
 
 function lossOf(/** @type {any} */ out) {
   if (!out.contact_state) return "the ground could not hold this: not true from here on";
-  const slipping = out.contact_state.map((/** @type {number} */ s, /** @type {number} */ i) => (s > 0 ? i + 1 : 0)).filter(Boolean);
+  const slipping = out.contact_state
+    .map((/** @type {number} */ s, /** @type {number} */ i) => (s > 0 ? i + 1 : 0))
+    .filter(Boolean);
   return `${slipping.length > 1 ? "wheels" : "wheel"} ${slipping.join(", ")} slip${slipping.length > 1 ? "" : "s"}`;
 }
 
 function gripRow(/** @type {number} */ i) {
   const bar = element("span", { className: "bar" }, element("span"));
-  return element("li", {}, element("span", { className: "name" }, `Wheel ${i + 1}`), bar, element("span", { className: "value" }));
+  return element(
+    "li",
+    {},
+    element("span", { className: "name" }, `Wheel ${i + 1}`),
+    bar,
+    element("span", { className: "value" }),
+  );
 }
 
-function showWheel(/** @type {any} */ row, /** @type {any} */ out, /** @type {number} */ i, /** @type {number} */ friction) {
-  const force = Math.hypot(out.along_N[i], out.lateral_N[i]), held = friction * out.normal_N[i];
+function showWheelGrip(
+  /** @type {any} */ row,
+  /** @type {any} */ out,
+  /** @type {number} */ i,
+  /** @type {number} */ friction,
+) {
+  const force = Math.hypot(out.along_N[i], out.lateral_N[i]),
+    held = friction * out.normal_N[i];
   const share = held > 0 ? force / held : 0;
   row.children[1].firstChild.style.width = `${Math.min(100, 100 * share).toFixed(1)}%`;
   row.classList.toggle("lost", out.contact_state ? out.contact_state[i] > 0 : share > 1);

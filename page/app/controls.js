@@ -10,8 +10,16 @@ const OF_KEYS = 0.7; // of a slider's end that a key gives
 const DEAD = 0.12; // of a gamepad's stick
 /** @type {Record<string, [number, number]>} */
 const KEYS = {
-  w: [0, 1], s: [0, -1], a: [1, 1], d: [1, -1], q: [2, 1], e: [2, -1],
-  arrowup: [0, 1], arrowdown: [0, -1], arrowleft: [2, 1], arrowright: [2, -1],
+  w: [0, 1],
+  s: [0, -1],
+  a: [1, 1],
+  d: [1, -1],
+  q: [2, 1],
+  e: [2, -1],
+  arrowup: [0, 1],
+  arrowdown: [0, -1],
+  arrowleft: [2, 1],
+  arrowright: [2, -1],
 };
 
 /** The drive panel for one robot. */
@@ -45,7 +53,9 @@ export class Controls {
   /** Fits sliders to a robot: which directions its wheels allow, and how fast. */
   fit(/** @type {any} */ robot, /** @type {any} */ scene, /** @type {boolean} */ isSame) {
     this.robot = robot;
-    this.hasMotors = scene.vehicle.wheel.some((/** @type {any} */ _, /** @type {number} */ i) => robot.motorGain(i) !== 0);
+    this.hasMotors = scene.vehicle.wheel.some(
+      (/** @type {any} */ _, /** @type {number} */ i) => robot.motorGain(i) !== 0,
+    );
     this.able = [0, 1, 2].map((k) => robot.allowed(...unit(k))[k] > 0.2 && scene.vehicle.wheel.length > 0);
     if (scene.vehicle.wheel.length && !this.hasMotors) this.most = PUSH;
     else this.most = [0, 1, 2].map((k) => this.fastest(k, mostVoltage(scene)));
@@ -129,7 +139,8 @@ export class Controls {
 
   /** Keys drive while nothing that takes keys itself has the focus. */
   key(/** @type {KeyboardEvent} */ event, /** @type {boolean} */ isDown) {
-    const key = event.key.toLowerCase(), found = KEYS[key];
+    const key = event.key.toLowerCase(),
+      found = KEYS[key];
     const isHere = document.activeElement === this.scope || document.activeElement === document.body;
     if (!found || event.ctrlKey || event.metaKey || event.altKey || (isDown && !isHere)) return;
     if (isDown) event.preventDefault();
@@ -144,7 +155,9 @@ export class Controls {
       const [k, sign] = KEYS[key];
       wanted[k === 1 && isSideless(this.able) ? 2 : k] += sign;
     }
-    wanted.forEach((sign, k) => (this.able?.[k] || usesTurn || this.wanted[k]) && this.want(k, sign * OF_KEYS * this.most[k]));
+    wanted.forEach(
+      (sign, k) => (this.able?.[k] || usesTurn || this.wanted[k]) && this.want(k, sign * OF_KEYS * this.most[k]),
+    );
   }
 
   releaseKeys() {
@@ -161,7 +174,8 @@ export class Controls {
     const axes = [-(pad.axes[1] ?? 0), -(pad.axes[0] ?? 0), -(pad.axes[2] ?? 0)];
     const values = axes.map((axis) => (Math.abs(axis) > DEAD ? axis : 0));
     const isUsed = values.some((value) => value !== 0);
-    if (isUsed || this.stick) values.forEach((value, k) => value * this.most[k] !== this.wanted[k] && this.want(k, value * this.most[k]));
+    if (isUsed || this.stick)
+      values.forEach((value, k) => value * this.most[k] !== this.wanted[k] && this.want(k, value * this.most[k]));
     this.stick = isUsed;
   }
 

@@ -4,14 +4,23 @@
 export function colours() {
   const style = getComputedStyle(document.documentElement);
   const named = (/** @type {string} */ name) => style.getPropertyValue(`--${name}`).trim();
-  return { ink: named("ink"), soft: named("soft"), line: named("line"), card: named("card"), accent: named("accent"),
-    wash: named("wash"), warn: named("warn"), grid: named("grid") };
+  return {
+    ink: named("ink"),
+    soft: named("soft"),
+    line: named("line"),
+    card: named("card"),
+    accent: named("accent"),
+    wash: named("wash"),
+    warn: named("warn"),
+    grid: named("grid"),
+  };
 }
 
 /** The context of a canvas, as many pixels as the screen has; sizes are CSS pixels. */
 export function surface(/** @type {HTMLCanvasElement} */ canvas) {
   const ratio = window.devicePixelRatio || 1;
-  const width = canvas.clientWidth, height = canvas.clientHeight;
+  const width = canvas.clientWidth,
+    height = canvas.clientHeight;
   if (canvas.width !== Math.round(width * ratio) || canvas.height !== Math.round(height * ratio)) {
     canvas.width = Math.round(width * ratio);
     canvas.height = Math.round(height * ratio);
@@ -61,11 +70,18 @@ function corners(/** @type {any} */ vehicle) {
 }
 
 function ring(/** @type {number} */ x, /** @type {number} */ y, /** @type {number} */ r) {
-  return Array.from({ length: 12 }, (_, k) => [x + r * Math.cos((k * Math.PI) / 6), y + r * Math.sin((k * Math.PI) / 6)]);
+  return Array.from({ length: 12 }, (_, k) => [
+    x + r * Math.cos((k * Math.PI) / 6),
+    y + r * Math.sin((k * Math.PI) / 6),
+  ]);
 }
 
 /** The body in its own frame, one unit a metre. */
-export function drawBody(/** @type {CanvasRenderingContext2D} */ pen, /** @type {any} */ vehicle, /** @type {any} */ style) {
+export function drawBody(
+  /** @type {CanvasRenderingContext2D} */ pen,
+  /** @type {any} */ vehicle,
+  /** @type {any} */ style,
+) {
   pen.beginPath();
   for (const [x, y] of corners(vehicle)) pen.lineTo(x, y);
   pen.closePath();
@@ -91,9 +107,15 @@ function drawNose(/** @type {CanvasRenderingContext2D} */ pen, /** @type {number
 }
 
 /** One wheel from above: its tread, and the axes of its rollers where they touch the ground, moved on by its angle. */
-export function drawWheel(/** @type {CanvasRenderingContext2D} */ pen, /** @type {any} */ vehicle, /** @type {any} */ wheel,
-  /** @type {number} */ angle, /** @type {any} */ style) {
-  const radius = radiusOf(vehicle, wheel), half = radius * (wheel.kind === "fixed" ? 0.3 : 0.42);
+export function drawWheel(
+  /** @type {CanvasRenderingContext2D} */ pen,
+  /** @type {any} */ vehicle,
+  /** @type {any} */ wheel,
+  /** @type {number} */ angle,
+  /** @type {any} */ style,
+) {
+  const radius = radiusOf(vehicle, wheel),
+    half = radius * (wheel.kind === "fixed" ? 0.3 : 0.42);
   pen.save();
   pen.translate(wheel.x_m, wheel.y_m);
   pen.rotate(wheel.axle_rad + Math.PI / 2); // now x is the way the wheel rolls, −y the axle
@@ -114,15 +136,23 @@ export function drawWheel(/** @type {CanvasRenderingContext2D} */ pen, /** @type
 }
 
 /** Bars across the tread, square to the way it rolls for fixed wheels, along the rollers' axes for others. */
-function drawRollers(/** @type {CanvasRenderingContext2D} */ pen, /** @type {any} */ wheel, /** @type {number} */ radius,
-  /** @type {number} */ half, /** @type {number} */ angle) {
-  const count = 6, spacing = Math.PI / count;
+function drawRollers(
+  /** @type {CanvasRenderingContext2D} */ pen,
+  /** @type {any} */ wheel,
+  /** @type {number} */ radius,
+  /** @type {number} */ half,
+  /** @type {number} */ angle,
+) {
+  const count = 6,
+    spacing = Math.PI / count;
   const gamma = wheel.kind === "fixed" ? 0 : (wheel.roller_rad ?? Math.PI / 2);
-  const dx = Math.sin(gamma), dy = -Math.cos(gamma); // the axle is −y here
+  const dx = Math.sin(gamma),
+    dy = -Math.cos(gamma); // the axle is −y here
   pen.beginPath();
   for (let k = 0; k < count; k++) {
     const around = ((((k * spacing - angle) % Math.PI) + Math.PI) % Math.PI) - Math.PI / 2;
-    const x = radius * Math.sin(around), size = half * (Math.abs(dx) > 0.95 ? 0.3 : 1.1) * Math.max(0.25, Math.cos(around));
+    const x = radius * Math.sin(around),
+      size = half * (Math.abs(dx) > 0.95 ? 0.3 : 1.1) * Math.max(0.25, Math.cos(around));
     pen.moveTo(x - dx * size, -dy * size);
     pen.lineTo(x + dx * size, dy * size);
   }

@@ -40,7 +40,8 @@ export function inputOf(/** @type {Record<string, number>} */ signals) {
     if (item === undefined) input[name] = value;
     else (input[name] ??= [])[Number(item) - 1] = value;
   }
-  for (const values of Object.values(input)) if (Array.isArray(values)) for (let i = 0; i < values.length; i++) values[i] ??= 0;
+  for (const values of Object.values(input))
+    if (Array.isArray(values)) for (let i = 0; i < values.length; i++) values[i] ??= 0;
   return input;
 }
 
@@ -57,7 +58,10 @@ export function sameSignals(/** @type {Record<string, number>} */ a, /** @type {
 /** The changes as inputs of a scene, each signal with its own instants; signals that are always 0 are left out. */
 export function inputsOf(/** @type {Change[]} */ changes) {
   const names = new Set(changes.flatMap(({ signals }) => Object.keys(signals)));
-  return [...names].sort().map((signal) => stepsOf(signal, changes)).filter(({ t_s }) => t_s.length > 0);
+  return [...names]
+    .sort()
+    .map((signal) => stepsOf(signal, changes))
+    .filter(({ t_s }) => t_s.length > 0);
 }
 
 function stepsOf(/** @type {string} */ signal, /** @type {Change[]} */ changes) {

@@ -1,16 +1,14 @@
 // Wheels drawn on a canvas: place, turn, kind, add, delete; with the pointer, with keys, and as numbers.
 import { colours, drawBody, drawWheel, radiusOf, reach, surface } from "./drawing.js";
-import { byId, element, fixed, inDegrees, inRadians, say } from "./texts.js";
+import { byId, fixed, inDegrees, inRadians, say } from "./texts.js";
+import { NUMBERS, clean, showWheel } from "./wheel_form.js";
 
 const PLACE_SNAP_M = 0.005;
 const TURN_SNAP = Math.PI / 36;
-const KEY_M = 0.01, FINE_M = 0.001;
+const KEY_M = 0.01,
+  FINE_M = 0.001;
 const HANDLE_PX = 16;
-const DRAWN_KINDS = ["omni", "mecanum", "fixed"];
 const USUAL_ROLLER = { omni: Math.PI / 2, mecanum: Math.PI / 4 };
-const NUMBERS = /** @type {[string, string, string][]} */ ([
-  ["x_m", "Ahead", "m"], ["y_m", "To the left", "m"], ["axle_rad", "Axle", "°"], ["roller_rad", "Roller to axle", "°"]]);
-
 /** The canvas on which wheels are drawn, and the numbers of the wheel that is chosen. */
 export class Editor {
   constructor(/** @type {() => void} */ changed) {
@@ -32,7 +30,9 @@ export class Editor {
     byId("delete-wheel").addEventListener("click", () => this.remove());
     byId("wheel-kind").addEventListener("change", (/** @type {any} */ event) => this.setKind(event.target.value));
     for (const [key, , unit] of NUMBERS)
-      byId(`wheel-${key}`).addEventListener("change", (/** @type {any} */ event) => this.setNumber(key, unit, event.target.value));
+      byId(`wheel-${key}`).addEventListener("change", (/** @type {any} */ event) =>
+        this.setNumber(key, unit, event.target.value),
+      );
   }
 
   get wheels() {
@@ -46,25 +46,34 @@ export class Editor {
   fit(/** @type {any} */ scene) {
     this.scene = scene;
     this.chosen = Math.max(0, Math.min(this.chosen, scene.vehicle.wheel.length - 1));
-    this.showWheel();
+    showWheel(this);
   }
 
   /** Pixels a metre; the same while something is dragged. */
   get scale() {
     if (!this.drag || !this.held)
-      this.held = Math.min(this.canvas.clientWidth, this.canvas.clientHeight) / (2.5 * Math.max(0.12, reach(this.scene.vehicle)));
+      this.held =
+        Math.min(this.canvas.clientWidth, this.canvas.clientHeight) / (2.5 * Math.max(0.12, reach(this.scene.vehicle)));
     return this.held;
   }
 
   draw() {
-    const { pen, width, height } = surface(this.canvas), colour = colours(), scale = this.scale, px = 1 / scale;
+    const { pen, width, height } = surface(this.canvas),
+      colour = colours(),
+      scale = this.scale,
+      px = 1 / scale;
     pen.translate(width / 2, height / 2);
     pen.rotate(-Math.PI / 2);
     pen.scale(scale, -scale);
     this.drawAxes(pen, px, Math.max(width, height) / scale, colour);
     drawBody(pen, this.scene.vehicle, { fill: colour.wash, stroke: colour.soft, width: px });
     this.wheels.forEach((/** @type {any} */ wheel, /** @type {number} */ i) =>
-      drawWheel(pen, this.scene.vehicle, wheel, 0, { tread: colour.card, stroke: i === this.chosen ? colour.accent : colour.ink, width: (i === this.chosen ? 2.5 : 1) * px }));
+      drawWheel(pen, this.scene.vehicle, wheel, 0, {
+        tread: colour.card,
+        stroke: i === this.chosen ? colour.accent : colour.ink,
+        width: (i === this.chosen ? 2.5 : 1) * px,
+      }),
+    );
     if (this.wheel) this.drawHandle(pen, px, colour);
     this.drawNumbers(pen, px, colour);
   }
@@ -75,13 +84,13 @@ export class Editor {
     pen.lineWidth = px;
     pen.beginPath();
     for (let at = -Math.ceil(far / step) * step; at < far; at += step) {
-      pen.moveTo(at, -far), pen.lineTo(at, far);
-      pen.moveTo(-far, at), pen.lineTo(far, at);
+      (pen.moveTo(at, -far), pen.lineTo(at, far));
+      (pen.moveTo(-far, at), pen.lineTo(far, at));
     }
     pen.stroke();
     pen.strokeStyle = colour.line;
     pen.beginPath();
-    pen.moveTo(-far, 0), pen.lineTo(far, 0), pen.moveTo(0, -far), pen.lineTo(0, far);
+    (pen.moveTo(-far, 0), pen.lineTo(far, 0), pen.moveTo(0, -far), pen.lineTo(0, far));
     pen.stroke();
     const { com_x_m: x = 0, com_y_m: y = 0 } = this.scene.vehicle;
     pen.beginPath();
@@ -92,7 +101,8 @@ export class Editor {
 
   /** Where the chosen wheel is turned: beyond it, along its axle. */
   handle() {
-    const far = radiusOf(this.scene.vehicle, this.wheel) + 34 / this.scale, { x_m, y_m, axle_rad } = this.wheel;
+    const far = radiusOf(this.scene.vehicle, this.wheel) + 34 / this.scale,
+      { x_m, y_m, axle_rad } = this.wheel;
     return [x_m + far * Math.cos(axle_rad), y_m + far * Math.sin(axle_rad)];
   }
 
@@ -111,7 +121,8 @@ export class Editor {
 
   drawNumbers(/** @type {any} */ pen, /** @type {number} */ px, /** @type {any} */ colour) {
     this.wheels.forEach((/** @type {any} */ wheel, /** @type {number} */ i) => {
-      const out = radiusOf(this.scene.vehicle, wheel) + 12 * px, far = Math.hypot(wheel.x_m, wheel.y_m) || 1;
+      const out = radiusOf(this.scene.vehicle, wheel) + 12 * px,
+        far = Math.hypot(wheel.x_m, wheel.y_m) || 1;
       pen.save();
       pen.translate(wheel.x_m * (1 + out / far), wheel.y_m * (1 + out / far));
       pen.scale(px, -px);
@@ -128,17 +139,23 @@ export class Editor {
   /** A place of the pointer in the body's frame. */
   placeOf(/** @type {MouseEvent} */ event) {
     const box = this.canvas.getBoundingClientRect();
-    return [(box.top + box.height / 2 - event.clientY) / this.scale, (box.left + box.width / 2 - event.clientX) / this.scale];
+    return [
+      (box.top + box.height / 2 - event.clientY) / this.scale,
+      (box.left + box.width / 2 - event.clientX) / this.scale,
+    ];
   }
 
   down(/** @type {PointerEvent} */ event) {
-    const [x, y] = this.placeOf(event), near = HANDLE_PX / this.scale;
+    const [x, y] = this.placeOf(event),
+      near = HANDLE_PX / this.scale;
     this.canvas.setPointerCapture(event.pointerId);
     if (this.wheel && Math.hypot(...minus(this.handle(), [x, y])) < near) {
       this.drag = "turn";
       return;
     }
-    const distances = this.wheels.map((/** @type {any} */ w) => Math.hypot(w.x_m - x, w.y_m - y) - radiusOf(this.scene.vehicle, w));
+    const distances = this.wheels.map(
+      (/** @type {any} */ w) => Math.hypot(w.x_m - x, w.y_m - y) - radiusOf(this.scene.vehicle, w),
+    );
     const nearest = distances.indexOf(Math.min(...distances));
     if (nearest >= 0 && distances[nearest] < near / 2) {
       this.choose(nearest);
@@ -150,10 +167,11 @@ export class Editor {
   move(/** @type {PointerEvent} */ event) {
     if (!this.drag) return;
     const [x, y] = this.placeOf(event);
-    if (this.drag === "turn") this.wheel.axle_rad = wrapped(snap(Math.atan2(y - this.wheel.y_m, x - this.wheel.x_m), TURN_SNAP));
+    if (this.drag === "turn")
+      this.wheel.axle_rad = wrapped(snap(Math.atan2(y - this.wheel.y_m, x - this.wheel.x_m), TURN_SNAP));
     else this.place(snap(x + (this.grab?.[0] ?? 0), PLACE_SNAP_M), snap(y + (this.grab?.[1] ?? 0), PLACE_SNAP_M));
     this.moved = true;
-    this.showWheel();
+    showWheel(this);
   }
 
   up() {
@@ -167,13 +185,17 @@ export class Editor {
   }
 
   key(/** @type {KeyboardEvent} */ event) {
-    const step = event.shiftKey ? FINE_M : KEY_M, { x_m = 0, y_m = 0 } = this.wheel ?? {};
+    const step = event.shiftKey ? FINE_M : KEY_M,
+      { x_m = 0, y_m = 0 } = this.wheel ?? {};
     const turn = (/** @type {number} */ by) => (this.wheel.axle_rad = wrapped(this.wheel.axle_rad + by));
     /** @type {Record<string, () => void>} */
     const ofWheel = {
-      ArrowUp: () => this.place(x_m + step, y_m), ArrowDown: () => this.place(x_m - step, y_m),
-      ArrowLeft: () => this.place(x_m, y_m + step), ArrowRight: () => this.place(x_m, y_m - step),
-      ",": () => turn(TURN_SNAP), ".": () => turn(-TURN_SNAP),
+      ArrowUp: () => this.place(x_m + step, y_m),
+      ArrowDown: () => this.place(x_m - step, y_m),
+      ArrowLeft: () => this.place(x_m, y_m + step),
+      ArrowRight: () => this.place(x_m, y_m - step),
+      ",": () => turn(TURN_SNAP),
+      ".": () => turn(-TURN_SNAP),
     };
     if (ofWheel[event.key] && this.wheel) ofWheel[event.key]();
     else if (event.key === "PageDown" || event.key === "PageUp") return this.step(event);
@@ -186,24 +208,32 @@ export class Editor {
 
   step(/** @type {KeyboardEvent} */ event) {
     event.preventDefault();
-    const count = this.wheels.length, by = event.key === "PageDown" ? 1 : -1;
+    const count = this.wheels.length,
+      by = event.key === "PageDown" ? 1 : -1;
     if (count) this.choose((this.chosen + by + count) % count);
   }
 
   choose(/** @type {number} */ i) {
     this.chosen = i;
-    this.showWheel();
+    showWheel(this);
     say(this.inWords());
   }
 
   inWords() {
     const { kind, x_m, y_m, axle_rad } = this.wheel;
-    return `Wheel ${this.chosen + 1}, ${kind}, ${fixed(x_m, 3)} m ahead, ${fixed(y_m, 3)} m to the left, axle at ${fixed(inDegrees(axle_rad), 0)} degrees`;
+    const place = `${fixed(x_m, 3)} m ahead, ${fixed(y_m, 3)} m to the left`;
+    return `Wheel ${this.chosen + 1}, ${kind}, ${place}, axle at ${fixed(inDegrees(axle_rad), 0)} degrees`;
   }
 
   add(/** @type {number[]} */ [x, y]) {
     const { kind = "omni", axle_rad = -Math.PI / 2, roller_rad } = this.wheel ?? {};
-    this.wheels.push({ kind, x_m: snap(x, PLACE_SNAP_M), y_m: snap(y, PLACE_SNAP_M), axle_rad, ...(kind !== "fixed" && { roller_rad: roller_rad ?? Math.PI / 2 }) });
+    this.wheels.push({
+      kind,
+      x_m: snap(x, PLACE_SNAP_M),
+      y_m: snap(y, PLACE_SNAP_M),
+      axle_rad,
+      ...(kind !== "fixed" && { roller_rad: roller_rad ?? Math.PI / 2 }),
+    });
     this.chosen = this.wheels.length - 1;
     this.finish();
   }
@@ -232,46 +262,8 @@ export class Editor {
 
   finish() {
     this.changed();
-    this.showWheel();
+    showWheel(this);
     say(this.wheel ? this.inWords() : "no wheels");
-  }
-
-  /** The numbers of the chosen wheel, and a button for each wheel. */
-  showWheel() {
-    const { wheel } = this;
-    this.showList();
-    byId("wheel-numbers").disabled = !wheel;
-    byId("delete-wheel").disabled = !wheel;
-    if (!wheel) return;
-    byId("wheel-kind").value = DRAWN_KINDS.includes(wheel.kind) ? wheel.kind : "mecanum";
-    for (const [key, , unit] of NUMBERS) {
-      const input = byId(`wheel-${key}`), value = wheel[key] ?? 0;
-      if (document.activeElement !== input || !input.matches(":invalid"))
-        input.value = Number.isFinite(value) ? String(unit === "°" ? inDegrees(value) : clean(value)) : "";
-    }
-    byId("wheel-roller_rad").disabled = wheel.kind === "fixed";
-  }
-
-  showList() {
-    const list = byId("wheel-list");
-    while (list.children.length > this.wheels.length) list.lastChild.remove();
-    while (list.children.length < this.wheels.length) {
-      const i = list.children.length;
-      const made = element("button", { type: "button" }, String(i + 1));
-      made.addEventListener("click", () => this.choose(i));
-      list.append(made);
-    }
-    [...list.children].forEach((/** @type {any} */ button, i) => {
-      button.setAttribute("aria-pressed", String(i === this.chosen));
-      button.setAttribute("aria-label", `Wheel ${i + 1}, ${this.wheels[i].kind}`);
-    });
-  }
-
-  /** Shows a refusal of a wheel's number; returns whether it is one. */
-  refuse(/** @type {any} */ refused) {
-    const isOfWheels = Boolean(refused?.path.startsWith("vehicle.wheel")) && !refused.path.startsWith("vehicle.wheel_");
-    byId("wheel-error").textContent = isOfWheels ? refused.message : "";
-    return isOfWheels;
   }
 }
 
@@ -281,11 +273,6 @@ function minus(/** @type {number[]} */ a, /** @type {number[]} */ b) {
 
 function snap(/** @type {number} */ value, /** @type {number} */ unit) {
   return Number((Math.round(value / unit) * unit).toPrecision(12));
-}
-
-/** Without the digits that adding decimals leaves behind. */
-function clean(/** @type {number} */ value) {
-  return Number(value.toPrecision(15));
 }
 
 function wrapped(/** @type {number} */ angle) {

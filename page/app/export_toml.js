@@ -3,7 +3,10 @@ import { inputsOf } from "./drive.js";
 
 const SUBTABLES = ["motor", "drive", "payload"];
 
-/** @param {any} scene @param {{method: string, step_s: number}} how @param {{changes: any[], time_s: number} | undefined} drive */
+/**
+ * @param {any} scene @param {{method: string, step_s: number}} how
+ * @param {{changes: any[], time_s: number} | undefined} drive
+ */
 export function sceneToml(scene, how, drive) {
   const { wheel, support = [], ...vehicle } = scene.vehicle;
   const inputs = drive ? inputsOf(drive.changes) : (scene.input ?? []);
@@ -30,10 +33,13 @@ function table(/** @type {string} */ name, /** @type {any} */ given) {
 }
 
 function pairs(/** @type {any} */ given) {
-  return Object.entries(given).map(([key, value]) => `${key} = ${valueText(value)}\n`).join("");
+  return Object.entries(given)
+    .map(([key, value]) => `${key} = ${valueText(value)}\n`)
+    .join("");
 }
 
-function valueText(/** @type {any} */ value) {
+/** @param {any} value @returns {string} */
+function valueText(value) {
   if (Array.isArray(value)) return `[${value.map(valueText).join(", ")}]`;
   if (typeof value === "string") return JSON.stringify(value).replace(/\u007f/g, "\\u007f");
   if (typeof value === "number" && Number.isInteger(value) && Math.abs(value) < 1e15) return value.toFixed(1);

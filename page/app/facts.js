@@ -11,16 +11,34 @@ export const scenes = facts.scenes;
 /** A scene of one's own to begin with: four wheels of round numbers. */
 export function ownScene() {
   const motor = { motor_gain_Nm_per_V: 0.2, motor_damping_Nms: 0.1 };
-  const wheels = [[0.2, 0.15, 1], [0.2, -0.15, -1], [-0.2, 0.15, -1], [-0.2, -0.15, 1]];
+  const wheels = [
+    [0.2, 0.15, 1],
+    [0.2, -0.15, -1],
+    [-0.2, 0.15, -1],
+    [-0.2, -0.15, 1],
+  ];
   return {
-    id: "own", name: "Robot of my own", source: "drawn on the page",
+    id: "own",
+    name: "Robot of my own",
+    source: "drawn on the page",
     vehicle: {
-      mass_kg: 12, yaw_inertia_kgm2: 0.6, com_z_m: 0.1, wheel_radius_m: 0.05, wheel_inertia_kgm2: 0.002, ...motor,
+      mass_kg: 12,
+      yaw_inertia_kgm2: 0.6,
+      com_z_m: 0.1,
+      wheel_radius_m: 0.05,
+      wheel_inertia_kgm2: 0.002,
+      ...motor,
       friction_coefficient: 0.6,
-      wheel: wheels.map(([x_m, y_m, side]) =>
-        ({ kind: "mecanum", x_m, y_m, axle_rad: -Math.PI / 2, roller_rad: side * Math.PI / 4 })),
+      wheel: wheels.map(([x_m, y_m, side]) => ({
+        kind: "mecanum",
+        x_m,
+        y_m,
+        axle_rad: -Math.PI / 2,
+        roller_rad: (side * Math.PI) / 4,
+      })),
     },
-    input: [], run: { duration_s: 10, step_s: 0.001, method: "auto" },
+    input: [],
+    run: { duration_s: 10, step_s: 0.001, method: "auto" },
   };
 }
 

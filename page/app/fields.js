@@ -3,29 +3,44 @@ import { byId, element, entry, inDegrees, inRadians, say } from "./texts.js";
 
 /** Path in a scene, label, unit. */
 const VEHICLE = /** @type {[string, string, string][]} */ ([
-  ["vehicle.mass_kg", "Mass", "kg"], ["vehicle.yaw_inertia_kgm2", "Yaw inertia", "kg m²"],
-  ["vehicle.wheel_radius_m", "Wheel radius", "m"], ["vehicle.wheel_inertia_kgm2", "Wheel inertia", "kg m²"],
-  ["vehicle.com_x_m", "Centre ahead", "m"], ["vehicle.com_y_m", "Centre to left", "m"],
+  ["vehicle.mass_kg", "Mass", "kg"],
+  ["vehicle.yaw_inertia_kgm2", "Yaw inertia", "kg m²"],
+  ["vehicle.wheel_radius_m", "Wheel radius", "m"],
+  ["vehicle.wheel_inertia_kgm2", "Wheel inertia", "kg m²"],
+  ["vehicle.com_x_m", "Centre ahead", "m"],
+  ["vehicle.com_y_m", "Centre to left", "m"],
   ["vehicle.com_z_m", "Centre height", "m"],
 ]);
 const GAINS = /** @type {[string, string, string][]} */ ([
-  ["vehicle.motor_gain_Nm_per_V", "Motor gain", "N m/V"], ["vehicle.motor_damping_Nms", "Motor damping", "N m s"]]);
+  ["vehicle.motor_gain_Nm_per_V", "Motor gain", "N m/V"],
+  ["vehicle.motor_damping_Nms", "Motor damping", "N m s"],
+]);
 const MOTOR = /** @type {[string, string, string][]} */ ([
   ["vehicle.motor.resistance_ohm", "Resistance", "Ω"],
   ["vehicle.motor.torque_constant_Nm_per_A", "Torque constant", "N m/A"],
-  ["vehicle.motor.back_emf_Vs_per_rad", "Back-EMF", "V s/rad"], ["vehicle.motor.gear_ratio", "Gear ratio", ""],
+  ["vehicle.motor.back_emf_Vs_per_rad", "Back-EMF", "V s/rad"],
+  ["vehicle.motor.gear_ratio", "Gear ratio", ""],
   ["vehicle.motor.viscous_friction_Nms", "Viscous friction", "N m s"],
-  ["vehicle.motor.rotor_inertia_kgm2", "Rotor inertia", "kg m²"]]);
+  ["vehicle.motor.rotor_inertia_kgm2", "Rotor inertia", "kg m²"],
+]);
 const LIMITS = /** @type {[string, string, string][]} */ ([
-  ["vehicle.drive.supply_V", "Supply", "V"], ["vehicle.drive.current_limit_A", "Current limit", "A"]]);
+  ["vehicle.drive.supply_V", "Supply", "V"],
+  ["vehicle.drive.current_limit_A", "Current limit", "A"],
+]);
 const PAYLOAD = /** @type {[string, string, string][]} */ ([
-  ["vehicle.payload.mass_kg", "Mass", "kg"], ["vehicle.payload.x_m", "Ahead", "m"],
-  ["vehicle.payload.y_m", "To the left", "m"]]);
+  ["vehicle.payload.mass_kg", "Mass", "kg"],
+  ["vehicle.payload.x_m", "Ahead", "m"],
+  ["vehicle.payload.y_m", "To the left", "m"],
+]);
 const SLOPE = /** @type {[string, string, string][]} */ ([
-  ["ground.slope_rad", "Slope", "°"], ["ground.slope_heading_rad", "Uphill towards", "°"]]);
+  ["ground.slope_rad", "Slope", "°"],
+  ["ground.slope_heading_rad", "Uphill towards", "°"],
+]);
 const FRICTION = /** @type {[string, string, string][]} */ ([
-  ["ground.friction_coefficient", "Friction", ""], ["ground.roller_drag", "Roller drag", "0 … 1"],
-  ["ground.axle_friction_Nm", "Axle friction", "N m"]]);
+  ["ground.friction_coefficient", "Friction", ""],
+  ["ground.roller_drag", "Roller drag", "0 … 1"],
+  ["ground.axle_friction_Nm", "Axle friction", "N m"],
+]);
 const MARGIN = /** @type {[string, string, string][]} */ ([["vehicle.friction_coefficient", "Friction", ""]]);
 const EMPTY_MEANS_ABSENT = ["vehicle.drive.supply_V", "vehicle.drive.current_limit_A"];
 
@@ -35,8 +50,13 @@ export function numberAt(/** @type {any} */ scene, /** @type {string} */ path) {
 }
 
 /** Sets it; tables that it lies in are made, and one that becomes meaningless is taken out. */
-export function setNumber(/** @type {any} */ scene, /** @type {string} */ path, /** @type {number | undefined} */ value) {
-  const keys = path.split("."), last = /** @type {string} */ (keys.pop());
+export function setNumber(
+  /** @type {any} */ scene,
+  /** @type {string} */ path,
+  /** @type {number | undefined} */ value,
+) {
+  const keys = path.split("."),
+    last = /** @type {string} */ (keys.pop());
   const table = keys.reduce((inner, key) => (inner[key] ??= {}), scene);
   if (value === undefined) delete table[last];
   else table[last] = value;
@@ -98,16 +118,30 @@ export class Fields {
   }
 
   row(/** @type {string} */ path, /** @type {string} */ label, /** @type {string} */ unit) {
-    const id = `field-${path}`, given = numberAt(this.scene, path);
-    const value = given === undefined ? (EMPTY_MEANS_ABSENT.includes(path) ? "" : 0) : unit === "°" ? inDegrees(given) : given;
-    const input = element("input", { id, type: "text", inputMode: "decimal", autocomplete: "off", value: entry(value) });
+    const id = `field-${path}`,
+      given = numberAt(this.scene, path);
+    const value =
+      given === undefined ? (EMPTY_MEANS_ABSENT.includes(path) ? "" : 0) : unit === "°" ? inDegrees(given) : given;
+    const input = element("input", {
+      id,
+      type: "text",
+      inputMode: "decimal",
+      autocomplete: "off",
+      value: entry(value),
+    });
     if (EMPTY_MEANS_ABSENT.includes(path)) input.placeholder = "none";
     input.setAttribute("aria-describedby", `${id}-error`);
     input.addEventListener("change", () => this.take(path, unit, input.value));
     this.inputs.set(path, input);
     const unitText = element("span", { className: "unit" }, unit);
-    return element("div", { className: "field" }, element("label", { htmlFor: id }, label), input, unitText,
-      element("p", { className: "error", id: `${id}-error` }));
+    return element(
+      "div",
+      { className: "field" },
+      element("label", { htmlFor: id }, label),
+      input,
+      unitText,
+      element("p", { className: "error", id: `${id}-error` }),
+    );
   }
 
   take(/** @type {string} */ path, /** @type {string} */ unit, /** @type {string} */ text) {

@@ -12,7 +12,9 @@ export async function showHash(/** @type {any} */ laconic) {
   const found = await hashBeside(laconic.module.compiled).catch(() => laconic.hash());
   const isSame = found === nativeHash;
   byId("hash").textContent = found;
-  byId("hash-verdict").textContent = isSame ? "Same bits as the native core" : `Not the bits of the native core, ${nativeHash}`;
+  byId("hash-verdict").textContent = isSame
+    ? "Same bits as the native core"
+    : `Not the bits of the native core, ${nativeHash}`;
   byId("bits").dataset.same = String(isSame);
 }
 

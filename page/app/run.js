@@ -3,12 +3,14 @@ import { changesOf, inputOf, sameSignals } from "./drive.js";
 import { ofOtherMass, onIdealGround, slips } from "./facts.js";
 
 export const FLEET = 20;
-const SAMPLE_S = 0.02;       // between points of a path
-const MOST_POINTS = 6000;    // of a path
+const LIGHTEST = 0.7;
+const HEAVIEST = 1.3; // of the masses of the fleet
+const SAMPLE_S = 0.02; // between points of a path
+const MOST_POINTS = 6000; // of a path
 const FLEET_POINTS = 400;
 const REFERENCE_STEP_S = 1e-4;
 const HISTORY_S = 10;
-const REPLAY_STEPS = 2e6;    // more are not computed anew when a number changes
+const REPLAY_STEPS = 2e6; // more are not computed anew when a number changes
 
 /** @typedef {{robot: any, path: number[], scene: any}} Actor */
 
@@ -25,7 +27,10 @@ export function referenceOf(/** @type {any} */ laconic, /** @type {any} */ scene
 
 /** One drive from its start. */
 export class Run {
-  /** @param {any} laconic @param {any} scene @param {{method: string, step_s: number, ideal: boolean, fleet: boolean}} how */
+  /**
+   * @param {any} laconic @param {any} scene
+   * @param {{method: string, step_s: number, ideal: boolean, fleet: boolean}} how
+   */
   constructor(laconic, scene, how) {
     this.laconic = laconic;
     this.scene = scene;
@@ -35,7 +40,8 @@ export class Run {
     this.main = this.actor(scene, how.method);
     this.ideal = how.ideal && slips(scene) ? this.idealActor() : undefined;
     /** @type {Actor[]} */
-    this.fleet = how.fleet ? this.makeFleet() : [];
+    this.fleet = [];
+    if (how.fleet) this.addFleet();
     this.parts = Math.max(1, Math.ceil(how.step_s / REFERENCE_STEP_S - 1e-9));
     this.reference = referenceOf(laconic, scene, how.step_s / this.parts);
     this.steps = 0;
@@ -62,9 +68,14 @@ export class Run {
     }
   }
 
-  makeFleet() {
-    const factors = Array.from({ length: FLEET }, (_, i) => 0.7 + (0.6 * i) / (FLEET - 1));
-    return factors.map((factor) => this.actor(ofOtherMass(this.scene, factor)));
+  addFleet() {
+    try {
+      for (let i = 0; i < FLEET; i++)
+        this.fleet.push(this.actor(ofOtherMass(this.scene, LIGHTEST + ((HEAVIEST - LIGHTEST) * i) / (FLEET - 1))));
+    } catch (refused) {
+      this.free();
+      throw refused;
+    }
   }
 
   get actors() {
@@ -129,11 +140,21 @@ export class Run {
   }
 
   /** The same drive with another robot, method or step, until the same instant; from the start where that is far. */
-  static again(/** @type {any} */ laconic, /** @type {any} */ scene, /** @type {any} */ how, /** @type {Run} */ before) {
+  static again(
+    /** @type {any} */ laconic,
+    /** @type {any} */ scene,
+    /** @type {any} */ how,
+    /** @type {Run} */ before,
+  ) {
     const run = new Run(laconic, scene, how);
     const sameWheels = scene.vehicle.wheel.length === before.scene.vehicle.wheel.length;
-    if (sameWheels && before.time_s / how.step_s < REPLAY_STEPS) run.follow(before.changes, before.time_s);
-    return run;
+    try {
+      if (sameWheels && before.time_s / how.step_s < REPLAY_STEPS) run.follow(before.changes, before.time_s);
+      return run;
+    } catch (refused) {
+      run.free();
+      throw refused;
+    }
   }
 
   /** How far the robot is from the reference. */

@@ -21,7 +21,8 @@ export class Stage {
 
   draw(/** @type {import("./run.js").Run} */ run, stopped = false) {
     const { pen, width, height } = surface(this.canvas);
-    const out = run.main.robot.outputs(), colour = colours();
+    const out = run.main.robot.outputs(),
+      colour = colours();
     const scale = (this.zoom * Math.min(width, height)) / (11 * reach(run.scene.vehicle));
     this.moveTo([out.origin_x_m, out.origin_y_m]);
     drawGrid(pen, width, height, scale, this.centre ?? [0, 0], colour);
@@ -41,7 +42,13 @@ export class Stage {
     this.centre = [x + part * (place[0] - x), y + part * (place[1] - y)];
   }
 
-  drawRun(/** @type {any} */ pen, /** @type {any} */ run, /** @type {any} */ out, /** @type {number} */ scale, /** @type {any} */ colour) {
+  drawRun(
+    /** @type {any} */ pen,
+    /** @type {any} */ run,
+    /** @type {any} */ out,
+    /** @type {number} */ scale,
+    /** @type {any} */ colour,
+  ) {
     const px = 1 / scale;
     for (const actor of run.fleet) drawPath(pen, actor.path, colour.line, px, []);
     for (const actor of run.fleet)
@@ -54,14 +61,25 @@ export class Stage {
   drawIdeal(/** @type {any} */ pen, /** @type {any} */ ideal, /** @type {number} */ px, /** @type {any} */ colour) {
     drawPath(pen, ideal.path, colour.soft, 1.5 * px, [5 * px, 4 * px]);
     placed(pen, ideal.robot.outputs(), () =>
-      drawBody(pen, ideal.scene.vehicle, { stroke: colour.soft, width: 1.5 * px, dash: [5 * px, 4 * px] }));
+      drawBody(pen, ideal.scene.vehicle, { stroke: colour.soft, width: 1.5 * px, dash: [5 * px, 4 * px] }),
+    );
   }
 
-  drawMain(/** @type {any} */ pen, /** @type {any} */ vehicle, /** @type {any} */ out, /** @type {number} */ px, /** @type {any} */ colour) {
+  drawMain(
+    /** @type {any} */ pen,
+    /** @type {any} */ vehicle,
+    /** @type {any} */ out,
+    /** @type {number} */ px,
+    /** @type {any} */ colour,
+  ) {
     drawBody(pen, vehicle, { fill: colour.wash, stroke: colour.accent, width: 1.5 * px });
     vehicle.wheel.forEach((/** @type {any} */ wheel, /** @type {number} */ i) => {
       const isLost = out.contact_state?.[i] > 0;
-      drawWheel(pen, vehicle, wheel, out.wheel_angle_rad[i], { tread: colour.card, stroke: isLost ? colour.warn : colour.ink, width: px });
+      drawWheel(pen, vehicle, wheel, out.wheel_angle_rad[i], {
+        tread: colour.card,
+        stroke: isLost ? colour.warn : colour.ink,
+        width: px,
+      });
     });
     drawVelocity(pen, out, reach(vehicle), px, colour);
   }
@@ -76,7 +94,13 @@ function placed(/** @type {any} */ pen, /** @type {any} */ out, /** @type {() =>
   pen.restore();
 }
 
-function drawPath(/** @type {any} */ pen, /** @type {number[]} */ path, /** @type {string} */ colour, /** @type {number} */ width, /** @type {number[]} */ dash) {
+function drawPath(
+  /** @type {any} */ pen,
+  /** @type {number[]} */ path,
+  /** @type {string} */ colour,
+  /** @type {number} */ width,
+  /** @type {number[]} */ dash,
+) {
   pen.beginPath();
   for (let i = 0; i < path.length; i += 2) pen.lineTo(path[i], path[i + 1]);
   pen.strokeStyle = colour;
@@ -88,10 +112,18 @@ function drawPath(/** @type {any} */ pen, /** @type {number[]} */ path, /** @typ
 }
 
 /** The way that the robot goes in half a second. */
-function drawVelocity(/** @type {any} */ pen, /** @type {any} */ out, /** @type {number} */ size, /** @type {number} */ px, /** @type {any} */ colour) {
-  const [x, y] = out.velocity_body_m_per_s.map((/** @type {number} */ v) => 0.5 * v), far = Math.hypot(x, y);
+function drawVelocity(
+  /** @type {any} */ pen,
+  /** @type {any} */ out,
+  /** @type {number} */ size,
+  /** @type {number} */ px,
+  /** @type {any} */ colour,
+) {
+  const [x, y] = out.velocity_body_m_per_s.map((/** @type {number} */ v) => 0.5 * v),
+    far = Math.hypot(x, y);
   if (!(far > size * 0.1)) return;
-  const [ux, uy] = [x / far, y / far], tip = 7 * px;
+  const [ux, uy] = [x / far, y / far],
+    tip = 7 * px;
   pen.strokeStyle = colour.accent;
   pen.lineWidth = 2 * px;
   pen.beginPath();
@@ -105,12 +137,21 @@ function drawVelocity(/** @type {any} */ pen, /** @type {any} */ out, /** @type 
 
 /** The grid's spacing: 1, 2 or 5 times a power of ten, 40 to 100 pixels. */
 function spacing(/** @type {number} */ scale) {
-  const least = 44 / scale, unit = 10 ** Math.floor(Math.log10(least));
+  const least = 44 / scale,
+    unit = 10 ** Math.floor(Math.log10(least));
   return unit * ([1, 2, 5, 10].find((times) => times * unit >= least) ?? 10);
 }
 
-function drawGrid(/** @type {any} */ pen, /** @type {number} */ width, /** @type {number} */ height, /** @type {number} */ scale, /** @type {number[]} */ centre, /** @type {any} */ colour) {
-  const step = spacing(scale), px = step * scale;
+function drawGrid(
+  /** @type {any} */ pen,
+  /** @type {number} */ width,
+  /** @type {number} */ height,
+  /** @type {number} */ scale,
+  /** @type {number[]} */ centre,
+  /** @type {any} */ colour,
+) {
+  const step = spacing(scale),
+    px = step * scale;
   const along = (/** @type {number} */ size, /** @type {number} */ at) => (((size / 2 + at * scale) % px) + px) % px;
   pen.beginPath();
   for (let x = along(width, centre[1]); x < width; x += px) pen.rect(Math.round(x), 0, 0, height);
@@ -120,8 +161,17 @@ function drawGrid(/** @type {any} */ pen, /** @type {number} */ width, /** @type
   pen.stroke();
 }
 
-function drawScale(/** @type {any} */ pen, /** @type {number} */ width, /** @type {number} */ height, /** @type {number} */ scale, /** @type {any} */ colour) {
-  const step = spacing(scale), px = step * scale, right = width - 16, y = height - 16;
+function drawScale(
+  /** @type {any} */ pen,
+  /** @type {number} */ width,
+  /** @type {number} */ height,
+  /** @type {number} */ scale,
+  /** @type {any} */ colour,
+) {
+  const step = spacing(scale),
+    px = step * scale,
+    right = width - 16,
+    y = height - 16;
   pen.strokeStyle = pen.fillStyle = colour.soft;
   pen.lineWidth = 1.5;
   pen.beginPath();

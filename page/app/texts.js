@@ -7,7 +7,11 @@ export function shown(/** @type {number} */ value, digits = 3) {
   if (!Number.isFinite(value)) return "–";
   const size = Math.abs(value);
   if (size < 1e-12) return "0";
-  if (size >= 1e5 || size < 1e-3) return value.toExponential(digits - 1).replace("e", " · 10^").replace("^+", "^");
+  if (size >= 1e5 || size < 1e-3)
+    return value
+      .toExponential(digits - 1)
+      .replace("e", " · 10^")
+      .replace("^+", "^");
   return String(Number(value.toPrecision(digits)));
 }
 
@@ -23,15 +27,20 @@ export function entry(/** @type {number | string} */ value) {
   const text = String(value);
   if (text.length <= 8 || typeof value === "string") return text;
   const size = Math.abs(value);
-  if (size < 1e-3 || size >= 1e6) return value.toExponential(4).replace(/\.?0+e/, "e");
+  if (size < 1e-3 || size >= 1e6) return value.toExponential(3).replace(/\.?0+e/, "e");
   return String(Number(value.toPrecision(5)));
 }
 
 /** A length by its best unit. */
 export function length(/** @type {number} */ metres) {
   if (!Number.isFinite(metres)) return "–";
-  if (Math.abs(metres) < 1e-10) return "under 0.1 nm";
-  const units = /** @type {[number, string][]} */ ([[1, "m"], [1e-3, "mm"], [1e-6, "µm"], [1e-9, "nm"]]);
+  if (Math.abs(metres) < 1e-10) return "< 0.1 nm";
+  const units = /** @type {[number, string][]} */ ([
+    [1, "m"],
+    [1e-3, "mm"],
+    [1e-6, "µm"],
+    [1e-9, "nm"],
+  ]);
   const [size, unit] = units.find(([size]) => Math.abs(metres) >= size) ?? [1e-9, "nm"];
   return `${shown(metres / size, 2)} ${unit}`;
 }
@@ -62,7 +71,7 @@ export function byId(/** @type {string} */ id) {
   return document.getElementById(id);
 }
 
-/** A new element. @param {string} tag @param {Record<string, any>} [properties] @param {...any} children @returns {any} */
+/** @param {string} tag @param {Record<string, any>} [properties] @param {...any} children @returns {any} */
 export function element(tag, properties = {}, ...children) {
   const made = document.createElement(tag);
   for (const [name, value] of Object.entries(properties))

@@ -13,7 +13,6 @@ EXPORT_LIST = re.compile(r"^export \{[^}]*\};\n", re.MULTILINE)
 EXPORT = re.compile(r"^export (?=async |function |class |const |let )", re.MULTILINE)
 TOP_LEVEL = re.compile(r"^(?:export )?(?:async )?(?:function\*?|class|const|let) (?:(\w+)|\{([^}]*)\}|\[([^\]]*)\])",
                        re.MULTILINE)
-COMMENT_LINE = re.compile(r"^\s*(?://.*|/\*\*.*\*/)\n", re.MULTILINE)
 
 
 class BadBundle(Exception):
@@ -58,10 +57,10 @@ def top_level_names(text: str) -> list[str]:
 
 
 def stripped(text: str, path: Path) -> str:
-    """A module without imports, exports, and comments that fill a line."""
+    """A module without imports and exports."""
     text = EXPORT.sub("", EXPORT_LIST.sub("", IMPORT.sub("", text)))
     if left := re.search(r"^(?:import|export)\b.*", text, re.MULTILINE):
         raise BadBundle(f"{path.name}: {left[0]!r} is no import or export that the bundler knows")
     if "</script" in text:
         raise BadBundle(f"{path.name}: holds the end of a script element")
-    return COMMENT_LINE.sub("", text)
+    return text

@@ -13,6 +13,8 @@ export class Laconic {
     this.version = module.text(module.c.laconic_web_version());
     this.maxWheels = module.c.laconic_web_max_wheels();
     this.methods = module.methods.map(({ name, order }) => ({ name, order }));
+    /** @type {string | undefined} */
+    this.hashed = undefined;
     this.arithmeticIsSound = module.c.laconic_web_self_test() === 0;
   }
 

@@ -19,7 +19,12 @@ export class Refused extends Error {
     const line = module.text(c.laconic_web_text(robot));
     const [path, ...rest] = c.laconic_web_refused_field(robot) ? line.split(": ") : ["", line];
     const explanation = rest.join(": ");
-    return new Refused(path, explanation, module.text(c.laconic_web_status_name(c.laconic_web_refused_status(robot))),
-      c.laconic_web_refused_value(robot), c.laconic_web_refused_limit(robot));
+    return new Refused(
+      path,
+      explanation,
+      module.text(c.laconic_web_status_name(c.laconic_web_refused_status(robot))),
+      c.laconic_web_refused_value(robot),
+      c.laconic_web_refused_limit(robot),
+    );
   }
 }

@@ -2,7 +2,14 @@
 import { Refused } from "./refused.js";
 import { SceneSetter } from "./scene.js";
 
-const INPUTS = ["voltage_V", "axle_torque_Nm", "body_force_N", "body_moment_Nm", "world_force_N", "world_force_point_m"];
+const INPUTS = [
+  "voltage_V",
+  "axle_torque_Nm",
+  "body_force_N",
+  "body_moment_Nm",
+  "world_force_N",
+  "world_force_point_m",
+];
 const PER_POINT = ["normal_N"];
 const FIRST_OF_FRICTION = "slip_along_m_per_s";
 
@@ -41,7 +48,8 @@ export class Robot {
   setInput(/** @type {Record<string, number | ArrayLike<number>>} */ input) {
     this.c.laconic_web_clear_input(this.pointer);
     for (const [name, given] of Object.entries(input)) {
-      if (!INPUTS.includes(name)) throw new Refused(name, `there is no such input; use ${INPUTS.join(", ")}`, "unknown key");
+      if (!INPUTS.includes(name))
+        throw new Refused(name, `there is no such input; use ${INPUTS.join(", ")}`, "unknown key");
       if (typeof given === "number") this.setOne(name, 0, given);
       else for (let i = 0; i < given.length; i++) this.setOne(`${name}[#]`, i + 1, given[i]);
     }
@@ -55,7 +63,8 @@ export class Robot {
 
   /** Takes steps with the input held. */
   run(/** @type {number} */ steps) {
-    if (!Number.isSafeInteger(steps) || steps < 0) throw new RangeError(`steps: ${steps} is no whole number of steps; give 0 or more`);
+    if (!Number.isSafeInteger(steps) || steps < 0)
+      throw new RangeError(`steps: ${steps} is no whole number of steps; give 0 or more`);
     for (let left = steps; left > 0; left -= Math.min(left, 2 ** 30))
       this.check(this.c.laconic_web_run(this.pointer, Math.min(left, 2 ** 30)));
   }
@@ -93,7 +102,9 @@ export class Robot {
   }
 
   wanted(/** @type {number} */ pointer) {
-    return pointer ? this.module.reals(pointer, /** @type {number} */ (this.wheelCount)) : new Array(this.wheelCount).fill(0);
+    return pointer
+      ? this.module.reals(pointer, /** @type {number} */ (this.wheelCount))
+      : new Array(this.wheelCount).fill(0);
   }
 
   /** The velocity of the body's origin, nearest to this one, that the wheels allow: forward, left, turn. */

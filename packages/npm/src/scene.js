@@ -36,7 +36,12 @@ export class SceneSetter {
   }
 
   /** One number; a key that the core's list lacks is refused by its name. */
-  number(/** @type {string} */ path, /** @type {string} */ shown, /** @type {number} */ item, /** @type {any} */ value) {
+  number(
+    /** @type {string} */ path,
+    /** @type {string} */ shown,
+    /** @type {number} */ item,
+    /** @type {any} */ value,
+  ) {
     const number = this.module.fields.get(path);
     if (number === undefined) throw new Refused(shown, "unknown key; take it out or see docs/scenes.md", "unknown key");
     if (typeof value !== "number" && typeof value !== "boolean")
@@ -44,8 +49,12 @@ export class SceneSetter {
     this.module.c.laconic_web_set(this.robot, number, item, Number(value));
   }
 
-  /** Tables of which there are several. Those beyond the core's room are only counted, so that its check refuses them. */
-  list(/** @type {string} */ name, /** @type {any[]} */ given, /** @type {(each: any, name: string) => any} */ numbers) {
+  /** Tables of which there are several. Those beyond the core's room are only counted: its check refuses them. */
+  list(
+    /** @type {string} */ name,
+    /** @type {any[]} */ given,
+    /** @type {(each: any, name: string) => any} */ numbers,
+  ) {
     this.module.c.laconic_web_set(this.robot, this.module.fields.get(`vehicle.${name}`), 0, given.length);
     given.forEach((each, index) => {
       const shown = `vehicle.${name}[${index + 1}]`;
@@ -56,35 +65,52 @@ export class SceneSetter {
 
   wheel(/** @type {any} */ given, /** @type {string} */ name) {
     const { kind, driven, motor_circuit, ...rest } = inPlace(inRad(given));
-    if (!(kind in KINDS)) throw new Refused(`${name}.kind`, `there is no ${JSON.stringify(kind)}; use omni, mecanum, roller or fixed`, "unknown kind");
+    if (!(kind in KINDS))
+      throw new Refused(
+        `${name}.kind`,
+        `there is no ${JSON.stringify(kind)}; use omni, mecanum, roller or fixed`,
+        "unknown kind",
+      );
     for (const [key, whose] of Object.entries(ABOVE_0))
-      if (rest[key] <= 0) throw new Refused(`${name}.${key}`, `${rest[key]} is not positive; give a value above 0, or take it out for ${whose}`, "not positive");
+      if (rest[key] <= 0)
+        throw new Refused(
+          `${name}.${key}`,
+          `${rest[key]} is not positive; give a value above 0, or take it out for ${whose}`,
+          "not positive",
+        );
     /** @type {Record<string, number | boolean>} */
     const numbers = { kind: KINDS[/** @type {keyof typeof KINDS} */ (kind)], ...rest };
     if (kind !== "fixed") numbers.roller_rad ??= kind === "omni" ? OMNI_ROLLER_RAD : Number.NaN;
     if (driven !== undefined) numbers.undriven = !driven;
-    if (motor_circuit !== undefined) numbers.motor_circuit = typeof motor_circuit === "string" ? CIRCUITS.indexOf(motor_circuit) : motor_circuit;
+    if (motor_circuit !== undefined)
+      numbers.motor_circuit = typeof motor_circuit === "string" ? CIRCUITS.indexOf(motor_circuit) : motor_circuit;
     return numbers;
   }
 
   /** ν, or the velocity of the centre of mass in body axes and the yaw rate. */
   start(/** @type {any} */ given) {
     const start = inRad(given);
-    for (const key of START) if (start[key] !== undefined) this.number(`initial.${key}`, `initial.${key}`, 0, start[key]);
+    for (const key of START)
+      if (start[key] !== undefined) this.number(`initial.${key}`, `initial.${key}`, 0, start[key]);
     for (const key of ["nu_rad_per_s", "wheel_speed_rad_per_s"])
       (start[key] ?? []).forEach((/** @type {number} */ value, /** @type {number} */ index) =>
-        this.number(`initial.${key}[#]`, `initial.${key}[${index + 1}]`, index + 1, value));
+        this.number(`initial.${key}[#]`, `initial.${key}[${index + 1}]`, index + 1, value),
+      );
     const [forward, left] = start.velocity_body_m_per_s ?? [0, 0];
     const turn = start.yaw_rate_rad_per_s ?? 0;
     if (forward !== 0 || left !== 0 || turn !== 0)
-      if (this.module.c.laconic_web_start_velocity(this.robot, forward, left, turn)) throw Refused.of(this.module, this.robot);
+      if (this.module.c.laconic_web_start_velocity(this.robot, forward, left, turn))
+        throw Refused.of(this.module, this.robot);
   }
 }
 
 /** Angles in degrees, by the suffix _deg, become radians. */
 function inRad(/** @type {any} */ given) {
-  return Object.fromEntries(Object.entries(given).map(([key, value]) =>
-    key.endsWith("_deg") ? [key.replace(/_deg$/, "_rad"), Number(value) * RAD_PER_DEG] : [key, value]));
+  return Object.fromEntries(
+    Object.entries(given).map(([key, value]) =>
+      key.endsWith("_deg") ? [key.replace(/_deg$/, "_rad"), Number(value) * RAD_PER_DEG] : [key, value],
+    ),
+  );
 }
 
 /** distance_m and bearing_rad become x_m and y_m. */
