@@ -72,8 +72,8 @@ def check_options(options: PlayOptions) -> None:
     if options.dbc is not None and options.board not in (None, "virtual"):
         raise BadInput(f"--board {options.board}: a vehicle with --dbc runs in this process; leave --board out")
     if options.duration_s is not None and not 0.0 < options.duration_s < 1e9:
-        raise BadInput(f"--duration {options.duration_s:g}: give seconds above 0, or leave it out to play until "
-                       "Ctrl-C")
+        raise BadInput(f"--duration {options.duration_s:g}: give seconds above 0 and below 1e9, or leave it out to "
+                       "play until Ctrl-C")
     check_bitrate(options.bitrate)
     options.limits.check()
     if options.bus_faults and options.is_served:

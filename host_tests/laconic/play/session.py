@@ -44,7 +44,7 @@ def play(scene: Scene, options: PlayOptions, *, clock: Clock | None = None, othe
         for line in introduction(place, bus):
             say(line)
         trouble = Trouble(place, options, vehicle, traffic, bus)
-        with place.playing(vehicle):
+        with place.playing(vehicle), trouble:
             ending = Loop(vehicle, trouble.bus, traffic, [*trouble.others, *others]).run(options.duration_s, moved)
             signals.number = 0  # it has been heard
         return judged(scene, place, vehicle, traffic, seconds, ending, bus, trouble)

@@ -35,6 +35,13 @@ class Trouble:
             self.others.append(self._witness)
             traffic.of_controller.append(self._witness.heard)
 
+    def __enter__(self) -> Trouble:
+        return self
+
+    def __exit__(self, *_: object) -> None:
+        if isinstance(self.bus, FaultyBus):
+            self.bus.let_go()
+
     @property
     def is_wanted(self) -> bool:
         """Whether a watchdog that fires is what the run is about."""

@@ -45,6 +45,8 @@ class Faults:
     seed: int = 1
 
 
+MOST_BABBLE_PER_S = 1e5
+
 FIELD_TYPES: dict[str, type[Any]] = {field.name: type(field.default) for field in fields(Faults)}
 
 
@@ -56,8 +58,11 @@ def faults_from(options: Mapping[str, object]) -> Faults:
             raise ValueError(f"{name}={getattr(faults, name):g}: a probability is from 0 to 1")
     for name in ("delay_s", "jitter_s", "corrupted_bits", "babble_per_s", "bus_off_after", "bus_off_s", "bitrate",
                  "from_s", "until_s"):
-        if not 0 <= getattr(faults, name):
-            raise ValueError(f"{name}={getattr(faults, name):g}: give zero or more")
+        if not 0 <= getattr(faults, name) < float("inf") and (name, getattr(faults, name)) != ("until_s", float("inf")):
+            raise ValueError(f"{name}={getattr(faults, name):g}: give a finite number of zero or more")
+    if faults.babble_per_s > MOST_BABBLE_PER_S:
+        raise ValueError(f"babble_per_s={faults.babble_per_s:g}: no bus carries so many frames; give "
+                         f"{MOST_BABBLE_PER_S:g} or less")
     if faults.direction not in ("out", "in", "both"):
         raise ValueError(f"direction={faults.direction}: give out, in or both")
     return faults

@@ -74,6 +74,10 @@ class FaultyBus(can.BusABC):
             if (message := self.inner.recv(wait)) is not None:
                 self.model.put(message, IN, self.now_s())
 
+    def let_go(self) -> None:
+        """Ends this bus and leaves the one beneath open, for whoever opened that."""
+        super().shutdown()
+
     def shutdown(self) -> None:
         """Closes the bus beneath, too."""
         super().shutdown()

@@ -28,23 +28,41 @@ def logged(link: Heard, paths: tuple[Path, ...]) -> Iterator[None]:
     """Writes every frame that is sent or received; the files are closed even when the run dies."""
     with ExitStack() as open_logs:
         for path in paths:
-            writer = open_logs.enter_context(open_log(path))
-            link.listeners.append(stamped(writer, link))
+            writer = open_logs.enter_context(closed(path, open_log(path)))
+            link.listeners.append(stamped(path, writer, link))
         yield
+
+
+@contextmanager
+def writable(path: Path) -> Iterator[None]:
+    """BadInput that names the log where the system does not take its bytes, as on a full disk."""
+    try:
+        yield
+    except OSError as error:
+        raise BadInput(f"--log {path}: cannot be written ({reason_of(error)}); choose another path") from None
+
+
+@contextmanager
+def closed(path: Path, writer: can.io.generic.MessageWriter) -> Iterator[can.io.generic.MessageWriter]:
+    """A log that is complete at the end of the context."""
+    try:
+        yield writer
+    finally:
+        with writable(path):
+            writer.stop()
 
 
 def open_log(path: Path) -> can.io.generic.MessageWriter:
     """A python-can log writer for this name."""
     try:
-        path.parent.mkdir(parents=True, exist_ok=True)
-        return can.Logger(str(path))
+        with writable(path):
+            path.parent.mkdir(parents=True, exist_ok=True)
+            return can.Logger(str(path))
     except ValueError as error:
         raise BadInput(f"--log {path}: {error}; use a name that ends in .blf or .asc") from None
-    except OSError as error:
-        raise BadInput(f"--log {path}: cannot be written ({reason_of(error)}); choose another path") from None
 
 
-def stamped(writer: can.io.generic.MessageWriter, link: Heard) -> Callable[[can.Message], None]:
+def stamped(path: Path, writer: can.io.generic.MessageWriter, link: Heard) -> Callable[[can.Message], None]:
     """Stamps frames with the link's time: those sent, and those of a virtual clock, contain none."""
 
     def write(message: can.Message) -> None:
@@ -53,7 +71,8 @@ def stamped(writer: can.io.generic.MessageWriter, link: Heard) -> Callable[[can.
         stamp.timestamp = link.clock.now_us() / 1e6
         stamp.is_rx = is_received
         stamp.channel = 1
-        writer(stamp)
+        with writable(path):
+            writer(stamp)
 
     return write
 

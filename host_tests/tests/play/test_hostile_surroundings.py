@@ -1,0 +1,85 @@
+"""What surrounds a run goes wrong: full disks, faults that no bus has, clients that die. One line, or it goes on."""
+
+from __future__ import annotations
+
+import socket
+import struct
+from pathlib import Path
+
+import can
+import pytest
+from play_support import currents, played
+
+from laconic.cli.main import run
+from laconic.errors import BadInput
+from laconic.play.listener import ListeningBus
+
+
+@pytest.mark.skipif(not Path("/dev/full").exists(), reason="only Linux has a device that is always full")
+@pytest.mark.parametrize("kind", ["asc", "blf"])
+def test_a_log_on_a_full_disk_is_named(kind: str, tmp_path: Path) -> None:
+    path = tmp_path / f"full.{kind}"
+    path.symlink_to("/dev/full")
+    with pytest.raises(BadInput, match=rf"--log .*full\.{kind}: cannot be written \(no space left on device\)"):
+        played("robotino2", 0.2, lambda _: [currents(0.2, 0.2, 0.2)], drives="robomaster", logs=(path,))
+
+
+@pytest.mark.parametrize("fault, words", [
+    ("babble_per_s=inf", "finite"), ("babble_per_s=1e12", "no bus carries so many"), ("delay_s=inf", "finite"),
+    ("jitter_s=nan", "finite"), ("error_frames=2", "from 0 to 1")])
+def test_a_fault_that_no_bus_has_is_refused(fault: str, words: str, capsys: pytest.CaptureFixture[str]) -> None:
+    assert run(["play", "canopen_agv", "--listen", "0", "--duration", "0.1", "--bus-fault", fault]) == 2
+    error = capsys.readouterr().err
+    assert error.count("\n") == 1 and f"--bus-fault {fault.partition('=')[0]}" in error and words in error
+
+
+def test_a_bus_with_faults_ends_without_a_warning(caplog: pytest.LogCaptureFixture) -> None:
+    played("robotino2", 0.05, lambda _: [currents(0.2)], drives="robomaster", bus_faults=("loss=0.1",))
+    assert "not properly shut down" not in caplog.text
+
+
+def heard_by(bus: ListeningBus) -> list[can.Message]:
+    """All frames that are there."""
+    found = []
+    while (message := bus.recv(0.02)) is not None:
+        found.append(message)
+    return found
+
+
+def joined(bus: ListeningBus) -> socket.socket:
+    """A client that has opened its channel."""
+    line = socket.create_connection(("127.0.0.1", bus.port))
+    line.settimeout(2.0)
+    line.sendall(b"O\r")
+    heard_by(bus)
+    assert line.recv(10) == b"\r"
+    return line
+
+
+def test_a_client_that_dies_in_a_frame_or_talks_nonsense_takes_nobody_with_it() -> None:
+    bus = ListeningBus(0)
+    good = joined(bus)
+    for ending, text in ((False, b"t2008010203"), (True, b"t2008010203"), (False, b"\xff\x00zz\rt2009aa\rT9\r" * 50),
+                         (False, b"A" * 100_000)):
+        bad = joined(bus)
+        if ending:  # the connection is reset, not closed
+            bad.setsockopt(socket.SOL_SOCKET, socket.SO_LINGER, struct.pack("ii", 1, 0))
+        bad.sendall(text)
+        bad.close()
+        assert heard_by(bus) == []
+    good.sendall(b"t20080102030405060708\r")
+    message, = heard_by(bus)
+    assert bytes(message.data) == bytes(range(1, 9))
+    good.close()
+    bus.shutdown()
+
+
+def test_a_ninth_client_is_told_that_the_bus_is_full() -> None:
+    bus = ListeningBus(0)
+    clients = [joined(bus) for _ in range(8)]
+    ninth = socket.create_connection(("127.0.0.1", bus.port))
+    heard_by(bus)
+    assert b"occupied" in ninth.recv(100)
+    for client in (*clients, ninth):
+        client.close()
+    bus.shutdown()
