@@ -31,8 +31,11 @@ def compile_to(target: str, sources: Sequence[str | Path], includes: Sequence[st
                flags: Sequence[str], *, python: str = sys.executable) -> None:
     """Links one binary for one of zig's targets; the compiler's own messages go to the terminal."""
     out.parent.mkdir(parents=True, exist_ok=True)
-    own_name = [f"-Wl,-install_name,@rpath/{out.name}"] if "macos" in target and "-shared" in flags else []
-    command = [python, "-m", "ziglang", "cc", "-target", target, *flags, *FLAGS, *own_name,  # else: this machine's path
+    if "macos" in target and "-shared" in flags:  # else it would name itself with this machine's path
+        flags = [*flags, f"-Wl,-install_name,@rpath/{out.name}"]
+    if target.endswith("musl"):  # else the compiler would first build the whole C library
+        flags = [*flags, "-dynamic"]
+    command = [python, "-m", "ziglang", "cc", "-target", target, *flags, *FLAGS,
                *(f"-I{folder}" for folder in includes), *map(str, sources), "-o", str(out)]
     subprocess.run(command, check=True, env={**os.environ, "ZIG_PROGRESS": "off"})
 
