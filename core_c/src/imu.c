@@ -37,6 +37,25 @@ void laconic_acceleration_of_rates(laconic_real acceleration_m_per_s2[2], const 
     accelerate(acceleration_m_per_s2, &m, -model->com_x_m, -model->com_y_m);
 }
 
+/* The derivative of the above, which is linear in ν' and quadratic in ν. */
+void laconic_acceleration_tangent(laconic_real change[2], const laconic_model *model,
+                                  const laconic_real nu_rad_per_s[3], const laconic_real by_nu_rad_per_s[3],
+                                  const laconic_real by_nu_rad_per_s2[3]) {
+    const vector zeta = zeta_of_nu(model, nu_rad_per_s), d_zeta = zeta_of_nu(model, by_nu_rad_per_s);
+    const real dx = -model->com_x_m, dy = -model->com_y_m;
+    real nu[3], d_nu[3];
+    for (int k = 0; k < 3; k++) {
+        nu[k] = dot(vec(model->nu_of_zeta[k]), zeta);
+        d_nu[k] = dot(vec(model->nu_of_zeta[k]), d_zeta);
+    }
+    const motion m = motion_of(model, nu, by_nu_rad_per_s2), d = motion_of(model, d_nu, by_nu_rad_per_s2);
+    const real square = R(2) * m.yaw_rate * d.yaw_rate;
+    change[0] =
+        d.change[0] - (m.yaw_rate * d.velocity[1] + d.yaw_rate * m.velocity[1]) - (d.yaw_change * dy + square * dx);
+    change[1] =
+        d.change[1] + (m.yaw_rate * d.velocity[0] + d.yaw_rate * m.velocity[0]) + (d.yaw_change * dx - square * dy);
+}
+
 /* ------------------------------------------------------------------------------ what an IMU feels -- */
 
 /* An accelerometer feels what holds it, not gravity: on a slope that is the acceleration less gravity's part along the

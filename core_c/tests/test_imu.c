@@ -172,6 +172,43 @@ static void rates_of_an_outer_integrator_give_the_same(void) {
     ASSERT_NEAR_ALL(20 * ROUNDING, expected, found, 2);
 }
 
+/* ν and an input are varied; the ν of the differential drive, which slides its wheels, is projected. */
+static void the_tangent_of_the_acceleration_is_its_slope(void) {
+    const double by[3] = {0.3, -0.8, 0.5}, h = EITHER(1e-4, 2e-2);
+    const laconic_vehicle each[] = {with_motors(three_wheels()), differential_drive()};
+    for (int k = 0; k < 2; k++) {
+        laconic_model m;
+        laconic_variation along;
+        laconic_rates rates, change;
+        laconic_real side[2][2], slope[2];
+        ASSERT_STATUS(LACONIC_OK, laconic_prepare(&m, &each[k], &why));
+        memset(&along, 0, sizeof along);
+        for (int i = 0; i < 3; i++) along.nu_rad_per_s[i] = REAL(by[i]);
+        along.input.body_force_N[0] = REAL(2);
+        const laconic_motion at_rate = {{REAL(2), REAL(-1), REAL(1.5)}, 0};
+        for (int s = 0; s < 2; s++) {
+            const double way = s == 0 ? -h : h;
+            laconic_input input = every_input();
+            laconic_motion at_side = at_rate;
+            for (int i = 0; i < 3; i++) at_side.nu_rad_per_s[i] += REAL(way * by[i]);
+            input.body_force_N[0] += REAL(way * 2);
+            laconic_derivative(&rates, &m, at_side.nu_rad_per_s, 0, &input);
+            laconic_state state;
+            const laconic_start start = {
+                .nu_rad_per_s = {at_side.nu_rad_per_s[0], at_side.nu_rad_per_s[1], at_side.nu_rad_per_s[2]}};
+            ASSERT_STATUS(LACONIC_OK, laconic_state_project(&state, &m, &start, &why));
+            laconic_nu(&m, &state, at_side.nu_rad_per_s);
+            laconic_acceleration_of_rates(side[s], &m, at_side.nu_rad_per_s, rates.nu_rad_per_s2);
+        }
+        const laconic_input input = every_input();
+        laconic_derivative_tangent(&change, &m, &at_rate, &input, &along);
+        laconic_acceleration_tangent(slope, &m, at_rate.nu_rad_per_s, along.nu_rad_per_s, change.nu_rad_per_s2);
+        for (int i = 0; i < 2; i++)
+            ASSERT_NEAR(EITHER(1e-8, 1e-3), ((double)side[1][i] - (double)side[0][i]) / (2 * h), slope[i]);
+        TEST_ASSERT_TRUE(fabs((double)slope[0]) > 0.01);
+    }
+}
+
 /* ---------------------------------------------------------------------------------- instrument -- */
 
 static const laconic_imu_sample truth = {{REAL(2), REAL(-3)}, REAL(0.5)};
@@ -244,6 +281,7 @@ int main(void) {
     RUN_TEST(at_rest_on_a_slope_it_feels_what_holds_it);
     RUN_TEST(lever_arms_agree_with_the_change_of_the_place_s_velocity);
     RUN_TEST(rates_of_an_outer_integrator_give_the_same);
+    RUN_TEST(the_tangent_of_the_acceleration_is_its_slope);
     RUN_TEST(scale_and_bias_change_each_axis_by_itself);
     RUN_TEST(an_ideal_imu_shows_the_truth_to_the_last_bit);
     RUN_TEST(beyond_its_range_it_shows_the_end_of_the_range);

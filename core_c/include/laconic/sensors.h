@@ -241,6 +241,12 @@ void laconic_imu_feel(laconic_imu_sample *sample, const laconic_imu_settings *im
                       const laconic_real nu_rad_per_s[3], const laconic_real nu_rad_per_s2[3],
                       laconic_real heading_rad);
 
+/* Directional derivative of that acceleration on ideal ground, along a change of ν and the change of ν' that
+ * laconic_derivative_tangent gives for it; ν and its change are first projected onto what the constraints allow. */
+void laconic_acceleration_tangent(laconic_real change[2], const struct laconic_model *model,
+                                  const laconic_real nu_rad_per_s[3], const laconic_real by_nu_rad_per_s[3],
+                                  const laconic_real by_nu_rad_per_s2[3]);
+
 /* A true sample with the errors of an IMU; `number` and step_s choose the noise and its size. */
 void laconic_imu_show(const laconic_imu_settings *imu, const laconic_imu_sample *sample, uint64_t number,
                       laconic_real step_s, laconic_real acceleration_m_per_s2[2], laconic_real *yaw_rate_rad_per_s);
