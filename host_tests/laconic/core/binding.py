@@ -62,7 +62,10 @@ class Core:
         fields = dict(ffi.typeof("laconic_vehicle").fields)
         self.max_wheels: int = fields["wheel"].type.length
         self.max_supports: int = fields["support"].type.length
+        samples = dict(ffi.typeof("laconic_sensors").fields)["sample"].type.length
+        self.most_delay_steps: int = samples - 1
         self.fields = fields_from(ffi, lib)
+        self.sensor_fields = fields_from(ffi, lib, "sensor_")
         self._of_table: dict[str, list[Field]] = {}  # asked for whenever a vehicle is made
         self.method_names = self._method_names()
         self.input_fields = self._input_fields()
@@ -82,9 +85,10 @@ class Core:
         return found
 
     def fields_of(self, table: str) -> list[Field]:
-        """The fields that are keys of a scene's table: "vehicle", "vehicle.payload", "vehicle.wheel[#]" …"""
+        """The fields that are keys of a scene's table: "vehicle", "vehicle.wheel[#]", "sensors.imu" …"""
         if table not in self._of_table:
-            self._of_table[table] = [field for field in self.fields if field.table == table and not field.counts]
+            every = (*self.fields, *self.sensor_fields)
+            self._of_table[table] = [field for field in every if field.table == table and not field.counts]
         return self._of_table[table]
 
     def own_fields(self, stem: str = "") -> list[Field]:

@@ -1,4 +1,4 @@
-"""The core's own list of fields (vehicle.h): what each is called in FMUs, scenes and on the wire, when it must come.
+"""The core's own lists of fields (vehicle.h, sensors.h): names in FMUs, scenes and on the wire, when each must come.
 
     for field in load("double").fields_of("vehicle.payload"):
         field.key, field.need, field.values(vehicle)
@@ -93,16 +93,17 @@ class Field:
         return [float(each) if self.kind == "REAL" else int(each) for each in found]
 
 
-def fields_from(ffi: Any, lib: Any) -> tuple[Field, ...]:
-    """Every field, in the order of the numbers."""
+def fields_from(ffi: Any, lib: Any, of: str = "") -> tuple[Field, ...]:
+    """Every field of a vehicle, its start and its inputs, in the order of the numbers; `of`: "sensor_", those of its
+    sensors."""
     found = []
-    for label, number in ffi.typeof("laconic_field").relements.items():
+    for label, number in ffi.typeof(f"laconic_{of}field").relements.items():
         traits = lib.laconic_field_traits_of(number)
         if traits != ffi.NULL:
             spelled = (lib.laconic_field_name(number), lib.laconic_field_path(number))
             name, path = (ffi.string(text).decode() for text in spelled)
             kind, rule, need = (_end(ffi, traits, what) for what in ("kind", "rule", "need"))
-            identifier, items = label.removeprefix("LACONIC_FIELD_"), int(traits.items)
+            identifier, items = label.removeprefix(f"LACONIC_{of.upper()}FIELD_"), int(traits.items)
             found.append(Field(number, identifier, name, path, kind, rule, need, items))
     return tuple(sorted(found, key=lambda field: field.number))
 

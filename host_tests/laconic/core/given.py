@@ -13,7 +13,7 @@ if TYPE_CHECKING:
     from laconic.core import Core
 
 MAKERS = {"input": "core.input({…})", "vehicle": "core.vehicle({…})", "model": "core.prepare(vehicle)",
-          "state": "plant.save()", "plant": "plant.save()"}
+          "state": "plant.save()", "plant": "plant.save()", "sensors": "sensors.save()"}
 FLAGS = ("FLAG", "ABSENCE")
 MOST_STEPS = 2**64 - 1
 LONGEST_SHOWN = 60  # of a value in a message

@@ -9,6 +9,7 @@ import numpy as np
 
 from laconic.core.given import c_object, number, step_count
 from laconic.core.schedule import Schedule
+from laconic.core.sensors import Sensors, settings_of
 from laconic.errors import BadInput
 
 if TYPE_CHECKING:
@@ -46,7 +47,7 @@ class Plant:
         Refused leaves the state before the refused step. A controller that steps often makes its input once.
         """
         why = self.core.why()
-        held, steps = self._input(held), step_count("steps", steps)
+        held, steps = self.input_of(held), step_count("steps", steps)
         self.core.check(self.core.lib.laconic_plant_run(self.c, held, steps, why), why)
 
     def run_sampled(self, samples: np.ndarray) -> None:
@@ -90,6 +91,16 @@ class Plant:
         else:
             self.c.state, self.c.steps = c_object(self.core, "state", state)[0], steps
 
+    # ---- sensors
+
+    def sensors(self, settings: Mapping[str, Any] | None = None) -> Sensors:
+        """Sensors beside this plant, as after power-up: {"imu": {…}, "encoder": {…}} with the keys of laconic.core's
+        fields (docs/python.md), an ideal IMU at the body's origin and no encoders where nothing is given.
+
+        BadInput names a key that is unknown or no number; Refused one that the core refuses.
+        """
+        return Sensors(self, settings_of(self.core, {} if settings is None else settings, self.wheel_count))
+
     # ---- outputs
 
     def _at(self, name: str) -> Any:
@@ -105,14 +116,14 @@ class Plant:
         """Whether it is stepped by the friction step: ground with friction, or motors with limits."""
         return bool(self.c.friction.acts)
 
-    def _input(self, held: Any) -> Any:
+    def input_of(self, held: Any) -> Any:
         """The laconic_input that is given, or that names and numbers make."""
         made = self.core.input(held) if held is None or isinstance(held, Mapping) else held
         return c_object(self.core, "input", made)
 
     def outputs(self, held: Any = None) -> Any:
         """The laconic_outputs with the reactions; its `friction` where the vehicle has friction. Input as for `run`."""
-        held, found = self._input(held), self.core.ffi.new("laconic_outputs *")
+        held, found = self.input_of(held), self.core.ffi.new("laconic_outputs *")
         self.core.lib.laconic_outputs_of(found, self.c, held)
         found.reactions = self.reactions(held)[0]
         return found
@@ -137,6 +148,18 @@ class Plant:
         yaw_rate = self.core.lib.laconic_body_velocity(self._at("model"), self._at("state"), velocity)
         return self.core.numbers(velocity), yaw_rate
 
+    def body_acceleration(self, held: Any = None) -> np.ndarray:
+        """Acceleration of the body's origin in body axes, shape (2,) [m/s²], at this moment with this input.
+
+        BadInput for a vehicle with friction, whose acceleration is known of a whole step alone: Sensors.read has it.
+        """
+        if self.has_friction:
+            raise BadInput("plant: has ground friction or limits of its drive, so its acceleration is the mean over a "
+                           "step; step it by sensors = plant.sensors(), and take sensors.read()")
+        held, found = self.input_of(held), self.core.ffi.new("laconic_real[2]")
+        self.core.lib.laconic_acceleration_body(found, self.core.ffi.NULL, self.c, held)
+        return self.core.numbers(found)
+
     def _per_wheel(self, function: Any, *more: Any) -> np.ndarray:
         room = self.core.ffi.new("laconic_real[]", max(self.wheel_count, 1))
         function(self._at("model"), self._at("state"), *more, room)
@@ -150,7 +173,7 @@ class Plant:
 
     def wheel_torques(self, held: Any = None) -> np.ndarray:
         """Torque on each axle: motor and applied [N·m], shape (N,). Input as for `run`."""
-        held = self._input(held)
+        held = self.input_of(held)
         if self.has_friction:
             return self.core.numbers(self.outputs(held).wheel_torque_Nm)[: self.wheel_count]
         return self._per_wheel(self.core.lib.laconic_wheel_torques, held)
@@ -188,6 +211,6 @@ class Plant:
 
     def reactions(self, held: Any = None) -> Any:
         """The laconic_reactions of this state and input, which is given as for `run`."""
-        held, found = self._input(held), self.core.ffi.new("laconic_reactions *")
+        held, found = self.input_of(held), self.core.ffi.new("laconic_reactions *")
         self.core.lib.laconic_plant_reactions(found, self.c, self.contact, held)
         return found

@@ -19,6 +19,7 @@ from laconic.paths import as_path
 from laconic.pictures.curve_style import wrapped
 from laconic.pictures.curves import MOST_CURVES, head, keep_scale, plot_curves, plot_rows, share_zero
 from laconic.pictures.method_style import style_of
+from laconic.pictures.sensor_panels import plot_sensors, sensor_panels
 
 if TYPE_CHECKING:
     from laconic.simulation import Trajectory
@@ -175,7 +176,7 @@ def simulation_picture(run: Trajectory, path: Path) -> None:
 
 
 def plot(run: Trajectory, path: str | Path | None = None) -> Figure:
-    """Path, velocities and wheel speeds of a run over time, as `laconic simulate --plot` draws them.
+    """Path, velocities, wheel speeds and sensors of a run over time, as `laconic simulate --plot` draws them.
 
     With `path` (.png, .svg or .pdf) the picture is written there, too. Raises BadInput for a run that has not kept the
     usual signals, and for a path that cannot be written.
@@ -195,14 +196,19 @@ def plot(run: Trajectory, path: str | Path | None = None) -> Figure:
 
 
 def run_figure(run: Trajectory) -> Figure:
-    """Path, velocities and wheel speeds of one run, and where the ground could not give what it needs."""
-    picture = figure(12.0, 7.0)
+    """Path, velocities and wheel speeds of one run, what its sensors show, and where the ground could not give what it
+    needs."""
+    sensors = sensor_panels(run)
+    picture = figure(12.0, 7.0 + 3.5 * len(sensors))
     below = "wheels" if run.scene.wheel_count else "velocities"
-    panels = picture.subplot_mosaic([["path", "velocities"], ["path", below]], width_ratios=(1.0, 1.25))
+    rows = ["velocities", below, *sensors]
+    panels = picture.subplot_mosaic([["path", row] for row in rows], width_ratios=(1.0, 1.25))
     title(picture, f"{run.method}, step {run.scene.run.step_s:g} s, {run.scene.run.real}", run)
     plot_velocities(panels["velocities"], run)
     if run.scene.wheel_count:
         plot_wheel_speeds(panels["wheels"], run)
+    for panel in sensors:
+        plot_sensors(panel, panels[panel], run)
     mark_ground(panels, run)
     plot_path(panels["path"], run)
     return picture

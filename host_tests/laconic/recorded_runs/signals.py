@@ -18,6 +18,7 @@ from laconic.errors import BadInput, reason_of
 from laconic.scene import Outputs, Scene
 from laconic.scene.inputs import Input, step_in_words, step_remedy
 from laconic.scene.reader import LENGTHS, PER_WHEEL, output_signals, signal_names
+from laconic.scene.sensors import missing_sensors
 from laconic.simulation import simulate
 
 TIME = "time_s"
@@ -139,7 +140,8 @@ def replay_signals(scene: Scene, log: SignalLog) -> SignalReplay:
     """Runs the model along the file and compares."""
     count, held = scene.wheel_count, all(each.kind == "steps" for each in scene.inputs)
     known_inputs = list(signal_names(LENGTHS, PER_WHEEL, count))
-    known_outputs = list(signal_names(*output_signals(scene.vehicle), count))
+    missing = missing_sensors(scene.sensors, count)
+    known_outputs = [name for name in signal_names(*output_signals(scene.vehicle), count) if name not in missing]
     inputs = tuple(name for name in log.columns if name in known_inputs)
     outputs = tuple(name for name in log.columns if name in known_outputs)
     if not outputs:

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Iterator, Sequence
+from collections.abc import Iterator, Mapping, Sequence
 from itertools import pairwise
 from typing import Any
 
@@ -15,6 +15,7 @@ from laconic.scene.fields import read_field
 from laconic.scene.ground import check_friction, has_friction, read_circuit, read_drive, read_ground
 from laconic.scene.inputs import Input
 from laconic.scene.not_modelled import KINDS_OF_WHEELS, OF_VEHICLES, OF_WHEELS
+from laconic.scene.sensors import NO_SENSORS, OF_ENCODERS, OF_IMU, SensorTables, missing_sensors, read_sensors
 from laconic.scene.speed_controller import read_speed_controller
 from laconic.scene.table import Table
 
@@ -26,7 +27,8 @@ OUTPUTS_PER_WHEEL = ("wheel_speed_rad_per_s", "wheel_angle_rad", "wheel_torque_N
                      "wheel_lateral_N")
 OUTPUT_LENGTHS = {
     "nu_rad_per_s": 3, "velocity_body_m_per_s": 2, "x_m": 0, "y_m": 0, "heading_rad": 0, "heading_wrapped_rad": 0,
-    "origin_x_m": 0, "origin_y_m": 0, "yaw_rate_rad_per_s": 0, "no_slip_margin_N": 0, "energy_J": 0}
+    "origin_x_m": 0, "origin_y_m": 0, "yaw_rate_rad_per_s": 0, "acceleration_body_m_per_s2": 2, "no_slip_margin_N": 0,
+    "energy_J": 0}
 
 FRICTION_PER_WHEEL = ("slip_along_m_per_s", "slip_across_m_per_s", "contact_state", "drive_limit", "motor_current_A")
 FRICTION_LENGTHS = dict.fromkeys(
@@ -53,7 +55,9 @@ def read_parts(top: Table, methods: Sequence[str], reals: Sequence[str]) -> dict
     parts["run"] = read_run(top.table("run", required=True), methods, reals)
     for each in parts["inputs"]:
         check_input(top, each, parts["vehicle"], parts["run"]["duration_s"])
-    parts["outputs"] = read_outputs(top.table("outputs"), parts["vehicle"], parts["run"]["duration_s"])
+    parts["sensors"] = read_sensors(top.table("sensors"), wheel_count) if top.has("sensors") else NO_SENSORS
+    parts["outputs"] = read_outputs(top.table("outputs"), parts["vehicle"], parts["sensors"],
+                                    parts["run"]["duration_s"])
     parts["rig"] = read_rig(top.table("rig"), parts["vehicle"]["wheel"])
     top.done()
     parts["in_degrees"] = frozenset(top.in_degrees)
@@ -215,15 +219,17 @@ def read_run(table: Table, methods: Sequence[str], reals: Sequence[str]) -> dict
 
 
 def output_signals(vehicle: dict[str, Any]) -> tuple[dict[str, int], tuple[str, ...]]:
-    """What a vehicle shows: names with their lengths, and names with one item for each wheel."""
+    """What a vehicle shows: names with their lengths, and names with one item for each wheel; with those of sensors,
+    which a scene need not have."""
     if has_friction(vehicle):
-        return OUTPUT_LENGTHS | FRICTION_LENGTHS, (*OUTPUTS_PER_WHEEL, *FRICTION_PER_WHEEL)
-    return OUTPUT_LENGTHS, OUTPUTS_PER_WHEEL
+        return OUTPUT_LENGTHS | OF_IMU | FRICTION_LENGTHS, (*OUTPUTS_PER_WHEEL, *OF_ENCODERS, *FRICTION_PER_WHEEL)
+    return OUTPUT_LENGTHS | OF_IMU, (*OUTPUTS_PER_WHEEL, *OF_ENCODERS)
 
 
-def read_outputs(table: Table, vehicle: dict[str, Any], duration_s: float) -> dict[str, Any]:
+def read_outputs(table: Table, vehicle: dict[str, Any], sensors: SensorTables, duration_s: float) -> dict[str, Any]:
     """`[outputs]`: a signal without its index stands for all of them."""
-    signals = read_signals(table, *output_signals(vehicle), len(vehicle["wheel"]))
+    wheel_count = len(vehicle["wheel"])
+    signals = read_signals(table, *output_signals(vehicle), wheel_count, missing_sensors(sensors, wheel_count))
     every = table.number("every_s", None)
     if every is not None and every <= 0:
         table.fail("every_s", f"is {every:g}; give a number above zero")
@@ -235,15 +241,18 @@ def read_outputs(table: Table, vehicle: dict[str, Any], duration_s: float) -> di
     return {"signals": signals, "every_s": every}
 
 
-def read_signals(table: Table, lengths: dict[str, int], per_wheel: Sequence[str], wheel_count: int) -> tuple[str, ...]:
-    """The list `signals`; none is named twice."""
+def read_signals(table: Table, lengths: dict[str, int], per_wheel: Sequence[str], wheel_count: int,
+                 missing: Mapping[str, str]) -> tuple[str, ...]:
+    """The list `signals`; none is named twice. `missing`: those of sensors that the scene lacks, and why."""
     signals: list[str] = []
     for signal in table.texts("signals", ()):
-        if "[" not in signal and signal in per_wheel:
-            signals += [f"{signal}[{i}]" for i in range(1, wheel_count + 1)]
-        elif lengths.get(signal):
-            signals += [f"{signal}[{i}]" for i in range(1, lengths[signal] + 1)]
-        else:
+        if signal in missing:
+            table.fail("signals", f"{signal} {missing[signal]}, or take the signal out")
+        length = wheel_count if signal in per_wheel else lengths.get(signal, 0)
+        if length:
+            every = [f"{signal}[{i}]" for i in range(1, length + 1)]
+            signals += [each for each in every if each not in missing]
+        elif signal not in per_wheel:
             check_signal(table, "signals", signal, lengths, per_wheel, wheel_count)
             signals.append(signal)
     for number, signal in enumerate(signals):

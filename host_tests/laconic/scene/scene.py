@@ -13,12 +13,14 @@ from typing import Any
 
 from laconic.core import REALS, Core, load
 from laconic.core.plant import Plant
+from laconic.core.sensors import Sensors
 from laconic.errors import BadInput, Refused
 from laconic.paths import scene_path
 from laconic.scene.drives import Drives
 from laconic.scene.inputs import Input, InputsOnGrid, check_resolved, step_remedy
 from laconic.scene.names import in_file
 from laconic.scene.reader import read_parts, read_run
+from laconic.scene.sensors import DELAY_S, NO_SENSORS, SensorTables
 from laconic.scene.speed_controller import SpeedController
 from laconic.scene.table import Table, plain, read_toml
 
@@ -99,6 +101,7 @@ class Scene:
     outputs: Outputs = field(default_factory=Outputs)
     rig: Rig = field(default_factory=Rig)
     speed_controller: SpeedController | None = None
+    sensors: SensorTables = NO_SENSORS
     in_degrees: frozenset[str] = frozenset()  # angles that the file gives so, by their name in rad
 
     @property
@@ -156,6 +159,23 @@ class Scene:
                 raise start.refusal(refused, model).at(self.path) from None
             raise self.refusal_in_file(refused) from None
 
+    def delay_steps(self, core: Core) -> int:
+        """The IMU's delay in steps of the scene."""
+        delay_s = (self.sensors.imu or {}).get(DELAY_S, 0.0)
+        steps = self.steps_in(f"sensors.imu.{DELAY_S}", delay_s) if delay_s else 0
+        if steps > core.most_delay_steps:
+            raise BadInput(f"{self.path}: sensors.imu.{DELAY_S}: {delay_s:g} s are {steps} steps of "
+                           f"{self.run.step_s:g} s; give at most {core.most_delay_steps} steps, or a longer step")
+        return steps
+
+    def sensors_of(self, plant: Plant) -> Sensors:
+        """The scene's sensors as after power-up, beside a plant of it; what the scene does not give is ideal."""
+        settings = self.sensors.settings(self.delay_steps(plant.core))
+        try:
+            return plant.sensors(settings)
+        except Refused as refused:
+            raise self.refusal_in_file(refused) from None
+
     def refusal_in_file(self, refused: Refused, when: str = "") -> Refused:
         """A refusal of the core with this file in front, by the names that the file has."""
         if refused.status == "overflow" and not refused.field:
@@ -183,7 +203,8 @@ class Scene:
     def instants(self) -> list[float]:
         """Every instant of the run that must fall on a step."""
         changes = [t for each in self.inputs if each.kind == "steps" for t in each.t_s if t < self.run.duration_s]
-        return [self.run.duration_s, *([self.outputs.every_s] if self.outputs.every_s else []), *changes]
+        given = (self.outputs.every_s, (self.sensors.imu or {}).get(DELAY_S))
+        return [self.run.duration_s, *(each for each in given if each), *changes]
 
     def inputs_on_grid(self) -> InputsOnGrid:
         """The inputs on the grid of the scene's steps."""
@@ -211,4 +232,4 @@ def scene_of(top: Table) -> Scene:
         path=top.path, name=parts["name"], source=parts["source"], vehicle=parts["vehicle"],
         initial=Initial(**parts["initial"]), inputs=tuple(parts["inputs"]), run=Run(**parts["run"]),
         outputs=Outputs(**parts["outputs"]), rig=Rig(**parts["rig"]), speed_controller=parts["speed_controller"],
-        in_degrees=parts["in_degrees"])
+        sensors=parts["sensors"], in_degrees=parts["in_degrees"])

@@ -10,7 +10,7 @@ import numpy as np
 
 from laconic.core.grip import Grip
 from laconic.core.plant import Plant
-from laconic.core.recording import Recorder
+from laconic.core.recording import Recorder, needs_sensors
 from laconic.errors import BadInput, Refused
 from laconic.progress import Advance, progress_bar
 from laconic.scene import Scene, check_scene
@@ -25,6 +25,7 @@ from laconic.scene.reader import (
     read_signals,
     signal_names,
 )
+from laconic.scene.sensors import OF_ENCODERS, OF_IMU, missing_sensors
 from laconic.scene.table import Table
 
 USUAL = ("nu_rad_per_s", "x_m", "y_m", "heading_rad", "velocity_body_m_per_s", "yaw_rate_rad_per_s",
@@ -68,12 +69,19 @@ def wanted_signals(scene: Scene) -> tuple[str, ...]:
 
 
 def usual_signals(scene: Scene) -> tuple[str, ...]:
-    """Velocities, pose, wheels and energy."""
+    """Velocities, pose, wheels and energy; then what the scene's sensors show."""
     every = signal_names(OUTPUT_LENGTHS, OUTPUTS_PER_WHEEL, scene.wheel_count)
     by_name: dict[str, list[str]] = {name: [] for name in USUAL}
     for signal in every:
         by_name.get(signal.partition("[")[0], []).append(signal)
-    return tuple(signal for name in USUAL for signal in by_name[name])
+    return (*(signal for name in USUAL for signal in by_name[name]), *sensor_signals(scene))
+
+
+def sensor_signals(scene: Scene) -> tuple[str, ...]:
+    """What the scene's sensors show; empty without [sensors]."""
+    missing = missing_sensors(scene.sensors, scene.wheel_count)
+    of_imu, counts = signal_names(OF_IMU, (), 0), signal_names({}, OF_ENCODERS, scene.wheel_count)
+    return tuple(signal for signal in (*of_imu, *counts) if signal not in missing)
 
 
 def input_signals(scene: Scene) -> tuple[str, ...]:
@@ -102,7 +110,9 @@ def kept_signals(scene: Scene, given: Sequence[str]) -> tuple[str, ...]:
     """Those of a run: the given outputs and inputs, a signal without its index standing for all of them."""
     table = Table(scene.path, "", {"signals": given})
     lengths, per_wheel = output_signals(scene.vehicle)
-    return read_signals(table, lengths | LENGTHS, (*per_wheel, *PER_WHEEL), scene.wheel_count) or wanted_signals(scene)
+    missing = missing_sensors(scene.sensors, scene.wheel_count)
+    kept = read_signals(table, lengths | LENGTHS, (*per_wheel, *PER_WHEEL), scene.wheel_count, missing)
+    return kept or wanted_signals(scene)
 
 
 def simulate(scene: Scene, signals: Sequence[str] = (), progress: bool = False) -> Trajectory:
@@ -120,7 +130,9 @@ def simulate(scene: Scene, signals: Sequence[str] = (), progress: bool = False) 
                        f"for {MOST_ROWS} or fewer")
     plant, inputs = scene.plant(core), scene.inputs_on_grid()
     ticks = np.append(np.arange(0, steps, every), steps)  # the last row is the end of the run, on the grid or not
-    recorder = Recorder(plant, kept, every, len(ticks), watched=is_watched(scene))
+    sensors = scene.sensors_of(plant)  # refuses, by its field, what the core refuses
+    recorder = Recorder(plant, kept, every, len(ticks), watched=is_watched(scene),
+                        sensors=sensors if any(needs_sensors(core, signal) for signal in kept) else None)
     began = time.perf_counter()
     refused = None
     try:

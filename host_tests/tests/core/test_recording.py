@@ -29,6 +29,7 @@ def outputs_by_hand(plant: Plant, held: Any) -> dict[str, float]:
     pose, (velocity, yaw_rate), ground = plant.pose, plant.body_velocity(), plant.reactions(held)
     many = {"nu_rad_per_s": plant.nu, "velocity_body_m_per_s": velocity, "wheel_speed_rad_per_s": plant.wheel_speeds(),
             "wheel_angle_rad": plant.wheel_angles(), "wheel_torque_Nm": plant.wheel_torques(held),
+            "acceleration_body_m_per_s2": plant.body_acceleration(held),
             "wheel_reaction_N": ground.along_N, "wheel_lateral_N": ground.lateral_N}
     values = {name: getattr(pose, name) for name in ("x_m", "y_m", "origin_x_m", "origin_y_m", "heading_rad",
                                                      "heading_wrapped_rad")}

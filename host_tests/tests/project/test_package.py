@@ -39,7 +39,7 @@ def test_an_example_of_the_page_prints_what_the_page_states(code: str, promised:
 
 
 def test_the_page_has_its_examples_and_names_the_whole_interface() -> None:
-    assert len(EXAMPLES) == 3
+    assert len(EXAMPLES) == 4
     assert [name for name in laconic.__all__ if f"`{name}" not in PAGE] == []
 
 

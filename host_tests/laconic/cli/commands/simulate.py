@@ -76,10 +76,11 @@ def kept_in(*paths: Path | None) -> str:
 
 def write_csv(run: Trajectory, signals: tuple[str, ...], path: Path) -> None:
     """A header line; then time_s and the signals, with all digits."""
-    table = np.column_stack([run.time_s, *(run.columns[name] for name in signals)])
+    columns = [run.time_s, *(run.columns[name] for name in signals)]
+    whole = [number for number, column in enumerate(columns) if column.dtype.kind == "i"]
     with opened(path) as file:
         file.write(",".join(("time_s", *signals)) + "\n")
-        for lines in csv_text(table):
+        for lines in csv_text(np.column_stack(columns), whole):
             file.write(lines)
 
 
@@ -88,7 +89,7 @@ def summary(run: Trajectory, out: Path | None, plot: Path | None) -> dict[str, A
     return {
         "scene": str(run.scene.path), "name": run.scene.name, "method": run.scene.run.method, "chosen": run.method,
         "step_s": run.scene.run.step_s, "real": run.scene.run.real, "steps": run.steps, "seconds": run.seconds,
-        "final": {"time_s": run.time_s[-1], **{name: values[-1] for name, values in run.columns.items()}},
+        "final": {"time_s": run.time_s[-1], **{name: values[-1].item() for name, values in run.columns.items()}},
         "no_slip": run.grip.as_json() if run.grip else None,
         "refused": in_words(run.refused, run) if run.refused else None,
         "files": [str(path) for path in (out, plot) if path]}

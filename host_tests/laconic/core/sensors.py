@@ -1,0 +1,159 @@
+"""Sensors of a vehicle from Python: the core's IMU and encoders (laconic_sensors), beside the plant that they watch.
+
+    sensors = plant.sensors({"imu": {"x_m": 0.1, "seed": 7}, "encoder": {"counts_per_turn": 4096}})
+    sensors.run({"voltage_V": [2.0, -2.0]}, steps=1000)
+    sensors.read().imu_yaw_rate_rad_per_s
+"""
+
+from __future__ import annotations
+
+import operator
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+
+from laconic.core.fields import Field
+from laconic.core.given import c_object, number, shown, step_count
+from laconic.errors import BadInput, nearest_of
+
+if TYPE_CHECKING:
+    from laconic.core import Core
+    from laconic.core.plant import Plant
+
+IMU, ENCODER = "sensors.imu", "sensors.encoder"  # the tables of a scene
+LEAST_INTEGER, MOST_INTEGER = -(2**31), 2**31 - 1
+
+
+@dataclass(frozen=True)
+class Readings:
+    """What the sensors of a vehicle with N wheels show at one moment."""
+
+    acceleration_body_m_per_s2: np.ndarray
+    """(2,), along ξ and η [m/s²]: the true acceleration of the body's origin, no sensor's."""
+    imu_acceleration_m_per_s2: np.ndarray
+    """(2,), along the IMU's x and y axis [m/s²]: specific force, so a slope shows at rest."""
+    imu_yaw_rate_rad_per_s: float
+    encoder_count: np.ndarray
+    """(N,), whole numbers; 0 for a wheel without an encoder."""
+
+
+class Sensors:
+    """IMU and encoders of one plant; `c` is the laconic_sensors itself. Step the plant by `run` from now on, as the
+    sensors must see each step."""
+
+    def __init__(self, plant: Plant, settings: Any):
+        """Sensors as after power-up, beside a plant that stands where it is; `settings`: a laconic_sensor_settings.
+
+        Refused names the field that the core refuses.
+        """
+        self.plant, core = plant, plant.core
+        self.c: Any = core.ffi.new("laconic_sensors *")
+        why = core.why()
+        core.check(core.lib.laconic_sensors_start(self.c, settings, plant.c, why), why)
+
+    def run(self, held: Any = None, steps: int = 1) -> None:
+        """Steps of plant and sensors with the input held, given as Plant.run takes it; the plant's bits are the same.
+
+        Refused leaves both as before the refused step; only "overflow" of a sensor, which has left its range, comes
+        after its step.
+        """
+        core, why = self.plant.core, self.plant.core.why()
+        held, steps = self.plant.input_of(held), step_count("steps", steps)
+        core.check(core.lib.laconic_sensors_run(self.c, self.plant.c, held, steps, why), why)
+
+    def run_sampled(self, samples: np.ndarray) -> None:
+        """One step per samples[k], as Plant.run_sampled: (steps, 3, numbers of an input)."""
+        core, why = self.plant.core, self.plant.core.why()
+        width = core.input_length
+        if np.ndim(samples) != 3 or np.shape(samples)[1:] != (3, width):
+            raise BadInput(f"samples: has the shape {np.shape(samples)}; give (steps, 3, {width})")
+        three = core.ffi.new("laconic_input[3]")
+        for each in np.asarray(samples, core.dtype):
+            core.ffi.memmove(three, each.tobytes(), core.ffi.sizeof("laconic_input[3]"))
+            core.check(core.lib.laconic_sensors_run_sampled(self.c, self.plant.c, three, why), why)
+
+    def read(self, held: Any = None) -> Readings:
+        """What the sensors show now. `held`: the input that acts from now on, on which only acceleration_body_m_per_s2
+        depends; None: none."""
+        core, plant = self.plant.core, self.plant
+        shown_now = core.ffi.new("laconic_sensor_outputs *")
+        core.lib.laconic_sensors_read(shown_now, self.c, plant.c, plant.input_of(held))
+        return Readings(core.numbers(shown_now.acceleration_body_m_per_s2),
+                        core.numbers(shown_now.imu_acceleration_m_per_s2), float(shown_now.imu_yaw_rate_rad_per_s),
+                        core.numbers(shown_now.encoder_count)[: plant.wheel_count].astype(np.int64))
+
+    def save(self) -> Any:
+        """A copy of the sensors' state, with the samples that are on their way; save the plant with it."""
+        return self.plant.core.ffi.new("laconic_sensors *", self.c[0])
+
+    def restore(self, saved: Any) -> None:
+        """Back to what `save` gave."""
+        self.c[0] = c_object(self.plant.core, "sensors", saved)[0]
+
+
+def settings_of(core: Core, given: Mapping[str, Any], wheel_count: int) -> Any:
+    """The laconic_sensor_settings of {"imu": {…}, "encoder": {…}}, whose keys are those of the core's list of fields.
+
+    What has several items, an axis or a wheel each, is one number for all of them or a list. BadInput names a key that
+    is unknown, no number, or of another length; what the numbers must be the core checks.
+    """
+    settings = core.ffi.new("laconic_sensor_settings *")
+    top = _mapping("sensors", given, ("imu", "encoder"))
+    for path, table in ((IMU, top.get("imu", {})), (ENCODER, top.get("encoder", {}))):
+        fields = {field.key: field for field in core.fields_of(path)}
+        for key, value in _mapping(path, table, fields).items():
+            _put(settings, fields[key], _values(f"{path}.{key}", fields[key], value, wheel_count))
+    return settings
+
+
+def values_of(field: Field, settings: Any) -> list[float]:
+    """The numbers of one field of a laconic_sensor_settings; of all items that there is room for."""
+    if field.table == IMU:
+        found = getattr(settings.imu, field.key)
+        values = list(found) if field.items else [found]
+    else:
+        values = [getattr(each, field.key) for each in settings.encoder] if field.items else [settings.encoder_wrap]
+    return [float(each) if field.kind == "REAL" else int(each) for each in values]
+
+
+def _mapping(name: str, given: Any, known: Sequence[str] | Mapping[str, Any]) -> Mapping[str, Any]:
+    if not isinstance(given, Mapping):
+        raise BadInput(f"{name}: {shown(given)} is no table; give a mapping from keys to numbers")
+    for key in given:
+        if key not in known:
+            raise BadInput(f"{name}.{key}: unknown key; {nearest_of(str(key), known)}")
+    return given
+
+
+def _values(name: str, field: Field, given: Any, wheel_count: int) -> list[float]:
+    count = min(field.items, wheel_count) if field.table == ENCODER else field.items
+    many = isinstance(given, Sequence | np.ndarray) and not isinstance(given, str)
+    if many and len(given) != count:
+        raise BadInput(f"{name}: has {len(given)} entries; give one number{f', or {count}' if count else ''}")
+    values = list(given) if many else [given] * max(count, 1)
+    return [_whole(name, each) if field.kind == "INTEGER" else number(name, each) for each in values]
+
+
+def _whole(name: str, value: Any) -> int:
+    try:
+        found = operator.index(value)
+    except TypeError:
+        raise BadInput(f"{name}: {shown(value)} is no whole number (int); give one") from None
+    if not LEAST_INTEGER <= found <= MOST_INTEGER:
+        raise BadInput(f"{name}: {found} has more than 32 bits; give {LEAST_INTEGER} to {MOST_INTEGER}")
+    return found
+
+
+def _put(settings: Any, field: Field, values: list[float]) -> None:
+    if field.table == IMU and not field.items:
+        setattr(settings.imu, field.key, values[0])
+    elif not field.items:
+        settings.encoder_wrap = values[0]
+    else:
+        for item, value in enumerate(values):
+            if field.table == IMU:
+                getattr(settings.imu, field.key)[item] = value
+            else:
+                setattr(settings.encoder[item], field.key, value)
