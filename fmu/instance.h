@@ -156,8 +156,8 @@ typedef enum fmu_access { /* who sets it, and when (variables.c) */
 
 /* One row of the table that is generated from the description; the row's number is the value reference. */
 typedef struct fmu_variable {
-    const char *name;
     uint32_t offset; /* in fmu_model                                          */
+    uint16_t name;   /* in fmu_variable_names: a pointer would cost every FMU a relocation       */
     uint16_t stride; /* from one element to the next                          */
     uint16_t size;   /* elements; 0: FMU_MODEL_ARRAY_SIZE of them  */
     uint8_t type, access;
@@ -168,7 +168,10 @@ typedef struct fmu_variable {
 } fmu_variable;
 
 extern const fmu_variable fmu_variables[];
+extern const char fmu_variable_names[];
 extern const uint32_t fmu_variable_count;
+
+static inline const char *fmu_name_of(const fmu_variable *variable) { return &fmu_variable_names[variable->name]; }
 
 /* Start values of the description this was built with. */
 typedef struct fmu_start_value {

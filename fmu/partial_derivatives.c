@@ -34,7 +34,7 @@ static fmu_status count_known(const fmu_instance *instance, fmu_references list,
             return fmu_refuse(instance,
                               known ? "%s is neither an input nor a continuous state: no derivative with respect to it"
                                     : "%s is neither an output nor a derivative: it has no partial derivatives",
-                              slot.variable->name);
+                              fmu_name_of(slot.variable));
         *total += slot.count;
     }
     return FMU_OK;
@@ -57,7 +57,7 @@ static fmu_status refuse_result(const fmu_instance *instance, const fmu_variable
     return fmu_refuse(instance,
                       "a derivative of or by %s leaves the range of double precision; check inputs, states and "
                       "seeds",
-                      variable->name);
+                      fmu_name_of(variable));
 }
 
 /* Checks all values before it writes the first. */
@@ -166,9 +166,9 @@ static fmu_status check_inputs(const fmu_instance *instance, fmu_references inpu
             return fmu_refuse(instance, "there is no variable with the value reference %u",
                               (unsigned)inputs.reference[k]);
         if (slot.variable->access != FMU_INPUT || slot.count != 1)
-            return fmu_refuse(instance, "%s is no scalar input", slot.variable->name);
+            return fmu_refuse(instance, "%s is no scalar input", fmu_name_of(slot.variable));
         if (!fmu_is_finite(values[k]))
-            return fmu_refuse(instance, "%s: its derivative %g is not finite", slot.variable->name, values[k]);
+            return fmu_refuse(instance, "%s: its derivative %g is not finite", fmu_name_of(slot.variable), values[k]);
     }
     return FMU_OK;
 }

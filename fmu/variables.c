@@ -54,9 +54,9 @@ static double most_of(const fmu_instance *instance, const fmu_variable *variable
 
 static void name_element(char name[NAME_LENGTH], const fmu_slot *slot, uint32_t element) {
     if (slot->variable->size == 1)
-        snprintf(name, NAME_LENGTH, "%s", slot->variable->name);
+        snprintf(name, NAME_LENGTH, "%s", fmu_name_of(slot->variable));
     else
-        snprintf(name, NAME_LENGTH, "%s[%u]", slot->variable->name, (unsigned)(slot->first + element + 1));
+        snprintf(name, NAME_LENGTH, "%s[%u]", fmu_name_of(slot->variable), (unsigned)(slot->first + element + 1));
 }
 
 static fmu_status refuse_result(const fmu_instance *instance, const fmu_slot *slot, uint32_t element) {
@@ -110,7 +110,7 @@ static fmu_status find_typed(const fmu_instance *instance, fmu_type type, uint32
     if (!fmu_find(instance, reference, slot))
         return fmu_refuse(instance, "there is no variable with the value reference %u", (unsigned)reference);
     if (!is_of(type, slot->variable->type))
-        return fmu_refuse(instance, "%s is %s, not %s", slot->variable->name, type_names[slot->variable->type],
+        return fmu_refuse(instance, "%s is %s, not %s", fmu_name_of(slot->variable), type_names[slot->variable->type],
                           type_names[type]);
     return FMU_OK;
 }
@@ -118,7 +118,7 @@ static fmu_status find_typed(const fmu_instance *instance, fmu_type type, uint32
 static fmu_status make_ready(fmu_instance *instance, const fmu_variable *variable) {
     if (variable->group == 0) return FMU_OK;
     if (instance->mode < FMU_INITIALIZATION)
-        return fmu_refuse(instance, "%s is computed: it has no value before initialization", variable->name);
+        return fmu_refuse(instance, "%s is computed: it has no value before initialization", fmu_name_of(variable));
     const fmu_status status = fmu_apply_parameters(instance);
     if (status == FMU_OK) fmu_model_refresh(instance, variable->group);
     return status;
@@ -139,7 +139,7 @@ typedef fmu_status (*visit)(fmu_instance *instance, const fmu_slot *slot, const 
 
 static fmu_status check_room(const fmu_instance *instance, const fmu_slot *slot, const exchange *values, size_t used) {
     if (slot->count <= values->count - used) return FMU_OK;
-    return fmu_refuse(instance, "%s has %u values, but only %zu were left of those given", slot->variable->name,
+    return fmu_refuse(instance, "%s has %u values, but only %zu were left of those given", fmu_name_of(slot->variable),
                       (unsigned)slot->count, values->count - used);
 }
 
@@ -159,7 +159,7 @@ static fmu_status copy_out(fmu_instance *instance, const fmu_slot *slot, const e
 static fmu_status check_settable(fmu_instance *instance, const fmu_variable *variable) {
     const fmu_access access = fmu_access_of(instance, variable);
     if (!(instance->settable >> access & 1U))
-        return fmu_refuse(instance, "%s cannot be set in %s: %s", variable->name, fmu_mode_names[instance->mode],
+        return fmu_refuse(instance, "%s cannot be set in %s: %s", fmu_name_of(variable), fmu_mode_names[instance->mode],
                           who_sets(access));
     return access == FMU_STATE ? fmu_apply_parameters(instance) : FMU_OK;
 }
@@ -248,7 +248,7 @@ fmu_status fmu_check_intermediate(const fmu_instance *instance, const uint32_t *
             return fmu_refuse(instance,
                               "Instantiate: %s is required as intermediate variable, but it has no "
                               "intermediate updates",
-                              slot.variable->name);
+                              fmu_name_of(slot.variable));
     }
     return FMU_OK;
 }

@@ -9,7 +9,7 @@ from pathlib import Path
 from . import archive, fmi2, fmi3
 from .description import parse, read, token_in, token_of, with_token
 from .field_list import missing_variable
-from .friction import for_vehicle
+from .for_vehicle import for_vehicle
 from .package import pack
 from .tables import tables
 
@@ -21,8 +21,9 @@ def make_tables(arguments: argparse.Namespace) -> None:
         sys.exit(f"{arguments.description}: its token does not belong to its text any more: "
                  f"python -m laconic_fmu renew-token {arguments.description}")
     description = parse(text_3)
-    if arguments.fields and (fault := missing_variable(arguments.fields, arguments.description, description)):
-        sys.exit(fault)
+    for header in arguments.fields:
+        if fault := missing_variable(header, arguments.description, description):
+            sys.exit(fault)
     generic = for_vehicle(description)
     if generic is not description:
         text_3 = fmi3.describe(generic)
@@ -75,7 +76,8 @@ def main() -> None:
     command.add_argument("--out", type=Path, required=True)
     command.add_argument("--sources", nargs="*", default=[])
     command.add_argument("--versions", nargs="*", default=["2", "3"], help="the FMI versions of this FMU")
-    command.add_argument("--fields", type=Path, help="the core's list of fields, each of which must be a variable")
+    command.add_argument("--fields", type=Path, nargs="*", default=[],
+                         help="headers with the core's lists of fields, each of which must be a variable")
     command.set_defaults(run=make_tables)
     command = commands.add_parser("pack")
     command.add_argument("--version", type=int, choices=(2, 3), required=True)

@@ -11,7 +11,7 @@ from pathlib import Path
 from . import fmi2, fmi3
 from .description import Description, parse, start_values, token_in, with_values
 from .enumerations import without_enumerations
-from .friction import for_vehicle, has_friction
+from .for_vehicle import for_vehicle
 from .package import pack, start_file
 from .scalars import elements_of
 
@@ -122,17 +122,6 @@ def _describe(parts: Mapping[str, bytes], description: Description, variant: Var
     return fmi2.describe(description, files)
 
 
-CORE_OPTIONS = "sources/laconic/real.h"
-WITH_FRICTION = b"#define LACONIC_WITH_FRICTION "
-
-
-def without_friction(header: bytes) -> bytes:
-    """The core's options for sources that leave the friction step out."""
-    if header.count(WITH_FRICTION + b"1\n") != 1:
-        raise ValueError(f"{CORE_OPTIONS}: {WITH_FRICTION.decode()}1 must occur exactly once")
-    return header.replace(WITH_FRICTION + b"1\n", WITH_FRICTION + b"0\n")
-
-
 Shown = Callable[[Mapping[str, bytes], Description, int], Mapping[str, bytes]]
 """From the generic FMU's parts, the description and the FMI version to the parts that show the scene."""
 
@@ -149,8 +138,6 @@ def scene_fmu(generic: Path, source: Path, content: Content, out: Path, variant:
         experiment.set("stepSize", repr(output_step(content.duration_s, content.step_s)))
     if shown is not None:
         parts |= shown(parts, description, variant.version)
-    if CORE_OPTIONS in parts and not has_friction(description):
-        parts[CORE_OPTIONS] = without_friction(parts[CORE_OPTIONS])
     if not variant.enumerations:
         description = without_enumerations(description)
     xml = _describe(parts, description, variant)

@@ -1,4 +1,4 @@
-"""The core's list of fields (vehicle.h), compared with the variables of a description before the FMU is built."""
+"""The core's lists of fields (vehicle.h, sensors.h), compared with a description's variables before FMUs are built."""
 
 from __future__ import annotations
 
@@ -8,12 +8,12 @@ from pathlib import Path
 from .description import Description
 
 LIST = re.compile(r"^#define LACONIC_(\w+)_FIELDS?\(X, of\) *\\\n((?:.*\\\n)*.*)", re.MULTILINE)
-ROW = re.compile(r"\bX\(of, *\d+, *(\w+), *\w+, *(\w+),")
+ROW = re.compile(r"\bX\(of, *\d+, *(\w+), *\w+,[\s\\]*(\w+),")
 NO_VARIABLES = ("MOTOR",)  # a scene's motor at its shaft, which laconic_motor_fit() turns into gain and damping
 
 
 def rows_in(header: str) -> list[tuple[str, str]]:
-    """Identifier and variable of each row of the lists; `header` is the text of vehicle.h."""
+    """Identifier and variable of each row of the lists; `header` is the text of such a header."""
     lists = [rows for name, rows in LIST.findall(header) if name not in NO_VARIABLES]
     return [row for rows in lists for row in ROW.findall(rows)]
 

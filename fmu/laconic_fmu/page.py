@@ -16,7 +16,7 @@ SUPPORTS = ("support_x_m", "support_y_m")
 WHEEL_COLUMNS = ("wheel_kind", "wheel_x_m", "wheel_y_m", "axle_rad", "roller_rad", "wheel_locked")
 OWN_COLUMNS = ("wheel_undriven", "own_radius_m", "own_inertia_kgm2", "own_motor_gain_Nm_per_V",
                "own_motor_damping_Nms", "motor_circuit", "own_friction_coefficient", "own_roller_drag",
-               "own_axle_friction_Nm", "start_wheel_speed_rad_per_s")
+               "own_axle_friction_Nm", "start_wheel_speed_rad_per_s", "encoder_counts_per_turn", "encoder_gear_ratio")
 """Shown only where a wheel has a value of its own."""
 COMMON = {"own_radius_m": "wheel_radius_m", "own_inertia_kgm2": "wheel_inertia_kgm2",
           "own_motor_gain_Nm_per_V": "motor_gain_Nm_per_V", "own_motor_damping_Nms": "motor_damping_Nms",

@@ -4,9 +4,11 @@ from __future__ import annotations
 
 import re
 from collections.abc import Mapping
+from itertools import accumulate
 
 from .description import Description, Variable, start_values, token_in
-from .friction import STATE_RATE, for_vehicle
+from .for_vehicle import for_vehicle
+from .friction import STATE_RATE
 
 TYPES = {"Float64": "FMU_REAL", "Int32": "FMU_INT32", "UInt64": "FMU_UINT64", "Enumeration": "FMU_ENUMERATION",
          "Boolean": "FMU_BOOLEAN", "Binary": "FMU_BINARY", "Clock": "FMU_CLOCK"}
@@ -32,10 +34,10 @@ def _range(description: Description, variable: Variable) -> str:
     return f"{variable.attributes.get('min', least)}, {variable.attributes.get('max', most)}"
 
 
-def _row(description: Description, variable: Variable, states: Mapping[str, str]) -> str:
+def _row(description: Description, variable: Variable, name_at: int, states: Mapping[str, str]) -> str:
     symbol = re.sub(r"\W+", "_", variable.name).strip("_")
     size = 1 if variable.size is None else 0 if isinstance(variable.size, str) else variable.size
-    return (f'    ROW({symbol}, "{variable.name}", {size}, {TYPES[variable.tag]}, {_access(variable, states)}, '
+    return (f"    ROW({symbol}, {name_at}, {size}, {TYPES[variable.tag]}, {_access(variable, states)}, "
             f"{variable.attributes.get('intermediateUpdate', 'false')}, {_range(description, variable)}),")
 
 
@@ -51,6 +53,7 @@ def tables(description: Description, text_3: str, text_2: str) -> str:
     """The C file that fmu/variables.c and fmu/start_file.c link with."""
     starts = start_values(for_vehicle(description))
     states = {v.attributes["derivative"]: v.name for v in description.variables if "derivative" in v.attributes}
+    name_at = list(accumulate((len(v.name) + 1 for v in description.variables), initial=0))
     lines = [
         "/* Made from the model description when the project is built. */",
         "#include <float.h>",
@@ -59,14 +62,16 @@ def tables(description: Description, text_3: str, text_2: str) -> str:
         '#include "variable_locations.h"',
         "",
         "#define ROW(symbol, name, size, type, access, intermediate, least, most) \\",
-        "    {name, FMU_OFFSET_##symbol, (uint16_t)FMU_STRIDE_##symbol, size, type, access, intermediate, least, \\",
+        "    {FMU_OFFSET_##symbol, name, (uint16_t)FMU_STRIDE_##symbol, size, type, access, intermediate, least, \\",
         "     most, FMU_GROUP_OF_##symbol, (uint32_t)FMU_TANGENT_##symbol}",
         "",
         *_fits(description),
         "",
         "const fmu_variable fmu_variables[] = {",
-        *(_row(description, variable, states) for variable in description.variables),
+        *(_row(description, v, at, states) for v, at in zip(description.variables, name_at, strict=False)),
         "};",
+        "const char fmu_variable_names[] =",
+        *(f'    "{variable.name}\\0"' for variable in description.variables), "    ;",
         f"const uint32_t fmu_variable_count = {len(description.variables)}U;",
         "",
         "const fmu_start_value fmu_built_in_starts[] = {",

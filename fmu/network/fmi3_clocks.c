@@ -98,12 +98,12 @@ static bool check_binary(const fmu_instance *instance, uint32_t reference, size_
     const fmu_variable *variable;
     if (!find(instance, FMU_BINARY, reference, &variable)) return false;
     if (variable->access != FMU_INPUT) {
-        fmu_refuse(instance, "%s cannot be set: it is computed by the model", variable->name);
+        fmu_refuse(instance, "%s cannot be set: it is computed by the model", fmu_name_of(variable));
         return false;
     }
     if (size <= LS_BUS_BUFFER_BYTES && (size == 0 || value != NULL)) return true;
     fmu_refuse(instance, "%s: %zu bytes given, at most %u are possible; take shorter communication steps",
-               variable->name, size, LS_BUS_BUFFER_BYTES);
+               fmu_name_of(variable), size, LS_BUS_BUFFER_BYTES);
     return false;
 }
 
@@ -131,7 +131,7 @@ static bool countdown(fmu_instance *self, uint32_t reference, double *seconds) {
     const fmu_variable *variable;
     if (!find(self, FMU_CLOCK, reference, &variable)) return false;
     if (is_rx_clock(self, variable)) {
-        fmu_refuse(self, "%s is triggered: it has no interval", variable->name);
+        fmu_refuse(self, "%s is triggered: it has no interval", fmu_name_of(variable));
         return false;
     }
     if (fmu_apply_parameters(self) != FMU_OK) return false;

@@ -5,6 +5,7 @@
 #include "grip_warning.h"
 #include "idle_motors.h"
 #include "model_interface.h"
+#include "sensors_part.h"
 
 /* A larger quotient is no number of steps: laconic_steps_in refuses it. */
 #define MOST_STEPS 9e15
@@ -62,14 +63,25 @@ fmu_status fmu_model_start(fmu_instance *instance) {
     self->continuous = instance->kind == FMU_MODEL_EXCHANGE;
     laconic_status status = start_plant(self, &why);
     if (status == LACONIC_OK) status = fmu_friction_prepare(&self->vehicle, &self->contact, &self->rolling, &why);
+    if (status == LACONIC_OK) fmu_sensors_find(self);
+    if (status == LACONIC_OK) status = fmu_sensors_start(self, &why);
     if (status != LACONIC_OK) return refuse_with(instance, &why, "this vehicle cannot start");
-    if (self->continuous && fmu_friction_refuses(instance, &self->vehicle)) return FMU_ERROR;
+    if (self->continuous && (fmu_friction_refuses(instance, &self->vehicle) || fmu_sensors_refuse(instance)))
+        return FMU_ERROR;
     self->start_needed = self->change_needed = false;
     fmu_idle_motors_find(self);
     fmu_model_input_changed(instance);
     self->stale = FMU_GROUPS_ALL & ~FMU_GROUP_STATE;
     if (self->continuous) fmu_model_refresh(instance, FMU_GROUPS_OF_CONTINUOUS_STATES(self));
     return FMU_OK;
+}
+
+/* Ground that gets friction during the run is watched from now on; sensors that have watched go on. */
+static void watch_change(fmu_model *self) {
+    const bool before = self->watched;
+    laconic_refusal why;
+    fmu_sensors_find(self);
+    if (!before) (void)fmu_sensors_start(self, &why); /* cannot be refused: without sensors all settings are 0 */
 }
 
 fmu_status fmu_model_change(fmu_instance *instance) {
@@ -90,6 +102,7 @@ fmu_status fmu_model_change(fmu_instance *instance) {
     self->contact = contact;
     self->rolling = rolling;
     self->change_needed = false;
+    watch_change(self);
     fmu_idle_motors_find(self);
     self->stale = FMU_GROUPS_ALL & ~FMU_GROUP_STATE;
     if (self->continuous) fmu_model_refresh(instance, FMU_GROUPS_OF_CONTINUOUS_STATES(self));
@@ -138,6 +151,12 @@ static void refresh_rates(fmu_instance *instance) {
         laconic_derivative(&self->rates, &self->plant.model, self->nu, self->heading_rad, &self->input);
 }
 
+static void refresh_acceleration(fmu_instance *instance) {
+    fmu_model *self = &instance->model;
+    if (self->continuous && self->plant.friction.acts) fmu_model_refresh(instance, FMU_GROUP_RATES);
+    fmu_sensors_accelerate(self);
+}
+
 void fmu_model_refresh(fmu_instance *instance, uint32_t groups) {
     fmu_model *self = &instance->model;
     const laconic_model *m = &self->plant.model;
@@ -162,8 +181,10 @@ void fmu_model_refresh(fmu_instance *instance, uint32_t groups) {
         fmu_friction_refresh(self, groups);
     else
         refresh_ideal(self, groups);
+    if (groups & FMU_GROUP_SENSORS) fmu_sensors_refresh(self);
     self->stale &= ~groups;
     if (groups & FMU_GROUP_RATES) refresh_rates(instance);
+    if (groups & FMU_GROUP_ACCELERATION) refresh_acceleration(instance);
 }
 
 /* ------------------------------------------------------------------------------------ steps -- */
@@ -229,12 +250,18 @@ static laconic_status run_sloped(fmu_instance *instance, uint64_t steps, laconic
             laconic_plant_reactions(&self->ground, &self->plant, &self->contact, &at[0]);
             fmu_grip_check(instance, &self->ground, start_s + (double)n * h);
         }
-        const laconic_status status = laconic_plant_run_sampled(&self->plant, at, why);
+        const laconic_status status = self->watched ? laconic_sensors_run_sampled(&self->sensors, &self->plant, at, why)
+                                                    : laconic_plant_run_sampled(&self->plant, at, why);
         if (status != LACONIC_OK) return status;
     }
     shift_input(&self->input, self, (double)steps * h);
     self->sloped = false; /* slopes hold for one communication step */
     return LACONIC_OK;
+}
+
+static laconic_status step_held(fmu_model *self, uint64_t steps, laconic_refusal *why) {
+    if (self->watched) return laconic_sensors_run(&self->sensors, &self->plant, &self->input, steps, why);
+    return laconic_plant_run(&self->plant, &self->input, steps, why);
 }
 
 /* Inputs are held. Grip is checked at the start of each step, where the reactions to a new input are largest. */
@@ -245,18 +272,22 @@ static laconic_status run_held(fmu_instance *instance, uint64_t steps, laconic_r
     for (n = 0; n < steps && fmu_grip_is_watched(instance); n++) {
         fmu_model_refresh(instance, FMU_GROUP_GROUND);
         fmu_grip_check(instance, &self->ground, start_s + (double)n * h);
-        const laconic_status status = laconic_plant_run(&self->plant, &self->input, 1, why);
+        const laconic_status status = step_held(self, 1, why);
         if (status != LACONIC_OK) return status;
         self->stale = FMU_GROUPS_ALL & ~FMU_GROUP_STATE;
     }
-    return laconic_plant_run(&self->plant, &self->input, steps - n, why);
+    return step_held(self, steps - n, why);
 }
 
+/* Where a sensor leaves its range, its step has been taken; it is taken back. */
 static fmu_status run_several_steps(fmu_instance *instance, uint64_t steps, uint64_t *taken) {
     fmu_model *self = &instance->model;
     laconic_refusal why;
     const uint64_t before = self->plant.steps;
+    fmu_model_motion motion;
+    if (self->watched) fmu_model_save_motion(self, &motion);
     const laconic_status status = self->sloped ? run_sloped(instance, steps, &why) : run_held(instance, steps, &why);
+    if (self->watched && status != LACONIC_OK) fmu_model_restore_motion(self, &motion);
     *taken = self->plant.steps - before;
     self->stale = FMU_GROUPS_ALL & ~FMU_GROUP_STATE;
     return status == LACONIC_OK ? FMU_OK : discard_with(instance, &why);
@@ -264,7 +295,7 @@ static fmu_status run_several_steps(fmu_instance *instance, uint64_t steps, uint
 
 /* One step with held inputs: what most importers need at every communication step. */
 static bool run_one(fmu_model *self) {
-    if (self->plant.friction.acts) return false;
+    if (self->watched) return false;
     if (laconic_step(&self->plant.model, &self->plant.integrator, &self->plant.state, &self->input) != LACONIC_OK)
         return false;
     self->plant.steps++;
@@ -282,6 +313,7 @@ fmu_status fmu_model_run(fmu_instance *instance, uint64_t steps, uint64_t *taken
 void fmu_model_save_motion(const fmu_model *model, fmu_model_motion *motion) {
     motion->state = model->plant.state;
     if (model->plant.friction.acts) motion->slip = model->plant.slip;
+    if (model->watched) motion->sensors = model->sensors;
     motion->steps = model->plant.steps;
     motion->input = model->input;
 }
@@ -289,6 +321,7 @@ void fmu_model_save_motion(const fmu_model *model, fmu_model_motion *motion) {
 void fmu_model_restore_motion(fmu_model *model, const fmu_model_motion *motion) {
     model->plant.state = motion->state;
     if (model->plant.friction.acts) model->plant.slip = motion->slip;
+    if (model->watched) model->sensors = motion->sensors;
     model->plant.steps = motion->steps;
     model->input = motion->input;
     model->stale = FMU_GROUPS_ALL & ~FMU_GROUP_STATE;

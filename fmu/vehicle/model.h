@@ -28,8 +28,11 @@
 #define FMU_GROUP_RATES 512U
 #define FMU_GROUP_POSE 1024U     /* the rest of the pose: origin, wrapped heading */
 #define FMU_GROUP_FRICTION 2048U /* what only vehicles with friction or limits of a drive show */
-#define FMU_GROUPS_ALL 4091U
-#define FMU_GROUPS_OF_INPUT (FMU_GROUP_TORQUES | FMU_GROUP_GROUND | FMU_GROUP_RATES | FMU_GROUP_FRICTION)
+#define FMU_GROUP_ACCELERATION 4096U
+#define FMU_GROUP_SENSORS 8192U /* what IMU and encoders show: samples of internal steps, which no input changes */
+#define FMU_GROUPS_ALL 16379U
+#define FMU_GROUPS_OF_INPUT \
+    (FMU_GROUP_TORQUES | FMU_GROUP_GROUND | FMU_GROUP_RATES | FMU_GROUP_FRICTION | FMU_GROUP_ACCELERATION)
 #define FMU_GROUPS_OF_CONTINUOUS_STATES(model) \
     (FMU_GROUP_MOTION | FMU_GROUP_ANGLES | ((model)->wheels_have_states ? FMU_GROUP_SPEEDS : 0U))
 
@@ -43,7 +46,8 @@
     double wheel_torque_Nm[LACONIC_MAX_WHEELS]; \
     double energy_J; \
     laconic_reactions ground; \
-    laconic_rates rates
+    laconic_rates rates; \
+    laconic_sensor_outputs sensed
 
 /* laconic_friction_outputs with the same length of arrays in every build. */
 typedef struct fmu_friction_outputs {
@@ -61,11 +65,14 @@ typedef struct fmu_model {
     bool stand_in;           /* the step is not known yet: the integrator is prepared for exact-flow */
     bool wheels_have_states; /* by the start values of the FMU */
     bool idle_wheels;        /* some wheel has no motor       */
+    bool watched;            /* `sensors` must see each internal step; else it is not set */
     double time_s;
     uint32_t stale;
 
     laconic_vehicle vehicle;
     laconic_start start;
+    bool has_imu;
+    laconic_sensor_settings sensor_settings;
     int32_t method;
     double step_s;
     laconic_input input;
@@ -73,6 +80,7 @@ typedef struct fmu_model {
     laconic_input slope; /* du/dt during the next step  */
 
     laconic_plant plant;
+    laconic_sensors sensors;
     laconic_contact contact;
     laconic_model rolling; /* of a drive with limits on ideal ground: the vehicle without its motors */
     laconic_grip_event pending_slip, pending_lift; /* valid where fmu_instance.warnings_pending has their bit */
@@ -86,7 +94,8 @@ typedef struct fmu_model {
 /* What steps change. */
 typedef struct fmu_model_motion {
     laconic_state state;
-    laconic_slip slip; /* of a vehicle with friction */
+    laconic_slip slip;       /* of a vehicle with friction */
+    laconic_sensors sensors; /* where they watch     */
     uint64_t steps;
     laconic_input input;
 } fmu_model_motion;

@@ -2,6 +2,7 @@
  * gives the same bits. */
 #include "friction_part.h"
 #include "idle_motors.h"
+#include "sensors_part.h"
 
 /* One field of a struct: an array of numbers, or one by its kind. */
 #define SERIALIZE_ARRAY(of, number, IDENTIFIER, member, name, KIND, RULE, NEED) \
@@ -39,6 +40,15 @@ static void serialize_vehicle(fmu_stream *s, laconic_vehicle *v) {
 static void serialize_start(fmu_stream *s, laconic_start *start) {
     LACONIC_START_ARRAY_FIELDS(SERIALIZE_ARRAY, *start)
     LACONIC_START_FIELDS(SERIALIZE, *start)
+}
+
+static void serialize_sensor_settings(fmu_stream *s, laconic_sensor_settings *settings) {
+    LACONIC_IMU_FIELDS(SERIALIZE, settings->imu)
+    LACONIC_IMU_ARRAY_FIELDS(SERIALIZE_ARRAY, settings->imu)
+    fmu_stream_i32(s, &settings->encoder_wrap, INT32_MIN, INT32_MAX);
+    for (int32_t i = 0; i < LACONIC_MAX_WHEELS; i++) {
+        LACONIC_WHEEL_ENCODER_FIELDS(SERIALIZE, settings->encoder[i])
+    }
 }
 
 static void serialize_input(fmu_stream *s, laconic_input *u) {
@@ -111,6 +121,23 @@ static void serialize_slip(fmu_stream *s, laconic_slip *slip) {
     serialize_sums(s, &slip->numerical_loss_J, 1);
 }
 
+/* Its settings are those that it started with. */
+static void serialize_sensors(fmu_stream *s, laconic_sensors *sensors, int32_t wheel_count) {
+    serialize_sensor_settings(s, &sensors->settings);
+    for (int32_t i = 0; i < LACONIC_MAX_WHEELS; i++) {
+        fmu_stream_i64(s, &sensors->encoder[i].count);
+        fmu_stream_reals(s, &sensors->encoder[i].rest, 1);
+    }
+    fmu_stream_reals(s, sensors->acceleration_m_per_s2, 2);
+    fmu_stream_u64(s, &sensors->newest);
+    for (size_t n = 0; n < sizeof sensors->sample / sizeof sensors->sample[0]; n++) {
+        fmu_stream_reals(s, sensors->sample[n].specific_force_m_per_s2, 2);
+        fmu_stream_reals(s, &sensors->sample[n].yaw_rate_rad_per_s, 1);
+    }
+    if (s->from != NULL && laconic_sensor_settings_check(&sensors->settings, wheel_count, NULL) != LACONIC_OK)
+        s->failed = true;
+}
+
 /* Prepares model, integrator and contact from the vehicle, the method and the step that were in use. */
 static bool prepare_again(fmu_model *self, int32_t number, double step_s) {
     laconic_plant *plant = &self->plant;
@@ -149,9 +176,12 @@ bool fmu_model_serialize(fmu_stream *stream, fmu_model *model) {
     fmu_stream_bool(stream, &model->continuous);
     fmu_stream_bool(stream, &model->stand_in);
     fmu_stream_bool(stream, &model->wheels_have_states);
+    fmu_stream_bool(stream, &model->watched);
     fmu_stream_reals(stream, &model->time_s, 1);
     serialize_vehicle(stream, &model->vehicle);
     serialize_start(stream, &model->start);
+    fmu_stream_bool(stream, &model->has_imu);
+    serialize_sensor_settings(stream, &model->sensor_settings);
     fmu_stream_i32(stream, &model->method, INT32_MIN, INT32_MAX);
     fmu_stream_reals(stream, &model->step_s, 1);
     serialize_input(stream, &model->input);
@@ -160,5 +190,6 @@ bool fmu_model_serialize(fmu_stream *stream, fmu_model *model) {
     serialize_stale(stream, model);
     serialize_continuous(stream, model);
     serialize_plant(stream, model);
+    if (model->watched) serialize_sensors(stream, &model->sensors, model->vehicle.wheel_count);
     return !stream->failed;
 }

@@ -22,6 +22,11 @@
 #define IN_RUN(member) FMU_PLAIN(member)
 #define IN_INPUT_ARRAY(member) FMU_MOVING(input.member, 0)
 #define IN_INPUT(member) FMU_MOVING(input.member, 0)
+#define IN_IMU(member) FMU_PLAIN(sensor_settings.imu.member)
+#define IN_IMU_ARRAY(member) FMU_AT(sensor_settings.imu.member), sizeof(double), 0, FMU_NO_TANGENT
+#define IN_ENCODER(member) FMU_PLAIN(sensor_settings.encoder_##member)
+#define IN_WHEEL_ENCODER(member) \
+    FMU_AT(sensor_settings.encoder[0].member), sizeof(laconic_encoder_settings), 0, FMU_NO_TANGENT
 #define FIELD(of, number, IDENTIFIER, member, name, KIND, RULE, NEED) FMU_LOCATION(name, IN_##of(member))
 #define OUTPUT(name, member, group) FMU_LOCATION(name, FMU_MOVING(member, group))
 #define FMU_FRICTION(member, group) FMU_AT(member), sizeof(double), group, FMU_NO_TANGENT
@@ -71,6 +76,13 @@ enum fmu_locations {
     OF_FRICTION(motor_loss_J)
     OF_FRICTION(supply_loss_J)
     OF_FRICTION(numerical_loss_J)
+
+    OUTPUT(acceleration_body_m_per_s2, sensed.acceleration_body_m_per_s2, FMU_GROUP_ACCELERATION)
+    OUTPUT(imu_acceleration_m_per_s2, sensed.imu_acceleration_m_per_s2, FMU_GROUP_SENSORS)
+    OUTPUT(imu_yaw_rate_rad_per_s, sensed.imu_yaw_rate_rad_per_s, FMU_GROUP_SENSORS)
+    OUTPUT(encoder_count, sensed.encoder_count, FMU_GROUP_SENSORS)
+    FMU_LOCATION(has_imu, FMU_PLAIN(has_imu))
+    LACONIC_SENSOR_FIELDS(FIELD)
 };
 /* clang-format on */
 

@@ -9,6 +9,7 @@ from pathlib import Path
 from typing import Any
 
 from laconic.core import load
+from laconic.core.sensors import settings_of, values_of
 from laconic.errors import BadInput
 from laconic.outputs import whole_file
 from laconic.paths import SOURCE_DIR, as_path, built
@@ -26,7 +27,7 @@ def generic_fmu(version: int) -> Path:
 
 
 def start_values(scene: Scene) -> dict[str, list[float]]:
-    """The scene's vehicle, start, method and step by the names of the FMI variables."""
+    """The scene's vehicle, start, sensors, method and step by the names of the FMI variables."""
     core = load("double")
     roots = {"vehicle": scene.c_vehicle(core), "initial": scene.c_start(core)}
     values: dict[str, list[float]] = {}
@@ -35,7 +36,19 @@ def start_values(scene: Scene) -> dict[str, list[float]]:
         if root in roots and field.table != "vehicle.motor":
             of_wheels = field.items == core.max_wheels
             values[field.name] = field.values(roots[root])[:scene.wheel_count if of_wheels else None]
+    values |= sensor_values(scene)
     return values | {"method": [METHODS.index(scene.run.method)], "step_s": [scene.run.step_s]}
+
+
+def sensor_values(scene: Scene) -> dict[str, list[float]]:
+    """The settings of the scene's sensors by the names of the FMI variables."""
+    core = load("double")
+    settings = settings_of(core, scene.sensors.settings(scene.delay_steps(core)), scene.wheel_count)
+    values: dict[str, list[float]] = {"has_imu": [scene.sensors.imu is not None]}
+    for field in core.sensor_fields:
+        of_wheels = field.items == core.max_wheels
+        values[field.name] = values_of(field, settings)[:scene.wheel_count if of_wheels else None]
+    return values
 
 
 def content_of(scene: Scene, name: str, text: str, values: dict[str, Any]) -> Content:
@@ -52,7 +65,7 @@ def make_fmu(scene: Scene, out: str | Path, *, version: int, scalar: bool = Fals
     path = as_path("out", out)
     if scene.wheel_count == 0 and version == 3 and not scalar:
         raise BadInput(f"{scene.path}: vehicle.wheel: a vehicle without wheels has no arrays; use --scalar or --fmi 2")
-    scene.plant(load("double"))  # refuses a scene that cannot start, naming the field
+    scene.sensors_of(scene.plant(load("double")))  # refuses a scene that cannot start, naming the field
     content = content_of(scene, scene.name, f"Dynamics of a wheeled robot; its numbers: {scene.source}",
                          start_values(scene))
     with whole_file(path) as fresh:

@@ -6,6 +6,7 @@ import pytest
 
 from laconic.core import Field, load
 from laconic.core.fields import COUNTED
+from laconic.core.sensors import values_of
 from laconic.fmu import DESCRIPTION, start_values
 from laconic.scene import read_scene
 from laconic.scene.reader import LENGTHS, PER_WHEEL
@@ -31,6 +32,16 @@ def test_every_member_of_a_struct_has_its_row_in_the_list(table: str) -> None:
     assert {field.member for field in core.fields_of(table)} == members - inner, "vehicle.h: member without a row"
 
 
+def test_every_setting_of_a_sensor_has_its_row_and_its_key() -> None:
+    core = load()
+    structs = {"sensors.imu": "laconic_imu_settings", "sensors.encoder": "laconic_encoder_settings"}
+    for path, struct in structs.items():
+        members = {name for name, _ in core.ffi.typeof(struct).fields}
+        assert {field.key for field in core.fields_of(path)} - {"wrap"} == members, "sensors.h: member without a row"
+    settings = core.ffi.new("laconic_sensor_settings *")
+    assert all(len(values_of(field, settings)) == max(field.items, 1) for field in core.sensor_fields)
+
+
 def test_a_list_has_room_for_as_many_items_as_its_struct() -> None:
     vehicle, start = load().ffi.new("laconic_vehicle *"), load().ffi.new("laconic_start *")
     for field in parameters():
@@ -50,3 +61,4 @@ def test_every_parameter_is_a_variable_of_the_fmus_and_has_its_start_value_there
         assert field.name in variables, f"modelDescription.xml: there is no variable {field.name}"
         assert field.name in given
         assert (variables[field.name].size is None) == (field.items == 0), field.name
+    assert not [field.name for field in load().sensor_fields if field.name not in variables or field.name not in given]

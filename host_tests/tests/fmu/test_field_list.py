@@ -14,6 +14,7 @@ from laconic.paths import SOURCE_DIR
 from laconic_fmu.field_list import rows_in
 
 LIST = SOURCE_DIR / "core_c" / "include" / "laconic" / "vehicle.h"
+OF_SENSORS = LIST.with_name("sensors.h")
 ROW = "    X(of, 10, FRICTION_COEFFICIENT, friction_coefficient, friction_coefficient, REAL, NOT_NEGATIVE, NEVER)\n"
 MADE_UP = "    X(of, 43, TYRE_WIDTH, tyre_width_m, tyre_width_m, REAL, NOT_NEGATIVE, NEVER) \\\n"
 
@@ -26,6 +27,8 @@ def tables(header: Path, out: Path) -> subprocess.CompletedProcess[str]:
 def test_the_rows_are_the_fields_of_the_core_but_those_of_the_motor_at_its_shaft() -> None:
     fields = {(field.identifier, field.name) for field in load().fields if field.table != "vehicle.motor"}
     assert set(rows_in(LIST.read_text(encoding="utf-8"))) == fields
+    of_sensors = {(field.identifier, field.name) for field in load().sensor_fields}
+    assert set(rows_in(OF_SENSORS.read_text(encoding="utf-8"))) == of_sensors
 
 
 def test_a_field_without_its_variable_stops_the_build_with_one_line(tmp_path: Path) -> None:

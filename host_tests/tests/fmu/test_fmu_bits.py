@@ -69,3 +69,5 @@ def test_ten_thousand_steps_give_the_same_bits_as_the_core(scene_name: str, vari
             plant.run(held, EVERY)
             got = [value for name in NAMES for value in importer.get(name)]
             assert got == outputs_of(plant, held), f"after {(k + 1) * EVERY} steps"
+            if not plant.has_friction:
+                assert importer.get("acceleration_body_m_per_s2") == plant.body_acceleration(held).tolist()

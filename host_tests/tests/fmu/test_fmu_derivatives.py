@@ -17,7 +17,7 @@ INPUTS = ("voltage_V", "axle_torque_Nm", "body_force_N", "body_moment_Nm", "worl
 RATES = ("der(nu_rad_per_s)", "der(x_m)", "der(y_m)", "der(heading_rad)", "der(wheel_angle_rad)")
 OUTPUTS = (*STATES, "heading_wrapped_rad", "origin_x_m", "origin_y_m", "velocity_body_m_per_s", "yaw_rate_rad_per_s",
            "wheel_speed_rad_per_s", "wheel_torque_Nm", "wheel_reaction_N", "wheel_lateral_N", "no_slip_margin_N",
-           "energy_J")
+           "energy_J", "acceleration_body_m_per_s2")
 
 
 @pytest.fixture(params=["robotino2", "turtlebot3_burger", "kuka_youbot", "omni_on_a_slope"])

@@ -22,7 +22,7 @@ from laconic.fmu import DESCRIPTION, make_fmu
 from laconic.scene import read_scene
 from laconic_fmu import fmi2, fmi3
 from laconic_fmu.description import read, token_in, token_of
-from laconic_fmu.friction import for_vehicle
+from laconic_fmu.for_vehicle import for_vehicle
 
 DESIGN_NAMES = """
     mass_kg yaw_inertia_kgm2 com_x_m com_y_m com_z_m friction_coefficient wheel_radius_m wheel_inertia_kgm2
@@ -50,7 +50,7 @@ def test_every_name_of_the_contract_is_there() -> None:
     assert set(DESIGN_NAMES) <= {variable.name for variable in read(DESCRIPTION).variables}
 
 
-def test_the_shipped_descriptions_are_the_source_without_friction() -> None:
+def test_the_shipped_descriptions_are_the_source_without_friction_and_sensors() -> None:
     ideal = for_vehicle(read(DESCRIPTION))
     with zipfile.ZipFile(generic(3)) as archive:
         assert archive.read("modelDescription.xml").decode("utf-8") == fmi3.describe(ideal)
