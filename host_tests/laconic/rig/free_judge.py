@@ -8,13 +8,13 @@ from __future__ import annotations
 
 import numpy as np
 
-from laconic.core.plant import Plant
 from laconic.errors import BadInput
 from laconic.rig.client import NodeClient
 from laconic.rig.free_run import CYCLE_S, DEFAULT_FRAMES, FreeRun, run_free
 from laconic.rig.judge import link_verdict
 from laconic.rig.latency import period_figures
 from laconic.rig.scaled import expected_raw, rounding_limit
+from laconic.rig.sensed import WHOLE_COUNT, part_of, period_of, plant_of, twin_of
 from laconic.rig.trial import Moved, Trial, driven
 from laconic.rig.verdict import Judgement, Verdict
 from laconic.rig.wire import Frame
@@ -25,21 +25,21 @@ TwinValues = dict[tuple[int, str, int], dict[str, float]]  # (step, frame, group
 
 def twin_values(scene: Scene, run: FreeRun, delay: int, per_period: int) -> TwinValues:
     """The values, for every answer, of a twin on which commands act `delay` periods later."""
-    plant: Plant = scene.plant(scene.core())
+    twin = twin_of(scene, scene.plant(scene.core()), scene.rig.frames)
     wanted: dict[int, list[tuple[str, int, Frame]]] = {}
     for step, frame, data in run.answers:
-        wanted.setdefault(step, []).append((frame.name, frame.unpack(data).get("group", 0), frame))
+        wanted.setdefault(step, []).append((frame.name, part_of(frame, frame.unpack(data)), frame))
     acting = {}
     for seen, row in run.commands:
         acting[seen + delay] = row
-    last, found, held = max(wanted, default=0), {}, plant.core.input()
+    last, found, held = max(wanted, default=0), {}, plant_of(twin).core.input()
     events = sorted({0, *(step for step in acting if step < last), *wanted})
     for step, following in zip(events, [*events[1:], last], strict=True):
         for name, group, frame in wanted.get(step, ()):
-            found[step, name, group] = expected_raw(plant, frame, group)
+            found[step, name, group] = expected_raw(twin, frame, group)
         if step in acting:
-            held = plant.core.input(acting[step])
-        plant.run(held, (following - step) * per_period)
+            held = plant_of(twin).core.input(acting[step])
+        twin.run(held, (following - step) * per_period)
     return found
 
 
@@ -67,7 +67,8 @@ class Free(Trial):
         run = self.run
         if run.answers:
             twins = twins_of(self.scene, run, self.latency_s)
-            judgement.add(*envelope_verdicts(run, twins, self.tolerances, self.scene.core().dtype))
+            wrap = (self.scene.sensors.encoder or {}).get("wrap", WHOLE_COUNT)
+            judgement.add(*envelope_verdicts(run, twins, self.tolerances, self.scene.core().dtype, wrap))
         judgement.add(link_verdict(self.node), steps_verdict(run), clock_verdict(run), run.silence.verdict(),
                       run.punctuality.verdict())
         judgement.figures |= {"steps": run.steps, "seconds": run.elapsed_s, "late_periods": run.late_periods,
@@ -90,18 +91,17 @@ def twins_of(scene: Scene, run: FreeRun, latency_s: float) -> list[TwinValues]:
 
 
 def envelope_verdicts(run: FreeRun, twins: list[TwinValues], tolerances: dict[str, float],
-                      dtype: np.dtype) -> list[Verdict]:
+                      dtype: np.dtype, wrap: int = WHOLE_COUNT) -> list[Verdict]:
     """One per signal: between the twins, with a slack of the rounding limit and of the largest spread of the twins so
     far: each command has its own delay, and the error that it causes in the pose remains."""
     spread: dict[str, float] = {}
     worst: dict[str, tuple[float, float, int]] = {}
     for step, frame, data in run.answers:
         raw = frame.unpack(data)
-        group = raw.get("group", 0)
+        group = part_of(frame, raw)
         for name in twins[0].get((step, frame.name, group), ()):
             values = np.array([twin[step, frame.name, group][name] for twin in twins])
-            if name == "heading":  # of all equal angles, the one nearest to the answer
-                turn = 2 * np.pi / frame.fields[name].scale
+            if turn := period_of(frame, name, wrap):  # of all equal angles, the one nearest to the answer
                 values -= turn * np.round((values - raw[name]) / turn)
             scale, label = frame.fields[name].scale, f"{frame.name}.{name}"
             spread[label] = max(spread.get(label, 0.0), float(np.ptp(values)))

@@ -15,7 +15,7 @@ from laconic.rig.client import NodeClient
 from laconic.rig.errors import NodeRefused, NodeSilent
 from laconic.rig.lockstep import load_scene
 from laconic.rig.punctuality import Punctuality
-from laconic.rig.scaled import Held, Voltages, check_voltages_only, select_bits
+from laconic.rig.scaled import ANSWERS, Held, Voltages, check_voltages_only, select_bits
 from laconic.rig.silence import Silence
 from laconic.rig.wire import Frame, wire
 from laconic.scene import Scene
@@ -136,7 +136,7 @@ def take(run: FreeRun, node: NodeClient, frame: Frame, data: bytes) -> None:
         run.instants_s.append(node.link.clock.now_us() / 1e6)
         run.instant_steps.append(run.steps)
     values = frame.unpack(data)
-    if frame.name in ("NU", "POSE", "WHEEL_SPEED") and run.steps % run.keep == 0:
+    if frame.name in ANSWERS and frame.name != "STATE_FD" and run.steps % run.keep == 0:
         run.answers.append((run.steps, frame, bytes(data)))
     elif frame.name == "HEARTBEAT":
         take_heartbeat(run, values)

@@ -8,6 +8,7 @@ from laconic.rig.client import NodeClient
 from laconic.rig.latency import latency_figures
 from laconic.rig.lockstep import LockstepRun, run_lockstep, twin_states
 from laconic.rig.scaled import Comparison, ScaledRun, rounding_limit, run_scaled
+from laconic.rig.sensed import has_sensors
 from laconic.rig.trial import Moved, Trial, driven
 from laconic.rig.verdict import Judgement, Verdict, same_bits, within
 from laconic.scene import Scene
@@ -33,6 +34,10 @@ class SameBits(Trial):
         theirs = twin_states(self.scene, run)
         parts = {"nu": slice(0, 3), "pose": slice(3, 6), "wheel_speed": slice(6, 6 + count),
                  "wheel_angle": slice(6 + count, 6 + 2 * count)}
+        if has_sensors(self.scene):
+            end = 6 + 2 * count
+            parts |= {"acceleration_body": slice(end, end + 2), "imu": slice(end + 2, end + 5),
+                      "encoder_count": slice(end + 5, end + 5 + count)}
         for name, part in parts.items():
             if part.stop > part.start:
                 judgement.add(same_bits(name, run.states[:, part], theirs[:, part], run.ticks))

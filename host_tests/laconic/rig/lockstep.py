@@ -3,7 +3,7 @@
     with virtual_node(scene.run.real) as node:
         run = run_lockstep(node, scene, steps=10_000)
     run.states[k]    ν, x, y, heading, wheel speeds, wheel angles after the k-th exchange, in the core's scalar type,
-                     in the order of Plant.row()
+                     in the order of Plant.row(); then what the scene's sensors show
 """
 
 from __future__ import annotations
@@ -18,10 +18,12 @@ from typing import Any
 import numpy as np
 
 from laconic.core.plant import Plant
+from laconic.core.recording import Recorder
 from laconic.errors import BadInput
 from laconic.rig.client import NodeClient
 from laconic.rig.errors import NodeSilent
 from laconic.rig.parameters import Parameter
+from laconic.rig.sensed import RAW_OF_SENSORS, has_sensors, raw_row, sensor_parameters
 from laconic.rig.wire import wire
 from laconic.scene import Scene
 from laconic.scene.inputs import InputsOnGrid
@@ -52,7 +54,8 @@ class LockstepRun:
 
     @cached_property
     def states(self) -> np.ndarray:
-        """ν(3), x, y, heading, wheel speeds (N), wheel angles (N), one row an exchange."""
+        """ν(3), x, y, heading, wheel speeds (N), wheel angles (N), one row an exchange; of a scene with sensors then
+        acceleration_body_m_per_s2 (2), imu_acceleration_m_per_s2 (2), imu_yaw_rate_rad_per_s, encoder_count (N)."""
         return np.array([row for _, row in self.exchanges])
 
     @property
@@ -87,7 +90,7 @@ def load_scene(node: NodeClient, scene: Scene, more: Iterable[Parameter] = ()) -
         raise BadInput(f"{scene.path}: vehicle.wheel: {scene.wheel_count} of them, the node has room for "
                        f"{identity.max_wheels}; use a build with more")
     twin = scene.plant(scene.core())
-    node.load(twin, start_of(scene), more)
+    node.load(twin, start_of(scene), (*sensor_parameters(scene, twin), *more))
     return twin
 
 
@@ -99,7 +102,8 @@ class RawStream:
         self.inputs: InputsOnGrid = scene.inputs_on_grid()
         names = {signal.partition("[")[0] for signal in self.inputs.signals}
         self.groups = [bit for bit, fields in INPUT_GROUPS.items() if names & set(fields)]
-        self.row_length = 6 + 2 * scene.wheel_count
+        self.has_sensors = has_sensors(scene)
+        self.row_length = 6 + 2 * scene.wheel_count + self.has_sensors * (5 + scene.wheel_count)
         self.sampled = not self.inputs.is_held
         self.columns = self._columns(scene.wheel_count)
         self.fd = fd
@@ -121,7 +125,7 @@ class RawStream:
 
     def select(self) -> None:
         """Selects the numbers that go over the bus; the node sends nothing else."""
-        bits = dict.fromkeys([*self.groups, *OUTPUTS], 1)
+        bits = dict.fromkeys([*self.groups, *OUTPUTS, *(RAW_OF_SENSORS if self.has_sensors else ())], 1)
         self.node.select(**bits, take_sampled=int(self.sampled and bool(self.groups)), raw_fd=int(self.fd))
 
     def send_inputs(self, rows: np.ndarray) -> None:
@@ -214,8 +218,13 @@ def twin_states(scene: Scene, run: LockstepRun) -> np.ndarray:
     if run.steps > scene.steps():
         scene = scene.with_run(duration_s=run.steps * scene.run.step_s)
     plant, inputs, rows, done = run.twin, scene.inputs_on_grid(), [], 0
+    sensors = scene.sensors_of(plant) if has_sensors(scene) else None
+    recorder = Recorder(plant, ("x_m",), 0, 1, sensors=sensors) if sensors else None  # lets them see every step
     for tick in run.ticks:
-        advance_plant(plant, inputs, done, int(tick) - done)
-        rows.append(plant.row())
+        advance_plant(plant, inputs, done, int(tick) - done, recorder)
+        row = plant.row()
+        if sensors:
+            row = np.concatenate([row, raw_row(sensors, plant.core.input(inputs.held_at(int(tick) - 1)))])
+        rows.append(row)
         done = int(tick)
     return np.array(rows)

@@ -4,24 +4,37 @@ from __future__ import annotations
 
 import math
 import time
-from collections.abc import Callable, Iterable, Sequence
+from collections.abc import Callable, Iterable, Mapping, Sequence
 from dataclasses import dataclass, field
 from functools import cached_property
 
 import numpy as np
 
-from laconic.core.plant import Plant
 from laconic.errors import BadInput, nearest_of
 from laconic.rig.client import NodeClient
 from laconic.rig.errors import NodeSilent
 from laconic.rig.lockstep import load_scene
+from laconic.rig.sensed import (
+    SENSED_FRAMES,
+    Twin,
+    check_frames,
+    frames_of_sensors,
+    part_of,
+    period_of,
+    plant_of,
+    twin_of,
+    values_of_frame,
+    wrap_of,
+)
 from laconic.rig.wire import Frame, wire
 from laconic.scene import Scene
 from laconic.scene.inputs import InputsOnGrid
 
 DEFAULT_FRAMES = ("NU", "POSE", "WHEEL_SPEED")
 SELECT_BIT = {"NU": "send_nu", "POSE": "send_pose", "WHEEL_SPEED": "send_wheel_speed", "COUNTERS": "send_counters",
-              "STATE_FD": "send_state_fd"}
+              "STATE_FD": "send_state_fd", "WHEEL_ANGLE": "send_wheel_angle", "IMU": "send_imu",
+              "ENCODER": "send_encoder"}
+ANSWERS = ("NU", "POSE", "WHEEL_SPEED", "STATE_FD", *SENSED_FRAMES)
 ALWAYS_SENT = ("HEARTBEAT",)
 
 
@@ -36,6 +49,7 @@ def wanted_frames(scene: Scene) -> tuple[str, ...]:
         if name not in SELECT_BIT and name not in ALWAYS_SENT:
             known = ", ".join((*SELECT_BIT, *ALWAYS_SENT))
             raise BadInput(f"{scene.path}: rig.frames: there is no frame {name}; known are {known}")
+    check_frames(scene, scene.rig.frames)
     return scene.rig.frames or DEFAULT_FRAMES
 
 
@@ -50,7 +64,9 @@ def check_voltages_only(scene: Scene) -> None:
 def read_tolerances(given: Sequence[str], scene: Scene) -> dict[str, float]:
     """{"nu_1": 0.01} from ["nu_1=0.01"]; the name of the frame may stand before that of the signal."""
     signals = ["nu_1", "nu_2", "nu_3", "x", "y", "heading"]
-    signals += [f"wheel_speed_{wheel}" for wheel in range(1, scene.wheel_count + 1)]
+    signals += [f"{stem}_{wheel}" for stem in ("wheel_speed", "wheel_angle", "count", "index_count")
+                for wheel in range(1, scene.wheel_count + 1)]
+    signals += ["acceleration_x", "acceleration_y", "yaw_rate"]
     found = {}
     for text in given:
         name, equals, value = text.partition("=")
@@ -116,10 +132,14 @@ class Voltages:
         return row
 
 
-def expected_raw(plant: Plant, frame: Frame, group: int = 0) -> dict[str, float]:
+def expected_raw(twin: Twin, frame: Frame, group: int = 0) -> dict[str, float]:
     """The twin's values of a frame, in units of the raw values, before rounding."""
+    plant = plant_of(twin)
     pose = plant.pose
-    if frame.name == "NU":
+    values: Mapping[str, float]
+    if frame.name in SENSED_FRAMES:
+        values = values_of_frame(twin, frame, group)
+    elif frame.name == "NU":
         values = dict(zip(("nu_1", "nu_2", "nu_3"), plant.nu, strict=True))
     elif frame.name == "POSE":
         values = {"x": pose.x_m, "y": pose.y_m, "heading": pose.heading_wrapped_rad}
@@ -159,25 +179,26 @@ class Comparison:
         self.signals: dict[str, SignalRecord] = {}
         self.overranges = 0
 
-    def take(self, frame: Frame, data: bytes, plant: Plant) -> None:
+    def take(self, frame: Frame, data: bytes, twin: Twin) -> None:
         """One answer and the twin at the same step."""
-        raw = frame.unpack(data)
-        group = raw.get("group", 0)
+        raw, plant = frame.unpack(data), plant_of(twin)
+        group = part_of(frame, raw)
         self.overranges += raw.get("overrange", 0)
-        for name, value in expected_raw(plant, frame, group).items():
+        for name, value in expected_raw(twin, frame, group).items():
             field_ = frame.fields[name]
-            label = f"{frame.name}.{self._label(name, group)}"
+            label = f"{frame.name}.{self._label(frame, name, group)}"
             record = self.signals.setdefault(label, SignalRecord(field_.scale, plant.core.dtype))
             difference = raw[name] - value
-            if name == "heading":  # +π and −π are neighbours
-                turn = 2 * math.pi / field_.scale
+            if turn := period_of(frame, name, wrap_of(twin)):  # +π and −π are neighbours
                 difference -= turn * round(difference / turn)
             cut = min(max(value, -field_.largest), field_.largest)
             record.ticks.append(plant.steps)
             record.measured.append((raw[name] if cut != value else value + difference) * field_.scale)
             record.twin.append(cut * field_.scale)
 
-    def _label(self, name: str, group: int) -> str:
+    def _label(self, frame: Frame, name: str, group: int) -> str:
+        if frame.name == "ENCODER":
+            return f"{name}_{group + 1}"
         if not group:
             return name
         base, _, k = name.rpartition("_")
@@ -194,7 +215,7 @@ class ScaledRun:
     frames_out: int = 0
     frames_in: int = 0
     voltage_overranges: int = 0
-    twin: Plant = field(init=False)  # set when the scene is loaded; `comparison` steps it
+    twin: Twin = field(init=False)  # set when the scene is loaded; `comparison` steps it
 
     @property
     def steps(self) -> int:
@@ -204,9 +225,10 @@ class ScaledRun:
     @cached_property
     def comparison(self) -> Comparison:
         """All answers paired with the twin's values."""
-        comparison = Comparison(int(self.twin.c.vehicle.wheel_count))
+        plant = plant_of(self.twin)
+        comparison = Comparison(plant.wheel_count)
         for row, answer in self.exchanges:
-            self.twin.run(self.twin.core.input(row))
+            self.twin.run(plant.core.input(row))
             for frame, data in answer:
                 comparison.take(frame, data, self.twin)
         return comparison
@@ -215,7 +237,7 @@ class ScaledRun:
 def frames_per_answer(scene: Scene, frames: tuple[str, ...]) -> int:
     """How many frames follow a SYNC."""
     wheel_frames = math.ceil(scene.wheel_count / 3) if "WHEEL_SPEED" in frames else 0
-    return wheel_frames + sum(name in ("NU", "POSE", "STATE_FD") for name in frames)
+    return wheel_frames + sum(name in ("NU", "POSE", "STATE_FD") for name in frames) + frames_of_sensors(scene, frames)
 
 
 def run_scaled(node: NodeClient, scene: Scene, steps: int | None = None,
@@ -228,7 +250,7 @@ def run_scaled(node: NodeClient, scene: Scene, steps: int | None = None,
     if not awaited:
         raise BadInput(f"{scene.path}: rig.frames: the node never answers a step with {', '.join(frames)}; add NU")
     run = run or ScaledRun()
-    run.twin = load_scene(node, scene)
+    run.twin = twin_of(scene, load_scene(node, scene), frames)
     node.select(**select_bits(frames))
     node.start_lockstep()
     held, voltages, link = Held(scene.inputs_on_grid()), Voltages(node, scene), node.link
@@ -257,6 +279,6 @@ def await_answers(node: NodeClient, count: int) -> list[tuple[Frame, bytes]]:
             raise NodeSilent(f"{len(answers)} of {count} answers came within {node.timeout_s:g} s; "
                              f"{node.likely_cause()}")
         node.notice(*received)
-        if received[0].name in ("NU", "POSE", "WHEEL_SPEED", "STATE_FD"):
+        if received[0].name in ANSWERS:
             answers.append(received)
     return answers

@@ -12,7 +12,7 @@ from laconic.rig.errors import NodeSilent
 from laconic.rig.verdict import Verdict
 from laconic.rig.wire import wire
 
-ONCE_A_PERIOD = ("NU", "POSE", "WHEEL_SPEED", "STATE_FD")
+ONCE_A_PERIOD = ("NU", "POSE", "WHEEL_SPEED", "STATE_FD", "WHEEL_ANGLE", "IMU", "ENCODER")
 
 
 class Silence:
