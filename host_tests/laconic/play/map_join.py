@@ -12,6 +12,7 @@ from laconic.play.map_file import REMOTE, Joint, Received, Sent, SignalMap
 from laconic.play.map_messages import Receiver, Sender
 from laconic.play.map_signals import DRIVE_OUTPUTS, ENABLE, TARGETS, split
 from laconic.scene import Scene
+from laconic.scene.sensors import missing_sensors
 
 Key = tuple[int, bool]
 Part = TypeVar("Part", Received, Sent)
@@ -119,8 +120,13 @@ def check_drives(joined: Joined) -> None:
                                     "wheel_speed_rad_per_s", joint.where)
 
 
+ENCODER = "encoder_count"
+OR_OF_DRIVE = "; that of the motor's drive is drive_count"
+
+
 def check_map(scene: Scene, joined: Joined) -> None:
-    """BadInput for what the scene cannot do: a voltage without a motor, periods below its step."""
+    """BadInput for what the scene cannot do: a voltage without a motor, a sensor that it lacks, periods below
+    its step."""
     for receiver in joined.receivers.values():
         for joint in receiver.given.joints:
             stem, index = split(joint.model)
@@ -130,7 +136,12 @@ def check_map(scene: Scene, joined: Joined) -> None:
                 receiver.message.fail("to", f".{joint.signal} sets {joint.model}, and that wheel has no motor in "
                                       f"{scene.path}; give axle_torque_Nm[{index + 1}] or a target of a drive",
                                       joint.where)
+    missing = missing_sensors(scene.sensors, scene.wheel_count)
     for sender in joined.senders:
+        for joint in sender.given.joints:
+            if joint.model in missing:
+                sender.message.fail("from", f".{joint.signal}: {joint.model} {missing[joint.model]}"
+                                    f"{OR_OF_DRIVE * joined.has_drives * joint.model.startswith(ENCODER)}", joint.where)
         period_s = sender.sent.period_s
         if period_s is not None and period_s < scene.run.step_s * (1.0 - 1e-9):
             sender.message.fail("period_s", f"is sent every {period_s:g} s, the vehicle steps every "

@@ -8,6 +8,7 @@ from typing import Any
 import numpy as np
 
 from laconic.core.plant import Plant
+from laconic.core.sensors import Readings
 from laconic.play.drives import OFF, DriveGroup
 from laconic.play.map_signals import ENABLE, OF_DRIVES, TARGETS, split
 from laconic.play.settings import DriveSettings
@@ -22,6 +23,7 @@ class MapPlant:
     def __init__(self, scene: Scene, settings: DriveSettings | None, joined: Iterable[str]):
         self.scene, self.core = scene, scene.core()
         self.plant: Plant = scene.plant(self.core)
+        self.sensors = scene.sensors_of(self.plant)
         self.drives = DriveGroup(settings, scene.run.real, self.plant.step_s) if settings is not None else None
         self.inputs: dict[str, float] = {}
         self._joined = {name for name in joined if split(name)[0] in OF_DRIVES}
@@ -85,7 +87,7 @@ class MapPlant:
             for wheel, torque_Nm in self.drives.torques().items():
                 row[start + wheel] += torque_Nm
         self._held = self.core.input(row)
-        self.plant.run(self._held)
+        self.sensors.run(self._held)
         if self.drives is not None:
             self._measure(self.drives)
 
@@ -109,6 +111,10 @@ class MapPlant:
     def pose(self) -> Any:
         """The laconic_pose."""
         return self.plant.pose
+
+    def sensed(self) -> Readings:
+        """What the sensors show."""
+        return self.sensors.read(self._held)
 
     def wheel_speeds(self) -> np.ndarray:
         """χ' [rad/s]."""

@@ -28,9 +28,10 @@ def _pose(name: str) -> Reader:
 WHEEL_OUTPUTS: Mapping[str, Reader] = {
     "wheel_speed_rad_per_s": lambda plant, i: float(plant.wheel_speeds()[i]),
     "wheel_angle_rad": lambda plant, i: float(plant.wheel_angles()[i]),
-    "wheel_torque_Nm": lambda plant, i: float(plant.wheel_torques()[i])}
+    "wheel_torque_Nm": lambda plant, i: float(plant.wheel_torques()[i]),
+    "encoder_count": lambda plant, i: float(plant.sensed().encoder_count[i])}
 DRIVE_OUTPUTS: Mapping[str, Reader] = {
-    "encoder_count": lambda plant, i: float(plant.drive(i).count),
+    "drive_count": lambda plant, i: float(plant.drive(i).count),
     "drive_angle_rad": lambda plant, i: plant.drive_angle_rad(i),
     "drive_speed_rad_per_s": lambda plant, i: float(plant.drive(i).speed_rad_per_s),
     "drive_current_A": lambda plant, i: float(plant.drive(i).current_A),
@@ -43,6 +44,9 @@ BODY_OUTPUTS: Mapping[str, tuple[int, Reader]] = {
     "nu_rad_per_s": (3, lambda plant, i: float(plant.plant.nu[i])),
     "velocity_body_m_per_s": (2, lambda plant, i: float(plant.plant.body_velocity()[0][i])),
     "yaw_rate_rad_per_s": (0, lambda plant, _: float(plant.plant.body_velocity()[1])),
+    "acceleration_body_m_per_s2": (2, lambda plant, i: float(plant.sensed().acceleration_body_m_per_s2[i])),
+    "imu_acceleration_m_per_s2": (2, lambda plant, i: float(plant.sensed().imu_acceleration_m_per_s2[i])),
+    "imu_yaw_rate_rad_per_s": (0, lambda plant, _: plant.sensed().imu_yaw_rate_rad_per_s),
     "energy_J": (0, lambda plant, _: plant.plant.energy_J()),
     "time_s": (0, lambda plant, _: plant.plant.steps * plant.plant.step_s)}
 
