@@ -22,10 +22,15 @@ static const checked_setting of_encoder[] = {LACONIC_WHEEL_ENCODER_FIELDS(OF_WHE
 
 #define COUNT(array) (sizeof(array) / sizeof(array)[0])
 
+/* Of settings and samples, far beyond what any instrument shows: so that products of two stay in the range. */
+#define LARGEST_NUMBER R(1e15)
+
+static real limit_of(uint8_t rule) { return rule == LACONIC_RULE_ANGLE ? LARGEST_ANGLE : LARGEST_NUMBER; }
+
 static laconic_status status_of(real value, uint8_t rule) {
     if (!is_finite(value)) return LACONIC_NOT_FINITE;
     if (rule == LACONIC_RULE_NOT_NEGATIVE && value < R(0)) return LACONIC_NEGATIVE;
-    return rule == LACONIC_RULE_ANGLE && magnitude(value) > LARGEST_ANGLE ? LACONIC_OVERFLOW : LACONIC_OK;
+    return magnitude(value) > limit_of(rule) ? LACONIC_OVERFLOW : LACONIC_OK;
 }
 
 static real value_of(const void *of, const checked_setting *number, int32_t item) {
@@ -44,7 +49,7 @@ static laconic_status check_settings(const void *of, const checked_setting *numb
             const int32_t named = numbers[k].items > 1 ? i + 1 : item;
             if (status != LACONIC_OK)
                 return refuse(why, status, (laconic_field)numbers[k].field, named, value,
-                              status == LACONIC_OVERFLOW ? LARGEST_ANGLE : R(0));
+                              status == LACONIC_OVERFLOW ? limit_of(numbers[k].rule) : R(0));
         }
     }
     return LACONIC_OK;
@@ -120,7 +125,7 @@ static laconic_status enter_sample(laconic_sensors *sensors, const laconic_plant
         laconic_imu_feel_now(sample, imu, plant, held);
     }
     const real *force = sample->specific_force_m_per_s2;
-    if (is_finite(force[0]) && is_finite(force[1])) return LACONIC_OK;
+    if (magnitude(force[0]) <= LARGEST_NUMBER && magnitude(force[1]) <= LARGEST_NUMBER) return LACONIC_OK;
     return refuse(why, LACONIC_OVERFLOW, (laconic_field)LACONIC_SENSOR_FIELD_IMU_X, 0, force[0], R(0));
 }
 

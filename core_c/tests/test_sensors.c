@@ -64,6 +64,7 @@ static laconic_vehicle wheels(void) { return with_motors(three_wheels()); }
 
 static void settings_that_make_no_sense_are_refused_by_name(void) {
     REFUSED_SETTING(imu.x_m = NOT_A_NUMBER, LACONIC_NOT_FINITE, IMU_X, 0);
+    REFUSED_SETTING(imu.x_m = REAL(-2e15), LACONIC_OVERFLOW, IMU_X, 0);
     REFUSED_SETTING(imu.y_m = INFINITE, LACONIC_NOT_FINITE, IMU_Y, 0);
     REFUSED_SETTING(imu.heading_rad = REAL(1e30), LACONIC_OVERFLOW, IMU_HEADING, 0);
     REFUSED_SETTING(imu.acceleration_scale_error[1] = NOT_A_NUMBER, LACONIC_NOT_FINITE, IMU_ACCELERATION_SCALE_ERROR,
@@ -282,7 +283,7 @@ static void a_place_so_far_that_its_acceleration_overflows_is_refused_by_the_ste
     for (int axis = 0; axis < 2; axis++) {
         laconic_plant plant = started(bare_body(), STEP, 0, 0, 30);
         laconic_sensor_settings settings = nothing();
-        *(axis == 0 ? &settings.imu.x_m : &settings.imu.y_m) = LACONIC_REAL_MAX;
+        *(axis == 0 ? &settings.imu.x_m : &settings.imu.y_m) = REAL(0.9e15);
         laconic_sensors sensors = beside(&plant, settings);
         ASSERT_REFUSED(LACONIC_OVERFLOW, (laconic_field)LACONIC_SENSOR_FIELD_IMU_X, 0,
                        laconic_sensors_run(&sensors, &plant, &input, 1, &why), why);

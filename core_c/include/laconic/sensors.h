@@ -113,8 +113,8 @@ typedef enum laconic_sensor_field {
 } laconic_sensor_field;
 
 /* OK iff every number is usable, for a vehicle of so many wheels: else the first that is not, by the rules of the rows,
- * and ABOVE_LIMIT for a delay beyond LACONIC_IMU_MAX_DELAY and for the counts of a wheel that the vehicle does not have
- * (limit 0). */
+ * OVERFLOW where it is beyond ± 10¹⁵, and ABOVE_LIMIT for a delay beyond LACONIC_IMU_MAX_DELAY and for the counts of a
+ * wheel that the vehicle does not have (limit 0). */
 laconic_status laconic_sensor_settings_check(const laconic_sensor_settings *settings, int32_t wheel_count,
                                              struct laconic_refusal *why);
 
@@ -198,7 +198,7 @@ laconic_status laconic_sensors_start(laconic_sensors *sensors, const laconic_sen
 
 /* laconic_plant_run() and laconic_plant_run_sampled() with sensors that watch. Steps are taken one by one where a
  * sensor must see each. Besides their refusals OVERFLOW where an encoder was turned by more than 2³¹ counts in a step
- * (WHEEL_ENCODER_COUNTS, item: the wheel) or a sample left the range (IMU_X); that step has been taken. */
+ * (WHEEL_ENCODER_COUNTS, item: the wheel) or a sample is beyond ± 10¹⁵ m/s² (IMU_X); that step has been taken. */
 laconic_status laconic_sensors_run(laconic_sensors *sensors, struct laconic_plant *plant, const laconic_input *held,
                                    uint64_t steps, struct laconic_refusal *why);
 laconic_status laconic_sensors_run_sampled(laconic_sensors *sensors, struct laconic_plant *plant,
