@@ -7,19 +7,23 @@
 #define TURN_RAD R(6.28318530717958647693)
 
 void laconic_drive_start(laconic_wheel_drive *drive, const laconic_drive_settings *settings) {
-    const laconic_drive_settings kept = *settings; /* which may be the drive's own */
-    memset(drive, 0, sizeof *drive);
-    drive->settings = kept;
+    if (settings != &drive->settings) drive->settings = *settings;
+    memset((uint8_t *)drive + sizeof drive->settings, 0, sizeof *drive - sizeof drive->settings);
 }
 
 /* --------------------------------------------------------------------------------- limits -- */
 
 /* The value within its bounds; sets the limit's bit where it was beyond. NaN stays NaN. */
-static laconic_real within(laconic_real value, laconic_real least, laconic_real most, uint32_t limit,
-                           uint32_t *limits) {
-    if (value >= least && value <= most) return value;
-    *limits |= limit;
-    return value < least ? least : value > most ? most : value;
+static laconic_real within(laconic_wheel_drive *drive, laconic_real value, laconic_real least, laconic_real most,
+                           uint8_t limit) {
+    if (value > most)
+        value = most;
+    else if (value < least)
+        value = least;
+    else
+        return value;
+    drive->limits = (uint8_t)(drive->limits | limit);
+    return value;
 }
 
 /* The currents that the supply drives through the winding against the back-EMF. Beyond the speed at which the back-EMF
@@ -30,11 +34,10 @@ static laconic_real limit_current(laconic_wheel_drive *drive, laconic_real curre
     if (s->supply_V > 0 && s->winding_resistance_ohm > 0) {
         const laconic_real constant = s->back_emf_Vs_per_rad > 0 ? s->back_emf_Vs_per_rad : s->torque_constant_Nm_per_A;
         const laconic_real back_emf_V = constant * drive->speed_rad_per_s;
-        current_A =
-            within(current_A, (-s->supply_V - back_emf_V) / s->winding_resistance_ohm,
-                   (s->supply_V - back_emf_V) / s->winding_resistance_ohm, LACONIC_DRIVE_AT_SUPPLY, &drive->limits);
+        current_A = within(drive, current_A, (-s->supply_V - back_emf_V) / s->winding_resistance_ohm,
+                           (s->supply_V - back_emf_V) / s->winding_resistance_ohm, LACONIC_DRIVE_AT_SUPPLY);
     }
-    return within(current_A, -s->current_limit_A, s->current_limit_A, LACONIC_DRIVE_AT_CURRENT, &drive->limits);
+    return within(drive, current_A, -s->current_limit_A, s->current_limit_A, LACONIC_DRIVE_AT_CURRENT);
 }
 
 /* ---------------------------------------------------------------------------------- loops -- */
@@ -53,8 +56,8 @@ static laconic_real position_loop(const laconic_wheel_drive *drive) {
 static laconic_real speed_loop(laconic_wheel_drive *drive, laconic_real set_rad_per_s, laconic_real step_s) {
     const laconic_drive_settings *s = &drive->settings;
     if (s->speed_limit_rad_per_s > 0)
-        set_rad_per_s = within(set_rad_per_s, -s->speed_limit_rad_per_s, s->speed_limit_rad_per_s,
-                               LACONIC_DRIVE_AT_SPEED, &drive->limits);
+        set_rad_per_s =
+            within(drive, set_rad_per_s, -s->speed_limit_rad_per_s, s->speed_limit_rad_per_s, LACONIC_DRIVE_AT_SPEED);
     const laconic_real error = set_rad_per_s - drive->speed_rad_per_s;
     const laconic_real integral = drive->integral_A + s->speed_integral_gain_A * error * step_s;
     const laconic_real wanted = s->speed_gain_As * error + drive->target.current_A + integral;
@@ -79,9 +82,9 @@ static laconic_real current_loop(laconic_wheel_drive *drive, laconic_real set_A,
 
 /* No motion for the settings' time though the current is at a limit. */
 static void watch_for_stall(laconic_wheel_drive *drive, laconic_real step_s) {
-    const int64_t moved = drive->encoder.count - drive->stalled_count;
+    const uint64_t moved = (uint64_t)drive->encoder.count - (uint64_t)drive->stalled_count; /* 2^64 − 1: one back */
     const bool pushes = (drive->limits & (LACONIC_DRIVE_AT_CURRENT | LACONIC_DRIVE_AT_SUPPLY)) != 0;
-    if (drive->settings.stall_time_s > 0 && pushes && moved >= -1 && moved <= 1) {
+    if (drive->settings.stall_time_s > 0 && pushes && moved + 1U <= 2U) {
         drive->stalled_s += step_s;
         if (drive->stalled_s >= drive->settings.stall_time_s) laconic_drive_fail(drive, LACONIC_DRIVE_FAULT_STALL);
     } else {

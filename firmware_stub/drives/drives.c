@@ -101,7 +101,7 @@ laconic_status laconic_drives_step(laconic_drives *drives, laconic_plant *plant,
     drives->protocol->on_step(drives, advance(drives, now_us));
     for (int32_t k = 0; k < drives->count; k++)
         held->axle_torque_Nm[drives->wheel[k]] = laconic_drive_act(&drives->drive[k], drives->step_s);
-    apply_brakes(drives, plant, held);
+    if (LACONIC_NODE_WITH_DRIVE_FAULTS) apply_brakes(drives, plant, held); /* by order */
     laconic_odometer_of(&before, plant);
     const laconic_status status = laconic_plant_run(plant, held, 1, why);
     if (status != LACONIC_OK) {

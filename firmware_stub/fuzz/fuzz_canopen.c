@@ -73,7 +73,7 @@ static void check(const bench *on) {
         must(axis->demand_rest >= 0 && axis->demand_rest <= 1);
         must(drive->current_A <= axis->rated_A && drive->current_A >= -axis->rated_A);
         for (int n = 0; n < 2 * CANOPEN_PDOS; n++) {
-            const canopen_pdo *pdo = n < CANOPEN_PDOS ? &axis->rpdo[n] : &axis->tpdo[n - CANOPEN_PDOS];
+            const canopen_pdo *pdo = &axis->pdo[n];
             must(pdo->count <= CANOPEN_MAPPED);
             for (int m = 0; m < pdo->count; m++) must(canopen_row_at(pdo->row[m]) != NULL);
         }

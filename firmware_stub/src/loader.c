@@ -135,7 +135,8 @@ void laconic_loader_take(laconic_loader *loader, const uint8_t data[8]) {
                frame.field, frame.item);
         return;
     }
-    loader->given[where - locations] |= (uint32_t)1 << frame.item;
+    laconic_loader_items *given = &loader->given[where - locations];
+    *given = (laconic_loader_items)(*given | (uint32_t)1 << frame.item);
     uint8_t *to = (uint8_t *)&loader->parameters + where->offset;
     if (where->items > 0) to += (size_t)where->stride * (size_t)(frame.item - 1);
     const uint8_t kind = where->kind_and_need & 15U;

@@ -12,7 +12,7 @@ bool laconic_node_init(laconic_node *node, const laconic_node_config *config, ui
     node->state = LACONIC_WIRE_STATE_EMPTY;
     node->heartbeat_us = now_us;
     laconic_loader_begin(&node->loader);
-    laconic_raw_restart(&node->raw_input);
+    if (!LACONIC_NODE_DRIVES_ONLY) laconic_raw_restart(&node->raw_input);
     return true;
 }
 
@@ -25,14 +25,9 @@ static void sync(laconic_node *node, const uint8_t *data) {
     laconic_node_sync(node, word32(data + 2), word16(data + 6), data[1] & 15U);
 }
 
-static bool dispatch(laconic_node *node, uint8_t offset, const uint8_t *data, uint32_t now_us) {
+/* Frames that move the vehicle. */
+static bool dispatch_motion(laconic_node *node, uint8_t offset, const uint8_t *data, uint32_t now_us) {
     switch (offset) {
-    case LACONIC_WIRE_HELLO: laconic_node_hello(node, data, now_us); return true;
-    case LACONIC_WIRE_OPEN: laconic_node_open(node, data, now_us); return true;
-    case LACONIC_WIRE_CONTROL: laconic_node_control(node, data, now_us); return true;
-    case LACONIC_WIRE_SELECT: laconic_node_select(node, data); return true;
-    case LACONIC_WIRE_COMMIT: laconic_node_commit(node, data); return true;
-    case LACONIC_WIRE_PARAMETER: laconic_node_parameter(node, data); return true;
     case LACONIC_WIRE_SYNC: sync(node, data); return true;
     case LACONIC_WIRE_VOLTAGE: return laconic_node_voltage(node, data, now_us);
     case LACONIC_WIRE_RAW_INPUT: return laconic_node_raw(node, data + 2, data[1] >> 4, 15, 6);
@@ -43,11 +38,26 @@ static bool dispatch(laconic_node *node, uint8_t offset, const uint8_t *data, ui
     return laconic_node_raw(node, data + 4, data[3], 255, 60);
 }
 
+static bool dispatch(laconic_node *node, uint8_t offset, const uint8_t *data, uint32_t now_us) {
+    laconic_node_result answer;
+    switch (offset) {
+    case LACONIC_WIRE_HELLO: laconic_node_hello(node, data, now_us); return true;
+    case LACONIC_WIRE_OPEN: laconic_node_open(node, data, now_us); return true;
+    case LACONIC_WIRE_CONTROL: answer = laconic_node_control(node, data, now_us); break;
+    case LACONIC_WIRE_SELECT: answer = laconic_node_select(node, data); break;
+    case LACONIC_WIRE_COMMIT: answer = laconic_node_commit(node, data); break;
+    case LACONIC_WIRE_PARAMETER: answer = laconic_node_parameter(node, data); break;
+    default: return !LACONIC_NODE_DRIVES_ONLY && dispatch_motion(node, offset, data, now_us);
+    }
+    laconic_node_answer(node, offset, answer);
+    return true;
+}
+
 /* True iff the frame is one that the rig sends now. HELLO and OPEN are checked by their own functions. */
 static bool takes(laconic_node *node, uint8_t offset, const uint8_t *data) {
     const uint8_t key = laconic_wire[offset].key;
     if (key == LACONIC_WIRE_KEY_SESSION) return laconic_node_takes_command(node, offset, data);
-    return key != LACONIC_WIRE_KEY_RUN || laconic_node_takes_motion(node, offset, data);
+    return key != LACONIC_WIRE_KEY_RUN || LACONIC_NODE_DRIVES_ONLY || laconic_node_takes_motion(node, offset, data);
 }
 
 void laconic_node_on_frame(laconic_node *node, const laconic_frame *frame, uint32_t now_us) {
@@ -80,6 +90,7 @@ void laconic_node_on_tick(laconic_node *node, uint32_t now_us) {
 #if LACONIC_NODE_WITH_DRIVES
     if (plays_drives(node)) laconic_node_run_drives(node, now_us);
 #endif
+    if (LACONIC_NODE_DRIVES_ONLY) return;
     if (node->state == LACONIC_WIRE_STATE_LOCKSTEP) laconic_node_run_lockstep(node);
     if (node->state == LACONIC_WIRE_STATE_FREE_RUN || node->state == LACONIC_WIRE_STATE_TIMEOUT)
         laconic_node_run_free(node, now_us);
@@ -133,12 +144,14 @@ bool laconic_node_next_frame(laconic_node *node, laconic_frame *frame) {
     return true;
 }
 
-bool laconic_node_is_busy(const laconic_node *node) { return node->lockstep.steps_due > 0; }
+bool laconic_node_is_busy(const laconic_node *node) {
+    return !LACONIC_NODE_DRIVES_ONLY && node->lockstep.steps_due > 0;
+}
 
 uint32_t laconic_node_idle_us(const laconic_node *node, uint32_t now_us) {
     const uint32_t heartbeat = node->heartbeat_us + LACONIC_NODE_HEARTBEAT_US - now_us;
     uint32_t idle = (int32_t)heartbeat < 0 ? 0U : heartbeat;
-    if (node->state == LACONIC_WIRE_STATE_FREE_RUN || node->state == LACONIC_WIRE_STATE_TIMEOUT || plays_drives(node)) {
+    if (is_running(node) && node->state != LACONIC_WIRE_STATE_LOCKSTEP) {
         const int32_t step = (int32_t)(node->free_run.next_us - now_us);
         if (step < (int32_t)idle) idle = step < 0 ? 0U : (uint32_t)step;
     }

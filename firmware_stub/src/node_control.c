@@ -10,15 +10,11 @@ void laconic_node_answer_again(laconic_node *node, uint8_t offset) {
     node->pending |= BIT(LACONIC_WIRE_RESULT);
 }
 
-void laconic_node_answer(laconic_node *node, uint8_t offset, uint8_t command, uint8_t status, uint8_t field,
-                         uint8_t item) {
-    laconic_node_result *answer = &node->answer[offset];
-    answer->command = command;
-    answer->status = status;
-    answer->field = field;
-    answer->item = item;
+void laconic_node_answer(laconic_node *node, uint8_t offset, laconic_node_result answer) {
+    answer.request = node->answer[offset].request;
+    node->answer[offset] = answer;
     laconic_node_answer_again(node, offset);
-    if (status != 0) count(&node->counters.refused);
+    if (answer.status != 0) count(&node->counters.refused);
 }
 
 static uint8_t begin(laconic_node *node) {
@@ -30,7 +26,7 @@ static uint8_t begin(laconic_node *node) {
 static uint8_t start(laconic_node *node, uint8_t state) {
     if (node->state != LACONIC_WIRE_STATE_READY) return LACONIC_WIRE_STATUS_WRONG_STATE;
     laconic_node_begin_run(node);
-    laconic_raw_restart(&node->raw_input);
+    if (!LACONIC_NODE_DRIVES_ONLY) laconic_raw_restart(&node->raw_input);
     node->groups_seen = 0;
     node->state = state;
     return 0;
@@ -52,8 +48,13 @@ static bool choose_rate(laconic_node_free_run *run, uint16_t rate_Hz, laconic_re
     return off < slack && off > -slack;
 }
 
+static uint8_t start_lockstep(laconic_node *node) {
+    return LACONIC_NODE_DRIVES_ONLY ? LACONIC_WIRE_STATUS_NOT_SUPPORTED : start(node, LACONIC_WIRE_STATE_LOCKSTEP);
+}
+
 static uint8_t start_free_run(laconic_node *node, const struct laconic_dbc_control_t *frame, uint32_t now_us) {
     laconic_node_free_run run = {0};
+    if (LACONIC_NODE_DRIVES_ONLY) return LACONIC_WIRE_STATUS_NOT_SUPPORTED;
     if (node->state != LACONIC_WIRE_STATE_READY) return LACONIC_WIRE_STATUS_WRONG_STATE;
     if (!choose_rate(&run, frame->rate, node->plant.integrator.step_s)) return LACONIC_WIRE_STATUS_OUT_OF_RANGE;
     node->free_run.watchdog_us = 1000U * (uint32_t)frame->watchdog;
@@ -73,7 +74,7 @@ static uint8_t stop(laconic_node *node) {
     if (plays_drives(node)) laconic_drives_off(&node->drives);
 #endif
     if (is_running(node)) node->state = LACONIC_WIRE_STATE_READY;
-    node->lockstep.steps_due = 0;
+    if (!LACONIC_NODE_DRIVES_ONLY) node->lockstep.steps_due = 0;
     node->session.deaf = 0;
     laconic_node_clear_inputs(node);
     return 0;
@@ -83,7 +84,7 @@ void laconic_node_make_idle(laconic_node *node) {
     stop(node);
     laconic_loader_begin(&node->loader);
     node->send = 0;
-    node->raw_input.take = 0;
+    if (!LACONIC_NODE_DRIVES_ONLY) node->raw_input.take = 0;
     node->raw_output.send = 0;
     node->answers_due = 0;
     node->pending = 0;
@@ -104,40 +105,39 @@ static uint8_t reset(laconic_node *node, uint8_t *field, uint8_t *item) {
     return (uint8_t)status;
 }
 
-void laconic_node_control(laconic_node *node, const uint8_t *data, uint32_t now_us) {
+laconic_node_result laconic_node_control(laconic_node *node, const uint8_t *data, uint32_t now_us) {
     struct laconic_dbc_control_t frame;
-    uint8_t status;
-    uint8_t field = 0;
-    uint8_t item = 0;
+    laconic_node_result answer = {0};
     laconic_dbc_control_unpack(&frame, data, 8);
+    answer.command = frame.command;
     switch (frame.command) {
-    case LACONIC_WIRE_COMMAND_BEGIN: status = begin(node); break;
-    case LACONIC_WIRE_COMMAND_START_LOCKSTEP: status = start(node, LACONIC_WIRE_STATE_LOCKSTEP); break;
-    case LACONIC_WIRE_COMMAND_START_FREE_RUN: status = start_free_run(node, &frame, now_us); break;
+    case LACONIC_WIRE_COMMAND_BEGIN: answer.status = begin(node); break;
+    case LACONIC_WIRE_COMMAND_START_LOCKSTEP: answer.status = start_lockstep(node); break;
+    case LACONIC_WIRE_COMMAND_START_FREE_RUN: answer.status = start_free_run(node, &frame, now_us); break;
 #if LACONIC_NODE_WITH_DRIVES
-    case LACONIC_WIRE_COMMAND_START_DRIVES: status = start_drives(node, now_us, &field); break;
+    case LACONIC_WIRE_COMMAND_START_DRIVES: answer.status = start_drives(node, now_us, &answer.field); break;
 #endif
-    case LACONIC_WIRE_COMMAND_STOP: status = stop(node); break;
-    case LACONIC_WIRE_COMMAND_RESET: status = reset(node, &field, &item); break;
-    default: status = LACONIC_WIRE_STATUS_UNKNOWN_COMMAND; break;
+    case LACONIC_WIRE_COMMAND_STOP: answer.status = stop(node); break;
+    case LACONIC_WIRE_COMMAND_RESET: answer.status = reset(node, &answer.field, &answer.item); break;
+    default: answer.status = LACONIC_WIRE_STATUS_UNKNOWN_COMMAND; break;
     }
-    laconic_node_answer(node, LACONIC_WIRE_CONTROL, frame.command, status, field, item);
+    return answer;
 }
 
 /* Each PARAMETER has its own answer, so that the rig notices a lost one at once. The first refusal stays until
  * BEGIN. */
-void laconic_node_parameter(laconic_node *node, const uint8_t *data) {
+laconic_node_result laconic_node_parameter(laconic_node *node, const uint8_t *data) {
     const laconic_loader *loader = &node->loader;
 #if LACONIC_NODE_WITH_DRIVES && LACONIC_NODE_WITH_DRIVE_FAULTS
     if (data[2] == LACONIC_WIRE_FIELD_DRIVE_FAULTS) { /* an order for now, no number of a vehicle */
-        const uint8_t status = laconic_node_order_drive(node, data);
-        laconic_node_answer(node, LACONIC_WIRE_PARAMETER, LACONIC_WIRE_COMMAND_PARAMETER, status, data[2], data[3]);
-        return;
+        const laconic_node_result ordered = {0, LACONIC_WIRE_COMMAND_PARAMETER, laconic_node_order_drive(node, data),
+                                             data[2], data[3]};
+        return ordered;
     }
 #endif
     laconic_loader_take(&node->loader, data);
-    laconic_node_answer(node, LACONIC_WIRE_PARAMETER, LACONIC_WIRE_COMMAND_PARAMETER, loader->status, loader->field,
-                        loader->item);
+    const laconic_node_result answer = {0, LACONIC_WIRE_COMMAND_PARAMETER, loader->status, loader->field, loader->item};
+    return answer;
 }
 
 /* The loaded parameters become the vehicle, or nothing changes. */
@@ -175,31 +175,30 @@ static uint8_t adopt(laconic_node *node, uint8_t *field, uint8_t *item) {
     return 0;
 }
 
-void laconic_node_commit(laconic_node *node, const uint8_t *data) {
-    uint8_t field = 0;
-    uint8_t item = 0;
-    uint8_t status = LACONIC_WIRE_STATUS_WRONG_STATE;
+laconic_node_result laconic_node_commit(laconic_node *node, const uint8_t *data) {
+    laconic_node_result answer = {.command = LACONIC_WIRE_COMMAND_COMMIT, .status = LACONIC_WIRE_STATUS_WRONG_STATE};
     if (!is_running(node))
-        status = laconic_loader_check(&node->loader, word16(data + 2), word32(data + 4), &field, &item);
-    if (status == 0) status = adopt(node, &field, &item);
-    laconic_node_answer(node, LACONIC_WIRE_COMMIT, LACONIC_WIRE_COMMAND_COMMIT, status, field, item);
+        answer.status =
+            laconic_loader_check(&node->loader, word16(data + 2), word32(data + 4), &answer.field, &answer.item);
+    if (answer.status == 0) answer.status = adopt(node, &answer.field, &answer.item);
+    return answer;
 }
 
-void laconic_node_select(laconic_node *node, const uint8_t *data) {
+laconic_node_result laconic_node_select(laconic_node *node, const uint8_t *data) {
+    laconic_node_result answer = {.command = LACONIC_WIRE_COMMAND_SELECT};
     const uint8_t raw_fd = data[3] >> 7;
-    uint8_t status = 0;
     if (listens_to_voltages(node)) {
-        status = LACONIC_WIRE_STATUS_WRONG_STATE;
+        answer.status = LACONIC_WIRE_STATUS_WRONG_STATE;
     } else if ((raw_fd || data[2] & LACONIC_NODE_SEND_STATE_FD) && !node->config.can_fd) {
-        status = LACONIC_WIRE_STATUS_NOT_SUPPORTED;
+        answer.status = LACONIC_WIRE_STATUS_NOT_SUPPORTED;
     } else if (!LACONIC_NODE_WITH_SENSORS && ((data[2] & SENDS_OF_SENSORS) | (data[3] & RAW_OF_SENSORS)) != 0) {
-        status = LACONIC_WIRE_STATUS_NOT_SUPPORTED;
+        answer.status = LACONIC_WIRE_STATUS_NOT_SUPPORTED;
     } else {
         node->send = data[2];
         node->raw_fd = raw_fd != 0;
         node->raw_output.send = data[3] & 0x7FU;
-        node->raw_input.take = data[4];
+        if (!LACONIC_NODE_DRIVES_ONLY) node->raw_input.take = data[4];
         laconic_node_clear_inputs(node);
     }
-    laconic_node_answer(node, LACONIC_WIRE_SELECT, LACONIC_WIRE_COMMAND_SELECT, status, 0, 0);
+    return answer;
 }

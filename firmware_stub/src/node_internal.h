@@ -30,6 +30,7 @@ static inline bool plays_drives(const laconic_node *node) {
 }
 
 static inline bool is_running(const laconic_node *node) {
+    if (LACONIC_NODE_DRIVES_ONLY) return plays_drives(node);
     return node->state == LACONIC_WIRE_STATE_LOCKSTEP || node->state == LACONIC_WIRE_STATE_FREE_RUN ||
            node->state == LACONIC_WIRE_STATE_TIMEOUT || plays_drives(node);
 }
@@ -39,6 +40,7 @@ static inline bool is_running(const laconic_node *node) {
 #define RAW_OF_SENSORS (LACONIC_RAW_IMU | LACONIC_RAW_ENCODER)
 
 static inline bool listens_to_voltages(const laconic_node *node) {
+    if (LACONIC_NODE_DRIVES_ONLY) return false;
     return node->state == LACONIC_WIRE_STATE_LOCKSTEP || node->state == LACONIC_WIRE_STATE_FREE_RUN;
 }
 
@@ -50,16 +52,15 @@ bool laconic_node_takes_motion(laconic_node *node, uint8_t offset, const uint8_t
 /* Motion frames are keyed by the last accepted START from now on. */
 void laconic_node_begin_run(laconic_node *node);
 
-/* node_control.c: CONTROL, PARAMETER, COMMIT and SELECT, each answered by RESULT. */
-void laconic_node_control(laconic_node *node, const uint8_t *data, uint32_t now_us);
-void laconic_node_parameter(laconic_node *node, const uint8_t *data);
-void laconic_node_commit(laconic_node *node, const uint8_t *data);
-void laconic_node_select(laconic_node *node, const uint8_t *data);
+/* node_control.c: CONTROL, PARAMETER, COMMIT and SELECT. Each gives its answer but for the request. */
+laconic_node_result laconic_node_control(laconic_node *node, const uint8_t *data, uint32_t now_us);
+laconic_node_result laconic_node_parameter(laconic_node *node, const uint8_t *data);
+laconic_node_result laconic_node_commit(laconic_node *node, const uint8_t *data);
+laconic_node_result laconic_node_select(laconic_node *node, const uint8_t *data);
 /* For a new session: stops the run and clears the loader, the selection and the frames to be sent. */
 void laconic_node_make_idle(laconic_node *node);
 /* The RESULT to a frame of this offset, whose request is set already. */
-void laconic_node_answer(laconic_node *node, uint8_t offset, uint8_t command, uint8_t status, uint8_t field,
-                         uint8_t item);
+void laconic_node_answer(laconic_node *node, uint8_t offset, laconic_node_result answer);
 void laconic_node_answer_again(laconic_node *node, uint8_t offset);
 
 /* node_motion.c: frames that move the vehicle. False iff the frame was refused. */

@@ -73,7 +73,8 @@ void laconic_node_sync(laconic_node *node, uint32_t steps, uint16_t input_frames
     if (status != LACONIC_WIRE_STATUS_BUSY) laconic_raw_restart(&node->raw_input);
     if (status != 0) {
         node->answer[LACONIC_WIRE_SYNC].request = request;
-        laconic_node_answer(node, LACONIC_WIRE_SYNC, LACONIC_WIRE_COMMAND_SYNC, status, 0, 0);
+        const laconic_node_result answer = {.command = LACONIC_WIRE_COMMAND_SYNC, .status = status};
+        laconic_node_answer(node, LACONIC_WIRE_SYNC, answer);
         return;
     }
     node->lockstep.steps_due = steps;

@@ -5,7 +5,7 @@
 
 void laconic_node_clear_inputs(laconic_node *node) {
     memset(node->input, 0, sizeof node->input);
-    laconic_raw_restart(&node->raw_input);
+    if (!LACONIC_NODE_DRIVES_ONLY) laconic_raw_restart(&node->raw_input);
 }
 
 /* Makes the frames that SELECT has chosen due, with outputs of the present state. */
@@ -28,12 +28,13 @@ void laconic_node_publish(laconic_node *node) {
 }
 
 void laconic_node_fail(laconic_node *node, const laconic_refusal *why, uint8_t request) {
-    node->lockstep.steps_due = 0;
+    if (!LACONIC_NODE_DRIVES_ONLY) node->lockstep.steps_due = 0;
     node->state = LACONIC_WIRE_STATE_FAULT;
     laconic_node_clear_inputs(node);
+    const laconic_node_result answer = {0, LACONIC_WIRE_COMMAND_SYNC, (uint8_t)why->status, (uint8_t)why->field,
+                                        (uint8_t)why->item};
     node->answer[LACONIC_WIRE_SYNC].request = request;
-    laconic_node_answer(node, LACONIC_WIRE_SYNC, LACONIC_WIRE_COMMAND_SYNC, (uint8_t)why->status, (uint8_t)why->field,
-                        (uint8_t)why->item);
+    laconic_node_answer(node, LACONIC_WIRE_SYNC, answer);
 }
 
 static laconic_status step(laconic_node *node, uint64_t steps, laconic_refusal *why) {

@@ -33,7 +33,7 @@ static void begin_session(laconic_node *node, uint32_t number, uint32_t now_us) 
     session->deaf = 0;
     session->number = number;
     session->key = laconic_mix(number, nonce);
-    session->run_key = laconic_run_key(session->key, 0);
+    if (!LACONIC_NODE_DRIVES_ONLY) session->run_key = laconic_run_key(session->key, 0);
     session->last_nonce = nonce;
     session->nonce = laconic_mix(laconic_mix(nonce, number), now_us);
 }
@@ -52,8 +52,9 @@ void laconic_node_open(laconic_node *node, const uint8_t *data, uint32_t now_us)
         count(&node->counters.crc_errors);
         return;
     }
-    laconic_node_answer(node, LACONIC_WIRE_OPEN, LACONIC_WIRE_COMMAND_OPEN, 0, 0, 0);
     node->answer[LACONIC_WIRE_OPEN].request = laconic_counter_of(LACONIC_WIRE_OPEN, data);
+    node->answer[LACONIC_WIRE_OPEN].command = LACONIC_WIRE_COMMAND_OPEN;
+    laconic_node_answer_again(node, LACONIC_WIRE_OPEN);
 }
 
 /* By how many counts the frame is ahead of the last one of its kind; −1: its protection is wrong. */
@@ -90,6 +91,7 @@ bool laconic_node_takes_command(laconic_node *node, uint8_t offset, const uint8_
 
 void laconic_node_begin_run(laconic_node *node) {
     laconic_node_session *session = &node->session;
+    if (LACONIC_NODE_DRIVES_ONLY) return;
     session->run_key = laconic_run_key(session->key, session->count[LACONIC_WIRE_CONTROL]);
     session->armed = 0;
     session->deaf = 0;

@@ -1,7 +1,16 @@
 /* Parses lines of SLCAN as frames and commands, and writes frames as lines. */
 #include "laconic_node/slcan.h"
 
+/* Lengths of frames by their DLC, which in classic CAN is the length. */
 static const uint8_t fd_lengths[16] = {0, 1, 2, 3, 4, 5, 6, 7, 8, 12, 16, 20, 24, 32, 48, 64};
+
+static uint8_t length_of(uint32_t dlc) { return LACONIC_NODE_CAN_FD ? fd_lengths[dlc] : (uint8_t)dlc; }
+
+static uint32_t dlc_of(uint8_t length) {
+    uint32_t dlc = 0;
+    while (dlc < 15U && length_of(dlc) < length) dlc++;
+    return LACONIC_NODE_CAN_FD ? dlc : length;
+}
 
 static int digit(char c) {
     if (c >= '0' && c <= '9') return c - '0';
@@ -50,7 +59,7 @@ static bool parse_frame(const char *line, size_t length, laconic_frame *frame) {
     if (length < 1U + id_digits + 1U) return false;
     if (!number(line + 1, id_digits, &read.id) || !number(line + 1 + id_digits, 1, &dlc)) return false;
     if (read.id > (read.extended ? 0x1FFFFFFFU : 0x7FFU) || (!read.fd && dlc > 8U)) return false;
-    read.length = fd_lengths[dlc];
+    read.length = length_of(dlc);
     const size_t header = 1U + id_digits + 1U;
     if (length != header + (read.remote ? 0U : 2U * (size_t)read.length)) return false;
     for (size_t k = 0; !read.remote && k < read.length; k++) {
@@ -85,19 +94,26 @@ static laconic_slcan_event open_channel(laconic_slcan *slcan, bool listen_only) 
     return reply(slcan, DONE);
 }
 
+/* The letters of commands, by number: letters lie far apart, and a table of places would have a word for each between
+ * them. */
+static const char letters[] = "OLCSsYZVvNF";
+enum { OPEN, LISTEN, CLOSE, RATE, RATE_BY_REGISTERS, DATA_RATE, TIME_STAMPS, VERSION, OLD_VERSION, SERIAL, FLAGS };
+
 static laconic_slcan_event command(laconic_slcan *slcan, size_t length) {
-    switch (slcan->line[0]) {
-    case 'O': return open_channel(slcan, false);
-    case 'L': return open_channel(slcan, true);
-    case 'C': slcan->open = false; return reply(slcan, DONE);
-    case 'S': return set_rate(slcan, length);
-    case 's':
-    case 'Y':
-    case 'Z': return reply(slcan, slcan->open ? REFUSED : DONE);
-    case 'V':
-    case 'v': return reply(slcan, "V1010\r");
-    case 'N': return reply(slcan, "NLACO\r");
-    case 'F': return reply(slcan, "F00\r");
+    uint32_t number = 0;
+    while (letters[number] != 0 && letters[number] != slcan->line[0]) number++;
+    switch (number) {
+    case OPEN: return open_channel(slcan, false);
+    case LISTEN: return open_channel(slcan, true);
+    case CLOSE: slcan->open = false; return reply(slcan, DONE);
+    case RATE: return set_rate(slcan, length);
+    case RATE_BY_REGISTERS:
+    case DATA_RATE:
+    case TIME_STAMPS: return reply(slcan, slcan->open ? REFUSED : DONE);
+    case VERSION:
+    case OLD_VERSION: return reply(slcan, "V1010\r");
+    case SERIAL: return reply(slcan, "NLACO\r");
+    case FLAGS: return reply(slcan, "F00\r");
     default: return reply(slcan, REFUSED);
     }
 }
@@ -132,12 +148,10 @@ static char letter_of(const laconic_frame *frame) {
 
 size_t laconic_slcan_write(const laconic_slcan *slcan, const laconic_frame *frame, char text[LACONIC_SLCAN_LINE]) {
     char *to = text;
-    uint32_t dlc = 0;
     if (!slcan->open || slcan->rate_is_wrong) return 0;
-    while (dlc < 15U && fd_lengths[dlc] < frame->length) dlc++;
     *to++ = letter_of(frame);
     to = put(to, frame->id, frame->extended ? 8 : 3);
-    to = put(to, dlc, 1);
+    to = put(to, dlc_of(frame->length), 1);
     for (uint8_t k = 0; !frame->remote && k < frame->length; k++) to = put(to, frame->data[k], 2);
     *to++ = '\r';
     return (size_t)(to - text);

@@ -45,16 +45,25 @@ def results_dir(name: str) -> Path:
     return Path(f"laconic-{name}") if IS_WHEEL else build_dir() / name
 
 
+# The target of the build that makes what is in a folder of its tree, where that is not everything.
+TARGETS = {"bin/laconic-node": "laconic_node", "lib/liblaconic_node": "laconic_node", "lib/laconic_node": "laconic_node",
+           "firmware/": "laconic_firmware"}
+
+
 def built(relative: str) -> Path:
     """A file that was built; BadInput with the remedy when it is not there."""
     check_installation()
     path = build_dir() / relative
-    if not path.exists() and IS_WHEEL:
+    if path.exists():
+        return path
+    if IS_WHEEL:
         raise BadInput(f"{relative}: is not in the wheel for this system; {FROM_CHECKOUT}")
-    if not path.exists():
-        raise BadInput(f"{path}: not built yet; run `cmake --workflow --preset demo` in {SOURCE_DIR}, "
-                       "or name the build tree in LACONIC_BUILD_DIR")
-    return path
+    command = "cmake --workflow --preset demo"
+    for start, target in TARGETS.items():
+        if relative.startswith(start):
+            command = f"cmake --preset default && cmake --build build --target {target}"
+    raise BadInput(f"{path}: not built yet; run `{command}` in {SOURCE_DIR}, "
+                   "or name the build tree in LACONIC_BUILD_DIR")
 
 
 def library(name: str) -> Path:

@@ -35,6 +35,15 @@ static void reset_communication(const canopen_node *on) {
     axis->nmt = CANOPEN_PRE_OPERATIONAL;
 }
 
+/* The usual windows suit an encoder of thousands of counts. Of a coarse one, such as the steps of a commutation, they
+ * would be the drive's whole range: each is then a part of a turn, and at least a count. */
+static void fit_windows(canopen_axis *axis, int32_t encoder_counts) {
+    if (encoder_counts >= 4096) return;
+    axis->speed_window = (uint16_t)(1 + encoder_counts / 16);
+    axis->speed_threshold = (uint16_t)(1 + encoder_counts / 64);
+    axis->position_window = (uint32_t)axis->speed_threshold;
+}
+
 static void reset_node(const canopen_node *on) {
     canopen_axis *axis = on->axis;
     const laconic_real rated_A = axis->rated_A;
@@ -42,6 +51,7 @@ static void reset_node(const canopen_node *on) {
     CANOPEN_DRIVE_OBJECTS(NOTHING, RESET, NOTHING, NOTHING)
     axis->rated_A = rated_A;
     axis->ending = CANOPEN_NO_ENDING;
+    fit_windows(axis, on->drive->settings.encoder_counts);
     on->drive->settings.current_limit_A = rated_A;
     on->drive->target.mode = LACONIC_DRIVE_OFF;
     laconic_drive_clear(on->drive);

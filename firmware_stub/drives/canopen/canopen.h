@@ -92,35 +92,23 @@ enum {
 /* Upper bits of a stored COB-ID. */
 enum { CANOPEN_OFF = 0x8000, CANOPEN_NO_REMOTE = 0x4000 };
 
+/* Small members come first: small processors reach them by shorter instructions. */
 typedef struct canopen_pdo {
-    uint32_t at_us; /* last received; last sent or due */
-    uint16_t cob_id;
-    uint16_t timer_ms, inhibit_100us;
     uint8_t type, count;
     uint8_t row[CANOPEN_MAPPED]; /* of the dictionary; 0xFF: empty */
     uint8_t data[8];             /* received and waiting for SYNC; last sent */
+    uint16_t cob_id;
+    uint16_t timer_ms, inhibit_100us;
+    uint32_t at_us; /* last received; last sent or due */
 } canopen_pdo;
 
 typedef struct canopen_axis {
-    laconic_real rated_A; /* of the drive's settings; 0x6072 limits what is used of it */
-    laconic_real speed;   /* demand, counts/s */
-    laconic_real left_s;  /* until the interpolation reaches 0x607A */
-    laconic_real demand_rest;
-    int64_t demand; /* position, counts; not wrapped */
     /* communication */
-    canopen_pdo rpdo[CANOPEN_PDOS], tpdo[CANOPEN_PDOS];
-    uint32_t consumer, consumer_us, producer_us; /* consumer: as 0x1016 has it */
-    uint16_t producer_ms, sync_id, emergency_id;
-    uint16_t history[CANOPEN_HISTORY];  /* newest first */
-    uint8_t history_count, emergencies; /* emergencies: newest of the history that are still to be sent */
     uint8_t nmt, behaviour, error_register;
+    uint8_t history_count, emergencies; /* emergencies: newest of the history that are still to be sent */
     uint8_t due;
-    uint8_t received;            /* bits: RPDOs with data that waits for SYNC; from 16 on: those with a deadline */
-    uint8_t trouble;             /* bits: CANOPEN_TROUBLE_… */
-    uint8_t syncs[CANOPEN_PDOS]; /* since each TPDO was sent */
-    uint8_t sdo_answer[8];
-    uint8_t sdo_data[4]; /* of a segmented transfer */
-    uint16_t sdo_index;
+    uint8_t received; /* bits: RPDOs with data that waits for SYNC; from 16 on: those with a deadline */
+    uint8_t trouble;  /* bits: CANOPEN_TROUBLE_… */
     uint8_t sdo_sub, sdo_row, sdo_at, sdo_step;
     /* the drive */
     uint8_t state, ending, ramp; /* ending: state after the ramp to standstill; CANOPEN_NO_ENDING: no ramp */
@@ -132,10 +120,22 @@ typedef struct canopen_axis {
     int16_t connection_option, quick_stop_option, shutdown_option, disable_option, halt_option, fault_option;
     int16_t target_torque, torque_offset;
     uint16_t max_torque, following_ms, speed_window, speed_threshold;
+    uint16_t producer_ms, sync_id, emergency_id, sdo_index;
+    uint32_t consumer, consumer_us, producer_us; /* consumer: as 0x1016 has it */
     uint32_t following_window, following_us, position_window;
     int32_t target_position, target_speed, speed_offset;
     int32_t goal, next_goal; /* of profile position */
     uint32_t max_speed, profile_speed, acceleration, deceleration, quick_deceleration;
+    laconic_real rated_A; /* of the drive's settings; 0x6072 limits what is used of it */
+    laconic_real speed;   /* demand, counts/s */
+    laconic_real left_s;  /* until the interpolation reaches 0x607A */
+    laconic_real demand_rest;
+    int64_t demand; /* position, counts; not wrapped */
+    uint8_t sdo_answer[8];
+    uint8_t sdo_data[4];               /* of a segmented transfer */
+    uint8_t syncs[CANOPEN_PDOS];       /* since each TPDO was sent */
+    uint16_t history[CANOPEN_HISTORY]; /* newest first */
+    canopen_pdo pdo[2 * CANOPEN_PDOS]; /* received, then sent */
 } canopen_axis;
 
 enum { CANOPEN_NO_ENDING = 0xFF };
@@ -156,12 +156,17 @@ typedef struct canopen_node {
     laconic_real watchdog_s; /* of the scene: the deadline of RPDO 2 to 4 after a reset; 0: none */
 } canopen_node;
 
+/* Six bytes, since there are nearly a hundred of them. */
 typedef struct canopen_row {
     uint16_t index;
-    uint8_t sub, last, form, source;
-    uint16_t at; /* offset in canopen_axis, or the value */
+    uint8_t subs; /* the first and, times 16, the last sub-index */
+    uint8_t form;
+    uint16_t from; /* CANOPEN_FROM_…, with the offset in canopen_axis, the value or the canopen_call */
 } canopen_row;
-enum { CANOPEN_FROM_AXIS, CANOPEN_FROM_ROW, CANOPEN_FROM_CALL };
+enum { CANOPEN_FROM_AXIS = 0, CANOPEN_FROM_ROW = 0x4000, CANOPEN_FROM_CALL = 0x8000, CANOPEN_FROM = 0xC000 };
+
+static inline uint8_t canopen_sub(const canopen_row *row) { return row->subs & 15U; }
+static inline bool canopen_is_from_axis(const canopen_row *row) { return (row->from & CANOPEN_FROM) == 0; }
 
 static inline uint8_t canopen_id(const canopen_node *on) { return (uint8_t)on->drive->settings.node_id; }
 

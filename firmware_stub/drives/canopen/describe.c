@@ -16,7 +16,7 @@ typedef struct entry {
 #define OF_GROUP(index, kind, name) {index, 0, 0, kind, name},
 #define OF_FIELD(index, sub, last, type, access, member, initial, name) {index, sub, last, (type) | (access), name},
 #define OF_VALUE(index, sub, last, type, access, value, name) {index, sub, last, (type) | (access), name},
-#define OF_CALL(index, sub, last, type, access, name) {index, sub, last, (type) | (access), name},
+#define OF_CALL(index, sub, last, type, access, what, name) {index, sub, last, (type) | (access), name},
 #define NOTHING(...)
 
 static const entry entries[] = {CANOPEN_OBJECTS(NOTHING, OF_FIELD, OF_VALUE, OF_CALL)};

@@ -5,11 +5,13 @@
 #include <string.h>
 
 #define NOTHING(...)
-#define FROM_AXIS(index, sub, last, type, access, member, initial, name) \
-    {index, sub, last, (type) | (access), CANOPEN_FROM_AXIS, (uint16_t)offsetof(canopen_axis, member)},
+#define AT(member) offsetof(canopen_axis, member)
+#define ROW(index, sub, last, type, access, from) {index, (sub) | (last) << 4, (type) | (access), (uint16_t)(from)},
+#define FROM_AXIS(index, sub, last, type, access, member, initial, name) ROW(index, sub, last, type, access, AT(member))
 #define FROM_ROW(index, sub, last, type, access, value, name) \
-    {index, sub, last, (type) | (access), CANOPEN_FROM_ROW, value},
-#define FROM_CALL(index, sub, last, type, access, name) {index, sub, last, (type) | (access), CANOPEN_FROM_CALL, 0},
+    ROW(index, sub, last, type, access, CANOPEN_FROM_ROW | (value))
+#define FROM_CALL(index, sub, last, type, access, what, name) \
+    ROW(index, sub, last, type, access, CANOPEN_FROM_CALL | CANOPEN_CALL_##what)
 
 static const canopen_row rows[] = {CANOPEN_OBJECTS(NOTHING, FROM_AXIS, FROM_ROW, FROM_CALL)};
 enum { ROWS = sizeof rows / sizeof rows[0] };
@@ -17,9 +19,10 @@ enum { ROWS = sizeof rows / sizeof rows[0] };
 typedef struct limit {
     uint16_t index;
     uint8_t sub;
-    uint32_t low, high;
+    int8_t low;
+    uint16_t high; /* UINT16_MAX: that of the type */
 } limit;
-#define ONE_LIMIT(index, sub, low, high) {index, sub, (uint32_t)(low), high},
+#define ONE_LIMIT(index, sub, low, high) {index, sub, low, (high) > UINT16_MAX ? UINT16_MAX : (high)},
 static const limit limits[] = {CANOPEN_LIMITS(ONE_LIMIT)};
 
 const canopen_row *canopen_row_at(uint8_t number) { return number < ROWS ? &rows[number] : NULL; }
@@ -31,7 +34,7 @@ uint8_t canopen_find(uint16_t index, uint8_t sub, uint32_t *abort) {
     *abort = CANOPEN_NO_OBJECT;
     for (uint8_t k = 0; k < ROWS; k++) {
         if (rows[k].index != first) continue;
-        if (sub >= rows[k].sub && sub <= rows[k].last) return k;
+        if (sub >= canopen_sub(&rows[k]) && sub <= rows[k].subs >> 4) return k;
         *abort = CANOPEN_NO_SUB;
     }
     return CANOPEN_NO_ROW;
@@ -43,8 +46,10 @@ uint8_t canopen_size(const canopen_row *row) {
     return sizes[row->form & 15U];
 }
 
+/* By the lowest bits of 0x1008, 0x1009 and 0x100A. */
 const char *canopen_text(uint16_t index) {
-    return index == 0x1008 ? "Laconic drive of a simulated wheel" : index == 0x1009 ? "simulated" : "0.1.0";
+    static const char *const texts[4] = {"Laconic drive of a simulated wheel", "simulated", "0.1.0", ""};
+    return texts[index & 3U];
 }
 
 void canopen_put(uint8_t *bytes, uint32_t value, uint8_t count) {
@@ -77,35 +82,35 @@ static uint32_t history_entry(const canopen_axis *axis, uint8_t sub, uint32_t *v
     return 0;
 }
 
-static uint32_t call(const canopen_node *on, uint16_t index, uint8_t sub) {
+static uint32_t call(const canopen_node *on, canopen_call what, uint8_t sub) {
     const canopen_axis *axis = on->axis;
     const laconic_wheel_drive *drive = on->drive;
-    switch (index) {
-    case 0x1000: return 0x00020192; /* a servo drive after CiA 402 */
-    case 0x1005: return axis->sync_id;
-    case 0x1014: return canopen_cob_id(axis->emergency_id);
-    case 0x1018: return canopen_id(on);
-    case 0x1200: return (sub == 1 ? 0x600U : 0x580U) + canopen_id(on);
-    case 0x6041: return canopen_statusword(on);
-    case 0x6062: return (uint32_t)axis->demand;
-    case 0x6064: return (uint32_t)drive->encoder.count;
-    case 0x606B: return (uint32_t)canopen_rounded(axis->speed);
-    case 0x606C: return (uint32_t)canopen_rounded(canopen_actual_speed(drive));
-    case 0x6075: return milli(axis->rated_A);
-    case 0x6076: return milli(axis->rated_A * drive->settings.torque_constant_Nm_per_A);
-    case 0x6079: return milli(drive->settings.supply_V);
-    case 0x60A8: return 0x00B50000; /* increments, by the codes of CiA 303-2: */
-    case 0x60A9: return 0x00B50300; /* ... per second */
-    case 0x60AA: return 0x00B55700; /* ... per square second */
-    case 0x60F4: return (uint32_t)(axis->demand - drive->encoder.count);
-    case 0x6077:
-    case 0x6078: return (uint32_t)permille(on);
-    default: return (uint32_t)drive->settings.encoder_counts; /* 0x608F, 0x6092 */
+    switch (what) {
+    case CANOPEN_CALL_DEVICE_TYPE: return 0x00020192; /* a servo drive after CiA 402 */
+    case CANOPEN_CALL_SYNC_ID: return axis->sync_id;
+    case CANOPEN_CALL_EMERGENCY_ID: return canopen_cob_id(axis->emergency_id);
+    case CANOPEN_CALL_SDO_ID: return (sub == 1 ? 0x600U : 0x580U) + canopen_id(on);
+    case CANOPEN_CALL_SERIAL_NUMBER: return canopen_id(on);
+    case CANOPEN_CALL_STATUSWORD: return canopen_statusword(on);
+    case CANOPEN_CALL_DEMAND: return (uint32_t)axis->demand;
+    case CANOPEN_CALL_POSITION: return (uint32_t)drive->encoder.count;
+    case CANOPEN_CALL_FOLLOWING_ERROR: return (uint32_t)(axis->demand - drive->encoder.count);
+    case CANOPEN_CALL_DEMAND_SPEED: return (uint32_t)canopen_rounded(axis->speed);
+    case CANOPEN_CALL_SPEED: return (uint32_t)canopen_rounded(canopen_actual_speed(drive));
+    case CANOPEN_CALL_TORQUE: return (uint32_t)permille(on);
+    case CANOPEN_CALL_SUPPLY: return milli(drive->settings.supply_V);
+    case CANOPEN_CALL_RATED_CURRENT: return milli(axis->rated_A);
+    case CANOPEN_CALL_RATED_TORQUE: return milli(axis->rated_A * drive->settings.torque_constant_Nm_per_A);
+    case CANOPEN_CALL_COUNTS: return (uint32_t)drive->settings.encoder_counts;
+    case CANOPEN_CALL_POSITION_UNIT: return 0x00B50000;     /* increments, by the codes of CiA 303-2: */
+    case CANOPEN_CALL_SPEED_UNIT: return 0x00B50300;        /* ... per second */
+    case CANOPEN_CALL_ACCELERATION_UNIT: return 0x00B55700; /* ... per square second */
+    default: return 0;
     }
 }
 
 static uint32_t from_axis(const canopen_axis *axis, const canopen_row *row) {
-    const uint8_t *at = (const uint8_t *)axis + row->at;
+    const uint8_t *at = (const uint8_t *)axis + row->from;
     uint16_t two;
     uint32_t four;
     switch (canopen_size(row)) {
@@ -116,11 +121,16 @@ static uint32_t from_axis(const canopen_axis *axis, const canopen_row *row) {
 }
 
 uint32_t canopen_read(const canopen_node *on, const canopen_row *row, uint16_t index, uint8_t sub, uint32_t *value) {
-    if (is_of_pdo(index) && row->source == CANOPEN_FROM_CALL) return canopen_pdo_read(on->axis, index, sub, value);
-    if (index == 0x1003) return history_entry(on->axis, sub, value);
-    *value = row->source == CANOPEN_FROM_AXIS  ? from_axis(on->axis, row)
-             : row->source == CANOPEN_FROM_ROW ? row->at
-                                               : call(on, index, sub);
+    const uint16_t what = row->from & (uint16_t)~CANOPEN_FROM;
+    switch (row->from & CANOPEN_FROM) {
+    case CANOPEN_FROM_AXIS: *value = from_axis(on->axis, row); break;
+    case CANOPEN_FROM_ROW: *value = what; break;
+    default:
+        if (what == CANOPEN_CALL_PDO) return canopen_pdo_read(on->axis, index, sub, value);
+        if (what == CANOPEN_CALL_HISTORY) return history_entry(on->axis, sub, value);
+        *value = call(on, (canopen_call)what, sub);
+        break;
+    }
     return 0;
 }
 
@@ -136,20 +146,20 @@ static uint32_t check_limits(const canopen_row *row, uint8_t sub, uint32_t value
     for (size_t k = 0; k < sizeof limits / sizeof limits[0]; k++) {
         const limit *its = &limits[k];
         if (its->index != row->index || its->sub != sub) continue;
-        const int32_t number = as_signed(value, canopen_size(row));
-        if (is_signed ? number > (int32_t)its->high : value > its->high) return CANOPEN_TOO_HIGH;
-        if (is_signed ? number < (int32_t)its->low : value < its->low) return CANOPEN_TOO_LOW;
+        const int32_t number = is_signed ? as_signed(value, canopen_size(row)) : 0;
+        if (is_signed ? number > its->high : its->high < UINT16_MAX && value > its->high) return CANOPEN_TOO_HIGH;
+        if (is_signed ? number < its->low : value < (uint32_t)its->low) return CANOPEN_TOO_LOW;
     }
     return 0;
 }
 
 /* Values between the limits that are refused all the same. */
-static uint32_t check(uint16_t index, uint32_t value) {
+static uint32_t check(uint16_t at, uint32_t value) {
     bool wrong = false;
-    switch (index) {
-    case 0x1016: wrong = value >> 16 > 127; break;
-    case 0x605A: wrong = value == 3 || value == 4; break; /* ramps at the limits of current and voltage */
-    case 0x6060: wrong = !canopen_has_mode((int8_t)value); break;
+    switch (at) {
+    case AT(consumer): wrong = value >> 16 > 127; break;
+    case AT(quick_stop_option): wrong = value == 3 || value == 4; break; /* ramps at the limits of current, voltage */
+    case AT(mode): wrong = !canopen_has_mode((int8_t)value); break;
     default: break;
     }
     return wrong ? CANOPEN_VALUE : 0;
@@ -157,23 +167,23 @@ static uint32_t check(uint16_t index, uint32_t value) {
 
 static uint32_t write_axis(const canopen_node *on, const canopen_row *row, uint8_t sub, uint32_t value) {
     uint32_t abort = check_limits(row, sub, value);
-    if (abort == 0) abort = check(row->index, value);
+    if (abort == 0) abort = check(row->from, value);
     if (abort != 0) return abort;
     const uint16_t before = on->axis->controlword;
     const uint16_t two = (uint16_t)value;
-    uint8_t *at = (uint8_t *)on->axis + row->at;
+    uint8_t *at = (uint8_t *)on->axis + row->from;
     switch (canopen_size(row)) {
     case 1: *at = (uint8_t)value; break;
     case 2: memcpy(at, &two, 2); break;
     default: memcpy(at, &value, 4); break;
     }
-    switch (row->index) {
-    case 0x1016: on->axis->trouble &= (uint8_t)~CANOPEN_LISTENS; break; /* the next heartbeat starts the watch */
-    case 0x1017: on->axis->producer_us = on->now_us; break;
-    case 0x6040: canopen_control(on, before); break;
-    case 0x6060: canopen_take_mode(on); break;
-    case 0x6072: on->drive->settings.current_limit_A = on->axis->rated_A * (laconic_real)value / 1000; break;
-    case 0x607A: on->axis->set_point |= CANOPEN_TARGET_IS_NEW; break;
+    switch (row->from) {
+    case AT(consumer): on->axis->trouble &= (uint8_t)~CANOPEN_LISTENS; break; /* the next heartbeat starts the watch */
+    case AT(producer_ms): on->axis->producer_us = on->now_us; break;
+    case AT(controlword): canopen_control(on, before); break;
+    case AT(mode): canopen_take_mode(on); break;
+    case AT(max_torque): on->drive->settings.current_limit_A = on->axis->rated_A * (laconic_real)value / 1000; break;
+    case AT(target_position): on->axis->set_point |= CANOPEN_TARGET_IS_NEW; break;
     default: break;
     }
     return 0;
@@ -197,17 +207,21 @@ static uint32_t write_sync_id(canopen_axis *axis, uint32_t value) {
     return abort;
 }
 
+static uint32_t clear_history(canopen_axis *axis, uint32_t value) {
+    if (value != 0) return CANOPEN_VALUE;
+    axis->history_count = 0;
+    return 0;
+}
+
 uint32_t canopen_write(const canopen_node *on, const canopen_row *row, uint16_t index, uint8_t sub, uint32_t value) {
     uint32_t present = 0;
-    if (row->source == CANOPEN_FROM_AXIS) return write_axis(on, row, sub, value);
-    if (is_of_pdo(index)) return canopen_pdo_write(on, index, sub, value);
-    switch (index) {
-    case 0x1003:
-        if (value != 0) return CANOPEN_VALUE;
-        on->axis->history_count = 0;
-        return 0;
-    case 0x1005: return write_sync_id(on->axis, value);
-    case 0x1014: return value & 1U << 30 ? CANOPEN_VALUE : canopen_store_cob_id(&on->axis->emergency_id, value);
+    if (canopen_is_from_axis(row)) return write_axis(on, row, sub, value);
+    switch (row->from) {
+    case CANOPEN_FROM_CALL | CANOPEN_CALL_PDO: return canopen_pdo_write(on, index, sub, value);
+    case CANOPEN_FROM_CALL | CANOPEN_CALL_HISTORY: return clear_history(on->axis, value);
+    case CANOPEN_FROM_CALL | CANOPEN_CALL_SYNC_ID: return write_sync_id(on->axis, value);
+    case CANOPEN_FROM_CALL | CANOPEN_CALL_EMERGENCY_ID:
+        return value & 1U << 30 ? CANOPEN_VALUE : canopen_store_cob_id(&on->axis->emergency_id, value);
     default: /* a fact: only the value that it has */
         canopen_read(on, row, index, sub, &present);
         return value == present ? 0 : CANOPEN_VALUE;

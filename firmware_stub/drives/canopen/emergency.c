@@ -1,5 +1,6 @@
 /* Errors of a node: register, history, EMCY frames, and what the loss of the controller does. */
 #include "canopen.h"
+#include "octets.h"
 
 /* Bit of the error register by the class of the code: current, voltage, temperature, communication, the device. */
 static uint8_t register_bit(uint16_t code) {
@@ -53,9 +54,9 @@ void canopen_send_emergency(const canopen_node *on, laconic_frame *frame) {
     const uint16_t code = axis->emergencies > 0 ? axis->history[axis->emergencies - 1] : 0;
     frame->id = axis->emergency_id & 0x7FFU;
     frame->length = 8;
-    canopen_put(frame->data, code, 2);
+    octets_put_u16(frame->data, code);
     frame->data[2] = axis->error_register;
-    canopen_put(frame->data + 3, on->drive->faults, 4);
+    octets_put_u32(frame->data + 3, on->drive->faults);
     frame->data[7] = 0;
     if (axis->emergencies > 0) axis->emergencies--;
     if (axis->emergencies > 0 || (code != 0 && axis->error_register == 0)) axis->due |= CANOPEN_DUE_EMERGENCY;

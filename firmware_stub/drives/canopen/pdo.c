@@ -8,9 +8,8 @@
 
 enum { SYNCHRONOUS_LAST = 240, EVENT_FIRST = 254 };
 
-static canopen_pdo *pdo_of(canopen_axis *axis, uint16_t index) {
-    return (index & 0x0800U) != 0 ? &axis->tpdo[index & 3U] : &axis->rpdo[index & 3U];
-}
+/* Number of the PDO of an object: bit 11 of its index tells those that are sent. */
+static uint32_t number_of(uint16_t index) { return (index & 3U) | (index >> 9 & CANOPEN_PDOS); }
 
 static bool is_on(const canopen_pdo *pdo) { return (pdo->cob_id & CANOPEN_OFF) == 0; }
 
@@ -28,15 +27,15 @@ typedef struct preset {
     uint16_t index[2]; /* 0: none */
 } preset;
 
-static const preset presets[2][CANOPEN_PDOS] = {
-    {{0x200, 0, 255, {0x6040, 0x6060}},
-     {0x300, 0, 255, {0x60FF, 0}},
-     {0x400, 0, 255, {0x607A, 0}},
-     {0x500, 0, 255, {0x6071, 0}}},
-    {{0x180, 100, 255, {0x6041, 0}},
-     {0x280, 0, 1, {0x6064, 0x606C}},
-     {0x380 | CANOPEN_OFF, 0, 1, {0x6077, 0x6078}},
-     {0x480 | CANOPEN_OFF, 0, 1, {0x60F4, 0x6061}}},
+static const preset presets[2 * CANOPEN_PDOS] = {
+    {0x200, 0, 255, {0x6040, 0x6060}},
+    {0x300, 0, 255, {0x60FF, 0}},
+    {0x400, 0, 255, {0x607A, 0}},
+    {0x500, 0, 255, {0x6071, 0}},
+    {0x180 | CANOPEN_NO_REMOTE, 100, 255, {0x6041, 0}},
+    {0x280 | CANOPEN_NO_REMOTE, 0, 1, {0x6064, 0x606C}},
+    {0x380 | CANOPEN_NO_REMOTE | CANOPEN_OFF, 0, 1, {0x6077, 0x6078}},
+    {0x480 | CANOPEN_NO_REMOTE | CANOPEN_OFF, 0, 1, {0x60F4, 0x6061}},
 };
 
 /* A scene's watchdog watches the targets, which a controller sends all the time; the controlword it may send once. */
@@ -44,21 +43,17 @@ void canopen_start_pdos(const canopen_node *on) {
     canopen_axis *axis = on->axis;
     const laconic_real wanted_ms = on->watchdog_s * 1000 + (laconic_real)0.5;
     const uint16_t watchdog_ms = wanted_ms < UINT16_MAX ? (uint16_t)wanted_ms : UINT16_MAX;
+    memset(axis->pdo, 0, sizeof axis->pdo);
     for (int k = 0; k < 2 * CANOPEN_PDOS; k++) {
-        const preset *from = &presets[k / CANOPEN_PDOS][k % CANOPEN_PDOS];
-        canopen_pdo *pdo = k < CANOPEN_PDOS ? &axis->rpdo[k] : &axis->tpdo[k - CANOPEN_PDOS];
+        const preset *from = &presets[k];
+        canopen_pdo *pdo = &axis->pdo[k];
         uint32_t abort;
-        memset(pdo, 0, sizeof *pdo);
         memset(pdo->row, CANOPEN_NO_ROW, sizeof pdo->row);
         pdo->cob_id = (uint16_t)(from->cob_id + canopen_id(on));
-        if (k >= CANOPEN_PDOS) pdo->cob_id |= CANOPEN_NO_REMOTE;
         pdo->type = from->type;
-        pdo->timer_ms = from->timer_ms;
-        if (k > 0 && k < CANOPEN_PDOS) pdo->timer_ms = watchdog_ms;
-        while (pdo->count < 2 && from->index[pdo->count] != 0) {
+        pdo->timer_ms = k > 0 && k < CANOPEN_PDOS ? watchdog_ms : from->timer_ms;
+        for (; pdo->count < 2 && from->index[pdo->count] != 0; pdo->count++)
             pdo->row[pdo->count] = canopen_find(from->index[pdo->count], 0, &abort);
-            pdo->count++;
-        }
     }
     axis->received = 0;
 }
@@ -67,11 +62,11 @@ void canopen_start_pdos(const canopen_node *on) {
 
 static uint32_t mapping_of(const canopen_pdo *pdo, uint8_t k) {
     const canopen_row *row = canopen_row_at(pdo->row[k]);
-    return row == NULL ? 0 : (uint32_t)row->index << 16 | (uint32_t)row->sub << 8 | 8U * canopen_size(row);
+    return row == NULL ? 0 : (uint32_t)row->index << 16 | (uint32_t)canopen_sub(row) << 8 | 8U * canopen_size(row);
 }
 
 uint32_t canopen_pdo_read(const canopen_axis *axis, uint16_t index, uint8_t sub, uint32_t *value) {
-    const canopen_pdo *pdo = pdo_of((canopen_axis *)axis, index);
+    const canopen_pdo *pdo = &axis->pdo[number_of(index)];
     if (index & 0x0200U) {
         *value = sub == 0 ? pdo->count : mapping_of(pdo, (uint8_t)(sub - 1));
         return 0;
@@ -120,13 +115,15 @@ static uint32_t set_cob_id(const canopen_node *on, canopen_pdo *pdo, uint16_t in
     if (abort != 0) return abort;
     pdo->at_us = on->now_us;
     memset(pdo->data, 0, sizeof pdo->data);
-    if (index & 0x0800U) on->axis->syncs[index & 3U] = 0;
-    if ((index & 0x0800U) == 0) on->axis->received &= (uint8_t)~(17U << (index & 3U));
+    if (index & 0x0800U)
+        on->axis->syncs[index & 3U] = 0;
+    else
+        on->axis->received &= (uint8_t)~(17U << (index & 3U));
     return 0;
 }
 
 uint32_t canopen_pdo_write(const canopen_node *on, uint16_t index, uint8_t sub, uint32_t value) {
-    canopen_pdo *pdo = pdo_of(on->axis, index);
+    canopen_pdo *pdo = &on->axis->pdo[number_of(index)];
     if ((index & 0x0200U) != 0) {
         if (is_on(pdo)) return CANOPEN_PRESENT_STATE;
         if (sub == 0) return set_count(pdo, value);
@@ -154,14 +151,14 @@ static void apply(const canopen_node *on, const canopen_pdo *pdo) {
     for (uint8_t k = 0; k < pdo->count; k++) {
         const canopen_row *row = canopen_row_at(pdo->row[k]);
         const uint8_t size = canopen_size(row);
-        if (row->source == CANOPEN_FROM_AXIS) canopen_write(on, row, row->index, row->sub, canopen_get(at, size));
+        if (canopen_is_from_axis(row)) canopen_write(on, row, row->index, canopen_sub(row), canopen_get(at, size));
         at += size;
     }
 }
 
 static void take(const canopen_node *on, int k, const laconic_frame *frame) {
     canopen_axis *axis = on->axis;
-    canopen_pdo *pdo = &axis->rpdo[k];
+    canopen_pdo *pdo = &axis->pdo[k];
     const uint8_t length = length_of(pdo);
     if (frame->length < length) {
         if ((axis->trouble & CANOPEN_TROUBLE_LENGTH) == 0) canopen_emergency(axis, 0x8210);
@@ -185,12 +182,12 @@ bool canopen_take_pdo(const canopen_node *on, const laconic_frame *frame) {
     canopen_axis *axis = on->axis;
     bool taken = false;
     for (int k = 0; k < CANOPEN_PDOS; k++) {
-        const uint16_t awaited = axis->rpdo[k].cob_id & (CANOPEN_OFF | 0x7FF); /* bit 30 means nothing here */
+        const uint16_t awaited = axis->pdo[k].cob_id & (CANOPEN_OFF | 0x7FF); /* bit 30 means nothing here */
         if (!frame->remote && awaited == frame->id) {
             take(on, k, frame);
             taken = true;
         }
-        const uint16_t asked = axis->tpdo[k].cob_id; /* equal only where remote requests are allowed */
+        const uint16_t asked = axis->pdo[CANOPEN_PDOS + k].cob_id; /* equal only where remote requests are allowed */
         if (frame->remote && asked == frame->id) axis->due |= (uint8_t)(CANOPEN_DUE_TPDO << k);
     }
     return taken;
@@ -199,7 +196,7 @@ bool canopen_take_pdo(const canopen_node *on, const laconic_frame *frame) {
 void canopen_check_deadlines(const canopen_node *on) {
     canopen_axis *axis = on->axis;
     for (int k = 0; k < CANOPEN_PDOS; k++) {
-        const canopen_pdo *pdo = &axis->rpdo[k];
+        const canopen_pdo *pdo = &axis->pdo[k];
         const uint8_t watched = (uint8_t)(16U << k);
         if ((axis->received & watched) == 0 || pdo->timer_ms == 0 || !is_on(pdo)) continue;
         if (on->now_us - pdo->at_us <= 1000U * pdo->timer_ms) continue;
@@ -216,14 +213,14 @@ static void pack(const canopen_node *on, const canopen_pdo *pdo, uint8_t data[8]
         const canopen_row *row = canopen_row_at(pdo->row[k]);
         const uint8_t size = canopen_size(row);
         uint32_t value = 0;
-        canopen_read(on, row, row->index, row->sub, &value);
+        canopen_read(on, row, row->index, canopen_sub(row), &value);
         canopen_put(data, value, size);
         data += size;
     }
 }
 
 static void set_due(const canopen_node *on, int k) {
-    on->axis->tpdo[k].at_us = on->now_us;
+    on->axis->pdo[CANOPEN_PDOS + k].at_us = on->now_us;
     on->axis->due |= (uint8_t)(CANOPEN_DUE_TPDO << k);
 }
 
@@ -237,11 +234,11 @@ static bool has_changed(const canopen_node *on, const canopen_pdo *pdo) {
 void canopen_sync(const canopen_node *on) {
     canopen_axis *axis = on->axis;
     for (int k = 0; k < CANOPEN_PDOS; k++) {
-        if ((axis->received & 1U << k) != 0 && is_on(&axis->rpdo[k])) apply(on, &axis->rpdo[k]);
+        if ((axis->received & 1U << k) != 0 && is_on(&axis->pdo[k])) apply(on, &axis->pdo[k]);
     }
     axis->received &= 0xF0U;
     for (int k = 0; k < CANOPEN_PDOS; k++) {
-        const canopen_pdo *pdo = &axis->tpdo[k];
+        const canopen_pdo *pdo = &axis->pdo[CANOPEN_PDOS + k];
         if (!is_on(pdo) || pdo->type > SYNCHRONOUS_LAST) continue;
         const bool due = pdo->type == 0 ? has_changed(on, pdo) : ++axis->syncs[k] >= pdo->type;
         if (due) set_due(on, k);
@@ -251,7 +248,7 @@ void canopen_sync(const canopen_node *on) {
 
 void canopen_find_due_pdos(const canopen_node *on) {
     for (int k = 0; k < CANOPEN_PDOS; k++) {
-        const canopen_pdo *pdo = &on->axis->tpdo[k];
+        const canopen_pdo *pdo = &on->axis->pdo[CANOPEN_PDOS + k];
         const uint32_t passed_us = on->now_us - pdo->at_us;
         if (!is_on(pdo) || pdo->type < EVENT_FIRST || passed_us < 100U * pdo->inhibit_100us) continue;
         if ((pdo->timer_ms != 0 && passed_us >= 1000U * pdo->timer_ms) || has_changed(on, pdo)) set_due(on, k);
@@ -262,14 +259,14 @@ void canopen_find_due_pdos(const canopen_node *on) {
 void canopen_pdos_begin(const canopen_node *on) {
     on->axis->received = 0;
     for (int k = 0; k < CANOPEN_PDOS; k++) {
-        const canopen_pdo *pdo = &on->axis->tpdo[k];
+        const canopen_pdo *pdo = &on->axis->pdo[CANOPEN_PDOS + k];
         on->axis->syncs[k] = 0;
         if (is_on(pdo) && pdo->type >= EVENT_FIRST) set_due(on, k);
     }
 }
 
 void canopen_send_pdo(const canopen_node *on, int k, laconic_frame *frame) {
-    canopen_pdo *pdo = &on->axis->tpdo[k];
+    canopen_pdo *pdo = &on->axis->pdo[CANOPEN_PDOS + k];
     pack(on, pdo, pdo->data);
     frame->id = pdo->cob_id & 0x7FFU;
     frame->length = length_of(pdo);

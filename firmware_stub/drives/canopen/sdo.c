@@ -1,6 +1,7 @@
 /* The SDO server of a node: expedited and segmented up- and downloads, one at a time. A wrong request is answered with
  * an abort code and changes nothing. */
 #include "canopen.h"
+#include "octets.h"
 
 enum { DOWNLOAD_SEGMENT = 0, DOWNLOAD = 1, UPLOAD = 2, UPLOAD_SEGMENT = 3, ABORT = 4 }; /* bits 7–5 of a request */
 enum { EXPEDITED = 2, HAS_SIZE = 1, TOGGLE = 16, LAST = 1 };
@@ -21,7 +22,7 @@ static uint32_t upload(const canopen_node *on, const canopen_row *row) {
     }
     for (const char *text = canopen_text(axis->sdo_index); *text != 0; text++) value++;
     axis->sdo_answer[0] = UPLOAD << 5 | HAS_SIZE;
-    canopen_put(axis->sdo_answer + 4, value, 4);
+    octets_put_u32(axis->sdo_answer + 4, value);
     axis->sdo_step = STEP_UP;
     return 0;
 }
@@ -44,7 +45,7 @@ static uint32_t download(const canopen_node *on, const canopen_row *row, const u
         if (command & HAS_SIZE) abort = check_size(4U - (command >> 2 & 3U), size);
         return abort != 0 ? abort : write(on, row, request + 4);
     }
-    if (command & HAS_SIZE) abort = check_size(canopen_get(request + 4, 4), size);
+    if (command & HAS_SIZE) abort = check_size(octets_u32(request + 4), size);
     if (abort == 0) on->axis->sdo_step = STEP_DOWN;
     return abort;
 }
@@ -52,7 +53,7 @@ static uint32_t download(const canopen_node *on, const canopen_row *row, const u
 static uint32_t initiate(const canopen_node *on, const uint8_t *request) {
     canopen_axis *axis = on->axis;
     uint32_t abort;
-    axis->sdo_index = (uint16_t)canopen_get(request + 1, 2);
+    axis->sdo_index = (uint16_t)octets_u16(request + 1);
     axis->sdo_sub = request[3];
     axis->sdo_at = axis->sdo_step = STEP_NONE;
     axis->sdo_row = canopen_find(axis->sdo_index, axis->sdo_sub, &abort);
@@ -98,19 +99,21 @@ void canopen_sdo(const canopen_node *on, const uint8_t request[8]) {
     const uint8_t kind = request[0] >> 5;
     const bool starts = kind == DOWNLOAD || kind == UPLOAD;
     uint32_t abort = CANOPEN_COMMAND;
-    canopen_put(axis->sdo_answer, 0, 4);
-    canopen_put(axis->sdo_answer + 4, 0, 4);
+    if (kind == ABORT) {
+        axis->sdo_step = STEP_NONE;
+        return;
+    }
+    memset(axis->sdo_answer, 0, sizeof axis->sdo_answer);
     if (starts) abort = initiate(on, request);
     if (kind == DOWNLOAD_SEGMENT || kind == UPLOAD_SEGMENT) abort = segment(on, request);
-    if (abort != 0 || kind == ABORT) axis->sdo_step = STEP_NONE;
-    if (kind == ABORT) return;
-    if (starts || abort != 0) {
-        canopen_put(axis->sdo_answer + 1, axis->sdo_index, 2);
-        axis->sdo_answer[3] = axis->sdo_sub;
-    }
     if (abort != 0) {
+        axis->sdo_step = STEP_NONE;
         axis->sdo_answer[0] = ABORT << 5;
-        canopen_put(axis->sdo_answer + 4, abort, 4);
+        octets_put_u32(axis->sdo_answer + 4, abort);
+    }
+    if (starts || abort != 0) {
+        octets_put_u16(axis->sdo_answer + 1, axis->sdo_index);
+        axis->sdo_answer[3] = axis->sdo_sub;
     }
     axis->due |= CANOPEN_DUE_SDO;
 }

@@ -96,9 +96,15 @@ static void put16(uint8_t *to, laconic_real value) {
     to[1] = (uint8_t)((uint32_t)number & 255U);
 }
 
-/* The encoder of a motor has its own number of counts; its turn is told in 8192 parts. */
+/* The encoder of a motor has its own number of counts; its turn is told in 8192 parts, found by long division. */
 static laconic_real angle_of(const laconic_wheel_drive *drive) {
-    const int64_t parts = (int64_t)laconic_drive_shaft_count(drive) * TURN / drive->settings.encoder_counts;
+    const uint32_t turn = (uint32_t)drive->settings.encoder_counts;
+    uint32_t rest = (uint32_t)laconic_drive_shaft_count(drive), parts = 0;
+    for (int32_t part = TURN; part > 1; part /= 2) {
+        const bool is_beyond = 2U * rest >= turn;
+        rest = 2U * rest - (is_beyond ? turn : 0);
+        parts = 2U * parts + (is_beyond ? 1U : 0U);
+    }
     return (laconic_real)parts;
 }
 

@@ -81,7 +81,8 @@ typedef struct laconic_drive_target {
 typedef struct laconic_wheel_drive {
     laconic_drive_settings settings; /* protocols may change gains and limits */
     laconic_drive_target target;
-    uint32_t faults, limits;
+    uint32_t faults;
+    uint8_t limits;
     bool silent;             /* the controller is, but the drive goes on by itself: by the protocol           */
     bool off_bus, mute;      /* by order: frames do not pass; there is no sign of life. Protocols obey these  */
     uint32_t causes;         /* faults by order that clearing does not end: laconic_drive_break()             */

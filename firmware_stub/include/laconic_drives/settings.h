@@ -14,6 +14,12 @@
 #if LACONIC_NODE_WITH_DRIVES && (!LACONIC_WITH_AXLE_TORQUE || !LACONIC_WITH_WHEEL_ANGLES)
 #error "laconic: drives need LACONIC_WITH_AXLE_TORQUE and LACONIC_WITH_WHEEL_ANGLES, or set LACONIC_NODE_WITH_DRIVES=0"
 #endif
+#ifndef LACONIC_NODE_DRIVES_ONLY
+#define LACONIC_NODE_DRIVES_ONLY 0 /* 1 leaves out lockstep, free run and the frames that move the vehicle in them */
+#endif
+#if LACONIC_NODE_DRIVES_ONLY && !LACONIC_NODE_WITH_DRIVES
+#error "laconic: LACONIC_NODE_DRIVES_ONLY leaves nothing to do without LACONIC_NODE_WITH_DRIVES"
+#endif
 
 /* All drives of a vehicle. */
 typedef struct laconic_drive_plan {

@@ -38,15 +38,22 @@ typedef struct laconic_parameters {
 #define LACONIC_LOADER_EVERY(X) LACONIC_PARAMETER_FIELDS(X) LACONIC_LOADER_DRIVES(X) LACONIC_LOADER_SENSORS(X)
 #define LACONIC_LOADER_FIELDS (0 LACONIC_LOADER_EVERY(LACONIC_LOADER_ONE))
 
+/* Bit = item from 1; bit 0 where the field has none. */
+#if LACONIC_MAX_WHEELS < 8 && LACONIC_MAX_SUPPORTS < 8
+typedef uint8_t laconic_loader_items;
+#else
+typedef uint32_t laconic_loader_items;
+#endif
+
 typedef struct laconic_loader {
-    laconic_parameters parameters;
-    uint32_t checksum; /* CRC-32 so far                                                  */
-    uint16_t frame_count;
     uint8_t status;                /* LACONIC_WIRE_STATUS_… of the first refused frame; 0: none      */
     uint8_t field, item;           /* … and the field and item that it refuses                       */
     uint8_t half_field, half_item; /* of the double whose upper half is still to come; 0: none */
+    uint16_t frame_count;
+    uint32_t checksum; /* CRC-32 so far                                                  */
     uint32_t half;
-    uint32_t given[LACONIC_LOADER_FIELDS]; /* bit = item, 0 where the field has none                   */
+    laconic_parameters parameters;
+    laconic_loader_items given[LACONIC_LOADER_FIELDS];
 } laconic_loader;
 
 void laconic_loader_begin(laconic_loader *loader);

@@ -68,31 +68,32 @@ typedef struct laconic_node_free_run {
     uint32_t worst_lateness_us;
 } laconic_node_free_run;
 
+/* Small members come first: small processors reach them by shorter instructions. */
 typedef struct laconic_node {
-    laconic_node_config config;
     uint8_t state; /* LACONIC_WIRE_STATE_…                                     */
     uint8_t send;  /* chosen frames: LACONIC_NODE_SEND_…                       */
     bool raw_fd;
-    uint32_t pending;    /* frames to be sent: bit = offset of the identifier        */
     uint8_t wheel_group; /* next WHEEL_SPEED group                                   */
 #if LACONIC_NODE_WITH_SENSORS
     uint8_t angle_group;   /* next WHEEL_ANGLE group                                  */
     uint8_t encoder_wheel; /* of the next ENCODER                                     */
 #endif
     uint8_t counter_page;
-    uint8_t groups_seen; /* VOLTAGE groups since the watchdog was fed                */
-    uint32_t heartbeat_us;
+    uint8_t groups_seen;  /* VOLTAGE groups since the watchdog was fed                */
     uint16_t answers_due; /* RESULTs to be sent: bit = offset of the answered frame    */
-    laconic_node_result answer[LACONIC_WIRE_RIG_OFFSETS]; /* the last to each kind, for when its frame is repeated */
-    laconic_node_session session;
-    laconic_node_lockstep lockstep;
+    uint32_t pending;     /* frames to be sent: bit = offset of the identifier        */
+    uint32_t heartbeat_us;
     laconic_node_free_run free_run;
+    laconic_node_lockstep lockstep;
     laconic_node_counters counters;
-    uint8_t sent[LACONIC_WIRE_NODE_OFFSETS]; /* counts of the frames that were sent                   */
+    laconic_node_session session;
+    laconic_node_config config;
+    laconic_node_result answer[LACONIC_WIRE_RIG_OFFSETS]; /* the last to each kind, for when its frame is repeated */
+    uint8_t sent[LACONIC_WIRE_NODE_OFFSETS];              /* counts of the frames that were sent                   */
     laconic_loader loader;
     laconic_start start; /* RESET returns to it                                      */
     laconic_plant plant;
-    laconic_input input[3]; /* held: [0]; sampled: start, middle, end                   */
+    laconic_input input[LACONIC_NODE_DRIVES_ONLY ? 1 : 3]; /* held: [0]; sampled: start, middle, end */
     laconic_raw_input raw_input;
     laconic_raw_output raw_output;
 #if LACONIC_NODE_WITH_DRIVES

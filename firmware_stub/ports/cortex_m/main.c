@@ -107,8 +107,8 @@ void board_end(int status) {
     board_fault();
 }
 
-int main(void) {
-    board_init();
+/* In a function of its own, so that its numbers take no room on the stack afterwards. */
+static void begin(void) {
     laconic_node_config config = {.id_base = LACONIC_WIRE_ID_BASE,
                                   .can_fd = LACONIC_NODE_CAN_FD != 0,
                                   .method = port_method,
@@ -116,6 +116,11 @@ int main(void) {
     port_add_protocols(&config);
     laconic_slcan_init(&slcan, 0);
     laconic_node_init(&node, &config, board_now_us());
+}
+
+int main(void) {
+    board_init();
+    begin();
     for (;;) {
         const bool received = receive_some();
         laconic_node_on_tick(&node, board_now_us());

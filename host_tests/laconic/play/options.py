@@ -37,7 +37,7 @@ class PlayOptions:
     live: bool = False
     faults: tuple[str, ...] = ()
     bus_faults: tuple[str, ...] = ()
-    seed: int = 1
+    seed: int | None = None
     stop_within_s: float | None = None
     stop_distance_m: float | None = None
 
@@ -45,6 +45,11 @@ class PlayOptions:
     def is_served(self) -> bool:
         """Whether the node itself is on the controller's bus, so that frames do not pass through this process."""
         return self.board == "bus" or (self.board == "process" and self.listen is not None)
+
+    @property
+    def random_seed(self) -> int:
+        """Of random faults; 1 unless one is given."""
+        return 1 if self.seed is None else self.seed
 
     @property
     def limits(self) -> Limits:
@@ -75,6 +80,9 @@ def check_options(options: PlayOptions) -> None:
         raise BadInput(f"--duration {options.duration_s:g}: give seconds above 0 and below 1e9, or leave it out to "
                        "play until Ctrl-C")
     check_bitrate(options.bitrate)
+    if options.seed is not None and "random" not in options.faults and not options.bus_faults:
+        raise BadInput(f"--seed {options.seed}: nothing here is random; give --fault random or a --bus-fault, or "
+                       "leave --seed out")
     options.limits.check()
     if options.bus_faults and options.is_served:
         raise BadInput(f"--bus-fault {options.bus_faults[0]}: with --board {options.board} frames do not pass through "

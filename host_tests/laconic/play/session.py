@@ -35,8 +35,8 @@ def play(scene: Scene, options: PlayOptions, *, clock: Clock | None = None, othe
     check_options(options)
     check_playable(scene)
     place = place_of(scene, options)
-    read_faults(options.faults, place.can_fail, options.duration_s, options.seed)
-    read_bus_faults(options.bus_faults, place.can_fail, options.seed)
+    read_faults(options.faults, place.can_fail, options.duration_s, options.random_seed)
+    read_bus_faults(options.bus_faults, place.can_fail, options.random_seed)
     traffic, seconds = Traffic(clock or Clock()), Seconds()
     with Interruption() as signals, place.opened(traffic.clock) as (vehicle, bus), logged(traffic, options.logs), \
             shown(traffic, scene, options) as moved:

@@ -20,8 +20,8 @@ class Trouble:
 
     def __init__(self, place: Place, options: PlayOptions, vehicle: Played, traffic: Traffic, bus: can.BusABC):
         self.limits, self.bus = options.limits, bus
-        self.faults = read_faults(options.faults, place.can_fail, options.duration_s, options.seed)
-        bus_faults = read_bus_faults(options.bus_faults, place.can_fail, options.seed)
+        self.faults = read_faults(options.faults, place.can_fail, options.duration_s, options.random_seed)
+        bus_faults = read_bus_faults(options.bus_faults, place.can_fail, options.random_seed)
         if bus_faults:
             self.bus = faulty_bus(bus, bus_faults, lambda: traffic.clock.now_us() / 1e6)
         self.others: list[Callable[[int], int | None]] = []

@@ -39,7 +39,9 @@ BOARDS = {board.name: board for board in (
     Board("microbit", "microbit", "single", "BBC micro:bit, Cortex-M0"),
     Board("an386-small", "mps2-an386", "single", "Cortex-M4F, one method, four wheels"),
     Board("an386-drives", "mps2-an386", "single", "the same with RoboMaster drives"),
-    Board("an386-odrive", "mps2-an386", "single", "the same with ODrives"))}
+    Board("an386-odrive", "mps2-an386", "single", "the same with ODrives"),
+    Board("an386-canopen", "mps2-an386", "single", "the same with CANopen drives"),
+    Board("an386-moteus", "mps2-an386", "single", "the same with moteus controllers"))}
 KINDS = ("virtual", "process", *BOARDS)
 
 

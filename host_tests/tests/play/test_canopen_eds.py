@@ -109,3 +109,11 @@ def test_play_writes_the_file_for_the_drives_of_a_scene_and_refuses_other_protoc
     assert canopen.import_od(str(path), node_id=4)[0x608F][1].default == 30
     assert run(["play", "robomaster_mecanum", "--eds", str(path)]) == 2
     assert "--drives canopen" in capsys.readouterr().err
+
+
+def test_windows_of_a_coarse_encoder_are_a_small_part_of_its_speed_range() -> None:
+    """Thirty counts a turn: the usual 500 counts/s would be the whole range of the drive."""
+    eds = ConfigParser()
+    eds.read_string(eds_of_scene(read_scene("canopen_agv"), "canopen"))
+    found = {index: int(eds[index]["DefaultValue"], 0) for index in ("6067", "606D", "606F")}
+    assert found == {"6067": 1, "606D": 2, "606F": 1}

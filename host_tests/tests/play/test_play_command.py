@@ -18,6 +18,8 @@ from play_support import DBC, PLAY, Codec, played
 from rich.console import Console
 
 from laconic.cli.main import run
+from laconic.errors import BadInput
+from laconic.paths import built
 from laconic.play.live import TrafficView
 from laconic.play.options import PlayOptions
 from laconic.play.session import play
@@ -39,6 +41,19 @@ def test_a_run_prints_drives_port_and_lateness_and_writes_its_results(tmp_path: 
     assert suite.get("name") == "laconic play ez-Wheel SWD Starter Kit canopen" and suite.get("failures") == "0"
     with can.LogReader(log) as reader:
         assert {0x704, 0x705} <= {message.arbitration_id for message in reader}  # the boot-up messages
+
+
+def test_a_seed_without_anything_random_is_refused_with_the_remedy(capsys: pytest.CaptureFixture[str]) -> None:
+    assert run([*AGV, "--duration", "0.05", "--seed", "7"]) == 2
+    assert "--seed 7: nothing here is random; give --fault random or a --bus-fault" in capsys.readouterr().err
+
+
+def test_a_node_that_is_not_built_names_its_target(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setenv("LACONIC_BUILD_DIR", str(tmp_path))
+    with pytest.raises(BadInput, match="not built yet; run `.*--build build --target laconic_node`"):
+        built("lib/liblaconic_node_double.so")
+    with pytest.raises(BadInput, match="--target laconic_firmware`"):
+        built("firmware/laconic-node-an386.elf")
 
 
 def test_json_goes_to_stdout_alone(capsys: pytest.CaptureFixture[str]) -> None:

@@ -21,6 +21,7 @@ from laconic.trim import needs_of
 
 pytestmark = pytest.mark.skipif(why_no_emulation() is not None, reason=why_no_emulation() or "")
 FULL = [name for name in BOARDS if "-" not in name]
+WITH_ONE_PROTOCOL = ("an386-drives", "an386-odrive", "an386-canopen", "an386-moteus")
 STEPS = {"an385": 4000, "microbit": 2000}  # without floating-point hardware; the others take 10,000
 STEPS_PER_SYNC = 500
 MASS = wire().number("PARAMETER", "field", "MASS")
@@ -125,9 +126,14 @@ def test_flash_ram_stack_and_instructions_are_printed_and_the_small_image_is_sma
         for cost in costs:
             counted = "  ".join(f"{name} {number}" for name, number in cost.instructions.items())
             print(f"  {cost.board:12s} {cost.flash:6d} {cost.static_ram:6d} {cost.stack:6d}  {counted}")
-    small, drives, odrive = costs[-3:]
-    assert small.board == "an386-small" and small.flash < 16 * 1024 and small.static_ram + small.stack < 4 * 1024
-    assert (drives.board, odrive.board) == ("an386-drives", "an386-odrive")
-    for one in (drives, odrive):
-        assert one.flash < 24 * 1024 and one.static_ram + one.stack < 6 * 1024
-    assert all(cost.instructions["on_tick_with_step"] > 300 for cost in costs[:-3])
+    of = {cost.board: cost for cost in costs}
+    assert of["an386-small"].flash < 16 * 1024 and of["an386-small"].static_ram + of["an386-small"].stack < 4 * 1024
+    for name in WITH_ONE_PROTOCOL:
+        assert of[name].flash < 24 * 1024 and of[name].static_ram + of[name].stack < 6 * 1024, name
+    assert all(of[name].instructions["on_tick_with_step"] > 300 for name in FULL)
+
+
+@pytest.mark.parametrize("name", WITH_ONE_PROTOCOL)
+def test_an_image_with_drives_of_one_protocol_says_that_it_has_no_lockstep(name: str) -> None:
+    with emulated_node(name) as node, pytest.raises(NodeRefused, match="not supported"):
+        run_lockstep(node, read_scene("kuka_youbot").with_run(real="single", method="rk4"), 10)

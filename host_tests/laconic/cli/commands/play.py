@@ -45,7 +45,7 @@ from laconic.scene.drives import DRIVE_PROTOCOLS
               help=f"A drive that fails: {', '.join(FAULTS)}; or random, by --seed.")
 @click.option("--bus-fault", "bus_faults", multiple=True, metavar="NAME=VALUE",
               help="A fault of the controller's bus, such as loss=0.01: those of the interface faulty.")
-@click.option("--seed", type=int, default=1, show_default=True, help="Of random faults.")
+@click.option("--seed", type=int, help="Of random faults.  [default: 1]")
 @click.option("--stop-within", "stop_within_s", type=float, metavar="SECONDS",
               help="The vehicle must stand so soon after the first fault, or else the controller's last frame.")
 @click.option("--stop-distance", "stop_distance_m", type=float, metavar="METRES", help="... and so near.")
