@@ -27,8 +27,11 @@ void laconic_library_wheel_drive_start(laconic_wheel_drive *drive, const laconic
 
 void laconic_library_wheel_drive_aim(laconic_wheel_drive *drive, int32_t mode, int64_t count, double rest,
                                      double speed_rad_per_s, double current_A) {
-    const laconic_drive_target target = {(laconic_drive_mode)mode, count, (laconic_real)rest,
-                                         (laconic_real)speed_rad_per_s, (laconic_real)current_A};
+    const laconic_drive_target target = {.mode = (laconic_drive_mode)mode,
+                                         .position_count = count,
+                                         .position_rest = (laconic_real)rest,
+                                         .speed_rad_per_s = (laconic_real)speed_rad_per_s,
+                                         .current_A = (laconic_real)current_A};
     drive->target = target;
 }
 

@@ -37,11 +37,12 @@ static void reset_communication(const canopen_node *on) {
 
 /* The usual windows suit an encoder of thousands of counts. Of a coarse one, such as the steps of a commutation, they
  * would be the drive's whole range: each is then a part of a turn, and at least a count. */
-static void fit_windows(canopen_axis *axis, int32_t encoder_counts) {
+static void fit_windows(canopen_axis *axis, uint32_t encoder_counts) {
+    const uint16_t part = (uint16_t)(encoder_counts / 64 + 1);
     if (encoder_counts >= 4096) return;
-    axis->speed_window = (uint16_t)(1 + encoder_counts / 16);
-    axis->speed_threshold = (uint16_t)(1 + encoder_counts / 64);
-    axis->position_window = (uint32_t)axis->speed_threshold;
+    axis->speed_window = (uint16_t)(4 * part);
+    axis->speed_threshold = part;
+    axis->position_window = part;
 }
 
 static void reset_node(const canopen_node *on) {
@@ -51,7 +52,7 @@ static void reset_node(const canopen_node *on) {
     CANOPEN_DRIVE_OBJECTS(NOTHING, RESET, NOTHING, NOTHING)
     axis->rated_A = rated_A;
     axis->ending = CANOPEN_NO_ENDING;
-    fit_windows(axis, on->drive->settings.encoder_counts);
+    fit_windows(axis, (uint32_t)on->drive->settings.encoder_counts);
     on->drive->settings.current_limit_A = rated_A;
     on->drive->target.mode = LACONIC_DRIVE_OFF;
     laconic_drive_clear(on->drive);

@@ -48,7 +48,7 @@ uint8_t canopen_size(const canopen_row *row) {
 
 /* By the lowest bits of 0x1008, 0x1009 and 0x100A. */
 const char *canopen_text(uint16_t index) {
-    static const char *const texts[4] = {"Laconic drive of a simulated wheel", "simulated", "0.1.0", ""};
+    static const char *const texts[4] = {"Laconic drive", "simulated", "0.1.0", ""};
     return texts[index & 3U];
 }
 

@@ -44,11 +44,11 @@ typedef enum laconic_drive_mode {
 
 /* What a protocol asks of a drive; it stays until it is changed. Its numbers must be finite. */
 typedef struct laconic_drive_target {
-    laconic_drive_mode mode;
     int64_t position_count; /* POSITION: counts of the encoder, and a share of a count, 0 to 1          */
     laconic_real position_rest;
     laconic_real speed_rad_per_s; /* SPEED; POSITION: feed-forward                                            */
     laconic_real current_A;       /* CURRENT; SPEED, POSITION: feed-forward                                   */
+    laconic_drive_mode mode;
 } laconic_drive_target;
 
 /* What goes wrong in a drive, whoever caused it: bits of laconic_wheel_drive.faults. A drive with a fault is off until

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from configparser import ConfigParser
 from pathlib import Path
 
 import canopen
@@ -11,7 +12,7 @@ from canopen_bus import Played, download, played_on_canopen
 
 from laconic.cli.main import run
 from laconic.paths import SCENE_DIR
-from laconic.play.canopen_eds import EdsDrive, eds_text
+from laconic.play.canopen_eds import EdsDrive, eds_of_scene, eds_text
 from laconic.scene import read_scene
 
 SIZES = {2: 1, 3: 2, 4: 4, 5: 1, 6: 2, 7: 4}
@@ -116,4 +117,4 @@ def test_windows_of_a_coarse_encoder_are_a_small_part_of_its_speed_range() -> No
     eds = ConfigParser()
     eds.read_string(eds_of_scene(read_scene("canopen_agv"), "canopen"))
     found = {index: int(eds[index]["DefaultValue"], 0) for index in ("6067", "606D", "606F")}
-    assert found == {"6067": 1, "606D": 2, "606F": 1}
+    assert found == {"6067": 1, "606D": 4, "606F": 1}
