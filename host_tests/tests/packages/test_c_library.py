@@ -22,14 +22,14 @@ int main(void) {
 }
 """
 FOUND = """
-cmake_minimum_required(VERSION 3.16)
+cmake_minimum_required(VERSION 3.18)
 project(user LANGUAGES C)
 find_package(laconic 0.1 REQUIRED COMPONENTS {component})
 add_executable(user user.c)
 target_link_libraries(user PRIVATE laconic::{component})
 """
 INSIDE = """
-cmake_minimum_required(VERSION 3.16)
+cmake_minimum_required(VERSION 3.18)
 project(user LANGUAGES CXX)
 get_cmake_property(before CACHE_VARIABLES)
 set(flags_before "${{CMAKE_CXX_FLAGS}} ${{CMAKE_C_FLAGS}} ${{CMAKE_BUILD_TYPE}}")
