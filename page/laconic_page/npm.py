@@ -9,6 +9,7 @@ import json
 import shutil
 import tarfile
 from pathlib import Path
+from typing import Any
 
 NPM_TIME = 499162500  # 1985-10-26, which npm, too, gives every file, so that archives do not differ by their times
 
@@ -22,12 +23,19 @@ def make_package(sources: Path, wasm: Path, version: str, out: Path, archive: Pa
     text = base64.b64encode(wasm.read_bytes()).decode("ascii")
     module = f'// The core, compiled to WebAssembly, as base64.\nexport const wasm =\n  "{text}";\n'
     (out / "src/wasm.js").write_text(module, encoding="ascii")
-    manifest = json.loads((sources / "package.json").read_text(encoding="utf-8"))
-    manifest = {"name": manifest.pop("name"), "version": version, **manifest}
-    (out / "package.json").write_text(json.dumps(manifest, indent=2) + "\n", encoding="utf-8")
+    (out / "package.json").write_text(json.dumps(manifest_of(sources, version), indent=2) + "\n", encoding="utf-8")
     shutil.copyfile(sources / "README.md", out / "README.md")
     shutil.copyfile(sources.parents[1] / "LICENSE", out / "LICENSE")
     archive.write_bytes(packed(out))
+
+
+def manifest_of(sources: Path, version: str) -> dict[str, Any]:
+    """package.json, with what packages/facts.json tells of all packages."""
+    own = json.loads((sources / "package.json").read_text(encoding="utf-8"))
+    facts = json.loads((sources.parent / "facts.json").read_text(encoding="utf-8"))
+    told = {"description": facts["sentence"], "keywords": [*facts["keywords"], "webassembly"],
+            "author": facts["author"], "homepage": facts["homepage"]}
+    return {"name": own.pop("name"), "version": version, **told, **own}
 
 
 def packed(folder: Path) -> bytes:

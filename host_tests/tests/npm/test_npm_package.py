@@ -147,6 +147,13 @@ def test_its_types_and_its_modules_have_the_same_names():
     assert tuple(re.findall(r'"([^"]+)"', offered[1])) == METHODS
 
 
+def test_it_tells_of_itself_what_all_packages_tell():
+    manifest = json.loads((FOLDER / "package.json").read_text(encoding="utf-8"))
+    facts = json.loads((SOURCES.parent / "facts.json").read_text(encoding="utf-8"))
+    assert manifest["description"] == facts["sentence"]
+    assert re.fullmatch(r"\d+\.\d+\.\d+", manifest["version"]) and manifest["license"] == "MIT"
+
+
 def test_packing_twice_gives_the_same_bytes_and_every_file_that_npm_would_pack(tmp_path):
     from laconic_page.npm import packed
     assert hashlib.sha256(packed(FOLDER)).hexdigest() == hashlib.sha256(ARCHIVE.read_bytes()).hexdigest()
