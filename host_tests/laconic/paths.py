@@ -46,8 +46,8 @@ def results_dir(name: str) -> Path:
 
 
 # The target of the build that makes what is in a folder of its tree, where that is not everything.
-TARGETS = {"bin/laconic-node": "laconic_node", "lib/liblaconic_node": "laconic_node", "lib/laconic_node": "laconic_node",
-           "firmware/": "laconic_firmware"}
+TARGETS = {"bin/laconic-node": "laconic_node", "lib/liblaconic_node": "laconic_node",
+           "lib/laconic_node": "laconic_node", "firmware/": "laconic_firmware"}
 
 
 def built(relative: str) -> Path:
