@@ -22,7 +22,7 @@ typedef struct limit {
     int8_t low;
     uint16_t high; /* UINT16_MAX: that of the type */
 } limit;
-#define ONE_LIMIT(index, sub, low, high) {index, sub, low, (high) > UINT16_MAX ? UINT16_MAX : (high)},
+#define ONE_LIMIT(index, sub, low, high) {index, sub, low, (high) > UINT16_MAX ? UINT16_MAX : (uint16_t)(high)},
 static const limit limits[] = {CANOPEN_LIMITS(ONE_LIMIT)};
 
 const canopen_row *canopen_row_at(uint8_t number) { return number < ROWS ? &rows[number] : NULL; }
