@@ -30,6 +30,7 @@ class Board:
     machine: str
     real: str
     text: str
+    plays_only: bool = False  # drives: it has neither lockstep nor free run
 
 
 BOARDS = {board.name: board for board in (
@@ -40,8 +41,8 @@ BOARDS = {board.name: board for board in (
     Board("an386-small", "mps2-an386", "single", "Cortex-M4F, one method, four wheels"),
     Board("an386-drives", "mps2-an386", "single", "the same with RoboMaster drives"),
     Board("an386-odrive", "mps2-an386", "single", "the same with ODrives"),
-    Board("an386-canopen", "mps2-an386", "single", "the same with CANopen drives"),
-    Board("an386-moteus", "mps2-an386", "single", "the same with moteus controllers"))}
+    Board("an386-canopen", "mps2-an386", "single", "the same with CANopen drives", plays_only=True),
+    Board("an386-moteus", "mps2-an386", "single", "the same with moteus controllers", plays_only=True))}
 KINDS = ("virtual", "process", *BOARDS)
 
 
