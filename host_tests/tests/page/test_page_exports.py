@@ -82,7 +82,7 @@ def compiled(text: str, folder: Path) -> list[float]:
     assert re.search(r"^// cc .* robot\.c core_c/src/\*\.c$", text, re.MULTILINE)  # how it is compiled
     (folder / "robot.c").write_text(text, encoding="utf-8")
     flags = ["-std=c99", "-Wall", "-Wextra", "-Werror", "-I", str(SOURCE_DIR / "core_c/include")]
-    library = build_dir() / "core_c/liblaconic_core_double.a"
+    library = build_dir() / "core_c/liblaconic.a"
     done = subprocess.run([compiler, *flags, "robot.c", library, "-o", "robot"], cwd=folder, capture_output=True,
                           text=True, check=False)
     assert done.returncode == 0, done.stderr

@@ -27,7 +27,7 @@ def compiled(source: Path) -> str:
         pytest.skip("no C compiler")
     program = source.with_suffix("")
     subprocess.run([compiler, "-std=c99", f"-I{SOURCE_DIR / 'core_c' / 'include'}", str(source),
-                    str(built("core_c/liblaconic_core_double.a")), "-o", str(program)], check=True)
+                    str(built("core_c/liblaconic.a")), "-o", str(program)], check=True)
     return subprocess.run([str(program)], check=True, text=True, capture_output=True).stdout
 
 
