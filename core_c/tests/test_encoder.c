@@ -52,7 +52,7 @@ static void the_share_of_a_count_stays_below_one(void) {
 }
 
 static void a_step_that_no_count_can_hold_is_refused(void) {
-    const double too_far[] = {1e12, -1e12, NAN, INFINITY};
+    const double too_far[] = {1e12, -1e12, (double)NAN, (double)INFINITY};
     for (int k = 0; k < 4; k++) {
         laconic_encoder encoder = {7, REAL(0.5)};
         TEST_ASSERT_FALSE(laconic_encoder_turn(&encoder, &plain, REAL(too_far[k])));
