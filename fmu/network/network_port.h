@@ -16,6 +16,15 @@ typedef struct network_port {
     ls_bus_buffer rx, tx;
 } network_port;
 
+/* A model with ports has no derivatives, and no motion to restore when a step is refused. */
+typedef struct fmu_tangent {
+    double none;
+} fmu_tangent;
+
+typedef struct fmu_model_motion {
+    double none;
+} fmu_model_motion;
+
 struct fmu_instance;
 
 /* Takes the operations in `rx` of all ports whose Rx_Clock is active. */

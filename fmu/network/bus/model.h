@@ -42,12 +42,4 @@ typedef struct fmu_model {
     int32_t carried, contended, failed, dropped;
 } fmu_model;
 
-typedef struct fmu_tangent {
-    double none;
-} fmu_tangent;
-
-typedef struct fmu_model_motion {
-    double none;
-} fmu_model_motion;
-
 #endif

@@ -46,12 +46,4 @@ typedef struct fmu_model {
     network_node_frame frame[NETWORK_NODE_FRAMES];
 } fmu_model;
 
-typedef struct fmu_tangent {
-    double none;
-} fmu_tangent;
-
-typedef struct fmu_model_motion {
-    double none;
-} fmu_model_motion;
-
 #endif

@@ -37,12 +37,4 @@ typedef struct fmu_model {
     double measured_rad_per_s[MOTORS], error_rad[MOTORS], current_A[MOTORS];
 } fmu_model;
 
-typedef struct fmu_tangent {
-    double none;
-} fmu_tangent;
-
-typedef struct fmu_model_motion {
-    double none;
-} fmu_model_motion;
-
 #endif
