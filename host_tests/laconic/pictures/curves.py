@@ -29,6 +29,21 @@ def plot_curves(axes: Axes, x: np.ndarray, columns: np.ndarray, labels: Sequence
     return handles
 
 
+def plot_beside_yaw_rate(axes: Axes, time_s: np.ndarray, columns: np.ndarray, labels: Sequence[str],
+                         yaw_rate_rad_per_s: np.ndarray) -> list[Line2D]:
+    """Curves on the left scale and a yaw rate on the right one, with a common zero; all lines."""
+    handles = plot_curves(axes, time_s, columns, labels)
+    right = axes.twinx()
+    handles += right.plot(time_s, yaw_rate_rad_per_s, "--", color="tab:green", label="yaw rate [rad/s] (right scale)")
+    right.grid(False)
+    right.spines["right"].set_visible(True)
+    axes.set_xlabel("time [s]")
+    right.set_ylabel("yaw rate [rad/s]")
+    axes.margins(x=0.01)
+    share_zero(axes, right)
+    return handles
+
+
 def stripes(columns: np.ndarray) -> list[tuple[int, int, int]]:
     """(first row, row after the last, column) of what is drawn once more on top, where columns coincide."""
     finite = np.where(np.isfinite(columns), columns, 0.0)

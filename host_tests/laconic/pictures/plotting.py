@@ -17,7 +17,7 @@ from laconic.errors import BadInput
 from laconic.outputs import check_ending, whole_file
 from laconic.paths import as_path
 from laconic.pictures.curve_style import wrapped
-from laconic.pictures.curves import MOST_CURVES, head, keep_scale, plot_curves, plot_rows, share_zero
+from laconic.pictures.curves import MOST_CURVES, head, keep_scale, plot_beside_yaw_rate, plot_curves, plot_rows
 from laconic.pictures.method_style import style_of
 from laconic.pictures.sensor_panels import plot_sensors, sensor_panels
 
@@ -109,16 +109,9 @@ def _around(values: np.ndarray, span: float, margin: float) -> tuple[float, floa
 def plot_velocities(axes: Axes, run: Trajectory) -> None:
     """Velocity of the centre of mass in body axes (left scale) and yaw rate (right scale), with a common zero."""
     velocity = run.columns_of("velocity_body_m_per_s")
-    handles = plot_curves(axes, run.time_s, velocity, ("along ξ [m/s]", "along η [m/s]"))
-    right = axes.twinx()
-    handles += right.plot(run.time_s, run.columns["yaw_rate_rad_per_s"], "--", color="tab:green",
-                          label="yaw rate [rad/s] (right scale)")
-    right.grid(False)
-    right.spines["right"].set_visible(True)
-    axes.set(xlabel="time [s]", ylabel="velocity [m/s]")
-    right.set_ylabel("yaw rate [rad/s]")
-    axes.margins(x=0.01)
-    share_zero(axes, right)
+    handles = plot_beside_yaw_rate(axes, run.time_s, velocity, ("along ξ [m/s]", "along η [m/s]"),
+                                   run.columns["yaw_rate_rad_per_s"])
+    axes.set_ylabel("velocity [m/s]")
     head(axes, "Velocities", handles)
 
 

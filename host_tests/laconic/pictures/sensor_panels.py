@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 from matplotlib.axes import Axes
 
-from laconic.pictures.curves import MOST_CURVES, head, keep_scale, plot_curves, plot_rows, share_zero
+from laconic.pictures.curves import MOST_CURVES, head, keep_scale, plot_beside_yaw_rate, plot_curves, plot_rows
 
 if TYPE_CHECKING:
     from laconic.simulation import Trajectory
@@ -29,16 +29,9 @@ def plot_sensors(panel: str, axes: Axes, run: Trajectory) -> None:
 def plot_imu(axes: Axes, run: Trajectory) -> None:
     """Accelerations (left scale) and yaw rate (right scale) as the IMU shows them, with a common zero."""
     accelerations = run.columns_of("imu_acceleration_m_per_s2")
-    handles = plot_curves(axes, run.time_s, accelerations, ("along its x [m/s²]", "along its y [m/s²]"))
-    right = axes.twinx()
-    handles += right.plot(run.time_s, run.columns["imu_yaw_rate_rad_per_s"], "--", color="tab:green",
-                          label="yaw rate [rad/s] (right scale)")
-    right.grid(False)
-    right.spines["right"].set_visible(True)
-    axes.set(xlabel="time [s]", ylabel="acceleration [m/s²]")
-    right.set_ylabel("yaw rate [rad/s]")
-    axes.margins(x=0.01)
-    share_zero(axes, right)
+    handles = plot_beside_yaw_rate(axes, run.time_s, accelerations, ("along its x [m/s²]", "along its y [m/s²]"),
+                                   run.columns["imu_yaw_rate_rad_per_s"])
+    axes.set_ylabel("acceleration [m/s²]")
     head(axes, "What the IMU shows", handles)
 
 
