@@ -139,14 +139,18 @@ class Importer:
 
     # ---- life
 
-    def initialize(self, start_s: float = 0.0, stop_s: float | None = None) -> Importer:
-        """From instantiated to step or event mode."""
+    def enter_initialization(self, start_s: float = 0.0, stop_s: float | None = None) -> None:
+        """From instantiated to initialization mode."""
         stop = (int(stop_s is not None), stop_s or 0.0)
         if self.version == 2:
             self.must("SetupExperiment", 0, 0.0, start_s, *stop)
             self.must("EnterInitializationMode")
         else:
             self.must("EnterInitializationMode", False, 0.0, start_s, bool(stop[0]), stop[1])
+
+    def initialize(self, start_s: float = 0.0, stop_s: float | None = None) -> Importer:
+        """From instantiated to step or event mode."""
+        self.enter_initialization(start_s, stop_s)
         self.must("ExitInitializationMode")
         return self
 

@@ -120,11 +120,7 @@ def test_model_exchange_without_friction_in_an_fmu_with_its_states_is_refused(ve
     with Importer(fmu, "ModelExchange") as importer:
         for name in ("ground_friction_coefficient", "ground_roller_drag", "ground_axle_friction_Nm"):
             assert importer.set(name, 0.0) == OK
-        if version == 2:
-            importer.must("SetupExperiment", 0, 0.0, 0.0, 0, 0.0)
-            importer.must("EnterInitializationMode")
-        else:
-            importer.must("EnterInitializationMode", False, 0.0, 0.0, False, 0.0)
+        importer.enter_initialization()
         assert importer.call("ExitInitializationMode") == ERROR
         assert "states for wheels that slip" in importer.log[-1][2]
 

@@ -173,11 +173,7 @@ def test_a_setting_that_no_sensor_has_is_refused_by_its_name(name: str, version:
     with Importer(fmu_of(tmp_path, version)) as importer:
         many = [value] * (3 if name.startswith("encoder") else 1)
         if importer.set(name, *many) == OK:
-            if version == 2:
-                importer.must("SetupExperiment", 0, 0.0, 0.0, 0, 0.0)
-                importer.must("EnterInitializationMode")
-            else:
-                importer.must("EnterInitializationMode", False, 0.0, 0.0, False, 0.0)
+            importer.enter_initialization()
             assert importer.call("ExitInitializationMode") == ERROR
         assert len(importer.log) == 1
         assert name in importer.log[0][2] and text in importer.log[0][2], importer.log
