@@ -172,7 +172,7 @@ class _Writer:
             for index, wheel in enumerate(wheels):
                 if wheel.get(key, 0.0) == value:
                     wheel.pop(key, None)
-                elif key in SHARED:
+                else:
                     wheel[key] = values[index]
         if "motor_damping_Nms" in found:
             found["motor_gain_Nm_per_V"] = 0.0

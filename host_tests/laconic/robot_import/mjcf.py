@@ -10,7 +10,7 @@ import numpy as np
 from laconic.errors import BadInput
 from laconic.robot_import.checked import words_of
 from laconic.robot_import.placement import Array, inverse, placement, point_of
-from laconic.robot_import.robot_tree import BALL, FIXED, HINGE, SLIDE, Joint, Link, Robot, Shape
+from laconic.robot_import.robot_tree import BALL, FIXED, HINGE, SLIDE, TURNS_ROUND_RAD, Joint, Link, Robot, Shape
 
 KINDS = {0: BALL, 1: BALL, 2: SLIDE, 3: HINGE}  # mjJNT_FREE, _BALL, _SLIDE, _HINGE
 SPHERE, CAPSULE, CYLINDER, BOX, MESH = 2, 3, 5, 6, 7  # mjtGeom
@@ -74,8 +74,7 @@ def _shape(model: Any, data: Any, geom: int, back: Array) -> Shape | None:
     if kind in (CYLINDER, CAPSULE):
         return Shape("cylinder", placed, (float(size[0]), float(size[1])), collides=collides)
     if kind == BOX:
-        corners = size * np.array(np.meshgrid(*[[-1.0, 1.0]] * 3)).reshape(3, -1).T
-        return Shape("box", placed, points=point_of(placed, corners), collides=collides)
+        return Shape.box(placed, size, collides)
     if kind == MESH:
         mesh = int(model.geom_dataid[geom])
         first, count = int(model.mesh_vertadr[mesh]), int(model.mesh_vertnum[mesh])
@@ -97,6 +96,6 @@ def _joint(path: Path, model: Any, data: Any, body: int, names: dict[int, str], 
     name = model.joint(joint).name or names[body]
     kind = KINDS[int(model.jnt_type[joint])]
     damping = float(model.dof_damping[int(model.jnt_dofadr[joint])])
-    limited = bool(model.jnt_limited[joint]) and float(np.ptp(model.jnt_range[joint])) < 4.0 * np.pi
+    limited = bool(model.jnt_limited[joint]) and float(np.ptp(model.jnt_range[joint])) < TURNS_ROUND_RAD
     axis = back[:3, :3] @ data.xaxis[joint] if kind in (HINGE, SLIDE) else np.zeros(3)
     return Joint(name, kind, parent, names[body], point_of(back, data.xanchor[joint]), axis, limited, damping)

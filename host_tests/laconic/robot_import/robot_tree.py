@@ -5,6 +5,7 @@ All joints are in their zero position. Vectors are in axes of the base link: x a
 
 from __future__ import annotations
 
+from collections.abc import Iterable
 from dataclasses import dataclass, field
 from functools import cached_property
 from pathlib import Path
@@ -12,9 +13,11 @@ from pathlib import Path
 import numpy as np
 
 from laconic.errors import BadInput
-from laconic.robot_import.placement import Array
+from laconic.robot_import.placement import Array, point_of
 
 HINGE, SLIDE, FIXED, BALL = "hinge", "slide", "fixed", "ball"
+TURNS_ROUND_RAD = 4.0 * np.pi  # a hinge with a wider range than this counts as one without limits
+CORNERS = np.array(np.meshgrid(*[[-1.0, 1.0]] * 3)).reshape(3, -1).T
 
 
 @dataclass(frozen=True, eq=False)
@@ -30,6 +33,11 @@ class Shape:
     size: tuple[float, ...] = ()
     points: Array | None = None
     collides: bool = True
+
+    @classmethod
+    def box(cls, placed: Array, half: Array, collides: bool) -> Shape:
+        """A box with these half lengths of its edges."""
+        return cls("box", placed, points=point_of(placed, half * CORNERS), collides=collides)
 
     def radius_about(self, point: Array, axis: Array) -> float:
         """The largest distance of its surface from a line through `point` along the unit vector `axis`."""
@@ -147,3 +155,13 @@ class Robot:
             found.append(self.links[name])
             waiting += [j.child for j in self.joints.values() if j.parent == name and (j.kind == FIXED or not rigid)]
         return found
+
+
+def base_of(path: Path, links: Iterable[str], children: Iterable[str]) -> str:
+    """The only link that is no joint's child; BadInput where there is none or several."""
+    hanging = set(children)
+    roots = [name for name in links if name not in hanging]
+    if len(roots) != 1:
+        raise BadInput(f"{path}: has {len(roots)} links that hang on no joint ({', '.join(roots[:4]) or 'a loop'}); a "
+                       "robot has one, its base")
+    return roots[0]

@@ -22,12 +22,22 @@ from laconic.robot_import.placement import (
     rotation_of_quaternion,
     rotation_of_rpy,
 )
-from laconic.robot_import.robot_tree import BALL, FIXED, HINGE, SLIDE, Joint, Link, Robot, Shape
+from laconic.robot_import.robot_tree import (
+    BALL,
+    FIXED,
+    HINGE,
+    SLIDE,
+    TURNS_ROUND_RAD,
+    Joint,
+    Link,
+    Robot,
+    Shape,
+    base_of,
+)
 
 KINDS = {"revolute": HINGE, "continuous": HINGE, "prismatic": SLIDE, "fixed": FIXED, "ball": BALL, "universal": BALL,
          "revolute2": BALL, "screw": SLIDE, "gearbox": FIXED}
 TEXTS = {"ixx": 1.0, "ixy": 0.0, "ixz": 0.0, "iyy": 1.0, "iyz": 0.0, "izz": 1.0}  # the format's own when not given
-NOT_LIMITED_RAD = 4.0 * np.pi
 Element = ElementTree.Element
 
 
@@ -106,16 +116,12 @@ class _Model:
         """The tree, in the frame of its base."""
         ends = {name: (_text(each, "parent") or "", _text(each, "child") or "") for name, each in self.joints.items()}
         real = {name: end for name, end in ends.items() if end[0] != "world"}
-        roots = [name for name in self.links if name not in {child for _, child in real.values()}]
-        if len(roots) != 1:
-            raise BadInput(f"{self.path}: has {len(roots)} links that hang on no joint "
-                           f"({', '.join(roots[:4]) or 'a loop'}); a "
-                           "robot has one, its base")
-        back = inverse(self.frame(roots[0]))
+        base = base_of(self.path, self.links, [child for _, child in real.values()])
+        back = inverse(self.frame(base))
         links = {name: self._link(name, back) for name in self.links}
         joints = {name: self._joint(name, *real[name], back) for name in real}
         title = self.model.get("name") or self.path.stem
-        return Robot(title, self.path, "SDF", roots[0], links, joints, self.files.remarks()).check()
+        return Robot(title, self.path, "SDF", base, links, joints, self.files.remarks()).check()
 
     def _link(self, name: str, back: Array) -> Link:
         element, where = self.links[name], f"{self.path}: link {name}"
@@ -145,8 +151,7 @@ class _Model:
             return Shape("sphere", placed, tuple(finite(where, [_text(solid, "radius")], 1)), collides=collides)
         if solid.tag == "box":
             half = np.array(finite(where, (_text(solid, "size") or "").split(), 3)) / 2.0
-            corners = half * np.array(np.meshgrid(*[[-1.0, 1.0]] * 3)).reshape(3, -1).T
-            return Shape("box", placed, points=point_of(placed, corners), collides=collides)
+            return Shape.box(placed, half, collides)
         points = self.files.points(_text(solid, "uri") or "") if solid.tag == "mesh" else None
         if points is None:
             return None
@@ -180,7 +185,7 @@ def _is_limited(where: str, joint: Element, axis: Element | None) -> bool:
     if joint.get("type") != "revolute" or axis is None or axis.find("limit") is None:
         return False
     lower, upper = finite(f"{where}: limit", [_bound(axis, "lower", -1e16), _bound(axis, "upper", 1e16)], 2)
-    return upper - lower < NOT_LIMITED_RAD
+    return upper - lower < TURNS_ROUND_RAD
 
 
 def _bound(axis: Element, end: str, usual: float) -> Any:

@@ -17,7 +17,18 @@ from laconic.errors import BadInput, reason_of
 from laconic.robot_import.checked import finite, inertia_matrix, mass, unit_vector, words_of
 from laconic.robot_import.meshes import MeshFiles
 from laconic.robot_import.placement import IDENTITY, Array, placement, point_of, rotation_of_rpy
-from laconic.robot_import.robot_tree import BALL, FIXED, HINGE, SLIDE, Joint, Link, Robot, Shape
+from laconic.robot_import.robot_tree import (
+    BALL,
+    FIXED,
+    HINGE,
+    SLIDE,
+    TURNS_ROUND_RAD,
+    Joint,
+    Link,
+    Robot,
+    Shape,
+    base_of,
+)
 
 KINDS = {"continuous": HINGE, "revolute": HINGE, "prismatic": SLIDE, "fixed": FIXED, "floating": BALL, "planar": SLIDE}
 
@@ -86,21 +97,16 @@ def _robot(path: Path, text: str, files: MeshFiles, form: str) -> Robot:
             raise BadInput(f"{path}: is no URDF that can be read: {words_of(error)}") from None
     if not found.links:
         raise BadInput(f"{path}: has no <link>; a robot has one at least")
-    children = {joint.child for joint in found.joints}
-    roots = [link.name for link in found.links if link.name not in children]
-    if len(roots) != 1:
-        raise BadInput(f"{path}: has {len(roots)} links that hang on no joint ({', '.join(roots[:4]) or 'a loop'}); a "
-                       "robot has "
-                       "one, its base")
+    base = base_of(path, [link.name for link in found.links], [joint.child for joint in found.joints])
     _names_once(path, "link", [link.name for link in found.links])
     _names_once(path, "joint", [joint.name for joint in found.joints])
-    frames = _frames(path, found, roots[0])
+    frames = _frames(path, found, base)
     links = {link.name: _link(path, link, frames[link.name], files) for link in found.links if link.name in frames}
     joints = {joint.name: _joint(path, joint, frames) for joint in found.joints if joint.child in frames}
     loose = [link.name for link in found.links if link.name not in frames]
     if loose:
-        raise BadInput(f"{path}: link {loose[0]} is not joined to {roots[0]}; a robot is a tree")
-    return Robot(found.name or path.stem, path, form, roots[0], links, joints, files.remarks()).check()
+        raise BadInput(f"{path}: link {loose[0]} is not joined to {base}; a robot is a tree")
+    return Robot(found.name or path.stem, path, form, base, links, joints, files.remarks()).check()
 
 
 def _check_vectors(path: Path, text: str) -> None:
@@ -167,8 +173,7 @@ def _shape(where: str, part: Any, frame: Array, files: MeshFiles, collides: bool
         return Shape("sphere", placed, tuple(finite(where, [geometry.radius], 1)), collides=collides)
     if kind == "Box":
         half = np.array(finite(where, geometry.size, 3)) / 2.0
-        corners = half * np.array(np.meshgrid(*[[-1.0, 1.0]] * 3)).reshape(3, -1).T
-        return Shape("box", placed, points=point_of(placed, corners), collides=collides)
+        return Shape.box(placed, half, collides)
     if kind == "Mesh":
         points = files.points(geometry.filename)
         if points is None:
@@ -187,6 +192,6 @@ def _joint(path: Path, joint: Any, frames: dict[str, Array]) -> Joint:
     kind = KINDS[joint.type]
     turned = frame[:3, :3] @ unit_vector(where, axis) if kind in (HINGE, SLIDE) else np.zeros(3)
     limit = joint.limit
-    is_limited = joint.type == "revolute" and not (limit and limit.upper - limit.lower >= 4.0 * np.pi)
+    is_limited = joint.type == "revolute" and not (limit and limit.upper - limit.lower >= TURNS_ROUND_RAD)
     damping = finite(f"{where}: damping", [joint.dynamics.damping or 0.0], 1)[0] if joint.dynamics else 0.0
     return Joint(joint.name, kind, joint.parent, joint.child, point_of(frame), turned, is_limited, damping)
