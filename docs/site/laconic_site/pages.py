@@ -10,6 +10,7 @@ from laconic_site.c_reference import c_page
 from laconic_site.command_reference import command_page
 from laconic_site.fmi_reference import fmi_page
 from laconic_site.python_reference import python_page
+from laconic_site.scene_reference import scene_page
 
 PICTURES = (".png", ".svg", ".gif")
 LINK = re.compile(r"(!?\[[^\]\n]*\]\()([^)#\s]+)(#[^)\s]*)?(\))")
@@ -21,7 +22,8 @@ GROUPS = {
                "play-moteus", "logs", "page"),
     "Explanation": ("performance", "integrators", "friction", "sensors", "real-robots", "paper", "architecture",
                     "glossary"),
-    "Reference": ("reference-c", "reference-python", "reference-commands", "reference-fmi", "wire", "changelog"),
+    "Reference": ("reference-c", "reference-python", "reference-commands", "reference-scene", "reference-fmi", "wire",
+                  "changelog"),
 }
 
 
@@ -30,7 +32,8 @@ def stage(source: Path, pages: Path) -> None:
     pages.mkdir(parents=True)
     texts = {path.stem: path.read_text(encoding="utf-8") for path in sorted((source / "docs").glob("*.md"))}
     texts |= {"reference-c": c_page(source), "reference-python": python_page(), "reference-commands": command_page(),
-              "reference-fmi": fmi_page(source), "changelog": (source / "CHANGELOG.md").read_text(encoding="utf-8")}
+              "reference-scene": scene_page(source), "reference-fmi": fmi_page(source),
+              "changelog": (source / "CHANGELOG.md").read_text(encoding="utf-8")}
     for folder in (source / "docs").iterdir():
         if folder.is_dir() and folder.name != "site":
             shutil.copytree(folder, pages / folder.name)

@@ -10,19 +10,14 @@ from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field
 from typing import Any
 
+from laconic.scene.keys import DRIVE_NUMBERS, PROTOCOLS, key_of, read_choice, read_number
 from laconic.scene.table import Table
 
-DRIVE_PROTOCOLS = ("canopen", "odrive", "robomaster", "moteus", "robomaster-c610")  # numbered from 1 on the wire
+DRIVE_PROTOCOLS = tuple(PROTOCOLS)
 NO_DRIVE = False  # in the list node_ids: a wheel without a drive
 
-POSITIVE, NOT_NEGATIVE, NOT_ZERO = "above 0", "0 or more", "not 0"
-NUMBERS: Mapping[str, str] = {
-    "encoder_counts": POSITIVE, "gear_ratio": NOT_ZERO, "torque_constant_Nm_per_A": POSITIVE,
-    "back_emf_Vs_per_rad": NOT_NEGATIVE, "current_limit_A": POSITIVE, "speed_limit_rad_per_s": NOT_NEGATIVE,
-    "supply_V": NOT_NEGATIVE, "winding_resistance_ohm": NOT_NEGATIVE, "current_bandwidth_rad_per_s": NOT_NEGATIVE,
-    "position_gain_per_s": NOT_NEGATIVE, "speed_gain_As": NOT_NEGATIVE, "speed_integral_gain_A": NOT_NEGATIVE,
-    "stall_time_s": NOT_NEGATIVE}
-"""Numbers of each drive at the motor's shaft, as laconic_drive_settings has them, and what they must be."""
+NUMBERS = tuple(key.path.rpartition(".")[2] for key in DRIVE_NUMBERS)
+"""Keys of [rig.drives] that are a number of each drive."""
 MOST_COUNTS = 2**31 - 1
 
 
@@ -41,12 +36,10 @@ def read_drives(table: Table, wheels: Sequence[Mapping[str, Any]]) -> Drives:
     """`[rig.drives]` of a vehicle with these wheels; a wheel with driven = false has no drive."""
     if not wheels:
         table.fail("protocol", "drives turn wheels, and the vehicle has none; take [rig.drives] out")
-    protocol = table.choice("protocol", DRIVE_PROTOCOLS, None)
+    protocol = read_choice(table, "protocol")
     driven, node_ids = _node_ids(table, [bool(wheel.get("driven", True)) for wheel in wheels])
-    numbers = {key: _numbers(table, key, rule, driven) for key, rule in NUMBERS.items() if table.has(key)}
-    watchdog_s = table.number("watchdog_s", None)
-    if watchdog_s is not None and watchdog_s < 0.0:
-        table.fail("watchdog_s", f"is {watchdog_s:g}; give seconds, 0 for none")
+    numbers = {key: _numbers(table, key, driven) for key in NUMBERS if table.has(key)}
+    watchdog_s = read_number(table, "watchdog_s")
     table.done()
     return Drives(protocol, driven, node_ids, watchdog_s, numbers)
 
@@ -74,7 +67,7 @@ def _node_ids(table: Table, driven: list[bool]) -> tuple[tuple[bool, ...], tuple
     return has_drive, tuple(0 if node_id is NO_DRIVE else node_id for node_id in given)
 
 
-def _numbers(table: Table, key: str, rule: str, driven: tuple[bool, ...]) -> tuple[float, ...]:
+def _numbers(table: Table, key: str, driven: tuple[bool, ...]) -> tuple[float, ...]:
     """One number for each wheel, 0 where there is no drive."""
     given = table.value(key, ..., (int, float, list), "a number, or a list with one for each drive")
     if isinstance(given, list):
@@ -88,15 +81,12 @@ def _numbers(table: Table, key: str, rule: str, driven: tuple[bool, ...]) -> tup
         values = [table.number(key)] * len(driven)
     for value, has_drive in zip(values, driven, strict=True):
         if has_drive:
-            _check(table, key, rule, value)
+            _check(table, key, value)
     return tuple(value if has_drive else 0.0 for value, has_drive in zip(values, driven, strict=True))
 
 
-def _check(table: Table, key: str, rule: str, value: float) -> None:
+def _check(table: Table, key: str, value: float) -> None:
     """Fails for a number that no drive can have."""
-    holds = {POSITIVE: value > 0.0, NOT_NEGATIVE: value >= 0.0, NOT_ZERO: value != 0.0}
-    if not holds[rule]:
-        table.fail(key, f"is {value:g}; give a number {rule}" if rule != NOT_ZERO else "is 0; give another number, "
-                   "below 0 for a shaft that turns the other way")
+    key_of(table, key).check(table, value)
     if key == "encoder_counts" and (value != int(value) or value > MOST_COUNTS):
         table.fail(key, f"is {value:g}; give a whole number of counts of one turn, up to {MOST_COUNTS}")

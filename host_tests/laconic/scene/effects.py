@@ -6,6 +6,7 @@ from typing import TYPE_CHECKING, Any
 
 from laconic.core.fields import ABOVE_0
 from laconic.scene.ground import has_friction
+from laconic.scene.keys import key_of
 from laconic.scene.table import Table
 
 if TYPE_CHECKING:
@@ -26,13 +27,9 @@ def check_wheel(table: Table, wheel: dict[str, Any]) -> None:
             table.fail(key, "is given for a wheel without a motor; take it out, or driven = false")
     if wheel["locked"] and "axle_friction_Nm" in wheel:
         table.fail("axle_friction_Nm", "has no effect on a locked wheel, which does not turn; take it out, or locked")
-    for key, whose in ABOVE_0.items():
-        if wheel.get(key, 1.0) <= 0.0:
-            table.fail(key, f"is {wheel[key]:g}; give a value above 0{_tiny(key)}, or take it out for {whose}")
-
-
-def _tiny(key: str) -> str:
-    return " (1e-6 is ice)" if key == "friction_coefficient" else ""
+    for key in ABOVE_0:
+        if key in wheel:
+            key_of(table, key).check(table, wheel[key])
 
 
 def check_ground(top: Table, vehicle: dict[str, Any]) -> None:

@@ -9,12 +9,12 @@ from laconic.core import load
 from laconic.core.fields import OF_GROUND
 from laconic.errors import BadInput
 from laconic.scene.fields import read_field
+from laconic.scene.keys import MOTOR_CIRCUITS, key_of, read_choice
 from laconic.scene.table import Table
 
 if TYPE_CHECKING:
     from laconic.scene.scene import Scene
 
-MOTOR_CIRCUITS = ("driven", "open", "shorted")  # laconic_motor_circuit
 OF_MOTOR = ("winding_resistance_ohm", "viscous_friction_Nms")  # of a drive, that laconic_motor_fit() fills
 
 
@@ -47,9 +47,8 @@ def on_ideal_ground(scene: Scene) -> Scene:
 def read_ground(table: Table) -> dict[str, float]:
     """`[ground]`: friction, or a slope, or both."""
     ground = {field.key: read_field(table, field) for field in load().fields_of("ground") if has(table, field.key)}
-    if "friction_coefficient" in ground and not ground["friction_coefficient"] > 0.0:
-        table.fail("friction_coefficient", f"is {ground['friction_coefficient']:g}; give a value above 0, or take "
-                   "[ground]'s friction out for ideal ground")
+    if "friction_coefficient" in ground:
+        key_of(table, "friction_coefficient").check(table, ground["friction_coefficient"])
     for key in OF_GROUND[1:]:
         if key in ground and "friction_coefficient" not in ground:
             table.fail(key, "has no effect on ideal ground; give friction_coefficient, too")
@@ -82,9 +81,8 @@ def read_drive(vehicle: Table) -> dict[str, float]:
     if not vehicle.has("motor"):
         vehicle.fail("drive", "limits the currents of motors, which need [vehicle.motor]; give it instead of "
                      "motor_gain_Nm_per_V, or take [vehicle.drive] out")
-    for key in ("supply_V", "current_limit_A"):
-        if drive.get(key, 1.0) <= 0.0:
-            table.fail(key, f"is {drive[key]:g}; give a value above 0, or take it out for no limit")
+    for key in filter(drive.__contains__, ("supply_V", "current_limit_A")):
+        key_of(table, key).check(table, drive[key])
     if "supply_resistance_ohm" in drive and "supply_V" not in drive:
         table.fail("supply_resistance_ohm", "has no effect without supply_V; give it, too")
     return drive
@@ -92,7 +90,7 @@ def read_drive(vehicle: Table) -> dict[str, float]:
 
 def read_circuit(wheel: Table) -> int:
     """What the wheel's motor is connected to."""
-    return MOTOR_CIRCUITS.index(wheel.choice("motor_circuit", MOTOR_CIRCUITS, "driven"))
+    return list(MOTOR_CIRCUITS).index(read_choice(wheel, "motor_circuit"))
 
 
 def check_friction(top: Table, vehicle: dict[str, Any]) -> None:

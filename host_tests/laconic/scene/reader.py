@@ -14,13 +14,12 @@ from laconic.scene.effects import check_ground, check_input, check_start, check_
 from laconic.scene.fields import read_field
 from laconic.scene.ground import check_friction, has_friction, read_circuit, read_drive, read_ground
 from laconic.scene.inputs import Input
+from laconic.scene.keys import key_of, read_choice, read_number
 from laconic.scene.not_modelled import KINDS_OF_WHEELS, OF_VEHICLES, OF_WHEELS
 from laconic.scene.sensors import NO_SENSORS, OF_ENCODERS, OF_IMU, SensorTables, missing_sensors, read_sensors
 from laconic.scene.speed_controller import read_speed_controller
 from laconic.scene.table import Table
 
-WHEEL_KINDS = ("omni", "mecanum", "roller", "fixed")
-INPUT_KINDS = ("steps", "table", "sine")
 PER_WHEEL = ("voltage_V", "axle_torque_Nm")
 LENGTHS = {"body_force_N": 2, "body_moment_Nm": 0, "world_force_N": 2, "world_force_point_m": 2}
 OUTPUTS_PER_WHEEL = ("wheel_speed_rad_per_s", "wheel_angle_rad", "wheel_torque_Nm", "wheel_reaction_N",
@@ -39,7 +38,8 @@ FRICTION_LENGTHS = dict.fromkeys(
 
 def read_parts(top: Table, methods: Sequence[str], reals: Sequence[str]) -> dict[str, Any]:
     """Everything a scene consists of, as plain values."""
-    parts: dict[str, Any] = {"name": top.text("name", top.path.stem), "source": top.text("source", "", allowed="\t\n")}
+    source = top.text("source", key_of(top, "source").default, allowed="\t\n")
+    parts: dict[str, Any] = {"name": top.text("name", top.path.stem), "source": source}
     if not parts["name"].strip():
         top.fail("name", "is empty; give a name, or take it out for the file's own")
     parts["vehicle"] = read_vehicle(top.table("vehicle", required=True))
@@ -100,7 +100,7 @@ def read_motor(table: Table, direct: Sequence[Field]) -> dict[str, Any]:
 
 def read_wheel(table: Table) -> dict[str, Any]:
     """One `[[vehicle.wheel]]`: an omni wheel's roller angle is π/2 unless it is given."""
-    kind = table.choice("kind", WHEEL_KINDS, hints=KINDS_OF_WHEELS)
+    kind = read_choice(table, "kind", hints=KINDS_OF_WHEELS)
     wheel: dict[str, Any] = {"kind": kind, **read_position(table)}
     fields = {field.key: field for field in load().fields_of("vehicle.wheel[#]") if field.key not in wheel}
     roller = fields.pop("roller_rad")
@@ -150,7 +150,7 @@ def read_initial(table: Table, wheel_count: int) -> dict[str, Any]:
         start["nu_rad_per_s"] = table.numbers("nu_rad_per_s", 3)
     if "velocity_body_m_per_s" in velocity:
         start["velocity_body_m_per_s"] = table.numbers("velocity_body_m_per_s", 2)
-    start["yaw_rate_rad_per_s"] = table.number("yaw_rate_rad_per_s", 0.0)
+    start["yaw_rate_rad_per_s"] = read_number(table, "yaw_rate_rad_per_s")
     if table.has("wheel_speed_rad_per_s"):
         start["wheel_speed_rad_per_s"] = table.numbers("wheel_speed_rad_per_s", wheel_count)
     single = [field for field in load().fields_of("initial") if field.items == 0]
@@ -180,12 +180,12 @@ def check_signal(table: Table, key: str, signal: str, lengths: dict[str, int], p
 
 def read_input(table: Table, wheel_count: int) -> Input:
     """One `[[input]]`."""
-    signal, kind = table.text("signal"), table.choice("kind", INPUT_KINDS)
+    signal, kind = table.text("signal"), read_choice(table, "kind")
     check_signal(table, "signal", signal, LENGTHS, PER_WHEEL, wheel_count)
     if kind == "sine":
         phase = table.angle("phase", 0.0)
-        found = Input(signal, kind, table.location, amplitude=table.number("amplitude"),
-                      frequency_Hz=table.number("frequency_Hz"), phase_rad=phase)
+        found = Input(signal, kind, table.location, amplitude=read_number(table, "amplitude"),
+                      frequency_Hz=read_number(table, "frequency_Hz"), phase_rad=phase)
     else:
         t_s = table.numbers("t_s")
         found = Input(signal, kind, table.location, t_s=t_s, value=table.numbers("value", len(t_s)))
@@ -207,13 +207,9 @@ def check_instants(table: Table, t_s: Sequence[float]) -> None:
 
 def read_run(table: Table, methods: Sequence[str], reals: Sequence[str]) -> dict[str, Any]:
     """`[run]`."""
-    run: dict[str, Any] = {}
-    for key in ("duration_s", "step_s"):
-        run[key] = table.number(key)
-        if run[key] <= 0:
-            table.fail(key, f"is {run[key]:g}; give a number above zero")
-    run["method"] = table.choice("method", methods, "auto")
-    run["real"] = table.choice("real", reals, "double")
+    run: dict[str, Any] = {key: read_number(table, key) for key in ("duration_s", "step_s")}
+    run["method"] = table.choice("method", methods, key_of(table, "method").default)
+    run["real"] = table.choice("real", reals, key_of(table, "real").default)
     table.done()
     return run
 
@@ -230,9 +226,7 @@ def read_outputs(table: Table, vehicle: dict[str, Any], sensors: SensorTables, d
     """`[outputs]`: a signal without its index stands for all of them."""
     wheel_count = len(vehicle["wheel"])
     signals = read_signals(table, *output_signals(vehicle), wheel_count, missing_sensors(sensors, wheel_count))
-    every = table.number("every_s", None)
-    if every is not None and every <= 0:
-        table.fail("every_s", f"is {every:g}; give a number above zero")
+    every = read_number(table, "every_s")
     if every is not None and every > duration_s * (1.0 + 1e-12):
         table.fail("every_s", f"{every:g} s is longer than the run of {duration_s:g} s; give that or less")
     if table.has("signals") and not signals:

@@ -12,6 +12,7 @@ from typing import Any
 from laconic.core import Field, load
 from laconic.core.sensors import IMU
 from laconic.scene.fields import read_field
+from laconic.scene.keys import read_number
 from laconic.scene.table import Table
 
 OF_IMU = {"imu_acceleration_m_per_s2": 2, "imu_yaw_rate_rad_per_s": 0}
@@ -64,10 +65,8 @@ def read_imu(table: Table) -> dict[str, Any]:
     imu: dict[str, Any] = {key: _of_axes(table, field) if field.items else _one(table, field)
            for key, field in fields.items()
            if table.has(key) or (key in angles and table.has(f"{key.removesuffix('_rad')}_deg"))}
-    imu[DELAY_S] = table.number(DELAY_S, 0.0)
+    imu[DELAY_S] = read_number(table, DELAY_S)
     table.done()
-    if imu[DELAY_S] < 0.0:
-        table.fail(DELAY_S, f"is {imu[DELAY_S]:g}; give seconds, 0 for none")
     if "seed" in imu and not any(imu.get(key) for key in NOISES):
         table.fail("seed", f"has no effect without noise; take it out, or give {' or '.join(NOISES)}")
     return imu

@@ -5,9 +5,10 @@ Only `laconic replay --inputs set-speeds` runs it; a simulation has voltages and
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, fields
 from typing import Any
 
+from laconic.scene.keys import read_number
 from laconic.scene.table import Table
 
 
@@ -28,12 +29,6 @@ def read_speed_controller(top: Table, vehicle: dict[str, Any]) -> SpeedControlle
     if not vehicle.get("motor"):
         top.fail("speed_controller", "gives currents, which need [vehicle.motor]; give it, or take "
                  "[speed_controller] out")
-    gain = table.number("gain_As_per_rad")
-    rest = {key: table.number(key, 0.0) for key in ("integral_gain_A_per_rad", "dead_time_s")}
+    numbers = {field.name: read_number(table, field.name) for field in fields(SpeedController)}
     table.done()
-    if not gain > 0.0:
-        table.fail("gain_As_per_rad", f"is {gain:g}; give a value above 0")
-    for key, value in rest.items():
-        if not value >= 0.0:
-            table.fail(key, f"is {value:g}; give a value of 0 or more")
-    return SpeedController(gain, **rest)
+    return SpeedController(**numbers)

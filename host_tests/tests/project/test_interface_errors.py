@@ -28,7 +28,7 @@ def plant() -> Any:
 
 
 WRONG: list[tuple[Callable[[], Any], str]] = [
-    (lambda: scene().with_run(step_s=0), "s1.toml: run.step_s: is 0; give a number above zero"),
+    (lambda: scene().with_run(step_s=0), "s1.toml: run.step_s: is 0; give a value above 0"),
     (lambda: scene().with_run(step_s=float("nan")), "s1.toml: run.step_s: is nan; give a finite number"),
     (lambda: scene().with_run(duration_s="3"), 's1.toml: run.duration_s: is the text "3", not a number'),
     (lambda: scene().with_run(method="nope"), "s1.toml: run.method: there is no 'nope'; known are auto"),
