@@ -9,11 +9,11 @@ from xml.etree import ElementTree
 import cantools
 import click
 import pytest
-from laconic_site.pages import GROUPS, stage
 
 import laconic
 from laconic.cli.main import commands
 from laconic.paths import SOURCE_DIR
+from laconic_site.pages import GROUPS, stage
 
 
 @pytest.fixture(scope="module")
