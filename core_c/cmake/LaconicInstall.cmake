@@ -52,12 +52,15 @@ function(laconic_pkg_config target made)
     install(FILES "${made}/${pc_name}.pc" DESTINATION "${folder}" COMPONENT laconic_development)
 endfunction()
 
-# Where the core's folder was copied alone, its licence came another way.
+# In the project the licence is one folder higher, in the archive of the core alone beside it; where the folder was copied
+# alone, it came another way.
 function(laconic_install_licence)
-    set(licence "${CMAKE_CURRENT_SOURCE_DIR}/../LICENSE")
-    if(EXISTS "${licence}")
-        foreach(component laconic_runtime laconic_development)
-            install(FILES "${licence}" DESTINATION "${CMAKE_INSTALL_DATADIR}/doc/laconic" COMPONENT ${component})
-        endforeach()
-    endif()
+    foreach(licence "${CMAKE_CURRENT_SOURCE_DIR}/LICENSE" "${CMAKE_CURRENT_SOURCE_DIR}/../LICENSE")
+        if(EXISTS "${licence}")
+            foreach(component laconic_runtime laconic_development)
+                install(FILES "${licence}" DESTINATION "${CMAKE_INSTALL_DATADIR}/doc/laconic" COMPONENT ${component})
+            endforeach()
+            return()
+        endif()
+    endforeach()
 endfunction()

@@ -10,16 +10,20 @@
 #define _GNU_SOURCE
 #include "laconic_node/node.h"
 #include "laconic_wire.h"
-#include "socketcan.h"
 #include "station.h"
+#ifdef __linux__
+#include "socketcan.h"
+#endif
 
 #include <arpa/inet.h>
 #include <errno.h>
+#include <fcntl.h>
 #include <netinet/in.h>
-#include <poll.h>
+#include <signal.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
+#include <sys/select.h>
 #include <sys/socket.h>
 #include <time.h>
 #include <unistd.h>
@@ -139,24 +143,35 @@ static bool read_client(board *port, station *client) {
     return count > 0 || (count < 0 && (errno == EAGAIN || errno == EINTR));
 }
 
+/* `end`: the number behind the highest one in any set. */
+static void watch(int number, fd_set *set, int *end) {
+    if (number < 0) return;
+    FD_SET(number, set);
+    if (number >= *end) *end = number + 1;
+}
+
+/* pselect() waits to the microsecond on every system with POSIX; ppoll() is not everywhere. */
 static void wait_for_work(const board *port, int listening) {
     const uint32_t idle_us = laconic_node_idle_us(&port->node, now_us());
     const struct timespec timeout = {idle_us / 1000000U, (long)(idle_us % 1000000U) * 1000L};
-    struct pollfd fds[MOST_STATIONS + 2] = {{listening, POLLIN, 0}, {port->refused, POLLIN, 0}}; /* -1: none */
+    fd_set readable, writable;
+    int end = 0;
+    FD_ZERO(&readable);
+    FD_ZERO(&writable);
+    watch(listening, &readable, &end);
+    watch(port->refused, &readable, &end);
     for (int k = 0; k < port->stations; k++) {
-        const short events = port->station[k].out_count > 0 ? POLLIN | POLLOUT : POLLIN;
-        fds[2 + k] = (struct pollfd){port->station[k].socket, events, 0};
+        watch(port->station[k].socket, &readable, &end);
+        if (port->station[k].out_count > 0) watch(port->station[k].socket, &writable, &end);
     }
-    ppoll(fds, (nfds_t)(2 + port->stations), &timeout, NULL);
+    pselect(end, &readable, &writable, NULL, &timeout, NULL);
 }
 
-static void send_occupied(int client) {
-    (void)send(client, occupied, sizeof occupied - 1, MSG_DONTWAIT | MSG_NOSIGNAL);
-}
+static void send_occupied(int client) { (void)send(client, occupied, sizeof occupied - 1, MSG_DONTWAIT); }
 
 /* Accepts a second client only to send it the reason; without an answer its user would search for another fault. */
 static void refuse_second(board *port, int listening) {
-    const int second = accept(listening, NULL, NULL);
+    const int second = station_connection(listening);
     if (second < 0) return;
     if (port->refused >= 0) close(port->refused);
     port->refused = second;
@@ -224,12 +239,12 @@ static int open_listener(unsigned long number, unsigned long *chosen) {
     struct sockaddr_in address = {.sin_family = AF_INET, .sin_port = htons((uint16_t)number)};
     socklen_t size = sizeof address;
     const int on = 1;
-    const int listening = socket(AF_INET, SOCK_STREAM | SOCK_NONBLOCK, 0);
+    const int listening = socket(AF_INET, SOCK_STREAM, 0);
     address.sin_addr.s_addr = htonl(INADDR_LOOPBACK);
     if (listening < 0) return -1;
     setsockopt(listening, SOL_SOCKET, SO_REUSEADDR, &on, sizeof on);
-    if (bind(listening, (struct sockaddr *)&address, size) != 0 || listen(listening, 4) != 0 ||
-        getsockname(listening, (struct sockaddr *)&address, &size) != 0) {
+    if (fcntl(listening, F_SETFL, O_NONBLOCK) != 0 || bind(listening, (struct sockaddr *)&address, size) != 0 ||
+        listen(listening, 4) != 0 || getsockname(listening, (struct sockaddr *)&address, &size) != 0) {
         close(listening);
         return -1;
     }
@@ -287,6 +302,7 @@ static int parse(int count, char **words, options *settings) {
     return 0;
 }
 
+#ifdef __linux__
 /* The exit status: an interface can be refused and can go, but it does not end by itself. */
 static int serve_interface(laconic_node *node, const char *interface) {
     socketcan_port port = {.node = node, .socket = socketcan_open(interface)};
@@ -302,6 +318,13 @@ static int serve_interface(laconic_node *node, const char *interface) {
     close(port.socket);
     return BUS_DIED;
 }
+#else
+static int serve_interface(laconic_node *node, const char *interface) {
+    (void)node;
+    (void)interface;
+    return complain("--socketcan", "only Linux has such interfaces; serve a port instead (--port)");
+}
+#endif
 
 int main(int count, char **words) {
     static board port;
@@ -314,6 +337,7 @@ int main(int count, char **words) {
                                         laconic_drive_protocol_by_number};
     laconic_node_init(&port.node, &config, now_us());
     if (settings.interface != NULL) return serve_interface(&port.node, settings.interface);
+    signal(SIGPIPE, SIG_IGN); /* a client that has gone is noticed by reading from it */
     const int listening = open_listener(settings.port, &chosen);
     if (listening < 0) return complain(strerror(errno), "the port is taken or not allowed; choose another --port");
     printf("listening on 127.0.0.1:%lu\n", chosen);

@@ -5,7 +5,9 @@
 #include <netinet/in.h>
 #include <netinet/tcp.h>
 #include <string.h>
+#include <sys/select.h>
 #include <sys/socket.h>
+#include <unistd.h>
 
 void station_clear(station *it, char rate) {
     it->socket = -1;
@@ -14,9 +16,16 @@ void station_clear(station *it, char rate) {
     laconic_slcan_init(&it->slcan, rate);
 }
 
+int station_connection(int listening) {
+    const int client = accept(listening, NULL, NULL);
+    if (client < FD_SETSIZE) return client;
+    close(client);
+    return -1;
+}
+
 void station_accept(station *it, int listening, char rate) {
     const int on = 1;
-    const int client = accept(listening, NULL, NULL);
+    const int client = station_connection(listening);
     if (client < 0) return;
     station_clear(it, rate);
     it->socket = client;
@@ -44,7 +53,7 @@ void station_reply(station *it) { put(it, it->slcan.reply, strlen(it->slcan.repl
 
 void station_flush(station *it) {
     if (it->socket < 0 || it->out_count == 0) return;
-    const ssize_t sent = send(it->socket, it->out, it->out_count, MSG_DONTWAIT | MSG_NOSIGNAL);
+    const ssize_t sent = send(it->socket, it->out, it->out_count, MSG_DONTWAIT);
     if (sent <= 0) return;
     it->out_count -= (size_t)sent;
     memmove(it->out, it->out + sent, it->out_count);

@@ -18,6 +18,8 @@ typedef struct station {
 
 /* Without client, its channel closed. `rate`: as laconic_slcan_init() takes it. */
 void station_clear(station *it, char rate);
+/* The connection of a waiting client; -1 where there is none, or its number is beyond what can be waited for. */
+int station_connection(int listening);
 /* Accepts a waiting client; nothing happens where there is none. */
 void station_accept(station *it, int listening, char rate);
 

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import re
 import shutil
 import subprocess
 
@@ -40,3 +41,15 @@ def test_the_node_compiles_without_a_warning(compiler: str, definitions: tuple[s
 def test_more_wheels_than_the_groups_of_voltage_can_number_do_not_compile(compiler: str) -> None:
     assert "VOLTAGE numbers eight groups of three wheels" in compiled(
         compiler, "LACONIC_MAX_WHEELS=25", only="node_motion.c")
+
+
+@pytest.mark.parametrize("compiler", COMPILERS)
+@pytest.mark.parametrize("name", ["main.c", "station.c"])
+def test_the_host_port_needs_nothing_of_linux_but_for_socketcan(compiler: str, name: str) -> None:
+    path = FIRMWARE / "ports" / "host" / name
+    where = [word for folder in (*INCLUDES, build_dir() / "firmware_stub" / "wire") for word in ("-I", str(folder))]
+    done = subprocess.run([compiler, *STRICT, "-U__linux__", "-H", *where, str(path)], capture_output=True, text=True)
+    assert done.returncode == 0, done.stderr
+    assert "linux/can" not in done.stderr
+    words = set(re.findall(r"\w+", re.sub(r"/\*.*?\*/", "", path.read_text(encoding="utf-8"), flags=re.DOTALL)))
+    assert words & {"ppoll", "accept4", "SOCK_NONBLOCK", "SOCK_CLOEXEC", "MSG_NOSIGNAL"} == set()

@@ -11,7 +11,8 @@ from laconic_fmu.cross import compile_to
 from laconic_wheel.contents import REALS
 from laconic_wheel.platforms import Platform
 
-HOST_PORT = ("main.c", "station.c", "socketcan.c")
+HOST_PORT = ("main.c", "station.c")
+HOST_PORT_OF_LINUX = (*HOST_PORT, "socketcan.c")
 
 
 def compile_all(platform: Platform, project: Path, wire: Path, out: Path, python: str) -> Path:
@@ -32,7 +33,7 @@ def compile_all(platform: Platform, project: Path, wire: Path, out: Path, python
             compile_to(platform.target, sources, folders, out / "lib" / platform.library.format(name),
                        ["-shared", *flags], python=python)
         if platform.has_node_process:
-            port = [node_dir / "ports" / "host" / name for name in HOST_PORT]
+            port = [node_dir / "ports" / "host" / name for name in (HOST_PORT_OF_LINUX if platform.is_linux else HOST_PORT)]
             compile_to(platform.target, [*whole, *port], includes, out / "bin" / f"laconic-node-{real}", flags,
                        python=python)
     return out

@@ -16,6 +16,11 @@ class Platform:
     has_node_process: bool = True  # its sockets are those of POSIX
 
     @property
+    def is_linux(self) -> bool:
+        """Whether it has CAN interfaces in its kernel."""
+        return "linux" in self.target
+
+    @property
     def is_windows(self) -> bool:
         """Whether code is at any address without being told so."""
         return self.library.endswith(".dll")
