@@ -13,6 +13,7 @@ from laconic.cli.options import PICTURES, OutputFile, SceneName, belongs_to, che
 from laconic.cli.streams import warn
 from laconic.core import REALS
 from laconic.errors import Refused, ResultFails
+from laconic.film.moving_picture import FILMED, write_film
 from laconic.outputs import is_stdout, opened
 from laconic.scene import METHODS, Scene, read_scene
 from laconic.simulation import RunRefused, Trajectory, input_signals, simulate, usual_signals, wanted_signals
@@ -27,11 +28,13 @@ from laconic.simulation.csv_text import csv_text
 @click.option("--out", type=OutputFile(".csv", stdout=True), metavar="F.csv", help="Write the outputs; - for stdout.")
 @click.option("--plot", type=OutputFile(*PICTURES), metavar="F.png",
               help="Draw path, velocities, wheel speeds; .png, .svg or .pdf.")
+@click.option("--film", type=OutputFile(".svg"), metavar="F.svg",
+              help="Draw a moving picture: the robot on its path, which a browser plays.")
 @click.option("--inputs", "inputs_wanted", is_flag=True,
               help="Write the inputs as further columns of --out: what acts from each row on.")
 @json_flag("Machine-readable summary.")
 def command(scene: str, method: str | None, step_s: float | None, real: str | None, out: Path | None,
-            plot: Path | None, inputs_wanted: bool, json_wanted: bool) -> None:
+            plot: Path | None, film: Path | None, inputs_wanted: bool, json_wanted: bool) -> None:
     """Runs SCENE, a TOML file or the name of a scene that comes with the project.
 
     Inputs of kind "steps" are held over each step; a step that one of them changes within is refused. Where the scene
@@ -43,21 +46,23 @@ def command(scene: str, method: str | None, step_s: float | None, real: str | No
     belongs_to("--out", bool(out), "--inputs")
     given = read_scene(scene).with_run(method=method, step_s=step_s, real=real)
     written = (*wanted_signals(given), *(input_signals(given) if inputs_wanted else ()))
-    signals = tuple(dict.fromkeys((*written, *(usual_signals(given) if plot else ()))))
-    run = as_far_as_it_goes(given, signals)
+    signals = dict.fromkeys((*written, *(usual_signals(given) if plot or film else ()), *(FILMED if film else ())))
+    run = as_far_as_it_goes(given, tuple(signals))
     if out:
         write_csv(run, written, out)
     if plot:
         from laconic.pictures.plotting import simulation_picture
         simulation_picture(run, plot)
+    if film:
+        write_film(run, film)
     if json_wanted:
-        click.echo(json.dumps(summary(run, out, plot), indent=1))
+        click.echo(json.dumps(summary(run, out, plot, film), indent=1))
     elif not (out and is_stdout(out)):
-        print_summary(run, out, plot)
+        print_summary(run, out, plot, film)
     if run.grip and not run.grip.holds:
         warn(f"{given.path}: the ground cannot give what this run needs: {run.grip.warning()}")
     if run.refused:
-        raise ResultFails(f"{run.refused}{kept_in(out, plot)}")
+        raise ResultFails(f"{run.refused}{kept_in(out, plot, film)}")
 
 
 def as_far_as_it_goes(scene: Scene, signals: tuple[str, ...]) -> Trajectory:
@@ -84,7 +89,7 @@ def write_csv(run: Trajectory, signals: tuple[str, ...], path: Path) -> None:
             file.write(lines)
 
 
-def summary(run: Trajectory, out: Path | None, plot: Path | None) -> dict[str, Any]:
+def summary(run: Trajectory, *files: Path | None) -> dict[str, Any]:
     """What was run and where it ended."""
     return {
         "scene": str(run.scene.path), "name": run.scene.name, "method": run.scene.run.method, "chosen": run.method,
@@ -92,7 +97,7 @@ def summary(run: Trajectory, out: Path | None, plot: Path | None) -> dict[str, A
         "final": {"time_s": run.time_s[-1], **{name: values[-1].item() for name, values in run.columns.items()}},
         "no_slip": run.grip.as_json() if run.grip else None,
         "refused": in_words(run.refused, run) if run.refused else None,
-        "files": [str(path) for path in (out, plot) if path]}
+        "files": [str(path) for path in files if path]}
 
 
 def in_words(refused: Refused, run: Trajectory) -> dict[str, Any]:
@@ -101,7 +106,7 @@ def in_words(refused: Refused, run: Trajectory) -> dict[str, Any]:
             "message": str(refused)}
 
 
-def print_summary(run: Trajectory, out: Path | None, plot: Path | None) -> None:
+def print_summary(run: Trajectory, *files: Path | None) -> None:
     """The same for people."""
     given, picked = run.scene.run.method, run.method
     method = given if given == picked else f"{given} (picked {picked})"
@@ -111,6 +116,6 @@ def print_summary(run: Trajectory, out: Path | None, plot: Path | None) -> None:
     click.echo(f"at {run.time_s[-1]:g} s:")
     for name, values in run.columns.items():
         click.echo(f"  {name:28} {values[-1]: .12g}")
-    for path in (out, plot):
+    for path in files:
         if path:
             click.echo(f"wrote {path}")
