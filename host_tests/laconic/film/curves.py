@@ -38,8 +38,9 @@ def curves(panels: Sequence[Panel], time_s: np.ndarray, timing: Timing, box: Box
     tall = each - TITLE - GAP
     plots = "".join(f"M{left} {place[1] + TITLE - 2.0:.1f}v{tall + 4.0:.1f}h{width + 2}v{-tall - 4.0:.1f}z"
                     for place in boxes)
+    line = "".join(f"M{left} {place[1] + TITLE:.1f}v{tall:.1f}" for place in boxes)
     veil = (f'<path class="m veil" d="{plots}" fill="#fff" fill-opacity="0.78"/>\n'
-            f'<path class="m now" d="M{left} {top + TITLE:.1f}V{top + height - GAP:.1f}" stroke="#5b6672"/>\n')
+            f'<path class="m now" d="{line}" stroke="#5b6672"/>\n')
     end = f"{100.0 * timing.shares[-1]:.4g}%"
     style = (f"@keyframes veil {{ 0% {{ transform: scaleX(1); }} {end} {{ transform: scaleX(0); }} "
              f"100% {{ transform: scaleX(0); }} }}\n@keyframes now {{ 0% {{ transform: translateX(0); }} "
@@ -67,11 +68,11 @@ def _panel(panel: Panel, time_s: np.ndarray, box: Box) -> str:
     for value, colour in ((0.0, "#c8d0d8"), (tick, "#e6eaee")):
         at = zero - plot_height * value / span
         text.append(f'<path d="M{left} {at:.1f}h{width}" stroke="{colour}"/><text x="{left - 6}" y="{at + 5:.1f}" '
-                    f'text-anchor="end" font-size="14" fill="#5b6672">{value:g}</text>')
+                    f'text-anchor="end" font-size="16" fill="#5b6672">{value:g}</text>')
     end = left + width
     for number, name in reversed(list(enumerate(panel.names))):
         text.append(f'<text x="{end:.0f}" y="{top + 17:.1f}" text-anchor="end" fill="{COLOURS[number]}">{name}</text>')
-        end -= 9.0 * len(name) + 12.0
+        end -= 10.0 * len(name) + 12.0
     for number, values in enumerate(panel.values.T):
         y = plot_top + plot_height * (high - values[rows]) / span
         points = " ".join(f"{a:.1f},{b:.1f}" for a, b in zip(x, y, strict=True))

@@ -20,7 +20,7 @@ from laconic.simulation import Trajectory
 
 WIDTH, HEIGHT, HEAD = 720, 420, 52
 FIELD = (16, HEAD, 350, HEIGHT - HEAD - 42)
-MOST_LETTERS = 56  # of a name
+MOST_LETTERS = 50  # of a name
 INK, PAPER = "#1d2733", "#ffffff"
 FILMED = ("origin_x_m", "origin_y_m")
 """What a run keeps for its film beside the usual signals: the place of the body frame, in which the wheels stand."""
@@ -40,10 +40,10 @@ def film(run: Trajectory) -> str:
     style = "".join((timing.style(), moving, wheels, cursor))
     name, words = escape(_short(run.scene.name)), f"{timing.in_words()}, grid of {grid_m(run, FIELD):g} m"
     return (f'<svg xmlns="http://www.w3.org/2000/svg" viewBox="0 0 {WIDTH} {HEIGHT}" role="img" '
-            f'font-family="system-ui, sans-serif" font-size="17" fill="{INK}">\n'
+            f'font-family="system-ui, sans-serif" font-size="19" fill="{INK}">\n'
             f"<title>{name}: {words}</title>\n<style>\n{style}</style>\n"
             f'<rect width="{WIDTH}" height="{HEIGHT}" rx="10" fill="{PAPER}"/>\n'
-            f'<text x="16" y="34" font-size="21" font-weight="600">{name}</text>\n'
+            f'<text x="16" y="34" font-size="24" font-weight="600">{name}</text>\n'
             f'<text x="16" y="{HEIGHT - 18}" fill="#5b6672">{words}</text>\n'
             f"{field.format(robot=drawn)}{panels}</svg>\n")
 

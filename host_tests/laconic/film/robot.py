@@ -21,8 +21,8 @@ def robot(run: Trajectory, timing: Timing) -> tuple[str, str]:
     style, wheels = "", ""
     for number, wheel in enumerate(vehicle["wheel"], start=1):
         radius = wheel.get("radius_m", vehicle["wheel_radius_m"])
-        angle = run.columns[f"wheel_angle_rad[{number}]"]
-        style += timing.keyframes(f"w{number}", lambda row, a=angle, r=radius: f"stroke-dashoffset: {-a[row] * r:.4f}")
+        rolled_m = radius * run.columns[f"wheel_angle_rad[{number}]"]
+        style += timing.keyframes(f"w{number}", [f"stroke-dashoffset: {-rolled_m[row]:.4f}" for row in timing.rows])
         style += f".w{number} {{ animation-name: w{number}; }}\n"
         wheels += _wheel(wheel, radius, number)
     return _body(run) + wheels + _marks(run), style

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Callable
+from collections.abc import Sequence
 from dataclasses import dataclass
 
 import numpy as np
@@ -30,10 +30,10 @@ class Timing:
                 "animation-timing-function: linear; }\n"
                 "@media (prefers-reduced-motion: reduce) { .m { animation: none !important; } }\n")
 
-    def keyframes(self, name: str, state: Callable[[int], str]) -> str:
-        """The rule @keyframes; state: the declarations at a row of the run."""
-        steps = [f"{100.0 * share:.4g}% {{ {state(row)} }}" for row, share in zip(self.rows, self.shares, strict=True)]
-        return f"@keyframes {name} {{ {' '.join(steps)} 100% {{ {state(self.rows[-1])} }} }}\n"
+    def keyframes(self, name: str, states: Sequence[str]) -> str:
+        """The rule @keyframes; states: the declarations at each of `rows`."""
+        steps = [f"{100.0 * share:.4g}% {{ {state} }}" for share, state in zip(self.shares, states, strict=True)]
+        return f"@keyframes {name} {{ {' '.join(steps)} 100% {{ {states[-1]} }} }}\n"
 
     def in_words(self) -> str:
         """How long the run is, and how fast it is shown."""

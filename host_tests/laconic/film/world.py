@@ -18,8 +18,8 @@ def world(run: Trajectory, timing: Timing, box: Box) -> tuple[str, str]:
     """The group with a place {robot} for what moves, and the rules by which path and robot move."""
     scale, centre = _fit(run, box)
     points, driven = _path(run)
-    style = timing.keyframes("path", lambda row: f"stroke-dashoffset: {1.0 - driven[row]:.4f}")
-    style += timing.keyframes("body", lambda row: f"transform: {pose(run, row)}")
+    style = timing.keyframes("path", [f"stroke-dashoffset: {1.0 - driven[row]:.4f}" for row in timing.rows])
+    style += timing.keyframes("body", [f"transform: {pose(run, row)}" for row in timing.rows])
     style += f".path {{ animation-name: path; }} .body {{ animation-name: body; transform: {pose(run, -1)}; }}\n"
     stroke = f'fill="none" stroke-width="{2.6 / scale:.5f}" stroke-linejoin="round"'
     left, top, width, height = box
