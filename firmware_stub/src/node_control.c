@@ -187,17 +187,19 @@ laconic_node_result laconic_node_commit(laconic_node *node, const uint8_t *data)
 laconic_node_result laconic_node_select(laconic_node *node, const uint8_t *data) {
     laconic_node_result answer = {.command = LACONIC_WIRE_COMMAND_SELECT};
     const uint8_t raw_fd = data[3] >> 7;
+    const uint8_t raw =
+        (uint8_t)((data[3] & 0x7FU) | ((uint32_t)data[4] << 3 & LACONIC_RAW_HELD_TORQUE)); /* its bit 4 */
     if (listens_to_voltages(node)) {
         answer.status = LACONIC_WIRE_STATUS_WRONG_STATE;
     } else if ((raw_fd || data[2] & LACONIC_NODE_SEND_STATE_FD) && !node->config.can_fd) {
         answer.status = LACONIC_WIRE_STATUS_NOT_SUPPORTED;
-    } else if (!LACONIC_NODE_WITH_SENSORS && ((data[2] & SENDS_OF_SENSORS) | (data[3] & RAW_OF_SENSORS)) != 0) {
+    } else if (((data[2] & SENDS_LEFT_OUT) | (raw & RAW_LEFT_OUT)) != 0) {
         answer.status = LACONIC_WIRE_STATUS_NOT_SUPPORTED;
     } else {
         node->send = data[2];
         node->raw_fd = raw_fd != 0;
-        node->raw_output.send = data[3] & 0x7FU;
-        if (!LACONIC_NODE_DRIVES_ONLY) node->raw_input.take = data[4];
+        node->raw_output.send = raw;
+        if (!LACONIC_NODE_DRIVES_ONLY) node->raw_input.take = data[4] & LACONIC_RAW_TAKES;
         laconic_node_clear_inputs(node);
     }
     return answer;

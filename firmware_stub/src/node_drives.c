@@ -59,9 +59,16 @@ static laconic_status step(laconic_node *node, uint32_t now_us, laconic_refusal 
     return laconic_drives_step(&node->drives, &node->plant, &node->input[0], now_us, why);
 }
 
+/* Whoever reads the torques must miss no step, or his own steps are others from there on: the next one waits until the
+ * raw numbers of the last have been sent. */
+static bool is_read(const laconic_node *node) {
+    const uint32_t raw = BIT(LACONIC_WIRE_RAW_OUTPUT) | BIT(LACONIC_WIRE_RAW_OUTPUT_FD);
+    return (node->raw_output.send & LACONIC_RAW_HELD_TORQUE) == 0 || (node->pending & raw) == 0;
+}
+
 void laconic_node_run_drives(laconic_node *node, uint32_t now_us) {
     laconic_refusal why = {0};
-    if (!laconic_node_period_is_due(node, now_us)) return;
+    if (!is_read(node) || !laconic_node_period_is_due(node, now_us)) return;
     if (step(node, now_us, &why) != LACONIC_OK)
         laconic_node_fail(node, &why, 0);
     else

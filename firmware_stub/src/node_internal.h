@@ -35,9 +35,13 @@ static inline bool is_running(const laconic_node *node) {
            node->state == LACONIC_WIRE_STATE_TIMEOUT || plays_drives(node);
 }
 
-/* Bits of SELECT that ask for sensors: of `send`, and of the raw output. */
+/* Bits of SELECT that ask for sensors, and those that this build leaves out: of `send`, and of the raw output. */
 #define SENDS_OF_SENSORS (LACONIC_NODE_SEND_WHEEL_ANGLE | LACONIC_NODE_SEND_IMU | LACONIC_NODE_SEND_ENCODER)
 #define RAW_OF_SENSORS (LACONIC_RAW_IMU | LACONIC_RAW_ENCODER)
+#define SENDS_LEFT_OUT (LACONIC_NODE_WITH_SENSORS ? 0U : SENDS_OF_SENSORS)
+#define RAW_LEFT_OUT \
+    ((LACONIC_NODE_WITH_SENSORS ? 0U : RAW_OF_SENSORS) | (LACONIC_NODE_WITH_DRIVES ? 0U : LACONIC_RAW_HELD_TORQUE) | \
+     (LACONIC_NODE_DRIVES_ONLY ? LACONIC_RAW_NU | LACONIC_RAW_ENERGY : 0U))
 
 static inline bool listens_to_voltages(const laconic_node *node) {
     if (LACONIC_NODE_DRIVES_ONLY) return false;

@@ -19,9 +19,9 @@ void laconic_node_publish(laconic_node *node) {
 #if LACONIC_NODE_WITH_SENSORS
     laconic_sensor_outputs sensed;
     laconic_node_publish_sensors(node, &sensed);
-    laconic_raw_collect(&node->raw_output, &node->plant, &sensed);
+    laconic_raw_collect(&node->raw_output, &node->plant, &node->input[0], &sensed);
 #else
-    laconic_raw_collect(&node->raw_output, &node->plant, NULL);
+    laconic_raw_collect(&node->raw_output, &node->plant, &node->input[0], NULL);
 #endif
     if (node->raw_output.size > 0)
         node->pending |= node->raw_fd ? BIT(LACONIC_WIRE_RAW_OUTPUT_FD) : BIT(LACONIC_WIRE_RAW_OUTPUT);

@@ -96,10 +96,11 @@ static laconic_real *collect_sensors(laconic_real *to, uint8_t send, int32_t whe
     return to;
 }
 
-void laconic_raw_collect(laconic_raw_output *raw, const laconic_plant *plant, const laconic_sensor_outputs *sensed) {
+void laconic_raw_collect(laconic_raw_output *raw, const laconic_plant *plant, const laconic_input *held,
+                         const laconic_sensor_outputs *sensed) {
     laconic_real *to = raw->number;
     const int32_t n = plant->model.wheel_count;
-    if (raw->send & LACONIC_RAW_NU) {
+    if (!LACONIC_NODE_DRIVES_ONLY && raw->send & LACONIC_RAW_NU) {
         laconic_nu(&plant->model, &plant->state, to);
         to += 3;
     }
@@ -112,8 +113,12 @@ void laconic_raw_collect(laconic_raw_output *raw, const laconic_plant *plant, co
         laconic_plant_wheel_angles(plant, to);
         to += n;
     }
-    if (raw->send & LACONIC_RAW_ENERGY) *to++ = laconic_plant_energy_J(plant);
-    if (LACONIC_NODE_WITH_SENSORS) to = collect_sensors(to, raw->send, n, sensed);
+    if (!LACONIC_NODE_DRIVES_ONLY && raw->send & LACONIC_RAW_ENERGY) *to++ = laconic_plant_energy_J(plant);
+    if (raw->send >= LACONIC_RAW_IMU) { /* one of the last three, which few choose */
+        if (LACONIC_NODE_WITH_SENSORS) to = collect_sensors(to, raw->send, n, sensed);
+        if (LACONIC_NODE_WITH_DRIVES && raw->send & LACONIC_RAW_HELD_TORQUE)
+            for (int32_t i = 0; i < n; i++) *to++ = held->axle_torque_Nm[i];
+    }
     raw->size = (uint16_t)((size_t)(to - raw->number) * sizeof(laconic_real));
     raw->position = 0;
     raw->segment = 0;

@@ -5,6 +5,8 @@
 #include "drive_scene.h"
 #include "unity.h"
 
+#define SELECT_RAW_AXLE_TORQUE 16U /* in the byte of the take_ bits */
+
 static void load(laconic_real step_s) {
     const laconic_vehicle vehicle = scene_vehicle(0);
     memset(&node.start, 0, sizeof node.start);
@@ -119,6 +121,48 @@ static void a_rig_may_select_frames_while_drives_play(void) {
     fetch(&of_drives, &of_node);
 }
 
+/* Whoever reads the torques and takes the same steps with a plant of the core has the wheels' motion, bit for bit. */
+static void raw_axle_torques_are_those_of_the_step_and_give_its_motion(void) {
+    laconic_plant twin = node.plant;
+    laconic_input held = {0};
+    laconic_real number[2 * 4], speed[4];
+    int of_drives, of_node;
+    start();
+    TEST_ASSERT_EQUAL_UINT8(0, bench_select(0, LACONIC_RAW_WHEEL_SPEED, SELECT_RAW_AXLE_TORQUE));
+    TEST_ASSERT_EQUAL_UINT8(0, node.raw_input.take);
+    for (int k = 0; k < 20; k++) {
+        command(500 * k);
+        pass(1000, 1000);
+        TEST_ASSERT_EQUAL_UINT16(sizeof number, node.raw_output.size);
+        memcpy(number, node.raw_output.number, sizeof number);
+        memcpy(held.axle_torque_Nm, number + 4, sizeof speed);
+        TEST_ASSERT_TRUE(LACONIC_OK == laconic_plant_run(&twin, &held, 1, NULL));
+        laconic_plant_wheel_speeds(&twin, speed);
+        TEST_ASSERT_EQUAL_MEMORY(speed, number, sizeof speed);
+        TEST_ASSERT_TRUE(number[4] == node.drives.drive[0].torque_Nm);
+        fetch(&of_drives, &of_node);
+        TEST_ASSERT_EQUAL_INT((sizeof number + 5) / 6, of_node);
+    }
+    TEST_ASSERT_TRUE(number[4] > 0 && speed[0] > 0);
+}
+
+static void the_next_step_waits_until_the_raw_axle_torques_of_the_last_are_sent(void) {
+    int of_drives, of_node;
+    start();
+    bench_select(0, LACONIC_RAW_WHEEL_SPEED, 0);
+    pass(5000, 1000);
+    TEST_ASSERT_EQUAL_UINT64(5, node.plant.steps);
+    fetch(&of_drives, &of_node);
+    bench_select(0, LACONIC_RAW_WHEEL_SPEED, SELECT_RAW_AXLE_TORQUE);
+    pass(5000, 1000);
+    TEST_ASSERT_EQUAL_UINT64(6, node.plant.steps);
+    for (int k = 0; k < 4; k++) {
+        fetch(&of_drives, &of_node);
+        laconic_node_on_tick(&node, now_us);
+    }
+    TEST_ASSERT_EQUAL_UINT64(10, node.plant.steps); /* late, none left out */
+}
+
 static void frames_for_drives_do_nothing_before_they_play(void) {
     command(1000);
     TEST_ASSERT_EQUAL_INT(0, node.drives.count);
@@ -230,6 +274,8 @@ int main(void) {
     RUN_TEST(late_periods_are_counted_and_none_is_left_out);
     RUN_TEST(a_node_that_plays_sends_the_protocols_frames_alone);
     RUN_TEST(a_rig_may_select_frames_while_drives_play);
+    RUN_TEST(raw_axle_torques_are_those_of_the_step_and_give_its_motion);
+    RUN_TEST(the_next_step_waits_until_the_raw_axle_torques_of_the_last_are_sent);
     RUN_TEST(frames_for_drives_do_nothing_before_they_play);
     RUN_TEST(stop_switches_the_drives_off_and_a_start_is_their_power_up);
     RUN_TEST(a_refused_step_is_a_fault_with_the_drives_off);

@@ -1,6 +1,6 @@
 """`python -m laconic` is the command `laconic`."""
 
-from laconic.cli.main import main
+from laconic.cli.entry import main
 
 if __name__ == "__main__":
     main()

@@ -3,7 +3,8 @@
 #define LACONIC_NODE_RAW_FRAMES_H
 
 #include "laconic/laconic.h"
-#include "laconic_wire.h" /* LACONIC_NODE_WITH_SENSORS */
+#include "laconic_drives/settings.h" /* LACONIC_NODE_WITH_DRIVES, LACONIC_NODE_DRIVES_ONLY */
+#include "laconic_wire.h"            /* LACONIC_NODE_WITH_SENSORS */
 
 /* Bits of SELECT for the numbers in RAW_INPUT; those of one input follow in this order. */
 #define LACONIC_RAW_VOLTAGE 1U     /* N numbers                             */
@@ -11,20 +12,22 @@
 #define LACONIC_RAW_BODY_WRENCH 4U /* force ξ, η, moment                    */
 #define LACONIC_RAW_WORLD_FORCE 8U /* force X, Y, point ξ, η                */
 #define LACONIC_RAW_SAMPLED 128U   /* three inputs: start, middle, end      */
+#define LACONIC_RAW_TAKES 0x8FU    /* all of these                          */
 
 /* Bits of SELECT for the numbers in RAW_OUTPUT, which follow in this order. */
-#define LACONIC_RAW_NU 1U          /* 3 */
+#define LACONIC_RAW_NU 1U          /* 3; neither these nor the energy in images that play drives alone */
 #define LACONIC_RAW_POSE 2U        /* x, y, heading (unwrapped) */
 #define LACONIC_RAW_WHEEL_SPEED 4U /* N */
 #define LACONIC_RAW_WHEEL_ANGLE 8U /* N */
 #define LACONIC_RAW_ENERGY 16U     /* 1 */
 #define LACONIC_RAW_IMU 32U /* 5: acceleration of the body's origin ξ, η; the IMU's acceleration x, y; its yaw rate */
-#define LACONIC_RAW_ENCODER 64U /* N: count as shown, 0 where a wheel has none */
-#if LACONIC_NODE_WITH_SENSORS
-#define LACONIC_RAW_OUTPUTS (12 + 3 * LACONIC_MAX_WHEELS)
-#else
-#define LACONIC_RAW_OUTPUTS (7 + 2 * LACONIC_MAX_WHEELS)
-#endif
+#define LACONIC_RAW_ENCODER 64U      /* N: count as shown, 0 where a wheel has none */
+#define LACONIC_RAW_HELD_TORQUE 128U /* N: axle torque besides the motor's that was held in the last step */
+
+/* Numbers of one RAW_OUTPUT at most. */
+#define LACONIC_RAW_OUTPUTS \
+    ((LACONIC_NODE_DRIVES_ONLY ? 3 : 7) + 2 * LACONIC_MAX_WHEELS + LACONIC_NODE_WITH_DRIVES * LACONIC_MAX_WHEELS + \
+     LACONIC_NODE_WITH_SENSORS * (5 + LACONIC_MAX_WHEELS))
 
 typedef struct laconic_raw_input {
     uint8_t take;      /* mask                                                */
@@ -57,9 +60,10 @@ typedef struct laconic_raw_output {
     laconic_real number[LACONIC_RAW_OUTPUTS];
 } laconic_raw_output;
 
-/* Reads the chosen outputs of the plant, all of one instant, and begins at the first byte. `sensed`: what sensors show
- * then; read only where it is chosen. */
-void laconic_raw_collect(laconic_raw_output *raw, const laconic_plant *plant, const laconic_sensor_outputs *sensed);
+/* Reads the chosen outputs of the plant, all of one instant, and begins at the first byte. `held`: the input of the
+ * step that has led there. `sensed`: what sensors show then; read only where it is chosen. */
+void laconic_raw_collect(laconic_raw_output *raw, const laconic_plant *plant, const laconic_input *held,
+                         const laconic_sensor_outputs *sensed);
 
 /* Copies the next bytes, at most `room`, and fills up with zeros; false iff these were the last. */
 bool laconic_raw_give(laconic_raw_output *raw, uint8_t *bytes, uint8_t room);

@@ -12,6 +12,7 @@ from typing import Any
 from laconic.errors import BadInput, nearest_of
 from laconic.soak._fuzzing import fuzz_in_turn
 
+OPTIONS = ("protocol",)
 TARGETS = ("canopen", "odrive", "robomaster", "moteus")
 
 

@@ -109,3 +109,12 @@ def test_ctrl_c_is_one_line_and_status_130(monkeypatch, capsys):
     monkeypatch.setattr(command, "read_scene", stop)
     assert cli.run(["simulate", "s1"]) == 130 == 128 + signal.SIGINT
     assert capsys.readouterr().err == "laconic: stopped by the user\n"
+
+
+@pytest.mark.parametrize("module", ["click", "numpy"])  # of every command; of this one
+def test_ctrl_c_while_modules_are_read_is_one_line(tmp_path, module):
+    stop = "import os, signal, time\nos.kill(os.getpid(), signal.SIGINT)\ntime.sleep(20.0)\n"
+    (tmp_path / f"{module}.py").write_text(stop)
+    done = subprocess.run([sys.executable, "-m", "laconic", "simulate", "s1"], env=os.environ | {
+        "PYTHONPATH": str(tmp_path)}, capture_output=True, text=True)
+    assert (done.returncode, done.stderr, done.stdout) == (130, "laconic: stopped by the user\n", "")

@@ -6,6 +6,7 @@ import importlib
 import json
 import pkgutil
 import random
+from types import ModuleType
 from typing import Any
 
 import click
@@ -27,13 +28,20 @@ def kinds() -> dict[str, str]:
 @click.argument("what")
 @click.option("--minutes", type=float, default=10.0, show_default=True, metavar="N", help="How long.")
 @click.option("--seed", type=int, help="Seed of the random numbers; printed when not given.")
-@click.option("--protocol", metavar="P", help="drive-frames: this one alone.")
+@click.option("--protocol", metavar="P", help="controllers, drive-frames: this one alone.")
+@click.option("--board", metavar="B", help="controllers: virtual, process, emulated, or a board of rig; lateness.")
+@click.option("--cycles", type=click.IntRange(min=1), metavar="N", help="controllers: of each, 10000 by default.")
+@click.option("--seconds", type=float, metavar="S", help="lateness: on each board, 10 by default.")
+@click.option("--step", "step_s", type=float, metavar="S", help="controllers: period of the drives, 0.005 by default.")
 @json_flag()
-def command(what: str, minutes: float, seed: int | None, protocol: str | None, json_wanted: bool) -> int:
+def command(what: str, minutes: float, seed: int | None, json_wanted: bool, **special: Any) -> int:
     """Runs WHAT for a long time and reports what was found.
 
     \b
     boards           emulated boards started anew, idle and with all cores busy
+    controllers      PyPI's canopen and odrive-can and a C620 client drive vehicles on the
+                     process and an emulated board: wheels move as the core does with
+                     the drives' torques, bit for bit; ends after --cycles
     drive-frames     frames of each protocol of drives with faults between, N minutes
                      each, under libFuzzer; Ctrl-C keeps and prints what was found
     faults           the fault matrix of the rig, with new seeds
@@ -45,6 +53,8 @@ def command(what: str, minutes: float, seed: int | None, protocol: str | None, j
     free-run         the node process at 1 kHz: no step may be lost
     fuzz             what reads frames (SLCAN, node, loader, protocols of drives) under libFuzzer
     identify         a thousand made-up robots: what their intervals hold
+    lateness         play at 1 kHz with four drives, in this process and in the node's,
+                     for a controller in another process: how late periods begin
     rig              all scenes in lockstep on the virtual bus, same bits
     slcan            all scenes over SLCAN to a node process
 
@@ -55,21 +65,30 @@ def command(what: str, minutes: float, seed: int | None, protocol: str | None, j
         raise BadInput(f"soak: there is no {what}; {nearest_of(what, modules)}")
     if not 0.0 < minutes < float("inf"):
         raise BadInput(f"--minutes: {minutes:g} is not usable; give a finite number above zero")
-    if protocol is not None and what != "drive-frames":
-        raise BadInput(f"--protocol {protocol}: is of soak drive-frames; leave it out")
     chosen = random.SystemRandom().randrange(2**31) if seed is None else seed
     module = importlib.import_module(f"laconic.soak.{modules[what]}")
-    more = {} if protocol is None else {"protocol": protocol}
+    more = own_options(what, module, special)
+    length = module.length(**more) if hasattr(module, "length") else 60.0 * minutes
     stopped: BaseException | None = None
     try:
-        with progress_bar(f"soak {what}", 60.0 * minutes) as advance:
+        with progress_bar(f"soak {what}", length) as advance:
             result = module.soak(minutes, chosen, advance, **more)
     except laconic.soak.StoppedEarly as early:
         result, stopped = {"stopped": "early, so this is what was found until then", **early.result}, early.__cause__
-    _show({"what": what, "minutes": minutes, "seed": chosen, **result}, json_wanted)
+    by_time = {} if hasattr(module, "length") else {"minutes": minutes, "seed": chosen}
+    _show({"what": what, **by_time, **result}, json_wanted)
     if stopped is not None:
         raise stopped
     return 0 if result["passed"] else 1
+
+
+def own_options(what: str, module: ModuleType, given: dict[str, Any]) -> dict[str, Any]:
+    """Options that some modules alone have, of those that were given; BadInput for those that this one has not."""
+    found = {name: value for name, value in given.items() if value is not None}
+    for name, value in found.items():
+        if name not in getattr(module, "OPTIONS", ()):
+            raise BadInput(f"--{name.removesuffix('_s')} {value}: has no effect on soak {what}; leave it out")
+    return found
 
 
 def _show(result: dict[str, Any], json_wanted: bool) -> None:
@@ -78,4 +97,4 @@ def _show(result: dict[str, Any], json_wanted: bool) -> None:
         return
     console = Console()
     for name, value in result.items():
-        console.print(f"{name:>24}  {value}")
+        console.print(f"{name:>24}  {value}", markup=False, soft_wrap=True)
