@@ -128,7 +128,7 @@ def nu_rates(core: Core, model: Any, nu: Sequence[float] | np.ndarray, heading_r
 def field_of(core: Core, model: Any, inputs: Inputs) -> Field:
     """The field of a model under constant inputs; BadInput for a force fixed in the world: its forcing varies."""
     forcing = core.ffi.new("laconic_forcing *")
-    core.lib.laconic_forcing_of(forcing, model, core.input(inputs))
+    core.lib.laconic_forcing_of(forcing, model, core.input(inputs, model.wheel_count))
     if forcing.rotates:
         raise BadInput("a force fixed in the world acts: it rotates against the body with the heading, so there are no "
                        "steady motions; leave it out of the scene, or use `laconic simulate`")

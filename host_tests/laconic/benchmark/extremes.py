@@ -127,7 +127,7 @@ def run_case(base: Scene, case: Extreme, core: Core) -> dict[str, Any]:
     case.change(vehicle)
     try:
         plant = core.plant(core.vehicle(vehicle), "auto", case.step_s, nu_rad_per_s=case.nu)
-        plant.run(core.input({"voltage_V": [case.voltage_V] * len(vehicle["wheel"])}), STEPS)
+        plant.run({"voltage_V": [case.voltage_V] * plant.wheel_count}, STEPS)
     except Refused as refused:
         return {"outcome": "refused", "why": refused.message}
     except IndexError:

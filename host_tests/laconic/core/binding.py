@@ -3,7 +3,7 @@
     core = load("double")
     vehicle = core.vehicle({"mass_kg": 10.0, "wheel": [{"kind": "omni", "x_m": 0.1}], …})
     plant = core.plant(vehicle, "auto", 1e-3)
-    plant.run(core.input({"voltage_V": [2.0, -2.0]}), steps=1000)
+    plant.run({"voltage_V": [2.0, -2.0]}, steps=1000)
     plant.nu, plant.pose, plant.wheel_speeds()
 
 What the core refuses is raised as `Refused`, with its status, field, item and message.
@@ -22,6 +22,7 @@ from cffi import FFI
 
 from laconic.core.fields import ABOVE_0, OF_GROUND, Field, fields_from, set_own_zeros
 from laconic.core.given import c_object, items, number, numbers, shown, table
+from laconic.core.inputs import input_fields, row_of, slots_of
 from laconic.core.plant import Plant
 from laconic.errors import BadInput, Refused, nearest_of
 from laconic.paths import built, library
@@ -68,21 +69,13 @@ class Core:
         self.sensor_fields = fields_from(ffi, lib, "sensor_")
         self._of_table: dict[str, list[Field]] = {}  # asked for whenever a vehicle is made
         self.method_names = self._method_names()
-        self.input_fields = self._input_fields()
+        self.input_fields = input_fields(self)
         self.input_length = ffi.sizeof("laconic_input") // self.dtype.itemsize
 
     def _method_names(self) -> tuple[str, ...]:
         numbers = range(64)
         methods = (self.lib.laconic_method_by_number(n) for n in numbers)
         return tuple(self.text(m.name) for m in methods if m != self.ffi.NULL)
-
-    def _input_fields(self) -> dict[str, tuple[int, int]]:
-        """Name → (offset, length) in laconic_input seen as one row of numbers: it holds nothing else."""
-        found = {}
-        for name, field in self.ffi.typeof("laconic_input").fields:
-            length = field.type.length if field.type.kind == "array" else 1
-            found[name] = (field.offset // self.dtype.itemsize, length)
-        return found
 
     def fields_of(self, table: str) -> list[Field]:
         """The fields that are keys of a scene's table: "vehicle", "vehicle.wheel[#]", "sensors.imu" …"""
@@ -201,45 +194,20 @@ class Core:
 
     def input_offset(self, signal: str) -> int:
         """Where a signal such as voltage_V[2] stands in a row of input numbers."""
-        return self._input_slots(signal).start
+        return slots_of(self, signal).start
 
-    def _input_slots(self, signal: str) -> range:
-        """The numbers that a signal may set; BadInput where there is no such signal or item."""
-        name, _, index = signal.partition("[")
-        if name not in self.input_fields:
-            raise BadInput(f"{signal}: there is no such input; {nearest_of(name, self.input_fields)}")
-        start, length = self.input_fields[name]
-        if not index:
-            return range(start, start + length)
-        item = index.removesuffix("]")
-        if not item.isdecimal() or not 1 <= int(item) <= length:
-            raise BadInput(f"{signal}: there is no such item; give 1 to {length}")
-        return range(start + int(item) - 1, start + int(item))
+    def input_row(self, values: Mapping[str, float | Sequence[float]], wheel_count: int | None = None) -> np.ndarray:
+        """A row of input numbers from {"voltage_V": [1, 2], "axle_torque_Nm[2]": 3, "body_moment_Nm": 4 …}.
 
-    @np.errstate(over="ignore")  # the core names a number that is too large for its scalar type
-    def input_row(self, values: Mapping[str, float | Sequence[float]]) -> np.ndarray:
-        """A row of input numbers from {"voltage_V": [1, 2], "voltage_V[2]": 3, "body_moment_Nm": 4 …}.
-
-        Wheels that a list leaves out get 0. BadInput for what is no signal, no number, or more than the signal has.
+        A list for the wheels needs their number, wheel_count, and has that many items. BadInput for what is no signal,
+        no number, for a wheel that is not there, or not as many numbers as the signal has.
         """
-        if not isinstance(values, Mapping):
-            raise BadInput(f"input: {shown(values)} is no mapping from signals to numbers; "
-                           "give one such as {\"voltage_V\": [1, 2]}")
-        row = np.zeros(self.input_length, self.dtype)
-        for signal, value in values.items():
-            slots = self._input_slots(signal)
-            try:
-                many = np.atleast_1d(np.asarray(value)).astype(self.dtype, casting="same_kind")
-            except (TypeError, ValueError) as error:
-                raise BadInput(f"{signal}: {value!r} is no number and no list of numbers") from error
-            if many.ndim != 1 or len(many) > len(slots) or (len(many) < len(slots) and len(slots) != self.max_wheels):
-                raise BadInput(f"{signal}: {value!r} are not its numbers, of which there are {len(slots)}")
-            row[slots.start : slots.start + len(many)] = many
-        return row
+        return row_of(self, values, wheel_count)
 
-    def input(self, values: Mapping[str, float | Sequence[float]] | np.ndarray | None = None) -> Any:
-        """A laconic_input; from names, or from a row of input numbers."""
-        row = values if isinstance(values, np.ndarray) else self.input_row({} if values is None else values)
+    def input(self, values: Mapping[str, float | Sequence[float]] | np.ndarray | None = None,
+              wheel_count: int | None = None) -> Any:
+        """A laconic_input; from names, as input_row takes them, or from a row of input numbers."""
+        row = values if isinstance(values, np.ndarray) else row_of(self, {} if values is None else values, wheel_count)
         if row.shape != (self.input_length,):
             raise BadInput(f"input: a row has {self.input_length} numbers, this array has the shape {row.shape}")
         held = self.ffi.new("laconic_input *")

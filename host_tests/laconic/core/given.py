@@ -12,7 +12,7 @@ from laconic.errors import BadInput, nearest_of
 if TYPE_CHECKING:
     from laconic.core import Core
 
-MAKERS = {"input": "core.input({…})", "vehicle": "core.vehicle({…})", "model": "core.prepare(vehicle)",
+MAKERS = {"input": "plant.input_of({…})", "vehicle": "core.vehicle({…})", "model": "core.prepare(vehicle)",
           "state": "plant.save()", "plant": "plant.save()", "sensors": "sensors.save()"}
 FLAGS = ("FLAG", "ABSENCE")
 MOST_STEPS = 2**64 - 1

@@ -8,6 +8,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from laconic.core.given import c_object, number, step_count
+from laconic.core.inputs import check_held, check_wheels
 from laconic.core.schedule import Schedule
 from laconic.core.sensors import Sensors, settings_of
 from laconic.errors import BadInput
@@ -42,7 +43,7 @@ class Plant:
         return self.core.text(self.c.integrator.chosen.name)
 
     def run(self, held: Any = None, steps: int = 1) -> None:
-        """Steps with the input held: {"voltage_V": [1.0, 2.0]}, None for none, or what `core.input` made.
+        """Steps with the input held: {"voltage_V": [1.0, 2.0]}, None for none, or what `input_of` made.
 
         Refused leaves the state before the refused step. A controller that steps often makes its input once.
         """
@@ -55,6 +56,7 @@ class Plant:
         width = self.core.input_length
         if np.ndim(samples) != 3 or np.shape(samples)[1:] != (3, width):
             raise BadInput(f"samples: has the shape {np.shape(samples)}; give (steps, 3, {width})")
+        check_wheels(self.core, np.asarray(samples), self.wheel_count)
         self.follow(Schedule(self.core, range(width), samples, first_step=self.steps), self.steps + len(samples))
 
     def follow(self, schedule: Schedule, until_step: int, recorder: Recorder | None = None) -> None:
@@ -117,9 +119,12 @@ class Plant:
         return bool(self.c.friction.acts)
 
     def input_of(self, held: Any) -> Any:
-        """The laconic_input that is given, or that names and numbers make."""
-        made = self.core.input(held) if held is None or isinstance(held, Mapping) else held
-        return c_object(self.core, "input", made)
+        """The laconic_input that is given, or that names and numbers make; BadInput for wheels that are not there."""
+        if held is None or isinstance(held, Mapping):
+            return self.core.input(held, self.wheel_count)
+        made = c_object(self.core, "input", held)
+        check_held(self.core, made, self.wheel_count)
+        return made
 
     def outputs(self, held: Any = None) -> Any:
         """The laconic_outputs with the reactions; its `friction` where the vehicle has friction. Input as for `run`."""

@@ -16,6 +16,7 @@ import numpy as np
 
 from laconic.core.fields import Field
 from laconic.core.given import c_object, number, shown, step_count
+from laconic.core.inputs import check_wheels
 from laconic.errors import BadInput, nearest_of
 
 if TYPE_CHECKING:
@@ -69,6 +70,7 @@ class Sensors:
         width = core.input_length
         if np.ndim(samples) != 3 or np.shape(samples)[1:] != (3, width):
             raise BadInput(f"samples: has the shape {np.shape(samples)}; give (steps, 3, {width})")
+        check_wheels(core, np.asarray(samples), self.plant.wheel_count)
         three = core.ffi.new("laconic_input[3]")
         for each in np.asarray(samples, core.dtype):
             core.ffi.memmove(three, each.tobytes(), core.ffi.sizeof("laconic_input[3]"))

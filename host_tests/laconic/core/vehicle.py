@@ -23,7 +23,8 @@ if TYPE_CHECKING:
     from laconic.scene import Scene
 
 Inputs = Mapping[str, float | Sequence[float]]
-"""Inputs by their names in a scene: {"voltage_V": [1.0, 2.0], "body_moment_Nm": 0.1}; what is left out is 0."""
+"""Inputs by their names in a scene: {"voltage_V": [1.0, 2.0], "body_moment_Nm": 0.1}; what is left out is 0. A list has
+one number for each wheel; voltage_V[2] is that of one."""
 STATES = ("nu_rad_per_s[1]", "nu_rad_per_s[2]", "nu_rad_per_s[3]", "x_m", "y_m", "heading_rad")
 
 
@@ -92,7 +93,7 @@ class Vehicle:
         Raises BadInput for what does not fit, and for a vehicle with friction: its rates depend on wheels that slip.
         """
         self._has_no_friction("derivative")
-        held = self.core.input(inputs)
+        held = self.core.input(inputs, self.wheel_count)
         found = self.core.derivative(self.model, nu_rad_per_s, heading_rad, held)
         return Rates(self.core.numbers(found.nu_rad_per_s2), np.array([found.x_m_per_s, found.y_m_per_s]),
                      float(found.yaw_rate_rad_per_s), self.core.numbers(found.wheel_speed_rad_per_s)[:self.wheel_count])
@@ -104,7 +105,7 @@ class Vehicle:
         ffi = self.core.ffi
         at = ffi.new("laconic_motion *", {"nu_rad_per_s": numbers("nu_rad_per_s", nu_rad_per_s, 3),
                                           "heading_rad": number("heading_rad", heading_rad)})
-        held, change = self.core.input(inputs), ffi.new("laconic_rates *")
+        held, change = self.core.input(inputs, self.wheel_count), ffi.new("laconic_rates *")
 
         def column(by: Any) -> list[float]:
             self.core.lib.laconic_derivative_tangent(change, self.model, at, held, by)

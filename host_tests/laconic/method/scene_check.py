@@ -26,7 +26,7 @@ def core_difference(subject: Subject, system: Bracketed, *, count: int = 1000, s
             "body_force_N": rng.normal(0.0, 2.0, 2), "body_moment_Nm": rng.normal(0.0, 0.5),
             "world_force_N": rng.normal(0.0, 2.0, 2), "world_force_point_m": rng.normal(0.0, 0.2, 2),
         }
-        found = nu_rates(core, subject.model, nu, theta, core.input(inputs))
+        found = nu_rates(core, subject.model, nu, theta, core.input(inputs, n))
         wrench = (*inputs["body_force_N"], inputs["body_moment_Nm"])
         expected = derived(nu, theta, inputs["voltage_V"], inputs["axle_torque_Nm"], wrench,
                            inputs["world_force_N"], inputs["world_force_point_m"])

@@ -56,7 +56,7 @@ def _follow(step_s: float, core: Core, vehicle: Any, controller: SpeedController
         length = time[k] - time[k - 1]
         count = max(1, round(length / step_s))
         plant.set_step(length / count)
-        plant.run(core.input({"voltage_V": delayed[k - 1] + share * summed}), count)
+        plant.run({"voltage_V": delayed[k - 1] + share * summed}, count)
         angle[k] = plant.wheel_angles()
         summed = summed + delayed[k - 1] * length - (angle[k] - angle[k - 1])
         error = delayed[k - 1] - plant.wheel_speeds()

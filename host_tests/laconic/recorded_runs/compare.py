@@ -168,6 +168,6 @@ def predicted_speeds(subject: Subject, recording: Recording, model: Friction, un
             share = (part + 0.5) / count
             current = (1.0 - share) * recording.current_A[k] + share * recording.current_A[k + 1]
             torque = per_ampere * current - dry(plant.wheel_speeds())
-            plant.run(core.input({"axle_torque_Nm": torque}), 1)
+            plant.run({"axle_torque_Nm": torque}, 1)
         speeds[k + 1] = plant.wheel_speeds()
     return speeds

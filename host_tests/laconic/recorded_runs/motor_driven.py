@@ -70,7 +70,7 @@ def _run_in(step_s: float, core: Core, vehicle: Vehicle, log: Log, signal: str, 
             plant.set_step(last)
         row = values[k - 1].tobytes()
         if row not in rows:
-            rows = {row: core.input({signal: values[k - 1]})}
+            rows = {row: plant.input_of({signal: values[k - 1]})}
         plant.run(rows[row], count)
         angle[k], pose[k] = before + plant.wheel_angles(), point_pose(plant, log.pose_point)
         current[k] = _currents(plant, vehicle, values[k - 1])

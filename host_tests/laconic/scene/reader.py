@@ -8,6 +8,8 @@ from itertools import pairwise
 from typing import Any
 
 from laconic.core import Field, load
+from laconic.core.inputs import PER_WHEEL as PER_WHEEL
+from laconic.core.inputs import no_such_wheel
 from laconic.errors import nearest_of
 from laconic.scene.drives import read_drives
 from laconic.scene.effects import check_ground, check_input, check_start, check_wheel
@@ -20,7 +22,6 @@ from laconic.scene.sensors import NO_SENSORS, OF_ENCODERS, OF_IMU, SensorTables,
 from laconic.scene.speed_controller import read_speed_controller
 from laconic.scene.table import Table
 
-PER_WHEEL = ("voltage_V", "axle_torque_Nm")
 LENGTHS = {"body_force_N": 2, "body_moment_Nm": 0, "world_force_N": 2, "world_force_point_m": 2}
 OUTPUTS_PER_WHEEL = ("wheel_speed_rad_per_s", "wheel_angle_rad", "wheel_torque_Nm", "wheel_reaction_N",
                      "wheel_lateral_N")
@@ -173,8 +174,7 @@ def check_signal(table: Table, key: str, signal: str, lengths: dict[str, int], p
         return
     name = signal.partition("[")[0]
     if name in per_wheel:
-        there = f"use {name}[1] to {name}[{wheel_count}]" if wheel_count else "it has no such signals"
-        table.fail(key, f"{signal} does not match the vehicle's {wheel_count} wheels; {there}")
+        table.fail(key, no_such_wheel(signal, name, wheel_count))
     table.fail(key, f"there is no signal {signal!r}; {nearest_of(signal, known)}")
 
 

@@ -115,7 +115,7 @@ def follow(plant: Plant, case: Table, step_s: float, advance: Callable[[], None]
     if not segments:
         case.fail("segments", "holds none; give at least one")
     for segment in segments:
-        held = plant.core.input(held_of(segment, plant.wheel_count))
+        held = plant.input_of(held_of(segment, plant.wheel_count))
         duration_s = segment.number("duration")
         if not 0.0 < duration_s < MOST_STEPS * step_s:
             segment.fail("duration", f"{duration_s:g} s takes no number of steps of {step_s:g} s; give a time above "

@@ -222,7 +222,7 @@ def test_fixed_point_of_the_damped_vehicle_is_the_least_squares_motion_when_it_d
     for nu, steady in (((*rng.normal(size=2), 0.0), True), ((0.0, 0.0, rng.normal()), True),
                        ((*rng.normal(size=2), 1.0), False)):
         voltage = 0.02 / 0.3 * (rows @ nu) + _unseen(rows, rng)
-        rate = nu_rates(CORE, model, nu, 0.0, CORE.input({"voltage_V": voltage}))
+        rate = nu_rates(CORE, model, nu, 0.0, CORE.input({"voltage_V": voltage}, len(voltage)))
         assert (np.abs(rate).max() < 1e-11) == steady
 
 

@@ -102,8 +102,8 @@ def test_a_motor_without_resistance_is_refused():
 
 
 def test_an_input_by_names_stands_where_the_struct_has_it(core):
-    held = core.input({"voltage_V": [1.0, 2.0], "voltage_V[3]": 3.0, "axle_torque_Nm[2]": 4.0, "body_moment_Nm": 5.0,
-                       "world_force_N": [6.0, 7.0], "world_force_point_m[2]": 8.0})
+    held = core.input({"voltage_V": [1.0, 2.0, 0.0], "voltage_V[3]": 3.0, "axle_torque_Nm[2]": 4.0,
+                       "body_moment_Nm": 5.0, "world_force_N": [6.0, 7.0], "world_force_point_m[2]": 8.0}, 3)
     assert list(held.voltage_V)[:4] == [1.0, 2.0, 3.0, 0.0]
     assert held.axle_torque_Nm[1] == 4.0
     assert held.body_moment_Nm == 5.0
@@ -119,8 +119,10 @@ def test_an_input_that_is_not_finite_is_refused_and_the_state_stays(core):
         plant.run(core.input({"voltage_V[2]": math.nan}), 5)
     assert (caught.value.field, caught.value.item, plant.steps) == ("voltage_V", 2, 0)
     assert plant.row().tobytes() == before.tobytes()
+    samples = np.zeros((3, 3, core.input_length))
+    samples[:, :, core.input_offset("voltage_V[2]")] = np.nan
     with pytest.raises(Refused, match="voltage_V"):
-        plant.run_sampled(np.full((3, 3, core.input_length), np.nan))
+        plant.run_sampled(samples)
     assert plant.row().tobytes() == before.tobytes()
 
 
@@ -161,7 +163,7 @@ def test_near_the_largest_condition_number_two_digits_of_an_acceleration_are_rig
 
 def test_steps_are_counted_and_do_not_change_what_many_at_once_give(core):
     one, many = (core.plant(core.vehicle(VEHICLE), "rk4", 0.01) for _ in range(2))
-    held = core.input({"voltage_V": [1.0, -1.0, 0.5]})
+    held = core.input({"voltage_V": [1.0, -1.0, 0.5]}, 3)
     for _ in range(100):
         one.run(held)
     many.run(held, 100)

@@ -8,8 +8,9 @@ from typing import Any
 import numpy as np
 import pytest
 
-from laconic.core import load
+from laconic.core import Vehicle, load
 from laconic.errors import BadInput
+from laconic.scene import read_scene
 
 
 @pytest.mark.parametrize("values, message", [
@@ -31,10 +32,46 @@ def test_what_is_no_input_is_refused_by_its_name(real: str, values: Any, message
         load(real).input(values)
 
 
+BEYOND = r"voltage_V\[3\] does not match the vehicle's 2 wheels; use voltage_V\[1\] to voltage_V\[2\]"
+LIST = "does not match the vehicle's 2 wheels; .*, or a list of 2"
+
+
+@pytest.mark.parametrize("values, message", [
+    ({"voltage_V[3]": 3.0}, BEYOND), ({"voltage_V[3]": 0.0}, BEYOND),
+    ({"voltage_V": 3.0}, rf"voltage_V: 3.0 {LIST}"), ({"voltage_V": [3.0]}, rf"voltage_V: \[3.0\] {LIST}"),
+    ({"axle_torque_Nm": [3.0, 3.0, 9.0]}, rf"axle_torque_Nm: \[3.0, 3.0, 9.0\] {LIST}"),
+    ({"voltage_V": [1.0] * 16}, rf"voltage_V: .* {LIST}"), ({"voltage_V": []}, rf"voltage_V: \[\] {LIST}")])
+def test_python_refuses_inputs_of_wheels_that_are_not_there_and_lists_that_are_not_whole(
+        values: Any, message: str) -> None:
+    robot = Vehicle.of(read_scene("turtlebot3_burger"))
+    plant = robot.plant()
+    entrances = (plant.run, plant.outputs, plant.wheel_torques, plant.sensors().run, plant.sensors().read,
+                 lambda held: robot.derivative(inputs=held), lambda held: robot.linearise(inputs=held),
+                 lambda held: robot.core.input_row(held, 2), lambda held: robot.core.input(held, 2))
+    for entrance in entrances:
+        with pytest.raises(BadInput, match=message):
+            entrance(values)
+    assert plant.steps == 0
+
+
+def test_a_ready_made_input_may_not_act_on_wheels_that_are_not_there() -> None:
+    robot = Vehicle.of(read_scene("turtlebot3_burger"))
+    plant = robot.plant()
+    held = robot.core.input({"voltage_V[3]": 3.0})  # the core alone knows no vehicle
+    samples = np.zeros((1, 3, robot.core.input_length))
+    samples[0, 2, robot.core.input_offset("voltage_V[3]")] = 1.0
+    for entrance in (lambda: plant.run(held), lambda: plant.sensors().run(held),
+                     lambda: plant.run_sampled(samples), lambda: plant.sensors().run_sampled(samples)):
+        with pytest.raises(BadInput, match=BEYOND):
+            entrance()
+    with pytest.raises(BadInput, match="voltage_V: has one number for each wheel, and without wheel_count"):
+        robot.core.input({"voltage_V": [1.0, 2.0]})
+
+
 @pytest.mark.parametrize("real", ["double", "single"])
 def test_numbers_of_an_input_go_where_their_names_state(real: str) -> None:
-    held = load(real).input({"voltage_V": np.array([1, 2]), "voltage_V[3]": 3, "body_moment_Nm": 4,
-                             "body_force_N": (5, 6)})
+    held = load(real).input({"voltage_V": np.array([1, 2, 0]), "voltage_V[3]": 3, "body_moment_Nm": 4,
+                             "body_force_N": (5, 6)}, 3)
     assert list(held.voltage_V)[:4] == [1, 2, 3, 0] and held.body_moment_Nm == 4 and list(held.body_force_N) == [5, 6]
     assert not any(held.axle_torque_Nm) and not any(held.world_force_N)
 

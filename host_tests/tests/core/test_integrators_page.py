@@ -64,7 +64,7 @@ class Case:
         self.plant = self.core.plant(vehicle, self.method, self.step_s, nu_rad_per_s=nu, heading_rad=0.4)
         inputs = [{"voltage_V": chance.uniform(-5, 5, len(wheels)), "body_moment_Nm": chance.uniform(-1, 1)}
                   for _ in range(3 if self.sampled else 1)]
-        self.inputs = [self.core.input(each) for each in inputs] * (1 if self.sampled else 3)
+        self.inputs = [self.core.input(each, len(wheels)) for each in inputs] * (1 if self.sampled else 3)
 
     def names(self) -> dict[str, Any]:
         """Numbers of model, state and input, and functions of vectors."""

@@ -72,7 +72,7 @@ def test_derivative_agrees_with_forty_digits_of_the_papers_equation() -> None:
     model = core.prepare(core.vehicle(VEHICLE))
     for _ in range(100):
         nu, voltage, torque = random.normal(0, 5, 3), random.normal(0, 5, 4), random.normal(0, 0.5, 4)
-        found = nu_rates(core, model, nu, 0.0, core.input({"voltage_V": voltage, "axle_torque_Nm": torque}))
+        found = nu_rates(core, model, nu, 0.0, core.input({"voltage_V": voltage, "axle_torque_Nm": torque}, 4))
         expected = np.array(exact.rates(nu, voltage, torque))
         assert np.abs(found - expected).max() <= 2e-14 * max(1.0, np.abs(expected).max())
 

@@ -63,9 +63,9 @@ def test_the_energy_is_that_of_the_inertia_matrix(robot):
 def test_an_input_by_names_has_the_bits_of_one_that_the_core_made(robot):
     named, made = robot.plant(), robot.plant()
     named.run(INPUTS, steps=50)
-    made.run(robot.core.input(INPUTS), steps=50)
+    made.run(robot.core.input(INPUTS, 3), steps=50)
     assert named.row().tobytes() == made.row().tobytes()
-    assert named.wheel_torques(INPUTS).tobytes() == made.wheel_torques(made.core.input(INPUTS)).tobytes()
+    assert named.wheel_torques(INPUTS).tobytes() == made.wheel_torques(made.core.input(INPUTS, 3)).tobytes()
     assert robot.plant().wheel_torques() == pytest.approx(0.0)
 
 

@@ -29,7 +29,7 @@ def motion(importer: Importer) -> list[float]:
 @VERSIONS
 def test_a_wheels_motor_that_changes_during_a_run_gives_the_cores_bits(version: int, tmp_path: Path) -> None:
     scene, core = read_scene(SCENE), load("double")
-    plant, held = scene.plant(core), core.input({"voltage_V": VOLTAGE_V})
+    plant, held = scene.plant(core), core.input({"voltage_V": VOLTAGE_V}, len(VOLTAGE_V))
     with Importer(make_fmu(scene, tmp_path / "scene.fmu", version=version)) as importer:
         importer.initialize()
         assert importer.set("voltage_V", *VOLTAGE_V) == OK
@@ -73,7 +73,7 @@ def test_model_exchange_has_the_cores_derivative(version: int, tmp_path: Path) -
         assert importer.set("start_nu_rad_per_s", *start) == OK
         importer.initialize()
         assert importer.set("voltage_V", *VOLTAGE_V) == OK
-        expected = nu_rates(core, model, np.array(start), 0.0, core.input({"voltage_V": VOLTAGE_V}))
+        expected = nu_rates(core, model, np.array(start), 0.0, core.input({"voltage_V": VOLTAGE_V}, len(VOLTAGE_V)))
         assert importer.get("der(nu_rad_per_s)") == expected.tolist()
 
 

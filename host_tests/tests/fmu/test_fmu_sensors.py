@@ -79,7 +79,7 @@ def test_sensors_of_an_fmu_show_the_cores_bits(ground: str, variant: str, tmp_pa
         importer.initialize()
         assert shown(importer) == shown_by_core(sensors, None)
         for k in range(250):
-            held = plant.core.input({"voltage_V": volts(k)})
+            held = plant.input_of({"voltage_V": volts(k)})
             sensors.run(held, EVERY)
             assert drive(importer, k, k + 1)[0] == shown_by_core(sensors, held), f"after {(k + 1) * EVERY} steps"
         assert plant.steps == 1000
@@ -95,7 +95,7 @@ def test_an_fmu_on_ground_with_friction_shows_its_acceleration_without_sensors(v
         for k in range(50):
             assert importer.set("voltage_V", *volts(k)) == OK
             assert importer.step(k * STEP_S, STEP_S) == OK
-            held = plant.core.input({"voltage_V": volts(k)})
+            held = plant.input_of({"voltage_V": volts(k)})
             sensors.run(held)
             found = importer.get("acceleration_body_m_per_s2")
             assert found == sensors.read(held).acceleration_body_m_per_s2.tolist()
@@ -155,7 +155,7 @@ def test_settings_of_sensors_are_parameters_before_initialization_ends(version: 
             assert importer.set(name, *values) == OK
         importer.initialize()
         for k in range(20):
-            held = sensors.plant.core.input({"voltage_V": volts(k)})
+            held = sensors.plant.input_of({"voltage_V": volts(k)})
             sensors.run(held, EVERY)
             assert drive(importer, k, k + 1)[0] == shown_by_core(sensors, held)
         assert importer.set("imu_seed", 1) == ERROR

@@ -212,7 +212,7 @@ def test_printed_c_compiles_and_gives_the_cores_derivative(name, tmp_path):
         wrench = [*values["body_force_N"], values["body_moment_Nm"]]
         derived(list(nu), theta, list(values["voltage_V"]), list(values["axle_torque_Nm"]), wrench,
                 list(values["world_force_N"]), list(values["world_force_point_m"]), out)
-        expected = nu_rates(core, subject.model, nu, theta, core.input(values))
+        expected = nu_rates(core, subject.model, nu, theta, core.input(values, n))
         assert np.abs(np.array(list(out)) - expected).max() <= 1e-12 * max(1.0, np.abs(expected).max())
 
 

@@ -82,7 +82,7 @@ def test_scenes_have_the_bits_of_the_native_core(tmp_path):
         core = load("double")
         plant = scene.with_run(method="auto", step_s=0.001).plant(core)
         voltages = [2.0 - k for k in range(scene.wheel_count)]
-        plant.run(core.input({"voltage_V": voltages}), 700)
+        plant.run({"voltage_V": voltages}, 700)
         pose = plant.pose
         expected.append([pose.x_m, pose.y_m, pose.heading_rad, plant.energy_J()])
         runs.append({"scene": plain_scene(scene.path), "input": {"voltage_V": voltages}, "steps": 700})

@@ -56,7 +56,7 @@ def simulated(scene_file: Path) -> list[float]:
         for signal, value in segment.values.items():
             name, item = re.fullmatch(r"(\w+)\[(\d+)\]", signal).groups()
             values.setdefault(name, [0.0] * scene.wheel_count)[int(item) - 1] = value
-        plant.run(core.input(values), segment.steps)
+        plant.run(values, segment.steps)
     return [plant.pose.x_m, plant.pose.y_m, plant.pose.heading_rad]
 
 

@@ -59,7 +59,7 @@ def test_signals_carry_what_the_cores_sensors_show(tmp_path: Path) -> None:
     judgement, controller = played(path, 1.0, lambda t: [codec.command(5.5, 10.0)], dbc=DBC, map_path=signal_map)
     assert judgement.exit_status == 0, judgement
     plant = scene.plant(core)
-    sensors, held = scene.sensors_of(plant), core.input({"voltage_V": [5.5, 10.0]})
+    sensors, held = scene.sensors_of(plant), plant.input_of({"voltage_V": [5.5, 10.0]})
     seen, greatest = set(), 0.0
     for time_s, message in controller.of(WHEEL_STATE)[3:60]:
         values = codec.decode(message)

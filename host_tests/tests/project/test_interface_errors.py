@@ -43,7 +43,7 @@ WRONG: list[tuple[Callable[[], Any], str]] = [
     (lambda: laconic.make_fmu(scene(), None, version=3), "out: None is no path"),  # type: ignore[arg-type]
     (lambda: plant().run(core().input(), 2.5), "steps: 2.5 is no whole number"),
     (lambda: plant().run(core().input(), -1), "steps: -1 steps cannot be taken"),
-    (lambda: plant().run([1.0]), "input: [1.0] is no laconic_input of this core; make it with core.input("),
+    (lambda: plant().run([1.0]), "input: [1.0] is no laconic_input of this core; make it with plant.input_of("),
     (lambda: plant().run({"voltage": [1]}), "voltage: there is no such input; did you mean voltage_V"),
     (lambda: plant().run(laconic.load_core("single").input()), "is no laconic_input of this core"),
     (lambda: plant().run_sampled(np.zeros((3, 3))), "samples: has the shape (3, 3); give (steps, 3, "),

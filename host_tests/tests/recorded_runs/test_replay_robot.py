@@ -56,7 +56,7 @@ def made_up_run(robot, path: Path, direction_deg: float, speed: float, drag: flo
         size = np.hypot(*travel)
         friction = TRUE["torque"] * np.tanh(wheel / 0.3)
         friction = friction + share[:2].T @ (0.04 * drag * travel / max(size, 1e-12) * np.tanh(size / 0.01))
-        plant.run(core.input({"axle_torque_Nm": torque - friction}), 1)
+        plant.run({"axle_torque_Nm": torque - friction}, 1)
     with path.open("w", newline="") as file:
         writer = csv.writer(file, delimiter=";")
         writer.writerows([HEAD, HEAD, HEAD, *lines])

@@ -223,7 +223,7 @@ def test_free_motion_keeps_its_energy():
 def test_held_and_sampled_steps_of_a_constant_input_agree():
     scene = read_scene("s1").with_run(method="rk4")
     held, sampled = scene.plant(scene.core()), scene.plant(scene.core())
-    row = held.core.input_row({"voltage_V": [2.0, -2.0, 1.0]})
+    row = held.core.input_row({"voltage_V": [2.0, -2.0, 1.0]}, 3)
     held.run(held.core.input(row), 500)
     sampled.run_sampled(np.broadcast_to(row, (500, 3, len(row))))
     assert sampled.steps == 500

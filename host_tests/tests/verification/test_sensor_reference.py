@@ -88,7 +88,7 @@ def test_the_noise_is_what_another_computation_of_its_definition_gives(real: str
     step_s = noisy.step_s
     given = {"acceleration_noise_m_per_s2_per_sqrt_Hz": density, "yaw_rate_noise_rad_per_s_per_sqrt_Hz": gyro}
     with_noise, without = noisy.sensors({"imu": {**given, "seed": seed}}), ideal.sensors()
-    held = core.input({"voltage_V": [2.0, 3.0]})
+    held = core.input({"voltage_V": [2.0, 3.0]}, 2)
     for number in range(1, 60):
         with_noise.run(held)
         without.run(held)
