@@ -22,7 +22,7 @@ GROUPS = {
                "play-moteus", "logs", "page"),
     "Explanation": ("performance", "integrators", "friction", "sensors", "real-robots", "paper", "architecture",
                     "glossary"),
-    "Reference": ("reference-c", "reference-python", "reference-commands", "reference-scene", "reference-fmi", "wire",
+    "Reference": ("reference-c", "reference-python", "reference-commands", "reference-scene", "signals", "reference-fmi", "wire",
                   "changelog"),
 }
 

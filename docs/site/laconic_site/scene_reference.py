@@ -1,4 +1,4 @@
-"""The keys and signals of a scene file, from where the program itself knows them."""
+"""The keys of a scene file, from where the program itself knows them."""
 
 from __future__ import annotations
 
@@ -7,15 +7,15 @@ from pathlib import Path
 from xml.etree import ElementTree
 
 from laconic.scene.keys import TABLES
-from laconic.scene.reference import Row, Signal, inputs, outputs, rows
+from laconic.scene.reference import Row, rows
 
 HEAD = ("# Scene keys\n\nMade from the lists by which the program reads a scene. [Scenes](scenes.md) has an example "
         "with most of them. An angle may be given in degrees, its key then ends in `_deg`. A key that is not here is "
-        "refused.")
+        "refused. What inputs may set and outputs may list: [signals](signals.md).")
 
 
 def scene_page(source: Path) -> str:
-    """A part for each table of a scene, then the signals."""
+    """A part for each table of a scene."""
     words, methods = descriptions(source)
     found = list(rows(words, methods))
     parts = [HEAD]
@@ -23,7 +23,6 @@ def scene_page(source: Path) -> str:
         of_table = [row for row in found if row.table == table]
         parts.append(f"## {_head(table)}\n\n{what}" + (f"\n\n{_table(of_table)}" if of_table else ""))
         parts += [_choices(row) for row in of_table if row.choices]
-    parts += ["## Inputs", _signals(inputs(words)), "## Outputs", _signals(outputs(words))]
     return "\n\n".join(parts) + "\n"
 
 
@@ -54,11 +53,3 @@ def _choices(row: Row) -> str:
     words = "\n".join(f"* `{word}`: {meaning[:1].lower() + meaning[1:] if row.key == 'method' else meaning}"
                       for word, meaning in row.choices.items())
     return f"`{row.key}` is one of\n\n{words}"
-
-
-def _signals(signals: Iterable[Signal]) -> str:
-    lines = ["| signal | unit | meaning | only with |", "| --- | --- | --- | --- |"]
-    for each in signals:
-        name = f"`{each.name}{each.items}`".replace("|", "\\|")
-        lines.append(f"| {name} | {each.unit} | {each.meaning.replace('|', chr(92) + '|')} | {each.needs} |")
-    return "\n".join(lines)

@@ -18,7 +18,7 @@ from fmpy.fmi3 import FMU3Slave
 from laconic.demo.rows import Rows, exchanges, row_names
 from laconic.scene import Scene
 from laconic.scene.inputs import InputsOnGrid
-from laconic.scene.reader import LENGTHS, PER_WHEEL
+from laconic.scene.signals import LENGTHS, PER_WHEEL
 
 FMI_ERROR = 3  # and fatal, 4, in FMI 2 and FMI 3
 OUTPUTS = ("nu_rad_per_s", "x_m", "y_m", "heading_rad")

@@ -7,7 +7,7 @@ from collections.abc import Callable, Mapping
 from typing import TYPE_CHECKING, Any
 
 from laconic.errors import nearest_of
-from laconic.scene.reader import LENGTHS, PER_WHEEL, signal_names
+from laconic.scene.signals import LENGTHS, PER_WHEEL, signal_names
 
 if TYPE_CHECKING:
     from laconic.play.map_plant import MapPlant

@@ -17,8 +17,7 @@ import numpy as np
 from laconic.errors import BadInput, reason_of
 from laconic.scene import Outputs, Scene
 from laconic.scene.inputs import Input, step_in_words, step_remedy
-from laconic.scene.reader import LENGTHS, PER_WHEEL, output_signals, signal_names
-from laconic.scene.sensors import missing_sensors
+from laconic.scene.signals import LENGTHS, PER_WHEEL, missing_outputs, output_signals, signal_names
 from laconic.simulation import simulate
 
 TIME = "time_s"
@@ -140,7 +139,7 @@ def replay_signals(scene: Scene, log: SignalLog) -> SignalReplay:
     """Runs the model along the file and compares."""
     count, held = scene.wheel_count, all(each.kind == "steps" for each in scene.inputs)
     known_inputs = list(signal_names(LENGTHS, PER_WHEEL, count))
-    missing = missing_sensors(scene.sensors, count)
+    missing = missing_outputs(scene.vehicle, scene.sensors)
     known_outputs = [name for name in signal_names(*output_signals(scene.vehicle), count) if name not in missing]
     inputs = tuple(name for name in log.columns if name in known_inputs)
     outputs = tuple(name for name in log.columns if name in known_outputs)

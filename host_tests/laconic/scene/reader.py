@@ -3,38 +3,24 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Iterator, Mapping, Sequence
+from collections.abc import Mapping, Sequence
 from itertools import pairwise
 from typing import Any
 
 from laconic.core import Field, load
-from laconic.core.inputs import PER_WHEEL as PER_WHEEL
 from laconic.core.inputs import no_such_wheel
 from laconic.errors import nearest_of
 from laconic.scene.drives import read_drives
 from laconic.scene.effects import check_ground, check_input, check_start, check_wheel
 from laconic.scene.fields import read_field
-from laconic.scene.ground import check_friction, has_friction, read_circuit, read_drive, read_ground
+from laconic.scene.ground import check_friction, read_circuit, read_drive, read_ground
 from laconic.scene.inputs import Input
 from laconic.scene.keys import key_of, read_choice, read_number
 from laconic.scene.not_modelled import KINDS_OF_WHEELS, OF_VEHICLES, OF_WHEELS
-from laconic.scene.sensors import NO_SENSORS, OF_ENCODERS, OF_IMU, SensorTables, missing_sensors, read_sensors
+from laconic.scene.sensors import NO_SENSORS, SensorTables, read_sensors
+from laconic.scene.signals import LENGTHS, PER_WHEEL, missing_outputs, output_signals, signal_names
 from laconic.scene.speed_controller import read_speed_controller
 from laconic.scene.table import Table
-
-LENGTHS = {"body_force_N": 2, "body_moment_Nm": 0, "world_force_N": 2, "world_force_point_m": 2}
-OUTPUTS_PER_WHEEL = ("wheel_speed_rad_per_s", "wheel_angle_rad", "wheel_torque_Nm", "wheel_reaction_N",
-                     "wheel_lateral_N")
-OUTPUT_LENGTHS = {
-    "nu_rad_per_s": 3, "velocity_body_m_per_s": 2, "x_m": 0, "y_m": 0, "heading_rad": 0, "heading_wrapped_rad": 0,
-    "origin_x_m": 0, "origin_y_m": 0, "yaw_rate_rad_per_s": 0, "acceleration_body_m_per_s2": 2, "no_slip_margin_N": 0,
-    "energy_J": 0}
-
-FRICTION_PER_WHEEL = ("slip_along_m_per_s", "slip_across_m_per_s", "contact_state", "drive_limit", "motor_current_A")
-FRICTION_LENGTHS = dict.fromkeys(
-    ("supply_current_A", "supply_voltage_V", "supply_energy_J", "outer_work_J", "slip_loss_J", "axle_loss_J",
-     "motor_loss_J", "supply_loss_J", "numerical_loss_J"), 0)
-"""Outputs of scenes with ground friction or a drive with limits alone."""
 
 
 def read_parts(top: Table, methods: Sequence[str], reals: Sequence[str]) -> dict[str, Any]:
@@ -160,12 +146,6 @@ def read_initial(table: Table, wheel_count: int) -> dict[str, Any]:
     return start
 
 
-def signal_names(lengths: dict[str, int], per_wheel: Sequence[str], wheel_count: int) -> Iterator[str]:
-    """Every signal with its index, from 1; a length of 0 is a signal without index."""
-    for name, length in {**{name: wheel_count for name in per_wheel}, **lengths}.items():
-        yield from (f"{name}[{i}]" for i in range(1, length + 1)) if length or name in per_wheel else (name,)
-
-
 def check_signal(table: Table, key: str, signal: str, lengths: dict[str, int], per_wheel: Sequence[str],
                  wheel_count: int) -> None:
     """Fails with the reason: index beyond the wheels, or no such name."""
@@ -214,18 +194,10 @@ def read_run(table: Table, methods: Sequence[str], reals: Sequence[str]) -> dict
     return run
 
 
-def output_signals(vehicle: dict[str, Any]) -> tuple[dict[str, int], tuple[str, ...]]:
-    """What a vehicle shows: names with their lengths, and names with one item for each wheel; with those of sensors,
-    which a scene need not have."""
-    if has_friction(vehicle):
-        return OUTPUT_LENGTHS | OF_IMU | FRICTION_LENGTHS, (*OUTPUTS_PER_WHEEL, *OF_ENCODERS, *FRICTION_PER_WHEEL)
-    return OUTPUT_LENGTHS | OF_IMU, (*OUTPUTS_PER_WHEEL, *OF_ENCODERS)
-
-
 def read_outputs(table: Table, vehicle: dict[str, Any], sensors: SensorTables, duration_s: float) -> dict[str, Any]:
     """`[outputs]`: a signal without its index stands for all of them."""
     wheel_count = len(vehicle["wheel"])
-    signals = read_signals(table, *output_signals(vehicle), wheel_count, missing_sensors(sensors, wheel_count))
+    signals = read_signals(table, *output_signals(vehicle), wheel_count, missing_outputs(vehicle, sensors))
     every = read_number(table, "every_s")
     if every is not None and every > duration_s * (1.0 + 1e-12):
         table.fail("every_s", f"{every:g} s is longer than the run of {duration_s:g} s; give that or less")
@@ -237,7 +209,7 @@ def read_outputs(table: Table, vehicle: dict[str, Any], sensors: SensorTables, d
 
 def read_signals(table: Table, lengths: dict[str, int], per_wheel: Sequence[str], wheel_count: int,
                  missing: Mapping[str, str]) -> tuple[str, ...]:
-    """The list `signals`; none is named twice. `missing`: those of sensors that the scene lacks, and why."""
+    """The list `signals`; none is named twice. `missing`: those that the scene lacks, and why."""
     signals: list[str] = []
     for signal in table.texts("signals", ()):
         if signal in missing:

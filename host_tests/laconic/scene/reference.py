@@ -12,15 +12,16 @@ from dataclasses import dataclass
 from laconic.core import Field, load
 from laconic.core.fields import ITEM, OF_GROUND
 from laconic.scene.keys import A_NUMBER, KEYS, TABLES, Key
-from laconic.scene.reader import (
+from laconic.scene.sensors import DELAY, OF_ENCODERS, OF_IMU
+from laconic.scene.signals import (
     FRICTION_LENGTHS,
     FRICTION_PER_WHEEL,
     LENGTHS,
+    NEEDED,
     OUTPUT_LENGTHS,
     OUTPUTS_PER_WHEEL,
     PER_WHEEL,
 )
-from laconic.scene.sensors import DELAY, OF_ENCODERS, OF_IMU
 from laconic.scene.table import REQUIRED
 
 NOT_IN_FILES = ("vehicle.drive.winding_resistance_ohm", "vehicle.drive.viscous_friction_Nms", f"sensors.imu.{DELAY}")
@@ -32,7 +33,7 @@ RANGES = {"POSITIVE": "above 0", "NOT_NEGATIVE": "0 or more", "SHARE": "0 to 1",
 NEEDS = {"WITH_WHEELS": "must be given where there are wheels", "NEVER": "0",
          "WITH_MOTOR": "no motor; one of the two alone is refused"}
 MUST = "must be given"
-OF_FMUS = r"; Co-Simulation only: .*|; all 0: .*|(?<=friction )in Co-Simulation (?=the mean)"
+OF_FMUS = r"; Co-Simulation only: .*|; all 0: .*|(?<=friction )in Co-Simulation (?=the mean)|; 0 (without|where|for) [^;]*"
 """Words that a variable has for the sake of FMI alone."""
 UNITS = {"m": "m", "s": "s", "s2": "s²", "kg": "kg", "kgm2": "kg·m²", "rad": "rad", "Hz": "Hz", "V": "V", "A": "A",
          "N": "N", "Nm": "N·m", "Nms": "N·m·s", "ohm": "Ω", "Vs": "V·s", "As": "A·s", "J": "J"}
@@ -145,19 +146,18 @@ def _in_file(text: str, field: Field) -> str:
 
 def inputs(words: Mapping[str, str]) -> list[Signal]:
     """What an `[[input]]` may set."""
-    return _signals({**dict.fromkeys(PER_WHEEL, -1), **LENGTHS}, words, "")
+    return _signals({**dict.fromkeys(PER_WHEEL, -1), **LENGTHS}, words)
 
 
 def outputs(words: Mapping[str, str]) -> list[Signal]:
     """What `[outputs]` may list."""
     friction = {**dict.fromkeys(FRICTION_PER_WHEEL, -1), **FRICTION_LENGTHS}
-    return [*_signals({**OUTPUT_LENGTHS, **dict.fromkeys(OUTPUTS_PER_WHEEL, -1)}, words, ""),
-            *_signals(friction, words, "ground friction, a drive or a motor circuit"),
-            *_signals(OF_IMU, words, "`[sensors.imu]`"),
-            *_signals(dict.fromkeys(OF_ENCODERS, -1), words, "`[sensors.encoder]`")]
+    every = {**OUTPUT_LENGTHS, **dict.fromkeys(OUTPUTS_PER_WHEEL, -1), **friction, **OF_IMU,
+             **dict.fromkeys(OF_ENCODERS, -1)}
+    return _signals(every, words)
 
 
-def _signals(lengths: Mapping[str, int], words: Mapping[str, str], needs: str) -> list[Signal]:
+def _signals(lengths: Mapping[str, int], words: Mapping[str, str]) -> list[Signal]:
     items = {-1: "[i]", 0: "", 2: "[1|2]", 3: "[1|2|3]"}
-    return [Signal(name, items[length], unit_of(name), re.sub(OF_FMUS, "", words[name]), needs)
+    return [Signal(name, items[length], unit_of(name), re.sub(OF_FMUS, "", words[name]), NEEDED.get(name, ""))
             for name, length in lengths.items()]

@@ -16,16 +16,17 @@ from laconic.progress import Advance, progress_bar
 from laconic.scene import Scene, check_scene
 from laconic.scene.ground import slips
 from laconic.scene.inputs import InputsOnGrid
-from laconic.scene.reader import (
+from laconic.scene.reader import read_signals
+from laconic.scene.sensors import OF_ENCODERS, OF_IMU, missing_sensors
+from laconic.scene.signals import (
     LENGTHS,
     OUTPUT_LENGTHS,
     OUTPUTS_PER_WHEEL,
     PER_WHEEL,
+    missing_outputs,
     output_signals,
-    read_signals,
     signal_names,
 )
-from laconic.scene.sensors import OF_ENCODERS, OF_IMU, missing_sensors
 from laconic.scene.table import Table
 
 USUAL = ("nu_rad_per_s", "x_m", "y_m", "heading_rad", "velocity_body_m_per_s", "yaw_rate_rad_per_s",
@@ -110,7 +111,7 @@ def kept_signals(scene: Scene, given: Sequence[str]) -> tuple[str, ...]:
     """Those of a run: the given outputs and inputs, a signal without its index standing for all of them."""
     table = Table(scene.path, "", {"signals": given})
     lengths, per_wheel = output_signals(scene.vehicle)
-    missing = missing_sensors(scene.sensors, scene.wheel_count)
+    missing = missing_outputs(scene.vehicle, scene.sensors)
     kept = read_signals(table, lengths | LENGTHS, (*per_wheel, *PER_WHEEL), scene.wheel_count, missing)
     return kept or wanted_signals(scene)
 

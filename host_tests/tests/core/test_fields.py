@@ -9,7 +9,7 @@ from laconic.core.fields import COUNTED
 from laconic.core.sensors import values_of
 from laconic.fmu import DESCRIPTION, start_values
 from laconic.scene import read_scene
-from laconic.scene.reader import LENGTHS, PER_WHEEL
+from laconic.scene.signals import LENGTHS, PER_WHEEL
 from laconic_fmu.description import read
 
 STRUCTS = {"vehicle": "laconic_vehicle", "vehicle.payload": "laconic_payload", "vehicle.wheel[#]": "laconic_wheel",

@@ -16,7 +16,7 @@ import pytest
 from laconic.core.plant import Plant
 from laconic.scene import Scene, read_scene
 from laconic.scene.inputs import CHUNK
-from laconic.scene.reader import OUTPUT_LENGTHS, OUTPUTS_PER_WHEEL, signal_names
+from laconic.scene.signals import OUTPUT_LENGTHS, OUTPUTS_PER_WHEEL, signal_names
 from laconic.scene.table import tomllib
 from laconic.simulation import input_signals, simulate
 

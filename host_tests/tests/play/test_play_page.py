@@ -13,7 +13,7 @@ from laconic.play.map_signals import BODY_OUTPUTS, DRIVE_OUTPUTS, OF_DRIVES, WHE
 from laconic.play.settings import drive_settings
 from laconic.scene import read_scene
 from laconic.scene.drives import DRIVE_PROTOCOLS, NUMBERS
-from laconic.scene.reader import LENGTHS, PER_WHEEL
+from laconic.scene.signals import LENGTHS, PER_WHEEL
 
 PAGE = (SOURCE_DIR / "docs" / "play.md").read_text(encoding="utf-8")
 TABLES = re.findall(r"```toml\n(.*?)```", PAGE, re.DOTALL)
