@@ -33,7 +33,8 @@ RANGES = {"POSITIVE": "above 0", "NOT_NEGATIVE": "0 or more", "SHARE": "0 to 1",
 NEEDS = {"WITH_WHEELS": "must be given where there are wheels", "NEVER": "0",
          "WITH_MOTOR": "no motor; one of the two alone is refused"}
 MUST = "must be given"
-OF_FMUS = r"; Co-Simulation only: .*|; all 0: .*|(?<=friction )in Co-Simulation (?=the mean)|; 0 (without|where|for) [^;]*"
+OF_FMUS = (r"; Co-Simulation only: .*|; all 0: .*|(?<=friction )in Co-Simulation (?=the mean)"
+           r"|; 0 (without|where|for) [^;]*")
 """Words that a variable has for the sake of FMI alone."""
 UNITS = {"m": "m", "s": "s", "s2": "s²", "kg": "kg", "kgm2": "kg·m²", "rad": "rad", "Hz": "Hz", "V": "V", "A": "A",
          "N": "N", "Nm": "N·m", "Nms": "N·m·s", "ohm": "Ω", "Vs": "V·s", "As": "A·s", "J": "J"}
