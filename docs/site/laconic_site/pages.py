@@ -22,8 +22,8 @@ GROUPS = {
                "play-moteus", "logs", "page"),
     "Explanation": ("performance", "integrators", "friction", "sensors", "real-robots", "paper", "architecture",
                     "glossary"),
-    "Reference": ("reference-c", "reference-python", "reference-commands", "reference-scene", "signals", "reference-fmi", "wire",
-                  "changelog"),
+    "Reference": ("reference-c", "reference-python", "reference-commands", "reference-scene", "signals",
+                  "reference-fmi", "wire", "changelog"),
 }
 
 

@@ -16,10 +16,11 @@ ITEMS = {"": "1", "[1|2]": "2: x, y", "[1|2|3]": "3", "[i]": "one for each wheel
 
 TEXT = """# Signals
 
-Names of numbers over time: columns of `laconic simulate --out`, of `Trajectory.columns` [in Python](python.md), keys of
-`[[input]]` and `[outputs]` in [a scene](scenes.md), variables of [an FMU](fmu.md). An index counts from 1: `voltage_V[2]`,
-`nu_rad_per_s[3]`. Letters and axes are in the [glossary](glossary.md). Made by `PYTHONPATH=docs/site build/venv/bin/python -m
-laconic_site.signals_page` from the lists by which scenes are read and from `modelDescription.xml`; edit those.
+Names of numbers over time: columns of `laconic simulate --out`, of `Trajectory.columns` [in Python](python.md), keys
+of `[[input]]` and `[outputs]` in [a scene](scenes.md), variables of [an FMU](fmu.md). An index counts from 1:
+`voltage_V[2]`, `nu_rad_per_s[3]`. Letters and axes are in the [glossary](glossary.md). Made by `PYTHONPATH=docs/site
+build/venv/bin/python -m laconic_site.signals_page` from the lists by which scenes are read and from
+`modelDescription.xml`; edit those.
 
 ## Inputs
 
@@ -29,10 +30,10 @@ What an `[[input]]` may set, and `Plant.run` in Python; 0 where nothing is given
 
 ## Outputs
 
-What `[outputs]` may list. The ground's reaction is the force on the wheel: `wheel_reaction_N` in the direction `axle_rad` +
-`roller_rad` from the body's x axis, of a fixed wheel in the direction `axle_rad` + 90°; `wheel_lateral_N` a quarter turn to
-the right of that. A signal that a scene lacks is refused with what it needs; without its index a signal stands for all of its
-numbers.
+What `[outputs]` may list. The ground's reaction is the force on the wheel: `wheel_reaction_N` in the direction
+`axle_rad` + `roller_rad` from the body's x axis, of a fixed wheel in the direction `axle_rad` + 90°;
+`wheel_lateral_N` a quarter turn to the right of that. A signal that a scene lacks is refused with what it needs;
+without its index a signal stands for all of its numbers.
 
 {outputs}
 """
