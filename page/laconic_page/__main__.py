@@ -1,10 +1,11 @@
-"""python -m laconic_page npm|page …: what CMake calls, from packages/npm and page."""
+"""python -m laconic_page npm|page …: what CMake calls, from packages/npm and page; figures …: what the page costs."""
 
 from __future__ import annotations
 
 import argparse
 from pathlib import Path
 
+from laconic_page.figures import page_figures
 from laconic_page.npm import make_package
 from laconic_page.page import make_page
 
@@ -25,6 +26,12 @@ def main() -> None:
     for command in (npm, page):
         command.add_argument("--sources", type=Path, required=True)
         command.add_argument("--out", type=Path, required=True)
+    figures = commands.add_parser("figures", help="size, frames a second and time of a frame, in Chromium")
+    figures.add_argument("page", type=Path)
+    figures.add_argument("--seconds", type=float, default=6.0, help="of each measurement (default 6)")
+    figures.add_argument("--scene", default="kuka_youbot", help="whose own drive is played (default kuka_youbot)")
+    figures.add_argument("--json", action="store_true", help="for programs")
+    figures.set_defaults(make=lambda a: page_figures(a.page, a.seconds, a.scene, a.json))
     arguments = parser.parse_args()
     arguments.make(arguments)
 

@@ -4,27 +4,27 @@ from __future__ import annotations
 
 from collections.abc import Iterator
 
-import page_browser
 import pytest
 
 from laconic.paths import build_dir
+from laconic_page import browser as chromium
 
 PAGE = build_dir() / "page/laconic.html"
 
 
 @pytest.fixture(scope="session")
-def window() -> Iterator[page_browser.Browser]:
+def window() -> Iterator[chromium.Browser]:
     if not PAGE.exists():
         pytest.skip("the page was not built: no clang with wasm-ld")
-    if not (page_browser.BROWSER and page_browser.DRIVER):
+    if not (chromium.BROWSER and chromium.DRIVER):
         pytest.skip("needs chromium and chromedriver")
-    browser = page_browser.Browser()
+    browser = chromium.Browser()
     yield browser
     browser.close()
 
 
 @pytest.fixture
-def page(window: page_browser.Browser) -> Iterator[page_browser.Browser]:
+def page(window: chromium.Browser) -> Iterator[chromium.Browser]:
     """The page at rest, its robot at the start; at the end nothing may stand in the console."""
     window.open(PAGE, prefers_reduced_motion="reduce")
     yield window

@@ -7,9 +7,9 @@ import subprocess
 from itertools import pairwise
 
 import pytest
-from page_browser import Browser
 
 from laconic.paths import build_dir, scene_names
+from laconic_page.browser import Browser
 
 PAGE = build_dir() / "page/laconic.html"
 DIRECTIONS = ("forward", "left", "turn")

@@ -5,7 +5,8 @@ from __future__ import annotations
 import math
 
 import pytest
-from page_browser import Browser
+
+from laconic_page.browser import Browser
 
 
 @pytest.fixture

@@ -11,11 +11,11 @@ import sys
 from pathlib import Path
 
 import pytest
-from page_browser import Browser
 
 from laconic import read_scene
 from laconic.core import load
 from laconic.paths import SOURCE_DIR, build_dir
+from laconic_page.browser import Browser
 
 
 def pose(page: Browser) -> list[float]:

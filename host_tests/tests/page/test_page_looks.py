@@ -4,7 +4,8 @@ from __future__ import annotations
 
 import pytest
 from conftest import PAGE
-from page_browser import Browser
+
+from laconic_page.browser import Browser
 
 SHOTS = PAGE.parent
 SIZES = [(390, 844), (1400, 900)]

@@ -1,4 +1,4 @@
-"""A real Chromium by its driver, over the WebDriver protocol: as much of it as the tests of the page need."""
+"""A real Chromium by its driver, over the WebDriver protocol: as much of it as the page's tests and figures need."""
 
 from __future__ import annotations
 
@@ -23,7 +23,8 @@ KEYS = {"Delete": "\ue017", "Insert": "\ue016", "PageDown": "\ue00f", "PageUp": 
 class Browser:
     """One window. Elements are named by their id, or by any CSS selector."""
 
-    def __init__(self) -> None:
+    def __init__(self, first: str = "") -> None:
+        """first: JavaScript that runs in each page before its own."""
         assert BROWSER and DRIVER
         self.driver = subprocess.Popen([DRIVER, "--port=0"], stdout=subprocess.PIPE, text=True)
         assert self.driver.stdout is not None
@@ -33,6 +34,8 @@ class Browser:
         capabilities = {"goog:chromeOptions": options, "goog:loggingPrefs": {"browser": "ALL"}}
         self.session = ""
         self.session = "/session/" + self.call("/session", {"capabilities": {"alwaysMatch": capabilities}})["sessionId"]
+        if first:
+            self.chromium("Page.addScriptToEvaluateOnNewDocument", source=first)
 
     def call(self, path: str, body: dict[str, Any] | None = None, method: str = "POST") -> Any:
         data = None if body is None else json.dumps(body).encode()
@@ -61,7 +64,7 @@ class Browser:
         self.chromium("Emulation.setEmulatedMedia", features=features)
         self.chromium("Emulation.setDeviceMetricsOverride", width=width, height=height, deviceScaleFactor=1,
                       mobile=width < 600)
-        self.call("/url", {"url": page.as_uri()})
+        self.call("/url", {"url": page.resolve().as_uri()})
         self.wait("return document.getElementById('bits').dataset.same")
 
     def js(self, code: str, *arguments: Any) -> Any:
