@@ -28,7 +28,7 @@
 #include <time.h>
 #include <unistd.h>
 
-enum { BUS_DIED = 1, BAD_INPUT = 2, MOST_STATIONS = 4 };
+enum { BUS_DIED = 1, BAD_INPUT = 2, MOST_STATIONS = 4, LETTERS_WAIT_US = 1000 };
 
 typedef struct options {
     unsigned long port, id_base;
@@ -110,10 +110,22 @@ static void step_node(board *port) {
     fetch_frames(port);
 }
 
+/* Before a rig has spoken every station may be one: it waits for the node's sign of life. */
+static bool has_rig(const board *port) {
+    for (int k = 0; k < port->stations; k++)
+        if (port->station[k].speaks) return true;
+    return false;
+}
+
+static void make_rig(board *port, station *sender) {
+    for (int k = 0; k < port->stations && !has_rig(port); k++) port->station[k].is_rig = false;
+    sender->is_rig = sender->speaks = true;
+}
+
 /* A frame of one station goes to the node and to all other stations; what a rig tells the node, to rigs only. */
 static void take_frame(board *port, station *sender, const laconic_frame *frame) {
     const bool own = is_own(&port->node, frame);
-    if (own) sender->is_rig = true;
+    if (own) make_rig(port, sender);
     for (int k = 0; k < port->stations; k++)
         if (&port->station[k] != sender && (!own || port->station[k].is_rig)) station_write(&port->station[k], frame);
     laconic_node_on_frame(&port->node, frame, now_us());
@@ -131,14 +143,19 @@ static void take_bytes(board *port, station *sender, const char *bytes, ssize_t 
     }
 }
 
+/* Whether a client may send. One alone, as on a serial line, always may. */
+static bool may_send(const board *port, const station *client) { return port->stations == 1 || client->letters > 0; }
+
 /* False iff the client has disconnected. Reads all waiting bytes, so that a disconnection is noticed before the next
  * client is refused; at most 16 blocks, since the node must be stepped in time. */
 static bool read_client(board *port, station *client) {
-    char bytes[4096];
+    char bytes[STATION_MOST_LETTERS];
     ssize_t count = 1;
-    for (int rounds = 0; rounds < 16 && count > 0; rounds++) {
-        count = station_read(client, bytes, sizeof bytes);
+    station_earn(client, now_us());
+    for (int rounds = 0; rounds < 16 && count > 0 && may_send(port, client); rounds++) {
+        count = station_read(client, bytes, port->stations == 1 ? sizeof bytes : client->letters);
         take_bytes(port, client, bytes, count);
+        if (port->stations > 1 && count > 0) client->letters -= (size_t)count;
     }
     return count > 0 || (count < 0 && (errno == EAGAIN || errno == EINTR));
 }
@@ -152,8 +169,7 @@ static void watch(int number, fd_set *set, int *end) {
 
 /* pselect() waits to the microsecond on every system with POSIX; ppoll() is not everywhere. */
 static void wait_for_work(const board *port, int listening) {
-    const uint32_t idle_us = laconic_node_idle_us(&port->node, now_us());
-    const struct timespec timeout = {idle_us / 1000000U, (long)(idle_us % 1000000U) * 1000L};
+    uint32_t idle_us = laconic_node_idle_us(&port->node, now_us());
     fd_set readable, writable;
     int end = 0;
     FD_ZERO(&readable);
@@ -161,9 +177,13 @@ static void wait_for_work(const board *port, int listening) {
     watch(listening, &readable, &end);
     watch(port->refused, &readable, &end);
     for (int k = 0; k < port->stations; k++) {
-        watch(port->station[k].socket, &readable, &end);
+        if (may_send(port, &port->station[k]))
+            watch(port->station[k].socket, &readable, &end);
+        else if (idle_us > LETTERS_WAIT_US)
+            idle_us = LETTERS_WAIT_US;
         if (port->station[k].out_count > 0) watch(port->station[k].socket, &writable, &end);
     }
+    const struct timespec timeout = {idle_us / 1000000U, (long)(idle_us % 1000000U) * 1000L};
     pselect(end, &readable, &writable, NULL, &timeout, NULL);
 }
 
@@ -193,18 +213,11 @@ static void answer_refused(board *port) {
     }
 }
 
-static bool has_rig(const board *port) {
-    for (int k = 0; k < port->stations; k++)
-        if (port->station[k].is_rig) return true;
-    return false;
-}
-
 /* True iff a client has left. */
 static bool serve_station(board *port, station *it, int listening, char rate) {
     if (it->socket < 0) {
-        const bool first = !has_rig(port); /* a rig waits for the node's sign of life before it speaks */
         station_accept(it, listening, rate);
-        it->is_rig = first && it->socket >= 0;
+        it->is_rig = it->socket >= 0 && !has_rig(port);
         return false;
     }
     if (read_client(port, it)) return false;

@@ -11,8 +11,9 @@
 
 void station_clear(station *it, char rate) {
     it->socket = -1;
-    it->is_rig = false;
+    it->is_rig = it->speaks = false;
     it->out_count = 0;
+    it->letters = STATION_MOST_LETTERS;
     laconic_slcan_init(&it->slcan, rate);
 }
 
@@ -30,6 +31,13 @@ void station_accept(station *it, int listening, char rate) {
     station_clear(it, rate);
     it->socket = client;
     setsockopt(client, IPPROTO_TCP, TCP_NODELAY, &on, sizeof on);
+}
+
+void station_earn(station *it, uint32_t now_us) {
+    const uint32_t passed_ms = (now_us - it->letters_us) / 1000U;
+    it->letters_us += 1000U * passed_ms;
+    it->letters += (size_t)passed_ms * STATION_LETTERS_PER_MS;
+    if (it->letters > STATION_MOST_LETTERS) it->letters = STATION_MOST_LETTERS;
 }
 
 ssize_t station_read(const station *it, char *bytes, size_t size) {

@@ -6,14 +6,19 @@
 
 #include <sys/types.h>
 
-enum { STATION_OUT_SIZE = 1 << 16 };
+/* A client sends what a bus carries and no more, or a flood of its own would keep all others from the bus: 1 Mbit/s is
+ * nine frames of 8 bytes a millisecond, of 22 letters each. The rest waits in its connection. */
+enum { STATION_OUT_SIZE = 1 << 16, STATION_LETTERS_PER_MS = 250, STATION_MOST_LETTERS = 4096 };
 
 typedef struct station {
     int socket;  /* -1: there is no client                                              */
     bool is_rig; /* it gets the node's own frames, not only those of its drives */
+    bool speaks; /* to the node itself                                         */
     laconic_slcan slcan;
     char out[STATION_OUT_SIZE];
     size_t out_count;
+    size_t letters;      /* that it may send now, on a port with several clients */
+    uint32_t letters_us; /* when they were counted                               */
 } station;
 
 /* Without client, its channel closed. `rate`: as laconic_slcan_init() takes it. */
@@ -22,6 +27,9 @@ void station_clear(station *it, char rate);
 int station_connection(int listening);
 /* Accepts a waiting client; nothing happens where there is none. */
 void station_accept(station *it, int listening, char rate);
+
+/* It may send more letters as time passes. */
+void station_earn(station *it, uint32_t now_us);
 
 /* Reads into `bytes`; the result of recv(). */
 ssize_t station_read(const station *it, char *bytes, size_t size);

@@ -1,7 +1,7 @@
 """Checksums of messages by their usual names.
 
-`over` is the payload; the checksum's own bits count as zero in sums, and its byte is left out of a CRC, after which the
-bytes of `after` are taken (a data id, or one of sixteen that the counter chooses).
+The checksum's own bits count as zero in sums, and its byte is left out of a CRC, which takes the others from the first
+to the last, or with `order = "last first"` the other way round, and then the bytes of `after`.
 """
 
 from __future__ import annotations
@@ -22,7 +22,8 @@ E2E_WIDTHS = {"e2e-profile-1": 8, "e2e-profile-2": 8, "e2e-profile-5": 16, "e2e-
 E2E_COUNTERS = {"e2e-profile-1": (8, 4), "e2e-profile-2": (8, 4), "e2e-profile-5": (16, 8), "e2e-profile-11": (8, 4)}
 """First bit and bits of the counter, where AUTOSAR's usual offset 0 puts it."""
 COUNTS_TO_14 = ("e2e-profile-1", "e2e-profile-11")  # a counter of 15 is no counter there
-WIDTHS: Mapping[str, int] = {"crc8-sae-j1850": 8, "crc8-h2f": 8, "crc16-ccitt-false": 16, **E2E_WIDTHS}
+WIDTHS: Mapping[str, int] = {"crc8-sae-j1850": 8, "crc8-h2f": 8, "crc8-d5": 8, "crc16-ccitt-false": 16,
+                             **E2E_WIDTHS}
 """Bits of the checksums whose signal must have so many, and whole bytes; sums take what their signal has."""
 SUMS = ("xor", "sum", "sum-inverted", "sum-with-id")
 CHECKSUMS = (*SUMS, *WIDTHS)
@@ -36,6 +37,7 @@ class Checksum:
     kind: str
     after: bytes = b""
     data_ids: tuple[int, ...] = ()
+    last_first: bool = False
 
     @property
     def width(self) -> int | None:
@@ -48,8 +50,8 @@ class Checksum:
             return _sum(self.kind, payload, identifier)
         if self.kind in E2E_WIDTHS:
             return self._e2e(payload, at)
-        rest = payload[: at.start] + payload[at.stop :] + self.after
-        return CRCS[self.kind](rest)
+        rest = payload[: at.start] + payload[at.stop :]
+        return CRCS[self.kind]((rest[::-1] if self.last_first else rest) + self.after)
 
     def _e2e(self, payload: bytes, at: slice) -> int:
         """As AUTOSAR protects the payload; the counter in it stays."""
@@ -75,9 +77,20 @@ def _sum(kind: str, payload: bytes, identifier: int) -> int:
     return ~total if kind == "sum-inverted" else total
 
 
+def _crc8_d5(data: bytes) -> int:
+    """Polynomial 0xD5, beginning with 0xFF, as comma's body and pedal have it."""
+    crc = 0xFF
+    for byte in data:
+        crc ^= byte
+        for _ in range(8):
+            crc = (crc << 1) ^ (0x1D5 if crc & 0x80 else 0)
+    return crc
+
+
 CRCS: Mapping[str, Callable[[bytes], int]] = {
     "crc8-sae-j1850": e2e.crc.calculate_crc8, "crc8-h2f": e2e.crc.calculate_crc8_h2f,
-    "crc16-ccitt-false": e2e.crc.calculate_crc16}
+    "crc8-d5": _crc8_d5, "crc16-ccitt-false": e2e.crc.calculate_crc16}
+ORDERS = ("first first", "last first")
 
 
 def read_checksum(table: Table) -> Checksum:
@@ -86,9 +99,12 @@ def read_checksum(table: Table) -> Checksum:
     after = bytes(_whole(table, "after", 255)) if table.has("after") else b""
     if after and kind not in CRCS:
         table.fail("after", f"is for {', '.join(CRCS)}; take it out")
+    last_first = table.has("order") and table.choice("order", ORDERS) == "last first"
+    if last_first and kind not in CRCS:
+        table.fail("order", f"is for {', '.join(CRCS)}; take it out")
     ids = _ids(table, kind)
     table.done()
-    return Checksum(signal, kind, after, ids)
+    return Checksum(signal, kind, after, ids, last_first)
 
 
 def _ids(table: Table, kind: str) -> tuple[int, ...]:

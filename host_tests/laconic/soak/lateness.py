@@ -4,17 +4,18 @@ No period may be left out; how late they begin is the machine's, and printed."""
 
 from __future__ import annotations
 
-import re
 import subprocess
 import sys
 import time
 from collections.abc import Callable, Iterator
-from contextlib import ExitStack, contextmanager
+from contextlib import contextmanager, suppress
 from typing import Any
 
 from laconic.errors import BadInput, nearest_of
 from laconic.play.options import PlayOptions
 from laconic.play.session import play
+from laconic.rig.boards import free_port
+from laconic.rig.errors import CannotReach
 from laconic.scene import read_scene
 from laconic.soak._controllers.by_c620 import SCENE
 
@@ -52,14 +53,10 @@ def chosen(board: str | None) -> tuple[str, ...]:
 def measure(board: str, seconds: float, advance: Callable[[float], None]) -> str:
     """Plays so long on one board; the figures in a line."""
     scene = read_scene(SCENE)
-    options = PlayOptions(listen=0, board=board, drives="robomaster", duration_s=seconds)
-    began = time.monotonic()
-    with ExitStack() as stack:
-        def say(line: str) -> None:
-            if found := re.search(r"127\.0\.0\.1:(\d+)", line):
-                stack.enter_context(client(found[1], scene.run.step_s))
-
-        figures = play(scene, options, say=say).figures
+    port, began = free_port(), time.monotonic()
+    options = PlayOptions(listen=port, board=board, drives="robomaster", duration_s=seconds)
+    with client(port, scene.run.step_s):
+        figures = play(scene, options).figures
     advance(time.monotonic() - began)
     wanted = seconds / scene.run.step_s
     keeps_up = figures["periods"] >= (1.0 - MISSING_SHARE) * wanted and figures["frames_in"] > 0
@@ -70,14 +67,15 @@ def measure(board: str, seconds: float, advance: Callable[[float], None]) -> str
 
 
 @contextmanager
-def client(port: str, step_s: float) -> Iterator[None]:
-    """The controller in its own process; it ends when the port is closed."""
-    process = subprocess.Popen([sys.executable, "-m", CLIENT, port, str(step_s)], start_new_session=True)
-    try:
-        yield
-        process.wait(END_S)
-    except subprocess.TimeoutExpired:
-        pass
-    finally:
-        process.kill()
-        process.wait()
+def client(port: int, step_s: float) -> Iterator[None]:
+    """The controller in its own process, ready for the port; it ends when the port is closed."""
+    command = [sys.executable, "-m", CLIENT, str(port), str(step_s)]
+    with subprocess.Popen(command, stdout=subprocess.PIPE, text=True, start_new_session=True) as process:
+        try:
+            if process.stdout is None or process.stdout.readline().strip() != "ready":
+                raise CannotReach("the controller's process did not start")
+            yield
+            with suppress(subprocess.TimeoutExpired):
+                process.wait(END_S)
+        finally:
+            process.kill()

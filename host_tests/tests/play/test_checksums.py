@@ -11,7 +11,7 @@ import e2e.p02
 import e2e.p05
 import e2e.p11
 import pytest
-from crccheck.crc import Crc8Autosar, Crc8SaeJ1850, Crc16CcittFalse
+from crccheck.crc import Crc8Autosar, Crc8Base, Crc8SaeJ1850, Crc16CcittFalse
 
 from laconic.errors import BadInput
 from laconic.play.checksums import CHECKSUMS, Checksum
@@ -25,16 +25,17 @@ BU_: A
 BO_ 1600 GUARDED: 8 A
  SG_ Check : {check} (1,0) [0|0] "" A
  SG_ Count : {count} (1,0) [0|0] "" A
- SG_ Value : 55|16@0- (0.5,0) [0|0] "" A
- SG_ Float : 24|16@1- (1,0) [0|0] "" A
+ SG_ Value : {value} (0.5,0) [0|0] "" A
+ SG_ Float : {other} (1,0) [0|0] "" A
 """
 BYTE_0, WORD_0, LAST = "0|8@1+", "0|16@1+", "40|8@1+"
 COUNT_1, COUNT_2 = "8|4@1+", "16|8@1+"
 
 
-def message_of(tmp_path: Path, check: str, count: str) -> DbcMessage:
+def message_of(tmp_path: Path, check: str, count: str, value: str = "55|16@0-", other: str = "24|16@1-"
+               ) -> DbcMessage:
     path = tmp_path / "guarded.dbc"
-    path.write_text(DBC.format(check=check, count=count), encoding="utf-8")
+    path.write_text(DBC.format(check=check, count=count, value=value, other=other), encoding="utf-8")
     return DbcMessage(path, cantools.database.load_file(path), "map: send[1]", "GUARDED")
 
 
@@ -53,6 +54,18 @@ def frames_of(sender: Sender, count: int) -> list[bytes]:
     return [next(iter(sender.payloads(lambda _: chance.uniform(-1000.0, 1000.0)))) for _ in range(count)]
 
 
+class Crc8D5(Crc8Base):  # type: ignore[misc]
+    """By a second implementation."""
+
+    _poly, _initvalue = 0xD5, 0xFF
+
+
+class Crc8OfProfile1(Crc8Base):  # type: ignore[misc]
+    """SAE J1850 without its initial and final value, as AUTOSAR's profiles 1 and 11 have it."""
+
+    _poly = 0x1D
+
+
 def cut(frame: bytes, at: int) -> bytes:
     return frame[:at] + frame[at + 1 :]
 
@@ -64,6 +77,7 @@ CASES = {
     "sum-with-id": (LAST, lambda f: f[5] == sum(cut(f, 5)) + 0x06 + 0x40 + 8 & 255),
     "crc8-sae-j1850": (LAST, lambda f: f[5] == Crc8SaeJ1850.calc(cut(f, 5) + b"\x17")),
     "crc8-h2f": (LAST, lambda f: f[5] == Crc8Autosar.calc(cut(f, 5) + b"\x17")),
+    "crc8-d5": (LAST, lambda f: f[5] == Crc8D5.calc(cut(f, 5) + b"\x17")),
     "crc16-ccitt-false": (WORD_0, lambda f: int.from_bytes(f[:2], "little") == Crc16CcittFalse.calc(f[2:] + b"\x17")),
     "e2e-profile-1": (BYTE_0, lambda f: e2e.p01.e2e_p01_check(bytearray(f), 0x1234)),
     "e2e-profile-2": (BYTE_0, lambda f: e2e.p02.e2e_p02_check(bytearray(f), bytes(IDS))),
@@ -85,6 +99,36 @@ def test_a_checksum_is_that_of_its_name_and_a_frame_with_a_wrong_bit_is_refused(
         spoilt = bytearray(frames[-1])
         spoilt[bit // 8] ^= 1 << bit % 8
         assert receiver.take(bytes(spoilt))[1] == "wrong checksum", bit
+
+
+def low_and_high(data_id: int) -> bytes:
+    return data_id.to_bytes(2, "little")
+
+
+E2E_BY_HAND = {  # from AUTOSAR's layout: over the payload without its CRC, the data id where the profile has it
+    "e2e-profile-1": lambda f: f[0] == Crc8OfProfile1.calc(low_and_high(0x1234) + f[1:]),
+    "e2e-profile-2": lambda f: f[0] == Crc8Autosar.calc(f[1:] + bytes([IDS[f[1] & 15]])),
+    "e2e-profile-5": lambda f: f[:2] == low_and_high(Crc16CcittFalse.calc(f[2:] + low_and_high(0x1234))),
+    "e2e-profile-11": lambda f: f[0] == Crc8OfProfile1.calc(low_and_high(0x1234) + f[1:])}
+
+
+@pytest.mark.parametrize("kind", E2E_BY_HAND)
+def test_e2e_profiles_are_those_of_a_second_implementation(kind: str, tmp_path: Path) -> None:
+    check, _ = CASES[kind]
+    ids = IDS if kind == "e2e-profile-2" else (0x1234,)
+    sender, _ = pair(message_of(tmp_path, check, COUNT_2 if check == WORD_0 else COUNT_1),
+                     Checksum("Check", kind, b"", ids))
+    assert all(E2E_BY_HAND[kind](frame) for frame in frames_of(sender, 40))
+
+
+def test_comma_s_body_has_its_crc_from_the_last_byte_to_the_first(tmp_path: Path) -> None:
+    """The last CRC is that of a long division by hand."""
+    message = message_of(tmp_path, "56|8@1+", COUNT_1, value="23|16@0-", other="32|16@1-")
+    sender, receiver = pair(message, Checksum("Check", "crc8-d5", last_first=True))
+    for frame in frames_of(sender, 20):
+        assert frame[7] == Crc8D5.calc(frame[6::-1]) and receiver.take(frame)[1] is None
+    assert Checksum("Check", "crc8-d5", last_first=True).of(b"\x00\x64\xff\x9c\x00\x01\x00\x00", 0x250, slice(7, 8)) \
+        == 0xD2
 
 
 def test_every_checksum_has_its_case() -> None:

@@ -21,6 +21,7 @@ from laconic.soak._controllers import by_canopen
 from laconic.soak._controllers.bench import Bench, bench
 from laconic.soak._controllers.truth import Truth
 from laconic.soak.controllers import CONTROLLERS, run
+from laconic.soak.lateness import measure
 
 emulated = pytest.mark.skipif(why_no_emulation() is not None, reason="no emulated boards")
 STEP_S = 0.005
@@ -138,6 +139,11 @@ def test_faults_by_order_of_a_boards_drives_reach_an_unchanged_canopen_client(bo
     with bench(by_canopen.SCENE, "canopen", board, STEP_S, stall_time_s=0.1, current_limit_A=1.0) as it, \
             by_canopen.network_of(it) as (_, nodes):
         check_faults(it, nodes)
+
+
+def test_lateness_of_a_process_that_plays_for_a_controller_in_another_process_is_told() -> None:
+    said = measure("process", 1.0, lambda _: None)
+    assert said.startswith("passed: 1") and "periods of 1 ms" in said and "commands heard" in said, said
 
 
 @pytest.mark.parametrize("words, told", [

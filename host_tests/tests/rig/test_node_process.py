@@ -4,12 +4,16 @@ from __future__ import annotations
 
 import socket
 import subprocess
+import threading
+from contextlib import suppress
 
 import pytest
 
 from laconic.cli.main import run
 from laconic.paths import built
-from laconic.rig.buses import node_process
+from laconic.rig.buses import connected, node_process
+from laconic.rig.wire import ID_BASE
+from laconic.scene import read_scene
 
 
 @pytest.mark.parametrize("real", ["double", "single"])
@@ -44,3 +48,42 @@ def test_a_rig_that_is_the_second_client_names_why_it_cannot_reach_the_node(caps
         assert run(["rig", "s1", "--interface", "slcan", "--channel", f"socket://127.0.0.1:{port}"]) == 2
         error = capsys.readouterr().err
         assert error.count("\n") == 1 and "occupied" in error
+
+
+def test_a_client_that_floods_a_shared_port_keeps_nobody_from_the_node() -> None:
+    with node_process("double", ID_BASE, "--shared") as port, \
+            connected("slcan", f"socket://127.0.0.1:{port}") as rig, \
+            socket.create_connection(("127.0.0.1", port)) as flooder:
+        begun, ended = threading.Event(), threading.Event()
+
+        def flood() -> None:
+            with suppress(OSError):
+                flooder.sendall(b"S8\rO\r")
+                while not ended.is_set():
+                    flooder.sendall(10_000 * b"t20080400040004000400\r")
+                    begun.set()
+
+        thread = threading.Thread(target=flood, daemon=True)
+        thread.start()
+        begun.wait(5.0)
+        scene = read_scene("turtlebot3_burger")
+        rig.open()
+        rig.load(scene.plant(scene.core()), scene.c_start(scene.core()))
+        assert rig.state == "ready"
+        ended.set()
+        flooder.shutdown(socket.SHUT_RDWR)
+        thread.join(5.0)
+
+
+def test_a_controller_that_comes_before_the_rig_does_not_keep_it_from_the_node() -> None:
+    with node_process("double", ID_BASE, "--shared") as port, \
+            socket.create_connection(("127.0.0.1", port)) as first:
+        first.sendall(b"S8\rO\rV\r")
+        assert first.recv(100)  # it is served
+        with connected("slcan", f"socket://127.0.0.1:{port}") as rig:
+            assert rig.open().real == "double"
+            rig.control("BEGIN")
+            first.settimeout(0.3)
+            with suppress(TimeoutError):
+                while True:
+                    assert b"t68B" not in first.recv(4096).partition(b"\r")[2]  # RESULT is for the rig alone

@@ -58,6 +58,7 @@ class Bench:
     traffic: Traffic
     channel: str
     jobs: deque[Callable[[], None]] = field(default_factory=deque)
+    endings: list[LaconicError] = field(default_factory=list)  # of the thread that passes frames on
 
     def bus(self, **filters: Any) -> can.BusABC:
         """One more station of the controller's bus."""
@@ -68,8 +69,8 @@ class Bench:
         self.jobs.append(lambda: self.vehicle.break_drive(DriveFault(kind, wheel, 0.0), is_broken=is_broken))
 
     def check(self) -> None:
-        """ResultFails where the vehicle has ended by itself."""
-        if (ending := self.vehicle.ending()) is not None:
+        """Raises what has ended the vehicle, or its line, meanwhile."""
+        for ending in self.endings:
             raise ending
 
 
@@ -81,15 +82,14 @@ class Passing(threading.Thread):
     """The loop of play, in a thread, until it is ended. It alone uses the node's line: what others want there they put
     into `jobs`."""
 
-    def __init__(self, vehicle: Any, end: can.BusABC, traffic: Traffic, jobs: deque[Callable[[], None]]):
+    def __init__(self, vehicle: Any, end: can.BusABC, bench: Bench):
         super().__init__(daemon=True)
-        self.loop, self._jobs, self._is_over = Loop(vehicle, end, traffic, [self._work]), jobs, False
-        self.ending: LaconicError | None = None
-        traffic.may_go_on = self._go_on
+        self.loop, self.bench, self._is_over = Loop(vehicle, end, bench.traffic, [self._work]), bench, False
+        bench.traffic.may_go_on = self._go_on
 
     def _work(self, now_us: int) -> None:
-        while self._jobs:
-            self._jobs.popleft()()
+        while self.bench.jobs:
+            self.bench.jobs.popleft()()
 
     def _go_on(self) -> None:
         if self._is_over:
@@ -97,7 +97,8 @@ class Passing(threading.Thread):
 
     def run(self) -> None:
         with suppress(Over):
-            self.ending = self.loop.run(None)
+            ending = self.loop.run(None)
+            self.bench.endings += [ending] if ending is not None else []
 
     def __enter__(self) -> Passing:
         self.start()
@@ -133,10 +134,9 @@ def bench(scene_name: str, protocol: str, board: str, step_s: float, **numbers: 
             vehicle_on(board, scene, settings, traffic.clock) as vehicle:
         truth = Truth(played(scene), vehicle.client.link)
         found = Bench(scene, settings, vehicle, truth, traffic, channel)
-        with running(vehicle), Passing(vehicle, end, traffic, found.jobs) as passing:
+        with running(vehicle), Passing(vehicle, end, found):
             yield found
-        if passing.ending is not None:
-            raise passing.ending
+        found.check()
         if complaint := truth.complaint(steps_at_rest(vehicle.client)):
             raise ResultFails(complaint)
 

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import asyncio
+import logging
 from typing import Any
 
 from odrive_can.odrive import ODriveCAN
@@ -16,6 +17,7 @@ MOST_TURNS_PER_S = 20.0
 NEAR_TURNS_PER_S = 0.6
 ATTEMPTS = 5            # the client waits a second, a busy machine may need more
 CYCLES_OF_A_CHECK = 100
+SILENCE_S = 5.0
 AXIS_BITS, AXIS_MASK = 5, 0x7E0
 
 
@@ -33,7 +35,8 @@ class Clients:
         self.drives: list[Any] = [ODriveCAN(axis, adapter) for axis, adapter in self.adapters.items()]
         self.speeds: dict[int, float] = {}
         self.wanted: dict[int, float] = {}
-        self.estimates = 0
+        self._told: set[int] = set()
+        self._all_told = asyncio.Event()
 
     async def __aenter__(self) -> Clients:
         await asyncio.gather(*(drive.start() for drive in self.drives))
@@ -46,8 +49,20 @@ class Clients:
         return self
 
     def _take(self, message: Any, drive: Any) -> None:
-        self.estimates += 1
         self.speeds[drive.axis_id] = message.data["Vel_Estimate"]
+        self._told.add(drive.axis_id)
+        if len(self._told) == len(self.drives):
+            self._all_told.set()
+
+    async def next_estimates(self) -> None:
+        """Until all axes have told their speed once more: commands never come faster than the drives take them."""
+        try:
+            await asyncio.wait_for(self._all_told.wait(), SILENCE_S)
+        except asyncio.TimeoutError:
+            self.bench.check()
+            raise ResultFails(f"the axes told no speed for {SILENCE_S:g} s") from None
+        self._told.clear()
+        self._all_told.clear()
 
     def arrived(self) -> bool:
         """Whether the axes turn as they should."""
@@ -81,12 +96,13 @@ async def _control(bench: Bench, cycles: Cycles) -> None:
                 bench.check()
                 for drive in clients.drives:
                     drive.check_errors()
+            await clients.next_estimates()
             cycles.end()
-            await asyncio.sleep(cycles.pause_s())
         if not clients.arrived():
             raise ResultFails(f"the axes turn with {clients.speeds} turns/s where {clients.wanted} were wanted")
 
 
 def control(bench: Bench, cycles: Cycles) -> None:
     """Drives the vehicle; ResultFails where the drives do not follow."""
+    logging.getLogger("odrive").setLevel(logging.ERROR)  # it would tell of each second without a frame
     asyncio.run(_control(bench, cycles))

@@ -14,7 +14,7 @@ PATIENCE_S = 20.0      # until the drives have the speed that is wanted at the e
 
 @dataclass
 class Cycles:
-    """So many of them, at most one in each `period_s`; `moved` is called after each."""
+    """So many of them; `moved` is called after each. A controller that nothing paces takes one in each `period_s`."""
 
     wanted: int
     period_s: float
