@@ -5,8 +5,7 @@
  * Prints "listening on 127.0.0.1:PORT" (port 0: any free one). The node keeps its vehicle between clients, as a
  * board does. Like a serial line it has one client at a time; a second one gets a line of text and is disconnected.
  * With --shared its port is a bus: clients are stations that hear each other. Frames to and from the node itself pass
- * among those that have spoken to it, and whoever comes while there is none of these: a controller hears nothing but
- * its drives. */
+ * among those that have spoken to it, and before anybody has, to all: a controller hears nothing but its drives. */
 #define _GNU_SOURCE
 #include "laconic_node/node.h"
 #include "laconic_wire.h"
