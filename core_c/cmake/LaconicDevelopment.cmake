@@ -16,8 +16,8 @@ function(laconic_development real)
         OUTPUT "${cdef}"
         COMMAND "${CMAKE_C_COMPILER}" -E -P -nostdinc $<$<STREQUAL:${real},single>:-DLACONIC_SINGLE>
                 -I "${CMAKE_CURRENT_SOURCE_DIR}/cdef" -I "${CMAKE_CURRENT_SOURCE_DIR}/include"
-                "${CMAKE_CURRENT_SOURCE_DIR}/include/laconic/laconic.h" -o "${cdef}"
-        DEPENDS ${core_headers} COMMAND_EXPAND_LISTS VERBATIM)
+                "${CMAKE_CURRENT_SOURCE_DIR}/cdef/headers.h" -o "${cdef}"
+        DEPENDS ${core_headers} "${CMAKE_CURRENT_SOURCE_DIR}/cdef/headers.h" COMMAND_EXPAND_LISTS VERBATIM)
     add_custom_target(laconic_cdef_${real} ALL DEPENDS "${cdef}")
     laconic_purity(${real})
 endfunction()

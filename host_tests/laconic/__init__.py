@@ -22,6 +22,8 @@ if TYPE_CHECKING:  # for type checkers and editors; the table below is what runs
     from laconic.core import Rates as Rates
     from laconic.core import Vehicle as Vehicle
     from laconic.core import load as load_core
+    from laconic.core.derivatives import StepDerivatives as StepDerivatives
+    from laconic.core.derivatives import StepJacobian as StepJacobian
     from laconic.core.plant import Plant as Plant
     from laconic.core.sensors import Readings as Readings
     from laconic.core.sensors import Sensors as Sensors
@@ -39,13 +41,14 @@ if TYPE_CHECKING:  # for type checkers and editors; the table below is what runs
     from laconic.simulation import simulate as simulate
 
 __all__ = ["METHODS", "BadInput", "Core", "Linearisation", "Matrices", "Plant", "Rates", "Readings", "Refused",
-           "RunRefused", "Scene", "Sensors", "Study", "Trajectory", "Vehicle", "analyse", "build_scene",
-           "load_core", "make_fmu", "plot", "read_scene", "scene_names", "simulate"]
+           "RunRefused", "Scene", "Sensors", "StepDerivatives", "StepJacobian", "Study", "Trajectory", "Vehicle",
+           "analyse", "build_scene", "load_core", "make_fmu", "plot", "read_scene", "scene_names", "simulate"]
 
 _MODULES = {  # name → where it is, and as what if not by the same name
     "METHODS": "scene", "BadInput": "errors", "Core": "core", "Linearisation": "core", "Matrices": "core",
     "Plant": "core.plant", "Rates": "core", "Readings": "core.sensors", "Refused": "errors",
-    "RunRefused": "simulation", "Scene": "scene", "Sensors": "core.sensors", "Study": "analysis.findings",
+    "RunRefused": "simulation", "Scene": "scene", "Sensors": "core.sensors",
+    "StepDerivatives": "core.derivatives", "StepJacobian": "core.derivatives", "Study": "analysis.findings",
     "Trajectory": "simulation", "Vehicle": "core", "analyse": "analysis.analyse", "build_scene": "scene",
     "load_core": "core:load", "make_fmu": "fmu", "plot": "pictures.plotting", "read_scene": "scene",
     "scene_names": "paths", "simulate": "simulation"}

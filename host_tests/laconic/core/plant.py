@@ -7,6 +7,7 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
+from laconic.core.derivatives import StepDerivatives
 from laconic.core.given import c_object, number, step_count
 from laconic.core.inputs import check_held, check_wheels
 from laconic.core.schedule import Schedule
@@ -102,6 +103,13 @@ class Plant:
         BadInput names a key that is unknown or no number; Refused one that the core refuses.
         """
         return Sensors(self, settings_of(self.core, {} if settings is None else settings, self.wheel_count))
+
+    def step_derivatives(self, held: Any = None) -> StepDerivatives:
+        """How the state after the next step changes with state, input and vehicle before it; input as for `run`.
+
+        BadInput for a vehicle with friction, whose step is not smooth.
+        """
+        return StepDerivatives(self, held)
 
     # ---- outputs
 

@@ -1,0 +1,4 @@
+/* The headers whose functions Python calls. */
+#include "laconic/laconic.h"
+
+#include "laconic/derivatives.h"

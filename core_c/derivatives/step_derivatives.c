@@ -1,0 +1,352 @@
+/* Jacobian, tangent and adjoint of a step. A step's only nonlinearity is in ζ, three numbers, and the heading: the
+ * methods' files answer directions of ζ, forcing and dynamics, and all else is chained to that linearly here. */
+#include "step_chain.h"
+
+/* -------------------------------------------------------------------- the step that is taken -- */
+
+static responder responder_of(const laconic_method *method) {
+    if (method == &laconic_rk4) return laconic_rk4_responses;
+    if (method == &laconic_taylor_8) return laconic_taylor_8_responses;
+    if (method == &laconic_exponential_kahan) return laconic_kahan_responses;
+    if (method == &laconic_exponential_kahan_4) return laconic_kahan_4_responses;
+    if (method == &laconic_exact_flow) return laconic_flow_responses;
+    return method == &laconic_exact_flow_4 ? laconic_flow_4_responses : NULL;
+}
+
+/* The methods that a step tries in turn: those of auto by the rule of auto.c. */
+static void candidates(const laconic_method *tried[3], const laconic_method *chosen, bool constant) {
+    tried[0] = chosen;
+    tried[1] = tried[2] = NULL;
+    if (chosen == &laconic_auto_fast) {
+        tried[0] = &laconic_exponential_kahan_4;
+        tried[1] = &laconic_exact_flow;
+    } else if (chosen == &laconic_auto_slow) {
+        tried[0] = constant ? NULL : &laconic_taylor_8;
+        tried[1] = &laconic_exact_flow_4;
+        tried[2] = &laconic_exact_flow;
+    }
+}
+
+/* Takes the step on a copy of the state. */
+static laconic_status find_responder(responder *found, const laconic_model *model, const laconic_integrator *integrator,
+                                     const laconic_state *state, const laconic_forcing *forcing) {
+    const laconic_forcing_samples samples = {forcing, forcing, forcing, !forcing->rotates};
+    const laconic_method *tried[3];
+    laconic_state after = *state;
+    laconic_status status = LACONIC_METHOD_UNKNOWN;
+    candidates(tried, integrator->chosen, constant_over(&samples));
+    for (int i = 0; i < 3 && status != LACONIC_OK; i++) {
+        if (tried[i] == NULL) continue;
+        *found = responder_of(tried[i]);
+        if (*found == NULL) return LACONIC_METHOD_UNKNOWN;
+        status = tried[i]->step(model, integrator, &after, &samples);
+    }
+    return status;
+}
+
+laconic_status laconic_take_step(taken_step *s, const laconic_model *model, const laconic_integrator *integrator,
+                                 const laconic_state *state, const laconic_input *held, bool with_world_force) {
+    laconic_forcing forcing;
+    if (zero_if_finite(world_force_point(held)) != R(0) || !heading_has_room(&state->heading)) return LACONIC_OVERFLOW;
+    forcing_of(&forcing, model, held);
+    const laconic_status status = find_responder(&s->responds, model, integrator, state, &forcing);
+    if (status != LACONIC_OK) return status;
+    s->at.model = model;
+    s->at.integrator = integrator;
+    s->at.zeta = zeta_of(state);
+    s->at.constant = vec(forcing.constant);
+    s->at.cosine = s->at.sine = none;
+    s->at.heading = laconic_direction_of_binary_angle(state->heading.fraction);
+    s->at.rotates = forcing.rotates || with_world_force;
+    if (forcing.rotates) {
+        const world_part b = {vec(forcing.cosine), vec(forcing.sine)}, seen = turned(b, s->at.heading);
+        s->at.cosine = seen.cosine;
+        s->at.sine = seen.sine;
+    }
+    return LACONIC_OK;
+}
+
+void laconic_respond(taken_step *s, const laconic_state *state, step_response out[], const step_direction in[],
+                     int32_t count) {
+    s->responds(&s->response, out, &s->at, in, count);
+    const pose_change *moved = &s->response.moved;
+    s->middle = laconic_direction_of_binary_angle(
+        (laconic_binary_angle)(state->heading.fraction + laconic_binary_angle_of(R(0.5) * moved->yaw_change_rad)));
+    s->x_m = s->middle.cosine * moved->along_m - s->middle.sine * moved->across_m;
+    s->y_m = s->middle.sine * moved->along_m + s->middle.cosine * moved->across_m;
+}
+
+void laconic_finish_step(laconic_state_change *after, const taken_step *s, vector zeta, const step_response *by,
+                         real heading_rad) {
+    const laconic_model *m = s->at.model;
+    const pose_change *moved = &by->moved;
+    const real turn = heading_rad + R(0.5) * moved->yaw_change_rad;
+    store(after->nu_rad_per_s, mapped_rows(m->nu_of_zeta, plus(zeta, by->delta)));
+    after->x_m = s->middle.cosine * moved->along_m - s->middle.sine * moved->across_m - turn * s->y_m;
+    after->y_m = s->middle.sine * moved->along_m + s->middle.cosine * moved->across_m + turn * s->x_m;
+    after->heading_rad = heading_rad + moved->yaw_change_rad;
+    for (int32_t i = 0; i < LACONIC_WHEELS(m); i++) after->wheel_angle_rad[i] = dot(vec(m->wheel_of_zeta[i]), by->path);
+}
+
+/* -------------------------------------------------------------------- forcing along directions -- */
+
+world_part laconic_world_b(const laconic_model *m, real fx, real fy, const real r[2]) {
+    const vector yaw = vec(m->yaw_rate_of_zeta);
+    const vector along = added(vec(m->velocity_of_zeta[0]), -r[1], yaw);
+    const vector across = added(vec(m->velocity_of_zeta[1]), r[0], yaw);
+    const world_part b = {plus(scaled(fx, along), scaled(fy, across)), minus(scaled(fy, along), scaled(fx, across))};
+    return b;
+}
+
+/* Of the same force where its point alone moves. */
+static world_part moved_point_b(const laconic_model *m, real fx, real fy, const real dr[2]) {
+    const vector yaw = vec(m->yaw_rate_of_zeta);
+    const world_part b = {scaled(fy * dr[0] - fx * dr[1], yaw), scaled(-(fy * dr[1]) - fx * dr[0], yaw)};
+    return b;
+}
+
+/* Changes of b with the model's constants. */
+static vector constant_by_model(const laconic_model *m, const laconic_model_change *by, const laconic_input *in) {
+    vector b = none;
+    for (int32_t i = 0; i < LACONIC_WHEELS(m); i++) {
+        const real torque = m->voltage_scale[own(i)] * in->voltage_V[i] + m->torque_scale * in->axle_torque_Nm[i];
+        const real change = by->voltage_scale[i] * in->voltage_V[i] + by->torque_scale * in->axle_torque_Nm[i];
+        b = plus(b, plus(scaled(change, vec(m->wheel_of_zeta[i])), scaled(torque, vec(by->wheel_of_zeta[i]))));
+    }
+    const real *f = in->body_force_N;
+    b = added(b, by->torque_scale / m->torque_scale, b_of_wrench(m, wrench_with(f[0], f[1], in->body_moment_Nm)));
+    b = added(b, m->torque_scale * f[0], vec(by->velocity_of_zeta[0]));
+    b = added(b, m->torque_scale * f[1], vec(by->velocity_of_zeta[1]));
+    return added(b, m->torque_scale * in->body_moment_Nm, vec(by->yaw_rate_of_zeta));
+}
+
+/* A force's b with the rows of a change of the model in place of the model's. */
+static world_part world_b_of_rows(const laconic_model_change *by, real fx, real fy, const real r[2]) {
+    const vector yaw = vec(by->yaw_rate_of_zeta);
+    const vector along = added(vec(by->velocity_of_zeta[0]), -r[1], yaw);
+    const vector across = added(vec(by->velocity_of_zeta[1]), r[0], yaw);
+    const world_part b = {plus(scaled(fx, along), scaled(fy, across)), minus(scaled(fy, along), scaled(fx, across))};
+    return b;
+}
+
+static const real at_s[2] = {R(0), R(0)};
+
+static world_part world_by_model(const laconic_model *m, const laconic_model_change *by, const laconic_input *in) {
+    const real *f = in->world_force_N, *r = in->world_force_point_m, *pull = slope_force(m);
+    const real *more = by->slope_force_N, t = m->torque_scale, dt = by->torque_scale;
+    const world_part force =
+        both(laconic_world_b(m, dt * f[0], dt * f[1], r), world_b_of_rows(by, t * f[0], t * f[1], r));
+    const world_part slope = both(laconic_world_b(m, dt * pull[0] + t * more[0], dt * pull[1] + t * more[1], at_s),
+                                  world_b_of_rows(by, t * pull[0], t * pull[1], at_s));
+    return both(force, slope);
+}
+
+world_part laconic_world_b_by_input(const laconic_model *m, const laconic_input *by, const laconic_input *in) {
+    const real t = m->torque_scale, *f = in->world_force_N, *df = by->world_force_N;
+    return both(laconic_world_b(m, t * df[0], t * df[1], in->world_force_point_m),
+                moved_point_b(m, t * f[0], t * f[1], by->world_force_point_m));
+}
+
+static void dynamics_of(dynamics_change *out, const laconic_model_change *by) {
+    out->yaw = vec(by->nu_of_zeta[2]);
+    out->gyro = vec(by->gyro);
+    out->yaw_rate = vec(by->yaw_rate_of_zeta);
+    out->along = vec(by->velocity_of_zeta[0]);
+    out->across = vec(by->velocity_of_zeta[1]);
+    out->damping.x = vec(by->damping_per_s[0]);
+    out->damping.y = vec(by->damping_per_s[1]);
+    out->damping.z = vec(by->damping_per_s[2]);
+}
+
+/* ---------------------------------------------------------------------------------- tangent -- */
+
+static bool varies_world_force(const laconic_input *by) {
+    return by != NULL && acts(by->world_force_N[0], by->world_force_N[1], R(0));
+}
+
+static bool varies_slope(const laconic_model_change *by) {
+    return by != NULL && acts(by->slope_force_N[0], by->slope_force_N[1], R(0));
+}
+
+static void add_forcing(step_direction *d, const taken_step *s, real heading_rad, const laconic_input *held,
+                        const laconic_input *input, const laconic_model_change *by) {
+    const laconic_model *m = s->at.model;
+    world_part world = {none, none};
+    d->constant = none;
+    if (input != NULL) {
+        const real *f = input->body_force_N;
+        d->constant = plus(b_of_torques(m, input), b_of_wrench(m, wrench_with(f[0], f[1], input->body_moment_Nm)));
+        world = laconic_world_b_by_input(m, input, held);
+    }
+    if (by != NULL) {
+        d->constant = plus(d->constant, constant_by_model(m, by, held));
+        world = both(world, world_by_model(m, by, held));
+    }
+    world = turned(world, s->at.heading);
+    d->cosine = added(world.cosine, heading_rad, s->at.sine);
+    d->sine = added(world.sine, -heading_rad, s->at.cosine);
+}
+
+/* What follows from the model's rows alone. */
+static void add_rows(laconic_state_change *after, const taken_step *s, const laconic_model_change *by) {
+    const vector end = plus(s->at.zeta, s->response.delta);
+    const vector nu = plus(vec(after->nu_rad_per_s), mapped_rows(by->nu_of_zeta, end));
+    store(after->nu_rad_per_s, nu);
+    for (int32_t i = 0; i < LACONIC_WHEELS(s->at.model); i++)
+        after->wheel_angle_rad[i] += dot(vec(by->wheel_of_zeta[i]), s->response.path);
+}
+
+laconic_status laconic_step_tangent(laconic_state_change *after, const laconic_model *model,
+                                    const laconic_integrator *integrator, const laconic_state *state,
+                                    const laconic_input *held, const laconic_state_change *before,
+                                    const laconic_input *input, const laconic_model_change *by_model) {
+    taken_step s;
+    step_direction d;
+    step_response out;
+    dynamics_change dynamics;
+    const laconic_status status =
+        laconic_take_step(&s, model, integrator, state, held, varies_world_force(input) || varies_slope(by_model));
+    if (status != LACONIC_OK) return status;
+    d.zeta = zeta_of_nu(model, before->nu_rad_per_s);
+    d.model = NULL;
+    if (by_model != NULL) {
+        d.zeta = plus(d.zeta, mapped_rows(by_model->zeta_of_nu, nu_before(&s)));
+        dynamics_of(&dynamics, by_model);
+        d.model = &dynamics;
+    }
+    add_forcing(&d, &s, before->heading_rad, held, input, by_model);
+    laconic_respond(&s, state, &out, &d, 1);
+    laconic_finish_step(after, &s, d.zeta, &out, before->heading_rad);
+    if (by_model != NULL) add_rows(after, &s, by_model);
+    after->x_m += before->x_m;
+    after->y_m += before->y_m;
+    for (int32_t i = 0; i < LACONIC_WHEELS(model); i++) after->wheel_angle_rad[i] += before->wheel_angle_rad[i];
+    return LACONIC_OK;
+}
+
+/* --------------------------------------------------------------------------------- jacobian -- */
+
+#define CORE_COLUMNS 12
+
+static const vector unit[3] = {{R(1), R(0), R(0)}, {R(0), R(1), R(0)}, {R(0), R(0), R(1)}};
+
+static void core_directions(step_direction in[CORE_COLUMNS]) {
+    const step_direction still = {none, none, none, none, NULL};
+    for (int k = 0; k < CORE_COLUMNS; k++) in[k] = still;
+    for (int k = 0; k < 3; k++) {
+        in[k].zeta = unit[k];
+        in[3 + k].constant = unit[k];
+        in[6 + k].cosine = unit[k];
+        in[9 + k].sine = unit[k];
+    }
+}
+
+void laconic_core_columns(core_columns *c, taken_step *s, const laconic_state *state) {
+    step_direction in[CORE_COLUMNS];
+    step_response out[CORE_COLUMNS];
+    core_directions(in);
+    laconic_respond(s, state, out, in, s->at.rotates ? CORE_COLUMNS : 6);
+    for (int k = 0; k < 3; k++) {
+        laconic_finish_step(&c->by_zeta[k], s, unit[k], &out[k], R(0));
+        laconic_finish_step(&c->by_constant[k], s, none, &out[3 + k], R(0));
+        if (!s->at.rotates) continue;
+        laconic_finish_step(&c->by_cosine[k], s, none, &out[6 + k], R(0));
+        laconic_finish_step(&c->by_sine[k], s, none, &out[9 + k], R(0));
+    }
+}
+
+/* Σ weight_k column_k */
+static void weighed(laconic_state_change *out, const laconic_state_change column[3], vector weight, int32_t wheels) {
+    const laconic_state_change *a = &column[0], *b = &column[1], *c = &column[2];
+    const real x = weight.x, y = weight.y, z = weight.z;
+    for (int i = 0; i < 3; i++)
+        out->nu_rad_per_s[i] = x * a->nu_rad_per_s[i] + y * b->nu_rad_per_s[i] + z * c->nu_rad_per_s[i];
+    out->x_m = x * a->x_m + y * b->x_m + z * c->x_m;
+    out->y_m = x * a->y_m + y * b->y_m + z * c->y_m;
+    out->heading_rad = x * a->heading_rad + y * b->heading_rad + z * c->heading_rad;
+    for (int32_t i = 0; i < wheels; i++)
+        out->wheel_angle_rad[i] = x * a->wheel_angle_rad[i] + y * b->wheel_angle_rad[i] + z * c->wheel_angle_rad[i];
+}
+
+static void add_change(laconic_state_change *out, const laconic_state_change *more, int32_t wheels) {
+    for (int i = 0; i < 3; i++) out->nu_rad_per_s[i] += more->nu_rad_per_s[i];
+    out->x_m += more->x_m;
+    out->y_m += more->y_m;
+    out->heading_rad += more->heading_rad;
+    for (int32_t i = 0; i < wheels; i++) out->wheel_angle_rad[i] += more->wheel_angle_rad[i];
+}
+
+static void by_world_part(laconic_state_change *out, const core_columns *c, world_part b, int32_t wheels) {
+    laconic_state_change sine;
+    weighed(out, c->by_cosine, b.cosine, wheels);
+    weighed(&sine, c->by_sine, b.sine, wheels);
+    add_change(out, &sine, wheels);
+}
+
+/* A further yaw at the start turns the displacement, and a force fixed in the world against the body. */
+void laconic_heading_column(laconic_state_change *out, const taken_step *s, const core_columns *c) {
+    const int32_t wheels = LACONIC_WHEELS(s->at.model);
+    const world_part seen = {s->at.sine, scaled(R(-1), s->at.cosine)};
+    if (s->at.rotates) {
+        by_world_part(out, c, seen, wheels);
+    } else {
+        weighed(out, c->by_zeta, none, wheels);
+    }
+    out->x_m -= s->y_m;
+    out->y_m += s->x_m;
+    out->heading_rad += R(1);
+}
+
+static void by_world_forces(laconic_step_jacobian *j, const taken_step *s, const core_columns *c,
+                            const laconic_input *held) {
+    const laconic_model *m = s->at.model;
+    for (int k = 0; k < 2; k++) {
+        laconic_input by = ALL_ZERO;
+        by.world_force_N[k] = R(1);
+        by_world_part(&j->by_world_force[k], c, turned(laconic_world_b_by_input(m, &by, held), s->at.heading),
+                      LACONIC_WHEELS(m));
+        by.world_force_N[k] = R(0);
+        by.world_force_point_m[k] = R(1);
+        by_world_part(&j->by_world_force_point[k], c, turned(laconic_world_b_by_input(m, &by, held), s->at.heading),
+                      LACONIC_WHEELS(m));
+    }
+}
+
+static void by_torques(laconic_step_jacobian *j, const laconic_model *m, const core_columns *c) {
+    const int32_t wheels = LACONIC_WHEELS(m);
+    for (int32_t i = 0; i < wheels; i++) {
+        weighed(&j->by_axle_torque[i], c->by_constant, scaled(m->torque_scale, vec(m->wheel_of_zeta[i])), wheels);
+        weighed(&j->by_voltage[i], c->by_constant, scaled(m->voltage_scale[own(i)], vec(m->wheel_of_zeta[i])), wheels);
+    }
+    for (int k = 0; k < 2; k++)
+        weighed(&j->by_body_force[k], c->by_constant, scaled(m->torque_scale, vec(m->velocity_of_zeta[k])), wheels);
+    weighed(&j->by_body_moment, c->by_constant, scaled(m->torque_scale, vec(m->yaw_rate_of_zeta)), wheels);
+}
+
+/* Column i of G⁺. */
+static inline vector zeta_of_unit_nu(const laconic_model *m, int i) {
+    const real nu[3] = {R(i == 0), R(i == 1), R(i == 2)};
+    return zeta_of_nu(m, nu);
+}
+
+static void fill_jacobian(laconic_step_jacobian *j, const taken_step *s, const core_columns *c,
+                          const laconic_input *held) {
+    const laconic_model *m = s->at.model;
+    for (int i = 0; i < 3; i++) weighed(&j->by_nu[i], c->by_zeta, zeta_of_unit_nu(m, i), LACONIC_WHEELS(m));
+    laconic_heading_column(&j->by_heading, s, c);
+    by_torques(j, m, c);
+    j->has_world_force = s->at.rotates;
+    if (s->at.rotates) by_world_forces(j, s, c, held);
+}
+
+laconic_status laconic_step_jacobian_of(laconic_step_jacobian *jacobian, const laconic_model *model,
+                                        const laconic_integrator *integrator, const laconic_state *state,
+                                        const laconic_input *held, bool with_world_force) {
+    taken_step s;
+    core_columns c;
+    const laconic_status status = laconic_take_step(&s, model, integrator, state, held, with_world_force);
+    if (status != LACONIC_OK) return status;
+    laconic_core_columns(&c, &s, state);
+    fill_jacobian(jacobian, &s, &c, held);
+    return LACONIC_OK;
+}

@@ -1,0 +1,102 @@
+"""Derivatives of a step against differences of every method's map in 50 digits; and what a user sees of them."""
+
+from __future__ import annotations
+
+import re
+from itertools import islice
+from pathlib import Path
+
+import numpy as np
+import pytest
+
+from laconic import BadInput, Refused
+from laconic.core.binding import load
+from laconic.core.derivatives import StepDerivatives
+from laconic.verification.derivatives.trials import KINDS, METHODS, difference, directions, error, tangent, trials
+
+TRIALS = len(KINDS) * len(METHODS)
+TOLERANCE = 1e-11
+CARRIAGE = {"mass_kg": 10.0, "yaw_inertia_kgm2": 0.2, "wheel_radius_m": 0.05, "wheel_inertia_kgm2": 0.002,
+            "motor_gain_Nm_per_V": 0.5, "motor_damping_Nms": 0.02,
+            "wheel": [{"kind": "omni", "x_m": 0.1, "y_m": 0.0, "axle_rad": 0.0},
+                      {"kind": "omni", "x_m": -0.1, "y_m": 0.0, "axle_rad": 3.0},
+                      {"kind": "omni", "x_m": 0.0, "y_m": 0.12, "axle_rad": 1.5}]}
+HELD = {"voltage_V": [2.0, -1.0, 0.5]}
+
+
+def carriage(real="double", method="auto", **more):
+    core = load(real)
+    return core.plant(core.vehicle({**CARRIAGE, **more}), method, 0.01, nu_rad_per_s=(1.0, -0.5, 2.0), heading_rad=0.4)
+
+
+def test_tangents_of_every_method_and_kind_of_vehicle_agree_with_differences_in_50_digits():
+    random, worst = np.random.default_rng(5), {}
+    for trial, plant in islice(trials(load()), TRIALS):
+        for name, along in directions(random, trial, plant).items():
+            off = error(tangent(trial, plant, along), difference(trial, plant, along), along)
+            worst[trial.method, trial.kind, name] = off
+    assert len({method for method, _, _ in worst}) == len(METHODS)
+    assert max(worst.values()) <= TOLERANCE, max(worst, key=worst.get)
+
+
+def test_the_jacobian_has_the_tangents_as_columns_and_the_adjoint_is_its_transpose():
+    random = np.random.default_rng(2)
+    for trial, plant in islice(trials(load(), seed=3), TRIALS):
+        step = StepDerivatives(plant, trial.held)
+        jacobian = step.jacobian(world_force=True)
+        state, gradient = random.normal(size=(2, 6 + plant.wheel_count))
+        assert step.tangent(state) == pytest.approx(jacobian.by_state @ state, rel=1e-12, abs=1e-12)
+        by_state, by_input = step.adjoint(gradient)
+        for found, matrix in ((by_state, jacobian.by_state), (by_input, jacobian.by_input)):
+            size = np.abs(matrix).T @ np.abs(gradient)
+            assert np.all(np.abs(found - matrix.T @ gradient) <= 1e-14 * size + 1e-300)
+
+
+def test_gradients_by_the_vehicle_are_the_tangents_along_its_numbers():
+    names = ["mass_kg", "com_x_m", "wheel_radius_m", "motor_damping_Nms", "wheel[2].x_m", "wheel[3].axle_rad",
+             "payload.mass_kg", "ground.slope_rad"]
+    slope = {"slope_rad": 0.1, "slope_heading_rad": 0.3}
+    step = StepDerivatives(carriage(payload={"mass_kg": 1.0, "x_m": 0.1, "y_m": 0.0, "yaw_inertia_kgm2": 0.0},
+                                    ground=slope), HELD)
+    gradient = np.arange(1.0, 10.0)
+    expected = [gradient @ step.tangent(vehicle={name: 1.0}) for name in names]
+    assert step.vehicle_gradient(gradient, names) == pytest.approx(expected, rel=1e-11)
+
+
+def test_the_plant_stays_as_it_is_and_names_fit_the_matrices():
+    plant = carriage()
+    before = plant.row()
+    jacobian = StepDerivatives(plant, HELD).jacobian()
+    assert np.array_equal(plant.row(), before)
+    assert jacobian.by_state.shape == (len(jacobian.state_names),) * 2
+    assert jacobian.by_input.shape == (len(jacobian.state_names), len(jacobian.input_names))
+    assert jacobian.by_input[jacobian.state_names.index("heading_rad"), jacobian.input_names.index("voltage_V[1]")] != 0
+
+
+def test_single_precision_has_the_same_jacobian_to_its_digits():
+    double, single = (StepDerivatives(carriage(real), HELD).jacobian() for real in ("double", "single"))
+    assert single.by_state.dtype == np.float32
+    assert single.by_state == pytest.approx(double.by_state, rel=2e-5, abs=1e-6)
+
+
+def test_what_has_no_derivative_is_refused_by_its_name():
+    step = StepDerivatives(carriage(), HELD)
+    with pytest.raises(BadInput, match="not smooth"):
+        StepDerivatives(carriage(ground={"friction_coefficient": 0.5}), HELD)
+    with pytest.raises(BadInput, match=r"wheel\[4\]\.x_m: there is no such wheel"):
+        step.tangent(vehicle={"wheel[4].x_m": 1.0})
+    with pytest.raises(BadInput, match="no such number"):
+        step.tangent(vehicle={"mass": 1.0})
+    with pytest.raises(BadInput, match="no table"):
+        step.tangent(vehicle={"load.mass_kg": 1.0})
+    with pytest.raises(BadInput, match="change of the state"):
+        step.tangent([1.0, 2.0])
+    with pytest.raises(Refused, match="voltage_V"):
+        StepDerivatives(carriage(), {"voltage_V": [float("nan")]}).jacobian()
+
+
+def test_the_example_of_the_page_prints_what_the_page_shows(capsys):
+    page = (Path(__file__).parents[3] / "docs/derivatives.md").read_text(encoding="utf-8")
+    [(example, printed)] = re.findall(r"```python\n(.*?)```\n\n```text\n(.*?)```", page, re.DOTALL)
+    exec(example, {})
+    assert capsys.readouterr().out == printed
