@@ -15,7 +15,8 @@
  *           forbids has no effect on the velocity, and ν after a step obeys all constraints.
  * Branches  those of the step itself: where auto takes another method in this state, the derivatives are of that one.
  *           A step that is refused has no derivative: its status is returned, and nothing is written.
- * Memory    the caller owns every struct; no heap, at most 24 KB of stack (single: 12 KB; rk4 a third). No state is changed.
+ * Memory    the caller owns every struct; no heap, at most 24 KB of stack (single: 12 KB; rk4 a third). No state is
+ *           changed.
  * Links     every method, since auto may take most of them. */
 #ifndef LACONIC_DERIVATIVES_H
 #define LACONIC_DERIVATIVES_H
@@ -53,12 +54,12 @@ typedef struct laconic_model_change {
     laconic_real slope_force_N[2];                     /* of the slope's pull                             */
 } laconic_model_change;
 
-/* How a model changes with its vehicle: `by` has a change in each member that is a number of type laconic_real, and 0
- * in members that do not change. Exact, also where damping rates coincide. An own value of a wheel (own_radius_m …)
- * that is 0 stands for the vehicle's and follows that; its own change is not read. Does not act, as on every step: com_z_m,
- * supports, friction coefficients, drive. Where wheels share a constraint (two on one axle line), a change by which
- * they would no longer share it has no derivative: the constraint then follows the least-squares fit of both.
- * `model`: that of `vehicle`. Refuses METHOD_WITHOUT_FRICTION. O(N). */
+/* How a model changes with its vehicle: `by` has a change in each member that is a number of type laconic_real, and
+ * 0 in members that do not change. Exact, also where damping rates coincide. An own value of a wheel (own_radius_m
+ * …) that is 0 stands for the vehicle's and follows that; its own change is not read. Does not act, as on every
+ * step: com_z_m, supports, friction coefficients, drive. Where wheels share a constraint (two on one axle line), a
+ * change by which they would no longer share it has no derivative: the constraint then follows the least-squares fit
+ * of both. `model`: that of `vehicle`. Refuses METHOD_WITHOUT_FRICTION. O(N). */
 laconic_status laconic_model_tangent(laconic_model_change *change, const laconic_model *model,
                                      const laconic_vehicle *vehicle, const laconic_vehicle *by);
 
@@ -75,7 +76,7 @@ typedef struct laconic_step_jacobian {
 } laconic_step_jacobian;
 
 /* All columns. Those of the world force are set where one acts, or a slope, or `with_world_force` asks for them; they
- * cost as much as all others.  */
+ * cost as much as all others. */
 laconic_status laconic_step_jacobian_of(laconic_step_jacobian *jacobian, const laconic_model *model,
                                         const laconic_integrator *integrator, const laconic_state *state,
                                         const laconic_input *held, bool with_world_force);
@@ -98,9 +99,9 @@ laconic_status laconic_step_tangent(laconic_state_change *after, const laconic_m
                                     const laconic_input *input, const laconic_model_change *by_model);
 
 /* The gradients by state, input and model before the step of the number whose gradient by the state after it is
- * `after`: the transpose of laconic_step_tangent(). `input` and `by_model` may be NULL: not wanted. Over many steps call it
- * backwards with the states that the run passed. Costs as much as the Jacobian, and with `by_model` some three times
- * that. */
+ * `after`: the transpose of laconic_step_tangent(). `input` and `by_model` may be NULL: not wanted. Over many steps
+ * call it backwards with the states that the run passed. Costs as much as the Jacobian, and with `by_model` some
+ * three times that. */
 laconic_status laconic_step_adjoint(laconic_state_change *before, laconic_input *input, laconic_model_change *by_model,
                                     const laconic_model *model, const laconic_integrator *integrator,
                                     const laconic_state *state, const laconic_input *held,

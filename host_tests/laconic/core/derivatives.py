@@ -86,7 +86,7 @@ class StepDerivatives:
         "payload.mass_kg": 1.0, "ground.slope_rad": 0.1}. A wheel's number may be varied where the wheel has its own.
         """
         ffi, after = self.core.ffi, self.core.ffi.new("laconic_state_change *")
-        varied = ffi.NULL if held is None else self.core.input(held)
+        varied = ffi.NULL if held is None else self.plant.input_of(held)
         model = ffi.NULL if vehicle is None else self.model_change(vehicle)
         before = self._change([0.0] * (6 + self.wheels) if state is None else state)
         self._check(self.core.lib.laconic_step_tangent(after, *self._step, before, varied, model))
