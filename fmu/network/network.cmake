@@ -50,7 +50,7 @@ laconic_fmu(LaconicNode
     GLUE ${network_glue} network/can_controller.c
     FILES ${network_files} "can_controller.h=${CMAKE_CURRENT_SOURCE_DIR}/network/can_controller.h" ${node_named}
     OBJECTS laconic_fmu_node laconic_fmu_wire
-    INCLUDE "${CMAKE_CURRENT_SOURCE_DIR}/network" "${firmware}/include" "${wire}"
+    INCLUDE "${CMAKE_CURRENT_SOURCE_DIR}/network" "${firmware}/include" "${firmware}/src" "${firmware}/drives" "${wire}"
     PARTS "${manifest}/node/parts/fmi-ls-manifest.xml"
     DEPENDS laconic_wire_files)
 

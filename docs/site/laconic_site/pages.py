@@ -13,6 +13,7 @@ from laconic_site.python_reference import python_page
 from laconic_site.scene_reference import scene_page
 
 PICTURES = (".png", ".svg", ".gif")
+MADE_LATER = re.compile(r"^\.|^__pycache__$|\.egg-info$|^(build|dist)\b")  # what a folder's list leaves out
 LINK = re.compile(r"(!?\[[^\]\n]*\]\()([^)#\s]+)(#[^)\s]*)?(\))")
 GROUPS = {
     "Learn": ("tutorial",),
@@ -85,6 +86,6 @@ def _target(path: Path, source: Path, pages: Path) -> str:
         return str(copy.relative_to(pages))
     listing = pages / "files" / f"{'-'.join(name.parts)}.txt"
     listing.parent.mkdir(parents=True, exist_ok=True)
-    names = sorted(str(each.relative_to(source)) for each in path.iterdir())
+    names = sorted(str(each.relative_to(source)) for each in path.iterdir() if not MADE_LATER.search(each.name))
     listing.write_text("\n".join(names) + "\n", encoding="utf-8")
     return str(listing.relative_to(pages))

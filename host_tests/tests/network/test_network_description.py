@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+import shutil
+import subprocess
 import xml.etree.ElementTree as ET
 import zipfile
 from pathlib import Path
@@ -94,6 +96,18 @@ def test_the_sources_inside_are_all_listed_and_left_out_on_request(fmus: list[Pa
     assert listed == {name.removeprefix("sources/") for name in names if name.endswith(".c")}
     bare = make_network_fmu(read_scene("robotino2"), tmp_path / "bare.fmu", sources=False)
     assert not [name for name in zipfile.ZipFile(bare).namelist() if name.startswith("sources/")]
+
+
+@pytest.mark.skipif(shutil.which("gcc") is None, reason="no gcc")
+@pytest.mark.parametrize("name", ["Node", "CanBus", "CanController"])
+def test_the_sources_inside_compile_with_the_headers_of_fmi_alone(name: str, tmp_path: Path) -> None:
+    fmu = built(f"fmu/Laconic{name}_fmi3.fmu")
+    zipfile.ZipFile(fmu).extractall(tmp_path)
+    build = ET.fromstring(part(fmu, "sources/buildDescription.xml"))
+    files = [each.get("name", "") for each in build.iter("SourceFile")]
+    done = subprocess.run(["gcc", "-std=c99", "-fsyntax-only", "-I.", f"-I{built('parts/fmi')}", *files],
+                          cwd=tmp_path / "sources", capture_output=True, text=True, check=False)
+    assert (done.returncode, done.stderr) == (0, "")
 
 
 @pytest.mark.parametrize(("options", "named"), [

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import json
 import re
-from dataclasses import dataclass
+from dataclasses import asdict, dataclass
 from pathlib import Path
 
 ROOT = Path(__file__).resolve().parents[3]
@@ -33,6 +33,11 @@ def facts() -> Facts:
     licence = (ROOT / "LICENSE").read_text(encoding="utf-8")
     return Facts(**{**told, "keywords": tuple(told["keywords"])}, version=version(), licence=licence,
                  copyright=one(r"^(Copyright .*)$", licence), licence_id=one(r"^(\w+) License$", licence))
+
+
+def placeholders(of: Facts) -> list[str]:
+    """Names of the facts that stand for ones which do not exist yet: their addresses end with .example."""
+    return [name for name, value in asdict(of).items() if isinstance(value, str) and re.search(r"[@/.]example$", value)]
 
 
 def version() -> str:

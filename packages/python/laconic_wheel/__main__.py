@@ -10,7 +10,7 @@ from pathlib import Path
 from laconic_wheel import contents
 from laconic_wheel.archive import make_wheel
 from laconic_wheel.cross import compile_all
-from laconic_wheel.licences import licences
+from laconic_wheel.licences import compiler_licences, licences
 from laconic_wheel.platforms import PLATFORMS
 
 NATIVE = "native"
@@ -24,6 +24,7 @@ def main() -> None:
         contents.for_every_platform(given.build)
     of_others = licences(given.fmi_headers, given.wire)
     for name in given.platforms:
+        of_compiler: dict[str, str] = {}
         if name == NATIVE:
             tag = sysconfig.get_platform().replace("-", "_").replace(".", "_")
             files = contents.compiled(given.build, ENDINGS.get(sys.platform, "lib{}.so"), contents.PROGRAMS)
@@ -32,7 +33,9 @@ def main() -> None:
             tag = platform.tag
             folder = compile_all(platform, given.project, given.wire, given.build / "cross-wheels" / name, given.zig)
             files = contents.compiled(folder, platform.library, contents.PROGRAMS if platform.has_node_process else ())
-        made = make_wheel(given.project, same | files, of_others, version=given.version, tag=tag, out=given.out)
+            of_compiler = compiler_licences(platform, given.zig)
+        texts = of_others | of_compiler
+        made = make_wheel(given.project, same | files, texts, version=given.version, tag=tag, out=given.out)
         print(f"{made} ({made.stat().st_size / 1e6:.1f} MB)", flush=True)
 
 

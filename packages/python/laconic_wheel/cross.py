@@ -1,6 +1,7 @@
 """Core, node library and node process for another platform, by the C compiler in the package ziglang.
 
-The compiler keeps what it has compiled: the node process takes what the node library's sources became before.
+The compiler keeps what it has compiled: with the same options for all, the node library takes what the core's sources
+became before, and the node process what the node library's did.
 """
 
 from __future__ import annotations
@@ -22,18 +23,18 @@ def compile_all(platform: Platform, project: Path, wire: Path, out: Path, python
     apart = [node_dir / "src" / name for name in ("shared_library.c", "library_drives.c")]
     node = [path for path in sorted([*(node_dir / "src").glob("*.c"), *(node_dir / "drives").rglob("*.c")])
             if path not in apart] + sorted(wire.glob("*.c"))
-    core_includes = [project / "core_c" / "include", project / "core_c" / "src"]
-    includes = [*core_includes, node_dir / "include", node_dir / "src", node_dir / "drives", wire]
+    includes = [project / "core_c" / "include", project / "core_c" / "src", node_dir / "include", node_dir / "src",
+                node_dir / "drives", wire]
     position = [] if platform.is_windows else ["-fPIC"]
     for real in REALS:
         flags = [*position, *(["-DLACONIC_SINGLE"] if real == "single" else [])]
         whole = [*core, *node]
-        libraries = {f"laconic_{real}": (core, core_includes), f"laconic_node_{real}": ([*whole, *apart], includes)}
-        for name, (sources, folders) in libraries.items():
-            compile_to(platform.target, sources, folders, out / "lib" / platform.library.format(name),
+        for name, sources in ((f"laconic_{real}", core), (f"laconic_node_{real}", [*whole, *apart])):
+            compile_to(platform.target, sources, includes, out / "lib" / platform.library.format(name),
                        ["-shared", *flags], python=python)
         if platform.has_node_process:
-            port = [node_dir / "ports" / "host" / name for name in (HOST_PORT_OF_LINUX if platform.is_linux else HOST_PORT)]
+            names = HOST_PORT_OF_LINUX if platform.is_linux else HOST_PORT
+            port = [node_dir / "ports" / "host" / name for name in names]
             compile_to(platform.target, [*whole, *port], includes, out / "bin" / f"laconic-node-{real}", flags,
                        python=python)
     return out

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import os
 import re
 import subprocess
 import time
@@ -42,7 +43,8 @@ class Environment:
         began = time.perf_counter()
         command = [str(self.bin / "python"), "-m", "pip", "--disable-pip-version-check", "install", "-q",
                    "--no-compile", *arguments]
-        done = subprocess.run(command, cwd=self.folder, text=True, check=False, capture_output=True)
+        settings = {name: value for name, value in os.environ.items() if name != "PYTHONPATH"}  # it would count as there
+        done = subprocess.run(command, cwd=self.folder, text=True, check=False, capture_output=True, env=settings)
         print(f"{time.perf_counter() - began:6.2f} s  pip install {Path(arguments[-1]).name}")
         assert done.returncode == 0, done.stdout + done.stderr
 

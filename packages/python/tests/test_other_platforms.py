@@ -10,6 +10,7 @@ import os
 import shutil
 import struct
 import subprocess
+import sys
 import xml.etree.ElementTree as ET
 import zipfile
 from collections.abc import Sequence
@@ -28,13 +29,14 @@ from laconic_wheel.contents import LIBRARIES, PROGRAMS
 from laconic_wheel.platforms import PLATFORMS
 
 WHEELS = Path(os.environ.get("LACONIC_WHEELS", PROJECT / "build-fmu-all" / "dist"))
-CROSS = WHEELS.parent / "cross" / "bin" / "python"
+CROSS = Path(os.environ.get("LACONIC_CROSS_PYTHON", WHEELS.parent / "cross" / "bin" / "python"))
 ARM_ROOT = Path(os.environ.get("LACONIC_ARM_ROOT", "/usr/aarch64-linux-gnu"))
 SCENE = "paper_three_wheel_free"
 SHOWN = ("nu_rad_per_s[1]", "nu_rad_per_s[2]", "nu_rad_per_s[3]", "x_m", "y_m", "heading_rad", "wheel_angle_rad[1]")
 MAGIC = {".so": b"\x7fELF", ".dll": b"MZ", ".dylib": b"\xcf\xfa\xed\xfe"}
 FMU_BINARIES = {"x86_64-windows": "win64/Laconic.dll", "aarch64-linux": "aarch64-linux/Laconic.so",
-                "x86_64-linux": "linux64/Laconic.so"}
+                "x86_64-linux": "linux64/Laconic.so", "x86_64-darwin": "darwin64/Laconic.dylib",
+                "aarch64-darwin": "aarch64-darwin/Laconic.dylib"}
 
 
 if not (CROSS.exists() and any(WHEELS.glob("laconic-*.whl"))):
@@ -49,9 +51,12 @@ class Runner:
     fmu: str
     command: tuple[str, ...]
     ending: str = ""
+    system: str = "linux"  # that runs it where no command is needed
 
     def lacks(self) -> str:
         """What is not here of what it takes."""
+        if not self.command and sys.platform != self.system:
+            return f"nothing here runs {self.wheel}: of its wheel and its FMU only the form is checked"
         if self.command and not shutil.which(self.command[0]):
             return f"{self.command[0]} is not installed"
         if "-L" in self.command and not (ARM_ROOT / "lib").exists():
@@ -61,7 +66,9 @@ class Runner:
 
 RUNNERS = (Runner("linux-x86_64", "x86_64-linux", ()), Runner("windows-x86_64", "x86_64-windows", ("wine",), ".exe"),
            Runner("linux-aarch64", "aarch64-linux", ("qemu-aarch64-static", "-L", str(ARM_ROOT))),
-           Runner("musl-x86_64", "", ("/lib/ld-musl-x86_64.so.1",)))
+           Runner("musl-x86_64", "", ("/lib/ld-musl-x86_64.so.1",)),
+           Runner("macos-x86_64", "x86_64-darwin", (), system="darwin"),
+           Runner("macos-arm64", "aarch64-darwin", (), system="darwin"))
 
 
 def wheel_of(platform: str) -> zipfile.ZipFile:
