@@ -43,7 +43,7 @@ class Environment:
         began = time.perf_counter()
         command = [str(self.bin / "python"), "-m", "pip", "--disable-pip-version-check", "install", "-q",
                    "--no-compile", *arguments]
-        settings = {name: value for name, value in os.environ.items() if name != "PYTHONPATH"}  # it would count as there
+        settings = {name: value for name, value in os.environ.items() if name != "PYTHONPATH"}  # is not installed here
         done = subprocess.run(command, cwd=self.folder, text=True, check=False, capture_output=True, env=settings)
         print(f"{time.perf_counter() - began:6.2f} s  pip install {Path(arguments[-1]).name}")
         assert done.returncode == 0, done.stdout + done.stderr
