@@ -59,6 +59,27 @@ def test_the_readmes_example_prints_what_the_readme_says(tmp_path):
     assert node(script, tmp_path) == output
 
 
+WRONG = """
+const wrong: number = robot.outputs().heading_rad;
+// @ts-expect-error: there is no such kind
+laconic.robot({ vehicle: { mass_kg: 1, yaw_inertia_kgm2: 1, wheel_radius_m: 1, wheel: [{ kind: "round" }] } });
+// @ts-expect-error: the length of a step is a number
+robot.run("200");
+"""
+
+
+@pytest.mark.skipif(shutil.which("tsc") is None, reason="needs tsc (Debian: node-typescript)")
+def test_its_types_take_the_readmes_example_and_refuse_what_is_wrong(tmp_path):
+    unpack(tmp_path / "node_modules/laconic-robots")
+    (tmp_path / "package.json").write_text('{"type": "module"}', encoding="utf-8")
+    example = re.findall(r"```js\n(.*?)```", SAMPLE.read_text(encoding="utf-8"), re.DOTALL)[0]
+    (tmp_path / "user.ts").write_text(example + WRONG, encoding="utf-8")
+    done = subprocess.run(["tsc", "--noEmit", "--strict", "--target", "es2022", "--module", "node16",
+                           "--moduleResolution", "node16", "--lib", "es2022,dom", "user.ts"],
+                          cwd=tmp_path, capture_output=True, text=True, check=False)
+    assert (done.returncode, done.stdout) == (0, "")
+
+
 RUN = """
 import { readFileSync } from "node:fs";
 import { load } from "laconic-robots";

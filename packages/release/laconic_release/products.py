@@ -15,6 +15,7 @@ from laconic_wheel.licences import compiler_parts
 from laconic_wheel.platforms import PLATFORMS
 
 IN_EVERY_FMU = ("fmi-headers", *compiler_parts())
+FOR_DEVELOPERS = ("bench", "cdef", "cortex_m", "tests")  # folders of core_c that a user's build does not take
 NODE_FMU = "LaconicNode"
 
 
@@ -56,9 +57,8 @@ def of_c(tree: Tree, facts: Facts, build: Path) -> list[Product]:
         return archives.zip_of(archives.under(two, files | readmes.of_two_files(tree, facts)), tree.epoch)
 
     def core_files() -> archives.Files:
-        inside = tuple(f"core_c/{name}" for name in ("CMakeLists.txt", "cmake/", "include/", "src/"))
         own = {name.removeprefix("core_c/"): file for name, file in tree.read("core_c/").items()
-               if name.startswith(inside)}
+               if name.split("/")[1] not in FOR_DEVELOPERS}
         return archives.under(core, own | readmes.of_core(tree, facts))
 
     text = "C with CMake: find_package(laconic) after `cmake --install`, add_subdirectory or FetchContent"
