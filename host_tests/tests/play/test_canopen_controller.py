@@ -198,3 +198,25 @@ def test_four_wheels_are_four_nodes(tmp_path) -> None:
             node.sdo["Target velocity"].raw = 10000
         played.step(2000)
         assert [node.sdo["Velocity actual value"].raw for node in nodes] == pytest.approx([10000] * 4, abs=200)
+
+
+def test_a_client_that_wants_blocks_is_told_and_falls_back_to_segments(vehicle: Played) -> None:
+    """The abort of a server without block transfer (CiA 301), after which its segments carry the same bytes."""
+    node = vehicle.node(1)
+    name = node.sdo["Manufacturer device name"].raw
+    assert len(name) > 4  # more than an expedited transfer holds
+
+    def read() -> bytes:
+        for block in (True, False):
+            try:
+                with node.sdo["Manufacturer device name"].open("rb", buffering=0, block_transfer=block) as stream:
+                    return bytes(stream.read())
+            except canopen.SdoAbortedError as refused:
+                assert block and refused.code == 0x05040001
+        raise AssertionError("segments are refused, too")
+
+    assert read() == name.encode("ascii")
+    with pytest.raises(canopen.SdoAbortedError, match="0x05040001"):
+        node.sdo["Target velocity"].open("wb", size=4, block_transfer=True)
+    node.sdo["Target velocity"].raw = 7
+    assert node.sdo["Target velocity"].raw == 7
