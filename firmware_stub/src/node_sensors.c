@@ -27,6 +27,7 @@ uint8_t laconic_node_encoder_from(const laconic_node *node, int32_t wheel) {
 }
 
 void laconic_node_publish_sensors(laconic_node *node, laconic_sensor_outputs *sensed) {
+    if (((node->send & SENDS_OF_SENSORS) | (node->raw_output.send & RAW_OF_SENSORS)) == 0) return; /* as most do */
     node->angle_group = 0;
     node->encoder_wheel = laconic_node_encoder_from(node, 0);
     if (node->send & LACONIC_NODE_SEND_WHEEL_ANGLE && node->plant.model.wheel_count > 0)
