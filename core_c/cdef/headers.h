@@ -1,4 +1,5 @@
 /* The headers whose functions Python calls. */
 #include "laconic/laconic.h"
 
+#include "laconic/batch.h"
 #include "laconic/derivatives.h"

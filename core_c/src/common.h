@@ -24,7 +24,24 @@
 
 typedef laconic_real real;
 
-#define R(x) ((real)(x)) /* a literal in the scalar type, converted by the compiler */
+/* The text of the methods stands for one vehicle, and in core_c/batch for many side by side, one in each lane. What it
+ * does by conditions it therefore says by these words. Here each is the plain operation, and costs what that costs. */
+#ifndef LACONIC_LANES
+typedef bool verdict;    /* the result of a comparison                                    */
+#define R(x) ((real)(x)) /* a literal in the scalar type, converted by the compiler       */
+#define ZERO R(0)        /* of a table                                                    */
+#define NOT(a) (!(a))
+#define BOTH(a, b) ((a) && (b))
+#define ALL(a) (a)                  /* in every lane                                                 */
+#define ANY(a) (a)                  /* in some lane                                                  */
+#define WHERE(which, a, b) (a)      /* a where it holds, else b; tested before by ANY(which)         */
+#define KNOWN(value, which) (value) /* what ALL(which) was found to be                               */
+#define OR_ELSE(before, now) (now)  /* either holds; tested before by ALL(before)                    */
+/* Steps seldom come here, and lanes never do: a lane of which that is not so has its number become NaN and takes the
+ * step by itself. The number must be one on which the displacement of the step depends. */
+#define RARELY(condition, number) (condition)
+#define USUALLY(condition, number) (condition)
+#endif
 
 /* The core is also C++, in which one file of all (packages/c) may be compiled: C++ spells these two otherwise. */
 #ifdef __cplusplus
@@ -58,6 +75,7 @@ typedef laconic_real real;
 #define RARE_AND_OPAQUE RARE
 #endif
 
+#ifndef LACONIC_LANES
 /* |x| in one instruction, which compilers do not make of x < 0 ? -x : x, since that keeps the sign of zero. */
 static inline real magnitude(real x) {
 #if defined(__GNUC__) && defined(LACONIC_SINGLE)
@@ -70,8 +88,9 @@ static inline real magnitude(real x) {
 }
 
 static inline real cut(real x, real limit) { return x > limit ? limit : (x < -limit ? -limit : x); }
+#endif
 
-static inline bool is_finite(real x) { return magnitude(x) <= LACONIC_REAL_MAX; /* false for NaN too */ }
+static inline verdict is_finite(real x) { return magnitude(x) <= LACONIC_REAL_MAX; /* false for NaN too */ }
 
 /* Beyond it neighbouring angles differ by more than the smallest angle that counts, so the direction is not known. */
 #define LARGEST_ANGLE (LACONIC_SMALLEST_ROLLER_SINE / LACONIC_EPSILON)

@@ -19,7 +19,7 @@ RARE_AND_OPAQUE half_angle large_half_angle(real z, real along, real across) {
     half_angle a;
     real s, c = R(1);
     int doublings = 0;
-    for (; magnitude(z) > TANGENT_SMALL && doublings < LARGEST_DOUBLINGS; z *= R(0.25)) doublings++;
+    for (; ALL(magnitude(z) > TANGENT_SMALL) && doublings < LARGEST_DOUBLINGS; z *= R(0.25)) doublings++;
     s = poly_tangent(z);
     for (; doublings > 0; doublings--) {
         const real zss = z * s * s, norm = R(1) / (c * c + magnitude(zss));
@@ -37,7 +37,7 @@ RARE_AND_OPAQUE half_angle large_half_angle(real z, real along, real across) {
 RARE_AND_OPAQUE vector length_kept(real zeta_x, real zeta_y, real zeta_z, vector delta) {
     const vector zeta = {zeta_x, zeta_y, zeta_z}, end = plus(zeta, delta);
     const real excess = dot(delta, plus(zeta, end)), end_square = square(end);
-    if (!(end_square > R(0))) return delta;
+    if (!ALL(end_square > R(0))) return delta;
     return minus(delta, scaled(R(0.5) * excess / end_square, end));
 }
 
@@ -48,8 +48,8 @@ INLINE half_angle half_angle_after(const laconic_model *m, real half_step, vecto
     const real along = half_step * dot(vec(m->nu_of_zeta[2]), zeta);
     const real across = half_step * dot(vec(m->spin_gain), zeta);
     const real curve = half_step * dot(vec(m->spin_curve), zeta);
-    const real z = along * curve - across * across;
-    if (magnitude(z) <= TANGENT_SMALL) {
+    real z = along * curve - across * across;
+    if (USUALLY(magnitude(z) <= TANGENT_SMALL, &z)) {
         const real tangent = poly_tangent(z);
         const half_angle a = {along * tangent, R(1) - across * tangent};
         return a;
@@ -63,11 +63,11 @@ INLINE vector free_flow(const laconic_model *m, real half_step, vector zeta) {
     const half_angle a = half_angle_after(m, half_step, zeta);
     const real aside = m->gyro_square * (a.numerator * a.numerator), ahead = a.denominator * a.denominator;
     const real factor = R(2) * a.numerator / (ahead + aside);
-    const vector delta =
+    vector delta =
         scaled(factor, plus(scaled(a.denominator, zeta_cross_w), scaled(a.numerator, cross(zeta_cross_w, w))));
     /* tan²(ψ/2) is 1/16 at ψ = 0.49: up to there |δ| is at most half of |ζ|, and rounding δ costs less than rounding
      * ζ⁺. */
-    return aside > R(0.0625) * ahead ? length_kept(zeta.x, zeta.y, zeta.z, delta) : delta;
+    return RARELY(aside > R(0.0625) * ahead, &delta.x) ? length_kept(zeta.x, zeta.y, zeta.z, delta) : delta;
 }
 
 /* The exact increment under damping and forcing, without the gyroscopic term. */

@@ -50,9 +50,9 @@ RARE increment varying_stages(const laconic_model *m, real h, vector z1, const l
 static laconic_status rk4_step(const laconic_model *model, const laconic_integrator *integrator, laconic_state *state,
                                const laconic_forcing_samples *samples) {
     const real h = integrator->step_s;
-    const vector zeta = zeta_of(state);
+    vector zeta = zeta_of(state);
     increment by;
-    if (beyond_rotation(model, integrator, zeta)) return LACONIC_STEP_BEYOND_GYROSCOPIC_LIMIT;
+    if (RARELY(beyond_rotation(model, integrator, zeta), &zeta.x)) return LACONIC_STEP_BEYOND_GYROSCOPIC_LIMIT;
     by = constant_over(samples) ? held_stages(model, h, zeta, vec(samples->start->constant))
                                 : varying_stages(model, h, zeta, &state->heading, samples);
     return advance_if_passive(state, model, h, samples, zeta, by);

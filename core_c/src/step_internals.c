@@ -18,14 +18,14 @@ static real work(vector start, vector middle, vector end, const increment *by) {
     return dot(mean, by->mean) + (R(1) / R(12)) * dot(change, by->slope);
 }
 
-bool laconic_growth_is_forced(const laconic_model *model, const laconic_state *state, real step_s,
-                              const laconic_forcing_samples *samples, const increment *by) {
+verdict laconic_growth_is_forced(const laconic_model *model, const laconic_state *state, real step_s,
+                                 const laconic_forcing_samples *samples, const increment *by) {
     const vector zeta = zeta_of(state);
     const laconic_heading *heading = &state->heading;
     const real yaw_change = step_s * dot(vec(model->yaw_rate_of_zeta), by->mean);
     const laconic_forcing *const forcing[3] = {samples->start, samples->middle, samples->end};
     vector b[3];
-    for (int i = 0; i < 3; i++) b[i] = forcing_after_yaw(forcing[i], heading, R(0.5) * (real)i * yaw_change);
+    for (int i = 0; i < 3; i++) b[i] = forcing_after_yaw(forcing[i], heading, R(0.5) * R(i) * yaw_change);
     const real before = square(zeta), gain = R(2) * dot(zeta, by->delta) + square(by->delta);
     return gain - R(2) * step_s * work(b[0], b[1], b[2], by) <= ENERGY_TOLERANCE * (R(2) * before + gain);
 }

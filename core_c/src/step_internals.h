@@ -66,7 +66,7 @@ static inline vector zeta_rate(const laconic_model *m, vector z, vector b) {
 }
 
 /* |g·ζ| is beyond the gyroscopic limit of an explicit method. */
-static inline bool beyond_rotation(const laconic_model *m, const laconic_integrator *integrator, vector zeta) {
+static inline verdict beyond_rotation(const laconic_model *m, const laconic_integrator *integrator, vector zeta) {
     return magnitude(dot(vec(m->nu_of_zeta[2]), zeta)) > integrator->gyro_limit;
 }
 
@@ -115,7 +115,7 @@ static inline void add_slope(laconic_forcing *forcing, const laconic_model *m) {
 }
 
 /* An input of 0 costs no operations. NaN counts as acting, so that the step is refused. */
-static inline bool acts(real a, real b, real c) { return !(a == R(0) && b == R(0) && c == R(0)); }
+static inline verdict acts(real a, real b, real c) { return NOT(BOTH(BOTH(a == R(0), b == R(0)), c == R(0))); }
 
 /* A step does not use the point of a force of 0, but that must be finite, too. NaN or infinity where it is not. */
 static inline real world_force_point(const laconic_input *input) {
@@ -125,12 +125,14 @@ static inline real world_force_point(const laconic_input *input) {
 static inline void forcing_of(laconic_forcing *forcing, const laconic_model *model, const laconic_input *input) {
     vector b = none;
     if (LACONIC_WITH_VOLTAGE || LACONIC_WITH_AXLE_TORQUE) b = b_of_torques(model, input);
-    if (LACONIC_WITH_BODY_WRENCH && acts(input->body_force_N[0], input->body_force_N[1], input->body_moment_Nm))
-        b = plus(
-            b, b_of_wrench(model, wrench_with(input->body_force_N[0], input->body_force_N[1], input->body_moment_Nm)));
+    if (LACONIC_WITH_BODY_WRENCH && ANY(acts(input->body_force_N[0], input->body_force_N[1], input->body_moment_Nm)))
+        b = WHERE(acts(input->body_force_N[0], input->body_force_N[1], input->body_moment_Nm),
+                  plus(b, b_of_wrench(model, wrench_with(input->body_force_N[0], input->body_force_N[1],
+                                                         input->body_moment_Nm))),
+                  b);
     store(forcing->constant, b);
-    forcing->rotates =
-        LACONIC_WITH_WORLD_FORCE && (acts(input->world_force_N[0], input->world_force_N[1], R(0)) || sloped(model));
+    forcing->rotates = LACONIC_WITH_WORLD_FORCE &&
+                       (ANY(acts(input->world_force_N[0], input->world_force_N[1], R(0))) || sloped(model));
     if (LACONIC_WITH_WORLD_FORCE && forcing->rotates) add_world_force(forcing, model, input);
     if (LACONIC_WITH_WORLD_FORCE && sloped(model)) add_slope(forcing, model);
 }
@@ -173,24 +175,26 @@ typedef struct increment {
 #define ENERGY_TOLERANCE R(0.0009765625)
 
 /* Decides as `passive`, with b as it varies over the step. */
-bool laconic_growth_is_forced(const laconic_model *model, const laconic_state *state, real step_s,
-                              const laconic_forcing_samples *samples, const increment *by);
+verdict laconic_growth_is_forced(const laconic_model *model, const laconic_state *state, real step_s,
+                                 const laconic_forcing_samples *samples, const increment *by);
 
 /* Does a step gain no more energy than the forcing supplies? Exactly, |ζ⁺|² − |ζ|² = 2∫(b·ζ − ζ·diag(r)ζ)dt <= 2∫ b·ζ
  * dt. Tested first with b at the start. False for NaN, and in free motion for infinity. */
-INLINE bool passive(const laconic_model *model, const laconic_state *state, real step_s,
-                    const laconic_forcing_samples *samples, vector zeta, increment by) {
+INLINE verdict passive(const laconic_model *model, const laconic_state *state, real step_s,
+                       const laconic_forcing_samples *samples, vector zeta, increment by) {
     const real before = square(zeta), after = square(plus(zeta, by.delta));
     const real excess = (R(1) - ENERGY_TOLERANCE) * after - (R(1) + ENERGY_TOLERANCE) * before;
-    if (excess <= R(0)) return true;
-    if (excess <= R(2) * step_s * dot(vec(samples->start->constant), by.mean)) return true;
-    if (constant_over(samples)) return false;
-    return laconic_growth_is_forced(model, state, step_s, samples, &by);
+    const verdict calm = excess <= R(0);
+    if (ALL(calm)) return KNOWN(true, calm);
+    const verdict driven = OR_ELSE(calm, excess <= R(2) * step_s * dot(vec(samples->start->constant), by.mean));
+    if (ALL(driven)) return KNOWN(true, driven);
+    if (constant_over(samples)) return KNOWN(false, driven);
+    return OR_ELSE(driven, laconic_growth_is_forced(model, state, step_s, samples, &by));
 }
 
 /* The status of a step that is not passive. */
 static inline laconic_status not_passive(increment by) {
-    return is_finite(size(by.delta)) ? LACONIC_STEP_GAINS_ENERGY : LACONIC_STEP_SINGULAR;
+    return ALL(is_finite(size(by.delta))) ? LACONIC_STEP_GAINS_ENERGY : LACONIC_STEP_SINGULAR;
 }
 
 /* ---------------------------------------------------------------------- the next state -- */
@@ -202,8 +206,8 @@ typedef struct pose_change { /* over one step */
 
 /* sinc α and ½ j₁(α), with α half the yaw of the step. */
 INLINE void chord_factors(real *sinc, real *half_j1, real alpha) {
-    const real z = alpha * alpha;
-    if (z <= CHORD_SMALL) {
+    real z = alpha * alpha;
+    if (USUALLY(z <= CHORD_SMALL, &z)) {
         *sinc = poly_sinc(z);
         *half_j1 = R(0.5) * alpha * poly_j1(z);
     } else {
@@ -256,14 +260,15 @@ static inline void flush_decayed(laconic_sum sums[3]) {
 }
 
 /* Precondition of all that follows in a step: as model and step are bounded, it is then finite. */
-static inline bool in_range(vector zeta, vector delta) {
+static inline verdict in_range(vector zeta, vector delta) {
     return square(zeta) + square(plus(zeta, delta)) <= LARGEST_SPEED * LARGEST_SPEED;
 }
 
 /* Takes the step, or refuses and leaves the state as it was. */
 INLINE laconic_status accept_step(laconic_state *state, vector delta, vector path, pose_change moved) {
-    if (!(magnitude(moved.yaw_change_rad) + magnitude(moved.along_m) + magnitude(moved.across_m) <
-          LARGEST_YAW_CHANGE_RAD))
+    if (!USUALLY(magnitude(moved.yaw_change_rad) + magnitude(moved.along_m) + magnitude(moved.across_m) <
+                     LARGEST_YAW_CHANGE_RAD,
+                 &moved.along_m))
         return LACONIC_OVERFLOW;
     add_to_sums(state->zeta, delta);
     flush_decayed(state->zeta);
@@ -274,9 +279,9 @@ INLINE laconic_status accept_step(laconic_state *state, vector delta, vector pat
 
 INLINE laconic_status advance(laconic_state *state, const laconic_model *model, real step_s, vector zeta,
                               increment by) {
-    const vector path = scaled(step_s, by.mean);
+    vector path = scaled(step_s, by.mean);
     pose_change moved = {R(0), R(0), R(0)};
-    if (!in_range(zeta, by.delta)) return LACONIC_OVERFLOW;
+    if (!USUALLY(in_range(zeta, by.delta), &path.x)) return LACONIC_OVERFLOW;
     if (LACONIC_WITH_POSE) moved = displacement(model, path, scaled(step_s, by.slope));
     return accept_step(state, by.delta, path, moved);
 }
@@ -284,7 +289,7 @@ INLINE laconic_status advance(laconic_state *state, const laconic_model *model, 
 /* For methods whose increment may gain energy or not be finite: such a step is refused. */
 INLINE laconic_status advance_if_passive(laconic_state *state, const laconic_model *model, real step_s,
                                          const laconic_forcing_samples *samples, vector zeta, increment by) {
-    if (!passive(model, state, step_s, samples, zeta, by)) return not_passive(by);
+    if (!USUALLY(passive(model, state, step_s, samples, zeta, by), &by.mean.x)) return not_passive(by);
     return advance(state, model, step_s, zeta, by);
 }
 

@@ -18,8 +18,10 @@ typedef struct motion_series {
     real yaw[ORDER + 1]; /* g·ζ */
 } motion_series;
 
-static const real inverse[ORDER + 1] = {R(1),       R(1.0 / 2), R(1.0 / 3), R(1.0 / 4), R(1.0 / 5),
-                                        R(1.0 / 6), R(1.0 / 7), R(1.0 / 8), R(1.0 / 9)}; /* 1/(n + 1) */
+#define N(x) ((laconic_number)(x)) /* R(x) in tables */
+
+static const laconic_number inverse[ORDER + 1] = {N(1),       N(1.0 / 2), N(1.0 / 3), N(1.0 / 4), N(1.0 / 5),
+                                                  N(1.0 / 6), N(1.0 / 7), N(1.0 / 8), N(1.0 / 9)}; /* 1/(n + 1) */
 
 /* h/Λ: the yaw of a step is h/Λ times the mean of ν3 = g·ζ. */
 static inline real yaw_per_nu3(const laconic_model *m, real h) { return h / m->yaw_scale; }
@@ -40,7 +42,7 @@ static void parabola_terms(vector term[3], const real start[3], const real middl
 }
 
 static forcing_series forcing_series_of(const laconic_forcing_samples *samples, const laconic_heading *heading) {
-    static const laconic_forcing still = {{R(0), R(0), R(0)}, {R(0), R(0), R(0)}, {R(0), R(0), R(0)}, false};
+    static const laconic_forcing still = ALL_ZERO;
     const laconic_forcing *at[3] = {samples->start, samples->middle, samples->end};
     forcing_series f;
     parabola_terms(f.constant, at[0]->constant, at[1]->constant, at[2]->constant);
@@ -63,8 +65,8 @@ static void add_heading_term(forcing_series *f, const motion_series *c, real per
         cosine -= c->yaw[j] * f->heading_sine[n - 1 - j];
         sine += c->yaw[j] * f->heading_cosine[n - 1 - j];
     }
-    f->heading_cosine[n] = per_nu3 * inverse[n - 1] * cosine;
-    f->heading_sine[n] = per_nu3 * inverse[n - 1] * sine;
+    f->heading_cosine[n] = per_nu3 * R(inverse[n - 1]) * cosine;
+    f->heading_sine[n] = per_nu3 * R(inverse[n - 1]) * sine;
 }
 
 /* b0: b at the step's start. */
@@ -125,7 +127,7 @@ INLINE vector next_term(motion_series *c, vector zeta_cross_w[ORDER + 1], const 
     vector older = b;
     for (int j = 1; j < n; j++) older = plus(older, scaled(c->yaw[j], zeta_cross_w[n - j]));
     keep_term(c, zeta_cross_w, m, n, zeta);
-    return scaled(h * inverse[n], plus(older, applied(at, zeta)));
+    return scaled(h * R(inverse[n]), plus(older, applied(at, zeta)));
 }
 
 INLINE void steady_series(motion_series *c, const laconic_model *m, real h, vector start, vector b) {
@@ -150,10 +152,10 @@ RARE void varying_series(motion_series *c, const laconic_model *m, real h, vecto
 
 #define NODES 4 /* of Gauss' quadrature, exact to degree 7 */
 
-static const real node[NODES] = {R(0.069431844202973712388), R(0.33000947820757186760), R(0.66999052179242813240),
-                                 R(0.93056815579702628761)};
-static const real weight[NODES] = {R(0.17392742256872692869), R(0.32607257743127307131), R(0.32607257743127307131),
-                                   R(0.17392742256872692869)};
+static const laconic_number node[NODES] = {N(0.069431844202973712388), N(0.33000947820757186760),
+                                           N(0.66999052179242813240), N(0.93056815579702628761)};
+static const laconic_number weight[NODES] = {N(0.17392742256872692869), N(0.32607257743127307131),
+                                             N(0.32607257743127307131), N(0.17392742256872692869)};
 
 /* The polynomials: the components of ζ, and ∫ g·ζ ds, divided by s. */
 typedef real (*polynomial)(const motion_series *c, int n);
@@ -164,20 +166,20 @@ static inline real zeta_y(const motion_series *c, int n) { return c->zeta[n].y; 
 
 static inline real zeta_z(const motion_series *c, int n) { return c->zeta[n].z; }
 
-static inline real mean_yaw(const motion_series *c, int n) { return inverse[n] * c->yaw[n]; }
+static inline real mean_yaw(const motion_series *c, int n) { return R(inverse[n]) * c->yaw[n]; }
 
 /* A polynomial at all nodes in one loop, which compilers vectorise. */
 INLINE void at_nodes(real value[NODES], const motion_series *c, polynomial coefficient) {
     for (int k = 0; k < NODES; k++) value[k] = coefficient(c, ORDER);
     for (int n = ORDER - 1; n >= 0; n--)
-        for (int k = 0; k < NODES; k++) value[k] = node[k] * value[k] + coefficient(c, n);
+        for (int k = 0; k < NODES; k++) value[k] = R(node[k]) * value[k] + coefficient(c, n);
 }
 
 /* In one loop, too, where the angles are small. */
-static inline void directions_at_nodes(real cosine[NODES], real sine[NODES], const real angle[NODES]) {
+static inline void directions_at_nodes(real cosine[NODES], real sine[NODES], real angle[NODES]) {
     real sum = R(0);
     for (int k = 0; k < NODES; k++) sum += magnitude(angle[k]);
-    if (sum <= R(0.78)) { /* then each is below π/4 = 0.785, up to where the polynomials hold */
+    if (USUALLY(sum <= R(0.78), &angle[0])) { /* then each is below π/4 = 0.785, up to where the polynomials hold */
         for (int k = 0; k < NODES; k++) cosine[k] = poly_cos(angle[k] * angle[k]);
         for (int k = 0; k < NODES; k++) sine[k] = poly_sin(angle[k], angle[k] * angle[k]);
     } else {
@@ -199,10 +201,10 @@ static inline pose_change quadrature(const motion_series *c, const laconic_model
     at_nodes(y, c, zeta_y);
     at_nodes(z, c, zeta_z);
     at_nodes(angle, c, mean_yaw);
-    for (int k = 0; k < NODES; k++) angle[k] = per_nu3 * node[k] * angle[k] - R(0.5) * yaw_change;
+    for (int k = 0; k < NODES; k++) angle[k] = per_nu3 * R(node[k]) * angle[k] - R(0.5) * yaw_change;
     directions_at_nodes(cosine, sine, angle);
-    for (int k = 0; k < NODES; k++) along[k] = h * weight[k] * (forth.x * x[k] + forth.y * y[k] + forth.z * z[k]);
-    for (int k = 0; k < NODES; k++) across[k] = h * weight[k] * (left.x * x[k] + left.y * y[k] + left.z * z[k]);
+    for (int k = 0; k < NODES; k++) along[k] = h * R(weight[k]) * (forth.x * x[k] + forth.y * y[k] + forth.z * z[k]);
+    for (int k = 0; k < NODES; k++) across[k] = h * R(weight[k]) * (left.x * x[k] + left.y * y[k] + left.z * z[k]);
     for (int k = 0; k < NODES; k++) moved.along_m += cosine[k] * along[k] - sine[k] * across[k];
     for (int k = 0; k < NODES; k++) moved.across_m += sine[k] * along[k] + cosine[k] * across[k];
     return moved;
@@ -215,7 +217,7 @@ static inline increment sum_of_terms(const motion_series *c) {
     increment by = {none, none, none};
     for (int n = ORDER; n > 0; n--) {
         by.delta = plus(by.delta, c->zeta[n]);
-        by.mean = plus(by.mean, scaled(inverse[n], c->zeta[n]));
+        by.mean = plus(by.mean, scaled(R(inverse[n]), c->zeta[n]));
     }
     by.mean = plus(by.mean, c->zeta[0]);
     by.slope = by.delta;
@@ -225,18 +227,18 @@ static inline increment sum_of_terms(const motion_series *c) {
 static laconic_status taylor_8_step(const laconic_model *model, const laconic_integrator *integrator,
                                     laconic_state *state, const laconic_forcing_samples *samples) {
     const real h = integrator->step_s;
-    const vector zeta = zeta_of(state);
+    vector zeta = zeta_of(state);
     pose_change moved = {R(0), R(0), R(0)};
     increment by;
     motion_series c;
-    if (beyond_rotation(model, integrator, zeta)) return LACONIC_STEP_BEYOND_GYROSCOPIC_LIMIT;
+    if (RARELY(beyond_rotation(model, integrator, zeta), &zeta.x)) return LACONIC_STEP_BEYOND_GYROSCOPIC_LIMIT;
     if (constant_over(samples))
         steady_series(&c, model, h, zeta, vec(samples->start->constant));
     else
         varying_series(&c, model, h, zeta, samples, &state->heading);
     by = sum_of_terms(&c);
-    if (!passive(model, state, h, samples, zeta, by)) return not_passive(by);
-    if (!in_range(zeta, by.delta)) return LACONIC_OVERFLOW;
+    if (!USUALLY(passive(model, state, h, samples, zeta, by), &by.mean.x)) return not_passive(by);
+    if (!USUALLY(in_range(zeta, by.delta), &by.mean.x)) return LACONIC_OVERFLOW;
     const vector path = scaled(h, by.mean);
     if (LACONIC_WITH_POSE) moved = quadrature(&c, model, h, dot(vec(model->yaw_rate_of_zeta), path));
     return accept_step(state, by.delta, path, moved);

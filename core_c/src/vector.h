@@ -6,7 +6,7 @@
 
 typedef laconic_vector vector;
 
-static const vector none = {R(0), R(0), R(0)};
+static const vector none = {ZERO, ZERO, ZERO};
 
 static inline vector vector_of(real x, real y, real z) {
     const vector out = {x, y, z};
@@ -66,6 +66,6 @@ static inline real rows_size(const real rows[][3], int32_t count) {
 }
 
 /* Products of two such numbers, of one model or of two, stay in the range. False for NaN. */
-static inline bool fits_squared(real sum_of_sizes) { return is_finite(sum_of_sizes * sum_of_sizes); }
+static inline verdict fits_squared(real sum_of_sizes) { return is_finite(sum_of_sizes * sum_of_sizes); }
 
 #endif

@@ -224,7 +224,7 @@ void laconic_forcing_of(laconic_forcing *forcing, const laconic_model *model, co
 /* θ = 2π (turns + (fraction + 2 rest)·2⁻⁶⁴), 2⁻³² in single: wraps exactly, with the same resolution after any
  * number of turns. */
 typedef struct laconic_heading {
-    int64_t turns;
+    laconic_turns turns; /* int64_t */
     laconic_binary_angle fraction;
     laconic_real rest; /* in units of 2⁻⁶³ turn, 2⁻³¹ in single */
 } laconic_heading;

@@ -2,6 +2,7 @@
  *
  * Everything that differs between builds of the core is decided here and nowhere else:
  *   LACONIC_SINGLE         float instead of double
+ *   LACONIC_LANES          core_c/batch alone, which has its own numbers and words: for many vehicles at once
  *   LACONIC_SCENE_HEADER   a generated header that fixes the constants below for one scene
  * Plain `if` tests the constants, so compilers check also the code that they then drop. */
 #ifndef LACONIC_REAL_H
@@ -13,8 +14,8 @@
 #include <stdint.h>
 
 #ifdef LACONIC_SINGLE
-typedef float laconic_real;
-typedef uint32_t laconic_binary_angle; /* angle in units of 2^-32 turn */
+typedef float laconic_number;
+typedef uint32_t laconic_angle_number; /* angle in units of 2^-32 turn */
 #define LACONIC_REAL_NAME "single"
 #define LACONIC_EPSILON FLT_EPSILON
 #define LACONIC_REAL_MAX FLT_MAX
@@ -22,14 +23,20 @@ typedef uint32_t laconic_binary_angle; /* angle in units of 2^-32 turn */
 #define LACONIC_RANK_TOLERANCE 1e-5F       /* constraints that differ by less count as one */
 #define LACONIC_SMALLEST_ROLLER_SINE 1e-3F /* |sin γ| below it is refused */
 #else
-typedef double laconic_real;
-typedef uint64_t laconic_binary_angle; /* angle in units of 2^-64 turn */
+typedef double laconic_number;
+typedef uint64_t laconic_angle_number; /* angle in units of 2^-64 turn */
 #define LACONIC_REAL_NAME "double"
 #define LACONIC_EPSILON DBL_EPSILON
 #define LACONIC_REAL_MAX DBL_MAX
 #define LACONIC_REAL_MIN DBL_MIN
 #define LACONIC_RANK_TOLERANCE 1e-9
 #define LACONIC_SMALLEST_ROLLER_SINE 1e-6
+#endif
+
+#ifndef LACONIC_LANES /* then each number of a struct is one for each of many vehicles */
+typedef laconic_number laconic_real;
+typedef laconic_angle_number laconic_binary_angle;
+typedef int64_t laconic_turns;
 #endif
 
 #ifdef LACONIC_SCENE_HEADER

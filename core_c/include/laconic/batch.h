@@ -1,0 +1,116 @@
+/* Many vehicles side by side: each has the bits that laconic_step() gives it alone.
+ *
+ *     kinds  --place-->  batch  <--load, set_input--  one lane for each vehicle
+ *                          |
+ *                          +--run-->  rows of numbers, one number for each lane; status of each lane
+ *
+ * Row x_m holds x of lane 0, of lane 1 …, and so on. The methods' own text steps as many lanes at once as a register of
+ * the processor holds: 2, 4 or 8 doubles, twice as many floats; the width is chosen when the program runs. A lane that
+ * leaves the usual way of a step takes that step alone, as slowly as laconic_step(): one that is refused, one that yaws
+ * by more than a quarter of a radian.
+ *
+ * Memory   the caller owns it: a laconic_batch, the kinds, and one piece of laconic_batch_size() bytes. No heap.
+ * Threads  laconic_batch_run() and _observe() of different blocks may run at the same time; all else alone.
+ * Cost     docs/batch.md: a step takes about half of laconic_step() with AVX2, a quarter with AVX-512, in single
+ *          precision a quarter and a seventh. Memory: some 300 bytes for a lane, and where kinds are many 2 to 3 KB for
+ *          each kind, twice that where laconic_batch_kind is counted.
+ * Limits   ideal ground and motors without limits; held inputs. With compilers other than gcc and clang lanes step one
+ *          by one. */
+#ifndef LACONIC_BATCH_H
+#define LACONIC_BATCH_H
+
+#include "laconic/laconic.h"
+
+#ifdef __cplusplus
+extern "C" {
+#endif
+
+/* What many lanes have in common: a vehicle with its method and step. */
+typedef struct laconic_batch_kind {
+    laconic_model model;
+    laconic_integrator integrator;
+} laconic_batch_kind;
+
+/* Refuses as laconic_prepare and laconic_integrator_prepare do, and METHOD_WITHOUT_FRICTION where the vehicle has
+ * friction or a drive. */
+laconic_status laconic_batch_kind_of(laconic_batch_kind *kind, const laconic_vehicle *vehicle,
+                                     const laconic_method *method, laconic_real step_s, laconic_refusal *why);
+
+/* How large a batch is. */
+typedef struct laconic_batch_shape {
+    int32_t lane_count;  /* 1 … 2²⁸                                                       */
+    int32_t kind_count;  /* 1 … lane_count                                                */
+    int32_t wheel_count; /* of the kind with most wheels, 0 … LACONIC_MAX_WHEELS          */
+    int32_t width_bytes; /* of a register: 64, 32, 16; 1: lanes one by one; 0: the widest */
+} laconic_batch_shape;
+
+/* The width as given, 0 where this processor or this build lacks it; of 0 the widest that they have. */
+int32_t laconic_batch_width(int32_t width_bytes);
+
+/* Read what is documented here; laconic_batch_place() sets all of it. */
+typedef struct laconic_batch {
+    laconic_batch_shape shape; /* width_bytes is the one that was chosen              */
+    int32_t block_count;       /* what laconic_batch_run() counts by                  */
+    size_t row_bytes;          /* from a row to the next                              */
+    unsigned char *rows;
+    int32_t *status;                 /* of each lane after a run: OK, or why its next step was refused */
+    uint64_t *missed;                /* steps of each lane since it was loaded that it did not take     */
+    const laconic_batch_kind *kinds; /* the caller's, who keeps them while the batch is used */
+    int32_t *kind_of;                /* of each lane, the batch's own copy                  */
+    int32_t *order;                  /* lanes in the order of the blocks                    */
+    struct laconic_batch_block *blocks;
+    const struct lanes_width *width; /* NULL: one by one                                    */
+} laconic_batch;
+
+/* Bytes of memory that laconic_batch_place() needs on this processor; 0 where the shape is out of bounds. */
+size_t laconic_batch_size(const laconic_batch_shape *shape);
+
+/* Places a batch in memory of laconic_batch_size() bytes that begins at a multiple of 64. All lanes are at rest at the
+ * origin without input. kind_of: the index of each lane's kind; NULL: all are of kind 0. Returns false, and changes
+ * nothing, where the shape is out of bounds, the memory not aligned, a lane of no kind, or a kind has more wheels than
+ * the shape. O(n log n) for n lanes. */
+bool laconic_batch_place(laconic_batch *batch, void *memory, const laconic_batch_shape *shape,
+                         const laconic_batch_kind *kinds, const int32_t *kind_of);
+
+/* A lane's state and input, to and from the structs of laconic.h, bit by bit; what is for wheels that the lane's
+ * vehicle lacks stays as it was. Loading makes the lane's status OK and `missed` 0. Precondition: 0 <= lane <
+ * lane_count. */
+void laconic_batch_load(laconic_batch *batch, int32_t lane, const laconic_state *state);
+void laconic_batch_store(const laconic_batch *batch, int32_t lane, laconic_state *state);
+void laconic_batch_set_input(laconic_batch *batch, int32_t lane, const laconic_input *input);
+void laconic_batch_input(const laconic_batch *batch, int32_t lane, laconic_input *input);
+
+/* Rows of inputs, which programs may write themselves, and of outputs, which they read: lane_count numbers, in the units
+ * of laconic_input. `wheel`, from 0, counts for the first two alone. NULL for a row that there is not. */
+typedef enum laconic_batch_row {
+    LACONIC_BATCH_VOLTAGE,
+    LACONIC_BATCH_AXLE_TORQUE,
+    LACONIC_BATCH_BODY_FORCE_X,
+    LACONIC_BATCH_BODY_FORCE_Y,
+    LACONIC_BATCH_BODY_MOMENT,
+    LACONIC_BATCH_WORLD_FORCE_X,
+    LACONIC_BATCH_WORLD_FORCE_Y,
+    LACONIC_BATCH_WORLD_FORCE_POINT_X,
+    LACONIC_BATCH_WORLD_FORCE_POINT_Y,
+    LACONIC_BATCH_X, /* x and y of S [m], always those of the state                       */
+    LACONIC_BATCH_Y,
+    LACONIC_BATCH_HEADING, /* unwrapped [rad]; this and the next by laconic_batch_observe()         */
+    LACONIC_BATCH_NU_1,    /* ν [rad/s]                                                   */
+    LACONIC_BATCH_NU_2,
+    LACONIC_BATCH_NU_3,
+    LACONIC_BATCH_ROW_COUNT
+} laconic_batch_row;
+laconic_real *laconic_batch_row_of(const laconic_batch *batch, laconic_batch_row row, int32_t wheel);
+
+/* Takes `steps` steps of all lanes of some blocks with the inputs held, as laconic_run() does of one: a lane stops at
+ * the first step that is refused, as it was before it, and the others go on. `status` and `missed` tell of each lane.
+ * Returns how many lanes were refused. Precondition: 0 <= first_block, first_block + blocks <= block_count. */
+int32_t laconic_batch_run(laconic_batch *batch, int32_t first_block, int32_t blocks, uint64_t steps);
+
+/* Sets heading and ν of all lanes of some blocks, as laconic_position() and laconic_nu() do. */
+void laconic_batch_observe(laconic_batch *batch, int32_t first_block, int32_t blocks);
+
+#ifdef __cplusplus
+}
+#endif
+#endif
