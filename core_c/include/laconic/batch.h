@@ -80,8 +80,8 @@ void laconic_batch_store(const laconic_batch *batch, int32_t lane, laconic_state
 void laconic_batch_set_input(laconic_batch *batch, int32_t lane, const laconic_input *input);
 void laconic_batch_input(const laconic_batch *batch, int32_t lane, laconic_input *input);
 
-/* Rows of inputs, which programs may write themselves, and of outputs, which they read: lane_count numbers, in the units
- * of laconic_input. `wheel`, from 0, counts for the first two alone. NULL for a row that there is not. */
+/* Rows of inputs, which programs may write themselves, and of outputs, which they read: lane_count numbers, in units of
+ * laconic_input. `wheel`, from 0, counts for the first two alone. NULL for a row that there is not. */
 typedef enum laconic_batch_row {
     LACONIC_BATCH_VOLTAGE,
     LACONIC_BATCH_AXLE_TORQUE,
