@@ -30,19 +30,18 @@ enum {
 #define ROW_AXLE_TORQUE(wheel) (ROW_WHEELS + 3 * (wheel) + 1)
 #define ROW_WHEEL_ANGLE_SET(wheel) (ROW_WHEELS + 3 * (wheel) + 2)
 
+/* clang-format off */
+
 /* The members of laconic_model and laconic_integrator that a step reads, in this order. */
 #define LANES_MODEL_MEMBERS(X) \
-    X(nu_of_zeta) \
-    X(gyro) \
-    X(gyro_square) \
-    X(spin_gain) \
-    X(spin_curve) \
-    X(decay_per_s) \
-    X(velocity_of_zeta) X(yaw_rate_of_zeta) X(wheel_of_zeta) X(torque_scale) X(voltage_scale) X(yaw_scale) \
-        X(slope_force_N)
+    X(nu_of_zeta) X(gyro) X(gyro_square) X(spin_gain) X(spin_curve) X(decay_per_s) X(velocity_of_zeta) \
+    X(yaw_rate_of_zeta) X(wheel_of_zeta) X(torque_scale) X(voltage_scale) X(yaw_scale) X(slope_force_N)
 #define LANES_INTEGRATOR_MEMBERS(X) X(step_s) X(decay) X(gyro_limit)
-#define LANES_CONSTANTS \
-    (9 + 3 + 1 + 3 + 3 + 3 + 6 + 3 + 3 * LACONIC_MAX_WHEELS + 1 + LACONIC_OWN_WHEELS + 1 + 2 + 1 + 81 + 1)
+
+/* clang-format on */
+
+/* How many numbers they are. */
+#define LANES_CONSTANTS (36 + 3 * LACONIC_MAX_WHEELS + LACONIC_OWN_WHEELS + 83)
 
 typedef enum lanes_method {
     LANES_RK4,
