@@ -41,7 +41,7 @@ enum {
 /* clang-format on */
 
 /* How many numbers they are. */
-#define LANES_CONSTANTS (36 + 3 * LACONIC_MAX_WHEELS + LACONIC_OWN_WHEELS + 83)
+#define LANES_CONSTANTS (35 + 3 * LACONIC_MAX_WHEELS + LACONIC_OWN_WHEELS + 83)
 
 typedef enum lanes_method {
     LANES_RK4,
