@@ -1,6 +1,6 @@
 /* Errors of a node: register, history, EMCY frames, and what the loss of the controller does. */
-#include "canopen.h"
 #include "../octets.h"
+#include "canopen.h"
 
 /* Bit of the error register by the class of the code: current, voltage, temperature, communication, the device. */
 static uint8_t register_bit(uint16_t code) {

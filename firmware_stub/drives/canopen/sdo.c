@@ -1,7 +1,7 @@
 /* The SDO server of a node: expedited and segmented up- and downloads, one at a time. A wrong request is answered with
  * an abort code and changes nothing. */
-#include "canopen.h"
 #include "../octets.h"
+#include "canopen.h"
 
 enum { DOWNLOAD_SEGMENT = 0, DOWNLOAD = 1, UPLOAD = 2, UPLOAD_SEGMENT = 3, ABORT = 4 }; /* bits 7–5 of a request */
 enum { EXPEDITED = 2, HAS_SIZE = 1, TOGGLE = 16, LAST = 1 };
