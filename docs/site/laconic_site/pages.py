@@ -23,8 +23,6 @@ GROUPS = {
                "play-moteus", "logs", "page", "release"),
     "Explanation": ("performance", "batch", "integrators", "friction", "sensors", "real-robots", "paper",
                     "architecture", "glossary"),
-    "Explanation": ("performance", "batch", "integrators", "friction", "sensors", "real-robots", "paper",
-                    "architecture", "glossary"),
     "Reference": ("reference-c", "reference-python", "reference-commands", "reference-scene", "signals",
                   "reference-fmi", "wire", "changelog"),
 }
