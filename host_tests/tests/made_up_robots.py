@@ -49,6 +49,10 @@ FOUR_WHEELS = (link("base", inertial(9.0, (0.2, 0.2, 0.3)), BOX)
                + wheel("front_left", "base", "0.2 0.2 -0.05") + wheel("front_right", "base", "0.2 -0.2 -0.05")
                + wheel("rear_left", "base", "-0.2 0.2 -0.05") + wheel("rear_right", "base", "-0.2 -0.2 -0.05"))
 
+THREE_AROUND = link("base", inertial(3.0, (0.02, 0.02, 0.03)), BOX) + "".join(
+    wheel(f"wheel_{k}", "base", f"{0.2 * np.cos(a)} {0.2 * np.sin(a)} -0.05", f"0 0 {a - np.pi / 2}")
+    for k, a in enumerate(np.radians((60, 180, 300))))
+
 
 def sums_by_mujoco(path: Path) -> tuple[float, np.ndarray, float]:
     """Mass, centre of mass in the frame of the root link, and yaw inertia about it, by MuJoCo's reading of a URDF."""

@@ -31,9 +31,10 @@ SHARED = {"radius_m": ("wheel_radius_m", "by the shapes of the wheels, unless sa
           "inertia_kgm2": ("wheel_inertia_kgm2", "about the axle, rollers included, without gear and rotor"),
           "motor_damping_Nms": ("motor_damping_Nms", "damping of the joints")}
 MOTOR = ("# The file does not tell the motors. With them, voltage_V[i] drives wheel i; their data sheet gives:",
-         "#   [vehicle.motor]", "#   resistance_ohm = …", "#   torque_constant_Nm_per_A = …", "#   "
-                                                                                              "back_emf_Vs_per_rad = …",
-         "#   gear_ratio = …")
+         "#   [vehicle.motor]", "#   resistance_ohm = …", "#   torque_constant_Nm_per_A = …",
+         "#   back_emf_Vs_per_rad = …", "#   gear_ratio = …")
+DAMPED = ("#   viscous_friction_Nms = …      # the motor_damping_Nms below, divided by gear_ratio²",
+          "# [vehicle.motor] takes the place of every motor_gain_Nm_per_V and motor_damping_Nms: take these lines out.")
 
 
 @dataclass(frozen=True)
@@ -81,8 +82,9 @@ class _Writer:
                                 "vehicle": self.vehicle()}
         slips = self.answers.friction_coefficient is not None
         if slips:
-            data["ground"] = {"friction_coefficient": self.answers.friction_coefficient}
-            self.comments["ground", "friction_coefficient"] = "said with --friction"
+            data["ground"] = self.ground_table(data["vehicle"]["wheel"])
+        else:
+            self.remark_friction()
         run = {"run": {"duration_s": DURATION_S, "step_s": FRICTION_STEP_S if slips else STEP_S}}
         data |= {"input": self.push(self.checked(data | run))} | run
         if slips:
@@ -92,6 +94,27 @@ class _Writer:
                    if why.startswith("assumption") and where[-1] != "kind"]  # of kinds, words() tells
         text = "\n".join([*self.head(), *lines_of(data, self.comments)]) + "\n"
         return Imported(self.robot.name, text, tuple(self.words()), tuple(assumed), tuple(self.remarks))
+
+    def ground_table(self, wheels: list[dict[str, Any]]) -> dict[str, float]:
+        """`[ground]`, with the dry friction of the axles; a wheel whose own is another keeps it."""
+        ground = {"friction_coefficient": float(self.answers.friction_coefficient or 0.0)}
+        self.comments["ground", "friction_coefficient"] = "said with --friction"
+        frictions = [max(_rounded(wheel.joint.friction_Nm), 0.0) for wheel in self.ground.wheels]
+        if any(frictions):
+            ground["axle_friction_Nm"] = common = max(frictions, key=frictions.count)
+            self.comments["ground", "axle_friction_Nm"] = "friction of the joints"
+            for wheel, own in zip(wheels, frictions, strict=True):
+                if own != common:
+                    wheel["axle_friction_Nm"] = own
+        return ground
+
+    def remark_friction(self) -> None:
+        """Says that the joints' dry friction is left out, as wheels have it on ground with friction alone."""
+        rubbing = [f"{wheel.name} ({wheel.joint.friction_Nm:g} N·m)" for wheel in self.ground.wheels
+                   if wheel.joint.friction_Nm > 0.0]
+        if rubbing:
+            self.remarks.append(f"friction of the joints is left out, which needs ground with friction: "
+                                f"{', '.join(rubbing)}; --friction MU takes it as axle_friction_Nm")
 
     def checked(self, data: dict[str, Any]) -> Scene:
         """The scene that the tables make; what the core refuses is BadInput, by the robot's file."""
@@ -104,6 +127,8 @@ class _Writer:
         told = [f"# {self.robot.name}, imported from {self.robot.path.name} ({self.robot.format}). The body frame is "
                 "that of link",
                 f"# {self.robot.base}; all joints are in their zero position.", *MOTOR]
+        if any(wheel.joint.damping_Nms > 0.0 for wheel in self.ground.wheels):
+            told += DAMPED
         if self.remarks:
             told += ["# Seen on the way:", *(f"#   {remark}" for remark in self.remarks)]
         return told
@@ -184,6 +209,7 @@ class _Writer:
         if not rolling.any():
             self.remarks.append("the wheels do not let the robot roll straight ahead; no inputs are given")
             return []
+        slips = "ground" in scene.vehicle  # only there have the axles their friction
         scale = scene.vehicle["mass_kg"] * ACCELERATION_M_PER_S2 / float(rolling @ rolling)
         inputs = []
         self.comments["input", "0", "signal"] = (f"assumption: these torques push ahead with about "
@@ -191,8 +217,9 @@ class _Writer:
                                                  f"for {PUSH_S:g} s")
         for index, rate in enumerate(rolling):
             if abs(rate) > 1e-9 * np.abs(rolling).max():
+                rubbing = np.sign(rate) * max(self.ground.wheels[index].joint.friction_Nm, 0.0) if slips else 0.0
                 inputs.append({"signal": f"axle_torque_Nm[{index + 1}]", "kind": "steps", "t_s": [0.0, PUSH_S],
-                               "value": [_rounded(scale * rate), 0.0]})
+                               "value": [_rounded(scale * rate + rubbing), 0.0]})
         return inputs
 
     def words(self) -> list[str]:

@@ -95,7 +95,8 @@ def _joint(path: Path, model: Any, data: Any, body: int, names: dict[int, str], 
     joint = hinges[0] if hinges else first
     name = model.joint(joint).name or names[body]
     kind = KINDS[int(model.jnt_type[joint])]
-    damping = float(model.dof_damping[int(model.jnt_dofadr[joint])])
+    at = int(model.jnt_dofadr[joint])
+    damping, friction = float(model.dof_damping[at]), float(model.dof_frictionloss[at])
     limited = bool(model.jnt_limited[joint]) and float(np.ptp(model.jnt_range[joint])) < TURNS_ROUND_RAD
     axis = back[:3, :3] @ data.xaxis[joint] if kind in (HINGE, SLIDE) else np.zeros(3)
-    return Joint(name, kind, parent, names[body], point_of(back, data.xanchor[joint]), axis, limited, damping)
+    return Joint(name, kind, parent, names[body], point_of(back, data.xanchor[joint]), axis, limited, damping, friction)

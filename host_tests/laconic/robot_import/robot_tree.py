@@ -94,6 +94,7 @@ class Joint:
     axis: Array
     is_limited: bool = False
     damping_Nms: float = 0.0
+    friction_Nm: float = 0.0  # dry
 
 
 @dataclass(frozen=True, eq=False)

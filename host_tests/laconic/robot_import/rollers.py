@@ -13,7 +13,7 @@ import numpy as np
 
 from laconic.errors import BadInput
 from laconic.robot_import.answers import Answers, answer
-from laconic.robot_import.placement import rotation_about
+from laconic.robot_import.placement import Array, rotation_about
 from laconic.robot_import.wheels import ROLLERS_AT_LEAST, FoundWheel
 
 SAME_RAD = np.radians(2.0)
@@ -35,25 +35,61 @@ def kinds_of(where: str, wheels: Sequence[FoundWheel], answers: Answers) -> list
     """One for each wheel; BadInput asks where nothing tells."""
     found = [_said(wheel, wheels, answers) or _seen(where, wheel) for wheel in wheels]
     plain = [wheel for wheel, kind in zip(wheels, found, strict=True) if kind is None]
-    if len(plain) < len(wheels) or roll_together(plain):
-        return [kind or Kind("fixed", None, "assumption: a plain wheel, as the file shows no "
-                                            "rollers", False) for kind in found]
-    names = ", ".join(wheel.name for wheel in plain)
-    raise BadInput(f"{where}: the axles of {names} do not meet in one point, and the file shows no rollers; give "
-                   "--rollers omni, "
-                   "--rollers mecanum, --rollers JOINT=DEGREES, or --rollers none with --friction for wheels that skid")
+    doubt = hindered(plain) if len(plain) == len(wheels) else ""
+    if doubt:
+        names = ", ".join(wheel.name for wheel in plain)
+        raise BadInput(f"{where}: the axles of {names} {doubt}")
+    return [kind or Kind("fixed", None, "assumption: a plain wheel, as the file shows no rollers", False)
+            for kind in found]
+
+
+def hindered(wheels: Sequence[FoundWheel]) -> str:
+    """Why such wheels, were they plain, would not drive the robot, and what to say instead; empty where they would."""
+    if not roll_together(wheels):
+        return ("do not meet in one point, and the file shows no rollers; give --rollers omni, --rollers mecanum, "
+                "--rollers JOINT=DEGREES, or --rollers none with --friction for wheels that skid")
+    if are_around_their_axles_point(wheels):
+        return ("meet in one point between the wheels, so plain ones could turn the robot on the spot alone, and the "
+                "file shows no rollers; give --rollers omni, --rollers JOINT=DEGREES, or --rollers none")
+    return ""
+
+
+def are_around_their_axles_point(wheels: Sequence[FoundWheel]) -> bool:
+    """Whether the axle lines meet in one point with wheels on all sides of it, as those of omni wheels do."""
+    if len(wheels) < 3 or (point := _meeting(wheels)) is None:
+        return False
+    off = np.array([w.hub_m[:2] - point for w in wheels])
+    angles = np.sort(np.arctan2(off[:, 1], off[:, 0]))
+    return bool(np.diff([*angles, angles[0] + 2.0 * np.pi]).max() < np.pi - MEETS_RAD)
 
 
 def roll_together(wheels: Sequence[FoundWheel]) -> bool:
     """Whether plain wheels can turn the robot without slip: their axle lines are one, or meet in one point."""
-    lines = [(np.array([-w.axle[1], w.axle[0]]), w.hub_m[:2]) for w in wheels]
-    normal, point = lines[0]
-    if all(abs(normal @ n) > np.cos(MEETS_RAD) for n, _ in lines):
-        return all(abs(normal @ (p - point)) < MEETS_M for _, p in lines)
+    normal, point = _lines(wheels)[0]
+    if _are_parallel(wheels):
+        return all(abs(normal @ (p - point)) < MEETS_M for _, p in _lines(wheels))
+    return _meeting(wheels) is not None
+
+
+def _lines(wheels: Sequence[FoundWheel]) -> list[tuple[Array, Array]]:
+    """The normal and a point of each axle's line, seen from above."""
+    return [(np.array([-w.axle[1], w.axle[0]]), w.hub_m[:2]) for w in wheels]
+
+
+def _are_parallel(wheels: Sequence[FoundWheel]) -> bool:
+    normal, _ = _lines(wheels)[0]
+    return all(abs(normal @ n) > np.cos(MEETS_RAD) for n, _ in _lines(wheels))
+
+
+def _meeting(wheels: Sequence[FoundWheel]) -> Array | None:
+    """The one point in which all axle lines meet; None where they do not, or are parallel."""
+    if _are_parallel(wheels):
+        return None
+    lines = _lines(wheels)
     rows = np.array([n for n, _ in lines])
     right = np.array([n @ p for n, p in lines])
     meeting, *_ = np.linalg.lstsq(rows, right, rcond=None)
-    return bool(np.abs(rows @ meeting - right).max() < MEETS_M)
+    return meeting if np.abs(rows @ meeting - right).max() < MEETS_M else None
 
 
 def _said(wheel: FoundWheel, wheels: Sequence[FoundWheel], answers: Answers) -> Kind | None:
@@ -66,12 +102,13 @@ def _said(wheel: FoundWheel, wheels: Sequence[FoundWheel], answers: Answers) -> 
     if said == "omni":
         return Kind("omni", None, why)
     if said == "mecanum":
-        return Kind("mecanum", _crossed(wheel, wheels), why + ", rollers as an X seen from below")
+        return Kind("mecanum", _crossed(wheel, wheels), why + ", an X seen from above")
     return _kind_of(np.radians(float(said)), why)
 
 
 def _crossed(wheel: FoundWheel, wheels: Sequence[FoundWheel]) -> float:
-    """The roller angle of the usual four: rollers that touch the ground point from corner to corner, crosswise."""
+    """The roller angle of the usual four: the rollers that touch the ground lie as the sides of a diamond around the
+    robot's middle, so those on top, which are seen from above, form an X."""
     centre = np.mean([each.hub_m[:2] for each in wheels], axis=0)
     x, y = wheel.hub_m[:2] - centre
     if len(wheels) != 4 or abs(wheel.axle[0]) > 0.01 or min(abs(x), abs(y)) < 1e-3:

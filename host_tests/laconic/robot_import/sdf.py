@@ -169,8 +169,10 @@ class _Model:
             xyz = given.find("xyz") if given is not None else None
             direction = unit_vector(where, (xyz.text or "").split() if xyz is not None else [0.0, 0.0, 1.0])
             axis = self._turn_of_axis(given, xyz, frame, back) @ direction
-        damping = finite(f"{where}: damping", [_text(given, "dynamics/damping") or 0.0], 1)[0]
-        return Joint(name, kind, parent, child, point_of(frame), axis, _is_limited(where, element, given), damping)
+        damping, friction = (finite(f"{where}: {what}", [_text(given, f"dynamics/{what}") or 0.0], 1)[0]
+                             for what in ("damping", "friction"))
+        limited = _is_limited(where, element, given)
+        return Joint(name, kind, parent, child, point_of(frame), axis, limited, damping, friction)
 
     def _turn_of_axis(self, given: Any, xyz: Any, frame: Array, back: Array) -> Array:
         """The axes that the axis is given in: the joint's, if the file does not say another."""

@@ -193,5 +193,7 @@ def _joint(path: Path, joint: Any, frames: dict[str, Array]) -> Joint:
     turned = frame[:3, :3] @ unit_vector(where, axis) if kind in (HINGE, SLIDE) else np.zeros(3)
     limit = joint.limit
     is_limited = joint.type == "revolute" and not (limit and limit.upper - limit.lower >= TURNS_ROUND_RAD)
-    damping = finite(f"{where}: damping", [joint.dynamics.damping or 0.0], 1)[0] if joint.dynamics else 0.0
-    return Joint(joint.name, kind, joint.parent, joint.child, point_of(frame), turned, is_limited, damping)
+    given = joint.dynamics
+    damping, friction = (finite(f"{where}: {what}", [(getattr(given, what) if given else None) or 0.0], 1)[0]
+                         for what in ("damping", "friction"))
+    return Joint(joint.name, kind, joint.parent, joint.child, point_of(frame), turned, is_limited, damping, friction)

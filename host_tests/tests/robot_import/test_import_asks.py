@@ -6,7 +6,7 @@ import re
 from pathlib import Path
 
 import pytest
-from made_up_robots import BOX, FOUR_WHEELS, TWO_WHEELS, inertial, joint, link, robot, wheel
+from made_up_robots import BOX, FOUR_WHEELS, THREE_AROUND, TWO_WHEELS, inertial, joint, link, robot, wheel
 
 from laconic.cli.main import run
 
@@ -48,6 +48,8 @@ WRONG: list[tuple[str, str, list[str], str]] = [
     ("axles upright", GOOD.replace("0 1 0", "0 0 1"), [], "no joint turns round on a level axle"),
     ("all steered", STEERED, [], "all wheels swivel (front)"),
     ("four across", robot(FOUR_WHEELS), [], "--rollers none with --friction"),
+    ("three around the middle", robot(THREE_AROUND), [],
+     "give --rollers omni, --rollers JOINT=DEGREES, or --rollers none"),
     ("skid without friction", robot(FOUR_WHEELS), ["--rollers", "none"], "ground.friction_coefficient"),
     ("mecanum of two", GOOD, ["--rollers", "mecanum"], "is for four wheels at the corners"),
     ("no such wheel", GOOD, ["--wheel", "lefft"], "did you mean left?"),
