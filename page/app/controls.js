@@ -22,6 +22,14 @@ const KEYS = {
   arrowright: [2, -1],
 };
 
+const FIELDS = "select, textarea, canvas:not(#stage), dialog[open] *, input:not([type=checkbox], [type=radio], [type=range])";
+const WITHOUT_ARROWS = "body, #stage, button, summary, [type=checkbox]";
+
+/** Whether an element uses a key itself: fields use all, what is no button or box the arrows. */
+function uses(/** @type {Element} */ focused, /** @type {string} */ key) {
+  return focused.matches(FIELDS) || (key.startsWith("arrow") && !focused.matches(WITHOUT_ARROWS));
+}
+
 /** The drive panel for one robot. */
 export class Controls {
   /** @param {{touched: (mode: string) => void}} owner */
@@ -137,12 +145,12 @@ export class Controls {
     return this.wanted.every((value) => value === 0) ? {} : perWheel(name, this.robot[find](...this.wanted));
   }
 
-  /** Keys drive while nothing that takes keys itself has the focus. */
+  /** Keys drive while nothing that uses them itself has the focus. */
   key(/** @type {KeyboardEvent} */ event, /** @type {boolean} */ isDown) {
     const key = event.key.toLowerCase(),
       found = KEYS[key];
-    const isHere = document.activeElement === this.scope || document.activeElement === document.body;
-    if (!found || event.ctrlKey || event.metaKey || event.altKey || (isDown && !isHere)) return;
+    if (!found || event.ctrlKey || event.metaKey || event.altKey) return;
+    if (isDown && uses(document.activeElement ?? document.body, key)) return;
     if (isDown) event.preventDefault();
     if (isDown === this.held.has(key)) return;
     isDown ? this.held.add(key) : this.held.delete(key);

@@ -132,8 +132,31 @@ def test_keys_drive_while_they_are_held(page):
     page.key(("keyUp", "a"))
 
 
-def test_keys_leave_fields_alone(page):
-    page.click("field-vehicle.mass_kg")
+@pytest.mark.parametrize("clicked", ["play", "restart", "zoom-in", "friction", "stop"])
+def test_keys_drive_after_a_click_on_what_needs_none_of_them(page, clicked):
+    page.click(clicked)
+    for key in ("w", "Up"):
+        page.key(("keyDown", key))
+        assert float(page.value("forward")) > 0, key
+        page.key(("keyUp", key))
+        assert float(page.value("forward")) == 0, key
+
+
+def test_letters_drive_after_a_click_on_a_slider_whose_arrows_stay_its_own(page):
+    page.click("[name=drive][value=velocity]")
+    page.click("turn")
+    page.key(("keyDown", "w"))
+    assert float(page.value("forward")) > 0
+    page.key(("keyUp", "w"))
+    before = float(page.value("turn"))
+    page.press("Up")
+    assert float(page.value("turn")) > before
+    assert float(page.value("forward")) == 0
+
+
+@pytest.mark.parametrize("field", ["field-vehicle.mass_kg", "speed"])
+def test_keys_leave_fields_alone(page, field):
+    page.js("document.getElementById(arguments[0]).focus()", field)
     page.press("w", "d")
     assert [float(page.value(name)) for name in DIRECTIONS] == pytest.approx([0, 0, 0])
 

@@ -26,6 +26,19 @@ def test_nothing_is_cut_off_and_every_text_has_contrast(window, width, height, s
     assert low == []
 
 
+@pytest.mark.parametrize("time", ["9.99 s", "11.50 s", "4711.50 s"])
+def test_the_clock_stays_on_one_line_on_a_phone(window, time):
+    window.open(PAGE, 390, 844, prefers_reduced_motion="reduce")
+    window.click("play")
+    height = "return document.getElementById('time').getBoundingClientRect().height"
+    window.js("document.getElementById('time').textContent = '0 s'")
+    one_line = window.js(height)
+    window.js("document.getElementById('time').textContent = arguments[0]", time)
+    assert window.js(height) == one_line
+    assert window.js("return document.documentElement.scrollWidth") <= 390
+    assert window.js(CUT_OFF) == []
+
+
 CUT_OFF = """return [...document.querySelectorAll('button, select, label, output, h1, h2, summary, dd')]
     .filter((each) => each.checkVisibility() && each.offsetWidth > 2)
     .filter((each) => each.scrollWidth > each.clientWidth + 1 && each.clientWidth > 0 && each.tagName !== 'SELECT')
