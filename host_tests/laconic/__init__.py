@@ -25,6 +25,7 @@ if TYPE_CHECKING:  # for type checkers and editors; the table below is what runs
     from laconic.core.derivatives import StepDerivatives as StepDerivatives
     from laconic.core.derivatives import StepJacobian as StepJacobian
     from laconic.core.plant import Plant as Plant
+    from laconic.core.plant import Pose as Pose
     from laconic.core.sensors import Readings as Readings
     from laconic.core.sensors import Sensors as Sensors
     from laconic.errors import BadInput as BadInput
@@ -40,13 +41,14 @@ if TYPE_CHECKING:  # for type checkers and editors; the table below is what runs
     from laconic.simulation import Trajectory as Trajectory
     from laconic.simulation import simulate as simulate
 
-__all__ = ["METHODS", "BadInput", "Core", "Linearisation", "Matrices", "Plant", "Rates", "Readings", "Refused",
-           "RunRefused", "Scene", "Sensors", "StepDerivatives", "StepJacobian", "Study", "Trajectory", "Vehicle",
-           "analyse", "build_scene", "load_core", "make_fmu", "plot", "read_scene", "scene_names", "simulate"]
+__all__ = ["METHODS", "BadInput", "Core", "Linearisation", "Matrices", "Plant", "Pose", "Rates", "Readings",
+           "Refused", "RunRefused", "Scene", "Sensors", "StepDerivatives", "StepJacobian", "Study", "Trajectory",
+           "Vehicle", "analyse", "build_scene", "load_core", "make_fmu", "plot", "read_scene", "scene_names",
+           "simulate"]
 
 _MODULES = {  # name → where it is, and as what if not by the same name
     "METHODS": "scene", "BadInput": "errors", "Core": "core", "Linearisation": "core", "Matrices": "core",
-    "Plant": "core.plant", "Rates": "core", "Readings": "core.sensors", "Refused": "errors",
+    "Plant": "core.plant", "Pose": "core.plant", "Rates": "core", "Readings": "core.sensors", "Refused": "errors",
     "RunRefused": "simulation", "Scene": "scene", "Sensors": "core.sensors",
     "StepDerivatives": "core.derivatives", "StepJacobian": "core.derivatives", "Study": "analysis.findings",
     "Trajectory": "simulation", "Vehicle": "core", "analyse": "analysis.analyse", "build_scene": "scene",

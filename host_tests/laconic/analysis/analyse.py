@@ -29,6 +29,8 @@ def analyse(scene: Scene, parts: Sequence[str] = PARTS, *, at_s: float = 0.0) ->
     Raises BadInput for an unknown part, and for a scene whose ground or drive has no such motions.
     """
     check_scene(scene)
+    if isinstance(parts, str):
+        raise BadInput(f"parts: {parts!r} is one text; give a list, such as [{GEOMETRY!r}]")
     if unknown := [part for part in parts if part not in PARTS]:
         raise BadInput(f"parts: there is no {unknown[0]!r}; {nearest_of(str(unknown[0]), PARTS)}")
     chosen = tuple(part for part in PARTS if part in parts)

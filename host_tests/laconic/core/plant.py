@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Mapping
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING, Any, NamedTuple
 
 import numpy as np
 
@@ -17,6 +17,17 @@ from laconic.errors import BadInput
 if TYPE_CHECKING:
     from laconic.core import Core
     from laconic.core.recording import Recorder
+
+
+class Pose(NamedTuple):
+    """Place and direction of a vehicle in the world."""
+
+    x_m: float                  # centre of mass
+    y_m: float
+    heading_rad: float          # not wrapped
+    heading_wrapped_rad: float  # in (−π, π]
+    origin_x_m: float           # the body frame's origin
+    origin_y_m: float
 
 
 class Plant:
@@ -149,11 +160,11 @@ class Plant:
         return self.core.numbers(nu)
 
     @property
-    def pose(self) -> Any:
-        """The laconic_pose: x_m, y_m, origin_x_m, origin_y_m, heading_rad, heading_wrapped_rad."""
+    def pose(self) -> Pose:
+        """Where the vehicle is."""
         pose = self.core.ffi.new("laconic_pose *")
         self.core.lib.laconic_pose_of(pose, self._at("model"), self._at("state"))
-        return pose
+        return Pose(pose.x_m, pose.y_m, pose.heading_rad, pose.heading_wrapped_rad, pose.origin_x_m, pose.origin_y_m)
 
     def body_velocity(self) -> tuple[np.ndarray, float]:
         """v_S in body axes [m/s], shape (2,), and the yaw rate [rad/s]."""

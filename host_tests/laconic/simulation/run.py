@@ -11,7 +11,7 @@ import numpy as np
 from laconic.core.grip import Grip
 from laconic.core.plant import Plant
 from laconic.core.recording import Recorder, needs_sensors
-from laconic.errors import BadInput, Refused
+from laconic.errors import BadInput, Refused, nearest_of
 from laconic.progress import Advance, progress_bar
 from laconic.scene import Scene, check_scene
 from laconic.scene.ground import slips
@@ -49,8 +49,15 @@ class Trajectory:
     refused: Refused | None = None  # what ended it before its time
 
     def columns_of(self, name: str) -> np.ndarray:
-        """All columns of one signal, side by side."""
-        return np.column_stack([v for k, v in self.columns.items() if k.partition("[")[0] == name])
+        """All columns of one signal, side by side; BadInput for one that is not among them."""
+        found = [column for signal, column in self.columns.items() if name in (signal, signal.partition("[")[0])]
+        if found:
+            return np.column_stack(found)
+        lengths, per_wheel = output_signals(self.scene.vehicle)
+        known = [*lengths, *per_wheel, *LENGTHS, *PER_WHEEL]
+        if name.partition("[")[0] in known:
+            raise BadInput(f"{name}: this run did not keep it; give simulate its name in signals")
+        raise BadInput(f"{name}: there is no such signal; {nearest_of(name, known)}")
 
 
 class RunRefused(Refused):

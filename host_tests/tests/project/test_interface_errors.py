@@ -27,6 +27,10 @@ def plant() -> Any:
     return core().plant(core().vehicle(ROBOT), "rk4", 0.01)
 
 
+def short_run() -> laconic.Trajectory:
+    return laconic.simulate(scene().with_run(duration_s=0.1), ["x_m", "nu_rad_per_s"])
+
+
 WRONG: list[tuple[Callable[[], Any], str]] = [
     (lambda: scene().with_run(step_s=0), "s1.toml: run.step_s: is 0; give a value above 0"),
     (lambda: scene().with_run(step_s=float("nan")), "s1.toml: run.step_s: is nan; give a finite number"),
@@ -54,6 +58,9 @@ WRONG: list[tuple[Callable[[], Any], str]] = [
     (lambda: core().plant(core().vehicle(ROBOT), None, 0.01), "method: there is no None"),
     (lambda: core().plant(core().vehicle(ROBOT), "rk4", 0.01, nu_rad_per_s=(1, 2)), "nu_rad_per_s: (1, 2) is no list"),
     (lambda: core().input([1, 2]), "input: [1, 2] is no mapping from signals to numbers"),
+    (lambda: laconic.analyse(scene(), parts="geometry"), "parts: 'geometry' is one text; give a list, such as ["),
+    (lambda: short_run().columns_of("wheel_sped"), "wheel_sped: there is no such signal; did you mean wheel_speed"),
+    (lambda: short_run().columns_of("energy_J"), "energy_J: this run did not keep it; give simulate its name"),
     (lambda: core().vehicle([1]), "vehicle: [1] is no table"),
     (lambda: core().vehicle({"mass_kg": "1"}), "vehicle.mass_kg: '1' is no number"),
     (lambda: core().vehicle({"wheel": {"x_m": 1}}), "vehicle.wheel: {'x_m': 1} is no list"),
@@ -70,6 +77,18 @@ def test_a_wrong_argument_is_refused_in_one_line_by_its_name(call: Callable[[], 
     with pytest.raises(BadInput) as refused:
         call()
     assert message in str(refused.value)
+
+
+def test_columns_of_a_signal_are_all_of_them_or_the_one_that_is_named() -> None:
+    run = short_run()
+    assert run.columns_of("nu_rad_per_s").shape == (len(run.time_s), 3)
+    assert run.columns_of("nu_rad_per_s[2]").ravel().tolist() == run.columns["nu_rad_per_s[2]"].tolist()
+
+
+def test_a_pose_shows_its_numbers() -> None:
+    pose = plant().pose
+    assert isinstance(pose, laconic.Pose)
+    assert str(pose).startswith("Pose(x_m=0.0, y_m=0.0, heading_rad=0.0, ")
 
 
 def test_numbers_of_numpy_are_numbers() -> None:
