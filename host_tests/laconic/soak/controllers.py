@@ -7,18 +7,19 @@ wheel motion after every step, bit for bit, and the drives must follow the contr
 from __future__ import annotations
 
 import importlib
+import importlib.util
 import time
 from collections.abc import Callable
 from typing import Any
 
 from laconic.errors import BadInput, LaconicError, ResultFails, nearest_of
-from laconic.extras import missing_module
 from laconic.rig.boards import BOARDS, KINDS, why_no_emulation
 from laconic.soak import StoppedEarly
 from laconic.soak._controllers.bench import bench
 from laconic.soak._controllers.cycles import Cycles
 
 CONTROLLERS = {"canopen": "by_canopen", "odrive": "by_odrive", "robomaster": "by_c620"}
+MODULES = {"canopen": "canopen", "odrive": "odrive_can"}  # in the build's environment, in no extra of the wheel
 EMULATED = "an386"  # Cortex-M4F, single precision, every protocol
 USUAL_BOARDS = ("process", EMULATED)
 STEP_S = 0.005
@@ -59,15 +60,19 @@ def chosen(board: str | None, protocol: str | None, step_s: float) -> tuple[tupl
     if where in BOARDS and (reason := why_no_emulation()):
         raise BadInput(f"--board {board}: {reason}")
     boards = USUAL_BOARDS[: 1 if why_no_emulation() else 2] if where is None else (where,)
-    return boards, tuple(CONTROLLERS) if protocol is None else (protocol,)
+    protocols = tuple(CONTROLLERS) if protocol is None else (protocol,)
+    for name in protocols:
+        module = MODULES.get(name)
+        if module is not None and importlib.util.find_spec(module) is None:
+            wanted = module.replace("_", "-")
+            raise BadInput(f"--protocol {name}: its controller is PyPI's {wanted}, which is not installed; pip install "
+                           f"{wanted}, or choose another --protocol")
+    return boards, protocols
 
 
 def run(protocol: str, board: str, cycles: int, step_s: float, advance: Callable[[float], None]) -> str:
     """One controller on one board; the verdict in a line."""
-    try:
-        controller = importlib.import_module(f"laconic.soak._controllers.{CONTROLLERS[protocol]}")
-    except ModuleNotFoundError as error:
-        raise missing_module(error) from None
+    controller = importlib.import_module(f"laconic.soak._controllers.{CONTROLLERS[protocol]}")
     counted, began = Cycles(cycles, step_s, advance), time.perf_counter()
     try:
         with bench(controller.SCENE, protocol, board, step_s) as it:

@@ -146,6 +146,13 @@ def test_lateness_of_a_process_that_plays_for_a_controller_in_another_process_is
     assert said.startswith("passed: 1") and "periods of 1 ms" in said and "commands heard" in said, said
 
 
+def test_a_controller_that_is_not_installed_is_named(monkeypatch: pytest.MonkeyPatch, capsys: Any) -> None:
+    monkeypatch.setattr("laconic.soak.controllers.MODULES", {"odrive": "no_such_drives"})
+    assert run_command(["soak", "controllers", "--board", "process"]) == 2
+    err = capsys.readouterr().err
+    assert "PyPI's no-such-drives, which is not installed; pip install" in err and err.count("\n") == 1
+
+
 @pytest.mark.parametrize("words, told", [
     ("controllers --board moon", "--board moon: there is no such board"),
     ("controllers --protocol moteus", "--protocol moteus: there is no controller of it here"),

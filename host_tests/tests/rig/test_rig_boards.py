@@ -131,6 +131,7 @@ def test_flash_ram_stack_and_instructions_are_printed_and_the_small_image_is_sma
     for name in WITH_ONE_PROTOCOL:
         assert of[name].flash < 24 * 1024 and of[name].static_ram + of[name].stack < 6 * 1024, name
     assert all(of[name].instructions["on_tick_with_step"] > 300 for name in FULL)
+    assert of["an386"].instructions["on_tick_with_step"] < 850  # without sensors nobody looks for them
 
 
 @pytest.mark.parametrize("name", [name for name, board in BOARDS.items() if board.plays_only])
