@@ -69,9 +69,7 @@ static laconic_real mobility(const laconic_plant *plant, int32_t wheel) {
     return (row[0] * row[0] + row[1] * row[1] + row[2] * row[2]) * plant->model.torque_scale;
 }
 
-/* The torque of a brake: what stops its wheel within the step against the drive, as far as the brake is strong enough.
- * `share`: brakes act on one body, so each takes its part. */
-static laconic_real brake_torque(const laconic_wheel_drive *drive, const laconic_plant *plant, int32_t wheel,
+laconic_real laconic_drive_brake(const laconic_wheel_drive *drive, const laconic_plant *plant, int32_t wheel,
                                  laconic_real speed_rad_per_s, laconic_real share) {
     const laconic_real gives = mobility(plant, wheel) * plant->integrator.step_s;
     const laconic_real most_Nm = drive->brake_Nm;
@@ -89,7 +87,7 @@ static void apply_brakes(const laconic_drives *drives, const laconic_plant *plan
     for (int32_t k = 0; k < drives->count; k++) {
         const int32_t i = drives->wheel[k];
         if (drives->drive[k].brake_Nm > 0)
-            held->axle_torque_Nm[i] += brake_torque(&drives->drive[k], plant, i, speed_rad_per_s[i], 1 / brakes);
+            held->axle_torque_Nm[i] += laconic_drive_brake(&drives->drive[k], plant, i, speed_rad_per_s[i], 1 / brakes);
     }
 }
 

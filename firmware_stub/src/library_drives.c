@@ -1,7 +1,7 @@
 /* Drives without a node, for Python. */
 #include "library_drives.h"
 
-#include "laconic_drives/drive.h"
+#include "laconic_drives/drives.h"
 
 uint32_t laconic_library_wheel_drive_size(void) { return (uint32_t)sizeof(laconic_wheel_drive); }
 
@@ -52,6 +52,17 @@ void laconic_library_wheel_drive_break(laconic_wheel_drive *drive, uint32_t faul
 void laconic_library_wheel_drive_mend(laconic_wheel_drive *drive, uint32_t faults) {
     laconic_drive_mend(drive, faults);
 }
+
+void laconic_library_wheel_drive_hold(laconic_wheel_drive *drive, bool is_held) {
+    drive->brake_Nm = is_held ? (laconic_real)LACONIC_DRIVE_HOLDS_NM : 0;
+}
+
+double laconic_library_wheel_drive_brake(const laconic_wheel_drive *drive, const void *plant, int32_t wheel,
+                                         double speed_rad_per_s, double share) {
+    return (double)laconic_drive_brake(drive, plant, wheel, (laconic_real)speed_rad_per_s, (laconic_real)share);
+}
+
+uint32_t laconic_library_plant_size(void) { return (uint32_t)sizeof(laconic_plant); }
 
 void laconic_library_wheel_drive_measured(const laconic_wheel_drive *drive, laconic_library_measured *measured) {
     const laconic_library_measured seen = {(int32_t)drive->target.mode, drive->faults,

@@ -2,6 +2,7 @@
 #ifndef LACONIC_NODE_LIBRARY_DRIVES_H
 #define LACONIC_NODE_LIBRARY_DRIVES_H
 
+#include <stdbool.h>
 #include <stdint.h>
 
 struct laconic_wheel_drive;
@@ -26,6 +27,13 @@ void laconic_library_wheel_drive_measure(struct laconic_wheel_drive *drive, doub
 void laconic_library_wheel_drive_clear(struct laconic_wheel_drive *drive);
 void laconic_library_wheel_drive_break(struct laconic_wheel_drive *drive, uint32_t faults);
 void laconic_library_wheel_drive_mend(struct laconic_wheel_drive *drive, uint32_t faults);
+/* A brake holds the wheel from now on, or lets it go. */
+void laconic_library_wheel_drive_hold(struct laconic_wheel_drive *drive, bool is_held);
+/* As laconic_drive_brake(); `plant`: a laconic_plant of the library of the core with the same scalar type, which has
+ * laconic_library_plant_size() bytes there, too. */
+double laconic_library_wheel_drive_brake(const struct laconic_wheel_drive *drive, const void *plant, int32_t wheel,
+                                         double speed_rad_per_s, double share);
+uint32_t laconic_library_plant_size(void);
 
 /* What a drive measured at the end of the last step. */
 typedef struct laconic_library_measured {

@@ -25,6 +25,11 @@ laconic_status laconic_drives_step(laconic_drives *drives, laconic_plant *plant,
 /* The next frame of the protocol; false iff there is none. */
 bool laconic_drives_next_frame(laconic_drives *drives, laconic_frame *frame);
 
+/* The torque of a brake by order at the axle of `wheel`: what stops the wheel within the step against the drive, as far
+ * as the brake is strong enough. `share`: brakes act on one body, so each takes its part, 1 over their count. */
+laconic_real laconic_drive_brake(const laconic_wheel_drive *drive, const laconic_plant *plant, int32_t wheel,
+                                 laconic_real speed_rad_per_s, laconic_real share);
+
 /* Every drive off. */
 void laconic_drives_off(laconic_drives *drives);
 

@@ -12,6 +12,7 @@ from laconic.scene import Scene
 STALL, BUS_OFF, SILENT, ERROR_FRAMES = "stall", "bus-off", "silent", "error-frames"
 ORDERS = {STALL: 1024, "encoder": 1, "temperature": 4, "overspeed": 8, "supply": 16, BUS_OFF: 256, SILENT: 512}
 OF_DRIVE = tuple(kind for kind, bit in ORDERS.items() if bit < 256)  # LACONIC_DRIVE_FAULT_…; the rest ORDER_…
+OF_WHEEL = (STALL, *OF_DRIVE)  # what concerns no bus
 KINDS = (*ORDERS, ERROR_FRAMES)
 CARRY_ERROR_FRAMES = ("virtual", "udp_multicast")
 
@@ -44,13 +45,12 @@ def drives_can_fail(settings: DriveSettings, options: PlayOptions) -> CanFail:
 
 def map_can_fail(scene: Scene, settings: DriveSettings | None, options: PlayOptions) -> CanFail:
     """A map's vehicle is one station: what concerns the bus has no wheel."""
-    why_not = dict.fromkeys(OF_DRIVE, "this map has no drives; its inputs are forces, torques or voltages")
+    why_not = dict.fromkeys(OF_WHEEL, "this map has no drives; its inputs are forces, torques or voltages")
     of_wheel: tuple[str, ...] = ()
     wheels: tuple[int, ...] = ()
     if settings is not None:
-        why_not, of_wheel = {}, OF_DRIVE
+        why_not, of_wheel = {}, OF_WHEEL
         wheels = tuple(wheel for wheel, has_drive in enumerate(settings.driven, start=1) if has_drive)
-    why_not[STALL] = "a brake acts on the drives of a protocol; give --drives instead of --dbc"
     of_whole = [BUS_OFF, SILENT, ERROR_FRAMES]
     if (why := why_no_error_frames(options)) is not None:
         why_not[ERROR_FRAMES] = why

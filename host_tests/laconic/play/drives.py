@@ -7,6 +7,7 @@ import math
 from collections.abc import Mapping
 from typing import Any
 
+from laconic.core.plant import Plant
 from laconic.errors import BadInput
 from laconic.play.settings import DriveSettings
 from laconic.rig.node_library import node_library
@@ -21,6 +22,7 @@ class WheelDrive:
     def __init__(self, lib: Any, ffi: Any, numbers: Mapping[str, float], node_id: int):
         self._lib, self.encoder_counts = lib, int(numbers["encoder_counts"])
         self.gear_ratio = numbers["gear_ratio"]
+        self.is_held = False
         self._memory = ffi.new("uint64_t[]", (lib.laconic_library_wheel_drive_size() + 7) // 8)
         self.c = ffi.cast("struct laconic_wheel_drive *", self._memory)
         whole = {key: int(value) if key in WHOLE else value for key, value in numbers.items()}
@@ -48,6 +50,15 @@ class WheelDrive:
         change = lib.laconic_library_wheel_drive_break if is_broken else lib.laconic_library_wheel_drive_mend
         change(self.c, faults)
 
+    def hold(self, *, is_held: bool) -> None:
+        """A brake holds the wheel from now on, or lets it go."""
+        self._lib.laconic_library_wheel_drive_hold(self.c, is_held)
+        self.is_held = is_held
+
+    def brake(self, plant: Any, wheel: int, speed_rad_per_s: float, share: float) -> float:
+        """The torque of the brake at the axle for the next step, after `act`; `plant`: the address of its plant."""
+        return float(self._lib.laconic_library_wheel_drive_brake(self.c, plant, wheel, speed_rad_per_s, share))
+
     def act(self, step_s: float) -> float:
         """The torque at the wheel's axle for the next step."""
         return float(self._lib.laconic_library_wheel_drive_act(self.c, step_s))
@@ -65,6 +76,7 @@ class DriveGroup:
         self.step_s, library = step_s, node_library(real)
         if not hasattr(library.lib, "laconic_library_wheel_drive_start"):
             raise BadInput("drives: this build of the node has none; build it with LACONIC_NODE_WITH_DRIVES=1")
+        self._library = library
         self.drives = {
             wheel: WheelDrive(library.lib, library.ffi, settings.of_wheel(wheel), settings.node_ids[wheel])
             for wheel, has_drive in enumerate(settings.driven) if has_drive}
@@ -78,6 +90,17 @@ class DriveGroup:
     def torques(self) -> dict[int, float]:
         """At each wheel's axle, for the next step."""
         return {wheel: drive.act(self.step_s) for wheel, drive in self.drives.items()}
+
+    def brakes(self, plant: Plant) -> dict[int, float]:
+        """Torques of the brakes that hold a wheel, for the next step."""
+        held = [wheel for wheel, drive in self.drives.items() if drive.is_held]
+        if not held:
+            return {}
+        core_ffi, ffi, speeds = plant.core.ffi, self._library.ffi, plant.wheel_speeds()
+        assert core_ffi.sizeof("laconic_plant") == self._library.lib.laconic_library_plant_size()
+        address = ffi.cast("void *", int(core_ffi.cast("uintptr_t", plant.c)))
+        return {wheel: self.drives[wheel].brake(address, wheel, float(speeds[wheel]), 1.0 / len(held))
+                for wheel in held}
 
     def measure(self, turned_rad: Any, speeds_rad_per_s: Any) -> None:
         """What the wheels did in the step just taken."""

@@ -86,6 +86,8 @@ class MapPlant:
             start = self.core.input_fields["axle_torque_Nm"][0]
             for wheel, torque_Nm in self.drives.torques().items():
                 row[start + wheel] += torque_Nm
+            for wheel, torque_Nm in self.drives.brakes(self.plant).items():
+                row[start + wheel] += torque_Nm
         self._held = self.core.input(row)
         self.sensors.run(self._held)
         if self.drives is not None:

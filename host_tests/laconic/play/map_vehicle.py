@@ -9,7 +9,7 @@ import can
 import numpy as np
 
 from laconic.errors import LaconicError, Refused, ResultFails
-from laconic.play.can_fail import BUS_OFF, ERROR_FRAMES, ORDERS
+from laconic.play.can_fail import BUS_OFF, ERROR_FRAMES, ORDERS, STALL
 from laconic.play.faults import DriveFault
 from laconic.play.loop import Lateness
 from laconic.play.map_file import REMOTE
@@ -167,7 +167,11 @@ class MapVehicle:
         if fault.wheel == 0:
             (self._faults.add if is_broken else self._faults.discard)(fault.kind)
         elif self.plant.drives is not None:
-            self.plant.drives.drives[fault.wheel - 1].break_down(ORDERS[fault.kind], is_broken=is_broken)
+            drive = self.plant.drives.drives[fault.wheel - 1]
+            if fault.kind == STALL:
+                drive.hold(is_held=is_broken)
+            else:
+                drive.break_down(ORDERS[fault.kind], is_broken=is_broken)
 
     def watchdogs(self) -> list[str]:
         """Messages that did not come in time."""

@@ -131,3 +131,22 @@ def test_signals_that_are_targets_of_drives_go_through_the_drives_c_code():
     counts = [(t, values["CountLeft"]) for t, values in states if "CountLeft" in values]
     (before_s, before), (after_s, after) = counts[-2:]
     assert abs((after - before) % 65536 - 10.0 * 4096 * (after_s - before_s)) <= 2
+
+
+def test_a_brake_by_script_holds_the_wheel_of_a_maps_drive_which_then_stalls_until_it_is_let_go():
+    codec = Codec()
+    pages = ({"Page": 0, "SpeedLeft": 600.0}, {"Page": 1, "SpeedRight": -300.0})
+
+    def commands(t: float) -> list[can.Message]:
+        return [codec.encode("DRIVE_COMMAND", Enable=True, **page) for page in pages]
+
+    judgement, controller = played("robotino2", 3.0, commands, dbc=DBC, map_path=PLAY / "transporter_drives.toml",
+                                   faults=("stall:1@1+1",))
+    assert judgement.exit_status == 0, judgement
+    wheel = {name: [(t, values[name]) for t, values in
+                    ((t, codec.decode(message)) for t, message in controller.of(WHEEL_STATE)) if name in values]
+             for name in ("SpeedLeft", "SpeedRight")}
+    rad_per_s = 2 * np.pi / 60 / 16
+    assert all(abs(speed) < 1e-3 for t, speed in wheel["SpeedLeft"] if 1.02 < t < 1.98)
+    assert all(abs(speed + 300.0 * rad_per_s) < 0.3 for t, speed in wheel["SpeedRight"] if 1.5 < t < 1.98)
+    assert max(speed for t, speed in wheel["SpeedLeft"] if t > 2.02) > 600.0 * rad_per_s / 2  # it is let go
