@@ -47,7 +47,7 @@ def results_dir(name: str) -> Path:
 
 # The target of the build that makes what is in a folder of its tree, where that is not everything.
 TARGETS = {"bin/laconic-node": "laconic_node", "lib/liblaconic_node": "laconic_node",
-           "lib/laconic_node": "laconic_node", "firmware/": "laconic_firmware"}
+           "lib/laconic_node": "laconic_node", "firmware/": "laconic_firmware", "amalgamation/": "laconic_amalgamation"}
 
 
 def built(relative: str) -> Path:

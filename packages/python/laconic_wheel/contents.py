@@ -13,6 +13,7 @@ BUILT = "laconic/_built"
 PACKAGES = {"laconic": "host_tests/laconic", "laconic_fmu": "fmu/laconic_fmu"}
 READ_BY_COMMANDS = ("modelDescription.xml", "fmu/controller/modelDescription.xml",
                     "fmu/network/node/modelDescription.xml", "firmware_stub/laconic.dbc")
+CORE = ("amalgamation/laconic.h", "amalgamation/laconic.c")
 REALS = ("double", "single")
 LIBRARIES = tuple(f"laconic_{part}{real}" for part in ("", "node_") for real in REALS)
 PROGRAMS = tuple(f"laconic-node-{real}" for real in REALS)
@@ -35,9 +36,9 @@ def project_files(project: Path) -> dict[str, Path]:
 
 
 def for_every_platform(build: Path) -> dict[str, Path]:
-    """What of a build is the same on every platform: declarations for cffi, and the FMUs."""
-    found = {f"{BUILT}/lib/{name}": build / "lib" / name for name in DECLARATIONS}
-    return found | {f"{BUILT}/fmu/{name}": build / "fmu" / name for name in FMUS}
+    """What of a build is the same on every platform: declarations for cffi, the FMUs, and the core as two files."""
+    names = [*(f"lib/{name}" for name in DECLARATIONS), *(f"fmu/{name}" for name in FMUS), *CORE]
+    return {f"{BUILT}/{name}": build / name for name in names}
 
 
 def compiled(folder: Path, library: str, programs: Iterable[str]) -> dict[str, Path]:

@@ -100,6 +100,14 @@ def test_a_command_that_needs_a_build_tree_states_so_in_one_line(installed: Envi
     assert "get the project's sources, run `cmake --workflow --preset demo`" in done.stderr
 
 
+def test_the_core_comes_as_two_files_and_is_prepared_for_one_scene_without_a_build(installed: Environment) -> None:
+    installed.run("laconic", "core")
+    for name in ("laconic.h", "laconic.c"):
+        made = (installed.folder / "laconic" / name).read_bytes()
+        assert made == (build_dir() / "amalgamation" / name).read_bytes()
+    assert "laconic_scene_model.c" in installed.run("laconic", "trim", SCENE).stdout
+
+
 def test_the_help_comes_at_once(installed: Environment) -> None:
     done = installed.run("python", "-X", "importtime", "-m", "laconic", "--help")
     assert "simulate" in done.stdout

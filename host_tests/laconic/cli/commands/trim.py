@@ -21,9 +21,9 @@ from laconic.trim import trimmed
 def command(scene: str, real: str | None, out: Path) -> None:
     """Writes the C files that make a build of the core for SCENE alone.
 
-    laconic_scene.h holds the constants that leave out what the scene does without: compile the core with
-    LACONIC_SCENE_HEADER naming it. laconic_scene_model.c holds the prepared model. `cmake -DLACONIC_SCENE=…` does all
-    of this by itself.
+    laconic_scene.h holds the constants that leave out what the scene does without: compile the core, such as the two
+    files of `laconic core`, with LACONIC_SCENE_HEADER naming it. laconic_scene_model.c holds the prepared model.
+    `cmake -DLACONIC_SCENE=…` does all of this by itself.
     """
     read = read_scene(scene)
     chosen = real or read.run.real
