@@ -5,7 +5,7 @@ from __future__ import annotations
 import re
 from pathlib import Path
 
-HEADERS = ("laconic.h", "vehicle.h", "friction.h", "sensors.h", "batch.h", "status.h", "real.h")
+HEADERS = ("laconic.h", "vehicle.h", "friction.h", "sensors.h", "batch.h", "derivatives.h", "status.h", "real.h")
 SECTION = re.compile(r"/\* -{8,} (.+?) -+ \*/")
 COMMENT = re.compile(r"/\*(.*?)\*/", re.DOTALL)
 

@@ -17,11 +17,11 @@ MADE_LATER = re.compile(r"^\.|^__pycache__$|\.egg-info$|^(build|dist)\b")  # wha
 LINK = re.compile(r"(!?\[[^\]\n]*\]\()([^)#\s]+)(#[^)\s]*)?(\))")
 GROUPS = {
     "Learn": ("tutorial",),
-    "How to": ("import", "scenes", "python", "c", "fmu", "fmu-fmpy", "fmu-simulink", "fmu-openmodelica", "fmu-dymola",
-               "fmu-casadi", "fmu-importers", "fmu-network", "rig", "rig-wiring", "rig-lockstep", "rig-free-run",
-               "rig-faults", "rig-same-bits", "rig-ports", "play", "play-canopen", "play-odrive", "play-robomaster",
-               "play-moteus", "logs", "page", "release"),
-    "Explanation": ("performance", "batch", "integrators", "friction", "sensors", "real-robots", "paper",
+    "How to": ("how-to", "import", "scenes", "python", "c", "fmu", "fmu-fmpy", "fmu-simulink", "fmu-openmodelica",
+               "fmu-dymola", "fmu-casadi", "fmu-importers", "fmu-network", "rig", "rig-wiring", "rig-lockstep",
+               "rig-free-run", "rig-faults", "rig-same-bits", "rig-ports", "play", "play-canopen", "play-odrive",
+               "play-robomaster", "play-moteus", "logs", "page", "release"),
+    "Explanation": ("performance", "batch", "derivatives", "integrators", "friction", "sensors", "real-robots", "paper",
                     "architecture", "glossary"),
     "Reference": ("reference-c", "reference-python", "reference-commands", "reference-scene", "signals",
                   "reference-fmi", "wire", "changelog"),
