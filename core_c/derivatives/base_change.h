@@ -17,6 +17,7 @@ typedef struct base_trace {
     union {
         struct {
             vector first;                          /* the increment before follow()                       */
+            vector given;                          /* of `change` what is not follow()'s */
             vector gyroscopic;                     /* the change of (g·ζ)(ζ × w) over the base step        */
             vector added;                          /* what follow() added to the increment                */
             linear_map at_start, at_end, at_added; /* gyroscopic_map there            */
@@ -40,16 +41,47 @@ typedef struct base_model_change {
 } base_model_change;
 
 typedef increment (*base_tracer)(base_trace *t, const step_point *at, int level, vector zeta, const parabola *b);
-typedef increment (*base_changer)(const base_trace *t, const step_point *at, vector zeta, const parabola *b,
-                                  const base_model_change *model);
+/* A change of b over a base step: of its start, and of its change. */
+typedef struct b_change {
+    lanes start, change;
+    bool varies; /* false: change is 0 and not set */
+} b_change;
 
-/* Twelve numbers of increment_of(): what changes in its factors adds to mean and slope. */
-static inline void add_factor_changes(increment *by, const base_trace *t, const decay_change *d) {
-    by->mean = plus(by->mean, mapped(&d->mean, t->delta));
-    by->slope = plus(by->slope, mapped(&d->slope, t->delta));
-    if (!t->varies) return;
-    by->mean = plus(by->mean, mapped(&d->mean_ramp, t->change));
-    by->slope = plus(by->slope, mapped(&d->slope_ramp, t->change));
+typedef increment_change (*base_changer)(const base_trace *t, const step_point *at, lanes zeta, const b_change *b,
+                                         const base_model_change *model);
+
+/* increment_of() along directions. */
+INLINE increment_change increment_change_of(const base_trace *t, const laconic_decay *d, lanes zeta, lanes delta,
+                                            const b_change *b, const decay_change *factors) {
+    increment_change by;
+    by.delta = delta;
+    by.mean = lanes_plus(zeta, lanes_times(vec(d->mean), delta));
+    by.slope = lanes_times(vec(d->slope), delta);
+    if (b->varies) {
+        by.mean = lanes_plus(by.mean, lanes_times(vec(d->mean_ramp), b->change));
+        by.slope = lanes_plus(by.slope, lanes_times(vec(d->slope_ramp), b->change));
+    }
+    if (factors == NULL) return by;
+    by.mean = lanes_plus(by.mean, lanes_of(mapped(&factors->mean, t->delta)));
+    by.slope = lanes_plus(by.slope, lanes_of(mapped(&factors->slope, t->delta)));
+    if (t->varies) {
+        by.mean = lanes_plus(by.mean, lanes_of(mapped(&factors->mean_ramp, t->change)));
+        by.slope = lanes_plus(by.slope, lanes_of(mapped(&factors->slope_ramp, t->change)));
+    }
+    return by;
+}
+
+/* combine() along directions. */
+INLINE increment_change combined_change(increment_change whole, increment_change first, increment_change second) {
+    const real third = R(1) / R(3);
+    const lanes delta = lanes_plus(first.delta, second.delta);
+    const lanes mean = lanes_scaled(R(0.5), lanes_plus(first.mean, second.mean));
+    increment_change by;
+    by.delta = lanes_added(delta, third, lanes_minus(delta, whole.delta));
+    by.mean = lanes_added(mean, third, lanes_minus(mean, whole.mean));
+    by.slope = lanes_plus(lanes_scaled(R(1.5), lanes_minus(second.mean, first.mean)),
+                          lanes_scaled(R(0.25), lanes_plus(first.slope, second.slope)));
+    return by;
 }
 
 /* ---------------------------------------------------------------------------------- substeps -- */
@@ -93,32 +125,37 @@ INLINE increment trace_substep(substep_trace *t, base_tracer tracer, const step_
 }
 
 /* The change of the yaw since the start of a step by a base step's mean of ζ. */
-static inline real yaw_change_along(const step_point *at, const base_model_change *model, vector zeta, vector change) {
-    real yaw = dot(vec(at->model->yaw_rate_of_zeta), change);
+static inline lane yaw_change_along(const step_point *at, const base_model_change *model, vector zeta, lanes change) {
+    lane yaw = lanes_dot(vec(at->model->yaw_rate_of_zeta), change);
     if (model != NULL) yaw += dot(model->dynamics->yaw_rate, zeta);
     return yaw;
 }
 
-/* The same along a direction: zeta and yaw_rad are the changes. */
-INLINE increment change_substep(const substep_trace *t, base_changer changer, const step_point *at,
-                                const step_direction *in, const base_model_change *model, vector *zeta, real *yaw_rad) {
-    parabola b = {in->constant, none, none, at->rotates};
-    increment by = {none, none, none};
-    if (!at->rotates) {
+/* A change of b at a yaw that changes, too. */
+static inline lanes b_change_seen(const step_point *at, const step_direction *in, direction yaw, lane change) {
+    return lanes_plus(forcing_change(in, yaw), lanes_along(change, forcing_slope(at, yaw)));
+}
+
+/* The same along directions: zeta and yaw_rad are the changes. */
+INLINE increment_change change_substep(const substep_trace *t, base_changer changer, const step_point *at,
+                                       const step_direction *in, const base_model_change *model, bool rotates,
+                                       lanes *zeta, lane *yaw_rad) {
+    b_change b = {in->constant, in->constant, rotates};
+    increment_change by = {in->constant, in->constant, in->constant};
+    if (!rotates) {
         by = changer(&t->round[0], at, *zeta, &b, model);
-        *zeta = plus(*zeta, by.delta);
+        *zeta = lanes_plus(*zeta, by.delta);
         return by;
     }
-    const real before = *yaw_rad;
-    b.start = added(forcing_change(in, t->yaw_before), before, forcing_slope(at, t->yaw_before));
-    real end = before + t->h * yaw_change_along(at, model, t->round[0].zeta, *zeta);
+    const lane before = *yaw_rad;
+    b.start = b_change_seen(at, in, t->yaw_before, before);
+    lane end = before + t->h * yaw_change_along(at, model, t->round[0].zeta, *zeta);
     for (int i = 0; i < MOST_ROUNDS; i++) {
-        const vector at_end = added(forcing_change(in, t->yaw[i]), end, forcing_slope(at, t->yaw[i]));
-        b.change = minus(at_end, b.start);
+        b.change = lanes_minus(b_change_seen(at, in, t->yaw[i], end), b.start);
         by = changer(&t->round[i], at, *zeta, &b, model);
         end = before + t->h * yaw_change_along(at, model, t->round[i].mean, by.mean);
     }
-    *zeta = plus(*zeta, by.delta);
+    *zeta = lanes_plus(*zeta, by.delta);
     *yaw_rad = end;
     return by;
 }
@@ -142,16 +179,17 @@ INLINE increment trace_parts(base_steps *t, base_tracer tracer, const step_point
     return combine(whole, first, trace_substep(&t->part[2], tracer, at, 1, &zeta, &yaw));
 }
 
-INLINE increment change_parts(const base_steps *t, base_changer changer, const step_point *at, const step_direction *in,
-                              const base_model_change *model, bool halves) {
-    vector zeta = in->zeta;
-    real yaw = R(0);
-    const increment whole = change_substep(&t->part[0], changer, at, in, model, &zeta, &yaw);
+INLINE increment_change change_parts(const base_steps *t, base_changer changer, const step_point *at,
+                                     const step_direction *in, const base_model_change *model, bool rotates,
+                                     bool halves) {
+    lanes zeta = in->zeta;
+    lane yaw = lane_of(R(0));
+    const increment_change whole = change_substep(&t->part[0], changer, at, in, model, rotates, &zeta, &yaw);
     if (!halves) return whole;
     zeta = in->zeta;
-    yaw = R(0);
-    const increment first = change_substep(&t->part[1], changer, at, in, model, &zeta, &yaw);
-    return combine(whole, first, change_substep(&t->part[2], changer, at, in, model, &zeta, &yaw));
+    yaw = lane_of(R(0));
+    const increment_change first = change_substep(&t->part[1], changer, at, in, model, rotates, &zeta, &yaw);
+    return combined_change(whole, first, change_substep(&t->part[2], changer, at, in, model, rotates, &zeta, &yaw));
 }
 
 static inline void fill_model_change(base_model_change *model, const step_point *at, const dynamics_change *by,
@@ -164,7 +202,7 @@ static inline void fill_model_change(base_model_change *model, const step_point 
     }
 }
 
-INLINE void base_responses(base_tracer tracer, base_changer changer, bool halves, int levels, step_response *step,
+INLINE void base_responses(base_tracer tracer, base_changer changer, bool halves, int levels, step_result *step,
                            step_response out[], const step_point *at, const step_direction in[], int32_t count) {
     const real h = at->integrator->step_s;
     base_steps t;
@@ -175,10 +213,13 @@ INLINE void base_responses(base_tracer tracer, base_changer changer, bool halves
     laconic_pose_trace(&t.pose, at->model, step->path, scaled(h, by.slope));
     step->moved = t.pose.moved;
     for (int32_t k = 0; k < count; k++) {
-        const bool varies = in[k].model != NULL;
-        if (varies) fill_model_change(&model, at, in[k].model, levels);
-        const increment change = change_parts(&t, changer, at, &in[k], varies ? &model : NULL, halves);
-        out[k] = response_of(&t.pose, at->model, h, change, in[k].model);
+        const bool plain = !at->rotates && in[k].model == NULL; /* the usual case, compiled for itself */
+        if (in[k].model != NULL) fill_model_change(&model, at, in[k].model, levels);
+        const increment_change change =
+            plain ? change_parts(&t, changer, at, &in[k], NULL, false, halves)
+                  : change_parts(&t, changer, at, &in[k], in[k].model != NULL ? &model : NULL, at->rotates, halves);
+        out[k] = plain ? response_of(&t.pose, at->model, h, change, NULL)
+                       : response_of(&t.pose, at->model, h, change, in[k].model);
     }
 }
 

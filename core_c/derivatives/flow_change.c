@@ -114,43 +114,49 @@ static increment trace_flow(base_trace *t, const step_point *at, int level, vect
     return increment_of(&at->integrator->decay[level], zeta, t->delta, b);
 }
 
-/* The change of linear_part() by the model. */
+INLINE lanes linear_change(const laconic_model *m, const laconic_decay *half, lanes zeta, lanes b) {
+    if (!LACONIC_WITH_DAMPING) return lanes_times(vec(half->gain), b);
+    return lanes_times(vec(half->gain), lanes_minus(b, lanes_times(vec(m->decay_per_s), zeta)));
+}
+
+/* What a change of the model adds to it. */
 static vector linear_by_model(const laconic_model *m, const laconic_decay *half, const base_model_change *by,
                               const decay_change *factors, vector zeta, vector b) {
     const vector damped = times(vec(half->gain), mapped(&by->dynamics->damping, zeta));
     return minus(mapped(&factors->gain, minus(b, damping(m, zeta))), damped);
 }
 
-INLINE increment change_flow(const base_trace *t, const step_point *at, vector zeta, const parabola *b,
-                             const base_model_change *model) {
+INLINE increment_change change_flow(const base_trace *t, const step_point *at, lanes zeta, const b_change *b,
+                                    const base_model_change *model) {
     const laconic_model *m = at->model;
     const laconic_decay *half = &at->integrator->decay[t->level + 1];
     const decay_change *factors = model != NULL ? &model->decay[t->level + 1] : NULL;
-    vector first = b->start, second = b->start;
+    lanes first = b->start, second = b->start;
     if (b->varies) {
-        first = added(first, R(0.5), times(vec(half->mean), b->change));
-        if (model != NULL) first = added(first, R(0.5), mapped(&factors->mean, t->change));
-        second = added(first, R(0.5), b->change);
+        first = lanes_added(first, R(0.5), lanes_times(vec(half->mean), b->change));
+        if (model != NULL) first = lanes_added(first, R(0.5), lanes_of(mapped(&factors->mean, t->change)));
+        second = lanes_added(first, R(0.5), b->change);
     }
-    vector up = linear_part(m, half, zeta, first);
-    if (model != NULL) up = plus(up, linear_by_model(m, half, model, factors, t->zeta, t->of.flow.first));
-    const vector before = plus(zeta, up);
-    vector rotation = mapped(&t->by_zeta, before);
-    if (model != NULL) rotation = plus(rotation, free_motion_by_model(t, m, model->dynamics));
-    vector down = linear_part(m, half, plus(before, rotation), second);
+    lanes up = linear_change(m, half, zeta, first);
     if (model != NULL)
-        down = plus(down, linear_by_model(m, half, model, factors, t->of.flow.middle, t->of.flow.second));
-    increment by = increment_of(&at->integrator->decay[t->level], zeta, plus(plus(up, rotation), down), b);
-    if (model != NULL) add_factor_changes(&by, t, &model->decay[t->level]);
-    return by;
+        up = lanes_plus(up, lanes_of(linear_by_model(m, half, model, factors, t->zeta, t->of.flow.first)));
+    const lanes before = lanes_plus(zeta, up);
+    lanes rotation = lanes_mapped(&t->by_zeta, before);
+    if (model != NULL) rotation = lanes_plus(rotation, lanes_of(free_motion_by_model(t, m, model->dynamics)));
+    lanes down = linear_change(m, half, lanes_plus(before, rotation), second);
+    if (model != NULL)
+        down =
+            lanes_plus(down, lanes_of(linear_by_model(m, half, model, factors, t->of.flow.middle, t->of.flow.second)));
+    return increment_change_of(t, &at->integrator->decay[t->level], zeta, lanes_plus(lanes_plus(up, rotation), down), b,
+                               model != NULL ? &model->decay[t->level] : NULL);
 }
 
-void laconic_flow_responses(step_response *step, step_response out[], const step_point *at, const step_direction in[],
+void laconic_flow_responses(step_result *step, step_response out[], const step_point *at, const step_direction in[],
                             int32_t count) {
     base_responses(trace_flow, change_flow, false, 2, step, out, at, in, count);
 }
 
-void laconic_flow_4_responses(step_response *step, step_response out[], const step_point *at, const step_direction in[],
+void laconic_flow_4_responses(step_result *step, step_response out[], const step_point *at, const step_direction in[],
                               int32_t count) {
     base_responses(trace_flow, change_flow, true, 3, step, out, at, in, count);
 }

@@ -53,7 +53,7 @@ static increment trace_kahan(base_trace *t, const step_point *at, int level, vec
     t->level = level;
     t->zeta = zeta;
     t->start = b->start;
-    t->change = b->change;
+    t->change = t->of.kahan.given = b->change;
     t->varies = b->varies;
     t->of.kahan.at_start = gyroscopic_map(m, zeta);
     const linear_map implicit = implicit_map(&t->of.kahan.at_start, vec(d->inverse_gain));
@@ -74,56 +74,61 @@ static vector implicit_change(const base_trace *t, const laconic_model *m, const
     return added(mapped(&by->decay[t->level].inverse_gain, v), R(-0.5), turned);
 }
 
+/* What a change of the model adds to the right-hand side for the increment before follow(). */
+static vector first_by_model(const base_trace *t, const step_point *at, const base_model_change *model) {
+    const vector implicit = implicit_change(t, at->model, model, t->of.kahan.first);
+    const vector rate = minus(dynamics_rate_change(at->model, model->dynamics, t->zeta), implicit);
+    return plus(rate, mapped(&model->decay[t->level].mean, t->of.kahan.given));
+}
+
 /* The change of the increment before follow(). */
-INLINE vector first_change(const base_trace *t, const step_point *at, const laconic_decay *d, vector zeta,
-                           const parabola *b, const base_model_change *model) {
-    vector rate = b->varies ? plus(b->start, times(vec(d->mean), b->change)) : b->start;
-    if (model != NULL) {
-        rate = plus(rate, dynamics_rate_change(at->model, model->dynamics, t->zeta));
-        rate = minus(rate, implicit_change(t, at->model, model, t->of.kahan.first));
-        if (b->varies) {
-            const vector own = at->integrator->stiff ? minus(t->change, t->of.kahan.gyroscopic) : t->change;
-            rate = plus(rate, mapped(&model->decay[t->level].mean, own));
-        }
-    }
-    return plus(mapped(&t->by_zeta, zeta), mapped(&t->by_b, rate));
+INLINE lanes first_change(const base_trace *t, const step_point *at, const laconic_decay *d, lanes zeta,
+                          const b_change *b, const base_model_change *model) {
+    lanes rate = b->varies ? lanes_plus(b->start, lanes_times(vec(d->mean), b->change)) : b->start;
+    if (model != NULL) rate = lanes_plus(rate, lanes_of(first_by_model(t, at, model)));
+    return lanes_plus(lanes_mapped(&t->by_zeta, zeta), lanes_mapped(&t->by_b, rate));
+}
+
+/* What a change of the model adds to the change of (g·ζ)(ζ × w) over the base step. */
+static vector gyroscopic_by_model(const base_trace *t, const laconic_model *m, const base_model_change *model) {
+    return minus(gyroscopic_change(m, model->dynamics, plus(t->zeta, t->of.kahan.first)),
+                 gyroscopic_change(m, model->dynamics, t->zeta));
+}
+
+/* And to the right-hand side of what follow() adds. */
+static vector follow_by_model(const base_trace *t, const laconic_model *m, const base_model_change *model) {
+    return minus(mapped(&model->decay[t->level].mean, t->of.kahan.gyroscopic),
+                 implicit_change(t, m, model, t->of.kahan.added));
 }
 
 /* The changes of what follow() adds: to the increment, returned, and to the change of b. */
-INLINE vector follow_change(parabola *b, const base_trace *t, const step_point *at, const laconic_decay *d, vector zeta,
-                            vector delta, const base_model_change *model) {
-    const laconic_model *m = at->model;
-    vector change = minus(mapped(&t->of.kahan.at_end, plus(zeta, delta)), mapped(&t->of.kahan.at_start, zeta));
-    vector extra = none;
-    if (model != NULL) {
-        change = plus(change, minus(gyroscopic_change(m, model->dynamics, plus(t->zeta, t->of.kahan.first)),
-                                    gyroscopic_change(m, model->dynamics, t->zeta)));
-        extra = minus(mapped(&model->decay[t->level].mean, t->of.kahan.gyroscopic),
-                      implicit_change(t, m, model, t->of.kahan.added));
-    }
-    b->change = plus(b->change, change);
+INLINE lanes follow_change(b_change *b, const base_trace *t, const laconic_model *m, const laconic_decay *d, lanes zeta,
+                           lanes delta, const base_model_change *model) {
+    lanes change = lanes_minus(lanes_mapped(&t->of.kahan.at_end, lanes_plus(zeta, delta)),
+                               lanes_mapped(&t->of.kahan.at_start, zeta));
+    if (model != NULL) change = lanes_plus(change, lanes_of(gyroscopic_by_model(t, m, model)));
+    b->change = b->varies ? lanes_plus(b->change, change) : change;
     b->varies = true;
-    const vector sum = added(times(beyond_half(d), change), R(0.5), mapped(&t->of.kahan.at_added, zeta));
-    return mapped(&t->by_b, plus(sum, extra));
+    lanes sum = lanes_added(lanes_times(beyond_half(d), change), R(0.5), lanes_mapped(&t->of.kahan.at_added, zeta));
+    if (model != NULL) sum = lanes_plus(sum, lanes_of(follow_by_model(t, m, model)));
+    return lanes_mapped(&t->by_b, sum);
 }
 
-INLINE increment change_kahan(const base_trace *t, const step_point *at, vector zeta, const parabola *b,
-                              const base_model_change *model) {
+INLINE increment_change change_kahan(const base_trace *t, const step_point *at, lanes zeta, const b_change *b,
+                                     const base_model_change *model) {
     const laconic_decay *d = &at->integrator->decay[t->level];
-    parabola followed = *b;
-    vector delta = first_change(t, at, d, zeta, b, model);
-    if (at->integrator->stiff) delta = plus(delta, follow_change(&followed, t, at, d, zeta, delta, model));
-    increment by = increment_of(d, zeta, delta, &followed);
-    if (model != NULL) add_factor_changes(&by, t, &model->decay[t->level]);
-    return by;
+    b_change followed = *b;
+    lanes delta = first_change(t, at, d, zeta, b, model);
+    if (at->integrator->stiff) delta = lanes_plus(delta, follow_change(&followed, t, at->model, d, zeta, delta, model));
+    return increment_change_of(t, d, zeta, delta, &followed, model != NULL ? &model->decay[t->level] : NULL);
 }
 
-void laconic_kahan_responses(step_response *step, step_response out[], const step_point *at, const step_direction in[],
+void laconic_kahan_responses(step_result *step, step_response out[], const step_point *at, const step_direction in[],
                              int32_t count) {
     base_responses(trace_kahan, change_kahan, false, 1, step, out, at, in, count);
 }
 
-void laconic_kahan_4_responses(step_response *step, step_response out[], const step_point *at,
-                               const step_direction in[], int32_t count) {
+void laconic_kahan_4_responses(step_result *step, step_response out[], const step_point *at, const step_direction in[],
+                               int32_t count) {
     base_responses(trace_kahan, change_kahan, true, 2, step, out, at, in, count);
 }

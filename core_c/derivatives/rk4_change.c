@@ -45,31 +45,42 @@ INLINE increment trace_stages(rk4_trace *t, const step_point *at, bool rotates) 
     return by;
 }
 
-/* The change of b at a stage. */
-INLINE vector b_change(const rk4_trace *t, const step_point *at, const step_direction *in, int i, vector zeta,
-                       bool rotates) {
+/* The change of b at a stage, by the change of ζ of the stage before. */
+INLINE lanes b_change(const rk4_trace *t, const step_point *at, const step_direction *in, int i, lanes zeta,
+                      bool rotates) {
     if (!rotates) return in->constant;
-    real yaw = dot(vec(at->model->yaw_rate_of_zeta), zeta);
+    lane yaw = lanes_dot(vec(at->model->yaw_rate_of_zeta), zeta);
     if (in->model != NULL) yaw += dot(in->model->yaw_rate, t->zeta[before(i)]);
-    return added(forcing_change(in, t->yaw[i]), t->ahead[i] * yaw, t->slope[i]);
+    return lanes_plus(forcing_change(in, t->yaw[i]), lanes_along(t->ahead[i] * yaw, t->slope[i]));
+}
+
+/* The change of the mean is without that of ζ at the start. */
+INLINE increment_change weighted_changes(real h, const lanes k[STAGES]) {
+    const real sixth = h * (R(1) / R(6));
+    const lanes inner = lanes_plus(k[1], k[2]);
+    increment_change by;
+    by.mean = lanes_scaled(sixth, lanes_plus(k[0], inner));
+    by.delta = lanes_plus(by.mean, lanes_scaled(sixth, lanes_plus(inner, k[3])));
+    by.slope = by.delta;
+    return by;
 }
 
 INLINE step_response stage_response(const rk4_trace *t, const step_point *at, const step_direction *in, bool rotates,
                                     bool with_model) {
     const real h = at->integrator->step_s;
-    vector rate[STAGES], zeta = in->zeta;
+    lanes rate[STAGES], zeta = in->zeta;
     for (int i = 0; i < STAGES; i++) {
-        const vector b = b_change(t, at, in, i, zeta, rotates);
-        if (i > 0) zeta = added(in->zeta, t->ahead[i], rate[i - 1]);
-        rate[i] = plus(mapped(&t->rate[i], zeta), b);
-        if (with_model) rate[i] = plus(rate[i], dynamics_rate_change(at->model, in->model, t->zeta[i]));
+        const lanes b = b_change(t, at, in, i, zeta, rotates);
+        if (i > 0) zeta = lanes_added(in->zeta, t->ahead[i], rate[i - 1]);
+        rate[i] = lanes_plus(lanes_mapped(&t->rate[i], zeta), b);
+        if (with_model) rate[i] = lanes_plus(rate[i], lanes_of(dynamics_rate_change(at->model, in->model, t->zeta[i])));
     }
-    increment by = weighted(h, rate[0], rate[1], rate[2], rate[3]);
-    by.mean = plus(in->zeta, by.mean);
+    increment_change by = weighted_changes(h, rate);
+    by.mean = lanes_plus(in->zeta, by.mean);
     return response_of(&t->pose, at->model, h, by, with_model ? in->model : NULL);
 }
 
-INLINE void stage_responses(step_response *step, step_response out[], const step_point *at, const step_direction in[],
+INLINE void stage_responses(step_result *step, step_response out[], const step_point *at, const step_direction in[],
                             int32_t count, bool rotates) {
     const real h = at->integrator->step_s;
     rk4_trace t;
@@ -83,7 +94,7 @@ INLINE void stage_responses(step_response *step, step_response out[], const step
                                      : stage_response(&t, at, &in[k], rotates, false);
 }
 
-void laconic_rk4_responses(step_response *step, step_response out[], const step_point *at, const step_direction in[],
+void laconic_rk4_responses(step_result *step, step_response out[], const step_point *at, const step_direction in[],
                            int32_t count) {
     if (at->rotates)
         stage_responses(step, out, at, in, count, true);

@@ -25,10 +25,10 @@ static core_gradient gradient_of(const core_columns *c, const taken_step *s, con
     const int32_t wheels = LACONIC_WHEELS(s->at.model);
     const direction back = {s->at.heading.cosine, -s->at.heading.sine};
     core_gradient g = {
-        paired_columns(c->by_zeta, after, wheels), paired_columns(c->by_constant, after, wheels), {none, none}};
+        paired_columns(by_zeta(c), after, wheels), paired_columns(by_constant(c), after, wheels), {none, none}};
     if (s->at.rotates) {
-        const world_part seen = {paired_columns(c->by_cosine, after, wheels),
-                                 paired_columns(c->by_sine, after, wheels)};
+        const world_part seen = {paired_columns(by_cosine(c), after, wheels),
+                                 paired_columns(by_sine(c), after, wheels)};
         g.world = turned(seen, back);
     }
     return g;
@@ -76,11 +76,11 @@ static void input_gradient(laconic_input *input, const core_gradient *g, const l
 /* The gradient by one number of a dynamics_change at a time: that number is 1, all others are 0. */
 static real dynamics_gradient(taken_step *s, const laconic_state *state, const laconic_state_change *after,
                               const dynamics_change *by) {
-    const step_direction in = {none, none, none, none, by};
+    const step_direction in = {no_lanes(), no_lanes(), no_lanes(), no_lanes(), by};
     step_response out;
     laconic_state_change column;
     laconic_respond(s, state, &out, &in, 1);
-    laconic_finish_step(&column, s, none, &out, R(0));
+    laconic_finish_step(&column, 1, s, &in, &out, R(0));
     return paired(&column, after, LACONIC_WHEELS(s->at.model));
 }
 
@@ -111,14 +111,14 @@ static void add_scaled(real out[3], real factor, vector v) { store(out, added(ve
 /* Through the rows alone: ν = Gζ at the end, ζ = G⁺ν at the start, wheel angles. */
 static void add_row_gradients(laconic_model_change *out, const taken_step *s, const core_gradient *g,
                               const laconic_state_change *after) {
-    const vector end = plus(s->at.zeta, s->response.delta), nu = nu_before(s);
+    const vector end = plus(s->at.zeta, s->result.delta), nu = nu_before(s);
     const real zeta[3] = {g->zeta.x, g->zeta.y, g->zeta.z};
     for (int i = 0; i < 3; i++) {
         add_scaled(out->nu_of_zeta[i], after->nu_rad_per_s[i], end);
         store(out->zeta_of_nu[i], scaled(zeta[i], nu));
     }
     for (int32_t i = 0; i < LACONIC_WHEELS(s->at.model); i++)
-        store(out->wheel_of_zeta[i], scaled(after->wheel_angle_rad[i], s->response.path));
+        store(out->wheel_of_zeta[i], scaled(after->wheel_angle_rad[i], s->result.path));
 }
 
 /* Through the constant part of b. */

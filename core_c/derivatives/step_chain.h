@@ -9,7 +9,7 @@
 typedef struct taken_step {
     step_point at;
     responder responds;
-    step_response response;
+    step_result result;
     direction middle; /* heading half-way, in whose axes the displacement is */
     real x_m, y_m;    /* the displacement in world axes                      */
 } taken_step;
@@ -34,10 +34,20 @@ static inline world_part both(world_part a, world_part b) {
 /* ν at the step's start, as the model has it. */
 static inline vector nu_before(const taken_step *s) { return mapped_rows(s->at.model->nu_of_zeta, s->at.zeta); }
 
-/* Columns by ζ and by the constant part of b, then by its rotating part. */
+/* Columns by ζ, by the constant part of b and by the two rotating parts, three each. */
+#define CORE_COLUMNS 12
+
 typedef struct core_columns {
-    laconic_state_change by_zeta[3], by_constant[3], by_cosine[3], by_sine[3];
+    laconic_state_change column[CORE_COLUMNS];
 } core_columns;
+
+static inline const laconic_state_change *by_zeta(const core_columns *c) { return &c->column[0]; }
+
+static inline const laconic_state_change *by_constant(const core_columns *c) { return &c->column[3]; }
+
+static inline const laconic_state_change *by_cosine(const core_columns *c) { return &c->column[6]; }
+
+static inline const laconic_state_change *by_sine(const core_columns *c) { return &c->column[9]; }
 
 /* Takes the step on a copy of the state and finds the method that took it. A refused step gives its status. */
 laconic_status laconic_take_step(taken_step *s, const laconic_model *model, const laconic_integrator *integrator,
@@ -47,9 +57,9 @@ laconic_status laconic_take_step(taken_step *s, const laconic_model *model, cons
 void laconic_respond(taken_step *s, const laconic_state *state, step_response out[], const step_direction in[],
                      int32_t count);
 
-/* The change of the state after the step; x, y and wheel angles before it stay. */
-void laconic_finish_step(laconic_state_change *after, const taken_step *s, vector zeta, const step_response *by,
-                         real heading_rad);
+/* The change of the state after the step along the direction of each lane; x, y and wheel angles before it stay. */
+void laconic_finish_step(laconic_state_change after[], int count, const taken_step *s, const step_direction *in,
+                         const step_response *by, real heading_rad);
 
 /* Those of the rotating part only where b rotates. */
 void laconic_core_columns(core_columns *c, taken_step *s, const laconic_state *state);

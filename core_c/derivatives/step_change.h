@@ -5,6 +5,7 @@
 #define LACONIC_STEP_CHANGE_H
 
 #include "laconic/derivatives.h"
+#include "lanes.h"
 #include "step_internals.h"
 
 /* -------------------------------------------------------------------------------- linear maps -- */
@@ -16,6 +17,10 @@ typedef struct linear_map {
 
 static inline vector mapped(const linear_map *a, vector v) {
     return vector_of(dot(a->x, v), dot(a->y, v), dot(a->z, v));
+}
+
+static inline lanes lanes_mapped(const linear_map *a, lanes v) {
+    return lanes_with(lanes_dot(a->x, v), lanes_dot(a->y, v), lanes_dot(a->z, v));
 }
 
 static inline vector mapped_rows(const real a[3][3], vector v) {
@@ -51,33 +56,44 @@ typedef struct dynamics_change {
     linear_map damping;   /* of diag(r): symmetric, and not diagonal in general */
 } dynamics_change;
 
-/* A direction; `model` NULL: the model stays. Forcing as in step_point. */
+/* A direction in each lane; `model`, the same for all, NULL: the model stays. Forcing as in step_point. */
 typedef struct step_direction {
-    vector zeta, constant, cosine, sine;
+    lanes zeta, constant, cosine, sine;
     const dynamics_change *model;
 } step_direction;
 
-/* What a step does to ζ, travel and pose, or how that changes along a direction. */
-typedef struct step_response {
+/* What a step does to ζ, travel and pose. */
+typedef struct step_result {
     vector delta, path; /* path: ∫ζ dt over the step */
     pose_change moved;
+} step_result;
+
+/* How that changes along the directions of the lanes. */
+typedef struct step_response {
+    lanes delta, path;
+    lane along_m, across_m, yaw_change_rad;
 } step_response;
 
-/* Answers `count` directions; `step` gets the step's own response. */
-typedef void (*responder)(step_response *step, step_response out[], const step_point *at, const step_direction in[],
+/* A change of an increment. */
+typedef struct increment_change {
+    lanes delta, mean, slope;
+} increment_change;
+
+/* Answers `count` groups of directions; `step` gets what the step itself does. */
+typedef void (*responder)(step_result *step, step_response out[], const step_point *at, const step_direction in[],
                           int32_t count);
 
-void laconic_rk4_responses(step_response *step, step_response out[], const step_point *at, const step_direction in[],
+void laconic_rk4_responses(step_result *step, step_response out[], const step_point *at, const step_direction in[],
                            int32_t count);
-void laconic_taylor_8_responses(step_response *step, step_response out[], const step_point *at,
-                                const step_direction in[], int32_t count);
-void laconic_kahan_responses(step_response *step, step_response out[], const step_point *at, const step_direction in[],
+void laconic_taylor_8_responses(step_result *step, step_response out[], const step_point *at, const step_direction in[],
+                                int32_t count);
+void laconic_kahan_responses(step_result *step, step_response out[], const step_point *at, const step_direction in[],
                              int32_t count);
-void laconic_kahan_4_responses(step_response *step, step_response out[], const step_point *at,
-                               const step_direction in[], int32_t count);
-void laconic_flow_responses(step_response *step, step_response out[], const step_point *at, const step_direction in[],
+void laconic_kahan_4_responses(step_result *step, step_response out[], const step_point *at, const step_direction in[],
+                               int32_t count);
+void laconic_flow_responses(step_result *step, step_response out[], const step_point *at, const step_direction in[],
                             int32_t count);
-void laconic_flow_4_responses(step_response *step, step_response out[], const step_point *at, const step_direction in[],
+void laconic_flow_4_responses(step_result *step, step_response out[], const step_point *at, const step_direction in[],
                               int32_t count);
 
 /* ------------------------------------------------------------------- the rate, and b, that change -- */
@@ -123,8 +139,8 @@ static inline vector forcing_slope(const step_point *at, direction yaw) {
 }
 
 /* The change of b at a given yaw. */
-static inline vector forcing_change(const step_direction *by, direction yaw) {
-    return plus(by->constant, plus(scaled(yaw.cosine, by->cosine), scaled(yaw.sine, by->sine)));
+static inline lanes forcing_change(const step_direction *by, direction yaw) {
+    return lanes_plus(by->constant, lanes_plus(lanes_scaled(yaw.cosine, by->cosine), lanes_scaled(yaw.sine, by->sine)));
 }
 
 /* ------------------------------------------------------------------------------------- the pose -- */
@@ -143,26 +159,22 @@ void laconic_pose_trace(pose_trace *trace, const laconic_model *m, vector path, 
 /* What a change of the model adds to a change of the displacement. */
 pose_change laconic_pose_by_model(const pose_trace *trace, const dynamics_change *by);
 
-INLINE pose_change pose_response(const pose_trace *p, const laconic_model *m, vector path, vector bend,
-                                 const dynamics_change *by) {
-    pose_change out = {dot(p->along_path, path) + dot(p->along_bend, bend),
-                       dot(p->across_path, path) + dot(p->across_bend, bend), dot(vec(m->yaw_rate_of_zeta), path)};
-    if (by != NULL) {
-        const pose_change more = laconic_pose_by_model(p, by);
+/* The response from a change of the increment. */
+INLINE step_response response_of(const pose_trace *p, const laconic_model *m, real h, increment_change by,
+                                 const dynamics_change *model) {
+    const lanes bend = lanes_scaled(h, by.slope);
+    step_response out;
+    out.delta = by.delta;
+    out.path = lanes_scaled(h, by.mean);
+    out.along_m = lanes_dot(p->along_path, out.path) + lanes_dot(p->along_bend, bend);
+    out.across_m = lanes_dot(p->across_path, out.path) + lanes_dot(p->across_bend, bend);
+    out.yaw_change_rad = lanes_dot(vec(m->yaw_rate_of_zeta), out.path);
+    if (model != NULL) {
+        const pose_change more = laconic_pose_by_model(p, model);
         out.along_m += more.along_m;
         out.across_m += more.across_m;
         out.yaw_change_rad += more.yaw_change_rad;
     }
-    return out;
-}
-
-/* Both at once: the response from a change of the increment. */
-INLINE step_response response_of(const pose_trace *p, const laconic_model *m, real h, increment by,
-                                 const dynamics_change *model) {
-    step_response out;
-    out.delta = by.delta;
-    out.path = scaled(h, by.mean);
-    out.moved = pose_response(p, m, out.path, scaled(h, by.slope), model);
     return out;
 }
 

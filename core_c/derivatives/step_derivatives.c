@@ -68,24 +68,34 @@ laconic_status laconic_take_step(taken_step *s, const laconic_model *model, cons
 
 void laconic_respond(taken_step *s, const laconic_state *state, step_response out[], const step_direction in[],
                      int32_t count) {
-    s->responds(&s->response, out, &s->at, in, count);
-    const pose_change *moved = &s->response.moved;
+    s->responds(&s->result, out, &s->at, in, count);
+    const pose_change *moved = &s->result.moved;
     s->middle = laconic_direction_of_binary_angle(
         (laconic_binary_angle)(state->heading.fraction + laconic_binary_angle_of(R(0.5) * moved->yaw_change_rad)));
     s->x_m = s->middle.cosine * moved->along_m - s->middle.sine * moved->across_m;
     s->y_m = s->middle.sine * moved->along_m + s->middle.cosine * moved->across_m;
 }
 
-void laconic_finish_step(laconic_state_change *after, const taken_step *s, vector zeta, const step_response *by,
-                         real heading_rad) {
+void laconic_finish_step(laconic_state_change after[], int count, const taken_step *s, const step_direction *in,
+                         const step_response *by, real heading_rad) {
     const laconic_model *m = s->at.model;
-    const pose_change *moved = &by->moved;
-    const real turn = heading_rad + R(0.5) * moved->yaw_change_rad;
-    store(after->nu_rad_per_s, mapped_rows(m->nu_of_zeta, plus(zeta, by->delta)));
-    after->x_m = s->middle.cosine * moved->along_m - s->middle.sine * moved->across_m - turn * s->y_m;
-    after->y_m = s->middle.sine * moved->along_m + s->middle.cosine * moved->across_m + turn * s->x_m;
-    after->heading_rad = heading_rad + moved->yaw_change_rad;
-    for (int32_t i = 0; i < LACONIC_WHEELS(m); i++) after->wheel_angle_rad[i] = dot(vec(m->wheel_of_zeta[i]), by->path);
+    const lanes zeta = lanes_plus(in->zeta, by->delta);
+    const lane turn = heading_rad + R(0.5) * by->yaw_change_rad, heading = heading_rad + by->yaw_change_rad;
+    const lane x = s->middle.cosine * by->along_m - s->middle.sine * by->across_m - turn * s->y_m;
+    const lane y = s->middle.sine * by->along_m + s->middle.cosine * by->across_m + turn * s->x_m;
+    for (int i = 0; i < 3; i++) {
+        const lane nu = lanes_dot(vec(m->nu_of_zeta[i]), zeta);
+        for (int k = 0; k < count; k++) after[k].nu_rad_per_s[i] = lane_number(nu, k);
+    }
+    for (int k = 0; k < count; k++) {
+        after[k].x_m = lane_number(x, k);
+        after[k].y_m = lane_number(y, k);
+        after[k].heading_rad = lane_number(heading, k);
+    }
+    for (int32_t i = 0; i < LACONIC_WHEELS(m); i++) {
+        const lane angle = lanes_dot(vec(m->wheel_of_zeta[i]), by->path);
+        for (int k = 0; k < count; k++) after[k].wheel_angle_rad[i] = lane_number(angle, k);
+    }
 }
 
 /* -------------------------------------------------------------------- forcing along directions -- */
@@ -172,28 +182,29 @@ static void add_forcing(step_direction *d, const taken_step *s, real heading_rad
                         const laconic_input *input, const laconic_model_change *by) {
     const laconic_model *m = s->at.model;
     world_part world = {none, none};
-    d->constant = none;
+    vector constant = none;
     if (input != NULL) {
         const real *f = input->body_force_N;
-        d->constant = plus(b_of_torques(m, input), b_of_wrench(m, wrench_with(f[0], f[1], input->body_moment_Nm)));
+        constant = plus(b_of_torques(m, input), b_of_wrench(m, wrench_with(f[0], f[1], input->body_moment_Nm)));
         world = laconic_world_b_by_input(m, input, held);
     }
     if (by != NULL) {
-        d->constant = plus(d->constant, constant_by_model(m, by, held));
+        constant = plus(constant, constant_by_model(m, by, held));
         world = both(world, world_by_model(m, by, held));
     }
     world = turned(world, s->at.heading);
-    d->cosine = added(world.cosine, heading_rad, s->at.sine);
-    d->sine = added(world.sine, -heading_rad, s->at.cosine);
+    d->constant = lanes_of(constant);
+    d->cosine = lanes_of(added(world.cosine, heading_rad, s->at.sine));
+    d->sine = lanes_of(added(world.sine, -heading_rad, s->at.cosine));
 }
 
 /* What follows from the model's rows alone. */
 static void add_rows(laconic_state_change *after, const taken_step *s, const laconic_model_change *by) {
-    const vector end = plus(s->at.zeta, s->response.delta);
+    const vector end = plus(s->at.zeta, s->result.delta);
     const vector nu = plus(vec(after->nu_rad_per_s), mapped_rows(by->nu_of_zeta, end));
     store(after->nu_rad_per_s, nu);
     for (int32_t i = 0; i < LACONIC_WHEELS(s->at.model); i++)
-        after->wheel_angle_rad[i] += dot(vec(by->wheel_of_zeta[i]), s->response.path);
+        after->wheel_angle_rad[i] += dot(vec(by->wheel_of_zeta[i]), s->result.path);
 }
 
 laconic_status laconic_step_tangent(laconic_state_change *after, const laconic_model *model,
@@ -207,16 +218,17 @@ laconic_status laconic_step_tangent(laconic_state_change *after, const laconic_m
     const laconic_status status =
         laconic_take_step(&s, model, integrator, state, held, varies_world_force(input) || varies_slope(by_model));
     if (status != LACONIC_OK) return status;
-    d.zeta = zeta_of_nu(model, before->nu_rad_per_s);
+    vector zeta = zeta_of_nu(model, before->nu_rad_per_s);
     d.model = NULL;
     if (by_model != NULL) {
-        d.zeta = plus(d.zeta, mapped_rows(by_model->zeta_of_nu, nu_before(&s)));
+        zeta = plus(zeta, mapped_rows(by_model->zeta_of_nu, nu_before(&s)));
         dynamics_of(&dynamics, by_model);
         d.model = &dynamics;
     }
+    d.zeta = lanes_of(zeta);
     add_forcing(&d, &s, before->heading_rad, held, input, by_model);
     laconic_respond(&s, state, &out, &d, 1);
-    laconic_finish_step(after, &s, d.zeta, &out, before->heading_rad);
+    laconic_finish_step(after, 1, &s, &d, &out, before->heading_rad);
     if (by_model != NULL) add_rows(after, &s, by_model);
     after->x_m += before->x_m;
     after->y_m += before->y_m;
@@ -226,60 +238,60 @@ laconic_status laconic_step_tangent(laconic_state_change *after, const laconic_m
 
 /* --------------------------------------------------------------------------------- jacobian -- */
 
-#define CORE_COLUMNS 12
+#define GROUPS(columns) (((columns) + LANES - 1) / LANES)
 
-static const vector unit[3] = {{R(1), R(0), R(0)}, {R(0), R(1), R(0)}, {R(0), R(0), R(1)}};
-
-static void core_directions(step_direction in[CORE_COLUMNS]) {
-    const step_direction still = {none, none, none, none, NULL};
-    for (int k = 0; k < CORE_COLUMNS; k++) in[k] = still;
-    for (int k = 0; k < 3; k++) {
-        in[k].zeta = unit[k];
-        in[3 + k].constant = unit[k];
-        in[6 + k].cosine = unit[k];
-        in[9 + k].sine = unit[k];
-    }
-}
-
+/* The directions are unit vectors: of the 12 numbers that a step_direction begins with column k varies number k. */
 void laconic_core_columns(core_columns *c, taken_step *s, const laconic_state *state) {
-    step_direction in[CORE_COLUMNS];
-    step_response out[CORE_COLUMNS];
-    core_directions(in);
-    laconic_respond(s, state, out, in, s->at.rotates ? CORE_COLUMNS : 6);
-    for (int k = 0; k < 3; k++) {
-        laconic_finish_step(&c->by_zeta[k], s, unit[k], &out[k], R(0));
-        laconic_finish_step(&c->by_constant[k], s, none, &out[3 + k], R(0));
-        if (!s->at.rotates) continue;
-        laconic_finish_step(&c->by_cosine[k], s, none, &out[6 + k], R(0));
-        laconic_finish_step(&c->by_sine[k], s, none, &out[9 + k], R(0));
+    const step_direction still = {no_lanes(), no_lanes(), no_lanes(), no_lanes(), NULL};
+    const int columns = s->at.rotates ? CORE_COLUMNS : CORE_COLUMNS / 2, groups = GROUPS(columns);
+    step_direction in[GROUPS(CORE_COLUMNS)];
+    step_response out[GROUPS(CORE_COLUMNS)];
+    for (int n = 0; n < groups; n++) in[n] = still;
+    for (int k = 0; k < columns; k++) set_lane((lane *)(void *)&in[k / LANES] + k, k % LANES, R(1));
+    laconic_respond(s, state, out, in, groups);
+    for (int n = 0; n < groups; n++) {
+        const int left = columns - n * LANES;
+        laconic_finish_step(&c->column[n * LANES], left < LANES ? left : LANES, s, &in[n], &out[n], R(0));
     }
 }
 
-/* Σ weight_k column_k */
-static void weighed(laconic_state_change *out, const laconic_state_change column[3], vector weight, int32_t wheels) {
-    const laconic_state_change *a = &column[0], *b = &column[1], *c = &column[2];
+/* A change of the state seen as one row of 6 + N numbers: it holds nothing else. */
+#define HEAD 6
+static inline const real *row_of(const laconic_state_change *change) { return (const real *)(const void *)change; }
+
+/* Σ weight_k column_k. The head has a loop of its own, of a length that compilers know. */
+static void weighed(laconic_state_change *restrict out, const laconic_state_change column[3], vector weight,
+                    int32_t wheels) {
+    const real *restrict a = row_of(&column[0]), *restrict b = row_of(&column[1]), *restrict c = row_of(&column[2]);
+    real *restrict to = (real *)(void *)out;
     const real x = weight.x, y = weight.y, z = weight.z;
-    for (int i = 0; i < 3; i++)
-        out->nu_rad_per_s[i] = x * a->nu_rad_per_s[i] + y * b->nu_rad_per_s[i] + z * c->nu_rad_per_s[i];
-    out->x_m = x * a->x_m + y * b->x_m + z * c->x_m;
-    out->y_m = x * a->y_m + y * b->y_m + z * c->y_m;
-    out->heading_rad = x * a->heading_rad + y * b->heading_rad + z * c->heading_rad;
-    for (int32_t i = 0; i < wheels; i++)
-        out->wheel_angle_rad[i] = x * a->wheel_angle_rad[i] + y * b->wheel_angle_rad[i] + z * c->wheel_angle_rad[i];
+    for (int32_t i = 0; i < HEAD; i++) to[i] = x * a[i] + y * b[i] + z * c[i];
+    for (int32_t i = HEAD; i < HEAD + wheels; i++) to[i] = x * a[i] + y * b[i] + z * c[i];
+}
+
+static void set_zero(laconic_state_change *out, int32_t wheels) {
+    real *to = (real *)(void *)out;
+    for (int32_t i = 0; i < HEAD + wheels; i++) to[i] = R(0);
+}
+
+static void set_scaled(laconic_state_change *restrict out, real factor, const laconic_state_change *restrict column,
+                       int32_t wheels) {
+    const real *from = row_of(column);
+    real *to = (real *)(void *)out;
+    for (int32_t i = 0; i < HEAD; i++) to[i] = factor * from[i];
+    for (int32_t i = HEAD; i < HEAD + wheels; i++) to[i] = factor * from[i];
 }
 
 static void add_change(laconic_state_change *out, const laconic_state_change *more, int32_t wheels) {
-    for (int i = 0; i < 3; i++) out->nu_rad_per_s[i] += more->nu_rad_per_s[i];
-    out->x_m += more->x_m;
-    out->y_m += more->y_m;
-    out->heading_rad += more->heading_rad;
-    for (int32_t i = 0; i < wheels; i++) out->wheel_angle_rad[i] += more->wheel_angle_rad[i];
+    const real *from = row_of(more);
+    real *to = (real *)(void *)out;
+    for (int32_t i = 0; i < HEAD + wheels; i++) to[i] += from[i];
 }
 
 static void by_world_part(laconic_state_change *out, const core_columns *c, world_part b, int32_t wheels) {
     laconic_state_change sine;
-    weighed(out, c->by_cosine, b.cosine, wheels);
-    weighed(&sine, c->by_sine, b.sine, wheels);
+    weighed(out, by_cosine(c), b.cosine, wheels);
+    weighed(&sine, by_sine(c), b.sine, wheels);
     add_change(out, &sine, wheels);
 }
 
@@ -290,7 +302,7 @@ void laconic_heading_column(laconic_state_change *out, const taken_step *s, cons
     if (s->at.rotates) {
         by_world_part(out, c, seen, wheels);
     } else {
-        weighed(out, c->by_zeta, none, wheels);
+        set_zero(out, wheels);
     }
     out->x_m -= s->y_m;
     out->y_m += s->x_m;
@@ -315,24 +327,24 @@ static void by_world_forces(laconic_step_jacobian *j, const taken_step *s, const
 static void by_torques(laconic_step_jacobian *j, const laconic_model *m, const core_columns *c) {
     const int32_t wheels = LACONIC_WHEELS(m);
     for (int32_t i = 0; i < wheels; i++) {
-        weighed(&j->by_axle_torque[i], c->by_constant, scaled(m->torque_scale, vec(m->wheel_of_zeta[i])), wheels);
-        weighed(&j->by_voltage[i], c->by_constant, scaled(m->voltage_scale[own(i)], vec(m->wheel_of_zeta[i])), wheels);
+        weighed(&j->by_axle_torque[i], by_constant(c), scaled(m->torque_scale, vec(m->wheel_of_zeta[i])), wheels);
+        set_scaled(&j->by_voltage[i], m->motor_gain_Nm_per_V[own(i)], &j->by_axle_torque[i], wheels);
     }
     for (int k = 0; k < 2; k++)
-        weighed(&j->by_body_force[k], c->by_constant, scaled(m->torque_scale, vec(m->velocity_of_zeta[k])), wheels);
-    weighed(&j->by_body_moment, c->by_constant, scaled(m->torque_scale, vec(m->yaw_rate_of_zeta)), wheels);
+        weighed(&j->by_body_force[k], by_constant(c), scaled(m->torque_scale, vec(m->velocity_of_zeta[k])), wheels);
+    weighed(&j->by_body_moment, by_constant(c), scaled(m->torque_scale, vec(m->yaw_rate_of_zeta)), wheels);
 }
 
 /* Column i of G⁺. */
 static inline vector zeta_of_unit_nu(const laconic_model *m, int i) {
-    const real nu[3] = {R(i == 0), R(i == 1), R(i == 2)};
-    return zeta_of_nu(m, nu);
+    if (rotated_twice(m)) return vector_of(inverse_row(m, 0)[i], inverse_row(m, 1)[i], inverse_row(m, 2)[i]);
+    return times(vec(m->inertia), vec(m->nu_of_zeta[i]));
 }
 
 static void fill_jacobian(laconic_step_jacobian *j, const taken_step *s, const core_columns *c,
                           const laconic_input *held) {
     const laconic_model *m = s->at.model;
-    for (int i = 0; i < 3; i++) weighed(&j->by_nu[i], c->by_zeta, zeta_of_unit_nu(m, i), LACONIC_WHEELS(m));
+    for (int i = 0; i < 3; i++) weighed(&j->by_nu[i], by_zeta(c), zeta_of_unit_nu(m, i), LACONIC_WHEELS(m));
     laconic_heading_column(&j->by_heading, s, c);
     by_torques(j, m, c);
     j->has_world_force = s->at.rotates;

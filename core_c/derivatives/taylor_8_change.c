@@ -22,6 +22,9 @@ typedef struct pose_of_terms {
 
 typedef struct taylor_trace {
     vector zeta[TERMS], zeta_cross_w[TERMS];
+    lanes side_by_side[TERMS]; /* ζn × w and g·ζn in every lane, for the sums over all terms      */
+    lane yaw_by_side[TERMS];
+    lane share_s[TERMS];             /* h/(n + 1) */
     real yaw[TERMS];                 /* g·ζn                                                   */
     real turn[TERMS];                /* h yaw_rate_of_zeta · ζn: the yaw's rate by s           */
     real cosine[TERMS], sine[TERMS]; /* of the yaw since the start: only where b rotates        */
@@ -33,6 +36,9 @@ static void keep(taylor_trace *t, const step_point *at, int n, vector zeta) {
     t->zeta[n] = zeta;
     t->yaw[n] = dot(vec(m->nu_of_zeta[2]), zeta);
     t->zeta_cross_w[n] = cross(zeta, vec(m->gyro));
+    t->side_by_side[n] = lanes_of(t->zeta_cross_w[n]);
+    t->yaw_by_side[n] = lane_of(t->yaw[n]);
+    t->share_s[n] = lane_of(at->integrator->step_s * part[n]);
     t->turn[n] = at->integrator->step_s * dot(vec(m->yaw_rate_of_zeta), zeta);
 }
 
@@ -63,51 +69,84 @@ static void trace_terms(taylor_trace *t, const step_point *at) {
 
 /* ------------------------------------------------------------------------------------- the pose -- */
 
+#define KNOT_GROUPS (KNOTS / LANES)
+
+/* At the knots, side by side in lanes. */
 typedef struct knots {
-    real yaw[KNOTS], cosine[KNOTS], sine[KNOTS]; /* from the mid-step heading                  */
-    real along[KNOTS], across[KNOTS];            /* displacement that a knot stands for, turned */
+    lane at[KNOT_GROUPS];
+    lane cosine[KNOT_GROUPS], sine[KNOT_GROUPS];  /* of the yaw from the mid-step heading, with the knots' weights */
+    lane along[KNOT_GROUPS], across[KNOT_GROUPS]; /* displacement that a knot stands for, turned                   */
 } knots;
 
-/* Velocity and yaw at a knot: Horner's rule for three polynomials. */
-static void at_knot(knots *at, const taylor_trace *t, const laconic_model *m, real h, real yaw_change, int k) {
-    vector zeta = t->zeta[TERMS - 1];
-    real turned = part[TERMS - 1] * t->turn[TERMS - 1];
-    for (int n = TERMS - 2; n >= 0; n--) {
-        zeta = added(t->zeta[n], knot[k], zeta);
-        turned = part[n] * t->turn[n] + knot[k] * turned;
+/* The direction of the yaw at each knot, with the knots' weights. */
+static void turn_knots(knots *at, real h, const lane yaw[KNOT_GROUPS]) {
+    for (int k = 0; k < KNOTS; k++) {
+        const direction d = laconic_direction_of_angle(lane_number(yaw[k / LANES], k % LANES));
+        set_lane(&at->cosine[k / LANES], k % LANES, h * share[k] * d.cosine);
+        set_lane(&at->sine[k / LANES], k % LANES, h * share[k] * d.sine);
     }
-    const direction d = laconic_direction_of_angle(knot[k] * turned - R(0.5) * yaw_change);
-    const real along = h * share[k] * dot(vec(m->velocity_of_zeta[0]), zeta);
-    const real across = h * share[k] * dot(vec(m->velocity_of_zeta[1]), zeta);
-    at->cosine[k] = h * share[k] * d.cosine;
-    at->sine[k] = h * share[k] * d.sine;
-    at->along[k] = d.cosine * along - d.sine * across;
-    at->across[k] = d.sine * along + d.cosine * across;
+}
+
+/* Velocity and yaw: Horner's rule for four polynomials. */
+static void at_knots(knots *at, const taylor_trace *t, const laconic_model *m, real h, real yaw_change) {
+    lane yaw[KNOT_GROUPS];
+    lanes zeta[KNOT_GROUPS];
+    for (int k = 0; k < KNOTS; k++) set_lane(&at->at[k / LANES], k % LANES, knot[k]);
+    for (int g = 0; g < KNOT_GROUPS; g++) {
+        const lane s = at->at[g];
+        zeta[g] = lanes_of(t->zeta[TERMS - 1]);
+        yaw[g] = lane_of(part[TERMS - 1] * t->turn[TERMS - 1]);
+        for (int n = TERMS - 2; n >= 0; n--) {
+            const vector term = t->zeta[n];
+            zeta[g] = lanes_with(s * zeta[g].x + term.x, s * zeta[g].y + term.y, s * zeta[g].z + term.z);
+            yaw[g] = s * yaw[g] + part[n] * t->turn[n];
+        }
+        yaw[g] = s * yaw[g] - R(0.5) * yaw_change;
+    }
+    turn_knots(at, h, yaw);
+    for (int g = 0; g < KNOT_GROUPS; g++) {
+        const lane forth = lanes_dot(vec(m->velocity_of_zeta[0]), zeta[g]);
+        const lane left = lanes_dot(vec(m->velocity_of_zeta[1]), zeta[g]);
+        at->along[g] = at->cosine[g] * forth - at->sine[g] * left;
+        at->across[g] = at->sine[g] * forth + at->cosine[g] * left;
+    }
+}
+
+static real sum_of_knots(const lane a[KNOT_GROUPS]) {
+    lane sum = a[0];
+    real total;
+    for (int g = 1; g < KNOT_GROUPS; g++) sum = sum + a[g];
+    total = lane_number(sum, 0);
+    for (int k = 1; k < LANES; k++) total += lane_number(sum, k);
+    return total;
+}
+
+/* Σ over the knots; then `a` moves on to the next power of the knots. */
+static inline real next_moment(lane a[KNOT_GROUPS], const knots *k) {
+    const real sum = sum_of_knots(a);
+    for (int g = 0; g < KNOT_GROUPS; g++) a[g] = a[g] * k->at[g];
+    return sum;
 }
 
 /* The displacement is Σ over the knots of the velocity there, turned by the yaw from the middle: the terms' weights are
  * moments of the knots. */
-static void weigh_terms(pose_of_terms *p, const knots *at, const laconic_model *m, real h) {
+static void weigh_terms(pose_of_terms *p, knots *k, pose_change moved, const laconic_model *m, real h) {
     const vector forth = vec(m->velocity_of_zeta[0]), left = vec(m->velocity_of_zeta[1]);
     const vector yaw = vec(m->yaw_rate_of_zeta);
-    real along = R(0), across = R(0), power[KNOTS] = {R(1), R(1), R(1), R(1)};
-    for (int k = 0; k < KNOTS; k++) along += at->along[k];
-    for (int k = 0; k < KNOTS; k++) across += at->across[k];
+    for (int g = 0; g < KNOT_GROUPS; g++) {
+        k->along[g] = k->along[g] * k->at[g];
+        k->across[g] = k->across[g] * k->at[g];
+    }
     for (int n = 0; n < TERMS; n++) {
-        real cosine = R(0), sine = R(0), later_along = R(0), later_across = R(0);
-        for (int k = 0; k < KNOTS; k++) {
-            cosine += power[k] * at->cosine[k];
-            sine += power[k] * at->sine[k];
-            power[k] *= knot[k];
-            later_along += power[k] * at->along[k];
-            later_across += power[k] * at->across[k];
-        }
+        const real cosine = next_moment(k->cosine, k), sine = next_moment(k->sine, k);
+        const real along = h * part[n] * (R(0.5) * moved.across_m - next_moment(k->across, k));
+        const real across = h * part[n] * (next_moment(k->along, k) - R(0.5) * moved.along_m);
         p->cosine[n] = cosine;
         p->sine[n] = sine;
-        p->along_yaw[n] = h * part[n] * (R(0.5) * across - later_across);
-        p->across_yaw[n] = h * part[n] * (later_along - R(0.5) * along);
-        p->along[n] = plus(minus(scaled(cosine, forth), scaled(sine, left)), scaled(p->along_yaw[n], yaw));
-        p->across[n] = plus(plus(scaled(sine, forth), scaled(cosine, left)), scaled(p->across_yaw[n], yaw));
+        p->along_yaw[n] = along;
+        p->across_yaw[n] = across;
+        p->along[n] = plus(minus(scaled(cosine, forth), scaled(sine, left)), scaled(along, yaw));
+        p->across[n] = plus(plus(scaled(sine, forth), scaled(cosine, left)), scaled(across, yaw));
     }
 }
 
@@ -115,12 +154,10 @@ static pose_change trace_pose(taylor_trace *t, const step_point *at, vector path
     const real h = at->integrator->step_s;
     pose_change moved = {R(0), R(0), dot(vec(at->model->yaw_rate_of_zeta), path)};
     knots k;
-    for (int i = 0; i < KNOTS; i++) {
-        at_knot(&k, t, at->model, h, moved.yaw_change_rad, i);
-        moved.along_m += k.along[i];
-        moved.across_m += k.across[i];
-    }
-    weigh_terms(&t->pose, &k, at->model, h);
+    at_knots(&k, t, at->model, h, moved.yaw_change_rad);
+    moved.along_m = sum_of_knots(k.along);
+    moved.across_m = sum_of_knots(k.across);
+    weigh_terms(&t->pose, &k, moved, at->model, h);
     return moved;
 }
 
@@ -134,7 +171,7 @@ static void add_pose_by_model(pose_change *moved, const taylor_trace *t, const d
     }
 }
 
-/* --------------------------------------------------------------------------------- a direction -- */
+/* --------------------------------------------------------------------------------- directions -- */
 
 static vector sum_to_end(const vector term[TERMS]) {
     vector sum = none;
@@ -150,75 +187,93 @@ static vector mean_of(const vector term[TERMS]) {
 
 /* The change of bn where b rotates: cos and sin of the yaw follow from the changes of ζ below n. */
 typedef struct turn_change {
-    real turn[TERMS], cosine[TERMS], sine[TERMS];
+    lane turn[TERMS], cosine[TERMS], sine[TERMS];
 } turn_change;
 
-static vector rotating_b_change(turn_change *c, const taylor_trace *t, const step_point *at, const step_direction *in,
-                                vector zeta, int n) {
-    real cosine = R(0), sine = R(0), turn = dot(vec(at->model->yaw_rate_of_zeta), zeta);
+static lanes rotating_b_change(turn_change *c, const taylor_trace *t, const step_point *at, const step_direction *in,
+                               lanes zeta, int n) {
+    lane cosine = lane_of(R(0)), sine = cosine, turn = lanes_dot(vec(at->model->yaw_rate_of_zeta), zeta);
     if (in->model != NULL) turn += dot(in->model->yaw_rate, t->zeta[n]);
     c->turn[n] = at->integrator->step_s * turn;
     for (int j = 0; j < n; j++) {
         cosine -= c->turn[j] * t->sine[n - 1 - j] + t->turn[j] * c->sine[n - 1 - j];
         sine += c->turn[j] * t->cosine[n - 1 - j] + t->turn[j] * c->cosine[n - 1 - j];
     }
-    c->cosine[n] = n > 0 ? part[n - 1] * cosine : R(0);
-    c->sine[n] = n > 0 ? part[n - 1] * sine : R(0);
-    return plus(plus(scaled(t->cosine[n], in->cosine), scaled(t->sine[n], in->sine)),
-                plus(scaled(c->cosine[n], at->cosine), scaled(c->sine[n], at->sine)));
+    c->cosine[n] = n > 0 ? part[n - 1] * cosine : cosine;
+    c->sine[n] = n > 0 ? part[n - 1] * sine : sine;
+    return lanes_plus(lanes_plus(lanes_scaled(t->cosine[n], in->cosine), lanes_scaled(t->sine[n], in->sine)),
+                      lanes_plus(lanes_along(c->cosine[n], at->cosine), lanes_along(c->sine[n], at->sine)));
 }
 
-/* Σ (g·ζj)'(ζn−j × w) + (g·ζj)(ζn−j × w)' to n, with a change of the model what it adds. */
-INLINE vector product_change(const taylor_trace *t, const laconic_model *m, const dynamics_change *by,
-                             const vector zeta[TERMS], const real yaw[TERMS], int n) {
-    vector turned = none, straight = none, by_gyro = none;
+/* Σ (g·ζj)'(ζn−j × w) + (g·ζj)(ζn−j × w)' to n. */
+INLINE lanes product_change(const taylor_trace *t, const laconic_model *m, const lanes zeta[TERMS],
+                            const lane yaw[TERMS], int n) {
+    lanes turned = no_lanes(), straight = turned;
     for (int j = 0; j <= n; j++) {
-        turned = added(turned, yaw[j], t->zeta_cross_w[n - j]);
-        straight = added(straight, t->yaw[j], zeta[n - j]);
+        const lanes *w = &t->side_by_side[n - j], *z = &zeta[n - j];
+        const lane turn = yaw[j], ahead = t->yaw_by_side[j];
+        turned = lanes_with(turned.x + turn * w->x, turned.y + turn * w->y, turned.z + turn * w->z);
+        straight = lanes_with(straight.x + ahead * z->x, straight.y + ahead * z->y, straight.z + ahead * z->z);
     }
-    turned = plus(turned, cross(straight, vec(m->gyro)));
-    if (by == NULL) return turned;
-    for (int j = 0; j <= n; j++) by_gyro = added(by_gyro, t->yaw[j], t->zeta[n - j]);
-    return minus(plus(turned, cross(by_gyro, by->gyro)), mapped(&by->damping, t->zeta[n]));
+    return lanes_plus(turned, lanes_cross(straight, vec(m->gyro)));
 }
 
-INLINE void change_terms(vector zeta[TERMS], const taylor_trace *t, const step_point *at, const step_direction *in,
+/* What a change of the model adds to it, with the damping's. */
+static vector product_by_model(const taylor_trace *t, const dynamics_change *by, int n) {
+    vector straight = none;
+    for (int j = 0; j <= n; j++) straight = added(straight, t->yaw[j], t->zeta[n - j]);
+    return minus(cross(straight, by->gyro), mapped(&by->damping, t->zeta[n]));
+}
+
+INLINE void change_terms(lanes zeta[TERMS], const taylor_trace *t, const step_point *at, const step_direction *in,
                          const dynamics_change *by) {
     const laconic_model *m = at->model;
-    real yaw[TERMS];
+    lane yaw[TERMS];
     turn_change turn;
     zeta[0] = in->zeta;
     for (int n = 0; n < TERMS - 1; n++) {
-        yaw[n] = dot(vec(m->nu_of_zeta[2]), zeta[n]);
+        yaw[n] = lanes_dot(vec(m->nu_of_zeta[2]), zeta[n]);
         if (by != NULL) yaw[n] += dot(by->yaw, t->zeta[n]);
-        vector rate = minus(product_change(t, m, by, zeta, yaw, n), damping(m, zeta[n]));
-        if (n == 0) rate = plus(rate, in->constant);
-        if (at->rotates) rate = plus(rate, rotating_b_change(&turn, t, at, in, zeta[n], n));
-        zeta[n + 1] = scaled(at->integrator->step_s * part[n], rate);
+        lanes rate = product_change(t, m, zeta, yaw, n);
+        if (LACONIC_WITH_DAMPING) rate = lanes_minus(rate, lanes_times(vec(m->decay_per_s), zeta[n]));
+        if (by != NULL) rate = lanes_plus(rate, lanes_of(product_by_model(t, by, n)));
+        if (n == 0) rate = lanes_plus(rate, in->constant);
+        if (at->rotates) rate = lanes_plus(rate, rotating_b_change(&turn, t, at, in, zeta[n], n));
+        const lane s = t->share_s[n];
+        zeta[n + 1] = lanes_with(s * rate.x, s * rate.y, s * rate.z);
     }
+}
+
+/* What one term adds to path and displacement. */
+INLINE void add_term(step_response *out, const taylor_trace *t, int n, lanes z) {
+    const lane s = t->share_s[n];
+    out->path = lanes_with(out->path.x + s * z.x, out->path.y + s * z.y, out->path.z + s * z.z);
+    out->along_m += lanes_dot(t->pose.along[n], z);
+    out->across_m += lanes_dot(t->pose.across[n], z);
 }
 
 INLINE step_response taylor_response(const taylor_trace *t, const step_point *at, const step_direction *in,
                                      const dynamics_change *by, vector path) {
-    vector zeta[TERMS];
-    step_response out;
+    lanes zeta[TERMS];
+    step_response out = {no_lanes(), no_lanes(), lane_of(R(0)), lane_of(R(0)), lane_of(R(0))};
     change_terms(zeta, t, at, in, by);
-    out.delta = sum_to_end(zeta);
-    out.path = scaled(at->integrator->step_s, mean_of(zeta));
-    out.moved.along_m = out.moved.across_m = R(0);
-    out.moved.yaw_change_rad = dot(vec(at->model->yaw_rate_of_zeta), out.path);
-    for (int n = 0; n < TERMS; n++) {
-        out.moved.along_m += dot(t->pose.along[n], zeta[n]);
-        out.moved.across_m += dot(t->pose.across[n], zeta[n]);
+    for (int n = TERMS - 1; n > 0; n--) {
+        out.delta = lanes_plus(out.delta, zeta[n]);
+        add_term(&out, t, n, zeta[n]);
     }
+    add_term(&out, t, 0, zeta[0]);
+    out.yaw_change_rad = lanes_dot(vec(at->model->yaw_rate_of_zeta), out.path);
     if (by == NULL) return out;
-    out.moved.yaw_change_rad += dot(by->yaw_rate, path);
-    add_pose_by_model(&out.moved, t, by);
+    pose_change more = {R(0), R(0), dot(by->yaw_rate, path)};
+    add_pose_by_model(&more, t, by);
+    out.along_m += more.along_m;
+    out.across_m += more.across_m;
+    out.yaw_change_rad += more.yaw_change_rad;
     return out;
 }
 
-void laconic_taylor_8_responses(step_response *step, step_response out[], const step_point *at,
-                                const step_direction in[], int32_t count) {
+void laconic_taylor_8_responses(step_result *step, step_response out[], const step_point *at, const step_direction in[],
+                                int32_t count) {
     taylor_trace t;
     trace_terms(&t, at);
     step->delta = sum_to_end(t.zeta);

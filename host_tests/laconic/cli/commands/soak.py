@@ -42,6 +42,8 @@ def command(what: str, minutes: float, seed: int | None, json_wanted: bool, **sp
     controllers      PyPI's canopen and odrive-can and a C620 client drive vehicles on the
                      process and an emulated board: wheels move as the core does with
                      the drives' torques, bit for bit; ends after --cycles
+    derivatives      tangents of a thousand steps of each method against differences in
+                     50 digits, adjoints against Jacobians; half an hour
     drive-frames     frames of each protocol of drives with faults between, N minutes
                      each, under libFuzzer; Ctrl-C keeps and prints what was found
     faults           the fault matrix of the rig, with new seeds

@@ -1,0 +1,28 @@
+"""What all Jacobians of a step cost beside the step, in instructions: the same on every run."""
+
+from __future__ import annotations
+
+import pytest
+
+from laconic.benchmark.counting import cachegrind_present, instructions_of
+from laconic.paths import built
+from laconic.verification.derivatives.trials import METHODS
+
+FEW, MANY = 100, 300  # calls: what a count of one run has in common with another's cancels
+LIMIT = 6.0           # steps
+
+
+def cost(method: str, what: str) -> float:
+    """Instructions of one step, or of one answer about it."""
+    program = str(built("bin/count_derivatives"))
+    few, many = (instructions_of([program, method, what, str(calls)]) for calls in (FEW, MANY))
+    return (many - few) / (MANY - FEW)
+
+
+@pytest.mark.skipif(not cachegrind_present(), reason="valgrind is not installed")
+@pytest.mark.parametrize("method", METHODS)
+def test_all_jacobians_by_state_and_input_cost_at_most_six_steps(capsys, method):
+    step, jacobian = cost(method, "step"), cost(method, "jacobian")
+    with capsys.disabled():
+        print(f"\n{method}: {step:.0f} instructions a step, its Jacobians {jacobian:.0f}, {jacobian / step:.2f} steps")
+    assert jacobian / step <= LIMIT
