@@ -4,8 +4,8 @@
 #ifndef LACONIC_STEP_CHANGE_H
 #define LACONIC_STEP_CHANGE_H
 
+#include "direction_lanes.h"
 #include "laconic/derivatives.h"
-#include "lanes.h"
 #include "step_internals.h"
 
 /* -------------------------------------------------------------------------------- linear maps -- */

@@ -1,7 +1,7 @@
 /* Several directions side by side: the same operations on the lanes of one processor register, with the bits of each
  * direction by itself. Where compilers have no such registers there is one lane. */
-#ifndef LACONIC_LANES_H
-#define LACONIC_LANES_H
+#ifndef LACONIC_DIRECTION_LANES_H
+#define LACONIC_DIRECTION_LANES_H
 
 #include "vector.h"
 
