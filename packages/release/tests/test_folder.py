@@ -21,6 +21,7 @@ from laconic_packages.facts import ROOT
 from laconic_release import bill, checksums
 from laconic_release.tree import tree_of
 from laconic_wheel.contents import FMUS
+from laconic_wheel.licences import compiler_parts
 from laconic_wheel.platforms import PLATFORMS
 
 ARCHIVES = (".zip", ".whl", ".fmu", ".pack")
@@ -73,6 +74,15 @@ def test_a_wheel_is_what_its_name_and_its_record_state(name: str) -> None:
             if digest:
                 whole = base64.urlsafe_b64encode(hashlib.sha256(wheel.read(each)).digest()).rstrip(b"=").decode()
                 assert (digest, int(size)) == (f"sha256={whole}", wheel.getinfo(each).file_size), each
+
+
+@pytest.mark.parametrize("name", PLATFORMS)
+def test_a_wheel_holds_the_licence_of_each_part_inside_of_it(name: str) -> None:
+    platform = PLATFORMS[name]
+    with zipfile.ZipFile(DIST / f"laconic-{VERSION}-py3-none-{platform.tag}.whl") as wheel:
+        found = {Path(each).name for each in wheel.namelist() if "/licenses/" in each}
+    parts = ("fmi-headers", "cantools", *compiler_parts(platform))
+    assert found == {"LICENSE", *(f"LICENSE-{part}.txt" for part in parts)}
 
 
 @pytest.mark.parametrize("name", FMUS)
