@@ -7,6 +7,7 @@ writes laconic_wire.h and laconic_wire.c, which add to cantools' packers what th
 
 from __future__ import annotations
 
+import re
 import sys
 from pathlib import Path
 
@@ -17,6 +18,7 @@ from .contract import attribute, limits, load
 ID_BASE = 1664
 NOTE = "/* Generated from laconic.dbc. */\n"
 SMALL_IMAGES_LEAVE_OUT = ("WHEEL_ANGLE", "IMU", "ENCODER")  # the last frames of the DBC
+MADE_AT = re.compile(r"^( \* @brief .* by cantools version [\w.]+) .*\.$", re.MULTILINE)
 KEYS = ("none", "nonce", "session", "run")  # what keys a frame's protection
 
 
@@ -145,8 +147,15 @@ uint16_t laconic_wire_data_id(uint8_t offset);         /* profile 5  */
 """
 
 
+def without_time(out: Path) -> None:
+    """Takes out of cantools' files when they were made: the same DBC is the same bytes, in the sources of FMUs, too."""
+    for path in out.glob("laconic_dbc.[ch]"):
+        text = path.read_text(encoding="utf-8")
+        path.write_text(MADE_AT.sub(r"\1.", text, count=1), encoding="utf-8")
+
+
 def main(dbc: str, directory: str) -> None:
-    """Reads the DBC and writes the two files."""
+    """Reads the DBC and writes the two files; those of cantools lie beside them."""
     database = load(Path(dbc))
     out = Path(directory)
     header = HEADER.format(constants="\n".join(constants(database)))
@@ -154,6 +163,7 @@ def main(dbc: str, directory: str) -> None:
     body = ['#include "laconic_wire.h"', "", "const laconic_wire_row laconic_wire[LACONIC_WIRE_OFFSETS] = {"]
     body += [*rows(database), "};", "", *tables(database), ""]
     out.joinpath("laconic_wire.c").write_text(NOTE + "\n".join(body), encoding="utf-8")
+    without_time(out)
 
 
 if __name__ == "__main__":
