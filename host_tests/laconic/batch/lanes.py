@@ -1,0 +1,215 @@
+"""Many vehicles that step together, as numpy arrays with one number for each lane.
+
+    batch = Batch(robot, lanes=1000, method="auto", step_s=0.01)
+    batch.voltage_V[:] = voltages                   # (N, lanes)
+    batch.run(steps=100)
+    batch.x_m, batch.heading_rad, batch.status      # (lanes,) each
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Sequence
+from concurrent.futures import ThreadPoolExecutor
+from typing import Any
+
+import numpy as np
+
+from laconic.batch.memory import Rows, aligned_memory
+from laconic.core import Core, Vehicle
+from laconic.core.given import number, numbers, shown, step_count
+from laconic.errors import BadInput, Refused
+
+MOST_LANES = 2**28
+
+
+class Batch:
+    """Vehicles side by side, each with the bits and the refusals that `Plant.run` would give it alone.
+
+    `vehicles`: one for all lanes, or several kinds of one scalar type; then `kind_of` has for each lane the index of
+    its kind, from 0, and without it there is one lane for each. `lanes`: how many, where one vehicle is for all.
+    `width_bytes`: of the registers (16, 32, 64; 1: lanes one by one), the widest that there are by default. All lanes
+    begin at rest at the origin without input.
+
+    Inputs and outputs are views of the batch's own memory, nothing is copied: inputs may be written in place.
+    Raises BadInput for what does not fit and for a vehicle with friction or a drive, which a batch does not step;
+    Refused as `Vehicle.plant` does.
+    """
+
+    voltage_V: np.ndarray             # (N, lanes)  input; N wheels of the vehicle that has most  # noqa: N815
+    axle_torque_Nm: np.ndarray        # (N, lanes)  input                                         # noqa: N815
+    body_force_N: np.ndarray          # (2, lanes)  input, along and across                       # noqa: N815
+    body_moment_Nm: np.ndarray        # (lanes,)    input                                         # noqa: N815
+    world_force_N: np.ndarray         # (2, lanes)  input                                         # noqa: N815
+    world_force_point_m: np.ndarray   # (2, lanes)  input, from the centre of mass in body axes
+    x_m: np.ndarray                   # (lanes,)    of the centre of mass; read only
+    y_m: np.ndarray                   # (lanes,)    read only
+    status: np.ndarray                # (lanes,)    int32: 0, or why the lane's last run was refused
+    missed: np.ndarray                # (lanes,)    uint64: steps since its start that the lane did not take
+
+    def __init__(self, vehicles: Vehicle | Sequence[Vehicle], lanes: int | None = None, method: str = "auto",
+                 step_s: float = 1e-3, *, kind_of: Sequence[int] | np.ndarray | None = None, width_bytes: int = 0):
+        kinds = [vehicles] if isinstance(vehicles, Vehicle) else list(vehicles)
+        core = self.core = _core_of(kinds)
+        self._kind_of = _kinds_of_lanes(len(kinds), lanes, kind_of)
+        self.lane_count, self.step_s = len(self._kind_of), number("step_s", step_s)
+        self._kinds = core.ffi.new("laconic_batch_kind[]", len(kinds))
+        for item, vehicle in enumerate(kinds):
+            self._prepare(item, vehicle, method)
+        if core.lib.laconic_batch_width(step_count("width_bytes", width_bytes) % 2**31) == 0:
+            raise BadInput(f"width_bytes: this processor has no registers of {shown(width_bytes)} bytes; give 0 for "
+                           "the widest that it has")
+        self._place(max(vehicle.wheel_count for vehicle in kinds), width_bytes)
+        self._pool: ThreadPoolExecutor | None = None
+
+    def _prepare(self, item: int, vehicle: Vehicle, method: str) -> None:
+        if vehicle.has_friction:
+            raise BadInput(f"vehicles[{item + 1}]: has ground friction or a drive with limits, which a batch does not "
+                           "step; take them out, or step it with plant()")
+        core, why = self.core, self.core.why()
+        core.check(core.lib.laconic_batch_kind_of(self._kinds + item, vehicle.c, core.method(method), self.step_s, why),
+                   why)
+
+    def _place(self, wheel_count: int, width_bytes: int) -> None:
+        ffi, lib = self.core.ffi, self.core.lib
+        shape = ffi.new("laconic_batch_shape *", [self.lane_count, len(self._kinds), wheel_count, width_bytes])
+        self._memory = aligned_memory(lib.laconic_batch_size(shape))
+        self.c = ffi.new("laconic_batch *")
+        kind_of = ffi.from_buffer("int32_t[]", self._kind_of)
+        if not lib.laconic_batch_place(self.c, ffi.from_buffer(self._memory), shape, self._kinds, kind_of):
+            raise BadInput("batch: does not fit the core's bounds")  # not reached: all is checked above
+        rows = Rows(self.core, self.c, self._memory, self.lane_count)
+        self.voltage_V, self.axle_torque_Nm = rows.of_wheels("VOLTAGE"), rows.of_wheels("AXLE_TORQUE")
+        self.body_force_N, self.world_force_N = rows.many("BODY_FORCE_X", 2), rows.many("WORLD_FORCE_X", 2)
+        self.world_force_point_m = rows.many("WORLD_FORCE_POINT_X", 2)
+        self.body_moment_Nm = rows.one("BODY_MOMENT")
+        self.x_m, self.y_m = rows.read_only(rows.one("X")), rows.read_only(rows.one("Y"))
+        self._heading, self._nu = rows.read_only(rows.one("HEADING")), rows.read_only(rows.many("NU_1", 3))
+        self.status, self.missed = rows.of_lanes(self.c.status, np.int32), rows.of_lanes(self.c.missed, np.uint64)
+        self._is_observed = False
+
+    @property
+    def width_bytes(self) -> int:
+        """Of the registers that step the lanes; 1: one by one."""
+        return int(self.c.shape.width_bytes)
+
+    # ---- motion
+
+    def start(self, lane: int, *, nu_rad_per_s: Sequence[float] = (0.0, 0.0, 0.0), x_m: float = 0.0, y_m: float = 0.0,
+              heading_rad: float = 0.0) -> None:
+        """Puts one lane at a start; its inputs stay. Raises Refused for one that the constraints forbid."""
+        ffi, lib, why = self.core.ffi, self.core.lib, self.core.why()
+        state, kind = ffi.new("laconic_state *"), self._kinds[self._kind_of[self._lane(lane)]]
+        start = ffi.new("laconic_start *", {
+            "nu_rad_per_s": numbers("nu_rad_per_s", nu_rad_per_s, 3), "x_m": number("x_m", x_m),
+            "y_m": number("y_m", y_m), "heading_rad": number("heading_rad", heading_rad)})
+        self.core.check(lib.laconic_state_set(state, ffi.addressof(kind, "model"), start, why), why)
+        self.load(lane, state)
+
+    def load(self, lane: int, state: Any) -> None:
+        """Gives a lane a laconic_state, such as `plant.save()` has."""
+        self.core.lib.laconic_batch_load(self.c, self._lane(lane), state)
+        self._is_observed = False
+
+    def state(self, lane: int) -> Any:
+        """A copy of a lane's laconic_state, all of it: `Plant.restore` takes it."""
+        state = self.core.ffi.new("laconic_state *")
+        self.core.lib.laconic_batch_store(self.c, self._lane(lane), state)
+        return state
+
+    def run(self, steps: int = 1, threads: int = 1) -> int:
+        """Steps of all lanes with the inputs held, on so many threads; the bits do not depend on their number.
+
+        A lane stops before a step that is refused, the others go on. Returns how many lanes were refused; `status` and
+        `refusal` tell which and why.
+        """
+        steps, threads = step_count("steps", steps), step_count("threads", threads)
+        blocks, self._is_observed = int(self.c.block_count), False
+        step = self.core.lib.laconic_batch_run
+        if threads <= 1:
+            return int(step(self.c, 0, blocks, steps))
+        return sum(self._in_parts(lambda first, count: int(step(self.c, first, count, steps)), blocks, threads))
+
+    def _in_parts(self, work: Callable[[int, int], int], blocks: int, threads: int) -> list[int]:
+        """Work on equal parts of the blocks at the same time; calls of the core let other threads run."""
+        if self._pool is None or self._pool._max_workers < threads:
+            self._pool = ThreadPoolExecutor(threads, "laconic-batch")
+        edges = [blocks * part // threads for part in range(threads + 1)]
+        jobs = [self._pool.submit(work, first, end - first) for first, end in zip(edges, edges[1:], strict=False)]
+        return [job.result() for job in jobs]
+
+    # ---- outputs
+
+    @property
+    def heading_rad(self) -> np.ndarray:
+        """Unwrapped, shape (lanes,); as of now, a view that the next reading after a run renews. O(lanes) then."""
+        self._observe()
+        return self._heading
+
+    @property
+    def nu_rad_per_s(self) -> np.ndarray:
+        """ν, shape (3, lanes); as `heading_rad`."""
+        self._observe()
+        return self._nu
+
+    def _observe(self) -> None:
+        if not self._is_observed:
+            self.core.lib.laconic_batch_observe(self.c, 0, self.c.block_count)
+            self._is_observed = True
+
+    def refusal(self, lane: int) -> Refused | None:
+        """Why a lane's last run was refused, as an exception with its message; None where it was not."""
+        core, lane = self.core, self._lane(lane)
+        if self.status[lane] == core.lib.LACONIC_OK:
+            return None
+        kind, why, held = self._kinds[self._kind_of[lane]], core.why(), core.ffi.new("laconic_input *")
+        core.lib.laconic_batch_input(self.c, lane, held)
+        model, integrator = core.ffi.addressof(kind, "model"), core.ffi.addressof(kind, "integrator")
+        core.lib.laconic_step_refusal(why, int(self.status[lane]), model, integrator, self.state(lane), held, 1)
+        return core.refusal(why)
+
+    def _lane(self, lane: int) -> int:
+        found = step_count("lane", lane)
+        if found >= self.lane_count:
+            raise BadInput(f"lane: there is no {found}; this batch has the lanes 0 to {self.lane_count - 1}")
+        return found
+
+
+def _core_of(vehicles: list[Any]) -> Core:
+    """That of all vehicles."""
+    if not vehicles:
+        raise BadInput("vehicles: none is given; give at least one")
+    for item, vehicle in enumerate(vehicles, start=1):
+        if not isinstance(vehicle, Vehicle):
+            raise BadInput(f"vehicles[{item}]: {shown(vehicle)} is no laconic.Vehicle; give one")
+        if vehicle.core is not vehicles[0].core:
+            raise BadInput(f"vehicles[{item}]: is of {vehicle.core.real} precision, the first of "
+                           f"{vehicles[0].core.real}; give vehicles of one")
+    core: Core = vehicles[0].core
+    return core
+
+
+def _kinds_of_lanes(kinds: int, lanes: int | None, kind_of: Any) -> np.ndarray:
+    """The kind of each lane."""
+    if kind_of is None:
+        if lanes is not None and kinds > 1 and lanes != kinds:
+            raise BadInput(f"lanes: {lanes} lanes for {kinds} vehicles; leave it out for one each, or give kind_of")
+        found = np.zeros(_lane_count(1 if lanes is None else lanes), np.int32) if kinds == 1 else np.arange(kinds)
+    else:
+        found = np.asarray(kind_of)
+        if found.ndim != 1 or found.dtype.kind not in "iu" or (lanes is not None and len(found) != lanes):
+            raise BadInput(f"kind_of: has the shape {found.shape} and numbers of {found.dtype}; give one whole number "
+                           "for each lane")
+        _lane_count(len(found))
+        if found.min() < 0 or found.max() >= kinds:
+            raise BadInput(f"kind_of: {found.min()} to {found.max()} are not all kinds; give numbers from 0 to "
+                           f"{kinds - 1}")
+        if len(found) < kinds:
+            raise BadInput(f"kind_of: {len(found)} lanes for {kinds} vehicles; give no more vehicles than lanes")
+    return np.ascontiguousarray(found, np.int32)
+
+
+def _lane_count(given: Any) -> int:
+    count = step_count("lanes", given)
+    if not 1 <= count <= MOST_LANES:
+        raise BadInput(f"lanes: {count} is not from 1 to {MOST_LANES}; give a number of vehicles")
+    return count
