@@ -42,15 +42,15 @@ if TYPE_CHECKING:  # for type checkers and editors; the table below is what runs
     from laconic.simulation import Trajectory as Trajectory
     from laconic.simulation import simulate as simulate
 
-__all__ = ["METHODS", "BadInput", "Batch", "Core", "Linearisation", "Matrices", "Plant", "Pose", "Rates",
-           "Readings", "Refused", "RunRefused", "Scene", "Sensors", "StepDerivatives", "StepJacobian", "Study", "Trajectory",
+__all__ = ["METHODS", "BadInput", "Batch", "Core", "Linearisation", "Matrices", "Plant", "Pose", "Rates", "Readings",
+           "Refused", "RunRefused", "Scene", "Sensors", "StepDerivatives", "StepJacobian", "Study", "Trajectory",
            "Vehicle", "analyse", "build_scene", "load_core", "make_fmu", "plot", "read_scene", "scene_names",
            "simulate"]
 
 _MODULES = {  # name → where it is, and as what if not by the same name
     "METHODS": "scene", "BadInput": "errors", "Batch": "batch", "Core": "core", "Linearisation": "core",
-    "Matrices": "core", "Plant": "core.plant", "Pose": "core.plant", "Rates": "core", "Readings": "core.sensors", "Refused": "errors",
-    "RunRefused": "simulation", "Scene": "scene", "Sensors": "core.sensors",
+    "Matrices": "core", "Plant": "core.plant", "Pose": "core.plant", "Rates": "core", "Readings": "core.sensors",
+    "Refused": "errors", "RunRefused": "simulation", "Scene": "scene", "Sensors": "core.sensors",
     "StepDerivatives": "core.derivatives", "StepJacobian": "core.derivatives", "Study": "analysis.findings",
     "Trajectory": "simulation", "Vehicle": "core", "analyse": "analysis.analyse", "build_scene": "scene",
     "load_core": "core:load", "make_fmu": "fmu", "plot": "pictures.plotting", "read_scene": "scene",

@@ -14,7 +14,8 @@ def c_page(source: Path) -> str:
     """One page, a part for each header."""
     parts = ["# C reference", "Made from the comments of `core_c/include/laconic`. Compile with the folder "
                               "`core_c/include` on the "
-             "include path and `#include <laconic/laconic.h>`, which includes the others but `batch.h`."]
+             "include path and `#include <laconic/laconic.h>`, which includes the others but "
+             "`batch.h` and `derivatives.h`."]
     for name in HEADERS:
         path = source / "core_c" / "include" / "laconic" / name
         if path.is_file():
