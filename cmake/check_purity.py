@@ -15,7 +15,7 @@ from pathlib import Path
 
 STANDARD = {"float.h", "stdbool.h", "stddef.h", "stdint.h"}
 SCENE_MACRO = "LACONIC_SCENE_HEADER"  # the one include whose name a build chooses
-COMPILER_MAY_CALL = {"memcpy", "memmove", "memset", "_GLOBAL_OFFSET_TABLE_", "__cpu_model", "__cpu_indicator_init"}
+COMPILER_MAY_CALL = {"memcpy", "memmove", "memset", "_GLOBAL_OFFSET_TABLE_"}
 SOFT_FLOAT = re.compile(r"__(aeabi_|[a-z]+(?:[sdt]f|[sd]i)\d?[a-z0-9]*$)")  # libgcc's arithmetic, without an FPU
 # Allowed where plain C is the alternative: |x| as one instruction (a call would show in the objects), and attributes
 # that force or forbid inlining (noipa also forbids all conclusions of gcc from one function about another)

@@ -7,11 +7,11 @@
 /* ------------------------------------------------------------------------------- widths -- */
 
 #if defined(LANES_OF_64)
+#include "processor.h"
+
 static const lanes_width *width_of(int32_t bytes) {
-    if (bytes == 64 && __builtin_cpu_supports("avx512f") && __builtin_cpu_supports("avx512dq") &&
-        __builtin_cpu_supports("avx512vl"))
-        return &laconic_lanes_of_64;
-    if (bytes == 32 && __builtin_cpu_supports("avx2")) return &laconic_lanes_of_32;
+    if (bytes == 64 && processor_has(PROCESSOR_AVX512_F_DQ_VL, PROCESSOR_SAVES_ZMM)) return &laconic_lanes_of_64;
+    if (bytes == 32 && processor_has(PROCESSOR_AVX2, PROCESSOR_SAVES_YMM)) return &laconic_lanes_of_32;
     return bytes == 16 ? &laconic_lanes_of_16 : NULL;
 }
 #elif defined(LANES_OF_16)
