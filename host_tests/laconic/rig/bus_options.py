@@ -29,6 +29,8 @@ def read_bus_options(given: Iterable[str], interface: str) -> dict[str, str | in
             raise BadInput(f"--bus-option {text}: give NAME=VALUE, such as under=slcan")
         if name in found:
             raise BadInput(f"--bus-option {text}: {name} is given twice; give it once")
+        if name == "receive_own_messages":
+            raise BadInput(f"--bus-option {text}: would take frames of its own for another station's; leave it out")
         found[name] = value if interface == FAULTY and name in FIELD_TYPES else plain_value(value)
     check_names(found, interface)
     try:

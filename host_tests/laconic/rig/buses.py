@@ -14,6 +14,7 @@ import can
 from laconic.errors import BadInput
 from laconic.paths import built
 from laconic.rig.client import NodeClient
+from laconic.rig.echo import deaf_to_itself
 from laconic.rig.errors import CannotReach
 from laconic.rig.link import Clock, Link
 from laconic.rig.node_library import LibraryNode
@@ -35,7 +36,7 @@ def open_bus(interface: str, channel: str | None, *, bitrate: int | None = None,
     if bitrate is not None:
         options["bitrate"] = bitrate
     try:
-        bus = can.Bus(interface=interface, channel=channel, **options)
+        bus = deaf_to_itself(can.Bus(interface=interface, channel=channel, **options))
     except can.CanInterfaceNotImplementedError as error:
         raise BadInput(f"--interface {interface}: {error}; python-can has {', '.join(sorted(can.VALID_INTERFACES))}"
                        ) from None

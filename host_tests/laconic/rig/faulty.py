@@ -14,6 +14,7 @@ from typing import Any
 
 import can
 
+from laconic.rig.echo import deaf_to_itself
 from laconic.rig.faults import FIELD_TYPES, IN, OUT, FaultModel, faults_from
 
 # On the others the CAN controller makes error frames; one that a program sends would become some data frame.
@@ -31,7 +32,7 @@ class FaultyBus(can.BusABC):
             self.model = FaultModel(faults_from(ours))
         except ValueError as error:
             raise can.CanInitializationError(f"faulty: {error}") from None
-        self.inner = inner or can.Bus(interface=under, channel=channel, **options)
+        self.inner = inner or deaf_to_itself(can.Bus(interface=under, channel=channel, **options))
         self._carries_error_frames = type(self.inner).__name__ in CARRY_ERROR_FRAMES
         self._now = clock or time.monotonic
         self._start = self._now()
