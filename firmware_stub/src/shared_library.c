@@ -25,6 +25,23 @@ void laconic_library_inspect(const laconic_node *node, laconic_library_view *vie
     *view = seen;
 }
 
+void laconic_library_motion_of(const laconic_node *node, laconic_library_motion *motion) {
+    const laconic_model *model = &node->plant.model;
+    const laconic_state *state = &node->plant.state;
+    laconic_pose pose;
+    laconic_real velocity[2];
+    laconic_pose_of(&pose, model, state);
+    const double yaw_rate = (double)laconic_body_velocity(model, state, velocity);
+    const laconic_library_motion seen = {
+        .x_m = (double)pose.x_m,
+        .y_m = (double)pose.y_m,
+        .heading_rad = (double)pose.heading_rad,
+        .velocity_m_per_s = {(double)velocity[0], (double)velocity[1]},
+        .yaw_rate_rad_per_s = yaw_rate,
+    };
+    *motion = seen;
+}
+
 int32_t laconic_library_drive_count(const laconic_node *node) { return node->drives.count; }
 
 bool laconic_library_drive_view(const laconic_node *node, int32_t drive, laconic_library_drive *view) {

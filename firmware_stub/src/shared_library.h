@@ -36,6 +36,14 @@ typedef struct laconic_library_view {
 
 void laconic_library_inspect(const struct laconic_node *node, laconic_library_view *view);
 
+/* Where the vehicle's centre of mass is, and how fast it moves. */
+typedef struct laconic_library_motion {
+    double x_m, y_m, heading_rad;
+    double velocity_m_per_s[2], yaw_rate_rad_per_s; /* in body axes */
+} laconic_library_motion;
+
+void laconic_library_motion_of(const struct laconic_node *node, laconic_library_motion *motion);
+
 /* One drive at the end of the last step. */
 typedef struct laconic_library_drive {
     int32_t wheel; /* from 0 */

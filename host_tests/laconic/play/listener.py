@@ -22,7 +22,8 @@ from laconic.rig.node_library import node_library
 
 LARGEST_PORT = 65535
 MOST_CLIENTS = 8
-MOST_WAITING = 1 << 16  # bytes that a client has not read; then frames for it are lost, as on a full receive buffer
+MOST_WAITING = 1 << 12    # bytes that a connection has not taken; then frames for it are lost, as of a full buffer
+MOST_IN_KERNEL = 1 << 12  # bytes of it that the system keeps unsent: megabytes else, frames of a minute ago
 FRAME, REPLY = 1, 2     # LACONIC_SLCAN_…
 NO_FLAGS, BUS_ERROR = b"F00\r", b"F80\r"  # answers to SLCAN's F: bit 7 says that the bus had an error since the last F
 
@@ -38,8 +39,10 @@ class Client:
         self._line_bytes = ffi.buffer(self._text)
         self.library.lib.laconic_slcan_init(self._slcan, b"\0")
         self.waiting = bytearray()
-        self.lost = 0  # frames that it did not read in time
+        self.lost = 0         # frames that it did not read in time
+        self.longest_s = 0.0  # for so long its connection took nothing
         self.has_error = False
+        self._stuck_since: float | None = None
 
     def frames(self, data: bytes, box: FrameBox) -> Iterator[can.Message]:
         """The frames in the bytes received; answers to commands wait to be sent."""
@@ -69,8 +72,15 @@ class Client:
 
     def flush(self) -> None:
         """Sends what the connection takes now."""
-        if self.waiting:
+        if not self.waiting:
+            return
+        try:
             del self.waiting[: self.line.send(self.waiting)]
+            self._stuck_since = None
+        except BlockingIOError:  # it does not read; its bytes wait
+            now_s = time.monotonic()
+            self._stuck_since = now_s if self._stuck_since is None else self._stuck_since
+            self.longest_s = max(self.longest_s, now_s - self._stuck_since)
 
 
 class ListeningBus(can.BusABC):
@@ -84,7 +94,8 @@ class ListeningBus(can.BusABC):
         self._clients: dict[socket.socket, Client] = {}
         self._arrived: deque[can.Message] = deque()
         self._box = FrameBox(node_library("double").ffi)
-        self.lost = self.joined = 0  # frames that clients did not read; clients so far
+        self.joined = 0  # clients so far
+        self._left: list[Client] = []
         self.channel_info = f"SLCAN at socket://127.0.0.1:{self.port}"
         super().__init__(channel=channel)
 
@@ -106,8 +117,6 @@ class ListeningBus(can.BusABC):
         for client in list(self._clients.values()):
             try:
                 client.flush()
-            except BlockingIOError:
-                continue  # it does not read; its bytes wait
             except OSError:
                 self._leaves(client)
 
@@ -135,6 +144,8 @@ class ListeningBus(can.BusABC):
             line.close()
             return
         line.setsockopt(socket.IPPROTO_TCP, socket.TCP_NODELAY, 1)
+        if hasattr(socket, "TCP_NOTSENT_LOWAT"):
+            line.setsockopt(socket.IPPROTO_TCP, socket.TCP_NOTSENT_LOWAT, MOST_IN_KERNEL)
         line.setblocking(False)
         self._clients[line] = Client(line)
         self.joined += 1
@@ -156,9 +167,15 @@ class ListeningBus(can.BusABC):
 
     def _leaves(self, client: Client) -> None:
         if self._clients.pop(client.line, None) is not None:
-            self.lost += client.lost
+            if client.lost:
+                self._left.append(client)
             self._selector.unregister(client.line)
             client.line.close()
+
+    def not_taken(self) -> tuple[int, float]:
+        """Frames that clients did not read in time, and the longest time [s] for which one of these read nothing."""
+        slow = [each for each in (*self._left, *self._clients.values()) if each.lost]
+        return sum(each.lost for each in slow), max((each.longest_s for each in slow), default=0.0)
 
     def shutdown(self) -> None:
         """Ends all connections and gives the port back."""

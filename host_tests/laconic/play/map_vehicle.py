@@ -11,6 +11,7 @@ import numpy as np
 from laconic.errors import LaconicError, Refused, ResultFails
 from laconic.play.can_fail import BUS_OFF, ERROR_FRAMES, ORDERS, STALL
 from laconic.play.faults import DriveFault
+from laconic.play.journey import Pose
 from laconic.play.loop import Lateness
 from laconic.play.map_file import REMOTE
 from laconic.play.map_join import Joined, Key
@@ -156,6 +157,13 @@ class MapVehicle:
         if name not in self._readers:
             self._readers[name] = reader_of(name)
         return self._readers[name](self.plant)
+
+    tells_motion = True
+
+    def pose(self) -> Pose:
+        """Now."""
+        now = self.plant.pose()
+        return float(now.x_m), float(now.y_m), float(now.heading_rad)
 
     def speed(self) -> tuple[float, float]:
         """Of the centre of mass and in yaw."""

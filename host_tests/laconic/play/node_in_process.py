@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from collections.abc import Iterator
 
 import can
@@ -33,6 +34,19 @@ class InProcess(NodeVehicle):
         super().start()
         while (message := receive_on(self.client.link.bus, 0.0)) is not None:
             self._hear_early(message)
+
+    tells_motion = True
+
+    def speed(self) -> tuple[float, float]:
+        """Of the centre of mass and in yaw, as the node's plant has them."""
+        now = self.node.motion()
+        return math.hypot(*now.velocity_m_per_s), abs(now.yaw_rate_rad_per_s)
+
+    def finish(self) -> None:
+        """Keeps where the vehicle is before the node is asked for its figures: it plays on until it is stopped."""
+        now = self.node.motion()
+        super().finish()
+        self._pose = (now.x_m, now.y_m, now.heading_rad)
 
     def on_message(self, message: can.Message, now_us: int) -> None:
         """A frame of the controller; the node's own identifiers are not for it."""

@@ -17,12 +17,13 @@ import can
 from laconic.errors import BadInput, LaconicError, ResultFails
 from laconic.play.can_fail import ERROR_FRAMES, ORDERS
 from laconic.play.faults import DriveFault
+from laconic.play.journey import Pose
 from laconic.play.loop import Lateness
 from laconic.play.orders import Orders
 from laconic.play.parameters import drive_parameters
 from laconic.play.senders import Senders
 from laconic.play.settings import DriveSettings
-from laconic.play.vehicle import played
+from laconic.play.vehicle import played, without_sensors
 from laconic.rig.client import NodeClient
 from laconic.rig.errors import BusDied, NodeRefused, NodeSilent
 from laconic.rig.faults import error_frame
@@ -47,6 +48,7 @@ class NodeVehicle:
         self.client, self.scene, self.settings = client, scene, settings
         self.lateness = Lateness()
         self._last_nu: tuple[Frame, bytes] | None = None
+        self._pose: Pose | None = None
         self._own = range(client.link.id_base, client.link.id_base + ID_STRIDE)
         self._fired: set[str] = set()
         self._ending: LaconicError | None = None
@@ -65,7 +67,7 @@ class NodeVehicle:
             self._notes.append(f"the node was found in state {found} and has been stopped before")
         self.client.link.listeners.append(self._hear_early)
         try:
-            load_scene(self.client, played(self.scene), drive_parameters(self.settings))
+            load_scene(self.client, without_sensors(played(self.scene)), drive_parameters(self.settings))
             self.choose_frames(*self.watched)
             self.client.start_drives()
         except NodeRefused as refused:
@@ -142,6 +144,15 @@ class NodeVehicle:
             yield error_frame()
         yield message
 
+    @property
+    def tells_motion(self) -> bool:
+        """Whether NU comes while it plays."""
+        return "NU" in self.watched
+
+    def pose(self) -> Pose | None:
+        """At the end, by POSE: to a millimetre, within what that frame can tell."""
+        return self._pose
+
     def speed(self) -> tuple[float, float]:
         """Of the centre of mass and in yaw, from the node's own NU; 0 before the first one."""
         if self._last_nu is None:
@@ -169,8 +180,8 @@ class NodeVehicle:
             self._notes.append(f"the node could not be stopped: {failure}")
 
     def _read_figures(self) -> None:
-        link, wanted = self.client.link, {"HEARTBEAT", "COUNTERS"}
-        self.choose_frames("COUNTERS")
+        link, wanted = self.client.link, {"HEARTBEAT", "COUNTERS", "POSE"}
+        self.choose_frames("COUNTERS", "POSE")
         deadline_us = link.deadline_us(PATIENCE_S)
         while wanted and (received := link.receive_until(deadline_us)) is not None:
             frame, data = received
@@ -182,12 +193,23 @@ class NodeVehicle:
             elif frame.name == "COUNTERS" and "late_periods" in values:
                 self.lateness.late_periods = values["late_periods"]
                 wanted.discard(frame.name)
+            elif frame.name == "POSE" and frame.name in wanted:
+                self._pose = None if values["overrange"] else pose_of(frame, values)
+                wanted.discard(frame.name)
+
+
+def pose_of(frame: Frame, values: dict[str, int]) -> Pose:
+    """The numbers of POSE."""
+    x_m, y_m, heading_rad = (values[name] * frame.fields[name].scale for name in ("x", "y", "heading"))
+    return x_m, y_m, heading_rad
 
 
 def remedy(refused: NodeRefused, scene: Scene) -> str:
     """What to do about a refusal of drives."""
     if refused.status == "not supported":
-        return "this build of the node does not speak that protocol; choose another --drives or --board"
+        if refused.field == "DRIVE_PROTOCOL":
+            return "this build of the node does not speak that protocol; choose another --drives or --board"
+        return f"this build of the node leaves {refused.field} out; choose another --board, or a scene without it"
     if refused.status == "out of range":
         return (f"drives step once a period, so 1 / step must be a whole number from 1 to 10000, and run.step_s is "
                 f"{scene.run.step_s:g}; give another --step")

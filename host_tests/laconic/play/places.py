@@ -12,6 +12,7 @@ import can
 
 from laconic.play.can_fail import CanFail, drives_can_fail, map_can_fail
 from laconic.play.faults import DriveFault
+from laconic.play.journey import Travelling
 from laconic.play.listener import ListeningBus, listening_socket
 from laconic.play.loop import Lateness, Vehicle
 from laconic.play.map_file import read_map
@@ -20,8 +21,9 @@ from laconic.play.map_vehicle import MapVehicle
 from laconic.play.node_in_process import InProcess
 from laconic.play.node_vehicle import Bridged, NodeVehicle, OnBus, running
 from laconic.play.options import PlayOptions, controller_bus
+from laconic.play.protocols import OF_MAP
 from laconic.play.settings import DriveSettings, drive_settings
-from laconic.play.vehicle import played
+from laconic.play.vehicle import played, silent_sensors
 from laconic.rig.boards import own_node
 from laconic.rig.buses import connected, node_in_process, node_process
 from laconic.rig.client import NodeClient
@@ -32,13 +34,10 @@ from laconic.scene import Scene
 ON_BUS = "bus"  # --board: the node is on the controller's bus already
 
 
-class Played(Vehicle, Protocol):
+class Played(Vehicle, Travelling, Protocol):
     """A vehicle that can be judged."""
 
     lateness: Lateness
-
-    def speed(self) -> tuple[float, float]:
-        """Of the centre of mass [m/s], and yaw rate [rad/s], both without sign."""
 
     def break_drive(self, fault: DriveFault, *, is_broken: bool) -> None:
         """A fault of a drive begins, or ends."""
@@ -55,8 +54,11 @@ class Place(ABC):
 
     name = ""
     settings: DriveSettings | None = None
+    options: PlayOptions
+    scene: Scene
     can_fail: CanFail                  # what can go wrong on purpose there
     serves_itself = False              # the vehicle's process serves the controller's port
+    remark: str | None = None          # what a person should know of this scene there
 
     @abstractmethod
     def opened(self, clock: Clock) -> AbstractContextManager[tuple[Any, can.BusABC]]:
@@ -68,9 +70,23 @@ class Place(ABC):
 
     def where(self, bus: can.BusABC) -> str:
         """What a person must know to connect a controller."""
-        if isinstance(bus, ListeningBus):
-            return listening_text(bus.port)
-        return f"on {bus.channel_info}"
+        if (port := self.port_of(bus)) is not None:
+            return listening_text(port)
+        options = self.options
+        return f"on {' '.join(each for each in (options.interface, options.channel) if each)}"
+
+    def port_of(self, bus: can.BusABC) -> int | None:
+        """At which controllers connect; None: they are on a bus of another kind."""
+        return bus.port if isinstance(bus, ListeningBus) else None
+
+    def not_taken(self, bus: can.BusABC) -> tuple[int, float]:
+        """Once the run is over: frames that programs on the port did not read in time, and for how long [s] they read
+        nothing."""
+        return bus.not_taken() if isinstance(bus, ListeningBus) else (0, 0.0)
+
+    def visitors(self, bus: can.BusABC) -> int | None:
+        """Once the run is over: how many programs have connected; None where nobody counts them."""
+        return bus.joined if isinstance(bus, ListeningBus) else None
 
 
 def listening_text(port: int) -> str:
@@ -88,7 +104,8 @@ class OfMap(Place):
         self.options, self.scene = options, scene
         self.joined = join(read_map(options.map_path, scene.wheel_count), options.dbc)
         if self.joined.has_drives:
-            self.settings = drive_settings(scene, None if scene.rig.drives and scene.rig.drives.protocol else "canopen")
+            named = scene.rig.drives is not None and scene.rig.drives.protocol is not None
+            self.settings = drive_settings(scene, None if named else OF_MAP.name)
             self.scene = played(scene)
         check_map(self.scene, self.joined)
         self.can_fail = map_can_fail(scene, self.settings, options)
@@ -118,6 +135,7 @@ class OfNode(Place):
         self.name = self.settings.protocol.name
         self.id_base = read_id_base(options.id_base, scene)
         self.serves_itself = options.is_served and options.listen is not None
+        self.remark = silent_sensors(scene)
         self.can_fail = drives_can_fail(self.settings, options)
 
     @contextmanager
@@ -147,13 +165,13 @@ class OfNode(Place):
                 connected("slcan", f"socket://127.0.0.1:{self.port}", self.id_base) as client:
             yield OnBus(client, self.scene, self.settings, hears_alone=True), client.link.bus
 
-    def where(self, bus: can.BusABC) -> str:
+    def port_of(self, bus: can.BusABC) -> int | None:
         """The port of the process, where it serves one."""
-        return super().where(bus) if self.port is None else listening_text(self.port)
+        return super().port_of(bus) if self.port is None else self.port
 
     def playing(self, vehicle: NodeVehicle) -> AbstractContextManager[Any]:
         """The node plays, and is at rest at the end."""
-        if self.options.limits.are_given:
+        if self.options.limits.are_given and not vehicle.tells_motion:
             vehicle.watched = (*vehicle.watched, "NU")
         return running(vehicle)
 

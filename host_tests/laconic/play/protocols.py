@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Callable, Mapping
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 
 from laconic.scene.drives import DRIVE_PROTOCOLS
 
@@ -74,3 +74,5 @@ PROTOCOLS: Mapping[str, DriveProtocol] = {each.name: each for each in (
     DriveProtocol("moteus", 1, 1, 126, _moteus, False,
                   {"encoder_counts": 16384, "gear_ratio": 1.0, "torque_constant_Nm_per_A": 30.0 / math.pi / 330.0,
                    "current_limit_A": 20.0, "supply_V": 24.0}, "a moteus r4.11 with its motor of 330 rpm/V"))}
+OF_MAP = replace(PROTOCOLS["canopen"], name="dbc", why_usual="an assumption: a map names no motor")
+"""Drives whose targets are signals of a DBC; its numbers are those of no protocol."""

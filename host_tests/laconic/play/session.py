@@ -9,7 +9,7 @@ import can
 
 from laconic.errors import LaconicError
 from laconic.play.faults import read_bus_faults, read_faults
-from laconic.play.listener import ListeningBus
+from laconic.play.journey import Journey
 from laconic.play.live import live_traffic
 from laconic.play.loop import Loop, Seconds, Traffic
 from laconic.play.options import PlayOptions, check_options
@@ -25,6 +25,7 @@ from laconic.rig.verdict import Judgement, Verdict
 from laconic.scene import Scene
 
 Others = Sequence[Callable[[int], int | None]]
+OF_STATIONS = ("node_ids", "watchdog_s")
 Say = Callable[[str], None]
 
 
@@ -41,29 +42,36 @@ def play(scene: Scene, options: PlayOptions, *, clock: Clock | None = None, othe
     with Interruption() as signals, place.opened(traffic.clock) as (vehicle, bus), logged(traffic, options.logs), \
             shown(traffic, scene, options) as moved:
         traffic.may_go_on = signals.check
-        for line in introduction(place, bus):
-            say(line)
-        trouble = Trouble(place, options, vehicle, traffic, bus)
+        trouble, journey = Trouble(place, options, vehicle, traffic, bus), Journey(vehicle)
         with place.playing(vehicle), trouble:
-            ending = Loop(vehicle, trouble.bus, traffic, [*trouble.others, *others]).run(options.duration_s, moved)
+            for line in introduction(place, bus):  # the scene has been taken: nothing is refused any more
+                say(line)
+            ending = Loop(vehicle, trouble.bus, traffic, [*trouble.others, journey, *others]).run(
+                options.duration_s, moved)
             signals.number = 0  # it has been heard
-        return judged(scene, place, vehicle, traffic, seconds, ending, bus, trouble)
+    judgement = judged(scene, place, vehicle, traffic, seconds, ending, trouble)
+    judgement.figures |= journey.figures()
+    judgement.notes += [*vehicle.notes(), *of_controllers(place, bus, judgement)]
+    return judgement
 
 
 def introduction(place: Place, bus: can.BusABC) -> Iterator[str]:
     """What a person must know: the drives with their settings, and how to connect a controller."""
     if place.settings is not None:
-        yield drives_text(place.settings)
+        yield drives_text(place.settings, is_map=place.options.dbc is not None)
         yield "the drives are the motors: the vehicle has no motor gain, and viscous friction as its only motor damping"
+    if place.remark is not None:
+        yield place.remark
     yield place.where(bus)
 
 
-def drives_text(settings: DriveSettings) -> str:
-    """A line for each key, with its origin."""
-    rows = [(key, value, f"({origin})") for key, value, origin in settings.rows()]
+def drives_text(settings: DriveSettings, *, is_map: bool = False) -> str:
+    """A line for each key, with its origin; drives of a map are no stations and have no watchdog of their own."""
+    rows = [(key, value, f"({origin})") for key, value, origin in settings.rows()
+            if not (is_map and key in OF_STATIONS)]
     widths = [max(len(row[column]) for row in rows) for column in range(2)]
     lines = (f"  {key:{widths[0]}}  {value:{widths[1]}}  {origin}" for key, value, origin in rows)
-    return "\n".join([f"drives: {settings.protocol.name}", *lines])
+    return "\n".join([f"drives: {'of the map' if is_map else settings.protocol.name}", *lines])
 
 
 @contextmanager
@@ -77,18 +85,20 @@ def shown(traffic: Traffic, scene: Scene, options: PlayOptions) -> Iterator[Call
 
 
 def judged(scene: Scene, place: Place, vehicle: Played, traffic: Traffic, seconds: Seconds,
-           ending: LaconicError | None, bus: can.BusABC, trouble: Trouble) -> Judgement:
+           ending: LaconicError | None, trouble: Trouble) -> Judgement:
     """Verdicts and figures."""
     judgement = Judgement(scene.name, place.name)
     died, late = isinstance(ending, BusDied), vehicle.lateness
     text = f"{traffic.frames_in} frames heard, {traffic.frames_out} sent by the vehicle"
     judgement.add(Verdict("bus", not died, str(ending) if died else text))
     fired = vehicle.watchdogs()
-    if trouble.is_wanted:
+    if trouble.judges_stop:
         judgement.notes += [f"watchdog: {each}" for each in fired]
-        judgement.notes += [f"fault: {each}" for each in trouble.faults]
     else:
         judgement.add(Verdict("watchdog", not fired, "; ".join(fired) or "never fired"))
+    judgement.notes += [f"fault: {each}" for each in trouble.faults]
+    if place.remark is not None:
+        judgement.notes.append(place.remark)
     judgement.add(*trouble.verdicts())
     if ending is not None and not isinstance(ending, (BusDied, Interrupted)):
         judgement.add(Verdict("vehicle", False, str(ending)))
@@ -100,7 +110,15 @@ def judged(scene: Scene, place: Place, vehicle: Played, traffic: Traffic, second
         judgement.facts["drives"] = as_values(place.settings)
     if isinstance(ending, Interrupted):
         judgement.notes.append("stopped by the user")
-    if isinstance(bus, ListeningBus) and not bus.joined:
-        judgement.notes.append(f"no controller ever connected to port {bus.port}")
-    judgement.notes += vehicle.notes()
     return judgement
+
+
+def of_controllers(place: Place, bus: can.BusABC, judgement: Judgement) -> Iterator[str]:
+    """Notes on programs at the port that were not there, or too slow."""
+    if place.visitors(bus) == 0:
+        yield f"no controller ever connected to port {place.port_of(bus)}"
+    frames, longest_s = place.not_taken(bus)
+    if frames:
+        judgement.figures |= {"frames_not_taken": frames}
+        yield (f"{frames} frames were lost to a program on the port, which did not read them in time (nothing for up "
+               f"to {longest_s:.2g} s), and what it reads late is old: a longer --step has fewer frames, docs/play.md")

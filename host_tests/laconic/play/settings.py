@@ -8,7 +8,7 @@ from dataclasses import dataclass, field
 from typing import Any
 
 from laconic.errors import BadInput, nearest_of
-from laconic.play.protocols import PROTOCOLS, DriveProtocol
+from laconic.play.protocols import OF_MAP, PROTOCOLS, DriveProtocol
 from laconic.play.vehicle import moved_inertia
 from laconic.rig.options import in_hex, read_id_base
 from laconic.rig.wire import ID_STRIDE
@@ -59,7 +59,7 @@ def drive_settings(scene: Scene, protocol: str | None, id_base: str | None = Non
     """The drives of a scene; `protocol` and `id_base` are those of the command line. BadInput names the key that nobody
     gives."""
     given = scene.rig.drives or Drives(driven=tuple(bool(each.get("driven", True)) for each in scene.vehicle["wheel"]))
-    chosen = PROTOCOLS[protocol_of(scene, given, protocol)]
+    chosen = OF_MAP if protocol == OF_MAP.name else PROTOCOLS[protocol_of(scene, given, protocol)]
     if not any(given.driven):
         raise BadInput(f"{scene.path}: vehicle.wheel: none is driven, so there is nothing that a drive could turn; "
                        "take driven = false out of one")

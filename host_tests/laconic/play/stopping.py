@@ -12,6 +12,8 @@ from laconic.errors import BadInput
 from laconic.rig.verdict import Verdict
 
 LOOK_US = 10_000
+COASTS = ("a drive that is off lets its wheel coast, which only friction ends, and this scene has none: give "
+          "[vehicle.motor] viscous_friction_Nms, or [ground] friction_coefficient and axle_friction_Nm")
 STANDS_M_PER_S, STANDS_RAD_PER_S = 0.01, 0.02
 
 
@@ -47,8 +49,9 @@ class Witness:
     The mark is the first fault: of `first_fault`, seconds since the start once it has come. Where there are no faults
     it is the last frame of the controller."""
 
-    def __init__(self, vehicle: Moving, first_fault: Callable[[], float | None] | None):
-        self.vehicle, self.first_fault = vehicle, first_fault
+    def __init__(self, vehicle: Moving, first_fault: Callable[[], float | None] | None, *,
+                 coasts: bool = False):
+        self.vehicle, self.first_fault, self.coasts = vehicle, first_fault, coasts
         self._start_us: int | None = None
         self._now_us = self._next_us = 0
         self._way_m = 0.0
@@ -91,7 +94,8 @@ class Witness:
         what = "the first fault" if self.first_fault is not None else "the controller's last frame"
         detail = f"{took_s:.3g} s and {way_m:.3g} m after {what} at {since_s:.3g} s"
         if not stands:
-            return Verdict("stopped", False, f"still moving at the end, {detail}", took_s, limits.within_s or 0.0)
+            hint = f"; {COASTS}" if self.coasts else ""
+            return Verdict("stopped", False, f"still moving at the end, {detail}{hint}", took_s, limits.within_s or 0.0)
         passed = (limits.within_s is None or took_s <= limits.within_s) and (
             limits.distance_m is None or way_m <= limits.distance_m)
         return Verdict("stopped", passed, detail, took_s, limits.within_s or 0.0)

@@ -11,6 +11,7 @@ from laconic.play.loop import Traffic
 from laconic.play.options import PlayOptions
 from laconic.play.places import Place, Played
 from laconic.play.stopping import Witness
+from laconic.play.vehicle import coasts_for_ever
 from laconic.rig.faulty import FaultyBus
 from laconic.rig.verdict import Verdict
 
@@ -31,7 +32,8 @@ class Trouble:
         self._witness: Witness | None = None
         if self.limits.are_given:
             has_faults = bool(self.faults or bus_faults)
-            self._witness = Witness(vehicle, self._first_fault if has_faults else None)
+            self._witness = Witness(vehicle, self._first_fault if has_faults else None,
+                                    coasts=coasts_for_ever(place.scene))
             self.others.append(self._witness)
             traffic.of_controller.append(self._witness.heard)
 
@@ -43,9 +45,9 @@ class Trouble:
             self.bus.let_go()
 
     @property
-    def is_wanted(self) -> bool:
-        """Whether a watchdog that fires is what the run is about."""
-        return self.limits.are_given or self._saboteur is not None or isinstance(self.bus, FaultyBus)
+    def judges_stop(self) -> bool:
+        """Whether the vehicle's stop is judged: a watchdog that fires may be what stops it."""
+        return self.limits.are_given
 
     def _first_fault(self) -> float | None:
         found = [self._saboteur.first_s if self._saboteur is not None else None,

@@ -8,7 +8,9 @@ from typing import Any
 
 from laconic.errors import BadInput
 from laconic.scene import Scene
+from laconic.scene.sensors import NO_SENSORS
 
+BRAKES = ("axle_friction_Nm", "roller_drag", "viscous_friction_Nms")  # friction that acts on a wheel that rolls
 OWN_MOTOR = ("motor_gain_Nm_per_V", "motor_damping_Nms")
 
 
@@ -22,6 +24,26 @@ def played(scene: Scene) -> Scene:
     else:
         vehicle |= dict.fromkeys(OWN_MOTOR, 0.0)
     return replace(scene, vehicle=vehicle, inputs=())
+
+
+def without_sensors(scene: Scene) -> Scene:
+    """The scene without IMU and encoders, for which protocols of drives have no frames."""
+    return replace(scene, sensors=NO_SENSORS)
+
+
+def silent_sensors(scene: Scene) -> str | None:
+    """A line on sensors of the scene that nobody hears behind drives; None: there are none."""
+    names = [name for name in ("imu", "encoder") if getattr(scene.sensors, name) is not None]
+    if not names:
+        return None
+    return (f"sensors.{' and sensors.'.join(names)}: not played, since drives send what their own encoders show and "
+            "have no frames for others; --dbc and --map send them")
+
+
+def coasts_for_ever(scene: Scene) -> bool:
+    """Whether nothing brakes the vehicle once its drives are off."""
+    tables = (scene.vehicle.get("ground", {}), scene.vehicle.get("motor", {}), *scene.vehicle["wheel"])
+    return not any(table.get(key) for table in tables for key in BRAKES)
 
 
 def moved_inertia(scene: Scene, driven: Sequence[bool]) -> tuple[float, ...]:

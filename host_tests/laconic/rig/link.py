@@ -25,6 +25,10 @@ class Clock:
         """Microseconds since some start."""
         return time.perf_counter_ns() // 1000
 
+    def calendar_s(self) -> float:
+        """What to add to its seconds to have those since 1970, which logs have."""
+        return time.time() - self.now_us() / 1e6
+
     def pass_time(self, microseconds: int) -> None:
         """Waits so long."""
         time.sleep(microseconds / 1e6)

@@ -20,9 +20,9 @@ import numpy as np
 from laconic.core.plant import Plant
 from laconic.core.recording import Recorder
 from laconic.errors import BadInput
-from laconic.rig.client import NodeClient
+from laconic.rig.client import Identity, NodeClient
 from laconic.rig.errors import NodeSilent
-from laconic.rig.parameters import Parameter
+from laconic.rig.parameters import Parameter, method_number
 from laconic.rig.sensed import RAW_OF_SENSORS, has_sensors, raw_row, sensor_parameters
 from laconic.rig.wire import wire
 from laconic.scene import Scene
@@ -83,15 +83,28 @@ def load_scene(node: NodeClient, scene: Scene, more: Iterable[Parameter] = ()) -
     """Sends a scene's vehicle, start and run to a node, and more parameters where there are more; returns its twin, a
     plant of the core at the same start."""
     identity = (node.identity if node.link.session.is_open else None) or node.open()
-    if identity.real != scene.run.real:
-        raise BadInput(f"{scene.path}: run.real is {scene.run.real}, the node computes in {identity.real}; "
-                       "give --real, or another node")
+    twin = scene.plant(scene.core())
+    check_run(identity, scene, twin)
     if identity.max_wheels < scene.wheel_count:
         raise BadInput(f"{scene.path}: vehicle.wheel: {scene.wheel_count} of them, the node has room for "
                        f"{identity.max_wheels}; use a build with more")
-    twin = scene.plant(scene.core())
     node.load(twin, start_of(scene), (*sensor_parameters(scene, twin), *more))
     return twin
+
+
+def check_run(identity: Identity, scene: Scene, twin: Plant) -> None:
+    """BadInput for a scalar type or a method that the node does not have, with all options that it needs instead."""
+    core, options, what = twin.core, [], []
+    number = method_number(core, twin.c.integrator.method)
+    if identity.real != scene.run.real:
+        what.append(f"run.real is {scene.run.real}, the node computes in {identity.real}")
+        options.append(f"--real {identity.real}")
+    if not identity.methods >> number & 1:
+        names = [name for bit, name in enumerate(core.method_names) if identity.methods >> bit & 1]
+        what.append(f"its method is {core.method_names[number]}, the node has {', '.join(names)}")
+        options.append(f"--method {names[0] if names else '…'}")
+    if what:
+        raise BadInput(f"{scene.path}: {'; '.join(what)}; give {' '.join(options)}, or another node")
 
 
 class RawStream:

@@ -63,12 +63,14 @@ def open_log(path: Path) -> can.io.generic.MessageWriter:
 
 
 def stamped(path: Path, writer: can.io.generic.MessageWriter, link: Heard) -> Callable[[can.Message], None]:
-    """Stamps frames with the link's time: those sent, and those of a virtual clock, contain none."""
+    """Stamps frames with the link's time: those sent, and those of a virtual clock, contain none. The calendar is asked
+    once, so that a clock that is set during the run leaves no gap."""
+    calendar_s = link.clock.calendar_s()
 
     def write(message: can.Message) -> None:
         is_received = message.timestamp > 0.0
         stamp = message.__copy__()
-        stamp.timestamp = link.clock.now_us() / 1e6
+        stamp.timestamp = calendar_s + link.clock.now_us() / 1e6
         stamp.is_rx = is_received
         stamp.channel = 1
         with writable(path):

@@ -109,6 +109,12 @@ class LibraryNode:
         return {"state": NODE_STATES[view.state], "deaf": view.deaf, "steps": view.steps,
                 "voltage_V": list(view.voltage_V), **counters}
 
+    def motion(self) -> Any:
+        """Where the vehicle is and how fast: a laconic_library_motion."""
+        found = self.library.ffi.new("laconic_library_motion *")
+        self.library.lib.laconic_library_motion_of(self.c, found)
+        return found
+
     def idle_us(self, now_us: int) -> int:
         """Microseconds until the node has something to do."""
         return int(self.library.lib.laconic_node_idle_us(self.c, now_us & 0xFFFFFFFF))

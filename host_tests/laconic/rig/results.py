@@ -38,10 +38,17 @@ def write_junit(judgement: Judgement, path: Path, seconds: float, command: str =
     failures = sum(not each.passed for each in judgement.verdicts)
     suite = ElementTree.Element("testsuite", name=f"laconic {command} {judgement.scene} {judgement.mode}",
                                 tests=str(len(judgement.verdicts)), failures=str(failures), time=f"{seconds:.3f}")
+    known = [(name, value) for name, value in judgement.figures.items() if math.isfinite(value)]
+    if known:
+        properties = ElementTree.SubElement(suite, "properties")
+        for name, value in known:
+            ElementTree.SubElement(properties, "property", name=name, value=f"{value:.6g}")
     for each in judgement.verdicts:
         case = ElementTree.SubElement(suite, "testcase", classname=f"{command}.{judgement.mode}", name=each.name)
         if not each.passed:
             ElementTree.SubElement(case, "failure", message=each.detail).text = each.detail
+    if judgement.notes:
+        ElementTree.SubElement(suite, "system-out").text = "\n".join(judgement.notes)
     with opened(path, "wb") as file:
         ElementTree.ElementTree(suite).write(file, encoding="utf-8", xml_declaration=True)
 

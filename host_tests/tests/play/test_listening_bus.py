@@ -54,3 +54,21 @@ def test_a_port_that_is_taken_or_none_is_refused_in_one_line() -> None:
         ListeningBus(bus.port)
     with pytest.raises(BadInput, match="--listen 70000: no TCP port"):
         ListeningBus(70000)
+
+
+def test_a_program_that_does_not_read_gets_no_old_frames_and_its_lost_ones_are_counted() -> None:
+    """Frames count up, so that each tells its age: what waits for a program is less than a second of a full bus."""
+    count, a_second = 60_000, 9_000
+    with ListeningBus(0) as bus, open_bus("slcan", f"socket://127.0.0.1:{bus.port}") as client:
+        assert bus.recv(0.05) is None
+        for number in range(count):
+            bus.send(can.Message(arbitration_id=0x201, is_extended_id=False, data=number.to_bytes(8, "big")))
+        lost, longest_s = bus.not_taken()
+        assert lost >= count - a_second and 0.0 < longest_s < 60.0
+        heard = [int.from_bytes(message.data, "big") for message in iter(lambda: client.recv(0.05), None)]
+        assert 0 < len(heard) <= a_second
+        bus.recv(0.0)
+        bus.send(FRAMES[0])
+        rest = list(iter(lambda: client.recv(0.05), None))
+        assert len(heard) + lost + len(rest) == count + 1 and same(rest[-1], FRAMES[0])  # the way is free again
+    assert bus.not_taken()[0] == lost
