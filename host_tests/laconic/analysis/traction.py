@@ -219,7 +219,9 @@ def _words(subject: Subject, found: Traction, friction: float) -> list[str]:
     which = ", ".join(str(i) for i in found.slipping_wheels)
     worst = "a wheel pulls without any normal load"
     if np.isfinite(most):
-        worst = f"up to {100.0 * most:.0f} % of the friction cone"
+        instant, wheel = np.unravel_index(np.nanargmax(found.use), found.use.shape)
+        worst = (f"up to {100.0 * most:.0f} % of the friction cone, wheel {wheel + 1} at "
+                 f"{found.time_s[instant]:.4g} s")
     wheels = f"wheel{'s' if len(found.slipping_wheels) > 1 else ''} {which}"
     return [*words, f"At {found.first_slip_s:.4g} s {wheels} would begin to slip: from there on the run shows what a "
                     f"vehicle with more grip would do ({worst})."]

@@ -9,6 +9,7 @@ import numpy as np
 import pytest
 from matplotlib import pyplot as plt
 
+from laconic.analysis.analyse import analyse
 from laconic.analysis.bifurcation_part import bifurcation_part
 from laconic.analysis.findings import Study, StudyOptions
 from laconic.analysis.from_core import Subject, subject_of
@@ -134,3 +135,12 @@ def test_a_new_page_takes_away_the_older_pages_pictures_and_nothing_else(capsys,
     printed = capsys.readouterr().err
     assert all(name in printed for name in older)
     assert json.loads((tmp_path / "report.json").read_text())["pictures"] == []
+
+
+def test_the_worst_use_of_the_friction_cone_is_told_with_its_wheel_and_instant() -> None:
+    study = analyse(read_scene("robotino2"), ["traction"])
+    traction = study.traction
+    assert traction is not None and traction.first_slip_s is not None
+    instant, wheel = np.unravel_index(np.nanargmax(traction.use), traction.use.shape)
+    assert f"wheel {wheel + 1} at {traction.time_s[instant]:.4g} s)" in study.words["traction"][-1]
+    assert f"(up to {100 * traction.use[instant, wheel]:.0f} % of the friction cone, " in study.words["traction"][-1]

@@ -131,3 +131,18 @@ def test_a_run_whose_wheels_slip_is_not_said_to_hold_the_ground(tmp_path, capsys
     assert found["holds"] is None and found["slipping"] is None
     assert found["friction_coefficient"] == 0.6
     assert found["slip_loss_J"] > 10.0
+
+
+@pytest.mark.parametrize("volts, told", [(0.0, "no wheel slipped\n"), (60.0, "slip and dragging rollers took ")])
+def test_a_run_on_ground_with_friction_ends_with_what_slip_took(
+        tmp_path: Path, capsys: pytest.CaptureFixture[str], volts: float, told: str) -> None:
+    scene = Path(mecanum(tmp_path, ground="com_z_m = 0.3", volts=volts))
+    text = scene.read_text(encoding="utf-8").replace("value = [1.0,", "value = [0.0,")
+    scene.write_text(text + "[ground]\nfriction_coefficient = 0.2\n", encoding="utf-8")
+    assert run(["simulate", str(scene)]) == 0
+    printed = capsys.readouterr().out
+    assert told in printed and "first order" not in printed
+    assert run(["simulate", str(scene), "--step", "0.01"]) == 0
+    assert "compare this path with --step 0.001" in capsys.readouterr().out
+    assert run(["simulate", mecanum(tmp_path)]) == 0
+    assert "slip and dragging" not in capsys.readouterr().out

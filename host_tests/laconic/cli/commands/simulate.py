@@ -19,6 +19,8 @@ from laconic.scene import METHODS, Scene, read_scene
 from laconic.simulation import RunRefused, Trajectory, input_signals, simulate, usual_signals, wanted_signals
 from laconic.simulation.csv_text import csv_text
 
+FRICTION_STEP_S = 1e-3  # where the path matters: docs/scenes.md, "Ground with friction, drives with limits"
+
 
 @click.command("simulate")
 @click.argument("scene", type=SceneName())
@@ -106,6 +108,19 @@ def in_words(refused: Refused, run: Trajectory) -> dict[str, Any]:
             "message": str(refused)}
 
 
+def words_of_slip(run: Trajectory) -> list[str]:
+    """What slip took on ground with friction, and whether the step is longer than its first order deserves."""
+    if run.grip is None or run.grip.slip_loss_J is None:
+        return []
+    loss_J, step_s = run.grip.slip_loss_J, run.scene.run.step_s
+    told = [f"slip and dragging rollers took {loss_J:.3g} J; contact_state and slip_along_m_per_s of [outputs] tell "
+            "where" if loss_J > 0.0 else "no wheel slipped"]
+    if step_s > FRICTION_STEP_S:
+        told.append("ground with friction is stepped to first order: compare this path with "
+                    f"--step {FRICTION_STEP_S:g}")
+    return told
+
+
 def print_summary(run: Trajectory, *files: Path | None) -> None:
     """The same for people."""
     given, picked = run.scene.run.method, run.method
@@ -116,6 +131,8 @@ def print_summary(run: Trajectory, *files: Path | None) -> None:
     click.echo(f"at {run.time_s[-1]:g} s:")
     for name, values in run.columns.items():
         click.echo(f"  {name:28} {values[-1]: .12g}")
+    for line in words_of_slip(run):
+        click.echo(line)
     for path in files:
         if path:
             click.echo(f"wrote {path}")
