@@ -133,7 +133,7 @@ def test_a_run_whose_wheels_slip_is_not_said_to_hold_the_ground(tmp_path, capsys
     assert found["slip_loss_J"] > 10.0
 
 
-@pytest.mark.parametrize("volts, told", [(0.0, "no wheel slipped\n"), (60.0, "slip and dragging rollers took ")])
+@pytest.mark.parametrize("volts, told", [(0.0, "no wheel slipped\n"), (2.0, "no wheel slipped\n"), (60.0, "slip and dragging rollers took ")])
 def test_a_run_on_ground_with_friction_ends_with_what_slip_took(
         tmp_path: Path, capsys: pytest.CaptureFixture[str], volts: float, told: str) -> None:
     scene = Path(mecanum(tmp_path, ground="com_z_m = 0.3", volts=volts))

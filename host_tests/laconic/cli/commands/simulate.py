@@ -20,6 +20,7 @@ from laconic.simulation import RunRefused, Trajectory, input_signals, simulate, 
 from laconic.simulation.csv_text import csv_text
 
 FRICTION_STEP_S = 1e-3  # where the path matters: docs/scenes.md, "Ground with friction, drives with limits"
+ROLLED = 1e-5                # J for 1 kg on wheels of 1 m: a millionth of the radius, slid with all of its weight
 
 
 @click.command("simulate")
@@ -112,9 +113,10 @@ def words_of_slip(run: Trajectory) -> list[str]:
     """What slip took on ground with friction, and whether the step is longer than its first order deserves."""
     if run.grip is None or run.grip.slip_loss_J is None:
         return []
-    loss_J, step_s = run.grip.slip_loss_J, run.scene.run.step_s
+    loss_J, step_s, vehicle = run.grip.slip_loss_J, run.scene.run.step_s, run.scene.vehicle
+    rounding_J = ROLLED * vehicle["mass_kg"] * vehicle["wheel_radius_m"]
     told = [f"slip and dragging rollers took {loss_J:.3g} J; contact_state and slip_along_m_per_s of [outputs] tell "
-            "where" if loss_J > 0.0 else "no wheel slipped"]
+            "where" if loss_J > rounding_J else "no wheel slipped"]
     if step_s > FRICTION_STEP_S:
         told.append("ground with friction is stepped to first order: compare this path with "
                     f"--step {FRICTION_STEP_S:g}")
