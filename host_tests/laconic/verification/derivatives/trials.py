@@ -96,7 +96,7 @@ def made_up(random: np.random.Generator, kind: str, method: str) -> Trial:
     slowest, fastest = (-3.0, -1.5) if method in ("rk4", "taylor-8") else (-3.0, 1.0)
     table = _table(random, kind, float(10 ** random.uniform(slowest, fastest)))
     speed = float(10 ** random.uniform(0, 1.5))
-    return Trial(kind, method, table, float(10 ** random.uniform(-3, -1)),
+    return Trial(kind, method, table, float(10 ** random.uniform(-3, -0.3)),
                  random.normal(0, speed, 3).tolist(), float(random.uniform(-3, 3)),
                  _held(random, len(table["wheel"]), bool(random.random() < 0.4)))
 
