@@ -259,7 +259,7 @@ static void follows_the_vehicle(const step_case *c) {
 
 static void it_is_so_for_every_number_of_the_vehicle(void) { for_every_case(follows_the_vehicle); }
 
-/* The last start is of a motion that tends to straight motion: in the closed form of the free motion tan becomes tanh. */
+/* The last start tends to straight motion: in the closed form of the free motion tan becomes tanh. */
 static void fast_turns_and_large_steps_are_linearised(void) {
     const double start[3][3] = {{0.1, -1, 6}, {0.1, 1, 0.4}, {0.1, 40, 0.4}};
     for (int k = 2; k < METHODS; k++)
