@@ -11,9 +11,9 @@
  *
  * Memory   the caller owns it: a laconic_batch, the kinds, and one piece of laconic_batch_size() bytes. No heap.
  * Threads  laconic_batch_run() and _observe() of different blocks may run at the same time; all else alone.
- * Cost     docs/batch.md: a step takes about half of laconic_step() with AVX2, a quarter with AVX-512, in single
- *          precision a quarter and a seventh. Memory: some 300 bytes for a lane, and where kinds are many 2 to 3 KB for
- *          each kind, twice that where laconic_batch_kind is counted.
+ * Cost     docs/batch.md has a table: with AVX2 about half of laconic_step() for a step alone and a third where inputs
+ *          are held over many, with AVX-512 half of that, in single precision again half. Memory: some 300 bytes for a
+ *          lane, and where kinds are many some 4 KB for each, laconic_batch_kind included.
  * Limits   ideal ground and motors without limits; held inputs. With compilers other than gcc and clang lanes step one
  *          by one. */
 #ifndef LACONIC_BATCH_H
