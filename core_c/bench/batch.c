@@ -1,5 +1,5 @@
-/* batch: what a step of a lane costs beside one of laconic_step(), in CPU time of one core. Prints for each width of
- * registers nanoseconds and ratio, step by step (inputs are read anew) and in one run of 100 steps (beside laconic_run). */
+/* batch: what a step of a lane costs beside one of a vehicle alone, in CPU time of one core. Prints for each width of
+ * registers nanoseconds and ratio: step by step (inputs are read anew), and in one run of 100 steps. */
 #include "laconic/batch.h"
 
 #include <stdint.h>
