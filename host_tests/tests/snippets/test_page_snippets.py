@@ -12,7 +12,6 @@ import shutil
 import socket
 import subprocess
 import sys
-import time
 from collections import Counter
 from collections.abc import Iterator
 from dataclasses import dataclass, field
@@ -78,20 +77,14 @@ def free_port() -> int:
 
 
 def start_beside(reader: Reader, snippet: Snippet, port: str) -> None:
-    """Starts what keeps running, and waits until its port is open."""
+    """Starts what keeps running, and waits until it says that its port is open."""
     reader.ports[port] = str(free_port())
     command, *rest = snippet.commands()
     words = shlex.split(reader.with_ports(command).removesuffix("&"))
     words[0] = words[0].replace("build/", f"{build_dir()}/")
     reader.beside.append(subprocess.Popen(words, stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True))
-    for _ in range(600):
-        with socket.socket() as probe:
-            if probe.connect_ex(("127.0.0.1", int(reader.ports[port]))) == 0:
-                break
-        if reader.beside[-1].poll() is not None:
-            break
-        time.sleep(0.02)
-    assert reader.beside[-1].poll() is None, f"{snippet.where}: {reader.beside[-1].stderr.read()}"
+    announced = any("listening" in line for line in reader.beside[-1].stdout or ())
+    assert announced, f"{snippet.where}: {reader.beside[-1].communicate()[1]}"
     for each in rest:
         run_command(reader, snippet, each)
 
