@@ -39,9 +39,27 @@ typedef struct options {
 typedef struct board {
     laconic_node node;
     station station[MOST_STATIONS];
-    int stations; /* that there is room for: 1, or all with --shared  */
-    int refused;  /* socket of the last refused client, -1: none     */
+    int stations;            /* that there is room for: 1, or all with --shared  */
+    int refused;             /* socket of the last refused client, -1: none     */
+    int clients;             /* so far */
+    unsigned long not_taken; /* frames that clients did not read in time */
 } board;
+
+static volatile sig_atomic_t is_over;
+
+static void be_over(int number) { is_over = number; }
+
+/* SIGTERM and Ctrl-C are heard while the port waits, and nowhere else. `heard` is the mask for that. */
+static void hear_the_end(sigset_t *heard) {
+    const struct sigaction action = {.sa_handler = be_over};
+    sigset_t ends;
+    sigemptyset(&ends);
+    sigaddset(&ends, SIGTERM);
+    sigaddset(&ends, SIGINT);
+    sigprocmask(SIG_BLOCK, &ends, heard);
+    sigaction(SIGTERM, &action, NULL);
+    sigaction(SIGINT, &action, NULL);
+}
 
 static const char help[] =
     "usage: laconic-node-double|laconic-node-single [--port N] [--id-base 0xNNN] [--bitrate N] [--once]\n"
@@ -95,12 +113,16 @@ static bool has_room(const board *port) {
     return false;
 }
 
+static void give(board *port, station *it, const laconic_frame *frame) {
+    if (!station_write(it, frame)) port->not_taken++;
+}
+
 static void fetch_frames(board *port) {
     laconic_frame frame;
     while (has_room(port) && laconic_node_next_frame(&port->node, &frame)) {
         const bool own = is_own(&port->node, &frame);
         for (int k = 0; k < port->stations; k++)
-            if (!own || port->station[k].is_rig) station_write(&port->station[k], &frame);
+            if (!own || port->station[k].is_rig) give(port, &port->station[k], &frame);
     }
 }
 
@@ -126,7 +148,7 @@ static void take_frame(board *port, station *sender, const laconic_frame *frame)
     const bool own = is_own(&port->node, frame);
     if (own) make_rig(port, sender);
     for (int k = 0; k < port->stations; k++)
-        if (&port->station[k] != sender && (!own || port->station[k].is_rig)) station_write(&port->station[k], frame);
+        if (&port->station[k] != sender && (!own || port->station[k].is_rig)) give(port, &port->station[k], frame);
     laconic_node_on_frame(&port->node, frame, now_us());
     step_node(port);
 }
@@ -167,7 +189,7 @@ static void watch(int number, fd_set *set, int *end) {
 }
 
 /* pselect() waits to the microsecond on every system with POSIX; ppoll() is not everywhere. */
-static void wait_for_work(const board *port, int listening) {
+static void wait_for_work(const board *port, int listening, const sigset_t *heard) {
     uint32_t idle_us = laconic_node_idle_us(&port->node, now_us());
     fd_set readable, writable;
     int end = 0;
@@ -183,7 +205,7 @@ static void wait_for_work(const board *port, int listening) {
         if (port->station[k].out_count > 0) watch(port->station[k].socket, &writable, &end);
     }
     const struct timespec timeout = {idle_us / 1000000U, (long)(idle_us % 1000000U) * 1000L};
-    pselect(end, &readable, &writable, NULL, &timeout, NULL);
+    pselect(end, &readable, &writable, NULL, &timeout, heard);
 }
 
 static void send_occupied(int client) { (void)send(client, occupied, sizeof occupied - 1, MSG_DONTWAIT); }
@@ -217,6 +239,7 @@ static bool serve_station(board *port, station *it, int listening, char rate) {
     if (it->socket < 0) {
         station_accept(it, listening, rate);
         it->is_rig = it->socket >= 0 && !has_rig(port);
+        port->clients += it->socket >= 0;
         return false;
     }
     if (read_client(port, it)) return false;
@@ -231,12 +254,18 @@ static bool is_full(const board *port) {
     return true;
 }
 
+/* Until a signal ends it, or with --once the first client leaves. */
 static void serve(board *port, int listening, const options *settings) {
+    sigset_t heard;
+    hear_the_end(&heard);
     port->stations = settings->shared ? MOST_STATIONS : 1;
     port->refused = -1;
-    for (int k = 0; k < MOST_STATIONS; k++) station_clear(&port->station[k], settings->rate);
-    for (;;) {
-        wait_for_work(port, listening);
+    for (int k = 0; k < MOST_STATIONS; k++) {
+        port->station[k].room = settings->shared ? STATION_SHARED_ROOM : STATION_OUT_SIZE;
+        station_clear(&port->station[k], settings->rate);
+    }
+    while (!is_over) {
+        wait_for_work(port, listening, &heard);
         const bool was_full = is_full(port);
         for (int k = 0; k < port->stations; k++)
             if (serve_station(port, &port->station[k], listening, settings->rate) && settings->once) return;
@@ -355,6 +384,7 @@ int main(int count, char **words) {
     printf("listening on 127.0.0.1:%lu\n", chosen);
     fflush(stdout);
     serve(&port, listening, &settings);
+    if (settings.shared) printf("clients %d, frames not taken %lu\n", port.clients, port.not_taken);
     close(listening);
     return 0;
 }

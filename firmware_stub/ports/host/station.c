@@ -31,6 +31,10 @@ void station_accept(station *it, int listening, char rate) {
     station_clear(it, rate);
     it->socket = client;
     setsockopt(client, IPPROTO_TCP, TCP_NODELAY, &on, sizeof on);
+#ifdef TCP_NOTSENT_LOWAT
+    const int unsent = STATION_SHARED_ROOM;
+    if (it->room < STATION_OUT_SIZE) setsockopt(client, IPPROTO_TCP, TCP_NOTSENT_LOWAT, &unsent, sizeof unsent);
+#endif
 }
 
 void station_earn(station *it, uint32_t now_us) {
@@ -44,17 +48,19 @@ ssize_t station_read(const station *it, char *bytes, size_t size) {
     return recv(it->socket, bytes, size, MSG_DONTWAIT);
 }
 
-bool station_has_room(const station *it) { return it->out_count + LACONIC_SLCAN_LINE < STATION_OUT_SIZE; }
+bool station_has_room(const station *it) { return it->out_count + LACONIC_SLCAN_LINE < it->room; }
 
-static void put(station *it, const char *text, size_t length) {
-    if (it->out_count + length > STATION_OUT_SIZE) return;
+static bool put(station *it, const char *text, size_t length) {
+    if (it->out_count + length > it->room) station_flush(it);
+    if (it->out_count + length > it->room) return false;
     memcpy(it->out + it->out_count, text, length);
     it->out_count += length;
+    return true;
 }
 
-void station_write(station *it, const laconic_frame *frame) {
+bool station_write(station *it, const laconic_frame *frame) {
     char line[LACONIC_SLCAN_LINE];
-    put(it, line, laconic_slcan_write(&it->slcan, frame, line));
+    return put(it, line, laconic_slcan_write(&it->slcan, frame, line));
 }
 
 void station_reply(station *it) { put(it, it->slcan.reply, strlen(it->slcan.reply)); }

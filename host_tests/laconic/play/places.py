@@ -3,6 +3,7 @@ when a place is made, before a bus is opened."""
 
 from __future__ import annotations
 
+import re
 from abc import ABC, abstractmethod
 from collections.abc import Iterator
 from contextlib import AbstractContextManager, contextmanager, nullcontext
@@ -134,6 +135,7 @@ class OfNode(Place):
         self.settings: DriveSettings = drive_settings(scene, options.drives, options.id_base)
         self.name = self.settings.protocol.name
         self.id_base = read_id_base(options.id_base, scene)
+        self.last_words: list[str] = []  # of that process
         self.serves_itself = options.is_served and options.listen is not None
         self.remark = silent_sensors(scene)
         self.can_fail = drives_can_fail(self.settings, options)
@@ -161,13 +163,26 @@ class OfNode(Place):
         """The process serves the port itself: controller and play are stations of its bus, and no frame of the
         controller waits for Python."""
         listening_socket(wanted).close()  # a port that is taken is named so
-        with node_process(self.scene.run.real, self.id_base, "--shared", "--port", str(wanted)) as self.port, \
+        with node_process(self.scene.run.real, self.id_base, "--shared", "--port", str(wanted),
+                          last_words=self.last_words) as self.port, \
                 connected("slcan", f"socket://127.0.0.1:{self.port}", self.id_base) as client:
             yield OnBus(client, self.scene, self.settings, hears_alone=True), client.link.bus
 
     def port_of(self, bus: can.BusABC) -> int | None:
         """The port of the process, where it serves one."""
         return super().port_of(bus) if self.port is None else self.port
+
+    def _last_count(self, what: str) -> int:
+        found = re.search(rf"{what} (\d+)", "".join(self.last_words))
+        return int(found[1]) if found else 0
+
+    def not_taken(self, bus: can.BusABC) -> tuple[int, float]:
+        """As the process counted them, which does not tell for how long."""
+        return (self._last_count("frames not taken"), 0.0) if self.serves_itself else super().not_taken(bus)
+
+    def visitors(self, bus: can.BusABC) -> int | None:
+        """Without play itself, which is one of them."""
+        return max(0, self._last_count("clients") - 1) if self.serves_itself else super().visitors(bus)
 
     def playing(self, vehicle: NodeVehicle) -> AbstractContextManager[Any]:
         """The node plays, and is at rest at the end."""

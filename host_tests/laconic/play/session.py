@@ -120,5 +120,6 @@ def of_controllers(place: Place, bus: can.BusABC, judgement: Judgement) -> Itera
     frames, longest_s = place.not_taken(bus)
     if frames:
         judgement.figures |= {"frames_not_taken": frames}
-        yield (f"{frames} frames were lost to a program on the port, which did not read them in time (nothing for up "
-               f"to {longest_s:.2g} s), and what it reads late is old: a longer --step has fewer frames, docs/play.md")
+        how_long = f" (nothing for up to {longest_s:.2g} s)" if longest_s else ""
+        yield (f"{frames} frames were lost to a program on the port, which did not read them in time{how_long}; what "
+               "it reads late is old: a longer --step has fewer frames, docs/play.md")

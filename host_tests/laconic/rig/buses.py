@@ -128,8 +128,9 @@ def virtual_node(real: str = "double", id_base: int = ID_BASE, **node_options: A
 
 
 @contextmanager
-def node_process(real: str = "double", id_base: int = ID_BASE, *arguments: str) -> Iterator[int]:
-    """A node in a process of its own; yields its TCP port."""
+def node_process(real: str = "double", id_base: int = ID_BASE, *arguments: str,
+                 last_words: list[str] | None = None) -> Iterator[int]:
+    """A node in a process of its own; yields its TCP port. `last_words` gets what it prints at its end."""
     program = built(f"bin/laconic-node-{real}")
     command = [str(program), "--id-base", hex(id_base), *arguments]
     # in another session: Ctrl-C goes to the rig only, which brings the node to rest before it ends it
@@ -142,6 +143,8 @@ def node_process(real: str = "double", id_base: int = ID_BASE, *arguments: str) 
             yield int(found.group(1))
         finally:
             process.terminate()
+            if last_words is not None and process.stdout is not None:
+                last_words.append(process.stdout.read())
 
 
 @contextmanager

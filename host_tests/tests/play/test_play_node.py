@@ -75,9 +75,13 @@ def test_stations_of_a_shared_process_hear_each_other_and_only_rigs_hear_the_nod
             open_bus("slcan", f"socket://127.0.0.1:{port}") as one, \
             open_bus("slcan", f"socket://127.0.0.1:{port}") as other:
         assert rig.recv(2.0).arbitration_id == ID_BASE + wire()["HEARTBEAT"].offset
+        own = can.Message(arbitration_id=ID_BASE, is_extended_id=False, data=bytes(8))
+        rig.send(own)  # until then everybody may be one
+        one.send(currents(0.5))
+        while other.recv(2.0).arbitration_id != CURRENTS:
+            pass
         one.send(currents(1.0))
         assert other.recv(2.0).arbitration_id == CURRENTS
-        own = can.Message(arbitration_id=ID_BASE, is_extended_id=False, data=bytes(8))
         rig.send(own)
         one.send(currents(2.0))  # after it on the same line: had the own frame passed, it would come first
         assert other.recv(2.0).arbitration_id == CURRENTS

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+import re
 import time
 from pathlib import Path
 from xml.etree import ElementTree
@@ -17,11 +18,12 @@ from laconic.play.node_vehicle import remedy
 from laconic.play.options import PlayOptions
 from laconic.play.session import play
 from laconic.play.vehicle import coasts_for_ever
-from laconic.rig.buses import VirtualClock, open_bus
+from laconic.rig.buses import VirtualClock, node_process, open_bus
 from laconic.rig.client import Identity
 from laconic.rig.errors import NodeRefused
 from laconic.rig.lockstep import check_run
 from laconic.rig.logs import read_log
+from laconic.rig.wire import ID_BASE
 from laconic.scene import read_scene
 
 WATCHED = '\n[rig.drives]\nprotocol = "robomaster"\nwatchdog_s = 0.1\n'
@@ -34,7 +36,8 @@ def test_a_watchdog_that_fires_fails_the_run_with_faults_as_without(trouble: dic
     path.write_text(Path(read_scene("robotino2").path).read_text(encoding="utf-8") + WATCHED, encoding="utf-8")
     judgement, _ = played(path, 0.8, lambda t: [currents(0.2, 0.2, 0.2)] if t < 0.3 else [], **trouble)
     verdict, = [each for each in judgement.verdicts if each.name == "watchdog"]
-    assert judgement.exit_status == 1 and not verdict.passed and "heard no controller in time" in verdict.detail
+    assert judgement.exit_status == 1 and not verdict.passed and "drive 1 heard no controller in time" in verdict.detail
+    assert "a drive heard" not in verdict.detail  # each is named
 
 
 def test_the_end_of_a_run_tells_where_the_robot_is_and_how_far_it_went() -> None:
@@ -149,3 +152,24 @@ def test_what_an_image_leaves_out_is_named_by_its_field() -> None:
     assert "leaves FRICTION_COEFFICIENT out; choose another --board" in remedy(refused, read_scene("robotino2"))
     refused = NodeRefused("PARAMETER", "not supported", "DRIVE_PROTOCOL", 0, "ready")
     assert "does not speak that protocol" in remedy(refused, read_scene("robotino2"))
+
+
+def test_a_process_that_serves_its_port_tells_who_came_and_what_was_not_read() -> None:
+    """Another program sends as fast as the port takes it, and asks for the version behind: by then all is passed on."""
+    words: list[str] = []
+    frames, a_second = 14_000, 9_000
+    with node_process("double", ID_BASE, "--shared", last_words=words) as port, \
+            open_bus("slcan", f"socket://127.0.0.1:{port}") as one, \
+            open_bus("slcan", f"socket://127.0.0.1:{port}") as deaf:
+        assert deaf is not one
+        one.serialPortOrig.write(b"t20180000000000000000\r" * frames + b"V\r")
+        while b"V" not in one.serialPortOrig.read(4096):
+            pass
+    found = re.fullmatch(r"clients 2, frames not taken (\d+)\n", words[0])
+    assert found is not None and frames > int(found[1]) > frames - a_second
+
+
+def test_nobody_at_the_port_of_a_process_is_told() -> None:
+    judgement = play(read_scene("robotino2"), PlayOptions(listen=0, board="process", drives="robomaster",
+                                                          duration_s=0.05))
+    assert any("no controller ever connected to port" in each for each in judgement.notes)
