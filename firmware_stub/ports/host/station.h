@@ -8,8 +8,8 @@
 
 /* A client sends what a bus carries and no more, or a flood of its own would keep all others from the bus: 1 Mbit/s is
  * nine frames of 8 bytes a millisecond, of 22 letters each. The rest waits in its connection.
- * With several clients little waits for each, here and in the system's queue: frames for one that does not read shall be
- * lost, not old. */
+ * With several clients little waits for each, here and in the system's queue: frames for one that does not read
+ * shall be lost, not old. */
 enum {
     STATION_OUT_SIZE = 1 << 16,
     STATION_SHARED_ROOM = 1 << 12,
