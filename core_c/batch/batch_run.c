@@ -170,7 +170,7 @@ static void step_alone(walk *w, int32_t k, uint64_t steps, uint64_t after) {
     const uint64_t taken = laconic_run(&kind->model, &kind->integrator, &state, &input, steps, &status);
     put_state(&w->at, w->first + k, &state);
     if (status == LACONIC_OK) return;
-    w->batch->status[lane] = status;
+    w->batch->status[lane] = (int32_t)status;
     w->batch->missed[lane] += steps - taken + after;
     w->stopped |= 1U << k;
     w->refused++;
