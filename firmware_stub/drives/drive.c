@@ -141,6 +141,7 @@ int32_t laconic_drive_shaft_count(const laconic_wheel_drive *drive) {
 
 void laconic_drive_fail(laconic_wheel_drive *drive, uint32_t faults) {
     drive->faults |= faults;
+    if (faults & LACONIC_DRIVE_FAULT_WATCHDOG) drive->unheard = true;
     laconic_drive_off(drive);
 }
 

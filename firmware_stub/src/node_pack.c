@@ -121,11 +121,13 @@ static void pack_encoder(const laconic_node *node, uint8_t *data) {
 
 #define MOST_LATENESS 32767U
 
-/* While drives play there is no rig to be deaf to; the bit then tells that a drive has heard no controller in time. */
+/* While drives play there is no rig to be deaf to; the bit then tells that a drive has heard no controller in time. It
+ * stays after STOP, since play reads its figures when the vehicle is at rest and no watchdog runs any more. */
 static bool is_deaf(const laconic_node *node) {
 #if LACONIC_NODE_WITH_DRIVES
-    for (int32_t k = 0; plays_drives(node) && k < node->drives.count; k++)
-        if (laconic_drive_is_unheard(&node->drives.drive[k])) return true;
+    const bool tells_of_drives = plays_drives(node) || !is_running(node);
+    for (int32_t k = 0; tells_of_drives && k < node->drives.count; k++)
+        if (node->drives.drive[k].unheard) return true;
 #endif
     return node->session.deaf != 0;
 }

@@ -52,6 +52,7 @@ typedef struct laconic_library_drive {
     int64_t target_count;
     double target_rest, target_speed_rad_per_s, target_current_A;
     uint32_t faults, limits;
+    bool unheard;  /* a watchdog of it has fired since START_DRIVES */
     int64_t count; /* of the encoder */
     double rest, speed_rad_per_s, current_A, integral_A;
     double torque_Nm;                              /* of the motor, at the wheel's axle        */

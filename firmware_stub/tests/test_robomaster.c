@@ -159,7 +159,18 @@ static void the_watchdog_switches_off_until_the_next_command(void) {
     command(0x200, 0, 800);
     step(1);
     TEST_ASSERT_TRUE(drives.drive[0].current_A > 0 && drives.drive[0].faults == 0);
-    TEST_ASSERT_EQUAL_UINT32(LACONIC_DRIVE_FAULT_WATCHDOG, drives.drive[3].faults); /* no command for number 6 */
+    TEST_ASSERT_TRUE(drives.drive[0].unheard); /* a verdict at the end still tells of it */
+}
+
+static void the_watchdog_of_a_group_runs_from_its_first_command_on(void) {
+    begin(&laconic_robomaster, REAL(0.1));
+    step(500);
+    command(0x200, 0, 800);
+    step(50);
+    TEST_ASSERT_TRUE(drives.drive[0].current_A > 0 && !drives.drive[0].unheard);
+    step(100);
+    TEST_ASSERT_EQUAL_UINT32(LACONIC_DRIVE_FAULT_WATCHDOG, drives.drive[0].faults);
+    TEST_ASSERT_FALSE(drives.drive[3].unheard); /* no command for number 6 has ever come */
 }
 
 static void a_fault_by_order_stays_whatever_is_commanded(void) {
@@ -195,6 +206,7 @@ int main(void) {
     RUN_TEST(longer_steps_send_their_feedback_alone);
     RUN_TEST(without_a_watchdog_the_last_command_stays);
     RUN_TEST(the_watchdog_switches_off_until_the_next_command);
+    RUN_TEST(the_watchdog_of_a_group_runs_from_its_first_command_on);
     RUN_TEST(a_fault_by_order_stays_whatever_is_commanded);
     RUN_TEST(a_vehicle_without_drives_is_silent);
     return UNITY_END();

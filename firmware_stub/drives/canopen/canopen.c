@@ -151,7 +151,6 @@ static void on_frame(laconic_drives *drives, const laconic_frame *frame, uint32_
         const bool for_it = is_command && (frame->data[1] == 0 || frame->data[1] == canopen_id(&on));
         if (for_it) command(&on, frame->data[0]);
         if (frame->id == 0 || !take_frame(&on, frame)) continue;
-        on.drive->silent = false;
         if (on.axis->nmt == CANOPEN_OPERATIONAL) canopen_find_due_pdos(&on);
     }
 }

@@ -41,7 +41,7 @@ void canopen_all_clear(canopen_axis *axis) {
 void canopen_connection_lost(const canopen_node *on, uint16_t code) {
     canopen_axis *axis = on->axis;
     axis->trouble |= CANOPEN_TROUBLE_SILENCE;
-    on->drive->silent = true;
+    on->drive->unheard = true;
     if (axis->connection_option != 1) canopen_emergency(axis, code); /* a fault tells it itself */
     canopen_connection_option(on, code);
     if (axis->behaviour == 0 && axis->nmt == CANOPEN_OPERATIONAL) canopen_set_nmt(on, CANOPEN_PRE_OPERATIONAL);

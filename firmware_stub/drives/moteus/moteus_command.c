@@ -95,7 +95,6 @@ void moteus_command_drive(const laconic_drives *drives, moteus_axis *axis, lacon
     if (mode >= MOTEUS_FAULT && mode <= 4) return;
     if (mode == MOTEUS_STOPPED) {
         laconic_drive_clear(drive);
-        drive->silent = false;
         enter(axis, MOTEUS_STOPPED);
     }
     axis->acting = axis->given;

@@ -198,7 +198,7 @@ static void supervise(moteus_axis *axis, laconic_wheel_drive *drive, laconic_rea
         axis->timeout_left_s = real_within(axis->timeout_left_s - step_s, 0, LACONIC_REAL_MAX);
     if ((axis->mode == MOTEUS_POSITION || axis->mode == MOTEUS_STAY_WITHIN) && axis->timeout_left_s <= 0) {
         axis->mode = MOTEUS_TIMEOUT;
-        drive->silent = true;
+        drive->unheard = true;
         moteus_forget_control(axis);
     }
 }

@@ -12,7 +12,8 @@
  * They have no speed loop: the controller on the bus closes it, at each feedback. They have no command that clears a
  * fault, so a fault that has no cause any more ends at the next command. The temperature is constant, since drives have
  * no thermal model. The guides do not state what follows when commands cease: without DRIVE_WATCHDOG the last command
- * stays, with it the drive goes off, and on again by the next command. */
+ * stays, with it the drive goes off so long after a command, and on again by
+ * the next one. */
 #include "laconic_drives/protocol.h"
 
 enum { COMMAND_1_TO_4 = 0x200, COMMAND_5_TO_8 = 0x1FF, FEEDBACK = 0x200, TURN = 8192, PERIOD_US = 1000 };
@@ -30,9 +31,10 @@ static const kind c610 = {10000, 10, 0};
 
 /* Of one controller. */
 typedef struct axis {
-    uint32_t next_us; /* when feedback is due         */
-    uint32_t fed_us;  /* when the last command came   */
-    uint32_t is_due;  /* feedback is to be sent       */
+    uint32_t next_us; /* when feedback is due                                            */
+    uint32_t fed_us;  /* when the last command came                                      */
+    uint16_t is_due;  /* feedback is to be sent                                          */
+    uint16_t is_fed;  /* a command has come: silence before the first one is no fault    */
 } axis;
 
 static axis *axis_of(const laconic_drives *drives, int32_t k) { return (axis *)drives->axes + k; }
@@ -42,10 +44,7 @@ static const kind *kind_of(const laconic_drives *drives) {
 }
 
 static void start(laconic_drives *drives, uint32_t now_us) {
-    for (int32_t k = 0; k < drives->count; k++) {
-        axis_of(drives, k)->next_us = now_us + PERIOD_US;
-        axis_of(drives, k)->fed_us = now_us;
-    }
+    for (int32_t k = 0; k < drives->count; k++) axis_of(drives, k)->next_us = now_us + PERIOD_US;
 }
 
 static void command(laconic_wheel_drive *drive, const kind *of, const uint8_t *data) {
@@ -66,6 +65,7 @@ static void on_frame(laconic_drives *drives, const laconic_frame *frame, uint32_
         if (place < 0 || place > 3 || laconic_drive_is_off_bus(&drives->drive[k])) continue;
         command(&drives->drive[k], kind_of(drives), &frame->data[2 * place]);
         axis_of(drives, k)->fed_us = now_us;
+        axis_of(drives, k)->is_fed = 1;
     }
 }
 
@@ -81,7 +81,7 @@ static void on_step(laconic_drives *drives, uint32_t now_us) {
     const uint32_t watchdog_us = (uint32_t)(drives->watchdog_s * (laconic_real)1e6);
     for (int32_t k = 0; k < drives->count; k++) {
         axis *of = axis_of(drives, k);
-        if (watchdog_us > 0 && now_us - of->fed_us > watchdog_us)
+        if (watchdog_us > 0 && of->is_fed && now_us - of->fed_us > watchdog_us)
             laconic_drive_fail(&drives->drive[k], LACONIC_DRIVE_FAULT_WATCHDOG);
         if (feedback_is_due(drives, of, now_us)) of->is_due = 1;
         if (laconic_drive_is_off_bus(&drives->drive[k]) || laconic_drive_is_mute(&drives->drive[k])) of->is_due = 0;

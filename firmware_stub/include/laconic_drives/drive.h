@@ -83,7 +83,7 @@ typedef struct laconic_wheel_drive {
     laconic_drive_target target;
     uint32_t faults;
     uint8_t limits;
-    bool silent;             /* the controller is, but the drive goes on by itself: by the protocol           */
+    bool unheard;            /* a watchdog has fired since the start, whatever was cleared since              */
     bool off_bus, mute;      /* by order: frames do not pass; there is no sign of life. Protocols obey these  */
     uint32_t causes;         /* faults by order that clearing does not end: laconic_drive_break()             */
     laconic_real brake_Nm;   /* by order: up to this torque holds the wheel, so that the drive stalls; 0: none */
@@ -114,11 +114,6 @@ int32_t laconic_drive_shaft_count(const laconic_wheel_drive *drive);
 
 /* Off, without a fault. */
 void laconic_drive_off(laconic_wheel_drive *drive);
-
-/* Whether a watchdog of this drive has fired, off or not. */
-static inline bool laconic_drive_is_unheard(const laconic_wheel_drive *drive) {
-    return drive->silent || (drive->faults & LACONIC_DRIVE_FAULT_WATCHDOG) != 0;
-}
 
 /* Whether an order keeps frames, or the sign of life, from the bus. */
 static inline bool laconic_drive_is_off_bus(const laconic_wheel_drive *drive) {

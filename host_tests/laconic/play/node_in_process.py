@@ -8,7 +8,7 @@ from collections.abc import Iterator
 import can
 
 from laconic.errors import ResultFails
-from laconic.play.node_vehicle import FAULT_WATCHDOG, LOOK_US, NodeVehicle
+from laconic.play.node_vehicle import LOOK_US, NodeVehicle
 from laconic.play.settings import DriveSettings
 from laconic.rig.buses import NodeOnBus
 from laconic.rig.client import NodeClient
@@ -27,7 +27,7 @@ class InProcess(NodeVehicle):
         super().__init__(client, scene, settings)
         self.node = end.node
         self._view = self.node.library.ffi.new("laconic_library_drive *")
-        self._next_look_us = 0
+        self._next_look_us = self._last_us = 0
 
     def start(self) -> None:
         """As for every node; what came behind the answer to START is the controller's, too."""
@@ -61,6 +61,7 @@ class InProcess(NodeVehicle):
     def advance(self, now_us: int) -> Iterator[can.Message]:
         """Periods that are due, and the frames of the drives after each."""
         yield from self._take_early()
+        self._last_us = now_us
         for _ in range(MOST_STEPS_AT_ONCE):
             self.node.tick(now_us)
             yield from self._frames()
@@ -81,12 +82,22 @@ class InProcess(NodeVehicle):
         """Microseconds to the next period."""
         return self.node.idle_us(now_us)
 
+    def finish(self) -> None:
+        """The period that ends with the run is part of it."""
+        due_us = self._last_us + self.node.idle_us(self._last_us)
+        if due_us <= self.client.link.clock.now_us():
+            self.node.tick(due_us)
+        super().finish()
+
     def _look_at_drives(self) -> None:
-        lib, view = self.node.library.lib, self._view
-        for number in range(len(self.settings.node_ids)):
-            if not lib.laconic_library_drive_view(self.node.c, number, view):
-                break
-            if view.faults & FAULT_WATCHDOG:
-                self._fired.add(f"drive {view.node_id} heard no controller in time")
+        self._note_unheard()
         if (state := self.node.inspect()["state"]) != "drives":
             self._ending = ResultFails(f"the node went into state {state}: the core refused a step")
+
+    def _note_unheard(self) -> None:
+        """The drives whose watchdog has fired, by name."""
+        lib, view = self.node.library.lib, self._view
+        for number in range(lib.laconic_library_drive_count(self.node.c)):
+            lib.laconic_library_drive_view(self.node.c, number, view)
+            if view.unheard:
+                self._fired.add(f"drive {view.node_id} heard no controller in time")

@@ -99,7 +99,7 @@ class NodeVehicle:
             self._look_at(*received)
 
     def _look_at(self, frame: Frame, data: bytes) -> None:
-        """HEARTBEAT tells the state, and by `deaf` whether a watchdog of the drives has fired; NU the motion."""
+        """HEARTBEAT tells the state, and by `deaf` whether a watchdog of the drives has ever fired; NU the motion."""
         if frame.name == "NU":
             self._last_nu = (frame, data)
         if frame.name == "RESULT":
@@ -108,7 +108,7 @@ class NodeVehicle:
             return
         values = frame.unpack(data)
         if values["deaf"]:
-            self._fired.add(SOME_DRIVE)
+            self._note_unheard()
         state = wire().choice("HEARTBEAT", "state", values["state"])
         if state not in ("drives", "ready"):
             self._ending = ResultFails(f"the node went into state {state} after {values['steps']} steps")
@@ -120,6 +120,10 @@ class NodeVehicle:
     def has_sent(self, message: can.Message) -> bool:
         """Never, where play and controller have a bus each."""
         return False
+
+    def _note_unheard(self) -> None:
+        """A watchdog of some drive has fired."""
+        self._fired.add(SOME_DRIVE)
 
     def ending(self) -> LaconicError | None:
         """A step that the core refused, or a fault that could not be ordered."""
@@ -174,11 +178,12 @@ class NodeVehicle:
         return self._notes
 
     def finish(self) -> None:
-        """Asks for the figures of lateness and stops the node."""
-        with suppress(NodeSilent, NodeRefused, BusDied):
-            self._read_figures()
+        """Stops the node, then asks for its figures: while it waited for them, it would play on without the controller's
+        frames, and a watchdog of the drives would fire."""
         if (failure := come_to_rest(self.client)) is not None:
             self._notes.append(f"the node could not be stopped: {failure}")
+        with suppress(NodeSilent, NodeRefused, BusDied):
+            self._read_figures()
 
     def _read_figures(self) -> None:
         link, wanted = self.client.link, {"HEARTBEAT", "COUNTERS", "POSE"}
