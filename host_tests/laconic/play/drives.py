@@ -14,6 +14,7 @@ from laconic.rig.node_library import node_library
 
 OFF, CURRENT, SPEED, POSITION = range(4)  # laconic_drive_mode
 WHOLE = ("encoder_counts",)
+MOST_COUNTS = 2.0**62  # a place beyond is taken as this one: the encoder's 64 bits count no further
 
 
 class WheelDrive:
@@ -36,7 +37,7 @@ class WheelDrive:
 
     def aim(self, mode: int, position_rad: float = 0.0, speed_rad_per_s: float = 0.0, current_A: float = 0.0) -> None:
         """Its target, at the motor's shaft."""
-        exact = position_rad * self.encoder_counts / (2.0 * math.pi)
+        exact = min(max(position_rad * self.encoder_counts / (2.0 * math.pi), -MOST_COUNTS), MOST_COUNTS)
         count = math.floor(exact)
         self._lib.laconic_library_wheel_drive_aim(self.c, mode, count, exact - count, speed_rad_per_s, current_A)
 

@@ -10,6 +10,7 @@ from __future__ import annotations
 
 import random
 import re
+from collections import Counter
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 from typing import Protocol
@@ -126,12 +127,13 @@ def faulty_bus(bus: can.BusABC, faults: dict[str, str], now_s: Callable[[], floa
 
 
 class Saboteur:
-    """Begins and ends faults in time; called in the loop."""
+    """Begins and ends faults in time; called in the loop. One that is given twice at a time lasts until both end."""
 
     def __init__(self, vehicle: Breakable, faults: Sequence[DriveFault]):
         self.vehicle = vehicle
         self.first_s: float | None = None  # since the start, when the first fault began
         self._start_us: int | None = None
+        self._lasting: Counter[tuple[str, int]] = Counter()  # by kind and wheel
         self._due = sorted([(fault.at_s, True, fault) for fault in faults]
                            + [(fault.at_s + fault.for_s, False, fault) for fault in faults if fault.for_s is not None],
                            key=lambda each: each[0])
@@ -140,6 +142,7 @@ class Saboteur:
         self._start_us = now_us if self._start_us is None else self._start_us
         while self._due and self._start_us + 1e6 * self._due[0][0] <= now_us:
             at_s, is_broken, fault = self._due.pop(0)
-            self.vehicle.break_drive(fault, is_broken=is_broken)
+            self._lasting[fault.kind, fault.wheel] += 1 if is_broken else -1
+            self.vehicle.break_drive(fault, is_broken=self._lasting[fault.kind, fault.wheel] > 0)
             self.first_s = at_s if self.first_s is None else self.first_s
         return self._start_us + round(1e6 * self._due[0][0]) if self._due else None

@@ -12,6 +12,7 @@ import socket
 import time
 from collections import deque
 from collections.abc import Iterator
+from contextlib import suppress
 from typing import Any
 
 import can
@@ -140,7 +141,8 @@ class ListeningBus(can.BusABC):
         except OSError:
             return  # it has gone again
         if len(self._clients) == MOST_CLIENTS:
-            line.send(b"\aoccupied: this bus has as many clients as it takes\r")
+            with suppress(OSError):  # it may have gone again
+                line.send(b"\aoccupied: this bus has as many clients as it takes\r")
             line.close()
             return
         line.setsockopt(socket.IPPROTO_TCP, socket.TCP_NODELAY, 1)

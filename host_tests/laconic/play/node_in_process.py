@@ -42,12 +42,6 @@ class InProcess(NodeVehicle):
         now = self.node.motion()
         return math.hypot(*now.velocity_m_per_s), abs(now.yaw_rate_rad_per_s)
 
-    def finish(self) -> None:
-        """Keeps where the vehicle is before the node is asked for its figures: it plays on until it is stopped."""
-        now = self.node.motion()
-        super().finish()
-        self._pose = (now.x_m, now.y_m, now.heading_rad)
-
     def on_message(self, message: can.Message, now_us: int) -> None:
         """A frame of the controller; the node's own identifiers are not for it."""
         if not self.is_own(message):
@@ -88,6 +82,11 @@ class InProcess(NodeVehicle):
         if due_us <= self.client.link.clock.now_us():
             self.node.tick(due_us)
         super().finish()
+
+    def _read_pose(self) -> None:
+        """Of the node's plant, which no frame rounds."""
+        now = self.node.motion()
+        self._pose = (now.x_m, now.y_m, now.heading_rad)
 
     def _look_at_drives(self) -> None:
         self._note_unheard()

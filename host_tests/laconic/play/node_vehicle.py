@@ -178,16 +178,30 @@ class NodeVehicle:
         return self._notes
 
     def finish(self) -> None:
-        """Stops the node, then asks for its figures: while it waited for them, it would play on without the controller's
-        frames, and a watchdog of the drives would fire."""
+        """Stops the node, then asks for its figures: while it waited for them, it would play on without frames of the
+        controller, and a watchdog of the drives would fire. Its pose comes with a step, so it is asked for before."""
+        with suppress(NodeSilent, NodeRefused, BusDied):
+            self._read_pose()
         if (failure := come_to_rest(self.client)) is not None:
             self._notes.append(f"the node could not be stopped: {failure}")
         with suppress(NodeSilent, NodeRefused, BusDied):
             self._read_figures()
 
-    def _read_figures(self) -> None:
-        link, wanted = self.client.link, {"HEARTBEAT", "COUNTERS", "POSE"}
+    def _read_pose(self) -> None:
+        link = self.client.link
         self.choose_frames("COUNTERS", "POSE")
+        deadline_us = link.deadline_us(PATIENCE_S)
+        while (received := link.receive_until(deadline_us)) is not None:
+            frame, data = received
+            self._look_at(*received)
+            if frame.name == "POSE":
+                values = frame.unpack(data)
+                self._pose = None if values["overrange"] else pose_of(frame, values)
+                return
+
+    def _read_figures(self) -> None:
+        link, wanted = self.client.link, {"HEARTBEAT", "COUNTERS"}
+        self.choose_frames("COUNTERS")
         deadline_us = link.deadline_us(PATIENCE_S)
         while wanted and (received := link.receive_until(deadline_us)) is not None:
             frame, data = received
@@ -198,9 +212,6 @@ class NodeVehicle:
                 wanted.discard(frame.name)
             elif frame.name == "COUNTERS" and "late_periods" in values:
                 self.lateness.late_periods = values["late_periods"]
-                wanted.discard(frame.name)
-            elif frame.name == "POSE" and frame.name in wanted:
-                self._pose = None if values["overrange"] else pose_of(frame, values)
                 wanted.discard(frame.name)
 
 

@@ -84,6 +84,9 @@ def check_options(options: PlayOptions) -> None:
         raise BadInput(f"--seed {options.seed}: nothing here is random; give --fault random or a --bus-fault, or "
                        "leave --seed out")
     options.limits.check()
+    if options.board == "bus" and options.listen is not None:
+        raise BadInput("--board bus: the node is a station of the controller's bus, and at a port of --listen there is "
+                       "none; give --interface and --channel of that bus, or --board process")
     if options.bus_faults and options.is_served:
         raise BadInput(f"--bus-fault {options.bus_faults[0]}: with --board {options.board} frames do not pass through "
                        "this process; leave --board out")

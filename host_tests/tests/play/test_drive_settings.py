@@ -2,12 +2,14 @@
 
 from __future__ import annotations
 
+import math
 from pathlib import Path
 
 import pytest
 
 from laconic.errors import BadInput
 from laconic.paths import SCENE_DIR
+from laconic.play.drives import POSITION, DriveGroup
 from laconic.play.settings import DriveSettings, drive_settings
 from laconic.play.vehicle import played
 from laconic.scene import read_scene
@@ -80,6 +82,15 @@ def test_gains_follow_from_the_inertia_that_a_wheel_turns_and_the_bandwidth_from
     assert found.numbers["speed_integral_gain_A"][0] == pytest.approx(7.5 * found.numbers["speed_gain_As"][0])
     slow = drive_settings(scene.with_run(step_s=0.01), None)
     assert slow.numbers["speed_gain_As"][0] == pytest.approx(found.numbers["speed_gain_As"][0] / 3)
+
+
+def test_a_place_that_no_shaft_reaches_is_taken_as_the_farthest_that_an_encoder_counts() -> None:
+    scene = read_scene("canopen_agv")
+    drive = DriveGroup(drive_settings(scene, "canopen"), "double", 0.001).drives[0]
+    towards = math.copysign(1.0, drive.gear_ratio)
+    for place_rad in (1e30, -1e300):
+        drive.aim(POSITION, place_rad)
+        assert math.copysign(1.0, drive.act(0.001)) == math.copysign(towards, place_rad * towards)
 
 
 def test_a_played_vehicle_keeps_rotor_and_viscous_friction_of_its_motor_alone() -> None:

@@ -2,10 +2,13 @@
 
 from __future__ import annotations
 
+import types
+
 import can
 import pytest
 
 from laconic.errors import BadInput
+from laconic.play import listener
 from laconic.play.listener import ListeningBus
 from laconic.rig.buses import open_bus
 
@@ -47,6 +50,26 @@ def test_a_client_that_leaves_and_comes_back_finds_the_bus_as_before() -> None:
             assert bus.recv(0.05) is None
             bus.send(FRAMES[0])  # nobody hears it
         assert bus.joined == 2
+
+
+def test_a_client_too_many_that_has_gone_again_does_not_end_the_bus(monkeypatch: pytest.MonkeyPatch) -> None:
+    class Gone:
+        closed = False
+
+        def send(self, _: bytes) -> int:
+            raise ConnectionResetError
+
+        def close(self) -> None:
+            self.closed = True
+
+    monkeypatch.setattr(listener, "MOST_CLIENTS", 0)
+    with ListeningBus(0) as bus:
+        gone = Gone()
+        own = bus._listener
+        bus._listener = types.SimpleNamespace(accept=lambda: (gone, None))  # type: ignore[assignment]
+        bus._joins()
+        bus._listener = own
+        assert gone.closed and bus.joined == 0
 
 
 def test_a_port_that_is_taken_or_none_is_refused_in_one_line() -> None:

@@ -139,3 +139,8 @@ def test_the_live_view_shows_each_identifier_with_its_last_frame() -> None:
     text = out.getvalue()
     assert "a robot, 1.5 s" in text and "123" in text and "18FF50E5" in text and "remote" in text
     assert [line for line in text.splitlines() if "123" in line][0].split()[1:-1] == ["123", "│", "3", "│", "02"]
+
+
+def test_a_node_on_the_bus_and_a_port_exclude_each_other(capsys: pytest.CaptureFixture[str]) -> None:
+    assert run([*AGV, "--board", "bus"]) == 2
+    assert "--board bus: the node is a station of the controller's bus" in capsys.readouterr().err

@@ -11,7 +11,7 @@ from play_support import DBC, PLAY, Codec, played, sdo
 
 from laconic.cli.main import run
 from laconic.play.can_fail import KINDS, drives_can_fail
-from laconic.play.faults import DriveFault, read_faults
+from laconic.play.faults import DriveFault, Saboteur, read_faults
 from laconic.play.options import PlayOptions
 from laconic.play.settings import drive_settings
 from laconic.scene import read_scene
@@ -194,6 +194,28 @@ def test_wheels_without_a_drive_are_passed_over_and_a_fault_finds_its_wheel(tmp_
     assert {message.arbitration_id for _, message in controller.heard} == {0x205, 0x206}
     current = {number: struct.unpack(">h", controller.of(number)[-1][1].data[4:6])[0] for number in (0x205, 0x206)}
     assert current[0x205] != 0 and current[0x206] == 0
+
+
+@pytest.mark.parametrize("given, broken_s", [
+    (("encoder:1@0.5", "encoder:1@1+0.5"), [0.5]), (("encoder:1@0.5+3", "encoder:1@1+0.5"), [0.5, 3.5]),
+    (("encoder:1@1+0.5", "encoder:1@1.2+0.5"), [1.0, 1.7]), (("encoder:1@1", "encoder:2@1.2+0.5"), [1.0, 1.2, 1.7])])
+def test_faults_that_overlap_last_as_long_as_each_is_given(given: tuple[str, ...], broken_s: list[float]) -> None:
+    """Instants at which a drive breaks, is mended, and so on."""
+    now: dict[int, bool] = {}
+    changes: list[float] = []
+
+    class Vehicle:
+        def break_drive(self, fault: DriveFault, *, is_broken: bool) -> None:
+            if now.get(fault.wheel, False) != is_broken:
+                changes.append(time_s)
+            now[fault.wheel] = is_broken
+
+    can_fail = drives_can_fail(drive_settings(read_scene("canopen_agv"), None), PlayOptions(listen=0))
+    saboteur = Saboteur(Vehicle(), read_faults(given, can_fail, 4.0, 1))
+    for step in range(401):
+        time_s = step / 100.0
+        saboteur(10_000 * step)
+    assert changes == broken_s
 
 
 def test_the_value_of_a_bus_fault_is_refused_before_a_port_is_open(capsys: pytest.CaptureFixture[str]) -> None:
