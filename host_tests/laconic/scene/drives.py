@@ -19,6 +19,8 @@ NO_DRIVE = False  # in the list node_ids: a wheel without a drive
 NUMBERS = tuple(key.path.rpartition(".")[2] for key in DRIVE_NUMBERS)
 """Keys of [rig.drives] that are a number of each drive."""
 MOST_COUNTS = 2**31 - 1
+LONGEST_WATCHDOG_S = 1000.0
+DIVISORS = {"gear_ratio": (1e-6, 1e6), "torque_constant_Nm_per_A": (1e-9, 1e9)}  # sizes that a drive can divide by
 
 
 @dataclass(frozen=True)
@@ -40,6 +42,8 @@ def read_drives(table: Table, wheels: Sequence[Mapping[str, Any]]) -> Drives:
     driven, node_ids = _node_ids(table, [bool(wheel.get("driven", True)) for wheel in wheels])
     numbers = {key: _numbers(table, key, driven) for key in NUMBERS if table.has(key)}
     watchdog_s = read_number(table, "watchdog_s")
+    if watchdog_s is not None and watchdog_s > LONGEST_WATCHDOG_S:
+        table.fail("watchdog_s", f"is {watchdog_s:g}; give {LONGEST_WATCHDOG_S:g} s or less, or 0 for none")
     table.done()
     return Drives(protocol, driven, node_ids, watchdog_s, numbers)
 
@@ -88,5 +92,8 @@ def _numbers(table: Table, key: str, driven: tuple[bool, ...]) -> tuple[float, .
 def _check(table: Table, key: str, value: float) -> None:
     """Fails for a number that no drive can have."""
     key_of(table, key).check(table, value)
+    least, most = DIVISORS.get(key, (0.0, float("inf")))
+    if not least <= abs(value) <= most:
+        table.fail(key, f"is {value:g}; give a size from {least:g} to {most:g}")
     if key == "encoder_counts" and (value != int(value) or value > MOST_COUNTS):
         table.fail(key, f"is {value:g}; give a whole number of counts of one turn, up to {MOST_COUNTS}")

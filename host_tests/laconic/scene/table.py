@@ -33,7 +33,7 @@ def read_toml(path: Path) -> Table:
         raise BadInput(f"{path}: cannot be read ({reason_of(error)}); give the path of a readable TOML file") from None
     except UnicodeDecodeError:
         raise BadInput(f"{path}: is no text in UTF-8; save it as UTF-8") from None
-    except tomllib.TOMLDecodeError as error:
+    except ValueError as error:  # of TOML, or of Python: an integer of thousands of digits
         raise BadInput(f"{path}: is no valid TOML: {error}{_line_of(text, error)}; correct that line") from None
     except RecursionError:
         raise BadInput(f"{path}: nests its lists too deeply; give the path of a scene") from None

@@ -30,6 +30,10 @@ def settings_of(tmp_path: Path, keys: str, name: str = "robotino2", protocol: st
 
 @pytest.mark.parametrize("keys, words", [
     ('protocol = "canopn"', ("rig.drives.protocol", "did you mean canopen?")),
+    ("gear_ratio = 5e-324", ("rig.drives.gear_ratio", "1e-06")),
+    ("watchdog_s = 2000", ("rig.drives.watchdog_s", "1000")),
+    ("torque_constant_Nm_per_A = 5e-324", ("rig.drives.torque_constant_Nm_per_A", "1e-09")),
+    (f"gear_ratio = {'9' * 5000}", ("scene.toml", "digits")),
     ("node_ids = 1", ("rig.drives.node_ids", "list")),
     ("node_ids = [1, 2]", ("node_ids", "2 entries", "3 wheels")),
     ("node_ids = [1, 2, true]", ("node_ids", "holds true")),
