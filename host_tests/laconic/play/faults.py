@@ -106,8 +106,12 @@ def read_bus_faults(given: Sequence[str], can_fail: CanFail, seed: int) -> dict[
     found = {}
     for text in given:
         name, equals, value = text.partition("=")
-        if not equals or name not in FIELD_TYPES:
+        if name not in FIELD_TYPES:
             raise BadInput(f"--bus-fault {text}: give NAME=VALUE, such as loss=0.01; {nearest_of(name, FIELD_TYPES)}")
+        if not equals:
+            raise BadInput(f"--bus-fault {text}: has no value; give {name}=VALUE")
+        if name in found:
+            raise BadInput(f"--bus-fault {text}: {name} is given twice; keep one of them")
         if name == "error_frames" and (why := can_fail.why_not.get(ERROR_FRAMES)) is not None:
             raise BadInput(f"--bus-fault {text}: {why}")
         found[name] = value

@@ -47,6 +47,8 @@ class Faults:
 
 MOST_BABBLE_PER_S = 1e4  # frames of eight bytes fill a bus of 1 Mbit/s before
 
+LARGEST_ID = 0x1FFFFFFF
+
 FIELD_TYPES: dict[str, type[Any]] = {field.name: type(field.default) for field in fields(Faults)}
 
 
@@ -63,6 +65,8 @@ def faults_from(options: Mapping[str, object]) -> Faults:
     if faults.babble_per_s > MOST_BABBLE_PER_S:
         raise ValueError(f"babble_per_s={faults.babble_per_s:g}: no bus carries so many frames; give "
                          f"{MOST_BABBLE_PER_S:g} or less")
+    if faults.only_id > LARGEST_ID:
+        raise ValueError(f"only_id={faults.only_id:#x}: identifiers have 29 bits; give {LARGEST_ID:#x} or less")
     if faults.direction not in ("out", "in", "both"):
         raise ValueError(f"direction={faults.direction}: give out, in or both")
     return faults

@@ -33,6 +33,14 @@ def test_a_fault_that_no_bus_has_is_refused(fault: str, words: str, capsys: pyte
     assert error.count("\n") == 1 and f"--bus-fault {fault.partition('=')[0]}" in error and words in error
 
 
+@pytest.mark.parametrize("faults, words", [
+    (("loss",), "loss: has no value; give loss=VALUE"), (("loss=1", "loss=0"), "loss=0: loss is given twice"),
+    (("only_id=0x20000000", "loss=1"), "29 bits")])
+def test_faults_of_the_bus_that_say_nothing_or_two_things_are_refused(faults: tuple[str, ...], words: str) -> None:
+    with pytest.raises(BadInput, match=words):
+        played("robotino2", 0.05, lambda _: [], drives="robomaster", bus_faults=faults)
+
+
 def test_a_bus_with_faults_ends_without_a_warning(caplog: pytest.LogCaptureFixture) -> None:
     played("robotino2", 0.05, lambda _: [currents(0.2)], drives="robomaster", bus_faults=("loss=0.1",))
     assert "not properly shut down" not in caplog.text
