@@ -16,6 +16,7 @@ from .package import pack, start_file
 TX_CLOCKS = ("triggered", "countdown")
 TX_CLOCK = "CAN.Tx_Clock"
 PAGE = "documentation/index.html"
+TAKEN_BASES = 255  # the private start value of NodeContent.taken_bases (fmu/network/node/model.c)
 
 
 @dataclass(frozen=True)
@@ -27,6 +28,13 @@ class NodeContent:
     tx_clock: str
     """One of TX_CLOCKS."""
     sources: bool = True
+    taken_bases: int = 0
+    """Bit k: drives use one of the 32 identifiers from 32 k on, so that they cannot be the node's own."""
+
+    @property
+    def private(self) -> list[tuple[int, bytes]]:
+        """The start values that are no variable's (fmu/network/node/model.c)."""
+        return [*self.frames, (TAKEN_BASES, self.taken_bases.to_bytes(8, "little"))]
 
 
 def with_countdown(text: str) -> str:
@@ -58,7 +66,7 @@ def node_fmu(generic: Path, source: Path, content: Content, own: NodeContent, ou
         xml = with_countdown(xml)
     parts["modelDescription.xml"] = xml.encode("utf-8")
     parts[PAGE] = _page(parts, content)
-    parts["resources/start.bin"] = start_file(start_values(description), token_in(xml), True, own.frames)
+    parts["resources/start.bin"] = start_file(start_values(description), token_in(xml), True, own.private)
     pack(out, parts)
 
 

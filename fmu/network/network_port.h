@@ -27,6 +27,8 @@ typedef struct fmu_model_motion {
 
 struct fmu_instance;
 
+/* False, with a line in the log, for a start time from which no microsecond can be told. Models ask when they start. */
+bool network_may_start(const struct fmu_instance *instance);
 /* Takes the operations in `rx` of all ports whose Rx_Clock is active. */
 void fmu_model_receive(struct fmu_instance *instance);
 /* Time passes from model.time_s to end_s. */

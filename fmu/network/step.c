@@ -6,7 +6,17 @@
 
 #define OFF_BY 1e-9 /* s: importers add up their times */
 
+#define LATEST_S 4e9  /* 127 years: until then a double tells microseconds apart, which nodes count */
+#define LONGEST_S 1e6 /* of one step, which takes each period of the node */
+
 static double magnitude(double value) { return value < 0.0 ? -value : value; }
+
+bool network_may_start(const fmu_instance *instance) {
+    if (magnitude(instance->clock.start_s) <= LATEST_S) return true;
+    fmu_refuse(instance, "the start time %.15g s cannot be taken: give one from %g s to %g s", instance->clock.start_s,
+               -LATEST_S, LATEST_S);
+    return false;
+}
 
 static fmu_status check(const fmu_instance *instance, double at_s, double step_s) {
     const double now_s = instance->model.time_s, off_s = magnitude(at_s - now_s);
@@ -16,6 +26,11 @@ static fmu_status check(const fmu_instance *instance, double at_s, double step_s
         return fmu_refuse(instance, "a step of %g s from %g s cannot be taken: they must be finite", step_s, at_s);
     if (!(step_s >= 0.0))
         return fmu_refuse(instance, "a communication step of %.15g s cannot be taken: it must not be negative", step_s);
+    if (!(step_s <= LONGEST_S && at_s + step_s <= LATEST_S))
+        return fmu_refuse(instance,
+                          "a communication step of %.15g s from %.15g s cannot be taken: give %g s or less, and an "
+                          "end of %g s or less",
+                          step_s, at_s, LONGEST_S, LATEST_S);
     if (!(off_s <= most_s))
         return fmu_refuse(instance, "the step starts at %.15g s, but the model is at %.15g s", at_s, now_s);
     if (fmu_clock_passes_stop(&instance->clock, at_s + step_s, step_s))

@@ -28,13 +28,15 @@ laconic_status fmu_sensors_start(fmu_model *model, laconic_refusal *why) {
     return laconic_sensors_start(&model->sensors, &settings, &model->plant, why);
 }
 
-/* Where no sensors watch, these outputs are 0; the description does not have them. */
+/* Where no sensors watch, and without an IMU, these outputs are 0. */
 void fmu_sensors_refresh(fmu_model *model) {
     laconic_sensor_outputs *out = &model->sensed;
     const laconic_sensors *sensors = &model->sensors;
+    out->imu_acceleration_m_per_s2[0] = out->imu_acceleration_m_per_s2[1] = out->imu_yaw_rate_rad_per_s = 0.0;
     if (!model->watched) return;
-    laconic_imu_read(sensors, model->plant.integrator.step_s, out->imu_acceleration_m_per_s2,
-                     &out->imu_yaw_rate_rad_per_s);
+    if (model->has_imu)
+        laconic_imu_read(sensors, model->plant.integrator.step_s, out->imu_acceleration_m_per_s2,
+                         &out->imu_yaw_rate_rad_per_s);
     for (int32_t i = 0; i < model->vehicle.wheel_count; i++)
         out->encoder_count[i] = laconic_encoder_shown(&sensors->encoder[i], sensors->settings.encoder_wrap);
 }

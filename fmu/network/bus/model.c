@@ -20,6 +20,7 @@ bool fmu_model_take_private(fmu_instance *instance, uint32_t reference, uint64_t
 
 fmu_status fmu_model_start(fmu_instance *instance) {
     fmu_model *self = &instance->model;
+    if (!network_may_start(instance)) return FMU_ERROR;
     memset(self->port, 0, sizeof self->port);
     memset(self->node, 0, sizeof self->node);
     for (unsigned k = 0; k < FMU_MODEL_PORTS; k++) self->node[k].status = LS_BUS_ERROR_ACTIVE;

@@ -4,6 +4,7 @@
 #include "model_interface.h"
 
 #define FRAME_BYTES 8U
+#define TAKEN_BASES 255U /* behind the offsets of frames: the private start value of fmu_model.taken_bases */
 
 void fmu_model_made(fmu_model *model) { (void)model; }
 
@@ -11,6 +12,10 @@ void fmu_model_made(fmu_model *model) { (void)model; }
 bool fmu_model_take_private(fmu_instance *instance, uint32_t reference, uint64_t bits) {
     fmu_model *self = &instance->model;
     const uint32_t offset = reference - FMU_PRIVATE_START;
+    if (offset == TAKEN_BASES) {
+        self->taken_bases = bits;
+        return true;
+    }
     if (offset >= LACONIC_WIRE_RIG_OFFSETS || self->frame_count >= NETWORK_NODE_FRAMES) return false;
     network_node_frame *frame = &self->frame[self->frame_count++];
     frame->offset = (uint8_t)offset;
@@ -59,10 +64,14 @@ fmu_status fmu_model_start(fmu_instance *instance) {
     fmu_model *self = &instance->model;
     const laconic_node_config config = {(uint16_t)self->id_base, self->can.fd_bit_rate_bit_per_s > 0,
                                         laconic_method_by_number, 0, laconic_drive_protocol_by_number};
+    if (!network_may_start(instance)) return FMU_ERROR;
     if (self->can.drops_lost && !self->can.discards)
         return fmu_refuse(instance, "drop_lost_frames: has no effect without discard_on_lost_arbitration; set both");
     if (!laconic_node_init(&self->node, &config, 0))
         return fmu_refuse(instance, "id_base: %d is no multiple of 32 from 0 to 2016", (int)self->id_base);
+    if (self->taken_bases >> ((unsigned)self->id_base / LACONIC_NODE_ID_STRIDE) & 1U)
+        return fmu_refuse(instance, "id_base: the drives use identifiers from %d to %d; give another multiple of 32",
+                          (int)self->id_base, (int)self->id_base + (int)LACONIC_NODE_ID_STRIDE - 1);
     if (!load(self))
         return fmu_refuse(instance, "the scene in resources/start.bin cannot be loaded; make the FMU anew");
     self->start_s = instance->clock.start_s;

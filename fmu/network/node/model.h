@@ -42,6 +42,7 @@ typedef struct fmu_model {
     double axle_torque_Nm[LACONIC_MAX_WHEELS];
     int32_t node_state;
 
+    uint64_t taken_bases; /* bit k: the drives use one of the 32 identifiers from 32 k on; of start.bin */
     uint32_t frame_count;
     network_node_frame frame[NETWORK_NODE_FRAMES];
 } fmu_model;

@@ -19,6 +19,7 @@ bool fmu_model_take_private(fmu_instance *instance, uint32_t reference, uint64_t
 
 fmu_status fmu_model_start(fmu_instance *instance) {
     fmu_model *self = &instance->model;
+    if (!network_may_start(instance)) return FMU_ERROR;
     if (self->gear_ratio == 0.0) return fmu_refuse(instance, "gear_ratio: 0 turns no wheel; give another one");
     memset(self->port, 0, sizeof self->port);
     for (unsigned k = 0; k < MOTORS; k++) self->measured_rad_per_s[k] = self->error_rad[k] = self->current_A[k] = 0.0;

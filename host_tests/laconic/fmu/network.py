@@ -29,7 +29,7 @@ from laconic.rig.link import Link
 from laconic.rig.lockstep import load_scene
 from laconic.rig.node_library import LibraryNode
 from laconic.rig.options import read_id_base
-from laconic.rig.wire import ID_BASE
+from laconic.rig.wire import ID_BASE, ID_STRIDE
 from laconic.scene import Scene, check_scene
 from laconic_fmu.network import TX_CLOCKS, NodeContent, node_fmu
 
@@ -85,6 +85,16 @@ def loading_frames(scene: Scene, settings: DriveSettings | None) -> list[tuple[i
         return node.frames
 
 
+def taken_bases(settings: DriveSettings | None) -> int:
+    """Bit k: a drive uses one of the identifiers from ID_STRIDE k on."""
+    bits = 0
+    if settings is not None:
+        for node_id, has_drive in zip(settings.node_ids, settings.driven, strict=True):
+            for each in settings.protocol.identifiers(node_id) if has_drive else ():
+                bits |= 1 << each // ID_STRIDE
+    return bits
+
+
 def make_network_fmu(scene: Scene, out: str | Path, *, drives: str | None = None, tx_clock: str = TX_CLOCKS[0],
                      sources: bool = True) -> Path:
     """Writes the FMU of the scene's node; with `drives` its wheels have drives of that protocol, which play from the
@@ -103,7 +113,7 @@ def make_network_fmu(scene: Scene, out: str | Path, *, drives: str | None = None
     speaks = f"motor drives that speak {drives}" if drives else "the node's own protected frames"
     content = content_of(scene, scene.name, f"A CAN node that simulates it, with {speaks}; its numbers: {scene.source}",
                          values)
-    own = NodeContent(loading_frames(scene, settings), tx_clock, sources)
+    own = NodeContent(loading_frames(scene, settings), tx_clock, sources, taken_bases(settings))
     path = as_path("out", out)
     with whole_file(path) as fresh:
         node_fmu(built("fmu/LaconicNode_fmi3.fmu"), DESCRIPTION, content, own, fresh)

@@ -162,6 +162,20 @@ def test_settings_of_sensors_are_parameters_before_initialization_ends(version: 
         assert "it is fixed once initialization has ended" in importer.log[-1][2]
 
 
+@VERSIONS
+@pytest.mark.parametrize("tables", [(IMU,), (IMU, ENCODERS)], ids=["alone", "beside encoders"])
+def test_an_imu_that_a_parameter_takes_away_shows_0(tables: tuple[str, ...], version: int, tmp_path: Path) -> None:
+    with Importer(fmu_of(tmp_path, version, *tables)) as importer:
+        assert importer.set("has_imu", 0) == OK
+        importer.initialize()
+        for k in range(20):
+            assert importer.set("voltage_V", *volts(k)) == OK
+            assert importer.step(k * EVERY * STEP_S, EVERY * STEP_S) == OK, importer.log
+            assert [*importer.get("imu_acceleration_m_per_s2"), *importer.get("imu_yaw_rate_rad_per_s")] == [0.0] * 3
+        assert importer.get("velocity_body_m_per_s") != [0.0, 0.0]
+        assert ENCODERS not in tables or any(importer.get("encoder_count"))
+
+
 REFUSED = {"imu_heading_rad": (1e300, "imu_heading_rad: "), "encoder_counts_per_turn": (-1, "outside its range"),
            "imu_delay_steps": (65, "outside its range"), "imu_yaw_rate_range_rad_per_s": (-1.0, "outside its range")}
 
