@@ -9,6 +9,7 @@ import os
 import pkgutil
 import sys
 import traceback
+from collections.abc import Sequence
 from contextlib import suppress
 from pathlib import Path
 from typing import Any
@@ -94,14 +95,28 @@ def run(arguments: list[str]) -> int:
     except ReaderGone:
         return SHELL_SIGNAL + SIGPIPE
     except LaconicError as error:
-        return fail(str(error), error.exit_status)
+        return fail(shortened(str(error), arguments), error.exit_status)
     except click.exceptions.NoArgsIsHelpError as error:
         click.echo(error.ctx.get_help(), err=True)
         return 2
     except click.ClickException as error:
-        return fail(usage(error), 2)
+        return fail(shortened(usage(error), arguments), 2)
     except (click.Abort, KeyboardInterrupt) as stopped:
         return fail(*stop_status(stopped))
+
+
+LONGEST_ECHO = 60  # of a value of the command line in a message
+LONGEST_NAME = 255  # of a file
+
+
+def shortened(message: str, arguments: Sequence[str]) -> str:
+    """The message with what the user gave cut to what a person needs to know it again; names of files stay whole."""
+    line = " ".join(message.split())
+    given = {" ".join(part.split()) for each in arguments for part in (each, each.partition("=")[2])}
+    for part in sorted(given, key=len, reverse=True):
+        if len(part) > LONGEST_ECHO and not (os.sep in part or Path(part[:LONGEST_NAME]).exists()):
+            line = line.replace(part, part[:LONGEST_ECHO - 1] + "…")
+    return line
 
 
 def usage(error: click.ClickException) -> str:

@@ -75,6 +75,9 @@ def _wheel(text: str, kind: str, number: str | None, can_fail: CanFail) -> int:
         if number is not None:
             raise BadInput(f"--fault {text}: a map's vehicle is one station of the bus; give {kind}@SECONDS, no wheel")
         return 0
+    if number is None and len(can_fail.wheels) > 1:
+        raise BadInput(f"--fault {text}: names no wheel; give {kind}:WHEEL@SECONDS with one of "
+                       f"{', '.join(map(str, can_fail.wheels))}")
     wheel = int(number) if number is not None else can_fail.wheels[0]
     if wheel not in can_fail.wheels:
         raise BadInput(f"--fault {text}: wheel {wheel} has no drive; give one of "

@@ -76,6 +76,9 @@ def check_options(options: PlayOptions) -> None:
         raise BadInput(f"--drives {options.drives}: speaks the protocol of drives, --dbc its own; give one of them")
     if options.dbc is not None and options.board not in (None, "virtual"):
         raise BadInput(f"--board {options.board}: a vehicle with --dbc runs in this process; leave --board out")
+    if options.dbc is not None and options.id_base is not None:
+        raise BadInput(f"--id-base {options.id_base}: a vehicle with --dbc has the identifiers of its messages and "
+                       "none of a node; leave --id-base out")
     if options.duration_s is not None and not 0.0 < options.duration_s < 1e9:
         raise BadInput(f"--duration {options.duration_s:g}: give seconds above 0 and below 1e9, or leave it out to "
                        "play until Ctrl-C")

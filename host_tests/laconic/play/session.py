@@ -20,7 +20,7 @@ from laconic.play.vehicle import check_playable
 from laconic.rig.errors import BusDied, Interrupted
 from laconic.rig.interruption import Interruption
 from laconic.rig.link import Clock
-from laconic.rig.logs import logged
+from laconic.rig.logs import Lost, logged
 from laconic.rig.verdict import Judgement, Verdict
 from laconic.scene import Scene
 
@@ -38,9 +38,9 @@ def play(scene: Scene, options: PlayOptions, *, clock: Clock | None = None, othe
     place = place_of(scene, options)
     read_faults(options.faults, place.can_fail, options.duration_s, options.random_seed)
     read_bus_faults(options.bus_faults, place.can_fail, options.random_seed)
-    traffic, seconds = Traffic(clock or Clock()), Seconds()
-    with Interruption() as signals, place.opened(traffic.clock) as (vehicle, bus), logged(traffic, options.logs), \
-            shown(traffic, scene, options) as moved:
+    traffic, seconds, lost = Traffic(clock or Clock()), Seconds(), Lost()
+    with Interruption() as signals, place.opened(traffic.clock) as (vehicle, bus), \
+            logged(traffic, options.logs, lost), shown(traffic, scene, options) as moved:
         traffic.may_go_on = signals.check
         trouble, journey = Trouble(place, options, vehicle, traffic, bus), Journey(vehicle)
         with place.playing(vehicle), trouble:
@@ -50,6 +50,7 @@ def play(scene: Scene, options: PlayOptions, *, clock: Clock | None = None, othe
                 options.duration_s, moved)
             signals.number = 0  # it has been heard
     judgement = judged(scene, place, vehicle, traffic, seconds, ending, trouble)
+    judgement.unwritten += lost.values()
     judgement.figures |= journey.figures()
     judgement.notes += [*vehicle.notes(), *of_controllers(place, bus, judgement)]
     return judgement

@@ -3,8 +3,10 @@
 from __future__ import annotations
 
 import itertools
+import logging
 import re
 import subprocess
+import traceback
 from collections.abc import Iterator
 from contextlib import contextmanager, suppress
 from typing import Any
@@ -41,6 +43,7 @@ def open_bus(interface: str, channel: str | None, *, bitrate: int | None = None,
         raise BadInput(f"--interface {interface}: {error}; python-can has {', '.join(sorted(can.VALID_INTERFACES))}"
                        ) from None
     except (can.CanError, OSError, ValueError, TypeError) as error:
+        let_go(error)
         if channel is None:
             raise BadInput(f"--interface {interface}: cannot be opened without --channel; give can0, /dev/ttyACM0, "
                            "socket://127.0.0.1:PORT or another one") from None
@@ -48,6 +51,16 @@ def open_bus(interface: str, channel: str | None, *, bitrate: int | None = None,
                           "the node or adapter is there and no other program uses it") from None
     read_in_chunks(bus)
     return bus
+
+
+def let_go(error: Exception) -> None:
+    """Ends a bus that was not opened to its end, here and without python-can's word that nobody has shut it down."""
+    log = logging.getLogger("can.bus")
+    was, log.disabled = log.disabled, True
+    try:
+        traceback.clear_frames(error.__traceback__)
+    finally:
+        log.disabled = was
 
 
 def next_channel() -> str:

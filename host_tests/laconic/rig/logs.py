@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import logging
+import os
 from collections.abc import Callable, Iterator
 from contextlib import ExitStack, contextmanager
 from pathlib import Path
@@ -23,57 +24,85 @@ class Heard(Protocol):
     listeners: list[Callable[[can.Message], None]]
 
 
+Lost = dict[Path, BadInput]
+"""Why a log is not whole."""
+
+
 @contextmanager
-def logged(link: Heard, paths: tuple[Path, ...]) -> Iterator[None]:
-    """Writes every frame that is sent or received; the files are closed even when the run dies."""
+def logged(link: Heard, paths: tuple[Path, ...], lost: Lost | None = None) -> Iterator[None]:
+    """Writes every frame that is sent or received; the files are closed even when the run dies. With `lost` the run
+    goes on without a log that takes no more bytes, and the reason is there."""
     with ExitStack() as open_logs:
         for path in paths:
-            writer = open_logs.enter_context(closed(path, open_log(path)))
-            link.listeners.append(stamped(path, writer, link))
+            writer = open_logs.enter_context(closed(path, open_log(path), lost))
+            link.listeners.append(stamped(path, writer, link, lost))
         yield
 
 
 @contextmanager
-def writable(path: Path) -> Iterator[None]:
-    """BadInput that names the log where the system does not take its bytes, as on a full disk."""
+def writable(path: Path, lost: Lost | None = None) -> Iterator[None]:
+    """BadInput, raised or in `lost`, that names the log where the system does not take its bytes, as on a full disk."""
     try:
         yield
     except OSError as error:
-        raise BadInput(f"--log {path}: cannot be written ({reason_of(error)}); choose another path") from None
+        refused = BadInput(f"--log {path}: cannot be written ({reason_of(error)}); choose another path")
+        if lost is None:
+            raise refused from None
+        lost.setdefault(path, refused)
 
 
 @contextmanager
-def closed(path: Path, writer: can.io.generic.MessageWriter) -> Iterator[can.io.generic.MessageWriter]:
+def closed(path: Path, writer: can.io.generic.MessageWriter,
+           lost: Lost | None = None) -> Iterator[can.io.generic.MessageWriter]:
     """A log that is complete at the end of the context."""
     try:
         yield writer
     finally:
-        with writable(path):
+        with writable(path, lost):
             writer.stop()
+
+
+@contextmanager
+def read_by_someone(path: Path) -> Iterator[None]:
+    """BadInput for a pipe that no program reads: to open it would wait for one, through the first Ctrl-C."""
+    if not path.is_fifo():
+        yield
+        return
+    try:
+        end = os.open(path, os.O_WRONLY | os.O_NONBLOCK)
+    except OSError:
+        raise BadInput(f"--log {path}: is a pipe that no program reads; start the one that does before") from None
+    try:
+        yield
+    finally:
+        os.close(end)
 
 
 def open_log(path: Path) -> can.io.generic.MessageWriter:
     """A python-can log writer for this name."""
     try:
-        with writable(path):
+        with writable(path), read_by_someone(path):
             path.parent.mkdir(parents=True, exist_ok=True)
             return can.Logger(str(path))
     except ValueError as error:
         raise BadInput(f"--log {path}: {error}; use a name that ends in .blf or .asc") from None
 
 
-def stamped(path: Path, writer: can.io.generic.MessageWriter, link: Heard) -> Callable[[can.Message], None]:
+def stamped(path: Path, writer: can.io.generic.MessageWriter, link: Heard,
+            lost: Lost | None = None) -> Callable[[can.Message], None]:
     """Stamps frames with the link's time: those sent, and those of a virtual clock, contain none. The calendar is asked
     once, so that a clock that is set during the run leaves no gap."""
     calendar_s = link.clock.calendar_s()
 
     def write(message: can.Message) -> None:
+        if lost and path in lost:
+            return
         is_received = message.timestamp > 0.0
         stamp = message.__copy__()
         stamp.timestamp = calendar_s + link.clock.now_us() / 1e6
         stamp.is_rx = is_received
         stamp.channel = 1
-        with writable(path):
+        with writable(path, lost):
             writer(stamp)
 
     return write

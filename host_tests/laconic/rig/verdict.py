@@ -38,6 +38,7 @@ class Judgement:
     notes: list[str] = field(default_factory=list)
     facts: dict[str, Any] = field(default_factory=dict)  # what else --json tells, by name
     ending: LaconicError | None = None      # what ended the run before its last step
+    unwritten: list[LaconicError] = field(default_factory=list)  # files that could not be written to their end
 
     @property
     def passed(self) -> bool:

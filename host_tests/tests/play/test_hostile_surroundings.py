@@ -2,17 +2,22 @@
 
 from __future__ import annotations
 
+import gc
+import json
+import os
 import socket
 import struct
 from pathlib import Path
 
 import can
 import pytest
-from play_support import currents, played
+from play_support import DBC, PLAY, currents, played
 
 from laconic.cli.main import run
-from laconic.errors import BadInput
+from laconic.errors import BadInput, LaconicError
 from laconic.play.listener import ListeningBus
+from laconic.rig.buses import open_bus
+from laconic.rig.logs import open_log
 
 
 @pytest.mark.skipif(not Path("/dev/full").exists(), reason="only Linux has a device that is always full")
@@ -20,8 +25,70 @@ from laconic.play.listener import ListeningBus
 def test_a_log_on_a_full_disk_is_named(kind: str, tmp_path: Path) -> None:
     path = tmp_path / f"full.{kind}"
     path.symlink_to("/dev/full")
-    with pytest.raises(BadInput, match=rf"--log .*full\.{kind}: cannot be written \(no space left on device\)"):
-        played("robotino2", 0.2, lambda _: [currents(0.2, 0.2, 0.2)], drives="robomaster", logs=(path,))
+    try:
+        errors = played("robotino2", 0.2, lambda _: [currents(0.2, 0.2, 0.2)], drives="robomaster",
+                        logs=(path,))[0].unwritten
+    except BadInput as error:  # when it is opened
+        errors = [error]
+    line, = map(str, errors)
+    assert f"full.{kind}: cannot be written (no space left on device)" in line
+
+
+@pytest.mark.skipif(not Path("/dev/full").exists(), reason="only Linux has a device that is always full")
+def test_a_run_whose_files_could_not_be_written_prints_its_verdicts_all_the_same(
+        tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    log = tmp_path / "full.blf"
+    log.symlink_to("/dev/full")
+    assert run(["play", "canopen_agv", "--listen", "0", "--duration", "0.05", "--junit", "/dev/full",
+                "--log", str(log), "--json"]) == 2
+    printed = capsys.readouterr()
+    assert {each["name"]: each["passed"] for each in json.loads(printed.out)["verdicts"]} == {
+        "bus": True, "watchdog": True}
+    line = printed.err.splitlines()[-1]
+    assert f"--log {log}: cannot be written (no space left" in line and "/dev/full: cannot be written" in line
+
+
+@pytest.mark.skipif(not hasattr(os, "mkfifo"), reason="Windows has no such pipes")
+def test_a_log_into_a_pipe_that_nobody_reads_is_refused_and_one_that_is_read_is_not(tmp_path: Path) -> None:
+    pipe = tmp_path / "p.log"
+    os.mkfifo(pipe)
+    with pytest.raises(BadInput, match="p.log: is a pipe that no program reads; start"):
+        open_log(pipe)
+    end = os.open(pipe, os.O_RDONLY | os.O_NONBLOCK)
+    try:
+        writer = open_log(pipe)
+        writer(can.Message(arbitration_id=0x123, data=b"x"))
+        writer.stop()
+        assert b"123#78" in os.read(end, 1000)
+    finally:
+        os.close(end)
+
+
+def test_a_bus_that_cannot_be_opened_leaves_one_line_alone(caplog: pytest.LogCaptureFixture) -> None:
+    with pytest.raises(LaconicError, match="--channel abc: cannot open the bus"):
+        open_bus("udp_multicast", "abc")
+    gc.collect()
+    assert caplog.text == ""
+
+
+@pytest.mark.parametrize("option", ["--fault", "--bus-fault", "--id-base", "--drives"])
+def test_a_line_echoes_no_more_of_what_was_given_than_one_can_read(
+        option: str, capsys: pytest.CaptureFixture[str]) -> None:
+    assert run(["play", "canopen_agv", "--listen", "0", "--duration", "0.1", option, "nonsense" * 500]) == 2
+    error = capsys.readouterr().err
+    assert "nonsense…" not in error and "nonsensenon" in error and "…" in error
+    assert len(error) < 600
+
+
+def test_a_vehicle_of_a_dbc_has_no_base_of_a_node(capsys: pytest.CaptureFixture[str]) -> None:
+    assert run(["play", "canopen_agv", "--listen", "0", "--duration", "0.1", "--dbc", str(DBC), "--map",
+                str(PLAY / "transporter.toml"), "--id-base", "0x700"]) == 2
+    assert "--id-base 0x700: a vehicle with --dbc has the identifiers of its messages" in capsys.readouterr().err
+
+
+def test_a_fault_of_a_wheel_names_it(capsys: pytest.CaptureFixture[str]) -> None:
+    assert run(["play", "canopen_agv", "--listen", "0", "--duration", "0.1", "--fault", "stall@0.01"]) == 2
+    assert "--fault stall@0.01: names no wheel; give stall:WHEEL@SECONDS with one of 1, 2" in capsys.readouterr().err
 
 
 @pytest.mark.parametrize("fault, words", [

@@ -9,6 +9,7 @@ import click
 
 from laconic.cli.options import InputPath, OutputFile, SceneName, check_step, goes_with, json_flag
 from laconic.core import REALS
+from laconic.errors import BadInput
 from laconic.outputs import write_text
 from laconic.play.can_fail import KINDS as FAULTS
 from laconic.play.canopen_eds import eds_of_scene
@@ -18,6 +19,7 @@ from laconic.play.session import play
 from laconic.rig.boards import KINDS
 from laconic.rig.logs import LOGS
 from laconic.rig.results import as_json, show, write_junit
+from laconic.rig.verdict import Judgement
 from laconic.scene import METHODS, read_scene
 from laconic.scene.drives import DRIVE_PROTOCOLS
 
@@ -75,10 +77,20 @@ def command(scene_name: str, method: str | None, real: str | None, step_s: float
         return 0
     began = time.perf_counter()
     judgement = play(scene, PlayOptions(**given), say=lambda text: click.echo(text, err=json_wanted))
+    present(judgement, junit, time.perf_counter() - began, json_wanted=json_wanted)
+    return judgement.exit_status
+
+
+def present(judgement: Judgement, junit: Any, seconds: float, *, json_wanted: bool) -> None:
+    """The results in all forms; then BadInput for files that could not be written: the run does not come again."""
     if junit:
-        write_junit(judgement, junit, time.perf_counter() - began, "play")
+        try:
+            write_junit(judgement, junit, seconds, "play")
+        except BadInput as error:
+            judgement.unwritten.append(error)
     if json_wanted:
         click.echo(as_json(judgement))
     else:
         show(judgement)
-    return judgement.exit_status
+    if judgement.unwritten:
+        raise BadInput("; ".join(map(str, judgement.unwritten)))
