@@ -31,7 +31,7 @@ def geometry_of(scene: Scene, free: Sequence[str], relative_sd: float = RELATIVE
         if name in free:
             made = makers[name](scene, relative_sd)
             if not made:
-                raise BadInput(f"--free {name}: {scene.path} has no wheel with one that could move; leave it out")
+                raise BadInput(f"--free {name}: {scene.path} {motion.why_none(scene, name)}")
             found += made
     if unknown := [name for name in free if name not in makers]:
         raise BadInput(f"--free: there is no {unknown[0]!r}; {nearest_of(unknown[0], GROUPS)}")

@@ -72,6 +72,17 @@ MAKERS: dict[str, Callable[[Scene, float], list[Parameter]]] = {
     **{group: _of_motor(key, name, group, unit) for group, (key, name, unit) in OF_MOTOR.items()}}
 
 
+def why_none(scene: Scene, group: str) -> str:
+    """Why a scene has no parameter of this group, and the remedy."""
+    has_motor = "motor" in scene.vehicle
+    if group in ("motor-gain", "motor-damping") and has_motor:
+        return ("has [vehicle.motor], which makes the motors' gain and damping; take --free resistance or "
+                "torque-constant")
+    if group in OF_MOTOR and not has_motor:
+        return "has no [vehicle.motor]; give it, or take --free motor-gain,motor-damping"
+    return "has no wheel with one that could move; leave it out"
+
+
 def inputs_of(scene: Scene, logs: Sequence[Log], groups: Sequence[str]) -> str:
     """"currents" where they tell sizes and nothing electric is free, else "voltages"; BadInput without either."""
     electric = [group for group in groups if group in ELECTRIC]

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import copy
+import math
 from collections.abc import Sequence
 from dataclasses import dataclass
 from pathlib import Path
@@ -215,11 +216,13 @@ class _Writer:
         self.comments["input", "0", "signal"] = (f"assumption: these torques push ahead with about "
                                                  f"{ACCELERATION_M_PER_S2:g} m/s² "
                                                  f"for {PUSH_S:g} s")
+        damping = np.array([max(wheel.joint.damping_Nms, 0.0) for wheel in self.ground.wheels])
+        speed_m_per_s = speed_of_drag(float(damping @ rolling**2) / scene.vehicle["mass_kg"])
         for index, rate in enumerate(rolling):
             if abs(rate) > 1e-9 * np.abs(rolling).max():
                 rubbing = np.sign(rate) * max(self.ground.wheels[index].joint.friction_Nm, 0.0) if slips else 0.0
                 inputs.append({"signal": f"axle_torque_Nm[{index + 1}]", "kind": "steps", "t_s": [0.0, PUSH_S],
-                               "value": [_rounded(scale * rate + rubbing), 0.0]})
+                               "value": [_rounded((scale + damping[index] * speed_m_per_s) * rate + rubbing), 0.0]})
         return inputs
 
     def words(self) -> list[str]:
@@ -237,6 +240,15 @@ def rolling_ahead(scene: Scene) -> np.ndarray:
     if found.constraint_rows.size and np.abs(found.constraint_rows[:, 0]).max() > 1e-9:
         return np.zeros(scene.wheel_count)
     return np.asarray(found.wheel_rows[:, 0] / scene.vehicle["wheel_radius_m"])
+
+
+def speed_of_drag(decay_per_s: float) -> float:
+    """The speed (m/s) whose damping a steady push must add, so that it ends as fast as without any.
+
+    Half the speed at the end where damping is weak, nearly all of it where damping balances the push long before.
+    """
+    k = decay_per_s * PUSH_S
+    return ACCELERATION_M_PER_S2 * PUSH_S * (1.0 / -math.expm1(-k) - 1.0 / k if k > 1e-6 else 0.5)
 
 
 def _path(where: tuple[str, ...]) -> str:

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import json
+import re
 from dataclasses import replace
 from pathlib import Path
 
@@ -12,11 +13,13 @@ from made_up_runs import exact_run, found_from, simulated
 from recorded_data import recorded
 
 from laconic.cli.main import run
+from laconic.errors import BadInput
 from laconic.identification.geometry import geometry_of
 from laconic.identification.study import identify
 from laconic.identification.synthetic import made_up, trials
 from laconic.identification.words import in_words
 from laconic.logs import gather_logs
+from laconic.paths import scene_path
 from laconic.recorded_runs.measures import grand_mean
 from laconic.recorded_runs.rolling import rolling_of, rotations_of
 from laconic.scene import read_scene
@@ -132,6 +135,28 @@ def test_what_was_not_asked_for_keeps_every_bit(tmp_path, capsys):
     assert run(["identify", str(log), "--scene", "turtlebot3_burger", "--free", "radius", "-o", str(fitted)]) == 0
     before, after = (read_scene(name).vehicle["wheel"] for name in ("turtlebot3_burger", fitted))
     assert [{k: v for k, v in wheel.items() if k != "radius_m"} for wheel in after] == before
+
+
+MOTOR = """[vehicle.motor]
+resistance_ohm = 1.9
+torque_constant_Nm_per_A = 0.031
+back_emf_Vs_per_rad = 0.031
+gear_ratio = 19.0
+
+"""
+
+
+@pytest.mark.parametrize(("has_motor", "free", "words"), [
+    (True, "motor-damping", "has [vehicle.motor], which makes the motors' gain and damping; take --free resistance"),
+    (True, "motor-gain", "has [vehicle.motor], which makes the motors' gain and damping; take --free resistance"),
+    (False, "resistance", "has no [vehicle.motor]; give it, or take --free motor-gain,motor-damping")])
+def test_a_parameter_of_the_other_motor_model_is_refused_with_the_one_to_take(has_motor, free, words, tmp_path):
+    lines = scene_path("turtlebot3_burger").read_text().splitlines(keepends=True)
+    text = "".join(line for line in lines if not (has_motor and line.startswith(("motor_gain", "motor_damping"))))
+    path = tmp_path / "motor.toml"
+    path.write_text(text.replace("[[vehicle.wheel]]", MOTOR * has_motor + "[[vehicle.wheel]]", 1))
+    with pytest.raises(BadInput, match=re.escape(words)):
+        geometry_of(read_scene(path), [free])
 
 
 WRONG = {

@@ -126,6 +126,28 @@ def test_a_file_that_cannot_be_replayed_is_one_line(text, words, tmp_path, capsy
     assert words in printed.err and str(path) in printed.err and printed.err.count("\n") == 1 and printed.out == ""
 
 
+def test_a_folder_of_such_files_is_driven_by_their_voltages_as_one_file_is(tmp_path, capsys):
+    runs = tmp_path / "runs"
+    runs.mkdir()
+    for name in ("a", "b"):
+        assert run(["simulate", "turtlebot3_burger", "--out", str(runs / f"{name}.csv"), "--inputs"]) == 0
+    wrong, text = tmp_path / "wrong.toml", scene_path("turtlebot3_burger").read_text()
+    gain = next(line for line in text.splitlines() if line.startswith("motor_gain_Nm_per_V"))
+    wrong.write_text(text.replace(gain, "motor_gain_Nm_per_V = 0.1"))
+    capsys.readouterr()
+    assert [each["path_error"] < 1e-6 for each in compared(capsys, runs, "turtlebot3_burger")["runs"]] == [True, True]
+    for given in ([runs], [runs / "a.csv", runs / "b.csv"]):  # wheel speeds would hide the motors' error
+        assert all(each["path_error"] > 0.02 for each in compared(capsys, *given, wrong)["runs"])
+    rolled = compared(capsys, runs, wrong, "--inputs", "wheel-speeds")
+    assert all(each["path_error"] < 1e-3 for each in rolled["runs"])
+
+
+def test_a_scene_before_the_log_is_told_its_place(written, tmp_path, capsys):
+    scene = scene_without_inputs(tmp_path)
+    assert run(["replay", str(scene), str(written)]) == 2
+    assert capsys.readouterr().err == f"laconic: {scene}: is a scene, which comes last: laconic replay LOG... SCENE\n"
+
+
 def test_friction_cannot_be_fitted_without_currents(written, capsys):
     assert run(["replay", str(written), "s1", "--fit", str(written)]) == 2
     assert "--fit: needs measured currents" in capsys.readouterr().err

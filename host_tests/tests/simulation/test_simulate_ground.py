@@ -143,7 +143,7 @@ def test_a_run_on_ground_with_friction_ends_with_what_slip_took(
     printed = capsys.readouterr().out
     assert told in printed and "first order" not in printed
     assert run(["simulate", str(scene), "--step", "0.01"]) == 0
-    assert "compare this path with --step 0.001" in capsys.readouterr().out
+    assert "compare path and losses with --step 0.001" in capsys.readouterr().out
     assert run(["simulate", mecanum(tmp_path)]) == 0
     assert "slip and dragging" not in capsys.readouterr().out
 

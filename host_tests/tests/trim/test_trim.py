@@ -176,6 +176,12 @@ def test_the_command_reports_what_it_wrote_and_left_out(tmp_path: Path, capsys: 
                             "friction\n")
 
 
+def test_damping_of_the_motors_is_not_told_as_left_out_on_ground_with_friction(tmp_path: Path, capsys):
+    assert run(["trim", "skid_steer", "--out", str(tmp_path)]) == 0
+    left_out = capsys.readouterr().out.strip().partition("left out: ")[2].split(", ")
+    assert "decay of ideal rolling" in left_out and "damping" not in left_out
+
+
 @needs_gcc
 def test_a_program_of_the_other_scalar_type_does_not_compile_with_the_model(tmp_path: Path):
     trimmed(read_scene("s1"), "single").write(tmp_path)

@@ -16,14 +16,15 @@ from laconic.errors import BadInput
 from laconic.outputs import write_text
 
 INPUTS = ("wheel-speeds", "currents", "voltages", "set-speeds")
+OF_SIGNALS = "laconic"   # the map of logs whose columns have names of signals
 
 
 @click.command("replay")
 @click.argument("logs", type=InputPath(), nargs=-1, required=True, metavar="LOG...")
 @click.argument("scene", type=SceneName())
 @click.option("--inputs", type=click.Choice(INPUTS),
-              help="What of the log drives the model. By default voltages where its columns are signals; currents "
-              "where the log has them and the ground no friction; else the wheels' speeds.")
+              help="What of the log drives the model. By default voltages where its columns are signals, in one file "
+              "or many; currents where the log has them and the ground no friction; else the wheels' speeds.")
 @click.option("--fit", "fit_on", type=InputPath(), multiple=True, metavar="RUN.csv",
               help="Fit friction on this run; may be given several times. By default every other run of a folder.")
 @map_option
@@ -42,7 +43,8 @@ def command(logs: tuple[Path, ...], scene: str, inputs: str | None, fit_on: tupl
     set-speeds    the same through the scene's [speed_controller], which makes currents of them
     voltages      the same by the motors' voltages; or a file whose first column is time_s and whose others
                   have names of signals, as `simulate --out F.csv --inputs` writes it: its inputs drive the
-                  core, and every other signal in it is compared
+                  core, and every other signal in it is compared; of several such files or a folder the
+                  voltages drive, and the paths are compared
 
     Maps that come with the project recognise their logs; --map names the map of others (docs/logs.md).
     """
@@ -62,6 +64,8 @@ def _replayed(logs: tuple[Path, ...], scene: str, inputs: str | None, fit_on: tu
               map_path: Path | None) -> Found:
     from laconic.recorded_runs.signals import is_signal_log
 
+    if (first := next((log for log in logs if log.suffix == ".toml"), None)) and not scene.endswith(".toml"):
+        raise BadInput(f"{first}: is a scene, which comes last: laconic replay LOG... SCENE")
     if fit_on and inputs not in (None, "currents"):
         raise BadInput(f"--fit: needs measured currents; leave it out beside --inputs {inputs}")
     is_of_signals = len(logs) == 1 and map_path is None and is_signal_log(logs[0])
@@ -90,6 +94,8 @@ def _by_map(paths: tuple[Path, ...], scene: str, inputs: str | None, fit_on: tup
 
     given = read_scene(scene)
     logs, names, skipped = gather(paths, fit_on, map_path)
+    if inputs is None and not fit_on and _are_signals_with_voltages(logs):
+        inputs = "voltages"
     _check_inputs(logs, inputs)
     has_currents = logs[0].current_A is not None
     if fit_on and slips(given.vehicle):
@@ -101,6 +107,11 @@ def _by_map(paths: tuple[Path, ...], scene: str, inputs: str | None, fit_on: tup
 
     found = rolled_paths.roll(given, logs, [Path(name) for name in skipped], inputs or "wheel-speeds")
     return rolled_paths.as_text(found), rolled_paths.as_numbers(found), partial(rolled_paths.draw, found)
+
+
+def _are_signals_with_voltages(logs: list[Any]) -> bool:
+    """Whether the inputs stand in the logs, so that a folder is driven by them as each of its files alone is."""
+    return all(log.map_name == OF_SIGNALS and log.voltage_V is not None for log in logs)
 
 
 def _check_inputs(logs: list[Any], inputs: str | None) -> None:

@@ -118,8 +118,8 @@ def words_of_slip(run: Trajectory) -> list[str]:
     told = [f"slip and dragging rollers took {loss_J:.3g} J; contact_state and slip_along_m_per_s of [outputs] tell "
             "where" if loss_J > rounding_J else "no wheel slipped"]
     if step_s > FRICTION_STEP_S:
-        told.append("ground with friction is stepped to first order: compare this path with "
-                    f"--step {FRICTION_STEP_S:g}")
+        told.append("ground with friction is stepped to first order, and losses are the first to be off: compare "
+                    f"path and losses with --step {FRICTION_STEP_S:g}")
     return told
 
 

@@ -29,6 +29,8 @@ def command(scene: str, real: str | None, out: Path) -> None:
     chosen = real or read.run.real
     files = trimmed(read, chosen)
     files.write(out)
-    left_out = ", ".join(name.replace("_", " ") for name, needed in asdict(files.needs).items() if not needed)
+    words = {"damping": "decay of ideal rolling"} if files.needs.friction else {}  # the friction step keeps the motors'
+    left_out = ", ".join(words.get(name, name.replace("_", " "))
+                         for name, needed in asdict(files.needs).items() if not needed)
     click.echo(f"wrote {out / 'laconic_scene.h'}, laconic_scene_model.h, laconic_scene_model.c: "
                f"{chosen}, {files.method}, left out: {left_out or 'nothing'}")
