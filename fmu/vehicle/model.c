@@ -66,7 +66,7 @@ fmu_status fmu_model_start(fmu_instance *instance) {
     if (status == LACONIC_OK) fmu_sensors_find(self);
     if (status == LACONIC_OK) status = fmu_sensors_start(self, &why);
     if (status != LACONIC_OK) return refuse_with(instance, &why, "this vehicle cannot start");
-    if (self->continuous && (fmu_friction_refuses(instance, &self->vehicle) || fmu_sensors_refuse(instance)))
+    if ((self->continuous && fmu_friction_refuses(instance, &self->vehicle)) || fmu_sensors_refuse(instance))
         return FMU_ERROR;
     self->start_needed = self->change_needed = false;
     fmu_idle_motors_find(self);

@@ -9,7 +9,12 @@ bool fmu_sensors_are_there(const fmu_model *model) {
 }
 
 bool fmu_sensors_refuse(const fmu_instance *instance) {
-    if (!fmu_sensors_are_there(&instance->model)) return false;
+    const fmu_model *model = &instance->model;
+    if (model->sensor_settings.encoder_wrap == 1) {
+        fmu_refuse(instance, "encoder_wrap: a counter of 1 value shows nothing; give 2 or more, or 0");
+        return true;
+    }
+    if (!model->continuous || !fmu_sensors_are_there(model)) return false;
     fmu_refuse(instance,
                "has_imu, encoder_counts_per_turn: sensors sample at internal steps, which Model Exchange does "
                "not have; use Co-Simulation, or make the FMU from a scene without [sensors]");
