@@ -15,8 +15,6 @@ Register, Mode = moteus.Register, moteus.Mode
 
 SCENE, IDS = "robomaster_mecanum", (1, 2, 3, 4)
 
-WATCHDOG = 32  # LACONIC_DRIVE_FAULT_WATCHDOG
-
 
 def share(number: int) -> float:
     """Of a wheel's motion; a curve to the left, which four mecanum wheels can roll: 1 and 3 are left, 2 and 4 right."""
@@ -102,7 +100,7 @@ def test_a_silent_client_finds_the_timeout_mode_and_leaves_it_by_stop():
         values = await wheels.command(lambda each: each.make_query())
         assert {each[Register.MODE] for each in values.values()} == {Mode.TIMEOUT}
         assert all(abs(each[Register.VELOCITY]) < 0.05 for each in values.values())  # damped to rest
-        assert all(wheels.scene.drive(number).faults & WATCHDOG for number in range(4))  # for the verdict of play
+        assert all(wheels.scene.drive(number).unheard for number in range(4))  # for the verdict of play
         await wheels.command(lambda each: each.make_position(position=math.nan, velocity=1.0, query=True), 5)
         values = await wheels.command(lambda each: each.make_stop(query=True))
         await wheels.command(lambda each: each.make_position(position=math.nan, velocity=1.0, query=True), 5)
