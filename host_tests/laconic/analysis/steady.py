@@ -15,6 +15,7 @@ from numpy.polynomial import polynomial as poly
 from laconic.analysis.field import Field
 
 MARGIN = 1e-9  # real parts closer to zero than this fraction of the fastest rate count as neither
+TURNS = 1e-7   # a slower yaw, as a share of the fastest rate, is none: a double root at 0 is found no more exactly
 
 
 @dataclass(frozen=True)
@@ -29,7 +30,7 @@ class SteadyMotion:
     @property
     def is_turning(self) -> bool:
         """Whether the vehicle yaws."""
-        return abs(self.nu[2]) > 1e-9 * max(1.0, float(np.abs(self.nu).max()))
+        return bool(abs(self.nu[2]) > TURNS * max(1.0, float(np.abs(self.nu).max())))
 
 
 @dataclass(frozen=True)

@@ -10,12 +10,18 @@ from laconic.analysis.field import Field
 from laconic.analysis.from_core import field_of, nu_rates, subject_of
 from laconic.analysis.hopf import first_lyapunov
 from laconic.analysis.motions import command_parameter, commanded_straight, default_range, straight_thresholds
-from laconic.analysis.steady import families, steady_motions
+from laconic.analysis.steady import SteadyMotion, families, steady_motions
 from laconic.core import load
 from laconic.scene import read_scene
 
 CORE = load("double")
 NU_1 = (0.0, 3.0, -2.0)
+
+
+@pytest.mark.parametrize(("yaw", "turns"), [(4e-9, False), (-4e-9, False), (1e-6, True), (0.3, True)])
+def test_a_yaw_within_the_rounding_of_a_double_root_is_straight(yaw, turns):
+    motion = SteadyMotion(np.zeros(3), np.array([1.0, 0.0, yaw]), np.zeros(3), "stable")
+    assert motion.is_turning is turns
 
 
 class Example:
