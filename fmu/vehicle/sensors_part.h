@@ -7,8 +7,8 @@
 /* Whether the vehicle has an IMU or an encoder. */
 bool fmu_sensors_are_there(const fmu_model *model);
 
-/* Whether there is a counter of one value, or Model Exchange cannot have this vehicle, since it has no internal steps to
- * sample at; the log says so. */
+/* Whether there is a counter of one value, or Model Exchange cannot have this vehicle, since it has no internal steps
+ * to sample at; the log says so. */
 bool fmu_sensors_refuse(const fmu_instance *instance);
 
 /* To be called when the plant was prepared: finds out who must watch its steps (fmu_model.watched). Ground with

@@ -177,7 +177,8 @@ def test_an_imu_that_a_parameter_takes_away_shows_0(tables: tuple[str, ...], ver
 
 
 REFUSED = {"imu_heading_rad": (1e300, "imu_heading_rad: "), "encoder_counts_per_turn": (-1, "outside its range"),
-           "encoder_wrap": (1, "a counter of 1 value shows nothing"), "imu_delay_steps": (65, "outside its range"), "imu_yaw_rate_range_rad_per_s": (-1.0, "outside its range")}
+           "encoder_wrap": (1, "a counter of 1 value shows nothing"),
+           "imu_delay_steps": (65, "outside its range"), "imu_yaw_rate_range_rad_per_s": (-1.0, "outside its range")}
 
 
 @VERSIONS
