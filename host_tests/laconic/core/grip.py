@@ -67,7 +67,7 @@ class Grip:
         if self.first_slip and self.worst_slip:
             first, worst = self.first_slip, self.worst_slip
             found.append(f"{first.where} slips at {first.time_s:g} s (needs {newtons(first.needed_N)} of grip, has "
-                         f"{newtons(first.available_N)}: margin {newtons(first.margin_N)}"
+                         f"{newtons(first.available_N)}{_load_below_zero(first)}: margin {newtons(first.margin_N)}"
                          f"{self._more(first, worst, self.slipping, 'margin ' + newtons(worst.margin_N))})")
         if self.first_lift and self.worst_lift:
             first, worst = self.first_lift, self.worst_lift
@@ -78,6 +78,11 @@ class Grip:
     def _more(self, first: GripEvent, worst: GripEvent, count: int, size: str) -> str:
         at_worst = "" if worst == first else f"; at worst {size}, {worst.where} at {worst.time_s:g} s"
         return f"{at_worst}; {percent(count, self.instants)} of the run"
+
+
+def _load_below_zero(event: GripEvent) -> str:
+    """Why the margin is below minus the need: it counts the friction coefficient times a load below 0."""
+    return f" under a load of {newtons(event.normal_N)}" if event.normal_N < 0.0 else ""
 
 
 def percent(count: int, of: int) -> str:

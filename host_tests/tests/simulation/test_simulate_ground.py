@@ -10,6 +10,7 @@ import numpy as np
 import pytest
 
 from laconic.cli.main import run
+from laconic.core.grip import Grip, GripEvent
 from laconic.demo.fmu_rows import fmu_rows
 from laconic.fmu import make_fmu
 from laconic.scene import read_scene
@@ -32,6 +33,12 @@ def mecanum(tmp_path: Path, ground: str = "friction_coefficient = 0.6\ncom_z_m =
     path.write_text(f"[vehicle]\n{BODY}{MOTOR}{ground}\n{wheels}{inputs}[run]\nduration_s = 1.0\nstep_s = 0.001\n"
                     "[outputs]\nevery_s = 0.25\n")
     return str(path)
+
+
+def test_a_margin_that_counts_a_load_below_zero_says_so():
+    event = GripEvent(0.5, 500, "wheel 2", 32.7, 0.0, -0.3, -32.9)
+    told = Grip(0.6, 1000, 1, 0, event, event, None, None).warning()
+    assert "needs 32.7 N of grip, has 0 N under a load of -0.3 N: margin -32.9 N" in told
 
 
 def test_a_run_without_enough_grip_is_warned_of_once_with_instant_wheel_and_newtons(tmp_path, capsys):
