@@ -26,6 +26,7 @@ from laconic.rig.parameters import Parameter, method_number
 from laconic.rig.sensed import RAW_OF_SENSORS, has_sensors, raw_row, sensor_parameters
 from laconic.rig.wire import wire
 from laconic.scene import Scene
+from laconic.scene.ground import has_friction
 from laconic.scene.inputs import InputsOnGrid
 from laconic.simulation import advance_plant
 
@@ -101,6 +102,9 @@ def check_run(identity: Identity, scene: Scene, twin: Plant) -> None:
         options.append(f"--real {identity.real}")
     if not identity.methods >> number & 1:
         names = [name for bit, name in enumerate(core.method_names) if identity.methods >> bit & 1]
+        if has_friction(scene.vehicle):  # no other method can step it, so none is advised
+            raise BadInput(f"{scene.path}: ground friction or a drive's limits need {core.method_names[number]}, "
+                           f"the node has {', '.join(names)} alone; use another node")
         what.append(f"its method is {core.method_names[number]}, the node has {', '.join(names)}")
         options.append(f"--method {names[0] if names else '…'}")
     if what:

@@ -57,7 +57,7 @@ WRONG = {
     "verify empty.json": "no valid JSON", "verify list.json": "no object with cases", "verify folder": "cannot be read",
     "verify binary.toml": "JSON", "verify nowhere.json": "cannot be read", "verify ''": EMPTY,
     "verify number.json": "format", "replay nowhere.csv robotino2": "cannot be read", "replay '' robotino2": EMPTY,
-    "replay empty.csv robotino2": "no samples", "replay binary.toml robotino2": "CSV",
+    "replay empty.csv robotino2": "no samples", "replay binary.toml robotino2": "comes last",
     "replay folder robotino2": "no CSV file", "replay /dev/null robotino2": "no samples",
     "replay empty.csv robotino2 --map good.toml": "time", "replay empty.csv robotino2 --map nowhere": "no such file",
     "replay empty.csv robotino2 --map ''": EMPTY, "replay empty.csv robotino2 --fit ''": EMPTY,

@@ -10,6 +10,7 @@ import pytest
 from friction_scenes import SCENES, skid_steering, slipping
 
 from laconic.core import REALS
+from laconic.errors import BadInput
 from laconic.rig.boards import emulated_node, why_no_emulation
 from laconic.rig.buses import process_node, virtual_node
 from laconic.rig.errors import NodeRefused
@@ -80,8 +81,10 @@ def test_a_node_refuses_by_name_what_ground_and_drive_cannot_be(
 
 
 @pytest.mark.skipif(why_no_emulation() is not None, reason=why_no_emulation() or "")
-@pytest.mark.parametrize("board", ["an386-small", "microbit"])
-def test_an_image_without_friction_refuses_its_parameters_by_name(board: str, tmp_path: Path) -> None:
+@pytest.mark.parametrize(("board", "words"), [
+    ("an386-small", "ground friction or a drive's limits need auto, the node has rk4 alone; use another node"),
+    ("microbit", "not supported, ground friction")])
+def test_an_image_without_friction_refuses_it_by_name(board: str, words: str, tmp_path: Path) -> None:
     scene = skid_steering(tmp_path).with_run(real="single")
-    with emulated_node(board) as node, pytest.raises(NodeRefused, match="not supported, ground friction"):
+    with emulated_node(board) as node, pytest.raises((BadInput, NodeRefused), match=words):
         load_scene(node, scene)
