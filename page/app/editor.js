@@ -79,7 +79,8 @@ export class Editor {
   }
 
   drawAxes(/** @type {any} */ pen, /** @type {number} */ px, /** @type {number} */ far, /** @type {any} */ colour) {
-    const step = this.scale > 600 ? 0.05 : this.scale > 120 ? 0.1 : 0.5;
+    let step = this.scale > 600 ? 0.05 : this.scale > 120 ? 0.1 : 0.5;
+    while (far > 500 * step) step *= 10; // a wheel far away would ask for millions of lines
     pen.strokeStyle = colour.grid;
     pen.lineWidth = px;
     pen.beginPath();

@@ -20,6 +20,8 @@ from laconic.core.given import number, numbers, shown, step_count
 from laconic.errors import BadInput, Refused
 
 MOST_LANES = 2**28
+INPUTS = ("voltage_V", "axle_torque_Nm", "body_force_N", "body_moment_Nm", "world_force_N", "world_force_point_m")
+PRIVATE = ("_pool", "_is_observed")
 
 
 class Batch:
@@ -60,6 +62,16 @@ class Batch:
                            "the widest that it has")
         self._place(max(vehicle.wheel_count for vehicle in kinds), width_bytes)
         self._pool: ThreadPoolExecutor | None = None
+        self._is_placed = True
+
+    def __setattr__(self, name: str, value: Any) -> None:
+        """An input as a whole is written into the batch's memory; BadInput for what is none."""
+        if not self.__dict__.get("_is_placed") or name in PRIVATE:
+            super().__setattr__(name, value)
+        elif name in INPUTS:
+            self.__dict__[name][...] = value
+        else:
+            raise BadInput(f"{name}: is no input of a batch; set {', '.join(INPUTS)}")
 
     def _prepare(self, item: int, vehicle: Vehicle, method: str) -> None:
         if vehicle.has_friction:
@@ -125,9 +137,11 @@ class Batch:
         steps, threads = step_count("steps", steps), step_count("threads", threads)
         blocks, self._is_observed = int(self.c.block_count), False
         step = self.core.lib.laconic_batch_run
-        if threads <= 1:
+        if threads == 0:
+            raise BadInput("threads: 0 cannot take a step; give 1 or more")
+        if (parts := min(threads, blocks)) <= 1:
             return int(step(self.c, 0, blocks, steps))
-        return sum(self._in_parts(lambda first, count: int(step(self.c, first, count, steps)), blocks, threads))
+        return sum(self._in_parts(lambda first, count: int(step(self.c, first, count, steps)), blocks, parts))
 
     def _in_parts(self, work: Callable[[int, int], int], blocks: int, threads: int) -> list[int]:
         """Work on equal parts of the blocks at the same time; calls of the core let other threads run."""

@@ -44,10 +44,11 @@ def inertia_matrix(where: str, inertia: Any) -> Array:
 def unit_vector(where: str, axis: Sequence[Any]) -> Array:
     """The direction of an axis."""
     vector = np.array(finite(f"{where}: axis", axis, 3))
-    length = np.linalg.norm(vector)
-    if length < 1e-9:
+    largest = np.abs(vector).max()
+    if largest < 1e-9:
         raise BadInput(f"{where}: axis is 0; give a direction")
-    return np.asarray(vector / length)
+    vector /= largest  # so that no square leaves the range
+    return np.asarray(vector / np.linalg.norm(vector))
 
 
 def words_of(error: Exception) -> str:

@@ -121,9 +121,23 @@ WRONG = {
     "width_bytes: this processor has no": lambda: laconic.Batch(robot(), 2, width_bytes=24),
     "run.step_s: -1 is not positive": lambda: laconic.Batch(robot(), 2, step_s=-1.0),
     "lane: there is no 2": lambda: laconic.Batch(robot(), 2).state(2),
+    "threads: 0 cannot take a step": lambda: laconic.Batch(robot(), 2).run(1, threads=0),
+    "status: is no input of a batch": lambda: setattr(laconic.Batch(robot(), 2), "status", 0),
+    "voltages_V: is no input of a batch": lambda: setattr(laconic.Batch(robot(), 2), "voltages_V", 0),
     "steps: 1.5 is no whole number": lambda: laconic.Batch(robot(), 2).run(1.5),
     "width_bytes: 'wide' is no whole": lambda: laconic.Batch(robot(), 2, width_bytes="wide"),
 }
+
+
+def test_an_input_given_as_a_whole_is_written_into_the_memory_that_steps():
+    whole, placed = laconic.Batch(robot(), 4), laconic.Batch(robot(), 4)
+    voltages = np.arange(12.0).reshape(3, 4)
+    whole.voltage_V, placed.voltage_V[:] = voltages, voltages
+    voltages += 1  # a copy was taken
+    whole.run(200)
+    placed.run(200, threads=10**9)
+    assert whole.heading_rad.tobytes() == placed.heading_rad.tobytes()
+    assert np.any(whole.heading_rad != 0)
 
 
 @pytest.mark.parametrize("message", WRONG)

@@ -141,6 +141,35 @@ def test_what_the_core_refuses_is_one_line_that_names_the_field(tmp_path):
         assert line.startswith(start), line
 
 
+ASKED = """
+import { load, Refused } from "laconic-robots";
+const laconic = await load();
+const wheel = { kind: "fixed", x_m: 0, y_m: 0.1, axle_rad: -1.5 };
+const scene = { vehicle: { mass_kg: 1, yaw_inertia_kgm2: 0.1, wheel_radius_m: 0.1, wheel: [wheel] } };
+const robot = laconic.robot(scene), freed = laconic.robot(scene);
+freed.free();
+freed.free();
+const other = laconic.robot(scene);
+const calls = [() => robot.voltagesFor(1), () => robot.torquesFor(NaN, 0, 0), () => robot.voltagesFor(0, 0, Infinity),
+  () => freed.outputs(), () => freed.run(1), () => freed.setInput({}), () => other.outputs()];
+for (const call of calls)
+  try {
+    call();
+    console.log("taken");
+  } catch (refused) {
+    console.log(refused instanceof Refused ? refused.message : `no refusal: ${refused}`);
+  }
+"""
+
+
+def test_velocities_that_are_no_numbers_and_freed_robots_are_refused(tmp_path):
+    was_freed = "robot: was freed; make another by robot()"
+    assert node(ASKED, tmp_path).splitlines() == [
+        "left: undefined is not a finite number; give forward, left and turn",
+        "forward: NaN is not a finite number; give forward, left and turn",
+        "turn: Infinity is not a finite number; give forward, left and turn", was_freed, was_freed, was_freed, "taken"]
+
+
 def test_memory_of_freed_robots_is_used_again(tmp_path):
     script = """import { load } from "laconic-robots";
         const laconic = await load();

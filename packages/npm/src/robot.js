@@ -13,20 +13,35 @@ const INPUTS = [
 const PER_POINT = ["normal_N"];
 const FIRST_OF_FRICTION = "slip_along_m_per_s";
 
+/** Refused for a velocity or acceleration that is left out or is not finite. */
+function checkFinite(/** @type {Record<string, number>} */ values) {
+  for (const [name, value] of Object.entries(values))
+    if (!Number.isFinite(value))
+      throw new Refused(name, `${value} is not a finite number; give forward, left and turn`, "not finite");
+}
+
 /** A robot at its start. Call free() when it is no longer needed: its memory is used again. */
 export class Robot {
+  #pointer = 0;
+
   /** @param {import("./module.js").Module} module @param {any} scene @param {string} method @param {number} step_s */
   constructor(module, scene, method, step_s) {
     this.module = module;
     this.c = module.c;
-    this.pointer = this.c.laconic_web_new();
-    if (!this.pointer) throw new RangeError("no memory for another robot; free some");
+    this.#pointer = this.c.laconic_web_new();
+    if (!this.#pointer) throw new RangeError("no memory for another robot; free some");
     try {
       this.begin(scene, method, step_s);
     } catch (refused) {
       this.free();
       throw refused;
     }
+  }
+
+  /** Its place in the module's memory; Refused after free(), since another robot may be there. */
+  get pointer() {
+    if (!this.#pointer) throw new Refused("robot", "was freed; make another by robot()", "freed");
+    return this.#pointer;
   }
 
   /** @param {any} scene @param {string} method @param {number} step_s */
@@ -93,11 +108,13 @@ export class Robot {
 
   /** Least voltages that hold a velocity of the body's origin on ideal ground, one for each wheel. */
   voltagesFor(/** @type {number} */ forward, /** @type {number} */ left, /** @type {number} */ turn) {
+    checkFinite({ forward, left, turn });
     return this.wanted(this.c.laconic_web_voltages_for(this.pointer, forward, left, turn));
   }
 
   /** Least axle torques that give an acceleration of the body's origin from rest. */
   torquesFor(/** @type {number} */ forward, /** @type {number} */ left, /** @type {number} */ turn) {
+    checkFinite({ forward, left, turn });
     return this.wanted(this.c.laconic_web_torques_for(this.pointer, forward, left, turn));
   }
 
@@ -117,8 +134,9 @@ export class Robot {
     return this.c.laconic_web_motor_gain(this.pointer, wheel);
   }
 
+  /** Gives its memory back; a second time does nothing. */
   free() {
-    if (this.pointer) this.c.laconic_web_free(this.pointer);
-    this.pointer = 0;
+    if (this.#pointer) this.c.laconic_web_free(this.#pointer);
+    this.#pointer = 0;
   }
 }
