@@ -73,9 +73,11 @@ def find_wheels(robot: Robot, answers: Answers) -> Ground:
     reaching, remarks = [], []
     for joint, radius in measured:
         if radius is None:
-            if "wheel" in joint.name.lower():
+            if "wheel" in joint.name.lower() or _beside_a_wheel(joint, measured):
                 raise BadInput(f"{robot.path}: joint {joint.name}: no shape tells the wheel's radius; give --radius "
                                f"{joint.name}=METRES, or --wheel JOINT for each joint that is a wheel")
+            remarks.append(f"joint {joint.name} turns on a level axle, no shape tells a radius, so it is no wheel; "
+                           f"--radius {joint.name}=METRES would say otherwise")
             continue
         above = float(joint.point_m[2]) - radius - height
         if above <= REACHES * radius or named:
@@ -92,6 +94,11 @@ def find_wheels(robot: Robot, answers: Answers) -> Ground:
                        "modelled; give --wheel JOINT for those that are held")
     remarks += [remark for wheel in wheels for remark in wheel.remarks]
     return Ground(wheels, casters, height, tuple(remarks))
+
+
+def _beside_a_wheel(joint: Joint, measured: Sequence[tuple[Joint, float | None]]) -> bool:
+    """As high as an axle whose radius is known: a wheel whose mesh is not there."""
+    return any(radius and abs(joint.point_m[2] - other.point_m[2]) < 0.1 * radius for other, radius in measured)
 
 
 def _named(robot: Robot, name: str) -> Joint:

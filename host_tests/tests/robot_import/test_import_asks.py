@@ -44,6 +44,8 @@ WRONG: list[tuple[str, str, list[str], str]] = [
     ("no shapes", re.sub("<collision>.*?</collision>", "", GOOD), [], "no shape tells the radius of left, right"),
     ("one wheel without shape", GOOD.replace(CYLINDER, "<geometry><sphere radius='0'/></geometry>", 1).replace(
         'name="left"', 'name="left_wheel"'), [], "no shape tells the wheel's radius"),
+    ("one of two without its mesh", GOOD.replace(CYLINDER, '<geometry><mesh filename="lost.stl"/></geometry>', 1), [],
+     "joint left: no shape tells the wheel's radius; give --radius left=METRES"),
     ("no wheels", GOOD.replace("continuous", "fixed"), [], "no joint turns round on a level axle"),
     ("axles upright", GOOD.replace("0 1 0", "0 0 1"), [], "no joint turns round on a level axle"),
     ("all steered", STEERED, [], "all wheels swivel (front)"),
