@@ -13,8 +13,8 @@ TARGETS = {
     "x86_64-linux": "x86_64-linux-gnu.2.17",
     "aarch64-linux": "aarch64-linux-gnu.2.17",
     "x86_64-windows": "x86_64-windows-gnu",
-    "x86_64-darwin": "x86_64-macos",
-    "aarch64-darwin": "aarch64-macos",
+    "x86_64-darwin": "x86_64-macos.11.0",
+    "aarch64-darwin": "aarch64-macos.11.0",
 }
 FLAGS = ("-std=c99", "-O2", "-g0", "-s", "-ffp-contract=off", "-fno-slp-vectorize")
 """The same arithmetic as in cmake/LaconicStrict.cmake; clang fuses multiply and add by default even with -std=c99."""

@@ -14,6 +14,7 @@ from pathlib import Path
 import pytest
 
 from laconic.paths import SOURCE_DIR
+from laconic_fmu.cross import TARGETS
 from laconic_packages.embedded import TOOLS
 from laconic_packages.facts import Facts, facts, placeholders
 from laconic_release import archives, bill, checksums
@@ -202,3 +203,9 @@ def test_a_folder_that_git_does_not_know_is_refused_in_one_line(tmp_path: Path) 
     with pytest.raises(NoRelease, match="is no checkout of git") as why:
         tree_of(tmp_path)
     assert "\n" not in str(why.value)
+
+
+def test_the_fmus_in_a_wheel_run_on_the_systems_that_its_tag_names():
+    """A glibc or a macOS without a version would be the newest that the compiler knows."""
+    of_wheels = {each.target for each in PLATFORMS.values() if "musl" not in each.target}
+    assert set(TARGETS.values()) == of_wheels
