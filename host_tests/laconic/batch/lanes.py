@@ -69,7 +69,10 @@ class Batch:
         if not self.__dict__.get("_is_placed") or name in PRIVATE:
             super().__setattr__(name, value)
         elif name in INPUTS:
-            self.__dict__[name][...] = value
+            try:
+                self.__dict__[name][...] = value
+            except (TypeError, ValueError):
+                raise BadInput(f"{name}: does not fit; give numbers that fill {self.__dict__[name].shape}") from None
         else:
             raise BadInput(f"{name}: is no input of a batch; set {', '.join(INPUTS)}")
 

@@ -122,6 +122,9 @@ WRONG = {
     "run.step_s: -1 is not positive": lambda: laconic.Batch(robot(), 2, step_s=-1.0),
     "lane: there is no 2": lambda: laconic.Batch(robot(), 2).state(2),
     "threads: 0 cannot take a step": lambda: laconic.Batch(robot(), 2).run(1, threads=0),
+    "voltage_V: does not fit; give numbers that fill (3, 2)": lambda: setattr(
+        laconic.Batch(robot(), 2), "voltage_V", [1.0, 2.0, 3.0]),
+    "voltage_V: does not fit": lambda: setattr(laconic.Batch(robot(), 2), "voltage_V", "high"),
     "status: is no input of a batch": lambda: setattr(laconic.Batch(robot(), 2), "status", 0),
     "voltages_V: is no input of a batch": lambda: setattr(laconic.Batch(robot(), 2), "voltages_V", 0),
     "steps: 1.5 is no whole number": lambda: laconic.Batch(robot(), 2).run(1.5),
