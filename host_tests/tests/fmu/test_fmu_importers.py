@@ -1,6 +1,6 @@
 """One motion in every importer at hand, compared with the core's own and with docs/fmu-importers.md.
 
-FMPy, ecospy, libcosimpy, CasADi and the FMU toolbox come with the project's environment; .
+FMPy, ecospy, libcosimpy, CasADi and the FMU toolbox come with the project's environment.
 """
 
 from __future__ import annotations
@@ -12,6 +12,7 @@ from functools import cache
 from importlib.util import find_spec
 from pathlib import Path
 
+import casadi
 import fmpy
 import numpy as np
 import pytest
@@ -107,7 +108,6 @@ def test_the_toolbox_connects_whole_arrays_of_two_fmus_in_a_container(tmp_path: 
 
 @pytest.mark.parametrize("variant", ["fmi2", "fmi3s"])
 def test_casadi_takes_the_fmus_own_jacobian(fmus: dict[str, Path], variant: str, tmp_path: Path) -> None:
-    casadi = pytest.importorskip("casadi")
     fmpy.extract(str(fmus[variant]), unzipdir=str(tmp_path))
     right_side, inputs = casadi_right_side(tmp_path)
     point, jacobian = np.linspace(-1, 1, 9), right_side.jacobian()
@@ -146,7 +146,6 @@ def code_of(page: str) -> list[str]:
 @pytest.mark.parametrize(("page", "variant"), [("fmu-casadi.md", "fmi2")])
 def test_the_example_of_the_documentation_runs(page: str, variant: str, fmus: dict[str, Path], tmp_path: Path,
                                                monkeypatch: pytest.MonkeyPatch) -> None:
-    pytest.importorskip("casadi")
     monkeypatch.chdir(tmp_path)
     (tmp_path / "robotino2.fmu").write_bytes(fmus[variant].read_bytes())
     names: dict[str, object] = {}
