@@ -1,0 +1,22 @@
+"""All measures by their names. A file of measures joins by its row in FILES."""
+
+from __future__ import annotations
+
+from laconic.errors import BadInput, nearest_of
+from laconic.measures.measure import OF_RUN, Measure
+from laconic.measures.of_runs import MEASURES_OF_RUNS
+
+FILES = (MEASURES_OF_RUNS,)
+
+
+def measures_of(kind: str | None = None) -> dict[str, Measure]:
+    """Measures by name: of a "run", of a "model", or all, in the order in which they are listed."""
+    return {each.name: each for file in FILES for each in file if kind in (None, each.kind)}
+
+
+def measure_named(name: str, kind: str | None = OF_RUN, option: str = "--measure") -> Measure:
+    """One of them; BadInput with the nearest name."""
+    known = measures_of(kind)
+    if name not in known:
+        raise BadInput(f"{option} {name}: there is no such measure; {nearest_of(name, known)}")
+    return known[name]
