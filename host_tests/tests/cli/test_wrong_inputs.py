@@ -30,6 +30,7 @@ WRONG = {
     "fmu s1": "--fmi", "fmu s1 --fmi 4": "--fmi", "derive": "SCENE or --example", "derive --example no": "--example",
     "derive s1 --example caster": "either", "derive s1 --latex --c": "exclude each other",
     "report s1": "extra argument",
+    "benchmark": "WHAT", "benchmark fast": "batch", "benchmark batch --lanes 0": "--lanes",
     "replay log": "LOG", "verify": "REFERENCE", "soak": "WHAT", "soak ''": "known are", "soak fuz": "fuzz",
     "rig s1 --board nothing": "--board", "trim s1 --real 3": "--real", "analyse s1 --only all": "--only",
     # numbers
