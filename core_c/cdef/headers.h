@@ -3,3 +3,4 @@
 
 #include "laconic/batch.h"
 #include "laconic/derivatives.h"
+#include "laconic/filter.h"

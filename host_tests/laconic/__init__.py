@@ -17,6 +17,7 @@ if TYPE_CHECKING:  # for type checkers and editors; the table below is what runs
     from laconic.analysis.analyse import analyse as analyse
     from laconic.analysis.findings import Study as Study
     from laconic.batch import Batch as Batch
+    from laconic.control.filter import Filter as Filter
     from laconic.core import Core as Core
     from laconic.core import Linearisation as Linearisation
     from laconic.core import Matrices as Matrices
@@ -42,16 +43,16 @@ if TYPE_CHECKING:  # for type checkers and editors; the table below is what runs
     from laconic.simulation import Trajectory as Trajectory
     from laconic.simulation import simulate as simulate
 
-__all__ = ["METHODS", "BadInput", "Batch", "Core", "Linearisation", "Matrices", "Plant", "Pose", "Rates", "Readings",
-           "Refused", "RunRefused", "Scene", "Sensors", "StepDerivatives", "StepJacobian", "Study", "Trajectory",
-           "Vehicle", "analyse", "build_scene", "load_core", "make_fmu", "plot", "read_scene", "scene_names",
-           "simulate"]
+__all__ = ["METHODS", "BadInput", "Batch", "Core", "Filter", "Linearisation", "Matrices", "Plant", "Pose", "Rates",
+           "Readings", "Refused", "RunRefused", "Scene", "Sensors", "StepDerivatives", "StepJacobian", "Study",
+           "Trajectory", "Vehicle", "analyse", "build_scene", "load_core", "make_fmu", "plot", "read_scene",
+           "scene_names", "simulate"]
 
 _MODULES = {  # name → where it is, and as what if not by the same name
     "METHODS": "scene", "BadInput": "errors", "Batch": "batch", "Core": "core", "Linearisation": "core",
-    "Matrices": "core", "Plant": "core.plant", "Pose": "core.plant", "Rates": "core", "Readings": "core.sensors",
-    "Refused": "errors", "RunRefused": "simulation", "Scene": "scene", "Sensors": "core.sensors",
-    "StepDerivatives": "core.derivatives", "StepJacobian": "core.derivatives", "Study": "analysis.findings",
+    "Filter": "control.filter", "Matrices": "core", "Plant": "core.plant", "Pose": "core.plant", "Rates": "core",
+    "Readings": "core.sensors", "Refused": "errors", "RunRefused": "simulation", "Scene": "scene",
+    "Sensors": "core.sensors", "StepDerivatives": "core.derivatives", "StepJacobian": "core.derivatives", "Study": "analysis.findings",
     "Trajectory": "simulation", "Vehicle": "core", "analyse": "analysis.analyse", "build_scene": "scene",
     "load_core": "core:load", "make_fmu": "fmu", "plot": "pictures.plotting", "read_scene": "scene",
     "scene_names": "paths", "simulate": "simulation"}

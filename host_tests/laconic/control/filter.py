@@ -1,0 +1,199 @@
+"""The core's extended Kalman filter (laconic_filter) from Python; the header laconic/filter.h is the manual.
+
+    filter = laconic.Filter(plant, {"voltage_noise_V_per_sqrt_Hz": 0.05, "encoder_std_rad": 1e-3,
+                                    "yaw_rate_std_rad_per_s": 0.01, "nu_std_rad_per_s": 0.1})
+    filter.predict({"voltage_V": [6.0, -6.0, 0.0]})      # one step
+    filter.encoders(turned_rad); filter.yaw_rate(shown)   # readings at its end
+    filter.pose, filter.covariance
+"""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+from typing import Any, NamedTuple
+
+import numpy as np
+from numpy.typing import ArrayLike
+
+from laconic.core.given import number, numbers, shown, step_count
+from laconic.core.plant import Plant, Pose
+from laconic.core.sensors import settings_of
+from laconic.errors import BadInput, Refused, nearest_of
+
+STATE_NAMES = ("nu_rad_per_s[1]", "nu_rad_per_s[2]", "nu_rad_per_s[3]", "x_m", "y_m", "heading_rad", "bias_rad_per_s")
+"""Rows and columns of a covariance."""
+
+
+class Innovation(NamedTuple):
+    """How far a reading was from what the filter expected."""
+
+    count: int      # numbers of the reading
+    square: float   # rᵀS⁻¹r: χ²-distributed with `count` degrees of freedom where the filter's numbers are right
+
+
+class Filter:
+    """Estimates ν, pose and the gyro's bias of a vehicle like `plant`, from where the plant is now.
+
+    `settings`: members of laconic_filter_settings by name; of nu_std_rad_per_s and encoder_std_rad one number for all
+    or a list. `encoder`: counts_per_turn, gear_ratio and wrap of the encoders, where `counts` is to be used;
+    `start_count` is what they show now. The plant is copied: what happens to it later has no effect.
+
+    Raises BadInput for what is unknown, no number or not usable, and for a vehicle with friction.
+    """
+
+    def __init__(self, plant: Plant, settings: Mapping[str, Any], *, encoder: Mapping[str, Any] | None = None,
+                 start_count: ArrayLike | None = None):
+        if plant.has_friction:
+            raise BadInput("plant: has ground friction or limits of its drive, and such a step is not smooth; take the "
+                           "vehicle without ground.friction_coefficient and drive")
+        self.core, self.wheel_count = plant.core, plant.wheel_count
+        ffi = self.core.ffi
+        self._plant = Plant(self.core, ffi.new("laconic_plant *", plant.c[0]))
+        self._model, self._integrator = (ffi.addressof(self._plant.c, name) for name in ("model", "integrator"))
+        self.c: Any = ffi.new("laconic_filter *")
+        self._innovation = ffi.new("laconic_innovation *")
+        self._sensors = None if encoder is None else settings_of(self.core, {"encoder": encoder}, self.wheel_count)
+        self._count = self._counts([0] * self.wheel_count if start_count is None else start_count)
+        self._check(self.core.lib.laconic_filter_start(
+            self.c, self._model, self._settings(settings), ffi.addressof(self._plant.c, "state")), "settings")
+
+    # ---- prediction and readings
+
+    def predict(self, held: Any = None, steps: int = 1) -> None:
+        """So many steps with the input held, given as Plant.run takes it. Refused leaves the estimate before the step.
+
+        The step is the plant's; where readings come less often, so many steps lie between them.
+        """
+        held = self._plant.input_of(held)
+        for _ in range(step_count("steps", steps)):
+            status = self.core.lib.laconic_filter_predict(self.c, self._model, self._integrator, held)
+            if status != self.core.lib.LACONIC_OK:
+                raise self._refused_step(status, held)
+
+    def encoders(self, turned_rad: ArrayLike) -> Innovation:
+        """The angles (N,) by which the wheels turned since the last reading."""
+        room = self.core.ffi.new("laconic_real[]", numbers("turned_rad", _list(turned_rad), self.wheel_count) or [0.0])
+        return self._read(self.core.lib.laconic_filter_encoders, room, "turned_rad", "encoder_std_rad")
+
+    def counts(self, count: ArrayLike) -> Innovation:
+        """What the encoders (N,) show now; needs `encoder`."""
+        if self._sensors is None:
+            raise BadInput("encoder: was not given to the filter; give {\"counts_per_turn\": 4096}, or use encoders()")
+        now, turned = self._counts(count), self.core.ffi.new("laconic_real[]", max(self.wheel_count, 1))
+        self.core.lib.laconic_filter_turned(turned, self._sensors, self._count, now, self.wheel_count)
+        found = self._read(self.core.lib.laconic_filter_encoders, turned, "count", "encoder_std_rad")
+        self._count = now
+        return found
+
+    def yaw_rate(self, shown_rad_per_s: float) -> Innovation:
+        """What the gyro shows."""
+        value = number("yaw_rate", shown_rad_per_s)
+        return self._read(self.core.lib.laconic_filter_yaw_rate, value, "yaw_rate", "yaw_rate_std_rad_per_s")
+
+    def fix(self, x_m: float = 0.0, y_m: float = 0.0, heading_rad: float = 0.0, *, std_m: float = 0.0,
+            heading_std_rad: float = 0.0, place_m: Sequence[float] = (0.0, 0.0)) -> Innovation:
+        """Where a place of the body (in its frame) was seen and where the body points; a std of 0: was not seen."""
+        place = numbers("place_m", place_m, 2)
+        fix = self.core.ffi.new("laconic_pose_fix *", {
+            "x_m": number("x_m", x_m), "y_m": number("y_m", y_m), "heading_rad": number("heading_rad", heading_rad),
+            "std_m": number("std_m", std_m), "heading_std_rad": number("heading_std_rad", heading_std_rad),
+            "place_x_m": place[0], "place_y_m": place[1]})
+        return self._read(self.core.lib.laconic_filter_fix, fix, "fix", "std_m or heading_std_rad")
+
+    # ---- the estimate
+
+    @property
+    def nu(self) -> np.ndarray:
+        """ν1, ν2, ν3 [rad/s], shape (3,)."""
+        return self.as_plant().nu
+
+    @property
+    def pose(self) -> Pose:
+        """Where the vehicle is."""
+        return self.as_plant().pose
+
+    @property
+    def bias_rad_per_s(self) -> float:
+        """By which the gyro shows too much; 0 where it is not estimated."""
+        return float(self.c.bias_rad_per_s)
+
+    @property
+    def covariance(self) -> np.ndarray:
+        """Of (ν1, ν2, ν3, x, y, θ, bias), shape (7, 7), in the units of STATE_NAMES; rows of no bias are 0."""
+        room = self.core.ffi.new("laconic_real[]", len(STATE_NAMES) ** 2)
+        self.core.lib.laconic_filter_covariance(room, self.c, self._model)
+        return self.core.numbers(room, len(STATE_NAMES), len(STATE_NAMES))
+
+    @property
+    def state(self) -> np.ndarray:
+        """(ν1, ν2, ν3, x, y, θ, bias), shape (7,)."""
+        pose = self.pose
+        return np.array([*self.nu, pose.x_m, pose.y_m, pose.heading_rad, self.bias_rad_per_s], self.core.dtype)
+
+    def as_plant(self) -> Plant:
+        """The estimate as a plant: its outputs, and its `step_derivatives` for a controller. Asked for again, it is the
+        same plant, moved to where the estimate is then."""
+        self._plant.c.state = self.c.state
+        return self._plant
+
+    def save(self) -> Any:
+        """A copy of all that the filter knows."""
+        return self.core.ffi.new("laconic_filter *", self.c[0]), self._count
+
+    def restore(self, saved: Any) -> None:
+        """Back to what `save` gave."""
+        self.c[0], self._count = saved[0][0], saved[1]
+
+    # ---- between numpy and C
+
+    def _settings(self, given: Mapping[str, Any]) -> Any:
+        if not isinstance(given, Mapping):
+            raise BadInput(f"settings: {shown(given)} is no table; give a mapping from names to numbers")
+        made = self.core.ffi.new("laconic_filter_settings *")
+        counts = {"nu_std_rad_per_s": 3, "encoder_std_rad": self.wheel_count}
+        known = [name for name, _ in self.core.ffi.typeof("laconic_filter_settings").fields]
+        for name, value in given.items():
+            if name not in known:
+                raise BadInput(f"settings.{name}: unknown key; {nearest_of(str(name), known)}")
+            if name in counts:
+                value = [value] * counts[name] if np.ndim(value) == 0 else _list(value)
+                setattr(made, name, [_usable(f"{name}[{k + 1}]", each, self.core.dtype) for k, each in
+                                     enumerate(numbers(f"settings.{name}", value, counts[name]))])
+            else:
+                setattr(made, name, _usable(name, number(f"settings.{name}", value), self.core.dtype))
+        return made
+
+    def _counts(self, given: ArrayLike) -> Any:
+        values = numbers("count", _list(given), self.wheel_count)
+        if not all(-2**31 <= value < 2**31 and value == int(value) for value in values):
+            raise BadInput(f"count: {shown(values)} are no counts; give whole numbers of 32 bits, one for each wheel")
+        return self.core.ffi.new("int32_t[]", [int(value) for value in values] or [0])
+
+    def _read(self, function: Any, reading: Any, name: str, needs: str) -> Innovation:
+        self._check(function(self.c, self._model, reading, self._innovation), name, needs)
+        return Innovation(int(self._innovation.count), float(self._innovation.square))
+
+    def _check(self, status: int, name: str, needs: str = "") -> None:
+        lib = self.core.lib
+        if status == lib.LACONIC_OK:
+            return
+        if status == lib.LACONIC_NOT_POSITIVE:
+            raise BadInput(f"{name}: the filter was not told how well this is read; give {needs} above 0")
+        text = {lib.LACONIC_NOT_FINITE: "is not finite; give numbers", lib.LACONIC_NEGATIVE: "has a standard deviation "
+                "below 0; give one above it"}.get(status, "takes the estimate out of the range; check it and its units")
+        raise BadInput(f"{name}: {text}")
+
+    def _refused_step(self, status: int, held: Any) -> Refused:
+        why, state = self.core.why(), self.core.ffi.addressof(self.c, "state")
+        self.core.lib.laconic_step_refusal(why, status, self._model, self._integrator, state, held, 1)
+        return self.core.refusal(why)
+
+
+def _list(values: Any) -> Any:
+    return values.tolist() if isinstance(values, np.ndarray) else values
+
+
+def _usable(name: str, value: float, dtype: Any) -> float:
+    if not 0 <= value < np.sqrt(np.finfo(dtype).max):
+        raise BadInput(f"settings.{name}: {value:g} is no standard deviation; give 0 or a number above it")
+    return value
