@@ -52,9 +52,9 @@ _MODULES = {  # name → where it is, and as what if not by the same name
     "METHODS": "scene", "BadInput": "errors", "Batch": "batch", "Core": "core", "Linearisation": "core",
     "Filter": "control.filter", "Matrices": "core", "Plant": "core.plant", "Pose": "core.plant", "Rates": "core",
     "Readings": "core.sensors", "Refused": "errors", "RunRefused": "simulation", "Scene": "scene",
-    "Sensors": "core.sensors", "StepDerivatives": "core.derivatives", "StepJacobian": "core.derivatives", "Study": "analysis.findings",
-    "Trajectory": "simulation", "Vehicle": "core", "analyse": "analysis.analyse", "build_scene": "scene",
-    "load_core": "core:load", "make_fmu": "fmu", "plot": "pictures.plotting", "read_scene": "scene",
+    "Sensors": "core.sensors", "StepDerivatives": "core.derivatives", "StepJacobian": "core.derivatives",
+    "Study": "analysis.findings", "Trajectory": "simulation", "Vehicle": "core", "analyse": "analysis.analyse",
+    "build_scene": "scene", "load_core": "core:load", "make_fmu": "fmu", "plot": "pictures.plotting", "read_scene": "scene",
     "scene_names": "paths", "simulate": "simulation"}
 
 

@@ -27,8 +27,8 @@ STATE_NAMES = ("nu_rad_per_s[1]", "nu_rad_per_s[2]", "nu_rad_per_s[3]", "x_m", "
 class Innovation(NamedTuple):
     """How far a reading was from what the filter expected."""
 
-    count: int      # numbers of the reading
-    square: float   # rᵀS⁻¹r: χ²-distributed with `count` degrees of freedom where the filter's numbers are right
+    numbers: int   # of the reading
+    square: float  # rᵀS⁻¹r: χ²-distributed with `numbers` degrees of freedom where the filter's settings are right
 
 
 class Filter:
