@@ -1,6 +1,7 @@
 # The Python environment: target `laconic_venv` and its interpreter LACONIC_PYTHON.
 #
-# Depend on the target, not on the stamp file: Make would run the rule once in every target that names the file.
+# Depend on the target, not on the stamp file: Make would run the rule once in every target that names the file. The
+# target belongs to the top folder, so that Make begins with it: C that does not need it is compiled meanwhile.
 #
 # It holds exactly what host_tests/requirements.txt locks, and our own packages, editable: `laconic`, and those that
 # make tables, pages and archives for the FMUs and the node. A build tree whose LACONIC_VENV lies in another tree only
@@ -29,7 +30,15 @@ list(TRANSFORM own_projects APPEND "/pyproject.toml")
 set(version_file "${CMAKE_BINARY_DIR}/python-version.txt")
 file(CONFIGURE OUTPUT "${version_file}" CONTENT "${PROJECT_VERSION}\n")
 cmake_path(IS_PREFIX CMAKE_BINARY_DIR "${LACONIC_VENV}" NORMALIZE venv_is_ours)
+add_custom_target(laconic_venv_pip) # pip alone: enough to fetch what the C tests need while the packages are installed
 if(venv_is_ours)
+    add_custom_command(
+        OUTPUT "${LACONIC_VENV}/pip.stamp"
+        COMMAND "${Python3_EXECUTABLE}" "${PROJECT_SOURCE_DIR}/cmake/make_venv.py" --venv "${LACONIC_VENV}"
+                --stamp "${LACONIC_VENV}/pip.stamp"
+        COMMENT "Python environment: pip" VERBATIM)
+    add_custom_target(laconic_venv_begun DEPENDS "${LACONIC_VENV}/pip.stamp")
+    add_dependencies(laconic_venv_pip laconic_venv_begun)
     add_custom_command(
         OUTPUT "${LACONIC_VENV_STAMP}"
         COMMAND "${Python3_EXECUTABLE}" "${PROJECT_SOURCE_DIR}/cmake/make_venv.py" --venv "${LACONIC_VENV}"
@@ -39,4 +48,5 @@ if(venv_is_ours)
 elseif(NOT EXISTS "${LACONIC_VENV_STAMP}")
     message(FATAL_ERROR "laconic: LACONIC_VENV=${LACONIC_VENV} does not exist: build the tree that it belongs to first")
 endif()
-add_custom_target(laconic_venv DEPENDS "${LACONIC_VENV_STAMP}")
+add_custom_target(laconic_venv ALL DEPENDS "${LACONIC_VENV_STAMP}")
+add_dependencies(laconic_venv laconic_venv_pip)

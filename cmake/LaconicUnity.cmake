@@ -25,7 +25,7 @@ else()
             DEPENDS "${PROJECT_SOURCE_DIR}/cmake/fetch_parts.py"
             COMMENT "Unity" VERBATIM)
         add_custom_target(laconic_unity_there DEPENDS ${unity_outputs})
-        add_dependencies(laconic_unity_there laconic_venv)
+        add_dependencies(laconic_unity_there laconic_venv_pip)
     endif()
     list(TRANSFORM unity_files PREPEND "${unity_folder}/")
     add_library(laconic_unity STATIC EXCLUDE_FROM_ALL ${unity_files})

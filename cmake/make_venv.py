@@ -1,4 +1,7 @@
-"""Make the Python environment that the build and the `laconic` command use: locked packages, then our own, editable."""
+"""Make the Python environment that the build and the `laconic` command use: locked packages, then our own, editable.
+
+Without --requirements it ends when pip is there, which is all that other parts of the build need to fetch theirs.
+"""
 
 from __future__ import annotations
 
@@ -16,9 +19,10 @@ def main() -> int:
     try:
         create(arguments.venv)
         python = next(path for path in candidates(arguments.venv) if path.exists())
-        install_locked(python, arguments.requirements)
-        own = [word for folder in arguments.packages for word in ("--editable", str(folder))]
-        pip(python, "install", "--no-build-isolation", "--no-deps", *own)
+        if arguments.requirements:
+            install_locked(python, arguments.requirements)
+            own = [word for folder in arguments.packages for word in ("--editable", str(folder))]
+            pip(python, "install", "--no-build-isolation", "--no-deps", *own)
     except subprocess.CalledProcessError as failure:
         print(f"laconic: the Python environment could not be made: {reason(failure)}", file=sys.stderr)
         return 1
@@ -28,9 +32,10 @@ def main() -> int:
 
 def parse() -> argparse.Namespace:
     parser = argparse.ArgumentParser(description=__doc__)
-    for name in ("venv", "requirements", "stamp"):
+    for name in ("venv", "stamp"):
         parser.add_argument(f"--{name}", type=Path, required=True)
-    parser.add_argument("--packages", type=Path, nargs="+", required=True, help="folders of our own packages")
+    parser.add_argument("--requirements", type=Path, help="the lock file")
+    parser.add_argument("--packages", type=Path, nargs="+", default=[], help="folders of our own packages")
     return parser.parse_args()
 
 
@@ -47,9 +52,13 @@ def candidates(directory: Path) -> list[Path]:
 
 
 def install_locked(python: Path, requirements: Path) -> None:
-    """Install the lock file and show the progress: this can take a minute."""
+    """Install the lock file and show the progress: this can take a minute.
+
+    pip would compile every module on one core, more than half of them tests of the packages that nobody imports.
+    """
     wanted = len(re.findall(r"^[a-z0-9].*==", requirements.read_text(), re.MULTILINE | re.IGNORECASE))
-    command = [str(python), "-m", "pip", "install", "--require-hashes", "--no-input", "-r", str(requirements)]
+    command = [str(python), "-m", "pip", "install", "--no-compile", "--require-hashes", "--no-input", "-r",
+               str(requirements)]
     seen, lines = 0, []
     with subprocess.Popen(command, stdout=subprocess.PIPE, stderr=subprocess.STDOUT, text=True) as process:
         for line in process.stdout:
@@ -61,6 +70,14 @@ def install_locked(python: Path, requirements: Path) -> None:
                 progress("laconic: Python packages: all there, installing", last=True)
     if process.returncode:
         raise subprocess.CalledProcessError(process.returncode, command, "".join(lines))
+    compile_modules(python)
+
+
+def compile_modules(python: Path) -> None:
+    """Byte code for what can be imported, on all cores; a module that cannot be compiled is left to its importer."""
+    libraries = str(python.parent.parent / ("Lib" if python.suffix else "lib"))
+    subprocess.run([str(python), "-m", "compileall", "-q", "-j", "0", "-x", r"[/\\](tests?|pip)[/\\]", libraries],
+                   check=False, stdout=subprocess.DEVNULL, stderr=subprocess.DEVNULL)
 
 
 def progress(text: str, last: bool) -> None:
