@@ -16,7 +16,7 @@ import numpy as np
 
 from laconic.batch.memory import Rows, aligned_memory
 from laconic.core import Core, Vehicle
-from laconic.core.given import number, numbers, shown, step_count
+from laconic.core.given import c_object, number, numbers, shown, step_count, whole_number
 from laconic.errors import BadInput, Refused
 
 MOST_LANES = 2**28
@@ -50,14 +50,14 @@ class Batch:
 
     def __init__(self, vehicles: Vehicle | Sequence[Vehicle], lanes: int | None = None, method: str = "auto",
                  step_s: float = 1e-3, *, kind_of: Sequence[int] | np.ndarray | None = None, width_bytes: int = 0):
-        kinds = [vehicles] if isinstance(vehicles, Vehicle) else list(vehicles)
+        kinds = _kinds_of(vehicles)
         core = self.core = _core_of(kinds)
         self._kind_of = _kinds_of_lanes(len(kinds), lanes, kind_of)
         self.lane_count, self.step_s = len(self._kind_of), number("step_s", step_s)
         self._kinds = core.ffi.new("laconic_batch_kind[]", len(kinds))
         for item, vehicle in enumerate(kinds):
             self._prepare(item, vehicle, method)
-        if core.lib.laconic_batch_width(step_count("width_bytes", width_bytes) % 2**31) == 0:
+        if not 0 <= whole_number("width_bytes", width_bytes) < 2**31 or core.lib.laconic_batch_width(width_bytes) == 0:
             raise BadInput(f"width_bytes: this processor has no registers of {shown(width_bytes)} bytes; give 0 for "
                            "the widest that it has")
         self._place(max(vehicle.wheel_count for vehicle in kinds), width_bytes)
@@ -122,7 +122,7 @@ class Batch:
 
     def load(self, lane: int, state: Any) -> None:
         """Gives a lane a laconic_state, such as `plant.save()` has."""
-        self.core.lib.laconic_batch_load(self.c, self._lane(lane), state)
+        self.core.lib.laconic_batch_load(self.c, self._lane(lane), c_object(self.core, "state", state))
         self._is_observed = False
 
     def state(self, lane: int) -> Any:
@@ -137,11 +137,11 @@ class Batch:
         A lane stops before a step that is refused, the others go on. Returns how many lanes were refused; `status` and
         `refusal` tell which and why.
         """
-        steps, threads = step_count("steps", steps), step_count("threads", threads)
+        steps, threads = step_count("steps", steps), whole_number("threads", threads)
         blocks, self._is_observed = int(self.c.block_count), False
         step = self.core.lib.laconic_batch_run
-        if threads == 0:
-            raise BadInput("threads: 0 cannot take a step; give 1 or more")
+        if threads < 1:
+            raise BadInput(f"threads: {threads} cannot take a step; give 1 or more")
         if (parts := min(threads, blocks)) <= 1:
             return int(step(self.c, 0, blocks, steps))
         return sum(self._in_parts(lambda first, count: int(step(self.c, first, count, steps)), blocks, parts))
@@ -185,10 +185,19 @@ class Batch:
         return core.refusal(why)
 
     def _lane(self, lane: int) -> int:
-        found = step_count("lane", lane)
-        if found >= self.lane_count:
+        found = whole_number("lane", lane)
+        if not 0 <= found < self.lane_count:
             raise BadInput(f"lane: there is no {found}; this batch has the lanes 0 to {self.lane_count - 1}")
         return found
+
+
+def _kinds_of(vehicles: Any) -> list[Any]:
+    if isinstance(vehicles, Vehicle):
+        return [vehicles]
+    try:
+        return list(vehicles)
+    except TypeError:
+        raise BadInput(f"vehicles: {shown(vehicles)} is no laconic.Vehicle and no list of them; give one") from None
 
 
 def _core_of(vehicles: list[Any]) -> Core:
@@ -212,7 +221,11 @@ def _kinds_of_lanes(kinds: int, lanes: int | None, kind_of: Any) -> np.ndarray:
             raise BadInput(f"lanes: {lanes} lanes for {kinds} vehicles; leave it out for one each, or give kind_of")
         found = np.zeros(_lane_count(1 if lanes is None else lanes), np.int32) if kinds == 1 else np.arange(kinds)
     else:
-        found = np.asarray(kind_of)
+        try:
+            found = np.asarray(kind_of)
+        except ValueError:
+            raise BadInput(f"kind_of: {shown(kind_of)} is no row of numbers; give one whole number for each "
+                           "lane") from None
         if found.ndim != 1 or found.dtype.kind not in "iu" or (lanes is not None and len(found) != lanes):
             raise BadInput(f"kind_of: has the shape {found.shape} and numbers of {found.dtype}; give one whole number "
                            "for each lane")
@@ -226,7 +239,7 @@ def _kinds_of_lanes(kinds: int, lanes: int | None, kind_of: Any) -> np.ndarray:
 
 
 def _lane_count(given: Any) -> int:
-    count = step_count("lanes", given)
+    count = whole_number("lanes", given)
     if not 1 <= count <= MOST_LANES:
         raise BadInput(f"lanes: {count} is not from 1 to {MOST_LANES}; give a number of vehicles")
     return count

@@ -19,7 +19,7 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from laconic.core.fields import Field
-from laconic.core.given import number, numbers
+from laconic.core.given import by_names, finite_number, finite_numbers, name_list
 from laconic.errors import BadInput, nearest_of
 
 if TYPE_CHECKING:
@@ -86,7 +86,7 @@ class StepDerivatives:
         "payload.mass_kg": 1.0, "ground.slope_rad": 0.1}. A wheel's number may be varied where the wheel has its own.
         """
         ffi, after = self.core.ffi, self.core.ffi.new("laconic_state_change *")
-        varied = ffi.NULL if held is None else self.plant.input_of(held)
+        varied = ffi.NULL if held is None else self._input_change(held)
         model = ffi.NULL if vehicle is None else self.model_change(vehicle)
         before = self._change([0.0] * (6 + self.wheels) if state is None else state)
         self._check(self.core.lib.laconic_step_tangent(after, *self._step, before, varied, model))
@@ -101,17 +101,17 @@ class StepDerivatives:
 
     def vehicle_gradient(self, gradient: ArrayLike, names: Sequence[str]) -> np.ndarray:
         """Gradients by numbers of the vehicle, named as for `tangent`, from that by the state after the step."""
-        ffi, lib = self.core.ffi, self.core.lib
+        ffi, lib, wanted = self.core.ffi, self.core.lib, name_list("names", names)
         before, by_model = ffi.new("laconic_state_change *"), ffi.new("laconic_model_change *")
         self._check(lib.laconic_step_adjoint(before, ffi.NULL, by_model, *self._step, self._change(gradient)))
         weights = self._flat(by_model)
-        return np.array([weights @ self._flat(self.model_change({name: 1.0})) for name in names])
+        return np.array([weights @ self._flat(self.model_change({name: 1.0})) for name in wanted])
 
     def model_change(self, vehicle: Mapping[str, float]) -> Any:
         """The laconic_model_change along changes of numbers of the vehicle."""
         by, change = self.core.ffi.new("laconic_vehicle *"), self.core.ffi.new("laconic_model_change *")
-        for name, value in vehicle.items():
-            self._vary(by, name, number(name, value))
+        for name, value in by_names("vehicle", vehicle).items():
+            self._vary(by, name, finite_number(name, value))
         self._check(self.core.lib.laconic_model_tangent(
             change, self._step[0], self.core.ffi.addressof(self.plant.c, "vehicle"), by))
         return change
@@ -129,9 +129,17 @@ class StepDerivatives:
         return self.core.ffi.cast("laconic_real *", array.ctypes.data)
 
     def _change(self, values: ArrayLike) -> Any:
-        row = numbers("change of the state", np.asarray(values).tolist(), 6 + self.wheels)
+        row = finite_numbers("change of the state", values, 6 + self.wheels)
         return self.core.ffi.new("laconic_state_change *", {
             "nu_rad_per_s": row[:3], "x_m": row[3], "y_m": row[4], "heading_rad": row[5], "wheel_angle_rad": row[6:]})
+
+    def _input_change(self, held: Any) -> Any:
+        change = self.plant.input_of(held)
+        for offset in np.flatnonzero(~np.isfinite(row := self._flat(change))):
+            name = next(name for name, (first, length) in self.core.input_fields.items()
+                        if first <= offset < first + length)
+            finite_number(f"change of the input: {name}", float(row[offset]))
+        return change
 
     def _flat(self, struct: Any) -> np.ndarray:
         return np.frombuffer(self.core.ffi.buffer(struct), self.core.dtype).copy()

@@ -46,12 +46,50 @@ def numbers(name: str, values: Any, count: int) -> list[float]:
     return [number(f"{name}[{item}]", value) for item, value in enumerate(many, start=1)]
 
 
-def step_count(name: str, value: Any) -> int:
-    """A whole number of steps."""
+def finite_number(name: str, value: Any) -> float:
+    """A number, neither infinite nor NaN."""
+    found = number(name, value)
+    if not math.isfinite(found):
+        raise BadInput(f"{name}: {shown(value)} is not finite; give a finite number")
+    return found
+
+
+def finite_numbers(name: str, values: Any, count: int) -> list[float]:
+    """So many numbers, neither infinite nor NaN; also an array."""
+    many = numbers(name, getattr(values, "tolist", lambda: values)(), count)
+    return [finite_number(f"{name}[{item}]", value) for item, value in enumerate(many, start=1)]
+
+
+def name_list(name: str, given: Any) -> list[str]:
+    """A list of names."""
     try:
-        count = operator.index(value)
+        many = list(given)
+    except TypeError:
+        many = [None]
+    if isinstance(given, str | bytes) or not all(isinstance(each, str) for each in many):
+        raise BadInput(f"{name}: {shown(given)} is no list of names; give one, such as [\"mass_kg\"]")
+    return many
+
+
+def by_names(name: str, given: Any) -> Mapping[str, Any]:
+    """A mapping from names."""
+    if not isinstance(given, Mapping) or not all(isinstance(key, str) for key in given):
+        raise BadInput(f"{name}: {shown(given)} is no mapping from names to numbers; give one, such as "
+                       "{\"mass_kg\": 1.0}")
+    return given
+
+
+def whole_number(name: str, value: Any) -> int:
+    """A whole number of any size and sign."""
+    try:
+        return operator.index(value)
     except TypeError:
         raise BadInput(f"{name}: {shown(value)} is no whole number (int); give one, such as 100") from None
+
+
+def step_count(name: str, value: Any) -> int:
+    """A whole number of steps."""
+    count = whole_number(name, value)
     if not 0 <= count <= MOST_STEPS:
         raise BadInput(f"{name}: {count} steps cannot be taken; give a number from 0 to {MOST_STEPS}")
     return count

@@ -38,7 +38,7 @@ def input_fields(core: Core) -> dict[str, tuple[int, int]]:
 
 def slots_of(core: Core, signal: str) -> range:
     """The numbers that a signal may set; BadInput where there is no such signal or item."""
-    name, _, index = signal.partition("[")
+    name, _, index = str(signal).partition("[")
     if name not in core.input_fields:
         raise BadInput(f"{signal}: there is no such input; {nearest_of(name, core.input_fields)}")
     start, length = core.input_fields[name]

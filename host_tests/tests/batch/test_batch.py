@@ -109,11 +109,18 @@ def test_a_lane_that_is_refused_stays_and_tells_why_and_the_others_go_on():
 
 WRONG = {
     "vehicles: none is given": lambda: laconic.Batch([]),
+    "vehicles: None is no laconic.Vehicle and no list": lambda: laconic.Batch(None, 3),
     "vehicles[2]: 'cart' is no laconic.Vehicle": lambda: laconic.Batch([robot(), "cart"]),
     "vehicles[2]: is of single precision": lambda: laconic.Batch([robot(), robot(real="single")]),
     "vehicles[1]: has ground friction": lambda: laconic.Batch(robot(ground={"friction_coefficient": 0.5})),
     "lanes: 3 lanes for 2 vehicles": lambda: laconic.Batch([robot(), cart()], 3),
     "lanes: 0 is not from 1": lambda: laconic.Batch(robot(), 0),
+    "lanes: -1 is not from 1": lambda: laconic.Batch(robot(), -1),
+    "lane: there is no -1": lambda: laconic.Batch(robot(), 2).state(-1),
+    "threads: -1 cannot take a step": lambda: laconic.Batch(robot(), 2).run(1, threads=-1),
+    "width_bytes: this processor has no registers of -16": lambda: laconic.Batch(robot(), 2, width_bytes=-16),
+    "state: None is no laconic_state": lambda: laconic.Batch(robot(), 2).load(0, None),
+    "kind_of: [[1], [1, 2]] is no row": lambda: laconic.Batch([robot(), cart()], kind_of=[[1], [1, 2]]),
     "kind_of: 0 to 2 are not all kinds": lambda: laconic.Batch([robot(), cart()], kind_of=[0, 1, 2]),
     "kind_of: has the shape (2, 1)": lambda: laconic.Batch([robot(), cart()], kind_of=[[0], [1]]),
     "kind_of: 1 lanes for 2 vehicles": lambda: laconic.Batch([robot(), cart()], kind_of=[0]),

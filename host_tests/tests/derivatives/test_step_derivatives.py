@@ -91,3 +91,26 @@ def test_what_has_no_derivative_is_refused_by_its_name():
         step.tangent([1.0, 2.0])
     with pytest.raises(Refused, match="voltage_V"):
         StepDerivatives(carriage(), {"voltage_V": [float("nan"), 0.0, 0.0]}).jacobian()
+
+
+WRONG = {
+    "vehicle: [] is no mapping": lambda step: step.tangent(vehicle=[]),
+    "vehicle: {1: 2.0} is no mapping": lambda step: step.tangent(vehicle={1: 2.0}),
+    "mass_kg: nan is not finite": lambda step: step.tangent(vehicle={"mass_kg": np.nan}),
+    "names: None is no list of names": lambda step: step.vehicle_gradient(np.ones(9), None),
+    "names: 'mass_kg' is no list of names": lambda step: step.vehicle_gradient(np.ones(9), "mass_kg"),
+    "names: [1] is no list of names": lambda step: step.vehicle_gradient(np.ones(9), [1]),
+    "change of the state[9]: nan is not finite": lambda step: step.tangent([*[0.0] * 8, np.nan]),
+    "change of the state: [[1.0], [1.0, 2.0]] is no list": lambda step: step.tangent([[1.0], [1.0, 2.0]]),
+    "change of the state[1]: -inf is not finite": lambda step: step.adjoint(np.full(9, -np.inf)),
+    "change of the state[2]: nan is not finite": lambda step: step.vehicle_gradient([0, np.nan, *[0] * 7], ["mass_kg"]),
+    "change of the input: voltage_V: nan is not finite": lambda step: step.tangent(held={"voltage_V[2]": np.nan}),
+    "1: there is no such input": lambda step: step.tangent(held={1: 2.0}),
+}
+
+
+@pytest.mark.parametrize("message", WRONG)
+def test_what_is_no_direction_is_refused_in_one_line(message):
+    with pytest.raises(BadInput) as caught:
+        WRONG[message](StepDerivatives(carriage(), HELD))
+    assert str(caught.value).startswith(message)
