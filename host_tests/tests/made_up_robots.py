@@ -53,6 +53,29 @@ THREE_AROUND = link("base", inertial(3.0, (0.02, 0.02, 0.03)), BOX) + "".join(
     wheel(f"wheel_{k}", "base", f"{0.2 * np.cos(a)} {0.2 * np.sin(a)} -0.05", f"0 0 {a - np.pi / 2}")
     for k, a in enumerate(np.radians((60, 180, 300))))
 
+MJCF = """<mujoco><worldbody><body name="base" pos="0 0 0.3" euler="0 0 30"><freejoint/>
+<inertial pos="0.02 0.01 0.03" mass="5" diaginertia="0.1 0.1 0.08"/><geom type="box" size="0.2 0.15 0.05"/>
+<body name="left_link" pos="0 0.2 -0.05"><joint name="left" axis="0 1 0"/>
+<inertial pos="0 0 0" mass="0.5" diaginertia="4e-4 7e-4 4e-4"/>
+<geom type="cylinder" size="0.05 0.01" euler="90 0 0"/></body>
+<body name="right_link" pos="0 -0.2 -0.05"><joint name="right" axis="0 1 0"/>
+<inertial pos="0 0 0" mass="0.5" diaginertia="4e-4 7e-4 4e-4"/>
+<geom type="cylinder" size="0.05 0.01" euler="90 0 0"/></body>
+</body></worldbody></mujoco>"""
+
+WHEEL = """<link name="{0}_link"><pose relative_to="{0}">0 0 0 0 0 -0.5</pose><inertial><mass>0.5</mass>
+<inertia><ixx>4e-4</ixx><iyy>7e-4</iyy><izz>4e-4</izz></inertia></inertial>
+<collision name="c"><pose degrees="true">0 0 0 90 0 0</pose>
+<geometry><cylinder><radius>0.05</radius><length>0.02</length></cylinder></geometry></collision></link>
+<joint name="{0}" type="revolute"><pose relative_to="base">0 {1} -0.05 0 0 0.5</pose><parent>base</parent>
+<child>{0}_link</child>
+<axis><xyz expressed_in="base">0 1 0</xyz><limit><lower>-1e16</lower><upper>1e16</upper></limit></axis></joint>"""
+SDF = f"""<sdf version="1.9"><world name="w"><model name="made_up"><pose>1 2 3 0 0 1</pose>
+<frame name="mast"><pose>0 0 0.3 0 0 0.2</pose></frame><link name="base"><pose relative_to="mast"/><inertial>
+<pose>0.02 0.01 0.03 0 0 0</pose><mass>5</mass><inertia><ixx>0.1</ixx><iyy>0.1</iyy><izz>0.08</izz></inertia></inertial>
+<collision name="c"><geometry><box><size>0.4 0.3 0.1</size></box></geometry></collision></link>
+{WHEEL.format("left", "0.2")}{WHEEL.format("right", "-0.2")}</model></world></sdf>"""
+
 
 def sums_by_mujoco(path: Path) -> tuple[float, np.ndarray, float]:
     """Mass, centre of mass in the frame of the root link, and yaw inertia about it, by MuJoCo's reading of a URDF."""

@@ -11,9 +11,11 @@ from laconic.errors import BadInput
 from laconic.robot_import.placement import Array
 
 WORDS_AT_MOST = 160
+LARGEST = 1e30  # in SI units, far beyond any robot; products of a few such numbers stay finite
+DISSIPATION = {"damping": "N·m·s/rad", "friction": "N·m"}  # of a joint
 
 
-def finite(where: str, values: Sequence[Any], count: int) -> list[float]:
+def finite(where: str, values: Sequence[Any], count: int, largest: float = LARGEST) -> list[float]:
     """`count` finite numbers."""
     try:
         numbers = [float(value) for value in values]
@@ -23,14 +25,21 @@ def finite(where: str, values: Sequence[Any], count: int) -> list[float]:
         raise BadInput(f"{where}: has {len(numbers)} numbers; give {count}")
     if not np.isfinite(numbers).all():
         raise BadInput(f"{where}: must be finite")
+    if (most := max(numbers, key=abs, default=0.0)) and abs(most) > largest:
+        raise BadInput(f"{where}: {most:g} is beyond {largest:g}; give SI units")
     return numbers
 
 
 def mass(where: str, value: Any) -> float:
     """0 or above."""
-    number = finite(f"{where}: mass", [value], 1)[0]
+    return not_negative(where, "mass", value, "kg")
+
+
+def not_negative(where: str, what: str, value: Any, unit: str) -> float:
+    """0 or above."""
+    number = finite(f"{where}: {what}", [value], 1)[0]
     if number < 0.0:
-        raise BadInput(f"{where}: mass is {number:g} kg; it cannot be below 0")
+        raise BadInput(f"{where}: {what} is {number:g} {unit}; it cannot be below 0")
     return number
 
 
@@ -43,7 +52,7 @@ def inertia_matrix(where: str, inertia: Any) -> Array:
 
 def unit_vector(where: str, axis: Sequence[Any]) -> Array:
     """The direction of an axis."""
-    vector = np.array(finite(f"{where}: axis", axis, 3))
+    vector = np.array(finite(f"{where}: axis", axis, 3, largest=np.inf))
     largest = np.abs(vector).max()
     if largest < 1e-9:
         raise BadInput(f"{where}: axis is 0; give a direction")

@@ -100,7 +100,7 @@ class _Writer:
         """`[ground]`, with the dry friction of the axles; a wheel whose own is another keeps it."""
         ground = {"friction_coefficient": float(self.answers.friction_coefficient or 0.0)}
         self.comments["ground", "friction_coefficient"] = "said with --friction"
-        frictions = [max(_rounded(wheel.joint.friction_Nm), 0.0) for wheel in self.ground.wheels]
+        frictions = [_rounded(wheel.joint.friction_Nm) for wheel in self.ground.wheels]
         if any(frictions):
             ground["axle_friction_Nm"] = common = max(frictions, key=frictions.count)
             self.comments["ground", "axle_friction_Nm"] = "friction of the joints"
@@ -216,11 +216,11 @@ class _Writer:
         self.comments["input", "0", "signal"] = (f"assumption: these torques push ahead with about "
                                                  f"{ACCELERATION_M_PER_S2:g} m/s² "
                                                  f"for {PUSH_S:g} s")
-        damping = np.array([max(wheel.joint.damping_Nms, 0.0) for wheel in self.ground.wheels])
+        damping = np.array([wheel.joint.damping_Nms for wheel in self.ground.wheels])
         speed_m_per_s = speed_of_drag(float(damping @ rolling**2) / scene.vehicle["mass_kg"])
         for index, rate in enumerate(rolling):
             if abs(rate) > 1e-9 * np.abs(rolling).max():
-                rubbing = np.sign(rate) * max(self.ground.wheels[index].joint.friction_Nm, 0.0) if slips else 0.0
+                rubbing = np.sign(rate) * self.ground.wheels[index].joint.friction_Nm if slips else 0.0
                 inputs.append({"signal": f"axle_torque_Nm[{index + 1}]", "kind": "steps", "t_s": [0.0, PUSH_S],
                                "value": [_rounded((scale + damping[index] * speed_m_per_s) * rate + rubbing), 0.0]})
         return inputs

@@ -11,6 +11,7 @@ from typing import Any
 import numpy as np
 
 from laconic.errors import BadInput
+from laconic.robot_import.checked import LARGEST
 from laconic.robot_import.placement import Array
 
 PREFIXES = ("package://", "model://", "file://")
@@ -40,7 +41,7 @@ class MeshFiles:
         except Exception as error:  # a library for many formats fails in many ways
             self.missing[uri] = f"cannot be read ({type(error).__name__})"
             return None
-        if not points.size or not np.isfinite(points).all():
+        if not points.size or not (np.abs(points) <= LARGEST).all():
             self.missing[uri] = "has no points"
             return None
         return points

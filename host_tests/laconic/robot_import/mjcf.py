@@ -8,7 +8,7 @@ from typing import Any
 import numpy as np
 
 from laconic.errors import BadInput
-from laconic.robot_import.checked import words_of
+from laconic.robot_import.checked import DISSIPATION, finite, mass, not_negative, words_of
 from laconic.robot_import.placement import Array, inverse, placement, point_of
 from laconic.robot_import.robot_tree import BALL, FIXED, HINGE, SLIDE, TURNS_ROUND_RAD, Joint, Link, Robot, Shape
 
@@ -18,16 +18,11 @@ SPHERE, CAPSULE, CYLINDER, BOX, MESH = 2, 3, 5, 6, 7  # mjtGeom
 
 def read_mjcf(path: Path, model_name: str | None) -> Robot:
     """The heaviest body that stands in the world, or the one of this name, with all that hangs on it."""
-    import mujoco
-
-    try:
-        model = mujoco.MjModel.from_xml_path(str(path))
-    except (ValueError, OSError) as error:
-        raise BadInput(f"{path}: MuJoCo cannot read it: {words_of(error)}") from None
-    data = mujoco.MjData(model)
-    mujoco.mj_kinematics(model, data)
+    model, data = _compiled(path)
     base = _base(path, model, model_name)
-    inside = [body for body in range(1, model.nbody) if _hangs_on(model, body, base)]
+    inside = [body for body in range(1, model.nbody) if model.body_rootid[body] == base]
+    for body in inside:
+        _check_numbers(f"{path}: body {model.body(body).name or body}", model, data, body)
     back = inverse(placement(data.xpos[base], data.xmat[base].reshape(3, 3)))
     names = {body: model.body(body).name or f"body {body}" for body in inside}
     links = {names[body]: _link(model, data, body, names[body], back) for body in inside}
@@ -40,6 +35,34 @@ def read_mjcf(path: Path, model_name: str | None) -> Robot:
     return Robot(title, path, "MJCF", names[base], links, joints).check()
 
 
+def _compiled(path: Path) -> tuple[Any, Any]:
+    """Model and data in the zero position. MuJoCo's warnings, which it would print and write into a file of the
+    working folder, are of numbers that are checked here."""
+    import mujoco
+
+    mujoco.set_mju_user_warning(lambda words: None)
+    try:
+        model = mujoco.MjModel.from_xml_path(str(path))
+        data = mujoco.MjData(model)
+        mujoco.mj_kinematics(model, data)
+    except (ValueError, OSError) as error:
+        raise BadInput(f"{path}: MuJoCo cannot read it: {words_of(error)}") from None
+    finally:
+        mujoco.set_mju_user_warning(None)
+    return model, data
+
+
+def _check_numbers(where: str, model: Any, data: Any, body: int) -> None:
+    """BadInput for what is not finite or beyond all measure."""
+    geoms = slice(int(model.body_geomadr[body]), int(model.body_geomadr[body]) + int(model.body_geomnum[body]))
+    mass(where, model.body_mass[body])
+    for what, numbers in (("place", data.xpos[body]), ("centre of mass", data.xipos[body]),
+                          ("inertia", model.body_inertia[body]), ("size of a geom", model.geom_size[geoms]),
+                          ("place of a geom", data.geom_xpos[geoms])):
+        flat = np.ravel(numbers).tolist()
+        finite(f"{where}: {what}", flat, len(flat))
+
+
 def _base(path: Path, model: Any, name: str | None) -> int:
     standing = {model.body(body).name: body for body in range(1, model.nbody) if model.body_parentid[body] == 0}
     if not standing:
@@ -49,12 +72,6 @@ def _base(path: Path, model: Any, name: str | None) -> int:
     if name not in standing:
         raise BadInput(f"--model {name}: no body of this name stands in the world; there are {', '.join(standing)}")
     return standing[name]
-
-
-def _hangs_on(model: Any, body: int, base: int) -> bool:
-    while body not in (0, base):
-        body = int(model.body_parentid[body])
-    return body == base
 
 
 def _link(model: Any, data: Any, body: int, name: str, back: Array) -> Link:
@@ -96,7 +113,8 @@ def _joint(path: Path, model: Any, data: Any, body: int, names: dict[int, str], 
     name = model.joint(joint).name or names[body]
     kind = KINDS[int(model.jnt_type[joint])]
     at = int(model.jnt_dofadr[joint])
-    damping, friction = float(model.dof_damping[at]), float(model.dof_frictionloss[at])
+    damping, friction = (not_negative(f"{path}: joint {name}", what, numbers[at], DISSIPATION[what])
+                         for what, numbers in (("damping", model.dof_damping), ("friction", model.dof_frictionloss)))
     limited = bool(model.jnt_limited[joint]) and float(np.ptp(model.jnt_range[joint])) < TURNS_ROUND_RAD
     axis = back[:3, :3] @ data.xaxis[joint] if kind in (HINGE, SLIDE) else np.zeros(3)
     return Joint(name, kind, parent, names[body], point_of(back, data.xanchor[joint]), axis, limited, damping, friction)

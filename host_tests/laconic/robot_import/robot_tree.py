@@ -5,7 +5,7 @@ All joints are in their zero position. Vectors are in axes of the base link: x a
 
 from __future__ import annotations
 
-from collections.abc import Iterable
+from collections.abc import Iterable, Iterator
 from dataclasses import dataclass, field
 from functools import cached_property
 from pathlib import Path
@@ -121,11 +121,14 @@ class Robot:
                                "or is the "
                                "base; a robot is a tree")
             hangs.add(joint.child)
+        reached = {self.base, *(link.name for joint in self.joints_of.get(self.base, ())
+                                for link in self.below(joint, rigid=False))}
         for link in self.links:
             if link != self.base and link not in hangs:
                 raise BadInput(f"{self.path}: link {link} is not joined to {self.base}; give it a joint, or take it "
                                "out")
-            self._climb(link)
+            if link not in reached:
+                raise BadInput(f"{self.path}: joint {self.joint_above[link].name} is part of a loop; a robot is a tree")
         return self
 
     @cached_property
@@ -133,29 +136,26 @@ class Robot:
         """The joint that each link but the base hangs on."""
         return {joint.child: joint for joint in self.joints.values()}
 
-    def _climb(self, link: str) -> list[Joint]:
-        """The joints from a link up to the base."""
-        above: list[Joint] = []
-        while link != self.base:
-            joint = self.joint_above[link]
-            if joint in above:
-                raise BadInput(f"{self.path}: joint {joint.name} is part of a loop; a robot is a tree")
-            above.append(joint)
-            link = joint.parent
-        return above
+    @cached_property
+    def joints_of(self) -> dict[str, list[Joint]]:
+        """The joints that hang on each link that has some."""
+        found: dict[str, list[Joint]] = {}
+        for joint in self.joints.values():
+            found.setdefault(joint.parent, []).append(joint)
+        return found
 
-    def chain(self, joint: Joint) -> list[Joint]:
+    def chain(self, joint: Joint) -> Iterator[Joint]:
         """The joints between `joint` and the base, without itself, from below."""
-        return self._climb(joint.parent)
+        while joint.parent != self.base:
+            joint = self.joint_above[joint.parent]
+            yield joint
 
     def below(self, joint: Joint, *, rigid: bool) -> list[Link]:
         """The links that move with `joint`; only those fixed to its child where `rigid`."""
-        found, waiting = [], [joint.child]
-        while waiting:
-            name = waiting.pop(0)
-            found.append(self.links[name])
-            waiting += [j.child for j in self.joints.values() if j.parent == name and (j.kind == FIXED or not rigid)]
-        return found
+        found = [joint.child]
+        for name in found:  # which grows meanwhile
+            found += [each.child for each in self.joints_of.get(name, ()) if each.kind == FIXED or not rigid]
+        return [self.links[name] for name in found]
 
 
 def base_of(path: Path, links: Iterable[str], children: Iterable[str]) -> str:

@@ -11,7 +11,15 @@ from xml.etree import ElementTree
 import numpy as np
 
 from laconic.errors import BadInput, reason_of
-from laconic.robot_import.checked import finite, inertia_matrix, mass, unit_vector, words_of
+from laconic.robot_import.checked import (
+    DISSIPATION,
+    finite,
+    inertia_matrix,
+    mass,
+    not_negative,
+    unit_vector,
+    words_of,
+)
 from laconic.robot_import.meshes import MeshFiles
 from laconic.robot_import.placement import (
     IDENTITY,
@@ -56,6 +64,10 @@ def _model(path: Path, root: Element, name: str | None) -> Element:
     if root.tag != "sdf":
         raise BadInput(f"{path}: begins with <{root.tag}>; SDF begins with <sdf>")
     models = [each for each in root.iter("model") if each.find("link") is not None]
+    if not models and (included := root.find(".//include")) is not None:
+        uri = _text(included, "uri") or "a file"
+        raise BadInput(f"{path}: has no links but those of <include> {uri}, which is not read; give the file of that "
+                       "model")
     if name is not None:
         models = [each for each in models if each.get("name") == name]
     if len(models) != 1:
@@ -80,7 +92,7 @@ class _Model:
         self.frames = {**self.links, **frames, **self.joints}
         if len(self.frames) < len(self.links) + len(frames) + len(self.joints):
             raise BadInput(f"{path}: two links, joints or frames have one name; give each its own")
-        self.placed: dict[str, Array | None] = {}
+        self.placed: dict[str, Array] = {"__model__": IDENTITY}
 
     def _name(self, element: Element) -> str:
         name = element.get("name")
@@ -90,27 +102,27 @@ class _Model:
 
     def frame(self, name: str) -> Array:
         """Of a link, joint or frame, in the frame of the model."""
-        if name == "__model__":
-            return IDENTITY
-        if name not in self.frames:
-            raise BadInput(f"{self.path}: there is no link, joint or frame {name}; name one that is there")
-        if name not in self.placed:
-            self.placed[name] = None
-            element = self.frames[name]
-            default = {"joint": _text(element, "child"), "frame": element.get("attached_to")}.get(element.tag)
-            self.placed[name] = self.pose(element, default or "__model__")
+        above: dict[str, None] = {}  # from `name` to a frame that is placed, in this order
+        while name not in self.placed:
+            if name in above:
+                raise BadInput(f"{self.path}: the pose of {name} is relative to itself; poses may not form a loop")
+            above[name] = None
+            name = self._relative_to(name)
         placed = self.placed[name]
-        if placed is None:
-            raise BadInput(f"{self.path}: the pose of {name} is relative to itself; poses may not form a loop")
+        for each in reversed(above):
+            element = self.frames[each]
+            where = f"{self.path}: {element.tag} {each}"
+            placed = self.placed[each] = placed @ _placement(where, element.find("pose"))
         return placed
 
-    def pose(self, element: Element, default: str) -> Array:
-        """`<pose relative_to=…>` of an element, in the frame of the model."""
+    def _relative_to(self, name: str) -> str:
+        """The frame that the pose of a link, joint or frame is given in."""
+        if name not in self.frames:
+            raise BadInput(f"{self.path}: there is no link, joint or frame {name}; name one that is there")
+        element = self.frames[name]
         pose = element.find("pose")
-        if pose is None:
-            return self.frame(default)
-        where = f"{self.path}: {element.tag} {element.get('name', '')}"
-        return self.frame(pose.get("relative_to") or default) @ _placement(where, pose)
+        default = {"joint": _text(element, "child"), "frame": element.get("attached_to")}.get(element.tag)
+        return (pose.get("relative_to") if pose is not None else None) or default or "__model__"
 
     def robot(self) -> Robot:
         """The tree, in the frame of its base."""
@@ -169,8 +181,8 @@ class _Model:
             xyz = given.find("xyz") if given is not None else None
             direction = unit_vector(where, (xyz.text or "").split() if xyz is not None else [0.0, 0.0, 1.0])
             axis = self._turn_of_axis(given, xyz, frame, back) @ direction
-        damping, friction = (finite(f"{where}: {what}", [_text(given, f"dynamics/{what}") or 0.0], 1)[0]
-                             for what in ("damping", "friction"))
+        damping, friction = (not_negative(where, what, _text(given, f"dynamics/{what}") or 0.0, unit)
+                             for what, unit in DISSIPATION.items())
         limited = _is_limited(where, element, given)
         return Joint(name, kind, parent, child, point_of(frame), axis, limited, damping, friction)
 
@@ -186,7 +198,8 @@ class _Model:
 def _is_limited(where: str, joint: Element, axis: Element | None) -> bool:
     if joint.get("type") != "revolute" or axis is None or axis.find("limit") is None:
         return False
-    lower, upper = finite(f"{where}: limit", [_bound(axis, "lower", -1e16), _bound(axis, "upper", 1e16)], 2)
+    lower, upper = finite(f"{where}: limit", [_bound(axis, "lower", -1e16), _bound(axis, "upper", 1e16)], 2,
+                          largest=np.inf)
     return upper - lower < TURNS_ROUND_RAD
 
 

@@ -4,8 +4,7 @@ from __future__ import annotations
 
 import contextlib
 import io
-import sys
-import types
+from collections import Counter
 from collections.abc import Iterator, Mapping
 from pathlib import Path
 from typing import Any
@@ -13,8 +12,17 @@ from xml.etree import ElementTree
 
 import numpy as np
 
-from laconic.errors import BadInput, reason_of
-from laconic.robot_import.checked import finite, inertia_matrix, mass, unit_vector, words_of
+from laconic.errors import BadInput, nearest_of, reason_of
+from laconic.robot_import.checked import (
+    DISSIPATION,
+    LARGEST,
+    finite,
+    inertia_matrix,
+    mass,
+    not_negative,
+    unit_vector,
+    words_of,
+)
 from laconic.robot_import.meshes import MeshFiles
 from laconic.robot_import.placement import IDENTITY, Array, placement, point_of, rotation_of_rpy
 from laconic.robot_import.robot_tree import (
@@ -34,19 +42,10 @@ KINDS = {"continuous": HINGE, "revolute": HINGE, "prismatic": SLIDE, "fixed": FI
 
 
 def read_xacro(path: Path, arguments: Mapping[str, str], packages: Mapping[str, Path]) -> Robot:
-    """A xacro file, expanded with `NAME:=VALUE` arguments; $(find NAME) looks beside and above the file."""
-    import xacro
+    """A xacro file, expanded with `NAME:=VALUE` arguments."""
+    from laconic.robot_import.xacro_expansion import expanded
 
-    files = MeshFiles(path, packages)
-    with _quiet(), _packages(files):
-        try:
-            text = xacro.process_file(str(path), mappings=dict(arguments)).toxml()
-        except Exception as error:
-            if files.asked_for:
-                raise BadInput(f"{path}: package {files.asked_for} is not beside or above the file; give --package "
-                               f"{files.asked_for}=FOLDER") from None
-            raise BadInput(f"{path}: xacro cannot expand it: {words_of(error)}") from None
-    return _robot(path, text, files, "xacro")
+    return _robot(path, expanded(path, arguments, packages), MeshFiles(path, packages), "xacro")
 
 
 def read_urdf(path: Path, packages: Mapping[str, Path]) -> Robot:
@@ -65,25 +64,6 @@ def _quiet() -> Iterator[None]:
     """The libraries print of tags that they do not know; nothing of that concerns masses and wheels."""
     with contextlib.redirect_stderr(io.StringIO()), contextlib.redirect_stdout(io.StringIO()):
         yield
-
-
-@contextlib.contextmanager
-def _packages(files: MeshFiles) -> Iterator[None]:
-    """xacro asks ROS (`ament_index_python`) where a package is; without ROS it asks `files`."""
-    name = "ament_index_python.packages"
-    module = types.ModuleType(name)
-    module.get_package_share_directory = files.package_for_xacro  # type: ignore[attr-defined]
-    parent = types.ModuleType("ament_index_python")
-    before = {key: sys.modules.get(key) for key in (name, parent.__name__)}
-    sys.modules.update({name: module, parent.__name__: parent})
-    try:
-        yield
-    finally:
-        for key, old in before.items():
-            if old is None:
-                del sys.modules[key]
-            else:
-                sys.modules[key] = old
 
 
 def _robot(path: Path, text: str, files: MeshFiles, form: str) -> Robot:
@@ -106,7 +86,23 @@ def _robot(path: Path, text: str, files: MeshFiles, form: str) -> Robot:
     loose = [link.name for link in found.links if link.name not in frames]
     if loose:
         raise BadInput(f"{path}: link {loose[0]} is not joined to {base}; a robot is a tree")
-    return Robot(found.name or path.stem, path, form, base, links, joints, files.remarks()).check()
+    remarks = (*files.remarks(), *_mimics(path, found, joints))
+    return Robot(found.name or path.stem, path, form, base, links, joints, remarks).check()
+
+
+def _mimics(path: Path, found: Any, joints: Mapping[str, Joint]) -> list[str]:
+    """What is left out of wheels that one motor turns; BadInput for a joint that mimics one that is not there."""
+    remarks = []
+    for joint in found.joints:
+        if joint.mimic is None:
+            continue
+        if joint.mimic.joint not in joints:
+            raise BadInput(f"{path}: joint {joint.name}: mimics joint {joint.mimic.joint}, which is not there; "
+                           f"{nearest_of(str(joint.mimic.joint), joints)}")
+        if joints[joint.name].kind == HINGE and not joints[joint.name].is_limited:
+            remarks.append(f"joint {joint.name} mimics {joint.mimic.joint}, which is not taken over: each wheel turns "
+                           "on its own")
+    return remarks
 
 
 def _check_vectors(path: Path, text: str) -> None:
@@ -120,26 +116,28 @@ def _check_vectors(path: Path, text: str) -> None:
             for key in ("xyz", "rpy", "size"):
                 if key in element.attrib:
                     where = f"{path}: {part.tag} {part.get('name', '')}: <{element.tag}> {key}"
-                    finite(where, element.attrib[key].split(), 3)
+                    largest = np.inf if element.tag == "axis" else LARGEST  # the length of an axis does not matter
+                    finite(where, element.attrib[key].split(), 3, largest)
 
 
 def _names_once(path: Path, what: str, names: list[str]) -> None:
-    for name in names:
-        if names.count(name) > 1:
+    for name, count in Counter(names).items():
+        if count > 1:
             raise BadInput(f"{path}: {what} {name} is there twice; give each a name of its own")
 
 
 def _frames(path: Path, found: Any, base: str) -> dict[str, Array]:
     """The frame of each link in that of the base, all joints in their zero position."""
     frames = {base: IDENTITY}
-    waiting = list(found.joints)
+    below: dict[str, list[Any]] = {}
+    for joint in found.joints:
+        below.setdefault(joint.parent, []).append(joint)
+    waiting = [base]
     while waiting:
-        ready = [joint for joint in waiting if joint.parent in frames]
-        if not ready:
-            break
-        for joint in ready:
-            frames[joint.child] = frames[joint.parent] @ _origin(f"{path}: joint {joint.name}", joint.origin)
-        waiting = [joint for joint in waiting if joint not in ready]
+        for joint in below.pop(waiting.pop(), []):
+            placed = _origin(f"{path}: joint {joint.name}", joint.origin)
+            frames[joint.child] = frames[joint.parent] @ placed
+            waiting.append(joint.child)
     return frames
 
 
@@ -194,6 +192,6 @@ def _joint(path: Path, joint: Any, frames: dict[str, Array]) -> Joint:
     limit = joint.limit
     is_limited = joint.type == "revolute" and not (limit and limit.upper - limit.lower >= TURNS_ROUND_RAD)
     given = joint.dynamics
-    damping, friction = (finite(f"{where}: {what}", [(getattr(given, what) if given else None) or 0.0], 1)[0]
-                         for what in ("damping", "friction"))
+    damping, friction = (not_negative(where, what, (getattr(given, what) if given else None) or 0.0, unit)
+                         for what, unit in DISSIPATION.items())
     return Joint(joint.name, kind, joint.parent, joint.child, point_of(frame), turned, is_limited, damping, friction)

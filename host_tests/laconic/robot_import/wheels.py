@@ -16,6 +16,7 @@ from laconic.robot_import.robot_tree import HINGE, SLIDE, Joint, Link, Robot
 ROLLERS_AT_LEAST = 3
 LEVEL = np.sin(np.radians(10.0))  # the steepest axle of a wheel
 UPRIGHT = np.cos(np.radians(10.0))  # of a swivel's axis
+PLACE_DIGITS = 4  # wheels nearer than a tenth of a millimetre are in one place
 REACHES = 0.05  # of the radius above the ground, at most
 
 
@@ -92,8 +93,21 @@ def find_wheels(robot: Robot, answers: Answers) -> Ground:
         raise BadInput(f"{robot.path}: all wheels swivel ({', '.join(each.name for each in casters)}), and steering "
                        "is not "
                        "modelled; give --wheel JOINT for those that are held")
+    _check_places(robot, wheels)
     remarks += [remark for wheel in wheels for remark in wheel.remarks]
     return Ground(wheels, casters, height, tuple(remarks))
+
+
+def _check_places(robot: Robot, wheels: Sequence[FoundWheel]) -> None:
+    """BadInput for two wheels in one place, such as a copied joint whose origin was not changed."""
+    there: dict[tuple[float, ...], str] = {}
+    for wheel in wheels:
+        place = tuple(float(each) + 0.0 for each in np.round(wheel.hub_m, PLACE_DIGITS))
+        if place in there:
+            raise BadInput(f"{robot.path}: joint {wheel.name}: its wheel is in the place of {there[place]}'s, "
+                           f"({place[0]:g}, {place[1]:g}) m; give it an origin of its own, or --wheel JOINT for each "
+                           "wheel that counts")
+        there[place] = wheel.name
 
 
 def _beside_a_wheel(joint: Joint, measured: Sequence[tuple[Joint, float | None]]) -> bool:

@@ -6,9 +6,22 @@ import re
 from pathlib import Path
 
 import pytest
-from made_up_robots import BOX, FOUR_WHEELS, THREE_AROUND, TWO_WHEELS, inertial, joint, link, robot, wheel
+from made_up_robots import (
+    BOX,
+    FOUR_WHEELS,
+    MJCF,
+    SDF,
+    THREE_AROUND,
+    TWO_WHEELS,
+    inertial,
+    joint,
+    link,
+    robot,
+    wheel,
+)
 
 from laconic.cli.main import run
+from laconic.robot_import import xacro_expansion
 
 GOOD = robot(TWO_WHEELS)
 NAMESPACE = 'xmlns:xacro="http://www.ros.org/wiki/xacro"'
@@ -66,6 +79,15 @@ WRONG: list[tuple[str, str, list[str], str]] = [
     ("friction below 0", GOOD, ["--friction", "-0.1"], "--friction -0.1: must be above 0"),
     ("arguments of no xacro", GOOD, ["--set", "a:=1"], "is no xacro file"),
     ("argument without sign", GOOD, ["--set", "a=1"], "give NAME:=VALUE"),
+    ("damping below 0", GOOD.replace("</joint>", '<dynamics damping="-0.1"/></joint>', 1), [],
+     "joint left: damping is -0.1 N·m·s/rad; it cannot be below 0"),
+    ("friction below 0", GOOD.replace("</joint>", '<dynamics friction="-2"/></joint>', 1), [],
+     "joint left: friction is -2 N·m; it cannot be below 0"),
+    ("size beyond all", GOOD.replace("0.4 0.3 0.1", "1e200 0.3 0.1"), [], "<box> size: 1e+200 is beyond 1e+30"),
+    ("mimics nothing", GOOD.replace("</joint>", '<mimic joint="rigth"/></joint>', 1), [],
+     "joint left: mimics joint rigth, which is not there; did you mean right?"),
+    ("wheels in one place", GOOD.replace("0 -0.2 -0.05", "0 0.2 -0.05"), [],
+     "joint right: its wheel is in the place of left's, (0, 0.2) m; give it an origin of its own"),
     ("package without folder", GOOD, ["--package", "kit"], "give NAME=VALUE"),
 ]
 
@@ -88,19 +110,41 @@ def test_what_cannot_be_used_is_one_line(tmp_path: Path, capsys: pytest.CaptureF
      "package kit is not beside or above the file; give --package kit=FOLDER"),
     ("robot.sdf", "<sdf version='1.9'/>", "has 0 models with links"),
     ("robot.sdf", "<robot/>", "SDF begins with <sdf>"),
+    ("robot.sdf", "<sdf><world><include><uri>model://turtle</uri></include></world></sdf>",
+     "has no links but those of <include> model://turtle, which is not read; give the file of that model"),
+    ("robot.sdf", SDF.replace("</limit>", "</limit><dynamics><damping>-3</damping></dynamics>"),
+     "damping is -3 N·m·s/rad; it cannot be below 0"),
+    ("robot.xml", MJCF.replace('mass="5"', 'mass="nan"'), "MuJoCo cannot read it"),
+    ("robot.xml", MJCF.replace('pos="0 0.2 -0.05"', 'pos="0 nan -0.05"'), "body left_link: place: must be finite"),
+    ("robot.xml", MJCF.replace("0.2 0.15 0.05", "1e200 0.15 0.05"),
+     "body base: size of a geom: 1e+200 is beyond 1e+30; give SI units"),
+    ("robot.xml", MJCF.replace('axis="0 1 0"', 'axis="0 1 0" damping="-1"'), "joint left: damping is -1"),
+    ("robot.xacro", f'<robot {NAMESPACE}>${{[0] * 10**10}}</robot>', "xacro cannot expand it"),
     ("robot.sdf", "<sdf", "is no XML"),
     ("robot.xml", "<mujoco><worldbody/></mujoco>", "has no body"),
     ("robot.xml", "<mujoco><worldbody><body><geom/></body></worldbody></mujoco>", "MuJoCo cannot read it"),
     ("robot.xml", "<html/>", "a robot begins with <robot> (URDF, xacro), <mujoco> or <sdf>"),
     ("robot.txt", "wheels", "is no XML; give a URDF, xacro, MJCF or SDF file")])
 def test_other_formats_are_one_line_too(tmp_path: Path, capsys: pytest.CaptureFixture[str], name: str, text: str,
-                                        words: str) -> None:
+                                        words: str, monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.chdir(tmp_path)
     (tmp_path / name).write_text(text, encoding="utf-8")
     assert run(["import", str(tmp_path / name), "-o", str(tmp_path / "robot.toml")]) == 2
     told = capsys.readouterr().err
     assert words in told
     assert told.count("\n") == 1
     assert "unexpected" not in told
+    assert [each.name for each in tmp_path.iterdir()] == [name]  # no log of a library
+
+
+def test_an_expression_that_goes_on_for_ever_is_ended(tmp_path: Path, capsys: pytest.CaptureFixture[str],
+                                                      monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr(xacro_expansion, "LONGEST_S", 0.5)
+    (tmp_path / "robot.xacro").write_text(f'<robot {NAMESPACE} name="${{9**9**9}}"/>', encoding="utf-8")
+    assert run(["import", str(tmp_path / "robot.xacro"), "-o", str(tmp_path / "robot.toml")]) == 2
+    told = capsys.readouterr().err
+    assert "xacro does not come to an end within 0.5 s; mend the expression or macro that goes on for ever" in told
+    assert told.count("\n") == 1
 
 
 def test_a_file_that_is_not_there_is_one_line(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:

@@ -2,38 +2,16 @@
 
 from __future__ import annotations
 
+import time
 from pathlib import Path
 from typing import Any
 
 import pytest
-from made_up_robots import TWO_WHEELS, robot
+from made_up_robots import MJCF, SDF, TWO_WHEELS, joint, link, robot
 
 from laconic.errors import BadInput
 from laconic.robot_import import Answers, import_robot
 from laconic.scene.table import read_toml
-
-MJCF = """<mujoco><worldbody><body name="base" pos="0 0 0.3" euler="0 0 30"><freejoint/>
-<inertial pos="0.02 0.01 0.03" mass="5" diaginertia="0.1 0.1 0.08"/><geom type="box" size="0.2 0.15 0.05"/>
-<body name="left_link" pos="0 0.2 -0.05"><joint name="left" axis="0 1 0"/>
-<inertial pos="0 0 0" mass="0.5" diaginertia="4e-4 7e-4 4e-4"/>
-<geom type="cylinder" size="0.05 0.01" euler="90 0 0"/></body>
-<body name="right_link" pos="0 -0.2 -0.05"><joint name="right" axis="0 1 0"/>
-<inertial pos="0 0 0" mass="0.5" diaginertia="4e-4 7e-4 4e-4"/>
-<geom type="cylinder" size="0.05 0.01" euler="90 0 0"/></body>
-</body></worldbody></mujoco>"""
-
-WHEEL = """<link name="{0}_link"><pose relative_to="{0}">0 0 0 0 0 -0.5</pose><inertial><mass>0.5</mass>
-<inertia><ixx>4e-4</ixx><iyy>7e-4</iyy><izz>4e-4</izz></inertia></inertial>
-<collision name="c"><pose degrees="true">0 0 0 90 0 0</pose>
-<geometry><cylinder><radius>0.05</radius><length>0.02</length></cylinder></geometry></collision></link>
-<joint name="{0}" type="revolute"><pose relative_to="base">0 {1} -0.05 0 0 0.5</pose><parent>base</parent>
-<child>{0}_link</child>
-<axis><xyz expressed_in="base">0 1 0</xyz><limit><lower>-1e16</lower><upper>1e16</upper></limit></axis></joint>"""
-SDF = f"""<sdf version="1.9"><world name="w"><model name="made_up"><pose>1 2 3 0 0 1</pose>
-<frame name="mast"><pose>0 0 0.3 0 0 0.2</pose></frame><link name="base"><pose relative_to="mast"/><inertial>
-<pose>0.02 0.01 0.03 0 0 0</pose><mass>5</mass><inertia><ixx>0.1</ixx><iyy>0.1</iyy><izz>0.08</izz></inertia></inertial>
-<collision name="c"><geometry><box><size>0.4 0.3 0.1</size></box></geometry></collision></link>
-{WHEEL.format("left", "0.2")}{WHEEL.format("right", "-0.2")}</model></world></sdf>"""
 
 
 def vehicle(tmp_path: Path, name: str, text: str, answers: Answers | None = None) -> dict[str, Any]:
@@ -65,3 +43,26 @@ def test_poses_that_form_a_loop_are_one_line(tmp_path: Path) -> None:
     loop = SDF.replace('<frame name="mast"><pose>', '<frame name="mast"><pose relative_to="base">')
     with pytest.raises(BadInput, match=r"the pose of (mast|base) is relative to itself"):
         vehicle(tmp_path, "loop.sdf", loop)
+
+
+CHAIN = 2000
+
+
+def test_long_chains_are_read_link_by_link(tmp_path: Path) -> None:
+    fixed = "".join(link(f"l{k + 1}") + joint(f"j{k}", "fixed", f"l{k}" if k else "base", f"l{k + 1}")
+                    for k in range(CHAIN))
+    end = TWO_WHEELS.replace('<parent link="base"/>', f'<parent link="l{CHAIN}"/>')
+    began = time.process_time()
+    assert vehicle(tmp_path, "chain.urdf", robot(end, fixed))["wheel"]
+    assert time.process_time() - began < 10.0  # comparing each link with all others took minutes
+    frames = "".join(f'<frame name="f{k}"><pose relative_to="{f"f{k - 1}" if k else "mast"}"/></frame>'
+                     for k in range(CHAIN))
+    last = SDF.replace('relative_to="mast"/>', f'relative_to="f{CHAIN - 1}"/>')
+    chained = vehicle(tmp_path, "chain.sdf", last.replace("</model>", frames + "</model>"))
+    assert chained == vehicle(tmp_path, "robot.sdf", SDF)
+
+
+def test_a_wheel_that_mimics_another_is_told_to_turn_on_its_own(tmp_path: Path) -> None:
+    (tmp_path / "robot.urdf").write_text(robot(TWO_WHEELS).replace("</joint>", '<mimic joint="right"/></joint>', 1))
+    remarks = import_robot(tmp_path / "robot.urdf", Answers()).remarks
+    assert "joint left mimics right, which is not taken over: each wheel turns on its own" in remarks
