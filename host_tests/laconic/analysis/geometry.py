@@ -15,9 +15,9 @@ from typing import Any
 import numpy as np
 
 from laconic.analysis.from_core import Subject
+from laconic.measures.authority import RANK_TOLERANCE, condition_of, spread_m, yaw_authority_of
 from laconic.scene.ground import slips
 
-RANK_TOLERANCE = 1e-9
 WEAK_YAW = 0.5            # below this fraction of what mirrored rollers would give, the mounting is called wrong
 STRONG_YAW = 2.0          # above, the yaw authority is as unusual as below 1/2
 MEANING = ("that is the rim speed in yaw, over the yaw rate times the wheels' distance from their middle; about 1 "
@@ -41,14 +41,14 @@ class Geometry:
 
 def diagnose(subject: Subject) -> Geometry:
     """Everything about the geometry of one vehicle."""
-    length = _spread(wheel_positions_m(subject))
+    length = float(spread_m(wheel_positions_m(subject)))
     allowed = _allowed_motions(subject, length)
     rows = _rim_rows(subject, subject.matrices.wheel_rows, length) @ allowed
     values, undriven = _null_motions(rows, allowed)
     rank = allowed.shape[1] - len(undriven)
-    authority = _yaw_authority(rows, allowed)
+    authority = float(yaw_authority_of(rows, allowed))
     mirrored = _mirrored_authority(subject, length, allowed)
-    condition = float(values[0] / values[-1]) if rank == allowed.shape[1] and rank > 0 else float("inf")
+    condition = float(condition_of(rows))
     not_driven = [motion_words(motion, subject, length) for motion in undriven]
     result = Geometry(allowed.shape[1], rank, [float(v) for v in values], condition, authority, mirrored, not_driven)
     result.words.extend(_words(subject, result, allowed, length))
@@ -59,14 +59,6 @@ def wheel_positions_m(subject: Subject) -> np.ndarray:
     """Wheel centres in the body frame [m], one row each."""
     wheels = subject.vehicle.wheel
     return np.array([[wheels[i].x_m, wheels[i].y_m] for i in range(subject.wheel_count)]).reshape(-1, 2)
-
-
-def _spread(positions_m: np.ndarray) -> float:
-    """ℓ; 1 m where the wheels have no extent."""
-    if len(positions_m) == 0:
-        return 1.0
-    distance = np.sqrt(((positions_m - positions_m.mean(axis=0)) ** 2).sum(axis=1).mean())
-    return float(distance) if distance > 0.0 else 1.0
 
 
 def _body_of_nu(subject: Subject, length: float) -> np.ndarray:
@@ -109,19 +101,6 @@ def _tidied(columns: np.ndarray) -> list[np.ndarray]:
     return list(work)
 
 
-def _yaw_authority(rows: np.ndarray, allowed: np.ndarray) -> float:
-    """Root mean square rim speed of the allowed motion with ℓ θ' = 1 that needs least; 0 where nothing can yaw."""
-    pull = allowed[2]
-    if len(rows) == 0 or np.abs(pull).max() < 1e-12:
-        return 0.0
-    base = pull / (pull @ pull)
-    free = np.linalg.svd(pull[None, :])[2][1:].T
-    answer = rows @ base
-    if free.shape[1]:
-        answer = answer - rows @ free @ np.linalg.lstsq(rows @ free, answer, rcond=None)[0]
-    return float(np.sqrt((answer**2).mean()))
-
-
 def _mirrored_authority(subject: Subject, length: float, allowed: np.ndarray) -> float | None:
     """The yaw authority if every mecanum roller angle had the other sign."""
     vehicle, core = subject.vehicle, subject.core
@@ -135,7 +114,7 @@ def _mirrored_authority(subject: Subject, length: float, allowed: np.ndarray) ->
             leaning += 1
     if leaning == 0:
         return None
-    return _yaw_authority(_rim_rows(subject, core.matrices(other).wheel_rows, length) @ allowed, allowed)
+    return float(yaw_authority_of(_rim_rows(subject, core.matrices(other).wheel_rows, length) @ allowed, allowed))
 
 
 def motion_words(motion: np.ndarray, subject: Subject, length: float) -> str:

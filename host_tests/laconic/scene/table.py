@@ -28,7 +28,7 @@ def read_toml(path: Path) -> Table:
     """The file's top table."""
     try:
         text = path.read_bytes().decode("utf-8-sig")
-        return Table(path, "", tomllib.loads(text))
+        return Table(path, "", entries_of(text))
     except OSError as error:
         raise BadInput(f"{path}: cannot be read ({reason_of(error)}); give the path of a readable TOML file") from None
     except UnicodeDecodeError:
@@ -37,6 +37,11 @@ def read_toml(path: Path) -> Table:
         raise BadInput(f"{path}: is no valid TOML: {error}{_line_of(text, error)}; correct that line") from None
     except RecursionError:
         raise BadInput(f"{path}: nests its lists too deeply; give the path of a scene") from None
+
+
+def entries_of(text: str) -> dict[str, Any]:
+    """What a TOML text holds; ValueError where it is none."""
+    return tomllib.loads(text)
 
 
 class Table:

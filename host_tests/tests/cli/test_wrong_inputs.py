@@ -54,6 +54,9 @@ WRONG = {
     "play robotino2 --listen 0 --drives canopen --bus-fault los=1": "did you mean loss?",
     "play robotino2 --listen 0 --dbc nowhere.dbc --map nowhere.toml": "nowhere.toml",
     "play robotino2 --listen 0 --drives canopen --log ''": EMPTY, "play robotino2 --eds a.eds --listen 0": "--listen",
+    "optimise": "SCENE", "optimise s1": "--free: is missing", "optimise s1 --free vehicle.com_y_m=0:1": "--goal",
+    "optimise s1 --free x=0:1 --goal min:condition": "x", "optimise s1 --free vehicle.com_y_m=0:1 --goal x": "min:x",
+    "optimise s1 --free vehicle.com_y_m=0:1 --goal min:yaw": "yaw_authority", "optimise nowhere": "no such scene",
     # files to read
     "verify empty.json": "no valid JSON", "verify list.json": "no object with cases", "verify folder": "cannot be read",
     "verify binary.toml": "JSON", "verify nowhere.json": "cannot be read", "verify ''": EMPTY,
