@@ -128,11 +128,14 @@ size_t laconic_batch_size(const laconic_batch_shape *shape) {
 /* ------------------------------------------------------------------------- order of lanes -- */
 
 /* Lanes of equal keys can share a block. */
+static int32_t way_of(const laconic_batch_kind *of) {
+    const lanes_kind kind = lanes_kind_of(of);
+    return (int32_t)kind.method + LANES_METHOD_COUNT * (kind.sloped + 2 * kind.stiff + 4 * kind.wheel_count);
+}
+
 static int32_t key_of(const laconic_batch *batch, int32_t lane) {
     const int32_t index = batch->kind_of[lane];
-    if (is_by_kind(&batch->shape)) return index;
-    const lanes_kind kind = lanes_kind_of(&batch->kinds[index]);
-    return (int32_t)kind.method + LANES_METHOD_COUNT * (kind.sloped + 2 * kind.stiff + 4 * kind.wheel_count);
+    return is_by_kind(&batch->shape) ? index : way_of(&batch->kinds[index]);
 }
 
 static bool comes_before(const laconic_batch *batch, int32_t a, int32_t b) {
@@ -194,6 +197,7 @@ static void place_block(laconic_batch *batch, int32_t first, int32_t count, unsi
     laconic_batch_block *block = &batch->blocks[batch->block_count++];
     const laconic_batch_block *before = block - 1;
     block->method = lanes_kind_of(&batch->kinds[kind]).method;
+    block->way = way_of(&batch->kinds[kind]);
     block->first = first;
     block->count = count;
     block->has_refused = false;
@@ -263,5 +267,29 @@ bool laconic_batch_place(laconic_batch *batch, void *memory, const laconic_batch
     set_order(&b);
     place_blocks(&b, start + l.constants);
     *batch = b;
+    return true;
+}
+
+/* -------------------------------------------------------------------------------- renew -- */
+
+static bool has_lane(const laconic_batch *batch, const laconic_batch_block *block, int32_t lane) {
+    for (int32_t k = 0; k < block->count; k++)
+        if (batch->order[block->first + k] == lane) return true;
+    return false;
+}
+
+/* Where all lanes lie in a row, the first guess is right. */
+static const laconic_batch_block *block_of(const laconic_batch *batch, int32_t lane) {
+    const int32_t guess = lane / lanes_of_width(batch->width);
+    const laconic_batch_block *block = &batch->blocks[guess < batch->block_count ? guess : 0];
+    if (has_lane(batch, block, lane)) return block;
+    for (block = batch->blocks; !has_lane(batch, block, lane);) block++;
+    return block;
+}
+
+bool laconic_batch_renew(laconic_batch *batch, int32_t lane) {
+    const laconic_batch_block *block = block_of(batch, lane);
+    if (way_of(&batch->kinds[batch->kind_of[lane]]) != block->way) return false;
+    if (batch->width != NULL) place_constants(batch, block, lanes_of_width(batch->width));
     return true;
 }

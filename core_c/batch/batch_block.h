@@ -11,6 +11,7 @@
 typedef struct laconic_batch_block {
     lanes_block lanes;
     lanes_method method;
+    int32_t way;          /* of its kinds: lanes of one way can share a block                  */
     int32_t first, count; /* in `order`                                                    */
     int32_t wheel_count;
     bool has_refused; /* some lane's status is not OK                                  */

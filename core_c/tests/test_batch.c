@@ -78,6 +78,58 @@ static void lanes_keep_their_places_whatever_the_order_of_blocks(void) {
     }
 }
 
+/* Lane 5 becomes the vehicle of another kind: it, and no other lane, then steps as that does alone. */
+static void a_lane_whose_kind_changed_steps_as_the_new_one(void) {
+    static laconic_batch_kind kinds[16];
+    laconic_batch_kind heavy;
+    laconic_vehicle v = with_motors(three_wheels());
+    const laconic_input input = {.voltage_V = {REAL(4), REAL(-2), REAL(1)}};
+    const laconic_start start = {.nu_rad_per_s = {REAL(1), REAL(-1), REAL(2)}};
+    const int32_t own[16] = {0, 1, 2, 3, 4, 5, 6, 7, 8, 9, 10, 11, 12, 13, 14, 15};
+    const laconic_batch_shape shape = shape_of(16, 16);
+    laconic_batch batch;
+    for (int i = 0; i < 16; i++) kinds[i] = kind_of(v, &laconic_rk4);
+    v.mass_kg *= REAL(2);
+    heavy = kind_of(v, &laconic_rk4);
+    TEST_ASSERT_TRUE(laconic_batch_place(&batch, memory(), &shape, kinds, own));
+    kinds[5] = heavy;
+    TEST_ASSERT_TRUE(laconic_batch_renew(&batch, 5));
+    for (int i = 0; i < 16; i++) {
+        laconic_state state;
+        ASSERT_STATUS(LACONIC_OK, laconic_state_set(&state, &kinds[i].model, &start, &why));
+        laconic_batch_load(&batch, i, &state);
+        laconic_batch_set_input(&batch, i, &input);
+    }
+    TEST_ASSERT_EQUAL_INT(0, laconic_batch_run(&batch, 0, batch.block_count, 3));
+    for (int i = 0; i < 16; i++) {
+        laconic_state alone, lane;
+        laconic_status status;
+        ASSERT_STATUS(LACONIC_OK, laconic_state_set(&alone, &kinds[i].model, &start, &why));
+        lane = alone;
+        laconic_run(&kinds[i].model, &kinds[i].integrator, &alone, &input, 3, &status);
+        laconic_batch_store(&batch, i, &lane);
+        TEST_ASSERT_EQUAL_MEMORY(&alone, &lane, sizeof alone);
+    }
+}
+
+static void a_kind_that_is_stepped_in_another_way_is_not_renewed(void) {
+    static laconic_batch_kind kinds[40];
+    static int32_t own[40];
+    const laconic_batch_shape shape = shape_of(40, 40);
+    laconic_batch batch;
+    for (int i = 0; i < 40; i++) {
+        kinds[i] = kind_of(with_motors(three_wheels()), i % 2 ? &laconic_rk4 : &laconic_taylor_8);
+        own[i] = i;
+    }
+    TEST_ASSERT_TRUE(laconic_batch_place(&batch, memory(), &shape, kinds, own));
+    for (int i = 0; i < 40; i++) TEST_ASSERT_TRUE(laconic_batch_renew(&batch, i));
+    kinds[20] = kind_of(with_motors(three_wheels()), &laconic_rk4);
+    kinds[21] = kind_of(mecanum(), &laconic_rk4);
+    TEST_ASSERT_FALSE(laconic_batch_renew(&batch, 20));
+    TEST_ASSERT_FALSE(laconic_batch_renew(&batch, 21));
+    TEST_ASSERT_TRUE(laconic_batch_renew(&batch, 22));
+}
+
 int main(void) {
     all.random = 20;
     UNITY_BEGIN();
@@ -86,5 +138,7 @@ int main(void) {
     RUN_TEST(a_kind_is_refused_as_its_parts_are);
     RUN_TEST(the_widest_registers_are_taken_unless_one_width_is_named);
     RUN_TEST(lanes_keep_their_places_whatever_the_order_of_blocks);
+    RUN_TEST(a_lane_whose_kind_changed_steps_as_the_new_one);
+    RUN_TEST(a_kind_that_is_stepped_in_another_way_is_not_renewed);
     return UNITY_END();
 }

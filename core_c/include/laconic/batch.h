@@ -72,6 +72,13 @@ size_t laconic_batch_size(const laconic_batch_shape *shape);
 bool laconic_batch_place(laconic_batch *batch, void *memory, const laconic_batch_shape *shape,
                          const laconic_batch_kind *kinds, const int32_t *kind_of);
 
+/* The constants of a lane anew from its kind, which the program has changed; the lane, and every other one of that
+ * kind, is then to be loaded with a state of the new model. Returns false, and changes nothing, where the new kind is
+ * stepped in another way than the old: by another method (`chosen` of its integrator), of other damping beside the step
+ * (`stiff`), with another number of wheels, with a slope or without. Precondition: 0 <= lane < lane_count. O(1) where
+ * kinds are stepped in one way, else O(lane_count). */
+bool laconic_batch_renew(laconic_batch *batch, int32_t lane);
+
 /* A lane's state and input, to and from the structs of laconic.h, bit by bit; what is for wheels that the lane's
  * vehicle lacks stays as it was. Loading makes the lane's status OK and `missed` 0. Precondition: 0 <= lane <
  * lane_count. */

@@ -54,6 +54,7 @@ class Batch:
         core = self.core = _core_of(kinds)
         self._kind_of = _kinds_of_lanes(len(kinds), lanes, kind_of)
         self.lane_count, self.step_s = len(self._kind_of), number("step_s", step_s)
+        self._has_own_kinds = len(kinds) == self.lane_count == len(np.unique(self._kind_of))
         self._kinds = core.ffi.new("laconic_batch_kind[]", len(kinds))
         for item, vehicle in enumerate(kinds):
             self._prepare(item, vehicle, method)
@@ -77,9 +78,7 @@ class Batch:
             raise BadInput(f"{name}: is no input of a batch; set {', '.join(INPUTS)}")
 
     def _prepare(self, item: int, vehicle: Vehicle, method: str) -> None:
-        if vehicle.has_friction:
-            raise BadInput(f"vehicles[{item + 1}]: has ground friction or a drive with limits, which a batch does not "
-                           "step; take them out, or step it with plant()")
+        _check_steppable(vehicle, f"vehicles[{item + 1}]")
         core, why = self.core, self.core.why()
         core.check(core.lib.laconic_batch_kind_of(self._kinds + item, vehicle.c, core.method(method), self.step_s, why),
                    why)
@@ -119,6 +118,32 @@ class Batch:
             "y_m": number("y_m", y_m), "heading_rad": number("heading_rad", heading_rad)})
         self.core.check(lib.laconic_state_set(state, ffi.addressof(kind, "model"), start, why), why)
         self.load(lane, state)
+
+    def prepared(self, vehicle: Vehicle, method: str = "auto") -> Any:
+        """A vehicle as `change` takes it, for any number of lanes; refused as the batch's own."""
+        core, why, found = self.core, self.core.why(), self.core.ffi.new("laconic_batch_kind *")
+        if _core_of([vehicle]) is not core:
+            raise BadInput(f"vehicle: is of {vehicle.core.real} precision, the batch of {core.real}; give one of that")
+        _check_steppable(vehicle, "vehicle")
+        core.check(core.lib.laconic_batch_kind_of(found, vehicle.c, core.method(method), self.step_s, why), why)
+        return found
+
+    def change(self, lane: int, prepared: Any) -> None:
+        """Makes a lane another vehicle, at rest at the origin; its inputs stay. For batches of one kind for each lane.
+
+        BadInput where lanes share kinds, and for a vehicle that is stepped in another way: another method chosen by
+        auto, fast damping beside slow, other wheels, a slope.
+        """
+        index = int(self._kind_of[self._lane(lane)])
+        if not self._has_own_kinds:
+            raise BadInput(f"lane: {lane} shares its kind with others; give the batch as many vehicles as lanes")
+        before = self.core.ffi.new("laconic_batch_kind *", self._kinds[index])
+        self._kinds[index] = c_object(self.core, "batch_kind", prepared)[0]
+        if not self.core.lib.laconic_batch_renew(self.c, lane):
+            self._kinds[index] = before[0]
+            raise BadInput("prepared: this vehicle is stepped in another way than the lane's; choose a shorter step or "
+                           "one method for all")
+        self.start(lane)
 
     def load(self, lane: int, state: Any) -> None:
         """Gives a lane a laconic_state, such as `plant.save()` has."""
@@ -212,6 +237,12 @@ def _core_of(vehicles: list[Any]) -> Core:
                            f"{vehicles[0].core.real}; give vehicles of one")
     core: Core = vehicles[0].core
     return core
+
+
+def _check_steppable(vehicle: Vehicle, name: str) -> None:
+    if vehicle.has_friction:
+        raise BadInput(f"{name}: has ground friction or a drive with limits, which a batch does not step; take them "
+                       "out, or step it with plant()")
 
 
 def _kinds_of_lanes(kinds: int, lanes: int | None, kind_of: Any) -> np.ndarray:

@@ -13,7 +13,8 @@ if TYPE_CHECKING:
     from laconic.core import Core
 
 MAKERS = {"input": "plant.input_of({…})", "vehicle": "core.vehicle({…})", "model": "core.prepare(vehicle)",
-          "state": "plant.save()", "plant": "plant.save()", "sensors": "sensors.save()"}
+          "state": "plant.save()", "plant": "plant.save()", "sensors": "sensors.save()",
+          "batch_kind": "batch.prepared(vehicle)"}
 FLAGS = ("FLAG", "ABSENCE")
 MOST_STEPS = 2**64 - 1
 LONGEST_SHOWN = 60  # of a value in a message

@@ -1,0 +1,34 @@
+"""The spaces of one robot, and seeds for many."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+
+import numpy as np
+from gymnasium.spaces import Box
+from gymnasium.utils import seeding
+
+from laconic.errors import BadInput
+from laconic.learn.task import OBSERVATION
+
+
+def action_space(wheel_count: int) -> Box:
+    """A share of the largest voltage for each wheel."""
+    return Box(-1.0, 1.0, (wheel_count,), np.float32)
+
+
+def observation_space() -> Box:
+    """Of laconic.learn.task.OBSERVATION: sine and cosine are bounded, the rest by physics alone."""
+    high = np.array([1.0 if name.startswith(("cos_", "sin_")) else np.inf for name in OBSERVATION], np.float32)
+    return Box(-high, high, dtype=np.float32)
+
+
+def generators_of(seed: int | Sequence[int | None] | None, lanes: int) -> list[np.random.Generator]:
+    """One for each lane; of one seed lane k has seed + k, as in Gymnasium's own vector environments."""
+    if seed is None or isinstance(seed, int | np.integer):
+        seeds: Sequence[int | None] = [None if seed is None else int(seed) + lane for lane in range(lanes)]
+    else:
+        seeds = list(seed)
+    if len(seeds) != lanes:
+        raise BadInput(f"seed: {len(seeds)} seeds for {lanes} environments; give one for each, or one number")
+    return [seeding.np_random(each)[0] for each in seeds]
