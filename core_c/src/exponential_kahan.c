@@ -2,22 +2,22 @@
  * order, and extrapolated to fourth order, which is accurate with slow and with fast damping. */
 #include "step_internals.h"
 
-typedef struct matrix {
+typedef struct kahan_matrix {
     vector row0, row1, row2;
-} matrix;
+} kahan_matrix;
 
 /* Cramer's rule: M⁻¹ rhs = (rhs_x c₀ + rhs_y c₁ + rhs_z c₂)/det. Where det M is almost 0, the increment is not finite
  * or so long that the step would gain energy, and the check of the energy refuses it. Of 8 million steps at h|ν| up to
  * 1000 in single precision that check refused 1.1 million; a test of det M against rounding refused one step
  * besides. */
-typedef struct solver {
+typedef struct kahan_solver {
     vector c0, c1, c2;
     real inverse_determinant;
-} solver;
+} kahan_solver;
 
 /* Cofactors and determinant of M. */
-INLINE solver factorise(const matrix *m) {
-    solver s;
+INLINE kahan_solver factorise(const kahan_matrix *m) {
+    kahan_solver s;
     s.c0 = cross(m->row1, m->row2);
     s.c1 = cross(m->row2, m->row0);
     s.c2 = cross(m->row0, m->row1);
@@ -25,14 +25,14 @@ INLINE solver factorise(const matrix *m) {
     return s;
 }
 
-INLINE vector solve(const solver *s, vector rhs) {
+INLINE vector solve(const kahan_solver *s, vector rhs) {
     return scaled(s->inverse_determinant, plus(plus(scaled(rhs.x, s->c0), scaled(rhs.y, s->c1)), scaled(rhs.z, s->c2)));
 }
 
 /* D⁻¹ − Q with D = hφ1, Q Δ = q(ζ,Δ) = ½[(g·ζ) Δ×w + (g·Δ) ζ×w]. */
-INLINE matrix implicit_matrix(vector inverse_gain, vector g, vector w, real yaw, vector zeta_cross_w) {
+INLINE kahan_matrix implicit_matrix(vector inverse_gain, vector g, vector w, real yaw, vector zeta_cross_w) {
     const vector s = scaled(R(0.5) * yaw, w), l = scaled(R(0.5), zeta_cross_w);
-    const matrix m = {
+    const kahan_matrix m = {
         {inverse_gain.x - l.x * g.x, -(l.x * g.y + s.z), s.y - l.x * g.z},
         {s.z - l.y * g.x, inverse_gain.y - l.y * g.y, -(l.y * g.z + s.x)},
         {-(l.z * g.x + s.y), s.x - l.z * g.y, inverse_gain.z - l.z * g.z},
@@ -45,8 +45,8 @@ INLINE matrix implicit_matrix(vector inverse_gain, vector g, vector w, real yaw,
  * ½)·(their difference), with `mean` of laconic_decay, and for mean and slope of ζ it is a further change of b. Without
  * it ζ of a stiff vehicle lags by half the change of q over the step, divided by r, which is of first order in h; with
  * it the lag is of second order. */
-INLINE vector follow_inlined(parabola *b, const laconic_model *m, const laconic_decay *d, const solver *s, vector zeta,
-                             vector delta) {
+INLINE vector follow_inlined(parabola *b, const laconic_model *m, const laconic_decay *d, const kahan_solver *s,
+                             vector zeta, vector delta) {
     const vector g = vec(m->nu_of_zeta[2]), w = vec(m->gyro), end = plus(zeta, delta);
     const vector change = minus(scaled(dot(g, end), cross(end, w)), scaled(dot(g, zeta), cross(zeta, w)));
     const vector half = {R(0.5), R(0.5), R(0.5)};
@@ -56,10 +56,10 @@ INLINE vector follow_inlined(parabola *b, const laconic_model *m, const laconic_
     return plus(delta, solve(s, times(minus(vec(d->mean), half), change)));
 }
 
-typedef vector (*follower)(parabola *b, const laconic_model *m, const laconic_decay *d, const solver *s, vector zeta,
-                           vector delta);
+typedef vector (*follower)(parabola *b, const laconic_model *m, const laconic_decay *d, const kahan_solver *s,
+                           vector zeta, vector delta);
 
-static vector follow(parabola *b, const laconic_model *m, const laconic_decay *d, const solver *s, vector zeta,
+static vector follow(parabola *b, const laconic_model *m, const laconic_decay *d, const kahan_solver *s, vector zeta,
                      vector delta) {
     return follow_inlined(b, m, d, s, zeta, delta);
 }
@@ -72,8 +72,8 @@ INLINE increment kahan_increment(const laconic_model *m, const laconic_integrato
     const real yaw = dot(g, zeta);
     const vector zeta_cross_w = cross(zeta, w);
     const vector rate = plus(minus(scaled(yaw, zeta_cross_w), damping(m, zeta)), equivalent_constant(b, d));
-    const matrix implicit = implicit_matrix(inverse_gain, g, w, yaw, zeta_cross_w);
-    const solver s = factorise(&implicit);
+    const kahan_matrix implicit = implicit_matrix(inverse_gain, g, w, yaw, zeta_cross_w);
+    const kahan_solver s = factorise(&implicit);
     const vector delta = solve(&s, rate);
     increment by;
     if (integrator->stiff) {

@@ -23,13 +23,13 @@
     return &table[(unsigned)(number) < TABLE_LENGTH ? (number) : 0]; /* no field has the number 0 */
 #endif
 
-typedef const char *text;
+typedef const char *row_text;
 
-static const char *text_or_empty(const text *row) { return *row != NULL ? *row : ""; }
+static const char *text_or_empty(const row_text *row) { return *row != NULL ? *row : ""; }
 
-#define NAME(of, number, IDENTIFIER, member, name, KIND, RULE, NEED) ROW(text, number, #name)
+#define NAME(of, number, IDENTIFIER, member, name, KIND, RULE, NEED) ROW(row_text, number, #name)
 
-static const text *name_row(laconic_field field) { RETURN_ROW(text, field, EVERY_FIELD(NAME)) }
+static const row_text *name_row(laconic_field field) { RETURN_ROW(row_text, field, EVERY_FIELD(NAME)) }
 
 const char *laconic_field_name(laconic_field field) { return text_or_empty(name_row(field)); }
 
@@ -52,9 +52,9 @@ const char *laconic_field_name(laconic_field field) { return text_or_empty(name_
 #define PATH_IMU_ARRAY(member) PATH_IMU(member) "[#]"
 #define PATH_ENCODER(member) "sensors.encoder." #member
 #define PATH_WHEEL_ENCODER(member) PATH_ENCODER(member) "[#]"
-#define PATH(of, number, IDENTIFIER, member, name, KIND, RULE, NEED) ROW(text, number, PATH_##of(member))
+#define PATH(of, number, IDENTIFIER, member, name, KIND, RULE, NEED) ROW(row_text, number, PATH_##of(member))
 
-static const text *path_row(laconic_field field) { RETURN_ROW(text, field, EVERY_FIELD(PATH)) }
+static const row_text *path_row(laconic_field field) { RETURN_ROW(row_text, field, EVERY_FIELD(PATH)) }
 
 const char *laconic_field_path(laconic_field field) { return text_or_empty(path_row(field)); }
 

@@ -54,7 +54,7 @@
 #define WORTH_IT R(0.1)  /* of the residual, squared: an exact pass that does not bring it down to this leads nowhere */
 
 /* A contact in a pass: how it stands, then its linear law p += gain_m (row_m·δν), and s with the first row. */
-typedef struct contact {
+typedef struct contact_in_pass {
     real moved[2];     /* rows·ν: slip if the wheel stood still */
     real t[2], length; /* impulse + slip/W; length 0 where it sticks */
     real axle;         /* impulse of the axle's friction, as its own projection */
@@ -65,7 +65,7 @@ typedef struct contact {
     vector row[2];
     real stiffness[2], gain[2][2], turn;
     real impulse[2], speed;
-} contact;
+} contact_in_pass;
 
 /* 1/x, or 0 where there is nothing to act on. */
 static real inverse_or_zero(real x) { return x > R(0) ? R(1) / x : R(0); }
@@ -85,7 +85,7 @@ void laconic_friction_prepare(friction_wheel *w) {
 }
 
 /* Looks at a contact with the speeds and impulses of the pass before. Returns the square of its residual. */
-INLINE real look(contact *restrict c, const friction_wheel *w, const friction_load *l, vector nu, real speed,
+INLINE real look(contact_in_pass *restrict c, const friction_wheel *w, const friction_load *l, vector nu, real speed,
                  const real p[2]) {
     real inside = R(1), off[2], axle, pushed, size;
     for (int m = 0; m < 2; m++) {
@@ -116,7 +116,7 @@ INLINE real look(contact *restrict c, const friction_wheel *w, const friction_lo
 }
 
 /* Along n the impulse is the grip; across n it turns with the slip. */
-INLINE void slips(contact *restrict c, const friction_wheel *w, const friction_load *l, const real p[2]) {
+INLINE void slips(contact_in_pass *restrict c, const friction_wheel *w, const friction_load *l, const real p[2]) {
     const real n[2] = {c->t[0] / c->length, c->t[1] / c->length};
     const real rim = n[0] * w->rim[1] - n[1] * w->rim[0], moved = n[0] * c->moved[1] - n[1] * c->moved[0];
     const real beyond = (c->length - l->grip) * w->mobility;
@@ -149,7 +149,7 @@ INLINE void slips(contact *restrict c, const friction_wheel *w, const friction_l
     c->gain[0][1] = h * n[0];
 }
 
-INLINE void stays_locked(contact *restrict c, const friction_wheel *w, const real p[2]) {
+INLINE void stays_locked(contact_in_pass *restrict c, const friction_wheel *w, const real p[2]) {
     c->rank = 2;
     c->speed = c->turn = R(0);
     for (int m = 0; m < 2; m++) {
@@ -160,7 +160,7 @@ INLINE void stays_locked(contact *restrict c, const friction_wheel *w, const rea
     }
 }
 
-INLINE void rolls(contact *restrict c, const friction_wheel *w, const friction_load *l, const real p[2]) {
+INLINE void rolls(contact_in_pass *restrict c, const friction_wheel *w, const friction_load *l, const real p[2]) {
     const real *e = w->rolling;
     const real own = w->inertia + l->viscous, speed = (e[0] * c->moved[0] + e[1] * c->moved[1]) / w->rim_size;
     const real motor = l->drive - l->drive_slope * speed;
@@ -186,7 +186,7 @@ INLINE void rolls(contact *restrict c, const friction_wheel *w, const friction_l
     c->impulse[1] = e[1] * along + e[0] * across;
 }
 
-static real look_at_all(friction_search *at, contact contacts[]) {
+static real look_at_all(friction_search *at, contact_in_pass contacts[]) {
     real residual = R(0);
     for (int32_t i = 0; i < at->count; i++)
         residual += look(&contacts[i], &at->wheel[i], &at->load[i], at->nu, at->speed[i], at->impulse[i]);
@@ -201,7 +201,7 @@ static vector imbalance(const friction_search *at) {
     return rest;
 }
 
-INLINE void move(const contact *c, vector by, real *speed, real p[2]) {
+INLINE void move(const contact_in_pass *c, vector by, real *speed, real p[2]) {
     const real first = dot(c->row[0], by);
     p[0] = c->impulse[0] + c->gain[0][0] * first;
     p[1] = c->impulse[1] + c->gain[0][1] * first;
@@ -213,11 +213,11 @@ INLINE void move(const contact *c, vector by, real *speed, real p[2]) {
     }
 }
 
-static void exact_pass(friction_search *at, contact contacts[]) {
+static void exact_pass(friction_search *at, contact_in_pass contacts[]) {
     equations k = no_wheels(at);
     vector by;
     for (int32_t i = 0; i < at->count; i++) {
-        contact *c = &contacts[i];
+        contact_in_pass *c = &contacts[i];
         if (c->length > R(0))
             slips(c, &at->wheel[i], &at->load[i], at->impulse[i]);
         else if (c->locked)
@@ -285,7 +285,7 @@ static bool is_solved(const friction_search *at, real residual, real times) {
 
 /* All that rounding leaves to find, where contacts hold each other with many times the free motion, or rollers drag so
  * little that single does not tell it from nothing. */
-static bool is_resolved(const friction_search *at, const contact contacts[], real residual) {
+static bool is_resolved(const friction_search *at, const contact_in_pass contacts[], real residual) {
     real stress = R(0);
     for (int32_t i = 0; i < at->count; i++) {
         const real *p = at->impulse[i];
@@ -296,7 +296,7 @@ static bool is_resolved(const friction_search *at, const contact contacts[], rea
 }
 
 /* Exact passes, at most so many, as long as each but the first is worth it. */
-static bool pass_exactly(friction_search *at, contact contacts[], int32_t most, int32_t *passes) {
+static bool pass_exactly(friction_search *at, contact_in_pass contacts[], int32_t most, int32_t *passes) {
     real before = LACONIC_REAL_MAX;
     for (int32_t pass = 0;; pass++) {
         const real residual = look_at_all(at, contacts);
@@ -330,7 +330,7 @@ static void go_back(friction_search *at, const kept_search *kept) {
 }
 
 /* Passes along the central path, and from time to time exact ones: they finish at once where they converge. */
-RARE bool search_along_path(friction_search *at, contact contacts[], int32_t *passes) {
+RARE bool search_along_path(friction_search *at, contact_in_pass contacts[], int32_t *passes) {
     friction_path path;
     kept_search kept;
     laconic_friction_start_path(at, &path);
@@ -347,7 +347,7 @@ RARE bool search_along_path(friction_search *at, contact contacts[], int32_t *pa
 }
 
 static int32_t search(friction_search *at) {
-    contact contacts[LACONIC_MAX_WHEELS];
+    contact_in_pass contacts[LACONIC_MAX_WHEELS];
     int32_t passes = 0;
     if (!pass_exactly(at, contacts, EXACT_PASSES, &passes) && !search_along_path(at, contacts, &passes)) return 0;
     snap(at);

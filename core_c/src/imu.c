@@ -10,22 +10,22 @@
 /* -------------------------------------------------------------------- motion of a place of the body -- */
 
 /* Motion of S in body axes, with its derivative. */
-typedef struct motion {
+typedef struct place_motion {
     real velocity[2], yaw_rate; /* v_S, ω */
     real change[2], yaw_change; /* of these components, v' and ω' */
-} motion;
+} place_motion;
 
-static motion motion_of(const laconic_model *model, const real nu[3], const real rate[3]) {
+static place_motion motion_of(const laconic_model *model, const real nu[3], const real rate[3]) {
     const real radius = model->wheel_radius_m;
-    const motion moved = {{radius * nu[0], radius * nu[1]},
-                          nu[2] / model->yaw_scale,
-                          {radius * rate[0], radius * rate[1]},
-                          rate[2] / model->yaw_scale};
+    const place_motion moved = {{radius * nu[0], radius * nu[1]},
+                                nu[2] / model->yaw_scale,
+                                {radius * rate[0], radius * rate[1]},
+                                rate[2] / model->yaw_scale};
     return moved;
 }
 
 /* a_P = v' + ω × v + ω' × d − ω² d, with d from S to P. */
-static void accelerate(real out[2], const motion *m, real dx, real dy) {
+static void accelerate(real out[2], const place_motion *m, real dx, real dy) {
     const real square = m->yaw_rate * m->yaw_rate;
     out[0] = (m->change[0] - m->yaw_rate * m->velocity[1]) - (m->yaw_change * dy + square * dx);
     out[1] = (m->change[1] + m->yaw_rate * m->velocity[0]) + (m->yaw_change * dx - square * dy);
@@ -33,7 +33,7 @@ static void accelerate(real out[2], const motion *m, real dx, real dy) {
 
 void laconic_acceleration_of_rates(laconic_real acceleration_m_per_s2[2], const laconic_model *model,
                                    const laconic_real nu_rad_per_s[3], const laconic_real nu_rad_per_s2[3]) {
-    const motion m = motion_of(model, nu_rad_per_s, nu_rad_per_s2);
+    const place_motion m = motion_of(model, nu_rad_per_s, nu_rad_per_s2);
     accelerate(acceleration_m_per_s2, &m, -model->com_x_m, -model->com_y_m);
 }
 
@@ -48,7 +48,7 @@ void laconic_acceleration_tangent(laconic_real change[2], const laconic_model *m
         nu[k] = dot(vec(model->nu_of_zeta[k]), zeta);
         d_nu[k] = dot(vec(model->nu_of_zeta[k]), d_zeta);
     }
-    const motion m = motion_of(model, nu, by_nu_rad_per_s2), d = motion_of(model, d_nu, by_nu_rad_per_s2);
+    const place_motion m = motion_of(model, nu, by_nu_rad_per_s2), d = motion_of(model, d_nu, by_nu_rad_per_s2);
     const real square = R(2) * m.yaw_rate * d.yaw_rate;
     change[0] =
         d.change[0] - (m.yaw_rate * d.velocity[1] + d.yaw_rate * m.velocity[1]) - (d.yaw_change * dy + square * dx);
@@ -72,7 +72,7 @@ static void feel(laconic_imu_sample *sample, const laconic_imu_settings *imu, co
 }
 
 static void feel_motion(laconic_imu_sample *sample, const laconic_imu_settings *imu, const laconic_model *model,
-                        const motion *m, direction heading) {
+                        const place_motion *m, direction heading) {
     real acceleration[2];
     accelerate(acceleration, m, imu->x_m - model->com_x_m, imu->y_m - model->com_y_m);
     feel(sample, imu, model, acceleration, m->yaw_rate, heading);
@@ -81,14 +81,14 @@ static void feel_motion(laconic_imu_sample *sample, const laconic_imu_settings *
 void laconic_imu_feel(laconic_imu_sample *sample, const laconic_imu_settings *imu, const laconic_model *model,
                       const laconic_real nu_rad_per_s[3], const laconic_real nu_rad_per_s2[3],
                       laconic_real heading_rad) {
-    const motion m = motion_of(model, nu_rad_per_s, nu_rad_per_s2);
+    const place_motion m = motion_of(model, nu_rad_per_s, nu_rad_per_s2);
     feel_motion(sample, imu, model, &m, laconic_direction_of_angle(heading_rad));
 }
 
 /* ------------------------------------------------------------------------------- of a plant's state -- */
 
 /* On ideal ground: (4.7) at this moment. */
-static motion motion_now(const laconic_plant *plant, const laconic_input *input, direction heading) {
+static place_motion motion_now(const laconic_plant *plant, const laconic_input *input, direction heading) {
     const laconic_model *model = &plant->model;
     const vector zeta = zeta_of(&plant->state);
     real nu[3], rate[3];
@@ -110,13 +110,13 @@ static direction heading_of(const laconic_plant *plant) {
 void laconic_imu_feel_now(laconic_imu_sample *sample, const laconic_imu_settings *imu, const laconic_plant *plant,
                           const laconic_input *input) {
     const direction heading = heading_of(plant);
-    const motion m = motion_now(plant, input, heading);
+    const place_motion m = motion_now(plant, input, heading);
     feel_motion(sample, imu, &plant->model, &m, heading);
 }
 
 void laconic_accelerate_now(laconic_real acceleration_m_per_s2[2], const laconic_plant *plant,
                             const laconic_input *input) {
-    const motion m = motion_now(plant, input, heading_of(plant));
+    const place_motion m = motion_now(plant, input, heading_of(plant));
     accelerate(acceleration_m_per_s2, &m, -plant->model.com_x_m, -plant->model.com_y_m);
 }
 

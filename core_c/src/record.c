@@ -105,8 +105,8 @@ static laconic_status follow_held(laconic_plant *plant, const laconic_schedule *
 static laconic_status follow_sampled(laconic_plant *plant, const laconic_schedule *schedule, uint64_t until_step,
                                      laconic_recorder *recorder, laconic_refusal *why) {
     const uint64_t numbers = (uint64_t)schedule->signal_count;
-    const laconic_input none = ALL_ZERO;
-    laconic_input input[3] = {none, none, none};
+    const laconic_input nothing = ALL_ZERO;
+    laconic_input input[3] = {nothing, nothing, nothing};
     while (plant->steps < until_step && plant->steps - schedule->first_step < schedule->count) {
         const real *value = schedule->value + 3 * numbers * (plant->steps - schedule->first_step);
         for (uint64_t k = 0; k < 3; k++) set_signals(&input[k], schedule, value + k * numbers);

@@ -246,14 +246,16 @@ INLINE void add_to_sums(laconic_sum sums[3], vector v) {
 }
 
 /* A component of ζ far below AT_REST becomes 0 when AT_REST is added and subtracted. Otherwise a decaying motion would
- * end in subnormal numbers, with which many processors are slow; the square of AT_REST is still a normal number. */
+ * end in subnormal numbers, with which many processors are slow; the square of AT_REST is still a normal number.
+ * The three sums come by a bare pointer: of an array of three gcc would warn under sanitizers (-Wstringop-overflow), by
+ * which it forgets that the address of a member is also that of the array. */
 #ifdef LACONIC_SINGLE
 #define AT_REST R(1e-18)
 #else
 #define AT_REST R(1e-150)
 #endif
 
-static inline void flush_decayed(laconic_sum sums[3]) {
+static inline void flush_decayed(laconic_sum *sums) {
     sums[0].value = (sums[0].value + AT_REST) - AT_REST;
     sums[1].value = (sums[1].value + AT_REST) - AT_REST;
     sums[2].value = (sums[2].value + AT_REST) - AT_REST;

@@ -107,7 +107,7 @@ typedef struct laconic_sensor_settings {
 
 #define LACONIC_SENSOR_FIELD_NUMBER(of, number, IDENTIFIER, ...) LACONIC_SENSOR_FIELD_##IDENTIFIER = number,
 
-/* Numbers of a refusal's field, as laconic_field, in which they are not. */
+/* Numbers of a refusal's field beside those that laconic_field names; converted to it they stay what they are. */
 typedef enum laconic_sensor_field {
     LACONIC_SENSOR_FIELDS(LACONIC_SENSOR_FIELD_NUMBER) LACONIC_SENSOR_FIELD_COUNT = 96
 } laconic_sensor_field;

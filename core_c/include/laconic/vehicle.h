@@ -337,10 +337,11 @@ typedef enum laconic_field_need {
 
 #define LACONIC_FIELD_NUMBER(of, number, IDENTIFIER, ...) LACONIC_FIELD_##IDENTIFIER = number,
 
-/* The fields a refusal can name: LACONIC_FIELD_MASS = 1 … */
+/* The fields a refusal can name: LACONIC_FIELD_MASS = 1 …, and those of laconic_sensor_field. */
 typedef enum laconic_field {
     LACONIC_FIELD_NONE = 0,
-    LACONIC_ALL_FIELDS(LACONIC_FIELD_NUMBER) LACONIC_FIELD_COUNT = 63 /* one more than the largest number above */
+    LACONIC_ALL_FIELDS(LACONIC_FIELD_NUMBER) LACONIC_FIELD_COUNT = 63, /* one more than the largest number above */
+    LACONIC_FIELD_LAST = 127 /* no field: in C++ an enumeration holds no number that has more bits than its largest */
 } laconic_field;
 
 #endif

@@ -16,8 +16,9 @@ from laconic.paths import SOURCE_DIR, built
 LANGUAGES = {"gcc": ("c99", "c11", "c17"), "clang": ("c99", "c11", "c17"),
              "g++": ("c++11", "c++14", "c++17", "c++20"), "clang++": ("c++11", "c++14", "c++17", "c++20")}
 CASES = [(compiler, standard) for compiler in LANGUAGES if shutil.which(compiler) for standard in LANGUAGES[compiler]]
-STRICT = ["-Wall", "-Wextra", "-Wpedantic", "-Werror"]
-TRAJECTORY = SOURCE_DIR / "core_c" / "tests" / "trajectory_hash.c"
+STRICT = ["-Wall", "-Wextra", "-Wpedantic", "-Wconversion", "-Wsign-conversion", "-Wshadow", "-Werror"]
+CORE = SOURCE_DIR / "core_c"
+TRAJECTORY = CORE / "tests" / "trajectory_hash.c"
 BITS = {"double": "d37c792a07aad47a", "single": "985425a887ceb9c5"}
 
 pytestmark = pytest.mark.skipif(not CASES, reason="neither gcc nor clang")
@@ -46,6 +47,21 @@ def test_it_compiles_without_a_warning_in_every_language_that_it_promises(compil
     for name in ("laconic.c", "laconic_single.c"):
         run(compiler, "-x", language(compiler), f"-std={standard}", *STRICT, "-fsyntax-only", name,
             folder=pair / "laconic")
+
+
+@pytest.mark.parametrize(("compiler", "standard"), [case for case in CASES if case[1][-2:] in ("99", "11", "20")])
+def test_every_public_header_stands_alone_in_every_language_that_it_promises(compiler, standard, tmp_path):
+    options = ["-x", language(compiler), f"-std={standard}", *STRICT, "-I", CORE / "include", "-fsyntax-only"]
+    for header in sorted((CORE / "include" / "laconic").glob("*.h")):
+        (tmp_path / header.name).with_suffix(".c").write_text(f"#include <laconic/{header.name}>\n", encoding="utf-8")
+    run(compiler, *options, *sorted(tmp_path.glob("*.c")), folder=tmp_path)
+
+
+def test_a_step_compiles_without_a_warning_for_sanitizers_too(tmp_path):
+    if shutil.which("gcc") is None:
+        pytest.skip("no gcc")
+    run("gcc", "-std=c99", "-Os", "-fsanitize=address,undefined", *STRICT, "-I", CORE / "include", "-c",
+        CORE / "src" / "exact_flow.c", "-o", "step.o", folder=tmp_path)
 
 
 @pytest.mark.parametrize(("compiler", "real", "effort"), [
