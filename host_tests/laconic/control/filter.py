@@ -103,6 +103,16 @@ class Filter:
     # ---- the estimate
 
     @property
+    def step_s(self) -> float:
+        """Of a prediction."""
+        return self._plant.step_s
+
+    @property
+    def centre_of_mass_m(self) -> tuple[float, float]:
+        """Of the robot with its payload, in the body frame: what x_m and y_m are of, as a place for `fix`."""
+        return float(self._plant.c.model.com_x_m), float(self._plant.c.model.com_y_m)
+
+    @property
     def nu(self) -> np.ndarray:
         """ν1, ν2, ν3 [rad/s], shape (3,)."""
         return self.as_plant().nu

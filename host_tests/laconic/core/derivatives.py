@@ -110,11 +110,15 @@ class StepDerivatives:
     def model_change(self, vehicle: Mapping[str, float]) -> Any:
         """The laconic_model_change along changes of numbers of the vehicle."""
         by, change = self.core.ffi.new("laconic_vehicle *"), self.core.ffi.new("laconic_model_change *")
-        for name, value in by_names("vehicle", vehicle).items():
-            self._vary(by, name, finite_number(name, value))
+        self.set_numbers(by, vehicle)
         self._check(self.core.lib.laconic_model_tangent(
             change, self._step[0], self.core.ffi.addressof(self.plant.c, "vehicle"), by))
         return change
+
+    def set_numbers(self, vehicle: Any, values: Mapping[str, float]) -> None:
+        """Sets numbers of a laconic_vehicle, named as for `tangent`."""
+        for name, value in by_names("vehicle", values).items():
+            self._vary(vehicle, name, finite_number(name, value))
 
     # ---- between numpy and C
 
