@@ -14,7 +14,8 @@ from pathlib import Path
 
 from laconic.errors import BadInput
 from laconic.paths import built
-from laconic.rig.boards import BOARDS, QEMU
+from laconic.rig.boards import QEMU
+from laconic.rig.choices import BOARDS
 
 OBJDUMP, SIZE = "arm-none-eabi-objdump", "arm-none-eabi-size"
 EXCEPTION_FRAME = {"an385": 32, "microbit": 32}  # without FPU; with: 104

@@ -5,15 +5,11 @@ from __future__ import annotations
 from collections.abc import Mapping
 from dataclasses import dataclass, field
 
+from laconic.play.fault_kinds import BUS_OFF, ERROR_FRAMES, KINDS, OF_WHEEL, SILENT
 from laconic.play.options import PlayOptions
 from laconic.play.settings import DriveSettings
 from laconic.scene import Scene
 
-STALL, BUS_OFF, SILENT, ERROR_FRAMES = "stall", "bus-off", "silent", "error-frames"
-ORDERS = {STALL: 1024, "encoder": 1, "temperature": 4, "overspeed": 8, "supply": 16, BUS_OFF: 256, SILENT: 512}
-OF_DRIVE = tuple(kind for kind, bit in ORDERS.items() if bit < 256)  # LACONIC_DRIVE_FAULT_…; the rest ORDER_…
-OF_WHEEL = (STALL, *OF_DRIVE)  # what concerns no bus
-KINDS = (*ORDERS, ERROR_FRAMES)
 CARRY_ERROR_FRAMES = ("virtual", "udp_multicast")
 
 

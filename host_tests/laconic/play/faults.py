@@ -18,7 +18,8 @@ from typing import Protocol
 import can
 
 from laconic.errors import BadInput, nearest_of
-from laconic.play.can_fail import ERROR_FRAMES, CanFail
+from laconic.play.can_fail import CanFail
+from laconic.play.fault_kinds import ERROR_FRAMES
 from laconic.rig.faults import FIELD_TYPES, FaultModel, faults_from
 from laconic.rig.faulty import FaultyBus
 

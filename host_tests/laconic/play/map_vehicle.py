@@ -9,7 +9,7 @@ import can
 import numpy as np
 
 from laconic.errors import LaconicError, Refused, ResultFails
-from laconic.play.can_fail import BUS_OFF, ERROR_FRAMES, ORDERS, STALL
+from laconic.play.fault_kinds import BUS_OFF, ERROR_FRAMES, ORDERS, STALL
 from laconic.play.faults import DriveFault
 from laconic.play.journey import Pose
 from laconic.play.loop import Lateness

@@ -15,7 +15,7 @@ from typing import Any
 import can
 
 from laconic.errors import BadInput, LaconicError, ResultFails
-from laconic.play.can_fail import ERROR_FRAMES, ORDERS
+from laconic.play.fault_kinds import ERROR_FRAMES, ORDERS
 from laconic.play.faults import DriveFault
 from laconic.play.journey import Pose
 from laconic.play.loop import Lateness

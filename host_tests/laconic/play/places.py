@@ -27,12 +27,11 @@ from laconic.play.settings import DriveSettings, drive_settings
 from laconic.play.vehicle import played, silent_sensors
 from laconic.rig.boards import own_node
 from laconic.rig.buses import connected, node_in_process, node_process
+from laconic.rig.choices import ON_BUS
 from laconic.rig.client import NodeClient
 from laconic.rig.link import Clock, Link
 from laconic.rig.options import read_id_base
 from laconic.scene import Scene
-
-ON_BUS = "bus"  # --board: the node is on the controller's bus already
 
 
 class Played(Vehicle, Travelling, Protocol):

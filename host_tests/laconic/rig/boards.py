@@ -8,42 +8,18 @@ import subprocess
 import time
 from collections.abc import Iterator
 from contextlib import AbstractContextManager, contextmanager
-from dataclasses import dataclass
 from pathlib import Path
 
 from laconic.errors import BadInput, nearest_of
 from laconic.paths import build_dir, built, sources_missing
 from laconic.rig.buses import connected, process_node, virtual_node
+from laconic.rig.choices import BOARDS, KINDS
 from laconic.rig.client import NodeClient
 from laconic.rig.errors import CannotReach
 from laconic.rig.wire import ID_BASE
 
 QEMU = "qemu-system-arm"
 QEMU_START_S = 10.0
-
-
-@dataclass(frozen=True)
-class Board:
-    """An emulated board."""
-
-    name: str
-    machine: str
-    real: str
-    text: str
-    plays_only: bool = False  # drives: it has neither lockstep nor free run
-
-
-BOARDS = {board.name: board for board in (
-    Board("an385", "mps2-an385", "single", "Arm MPS2, Cortex-M3"),
-    Board("an386", "mps2-an386", "single", "Arm MPS2, Cortex-M4F"),
-    Board("an500", "mps2-an500", "double", "Arm MPS2, Cortex-M7"),
-    Board("microbit", "microbit", "single", "BBC micro:bit, Cortex-M0"),
-    Board("an386-small", "mps2-an386", "single", "Cortex-M4F, one method, four wheels"),
-    Board("an386-drives", "mps2-an386", "single", "the same with RoboMaster drives"),
-    Board("an386-odrive", "mps2-an386", "single", "the same with ODrives"),
-    Board("an386-canopen", "mps2-an386", "single", "the same with CANopen drives", plays_only=True),
-    Board("an386-moteus", "mps2-an386", "single", "the same with moteus controllers", plays_only=True))}
-KINDS = ("virtual", "process", *BOARDS)
 
 
 def why_no_emulation() -> str | None:

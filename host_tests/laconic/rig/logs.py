@@ -14,8 +14,6 @@ import can
 from laconic.errors import BadInput, reason_of
 from laconic.rig.link import Clock
 
-LOGS = (".blf", ".asc", ".log", ".trc")
-
 
 class Heard(Protocol):
     """A place where frames pass: a link to a node, or the bus of a controller."""

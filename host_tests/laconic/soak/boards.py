@@ -14,7 +14,8 @@ from contextlib import ExitStack, contextmanager
 from typing import Any
 
 from laconic.errors import BadInput, LaconicError
-from laconic.rig.boards import BOARDS, emulated_node, why_no_emulation
+from laconic.rig.boards import emulated_node, why_no_emulation
+from laconic.rig.choices import BOARDS
 from laconic.rig.lockstep import load_scene, run_lockstep, twin_states
 from laconic.scene import read_scene
 

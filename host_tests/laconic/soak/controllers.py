@@ -13,7 +13,8 @@ from collections.abc import Callable
 from typing import Any
 
 from laconic.errors import BadInput, LaconicError, ResultFails, nearest_of
-from laconic.rig.boards import BOARDS, KINDS, why_no_emulation
+from laconic.rig.boards import why_no_emulation
+from laconic.rig.choices import BOARDS, KINDS
 from laconic.soak import StoppedEarly
 from laconic.soak._controllers.bench import bench
 from laconic.soak._controllers.cycles import Cycles

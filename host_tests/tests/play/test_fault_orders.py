@@ -5,13 +5,14 @@ from __future__ import annotations
 import socket
 import struct
 from collections.abc import Callable
+from contextlib import suppress
 from pathlib import Path
 
 import can
 import pytest
-from play_support import DBC, PLAY, Codec, Controller, Station, currents, played
+from play_support import DBC, PLAY, Codec, Controller, Station, currents, played, unhurried
 
-from laconic.play.can_fail import ORDERS
+from laconic.play.fault_kinds import ORDERS
 from laconic.play.listener import ListeningBus
 from laconic.play.options import PlayOptions
 from laconic.play.orders import Orders
@@ -55,50 +56,67 @@ def judged_stop(judgement: Judgement) -> str:
 
 
 def test_drives_of_a_process_that_serves_its_port_fail_and_its_own_motion_is_judged() -> None:
-    judgement, station = on_a_served_port(
-        1.0, faults=("temperature:1@0.4", "bus-off:2@0.4", "silent:3@0.4+0.2"), stop_within_s=0.2)
+    judgement, station, longer = unhurried(lambda longer: on_a_served_port(
+        longer, faults=tuple(f"{kind}@{0.4 * longer:g}{more}" for kind, more in (
+            ("temperature:1", ""), ("bus-off:2", ""), ("silent:3", f"+{0.2 * longer:g}"))), stop_within_s=0.2))
     feedback = {number: [each for each in station.heard if each.arbitration_id == number] for number in (513, 514, 515)}
     assert current_of(feedback[513][-1]) == 0 and current_of(feedback[515][-1]) != 0
     assert len(feedback[514]) < 0.7 * len(feedback[513])
     assert len(feedback[514]) < len(feedback[515]) < 0.95 * len(feedback[513])
     assert judgement.exit_status == 1 and "still moving at the end" in judged_stop(judgement)
-    assert "the first fault at 0.4" in judged_stop(judgement)
+    assert f"the first fault at {0.4 * longer:g}" in judged_stop(judgement)
     assert judgement.figures["frames_in"] > 20 and judgement.figures["frames_out"] > 1000
 
 
 def test_the_last_frame_of_the_controller_is_told_from_those_of_the_drives_on_one_bus() -> None:
-    judgement, _ = on_a_served_port(0.8, last_command=300, stop_distance_m=5.0)
-    assert judgement.figures["frames_out"] > 1000 > judgement.figures["frames_in"] > 50
+    judgement, _, longer = unhurried(lambda longer: on_a_served_port(0.8 * longer, last_command=300,
+                                                                     stop_distance_m=5.0))
+    assert judgement.figures["frames_out"] > 1000 * longer
+    assert 50 < judgement.figures["frames_in"] < 1000
     _, _, mark_s = judged_stop(judgement).partition("controller's last frame at ")
-    assert 0.0 < float(mark_s.partition(" s")[0]) < 0.7
+    assert 0.0 < float(mark_s.partition(" s")[0]) < 0.7 * longer
 
 
 @pytest.mark.parametrize("kind, seen", [("encoder", "no current"), ("error-frames", "error frames")])
 def test_drives_of_a_process_behind_a_line_of_its_own_fail_on_any_interface(kind: str, seen: str,
                                                                          tmp_path: Path) -> None:
-    name, log = next_channel(), tmp_path / "run.asc"
-    with can.Bus(interface="virtual", channel=name), Station("virtual", lambda: name, FOR_EVER) as station:
-        station.may_begin.set()
-        judgement = play(read_scene("robotino2"), PlayOptions(
-            interface="virtual", channel=name, board="process", drives="robomaster", duration_s=0.6,
-            faults=(f"{kind}:2@0.3",), logs=(log,)))
+    log = tmp_path / "run.asc"
+
+    def run(longer: float) -> tuple[Judgement, Station]:
+        name = next_channel()
+        with can.Bus(interface="virtual", channel=name), Station("virtual", lambda: name, FOR_EVER) as station:
+            station.may_begin.set()
+            judgement = play(read_scene("robotino2"), PlayOptions(
+                interface="virtual", channel=name, board="process", drives="robomaster", duration_s=0.6 * longer,
+                faults=(f"{kind}:2@{0.3 * longer:g}",), logs=(log,)))
+        return judgement, station
+
+    judgement, station, _ = unhurried(run)
     assert judgement.exit_status == 0, judgement
     errors = [each for each in station.heard if each.is_error_frame]
     of_second = [each for each in station.heard if each.arbitration_id == 0x202]
-    assert len(of_second) > 100 and (current_of(of_second[-1]) == 0) == (seen == "no current")
-    assert (len(errors) > 20) == (seen == "error frames") and (seen == "error frames" or not errors)
+    assert len(of_second) > 100 and any(map(current_of, of_second))
+    if seen == "no current":
+        assert current_of(of_second[-1]) == 0 and not errors
+    else:  # the drives go on
+        later = station.heard[station.heard.index(errors[0]):]
+        assert any(current_of(each) for each in later if each.arbitration_id == 0x202) and len(errors) > 20
     assert sum(each.is_error_frame for each in can.LogReader(log)) == len(errors)
 
 
 def test_drives_of_a_node_that_is_on_the_bus_fail_and_its_motion_is_judged() -> None:
-    with node_process("double", ID_BASE, "--shared") as port:
-        channel = f"socket://127.0.0.1:{port}"
-        with Station("slcan", lambda: channel, FOR_EVER) as station:
-            judgement = play(read_scene("robotino2"), PlayOptions(
-                interface="slcan", channel=channel, board="bus", drives="robomaster", duration_s=0.6,
-                faults=("supply:3@0.3",), stop_within_s=0.1), say=lambda _: station.may_begin.set())
+    def run(longer: float) -> tuple[Judgement, Station]:
+        with node_process("double", ID_BASE, "--shared") as port:
+            channel = f"socket://127.0.0.1:{port}"
+            with Station("slcan", lambda: channel, FOR_EVER) as station:
+                judgement = play(read_scene("robotino2"), PlayOptions(
+                    interface="slcan", channel=channel, board="bus", drives="robomaster", duration_s=0.6 * longer,
+                    faults=(f"supply:3@{0.3 * longer:g}",), stop_within_s=0.1), say=lambda _: station.may_begin.set())
+        return judgement, station
+
+    judgement, station, longer = unhurried(run)
     last = [each for each in station.heard if each.arbitration_id == 0x203][-1]
-    assert current_of(last) == 0 and "the first fault at 0.3" in judged_stop(judgement)
+    assert current_of(last) == 0 and f"the first fault at {0.3 * longer:g}" in judged_stop(judgement)
 
 
 class Line:
@@ -138,13 +156,15 @@ def test_an_order_is_repeated_until_it_is_answered_and_its_failure_ends_the_run(
 def test_a_program_on_slcan_learns_of_error_frames_by_the_status_flags_alone() -> None:
     bus = ListeningBus(0)
     with socket.create_connection(("127.0.0.1", bus.port)) as line:
-        line.settimeout(2.0)
+        line.settimeout(0.01)
 
         def answer(command: bytes) -> bytes:
             line.sendall(command)
-            for _ in range(20):
+            for _ in range(500):
                 bus.recv(0.01)
-            return line.recv(100)
+                with suppress(TimeoutError):
+                    return line.recv(100)
+            return b""
 
         assert answer(b"O\r") == b"\r" and answer(b"F\r") == b"F00\r"
         bus.send(error_frame())

@@ -10,7 +10,8 @@ import pytest
 from play_support import DBC, PLAY, Codec, played, sdo
 
 from laconic.cli.main import run
-from laconic.play.can_fail import KINDS, drives_can_fail
+from laconic.play.can_fail import drives_can_fail
+from laconic.play.fault_kinds import KINDS
 from laconic.play.faults import DriveFault, Saboteur, read_faults
 from laconic.play.options import PlayOptions
 from laconic.play.settings import drive_settings

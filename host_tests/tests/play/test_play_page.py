@@ -6,8 +6,8 @@ import re
 from pathlib import Path
 
 from laconic.paths import SCENE_DIR, SOURCE_DIR
-from laconic.play.can_fail import KINDS
 from laconic.play.checksums import CHECKSUMS
+from laconic.play.fault_kinds import KINDS
 from laconic.play.map_file import AT_TIMEOUT, read_map
 from laconic.play.map_signals import BODY_OUTPUTS, DRIVE_OUTPUTS, OF_DRIVES, WHEEL_OUTPUTS
 from laconic.play.settings import drive_settings

@@ -7,7 +7,7 @@ import re
 import shutil
 import subprocess
 import sys
-from importlib.metadata import version
+from importlib.metadata import packages_distributions, version
 from pathlib import Path
 
 import pytest
@@ -72,6 +72,24 @@ def test_a_program_that_lacks_an_extra_is_told_which():
             "try: laconic.analyse\nexcept laconic.BadInput as why: print(why)")
     done = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True, check=True)
     assert done.stdout == 'this needs scipy, which is not installed; pip install "laconic[analysis]"\n'
+
+
+HELP_OF_ALL = """
+import sys
+for module in sys.argv[1:]:
+    sys.modules[module] = None
+from laconic.cli.main import commands, run
+names = commands.list_commands(None)
+print("failed:", [name for name in names if run([name, "--help"]) != 0])
+"""
+
+
+def test_every_command_explains_itself_without_an_extra():
+    extras = names_in([line for lines in PROJECT["optional-dependencies"].values() for line in lines])
+    modules = [module for module, of in packages_distributions().items() if {each.lower() for each in of} & extras]
+    assert {"can", "scipy", "fmpy", "jinja2", "mujoco"} <= set(modules)
+    done = subprocess.run([sys.executable, "-c", HELP_OF_ALL, *modules], capture_output=True, text=True, check=False)
+    assert done.stdout.endswith("failed: []\n"), done.stderr
 
 
 def test_what_the_package_needs_anyway_belongs_to_no_extra():

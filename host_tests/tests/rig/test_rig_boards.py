@@ -9,7 +9,8 @@ import pytest
 from laconic.benchmark.node_sizes import cost_of
 from laconic.errors import BadInput, Refused
 from laconic.paths import scene_names
-from laconic.rig.boards import BOARDS, emulated_node, why_no_emulation
+from laconic.rig.boards import emulated_node, why_no_emulation
+from laconic.rig.choices import BOARDS
 from laconic.rig.errors import NodeRefused
 from laconic.rig.judge import judge_scaled
 from laconic.rig.lockstep import load_scene, run_lockstep, twin_states

@@ -9,7 +9,8 @@ from pathlib import Path
 import pytest
 
 from laconic.cli.main import run
-from laconic.rig.logs import LOGS, read_log
+from laconic.rig.choices import LOGS
+from laconic.rig.logs import read_log
 from laconic.rig.wire import ID_BASE, wire
 
 SEED, BROKEN = 1, 40

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import time
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 import click
 
@@ -11,17 +11,13 @@ from laconic.cli.options import InputPath, OutputFile, SceneName, check_step, go
 from laconic.core import REALS
 from laconic.errors import BadInput
 from laconic.outputs import write_text
-from laconic.play.can_fail import KINDS as FAULTS
-from laconic.play.canopen_eds import eds_of_scene
-from laconic.play.options import PlayOptions
-from laconic.play.places import ON_BUS
-from laconic.play.session import play
-from laconic.rig.boards import KINDS
-from laconic.rig.logs import LOGS
-from laconic.rig.results import as_json, show, write_junit
-from laconic.rig.verdict import Judgement
+from laconic.play.fault_kinds import KINDS as FAULTS
+from laconic.rig.choices import KINDS, LOGS, ON_BUS
 from laconic.scene import METHODS, read_scene
 from laconic.scene.drives import DRIVE_PROTOCOLS
+
+if TYPE_CHECKING:
+    from laconic.rig.verdict import Judgement
 
 
 @click.command("play")
@@ -69,6 +65,10 @@ def command(scene_name: str, method: str | None, real: str | None, step_s: float
     status 0 when the user or --duration has ended it, 1 when the bus died, a step was refused or a watchdog fired, 2
     for bad input.
     """
+    from laconic.play.canopen_eds import eds_of_scene
+    from laconic.play.options import PlayOptions
+    from laconic.play.session import play
+
     check_step(step_s)
     scene = read_scene(scene_name).with_run(method=method, step_s=step_s, real=real)
     if eds:
@@ -83,6 +83,8 @@ def command(scene_name: str, method: str | None, real: str | None, step_s: float
 
 def present(judgement: Judgement, junit: Any, seconds: float, *, json_wanted: bool) -> None:
     """The results in all forms; then BadInput for files that could not be written: the run does not come again."""
+    from laconic.rig.results import as_json, show, write_junit
+
     if junit:
         try:
             write_junit(judgement, junit, seconds, "play")

@@ -4,23 +4,18 @@ from __future__ import annotations
 
 import json
 import time
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 import click
 
 from laconic.cli.options import InputPath, OutputFile, SceneName, belongs_to, goes_with, json_flag, only_one
 from laconic.core import REALS
 from laconic.errors import BadInput
-from laconic.rig.boards import KINDS
-from laconic.rig.errors import Interrupted
-from laconic.rig.logs import LOGS
-from laconic.rig.options import Options, in_hex, node_for, read_id_base
-from laconic.rig.replay import judge_log
-from laconic.rig.results import as_json, show, write_junit
-from laconic.rig.run import run
-from laconic.rig.scaled import read_tolerances
-from laconic.rig.stopping import stop_and_reset
+from laconic.rig.choices import KINDS, LOGS
 from laconic.scene import METHODS, Scene, read_scene
+
+if TYPE_CHECKING:
+    from laconic.rig.options import Options
 
 CONNECTION = ("--interface", "--channel", "--bitrate", "--bus-option", "--id-base")
 
@@ -63,6 +58,8 @@ def command(scene_name: str | None, lockstep: bool, same_bits: bool, free_run: b
     node is at rest when the command ends, also when it is interrupted. Exit status 1 when a verdict fails or the bus or
     node dies in the run, 2 when no node can be reached, 130 or 143 when SIGINT (Ctrl-C) or SIGTERM has ended the run.
     """
+    from laconic.rig.options import Options
+
     mode = only_one({"--lockstep": lockstep, "--same-bits": same_bits, "--free-run": free_run}) or "--lockstep"
     only_one({"--same-bits": same_bits, "--tolerance": bool(given["tolerances"])})
     only_one({"--same-bits": same_bits, "--free-run": free_run, "--replay": given["replay"] is not None})
@@ -80,6 +77,13 @@ def command(scene_name: str | None, lockstep: bool, same_bits: bool, free_run: b
 
 def drive(scene: Scene, options: Options) -> int:
     """A run or a replay, and its results in every form that the options choose."""
+    from laconic.rig.errors import Interrupted
+    from laconic.rig.options import read_id_base
+    from laconic.rig.replay import judge_log
+    from laconic.rig.results import as_json, show, write_junit
+    from laconic.rig.run import run
+    from laconic.rig.scaled import read_tolerances
+
     began = time.perf_counter()
     if options.replay is not None:
         goes_with("--replay", "--lockstep", "--id-base", "--method", "--real", "--tolerance", "--junit", "--json")
@@ -100,6 +104,9 @@ def drive(scene: Scene, options: Options) -> int:
 
 def rest(scene_name: str | None, options: Options, with_reset: bool) -> int:
     """--stop and --reset: no run, a node at rest."""
+    from laconic.rig.options import in_hex, node_for, read_id_base
+    from laconic.rig.stopping import stop_and_reset
+
     if options.interface is None:
         raise BadInput(f"{'--reset' if with_reset else '--stop'}: give the --interface and --channel of the node")
     scene = read_scene(scene_name) if scene_name is not None else None

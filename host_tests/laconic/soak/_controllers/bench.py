@@ -18,8 +18,9 @@ from laconic.play.node_in_process import InProcess
 from laconic.play.node_vehicle import Bridged, NodeVehicle, running
 from laconic.play.settings import DriveSettings, drive_settings
 from laconic.play.vehicle import played
-from laconic.rig.boards import BOARDS, own_node
+from laconic.rig.boards import own_node
 from laconic.rig.buses import next_channel, node_in_process
+from laconic.rig.choices import BOARDS
 from laconic.rig.client import NodeClient
 from laconic.rig.link import Clock
 from laconic.rig.wire import ID_BASE
