@@ -96,20 +96,23 @@ static size_t row_bytes_of(const laconic_batch_shape *shape) {
 
 /* Where the parts of a batch begin in its memory, and where they end. */
 typedef struct layout {
-    size_t order, kind_of, status, missed, blocks, constants, end;
+    size_t order, slot_of, kind_of, status, missed, blocks, states, constants, end;
 } layout;
 
 static layout layout_of(const laconic_batch_shape *shape, const lanes_width *width) {
     const size_t lanes = (size_t)shape->lane_count;
     const size_t blocks = (size_t)blocks_at_most(shape, lanes_of_width(width));
+    const size_t slots = blocks * (size_t)lanes_of_width(width);
     const size_t constants = width == NULL ? 0 : aligned(width->model_bytes) + aligned(width->integrator_bytes);
     layout l;
     l.order = (size_t)ROW_COUNT(shape->wheel_count) * row_bytes_of(shape);
-    l.kind_of = l.order + aligned(lanes * sizeof(int32_t));
+    l.slot_of = l.order + aligned(slots * sizeof(int32_t));
+    l.kind_of = l.slot_of + aligned(lanes * sizeof(int32_t));
     l.status = l.kind_of + aligned(lanes * sizeof(int32_t));
     l.missed = l.status + aligned(lanes * sizeof(int32_t));
     l.blocks = l.missed + aligned(lanes * sizeof(uint64_t));
-    l.constants = l.blocks + aligned(blocks * sizeof(laconic_batch_block));
+    l.states = l.blocks + aligned(blocks * sizeof(laconic_batch_block));
+    l.constants = l.states + aligned(blocks * STATE_NUMBERS * state_stride(width));
     l.end = l.constants + constants * (is_by_kind(shape) ? (size_t)shape->kind_count : blocks);
     return l;
 }
@@ -143,91 +146,105 @@ static bool comes_before(const laconic_batch *batch, int32_t a, int32_t b) {
     return key_a < key_b || (key_a == key_b && a < b);
 }
 
+static void exchange(int32_t *a, int32_t *b) {
+    const int32_t moved = *a;
+    *a = *b;
+    *b = moved;
+}
+
 /* Heap sort: it needs no memory. */
-static void sift(laconic_batch *batch, int32_t top, int32_t count) {
-    int32_t *order = batch->order;
+static void sift(const laconic_batch *batch, int32_t *lanes, int32_t top, int32_t count) {
     for (int32_t child = 2 * top + 1; child < count; child = 2 * top + 1) {
-        if (child + 1 < count && comes_before(batch, order[child], order[child + 1])) child++;
-        if (!comes_before(batch, order[top], order[child])) return;
-        const int32_t moved = order[top];
-        order[top] = order[child];
-        order[child] = moved;
+        if (child + 1 < count && comes_before(batch, lanes[child], lanes[child + 1])) child++;
+        if (!comes_before(batch, lanes[top], lanes[child])) return;
+        exchange(&lanes[top], &lanes[child]);
         top = child;
     }
 }
 
-static void set_order(laconic_batch *batch) {
+static void sort_lanes(const laconic_batch *batch, int32_t *lanes) {
     const int32_t count = batch->shape.lane_count;
     bool is_sorted = true;
-    for (int32_t i = 0; i < count; i++) batch->order[i] = i;
+    for (int32_t i = 0; i < count; i++) lanes[i] = i;
     for (int32_t i = 1; i < count && is_sorted; i++) is_sorted = comes_before(batch, i - 1, i);
     if (is_sorted) return;
-    for (int32_t top = count / 2 - 1; top >= 0; top--) sift(batch, top, count);
+    for (int32_t top = count / 2 - 1; top >= 0; top--) sift(batch, lanes, top, count);
     for (int32_t end = count - 1; end > 0; end--) {
-        const int32_t moved = batch->order[0];
-        batch->order[0] = batch->order[end];
-        batch->order[end] = moved;
-        sift(batch, 0, end);
+        exchange(&lanes[0], &lanes[end]);
+        sift(batch, lanes, 0, end);
     }
 }
 
 /* ------------------------------------------------------------------------------- blocks -- */
 
-static bool is_in_a_row(const laconic_batch *batch, int32_t first, int32_t count, int32_t lanes) {
-    const int32_t *order = &batch->order[first];
-    const size_t end = (size_t)(order[0] + lanes) * sizeof(laconic_real);
+static bool is_in_a_row(const laconic_batch *batch, const int32_t *lane, int32_t count, int32_t lanes) {
+    const size_t end = (size_t)(lane[0] + lanes) * sizeof(laconic_real);
     for (int32_t i = 1; i < count; i++)
-        if (order[i] != order[0] + i) return false;
-    return count == lanes || (order[count - 1] == batch->shape.lane_count - 1 && end <= batch->row_bytes);
+        if (lane[i] != lane[0] + i) return false;
+    return count == lanes || (lane[count - 1] == batch->shape.lane_count - 1 && end <= batch->row_bytes);
 }
 
 /* Lanes that a block lacks have the constants of its first. */
 static void place_constants(const laconic_batch *batch, const laconic_batch_block *block, int32_t lanes) {
     laconic_number constants[LANES_CONSTANTS];
-    for (int32_t lane = 0; lane < lanes; lane++) {
-        const int32_t of = batch->order[block->first + (lane < block->count ? lane : 0)];
-        const laconic_batch_kind *kind = &batch->kinds[batch->kind_of[of]];
+    for (int32_t k = 0; k < lanes; k++) {
+        const laconic_batch_kind *kind = &batch->kinds[batch->kind_of[block->lanes[k]]];
         constants_of(constants, kind);
-        batch->width->place(&block->lanes, lane, lanes_kind_of(kind), constants);
+        batch->width->place(block, k, lanes_kind_of(kind), constants);
     }
 }
 
-static void place_block(laconic_batch *batch, int32_t first, int32_t count, unsigned char **constants) {
-    const int32_t lanes = lanes_of_width(batch->width), kind = batch->kind_of[batch->order[first]];
-    laconic_batch_block *block = &batch->blocks[batch->block_count++];
+static void share_constants(const laconic_batch *batch, laconic_batch_block *block, unsigned char **constants) {
     const laconic_batch_block *before = block - 1;
-    block->method = lanes_kind_of(&batch->kinds[kind]).method;
-    block->way = way_of(&batch->kinds[kind]);
-    block->first = first;
-    block->count = count;
-    block->has_refused = false;
-    block->wheel_count = LACONIC_WHEELS(&batch->kinds[kind].model);
-    block->in_a_row = is_in_a_row(batch, first, count, lanes);
-    block->lanes.rows = batch->rows;
-    block->lanes.row_bytes = batch->row_bytes;
-    block->lanes.first = batch->order[first];
-    if (batch->width == NULL) return;
-    if (is_by_kind(&batch->shape) && first > 0 && batch->kind_of[batch->order[before->first]] == kind) {
-        block->lanes.model = before->lanes.model;
-        block->lanes.integrator = before->lanes.integrator;
+    const int32_t *kind = batch->kind_of;
+    if (is_by_kind(&batch->shape) && block > batch->blocks && kind[before->lanes[0]] == kind[block->lanes[0]]) {
+        block->model = before->model;
+        block->integrator = before->integrator;
         return;
     }
-    block->lanes.model = *constants;
-    block->lanes.integrator = *constants + aligned(batch->width->model_bytes);
+    block->model = *constants;
+    block->integrator = *constants + aligned(batch->width->model_bytes);
     *constants += aligned(batch->width->model_bytes) + aligned(batch->width->integrator_bytes);
-    place_constants(batch, block, lanes);
+    place_constants(batch, block, lanes_of_width(batch->width));
 }
 
-static void place_blocks(laconic_batch *batch, unsigned char *constants) {
-    const int32_t lanes = lanes_of_width(batch->width);
+static void place_block(laconic_batch *batch, const int32_t *lane, int32_t count, unsigned char *states,
+                        unsigned char **constants) {
+    const laconic_batch_kind *kind = &batch->kinds[batch->kind_of[lane[0]]];
+    const int32_t lanes = lanes_of_width(batch->width), index = batch->block_count++;
+    int32_t *own = &batch->order[index * lanes];
+    laconic_batch_block block = ALL_ZERO;
+    for (int32_t k = 0; k < lanes; k++) own[k] = lane[k < count ? k : 0];
+    block.lanes = own;
+    block.method = lanes_kind_of(kind).method;
+    block.way = way_of(kind);
+    block.count = count;
+    block.wheel_count = LACONIC_WHEELS(&kind->model);
+    block.in_a_row = is_in_a_row(batch, lane, count, lanes);
+    block.rows = batch->rows;
+    block.row_bytes = batch->row_bytes;
+    block.state = states + (size_t)index * STATE_NUMBERS * state_stride(batch->width);
+    batch->blocks[index] = block;
+    if (batch->width != NULL) share_constants(batch, &batch->blocks[index], constants);
+}
+
+/* Lanes of equal keys, which follow each other when they are sorted, fill blocks. */
+static void place_blocks(laconic_batch *batch, unsigned char *states, unsigned char *constants) {
+    const int32_t lanes = lanes_of_width(batch->width), *sorted = batch->slot_of;
     int32_t first = 0;
     for (int32_t i = 1; i <= batch->shape.lane_count; i++) {
         const bool ends = i == batch->shape.lane_count || i - first == lanes ||
-                          key_of(batch, batch->order[i]) != key_of(batch, batch->order[first]);
+                          key_of(batch, sorted[i]) != key_of(batch, sorted[first]);
         if (!ends) continue;
-        place_block(batch, first, i - first, &constants);
+        place_block(batch, &sorted[first], i - first, states, &constants);
         first = i;
     }
+}
+
+static void set_slots(laconic_batch *batch) {
+    const int32_t lanes = lanes_of_width(batch->width);
+    for (int32_t i = 0; i < batch->block_count; i++)
+        for (int32_t k = 0; k < batch->blocks[i].count; k++) batch->slot_of[batch->blocks[i].lanes[k]] = i * lanes + k;
 }
 
 /* -------------------------------------------------------------------------------- place -- */
@@ -254,41 +271,28 @@ bool laconic_batch_place(laconic_batch *batch, void *memory, const laconic_batch
     b.shape.width_bytes = laconic_batch_width(shape->width_bytes);
     b.width = width_of(b.shape.width_bytes);
     const layout l = layout_of(shape, b.width);
-    clear(start, l.blocks);
+    clear(start, l.constants);
     b.row_bytes = row_bytes_of(shape);
     b.rows = start;
     b.order = (int32_t *)(void *)(start + l.order);
+    b.slot_of = (int32_t *)(void *)(start + l.slot_of);
     b.kind_of = (int32_t *)(void *)(start + l.kind_of);
     b.status = (int32_t *)(void *)(start + l.status);
     b.missed = (uint64_t *)(void *)(start + l.missed);
     b.blocks = (laconic_batch_block *)(void *)(start + l.blocks);
     b.kinds = kinds;
     for (int32_t i = 0; kind_of != NULL && i < shape->lane_count; i++) b.kind_of[i] = kind_of[i];
-    set_order(&b);
-    place_blocks(&b, start + l.constants);
+    sort_lanes(&b, b.slot_of); /* there is room there */
+    place_blocks(&b, start + l.states, start + l.constants);
+    set_slots(&b);
     *batch = b;
     return true;
 }
 
 /* -------------------------------------------------------------------------------- renew -- */
 
-static bool has_lane(const laconic_batch *batch, const laconic_batch_block *block, int32_t lane) {
-    for (int32_t k = 0; k < block->count; k++)
-        if (batch->order[block->first + k] == lane) return true;
-    return false;
-}
-
-/* Where all lanes lie in a row, the first guess is right. */
-static const laconic_batch_block *block_of(const laconic_batch *batch, int32_t lane) {
-    const int32_t guess = lane / lanes_of_width(batch->width);
-    const laconic_batch_block *block = &batch->blocks[guess < batch->block_count ? guess : 0];
-    if (has_lane(batch, block, lane)) return block;
-    for (block = batch->blocks; !has_lane(batch, block, lane);) block++;
-    return block;
-}
-
 bool laconic_batch_renew(laconic_batch *batch, int32_t lane) {
-    const laconic_batch_block *block = block_of(batch, lane);
+    const laconic_batch_block *block = &batch->blocks[batch->slot_of[lane] / lanes_of_width(batch->width)];
     if (way_of(&batch->kinds[batch->kind_of[lane]]) != block->way) return false;
     if (batch->width != NULL) place_constants(batch, block, lanes_of_width(batch->width));
     return true;

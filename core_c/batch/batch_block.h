@@ -7,21 +7,15 @@
 #include "../src/common.h"
 #include "lanes_width.h"
 
-/* Some lanes in a row of `order`, stepped together. */
-typedef struct laconic_batch_block {
-    lanes_block lanes;
-    lanes_method method;
-    int32_t way;          /* of its kinds: lanes of one way can share a block                  */
-    int32_t first, count; /* in `order`                                                    */
-    int32_t wheel_count;
-    bool has_refused; /* some lane's status is not OK                                  */
-    bool in_a_row;    /* its lanes follow each other, so that its numbers need no copy */
-} laconic_batch_block;
-
 /* Outputs follow the input. */
 #define ROW_OUTPUTS(wheel_count) ROW_VOLTAGE(wheel_count)
 #define ROW_COUNT(wheel_count) (ROW_OUTPUTS(wheel_count) + 4)
 
 static inline int32_t lanes_of_width(const struct lanes_width *width) { return width != NULL ? width->lanes : 1; }
+
+/* From a number of a block's state to the next. */
+static inline size_t state_stride(const struct lanes_width *width) {
+    return (size_t)lanes_of_width(width) * sizeof(laconic_real);
+}
 
 #endif

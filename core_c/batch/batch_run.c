@@ -1,118 +1,125 @@
-/* Lanes to and from the structs of one vehicle, and the run of a block: a lane that cannot go with the others takes its
+/* Lanes to and from the structs of one vehicle, and the run of blocks: a lane that cannot go with the others takes its
  * step alone. */
 #include "batch_block.h"
 
 #include "../src/heading.h"
 
-/* ------------------------------------------------------------ rows and one lane of them -- */
+/* --------------------------------------------------------------- the state of one lane -- */
 
-/* Rows of a whole batch, or the copy of a block's. */
-typedef struct rows {
+/* A lane's place in the registers of its block. */
+typedef struct place {
     unsigned char *first;
-    size_t row_bytes;
-    int32_t wheel_count; /* of the vehicle in the lane */
-} rows;
+    size_t stride; /* from register to register */
+    int32_t lane;
+} place;
 
-static real *number_of(const rows *r, int32_t row, int32_t lane) {
-    return (real *)(void *)(r->first + (size_t)row * r->row_bytes) + lane;
+static place place_of(const laconic_batch_block *block, const laconic_batch *batch, int32_t k) {
+    const place p = {block->state, state_stride(batch->width), k};
+    return p;
+}
+
+static place place_of_lane(const laconic_batch *batch, int32_t lane) {
+    const int32_t lanes = lanes_of_width(batch->width), slot = batch->slot_of[lane];
+    return place_of(&batch->blocks[slot / lanes], batch, slot % lanes);
+}
+
+static real *kept(const place *p, int32_t number) {
+    return (real *)(void *)(p->first + (size_t)number * p->stride) + p->lane;
 }
 
 /* Fractions of a turn are integers of a number's size. */
-static laconic_angle_number *fraction_of(const rows *r, int32_t lane) {
-    return (laconic_angle_number *)(void *)number_of(r, ROW_FRACTION, lane);
+static laconic_angle_number *kept_fraction(const place *p) {
+    return (laconic_angle_number *)(void *)kept(p, STATE_FRACTION);
 }
 
-static int64_t *turns_of(const rows *r, int32_t lane) { return (int64_t *)(void *)number_of(r, ROW_TURNS, 0) + lane; }
+static int64_t *kept_turns(const place *p) { return (int64_t *)(void *)(p->first + STATE_TURNS * p->stride) + p->lane; }
 
-static laconic_sum sum_in(const rows *r, int32_t value, int32_t rest, int32_t lane) {
-    const laconic_sum sum = {*number_of(r, value, lane), *number_of(r, rest, lane)};
+static laconic_sum sum_in(const place *p, int32_t value, int32_t rest) {
+    const laconic_sum sum = {*kept(p, value), *kept(p, rest)};
     return sum;
 }
 
-static void put_sum(const rows *r, int32_t value, int32_t rest, int32_t lane, laconic_sum sum) {
-    *number_of(r, value, lane) = sum.value;
-    *number_of(r, rest, lane) = sum.rest;
+static void put_sum(const place *p, int32_t value, int32_t rest, laconic_sum sum) {
+    *kept(p, value) = sum.value;
+    *kept(p, rest) = sum.rest;
 }
 
-static void state_in(laconic_state *s, const rows *r, int32_t lane) {
+static void state_in(laconic_state *s, const place *p) {
     for (int32_t k = 0; k < 3; k++) {
-        s->zeta[k] = sum_in(r, ROW_ZETA + k, ROW_ZETA_REST + k, lane);
-        s->travel[k] = sum_in(r, ROW_TRAVEL + k, ROW_TRAVEL_REST + k, lane);
+        s->zeta[k] = sum_in(p, STATE_ZETA + k, STATE_ZETA_REST + k);
+        s->travel[k] = sum_in(p, STATE_TRAVEL + k, STATE_TRAVEL_REST + k);
     }
-    s->x_m = sum_in(r, ROW_X, ROW_X_REST, lane);
-    s->y_m = sum_in(r, ROW_Y, ROW_Y_REST, lane);
-    s->heading.turns = *turns_of(r, lane);
-    s->heading.fraction = *fraction_of(r, lane);
-    s->heading.rest = *number_of(r, ROW_HEADING_REST, lane);
+    s->x_m = sum_in(p, STATE_X, STATE_X_REST);
+    s->y_m = sum_in(p, STATE_Y, STATE_Y_REST);
+    s->heading.turns = *kept_turns(p);
+    s->heading.fraction = *kept_fraction(p);
+    s->heading.rest = *kept(p, STATE_HEADING_REST);
 }
 
-static void put_state(const rows *r, int32_t lane, const laconic_state *s) {
+static void put_state(const place *p, const laconic_state *s) {
     for (int32_t k = 0; k < 3; k++) {
-        put_sum(r, ROW_ZETA + k, ROW_ZETA_REST + k, lane, s->zeta[k]);
-        put_sum(r, ROW_TRAVEL + k, ROW_TRAVEL_REST + k, lane, s->travel[k]);
+        put_sum(p, STATE_ZETA + k, STATE_ZETA_REST + k, s->zeta[k]);
+        put_sum(p, STATE_TRAVEL + k, STATE_TRAVEL_REST + k, s->travel[k]);
     }
-    put_sum(r, ROW_X, ROW_X_REST, lane, s->x_m);
-    put_sum(r, ROW_Y, ROW_Y_REST, lane, s->y_m);
-    *turns_of(r, lane) = s->heading.turns;
-    *fraction_of(r, lane) = s->heading.fraction;
-    *number_of(r, ROW_HEADING_REST, lane) = s->heading.rest;
+    put_sum(p, STATE_X, STATE_X_REST, s->x_m);
+    put_sum(p, STATE_Y, STATE_Y_REST, s->y_m);
+    *kept_turns(p) = s->heading.turns;
+    *kept_fraction(p) = s->heading.fraction;
+    *kept(p, STATE_HEADING_REST) = s->heading.rest;
 }
 
-static void input_in(laconic_input *in, const rows *r, int32_t lane) {
-    for (int32_t i = 0; i < r->wheel_count; i++) {
-        in->voltage_V[i] = *number_of(r, ROW_VOLTAGE(i), lane);
-        in->axle_torque_Nm[i] = *number_of(r, ROW_AXLE_TORQUE(i), lane);
+/* ---------------------------------------------------------------- rows, and one lane of them -- */
+
+static real *number_of(const laconic_batch *batch, int32_t row, int32_t lane) {
+    return (real *)(void *)(batch->rows + (size_t)row * batch->row_bytes) + lane;
+}
+
+static int32_t wheels_of(const laconic_batch *batch, int32_t lane) {
+    return LACONIC_WHEELS(&batch->kinds[batch->kind_of[lane]].model);
+}
+
+void laconic_batch_input(const laconic_batch *batch, int32_t lane, laconic_input *input) {
+    for (int32_t i = 0; i < wheels_of(batch, lane); i++) {
+        input->voltage_V[i] = *number_of(batch, ROW_VOLTAGE(i), lane);
+        input->axle_torque_Nm[i] = *number_of(batch, ROW_AXLE_TORQUE(i), lane);
     }
     for (int32_t k = 0; k < 2; k++) {
-        in->body_force_N[k] = *number_of(r, ROW_BODY_FORCE + k, lane);
-        in->world_force_N[k] = *number_of(r, ROW_WORLD_FORCE + k, lane);
-        in->world_force_point_m[k] = *number_of(r, ROW_WORLD_FORCE_POINT + k, lane);
+        input->body_force_N[k] = *number_of(batch, ROW_BODY_FORCE + k, lane);
+        input->world_force_N[k] = *number_of(batch, ROW_WORLD_FORCE + k, lane);
+        input->world_force_point_m[k] = *number_of(batch, ROW_WORLD_FORCE_POINT + k, lane);
     }
-    in->body_moment_Nm = *number_of(r, ROW_BODY_MOMENT, lane);
+    input->body_moment_Nm = *number_of(batch, ROW_BODY_MOMENT, lane);
 }
 
-static void put_input(const rows *r, int32_t lane, const laconic_input *in) {
-    for (int32_t i = 0; i < r->wheel_count; i++) {
-        *number_of(r, ROW_VOLTAGE(i), lane) = in->voltage_V[i];
-        *number_of(r, ROW_AXLE_TORQUE(i), lane) = in->axle_torque_Nm[i];
+void laconic_batch_set_input(laconic_batch *batch, int32_t lane, const laconic_input *input) {
+    for (int32_t i = 0; i < wheels_of(batch, lane); i++) {
+        *number_of(batch, ROW_VOLTAGE(i), lane) = input->voltage_V[i];
+        *number_of(batch, ROW_AXLE_TORQUE(i), lane) = input->axle_torque_Nm[i];
     }
     for (int32_t k = 0; k < 2; k++) {
-        *number_of(r, ROW_BODY_FORCE + k, lane) = in->body_force_N[k];
-        *number_of(r, ROW_WORLD_FORCE + k, lane) = in->world_force_N[k];
-        *number_of(r, ROW_WORLD_FORCE_POINT + k, lane) = in->world_force_point_m[k];
+        *number_of(batch, ROW_BODY_FORCE + k, lane) = input->body_force_N[k];
+        *number_of(batch, ROW_WORLD_FORCE + k, lane) = input->world_force_N[k];
+        *number_of(batch, ROW_WORLD_FORCE_POINT + k, lane) = input->world_force_point_m[k];
     }
-    *number_of(r, ROW_BODY_MOMENT, lane) = in->body_moment_Nm;
-}
-
-static rows rows_of(const laconic_batch *b, int32_t lane) {
-    const rows r = {b->rows, b->row_bytes, LACONIC_WHEELS(&b->kinds[b->kind_of[lane]].model)};
-    return r;
+    *number_of(batch, ROW_BODY_MOMENT, lane) = input->body_moment_Nm;
 }
 
 void laconic_batch_load(laconic_batch *batch, int32_t lane, const laconic_state *state) {
-    const rows r = rows_of(batch, lane);
-    put_state(&r, lane, state);
-    for (int32_t i = 0; i < r.wheel_count; i++)
-        *number_of(&r, ROW_WHEEL_ANGLE_SET(i), lane) = state->wheel_angle_set_rad[i];
+    const place p = place_of_lane(batch, lane);
+    put_state(&p, state);
+    *number_of(batch, ROW_X, lane) = state->x_m.value;
+    *number_of(batch, ROW_Y, lane) = state->y_m.value;
+    for (int32_t i = 0; i < wheels_of(batch, lane); i++)
+        *number_of(batch, ROW_WHEEL_ANGLE_SET(i), lane) = state->wheel_angle_set_rad[i];
     batch->status[lane] = LACONIC_OK;
     batch->missed[lane] = 0;
 }
 
 void laconic_batch_store(const laconic_batch *batch, int32_t lane, laconic_state *state) {
-    const rows r = rows_of(batch, lane);
-    state_in(state, &r, lane);
-    for (int32_t i = 0; i < r.wheel_count; i++)
-        state->wheel_angle_set_rad[i] = *number_of(&r, ROW_WHEEL_ANGLE_SET(i), lane);
-}
-
-void laconic_batch_set_input(laconic_batch *batch, int32_t lane, const laconic_input *input) {
-    const rows r = rows_of(batch, lane);
-    put_input(&r, lane, input);
-}
-
-void laconic_batch_input(const laconic_batch *batch, int32_t lane, laconic_input *input) {
-    const rows r = rows_of(batch, lane);
-    input_in(input, &r, lane);
+    const place p = place_of_lane(batch, lane);
+    state_in(state, &p);
+    for (int32_t i = 0; i < wheels_of(batch, lane); i++)
+        state->wheel_angle_set_rad[i] = *number_of(batch, ROW_WHEEL_ANGLE_SET(i), lane);
 }
 
 laconic_real *laconic_batch_row_of(const laconic_batch *batch, laconic_batch_row row, int32_t wheel) {
@@ -127,125 +134,111 @@ laconic_real *laconic_batch_row_of(const laconic_batch *batch, laconic_batch_row
                                  ROW_WORLD_FORCE_POINT + 1,
                                  ROW_X,
                                  ROW_Y};
-    const rows r = {batch->rows, batch->row_bytes, 0};
     const int32_t outputs = ROW_OUTPUTS(batch->shape.wheel_count);
     if (row > LACONIC_BATCH_NU_3) return NULL;
-    if (row >= LACONIC_BATCH_HEADING) return number_of(&r, outputs + (int32_t)(row - LACONIC_BATCH_HEADING), 0);
-    if (row > LACONIC_BATCH_AXLE_TORQUE) return number_of(&r, of[row], 0);
+    if (row >= LACONIC_BATCH_HEADING) return number_of(batch, outputs + (int32_t)(row - LACONIC_BATCH_HEADING), 0);
+    if (row > LACONIC_BATCH_AXLE_TORQUE) return number_of(batch, of[row], 0);
     if (wheel < 0 || wheel >= batch->shape.wheel_count) return NULL;
-    return number_of(&r, row == LACONIC_BATCH_VOLTAGE ? ROW_VOLTAGE(wheel) : ROW_AXLE_TORQUE(wheel), 0);
-}
-
-/* ---------------------------------------------------------------- blocks whose lanes lie apart -- */
-
-static void copy_lane(const rows *to, int32_t to_lane, const rows *from, int32_t from_lane, int32_t end) {
-    for (int32_t row = 0; row < end; row++)
-        if (row < ROW_FRACTION || row == ROW_HEADING_REST || row >= ROW_BODY_FORCE)
-            *number_of(to, row, to_lane) = *number_of(from, row, from_lane);
-    *fraction_of(to, to_lane) = *fraction_of(from, from_lane);
-    *turns_of(to, to_lane) = *turns_of(from, from_lane);
+    return number_of(batch, row == LACONIC_BATCH_VOLTAGE ? ROW_VOLTAGE(wheel) : ROW_AXLE_TORQUE(wheel), 0);
 }
 
 /* ------------------------------------------------------------------------------------ run -- */
 
-/* A block while it steps. */
 typedef struct walk {
     laconic_batch *batch;
-    laconic_batch_block *block;
-    rows at;          /* its numbers          */
-    int32_t first;    /* lane of them         */
-    uint32_t stopped; /* a bit for each lane  */
-    int32_t refused;  /* how many             */
+    int32_t refused; /* how many lanes */
 } walk;
 
-/* Steps of one lane by itself; it stops where one is refused. `after`: the steps of this run that come after them. */
-static void step_alone(walk *w, int32_t k, uint64_t steps, uint64_t after) {
-    const int32_t lane = w->batch->order[w->block->first + k];
+/* Steps of one lane by itself; it stops where one is refused, which is returned. `after`: the steps of this run that
+ * come after them. */
+static bool refuses_alone(walk *w, const laconic_batch_block *block, int32_t k, uint64_t steps, uint64_t after) {
+    const int32_t lane = block->lanes[k];
     const laconic_batch_kind *kind = &w->batch->kinds[w->batch->kind_of[lane]];
+    const place p = place_of(block, w->batch, k);
     laconic_state state;
     laconic_input input;
     laconic_status status;
-    state_in(&state, &w->at, w->first + k);
-    input_in(&input, &w->at, w->first + k);
+    state_in(&state, &p);
+    laconic_batch_input(w->batch, lane, &input);
     const uint64_t taken = laconic_run(&kind->model, &kind->integrator, &state, &input, steps, &status);
-    put_state(&w->at, w->first + k, &state);
-    if (status == LACONIC_OK) return;
+    put_state(&p, &state);
+    if (status == LACONIC_OK) return false;
     w->batch->status[lane] = (int32_t)status;
     w->batch->missed[lane] += steps - taken + after;
-    w->stopped |= 1U << k;
     w->refused++;
+    return true;
 }
 
-static void step_together(walk *w, const lanes_block *lanes, uint64_t steps) {
-    const uint32_t all = (uint32_t)((UINT64_C(1) << w->block->count) - 1);
-    uint64_t taken = 0;
-    while (taken < steps && (w->stopped & all) != all) {
-        uint32_t apart;
-        taken += w->batch->width->run[w->block->method](lanes, steps - taken, w->stopped, &apart);
-        for (int32_t k = 0; k < w->block->count && apart >> k != 0; k++)
-            if (apart >> k & 1U) step_alone(w, k, 1, steps - taken);
+static uint32_t step_alone(void *context, const laconic_batch_block *block, uint32_t which, uint64_t after) {
+    uint32_t refused = 0;
+    for (int32_t k = 0; k < block->count; k++)
+        if (which >> k & 1U && refuses_alone((walk *)context, block, k, 1, after)) refused |= 1U << k;
+    return refused;
+}
+
+/* Lanes of a batch without registers: a block for each. */
+static void run_one_by_one(walk *w, laconic_batch_block *blocks, int32_t count, uint64_t steps) {
+    for (int32_t i = 0; i < count; i++) {
+        const int32_t lane = blocks[i].lanes[0];
+        const place p = place_of(&blocks[i], w->batch, 0);
+        blocks[i].stopped = refuses_alone(w, &blocks[i], 0, steps, 0);
+        *number_of(w->batch, ROW_X, lane) = *kept(&p, STATE_X);
+        *number_of(w->batch, ROW_Y, lane) = *kept(&p, STATE_Y);
     }
 }
 
-static void step_block(walk *w, uint64_t steps) {
-    const int32_t *lane = &w->batch->order[w->block->first];
-    for (int32_t k = 0; w->block->has_refused && k < w->block->count; k++) w->batch->status[lane[k]] = LACONIC_OK;
+/* How many blocks, from the first on, step by one method. */
+static int32_t of_one_method(const laconic_batch_block *blocks, int32_t count) {
+    int32_t same = 1;
+    while (same < count && blocks[same].method == blocks[0].method) same++;
+    return same;
+}
+
+static void run_blocks(walk *w, laconic_batch_block *blocks, int32_t count, uint64_t steps) {
+    const lanes_alone alone = {step_alone, w};
     if (w->batch->width == NULL) {
-        step_alone(w, 0, steps, 0);
-    } else {
-        lanes_block lanes = w->block->lanes;
-        lanes.rows = w->at.first;
-        lanes.row_bytes = w->at.row_bytes;
-        lanes.first = w->first;
-        w->stopped = ~(uint32_t)((UINT64_C(1) << w->block->count) - 1); /* lanes that the block lacks */
-        step_together(w, &lanes, steps);
+        run_one_by_one(w, blocks, count, steps);
+        return;
     }
-    w->block->has_refused = w->refused > 0;
+    for (int32_t first = 0, same = 0; first < count; first += same) {
+        same = of_one_method(&blocks[first], count - first);
+        w->batch->width->run[blocks[first].method](&blocks[first], same, steps, &alone);
+    }
 }
 
-/* The numbers of lanes that lie apart are copied side by side, and back. */
-static void step_gathered(walk *w, uint64_t steps) {
-    enum { ROWS = ROW_OUTPUTS(LACONIC_MAX_WHEELS), LARGEST_WIDTH = 64 };
-    uint64_t memory[ROWS * LARGEST_WIDTH / sizeof(uint64_t)];
-    const rows all = w->at;
-    const rows copy = {(unsigned char *)memory, LARGEST_WIDTH, all.wheel_count};
-    const int32_t *lane = &w->batch->order[w->block->first], lanes = lanes_of_width(w->batch->width);
-    for (int32_t k = 0; k < lanes; k++)
-        copy_lane(&copy, k, &all, lane[k < w->block->count ? k : 0], ROW_OUTPUTS(all.wheel_count));
-    w->at = copy;
-    w->first = 0;
-    step_block(w, steps);
-    for (int32_t k = 0; k < w->block->count; k++) copy_lane(&all, lane[k], &copy, k, ROW_BODY_FORCE);
+/* A block forgets what was refused in its last run. */
+static void begin(laconic_batch *batch, laconic_batch_block *block) {
+    block->stopped = 0;
+    if (!block->has_refused) return;
+    for (int32_t k = 0; k < block->count; k++) batch->status[block->lanes[k]] = LACONIC_OK;
+    block->has_refused = false;
 }
 
 int32_t laconic_batch_run(laconic_batch *batch, int32_t first_block, int32_t blocks, uint64_t steps) {
-    int32_t refused = 0;
-    for (int32_t i = first_block; i < first_block + blocks; i++) {
-        laconic_batch_block *block = &batch->blocks[i];
-        const rows all = {batch->rows, batch->row_bytes, block->wheel_count};
-        walk w = {batch, block, all, batch->order[block->first], 0, 0};
-        if (block->in_a_row)
-            step_block(&w, steps);
-        else
-            step_gathered(&w, steps);
-        refused += w.refused;
-    }
-    return refused;
+    walk w = {batch, 0};
+    laconic_batch_block *const first = &batch->blocks[first_block];
+    for (int32_t i = 0; i < blocks; i++) begin(batch, &first[i]);
+    run_blocks(&w, first, blocks, steps);
+    for (int32_t i = 0; i < blocks; i++) first[i].has_refused = first[i].stopped != 0;
+    return w.refused;
 }
 
 /* -------------------------------------------------------------------------------- outputs -- */
 
-void laconic_batch_observe(laconic_batch *batch, int32_t first_block, int32_t blocks) {
+static void observe(laconic_batch *batch, int32_t lane, const place *p) {
     const int32_t outputs = ROW_OUTPUTS(batch->shape.wheel_count);
+    laconic_state state;
+    real nu[3];
+    state_in(&state, p);
+    laconic_nu(&batch->kinds[batch->kind_of[lane]].model, &state, nu);
+    *number_of(batch, outputs, lane) = heading_unwrapped(&state.heading);
+    for (int32_t c = 0; c < 3; c++) *number_of(batch, outputs + 1 + c, lane) = nu[c];
+}
+
+void laconic_batch_observe(laconic_batch *batch, int32_t first_block, int32_t blocks) {
     for (int32_t i = first_block; i < first_block + blocks; i++)
         for (int32_t k = 0; k < batch->blocks[i].count; k++) {
-            const int32_t lane = batch->order[batch->blocks[i].first + k];
-            const rows r = rows_of(batch, lane);
-            laconic_state state;
-            real nu[3];
-            state_in(&state, &r, lane);
-            laconic_nu(&batch->kinds[batch->kind_of[lane]].model, &state, nu);
-            *number_of(&r, outputs, lane) = heading_unwrapped(&state.heading);
-            for (int32_t c = 0; c < 3; c++) *number_of(&r, outputs + 1 + c, lane) = nu[c];
+            const place p = place_of(&batch->blocks[i], batch, k);
+            observe(batch, batch->blocks[i].lanes[k], &p);
         }
 }

@@ -49,7 +49,7 @@ static const laconic_number *spread(real *member, size_t bytes, int32_t lane, co
 #define SPREAD_TO_MODEL(member) from = spread((real *)&model->member, sizeof model->member, lane, from);
 #define SPREAD_TO_INTEGRATOR(member) from = spread((real *)&integrator->member, sizeof integrator->member, lane, from);
 
-static void place(const lanes_block *block, int32_t lane, lanes_kind kind, const laconic_number *from) {
+static void place(const laconic_batch_block *block, int32_t lane, lanes_kind kind, const laconic_number *from) {
     laconic_model *model = (laconic_model *)block->model;
     laconic_integrator *integrator = (laconic_integrator *)block->integrator;
     model->wheel_count = kind.wheel_count;
@@ -59,77 +59,59 @@ static void place(const lanes_block *block, int32_t lane, lanes_kind kind, const
     LANES_INTEGRATOR_MEMBERS(SPREAD_TO_INTEGRATOR)
 }
 
-/* ----------------------------------------------------------------------------- rows -- */
+/* ---------------------------------------------------------------------------- state -- */
 
-static inline void *row(const lanes_block *block, int32_t number) {
-    return block->rows + (size_t)number * block->row_bytes + (size_t)block->first * sizeof(laconic_number);
+static inline void *state_at(const laconic_batch_block *block, int32_t number) {
+    return __builtin_assume_aligned(block->state + (size_t)number * LANES_BYTES, LANES_BYTES);
 }
 
-static inline void *turns_row(const lanes_block *block) {
-    return block->rows + ROW_TURNS * block->row_bytes + (size_t)block->first * sizeof(int64_t);
-}
-
-static inline real read(const lanes_block *block, int32_t number) {
+static inline real kept(const laconic_batch_block *block, int32_t number) {
     real out;
-    __builtin_memcpy(&out, row(block, number), sizeof out);
+    __builtin_memcpy(&out, state_at(block, number), sizeof out);
     return out;
 }
 
-static inline vector read_vector(const lanes_block *block, int32_t number) {
-    return vector_of(read(block, number), read(block, number + 1), read(block, number + 2));
+static inline laconic_sum kept_sum(const laconic_batch_block *block, int32_t value, int32_t rest) {
+    const laconic_sum sum = {kept(block, value), kept(block, rest)};
+    return sum;
 }
 
-static inline void read_sums(laconic_sum sums[], const lanes_block *block, int32_t values, int32_t rests, int32_t step,
-                             int count) {
-    for (int k = 0; k < count; k++) {
-        sums[k].value = read(block, values + step * k);
-        sums[k].rest = read(block, rests + step * k);
-    }
+static inline void read_state(laconic_state *s, const laconic_batch_block *block) {
+    s->zeta[0] = kept_sum(block, STATE_ZETA, STATE_ZETA_REST);
+    s->zeta[1] = kept_sum(block, STATE_ZETA + 1, STATE_ZETA_REST + 1);
+    s->zeta[2] = kept_sum(block, STATE_ZETA + 2, STATE_ZETA_REST + 2);
+    s->travel[0] = kept_sum(block, STATE_TRAVEL, STATE_TRAVEL_REST);
+    s->travel[1] = kept_sum(block, STATE_TRAVEL + 1, STATE_TRAVEL_REST + 1);
+    s->travel[2] = kept_sum(block, STATE_TRAVEL + 2, STATE_TRAVEL_REST + 2);
+    s->x_m = kept_sum(block, STATE_X, STATE_X_REST);
+    s->y_m = kept_sum(block, STATE_Y, STATE_Y_REST);
+    s->heading.fraction = (laconic_binary_angle)kept(block, STATE_FRACTION);
+    s->heading.rest = kept(block, STATE_HEADING_REST);
+    __builtin_memcpy(&s->heading.turns, state_at(block, STATE_TURNS), sizeof s->heading.turns);
 }
 
-static inline void read_state(laconic_state *s, const lanes_block *block) {
-    read_sums(s->zeta, block, ROW_ZETA, ROW_ZETA_REST, 1, 3);
-    read_sums(s->travel, block, ROW_TRAVEL, ROW_TRAVEL_REST, 1, 3);
-    read_sums(&s->x_m, block, ROW_X, ROW_X_REST, 2, 1);
-    read_sums(&s->y_m, block, ROW_Y, ROW_Y_REST, 2, 1);
-    s->heading.fraction = (laconic_binary_angle)read(block, ROW_FRACTION);
-    s->heading.rest = read(block, ROW_HEADING_REST);
-    __builtin_memcpy(&s->heading.turns, turns_row(block), sizeof s->heading.turns);
+static inline void keep(const laconic_batch_block *block, int32_t number, real value) {
+    __builtin_memcpy(state_at(block, number), &value, sizeof value);
 }
 
-static inline void write(const lanes_block *block, int32_t number, real value) {
-    __builtin_memcpy(row(block, number), &value, sizeof value);
+static inline void keep_sum(const laconic_batch_block *block, int32_t value, int32_t rest, laconic_sum sum) {
+    keep(block, value, sum.value);
+    keep(block, rest, sum.rest);
 }
 
-static inline void write_sum(const lanes_block *block, int32_t value, int32_t rest, laconic_sum sum) {
-    write(block, value, sum.value);
-    write(block, rest, sum.rest);
+static inline void write_state(const laconic_batch_block *block, const laconic_state *s) {
+    keep_sum(block, STATE_ZETA, STATE_ZETA_REST, s->zeta[0]);
+    keep_sum(block, STATE_ZETA + 1, STATE_ZETA_REST + 1, s->zeta[1]);
+    keep_sum(block, STATE_ZETA + 2, STATE_ZETA_REST + 2, s->zeta[2]);
+    keep_sum(block, STATE_TRAVEL, STATE_TRAVEL_REST, s->travel[0]);
+    keep_sum(block, STATE_TRAVEL + 1, STATE_TRAVEL_REST + 1, s->travel[1]);
+    keep_sum(block, STATE_TRAVEL + 2, STATE_TRAVEL_REST + 2, s->travel[2]);
+    keep_sum(block, STATE_X, STATE_X_REST, s->x_m);
+    keep_sum(block, STATE_Y, STATE_Y_REST, s->y_m);
+    keep(block, STATE_FRACTION, (real)s->heading.fraction);
+    keep(block, STATE_HEADING_REST, s->heading.rest);
+    __builtin_memcpy(state_at(block, STATE_TURNS), &s->heading.turns, sizeof s->heading.turns);
 }
-
-static inline void write_state(const lanes_block *block, const laconic_state *s) {
-    for (int k = 0; k < 3; k++) write_sum(block, ROW_ZETA + k, ROW_ZETA_REST + k, s->zeta[k]);
-    for (int k = 0; k < 3; k++) write_sum(block, ROW_TRAVEL + k, ROW_TRAVEL_REST + k, s->travel[k]);
-    write_sum(block, ROW_X, ROW_X_REST, s->x_m);
-    write_sum(block, ROW_Y, ROW_Y_REST, s->y_m);
-    write(block, ROW_FRACTION, (real)s->heading.fraction);
-    write(block, ROW_HEADING_REST, s->heading.rest);
-    __builtin_memcpy(turns_row(block), &s->heading.turns, sizeof s->heading.turns);
-}
-
-static inline void read_input(laconic_input *in, const lanes_block *block, int32_t wheel_count) {
-    for (int32_t i = 0; i < wheel_count; i++) {
-        in->voltage_V[i] = read(block, ROW_VOLTAGE(i));
-        in->axle_torque_Nm[i] = read(block, ROW_AXLE_TORQUE(i));
-    }
-    for (int k = 0; k < 2; k++) {
-        in->body_force_N[k] = read(block, ROW_BODY_FORCE + k);
-        in->world_force_N[k] = read(block, ROW_WORLD_FORCE + k);
-        in->world_force_point_m[k] = read(block, ROW_WORLD_FORCE_POINT + k);
-    }
-    in->body_moment_Nm = read(block, ROW_BODY_MOMENT);
-}
-
-/* ---------------------------------------------------------------------------- steps -- */
 
 static inline void put_sum_where(laconic_sum *sum, verdict which, const laconic_sum *now) {
     sum->value = lanes_chosen(which, now->value, sum->value);
@@ -149,81 +131,73 @@ RARE void put_where(laconic_state *state, verdict which, const laconic_state *no
     heading->turns = (turns & now->heading.turns) | (~turns & heading->turns);
 }
 
+/* ----------------------------------------------------------------------------- rows -- */
+
+static inline laconic_number *row(const laconic_batch_block *block, int32_t number) {
+    return (laconic_number *)(void *)(block->rows + (size_t)number * block->row_bytes);
+}
+
+/* One number of a row for each lane. */
+static inline real gathered(const laconic_number *of, const int32_t *lane) {
+#if LACONIC_LANES == 2
+#define OF(i) of[lane[i]], of[lane[i + 1]]
+    return (real){OF(0)};
+#elif LACONIC_LANES == 4
+#define OF(i) of[lane[i]], of[lane[i + 1]], of[lane[i + 2]], of[lane[i + 3]]
+    return (real){OF(0)};
+#else
+#define OF(i) of[lane[i]], of[lane[i + 1]], of[lane[i + 2]], of[lane[i + 3]]
+#if LACONIC_LANES == 8
+    return (real){OF(0), OF(4)};
+#else
+    return (real){OF(0), OF(4), OF(8), OF(12)};
+#endif
+#endif
+}
+#undef OF
+
+INLINE real read(const laconic_batch_block *block, int32_t number, bool in_a_row) {
+    real out;
+    if (!in_a_row) return gathered(row(block, number), block->lanes);
+    __builtin_memcpy(&out, row(block, number) + block->lanes[0], sizeof out);
+    return out;
+}
+
+INLINE void read_input(laconic_input *in, const laconic_batch_block *block, int32_t wheel_count, bool in_a_row) {
+    for (int32_t i = 0; i < wheel_count; i++) {
+        in->voltage_V[i] = read(block, ROW_VOLTAGE(i), in_a_row);
+        in->axle_torque_Nm[i] = read(block, ROW_AXLE_TORQUE(i), in_a_row);
+    }
+    in->body_force_N[0] = read(block, ROW_BODY_FORCE, in_a_row);
+    in->body_force_N[1] = read(block, ROW_BODY_FORCE + 1, in_a_row);
+    in->body_moment_Nm = read(block, ROW_BODY_MOMENT, in_a_row);
+    in->world_force_N[0] = read(block, ROW_WORLD_FORCE, in_a_row);
+    in->world_force_N[1] = read(block, ROW_WORLD_FORCE + 1, in_a_row);
+    in->world_force_point_m[0] = read(block, ROW_WORLD_FORCE_POINT, in_a_row);
+    in->world_force_point_m[1] = read(block, ROW_WORLD_FORCE_POINT + 1, in_a_row);
+}
+
+static inline void show(const laconic_batch_block *block, int32_t number, int32_t of_state) {
+    const real value = kept(block, of_state);
+    laconic_number *const to = row(block, number);
+    if (block->in_a_row)
+        __builtin_memcpy(to + block->lanes[0], &value, sizeof value);
+    else
+        for (int32_t k = 0; k < block->count; k++) to[block->lanes[k]] = value[k];
+}
+
+/* ---------------------------------------------------------------------------- steps -- */
+
 typedef laconic_status (*lanes_stepper)(const laconic_model *, const laconic_integrator *, laconic_state *,
                                         const laconic_forcing_samples *);
 
-/* What stays over a run. */
+/* What stays over a run of a block. */
 typedef struct lanes_run {
-    const lanes_block *block;
-    const laconic_model *model;
-    const laconic_integrator *integrator;
-    lanes_stepper steady, rotating; /* of lanes whose b is constant, and of those whose b rotates with the heading */
+    laconic_batch_block *block;
     laconic_forcing forcing;
-    verdict rotates, stopped, refused; /* refused: a step of these would be                     */
-    bool some_rotate;
+    verdict rotates, refused; /* refused: a step of these would be                                     */
+    bool some_rotate;         /* their b rotates with the heading: a stepper of its own is for them    */
 } lanes_run;
-
-RARE void step_rotating(laconic_state *state, lanes_run *run) {
-    laconic_forcing_samples samples = {&run->forcing, &run->forcing, &run->forcing, false};
-    laconic_state rotated = *state;
-    run->forcing.rotates = true;
-    run->rotating(run->model, run->integrator, &rotated, &samples);
-    if (!ALL(run->rotates)) {
-        samples.is_constant = true;
-        run->forcing.rotates = false;
-        run->steady(run->model, run->integrator, state, &samples);
-    }
-    put_where(state, run->rotates, &rotated);
-}
-
-/* Steps all lanes; returns those that must take the step alone, whose numbers are then of no use. */
-INLINE verdict step_lanes(laconic_state *state, lanes_run *run, lanes_stepper steady) {
-    const laconic_forcing_samples samples = {&run->forcing, &run->forcing, &run->forcing, true};
-    if (run->some_rotate)
-        step_rotating(state, run);
-    else
-        steady(run->model, run->integrator, state, &samples);
-    return (run->refused | NOT(state->x_m.value == state->x_m.value)) & ~run->stopped;
-}
-
-static uint32_t bits_of(verdict which) {
-    uint32_t bits = 0;
-    for (int lane = 0; lane < LACONIC_LANES; lane++) bits |= (which[lane] ? 1U : 0U) << lane;
-    return bits;
-}
-
-/* Some lanes could not take the last of `taken` steps: from the rows, which have the state before the run, those are
- * taken again that all lanes took, and the last by the others. */
-RARE uint32_t take_again(lanes_run *run, uint64_t taken) {
-    laconic_state before, state;
-    read_state(&before, run->block);
-    state = before;
-    for (uint64_t i = 1; i < taken; i++) step_lanes(&state, run, run->steady);
-    laconic_state last = state;
-    const verdict apart = step_lanes(&last, run, run->steady);
-    put_where(&state, ~apart, &last);
-    put_where(&state, run->stopped, &before);
-    write_state(run->block, &state);
-    return bits_of(apart);
-}
-
-INLINE uint64_t take_steps(lanes_run *run, lanes_stepper steady, uint64_t steps, uint32_t *apart) {
-    laconic_state state;
-    uint64_t taken = 0;
-    verdict out = {0};
-    read_state(&state, run->block);
-    while (taken < steps) {
-        out = step_lanes(&state, run, steady);
-        taken++;
-        if (ANY(out)) break;
-    }
-    *apart = 0;
-    if (ANY(out | run->stopped))
-        *apart = take_again(run, taken);
-    else
-        write_state(run->block, &state);
-    return taken;
-}
 
 /* A step of a lane adds less than a turn; one near the end of the count goes alone, and laconic_step() counts. */
 static inline verdict far_from_last_turn(laconic_turns turns) {
@@ -232,34 +206,107 @@ static inline verdict far_from_last_turn(laconic_turns turns) {
     return __builtin_convertvector((count)turns + ((uint64_t)1 << 61) < last, verdict);
 }
 
-INLINE void begin_run(lanes_run *run, const lanes_block *block, uint32_t stopped) {
+INLINE void begin_run(lanes_run *run, laconic_batch_block *block) {
+    const laconic_model *model = (const laconic_model *)block->model;
+    const verdict none_of_them = {0};
     laconic_input input;
     laconic_turns turns;
-    const verdict none_of_them = {0};
     run->block = block;
-    run->model = (const laconic_model *)block->model;
-    run->integrator = (const laconic_integrator *)block->integrator;
-    read_input(&input, block, run->model->wheel_count);
-    forcing_of(&run->forcing, run->model, &input);
+    if (block->in_a_row)
+        read_input(&input, block, model->wheel_count, true);
+    else
+        read_input(&input, block, model->wheel_count, false);
+    forcing_of(&run->forcing, model, &input);
     run->some_rotate = run->forcing.rotates;
     run->rotates = acts(input.world_force_N[0], input.world_force_N[1], R(0));
-    if (sloped(run->model)) run->rotates = ~none_of_them;
-    __builtin_memcpy(&turns, turns_row(block), sizeof turns);
+    if (sloped(model)) run->rotates = ~none_of_them;
+    __builtin_memcpy(&turns, state_at(block, STATE_TURNS), sizeof turns);
     run->refused = NOT(zero_if_finite(world_force_point(&input)) == R(0)) | NOT(far_from_last_turn(turns));
-    run->stopped = none_of_them;
-    for (int lane = 0; stopped >> lane != 0 && lane < LACONIC_LANES; lane++)
-        run->stopped[lane] = stopped >> lane & 1U ? -1 : 0;
 }
 
-/* Inlined whole, so that numbers need not pass through memory from step to step. */
+static uint32_t bits_of(verdict which) {
+    uint32_t bits = 0;
+    for (int lane = 0; lane < LACONIC_LANES; lane++) bits |= (which[lane] ? 1U : 0U) << lane;
+    return bits;
+}
+
+static verdict lanes_of_bits(uint32_t bits) {
+    verdict which = {0};
+    for (int lane = 0; lane < LACONIC_LANES; lane++) which[lane] = bits >> lane & 1U ? -1 : 0;
+    return which;
+}
+
+/* The end of a step that some lanes could not take, or that some have stopped before. */
+RARE void end_apart(laconic_batch_block *block, const laconic_state *now, verdict out, const lanes_alone *alone,
+                    uint64_t after) {
+    const uint32_t apart = bits_of(out) & ~block->stopped & (uint32_t)((UINT64_C(1) << block->count) - 1);
+    laconic_state state;
+    read_state(&state, block);
+    put_where(&state, ~(out | lanes_of_bits(block->stopped)), now);
+    write_state(block, &state);
+    if (apart != 0) block->stopped |= alone->step(alone->context, block, apart, after);
+}
+
+/* Lanes that could not take the step have NaN as their place. A copy goes to the rare case: what has an address is kept
+ * in memory. */
+INLINE void end_step(const lanes_run *run, const laconic_state *state, const lanes_alone *alone, uint64_t after) {
+    const verdict out = run->refused | NOT(state->x_m.value == state->x_m.value);
+    if (ANY(out) || run->block->stopped != 0) {
+        const laconic_state now = *state;
+        end_apart(run->block, &now, out, alone, after);
+    } else {
+        write_state(run->block, state);
+    }
+}
+
+RARE void step_rotating(lanes_run *run, lanes_stepper steady, lanes_stepper rotating, const lanes_alone *alone,
+                        uint64_t after) {
+    const laconic_model *model = (const laconic_model *)run->block->model;
+    const laconic_integrator *integrator = (const laconic_integrator *)run->block->integrator;
+    laconic_forcing_samples samples = {&run->forcing, &run->forcing, &run->forcing, false};
+    laconic_state state, rotated;
+    read_state(&state, run->block);
+    rotated = state;
+    run->forcing.rotates = true;
+    rotating(model, integrator, &rotated, &samples);
+    if (!ALL(run->rotates)) {
+        samples.is_constant = true;
+        run->forcing.rotates = false;
+        steady(model, integrator, &state, &samples);
+    }
+    put_where(&state, run->rotates, &rotated);
+    end_step(run, &state, alone, after);
+}
+
+INLINE void step_steady(lanes_run *run, lanes_stepper steady, const lanes_alone *alone, uint64_t after) {
+    const laconic_batch_block *block = run->block;
+    const laconic_forcing_samples samples = {&run->forcing, &run->forcing, &run->forcing, true};
+    laconic_state state;
+    read_state(&state, block);
+    steady((const laconic_model *)block->model, (const laconic_integrator *)block->integrator, &state, &samples);
+    end_step(run, &state, alone, after);
+}
+
+INLINE void run_block(laconic_batch_block *block, uint64_t steps, const lanes_alone *alone, lanes_stepper steady,
+                      lanes_stepper rotating, lanes_stepper steady_apart) {
+    lanes_run run;
+    begin_run(&run, block);
+    for (uint64_t after = steps; after-- > 0;) {
+        if (run.some_rotate)
+            step_rotating(&run, steady_apart, rotating, alone, after);
+        else
+            step_steady(&run, steady, alone, after);
+    }
+    show(block, ROW_X, STATE_X);
+    show(block, ROW_Y, STATE_Y);
+}
+
+/* Inlined whole but for what is rare, which calls the steppers. */
 #define RUN_OF(name, steady_step, rotating_step) \
-    __attribute__((flatten)) static uint64_t name(const lanes_block *block, uint64_t steps, uint32_t stopped, \
-                                                  uint32_t *apart) { \
-        lanes_run run; \
-        begin_run(&run, block, stopped); \
-        run.steady = steady_step; \
-        run.rotating = rotating_step; \
-        return take_steps(&run, steady_step, steps, apart); \
+    __attribute__((flatten)) static void name(laconic_batch_block *blocks, int32_t count, uint64_t steps, \
+                                              const lanes_alone *alone) { \
+        const lanes_stepper steady = steady_step, rotating = rotating_step; \
+        for (int32_t i = 0; i < count; i++) run_block(&blocks[i], steps, alone, steady_step, rotating, steady); \
     }
 
 RUN_OF(run_rk4, rk4_step, rk4_step)

@@ -6,24 +6,31 @@
 #include "laconic/real.h"
 #include "lanes_builds.h"
 
-/* Rows of numbers, one number for each lane of the batch. */
+/* Numbers of a block's state, each a register of one number for each lane. */
 enum {
-    ROW_ZETA = 0,
-    ROW_ZETA_REST = 3,
-    ROW_TRAVEL = 6,
-    ROW_TRAVEL_REST = 9,
-    ROW_X = 12,
-    ROW_X_REST,
+    STATE_ZETA = 0,
+    STATE_ZETA_REST = 3,
+    STATE_TRAVEL = 6,
+    STATE_TRAVEL_REST = 9,
+    STATE_X = 12,
+    STATE_X_REST,
+    STATE_Y,
+    STATE_Y_REST,
+    STATE_FRACTION,
+    STATE_HEADING_REST,
+    STATE_TURNS, /* two registers in single precision */
+    STATE_NUMBERS = 20
+};
+
+/* Rows of numbers, one number for each lane of the batch: what programs write, and what they read. */
+enum {
+    ROW_X = 0,
     ROW_Y,
-    ROW_Y_REST,
-    ROW_FRACTION,
-    ROW_HEADING_REST,
-    ROW_TURNS, /* two rows in single precision */
-    ROW_BODY_FORCE = 20,
-    ROW_BODY_MOMENT = 22,
-    ROW_WORLD_FORCE = 23,
-    ROW_WORLD_FORCE_POINT = 25,
-    ROW_WHEELS = 27 /* for each wheel: voltage, axle torque, and the angle that was set */
+    ROW_BODY_FORCE,
+    ROW_BODY_MOMENT = 4,
+    ROW_WORLD_FORCE = 5,
+    ROW_WORLD_FORCE_POINT = 7,
+    ROW_WHEELS = 9 /* for each wheel: voltage, axle torque, and the angle that was set */
 };
 
 #define ROW_VOLTAGE(wheel) (ROW_WHEELS + 3 * (wheel))
@@ -62,22 +69,37 @@ typedef struct lanes_kind {
     bool sloped, stiff;
 } lanes_kind;
 
-typedef struct lanes_block {
-    void *model, *integrator; /* of a width; set by its place()           */
-    unsigned char *rows;      /* the first row            */
-    size_t row_bytes;         /* from row to row          */
-    int32_t first;            /* lane of the rows         */
-} lanes_block;
+/* Some lanes that step together: in each register of `state` one number of each. */
+typedef struct laconic_batch_block {
+    void *model, *integrator; /* of a width; set by its place()                            */
+    unsigned char *state;     /* STATE_NUMBERS registers                                   */
+    unsigned char *rows;      /* of the batch                                              */
+    size_t row_bytes;         /* from row to row                                           */
+    const int32_t *lanes;     /* of the batch: its own, and where it lacks some, the first */
+    lanes_method method;
+    int32_t way; /* of its kinds: lanes of one way can share a block                      */
+    int32_t count, wheel_count;
+    bool in_a_row;    /* its lanes follow each other, and rows have numbers for those that it lacks */
+    bool has_refused; /* some lane's status is not OK                                               */
+    uint32_t stopped; /* in a run, a bit for each lane that was refused                             */
+} laconic_batch_block;
+
+/* Who takes the step of those lanes of a block that cannot go with the others, a bit for each; `after`: the steps of
+ * the run that come after it. Returns those that were refused. */
+typedef struct lanes_alone {
+    uint32_t (*step)(void *context, const laconic_batch_block *block, uint32_t which, uint64_t after);
+    void *context;
+} lanes_alone;
 
 /* Lanes of one width, compiled for the processors that have it. */
 typedef struct lanes_width {
     int32_t lanes;
     size_t model_bytes, integrator_bytes;
     /* Sets one lane of a block's model and integrator, and what all of them share. */
-    void (*place)(const lanes_block *block, int32_t lane, lanes_kind kind, const laconic_number *constants);
-    /* Takes steps until all are taken or some lane cannot take its step as the others do. Returns the number of steps
-     * begun; the lanes of `apart`, a bit for each, are still before the last of them. Lanes of `stopped` stay. */
-    uint64_t (*run[LANES_METHOD_COUNT])(const lanes_block *block, uint64_t steps, uint32_t stopped, uint32_t *apart);
+    void (*place)(const laconic_batch_block *block, int32_t lane, lanes_kind kind, const laconic_number *constants);
+    /* Takes steps of blocks that follow each other and have this method. Lanes that stopped stay. */
+    void (*run[LANES_METHOD_COUNT])(laconic_batch_block *blocks, int32_t count, uint64_t steps,
+                                    const lanes_alone *alone);
 } lanes_width;
 
 extern const lanes_width laconic_lanes_of_16, laconic_lanes_of_32, laconic_lanes_of_64;

@@ -58,6 +58,7 @@ typedef struct laconic_batch {
     const laconic_batch_kind *kinds; /* the caller's, who keeps them while the batch is used */
     int32_t *kind_of;                /* of each lane, the batch's own copy                  */
     int32_t *order;                  /* lanes in the order of the blocks                    */
+    int32_t *slot_of;                /* of each lane, its place in that order               */
     struct laconic_batch_block *blocks;
     const struct lanes_width *width; /* NULL: one by one                                    */
 } laconic_batch;
@@ -75,8 +76,7 @@ bool laconic_batch_place(laconic_batch *batch, void *memory, const laconic_batch
 /* The constants of a lane anew from its kind, which the program has changed; the lane, and every other one of that
  * kind, is then to be loaded with a state of the new model. Returns false, and changes nothing, where the new kind is
  * stepped in another way than the old: by another method (`chosen` of its integrator), of other damping beside the step
- * (`stiff`), with another number of wheels, with a slope or without. Precondition: 0 <= lane < lane_count. O(1) where
- * kinds are stepped in one way, else O(lane_count). */
+ * (`stiff`), with another number of wheels, with a slope or without. Precondition: 0 <= lane < lane_count. O(1). */
 bool laconic_batch_renew(laconic_batch *batch, int32_t lane);
 
 /* A lane's state and input, to and from the structs of laconic.h, bit by bit; what is for wheels that the lane's
