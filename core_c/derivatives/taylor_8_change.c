@@ -1,17 +1,8 @@
 /* The Taylor series of order 8, linearised term by term (taylor_8.c has the recursions and the quadrature). */
 #include "step_change.h"
+#include "taylor_8.h"
 
-#define TERMS 9 /* s⁰ … s⁸ */
-#define KNOTS 4
-
-static const real part[TERMS] = {R(1),       R(1.0 / 2), R(1.0 / 3), R(1.0 / 4), R(1.0 / 5),
-                                 R(1.0 / 6), R(1.0 / 7), R(1.0 / 8), R(1.0 / 9)}; /* 1/(n + 1) */
-
-/* Gauss' quadrature on 0 … 1, exact to degree 7. */
-static const real knot[KNOTS] = {R(0.069431844202973712388), R(0.33000947820757186760), R(0.66999052179242813240),
-                                 R(0.93056815579702628761)};
-static const real share[KNOTS] = {R(0.17392742256872692869), R(0.32607257743127307131), R(0.32607257743127307131),
-                                  R(0.17392742256872692869)};
+#define TERMS (ORDER + 1) /* s⁰ … s⁸ */
 
 /* How the displacement depends on the terms ζn. */
 typedef struct pose_of_terms {
@@ -38,15 +29,15 @@ static void keep(taylor_trace *t, const step_point *at, int n, vector zeta) {
     t->zeta_cross_w[n] = cross(zeta, vec(m->gyro));
     t->side_by_side[n] = lanes_of(t->zeta_cross_w[n]);
     t->yaw_by_side[n] = lane_of(t->yaw[n]);
-    t->share_s[n] = lane_of(at->integrator->step_s * part[n]);
+    t->share_s[n] = lane_of(at->integrator->step_s * inverse[n]);
     t->turn[n] = at->integrator->step_s * dot(vec(m->yaw_rate_of_zeta), zeta);
 }
 
 static void heading_term(taylor_trace *t, int n) {
     real cosine = R(n == 0), sine = R(0);
     for (int j = 0; j < n; j++) {
-        cosine -= part[n - 1] * (t->turn[j] * t->sine[n - 1 - j]);
-        sine += part[n - 1] * (t->turn[j] * t->cosine[n - 1 - j]);
+        cosine -= inverse[n - 1] * (t->turn[j] * t->sine[n - 1 - j]);
+        sine += inverse[n - 1] * (t->turn[j] * t->cosine[n - 1 - j]);
     }
     t->cosine[n] = cosine;
     t->sine[n] = sine;
@@ -63,48 +54,48 @@ static void trace_terms(taylor_trace *t, const step_point *at) {
         }
         for (int j = 0; j <= n; j++) rate = added(rate, t->yaw[j], t->zeta_cross_w[n - j]);
         rate = minus(rate, damping(m, t->zeta[n]));
-        keep(t, at, n + 1, scaled(at->integrator->step_s * part[n], rate));
+        keep(t, at, n + 1, scaled(at->integrator->step_s * inverse[n], rate));
     }
 }
 
 /* ------------------------------------------------------------------------------------- the pose -- */
 
-#define KNOT_GROUPS (KNOTS / LANES)
+#define NODE_GROUPS (NODES / LANES)
 
-/* At the knots, side by side in lanes. */
-typedef struct knots {
-    lane at[KNOT_GROUPS];
-    lane cosine[KNOT_GROUPS], sine[KNOT_GROUPS];  /* of the yaw from the mid-step heading, with the knots' weights */
-    lane along[KNOT_GROUPS], across[KNOT_GROUPS]; /* displacement that a knot stands for, turned                   */
-} knots;
+/* At the nodes, side by side in lanes. */
+typedef struct nodes {
+    lane at[NODE_GROUPS];
+    lane cosine[NODE_GROUPS], sine[NODE_GROUPS];  /* of the yaw from the mid-step heading, with the nodes' weights */
+    lane along[NODE_GROUPS], across[NODE_GROUPS]; /* displacement that a node stands for, turned                   */
+} nodes;
 
-/* The direction of the yaw at each knot, with the knots' weights. */
-static void turn_knots(knots *at, real h, const lane yaw[KNOT_GROUPS]) {
-    for (int k = 0; k < KNOTS; k++) {
+/* The direction of the yaw at each node, with the nodes' weights. */
+static void turn_nodes(nodes *at, real h, const lane yaw[NODE_GROUPS]) {
+    for (int k = 0; k < NODES; k++) {
         const direction d = laconic_direction_of_angle(lane_number(yaw[k / LANES], k % LANES));
-        set_lane(&at->cosine[k / LANES], k % LANES, h * share[k] * d.cosine);
-        set_lane(&at->sine[k / LANES], k % LANES, h * share[k] * d.sine);
+        set_lane(&at->cosine[k / LANES], k % LANES, h * weight[k] * d.cosine);
+        set_lane(&at->sine[k / LANES], k % LANES, h * weight[k] * d.sine);
     }
 }
 
 /* Velocity and yaw: Horner's rule for four polynomials. */
-static void at_knots(knots *at, const taylor_trace *t, const laconic_model *m, real h, real yaw_change) {
-    lane yaw[KNOT_GROUPS];
-    lanes zeta[KNOT_GROUPS];
-    for (int k = 0; k < KNOTS; k++) set_lane(&at->at[k / LANES], k % LANES, knot[k]);
-    for (int g = 0; g < KNOT_GROUPS; g++) {
+static void at_every_node(nodes *at, const taylor_trace *t, const laconic_model *m, real h, real yaw_change) {
+    lane yaw[NODE_GROUPS];
+    lanes zeta[NODE_GROUPS];
+    for (int k = 0; k < NODES; k++) set_lane(&at->at[k / LANES], k % LANES, node[k]);
+    for (int g = 0; g < NODE_GROUPS; g++) {
         const lane s = at->at[g];
         zeta[g] = lanes_of(t->zeta[TERMS - 1]);
-        yaw[g] = lane_of(part[TERMS - 1] * t->turn[TERMS - 1]);
+        yaw[g] = lane_of(inverse[TERMS - 1] * t->turn[TERMS - 1]);
         for (int n = TERMS - 2; n >= 0; n--) {
             const vector term = t->zeta[n];
             zeta[g] = lanes_with(s * zeta[g].x + term.x, s * zeta[g].y + term.y, s * zeta[g].z + term.z);
-            yaw[g] = s * yaw[g] + part[n] * t->turn[n];
+            yaw[g] = s * yaw[g] + inverse[n] * t->turn[n];
         }
         yaw[g] = s * yaw[g] - R(0.5) * yaw_change;
     }
-    turn_knots(at, h, yaw);
-    for (int g = 0; g < KNOT_GROUPS; g++) {
+    turn_nodes(at, h, yaw);
+    for (int g = 0; g < NODE_GROUPS; g++) {
         const lane forth = lanes_dot(vec(m->velocity_of_zeta[0]), zeta[g]);
         const lane left = lanes_dot(vec(m->velocity_of_zeta[1]), zeta[g]);
         at->along[g] = at->cosine[g] * forth - at->sine[g] * left;
@@ -112,35 +103,35 @@ static void at_knots(knots *at, const taylor_trace *t, const laconic_model *m, r
     }
 }
 
-static real sum_of_knots(const lane a[KNOT_GROUPS]) {
+static real sum_of_nodes(const lane a[NODE_GROUPS]) {
     lane sum = a[0];
     real total;
-    for (int g = 1; g < KNOT_GROUPS; g++) sum = sum + a[g];
+    for (int g = 1; g < NODE_GROUPS; g++) sum = sum + a[g];
     total = lane_number(sum, 0);
     for (int k = 1; k < LANES; k++) total += lane_number(sum, k);
     return total;
 }
 
-/* Σ over the knots; then `a` moves on to the next power of the knots. */
-static inline real next_moment(lane a[KNOT_GROUPS], const knots *k) {
-    const real sum = sum_of_knots(a);
-    for (int g = 0; g < KNOT_GROUPS; g++) a[g] = a[g] * k->at[g];
+/* Σ over the nodes; then `a` moves on to the next power of the nodes. */
+static inline real next_moment(lane a[NODE_GROUPS], const nodes *k) {
+    const real sum = sum_of_nodes(a);
+    for (int g = 0; g < NODE_GROUPS; g++) a[g] = a[g] * k->at[g];
     return sum;
 }
 
-/* The displacement is Σ over the knots of the velocity there, turned by the yaw from the middle: the terms' weights are
- * moments of the knots. */
-static void weigh_terms(pose_of_terms *p, knots *k, pose_change moved, const laconic_model *m, real h) {
+/* The displacement is Σ over the nodes of the velocity there, turned by the yaw from the middle: the terms' weights are
+ * moments of the nodes. */
+static void weigh_terms(pose_of_terms *p, nodes *k, pose_change moved, const laconic_model *m, real h) {
     const vector forth = vec(m->velocity_of_zeta[0]), left = vec(m->velocity_of_zeta[1]);
     const vector yaw = vec(m->yaw_rate_of_zeta);
-    for (int g = 0; g < KNOT_GROUPS; g++) {
+    for (int g = 0; g < NODE_GROUPS; g++) {
         k->along[g] = k->along[g] * k->at[g];
         k->across[g] = k->across[g] * k->at[g];
     }
     for (int n = 0; n < TERMS; n++) {
         const real cosine = next_moment(k->cosine, k), sine = next_moment(k->sine, k);
-        const real along = h * part[n] * (R(0.5) * moved.across_m - next_moment(k->across, k));
-        const real across = h * part[n] * (next_moment(k->along, k) - R(0.5) * moved.along_m);
+        const real along = h * inverse[n] * (R(0.5) * moved.across_m - next_moment(k->across, k));
+        const real across = h * inverse[n] * (next_moment(k->along, k) - R(0.5) * moved.along_m);
         p->cosine[n] = cosine;
         p->sine[n] = sine;
         p->along_yaw[n] = along;
@@ -153,10 +144,10 @@ static void weigh_terms(pose_of_terms *p, knots *k, pose_change moved, const lac
 static pose_change trace_pose(taylor_trace *t, const step_point *at, vector path) {
     const real h = at->integrator->step_s;
     pose_change moved = {R(0), R(0), dot(vec(at->model->yaw_rate_of_zeta), path)};
-    knots k;
-    at_knots(&k, t, at->model, h, moved.yaw_change_rad);
-    moved.along_m = sum_of_knots(k.along);
-    moved.across_m = sum_of_knots(k.across);
+    nodes k;
+    at_every_node(&k, t, at->model, h, moved.yaw_change_rad);
+    moved.along_m = sum_of_nodes(k.along);
+    moved.across_m = sum_of_nodes(k.across);
     weigh_terms(&t->pose, &k, moved, at->model, h);
     return moved;
 }
@@ -181,7 +172,7 @@ static vector sum_to_end(const vector term[TERMS]) {
 
 static vector mean_of(const vector term[TERMS]) {
     vector sum = none;
-    for (int n = TERMS - 1; n >= 0; n--) sum = added(sum, part[n], term[n]);
+    for (int n = TERMS - 1; n >= 0; n--) sum = added(sum, inverse[n], term[n]);
     return sum;
 }
 
@@ -199,8 +190,8 @@ static lanes rotating_b_change(turn_change *c, const taylor_trace *t, const step
         cosine -= c->turn[j] * t->sine[n - 1 - j] + t->turn[j] * c->sine[n - 1 - j];
         sine += c->turn[j] * t->cosine[n - 1 - j] + t->turn[j] * c->cosine[n - 1 - j];
     }
-    c->cosine[n] = n > 0 ? part[n - 1] * cosine : cosine;
-    c->sine[n] = n > 0 ? part[n - 1] * sine : sine;
+    c->cosine[n] = n > 0 ? inverse[n - 1] * cosine : cosine;
+    c->sine[n] = n > 0 ? inverse[n - 1] * sine : sine;
     return lanes_plus(lanes_plus(lanes_scaled(t->cosine[n], in->cosine), lanes_scaled(t->sine[n], in->sine)),
                       lanes_plus(lanes_along(c->cosine[n], at->cosine), lanes_along(c->sine[n], at->sine)));
 }

@@ -4,24 +4,18 @@
  * θ follows term by term, and the pose by a quadrature of the same order. Explicit: for large steps of vehicles
  * whose damping is slow beside the step, where its error is far below that of any other method of its cost. */
 #include "step_internals.h"
+#include "taylor_8.h"
 
 #define LARGEST_DAMPING R(4.313)  /* h·r: |Σ (−a)ⁿ/n!| to n = 8 exceeds 1 from a = 4.3136 on   */
 #define LARGEST_ROTATION R(3.395) /* h·|w||g·ζ|: |Σ (ia)ⁿ/n!|, the rotation of free motion, from 3.3951 on */
 
 /* -------------------------------------------------------- the motion over one step as a series -- */
 
-#define ORDER 8
-
 /* Coefficients of sⁿ. */
 typedef struct motion_series {
     vector zeta[ORDER + 1];
     real yaw[ORDER + 1]; /* g·ζ */
 } motion_series;
-
-#define N(x) ((laconic_number)(x)) /* R(x) in tables */
-
-static const laconic_number inverse[ORDER + 1] = {N(1),       N(1.0 / 2), N(1.0 / 3), N(1.0 / 4), N(1.0 / 5),
-                                                  N(1.0 / 6), N(1.0 / 7), N(1.0 / 8), N(1.0 / 9)}; /* 1/(n + 1) */
 
 /* h/Λ: the yaw of a step is h/Λ times the mean of ν3 = g·ζ. */
 static inline real yaw_per_nu3(const laconic_model *m, real h) { return h / m->yaw_scale; }
@@ -149,13 +143,6 @@ RARE void varying_series(motion_series *c, const laconic_model *m, real h, vecto
 }
 
 /* ------------------------------------------------ the pose: a quadrature of the same order -- */
-
-#define NODES 4 /* of Gauss' quadrature, exact to degree 7 */
-
-static const laconic_number node[NODES] = {N(0.069431844202973712388), N(0.33000947820757186760),
-                                           N(0.66999052179242813240), N(0.93056815579702628761)};
-static const laconic_number weight[NODES] = {N(0.17392742256872692869), N(0.32607257743127307131),
-                                             N(0.32607257743127307131), N(0.17392742256872692869)};
 
 /* The polynomials: the components of ζ, and ∫ g·ζ ds, divided by s. */
 typedef real (*polynomial)(const motion_series *c, int n);
