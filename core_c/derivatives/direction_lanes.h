@@ -5,7 +5,8 @@
 
 #include "vector.h"
 
-#if defined(__GNUC__) && (defined(__SSE2__) || defined(__ARM_NEON) || defined(__wasm_simd128__))
+#if defined(__GNUC__) && !defined(LACONIC_ONE_DIRECTION) && \
+    (defined(__SSE2__) || defined(__ARM_NEON) || defined(__wasm_simd128__))
 #define LANES ((int)(16 / sizeof(real)))
 typedef real lane __attribute__((vector_size(16)));
 static inline real lane_number(lane a, int k) { return a[k]; }

@@ -1,10 +1,15 @@
 /* The displacement of a step, linearised: step_internals.h has the formula. */
 #include "step_change.h"
 
-/* j₁(α)/α, of which (½ j₁)' = ½ (sinc α − 2 j₁(α)/α); sinc' = −j₁. */
-static real j1_over_alpha(real alpha, real half_j1) {
-    const real z = alpha * alpha;
-    return z <= CHORD_SMALL ? poly_j1(z) : R(2) * half_j1 / alpha;
+/* j₁(α)/α = 1/3 − z/30 + …, z = α², to rounding: poly_j1 has fewer digits, since a step needs no more, and the
+ * difference that j₁ is cancels below α = 1. (½ j₁)' = ½ (sinc α − 2 j₁(α)/α), and sinc' = −j₁. */
+static real j1_over_alpha(real z, real half_j1, real alpha) {
+    const real few = R(1) / R(840) + z * (R(-1) / R(45360) + z * (R(1) / R(3991680)));
+    if (z <= CHORD_SMALL) return R(1) / R(3) + z * (R(-1) / R(30) + z * few);
+    if (z > R(1)) return R(2) * half_j1 / alpha;
+    const real more = R(1) / R(93405312000) + z * (R(-1) / R(22230464256000) + z * (R(1) / R(6758061133824000)));
+    const real rest = few + z * z * z * (R(-1) / R(518918400) + z * more);
+    return R(1) / R(3) + z * (R(-1) / R(30) + z * rest);
 }
 
 void laconic_pose_trace(pose_trace *t, const laconic_model *m, vector path, vector bend) {
@@ -13,7 +18,8 @@ void laconic_pose_trace(pose_trace *t, const laconic_model *m, vector path, vect
     const real yaw_change = dot(yaw, path), alpha = R(0.5) * yaw_change, twelfth = R(1) / R(12);
     const real bent_forth = dot(along, bend), bent_left = dot(across, bend);
     chord_factors(&t->sinc, &t->half_j1, alpha);
-    const real quarter = R(0.25) * (t->sinc - R(2) * j1_over_alpha(alpha, t->half_j1)); /* (½ j₁)' by the yaw */
+    const real j1 = j1_over_alpha(alpha * alpha, t->half_j1, alpha), quarter = R(0.25) * (t->sinc - R(2) * j1);
+    t->half_j1 = R(0.5) * alpha * j1;
     t->path = path;
     t->bend = bend;
     t->forth = dot(along, path);

@@ -1,5 +1,6 @@
-/* The adjoint of a step: gradients by what was before it, from the gradient by the state after it. Every number is the
- * product of that covector with a column of the tangent. */
+/* The adjoint of a step: gradients by what was before it, from the gradient by the state after it. Every number by
+ * state and input is the product of that covector with a column of the Jacobian: so it is the Jacobian's transpose to
+ * the rounding of that sum, also where terms of which the column consists cancel. */
 #include "step_chain.h"
 
 /* The product of a covector and a change of the state. */
@@ -10,68 +11,60 @@ static real paired(const laconic_state_change *a, const laconic_state_change *b,
     return sum;
 }
 
-/* Gradients by ζ and by the parts of b; those of the rotating part in world axes. */
-typedef struct core_gradient {
-    vector zeta, constant;
-    world_part world;
-} core_gradient;
-
-static vector paired_columns(const laconic_state_change column[3], const laconic_state_change *after, int32_t wheels) {
-    return vector_of(paired(&column[0], after, wheels), paired(&column[1], after, wheels),
-                     paired(&column[2], after, wheels));
+static vector paired_columns(three_columns column, const laconic_state_change *after, int32_t wheels) {
+    return vector_of(paired(column[0], after, wheels), paired(column[1], after, wheels),
+                     paired(column[2], after, wheels));
 }
 
-static core_gradient gradient_of(const core_columns *c, const taken_step *s, const laconic_state_change *after) {
-    const int32_t wheels = LACONIC_WHEELS(s->at.model);
-    const direction back = {s->at.heading.cosine, -s->at.heading.sine};
-    core_gradient g = {
-        paired_columns(by_zeta(c), after, wheels), paired_columns(by_constant(c), after, wheels), {none, none}};
-    if (s->at.rotates) {
-        const world_part seen = {paired_columns(by_cosine(c), after, wheels),
-                                 paired_columns(by_sine(c), after, wheels)};
-        g.world = turned(seen, back);
-    }
-    return g;
-}
-
-static void state_gradient(laconic_state_change *before, const core_gradient *g, const laconic_state_change *after,
-                           const laconic_state_change *by_heading, const laconic_model *m) {
-    const int32_t wheels = LACONIC_WHEELS(m);
+static void state_gradient(laconic_state_change *before, const core_columns *c, const laconic_state_change *by_heading,
+                           const laconic_state_change *after, int32_t wheels) {
     const real heading = paired(by_heading, after, wheels);
-    for (int i = 0; i < 3; i++) {
-        const real nu[3] = {R(i == 0), R(i == 1), R(i == 2)};
-        before->nu_rad_per_s[i] = dot(g->zeta, zeta_of_nu(m, nu));
-    }
+    store(before->nu_rad_per_s, paired_columns(by_zeta(c), after, wheels));
     before->heading_rad = heading;
     before->x_m = after->x_m;
     before->y_m = after->y_m;
     for (int32_t i = 0; i < wheels; i++) before->wheel_angle_rad[i] = after->wheel_angle_rad[i];
 }
 
-static real paired_world(const core_gradient *g, world_part b) {
-    return dot(g->world.cosine, b.cosine) + dot(g->world.sine, b.sine);
-}
-
-static void input_gradient(laconic_input *input, const core_gradient *g, const laconic_model *m,
-                           const laconic_input *held) {
-    for (int32_t i = 0; i < LACONIC_WHEELS(m); i++) {
-        const real wheel = dot(g->constant, vec(m->wheel_of_zeta[i]));
-        input->voltage_V[i] = m->voltage_scale[own(i)] * wheel;
-        input->axle_torque_Nm[i] = m->torque_scale * wheel;
+/* The Jacobian is not kept longer than this, so that the rest of the adjoint needs no stack beside it. */
+RARE void input_gradient(laconic_input *input, const taken_step *s, const core_columns *c, const laconic_input *held,
+                         const laconic_state_change *after) {
+    const int32_t wheels = LACONIC_WHEELS(s->at.model);
+    laconic_step_jacobian j;
+    laconic_torque_columns(&j, s, c);
+    laconic_world_columns(&j, s, c, held);
+    for (int32_t i = 0; i < wheels; i++) {
+        input->voltage_V[i] = paired(&j.by_voltage[i], after, wheels);
+        input->axle_torque_Nm[i] = paired(&j.by_axle_torque[i], after, wheels);
     }
     for (int k = 0; k < 2; k++) {
-        laconic_input by = ALL_ZERO;
-        input->body_force_N[k] = m->torque_scale * dot(g->constant, vec(m->velocity_of_zeta[k]));
-        by.world_force_N[k] = R(1);
-        input->world_force_N[k] = paired_world(g, laconic_world_b_by_input(m, &by, held));
-        by.world_force_N[k] = R(0);
-        by.world_force_point_m[k] = R(1);
-        input->world_force_point_m[k] = paired_world(g, laconic_world_b_by_input(m, &by, held));
+        input->body_force_N[k] = paired(by_constant(c)[k], after, wheels);
+        input->world_force_N[k] = paired(&j.by_world_force[k], after, wheels);
+        input->world_force_point_m[k] = paired(&j.by_world_force_point[k], after, wheels);
     }
-    input->body_moment_Nm = m->torque_scale * dot(g->constant, vec(m->yaw_rate_of_zeta));
+    input->body_moment_Nm = paired(by_constant(c)[2], after, wheels);
 }
 
 /* ----------------------------------------------------------------------- constants of the model -- */
+
+/* Gradients by ζ and by the parts of b; those of the rotating part in world axes. */
+typedef struct core_gradient {
+    vector zeta, constant;
+    world_part world;
+} core_gradient;
+
+static core_gradient gradient_of(const core_columns *c, const taken_step *s, const laconic_state_change *after) {
+    const int32_t wheels = LACONIC_WHEELS(s->at.model);
+    const direction back = {s->at.heading.cosine, -s->at.heading.sine};
+    const world_part seen = {paired_columns(by_cosine(c), after, wheels), paired_columns(by_sine(c), after, wheels)};
+    const core_gradient g = {paired_columns(by_zeta(c), after, wheels), paired_columns(by_constant(c), after, wheels),
+                             turned(seen, back)};
+    return g;
+}
+
+static real paired_world(const core_gradient *g, world_part b) {
+    return dot(g->world.cosine, b.cosine) + dot(g->world.sine, b.sine);
+}
 
 /* The gradient by one number of a dynamics_change at a time: that number is 1, all others are 0. */
 static real dynamics_gradient(taken_step *s, const laconic_state *state, const laconic_state_change *after,
@@ -80,7 +73,7 @@ static real dynamics_gradient(taken_step *s, const laconic_state *state, const l
     step_response out;
     laconic_state_change column;
     laconic_respond(s, state, &out, &in, 1);
-    laconic_finish_step(&column, 1, s, &in, &out, R(0));
+    laconic_finish_step(&column, s, &in, &out, R(0));
     return paired(&column, after, LACONIC_WHEELS(s->at.model));
 }
 
@@ -163,14 +156,19 @@ static void add_world_gradients(laconic_model_change *out, const taken_step *s, 
     add_world_rows(out, g, t * pull[0], t * pull[1], at_s);
 }
 
-static void model_gradient(laconic_model_change *out, taken_step *s, const laconic_state *state, const core_gradient *g,
+static void model_gradient(laconic_model_change *out, taken_step *s, const laconic_state *state, const core_columns *c,
                            const laconic_state_change *after, const laconic_input *held) {
+    const core_gradient g = gradient_of(c, s, after);
     laconic_model_change fresh = ALL_ZERO;
     dynamics_gradients(&fresh, s, state, after);
-    add_row_gradients(&fresh, s, g, after);
-    add_forcing_gradients(&fresh, s, g, held);
-    add_world_gradients(&fresh, s, g, held);
+    add_row_gradients(&fresh, s, &g, after);
+    add_forcing_gradients(&fresh, s, &g, held);
+    add_world_gradients(&fresh, s, &g, held);
     *out = fresh;
+}
+
+static void set_units(vector axis[3]) {
+    for (int k = 0; k < 3; k++) axis[k] = vector_of(R(k == 0), R(k == 1), R(k == 2));
 }
 
 laconic_status laconic_step_adjoint(laconic_state_change *before, laconic_input *input, laconic_model_change *by_model,
@@ -180,14 +178,20 @@ laconic_status laconic_step_adjoint(laconic_state_change *before, laconic_input 
     const bool with_world_force = input != NULL || by_model != NULL;
     taken_step s;
     core_columns c;
-    laconic_state_change by_heading;
+    laconic_state_change column[CORE_COLUMNS], by_heading;
     const laconic_status status = laconic_take_step(&s, model, integrator, state, held, with_world_force);
     if (status != LACONIC_OK) return status;
+    for (int k = 0; k < CORE_COLUMNS; k++) c.column[k] = &column[k];
+    if (by_model != NULL) {
+        set_units(c.zeta);
+        set_units(c.constant);
+        laconic_core_columns(&c, &s, state);
+        model_gradient(by_model, &s, state, &c, after, held);
+    }
+    laconic_jacobian_directions(&c, model);
     laconic_core_columns(&c, &s, state);
     laconic_heading_column(&by_heading, &s, &c);
-    const core_gradient g = gradient_of(&c, &s, after);
-    if (input != NULL) input_gradient(input, &g, model, held);
-    if (by_model != NULL) model_gradient(by_model, &s, state, &g, after, held);
-    state_gradient(before, &g, after, &by_heading, model);
+    if (input != NULL) input_gradient(input, &s, &c, held, after);
+    state_gradient(before, &c, &by_heading, after, LACONIC_WHEELS(model));
     return LACONIC_OK;
 }

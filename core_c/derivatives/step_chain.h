@@ -34,20 +34,24 @@ static inline world_part both(world_part a, world_part b) {
 /* ν at the step's start, as the model has it. */
 static inline vector nu_before(const taken_step *s) { return mapped_rows(s->at.model->nu_of_zeta, s->at.zeta); }
 
-/* Columns by ζ, by the constant part of b and by the two rotating parts, three each. */
+/* Three directions of ζ and three of the constant part of b, and where the columns along them go: these six, then three
+ * by each rotating part, along unit vectors, which are set only where b rotates. */
 #define CORE_COLUMNS 12
 
 typedef struct core_columns {
-    laconic_state_change column[CORE_COLUMNS];
+    vector zeta[3], constant[3];
+    laconic_state_change *column[CORE_COLUMNS];
 } core_columns;
 
-static inline const laconic_state_change *by_zeta(const core_columns *c) { return &c->column[0]; }
+typedef laconic_state_change *const *three_columns;
 
-static inline const laconic_state_change *by_constant(const core_columns *c) { return &c->column[3]; }
+static inline three_columns by_zeta(const core_columns *c) { return &c->column[0]; }
 
-static inline const laconic_state_change *by_cosine(const core_columns *c) { return &c->column[6]; }
+static inline three_columns by_constant(const core_columns *c) { return &c->column[3]; }
 
-static inline const laconic_state_change *by_sine(const core_columns *c) { return &c->column[9]; }
+static inline three_columns by_cosine(const core_columns *c) { return &c->column[6]; }
+
+static inline three_columns by_sine(const core_columns *c) { return &c->column[9]; }
 
 /* Takes the step on a copy of the state and finds the method that took it. A refused step gives its status. */
 laconic_status laconic_take_step(taken_step *s, const laconic_model *model, const laconic_integrator *integrator,
@@ -57,15 +61,22 @@ laconic_status laconic_take_step(taken_step *s, const laconic_model *model, cons
 void laconic_respond(taken_step *s, const laconic_state *state, step_response out[], const step_direction in[],
                      int32_t count);
 
-/* The change of the state after the step along the direction of each lane; x, y and wheel angles before it stay. */
-void laconic_finish_step(laconic_state_change after[], int count, const taken_step *s, const step_direction *in,
+/* The change of the state after the step along the direction of the first lane; x, y and wheel angles before it stay. */
+void laconic_finish_step(laconic_state_change *after, const taken_step *s, const step_direction *in,
                          const step_response *by, real heading_rad);
 
-/* Those of the rotating part only where b rotates. */
-void laconic_core_columns(core_columns *c, taken_step *s, const laconic_state *state);
+/* The directions by which a Jacobian begins: those of ν, and of a force and a moment on the body. */
+void laconic_jacobian_directions(core_columns *c, const laconic_model *m);
 
-/* The column by the heading. */
+/* Fills the columns. */
+void laconic_core_columns(const core_columns *c, taken_step *s, const laconic_state *state);
+
+/* The rest of the Jacobian from those along the directions by which it begins: by the heading, by motors and axles, by a
+ * world force where b rotates. */
 void laconic_heading_column(laconic_state_change *out, const taken_step *s, const core_columns *c);
+void laconic_torque_columns(laconic_step_jacobian *j, const taken_step *s, const core_columns *c);
+void laconic_world_columns(laconic_step_jacobian *j, const taken_step *s, const core_columns *c,
+                           const laconic_input *held);
 
 /* b of a force F (already times torque_scale) at the body point r. */
 world_part laconic_world_b(const laconic_model *m, real fx, real fy, const real r[2]);

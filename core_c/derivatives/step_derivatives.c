@@ -76,8 +76,9 @@ void laconic_respond(taken_step *s, const laconic_state *state, step_response ou
     s->y_m = s->middle.sine * moved->along_m + s->middle.cosine * moved->across_m;
 }
 
-void laconic_finish_step(laconic_state_change after[], int count, const taken_step *s, const step_direction *in,
-                         const step_response *by, real heading_rad) {
+/* Along the directions of the first `count` lanes: a constant for the compiler. */
+INLINE void finish(laconic_state_change *const after[], int count, const taken_step *s, const step_direction *in,
+                   const step_response *by, real heading_rad) {
     const laconic_model *m = s->at.model;
     const lanes zeta = lanes_plus(in->zeta, by->delta);
     const lane turn = heading_rad + R(0.5) * by->yaw_change_rad, heading = heading_rad + by->yaw_change_rad;
@@ -85,17 +86,23 @@ void laconic_finish_step(laconic_state_change after[], int count, const taken_st
     const lane y = s->middle.sine * by->along_m + s->middle.cosine * by->across_m + turn * s->x_m;
     for (int i = 0; i < 3; i++) {
         const lane nu = lanes_dot(vec(m->nu_of_zeta[i]), zeta);
-        for (int k = 0; k < count; k++) after[k].nu_rad_per_s[i] = lane_number(nu, k);
+        for (int k = 0; k < count; k++) after[k]->nu_rad_per_s[i] = lane_number(nu, k);
     }
     for (int k = 0; k < count; k++) {
-        after[k].x_m = lane_number(x, k);
-        after[k].y_m = lane_number(y, k);
-        after[k].heading_rad = lane_number(heading, k);
+        after[k]->x_m = lane_number(x, k);
+        after[k]->y_m = lane_number(y, k);
+        after[k]->heading_rad = lane_number(heading, k);
     }
     for (int32_t i = 0; i < LACONIC_WHEELS(m); i++) {
         const lane angle = lanes_dot(vec(m->wheel_of_zeta[i]), by->path);
-        for (int k = 0; k < count; k++) after[k].wheel_angle_rad[i] = lane_number(angle, k);
+        for (int k = 0; k < count; k++) after[k]->wheel_angle_rad[i] = lane_number(angle, k);
     }
+}
+
+void laconic_finish_step(laconic_state_change *after, const taken_step *s, const step_direction *in,
+                         const step_response *by, real heading_rad) {
+    laconic_state_change *const only[1] = {after};
+    finish(only, 1, s, in, by, heading_rad);
 }
 
 /* -------------------------------------------------------------------- forcing along directions -- */
@@ -228,7 +235,7 @@ laconic_status laconic_step_tangent(laconic_state_change *after, const laconic_m
     d.zeta = lanes_of(zeta);
     add_forcing(&d, &s, before->heading_rad, held, input, by_model);
     laconic_respond(&s, state, &out, &d, 1);
-    laconic_finish_step(after, 1, &s, &d, &out, before->heading_rad);
+    laconic_finish_step(after, &s, &d, &out, before->heading_rad);
     if (by_model != NULL) add_rows(after, &s, by_model);
     after->x_m += before->x_m;
     after->y_m += before->y_m;
@@ -240,19 +247,38 @@ laconic_status laconic_step_tangent(laconic_state_change *after, const laconic_m
 
 #define GROUPS(columns) (((columns) + LANES - 1) / LANES)
 
-/* The directions are unit vectors: of the 12 numbers that a step_direction begins with column k varies number k. */
-void laconic_core_columns(core_columns *c, taken_step *s, const laconic_state *state) {
+/* Column i of G⁺. */
+static inline vector zeta_of_unit_nu(const laconic_model *m, int i) {
+    if (rotated_twice(m)) return vector_of(inverse_row(m, 0)[i], inverse_row(m, 1)[i], inverse_row(m, 2)[i]);
+    return times(vec(m->inertia), vec(m->nu_of_zeta[i]));
+}
+
+void laconic_jacobian_directions(core_columns *c, const laconic_model *m) {
+    for (int i = 0; i < 3; i++) c->zeta[i] = zeta_of_unit_nu(m, i);
+    for (int k = 0; k < 2; k++) c->constant[k] = scaled(m->torque_scale, vec(m->velocity_of_zeta[k]));
+    c->constant[2] = scaled(m->torque_scale, vec(m->yaw_rate_of_zeta));
+}
+
+/* The rotating parts vary along unit vectors: they follow one another in a step_direction. */
+static void set_directions(step_direction in[], const core_columns *c, int columns) {
     const step_direction still = {no_lanes(), no_lanes(), no_lanes(), no_lanes(), NULL};
+    for (int n = 0; n < GROUPS(columns); n++) in[n] = still;
+    for (int k = 0; k < 3; k++) {
+        set_lane_vector(&in[k / LANES].zeta, k % LANES, c->zeta[k]);
+        set_lane_vector(&in[(3 + k) / LANES].constant, (3 + k) % LANES, c->constant[k]);
+    }
+    for (int k = CORE_COLUMNS / 2; k < columns; k++) set_lane((lane *)(void *)&in[k / LANES] + k, k % LANES, R(1));
+}
+
+/* Columns that fill a group in part are followed by others that fill the rest: what is not wanted is overwritten or
+ * not read. */
+void laconic_core_columns(const core_columns *c, taken_step *s, const laconic_state *state) {
     const int columns = s->at.rotates ? CORE_COLUMNS : CORE_COLUMNS / 2, groups = GROUPS(columns);
     step_direction in[GROUPS(CORE_COLUMNS)];
     step_response out[GROUPS(CORE_COLUMNS)];
-    for (int n = 0; n < groups; n++) in[n] = still;
-    for (int k = 0; k < columns; k++) set_lane((lane *)(void *)&in[k / LANES] + k, k % LANES, R(1));
+    set_directions(in, c, columns);
     laconic_respond(s, state, out, in, groups);
-    for (int n = 0; n < groups; n++) {
-        const int left = columns - n * LANES;
-        laconic_finish_step(&c->column[n * LANES], left < LANES ? left : LANES, s, &in[n], &out[n], R(0));
-    }
+    for (int n = 0; n < groups; n++) finish(&c->column[n * LANES], LANES, s, &in[n], &out[n], R(0));
 }
 
 /* A change of the state seen as one row of 6 + N numbers: it holds nothing else. */
@@ -260,9 +286,8 @@ void laconic_core_columns(core_columns *c, taken_step *s, const laconic_state *s
 static inline const real *row_of(const laconic_state_change *change) { return (const real *)(const void *)change; }
 
 /* Σ weight_k column_k. The head has a loop of its own, of a length that compilers know. */
-static void weighed(laconic_state_change *restrict out, const laconic_state_change column[3], vector weight,
-                    int32_t wheels) {
-    const real *restrict a = row_of(&column[0]), *restrict b = row_of(&column[1]), *restrict c = row_of(&column[2]);
+static void weighed(laconic_state_change *restrict out, three_columns column, vector weight, int32_t wheels) {
+    const real *restrict a = row_of(column[0]), *restrict b = row_of(column[1]), *restrict c = row_of(column[2]);
     real *restrict to = (real *)(void *)out;
     const real x = weight.x, y = weight.y, z = weight.z;
     for (int32_t i = 0; i < HEAD; i++) to[i] = x * a[i] + y * b[i] + z * c[i];
@@ -309,9 +334,11 @@ void laconic_heading_column(laconic_state_change *out, const taken_step *s, cons
     out->heading_rad += R(1);
 }
 
-static void by_world_forces(laconic_step_jacobian *j, const taken_step *s, const core_columns *c,
-                            const laconic_input *held) {
+void laconic_world_columns(laconic_step_jacobian *j, const taken_step *s, const core_columns *c,
+                           const laconic_input *held) {
     const laconic_model *m = s->at.model;
+    j->has_world_force = s->at.rotates;
+    if (!s->at.rotates) return;
     for (int k = 0; k < 2; k++) {
         laconic_input by = ALL_ZERO;
         by.world_force_N[k] = R(1);
@@ -324,31 +351,26 @@ static void by_world_forces(laconic_step_jacobian *j, const taken_step *s, const
     }
 }
 
-static void by_torques(laconic_step_jacobian *j, const laconic_model *m, const core_columns *c) {
+/* The forcing of an axle torque is that of a force and a moment on the body: with w = ΞG, Ξ = wG⁺. */
+void laconic_torque_columns(laconic_step_jacobian *j, const taken_step *s, const core_columns *c) {
+    const laconic_model *m = s->at.model;
     const int32_t wheels = LACONIC_WHEELS(m);
+    const real per_radius = R(1) / m->wheel_radius_m;
     for (int32_t i = 0; i < wheels; i++) {
-        weighed(&j->by_axle_torque[i], by_constant(c), scaled(m->torque_scale, vec(m->wheel_of_zeta[i])), wheels);
+        const vector w = vec(m->wheel_of_zeta[i]);
+        const vector body = vector_of(per_radius * dot(w, c->zeta[0]), per_radius * dot(w, c->zeta[1]),
+                                      m->yaw_scale * dot(w, c->zeta[2]));
+        weighed(&j->by_axle_torque[i], by_constant(c), body, wheels);
         set_scaled(&j->by_voltage[i], m->motor_gain_Nm_per_V[own(i)], &j->by_axle_torque[i], wheels);
     }
-    for (int k = 0; k < 2; k++)
-        weighed(&j->by_body_force[k], by_constant(c), scaled(m->torque_scale, vec(m->velocity_of_zeta[k])), wheels);
-    weighed(&j->by_body_moment, by_constant(c), scaled(m->torque_scale, vec(m->yaw_rate_of_zeta)), wheels);
 }
 
-/* Column i of G⁺. */
-static inline vector zeta_of_unit_nu(const laconic_model *m, int i) {
-    if (rotated_twice(m)) return vector_of(inverse_row(m, 0)[i], inverse_row(m, 1)[i], inverse_row(m, 2)[i]);
-    return times(vec(m->inertia), vec(m->nu_of_zeta[i]));
-}
-
-static void fill_jacobian(laconic_step_jacobian *j, const taken_step *s, const core_columns *c,
-                          const laconic_input *held) {
-    const laconic_model *m = s->at.model;
-    for (int i = 0; i < 3; i++) weighed(&j->by_nu[i], by_zeta(c), zeta_of_unit_nu(m, i), LACONIC_WHEELS(m));
-    laconic_heading_column(&j->by_heading, s, c);
-    by_torques(j, m, c);
-    j->has_world_force = s->at.rotates;
-    if (s->at.rotates) by_world_forces(j, s, c, held);
+/* The first six columns are the Jacobian's own. */
+static void place_columns(core_columns *c, laconic_step_jacobian *j, laconic_state_change rotating[CORE_COLUMNS / 2]) {
+    for (int k = 0; k < 3; k++) c->column[k] = &j->by_nu[k];
+    for (int k = 0; k < 2; k++) c->column[3 + k] = &j->by_body_force[k];
+    c->column[5] = &j->by_body_moment;
+    for (int k = CORE_COLUMNS / 2; k < CORE_COLUMNS; k++) c->column[k] = &rotating[k - CORE_COLUMNS / 2];
 }
 
 laconic_status laconic_step_jacobian_of(laconic_step_jacobian *jacobian, const laconic_model *model,
@@ -356,9 +378,14 @@ laconic_status laconic_step_jacobian_of(laconic_step_jacobian *jacobian, const l
                                         const laconic_input *held, bool with_world_force) {
     taken_step s;
     core_columns c;
+    laconic_state_change rotating[CORE_COLUMNS / 2];
     const laconic_status status = laconic_take_step(&s, model, integrator, state, held, with_world_force);
     if (status != LACONIC_OK) return status;
+    place_columns(&c, jacobian, rotating);
+    laconic_jacobian_directions(&c, model);
     laconic_core_columns(&c, &s, state);
-    fill_jacobian(jacobian, &s, &c, held);
+    laconic_heading_column(&jacobian->by_heading, &s, &c);
+    laconic_torque_columns(jacobian, &s, &c);
+    laconic_world_columns(jacobian, &s, &c, held);
     return LACONIC_OK;
 }

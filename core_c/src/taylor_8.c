@@ -3,8 +3,8 @@
  *     (n + 1) ζn+1 = h [ Σj (g·ζj)(ζn−j × w) − diag(r) ζn + bn ].
  * θ follows term by term, and the pose by a quadrature of the same order. Explicit: for large steps of vehicles
  * whose damping is slow beside the step, where its error is far below that of any other method of its cost. */
-#include "step_internals.h"
 #include "taylor_8.h"
+#include "step_internals.h"
 
 #define LARGEST_DAMPING R(4.313)  /* h·r: |Σ (−a)ⁿ/n!| to n = 8 exceeds 1 from a = 4.3136 on   */
 #define LARGEST_ROTATION R(3.395) /* h·|w||g·ζ|: |Σ (ia)ⁿ/n!|, the rotation of free motion, from 3.3951 on */

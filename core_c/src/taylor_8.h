@@ -2,7 +2,7 @@
 #ifndef LACONIC_TAYLOR_8_H
 #define LACONIC_TAYLOR_8_H
 
-#include "laconic/real.h"
+#include "common.h"
 
 #define ORDER 8
 #define NODES 4 /* of Gauss' quadrature on 0 … 1, exact to degree 7 */

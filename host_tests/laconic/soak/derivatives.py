@@ -1,5 +1,5 @@
 """Tangents of a thousand steps of each method against differences of the method's map in 50 digits, adjoints against
-Jacobians: made-up vehicles of eight kinds, slow and stiff, with world forces and slopes."""
+Jacobians and tangents: made-up vehicles of eight kinds, slow and stiff, with world forces and slopes."""
 
 from __future__ import annotations
 
@@ -11,8 +11,8 @@ from typing import Any
 import numpy as np
 
 from laconic.core.binding import load
-from laconic.core.derivatives import StepDerivatives
 from laconic.core.plant import Plant
+from laconic.verification.derivatives.adjoints import adjoint_error
 from laconic.verification.derivatives.trials import METHODS, Trial, difference, directions, error, tangent, trials
 
 STEPS = 1000          # of each method
@@ -44,15 +44,4 @@ def soak(minutes: float, seed: int, advance: Callable[[float], None]) -> dict[st
 def _errors(random: np.random.Generator, trial: Trial, plant: Plant) -> dict[str, float]:
     found = {f"by {kind}": error(tangent(trial, plant, along), difference(trial, plant, along), along)
              for kind, along in directions(random, trial, plant).items()}
-    return {**found, "adjoint": _adjoint_error(random, trial, plant)}
-
-
-def _adjoint_error(random: np.random.Generator, trial: Trial, plant: Plant) -> float:
-    step = StepDerivatives(plant, trial.held)
-    jacobian, gradient = step.jacobian(world_force=True), random.normal(size=6 + plant.wheel_count)
-    worst = 0.0
-    for found, matrix in zip(step.adjoint(gradient), (jacobian.by_state, jacobian.by_input), strict=True):
-        size = np.abs(matrix).T @ np.abs(gradient)
-        off = np.abs(found - matrix.T @ gradient)
-        worst = max(worst, float(np.max(np.divide(off, size, out=np.zeros_like(off), where=size > 0.0))))
-    return worst
+    return {**found, "adjoint": adjoint_error(random, trial, plant)}
