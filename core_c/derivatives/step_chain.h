@@ -34,8 +34,8 @@ static inline world_part both(world_part a, world_part b) {
 /* ν at the step's start, as the model has it. */
 static inline vector nu_before(const taken_step *s) { return mapped_rows(s->at.model->nu_of_zeta, s->at.zeta); }
 
-/* Three directions of ζ and three of the constant part of b, and where the columns along them go: these six, then three
- * by each rotating part, along unit vectors, which are set only where b rotates. */
+/* Three directions of ζ and three of the constant part of b, and where the columns along them go: these six, then
+ * three by each rotating part, along unit vectors, which are set only where b rotates. */
 #define CORE_COLUMNS 12
 
 typedef struct core_columns {
@@ -61,7 +61,7 @@ laconic_status laconic_take_step(taken_step *s, const laconic_model *model, cons
 void laconic_respond(taken_step *s, const laconic_state *state, step_response out[], const step_direction in[],
                      int32_t count);
 
-/* The change of the state after the step along the direction of the first lane; x, y and wheel angles before it stay. */
+/* The change of the state after the step along the first lane's direction; x, y and wheel angles before it stay. */
 void laconic_finish_step(laconic_state_change *after, const taken_step *s, const step_direction *in,
                          const step_response *by, real heading_rad);
 
@@ -71,8 +71,8 @@ void laconic_jacobian_directions(core_columns *c, const laconic_model *m);
 /* Fills the columns. */
 void laconic_core_columns(const core_columns *c, taken_step *s, const laconic_state *state);
 
-/* The rest of the Jacobian from those along the directions by which it begins: by the heading, by motors and axles, by a
- * world force where b rotates. */
+/* The rest of the Jacobian from those along the directions by which it begins: by the heading, by motors and axles, by
+ * a world force where b rotates. */
 void laconic_heading_column(laconic_state_change *out, const taken_step *s, const core_columns *c);
 void laconic_torque_columns(laconic_step_jacobian *j, const taken_step *s, const core_columns *c);
 void laconic_world_columns(laconic_step_jacobian *j, const taken_step *s, const core_columns *c,
