@@ -73,7 +73,7 @@ static real dynamics_gradient(taken_step *s, const laconic_state *state, const l
     step_response out;
     laconic_state_change column;
     laconic_respond(s, state, &out, &in, 1);
-    laconic_finish_step(&column, s, &in, &out, R(0));
+    laconic_finish_step(&column, 1, s, &in, &out, R(0));
     return paired(&column, after, LACONIC_WHEELS(s->at.model));
 }
 

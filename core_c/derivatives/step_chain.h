@@ -61,8 +61,9 @@ laconic_status laconic_take_step(taken_step *s, const laconic_model *model, cons
 void laconic_respond(taken_step *s, const laconic_state *state, step_response out[], const step_direction in[],
                      int32_t count);
 
-/* The change of the state after the step along the first lane's direction; x, y and wheel angles before it stay. */
-void laconic_finish_step(laconic_state_change *after, const taken_step *s, const step_direction *in,
+/* The changes of the state after the step along the directions of the first lanes; x, y and wheel angles before it
+ * stay. */
+void laconic_finish_step(laconic_state_change after[], int count, const taken_step *s, const step_direction *in,
                          const step_response *by, real heading_rad);
 
 /* The directions by which a Jacobian begins: those of ν, and of a force and a moment on the body. */

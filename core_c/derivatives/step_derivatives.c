@@ -76,7 +76,7 @@ void laconic_respond(taken_step *s, const laconic_state *state, step_response ou
     s->y_m = s->middle.sine * moved->along_m + s->middle.cosine * moved->across_m;
 }
 
-/* Along the directions of the first `count` lanes: a constant for the compiler. */
+/* Along the directions of the first `count` lanes: best a constant for the compiler. */
 INLINE void finish(laconic_state_change *const after[], int count, const taken_step *s, const step_direction *in,
                    const step_response *by, real heading_rad) {
     const laconic_model *m = s->at.model;
@@ -99,10 +99,11 @@ INLINE void finish(laconic_state_change *const after[], int count, const taken_s
     }
 }
 
-void laconic_finish_step(laconic_state_change *after, const taken_step *s, const step_direction *in,
+void laconic_finish_step(laconic_state_change after[], int count, const taken_step *s, const step_direction *in,
                          const step_response *by, real heading_rad) {
-    laconic_state_change *const only[1] = {after};
-    finish(only, 1, s, in, by, heading_rad);
+    laconic_state_change *each[LANES];
+    for (int k = 0; k < count; k++) each[k] = &after[k];
+    finish(each, count, s, in, by, heading_rad);
 }
 
 /* -------------------------------------------------------------------- forcing along directions -- */
@@ -235,7 +236,7 @@ laconic_status laconic_step_tangent(laconic_state_change *after, const laconic_m
     d.zeta = lanes_of(zeta);
     add_forcing(&d, &s, before->heading_rad, held, input, by_model);
     laconic_respond(&s, state, &out, &d, 1);
-    laconic_finish_step(after, &s, &d, &out, before->heading_rad);
+    laconic_finish_step(after, 1, &s, &d, &out, before->heading_rad);
     if (by_model != NULL) add_rows(after, &s, by_model);
     after->x_m += before->x_m;
     after->y_m += before->y_m;
