@@ -126,7 +126,10 @@ static laconic_status enter_sample(laconic_sensors *sensors, const laconic_plant
     }
     const real *force = sample->specific_force_m_per_s2;
     if (magnitude(force[0]) <= LARGEST_NUMBER && magnitude(force[1]) <= LARGEST_NUMBER) return LACONIC_OK;
-    return refuse(why, LACONIC_OVERFLOW, (laconic_field)LACONIC_SENSOR_FIELD_IMU_X, 0, force[0], R(0));
+    const real along = magnitude(force[0]), across = magnitude(force[1]);
+    const laconic_sensor_field farther =
+        magnitude(imu->y_m) > magnitude(imu->x_m) ? LACONIC_SENSOR_FIELD_IMU_Y : LACONIC_SENSOR_FIELD_IMU_X;
+    return refuse(why, LACONIC_OVERFLOW, (laconic_field)farther, 0, along <= across ? force[1] : force[0], R(0));
 }
 
 laconic_status laconic_sensors_after(laconic_sensors *sensors, const laconic_plant *plant, const laconic_input *held,

@@ -144,6 +144,15 @@ def _cannot(path: Path, error: OSError | ValueError) -> BadInput:
     return BadInput(f"{path}: cannot be written ({reason}); choose another path")
 
 
+def make_folder(folder: Path) -> None:
+    """A folder with those above it; a command says so on stderr, since a name typed wrong makes one, too."""
+    if folder.is_dir():
+        return
+    folder.mkdir(parents=True, exist_ok=True)
+    if click.get_current_context(silent=True) is not None:
+        click.echo(f"laconic: made the folder {folder}", err=True)
+
+
 @contextmanager
 def whole_file(path: Path) -> Iterator[Path]:
     """The name of a new file beside `path` to be filled, which takes its place in the end.
@@ -155,6 +164,7 @@ def whole_file(path: Path) -> Iterator[Path]:
     target = Path(os.path.realpath(path))
     fresh = target if is_special(path) else target.with_name(f".laconic-{secrets.token_hex(8)}.part")
     try:
+        make_folder(path.parent)
         target.parent.mkdir(parents=True, exist_ok=True)
         if fresh != target:
             _create(fresh, like=target)

@@ -76,7 +76,7 @@ class Sent(MessageMap):
     period_s: float | None = None
     first_s: float = 0.0
     on_request: str = ""           # "remote", or the message that asks for it
-    pages: str = PAGES[0]
+    pages: str | None = None      # None: the map does not say
 
 
 @dataclass(frozen=True)
@@ -117,7 +117,7 @@ def _received(table: Table, wheel_count: int) -> Received:
 
 def _sent(table: Table, wheel_count: int) -> Sent:
     message, counter, checksum = _common(table)
-    period_s, on_request = _positive(table, "period_s"), table.text("on_request", "")
+    period_s, on_request = _positive(table, "period_s"), _text(table, "on_request")
     if (period_s is None) == (not on_request):
         table.fail("period_s", "and on_request are both given; keep one" if on_request else
                    f'is missing; give seconds, or on_request = "{REMOTE}" or a message that asks for {message}')
@@ -127,7 +127,7 @@ def _sent(table: Table, wheel_count: int) -> Sent:
                    f"is {first_s:g}; give 0 or more")
     if counter is not None and counter.max_delta is not None:
         table.fail("counter.max_delta", "is for messages of the controller; take it out")
-    pages = table.choice("pages", PAGES, PAGES[0])
+    pages = table.choice("pages", PAGES) if table.has("pages") else None
     joints = tuple(_output(each, wheel_count) for each in table.tables("signal"))
     table.done()
     if not joints:
@@ -153,6 +153,14 @@ def _counter(table: Table) -> Counter:
     return Counter(signal, modulo, max_delta)
 
 
+def _text(table: Table, key: str) -> str:
+    """A text that may be left out, but not be empty."""
+    found = table.text(key, "")
+    if table.has(key) and not found.strip():
+        table.fail(key, "is empty; give a name, or take it out")
+    return found
+
+
 def _positive(table: Table, key: str) -> float | None:
     value = table.number(key, None)
     if value is not None and not value > 0.0:
@@ -170,7 +178,7 @@ def _input(table: Table, wheel_count: int) -> Joint:
 
 
 def _output(table: Table, wheel_count: int) -> Joint:
-    name, source, constant = table.text("name"), table.text("from", ""), table.number("value", None)
+    name, source, constant = table.text("name"), _text(table, "from"), table.number("value", None)
     if (constant is None) == (not source):
         table.fail("from", "and value are both given; keep one of them" if source else
                    "is missing; give an output of the model, or value for a constant")

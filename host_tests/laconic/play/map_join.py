@@ -62,6 +62,7 @@ def join(given: SignalMap, dbc: Path) -> Joined:
                              f'message of the controller, or "{REMOTE}"')
     check_once(joined)
     check_drives(joined)
+    check_places(joined)
     return joined
 
 
@@ -118,6 +119,17 @@ def check_drives(joined: Joined) -> None:
                 sender.message.fail("from", f".{joint.signal} is {joint.model} of a drive, and no signal is a target "
                                     "of one; take wheel_angle_rad with gear and counts_per_turn, or "
                                     "wheel_speed_rad_per_s", joint.where)
+
+
+def check_places(joined: Joined) -> None:
+    """BadInput for where a world force acts in a map that sets no such force."""
+    if any(split(name)[0] == "world_force_N" for name in joined.inputs):
+        return
+    for receiver in joined.receivers.values():
+        for joint in receiver.given.joints:
+            if split(joint.model)[0] == "world_force_point_m":
+                receiver.message.fail("to", f".{joint.signal} sets {joint.model}, where a world force acts, and no "
+                                      "signal sets one; join one to world_force_N[1], too", joint.where)
 
 
 ENCODER = "encoder_count"

@@ -189,6 +189,8 @@ class Sender(Protected):
             if joint.wrap:
                 self._check_wrap(joint, message.signals[joint.signal])
         self.pages = self._pages()
+        if given.pages is not None and not any(signal.is_multiplexer for signal in message.signals.values()):
+            message.fail("pages", "has no effect on a message without a multiplexer; take it out")
         self._next_page, self._count = 0, -1
 
     def _check_wrap(self, joint: Joint, signal: Signal) -> None:
@@ -236,7 +238,7 @@ class Sender(Protected):
     def payloads(self, read: Callable[[str], float]) -> Iterator[bytes]:
         """The frames of one instant; `read` gives an output of the model by name."""
         pages = self.pages
-        if self.sent.pages == "in turn":
+        if self.sent.pages in (None, "in turn"):
             pages = [self.pages[self._next_page]]
             self._next_page = (self._next_page + 1) % len(self.pages)
         for page in pages:

@@ -12,6 +12,7 @@ from typing import Protocol
 import can
 
 from laconic.errors import BadInput, reason_of
+from laconic.outputs import make_folder
 from laconic.rig.link import Clock
 
 
@@ -80,7 +81,7 @@ def open_log(path: Path) -> can.io.generic.MessageWriter:
     """A python-can log writer for this name."""
     try:
         with writable(path), read_by_someone(path):
-            path.parent.mkdir(parents=True, exist_ok=True)
+            make_folder(path.parent)
             return can.Logger(str(path))
     except ValueError as error:
         raise BadInput(f"--log {path}: {error}; use a name that ends in .blf or .asc") from None

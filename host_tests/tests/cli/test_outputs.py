@@ -148,8 +148,9 @@ def test_a_name_ends_as_its_format(scene, capsys, arguments):
     ("fmu", SCENE, "--fmi", "2", "--ssp", "-o", "a/b/run.ssp"),
     ("rig", "s1", "--steps", "2", "--log", "a/b/run.blf"), ("rig", "s1", "--steps", "2", "--junit", "a/b/run.xml"),
     ("trim", SCENE, "--out", "a/b")], ids=" ".join)
-def test_folders_of_an_output_are_made(scene, capsys, arguments):
-    assert run(list(arguments)) == 0, capsys.readouterr().err
+def test_folders_of_an_output_are_made_and_told(scene, capsys, arguments):
+    assert run(list(arguments)) == 0
+    assert capsys.readouterr().err.count("laconic: made the folder a/b\n") == 1
     made = list(scene.with_name("a").joinpath("b").iterdir())
     assert made and all(path.stat().st_size > 0 for path in made)
     assert not [path for path in made if path.name.startswith(".")]

@@ -39,6 +39,13 @@ BAD = {
         ("send[1].on_request", "sends itself", '"remote"')),
     "asked for by another that it sends": (
         [("", MORE.format("POSE", 'on_request = "WHEEL_STATE"', "X", "x_m"))], [], ("send[2].on_request", "POSE")),
+    "asked for by nothing": ([(SEND, SEND + '\non_request = ""')], [], ("send[1].on_request", "is empty; give a name")),
+    "from nothing": ([('from = "wheel_speed_rad_per_s[1]"', 'value = 1.0\nfrom = ""')], [],
+        ("signal[1].from", "is empty; give a name")),
+    "pages of a message that has none": ([("", MORE.format("POSE", 'period_s = 0.02\npages = "together"', "X", "x_m"))],
+        [], ("send[2].pages", "has no effect on a message without a multiplexer")),
+    "place of a force that is not there": ([('"voltage_V[1]"', '"world_force_point_m[2]"')], [],
+        ("signal[1].to", "where a world force acts, and no signal sets one; join one to world_force_N[1]")),
     "sent twice": ([("", MORE.format("WHEEL_STATE", "period_s = 0.02", "SpeedRight", "time_s"))], [],
         ("send[2].message", "sent twice", "send[1]")),
     "counter that is joined": (

@@ -11,6 +11,7 @@ from rich.console import Console
 
 from laconic.cli.options import OutputFolder, SceneName, json_flag
 from laconic.errors import BadInput, reason_of
+from laconic.outputs import make_folder
 from laconic.paths import results_dir, scene_names
 from laconic.scene import read_scene
 
@@ -37,7 +38,7 @@ def command(scenes: tuple[str, ...], out: Path | None, quick: bool, json_wanted:
     folder = out or results_dir("report")
     read = [read_scene(name) for name in scenes or scene_names()]
     try:
-        folder.mkdir(parents=True, exist_ok=True)
+        make_folder(folder)
         report = (collect_robots if scenes else collect)(read, folder / "work", quick)
         page = write(report, folder, version("laconic"))
     except OSError as error:
