@@ -3,26 +3,25 @@
  * methods for discrete sequential estimation, 1977, chapters V and VII. */
 #include "factors.h"
 
-static real weighted(const real a[], const real b[], const real weight[], int32_t columns) {
+static real product(const real a[], const real b[], int32_t columns) {
     real sum = R(0);
-    for (int32_t c = 0; c < columns; c++) sum += a[c] * weight[c] * b[c];
+    for (int32_t c = 0; c < columns; c++) sum += a[c] * b[c];
     return sum;
 }
 
 /* A row of which nothing is left has no part of any other. */
-static real part_of(const real row[], const real pivot[], const real weight[], int32_t columns, real square) {
-    return square > R(0) ? weighted(row, pivot, weight, columns) / square : R(0);
-}
-
 void laconic_factors_of(laconic_factors *out, real row[][COLUMNS], const real weight[], int32_t rows, int32_t columns) {
+    real pivot[COLUMNS];
     for (int32_t j = rows - 1; j >= 0; j--) {
-        out->diagonal[j] = weighted(row[j], row[j], weight, columns);
+        for (int32_t c = 0; c < columns; c++) pivot[c] = weight[c] * row[j][c];
+        const real square = product(row[j], pivot, columns);
         for (int32_t i = 0; i < j; i++) {
-            const real part = part_of(row[i], row[j], weight, columns, out->diagonal[j]);
+            const real part = square > R(0) ? product(row[i], pivot, columns) / square : R(0);
             for (int32_t c = 0; c < columns; c++) row[i][c] -= part * row[j][c];
             out->upper[i][j] = part;
             out->upper[j][i] = R(0);
         }
+        out->diagonal[j] = square;
         out->upper[j][j] = R(1);
     }
 }

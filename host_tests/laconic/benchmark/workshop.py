@@ -197,6 +197,29 @@ class Workshop:
                  f"-L{startup}", f"-T{target.script}"]
         return self._link(target, variant, f"{program}.elf", sources, flags)
 
+    def filter_image(self, target: Target, variant: Variant, readings: str, sources: Sequence[Path],
+                     flags: Sequence[str]) -> Path:
+        """The core with its filter and recorded readings, and these sources, linked with these flags."""
+        folder, _ = self.files(variant)
+        (folder / "bench_readings.c").write_text(readings)
+        name = f"filter_{sources[-1].stem}" if sources else "filter"
+        archives = self._filter_archive(target, variant), self.archive(target, variant, folder)
+        return self._link(target, variant, name, [BENCH / "filter.c", folder / "bench_readings.c", *sources],
+                          [*map(str, archives), *flags])
+
+    def _filter_archive(self, target: Target, variant: Variant) -> Path:
+        place = self.folder / "filter" / "_".join((target.name, variant.real, variant.optimisation.strip("-")))
+        if place not in self._archives:
+            place.mkdir(parents=True)
+            sources = [str(path) for room in ("derivatives", "filter")
+                       for path in sorted((self.core_dir / room).glob("*.c"))]
+            single = ["-DLACONIC_SINGLE"] if variant.real == "single" else []
+            run_tool([target.tool("gcc"), "-c", *FLAGS, variant.optimisation, *target.flags, *single,
+                      f"-I{self.core_dir / 'include'}", f"-I{self.core_dir / 'src'}", *sources], place)
+            run_tool([target.tool("ar"), "rcs", "libfilter.a", *sorted(p.name for p in place.glob("*.o"))], place)
+            self._archives[place] = place / "libfilter.a"
+        return self._archives[place]
+
     def step_image(self, target: Target, variant: Variant) -> Path:
         """What laconic_step with the scene's constants brings into flash, and nothing else."""
         _, files = self.files(variant)

@@ -14,8 +14,11 @@ from laconic.errors import LaconicError
 
 COLUMNS = {"who": "", "real": "scalar", "environments": "environments", "thousand_actions_per_s": "thousand actions/s",
            "million_steps_per_s": "million steps/s", "ns_per_step": "ns a step", "times_batch": "over the batch",
-           "times_alone": "over one by one", "nJ_per_step": "nJ a step"}
-TITLES = {"batch": "Vehicle-steps on one core", "learn": "Environments under random actions, on one core"}
+           "times_alone": "over one by one", "nJ_per_step": "nJ a step", "prediction": "prediction",
+           "encoders": "encoders", "gyro": "gyro", "cycle": "whole cycle", "stack": "stack B", "flash": "flash B",
+           "ram": "filter B", "same_bits": "host's bits"}
+TITLES = {"batch": "Vehicle-steps on one core", "learn": "Environments under random actions, on one core",
+          "filter": "Instructions of a Kalman filter on a Cortex-M4F, in single"}
 
 
 @click.command("benchmark")
@@ -25,7 +28,7 @@ TITLES = {"batch": "Vehicle-steps on one core", "learn": "Environments under ran
               help="How often all run in turn; the least time of each counts.")
 @json_flag()
 def command(what: str, lanes: int, rounds: int, json_wanted: bool) -> None:
-    """Times vehicles that step side by side: WHAT is batch or learn.
+    """Times vehicles that step side by side, or counts a filter's instructions: WHAT is batch, learn or filter.
 
     batch: Robotino 2, Runge-Kutta steps of 1 ms with pose and wheel angles, 100 in a run, on one core: the core's
     batch, the core one vehicle after the other, and the same step in numba and JAX, and MuJoCo, where they are
@@ -33,11 +36,14 @@ def command(what: str, lanes: int, rounds: int, json_wanted: bool) -> None:
 
     learn: the environment laconic/DriveToPose-v0 under random actions, in one batch, with vehicles that differ, and as
     Gymnasium's vector of single ones.
+
+    filter: the Kalman filter with recorded readings on an emulated Cortex-M4F, prediction and readings apart, with its
+    stack, its flash and RAM, and whether it has this machine's bits.
     """
     from laconic.benchmark.many.race import stay_on_one_core
 
     stay_on_one_core()
-    rows, notes = {"batch": _batch, "learn": _learn}[what](lanes, rounds)
+    rows, notes = {"batch": _batch, "learn": _learn, "filter": _filter}[what](lanes, rounds)
     if json_wanted:
         click.echo(json.dumps({"lanes": lanes, "rows": rows, "notes": notes}, indent=1))
         return
@@ -66,6 +72,12 @@ def _learn(lanes: int, rounds: int) -> Found:
     return rate.rows(lanes, rounds), []
 
 
+def _filter(lanes: int, rounds: int) -> Found:
+    from laconic.benchmark import filter_cost
+
+    return filter_cost.rows(), ["Flash has the steps and derivatives of all methods, since auto may take most of them."]
+
+
 def table_of(title: str, rows: list[dict[str, Any]]) -> Table:
     """For people; a column that nobody could measure is left out."""
     table = Table(title=title, title_justify="left")
@@ -73,5 +85,5 @@ def table_of(title: str, rows: list[dict[str, Any]]) -> Table:
     for name in fields:
         table.add_column(COLUMNS[name], justify="left" if name in ("who", "real") else "right")
     for row in rows:
-        table.add_row(*(row[name] if isinstance(row[name], str) else f"{row[name]:.4g}" for name in fields))
+        table.add_row(*(f"{row[name]:.4g}" if isinstance(row[name], float) else str(row[name]) for name in fields))
     return table
