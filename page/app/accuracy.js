@@ -2,6 +2,7 @@
 // a little in every frame.
 import { inputOf } from "./drive.js";
 import { colours, surface } from "./drawing.js";
+import { plain } from "./facts.js";
 import { referenceOf } from "./run.js";
 import { byId, element, length, power, shown } from "./texts.js";
 
@@ -20,7 +21,7 @@ export class Study {
   constructor(/** @type {any} */ laconic, /** @type {any} */ scene, /** @type {Record<string, number>} */ signals) {
     this.laconic = laconic;
     this.scene = scene;
-    this.input = inputOf(signals);
+    this.input = inputOf(signals, scene.vehicle.wheel.length);
     /** @type {Point[]} */
     this.points = [];
     this.work = this.go();
@@ -50,7 +51,7 @@ export class Study {
   }
 
   *referencePlace() {
-    const probe = this.laconic.robot(this.scene, { method: "auto", step_s: 0.001 });
+    const probe = this.laconic.robot(plain(this.scene), { method: "auto", step_s: 0.001 });
     const fine = probe.hasFriction ? FINE_S.friction : FINE_S.ideal;
     probe.free();
     const found = referenceOf(this.laconic, this.scene, fine);
@@ -76,7 +77,7 @@ export class Study {
   measure(/** @type {string} */ method, /** @type {number} */ step_s, /** @type {any} */ place) {
     let robot;
     try {
-      robot = this.laconic.robot(this.scene, { method, step_s });
+      robot = this.laconic.robot(plain(this.scene), { method, step_s });
       robot.setInput(this.input);
       const steps = Math.round(STUDY_S / step_s);
       robot.run(steps);

@@ -31,8 +31,10 @@ function valueAt(/** @type {any} */ input, /** @type {number} */ t_s) {
   return input.value[last] + part * (input.value[next] - input.value[last]);
 }
 
-/** Signals as setInput() of a robot takes them. */
-export function inputOf(/** @type {Record<string, number>} */ signals) {
+const PLANAR = ["body_force_N", "world_force_N", "world_force_point_m"]; // along x and along y
+
+/** Signals as setInput() of a robot with so many wheels takes them. */
+export function inputOf(/** @type {Record<string, number>} */ signals, /** @type {number} */ wheels) {
   /** @type {Record<string, any>} */
   const input = {};
   for (const [signal, value] of Object.entries(signals)) {
@@ -40,8 +42,9 @@ export function inputOf(/** @type {Record<string, number>} */ signals) {
     if (item === undefined) input[name] = value;
     else (input[name] ??= [])[Number(item) - 1] = value;
   }
-  for (const values of Object.values(input))
-    if (Array.isArray(values)) for (let i = 0; i < values.length; i++) values[i] ??= 0;
+  for (const [name, values] of Object.entries(input))
+    if (Array.isArray(values))
+      input[name] = Array.from({ length: PLANAR.includes(name) ? 2 : wheels }, (_, i) => values[i] ?? 0);
   return input;
 }
 

@@ -1,7 +1,9 @@
 // Wheels drawn on a canvas: place, turn, kind, add, delete; with the pointer, with keys, and as numbers.
 import { colours, drawBody, drawWheel, radiusOf, reach, surface } from "./drawing.js";
 import { byId, fixed, inDegrees, inRadians, say } from "./texts.js";
-import { NUMBERS, clean, showWheel } from "./wheel_form.js";
+import { numberTyped } from "./typed.js";
+import { NUMBERS, clean, showWheel, tellOfWheels } from "./wheel_form.js";
+import { addToWheels, takeFromWheels } from "./wheels.js";
 
 const PLACE_SNAP_M = 0.005;
 const TURN_SNAP = Math.PI / 36;
@@ -11,8 +13,9 @@ const HANDLE_PX = 16;
 const USUAL_ROLLER = { omni: Math.PI / 2, mecanum: Math.PI / 4 };
 /** The canvas on which wheels are drawn, and the numbers of the wheel that is chosen. */
 export class Editor {
-  constructor(/** @type {() => void} */ changed) {
+  constructor(/** @type {() => void} */ changed, /** @type {number} */ mostWheels) {
     this.changed = changed;
+    this.mostWheels = mostWheels;
     this.canvas = byId("drawing");
     this.chosen = 0;
     /** @type {string} */
@@ -228,7 +231,9 @@ export class Editor {
 
   add(/** @type {number[]} */ [x, y]) {
     const { kind = "omni", axle_rad = -Math.PI / 2, roller_rad } = this.wheel ?? {};
-    this.wheels.push({
+    if (this.wheels.length >= this.mostWheels)
+      return tellOfWheels(`A robot has ${this.mostWheels} wheels at most; delete one first, or move one.`);
+    addToWheels(this.scene, {
       kind,
       x_m: snap(x, PLACE_SNAP_M),
       y_m: snap(y, PLACE_SNAP_M),
@@ -241,7 +246,7 @@ export class Editor {
 
   remove() {
     if (!this.wheel) return;
-    this.wheels.splice(this.chosen, 1);
+    takeFromWheels(this.scene, this.chosen);
     this.chosen = Math.max(0, Math.min(this.chosen, this.wheels.length - 1));
     this.finish();
   }
@@ -256,7 +261,7 @@ export class Editor {
   }
 
   setNumber(/** @type {string} */ key, /** @type {string} */ unit, /** @type {string} */ text) {
-    const value = text.trim() === "" ? Number.NaN : Number(text.trim().replace(",", "."));
+    const value = numberTyped(`vehicle.wheel[${this.chosen + 1}].${key}`, text);
     this.wheel[key] = unit === "°" ? inRadians(value) : value;
     this.finish();
   }

@@ -24,7 +24,7 @@ const ZEROS = /** @type {[string, string][]} */ ([
 /** @param {any} scene @param {{method: string, step_s: number}} how @param {{changes: any[], steps: number}} drive */
 export function cExample(scene, how, drive) {
   /** @type {{steps: number, input: any}[]} */
-  const parts = stretches(drive, how.step_s);
+  const parts = stretches(drive, how.step_s, scene.vehicle.wheel.length);
   return `// ${commentText(scene.name)}: made by the page of Laconic. Compile it with the core:
 // cc -std=c99 -O2 -ffp-contract=off -fno-tree-slp-vectorize -I core_c/include robot.c core_c/src/*.c
 #include <laconic/laconic.h>
@@ -66,11 +66,11 @@ function commentText(/** @type {string} */ text) {
 }
 
 /** The drive as stretches of held inputs. */
-function stretches(/** @type {any} */ drive, /** @type {number} */ step_s) {
+function stretches(/** @type {any} */ drive, /** @type {number} */ step_s, /** @type {number} */ wheels) {
   const begins = drive.changes.map((/** @type {any} */ each) => Math.round(each.t_s / step_s));
   const found = drive.changes.map((/** @type {any} */ each, /** @type {number} */ i) => ({
     steps: (begins[i + 1] ?? drive.steps) - begins[i],
-    input: inputOf(each.signals),
+    input: inputOf(each.signals, wheels),
   }));
   if (begins[0] !== 0) found.unshift({ steps: begins[0] ?? drive.steps, input: {} });
   return found.filter((/** @type {{steps: number}} */ { steps }) => steps > 0);

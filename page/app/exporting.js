@@ -21,6 +21,14 @@ export function setUpExport(current) {
   byId("export-copy").addEventListener("click", () => copy(byId("export-text")));
 }
 
+/** A robot that the core refuses is none to take away; the banner tells what to mend. */
+export function allowExport(/** @type {boolean} */ isWhole) {
+  for (const id of ["export-toml", "export-c"]) {
+    byId(id).disabled = !isWhole;
+    byId(id).title = isWhole ? "" : "Not while the robot is refused";
+  }
+}
+
 function tomlOf(/** @type {any} */ { scene, how, run }) {
   return sceneToml(scene, how, run?.steps ? run : undefined);
 }

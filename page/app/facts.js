@@ -42,6 +42,11 @@ export function ownScene() {
   };
 }
 
+/** A scene by the keys that the core knows: the page's own name of it is none. */
+export function plain(/** @type {any} */ { id: _, ...scene }) {
+  return scene;
+}
+
 /** Whether wheels slip. */
 export function slips(/** @type {any} */ scene) {
   return scene.ground?.friction_coefficient !== undefined;

@@ -1,5 +1,6 @@
 // The vehicle's numbers as a form. A refusal of the core stands under the field that it names.
 import { byId, element, entry, inDegrees, inRadians, say } from "./texts.js";
+import { numberTyped } from "./typed.js";
 
 /** Path in a scene, label, unit. */
 const VEHICLE = /** @type {[string, string, string][]} */ ([
@@ -95,6 +96,8 @@ export class Fields {
     this.changed = changed;
     /** @type {Map<string, any>} */
     this.inputs = new Map();
+    /** @type {string | undefined} */
+    this.changedPath = undefined;
   }
 
   /** Makes the form anew for a scene. */
@@ -145,17 +148,21 @@ export class Fields {
   }
 
   take(/** @type {string} */ path, /** @type {string} */ unit, /** @type {string} */ text) {
-    const value = text.trim() === "" ? Number.NaN : Number(text.trim().replace(",", "."));
+    const value = numberTyped(path, text);
+    this.changedPath = path;
     const isAbsent = text.trim() === "" && EMPTY_MEANS_ABSENT.includes(path);
     setNumber(this.scene, path, isAbsent ? undefined : unit === "°" ? inRadians(value) : value);
     this.changed();
   }
 
-  /** Shows a refusal under its field; returns whether the form has that field. */
+  /**
+   * Shows a refusal under its field, and one that names none under the field that was changed before it; returns
+   * whether the form has the field that it names.
+   */
   refuse(/** @type {any} */ refused) {
     for (const [path, input] of this.inputs) {
-      const isIt = refused?.path === path;
-      input.setAttribute("aria-invalid", String(isIt));
+      const isIt = refused && (refused.path ? refused.path === path : path === this.changedPath);
+      input.setAttribute("aria-invalid", String(Boolean(isIt)));
       byId(`${input.id}-error`).textContent = isIt ? refused.explanation : "";
     }
     if (refused) say(refused.message);

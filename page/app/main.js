@@ -5,7 +5,7 @@ import { fillChoices, listenFor, showStep } from "./choices.js";
 import { Controls } from "./controls.js";
 import { perWheel } from "./drive.js";
 import { Editor } from "./editor.js";
-import { setUpExport } from "./exporting.js";
+import { allowExport, setUpExport } from "./exporting.js";
 import { ownScene, scenes, slips } from "./facts.js";
 import { Fields, setFriction } from "./fields.js";
 import { showHash } from "./hash_check.js";
@@ -13,6 +13,7 @@ import { showPanels } from "./panels.js";
 import { Run, SceneDrive } from "./run.js";
 import { Stage } from "./stage.js";
 import { byId, fixed, say } from "./texts.js";
+import { worded } from "./typed.js";
 import { refuseWheel } from "./wheel_form.js";
 
 const LONGEST_FRAME_S = 0.1;
@@ -38,7 +39,7 @@ class Page {
     this.costs = /** @type {number[]} */ ([]);
     this.stage = new Stage(byId("stage"));
     this.fields = new Fields(() => this.rebuild());
-    this.editor = new Editor(() => this.rebuild());
+    this.editor = new Editor(() => this.drawn(), laconic.maxWheels);
     this.controls = new Controls({ touched: (mode) => this.touched(mode) });
     fillChoices(laconic);
     listenFor(this);
@@ -56,7 +57,6 @@ class Page {
     this.how = { ...this.how, method, step_s };
     byId("method").value = method;
     showStep(step_s);
-    this.sceneDrive = new SceneDrive(this.scene);
     this.run?.free();
     this.run = undefined;
     this.editor.chosen = 0;
@@ -68,6 +68,7 @@ class Page {
   }
 
   fit() {
+    this.fields.changedPath = undefined;
     this.fields.fit(this.scene);
     this.editor.fit(this.scene);
     byId("ideal-row").hidden = !slips(this.scene);
@@ -75,6 +76,11 @@ class Page {
 
   change(/** @type {any} */ part) {
     this.how = { ...this.how, ...part };
+    this.rebuild();
+  }
+
+  drawn() {
+    this.fields.changedPath = undefined;
     this.rebuild();
   }
 
@@ -86,6 +92,7 @@ class Page {
 
   /** The run anew after a change: the same drive until the same instant. What the core refuses stops the robot. */
   rebuild() {
+    this.sceneDrive = new SceneDrive(this.scene);
     try {
       const before = this.run;
       const run = before
@@ -99,15 +106,18 @@ class Page {
       this.controls.fit(run.main.robot, run.scene, isSame);
       if (!isSame) this.stage.reset();
       this.refuse(undefined);
+      allowExport(true);
       this.startStudy();
       showPanels(this);
     } catch (refused) {
       this.refuse(refused);
+      allowExport(false);
     }
   }
 
   /** Shows a refusal near its field, and over the stage, as a field may be out of sight; undefined: none. */
-  refuse(/** @type {any} */ refused) {
+  refuse(/** @type {any} */ thrown) {
+    const refused = worded(thrown);
     this.refused = refused;
     this.fields.refuse(refused);
     refuseWheel(refused);

@@ -1,6 +1,6 @@
 // A drive: the robot, beside it the ideal one, a reference in fine steps and a fleet, all with the same inputs.
 import { changesOf, inputOf, sameSignals } from "./drive.js";
-import { ofOtherMass, onIdealGround, slips } from "./facts.js";
+import { ofOtherMass, onIdealGround, plain, slips } from "./facts.js";
 
 export const FLEET = 20;
 const LIGHTEST = 0.7;
@@ -18,7 +18,7 @@ const REPLAY_STEPS = 2e6; // more are not computed anew when a number changes
 export function referenceOf(/** @type {any} */ laconic, /** @type {any} */ scene, /** @type {number} */ step_s) {
   for (const method of ["taylor-8", "exact-flow-4", "auto"])
     try {
-      return { robot: laconic.robot(scene, { method, step_s }), method };
+      return { robot: laconic.robot(plain(scene), { method, step_s }), method };
     } catch {
       continue;
     }
@@ -56,7 +56,7 @@ export class Run {
 
   /** @returns {Actor} */
   actor(/** @type {any} */ scene, method = this.how.method) {
-    return { robot: this.laconic.robot(scene, { method, step_s: this.step_s }), path: [], scene };
+    return { robot: this.laconic.robot(plain(scene), { method, step_s: this.step_s }), path: [], scene };
   }
 
   idealActor() {
@@ -93,7 +93,7 @@ export class Run {
     const last = this.changes.at(-1);
     if (last && last.t_s === this.time_s) last.signals = this.signals;
     else this.changes.push({ t_s: this.time_s, signals: this.signals });
-    const input = inputOf(this.signals);
+    const input = inputOf(this.signals, this.scene.vehicle.wheel.length);
     for (const { robot } of this.actors) robot.setInput(input);
     this.reference?.robot.setInput(input);
   }

@@ -1,5 +1,5 @@
 // The numbers of the wheel that is chosen in the editor, and a button for each wheel.
-import { byId, element, inDegrees } from "./texts.js";
+import { byId, element, inDegrees, say } from "./texts.js";
 
 const DRAWN_KINDS = ["omni", "mecanum", "fixed"];
 export const NUMBERS = /** @type {[string, string, string][]} */ ([
@@ -39,6 +39,12 @@ function showList(/** @type {any} */ editor) {
     button.setAttribute("aria-pressed", String(i === editor.chosen));
     button.setAttribute("aria-label", `Wheel ${i + 1}, ${editor.wheels[i].kind}`);
   });
+}
+
+/** Tells below the wheel's numbers, and those who listen, why something was not done. */
+export function tellOfWheels(/** @type {string} */ text) {
+  byId("wheel-error").textContent = text;
+  say(text);
 }
 
 /** Shows a refusal of a wheel's number. */

@@ -288,8 +288,8 @@ def test_every_number_of_the_robot_changes_how_the_same_drive_ends(page):
 @pytest.mark.parametrize(("path", "text", "told"), [
     ("vehicle.mass_kg", "0", "0 is not positive; give a value above 0"),
     ("vehicle.yaw_inertia_kgm2", "-1", "-1 is not positive; give a value above 0"),
-    ("vehicle.wheel_radius_m", "one", "is not a finite number; give a number"),
-    ("vehicle.wheel_inertia_kgm2", "", "is not a finite number; give a number"),
+    ("vehicle.wheel_radius_m", "one", "“one” is no number; give one"),
+    ("vehicle.wheel_inertia_kgm2", "", "a number is missing; give one"),
     ("ground.slope_rad", "95", "give"),
 ])
 def test_a_number_that_the_core_refuses_is_told_under_its_field_and_stops_the_robot(page, path, text, told):

@@ -112,7 +112,8 @@ def test_wheels_that_cannot_turn_the_robot_are_told_in_the_cores_words_until_the
 
 
 @pytest.mark.parametrize(("key", "text", "told"), [
-    ("x_m", "far", "vehicle.wheel[1].x_m: NaN is not a finite number; give a number"),
+    ("x_m", "far", "vehicle.wheel[1].x_m: “far” is no number; give one"),
+    ("y_m", "", "vehicle.wheel[1].y_m: a number is missing; give one"),
     ("roller_rad", "0", "vehicle.wheel[1].roller_rad: with 0 rad the roller axis lies along the axle"),
     ("axle_rad", "1e99", "vehicle.wheel[1].axle_rad:")])
 def test_a_wheels_number_that_the_core_refuses_is_told_below(drawing, key, text, told):
@@ -120,3 +121,35 @@ def test_a_wheels_number_that_the_core_refuses_is_told_below(drawing, key, text,
     assert drawing.text("wheel-error").startswith(told)
     drawing.choose("robot", "own")
     assert drawing.text("wheel-error") == ""
+
+
+def test_a_wheel_too_many_is_refused_in_the_pages_words_and_not_drawn(drawing):
+    for _ in range(12):
+        drawing.click("add-wheel")
+    assert (wheels(drawing), drawing.text("wheel-error")) == (16, "")
+    drawing.click("add-wheel")
+    drawing.js("document.getElementById('drawing').focus()")
+    drawing.press("Insert")
+    assert wheels(drawing) == 16
+    assert drawing.text("wheel-error") == "A robot has 16 wheels at most; delete one first, or move one."
+    drawing.click("delete-wheel")
+    assert (wheels(drawing), drawing.text("wheel-error")) == (15, "")
+
+
+def test_a_wheel_that_is_deleted_takes_its_drive_with_it(page):
+    page.choose("robot", "robotino2")
+    assert page.js("return document.querySelector('[name=drive][value=scene]').checked")
+    page.click("[name=view][value=draw]")
+    page.click("#wheel-list button:nth-child(1)")
+    page.click("delete-wheel")
+    assert (wheels(page), page.text("wheel-error")) == (2, "")
+    page.click("export-toml")
+    assert page.js("return document.getElementById('export-text').value").count("voltage_V[") == 2
+
+
+def test_a_robot_that_is_refused_is_not_exported(drawing):
+    drawing.type("wheel-roller_rad", "0")
+    disabled = "return ['export-toml', 'export-c'].map((id) => document.getElementById(id).disabled)"
+    assert drawing.js(disabled) == [True, True]
+    drawing.type("wheel-roller_rad", "45")
+    assert drawing.js(disabled) == [False, False]

@@ -131,7 +131,7 @@ export interface Outputs {
   slip_loss_J?: number;
 }
 
-/** What the core refuses: `message` names the field, what is wrong and the remedy in one line. */
+/** What is refused, by the core or before it: `message` names the field, what is wrong and the remedy in one line. */
 export class Refused extends Error {
   readonly path: string;
   readonly explanation: string;
@@ -149,18 +149,21 @@ export class Robot {
   readonly hasFriction: boolean;
   readonly steps: number;
   readonly time_s: number;
-  /** @throws Refused for an unknown input or a wheel that is not there */
+  /**
+   * Sets what acts from now on. @throws Refused for an unknown input, a list of another length, and what is no finite
+   * number; nothing changes then
+   */
   setInput(input: Input): void;
-  /** @throws Refused where a step cannot be taken; the steps before it were */
+  /** @throws Refused for no whole number, and where a step cannot be taken; the steps before it were */
   run(steps: number): void;
   outputs(): Outputs;
   /** Least voltages that hold a velocity of the body's origin on ideal ground [m/s, m/s, rad/s]. */
   voltagesFor(forward: number, left: number, turn: number): number[];
-  /** Least axle torques [N·m] that accelerate the body's origin so from rest. */
+  /** Least axle torques [N·m] that accelerate the body's origin so from rest; 0: fixed wheels hold it. */
   torquesFor(forward: number, left: number, turn: number): number[];
   /** The nearest velocity of the body's origin that the wheels allow. */
   allowed(forward: number, left: number, turn: number): number[];
-  /** Motor gain of a wheel, counted from 0 [N·m/V]; 0: it has no motor. */
+  /** Motor gain of a wheel, counted from 0 [N·m/V]; 0: it has no motor. @throws Refused without such a wheel */
   motorGain(wheel: number): number;
   free(): void;
 }

@@ -1,7 +1,9 @@
 // Laconic, the dynamics of wheeled robots, in browsers and Node: the C core as WebAssembly.
+import { askKeys } from "./checks.js";
 import { Module } from "./module.js";
 import { Refused } from "./refused.js";
 import { Robot } from "./robot.js";
+import { runOf } from "./scene.js";
 
 export { Refused, Robot };
 
@@ -9,6 +11,7 @@ export { Refused, Robot };
 export class Laconic {
   /** @param {Module} module */
   constructor(module) {
+    if (!(module instanceof Module)) throw new Refused("", "the core is loaded by load()", "not loaded");
     this.module = module;
     this.version = module.text(module.c.laconic_web_version());
     this.maxWheels = module.c.laconic_web_max_wheels();
@@ -19,7 +22,10 @@ export class Laconic {
   }
 
   /** @param {any} scene @param {{method?: string, step_s?: number}} [run] */
-  robot(scene, { method = scene.run?.method ?? "auto", step_s = scene.run?.step_s ?? 0.001 } = {}) {
+  robot(scene, run = {}) {
+    const ofScene = runOf(scene);
+    askKeys("run", run, ["method", "step_s"]);
+    const { method = ofScene.method ?? "auto", step_s = ofScene.step_s ?? 0.001 } = run;
     return new Robot(this.module, scene, method, step_s);
   }
 

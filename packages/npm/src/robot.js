@@ -1,23 +1,34 @@
 // One robot: made of a scene, stepped with an input held, read by its outputs.
+import { askFinite, askKeys, askNumber, askNumbers, askTable, toldOf } from "./checks.js";
+import { Module } from "./module.js";
 import { Refused } from "./refused.js";
 import { SceneSetter } from "./scene.js";
 
-const INPUTS = [
-  "voltage_V",
-  "axle_torque_Nm",
-  "body_force_N",
-  "body_moment_Nm",
-  "world_force_N",
-  "world_force_point_m",
-];
+/** How many numbers an input has: 0, one without a list; WHEELS, one for each wheel. */
+const WHEELS = -1;
+/** @type {Record<string, number>} */
+const INPUTS = {
+  voltage_V: WHEELS,
+  axle_torque_Nm: WHEELS,
+  body_force_N: 2,
+  body_moment_Nm: 0,
+  world_force_N: 2,
+  world_force_point_m: 2,
+};
 const PER_POINT = ["normal_N"];
 const FIRST_OF_FRICTION = "slip_along_m_per_s";
 
 /** Refused for a velocity or acceleration that is left out or is not finite. */
-function checkFinite(/** @type {Record<string, number>} */ values) {
-  for (const [name, value] of Object.entries(values))
-    if (!Number.isFinite(value))
-      throw new Refused(name, `${value} is not a finite number; give forward, left and turn`, "not finite");
+function checkFinite(/** @type {Record<string, unknown>} */ values) {
+  for (const [name, value] of Object.entries(values)) askFinite(name, value, "give forward, left and turn");
+}
+
+/** Refused where a result leaves the range of numbers: the largest of what was given is named. */
+function checkRange(/** @type {number[]} */ found, /** @type {Record<string, number>} */ given) {
+  if (found.every(Number.isFinite)) return found;
+  const [[name, value]] = Object.entries(given).sort(([, a], [, b]) => Math.abs(b) - Math.abs(a));
+  const told = `${value} leads beyond the range of double precision; give less, or check the robot's units`;
+  throw new Refused(name, told, "overflow", value);
 }
 
 /** A robot at its start. Call free() when it is no longer needed: its memory is used again. */
@@ -26,6 +37,8 @@ export class Robot {
 
   /** @param {import("./module.js").Module} module @param {any} scene @param {string} method @param {number} step_s */
   constructor(module, scene, method, step_s) {
+    if (!(module instanceof Module))
+      throw new Refused("", "a robot is made by robot() of what load() gives", "not loaded");
     this.module = module;
     this.c = module.c;
     this.#pointer = this.c.laconic_web_new();
@@ -47,6 +60,7 @@ export class Robot {
   /** @param {any} scene @param {string} method @param {number} step_s */
   begin(scene, method, step_s) {
     new SceneSetter(this.module, this.pointer).set(scene);
+    askNumber("run.step_s", step_s);
     const found = this.module.methods.find((each) => each.name === method);
     this.step_s = step_s;
     this.wheelCount = scene.vehicle.wheel?.length ?? 0;
@@ -59,29 +73,35 @@ export class Robot {
     if (status !== 0) throw Refused.of(this.module, this.pointer);
   }
 
-  /** Sets what acts from now on; every input that is not given becomes 0. */
-  setInput(/** @type {Record<string, number | ArrayLike<number>>} */ input) {
-    this.c.laconic_web_clear_input(this.pointer);
-    for (const [name, given] of Object.entries(input)) {
-      if (!INPUTS.includes(name))
-        throw new Refused(name, `there is no such input; use ${INPUTS.join(", ")}`, "unknown key");
-      if (typeof given === "number") this.setOne(name, 0, given);
-      else for (let i = 0; i < given.length; i++) this.setOne(`${name}[#]`, i + 1, given[i]);
+  /** Sets what acts from now on; every input that is not given becomes 0. A refused one changes nothing. */
+  setInput(/** @type {any} */ input) {
+    const pointer = this.pointer,
+      names = Object.keys(INPUTS);
+    askKeys("", askTable("input", input, `give an object with any of ${names.join(", ")}`), names);
+    const found = Object.entries(input).map(([name, given]) => ({ name, values: this.inputValues(name, given) }));
+    this.c.laconic_web_clear_input(pointer);
+    for (const { name, values } of found) {
+      const isOne = INPUTS[name] === 0;
+      const field = this.module.fields.get(isOne ? name : `${name}[#]`);
+      values.forEach((value, index) => this.c.laconic_web_set(pointer, field, isOne ? 0 : index + 1, value));
     }
   }
 
-  setOne(/** @type {string} */ path, /** @type {number} */ item, /** @type {number} */ value) {
-    const number = this.module.fields.get(path);
-    if (number === undefined || !this.c.laconic_web_set(this.pointer, number, item, value))
-      throw new Refused(path.replace("#", String(item)), "the robot has no such input", "unknown key");
+  inputValues(/** @type {string} */ name, /** @type {any} */ given) {
+    const count = INPUTS[name];
+    if (count === 0) return [askFinite(name, given)];
+    return count === WHEELS
+      ? askNumbers(name, given, /** @type {number} */ (this.wheelCount), "one for each wheel")
+      : askNumbers(name, given, count, "along x and along y");
   }
 
   /** Takes steps with the input held. */
   run(/** @type {number} */ steps) {
+    const pointer = this.pointer;
     if (!Number.isSafeInteger(steps) || steps < 0)
-      throw new RangeError(`steps: ${steps} is no whole number of steps; give 0 or more`);
+      throw new Refused("steps", `${toldOf(steps)} is no whole number of steps; give 0 or more`, "not a whole number");
     for (let left = steps; left > 0; left -= Math.min(left, 2 ** 30))
-      this.check(this.c.laconic_web_run(this.pointer, Math.min(left, 2 ** 30)));
+      this.check(this.c.laconic_web_run(pointer, Math.min(left, 2 ** 30)));
   }
 
   get steps() {
@@ -109,29 +129,35 @@ export class Robot {
   /** Least voltages that hold a velocity of the body's origin on ideal ground, one for each wheel. */
   voltagesFor(/** @type {number} */ forward, /** @type {number} */ left, /** @type {number} */ turn) {
     checkFinite({ forward, left, turn });
-    return this.wanted(this.c.laconic_web_voltages_for(this.pointer, forward, left, turn));
+    return this.wanted(this.c.laconic_web_voltages_for(this.pointer, forward, left, turn), { forward, left, turn });
   }
 
-  /** Least axle torques that give an acceleration of the body's origin from rest. */
+  /** Least axle torques that give an acceleration of the body's origin from rest; 0 where the wheels cannot roll so. */
   torquesFor(/** @type {number} */ forward, /** @type {number} */ left, /** @type {number} */ turn) {
     checkFinite({ forward, left, turn });
-    return this.wanted(this.c.laconic_web_torques_for(this.pointer, forward, left, turn));
+    if (!this.c.laconic_web_rolls(this.pointer)) return new Array(this.wheelCount).fill(0);
+    return this.wanted(this.c.laconic_web_torques_for(this.pointer, forward, left, turn), { forward, left, turn });
   }
 
-  wanted(/** @type {number} */ pointer) {
-    return pointer
-      ? this.module.reals(pointer, /** @type {number} */ (this.wheelCount))
-      : new Array(this.wheelCount).fill(0);
+  wanted(/** @type {number} */ at, /** @type {Record<string, number>} */ given) {
+    return checkRange(at ? this.module.reals(at, /** @type {number} */ (this.wheelCount)) : [Number.NaN], given);
   }
 
   /** The velocity of the body's origin, nearest to this one, that the wheels allow: forward, left, turn. */
   allowed(/** @type {number} */ forward, /** @type {number} */ left, /** @type {number} */ turn) {
-    return [0, 1, 2].map((k) => this.c.laconic_web_allowed(this.pointer, forward, left, turn, k));
+    checkFinite({ forward, left, turn });
+    const found = [0, 1, 2].map((k) => this.c.laconic_web_allowed(this.pointer, forward, left, turn, k));
+    return checkRange(found, { forward, left, turn });
   }
 
   /** Motor gain of a wheel, from 0 [N·m/V]; 0: it has no motor. */
   motorGain(/** @type {number} */ wheel) {
-    return this.c.laconic_web_motor_gain(this.pointer, wheel);
+    const pointer = this.pointer,
+      count = /** @type {number} */ (this.wheelCount);
+    const remedy = count ? `give 0 to ${count - 1}` : "the robot has none";
+    if (!Number.isInteger(wheel) || wheel < 0 || wheel >= count)
+      throw new Refused("wheel", `${toldOf(wheel)} is no wheel of this robot; ${remedy}`, "no such wheel");
+    return this.c.laconic_web_motor_gain(pointer, wheel);
   }
 
   /** Gives its memory back; a second time does nothing. */

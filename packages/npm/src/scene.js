@@ -1,6 +1,11 @@
 // A scene as a robot's numbers: every key by its path in the core's own list of fields.
+import { askFinite, askKeys, askNumber, askNumbers, askTable, isList, toldOf, unknownKey } from "./checks.js";
 import { Refused } from "./refused.js";
 
+const SCENE = ["name", "source", "vehicle", "ground", "initial", "input", "run", "outputs", "sensors"];
+const OF_TOOLS = ["speed_controller", "rig"];
+const INITIAL = ["nu_rad_per_s", "velocity_body_m_per_s", "yaw_rate_rad_per_s", "x_m", "y_m", "heading_rad"];
+const OF_RUN = ["duration_s", "step_s", "method", "real"];
 const KINDS = { omni: 1, mecanum: 1, roller: 1, fixed: 2 };
 const CIRCUITS = ["driven", "open", "shorted"];
 const TABLES = ["motor", "payload", "drive"];
@@ -8,6 +13,16 @@ const RAD_PER_DEG = Math.PI / 180;
 const OMNI_ROLLER_RAD = Math.PI / 2;
 const ABOVE_0 = { radius_m: "the vehicle's", friction_coefficient: "the ground's" }; // where 0 would mean that
 const START = ["x_m", "y_m", "heading_rad"];
+const KIND = { integer: 1, flag: 3, absence: 4 }; // laconic_field_kind
+const NEED = { always: 1, payload: 4, wheel: 6, roller: 7, support: 8 }; // laconic_field_need
+
+/** Method and step of a scene, which both may lack. @param {any} scene @returns {{method?: any, step_s?: any}} */
+export function runOf(scene) {
+  askTable("scene", scene, "give an object with the keys of a scene, vehicle among them");
+  if (scene.run === undefined) return {};
+  askKeys("run", scene.run, OF_RUN);
+  return scene.run;
+}
 
 /** Sets all numbers of a scene in a robot. */
 export class SceneSetter {
@@ -19,20 +34,43 @@ export class SceneSetter {
 
   /** @param {any} scene */
   set(scene) {
-    const vehicle = scene.vehicle ?? {};
+    askKeys("", scene, [...SCENE, ...OF_TOOLS]);
+    const vehicle = askTable("vehicle", scene.vehicle, "give an object with mass_kg and the vehicle's other keys");
+    const { wheel = [], support = [] } = vehicle;
     this.table("vehicle", vehicle, [...TABLES, "wheel", "support"]);
-    for (const name of TABLES) if (vehicle[name]) this.table(`vehicle.${name}`, vehicle[name]);
+    this.need("vehicle.", vehicle, [NEED.always], ["wheel"]);
+    for (const name of TABLES)
+      if (vehicle[name] !== undefined) {
+        this.table(`vehicle.${name}`, vehicle[name]);
+        this.need(`vehicle.${name}.`, vehicle[name], [NEED.always, NEED.payload]);
+      }
     this.module.c.laconic_web_set_motor(this.robot, vehicle.motor ? 1 : 0);
-    if (scene.ground) this.table("ground", scene.ground);
-    this.list("wheel", vehicle.wheel ?? [], (wheel, name) => this.wheel(wheel, name));
-    this.list("support", vehicle.support ?? [], (support) => support);
-    this.start(scene.initial ?? {});
+    if (scene.ground !== undefined) this.table("ground", scene.ground);
+    this.list("wheel", wheel, (each, name) => this.wheel(each, name));
+    this.list("support", support, (each, name) => this.support(each, name));
+    if (scene.initial !== undefined) this.start(scene.initial, wheel.length);
   }
 
   /** @param {string} path @param {any} given @param {string[]} [others] */
   table(path, given, others = []) {
-    for (const [key, value] of Object.entries(inRad(given)))
+    for (const [key, value] of Object.entries(inRad(path, given)))
       if (!others.includes(key)) this.number(`${path}.${key}`, `${path}.${key}`, 0, value);
+  }
+
+  /** What must be given: else a number that was forgotten would be 0. */
+  need(
+    /** @type {string} */ path,
+    /** @type {any} */ given,
+    /** @type {number[]} */ needs,
+    /** @type {string[]} */ others = [],
+    shown = path,
+  ) {
+    for (const [each, number] of this.module.fields) {
+      const key = each.slice(path.length);
+      if (!each.startsWith(path) || /[.[]/.test(key) || others.includes(key) || key in given) continue;
+      if (needs.includes(this.module.c.laconic_web_field_need(number)))
+        throw new Refused(`${shown}${key}`, "is missing; give a number", "missing");
+    }
   }
 
   /** One number; a key that the core's list lacks is refused by its name. */
@@ -43,32 +81,46 @@ export class SceneSetter {
     /** @type {any} */ value,
   ) {
     const number = this.module.fields.get(path);
-    if (number === undefined) throw new Refused(shown, "unknown key; take it out or see docs/scenes.md", "unknown key");
-    if (typeof value !== "number" && typeof value !== "boolean")
-      throw new Refused(shown, `${JSON.stringify(value)} is no number; give one`, "not a number");
-    this.module.c.laconic_web_set(this.robot, number, item, Number(value));
+    if (number === undefined) throw unknownKey(shown);
+    const kind = this.module.c.laconic_web_field_kind(number);
+    if (kind !== KIND.flag && kind !== KIND.absence) askNumber(shown, value);
+    else if (typeof value !== "boolean")
+      throw new Refused(shown, `${toldOf(value)} is neither true nor false; give one of them`, "not a boolean");
+    if (kind === KIND.integer && !Number.isInteger(value))
+      throw new Refused(shown, `${toldOf(value)} is no whole number; give one`, "not a whole number");
+    if (!this.module.c.laconic_web_set(this.robot, number, item, Number(value)) && item === 0) throw unknownKey(shown);
   }
 
   /** Tables of which there are several. Those beyond the core's room are only counted: its check refuses them. */
   list(
     /** @type {string} */ name,
-    /** @type {any[]} */ given,
+    /** @type {any} */ given,
     /** @type {(each: any, name: string) => any} */ numbers,
   ) {
-    this.module.c.laconic_web_set(this.robot, this.module.fields.get(`vehicle.${name}`), 0, given.length);
-    given.forEach((each, index) => {
-      const shown = `vehicle.${name}[${index + 1}]`;
+    const path = `vehicle.${name}`;
+    if (!isList(given)) throw new Refused(path, `${toldOf(given)} is no list; give one of objects`, "not a list");
+    this.module.c.laconic_web_set(this.robot, this.module.fields.get(path), 0, given.length);
+    Array.from(given, (/** @type {any} */ each, /** @type {number} */ index) => {
+      const shown = `${path}[${index + 1}]`;
       for (const [key, value] of Object.entries(numbers(each, shown)))
-        this.number(`vehicle.${name}[#].${key}`, `${shown}.${key}`, index + 1, value);
+        this.number(`${path}[#].${key}`, `${shown}.${key}`, index + 1, value);
     });
   }
 
+  support(/** @type {any} */ given, /** @type {string} */ name) {
+    const table = askTable(name, given, "give an object with x_m and y_m");
+    this.need("vehicle.support[#].", table, [NEED.support], [], `${name}.`);
+    return table;
+  }
+
   wheel(/** @type {any} */ given, /** @type {string} */ name) {
-    const { kind, driven, motor_circuit, ...rest } = inPlace(inRad(given));
-    if (!(kind in KINDS))
+    askTable(name, given, "give an object with kind, x_m, y_m and axle_rad");
+    const { kind, driven, motor_circuit, undriven, ...rest } = inPlace(name, inRad(name, given));
+    if (undriven !== undefined) throw unknownKey(`${name}.undriven`, ["driven"]);
+    if (typeof kind !== "string" || !Object.hasOwn(KINDS, kind))
       throw new Refused(
         `${name}.kind`,
-        `there is no ${JSON.stringify(kind)}; use omni, mecanum, roller or fixed`,
+        `there is no ${toldOf(kind)}; use omni, mecanum, roller or fixed`,
         "unknown kind",
       );
     for (const [key, whose] of Object.entries(ABOVE_0))
@@ -80,41 +132,73 @@ export class SceneSetter {
         );
     /** @type {Record<string, number | boolean>} */
     const numbers = { kind: KINDS[/** @type {keyof typeof KINDS} */ (kind)], ...rest };
-    if (kind !== "fixed") numbers.roller_rad ??= kind === "omni" ? OMNI_ROLLER_RAD : Number.NaN;
-    if (driven !== undefined) numbers.undriven = !driven;
-    if (motor_circuit !== undefined)
-      numbers.motor_circuit = typeof motor_circuit === "string" ? CIRCUITS.indexOf(motor_circuit) : motor_circuit;
+    if (kind === "omni") numbers.roller_rad ??= OMNI_ROLLER_RAD;
+    this.need("vehicle.wheel[#].", numbers, [NEED.wheel, ...(kind === "fixed" ? [] : [NEED.roller])], [], `${name}.`);
+    if (driven !== undefined) numbers.undriven = typeof driven === "boolean" ? !driven : driven;
+    if (motor_circuit !== undefined) numbers.motor_circuit = circuitOf(`${name}.motor_circuit`, motor_circuit);
     return numbers;
   }
 
   /** ν, or the velocity of the centre of mass in body axes and the yaw rate. */
-  start(/** @type {any} */ given) {
-    const start = inRad(given);
+  start(/** @type {any} */ given, /** @type {number} */ wheels) {
+    const start = inRad("initial", given);
+    askKeys("initial", start, [...INITIAL, "wheel_speed_rad_per_s"]);
     for (const key of START)
-      if (start[key] !== undefined) this.number(`initial.${key}`, `initial.${key}`, 0, start[key]);
-    for (const key of ["nu_rad_per_s", "wheel_speed_rad_per_s"])
-      (start[key] ?? []).forEach((/** @type {number} */ value, /** @type {number} */ index) =>
-        this.number(`initial.${key}[#]`, `initial.${key}[${index + 1}]`, index + 1, value),
-      );
-    const [forward, left] = start.velocity_body_m_per_s ?? [0, 0];
-    const turn = start.yaw_rate_rad_per_s ?? 0;
-    if (forward !== 0 || left !== 0 || turn !== 0)
-      if (this.module.c.laconic_web_start_velocity(this.robot, forward, left, turn))
-        throw Refused.of(this.module, this.robot);
+      if (key in start) this.number(`initial.${key}`, `initial.${key}`, 0, start[key]);
+    for (const [key, count, each] of /** @type {[string, number, string][]} */ ([
+      ["nu_rad_per_s", 3, "ν1, ν2 and ν3"],
+      ["wheel_speed_rad_per_s", wheels, "one for each wheel"],
+    ]))
+      if (key in start)
+        askNumbers(`initial.${key}`, start[key], count, each).forEach((value, index) =>
+          this.number(`initial.${key}[#]`, `initial.${key}[${index + 1}]`, index + 1, value),
+        );
+    this.velocity(start);
+  }
+
+  velocity(/** @type {any} */ { velocity_body_m_per_s = [0, 0], yaw_rate_rad_per_s = 0, ...others }) {
+    const each = "ahead and to the left";
+    const [forward, left] = askNumbers("initial.velocity_body_m_per_s", velocity_body_m_per_s, 2, each);
+    const turn = askFinite("initial.yaw_rate_rad_per_s", yaw_rate_rad_per_s);
+    if (forward === 0 && left === 0 && turn === 0) return;
+    if (others.nu_rad_per_s !== undefined)
+      throw new Refused("initial.nu_rad_per_s", "is given besides a velocity; keep one of them", "given twice");
+    if (this.module.c.laconic_web_start_velocity(this.robot, forward, left, turn))
+      throw Refused.of(this.module, this.robot);
   }
 }
 
-/** Angles in degrees, by the suffix _deg, become radians. */
-function inRad(/** @type {any} */ given) {
-  return Object.fromEntries(
-    Object.entries(given).map(([key, value]) =>
-      key.endsWith("_deg") ? [key.replace(/_deg$/, "_rad"), Number(value) * RAD_PER_DEG] : [key, value],
-    ),
-  );
+function circuitOf(/** @type {string} */ path, /** @type {any} */ given) {
+  const number = CIRCUITS.indexOf(given);
+  if (number < 0 && typeof given !== "number")
+    throw new Refused(path, `there is no ${toldOf(given)}; use ${CIRCUITS.join(", ")}`, "motor circuit unknown");
+  return number < 0 ? given : number;
 }
 
-/** distance_m and bearing_rad become x_m and y_m. */
-function inPlace(/** @type {any} */ { distance_m, bearing_rad, ...rest }) {
-  if (distance_m === undefined) return rest;
-  return { ...rest, x_m: distance_m * Math.cos(bearing_rad), y_m: distance_m * Math.sin(bearing_rad) };
+/** Angles in degrees, by the suffix _deg, become radians. @param {string} path @param {any} given */
+function inRad(path, given) {
+  /** @type {Record<string, any>} */
+  const found = {};
+  for (const [key, value] of Object.entries(askTable(path, given))) {
+    const inDegrees = key.endsWith("_deg"),
+      name = inDegrees ? key.replace(/_deg$/, "_rad") : key;
+    if (Object.hasOwn(found, name))
+      throw new Refused(`${path}.${key}`, "is given in degrees and in radians; keep one", "given twice");
+    found[name] = inDegrees ? askNumber(`${path}.${key}`, value) * RAD_PER_DEG : value;
+  }
+  return found;
+}
+
+/**
+ * distance_m and bearing_rad become x_m and y_m.
+ * @param {string} path @param {any} given @returns {Record<string, any>}
+ */
+function inPlace(path, { distance_m, bearing_rad, ...rest }) {
+  if (distance_m === undefined && bearing_rad === undefined) return rest;
+  for (const key of ["x_m", "y_m"])
+    if (key in rest)
+      throw new Refused(`${path}.${key}`, "is given besides distance_m and bearing_rad; keep one place", "given twice");
+  const far = askFinite(`${path}.distance_m`, distance_m),
+    bearing = askFinite(`${path}.bearing_rad`, bearing_rad);
+  return { ...rest, x_m: far * Math.cos(bearing), y_m: far * Math.sin(bearing) };
 }

@@ -11,6 +11,12 @@ WEB_EXPORT(laconic_web_field_kind) int32_t laconic_web_field_kind(int32_t field)
     return traits != NULL ? (int32_t)traits->kind : -1;
 }
 
+/* laconic_field_need; −1 for a number that is no field. */
+WEB_EXPORT(laconic_web_field_need) int32_t laconic_web_field_need(int32_t field) {
+    const laconic_field_traits *traits = laconic_field_traits_of((laconic_field)field);
+    return traits != NULL ? (int32_t)traits->need : -1;
+}
+
 WEB_EXPORT(laconic_web_field_count) int32_t laconic_web_field_count(void) { return LACONIC_FIELD_COUNT; }
 
 /* NULL beyond the last. */

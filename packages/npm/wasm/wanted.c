@@ -125,14 +125,18 @@ const double *laconic_web_torques_for(laconic_web_robot *robot, double forward, 
     return robot->wanted;
 }
 
-/* The nearest velocity of the body's origin that the wheels allow: 0 forward, 1 left, 2 turn of it. */
+/* Whether the robot rolls on ideal ground; else fixed wheels keep it from every turn, or from every motion. */
+WEB_EXPORT(laconic_web_rolls) bool laconic_web_rolls(const laconic_web_robot *robot) { return robot->rolls; }
+
+/* The nearest velocity of the body's origin that the wheels allow: 0 forward, 1 left, 2 turn of it. NaN where it is
+ * beyond the range. */
 WEB_EXPORT(laconic_web_allowed)
 double laconic_web_allowed(laconic_web_robot *robot, double forward, double left, double turn, int32_t component) {
     double nu[3], zeta[3];
     const laconic_model *model = &robot->rolling;
     if (!robot->rolls) return component == 0 ? forward : component == 2 ? turn : 0;
     nu_of(nu, model, forward, left, turn);
-    if (!allowed(zeta, nu, model)) return 0;
+    if (!allowed(zeta, nu, model)) return __builtin_nan("");
     const double yaw = nu[2] / model->yaw_scale;
     if (component == 2) return yaw;
     return component == 0 ? nu[0] * model->wheel_radius_m + yaw * model->com_y_m

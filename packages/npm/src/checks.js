@@ -1,0 +1,60 @@
+// What is asked of everything that a caller gives: a refusal names it, says what it is, and what to give.
+import { Refused } from "./refused.js";
+
+const MOST_SHOWN = 60; // characters of what was given
+
+/** What was given, for one line. */
+export function toldOf(/** @type {unknown} */ given) {
+  if (isList(given)) return "a list";
+  if (typeof given === "function") return "a function";
+  if (typeof given === "object" && given !== null) return "an object";
+  const text = typeof given === "string" ? JSON.stringify(given) : String(given);
+  return text.length > MOST_SHOWN ? `${text.slice(0, MOST_SHOWN)} …` : text;
+}
+
+export function isList(/** @type {unknown} */ given) {
+  return Array.isArray(given) || (ArrayBuffer.isView(given) && !(given instanceof DataView));
+}
+
+/** An object with keys. @param {string} path @param {any} given @returns {Record<string, any>} */
+export function askTable(path, given, remedy = "give an object with keys") {
+  if (typeof given !== "object" || given === null || isList(given))
+    throw new Refused(path, `${toldOf(given)} is no object; ${remedy}`, "not an object");
+  return given;
+}
+
+/** No key beside these. @param {string} path @param {any} given @param {string[]} keys */
+export function askKeys(path, given, keys) {
+  for (const key of Object.keys(askTable(path, given)))
+    if (!keys.includes(key)) throw unknownKey(path ? `${path}.${key}` : key, keys);
+}
+
+export function unknownKey(/** @type {string} */ path, /** @type {string[]} */ keys = []) {
+  const known = keys.length ? `the keys are ${keys.join(", ")}` : "see docs/scenes.md";
+  return new Refused(path, `unknown key; take it out, or correct it: ${known}`, "unknown key");
+}
+
+/** A number, of which the core judges what it refuses itself, NaN too. */
+export function askNumber(/** @type {string} */ path, /** @type {unknown} */ given, remedy = "give one") {
+  if (typeof given !== "number") throw new Refused(path, `${toldOf(given)} is no number; ${remedy}`, "not a number");
+  return given;
+}
+
+/** A finite one. */
+export function askFinite(/** @type {string} */ path, /** @type {unknown} */ given, remedy = "give one") {
+  const value = askNumber(path, given, remedy);
+  if (Number.isFinite(value)) return value;
+  throw new Refused(path, `${value} is not a finite number; ${remedy}`, "not finite", value);
+}
+
+/**
+ * So many finite numbers; `each` says what they are for.
+ * @param {string} path @param {any} given @param {number} count @param {string} each
+ */
+export function askNumbers(path, given, count, each) {
+  const wanted = `give ${count}, ${each}`;
+  if (!isList(given)) throw new Refused(path, `${toldOf(given)} is no list of numbers; ${wanted}`, "not a list");
+  if (given.length !== count)
+    throw new Refused(path, `a list of ${given.length}; ${wanted}`, "wrong length", given.length, count);
+  return Array.from(given, (value, index) => askFinite(`${path}[${index + 1}]`, value));
+}
