@@ -34,8 +34,8 @@ const asked = {
   mass: (x) => made({ mass_kg: x }),
   wheels: (x) => made({ wheel: x }), wheel: (x) => made({ wheel: [x] }), motor: (x) => made({ motor: x }),
   support: (x) => made({ support: x }), ground: (x) => made({}, { ground: x }),
-  initial: (x) => made({}, { initial: x }), nu: (x) => made({}, { initial: { nu_rad_per_s: x } }), locked: (x) => one({ locked: x }),
-  driven: (x) => one({ driven: x }), circuit: (x) => one({ motor_circuit: x }), setInput: (x) => robot.setInput(x),
+  initial: (x) => made({}, { initial: x }), nu: (x) => made({}, { initial: { nu_rad_per_s: x } }),
+  locked: (x) => one({ locked: x }), driven: (x) => one({ driven: x }), circuit: (x) => one({ motor_circuit: x }), setInput: (x) => robot.setInput(x),
   force: (x) => robot.setInput({ body_force_N: x }), voltages: (x) => robot.setInput({ voltage_V: x }),
   voltage: (x) => robot.setInput({ voltage_V: [0, x] }), moment: (x) => robot.setInput({ body_moment_Nm: x }),
   run: (x) => robot.run(x), gain: (x) => robot.motorGain(x),
@@ -56,8 +56,8 @@ for (const [name, call] of Object.entries(asked)) {
 NUMBERS, FLAGS = "negative fraction", "true"
 TAKEN = {"options": "undefined object", "step": "undefined fraction", "method": "undefined", "mass": "fraction",
          "wheels": "undefined none", "support": "undefined none", "ground": "undefined object",
-         "initial": "undefined object", "locked": FLAGS, "motor": "undefined", "driven": "undefined true", "circuit": "undefined",
-         "setInput": "object", "voltage": NUMBERS, "moment": NUMBERS, "voltagesFor": NUMBERS, "torquesFor": NUMBERS,
+         "initial": "undefined object", "locked": FLAGS, "motor": "undefined", "driven": "undefined true",
+         "circuit": "undefined", "setInput": "object", "voltage": NUMBERS, "moment": NUMBERS, "voltagesFor": NUMBERS, "torquesFor": NUMBERS,
          "allowed": NUMBERS}
 CASES = {
     "laconic.robot()": "scene: undefined is no object; give an object with the keys of a scene, vehicle among them",
@@ -68,7 +68,7 @@ CASES = {
     "made({ wheel: [{ kind: 'fixed', y_m: 1, axle_rad: 0 }] })": "vehicle.wheel[1].x_m: is missing; give a number",
     "one({ kind: 'mecanum' })": "vehicle.wheel[1].roller_rad: is missing; give a number",
     "one({ distance_m: 1 })": "vehicle.wheel[1].x_m: is given besides distance_m and bearing_rad; keep one place",
-    "made({ wheel: [{ ...wheel(0), bearing_deg: '90' }] })": 'vehicle.wheel[1].bearing_deg: "90" is no number; give one',
+    "made({ wheel: [{ ...wheel(0), x_deg: '9' }] })": 'vehicle.wheel[1].x_deg: "9" is no number; give one',
     "one({ axle_deg: 90 })": "vehicle.wheel[1].axle_deg: is given in degrees and in radians; keep one",
     "one({ locked: 'yes' })": 'vehicle.wheel[1].locked: "yes" is neither true nor false; give one of them',
     "one({ motor_circuit: 'short' })": 'vehicle.wheel[1].motor_circuit: there is no "short"; use driven, open, shorted',
