@@ -35,8 +35,9 @@ const asked = {
   wheels: (x) => made({ wheel: x }), wheel: (x) => made({ wheel: [x] }), motor: (x) => made({ motor: x }),
   support: (x) => made({ support: x }), ground: (x) => made({}, { ground: x }),
   initial: (x) => made({}, { initial: x }), nu: (x) => made({}, { initial: { nu_rad_per_s: x } }),
-  locked: (x) => one({ locked: x }), driven: (x) => one({ driven: x }), circuit: (x) => one({ motor_circuit: x }), setInput: (x) => robot.setInput(x),
-  force: (x) => robot.setInput({ body_force_N: x }), voltages: (x) => robot.setInput({ voltage_V: x }),
+  locked: (x) => one({ locked: x }), driven: (x) => one({ driven: x }), circuit: (x) => one({ motor_circuit: x }),
+  setInput: (x) => robot.setInput(x), force: (x) => robot.setInput({ body_force_N: x }),
+  voltages: (x) => robot.setInput({ voltage_V: x }),
   voltage: (x) => robot.setInput({ voltage_V: [0, x] }), moment: (x) => robot.setInput({ body_moment_Nm: x }),
   run: (x) => robot.run(x), gain: (x) => robot.motorGain(x),
   voltagesFor: (x) => robot.voltagesFor(x, 0, 0), torquesFor: (x) => robot.torquesFor(0, x, 0),
@@ -57,7 +58,8 @@ NUMBERS, FLAGS = "negative fraction", "true"
 TAKEN = {"options": "undefined object", "step": "undefined fraction", "method": "undefined", "mass": "fraction",
          "wheels": "undefined none", "support": "undefined none", "ground": "undefined object",
          "initial": "undefined object", "locked": FLAGS, "motor": "undefined", "driven": "undefined true",
-         "circuit": "undefined", "setInput": "object", "voltage": NUMBERS, "moment": NUMBERS, "voltagesFor": NUMBERS, "torquesFor": NUMBERS,
+         "circuit": "undefined", "setInput": "object",
+         "voltage": NUMBERS, "moment": NUMBERS, "voltagesFor": NUMBERS, "torquesFor": NUMBERS,
          "allowed": NUMBERS}
 CASES = {
     "laconic.robot()": "scene: undefined is no object; give an object with the keys of a scene, vehicle among them",
