@@ -18,17 +18,17 @@ COLUMNS = {"who": "", "real": "scalar", "environments": "environments", "thousan
            "encoders": "encoders", "gyro": "gyro", "cycle": "whole cycle", "stack": "stack B", "flash": "flash B",
            "ram": "filter B", "same_bits": "host's bits"}
 TITLES = {"batch": "Vehicle-steps on one core", "learn": "Environments under random actions, on one core",
-          "filter": "Instructions of a Kalman filter on a Cortex-M4F, in single"}
+          "filter": "Instructions of a Kalman filter on a Cortex-M4F, in single", "gpu": "Vehicle-steps on a GPU"}
 
 
 @click.command("benchmark")
 @click.argument("what", metavar="WHAT", type=click.Choice([*TITLES]))
-@click.option("--lanes", type=click.IntRange(1, 10**6), default=1000, show_default=True, help="Vehicles side by side.")
+@click.option("--lanes", type=click.IntRange(1, 10**7), help="Vehicles side by side; else 1,000, on a GPU 1,000,000.")
 @click.option("--rounds", type=click.IntRange(1, 1000), default=15, show_default=True,
               help="How often all run in turn; the least time of each counts.")
 @json_flag()
-def command(what: str, lanes: int, rounds: int, json_wanted: bool) -> None:
-    """Times vehicles that step side by side, or counts a filter's instructions: WHAT is batch, learn or filter.
+def command(what: str, lanes: int | None, rounds: int, json_wanted: bool) -> None:
+    """Times vehicles that step side by side, or counts a filter's instructions: WHAT is batch, learn, gpu or filter.
 
     batch: Robotino 2, Runge-Kutta steps of 1 ms with pose and wheel angles, 100 in a run, on one core: the core's
     batch, the core one vehicle after the other, and the same step in numba and JAX, and MuJoCo, where they are
@@ -37,13 +37,16 @@ def command(what: str, lanes: int, rounds: int, json_wanted: bool) -> None:
     learn: the environment laconic/DriveToPose-v0 under random actions, in one batch, with vehicles that differ, and as
     Gymnasium's vector of single ones.
 
+    gpu: the batch of Robotino 2 on a GPU of NVIDIA's, each lane first compared with the processor's bits.
+
     filter: the Kalman filter with recorded readings on an emulated Cortex-M4F, prediction and readings apart, with its
     stack, its flash and RAM, and whether it has this machine's bits.
     """
     from laconic.benchmark.many.race import stay_on_one_core
 
     stay_on_one_core()
-    rows, notes = {"batch": _batch, "learn": _learn, "filter": _filter}[what](lanes, rounds)
+    lanes = lanes or (10**6 if what == "gpu" else 1000)
+    rows, notes = {"batch": _batch, "learn": _learn, "gpu": _gpu, "filter": _filter}[what](lanes, rounds)
     if json_wanted:
         click.echo(json.dumps({"lanes": lanes, "rows": rows, "notes": notes}, indent=1))
         return
@@ -70,6 +73,13 @@ def _learn(lanes: int, rounds: int) -> Found:
     from laconic.learn import rate
 
     return rate.rows(lanes, rounds), []
+
+
+def _gpu(lanes: int, rounds: int) -> Found:
+    from laconic.gpu import rate
+
+    name, rows = rate.rows(lanes, rounds)
+    return rows, [f"device: {name}, {lanes:,} vehicles", rate.PUBLIC]
 
 
 def _filter(lanes: int, rounds: int) -> Found:
