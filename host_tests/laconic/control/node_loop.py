@@ -10,10 +10,12 @@ from __future__ import annotations
 import math
 from collections.abc import Callable
 from dataclasses import dataclass, field, replace
+from typing import Any
 
 import numpy as np
 
 from laconic.control.filter import Filter, Innovation
+from laconic.core.given import shown
 from laconic.errors import BadInput
 from laconic.rig.client import NodeClient
 from laconic.rig.lockstep import load_scene
@@ -47,6 +49,7 @@ class Drive:
     covariance: list[np.ndarray] = field(default_factory=list)   # (7, 7)
     voltage_V: list[np.ndarray] = field(default_factory=list)
     innovations: list[Innovation] = field(default_factory=list)
+    overranges: int = 0  # frames of voltages beyond what the wire has; voltage_V is then what was sent
 
     @property
     def time_s(self) -> np.ndarray:
@@ -91,7 +94,7 @@ def drive(node: NodeClient, scene: Scene, filter: Filter, choose: Choice, steps:
     try:
         for step in range(steps):
             if step % every == 0:
-                volts = np.asarray(choose(step // every, filter.state))
+                volts = checked(choose(step // every, filter.state), scene.wheel_count)
             row = wire.send({f"voltage_V[{k + 1}]": float(each) for k, each in enumerate(volts)}, sync=True)
             sent = row[first : first + scene.wheel_count]
             filter.predict({"voltage_V": sent.tolist()})
@@ -103,7 +106,16 @@ def drive(node: NodeClient, scene: Scene, filter: Filter, choose: Choice, steps:
             run.covariance.append(filter.covariance)
     finally:
         node.stop()
+        run.overranges = wire.overranges
     return run
+
+
+def checked(volts: Any, wheels: int) -> np.ndarray:
+    """A controller's voltages; BadInput for what is none."""
+    found = np.asarray(volts, float)
+    if found.shape != (wheels,) or not np.all(np.isfinite(found)):
+        raise BadInput(f"choose: gave {shown(found.tolist())}; give a finite voltage for each of {wheels} wheels")
+    return found
 
 
 def check(scene: Scene, filter: Filter) -> None:

@@ -19,6 +19,7 @@ import osqp
 from scipy import sparse
 
 from laconic.control.course import STATES, Course, step_from
+from laconic.core.given import shown
 from laconic.errors import BadInput
 
 PRECISION = 1e-5       # of the programme's constraints: V, rad/s, m, rad
@@ -41,8 +42,10 @@ class PredictiveController:
             raise BadInput(f"limit_V: {limit_V:g} is no limit; give a value above 0")
         if horizon < 1:
             raise BadInput(f"horizon: {horizon} steps are no plan; give 1 or more")
-        if len(weights) != STATES or min(weights) < 0 or not voltage_weight > 0:
-            raise BadInput("weights: give six that are 0 or more, and a voltage_weight above 0")
+        if np.shape(weights) != (STATES,) or not np.all(np.isfinite(weights)) or np.min(weights) < 0:
+            raise BadInput(f"weights: {shown(weights)}: give six numbers that are 0 or more")
+        if not (voltage_weight > 0 and math.isfinite(voltage_weight)):
+            raise BadInput(f"voltage_weight: {voltage_weight:g}: give a number above 0")
         self.course, self.limit_V, self.horizon = course, float(limit_V), horizon
         self.wheels = course.plant.wheel_count
         self._linear = lru_cache(maxsize=2 * horizon + 2)(self._linearised)
@@ -51,8 +54,11 @@ class PredictiveController:
 
     def voltages(self, step: int, state: np.ndarray) -> np.ndarray:
         """The voltages for this step of the course, in this state: ν1, ν2, ν3, x, y, θ, and more that is not read."""
+        given = np.asarray(state, float)
+        if given.ndim != 1 or len(given) < STATES or not np.all(np.isfinite(given[:STATES])):
+            raise BadInput(f"state: {shown(given.tolist())} is no state; give the numbers nu (3), x, y and heading")
         models = [self._linear(min(step + ahead, len(self.course))) for ahead in range(self.horizon)]
-        off = np.asarray(state[:STATES], float) - models[0][3]
+        off = given[:STATES] - models[0][3]
         off[5] = math.remainder(off[5], 2 * math.pi)
         plan = self._solve(models, off)
         first = plan[STATES * self.horizon :][: self.wheels]

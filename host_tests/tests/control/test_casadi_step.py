@@ -69,6 +69,12 @@ def test_what_makes_no_sense_is_refused_by_name():
         casadi_step(plant(), ["wheel_mass_kg"])
 
 
+def test_a_step_that_the_core_refuses_says_so():
+    step = casadi_step(plant(method="rk4"))
+    with pytest.raises(RuntimeError, match="unstable with this method at this yaw rate"):
+        step([0, 0, 1e6, 0, 0, 0], VOLTS)
+
+
 def plan(step, steps, goal, limit_V, obstacle, room_m):
     """States and voltages of the least effort to a pose at rest, outside a disc, by multiple shooting."""
     opti = casadi.Opti()

@@ -180,7 +180,11 @@ def test_what_makes_no_sense_is_refused_by_name(course):
     for call, text in ((lambda: Course(plant, eight, 0.01), "duration_s: 0.01"),
                        (lambda: PredictiveController(course, 0.0), "limit_V: 0"),
                        (lambda: PredictiveController(course, 1.0, horizon=0), "horizon: 0"),
-                       (lambda: PredictiveController(course, 1.0, weights=(1, 1)), "weights: give six")):
+                       (lambda: PredictiveController(course, 1.0, weights=(1, 1)), "weights: .* give six"),
+                       (lambda: PredictiveController(course, 1.0, weights=(1, 1, 1, 1, 1, math.nan)), "weights: .*nan"),
+                       (lambda: PredictiveController(course, 1.0, voltage_weight=0), "voltage_weight: 0"),
+                       (lambda: PredictiveController(course, 1.0).voltages(0, [0.0] * 5), "state: .* is no state"),
+                       (lambda: PredictiveController(course, 1.0).voltages(0, [math.nan] * 6), "state: .*nan")):
         with pytest.raises(BadInput, match=text):
             call()
 
@@ -194,10 +198,18 @@ def test_a_node_without_instruments_or_with_another_step_is_refused(tmp_path):
             drive(node, scene, known, lambda step, state: np.zeros(3), 1)
 
 
-def test_without_osqp_one_line_says_what_to_install(monkeypatch):
+@pytest.mark.parametrize(("library", "module", "name"), [("osqp", "predictive", "PredictiveController"),
+                                                        ("casadi", "casadi_step", "casadi_step")])
+def test_without_its_library_one_line_says_what_to_install(monkeypatch, library, module, name):
     import laconic.control as room
-    monkeypatch.setitem(sys.modules, "osqp", None)
-    monkeypatch.delitem(sys.modules, "laconic.control.predictive")
-    monkeypatch.delitem(vars(room), "PredictiveController", raising=False)
-    with pytest.raises(BadInput, match=r'pip install "laconic\[control\]"'):
-        _ = room.PredictiveController
+    monkeypatch.setitem(sys.modules, library, None)
+    monkeypatch.delitem(sys.modules, f"laconic.control.{module}", raising=False)
+    monkeypatch.delitem(vars(room), name, raising=False)
+    with pytest.raises(BadInput, match=rf'needs {library}, .* pip install "laconic\[control\]"'):
+        getattr(room, name)
+
+
+@pytest.mark.parametrize("volts", [[1.0, 2.0], [1.0, 2.0, math.nan]])
+def test_voltages_that_are_none_are_refused_before_they_are_sent(tmp_path, volts):
+    with pytest.raises(BadInput, match="choose: gave .*; give a finite voltage for each of 3 wheels"):
+        driven(tmp_path, lambda step, state: np.array(volts), steps=1)
