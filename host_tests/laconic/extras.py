@@ -29,4 +29,5 @@ def extra_of(distribution: str) -> str:
     except PackageNotFoundError:
         return ""
     found = (re.fullmatch(r"""([\w.-]+).*\bextra == ["']([\w-]+)["']""", line) for line in lines)
-    return next((each[2] for each in found if each and re.sub("[-_.]+", "-", each[1]).lower() == distribution), "")
+    wanted = distribution.lower()
+    return next((each[2] for each in found if each and re.sub("[-_.]+", "-", each[1]).lower() == wanted), "")

@@ -117,6 +117,28 @@ int32_t laconic_batch_run(laconic_batch *batch, int32_t first_block, int32_t blo
 /* Sets heading and ν of all lanes of some blocks, as laconic_position() and laconic_nu() do. */
 void laconic_batch_observe(laconic_batch *batch, int32_t first_block, int32_t blocks);
 
+/* For populations whose vehicles differ in their numbers: arrays with one item for each vehicle. Each of the first
+ * three returns how many vehicles were refused, whose `status` is not OK; the single function tells why. */
+
+/* Kinds as laconic_batch_kind_of() makes them; of a vehicle that is refused the kind is not written. motors: NULL, or
+ * those that laconic_motor_fit() fits to a copy of each vehicle before. About 1 us for each. */
+int32_t laconic_batch_kinds_of(laconic_batch_kind *kinds, int32_t *status, const laconic_vehicle *vehicles,
+                               const laconic_motor *motors, int32_t count, const laconic_method *method,
+                               laconic_real step_s);
+
+/* Puts lanes from first_lane on at starts, as laconic_state_set() does; a lane that is refused stays as it was, and
+ * batch->status says why. */
+int32_t laconic_batch_start(laconic_batch *batch, int32_t first_lane, int32_t lanes, const laconic_start *starts);
+
+/* Contacts as laconic_contact_prepare() makes them, vehicles and motors as for the kinds. */
+int32_t laconic_batch_contacts_of(laconic_contact *contacts, int32_t *status, const laconic_vehicle *vehicles,
+                                  const laconic_motor *motors, int32_t count);
+
+/* Outputs of lanes from first_lane on with their present input, as laconic_outputs_of() gives them. contacts: NULL, or
+ * one for each of these lanes; then the reactions, too. */
+void laconic_batch_outputs(const laconic_batch *batch, int32_t first_lane, int32_t lanes,
+                           const laconic_contact *contacts, laconic_outputs *outputs);
+
 #ifdef __cplusplus
 }
 #endif

@@ -20,7 +20,7 @@ GROUPS = {
     "How to": ("how-to", "import", "scenes", "python", "c", "fmu", "fmu-fmpy", "fmu-simulink", "fmu-openmodelica",
                "fmu-dymola", "fmu-casadi", "fmu-importers", "fmu-network", "rig", "rig-wiring", "rig-lockstep",
                "rig-free-run", "rig-faults", "rig-same-bits", "rig-ports", "play", "play-canopen", "play-odrive",
-               "play-robomaster", "play-moteus", "logs", "page", "release"),
+               "play-robomaster", "play-moteus", "logs", "sweep", "page", "release"),
     "Explanation": ("performance", "batch", "gpu", "learn", "derivatives", "control", "optimise", "integrators",
                     "friction", "sensors", "real-robots", "paper", "architecture", "glossary"),
     "Reference": ("reference-c", "reference-python", "reference-commands", "reference-scene", "signals",

@@ -15,6 +15,7 @@ from typing import Any
 import numpy as np
 
 from laconic.batch.memory import Rows, aligned_memory
+from laconic.batch.population import Kinds, items_of
 from laconic.core import Core, Vehicle
 from laconic.core.given import c_object, number, numbers, shown, step_count, whole_number
 from laconic.errors import BadInput, Refused
@@ -62,8 +63,18 @@ class Batch:
             raise BadInput(f"width_bytes: this processor has no registers of {shown(width_bytes)} bytes; give 0 for "
                            "the widest that it has")
         self._place(max(vehicle.wheel_count for vehicle in kinds), width_bytes)
-        self._pool: ThreadPoolExecutor | None = None
         self._is_placed = True
+
+    @classmethod
+    def of_kinds(cls, kinds: Kinds) -> Batch:
+        """One lane for each kind of a population; precondition: none was refused (`Kinds.usable`), there is one."""
+        made = cls.__new__(cls)
+        made.core, made._kind_of = kinds.core, np.arange(len(kinds.kinds), dtype=np.int32)
+        made.lane_count, made.step_s = len(kinds.kinds), kinds.step_s
+        made._kinds = items_of(kinds.core, "laconic_batch_kind", kinds.kinds)
+        made._place(kinds.wheel_count, 0)
+        made._is_placed = True
+        return made
 
     def __setattr__(self, name: str, value: Any) -> None:
         """An input as a whole is written into the batch's memory; BadInput for what is none."""
@@ -100,6 +111,7 @@ class Batch:
         self._heading, self._nu = rows.read_only(rows.one("HEADING")), rows.read_only(rows.many("NU_1", 3))
         self.status, self.missed = rows.of_lanes(self.c.status, np.int32), rows.of_lanes(self.c.missed, np.uint64)
         self._is_observed = False
+        self._pool: ThreadPoolExecutor | None = None
 
     @property
     def width_bytes(self) -> int:

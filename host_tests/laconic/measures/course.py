@@ -37,7 +37,17 @@ class Winding:
     driven: np.ndarray               # (wheels, L)  1 where a wheel's motor is connected to its controller, else 0
 
     def currents_A(self, course: Course) -> np.ndarray:  # noqa: N802 (the unit)
-        """(T, wheels, L): (U − k_e n χ') / R_a."""
-        volts = course["voltage_V"] - self.back_emf_Vs_per_rad * course["wheel_speed_rad_per_s"]
+        """(T, wheels, L): those of the core where drives have limits, else (U − k_e n χ') / R_a."""
+        if "motor_current_A" in course.signals:
+            return course["motor_current_A"]
+        volts = course["voltage_V"] - self._back_emf_V(course)
         found: np.ndarray = self.driven * volts / self.resistance_ohm
         return found
+
+    def powers_W(self, course: Course) -> np.ndarray:  # noqa: N802
+        """(T, wheels, L): what each winding takes, (R_a I + k_e n χ') I."""
+        current = self.currents_A(course)
+        return (self.resistance_ohm * current + self._back_emf_V(course)) * current
+
+    def _back_emf_V(self, course: Course) -> np.ndarray:  # noqa: N802
+        return self.back_emf_Vs_per_rad * course["wheel_speed_rad_per_s"]

@@ -56,7 +56,7 @@ def wheel_work(course: Course) -> np.ndarray:
 def electrical_energy(course: Course) -> np.ndarray:
     """Taken by the windings, what brakes give back counted against it."""
     assert course.winding is not None
-    return _integral(course, _over_wheels(course["voltage_V"] * course.winding.currents_A(course)))
+    return _integral(course, _over_wheels(course.winding.powers_W(course)))
 
 
 def largest_current(course: Course) -> np.ndarray:

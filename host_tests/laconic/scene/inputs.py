@@ -142,8 +142,16 @@ class InputsOnGrid:
             column += self._steps_at(each, ticks)[:, None] if each.kind == "steps" else each.at(time_s)
         return rows
 
+    def ticks_of(self, each: Input) -> np.ndarray:
+        """The steps at whose start a `steps` input changes."""
+        return self._ticks[each.location]
+
+    def levels_of(self, each: Input) -> np.ndarray:
+        """Its values: the zero before the first, then one from each change on."""
+        return self._levels[each.location]
+
     def _steps_at(self, each: Input, ticks: np.ndarray) -> np.ndarray:
-        return self._levels[each.location][np.searchsorted(self._ticks[each.location], ticks, side="right")]
+        return self.levels_of(each)[np.searchsorted(self.ticks_of(each), ticks, side="right")]
 
 
 def check_resolved(path: Path, inputs: tuple[Input, ...], step_s: float, grid_s: Sequence[float]) -> None:

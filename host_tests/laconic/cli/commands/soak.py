@@ -59,6 +59,7 @@ def command(what: str, minutes: float, seed: int | None, json_wanted: bool, **sp
                      for a controller in another process: how late periods begin
     rig              all scenes in lockstep on the virtual bus, same bits
     slcan            all scenes over SLCAN to a node process
+    sweep            sweeps killed at random instants, their bytes against undisturbed ones
 
     Exit status 1 when something was found that must not be.
     """

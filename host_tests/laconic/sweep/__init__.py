@@ -1,0 +1,1 @@
+"""`laconic sweep`: many runs of one scene with some of its keys varied."""

@@ -1,0 +1,122 @@
+"""A sweep from its plan to its results, whatever interrupts it on the way."""
+
+from __future__ import annotations
+
+import shlex
+from pathlib import Path
+
+import numpy as np
+
+from laconic.errors import BadInput, Refused
+from laconic.measures import Measure
+from laconic.progress import progress_bar
+from laconic.scene import Scene
+from laconic.sweep.chunk import Rows, nominal_course
+from laconic.sweep.lanes import Template
+from laconic.sweep.numbers import is_number_of_struct
+from laconic.sweep.plan import Plan
+from laconic.sweep.store import Store, open_store
+from laconic.sweep.workers import cluster_client, local_client, run_here, run_on, usual_workers, versions
+
+STEPS_OF_LANES = 1e7  # of a chunk: a second or so
+STEPS_ALONE = 5e5
+MOST_RUNS_OF_CHUNK = 65536
+MOST_RUNS_ALONE = 500   # each is read from its tables, which takes a millisecond
+OF_TIME = ("run.duration_s", "run.step_s")
+
+
+def check_plan(plan: Plan) -> Scene:
+    """The nominal scene; BadInput for keys or measures that make no sense for it."""
+    scene = plan.tables.scene()
+    for measure in plan.measures:
+        if missing := _lacks(measure, scene):
+            raise BadInput(f"--measure {measure.name}: needs {missing}, which {plan.tables.path} does not give")
+        for key in OF_TIME:
+            if measure.is_beside_nominal and not measure.is_of_end and key in [each.key.text for each in plan.varied]:
+                raise BadInput(f"--measure {measure.name}: compares the same instants, and --vary changes {key}; leave "
+                               "one of them out")
+    tries = [_first_refusal(plan, index) for index in {0, plan.runs // 2, plan.runs - 1}]
+    if all(isinstance(each, BadInput) and not isinstance(each, Refused) for each in tries) and tries[0]:
+        raise tries[0]
+    return scene
+
+
+def _first_refusal(plan: Plan, index: int) -> BadInput | None:
+    try:
+        plan.tables.with_values(plan.of_run(index)).scene()
+    except BadInput as refused:
+        return refused
+    return None
+
+
+def _lacks(measure: Measure, scene: Scene) -> str:
+    """What a measure needs and the scene has not; empty where it has all."""
+    vehicle = scene.vehicle
+    ground = vehicle.get("ground", {})
+    has = {"": True, "motor": "motor" in vehicle, "wheels": bool(vehicle["wheel"]),
+           "supply": bool(vehicle.get("drive", {}).get("supply_V")),
+           "friction coefficient": bool(vehicle["friction_coefficient"] or ground.get("friction_coefficient"))}
+    words = {"motor": "[vehicle.motor]", "wheels": "wheels", "supply": "vehicle.drive.supply_V",
+             "friction coefficient": "a friction coefficient"}
+    return "" if has[measure.needs] else words[measure.needs]
+
+
+def chunk_of(plan: Plan, scene: Scene) -> int:
+    """Runs of one chunk: about a second of work."""
+    keys = [each.key for each in plan.varied]
+    in_lanes = Template(plan.tables, scene).fits(plan.measures)
+    if in_lanes and any(is_number_of_struct(key, keys) for key in keys):
+        return int(np.clip(STEPS_OF_LANES / scene.steps(), 1, MOST_RUNS_OF_CHUNK))
+    return int(np.clip(STEPS_ALONE / scene.steps(), 1, MOST_RUNS_ALONE))
+
+
+def command_of(plan: Plan) -> str:
+    """The command line that makes the same results; where to and by whom is left out."""
+    words = ["laconic", "sweep", plan.scene]
+    for each in plan.varied:
+        words += ["--vary", each.text]
+    if plan.drawn:
+        words += ["--samples", str(plan.samples), "--seed", str(plan.seed)]
+        words += ["--sensitivity"] if plan.is_saltelli else ["--sampling", plan.sampling]
+    for measure in plan.measures:
+        words += ["--measure", measure.name]
+    return shlex.join(words)
+
+
+def begin(plan: Plan, folder: Path) -> Store:
+    """The folder of results, fresh or with what is done already."""
+    scene = check_plan(plan)
+    nominal_course(plan)  # refuses a scene that does not run itself
+    return open_store(folder, plan, chunk_of(plan, scene), versions(), command_of(plan))
+
+
+def carry_on(store: Store, scheduler: str | None = None, workers: int | None = None) -> None:
+    """Does what is missing, and makes one file of all; raises whatever ends it before, with all chunks kept."""
+    if store.is_whole:
+        return
+    chunks = store.missing()
+    done_before = store.plan.runs - sum(store.range_of(number)[1] for number in chunks)
+    with progress_bar(store.plan.tables.path.stem, store.plan.runs) as moved:
+        moved(done_before)
+
+        def values_of(number: int) -> dict[str, np.ndarray]:
+            return store.plan.values(*store.range_of(number))
+
+        def done(number: int, rows: Rows) -> None:
+            store.keep(number, values_of(number), rows)
+            moved(store.range_of(number)[1])
+
+        if scheduler:
+            with cluster_client(scheduler) as client:
+                run_on(client, store.plan, values_of, chunks, done)
+        elif len(chunks) <= 1 or workers == 0:
+            run_here(store.plan, values_of, chunks, done)
+        else:
+            with local_client(min(workers or usual_workers(), len(chunks))) as client:
+                run_on(client, store.plan, values_of, chunks, done)
+    store.finish()
+
+
+def runs_there(store: Store) -> int:
+    """How many runs of a sweep are done."""
+    return store.plan.runs - sum(store.range_of(number)[1] for number in store.missing())
