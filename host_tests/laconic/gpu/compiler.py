@@ -67,7 +67,9 @@ def compiled(method: int, core: Core, architecture: str) -> bytes:
     failed = nvrtc.nvrtcCompileProgram(program, len(options), given)
     try:
         if failed:
-            raise RuntimeError(f"NVRTC: {_take(nvrtc, program, 'ProgramLog').decode(errors='replace')}")
+            log = _take(nvrtc, program, "ProgramLog").rstrip(b"\0").decode(errors="replace")
+            raise BadInput(f"NVRTC does not compile for {architecture}: {log or 'it does not know this device'}; try "
+                           "another version of nvidia-cuda-nvrtc")
         return _take(nvrtc, program, "PTX" if architecture.startswith("compute") else "CUBIN")
     finally:
         nvrtc.nvrtcDestroyProgram(ctypes.byref(program))

@@ -32,14 +32,14 @@ class CudaDevice:
     """The first device. BadInput where there is none, and for what its driver refuses."""
 
     def __init__(self) -> None:
-        self._driver, self._number = _driver(), ctypes.c_int()
+        self._driver, self._number, self._context = _driver(), ctypes.c_int(), ctypes.c_void_p()
         self._kernels: dict[tuple[int, Core], Any] = {}
         self._call("cuDeviceGet", ctypes.byref(self._number), 0)
-        context = ctypes.c_void_p()
-        self._call("cuDevicePrimaryCtxRetain", ctypes.byref(context), self._number)
-        self._call("cuCtxSetCurrent", context)
+        self._call("cuDevicePrimaryCtxRetain", ctypes.byref(self._context), self._number)
 
     def _call(self, name: str, *arguments: Any) -> None:
+        if self._context:
+            self._driver.cuCtxSetCurrent(self._context)  # of the thread that calls
         if failed := getattr(self._driver, name)(*arguments):
             text = ctypes.c_char_p()
             self._driver.cuGetErrorString(failed, ctypes.byref(text))

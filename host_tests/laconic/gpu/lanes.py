@@ -10,6 +10,7 @@ import numpy as np
 from laconic.batch import Batch
 from laconic.core import Core
 from laconic.core.given import step_count
+from laconic.errors import BadInput
 from laconic.gpu.compiler import STEPS
 from laconic.gpu.driver import CudaDevice
 
@@ -43,7 +44,13 @@ class Gpu:
         self._kinds = np.frombuffer(ffi.buffer(batch._kinds), np.uint8)
         self._there = batch._memory.ctypes.data
         sizes = (len(batch._memory), len(self._kinds), ffi.sizeof("laconic_batch"))
-        self._memory = [self.device.allocate(size) for size in sizes]
+        self._memory: list[int] = []
+        try:
+            for size in sizes:
+                self._memory.append(self.device.allocate(size))
+        except BadInput:
+            self.close()
+            raise
         self._copy = self._batch_there(*self._memory[:2])
 
     def _batch_there(self, numbers: int, kinds: int) -> np.ndarray:
@@ -67,14 +74,19 @@ class Gpu:
         while self._memory:
             self.device.free(self._memory.pop())
 
+    def _places(self) -> list[int]:
+        if not self._memory:
+            raise BadInput("gpu: is closed, its memory is given back; make another of the batch")
+        return self._memory
+
     def send(self) -> None:
         """States, inputs and kinds of the batch, as they are now."""
-        for address, part in zip(self._memory, (self.batch._memory, self._kinds, self._copy), strict=True):
+        for address, part in zip(self._places(), (self.batch._memory, self._kinds, self._copy), strict=True):
             self.device.send(address, part)
 
     def step(self, steps: int = 1) -> None:
         """Steps of all lanes on the device, which stop where one is refused."""
-        numbers, _, batch = self._memory
+        numbers, _, batch = self._places()
         width = max(1, self.batch.width_bytes // self.batch.core.dtype.itemsize)
         arguments = (ctypes.c_uint64(batch), ctypes.c_uint64(numbers), ctypes.c_uint64(self._there),
                      ctypes.c_int32(width), ctypes.c_uint64(step_count("steps", steps)))
@@ -83,7 +95,7 @@ class Gpu:
 
     def fetch(self) -> int:
         """States and statuses into the batch; returns how many lanes the last `step` refused."""
-        self.device.fetch(self.batch._memory, self._memory[0])
+        self.device.fetch(self.batch._memory, self._places()[0])
         self.batch._is_observed = False
         return int(np.count_nonzero(self.batch.status))
 

@@ -86,10 +86,42 @@ def test_the_text_is_the_cores_own_each_file_once():
     assert re.findall(r'#include ["<]', found) == []
 
 
+def test_the_text_lies_in_the_folders_that_a_wheel_holds():
+    seen: set[Path] = set()
+    text._with_includes(text.KERNEL, seen)
+    contents = (text.CORE.parent / "packages/python/laconic_wheel/contents.py").read_text(encoding="utf-8")
+    for folder in {path.parent.relative_to(text.CORE.parent).as_posix() for path in seen}:
+        assert f'"{folder}"' in contents
+
+
+@needs_compiler
+def test_memory_is_given_back_when_there_is_too_little_and_nothing_is_stepped_after(tmp_path: Path):
+    class Small(HostDevice):
+        def allocate(self, size: int) -> int:
+            if len(self.memory) == 2:
+                raise laconic.BadInput("out of memory")
+            return super().allocate(size)
+
+    small, device = Small(tmp_path), HostDevice(tmp_path)
+    with pytest.raises(laconic.BadInput, match="out of memory"):
+        Gpu(population("rk4", "double"), small)
+    assert small.memory == {}
+    gpu = Gpu(population("rk4", "double"), device)
+    gpu.close()
+    with pytest.raises(laconic.BadInput, match="gpu: is closed"):
+        gpu.run()
+
+
 @needs_nvrtc
-@pytest.mark.parametrize("method", range(len(compiler.STEPS)), ids=compiler.STEPS)
-@pytest.mark.parametrize("real, architecture", [("double", "compute_80"), ("single", "compute_90")])
-def test_every_operation_on_the_device_is_rounded_by_itself_to_nearest(method: int, real: str, architecture: str):
+def test_a_device_that_the_compiler_does_not_know_is_one_line():
+    with pytest.raises(laconic.BadInput, match="NVRTC does not compile for sm_11"):
+        compiler.compiled(0, load("double"), "sm_11")
+
+
+@needs_nvrtc
+@pytest.mark.parametrize("real, architecture, method", [
+    *(("double", "compute_80", method) for method in range(8)), *(("single", "compute_90", method) for method in range(6))])
+def test_every_operation_on_the_device_is_rounded_by_itself_to_nearest(real: str, architecture: str, method: int):
     ptx = compiler.compiled(method, load(real), architecture).decode()
     word = "f64" if real == "double" else "f32"
     found = set(re.findall(rf"\b([a-z0-9]+(?:\.[a-z0-9]+)*\.{word})\b", ptx))
