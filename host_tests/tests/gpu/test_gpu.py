@@ -120,7 +120,8 @@ def test_a_device_that_the_compiler_does_not_know_is_one_line():
 
 @needs_nvrtc
 @pytest.mark.parametrize("real, architecture, method", [
-    *(("double", "compute_80", method) for method in range(8)), *(("single", "compute_90", method) for method in range(6))])
+    *(("double", "compute_80", method) for method in range(8)),
+    *(("single", "compute_90", method) for method in range(6))])
 def test_every_operation_on_the_device_is_rounded_by_itself_to_nearest(real: str, architecture: str, method: int):
     ptx = compiler.compiled(method, load(real), architecture).decode()
     word = "f64" if real == "double" else "f32"
