@@ -73,6 +73,9 @@ static void contacts_are_those_of_each_vehicle(void) {
     vehicles[1].com_z_m = REAL(-1);
     TEST_ASSERT_EQUAL_INT(1, laconic_batch_contacts_of(contacts, status, vehicles, NULL, MANY));
     TEST_ASSERT_NOT_EQUAL_INT(LACONIC_OK, status[1]);
+    motors[2].resistance_ohm = REAL(0);
+    TEST_ASSERT_EQUAL_INT(2, laconic_batch_contacts_of(contacts, status, vehicles, motors, MANY));
+    TEST_ASSERT_EQUAL_INT(LACONIC_NOT_POSITIVE, status[2]);
     ASSERT_STATUS(LACONIC_OK, laconic_contact_prepare(&contact, &vehicles[4], &why));
     TEST_ASSERT_TRUE(contact.normal_load_of_wrench[0][0] == contacts[4].normal_load_of_wrench[0][0]);
 }
@@ -130,6 +133,11 @@ static void outputs_are_those_of_a_plant_beside_it(void) {
     ASSERT_STATUS(LACONIC_OK, laconic_contact_prepare(&contact, &fitted, &why));
     laconic_plant_reactions(&expected.reactions, &plant, &contact, &input);
     TEST_ASSERT_EQUAL_MEMORY(&expected, &outputs[1], sizeof expected);
+
+    memset(&expected.reactions, 0, sizeof expected.reactions); /* not set without a contact */
+    memset(outputs, 0, sizeof outputs);
+    laconic_batch_outputs(&all.batch, 8, 1, NULL, outputs);
+    TEST_ASSERT_EQUAL_MEMORY(&expected, &outputs[0], sizeof expected);
 }
 
 int main(void) {

@@ -6,6 +6,7 @@ import json
 import logging
 import os
 import signal
+import sys
 from collections.abc import Callable, Iterator, Mapping
 from contextlib import contextmanager
 from importlib.metadata import version
@@ -65,20 +66,25 @@ def run_on(client: Any, plan: Plan, values_of: Callable[[int], Mapping[str, np.n
             number_of[future.key] = number
             yield future
 
-    running = as_completed(list(next_ones(AHEAD * max(1, len(client.scheduler_info()["workers"])) + 1)))
+    running = as_completed(list(next_ones(_ahead(client))))
     for future in running:
         number = number_of.pop(future.key)
         if future.status == "finished":
             done(number, future.result())
         else:
             failed[number] = _reason_of(future)
-        for fresh in next_ones(1):
+        for fresh in next_ones(max(0, _ahead(client) - len(number_of))):
             running.add(fresh)
     if failed:
         number, error = next(iter(failed.items()))
         raise error if isinstance(error, BadInput) else ResultFails(
             f"{len(failed)} of {len(chunks)} chunks failed, the first is chunk {number}: {error}; what is done is "
             "kept, and the same command tries the rest again")
+
+
+def _ahead(client: Any) -> int:
+    """How many chunks may be under way; workers of a cluster come and go."""
+    return AHEAD * max(1, sum(client.nthreads().values())) + 1
 
 
 def _reason_of(future: Any) -> LaconicError:
@@ -135,6 +141,8 @@ def cluster_client(address: str) -> Iterator[Any]:
         raise BadInput(f"--scheduler {address}: cannot be reached ({str(error) or type(error).__name__}); start "
                        "`dask scheduler` and give its address, such as tcp://127.0.0.1:8786") from None
     with client:
+        if not client.nthreads():
+            print(f"laconic: {address} has no workers yet; waits for them, Ctrl-C ends", file=sys.stderr, flush=True)
         yield client
 
 

@@ -8,6 +8,7 @@ from pathlib import Path
 import pyarrow.parquet as pq
 import pytest
 
+from laconic.cli.commands import sweep as command
 from laconic.cli.main import run
 from laconic.scene import read_scene
 from laconic.simulation import simulate
@@ -126,6 +127,15 @@ def test_the_page_has_a_picture_for_each_key_and_the_indices_by_name(tmp_path):
     assert text.count("<img") == 4
     assert "Sobol' indices from Saltelli" in text.replace("&#x27;", "'")
     assert "{{" not in text
+
+
+@pytest.mark.parametrize("module", ["distributed", "pyarrow", "SALib"])
+def test_a_part_of_the_extra_that_is_not_there_is_named_before_any_work(module, tmp_path, monkeypatch, capsys):
+    monkeypatch.setattr(command, "find_spec", lambda name: None if name == module else object())
+    assert run([*ARGUMENTS, "-o", str(tmp_path / "none")]) == 2
+    assert f'this needs {module}, which is not installed; pip install "laconic[sweep]"' in capsys.readouterr().err
+    assert not (tmp_path / "none").exists()
+    assert run(["sweep", "--help"]) == 0
 
 
 def test_all_measures_are_listed_with_their_words(capsys):

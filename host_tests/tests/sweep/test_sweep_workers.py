@@ -41,8 +41,8 @@ class Client:
     def submit(self, _, *task, **more):
         return self._client.submit(self._work, *self._first, *task, **more)
 
-    def scheduler_info(self):
-        return self._client.scheduler_info()
+    def nthreads(self):
+        return self._client.nthreads()
 
 
 @pytest.fixture(scope="module")
