@@ -10,6 +10,7 @@ from . import archive, fmi2, fmi3
 from .description import parse, read, token_in, token_of, with_token
 from .field_list import missing_variable
 from .for_vehicle import for_vehicle
+from .licences import licence_parts, ziglang_in
 from .package import pack
 from .tables import tables
 
@@ -44,18 +45,20 @@ def make_fmu(arguments: argparse.Namespace) -> None:
     """Packs an FMU from `part=file` pairs."""
     identifier = read(arguments.source).root.find("CoSimulation").get("modelIdentifier", "")  # type: ignore[union-attr]
     parts = {"modelDescription.xml": arguments.description.read_bytes()}
-    sources = []
-    for pair in arguments.sources:
-        name, _, file = pair.partition("=")
-        parts[f"sources/{name}"] = Path(file).read_bytes()
-        if name.endswith(".c"):
-            sources.append(name)
+    in_archive = {name: Path(file) for name, _, file in (pair.partition("=") for pair in arguments.sources)}
+    parts |= {f"sources/{name}": file.read_bytes() for name, file in in_archive.items()}
+    sources = [name for name in in_archive if name.endswith(".c")]
+    platforms = []
     for pair in arguments.binaries:
         platform, _, file = pair.partition("=")
+        platforms.append(platform)
         parts[archive.binary_name(arguments.version, platform, identifier)] = Path(file).read_bytes()
     for pair in arguments.parts:
         name, _, file = pair.partition("=")
         parts[name] = Path(file).read_bytes()
+    zig = ziglang_in(arguments.zig.parents[1]) if arguments.zig else None
+    parts |= licence_parts(arguments.licence.read_bytes(), arguments.headers / "fmi3FunctionTypes.h", in_archive,
+                           platforms, zig)
     if arguments.version == 3:
         parts["sources/buildDescription.xml"] = archive.build_description(sources, identifier).encode("utf-8")
     pack(arguments.out, parts)
@@ -86,6 +89,9 @@ def main() -> None:
     command.add_argument("--sources", nargs="*", default=[])
     command.add_argument("--binaries", nargs="*", default=[])
     command.add_argument("--parts", nargs="*", default=[])
+    command.add_argument("--licence", type=Path, required=True, help="our own")
+    command.add_argument("--headers", type=Path, required=True, help="the folder of the FMI headers")
+    command.add_argument("--zig", type=Path, help="the interpreter whose package ziglang made the binaries")
     command.add_argument("--out", type=Path, required=True)
     command.set_defaults(run=make_fmu)
     command = commands.add_parser("renew-token")

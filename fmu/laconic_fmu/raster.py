@@ -14,6 +14,8 @@ Colour = tuple[int, int, int]
 WHITE: Colour = (255, 255, 255)
 LINES = 4
 """Lines drawn in each row of pixels; along a line coverage is exact."""
+SHADES = 32
+"""Parts of a pixel that an edge is told in: finer ones are not seen, and would make a picture half as large again."""
 
 
 @dataclass(frozen=True)
@@ -56,7 +58,7 @@ def _paint_row(row: bytearray, spans: Sequence[tuple[float, float]], colour: Col
     row[3 * full:3 * stop] = bytes(colour) * (stop - full)
     for k in (*range(first, min(full, end)), *range(stop, end)):
         share = sum(max(0.0, min(right, k + 1.0) - max(left, float(k))) for left, right in spans) / LINES
-        _blend(row, k, colour, min(1.0, share))
+        _blend(row, k, colour, min(1.0, round(SHADES * share) / SHADES))
 
 
 def _paint(pixels: list[bytearray], shape: Shape) -> None:

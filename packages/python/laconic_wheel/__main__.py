@@ -33,7 +33,7 @@ def main() -> None:
             tag = platform.tag
             folder = compile_all(platform, given.project, given.wire, given.build / "cross-wheels" / name, given.zig)
             files = contents.compiled(folder, platform.library, contents.PROGRAMS if platform.has_node_process else ())
-            of_compiler = compiler_licences(platform, given.zig)
+            of_compiler = compiler_licences(given.zig)
         texts = of_others | of_compiler
         made = make_wheel(given.project, same | files, texts, version=given.version, tag=tag, out=given.out)
         print(f"{made} ({made.stat().st_size / 1e6:.1f} MB)", flush=True)

@@ -7,11 +7,11 @@ import subprocess
 import sys
 from pathlib import Path
 
+from laconic_fmu.licences import ziglang_in
 from laconic_packages.facts import facts, placeholders
 from laconic_release.collect import Made, collect
 from laconic_release.parts import Places
 from laconic_release.tree import NoRelease, tree_of
-from laconic_wheel.licences import ziglang_in
 
 MEGABYTE = 1e6
 

@@ -10,7 +10,7 @@ from dataclasses import dataclass
 from importlib.metadata import Distribution, distribution, distributions
 from pathlib import Path
 
-from laconic_wheel.licences import compiler_text, licence_of
+from laconic_fmu.licences import compiler_text, licence_of
 
 NORMALIZE = "/*! normalize.css v8.0.1 | MIT License | github.com/necolas/normalize.css */"  # the head of furo.css
 
@@ -66,8 +66,8 @@ def of_the_compiler(zig: Path) -> tuple[Part, ...]:
         Part("zig", "zig compiler runtime", version, "MIT", True, "compiler-rt, in every binary", text("zig")),
         Part("mingw-w64", "mingw-w64 runtime", f"of zig {version}", "public domain, ZPL-2.1 and others", False,
              "start of Windows libraries", text("mingw-w64")),
-        Part("musl", "musl start files", f"of zig {version}", "MIT", True, "start of programs for musl",
-             text("musl")),
+        Part("musl", "musl", f"of zig {version}", "MIT", True,
+             "start of programs for musl, functions of libraries for Windows", text("musl")),
         Part("glibc", "glibc start files", f"of zig {version}", "LGPL-2.1-or-later with the exception for start files",
              False, "start of programs and libraries for glibc", text("glibc")))
 

@@ -6,15 +6,15 @@ from collections.abc import Callable
 from dataclasses import dataclass
 from pathlib import Path
 
+from laconic_fmu.licences import COMPILER_TEXTS
 from laconic_packages.embedded import TOOLS
 from laconic_packages.facts import Facts
 from laconic_release import archives, readmes
 from laconic_release.tree import Tree
 from laconic_wheel.contents import FMUS
-from laconic_wheel.licences import compiler_parts
 from laconic_wheel.platforms import PLATFORMS
 
-IN_EVERY_FMU = ("fmi-headers", *compiler_parts())
+IN_EVERY_FMU = ("fmi-headers", *COMPILER_TEXTS)
 FOR_DEVELOPERS = ("bench", "cdef", "cortex_m", "tests")  # folders of core_c that a user's build does not take
 NODE_FMU = "LaconicNode"
 
@@ -44,7 +44,7 @@ def of_python(facts: Facts, build: Path) -> list[Product]:
         name = f"laconic-{facts.version}-py3-none-{platform.tag}.whl"
         made.append(Product(name, f"Python and the command `laconic` on {platform.name}: `pip install` this file",
                             "application/zip", (build / "dist" / name).read_bytes,
-                            ("fmi-headers", "cantools", *compiler_parts(platform)), is_wheel=True))
+                            ("fmi-headers", "cantools", *COMPILER_TEXTS), is_wheel=True))
     return made
 
 

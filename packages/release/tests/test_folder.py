@@ -17,11 +17,11 @@ import pytest
 from release_folder import DIST, VERSION
 
 from laconic.paths import build_dir
+from laconic_fmu.licences import COMPILER_TEXTS
 from laconic_packages.facts import ROOT
 from laconic_release import bill, checksums
 from laconic_release.tree import tree_of
 from laconic_wheel.contents import FMUS
-from laconic_wheel.licences import compiler_parts
 from laconic_wheel.platforms import PLATFORMS
 
 ARCHIVES = (".zip", ".whl", ".fmu", ".pack")
@@ -81,8 +81,16 @@ def test_a_wheel_holds_the_licence_of_each_part_inside_of_it(name: str) -> None:
     platform = PLATFORMS[name]
     with zipfile.ZipFile(DIST / f"laconic-{VERSION}-py3-none-{platform.tag}.whl") as wheel:
         found = {Path(each).name for each in wheel.namelist() if "/licenses/" in each}
-    parts = ("fmi-headers", "cantools", *compiler_parts(platform))
+    parts = ("fmi-headers", "cantools", *COMPILER_TEXTS)
     assert found == {"LICENSE", *(f"LICENSE-{part}.txt" for part in parts)}
+
+
+@pytest.mark.parametrize("name", FMUS)
+def test_an_fmu_holds_the_licence_of_each_part_inside_of_it(name: str) -> None:
+    with zipfile.ZipFile(DIST / name) as fmu:
+        found = {Path(each).stem for each in fmu.namelist() if each.startswith("documentation/licenses/")}
+    assert found - {"cantools"} == {"license", "fmi-headers", *COMPILER_TEXTS}
+    assert ("cantools" in found) == name.startswith("LaconicNode")
 
 
 @pytest.mark.parametrize("name", FMUS)
