@@ -198,7 +198,8 @@ laconic_status laconic_sensors_start(laconic_sensors *sensors, const laconic_sen
 
 /* laconic_plant_run() and laconic_plant_run_sampled() with sensors that watch. Steps are taken one by one where a
  * sensor must see each. Besides their refusals OVERFLOW where an encoder was turned by more than 2³¹ counts in a step
- * (WHEEL_ENCODER_COUNTS, item: the wheel) or a sample is beyond ± 10¹⁵ m/s² (IMU_X or IMU_Y, the farther); that step has been taken. */
+ * (WHEEL_ENCODER_COUNTS, item: the wheel) or a sample is beyond ± 10¹⁵ m/s² (IMU_X or IMU_Y, the farther); that step
+ * has been taken. */
 laconic_status laconic_sensors_run(laconic_sensors *sensors, struct laconic_plant *plant, const laconic_input *held,
                                    uint64_t steps, struct laconic_refusal *why);
 laconic_status laconic_sensors_run_sampled(laconic_sensors *sensors, struct laconic_plant *plant,
