@@ -10,6 +10,7 @@ from collections.abc import Callable, Sequence
 
 import numpy as np
 
+from laconic.core.derivatives import check_smooth
 from laconic.core.plant import Plant
 from laconic.errors import BadInput
 
@@ -22,13 +23,12 @@ class Course:
 
     `pose_at(t)` gives x, y of the centre of mass and the heading, not wrapped, also a moment before 0 and after the
     end. A motion that the wheels do not allow is replaced by the nearest that they do; the voltages are the least that
-    move ν along the course, whatever limits a motor has. `plant` is left at the start of the course.
+    move ν along the course, whatever limits a motor has. `plant` is left at the start of the course; a controller of
+    the course steps it.
     """
 
     def __init__(self, plant: Plant, pose_at: Callable[[float], Sequence[float]], duration_s: float):
-        if plant.has_friction:
-            raise BadInput("plant: has ground friction or limits of its drive, and such a step is not smooth; take the "
-                           "vehicle without ground.friction_coefficient and drive")
+        check_smooth(plant)
         steps = round(duration_s / plant.step_s)
         if steps < 1:
             raise BadInput(f"duration_s: {duration_s:g} s is less than a step of {plant.step_s:g} s; give more")

@@ -15,6 +15,7 @@ from typing import Any, NamedTuple
 import numpy as np
 from numpy.typing import ArrayLike
 
+from laconic.core.derivatives import check_smooth
 from laconic.core.given import number, numbers, shown, step_count
 from laconic.core.plant import Plant, Pose
 from laconic.core.sensors import settings_of
@@ -43,9 +44,7 @@ class Filter:
 
     def __init__(self, plant: Plant, settings: Mapping[str, Any], *, encoder: Mapping[str, Any] | None = None,
                  start_count: ArrayLike | None = None):
-        if plant.has_friction:
-            raise BadInput("plant: has ground friction or limits of its drive, and such a step is not smooth; take the "
-                           "vehicle without ground.friction_coefficient and drive")
+        check_smooth(plant)
         self.core, self.wheel_count = plant.core, plant.wheel_count
         ffi = self.core.ffi
         self._plant = Plant(self.core, ffi.new("laconic_plant *", plant.c[0]))

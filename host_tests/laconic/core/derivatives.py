@@ -28,6 +28,13 @@ if TYPE_CHECKING:
 SINGLE_INPUTS = ("body_force_N", "body_moment_Nm", "world_force_N", "world_force_point_m")
 
 
+def check_smooth(plant: Plant) -> None:
+    """BadInput for a vehicle with friction, whose step has no derivative."""
+    if plant.has_friction:
+        raise BadInput("plant: has ground friction or limits of its drive, and such a step is not smooth; take the "
+                       "vehicle without ground.friction_coefficient and drive")
+
+
 @dataclass(frozen=True)
 class StepJacobian:
     """δs⁺ = by_state δs + by_input δu for a vehicle with N wheels, s and u as in this file's head."""
@@ -46,9 +53,7 @@ class StepDerivatives:
     """
 
     def __init__(self, plant: Plant, held: Any = None):
-        if plant.has_friction:
-            raise BadInput("plant: has ground friction or limits of its drive, and such a step is not smooth; take the "
-                           "vehicle without ground.friction_coefficient and drive")
+        check_smooth(plant)
         self.plant, self.core, self.wheels = plant, plant.core, plant.wheel_count
         self.held = plant.input_of(held)
         at = plant.core.ffi.addressof
