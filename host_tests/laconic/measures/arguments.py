@@ -1,4 +1,4 @@
-"""Measures that take arguments, `straight_stable_speed_m_per_s(direction_deg=90)`, and those of models, which may."""
+"""Measures that may take arguments: `straight_stable_speed_m_per_s(direction_deg=90)`."""
 
 from __future__ import annotations
 
@@ -18,8 +18,8 @@ SPELLED = re.compile(r"\s*(\w+)\s*(?:\((.*)\))?\s*")
 
 
 @dataclass(frozen=True)
-class ModelMeasure(Measure):
-    """`of` takes a Group of L vehicles and the arguments by their names, and gives (L,) numbers."""
+class ArguedMeasure(Measure):
+    """`of` takes, beside what it is of (a Group of L vehicles where the measure is of a model), arguments by name."""
 
     of: Callable[..., np.ndarray]
     kind: str = OF_MODEL
@@ -58,7 +58,7 @@ def _number(name: str, text: str) -> float:
 
 def with_arguments(measure: Measure, given: Mapping[str, float]) -> Measure:
     """The measure with its arguments given; BadInput for one that is not known or is missing."""
-    known = measure.arguments if isinstance(measure, ModelMeasure) else {}
+    known = measure.arguments if isinstance(measure, ArguedMeasure) else {}
     if unknown := [name for name in given if name not in known]:
         instead = nearest_of(unknown[0], known) if known else "it takes none"
         raise BadInput(f"{measure.name}: there is no argument {unknown[0]}; {instead}")

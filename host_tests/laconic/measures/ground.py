@@ -2,31 +2,21 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator
 from typing import Any
 
 import numpy as np
 
+from laconic.batch.population import contacts_of, items_of
 from laconic.measures.prepared import Group
 from laconic.measures.stability import straight_zeta
 
 
-def _contacts(group: Group) -> Iterator[Any]:
-    """The laconic_contact of each vehicle in turn; the same memory."""
-    core = group.core
-    contact, why = core.ffi.new("laconic_contact *"), core.why()
-    for vehicle, _ in group.pointers:
-        core.check(core.lib.laconic_contact_prepare(contact, vehicle, why), why)
-        yield contact
-
-
 def least_load_share(group: Group) -> np.ndarray:
     """The least normal load of a wheel or support at rest over the weight; below 0 the vehicle tips."""
-    found = []
-    for contact, (_, model) in zip(_contacts(group), group.pointers, strict=True):
-        loads = group.core.numbers(contact.normal_load_of_wrench, -1, 3)[: contact.point_count, 0]
-        found.append(float(loads.min(initial=np.inf)) * float(model.wheel_radius_m))
-    return np.array(found)
+    contacts, _ = contacts_of(group.core, group.vehicles.copy())
+    loads = contacts["normal_load_of_wrench"][:, :, 0]
+    stands = np.arange(loads.shape[1]) < contacts["point_count"][:, None]
+    return np.where(stands, loads, np.inf).min(axis=1) * group.models["wheel_radius_m"]
 
 
 def grip_margin_N(group: Group, acceleration_m_per_s2: float, direction_deg: float) -> np.ndarray:
@@ -39,8 +29,10 @@ def grip_margin_N(group: Group, acceleration_m_per_s2: float, direction_deg: flo
     torques = (np.linalg.pinv(drive) @ wanted[:, :, None])[..., 0]
     size = np.abs(wanted).max(axis=1)
     missed = np.abs((drive @ torques[:, :, None])[..., 0] - wanted).max(axis=1)
-    margins = np.array([_margin_N(group, contact, model, row) for contact, (_, model), row in
-                        zip(_contacts(group), group.pointers, torques, strict=True)])
+    contacts, _ = contacts_of(group.core, group.vehicles.copy())
+    first = items_of(group.core, "laconic_contact", contacts)
+    margins = np.array([_margin_N(group, first + lane, model, row) for lane, ((_, model), row) in
+                        enumerate(zip(group.pointers, torques, strict=True))])
     return np.where(usable & (missed <= 1e-9 * size), margins, np.nan)
 
 

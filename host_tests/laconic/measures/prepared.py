@@ -6,13 +6,14 @@ that the core refuses are in no group, and their measures are NaN.
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterator
+from collections.abc import Callable, Iterator, Sequence
 from dataclasses import dataclass
-from functools import cache, cached_property
+from functools import cached_property
 from typing import Any
 
 import numpy as np
 
+from laconic.batch.population import struct_dtype
 from laconic.core import Core
 from laconic.errors import BadInput
 
@@ -25,6 +26,7 @@ class Group:
     vehicles: np.ndarray  # (L,) records of laconic_vehicle
     models: np.ndarray    # (L,) records of laconic_model
     pointers: list[tuple[Any, Any]]  # to laconic_vehicle and laconic_model, L of them
+    inputs: list[dict[str, float]]   # of each at the run's start, signal → value
     wheels: int           # N
     dof: int              # m
 
@@ -74,11 +76,13 @@ class Group:
 class Prepared:
     """Vehicles and their models; `refused[i]` says why vehicle i has none.
 
-    `vehicles`: a laconic_vehicle[L] of the core, or pointers to as many.
+    `vehicles`: a laconic_vehicle[L] of the core, or pointers to as many. `inputs`: what is held at the run's start, for
+    each vehicle, or one for all; none where no measure asks for it.
     """
 
-    def __init__(self, core: Core, vehicles: Any):
+    def __init__(self, core: Core, vehicles: Any, inputs: Sequence[dict[str, float]] = ({},)):
         ffi, count = core.ffi, len(vehicles)
+        self.inputs = list(inputs) * (count if len(inputs) == 1 else 1)
         self.core, self.count = core, count
         self._vehicles = self._array_of(vehicles)
         self._models = ffi.new("laconic_model[]", count)
@@ -113,7 +117,8 @@ class Prepared:
         for wheels, dof in sorted({(int(n), int(m)) for n, m in kinds[holds]}):
             lanes = np.flatnonzero(holds & (kinds == (wheels, dof)).all(axis=1))
             pointers = [(self._vehicles + int(lane), self._models + int(lane)) for lane in lanes]
-            yield lanes, Group(self.core, self.vehicles[lanes], self.models[lanes], pointers, wheels, dof)
+            yield lanes, Group(self.core, self.vehicles[lanes], self.models[lanes], pointers,
+                               [self.inputs[lane] for lane in lanes], wheels, dof)
 
     def measured(self, measure: Callable[[Group], np.ndarray]) -> np.ndarray:
         """A measure of all vehicles, (count,); NaN where the core refused one."""
@@ -123,27 +128,8 @@ class Prepared:
         return found
 
 
-def records(core: Core, struct: str, array: Any, *, writeable: bool = False) -> np.ndarray:
+def records(core: Core, struct: str, array: Any) -> np.ndarray:
     """A C array of structs as numpy records that are views of it; its members have their names."""
-    view = np.frombuffer(core.ffi.buffer(array), _record(core, struct))
-    view.flags.writeable = writeable
+    view = np.frombuffer(core.ffi.buffer(array), struct_dtype(core, struct))
+    view.flags.writeable = False
     return view
-
-
-@cache
-def _record(core: Core, struct: str) -> np.dtype[Any]:
-    return _dtype(core, core.ffi.typeof(struct))
-
-
-def _dtype(core: Core, kind: Any) -> np.dtype[Any]:
-    """The numpy type of a C type."""
-    if kind.kind == "struct":
-        fields = dict(kind.fields)
-        return np.dtype({"names": list(fields), "formats": [_dtype(core, field.type) for field in fields.values()],
-                         "offsets": [field.offset for field in fields.values()], "itemsize": core.ffi.sizeof(kind)})
-    if kind.kind == "array":
-        return np.dtype((_dtype(core, kind.item), (kind.length,)))
-    letter = "f" if kind.cname in ("double", "float") else "?" if kind.cname == "_Bool" else "V"
-    if kind.kind == "enum" or "int" in kind.cname:
-        letter = "u" if kind.cname.startswith("u") else "i"
-    return np.dtype(f"{letter}{core.ffi.sizeof(kind)}" if letter != "?" else "?")

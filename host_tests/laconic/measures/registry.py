@@ -4,10 +4,11 @@ from __future__ import annotations
 
 from laconic.errors import BadInput, nearest_of
 from laconic.measures.measure import OF_RUN, Measure
+from laconic.measures.of_ends import MEASURES_OF_ENDS
 from laconic.measures.of_model import MEASURES_OF_MODELS
 from laconic.measures.of_runs import MEASURES_OF_RUNS
 
-FILES = (MEASURES_OF_RUNS, MEASURES_OF_MODELS)
+FILES = (MEASURES_OF_RUNS, MEASURES_OF_ENDS, MEASURES_OF_MODELS)
 
 
 def measures_of(kind: str | None = None) -> dict[str, Measure]:

@@ -107,3 +107,16 @@ def straight_growth_per_s(group: Group, speed_m_per_s: float, direction_deg: flo
     usable = np.isfinite(matrix).all(axis=(1, 2))
     values = np.linalg.eigvals(np.where(usable[:, None, None], matrix, 0.0)).real.max(axis=1)
     return np.where(usable, values, np.nan)
+
+
+def steady_growth_per_s(group: Group) -> np.ndarray:
+    """Largest real part of the eigenvalues of that steady motion, straight or turning, which has the least; NaN where
+    there is none. The inputs are held as at the run's start."""
+    from laconic.analysis.from_core import field_of
+    from laconic.analysis.steady import steady_motions
+
+    found = []
+    for (_, model), inputs in zip(group.pointers, group.inputs, strict=True):
+        motions = steady_motions(field_of(group.core, model, inputs))
+        found.append(min((float(motion.eigenvalues.real.max()) for motion in motions), default=np.nan))
+    return np.array(found)

@@ -4,26 +4,28 @@ from __future__ import annotations
 
 import math
 from collections.abc import Sequence
-from typing import Any
 
 import numpy as np
 
 from laconic.errors import BadInput
-from laconic.measures.arguments import ModelMeasure, split, with_arguments
-from laconic.measures.measure import Measure
+from laconic.measures.arguments import ArguedMeasure, split, with_arguments
+from laconic.measures.measure import OF_RUN, Measure
+from laconic.measures.needs import lacks
 from laconic.measures.registry import measure_named
 from laconic.measures.registry import measures_of as measures_of_kind
 from laconic.optimise.candidates import Candidates
+from laconic.optimise.gradient import RunGradient
 from laconic.optimise.problem import Constraint, Free, Goal, Problem, measures_of
+from laconic.optimise.runs import Runs
 from laconic.scene.key_path import key_path
 from laconic.scene.scene_tables import SceneTables
 
-KIND = "model"
+OF_TIME = ("run.duration_s", "run.step_s")
 
 
 def problem_of(tables: SceneTables, free: Sequence[Free], goals: Sequence[Goal],
-               constraints: Sequence[Constraint]) -> tuple[Problem, np.ndarray, list[Measure]]:
-    """The problem, the scene's own choice and the measures; BadInput names the option that does not fit."""
+               constraints: Sequence[Constraint]) -> tuple[Problem, np.ndarray, Measuring]:
+    """The problem, the scene's own choice and what measures; BadInput names the option that does not fit."""
     if not free:
         raise BadInput("--free: is missing; give what may be chosen, KEY=a:b, such as vehicle.com_y_m=0:0.05")
     if not goals:
@@ -32,21 +34,18 @@ def problem_of(tables: SceneTables, free: Sequence[Free], goals: Sequence[Goal],
     measures = [_measure(name, "--goal" if any(goal.measure == name for goal in goals) else "--subject-to")
                 for name in names]
     own = np.array([_own(tables, each) for each in free])
-    _check_free(free)
-    candidates = Candidates(tables, free)
-    for measure in measures:
-        _check_needs(measure, candidates)
-    measuring = Measuring(candidates, measures)
-    problem = Problem(tuple(free), tuple(goals), tuple(constraints), measuring.measured)
+    _check_free(free, measures)
+    measuring = Measuring(tables, free, measures)
     _check_start(measuring, own)
-    return problem, own, measures
+    problem = Problem(tuple(free), tuple(goals), tuple(constraints), measuring.measured, measuring.jacobian)
+    return problem, own, measuring
 
 
 def listing() -> str:
     """The measures that goals and constraints may name, a line each."""
     lines = []
-    for measure in measures_of_kind(KIND).values():
-        usage = measure.usage if isinstance(measure, ModelMeasure) else measure.name
+    for measure in sorted(measures_of_kind().values(), key=lambda each: each.kind):
+        usage = measure.usage if isinstance(measure, ArguedMeasure) else measure.name
         lines += [f"{usage} [{measure.unit or '–'}]", f"    {measure.words}."]
     return "\n".join(lines)
 
@@ -54,7 +53,7 @@ def listing() -> str:
 def _measure(text: str, option: str) -> Measure:
     try:
         name, given = split(text)
-        return with_arguments(measure_named(name, KIND, option), given)
+        return with_arguments(measure_named(name, None, option), given)
     except BadInput as why:
         raise BadInput(str(why) if str(why).startswith(option) else f"{option} {why}") from None
 
@@ -74,22 +73,17 @@ def _own(tables: SceneTables, free: Free) -> float:
     return float(values[0] or 0.0)
 
 
-def _check_free(free: Sequence[Free]) -> None:
-    """No number twice, and no angle in both units."""
+def _check_free(free: Sequence[Free], measures: Sequence[Measure]) -> None:
+    """No number twice, no angle in both units, no time where a measure compares runs instant by instant."""
     seen: dict[str, str] = {}
     for key in (key for each in free for key in each.keys):
         name = key.replace("_deg", "_rad")
         if name in seen:
             raise BadInput(f"--free {key}: is given twice; give it one range")
         seen[name] = key
-
-
-def _check_needs(measure: Measure, candidates: Candidates) -> None:
-    """BadInput where the scene lacks what the measure is about."""
-    vehicle = candidates.base.vehicle
-    if measure.needs == "friction coefficient" and not (
-            vehicle.get("friction_coefficient") or vehicle.get("ground", {}).get("friction_coefficient")):
-        raise BadInput(f"{measure.name}: {candidates.base.path} gives no vehicle.friction_coefficient; give one")
+        beside = [each.name for each in measures if each.is_beside_nominal and not each.is_of_end]
+        if beside and key in OF_TIME:
+            raise BadInput(f"--free {key}: {beside[0]} compares the same instants of two runs; leave one of them out")
 
 
 def _check_start(measuring: Measuring, own: np.ndarray) -> None:
@@ -98,22 +92,45 @@ def _check_start(measuring: Measuring, own: np.ndarray) -> None:
     for measure, value in zip(measuring.measures, values, strict=True):
         if math.isnan(value):
             raise measuring.refusal(own) or BadInput(
-                f"{measure.name}: has no value for {measuring.candidates.base.path} as it is: its wheels cannot "
-                "move it that way; give another direction or measure")
+                f"{measure.name}: has no value for {measuring.candidates.base.path} as it is; give another measure, or "
+                "a direction in which its wheels can move it")
 
 
 class Measuring:
-    """All measures of many choices; `measured` is what a Problem asks."""
+    """All measures of many choices, of models and of runs; `measured` and `jacobian` are what a Problem asks."""
 
-    def __init__(self, candidates: Candidates, measures: Sequence[Measure]):
-        self.candidates, self.measures = candidates, measures
+    def __init__(self, tables: SceneTables, free: Sequence[Free], measures: Sequence[Measure]):
+        self.candidates, self.measures = Candidates(tables, free), measures
+        self._of_run = np.array([measure.kind == OF_RUN for measure in measures])
+        for measure in measures:
+            if missing := lacks(measure, self.candidates.base):
+                raise BadInput(f"{measure.name}: needs {missing}, which {tables.path} does not give")
+        of_runs = [measure for measure in measures if measure.kind == OF_RUN]
+        self.runs = Runs(tables, free, of_runs) if of_runs else None
+        self.gradient = RunGradient(self.candidates, measures) if of_runs else None
 
     def measured(self, choices: np.ndarray) -> np.ndarray:
         """(L, M) of choices (L, p); NaN where there is none."""
-        prepared = self.candidates.prepared(choices)
-        columns: list[Any] = [prepared.measured(measure.of) for measure in self.measures]
-        return np.stack(columns, axis=1)
+        found = np.full((len(choices), len(self.measures)), np.nan)
+        if not self._of_run.all():
+            prepared = self.candidates.prepared(choices)
+            for column in np.flatnonzero(~self._of_run).tolist():
+                found[:, column] = prepared.measured(self.measures[column].of)
+        if self.runs is not None:
+            found[:, self._of_run] = self.runs.measured(choices)
+        return found
+
+    def jacobian(self, choice: np.ndarray) -> np.ndarray | None:
+        """(M, p) at a choice (p,), NaN where only differences tell; None where no measure has an exact one."""
+        return None if self.gradient is None else self.gradient.jacobian(choice)
+
+    @property
+    def exact(self) -> list[str]:
+        """Measures whose gradient is exact: through every step of the run."""
+        known = [] if self.gradient is None else self.gradient.known
+        return [measure.name for measure, is_known in zip(self.measures, known, strict=False) if is_known]
 
     def refusal(self, choice: np.ndarray) -> BadInput | None:
-        """Why a choice makes no vehicle; None where it does."""
-        return self.candidates.prepared(choice[None]).refused[0]
+        """Why a choice makes no vehicle, or none that runs; None where it does."""
+        refused = self.candidates.prepared(choice[None]).refused[0]
+        return refused if refused or self.runs is None else self.runs.refusal(choice)

@@ -22,25 +22,26 @@ BODY, WHEEL, TREAD, COM, SUPPORT = "#f3e3c0", "#2b3a49", "#c3ced8", "#1f6fb2", "
 THICK = 0.7    # of a wheel, of its radius
 ROLLERS = 5    # lines across a wheel that show how its rollers lie
 ROOM = 1.35    # around the outermost wheel
-CLEAR = 0.75   # of a wheel's radius from its middle to its number
+CLEAR = 0.65   # of a wheel's radius from its middle to its number
 LETTERS = 100  # in a line of a title
 
 
 def draw_vehicles(before: Scene, after: Scene, result: Result, path: Path) -> None:
     """Both from above in their body frames, to one scale, with the free numbers below."""
-    picture = figure(10.0, 5.8)
+    picture = figure(10.0, 5.6 + 0.2 * sum(len(each.keys) for each in result.problem.free))
     panels = picture.subplots(1, 2, sharex=True, sharey=True)
     reach = ROOM * max(_reach_m(before), _reach_m(after))
     choices = (result.before.choice, result.best.choice)
     for axes, scene, name, choice in zip(panels, (before, after), ("before", "found"), choices, strict=True):
         _vehicle(axes, scene)
-        lines = [f"{each.key} = {value:.5g}" for each, value in zip(result.problem.free, choice, strict=True)]
+        lines = [",\n".join(each.keys) + f" = {value:.5g}"
+                 for each, value in zip(result.problem.free, choice, strict=True)]
         axes.set_title(name)
-        axes.set_xlabel("x [m]\n\n" + "\n".join(lines), linespacing=1.3)
+        axes.set_xlabel("\n".join(["x [m]", "", *lines, " "]))
         axes.set(xlim=(-reach, reach), ylim=(-reach, reach), aspect="equal")
+        axes.locator_params(nbins=6)
     panels[0].set_ylabel("y [m]")
-    handles, labels = panels[1].get_legend_handles_labels()
-    picture.legend(handles, labels, loc="outside lower center", ncols=3, fontsize=9)
+    panels[1].legend(loc="upper right", fontsize=9)
     picture.suptitle(wrapped(after.name, LETTERS, "from above"))
     save(picture, path)
 
@@ -88,9 +89,9 @@ def _wheel(axes: Axes, scene: Scene, wheel: dict[str, Any], number: int) -> None
         for offset in np.linspace(-0.8, 0.8, ROLLERS) * radius:
             axes.plot([-along[0], along[0]], [offset - along[1], offset + along[1]], color=TREAD, lw=1.6, zorder=3,
                       transform=turn)
-    away = np.array([wheel["x_m"], wheel["y_m"]])
-    size = float(np.hypot(*away))
-    place = away * (1.0 + CLEAR * radius / size) if size > 0.0 else away + CLEAR * radius
+    centre = np.array([wheel["x_m"], wheel["y_m"]])
+    axle = np.array([np.cos(wheel["axle_rad"]), np.sin(wheel["axle_rad"])])
+    place = centre + CLEAR * radius * (-axle if axle @ centre < 0.0 else axle)
     axes.text(place[0], place[1], str(number), ha="center", va="center", fontsize=9, zorder=6)
 
 

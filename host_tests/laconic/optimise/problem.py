@@ -79,7 +79,7 @@ class Problem:
     goals: tuple[Goal, ...]
     constraints: tuple[Constraint, ...]
     measured: Callable[[np.ndarray], np.ndarray]
-    jacobian: Callable[[np.ndarray], np.ndarray] | None = None  # at (p,): (M, p), NaN where not known exactly
+    jacobian: Callable[[np.ndarray], np.ndarray | None] = lambda choice: None  # (M, p) at (p,), NaN: not known exactly
 
     @property
     def measures(self) -> tuple[str, ...]:

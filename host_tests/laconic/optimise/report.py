@@ -6,21 +6,21 @@ import math
 from collections.abc import Sequence
 from typing import Any
 
-from laconic.measures.measure import Measure
+from laconic.optimise.measuring import Measuring
 from laconic.optimise.study import Result
 
 
-def as_text(result: Result, name: str, measures: Sequence[Measure]) -> str:
+def as_text(result: Result, name: str, measuring: Measuring) -> str:
     """A report in Markdown."""
     problem = result.problem
     lines = [f"# {name}, optimised", "", "| free | before | found | range |", "| --- " * 4 + "|"]
     for each, old, new in zip(problem.free, result.before.choice, result.best.choice, strict=True):
         lines.append(f"| {each.key} | {old:.6g} | {new:.6g} | {each.low:g} to {each.high:g} |")
     lines += ["", "| measure | before | found |", "| --- " * 3 + "|"]
-    units = [f" [{measure.unit}]" if measure.unit else "" for measure in measures]
+    units = [f" [{measure.unit}]" if measure.unit else "" for measure in measuring.measures]
     for text, unit, old, new in zip(_rows(result), units, result.before.values, result.best.values, strict=True):
         lines.append(f"| {text}{unit} | {old:.6g} | {new:.6g} |")
-    lines += ["", *words(result)]
+    lines += ["", *words(result, measuring.exact)]
     if result.front:
         lines += ["", *_front(result)]
     return "\n".join(lines)
@@ -35,9 +35,11 @@ def _rows(result: Result) -> list[str]:
     return found
 
 
-def words(result: Result) -> list[str]:
+def words(result: Result, exact: Sequence[str]) -> list[str]:
     """What to know beside the numbers, in sentences."""
     found = [f"{result.measured} vehicles were measured."]
+    if exact:
+        found.append(f"The descent had exact gradients of {', '.join(exact)}, through every step of the run.")
     if result.stopped is not None:
         found.append("The search was stopped: this is the best of what it had found.")
     if not result.keeps:
@@ -68,10 +70,10 @@ def _front(result: Result) -> list[str]:
     return lines
 
 
-def as_numbers(result: Result, measures: Sequence[Measure], seed: int) -> dict[str, Any]:
+def as_numbers(result: Result, measuring: Measuring, seed: int) -> dict[str, Any]:
     """Machine-readable; a measure without a finite value is null."""
     problem = result.problem
-    units = {name: measure.unit for name, measure in zip(problem.measures, measures, strict=True)}
+    units = {name: measure.unit for name, measure in zip(problem.measures, measuring.measures, strict=True)}
     return {
         "free": [{"key": each.key, "low": each.low, "high": each.high, "before": float(old), "found": float(new)}
                  for each, old, new in zip(problem.free, result.before.choice, result.best.choice, strict=True)],
@@ -81,7 +83,8 @@ def as_numbers(result: Result, measures: Sequence[Measure], seed: int) -> dict[s
         "keeps_constraints": result.keeps, "active": result.active_constraints, "at_ends": result.at_ends,
         "front": [{"free": [float(value) for value in point.choice],
                    "measures": [_finite(value) for value in point.values]} for point in result.front],
-        "measured": result.measured, "seed": seed, "stopped": result.stopped is not None}
+        "measured": result.measured,
+        "exact_gradients": measuring.exact, "seed": seed, "stopped": result.stopped is not None}
 
 
 def _finite(value: float) -> float | None:

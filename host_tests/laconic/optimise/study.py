@@ -7,9 +7,10 @@ from dataclasses import dataclass, field
 
 import numpy as np
 
+from laconic.errors import BadInput
 from laconic.optimise.archive import Archive
 from laconic.optimise.polish import Polish
-from laconic.optimise.problem import Problem
+from laconic.optimise.problem import LARGEST, Problem
 from laconic.optimise.scalar import OneGoal, Scalar, alone, first_of, weights
 from laconic.optimise.search import Effort, Loss, search
 
@@ -110,6 +111,10 @@ class _Run:
         if None in best:
             return None
         losses = self.archive.problem.losses(self.archive.values[np.array(best, int)])
+        for goal, loss in zip(self.archive.problem.goals, losses.min(axis=0), strict=True):
+            if loss <= -LARGEST:
+                raise BadInput(f"--goal {goal.text}: is infinite for some choices, which no other goal outweighs; take "
+                               f"it as a bound, --subject-to '{goal.measure}>=…'")
         span = losses.max(axis=0) - losses.min(axis=0)
         return losses.min(axis=0), np.where(span > 0.0, span, 1.0)
 
@@ -170,7 +175,9 @@ def _undominated(archive: Archive, places: list[int]) -> list[int]:
 def _picked(problem: Problem, front: list[Found], pick: int | None) -> int:
     """The point asked for, or the one whose worst goal loses least of its span."""
     if pick is not None:
-        return min(pick, len(front)) - 1
+        if pick > len(front):
+            raise BadInput(f"--pick {pick}: the front has {len(front)} points; give one of them")
+        return pick - 1
     losses = problem.losses(np.array([each.values for each in front]))
     span = np.maximum(losses.max(axis=0) - losses.min(axis=0), 1e-300)
     return int(np.argmin(((losses - losses.min(axis=0)) / span).max(axis=1)))

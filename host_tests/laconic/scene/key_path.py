@@ -48,8 +48,11 @@ class KeyPath:
 
 def key_path(text: str | KeyPath) -> KeyPath:
     """Reads a path; BadInput names what is no key of any scene, and keys that are near."""
-    if isinstance(text, KeyPath):
-        return text
+    return text if isinstance(text, KeyPath) else _key_path(text)
+
+
+@cache
+def _key_path(text: str) -> KeyPath:
     parts = [PART.fullmatch(part) for part in text.strip().split(".")]
     if not all(parts):
         raise BadInput(f"{shown(text)}: is no key of a scene; give one such as vehicle.wheel[2].x_m, counted from 1")

@@ -8,7 +8,7 @@ from pathlib import Path
 import numpy as np
 
 from laconic.errors import BadInput, Refused
-from laconic.measures import Measure
+from laconic.measures.needs import lacks
 from laconic.progress import progress_bar
 from laconic.scene import Scene
 from laconic.sweep.chunk import Rows, nominal_course
@@ -29,7 +29,7 @@ def check_plan(plan: Plan) -> Scene:
     """The nominal scene; BadInput for keys or measures that make no sense for it."""
     scene = plan.tables.scene()
     for measure in plan.measures:
-        if missing := _lacks(measure, scene):
+        if missing := lacks(measure, scene):
             raise BadInput(f"--measure {measure.name}: needs {missing}, which {plan.tables.path} does not give")
         for key in OF_TIME:
             if measure.is_beside_nominal and not measure.is_of_end and key in [each.key.text for each in plan.varied]:
@@ -47,18 +47,6 @@ def _first_refusal(plan: Plan, index: int) -> BadInput | None:
     except BadInput as refused:
         return refused
     return None
-
-
-def _lacks(measure: Measure, scene: Scene) -> str:
-    """What a measure needs and the scene has not; empty where it has all."""
-    vehicle = scene.vehicle
-    ground = vehicle.get("ground", {})
-    has = {"": True, "motor": "motor" in vehicle, "wheels": bool(vehicle["wheel"]),
-           "supply": bool(vehicle.get("drive", {}).get("supply_V")),
-           "friction coefficient": bool(vehicle["friction_coefficient"] or ground.get("friction_coefficient"))}
-    words = {"motor": "[vehicle.motor]", "wheels": "wheels", "supply": "vehicle.drive.supply_V",
-             "friction coefficient": "a friction coefficient"}
-    return "" if has[measure.needs] else words[measure.needs]
 
 
 def chunk_of(plan: Plan, scene: Scene) -> int:

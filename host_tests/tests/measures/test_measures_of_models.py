@@ -9,6 +9,7 @@ import numpy as np
 import pytest
 from scipy.optimize import linprog
 
+from laconic.analysis.analyse import analyse
 from laconic.analysis.field import Field
 from laconic.analysis.from_core import subject_of
 from laconic.analysis.geometry import diagnose
@@ -138,6 +139,19 @@ def test_stable_speed_is_where_an_eigenvalue_crosses_real_or_in_a_pair(seed):
         assert growth(found) == pytest.approx(0.0, abs=1e-9 * found)
         assert all(growth(share * found) < 0.0 for share in np.linspace(0.01, 0.999, 50))
         assert growth(1.001 * found) > 0.0
+
+
+def test_steady_growth_is_that_of_the_most_stable_motion_that_analyse_finds():
+    """Straight on is unstable at these voltages, the circle beyond the threshold is stable."""
+    scene = read_scene("paper_three_wheel_driven")
+    core = scene.core()
+    held = [scene.inputs_on_grid().held_at(0)]
+    measure = measure_named("steady_growth_per_s", "model")
+    found = Prepared(core, [scene.c_vehicle(core)], held).measured(measure.of)[0]
+    motions = analyse(scene, ["steady"]).steady.motions
+    growths = {motion.is_turning: motion.eigenvalues.real.max() for motion in motions}
+    assert found == pytest.approx(growths[True], rel=1e-12)
+    assert found < 0.0 < growths[False]
 
 
 def test_least_load_and_grip_are_those_of_statics():

@@ -92,7 +92,7 @@ def test_front_of_threshold_and_load_is_the_closed_curve():
     """At third = 0.06 m the load s = (1 − com/third)/2 gives third − com = 2 s third: threshold · s is constant."""
     found = solved(CARRIAGE, ["vehicle.wheel[3].distance_m=0.06:0.2", "vehicle.com_y_m=0:0.1"],
                    [f"max:{ALONG_ETA}", "max:least_load_share"], ["least_load_share>=0.1"],
-                   effort=Effort(generations=100), points=2)
+                   effort=Effort(generations=60), points=2)
     product = threshold_m_per_s(0.06, 0.0) / 2.0
     assert len(found.front) == 4
     for point in found.front:

@@ -59,9 +59,10 @@ def test_json_has_all_digits_and_pick_chooses_the_point_of_the_front(tmp_path, c
     assert (tmp_path / "front.png").stat().st_size > 10_000
 
 
-def test_bounds_that_nothing_keeps_are_told_with_exit_status_1(capsys):
+def test_bounds_that_nothing_keeps_are_told_with_exit_status_1_and_no_file(tmp_path, capsys):
     assert run(["optimise", CARRIAGE, "--free", "vehicle.com_y_m=0:0.01", "--goal", "min:condition", "--subject-to",
-                f"{ALONG_ETA}>=5", "--generations", "5"]) == 1
+                f"{ALONG_ETA}>=5", "--generations", "5", "-o", str(tmp_path / "best.toml")]) == 1
+    assert not list(tmp_path.iterdir())
     assert "no choice within the ranges keeps all constraints" in capsys.readouterr().err
 
 
@@ -99,6 +100,17 @@ def test_vehicles_that_make_no_sense_are_passed_over(capsys):
     found = json.loads(capsys.readouterr().out)
     assert 0.0 < found["free"][0]["found"] < 40.0
     assert found["active"] == ["fastest_damping_per_s<=20"]
+
+
+def test_goal_that_is_infinite_beside_another_and_a_point_that_the_front_has_not_are_refused(capsys):
+    """With the mass beyond the third wheel straight motion is stable at every speed."""
+    options = ["--free", "vehicle.com_y_m=0.05:0.1", "--goal", f"max:{ALONG_ETA}", "--goal", "min:condition",
+               "--generations", "5"]
+    assert run(["optimise", CARRIAGE, *options]) == 2
+    assert f"--subject-to '{ALONG_ETA}>=…'" in capsys.readouterr().err
+    options[1] = "vehicle.com_y_m=0.01:0.05"
+    assert run(["optimise", CARRIAGE, *options, "--points", "2", "--pick", "90"]) == 2
+    assert "--pick 90: the front has" in capsys.readouterr().err
 
 
 @pytest.mark.parametrize(("options", "words"), [

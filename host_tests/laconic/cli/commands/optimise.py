@@ -64,7 +64,8 @@ def command(scene: str, free: tuple[str, ...], goals: tuple[str, ...], constrain
     """Chooses the --free numbers of SCENE so that measures become as small or as large as they can, within bounds.
 
     A search over the whole ranges (SciPy's differential evolution), then a descent from its best (SLSQP). Ctrl-C keeps
-    the best so far. Exit status 1 where no choice keeps the bounds; with -o - the report goes to stderr.
+    the best so far. Exit status 1 where no choice keeps the bounds: then no file is written. With -o - the report goes
+    to stderr.
     """
     from laconic.optimise.measuring import problem_of
     from laconic.optimise.problem import read_constraint, read_free, read_goal
@@ -77,14 +78,16 @@ def command(scene: str, free: tuple[str, ...], goals: tuple[str, ...], constrain
 
     _check_several(goals, front_path, pick)
     tables = scene_tables(scene)
-    problem, own, measures = problem_of(tables, [read_free(each) for each in free], [read_goal(each) for each in goals],
-                                        [read_constraint(each) for each in constraints])
+    problem, own, measuring = problem_of(
+        tables, [read_free(each) for each in free], [read_goal(each) for each in goals],
+        [read_constraint(each) for each in constraints])
     effort = Effort(generations)
     with progress_bar("generations", most_generations(problem, effort, points)) as advance:
         result = optimise(problem, own, effort, seed, points, pick, advance)
-    _write(tables, result, measures, out, plot, front_path)
-    text = json.dumps(as_numbers(result, measures, seed), indent=1) if json_wanted else as_text(
-        result, tables.scene().name, measures)
+    if result.keeps:
+        _write(tables, result, measuring.measures, out, plot, front_path)
+    text = json.dumps(as_numbers(result, measuring, seed), indent=1) if json_wanted else as_text(
+        result, tables.scene().name, measuring)
     click.echo(text, err=out is not None and is_stdout(out) and not json_wanted)
     if result.stopped is not None:
         raise result.stopped
