@@ -8,13 +8,13 @@
 
 /* A lane's place in the registers of its block. */
 typedef struct place {
-    unsigned char *first;
+    laconic_batch_block *block;
     size_t stride; /* from register to register */
     int32_t lane;
 } place;
 
-static place place_of(const laconic_batch_block *block, const laconic_batch *batch, int32_t k) {
-    const place p = {block->state, state_stride(batch->width), k};
+static place place_of(laconic_batch_block *block, const laconic_batch *batch, int32_t k) {
+    const place p = {block, state_stride(batch->width), k};
     return p;
 }
 
@@ -24,7 +24,7 @@ static place place_of_lane(const laconic_batch *batch, int32_t lane) {
 }
 
 static real *kept(const place *p, int32_t number) {
-    return (real *)(void *)(p->first + (size_t)number * p->stride) + p->lane;
+    return (real *)(void *)(p->block->state + (size_t)number * p->stride) + p->lane;
 }
 
 /* Fractions of a turn are integers of a number's size. */
@@ -32,7 +32,7 @@ static laconic_angle_number *kept_fraction(const place *p) {
     return (laconic_angle_number *)(void *)kept(p, STATE_FRACTION);
 }
 
-static int64_t *kept_turns(const place *p) { return (int64_t *)(void *)(p->first + STATE_TURNS * p->stride) + p->lane; }
+static int64_t *kept_turns(const place *p) { return (int64_t *)(void *)(p->block->state + STATE_TURNS * p->stride) + p->lane; }
 
 static laconic_sum sum_in(const place *p, int32_t value, int32_t rest) {
     const laconic_sum sum = {*kept(p, value), *kept(p, rest)};
@@ -56,7 +56,12 @@ static void state_in(laconic_state *s, const place *p) {
     s->heading.rest = *kept(p, STATE_HEADING_REST);
 }
 
+/* A block far from the end of the count stays so by the steps that lanes take together: no machine runs for the 2⁵⁸
+ * that it would take at least. */
+static bool is_far(int64_t turns) { return (uint64_t)turns + ((uint64_t)1 << 60) >= (uint64_t)1 << 61; }
+
 static void put_state(const place *p, const laconic_state *s) {
+    if (is_far(s->heading.turns)) p->block->far = true;
     for (int32_t k = 0; k < 3; k++) {
         put_sum(p, STATE_ZETA + k, STATE_ZETA_REST + k, s->zeta[k]);
         put_sum(p, STATE_TRAVEL + k, STATE_TRAVEL_REST + k, s->travel[k]);
@@ -151,7 +156,7 @@ typedef struct walk {
 
 /* Steps of one lane by itself; it stops where one is refused, which is returned. `after`: the steps of this run that
  * come after them. */
-static bool refuses_alone(walk *w, const laconic_batch_block *block, int32_t k, uint64_t steps, uint64_t after) {
+static bool refuses_alone(walk *w, laconic_batch_block *block, int32_t k, uint64_t steps, uint64_t after) {
     const int32_t lane = block->lanes[k];
     const laconic_batch_kind *kind = &w->batch->kinds[w->batch->kind_of[lane]];
     const place p = place_of(block, w->batch, k);
@@ -169,7 +174,7 @@ static bool refuses_alone(walk *w, const laconic_batch_block *block, int32_t k, 
     return true;
 }
 
-static uint32_t step_alone(void *context, const laconic_batch_block *block, uint32_t which, uint64_t after) {
+static uint32_t step_alone(void *context, laconic_batch_block *block, uint32_t which, uint64_t after) {
     uint32_t refused = 0;
     for (int32_t k = 0; k < block->count; k++)
         if (which >> k & 1U && refuses_alone((walk *)context, block, k, 1, after)) refused |= 1U << k;

@@ -9,10 +9,12 @@
 #include "../src/vector.h"
 
 #ifdef LACONIC_SINGLE
+typedef int32_t signed_angle;
 #define BINARY_ANGLE_BITS 32
 #define BINARY_ANGLE_UNIT_RAD R(1.4629180792671596811e-9) /* 2π/2³² */
 #define HALF_TURN R(2147483648.0)                         /* 2³¹ units */
 #else
+typedef int64_t signed_angle;
 #define BINARY_ANGLE_BITS 64
 #define BINARY_ANGLE_UNIT_RAD R(3.4061215800865545893e-19) /* 2π/2⁶⁴ */
 #define HALF_TURN R(9223372036854775808.0)                 /* 2⁶³ units */
@@ -48,13 +50,21 @@ static inline lanes_integer lanes_cut(real x) {
 
 #define MAGIC_INTEGER R(6755399441055744.0) /* 1.5·2⁵²: a number below 2⁵¹ added to it stands in the last bits */
 
-/* Both halves as numbers, the upper one exact; one rounding when they are added. */
-static inline real lanes_number(verdict integer) {
-    const verdict low = (integer & 0xffffffff) | (verdict)R(4503599627370496.0);        /* + 2⁵²      */
-    const verdict high = (verdict)((laconic_binary_angle)(integer ^ INT64_MIN) >> 32) | /* + 2⁶³ …    */
-                         (verdict)R(19342813113834066795298816.0);                      /* … + 2⁸⁴    */
-    return ((real)high - R(19342822341709703277445120.0)) + (real)low;                  /* 2⁸⁴ + 2⁶³ + 2⁵² */
+#ifdef LANES_WITH_AVX
+
+#define MAGIC_MULTIPLE R(442721857769029238784.0) /* 1.5·2⁶⁸: as MAGIC_INTEGER, for multiples of 2¹⁶ */
+
+/* |x| < 2⁶³: of the whole part the multiple of 2¹⁶ that is nearest, and what is left. */
+static inline lanes_integer lanes_cut(real x) {
+    const real whole = __builtin_ia32_roundpd256(x, 3) + R(0); /* 3: towards 0 */
+    const real high = whole + MAGIC_MULTIPLE;
+    const real low = (whole - (high - MAGIC_MULTIPLE)) + MAGIC_INTEGER;
+    const verdict magic = ((verdict)MAGIC_MULTIPLE << 16) + (verdict)MAGIC_INTEGER;
+    const lanes_integer out = {(((verdict)high << 16) + (verdict)low) - magic, whole};
+    return out;
 }
+
+#else
 
 /* |x| < 2⁶³: of |x| the part above 2³² rounded, what is left (which may be below 0) cut down. */
 static inline lanes_integer lanes_cut(real x) {
@@ -73,24 +83,46 @@ static inline lanes_integer lanes_cut(real x) {
 }
 
 #endif
+#endif
 
 /* ------------------------------------------------------------------- binary angles -- */
 
-/* (cos, sin) of x + quarters · π/2 for |x| <= π/4; of `quarters` the last two bits count. */
-static inline direction direction_near(real x, verdict quarters) {
-    const real z = x * x, cosine = poly_cos(z), sine = poly_sin(x, z);
-    const verdict odd = -(quarters & 1), sign = (quarters & 2) << (BINARY_ANGLE_BITS - 2);
-    const verdict minus_sine = (verdict)sine ^ (verdict)R(-0.0);
-    const direction d = {(real)((verdict)lanes_chosen(odd, (real)minus_sine, cosine) ^ sign),
-                         (real)((verdict)lanes_chosen(odd, cosine, sine) ^ sign)};
-    return d;
+#define HIGHEST_BIT ((verdict)R(-0.0))
+
+/* a where the highest bit of `which` is set, else b. */
+static inline real lanes_chosen_by_bit(verdict which, real a, real b) {
+#if defined(LANES_WITH_AVX) && !defined(LANES_WITH_CONVERSIONS) && !defined(LACONIC_SINGLE)
+    return __builtin_ia32_blendvpd256(b, a, (real)which);
+#elif defined(LANES_WITH_AVX) && !defined(LANES_WITH_CONVERSIONS)
+    return __builtin_ia32_blendvps256(b, a, (real)which);
+#else
+    return lanes_chosen((verdict)(which < 0), a, b);
+#endif
+}
+
+/* Of an angle an eighth of a turn further on the first two bits count quarters; the others are the way from the nearest
+ * quarter, and an eighth of a turn more. That way as a number: */
+static inline real lanes_near(laconic_binary_angle eighth_on) {
+    const verdict left = (verdict)(eighth_on << 2 >> 2);
+#if defined(LACONIC_SINGLE) || defined(LANES_WITH_CONVERSIONS)
+    return lanes_number(left - ((verdict){0} + ((signed_angle)1 << (BINARY_ANGLE_BITS - 3))));
+#else
+    /* Both halves as numbers, 2⁵² and 2⁸⁴ more; the upper one is exact, so that their sum is rounded once. */
+    const verdict low = (left & 0xffffffff) | (verdict)R(4503599627370496.0);
+    const verdict high = (verdict)((laconic_binary_angle)left >> 32) | (verdict)R(19342813113834066795298816.0);
+    return ((real)high - R(19342813113834066795298816.0 + 2310346608841064448.0)) + (real)low;
+#endif
 }
 
 static inline direction direction_of_binary_angle(laconic_binary_angle angle) {
-    const laconic_binary_angle eighth = angle + ((laconic_angle_number)1 << (BINARY_ANGLE_BITS - 3));
-    const laconic_binary_angle quarters = eighth >> (BINARY_ANGLE_BITS - 2);
-    const laconic_binary_angle near = angle - (quarters << (BINARY_ANGLE_BITS - 2));
-    return direction_near(lanes_number((verdict)near) * BINARY_ANGLE_UNIT_RAD, (verdict)quarters);
+    const laconic_binary_angle eighth_on = angle + ((laconic_angle_number)1 << (BINARY_ANGLE_BITS - 3));
+    const real x = lanes_near(eighth_on) * BINARY_ANGLE_UNIT_RAD;
+    const real z = x * x, cosine = poly_cos(z), sine = poly_sin(x, z);
+    const verdict odd = (verdict)(eighth_on << 1), sign = (verdict)eighth_on & HIGHEST_BIT;
+    const real minus_sine = (real)((verdict)sine ^ HIGHEST_BIT);
+    const direction d = {(real)((verdict)lanes_chosen_by_bit(odd, minus_sine, cosine) ^ sign),
+                         (real)((verdict)lanes_chosen_by_bit(odd, cosine, sine) ^ sign)};
+    return d;
 }
 
 static inline laconic_binary_angle lanes_binary_angle_of(real angle_rad) {

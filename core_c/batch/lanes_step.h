@@ -28,6 +28,22 @@
 
 #include "lanes_heading.h"
 
+#include "../src/wrench.h" /* laconic_state */
+
+/* A state whose step has begun, and what is yet to be added to it. */
+typedef struct lanes_step {
+    laconic_state state;
+    vector delta, path;
+    real along_m, across_m, yaw_change_rad;
+} lanes_step;
+
+/* `state` is that of a lanes_step. */
+#define lanes_put_off(state, its_delta, its_path, moved) \
+    (((lanes_step *)(void *)(state))->delta = (its_delta), ((lanes_step *)(void *)(state))->path = (its_path), \
+     ((lanes_step *)(void *)(state))->along_m = (moved).along_m, \
+     ((lanes_step *)(void *)(state))->across_m = (moved).across_m, \
+     ((lanes_step *)(void *)(state))->yaw_change_rad = (moved).yaw_change_rad)
+
 #include "../src/step_internals.c"
 
 #include "../src/exact_flow.c"
@@ -188,6 +204,10 @@ static inline void show(const laconic_batch_block *block, int32_t number, int32_
 
 /* ---------------------------------------------------------------------------- steps -- */
 
+#ifndef LANES_TOGETHER
+#define LANES_TOGETHER 4
+#endif
+
 typedef laconic_status (*lanes_stepper)(const laconic_model *, const laconic_integrator *, laconic_state *,
                                         const laconic_forcing_samples *);
 
@@ -197,6 +217,9 @@ typedef struct lanes_run {
     laconic_forcing forcing;
     verdict rotates, refused; /* refused: a step of these would be                                     */
     bool some_rotate;         /* their b rotates with the heading: a stepper of its own is for them    */
+    uint64_t after;           /* steps that come after the one that has begun                          */
+    vector delta, path;       /* what that adds                                                        */
+    pose_change moved;
 } lanes_run;
 
 /* A step of a lane adds less than a turn; one near the end of the count goes alone, and laconic_step() counts. */
@@ -220,8 +243,10 @@ INLINE void begin_run(lanes_run *run, laconic_batch_block *block) {
     run->some_rotate = run->forcing.rotates;
     run->rotates = acts(input.world_force_N[0], input.world_force_N[1], R(0));
     if (sloped(model)) run->rotates = ~none_of_them;
+    run->refused = NOT(zero_if_finite(world_force_point(&input)) == R(0));
+    if (!block->far) return;
     __builtin_memcpy(&turns, state_at(block, STATE_TURNS), sizeof turns);
-    run->refused = NOT(zero_if_finite(world_force_point(&input)) == R(0)) | NOT(far_from_last_turn(turns));
+    run->refused |= NOT(far_from_last_turn(turns));
 }
 
 static uint32_t bits_of(verdict which) {
@@ -247,58 +272,99 @@ RARE void end_apart(laconic_batch_block *block, const laconic_state *now, verdic
     if (apart != 0) block->stopped |= alone->step(alone->context, block, apart, after);
 }
 
-/* Lanes that could not take the step have NaN as their place. A copy goes to the rare case: what has an address is kept
- * in memory. */
-INLINE void end_step(const lanes_run *run, const laconic_state *state, const lanes_alone *alone, uint64_t after) {
-    const verdict out = run->refused | NOT(state->x_m.value == state->x_m.value);
-    if (ANY(out) || run->block->stopped != 0) {
-        const laconic_state now = *state;
-        end_apart(run->block, &now, out, alone, after);
-    } else {
-        write_state(run->block, state);
-    }
+INLINE void put_off(lanes_run *run, const lanes_step *step) {
+    run->delta = step->delta;
+    run->path = step->path;
+    run->moved.along_m = step->along_m;
+    run->moved.across_m = step->across_m;
+    run->moved.yaw_change_rad = step->yaw_change_rad;
 }
 
-RARE void step_rotating(lanes_run *run, lanes_stepper steady, lanes_stepper rotating, const lanes_alone *alone,
-                        uint64_t after) {
+RARE void begin_rotating_step(lanes_run *run, lanes_stepper steady, lanes_stepper rotating) {
     const laconic_model *model = (const laconic_model *)run->block->model;
     const laconic_integrator *integrator = (const laconic_integrator *)run->block->integrator;
     laconic_forcing_samples samples = {&run->forcing, &run->forcing, &run->forcing, false};
-    laconic_state state, rotated;
-    read_state(&state, run->block);
-    rotated = state;
+    lanes_step straight, rotated;
+    read_state(&straight.state, run->block);
+    rotated = straight;
     run->forcing.rotates = true;
-    rotating(model, integrator, &rotated, &samples);
+    rotating(model, integrator, &rotated.state, &samples);
     if (!ALL(run->rotates)) {
         samples.is_constant = true;
         run->forcing.rotates = false;
-        steady(model, integrator, &state, &samples);
+        steady(model, integrator, &straight.state, &samples);
+        rotated.delta = lanes_where(run->rotates, rotated.delta, straight.delta);
+        rotated.path = lanes_where(run->rotates, rotated.path, straight.path);
+        rotated.along_m = lanes_chosen(run->rotates, rotated.along_m, straight.along_m);
+        rotated.across_m = lanes_chosen(run->rotates, rotated.across_m, straight.across_m);
+        rotated.yaw_change_rad = lanes_chosen(run->rotates, rotated.yaw_change_rad, straight.yaw_change_rad);
     }
-    put_where(&state, run->rotates, &rotated);
-    end_step(run, &state, alone, after);
+    put_off(run, &rotated);
 }
 
-INLINE void step_steady(lanes_run *run, lanes_stepper steady, const lanes_alone *alone, uint64_t after) {
+INLINE void begin_step(lanes_run *run, lanes_stepper steady, lanes_stepper rotating, lanes_stepper steady_apart) {
     const laconic_batch_block *block = run->block;
     const laconic_forcing_samples samples = {&run->forcing, &run->forcing, &run->forcing, true};
-    laconic_state state;
-    read_state(&state, block);
-    steady((const laconic_model *)block->model, (const laconic_integrator *)block->integrator, &state, &samples);
-    end_step(run, &state, alone, after);
+    lanes_step step;
+    if (run->some_rotate) {
+        begin_rotating_step(run, steady_apart, rotating);
+        return;
+    }
+    read_state(&step.state, block);
+    steady((const laconic_model *)block->model, (const laconic_integrator *)block->integrator, &step.state, &samples);
+    put_off(run, &step);
 }
 
-INLINE void run_block(laconic_batch_block *block, uint64_t steps, const lanes_alone *alone, lanes_stepper steady,
-                      lanes_stepper rotating, lanes_stepper steady_apart) {
-    lanes_run run;
-    begin_run(&run, block);
-    for (uint64_t after = steps; after-- > 0;) {
-        if (run.some_rotate)
-            step_rotating(&run, steady_apart, rotating, alone, after);
-        else
-            step_steady(&run, steady, alone, after);
+/* Lanes that could not take the step have NaN as their place. A copy goes to the rare case: what has an address is kept
+ * in memory. */
+INLINE void end_step(lanes_run *run, const lanes_alone *alone) {
+    laconic_state state;
+    read_state(&state, run->block);
+    accept_step(&state, run->delta, run->path, run->moved);
+    const verdict out = run->refused | NOT(state.x_m.value == state.x_m.value);
+    if (ANY(out) || run->block->stopped != 0) {
+        const laconic_state now = state;
+        end_apart(run->block, &now, out, alone, run->after);
+    } else {
+        write_state(run->block, &state);
     }
-    show(block, ROW_X, STATE_X);
-    show(block, ROW_Y, STATE_Y);
+}
+
+/* A step is a long chain of operations, each of which waits for the one before: while one block ends its step, the next
+ * begins its own, and a processor finds twice as much to do at a time. */
+INLINE void run_together(laconic_batch_block *blocks, int32_t count, uint64_t steps, const lanes_alone *alone,
+                         lanes_stepper steady, lanes_stepper rotating, lanes_stepper steady_apart) {
+    lanes_run runs[LANES_TOGETHER], *before = NULL, *now = runs;
+    for (int32_t i = 0; i < count; i++) begin_run(&runs[i], &blocks[i]);
+    for (uint64_t after = steps; after > 0 || before != NULL;) {
+        lanes_run *ending = before;
+        before = NULL;
+        if (after > 0) {
+            begin_step(now, steady, rotating, steady_apart);
+            before = now;
+            if (count == 1) {
+                ending = now;
+                before = NULL;
+            }
+            now->after = after - 1;
+            if (++now == runs + count) {
+                now = runs;
+                after--;
+            }
+        }
+        if (ending != NULL) end_step(ending, alone);
+    }
+    for (int32_t i = 0; i < count; i++) {
+        show(&blocks[i], ROW_X, STATE_X);
+        show(&blocks[i], ROW_Y, STATE_Y);
+    }
+}
+
+INLINE void run_all(laconic_batch_block *blocks, int32_t count, uint64_t steps, const lanes_alone *alone,
+                    lanes_stepper steady, lanes_stepper rotating, lanes_stepper steady_apart) {
+    for (int32_t i = 0; i < count; i += LANES_TOGETHER)
+        run_together(blocks + i, count - i < LANES_TOGETHER ? count - i : LANES_TOGETHER, steps, alone, steady,
+                     rotating, steady_apart);
 }
 
 /* Inlined whole but for what is rare, which calls the steppers. */
@@ -306,7 +372,7 @@ INLINE void run_block(laconic_batch_block *block, uint64_t steps, const lanes_al
     __attribute__((flatten)) static void name(laconic_batch_block *blocks, int32_t count, uint64_t steps, \
                                               const lanes_alone *alone) { \
         const lanes_stepper steady = steady_step, rotating = rotating_step; \
-        for (int32_t i = 0; i < count; i++) run_block(&blocks[i], steps, alone, steady_step, rotating, steady); \
+        run_all(blocks, count, steps, alone, steady_step, rotating, steady); \
     }
 
 RUN_OF(run_rk4, rk4_step, rk4_step)

@@ -81,13 +81,14 @@ typedef struct laconic_batch_block {
     int32_t count, wheel_count;
     bool in_a_row;    /* its lanes follow each other, and rows have numbers for those that it lacks */
     bool has_refused; /* some lane's status is not OK                                               */
+    bool far;         /* some lane's heading may be within 2⁶¹ turns of the last that is counted    */
     uint32_t stopped; /* in a run, a bit for each lane that was refused                             */
 } laconic_batch_block;
 
 /* Who takes the step of those lanes of a block that cannot go with the others, a bit for each; `after`: the steps of
  * the run that come after it. Returns those that were refused. */
 typedef struct lanes_alone {
-    uint32_t (*step)(void *context, const laconic_batch_block *block, uint32_t which, uint64_t after);
+    uint32_t (*step)(void *context, laconic_batch_block *block, uint32_t which, uint64_t after);
     void *context;
 } lanes_alone;
 

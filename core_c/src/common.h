@@ -41,6 +41,7 @@ typedef bool verdict;    /* the result of a comparison                          
  * step by itself. The number must be one on which the displacement of the step depends. */
 #define RARELY(condition, number) (condition)
 #define USUALLY(condition, number) (condition)
+#define END_STEP accept_step /* the last part of a step; lanes put it off until others have begun theirs */
 #endif
 
 /* The core is also C++, in which one file of all (packages/c) may be compiled: C++ spells these two otherwise. */

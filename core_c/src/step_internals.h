@@ -285,7 +285,7 @@ INLINE laconic_status advance(laconic_state *state, const laconic_model *model, 
     pose_change moved = {R(0), R(0), R(0)};
     if (!USUALLY(in_range(zeta, by.delta), &path.x)) return LACONIC_OVERFLOW;
     if (LACONIC_WITH_POSE) moved = displacement(model, path, scaled(step_s, by.slope));
-    return accept_step(state, by.delta, path, moved);
+    return END_STEP(state, by.delta, path, moved);
 }
 
 /* For methods whose increment may gain energy or not be finite: such a step is refused. */

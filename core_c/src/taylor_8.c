@@ -228,7 +228,7 @@ static laconic_status taylor_8_step(const laconic_model *model, const laconic_in
     if (!USUALLY(in_range(zeta, by.delta), &by.mean.x)) return LACONIC_OVERFLOW;
     const vector path = scaled(h, by.mean);
     if (LACONIC_WITH_POSE) moved = quadrature(&c, model, h, dot(vec(model->yaw_rate_of_zeta), path));
-    return accept_step(state, by.delta, path, moved);
+    return END_STEP(state, by.delta, path, moved);
 }
 
 static laconic_status taylor_8_prepare(laconic_integrator *integrator, const laconic_model *model,
