@@ -32,7 +32,9 @@ static laconic_angle_number *kept_fraction(const place *p) {
     return (laconic_angle_number *)(void *)kept(p, STATE_FRACTION);
 }
 
-static int64_t *kept_turns(const place *p) { return (int64_t *)(void *)(p->block->state + STATE_TURNS * p->stride) + p->lane; }
+static int64_t *kept_turns(const place *p) {
+    return (int64_t *)(void *)(p->block->state + STATE_TURNS * p->stride) + p->lane;
+}
 
 static laconic_sum sum_in(const place *p, int32_t value, int32_t rest) {
     const laconic_sum sum = {*kept(p, value), *kept(p, rest)};
@@ -151,7 +153,8 @@ laconic_real *laconic_batch_row_of(const laconic_batch *batch, laconic_batch_row
 
 typedef struct walk {
     laconic_batch *batch;
-    int32_t refused; /* how many lanes */
+    int32_t refused; /* how many lanes                                   */
+    uint64_t later;  /* steps that come after those that are under way   */
 } walk;
 
 /* Steps of one lane by itself; it stops where one is refused, which is returned. `after`: the steps of this run that
@@ -169,7 +172,7 @@ static bool refuses_alone(walk *w, laconic_batch_block *block, int32_t k, uint64
     put_state(&p, &state);
     if (status == LACONIC_OK) return false;
     w->batch->status[lane] = (int32_t)status;
-    w->batch->missed[lane] += steps - taken + after;
+    w->batch->missed[lane] += steps - taken + after + w->later;
     w->refused++;
     return true;
 }
@@ -185,6 +188,7 @@ static uint32_t step_alone(void *context, laconic_batch_block *block, uint32_t w
 static void run_one_by_one(walk *w, laconic_batch_block *blocks, int32_t count, uint64_t steps) {
     for (int32_t i = 0; i < count; i++) {
         const int32_t lane = blocks[i].lanes[0];
+        if (blocks[i].stopped) continue;
         const place p = place_of(&blocks[i], w->batch, 0);
         blocks[i].stopped = refuses_alone(w, &blocks[i], 0, steps, 0);
         *number_of(w->batch, ROW_X, lane) = *kept(&p, STATE_X);
@@ -219,13 +223,68 @@ static void begin(laconic_batch *batch, laconic_batch_block *block) {
     block->has_refused = false;
 }
 
+static int32_t end(const walk *w, laconic_batch_block *blocks, int32_t count) {
+    for (int32_t i = 0; i < count; i++) blocks[i].has_refused = blocks[i].stopped != 0;
+    return w->refused;
+}
+
 int32_t laconic_batch_run(laconic_batch *batch, int32_t first_block, int32_t blocks, uint64_t steps) {
-    walk w = {batch, 0};
+    walk w = {batch, 0, 0};
     laconic_batch_block *const first = &batch->blocks[first_block];
     for (int32_t i = 0; i < blocks; i++) begin(batch, &first[i]);
     run_blocks(&w, first, blocks, steps);
-    for (int32_t i = 0; i < blocks; i++) first[i].has_refused = first[i].stopped != 0;
-    return w.refused;
+    return end(&w, first, blocks);
+}
+
+static void copy(real *restrict to, const real *restrict from, int32_t count) {
+    for (int32_t i = 0; i < count; i++) to[i] = from[i];
+}
+
+/* A lane that stopped keeps the voltages with which it was refused. */
+static void put_lanes(const laconic_batch_block *block, real *row, const real *from) {
+    for (int32_t k = 0; k < block->count; k++)
+        if (!(block->stopped >> k & 1U)) row[block->lanes[k]] = from[block->lanes[k]];
+}
+
+/* How many lanes some blocks have that follow each other and have not stopped; 0 where there are others. */
+static int32_t lanes_in_a_row(const laconic_batch_block *blocks, int32_t count) {
+    int32_t next = blocks[0].lanes[0];
+    for (int32_t i = 0; i < count; next += blocks[i++].count)
+        if (!blocks[i].in_a_row || blocks[i].stopped != 0 || blocks[i].lanes[0] != next ||
+            blocks[i].wheel_count != blocks[0].wheel_count)
+            return 0;
+    return next - blocks[0].lanes[0];
+}
+
+static void put_voltages(laconic_batch *batch, const laconic_batch_block *blocks, int32_t count, const real *sample) {
+    const int32_t in_a_row = lanes_in_a_row(blocks, count), first = blocks[0].lanes[0];
+    for (int32_t wheel = 0; wheel < batch->shape.wheel_count; wheel++) {
+        real *const row = number_of(batch, ROW_VOLTAGE(wheel), 0);
+        const real *const from = sample + (size_t)wheel * (size_t)batch->shape.lane_count;
+        if (in_a_row > 0 && wheel < blocks[0].wheel_count) copy(row + first, from + first, in_a_row);
+        for (int32_t i = 0; in_a_row == 0 && i < count; i++)
+            if (wheel < blocks[i].wheel_count) put_lanes(&blocks[i], row, from);
+    }
+}
+
+/* So few blocks take all their steps before the next that what they need stays in the nearest cache. */
+#define BLOCKS_AT_A_TIME 8
+
+int32_t laconic_batch_run_sampled(laconic_batch *batch, int32_t first_block, int32_t blocks, uint64_t samples,
+                                  uint64_t steps_each, const laconic_real *voltage_V) {
+    walk w = {batch, 0, 0};
+    const size_t sample_size = (size_t)batch->shape.wheel_count * (size_t)batch->shape.lane_count;
+    laconic_batch_block *const first = &batch->blocks[first_block];
+    for (int32_t i = 0; i < blocks; i++) begin(batch, &first[i]);
+    for (int32_t i = 0; i < blocks; i += BLOCKS_AT_A_TIME) {
+        const int32_t count = blocks - i < BLOCKS_AT_A_TIME ? blocks - i : BLOCKS_AT_A_TIME;
+        for (uint64_t s = 0; s < samples; s++) {
+            put_voltages(batch, &first[i], count, voltage_V + s * sample_size);
+            w.later = (samples - 1 - s) * steps_each;
+            run_blocks(&w, &first[i], count, steps_each);
+        }
+    }
+    return end(&w, first, blocks);
 }
 
 /* -------------------------------------------------------------------------------- outputs -- */

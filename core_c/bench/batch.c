@@ -1,5 +1,6 @@
 /* batch: what a step of a lane costs beside one of a vehicle alone, in CPU time of one core. Prints for each width of
- * registers nanoseconds and ratio: step by step (inputs are read anew), and in one run of 100 steps. */
+ * registers nanoseconds and ratio: step by step (inputs are read anew), in one run of 100 steps, and in one run with
+ * voltages sampled anew for each (beside steps of one vehicle). */
 #include "laconic/batch.h"
 
 #include <stdint.h>
@@ -30,6 +31,10 @@ static laconic_vehicle robotino(double mass_kg, double damping) {
     return v;
 }
 
+typedef enum way { STEP_BY_STEP, IN_ONE_RUN, SAMPLED } way;
+
+static const char *const name_of[] = {"step by step", "in one run  ", "sampled     "};
+
 typedef struct population {
     const char *name;
     int32_t lanes, kinds;
@@ -37,6 +42,7 @@ typedef struct population {
     int32_t *kind_of;
     laconic_state *start, *now;
     laconic_input *input;
+    laconic_real *voltage; /* [STEPS][3][lanes] */
 } population;
 
 static void *room(size_t bytes) {
@@ -54,6 +60,7 @@ static population population_of(const char *name, const laconic_method *method, 
     p.start = (laconic_state *)room((size_t)lanes * sizeof *p.start);
     p.now = (laconic_state *)room((size_t)lanes * sizeof *p.now);
     p.input = (laconic_input *)room((size_t)lanes * sizeof *p.input);
+    p.voltage = (laconic_real *)room((size_t)lanes * STEPS * 3 * sizeof *p.voltage);
     for (int32_t k = 0; k < kinds; k++) {
         const laconic_vehicle v = robotino(8.0 + k / (double)kinds, k % 2 ? other_damping : 1.0);
         if (laconic_batch_kind_of(&p.kind[k], &v, method, REAL(1e-3), NULL) != LACONIC_OK) exit(2);
@@ -63,43 +70,46 @@ static population population_of(const char *name, const laconic_method *method, 
         p.kind_of[i] = i % kinds;
         if (laconic_state_set(&p.start[i], &p.kind[p.kind_of[i]].model, &start, NULL) != LACONIC_OK) exit(2);
         for (int k = 0; k < 3; k++) p.input[i].voltage_V[k] = REAL(-5.3 + 5.3 * k + 0.01 * (i % 100));
+        for (int k = 0; k < 3 * STEPS; k++) p.voltage[k * lanes + i] = p.input[i].voltage_V[k % 3];
     }
     return p;
 }
 
 static double seconds(void) { return (double)clock() / CLOCKS_PER_SEC; }
 
-static double one_by_one(const population *p, bool step_by_step) {
+static double one_by_one(const population *p, way w) {
     laconic_status status;
     for (int32_t i = 0; i < p->lanes; i++) p->now[i] = p->start[i];
     const double from = seconds();
-    for (int s = 0; s < (step_by_step ? STEPS : 1); s++)
+    for (int s = 0; s < (w == IN_ONE_RUN ? 1 : STEPS); s++)
         for (int32_t i = 0; i < p->lanes; i++) {
             const laconic_batch_kind *kind = &p->kind[p->kind_of[i]];
-            laconic_run(&kind->model, &kind->integrator, &p->now[i], &p->input[i], step_by_step ? 1 : STEPS, &status);
+            laconic_run(&kind->model, &kind->integrator, &p->now[i], &p->input[i], w == IN_ONE_RUN ? STEPS : 1,
+                        &status);
         }
     return seconds() - from;
 }
 
-static double together(const population *p, laconic_batch *batch, bool step_by_step) {
+static double together(const population *p, laconic_batch *batch, way w) {
     for (int32_t i = 0; i < p->lanes; i++) laconic_batch_load(batch, i, &p->start[i]);
     const double from = seconds();
-    for (int s = 0; s < (step_by_step ? STEPS : 1); s++)
-        laconic_batch_run(batch, 0, batch->block_count, step_by_step ? 1 : STEPS);
+    if (w == SAMPLED) laconic_batch_run_sampled(batch, 0, batch->block_count, STEPS, 1, p->voltage);
+    if (w == IN_ONE_RUN) laconic_batch_run(batch, 0, batch->block_count, STEPS);
+    for (int s = 0; w == STEP_BY_STEP && s < STEPS; s++) laconic_batch_run(batch, 0, batch->block_count, 1);
     return seconds() - from;
 }
 
 /* Both in turn, so that both meet the same clock; the least of each. */
-static void compare(const population *p, laconic_batch *batch, bool step_by_step) {
+static void compare(const population *p, laconic_batch *batch, way w) {
     double alone = 1e9, many = 1e9;
     for (int round = 0; round < ROUNDS; round++) {
-        const double a = one_by_one(p, step_by_step), b = together(p, batch, step_by_step);
+        const double a = one_by_one(p, w), b = together(p, batch, w);
         alone = a < alone ? a : alone;
         many = b < many ? b : many;
     }
     const double each = 1e9 / ((double)p->lanes * STEPS);
-    printf("%-22s %2d bytes  %s %6.1f ns, alone %6.1f ns: %.2f\n", p->name, (int)batch->shape.width_bytes,
-           step_by_step ? "step by step" : "in one run  ", many * each, alone * each, many / alone);
+    printf("%-22s %2d bytes  %s %6.1f ns, alone %6.1f ns: %.2f\n", p->name, (int)batch->shape.width_bytes, name_of[w],
+           many * each, alone * each, many / alone);
 }
 
 static void measure(const population p) {
@@ -110,8 +120,9 @@ static void measure(const population p) {
         if (laconic_batch_width(widths[w]) == 0) continue;
         if (!laconic_batch_place(&batch, room(laconic_batch_size(&shape)), &shape, p.kind, p.kind_of)) exit(2);
         for (int32_t i = 0; i < p.lanes; i++) laconic_batch_set_input(&batch, i, &p.input[i]);
-        compare(&p, &batch, true);
-        compare(&p, &batch, false);
+        compare(&p, &batch, STEP_BY_STEP);
+        compare(&p, &batch, IN_ONE_RUN);
+        compare(&p, &batch, SAMPLED);
     }
 }
 

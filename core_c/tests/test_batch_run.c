@@ -57,6 +57,59 @@ static void rows_are_the_inputs_of_lanes(void) {
     TEST_ASSERT_NULL(laconic_batch_row_of(&all.batch, LACONIC_BATCH_ROW_COUNT, 0));
 }
 
+#define SAMPLES 5
+
+/* Steps of one lane alone under all its samples; returns how many it took, and the sample at which it ended. */
+static uint64_t run_alone(int lane, uint64_t steps_each, const laconic_real *voltage, laconic_status *status, int *at) {
+    const laconic_batch_kind *kind = &all.kinds[all.kind_of[lane]];
+    uint64_t taken = 0;
+    for (*at = 0; *at < SAMPLES; (*at)++) {
+        for (int w = 0; w < 4; w++) all.inputs[lane].voltage_V[w] = voltage[(*at * 4 + w) * LANES + lane];
+        taken += laconic_run(&kind->model, &kind->integrator, &all.states[lane], &all.inputs[lane], steps_each, status);
+        if (*status != LACONIC_OK) return taken;
+    }
+    *at = SAMPLES - 1;
+    return taken;
+}
+
+static void compare_sampled(uint64_t steps_each, const laconic_real *voltage) {
+    for (int i = 0; i < LANES; i++) {
+        laconic_state stored = all.states[i];
+        laconic_status status;
+        int at;
+        const uint64_t taken = run_alone(i, steps_each, voltage, &status, &at);
+        laconic_batch_store(&all.batch, i, &stored);
+        TEST_ASSERT_EQUAL_INT(status, all.batch.status[i]);
+        TEST_ASSERT_EQUAL_MEMORY(&all.states[i], &stored, sizeof stored);
+        TEST_ASSERT_TRUE(all.batch.missed[i] == SAMPLES * steps_each - taken);
+        all.refused += status != LACONIC_OK;
+        if (all.kinds[all.kind_of[i]].model.wheel_count > 0)
+            TEST_ASSERT_EQUAL_MEMORY(&voltage[at * 4 * LANES + i],
+                                     &laconic_batch_row_of(&all.batch, LACONIC_BATCH_VOLTAGE, 0)[i],
+                                     sizeof(laconic_real));
+    }
+}
+
+static void sampled_voltages_are_those_of_a_run_for_each_sample(void) {
+    static const int32_t widths[] = {1, 16, 32, 64};
+    static laconic_real voltage[SAMPLES * 4 * LANES];
+    for (int w = 0; w < 8; w++) {
+        if (laconic_batch_width(widths[w / 2]) == 0) continue;
+        all.is_uniform = w % 2;
+        fill(&all, widths[w / 2]);
+        for (int i = 0; i < LANES; i++) random_input(&all, &all.inputs[i]);
+        for (int i = 0; i < LANES; i++) laconic_batch_set_input(&all.batch, i, &all.inputs[i]);
+        for (int i = 0; i < SAMPLES * 4 * LANES; i++)
+            voltage[i] = one_of(&all, 400) == 0 ? NOT_A_NUMBER : REAL(12 * around_zero(&all));
+        all.refused = 0;
+        const int32_t refused =
+            laconic_batch_run_sampled(&all.batch, 0, all.batch.block_count, SAMPLES, (uint64_t)(1 + w), voltage);
+        compare_sampled((uint64_t)(1 + w), voltage);
+        TEST_ASSERT_EQUAL_UINT64(all.refused, (uint64_t)refused);
+        TEST_ASSERT_TRUE(refused > 0);
+    }
+}
+
 int main(int argc, char **argv) {
     if (argc > 1) steps = strtoull(argv[1], NULL, 10);
     UNITY_BEGIN();
@@ -66,5 +119,6 @@ int main(int argc, char **argv) {
     RUN_TEST(lanes_have_the_bits_of_one_vehicle_in_64_bytes);
     RUN_TEST(heading_and_nu_are_those_of_the_state);
     RUN_TEST(rows_are_the_inputs_of_lanes);
+    RUN_TEST(sampled_voltages_are_those_of_a_run_for_each_sample);
     return UNITY_END();
 }

@@ -107,7 +107,33 @@ def test_a_lane_that_is_refused_stays_and_tells_why_and_the_others_go_on():
     assert batch.missed[7] == 10
 
 
+@pytest.mark.parametrize("threads", [1, 2])
+def test_sampled_voltages_act_as_a_run_for_each_sample(threads):
+    kinds = [robot(5.0 + k % 3) for k in range(LANES)]
+    sampled, one_by_one = (filled(laconic.Batch(kinds, step_s=0.01)) for _ in range(2))
+    voltages = np.random.default_rng(7).uniform(-6, 6, (8, 3, LANES))
+    voltages[5, 1, 9] = np.nan
+    for sample in voltages[:5]:
+        one_by_one.voltage_V = sample
+        assert one_by_one.run(4) == 0
+    before = state_bytes(one_by_one.core, one_by_one.state(9))
+    for sample in voltages[5:]:
+        one_by_one.voltage_V = sample
+        one_by_one.run(4)
+    assert sampled.run_sampled(voltages, 4, threads) == 1
+    assert state_bytes(sampled.core, sampled.state(9)) == before
+    assert sampled.missed[9] == 12
+    assert "voltage_V" in str(sampled.refusal(9))
+    for lane in (0, 8, 10, LANES - 1):
+        assert state_bytes(sampled.core, sampled.state(lane)) == state_bytes(one_by_one.core, one_by_one.state(lane))
+        assert sampled.heading_rad[lane] == one_by_one.heading_rad[lane]
+    assert np.array_equal(sampled.voltage_V[:, 0], voltages[-1, :, 0])
+
+
 WRONG = {
+    "voltage_V: does not fit; give numbers of shape (samples, 3, 2)":
+        lambda: laconic.Batch(robot(), 2).run_sampled(np.zeros((5, 2, 3))),
+    "steps_each: 'all' is no whole number": lambda: laconic.Batch(robot(), 2).run_sampled(np.zeros((5, 3, 2)), "all"),
     "vehicles: none is given": lambda: laconic.Batch([]),
     "vehicles: None is no laconic.Vehicle and no list": lambda: laconic.Batch(None, 3),
     "vehicles[2]: 'cart' is no laconic.Vehicle": lambda: laconic.Batch([robot(), "cart"]),
