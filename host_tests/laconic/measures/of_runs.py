@@ -124,7 +124,8 @@ MEASURES_OF_RUNS = (
             is_of_end=True, is_beside_nominal=True),
     Measure("largest_deviation_m", "Largest distance from the nominal run at the same instant",
             lambda course: deviations(course).max(axis=0), signals=PLACE, is_beside_nominal=True),
-    Measure("time_to_nominal_distance_s", "Until it has come as far as the nominal run comes in all",
+    Measure("time_to_nominal_distance_s", "Until it has come as far as the nominal run comes in all; empty where it "
+                                          "never does",
             time_to_nominal_distance, signals=PLACE, is_beside_nominal=True),
     Measure("least_grip_margin_N", "Least of friction coefficient times normal load, less the reaction that a "
                                        "wheel needs; below 0 it would slip",

@@ -9,6 +9,7 @@ import numpy as np
 from matplotlib import pyplot as plt
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
+from matplotlib.ticker import MaxNLocator
 
 from laconic.pictures.plotting import check_formulas, figure
 
@@ -52,6 +53,7 @@ def histogram(name: str, values: np.ndarray) -> str:
     """How often which values come."""
     picture, axes = _panel(name, "runs")
     axes.hist(values, bins=min(60, max(10, int(np.sqrt(len(values))))), color=LINE)
+    axes.yaxis.set_major_locator(MaxNLocator(integer=True))
     return svg_of(picture)
 
 

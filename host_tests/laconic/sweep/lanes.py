@@ -17,6 +17,7 @@ from laconic.scene import Scene
 from laconic.scene.ground import has_friction
 from laconic.scene.key_path import EVERY, key_path
 from laconic.scene.scene_tables import SceneTables
+from laconic.scene.sensors import NO_SENSORS
 from laconic.sweep.alone import driven_wheels
 from laconic.sweep.held import HeldInputs
 from laconic.sweep.numbers import Numbers, has_own_zero, numbers_of, starts_of
@@ -35,6 +36,8 @@ class Template:
     def fits(self, measures: Sequence[Measure]) -> bool:
         """Whether a batch steps it: ideal ground, motors without limits, inputs held over each step."""
         core = self.scene.core()
+        if self.scene.sensors != NO_SENSORS:
+            self.scene.sensors_of(self.scene.plant(core))  # raises as `simulate` for what does not fit the step
         known = zeros(core, "laconic_outputs", 1).dtype.names or ()
         return not has_friction(self.scene.vehicle) and self.scene.inputs_on_grid().is_held and all(
             signal in MEMBERS or signal in core.input_fields or signal in known
