@@ -3,7 +3,7 @@ import { colours, drawBody, drawWheel, radiusOf, reach, surface } from "./drawin
 import { byId, fixed, inDegrees, inRadians, say } from "./texts.js";
 import { numberTyped } from "./typed.js";
 import { NUMBERS, clean, showWheel, tellOfWheels } from "./wheel_form.js";
-import { addToWheels, takeFromWheels } from "./wheels.js";
+import { addToWheels, freePlace, takeFromWheels } from "./wheels.js";
 
 const PLACE_SNAP_M = 0.005;
 const TURN_SNAP = Math.PI / 36;
@@ -229,10 +229,11 @@ export class Editor {
     return `Wheel ${this.chosen + 1}, ${kind}, ${place}, axle at ${fixed(inDegrees(axle_rad), 0)} degrees`;
   }
 
-  add(/** @type {number[]} */ [x, y]) {
+  add(/** @type {number[]} */ wanted) {
     const { kind = "omni", axle_rad = -Math.PI / 2, roller_rad } = this.wheel ?? {};
     if (this.wheels.length >= this.mostWheels)
       return tellOfWheels(`A robot has ${this.mostWheels} wheels at most; delete one first, or move one.`);
+    const [x, y] = freePlace(this.wheels, wanted);
     addToWheels(this.scene, {
       kind,
       x_m: snap(x, PLACE_SNAP_M),

@@ -2,6 +2,15 @@
 
 const OF_A_WHEEL = /^(voltage_V|axle_torque_Nm)\[(\d+)\]$/;
 
+const NEXT_M = 0.05;
+
+/** The place, or one to the right of it where no wheel is: on another one a wheel would not be seen. */
+export function freePlace(/** @type {any[]} */ wheels, /** @type {number[]} */ [x, y]) {
+  const isTaken = () => wheels.some((each) => Math.hypot(each.x_m - x, each.y_m - y) < NEXT_M / 2);
+  for (let tries = 0; tries < wheels.length && isTaken(); tries++) y -= NEXT_M;
+  return [x, y];
+}
+
 export function addToWheels(/** @type {any} */ scene, /** @type {any} */ wheel) {
   scene.vehicle.wheel.push(wheel);
   scene.initial?.wheel_speed_rad_per_s?.push(0);

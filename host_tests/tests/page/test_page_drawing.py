@@ -127,6 +127,7 @@ def test_a_wheel_too_many_is_refused_in_the_pages_words_and_not_drawn(drawing):
     for _ in range(12):
         drawing.click("add-wheel")
     assert (wheels(drawing), drawing.text("wheel-error")) == (16, "")
+    assert wheel(drawing)[:2] == pytest.approx((0, -0.55))  # each beside the one before, so that all are seen
     drawing.click("add-wheel")
     drawing.js("document.getElementById('drawing').focus()")
     drawing.press("Insert")
