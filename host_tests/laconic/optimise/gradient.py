@@ -23,6 +23,7 @@ from laconic.optimise.candidates import Candidates
 from laconic.scene import Scene
 from laconic.scene.ground import has_friction
 from laconic.scene.inputs import Segment
+from laconic.scene.key_path import key_path
 
 PLACE = {"end_x_m": 0, "end_y_m": 1, "end_heading_rad": 2}  # rows of an end's gradient
 OF_PLACE = "end_distance_m"
@@ -41,7 +42,8 @@ class RunGradient:
 
     def __init__(self, candidates: Candidates, measures: Sequence[Measure]):
         self.candidates, self.measures = candidates, measures
-        self.known = [knows(measure, candidates.base) for measure in measures]
+        self.carried = [number for number, each in enumerate(candidates.free) if all(map(_is_carried, each.keys))]
+        self.known = [bool(self.carried) and knows(measure, candidates.base) for measure in measures]
 
     def jacobian(self, choice: np.ndarray) -> np.ndarray:
         """(M, p) at a choice (p,); NaN where it is not known exactly, also where the run is refused."""
@@ -54,18 +56,18 @@ class RunGradient:
             return found
         for row, (measure, is_known) in enumerate(zip(self.measures, self.known, strict=True)):
             if is_known and measure.name in PLACE:
-                found[row] = by_choice[PLACE[measure.name]]
+                found[row, self.carried] = by_choice[PLACE[measure.name]]
             elif is_known:
                 away = end_m - _place_of(measure)
                 size = float(np.hypot(*away))
-                found[row] = away @ by_choice[:2] / size if size > 0.0 else np.nan
+                found[row, self.carried] = away @ by_choice[:2] / size if size > 0.0 else np.nan
         return found
 
     def _end(self, choice: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
-        """Place (x, y) at the end, and the derivatives (3, p) of place and heading there."""
+        """Place (x, y) at the end, and the derivatives of place and heading there by what is carried, (3, …)."""
         scene = self.candidates.scene(choice)
         plant = scene.plant(scene.core())
-        variations = [_variation(self.candidates, plant, choice, number) for number in range(len(choice))]
+        variations = [_variation(self.candidates, plant, choice, number) for number in self.carried]
         for number, segment in enumerate(scene.inputs_on_grid().segments()):
             held = plant.core.input(segment.values, plant.wheel_count)
             for variation in variations:
@@ -77,6 +79,14 @@ class RunGradient:
         ends = [each.state for each in variations]
         by_choice = np.array([[end.x_m, end.y_m, end.heading_rad] for end in ends]).T
         return np.array([plant.pose.x_m, plant.pose.y_m]), by_choice
+
+
+def _is_carried(key: str) -> bool:
+    """Whether a number acts by vehicle, start or level of an input alone, not by the steps or instants of inputs."""
+    found = key_path(key)
+    if found.table == "input[#]":
+        return found.name == "value"
+    return found.table == "ground" or found.table.split(".")[0] in ("vehicle", "initial")
 
 
 def _place_of(measure: Measure) -> np.ndarray:

@@ -49,11 +49,20 @@ def words(result: Result, exact: Sequence[str]) -> list[str]:
         found.append(f"Active: {', '.join(active)}. A looser bound may give a better goal.")
     if ends := result.at_ends:
         found.append(f"{'; '.join(ends)}: a wider range may give a better goal.")
+    if _was_better(result):
+        found.append("The scene as it is is better: its own numbers lie outside the ranges.")
     for goal in result.problem.goals:
         if math.isinf(result.best.values[result.problem.column(goal.measure)]):
             found.append(f"{goal.text} is infinite there, and perhaps in many other places: take it as --subject-to "
                          "with a bound, and another goal.")
     return found
+
+
+def _was_better(result: Result) -> bool:
+    """Whether the scene keeps the constraints and is better in all goals than what was found."""
+    problem, before = result.problem, result.before.values
+    return bool((problem.excesses(before) <= 0.0).all()
+                and (problem.losses(before) < problem.losses(result.best.values)).all())
 
 
 def _front(result: Result) -> list[str]:

@@ -102,6 +102,12 @@ def test_vehicles_that_make_no_sense_are_passed_over(capsys):
     assert found["active"] == ["fastest_damping_per_s<=20"]
 
 
+def test_scene_that_is_better_than_its_ranges_is_told(capsys):
+    assert run(["optimise", CARRIAGE, "--free", "vehicle.com_y_m=0:0.01", "--goal", f"max:{ALONG_ETA}",
+                "--generations", "5"]) == 0
+    assert "its own numbers lie outside the ranges" in capsys.readouterr().out
+
+
 def test_goal_that_is_infinite_beside_another_and_a_point_that_the_front_has_not_are_refused(capsys):
     """With the mass beyond the third wheel straight motion is stable at every speed."""
     options = ["--free", "vehicle.com_y_m=0.05:0.1", "--goal", f"max:{ALONG_ETA}", "--goal", "min:condition",

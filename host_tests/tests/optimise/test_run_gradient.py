@@ -63,6 +63,9 @@ def test_what_has_no_exact_gradient_says_so_by_nan():
     candidates = Candidates(coarse("robotino2"), free)
     found = RunGradient(candidates, [measure(name) for name in ("distance_m", "end_x_m")]).jacobian(np.array([12.0]))
     assert np.isnan(found[0]).all() and np.isfinite(found[1]).all()
+    stepped = Candidates(coarse("robotino2"), [read_free("run.step_s=0.01:0.02"), *free])
+    found = RunGradient(stepped, [measure("end_x_m")]).jacobian(np.array([0.02, 12.0]))
+    assert np.isnan(found).tolist() == [[True, False]]
     slipping = Candidates(scene_tables("robotino_grey"), free)
     found = RunGradient(slipping, [measure("end_x_m")]).jacobian(np.array([12.0]))
     assert np.isnan(found).all()
