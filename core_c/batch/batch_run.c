@@ -8,13 +8,13 @@
 
 /* A lane's place in the registers of its block. */
 typedef struct place {
-    laconic_batch_block *block;
+    unsigned char *first;
     size_t stride; /* from register to register */
     int32_t lane;
 } place;
 
-static place place_of(laconic_batch_block *block, const laconic_batch *batch, int32_t k) {
-    const place p = {block, state_stride(batch->width), k};
+static place place_of(const laconic_batch_block *block, const laconic_batch *batch, int32_t k) {
+    const place p = {block->state, state_stride(batch->width), k};
     return p;
 }
 
@@ -24,7 +24,7 @@ static place place_of_lane(const laconic_batch *batch, int32_t lane) {
 }
 
 static real *kept(const place *p, int32_t number) {
-    return (real *)(void *)(p->block->state + (size_t)number * p->stride) + p->lane;
+    return (real *)(void *)(p->first + (size_t)number * p->stride) + p->lane;
 }
 
 /* Fractions of a turn are integers of a number's size. */
@@ -32,9 +32,7 @@ static laconic_angle_number *kept_fraction(const place *p) {
     return (laconic_angle_number *)(void *)kept(p, STATE_FRACTION);
 }
 
-static int64_t *kept_turns(const place *p) {
-    return (int64_t *)(void *)(p->block->state + STATE_TURNS * p->stride) + p->lane;
-}
+static int64_t *kept_turns(const place *p) { return (int64_t *)(void *)(p->first + STATE_TURNS * p->stride) + p->lane; }
 
 static laconic_sum sum_in(const place *p, int32_t value, int32_t rest) {
     const laconic_sum sum = {*kept(p, value), *kept(p, rest)};
@@ -58,12 +56,7 @@ static void state_in(laconic_state *s, const place *p) {
     s->heading.rest = *kept(p, STATE_HEADING_REST);
 }
 
-/* A block far from the end of the count stays so by the steps that lanes take together: no machine runs for the 2⁵⁸
- * that it would take at least. */
-static bool is_far(int64_t turns) { return (uint64_t)turns + ((uint64_t)1 << 60) >= (uint64_t)1 << 61; }
-
 static void put_state(const place *p, const laconic_state *s) {
-    if (is_far(s->heading.turns)) p->block->far = true;
     for (int32_t k = 0; k < 3; k++) {
         put_sum(p, STATE_ZETA + k, STATE_ZETA_REST + k, s->zeta[k]);
         put_sum(p, STATE_TRAVEL + k, STATE_TRAVEL_REST + k, s->travel[k]);
@@ -73,6 +66,12 @@ static void put_state(const place *p, const laconic_state *s) {
     *kept_turns(p) = s->heading.turns;
     *kept_fraction(p) = s->heading.fraction;
     *kept(p, STATE_HEADING_REST) = s->heading.rest;
+}
+
+/* A block far from the end of the count stays so by the steps that lanes take together: no machine runs for the 2⁵⁸
+ * that it would take at least. */
+static void mark_far(laconic_batch_block *block, const laconic_state *s) {
+    if ((uint64_t)s->heading.turns + ((uint64_t)1 << 60) >= (uint64_t)1 << 61) block->far = true;
 }
 
 /* ---------------------------------------------------------------- rows, and one lane of them -- */
@@ -114,6 +113,7 @@ void laconic_batch_set_input(laconic_batch *batch, int32_t lane, const laconic_i
 void laconic_batch_load(laconic_batch *batch, int32_t lane, const laconic_state *state) {
     const place p = place_of_lane(batch, lane);
     put_state(&p, state);
+    mark_far(&batch->blocks[batch->slot_of[lane] / lanes_of_width(batch->width)], state);
     *number_of(batch, ROW_X, lane) = state->x_m.value;
     *number_of(batch, ROW_Y, lane) = state->y_m.value;
     for (int32_t i = 0; i < wheels_of(batch, lane); i++)
@@ -170,6 +170,7 @@ static bool refuses_alone(walk *w, laconic_batch_block *block, int32_t k, uint64
     laconic_batch_input(w->batch, lane, &input);
     const uint64_t taken = laconic_run(&kind->model, &kind->integrator, &state, &input, steps, &status);
     put_state(&p, &state);
+    mark_far(block, &state);
     if (status == LACONIC_OK) return false;
     w->batch->status[lane] = (int32_t)status;
     w->batch->missed[lane] += steps - taken + after + w->later;

@@ -52,7 +52,7 @@ extern "C" __global__ void laconic_gpu_run(laconic_batch *batch, unsigned char *
                                            int32_t width, uint64_t steps) {
     const int32_t lane = (int32_t)(blockIdx.x * blockDim.x + threadIdx.x);
     if (lane >= batch->shape.lane_count) return;
-    const laconic_batch_block *block = &batch->blocks[batch->slot_of[lane] / width];
+    laconic_batch_block *block = &batch->blocks[batch->slot_of[lane] / width];
     if (block->method != LACONIC_GPU_METHOD) return;
     const place at = {here + (block->state - there), (size_t)width * sizeof(real), batch->slot_of[lane] % width};
     laconic_state state;
@@ -62,6 +62,7 @@ extern "C" __global__ void laconic_gpu_run(laconic_batch *batch, unsigned char *
     laconic_batch_input(batch, lane, &input);
     const uint64_t taken = gpu_run(&batch->kinds[batch->kind_of[lane]], &state, &input, steps, &status);
     put_state(&at, &state);
+    mark_far(block, &state);
     *number_of(batch, ROW_X, lane) = state.x_m.value;
     *number_of(batch, ROW_Y, lane) = state.y_m.value;
     batch->status[lane] = (int32_t)status;
