@@ -10,7 +10,8 @@
  * by more than a quarter of a radian.
  *
  * Memory   the caller owns it: a laconic_batch, the kinds, and one piece of laconic_batch_size() bytes. No heap.
- * Threads  laconic_batch_run(), _run_sampled() and _observe() of different blocks may run at the same time; all else alone.
+ * Threads  laconic_batch_run(), _run_sampled() and _observe() of different blocks may run at the same time; all else
+ *          alone.
  * Cost     docs/batch.md has a table: with AVX2 about half of laconic_step() for a step alone and a third where inputs
  *          are held over many, with AVX-512 half of that, in single precision again half. Memory: some 300 bytes for a
  *          lane, and where kinds are many some 4 KB for each, laconic_batch_kind included.
