@@ -8,27 +8,62 @@ typedef struct factors {
     real gain, inverse_gain, mean, mean_ramp, slope, slope_ramp;
 } factors;
 
+/* φ1 … φ4 at −a, and mean and slope of them. From a = 1 on by 1/(1 − e⁻ᵃ): the differences of φ cancel more and more
+ * there, and a stiff vehicle multiplies what is left by its large damping. */
+typedef struct phi_part {
+    real phi[5], mean, slope;
+} phi_part;
+
+#define FAST R(1)
+
+static phi_part part_at(real a, const real phi[6]) {
+    phi_part p = {{R(0), phi[1], phi[2], phi[3], phi[4]}, R(0), R(0)};
+    if (a > FAST) {
+        p.mean = R(1) / (R(1) - phi[0]) - R(1) / a;
+        p.slope = (R(12) * p.mean - R(6)) / a;
+    } else {
+        p.mean = phi[2] / phi[1];
+        p.slope = (R(6) * phi[2] - R(12) * phi[3]) / phi[1];
+    }
+    return p;
+}
+
+/* By a: φk(−a)' = k φk+1 − φk, and also −(φk−1' + φk)/a. */
+static phi_part slope_at(real a, const real phi[6], const phi_part *at) {
+    phi_part d = {{R(0), R(0), R(0), R(0), R(0)}, R(0), R(0)};
+    if (a > FAST) {
+        const real whole = R(1) / (R(1) - phi[0]);
+        d.phi[0] = -phi[0];
+        for (int k = 1; k < 5; k++) d.phi[k] = -(d.phi[k - 1] + phi[k]) / a;
+        d.mean = R(1) / (a * a) - phi[0] * whole * whole;
+        d.slope = (R(12) * d.mean - at->slope) / a;
+    } else {
+        for (int k = 1; k < 5; k++) d.phi[k] = R(k) * phi[k + 1] - phi[k];
+        d.mean = (d.phi[2] - at->mean * d.phi[1]) / phi[1];
+        d.slope = (R(6) * d.phi[2] - R(12) * d.phi[3] - at->slope * d.phi[1]) / phi[1];
+    }
+    return d;
+}
+
 static factors factors_at(real h, real rate) {
     real phi[6];
     laconic_phi(phi, h * rate);
-    const real mean = phi[2] / phi[1], slope = (R(6) * phi[2] - R(12) * phi[3]) / phi[1];
+    const phi_part p = part_at(h * rate, phi);
     const factors f = {h * phi[1], R(1) / (h * phi[1]),
-                       mean,       h * (phi[3] - mean * phi[2]),
-                       slope,      h * (R(6) * phi[3] - R(12) * phi[4] - slope * phi[2])};
+                       p.mean,     h * (phi[3] - p.mean * phi[2]),
+                       p.slope,    h * (R(6) * phi[3] - R(12) * phi[4] - p.slope * phi[2])};
     return f;
 }
 
-/* By the rate: φk(−a)' = k φk+1 − φk. */
+/* By the rate. */
 static factors factor_slopes(real h, real rate) {
-    real phi[6], d[5];
+    real phi[6];
     laconic_phi(phi, h * rate);
-    for (int k = 1; k < 5; k++) d[k] = h * (R(k) * phi[k + 1] - phi[k]);
-    const real mean = phi[2] / phi[1], slope = (R(6) * phi[2] - R(12) * phi[3]) / phi[1];
-    const real d_mean = (d[2] - mean * d[1]) / phi[1];
-    const real d_slope = (R(6) * d[2] - R(12) * d[3] - slope * d[1]) / phi[1];
-    const factors f = {h * d[1], -d[1] / (h * phi[1] * phi[1]),
-                       d_mean,   h * (d[3] - d_mean * phi[2] - mean * d[2]),
-                       d_slope,  h * (R(6) * d[3] - R(12) * d[4] - d_slope * phi[2] - slope * d[2])};
+    const phi_part p = part_at(h * rate, phi), d = slope_at(h * rate, phi, &p);
+    const real mean_ramp = d.phi[3] - d.mean * phi[2] - p.mean * d.phi[2];
+    const real slope_ramp = R(6) * d.phi[3] - R(12) * d.phi[4] - d.slope * phi[2] - p.slope * d.phi[2];
+    const factors f = {h * h * d.phi[1],  -d.phi[1] / (phi[1] * phi[1]), h * d.mean, h * h * mean_ramp, h * d.slope,
+                       h * h * slope_ramp};
     return f;
 }
 

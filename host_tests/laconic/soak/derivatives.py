@@ -13,7 +13,16 @@ import numpy as np
 from laconic.core.binding import load
 from laconic.core.plant import Plant
 from laconic.verification.derivatives.adjoints import adjoint_error
-from laconic.verification.derivatives.trials import METHODS, Trial, difference, directions, error, tangent, trials
+from laconic.verification.derivatives.trials import (
+    METHODS,
+    Trial,
+    by_each,
+    difference,
+    directions,
+    error,
+    tangent,
+    trials,
+)
 
 STEPS = 1000          # of each method
 LARGEST = 1e-11       # error of a tangent
@@ -42,6 +51,7 @@ def soak(minutes: float, seed: int, advance: Callable[[float], None]) -> dict[st
 
 
 def _errors(random: np.random.Generator, trial: Trial, plant: Plant) -> dict[str, float]:
-    found = {f"by {kind}": error(tangent(trial, plant, along), difference(trial, plant, along), along)
+    found = {f"by {kind}": error(tangent(trial, plant, along), difference(trial, plant, along), along,
+                                 by_each(trial, plant, along) if along.vehicle else None)
              for kind, along in directions(random, trial, plant).items()}
     return {**found, "adjoint": adjoint_error(random, trial, plant)}

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
 from itertools import islice
 
 import numpy as np
@@ -65,6 +66,15 @@ def test_a_displacement_that_changes_less_than_the_yaw_keeps_its_digits(seed, ki
     plant = plant_of(load(), trial)
     along = directions(np.random.default_rng(seed), trial, plant)["input"]
     assert error(tangent(trial, plant, along), difference(trial, plant, along), along) <= 1e-13
+
+
+@pytest.mark.parametrize(("seed", "kind"), [(1063, "mixed"), (2432, "omni"), (3879, "mixed")])
+def test_a_fast_damping_leaves_the_digits_of_a_change_by_the_inertia_that_it_nearly_cancels(seed, kind):
+    trial = made_up(np.random.default_rng(seed), kind, "exponential-kahan")
+    plant = plant_of(load(), trial)
+    still = directions(np.random.default_rng(seed), trial, plant)["vehicle"]
+    along = replace(still, vehicle={"wheel_inertia_kgm2": 1.0})
+    assert error(tangent(trial, plant, along), difference(trial, plant, along), along) <= TOLERANCE
 
 
 @pytest.mark.parametrize(("seed", "kind", "method"), [(303, "mixed", "taylor-8"), (961, "mecanum", "rk4")])

@@ -192,12 +192,24 @@ def tangent(trial: Trial, plant: Plant, along: Direction) -> np.ndarray:
     return step.tangent(along.state, along.held, along.vehicle or None)
 
 
-def error(found: np.ndarray, expected: np.ndarray, along: Direction) -> float:
+def by_each(trial: Trial, plant: Plant, along: Direction) -> np.ndarray:
+    """The sum of magnitudes of what each number of the vehicle does by itself, along a direction that varies them all.
+
+    Their effects may cancel in a kind that is one number, as the heading is; a result whose error is small beside this
+    is exact for effects of each that are changed by as little.
+    """
+    parts = [Direction(along.state, along.held, {name: change}) for name, change in along.vehicle.items()]
+    return sum((np.abs(tangent(trial, plant, part)) for part in parts), np.zeros(len(along.state)))
+
+
+def error(found: np.ndarray, expected: np.ndarray, along: Direction, each: np.ndarray | None = None) -> float:
     """The largest error of velocity, position, heading and wheel angles, each relative to the largest change of its
-    kind before and after the step."""
+    kind before and after the step; for a direction of the vehicle also in `each`, what by_each() gives."""
     worst = 0.0
+    before = np.abs(np.array(along.state))
+    sizes = np.maximum(before, np.abs(expected) if each is None else np.maximum(each, np.abs(expected)))
     for rows in GROUPS.values():
         if len(expected[rows]):
-            size = max(np.abs(expected[rows]).max(), np.abs(np.array(along.state)[rows]).max())
+            size = sizes[rows].max()
             worst = max(worst, float(np.abs(found[rows] - expected[rows]).max() / size) if size else 0.0)
     return worst
