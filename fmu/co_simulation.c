@@ -143,11 +143,12 @@ static inline bool is_one_more(const fmu_instance *instance, double at_s, double
            !instance->model.change_needed && instance->between_steps == NULL;
 }
 
-fmu_status fmu_do_step(fmu_instance *instance, double at_s, double step_s, fmu_step_end *end) {
+static inline fmu_status take_step(fmu_instance *instance, double at_s, double step_s, fmu_step_end *end) {
     uint64_t steps = 1;
     fmu_status status;
     end->early = false;
     if (is_one_more(instance, at_s, step_s)) {
+        if (FMU_MODEL_KEEPS_STEPS) fmu_model_begin_step(&instance->model);
         status = fmu_model_run(instance, 1, &steps);
         instance->clock.ticks += steps;
         if (instance->warnings_pending != 0) fmu_model_settle_warnings(instance, status == FMU_OK);
@@ -157,8 +158,16 @@ fmu_status fmu_do_step(fmu_instance *instance, double at_s, double step_s, fmu_s
     status = check_interval(instance, at_s, step_s);
     if (status == FMU_OK) status = fmu_apply_parameters(instance);
     if (status == FMU_OK) status = count_steps(instance, step_s, &steps);
+    if (FMU_MODEL_KEEPS_STEPS && status == FMU_OK) fmu_model_begin_step(&instance->model);
     if (status == FMU_OK) status = run(instance, steps, end);
     if (instance->warnings_pending != 0) fmu_model_settle_warnings(instance, status == FMU_OK);
     end->time_s = instance->model.time_s = fmu_clock_now(&instance->clock);
+    return status;
+}
+
+fmu_status fmu_do_step(fmu_instance *instance, double at_s, double step_s, fmu_step_end *end) {
+    if (!FMU_MODEL_KEEPS_STEPS) return take_step(instance, at_s, step_s, end);
+    const fmu_status status = take_step(instance, at_s, step_s, end);
+    fmu_model_end_step(&instance->model, status);
     return status;
 }

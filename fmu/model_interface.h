@@ -78,6 +78,23 @@ void fmu_model_motion_seed(fmu_instance *instance, fmu_tangent *tangent);
  * fmu_tangent. */
 void fmu_model_set_slope(fmu_model *model, uint32_t tangent_offset, double slope);
 
+#ifndef FMU_MODEL_KEEPS_STEPS
+#define FMU_MODEL_KEEPS_STEPS 0
+#endif
+
+/* Only of models with FMU_MODEL_KEEPS_STEPS 1 (vehicle/kept_step.c). */
+
+/* Before and after a communication step. */
+void fmu_model_begin_step(fmu_model *model);
+void fmu_model_end_step(fmu_model *model, fmu_status status);
+/* From now on the step has no derivatives, for a reason that the model knows. */
+void fmu_model_spoil_step(fmu_model *model, int32_t reason);
+/* Whether the last communication step has derivatives, or there was none yet; the log gives the reason if not. */
+fmu_status fmu_model_check_step(fmu_instance *instance);
+/* fmu_model_tangent, but along the last communication step where the instance is in step mode or terminated: seeds of
+ * states are those of its start, seeds of inputs those held over it. */
+void fmu_model_step_tangent(fmu_instance *instance, fmu_tangent *tangent);
+
 /* Writes or reads the whole model (stream.h). False: the bytes are too few, or a value is impossible. */
 bool fmu_model_serialize(fmu_stream *stream, fmu_model *model);
 

@@ -53,6 +53,20 @@ static fmu_status check_counts(fmu_instance *instance, fmu_references unknowns, 
     return status == FMU_OK ? fmu_model_check_tangent(instance) : status;
 }
 
+static fmu_status check_derivatives(fmu_instance *instance, fmu_references unknowns, fmu_references knowns,
+                                    size_t unknown_values, size_t known_values) {
+    const fmu_status status = check_counts(instance, unknowns, knowns, unknown_values, known_values);
+    return FMU_MODEL_KEEPS_STEPS && status == FMU_OK ? fmu_model_check_step(instance) : status;
+}
+
+/* The response to the seeds in `tangent`. */
+static void respond(fmu_instance *instance, fmu_tangent *tangent) {
+    if (FMU_MODEL_KEEPS_STEPS)
+        fmu_model_step_tangent(instance, tangent);
+    else
+        fmu_model_tangent(instance, tangent);
+}
+
 static fmu_status refuse_result(const fmu_instance *instance, const fmu_variable *variable) {
     return fmu_refuse(instance,
                       "a derivative of or by %s leaves the range of double precision; check inputs, states and "
@@ -82,7 +96,7 @@ fmu_status fmu_directional(fmu_instance *instance, fmu_references unknowns, fmu_
     fmu_tangent tangent;
     size_t used = 0;
     fmu_slot slot;
-    const fmu_status status = check_counts(instance, unknowns, knowns, sensitivity_count, seed_count);
+    const fmu_status status = check_derivatives(instance, unknowns, knowns, sensitivity_count, seed_count);
     if (status != FMU_OK) return status;
     if ((seed_count > 0 && seed == NULL) || (sensitivity_count > 0 && sensitivity == NULL))
         return fmu_refuse(instance, "the list of seeds or sensitivities is missing (NULL)");
@@ -92,7 +106,7 @@ fmu_status fmu_directional(fmu_instance *instance, fmu_references unknowns, fmu_
         for (uint32_t i = 0; i < slot.count; i++, used++)
             if (slot.variable->access != FMU_INDEPENDENT) *tangent_at(&tangent, &slot, i) += seed[used];
     }
-    fmu_model_tangent(instance, &tangent);
+    respond(instance, &tangent);
     return read_unknowns(instance, unknowns, &tangent, sensitivity);
 }
 
@@ -106,7 +120,7 @@ static double adjoint_of(fmu_instance *instance, fmu_references unknowns, const 
     if (known->variable->access == FMU_INDEPENDENT) return 0.0;
     memset(&tangent, 0, sizeof tangent);
     *tangent_at(&tangent, known, element) = 1.0;
-    fmu_model_tangent(instance, &tangent);
+    respond(instance, &tangent);
     for (size_t k = 0; k < unknowns.count; k++) {
         fmu_find(instance, unknowns.reference[k], &slot);
         for (uint32_t i = 0; i < slot.count; i++) sum += seed[used++] * *tangent_at(&tangent, &slot, i);
@@ -118,7 +132,7 @@ fmu_status fmu_adjoint(fmu_instance *instance, fmu_references unknowns, fmu_refe
                        size_t seed_count, double *sensitivity, size_t sensitivity_count) {
     size_t used = 0;
     fmu_slot slot;
-    const fmu_status status = check_counts(instance, unknowns, knowns, seed_count, sensitivity_count);
+    const fmu_status status = check_derivatives(instance, unknowns, knowns, seed_count, sensitivity_count);
     if (status != FMU_OK) return status;
     if ((seed_count > 0 && seed == NULL) || (sensitivity_count > 0 && sensitivity == NULL))
         return fmu_refuse(instance, "the list of seeds or sensitivities is missing (NULL)");

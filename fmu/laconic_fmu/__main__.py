@@ -11,6 +11,7 @@ from .description import parse, read, token_in, token_of, with_token
 from .field_list import missing_variable
 from .for_vehicle import for_vehicle
 from .licences import licence_parts, ziglang_in
+from .of_step import of_step
 from .package import pack
 from .tables import tables
 
@@ -26,6 +27,8 @@ def make_tables(arguments: argparse.Namespace) -> None:
         if fault := missing_variable(header, arguments.description, description):
             sys.exit(fault)
     generic = for_vehicle(description)
+    if arguments.of_step:
+        generic = of_step(generic)
     if generic is not description:
         text_3 = fmi3.describe(generic)
     out: Path = arguments.out
@@ -81,6 +84,7 @@ def main() -> None:
     command.add_argument("--versions", nargs="*", default=["2", "3"], help="the FMI versions of this FMU")
     command.add_argument("--fields", type=Path, nargs="*", default=[],
                          help="headers with the core's lists of fields, each of which must be a variable")
+    command.add_argument("--of-step", action="store_true", help="derivatives of communication steps")
     command.set_defaults(run=make_tables)
     command = commands.add_parser("pack")
     command.add_argument("--version", type=int, choices=(2, 3), required=True)

@@ -12,6 +12,7 @@ from . import fmi2, fmi3
 from .description import Description, parse, start_values, token_in, with_values
 from .enumerations import without_enumerations
 from .for_vehicle import for_vehicle
+from .of_step import of_step
 from .package import pack, start_file
 from .scalars import elements_of
 
@@ -86,6 +87,8 @@ class Variant:
     enumerations: bool = True
     """False: whole numbers instead, for importers that know no enumerations."""
     sources: bool = True
+    derivatives: bool = False
+    """Those of the last communication step: of a generic FMU that has them."""
 
 
 @dataclass(frozen=True)
@@ -132,6 +135,8 @@ def scene_fmu(generic: Path, source: Path, content: Content, out: Path, variant:
              if variant.sources or not name.startswith("sources/")}
     given = parse(source.read_text(encoding="utf-8"))
     description = for_vehicle(with_values(given, content.values, content.name, content.text))
+    if variant.derivatives:
+        description = of_step(description)
     experiment = description.root.find("DefaultExperiment")
     if experiment is not None:
         experiment.set("stopTime", repr(float(content.duration_s)))

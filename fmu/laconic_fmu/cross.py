@@ -21,10 +21,11 @@ FLAGS = ("-std=c99", "-O2", "-g0", "-s", "-ffp-contract=off", "-fno-slp-vectoriz
 
 
 def compile_for(platform: str, sources: Sequence[str], includes: Sequence[str], out: Path, *, shared: bool = True,
-                python: str = sys.executable) -> None:
+                python: str = sys.executable, defined: Sequence[str] = ()) -> None:
     """Links one binary of an FMU for a platform."""
     kind = ["-shared", *([] if platform.endswith("windows") else ["-fPIC"])] if shared else ["-static"]
-    compile_to(TARGETS[platform], sources, includes, out, [*kind, "-fvisibility=hidden"], python=python)
+    named = [f"-D{each}" for each in defined]
+    compile_to(TARGETS[platform], sources, includes, out, [*kind, *named, "-fvisibility=hidden"], python=python)
 
 
 def compile_to(target: str, sources: Sequence[str | Path], includes: Sequence[str | Path], out: Path,
@@ -47,9 +48,11 @@ def main() -> None:
     parser.add_argument("out", type=Path)
     parser.add_argument("--include", nargs="*", default=[])
     parser.add_argument("--sources", nargs="+", required=True)
+    parser.add_argument("--define", nargs="*", default=[])
     parser.add_argument("--python", default=sys.executable, help="the interpreter that has ziglang")
     arguments = parser.parse_args()
-    compile_for(arguments.platform, arguments.sources, arguments.include, arguments.out, python=arguments.python)
+    compile_for(arguments.platform, arguments.sources, arguments.include, arguments.out, python=arguments.python,
+                defined=arguments.define)
 
 
 if __name__ == "__main__":

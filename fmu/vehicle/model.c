@@ -102,6 +102,7 @@ fmu_status fmu_model_change(fmu_instance *instance) {
     self->contact = contact;
     self->rolling = rolling;
     self->change_needed = false;
+    if (FMU_MODEL_KEEPS_STEPS) fmu_model_spoil_step(self, FMU_STEP_CHANGED);
     watch_change(self);
     fmu_idle_motors_find(self);
     self->stale = FMU_GROUPS_ALL & ~FMU_GROUP_STATE;
@@ -113,6 +114,7 @@ fmu_status fmu_model_change(fmu_instance *instance) {
 void fmu_model_input_changed(fmu_instance *instance) {
     fmu_model *self = &instance->model;
     self->stale |= FMU_GROUPS_OF_INPUT;
+    if (FMU_MODEL_KEEPS_STEPS && instance->mode == FMU_INTERMEDIATE) fmu_model_spoil_step(self, FMU_STEP_TOUCHED);
     if (self->idle_wheels && !self->start_needed) fmu_idle_motors_check(instance);
 }
 

@@ -10,6 +10,14 @@
 #define FMU_MODEL_PORTS 0 /* bus terminals */
 #define FMU_MODEL_TAKES_SLOPES true
 
+/* 1 in an FMU whose derivatives in Co-Simulation are those of the last step (kept_step.c): sources/ has that number. */
+#ifndef FMU_MODEL_KEEPS_STEPS
+#define FMU_MODEL_KEEPS_STEPS 0
+#endif
+#if FMU_MODEL_KEEPS_STEPS
+#include "laconic/derivatives.h"
+#endif
+
 /* Number of elements of the arrays that have one for each wheel, at most FMU_MODEL_LARGEST_ARRAY. */
 #define FMU_MODEL_ARRAY_SIZE(model) ((uint32_t)(model)->vehicle.wheel_count)
 
@@ -57,6 +65,25 @@ typedef struct fmu_friction_outputs {
     double slip_loss_J, axle_loss_J, motor_loss_J, supply_loss_J, numerical_loss_J;
 } fmu_friction_outputs;
 
+/* Which derivatives the last communication step has. */
+typedef enum fmu_step_kept {
+    FMU_STEP_NONE,    /* there was none yet: those at the communication point */
+    FMU_STEP_KEPT,    /* its own */
+    FMU_STEP_SLOPED,  /* none, for the reason that kept_step.c logs, and so for the rest */
+    FMU_STEP_TOUCHED, /* inputs were set within it   */
+    FMU_STEP_CHANGED, /* the vehicle changed after it */
+    FMU_STEP_KINDS
+} fmu_step_kept;
+
+/* What a communication step began with. */
+typedef struct fmu_last_step {
+    int32_t kept; /* fmu_step_kept */
+    laconic_state state;
+    laconic_input input;
+    double step_s;  /* of an internal step                                   */
+    uint64_t steps; /* internal ones: those of the plant at its start, then those that it took */
+} fmu_last_step;
+
 typedef struct fmu_model {
     bool start_needed;       /* parameters were set since the last start          */
     bool change_needed;      /* tunable parameters were set since */
@@ -89,6 +116,11 @@ typedef struct fmu_model {
     FMU_MOVING_MEMBERS; /* in Model Exchange the plant's state follows the continuous states */
     double wheel_rate_rad_per_s2[LACONIC_MAX_WHEELS];
     fmu_friction_outputs friction;
+#if FMU_MODEL_KEEPS_STEPS
+    fmu_last_step last, next; /* `next` becomes `last` where it is not refused */
+    bool has_jacobian;        /* of `last`                  */
+    laconic_step_jacobian jacobian;
+#endif
 } fmu_model;
 
 /* What steps change. */

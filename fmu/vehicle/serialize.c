@@ -191,5 +191,13 @@ bool fmu_model_serialize(fmu_stream *stream, fmu_model *model) {
     serialize_continuous(stream, model);
     serialize_plant(stream, model);
     if (model->watched) serialize_sensors(stream, &model->sensors, model->vehicle.wheel_count);
+#if FMU_MODEL_KEEPS_STEPS
+    fmu_stream_i32(stream, &model->last.kept, FMU_STEP_NONE, FMU_STEP_KINDS - 1);
+    serialize_state(stream, &model->last.state);
+    serialize_input(stream, &model->last.input);
+    fmu_stream_reals(stream, &model->last.step_s, 1);
+    fmu_stream_u64(stream, &model->last.steps);
+    if (stream->from != NULL) model->has_jacobian = false;
+#endif
     return !stream->failed;
 }

@@ -21,9 +21,9 @@ DESCRIPTION = SOURCE_DIR / "modelDescription.xml"
 VERSIONS = (2, 3)  # of FMI
 
 
-def generic_fmu(version: int) -> Path:
+def generic_fmu(version: int, derivatives: bool = False) -> Path:
     """The FMU that the build made."""
-    return built(f"fmu/Laconic_fmi{version}.fmu")
+    return built(f"fmu/Laconic{'Derivatives' if derivatives else ''}_fmi{version}.fmu")
 
 
 def start_values(scene: Scene) -> dict[str, list[float]]:
@@ -57,18 +57,29 @@ def content_of(scene: Scene, name: str, text: str, values: dict[str, Any]) -> Co
 
 
 def make_fmu(scene: Scene, out: str | Path, *, version: int, scalar: bool = False, sources: bool = True,
-             enumerations: bool = True) -> Path:
-    """Writes the scene's FMU; BadInput when the scene has no such FMU."""
+             enumerations: bool = True, derivatives: bool = False) -> Path:
+    """Writes the scene's FMU; BadInput when the scene has no such FMU.
+
+    `derivatives`: for Co-Simulation alone, whose directional and adjoint derivatives are those of its steps.
+    """
     check_scene(scene)
     if version not in VERSIONS:
         raise BadInput(f"version: there is no FMI {version!r}; give {' or '.join(map(str, VERSIONS))}")
     path = as_path("out", out)
+    if derivatives:
+        _check_smooth(scene)
     if scene.wheel_count == 0 and version == 3 and not scalar:
         raise BadInput(f"{scene.path}: vehicle.wheel: a vehicle without wheels has no arrays; use --scalar or --fmi 2")
     scene.sensors_of(scene.plant(load("double")))  # refuses a scene that cannot start, naming the field
     content = content_of(scene, scene.name, f"Dynamics of a wheeled robot; its numbers: {scene.source}",
                          start_values(scene))
     with whole_file(path) as fresh:
-        scene_fmu(generic_fmu(version), DESCRIPTION, content, fresh,
-                  Variant(version, scalar, enumerations, sources), vehicle_parts)
+        scene_fmu(generic_fmu(version, derivatives), DESCRIPTION, content, fresh,
+                  Variant(version, scalar, enumerations, sources, derivatives), vehicle_parts)
     return path
+
+
+def _check_smooth(scene: Scene) -> None:
+    if scene.plant(load("double")).has_friction:
+        raise BadInput(f"{scene.path}: --derivatives: the scene has friction in [ground] or limits in [vehicle.drive], "
+                       "and such steps are not smooth; take these out, or leave the option out")
