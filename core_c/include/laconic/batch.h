@@ -12,9 +12,9 @@
  * Memory   the caller owns it: a laconic_batch, the kinds, and one piece of laconic_batch_size() bytes. No heap.
  * Threads  laconic_batch_run(), _run_sampled() and _observe() of different blocks may run at the same time; all else
  *          alone.
- * Cost     docs/batch.md has a table: with AVX2 about half of laconic_step() for a step alone and a third where inputs
- *          are held over many, with AVX-512 half of that, in single precision again half. Memory: some 300 bytes for a
- *          lane, and where kinds are many some 4 KB for each, laconic_batch_kind included.
+ * Cost     docs/batch.md has a table: with AVX2 about a third of laconic_step(), with AVX-512 half of that, in
+ *          single precision again half. Memory: some 300 bytes for a lane, and where kinds are many some 4 KB for
+ *          each, laconic_batch_kind included.
  * Limits   ideal ground and motors without limits; held inputs. With compilers other than gcc and clang lanes step one
  *          by one. */
 #ifndef LACONIC_BATCH_H
@@ -118,7 +118,8 @@ int32_t laconic_batch_run(laconic_batch *batch, int32_t first_block, int32_t blo
 /* The same with new voltages after every `steps_each` steps, `samples` times. voltage_V has for each sample a row for
  * each of the shape's wheels, of lane_count numbers [V]; they are written into the rows of voltages before their steps,
  * so that these have those of a lane's last step, or of the one that was refused: it takes none after that. As bits it
- * is laconic_batch_run() for each sample; it costs less, since a few blocks take all their steps before the next. */
+ * is laconic_batch_run() for each sample; it costs less where kinds are many, since a few blocks take all their steps
+ * before the next. */
 int32_t laconic_batch_run_sampled(laconic_batch *batch, int32_t first_block, int32_t blocks, uint64_t samples,
                                   uint64_t steps_each, const laconic_real *voltage_V);
 

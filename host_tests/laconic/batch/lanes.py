@@ -181,8 +181,8 @@ class Batch:
         """Steps with voltages that change on the way: voltage_V (samples, N, lanes), each held for `steps_each` steps.
 
         The bits are those of `run(steps_each)` after each sample was written into `voltage_V`; a lane that is refused
-        takes no more steps. It costs less, and much less from Python. A C-contiguous array of the batch's scalar type
-        is not copied. Returns how many lanes were refused.
+        takes no more steps. It saves a call for each sample. A C-contiguous array of the batch's scalar type is not
+        copied. Returns how many lanes were refused.
         """
         steps, run = step_count("steps_each", steps_each), self.core.lib.laconic_batch_run_sampled
         samples = self._samples(voltage_V)
