@@ -41,6 +41,8 @@ typedef bool verdict;    /* the result of a comparison                          
  * step by itself. The number must be one on which the displacement of the step depends. */
 #define RARELY(condition, number) (condition)
 #define USUALLY(condition, number) (condition)
+/* Where of a part of a step only `by` goes on, and as an angle would lose its NaN: a lane that left stays NaN. */
+#define KEEP_LEFT(number, by) ((void)0)
 #define END_STEP accept_step /* the last part of a step; lanes put it off until others have begun theirs */
 #endif
 

@@ -8,7 +8,9 @@ void laconic_forcing_of(laconic_forcing *forcing, const laconic_model *model, co
 vector laconic_forcing_after_yaw(const laconic_forcing *forcing, const laconic_heading *heading, real yaw_change_rad) {
     const laconic_binary_angle angle =
         (laconic_binary_angle)(heading->fraction + laconic_binary_angle_of(yaw_change_rad));
-    return forcing_at(forcing, laconic_direction_of_binary_angle(angle));
+    vector b = forcing_at(forcing, laconic_direction_of_binary_angle(angle));
+    KEEP_LEFT(&b.x, yaw_change_rad); /* which as an angle is 0 where it is NaN */
+    return b;
 }
 
 /* (1/h)∫b·ζ dt over the step, with b the parabola through its three values and ζ given by its mean and slope. */

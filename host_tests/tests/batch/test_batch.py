@@ -176,6 +176,25 @@ def test_an_input_given_as_a_whole_is_written_into_the_memory_that_steps():
     assert np.any(whole.heading_rad != 0)
 
 
+@pytest.mark.parametrize(("method", "force_N", "nu", "point_m"), [
+    ("exact-flow", (-4.7, -1.1), (-6.6, -1.7, -5.3), (-0.2, 0.3)),
+    ("exact-flow-4", (8.9, -3.6), (3.7, -0.4, -5.2), (0.1, 0.0))])
+def test_a_lane_that_leaves_the_usual_way_while_the_heading_at_a_steps_end_is_sought_has_its_bits(
+        method, force_N, nu, point_m):  # noqa: N803
+    """A force fixed in the world depends on that heading, which rounds find; the first may leave and the last not."""
+    body = laconic.Vehicle({"mass_kg": 10.0, "yaw_inertia_kgm2": 0.24, "com_x_m": 0.08, "com_y_m": 0.06,
+                            "wheel_radius_m": 0.09})
+    start = body.plant(method, step_s=0.3, nu_rad_per_s=nu).save()
+    states = []
+    for width_bytes in (1, 0):
+        batch = laconic.Batch(body, 1, method, 0.3, width_bytes=width_bytes)
+        batch.load(0, start)
+        batch.world_force_N[:, 0], batch.world_force_point_m[:, 0] = force_N, point_m
+        batch.run(40)
+        states.append(bytes(batch.core.ffi.buffer(batch.state(0))))
+    assert states[0] == states[1]
+
+
 @pytest.mark.parametrize("message", WRONG)
 def test_what_does_not_fit_is_refused_in_one_line(message):
     with pytest.raises(laconic.BadInput) as caught:

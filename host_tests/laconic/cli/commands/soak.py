@@ -38,6 +38,8 @@ def command(what: str, minutes: float, seed: int | None, json_wanted: bool, **sp
     """Runs WHAT for a long time and reports what was found.
 
     \b
+    batch            lanes of made-up vehicles beside the same alone, bit for bit, in every
+                     width of registers, every method and both scalar types
     boards           emulated boards started anew, idle and with all cores busy
     controllers      PyPI's canopen and odrive-can and a C620 client drive vehicles on the
                      process and an emulated board: wheels move as the core does with
