@@ -150,8 +150,15 @@ class Filter:
         return self.core.ffi.new("laconic_filter *", self.c[0]), self._count
 
     def restore(self, saved: Any) -> None:
-        """Back to what `save` gave."""
-        self.c[0], self._count = saved[0][0], saved[1]
+        """Back to what `save` gave; BadInput for what another robot's filter gave."""
+        try:
+            state, count = saved
+            fits = self.core.ffi.typeof(state).cname == "laconic_filter *" and len(count) == max(self.wheel_count, 1)
+        except (TypeError, ValueError):
+            fits = False
+        if not fits:
+            raise BadInput(f"saved: {shown(saved)} is not of this filter; give what its save() gave")
+        self.c[0], self._count = state[0], count
 
     # ---- between numpy and C
 

@@ -17,6 +17,8 @@ WIDTH_IN, HEIGHT_IN = 3.6, 2.8
 MOST_POINTS = 1500
 BINS = 12
 LETTERS = 34  # of a key below its axis
+LARGEST_SHOWN = 1e150
+ROUNDING = 1e-13  # of values that a histogram cannot tell apart
 POINTS, LINE, BAND = "#8fb3d9", "#1f4e8c", "#c9d9ec"
 
 
@@ -52,16 +54,32 @@ def _broken(name: str) -> str:
 def histogram(name: str, values: np.ndarray) -> str:
     """How often which values come."""
     picture, axes = _panel(name, "runs")
+    if words := _without_picture(values):
+        axes.text(0.5, 0.5, words, ha="center", va="center", transform=axes.transAxes)
+        axes.set(xticks=[], yticks=[])
+        return svg_of(picture)
     axes.hist(values, bins=min(60, max(10, int(np.sqrt(len(values))))), color=LINE)
     axes.yaxis.set_major_locator(MaxNLocator(integer=True))
     return svg_of(picture)
+
+
+def _without_picture(values: np.ndarray) -> str:
+    """What is told of values that no axis can show: alike but for rounding, or beyond the numbers of a picture."""
+    low, high = float(values.min()), float(values.max())
+    if max(abs(low), abs(high)) > LARGEST_SHOWN:
+        return f"{low:g} … {high:g}:\nbeyond what a picture shows"
+    alike = high - low <= ROUNDING * max(abs(low), abs(high))
+    return f"{high:g}\nin all runs" if alike else ""
 
 
 def effect(key: str, given: np.ndarray, name: str, values: np.ndarray) -> str:
     """Runs as points, and over them the mean with the middle 90 % of each level of the key, or of each part of its
     range."""
     picture, axes = _panel(key, name)
-    if given.dtype.kind == "f":
+    beyond = [each for each in (values, given) if each.dtype.kind == "f" and np.abs(each).max() > LARGEST_SHOWN]
+    if beyond:
+        axes.text(0.5, 0.5, _without_picture(beyond[0]), ha="center", va="center", transform=axes.transAxes)
+    elif given.dtype.kind == "f":
         few = np.random.default_rng(1).permutation(len(given))[:MOST_POINTS]
         axes.plot(given[few], values[few], ".", ms=2.5, color=POINTS, rasterized=True)
         _middle(axes, *_parts(given, values))

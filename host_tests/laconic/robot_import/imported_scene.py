@@ -61,6 +61,12 @@ def import_robot(path: Path, answers: Answers) -> Imported:
     return _Writer(robot, ground, kinds, whole, find_supports(robot, ground), answers).imported()
 
 
+def in_one_line(text: str) -> str:
+    """A comment or remark in which names of the file stand: what is no character of a line is written as its escape,
+    since a line break in a name would end the comment, and what follows would be a key."""
+    return "".join(each if each.isprintable() else each.encode("unicode_escape").decode("ascii") for each in text)
+
+
 class _Writer:
     """Collects the tables and their comments."""
 
@@ -93,8 +99,10 @@ class _Writer:
         self.checked(data)
         assumed = [f"{_path(where)}: {why}" for where, why in self.comments.items()
                    if why.startswith("assumption") and where[-1] != "kind"]  # of kinds, words() tells
-        text = "\n".join([*self.head(), *lines_of(data, self.comments)]) + "\n"
-        return Imported(self.robot.name, text, tuple(self.words()), tuple(assumed), tuple(self.remarks))
+        comments = {where: in_one_line(why) for where, why in self.comments.items()}
+        text = "\n".join([*map(in_one_line, self.head()), *lines_of(data, comments)]) + "\n"
+        words, remarks = tuple(map(in_one_line, self.words())), tuple(map(in_one_line, self.remarks))
+        return Imported(self.robot.name, text, words, tuple(map(in_one_line, assumed)), remarks)
 
     def ground_table(self, wheels: list[dict[str, Any]]) -> dict[str, float]:
         """`[ground]`, with the dry friction of the axles; a wheel whose own is another keeps it."""

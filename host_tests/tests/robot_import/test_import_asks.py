@@ -151,3 +151,12 @@ def test_a_file_that_is_not_there_is_one_line(tmp_path: Path, capsys: pytest.Cap
     for name in ("lost.urdf", "lost.xacro", "lost.sdf", "lost.xml"):
         assert run(["import", str(tmp_path / name), "-o", str(tmp_path / "robot.toml")]) == 2
         assert capsys.readouterr().err.count("\n") == 1
+
+
+def test_a_line_break_in_a_name_ends_no_comment(tmp_path: Path) -> None:
+    named = GOOD.replace('name="left"', 'name="left&#10;locked = true #"').replace("left_link", "left&#13;&#127;link")
+    (tmp_path / "robot.urdf").write_text(named, encoding="utf-8")
+    assert run(["import", str(tmp_path / "robot.urdf"), "-o", str(tmp_path / "robot.toml")]) == 0
+    text = (tmp_path / "robot.toml").read_text(encoding="utf-8")
+    assert "left\\nlocked = true #" in text
+    assert "\nlocked" not in text

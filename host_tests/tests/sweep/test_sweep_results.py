@@ -5,11 +5,13 @@ from __future__ import annotations
 import json
 from pathlib import Path
 
+import numpy as np
 import pyarrow.parquet as pq
 import pytest
 
 from laconic.cli.commands import sweep as command
 from laconic.cli.main import run
+from laconic.pictures import sweep_panels
 from laconic.scene import read_scene
 from laconic.simulation import simulate
 from laconic.sweep import page, sweep, workers
@@ -143,3 +145,15 @@ def test_all_measures_are_listed_with_their_words(capsys):
     lines = capsys.readouterr().out.splitlines()
     assert len(lines) >= 15
     assert any(line.startswith("electrical_energy_J ") and "[vehicle.motor]" not in line for line in lines)
+
+
+@pytest.mark.parametrize(("values", "told"), [
+    ([3.954842569391214, 3.9548425693912144], "in all runs"), ([0.0, 0.0], ""), ([-1e308, 1e300], "beyond"),
+    ([1.0, 2.0], "")])
+def test_values_that_no_axis_can_show_have_words_instead_of_a_picture(values, told):
+    numbers = np.array(values * 20)
+    words = sweep_panels._without_picture(numbers)
+    assert told in words
+    assert bool(words) == (values != [1.0, 2.0])
+    assert "<svg" in sweep_panels.histogram("end_heading_rad", numbers)
+    assert "<svg" in sweep_panels.effect("vehicle.mass_kg", np.linspace(1, 2, 40), "end_heading_rad", numbers)
