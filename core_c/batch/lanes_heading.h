@@ -59,8 +59,10 @@ static inline lanes_integer lanes_cut(real x) {
     const real whole = __builtin_ia32_roundpd256(x, 3) + R(0); /* 3: towards 0 */
     const real high = whole + MAGIC_MULTIPLE;
     const real low = (whole - (high - MAGIC_MULTIPLE)) + MAGIC_INTEGER;
-    const verdict magic = ((verdict)MAGIC_MULTIPLE << 16) + (verdict)MAGIC_INTEGER;
-    const lanes_integer out = {(((verdict)high << 16) + (verdict)low) - magic, whole};
+    const laconic_binary_angle magic =
+        ((laconic_binary_angle)MAGIC_MULTIPLE << 16) + (laconic_binary_angle)MAGIC_INTEGER;
+    const laconic_binary_angle sum = ((laconic_binary_angle)high << 16) + (laconic_binary_angle)low; /* may wrap */
+    const lanes_integer out = {(verdict)(sum - magic), whole};
     return out;
 }
 
