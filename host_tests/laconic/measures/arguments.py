@@ -42,11 +42,12 @@ def split(text: str) -> tuple[str, dict[str, float]]:
         name, sign, value = part.partition("=")
         if not sign:
             raise BadInput(f"{text}: {part.strip()} has no name; give argument=value")
-        given[name.strip()] = _number(f"{text}: {name.strip()}", value)
+        given[name.strip()] = finite_number(f"{text}: {name.strip()}", value)
     return found[1], given
 
 
-def _number(name: str, text: str) -> float:
+def finite_number(name: str, text: str) -> float:
+    """The number that a text of the command line gives; BadInput, which calls it `name`, for one that is not finite."""
     try:
         value = float(text)
     except ValueError:

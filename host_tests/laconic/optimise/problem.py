@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import math
 import re
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass
@@ -10,6 +9,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from laconic.errors import BadInput
+from laconic.measures.arguments import finite_number
 
 NOT_MEASURED = 1e30  # how far a vehicle that the core refuses is from every constraint
 LARGEST = 1e100      # beyond, values are cut for the optimiser: it takes squares of them
@@ -125,7 +125,7 @@ def read_free(text: str) -> Free:
     low, colon, high = span.partition(":")
     if not (sign and colon and key.strip()):
         raise BadInput(f"--free {text}: is no range; give KEY=a:b, such as vehicle.com_y_m=0:0.05")
-    ends = [_number(f"--free {text}", each) for each in (low, high)]
+    ends = [finite_number(f"--free {text}", each) for each in (low, high)]
     if not ends[0] < ends[1]:
         raise BadInput(f"--free {text}: the range is empty; give the smaller number first")
     return Free(key.strip(), *ends)
@@ -145,14 +145,4 @@ def read_constraint(text: str) -> Constraint:
     found = re.fullmatch(r"\s*(.+?)\s*(<=|>=)\s*([^<>=]+)", text)
     if found is None:
         raise BadInput(f"--subject-to {text}: is no bound; give 'MEASURE<=value' or 'MEASURE>=value', in quotes")
-    return Constraint(found[1], found[2] == "<=", _number(f"--subject-to {text}", found[3]))
-
-
-def _number(name: str, text: str) -> float:
-    try:
-        value = float(text)
-    except ValueError:
-        value = math.nan
-    if not math.isfinite(value):
-        raise BadInput(f"{name}: {text.strip() or 'nothing'} is no finite number; give one")
-    return value
+    return Constraint(found[1], found[2] == "<=", finite_number(f"--subject-to {text}", found[3]))

@@ -55,8 +55,7 @@ def histogram(name: str, values: np.ndarray) -> str:
     """How often which values come."""
     picture, axes = _panel(name, "runs")
     if words := _without_picture(values):
-        axes.text(0.5, 0.5, words, ha="center", va="center", transform=axes.transAxes)
-        axes.set(xticks=[], yticks=[])
+        _tell(axes, words)
         return svg_of(picture)
     axes.hist(values, bins=min(60, max(10, int(np.sqrt(len(values))))), color=LINE)
     axes.yaxis.set_major_locator(MaxNLocator(integer=True))
@@ -72,13 +71,18 @@ def _without_picture(values: np.ndarray) -> str:
     return f"{high:g}\nin all runs" if alike else ""
 
 
+def _tell(axes: Axes, words: str) -> None:
+    axes.text(0.5, 0.5, words, ha="center", va="center", transform=axes.transAxes)
+    axes.set(xticks=[], yticks=[])
+
+
 def effect(key: str, given: np.ndarray, name: str, values: np.ndarray) -> str:
     """Runs as points, and over them the mean with the middle 90 % of each level of the key, or of each part of its
     range."""
     picture, axes = _panel(key, name)
     beyond = [each for each in (values, given) if each.dtype.kind == "f" and np.abs(each).max() > LARGEST_SHOWN]
     if beyond:
-        axes.text(0.5, 0.5, _without_picture(beyond[0]), ha="center", va="center", transform=axes.transAxes)
+        _tell(axes, _without_picture(beyond[0]))
     elif given.dtype.kind == "f":
         few = np.random.default_rng(1).permutation(len(given))[:MOST_POINTS]
         axes.plot(given[few], values[few], ".", ms=2.5, color=POINTS, rasterized=True)
