@@ -17,7 +17,8 @@ import numpy as np
 from laconic.batch.memory import Rows, aligned_memory
 from laconic.batch.population import Kinds, items_of
 from laconic.core import Core, Vehicle
-from laconic.core.given import c_object, number, numbers, shown, step_count, whole_number
+from laconic.core.given import c_object, finite_number, number, shown, step_count, whole_number
+from laconic.core.given_array import real_array
 from laconic.errors import BadInput, Refused
 
 MOST_LANES = 2**28
@@ -126,8 +127,9 @@ class Batch:
         ffi, lib, why = self.core.ffi, self.core.lib, self.core.why()
         state, kind = ffi.new("laconic_state *"), self._kinds[self._kind_of[self._lane(lane)]]
         start = ffi.new("laconic_start *", {
-            "nu_rad_per_s": numbers("nu_rad_per_s", nu_rad_per_s, 3), "x_m": number("x_m", x_m),
-            "y_m": number("y_m", y_m), "heading_rad": number("heading_rad", heading_rad)})
+            "nu_rad_per_s": real_array("nu_rad_per_s", nu_rad_per_s, (3,), "rad/s").tolist(),
+            "x_m": finite_number("x_m", x_m), "y_m": finite_number("y_m", y_m),
+            "heading_rad": finite_number("heading_rad", heading_rad)})
         self.core.check(lib.laconic_state_set(state, ffi.addressof(kind, "model"), start, why), why)
         self.load(lane, state)
 
@@ -201,9 +203,7 @@ class Batch:
 
     def _in_parts(self, work: Callable[[int, int], int], threads: int) -> int:
         """The sum of work on equal parts of the blocks at the same time; calls of the core let other threads run."""
-        threads, blocks, self._is_observed = whole_number("threads", threads), int(self.c.block_count), False
-        if threads < 1:
-            raise BadInput(f"threads: {threads} cannot take a step; give 1 or more")
+        threads, blocks, self._is_observed = thread_count(threads), int(self.c.block_count), False
         if (threads := min(threads, blocks)) <= 1:
             return work(0, blocks)
         if self._pool is None or self._pool._max_workers < threads:
@@ -283,7 +283,9 @@ def _kinds_of_lanes(kinds: int, lanes: int | None, kind_of: Any) -> np.ndarray:
     if kind_of is None:
         if lanes is not None and kinds > 1 and lanes != kinds:
             raise BadInput(f"lanes: {lanes} lanes for {kinds} vehicles; leave it out for one each, or give kind_of")
-        found = np.zeros(_lane_count(1 if lanes is None else lanes), np.int32) if kinds == 1 else np.arange(kinds)
+        found = np.arange(kinds)
+        if kinds == 1:
+            found = np.zeros(lane_count("lanes", 1 if lanes is None else lanes), np.int32)
     else:
         try:
             found = np.asarray(kind_of)
@@ -293,7 +295,7 @@ def _kinds_of_lanes(kinds: int, lanes: int | None, kind_of: Any) -> np.ndarray:
         if found.ndim != 1 or found.dtype.kind not in "iu" or (lanes is not None and len(found) != lanes):
             raise BadInput(f"kind_of: has the shape {found.shape} and numbers of {found.dtype}; give one whole number "
                            "for each lane")
-        _lane_count(len(found))
+        lane_count("lanes", len(found))
         if found.min() < 0 or found.max() >= kinds:
             raise BadInput(f"kind_of: {found.min()} to {found.max()} are not all kinds; give numbers from 0 to "
                            f"{kinds - 1}")
@@ -302,8 +304,17 @@ def _kinds_of_lanes(kinds: int, lanes: int | None, kind_of: Any) -> np.ndarray:
     return np.ascontiguousarray(found, np.int32)
 
 
-def _lane_count(given: Any) -> int:
-    count = whole_number("lanes", given)
+def lane_count(name: str, given: Any) -> int:
+    """How many lanes are asked for."""
+    count = whole_number(name, given)
     if not 1 <= count <= MOST_LANES:
-        raise BadInput(f"lanes: {count} is not from 1 to {MOST_LANES}; give a number of vehicles")
+        raise BadInput(f"{name}: {count} is not from 1 to {MOST_LANES}; give a number of vehicles")
+    return count
+
+
+def thread_count(given: Any) -> int:
+    """How many threads are asked for."""
+    count = whole_number("threads", given)
+    if count < 1:
+        raise BadInput(f"threads: {count} cannot take a step; give 1 or more")
     return count

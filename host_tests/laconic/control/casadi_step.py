@@ -16,8 +16,13 @@ import casadi
 import numpy as np
 
 from laconic.control.course import STATES, moved, place, step_from
+from laconic.core.derivatives import check_smooth
+from laconic.core.given import name_list, shown
+from laconic.core.given_array import check_finite
 from laconic.core.plant import Plant
+from laconic.errors import BadInput
 
+NAMES, UNITS = ("s", "u", "p"), ("rad/s, rad/s, rad/s, m, m, rad", "V", "the units of their names")
 _KEPT: list[Any] = []  # CasADi calls what Python made without holding a reference to it
 
 
@@ -27,11 +32,19 @@ def casadi_step(plant: Plant, parameters: Sequence[str] = (), name: str = "lacon
     With `parameters`, numbers of the vehicle named as for StepDerivatives.tangent, it is F(s, u, p) with their values
     p. The Jacobian is the core's. There is no second derivative: an optimiser that asks for one is to approximate it
     ({"ipopt.hessian_approximation": "limited-memory"}). BadInput for a vehicle with friction and for parameters that
-    are not there; a step that the core refuses ends an evaluation with an exception of CasADi.
+    are not there; called with numbers, for what are none and for steps that the core refuses. Within an expression a
+    refused step ends the evaluation with an exception of CasADi.
     """
+    check_smooth(plant)
+    wanted = name_list("parameters", parameters)
+    if twice := next((each for place, each in enumerate(wanted) if each in wanted[:place]), ""):
+        raise BadInput(f"parameters: {twice} is named twice; keep one of them")
+    if not isinstance(name, str) or not casadi.Function.check_name(name):
+        raise BadInput(f"name: {shown(name)} is no name of a CasADi function; give letters, digits and single "
+                       "underscores, a letter first")
     copied = Plant(plant.core, plant.core.ffi.new("laconic_plant *", plant.c[0]))
-    copied.step_derivatives().model_change(dict.fromkeys(parameters, 0.0))  # BadInput
-    step = _Step(copied, tuple(parameters))
+    copied.step_derivatives().model_change(dict.fromkeys(wanted, 0.0))  # BadInput
+    step = _Step(copied, tuple(wanted))
     step.construct(name, {})
     _KEPT.append(step)
     return step
@@ -71,7 +84,7 @@ class _Step(_Callback):
         return 1
 
     def get_name_in(self, i: int) -> str:
-        return ("s", "u", "p")[i]
+        return NAMES[i]
 
     def get_name_out(self, i: int) -> str:
         return "s_after"
@@ -80,8 +93,41 @@ class _Step(_Callback):
         return casadi.Sparsity.dense(STATES, 1)
 
     def eval(self, arg: Any) -> list[np.ndarray]:
-        state, volts, *values = self.numbers(arg)
-        return [moved(self.plant_with(values), state, volts)]
+        return [self._after(self.numbers(arg))]
+
+    def _after(self, arguments: Sequence[np.ndarray]) -> np.ndarray:
+        state, volts, *values = arguments
+        return moved(self.plant_with(values), state, volts)
+
+    def __call__(self, *args: Any, **named: Any) -> Any:
+        """As casadi.Function; numbers for one step go to the core at once, so that its words reach the caller."""
+        known, given = NAMES[: len(self.sizes)], {**dict(zip(NAMES, args, strict=False)), **named}
+        if sorted(given) != sorted(known) or len(args) + len(named) != len(known):
+            raise BadInput(f"arguments: there are {len(args)}{''.join(f', {name}' for name in named)}; give "
+                           f"{', '.join(known)}")
+        found = {name: self._checked(name, given[name]) for name in known}
+        if all(isinstance(found[name], np.ndarray) and found[name].size == size for name, size in
+               zip(known, self.sizes, strict=True)):
+            after = casadi.DM(self._after([each.ravel() for each in found.values()]))
+            return {"s_after": after} if named else after
+        return super().__call__(**found) if named else super().__call__(*found.values())
+
+    def _checked(self, name: str, given: Any) -> Any:
+        """Symbols of MX as they are; numbers as an array, a column for each step; BadInput for what is neither."""
+        if isinstance(given, casadi.MX):
+            return given
+        place = NAMES.index(name)
+        size = self.sizes[place]
+        try:
+            found = given.full() if isinstance(given, casadi.DM) else np.asarray(given)
+        except (TypeError, ValueError, NotImplementedError):  # ragged lists, symbols of SX
+            found = np.empty(0, object)
+        fits = found.shape in ((), (size,), (1, size)) or (found.ndim == 2 and found.shape[0] == size)
+        if found.dtype.kind not in "fiu" or not fits:
+            raise BadInput(f"{name}: {shown(given)} does not fit; give real numbers of shape ({size},) in "
+                           f"{UNITS[place]}, or symbols of MX")
+        check_finite(name, found, UNITS[place])
+        return np.asarray(found, float)
 
     def has_jacobian(self) -> bool:
         return True

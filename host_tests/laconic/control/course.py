@@ -7,15 +7,20 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Sequence
+from typing import Any
 
 import numpy as np
 
 from laconic.core.derivatives import check_smooth
+from laconic.core.given import finite_number, shown
+from laconic.core.given_array import real_array
 from laconic.core.plant import Plant
 from laconic.errors import BadInput
 
 MOMENT_S = 1e-4  # over which velocities are differences of poses
 STATES = 6       # ν1, ν2, ν3, x, y, θ
+MOST_STEPS = 10**6
+ROUNDING = 1e-7  # of a duration beside the nearest whole number of steps, which single precision rounds
 
 
 class Course:
@@ -24,14 +29,16 @@ class Course:
     `pose_at(t)` gives x, y of the centre of mass and the heading, not wrapped, also a moment before 0 and after the
     end. A motion that the wheels do not allow is replaced by the nearest that they do; the voltages are the least that
     move ν along the course, whatever limits a motor has. `plant` is left at the start of the course; a controller of
-    the course steps it.
+    the course steps it. BadInput for a duration that is no whole number of steps, and for a `pose_at` that gives
+    anything but three finite numbers.
     """
 
     def __init__(self, plant: Plant, pose_at: Callable[[float], Sequence[float]], duration_s: float):
         check_smooth(plant)
-        steps = round(duration_s / plant.step_s)
-        if steps < 1:
-            raise BadInput(f"duration_s: {duration_s:g} s is less than a step of {plant.step_s:g} s; give more")
+        if not callable(pose_at):
+            raise BadInput(f"pose_at: {shown(pose_at)} is no function; give one of time [s] that returns x [m], y [m] "
+                           "and the heading [rad]")
+        steps = steps_of(duration_s, plant.step_s)
         self.plant, self.step_s = plant, plant.step_s
         self._scale = plant.core.matrices(plant.core.ffi.addressof(plant.c, "vehicle")).lambda_yaw
         self.states = np.array([self._state(pose_at, k * self.step_s) for k in range(steps + 1)])
@@ -43,8 +50,8 @@ class Course:
         return len(self.voltage_V)
 
     def _state(self, pose_at: Callable[[float], Sequence[float]], t_s: float) -> np.ndarray:
-        pose = np.array(pose_at(t_s), float)
-        vx, vy, yaw_rate = np.subtract(pose_at(t_s + MOMENT_S), pose_at(t_s - MOMENT_S)) / (2 * MOMENT_S)
+        pose, before, after = (pose_of(pose_at, t_s + moment_s) for moment_s in (0.0, -MOMENT_S, MOMENT_S))
+        vx, vy, yaw_rate = np.subtract(after, before) / (2 * MOMENT_S)
         cosine, sine, radius = np.cos(pose[2]), np.sin(pose[2]), self.plant.c.model.wheel_radius_m
         nu = ((cosine * vx + sine * vy) / radius, (cosine * vy - sine * vx) / radius, self._scale * yaw_rate)
         place(self.plant, [*nu, *pose])
@@ -57,6 +64,26 @@ class Course:
             after, _, by_voltage = step_from(self.plant, now, volts)
             volts = volts + np.linalg.lstsq(by_voltage[:3], then[:3] - after[:3], rcond=1e-9)[0]
         return volts
+
+
+def steps_of(duration_s: Any, step_s: float) -> int:
+    """How many steps a course has."""
+    duration = finite_number("duration_s", duration_s)
+    if duration > MOST_STEPS * step_s:
+        raise BadInput(f"duration_s: {duration:g} s are more than {MOST_STEPS} steps of {step_s:g} s; give less")
+    steps = round(duration / step_s)
+    if steps < 1:
+        raise BadInput(f"duration_s: {duration:g} s is less than a step of {step_s:g} s; give more")
+    if abs(duration - steps * step_s) > ROUNDING * duration:
+        below = max(1, int(duration / step_s))
+        raise BadInput(f"duration_s: {duration:g} s is no whole number of steps of {step_s:g} s; give "
+                       f"{below * step_s:g} or {(below + 1) * step_s:g}")
+    return steps
+
+
+def pose_of(pose_at: Callable[[float], Sequence[float]], t_s: float) -> np.ndarray:
+    """A pose of a course, (3,)."""
+    return real_array(f"pose_at({t_s:g})", pose_at(t_s), (3,), "m, m, rad")
 
 
 def place(plant: Plant, state: Sequence[float] | np.ndarray) -> None:

@@ -16,7 +16,8 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from laconic.core.derivatives import check_smooth
-from laconic.core.given import number, numbers, shown, step_count
+from laconic.core.given import finite_number, number, numbers, shown, step_count
+from laconic.core.given_array import real_array
 from laconic.core.plant import Plant, Pose
 from laconic.core.sensors import settings_of
 from laconic.errors import BadInput, Refused, nearest_of
@@ -71,7 +72,8 @@ class Filter:
 
     def encoders(self, turned_rad: ArrayLike) -> Innovation:
         """The angles (N,) by which the wheels turned since the last reading."""
-        room = self.core.ffi.new("laconic_real[]", numbers("turned_rad", _list(turned_rad), self.wheel_count) or [0.0])
+        turned = real_array("turned_rad", turned_rad, (self.wheel_count,), "rad")
+        room = self.core.ffi.new("laconic_real[]", turned.tolist() or [0.0])
         return self._read(self.core.lib.laconic_filter_encoders, room, "turned_rad", "encoder_std_rad")
 
     def counts(self, count: ArrayLike) -> Innovation:
@@ -86,16 +88,16 @@ class Filter:
 
     def yaw_rate(self, shown_rad_per_s: float) -> Innovation:
         """What the gyro shows."""
-        value = number("yaw_rate", shown_rad_per_s)
-        return self._read(self.core.lib.laconic_filter_yaw_rate, value, "yaw_rate", "yaw_rate_std_rad_per_s")
+        value = finite_number("shown_rad_per_s", shown_rad_per_s)
+        return self._read(self.core.lib.laconic_filter_yaw_rate, value, "shown_rad_per_s", "yaw_rate_std_rad_per_s")
 
     def fix(self, x_m: float = 0.0, y_m: float = 0.0, heading_rad: float = 0.0, *, std_m: float = 0.0,
             heading_std_rad: float = 0.0, place_m: Sequence[float] = (0.0, 0.0)) -> Innovation:
         """Where a place of the body (in its frame) was seen and where the body points; a std of 0: was not seen."""
-        place = numbers("place_m", place_m, 2)
+        place = real_array("place_m", place_m, (2,), "m")
+        given = {"x_m": x_m, "y_m": y_m, "heading_rad": heading_rad, "std_m": std_m, "heading_std_rad": heading_std_rad}
         fix = self.core.ffi.new("laconic_pose_fix *", {
-            "x_m": number("x_m", x_m), "y_m": number("y_m", y_m), "heading_rad": number("heading_rad", heading_rad),
-            "std_m": number("std_m", std_m), "heading_std_rad": number("heading_std_rad", heading_std_rad),
+            **{name: finite_number(name, value) for name, value in given.items()},
             "place_x_m": place[0], "place_y_m": place[1]})
         return self._read(self.core.lib.laconic_filter_fix, fix, "fix", "std_m or heading_std_rad")
 
@@ -180,9 +182,10 @@ class Filter:
         return made
 
     def _counts(self, given: ArrayLike) -> Any:
-        values = numbers("count", _list(given), self.wheel_count)
-        if not all(-2**31 <= value < 2**31 and value == int(value) for value in values):
-            raise BadInput(f"count: {shown(values)} are no counts; give whole numbers of 32 bits, one for each wheel")
+        values = real_array("count", given, (self.wheel_count,), "counts")
+        if not np.all((-2**31 <= values) & (values < 2**31) & (values == np.floor(values))):
+            raise BadInput(f"count: {shown(values.tolist())} are no counts; give whole numbers of 32 bits, one for "
+                           "each wheel")
         return self.core.ffi.new("int32_t[]", [int(value) for value in values] or [0])
 
     def _read(self, function: Any, reading: Any, name: str, needs: str) -> Innovation:

@@ -19,11 +19,14 @@ import osqp
 from scipy import sparse
 
 from laconic.control.course import STATES, Course, step_from
-from laconic.core.given import shown
+from laconic.core.given import number, shown, whole_number
+from laconic.core.given_array import AtLeast, check_finite, real_array
 from laconic.errors import BadInput
 
 PRECISION = 1e-5       # of the programme's constraints: V, rad/s, m, rad
 MOST_ITERATIONS = 20000
+MOST_STEPS = 10**4     # of a plan: a second's work
+UNITS = "rad/s, rad/s, rad/s, m, m, rad"  # of a state
 WEIGHTS = (0.02, 0.02, 0.02, 400.0, 400.0, 100.0)  # of squares of rad/s, rad/s, rad/s, m, m, rad
 VOLTAGE_WEIGHT = 0.02  # of the square of a V beside the course's own
 
@@ -33,36 +36,41 @@ class PredictiveController:
 
     `horizon`: steps of the course that a plan reaches ahead. `weights` (6,) of squares of what is off in ν1, ν2, ν3
     [rad/s], x, y [m], θ [rad], ten times that at a plan's end; `voltage_weight` of squares of voltages beside the
-    course's own. Beyond the end of the course its last state is held to. A plan costs one Jacobian and one programme.
+    course's own. Beyond the end of the course its last pose is held to, at rest, for as long as steps are asked for. A
+    plan costs one Jacobian and one programme. BadInput names the argument that does not fit.
     """
 
     def __init__(self, course: Course, limit_V: float, *, horizon: int = 20, weights: Sequence[float] = WEIGHTS,
                  voltage_weight: float = VOLTAGE_WEIGHT):
-        if not (limit_V > 0 and math.isfinite(limit_V)):
-            raise BadInput(f"limit_V: {limit_V:g} is no limit; give a value above 0")
-        if horizon < 1:
-            raise BadInput(f"horizon: {horizon} steps are no plan; give 1 or more")
-        if np.shape(weights) != (STATES,) or not np.all(np.isfinite(weights)) or np.min(weights) < 0:
+        if not isinstance(course, Course):
+            raise BadInput(f"course: {shown(course)} is no course; give a laconic.control.Course")
+        self.course, self.limit_V = course, _above_0("limit_V", limit_V)
+        self.horizon = whole_number("horizon", horizon)
+        if not 1 <= self.horizon <= MOST_STEPS:
+            raise BadInput(f"horizon: {self.horizon} steps are no plan; give 1 to {MOST_STEPS}")
+        squares = real_array("weights", weights, (STATES,), "1/(rad/s)² (3 of them), 1/m² (2), 1/rad²")
+        if squares.min() < 0:
             raise BadInput(f"weights: {shown(weights)}: give six numbers that are 0 or more")
-        if not (voltage_weight > 0 and math.isfinite(voltage_weight)):
-            raise BadInput(f"voltage_weight: {voltage_weight:g}: give a number above 0")
-        self.course, self.limit_V, self.horizon = course, float(limit_V), horizon
         self.wheels = course.plant.wheel_count
-        self._linear = lru_cache(maxsize=2 * horizon + 2)(self._linearised)
+        self._linear = lru_cache(maxsize=2 * self.horizon + 2)(self._linearised)
         self._solver: osqp.OSQP | None = None
-        self._weights = self._cost(np.array(weights, float), voltage_weight)
+        self._weights = self._cost(squares, _above_0("voltage_weight", voltage_weight))
+        self._pattern = Pattern(self.horizon, self.wheels)
 
     def voltages(self, step: int, state: np.ndarray) -> np.ndarray:
-        """The voltages for this step of the course, in this state: ν1, ν2, ν3, x, y, θ, and more that is not read."""
-        given = np.asarray(state, float)
-        if given.ndim != 1 or len(given) < STATES or not np.all(np.isfinite(given[:STATES])):
-            raise BadInput(f"state: {shown(given.tolist())} is no state; give the numbers nu (3), x, y and heading")
-        models = [self._linear(min(step + ahead, len(self.course))) for ahead in range(self.horizon)]
-        off = given[:STATES] - models[0][3]
+        """The voltages for this step of the course, from 0 on, in this state: ν1, ν2, ν3, x, y, θ, and more that is
+        not read, as a filter's bias."""
+        first = whole_number("step", step)
+        if first < 0:
+            raise BadInput(f"step: {first} is before the course; give 0 for its first step, or more")
+        given = real_array("state", state, (AtLeast(STATES),), UNITS, is_finite=False)[:STATES].copy()
+        check_finite("state", given, UNITS)
+        models = [self._linear(min(first + ahead, len(self.course))) for ahead in range(self.horizon)]
+        off = given - models[0][3]
         off[5] = math.remainder(off[5], 2 * math.pi)
         plan = self._solve(models, off)
-        first = plan[STATES * self.horizon :][: self.wheels]
-        return np.clip(models[0][4] + first, -self.limit_V, self.limit_V)  # beyond by PRECISION at most
+        change = plan[STATES * self.horizon :][: self.wheels]
+        return np.clip(models[0][4] + change, -self.limit_V, self.limit_V)  # beyond by PRECISION at most
 
     def _linearised(self, step: int) -> tuple[np.ndarray, ...]:
         """A, B and c of a step of the course, its state and its voltages. Where it is over, the robot rests."""
@@ -82,36 +90,13 @@ class PredictiveController:
         states[-STATES:] *= 10.0
         return sparse.diags(np.concatenate([states, np.full(self.horizon * self.wheels, voltage_weight)]), format="csc")
 
-    def _constraints(self, models: list[tuple[np.ndarray, ...]]) -> sparse.csc_matrix:
-        """δ(k+1) − A δk − B δuk = c, and the voltages themselves. Every entry of a block is kept, so that the pattern
-        is that of every other plan."""
-        width = STATES * self.horizon
-        matrix = np.zeros((width, width + self.wheels * self.horizon))
-        kept = np.zeros(matrix.shape, bool)
-        for k, (by_state, by_voltage, *_) in enumerate(models):
-            rows = slice(STATES * k, STATES * (k + 1))
-            own = slice(width + self.wheels * k, width + self.wheels * (k + 1))
-            matrix[rows, rows] = np.eye(STATES)
-            matrix[rows, own] = -by_voltage
-            kept[rows, own] = True
-            kept[range(rows.start, rows.stop), range(rows.start, rows.stop)] = True
-            if k:
-                before = slice(STATES * (k - 1), STATES * k)
-                matrix[rows, before] = -by_state
-                kept[rows, before] = True
-        column, row = np.nonzero(kept.T)
-        upper = sparse.csc_matrix((matrix[row, column], (row, column)), matrix.shape)
-        limits = sparse.hstack([sparse.csc_matrix((self.wheels * self.horizon, width)),
-                                sparse.identity(self.wheels * self.horizon)], format="csc")
-        return sparse.vstack([upper, limits], format="csc")
-
     def _solve(self, models: list[tuple[np.ndarray, ...]], off: np.ndarray) -> np.ndarray:
         drift = [c for _, _, c, _, _ in models]
         drift[0] = drift[0] + models[0][0] @ off
         own = np.concatenate([volts for *_, volts in models])
         lower = np.concatenate([*drift, -self.limit_V - own])
         upper = np.concatenate([*drift, self.limit_V - own])
-        matrix = self._constraints(models)
+        matrix = self._pattern.filled(models)
         if self._solver is None:
             self._solver = osqp.OSQP()
             self._solver.setup(self._weights, np.zeros(matrix.shape[1]), matrix, lower, upper, verbose=False,
@@ -123,3 +108,47 @@ class PredictiveController:
         if found.info.status not in ("solved", "solved inaccurate"):
             raise BadInput(f"the plan has no solution ({found.info.status}); check the weights and the course")
         return np.asarray(found.x)
+
+
+class Pattern:
+    """Where the numbers of a programme's constraints stand: δ(k+1) − A δk − B δuk = c, and the voltages themselves.
+
+    Every entry of a block is kept, zeros too, so that the pattern is that of every plan.
+    """
+
+    def __init__(self, horizon: int, wheels: int):
+        width, blocks = STATES * horizon, []
+        for k in range(horizon):
+            rows = np.arange(STATES * k, STATES * (k + 1))
+            blocks += [(rows, rows), _block(rows, np.arange(width + wheels * k, width + wheels * (k + 1)))]
+            if k:
+                blocks.append(_block(rows, rows - STATES))
+        limits = np.arange(wheels * horizon)
+        row, column = (np.concatenate(each) for each in zip(*blocks, (width + limits, width + limits), strict=True))
+        self._order = np.lexsort((row, column))
+        self.rows = width + wheels * horizon  # and columns
+        self._matrix = sparse.csc_matrix((np.ones(len(row)), (row, column)), (self.rows, self.rows))
+        self._matrix.sort_indices()
+        self._limits = np.ones(wheels * horizon)
+
+    def filled(self, models: list[tuple[np.ndarray, ...]]) -> sparse.csc_matrix:
+        """The constraints of a plan; the same matrix each time, with other numbers."""
+        parts: list[np.ndarray] = []
+        for k, (by_state, by_voltage, *_) in enumerate(models):
+            parts += [np.ones(STATES), -by_voltage.ravel()]
+            if k:
+                parts.append(-by_state.ravel())
+        self._matrix.data[:] = np.concatenate([*parts, self._limits])[self._order]
+        return self._matrix
+
+
+def _block(rows: np.ndarray, columns: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+    """Row and column of each entry of a dense block."""
+    return np.repeat(rows, len(columns)), np.tile(columns, len(rows))
+
+
+def _above_0(name: str, given: object) -> float:
+    value = number(name, given)
+    if not (value > 0 and math.isfinite(value)):
+        raise BadInput(f"{name}: {value:g} is not above 0; give a finite number that is")
+    return value

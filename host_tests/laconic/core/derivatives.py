@@ -10,6 +10,7 @@ world_force_N, world_force_point_m), all in SI units and rad.
 
 from __future__ import annotations
 
+import difflib
 import re
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
@@ -19,7 +20,7 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from laconic.core.fields import Field
-from laconic.core.given import by_names, finite_number, finite_numbers, name_list
+from laconic.core.given import by_names, finite_number, finite_numbers, name_list, shown
 from laconic.errors import BadInput, nearest_of
 
 if TYPE_CHECKING:
@@ -29,7 +30,10 @@ SINGLE_INPUTS = ("body_force_N", "body_moment_Nm", "world_force_N", "world_force
 
 
 def check_smooth(plant: Plant) -> None:
-    """BadInput for a vehicle with friction, whose step has no derivative."""
+    """BadInput for what is no plant, and for a vehicle with friction, whose step has no derivative."""
+    from laconic.core.plant import Plant
+    if not isinstance(plant, Plant):
+        raise BadInput(f"plant: {shown(plant)} is no plant; make one with vehicle.plant(method, step_s=…)")
     if plant.has_friction:
         raise BadInput("plant: has ground friction or limits of its drive, and such a step is not smooth; take the "
                        "vehicle without ground.friction_coefficient and drive")
@@ -175,11 +179,24 @@ class StepDerivatives:
         elif head in tables:
             table, target = tables[head]
         else:
-            raise BadInput(f"{name}: there is no table {head}; {nearest_of(head, [*tables, 'wheel[1]'])}")
-        setattr(target, self._field(table, name, key).member, value)
-
-    def _field(self, table: str, name: str, key: str) -> Field:
-        fields = {field.key: field for field in self.core.fields_of(table) if field.kind == "REAL"}
+            raise BadInput(f"{name}: there is no table {head}; "
+                           f"{nearest_of(head, [each for each in (*tables, 'wheel[1]') if each])}")
+        fields = self._fields(table)
         if key not in fields:
-            raise BadInput(f"{name}: there is no such number; {nearest_of(key, fields)}")
-        return fields[key]
+            near = difflib.get_close_matches(key, fields, n=1, cutoff=0.8)
+            meant = f"did you mean {head}{head and '.'}{near[0]}?" if near else \
+                f"known are {', '.join(sorted(self._known(head)))}"
+            raise BadInput(f"{name}: there is no such number; {meant}")
+        setattr(target, fields[key].member, value)
+
+    def _fields(self, table: str) -> dict[str, Field]:
+        """The numbers of a table by their keys."""
+        return {field.key: field for field in self.core.fields_of(table) if field.kind == "REAL"}
+
+    def _known(self, head: str) -> list[str]:
+        """The names of all numbers; those of a wheel for the wheel that was meant, or the first."""
+        wheel = head if head.startswith("wheel[") else "wheel[1]"
+        tables = {"": "vehicle", "payload.": "vehicle.payload", "ground.": "ground"}
+        if self.wheels:
+            tables[f"{wheel}."] = "vehicle.wheel[#]"
+        return [f"{before}{key}" for before, table in tables.items() for key in self._fields(table)]

@@ -10,7 +10,8 @@ from typing import Any
 import numpy as np
 
 from laconic.batch import Batch
-from laconic.core.given import number, step_count
+from laconic.batch.lanes import lane_count, thread_count
+from laconic.core.given import finite_number
 from laconic.errors import BadInput
 from laconic.learn.task import Motion, Rules, checked_actions, distance_of, has_left, has_reached, observed
 from laconic.learn.variants import Spread, vehicles_of
@@ -29,10 +30,9 @@ class Fleet:
         known = {field.name for field in fields(Rules)}
         if unknown := sorted(set(rules) - known):
             raise BadInput(f"{unknown[0]}: is no setting of the environment; known are {', '.join(sorted(known))}")
-        self.rules, self.threads = Rules(**rules), step_count("threads", threads)
-        self.steps = round(number("action_s", action_s) / number("step_s", step_s)) if step_s else 0
-        if self.steps < 1 or abs(self.steps * step_s - action_s) > 1e-9 * action_s:
-            raise BadInput(f"action_s: {action_s:g} s is no whole number of steps of {step_s:g} s; give one that is")
+        self.rules, self.threads = Rules(**rules), thread_count(threads)
+        self.steps = steps_of(finite_number("action_s", action_s), finite_number("step_s", step_s))
+        lanes = lane_count("num_envs", lanes)
         self.vehicles = vehicles_of(scene, spreads or {}, variants, variant_seed, real)
         many = len(self.vehicles) > 1
         self.batch = Batch([self.vehicles[0]] * lanes if many else self.vehicles, lanes, method, step_s)
@@ -84,3 +84,11 @@ class Fleet:
         effort = self.rules.effort * np.mean(np.square(actions, dtype=np.float64), axis=1)
         rewards = before - self._distance_m - effort + self.rules.bonus * reached
         return rewards, reached, has_left(motion, self.rules) & ~reached, self.batch.status != 0
+
+
+def steps_of(action_s: float, step_s: float) -> int:
+    """Steps of one action."""
+    steps = round(action_s / step_s) if step_s > 0 else 0
+    if steps < 1 or abs(steps * step_s - action_s) > 1e-9 * action_s:
+        raise BadInput(f"action_s: {action_s:g} s is no whole number of steps of {step_s:g} s; give one that is")
+    return steps

@@ -10,7 +10,8 @@ from typing import Any
 
 import numpy as np
 
-from laconic.core.given import number
+from laconic.core.given import finite_number
+from laconic.core.given_array import real_array
 from laconic.errors import BadInput
 
 OBSERVATION = ("target_ahead_m", "target_left_m", "cos_to_target", "sin_to_target", "velocity_ahead_m_per_s",
@@ -33,7 +34,7 @@ class Rules:
 
     def __post_init__(self) -> None:
         for field in fields(self):
-            value = number(field.name, getattr(self, field.name))
+            value = finite_number(field.name, getattr(self, field.name))
             if value < 0 or (value == 0 and field.name in ("largest_voltage_V", "area_m", "reach_m", "reach_rad")):
                 raise BadInput(f"{field.name}: {value:g} leaves no task; give a number above 0")
 
@@ -83,10 +84,7 @@ def has_left(motion: Motion, rules: Rules) -> np.ndarray:
 
 def checked_actions(given: Any, shape: tuple[int, ...]) -> np.ndarray:
     """Actions as numbers of that shape; BadInput for others and for what is beyond −1 … 1, which is not clamped."""
-    actions = np.asarray(given)
-    if actions.shape != shape or actions.dtype.kind not in "fiu":
-        raise BadInput(f"actions: have the shape {actions.shape} and the type {actions.dtype}; give numbers of the "
-                       f"shape {shape}")
+    actions = real_array("actions", given, shape, "shares of largest_voltage_V, -1 to 1", dtype=None, is_finite=False)
     if not np.all(np.abs(actions) <= 1):
         raise BadInput("actions: some are beyond -1 to 1, or no numbers; clip them where that is meant")
     return actions

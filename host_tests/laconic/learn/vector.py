@@ -9,7 +9,7 @@ import numpy as np
 from gymnasium.vector import AutoresetMode, VectorEnv
 from gymnasium.vector.utils import batch_space
 
-from laconic.core.given import step_count
+from laconic.core.given import by_names, shown, step_count
 from laconic.errors import BadInput
 from laconic.learn.fleet import Fleet
 from laconic.learn.spaces import action_space, generators_of, observation_space
@@ -29,7 +29,7 @@ class DriveToPoseVector(VectorEnv[np.ndarray, np.ndarray, np.ndarray]):
         self.fleet, self.num_envs = Fleet(num_envs, **settings), num_envs
         self.max_episode_steps = None if max_episode_steps is None else step_count("max_episode_steps",
                                                                                    max_episode_steps)
-        self.autoreset_mode = AutoresetMode(autoreset_mode)
+        self.autoreset_mode = _mode_of(autoreset_mode)
         self.metadata = {"render_modes": [], "autoreset_mode": self.autoreset_mode}
         self.single_action_space = action_space(self.fleet.wheel_count)
         self.single_observation_space = observation_space()
@@ -51,7 +51,10 @@ class DriveToPoseVector(VectorEnv[np.ndarray, np.ndarray, np.ndarray]):
         return self.fleet.observe(), {}
 
     def _mask_of(self, options: dict[str, Any] | None) -> np.ndarray:
-        mask = np.asarray((options or {}).get("reset_mask", np.ones(self.num_envs, bool)))
+        given = {} if options is None else by_names("options", options)
+        if unknown := [name for name in given if name != "reset_mask"]:
+            raise BadInput(f"options: there is no {unknown[0]}; give reset_mask, or nothing")
+        mask = np.asarray(given.get("reset_mask", np.ones(self.num_envs, bool)))
         if mask.shape != (self.num_envs,) or mask.dtype != bool or not mask.any():
             raise BadInput(f"options: reset_mask is no mask of {self.num_envs} environments; give as many of true and "
                            "false, one of them true")
@@ -90,6 +93,14 @@ class DriveToPoseVector(VectorEnv[np.ndarray, np.ndarray, np.ndarray]):
             info["_final_info"] = ended.copy()
             self._reset(ended)
         return self.fleet.observe(), rewards
+
+
+def _mode_of(given: Any) -> AutoresetMode:
+    try:
+        return AutoresetMode(given)
+    except ValueError:
+        modes = ", ".join(str(mode.value) for mode in AutoresetMode)
+        raise BadInput(f"autoreset_mode: there is no {shown(given)}; give one of {modes}") from None
 
 
 def _objects(observations: np.ndarray, which: np.ndarray) -> np.ndarray:

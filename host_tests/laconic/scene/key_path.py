@@ -84,10 +84,17 @@ def _known(text: str, tables: list[tuple[str, int | None]], name: str) -> KnownK
         near = f"did you mean {ends[0]}?" if ends and not tables else _near(wanted, spelled)
         raise BadInput(f"{text}: is no key of a scene; {near}")
     if name not in keys:
-        raise BadInput(f"{text}: {before.replace('[#]', '')} has no key {name!r}; {nearest_of(name, keys)}")
+        known = keys | {f"{table}.…" for table in _tables_in(before)}
+        raise BadInput(f"{text}: {before.replace('[#]', '')} has no key {name!r}; {nearest_of(name, known)}")
     for place, (_, item) in enumerate(tables):
         _check_number(text, tables[: place + 1], item)
     return found[f"{before}.{name}" if before else name]
+
+
+def _tables_in(table: str) -> set[str]:
+    """The names of the tables that a table has."""
+    inner = {path.rpartition(".")[0] for path in known_keys() if path.startswith(f"{table}.")} - {table}
+    return {path.removeprefix(f"{table}.").partition(".")[0].replace("[#]", "[1]") for path in inner}
 
 
 def _are_several(tables: list[tuple[str, int | None]]) -> bool:

@@ -161,6 +161,11 @@ WRONG = {
     "status: is no input of a batch": lambda: setattr(laconic.Batch(robot(), 2), "status", 0),
     "voltages_V: is no input of a batch": lambda: setattr(laconic.Batch(robot(), 2), "voltages_V", 0),
     "steps: 1.5 is no whole number": lambda: laconic.Batch(robot(), 2).run(1.5),
+    "x_m: nan is not finite": lambda: laconic.Batch(robot(), 2).start(0, x_m=np.nan),
+    "heading_rad: None is no number": lambda: laconic.Batch(robot(), 2).start(0, heading_rad=None),
+    "nu_rad_per_s: [1, 2] does not fit; give real numbers of shape (3,) in rad/s": lambda: laconic.Batch(
+        robot(), 2).start(0, nu_rad_per_s=[1, 2]),
+    "nu_rad_per_s[2]: inf is not finite": lambda: laconic.Batch(robot(), 2).start(0, nu_rad_per_s=[0, np.inf, 0]),
     "width_bytes: 'wide' is no whole": lambda: laconic.Batch(robot(), 2, width_bytes="wide"),
 }
 

@@ -7,7 +7,7 @@ import numpy as np
 import pytest
 
 import laconic
-from laconic import BadInput
+from laconic import BadInput, Refused
 from laconic.control import casadi_step
 
 CARRIAGE = {"mass_kg": 10.0, "yaw_inertia_kgm2": 0.2, "wheel_radius_m": 0.05, "wheel_inertia_kgm2": 0.002,
@@ -71,8 +71,12 @@ def test_what_makes_no_sense_is_refused_by_name():
 
 def test_a_step_that_the_core_refuses_says_so():
     step = casadi_step(plant(method="rk4"))
-    with pytest.raises(RuntimeError, match="unstable with this method at this yaw rate"):
-        step([0, 0, 1e6, 0, 0, 0], VOLTS)
+    fast, text = [0, 0, 1e6, 0, 0, 0], "unstable with this method at this yaw rate"
+    with pytest.raises(Refused, match=text):
+        step(fast, VOLTS)
+    state = casadi.MX.sym("s", 6)
+    with pytest.raises(RuntimeError, match=text):  # within an expression it is CasADi that calls
+        casadi.Function("twice", [state], [2 * step(state, VOLTS)])(fast)
 
 
 def plan(step, steps, goal, limit_V, obstacle, room_m):

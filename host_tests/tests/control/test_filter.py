@@ -254,10 +254,11 @@ def test_what_is_refused_changes_nothing():
     ours.predict({"voltage_V": [1.0, 2.0, 3.0, 4.0]})
     before = bytes(ours.core.ffi.buffer(ours.core.ffi.addressof(ours.c, "covariance"))), ours.state.tolist()
     for call, text in ((lambda: ours.predict({"voltage_V": [math.nan, 0, 0, 0]}), "not a finite number"),
-                       (lambda: ours.encoders([0, 0, math.nan, 0]), "turned_rad: is not finite"),
+                       (lambda: ours.encoders([0, 0, math.nan, 0]),
+                        r"turned_rad\[3\]: nan is not finite; give finite numbers in rad"),
                        (lambda: ours.encoders([0, 0]), "turned_rad"), (lambda: ours.counts([0, 0, 0.5, 0]), "count"),
-                       (lambda: ours.yaw_rate(math.inf), "yaw_rate: is not finite"),
-                       (lambda: ours.yaw_rate(1e200), "yaw_rate: takes the estimate"),
+                       (lambda: ours.yaw_rate(math.inf), "shown_rad_per_s: inf is not finite"),
+                       (lambda: ours.yaw_rate(1e200), "shown_rad_per_s: takes the estimate"),
                        (lambda: ours.fix(0, 0), "give std_m or heading_std_rad"),
                        (lambda: ours.fix(0, 0, std_m=-1), "below 0"),
                        (lambda: ours.fix(math.nan, 0, std_m=1), "finite")):

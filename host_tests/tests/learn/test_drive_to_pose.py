@@ -150,7 +150,14 @@ def test_vehicles_are_drawn_within_their_spreads_once_and_by_seed():
     ({"spreads": {"vehicle.motor.viscous_friction_Nms": 0.1}}, "least value and the largest"),
     ({"spreads": {"vehicle.mass_kg": 0.1}, "variants": 0}, "variants: 0"),
     ({"spreads": {"vehicle.motor.viscous_friction_Nms": (0.0, 0.01)}}, "stepped in another way"),
-    ({"scene": "no_such"}, "no such scene")])
+    ({"scene": "no_such"}, "no such scene"), ({"largest_voltage_V": np.inf}, "largest_voltage_V: inf is not finite"),
+    ({"area_m": np.nan}, "area_m: nan is not finite"), ({"step_s": np.nan}, "step_s: nan is not finite"),
+    ({"step_s": 0}, "action_s: 0.05 s is no whole number of steps of 0 s"), ({"threads": 0}, "threads: 0 cannot"),
+    ({"spreads": [1]}, r"spreads: \[1\] is no mapping"), ({"variant_seed": -1}, "variant_seed: -1 is below 0"),
+    ({"spreads": {"vehicle.mass_kg": 0.1}, "variants": None}, "variants: None is no whole number"),
+    ({"spreads": {"vehicle.mass_kg": (1.0, np.inf)}}, "is not finite"),
+    ({"autoreset_mode": "never"}, "autoreset_mode: there is no 'never'; give one of "),
+    ({"max_episode_steps": 1.5}, "max_episode_steps: 1.5 is no whole number")])
 def test_a_setting_that_does_not_fit_is_named(settings, message):
     with pytest.raises(BadInput, match=message):
         DriveToPoseVector(4, **settings)
@@ -158,7 +165,8 @@ def test_a_setting_that_does_not_fit_is_named(settings, message):
 
 @pytest.mark.parametrize("actions, message", [
     (np.full((2, 3), 1.01), "beyond -1 to 1"), (np.full((2, 3), np.nan), "no numbers"), (np.zeros((3, 2)), "shape"),
-    (np.array([["a"] * 3] * 2), "type")])
+    (np.array([["a"] * 3] * 2), "type"), (None, "None does not fit; give real numbers of shape"),
+    ([[0.0] * 3, [0.0] * 2], "does not fit")])
 def test_an_action_that_is_none_is_refused_and_moves_nothing(actions, message):
     env = DriveToPoseVector(2)
     with pytest.raises(BadInput, match="call reset"):
@@ -173,8 +181,30 @@ def test_a_seed_for_each_and_a_mask_for_each():
     env = DriveToPoseVector(2)
     with pytest.raises(BadInput, match="3 seeds for 2"):
         env.reset(seed=[1, 2, 3])
-    with pytest.raises(BadInput, match="reset_mask"):
-        env.reset(options={"reset_mask": np.zeros(2, bool)})
+    for seed, text in ((-1, "seed: -1 is below 0"), (1.5, "seed: 1.5 is no seed"), ("x", "seed: 'x' is no seed"),
+                       ([1, "x"], r"seed\[2\]: 'x' is no whole number")):
+        with pytest.raises(BadInput, match=text):
+            env.reset(seed=seed)
+    for options in ({"reset_mask": np.zeros(2, bool)}, {"reset_maks": np.ones(2, bool)}):
+        with pytest.raises(BadInput, match="give .*reset_mask|reset_mask is no mask"):
+            env.reset(options=options)
+
+
+@pytest.mark.parametrize("lanes", [None, 0, -1, 1.5, "2"])
+def test_a_number_of_environments_that_is_none_is_refused(lanes):
+    with pytest.raises(BadInput, match="num_envs: "):
+        gymnasium.make_vec(ID, lanes)
+
+
+def test_a_single_robot_refuses_what_the_vector_refuses():
+    env = DriveToPose()
+    with pytest.raises(BadInput, match=r"step: nothing was reset yet; call reset\(\) first"):
+        env.step(np.zeros(3))
+    with pytest.raises(BadInput, match="seed: -1"):
+        env.reset(seed=-1)
+    env.reset(seed=1)
+    with pytest.raises(BadInput, match=r"actions: .* of shape \(3,\)"):
+        env.step(np.zeros((1, 3)))
 
 
 def test_without_gymnasium_one_line_names_the_extra(monkeypatch: pytest.MonkeyPatch):
