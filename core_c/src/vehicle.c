@@ -94,15 +94,19 @@ static laconic_status check_supports(const laconic_vehicle *v, laconic_refusal *
 /* ------------------------------------------------------- what ground and drive need of each other -- */
 
 #if LACONIC_WITH_FRICTION
+/* Ground and drive are asked for before the vehicle is checked, so a count beyond the array must not be followed. */
+static bool has_wheels(const laconic_vehicle *v) { return v->wheel_count > 0 && v->wheel_count <= LACONIC_MAX_WHEELS; }
+
 bool laconic_vehicle_slips(const laconic_vehicle *vehicle) {
-    return vehicle->ground.friction_coefficient > R(0) && vehicle->wheel_count > 0;
+    return vehicle->ground.friction_coefficient > R(0) && has_wheels(vehicle);
 }
 
 bool laconic_vehicle_has_drive(const laconic_vehicle *vehicle) {
     bool has = vehicle->drive.supply_V > R(0) || vehicle->drive.current_limit_A > R(0);
+    if (!has_wheels(vehicle)) return false;
     for (int32_t i = 0; i < vehicle->wheel_count; i++)
         has = has || vehicle->wheel[i].motor_circuit != LACONIC_MOTOR_DRIVEN;
-    return has && vehicle->wheel_count > 0;
+    return has;
 }
 
 bool laconic_vehicle_has_friction(const laconic_vehicle *vehicle) {

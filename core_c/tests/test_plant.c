@@ -39,6 +39,25 @@ static void a_refused_start_changes_nothing(void) {
     TEST_ASSERT_EQUAL_MEMORY(&before, &plant, sizeof plant);
 }
 
+/* Sanitizers see a read beyond the wheels; the largest count crashes without them, too. */
+static void more_wheels_than_there_is_room_for_are_refused_before_any_of_them_is_read(void) {
+    const int32_t counts[] = {LACONIC_MAX_WHEELS + 1, INT32_MAX, (int32_t)UINT32_MAX};
+    laconic_plant plant = plant_of(three_wheels(), &laconic_auto, 0.01), before = plant;
+    const laconic_start start = start_with(0, 0, 0);
+    for (size_t k = 0; k < sizeof counts / sizeof counts[0]; k++) {
+        laconic_vehicle v = with_motors(three_wheels());
+        v.drive.supply_V = 12;
+        v.ground.friction_coefficient = REAL(0.5);
+        v.wheel_count = counts[k];
+        TEST_ASSERT_FALSE(laconic_vehicle_has_friction(&v));
+        ASSERT_REFUSED(LACONIC_TOO_MANY_WHEELS, LACONIC_FIELD_WHEEL_COUNT, 0,
+                       laconic_plant_start(&plant, &v, &laconic_auto, REAL(0.01), &start, &why), why);
+        ASSERT_REFUSED(LACONIC_TOO_MANY_WHEELS, LACONIC_FIELD_WHEEL_COUNT, 0, laconic_plant_change(&plant, &v, &why),
+                       why);
+    }
+    TEST_ASSERT_EQUAL_MEMORY(&before, &plant, sizeof plant);
+}
+
 static void a_refused_step_stops_the_run_after_what_was_taken(void) {
     laconic_plant plant = plant_of(three_wheels(), &laconic_rk4, 0.1);
     laconic_input input = no_input();
@@ -127,6 +146,7 @@ int main(void) {
     UNITY_BEGIN();
     RUN_TEST(running_is_stepping);
     RUN_TEST(a_refused_start_changes_nothing);
+    RUN_TEST(more_wheels_than_there_is_room_for_are_refused_before_any_of_them_is_read);
     RUN_TEST(a_refused_step_stops_the_run_after_what_was_taken);
     RUN_TEST(an_input_that_is_not_finite_is_named);
     RUN_TEST(the_count_of_steps_goes_on_with_another_step_size);

@@ -1,15 +1,7 @@
-"""xacro files, expanded in a process of their own: their expressions may compute for ever, or fill the memory.
-
-`python -m laconic.robot_import.xacro_expansion` is that process: {"path", "arguments", "packages"} as JSON on stdin,
-{"text"}, {"package"} that is not there, or {"failure"} on stdout.
-"""
+"""xacro files, expanded by the library `xacro`, bounded in time and memory: their expressions compute what they like."""
 
 from __future__ import annotations
 
-import contextlib
-import json
-import os
-import subprocess
 import sys
 import types
 from collections.abc import Mapping
@@ -17,49 +9,46 @@ from pathlib import Path
 from typing import Any
 
 from laconic.errors import BadInput
+from laconic.robot_import.bounded import Library, bounded
 from laconic.robot_import.checked import words_of
 from laconic.robot_import.meshes import MeshFiles
 
-LONGEST_S = 20.0
-MOST_BYTES = 2 * 2**30  # of memory
+XACRO = Library("xacro", "the expression, macro or include that goes on for ever")
 
 
 def expanded(path: Path, arguments: Mapping[str, str], packages: Mapping[str, Path]) -> str:
     """The URDF of a xacro file with `NAME:=VALUE` arguments; $(find NAME) looks beside and above the file."""
-    asked = {"path": str(path), "arguments": dict(arguments),
-             "packages": {name: str(folder) for name, folder in packages.items()}}
-    try:
-        done = subprocess.run([sys.executable, "-m", __name__], input=json.dumps(asked), capture_output=True, text=True,
-                              encoding="utf-8", env=os.environ | {"PYTHONIOENCODING": "utf-8"}, timeout=LONGEST_S,
-                              check=False)
-    except subprocess.TimeoutExpired:
-        raise BadInput(f"{path}: xacro does not come to an end within {LONGEST_S:g} s; mend the expression or macro "
-                       "that goes on for ever") from None
-    try:
-        found: dict[str, str] = json.loads(done.stdout)
-    except ValueError:
-        raise BadInput(f"{path}: xacro cannot expand it: it ended with status {done.returncode}; mend the expression "
-                       "or macro that takes so much memory") from None
-    if name := found.get("package"):
-        raise BadInput(f"{path}: package {name} is not beside or above the file; give --package {name}=FOLDER")
-    if "failure" in found:
-        raise BadInput(f"{path}: xacro cannot expand it: {found['failure']}")
-    return found["text"]
+    text: str = bounded(XACRO, _expand, path, dict(arguments), dict(packages))
+    return text
 
 
-def answer(asked: Mapping[str, Any]) -> dict[str, str]:
-    """What the process finds."""
+def _expand(path: Path, arguments: dict[str, str], packages: dict[str, Path]) -> str:
     import xacro
 
-    files = MeshFiles(Path(asked["path"]), {name: Path(folder) for name, folder in asked["packages"].items()})
+    files = MeshFiles(path, packages)
     _answer_for_ros(files)
     try:
-        with contextlib.redirect_stdout(sys.stderr):  # xacro prints of what it does not know
-            return {"text": xacro.process_file(asked["path"], mappings=asked["arguments"]).toxml()}
+        return str(xacro.process_file(str(path), mappings=arguments).toxml())
     except Exception as error:
-        if files.asked_for:
-            return {"package": files.asked_for}
-        return {"failure": words_of(error)}
+        causes = _causes(error)
+        if any(isinstance(each, MemoryError) for each in causes):
+            raise MemoryError from None
+        if name := files.asked_for:
+            raise BadInput(f"{path}: package {name} is not beside or above the file; give --package {name}=FOLDER"
+                           ) from None
+        if any(isinstance(each, RecursionError) for each in causes):
+            raise BadInput(f"{path}: xacro cannot expand it: a macro calls, or a file includes, itself without end; "
+                           "mend it") from None
+        raise BadInput(f"{path}: xacro cannot expand it: {words_of(error)}") from None
+
+
+def _causes(error: BaseException) -> list[Any]:
+    """The error and those that xacro has wrapped."""
+    causes: list[Any] = []
+    while error is not None and error not in causes:
+        causes.append(error)
+        error = getattr(error, "exc", None) or error.__cause__ or error.__context__
+    return causes
 
 
 def _answer_for_ros(files: MeshFiles) -> None:
@@ -68,16 +57,3 @@ def _answer_for_ros(files: MeshFiles) -> None:
     module = types.ModuleType(name)
     module.get_package_share_directory = files.package_for_xacro  # type: ignore[attr-defined]
     sys.modules.update({name: module, "ament_index_python": types.ModuleType("ament_index_python")})
-
-def _bound_memory() -> None:
-    """Where the system can; elsewhere the time alone is bounded."""
-    try:
-        import resource
-    except ImportError:
-        return
-    resource.setrlimit(resource.RLIMIT_AS, (MOST_BYTES, MOST_BYTES))
-
-
-if __name__ == "__main__":
-    _bound_memory()
-    print(json.dumps(answer(json.load(sys.stdin))))
