@@ -1,6 +1,7 @@
-"""What a library makes of a file, in a process of its own: files can make libraries compute for ever, or fill the memory.
+"""What a library makes of a file, in a process of its own: a file can make it compute for ever, or fill the memory.
 
-`bounded` calls a function there. Ctrl-C, which a library written in C does not see, ends that process, too.
+`bounded` calls a function there, by `python -m laconic.robot_import.bounded`. Ctrl-C, which a library written in C does
+not see, ends that process, too.
 """
 
 from __future__ import annotations
@@ -19,8 +20,6 @@ from laconic.errors import BadInput
 
 LONGEST_S = 20.0
 MOST_BYTES = 2 * 2**30  # of memory
-START = "import sys; sys.path = [each for each in sys.path if each]; " \
-        f"from {__name__} import answer; answer({{longest_s!r}}, {{most_bytes!r}})"
 
 
 @dataclass(frozen=True)
@@ -41,9 +40,8 @@ def bounded(library: Library, call: Callable[..., Any], path: Path, *more: Any) 
 
     BadInput: that of the call; a call that takes more than LONGEST_S or MOST_BYTES, or whose process fails.
     """
-    start = START.format(longest_s=int(LONGEST_S) + 1, most_bytes=MOST_BYTES)
     try:
-        done = subprocess.run([sys.executable, "-c", start], input=pickle.dumps((call, path, *more)),
+        done = subprocess.run([sys.executable, "-m", __name__], input=pickle.dumps((call, path, *more)),
                               stdout=subprocess.PIPE, stderr=subprocess.DEVNULL, env=_environment(), timeout=LONGEST_S,
                               check=False)
     except subprocess.TimeoutExpired:
@@ -61,10 +59,10 @@ def bounded(library: Library, call: Callable[..., Any], path: Path, *more: Any) 
 
 
 def _environment() -> dict[str, str]:
-    """The child finds the modules that this process finds, none in the working folder besides; threads of numpy would
-    take of the memory, each a part of its own."""
-    return os.environ | {"PYTHONPATH": os.pathsep.join(os.path.abspath(each) for each in sys.path),
-                         "OPENBLAS_NUM_THREADS": "1"}
+    """The process finds the modules that this one finds, and from Python 3.11 on none in the working folder besides.
+    Each thread of numpy would take a part of the memory."""
+    folders = os.pathsep.join(str(Path(each).absolute()) for each in sys.path)
+    return os.environ | {"PYTHONSAFEPATH": "1", "PYTHONPATH": folders, "OPENBLAS_NUM_THREADS": "1"}
 
 
 # ---------------------------------------------------------------------------------- in the process --
@@ -72,12 +70,12 @@ def _environment() -> dict[str, str]:
 TOO_MUCH = 3  # its exit status for MemoryError
 
 
-def answer(longest_s: int, most_bytes: int) -> None:
+def answer() -> None:
     """Reads the call from stdin, writes (result, None) or (None, why not) to stdout."""
     answers = os.fdopen(os.dup(1), "wb")
     os.dup2(2, 1)  # libraries print
-    _bound("RLIMIT_AS", most_bytes)
-    _bound("RLIMIT_CPU", longest_s)  # where nobody is there any more to end it
+    _bound("RLIMIT_AS", MOST_BYTES)
+    _bound("RLIMIT_CPU", int(LONGEST_S) + 1)  # where nobody is there any more to end it
     try:
         call, *arguments = pickle.load(sys.stdin.buffer)
         found = pickle.dumps(_found(call, arguments))
@@ -104,3 +102,7 @@ def _bound(what: str, most: int) -> None:
         hard = resource.getrlimit(limit)[1]
         most = most if hard == resource.RLIM_INFINITY else min(most, hard)
         resource.setrlimit(limit, (most, most))
+
+
+if __name__ == "__main__":
+    answer()

@@ -1,28 +1,40 @@
-"""MJCF, read by MuJoCo: its compiler resolves defaults, includes, frames and the inertia of geoms without a mass."""
+"""MJCF, read by MuJoCo: its compiler resolves defaults, includes, frames and the inertia of geoms without a mass.
+
+It works in a process that is bounded in time and memory: a file of a few lines can ask for any number of bodies.
+"""
 
 from __future__ import annotations
 
 from pathlib import Path
 from typing import Any
+from xml.etree import ElementTree
 
 import numpy as np
 
 from laconic.errors import BadInput
+from laconic.robot_import.bounded import Library, bounded
 from laconic.robot_import.checked import DISSIPATION, finite, mass, not_negative, words_of
 from laconic.robot_import.placement import Array, inverse, placement, point_of
 from laconic.robot_import.robot_tree import BALL, FIXED, HINGE, SLIDE, TURNS_ROUND_RAD, Joint, Link, Robot, Shape
 
 KINDS = {0: BALL, 1: BALL, 2: SLIDE, 3: HINGE}  # mjJNT_FREE, _BALL, _SLIDE, _HINGE
 SPHERE, CAPSULE, CYLINDER, BOX, MESH = 2, 3, 5, 6, 7  # mjtGeom
+MUJOCO = Library("MuJoCo", "the count of a <replicate> or <composite>, or a mesh, that asks for too much")
 
 
 def read_mjcf(path: Path, model_name: str | None) -> Robot:
     """The heaviest body that stands in the world, or the one of this name, with all that hangs on it."""
-    model, data = _compiled(path)
+    robot: Robot = bounded(MUJOCO, _read, path, model_name)
+    return robot
+
+
+def _read(path: Path, model_name: str | None) -> Robot:
+    model, data, warnings = _compiled(path)
     base = _base(path, model, model_name)
     inside = [body for body in range(1, model.nbody) if model.body_rootid[body] == base]
     for body in inside:
         _check_numbers(f"{path}: body {model.body(body).name or body}", model, data, body)
+    _check_attributes(path, warnings)
     back = inverse(placement(data.xpos[base], data.xmat[base].reshape(3, 3)))
     names = {body: model.body(body).name or f"body {body}" for body in inside}
     links = {names[body]: _link(model, data, body, names[body], back) for body in inside}
@@ -35,21 +47,34 @@ def read_mjcf(path: Path, model_name: str | None) -> Robot:
     return Robot(title, path, "MJCF", names[base], links, joints).check()
 
 
-def _compiled(path: Path) -> tuple[Any, Any]:
-    """Model and data in the zero position. MuJoCo's warnings, which it would print and write into a file of the
-    working folder, are of numbers that are checked here."""
+def _compiled(path: Path) -> tuple[Any, Any, list[str]]:
+    """Model and data in the zero position, and MuJoCo's warnings, which it would print and write into a file of the
+    working folder."""
     import mujoco
 
-    mujoco.set_mju_user_warning(lambda words: None)
+    warnings: list[str] = []
+    mujoco.set_mju_user_warning(warnings.append)
     try:
         model = mujoco.MjModel.from_xml_path(str(path))
         data = mujoco.MjData(model)
         mujoco.mj_kinematics(model, data)
-    except (ValueError, OSError) as error:
+    except (ValueError, OSError, mujoco.FatalError) as error:
+        if "allocate" in str(error):
+            raise MemoryError from None
         raise BadInput(f"{path}: MuJoCo cannot read it: {words_of(error)}") from None
-    finally:
-        mujoco.set_mju_user_warning(None)
-    return model, data
+    return model, data, warnings
+
+
+def _check_attributes(path: Path, warnings: list[str]) -> None:
+    """BadInput for an attribute that is NaN: MuJoCo warns of it, and takes what it takes without the attribute."""
+    if not any("NaN" in each for each in warnings):
+        return
+    for element in ElementTree.parse(path).iter():
+        for key, text in element.attrib.items():
+            if any(word.lower().lstrip("+-") == "nan" for word in text.split()):
+                name = f" {element.get('name')}" if element.get("name") else ""
+                raise BadInput(f'{path}: <{element.tag}>{name}: {key}="{text}" is not finite; give a number')
+    raise BadInput(f"{path}: a file that it includes has an attribute that is NaN; give a number")
 
 
 def _check_numbers(where: str, model: Any, data: Any, body: int) -> None:

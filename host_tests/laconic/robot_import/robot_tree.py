@@ -17,6 +17,7 @@ from laconic.robot_import.placement import Array, point_of
 
 HINGE, SLIDE, FIXED, BALL = "hinge", "slide", "fixed", "ball"
 TURNS_ROUND_RAD = 4.0 * np.pi  # a hinge with a wider range than this counts as one without limits
+LONGEST_SHOWN = 60  # of a name in a message
 CORNERS = np.array(np.meshgrid(*[[-1.0, 1.0]] * 3)).reshape(3, -1).T
 
 
@@ -163,6 +164,7 @@ def base_of(path: Path, links: Iterable[str], children: Iterable[str]) -> str:
     hanging = set(children)
     roots = [name for name in links if name not in hanging]
     if len(roots) != 1:
-        raise BadInput(f"{path}: has {len(roots)} links that hang on no joint ({', '.join(roots[:4]) or 'a loop'}); a "
-                       "robot has one, its base")
+        names = ", ".join(each[:LONGEST_SHOWN] for each in roots[:4])
+        raise BadInput(f"{path}: has {len(roots)} links that hang on no joint ({names or 'a loop'}); a robot has one, "
+                       "its base")
     return roots[0]

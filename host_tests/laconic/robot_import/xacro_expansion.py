@@ -1,4 +1,4 @@
-"""xacro files, expanded by the library `xacro`, bounded in time and memory: their expressions compute what they like."""
+"""xacro files, expanded by the library `xacro`, bounded in time and memory: their expressions may compute anything."""
 
 from __future__ import annotations
 
@@ -27,6 +27,7 @@ def _expand(path: Path, arguments: dict[str, str], packages: dict[str, Path]) ->
 
     files = MeshFiles(path, packages)
     _answer_for_ros(files)
+    _keep_texts_of_yaml()
     try:
         return str(xacro.process_file(str(path), mappings=arguments).toxml())
     except Exception as error:
@@ -44,11 +45,30 @@ def _expand(path: Path, arguments: dict[str, str], packages: dict[str, Path]) ->
 
 def _causes(error: BaseException) -> list[Any]:
     """The error and those that xacro has wrapped."""
-    causes: list[Any] = []
-    while error is not None and error not in causes:
-        causes.append(error)
-        error = getattr(error, "exc", None) or error.__cause__ or error.__context__
+    causes: list[Any] = [error]
+    for each in causes:  # which grows meanwhile
+        inner = getattr(each, "exc", None) or each.__cause__ or each.__context__
+        if inner is not None and inner not in causes:
+            causes.append(inner)
     return causes
+
+
+def _keep_texts_of_yaml() -> None:
+    """`load_yaml` takes the path of any file, whose text no message may show: it is to have keys, or to be a list."""
+    import yaml
+
+    load = yaml.safe_load
+
+    def safe_load(stream: Any) -> Any:
+        try:
+            found = load(stream)
+        except (yaml.YAMLError, UnicodeDecodeError):
+            raise ValueError(f"load_yaml: {stream.name} is no YAML") from None
+        if not isinstance(found, (dict, list)):
+            raise ValueError(f"load_yaml: {stream.name} has no keys and is no list")
+        return found
+
+    yaml.safe_load = safe_load
 
 
 def _answer_for_ros(files: MeshFiles) -> None:

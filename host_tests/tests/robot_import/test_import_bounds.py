@@ -1,0 +1,81 @@
+"""A file that makes a library read for ever, or fill the memory, is ended and named; so is the reading by Ctrl-C."""
+
+from __future__ import annotations
+
+import os
+import signal
+import subprocess
+from pathlib import Path
+from typing import Any
+
+import pytest
+from made_up_robots import MJCF
+
+from laconic.cli.main import run
+from laconic.robot_import import bounded
+
+NAMESPACE = 'xmlns:xacro="http://www.ros.org/wiki/xacro"'
+XACRO = f'<robot {NAMESPACE} name="{{}}"/>'
+ENDLESS = {"robot.xacro": XACRO.format("${9**9**9}"),
+           "robot.xml": MJCF.replace("<worldbody>", '<worldbody><replicate count="100000000" offset="1 0 0">'
+                                                    '<geom size="0.1"/></replicate>')}
+
+
+def imported(folder: Path, name: str, text: str) -> int:
+    """The exit status of the import of such a file."""
+    (folder / name).write_text(text, encoding="utf-8")
+    return run(["import", str(folder / name), "-o", str(folder / "robot.toml")])
+
+
+@pytest.mark.parametrize(("name", "words"), [
+    ("robot.xacro", "xacro does not come to an end within 0.5 s; mend the expression, macro or include"),
+    ("robot.xml", "MuJoCo does not come to an end within 0.5 s; mend the count of a <replicate>")])
+def test_a_reading_without_end_is_ended(tmp_path: Path, capsys: pytest.CaptureFixture[str], name: str, words: str,
+                                        monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr(bounded, "LONGEST_S", 0.5)
+    assert imported(tmp_path, name, ENDLESS[name]) == 2
+    told = capsys.readouterr().err
+    assert words in told
+    assert told.count("\n") == 1
+
+
+@pytest.mark.parametrize("name", ENDLESS)
+def test_ctrl_c_ends_a_reading_at_once_and_leaves_nothing_running(
+        tmp_path: Path, capsys: pytest.CaptureFixture[str], name: str, monkeypatch: pytest.MonkeyPatch) -> None:
+    readers: list[subprocess.Popen[bytes]] = []
+
+    class Interrupted(subprocess.Popen):  # type: ignore[type-arg]
+        def communicate(self, *given: Any, **named: Any) -> Any:
+            readers.append(self)
+            os.kill(os.getpid(), signal.SIGINT)
+            return super().communicate(*given, **named)
+
+    monkeypatch.setattr(subprocess, "Popen", Interrupted)
+    assert imported(tmp_path, name, ENDLESS[name]) == 130
+    assert capsys.readouterr().err == "laconic: stopped by the user\n"
+    assert [each.returncode for each in readers] == [-signal.SIGKILL]
+
+
+@pytest.mark.parametrize(("name", "text", "words"), [
+    ("robot.xacro", XACRO.format("${[0] * 10**10}"), "xacro needs more than 2 GiB of memory; mend the expression"),
+    ("robot.xml", MJCF.replace("<worldbody>", '<size memory="900G"/><worldbody>'),
+     "MuJoCo needs more than 2 GiB of memory; mend the count"),
+    ("robot.xacro", f'<robot {NAMESPACE}><xacro:macro name="m" params=""><xacro:m/></xacro:macro><xacro:m/></robot>',
+     "a macro calls, or a file includes, itself without end; mend it")])
+def test_what_needs_too_much_is_named(tmp_path: Path, capsys: pytest.CaptureFixture[str], name: str, text: str,
+                                      words: str) -> None:
+    assert imported(tmp_path, name, text) == 2
+    told = capsys.readouterr().err
+    assert words in told
+    assert told.count("\n") == 1
+
+
+@pytest.mark.parametrize("text", ["admin:secret-7:0:0", "a: [secret-7", "- !secret-7 x"])
+def test_no_message_shows_the_text_of_a_file_that_load_yaml_reads(tmp_path: Path, capsys: pytest.CaptureFixture[str],
+                                                                  text: str) -> None:
+    (tmp_path / "private").write_text(text, encoding="utf-8")
+    link = f"<link name=\"${{xacro.load_yaml('{tmp_path}/private')}}\"/>"
+    assert imported(tmp_path, "robot.xacro", f"<robot {NAMESPACE} name='r'>{link}{link}</robot>") == 2
+    told = capsys.readouterr().err
+    assert "load_yaml: " in told
+    assert "secret" not in told
