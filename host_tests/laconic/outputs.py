@@ -137,6 +137,19 @@ def _check_writable(option: str, path: Path, is_folder: bool) -> None:
         raise _cannot(path, error) from None
     if not os.access(existing, os.W_OK):
         raise BadInput(f"{option} {path}: cannot be written ({existing} is read-only); choose another path")
+    if not is_special(path):
+        _try_folder(option, path, existing if existing.is_dir() else Path(os.path.realpath(path)).parent)
+
+
+def _try_folder(option: str, path: Path, folder: Path) -> None:
+    """BadInput where no file can be made in a folder, whatever its permissions say: /proc, a full disk."""
+    trial = folder / f".laconic-{secrets.token_hex(8)}.part"
+    try:
+        os.close(os.open(trial, os.O_CREAT | os.O_EXCL | os.O_WRONLY, 0o666))
+        trial.unlink()
+    except OSError as error:
+        raise BadInput(f"{option} {path}: cannot be written ({folder}: {reason_of(error)}); choose another "
+                       "path") from None
 
 
 def _cannot(path: Path, error: OSError | ValueError) -> BadInput:

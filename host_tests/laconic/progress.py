@@ -64,8 +64,9 @@ def each_minute(task: str, total: float, clock: Callable[[], float] = time.monot
         now, done, name = clock(), done + amount, f"{task}, {what}" if what else name
         if now - last >= LONG_S:
             last = now
-            print(f"laconic: {name}: {done:.0f} of {total:.0f} after {duration_text(now - began)}", file=sys.stderr,
-                  flush=True)
+            left = f", about {duration_text((now - began) * (total - done) / done)} left" if 0 < done < total else ""
+            print(f"laconic: {name}: {done:.0f} of {total:.0f} after {duration_text(now - began)}{left}",
+                  file=sys.stderr, flush=True)
 
     return advance
 

@@ -10,6 +10,7 @@ from __future__ import annotations
 
 from collections.abc import Callable, Sequence
 from concurrent.futures import ThreadPoolExecutor
+from functools import partial
 from typing import Any
 
 import numpy as np
@@ -22,6 +23,8 @@ from laconic.core.given_array import real_array
 from laconic.errors import BadInput, Refused
 
 MOST_LANES = 2**28
+MOST_AT_ONCE = 2**24  # steps of all lanes in one call, a tenth of a second or two;
+FEWEST_AT_ONCE = 256  # of each: a call reads what a kind is made of
 INPUTS = ("voltage_V", "axle_torque_Nm", "body_force_N", "body_moment_Nm", "world_force_N", "world_force_point_m")
 PRIVATE = ("_pool", "_is_observed")
 
@@ -176,8 +179,14 @@ class Batch:
         A lane stops before a step that is refused, the others go on. Returns how many lanes were refused; `status` and
         `refusal` tell which and why.
         """
-        steps, step = step_count("steps", steps), self.core.lib.laconic_batch_run
-        return self._in_parts(lambda first, count: int(step(self.c, first, count, steps)), threads)
+        left, refused = step_count("steps", steps), -1
+        while left or refused < 0:  # Ctrl-C is heard between calls; a refused lane is refused in each of them
+            now = min(left, max(FEWEST_AT_ONCE, MOST_AT_ONCE // self.lane_count))
+            refused, left = self._in_parts(partial(self._run_blocks, now), threads), left - now
+        return refused
+
+    def _run_blocks(self, steps: int, first: int, count: int) -> int:
+        return int(self.core.lib.laconic_batch_run(self.c, first, count, steps))
 
     def run_sampled(self, voltage_V: Any, steps_each: int = 1, threads: int = 1) -> int:  # noqa: N803
         """Steps with voltages that change on the way: voltage_V (samples, N, lanes), each held for `steps_each` steps.

@@ -6,5 +6,6 @@
 
 from laconic.measures.course import Course as Course
 from laconic.measures.measure import Measure as Measure
+from laconic.measures.registry import measure_given as measure_given
 from laconic.measures.registry import measure_named as measure_named
 from laconic.measures.registry import measures_of as measures_of

@@ -24,11 +24,19 @@ class ArguedMeasure(Measure):
     of: Callable[..., np.ndarray]
     kind: str = OF_MODEL
     arguments: Mapping[str, float | None] = field(default_factory=dict)  # default, None: one of its own, or REQUIRED
+    given: Mapping[str, float] = field(default_factory=dict)             # with which it is measured
 
     @property
     def usage(self) -> str:
         """The name with its arguments: "condition(length_m=…)"."""
         given = ", ".join(f"{name}=…" for name in self.arguments)
+        return f"{self.name}({given})" if given else self.name
+
+    @property
+    def text(self) -> str:
+        """The name with the arguments that it has: "end_distance_m(x_m=1,y_m=0.5)"."""
+        given = ",".join(f"{name}={repr(self.given[name]).removesuffix('.0')}" for name in self.arguments
+                         if name in self.given)
         return f"{self.name}({given})" if given else self.name
 
 
@@ -66,4 +74,7 @@ def with_arguments(measure: Measure, given: Mapping[str, float]) -> Measure:
     missing = [name for name, default in known.items() if default is not None and name not in given]
     if missing:
         raise BadInput(f"{measure.name}: {missing[0]} is missing; give {measure.name}({missing[0]}=…)")
-    return replace(measure, of=partial(measure.of, **given)) if given else measure
+    if not given:
+        return measure
+    assert isinstance(measure, ArguedMeasure)
+    return replace(measure, of=partial(measure.of, **given), given=dict(given))

@@ -30,6 +30,11 @@ class Measure:
     needs: str = ""                   # what a scene must have: "motor", "supply", "friction coefficient", "wheels"
 
     @property
+    def text(self) -> str:
+        """As it is given and written: the name, of some with arguments."""
+        return self.name
+
+    @property
     def unit(self) -> str:
         """"m/s" of largest_speed_m_per_s; empty for a ratio."""
         return unit_of(self.name)

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from laconic.errors import BadInput, nearest_of
+from laconic.measures.arguments import split, with_arguments
 from laconic.measures.measure import OF_RUN, Measure
 from laconic.measures.of_ends import MEASURES_OF_ENDS
 from laconic.measures.of_model import MEASURES_OF_MODELS
@@ -22,3 +23,12 @@ def measure_named(name: str, kind: str | None = OF_RUN, option: str = "--measure
     if name not in known:
         raise BadInput(f"{option} {name}: there is no such measure; {nearest_of(name, known)}")
     return known[name]
+
+
+def measure_given(text: str, kind: str | None = OF_RUN, option: str = "--measure") -> Measure:
+    """One as an option gives it, NAME or NAME(argument=value); BadInput with the option in front."""
+    try:
+        name, given = split(text)
+        return with_arguments(measure_named(name, kind, option), given)
+    except BadInput as why:
+        raise BadInput(str(why) if str(why).startswith(option) else f"{option} {why}") from None

@@ -8,15 +8,16 @@ from collections.abc import Sequence
 import numpy as np
 
 from laconic.errors import BadInput
-from laconic.measures.arguments import ArguedMeasure, split, with_arguments
+from laconic.measures.arguments import ArguedMeasure
 from laconic.measures.measure import OF_RUN, Measure
 from laconic.measures.needs import lacks
-from laconic.measures.registry import measure_named
+from laconic.measures.registry import measure_given
 from laconic.measures.registry import measures_of as measures_of_kind
 from laconic.optimise.candidates import Candidates
 from laconic.optimise.gradient import RunGradient
 from laconic.optimise.problem import Constraint, Free, Goal, Problem, measures_of
 from laconic.optimise.runs import Runs
+from laconic.scene.key_overlap import check_apart
 from laconic.scene.key_path import key_path
 from laconic.scene.scene_tables import SceneTables
 
@@ -31,7 +32,7 @@ def problem_of(tables: SceneTables, free: Sequence[Free], goals: Sequence[Goal],
     if not goals:
         raise BadInput("--goal: is missing; give min:MEASURE or max:MEASURE; --goals lists the measures")
     names = measures_of(goals, constraints)
-    measures = [_measure(name, "--goal" if any(goal.measure == name for goal in goals) else "--subject-to")
+    measures = [measure_given(name, None, "--goal" if any(goal.measure == name for goal in goals) else "--subject-to")
                 for name in names]
     own = np.array([_own(tables, each) for each in free])
     _check_free(free, measures)
@@ -50,14 +51,6 @@ def listing() -> str:
     return "\n".join(lines)
 
 
-def _measure(text: str, option: str) -> Measure:
-    try:
-        name, given = split(text)
-        return with_arguments(measure_named(name, None, option), given)
-    except BadInput as why:
-        raise BadInput(str(why) if str(why).startswith(option) else f"{option} {why}") from None
-
-
 def _own(tables: SceneTables, free: Free) -> float:
     """What the scene has."""
     try:
@@ -74,13 +67,10 @@ def _own(tables: SceneTables, free: Free) -> float:
 
 
 def _check_free(free: Sequence[Free], measures: Sequence[Measure]) -> None:
-    """No number twice, no angle in both units, no time where a measure compares runs instant by instant."""
-    seen: dict[str, str] = {}
-    for key in (key for each in free for key in each.keys):
-        name = key.replace("_deg", "_rad")
-        if name in seen:
-            raise BadInput(f"--free {key}: is given twice; give it one range")
-        seen[name] = key
+    """No number twice, no time where a measure compares runs instant by instant."""
+    keys = [key for each in free for key in each.keys]
+    check_apart("--free", [key_path(key) for key in keys])
+    for key in keys:
         beside = [each.name for each in measures if each.is_beside_nominal and not each.is_of_end]
         if beside and key in OF_TIME:
             raise BadInput(f"--free {key}: {beside[0]} compares the same instants of two runs; leave one of them out")

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import time
 from collections.abc import Sequence
+from contextlib import nullcontext
 from dataclasses import dataclass
 
 import numpy as np
@@ -123,12 +124,13 @@ def kept_signals(scene: Scene, given: Sequence[str]) -> tuple[str, ...]:
     return kept or wanted_signals(scene)
 
 
-def simulate(scene: Scene, signals: Sequence[str] = (), progress: bool = False) -> Trajectory:
+def simulate(scene: Scene, signals: Sequence[str] = (), progress: bool = False, watched: bool = True) -> Trajectory:
     """Runs a scene from its start to its end.
 
-    Keeps the given signals (outputs, or inputs), else the scene's outputs, else the default ones. Refused names file
-    and time when the first step is refused or an input is no number; RunRefused, when a later step is refused, has the
-    motion up to it.
+    Keeps the given signals (outputs, or inputs), else the scene's outputs, else the default ones. `progress`: says on
+    stderr how far it is; `watched`: watches the ground where the scene has data of it, which costs more than the steps.
+    Refused names file and time when the first step is refused or an input is no number; RunRefused, when a later step
+    is refused, has the motion up to it.
     """
     kept = kept_signals(check_scene(scene), signals)
     core, steps = scene.core(), scene.steps()
@@ -139,12 +141,12 @@ def simulate(scene: Scene, signals: Sequence[str] = (), progress: bool = False) 
     plant, inputs = scene.plant(core), scene.inputs_on_grid()
     ticks = np.append(np.arange(0, steps, every), steps)  # the last row is the end of the run, on the grid or not
     sensors = scene.sensors_of(plant)  # refuses, by its field, what the core refuses
-    recorder = Recorder(plant, kept, every, len(ticks), watched=is_watched(scene),
+    recorder = Recorder(plant, kept, every, len(ticks), watched=watched and is_watched(scene),
                         sensors=sensors if any(needs_sensors(core, signal) for signal in kept) else None)
     began = time.perf_counter()
     refused = None
     try:
-        with progress_bar(scene.name, steps if progress else 0, forecasts=progress) as moved:
+        with progress_bar(scene.name, steps, forecasts=True) if progress else nullcontext(_silently) as moved:
             run_window(scene, plant, inputs, 0, steps, moved, recorder)
         recorder.take_last(core.input(inputs.held_at(steps)))
     except Refused as why:
@@ -156,6 +158,10 @@ def simulate(scene: Scene, signals: Sequence[str] = (), progress: bool = False) 
     if refused:
         raise RunRefused(refused, run) from None
     return run
+
+
+def _silently(amount: float = 1, what: str | None = None) -> None:
+    """Progress that nobody asked for."""
 
 
 def take_end(plant: Plant, inputs: InputsOnGrid, recorder: Recorder, every: int) -> np.ndarray:

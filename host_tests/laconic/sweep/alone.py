@@ -40,7 +40,7 @@ def course_alone(scene: Scene, measures: Sequence[Measure], nominal: Course | No
             scene.steps_in("outputs.every_s", every_s)  # is refused as by `laconic simulate`
         every_s = scene.run.duration_s
     signals = signals_of(measures, scene)
-    run = simulate(replace(scene, outputs=Outputs(every_s=every_s)), signals)
+    run = simulate(replace(scene, outputs=Outputs(every_s=every_s)), signals, watched=False)
     return Course(run.time_s, {name: _column(run, name) for name in signals}, nominal, winding_of(scene))
 
 

@@ -18,6 +18,7 @@ from laconic.scene.ground import has_friction
 from laconic.scene.key_path import EVERY, key_path
 from laconic.scene.scene_tables import SceneTables
 from laconic.scene.sensors import NO_SENSORS
+from laconic.simulation.run import MOST_ROWS
 from laconic.sweep.alone import driven_wheels
 from laconic.sweep.held import HeldInputs
 from laconic.sweep.numbers import Numbers, has_own_zero, numbers_of, starts_of
@@ -39,16 +40,21 @@ class Template:
         if self.scene.sensors != NO_SENSORS:
             self.scene.sensors_of(self.scene.plant(core))  # raises as `simulate` for what does not fit the step
         known = zeros(core, "laconic_outputs", 1).dtype.names or ()
+        if not all(measure.is_of_end for measure in measures) and self.scene.steps() / self._every() > MOST_ROWS:
+            return False  # alone it is refused
         return not has_friction(self.scene.vehicle) and self.scene.inputs_on_grid().is_held and all(
             signal in MEMBERS or signal in core.input_fields or signal in known
             for measure in measures for signal in measure.signals) and not has_own_zero(self.scene, core)
 
+    def _every(self) -> int:
+        """Steps between rows."""
+        every_s = self.scene.outputs.every_s
+        return 1 if every_s is None else self.scene.steps_in("outputs.every_s", every_s)
+
     def instants(self, measures: Sequence[Measure]) -> np.ndarray:
         """The steps at which the measures look at a run: those of `laconic simulate --out`, or its two ends."""
-        steps, every_s = self.scene.steps(), self.scene.outputs.every_s
-        every = 1 if every_s is None else self.scene.steps_in("outputs.every_s", every_s)
-        if all(measure.is_of_end for measure in measures):
-            every = steps
+        steps = self.scene.steps()
+        every = steps if all(measure.is_of_end for measure in measures) else self._every()
         return np.append(np.arange(0, steps, every), steps)
 
 

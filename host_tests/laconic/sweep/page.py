@@ -10,6 +10,7 @@ from importlib.resources import files
 import numpy as np
 import pyarrow.parquet as pq
 
+from laconic.errors import ResultFails
 from laconic.outputs import write_text
 from laconic.pictures.sweep_panels import bars, effect, histogram
 from laconic.sweep.sensitivity import Indices, indices_of
@@ -27,12 +28,20 @@ def write_page(store: Store) -> list[str]:
     refused = np.array([reason is not None for reason in columns["refused"]])
     body = [_lead(store, columns, refused)]
     for measure in store.plan.measures:
-        body += _of_measure(store, measure.name, measure.words, columns)
+        body += _of_measure(store, measure.text, measure.words, columns)
     template = files("laconic.sweep").joinpath("page.html").read_text(encoding="utf-8")
     title = f"Sweep of {store.plan.scene}"
     write_text(store.folder / PAGE, template.replace("{{title}}", escape(title)).replace("{{body}}", "\n".join(body)))
     told = [f"{store.plan.runs} runs, {int(refused.sum())} of them refused"]
     return [*told, f"wrote {store.folder / RESULTS}", f"wrote {store.folder / PAGE}"]
+
+
+def check_any_run(store: Store) -> None:
+    """ResultFails where every run was refused."""
+    refused = pq.read_table(store.folder / RESULTS, columns=["refused"])["refused"]
+    if refused.null_count == 0:
+        raise ResultFails(f"every run was refused, the first because {refused[0].as_py()}; {store.folder / RESULTS} "
+                          "has them all")
 
 
 def _columns(store: Store) -> dict[str, np.ndarray]:
@@ -62,7 +71,7 @@ def _of_measure(store: Store, name: str, words: str, columns: Mapping[str, np.nd
     """One measure: statistics, histogram, effects, indices."""
     values = columns[name].astype(float)
     good = np.isfinite(values)
-    parts = [f'<h2 id="{name}">{name}</h2>', f"<p>{escape(words)}.</p>"]
+    parts = [f'<h2 id="{escape(name)}">{escape(name)}</h2>', f"<p>{escape(words)}.</p>"]
     if not good.any():
         return [*parts, "<p>No run has a value.</p>"]
     found = values[good]

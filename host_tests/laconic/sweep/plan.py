@@ -17,7 +17,8 @@ from typing import Any
 import numpy as np
 
 from laconic.errors import BadInput
-from laconic.measures import Measure, measure_named
+from laconic.measures import Measure, measure_given
+from laconic.scene.key_overlap import check_apart
 from laconic.scene.scene_tables import SceneTables, Value
 from laconic.sweep.points import SAMPLINGS, saltelli_count, unit_points
 from laconic.sweep.varied import Varied, read_varied
@@ -73,7 +74,10 @@ class Plan:
 
     def values(self, first: int, count: int) -> dict[str, np.ndarray]:
         """By key, in the order of `--vary`: values of runs `first` …; words and flags as objects."""
-        index = np.arange(first, first + count)
+        return self.values_at(np.arange(first, first + count))
+
+    def values_at(self, index: np.ndarray) -> dict[str, np.ndarray]:
+        """The same of these runs."""
         place, sample = index // self.points, index % self.points
         of_grid: dict[str, np.ndarray] = {}
         for each in reversed(self.grid):
@@ -91,7 +95,7 @@ class Plan:
     def as_json(self) -> dict[str, Any]:
         """All of it, for the folder of results and for workers."""
         return {"format": FORMAT, "scene": self.scene, "path": str(self.tables.path), "tables": self.tables.entries,
-                "vary": [each.text for each in self.varied], "measures": [each.name for each in self.measures],
+                "vary": [each.text for each in self.varied], "measures": [each.text for each in self.measures],
                 "samples": self.samples, "seed": self.seed, "sampling": self.sampling}
 
     @cached_property
@@ -105,7 +109,7 @@ def plan_from(told: Mapping[str, Any]) -> Plan:
     """The plan that `as_json` told."""
     from pathlib import Path
     return Plan(SceneTables(Path(told["path"]), told["tables"]), tuple(read_varied(text) for text in told["vary"]),
-                tuple(measure_named(name) for name in told["measures"]), told["samples"], told["seed"],
+                tuple(measure_given(text) for text in told["measures"]), told["samples"], told["seed"],
                 told["sampling"], told["scene"])
 
 
@@ -115,10 +119,7 @@ def make_plan(tables: SceneTables, vary: tuple[str, ...], measures: tuple[str, .
     if not vary:
         raise BadInput("--vary: is missing; give KEY=a:b:n, KEY=a,b,c or KEY~normal(m,s)")
     varied = tuple(read_varied(text) for text in vary)
-    keys = [each.key.text for each in varied]
-    for number, key in enumerate(keys):
-        if key in keys[:number]:
-            raise BadInput(f"--vary {key}: is varied twice; keep one of them")
+    check_apart("--vary", [each.key for each in varied])
     is_random = any(each.is_random for each in varied)
     if is_random and samples is None:
         raise BadInput("--samples: is missing; a key has a distribution, so give the number of samples")
@@ -127,8 +128,8 @@ def make_plan(tables: SceneTables, vary: tuple[str, ...], measures: tuple[str, .
     if sampling == "saltelli" and any(not each.is_random for each in varied):
         raise BadInput("--sensitivity: needs a distribution of each key, such as KEY~uniform(a,b); take grids out")
     assert sampling in SAMPLINGS
-    chosen = tuple(measure_named(name) for name in dict.fromkeys(measures or USUAL_MEASURES))
-    plan = Plan(tables, varied, chosen, samples or 1, seed, sampling, scene)
+    chosen = {(measure := measure_given(text)).text: measure for text in measures or USUAL_MEASURES}
+    plan = Plan(tables, varied, tuple(chosen.values()), samples or 1, seed, sampling, scene)
     if plan.runs > MOST_RUNS:
         raise BadInput(f"--vary: makes {plan.runs} runs; give {MOST_RUNS} or fewer")
     return plan

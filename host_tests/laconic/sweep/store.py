@@ -71,7 +71,7 @@ class Store:
         kinds = {"text": pa.string(), "true or false": pa.bool_(), "whole number": pa.int64()}
         return pa.schema([("run", pa.int64()),
                           *((each.key.text, kinds.get(each.key.known.kind, pa.float64())) for each in self.plan.varied),
-                          *((each.name, pa.float64()) for each in self.plan.measures),
+                          *((each.text, pa.float64()) for each in self.plan.measures),
                           ("refused", pa.string()), ("refused_at_s", pa.float64())])
 
     def keep(self, number: int, values: Mapping[str, np.ndarray], rows: Rows) -> None:
@@ -79,7 +79,7 @@ class Store:
         first, count = self.range_of(number)
         reasons = [rows.reasons.get(place) for place in range(count)]
         columns = {"run": np.arange(first, first + count), **values,
-                   **{measure.name: pa.array(found, mask=np.isnan(found))
+                   **{measure.text: pa.array(found, mask=np.isnan(found))
                       for measure, found in zip(self.plan.measures, rows.measures, strict=True)},
                    "refused": [each and each.reason for each in reasons],
                    "refused_at_s": [each and each.at_s for each in reasons]}

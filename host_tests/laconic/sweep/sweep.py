@@ -12,6 +12,7 @@ from laconic.measures.needs import lacks
 from laconic.progress import progress_bar
 from laconic.scene import Scene
 from laconic.sweep.chunk import Rows, nominal_course
+from laconic.sweep.effort import foretell, steps_of_runs
 from laconic.sweep.lanes import Template
 from laconic.sweep.numbers import is_number_of_struct
 from laconic.sweep.plan import Plan
@@ -30,10 +31,10 @@ def check_plan(plan: Plan) -> Scene:
     scene = plan.tables.scene()
     for measure in plan.measures:
         if missing := lacks(measure, scene):
-            raise BadInput(f"--measure {measure.name}: needs {missing}, which {plan.tables.path} does not give")
+            raise BadInput(f"--measure {measure.text}: needs {missing}, which {plan.tables.path} does not give")
         for key in OF_TIME:
             if measure.is_beside_nominal and not measure.is_of_end and key in [each.key.text for each in plan.varied]:
-                raise BadInput(f"--measure {measure.name}: compares the same instants, and --vary changes {key}; leave "
+                raise BadInput(f"--measure {measure.text}: compares the same instants, and --vary changes {key}; leave "
                                "one of them out")
     tries = [_first_refusal(plan, index) for index in {0, plan.runs // 2, plan.runs - 1}]
     if all(isinstance(each, BadInput) and not isinstance(each, Refused) for each in tries) and tries[0]:
@@ -51,11 +52,16 @@ def _first_refusal(plan: Plan, index: int) -> BadInput | None:
 
 def chunk_of(plan: Plan, scene: Scene) -> int:
     """Runs of one chunk: about a second of work."""
+    steps = max(1.0, float(steps_of_runs(plan, scene).mean()))
+    if goes_in_lanes(plan, scene):
+        return int(np.clip(STEPS_OF_LANES / steps, 1, MOST_RUNS_OF_CHUNK))
+    return int(np.clip(STEPS_ALONE / steps, 1, MOST_RUNS_ALONE))
+
+
+def goes_in_lanes(plan: Plan, scene: Scene) -> bool:
+    """Whether runs go side by side."""
     keys = [each.key for each in plan.varied]
-    in_lanes = Template(plan.tables, scene).fits(plan.measures)
-    if in_lanes and any(is_number_of_struct(key, keys) for key in keys):
-        return int(np.clip(STEPS_OF_LANES / scene.steps(), 1, MOST_RUNS_OF_CHUNK))
-    return int(np.clip(STEPS_ALONE / scene.steps(), 1, MOST_RUNS_ALONE))
+    return Template(plan.tables, scene).fits(plan.measures) and any(is_number_of_struct(key, keys) for key in keys)
 
 
 def command_of(plan: Plan) -> str:
@@ -67,7 +73,7 @@ def command_of(plan: Plan) -> str:
         words += ["--samples", str(plan.samples), "--seed", str(plan.seed)]
         words += ["--sensitivity"] if plan.is_saltelli else ["--sampling", plan.sampling]
     for measure in plan.measures:
-        words += ["--measure", measure.name]
+        words += ["--measure", measure.text]
     return shlex.join(words)
 
 
@@ -84,6 +90,7 @@ def carry_on(store: Store, scheduler: str | None = None, workers: int | None = N
         return
     chunks = store.missing()
     done_before = store.plan.runs - sum(store.range_of(number)[1] for number in chunks)
+    _foretell(store, 1.0 - done_before / store.plan.runs, scheduler, workers)
     with progress_bar(store.plan.tables.path.stem, store.plan.runs) as moved:
         moved(done_before)
 
@@ -103,6 +110,13 @@ def carry_on(store: Store, scheduler: str | None = None, workers: int | None = N
             with local_client(min(workers or usual_workers(), len(chunks))) as client:
                 run_on(client, store.plan, values_of, chunks, done)
     store.finish()
+
+
+def _foretell(store: Store, share: float, scheduler: str | None, workers: int | None) -> None:
+    """Tells how long the rest takes, if that is long."""
+    scene = store.plan.tables.scene()
+    at_once = 0 if scheduler else max(1, usual_workers() if workers is None else workers)
+    foretell(store.plan, scene, share, goes_in_lanes(store.plan, scene), at_once)
 
 
 def runs_there(store: Store) -> int:

@@ -31,8 +31,8 @@ def test_long_work_says_each_minute_how_far_it_is(capsys):
         advance(1, what="extremes" if step == 6 else None)
     lines = capsys.readouterr().err.splitlines()
     assert len(lines) == 5
-    assert lines[0] == "laconic: report: 2 of 40 after 60 seconds"
-    assert lines[-1] == "laconic: report, extremes: 10 of 40 after 5 minutes"
+    assert lines[0] == "laconic: report: 2 of 40 after 60 seconds, about 19 minutes left"
+    assert lines[-1] == "laconic: report, extremes: 10 of 40 after 5 minutes, about 15 minutes left"
 
 
 @pytest.mark.skipif(os.name == "nt", reason="closes streams as a Unix shell does")

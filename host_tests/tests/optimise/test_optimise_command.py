@@ -128,7 +128,7 @@ def test_goal_that_is_infinite_beside_another_and_a_point_that_the_front_has_not
     ("--free vehicle.wheel[9].x_m=0:1 --goal min:condition", "there is no vehicle.wheel[9]"),
     ("--free vehicle.wheel[*].bearing_deg=0:1 --goal min:condition", "no single value"),
     ("--free vehicle.wheel[1].kind=0:1 --goal min:condition", "is text, which has no range"),
-    ("--free vehicle.com_y_m=0:1 --free vehicle.com_y_m=0:2 --goal min:condition", "is given twice"),
+    ("--free vehicle.com_y_m=0:1 --free vehicle.com_y_m=0:2 --goal min:condition", "names, too; keep one of them"),
     ("--free vehicle.com_y_m=0:1 --goal condition", "give min:condition or max:condition"),
     ("--free vehicle.com_y_m=0:1 --goal min:conditio", "did you mean condition?"),
     ("--free vehicle.com_y_m=0:1 --goal min:straight_growth_per_s", "speed_m_per_s is missing"),

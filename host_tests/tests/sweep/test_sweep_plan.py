@@ -76,7 +76,7 @@ def test_what_is_no_variation_is_refused_with_the_remedy(text, words):
 
 
 @pytest.mark.parametrize(("vary", "more", "words"), [
-    ((), {}, "--vary: is missing"), ((f"{MASS}=1,2", f"{MASS}=3,4"), {}, "varied twice"),
+    ((), {}, "--vary: is missing"),
     ((f"{MASS}~normal(1,1)",), {}, "--samples: is missing"), ((f"{MASS}=1,2",), {"samples": 5}, "leave it out"),
     ((f"{MASS}=1,2", f"{RADIUS}~normal(1,1)"), {"samples": 4, "sampling": "saltelli"}, "--sensitivity"),
     ((f"{MASS}=1:2:100000", f"{RADIUS}=1:2:100000"), {}, "runs; give")])

@@ -11,6 +11,7 @@ import click
 from laconic.cli.options import OutputFile, OutputFolder, SceneName, goes_with, only_one
 from laconic.errors import BadInput
 from laconic.measures import measures_of
+from laconic.measures.arguments import ArguedMeasure
 from laconic.outputs import is_stdout, opened
 
 if TYPE_CHECKING:
@@ -84,7 +85,8 @@ def check_extra() -> None:
 def print_measures() -> None:
     """Names with units and words."""
     for name, measure in measures_of("run").items():
-        click.echo(f"{name:30} {measure.words}{f' (needs {measure.needs})' if measure.needs else ''}")
+        usage = measure.usage if isinstance(measure, ArguedMeasure) else name
+        click.echo(f"{usage:30} {measure.words}{f' (needs {measure.needs})' if measure.needs else ''}")
 
 
 def planned(scene: str, vary: tuple[str, ...], samples: int | None, seed: int, sampling: str,
@@ -101,7 +103,7 @@ def planned(scene: str, vary: tuple[str, ...], samples: int | None, seed: int, s
 
 def run(plan: Plan, folder: Path, scheduler: str | None, workers: int | None) -> None:
     """All that is missing, and the page."""
-    from laconic.sweep.page import write_page
+    from laconic.sweep.page import check_any_run, write_page
     from laconic.sweep.sweep import begin, carry_on, runs_there
 
     store = begin(plan, folder)
@@ -115,6 +117,7 @@ def run(plan: Plan, folder: Path, scheduler: str | None, workers: int | None) ->
         raise
     for line in write_page(store):
         click.echo(line)
+    check_any_run(store)
 
 
 def repeat(folder: Path, index: int, file: Path | None) -> None:
