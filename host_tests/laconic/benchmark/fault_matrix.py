@@ -14,12 +14,12 @@ from contextlib import contextmanager
 from dataclasses import dataclass
 from typing import Any
 
-import can
 import numpy as np
 
+from laconic.benchmark.paired_bus import paired_buses
 from laconic.benchmark.watched_ends import Row, WatchedLink, WatchedNode
 from laconic.errors import LaconicError
-from laconic.rig.buses import VirtualClock, next_channel
+from laconic.rig.buses import VirtualClock
 from laconic.rig.client import NodeClient
 from laconic.rig.faults import Faults
 from laconic.rig.faulty import FaultyBus
@@ -84,13 +84,12 @@ class Case:
 @contextmanager
 def faulty_node(faults: Faults, row: Row, scene: Scene) -> Iterator[Case]:
     """A node behind a faulty bus, in virtual time."""
-    clock, channel = VirtualClock(), next_channel()
-    with can.Bus(interface="virtual", channel=channel) as its:
-        inner = can.Bus(interface="virtual", channel=channel)
-        with FaultyBus(channel, inner=inner, clock=lambda: clock.time_us / 1e6, **vars(faults)) as bus:
-            node = WatchedNode(LibraryNode(scene.run.real), its, clock, row)
-            node.allowed_V |= {float(v) for v in marker_voltages(scene).values()}
-            yield Case(row, clock, bus, node, scene, random.Random(faults.seed))
+    clock = VirtualClock()
+    with paired_buses() as (inner, its), FaultyBus(inner=inner, clock=lambda: clock.time_us / 1e6,
+                                                   **vars(faults)) as bus:
+        node = WatchedNode(LibraryNode(scene.run.real), its, clock, row)
+        node.allowed_V |= {float(v) for v in marker_voltages(scene).values()}
+        yield Case(row, clock, bus, node, scene, random.Random(faults.seed))
 
 
 def marker_voltages(scene: Scene) -> dict[str, float]:

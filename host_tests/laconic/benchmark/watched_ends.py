@@ -71,6 +71,7 @@ class WatchedNode(NodeOnBus):
         self.sent: Multiset = Counter()
         self.allowed_V: set[float] = {0.0}
         self.view = node.inspect()
+        self.snapshot = node.snapshot()  # of that view
 
     def deliver(self, message: can.Message) -> None:
         before = self.node.inspect()
@@ -100,7 +101,11 @@ class WatchedNode(NodeOnBus):
         return busy
 
     def refresh(self) -> None:
-        """The invariants."""
+        """The invariants, where anything differs from the last time."""
+        snapshot = self.node.snapshot()
+        if snapshot == self.snapshot:
+            return
+        self.snapshot = snapshot
         view, before = self.node.inspect(), self.view
         strange = [v for v in view["voltage_V"] if v not in self.allowed_V]
         if strange:

@@ -224,10 +224,13 @@ class FaultModel:
 
     def take(self, now_s: float) -> list[tuple[str, can.Message]]:
         """Frames that have arrived by now, in order."""
-        self._recover(now_s)
-        self._babble(now_s)
-        self._arbitrate(now_s)
-        arrived = []
+        if self._queue:
+            self._recover(now_s)
+        if self.faults.babble_per_s:
+            self._babble(now_s)
+        if self._waiting:
+            self._arbitrate(now_s)
+        arrived: list[tuple[str, can.Message]] = []
         while self._due and self._due[0][0] <= now_s:
             _, _, direction, message = heapq.heappop(self._due)
             arrived.append((direction, message))
@@ -244,7 +247,7 @@ class FaultModel:
 
     def _babble(self, now_s: float) -> None:
         faults = self.faults
-        if not faults.babble_per_s or not self.active or not faults.from_s <= now_s < faults.until_s:
+        if not self.active or not faults.from_s <= now_s < faults.until_s:
             return
         if self._next_babble_s is None:
             self._next_babble_s = now_s

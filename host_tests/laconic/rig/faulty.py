@@ -63,9 +63,8 @@ class FaultyBus(can.BusABC):
         deadline = None if timeout is None else self._now() + timeout
         while True:
             self.move()
-            while (message := self.inner.recv(0)) is not None:
-                self.model.put(message, IN, self.now_s())
-            self.move()
+            if self._hears_any():
+                self.move()
             if self._arrived:
                 return self._arrived.pop(0), False
             left = None if deadline is None else deadline - self._now()
@@ -74,6 +73,14 @@ class FaultyBus(can.BusABC):
             wait = max(0.0, min(self.model.next_s() - self.now_s(), 0.01, left if left is not None else 0.01))
             if (message := self.inner.recv(wait)) is not None:
                 self.model.put(message, IN, self.now_s())
+
+    def _hears_any(self) -> bool:
+        """Hands the model what waits at the bus beneath; whether there was anything."""
+        any_came = False
+        while (message := self.inner.recv(0)) is not None:
+            self.model.put(message, IN, self.now_s())
+            any_came = True
+        return any_came
 
     def let_go(self) -> None:
         """Ends this bus and leaves the one beneath open, for whoever opened that."""

@@ -75,6 +75,7 @@ class LibraryNode:
         self.c = ffi.cast("struct laconic_node *", self._memory)
         self.frame = FrameBox(ffi)
         self._view = ffi.new("laconic_library_view *")
+        self._view_bytes = ffi.buffer(self._view)
         self._counter_names = dir(self._view.counters)
         self._on_frame, self._on_tick = lib.laconic_node_on_frame, lib.laconic_node_on_tick
         self._next, self._busy = lib.laconic_node_next_frame, lib.laconic_node_is_busy
@@ -100,6 +101,11 @@ class LibraryNode:
         self._on_tick(self.c, now_us & 0xFFFFFFFF)
         while self._busy(self.c):
             self._on_tick(self.c, now_us & 0xFFFFFFFF)
+
+    def snapshot(self) -> bytes:
+        """What `inspect` reads, as bytes: differs where that differs."""
+        self.library.lib.laconic_library_inspect(self.c, self._view)
+        return bytes(self._view_bytes)
 
     def inspect(self) -> dict[str, Any]:
         """State, steps, voltages and counters, for tests."""
