@@ -19,7 +19,7 @@ from laconic.batch.memory import Rows, aligned_memory
 from laconic.batch.population import Kinds, items_of
 from laconic.core import Core, Vehicle
 from laconic.core.given import c_object, finite_number, number, shown, step_count, whole_number
-from laconic.core.given_array import real_array
+from laconic.core.given_array import fill, real_array
 from laconic.errors import BadInput, Refused
 
 MOST_LANES = 2**28
@@ -85,10 +85,7 @@ class Batch:
         if not self.__dict__.get("_is_placed") or name in PRIVATE:
             super().__setattr__(name, value)
         elif name in INPUTS:
-            try:
-                self.__dict__[name][...] = value
-            except (TypeError, ValueError):
-                raise BadInput(f"{name}: does not fit; give numbers that fill {self.__dict__[name].shape}") from None
+            fill(name, self.__dict__[name], value)
         else:
             raise BadInput(f"{name}: is no input of a batch; set {', '.join(INPUTS)}")
 
@@ -201,14 +198,8 @@ class Batch:
         return self._in_parts(lambda first, count: int(run(self.c, first, count, len(samples), steps, given)), threads)
 
     def _samples(self, given: Any) -> np.ndarray:
-        shape = self.voltage_V.shape
-        try:
-            samples = np.ascontiguousarray(given, self.core.dtype)
-        except (TypeError, ValueError):
-            samples = np.empty(0)
-        if samples.ndim != 3 or samples.shape[1:] != shape:
-            raise BadInput(f"voltage_V: does not fit; give numbers of shape (samples, {shape[0]}, {shape[1]})")
-        return samples
+        shape = ("samples", *self.voltage_V.shape)
+        return real_array("voltage_V", given, shape, "V", dtype=self.core.dtype, is_finite=False)
 
     def _in_parts(self, work: Callable[[int, int], int], threads: int) -> int:
         """The sum of work on equal parts of the blocks at the same time; calls of the core let other threads run."""

@@ -7,6 +7,8 @@ import operator
 from collections.abc import Iterator, Mapping, Sequence
 from typing import TYPE_CHECKING, Any
 
+import numpy as np
+
 from laconic.errors import BadInput, nearest_of
 
 if TYPE_CHECKING:
@@ -18,6 +20,7 @@ MAKERS = {"input": "plant.input_of({…})", "vehicle": "core.vehicle({…})", "m
 FLAGS = ("FLAG", "ABSENCE")
 MOST_STEPS = 2**64 - 1
 LONGEST_SHOWN = 60  # of a value in a message
+REAL = ("f", "i", "u")  # kinds of NumPy's types that are real numbers
 
 
 def shown(value: Any) -> str:
@@ -26,10 +29,15 @@ def shown(value: Any) -> str:
     return text if len(text) <= LONGEST_SHOWN else f"{text[:LONGEST_SHOWN]}…"
 
 
+def is_real(value: Any) -> bool:
+    """Whether it may be a real number: no text, flag, complex number, date or duration, of Python or NumPy."""
+    return not isinstance(value, str | bytes | bool) and getattr(getattr(value, "dtype", None), "kind", "f") in REAL
+
+
 def number(name: str, value: Any) -> float:
     """A number; one beyond all floats becomes infinite, which the core refuses."""
     try:
-        return float("no number" if isinstance(value, str | bytes) else value)
+        return float(value if is_real(value) else "no number")
     except OverflowError:
         return math.inf if value > 0 else -math.inf
     except (TypeError, ValueError):
@@ -83,7 +91,7 @@ def by_names(name: str, given: Any) -> Mapping[str, Any]:
 def whole_number(name: str, value: Any) -> int:
     """A whole number of any size and sign."""
     try:
-        return operator.index(value)
+        return operator.index(value if is_real(value) else None)  # type: ignore[arg-type]  # which it refuses
     except TypeError:
         raise BadInput(f"{name}: {shown(value)} is no whole number (int); give one, such as 100") from None
 
@@ -118,8 +126,10 @@ def table(core: Core, path: str, name: str, given: Any, others: Sequence[str] = 
     found: dict[str, float | bool] = {}
     for key in given:
         if key not in others:
-            value = number(f"{name}.{key}", given[key])
-            kind = fields[key].kind
+            kind, value = fields[key].kind, given[key]
+            if kind in FLAGS and isinstance(value, bool | np.bool_):
+                value = float(value)
+            value = number(f"{name}.{key}", value)
             found[key] = bool(value) if kind in FLAGS else int(value) if kind == "INTEGER" else value
     return found
 

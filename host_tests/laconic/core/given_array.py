@@ -3,6 +3,7 @@
     real_array("voltage_V", given, (3, 1000), "V")                  # exactly this shape
     real_array("samples", given, ("samples", 3, 1000), "V")         # a word: any length
     real_array("state", given, (AtLeast(6),), "rad/s, m, rad")
+    fill("voltage_V", room, given, "V")                             # one that NumPy spreads over `room`
 """
 
 from __future__ import annotations
@@ -12,10 +13,8 @@ from typing import Any
 
 import numpy as np
 
-from laconic.core.given import shown
+from laconic.core.given import REAL, shown
 from laconic.errors import BadInput
-
-REAL = "fiu"  # kinds of NumPy's types that are real numbers
 
 
 class AtLeast(int):
@@ -32,17 +31,33 @@ def real_array(name: str, given: Any, shape: Sequence[Length], unit: str = "", *
 
     A column or row of a list that is too short, None, words, flags and complex numbers are no real numbers.
     """
-    found = np.empty(())
-    try:
-        found = np.asarray(given)
-    except (TypeError, ValueError, OverflowError):
-        _fail(name, given, shape, unit)
+    found = any_array(given)
     if found.dtype.kind not in REAL or not _fits(found.shape, shape):
         _fail(name, given, shape, unit, found)
     if is_finite:
         check_finite(name, found, unit)
     with np.errstate(over="ignore"):  # the core names a number that is too large for its scalar type
         return np.ascontiguousarray(found, dtype).reshape(found.shape)
+
+
+def any_array(given: Any) -> np.ndarray:
+    """As NumPy takes it; an array of objects for rows of unlike lengths and what else is no array."""
+    try:
+        return np.asarray(given)
+    except (TypeError, ValueError, OverflowError):
+        return np.empty((), object)
+
+
+def fill(name: str, room: np.ndarray, given: Any, unit: str = "") -> None:
+    """Writes real numbers, one for all or as NumPy spreads them, into `room`; BadInput says what fits."""
+    found = any_array(given)
+    if found.dtype.kind not in REAL:
+        _fail(name, given, room.shape, unit, found)
+    try:
+        with np.errstate(over="ignore"):
+            room[...] = found
+    except ValueError:
+        _fail(name, given, room.shape, unit, found)
 
 
 def check_finite(name: str, values: np.ndarray, unit: str = "") -> None:

@@ -11,7 +11,8 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from laconic.core.given import shown
+from laconic.core.given import REAL, shown
+from laconic.core.given_array import any_array
 from laconic.errors import BadInput, nearest_of
 
 if TYPE_CHECKING:
@@ -59,13 +60,13 @@ def row_of(core: Core, values: Mapping[str, float | Sequence[float]], wheel_coun
     row = np.zeros(core.input_length, core.dtype)
     for signal, value in values.items():
         slots = slots_of(core, signal)
-        try:
-            many = np.atleast_1d(np.asarray(value)).astype(core.dtype, casting="same_kind")
-        except (TypeError, ValueError) as error:
-            raise BadInput(f"{signal}: {value!r} is no number and no list of numbers") from error
+        found = any_array(value)
+        if found.dtype.kind not in REAL:
+            raise BadInput(f"{signal}: {shown(value)} is no number and no list of numbers; give real numbers")
+        many = np.atleast_1d(found).astype(core.dtype)
         count = len(many) if signal in PER_WHEEL else len(slots)
         if many.ndim != 1 or len(many) != count or count > len(slots):
-            raise BadInput(f"{signal}: {value!r} are not its numbers, of which there are {len(slots)}")
+            raise BadInput(f"{signal}: {shown(value)} are not its numbers, of which there are {len(slots)}")
         _check_wheels_of(core, signal, value, slots[:count], wheel_count)
         row[slots.start : slots.start + count] = many
     return row

@@ -61,9 +61,11 @@ class Vehicle:
 
     @classmethod
     def of(cls, scene: Scene) -> Vehicle:
-        """That of a scene, in the scene's scalar type."""
+        """That of a scene, in the scene's scalar type; BadInput for what is no Scene."""
+        from laconic.scene import check_scene  # which is above this room
+
         made = cls.__new__(cls)
-        core = scene.core()
+        core = check_scene(scene).core()
         made._set(core, scene.c_vehicle(core))
         return made
 

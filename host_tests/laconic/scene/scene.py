@@ -12,6 +12,7 @@ from pathlib import Path
 from typing import Any
 
 from laconic.core import REALS, Core, load
+from laconic.core.given import shown
 from laconic.core.plant import Plant
 from laconic.core.sensors import Sensors
 from laconic.errors import BadInput, Refused
@@ -216,7 +217,7 @@ class Scene:
 def check_scene(given: Any) -> Scene:
     """A scene as it is; BadInput for a path, a name or anything else."""
     if not isinstance(given, Scene):
-        raise BadInput(f"scene: {given!r} is no Scene; give read_scene(path or name)")
+        raise BadInput(f"scene: {shown(given)} is no Scene; give read_scene(path or name)")
     return given
 
 

@@ -131,7 +131,7 @@ def test_sampled_voltages_act_as_a_run_for_each_sample(threads):
 
 
 WRONG = {
-    "voltage_V: does not fit; give numbers of shape (samples, 3, 2)":
+    "voltage_V: an array of shape (5, 2, 3) and type float64 does not fit; give real numbers of shape (samples, 3, 2) in V":
         lambda: laconic.Batch(robot(), 2).run_sampled(np.zeros((5, 2, 3))),
     "steps_each: 'all' is no whole number": lambda: laconic.Batch(robot(), 2).run_sampled(np.zeros((5, 3, 2)), "all"),
     "vehicles: none is given": lambda: laconic.Batch([]),
@@ -155,9 +155,22 @@ WRONG = {
     "run.step_s: -1 is not positive": lambda: laconic.Batch(robot(), 2, step_s=-1.0),
     "lane: there is no 2": lambda: laconic.Batch(robot(), 2).state(2),
     "threads: 0 cannot take a step": lambda: laconic.Batch(robot(), 2).run(1, threads=0),
-    "voltage_V: does not fit; give numbers that fill (3, 2)": lambda: setattr(
+    "voltage_V: [1.0, 2.0, 3.0] does not fit; give real numbers of shape (3, 2)": lambda: setattr(
         laconic.Batch(robot(), 2), "voltage_V", [1.0, 2.0, 3.0]),
-    "voltage_V: does not fit": lambda: setattr(laconic.Batch(robot(), 2), "voltage_V", "high"),
+    "voltage_V: 'high' does not fit": lambda: setattr(laconic.Batch(robot(), 2), "voltage_V", "high"),
+    "voltage_V: None does not fit": lambda: setattr(laconic.Batch(robot(), 2), "voltage_V", None),
+    "voltage_V: ['1', '2'] does not fit": lambda: setattr(laconic.Batch(robot(), 2), "voltage_V", ["1", "2"]),
+    "voltage_V: [(1+1j), 2] does not fit": lambda: setattr(laconic.Batch(robot(), 2), "voltage_V", [1 + 1j, 2]),
+    "body_force_N: np.datetime64('2020') does not fit": lambda: setattr(
+        laconic.Batch(robot(), 2), "body_force_N", np.datetime64("2020")),
+    "body_moment_Nm: True does not fit": lambda: setattr(laconic.Batch(robot(), 2), "body_moment_Nm", True),
+    "voltage_V: [[[None, 1], [1, 1], [1, 1]]] does not fit": lambda: laconic.Batch(robot(), 2).run_sampled(
+        [[[None, 1], [1, 1], [1, 1]]]),
+    "lanes: True is no whole number": lambda: laconic.Batch(robot(), True),
+    "step_s: True is no number": lambda: laconic.Batch(robot(), 2, step_s=True),
+    "steps: True is no whole number": lambda: laconic.Batch(robot(), 2).run(True),
+    "x_m: np.timedelta64(3,'h') is no number": lambda: laconic.Batch(robot(), 2).start(0, x_m=np.timedelta64(3, "h")),
+    "y_m: np.complex128(1j) is no number": lambda: laconic.Batch(robot(), 2).start(0, y_m=np.complex128(1j)),
     "status: is no input of a batch": lambda: setattr(laconic.Batch(robot(), 2), "status", 0),
     "voltages_V: is no input of a batch": lambda: setattr(laconic.Batch(robot(), 2), "voltages_V", 0),
     "steps: 1.5 is no whole number": lambda: laconic.Batch(robot(), 2).run(1.5),

@@ -41,6 +41,14 @@ WRONG: list[tuple[Callable[[], Any], str]] = [
     (lambda: laconic.simulate(scene(), "x_m"), 's1.toml: signals: is the text "x_m", not a list'),  # type: ignore
     (lambda: laconic.simulate(scene(), ["x_m", "x_m"]), "s1.toml: signals: names x_m twice"),
     (lambda: laconic.simulate("s1"), "scene: 's1' is no Scene; give read_scene("),  # type: ignore[arg-type]
+    (lambda: laconic.Vehicle.of("s1"), "scene: 's1' is no Scene; give read_scene("),  # type: ignore[arg-type]
+    (lambda: laconic.Vehicle.of(None), "scene: None is no Scene; give read_scene("),  # type: ignore[arg-type]
+    (lambda: laconic.Vehicle.of({}), "scene: {} is no Scene; give read_scene("),  # type: ignore[arg-type]
+    (lambda: laconic.Filter("x", "y"), "plant: 'x' is no plant; make one with vehicle.plant("),  # type: ignore
+    (lambda: plant().run(core().input(), True), "steps: True is no whole number"),
+    (lambda: plant().run({"body_force_N": [1j, 1]}), "body_force_N: [1j, 1] is no number and no list of numbers"),
+    (lambda: plant().run({"body_force_N": np.ones(2, bool)}), "is no number and no list of numbers; give real numbers"),
+    (lambda: core().vehicle({"mass_kg": True}), "vehicle.mass_kg: True is no number"),
     (lambda: laconic.read_scene(None), "scene: None is no path"),  # type: ignore[arg-type]
     (lambda: laconic.make_fmu("s1", "s1.fmu", version=3), "scene: 's1' is no Scene"),  # type: ignore[arg-type]
     (lambda: laconic.make_fmu(scene(), "s1.fmu", version=4), "version: there is no FMI 4; give 2 or 3"),
