@@ -131,7 +131,7 @@ def test_sampled_voltages_act_as_a_run_for_each_sample(threads):
 
 
 WRONG = {
-    "voltage_V: an array of shape (5, 2, 3) and type float64 does not fit; give real numbers of shape (samples, 3, 2) in V":
+    "voltage_V: an array of shape (5, 2, 3) and type float64 does not fit; give real numbers of shape (samples, 3":
         lambda: laconic.Batch(robot(), 2).run_sampled(np.zeros((5, 2, 3))),
     "steps_each: 'all' is no whole number": lambda: laconic.Batch(robot(), 2).run_sampled(np.zeros((5, 3, 2)), "all"),
     "vehicles: none is given": lambda: laconic.Batch([]),

@@ -289,6 +289,7 @@ def test_every_number_of_the_robot_changes_how_the_same_drive_ends(page):
     ("vehicle.mass_kg", "0", "0 is not positive; give a value above 0"),
     ("vehicle.yaw_inertia_kgm2", "-1", "-1 is not positive; give a value above 0"),
     ("vehicle.wheel_radius_m", "one", "“one” is no number; give one"),
+    ("vehicle.mass_kg", "1,500", "“1,500” is 1500 or 1.500; give one of them"),
     ("vehicle.wheel_inertia_kgm2", "", "a number is missing; give one"),
     ("ground.slope_rad", "95", "give"),
 ])

@@ -113,6 +113,7 @@ def test_wheels_that_cannot_turn_the_robot_are_told_in_the_cores_words_until_the
 
 @pytest.mark.parametrize(("key", "text", "told"), [
     ("x_m", "far", "vehicle.wheel[1].x_m: “far” is no number; give one"),
+    ("x_m", "0x10", "vehicle.wheel[1].x_m: “0x10” is no number; give one"),
     ("y_m", "", "vehicle.wheel[1].y_m: a number is missing; give one"),
     ("roller_rad", "0", "vehicle.wheel[1].roller_rad: with 0 rad the roller axis lies along the axle"),
     ("axle_rad", "1e99", "vehicle.wheel[1].axle_rad:")])

@@ -16,6 +16,12 @@ export function isList(/** @type {unknown} */ given) {
   return Array.isArray(given) || (ArrayBuffer.isView(given) && !(given instanceof DataView));
 }
 
+/** A text, or nothing. */
+export function askText(/** @type {string} */ path, /** @type {unknown} */ given) {
+  if (given !== undefined && typeof given !== "string")
+    throw new Refused(path, `${toldOf(given)} is no text; give one in quotes, or take it out`, "not a text");
+}
+
 /** An object with keys. @param {string} path @param {any} given @returns {Record<string, any>} */
 export function askTable(path, given, remedy = "give an object with keys") {
   if (typeof given !== "object" || given === null || isList(given))
@@ -32,6 +38,17 @@ export function askKeys(path, given, keys) {
 export function unknownKey(/** @type {string} */ path, /** @type {string[]} */ keys = []) {
   const known = keys.length ? `the keys are ${keys.join(", ")}` : "see docs/scenes.md";
   return new Refused(path, `unknown key; take it out, or correct it: ${known}`, "unknown key");
+}
+
+/** A list. */
+export function askList(/** @type {string} */ path, /** @type {unknown} */ given) {
+  if (!isList(given)) throw new Refused(path, `${toldOf(given)} is no list; give one of objects`, "not a list");
+}
+
+/** true or false. */
+export function askFlag(/** @type {string} */ path, /** @type {unknown} */ given) {
+  if (typeof given === "boolean") return given;
+  throw new Refused(path, `${toldOf(given)} is neither true nor false; give one of them`, "not a boolean");
 }
 
 /** A number, of which the core judges what it refuses itself, NaN too. */

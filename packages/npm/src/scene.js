@@ -1,9 +1,23 @@
 // A scene as a robot's numbers: every key by its path in the core's own list of fields.
-import { askFinite, askKeys, askNumber, askNumbers, askTable, isList, toldOf, unknownKey } from "./checks.js";
+import {
+  askFinite,
+  askFlag,
+  askKeys,
+  askList,
+  askNumber,
+  askNumbers,
+  askTable,
+  askText,
+  isList,
+  toldOf,
+  unknownKey,
+} from "./checks.js";
 import { Refused } from "./refused.js";
 
 const SCENE = ["name", "source", "vehicle", "ground", "initial", "input", "run", "outputs", "sensors"];
 const OF_TOOLS = ["speed_controller", "rig"];
+const TEXTS = ["name", "source"];
+const UNREAD_TABLES = ["outputs", "sensors", ...OF_TOOLS]; // which other tools read
 const INITIAL = ["nu_rad_per_s", "velocity_body_m_per_s", "yaw_rate_rad_per_s", "x_m", "y_m", "heading_rad"];
 const OF_RUN = ["duration_s", "step_s", "method", "real"];
 const KINDS = { omni: 1, mecanum: 1, roller: 1, fixed: 2 };
@@ -35,6 +49,9 @@ export class SceneSetter {
   /** @param {any} scene */
   set(scene) {
     askKeys("", scene, [...SCENE, ...OF_TOOLS]);
+    for (const key of TEXTS) askText(key, scene[key]);
+    for (const key of UNREAD_TABLES) if (scene[key] !== undefined) askTable(key, scene[key]);
+    if (scene.input !== undefined) askList("input", scene.input);
     const vehicle = askTable("vehicle", scene.vehicle, "give an object with mass_kg and the vehicle's other keys");
     const { wheel = [], support = [] } = vehicle;
     this.table("vehicle", vehicle, [...TABLES, "wheel", "support"]);
@@ -44,6 +61,13 @@ export class SceneSetter {
         this.table(`vehicle.${name}`, vehicle[name]);
         this.need(`vehicle.${name}.`, vehicle[name], [NEED.always, NEED.payload]);
       }
+    if (Object.keys(vehicle.drive ?? {}).length && vehicle.motor === undefined)
+      throw new Refused(
+        "vehicle.drive",
+        "limits the currents of motors, which need vehicle.motor; give it instead of motor_gain_Nm_per_V and " +
+          "motor_damping_Nms, or take drive out",
+        "missing",
+      );
     this.module.c.laconic_web_set_motor(this.robot, vehicle.motor ? 1 : 0);
     if (scene.ground !== undefined) this.table("ground", scene.ground);
     this.list("wheel", wheel, (each, name) => this.wheel(each, name));
@@ -84,8 +108,7 @@ export class SceneSetter {
     if (number === undefined) throw unknownKey(shown);
     const kind = this.module.c.laconic_web_field_kind(number);
     if (kind !== KIND.flag && kind !== KIND.absence) askNumber(shown, value);
-    else if (typeof value !== "boolean")
-      throw new Refused(shown, `${toldOf(value)} is neither true nor false; give one of them`, "not a boolean");
+    else askFlag(shown, value);
     if (kind === KIND.integer && !Number.isInteger(value))
       throw new Refused(shown, `${toldOf(value)} is no whole number; give one`, "not a whole number");
     if (!this.module.c.laconic_web_set(this.robot, number, item, Number(value)) && item === 0) throw unknownKey(shown);
@@ -98,7 +121,7 @@ export class SceneSetter {
     /** @type {(each: any, name: string) => any} */ numbers,
   ) {
     const path = `vehicle.${name}`;
-    if (!isList(given)) throw new Refused(path, `${toldOf(given)} is no list; give one of objects`, "not a list");
+    askList(path, given);
     this.module.c.laconic_web_set(this.robot, this.module.fields.get(path), 0, given.length);
     Array.from(given, (/** @type {any} */ each, /** @type {number} */ index) => {
       const shown = `${path}[${index + 1}]`;
@@ -132,9 +155,16 @@ export class SceneSetter {
         );
     /** @type {Record<string, number | boolean>} */
     const numbers = { kind: KINDS[/** @type {keyof typeof KINDS} */ (kind)], ...rest };
+    const roller = Object.keys(given).find((key) => /^roller_(rad|deg)$/.test(key) && given[key] !== undefined);
+    if (kind === "fixed" && roller)
+      throw new Refused(
+        `${name}.${roller}`,
+        "a fixed wheel has no rollers; take it out, or give another kind",
+        "unknown key",
+      );
     if (kind === "omni") numbers.roller_rad ??= OMNI_ROLLER_RAD;
     this.need("vehicle.wheel[#].", numbers, [NEED.wheel, ...(kind === "fixed" ? [] : [NEED.roller])], [], `${name}.`);
-    if (driven !== undefined) numbers.undriven = typeof driven === "boolean" ? !driven : driven;
+    if (driven !== undefined) numbers.undriven = !askFlag(`${name}.driven`, driven);
     if (motor_circuit !== undefined) numbers.motor_circuit = circuitOf(`${name}.motor_circuit`, motor_circuit);
     return numbers;
   }
@@ -170,9 +200,9 @@ export class SceneSetter {
 
 function circuitOf(/** @type {string} */ path, /** @type {any} */ given) {
   const number = CIRCUITS.indexOf(given);
-  if (number < 0 && typeof given !== "number")
+  if (number < 0)
     throw new Refused(path, `there is no ${toldOf(given)}; use ${CIRCUITS.join(", ")}`, "motor circuit unknown");
-  return number < 0 ? given : number;
+  return number;
 }
 
 /** Angles in degrees, by the suffix _deg, become radians. @param {string} path @param {any} given */
