@@ -2,13 +2,13 @@
 
 from __future__ import annotations
 
-import math
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, field
 from pathlib import Path
 from typing import TypeVar
 
 from laconic.errors import BadInput
+from laconic.robot_import.checked import finite
 
 Value = TypeVar("Value")
 ROLLERS = ("none", "omni", "mecanum")
@@ -55,20 +55,9 @@ def by_joint(option: str, texts: Sequence[str], read: Callable[[str, str], Value
 
 def positive(where: str, text: str) -> float:
     """A number above 0."""
-    value = number(where, text)
+    value = finite(where, [text], 1)[0]
     if not value > 0.0:
         raise BadInput(f"{where}: must be above 0")
-    return value
-
-
-def number(where: str, text: str) -> float:
-    """A finite number."""
-    try:
-        value = float(text)
-    except ValueError:
-        raise BadInput(f"{where}: {text!r} is no number") from None
-    if not math.isfinite(value):
-        raise BadInput(f"{where}: must be finite")
     return value
 
 
@@ -77,7 +66,7 @@ def rollers(where: str, text: str) -> str | float:
     if text in ROLLERS:
         return text
     try:
-        return number(where, text)
+        return finite(where, [text], 1)[0]
     except BadInput:
         raise BadInput(f"{where}: give {', '.join(ROLLERS)}, or the angle of the rollers to the axle in "
                        "degrees") from None

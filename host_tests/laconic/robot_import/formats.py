@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 from pathlib import Path
-from xml.etree import ElementTree
 
 from laconic.errors import BadInput, reason_of
 from laconic.robot_import.answers import Answers
@@ -11,6 +10,7 @@ from laconic.robot_import.mjcf import read_mjcf
 from laconic.robot_import.robot_tree import Robot
 from laconic.robot_import.sdf import read_sdf
 from laconic.robot_import.urdf import read_urdf, read_xacro
+from laconic.robot_import.xml_file import xml_root
 
 BY_ROOT = {"robot": "urdf", "mujoco": "mjcf", "sdf": "sdf"}
 ENDINGS = {".urdf": "urdf", ".xacro": "xacro", ".mjcf": "mjcf", ".sdf": "sdf", ".world": "sdf"}
@@ -31,12 +31,7 @@ def read_robot(path: Path, answers: Answers) -> Robot:
 
 
 def _by_content(path: Path) -> str:
-    try:
-        root = ElementTree.parse(path).getroot()
-    except OSError as error:
-        raise BadInput(f"{path}: {reason_of(error)}") from None
-    except ElementTree.ParseError:
-        raise BadInput(f"{path}: is no XML; give a URDF, xacro, MJCF or SDF file") from None
+    root = xml_root(path, "is no XML; give a URDF, xacro, MJCF or SDF file")
     if root.tag not in BY_ROOT:
         raise BadInput(f"{path}: begins with <{root.tag}>; a robot begins with <robot> (URDF, xacro), <mujoco> or "
                        "<sdf>")

@@ -7,7 +7,6 @@ from __future__ import annotations
 
 from pathlib import Path
 from typing import Any
-from xml.etree import ElementTree
 
 import numpy as np
 
@@ -16,6 +15,7 @@ from laconic.robot_import.bounded import Library, bounded
 from laconic.robot_import.checked import DISSIPATION, finite, mass, not_negative, words_of
 from laconic.robot_import.placement import Array, inverse, placement, point_of
 from laconic.robot_import.robot_tree import BALL, FIXED, HINGE, SLIDE, TURNS_ROUND_RAD, Joint, Link, Robot, Shape
+from laconic.robot_import.xml_file import xml_root
 
 KINDS = {0: BALL, 1: BALL, 2: SLIDE, 3: HINGE}  # mjJNT_FREE, _BALL, _SLIDE, _HINGE
 SPHERE, CAPSULE, CYLINDER, BOX, MESH = 2, 3, 5, 6, 7  # mjtGeom
@@ -69,7 +69,7 @@ def _check_attributes(path: Path, warnings: list[str]) -> None:
     """BadInput for an attribute that is NaN: MuJoCo warns of it, and takes what it takes without the attribute."""
     if not any("NaN" in each for each in warnings):
         return
-    for element in ElementTree.parse(path).iter():
+    for element in xml_root(path, "is no XML").iter():
         for key, text in element.attrib.items():
             if any(word.lower().lstrip("+-") == "nan" for word in text.split()):
                 name = f" {element.get('name')}" if element.get("name") else ""

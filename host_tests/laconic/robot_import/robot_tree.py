@@ -5,14 +5,14 @@ All joints are in their zero position. Vectors are in axes of the base link: x a
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Iterator
+from collections.abc import Iterable, Iterator, Mapping
 from dataclasses import dataclass, field
 from functools import cached_property
 from pathlib import Path
 
 import numpy as np
 
-from laconic.errors import BadInput
+from laconic.errors import BadInput, nearest_of
 from laconic.robot_import.placement import Array, point_of
 
 HINGE, SLIDE, FIXED, BALL = "hinge", "slide", "fixed", "ball"
@@ -168,3 +168,22 @@ def base_of(path: Path, links: Iterable[str], children: Iterable[str]) -> str:
         raise BadInput(f"{path}: has {len(roots)} links that hang on no joint ({names or 'a loop'}); a robot has one, "
                        "its base")
     return roots[0]
+
+
+def mimics(path: Path, masters: Mapping[str, str], joints: Mapping[str, Joint]) -> list[str]:
+    """What is left out of wheels that one motor turns, by the joint that each joint mimics; BadInput where that is not
+    there or is the joint itself, also by way of others."""
+    remarks = []
+    for name, master in masters.items():
+        if master not in joints:
+            raise BadInput(f"{path}: joint {name}: mimics joint {master}, which is not there; "
+                           f"{nearest_of(master, joints)}")
+        chain = [name]
+        while (above := masters.get(chain[-1])) is not None and above not in chain:
+            chain.append(above)
+        if above == name:
+            way = f", by way of {', '.join(chain[1:])}" if chain[1:] else ""
+            raise BadInput(f"{path}: joint {name}: mimics itself{way}; name another joint, or take the mimic out")
+        if joints[name].kind == HINGE and not joints[name].is_limited:
+            remarks.append(f"joint {name} mimics {master}, which is not taken over: each wheel turns on its own")
+    return remarks

@@ -6,19 +6,20 @@ from collections.abc import Mapping
 from pathlib import Path
 from types import SimpleNamespace
 from typing import Any
-from xml.etree import ElementTree
 
 import numpy as np
 
-from laconic.errors import BadInput, reason_of
+from laconic.errors import BadInput
 from laconic.robot_import.checked import (
     DISSIPATION,
+    WORDS_AT_MOST,
     finite,
     inertia_matrix,
     mass,
     not_negative,
+    size,
+    sizes,
     unit_vector,
-    words_of,
 )
 from laconic.robot_import.meshes import MeshFiles
 from laconic.robot_import.placement import (
@@ -41,28 +42,29 @@ from laconic.robot_import.robot_tree import (
     Robot,
     Shape,
     base_of,
+    mimics,
 )
+from laconic.robot_import.xml_file import Element, xml_root
 
 KINDS = {"revolute": HINGE, "continuous": HINGE, "prismatic": SLIDE, "fixed": FIXED, "ball": BALL, "universal": BALL,
          "revolute2": BALL, "screw": SLIDE, "gearbox": FIXED}
 TEXTS = {"ixx": 1.0, "ixy": 0.0, "ixz": 0.0, "iyy": 1.0, "iyz": 0.0, "izz": 1.0}  # the format's own when not given
-Element = ElementTree.Element
+VERSIONS = [f"1.{minor}" for minor in range(13)]
 
 
 def read_sdf(path: Path, packages: Mapping[str, Path], model_name: str | None) -> Robot:
     """The only model of the file, or the one of this name."""
-    try:
-        root = ElementTree.parse(path).getroot()
-    except OSError as error:
-        raise BadInput(f"{path}: {reason_of(error)}") from None
-    except ElementTree.ParseError as error:
-        raise BadInput(f"{path}: is no XML: {words_of(error)}") from None
+    root = xml_root(path, "is no XML")
     return _Model(path, _model(path, root, model_name), MeshFiles(path, packages)).robot()
 
 
 def _model(path: Path, root: Element, name: str | None) -> Element:
     if root.tag != "sdf":
         raise BadInput(f"{path}: begins with <{root.tag}>; SDF begins with <sdf>")
+    version = root.get("version", VERSIONS[-1])
+    if version not in VERSIONS:
+        raise BadInput(f"{path}: <sdf> version {version[:WORDS_AT_MOST]!r} is not known; known are {VERSIONS[0]} to "
+                       f"{VERSIONS[-1]}")
     models = [each for each in root.iter("model") if each.find("link") is not None]
     if not models and (included := root.find(".//include")) is not None:
         uri = _text(included, "uri") or "a file"
@@ -126,6 +128,8 @@ class _Model:
 
     def robot(self) -> Robot:
         """The tree, in the frame of its base."""
+        for name in self.frames:
+            self.frame(name)  # also one that nothing stands in must be somewhere
         ends = {name: (_text(each, "parent") or "", _text(each, "child") or "") for name, each in self.joints.items()}
         real = {name: end for name, end in ends.items() if end[0] != "world"}
         base = base_of(self.path, self.links, [child for _, child in real.values()])
@@ -133,7 +137,10 @@ class _Model:
         links = {name: self._link(name, back) for name in self.links}
         joints = {name: self._joint(name, *real[name], back) for name in real}
         title = self.model.get("name") or self.path.stem
-        return Robot(title, self.path, "SDF", base, links, joints, self.files.remarks()).check()
+        masters = {name: mimic.get("joint", "") for name in real
+                   if (mimic := self.joints[name].find("axis/mimic")) is not None}
+        remarks = (*self.files.remarks(), *mimics(self.path, masters, joints))
+        return Robot(title, self.path, "SDF", base, links, joints, remarks).check()
 
     def _link(self, name: str, back: Array) -> Link:
         element, where = self.links[name], f"{self.path}: link {name}"
@@ -157,12 +164,12 @@ class _Model:
             return None
         placed = frame @ _placement(where, part.find("pose"))
         if solid.tag in ("cylinder", "capsule"):
-            radius, length = finite(where, [_text(solid, "radius"), _text(solid, "length")], 2)
+            radius, length = (size(where, key, _text(solid, key)) for key in ("radius", "length"))
             return Shape("cylinder", placed, (radius, length / 2.0), collides=collides)
         if solid.tag == "sphere":
-            return Shape("sphere", placed, tuple(finite(where, [_text(solid, "radius")], 1)), collides=collides)
+            return Shape("sphere", placed, (size(where, "radius", _text(solid, "radius")),), collides=collides)
         if solid.tag == "box":
-            half = np.array(finite(where, (_text(solid, "size") or "").split(), 3)) / 2.0
+            half = sizes(where, (_text(solid, "size") or "").split()) / 2.0
             return Shape.box(placed, half, collides)
         points = self.files.points(_text(solid, "uri") or "") if solid.tag == "mesh" else None
         if points is None:

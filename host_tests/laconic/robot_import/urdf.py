@@ -12,7 +12,7 @@ from xml.etree import ElementTree
 
 import numpy as np
 
-from laconic.errors import BadInput, nearest_of, reason_of
+from laconic.errors import BadInput
 from laconic.robot_import.checked import (
     DISSIPATION,
     LARGEST,
@@ -20,6 +20,9 @@ from laconic.robot_import.checked import (
     inertia_matrix,
     mass,
     not_negative,
+    number,
+    size,
+    sizes,
     unit_vector,
     words_of,
 )
@@ -36,27 +39,28 @@ from laconic.robot_import.robot_tree import (
     Robot,
     Shape,
     base_of,
+    mimics,
 )
+from laconic.robot_import.xml_file import Element, root_of, xml_root
 
 KINDS = {"continuous": HINGE, "revolute": HINGE, "prismatic": SLIDE, "fixed": FIXED, "floating": BALL, "planar": SLIDE}
+NO_URDF = "is no URDF that can be read"
+NUMBERS = {"mass": ("value",), "inertia": ("ixx", "ixy", "ixz", "iyy", "iyz", "izz"), "sphere": ("radius",),
+           "cylinder": ("radius", "length"), "dynamics": ("damping", "friction"), "mimic": ("multiplier", "offset"),
+           "limit": ("lower", "upper", "effort", "velocity")}
 
 
 def read_xacro(path: Path, arguments: Mapping[str, str], packages: Mapping[str, Path]) -> Robot:
     """A xacro file, expanded with `NAME:=VALUE` arguments."""
     from laconic.robot_import.xacro_expansion import expanded
 
-    return _robot(path, expanded(path, arguments, packages), MeshFiles(path, packages), "xacro")
+    root = root_of(path, expanded(path, arguments, packages), NO_URDF)
+    return _robot(path, root, MeshFiles(path, packages), "xacro")
 
 
 def read_urdf(path: Path, packages: Mapping[str, Path]) -> Robot:
     """A URDF file."""
-    try:
-        text = path.read_text(encoding="utf-8")
-    except OSError as error:
-        raise BadInput(f"{path}: {reason_of(error)}") from None
-    except UnicodeDecodeError:
-        raise BadInput(f"{path}: is no text in UTF-8") from None
-    return _robot(path, text, MeshFiles(path, packages), "URDF")
+    return _robot(path, xml_root(path, NO_URDF), MeshFiles(path, packages), "URDF")
 
 
 @contextlib.contextmanager
@@ -66,15 +70,15 @@ def _quiet() -> Iterator[None]:
         yield
 
 
-def _robot(path: Path, text: str, files: MeshFiles, form: str) -> Robot:
+def _robot(path: Path, root: Element, files: MeshFiles, form: str) -> Robot:
     from urdf_parser_py.urdf import URDF
 
-    _check_vectors(path, text)
+    _check_numbers(path, root)
     with _quiet():
         try:
-            found = URDF.from_xml_string(text.encode())
+            found = URDF.from_xml_string(ElementTree.tostring(root))
         except Exception as error:
-            raise BadInput(f"{path}: is no URDF that can be read: {words_of(error)}") from None
+            raise BadInput(f"{path}: {NO_URDF}: {words_of(error)}") from None
     if not found.links:
         raise BadInput(f"{path}: has no <link>; a robot has one at least")
     base = base_of(path, [link.name for link in found.links], [joint.child for joint in found.joints])
@@ -86,33 +90,19 @@ def _robot(path: Path, text: str, files: MeshFiles, form: str) -> Robot:
     loose = [link.name for link in found.links if link.name not in frames]
     if loose:
         raise BadInput(f"{path}: link {loose[0]} is not joined to {base}; a robot is a tree")
-    remarks = (*files.remarks(), *_mimics(path, found, joints))
+    masters = {joint.name: str(joint.mimic.joint) for joint in found.joints if joint.mimic is not None}
+    remarks = (*files.remarks(), *mimics(path, masters, joints))
     return Robot(found.name or path.stem, path, form, base, links, joints, remarks).check()
 
 
-def _mimics(path: Path, found: Any, joints: Mapping[str, Joint]) -> list[str]:
-    """What is left out of wheels that one motor turns; BadInput for a joint that mimics one that is not there."""
-    remarks = []
-    for joint in found.joints:
-        if joint.mimic is None:
-            continue
-        if joint.mimic.joint not in joints:
-            raise BadInput(f"{path}: joint {joint.name}: mimics joint {joint.mimic.joint}, which is not there; "
-                           f"{nearest_of(str(joint.mimic.joint), joints)}")
-        if joints[joint.name].kind == HINGE and not joints[joint.name].is_limited:
-            remarks.append(f"joint {joint.name} mimics {joint.mimic.joint}, which is not taken over: each wheel turns "
-                           "on its own")
-    return remarks
-
-
-def _check_vectors(path: Path, text: str) -> None:
-    """BadInput with the link or joint for a vector that has not three numbers, which the library would not place."""
-    try:
-        root = ElementTree.fromstring(text)
-    except ElementTree.ParseError as error:
-        raise BadInput(f"{path}: is no URDF that can be read: {words_of(error)}") from None
+def _check_numbers(path: Path, root: Element) -> None:
+    """BadInput with the link or joint for a vector that has not three numbers, which the library would not place, and
+    for what only Python takes for a number."""
     for part in root:
         for element in part.iter():
+            for key in NUMBERS.get(element.tag, ()) if part.tag in ("link", "joint") else ():
+                if key in element.attrib:
+                    number(f"{path}: {part.tag} {part.get('name', '')}: <{element.tag}> {key}", element.attrib[key])
             for key in ("xyz", "rpy", "size"):
                 if key in element.attrib:
                     where = f"{path}: {part.tag} {part.get('name', '')}: <{element.tag}> {key}"
@@ -165,12 +155,12 @@ def _shape(where: str, part: Any, frame: Array, files: MeshFiles, collides: bool
     geometry, kind = part.geometry, type(part.geometry).__name__
     placed = frame @ _origin(where, part.origin)
     if kind == "Cylinder":
-        radius, length = finite(where, [geometry.radius, geometry.length], 2)
+        radius, length = size(where, "radius", geometry.radius), size(where, "length", geometry.length)
         return Shape("cylinder", placed, (radius, length / 2.0), collides=collides)
     if kind == "Sphere":
-        return Shape("sphere", placed, tuple(finite(where, [geometry.radius], 1)), collides=collides)
+        return Shape("sphere", placed, (size(where, "radius", geometry.radius),), collides=collides)
     if kind == "Box":
-        half = np.array(finite(where, geometry.size, 3)) / 2.0
+        half = sizes(where, geometry.size) / 2.0
         return Shape.box(placed, half, collides)
     if kind == "Mesh":
         points = files.points(geometry.filename)

@@ -75,8 +75,9 @@ def find_wheels(robot: Robot, answers: Answers) -> Ground:
     for joint, radius in measured:
         if radius is None:
             if "wheel" in joint.name.lower() or _beside_a_wheel(joint, measured):
-                raise BadInput(f"{robot.path}: joint {joint.name}: no shape tells the wheel's radius; give --radius "
-                               f"{joint.name}=METRES, or --wheel JOINT for each joint that is a wheel")
+                why = "its shapes have the radius 0" if _has_shapes(robot, joint) else "no shape tells the wheel's radius"
+                raise BadInput(f"{robot.path}: joint {joint.name}: {why}; give --radius {joint.name}=METRES, or "
+                               "--wheel JOINT for each joint that is a wheel")
             remarks.append(f"joint {joint.name} turns on a level axle, no shape tells a radius, so it is no wheel; "
                            f"--radius {joint.name}=METRES would say otherwise")
             continue
@@ -134,12 +135,17 @@ def _turns_as_wheel(robot: Robot, joint: Joint) -> bool:
 
 def _no_wheel(robot: Robot, candidates: Sequence[Joint]) -> str:
     if candidates:
-        return (f"no shape tells the radius of {', '.join(joint.name for joint in candidates[:6])}; give --radius "
-                "METRES, and "
-                "--wheel JOINT for each wheel")
+        names = ", ".join(joint.name for joint in candidates[:6])
+        are_there = any(_has_shapes(robot, joint) for joint in candidates)
+        why = f"the shapes of {names} have the radius 0" if are_there else f"no shape tells the radius of {names}"
+        return f"{why}; give --radius METRES, and --wheel JOINT for each wheel"
     return ("no joint turns round on a level axle (continuous, z up), so there is no wheel; give --wheel JOINT for "
             "each joint "
             "that is one")
+
+
+def _has_shapes(robot: Robot, joint: Joint) -> bool:
+    return any(link.shapes for link in robot.below(joint, rigid=True))
 
 
 def _radius(robot: Robot, joint: Joint, answers: Answers) -> float | None:

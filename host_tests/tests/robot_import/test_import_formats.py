@@ -66,3 +66,23 @@ def test_a_wheel_that_mimics_another_is_told_to_turn_on_its_own(tmp_path: Path) 
     (tmp_path / "robot.urdf").write_text(robot(TWO_WHEELS).replace("</joint>", '<mimic joint="right"/></joint>', 1))
     remarks = import_robot(tmp_path / "robot.urdf", Answers()).remarks
     assert "joint left mimics right, which is not taken over: each wheel turns on its own" in remarks
+
+
+@pytest.mark.parametrize("encoding", ["ISO-8859-1", "UTF-16", "windows-1252"])
+@pytest.mark.parametrize(("name", "text"), [("robot.urdf", robot(TWO_WHEELS, name="Räd")),
+                                            ("robot.sdf", SDF.replace("made_up", "Räd"))])
+def test_a_file_is_read_in_the_encoding_that_its_first_line_names(tmp_path: Path, name: str, text: str,
+                                                                  encoding: str) -> None:
+    (tmp_path / name).write_bytes(f'<?xml version="1.0" encoding="{encoding}"?>{text}'.encode(encoding))
+    assert import_robot(tmp_path / name, Answers()).name == "Räd"
+
+
+def test_an_encoding_that_no_line_names_or_none_knows_is_refused_with_the_remedy(tmp_path: Path) -> None:
+    path = tmp_path / "robot.urdf"
+    text = robot(TWO_WHEELS, name="Räd")
+    path.write_bytes(text.encode("latin-1"))
+    with pytest.raises(BadInput, match="its first line names no other encoding; save it as UTF-8, or begin it with <"):
+        import_robot(path, Answers())
+    path.write_bytes(f'<?xml version="1.0" encoding="klingon"?>{text}'.encode("latin-1"))
+    with pytest.raises(BadInput, match="is no URDF that can be read: unknown encoding"):
+        import_robot(path, Answers())

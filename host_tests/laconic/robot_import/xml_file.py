@@ -1,0 +1,38 @@
+"""The XML of a robot's file, in the encoding that its first line names, as XML parsers read it."""
+
+from __future__ import annotations
+
+from pathlib import Path
+from xml.etree import ElementTree
+
+from laconic.errors import BadInput, reason_of
+from laconic.robot_import.checked import words_of
+
+Element = ElementTree.Element
+
+
+def xml_root(path: Path, why_not: str) -> Element:
+    """The outermost element; BadInput begins with `why_not` for a file that is no XML."""
+    try:
+        return root_of(path, path.read_bytes(), why_not)
+    except OSError as error:
+        raise BadInput(f"{path}: {reason_of(error)}") from None
+
+
+def root_of(path: Path, text: bytes | str, why_not: str) -> Element:
+    """The same of a text that is there."""
+    try:
+        return ElementTree.fromstring(text)
+    except (ElementTree.ParseError, LookupError, ValueError) as error:  # the last two: of encodings
+        if isinstance(text, bytes) and not _is_utf_8(text) and b"encoding" not in text[:100]:
+            raise BadInput(f"{path}: is no text in UTF-8, and its first line names no other encoding; save it as "
+                           'UTF-8, or begin it with <?xml version="1.0" encoding="ISO-8859-1"?>') from None
+        raise BadInput(f"{path}: {why_not}: {words_of(error)}") from None
+
+
+def _is_utf_8(text: bytes) -> bool:
+    try:
+        text.decode("utf-8")
+    except UnicodeDecodeError:
+        return False
+    return True
