@@ -75,7 +75,8 @@ def find_wheels(robot: Robot, answers: Answers) -> Ground:
     for joint, radius in measured:
         if radius is None:
             if "wheel" in joint.name.lower() or _beside_a_wheel(joint, measured):
-                why = "its shapes have the radius 0" if _has_shapes(robot, joint) else "no shape tells the wheel's radius"
+                has_shapes = _has_shapes(robot, joint)
+                why = "its shapes have the radius 0" if has_shapes else "no shape tells the wheel's radius"
                 raise BadInput(f"{robot.path}: joint {joint.name}: {why}; give --radius {joint.name}=METRES, or "
                                "--wheel JOINT for each joint that is a wheel")
             remarks.append(f"joint {joint.name} turns on a level axle, no shape tells a radius, so it is no wheel; "
