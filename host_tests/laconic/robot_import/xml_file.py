@@ -24,15 +24,16 @@ def root_of(path: Path, text: bytes | str, why_not: str) -> Element:
     try:
         return ElementTree.fromstring(text)
     except (ElementTree.ParseError, LookupError, ValueError) as error:  # the last two: of encodings
-        if isinstance(text, bytes) and not _is_utf_8(text) and b"encoding" not in text[:100]:
+        if isinstance(text, bytes) and _lacks_encoding(text):
             raise BadInput(f"{path}: is no text in UTF-8, and its first line names no other encoding; save it as "
                            'UTF-8, or begin it with <?xml version="1.0" encoding="ISO-8859-1"?>') from None
         raise BadInput(f"{path}: {why_not}: {words_of(error)}") from None
 
 
-def _is_utf_8(text: bytes) -> bool:
+def _lacks_encoding(text: bytes) -> bool:
+    """XML by its beginning, not in UTF-8, without a word of what else it is in."""
     try:
         text.decode("utf-8")
     except UnicodeDecodeError:
-        return False
-    return True
+        return text.lstrip().startswith(b"<") and b"encoding" not in text[:100]
+    return False

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from typing import TYPE_CHECKING, Any
 
 from laconic.core.fields import ABOVE_0
@@ -55,6 +56,16 @@ def check_input(top: Table, each: Input, vehicle: dict[str, Any], duration_s: fl
     if each.signal.startswith("voltage_V"):
         check_motor(top, each, vehicle)
     check_end(top, each, duration_s)
+
+
+def check_places(top: Table, inputs: Sequence[Input]) -> None:
+    """Fails for where a world force acts in a scene that gives none."""
+    if any(each.signal.startswith("world_force_N[") for each in inputs):
+        return
+    for each in inputs:
+        if each.signal.startswith("world_force_point_m["):
+            top.fail(f"{each.location}.signal", f"{each.signal} says where a world force acts, and no input gives one; "
+                     "give world_force_N[1] or world_force_N[2], too, or take it out")
 
 
 def check_motor(top: Table, each: Input, vehicle: dict[str, Any]) -> None:

@@ -11,7 +11,7 @@ from laconic.core import Field, load
 from laconic.core.inputs import no_such_wheel
 from laconic.errors import nearest_of
 from laconic.scene.drives import read_drives
-from laconic.scene.effects import check_ground, check_input, check_start, check_wheel
+from laconic.scene.effects import check_ground, check_input, check_places, check_start, check_wheel
 from laconic.scene.fields import read_field
 from laconic.scene.ground import check_friction, read_circuit, read_drive, read_ground
 from laconic.scene.inputs import Input
@@ -40,6 +40,7 @@ def read_parts(top: Table, methods: Sequence[str], reals: Sequence[str]) -> dict
     check_start(top, parts["initial"], parts["vehicle"])
     parts["inputs"] = [read_input(each, wheel_count) for each in top.tables("input")]
     parts["run"] = read_run(top.table("run", required=True), methods, reals)
+    check_places(top, parts["inputs"])
     for each in parts["inputs"]:
         check_input(top, each, parts["vehicle"], parts["run"]["duration_s"])
     parts["sensors"] = read_sensors(top.table("sensors"), wheel_count) if top.has("sensors") else NO_SENSORS
@@ -54,6 +55,7 @@ def read_parts(top: Table, methods: Sequence[str], reals: Sequence[str]) -> dict
 def read_vehicle(table: Table) -> dict[str, Any]:
     """`[vehicle]` with the keys of laconic_vehicle; `motor` stays apart for laconic_motor_fit."""
     fields = load().fields_of("vehicle")
+    table.expect(field.key for field in fields)
     vehicle: dict[str, Any] = {field.key: read_field(table, field) for field in fields if field.need == "ALWAYS"}
     vehicle |= {field.key: read_field(table, field, 0.0) for field in fields if field.need == "NEVER"}
     vehicle["wheel"] = [read_wheel(each) for each in table.tables("wheel")]
@@ -64,9 +66,7 @@ def read_vehicle(table: Table) -> dict[str, Any]:
         vehicle["drive"] = read_drive(table)
     vehicle["support"] = [read_point(each) for each in table.tables("support")]
     if table.has("payload"):
-        payload = table.table("payload")
-        vehicle["payload"] = {field.key: read_field(payload, field) for field in load().fields_of("vehicle.payload")}
-        payload.done()
+        vehicle["payload"] = read_all(table.table("payload"), load().fields_of("vehicle.payload"))
     table.done(OF_VEHICLES)
     return vehicle
 
@@ -80,6 +80,7 @@ def read_motor(table: Table, direct: Sequence[Field]) -> dict[str, Any]:
         both = f", and so is {given[1]}; keep one of them, the motor or these two"
         table.fail(given[0], "is given besides [vehicle.motor]" + (both if given[1:] else "; keep one of them"))
     motor = table.table("motor")
+    motor.expect(field.key for field in load().fields_of("vehicle.motor"))
     values = {field.key: read_field(motor, field, 0.0 if field.need == "NEVER" else ...)
               for field in load().fields_of("vehicle.motor")}
     motor.done()
@@ -123,9 +124,15 @@ def read_position(table: Table) -> dict[str, float]:
 
 def read_point(table: Table) -> dict[str, float]:
     """One `[[vehicle.support]]`."""
-    point = {field.key: read_field(table, field) for field in load().fields_of("vehicle.support[#]")}
+    return read_all(table, load().fields_of("vehicle.support[#]"))
+
+
+def read_all(table: Table, fields: Sequence[Field]) -> dict[str, float]:
+    """A table of these numbers and nothing else."""
+    table.expect(field.key for field in fields)
+    found = {field.key: read_field(table, field) for field in fields}
     table.done()
-    return point
+    return found
 
 
 def read_initial(table: Table, wheel_count: int) -> dict[str, Any]:

@@ -8,7 +8,7 @@ import math
 import re
 import sys
 import unicodedata
-from collections.abc import Iterator, Mapping, Sequence
+from collections.abc import Iterable, Iterator, Mapping, Sequence
 from pathlib import Path
 from typing import Any, NoReturn
 
@@ -51,6 +51,7 @@ class Table:
         self.path, self.location, self._entries = path, location, entries
         self.in_degrees = set() if in_degrees is None else in_degrees  # names of the angles that are given so
         self._known: set[str] = set()
+        self._expected: set[str] = set()
 
     def name(self, key: str) -> str:
         """The key with the tables around it."""
@@ -64,6 +65,10 @@ class Table:
         """Whether the key is there; it counts as known from now on."""
         self._known.add(key)
         return key in self._entries
+
+    def expect(self, keys: Iterable[str]) -> None:
+        """Keys that will be read: where one is missing, none of the others counts as its misspelling."""
+        self._expected.update(keys)
 
     def plain(self) -> dict[str, Any]:
         """A copy of all that the table holds, as it was read."""
@@ -87,7 +92,7 @@ class Table:
 
     def _mistyped(self, key: str) -> str:
         """The key that was probably meant to be this one."""
-        unread = [entry for entry in self._entries if entry not in self._known]
+        unread = [entry for entry in self._entries if entry not in self._known | self._expected]
         close = difflib.get_close_matches(key, unread, n=1)
         return f" (you wrote {close[0]}, which is no known key here)" if close else ""
 

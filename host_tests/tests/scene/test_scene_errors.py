@@ -103,6 +103,11 @@ BAD = {
     "unknown kind": (('kind = "mecanum"', 'kind = "mecanun"'), ("wheel[1].kind", "did you mean mecanum?")),
     "unknown key": (("mass_kg = 20.0", "mass_kg = 20.0\nmas_kg = 1"), ("vehicle.mas_kg", "did you mean mass_kg?")),
     "mistyped key": (("mass_kg = 20.0", "mas_kg = 20.0"), ("vehicle.mass_kg", "is missing", "you wrote mas_kg")),
+    "half of a pair": (("[run]", "[[vehicle.support]]\ny_m = 1.0\n[run]"),
+                       ("vehicle.support[1].x_m: is missing; give it as a number\n",)),
+    "place of a force that is not there": (
+        ('"voltage_V[1]"\n', '"world_force_point_m[2]"\n'),
+        ("input[1].signal: world_force_point_m[2] says where a world force acts", "give world_force_N[1] or")),
     "unknown key at the top": (('name = "Four', 'colour = "red"\nname = "Four'), ("colour", "no known key")),
     "unknown key of a wheel": (("axle_deg = 180", "axle_deg = 180\nwidth_m = 1"), ("wheel[2].width_m", "known key")),
     "wheel count mismatch": (("voltage_V[1]", "voltage_V[3]"), ("input[1].signal", "2 wheels", "voltage_V[2]")),
