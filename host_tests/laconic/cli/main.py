@@ -66,7 +66,7 @@ class Ended(LaconicError):
         self.exit_status = exit_status
 
 
-@click.group(cls=LazyCommands, context_settings={"help_option_names": ["-h", "--help"], "max_content_width": 110})
+@click.group(cls=LazyCommands, context_settings={"help_option_names": ["-h", "--help"], "max_content_width": 97})
 @click.version_option(package_name="laconic", message="laconic %(version)s")
 def commands() -> None:
     """The dynamics of wheeled robots: simulate, verify, wrap as FMU, drive over CAN."""

@@ -5,7 +5,7 @@ Every argument that names a file has one of the types below, so that no command 
 
 from __future__ import annotations
 
-from collections.abc import Callable, Mapping
+from collections.abc import Callable, Mapping, Sequence
 from pathlib import Path
 from typing import Any
 
@@ -94,6 +94,12 @@ def json_flag(meaning: str = "Machine-readable output.") -> Callable[[Any], Any]
     return click.option("--json", "json_wanted", is_flag=True, help=meaning, callback=claim)
 
 
+def one_of(name: str, choices: Sequence[str], meaning: str, **more: Any) -> Callable[[Any], Any]:
+    """An option with many choices: they stand in its help, which is wrapped, and not in one long line before it."""
+    return click.option(name, type=click.Choice(choices), metavar=name.lstrip("-").upper(),
+                        help=f"{meaning}: {', '.join(choices)}.", **more)
+
+
 def only_one(flags: Mapping[str, bool]) -> str | None:
     """The option that was given, if any; BadInput for two of them."""
     given = [flag for flag, is_given in flags.items() if is_given]
@@ -107,8 +113,9 @@ def belongs_to(flag: str, is_on: bool, *options: str) -> None:
     context = click.get_current_context()
     for parameter in context.command.params:
         given = context.get_parameter_source(parameter.name) is ParameterSource.COMMANDLINE
-        if given and not is_on and parameter.opts[0] in options:
-            raise BadInput(f"{parameter.opts[0]}: has a meaning with {flag} alone; leave it out, or add {flag}")
+        name = max(parameter.opts, key=len)
+        if given and not is_on and name in options:
+            raise BadInput(f"{name}: has a meaning with {flag} alone; leave it out, or add {flag}")
 
 
 def goes_with(flag: str, *options: str) -> None:
@@ -116,7 +123,7 @@ def goes_with(flag: str, *options: str) -> None:
     context = click.get_current_context()
     for parameter in context.command.params:
         given = context.get_parameter_source(parameter.name) is ParameterSource.COMMANDLINE
-        name = parameter.opts[0]
+        name = max(parameter.opts, key=len)
         if given and isinstance(parameter, click.Option) and name != flag and name not in options:
             raise BadInput(f"{name}: has no meaning beside {flag}; leave one of them out")
 

@@ -25,6 +25,22 @@ def test_every_command_is_found_and_explains_itself(name, capsys):
     assert len(text.splitlines()) > 5
 
 
+@pytest.mark.parametrize("columns", ["80", "200"])
+def test_no_line_of_any_help_is_longer_than_a_page(columns, capsys, monkeypatch):
+    monkeypatch.setenv("COLUMNS", columns)
+    for name in commands.list_commands(None):
+        run([name, "--help"])
+        lines = capsys.readouterr().out.splitlines()
+        assert len(max(lines, key=len)) <= 95, name
+
+
+def test_what_every_command_writes_is_named_by_one_letter():
+    for name in commands.list_commands(None):
+        for option in commands.get_command(None, name).params:
+            assert "-o" in option.opts or not {"--out", "--output"} & {*option.opts}, name
+            assert "--out" in option.opts or "-o" not in option.opts, name
+
+
 def test_help_lists_the_commands(capsys):
     assert run(["--help"]) == 0
     text = capsys.readouterr().out

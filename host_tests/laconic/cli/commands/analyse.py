@@ -21,7 +21,7 @@ if TYPE_CHECKING:
 
 @click.command("analyse")
 @click.argument("scene", type=SceneName())
-@click.option("--out", type=OutputFolder(), metavar="DIR",
+@click.option("-o", "--out", type=OutputFolder(), metavar="DIR",
               help="Write report.md, report.json and pictures there.")
 @click.option("--only", type=click.Choice(PARTS), multiple=True, help="Only this part; may be given several times.")
 @click.option("--at", "at_s", type=float, default=0.0, metavar="T", help="Hold the inputs of this instant [s].")

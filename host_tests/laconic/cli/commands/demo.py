@@ -20,7 +20,7 @@ SCENES = ("turtlebot3_burger", "robotino2", "kuka_youbot", "paper_caster", "pape
 
 @click.command("demo")
 @click.argument("scenes", type=SceneName(), nargs=-1, metavar="[SCENE]...")
-@click.option("--out", type=OutputFolder(), metavar="DIR",
+@click.option("-o", "--out", type=OutputFolder(), metavar="DIR",
               help="Where pictures and figures go; demo/ of the build tree if not given.")
 @json_flag()
 def command(scenes: tuple[str, ...], out: Path | None, json_wanted: bool) -> int:

@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING, Any
 
 import click
 
-from laconic.cli.options import InputPath, OutputFile, SceneName, check_step, goes_with, json_flag
+from laconic.cli.options import InputPath, OutputFile, SceneName, check_step, goes_with, json_flag, one_of
 from laconic.core import REALS
 from laconic.errors import BadInput
 from laconic.outputs import write_text
@@ -31,9 +31,8 @@ if TYPE_CHECKING:
 @click.option("--listen", type=int, metavar="PORT",
               help="Instead of an interface: SLCAN on a TCP port of this machine; 0: any free one, printed.")
 @click.option("--drives", type=click.Choice(DRIVE_PROTOCOLS), help="Protocol instead of the scene's [rig.drives].")
-@click.option("--board", type=click.Choice((*KINDS, ON_BUS)),
-              help="Where the vehicle runs: here, as process, emulated, or a node that is on the bus.  "
-                   "[default: virtual]")
+@one_of("--board", (*KINDS, ON_BUS), "Where the vehicle runs, here (virtual, without this option), as process, "
+        "emulated, or as a node that is on the bus")
 @click.option("--id-base", help="The node's first CAN identifier, a multiple of 32.  [default: the scene's, or 0x680]")
 @click.option("--dbc", type=InputPath(), help="The messages of the controller; with --map.")
 @click.option("--map", "map_path", type=InputPath(), metavar="MAP.toml",
@@ -47,7 +46,7 @@ if TYPE_CHECKING:
 @click.option("--stop-within", "stop_within_s", type=float, metavar="SECONDS",
               help="The vehicle must stand so soon after the first fault, or else the controller's last frame.")
 @click.option("--stop-distance", "stop_distance_m", type=float, metavar="METRES", help="... and so near.")
-@click.option("--method", type=click.Choice(METHODS), help="Method instead of the scene's.")
+@one_of("--method", METHODS, "Method instead of the scene's")
 @click.option("--real", type=click.Choice(REALS), help="Scalar type instead of the scene's.")
 @click.option("--step", "step_s", type=float, metavar="SECONDS", help="Step and period instead of the scene's.")
 @click.option("--log", "logs", multiple=True, type=OutputFile(*LOGS), help="Log all frames: .blf, .asc.")

@@ -28,7 +28,7 @@ OF_SIGNALS = "laconic"   # the map of logs whose columns have names of signals
 @click.option("--fit", "fit_on", type=InputPath(), multiple=True, metavar="RUN.csv",
               help="Fit friction on this run; may be given several times. By default every other run of a folder.")
 @map_option
-@click.option("--out", type=OutputFolder(), metavar="DIR",
+@click.option("-o", "--out", type=OutputFolder(), metavar="DIR",
               help="Write report.md, report.json and pictures there.")
 @json_flag("Machine-readable result on stdout.")
 def command(logs: tuple[Path, ...], scene: str, inputs: str | None, fit_on: tuple[Path, ...], map_path: Path | None,
@@ -36,15 +36,19 @@ def command(logs: tuple[Path, ...], scene: str, inputs: str | None, fit_on: tupl
     """Compares LOG..., recorded runs or folders of them, with the model of SCENE, which comes last.
 
     \b
-    wheel-speeds  the recorded rotation of the wheels is rolled without slip and set beside the true path;
-                  with friction in [ground] the core moves, its wheels held at these speeds
-    currents      the core, driven by the measured currents as torques, predicts wheel speeds and steady
-                  currents; without friction in [ground], friction is fitted by least squares before
-    set-speeds    the same through the scene's [speed_controller], which makes currents of them
-    voltages      the same by the motors' voltages; or a file whose first column is time_s and whose others
-                  have names of signals, as `simulate --out F.csv --inputs` writes it: its inputs drive the
-                  core, and every other signal in it is compared; of several such files or a folder the
-                  voltages drive, and the paths are compared
+    wheel-speeds  the recorded rotation of the wheels is rolled without slip and set
+                  beside the true path; with friction in [ground] the core moves, its
+                  wheels held at these speeds
+    currents      the core, driven by the measured currents as torques, predicts wheel
+                  speeds and steady currents; without friction in [ground], friction is
+                  fitted by least squares before
+    set-speeds    the same through the scene's [speed_controller], which makes currents
+                  of them
+    voltages      the same by the motors' voltages; or a file whose first column is
+                  time_s and whose others have names of signals, as `simulate --out F.csv
+                  --inputs` writes it: its inputs drive the core, and every other signal
+                  in it is compared; of several such files or a folder the voltages
+                  drive, and the paths are compared
 
     Maps that come with the project recognise their logs; --map names the map of others (docs/logs.md).
     """

@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING, Any
 
 import click
 
-from laconic.cli.options import InputPath, OutputFile, SceneName, belongs_to, goes_with, json_flag, only_one
+from laconic.cli.options import InputPath, OutputFile, SceneName, belongs_to, goes_with, json_flag, one_of, only_one
 from laconic.core import REALS
 from laconic.errors import BadInput
 from laconic.rig.choices import KINDS, LOGS
@@ -28,7 +28,7 @@ CONNECTION = ("--interface", "--channel", "--bitrate", "--bus-option", "--id-bas
 @click.option("--bus-option", "bus_options", multiple=True, metavar="NAME=VALUE",
               help="Further setting of the interface, such as under=slcan or loss=0.01 for faulty.")
 @click.option("--id-base", help="The node's first CAN identifier, a multiple of 32.  [default: the scene's, or 0x680]")
-@click.option("--board", type=click.Choice(KINDS), help="Start a node for this run: here, as process, or emulated.")
+@one_of("--board", KINDS, "Start a node for this run, here, as process, or emulated")
 @click.option("--lockstep", is_flag=True, help="One step to one command (default).")
 @click.option("--same-bits", is_flag=True, help="Lockstep with raw frames; every bit must agree.")
 @click.option("--free-run", is_flag=True, help="The node steps by its own clock.")
@@ -39,7 +39,7 @@ CONNECTION = ("--interface", "--channel", "--bitrate", "--bus-option", "--id-bas
               help="Periods a second in free run, of whole steps.  [default: one step each]")
 @click.option("--watchdog", type=click.IntRange(0, 65535), default=100, show_default=True, metavar="MS",
               help="Longest time between commands in free run; 0: none.")
-@click.option("--method", type=click.Choice(METHODS), help="Method instead of the scene's.")
+@one_of("--method", METHODS, "Method instead of the scene's")
 @click.option("--real", type=click.Choice(REALS), help="Scalar type instead of the scene's; that of the node.")
 @click.option("--tolerance", "tolerances", multiple=True, metavar="SIGNAL=VALUE",
               help="Allowed difference; half the resolution of the signal's frame where none is given.")

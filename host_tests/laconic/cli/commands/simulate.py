@@ -9,7 +9,7 @@ from typing import Any
 import click
 import numpy as np
 
-from laconic.cli.options import PICTURES, OutputFile, SceneName, belongs_to, check_step, json_flag
+from laconic.cli.options import PICTURES, OutputFile, SceneName, belongs_to, check_step, json_flag, one_of
 from laconic.cli.streams import warn
 from laconic.core import REALS
 from laconic.errors import Refused, ResultFails
@@ -25,10 +25,11 @@ ROLLED = 1e-5                # J for 1 kg on wheels of 1 m: a millionth of the r
 
 @click.command("simulate")
 @click.argument("scene", type=SceneName())
-@click.option("--method", type=click.Choice(METHODS), help="Method instead of the scene's.")
+@one_of("--method", METHODS, "Method instead of the scene's")
 @click.option("--step", "step_s", type=float, metavar="H", help="Step in seconds instead of the scene's.")
 @click.option("--real", type=click.Choice(REALS), help="Scalar type instead of the scene's.")
-@click.option("--out", type=OutputFile(".csv", stdout=True), metavar="F.csv", help="Write the outputs; - for stdout.")
+@click.option("-o", "--out", type=OutputFile(".csv", stdout=True), metavar="F.csv",
+              help="Write the outputs; - for stdout.")
 @click.option("--plot", type=OutputFile(*PICTURES), metavar="F.png",
               help="Draw path, velocities, wheel speeds; .png, .svg or .pdf.")
 @click.option("--film", type=OutputFile(".svg"), metavar="F.svg",

@@ -37,7 +37,7 @@ SAMPLINGS = ("sobol", "latin", "random")
 @click.option("--workers", type=click.IntRange(0, 4096), metavar="N",
               help="Processes on this machine, one for each core without it; 0: this process alone.")
 @click.option("--scheduler", metavar="ADDRESS", help="A Dask scheduler, such as tcp://127.0.0.1:8786, for its workers.")
-@click.option("-o", "--output", "folder", type=OutputFolder(), metavar="DIR",
+@click.option("-o", "--out", "--output", "folder", type=OutputFolder(), metavar="DIR",
               help="Folder for the results; one that has begun goes on.")
 @click.option("--repeat", "index", type=click.IntRange(0), metavar="INDEX",
               help="Write the scene of one run of the results in -o, for laconic simulate.")
@@ -62,7 +62,7 @@ def command(scene: str | None, vary: tuple[str, ...], samples: int | None, seed:
         raise BadInput("-o: is missing; give a folder for the results")
     if index is not None:
         check_extra()
-        goes_with("--repeat", "-o", "--scene-out")
+        goes_with("--repeat", "--output", "--scene-out")
         repeat(folder, index, scene_out)
         return
     if scene_out:

@@ -16,7 +16,7 @@ from laconic.trim import trimmed
 @click.command("trim")
 @click.argument("scene", type=SceneName())
 @click.option("--real", type=click.Choice(REALS), help="Scalar type; the scene's own where none is given.")
-@click.option("--out", type=OutputFolder(), metavar="DIR", default=Path(), show_default=True,
+@click.option("-o", "--out", type=OutputFolder(), metavar="DIR", default=Path(), show_default=True,
               help="Folder for the files.")
 def command(scene: str, real: str | None, out: Path) -> None:
     """Writes the C files that make a build of the core for SCENE alone.

@@ -10,7 +10,7 @@ from rich.console import Console
 from rich.markup import escape
 from rich.table import Table
 
-from laconic.cli.options import InputPath, json_flag
+from laconic.cli.options import InputPath, json_flag, one_of
 from laconic.core import REALS, load
 from laconic.errors import BadInput
 from laconic.progress import progress_bar
@@ -20,7 +20,7 @@ from laconic.verification.trajectories import CaseResult, as_json, read_referenc
 
 @click.command("verify")
 @click.argument("reference", type=InputPath())
-@click.option("--method", type=click.Choice(METHODS), default="auto", show_default=True)
+@one_of("--method", METHODS, "Method", default="auto", show_default=True)
 @click.option("--step", "step_s", type=float, default=1e-3, show_default=True, metavar="H", help="Step in seconds.")
 @click.option("--real", type=click.Choice(REALS), default="double", show_default=True, help="Scalar type of the core.")
 @click.option("--tolerance", type=float, metavar="T", help="Largest error that passes; without it any does.")
