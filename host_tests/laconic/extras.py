@@ -8,7 +8,7 @@ from importlib.metadata import PackageNotFoundError, requires
 from laconic.errors import BadInput
 from laconic.paths import IS_WHEEL
 
-DISTRIBUTIONS = {"can": "python-can", "e2e": "autosar-e2e", "serial": "pyserial"}
+DISTRIBUTIONS = {"can": "python-can", "e2e": "autosar-e2e", "flint": "python-flint", "serial": "pyserial"}
 """Modules whose distribution has another name."""
 
 

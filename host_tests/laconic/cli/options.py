@@ -45,6 +45,24 @@ class SceneName(click.ParamType[str]):
         return value
 
 
+class ReferenceOrScene(click.ParamType[str]):
+    """A reference file, or a scene by its path or name."""
+
+    name = "reference"
+
+    def convert(self, value: Any, param: click.Parameter | None, ctx: click.Context | None) -> str:
+        """As it was given; its file is noted as an input."""
+        if is_scene(value):
+            return SceneName().convert(value, param, ctx)
+        return str(InputPath().convert(value, param, ctx))
+
+
+def is_scene(given: str) -> bool:
+    """Whether it is the path of a scene, or the name of one: no file, and not as a reference file is named."""
+    path = Path(given)
+    return bool(given) and (path.suffix == ".toml" or not (path.suffix == ".json" or exists(path)))
+
+
 class OutputFile(click.ParamType[Path]):
     """A file that a command writes, in a format with these endings; "-" for stdout where that makes sense."""
 

@@ -8,7 +8,7 @@ import math
 import re
 import sys
 import unicodedata
-from collections.abc import Iterable, Iterator, Mapping, Sequence
+from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
 from pathlib import Path
 from typing import Any, NoReturn
 
@@ -39,9 +39,9 @@ def read_toml(path: Path) -> Table:
         raise BadInput(f"{path}: nests its lists too deeply; give the path of a scene") from None
 
 
-def entries_of(text: str) -> dict[str, Any]:
-    """What a TOML text holds; ValueError where it is none."""
-    return tomllib.loads(text)
+def entries_of(text: str, number: Callable[[str], Any] = float) -> dict[str, Any]:
+    """What a TOML text holds, its decimals made by `number`; ValueError where it is none."""
+    return tomllib.loads(text, parse_float=number)
 
 
 class Table:

@@ -54,6 +54,11 @@ WRONG = {
     "play robotino2 --listen 0 --drives canopen --bus-fault los=1": "did you mean loss?",
     "play robotino2 --listen 0 --dbc nowhere.dbc --map nowhere.toml": "nowhere.toml",
     "play robotino2 --listen 0 --drives canopen --log ''": EMPTY, "play robotino2 --eds a.eds --listen 0": "--listen",
+    "simulate skid_steer --enclose": "ground.friction_coefficient: wheels stick and slip",
+    "simulate switched.toml --enclose": "vehicle.wheel[2].motor_circuit", "verify nowhere --enclose": "no such scene",
+    "simulate limited.toml --enclose": "vehicle.drive: limits switch", "verify list.json --enclose": "no object",
+    "simulate waves.toml --enclose": "input[1].kind: a sine changes", "verify folder --enclose": "cannot be read",
+    "verify waves.toml --enclose": "input[1].kind: a sine changes", "verify s1": "give a reference file",
     "sweep": "-o: is missing", "sweep -o out": "SCENE: is missing", "sweep s1 -o out": "--vary: is missing",
     "sweep s1 --vary vehicle.mas_kg=1,2 -o out": "did you mean mass_kg?", "sweep s1 --vary x -o out": "--vary x",
     "sweep s1 --vary 'vehicle.mass_kg~norml(1,2)' -o out": "did you mean normal?", "sweep --measures s1": "SCENE s1",
@@ -108,6 +113,11 @@ def workplace(tmp_path_factory: pytest.TempPathFactory) -> Path:
              "number.json": '{"cases": 3}', "empty.csv": "", "empty.asc": "",
              "huge.toml": good.replace("duration_s = 10.0", "duration_s = 1" + 400 * "0"),
              "control.toml": 'name = "\\u001b[2J"\n' + good.replace("name =", "#")}
+    still, end = scene_path("robotino2").read_text().split("[[input]]")[0], "[run]\nduration_s = 1.0\nstep_s = 0.01\n"
+    sine = '[[input]]\nsignal = "voltage_V[1]"\nkind = "sine"\namplitude = 1\nfrequency_Hz = 1\n'
+    circuit = "bearing_deg = 180.0\n"
+    texts |= {"waves.toml": still + sine + end, "limited.toml": f"{still}[vehicle.drive]\nsupply_V = 12\n{end}",
+              "switched.toml": still.replace(circuit, f'{circuit}motor_circuit = "open"\n') + end}
     for name, text in texts.items():
         (folder / name).write_text(text)
     (folder / "binary.toml").write_bytes(bytes(range(256)))

@@ -3,6 +3,8 @@
 from __future__ import annotations
 
 import json
+from collections.abc import Sequence
+from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
 
@@ -36,33 +38,38 @@ ROLLED = 1e-5                # J for 1 kg on wheels of 1 m: a millionth of the r
               help="Draw a moving picture: the robot on its path, which a browser plays.")
 @click.option("--inputs", "inputs_wanted", is_flag=True,
               help="Write the inputs as further columns of --out: what acts from each row on.")
+@click.option("--enclose", "enclose_wanted", is_flag=True,
+              help="Enclose the true motion and prove how far the core is from it; --out gets columns of both.")
 @json_flag("Machine-readable summary.")
 def command(scene: str, method: str | None, step_s: float | None, real: str | None, out: Path | None,
-            plot: Path | None, film: Path | None, inputs_wanted: bool, json_wanted: bool) -> None:
+            plot: Path | None, film: Path | None, inputs_wanted: bool, enclose_wanted: bool, json_wanted: bool) -> None:
     """Runs SCENE, a TOML file or the name of a scene that comes with the project.
 
     Inputs of kind "steps" are held over each step; a step that one of them changes within is refused. Where the scene
     gives a friction coefficient or the height of the centre of mass, the ground is watched: the first wheel that
     would slip or lift is named on stderr. Where a step on the way is refused, everything is written up to it, and
-    the exit status is 1.
+    the exit status is 1. --enclose proves what the true motion of the file's numbers is, as intervals: see
+    docs/enclosures.md.
     """
     check_step(step_s)
     belongs_to("--out", bool(out), "--inputs")
     given = read_scene(scene).with_run(method=method, step_s=step_s, real=real)
     written = (*wanted_signals(given), *(input_signals(given) if inputs_wanted else ()))
-    signals = dict.fromkeys((*written, *(usual_signals(given) if plot or film else ()), *(FILMED if film else ())))
+    signals = dict.fromkeys((*written, *(usual_signals(given) if plot or film else ()), *(FILMED if film else ()),
+                             *(signals_to_enclose(given) if enclose_wanted else ())))
     run = as_far_as_it_goes(given, tuple(signals))
+    enclosure = enclosed(run) if enclose_wanted else None
     if out:
-        write_csv(run, written, out)
+        write_csv(run, (*written, *(enclosure.columns if enclosure else ())), out)
     if plot:
         from laconic.pictures.plotting import simulation_picture
         simulation_picture(run, plot)
     if film:
         write_film(run, film)
     if json_wanted:
-        click.echo(json.dumps(summary(run, out, plot, film), indent=1))
+        click.echo(json.dumps(summary(run, out, plot, film) | (enclosure.json if enclosure else {}), indent=1))
     elif not (out and is_stdout(out)):
-        print_summary(run, out, plot, film)
+        print_summary(run, out, plot, film, lines=enclosure.lines if enclosure else ())
     if run.grip and not run.grip.holds:
         warn(f"{given.path}: the ground cannot give what this run needs: {run.grip.warning()}")
     if run.refused:
@@ -75,6 +82,35 @@ def as_far_as_it_goes(scene: Scene, signals: tuple[str, ...]) -> Trajectory:
         return simulate(scene, signals, progress=True)
     except RunRefused as cut_short:
         return cut_short.run
+
+
+@dataclass(frozen=True)
+class Enclosure:
+    """What an enclosure adds to the outputs of its run."""
+
+    columns: tuple[str, ...]
+    lines: list[str]
+    json: dict[str, Any]
+
+
+def signals_to_enclose(scene: Scene) -> tuple[str, ...]:
+    """The states of a scene that can be enclosed."""
+    from laconic.enclosure.readings import check_enclosable
+    from laconic.enclosure.study import state_signals
+
+    check_enclosable(scene)
+    return state_signals(scene.wheel_count)
+
+
+def enclosed(run: Trajectory) -> Enclosure:
+    """Encloses the motion of a run, and gives the run its columns."""
+    from laconic.enclosure.study import study_of
+    from laconic.enclosure.tables import as_json, columns_of, lines_of
+
+    study = study_of(run)
+    columns = columns_of(study)
+    run.columns.update(columns)
+    return Enclosure(tuple(columns), lines_of(study), {"enclosure": as_json(study)})
 
 
 def kept_in(*paths: Path | None) -> str:
@@ -124,8 +160,8 @@ def words_of_slip(run: Trajectory) -> list[str]:
     return told
 
 
-def print_summary(run: Trajectory, *files: Path | None) -> None:
-    """The same for people."""
+def print_summary(run: Trajectory, *files: Path | None, lines: Sequence[str] = ()) -> None:
+    """The same for people, with further lines."""
     given, picked = run.scene.run.method, run.method
     method = given if given == picked else f"{given} (picked {picked})"
     taken = f"{run.steps} of {run.scene.steps()}" if run.refused else f"{run.steps}"
@@ -134,7 +170,7 @@ def print_summary(run: Trajectory, *files: Path | None) -> None:
     click.echo(f"at {run.time_s[-1]:g} s:")
     for name, values in run.columns.items():
         click.echo(f"  {name:28} {values[-1]: .12g}")
-    for line in words_of_slip(run):
+    for line in (*words_of_slip(run), *lines):
         click.echo(line)
     for path in files:
         if path:

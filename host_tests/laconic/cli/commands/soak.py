@@ -48,6 +48,8 @@ def command(what: str, minutes: float, seed: int | None, json_wanted: bool, **sp
                      50 digits, adjoints against Jacobians; half an hour
     drive-frames     frames of each protocol of drives with faults between, N minutes
                      each, under libFuzzer; Ctrl-C keeps and prints what was found
+    enclosures       all scenes over their whole run and random vehicles, stiff ones too,
+                     enclosed: how wide, how far the core is
     faults           the fault matrix of the rig, with new seeds
     fmu              random use of the FMUs' C interface, under sanitizers
     friction         the friction solver against a conic one with 40 digits, and driven

@@ -1,0 +1,282 @@
+"""The motion step by step: exact middles, and radii that hold the true motion.
+
+The middle of ζ after a step is the polynomial's end, rounded; the radius in the energy norm grows by e^∫μ and takes in
+defect and rounding. ∫ζ dt carries heading and wheel angles, which are linear in it; the place is an integral beside.
+"""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Callable, Iterator, Sequence
+from dataclasses import dataclass, field
+from fractions import Fraction
+
+from flint import arb, arb_poly
+
+from laconic.enclosure.balls import (
+    Vector,
+    ball,
+    combined,
+    dot,
+    largest,
+    length,
+    radius_of,
+    thin,
+    times,
+    upper,
+    widened,
+)
+from laconic.enclosure.defect import Defects, Growth, Step, defects_of, growth_of
+from laconic.enclosure.equation import Equation
+from laconic.enclosure.loads import Forcing, Stretch, forcing_of
+from laconic.enclosure.series import Rates, Series, Start, slow_motion, step_for, taylor
+from laconic.errors import ResultFails
+
+FADED = 0.75       # of the precision's bits, in powers of e, after which a damped part counts as died away
+PAUSE_STEPS = 6    # between two tries of the slow motion
+MOST_STEPS = 10**6
+
+
+@dataclass(frozen=True)
+class Beginning:
+    """Where the motion starts, as balls."""
+
+    zeta: Vector
+    place_m: Vector
+    heading_rad: arb
+
+
+@dataclass(frozen=True)
+class State:
+    """Exact middles and radii: of ζ in the energy norm, of ∫ζ dt in the same norm, of the place in metres."""
+
+    time_s: Fraction
+    zeta: Vector
+    travelled: Vector           # ∫ζ dt
+    place_m: Vector
+    zeta_radius: arb
+    travelled_radius: arb
+    place_radius: arb
+
+
+@dataclass(frozen=True)
+class Sample:
+    """Balls that hold the true state at an instant."""
+
+    time_s: Fraction
+    zeta: Vector
+    nu: Vector
+    place_m: Vector
+    heading_rad: arb
+    wheel_angle_rad: Vector
+
+    def row(self) -> Vector:
+        """ν, place, heading, wheel angles in one list."""
+        return [*self.nu, *self.place_m, self.heading_rad, *self.wheel_angle_rad]
+
+
+@dataclass(frozen=True)
+class Taken:
+    """One step: its polynomials, and the radii that hold all along it."""
+
+    begin: State
+    step: Step
+    travelled: list[arb_poly]
+    place: list[arb_poly]
+    zeta_radius: arb
+    travelled_radius: arb
+    place_radius: arb
+    end: State
+
+
+@dataclass
+class Motion:
+    """A motion being enclosed; `goal_bits` is the precision of the middles, relative to the largest ζ so far."""
+
+    equation: Equation
+    beginning: Beginning
+    goal_bits: int
+    scale: arb = field(default_factory=lambda: arb(0))
+    steps_taken: int = 0
+
+    @property
+    def order(self) -> int:
+        """Of the polynomials: about the cheapest for this precision."""
+        return 10 + int(0.35 * self.goal_bits)
+
+    @property
+    def tolerance(self) -> arb:
+        """Of a step's last terms."""
+        return arb(2) ** -self.goal_bits
+
+    def start(self) -> State:
+        """The state at time 0: the middles of the balls that it begins with."""
+        zeta, place = self.beginning.zeta, self.beginning.place_m
+        self.scale = length(zeta)
+        return State(Fraction(0), thin(zeta), [arb(0)] * 3, thin(place), radius_of(zeta), arb(0), radius_of(place))
+
+    def heading(self, travelled: Vector, radius: arb) -> arb:
+        """θ = θ0 + (g/Λ)·∫ζ dt."""
+        middle = self.beginning.heading_rad + dot(self.equation.yaw_rate_of_zeta, travelled)
+        return widened(middle, radius * length(self.equation.yaw_rate_of_zeta))
+
+    def sample(self, time_s: Fraction, zeta: Vector, travelled: Vector, place: Vector,
+               radii: tuple[arb, arb, arb]) -> Sample:
+        """The balls that users see, of middles and radii."""
+        of_zeta, of_travelled, of_place = radii
+        nu = [widened(x, of_zeta * length(row)) for x, row in
+              zip(times(self.equation.nu_of_zeta, zeta), self.equation.nu_of_zeta, strict=True)]
+        wheels = [widened(dot(row, travelled), of_travelled * length(row)) for row in self.equation.wheel_of_zeta]
+        return Sample(time_s, [widened(x, of_zeta) for x in zeta], nu, [widened(x, of_place) for x in place],
+                      self.heading(travelled, of_travelled), wheels)
+
+    def samples(self, stretches: Sequence[Stretch], instants_s: Sequence[Fraction],
+                moved: Callable[[float], None] = lambda _: None) -> Iterator[Sample]:
+        """The enclosure at some instants, ascending, from 0 to the last stretch's end; `moved` hears of seconds."""
+        state, left = self.start(), list(reversed(instants_s))
+        if left and left[-1] == 0:
+            left.pop()
+            yield self.sample_of(state)
+        for stretch in stretches:
+            for taken in self.stretch_steps(state, stretch):
+                state = taken.end
+                while left and left[-1] <= state.time_s:
+                    yield self.sample_within(taken, left.pop())
+                moved(float(state.time_s - taken.begin.time_s))
+
+    def sample_of(self, state: State) -> Sample:
+        return self.sample(state.time_s, state.zeta, state.travelled, state.place_m,
+                           (state.zeta_radius, state.travelled_radius, state.place_radius))
+
+    def sample_within(self, taken: Taken, time_s: Fraction) -> Sample:
+        """At an instant of a step; at its end by the end's own, smaller radii."""
+        if time_s == taken.end.time_s:
+            return self.sample_of(taken.end)
+        part = ball((time_s - taken.begin.time_s) / (taken.end.time_s - taken.begin.time_s))
+        return self.sample(time_s, [p(part) for p in taken.step.zeta], [p(part) for p in taken.travelled],
+                           [p(part) for p in taken.place],
+                           (taken.zeta_radius, taken.travelled_radius, taken.place_radius))
+
+    def stretch_steps(self, state: State, stretch: Stretch) -> Iterator[Taken]:
+        """Steps through a stretch of held inputs, as long as the precision allows."""
+        forcing = forcing_of(self.equation, stretch.values)
+        rates, resting = Rates.of(self.equation, forcing), 0
+        while state.time_s < stretch.end_s:
+            left_s = stretch.end_s - state.time_s
+            begin = self.step_start(state)
+            self.scale = larger(self.scale, length(rates.forcing.constant) * min(1.0, float(left_s)))
+            series = taylor(rates, begin, self.order)
+            length_s = step_for(series, self.scale, self.tolerance, float(left_s))
+            fast = self.faded(rates, float(state.time_s - stretch.begin_s), length_s, float(left_s))
+            if fast and resting == 0:
+                slow, slow_s = self.slow(rates, begin, fast, float(left_s))
+                if slow is not None and slow_s > 2.0 * length_s:
+                    series, length_s = slow, slow_s
+                else:
+                    resting = PAUSE_STEPS
+            resting = max(0, resting - 1)
+            taken = self.take(state, series, forcing, rounded(length_s, left_s))
+            state = taken.end
+            yield taken
+
+    def step_start(self, state: State) -> Start:
+        """Middles of ζ and of the heading's direction."""
+        sine, cosine = self.heading(state.travelled, arb(0)).sin_cos()
+        return Start(state.zeta, cosine.mid(), sine.mid())
+
+    def faded(self, rates: Rates, since_s: float, length_s: float, left_s: float) -> frozenset[int]:
+        """Components whose fast decay is over and yet limits the step."""
+        decays = [float(x) for x in rates.decay]
+        return frozenset(j for j, r in enumerate(decays) if r * since_s > FADED * self.goal_bits and r * length_s > 1.0
+                         and r * left_s > self.order)
+
+    def slow(self, rates: Rates, begin: Start, fast: frozenset[int], left_s: float) -> tuple[Series | None, float]:
+        """The slow motion's series if the motion is on it to the precision, and the time that it serves."""
+        unit_s = left_s
+        for _ in range(12):
+            series = slow_motion(rates, begin, self.order, fast, arb(unit_s))
+            if series is not None:
+                off = length([series.zeta[j][0] - begin.zeta[j] for j in fast])
+                near = off <= self.scale * self.tolerance * 1024
+                return (series if near else None), step_for(series, self.scale, self.tolerance, left_s)
+            unit_s /= 4.0
+        return None, 0.0
+
+    def take(self, state: State, series: Series, forcing: Forcing, step_s: Fraction) -> Taken:
+        """One step with its proof."""
+        step = Step.of(series, ball(step_s))
+        defects, growth = defects_of(step, self.equation, forcing), growth_of(step, self.equation)
+        jump = length([p(arb(0)) - x for p, x in zip(step.zeta, state.zeta, strict=True)])
+        direction = self.direction_error(state, step, defects)
+        bounds = radii_of(state, step, growth, defects, jump, direction, self.equation, forcing)
+        travelled = [p.integral() * step.length_s + x for p, x in zip(step.zeta, state.travelled, strict=True)]
+        place, place_radius = self.place(state, step, bounds, direction)
+        ends = [[p(arb(1)) for p in each] for each in (step.zeta, travelled, place)]
+        radii = [upper(radius + radius_of(each)) for radius, each in
+                 zip((bounds.zeta_at_end, bounds.travelled, place_radius), ends, strict=True)]
+        end = State(state.time_s + step_s, thin(ends[0]), thin(ends[1]), thin(ends[2]), *radii)
+        self.scale = larger(self.scale, length([largest(p) for p in step.zeta]))
+        self.steps_taken += 1
+        if not (end.zeta_radius.is_finite() and end.place_radius.is_finite()) or self.steps_taken > MOST_STEPS:
+            raise ResultFails(f"the enclosure ends at t = {float(state.time_s):g} s: it is no longer finite there, or "
+                              "needs too many steps; run it over a shorter time")
+        return Taken(state, step, travelled, place, bounds.zeta, bounds.travelled, place_radius, end)
+
+    def direction_error(self, state: State, step: Step, defects: Defects) -> arb:
+        """How far (cos, sin) of the polynomials is from that of the middle heading, all along the step."""
+        sine, cosine = self.heading(state.travelled, arb(0)).sin_cos()
+        return upper(length([step.cosine(arb(0)) - cosine, step.sine(arb(0)) - sine]) + defects.direction)
+
+    def place(self, state: State, step: Step, bounds: Radii, direction: arb) -> tuple[list[arb_poly], arb]:
+        """x and y along the step, and the radius of both together."""
+        along, across = (combined(row, step.zeta) for row in self.equation.velocity_of_zeta)
+        rates = (along * step.cosine - across * step.sine, along * step.sine + across * step.cosine)
+        place = [p.integral() * step.length_s + x for p, x in zip(rates, state.place_m, strict=True)]
+        speed = length([largest(along), largest(across)])
+        rows = length([length(row) for row in self.equation.velocity_of_zeta])
+        turned = direction + bounds.travelled * length(self.equation.yaw_rate_of_zeta)
+        return place, upper(state.place_radius + step.length_s * (rows * bounds.zeta + speed * turned))
+
+
+@dataclass(frozen=True)
+class Radii:
+    """Of ζ all along a step and at its end, of ∫ζ dt all along it."""
+
+    zeta: arb
+    zeta_at_end: arb
+    travelled: arb
+
+
+def radii_of(state: State, step: Step, growth: Growth, defects: Defects, jump: arb, direction: arb, equation: Equation,
+             forcing: Forcing) -> Radii:
+    """How the radius of ζ grows over a step.
+
+    A force fixed in the world lets an error η of the heading act on ζ: |e|' ≤ μ|e| + Bη + |defect|, η' ≤ k|e|. With
+    c = √(B/k) the sum |e| + cη grows by at most e^(∫μ + h√(Bk)).
+    """
+    h, first = step.length_s, state.zeta_radius + jump
+    turning = length([length([a, b]) for a, b in zip(forcing.cosine, forcing.sine, strict=True)])
+    missed = defects.zeta + h * turning * direction
+    yaw = length(equation.yaw_rate_of_zeta)
+    heading = arb(0)
+    if turning > 0 and yaw > 0:
+        weight = upper((turning / yaw).sqrt())
+        both = first + weight * yaw * state.travelled_radius + missed
+        heading = upper(both * growth.at_most * (h * (turning * yaw).sqrt() * arb(1.0001)).exp() / weight)
+    pushed = missed + h * turning * heading
+    zeta = upper(growth.at_most * (first + pushed))
+    return Radii(zeta, upper(growth.at_end * first + growth.at_most * pushed),
+                 upper(state.travelled_radius + h * zeta))
+
+
+def larger(a: arb, b: arb) -> arb:
+    """The larger of two exact numbers."""
+    return a if a > b else b
+
+
+def rounded(length_s: float, left_s: Fraction) -> Fraction:
+    """The step's length with few bits, or all that is left."""
+    if length_s >= float(left_s):
+        return left_s
+    mantissa, exponent = math.frexp(length_s)
+    return min(left_s, Fraction(int(mantissa * 2**20)) * Fraction(2) ** (exponent - 20))

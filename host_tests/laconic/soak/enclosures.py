@@ -1,0 +1,104 @@
+"""Enclosures of all scenes over their whole run, then of random vehicles, up to a million times as stiff."""
+
+from __future__ import annotations
+
+import random
+import tempfile
+import time
+from collections.abc import Callable
+from pathlib import Path
+from typing import Any
+
+from laconic.enclosure.readings import check_enclosable
+from laconic.enclosure.scene_case import verify_scene_enclosed
+from laconic.errors import BadInput, LaconicError
+from laconic.paths import scene_names
+from laconic.scene import Scene, read_scene
+from laconic.verification.enclosed_result import EnclosedResult, bound_text
+
+NARROW = 1e-12
+STEPS_S = ("0.001", "0.01")
+
+
+def soak(minutes: float, seed: int, advance: Callable[[float], None]) -> dict[str, Any]:
+    """Every scene to its end, however long; then random vehicles until the time is up. Passed when all are narrow."""
+    source, began = random.Random(seed), time.monotonic()
+    last, wide, said, drawn = began, [], {}, []
+    for name in scene_names():
+        said[name], is_wide = of_scene(read_scene(name))
+        wide += [name] if is_wide else []
+        last = moved(advance, last)
+    while last - began < 60.0 * minutes:
+        text = random_scene(source)
+        found = enclosed_text(text)
+        drawn.append(found)
+        wide += [text] if found.status != "ok" or found.width > NARROW else []
+        last = moved(advance, last)
+    return {"passed": not wide, **said, **quantiles(drawn), "too wide": wide}
+
+
+def moved(advance: Callable[[float], None], last: float) -> float:
+    """The time now, told to the progress bar."""
+    now = time.monotonic()
+    advance(now - last)
+    return now
+
+
+def of_scene(scene: Scene) -> tuple[str, bool]:
+    """A scene's figures in words, and whether it is wider than it should be."""
+    try:
+        check_enclosable(scene)
+    except BadInput as why:
+        return f"not enclosed: {str(why).removeprefix(f'{scene.path}: ')}", False
+    began = time.monotonic()
+    found = verify_scene_enclosed(scene, shown=False)
+    errors = [bound_text(e or 0.0) for e in (found.error_nu, found.error_pose, found.error_wheel)]
+    return (f"width ≤ {bound_text(found.width)}, error of nu, pose, wheels ≤ {', '.join(errors)}, "
+            f"{time.monotonic() - began:.1f} s"), found.width > NARROW
+
+
+def random_scene(source: random.Random) -> str:
+    """A carriage of omni and mecanum wheels, pushed by voltages that change once, its motors up to a million times as
+    strong in damping."""
+    stiff, wheels = 10.0 ** source.uniform(0.0, 6.0), source.randrange(3, 7)
+    lines = ["[vehicle]", f"mass_kg = {source.uniform(2, 40)!r}", f"yaw_inertia_kgm2 = {source.uniform(0.05, 3)!r}",
+             f"com_x_m = {source.uniform(-0.05, 0.05)!r}", f"com_y_m = {source.uniform(-0.05, 0.05)!r}",
+             f"wheel_radius_m = {source.uniform(0.03, 0.12)!r}",
+             f"wheel_inertia_kgm2 = {10.0 ** source.uniform(-4, -2)!r}",
+             f"motor_gain_Nm_per_V = {0.1 * stiff!r}", f"motor_damping_Nms = {0.02 * stiff!r}"]
+    for i in range(wheels):
+        roller = source.choice((90.0, 45.0, -45.0))
+        bearing = 360.0 * (i + source.uniform(-0.3, 0.3)) / wheels
+        lines += ["[[vehicle.wheel]]", 'kind = "roller"', f"distance_m = {source.uniform(0.1, 0.4)!r}",
+                  f"bearing_deg = {bearing!r}", f"axle_deg = {bearing if roller == 90.0 else -90.0!r}",
+                  f"roller_deg = {roller!r}"]
+    for i in range(1, wheels + 1):
+        values = [source.uniform(-3, 3), source.uniform(-3, 3)]
+        lines += ["[[input]]", f'signal = "voltage_V[{i}]"', 'kind = "steps"', "t_s = [0.0, 0.5]",
+                  f"value = {values!r}"]
+    nu = [source.uniform(-5, 5) for _ in range(3)]
+    return "\n".join([*lines, "[initial]", f"nu_rad_per_s = {nu!r}", "[run]", "duration_s = 1.0",
+                      f"step_s = {source.choice(STEPS_S)}", ""])
+
+
+def enclosed_text(text: str) -> EnclosedResult:
+    """The enclosure of a scene's text; what goes wrong becomes the status."""
+    with tempfile.TemporaryDirectory() as folder:
+        path = Path(folder, "random.toml")
+        path.write_text(text, encoding="utf-8")
+        try:
+            return verify_scene_enclosed(read_scene(path), shown=False)
+        except LaconicError as error:
+            return EnclosedResult("random", str(error))
+
+
+def quantiles(found: list[EnclosedResult]) -> dict[str, Any]:
+    """Of the random vehicles: how many, and the largest width and errors of all, of 95 % and of half of them."""
+    told: dict[str, Any] = {"random vehicles": len(found)}
+    fine = [each for each in found if each.status == "ok"]
+    for what, numbers in (("width", [each.width for each in fine]), ("error", [each.worst for each in fine])):
+        ranked = sorted(numbers)
+        for share in (0.5, 0.95, 1.0) if ranked else ():
+            at = ranked[min(len(ranked) - 1, int(share * len(ranked)))]
+            told[f"{what} of {share:.0%} at most"] = bound_text(at)
+    return told
