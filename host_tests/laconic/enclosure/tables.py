@@ -27,8 +27,8 @@ def rows_of(study: Study) -> list[tuple[str, str, str, str]]:
 def lines_of(study: Study) -> list[str]:
     """For people, each line whole."""
     enclosed = study.of_file
-    head = (f"enclosure: {len(enclosed.widths)} rows, {enclosed.steps} steps of at least {enclosed.bits} bits, in "
-            f"{enclosed.seconds + study.of_core.seconds:.2f} s; relative to max(1, largest value):")
+    head = (f"enclosure: {len(enclosed.widths)} rows, {enclosed.steps} steps of {enclosed.bits} bits; relative to "
+            "max(1, largest value):")
     table = [("", "width at most", "core, by the file's numbers", "core, by its own constants"), *rows_of(study)]
     return [head, *("  " + f"{name:13} {width:>14}  {by_file:28} {by_core}" for name, width, by_file, by_core in table)]
 
