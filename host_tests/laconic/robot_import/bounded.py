@@ -38,7 +38,7 @@ class Library:
 def bounded(library: Library, call: Callable[..., Any], path: Path, *more: Any) -> Any:
     """What call(path, *more) returns, a function of a module with arguments and a result that pickle takes.
 
-    BadInput: that of the call; a call that takes more than LONGEST_S or MOST_BYTES, or whose process fails.
+    Raises what the call raises; BadInput for one that takes more than LONGEST_S or MOST_BYTES, or whose process fails.
     """
     try:
         done = subprocess.run([sys.executable, "-m", __name__], input=pickle.dumps((call, path, *more)),
@@ -53,8 +53,8 @@ def bounded(library: Library, call: Callable[..., Any], path: Path, *more: Any) 
         raise BadInput(f"{path}: {library.name} failed with status {done.returncode}, as where its memory is not "
                        f"enough; mend {library.endless}")
     result, failure = pickle.loads(done.stdout)  # from our own process
-    if failure:
-        raise BadInput(failure)
+    if failure is not None:
+        raise failure
     return result
 
 
@@ -71,7 +71,7 @@ TOO_MUCH = 3  # its exit status for MemoryError
 
 
 def answer() -> None:
-    """Reads the call from stdin, writes (result, None) or (None, why not) to stdout."""
+    """Reads the call from stdin, writes (result, None) or (None, what it raised) to stdout."""
     answers = os.fdopen(os.dup(1), "wb")
     os.dup2(2, 1)  # libraries print
     _bound("RLIMIT_AS", MOST_BYTES)
@@ -86,11 +86,13 @@ def answer() -> None:
     os._exit(0)  # what was read is not taken apart
 
 
-def _found(call: Callable[..., Any], arguments: list[Any]) -> tuple[Any, str | None]:
+def _found(call: Callable[..., Any], arguments: list[Any]) -> tuple[Any, Exception | None]:
     try:
         return call(*arguments), None
-    except BadInput as error:
-        return None, str(error)
+    except MemoryError:
+        raise
+    except Exception as error:  # such as that of a library that is not installed, whose extra the command names
+        return None, error
 
 
 def _bound(what: str, most: int) -> None:

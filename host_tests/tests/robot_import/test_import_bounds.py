@@ -70,6 +70,16 @@ def test_what_needs_too_much_is_named(tmp_path: Path, capsys: pytest.CaptureFixt
     assert told.count("\n") == 1
 
 
+def lacking(path: Path) -> None:
+    raise ModuleNotFoundError(f"No module named 'mujoco' for {path}", name="mujoco")
+
+
+def test_a_library_that_is_not_installed_is_told_as_in_the_commands_own_process() -> None:
+    with pytest.raises(ModuleNotFoundError) as raised:
+        bounded.bounded(bounded.Library("MuJoCo", "this"), lacking, Path("robot.xml"))
+    assert raised.value.name == "mujoco"
+
+
 @pytest.mark.parametrize("text", ["admin:secret-7:0:0", "a: [secret-7", "- !secret-7 x"])
 def test_no_message_shows_the_text_of_a_file_that_load_yaml_reads(tmp_path: Path, capsys: pytest.CaptureFixture[str],
                                                                   text: str) -> None:
