@@ -1,8 +1,10 @@
 /* A batch in the caller's memory: lanes are put into blocks of one kind of step. */
 #include "batch_block.h"
+#include "exponential_gauss_8.h"
 
 #define LARGEST_LANE_COUNT (1 << 28)
 #define ALIGNMENT 64
+#define LANES_WAYS (LANES_METHOD_COUNT + MOST_HALVINGS) /* in which lanes take a step */
 
 /* ------------------------------------------------------------------------------- widths -- */
 
@@ -28,9 +30,18 @@ int32_t laconic_batch_width(int32_t width_bytes) {
 
 /* -------------------------------------------------------------------------------- kinds -- */
 
-static const laconic_method *const steppers[LANES_METHOD_COUNT] = {
-    &laconic_rk4,          &laconic_exponential_kahan, &laconic_exponential_kahan_4, &laconic_exact_flow,
-    &laconic_exact_flow_4, &laconic_taylor_8,          &laconic_auto_slow,           &laconic_auto_fast};
+static const laconic_method *const steppers[LANES_METHOD_COUNT] = {&laconic_rk4,
+                                                                   &laconic_exponential_kahan,
+                                                                   &laconic_exponential_kahan_4,
+                                                                   &laconic_exact_flow,
+                                                                   &laconic_exact_flow_4,
+                                                                   &laconic_taylor_8,
+                                                                   &laconic_auto_slow,
+                                                                   &laconic_auto_fast,
+#if LACONIC_WITH_EXPONENTIAL_GAUSS
+                                                                   &laconic_exponential_gauss_8
+#endif
+};
 
 static lanes_kind lanes_kind_of(const laconic_batch_kind *kind) {
     lanes_kind out = ALL_ZERO;
@@ -39,6 +50,9 @@ static lanes_kind lanes_kind_of(const laconic_batch_kind *kind) {
     out.method = (lanes_method)method;
     out.wheel_count = LACONIC_WHEELS(&kind->model);
     out.stiff = kind->integrator.stiff;
+#if LACONIC_WITH_EXPONENTIAL_GAUSS
+    out.halvings = kind->integrator.halvings;
+#endif
 #if LACONIC_WITH_SLOPE
     out.sloped = kind->model.sloped;
 #endif
@@ -72,6 +86,7 @@ static void constants_of(laconic_number to[LANES_CONSTANTS], const laconic_batch
     const laconic_integrator *integrator = &kind->integrator;
     LANES_MODEL_MEMBERS(TAKE_OF_MODEL)
     LANES_INTEGRATOR_MEMBERS(TAKE_OF_INTEGRATOR)
+    LANES_COLLOCATION_MEMBERS(TAKE_OF_INTEGRATOR)
 }
 
 /* ------------------------------------------------------------------------------- layout -- */
@@ -82,7 +97,7 @@ static bool is_by_kind(const laconic_batch_shape *shape) {
 }
 
 static int32_t blocks_at_most(const laconic_batch_shape *shape, int32_t lanes) {
-    const int32_t ways = LANES_METHOD_COUNT * (LACONIC_MAX_WHEELS + 1) * 4; /* in which lanes of a block are alike */
+    const int32_t ways = LANES_WAYS * (LACONIC_MAX_WHEELS + 1) * 4; /* in which lanes of a block are alike */
     const int32_t groups = shape->kind_count < ways || is_by_kind(shape) ? shape->kind_count : ways;
     return (shape->lane_count + lanes - 1) / lanes + groups;
 }
@@ -133,7 +148,7 @@ size_t laconic_batch_size(const laconic_batch_shape *shape) {
 /* Lanes of equal keys can share a block. */
 static int32_t way_of(const laconic_batch_kind *of) {
     const lanes_kind kind = lanes_kind_of(of);
-    return (int32_t)kind.method + LANES_METHOD_COUNT * (kind.sloped + 2 * kind.stiff + 4 * kind.wheel_count);
+    return (int32_t)kind.method + kind.halvings + LANES_WAYS * (kind.sloped + 2 * kind.stiff + 4 * kind.wheel_count);
 }
 
 static int32_t key_of(const laconic_batch *batch, int32_t lane) {

@@ -7,7 +7,7 @@
 #include "../src/elementary.c"
 #include "../src/step_internals.c"
 
-/* Numbers from 6 on are auto's, which chooses among the others while it steps. */
+/* 6 and 7 are auto's, which chooses among the others while it steps. */
 #if LACONIC_GPU_METHOD == 0
 #include "../src/rk4.c"
 #endif
@@ -20,8 +20,11 @@
 #if LACONIC_GPU_METHOD == 5 || LACONIC_GPU_METHOD >= 6
 #include "../src/taylor_8.c"
 #endif
-#if LACONIC_GPU_METHOD >= 6
+#if LACONIC_GPU_METHOD == 6 || LACONIC_GPU_METHOD == 7
 #include "../src/auto.c"
+#endif
+#if LACONIC_GPU_METHOD == 8
+#include "../src/exponential_gauss_8.c"
 #endif
 
 #include "batch_run.c"

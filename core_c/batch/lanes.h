@@ -27,7 +27,9 @@ static inline laconic_real lanes_of(laconic_number x) { return x - (laconic_real
 #define BOTH(a, b) ((a) & (b))
 #define ALL(a) (!lanes_any(~(a)))
 #define ANY(a) lanes_any(a)
-#define WHERE(which, a, b) lanes_where(which, a, b)
+#define WHERE(which, a, b) \
+    __builtin_choose_expr(__builtin_types_compatible_p(__typeof__(a), laconic_real), lanes_chosen, lanes_where)(which, \
+                                                                                                                a, b)
 #define KNOWN(value, which) (which)
 #define OR_ELSE(before, now) ((before) | (now))
 #define RARELY(condition, number) lanes_leave((condition), (number))

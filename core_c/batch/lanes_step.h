@@ -13,6 +13,7 @@
 #define laconic_exact_flow LANES_NAME(laconic_lanes_exact_flow)
 #define laconic_exact_flow_4 LANES_NAME(laconic_lanes_exact_flow_4)
 #define laconic_taylor_8 LANES_NAME(laconic_lanes_taylor_8)
+#define laconic_exponential_gauss_8 LANES_NAME(laconic_lanes_exponential_gauss_8)
 #define laconic_forcing_of LANES_NAME(laconic_lanes_forcing_of)
 #define laconic_forcing_after_yaw LANES_NAME(laconic_lanes_forcing_after_yaw)
 #define laconic_growth_is_forced LANES_NAME(laconic_lanes_growth_is_forced)
@@ -51,6 +52,7 @@ typedef struct lanes_step {
 #include "../src/rk4.c"
 #undef LARGEST_DAMPING
 #undef LARGEST_ROTATION
+#include "../src/exponential_gauss_8.c"
 #include "../src/taylor_8.c"
 
 #include "lanes_width.h"
@@ -73,6 +75,11 @@ static void place(const laconic_batch_block *block, int32_t lane, lanes_kind kin
     integrator->stiff = kind.stiff;
     LANES_MODEL_MEMBERS(SPREAD_TO_MODEL)
     LANES_INTEGRATOR_MEMBERS(SPREAD_TO_INTEGRATOR)
+#if LACONIC_WITH_EXPONENTIAL_GAUSS
+    if (kind.method != LANES_EXPONENTIAL_GAUSS_8) return;
+    integrator->halvings = kind.halvings;
+    LANES_COLLOCATION_MEMBERS(SPREAD_TO_INTEGRATOR)
+#endif
 }
 
 /* ---------------------------------------------------------------------------- state -- */
@@ -382,6 +389,11 @@ RUN_OF(run_exact_flow, exact_flow_step, exact_flow_step)
 RUN_OF(run_exact_flow_4, exact_flow_4_step, exact_flow_4_step)
 RUN_OF(run_taylor_8, taylor_8_step, taylor_8_step)
 RUN_OF(run_auto_slow, exact_flow_4_step, taylor_8_step)
+#if LACONIC_WITH_EXPONENTIAL_GAUSS
+RUN_OF(run_exponential_gauss_8, exponential_gauss_8_step, exponential_gauss_8_step)
+#else
+#define run_exponential_gauss_8 NULL
+#endif
 
 const lanes_width LANES_NAME(laconic_lanes_of) = {LACONIC_LANES,
                                                   sizeof(laconic_model),
@@ -389,6 +401,6 @@ const lanes_width LANES_NAME(laconic_lanes_of) = {LACONIC_LANES,
                                                   place,
                                                   {run_rk4, run_exponential_kahan, run_exponential_kahan_4,
                                                    run_exact_flow, run_exact_flow_4, run_taylor_8, run_auto_slow,
-                                                   run_exponential_kahan_4}};
+                                                   run_exponential_kahan_4, run_exponential_gauss_8}};
 
 #endif

@@ -44,11 +44,16 @@ enum {
     X(nu_of_zeta) X(gyro) X(gyro_square) X(spin_gain) X(spin_curve) X(decay_per_s) X(velocity_of_zeta) \
     X(yaw_rate_of_zeta) X(wheel_of_zeta) X(torque_scale) X(voltage_scale) X(yaw_scale) X(slope_force_N)
 #define LANES_INTEGRATOR_MEMBERS(X) X(step_s) X(decay) X(gyro_limit)
+#if LACONIC_WITH_EXPONENTIAL_GAUSS
+#define LANES_COLLOCATION_MEMBERS(X) X(collocation)
+#else
+#define LANES_COLLOCATION_MEMBERS(X)
+#endif
 
 /* clang-format on */
 
 /* How many numbers they are. */
-#define LANES_CONSTANTS (35 + 3 * LACONIC_MAX_WHEELS + LACONIC_OWN_WHEELS + 83)
+#define LANES_CONSTANTS (35 + 3 * LACONIC_MAX_WHEELS + LACONIC_OWN_WHEELS + 83 + 90)
 
 typedef enum lanes_method {
     LANES_RK4,
@@ -59,13 +64,14 @@ typedef enum lanes_method {
     LANES_TAYLOR_8,
     LANES_AUTO_SLOW, /* auto_slow and auto_fast of auto.c */
     LANES_AUTO_FAST,
+    LANES_EXPONENTIAL_GAUSS_8, /* the last, since its halvings count as further methods: LANES_WAYS */
     LANES_METHOD_COUNT
 } lanes_method;
 
 /* What all lanes of a block share. */
 typedef struct lanes_kind {
     lanes_method method;
-    int32_t wheel_count;
+    int32_t wheel_count, halvings;
     bool sloped, stiff;
 } lanes_kind;
 

@@ -87,6 +87,8 @@ void laconic_rk4_responses(step_result *step, step_response out[], const step_po
                            int32_t count);
 void laconic_taylor_8_responses(step_result *step, step_response out[], const step_point *at, const step_direction in[],
                                 int32_t count);
+void laconic_gauss_responses(step_result *step, step_response out[], const step_point *at, const step_direction in[],
+                             int32_t count);
 void laconic_kahan_responses(step_result *step, step_response out[], const step_point *at, const step_direction in[],
                              int32_t count);
 void laconic_kahan_4_responses(step_result *step, step_response out[], const step_point *at, const step_direction in[],

@@ -7,6 +7,9 @@
 static responder responder_of(const laconic_method *method) {
     if (method == &laconic_rk4) return laconic_rk4_responses;
     if (method == &laconic_taylor_8) return laconic_taylor_8_responses;
+#if LACONIC_WITH_EXPONENTIAL_GAUSS
+    if (method == &laconic_exponential_gauss_8) return laconic_gauss_responses;
+#endif
     if (method == &laconic_exponential_kahan) return laconic_kahan_responses;
     if (method == &laconic_exponential_kahan_4) return laconic_kahan_4_responses;
     if (method == &laconic_exact_flow) return laconic_flow_responses;

@@ -73,8 +73,8 @@ typedef struct nodes {
 static void turn_nodes(nodes *at, real h, const lane yaw[NODE_GROUPS]) {
     for (int k = 0; k < NODES; k++) {
         const direction d = laconic_direction_of_angle(lane_number(yaw[k / LANES], k % LANES));
-        set_lane(&at->cosine[k / LANES], k % LANES, h * weight[k] * d.cosine);
-        set_lane(&at->sine[k / LANES], k % LANES, h * weight[k] * d.sine);
+        set_lane(&at->cosine[k / LANES], k % LANES, h * gauss_weight[k] * d.cosine);
+        set_lane(&at->sine[k / LANES], k % LANES, h * gauss_weight[k] * d.sine);
     }
 }
 
@@ -82,7 +82,7 @@ static void turn_nodes(nodes *at, real h, const lane yaw[NODE_GROUPS]) {
 static void at_every_node(nodes *at, const taylor_trace *t, const laconic_model *m, real h, real yaw_change) {
     lane yaw[NODE_GROUPS];
     lanes zeta[NODE_GROUPS];
-    for (int k = 0; k < NODES; k++) set_lane(&at->at[k / LANES], k % LANES, node[k]);
+    for (int k = 0; k < NODES; k++) set_lane(&at->at[k / LANES], k % LANES, gauss_node[k]);
     for (int g = 0; g < NODE_GROUPS; g++) {
         const lane s = at->at[g];
         zeta[g] = lanes_of(t->zeta[TERMS - 1]);

@@ -2,8 +2,17 @@
 #include "common.h"
 
 static const laconic_method *const methods[LACONIC_METHOD_COUNT] = {
-    &laconic_auto,       &laconic_rk4,          &laconic_exponential_kahan, &laconic_exponential_kahan_4,
-    &laconic_exact_flow, &laconic_exact_flow_4, &laconic_taylor_8};
+    &laconic_auto,
+    &laconic_rk4,
+    &laconic_exponential_kahan,
+    &laconic_exponential_kahan_4,
+    &laconic_exact_flow,
+    &laconic_exact_flow_4,
+    &laconic_taylor_8,
+#if LACONIC_WITH_EXPONENTIAL_GAUSS
+    &laconic_exponential_gauss_8,
+#endif
+};
 
 static bool same_text(const char *a, const char *b) {
     for (; *a != '\0' && *a == *b; a++) b++;

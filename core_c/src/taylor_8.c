@@ -4,7 +4,7 @@
  * θ follows term by term, and the pose by a quadrature of the same order. Explicit: for large steps of vehicles
  * whose damping is slow beside the step, where its error is far below that of any other method of its cost. */
 #include "taylor_8.h"
-#include "step_internals.h"
+#include "eighth_order.h"
 
 #define LARGEST_DAMPING R(4.313)  /* h·r: |Σ (−a)ⁿ/n!| to n = 8 exceeds 1 from a = 4.3136 on   */
 #define LARGEST_ROTATION R(3.395) /* h·|w||g·ζ|: |Σ (ia)ⁿ/n!|, the rotation of free motion, from 3.3951 on */
@@ -20,32 +20,17 @@ typedef struct motion_series {
 /* h/Λ: the yaw of a step is h/Λ times the mean of ν3 = g·ζ. */
 static inline real yaw_per_nu3(const laconic_model *m, real h) { return h / m->yaw_scale; }
 
-/* ---- b as a series: parabolas through the samples, and the heading for a force fixed in the world -- */
+/* ------- b as a series: its parabolas, and the heading for a force fixed in the world -- */
 
 typedef struct forcing_series {
-    vector constant[3], cosine[3], sine[3];
+    forcing_terms at;
     real heading_cosine[ORDER], heading_sine[ORDER];
-    bool rotates;
 } forcing_series;
 
-static void parabola_terms(vector term[3], const real start[3], const real middle[3], const real end[3]) {
-    const vector half = minus(vec(middle), vec(start)), whole = minus(vec(end), vec(start));
-    term[0] = vec(start);
-    term[1] = minus(scaled(R(4), half), whole);
-    term[2] = scaled(R(2), minus(whole, scaled(R(2), half)));
-}
-
 static forcing_series forcing_series_of(const laconic_forcing_samples *samples, const laconic_heading *heading) {
-    static const laconic_forcing still = ALL_ZERO;
-    const laconic_forcing *at[3] = {samples->start, samples->middle, samples->end};
     forcing_series f;
-    parabola_terms(f.constant, at[0]->constant, at[1]->constant, at[2]->constant);
-    f.rotates = LACONIC_WITH_WORLD_FORCE && (at[0]->rotates || at[1]->rotates || at[2]->rotates);
-    if (!f.rotates) return f; /* the rest is not used */
-    for (int k = 0; k < 3; k++)
-        if (!at[k]->rotates) at[k] = &still;
-    parabola_terms(f.cosine, at[0]->cosine, at[1]->cosine, at[2]->cosine);
-    parabola_terms(f.sine, at[0]->sine, at[1]->sine, at[2]->sine);
+    forcing_terms_of(&f.at, samples);
+    if (!f.at.rotates) return f; /* the rest is not used */
     direction now = laconic_direction_of_binary_angle(heading->fraction);
     f.heading_cosine[0] = now.cosine;
     f.heading_sine[0] = now.sine;
@@ -65,18 +50,19 @@ static void add_heading_term(forcing_series *f, const motion_series *c, real per
 
 /* b0: b at the step's start. */
 static vector first_forcing(const forcing_series *f) {
-    const vector b = f->constant[0];
-    if (!f->rotates) return b;
-    return plus(b, plus(scaled(f->heading_cosine[0], f->cosine[0]), scaled(f->heading_sine[0], f->sine[0])));
+    const vector b = f->at.constant[0];
+    if (!f->at.rotates) return b;
+    return plus(b, plus(scaled(f->heading_cosine[0], f->at.cosine[0]), scaled(f->heading_sine[0], f->at.sine[0])));
 }
 
 /* bn for n >= 1, from the coefficients of the motion below n. */
 static vector forcing_term(forcing_series *f, const motion_series *c, real per_nu3, int n) {
-    vector b = n < 3 ? f->constant[n] : none;
-    if (!f->rotates) return b;
+    vector b = n < 3 ? f->at.constant[n] : none;
+    if (!f->at.rotates) return b;
     add_heading_term(f, c, per_nu3, n);
     for (int k = 0; k < 3 && k <= n; k++)
-        b = plus(b, plus(scaled(f->heading_cosine[n - k], f->cosine[k]), scaled(f->heading_sine[n - k], f->sine[k])));
+        b = plus(
+            b, plus(scaled(f->heading_cosine[n - k], f->at.cosine[k]), scaled(f->heading_sine[n - k], f->at.sine[k])));
     return b;
 }
 
@@ -159,42 +145,19 @@ static inline real mean_yaw(const motion_series *c, int n) { return R(inverse[n]
 INLINE void at_nodes(real value[NODES], const motion_series *c, polynomial coefficient) {
     for (int k = 0; k < NODES; k++) value[k] = coefficient(c, ORDER);
     for (int n = ORDER - 1; n >= 0; n--)
-        for (int k = 0; k < NODES; k++) value[k] = R(node[k]) * value[k] + coefficient(c, n);
-}
-
-/* In one loop, too, where the angles are small. */
-static inline void directions_at_nodes(real cosine[NODES], real sine[NODES], real angle[NODES]) {
-    real sum = R(0);
-    for (int k = 0; k < NODES; k++) sum += magnitude(angle[k]);
-    if (USUALLY(sum <= R(0.78), &angle[0])) { /* then each is below π/4 = 0.785, up to where the polynomials hold */
-        for (int k = 0; k < NODES; k++) cosine[k] = poly_cos(angle[k] * angle[k]);
-        for (int k = 0; k < NODES; k++) sine[k] = poly_sin(angle[k], angle[k] * angle[k]);
-    } else {
-        for (int k = 0; k < NODES; k++) {
-            const direction d = laconic_direction_of_binary_angle(laconic_binary_angle_of(angle[k]));
-            cosine[k] = d.cosine;
-            sine[k] = d.sine;
-        }
-    }
+        for (int k = 0; k < NODES; k++) value[k] = R(gauss_node[k]) * value[k] + coefficient(c, n);
 }
 
 /* In axes at the mid-step heading: ∫ e^{i(θ − θ_mid)} v dt. */
 static inline pose_change quadrature(const motion_series *c, const laconic_model *m, real h, real yaw_change) {
-    const vector forth = vec(m->velocity_of_zeta[0]), left = vec(m->velocity_of_zeta[1]);
-    pose_change moved = {R(0), R(0), yaw_change};
     const real per_nu3 = yaw_per_nu3(m, h);
-    real x[NODES], y[NODES], z[NODES], angle[NODES], cosine[NODES], sine[NODES], along[NODES], across[NODES];
+    real x[NODES], y[NODES], z[NODES], angle[NODES];
     at_nodes(x, c, zeta_x);
     at_nodes(y, c, zeta_y);
     at_nodes(z, c, zeta_z);
     at_nodes(angle, c, mean_yaw);
-    for (int k = 0; k < NODES; k++) angle[k] = per_nu3 * R(node[k]) * angle[k] - R(0.5) * yaw_change;
-    directions_at_nodes(cosine, sine, angle);
-    for (int k = 0; k < NODES; k++) along[k] = h * R(weight[k]) * (forth.x * x[k] + forth.y * y[k] + forth.z * z[k]);
-    for (int k = 0; k < NODES; k++) across[k] = h * R(weight[k]) * (left.x * x[k] + left.y * y[k] + left.z * z[k]);
-    for (int k = 0; k < NODES; k++) moved.along_m += cosine[k] * along[k] - sine[k] * across[k];
-    for (int k = 0; k < NODES; k++) moved.across_m += sine[k] * along[k] + cosine[k] * across[k];
-    return moved;
+    for (int k = 0; k < NODES; k++) angle[k] = per_nu3 * R(gauss_node[k]) * angle[k] - R(0.5) * yaw_change;
+    return displacement_at_nodes(m, h, yaw_change, x, y, z, angle);
 }
 
 /* -------------------------------------------------------------------------------- the step -- */

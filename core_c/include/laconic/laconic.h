@@ -267,7 +267,11 @@ typedef struct laconic_integrator {
     laconic_real step_s;                 /* h                                                     */
     laconic_decay decay[3];              /* for h, h/2, h/4, as far as the method needs them      */
     laconic_real gyro_limit;             /* largest |g·ζ| that an explicit method takes; not read by others */
-    bool stiff;                          /* damping is fast beside the step: h·r_max >= 0.3       */
+#if LACONIC_WITH_EXPONENTIAL_GAUSS
+    int32_t halvings;                /* its first panel is h/2ᵏ long                          */
+    laconic_real collocation[3][30]; /* its weights, of each axis; with halvings the φ they are made of */
+#endif
+    bool stiff; /* damping is fast beside the step: h·r_max >= 0.3       */
 } laconic_integrator;
 
 typedef struct laconic_method {
@@ -285,11 +289,13 @@ extern const laconic_method laconic_exponential_kahan_4; /* 4  any damping      
 extern const laconic_method laconic_exact_flow;          /* 2  everything                   exactly */
 extern const laconic_method laconic_exact_flow_4;        /* 4  any damping, best below h·r ≈ 0.3    */
 extern const laconic_method laconic_taylor_8;            /* 8  h·r ≤ 4.313, h·|ν3| limited  –       */
+extern const laconic_method laconic_exponential_gauss_8; /* 8  any damping, h·|ν3| limited  nearly  */
 extern const laconic_method laconic_auto;                /* 4  any step: the rule stands in auto.c  */
 
 /* All methods, for adapters that choose by number (0 auto, 1 rk4, 2 exponential-kahan, 3 exponential-kahan-4, 4
- * exact-flow, 5 exact-flow-4, 6 taylor-8) or by name. NULL if there is none. Links every method. */
-#define LACONIC_METHOD_COUNT 7
+ * exact-flow, 5 exact-flow-4, 6 taylor-8, 7 exponential-gauss-8) or by name. NULL if there is none. Links every
+ * method. */
+#define LACONIC_METHOD_COUNT (7 + LACONIC_WITH_EXPONENTIAL_GAUSS)
 const laconic_method *laconic_method_by_number(int32_t number);
 const laconic_method *laconic_method_by_name(const char *name);
 
@@ -314,7 +320,7 @@ uint64_t laconic_run(const laconic_model *model, const laconic_integrator *integ
 /* One step with the input sampled at its start, middle and end. Over the step torques and body
  * wrench are the parabola through the three; b of a force fixed in the world, which rotates against the body, varies
  * linearly between its values at the samples (in second-order methods at start and end). rk4 takes each stage's sample;
- * taylor-8 takes a world force, too, along the parabola. Refuses as laconic_step does. */
+ * those of eighth order take a world force, too, along the parabola. Refuses as laconic_step does. */
 laconic_status laconic_step_sampled(const laconic_model *model, const laconic_integrator *integrator,
                                     laconic_state *state, const laconic_input *start, const laconic_input *middle,
                                     const laconic_input *end);

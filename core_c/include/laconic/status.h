@@ -36,8 +36,8 @@
     X(START_AGAINST_CONSTRAINTS, "start against constraints", \
       "# makes a fixed or locked wheel slide; the nearest value that the wheels allow is @") \
     X(METHOD_UNKNOWN, "method unknown", \
-      "there is no such method; use auto, rk4, exponential-kahan, exponential-kahan-4, exact-flow, exact-flow-4 or " \
-      "taylor-8") \
+      "there is no such method; use auto, rk4, exponential-kahan, exponential-kahan-4, exact-flow, exact-flow-4, " \
+      "taylor-8 or exponential-gauss-8") \
     X(STEP_DOES_NOT_FIT, "step does not fit", \
       "the interval is no whole number of steps of # s; use @ s") \
     X(STEP_BEYOND_DAMPING_LIMIT, "step beyond damping limit", /* explicit methods: h·r_max above their limit */ \

@@ -32,6 +32,7 @@ METHOD_STYLES = {
     "exact-flow": MethodStyle("#8d6cab", "v"),
     "exact-flow-4": MethodStyle("#3066be", "P"),
     "taylor-8": MethodStyle("#7a5230", "X"),
+    "exponential-gauss-8": MethodStyle("#c2185b", "*"),
 }
 FOREIGN = MethodStyle("#777777", "x")  # somebody else's integrator
 

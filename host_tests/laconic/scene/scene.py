@@ -26,7 +26,8 @@ from laconic.scene.speed_controller import SpeedController
 from laconic.scene.table import Table, plain, read_toml
 
 MOST_STEPS = 9e15  # as laconic_steps_in
-METHODS = ("auto", "rk4", "exponential-kahan", "exponential-kahan-4", "exact-flow", "exact-flow-4", "taylor-8")
+METHODS = ("auto", "rk4", "exponential-kahan", "exponential-kahan-4", "exact-flow", "exact-flow-4", "taylor-8",
+           "exponential-gauss-8")
 
 
 @dataclass(frozen=True)

@@ -24,6 +24,7 @@ from laconic.trim.c_tables import initializer
 OF_EACH_WHEEL = ("voltage_scale", "motor_gain_Nm_per_V", "motor_damping_Nms", "wheel_inertia_kgm2")
 """Members of laconic_model that have one item where all wheels are alike."""
 FRICTION = "friction"  # the method that a plant with friction chooses
+EXPONENTIAL_GAUSS = "exponential-gauss-8"
 POSE = ("x_m", "y_m", "heading_rad", "heading_wrapped_rad", "origin_x_m", "origin_y_m")
 
 
@@ -98,7 +99,7 @@ def trimmed(scene: Scene, real: str) -> Trimmed:
     plant = scene.plant(core)
     method = plant.chosen_method
     needs = needs_of(scene)
-    return Trimmed(needs, method, method_steps(scene, method), header_of(scene, real, needs),
+    return Trimmed(needs, method, method_steps(scene, method), header_of(scene, real, needs, method),
                    table_header(scene, real, needs), tables(core, plant, scene))
 
 
@@ -115,7 +116,7 @@ def method_steps(scene: Scene, chosen: str) -> tuple[str, ...]:
     return ("auto_fast_step", own, "exact_flow_step")
 
 
-def header_of(scene: Scene, real: str, needs: Needs) -> str:
+def header_of(scene: Scene, real: str, needs: Needs, method: str) -> str:
     """laconic_scene.h."""
     n, supports = scene.wheel_count, max(1, len(scene.vehicle["support"]) if needs.friction else 0)
     lines = [f"/* {scene.path.name}: what this build of the core is for ({real}). Generated. */",
@@ -123,6 +124,7 @@ def header_of(scene: Scene, real: str, needs: Needs) -> str:
              f"#define LACONIC_MAX_WHEELS {max(1, n)}", f"#define LACONIC_MAX_SUPPORTS {supports}",
              f"#define LACONIC_WHEELS(model) ((void)(model), {n})", "#define LACONIC_WITH_PREPARE 0"]
     lines += [f"#define LACONIC_WITH_{name.upper()} {int(value)}" for name, value in asdict(needs).items()]
+    lines += [f"#define LACONIC_WITH_EXPONENTIAL_GAUSS {int(method == EXPONENTIAL_GAUSS)}"]
     return "\n".join([*lines, "#endif", ""])
 
 

@@ -85,7 +85,8 @@ export interface Scene {
 }
 
 export type MethodName =
-  "auto" | "rk4" | "exponential-kahan" | "exponential-kahan-4" | "exact-flow" | "exact-flow-4" | "taylor-8";
+  "auto" | "rk4" | "exponential-kahan" | "exponential-kahan-4" | "exact-flow" | "exact-flow-4" | "taylor-8"
+  | "exponential-gauss-8";
 
 /** What acts, one item for each wheel; what is not given is 0. */
 export interface Input {

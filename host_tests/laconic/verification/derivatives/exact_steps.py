@@ -9,6 +9,7 @@ from typing import Any
 
 from mpmath import mp, mpf
 
+from laconic.verification.derivatives.exact_gauss import gauss_8
 from laconic.verification.derivatives.exact_model import ExactModel, Vector, added, cross, dot
 
 MEAN_FORCE_ROUNDS = 3
@@ -263,13 +264,16 @@ METHODS: dict[str, Callable[[bool], Callable[..., Increment]]] = {
 }
 
 
-def exact_step(m: ExactModel, method: str, step_s: Any, state: Vector, held: dict[str, Vector], stiff: bool) -> Vector:
-    """(ν, x, y, θ, χ) after a step. `stiff`: as the core decides it for the given vehicle."""
+def exact_step(m: ExactModel, method: str, step_s: Any, state: Vector, held: dict[str, Vector], stiff: bool,
+               halvings: int = 0) -> Vector:
+    """(ν, x, y, θ, χ) after a step. `stiff`, `halvings`: as the core decides them for the given vehicle."""
     z, (x, y, heading), angles = m.zeta(state[:3]), state[3:6], state[6:]
     b = forcing_of(m, held, heading)
     varies = any(held["world_force_N"]) or any(m.slope_force)
     if method == "taylor-8":
         by, (along, across, yaw) = taylor_8(m, step_s, z, b, varies)
+    elif method == "exponential-gauss-8":
+        by, (along, across, yaw) = gauss_8(m, step_s, z, b, halvings)
     else:
         by = METHODS[method](stiff)(m, step_s, z, b, varies)
         along, across, yaw = chord(m, step_s, by)

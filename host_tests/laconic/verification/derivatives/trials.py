@@ -20,7 +20,8 @@ from laconic.errors import Refused
 from laconic.verification.derivatives.exact_model import Numbers, Vector, exact_model, numbers_of
 from laconic.verification.derivatives.exact_steps import exact_step
 
-METHODS = ("rk4", "taylor-8", "exponential-kahan", "exponential-kahan-4", "exact-flow", "exact-flow-4")
+METHODS = ("rk4", "taylor-8", "exponential-kahan", "exponential-kahan-4", "exact-flow", "exact-flow-4",
+           "exponential-gauss-8")
 KINDS = ("omni", "mecanum", "drive", "single", "locked", "bare", "own", "mixed")
 DIGITS = 50
 INCREMENT = mpf("1e-18")
@@ -151,14 +152,15 @@ def difference(trial: Trial, plant: Plant, along: Direction) -> np.ndarray:
     """The change of the state after the step along a direction, from two exact steps."""
     with mp.workdps(DIGITS):
         numbers, state = numbers_of(trial.table), _state(trial, plant)
-        stiff, found = bool(plant.c.integrator.stiff), []
+        (stiff, halvings), found = (bool(plant.c.integrator.stiff), plant.c.integrator.halvings), []
         same = exact_model(numbers) if not along.vehicle else None
         for by in (INCREMENT, -INCREMENT):
             model = same or exact_model(_moved(numbers, along.vehicle, by))
             held = {name: [mpf(x) + by * mpf(d) for x, d in zip(trial.held[name], along.held[name], strict=True)]
                     for name in INPUTS}
             at = [x + by * mpf(d) for x, d in zip(state, along.state, strict=True)]
-            found.append(exact_step(model, plant.chosen_method, mpf(plant.step_s), at, held, stiff))
+            found.append(exact_step(model, plant.chosen_method, mpf(plant.step_s), at, held, stiff,
+                                    halvings))
         return np.array([float((a - b) / (2 * INCREMENT)) for a, b in zip(*found, strict=True)])
 
 

@@ -1,0 +1,253 @@
+/* Exponential collocation at Gauss' four points: of eighth order, takes any damping, keeps every steady state. The
+ * gyroscopic term and the forcing together, M = (g·ζ)(ζ × w) + b, are taken for the polynomial through their values at
+ * the points; ζ' = M − diag(r)ζ is then exact. For η = ζ − ζ(start), with F = M − diag(r)ζ(start),
+ *     η(point j) = h Σi A_ij F_i,   η(end) = h Σi B_i F_i,   mean of η = h Σi C_i F_i,
+ * the weights, for each axis its own, being integrals of Lagrange's polynomials times the decay; for r = 0 they are
+ * those of Gauss' quadrature. F depends on η; ROUNDS rounds from F(start) on find it, each an order better.
+ *
+ * Where damping is fast beside the step, what the start is away from the steady state dies out within its first part.
+ * The step is then taken in panels that double, h/2ᵏ, h/2ᵏ, h/2ᵏ⁻¹, … h/2, the first so short that this is smooth. */
+#include "exponential_gauss_8.h"
+#include "eighth_order.h"
+
+#if LACONIC_WITH_EXPONENTIAL_GAUSS
+
+#define GAUSS_ROTATION R(2)  /* h·|w||g·ζ|: the rounds converge; free motion gains 1.4e-5 of ζ in such a step */
+#define LARGEST_PANEL R(0.5) /* h·r of the first panel */
+
+/* -------------------------------------------------------------------------- one panel -- */
+
+typedef struct panel {
+    real h;                         /* its length                                            */
+    const real *weight[3];          /* of each axis                                          */
+    real first, share;              /* where it starts, of the step's s from 0 to 1; its length of that */
+    vector constant;                /* b, where it does not vary                             */
+    const forcing_terms *varying;   /* NULL where it does not                                */
+    const laconic_heading *heading; /* at the step's start                                 */
+    bool is_whole;                  /* the only panel of the step */
+} panel;
+
+/* What has been found of the step; ζ(start) + delta is ζ where the next panel starts. */
+typedef struct progress {
+    vector delta, mean; /* ∫ζ ds */
+    pose_change moved;
+} progress;
+
+static vector parabola_at(const vector term[3], real s) {
+    return plus(term[0], scaled(s, plus(term[1], scaled(s, term[2]))));
+}
+
+INLINE void add_varying_forcing(node_vectors *rate, const laconic_model *m, const panel *p, const node_vectors *zeta,
+                                real yaw_before) {
+    const forcing_terms *f = p->varying;
+    real yaw[NODES];
+    if (f->rotates) yaw_at_nodes(yaw, m, p->h, zeta);
+    for (int j = 0; j < NODES; j++) {
+        const real s = p->first + R(gauss_node[j]) * p->share;
+        vector b = parabola_at(f->constant, s);
+        if (f->rotates) {
+            const laconic_binary_angle turned = laconic_binary_angle_of(yaw_before + yaw[j]);
+            const direction heading =
+                laconic_direction_of_binary_angle((laconic_binary_angle)(p->heading->fraction + turned));
+            b = plus(b, plus(scaled(heading.cosine, parabola_at(f->cosine, s)),
+                             scaled(heading.sine, parabola_at(f->sine, s))));
+        }
+        rate->x[j] += b.x;
+        rate->y[j] += b.y;
+        rate->z[j] += b.z;
+    }
+}
+
+/* Two displacements, one after the other, in axes at the heading half-way of both together. */
+static pose_change joined(pose_change first, pose_change second) {
+    const direction back = laconic_direction_of_binary_angle(laconic_binary_angle_of(R(-0.5) * second.yaw_change_rad));
+    const direction on = laconic_direction_of_binary_angle(laconic_binary_angle_of(R(0.5) * first.yaw_change_rad));
+    const pose_change both = {back.cosine * first.along_m - back.sine * first.across_m +
+                                  (on.cosine * second.along_m - on.sine * second.across_m),
+                              back.sine * first.along_m + back.cosine * first.across_m +
+                                  (on.sine * second.along_m + on.cosine * second.across_m),
+                              first.yaw_change_rad + second.yaw_change_rad};
+    return both;
+}
+
+INLINE pose_change panel_displacement(const laconic_model *m, real h, const node_vectors *zeta, vector path,
+                                      real yaw[NODES]) {
+    const real yaw_change = dot(vec(m->yaw_rate_of_zeta), path);
+    for (int j = 0; j < NODES; j++) yaw[j] -= R(0.5) * yaw_change;
+    return displacement_at_nodes(m, h, yaw_change, zeta->x, zeta->y, zeta->z, yaw);
+}
+
+/* Mean of η from the panel's start to each node on one axis, times the node. */
+INLINE void mean_to_nodes(real mean[NODES], const real *row, const real rate[NODES]) {
+    for (int j = 0; j < NODES; j++) mean[j] = MEAN_TO_POINT(row, 0, j) * rate[0];
+    for (int i = 1; i < NODES; i++)
+        for (int j = 0; j < NODES; j++) mean[j] += MEAN_TO_POINT(row, i, j) * rate[i];
+}
+
+/* The same where something dies out within the panel. The quadrature does not see that well: the yaw comes from
+ * weights, and what the quadrature lacks of ∫v dt belongs to the heading at the panel's start. */
+RARE pose_change stiff_panel_displacement(const laconic_model *m, const panel *p, vector start,
+                                          const node_vectors *zeta, const node_vectors *rate, vector path) {
+    const vector forth = vec(m->velocity_of_zeta[0]), left = vec(m->velocity_of_zeta[1]);
+    const vector yaw_rate = vec(m->yaw_rate_of_zeta);
+    real x[NODES], y[NODES], z[NODES], yaw[NODES];
+    vector lacking = path;
+    mean_to_nodes(x, p->weight[0], rate->x);
+    mean_to_nodes(y, p->weight[1], rate->y);
+    mean_to_nodes(z, p->weight[2], rate->z);
+    for (int j = 0; j < NODES; j++) {
+        const vector mean = plus(scaled(R(gauss_node[j]), start), vector_of(x[j], y[j], z[j]));
+        yaw[j] = p->h * dot(yaw_rate, mean);
+        lacking = minus(lacking, scaled(p->h * R(gauss_weight[j]), vector_of(zeta->x[j], zeta->y[j], zeta->z[j])));
+    }
+    pose_change moved = panel_displacement(m, p->h, zeta, path, yaw);
+    const direction at_start =
+        laconic_direction_of_binary_angle(laconic_binary_angle_of(R(-0.5) * moved.yaw_change_rad));
+    moved.along_m += at_start.cosine * dot(forth, lacking) - at_start.sine * dot(left, lacking);
+    moved.across_m += at_start.sine * dot(forth, lacking) + at_start.cosine * dot(left, lacking);
+    return moved;
+}
+
+/* Σ weight · F on each axis; `weights`: the first of its weights in the row. */
+INLINE vector weighted(const panel *p, int weights, const node_vectors *rate) {
+    vector sum = none;
+    for (int i = 0; i < NODES; i++) {
+        sum.x += p->weight[0][weights + i] * rate->x[i];
+        sum.y += p->weight[1][weights + i] * rate->y[i];
+        sum.z += p->weight[2][weights + i] * rate->z[i];
+    }
+    return sum;
+}
+
+/* Find ζ and F at the nodes, by rounds from F at the start on. */
+INLINE void take_rounds(node_vectors *zeta, node_vectors *rate, const laconic_model *m, const panel *p, vector start) {
+    const vector still = minus(p->constant, damping(m, start));
+    first_answer(zeta, start, p->weight, first_rate(m, start, still));
+    for (int round = 1; round < ROUNDS; round++) {
+        rates_at(rate, m, zeta, still);
+        answer(zeta, start, p->weight, rate);
+    }
+}
+
+RARE void take_varying_rounds(node_vectors *zeta, node_vectors *rate, const laconic_model *m, const panel *p,
+                              vector start, real yaw_before) {
+    const vector still = minus(none, damping(m, start));
+    for (int j = 0; j < NODES; j++) {
+        zeta->x[j] = start.x;
+        zeta->y[j] = start.y;
+        zeta->z[j] = start.z;
+    }
+    for (int round = 0; round < ROUNDS; round++) {
+        rates_at(rate, m, zeta, still);
+        add_varying_forcing(rate, m, p, zeta, yaw_before);
+        answer(zeta, start, p->weight, rate);
+    }
+}
+
+/* What follows from ζ and F at the nodes. */
+INLINE void finish_panel(progress *found, const laconic_model *m, const panel *p, vector start,
+                         const node_vectors *zeta, const node_vectors *rate) {
+    const vector mean = plus(start, weighted(p, OF_MEAN, rate));
+    found->delta = plus(found->delta, weighted(p, AT_END, rate));
+    found->mean = plus(found->mean, scaled(p->share, mean));
+    if (!LACONIC_WITH_POSE) return; /* then no force is fixed in the world */
+    const vector path = scaled(p->h, mean);
+    if (p->is_whole) {
+        real yaw[NODES];
+        yaw_at_nodes(yaw, m, p->h, zeta);
+        found->moved = panel_displacement(m, p->h, zeta, path, yaw);
+    } else {
+        const node_vectors at = *zeta, f = *rate; /* only copies are in memory */
+        found->moved = joined(found->moved, stiff_panel_displacement(m, p, start, &at, &f, path));
+    }
+}
+
+static void take_panel(progress *found, const laconic_model *m, const panel *p, vector step_start) {
+    const vector start = plus(step_start, found->delta);
+    if (p->varying == NULL) {
+        node_vectors zeta, rate;
+        take_rounds(&zeta, &rate, m, p, start);
+        finish_panel(found, m, p, start, &zeta, &rate);
+    } else {
+        node_vectors zeta, rate; /* others, since these are in memory */
+        take_varying_rounds(&zeta, &rate, m, p, start, found->moved.yaw_change_rad);
+        finish_panel(found, m, p, start, &zeta, &rate);
+    }
+}
+
+/* -------------------------------------------------------------------------------- the step -- */
+
+RARE void take_doubling_panels(progress *found, const laconic_model *m, const laconic_integrator *integrator, panel *p,
+                               vector step_start) {
+    doubling_panel among;
+    for (int axis = 0; axis < 3; axis++) p->weight[axis] = among.row[axis];
+    for (int k = 0; k <= integrator->halvings; k++) {
+        if (k == 0)
+            first_panel(&among, m, integrator);
+        else
+            next_panel(&among, m, k);
+        p->h = among.h;
+        p->first = among.first;
+        p->share = among.share;
+        take_panel(found, m, p, step_start);
+    }
+}
+
+static laconic_status exponential_gauss_8_step(const laconic_model *model, const laconic_integrator *integrator,
+                                               laconic_state *state, const laconic_forcing_samples *samples) {
+    vector zeta = zeta_of(state);
+    progress found = {none, none, {R(0), R(0), R(0)}};
+    forcing_terms terms;
+    panel p;
+    if (RARELY(beyond_rotation(model, integrator, zeta), &zeta.x)) return LACONIC_STEP_BEYOND_GYROSCOPIC_LIMIT;
+    p.h = integrator->step_s;
+    for (int axis = 0; axis < 3; axis++) p.weight[axis] = integrator->collocation[axis];
+    p.first = R(0);
+    p.share = R(1);
+    p.is_whole = integrator->halvings == 0;
+    p.constant = none;
+    p.varying = NULL;
+    p.heading = &state->heading;
+    if (constant_over(samples)) {
+        p.constant = vec(samples->start->constant);
+    } else {
+        forcing_terms_of(&terms, samples);
+        p.varying = &terms;
+    }
+    if (p.is_whole)
+        take_panel(&found, model, &p, zeta);
+    else
+        take_doubling_panels(&found, model, integrator, &p, zeta);
+    increment by = {found.delta, found.mean, found.delta};
+    if (!USUALLY(passive(model, state, integrator->step_s, samples, zeta, by), &found.moved.along_m))
+        return not_passive(by);
+    if (!USUALLY(in_range(zeta, by.delta), &found.moved.along_m)) return LACONIC_OVERFLOW;
+    return END_STEP(state, by.delta, scaled(integrator->step_s, by.mean), found.moved);
+}
+
+/* ------------------------------------------------------------------------------ preparation -- */
+
+static laconic_status exponential_gauss_8_prepare(laconic_integrator *integrator, const laconic_model *model,
+                                                  laconic_refusal *why) {
+    real h = integrator->step_s;
+    while (ANY(h * laconic_fastest_decay(model) > LARGEST_PANEL) && integrator->halvings < MOST_HALVINGS) {
+        h *= R(0.5);
+        integrator->halvings++;
+    }
+    for (int axis = 0; axis < 3; axis++) {
+        real phi[PHIS * (NODES + 1)], *kept = integrator->collocation[axis];
+        const real a = h * model->decay_per_s[axis];
+        for (int j = 0; j < NODES; j++) laconic_phi(&PHI(phi, j, 0), a * R(gauss_node[j]));
+        laconic_phi(&PHI(phi, NODES, 0), a);
+        if (integrator->halvings == 0)
+            weights_of(kept, phi, h, a);
+        else
+            for (int n = 0; n < PHIS * (NODES + 1); n++) kept[n] = phi[n];
+    }
+    return laconic_explicit_limits(integrator, model, R(LACONIC_REAL_MAX), GAUSS_ROTATION, why);
+}
+
+const laconic_method laconic_exponential_gauss_8 = {"exponential-gauss-8", 8, PREPARE(exponential_gauss_8_prepare),
+                                                    exponential_gauss_8_step};
+
+#endif

@@ -1,0 +1,113 @@
+/* Tests of exponential_gauss_8.c: order, steady motions, stiff vehicles, panels, drift, refusals. */
+#include "stiff.h"
+
+/* In single precision 8 steps already err by little more than rounding, and half as many are beyond the gyroscopic
+ * limit. */
+static void assert_eighth_order_under(laconic_input input) {
+    const laconic_vehicle v = with_motors(three_wheels());
+    if (EITHER(true, false)) {
+        assert_order(&laconic_exponential_gauss_8, &v, start_with(2, 1, 4), &input, 2.0, 16, 8);
+    } else {
+        const errors e = errors_of(&laconic_exponential_gauss_8, &v, start_with(2, 1, 4), &input, 2.0, 8);
+        TEST_ASSERT_TRUE(e.nu < 1e-4 && e.pose < 1e-5 && e.wheels < 1e-5);
+    }
+}
+
+static void is_of_eighth_order_under_everything_that_can_act(void) { assert_eighth_order_under(every_input()); }
+
+static void is_of_eighth_order_without_a_world_force(void) {
+    laconic_input input = every_input();
+    input.world_force_N[0] = input.world_force_N[1] = 0;
+    assert_eighth_order_under(input);
+}
+
+static void large_steps_meet_the_reference(void) {
+    const laconic_vehicle v = with_motors(three_wheels());
+    const laconic_input input = every_input();
+    const errors e = errors_of(&laconic_exponential_gauss_8, &v, start_with(2, 1, 4), &input, 1.0, 25);
+    TEST_ASSERT_TRUE(e.nu < EITHER(1e-11, 1e-5));
+    TEST_ASSERT_TRUE(e.pose < EITHER(1e-11, 1e-5));
+    TEST_ASSERT_TRUE(e.wheels < EITHER(1e-11, 1e-5));
+}
+
+/* h·r of 0.3 is one panel, of 30 seven of them. */
+static void damping_and_forcing_alone_are_exact_in_one_panel_and_in_many(void) {
+    laconic_vehicle v = with_motors(three_wheels());
+    laconic_input input = no_input();
+    input.voltage_V[0] = REAL(1);
+    input.voltage_V[1] = REAL(-1); /* straight along η, without yaw */
+    for (int k = 0; k < 3; k++) {
+        const errors e = errors_of(&laconic_exponential_gauss_8, &v, start_with(0, 1, 0), &input, 1.0, 1);
+        TEST_ASSERT_TRUE(e.nu < EITHER(1e-13, 4e-6));
+        TEST_ASSERT_TRUE(e.wheels < EITHER(1e-13, 4e-6));
+        v.motor_damping_Nms *= REAL(10);
+    }
+}
+
+static void a_steady_motion_stays_at_any_step(void) {
+    assert_steady_motion_stays(&laconic_exponential_gauss_8, 0.1);
+    assert_steady_motion_stays(&laconic_exponential_gauss_8, 0.4);
+}
+
+static void a_stiff_vehicle_reaches_its_steady_motion(void) {
+    assert_stiff_vehicle_reaches_its_steady_motion(&laconic_exponential_gauss_8, EITHER(1e-13, 1e-5));
+}
+
+/* On the way to its steady motion such a vehicle yaws and slides at once; against 1,000 small steps. */
+static void what_dies_out_within_a_step_is_integrated(void) {
+    laconic_vehicle v = stiff();
+    laconic_input input = no_input();
+    errors e;
+    for (int i = 0; i < 4; i++) input.voltage_V[i] = REAL(i - 1);
+    e = errors_of(&laconic_exponential_gauss_8, &v, start_with(2, -3, 4), &input, 0.02, 1);
+    TEST_ASSERT_TRUE(e.nu < EITHER(1e-11, 1e-5));
+    TEST_ASSERT_TRUE(e.pose < EITHER(1e-11, 1e-5));
+    TEST_ASSERT_TRUE(e.wheels < EITHER(1e-11, 1e-5));
+}
+
+static void damping_beyond_the_panels_is_taken(void) {
+    const laconic_model m = model_of(stiff());
+    laconic_state state = moving(&m, 1, 1, 0);
+    const laconic_input input = no_input();
+    take_steps(&laconic_exponential_gauss_8, &m, &state, &input, 1e5, 3);
+    ASSERT_NEAR(EITHER(1e-13, 1e-5), 0, laconic_energy_J(&m, &state));
+}
+
+static void energy_and_k_drift_only_by_the_truncation_error(void) {
+    const laconic_vehicle v = three_wheels();
+    const drift d = free_drift(&laconic_exponential_gauss_8, &v, 0.05, 2000);
+    TEST_ASSERT_TRUE(d.energy < EITHER(1e-12, 1e-5));
+    TEST_ASSERT_TRUE(d.yaw_integral < EITHER(1e-12, 1e-5));
+}
+
+static void a_yaw_too_fast_for_the_step_is_refused(void) {
+    assert_step_refused(&laconic_exponential_gauss_8, three_wheels(), start_with(1, 1, 500), no_input(), 0.1,
+                        LACONIC_STEP_BEYOND_GYROSCOPIC_LIMIT);
+}
+
+static void a_step_that_gains_energy_is_refused(void) {
+    start_that_gains_energy(&laconic_exponential_gauss_8, three_wheels(), every_input(), 1.0, 500);
+}
+
+static void numbers_beyond_the_range_are_refused(void) {
+    laconic_input input = no_input();
+    input.body_force_N[0] = REAL(EITHER(1e100, 1e15)); /* a caster moves straight on: the forcing supplies the energy */
+    assert_step_refused(&laconic_exponential_gauss_8, caster(), start_with(0, 0, 0), input, 1.0, LACONIC_OVERFLOW);
+}
+
+int main(void) {
+    UNITY_BEGIN();
+    RUN_TEST(is_of_eighth_order_under_everything_that_can_act);
+    RUN_TEST(is_of_eighth_order_without_a_world_force);
+    RUN_TEST(large_steps_meet_the_reference);
+    RUN_TEST(damping_and_forcing_alone_are_exact_in_one_panel_and_in_many);
+    RUN_TEST(a_steady_motion_stays_at_any_step);
+    RUN_TEST(a_stiff_vehicle_reaches_its_steady_motion);
+    RUN_TEST(what_dies_out_within_a_step_is_integrated);
+    RUN_TEST(damping_beyond_the_panels_is_taken);
+    RUN_TEST(energy_and_k_drift_only_by_the_truncation_error);
+    RUN_TEST(a_yaw_too_fast_for_the_step_is_refused);
+    RUN_TEST(a_step_that_gains_energy_is_refused);
+    RUN_TEST(numbers_beyond_the_range_are_refused);
+    return UNITY_END();
+}

@@ -1,0 +1,106 @@
+"""exponential-gauss-8 in 50 digits, written from docs/integrators.md: its increment, and its displacement."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from dataclasses import dataclass
+from typing import Any
+
+from mpmath import mp, mpf
+
+from laconic.verification.derivatives.exact_model import ExactModel, Vector, added, cross, dot
+
+ROUNDS = 9
+POINTS = range(4)
+
+
+def points() -> list[Any]:
+    """Gauss' four points on 0 … 1, in their order."""
+    inner, outer = (mp.sqrt(mpf(3) / 7 + sign * mpf(2) / 7 * mp.sqrt(mpf(6) / 5)) for sign in (-1, 1))
+    return [(1 + x) / 2 for x in (-outer, -inner, inner, outer)]
+
+
+def lagrange(at: list[Any], i: int) -> list[Any]:
+    """Coefficients of 1, s, s², s³ of the polynomial that is 1 at point i and 0 at the others."""
+    c = [mpf(1)]
+    for k in POINTS:
+        if k != i:
+            c = [(up - at[k] * down) / (at[i] - at[k]) for up, down in zip([mpf(0), *c], [*c, mpf(0)], strict=True)]
+    return c
+
+
+def phi(k: int, a: Any) -> Any:
+    """φk at −a; by its series where the recurrence would cancel."""
+    return mp.hyp1f1(1, k + 1, -a) / mp.factorial(k)
+
+
+@dataclass
+class Weights:
+    """Of one axis: of F at each point, in η at a place and in its integral up to there; with h."""
+
+    to_point: list[list[Any]]
+    mean_to_point: list[list[Any]]
+    end: list[Any]
+    mean: list[Any]
+
+
+def weights_of(h: Any, a: Any) -> Weights:
+    at = points()
+    polynomials = [lagrange(at, i) for i in POINTS]
+
+    def of(i: int, k: int, to: Any, phis: list[Any]) -> Any:
+        return h * sum(c * mp.factorial(n) * phis[n + k] * to ** (n + k) for n, c in enumerate(polynomials[i]))
+
+    table = [[phi(k, a * to) for k in range(6)] for to in (*at, mpf(1))]
+    return Weights([[of(i, 1, at[j], table[j]) for j in POINTS] for i in POINTS],
+                   [[of(i, 2, at[j], table[j]) for j in POINTS] for i in POINTS],
+                   [of(i, 1, mpf(1), table[4]) for i in POINTS], [of(i, 2, mpf(1), table[4]) for i in POINTS])
+
+
+def shares_of(halvings: int) -> list[Any]:
+    """The panels of a step."""
+    return [mpf(1) / 2**halvings, *(mpf(1) / 2 ** (halvings - k) for k in range(halvings))]
+
+
+def gauss_8(m: ExactModel, h: Any, start: Vector, b: Callable[[Any], Vector],
+            halvings: int) -> tuple[tuple[Vector, Vector, Vector], tuple[Any, Any, Any]]:
+    """(increment, mean, slope) of ζ and (along, across, yaw) in axes at the heading in the middle."""
+    at, undamped = points(), weights_of(mpf(1), mpf(0))
+    delta, mean, moved, turned = [mpf(0)] * 3, [mpf(0)] * 3, mp.mpc(0), mpf(0)
+
+    def yaw_of(path: Vector) -> Any:
+        return dot(m.nu_of_zeta[2], path) / m.yaw_scale
+
+    def velocity(z: Vector) -> Any:
+        return m.radius * mp.mpc(dot(m.nu_of_zeta[0], z), dot(m.nu_of_zeta[1], z))
+
+    for share in shares_of(halvings):
+        length, z0 = share * h, added(start, 1, delta)
+        axes = [weights_of(length, length * r) for r in m.decay]
+
+        def answer(of: Callable[[Weights, int], Any], rate: list[Vector], axes: list[Weights] = axes) -> Vector:
+            return [sum(of(axes[k], i) * rate[i][k] for i in POINTS) for k in range(3)]
+
+        z, rate = [z0] * 4, [z0] * 4
+        for _ in range(ROUNDS):
+            rate = []
+            for j in POINTS:
+                yaw = turned + sum(length * undamped.to_point[i][j] * yaw_of(z[i]) for i in POINTS)
+                twist, push = cross(z[j], m.gyro), b(yaw)
+                rate.append([dot(m.nu_of_zeta[2], z[j]) * twist[k] + push[k] - m.decay[k] * z0[k] for k in range(3)])
+            z = [added(z0, 1, answer(lambda w, i, j=j: w.to_point[i][j], rate)) for j in POINTS]
+        average = added(z0, 1, answer(lambda w, i: w.mean[i], rate))
+        yaw_change, shift, lacking = length * yaw_of(average), mp.mpc(0), length * velocity(average)
+        for j in POINTS:
+            if halvings == 0:
+                yaw = sum(length * undamped.to_point[i][j] * yaw_of(z[i]) for i in POINTS)
+            else:
+                yaw = length * yaw_of(added(answer(lambda w, i, j=j: w.mean_to_point[i][j], rate), at[j], z0))
+            part = length * undamped.end[j] * velocity(z[j])
+            shift += part * mp.expj(yaw)
+            lacking -= part
+        moved += mp.expj(turned) * (shift + (lacking if halvings else 0))
+        delta, mean = added(delta, 1, answer(lambda w, i: w.end[i], rate)), added(mean, share, average)
+        turned += yaw_change
+    moved *= mp.expj(-turned / 2)
+    return (delta, mean, delta), (moved.real, moved.imag, turned)
