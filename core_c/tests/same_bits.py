@@ -13,9 +13,9 @@ def main() -> int:
         if done.returncode or not done.stdout.strip():
             print(f"{program}: exit status {done.returncode}, a run was refused", file=sys.stderr)
             return 1
-        printed[program] = done.stdout.strip()
-    for program, number in printed.items():
-        print(number, program)
+        printed[program] = " ".join(done.stdout.split())
+    for program, numbers in printed.items():
+        print(numbers, program)
     return 0 if len(printed) > 1 and len(set(printed.values())) == 1 else 1
 
 

@@ -36,7 +36,7 @@ foreach(target laconic_fmu_node laconic_fmu_wire)
     set_source_files_properties("${wire}/laconic_wire.c" "${wire}/laconic_dbc.c" PROPERTIES GENERATED TRUE)
     target_include_directories(${target} SYSTEM PRIVATE "${wire}")
     target_include_directories(${target} PRIVATE "${firmware}/include" "${firmware}/src" "${firmware}/drives"
-        "${PROJECT_SOURCE_DIR}/core_c/include")
+        ${core_includes})
     add_dependencies(${target} laconic_wire_files)
 endforeach()
 

@@ -4,7 +4,9 @@ import { byId } from "./texts.js";
 
 const WORKER = `onmessage = async ({ data }) => {
   const instance = await WebAssembly.instantiate(data);
-  postMessage(BigInt.asUintN(64, instance.exports.laconic_web_hash()).toString(16).padStart(16, "0"));
+  const line = (number) =>
+    BigInt.asUintN(64, instance.exports.laconic_web_hash(number)).toString(16).padStart(16, "0");
+  postMessage(line(0) + " " + line(1));
 };`;
 
 /** Shows whether they are equal. */

@@ -17,7 +17,7 @@ class TooLarge(Exception):
 
 def make_page(sources: Path, binding: Path, scenes: Path, native_hash: Path, out: Path) -> None:
     """Writes the one file."""
-    facts = {"nativeHash": native_hash.read_text().strip(), "scenes": scenes_in(scenes)}
+    facts = {"nativeHash": " ".join(native_hash.read_text().split()), "scenes": scenes_in(scenes)}
     marks = {
         "/* STYLE */": (sources / "style.css").read_text(encoding="utf-8"),
         "/* FACTS */": json.dumps(facts, separators=(",", ":"), ensure_ascii=False).replace("<", "\\u003c"),

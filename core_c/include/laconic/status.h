@@ -3,6 +3,14 @@
 #ifndef LACONIC_STATUS_H
 #define LACONIC_STATUS_H
 
+#include "laconic/real.h"
+
+#if LACONIC_WITH_EXPONENTIAL_GAUSS
+#define LACONIC_LAST_METHODS ", taylor-8 or exponential-gauss-8"
+#else
+#define LACONIC_LAST_METHODS " or taylor-8"
+#endif
+
 /* clang-format off */
 
 /* X(IDENTIFIER, name, explanation with the remedy; # stands for the refusal's value, @ for its limit). The numbers go
@@ -36,8 +44,8 @@
     X(START_AGAINST_CONSTRAINTS, "start against constraints", \
       "# makes a fixed or locked wheel slide; the nearest value that the wheels allow is @") \
     X(METHOD_UNKNOWN, "method unknown", \
-      "there is no such method; use auto, rk4, exponential-kahan, exponential-kahan-4, exact-flow, exact-flow-4, " \
-      "taylor-8 or exponential-gauss-8") \
+      "there is no such method; use auto, rk4, exponential-kahan, exponential-kahan-4, exact-flow, exact-flow-4" \
+      LACONIC_LAST_METHODS) \
     X(STEP_DOES_NOT_FIT, "step does not fit", \
       "the interval is no whole number of steps of # s; use @ s") \
     X(STEP_BEYOND_DAMPING_LIMIT, "step beyond damping limit", /* explicit methods: h·r_max above their limit */ \

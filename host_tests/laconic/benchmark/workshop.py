@@ -14,6 +14,7 @@ from laconic.core import Core, load
 from laconic.errors import ResultFails
 from laconic.paths import SOURCE_DIR, sources_missing
 from laconic.scene import Scene
+from laconic.scene.methods import ON_HOSTS
 from laconic.trim import Trimmed, trimmed
 from laconic.trim.c_tables import initializer
 
@@ -121,6 +122,12 @@ def segments_source(core: Core, scene: Scene, names: dict[int, str] | None = Non
             "const char bench_state_bytes[BENCH_STATE_BYTES] = {0};\n")
 
 
+def _whole(variant: Variant) -> str:
+    """The folder of what is built for all scenes alike."""
+    method = variant.scene.run.method
+    return f"whole_{method}" if method in ON_HOSTS else "whole"
+
+
 def entry_of(files: Trimmed, scene: Scene) -> str:
     """The function of the core that takes a step of the scene."""
     if files.needs.friction:
@@ -148,24 +155,26 @@ class Workshop:
         (folder / "bench_segments.c").write_text(segments_source(load(variant.real), variant.scene))
         return folder, files
 
-    def definitions(self, variant: Variant, folder: Path) -> list[str]:
-        """The definitions for the preprocessor."""
+    def definitions(self, target: Target, variant: Variant, folder: Path) -> list[str]:
+        """The definitions for the preprocessor: on a board those of firmware images, unless the method needs more."""
         found = ["-DLACONIC_SINGLE"] if variant.real == "single" else []
         if variant.trim:
             found.append(f'-DLACONIC_SCENE_HEADER="{folder / "laconic_scene.h"}"')
+        elif target.machine and variant.scene.run.method not in ON_HOSTS:
+            found.append("-DLACONIC_WITH_EXPONENTIAL_GAUSS=0")
         return found
 
     def archive(self, target: Target, variant: Variant, folder: Path, extra: Sequence[str] = ()) -> Path:
         """The core as a static library, with .ci files (call graph and stack) beside its objects."""
         kind = "_".join((target.name, variant.real, variant.optimisation.strip("-"), *(e.strip("-") for e in extra)))
-        place = self.folder / (f"trimmed_{variant.scene.path.stem}" if variant.trim else "whole") / kind
+        place = self.folder / (f"trimmed_{variant.scene.path.stem}" if variant.trim else _whole(variant)) / kind
         if place not in self._archives:
             shutil.rmtree(place, ignore_errors=True)
             place.mkdir(parents=True)
             sources = sorted(map(str, (self.core_dir / "src").glob("*.c")))
             graph = ("-fstack-usage", "-fcallgraph-info=su") if target.machine else ()
             run_tool([target.tool("gcc"), "-c", *FLAGS, *graph, *extra, variant.optimisation, *target.flags,
-                      *self.definitions(variant, folder), f"-I{self.core_dir / 'include'}", *sources], place)
+                      *self.definitions(target, variant, folder), f"-I{self.core_dir / 'include'}", *sources], place)
             run_tool([target.tool("ar"), "rcs", "libcore.a", *sorted(p.name for p in place.glob("*.o"))], place)
             self._archives[place] = place / "libcore.a"
         return self._archives[place]
@@ -177,8 +186,9 @@ class Workshop:
         output = folder / f"{target.name}_{name}"
         generated = [str(folder / name) for name in ("laconic_scene_model.c", "bench_segments.c")]
         run_tool([target.tool("gcc"), *FLAGS, *extra, variant.optimisation, *target.flags,
-                  *self.definitions(variant, folder), f"-I{self.core_dir / 'include'}", f"-I{BENCH}", f"-I{folder}",
-                  *map(str, sources), *generated, str(core), "-Wl,--gc-sections", *flags, "-o", str(output)])
+                  *self.definitions(target, variant, folder), f"-I{self.core_dir / 'include'}", f"-I{BENCH}",
+                  f"-I{folder}", *map(str, sources), *generated, str(core), "-Wl,--gc-sections", *flags,
+                  "-o", str(output)])
         return output
 
     def host_program(self, variant: Variant) -> Path:
@@ -208,14 +218,15 @@ class Workshop:
                           [*map(str, archives), *flags])
 
     def _filter_archive(self, target: Target, variant: Variant) -> Path:
-        place = self.folder / "filter" / "_".join((target.name, variant.real, variant.optimisation.strip("-")))
+        kind = "_".join((target.name, variant.real, variant.optimisation.strip("-")))
+        place = self.folder / f"filter_{_whole(variant)}" / kind
         if place not in self._archives:
             place.mkdir(parents=True)
             sources = [str(path) for room in ("derivatives", "filter")
                        for path in sorted((self.core_dir / room).glob("*.c"))]
-            single = ["-DLACONIC_SINGLE"] if variant.real == "single" else []
-            run_tool([target.tool("gcc"), "-c", *FLAGS, variant.optimisation, *target.flags, *single,
-                      f"-I{self.core_dir / 'include'}", f"-I{self.core_dir / 'src'}", *sources], place)
+            run_tool([target.tool("gcc"), "-c", *FLAGS, variant.optimisation, *target.flags,
+                      *self.definitions(target, variant, self.files(variant)[0]), f"-I{self.core_dir / 'include'}",
+                      f"-I{self.core_dir / 'src'}", *sources], place)
             run_tool([target.tool("ar"), "rcs", "libfilter.a", *sorted(p.name for p in place.glob("*.o"))], place)
             self._archives[place] = place / "libfilter.a"
         return self._archives[place]

@@ -1,6 +1,7 @@
 """Scenes: TOML files that describe a vehicle, its start, its inputs and its run."""
 
 from laconic.scene.build import build_scene
-from laconic.scene.scene import METHODS, MOST_STEPS, Outputs, Scene, check_scene, read_scene, scene_of
+from laconic.scene.methods import METHODS
+from laconic.scene.scene import MOST_STEPS, Outputs, Scene, check_scene, read_scene, scene_of
 
 __all__ = ["METHODS", "MOST_STEPS", "Outputs", "Scene", "build_scene", "check_scene", "read_scene", "scene_of"]

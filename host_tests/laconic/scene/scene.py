@@ -19,6 +19,7 @@ from laconic.errors import BadInput, Refused
 from laconic.paths import scene_path
 from laconic.scene.drives import Drives
 from laconic.scene.inputs import Input, InputsOnGrid, check_resolved, step_remedy
+from laconic.scene.methods import METHODS
 from laconic.scene.names import in_file
 from laconic.scene.reader import read_parts, read_run
 from laconic.scene.sensors import DELAY_S, NO_SENSORS, SensorTables
@@ -26,8 +27,6 @@ from laconic.scene.speed_controller import SpeedController
 from laconic.scene.table import Table, plain, read_toml
 
 MOST_STEPS = 9e15  # as laconic_steps_in
-METHODS = ("auto", "rk4", "exponential-kahan", "exponential-kahan-4", "exact-flow", "exact-flow-4", "taylor-8",
-           "exponential-gauss-8")
 
 
 @dataclass(frozen=True)

@@ -176,7 +176,7 @@ def test_in_free_motion_exact_flow_has_zeta_to_rounding_and_pose_and_travel_to_i
 
 WRONG = {  # method → what is put instead of what
     "rk4": ("2 * k2 + 2 * k3", "2 * k2 + 3 * k3"), "taylor-8": ("h / (n + 1)", "h / (n + 2)"),
-    "exponential-gauss-8": ("weights(i, k, length * r, to)", "weights(i, k, length, to)"),
+    "exponential-gauss-8": ("+ b - times(r, z0)", "+ b + times(r, z0)"),
     "exponential-kahan": ("cross(x, w)) / 2", "cross(x, w)) / 3"),
     "exact-flow": ("(1 - across * tangent)", "(1 + across * tangent)"),
     "exponential-kahan-4": ("(mean - whole[1]) / 3", "(mean - whole[1]) / 4"),

@@ -13,8 +13,8 @@ from laconic.errors import BadInput
 from laconic.paths import SCENE_DIR, SOURCE_DIR, scene_names
 from laconic.scene import build_scene, read_scene
 from laconic.scene.keys import KEYS, TABLES, Key, read_number
+from laconic.scene.methods import METHODS
 from laconic.scene.reference import inputs, outputs, rows, unit_of
-from laconic.scene.scene import METHODS
 from laconic.scene.table import REQUIRED, Table
 from laconic_site.scene_reference import descriptions, scene_page
 

@@ -178,7 +178,8 @@ export class Laconic {
   readonly arithmeticIsSound: boolean;
   /** @throws Refused */
   robot(scene: Scene, run?: { method?: MethodName; step_s?: number }): Robot;
-  /** Depends on every bit of many trajectories; equal on every platform. */
+  /** Two numbers that depend on every bit of many trajectories, the second on those of exponential-gauss-8; equal on every
+   * platform. */
   hash(): string;
 }
 

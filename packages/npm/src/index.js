@@ -29,9 +29,14 @@ export class Laconic {
     return new Robot(this.module, scene, method, step_s);
   }
 
-  /** The number that depends on every bit of many trajectories, as 16 hexadecimal digits. */
+  /**
+   * Numbers that depend on every bit of many trajectories, each as 16 hexadecimal digits: of the methods up to
+   * taylor-8, and of exponential-gauss-8.
+   */
   hash() {
-    this.hashed ??= BigInt.asUintN(64, this.module.c.laconic_web_hash()).toString(16).padStart(16, "0");
+    const line = (/** @type {number} */ number) =>
+      BigInt.asUintN(64, this.module.c.laconic_web_hash(number)).toString(16).padStart(16, "0");
+    this.hashed ??= `${line(0)} ${line(1)}`;
     return this.hashed;
   }
 }

@@ -57,6 +57,11 @@ def weights_of(h: Any, a: Any) -> Weights:
                    [of(i, 1, mpf(1), table[4]) for i in POINTS], [of(i, 2, mpf(1), table[4]) for i in POINTS])
 
 
+def response(weights: list[list[Any]], rate: list[Vector]) -> Vector:
+    """Σ weight · F; `weights`: of each axis, one of each point."""
+    return [sum(weights[k][i] * rate[i][k] for i in POINTS) for k in range(3)]
+
+
 def shares_of(halvings: int) -> list[Any]:
     """The panels of a step."""
     return [mpf(1) / 2**halvings, *(mpf(1) / 2 ** (halvings - k) for k in range(halvings))]
@@ -78,9 +83,6 @@ def gauss_8(m: ExactModel, h: Any, start: Vector, b: Callable[[Any], Vector],
         length, z0 = share * h, added(start, 1, delta)
         axes = [weights_of(length, length * r) for r in m.decay]
 
-        def answer(of: Callable[[Weights, int], Any], rate: list[Vector], axes: list[Weights] = axes) -> Vector:
-            return [sum(of(axes[k], i) * rate[i][k] for i in POINTS) for k in range(3)]
-
         z, rate = [z0] * 4, [z0] * 4
         for _ in range(ROUNDS):
             rate = []
@@ -88,19 +90,20 @@ def gauss_8(m: ExactModel, h: Any, start: Vector, b: Callable[[Any], Vector],
                 yaw = turned + sum(length * undamped.to_point[i][j] * yaw_of(z[i]) for i in POINTS)
                 twist, push = cross(z[j], m.gyro), b(yaw)
                 rate.append([dot(m.nu_of_zeta[2], z[j]) * twist[k] + push[k] - m.decay[k] * z0[k] for k in range(3)])
-            z = [added(z0, 1, answer(lambda w, i, j=j: w.to_point[i][j], rate)) for j in POINTS]
-        average = added(z0, 1, answer(lambda w, i: w.mean[i], rate))
+            z = [added(z0, 1, response([[row[j] for row in w.to_point] for w in axes], rate)) for j in POINTS]
+        average = added(z0, 1, response([w.mean for w in axes], rate))
         yaw_change, shift, lacking = length * yaw_of(average), mp.mpc(0), length * velocity(average)
         for j in POINTS:
             if halvings == 0:
                 yaw = sum(length * undamped.to_point[i][j] * yaw_of(z[i]) for i in POINTS)
             else:
-                yaw = length * yaw_of(added(answer(lambda w, i, j=j: w.mean_to_point[i][j], rate), at[j], z0))
+                so_far = response([[row[j] for row in w.mean_to_point] for w in axes], rate)
+                yaw = length * yaw_of(added(so_far, at[j], z0))
             part = length * undamped.end[j] * velocity(z[j])
             shift += part * mp.expj(yaw)
             lacking -= part
         moved += mp.expj(turned) * (shift + (lacking if halvings else 0))
-        delta, mean = added(delta, 1, answer(lambda w, i: w.end[i], rate)), added(mean, share, average)
+        delta, mean = added(delta, 1, response([w.end for w in axes], rate)), added(mean, share, average)
         turned += yaw_change
     moved *= mp.expj(-turned / 2)
     return (delta, mean, delta), (moved.real, moved.imag, turned)
