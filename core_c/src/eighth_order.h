@@ -45,7 +45,7 @@ typedef struct forcing_terms {
     bool rotates;                           /* else cosine and sine are not set */
 } forcing_terms;
 
-static inline void parabola_terms(vector term[3], const real start[3], const real middle[3], const real end[3]) {
+static void parabola_terms(vector term[3], const real start[3], const real middle[3], const real end[3]) {
     const vector half = minus(vec(middle), vec(start)), whole = minus(vec(end), vec(start));
     term[0] = vec(start);
     term[1] = minus(scaled(R(4), half), whole);
