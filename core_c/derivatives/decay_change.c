@@ -1,6 +1,7 @@
 /* How the factors of an exponential step change with the damping, as functions of a symmetric matrix: along dR entry jk
  * of the change of f(R) is dR_jk times the divided difference of f between the rates j and k (Daletskii and Krein).
  * With it the change of a step does not depend on the choice of axes, and rates may coincide. */
+#include "divided_difference.h"
 #include "step_change.h"
 
 /* The factors of laconic_decay that a step with held input uses. */
@@ -77,15 +78,7 @@ static factors weighed_factors(factors sum, real weight, factors f) {
     return sum;
 }
 
-/* Gauss' quadrature of five points on −1 … 1: where h·r of two rates are at most 1 apart, the mean of the slope
- * between them to 1e-15, without the cancellation of a difference. */
-#define POINTS 5
-static const real point[POINTS] = {R(0), R(0.53846931010568309104), R(-0.53846931010568309104),
-                                   R(0.90617984593866399280), R(-0.90617984593866399280)};
-static const real point_share[POINTS] = {R(0.28444444444444444444), R(0.23931433524968323402),
-                                         R(0.23931433524968323402), R(0.11846344252809454376),
-                                         R(0.11846344252809454376)};
-
+/* As divided_difference_of(), of all factors at once. */
 static factors divided_difference(real h, real a, real b) {
     const factors zero = {R(0), R(0), R(0), R(0), R(0), R(0)};
     factors sum = zero;
@@ -93,8 +86,9 @@ static factors divided_difference(real h, real a, real b) {
         sum = weighed_factors(zero, R(1) / (a - b), factors_at(h, a));
         return weighed_factors(sum, R(-1) / (a - b), factors_at(h, b));
     }
-    for (int i = 0; i < POINTS; i++)
-        sum = weighed_factors(sum, point_share[i], factor_slopes(h, R(0.5) * (a + b) + R(0.5) * (b - a) * point[i]));
+    for (int i = 0; i < SLOPE_POINTS; i++)
+        sum = weighed_factors(sum, slope_share[i],
+                              factor_slopes(h, R(0.5) * (a + b) + R(0.5) * (b - a) * slope_point[i]));
     return sum;
 }
 

@@ -14,7 +14,8 @@ static const laconic_method *const every_method[] = {&laconic_rk4,
                                                      &laconic_exponential_kahan_4,
                                                      &laconic_exact_flow,
                                                      &laconic_exact_flow_4,
-                                                     &laconic_auto};
+                                                     &laconic_auto,
+                                                     &laconic_exponential_gauss_8};
 #define METHODS ((int)(sizeof every_method / sizeof every_method[0]))
 
 /* A step: vehicle, method, size, motion and input. */
@@ -272,6 +273,14 @@ static void fast_turns_and_large_steps_are_linearised(void) {
         }
 }
 
+/* The last of its panels are long beside what damping leaves of the start. */
+static void a_step_of_many_panels_is_linearised(void) {
+    step_case c = case_of(damped_fast(with_motors(three_wheels())), &laconic_exponential_gauss_8, 0.4);
+    obey_constraints(&c);
+    follows_motion_and_input(&c);
+    follows_the_vehicle(&c);
+}
+
 /* ------------------------------------------------------------------------------- agreement -- */
 
 static double paired(const rows *a, const rows *b, int count, double *size) {
@@ -435,6 +444,7 @@ int main(void) {
     RUN_TEST(the_tangent_is_the_change_that_differences_of_the_step_show);
     RUN_TEST(it_is_so_for_every_number_of_the_vehicle);
     RUN_TEST(fast_turns_and_large_steps_are_linearised);
+    RUN_TEST(a_step_of_many_panels_is_linearised);
     RUN_TEST(the_adjoint_is_the_tangent_transposed);
     RUN_TEST(the_jacobian_has_the_tangents_as_columns);
     RUN_TEST(without_a_world_force_its_columns_are_zero);
