@@ -122,4 +122,4 @@ def icon_svg(values: Mapping[str, Sequence[float]], title: str) -> str:
 
 def icon_png(values: Mapping[str, Sequence[float]]) -> bytes:
     """The icon as PNG."""
-    return png(shapes(values), SIZE)
+    return png(tuple(shapes(values)), SIZE)

@@ -2,14 +2,15 @@
 
 from __future__ import annotations
 
-import io
 import struct
 import zipfile
 import zlib
 from collections.abc import Iterable, Mapping
+from functools import lru_cache
 from pathlib import Path
 
-DATE = (1980, 1, 1, 0, 0, 0)
+FIRST_OF_1980 = 1 << 5 | 1  # the date of every part: years since 1980, month and day
+VERSION_NEEDED, UNIX = 20, 3  # of the format, to read it; the system whose modes of files it has
 
 
 def token_hash(token: str) -> int:
@@ -33,16 +34,24 @@ def start_file(values: Iterable[tuple[int, float]], token: str, scalar: bool,
     return body + struct.pack("<Q", zlib.crc32(body))
 
 
+@lru_cache(maxsize=512)
+def deflated(data: bytes) -> bytes:
+    """A part, compressed. The FMUs of many scenes share most parts, which are compressed once."""
+    compressor = zlib.compressobj(9, zlib.DEFLATED, -zlib.MAX_WBITS)
+    return compressor.compress(data) + compressor.flush()
+
+
 def pack(path: Path, parts: Mapping[str, bytes]) -> None:
     """Writes the FMU: parts by their name in the archive."""
     path.parent.mkdir(parents=True, exist_ok=True)
-    whole = io.BytesIO()  # zipfile writes back into the archive's head, which a device or a pipe does not allow
-    with zipfile.ZipFile(whole, "w") as archive:
-        for name in sorted(parts):
-            info = zipfile.ZipInfo(name, DATE)
-            info.compress_type = zipfile.ZIP_DEFLATED
-            info.create_system = 3
-            executable = name.startswith("binaries/")
-            info.external_attr = (0o100755 if executable else 0o100644) << 16
-            archive.writestr(info, parts[name], compresslevel=9)
-    path.write_bytes(whole.getvalue())
+    whole, directory = bytearray(), bytearray()
+    for name in sorted(parts):
+        size, known = len(deflated(parts[name])), name.encode("ascii")
+        facts = struct.pack("<5H3L2H", VERSION_NEEDED, 0, zipfile.ZIP_DEFLATED, 0, FIRST_OF_1980,
+                            zlib.crc32(parts[name]), size, len(parts[name]), len(known), 0)
+        mode = 0o100755 if name.startswith("binaries/") else 0o100644
+        directory += b"PK\1\2" + struct.pack("<BB", VERSION_NEEDED, UNIX) + facts
+        directory += struct.pack("<3H2L", 0, 0, 0, mode << 16, len(whole)) + known
+        whole += b"PK\3\4" + facts + known + deflated(parts[name])
+    end = b"PK\5\6" + struct.pack("<4H2LH", 0, 0, len(parts), len(parts), len(directory), len(whole), 0)
+    path.write_bytes(whole + directory + end)

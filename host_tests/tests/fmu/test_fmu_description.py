@@ -78,7 +78,7 @@ def test_the_generic_vehicle_is_mounted_right(tmp_path: Path) -> None:
 
 def test_the_fmu_of_a_scene_reports_what_it_is_and_where_its_numbers_come_from(fmus: list[Path]) -> None:
     for fmu in fmus[2:]:
-        root = fmpy.read_model_description(str(fmu))
+        root = fmpy.read_model_description(str(fmu), validate=False)
         scene = read_scene(fmu.name.rpartition("_")[0])
         assert root.modelName == scene.name
         assert root.description == f"Dynamics of a wheeled robot; its numbers: {scene.source}"
@@ -90,8 +90,11 @@ def test_the_token_belongs_to_the_text() -> None:
 
 
 def test_value_references_of_an_arrays_elements_follow_each_other(fmus: list[Path]) -> None:
-    for fmu in (fmu for fmu in fmus if fmpy.read_model_description(str(fmu)).fmiVersion == "2.0" or "True" in fmu.name):
-        references = {v.name: v.valueReference for v in fmpy.read_model_description(str(fmu)).modelVariables}
+    for fmu in fmus:
+        described = fmpy.read_model_description(str(fmu), validate=False)
+        if described.fmiVersion != "2.0" and "True" not in fmu.name:
+            continue  # with arrays
+        references = {v.name: v.valueReference for v in described.modelVariables}
         assert len(set(references.values())) == len(references)
         assert references["mass_kg"] == 2
         pairs = [(re.sub(r"\[(\d+)\]", lambda found: f"[{int(found[1]) + 1}]", name), reference)

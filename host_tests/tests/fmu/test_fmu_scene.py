@@ -137,8 +137,8 @@ def test_the_default_experiments_step_divides_the_run_whatever_the_number_of_ste
 def test_an_importer_that_takes_the_default_experiment_writes_no_more_than_a_thousand_rows(
         version: int, name: str, tmp_path: Path) -> None:
     fmu = make_fmu(read_scene(name), tmp_path / "x.fmu", version=version, sources=False)
-    step_s = float(fmpy.read_model_description(str(fmu)).defaultExperiment.stepSize)
-    stop_s = float(fmpy.read_model_description(str(fmu)).defaultExperiment.stopTime)
+    experiment = fmpy.read_model_description(str(fmu)).defaultExperiment
+    step_s, stop_s = float(experiment.stepSize), float(experiment.stopTime)
     assert stop_s / step_s <= MOST_ROWS * (1 + 1e-9)
     if name == "kuka_youbot":
         assert len(simulate_fmu(str(fmu), fmi_type="CoSimulation", output_interval=step_s)) == 551
