@@ -36,6 +36,7 @@ class Plant:
     def __init__(self, core: Core, plant: Any):
         self.core, self.c = core, plant
         self._contact: Any = None
+        self._parts: dict[str, Any] = {}
 
     # ---- motion
 
@@ -125,7 +126,9 @@ class Plant:
     # ---- outputs
 
     def _at(self, name: str) -> Any:
-        return self.core.ffi.addressof(self.c, name)
+        if name not in self._parts:
+            self._parts[name] = self.core.ffi.addressof(self.c, name)
+        return self._parts[name]
 
     @property
     def wheel_count(self) -> int:

@@ -6,11 +6,17 @@ frames a second; this class replaces it and has the methods that slcan calls.
 
 from __future__ import annotations
 
+import re
 import select
 import socket
+import time
 from collections.abc import Callable
 from contextlib import suppress
 from typing import Any
+
+from can.exceptions import error_check
+
+END_OF_FRAME = re.compile(rb"[\r\a]")  # SLCAN's, and of an answer: OK or an error
 
 
 class SocketLine:
@@ -43,6 +49,14 @@ class SocketLine:
         found = self._buffer[self._at : self._at + size]
         self._at += len(found)
         return found
+
+    def read_frame(self) -> bytes:
+        """As read, up to and with the end of a frame, or what there is of it."""
+        if self._at >= len(self._buffer):
+            self._fill(self.timeout)
+        start, end = self._at, END_OF_FRAME.search(self._buffer, self._at)
+        self._at = end.end() if end else len(self._buffer)
+        return self._buffer[start : self._at]
 
     def write(self, data: bytes) -> int:
         """Sends all of it."""
@@ -95,3 +109,23 @@ def read_in_chunks(bus: Any) -> None:
             port._socket, port.is_open = None, False
 
         bus.serialPortOrig = SocketLine(line, port.timeout or 0.001, forget)
+        bus._read = frame_reader(bus.serialPortOrig, bus._buffer)
+
+
+def frame_reader(line: SocketLine, begun: bytearray) -> Callable[[float | None], str | None]:
+    """In place of slcan's own reader, which asks for each byte by itself: gives the next frame, None when none comes in
+    time. `begun`: slcan's bytes of a frame whose end has not come yet."""
+    def read(timeout_s: float | None) -> str | None:
+        deadline_s = None if timeout_s is None else time.monotonic() + timeout_s
+        with error_check("Could not read from serial device"):
+            while True:
+                part = line.read_frame()
+                begun.extend(part)
+                if END_OF_FRAME.match(part[-1:]):
+                    whole = begun.decode()
+                    begun.clear()
+                    return whole
+                if deadline_s is not None and time.monotonic() >= deadline_s:
+                    return None
+
+    return read
