@@ -34,6 +34,7 @@ from laconic.errors import ResultFails
 
 FADED = 0.75       # of the precision's bits, in powers of e, after which a damped part counts as died away
 PAUSE_STEPS = 6    # between two tries of the slow motion
+UNITS = 12         # of time that are tried for the slow motion, each a quarter of the last
 MOST_STEPS = 10**6
 
 
@@ -160,20 +161,22 @@ class Motion:
     def stretch_steps(self, state: State, stretch: Stretch) -> Iterator[Taken]:
         """Steps through a stretch of held inputs, as long as the precision allows."""
         forcing = forcing_of(self.equation, stretch.values)
-        rates, resting = Rates.of(self.equation, forcing), 0
+        rates, is_slow, resting = Rates.of(self.equation, forcing), False, 0
         while state.time_s < stretch.end_s:
             left_s = stretch.end_s - state.time_s
             begin = self.step_start(state)
             self.scale = larger(self.scale, length(rates.forcing.constant) * min(1.0, float(left_s)))
-            series = taylor(rates, begin, self.order)
-            length_s = step_for(series, self.scale, self.tolerance, float(left_s))
-            fast = self.faded(rates, float(state.time_s - stretch.begin_s), length_s, float(left_s))
-            if fast and resting == 0:
-                slow, slow_s = self.slow(rates, begin, fast, float(left_s))
-                if slow is not None and slow_s > 2.0 * length_s:
-                    series, length_s = slow, slow_s
-                else:
-                    resting = PAUSE_STEPS
+            faded = self.faded(rates, float(state.time_s - stretch.begin_s), float(left_s))
+            slow, slow_s = self.slow(rates, begin, faded, float(left_s)) if is_slow else (None, 0.0)
+            if slow is None:
+                series = taylor(rates, begin, self.order)
+                length_s = step_for(series, self.scale, self.tolerance, float(left_s))
+                if resting == 0 and self.limits(rates, faded, length_s):
+                    slow, slow_s = self.slow(rates, begin, faded, float(left_s))
+                    resting = 0 if slow else PAUSE_STEPS
+            is_slow = slow is not None and (is_slow or slow_s > 2.0 * length_s)
+            if slow is not None and is_slow:
+                series, length_s = slow, slow_s
             resting = max(0, resting - 1)
             taken = self.take(state, series, forcing, rounded(length_s, left_s))
             state = taken.end
@@ -184,16 +187,30 @@ class Motion:
         sine, cosine = self.heading(state.travelled, arb(0)).sin_cos()
         return Start(state.zeta, cosine.mid(), sine.mid())
 
-    def faded(self, rates: Rates, since_s: float, length_s: float, left_s: float) -> frozenset[int]:
-        """Components whose fast decay is over and yet limits the step."""
+    def faded(self, rates: Rates, since_s: float, left_s: float) -> tuple[int, ...]:
+        """Components whose fast decay is over, the fastest first."""
         decays = [float(x) for x in rates.decay]
-        return frozenset(j for j, r in enumerate(decays) if r * since_s > FADED * self.goal_bits and r * length_s > 1.0
-                         and r * left_s > self.order)
+        found = (j for j, r in enumerate(decays) if r * since_s > FADED * self.goal_bits and r * left_s > self.order)
+        return tuple(sorted(found, key=lambda j: -decays[j]))
 
-    def slow(self, rates: Rates, begin: Start, fast: frozenset[int], left_s: float) -> tuple[Series | None, float]:
-        """The slow motion's series if the motion is on it to the precision, and the time that it serves."""
+    def limits(self, rates: Rates, faded: tuple[int, ...], length_s: float) -> bool:
+        """Whether Taylor's step is as short as it is because of what has faded."""
+        return bool(faded) and float(rates.decay[faded[0]]) * length_s > 1.0
+
+    def slow(self, rates: Rates, begin: Start, faded: tuple[int, ...], left_s: float) -> tuple[Series | None, float]:
+        """The slow motion's series if the motion is on it to the precision, and the time that it serves; with as many
+        of the faded components as are fast beside that time."""
+        for count in range(len(faded), 0, -1):
+            fast = frozenset(faded[:count])
+            series, length_s = self.slow_of(rates, begin, fast, left_s)
+            if series is not None and float(rates.decay[faded[count - 1]]) * length_s > self.order / 2.0:
+                return series, length_s
+        return None, 0.0
+
+    def slow_of(self, rates: Rates, begin: Start, fast: frozenset[int], left_s: float) -> tuple[Series | None, float]:
+        """The same for one choice of components."""
         unit_s = left_s
-        for _ in range(12):
+        for _ in range(UNITS):
             series = slow_motion(rates, begin, self.order, fast, arb(unit_s))
             if series is not None:
                 off = length([series.zeta[j][0] - begin.zeta[j] for j in fast])
