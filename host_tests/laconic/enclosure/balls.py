@@ -91,3 +91,13 @@ def thin(numbers: Sequence[arb]) -> Vector:
 def radius_of(numbers: Sequence[arb]) -> arb:
     """An upper bound of the distance between the midpoints and what the balls hold."""
     return length([number.rad() for number in numbers])
+
+
+def smaller(a: arb, b: arb) -> arb:
+    """The smaller of two exact numbers."""
+    return a if a < b else b
+
+
+def larger(a: arb, b: arb) -> arb:
+    """The larger of two exact numbers."""
+    return a if a > b else b

@@ -18,9 +18,11 @@ from laconic.enclosure.balls import (
     ball,
     combined,
     dot,
+    larger,
     largest,
     length,
     radius_of,
+    smaller,
     thin,
     times,
     upper,
@@ -28,75 +30,33 @@ from laconic.enclosure.balls import (
 )
 from laconic.enclosure.defect import Defects, Growth, Step, defects_of, growth_of
 from laconic.enclosure.equation import Equation
+from laconic.enclosure.flow import Frame, carried, flow_of
 from laconic.enclosure.loads import Forcing, Stretch, forcing_of
+from laconic.enclosure.radii import Radii, radii_of
 from laconic.enclosure.series import Rates, Series, Start, slow_motion, step_for, taylor
+from laconic.enclosure.state import Beginning, Sample, State, Taken
 from laconic.errors import ResultFails
 
 FADED = 0.75       # of the precision's bits, in powers of e, after which a damped part counts as died away
 PAUSE_STEPS = 6    # between two tries of the slow motion
 UNITS = 12         # of time that are tried for the slow motion, each a quarter of the last
+LOST_BITS = 8
+STIFF = 8.0        # decay times step, from which on a step is not followed direction by direction
 MOST_STEPS = 10**6
-
-
-@dataclass(frozen=True)
-class Beginning:
-    """Where the motion starts, as balls."""
-
-    zeta: Vector
-    place_m: Vector
-    heading_rad: arb
-
-
-@dataclass(frozen=True)
-class State:
-    """Exact middles and radii: of ζ in the energy norm, of ∫ζ dt in the same norm, of the place in metres."""
-
-    time_s: Fraction
-    zeta: Vector
-    travelled: Vector           # ∫ζ dt
-    place_m: Vector
-    zeta_radius: arb
-    travelled_radius: arb
-    place_radius: arb
-
-
-@dataclass(frozen=True)
-class Sample:
-    """Balls that hold the true state at an instant."""
-
-    time_s: Fraction
-    zeta: Vector
-    nu: Vector
-    place_m: Vector
-    heading_rad: arb
-    wheel_angle_rad: Vector
-
-    def row(self) -> Vector:
-        """ν, place, heading, wheel angles in one list."""
-        return [*self.nu, *self.place_m, self.heading_rad, *self.wheel_angle_rad]
-
-
-@dataclass(frozen=True)
-class Taken:
-    """One step: its polynomials, and the radii that hold all along it."""
-
-    begin: State
-    step: Step
-    travelled: list[arb_poly]
-    place: list[arb_poly]
-    zeta_radius: arb
-    travelled_radius: arb
-    place_radius: arb
-    end: State
 
 
 @dataclass
 class Motion:
-    """A motion being enclosed; `goal_bits` is the precision of the middles, relative to the largest ζ so far."""
+    """A motion being enclosed; `goal_bits` is the precision of the middles, relative to the largest ζ so far.
+
+    Once the radius of ζ has grown by LOST_BITS, `by_direction` is set: each further step also follows the error along
+    axes of its own (laconic.enclosure.flow), at twice the cost.
+    """
 
     equation: Equation
     beginning: Beginning
     goal_bits: int
+    by_direction: bool = False
     scale: arb = field(default_factory=lambda: arb(0))
     steps_taken: int = 0
 
@@ -231,13 +191,30 @@ class Motion:
         ends = [[p(arb(1)) for p in each] for each in (step.zeta, travelled, place)]
         radii = [upper(radius + radius_of(each)) for radius, each in
                  zip((bounds.zeta_at_end, bounds.travelled, place_radius), ends, strict=True)]
-        end = State(state.time_s + step_s, thin(ends[0]), thin(ends[1]), thin(ends[2]), *radii)
+        frame = None
+        if self.by_direction:
+            frame = self.frame(state, step, growth, bounds, radius_of(ends[0]) + bounds.pushed)
+            radii[0] = smaller(radii[0], frame.radius())
+        end = State(state.time_s + step_s, thin(ends[0]), thin(ends[1]), thin(ends[2]), radii[0], radii[1], radii[2],
+                    frame)
         self.scale = larger(self.scale, length([largest(p) for p in step.zeta]))
         self.steps_taken += 1
+        self.by_direction |= bool(end.zeta_radius > self.scale * self.tolerance * 2**LOST_BITS)
         if not (end.zeta_radius.is_finite() and end.place_radius.is_finite()) or self.steps_taken > MOST_STEPS:
             raise ResultFails(f"the enclosure ends at t = {float(state.time_s):g} s: it is no longer finite there, or "
                               "needs too many steps; run it over a shorter time")
         return Taken(state, step, travelled, place, bounds.zeta, bounds.travelled, place_radius, end)
+
+    def frame(self, state: State, step: Step, growth: Growth, bounds: Radii, added: arb) -> Frame:
+        """The box of the error at the step's end; that around the ball where the step is too stiff to follow it."""
+        stiffest = max(float(self.equation.damping[j][j].mid()) for j in range(3)) * float(step.length_s)
+        before = state.frame or Frame.around(state.zeta_radius, self.equation.freedoms)
+        square = step.length_s * length(self.equation.spin) * length(self.equation.gyro) * bounds.zeta**2
+        found = None
+        if stiffest < STIFF:
+            flow = flow_of(step, self.equation, growth)
+            found = carried(before, flow, state.zeta_radius, upper(added + growth.at_most * square))
+        return found or Frame.around(upper(bounds.zeta_at_end + added), self.equation.freedoms)
 
     def direction_error(self, state: State, step: Step, defects: Defects) -> arb:
         """How far (cos, sin) of the polynomials is from that of the middle heading, all along the step."""
@@ -253,42 +230,6 @@ class Motion:
         rows = length([length(row) for row in self.equation.velocity_of_zeta])
         turned = direction + bounds.travelled * length(self.equation.yaw_rate_of_zeta)
         return place, upper(state.place_radius + step.length_s * (rows * bounds.zeta + speed * turned))
-
-
-@dataclass(frozen=True)
-class Radii:
-    """Of ζ all along a step and at its end, of ∫ζ dt all along it."""
-
-    zeta: arb
-    zeta_at_end: arb
-    travelled: arb
-
-
-def radii_of(state: State, step: Step, growth: Growth, defects: Defects, jump: arb, direction: arb, equation: Equation,
-             forcing: Forcing) -> Radii:
-    """How the radius of ζ grows over a step.
-
-    A force fixed in the world lets an error η of the heading act on ζ: |e|' ≤ μ|e| + Bη + |defect|, η' ≤ k|e|. With
-    c = √(B/k) the sum |e| + cη grows by at most e^(∫μ + h√(Bk)).
-    """
-    h, first = step.length_s, state.zeta_radius + jump
-    turning = length([length([a, b]) for a, b in zip(forcing.cosine, forcing.sine, strict=True)])
-    missed = defects.zeta + h * turning * direction
-    yaw = length(equation.yaw_rate_of_zeta)
-    heading = arb(0)
-    if turning > 0 and yaw > 0:
-        weight = upper((turning / yaw).sqrt())
-        both = first + weight * yaw * state.travelled_radius + missed
-        heading = upper(both * growth.at_most * (h * (turning * yaw).sqrt() * arb(1.0001)).exp() / weight)
-    pushed = missed + h * turning * heading
-    zeta = upper(growth.at_most * (first + pushed))
-    return Radii(zeta, upper(growth.at_end * first + growth.at_most * pushed),
-                 upper(state.travelled_radius + h * zeta))
-
-
-def larger(a: arb, b: arb) -> arb:
-    """The larger of two exact numbers."""
-    return a if a > b else b
 
 
 def rounded(length_s: float, left_s: Fraction) -> Fraction:

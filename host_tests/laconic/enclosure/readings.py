@@ -14,8 +14,9 @@ from typing import Any
 from laconic.enclosure.balls import ball, times
 from laconic.enclosure.equation import angle, equation_of
 from laconic.enclosure.loads import Stretch
-from laconic.enclosure.motion import Beginning, Motion
+from laconic.enclosure.motion import Motion
 from laconic.enclosure.prepared import prepared_equation
+from laconic.enclosure.state import Beginning
 from laconic.errors import BadInput, reason_of
 from laconic.scene import Scene
 from laconic.scene.ground import slips

@@ -15,8 +15,9 @@ from laconic.core import Core
 from laconic.enclosure.balls import Vector, ball, times, widened
 from laconic.enclosure.equation import Equation, equation_of, padded
 from laconic.enclosure.loads import Stretch
-from laconic.enclosure.motion import Beginning, Motion, Sample
+from laconic.enclosure.motion import Motion
 from laconic.enclosure.readings import Reading
+from laconic.enclosure.state import Beginning, Sample
 from laconic.enclosure.study import Enclosed, enclose
 from laconic.enclosure.tables import kinds_json
 from laconic.errors import Refused

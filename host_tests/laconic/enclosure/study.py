@@ -14,8 +14,8 @@ from flint import arb
 
 from laconic.enclosure.balls import precision
 from laconic.enclosure.loads import Stretch
-from laconic.enclosure.motion import Sample
 from laconic.enclosure.readings import Reading, check_enclosable, reading_of_core, reading_of_file
+from laconic.enclosure.state import Sample
 from laconic.progress import progress_bar
 from laconic.simulation import Trajectory
 

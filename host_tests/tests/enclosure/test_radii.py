@@ -13,8 +13,9 @@ from laconic.enclosure.balls import ball, precision, times, widened
 from laconic.enclosure.defect import growth_rate, is_positive
 from laconic.enclosure.equation import Equation, equation_of
 from laconic.enclosure.loads import Stretch
-from laconic.enclosure.motion import Beginning, Motion, Sample
+from laconic.enclosure.motion import Motion
 from laconic.enclosure.readings import entries_as_written
+from laconic.enclosure.state import Beginning, Sample
 from laconic.paths import scene_path
 
 END = Fraction(3, 2)
@@ -49,6 +50,19 @@ def test_every_motion_that_starts_in_a_ball_ends_inside_its_enclosure(scene, nu,
             one = next(motion.samples([Stretch(Fraction(0), END, values)], [END]))
             assert all(wide.contains(narrow) for wide, narrow in zip(around.row(), one.row(), strict=True))
             assert all(float(narrow.rad()) < 1e-18 for narrow in one.row())
+
+
+def test_errors_of_free_motion_grow_in_proportion_to_time_and_not_exponentially():
+    with precision(160):
+        equation, found = scene_equation("paper_three_wheel_free"), []
+        for seconds in (40, 160):
+            zeta = [widened(x, arb(1e-12)) for x in times(equation.zeta_of_nu, [arb(0), arb(6), arb(1)])]
+            motion = Motion(equation, Beginning(zeta, [arb(0), arb(0)], arb(0)), 80)
+            end = Fraction(seconds)
+            found.append(next(motion.samples([Stretch(Fraction(0), end, {})], [end])))
+            assert motion.by_direction
+    assert max(float(x.rad()) for x in found[0].nu) < 2e-9
+    assert max(float(x.rad()) for x in found[1].nu) < 5e-9
 
 
 def test_instants_within_a_step_and_steps_that_are_cut_there_hold_the_same_motion():
