@@ -1,10 +1,10 @@
-/* Which widths a build has: none where coverage is measured, which counts the methods' text once. */
+/* Which widths a build has: the narrowest alone where coverage is measured, for which that is enough. */
 #ifndef LACONIC_LANES_BUILDS_H
 #define LACONIC_LANES_BUILDS_H
 
-#if defined(__GNUC__) && !defined(LACONIC_PLAIN_INLINE)
+#ifdef __GNUC__
 #define LANES_OF_16
-#ifdef __x86_64__
+#if defined(__x86_64__) && !defined(LACONIC_PLAIN_INLINE)
 #define LANES_OF_32
 #define LANES_OF_64
 #endif

@@ -171,15 +171,16 @@ static void set_units(vector axis[3]) {
     for (int k = 0; k < 3; k++) axis[k] = vector_of(R(k == 0), R(k == 1), R(k == 2));
 }
 
-laconic_status laconic_step_adjoint(laconic_state_change *before, laconic_input *input, laconic_model_change *by_model,
-                                    const laconic_model *model, const laconic_integrator *integrator,
-                                    const laconic_state *state, const laconic_input *held,
-                                    const laconic_state_change *after) {
+laconic_status laconic_step_adjoint_by(laconic_state_change *before, laconic_input *input,
+                                       laconic_model_change *by_model, const laconic_derivation *derivation,
+                                       const laconic_model *model, const laconic_integrator *integrator,
+                                       const laconic_state *state, const laconic_input *held,
+                                       const laconic_state_change *after) {
     const bool with_world_force = input != NULL || by_model != NULL;
     taken_step s;
     core_columns c;
     laconic_state_change column[CORE_COLUMNS], by_heading;
-    const laconic_status status = laconic_take_step(&s, model, integrator, state, held, with_world_force);
+    const laconic_status status = laconic_take_step(&s, derivation, model, integrator, state, held, with_world_force);
     if (status != LACONIC_OK) return status;
     for (int k = 0; k < CORE_COLUMNS; k++) c.column[k] = &column[k];
     if (by_model != NULL) {
@@ -194,4 +195,12 @@ laconic_status laconic_step_adjoint(laconic_state_change *before, laconic_input 
     if (input != NULL) input_gradient(input, &s, &c, held, after);
     state_gradient(before, &c, &by_heading, after, LACONIC_WHEELS(model));
     return LACONIC_OK;
+}
+
+laconic_status laconic_step_adjoint(laconic_state_change *before, laconic_input *input, laconic_model_change *by_model,
+                                    const laconic_model *model, const laconic_integrator *integrator,
+                                    const laconic_state *state, const laconic_input *held,
+                                    const laconic_state_change *after) {
+    return laconic_step_adjoint_by(before, input, by_model, &laconic_derivation_of_all, model, integrator, state, held,
+                                   after);
 }

@@ -53,9 +53,11 @@ static inline three_columns by_cosine(const core_columns *c) { return &c->column
 
 static inline three_columns by_sine(const core_columns *c) { return &c->column[9]; }
 
-/* Takes the step on a copy of the state and finds the method that took it. A refused step gives its status. */
-laconic_status laconic_take_step(taken_step *s, const laconic_model *model, const laconic_integrator *integrator,
-                                 const laconic_state *state, const laconic_input *held, bool with_world_force);
+/* Takes the step on a copy of the state and finds the method that took it. A refused step gives its status, and so does
+ * a method that the derivation is not of. */
+laconic_status laconic_take_step(taken_step *s, const laconic_derivation *derivation, const laconic_model *model,
+                                 const laconic_integrator *integrator, const laconic_state *state,
+                                 const laconic_input *held, bool with_world_force);
 
 /* Answers directions, and what follows from the step itself. */
 void laconic_respond(taken_step *s, const laconic_state *state, step_response out[], const step_direction in[],

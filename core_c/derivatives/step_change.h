@@ -98,6 +98,18 @@ void laconic_flow_responses(step_result *step, step_response out[], const step_p
 void laconic_flow_4_responses(step_result *step, step_response out[], const step_point *at, const step_direction in[],
                               int32_t count);
 
+/* A method that may take a step, and what answers directions through it. */
+typedef struct derived_step {
+    const laconic_method *method; /* NULL: none */
+    responder responds;
+} derived_step;
+
+/* What an integrator with this method tries in turn; the first only in steps over which b varies. */
+struct laconic_derived_method {
+    const laconic_method *chosen; /* of the integrator */
+    derived_step tried[3];
+};
+
 /* ------------------------------------------------------------------- the rate, and b, that change -- */
 
 /* The derivative of (g·ζ)(ζ × w) at ζ: dζ ↦ (g·dζ)(ζ × w) + (g·ζ)(dζ × w). Linear in ζ. */

@@ -4,55 +4,37 @@
 
 /* -------------------------------------------------------------------- the step that is taken -- */
 
-static responder responder_of(const laconic_method *method) {
-    if (method == &laconic_rk4) return laconic_rk4_responses;
-    if (method == &laconic_taylor_8) return laconic_taylor_8_responses;
-#if LACONIC_WITH_EXPONENTIAL_GAUSS
-    if (method == &laconic_exponential_gauss_8) return laconic_gauss_responses;
-#endif
-    if (method == &laconic_exponential_kahan) return laconic_kahan_responses;
-    if (method == &laconic_exponential_kahan_4) return laconic_kahan_4_responses;
-    if (method == &laconic_exact_flow) return laconic_flow_responses;
-    return method == &laconic_exact_flow_4 ? laconic_flow_4_responses : NULL;
-}
-
-/* The methods that a step tries in turn: those of auto by the rule of auto.c. */
-static void candidates(const laconic_method *tried[3], const laconic_method *chosen, bool constant) {
-    tried[0] = chosen;
-    tried[1] = tried[2] = NULL;
-    if (chosen == &laconic_auto_fast) {
-        tried[0] = &laconic_exponential_kahan_4;
-        tried[1] = &laconic_exact_flow;
-    } else if (chosen == &laconic_auto_slow) {
-        tried[0] = constant ? NULL : &laconic_taylor_8;
-        tried[1] = &laconic_exact_flow_4;
-        tried[2] = &laconic_exact_flow;
-    }
+/* NULL: the derivation is of other methods. */
+static const laconic_derived_method *derived(const laconic_derivation *derivation, const laconic_method *chosen) {
+    for (int i = 0; i < LACONIC_DERIVED_METHODS && derivation->method[i] != NULL; i++)
+        if (derivation->method[i]->chosen == chosen) return derivation->method[i];
+    return NULL;
 }
 
 /* Takes the step on a copy of the state. */
-static laconic_status find_responder(responder *found, const laconic_model *model, const laconic_integrator *integrator,
-                                     const laconic_state *state, const laconic_forcing *forcing) {
+static laconic_status find_responder(responder *found, const laconic_derivation *derivation, const laconic_model *model,
+                                     const laconic_integrator *integrator, const laconic_state *state,
+                                     const laconic_forcing *forcing) {
     const laconic_forcing_samples samples = {forcing, forcing, forcing, !forcing->rotates};
-    const laconic_method *tried[3];
+    const laconic_derived_method *of = derived(derivation, integrator->chosen);
     laconic_state after = *state;
     laconic_status status = LACONIC_METHOD_UNKNOWN;
-    candidates(tried, integrator->chosen, constant_over(&samples));
-    for (int i = 0; i < 3 && status != LACONIC_OK; i++) {
-        if (tried[i] == NULL) continue;
-        *found = responder_of(tried[i]);
-        if (*found == NULL) return LACONIC_METHOD_UNKNOWN;
-        status = tried[i]->step(model, integrator, &after, &samples);
+    if (of == NULL) return status;
+    for (int i = constant_over(&samples) ? 1 : 0; i < 3 && status != LACONIC_OK; i++) {
+        if (of->tried[i].method == NULL) continue;
+        *found = of->tried[i].responds;
+        status = of->tried[i].method->step(model, integrator, &after, &samples);
     }
     return status;
 }
 
-laconic_status laconic_take_step(taken_step *s, const laconic_model *model, const laconic_integrator *integrator,
-                                 const laconic_state *state, const laconic_input *held, bool with_world_force) {
+laconic_status laconic_take_step(taken_step *s, const laconic_derivation *derivation, const laconic_model *model,
+                                 const laconic_integrator *integrator, const laconic_state *state,
+                                 const laconic_input *held, bool with_world_force) {
     laconic_forcing forcing;
     if (zero_if_finite(world_force_point(held)) != R(0) || !heading_has_room(&state->heading)) return LACONIC_OVERFLOW;
     forcing_of(&forcing, model, held);
-    const laconic_status status = find_responder(&s->responds, model, integrator, state, &forcing);
+    const laconic_status status = find_responder(&s->responds, derivation, model, integrator, state, &forcing);
     if (status != LACONIC_OK) return status;
     s->at.model = model;
     s->at.integrator = integrator;
@@ -218,16 +200,17 @@ static void add_rows(laconic_state_change *after, const taken_step *s, const lac
         after->wheel_angle_rad[i] += dot(vec(by->wheel_of_zeta[i]), s->result.path);
 }
 
-laconic_status laconic_step_tangent(laconic_state_change *after, const laconic_model *model,
-                                    const laconic_integrator *integrator, const laconic_state *state,
-                                    const laconic_input *held, const laconic_state_change *before,
-                                    const laconic_input *input, const laconic_model_change *by_model) {
+laconic_status laconic_step_tangent_by(laconic_state_change *after, const laconic_derivation *derivation,
+                                       const laconic_model *model, const laconic_integrator *integrator,
+                                       const laconic_state *state, const laconic_input *held,
+                                       const laconic_state_change *before, const laconic_input *input,
+                                       const laconic_model_change *by_model) {
     taken_step s;
     step_direction d;
     step_response out;
     dynamics_change dynamics;
-    const laconic_status status =
-        laconic_take_step(&s, model, integrator, state, held, varies_world_force(input) || varies_slope(by_model));
+    const laconic_status status = laconic_take_step(&s, derivation, model, integrator, state, held,
+                                                    varies_world_force(input) || varies_slope(by_model));
     if (status != LACONIC_OK) return status;
     vector zeta = zeta_of_nu(model, before->nu_rad_per_s);
     d.model = NULL;
@@ -377,13 +360,13 @@ static void place_columns(core_columns *c, laconic_step_jacobian *j, laconic_sta
     for (int k = CORE_COLUMNS / 2; k < CORE_COLUMNS; k++) c->column[k] = &rotating[k - CORE_COLUMNS / 2];
 }
 
-laconic_status laconic_step_jacobian_of(laconic_step_jacobian *jacobian, const laconic_model *model,
-                                        const laconic_integrator *integrator, const laconic_state *state,
-                                        const laconic_input *held, bool with_world_force) {
+laconic_status laconic_step_jacobian_by(laconic_step_jacobian *jacobian, const laconic_derivation *derivation,
+                                        const laconic_model *model, const laconic_integrator *integrator,
+                                        const laconic_state *state, const laconic_input *held, bool with_world_force) {
     taken_step s;
     core_columns c;
     laconic_state_change rotating[CORE_COLUMNS / 2];
-    const laconic_status status = laconic_take_step(&s, model, integrator, state, held, with_world_force);
+    const laconic_status status = laconic_take_step(&s, derivation, model, integrator, state, held, with_world_force);
     if (status != LACONIC_OK) return status;
     place_columns(&c, jacobian, rotating);
     laconic_jacobian_directions(&c, model);
@@ -392,4 +375,21 @@ laconic_status laconic_step_jacobian_of(laconic_step_jacobian *jacobian, const l
     laconic_torque_columns(jacobian, &s, &c);
     laconic_world_columns(jacobian, &s, &c, held);
     return LACONIC_OK;
+}
+
+/* ------------------------------------------------------------- by whichever method takes the step -- */
+
+laconic_status laconic_step_jacobian_of(laconic_step_jacobian *jacobian, const laconic_model *model,
+                                        const laconic_integrator *integrator, const laconic_state *state,
+                                        const laconic_input *held, bool with_world_force) {
+    return laconic_step_jacobian_by(jacobian, &laconic_derivation_of_all, model, integrator, state, held,
+                                    with_world_force);
+}
+
+laconic_status laconic_step_tangent(laconic_state_change *after, const laconic_model *model,
+                                    const laconic_integrator *integrator, const laconic_state *state,
+                                    const laconic_input *held, const laconic_state_change *before,
+                                    const laconic_input *input, const laconic_model_change *by_model) {
+    return laconic_step_tangent_by(after, &laconic_derivation_of_all, model, integrator, state, held, before, input,
+                                   by_model);
 }

@@ -212,12 +212,13 @@ static int32_t add_noise(laconic_filter *f, const error_change change[CHANGES], 
     return columns;
 }
 
-laconic_status laconic_filter_predict(laconic_filter *filter, const laconic_model *model,
-                                      const laconic_integrator *integrator, const laconic_input *held) {
+laconic_status laconic_filter_predict_by(laconic_filter *filter, const laconic_derivation *derivation,
+                                         const laconic_model *model, const laconic_integrator *integrator,
+                                         const laconic_input *held) {
     taken_step s;
     error_change change[CHANGES];
     laconic_state after = filter->state;
-    laconic_status status = laconic_take_step(&s, model, integrator, &filter->state, held, false);
+    laconic_status status = laconic_take_step(&s, derivation, model, integrator, &filter->state, held, false);
     if (status == LACONIC_OK) status = laconic_step(model, integrator, &after, held);
     if (status != LACONIC_OK) return status;
     find_changes(change, &s, &filter->state);
@@ -228,6 +229,11 @@ laconic_status laconic_filter_predict(laconic_filter *filter, const laconic_mode
     filter->covariance = filter->room.next;
     filter->state = after;
     return LACONIC_OK;
+}
+
+laconic_status laconic_filter_predict(laconic_filter *filter, const laconic_model *model,
+                                      const laconic_integrator *integrator, const laconic_input *held) {
+    return laconic_filter_predict_by(filter, &laconic_derivation_of_all, model, integrator, held);
 }
 
 /* ------------------------------------------------------------------------------- covariance -- */

@@ -17,7 +17,8 @@
  *           A step that is refused has no derivative: its status is returned, and nothing is written.
  * Memory    the caller owns every struct; no heap, at most 24 KB of stack (single: 12 KB; rk4 a third). No state is
  *           changed.
- * Links     every method, since auto may take most of them. */
+ * Links     every method, since auto may take most of them. A program for which flash counts calls the forms with _by,
+ *           which link one method: laconic_derivation. */
 #ifndef LACONIC_DERIVATIVES_H
 #define LACONIC_DERIVATIVES_H
 
@@ -63,6 +64,23 @@ typedef struct laconic_model_change {
 laconic_status laconic_model_tangent(laconic_model_change *change, const laconic_model *model,
                                      const laconic_vehicle *vehicle, const laconic_vehicle *by);
 
+/* ---------------------------------------------------------------------------------- methods -- */
+
+/* Which methods' steps are differentiated. A function that takes one (…_by) links the methods that it names and no
+ * other, as laconic_integrator_prepare() does with its method, and refuses METHOD_UNKNOWN for an integrator of another.
+ * That of auto has all that auto may choose; by laconic_integrator.stiff a robot needs that of auto_fast or auto_slow
+ * alone. The members are the core's own. */
+#define LACONIC_DERIVED_METHODS 12
+typedef struct laconic_derived_method laconic_derived_method;
+typedef struct laconic_derivation {
+    const laconic_derived_method *method[LACONIC_DERIVED_METHODS]; /* NULL after the last */
+} laconic_derivation;
+
+extern const laconic_derivation laconic_derivation_of_rk4, laconic_derivation_of_taylor_8,
+    laconic_derivation_of_exponential_gauss_8, laconic_derivation_of_exponential_kahan, laconic_derivation_of_exponential_kahan_4,
+    laconic_derivation_of_exact_flow, laconic_derivation_of_exact_flow_4, laconic_derivation_of_auto,
+    laconic_derivation_of_auto_slow, laconic_derivation_of_auto_fast, laconic_derivation_of_all;
+
 /* --------------------------------------------------------------------------------- jacobian -- */
 
 /* Columns: the change of the state after the step for each number before it. Those of x, y and the wheel angles are not
@@ -80,6 +98,9 @@ typedef struct laconic_step_jacobian {
 laconic_status laconic_step_jacobian_of(laconic_step_jacobian *jacobian, const laconic_model *model,
                                         const laconic_integrator *integrator, const laconic_state *state,
                                         const laconic_input *held, bool with_world_force);
+laconic_status laconic_step_jacobian_by(laconic_step_jacobian *jacobian, const laconic_derivation *derivation,
+                                        const laconic_model *model, const laconic_integrator *integrator,
+                                        const laconic_state *state, const laconic_input *held, bool with_world_force);
 
 /* The numbers of laconic_input that a model has: N voltages, N axle torques, body force (2), body moment, world force
  * (2), its point (2). */
@@ -97,6 +118,11 @@ laconic_status laconic_step_tangent(laconic_state_change *after, const laconic_m
                                     const laconic_integrator *integrator, const laconic_state *state,
                                     const laconic_input *held, const laconic_state_change *before,
                                     const laconic_input *input, const laconic_model_change *by_model);
+laconic_status laconic_step_tangent_by(laconic_state_change *after, const laconic_derivation *derivation,
+                                       const laconic_model *model, const laconic_integrator *integrator,
+                                       const laconic_state *state, const laconic_input *held,
+                                       const laconic_state_change *before, const laconic_input *input,
+                                       const laconic_model_change *by_model);
 
 /* The gradients by state, input and model before the step of the number whose gradient by the state after it is
  * `after`: the transpose of laconic_step_tangent(). `input` and `by_model` may be NULL: not wanted. Over many steps
@@ -106,6 +132,11 @@ laconic_status laconic_step_adjoint(laconic_state_change *before, laconic_input 
                                     const laconic_model *model, const laconic_integrator *integrator,
                                     const laconic_state *state, const laconic_input *held,
                                     const laconic_state_change *after);
+laconic_status laconic_step_adjoint_by(laconic_state_change *before, laconic_input *input,
+                                       laconic_model_change *by_model, const laconic_derivation *derivation,
+                                       const laconic_model *model, const laconic_integrator *integrator,
+                                       const laconic_state *state, const laconic_input *held,
+                                       const laconic_state_change *after);
 
 #ifdef __cplusplus
 }

@@ -40,7 +40,8 @@ class FilterCost:
     method: str                     # that steps
     instructions: dict[str, float]  # by part of a cycle
     stack_bytes: int
-    flash_bytes: int  # filter, derivatives and steps of every method, with the robot's constants
+    flash_bytes: int  # filter, derivatives and steps of the scene's method, with the robot's constants
+    whole_flash_bytes: int  # the same of every method, as laconic_filter_predict() links them
     filter_bytes: int  # of RAM: the laconic_filter
     same_bits: bool
 
@@ -56,7 +57,8 @@ def rows() -> list[dict[str, Any]]:
             cost = cost_of(workshop, read_scene(name).with_run(method=method, step_s=STEP_S))
             parts = {PARTS[part]: round(count) for part, count in cost.instructions.items()}
             found.append({"who": f"{name}, {cost.method}", **parts, "cycle": round(sum(cost.instructions.values())),
-                          "stack": cost.stack_bytes, "flash": cost.flash_bytes, "ram": cost.filter_bytes,
+                          "stack": cost.stack_bytes, "flash": cost.flash_bytes, "whole": cost.whole_flash_bytes,
+                          "ram": cost.filter_bytes,
                           "same_bits": "yes" if cost.same_bits else "NO"})
     return found
 
@@ -66,9 +68,18 @@ def cost_of(workshop: Workshop, scene: Scene, board: Target = M4F, real: str = "
     variant, recording = Variant(scene, real), recorded(scene, real)
     source = recording.source()
     ran = run_on_board(board, image_of(workshop, board, variant, source))
-    return FilterCost(workshop.files(variant)[1].method, ran.instructions, ran.stack_bytes,
-                      flash_of(workshop, board, variant, source), ran.filter_bytes,
+    method = workshop.files(variant)[1].method
+    by_one = ("laconic_filter_predict_by", derivation_of(scene, method))
+    return FilterCost(method, ran.instructions, ran.stack_bytes, flash_of(workshop, board, variant, source, *by_one),
+                      flash_of(workshop, board, variant, source, "laconic_filter_predict"), ran.filter_bytes,
                       ran.estimate == recording.estimate(scene))
+
+
+def derivation_of(scene: Scene, chosen: str) -> str:
+    """The core's name of what differentiates the scene's steps; of auto that of the pair that it chose."""
+    if scene.run.method == "auto":
+        return f"laconic_derivation_of_auto_{'slow' if chosen == 'exact-flow-4' else 'fast'}"
+    return f"laconic_derivation_of_{chosen.replace('-', '_')}"
 
 
 # ---- recorded readings
@@ -162,11 +173,12 @@ def image_of(workshop: Workshop, target: Target, variant: Variant, source: str) 
         [f"-I{board}", f"-I{startup}", "-ffreestanding", "-nostartfiles", f"-L{startup}", f"-T{target.script}"])
 
 
-def flash_of(workshop: Workshop, target: Target, variant: Variant, source: str) -> int:
-    """Bytes that the filter's functions, all they reach and the robot's constants take."""
-    kept = [f"-Wl,-u,{name}" for name in (*ROOTS, "laconic_scene_model", "laconic_scene_integrator")]
+def flash_of(workshop: Workshop, target: Target, variant: Variant, source: str, predict: str, *others: str) -> int:
+    """Bytes that the filter's functions, all they reach and the robot's constants take; `predict` is the function that
+    predicts, `others` are what the program names besides."""
+    kept = [f"-Wl,-u,{name}" for name in (*ROOTS, *others, "laconic_scene_model", "laconic_scene_integrator")]
     image = workshop.filter_image(target, variant, source, [], [
-        "-nostartfiles", "-ffreestanding", "-Wl,-e,laconic_filter_predict", "-Wl,-Ttext=0x1000", *kept])
+        "-nostartfiles", "-ffreestanding", f"-Wl,-e,{predict}", "-Wl,-Ttext=0x1000", *kept])
     text, data, _ = (int(each) for each in run_tool([target.tool("size"), str(image)]).splitlines()[1].split()[:3])
     return text + data
 

@@ -16,7 +16,7 @@ COLUMNS = {"who": "", "real": "scalar", "environments": "environments", "thousan
            "million_steps_per_s": "million steps/s", "ns_per_step": "ns a step", "times_batch": "over the batch",
            "times_alone": "over one by one", "nJ_per_step": "nJ a step", "prediction": "prediction",
            "encoders": "encoders", "gyro": "gyro", "cycle": "whole cycle", "stack": "stack B", "flash": "flash B",
-           "ram": "filter B", "same_bits": "host's bits"}
+           "whole": "flash B, all methods", "ram": "filter B", "same_bits": "host's bits"}
 TITLES = {"batch": "Vehicle-steps on one core", "learn": "Environments under random actions, on one core",
           "filter": "Instructions of a Kalman filter on a Cortex-M4F, in single", "gpu": "Vehicle-steps on a GPU"}
 
@@ -85,7 +85,8 @@ def _gpu(lanes: int, rounds: int) -> Found:
 def _filter(lanes: int, rounds: int) -> Found:
     from laconic.benchmark import filter_cost
 
-    return filter_cost.rows(), ["Flash has the steps and derivatives of all methods, since auto may take most of them."]
+    return filter_cost.rows(), ["Flash has the steps and derivatives of the method (laconic_filter_predict_by), or of "
+                                "all methods (laconic_filter_predict)."]
 
 
 def table_of(title: str, rows: list[dict[str, Any]]) -> Table:

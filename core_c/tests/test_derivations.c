@@ -1,0 +1,142 @@
+/* Tests of the derivation of one method: what it gives is what the functions for all methods give, bit by bit, and it is
+ * of no other method. */
+#include "laconic/filter.h"
+#include "stiff.h"
+
+typedef struct derivation_case {
+    const laconic_method *method;
+    const laconic_derivation *derivation;
+    double step_s;
+    bool is_stiff;
+} derivation_case;
+
+static const derivation_case every_case[] = {
+    {&laconic_rk4, &laconic_derivation_of_rk4, 0.05, false},
+    {&laconic_taylor_8, &laconic_derivation_of_taylor_8, 0.05, false},
+    {&laconic_exponential_gauss_8, &laconic_derivation_of_exponential_gauss_8, 0.05, true},
+    {&laconic_exponential_kahan, &laconic_derivation_of_exponential_kahan, 0.05, true},
+    {&laconic_exponential_kahan_4, &laconic_derivation_of_exponential_kahan_4, 0.05, true},
+    {&laconic_exact_flow, &laconic_derivation_of_exact_flow, 0.05, true},
+    {&laconic_exact_flow_4, &laconic_derivation_of_exact_flow_4, 0.05, false},
+    {&laconic_auto, &laconic_derivation_of_auto, 0.01, false},
+    {&laconic_auto, &laconic_derivation_of_auto, 0.1, true},
+    {&laconic_auto, &laconic_derivation_of_auto_slow, 0.01, false},
+    {&laconic_auto, &laconic_derivation_of_auto_fast, 0.1, true}};
+#define CASES ((int)(sizeof every_case / sizeof every_case[0]))
+
+typedef struct robot {
+    laconic_model model;
+    laconic_integrator integrator;
+    laconic_state state;
+} robot;
+
+static robot robot_of(const derivation_case *c) {
+    robot r;
+    r.model = model_of(c->is_stiff ? stiff() : with_motors(three_wheels()));
+    r.integrator = integrator_of(c->method, &r.model, c->step_s);
+    r.state = moving(&r.model, 0.4, -0.3, 0.6);
+    return r;
+}
+
+/* With a force fixed in the world, over which b varies, and without. */
+static laconic_input held_with(bool world_force) {
+    laconic_input held = every_input();
+    if (world_force) return held;
+    held.world_force_N[0] = held.world_force_N[1] = REAL(0);
+    held.world_force_point_m[0] = held.world_force_point_m[1] = REAL(0);
+    return held;
+}
+
+static void assert_jacobians_are_alike(const robot *r, const laconic_derivation *derivation,
+                                       const laconic_input *held) {
+    laconic_step_jacobian one, all;
+    memset(&one, 0, sizeof one);
+    memset(&all, 0, sizeof all);
+    ASSERT_STATUS(LACONIC_OK,
+                  laconic_step_jacobian_by(&one, derivation, &r->model, &r->integrator, &r->state, held, true));
+    ASSERT_STATUS(LACONIC_OK, laconic_step_jacobian_of(&all, &r->model, &r->integrator, &r->state, held, true));
+    TEST_ASSERT_EQUAL_MEMORY(&all, &one, sizeof one);
+}
+
+static void assert_tangents_are_alike(const robot *r, const laconic_derivation *derivation, const laconic_input *held) {
+    laconic_state_change before, one, all;
+    memset(&before, 0, sizeof before);
+    memset(&one, 0, sizeof one);
+    memset(&all, 0, sizeof all);
+    before.nu_rad_per_s[1] = before.heading_rad = REAL(1);
+    ASSERT_STATUS(LACONIC_OK, laconic_step_tangent_by(&one, derivation, &r->model, &r->integrator, &r->state, held,
+                                                      &before, NULL, NULL));
+    ASSERT_STATUS(LACONIC_OK,
+                  laconic_step_tangent(&all, &r->model, &r->integrator, &r->state, held, &before, NULL, NULL));
+    TEST_ASSERT_EQUAL_MEMORY(&all, &one, sizeof one);
+    ASSERT_STATUS(LACONIC_OK, laconic_step_adjoint_by(&one, NULL, NULL, derivation, &r->model, &r->integrator,
+                                                      &r->state, held, &before));
+    ASSERT_STATUS(LACONIC_OK,
+                  laconic_step_adjoint(&all, NULL, NULL, &r->model, &r->integrator, &r->state, held, &before));
+    TEST_ASSERT_EQUAL_MEMORY(&all, &one, sizeof one);
+}
+
+static laconic_filter filter_of(const robot *r) {
+    laconic_filter filter;
+    laconic_filter_settings settings;
+    memset(&settings, 0, sizeof settings);
+    settings.position_std_m = settings.heading_std_rad = settings.voltage_noise_V_per_sqrt_Hz = REAL(0.1);
+    ASSERT_STATUS(LACONIC_OK, laconic_filter_start(&filter, &r->model, &settings, &r->state));
+    return filter;
+}
+
+static void assert_predictions_are_alike(const robot *r, const laconic_derivation *derivation,
+                                         const laconic_input *held) {
+    laconic_filter one = filter_of(r), all = one;
+    ASSERT_STATUS(LACONIC_OK, laconic_filter_predict_by(&one, derivation, &r->model, &r->integrator, held));
+    ASSERT_STATUS(LACONIC_OK, laconic_filter_predict(&all, &r->model, &r->integrator, held));
+    TEST_ASSERT_EQUAL_MEMORY(&all, &one, sizeof one);
+}
+
+static void the_derivation_of_a_method_gives_what_that_of_all_gives(void) {
+    for (int i = 0; i < 2 * CASES; i++) {
+        const derivation_case *c = &every_case[i / 2];
+        const robot r = robot_of(c);
+        const laconic_input held = held_with(i % 2 == 1);
+        assert_jacobians_are_alike(&r, c->derivation, &held);
+        assert_tangents_are_alike(&r, c->derivation, &held);
+        assert_predictions_are_alike(&r, c->derivation, &held);
+    }
+}
+
+static void a_derivation_of_another_method_is_refused_and_nothing_is_written(void) {
+    const robot r = robot_of(&every_case[0]);
+    const laconic_input held = held_with(false);
+    const laconic_filter before = filter_of(&r);
+    laconic_step_jacobian jacobian, untouched;
+    laconic_filter filter = before;
+    memset(&jacobian, 7, sizeof jacobian);
+    untouched = jacobian;
+    for (int i = 1; i < CASES; i++) {
+        const laconic_derivation *other = every_case[i].derivation;
+        ASSERT_STATUS(LACONIC_METHOD_UNKNOWN,
+                      laconic_step_jacobian_by(&jacobian, other, &r.model, &r.integrator, &r.state, &held, false));
+        ASSERT_STATUS(LACONIC_METHOD_UNKNOWN,
+                      laconic_filter_predict_by(&filter, other, &r.model, &r.integrator, &held));
+    }
+    TEST_ASSERT_EQUAL_MEMORY(&untouched, &jacobian, sizeof jacobian);
+    TEST_ASSERT_EQUAL_MEMORY(&before, &filter, sizeof filter);
+}
+
+static void a_method_that_no_derivation_has_is_refused_by_that_of_all(void) {
+    robot r = robot_of(&every_case[0]);
+    laconic_step_jacobian jacobian;
+    const laconic_input held = held_with(false);
+    const laconic_method made_up = *r.integrator.chosen;
+    r.integrator.chosen = &made_up;
+    ASSERT_STATUS(LACONIC_METHOD_UNKNOWN,
+                  laconic_step_jacobian_of(&jacobian, &r.model, &r.integrator, &r.state, &held, false));
+}
+
+int main(void) {
+    UNITY_BEGIN();
+    RUN_TEST(the_derivation_of_a_method_gives_what_that_of_all_gives);
+    RUN_TEST(a_derivation_of_another_method_is_refused_and_nothing_is_written);
+    RUN_TEST(a_method_that_no_derivation_has_is_refused_by_that_of_all);
+    return UNITY_END();
+}
