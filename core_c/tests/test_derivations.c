@@ -1,5 +1,5 @@
-/* Tests of the derivation of one method: what it gives is what the functions for all methods give, bit by bit, and it is
- * of no other method. */
+/* Tests of the derivation of one method: it gives what the functions for all methods give, bit by bit, and is of no
+ * other method. */
 #include "laconic/filter.h"
 #include "stiff.h"
 
