@@ -42,9 +42,9 @@ const laconic_derivation laconic_derivation_of_exponential_kahan = {{&derived_ka
 const laconic_derivation laconic_derivation_of_exponential_kahan_4 = {{&derived_kahan_4}};
 const laconic_derivation laconic_derivation_of_exact_flow = {{&derived_flow}};
 const laconic_derivation laconic_derivation_of_exact_flow_4 = {{&derived_flow_4}};
-const laconic_derivation laconic_derivation_of_auto = {{&derived_slow, &derived_fast DERIVED_GAUSS}};
+const laconic_derivation laconic_derivation_of_auto = {{&derived_slow, &derived_fast}};
 const laconic_derivation laconic_derivation_of_auto_slow = {{&derived_slow}};
-const laconic_derivation laconic_derivation_of_auto_fast = {{&derived_fast DERIVED_GAUSS}};
+const laconic_derivation laconic_derivation_of_auto_fast = {{&derived_fast}};
 const laconic_derivation laconic_derivation_of_all = {{&derived_rk4, &derived_taylor_8, &derived_kahan,
                                                        &derived_kahan_4, &derived_flow, &derived_flow_4, &derived_slow,
                                                        &derived_fast DERIVED_GAUSS}};

@@ -77,9 +77,10 @@ typedef struct laconic_derivation {
 } laconic_derivation;
 
 extern const laconic_derivation laconic_derivation_of_rk4, laconic_derivation_of_taylor_8,
-    laconic_derivation_of_exponential_gauss_8, laconic_derivation_of_exponential_kahan, laconic_derivation_of_exponential_kahan_4,
-    laconic_derivation_of_exact_flow, laconic_derivation_of_exact_flow_4, laconic_derivation_of_auto,
-    laconic_derivation_of_auto_slow, laconic_derivation_of_auto_fast, laconic_derivation_of_all;
+    laconic_derivation_of_exponential_gauss_8, laconic_derivation_of_exponential_kahan,
+    laconic_derivation_of_exponential_kahan_4, laconic_derivation_of_exact_flow, laconic_derivation_of_exact_flow_4,
+    laconic_derivation_of_auto, laconic_derivation_of_auto_slow, laconic_derivation_of_auto_fast,
+    laconic_derivation_of_all;
 
 /* --------------------------------------------------------------------------------- jacobian -- */
 
