@@ -55,6 +55,7 @@ static void every_fault_comes_with_its_remedy(void) {
     TEST_ASSERT_NOT_NULL(strstr(laconic_arithmetic_text(LACONIC_ARITHMETIC_FUSED), "-ffp-contract=off"));
     TEST_ASSERT_NOT_NULL(strstr(laconic_arithmetic_text(LACONIC_ARITHMETIC_WITHOUT_NAN), "-ffinite-math-only"));
     TEST_ASSERT_NOT_NULL(strstr(laconic_arithmetic_text(LACONIC_ARITHMETIC_FLUSHED), "flush-to-zero"));
+    TEST_ASSERT_NOT_NULL(strstr(laconic_arithmetic_text(LACONIC_ARITHMETIC_SUBTRACTED_WRONGLY), "soft_double.c"));
 }
 
 static void an_unknown_number_has_a_text(void) {

@@ -8,16 +8,24 @@
 
 #include "laconic/laconic.h"
 
+#ifndef STEPS
 #define STEPS 4000
+#endif
 #define ON_THE_FIRST_LINE 7 /* methods */
+
+#ifdef LACONIC_SINGLE
+typedef uint32_t word;
+#else
+typedef uint64_t word;
+#endif
 
 static uint64_t hash; /* FNV-1a */
 
 static void take(const laconic_real *numbers, int count) {
     for (int i = 0; i < count; i++) {
-        unsigned char bytes[sizeof(laconic_real)];
-        memcpy(bytes, &numbers[i], sizeof bytes);
-        for (size_t k = 0; k < sizeof bytes; k++) hash = (hash ^ bytes[k]) * 1099511628211U;
+        word bits;
+        memcpy(&bits, &numbers[i], sizeof bits);
+        for (size_t k = 0; k < sizeof bits; k++) hash = (hash ^ (bits >> 8 * k & 0xFF)) * 1099511628211U;
     }
 }
 

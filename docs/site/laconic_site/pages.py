@@ -21,8 +21,8 @@ GROUPS = {
                "fmu-dymola", "fmu-casadi", "fmu-importers", "fmu-network", "rig", "rig-wiring", "rig-lockstep",
                "rig-free-run", "rig-faults", "rig-same-bits", "rig-ports", "play", "play-canopen", "play-odrive",
                "play-robomaster", "play-moteus", "logs", "sweep", "page", "release"),
-    "Explanation": ("performance", "batch", "gpu", "learn", "derivatives", "control", "optimise", "enclosures",
-                    "integrators", "friction", "sensors", "real-robots", "paper", "architecture", "glossary"),
+    "Explanation": ("performance", "soft-double", "batch", "gpu", "learn", "derivatives", "control", "optimise",
+                    "enclosures", "integrators", "friction", "sensors", "real-robots", "paper", "architecture", "glossary"),
     "Reference": ("reference-c", "reference-python", "reference-commands", "reference-scene", "signals",
                   "reference-fmi", "wire", "changelog"),
 }

@@ -66,22 +66,20 @@ ROBOT_BOARD = """
 One step of this scene on a Cortex-M4F at -Os, under QEMU (-icount): instructions, not cycles; the same digits in
 every run. `whole`: with the whole core; `trimmed`: with a core built for this scene alone (cmake -DLACONIC_SCENE=…).
 Code: the functions that a step can reach. Flash: all that a step links, its prepared constants included. Stack: the
-worst path of the call graph. `host's bits`: the state is the host's to the last bit (in double but for a rounding
-error of libgcc, see docs/performance.md).
+worst path of the call graph. `host's bits`: the state is the host's to the last bit.
 """
 
 BOARDS = """
 Scene S1 with pose and wheel angles under QEMU (-icount): instructions, not cycles; the same digits in every run.
 Code: the functions that a step can reach. Flash: all that a step links, its prepared constants included. Stack: worst
 path of the call graph, and the most that a run was seen to use. Where the processor has no double-precision FPU (all
-but the M7) double is emulated; on the M3 and M4 libgcc's emulation has a rounding error that can change the last
-digit (docs/performance.md).
+but the M7) double is emulated; on the M3 and M4 soft_double.c adds and subtracts, since libgcc rounds some differences
+wrongly (docs/soft-double.md).
 """
 
 SCENES = """
 The same scene with the whole core and with a core built for it alone (cmake -DLACONIC_SCENE=…), by its own method,
--Os, Cortex-M4F. Whole and trimmed give the same bits; `host's bits`: so does the host (in double but for libgcc's
-rounding error, see above).
+-Os, Cortex-M4F. Whole and trimmed give the same bits; `host's bits`: so does the host.
 """
 
 REFERENCES = """

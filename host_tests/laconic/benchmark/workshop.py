@@ -136,11 +136,16 @@ def entry_of(files: Trimmed, scene: Scene) -> str:
 
 
 class Workshop:
-    """Builds into one folder; the whole core is compiled once per target, scalar type and optimisation."""
+    """Builds into one folder; the whole core is compiled once per target, scalar type and optimisation.
 
-    def __init__(self, folder: Path, core_dir: Path = SOURCE_DIR / "core_c") -> None:
+    Boards without double precision in hardware get soft_double.c with it, unless `soft_double` is False: then libgcc's
+    adder, which has its faults (docs/soft-double.md).
+    """
+
+    def __init__(self, folder: Path, core_dir: Path = SOURCE_DIR / "core_c", *, soft_double: bool = True) -> None:
         """Where to build, from which core."""
         self.folder, self.core_dir = folder.resolve(), core_dir  # gcc runs in other folders
+        self.soft_double = soft_double
         self._archives: dict[Path, Path] = {}
         self._trimmed: dict[tuple[str, str, str, float], Trimmed] = {}
 
@@ -172,6 +177,8 @@ class Workshop:
             shutil.rmtree(place, ignore_errors=True)
             place.mkdir(parents=True)
             sources = sorted(map(str, (self.core_dir / "src").glob("*.c")))
+            if self.soft_double and target.machine and variant.real == "double" and not target.hardware_double:
+                sources.append(str(self.core_dir / "soft_double" / "soft_double.c"))
             graph = ("-fstack-usage", "-fcallgraph-info=su") if target.machine else ()
             run_tool([target.tool("gcc"), "-c", *FLAGS, *graph, *extra, variant.optimisation, *target.flags,
                       *self.definitions(target, variant, folder), f"-I{self.core_dir / 'include'}", *sources], place)

@@ -63,7 +63,10 @@ def command(what: str, minutes: float, seed: int | None, json_wanted: bool, **sp
                      for a controller in another process: how late periods begin
     rig              all scenes in lockstep on the virtual bus, same bits
     slcan            all scenes over SLCAN to a node process
+    soft-double      soft_double.c beside this processor's addition; a minute takes 10⁹ pairs
     sweep            sweeps killed at random instants, their bytes against undisturbed ones
+    targets          one hash of all trajectories on every target that compilers and
+                     emulators here reach; takes as long as it takes
 
     Exit status 1 when something was found that must not be.
     """

@@ -1,0 +1,64 @@
+"""What soft_double.c costs beside libgcc's addition on a Cortex-M4F: instructions of an addition and of a step under
+QEMU, and flash."""
+
+from __future__ import annotations
+
+import subprocess
+from pathlib import Path
+from tempfile import TemporaryDirectory
+from typing import Any
+
+from laconic.benchmark.counting import CALIBRATED_INSTRUCTIONS, count_on_board, host_state, size_of_step
+from laconic.benchmark.workshop import BENCH, M4F, Variant, Workshop, run_tool
+from laconic.errors import BadInput
+from laconic.paths import SOURCE_DIR
+from laconic.scene import read_scene
+
+SOFT_DOUBLE = SOURCE_DIR / "core_c" / "soft_double" / "soft_double.c"
+KINDS = {"sum": "a + b, instructions", "difference": "a - b, instructions", "cancellation": "a - b, close together",
+         "zero": "a + 0"}
+PAIRS = 1000
+Row = dict[str, Any]
+
+
+def rows() -> list[Row]:
+    """A row for each figure, with soft_double.c and with libgcc; BadInput where compiler or emulator are missing."""
+    if not M4F.present:
+        raise BadInput("no arm-none-eabi-gcc with its C library, or no qemu-system-arm here: install both")
+    with TemporaryDirectory() as folder:
+        ours, theirs = (additions(Path(folder), soft) for soft in (True, False))
+        table = [{"who": text, "soft_double": ours[kind], "libgcc": theirs[kind]} for kind, text in KINDS.items()]
+        for method in ("rk4", "auto"):
+            table += step_rows(Path(folder), method)
+    return table
+
+
+def additions(folder: Path, soft_double: bool) -> dict[str, float]:
+    """Instructions of one addition, by kind."""
+    console, startup = BENCH / "cortex_m", BENCH.parent / "cortex_m"
+    image = folder / "count_add.elf"
+    sources = [console / "count_add.c", console / "bench_board.c", startup / "startup.c",
+               *([SOFT_DOUBLE] if soft_double else [])]
+    run_tool([M4F.tool("gcc"), *M4F.flags, "-O2", "-std=c99", f"-I{console}", f"-I{startup}", f"-L{startup}",
+              "-ffreestanding", "-nostartfiles", *map(str, sources), f"-T{M4F.script}", "-o", str(image)])
+    command = ["qemu-system-arm", "-M", M4F.machine, "-nographic", "-monitor", "none", "-serial", "none", "-icount",
+               "shift=8", "-semihosting-config", "enable=on,target=native", "-kernel", str(image)]
+    done = subprocess.run(command, capture_output=True, text=True, timeout=60, stdin=subprocess.DEVNULL, check=True)
+    ticks = {name: int(value) for name, value in
+             (line.split() for line in (done.stdout + done.stderr).splitlines() if line.strip())}
+    per_instruction = ticks.pop("calibration") / CALIBRATED_INSTRUCTIONS
+    return {name: round(value / per_instruction / PAIRS, 1) for name, value in ticks.items()}
+
+
+def step_rows(folder: Path, method: str) -> list[Row]:
+    """Instructions and flash of a step of s1, and whether its bits are this machine's."""
+    variant = Variant(read_scene("s1").with_run(method=method), "double", "-O2")
+    found = {}
+    for name, soft in (("soft_double", True), ("libgcc", False)):
+        workshop = Workshop(folder / f"{method}_{name}", soft_double=soft)
+        ran = count_on_board(workshop, M4F, variant)
+        same = host_state(workshop.host_program(variant), ran.steps) == ran.state
+        found[name] = (round(ran.instructions), size_of_step(workshop, M4F, variant).flash, "yes" if same else "NO")
+    titles = ("instructions", "flash B", "host's bits")
+    return [{"who": f"step of s1, {method}, {title}"} | {name: values[k] for name, values in found.items()}
+            for k, title in enumerate(titles)]

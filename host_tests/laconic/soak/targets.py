@@ -1,0 +1,56 @@
+"""One hash on every target that can be reached here: every trajectory of core_c/tests/trajectory_hash.c in both scalar
+types, and check_double.c. A target is some seconds to a minute."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from dataclasses import dataclass
+from pathlib import Path
+from tempfile import TemporaryDirectory
+from typing import Any
+
+from laconic.errors import LaconicError
+from laconic.targets import TARGETS, HashTarget
+
+REALS = ("double", "single")
+LEAST = 12  # targets that must have run
+
+
+def length() -> float:
+    """One for each target and scalar type."""
+    return float(len(TARGETS) * len(REALS))
+
+
+def soak(minutes: float, seed: int, advance: Callable[[float], None]) -> dict[str, Any]:
+    """Each target once, whatever `minutes` and `seed`: passed when all that are here have the hashes of the first. A
+    library whose faults touch no trajectory is told."""
+    found: dict[str, list[Bits]] = {}
+    for target in TARGETS:
+        found[target.name] = [] if target.lacks() else [_bits(target, real) for real in REALS]
+        advance(len(REALS))
+    ran = [bits for bits in found.values() if bits]
+    same = all([each.hash for each in bits] == [each.hash for each in ran[0]] for bits in ran)
+    told = {target.name: _told(found[target.name]) or f"not here: no {target.lacks()}" for target in TARGETS}
+    return {"passed": same and len(ran) >= LEAST, "targets": len(ran), **told}
+
+
+@dataclass(frozen=True)
+class Bits:
+    """A target's hash, or why there is none, and what check_double.c finds."""
+
+    hash: str
+    faults: tuple[str, ...] = ()
+
+
+def _bits(target: HashTarget, real: str) -> Bits:
+    with TemporaryDirectory() as folder:
+        try:
+            *check, hashed = target.lines(Path(folder), real)
+        except LaconicError as error:
+            return Bits(str(error))
+    return Bits(hashed, tuple(line for line in check if not line.startswith("double: ")))
+
+
+def _told(found: list[Bits]) -> str:
+    faults = sorted({fault for bits in found for fault in bits.faults})
+    return "; ".join([", ".join(bits.hash for bits in found), *faults])
