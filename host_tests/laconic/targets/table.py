@@ -66,7 +66,10 @@ def zig() -> Path:
 
 def called(command: Sequence[str], *, may_fail: bool = False) -> str:
     """The output of a program; check_double.c ends with 1 where it found a fault."""
-    done = subprocess.run(command, capture_output=True, text=True, timeout=LONGEST_S, check=False)
+    try:
+        done = subprocess.run(command, capture_output=True, text=True, timeout=LONGEST_S, check=False)
+    except subprocess.TimeoutExpired:
+        raise ResultFails(f"{command[0]} took longer than {LONGEST_S:g} s") from None
     if done.returncode != 0 and not (may_fail and done.stdout):
         raise ResultFails(f"{command[0]} failed: {(done.stderr or done.stdout).strip()[-300:]}")
     return done.stdout
