@@ -4,13 +4,12 @@ types, and check_double.c. A target is some seconds to a minute."""
 from __future__ import annotations
 
 from collections.abc import Callable
-from dataclasses import dataclass
 from pathlib import Path
 from tempfile import TemporaryDirectory
 from typing import Any
 
 from laconic.errors import LaconicError
-from laconic.targets import TARGETS, HashTarget
+from laconic.targets import TARGETS, Bits, HashTarget
 
 REALS = ("double", "single")
 LEAST = 12  # targets that must have run
@@ -29,28 +28,19 @@ def soak(minutes: float, seed: int, advance: Callable[[float], None]) -> dict[st
         found[target.name] = [] if target.lacks() else [_bits(target, real) for real in REALS]
         advance(len(REALS))
     ran = [bits for bits in found.values() if bits]
-    same = all([each.hash for each in bits] == [each.hash for each in ran[0]] for bits in ran)
+    same = all([each.hashes for each in bits] == [each.hashes for each in ran[0]] for bits in ran)
     told = {target.name: _told(found[target.name]) or f"not here: no {target.lacks()}" for target in TARGETS}
     return {"passed": same and len(ran) >= LEAST, "targets": len(ran), **told}
-
-
-@dataclass(frozen=True)
-class Bits:
-    """A target's hash, or why there is none, and what check_double.c finds."""
-
-    hash: str
-    faults: tuple[str, ...] = ()
 
 
 def _bits(target: HashTarget, real: str) -> Bits:
     with TemporaryDirectory() as folder:
         try:
-            *check, hashed = target.lines(Path(folder), real)
+            return target.bits(Path(folder), real)
         except LaconicError as error:
-            return Bits(str(error))
-    return Bits(hashed, tuple(line for line in check if not line.startswith("double: ")))
+            return Bits((str(error),))
 
 
 def _told(found: list[Bits]) -> str:
     faults = sorted({fault for bits in found for fault in bits.faults})
-    return "; ".join([", ".join(bits.hash for bits in found), *faults])
+    return "; ".join([", ".join(" ".join(bits.hashes) for bits in found), *faults])

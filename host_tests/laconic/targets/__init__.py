@@ -2,6 +2,6 @@
 an emulator of it."""
 
 from laconic.targets.boards import board_lines
-from laconic.targets.table import TARGETS, HashTarget
+from laconic.targets.table import TARGETS, Bits, HashTarget
 
-__all__ = ["TARGETS", "HashTarget", "board_lines"]
+__all__ = ["TARGETS", "Bits", "HashTarget", "board_lines"]

@@ -23,6 +23,14 @@ WASI = ("node", "--no-warnings", "-e", """
 
 
 @dataclass(frozen=True)
+class Bits:
+    """The hashes that trajectory_hash.c prints, line by line, and what check_double.c finds."""
+
+    hashes: tuple[str, ...] = ()
+    faults: tuple[str, ...] = ()
+
+
+@dataclass(frozen=True)
 class HashTarget:
     """A processor with a compiler for it, and what runs its programs here."""
 
@@ -42,21 +50,27 @@ class HashTarget:
             missing.append("ziglang (cmake --build build --target laconic_cross)")
         return " and ".join(missing)
 
-    def lines(self, folder: Path, real: str = "double", steps: int = STEPS) -> list[str]:
-        """What check_double.c says and, last, the hash of the trajectories."""
+    def bits(self, folder: Path, real: str = "double", steps: int = STEPS) -> Bits:
+        """What its trajectories hash to, and its faults."""
         if self.board:
             found = board_lines(self.board, folder, real=real, steps=steps, optimisation="-O2")
-            return [*found[1:-1], found[-1].removeprefix("hash ")]
+            hashes = [line.removeprefix("hash ") for line in found if line.startswith("hash ")]
+            return Bits(tuple(hashes), faults(found[1:len(found) - len(hashes)]))
         check = self._run(folder / "check", [SOFT_DOUBLE / "check_double.c"], [])
         flags = [f"-DSTEPS={steps}", *(["-DLACONIC_SINGLE"] if real == "single" else [])]
         sources = [CORE / "tests" / "trajectory_hash.c", built("amalgamation/laconic.c")]
-        return [*check, *self._run(folder / "hash", sources, flags)]
+        return Bits(tuple(self._run(folder / "hash", sources, flags)), faults(check))
 
     def _run(self, program: Path, sources: Sequence[Path], flags: Sequence[str]) -> list[str]:
         cross = [str(zig()), "-m", "ziglang", "cc", "-target", self.zig] if self.zig else []
         eager = ["-fno-tree-slp-vectorize"] if self.compiler[:1] == ("gcc",) else []
         called([*(cross or self.compiler), *FLAGS, *eager, *flags, *map(str, sources), "-o", str(program)])
         return called([*self.runner, str(program)], may_fail=True).splitlines()
+
+
+def faults(check: Sequence[str]) -> tuple[str, ...]:
+    """The lines of check_double.c but the last, which sums up."""
+    return tuple(line for line in check if not line.startswith("double: "))
 
 
 def zig() -> Path:
