@@ -15,16 +15,17 @@ from typing import Any
 
 import numpy as np
 
+from laconic.batch.given import check_steppable, core_of, kinds_of, kinds_of_lanes
 from laconic.batch.memory import Rows, aligned_memory
 from laconic.batch.population import Kinds, items_of
-from laconic.core import Core, Vehicle
+from laconic.core import Vehicle
 from laconic.core.given import c_object, finite_number, number, shown, step_count, whole_number
 from laconic.core.given_array import fill, real_array
 from laconic.errors import BadInput, Refused
 
-MOST_LANES = 2**28
 MOST_AT_ONCE = 2**24  # steps of all lanes in one call, a tenth of a second or two;
 FEWEST_AT_ONCE = 256  # of each: a call reads what a kind is made of
+ONE = 1  # the usual number of threads
 INPUTS = ("voltage_V", "axle_torque_Nm", "body_force_N", "body_moment_Nm", "world_force_N", "world_force_point_m")
 PRIVATE = ("_pool", "_is_observed")
 
@@ -55,9 +56,9 @@ class Batch:
 
     def __init__(self, vehicles: Vehicle | Sequence[Vehicle], lanes: int | None = None, method: str = "auto",
                  step_s: float = 1e-3, *, kind_of: Sequence[int] | np.ndarray | None = None, width_bytes: int = 0):
-        kinds = _kinds_of(vehicles)
-        core = self.core = _core_of(kinds)
-        self._kind_of = _kinds_of_lanes(len(kinds), lanes, kind_of)
+        kinds = kinds_of(vehicles)
+        core = self.core = core_of(kinds)
+        self._kind_of = kinds_of_lanes(len(kinds), lanes, kind_of)
         self.lane_count, self.step_s = len(self._kind_of), number("step_s", step_s)
         self._has_own_kinds = len(kinds) == self.lane_count == len(np.unique(self._kind_of))
         self._kinds = core.ffi.new("laconic_batch_kind[]", len(kinds))
@@ -90,7 +91,7 @@ class Batch:
             raise BadInput(f"{name}: is no input of a batch; set {', '.join(INPUTS)}")
 
     def _prepare(self, item: int, vehicle: Vehicle, method: str) -> None:
-        _check_steppable(vehicle, f"vehicles[{item + 1}]")
+        check_steppable(vehicle, f"vehicles[{item + 1}]")
         core, why = self.core, self.core.why()
         core.check(core.lib.laconic_batch_kind_of(self._kinds + item, vehicle.c, core.method(method), self.step_s, why),
                    why)
@@ -113,6 +114,8 @@ class Batch:
         self.status, self.missed = rows.of_lanes(self.c.status, np.int32), rows.of_lanes(self.c.missed, np.uint64)
         self._is_observed = False
         self._pool: ThreadPoolExecutor | None = None
+        self._blocks, self._run_blocks = int(self.c.block_count), lib.laconic_batch_run
+        self._at_once = max(FEWEST_AT_ONCE, MOST_AT_ONCE // self.lane_count)
 
     @property
     def width_bytes(self) -> int:
@@ -136,9 +139,9 @@ class Batch:
     def prepared(self, vehicle: Vehicle, method: str = "auto") -> Any:
         """A vehicle as `change` takes it, for any number of lanes; refused as the batch's own."""
         core, why, found = self.core, self.core.why(), self.core.ffi.new("laconic_batch_kind *")
-        if _core_of([vehicle]) is not core:
+        if core_of([vehicle]) is not core:
             raise BadInput(f"vehicle: is of {vehicle.core.real} precision, the batch of {core.real}; give one of that")
-        _check_steppable(vehicle, "vehicle")
+        check_steppable(vehicle, "vehicle")
         core.check(core.lib.laconic_batch_kind_of(found, vehicle.c, core.method(method), self.step_s, why), why)
         return found
 
@@ -176,14 +179,18 @@ class Batch:
         A lane stops before a step that is refused, the others go on. Returns how many lanes were refused; `status` and
         `refusal` tell which and why.
         """
-        left, refused = step_count("steps", steps), -1
+        left = step_count("steps", steps)
+        if left <= self._at_once and threads is ONE:  # nothing that a thousand lanes' step would notice
+            self.__dict__["_is_observed"] = False
+            return self._run_blocks(self.c, 0, self._blocks, left)
+        refused = -1
         while left or refused < 0:  # Ctrl-C is heard between calls; a refused lane is refused in each of them
-            now = min(left, max(FEWEST_AT_ONCE, MOST_AT_ONCE // self.lane_count))
-            refused, left = self._in_parts(partial(self._run_blocks, now), threads), left - now
+            now = min(left, self._at_once)
+            refused, left = self._in_parts(partial(self._run_part, now), threads), left - now
         return refused
 
-    def _run_blocks(self, steps: int, first: int, count: int) -> int:
-        return int(self.core.lib.laconic_batch_run(self.c, first, count, steps))
+    def _run_part(self, steps: int, first: int, count: int) -> int:
+        return int(self._run_blocks(self.c, first, count, steps))
 
     def run_sampled(self, voltage_V: Any, steps_each: int = 1, threads: int = 1) -> int:  # noqa: N803
         """Steps with voltages that change on the way: voltage_V (samples, N, lanes), each held for `steps_each` steps.
@@ -247,74 +254,3 @@ class Batch:
         if not 0 <= found < self.lane_count:
             raise BadInput(f"lane: there is no {found}; this batch has the lanes 0 to {self.lane_count - 1}")
         return found
-
-
-def _kinds_of(vehicles: Any) -> list[Any]:
-    if isinstance(vehicles, Vehicle):
-        return [vehicles]
-    try:
-        return list(vehicles)
-    except TypeError:
-        raise BadInput(f"vehicles: {shown(vehicles)} is no laconic.Vehicle and no list of them; give one") from None
-
-
-def _core_of(vehicles: list[Any]) -> Core:
-    """That of all vehicles."""
-    if not vehicles:
-        raise BadInput("vehicles: none is given; give at least one")
-    for item, vehicle in enumerate(vehicles, start=1):
-        if not isinstance(vehicle, Vehicle):
-            raise BadInput(f"vehicles[{item}]: {shown(vehicle)} is no laconic.Vehicle; give one")
-        if vehicle.core is not vehicles[0].core:
-            raise BadInput(f"vehicles[{item}]: is of {vehicle.core.real} precision, the first of "
-                           f"{vehicles[0].core.real}; give vehicles of one")
-    core: Core = vehicles[0].core
-    return core
-
-
-def _check_steppable(vehicle: Vehicle, name: str) -> None:
-    if vehicle.has_friction:
-        raise BadInput(f"{name}: has ground friction or a drive with limits, which a batch does not step; take them "
-                       "out, or step it with plant()")
-
-
-def _kinds_of_lanes(kinds: int, lanes: int | None, kind_of: Any) -> np.ndarray:
-    """The kind of each lane."""
-    if kind_of is None:
-        if lanes is not None and kinds > 1 and lanes != kinds:
-            raise BadInput(f"lanes: {lanes} lanes for {kinds} vehicles; leave it out for one each, or give kind_of")
-        found = np.arange(kinds)
-        if kinds == 1:
-            found = np.zeros(lane_count("lanes", 1 if lanes is None else lanes), np.int32)
-    else:
-        try:
-            found = np.asarray(kind_of)
-        except ValueError:
-            raise BadInput(f"kind_of: {shown(kind_of)} is no row of numbers; give one whole number for each "
-                           "lane") from None
-        if found.ndim != 1 or found.dtype.kind not in "iu" or (lanes is not None and len(found) != lanes):
-            raise BadInput(f"kind_of: has the shape {found.shape} and numbers of {found.dtype}; give one whole number "
-                           "for each lane")
-        lane_count("lanes", len(found))
-        if found.min() < 0 or found.max() >= kinds:
-            raise BadInput(f"kind_of: {found.min()} to {found.max()} are not all kinds; give numbers from 0 to "
-                           f"{kinds - 1}")
-        if len(found) < kinds:
-            raise BadInput(f"kind_of: {len(found)} lanes for {kinds} vehicles; give no more vehicles than lanes")
-    return np.ascontiguousarray(found, np.int32)
-
-
-def lane_count(name: str, given: Any) -> int:
-    """How many lanes are asked for."""
-    count = whole_number(name, given)
-    if not 1 <= count <= MOST_LANES:
-        raise BadInput(f"{name}: {count} is not from 1 to {MOST_LANES}; give a number of vehicles")
-    return count
-
-
-def thread_count(given: Any) -> int:
-    """How many threads are asked for."""
-    count = whole_number("threads", given)
-    if count < 1:
-        raise BadInput(f"threads: {count} cannot take a step; give 1 or more")
-    return count

@@ -10,7 +10,7 @@ from typing import Any
 import numpy as np
 
 from laconic.batch import Batch
-from laconic.batch.lanes import lane_count, thread_count
+from laconic.batch.given import lane_count, thread_count
 from laconic.core.given import finite_number
 from laconic.errors import BadInput
 from laconic.learn.task import Motion, Rules, checked_actions, distance_of, has_left, has_reached, observed

@@ -186,14 +186,14 @@ def test_rows_that_no_memory_holds_are_not_even_tried_side_by_side():
 def test_a_batch_that_steps_long_lets_ctrl_c_through_and_keeps_its_bits(monkeypatch):
     import laconic
     robot = laconic.Vehicle.of(laconic.read_scene("robotino2"))
-    whole, parts = (laconic.Batch(robot, 3, "rk4", 1e-3) for _ in range(2))
+    whole = laconic.Batch(robot, 3, "rk4", 1e-3)
+    monkeypatch.setattr(batch_lanes, "MOST_AT_ONCE", 21)
+    monkeypatch.setattr(batch_lanes, "FEWEST_AT_ONCE", 1)
+    parts = laconic.Batch(robot, 3, "rk4", 1e-3)
     for batch in (whole, parts):
         batch.voltage_V[:] = [[1.0, 2.0, 3.0]]
         batch.voltage_V[0, 1] = np.nan
-    assert whole.run(100) == 1
-    monkeypatch.setattr(batch_lanes, "MOST_AT_ONCE", 21)
-    monkeypatch.setattr(batch_lanes, "FEWEST_AT_ONCE", 1)
-    assert parts.run(100) == 1
+    assert (whole.run(100), parts.run(100)) == (1, 1)
     assert parts.heading_rad.tobytes() == whole.heading_rad.tobytes()
     assert parts.missed.tolist() == whole.missed.tolist() == [0, 100, 0]
     calls = []
