@@ -15,7 +15,7 @@ from typing import Any
 
 import numpy as np
 
-from laconic.batch.given import check_steppable, core_of, kinds_of, kinds_of_lanes
+from laconic.batch.given import check_steppable, core_of, kinds_of, kinds_of_lanes, thread_count
 from laconic.batch.memory import Rows, aligned_memory
 from laconic.batch.population import Kinds, items_of
 from laconic.core import Vehicle
