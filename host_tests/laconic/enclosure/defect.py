@@ -79,7 +79,7 @@ def growth_of(step: Step, equation: Equation) -> Growth:
     whole = positive = arb(0)
     for piece in range(PIECES):
         middle = arb(2 * piece + 1) / (2 * PIECES)
-        rate = growth_rate(equation, [part(middle) for part in step.zeta]) + slack
+        rate = upper_end(growth_rate(equation, [part(middle) for part in step.zeta]) + slack)
         whole += rate
         positive += rate if rate > 0 else arb(0)
     share = step.length_s / PIECES

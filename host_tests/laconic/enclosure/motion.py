@@ -171,7 +171,7 @@ class Motion:
         """The same for one choice of components."""
         unit_s = left_s
         for _ in range(UNITS):
-            series = slow_motion(rates, begin, self.order, fast, arb(unit_s))
+            series = slow_motion(rates, begin, self.order, fast, arb(unit_s), self.scale)
             if series is not None:
                 off = length([series.zeta[j][0] - begin.zeta[j] for j in fast])
                 near = off <= self.scale * self.tolerance * 1024

@@ -12,7 +12,7 @@ from dataclasses import dataclass
 
 from flint import arb, arb_poly, ctx
 
-from laconic.enclosure.balls import Vector, cross, dot, thin
+from laconic.enclosure.balls import Vector, cross, dot, larger, thin
 from laconic.enclosure.equation import Equation
 from laconic.enclosure.loads import Forcing
 
@@ -91,25 +91,35 @@ def forcing_at(rates: Rates, j: int, k: int, cosine: Vector, sine: Vector) -> ar
     return turning + rates.forcing.constant[j] if k == 0 else turning
 
 
-def slow_motion(rates: Rates, start: Start, order: int, fast: frozenset[int], unit_s: arb) -> Series | None:
+def slow_motion(rates: Rates, start: Start, order: int, fast: frozenset[int], unit_s: arb,
+                scale: arb) -> Series | None:
     """The series in which the components `fast` follow the others without a decaying part of their own; None where the
     iteration does not settle. Their start is what comes out, not what `start` gives.
 
     A fast component solves z_k = (source_k − (k+1) z_{k+1})/r from the highest power down, the others and the heading
-    go up from their start; the sources are of the last pass. `unit_s` scales time while this is done.
+    go up from their start; the sources are of the last pass. `unit_s` scales time while this is done; `scale` is the
+    size of ζ to whose rounding the passes must settle.
     """
     now = [[x] + [arb(0)] * order for x in (*start.zeta, start.cosine, start.sine)]
     settled = arb(2) ** (12 - ctx.prec)
     for _ in range(MOST_ITERATIONS):
         before, now = now, one_pass(rates, start, now, fast, unit_s)
-        change = max((abs(a - b).mid() for old, new in zip(before, now, strict=True)
-                      for a, b in zip(old, new, strict=True)), key=float)
-        size = max((abs(x) for part in now[:3] for x in part), key=float)
-        if not change.is_finite():
+        if not all(x.is_finite() for part in now for x in part):
             return None
-        if change <= settled * size:
+        if (differs_by(before[:3], now[:3]) <= settled * larger(scale, largest_of(now[:3]))
+                and differs_by(before[3:], now[3:]) <= settled * larger(arb(1), largest_of(now[3:]))):
             return Series([unscaled(part, unit_s) for part in now[:3]], *(unscaled(part, unit_s) for part in now[3:]))
     return None
+
+
+def differs_by(before: list[Vector], now: list[Vector]) -> arb:
+    """The largest change of a coefficient."""
+    return largest_of([[a - b for a, b in zip(old, new, strict=True)] for old, new in zip(before, now, strict=True)])
+
+
+def largest_of(parts: list[Vector]) -> arb:
+    """The largest size of a coefficient, roughly."""
+    return max((abs(x).mid() for part in parts for x in part), key=log2_of)
 
 
 def unscaled(part: Vector, unit_s: arb) -> Vector:

@@ -49,6 +49,7 @@ class Enclosed:
     sizes: np.ndarray            # largest proved size of each state
     end: Sample
     end_digits: tuple[tuple[str, float], ...]
+    end_direction: tuple[tuple[str, float], ...]  # cos θ and sin θ at the end
     steps: int
     bits: int
     seconds: float
@@ -89,7 +90,7 @@ def row_bounds(sample: Sample, found: Sequence[float] | None) -> Iterator[tuple[
     for k, state in enumerate(sample.row()):
         core = None if found is None else arb(float(found[k]))
         yield (2.0 * bound_of(state.rad()), 0.0 if core is None else bound_of(state - core),
-               core is not None and state.contains(core), float(state.abs_lower()))
+               core is not None and state.contains(core), math.nextafter(float(state.abs_lower()), 0.0))
 
 
 def shown_digits(state: arb) -> tuple[str, float]:
@@ -127,9 +128,11 @@ def one_pass(reading: Reading, instants: Sequence[Fraction], found: np.ndarray |
         assert sample is not None
         table = np.array(rows, dtype=float)
         digits = tuple(shown_digits(state) for state in sample.row())
+        sine, cosine = sample.heading_rad.sin_cos()
+        direction = (shown_digits(cosine), shown_digits(sine))
     return Enclosed(table[:, :, 0], None if found is None else table[:, :, 1], table[:, :, 2].astype(bool),
-                    np.max(table[:, :, 3], axis=0), sample, digits, motion.steps_taken, goal_bits + GUARD_BITS,
-                    time.perf_counter() - began)
+                    np.max(table[:, :, 3], axis=0), sample, digits, direction, motion.steps_taken,
+                    goal_bits + GUARD_BITS, time.perf_counter() - began)
 
 
 def up_to(reading: Reading, end_s: Fraction) -> list[Stretch]:

@@ -45,8 +45,9 @@ def columns_of(study: Study) -> dict[str, np.ndarray]:
 
 def as_json(study: Study) -> dict[str, Any]:
     """The enclosure of a run, with the digits of its end."""
-    end = {name: {"middle": digits, "radius": radius}
-           for name, (digits, radius) in zip(study.states, study.of_file.end_digits, strict=True)}
+    shown = (*zip(study.states, study.of_file.end_digits, strict=True),
+             *zip(("heading_cosine", "heading_sine"), study.of_file.end_direction, strict=True))
+    end = {name: {"middle": digits, "radius": radius} for name, (digits, radius) in shown}
     return {"rows": len(study.of_file.widths), "steps": study.of_file.steps, "bits": study.of_file.bits,
             "seconds": study.of_file.seconds + study.of_core.seconds, **kinds_json(study.of_file),
             "own_constants": kinds_json(study.of_core), "final": end}

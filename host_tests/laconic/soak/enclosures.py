@@ -51,10 +51,15 @@ def of_scene(scene: Scene) -> tuple[str, bool]:
     except BadInput as why:
         return f"not enclosed: {str(why).removeprefix(f'{scene.path}: ')}", False
     began = time.monotonic()
-    found = verify_scene_enclosed(scene, shown=False)
-    errors = [bound_text(e or 0.0) for e in (found.error_nu, found.error_pose, found.error_wheel)]
-    return (f"width ≤ {bound_text(found.width)}, error of nu, pose, wheels ≤ {', '.join(errors)}, "
-            f"{time.monotonic() - began:.1f} s"), found.width > NARROW
+    found, single = (verify_scene_enclosed(scene.with_run(real=real), shown=False) for real in ("double", "single"))
+    return (f"width ≤ {bound_text(found.width)}, error of nu, pose, wheels ≤ {errors_of(found)}, in single ≤ "
+            f"{errors_of(single)}, {time.monotonic() - began:.1f} s"), found.width > NARROW
+
+
+def errors_of(found: EnclosedResult) -> str:
+    """Its three errors, or why there are none."""
+    errors = (found.error_nu, found.error_pose, found.error_wheel)
+    return ", ".join(bound_text(each or 0.0) for each in errors) if found.status == "ok" else found.status
 
 
 def random_scene(source: random.Random) -> str:

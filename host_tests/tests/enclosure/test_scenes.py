@@ -99,6 +99,7 @@ def test_simulate_writes_error_and_width_beside_each_state(puck, tmp_path, capsy
     assert 0.0 < float(rows[-1]["x_m_error"]) < 1e-14 and float(rows[-1]["x_m_width"]) < 1e-25
     enclosure = said["enclosure"]
     assert enclosure["final"]["x_m"]["middle"].startswith("1.785") and enclosure["final"]["x_m"]["radius"] < 1e-25
+    assert float(enclosure["final"]["heading_cosine"]["middle"]) == 1.0
     assert enclosure["rows"] == 11 and not enclosure["inside"] and enclosure["own_constants"]["error_nu"] < 1e-14
 
 
