@@ -127,6 +127,7 @@ def test_headers_licence_and_the_two_files_are_installed_and_each_component_by_i
     there = {str(path.relative_to(whole)) for path in whole.rglob("*") if path.is_file()}
     headers = {f"include/laconic/{path.name}" for path in (SOURCE_DIR / "core_c/include/laconic").glob("*.h")}
     assert there >= headers | {"share/doc/laconic/LICENSE", "share/laconic/amalgamation/laconic.c"}
+    assert there >= {f"share/laconic/soft_double/{name}.c" for name in ("soft_double", "check_double")}
     run("cmake", "--install", build_dir(), "--prefix", tmp_path, "--component", "laconic_amalgamation")
     assert {path.name for path in tmp_path.rglob("*") if path.is_file()} == {
         "laconic.h", "laconic.c", "laconic_single.h", "laconic_single.c"}
