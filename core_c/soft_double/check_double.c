@@ -73,7 +73,7 @@ static uint64_t to_single(uint64_t a, uint64_t b) {
     return (given.bits << 1) > 0xFF000000U ? 0x7FC00000U : given.bits;
 }
 
-static uint64_t of_single(uint64_t a, uint64_t b) { return (void)b, bits(single(a >> 20)); }
+static uint64_t of_single(uint64_t a, uint64_t b) { return (void)b, bits((double)single(a >> 20)); }
 static uint64_t to_int32(uint64_t a, uint64_t b) { return (void)b, (uint64_t)(int64_t)(int32_t)within(a, 31); }
 static uint64_t to_uint32(uint64_t a, uint64_t b) { return (void)b, (uint32_t)within(a << 1 >> 1, 32); }
 static uint64_t to_int64(uint64_t a, uint64_t b) { return (void)b, (uint64_t)(int64_t)within(a, 63); }

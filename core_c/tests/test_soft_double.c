@@ -113,7 +113,7 @@ static void what_is_no_number_comes_out_quiet(void) {
 static void check_single(uint32_t bits) {
     float single;
     memcpy(&single, &bits, sizeof single);
-    TEST_ASSERT_EQUAL_HEX64(bits_of(single), bits_of(number_of(laconic_soft_of_single(bits))));
+    TEST_ASSERT_EQUAL_HEX64(bits_of((double)single), bits_of(number_of(laconic_soft_of_single(bits))));
 }
 
 static void numbers_in_single_precision_of_every_exponent_keep_their_value(void) {
