@@ -13,6 +13,7 @@ import numpy as np
 from laconic.errors import BadInput
 from laconic.robot_import.bounded import Library, bounded
 from laconic.robot_import.checked import DISSIPATION, finite, mass, not_negative, words_of
+from laconic.robot_import.mjcf_left_out import left_out
 from laconic.robot_import.placement import Array, inverse, placement, point_of
 from laconic.robot_import.robot_tree import BALL, FIXED, HINGE, SLIDE, TURNS_ROUND_RAD, Joint, Link, Robot, Shape
 from laconic.robot_import.xml_file import xml_root
@@ -44,7 +45,7 @@ def _read(path: Path, model_name: str | None) -> Robot:
             joint = _joint(path, model, data, body, names, back)
             joints[joint.name] = joint
     title = model.body(base).name or path.stem
-    return Robot(title, path, "MJCF", names[base], links, joints).check()
+    return Robot(title, path, "MJCF", names[base], links, joints, tuple(left_out(model, inside))).check()
 
 
 def _compiled(path: Path) -> tuple[Any, Any, list[str]]:

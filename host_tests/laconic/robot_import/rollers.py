@@ -14,7 +14,8 @@ import numpy as np
 from laconic.errors import BadInput
 from laconic.robot_import.answers import Answers, answer
 from laconic.robot_import.placement import Array, rotation_about
-from laconic.robot_import.wheels import ROLLERS_AT_LEAST, FoundWheel
+from laconic.robot_import.wheel_parts import ROLLERS_AT_LEAST
+from laconic.robot_import.wheels import FoundWheel
 
 SAME_RAD = np.radians(2.0)
 MEETS_M = 1e-3

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Collection, Sequence
 from dataclasses import dataclass
 
 import numpy as np
@@ -12,8 +12,8 @@ from laconic.robot_import.answers import Answers, answer
 from laconic.robot_import.placement import Array
 from laconic.robot_import.rigid_body import inertia_about_axis
 from laconic.robot_import.robot_tree import HINGE, SLIDE, Joint, Link, Robot
+from laconic.robot_import.wheel_parts import ROLLERS_AT_LEAST, has_the_axle_of, parts_of, rollers_of
 
-ROLLERS_AT_LEAST = 3
 LEVEL = np.sin(np.radians(10.0))  # the steepest axle of a wheel
 UPRIGHT = np.cos(np.radians(10.0))  # of a swivel's axis
 PLACE_DIGITS = 4  # wheels nearer than a tenth of a millimetre are in one place
@@ -66,6 +66,7 @@ class Ground:
 def find_wheels(robot: Robot, answers: Answers) -> Ground:
     """BadInput where there is none, or where a radius or an inertia has to be asked for."""
     named = [_named(robot, name) for name in answers.wheels]
+    _check_named(robot, named)
     candidates = named or [joint for joint in robot.joints.values() if _turns_as_wheel(robot, joint)]
     measured = [(joint, _radius(robot, joint, answers)) for joint in candidates]
     if not any(radius for _, radius in measured):
@@ -84,7 +85,7 @@ def find_wheels(robot: Robot, answers: Answers) -> Ground:
             continue
         above = float(joint.point_m[2]) - radius - height
         if above <= REACHES * radius or named:
-            reaching.append(_wheel(robot, joint, radius, answers))
+            reaching.append(_wheel(robot, joint, radius, answers, named))
         else:
             remarks.append(f"joint {joint.name} turns on a level axle, {1e3 * above:.0f} mm above the ground, and is "
                            "no wheel; "
@@ -124,6 +125,15 @@ def _named(robot: Robot, name: str) -> Joint:
     if joint.kind != HINGE or abs(joint.axis[2]) > LEVEL:
         raise BadInput(f"--wheel {name}: does not turn on a level axle, so it is no wheel; name another joint")
     return joint
+
+
+def _check_named(robot: Robot, named: Sequence[Joint]) -> None:
+    """BadInput for a wheel that another carries round, whose place is none of the robot's."""
+    for joint in named:
+        for above in robot.chain(joint):
+            if above in named and not has_the_axle_of(joint, above):
+                raise BadInput(f"--wheel {joint.name}: hangs on wheel {above.name}, which carries it round; name one "
+                               "of the two")
 
 
 def _turns_as_wheel(robot: Robot, joint: Joint) -> bool:
@@ -174,15 +184,9 @@ def _own_radius(robot: Robot, joint: Joint) -> float | None:
     return radius if radius > 1e-6 else None
 
 
-def rollers_of(robot: Robot, joint: Joint) -> list[Joint]:
-    """The hinges on the parts of a wheel."""
-    parts = {link.name for link in robot.below(joint, rigid=False)}
-    return [each for each in robot.joints.values() if each.parent in parts and each.kind == HINGE]
-
-
-def _wheel(robot: Robot, joint: Joint, radius: float, answers: Answers) -> FoundWheel:
-    parts = robot.below(joint, rigid=False)
-    rollers = tuple(Roller(j.point_m, j.axis) for j in rollers_of(robot, joint))
+def _wheel(robot: Robot, joint: Joint, radius: float, answers: Answers, named: Collection[Joint]) -> FoundWheel:
+    parts = parts_of(robot, joint, named)
+    rollers = tuple(Roller(j.point_m, j.axis) for j in parts.rollers)
     axle = joint.axis - np.array([0.0, 0.0, joint.axis[2]])
     axle = axle / np.linalg.norm(axle)
     remarks = [f"axle of {joint.name} is {_degrees(np.arcsin(abs(joint.axis[2])))} from level; taken as level"
@@ -191,13 +195,14 @@ def _wheel(robot: Robot, joint: Joint, radius: float, answers: Answers) -> Found
     for above in robot.chain(joint):
         if above.kind == HINGE and abs(above.axis[2]) >= UPRIGHT:
             swivel = above
-        elif above.kind in (HINGE, SLIDE):
+        elif above.kind in (HINGE, SLIDE) and above not in named:
             remarks.append(f"joint {above.name} above {joint.name} is held in its zero position")
     if swivel is not None:
         remarks.append(f"{joint.name} is steered by {swivel.name}, which is held in its zero position")
+    remarks += parts.remarks
     said = answer(answers.inertia_kgm2, joint.name)
-    inertia = inertia_about_axis(parts, joint.point_m, axle) if said is None else said
-    hub = _hub(parts, joint, axle)
+    inertia = inertia_about_axis(parts.turning, joint.point_m, axle) if said is None else said
+    hub = _hub(parts.shaped, joint, axle)
     return FoundWheel(joint, hub, axle, radius, inertia, rollers, swivel, tuple(remarks))
 
 

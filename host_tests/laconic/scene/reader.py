@@ -77,8 +77,9 @@ def read_motor(table: Table, direct: Sequence[Field]) -> dict[str, Any]:
     if not table.has("motor"):
         return {field.key: read_field(table, field, ... if given else 0.0) for field in direct}
     if given:
-        both = f", and so is {given[1]}; keep one of them, the motor or these two"
-        table.fail(given[0], "is given besides [vehicle.motor]" + (both if given[1:] else "; keep one of them"))
+        second = f", and so is {given[1]}" if given[1:] else ""
+        which = ", the motor or these two" if second else ""
+        table.fail(given[0], f"is given besides [vehicle.motor]{second}; keep one of them{which}")
     motor = table.table("motor")
     motor.expect(field.key for field in load().fields_of("vehicle.motor"))
     values = {field.key: read_field(motor, field, 0.0 if field.need == "NEVER" else ...)

@@ -124,6 +124,8 @@ BAD = {
     "both angles": (("axle_deg = 180", "axle_deg = 180\naxle_rad = 3"), ("wheel[2].axle_deg", "keep one")),
     "both places": (("distance_m = 0.2", "distance_m = 0.2\nx_m = 1"), ("wheel[2].distance_m", "x_m")),
     "motor twice": (("[run]", "[vehicle.motor]\nresistance_ohm = 1\n[run]"), ("motor_gain_Nm_per_V", "keep one")),
+    "motor and a gain": (("motor_damping_Nms = 0.05", "[vehicle.motor]\nresistance_ohm = 1"),
+                         ("motor_gain_Nm_per_V: is given besides [vehicle.motor]; keep one of them",)),
     "zero duration": (("duration_s = 1.0", "duration_s = 0"), ("run.duration_s", "value above 0")),
     "negative step": (("step_s = 0.01", "step_s = -0.01"), ("run.step_s", "value above 0")),
     "more steps than a count holds": (("duration_s = 1.0", "duration_s = 1e14"), ("run.duration_s", "shorter time")),
