@@ -7,13 +7,18 @@ from typing import Any
 import numpy as np
 
 from laconic.core import Core
+from laconic.errors import BadInput
 
 ALIGNMENT = 64  # bytes
 
 
 def aligned_memory(size: int) -> np.ndarray:
     """Bytes that begin at a multiple of ALIGNMENT."""
-    whole = np.empty(size + ALIGNMENT, np.uint8)
+    try:
+        whole = np.empty(size + ALIGNMENT, np.uint8)
+    except MemoryError:
+        raise BadInput(f"lanes: so many need {size / 2**30:.1f} GiB of memory, which are not there; give fewer"
+                       ) from None
     first = -whole.ctypes.data % ALIGNMENT
     return whole[first:first + size]
 

@@ -44,11 +44,15 @@ class Matrices:
     lambda_wheel: float           # λ
 
 
-@cache
 def load(real: str = "double") -> Core:
     """The core in one scalar type, loaded once."""
     if real not in REALS:
-        raise BadInput(f"real: there is no {real!r}; {nearest_of(real, REALS)}")
+        raise BadInput(f"real: there is no {shown(real)}; {nearest_of(str(real), REALS)}")
+    return _loaded(real)
+
+
+@cache
+def _loaded(real: str) -> Core:
     ffi = FFI()
     ffi.cdef(built(f"lib/laconic_cdef_{real}.h").read_text(encoding="utf-8"))
     return Core(real, ffi, ffi.dlopen(str(library(f"laconic_{real}"))))
@@ -178,8 +182,8 @@ class Core:
 
     def matrices(self, vehicle: Any) -> Matrices:
         """Ξ, A, A⁻¹, C, Λ, λ."""
-        found, why = self.ffi.new("laconic_matrices *"), self.why()
-        self.check(self.lib.laconic_matrices_of(found, c_object(self, "vehicle", vehicle), why), why)
+        found, why, vehicle = self.ffi.new("laconic_matrices *"), self.why(), c_object(self, "vehicle", vehicle)
+        self.check(self.lib.laconic_matrices_of(found, vehicle, why), why)
         return Matrices(
             self.numbers(found.wheel_rows, self.max_wheels, 3)[: vehicle.wheel_count],
             self.numbers(found.inertia, 3, 3), self.numbers(found.inverse_inertia, 3, 3),

@@ -21,6 +21,7 @@ from numpy.typing import ArrayLike
 
 from laconic.core.fields import Field
 from laconic.core.given import by_names, finite_number, finite_numbers, name_list, shown
+from laconic.core.inputs import check_finite_input
 from laconic.errors import BadInput, nearest_of
 
 if TYPE_CHECKING:
@@ -147,12 +148,7 @@ class StepDerivatives:
             "nu_rad_per_s": row[:3], "x_m": row[3], "y_m": row[4], "heading_rad": row[5], "wheel_angle_rad": row[6:]})
 
     def _input_change(self, held: Any) -> Any:
-        change = self.plant.input_of(held)
-        for offset in np.flatnonzero(~np.isfinite(row := self._flat(change))):
-            name = next(name for name, (first, length) in self.core.input_fields.items()
-                        if first <= offset < first + length)
-            finite_number(f"change of the input: {name}", float(row[offset]))
-        return change
+        return check_finite_input(self.core, self.plant.input_of(held), "change of the input: ")
 
     def _flat(self, struct: Any) -> np.ndarray:
         return np.frombuffer(self.core.ffi.buffer(struct), self.core.dtype).copy()

@@ -14,7 +14,7 @@ from laconic.errors import BadInput, nearest_of
 if TYPE_CHECKING:
     from laconic.core import Core
 
-MAKERS = {"input": "plant.input_of({…})", "vehicle": "core.vehicle({…})", "model": "core.prepare(vehicle)",
+MAKERS = {"input": "plant.input_of({…})", "vehicle": "laconic.Vehicle({…})", "model": "core.prepare(vehicle)",
           "state": "plant.save()", "plant": "plant.save()", "sensors": "sensors.save()",
           "batch_kind": "batch.prepared(vehicle)"}
 FLAGS = ("FLAG", "ABSENCE")
@@ -105,11 +105,13 @@ def step_count(name: str, value: Any) -> int:
 
 
 def c_object(core: Core, kind: str, given: Any) -> Any:
-    """A pointer to laconic_`kind` as it is; anything else, also one of the other scalar type, is BadInput."""
+    """A pointer to laconic_`kind` as it is, for a vehicle also that of a laconic.Vehicle; anything else, also one of
+    the other scalar type, is BadInput."""
     ffi = core.ffi
-    if not isinstance(given, ffi.CData) or ffi.typeof(given) is not ffi.typeof(f"laconic_{kind} *"):
+    found = getattr(given, "c", given) if kind == "vehicle" and not isinstance(given, ffi.CData) else given
+    if not isinstance(found, ffi.CData) or ffi.typeof(found) is not ffi.typeof(f"laconic_{kind} *"):
         raise BadInput(f"{kind}: {shown(given)} is no laconic_{kind} of this core; make it with {MAKERS[kind]}")
-    return given
+    return found
 
 
 def table(core: Core, path: str, name: str, given: Any, others: Sequence[str] = ()) -> dict[str, float | bool]:

@@ -41,7 +41,10 @@ def real_array(name: str, given: Any, shape: Sequence[Length], unit: str = "", *
 
 
 def any_array(given: Any) -> np.ndarray:
-    """As NumPy takes it; an array of objects for rows of unlike lengths and what else is no array."""
+    """As NumPy takes it; an array of objects for rows of unlike lengths, where numbers are masked, and what else is no
+    array."""
+    if isinstance(given, np.ma.MaskedArray) and np.ma.is_masked(given):  # its numbers there are no measurements
+        return np.empty((), object)
     try:
         return np.asarray(given)
     except (TypeError, ValueError, OverflowError):

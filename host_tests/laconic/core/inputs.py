@@ -11,7 +11,7 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from laconic.core.given import REAL, shown
+from laconic.core.given import REAL, finite_number, shown
 from laconic.core.given_array import any_array
 from laconic.errors import BadInput, nearest_of
 
@@ -60,16 +60,40 @@ def row_of(core: Core, values: Mapping[str, float | Sequence[float]], wheel_coun
     row = np.zeros(core.input_length, core.dtype)
     for signal, value in values.items():
         slots = slots_of(core, signal)
+        _check_alone(signal, values)
         found = any_array(value)
         if found.dtype.kind not in REAL:
             raise BadInput(f"{signal}: {shown(value)} is no number and no list of numbers; give real numbers")
         many = np.atleast_1d(found).astype(core.dtype)
         count = len(many) if signal in PER_WHEEL else len(slots)
         if many.ndim != 1 or len(many) != count or count > len(slots):
-            raise BadInput(f"{signal}: {shown(value)} are not its numbers, of which there are {len(slots)}")
+            there = wheel_count if signal in PER_WHEEL and many.ndim != 1 and wheel_count else len(slots)
+            raise BadInput(f"{signal}: {_with_shape(value)} are not its numbers, of which there are {there}; give them "
+                           "in one row")
         _check_wheels_of(core, signal, value, slots[:count], wheel_count)
         row[slots.start : slots.start + count] = many
     return row
+
+
+def _check_alone(signal: str, values: Mapping[str, Any]) -> None:
+    """BadInput for one item of a signal whose whole row is given, too."""
+    name = str(signal).partition("[")[0]
+    if name != signal and name in values:
+        raise BadInput(f"{signal}: is given besides {name}; keep one of them")
+
+
+def _with_shape(value: Any) -> str:
+    """A value that does not fit, an array by its shape."""
+    return f"numbers of shape {value.shape}" if isinstance(value, np.ndarray) else shown(value)
+
+
+def check_finite_input(core: Core, held: Any, what: str = "") -> Any:
+    """The laconic_input as it is; BadInput names the first number that is infinite or NaN."""
+    row = np.frombuffer(core.ffi.buffer(held), core.dtype)
+    for offset in np.flatnonzero(~np.isfinite(row)):
+        name = next(name for name, (first, length) in core.input_fields.items() if first <= offset < first + length)
+        finite_number(f"{what}{name}", float(row[offset]))
+    return held
 
 
 def _check_wheels_of(core: Core, signal: str, value: object, slots: range, wheel_count: int | None) -> None:

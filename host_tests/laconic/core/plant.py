@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING, Any, NamedTuple
 import numpy as np
 
 from laconic.core.derivatives import StepDerivatives
-from laconic.core.given import c_object, number, step_count
+from laconic.core.given import c_object, number, shown, step_count
 from laconic.core.inputs import check_held, check_wheels
 from laconic.core.schedule import Schedule
 from laconic.core.sensors import Sensors, settings_of
@@ -85,7 +85,7 @@ class Plant:
         self.core.check(self.core.lib.laconic_plant_set_step(self.c, number("step_s", step_s), why), why)
 
     def change(self, vehicle: Any) -> None:
-        """Another payload, motor … while it moves; the wheels must stay as they are."""
+        """Another payload, motor … while it moves, of a Vehicle; the wheels must stay as they are."""
         why = self.core.why()
         vehicle = c_object(self.core, "vehicle", vehicle)
         self.core.check(self.core.lib.laconic_plant_change(self.c, vehicle, why), why)
@@ -144,6 +144,9 @@ class Plant:
         """The laconic_input that is given, or that names and numbers make; BadInput for wheels that are not there."""
         if held is None or isinstance(held, Mapping):
             return self.core.input(held, self.wheel_count)
+        if isinstance(held, list | tuple | np.ndarray):
+            raise BadInput(f'input: {shown(held)} names no signal; give them by its name, such as {{"voltage_V": '
+                           f"{shown([*held][: self.wheel_count])}}}")
         made = c_object(self.core, "input", held)
         check_held(self.core, made, self.wheel_count)
         return made

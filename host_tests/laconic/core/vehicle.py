@@ -15,7 +15,8 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from laconic.core.binding import Core, Matrices, load
-from laconic.core.given import number, numbers
+from laconic.core.given import finite_number, finite_numbers
+from laconic.core.inputs import check_finite_input
 from laconic.core.plant import Plant
 from laconic.errors import BadInput
 
@@ -95,8 +96,8 @@ class Vehicle:
         Raises BadInput for what does not fit, and for a vehicle with friction: its rates depend on wheels that slip.
         """
         self._has_no_friction("derivative")
-        held = self.core.input(inputs, self.wheel_count)
-        found = self.core.derivative(self.model, nu_rad_per_s, heading_rad, held)
+        nu, heading, held = self._at(nu_rad_per_s, heading_rad, inputs)
+        found = self.core.derivative(self.model, nu, heading, held)
         return Rates(self.core.numbers(found.nu_rad_per_s2), np.array([found.x_m_per_s, found.y_m_per_s]),
                      float(found.yaw_rate_rad_per_s), self.core.numbers(found.wheel_speed_rad_per_s)[:self.wheel_count])
 
@@ -105,9 +106,9 @@ class Vehicle:
         """The analytic derivatives of the rates by state and voltages at a motion; raises as `derivative`."""
         self._has_no_friction("linearise")
         ffi = self.core.ffi
-        at = ffi.new("laconic_motion *", {"nu_rad_per_s": numbers("nu_rad_per_s", nu_rad_per_s, 3),
-                                          "heading_rad": number("heading_rad", heading_rad)})
-        held, change = self.core.input(inputs, self.wheel_count), ffi.new("laconic_rates *")
+        nu, heading, held = self._at(nu_rad_per_s, heading_rad, inputs)
+        at = ffi.new("laconic_motion *", {"nu_rad_per_s": nu, "heading_rad": heading})
+        change = ffi.new("laconic_rates *")
 
         def column(by: Any) -> list[float]:
             self.core.lib.laconic_derivative_tangent(change, self.model, at, held, by)
@@ -130,6 +131,12 @@ class Vehicle:
         """
         return self.core.plant(self.c, method, step_s, nu_rad_per_s=nu_rad_per_s, x_m=x_m, y_m=y_m,
                                heading_rad=heading_rad, wheel_speed_rad_per_s=wheel_speed_rad_per_s)
+
+    def _at(self, nu_rad_per_s: Any, heading_rad: Any, inputs: Inputs | None) -> tuple[list[float], float, Any]:
+        """A motion and its held inputs; BadInput for a number that is not finite."""
+        held = check_finite_input(self.core, self.core.input(inputs, self.wheel_count))
+        nu = finite_numbers("nu_rad_per_s", nu_rad_per_s, 3)
+        return nu, finite_number("heading_rad", heading_rad), held
 
     def _has_no_friction(self, what: str) -> None:
         if self.has_friction:

@@ -11,7 +11,7 @@ from typing import Any
 from laconic.core import load
 from laconic.core.sensors import settings_of, values_of
 from laconic.errors import BadInput
-from laconic.outputs import whole_file
+from laconic.outputs import check_ending, whole_file
 from laconic.paths import SOURCE_DIR, as_path, built
 from laconic.scene import METHODS, Scene, check_scene
 from laconic.scene.methods import ON_HOSTS
@@ -71,9 +71,10 @@ def make_fmu(scene: Scene, out: str | Path, *, version: int, scalar: bool = Fals
     `derivatives`: for Co-Simulation alone, whose directional and adjoint derivatives are those of its steps.
     """
     check_scene(scene)
-    if version not in VERSIONS:
+    if isinstance(version, float) or version not in VERSIONS:
         raise BadInput(f"version: there is no FMI {version!r}; give {' or '.join(map(str, VERSIONS))}")
     path = as_path("out", out)
+    check_ending("out", path, (".fmu",))
     check_method(scene)
     if derivatives:
         _check_smooth(scene)

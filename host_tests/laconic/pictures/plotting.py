@@ -13,6 +13,7 @@ from typing import TYPE_CHECKING, Any
 import matplotlib
 import numpy as np
 
+from laconic.core.given import shown
 from laconic.errors import BadInput
 from laconic.outputs import check_ending, whole_file
 from laconic.paths import as_path
@@ -174,8 +175,10 @@ def plot(run: Trajectory, path: str | Path | None = None) -> Figure:
     With `path` (.png, .svg or .pdf) the picture is written there, too. Raises BadInput for a run that has not kept the
     usual signals, and for a path that cannot be written.
     """
-    from laconic.simulation import usual_signals
+    from laconic.simulation import Trajectory, usual_signals
 
+    if not isinstance(run, Trajectory):
+        raise BadInput(f"run: {shown(run)} is no run; give what laconic.simulate(scene) returns")
     if missing := [name for name in usual_signals(run.scene) if name not in run.columns]:
         raise BadInput(f"run: has not kept {missing[0]}; simulate without `signals` and [outputs], or name it there")
     target = None if path is None else as_path("path", path)

@@ -237,8 +237,14 @@ class _Writer:
         """A line for each wheel."""
         return [f"wheel {index + 1}: {wheel.name}, {kind.kind}"
                 + (f" with rollers at {kind.roller_deg:.4g}°" if kind.roller_deg is not None else "")
-                + f", radius {wheel.radius_m:.4g} m at ({wheel.hub_m[0]:.4g}, {wheel.hub_m[1]:.4g}) m; {kind.why}"
+                + f", radius {wheel.radius_m:.4g} m at {_place(wheel)} m; {kind.why}"
                 for index, (wheel, kind) in enumerate(zip(self.ground.wheels, self.kinds, strict=True))]
+
+
+def _place(wheel: FoundWheel) -> str:
+    """Where it is, seen from above."""
+    x, y = map(_rounded, wheel.hub_m[:2])
+    return f"({x:.4g}, {y:.4g})"
 
 
 def rolling_ahead(scene: Scene) -> np.ndarray:

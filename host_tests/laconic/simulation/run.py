@@ -9,6 +9,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from laconic.core.given import shown
 from laconic.core.grip import Grip
 from laconic.core.plant import Plant
 from laconic.core.recording import Recorder, needs_sensors
@@ -51,6 +52,8 @@ class Trajectory:
 
     def columns_of(self, name: str) -> np.ndarray:
         """All columns of one signal, side by side; BadInput for one that is not among them."""
+        if not isinstance(name, str):
+            raise BadInput(f"name: {shown(name)} is no name of a signal; give one as text")
         found = [column for signal, column in self.columns.items() if name in (signal, signal.partition("[")[0])]
         if found:
             return np.column_stack(found)

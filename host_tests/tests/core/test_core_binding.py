@@ -102,7 +102,7 @@ def test_a_motor_without_resistance_is_refused():
 
 
 def test_an_input_by_names_stands_where_the_struct_has_it(core):
-    held = core.input({"voltage_V": [1.0, 2.0, 0.0], "voltage_V[3]": 3.0, "axle_torque_Nm[2]": 4.0,
+    held = core.input({"voltage_V": [1.0, 2.0, 3.0], "axle_torque_Nm[2]": 4.0,
                        "body_moment_Nm": 5.0, "world_force_N": [6.0, 7.0], "world_force_point_m[2]": 8.0}, 3)
     assert list(held.voltage_V)[:4] == [1.0, 2.0, 3.0, 0.0]
     assert held.axle_torque_Nm[1] == 4.0

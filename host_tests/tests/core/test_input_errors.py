@@ -70,10 +70,10 @@ def test_a_ready_made_input_may_not_act_on_wheels_that_are_not_there() -> None:
 
 @pytest.mark.parametrize("real", ["double", "single"])
 def test_numbers_of_an_input_go_where_their_names_state(real: str) -> None:
-    held = load(real).input({"voltage_V": np.array([1, 2, 0]), "voltage_V[3]": 3, "body_moment_Nm": 4,
+    held = load(real).input({"voltage_V": np.array([1, 2, 3]), "axle_torque_Nm[2]": 7, "body_moment_Nm": 4,
                              "body_force_N": (5, 6)}, 3)
     assert list(held.voltage_V)[:4] == [1, 2, 3, 0] and held.body_moment_Nm == 4 and list(held.body_force_N) == [5, 6]
-    assert not any(held.axle_torque_Nm) and not any(held.world_force_N)
+    assert list(held.axle_torque_Nm)[:3] == [0, 7, 0] and not any(held.world_force_N)
 
 
 @pytest.mark.parametrize("data, message", [

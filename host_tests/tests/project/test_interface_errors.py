@@ -10,6 +10,7 @@ import numpy as np
 import pytest
 
 import laconic
+import laconic.batch.memory
 from laconic.errors import BadInput
 
 ROBOT = {"mass_kg": 1.0, "yaw_inertia_kgm2": 0.1, "wheel_radius_m": 0.05}
@@ -25,6 +26,10 @@ def core() -> Any:
 
 def plant() -> Any:
     return core().plant(core().vehicle(ROBOT), "rk4", 0.01)
+
+
+def wheels() -> laconic.Vehicle:
+    return laconic.Vehicle.of(laconic.read_scene("robotino2"))
 
 
 def short_run() -> laconic.Trajectory:
@@ -55,12 +60,12 @@ WRONG: list[tuple[Callable[[], Any], str]] = [
     (lambda: laconic.make_fmu(scene(), None, version=3), "out: None is no path"),  # type: ignore[arg-type]
     (lambda: plant().run(core().input(), 2.5), "steps: 2.5 is no whole number"),
     (lambda: plant().run(core().input(), -1), "steps: -1 steps cannot be taken"),
-    (lambda: plant().run([1.0]), "input: [1.0] is no laconic_input of this core; make it with plant.input_of("),
+    (lambda: plant().run([1.0]), "input: [1.0] names no signal; give them by its name"),
     (lambda: plant().run({"voltage": [1]}), "voltage: there is no such input; did you mean voltage_V"),
     (lambda: plant().run(laconic.load_core("single").input()), "is no laconic_input of this core"),
     (lambda: plant().run_sampled(np.zeros((3, 3))), "samples: has the shape (3, 3); give (steps, 3, "),
     (lambda: plant().set_step("x"), "step_s: 'x' is no number"),
-    (lambda: plant().change(ROBOT), "is no laconic_vehicle of this core; make it with core.vehicle("),
+    (lambda: plant().change(ROBOT), "is no laconic_vehicle of this core; make it with laconic.Vehicle("),
     (lambda: plant().restore(None, 3), "state: None is no laconic_state of this core; make it with plant.save()"),
     (lambda: core().plant(ROBOT, "rk4", 0.01), "is no laconic_vehicle of this core"),
     (lambda: core().plant(core().vehicle(ROBOT), None, 0.01), "method: there is no None"),
@@ -77,6 +82,23 @@ WRONG: list[tuple[Callable[[], Any], str]] = [
     (lambda: core().vehicle({"support": [{"x_m": 1}]}), "vehicle.support[1].y_m: is missing; give a number"),
     (lambda: core().vehicle({"payload": {"mass": 1}}), "vehicle.payload.mass: unknown key; did you mean mass_kg?"),
     (lambda: core().vehicle({"motor": {"gears": 1}}), "vehicle.motor.gears: unknown key"),
+    (lambda: laconic.plot("x"), "run: 'x' is no run; give what laconic.simulate(scene) returns"),  # type: ignore
+    (lambda: laconic.plot(None), "run: None is no run; give what"),  # type: ignore[arg-type]
+    (lambda: laconic.plot(scene()), "is no run; give what laconic.simulate(scene) returns"),  # type: ignore[arg-type]
+    (lambda: short_run().columns_of(None), "name: None is no name of a signal; give one"),  # type: ignore[arg-type]
+    (lambda: laconic.load_core(None), "real: there is no None; known are double, single"),  # type: ignore[arg-type]
+    (lambda: laconic.load_core([3]), "real: there is no [3]; known are double, single"),  # type: ignore[arg-type]
+    (lambda: laconic.make_fmu(scene(), "s1.fmu", version=2.0), "there is no FMI 2.0; give 2 or 3"),  # type: ignore
+    (lambda: laconic.make_fmu(scene(), "s1.txt", version=2), "out s1.txt: is no name for this format; choose a name"),
+    (lambda: wheels().plant().run([6, -3, 2]), 'by its name, such as {"voltage_V": [6, -3, 2]}'),
+    (lambda: wheels().plant().run({"voltage_V": np.ones((3, 1))}), "numbers of shape (3, 1) are not its numbers, of "
+                                                                   "which there are 3; give them in one row"),
+    (lambda: wheels().plant().run({"voltage_V": np.ma.array([1, 2, 3], mask=[0, 1, 0])}), "is no number and no list"),
+    (lambda: core().input_row({"voltage_V": [1, 2], "voltage_V[1]": 5}, 2), "voltage_V[1]: is given besides voltage_V"),
+    (lambda: wheels().derivative([1, 2, float("nan")]), "nu_rad_per_s[3]: nan is not finite"),
+    (lambda: wheels().linearise(heading_rad=float("inf")), "heading_rad: inf is not finite"),
+    (lambda: wheels().derivative(inputs={"voltage_V[2]": float("nan")}), "voltage_V: nan is not finite"),
+    (lambda: plant().change(laconic.Vehicle(ROBOT, "single")), "is no laconic_vehicle of this core"),
 ]
 
 
@@ -85,6 +107,26 @@ def test_a_wrong_argument_is_refused_in_one_line_by_its_name(call: Callable[[], 
     with pytest.raises(BadInput) as refused:
         call()
     assert message in str(refused.value)
+
+
+def test_a_vehicle_is_taken_wherever_one_is_asked_for() -> None:
+    moving, heavier = wheels().plant(step_s=0.01), laconic.read_scene("robotino2").vehicle | {"mass_kg": 30.0}
+    robot = laconic.Vehicle(heavier)
+    moving.run({"voltage_V": [6, -3, 2]}, 10)
+    moving.change(robot)
+    assert moving.c.vehicle.mass_kg == 30.0
+    core().check_vehicle(robot)
+    assert core().matrices(robot).inertia.tolist() == robot.matrices().inertia.tolist()
+    assert core().plant(robot, "rk4", 0.01).wheel_count == core().prepare(robot).wheel_count == 3
+
+
+def test_a_batch_that_memory_does_not_hold_is_refused_in_one_line(monkeypatch: pytest.MonkeyPatch) -> None:
+    def empty(*_: Any) -> Any:
+        raise MemoryError
+
+    monkeypatch.setattr(np, "empty", empty)
+    with pytest.raises(BadInput, match=r"lanes: so many need 1.5 GiB of memory, which are not there; give fewer"):
+        laconic.batch.memory.aligned_memory(3 * 2**29)
 
 
 def test_columns_of_a_signal_are_all_of_them_or_the_one_that_is_named() -> None:
