@@ -10,6 +10,8 @@ import os
 import pickle
 import subprocess
 import sys
+import threading
+import time
 from collections.abc import Callable
 from contextlib import suppress
 from dataclasses import dataclass
@@ -67,6 +69,7 @@ def _environment() -> dict[str, str]:
 
 # ---------------------------------------------------------------------------------- in the process --
 
+LOOKS_EVERY_S = 0.2
 TOO_MUCH = 3  # its exit status for MemoryError
 
 
@@ -74,6 +77,7 @@ def answer() -> None:
     """Reads the call from stdin, writes (result, None) or (None, what it raised) to stdout."""
     answers = os.fdopen(os.dup(1), "wb")
     os.dup2(2, 1)  # libraries print
+    threading.Thread(target=_end_with, args=(os.getppid(),), daemon=True).start()
     _bound("RLIMIT_AS", MOST_BYTES)
     _bound("RLIMIT_CPU", int(LONGEST_S) + 1)  # where nobody is there any more to end it
     try:
@@ -84,6 +88,14 @@ def answer() -> None:
     answers.write(found)
     answers.flush()
     os._exit(0)  # what was read is not taken apart
+
+
+def _end_with(parent: int) -> None:
+    """Ends this process soon after the one that asks, which nobody can hear of who is killed. One long operation of
+    Python's own, such as a power of huge numbers, lets no thread run; RLIMIT_CPU ends that."""
+    while os.getppid() == parent:
+        time.sleep(LOOKS_EVERY_S)
+    os._exit(1)
 
 
 def _found(call: Callable[..., Any], arguments: list[Any]) -> tuple[Any, Exception | None]:

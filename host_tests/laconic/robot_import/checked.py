@@ -75,7 +75,7 @@ def unit_vector(where: str, axis: Sequence[Any]) -> Array:
     """The direction of an axis."""
     vector = np.array(finite(f"{where}: axis", axis, 3, largest=np.inf))
     largest = np.abs(vector).max()
-    if largest < 1e-9:
+    if largest == 0.0:
         raise BadInput(f"{where}: axis is 0; give a direction")
     vector /= largest  # so that no square leaves the range
     return np.asarray(vector / np.linalg.norm(vector))

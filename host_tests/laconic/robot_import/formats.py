@@ -4,13 +4,13 @@ from __future__ import annotations
 
 from pathlib import Path
 
-from laconic.errors import BadInput, reason_of
+from laconic.errors import BadInput
 from laconic.robot_import.answers import Answers
 from laconic.robot_import.mjcf import read_mjcf
 from laconic.robot_import.robot_tree import Robot
 from laconic.robot_import.sdf import read_sdf
 from laconic.robot_import.urdf import read_urdf, read_xacro
-from laconic.robot_import.xml_file import xml_root
+from laconic.robot_import.xml_file import bytes_of, xml_root
 
 BY_ROOT = {"robot": "urdf", "mujoco": "mjcf", "sdf": "sdf"}
 ENDINGS = {".urdf": "urdf", ".xacro": "xacro", ".mjcf": "mjcf", ".sdf": "sdf", ".world": "sdf"}
@@ -18,7 +18,10 @@ ENDINGS = {".urdf": "urdf", ".xacro": "xacro", ".mjcf": "mjcf", ".sdf": "sdf", "
 
 def read_robot(path: Path, answers: Answers) -> Robot:
     """The tree of the file; BadInput, with the file's name, for one that cannot be used."""
+    bytes_of(path)  # refuses what is no file, whoever reads it then
     form = ENDINGS.get(path.suffix.lower()) or _by_content(path)
+    if answers.model is not None and form not in ("mjcf", "sdf"):
+        raise BadInput(f"--model: {path} is a {form}, which has one robot; leave it out")
     if form == "xacro" or (form == "urdf" and _has_macros(path)):
         return read_xacro(path, answers.xacro_arguments, answers.packages)
     if answers.xacro_arguments:
@@ -40,7 +43,4 @@ def _by_content(path: Path) -> str:
 
 def _has_macros(path: Path) -> bool:
     """A URDF by its ending that is a xacro by its content."""
-    try:
-        return b"xacro:" in path.read_bytes()
-    except OSError as error:
-        raise BadInput(f"{path}: {reason_of(error)}") from None
+    return b"xacro:" in bytes_of(path)

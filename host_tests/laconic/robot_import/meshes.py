@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import logging
-from collections.abc import Mapping
+from collections.abc import Iterable, Mapping
 from dataclasses import dataclass, field
 from pathlib import Path
 from typing import Any
@@ -45,6 +45,10 @@ class MeshFiles:
             self.missing[uri] = "has no points"
             return None
         return points
+
+    def unread(self, uris: Iterable[str | None]) -> tuple[str, ...]:
+        """Those of these that could not be had, each once, and why."""
+        return tuple(f"{uri} ({self.missing[uri]})" for uri in dict.fromkeys(uris) if uri in self.missing)
 
     def remarks(self) -> tuple[str, ...]:
         """What could not be had, in one line."""

@@ -20,7 +20,8 @@ from laconic.robot_import.xml_file import xml_root
 
 KINDS = {0: BALL, 1: BALL, 2: SLIDE, 3: HINGE}  # mjJNT_FREE, _BALL, _SLIDE, _HINGE
 SPHERE, CAPSULE, CYLINDER, BOX, MESH = 2, 3, 5, 6, 7  # mjtGeom
-MUJOCO = Library("MuJoCo", "the count of a <replicate> or <composite>, or a mesh, that asks for too much")
+MUJOCO = Library("MuJoCo", "the count of a <replicate> or <composite>, a mesh, texture or hfield, or <size>, that asks "
+                 "for too much")
 
 
 def read_mjcf(path: Path, model_name: str | None) -> Robot:
@@ -63,6 +64,8 @@ def _compiled(path: Path) -> tuple[Any, Any, list[str]]:
         if "allocate" in str(error):
             raise MemoryError from None
         raise BadInput(f"{path}: MuJoCo cannot read it: {words_of(error)}") from None
+    except RuntimeError:  # an exception of C++ that it does not know, such as that of a memory that is full
+        raise BadInput(f"{path}: MuJoCo failed, as where its memory is not enough; mend {MUJOCO.endless}") from None
     return model, data, warnings
 
 

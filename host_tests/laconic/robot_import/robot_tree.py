@@ -81,6 +81,7 @@ class Link:
     inertia_kgm2: Array = field(default_factory=lambda: np.zeros((3, 3)))
     shapes: tuple[Shape, ...] = ()
     has_inertia: bool = True
+    unread: tuple[str, ...] = ()  # meshes that could not be had, and why
 
 
 @dataclass(frozen=True, eq=False)

@@ -147,15 +147,16 @@ class _Model:
         frame = back @ self.frame(name)
         shapes = tuple(shape for tag in ("collision", "visual") for part in element.findall(tag)
                        if (shape := self._shape(f"{where}: geometry", part, frame, tag == "collision")))
-        inertial = element.find("inertial")
+        inertial, unread = element.find("inertial"), self.files.unread(each.text for each in element.iter("uri"))
         if inertial is None:
-            return Link(name, com_m=point_of(frame), shapes=shapes, has_inertia=False)
+            return Link(name, com_m=point_of(frame), shapes=shapes, has_inertia=False, unread=unread)
         placed = frame @ _placement(where, inertial.find("pose"))
         given = inertial.find("inertia")
         moments = {key: _text(given, key) or usual for key, usual in TEXTS.items()} if given is not None else TEXTS
         tensor = inertia_matrix(where, SimpleNamespace(**moments))
         turn = placed[:3, :3]
-        return Link(name, mass(where, _text(inertial, "mass") or 1.0), point_of(placed), turn @ tensor @ turn.T, shapes)
+        kg = mass(where, _text(inertial, "mass") or 1.0)
+        return Link(name, kg, point_of(placed), turn @ tensor @ turn.T, shapes, unread=unread)
 
     def _shape(self, where: str, part: Element, frame: Array, collides: bool) -> Shape | None:
         geometry = part.find("geometry")

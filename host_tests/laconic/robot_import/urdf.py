@@ -142,13 +142,14 @@ def _link(path: Path, link: Any, frame: Array, files: MeshFiles) -> Link:
     where = f"{path}: link {link.name}"
     shapes = tuple(shape for collides, parts in ((True, link.collisions), (False, link.visuals)) for part in parts
                    if (shape := _shape(f"{where}: geometry", part, frame, files, collides)))
-    inertial = link.inertial
+    inertial, unread = link.inertial, files.unread(
+        getattr(part.geometry, "filename", None) for part in (*link.collisions, *link.visuals))
     if inertial is None:
-        return Link(link.name, com_m=point_of(frame), shapes=shapes, has_inertia=False)
+        return Link(link.name, com_m=point_of(frame), shapes=shapes, has_inertia=False, unread=unread)
     placed = frame @ _origin(f"{where}: <inertial>", inertial.origin)
     tensor = inertia_matrix(where, inertial.inertia) if inertial.inertia is not None else np.zeros((3, 3))
     turn = placed[:3, :3]
-    return Link(link.name, mass(where, inertial.mass), point_of(placed), turn @ tensor @ turn.T, shapes)
+    return Link(link.name, mass(where, inertial.mass), point_of(placed), turn @ tensor @ turn.T, shapes, unread=unread)
 
 
 def _shape(where: str, part: Any, frame: Array, files: MeshFiles, collides: bool) -> Shape | None:

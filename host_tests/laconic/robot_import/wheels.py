@@ -14,6 +14,8 @@ from laconic.robot_import.rigid_body import inertia_about_axis
 from laconic.robot_import.robot_tree import HINGE, SLIDE, Joint, Link, Robot
 from laconic.robot_import.wheel_parts import ROLLERS_AT_LEAST, has_the_axle_of, parts_of, rollers_of
 
+OF_PACKAGES = ("package://", "model://")
+MOST_NAMED = 3  # meshes in a message
 LEVEL = np.sin(np.radians(10.0))  # the steepest axle of a wheel
 UPRIGHT = np.cos(np.radians(10.0))  # of a swivel's axis
 PLACE_DIGITS = 4  # wheels nearer than a tenth of a millimetre are in one place
@@ -78,6 +80,7 @@ def find_wheels(robot: Robot, answers: Answers) -> Ground:
             if "wheel" in joint.name.lower() or _beside_a_wheel(joint, measured):
                 has_shapes = _has_shapes(robot, joint)
                 why = "its shapes have the radius 0" if has_shapes else "no shape tells the wheel's radius"
+                why += _unread(robot, [joint])
                 raise BadInput(f"{robot.path}: joint {joint.name}: {why}; give --radius {joint.name}=METRES, or "
                                "--wheel JOINT for each joint that is a wheel")
             remarks.append(f"joint {joint.name} turns on a level axle, no shape tells a radius, so it is no wheel; "
@@ -149,10 +152,20 @@ def _no_wheel(robot: Robot, candidates: Sequence[Joint]) -> str:
         names = ", ".join(joint.name for joint in candidates[:6])
         are_there = any(_has_shapes(robot, joint) for joint in candidates)
         why = f"the shapes of {names} have the radius 0" if are_there else f"no shape tells the radius of {names}"
+        why += _unread(robot, candidates[:6])
         return f"{why}; give --radius METRES, and --wheel JOINT for each wheel"
     return ("no joint turns round on a level axle (continuous, z up), so there is no wheel; give --wheel JOINT for "
             "each joint "
             "that is one")
+
+
+def _unread(robot: Robot, joints: Sequence[Joint]) -> str:
+    """The meshes of wheels that could not be had, and how to say where they are."""
+    meshes = dict.fromkeys(each for joint in joints for link in robot.below(joint, rigid=True) for each in link.unread)
+    if not meshes:
+        return ""
+    where = ", --package NAME=FOLDER says where" if any(each.startswith(OF_PACKAGES) for each in meshes) else ""
+    return f", as their meshes were not read: {', '.join([*meshes][:MOST_NAMED])}{where}"
 
 
 def _has_shapes(robot: Robot, joint: Joint) -> bool:

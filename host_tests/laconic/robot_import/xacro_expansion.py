@@ -8,7 +8,7 @@ from collections.abc import Mapping
 from pathlib import Path
 from typing import Any
 
-from laconic.errors import BadInput
+from laconic.errors import BadInput, nearest_of
 from laconic.robot_import.bounded import Library, bounded
 from laconic.robot_import.checked import words_of
 from laconic.robot_import.meshes import MeshFiles
@@ -25,11 +25,11 @@ def expanded(path: Path, arguments: Mapping[str, str], packages: Mapping[str, Pa
 def _expand(path: Path, arguments: dict[str, str], packages: dict[str, Path]) -> str:
     import xacro
 
-    files = MeshFiles(path, packages)
+    files, given = MeshFiles(path, packages), _Asked(arguments)
     _answer_for_ros(files)
     _keep_texts_of_yaml()
     try:
-        return str(xacro.process_file(str(path), mappings=arguments).toxml())
+        text = str(xacro.process_file(str(path), mappings=given).toxml())
     except Exception as error:
         causes = _causes(error)
         if any(isinstance(each, MemoryError) for each in causes):
@@ -41,6 +41,27 @@ def _expand(path: Path, arguments: dict[str, str], packages: dict[str, Path]) ->
             raise BadInput(f"{path}: xacro cannot expand it: a macro calls, or a file includes, itself without end; "
                            "mend it") from None
         raise BadInput(f"{path}: xacro cannot expand it: {words_of(error)}") from None
+    for name in arguments:
+        if name not in given.names:
+            raise BadInput(f"--set {name}: {path} does not ask for an argument of this name; "
+                           + (nearest_of(name, given.names) if given.names else "leave it out"))
+    return text
+
+
+class _Asked(dict[str, str]):
+    """Arguments that note which `names` were asked for, by <xacro:arg> or $(arg …)."""
+
+    def __init__(self, given: Mapping[str, str]):
+        super().__init__(given)
+        self.names: set[str] = set()
+
+    def __contains__(self, name: object) -> bool:
+        self.names.add(str(name))
+        return super().__contains__(name)
+
+    def __getitem__(self, name: str) -> str:
+        self.names.add(name)
+        return super().__getitem__(name)
 
 
 def _causes(error: BaseException) -> list[Any]:

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import stat
 from pathlib import Path
 from xml.etree import ElementTree
 
@@ -9,12 +10,24 @@ from laconic.errors import BadInput, reason_of
 from laconic.robot_import.checked import words_of
 
 Element = ElementTree.Element
+MOST_BYTES = 64 * 2**20  # of a file: a thousand times a usual robot
 
 
 def xml_root(path: Path, why_not: str) -> Element:
     """The outermost element; BadInput begins with `why_not` for a file that is no XML."""
+    return root_of(path, bytes_of(path), why_not)
+
+
+def bytes_of(path: Path) -> bytes:
+    """All of a file; BadInput for a folder, a device or a pipe, which have no end, and for one beyond all robots."""
     try:
-        return root_of(path, path.read_bytes(), why_not)
+        found = path.stat()
+        if not stat.S_ISREG(found.st_mode):
+            raise BadInput(f"{path}: is no regular file; give the file of a robot")
+        if found.st_size > MOST_BYTES:
+            raise BadInput(f"{path}: has {found.st_size / 2**20:.0f} MiB, more than the {MOST_BYTES / 2**20:g} that "
+                           "are read; give the file of a robot, with its meshes in files of their own")
+        return path.read_bytes()
     except OSError as error:
         raise BadInput(f"{path}: {reason_of(error)}") from None
 

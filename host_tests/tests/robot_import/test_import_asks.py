@@ -70,7 +70,13 @@ WRONG: list[tuple[str, str, list[str], str]] = [
         lambda found: found[0] + f'<mimic joint="{"right" if found[1] == "left" else "left"}"/>', GOOD), [],
      "joint left: mimics itself, by way of right"),
     ("one of two without its mesh", GOOD.replace(CYLINDER, '<geometry><mesh filename="lost.stl"/></geometry>', 1), [],
-     "joint left: no shape tells the wheel's radius; give --radius left=METRES"),
+     "joint left: no shape tells the wheel's radius, as their meshes were not read: lost.stl (not found); give "
+     "--radius left=METRES"),
+    ("meshes of a package that is not there", GOOD.replace(
+        CYLINDER, '<geometry><mesh filename="package://kit/lost.stl"/></geometry>'), [],
+     "no shape tells the radius of left, right, as their meshes were not read: package://kit/lost.stl (not found), "
+     "--package NAME=FOLDER says where; give --radius METRES"),
+    ("a model of a URDF", GOOD, ["--model", "q"], "--model: "),
     ("no wheels", GOOD.replace("continuous", "fixed"), [], "no joint turns round on a level axle"),
     ("axles upright", GOOD.replace("0 1 0", "0 0 1"), [], "no joint turns round on a level axle"),
     ("all steered", STEERED, [], "all wheels swivel (front)"),

@@ -3,8 +3,11 @@
 from __future__ import annotations
 
 import os
+import select
 import signal
 import subprocess
+import sys
+import threading
 from pathlib import Path
 from typing import Any
 
@@ -60,6 +63,8 @@ def test_ctrl_c_ends_a_reading_at_once_and_leaves_nothing_running(
     ("robot.xacro", XACRO.format("${[0] * 10**10}"), "xacro needs more than 2 GiB of memory; mend the expression"),
     ("robot.xml", MJCF.replace("<worldbody>", '<size memory="900G"/><worldbody>'),
      "MuJoCo needs more than 2 GiB of memory; mend the count"),
+    ("robot.xml", MJCF.replace("<worldbody>", '<asset><hfield name="h" nrow="100000" ncol="100000" size="1 1 1 1"/>'
+                                              "</asset><worldbody>"), "a mesh, texture or hfield, or <size>, that"),
     ("robot.xacro", f'<robot {NAMESPACE}><xacro:macro name="m" params=""><xacro:m/></xacro:macro><xacro:m/></robot>',
      "a macro calls, or a file includes, itself without end; mend it")])
 def test_what_needs_too_much_is_named(tmp_path: Path, capsys: pytest.CaptureFixture[str], name: str, text: str,
@@ -68,6 +73,53 @@ def test_what_needs_too_much_is_named(tmp_path: Path, capsys: pytest.CaptureFixt
     told = capsys.readouterr().err
     assert words in told
     assert told.count("\n") == 1
+
+
+@pytest.mark.parametrize("path, words", [(Path(os.devnull), "is no regular file; give the file of a robot"),
+                                         (Path(), "is no regular file; give the file of a robot")])
+def test_what_is_no_file_is_not_read(tmp_path: Path, capsys: pytest.CaptureFixture[str], path: Path,
+                                     words: str) -> None:
+    assert run(["import", str(path), "-o", str(tmp_path / "robot.toml")]) == 2
+    assert words in capsys.readouterr().err
+
+
+@pytest.mark.parametrize("name", ["robot.urdf", "robot.xml"])
+def test_a_file_beyond_all_robots_is_not_read(tmp_path: Path, capsys: pytest.CaptureFixture[str], name: str) -> None:
+    with (tmp_path / name).open("wb") as file:
+        file.truncate(65 * 2**20)  # takes no room on the disk
+    assert run(["import", str(tmp_path / name), "-o", str(tmp_path / "robot.toml")]) == 2
+    assert "has 65 MiB, more than the 64 that are read; give the file of a robot" in capsys.readouterr().err
+
+
+def test_an_argument_that_the_xacro_file_does_not_ask_for_is_refused(
+        tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    (tmp_path / "robot.xacro").write_text(f'<robot {NAMESPACE} name="r"><xacro:arg name="track" default="1"/></robot>')
+    assert run(["import", str(tmp_path / "robot.xacro"), "-o", str(tmp_path / "robot.toml"), "--set", "trak:=1"]) == 2
+    told = capsys.readouterr().err
+    assert "--set trak: " in told
+    assert "does not ask for an argument of this name; did you mean track?" in told
+
+
+def waiting_beside(fifo: Path) -> None:
+    with fifo.open("w", encoding="utf-8") as there:
+        there.write("here")
+        there.flush()
+        threading.Event().wait()
+
+
+@pytest.mark.skipif(not hasattr(os, "mkfifo"), reason="the system has no named pipes")
+def test_a_reading_whose_asker_is_killed_ends_soon(tmp_path: Path) -> None:
+    os.mkfifo(fifo := tmp_path / "fifo")
+    asks = (f"import sys; sys.path[:0] = {[str(Path(__file__).parent), *sys.path]!r}\n"
+            "from pathlib import Path\nfrom laconic.robot_import import bounded\nimport test_import_bounds as here\n"
+            f"bounded.bounded(bounded.Library('it', 'this'), here.waiting_beside, Path({str(fifo)!r}))")
+    asker = subprocess.Popen([sys.executable, "-c", asks])
+    with fifo.open("rb", buffering=0) as ends:
+        assert ends.read(4) == b"here"
+        asker.kill()
+        asker.wait()
+        readable, _, _ = select.select([ends], [], [], 10.0)
+        assert readable and ends.read(1) == b""  # the reader's end is closed
 
 
 def lacking(path: Path) -> None:

@@ -121,7 +121,7 @@ def test_mecanum_rollers_on_the_ground_lie_as_a_diamond_around_the_middle(
         assert abs(outward @ [np.cos(angle), np.sin(angle)]) < 1e-9  # across the line from the middle
 
 
-@pytest.mark.parametrize("length", ["1e200", "1e308", "1e-8"])
+@pytest.mark.parametrize("length", ["1e200", "1e308", "1e-8", "1e-300"])
 def test_the_length_of_an_axis_does_not_matter(tmp_path: Path, length: str) -> None:
     longer = imported(tmp_path, RUBBING.replace("0 1 0", f"0 {length} 0")).vehicle
     assert longer == imported(tmp_path, RUBBING).vehicle
