@@ -23,7 +23,8 @@ def bytes_of(path: Path) -> bytes:
     try:
         found = path.stat()
         if not stat.S_ISREG(found.st_mode):
-            raise BadInput(f"{path}: is no regular file; give the file of a robot")
+            what = "is a directory" if stat.S_ISDIR(found.st_mode) else "is no regular file"
+            raise BadInput(f"{path}: {what}; give the file of a robot")
         if found.st_size > MOST_BYTES:
             raise BadInput(f"{path}: has {found.st_size / 2**20:.0f} MiB, more than the {MOST_BYTES / 2**20:g} that "
                            "are read; give the file of a robot, with its meshes in files of their own")

@@ -76,7 +76,7 @@ def test_what_needs_too_much_is_named(tmp_path: Path, capsys: pytest.CaptureFixt
 
 
 @pytest.mark.parametrize("path, words", [(Path(os.devnull), "is no regular file; give the file of a robot"),
-                                         (Path(), "is no regular file; give the file of a robot")])
+                                         (Path(), "is a directory; give the file of a robot")])
 def test_what_is_no_file_is_not_read(tmp_path: Path, capsys: pytest.CaptureFixture[str], path: Path,
                                      words: str) -> None:
     assert run(["import", str(path), "-o", str(tmp_path / "robot.toml")]) == 2
@@ -110,10 +110,9 @@ def waiting_beside(fifo: Path) -> None:
 @pytest.mark.skipif(not hasattr(os, "mkfifo"), reason="the system has no named pipes")
 def test_a_reading_whose_asker_is_killed_ends_soon(tmp_path: Path) -> None:
     os.mkfifo(fifo := tmp_path / "fifo")
-    asks = (f"import sys; sys.path[:0] = {[str(Path(__file__).parent), *sys.path]!r}\n"
-            "from pathlib import Path\nfrom laconic.robot_import import bounded\nimport test_import_bounds as here\n"
+    asks = ("from pathlib import Path\nfrom laconic.robot_import import bounded\nimport test_import_bounds as here\n"
             f"bounded.bounded(bounded.Library('it', 'this'), here.waiting_beside, Path({str(fifo)!r}))")
-    asker = subprocess.Popen([sys.executable, "-c", asks])
+    asker = subprocess.Popen([sys.executable, "-c", asks], env=bounded._environment())
     with fifo.open("rb", buffering=0) as ends:
         assert ends.read(4) == b"here"
         asker.kill()
