@@ -324,14 +324,16 @@ void laconic_gauss_responses(step_result *step, step_response out[], const step_
     *step = rest;
     t.is_whole = integrator->halvings == 0;
     t.h = integrator->step_s;
-    for (int axis = 0; axis < 3; axis++) t.row[axis] = t.is_whole ? integrator->collocation[axis] : among.row[axis];
+    for (int axis = 0; axis < 3; axis++) t.row[axis] = integrator->collocation[axis];
+    if (!t.is_whole) {
+        first_panel(&among, at->model, integrator);
+        for (int axis = 0; axis < 3; axis++) t.row[axis] = among.row[axis];
+        t.h = among.h;
+    }
     for (int32_t k = 0; k < count; k++) out[k] = still;
     for (int panel = 0; panel <= integrator->halvings; panel++) {
-        if (!t.is_whole) {
-            if (panel == 0)
-                first_panel(&among, at->model, integrator);
-            else
-                next_panel(&among, at->model, panel);
+        if (panel > 0) {
+            next_panel(&among, at->model, panel);
             t.h = among.h;
         }
         trace_panel(&t, step, at);

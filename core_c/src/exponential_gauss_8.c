@@ -180,12 +180,10 @@ static void take_panel(progress *found, const laconic_model *m, const panel *p, 
 RARE void take_doubling_panels(progress *found, const laconic_model *m, const laconic_integrator *integrator, panel *p,
                                vector step_start) {
     doubling_panel among;
+    first_panel(&among, m, integrator);
     for (int axis = 0; axis < 3; axis++) p->weight[axis] = among.row[axis];
     for (int k = 0; k <= integrator->halvings; k++) {
-        if (k == 0)
-            first_panel(&among, m, integrator);
-        else
-            next_panel(&among, m, k);
+        if (k > 0) next_panel(&among, m, k);
         p->h = among.h;
         p->first = among.first;
         p->share = among.share;

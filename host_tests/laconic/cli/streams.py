@@ -10,6 +10,8 @@ import io
 import os
 import signal
 import sys
+import threading
+from _thread import interrupt_main
 from types import FrameType
 
 import click
@@ -18,6 +20,7 @@ from laconic.errors import BadInput, reason_of
 
 ENDING_SIGNALS = ("SIGINT", "SIGTERM", "SIGHUP")
 SHELL_SIGNAL = 128  # a shell reports 128 + signal for a process that a signal ended
+AGAIN_S = 0.01      # until a stop that was ignored is raised again
 SIGPIPE = 13        # on every system that has it; Windows has not
 
 
@@ -62,6 +65,7 @@ def guard() -> None:
         number = getattr(signal, name, None)
         if number is not None and signal.getsignal(number) is not signal.SIG_IGN:  # nohup ignores SIGHUP
             signal.signal(number, stop)
+    sys.unraisablehook = stop_again
 
 
 def open_standard() -> None:
@@ -86,6 +90,25 @@ def warn(message: str) -> None:
 def stop(number: int, _: FrameType | None) -> None:
     """Handles a signal: raises Stopped with its number."""
     raise Stopped(number)
+
+
+def stop_again(ignored: sys.UnraisableHookArgs) -> None:
+    """Raises a stop anew that fell into a place whose exceptions Python ignores, as a finalizer or the collector's
+    callbacks; it would be lost there. Other ignored exceptions are told as Python tells them."""
+    if not isinstance(ignored.exc_value, Stopped):
+        sys.__unraisablehook__(ignored)
+        return
+    again = threading.Timer(AGAIN_S, signal_main, [ignored.exc_value.number])
+    again.daemon = True
+    again.start()
+
+
+def signal_main(number: int) -> None:
+    """Gives a signal to the main thread, out of a wait, too, where the system can."""
+    if hasattr(signal, "pthread_kill"):
+        signal.pthread_kill(threading.main_thread().ident, number)
+    else:
+        interrupt_main(number)
 
 
 def stop_status(stopped: BaseException) -> tuple[str, int]:

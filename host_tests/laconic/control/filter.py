@@ -53,6 +53,7 @@ class Filter:
         self.c: Any = ffi.new("laconic_filter *")
         self._innovation = ffi.new("laconic_innovation *")
         self._sensors = None if encoder is None else settings_of(self.core, {"encoder": encoder}, self.wheel_count)
+        self._check_encoders()
         self._count = self._counts([0] * self.wheel_count if start_count is None else start_count)
         self._check(self.core.lib.laconic_filter_start(
             self.c, self._model, self._settings(settings), ffi.addressof(self._plant.c, "state")), "settings")
@@ -163,6 +164,14 @@ class Filter:
         self.c[0], self._count = state[0], count
 
     # ---- between numpy and C
+
+    def _check_encoders(self) -> None:
+        """`counts` reads every wheel, so each has an encoder."""
+        wheels = range(self.wheel_count if self._sensors is not None else 0)
+        for wheel, counts in ((k + 1, self._sensors.encoder[k].counts_per_turn) for k in wheels):
+            if counts <= 0:
+                raise BadInput(f"encoder.counts_per_turn: is {counts} for wheel {wheel}; give a number above 0 for "
+                               "each wheel, or leave `encoder` out and read by encoders()")
 
     def _settings(self, given: Mapping[str, Any]) -> Any:
         if not isinstance(given, Mapping):

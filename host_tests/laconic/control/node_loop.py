@@ -15,7 +15,7 @@ from typing import Any
 import numpy as np
 
 from laconic.control.filter import Filter, Innovation
-from laconic.core.given import shown
+from laconic.core.given import finite_number, shown, step_count, whole_number
 from laconic.errors import BadInput
 from laconic.rig.client import NodeClient
 from laconic.rig.lockstep import load_scene
@@ -37,6 +37,16 @@ class Camera:
     std_m: float
     heading_std_rad: float
     seed: int = 0
+
+    def __post_init__(self) -> None:
+        """BadInput names the setting that no camera has."""
+        if step_count("period", self.period) < 1:
+            raise BadInput(f"period: {self.period} steps are no period; give 1 or more")
+        for name in ("std_m", "heading_std_rad"):
+            if finite_number(name, getattr(self, name)) < 0:
+                raise BadInput(f"{name}: {getattr(self, name):g} is below 0; give 0 for what is not seen, or more")
+        if whole_number("seed", self.seed) < 0:
+            raise BadInput(f"seed: {self.seed} is below 0; give 0 or more")
 
 
 @dataclass

@@ -12,6 +12,8 @@ from matplotlib.patches import Ellipse
 
 from laconic.control.course import Course
 from laconic.control.node_loop import Drive
+from laconic.core.given import shown
+from laconic.errors import BadInput
 from laconic.outputs import check_ending
 from laconic.paths import as_path
 from laconic.pictures.plotting import figure, save
@@ -27,6 +29,10 @@ def plot_drive(run: Drive, course: Course, path: str | Path | None = None, *, li
     """The picture of a drive along a course; written to `path` where one is given."""
     if path is not None:
         check_ending("path", as_path("path", path), ENDINGS)
+    for name, given, kind, what in (("run", run, Drive, "drive; give what drive() gave"),
+                                    ("course", course, Course, "course; give a laconic.control.Course")):
+        if not isinstance(given, kind):
+            raise BadInput(f"{name}: {shown(given)} is no {what}")
     picture = figure(11.0, 6.2)
     grid = picture.add_gridspec(3, 2, width_ratios=(1.25, 1.0))
     plot_course(picture.add_subplot(grid[:, 0]), run, course, open_loop)

@@ -26,6 +26,8 @@ from laconic.errors import BadInput
 PRECISION = 1e-5       # of the programme's constraints: V, rad/s, m, rad
 MOST_ITERATIONS = 20000
 MOST_STEPS = 10**4     # of a plan: a second's work
+FARTHEST = 1e6         # off the course, in a state's units: the model along the course says nothing of such places
+LARGEST = 1e20         # of a programme's numbers; OSQP takes 1e30 for no limit at all
 UNITS = "rad/s, rad/s, rad/s, m, m, rad"  # of a state
 WEIGHTS = (0.02, 0.02, 0.02, 400.0, 400.0, 100.0)  # of squares of rad/s, rad/s, rad/s, m, m, rad
 VOLTAGE_WEIGHT = 0.02  # of the square of a V beside the course's own
@@ -67,6 +69,9 @@ class PredictiveController:
         check_finite("state", given, UNITS)
         models = [self._linear(min(first + ahead, len(self.course))) for ahead in range(self.horizon)]
         off = given - models[0][3]
+        if np.abs(off).max() > FARTHEST:
+            raise BadInput(f"state: {shown(given)} is {np.abs(off).max():.3g} off the course, too far for a plan; "
+                           f"give a state within {FARTHEST:g} ({UNITS})")
         off[5] = math.remainder(off[5], 2 * math.pi)
         plan = self._solve(models, off)
         change = plan[STATES * self.horizon :][: self.wheels]
@@ -97,6 +102,8 @@ class PredictiveController:
         lower = np.concatenate([*drift, -self.limit_V - own])
         upper = np.concatenate([*drift, self.limit_V - own])
         matrix = self._pattern.filled(models)
+        if not max(np.abs(numbers).max() for numbers in (lower, upper, matrix.data)) <= LARGEST:  # NaN, too
+            raise BadInput(f"the plan's numbers go beyond {LARGEST:g}; check the vehicle and the course")
         if self._solver is None:
             self._solver = osqp.OSQP()
             self._solver.setup(self._weights, np.zeros(matrix.shape[1]), matrix, lower, upper, verbose=False,

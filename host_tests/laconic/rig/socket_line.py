@@ -50,10 +50,10 @@ class SocketLine:
         self._at += len(found)
         return found
 
-    def read_frame(self) -> bytes:
-        """As read, up to and with the end of a frame, or what there is of it."""
+    def read_frame(self, wait_s: float) -> bytes:
+        """Up to and with the end of a frame, or what there is of it; none when none come within so many seconds."""
         if self._at >= len(self._buffer):
-            self._fill(self.timeout)
+            self._fill(wait_s)
         start, end = self._at, END_OF_FRAME.search(self._buffer, self._at)
         self._at = end.end() if end else len(self._buffer)
         return self._buffer[start : self._at]
@@ -119,7 +119,8 @@ def frame_reader(line: SocketLine, begun: bytearray) -> Callable[[float | None],
         deadline_s = None if timeout_s is None else time.monotonic() + timeout_s
         with error_check("Could not read from serial device"):
             while True:
-                part = line.read_frame()
+                left_s = line.timeout if deadline_s is None else max(deadline_s - time.monotonic(), 0.0)
+                part = line.read_frame(min(left_s, line.timeout))
                 begun.extend(part)
                 if END_OF_FRAME.match(part[-1:]):
                     whole = begun.decode()

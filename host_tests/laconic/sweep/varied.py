@@ -89,7 +89,7 @@ def _levels(text: str, key: KeyPath, given: str) -> tuple[Any, ...]:
         _fail(text, "is no range; give KEY=a:b:n, n values from a to b, or a list KEY=a,b,c")
     first, last = (_number(text, each) for each in parts[:2])
     if not re.fullmatch(r"\s*\d+\s*", parts[2]) or not 1 <= int(parts[2]) <= MOST_GRID:
-        _fail(text, f"{parts[2].strip()!r} is no number of values; give a whole number, such as "
+        _fail(text, f"{parts[2].strip()!r} is no number of values; give a whole number from 1 to {MOST_GRID}, such as "
                     f"{parts[0]}:{parts[1]}:11")
     count = int(parts[2])
     if (count == 1) is not (first == last):

@@ -118,3 +118,22 @@ def test_ctrl_c_while_modules_are_read_is_one_line(tmp_path, module):
     done = subprocess.run([sys.executable, "-m", "laconic", "simulate", "s1"], env=os.environ | {
         "PYTHONPATH": str(tmp_path)}, capture_output=True, text=True)
     assert (done.returncode, done.stderr, done.stdout) == (130, "laconic: stopped by the user\n", "")
+
+
+SWALLOWED = """
+import laconic.cli.commands.soak as soak, time
+class Final:
+    def __del__(self):
+        os.kill(os.getpid(), signal.SIGTERM)
+        for _ in range(1000): pass  # here Python raises what the handler raises, and ignores it
+def work(**_):
+    Final()
+    time.sleep(60)
+soak.command.callback = work
+"""
+
+
+def test_a_stop_that_falls_where_python_ignores_exceptions_is_not_lost():
+    done = started(main_with("soak fuzz", SWALLOWED), stdout=subprocess.DEVNULL, timeout=30)
+    assert done.stderr == "laconic: stopped by SIGTERM\n"
+    assert done.returncode == 128 + signal.SIGTERM

@@ -11,7 +11,7 @@ import pytest
 
 import laconic
 from laconic import BadInput
-from laconic.control import Course, Filter, PredictiveController, casadi_step
+from laconic.control import Camera, Course, Drive, Filter, PredictiveController, casadi_step, plot_drive
 from laconic.control.predictive import Pattern
 
 STEP_S = 0.05
@@ -138,6 +138,39 @@ def test_readings_that_are_none_are_refused_and_leave_the_filter_as_it_was(call,
     before = ours.state.tolist()
     assert refused(lambda: call(ours)).startswith(text)
     assert ours.state.tolist() == before
+
+
+@pytest.mark.parametrize("counts", [0, -100, [4096, 0, 4096]])
+def test_counts_need_an_encoder_at_every_wheel(counts):
+    message = refused(lambda: Filter(plant(0.01), KNOWN, encoder={"counts_per_turn": counts}))
+    assert message.startswith("encoder.counts_per_turn: is ") and "above 0" in message
+
+
+@pytest.mark.parametrize(("settings", "text"), [
+    ({"period": 0}, "period: 0 steps"), ({"period": None}, "period: None"), ({"period": 1.5}, "period: 1.5"),
+    ({"std_m": -1.0}, "std_m: -1 is below 0"), ({"heading_std_rad": math.nan}, "heading_std_rad: nan is not finite"),
+    ({"seed": -1}, "seed: ")])
+def test_a_camera_that_none_is_is_refused(settings, text):
+    given = {"period": 5, "std_m": 0.01, "heading_std_rad": 0.01, **settings}
+    assert refused(lambda: Camera(**given)).startswith(text)
+
+
+def test_a_picture_of_what_is_no_drive_is_refused(course):
+    assert refused(lambda: plot_drive(None, course)).startswith("run: None is no drive")
+    assert refused(lambda: plot_drive(Drive(0.1), None)).startswith("course: None is no course")
+
+
+@pytest.mark.parametrize("far", [-1e7, 1e16, 1e31, 1e300])
+def test_a_state_too_far_off_is_refused_and_the_plan_of_another_is_never_given(course, far, capfd):
+    controller = PredictiveController(course, 10.0, horizon=5)
+    near = course.states[0]
+    there = near + [0, 0, 0, far, 0, 0]
+    assert refused(lambda: controller.voltages(0, there)).startswith("state: ")  # of a fresh controller
+    before = controller.voltages(0, near)
+    message = refused(lambda: controller.voltages(0, there))
+    assert "off the course, too far for a plan; give a state within 1e+06" in message
+    assert controller.voltages(0, near) == pytest.approx(before, abs=1e-5)  # begun from the plan before
+    assert capfd.readouterr().out == ""
 
 
 STATE, VOLTS = np.array([1.0, -0.5, 2.0, 0.3, -0.2, 0.7]), np.array([2.0, -1.0, 0.5])

@@ -29,6 +29,15 @@ def test_frames_of_one_chunk_come_one_by_one_and_one_that_is_cut_comes_whole(end
     assert [read(1.0) for _ in range(3)] == ["t1241CC\r", "\a", "t1250\r"]
 
 
+def test_a_look_without_waiting_waits_for_no_frame_that_may_come(ends: Ends) -> None:
+    line, far = ends
+    line.timeout = 3600.0
+    read = frame_reader(line, bytearray())
+    assert read(0.0) is None  # a bus of many frames would keep a loop of such looks for ever
+    far.sendall(b"t1250\r")
+    assert read(1.0) == "t1250\r" and read(0.0) is None
+
+
 def test_a_flush_forgets_the_beginning_of_a_frame(ends: Ends) -> None:
     line, far = ends
     begun = bytearray()
