@@ -20,6 +20,7 @@ from laconic.errors import BadInput, reason_of
 
 ENDING_SIGNALS = ("SIGINT", "SIGTERM", "SIGHUP")
 SHELL_SIGNAL = 128  # a shell reports 128 + signal for a process that a signal ended
+MAIN_THREAD = threading.main_thread().ident or 0
 AGAIN_S = 0.01      # until a stop that was ignored is raised again
 SIGPIPE = 13        # on every system that has it; Windows has not
 
@@ -106,9 +107,9 @@ def stop_again(ignored: sys.UnraisableHookArgs) -> None:
 def signal_main(number: int) -> None:
     """Gives a signal to the main thread, out of a wait, too, where the system can."""
     if hasattr(signal, "pthread_kill"):
-        signal.pthread_kill(threading.main_thread().ident, number)
+        signal.pthread_kill(MAIN_THREAD, number)
     else:
-        interrupt_main(number)
+        interrupt_main(signal.Signals(number))
 
 
 def stop_status(stopped: BaseException) -> tuple[str, int]:

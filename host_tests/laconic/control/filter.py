@@ -167,8 +167,8 @@ class Filter:
 
     def _check_encoders(self) -> None:
         """`counts` reads every wheel, so each has an encoder."""
-        wheels = range(self.wheel_count if self._sensors is not None else 0)
-        for wheel, counts in ((k + 1, self._sensors.encoder[k].counts_per_turn) for k in wheels):
+        encoders = [] if self._sensors is None else list(self._sensors.encoder)[: self.wheel_count]
+        for wheel, counts in enumerate((each.counts_per_turn for each in encoders), start=1):
             if counts <= 0:
                 raise BadInput(f"encoder.counts_per_turn: is {counts} for wheel {wheel}; give a number above 0 for "
                                "each wheel, or leave `encoder` out and read by encoders()")
