@@ -79,9 +79,12 @@ def sources_missing() -> str:
 def as_path(name: str, given: Any) -> Path:
     """A path from a text or path; BadInput names what was given for anything else."""
     try:
-        return Path(given)
+        path = Path(given)
     except TypeError:
-        raise BadInput(f"{name}: {given!r} is no path; give one as text or as a Path") from None
+        path = Path("\0")
+    if "\0" in str(path):
+        raise BadInput(f"{name}: {given!r} is no path; give one as text or as a Path")
+    return path
 
 
 def exists(path: Path) -> bool:

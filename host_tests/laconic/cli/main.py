@@ -17,7 +17,7 @@ from typing import Any
 import click
 
 import laconic.cli.commands
-from laconic.cli.streams import SHELL_SIGNAL, SIGPIPE, ReaderGone, guard, stop_status
+from laconic.cli.streams import SHELL_SIGNAL, SIGPIPE, ReaderGone, guard, let_signals_kill, stop_status
 from laconic.errors import BadInput, LaconicError, nearest_of, reason_of
 from laconic.extras import missing_module
 from laconic.paths import check_installation
@@ -80,7 +80,12 @@ def main(arguments: list[str] | None = None) -> None:
     """
     guard()
     logging.getLogger("matplotlib").setLevel(logging.ERROR)  # it warns of a home folder that it cannot write
-    status = run(sys.argv[1:] if arguments is None else arguments)
+    try:
+        status = run(sys.argv[1:] if arguments is None else arguments)
+        let_signals_kill()
+    except KeyboardInterrupt as again:  # a second signal, while the first one was told
+        let_signals_kill()
+        status = stop_status(again)[1]
     with suppress(ReaderGone, BadInput):  # text before an error that stderr already states
         sys.stdout.flush()
     sys.exit(status)

@@ -69,6 +69,13 @@ def guard() -> None:
     sys.unraisablehook = stop_again
 
 
+def let_signals_kill() -> None:
+    """The command is over: a signal now ends the process at once and without a word, as the system does it."""
+    for number in (getattr(signal, name, None) for name in ENDING_SIGNALS):
+        if number is not None and signal.getsignal(number) is stop:
+            signal.signal(number, signal.SIG_DFL)
+
+
 def open_standard() -> None:
     """Opens those of 0, 1 and 2 that the caller has closed, in this order, so that no file of ours takes their place.
 

@@ -46,7 +46,7 @@ def slots_of(core: Core, signal: str) -> range:
     if not index:
         return range(start, start + length)
     item = index.removesuffix("]")
-    if not item.isdecimal() or not 1 <= int(item) <= length:
+    if not item.isdecimal() or not 1 <= int(item) <= length or signal != f"{name}[{int(item)}]":  # one spelling each
         raise BadInput(f"{signal}: there is no such item; give 1 to {length}")
     return range(start + int(item) - 1, start + int(item))
 

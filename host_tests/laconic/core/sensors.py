@@ -15,7 +15,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from laconic.core.fields import Field
-from laconic.core.given import c_object, number, shown, step_count
+from laconic.core.given import c_object, is_real, number, shown, step_count
 from laconic.core.inputs import check_wheels
 from laconic.errors import BadInput, nearest_of
 
@@ -131,7 +131,7 @@ def _mapping(name: str, given: Any, known: Sequence[str] | Mapping[str, Any]) ->
 
 def _values(name: str, field: Field, given: Any, wheel_count: int) -> list[float]:
     count = min(field.items, wheel_count) if field.table == ENCODER else field.items
-    many = isinstance(given, Sequence | np.ndarray) and not isinstance(given, str)
+    many = isinstance(given, Sequence | np.ndarray) and not isinstance(given, str) and np.ndim(given) > 0
     if many and len(given) != count:
         raise BadInput(f"{name}: has {len(given)} entries; give one number{f', or {count}' if count else ''}")
     values = list(given) if many else [given] * max(count, 1)
@@ -142,7 +142,9 @@ def _whole(name: str, value: Any) -> int:
     try:
         found = operator.index(value)
     except TypeError:
-        raise BadInput(f"{name}: {shown(value)} is no whole number (int); give one") from None
+        found = None
+    if found is None or not is_real(value):
+        raise BadInput(f"{name}: {shown(value)} is no whole number (int); give one")
     if not LEAST_INTEGER <= found <= MOST_INTEGER:
         raise BadInput(f"{name}: {found} has more than 32 bits; give {LEAST_INTEGER} to {MOST_INTEGER}")
     return found

@@ -137,3 +137,24 @@ def test_a_stop_that_falls_where_python_ignores_exceptions_is_not_lost():
     done = started(main_with("soak fuzz", SWALLOWED), stdout=subprocess.DEVNULL, timeout=30)
     assert done.stderr == "laconic: stopped by SIGTERM\n"
     assert done.returncode == 128 + signal.SIGTERM
+
+
+AGAIN = """
+import laconic.cli.commands.soak as soak, laconic.cli.main as command_line
+def work(**_):
+    os.kill(os.getpid(), signal.SIGINT)
+soak.command.callback = work
+told = command_line.{0}
+def {0}(*given):
+    found = told(*given)
+    os.kill(os.getpid(), signal.SIGINT)
+    return found
+command_line.{0} = {0}
+"""
+
+
+@pytest.mark.parametrize(("while_it", "status"), [("fail", 130), ("let_signals_kill", -signal.SIGINT)])
+def test_a_second_ctrl_c_while_the_first_ends_the_command_is_no_traceback(while_it, status):
+    done = started(main_with("soak fuzz", AGAIN.format(while_it)), stdout=subprocess.DEVNULL, timeout=30)
+    assert done.stderr == "laconic: stopped by the user\n"
+    assert done.returncode == status

@@ -23,6 +23,9 @@ from laconic.scene import read_scene
     ({"voltage_V": None}, "voltage_V: None is no number"),
     ({"voltage_V[17]": 1}, r"voltage_V\[17\]: there is no such item; give 1 to 16"),
     ({"voltage_V[0]": 1}, r"voltage_V\[0\]: there is no such item"),
+    ({"voltage_V[01]": 1}, r"voltage_V\[01\]: there is no such item"),  # one spelling each, so that none is given twice
+    ({"voltage_V[\u0661]": 1}, r"voltage_V\[\u0661\]: there is no such item"),
+    ({"voltage_V[1": 1}, r"voltage_V\[1: there is no such item"),
     ({"voltage_V[1]": [1, 2]}, r"voltage_V\[1\]: .* of which there are 1"),
     ({"voltag_V": [1]}, "voltag_V: there is no such input; did you mean voltage_V?"),
     (np.zeros(3), r"input: a row has [0-9]+ numbers, this array has the shape \(3,\)")])

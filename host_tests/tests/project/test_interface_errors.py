@@ -54,10 +54,15 @@ WRONG: list[tuple[Callable[[], Any], str]] = [
     (lambda: plant().run({"body_force_N": [1j, 1]}), "body_force_N: [1j, 1] is no number and no list of numbers"),
     (lambda: plant().run({"body_force_N": np.ones(2, bool)}), "is no number and no list of numbers; give real numbers"),
     (lambda: core().vehicle({"mass_kg": True}), "vehicle.mass_kg: True is no number"),
+    (lambda: plant().sensors({"encoder": {"counts_per_turn": True}}),
+     "sensors.encoder.counts_per_turn: True is no whole number"),
+    (lambda: plant().sensors({"encoder": {"counts_per_turn": np.ma.masked}}),
+     "sensors.encoder.counts_per_turn: masked is no whole number"),
     (lambda: laconic.read_scene(None), "scene: None is no path"),  # type: ignore[arg-type]
     (lambda: laconic.make_fmu("s1", "s1.fmu", version=3), "scene: 's1' is no Scene"),  # type: ignore[arg-type]
     (lambda: laconic.make_fmu(scene(), "s1.fmu", version=4), "version: there is no FMI 4; give 2 or 3"),
     (lambda: laconic.make_fmu(scene(), None, version=3), "out: None is no path"),  # type: ignore[arg-type]
+    (lambda: laconic.make_fmu(scene(), "a\0b.fmu", version=2), r"out: 'a\x00b.fmu' is no path"),
     (lambda: plant().run(core().input(), 2.5), "steps: 2.5 is no whole number"),
     (lambda: plant().run(core().input(), -1), "steps: -1 steps cannot be taken"),
     (lambda: plant().run([1.0]), "input: [1.0] names no signal; give them by its name"),
