@@ -80,20 +80,13 @@ static void energy_and_k_drift_only_by_the_truncation_error(void) {
     TEST_ASSERT_TRUE(d.yaw_integral < EITHER(1e-12, 1e-5));
 }
 
-static void a_yaw_too_fast_for_the_step_is_refused(void) {
-    assert_step_refused(&laconic_exponential_gauss_8, three_wheels(), start_with(1, 1, 500), no_input(), 0.1,
-                        LACONIC_STEP_BEYOND_GYROSCOPIC_LIMIT);
-}
+static void a_yaw_too_fast_for_the_step_is_refused(void) { assert_too_fast_yaw_refused(&laconic_exponential_gauss_8); }
 
 static void a_step_that_gains_energy_is_refused(void) {
     start_that_gains_energy(&laconic_exponential_gauss_8, three_wheels(), every_input(), 1.0, 500);
 }
 
-static void numbers_beyond_the_range_are_refused(void) {
-    laconic_input input = no_input();
-    input.body_force_N[0] = REAL(EITHER(1e100, 1e15)); /* a caster moves straight on: the forcing supplies the energy */
-    assert_step_refused(&laconic_exponential_gauss_8, caster(), start_with(0, 0, 0), input, 1.0, LACONIC_OVERFLOW);
-}
+static void numbers_beyond_the_range_are_refused(void) { assert_too_large_force_refused(&laconic_exponential_gauss_8); }
 
 int main(void) {
     UNITY_BEGIN();

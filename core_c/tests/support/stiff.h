@@ -35,6 +35,18 @@ static inline void assert_step_refused(const laconic_method *method, laconic_veh
     TEST_ASSERT_EQUAL_MEMORY(&before, &state, sizeof state);
 }
 
+/* A caster moves straight on: the forcing supplies the energy, so nothing but the range of numbers can refuse it. */
+static inline void assert_too_large_force_refused(const laconic_method *method) {
+    laconic_input input = no_input();
+    input.body_force_N[0] = REAL(EITHER(1e100, 1e15));
+    assert_step_refused(method, caster(), start_with(0, 0, 0), input, 1.0, LACONIC_OVERFLOW);
+}
+
+static inline void assert_too_fast_yaw_refused(const laconic_method *method) {
+    assert_step_refused(method, three_wheels(), start_with(1, 1, 500), no_input(), 0.1,
+                        LACONIC_STEP_BEYOND_GYROSCOPIC_LIMIT);
+}
+
 /* Searches random starts for one whose step of `step` is refused since it would gain energy. Such states are rare, and
  * which they are is not promised; that they are refused and the state then stays as it was, is. */
 static inline laconic_start start_that_gains_energy(const laconic_method *method, laconic_vehicle v,
