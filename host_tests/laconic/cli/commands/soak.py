@@ -13,7 +13,7 @@ import click
 from rich.console import Console
 
 import laconic.soak
-from laconic.cli.options import json_flag
+from laconic.cli.options import OutputFolder, json_flag
 from laconic.errors import BadInput, nearest_of
 from laconic.progress import progress_bar
 
@@ -33,6 +33,9 @@ def kinds() -> dict[str, str]:
 @click.option("--cycles", type=click.IntRange(min=1), metavar="N", help="controllers: of each, 10000 by default.")
 @click.option("--seconds", type=float, metavar="S", help="lateness: on each board, 10 by default.")
 @click.option("--step", "step_s", type=float, metavar="S", help="controllers: period of the drives, 0.005 by default.")
+@click.option("--vehicles", type=click.IntRange(min=1), metavar="N", help="population: 2000 by default.")
+@click.option("--method", metavar="METHOD", help="population: beside auto; exponential-gauss-8 by default.")
+@click.option("-o", "--out", type=OutputFolder(), metavar="DIR", help="population: rows and scenes; goes on there.")
 @json_flag()
 def command(what: str, minutes: float, seed: int | None, json_wanted: bool, **special: Any) -> int:
     """Runs WHAT for a long time and reports what was found.
@@ -62,6 +65,9 @@ def command(what: str, minutes: float, seed: int | None, json_wanted: bool, **sp
     lateness         play at 1 kHz with four drives, in this process and in the node's,
                      for a controller in another process: how late periods begin
     rig              all scenes in lockstep on the virtual bus, same bits
+    population       2000 made-up vehicles, damping up to a million times the usual,
+                     beside their true motion: errors' quantiles, refusals, the worst
+                     as scenes; goes on where it was ended
     slcan            all scenes over SLCAN to a node process
     soft-double      soft_double.c beside this processor's addition; a minute takes 10⁹ pairs
     sweep            sweeps killed at random instants, their bytes against undisturbed ones
@@ -75,8 +81,9 @@ def command(what: str, minutes: float, seed: int | None, json_wanted: bool, **sp
         raise BadInput(f"soak: there is no {what}; {nearest_of(what, modules)}")
     if not 0.0 < minutes < float("inf"):
         raise BadInput(f"--minutes: {minutes:g} is not usable; give a finite number above zero")
-    chosen = random.SystemRandom().randrange(2**31) if seed is None else seed
     module = importlib.import_module(f"laconic.soak.{modules[what]}")
+    usual = getattr(module, "SEED", None) or random.SystemRandom().randrange(2**31)
+    chosen = usual if seed is None else seed
     more = own_options(what, module, special)
     length = module.length(**more) if hasattr(module, "length") else 60.0 * minutes
     stopped: BaseException | None = None

@@ -85,7 +85,8 @@ def _table(random: np.random.Generator, kind: str, stiff: float) -> dict[str, An
     return table
 
 
-def _held(random: np.random.Generator, wheels: int, world: bool) -> dict[str, list[float]]:
+def held_inputs(random: np.random.Generator, wheels: int, world: bool) -> dict[str, list[float]]:
+    """Random inputs of so many wheels, with a force fixed in the world or without."""
     held = {"voltage_V": random.normal(0, 6, wheels), "axle_torque_Nm": random.normal(0, 0.2, wheels),
             "body_force_N": random.normal(0, 4, 2), "body_moment_Nm": random.normal(0, 1, 1),
             "world_force_N": random.normal(0, 5, 2) * world, "world_force_point_m": random.normal(0, 0.2, 2)}
@@ -99,7 +100,7 @@ def made_up(random: np.random.Generator, kind: str, method: str) -> Trial:
     speed = float(10 ** random.uniform(0, 1.5))
     return Trial(kind, method, table, float(10 ** random.uniform(-3, -0.3)),
                  random.normal(0, speed, 3).tolist(), float(random.uniform(-3, 3)),
-                 _held(random, len(table["wheel"]), bool(random.random() < 0.4)))
+                 held_inputs(random, len(table["wheel"]), bool(random.random() < 0.4)))
 
 
 def plant_of(core: Core, trial: Trial) -> Plant:
