@@ -36,6 +36,8 @@ def kinds() -> dict[str, str]:
 @click.option("--vehicles", type=click.IntRange(min=1), metavar="N", help="population: 2000 by default.")
 @click.option("--method", metavar="METHOD", help="population: beside auto; exponential-gauss-8 by default.")
 @click.option("-o", "--out", type=OutputFolder(), metavar="DIR", help="population: rows and scenes; goes on there.")
+@click.option("--sample", type=click.IntRange(min=1), metavar="N", help="mutants: so many, whatever the minutes.")
+@click.option("--only", metavar="PART", help="mutants: core, node, or one C file by its path.")
 @json_flag()
 def command(what: str, minutes: float, seed: int | None, json_wanted: bool, **special: Any) -> int:
     """Runs WHAT for a long time and reports what was found.
@@ -64,6 +66,8 @@ def command(what: str, minutes: float, seed: int | None, json_wanted: bool, **sp
     identify         a thousand made-up robots: what their intervals hold
     lateness         play at 1 kHz with four drives, in this process and in the node's,
                      for a controller in another process: how late periods begin
+    mutants          the C sources with one small fault each: some C test must notice it;
+                     goes on where the last run ended, and prints by file what survived
     rig              all scenes in lockstep on the virtual bus, same bits
     population       2000 made-up vehicles, damping up to a million times the usual,
                      beside their true motion: errors' quantiles, refusals, the worst

@@ -1,0 +1,129 @@
+"""Many mutants, in an order that a seed gives: so far as the time or a sample goes, and on from there the next time."""
+
+from __future__ import annotations
+
+import os
+import queue
+import random
+import time
+from collections import Counter
+from collections.abc import Callable
+from concurrent.futures import FIRST_COMPLETED, Future, ThreadPoolExecutor, wait
+from dataclasses import dataclass, field
+from pathlib import Path
+
+from laconic.errors import BadInput
+from laconic.mutation.operators import Mutant, mutants_of
+from laconic.mutation.programs import families
+from laconic.mutation.results import Results, read_equivalents
+from laconic.mutation.trial import Outcome, Trials
+from laconic.paths import SOURCE_DIR, build_dir, sources_missing
+
+PARTS = {"core": ("core_c/src",), "node": ("firmware_stub/src",), }
+LEFT_OUT = ("firmware_stub/src/shared_library.c", "firmware_stub/src/shared_library.h",
+            "firmware_stub/src/library_drives.c", "firmware_stub/src/library_drives.h")
+"""What Python alone calls: its tests drive it."""
+
+
+@dataclass
+class Tally:
+    """What came out, by file."""
+
+    of_file: dict[str, Counter[str]] = field(default_factory=dict)
+    survivors: list[Mutant] = field(default_factory=list)
+    listed_yet_killed: list[Mutant] = field(default_factory=list)
+
+    def add(self, mutant: Mutant, verdict: str, *, is_listed: bool) -> None:
+        """One mutant more."""
+        if verdict == "survived" and is_listed:
+            verdict = "listed"
+        elif verdict == "survived":
+            self.survivors.append(mutant)
+        elif verdict in ("killed", "timeout") and is_listed:
+            self.listed_yet_killed.append(mutant)
+        self.of_file.setdefault(mutant.file, Counter())[verdict] += 1
+
+    @property
+    def total(self) -> Counter[str]:
+        """Of all files."""
+        return sum(self.of_file.values(), Counter())
+
+
+def files_of(part: str | None) -> list[str]:
+    """The C files of a part, of all parts, or one file by its path; BadInput where there is none."""
+    folders = [folder for name, each in PARTS.items() if part in (None, name) for folder in each]
+    paths = [path for folder in folders for path in sorted((SOURCE_DIR / folder).glob("*.[ch]"))]
+    if part is not None and not folders:
+        given = SOURCE_DIR / part
+        if given.suffix not in (".c", ".h") or not given.is_file():
+            raise BadInput(f"--only {part}: is neither a part ({', '.join(PARTS)}) nor a C file of the project")
+        paths = [given]
+    names = [path.relative_to(SOURCE_DIR).as_posix() for path in paths]
+    return [name for name in names if name not in LEFT_OUT]
+
+
+class Campaign:
+    """The mutants of some files, tried one after the other by as many threads as there are processors."""
+
+    def __init__(self, only: str | None, seed: int, folder: Path | None = None):
+        if missing := sources_missing():
+            raise BadInput(f"soak mutants: needs {missing}")
+        self.folder = folder or build_dir().resolve() / "mutation"
+        self.mutants = [mutant for file in files_of(only) for mutant in mutants_of(SOURCE_DIR, file)]
+        random.Random(seed).shuffle(self.mutants)
+        self.tally = Tally()
+        self._listed = {(each.file, each.function, each.before, each.after) for each in read_equivalents()}
+
+    def run(self, sample: int | None, until: float, advance: Callable[[float], None]) -> Tally:
+        """The first `sample` mutants, or all, until that moment; what earlier runs found counts."""
+        self.folder.mkdir(parents=True, exist_ok=True)
+        results = Results(self.folder / "results.jsonl", {mutant.file for mutant in self.mutants})
+        todo: list[Mutant] = []
+        for mutant in self.mutants[:sample]:
+            known = results.known(mutant)
+            if known is None:
+                todo.append(mutant)
+            else:
+                self._add(mutant, known)
+        if todo:
+            self._try(todo, results, until, advance)
+        return self.tally
+
+    def _try(self, todo: list[Mutant], results: Results, until: float, advance: Callable[[float], None]) -> None:
+        tested = families(self.folder)
+        for family in tested:
+            family.link()
+            family.check()
+        trials, workers = Trials(tested, self.folder), os.cpu_count() or 1
+        trees: queue.Queue[Path] = queue.Queue()
+        for number in range(workers):
+            trees.put(trials.tree(number))
+
+        def one(mutant: Mutant) -> Outcome:
+            tree = trees.get()
+            try:
+                return trials.outcome(mutant, tree)
+            finally:
+                trees.put(tree)
+
+        with ThreadPoolExecutor(workers) as pool:
+            waiting: dict[Future[Outcome], Mutant] = {}
+            left = iter(todo)
+            try:
+                while True:
+                    while len(waiting) < workers and time.monotonic() < until and (new := next(left, None)):
+                        waiting[pool.submit(one, new)] = new
+                    if not waiting:
+                        return
+                    done: set[Future[Outcome]] = wait(waiting, return_when=FIRST_COMPLETED).done
+                    for future in done:
+                        mutant = waiting.pop(future)
+                        results.keep(mutant, future.result())
+                        self._add(mutant, future.result())
+                        advance(1.0)
+            finally:
+                pool.shutdown(cancel_futures=True)
+
+    def _add(self, mutant: Mutant, outcome: Outcome) -> None:
+        told = (mutant.file, mutant.function, mutant.before, mutant.after)
+        self.tally.add(mutant, outcome.verdict, is_listed=told in self._listed)

@@ -1,0 +1,191 @@
+"""One mutant tried: compiled where its file is compiled or included, and given to the tests that it can affect."""
+
+from __future__ import annotations
+
+import re
+import shutil
+import subprocess
+import threading
+import time
+from collections import Counter, defaultdict
+from dataclasses import dataclass
+from pathlib import Path
+
+from laconic.errors import ResultFails
+from laconic.mutation.operators import Mutant
+from laconic.mutation.programs import FOLDERS, Family, Program, Unit, link
+from laconic.paths import SOURCE_DIR
+
+SANITIZERS = ("-fsanitize=address,undefined", "-fno-sanitize-recover=all", "-fno-sanitize=vptr", "-O1")
+VERDICTS = {"killed": "a test failed", "timeout": "a test ran past its bound", "survived": "all tests passed",
+            "same code": "the compiler makes the same bytes of it: equivalent", "invalid": "does not compile"}
+
+
+@dataclass(frozen=True)
+class Outcome:
+    """What became of a mutant: one of VERDICTS, and the program that noticed it."""
+
+    verdict: str
+    by: str = ""
+    seconds: float = 0.0
+
+
+class Trials:
+    """What all trials share: families, what an unchanged file is compiled to, and which programs killed before."""
+
+    def __init__(self, families: list[Family], folder: Path):
+        self.families, self.folder = families, folder
+        self._kills: dict[str, Counter[str]] = defaultdict(Counter)
+        self._plain: dict[tuple[str, str], bytes] = {}
+        self._lock = threading.Lock()
+        self._includes = inclusions()
+
+    def tree(self, number: int) -> Path:
+        """A copy of the sources in which one thread makes its faults."""
+        copy = self.folder / f"tree{number}"
+        for name in FOLDERS:
+            shutil.copytree(SOURCE_DIR / name, copy / name, dirs_exist_ok=True,
+                            ignore=lambda folder, names: [name for name in names if (Path(folder) / name).is_file()
+                                                          and not name.endswith((".c", ".h"))])
+        return copy
+
+    def outcome(self, mutant: Mutant, tree: Path) -> Outcome:
+        """Tries it in that copy of the sources."""
+        began = time.monotonic()
+        changed = tree / mutant.file
+        source = changed.read_bytes()
+        self._compile_plain(self._of(mutant), tree)
+        changed.write_bytes(mutant.applied_to(source))
+        try:
+            verdict, by = self._tried(mutant, tree, source)
+        finally:
+            changed.write_bytes(source)
+        return Outcome(verdict, by, round(time.monotonic() - began, 2))
+
+    def _tried(self, mutant: Mutant, tree: Path, source: bytes) -> tuple[str, str]:
+        differs = False
+        for family in self.families:
+            objects: dict[Unit, Path] = {}
+            for unit in self._of(mutant):
+                if unit in family.library_units or any(unit in program.units for program in family.programs):
+                    out = tree / f"{family.name}_{unit.target}_{unit.source.name}.o"
+                    if unit.compile(tree, out).returncode != 0:
+                        return "invalid", ""
+                    if out.read_bytes() != self._plain[unit.target, str(unit.source)]:
+                        objects[unit] = out
+            differs |= bool(objects)
+            if objects and (by := self._noticed(mutant, family, objects, tree)):
+                return by
+        if not differs:
+            return "same code", ""
+        return self._with_sanitizers(mutant, tree, source) or ("survived", "")
+
+    def _with_sanitizers(self, mutant: Mutant, tree: Path, source: bytes) -> tuple[str, str] | None:
+        """What the tests passed is given to them once more under the sanitizers, as continuous integration runs them: a
+        fault may write past an array, and nothing else."""
+        for family in self.families[:1]:
+            found = self._checked(mutant, family, tree, None)
+            if found is None:
+                continue
+            (tree / mutant.file).write_bytes(source)
+            if self._checked(mutant, family, tree, found[1]) is None:  # the program passes without the fault
+                return found
+        return None
+
+    def _checked(self, mutant: Mutant, family: Family, tree: Path, only: str | None) -> tuple[str, str] | None:
+        objects = {}
+        for unit in self._of(mutant):
+            if unit in family.library_units:
+                objects[unit] = tree / f"checked_{unit.target}_{unit.source.name}.o"
+                if unit.compile(tree, objects[unit], *SANITIZERS).returncode != 0:
+                    return None
+        return self._noticed(mutant, family, objects, tree, only=only, checks=SANITIZERS[:1]) if objects else None
+
+    def _noticed(self, mutant: Mutant, family: Family, objects: dict[Unit, Path], tree: Path,
+                 only: str | None = None, checks: tuple[str, ...] = ()) -> tuple[str, str] | None:
+        of_library = {unit: path for unit, path in objects.items() if unit in family.library_units}
+        preload = tree / f"fault_{family.name}.so" if of_library else None
+        if preload is not None:
+            try:
+                link([*family.compiler, *checks, "-shared"], list(of_library.values()), preload)
+            except ResultFails:
+                return "invalid", ""
+        affected = set().union(*(family.reach[unit.object] for unit in of_library)) if of_library else set()
+        for program in self._in_order(mutant, family, affected, objects):
+            if only not in (None, program.name):
+                continue
+            own = {unit: path for unit, path in objects.items() if unit in program.units}
+            used = program
+            if own:
+                used = Program(program.name, program.units,
+                               family.link_program(program, own, tree / f"{program.name}.with_fault"), program.seconds)
+            loaded = [*(runtime_of_sanitizers(family) if checks else []), *([preload] if preload else [])]
+            status = used.run(family.library, loaded, family.bound_s(program))
+            if status != 0:
+                with self._lock:
+                    self._kills[mutant.file][program.name] += not checks
+                return ("timeout" if status is None else "killed"), program.name
+        return None
+
+    def _in_order(self, mutant: Mutant, family: Family, affected: set[str], objects: dict[Unit, Path]) -> list[Program]:
+        """The program of the file's own name first, then those that noticed most of its mutants, then the fastest."""
+        own = {unit for unit in objects if unit not in family.library_units}
+        chosen = [program for program in family.programs
+                  if program.name in affected or any(unit in own for unit in program.units)]
+        with self._lock:
+            kills = Counter(self._kills[mutant.file])
+        stem = Path(mutant.file).stem.removeprefix("node_")
+        name = re.compile(rf"(test|node|fmu_unit)_(node_)?{stem}(_double|_single)?")
+        return sorted(chosen, key=lambda each: (not name.fullmatch(each.name), -kills[each.name], each.seconds))
+
+    def _of(self, mutant: Mutant) -> list[Unit]:
+        """The units that its file is in. Lanes have the methods' text, too, but are not compiled anew."""
+        every = [unit for family in self.families
+                 for unit in [*family.library_units, *(unit for program in family.programs for unit in program.units)]]
+        path = (SOURCE_DIR / mutant.file).resolve()
+        if path.suffix == ".c":
+            found = [unit for unit in every if unit.source.resolve() == path]
+        else:
+            users = self._includes[path]
+            found = [unit for unit in every if unit.source.resolve() in users and "/batch/" not in str(unit.source)]
+        return list(dict.fromkeys(found))
+
+    def _compile_plain(self, units: list[Unit], tree: Path) -> None:
+        for unit in units:
+            name = (unit.target, str(unit.source))
+            with self._lock:
+                known = name in self._plain
+            if not known:
+                out = tree / "plain.o"
+                done = unit.compile(tree, out)
+                if done.returncode != 0:
+                    raise ResultFails(f"{unit.source}: does not compile without a fault: {done.stderr[-300:]!r}")
+                with self._lock:
+                    self._plain[name] = out.read_bytes()
+
+
+def runtime_of_sanitizers(family: Family) -> list[Path]:
+    """It must be loaded before anything else."""
+    said = subprocess.run([*family.compiler, "-print-file-name=libasan.so"], capture_output=True, text=True, check=True)
+    return [Path(said.stdout.strip()).resolve()]
+
+
+def inclusions() -> dict[Path, set[Path]]:
+    """The C files that include a header, by the header: by way of others, too."""
+    sources = [path for folder in FOLDERS for path in (SOURCE_DIR / folder).rglob("*.[ch]")]
+    named: dict[str, list[Path]] = defaultdict(list)
+    for path in sources:
+        named[path.name].append(path.resolve())
+    direct = {path.resolve(): {found for name in re.findall(r'^\s*#\s*include "([^"]+)"', path.read_text("utf-8"),
+                                                            re.MULTILINE)
+                               for found in named[Path(name).name] if str(found).endswith(name.replace("../", ""))}
+              for path in sources}
+    users: dict[Path, set[Path]] = defaultdict(set)
+    for path in direct:
+        seen, todo = set[Path](), [path]
+        while todo:
+            for found in direct[todo.pop()] - seen:
+                seen.add(found)
+                todo.append(found)
+                users[found].add(path)
+    return users

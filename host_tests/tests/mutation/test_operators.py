@@ -1,0 +1,83 @@
+"""Which faults the operators make, and that a list of equivalents finds its mutants by text."""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+import pytest
+
+from laconic.errors import BadInput
+from laconic.mutation import mutants_of, read_equivalents
+from laconic.mutation.campaign import files_of
+from laconic.paths import SOURCE_DIR
+
+SOURCE = """\
+#define HALF 0.5 /* 1/2 */
+INLINE int sum(int a, int b) {
+    int list[3] = {0};
+    for (int k = 0; k < 2; k++) list[k] += a * b; /* k < 9 */
+    if (!a && b >= 1e-3f) f(a, b);
+    return list[1];
+}
+"""
+
+
+def changes(tmp_path: Path, text: str = SOURCE) -> set[tuple[str, str]]:
+    (tmp_path / "a.c").write_text(text)
+    source = (tmp_path / "a.c").read_bytes()
+    found = set()
+    for mutant in mutants_of(tmp_path, "a.c"):
+        assert mutant.applied_to(source) != source and mutant.before != mutant.after
+        found.add((source[mutant.start:mutant.end].decode(), mutant.text))
+    return found
+
+
+def test_each_operator_makes_its_faults(tmp_path):
+    found = changes(tmp_path)
+    assert {("<", "<="), ("<", ">="), (">=", ">"), (">=", "<")} <= found             # relational
+    assert {("*", "/"), ("+=", "-="), ("++", "--")} <= found                           # arithmetic
+    assert {("&&", "||"), ("!", "")} <= found                                          # logical
+    assert {("2", "3"), ("2", "1"), ("0.5", "0.505"), ("1e-3f", "0.01f")} <= found     # constants
+    assert ("(!a && b >= 1e-3f)", "(!((!a && b >= 1e-3f)))") in found                   # conditions
+    assert ("f(a, b);", ";") in found                                                  # statements
+    assert ("a, b", "b, a") in found                                                   # arguments
+
+
+def test_comments_have_none_and_an_array_only_becomes_shorter(tmp_path):
+    found = changes(tmp_path)
+    assert not any("9" in old for old, _ in found)
+    assert ("3", "2") in found and ("3", "4") not in found
+
+
+def test_a_mutant_knows_its_function_behind_the_projects_own_words(tmp_path):
+    (tmp_path / "a.c").write_text(SOURCE)
+    assert {mutant.function for mutant in mutants_of(tmp_path, "a.c")} == {"", "sum"}
+
+
+def test_the_same_change_twice_in_a_line_is_two_mutants_and_a_moved_line_none_new(tmp_path):
+    text = "int f(int a) { return a + a + a; }\n"
+    (tmp_path / "a.c").write_text(text)
+    keys = [mutant.key for mutant in mutants_of(tmp_path, "a.c")]
+    assert len(keys) == 2 == len(set(keys))
+    (tmp_path / "a.c").write_text(f"/* more */\n\n{text}")
+    assert [mutant.key for mutant in mutants_of(tmp_path, "a.c")] == keys
+
+
+def test_every_row_of_the_list_of_equivalents_fits_a_mutant():
+    there = {(each.file, each.function, each.before, each.after)
+             for file in {row.file for row in read_equivalents()} for each in mutants_of(SOURCE_DIR, file)}
+    lost = [row for row in read_equivalents() if (row.file, row.function, row.before, row.after) not in there]
+    assert lost == []
+
+
+def test_a_row_without_a_reason_is_refused(tmp_path):
+    path = tmp_path / "equivalents.toml"
+    path.write_text('[[equivalent]]\nfile = "a.c"\nfunction = "f"\nbefore = "x"\nafter = "y"\nreason = " "\n')
+    with pytest.raises(BadInput, match="row 1: needs .*reason"):
+        read_equivalents(path)
+
+
+def test_core_and_node_are_the_parts_and_what_python_alone_calls_is_in_neither():
+    assert "core_c/src/rk4.c" in files_of("core") and "firmware_stub/src/node.c" in files_of("node")
+    assert set(files_of(None)) == {*files_of("core"), *files_of("node")}
+    assert not any("library" in Path(file).name for file in files_of(None))

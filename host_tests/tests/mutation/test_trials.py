@@ -1,0 +1,93 @@
+"""A mutant is tried on a program of one function: killed, survived, the same code, or past its time."""
+
+from __future__ import annotations
+
+import shutil
+from pathlib import Path
+
+import pytest
+
+from laconic.mutation import mutants_of
+from laconic.mutation.programs import Family, Program, Unit
+from laconic.mutation.results import Results
+from laconic.mutation.trial import Outcome, Trials
+
+SOURCE = """\
+int limited(int a) {
+    volatile int k = 0;
+    while (k < 10) k += 5;
+    if (a > 5) return 5;
+    return a * 1 + (0 && a);
+}
+"""
+TEST = """\
+int limited(int a);
+int main(void) { return limited(9) != 5 || limited(2) != 2; }
+"""
+
+
+@pytest.fixture
+def trials(tmp_path, monkeypatch):
+    if shutil.which("gcc") is None:
+        pytest.skip("needs gcc")
+    sources = tmp_path / "sources"
+    (sources / "core_c").mkdir(parents=True)
+    (sources / "core_c/limited.c").write_text(SOURCE)
+    (sources / "core_c/test_limited.c").write_text(TEST)
+    for module in ("trial", "programs", "results"):
+        monkeypatch.setattr(f"laconic.mutation.{module}.SOURCE_DIR", sources)
+    monkeypatch.setattr("laconic.mutation.trial.FOLDERS", ("core_c",))
+    units = []
+    for name in ("limited", "test_limited"):
+        unit = Unit(sources / f"core_c/{name}.c", name, ("gcc", "-O2", "-fPIC"), tmp_path, tmp_path / f"{name}.o")
+        assert unit.compile(sources, unit.object).returncode == 0
+        units.append(unit)
+    empty = tmp_path / "liblaconic_unity.a"
+    shutil.copy(units[0].object, tmp_path / "nothing.o")
+    monkeypatch.setattr("laconic.mutation.programs.unity", lambda: empty)
+    empty.write_text("/* a linker script */\n")
+    family = Family("double", tmp_path / "double", units[:1],
+                    [Program("test_limited_double", units[1:], tmp_path / "double/test_limited_double")])
+    family.link()
+    family.check()
+    monkeypatch.setattr("laconic.mutation.programs.PATIENCE_S", 0.5)
+    return Trials([family], tmp_path), sources
+
+
+def verdicts(trials: Trials, sources: Path) -> dict[str, str]:
+    tree = trials.tree(0)
+    return {f"{mutant.before} → {mutant.after}": trials.outcome(mutant, tree).verdict
+            for mutant in mutants_of(sources, "core_c/limited.c")}
+
+
+def test_what_a_test_notices_is_killed_and_what_none_does_survives(trials):
+    found = verdicts(*trials)
+    assert found["if (a > 5) return 5; → if (a > 5) return 6;"] == "killed"
+    assert found["if (a > 5) return 5; → if (a > 6) return 5;"] == "survived"
+    assert found["while (k < 10) k += 5; → while (k < 10) ;"] == "timeout"
+    assert found["return a * 1 + (0 && a); → return a / 1 + (0 && a);"] == "same code"
+    assert found["return a * 1 + (0 && a); → return a * 1 - (0 && a);"] == "same code"
+
+
+def test_the_sources_are_as_before(trials):
+    verdicts(*trials)
+    assert (trials[1] / "core_c/limited.c").read_text() == SOURCE
+    assert (trials[0].folder / "tree0/core_c/limited.c").read_text() == SOURCE
+
+
+def test_a_result_holds_until_its_file_changes_and_a_survivor_until_the_tests_do(tmp_path, monkeypatch):
+    for folder in ("core_c/tests", "firmware_stub/tests", "fmu/tests"):
+        (tmp_path / folder).mkdir(parents=True)
+    (tmp_path / "core_c/a.c").write_text("int f(int a, int b) { return a - b * 3; }\n")
+    monkeypatch.setattr("laconic.mutation.results.SOURCE_DIR", tmp_path)
+    one, other = mutants_of(tmp_path, "core_c/a.c")[0], mutants_of(tmp_path, "core_c/a.c")[-1]
+    kept = Results(tmp_path / "results.jsonl", ["core_c/a.c"])
+    kept.keep(one, Outcome("killed", "test_a"))
+    assert Results(tmp_path / "results.jsonl", ["core_c/a.c"]).known(one) == Outcome("killed", "test_a")
+    kept.keep(other, Outcome("survived"))
+    (tmp_path / "core_c/tests/test_a.c").write_text("/* a new test */\n")
+    again = Results(tmp_path / "results.jsonl", ["core_c/a.c"])
+    assert again.known(one) == Outcome("killed", "test_a")
+    assert again.known(other) is None
+    (tmp_path / "core_c/a.c").write_text("int f(int a, int b) { return a - b * 3; } /* new */\n")
+    assert Results(tmp_path / "results.jsonl", ["core_c/a.c"]).known(one) is None
