@@ -70,6 +70,31 @@ static void three_frames_in_a_row_make_a_new_reference(void) {
     TEST_ASSERT_EQUAL(LACONIC_E2E_WRONG_SEQUENCE, laconic_e2e_check(&receiver, true, 9, 15, 1));
 }
 
+/* The headers come from PyPI's autosar-e2e, an implementation of others. */
+static void profile_5_gives_the_headers_of_another_implementation(void) {
+    uint8_t zeros[8] = {0}, rising[16];
+    const laconic_e2e_ends other = {LACONIC_E2E_P05_START, 0xBEEF};
+    for (uint8_t k = 0; k < 16; k++) rising[k] = k;
+    laconic_e2e_p05_protect(zeros, 8, fd, 0);
+    TEST_ASSERT_TRUE(zeros[0] == 0x1C && zeros[1] == 0xCA && zeros[2] == 0);
+    laconic_e2e_p05_protect(rising, 16, other, 9);
+    TEST_ASSERT_TRUE(rising[0] == 0xC9 && rising[1] == 0x1F && rising[2] == 9);
+}
+
+static void the_shortest_frames_are_their_headers(void) {
+    uint8_t classic[2] = {0}, long_one[3] = {0};
+    laconic_e2e_p22_protect(classic, 2, of(3), 3);
+    TEST_ASSERT_TRUE(laconic_e2e_p22_crc_is_right(classic, 2, of(3)));
+    laconic_e2e_p05_protect(long_one, 3, fd, 200);
+    TEST_ASSERT_TRUE(long_one[2] == 200 && laconic_e2e_p05_crc_is_right(long_one, 3, fd));
+}
+
+static void the_counter_leaves_the_bits_beside_it(void) {
+    uint8_t data[8] = {0, 0xA7};
+    laconic_e2e_p22_protect(data, 8, of(5), 0x35);
+    TEST_ASSERT_EQUAL_HEX8(0xA5, data[1]);
+}
+
 int main(void) {
     UNITY_BEGIN();
     RUN_TEST(profile_2_gives_the_published_headers);
@@ -78,5 +103,8 @@ int main(void) {
     RUN_TEST(the_status_machine_never_moves_for_a_refused_frame);
     RUN_TEST(lost_frames_are_counted_up_to_max_delta);
     RUN_TEST(three_frames_in_a_row_make_a_new_reference);
+    RUN_TEST(profile_5_gives_the_headers_of_another_implementation);
+    RUN_TEST(the_shortest_frames_are_their_headers);
+    RUN_TEST(the_counter_leaves_the_bits_beside_it);
     return UNITY_END();
 }

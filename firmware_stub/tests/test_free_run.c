@@ -95,6 +95,96 @@ static void the_heartbeat_beats_in_every_state(void) {
     TEST_ASSERT_EQUAL_UINT32(100000, laconic_node_idle_us(&node, now_us));
 }
 
+static void a_step_that_the_core_refuses_ends_in_fault_with_the_inputs_cleared(void) {
+    uint8_t data[LACONIC_FRAME_BYTES];
+    start(1000, 0);
+    pass(3000);
+    node.input[0].body_moment_Nm = LACONIC_REAL_MAX * 2;
+    pass(1000);
+    TEST_ASSERT_EQUAL_UINT8(LACONIC_WIRE_STATE_FAULT, node.state);
+    TEST_ASSERT_TRUE(bench_receive(LACONIC_WIRE_RESULT, data));
+    TEST_ASSERT_EQUAL_UINT8(0, data[1] >> 4); /* no frame has asked for it */
+    TEST_ASSERT_EQUAL_UINT8(LACONIC_WIRE_COMMAND_SYNC, data[2]);
+    TEST_ASSERT_EQUAL_UINT8(LACONIC_NOT_FINITE, data[3]);
+    TEST_ASSERT_EQUAL_UINT8(LACONIC_FIELD_BODY_MOMENT, data[4]);
+    TEST_ASSERT_TRUE(node.input[0].body_moment_Nm == 0);
+    pass(5000);
+    TEST_ASSERT_EQUAL_UINT64(3, node.plant.steps); /* and no further step */
+    TEST_ASSERT_EQUAL_UINT8(LACONIC_WIRE_STATUS_WRONG_STATE, start(1000, 0));
+    TEST_ASSERT_EQUAL_UINT8(0, bench_control(LACONIC_WIRE_COMMAND_RESET, 0, 0));
+    TEST_ASSERT_EQUAL_UINT8(0, start(1000, 0));
+}
+
+/* 300 periods of 3,333 1/3 µs are a second: rests of a microsecond are not lost. */
+static void periods_that_are_no_whole_microseconds_keep_their_rate(void) {
+    const laconic_vehicle vehicle = {.mass_kg = 1, .yaw_inertia_kgm2 = 1, .wheel_radius_m = 1};
+    TEST_ASSERT_EQUAL(LACONIC_OK, laconic_plant_start(&node.plant, &vehicle, &laconic_rk4, (laconic_real)(1.0 / 300),
+                                                      &node.start, NULL));
+    TEST_ASSERT_EQUAL_UINT8(0, start(0, 0));
+    TEST_ASSERT_EQUAL_UINT32(300, node.free_run.rate_Hz);
+    const uint32_t begun_us = now_us;
+    for (uint32_t k = 1; k <= 3000; k++) {
+        now_us = node.free_run.next_us;
+        TEST_ASSERT_UINT32_WITHIN(1, k * 10000U / 3U, now_us - begun_us);
+        laconic_node_on_tick(&node, now_us);
+        TEST_ASSERT_EQUAL_UINT64(k, node.plant.steps);
+    }
+    TEST_ASSERT_EQUAL_UINT32(10000000, now_us - begun_us);
+    TEST_ASSERT_TRUE(node.free_run.worst_lateness_us == 0 && node.counters.late_periods == 0);
+}
+
+static void a_period_is_late_from_one_period_on(void) {
+    start(1000, 0);
+    now_us += 1000 + 999;
+    laconic_node_on_tick(&node, now_us);
+    TEST_ASSERT_EQUAL_UINT16(0, node.counters.late_periods);
+    now_us += 1 + 1000;
+    laconic_node_on_tick(&node, now_us);
+    TEST_ASSERT_EQUAL_UINT16(1, node.counters.late_periods);
+    TEST_ASSERT_EQUAL_UINT32(1000, node.free_run.worst_lateness_us);
+    bench_control(LACONIC_WIRE_COMMAND_STOP, 0, 0);
+    start(1000, 0);
+    TEST_ASSERT_EQUAL_UINT32(0, node.free_run.worst_lateness_us);
+}
+
+static void the_watchdog_waits_its_time_to_the_microsecond(void) {
+    start(1000, 10);
+    const uint32_t fed_us = now_us;
+    for (uint32_t k = 1; k <= 9; k++) laconic_node_on_tick(&node, fed_us + 1000U * k);
+    laconic_node_on_tick(&node, fed_us + 10000U);
+    TEST_ASSERT_EQUAL_UINT8(LACONIC_WIRE_STATE_FREE_RUN, node.state);
+    laconic_node_on_tick(&node, fed_us + 10001U);
+    TEST_ASSERT_EQUAL_UINT8(LACONIC_WIRE_STATE_TIMEOUT, node.state);
+}
+
+/* With 1 V in a group that comes twice nothing is fed; the groups of a run before do not count. */
+static void groups_of_voltages_begin_anew_with_each_run(void) {
+    start(1000, 10);
+    bench_voltage(0, 500, 0);
+    TEST_ASSERT_EQUAL_UINT8(1, node.groups_seen);
+    bench_control(LACONIC_WIRE_COMMAND_STOP, 0, 0);
+    start(1000, 10);
+    TEST_ASSERT_EQUAL_UINT8(0, node.groups_seen);
+    const uint32_t fed_us = node.free_run.fed_us;
+    now_us += 500;
+    bench_voltage(1, 500, 0);
+    bench_voltage(1, 500, 0);
+    TEST_ASSERT_EQUAL_UINT32(fed_us, node.free_run.fed_us);
+    bench_voltage(0, 500, 0);
+    TEST_ASSERT_EQUAL_UINT32(now_us, node.free_run.fed_us);
+    TEST_ASSERT_EQUAL_UINT8(0, node.groups_seen);
+}
+
+static void whoever_waits_wakes_for_the_next_period_or_heartbeat(void) {
+    TEST_ASSERT_EQUAL_UINT32(100000 - (now_us - node.heartbeat_us), laconic_node_idle_us(&node, now_us));
+    start(100, 0);
+    TEST_ASSERT_EQUAL_UINT32(10000, laconic_node_idle_us(&node, now_us));
+    TEST_ASSERT_EQUAL_UINT32(4000, laconic_node_idle_us(&node, now_us + 6000U));
+    TEST_ASSERT_EQUAL_UINT32(0, laconic_node_idle_us(&node, now_us + 10001U));
+    node.free_run.next_us += 1000000U;
+    TEST_ASSERT_EQUAL_UINT32(0, laconic_node_idle_us(&node, node.heartbeat_us + 100001U));
+}
+
 int main(void) {
     UNITY_BEGIN();
     RUN_TEST(every_period_takes_its_steps_though_the_time_wraps);
@@ -104,5 +194,11 @@ int main(void) {
     RUN_TEST(a_frame_stamped_after_the_tick_that_follows_it_feeds_the_watchdog);
     RUN_TEST(a_sync_is_refused_in_free_run);
     RUN_TEST(the_heartbeat_beats_in_every_state);
+    RUN_TEST(a_step_that_the_core_refuses_ends_in_fault_with_the_inputs_cleared);
+    RUN_TEST(periods_that_are_no_whole_microseconds_keep_their_rate);
+    RUN_TEST(a_period_is_late_from_one_period_on);
+    RUN_TEST(the_watchdog_waits_its_time_to_the_microsecond);
+    RUN_TEST(groups_of_voltages_begin_anew_with_each_run);
+    RUN_TEST(whoever_waits_wakes_for_the_next_period_or_heartbeat);
     return UNITY_END();
 }

@@ -1,4 +1,6 @@
 /* Tests of node_pack.c: the content of the node's frames, and when they set overrange. */
+#include "node_internal.h" /* before the bench, whose `node` would be shadowed */
+
 #include "bench.h"
 #include "unity.h"
 
@@ -94,6 +96,133 @@ static void counters_come_in_three_pages(void) {
     TEST_ASSERT_FALSE(bench_receive(LACONIC_WIRE_COUNTERS, data));
 }
 
+static void each_number_of_a_pose_has_its_place(void) {
+    uint8_t data[LACONIC_FRAME_BYTES];
+    struct laconic_dbc_pose_t pose;
+    const laconic_start start = {{0, 0, 0}, (laconic_real)1.5, (laconic_real)-2.25, (laconic_real)0.75, {0}};
+    bench_select(LACONIC_NODE_SEND_POSE, 0, 0);
+    bench_start_lockstep();
+    laconic_state_set(&node.plant.state, &node.plant.model, &start, NULL);
+    bench_sync(1);
+    laconic_node_on_tick(&node, now_us);
+    TEST_ASSERT_TRUE(bench_receive(LACONIC_WIRE_POSE, data));
+    laconic_dbc_pose_unpack(&pose, data, 8);
+    TEST_ASSERT_EQUAL_INT16(1500, pose.x);
+    TEST_ASSERT_EQUAL_INT16(-2250, pose.y);
+    TEST_ASSERT_EQUAL_INT16(7500, pose.heading);
+    TEST_ASSERT_EQUAL_UINT8(0, pose.overrange);
+}
+
+static void each_number_of_nu_has_its_place(void) {
+    uint8_t data[LACONIC_FRAME_BYTES];
+    struct laconic_dbc_nu_t nu;
+    laconic_real now[3];
+    bench_load(0); /* without wheels all three numbers are free */
+    const laconic_start start = {{(laconic_real)1.5, (laconic_real)-2.25, 0}, 0, 0, 0, {0}};
+    bench_select(LACONIC_NODE_SEND_NU, 0, 0);
+    bench_start_lockstep();
+    laconic_state_set(&node.plant.state, &node.plant.model, &start, NULL);
+    bench_sync(1);
+    laconic_node_on_tick(&node, now_us);
+    laconic_nu(&node.plant.model, &node.plant.state, now);
+    TEST_ASSERT_TRUE(bench_receive(LACONIC_WIRE_NU, data));
+    laconic_dbc_nu_unpack(&nu, data, 8);
+    TEST_ASSERT_EQUAL_INT16(300, nu.nu_1);
+    TEST_ASSERT_EQUAL_INT16(-450, nu.nu_2);
+    TEST_ASSERT_EQUAL_INT16(0, nu.nu_3);
+}
+
+static struct laconic_dbc_heartbeat_t heartbeat(void) {
+    struct laconic_dbc_heartbeat_t beat = {0};
+    uint8_t data[LACONIC_FRAME_BYTES];
+    now_us += LACONIC_NODE_HEARTBEAT_US;
+    laconic_node_on_tick(&node, now_us);
+    TEST_ASSERT_TRUE(bench_receive(LACONIC_WIRE_HEARTBEAT, data));
+    laconic_dbc_heartbeat_unpack(&beat, data, 8);
+    return beat;
+}
+
+static void a_heartbeat_tells_steps_state_and_lateness(void) {
+    node.plant.steps = 0x1122334455667788U;
+    node.free_run.worst_lateness_us = 32766;
+    struct laconic_dbc_heartbeat_t beat = heartbeat();
+    TEST_ASSERT_EQUAL_HEX32(0x55667788U, beat.steps);
+    TEST_ASSERT_EQUAL_UINT8(LACONIC_WIRE_STATE_READY, beat.state);
+    TEST_ASSERT_EQUAL_UINT16(32766, beat.worst_lateness);
+    TEST_ASSERT_EQUAL_UINT8(0, beat.deaf);
+    node.free_run.worst_lateness_us = 1000000;
+    node.session.deaf = BIT(LACONIC_WIRE_SYNC);
+    beat = heartbeat();
+    TEST_ASSERT_EQUAL_UINT16(32767, beat.worst_lateness);
+    TEST_ASSERT_EQUAL_UINT8(1, beat.deaf);
+}
+
+/* While drives play, and after them; in lockstep nobody speaks to drives. */
+static void a_heartbeat_tells_of_a_drive_that_heard_no_controller_in_time(void) {
+    node.drives.count = 2;
+    TEST_ASSERT_EQUAL_UINT8(0, heartbeat().deaf);
+    node.drives.drive[0].unheard = true;
+    TEST_ASSERT_EQUAL_UINT8(1, heartbeat().deaf);
+    node.drives.drive[0].unheard = false;
+    node.drives.drive[1].unheard = true;
+    TEST_ASSERT_EQUAL_UINT8(1, heartbeat().deaf);
+    bench_start_lockstep();
+    TEST_ASSERT_EQUAL_UINT8(0, heartbeat().deaf);
+    bench_control(LACONIC_WIRE_COMMAND_STOP, 0, 0);
+    node.drives.drive[1].unheard = false;
+    node.drives.drive[2].unheard = true; /* beyond the last */
+    TEST_ASSERT_EQUAL_UINT8(0, heartbeat().deaf);
+}
+
+static void a_result_repeats_the_request_and_names_field_and_item(void) {
+    uint8_t data[LACONIC_FRAME_BYTES];
+    struct laconic_dbc_result_t result;
+    const laconic_node_result answer = {0, LACONIC_WIRE_COMMAND_COMMIT, 7, 31, 5};
+    node.answer[LACONIC_WIRE_COMMIT].request = 11;
+    laconic_node_answer(&node, LACONIC_WIRE_COMMIT, answer);
+    TEST_ASSERT_TRUE(bench_receive(LACONIC_WIRE_RESULT, data));
+    laconic_dbc_result_unpack(&result, data, 8);
+    TEST_ASSERT_EQUAL_UINT8(11, result.request);
+    TEST_ASSERT_EQUAL_UINT8(LACONIC_WIRE_COMMAND_COMMIT, result.command);
+    TEST_ASSERT_EQUAL_UINT8(7, result.status);
+    TEST_ASSERT_EQUAL_UINT8(31, result.field);
+    TEST_ASSERT_EQUAL_UINT8(5, result.item);
+    TEST_ASSERT_EQUAL_UINT8(LACONIC_WIRE_STATE_READY, result.state);
+    TEST_ASSERT_EQUAL_UINT16(1, node.counters.refused);
+}
+
+static void a_challenge_repeats_the_request_of_its_hello(void) {
+    laconic_frame frame = {.id = LACONIC_WIRE_ID_BASE + LACONIC_WIRE_HELLO, .length = 8};
+    struct laconic_dbc_challenge_t challenge;
+    uint8_t data[LACONIC_FRAME_BYTES];
+    laconic_protect_plain(LACONIC_WIRE_HELLO, frame.data, 13);
+    laconic_node_on_frame(&node, &frame, now_us);
+    TEST_ASSERT_TRUE(bench_receive(LACONIC_WIRE_CHALLENGE, data));
+    laconic_dbc_challenge_unpack(&challenge, data, 8);
+    TEST_ASSERT_EQUAL_UINT8(13, challenge.request);
+    TEST_ASSERT_EQUAL_HEX32(node.session.nonce, challenge.nonce);
+}
+
+/* The bytes that no signal has are 0, whatever the port's frame held before. */
+static void what_a_frame_does_not_tell_is_zero(void) {
+    uint8_t data[LACONIC_FRAME_BYTES];
+    memset(data, 0xFF, sizeof data);
+    node.answers_due = (uint16_t)BIT(LACONIC_WIRE_CONTROL);
+    laconic_node_pack(&node, LACONIC_WIRE_RESULT, data);
+    TEST_ASSERT_TRUE(data[0] == 0 && data[7] == 0);
+    memset(data, 0xFF, sizeof data);
+    laconic_node_pack(&node, LACONIC_WIRE_CHALLENGE, data);
+    TEST_ASSERT_TRUE(data[6] == 0 && data[7] == 0);
+}
+
+static void counters_stop_at_their_largest_number(void) {
+    uint16_t counter = UINT16_MAX - 1U;
+    count(&counter);
+    TEST_ASSERT_EQUAL_UINT16(UINT16_MAX, counter);
+    count(&counter);
+    TEST_ASSERT_EQUAL_UINT16(UINT16_MAX, counter);
+}
+
 int main(void) {
     UNITY_BEGIN();
     RUN_TEST(values_are_rounded_to_the_nearest);
@@ -101,5 +230,13 @@ int main(void) {
     RUN_TEST(wheels_come_in_groups_of_three);
     RUN_TEST(the_fd_frame_packed_by_hand_reads_by_the_contract);
     RUN_TEST(counters_come_in_three_pages);
+    RUN_TEST(each_number_of_a_pose_has_its_place);
+    RUN_TEST(each_number_of_nu_has_its_place);
+    RUN_TEST(a_heartbeat_tells_steps_state_and_lateness);
+    RUN_TEST(a_heartbeat_tells_of_a_drive_that_heard_no_controller_in_time);
+    RUN_TEST(a_result_repeats_the_request_and_names_field_and_item);
+    RUN_TEST(a_challenge_repeats_the_request_of_its_hello);
+    RUN_TEST(what_a_frame_does_not_tell_is_zero);
+    RUN_TEST(counters_stop_at_their_largest_number);
     return UNITY_END();
 }

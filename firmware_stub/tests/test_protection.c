@@ -57,11 +57,54 @@ static void a_plain_frame_is_that_of_the_profile(void) {
     TEST_ASSERT_FALSE(laconic_plain_is_right(LACONIC_WIRE_HELLO, data));
 }
 
+/* The first bytes come from firmware_stub/reference_client.py, an independent implementation. */
+static void keyed_frames_are_those_of_the_reference_client(void) {
+    static const uint8_t crc[3] = {0xDB, 0x2E, 0x01};
+    static const uint32_t counts[3] = {1000, 1001, 7};
+    for (int k = 0; k < 3; k++) {
+        uint8_t data[8] = {0, 0x30, 2, 3, 4, 5, 6, 7};
+        laconic_protect_keyed(LACONIC_WIRE_VOLTAGE, data, 77, counts[k]);
+        TEST_ASSERT_EQUAL_HEX8(crc[k], data[0]);
+        TEST_ASSERT_EQUAL_HEX8(0x30U | (counts[k] & 15U), data[1]);
+    }
+    uint8_t control[8] = {0, 0, 2, 3, 4, 5, 6, 7};
+    laconic_protect_keyed(LACONIC_WIRE_CONTROL, control, 0xDEADBEEFU, 5);
+    TEST_ASSERT_EQUAL_HEX8(0x1B, control[0]);
+}
+
+static void frames_of_can_fd_are_those_of_the_reference_client(void) {
+    uint8_t raw[64], state[64];
+    for (uint8_t k = 0; k < 64; k++) raw[k] = state[k] = k;
+    laconic_protect_keyed(LACONIC_WIRE_RAW_INPUT_FD, raw, 77, 1000);
+    TEST_ASSERT_TRUE(raw[0] == 0xC2 && raw[1] == 0x4C && raw[2] == 0xE8);
+    laconic_protect_plain(LACONIC_WIRE_STATE_FD, state, 200);
+    TEST_ASSERT_TRUE(state[0] == 0x94 && state[1] == 0xC9 && state[2] == 200);
+    TEST_ASSERT_EQUAL_UINT8(200, laconic_counter_of(LACONIC_WIRE_STATE_FD, state));
+    uint8_t voltage[48];
+    for (uint8_t k = 0; k < 48; k++) voltage[k] = k;
+    laconic_protect_keyed(LACONIC_WIRE_VOLTAGE_FD, voltage, 0xDEADBEEFU, 513);
+    TEST_ASSERT_TRUE(voltage[0] == 0xDC && voltage[1] == 0x94 && voltage[2] == 1);
+}
+
+static void a_plain_frame_is_that_of_the_reference_client(void) {
+    uint8_t data[8] = {0, 0, 2, 3, 4, 5, 6, 7};
+    laconic_protect_plain(LACONIC_WIRE_HELLO, data, 9);
+    TEST_ASSERT_TRUE(data[0] == 0xBE && data[1] == 9);
+}
+
+static void the_key_of_a_run_is_mixed_with_the_count_of_its_start(void) {
+    TEST_ASSERT_EQUAL_HEX32(0xF6B1738DU, laconic_run_key(5, 5));
+}
+
 int main(void) {
     UNITY_BEGIN();
     RUN_TEST(the_mixing_function_gives_its_test_vectors);
     RUN_TEST(every_bit_of_both_sides_flips_about_half_of_the_result);
     RUN_TEST(a_frame_passes_with_its_own_key_and_count_only);
     RUN_TEST(a_plain_frame_is_that_of_the_profile);
+    RUN_TEST(keyed_frames_are_those_of_the_reference_client);
+    RUN_TEST(frames_of_can_fd_are_those_of_the_reference_client);
+    RUN_TEST(a_plain_frame_is_that_of_the_reference_client);
+    RUN_TEST(the_key_of_a_run_is_mixed_with_the_count_of_its_start);
     return UNITY_END();
 }

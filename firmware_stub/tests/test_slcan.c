@@ -93,6 +93,119 @@ static void what_is_written_reads_back_the_same(void) {
     TEST_ASSERT_EQUAL_HEX32(before.id, frame.id);
 }
 
+static const char digits[] = "0123456789ABCDEF";
+
+/* Each DLC with the length that CAN FD gives it, and so many bytes. */
+static void every_length_of_can_fd_is_read_and_written(void) {
+    static const uint8_t lengths[16] = {0, 1, 2, 3, 4, 5, 6, 7, 8, 12, 16, 20, 24, 32, 48, 64};
+    feed("O\r");
+    for (size_t dlc = 0; dlc < 16; dlc++) {
+        char line[LACONIC_SLCAN_LINE + 1] = "d123", back[LACONIC_SLCAN_LINE + 1] = {0};
+        size_t end = 4;
+        line[end++] = digits[dlc];
+        for (size_t k = 0; k < 2U * lengths[dlc]; k++) line[end++] = digits[(7U * k + dlc) % 16U];
+        line[end] = '\r';
+        TEST_ASSERT_EQUAL(LACONIC_SLCAN_FRAME, feed(line));
+        TEST_ASSERT_EQUAL_UINT8(lengths[dlc], frame.length);
+        TEST_ASSERT_TRUE(frame.fd && !frame.bit_rate_switch && !frame.extended && !frame.remote);
+        TEST_ASSERT_EQUAL_size_t(end + 1, laconic_slcan_write(&slcan, &frame, back));
+        TEST_ASSERT_EQUAL_STRING(line, back);
+    }
+}
+
+static void lines_of_every_kind_are_written_as_they_were_read(void) {
+    static const char *const lines[] = {"t7FF3A1B2C3\r", "T1FFFFFFF10F\r",   "r2008\r", "R000002008\r",
+                                        "b20119A\r",     "B1ABCDEF028899\r", "d0000\r", "t00080123456789ABCDEF\r"};
+    feed("O\r");
+    for (size_t k = 0; k < sizeof lines / sizeof lines[0]; k++) {
+        char back[LACONIC_SLCAN_LINE + 1] = {0};
+        TEST_ASSERT_EQUAL(LACONIC_SLCAN_FRAME, feed(lines[k]));
+        TEST_ASSERT_TRUE(frame.bit_rate_switch == (lines[k][0] == 'b' || lines[k][0] == 'B'));
+        back[laconic_slcan_write(&slcan, &frame, back)] = 0;
+        TEST_ASSERT_EQUAL_STRING(lines[k], back);
+    }
+}
+
+static void every_digit_is_one_and_its_neighbours_are_none(void) {
+    feed("O\r");
+    static const char none[] = {'0' - 1, '9' + 1, 'A' - 1, 'F' + 1, 'a' - 1, 'f' + 1};
+    for (size_t k = 0; k < sizeof none; k++) {
+        char line[] = "t2001 0\r";
+        line[5] = none[k];
+        answers(line, "\a");
+    }
+    TEST_ASSERT_EQUAL(LACONIC_SLCAN_FRAME, feed("t20080123456789abcdef\r"));
+    TEST_ASSERT_EQUAL_HEX8(0x01, frame.data[0]);
+    TEST_ASSERT_EQUAL_HEX8(0x89, frame.data[4]);
+    TEST_ASSERT_EQUAL_HEX8(0xAB, frame.data[5]);
+    TEST_ASSERT_EQUAL_HEX8(0xEF, frame.data[7]);
+}
+
+static void the_largest_identifiers_are_taken_and_the_next_are_none(void) {
+    feed("O\r");
+    TEST_ASSERT_EQUAL(LACONIC_SLCAN_FRAME, feed("T1FFFFFFF0\r"));
+    TEST_ASSERT_EQUAL_HEX32(0x1FFFFFFFU, frame.id);
+    answers("T200000000\r", "\a");
+    answers("t8000\r", "\a");
+    TEST_ASSERT_EQUAL(LACONIC_SLCAN_FRAME, feed("r2000\r"));
+    TEST_ASSERT_EQUAL(LACONIC_SLCAN_FRAME, feed("t20081122334455667788\r"));
+    answers("t2009112233445566778899\r", "\a");
+    answers("t\r", "\a");
+    answers("t200\r", "\a");
+}
+
+static void a_rate_is_one_digit_from_0_to_8(void) {
+    answers("S0\r", "\r");
+    answers("S8\r", "\r");
+    answers("S/\r", "\a");
+    answers("S\r", "\a");
+    answers("S66\r", "\a");
+    feed("O\r");
+    answers("S6\r", "\a");
+    answers("s031C\r", "\a");
+    answers("Y5\r", "\a");
+    answers("Z1\r", "\a");
+    answers("v\r", "V1010\r");
+    feed("C\r");
+    answers("s031C\r", "\r");
+    answers("Y5\r", "\r");
+}
+
+static void who_only_listens_sends_no_frames_and_hears_them(void) {
+    char line[LACONIC_SLCAN_LINE + 1] = {0};
+    answers("L\r", "\r");
+    answers("t2000\r", "\a");
+    frame.id = 0x200;
+    TEST_ASSERT_EQUAL_size_t(6, laconic_slcan_write(&slcan, &frame, line));
+    TEST_ASSERT_EQUAL_STRING("t2000\r", line);
+    answers("C\r", "\r");
+    TEST_ASSERT_EQUAL_size_t(0, laconic_slcan_write(&slcan, &frame, line));
+    answers("t2000\r", "\a");
+}
+
+static void a_channel_begins_closed_and_without_a_reply(void) {
+    memset(&slcan, 0x55, sizeof slcan);
+    laconic_slcan_init(&slcan, '6');
+    TEST_ASSERT_TRUE(slcan.reply[0] == 0 && !slcan.open && !slcan.listen_only && !slcan.rate_is_wrong);
+    answers("S6\r", "\r");
+    answers("O\r", "\r");
+    TEST_ASSERT_EQUAL(LACONIC_SLCAN_FRAME, feed("t2000\r"));
+}
+
+/* The longest line is that of a frame of CAN FD with 64 bytes and 29 bits of identifier. */
+static void the_longest_line_has_room_and_one_letter_more_has_none(void) {
+    char line[2 + 8 + 1 + 128 + 2] = "D12345678F";
+    size_t end = 10;
+    feed("O\r");
+    while (end < 10U + 128U) line[end++] = 'E';
+    line[end] = '\r';
+    TEST_ASSERT_EQUAL(LACONIC_SLCAN_FRAME, feed(line));
+    TEST_ASSERT_EQUAL_HEX8(0xEE, frame.data[63]);
+    line[end] = 'E';
+    line[end + 1] = '\r';
+    answers(line, "\a");
+}
+
 int main(void) {
     UNITY_BEGIN();
     RUN_TEST(commands_are_answered);
@@ -101,5 +214,13 @@ int main(void) {
     RUN_TEST(a_line_too_long_is_dropped_to_its_end);
     RUN_TEST(at_the_wrong_bit_rate_nothing_comes_or_goes);
     RUN_TEST(what_is_written_reads_back_the_same);
+    RUN_TEST(every_length_of_can_fd_is_read_and_written);
+    RUN_TEST(lines_of_every_kind_are_written_as_they_were_read);
+    RUN_TEST(every_digit_is_one_and_its_neighbours_are_none);
+    RUN_TEST(the_largest_identifiers_are_taken_and_the_next_are_none);
+    RUN_TEST(a_rate_is_one_digit_from_0_to_8);
+    RUN_TEST(who_only_listens_sends_no_frames_and_hears_them);
+    RUN_TEST(a_channel_begins_closed_and_without_a_reply);
+    RUN_TEST(the_longest_line_has_room_and_one_letter_more_has_none);
     return UNITY_END();
 }
