@@ -17,7 +17,7 @@ from mpmath import mp, mpf
 
 from laconic.enclosure.balls import Vector, added, ball, dot
 from laconic.errors import ResultFails
-from laconic.population.nodes import BITS, POINTS, column, damped, nodes
+from laconic.population.nodes import BITS, POINTS, column, damped, last_coefficient, nodes
 from laconic.verification.derivatives.exact_model import ExactModel
 from laconic.verification.derivatives.exact_steps import forcing_of
 
@@ -26,10 +26,12 @@ Held = Mapping[str, Sequence[float]]
 DIGITS = 60              # with which numbers pass from mpmath
 FIRST = 2.0              # of the fastest damping's time, the first panel after a change of inputs
 GROWTH = 0.5             # of the time since then, each further one
-LONGEST_S = 0.01
+LONGEST_S = 1.0
 FAST = 0.5               # decay times panel, from which on damping is solved
 ROUNDS = 60
 SETTLED = arb(2) ** -150  # of the largest number, between two rounds
+RESOLVED = 1e-26         # of the largest number, the last coefficient of a panel's polynomials
+HOPELESS = 1e6           # of the largest number: an iteration that moves so far does not settle
 SHORTEST_S = 1e-15
 
 
@@ -87,7 +89,7 @@ def rate_at(k: Constants, z: Vector, heading: arb, is_turning: bool) -> Vector:
 
 
 def panel(k: Constants, start: Motion, h: arb) -> Motion | None:
-    """The motion after so long; None where the iteration does not settle."""
+    """The motion after so long; None where the iteration does not settle, or the polynomials do not resolve it."""
     table = nodes()
     axes = [damped(h * r) if r * h > FAST else None for r in k.decay]
     is_turning = any(x != 0 for each in k.forcing[1:] for x in each)
@@ -101,8 +103,13 @@ def panel(k: Constants, start: Motion, h: arb) -> Motion | None:
         headings = headings_of(k, start, h, fresh)
         moved = max(float(abs(p - q)) for new, old in zip(fresh, z, strict=True) for p, q in zip(new, old, strict=True))
         z = fresh
-        if moved <= float(SETTLED * max(1.0, *(float(abs(x)) for each in z for x in each))):
-            return end_of(k, start, h, z, headings)
+        largest = max(1.0, *(float(abs(x)) for each in z for x in each))
+        if moved <= float(SETTLED * largest):
+            is_resolved = all(float(last_coefficient(each)) <= RESOLVED * largest for each in
+                              ([x, *rest] for x, rest in zip(start.zeta, z, strict=True)))
+            return end_of(k, start, h, z, headings) if is_resolved else None
+        if not moved < HOPELESS * largest:
+            return None
     return None
 
 
@@ -144,11 +151,11 @@ def onward(k: Constants, start: Motion, begin_s: Fraction, end_s: Fraction) -> M
         length = min(Fraction(h), end_s - now)
         found = panel(k, state, ball(length).mid())
         if found is None:
-            most = h / 2
+            most = float(length) / 2
             if most < SHORTEST_S:
                 raise ResultFails(f"the collocation does not settle in panels of {h:g} s")
             continue
-        state, now = found, now + length
+        state, now, most = found, now + length, min(LONGEST_S, 2 * most)
     return state
 
 

@@ -45,5 +45,11 @@ def damped(decay: arb) -> tuple[arb_mat, arb_mat]:
     return response, (response * table.from_start * -1).mid()
 
 
+def last_coefficient(values: Sequence[arb]) -> arb:
+    """The size of the highest of Chebyshev's coefficients of the polynomial with these values at all points."""
+    ends = (values[0] + values[-1] * (-1) ** POINTS) / 2
+    return abs(sum((x if k % 2 else -x for k, x in enumerate(values[1:-1])), ends)) / POINTS
+
+
 def column(numbers: Sequence[arb]) -> arb_mat:
     return arb_mat(len(numbers), 1, list(numbers))

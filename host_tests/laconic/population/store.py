@@ -28,9 +28,9 @@ class About:
     core: str
 
 
-def core_digest() -> str:
-    """Of the double core."""
-    return hashlib.sha256(library("laconic_double").read_bytes()).hexdigest()[:16]
+def core_digest(real: str = "double") -> str:
+    """Of the core's library."""
+    return hashlib.sha256(library(f"laconic_{real}").read_bytes()).hexdigest()[:16]
 
 
 class Store:

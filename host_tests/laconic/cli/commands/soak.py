@@ -34,8 +34,9 @@ def kinds() -> dict[str, str]:
 @click.option("--seconds", type=float, metavar="S", help="lateness: on each board, 10 by default.")
 @click.option("--step", "step_s", type=float, metavar="S", help="controllers: period of the drives, 0.005 by default.")
 @click.option("--vehicles", type=click.IntRange(min=1), metavar="N", help="population: 2000 by default.")
-@click.option("--method", metavar="METHOD", help="population: beside auto; exponential-gauss-8 by default.")
-@click.option("-o", "--out", type=OutputFolder(), metavar="DIR", help="population: rows and scenes; goes on there.")
+@click.option("--method", metavar="METHOD", help="population, long: beside auto, instead of auto and rk4.")
+@click.option("--steps", type=click.IntRange(min=1), metavar="N", help="long: 10⁹ by default.")
+@click.option("-o", "--out", type=OutputFolder(), metavar="DIR", help="population, long: what is done; goes on there.")
 @click.option("--sample", type=click.IntRange(min=1), metavar="N", help="mutants: so many, whatever the minutes.")
 @click.option("--only", metavar="PART", help="mutants: core, node, or one C file by its path.")
 @json_flag()
@@ -66,12 +67,14 @@ def command(what: str, minutes: float, seed: int | None, json_wanted: bool, **sp
     identify         a thousand made-up robots: what their intervals hold
     lateness         play at 1 kHz with four drives, in this process and in the node's,
                      for a controller in another process: how late periods begin
+    long             10⁹ steps of motions with a closed form: drift of heading and place;
+                     goes on where it was ended
     mutants          the C sources with one small fault each: some C test must notice it;
                      goes on where the last run ended, and prints by file what survived
-    rig              all scenes in lockstep on the virtual bus, same bits
     population       2000 made-up vehicles, damping up to a million times the usual,
                      beside their true motion: errors' quantiles, refusals, the worst
                      as scenes; goes on where it was ended
+    rig              all scenes in lockstep on the virtual bus, same bits
     slcan            all scenes over SLCAN to a node process
     soft-double      soft_double.c beside this processor's addition; a minute takes 10⁹ pairs
     sweep            sweeps killed at random instants, their bytes against undisturbed ones

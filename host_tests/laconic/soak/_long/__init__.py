@@ -1,0 +1,1 @@
+"""Motions whose end is known in closed form after any number of steps."""
