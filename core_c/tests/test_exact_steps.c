@@ -1,6 +1,6 @@
-/* One step of made-up vehicles by every method beside the same map in 50 digits, which has no code of the core's: rollers,
- * fixed wheels, a locked one, wheels of their own, none; payloads, slopes, forces fixed in the world; damping from slow to
- * stiff, yaws of a step on both sides of the polynomials' bounds. */
+/* One step of made-up vehicles by every method beside the same map in 50 digits, which has no code of the core's:
+ * rollers, fixed wheels, a locked one, wheels of their own, none; payloads, slopes, forces fixed in the world; damping
+ * from slow to stiff, yaws of a step on both sides of the polynomials' bounds. */
 #include "check.h"
 #include "exact_steps.h"
 

@@ -10,9 +10,12 @@
 #define EXACT_GIVEN 79
 #define EXACT_WHEELS 4
 
-static const char *const exact_method[EXACT_METHODS] = {"rk4", "taylor-8", "exponential-kahan", "exponential-kahan-4", "exact-flow", "exact-flow-4", "exponential-gauss-8"};
-
 /* clang-format off */
+static const char *const exact_method[EXACT_METHODS] = {
+    "rk4", "taylor-8", "exponential-kahan", "exponential-kahan-4", "exact-flow", "exact-flow-4",
+     "exponential-gauss-8"
+};
+
 static const double exact_given[EXACT_CASES][EXACT_GIVEN] = {
     {3.845, 0.4613, 0.04634, 0.003235, 0.04657, 0.001161, 0.1704, 0.005603, 2.067, 0.06732, 0.1892, 0.09178, 0.2983,
      -0.5367, 0.02469, 1.014, -0.6318, 7.288, 2.801, 3, 1, 0, 0, 0.2768, -0.3901, 2.738, 1.58, 0, 0, 0, 0, 1, 0, 0,

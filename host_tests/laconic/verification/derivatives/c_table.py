@@ -112,9 +112,9 @@ def text() -> str:
     given = [given_numbers(trial) for trial in every]
     lines = [f"#define EXACT_CASES {len(every)}", f"#define EXACT_METHODS {len(METHODS)}",
              f"#define EXACT_GIVEN {len(given[0])}", f"#define EXACT_WHEELS {MOST_WHEELS}", "",
-             "static const char *const exact_method[EXACT_METHODS] = {"
-             + ", ".join(f'"{method}"' for method in METHODS) + "};", "",
-             "/* clang-format off */", "static const double exact_given[EXACT_CASES][EXACT_GIVEN] = {"]
+             "/* clang-format off */", "static const char *const exact_method[EXACT_METHODS] = {",
+             *wrapped(", ".join(f'"{method}"' for method in METHODS)), "};", "",
+             "static const double exact_given[EXACT_CASES][EXACT_GIVEN] = {"]
     lines += [row(numbers, f"{trial.kind}") for trial, numbers in zip(every, given, strict=True)]
     lines += ["};", "", "static const double exact_found[EXACT_CASES][EXACT_METHODS][6 + EXACT_WHEELS] = {"]
     for number, trial in enumerate(every):
@@ -131,7 +131,8 @@ def row(numbers: list[str], name: str) -> str:
 
 def wrapped(words: str) -> list[str]:
     """Text as lines."""
-    return textwrap.wrap(words, 116, initial_indent="    ", subsequent_indent="     ", break_long_words=False)
+    return textwrap.wrap(words, 116, initial_indent="    ", subsequent_indent="     ", break_long_words=False,
+                         break_on_hyphens=False)
 
 
 if __name__ == "__main__":
