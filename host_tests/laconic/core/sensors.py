@@ -14,6 +14,7 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
+from laconic.core.encoders import GEAR, KEYS, LEAST_INTEGER, MOST_INTEGER, failing, read_encoders
 from laconic.core.fields import Field
 from laconic.core.given import c_object, is_real, number, shown, step_count
 from laconic.core.inputs import check_wheels
@@ -24,7 +25,6 @@ if TYPE_CHECKING:
     from laconic.core.plant import Plant
 
 IMU, ENCODER = "sensors.imu", "sensors.encoder"  # the tables of a scene
-LEAST_INTEGER, MOST_INTEGER = -(2**31), 2**31 - 1
 
 
 @dataclass(frozen=True)
@@ -99,15 +99,30 @@ def settings_of(core: Core, given: Mapping[str, Any], wheel_count: int) -> Any:
     """The laconic_sensor_settings of {"imu": {…}, "encoder": {…}}, whose keys are those of the core's list of fields.
 
     What has several items, an axis or a wheel each, is one number for all of them or a list. BadInput names a key that
-    is unknown, no number, or of another length; what the numbers must be the core checks.
+    is unknown, no number, or of another length, and encoders that are none; what the numbers of an IMU must be the core
+    checks.
     """
     settings = core.ffi.new("laconic_sensor_settings *")
     top = _mapping("sensors", given, ("imu", "encoder"))
-    for path, table in ((IMU, top.get("imu", {})), (ENCODER, top.get("encoder", {}))):
-        fields = {field.key: field for field in core.fields_of(path)}
-        for key, value in _mapping(path, table, fields).items():
-            _put(settings, fields[key], _values(f"{path}.{key}", fields[key], value, wheel_count))
+    fields = {field.key: field for field in core.fields_of(IMU)}
+    for key, value in _mapping(IMU, top.get("imu", {}), fields).items():
+        _put(settings, fields[key], _values(f"{IMU}.{key}", fields[key], value))
+    if "encoder" in top:
+        put_encoders(core, settings, ENCODER, top["encoder"], wheel_count)
     return settings
+
+
+def put_encoders(core: Core, settings: Any, name: str, given: Any, wheel_count: int) -> None:
+    """The encoders that the table of this name gives, into a laconic_sensor_settings; BadInput names what is none."""
+    fail, fields = failing(name), {field.key: field for field in core.fields_of(ENCODER)}
+    found = read_encoders(_mapping(name, given, KEYS), wheel_count, fail)
+    for key, value in found.items():
+        _put(settings, fields[key], value if isinstance(value, tuple) else (value,))
+    for gear in found.get(GEAR, ()):
+        with np.errstate(over="ignore", under="ignore"):
+            rounded = core.dtype.type(gear)
+        if rounded == 0 or not np.isfinite(rounded):  # the core would take 0 for 1
+            fail(GEAR, f"{gear:g} is beyond the range of this precision; give a number nearer to 1")
 
 
 def values_of(field: Field, settings: Any) -> list[float]:
@@ -129,8 +144,9 @@ def _mapping(name: str, given: Any, known: Sequence[str] | Mapping[str, Any]) ->
     return given
 
 
-def _values(name: str, field: Field, given: Any, wheel_count: int) -> list[float]:
-    count = min(field.items, wheel_count) if field.table == ENCODER else field.items
+def _values(name: str, field: Field, given: Any) -> list[float]:
+    """Of an IMU: a number, or one for each axis."""
+    count = field.items
     many = isinstance(given, Sequence | np.ndarray) and not isinstance(given, str) and np.ndim(given) > 0
     if many and len(given) != count:
         raise BadInput(f"{name}: has {len(given)} entries; give one number{f', or {count}' if count else ''}")
@@ -150,7 +166,7 @@ def _whole(name: str, value: Any) -> int:
     return found
 
 
-def _put(settings: Any, field: Field, values: list[float]) -> None:
+def _put(settings: Any, field: Field, values: Sequence[float]) -> None:
     if field.table == IMU and not field.items:
         setattr(settings.imu, field.key, values[0])
     elif not field.items:

@@ -10,6 +10,7 @@ from dataclasses import dataclass
 from typing import Any
 
 from laconic.core import Field, load
+from laconic.core.encoders import A_COUNT, COUNTS, GEAR, NO_ENCODER, WRAP, read_encoders
 from laconic.core.sensors import IMU
 from laconic.scene.fields import read_field
 from laconic.scene.keys import read_number
@@ -21,7 +22,6 @@ OF_ENCODERS = ("encoder_count",)
 
 DELAY, DELAY_S = "delay_steps", "delay_s"  # in the core, and in a scene, whose step may change
 NOISES = ("acceleration_noise_m_per_s2_per_sqrt_Hz", "yaw_rate_noise_rad_per_s_per_sqrt_Hz")
-NO_ENCODER = False  # in the list counts_per_turn: a wheel without an encoder
 
 
 @dataclass(frozen=True)
@@ -41,7 +41,11 @@ class SensorTables:
     def settings(self, delay_steps: int) -> dict[str, Any]:
         """The same for Plant.sensors, with the delay in steps."""
         imu = {key: value for key, value in (self.imu or {}).items() if key != DELAY_S}
-        return {"imu": imu | {DELAY: delay_steps}, "encoder": self.encoder or {}}
+        settings: dict[str, Any] = {"imu": imu | {DELAY: delay_steps}}
+        if self.encoder is not None:
+            counts = [each or NO_ENCODER for each in self.encoder[COUNTS]]
+            settings["encoder"] = self.encoder | {COUNTS: counts}
+        return settings
 
 
 NO_SENSORS = SensorTables()
@@ -92,53 +96,11 @@ def _whole(table: Table, key: str, value: int) -> int:
 
 def read_encoder(table: Table, wheel_count: int) -> dict[str, Any]:
     """`[sensors.encoder]`: an encoder at each wheel, or at those that the list of counts names."""
-    if wheel_count == 0:
-        table.fail("counts_per_turn", "counts turns of wheels, and the vehicle has none; take [sensors.encoder] out")
-    counts = _counts(table, wheel_count)
-    encoder: dict[str, Any] = {"counts_per_turn": counts}
-    if table.has("gear_ratio"):
-        encoder["gear_ratio"] = _gears(table, counts)
-    if table.has("wrap"):
-        encoder["wrap"] = _whole(table, "wrap", table.whole("wrap"))
-        if encoder["wrap"] < 2:
-            table.fail("wrap", f"is {encoder['wrap']}; give the number of values that the counter has, such as 65536, "
-                       "or take it out for 32 bits")
+    given = {COUNTS: table.value(COUNTS, ..., (object,), A_COUNT)} if wheel_count else {}
+    given |= {key: table.value(key, ..., (object,), "") for key in (GEAR, WRAP) if table.has(key)}
+    encoder = read_encoders(given, wheel_count, table.fail)
     table.done()
     return encoder
-
-
-def _counts(table: Table, wheel_count: int) -> tuple[int, ...]:
-    """Counts of one turn for each wheel, 0 for those without an encoder."""
-    what = "a whole number, or a list with one for each wheel, false for none"
-    given = table.value("counts_per_turn", ..., (int, list), what)
-    many = given if isinstance(given, list) else [given] * wheel_count
-    if len(many) != wheel_count:
-        table.fail("counts_per_turn", f"has {len(many)} entries; give one number, or one for each of the {wheel_count} "
-                   "wheels, false for a wheel without an encoder")
-    for value in many:
-        if value is not NO_ENCODER and (isinstance(value, bool) or not isinstance(value, int)):
-            table.fail("counts_per_turn", f"holds {str(value).lower()}; give {what}")
-        if value is not NO_ENCODER and _whole(table, "counts_per_turn", value) <= 0:
-            table.fail("counts_per_turn", f"is {value}; give a number above 0{', false for none' * (len(many) > 1)}")
-    if not any(many):
-        table.fail("counts_per_turn", "gives no wheel an encoder; take [sensors.encoder] out")
-    return tuple(int(value) for value in many)
-
-
-def _gears(table: Table, counts: tuple[int, ...]) -> tuple[float, ...]:
-    """Turns of the encoder for one of the wheel, an entry for each wheel."""
-    what = "a number, or a list with one for each encoder"
-    has_list = isinstance(table.value("gear_ratio", ..., (int, float, list), what), list)
-    values = list(table.numbers("gear_ratio")) if has_list else [table.number("gear_ratio")] * len(counts)
-    if len(values) == sum(map(bool, counts)) < len(counts):
-        rest = iter(values)
-        values = [next(rest) if count else 1.0 for count in counts]
-    if len(values) != len(counts):
-        table.fail("gear_ratio", f"has {len(values)} entries; give one number, or {sum(map(bool, counts))}, one for "
-                   "each encoder")
-    if 0.0 in values:
-        table.fail("gear_ratio", "is 0; give another number, below 0 for an encoder that counts backwards")
-    return tuple(values)
 
 
 def missing_sensors(sensors: SensorTables, wheel_count: int) -> Mapping[str, str]:

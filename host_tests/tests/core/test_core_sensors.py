@@ -73,8 +73,19 @@ REFUSED = {
     "counts of two wheels": ({"encoder": {"counts_per_turn": [4, 4]}},
                              "counts_per_turn: has 2 entries; give one number"),
     "negative counts": ({"encoder": {"counts_per_turn": [4, 4, -4]}},
-                        "sensors.encoder.counts_per_turn[3]: -4 is negative"),
-    "negative wrap": ({"encoder": {"wrap": -1}}, "sensors.encoder.wrap: -1 is negative"),
+                        "sensors.encoder.counts_per_turn: is -4; give a number above 0, false for none"),
+    "no counts": ({"encoder": {"wrap": 65536}}, "sensors.encoder.counts_per_turn: is missing; give it as a whole"),
+    "counts of 0": ({"encoder": {"counts_per_turn": 0}}, "sensors.encoder.counts_per_turn: is 0; give a number above"),
+    "no encoder": ({"encoder": {"counts_per_turn": [False] * 3}}, "gives no wheel an encoder; leave the encoders out"),
+    "no gear": ({"encoder": {"counts_per_turn": 4, "gear_ratio": 0}},
+                "sensors.encoder.gear_ratio: is 0; give another number, below 0 for an encoder that counts backwards"),
+    "no gear in a list": ({"encoder": {"counts_per_turn": 4, "gear_ratio": [1, -0.0, 1]}}, "gear_ratio: is 0; give"),
+    "gear not finite": ({"encoder": {"counts_per_turn": 4, "gear_ratio": np.nan}}, "gear_ratio: nan is no finite"),
+    "no wrap": ({"encoder": {"counts_per_turn": 4, "wrap": 0}},
+                "sensors.encoder.wrap: is 0; give the number of values that the counter has, such as 65536"),
+    "wrap of one": ({"encoder": {"counts_per_turn": 4, "wrap": 1}}, "sensors.encoder.wrap: is 1; give the number"),
+    "wrap in halves": ({"encoder": {"counts_per_turn": 4, "wrap": 2.5}}, "wrap: is 2.5, not a whole number"),
+    "negative wrap": ({"encoder": {"counts_per_turn": 4, "wrap": -1}}, "sensors.encoder.wrap: is -1; give the number"),
 }
 
 
@@ -85,6 +96,21 @@ def test_wrong_settings_are_one_line_that_names_the_field(name: str) -> None:
         sensed(settings)
     assert text in str(refused.value)
     assert "\n" not in str(refused.value)
+
+
+def test_a_gear_that_single_precision_takes_for_none_is_refused_there_alone() -> None:
+    encoder = {"encoder": {"counts_per_turn": 4, "gear_ratio": 1e-60}}
+    sensed(encoder)
+    with pytest.raises(laconic.BadInput, match=r"sensors\.encoder\.gear_ratio: 1e-60 is beyond the range of this prec"):
+        sensed(encoder, "single")
+
+
+def test_a_wheel_without_an_encoder_is_said_as_in_a_scene() -> None:
+    gears = np.array([1.0, -2.0])
+    sensors = sensed({"encoder": {"counts_per_turn": [4096, False, np.int64(360)], "gear_ratio": gears}})
+    sensors.run(HELD, 100)
+    assert sensors.read().encoder_count[1] == 0
+    assert sensors.c.settings.encoder[2].gear_ratio == -2.0
 
 
 def test_an_encoder_that_turns_too_far_in_a_step_is_refused_by_its_wheel() -> None:

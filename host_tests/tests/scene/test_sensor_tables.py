@@ -71,7 +71,8 @@ REFUSED = {
     "no counts": (("counts_per_turn = [4096, false, 360]\n", ""), ("sensors.encoder.counts_per_turn: is missing",)),
     "too few counts": (("[4096, false, 360]", "[4096, 360]"),
                        ("counts_per_turn: has 2 entries", "each of the 3 wheels")),
-    "counts that are true": (("[4096, false, 360]", "[4096, true, 360]"), ("counts_per_turn: holds true",)),
+    "counts that are true": (("[4096, false, 360]", "[4096, true, 360]"),
+                             ("counts_per_turn: is true, not a whole number",)),
     "counts in halves": (("[4096, false, 360]", "40.5"),
                          ("sensors.encoder.counts_per_turn: is 40.5, not a whole number",)),
     "no turn": (("[4096, false, 360]", "[4096, 0, 360]"), ("counts_per_turn: is 0", "false for none")),
@@ -98,7 +99,7 @@ def test_a_wrong_table_of_sensors_is_one_line(name: str, tmp_path: Path, capsys:
 
 
 def test_encoders_need_wheels(tmp_path: Path) -> None:
-    with pytest.raises(BadInput, match=r"sensors\.encoder\.counts_per_turn: .*has none; take \[sensors\.encoder\] out"):
+    with pytest.raises(BadInput, match=r"sensors\.encoder\.counts_per_turn: .*has none; leave the encoders out"):
         sensed_scene(tmp_path, "[sensors.encoder]\ncounts_per_turn = 4\n", RUN, head=PUCK)
 
 
