@@ -8,7 +8,7 @@ static laconic_status check_rule(real value, uint8_t rule, laconic_field field, 
     if (rule == LACONIC_RULE_NOT_NEGATIVE && value < R(0)) return refuse(why, LACONIC_NEGATIVE, field, 0, value, R(0));
     if (rule == LACONIC_RULE_POSITIVE && value <= R(0)) return refuse(why, LACONIC_NOT_POSITIVE, field, 0, value, R(0));
     if (rule == LACONIC_RULE_NOT_ZERO && magnitude(value) < LACONIC_REAL_MIN)
-        return refuse(why, LACONIC_NOT_POSITIVE, field, 0, value, R(1));
+        return refuse(why, LACONIC_ZERO, field, 0, value, R(0));
     return LACONIC_OK;
 }
 

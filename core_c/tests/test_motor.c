@@ -52,7 +52,7 @@ static void resistance_must_be_positive_and_the_gear_not_zero(void) {
     refuses(m, LACONIC_NOT_POSITIVE, LACONIC_FIELD_RESISTANCE);
     m = good_motor();
     m.gear_ratio = 0;
-    refuses(m, LACONIC_NOT_POSITIVE, LACONIC_FIELD_GEAR_RATIO);
+    refuses(m, LACONIC_ZERO, LACONIC_FIELD_GEAR_RATIO);
 }
 
 static void friction_and_rotor_inertia_must_not_be_negative(void) {

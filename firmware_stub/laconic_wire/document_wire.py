@@ -41,6 +41,7 @@ STATUSES = {
     "METHOD_WITHOUT_FRICTION": "with friction or a drive the method must be auto",
     "STEP_UNSOLVED": "the contact forces of the step were not found",
     "STRAIGHT_ONLY": "fixed wheels on parallel axle lines need friction of the ground",
+    "ZERO": "a number that may be above or below 0 is 0",
     "UNKNOWN_COMMAND": "no such CONTROL.command", "WRONG_STATE": "not in this state",
     "CHECKSUM_MISMATCH": "COMMIT: frames were lost or another number was sent",
     "INPUT_INCOMPLETE": "raw inputs or half a double are missing", "PARAMETER_UNKNOWN": "no such field or item",

@@ -133,7 +133,8 @@ laconic_status laconic_vehicle_check(const laconic_vehicle *vehicle, laconic_ref
 /* c1 = n k_t/R_a, c2 = n² (k_t k_e/R_a + d) set in the vehicle; a wheel's own c1 and c2 stay. n² J_rotor is added to
  * the J, own ones too, of all wheels that are driven: own_inertia_kgm2 is before the call without the rotor, after it
  * with. So call it once, with the wheels set. Refuses NEGATIVE (wheel_inertia, own_inertia) where J is below 0,
- * OVERFLOW (gear_ratio) where one of these leaves the range, NEGATIVE (back_emf) where damping is below 0. */
+ * ZERO (gear_ratio), OVERFLOW (gear_ratio) where one of these leaves the range, NEGATIVE (back_emf) where damping is
+ * below 0. */
 laconic_status laconic_motor_fit(laconic_vehicle *vehicle, const laconic_motor *motor, laconic_refusal *why);
 
 /* ---------------------------------------------------------------------------------- model -- */

@@ -72,7 +72,9 @@
       "no contact forces found for a step of # s; try another step or more roller_drag") \
     X(STRAIGHT_ONLY, "straight only", /* fixed wheels on parallel axle lines, on ideal ground */ \
       "fixed wheels on parallel axle lines only drive straight, whatever their motors do; for skid steering give " \
-      "ground.friction_coefficient, so that wheels slip; else place them on one axle line")
+      "ground.friction_coefficient, so that wheels slip; else place them on one axle line") \
+    X(ZERO, "zero", \
+      "# is zero; give a value above 0, or below 0 for a shaft that turns the other way")
 
 /* X(IDENTIFIER, explanation with the remedy): what laconic_self_test() finds. */
 #define LACONIC_ARITHMETICS(X) \

@@ -112,7 +112,8 @@ typedef struct laconic_motor {
     laconic_real resistance_ohm;           /* R_a > 0                                             */
     laconic_real torque_constant_Nm_per_A; /* k_t                                                 */
     laconic_real back_emf_Vs_per_rad;      /* k_e                                                 */
-    laconic_real gear_ratio;               /* n: turns of the shaft per turn of the wheel, not 0  */
+    laconic_real gear_ratio;               /* n: turns of the shaft per turn of the wheel, not 0;
+                                              below 0: the shaft turns against the wheel          */
     laconic_real viscous_friction_Nms;     /* d: torque per speed of the shaft                    */
     laconic_real rotor_inertia_kgm2;
 } laconic_motor;

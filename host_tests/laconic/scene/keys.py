@@ -140,7 +140,8 @@ KEYS: Mapping[str, Key] = {key.path: key for key in (
     Key("vehicle.motor.resistance_ohm", meaning="Of the winding, R_a"),
     Key("vehicle.motor.torque_constant_Nm_per_A", meaning="Torque of the shaft per ampere, k_t"),
     Key("vehicle.motor.back_emf_Vs_per_rad", meaning="Voltage per speed of the shaft, k_e; in SI as large as k_t"),
-    Key("vehicle.motor.gear_ratio", meaning="Turns of the motor's shaft for one of the wheel, n"),
+    Key("vehicle.motor.gear_ratio", meaning="Turns of the motor's shaft for one of the wheel, n; below 0: the shaft "
+                                            "turns against the wheel, so a voltage above 0 turns that backwards"),
     Key("vehicle.motor.viscous_friction_Nms", meaning="Torque per speed of the shaft, d"),
     Key("vehicle.motor.rotor_inertia_kgm2", meaning="Of the rotor; added, times n², to `wheel_inertia_kgm2`"),
     Key("vehicle.drive.supply_V", rule=POSITIVE, usual="no limit"),

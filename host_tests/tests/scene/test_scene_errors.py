@@ -75,6 +75,10 @@ BAD = {
         ("motor_gain_Nm_per_V = 0.8\nmotor_damping_Nms = 0.05\n", "motor = {resistance_ohm = 0, "
          "torque_constant_Nm_per_A = 1, back_emf_Vs_per_rad = 1, gear_ratio = 1}\n"),
         ("vehicle.motor.resistance_ohm: 0", "above 0")),
+    "motor without gear": (
+        ("motor_gain_Nm_per_V = 0.8\nmotor_damping_Nms = 0.05\n", "motor = {resistance_ohm = 1, "
+         "torque_constant_Nm_per_A = 1, back_emf_Vs_per_rad = 1, gear_ratio = 0}\n"),
+        ("vehicle.motor.gear_ratio: 0 is zero; give a value above 0, or below 0 for a shaft that turns the other",)),
     "caster": (('kind = "mecanum"', 'kind = "caster"'), ("wheel[1].kind", "[[vehicle.support]]")),
     "swivel caster": (('kind = "omni"', 'kind = "swivel-caster"'), ("wheel[2].kind", "[[vehicle.support]]")),
     "steered wheel": (('kind = "mecanum"', 'kind = "steered"'), ("wheel[1].kind", "constant steering angle")),
