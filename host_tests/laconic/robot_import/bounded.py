@@ -1,7 +1,7 @@
 """What a library makes of a file, in a process of its own: a file can make it compute for ever, or fill the memory.
 
-`bounded` calls a function there, by `python -m laconic.robot_import.bounded`. Ctrl-C, which a library written in C does
-not see, ends that process, too.
+`bounded` calls a function there, by `python -m laconic.robot_import.bounded`; a `Reader` calls one after another.
+Ctrl-C, which a library written in C does not see, ends that process, too.
 """
 
 from __future__ import annotations
@@ -16,12 +16,13 @@ from collections.abc import Callable
 from contextlib import suppress
 from dataclasses import dataclass
 from pathlib import Path
-from typing import Any
+from typing import IO, Any
 
 from laconic.errors import BadInput
 
-LONGEST_S = 20.0
+LONGEST_S = 20.0        # of one call
 MOST_BYTES = 2 * 2**30  # of memory
+HEAD_BYTES = 8          # of a message: its length
 
 
 @dataclass(frozen=True)
@@ -31,10 +32,9 @@ class Library:
     name: str
     endless: str
 
-    @property
-    def needs_too_much(self) -> str:
-        """The memory was not enough."""
-        return f"{self.name} needs more than {MOST_BYTES / 2**30:g} GiB of memory; mend {self.endless}"
+
+class Unanswered(Exception):
+    """Why a call came to nothing, in words."""
 
 
 def bounded(library: Library, call: Callable[..., Any], path: Path, *more: Any) -> Any:
@@ -42,22 +42,72 @@ def bounded(library: Library, call: Callable[..., Any], path: Path, *more: Any) 
 
     Raises what the call raises; BadInput for one that takes more than LONGEST_S or MOST_BYTES, or whose process fails.
     """
-    try:
-        done = subprocess.run([sys.executable, "-m", __name__], input=pickle.dumps((call, path, *more)),
-                              stdout=subprocess.PIPE, stderr=subprocess.DEVNULL, env=_environment(), timeout=LONGEST_S,
-                              check=False)
-    except subprocess.TimeoutExpired:
-        raise BadInput(f"{path}: {library.name} does not come to an end within {LONGEST_S:g} s; mend "
-                       f"{library.endless}") from None
-    if done.returncode == TOO_MUCH:
-        raise BadInput(f"{path}: {library.needs_too_much}")
-    if done.returncode != 0:
-        raise BadInput(f"{path}: {library.name} failed with status {done.returncode}, as where its memory is not "
-                       f"enough; mend {library.endless}")
-    result, failure = pickle.loads(done.stdout)  # from our own process
-    if failure is not None:
-        raise failure
-    return result
+    with Reader(library.name) as reader:
+        try:
+            return reader.ask(call, path, *more)
+        except Unanswered as why:
+            raise BadInput(f"{path}: {why}; mend {library.endless}") from None
+
+
+class Reader:
+    """A process that begins with the first call, and anew with the first after one that came to nothing."""
+
+    def __init__(self, name: str):
+        self.name = name  # of the library
+        self._process: subprocess.Popen[bytes] | None = None
+
+    def __enter__(self) -> Reader:
+        return self
+
+    def __exit__(self, *_: object) -> None:
+        if self._process is not None:
+            self._process.kill()
+            self._ended()
+
+    def ask(self, call: Callable[..., Any], *arguments: Any) -> Any:
+        """As `bounded`, but Unanswered says why nothing came."""
+        process = self._process = self._process or _begun()
+        late = threading.Event()
+        bell = threading.Timer(LONGEST_S, _end, [process, late])
+        bell.daemon = True
+        bell.start()
+        try:
+            answer = _answer_to((call, *arguments), process)
+        finally:
+            bell.cancel()
+        if answer is None or late.is_set():
+            raise Unanswered(self._why_not(late.is_set(), self._ended()))
+        result, failure = pickle.loads(answer)  # from our own process
+        if failure is not None:
+            raise failure
+        return result
+
+    def _ended(self) -> int:
+        """The exit status of the process, which nobody can ask any more."""
+        process, self._process = self._process, None
+        assert process is not None
+        status = process.wait()
+        for pipe in (process.stdin, process.stdout):
+            with suppress(OSError):  # what was not sent any more
+                pipe.close()  # type: ignore[union-attr]  # both are there
+        return status
+
+    def _why_not(self, is_too_late: bool, status: int) -> str:
+        if is_too_late:
+            return f"{self.name} does not come to an end within {LONGEST_S:g} s"
+        if status == TOO_MUCH:
+            return f"{self.name} needs more than {MOST_BYTES / 2**30:g} GiB of memory"
+        return f"{self.name} failed with status {status}, as where its memory is not enough"
+
+
+def _begun() -> subprocess.Popen[bytes]:
+    return subprocess.Popen([sys.executable, "-m", __name__], stdin=subprocess.PIPE, stdout=subprocess.PIPE,
+                            stderr=subprocess.DEVNULL, env=_environment())
+
+
+def _end(process: subprocess.Popen[bytes], late: threading.Event) -> None:
+    late.set()
+    process.kill()
 
 
 def _environment() -> dict[str, str]:
@@ -67,6 +117,28 @@ def _environment() -> dict[str, str]:
     return os.environ | {"PYTHONSAFEPATH": "1", "PYTHONPATH": folders, "OPENBLAS_NUM_THREADS": "1"}
 
 
+def _answer_to(call: tuple[Any, ...], process: subprocess.Popen[bytes]) -> bytes | None:
+    """None where the process ended before."""
+    assert process.stdin and process.stdout
+    with suppress(BrokenPipeError):
+        _send(process.stdin, pickle.dumps(call))
+    return _received(process.stdout)
+
+
+def _send(pipe: IO[bytes], message: bytes) -> None:
+    pipe.write(len(message).to_bytes(HEAD_BYTES, "little"))
+    pipe.write(message)
+    pipe.flush()
+
+
+def _received(pipe: IO[bytes]) -> bytes | None:
+    """The next message; None at the end."""
+    head = pipe.read(HEAD_BYTES)
+    length = int.from_bytes(head, "little")
+    message = pipe.read(length) if len(head) == HEAD_BYTES else b""
+    return message if head and len(message) == length else None
+
+
 # ---------------------------------------------------------------------------------- in the process --
 
 LOOKS_EVERY_S = 0.2
@@ -74,19 +146,18 @@ TOO_MUCH = 3  # its exit status for MemoryError
 
 
 def answer() -> None:
-    """Reads the call from stdin, writes (result, None) or (None, what it raised) to stdout."""
+    """Reads calls from stdin, writes (result, None) or (None, what it raised) of each to stdout."""
     answers = os.fdopen(os.dup(1), "wb")
     os.dup2(2, 1)  # libraries print
     threading.Thread(target=_end_with, args=(os.getppid(),), daemon=True).start()
     _bound("RLIMIT_AS", MOST_BYTES)
-    _bound("RLIMIT_CPU", int(LONGEST_S) + 1)  # where nobody is there any more to end it
-    try:
-        call, *arguments = pickle.load(sys.stdin.buffer)
-        found = pickle.dumps(_found(call, arguments))
-    except MemoryError:
-        os._exit(TOO_MUCH)
-    answers.write(found)
-    answers.flush()
+    while (asked := _received(sys.stdin.buffer)) is not None:
+        _bound("RLIMIT_CPU", int(LONGEST_S + time.process_time()) + 1)  # where nobody is there any more to end it
+        try:
+            call, *arguments = pickle.loads(asked)
+            _send(answers, pickle.dumps(_found(call, arguments)))
+        except MemoryError:
+            os._exit(TOO_MUCH)
     os._exit(0)  # what was read is not taken apart
 
 
@@ -114,8 +185,7 @@ def _bound(what: str, most: int) -> None:
 
         limit = getattr(resource, what)
         hard = resource.getrlimit(limit)[1]
-        most = most if hard == resource.RLIM_INFINITY else min(most, hard)
-        resource.setrlimit(limit, (most, most))
+        resource.setrlimit(limit, (most if hard == resource.RLIM_INFINITY else min(most, hard), hard))
 
 
 if __name__ == "__main__":

@@ -11,7 +11,7 @@ from typing import Any
 
 import numpy as np
 
-from laconic.errors import BadInput
+from laconic.errors import BadInput, Refused
 from laconic.robot_import.answers import Answers
 from laconic.robot_import.formats import read_robot
 from laconic.robot_import.rigid_body import RigidBody, add_up
@@ -31,6 +31,9 @@ FRICTION_STEP_S = 0.001
 SHARED = {"radius_m": ("wheel_radius_m", "by the shapes of the wheels, unless said with --radius"),
           "inertia_kgm2": ("wheel_inertia_kgm2", "about the axle, rollers included, without gear and rotor"),
           "motor_damping_Nms": ("motor_damping_Nms", "damping of the joints")}
+NEED_SLIP = {  # refusals of the core whose remedy is an option here
+    "nothing moves": "plain wheels on these axles prevent every motion",
+    "straight only": "plain wheels on parallel axles that are not one line only drive straight, whatever motors do"}
 MOTOR = ("# The file does not tell the motors. With them, voltage_V[i] drives wheel i; their data sheet gives:",
          "#   [vehicle.motor]", "#   resistance_ohm = …", "#   torque_constant_Nm_per_A = …",
          "#   back_emf_Vs_per_rad = …", "#   gear_ratio = …")
@@ -128,7 +131,13 @@ class _Writer:
     def checked(self, data: dict[str, Any]) -> Scene:
         """The scene that the tables make; what the core refuses is BadInput, by the robot's file."""
         scene = scene_of(Table(self.robot.path, "", copy.deepcopy(data)))
-        scene.plant(scene.core())
+        try:
+            scene.plant(scene.core())
+        except Refused as refused:
+            if refused.status in NEED_SLIP:
+                raise BadInput(f"{self.robot.path}: {NEED_SLIP[refused.status]}; give --friction MU, so that wheels "
+                               "may slip, or --rollers for wheels that have them") from None
+            raise
         return scene
 
     def head(self) -> list[str]:

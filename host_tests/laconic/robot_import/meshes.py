@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import logging
+import stat
 from collections.abc import Iterable, Mapping
 from dataclasses import dataclass, field
 from pathlib import Path
@@ -10,7 +11,8 @@ from typing import Any
 
 import numpy as np
 
-from laconic.errors import BadInput
+from laconic.errors import BadInput, reason_of
+from laconic.robot_import.bounded import Reader, Unanswered
 from laconic.robot_import.checked import LARGEST
 from laconic.robot_import.placement import Array
 
@@ -19,42 +21,52 @@ PREFIXES = ("package://", "model://", "file://")
 
 @dataclass
 class MeshFiles:
-    """Finds and reads meshes; what could not be had is in `missing`, by the name that the robot's file gives it."""
+    """Finds and reads meshes, in a process that is bounded in time and memory and that ends with the `with` block; what
+    could not be had is in `missing`, by the name that the robot's file gives it."""
 
     robot: Path
     packages: Mapping[str, Path] = field(default_factory=dict)
     missing: dict[str, str] = field(default_factory=dict)
     asked_for: str | None = None
+    reader: Reader = field(default_factory=lambda: Reader("trimesh"))
+    read: dict[str, Array | None] = field(default_factory=dict)
+
+    def __enter__(self) -> MeshFiles:
+        return self
+
+    def __exit__(self, *what: object) -> None:
+        self.reader.__exit__(*what)
 
     def points(self, uri: str) -> Array | None:
         """N × 3 points in the mesh's own frame and unit; None where the file cannot be had."""
-        path = self.find(uri)
-        if path is None:
-            self.missing[uri] = "not found"
-            return None
-        try:
-            import trimesh
+        if uri not in self.read:
+            path = self.find(uri) if uri else None
+            found = "names no file" if not uri else "not found" if path is None else (
+                what_is_no_file(path) or self._points_of(path))
+            if isinstance(found, str):
+                self.missing[uri] = found
+            self.read[uri] = None if isinstance(found, str) else found
+        return self.read[uri]
 
-            logging.getLogger("trimesh").setLevel(logging.CRITICAL)
-            mesh: Any = trimesh.load(path, force="mesh")
-            points = np.array(mesh.vertices, dtype=float)
-        except Exception as error:  # a library for many formats fails in many ways
-            self.missing[uri] = f"cannot be read ({type(error).__name__})"
-            return None
-        if not points.size or not (np.abs(points) <= LARGEST).all():
-            self.missing[uri] = "has no points"
-            return None
-        return points
+    def _points_of(self, path: Path) -> Array | str:
+        """Or why there are none."""
+        try:
+            found: Array | str = self.reader.ask(points_in, path)
+        except Unanswered as why:
+            return f"not read: {why}"
+        if isinstance(found, str):
+            return found
+        return found if found.size and (np.abs(found) <= LARGEST).all() else "has no points"
 
     def unread(self, uris: Iterable[str | None]) -> tuple[str, ...]:
         """Those of these that could not be had, each once, and why."""
-        return tuple(f"{uri} ({self.missing[uri]})" for uri in dict.fromkeys(uris) if uri in self.missing)
+        return tuple(f"{uri or '<mesh>'} ({self.missing[uri]})" for uri in dict.fromkeys(uris) if uri in self.missing)
 
     def remarks(self) -> tuple[str, ...]:
         """What could not be had, in one line."""
         if not self.missing:
             return ()
-        each = ", ".join(f"{uri} {why}" for uri, why in self.missing.items())
+        each = ", ".join(f"{uri or '<mesh>'} {why}" for uri, why in self.missing.items())
         return (f"shapes of wheels and casters alone matter, but these meshes were not seen: {each}",)
 
     def find(self, uri: str) -> Path | None:
@@ -64,8 +76,8 @@ class MeshFiles:
         if scheme in ("package://", "model://"):
             name, _, inside = rest.partition("/")
             folder = self.package(name)
-            return _file(folder / inside) if folder else None
-        return _file(Path(rest)) if scheme else _file(self.robot.parent / rest)
+            return _there(folder / inside) if folder else None
+        return _there(Path(rest)) if scheme else _there(self.robot.parent / rest)
 
     def package(self, name: str) -> Path | None:
         """The folder of a ROS package or Gazebo model: given, or the nearest of that name beside or above the file."""
@@ -87,5 +99,31 @@ class MeshFiles:
         return str(folder)
 
 
-def _file(path: Path) -> Path | None:
-    return path if path.is_file() else None
+def _there(path: Path) -> Path | None:
+    try:
+        return path if path.exists() else None
+    except (OSError, ValueError):  # no file has such a name
+        return None
+
+
+def what_is_no_file(path: Path) -> str:
+    """What a folder is, or a device or pipe, which has no end; empty for a file."""
+    try:
+        mode = path.stat().st_mode
+    except OSError as error:
+        return f"cannot be read ({reason_of(error)})"
+    return "" if stat.S_ISREG(mode) else "is a directory" if stat.S_ISDIR(mode) else "is no regular file"
+
+
+def points_in(path: Path) -> Array | str:
+    """All points of a mesh, by a library that reads many formats, or what it says of it."""
+    import trimesh
+
+    logging.getLogger("trimesh").setLevel(logging.CRITICAL)
+    try:
+        mesh: Any = trimesh.load(path, force="mesh")
+        return np.array(mesh.vertices, dtype=float)
+    except MemoryError:
+        raise
+    except Exception as error:  # it fails in as many ways
+        return f"cannot be read ({type(error).__name__})"

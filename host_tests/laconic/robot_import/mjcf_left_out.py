@@ -1,4 +1,4 @@
-"""What an MJCF file has and a scene has not: constraints, actuators, tendons, and gravity that is not along −z."""
+"""What an MJCF file has and a scene has not: constraints, actuators, tendons, and gravity of its own."""
 
 from __future__ import annotations
 
@@ -6,16 +6,15 @@ from collections import Counter
 from collections.abc import Collection
 from typing import Any
 
-import numpy as np
+from laconic.robot_import.gravity import gravity_left_out, listed
 
-DOWN = np.cos(np.radians(0.1))  # as far as this from −z, gravity is along it
 JOINT = 2  # mjtEq
 CONSTRAINTS = {0: "connect", 1: "weld", 2: "joint", 3: "tendon", 4: "flex"}
 
 
 def left_out(model: Any, inside: Collection[int]) -> list[str]:
     """A remark for each kind of thing; `inside` are the bodies of the robot."""
-    return [*_equalities(model, inside), *_actuators(model), *_tendons(model), *_gravity(model)]
+    return [*_equalities(model, inside), *_actuators(model), *_tendons(model), *_gravity(model, inside)]
 
 
 def _equalities(model: Any, inside: Collection[int]) -> list[str]:
@@ -41,27 +40,19 @@ def _joined(model: Any, equality: int) -> str:
 
 def _actuators(model: Any) -> list[str]:
     names = [model.actuator(each).name or str(each + 1) for each in range(model.nu)]
-    return [f"actuators are not taken over: {_listed(names)}; the inputs are torques at the axles"] if names else []
+    return [f"actuators are not taken over: {listed(names)}; the inputs are torques at the axles"] if names else []
 
 
 def _tendons(model: Any) -> list[str]:
     names = [model.tendon(each).name or str(each + 1) for each in range(model.ntendon)]
-    return [f"tendons are not taken over: {_listed(names)}"] if names else []
+    return [f"tendons are not taken over: {listed(names)}"] if names else []
 
 
-def _gravity(model: Any) -> list[str]:
-    gravity = np.asarray(model.opt.gravity)
-    strength = float(np.linalg.norm(gravity))
-    if strength == 0.0 or -gravity[2] >= DOWN * strength:
-        return []
-    told = " ".join(f"{each:g}" for each in gravity)
-    return [f"gravity ({told}) m/s² is not along -z, which is not taken over; a slope is [ground] slope_deg"]
+def _gravity(model: Any, inside: Collection[int]) -> list[str]:
+    weightless = [model.body(body).name or f"body {body}" for body in inside if model.body_gravcomp[body] != 0.0]
+    return gravity_left_out([float(each) for each in model.opt.gravity], weightless)
 
 
 def _joint(model: Any, joint: int) -> str:
     """By its name, or by its body's, as the robot's tree names it."""
     return str(model.joint(joint).name or model.body(int(model.jnt_bodyid[joint])).name)
-
-
-def _listed(names: list[str]) -> str:
-    return ", ".join(names[:6]) + (f" and {len(names) - 6} more" if names[6:] else "")

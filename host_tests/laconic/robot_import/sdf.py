@@ -21,6 +21,7 @@ from laconic.robot_import.checked import (
     sizes,
     unit_vector,
 )
+from laconic.robot_import.gravity import gravity_left_out
 from laconic.robot_import.meshes import MeshFiles
 from laconic.robot_import.placement import (
     IDENTITY,
@@ -49,13 +50,16 @@ from laconic.robot_import.xml_file import Element, xml_root
 KINDS = {"revolute": HINGE, "continuous": HINGE, "prismatic": SLIDE, "fixed": FIXED, "ball": BALL, "universal": BALL,
          "revolute2": BALL, "screw": SLIDE, "gearbox": FIXED}
 TEXTS = {"ixx": 1.0, "ixy": 0.0, "ixz": 0.0, "iyy": 1.0, "iyz": 0.0, "izz": 1.0}  # the format's own when not given
+USUAL_GRAVITY_M_PER_S2 = (0.0, 0.0, -9.8)  # of the format, where a file gives none
 VERSIONS = [f"1.{minor}" for minor in range(13)]
 
 
 def read_sdf(path: Path, packages: Mapping[str, Path], model_name: str | None) -> Robot:
     """The only model of the file, or the one of this name."""
     root = xml_root(path, "is no XML")
-    return _Model(path, _model(path, root, model_name), MeshFiles(path, packages)).robot()
+    model = _model(path, root, model_name)
+    with MeshFiles(path, packages) as files:
+        return _Model(path, model, files, gravity_of(path, root, model)).robot()
 
 
 def _model(path: Path, root: Element, name: str | None) -> Element:
@@ -79,11 +83,20 @@ def _model(path: Path, root: Element, name: str | None) -> Element:
     return models[0]
 
 
+def gravity_of(path: Path, root: Element, model: Element) -> list[float]:
+    """Of the world around the model [m/s²]; before version 1.6 it is a part of <physics>."""
+    for world in root.iter("world"):
+        text = _text(world, "gravity") or _text(world, "physics/gravity")
+        if text and any(each is model for each in world.iter("model")):
+            return finite(f"{path}: <gravity>", text.split(), 3)
+    return list(USUAL_GRAVITY_M_PER_S2)
+
+
 class _Model:
     """One <model>: its frames by name, in the frame of the model."""
 
-    def __init__(self, path: Path, model: Element, files: MeshFiles):
-        self.path, self.model, self.files = path, model, files
+    def __init__(self, path: Path, model: Element, files: MeshFiles, gravity_m_per_s2: list[float]):
+        self.path, self.model, self.files, self.gravity_m_per_s2 = path, model, files, gravity_m_per_s2
         for nested in ("include", "model"):
             if model.find(nested) is not None:
                 raise BadInput(f"{path}: model {model.get('name')} has an <{nested}>, which is not read; put its "
@@ -139,7 +152,9 @@ class _Model:
         title = self.model.get("name") or self.path.stem
         masters = {name: mimic.get("joint", "") for name in real
                    if (mimic := self.joints[name].find("axis/mimic")) is not None}
-        remarks = (*self.files.remarks(), *mimics(self.path, masters, joints))
+        weightless = [name for name, each in self.links.items() if (_text(each, "gravity") or "") in ("0", "false")]
+        remarks = (*self.files.remarks(), *mimics(self.path, masters, joints),
+                   *gravity_left_out(self.gravity_m_per_s2, weightless))
         return Robot(title, self.path, "SDF", base, links, joints, remarks).check()
 
     def _link(self, name: str, back: Array) -> Link:

@@ -55,12 +55,15 @@ def read_xacro(path: Path, arguments: Mapping[str, str], packages: Mapping[str, 
     from laconic.robot_import.xacro_expansion import expanded
 
     root = root_of(path, expanded(path, arguments, packages), NO_URDF)
-    return _robot(path, root, MeshFiles(path, packages), "xacro")
+    with MeshFiles(path, packages) as files:
+        return _robot(path, root, files, "xacro")
 
 
 def read_urdf(path: Path, packages: Mapping[str, Path]) -> Robot:
     """A URDF file."""
-    return _robot(path, xml_root(path, NO_URDF), MeshFiles(path, packages), "URDF")
+    root = xml_root(path, NO_URDF)
+    with MeshFiles(path, packages) as files:
+        return _robot(path, root, files, "URDF")
 
 
 @contextlib.contextmanager

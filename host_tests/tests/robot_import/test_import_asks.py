@@ -28,6 +28,12 @@ CYLINDER = '<geometry><cylinder radius="0.05" length="0.02"/></geometry>'
 STEERED = robot(link("base", inertial(5.0, (0.1, 0.1, 0.08)), BOX), link("fork"),
                 joint("steer", "continuous", "base", "fork", axis="0 0 1"), wheel("front", "fork", "0 0 -0.05"))
 
+
+def meshed(name: str) -> str:
+    """GOOD, with this mesh for its wheels."""
+    return GOOD.replace(CYLINDER, f'<geometry><mesh filename="{name}"/></geometry>')
+
+
 WRONG: list[tuple[str, str, list[str], str]] = [
     ("not XML", "robot", [], "is no URDF that can be read"),
     ("empty", "", [], "is no URDF that can be read"),
@@ -83,7 +89,14 @@ WRONG: list[tuple[str, str, list[str], str]] = [
     ("four across", robot(FOUR_WHEELS), [], "--rollers none with --friction"),
     ("three around the middle", robot(THREE_AROUND), [],
      "give --rollers omni, --rollers JOINT=DEGREES, or --rollers none"),
-    ("skid without friction", robot(FOUR_WHEELS), ["--rollers", "none"], "ground.friction_coefficient"),
+    ("skid without friction", robot(FOUR_WHEELS), ["--rollers", "none"],
+     "robot.urdf: plain wheels on parallel axles that are not one line only drive straight, whatever motors do; "
+     "give --friction MU, so that wheels may slip, or --rollers"),
+    ("a mesh that is a device", meshed("file:///dev/null"), [],
+     "as their meshes were not read: file:///dev/null (is no regular file); give --radius METRES"),
+    ("a mesh that is a folder", meshed("."), [], "were not read: . (is a directory); give --radius METRES"),
+    ("a mesh without a name", meshed(""), [], "were not read: <mesh> (names no file); give --radius METRES"),
+    ("a mesh that is none", meshed("robot.urdf"), [], "were not read: robot.urdf (cannot be read ("),
     ("mecanum of two", GOOD, ["--rollers", "mecanum"], "is for four wheels at the corners"),
     ("no such wheel", GOOD, ["--wheel", "lefft"], "did you mean left?"),
     ("a wheel that is none", robot(TWO_WHEELS, link("lid"), joint("hinge", "fixed", "base", "lid")),

@@ -15,7 +15,8 @@ import pytest
 from made_up_robots import MJCF
 
 from laconic.cli.main import run
-from laconic.robot_import import bounded
+from laconic.robot_import import bounded, meshes
+from laconic.robot_import.meshes import MeshFiles
 
 NAMESPACE = 'xmlns:xacro="http://www.ros.org/wiki/xacro"'
 XACRO = f'<robot {NAMESPACE} name="{{}}"/>'
@@ -47,16 +48,47 @@ def test_ctrl_c_ends_a_reading_at_once_and_leaves_nothing_running(
         tmp_path: Path, capsys: pytest.CaptureFixture[str], name: str, monkeypatch: pytest.MonkeyPatch) -> None:
     readers: list[subprocess.Popen[bytes]] = []
 
-    class Interrupted(subprocess.Popen):  # type: ignore[type-arg]
-        def communicate(self, *given: Any, **named: Any) -> Any:
-            readers.append(self)
-            os.kill(os.getpid(), signal.SIGINT)
-            return super().communicate(*given, **named)
+    def interrupted(call: tuple[Any, ...], reader: subprocess.Popen[bytes]) -> bytes | None:
+        readers.append(reader)
+        os.kill(os.getpid(), signal.SIGINT)
+        return _answer_to(call, reader)
 
-    monkeypatch.setattr(subprocess, "Popen", Interrupted)
+    _answer_to = bounded._answer_to
+    monkeypatch.setattr(bounded, "_answer_to", interrupted)
     assert imported(tmp_path, name, ENDLESS[name]) == 130
     assert capsys.readouterr().err == "laconic: stopped by the user\n"
     assert [each.returncode for each in readers] == [-signal.SIGKILL]
+
+
+@pytest.mark.skipif(not hasattr(os, "mkfifo"), reason="the system has no named pipes")
+def test_a_mesh_that_is_read_without_end_or_fills_the_memory_is_named_and_the_others_are_read(
+        tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    (tmp_path / "wheel.obj").write_text("v 0 0 1\nv 1 0 0\nv 0 1 0\nf 1 2 3\n", encoding="utf-8")
+    (tmp_path / "huge.obj").write_text("", encoding="utf-8")
+    os.mkfifo(tmp_path / "pipe.obj")
+    (tmp_path / "hung.obj").write_text("mtllib pipe.obj\nusemtl red\nv 0 0 1\nv 1 0 0\nv 0 1 0\nf 1 2 3\n",
+                                       encoding="utf-8")
+    with MeshFiles(tmp_path / "robot.urdf") as files:
+        first = files.points("wheel.obj")
+        assert first is not None and first.shape == (3, 3)
+        monkeypatch.setattr(bounded, "LONGEST_S", 0.3)
+        assert files.points("hung.obj") is None
+        monkeypatch.undo()
+        monkeypatch.setattr(meshes, "points_in", filled)
+        assert files.points("huge.obj") is None
+        monkeypatch.undo()
+        assert files.points("pipe.obj") is None
+        (tmp_path / "again.obj").write_bytes((tmp_path / "wheel.obj").read_bytes())
+        assert files.points("again.obj") is not None
+        reader = files.reader._process
+    assert files.missing == {"hung.obj": "not read: trimesh does not come to an end within 0.3 s",
+                             "huge.obj": "not read: trimesh needs more than 2 GiB of memory",
+                             "pipe.obj": "is no regular file"}
+    assert reader is not None and reader.returncode == -signal.SIGKILL  # none is left
+
+
+def filled(path: Path) -> None:
+    bytearray(3 * 2**30)
 
 
 @pytest.mark.parametrize(("name", "text", "words"), [

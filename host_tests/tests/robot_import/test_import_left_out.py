@@ -5,7 +5,7 @@ from __future__ import annotations
 from pathlib import Path
 
 import pytest
-from made_up_robots import MJCF, TWO_WHEELS, inertial, joint, link, robot, wheel
+from made_up_robots import MJCF, SDF, TWO_WHEELS, inertial, joint, link, robot, wheel
 
 from laconic.errors import BadInput
 from laconic.robot_import import Answers, Imported, import_robot
@@ -63,13 +63,48 @@ def test_a_joint_on_a_wheel_that_is_held_turns_with_it_and_leaves_its_shape(tmp_
     ('<actuator><motor name="m" joint="left"/></actuator>', "actuators are not taken over: m; the inputs are torques"),
     ('<tendon><fixed name="t"><joint joint="left" coef="1"/></fixed></tendon>', "tendons are not taken over: t"),
     ('<option gravity="9.81 0 0"/>', "gravity (9.81 0 0) m/s² is not along -z, which is not taken over"),
+    ('<option gravity="0 0 -1.62"/>', "gravity (0 0 -1.62) m/s² is not taken over: wheels bear their loads at 9.80665"),
 ])
 def test_what_a_scene_has_not_of_mjcf_is_named(tmp_path: Path, more: str, words: str) -> None:
     remarks = imported(tmp_path, MJCF.replace("</mujoco>", more + "</mujoco>"), name="robot.xml").remarks
     assert [each for each in remarks if each.startswith(words)]
 
 
-@pytest.mark.parametrize("gravity", ["0 0 -1.62", "0 0 0", "0 0 -9.81"])
+def test_a_body_without_weight_is_named(tmp_path: Path) -> None:
+    text = MJCF.replace('<body name="right_link"', '<body name="right_link" gravcomp="1"')
+    assert [each for each in imported(tmp_path, text, name="robot.xml").remarks
+            if each == "what has no weight in the file has its weight in a scene: right_link"]
+
+
+IN_WORLD = '<world name="w">{}<model'
+
+
+@pytest.mark.parametrize("world, words", [
+    ("<gravity>0 1 -9.8</gravity>", "gravity (0 1 -9.8) m/s² is not along -z, which is not taken over; a slope is"),
+    ("<physics><gravity>0 0 9.8</gravity></physics>", "gravity (0 0 9.8) m/s² is not along -z"),
+    ("<gravity>0 0 -3.7</gravity>", "gravity (0 0 -3.7) m/s² is not taken over: wheels bear their loads at 9.80665")])
+def test_gravity_of_a_world_that_a_scene_has_not_is_named(tmp_path: Path, world: str, words: str) -> None:
+    found = imported(tmp_path, SDF.replace('<world name="w"><model', IN_WORLD.format(world)), name="robot.sdf")
+    assert [each for each in found.remarks if each.startswith(words)]
+
+
+def test_usual_gravity_of_a_world_and_that_of_another_are_nothing_to_tell(tmp_path: Path) -> None:
+    other = '<world name="v"><gravity>1 0 0</gravity></world>'
+    for text in (SDF, SDF.replace('<world name="w"><model', IN_WORLD.format("<gravity>0 0 -9.81</gravity>")),
+                 SDF.replace('<world name="w">', other + '<world name="w">')):
+        assert not [each for each in imported(tmp_path, text, name="robot.sdf").remarks if "gravity" in each]
+
+
+def test_a_link_without_weight_and_a_gravity_that_is_none_are_named(tmp_path: Path) -> None:
+    floating = SDF.replace('<link name="base">', '<link name="base"><gravity>false</gravity>')
+    assert "what has no weight in the file has its weight in a scene: base" in imported(
+        tmp_path, floating, name="robot.sdf").remarks
+    with pytest.raises(BadInput, match=r"<gravity>: has 2 numbers; give 3"):
+        imported(tmp_path, SDF.replace('<world name="w"><model', IN_WORLD.format("<gravity>0 -9.8</gravity>")),
+                 name="robot.sdf")
+
+
+@pytest.mark.parametrize("gravity", ["0 0 0", "0 0 -9.81"])
 def test_gravity_along_the_vertical_is_nothing_to_tell(tmp_path: Path, gravity: str) -> None:
     text = MJCF.replace("<worldbody>", f'<option gravity="{gravity}"/><worldbody>')
     assert imported(tmp_path, text, name="robot.xml").remarks == imported(tmp_path, MJCF, name="robot.xml").remarks
