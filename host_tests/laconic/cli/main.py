@@ -17,7 +17,7 @@ from typing import Any
 import click
 
 import laconic.cli.commands
-from laconic.cli.streams import SHELL_SIGNAL, SIGPIPE, ReaderGone, guard, let_signals_kill, stop_status
+from laconic.cli.streams import SHELL_SIGNAL, SIGPIPE, ReaderGone, guard, let_signals_end, stop_status
 from laconic.errors import BadInput, LaconicError, nearest_of, reason_of
 from laconic.extras import missing_module
 from laconic.paths import check_installation
@@ -82,9 +82,9 @@ def main(arguments: list[str] | None = None) -> None:
     logging.getLogger("matplotlib").setLevel(logging.ERROR)  # it warns of a home folder that it cannot write
     try:
         status = run(sys.argv[1:] if arguments is None else arguments)
-        let_signals_kill()
+        let_signals_end()
     except KeyboardInterrupt as again:  # a second signal, while the first one was told
-        let_signals_kill()
+        let_signals_end()
         status = stop_status(again)[1]
     with suppress(ReaderGone, BadInput):  # text before an error that stderr already states
         sys.stdout.flush()

@@ -6,6 +6,7 @@ here it is one that nothing but the command line catches.
 
 from __future__ import annotations
 
+import atexit
 import io
 import os
 import signal
@@ -13,6 +14,7 @@ import sys
 import threading
 from _thread import interrupt_main
 from types import FrameType
+from typing import Any
 
 import click
 
@@ -30,7 +32,10 @@ class ReaderGone(BaseException):
 
 
 class Stopped(KeyboardInterrupt):
-    """A signal ends the command; the cleaning up after Ctrl-C follows every signal."""
+    """A signal ends the command; the cleaning up after Ctrl-C follows every signal, and a second one cuts it short."""
+
+    most = 2                 # raised; further signals end the process where it is
+    raised: list[int] = []   # noqa: RUF012 (of the process: it counts all of them)
 
     def __init__(self, number: int = signal.SIGINT):
         super().__init__()
@@ -66,14 +71,20 @@ def guard() -> None:
         number = getattr(signal, name, None)
         if number is not None and signal.getsignal(number) is not signal.SIG_IGN:  # nohup ignores SIGHUP
             signal.signal(number, stop)
+    atexit.register(answer_signals, stop_at_once, signal.SIG_IGN)  # nothing is left that could take long
     sys.unraisablehook = stop_again
 
 
-def let_signals_kill() -> None:
-    """The command is over: a signal now ends the process at once and without a word, as the system does it."""
+def let_signals_end() -> None:
+    """The command is over: a signal now ends the process at once and without a word, with the status of that signal."""
+    answer_signals(stop, stop_at_once)
+
+
+def answer_signals(before: Any, now: Any) -> None:
+    """Gives those signals that have the one handler the other."""
     for number in (getattr(signal, name, None) for name in ENDING_SIGNALS):
-        if number is not None and signal.getsignal(number) is stop:
-            signal.signal(number, signal.SIG_DFL)
+        if number is not None and signal.getsignal(number) is before:
+            signal.signal(number, now)
 
 
 def open_standard() -> None:
@@ -97,7 +108,15 @@ def warn(message: str) -> None:
 
 def stop(number: int, _: FrameType | None) -> None:
     """Handles a signal: raises Stopped with its number."""
+    if len(Stopped.raised) >= Stopped.most:
+        stop_at_once(number, None)
+    Stopped.raised.append(number)
     raise Stopped(number)
+
+
+def stop_at_once(number: int, _: FrameType | None) -> None:
+    """Handles a signal: ends the process as if no line of it were left."""
+    os._exit(SHELL_SIGNAL + number)
 
 
 def stop_again(ignored: sys.UnraisableHookArgs) -> None:
@@ -106,6 +125,7 @@ def stop_again(ignored: sys.UnraisableHookArgs) -> None:
     if not isinstance(ignored.exc_value, Stopped):
         sys.__unraisablehook__(ignored)
         return
+    Stopped.raised.clear()
     again = threading.Timer(AGAIN_S, signal_main, [ignored.exc_value.number])
     again.daemon = True
     again.start()

@@ -153,8 +153,46 @@ command_line.{0} = {0}
 """
 
 
-@pytest.mark.parametrize(("while_it", "status"), [("fail", 130), ("let_signals_kill", -signal.SIGINT)])
-def test_a_second_ctrl_c_while_the_first_ends_the_command_is_no_traceback(while_it, status):
+@pytest.mark.parametrize("while_it", ["fail", "let_signals_end"])
+def test_a_second_ctrl_c_while_the_first_ends_the_command_is_no_traceback(while_it):
     done = started(main_with("soak fuzz", AGAIN.format(while_it)), stdout=subprocess.DEVNULL, timeout=30)
     assert done.stderr == "laconic: stopped by the user\n"
-    assert done.returncode == status
+    assert done.returncode == 130
+
+
+AT_EXIT = """
+import laconic.cli.commands.soak as soak, threading
+def work(**_):
+    threading.Thread(target=lambda: [threading.Event().wait(0.2), os.kill(os.getpid(), signal.SIGINT)]).start()
+    os.kill(os.getpid(), signal.SIGINT)
+soak.command.callback = work
+class Last:
+    def __del__(self, kill=os.kill, pid=os.getpid(), number=signal.SIGINT):
+        kill(pid, number)
+sys.last_of_all = Last()
+"""
+
+
+@pytest.mark.parametrize("left_out", ["sys.last_of_all = Last()", "threading.Event().wait(0.2), "])
+def test_a_second_ctrl_c_while_python_ends_leaves_the_status(left_out):
+    done = started(main_with("soak fuzz", AT_EXIT.replace(left_out, "")), stdout=subprocess.DEVNULL, timeout=30)
+    assert (done.returncode, done.stderr) == (130, "laconic: stopped by the user\n")
+
+
+MANY = """
+import laconic.cli.commands.soak as soak
+def work(**_):
+    try:
+        os.kill(os.getpid(), signal.SIGINT)
+    finally:
+        try:
+            os.kill(os.getpid(), signal.SIGINT)
+        finally:
+            os.kill(os.getpid(), signal.SIGINT)
+soak.command.callback = work
+"""
+
+
+def test_a_third_ctrl_c_ends_whatever_still_cleans_up():
+    done = started(main_with("soak fuzz", MANY), stdout=subprocess.DEVNULL, timeout=30)
+    assert (done.returncode, done.stderr) == (130, "")
