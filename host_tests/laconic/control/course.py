@@ -51,9 +51,13 @@ class Course:
 
     def _state(self, pose_at: Callable[[float], Sequence[float]], t_s: float) -> np.ndarray:
         pose, before, after = (pose_of(pose_at, t_s + moment_s) for moment_s in (0.0, -MOMENT_S, MOMENT_S))
-        vx, vy, yaw_rate = np.subtract(after, before) / (2 * MOMENT_S)
         cosine, sine, radius = np.cos(pose[2]), np.sin(pose[2]), self.plant.c.model.wheel_radius_m
-        nu = ((cosine * vx + sine * vy) / radius, (cosine * vy - sine * vx) / radius, self._scale * yaw_rate)
+        with np.errstate(over="ignore", invalid="ignore"):
+            vx, vy, yaw_rate = np.subtract(after, before) / (2 * MOMENT_S)
+            nu = ((cosine * vx + sine * vy) / radius, (cosine * vy - sine * vx) / radius, self._scale * yaw_rate)
+        if not np.isfinite(nu).all():
+            raise BadInput(f"pose_at({t_s:g}): moves faster than numbers go; give x and y in m, the heading in rad, "
+                           "without jumps")
         place(self.plant, [*nu, *pose])
         return np.array([*self.plant.nu, *pose])
 

@@ -19,7 +19,7 @@ from laconic.core.derivatives import check_smooth
 from laconic.core.given import finite_number, number, numbers, shown, step_count
 from laconic.core.given_array import real_array
 from laconic.core.plant import Plant, Pose
-from laconic.core.sensors import settings_of
+from laconic.core.sensors import ENCODER, put_encoders, values_of
 from laconic.errors import BadInput, Refused, nearest_of
 
 STATE_NAMES = ("nu_rad_per_s[1]", "nu_rad_per_s[2]", "nu_rad_per_s[3]", "x_m", "y_m", "heading_rad", "bias_rad_per_s")
@@ -52,8 +52,8 @@ class Filter:
         self._model, self._integrator = (ffi.addressof(self._plant.c, name) for name in ("model", "integrator"))
         self.c: Any = ffi.new("laconic_filter *")
         self._innovation = ffi.new("laconic_innovation *")
-        self._sensors = None if encoder is None else settings_of(self.core, {"encoder": encoder}, self.wheel_count)
-        self._check_encoders()
+        self._sensors = None if encoder is None else self._encoders(encoder)
+        self._is_of = self._what_it_is_of()
         self._count = self._counts([0] * self.wheel_count if start_count is None else start_count)
         self._check(self.core.lib.laconic_filter_start(
             self.c, self._model, self._settings(settings), ffi.addressof(self._plant.c, "state")), "settings")
@@ -150,28 +150,37 @@ class Filter:
 
     def save(self) -> Any:
         """A copy of all that the filter knows."""
-        return self.core.ffi.new("laconic_filter *", self.c[0]), self._count
+        return self._is_of, self.core.ffi.new("laconic_filter *", self.c[0]), self._count
 
     def restore(self, saved: Any) -> None:
-        """Back to what `save` gave; BadInput for what another robot's filter gave."""
-        try:
-            state, count = saved
-            fits = self.core.ffi.typeof(state).cname == "laconic_filter *" and len(count) == max(self.wheel_count, 1)
-        except (TypeError, ValueError):
-            fits = False
-        if not fits:
+        """Back to what `save` gave; BadInput for what the filter of another robot, step, precision or encoder gave."""
+        if not (isinstance(saved, tuple) and len(saved) == 3 and isinstance(saved[0], dict)):
             raise BadInput(f"saved: {shown(saved)} is not of this filter; give what its save() gave")
+        is_of, state, count = saved
+        for name, ours in self._is_of.items():
+            if is_of.get(name) != ours:
+                raise BadInput(f"saved: is not of this filter, whose {name} is another; give what its save() gave")
         self.c[0], self._count = state[0], count
 
     # ---- between numpy and C
 
-    def _check_encoders(self) -> None:
-        """`counts` reads every wheel, so each has an encoder."""
-        encoders = [] if self._sensors is None else list(self._sensors.encoder)[: self.wheel_count]
-        for wheel, counts in enumerate((each.counts_per_turn for each in encoders), start=1):
-            if counts <= 0:
-                raise BadInput(f"encoder.counts_per_turn: is {counts} for wheel {wheel}; give a number above 0 for "
-                               "each wheel, or leave `encoder` out and read by encoders()")
+    def _what_it_is_of(self) -> dict[str, Any]:
+        """What a saved state has in common with the filter that takes it."""
+        vehicle, fields = self._plant.c.vehicle, self.core.fields
+        own = [field for field in fields if field.root == "vehicle" and field.table != "vehicle.motor"]
+        numbers = [field.values(vehicle) for field in own]
+        encoders = self._sensors and [values_of(field, self._sensors) for field in self.core.fields_of(ENCODER)]
+        return {"precision": self.core.real, "step_s": self.step_s, "vehicle": numbers, "encoder": encoders}
+
+    def _encoders(self, given: Mapping[str, Any]) -> Any:
+        """The laconic_sensor_settings; `counts` reads every wheel, so each has an encoder."""
+        settings = self.core.ffi.new("laconic_sensor_settings *")
+        put_encoders(self.core, settings, "encoder", given, self.wheel_count)
+        for wheel, each in enumerate(list(settings.encoder)[: self.wheel_count], start=1):
+            if each.counts_per_turn == 0:
+                raise BadInput(f"encoder.counts_per_turn: wheel {wheel} has none; give a number above 0 for each "
+                               "wheel, or leave `encoder` out and read by encoders()")
+        return settings
 
     def _settings(self, given: Mapping[str, Any]) -> Any:
         if not isinstance(given, Mapping):

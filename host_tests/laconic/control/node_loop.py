@@ -15,7 +15,7 @@ from typing import Any
 import numpy as np
 
 from laconic.control.filter import Filter, Innovation
-from laconic.core.given import finite_number, shown, step_count, whole_number
+from laconic.core.given import MOST_STEPS, finite_number, shown, whole_number
 from laconic.errors import BadInput
 from laconic.rig.client import NodeClient
 from laconic.rig.lockstep import load_scene
@@ -40,8 +40,8 @@ class Camera:
 
     def __post_init__(self) -> None:
         """BadInput names the setting that no camera has."""
-        if step_count("period", self.period) < 1:
-            raise BadInput(f"period: {self.period} steps are no period; give 1 or more")
+        if not 1 <= whole_number("period", self.period) <= MOST_STEPS:
+            raise BadInput(f"period: {self.period} is no number of steps between two views; give 1 or more")
         for name in ("std_m", "heading_std_rad"):
             if finite_number(name, getattr(self, name)) < 0:
                 raise BadInput(f"{name}: {getattr(self, name):g} is below 0; give 0 for what is not seen, or more")

@@ -18,7 +18,7 @@ import numpy as np
 import osqp
 from scipy import sparse
 
-from laconic.control.course import STATES, Course, step_from
+from laconic.control.course import STATES, Course, place, step_from
 from laconic.core.given import number, shown, whole_number
 from laconic.core.given_array import AtLeast, check_finite, real_array
 from laconic.errors import BadInput
@@ -28,6 +28,7 @@ MOST_ITERATIONS = 20000
 MOST_STEPS = 10**4     # of a plan: a second's work
 FARTHEST = 1e6         # off the course, in a state's units: the model along the course says nothing of such places
 LARGEST = 1e20         # of a programme's numbers; OSQP takes 1e30 for no limit at all
+BESIDE = 0.05          # of 1 rad/s and the largest ν: as far a measured ν may be off what the wheels allow
 UNITS = "rad/s, rad/s, rad/s, m, m, rad"  # of a state
 WEIGHTS = (0.02, 0.02, 0.02, 400.0, 400.0, 100.0)  # of squares of rad/s, rad/s, rad/s, m, m, rad
 VOLTAGE_WEIGHT = 0.02  # of the square of a V beside the course's own
@@ -61,7 +62,8 @@ class PredictiveController:
 
     def voltages(self, step: int, state: np.ndarray) -> np.ndarray:
         """The voltages for this step of the course, from 0 on, in this state: ν1, ν2, ν3, x, y, θ, and more that is
-        not read, as a filter's bias."""
+        not read, as a filter's bias. Six numbers do not tell whose they are: BadInput for a motion alone that the
+        robot's wheels do not allow."""
         first = whole_number("step", step)
         if first < 0:
             raise BadInput(f"step: {first} is before the course; give 0 for its first step, or more")
@@ -72,10 +74,19 @@ class PredictiveController:
         if np.abs(off).max() > FARTHEST:
             raise BadInput(f"state: {shown(given)} is {np.abs(off).max():.3g} off the course, too far for a plan; "
                            f"give a state within {FARTHEST:g} ({UNITS})")
+        self._check_allowed(given)
         off[5] = math.remainder(off[5], 2 * math.pi)
         plan = self._solve(models, off)
         change = plan[STATES * self.horizon :][: self.wheels]
         return np.clip(models[0][4] + change, -self.limit_V, self.limit_V)  # beyond by PRECISION at most
+
+    def _check_allowed(self, state: np.ndarray) -> None:
+        """BadInput for a motion that the robot's wheels do not allow, as that of another robot is."""
+        place(self.course.plant, state)
+        allowed = self.course.plant.nu
+        if np.abs(state[:3] - allowed).max() > BESIDE * (1.0 + np.abs(state[:3]).max()):
+            raise BadInput(f"state: the wheels of this robot do not allow nu = {shown(state[:3].tolist())} rad/s, at "
+                           f"most {shown(allowed.tolist())}; give the state of this robot")
 
     def _linearised(self, step: int) -> tuple[np.ndarray, ...]:
         """A, B and c of a step of the course, its state and its voltages. Where it is over, the robot rests."""

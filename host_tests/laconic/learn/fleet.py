@@ -33,7 +33,7 @@ class Fleet:
         self.rules, self.threads = Rules(**rules), thread_count(threads)
         self.steps = steps_of(finite_number("action_s", action_s), finite_number("step_s", step_s))
         lanes = lane_count("num_envs", lanes)
-        self.vehicles = vehicles_of(scene, spreads or {}, variants, variant_seed, real)
+        self.vehicles = vehicles_of(scene, {} if spreads is None else spreads, variants, variant_seed, real)
         many = len(self.vehicles) > 1
         self.batch = Batch([self.vehicles[0]] * lanes if many else self.vehicles, lanes, method, step_s)
         self._prepared = [self.batch.prepared(vehicle, method) for vehicle in self.vehicles] if many else []

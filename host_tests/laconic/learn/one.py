@@ -9,7 +9,7 @@ import numpy as np
 
 from laconic.errors import BadInput
 from laconic.learn.fleet import Fleet
-from laconic.learn.spaces import action_space, checked_seed, observation_space
+from laconic.learn.spaces import action_space, check_open, checked_seed, observation_space
 from laconic.learn.task import checked_actions
 
 
@@ -21,11 +21,12 @@ class DriveToPose(gymnasium.Env[np.ndarray, np.ndarray]):
     def __init__(self, **settings: Any):
         self.fleet = Fleet(1, **settings)
         self.action_space, self.observation_space = action_space(self.fleet.wheel_count), observation_space()
-        self._has_begun = False
+        self._has_begun = self._is_closed = False
 
     def reset(self, *, seed: int | None = None,
               options: dict[str, Any] | None = None) -> tuple[np.ndarray, dict[str, Any]]:
         """At rest at the origin, with a new target."""
+        check_open("reset", self._is_closed)
         if seed is not None:
             super().reset(seed=checked_seed("seed", seed))
         self.fleet.reset([0], [self.np_random])
@@ -35,9 +36,14 @@ class DriveToPose(gymnasium.Env[np.ndarray, np.ndarray]):
     def step(self, action: np.ndarray) -> tuple[np.ndarray, float, bool, bool, dict[str, Any]]:
         """Holds the action; terminated: the target is reached (info["reached"]) or the area left; truncated: the core
         refused a step."""
+        check_open("step", self._is_closed)
         if not self._has_begun:
             raise BadInput("step: nothing was reset yet; call reset() first")
         rewards, reached, left, refused = self.fleet.act(checked_actions(action, (self.fleet.wheel_count,))[None])
         ends = bool(reached[0] or left[0])
         info = {"reached": bool(reached[0])} if ends else {}
         return self.fleet.observe()[0], float(rewards[0]), ends, bool(refused[0]), info
+
+    def close(self) -> None:
+        """No step and no reset after it."""
+        self._is_closed = True

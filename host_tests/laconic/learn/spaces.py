@@ -40,6 +40,12 @@ def generators_of(seed: int | Sequence[int | None] | None, lanes: int) -> list[n
     return [seeding.np_random(each)[0] for each in seeds]
 
 
+def check_open(what: str, is_closed: bool) -> None:
+    """BadInput where close() was called."""
+    if is_closed:
+        raise BadInput(f"{what}: this environment is closed; make another one")
+
+
 def checked_seed(name: str, given: Any) -> int:
     """A seed that Gymnasium takes."""
     seed = whole_number(name, given)

@@ -30,10 +30,10 @@ def vehicles_of(scene: str | Path, spreads: Mapping[str, Spread], count: int, se
     if not isinstance(spreads, Mapping) or not all(isinstance(key, str) for key in spreads):
         raise BadInput(f"spreads: {shown(spreads)} is no mapping from keys to spreads; give one such as "
                        "{\"vehicle.mass_kg\": 0.2}")
-    if not spreads:
-        return [Vehicle(tables.scene().vehicle, real)]
     if not 1 <= whole_number("variants", count) <= MOST_VARIANTS:
         raise BadInput(f"variants: {count} is not from 1 to {MOST_VARIANTS}; give how many vehicles to draw")
+    if not spreads:
+        return [Vehicle(tables.scene().vehicle, real)]
     ranges = {key: _range_of(tables, key, spread) for key, spread in spreads.items()}
     drawn = np.random.default_rng(seed).uniform(size=(count, len(ranges)))
     return [_vehicle(tables, {key: low + float(share) * (high - low)

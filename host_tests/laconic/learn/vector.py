@@ -12,7 +12,7 @@ from gymnasium.vector.utils import batch_space
 from laconic.core.given import by_names, shown, step_count
 from laconic.errors import BadInput
 from laconic.learn.fleet import Fleet
-from laconic.learn.spaces import action_space, generators_of, observation_space
+from laconic.learn.spaces import action_space, check_open, generators_of, observation_space
 
 
 class DriveToPoseVector(VectorEnv[np.ndarray, np.ndarray, np.ndarray]):
@@ -42,6 +42,7 @@ class DriveToPoseVector(VectorEnv[np.ndarray, np.ndarray, np.ndarray]):
     def reset(self, *, seed: int | Sequence[int | None] | None = None,
               options: dict[str, Any] | None = None) -> tuple[np.ndarray, dict[str, Any]]:
         """All robots, or those of options["reset_mask"] (bool, (num_envs,)); without a seed their sources go on."""
+        check_open("reset", self.closed)
         which = self._mask_of(options)
         if seed is not None or not self._generators:
             fresh = generators_of(seed, self.num_envs)
@@ -67,6 +68,7 @@ class DriveToPoseVector(VectorEnv[np.ndarray, np.ndarray, np.ndarray]):
     def step(self, actions: np.ndarray) -> tuple[np.ndarray, np.ndarray, np.ndarray, np.ndarray, dict[str, Any]]:
         """Holds the actions (num_envs, N). Terminated: the target is reached (info["reached"]) or the area left.
         Truncated: max_episode_steps are over, or the core refused a step."""
+        check_open("step", self.closed)
         if not self._generators:
             raise BadInput("step: nothing was reset yet; call reset() first")
         before = self._ended.copy()

@@ -17,7 +17,15 @@ from laconic.sweep.lanes import Template
 from laconic.sweep.numbers import is_number_of_struct
 from laconic.sweep.plan import Plan
 from laconic.sweep.store import Store, open_store
-from laconic.sweep.workers import cluster_client, local_client, run_here, run_on, usual_workers, versions
+from laconic.sweep.workers import (
+    check_scheduler,
+    cluster_client,
+    local_client,
+    run_here,
+    run_on,
+    usual_workers,
+    versions,
+)
 
 STEPS_OF_LANES = 1e7  # of a chunk: a second or so
 STEPS_ALONE = 5e5
@@ -77,10 +85,12 @@ def command_of(plan: Plan) -> str:
     return shlex.join(words)
 
 
-def begin(plan: Plan, folder: Path) -> Store:
-    """The folder of results, fresh or with what is done already."""
+def begin(plan: Plan, folder: Path, scheduler: str | None = None) -> Store:
+    """The folder of results, fresh or with what is done already; nothing is made where the scheduler is not there."""
     scene = check_plan(plan)
     nominal_course(plan)  # refuses a scene that does not run itself
+    if scheduler and not folder.is_dir():
+        check_scheduler(scheduler)
     return open_store(folder, plan, chunk_of(plan, scene), versions(), command_of(plan))
 
 

@@ -131,9 +131,15 @@ def _without_ctrl_c() -> Iterator[None]:
         signal.pthread_sigmask(signal.SIG_SETMASK, before)
 
 
+def check_scheduler(address: str) -> None:
+    """BadInput where there is none."""
+    with cluster_client(address, is_told=False):
+        pass
+
+
 @contextmanager
-def cluster_client(address: str) -> Iterator[Any]:
-    """The cluster of a scheduler; BadInput where there is none."""
+def cluster_client(address: str, is_told: bool = True) -> Iterator[Any]:
+    """The cluster of a scheduler; BadInput where there is none. `is_told`: that it has no workers yet."""
     from distributed import Client
 
     _quiet()
@@ -143,7 +149,7 @@ def cluster_client(address: str) -> Iterator[Any]:
         raise BadInput(f"--scheduler {address}: cannot be reached ({str(error) or type(error).__name__}); start "
                        "`dask scheduler` and give its address, such as tcp://127.0.0.1:8786") from None
     with client:
-        if not client.nthreads():
+        if is_told and not client.nthreads():
             print(f"laconic: {address} has no workers yet; waits for them, Ctrl-C ends", file=sys.stderr, flush=True)
         yield client
 

@@ -61,6 +61,14 @@ def test_a_course_of_what_are_no_poses_is_refused(pose_at, text):
     assert refused(lambda: Course(plant(), pose_at, 0.5)).startswith(text)
 
 
+@pytest.mark.filterwarnings("error")
+@pytest.mark.parametrize("pose_at", [lambda t: (1e308 * math.sin(1e6 * t), 1e308 * math.cos(1e6 * t), 0.0),
+                                     lambda t: (0.0, 0.0, 1e308 * t)])
+def test_a_course_that_leaves_the_range_is_refused_before_any_warning(pose_at):
+    assert refused(lambda: Course(plant(), pose_at, 0.5)).startswith("pose_at(0): moves faster than numbers go; give x")
+    assert "does not fit" in refused(lambda: Course(plant(), lambda t: (np.ma.masked, 0.0, 0.0), 0.5))
+
+
 @pytest.mark.parametrize(("duration_s", "text"), [
     (None, "None is no number"), ("2", "'2' is no number"), (math.nan, "nan is not finite"),
     (1e9, "more than 1000000 steps"), (0.07, "0.07 s is no whole number of steps of 0.05 s; give 0.05 or 0.1"),
@@ -96,6 +104,18 @@ def test_a_controller_holds_the_end_of_its_course_and_has_no_step_before_its_beg
     (0, [0, 0, math.inf, 0, 0, 0], "state[3]: inf is not finite"), (0, [1j] * 6, "state: [1j, 1j,")])
 def test_steps_and_states_that_are_none_are_refused(controller, step, state, text):
     assert refused(lambda: controller.voltages(step, state)).startswith(text)
+
+
+def test_a_motion_that_the_wheels_do_not_allow_is_that_of_another_robot():
+    wheels = [{"kind": "fixed", "y_m": y_m, "axle_rad": -math.pi / 2} for y_m in (0.08, -0.08)]
+    two = laconic.Vehicle({"mass_kg": 0.9, "yaw_inertia_kgm2": 2.4e-3, "wheel_radius_m": 0.03, "wheel": wheels,
+                           "motor_gain_Nm_per_V": 0.1, "wheel_inertia_kgm2": 2e-5, "motor_damping_Nms": 0.2})
+    straight = Course(two.plant("auto", step_s=STEP_S), lambda t: (0.1 * t, 0.0, 0.0), 0.5)
+    ahead = PredictiveController(straight, 10.0, horizon=5)
+    state = ahead.course.states[0] + [0.0, 0.01, 0.0, 0.0, 0.0, 0.0]  # as measured
+    assert np.isfinite(ahead.voltages(0, state)).all()
+    message = refused(lambda: ahead.voltages(0, state + [0.0, 2.0, 0.0, 0.0, 0.0, 0.0]))
+    assert message.startswith("state: the wheels of this robot do not allow nu = [") and "of this robot" in message
 
 
 def test_what_a_filter_says_beyond_the_state_is_not_read(course, controller):
@@ -140,14 +160,45 @@ def test_readings_that_are_none_are_refused_and_leave_the_filter_as_it_was(call,
     assert ours.state.tolist() == before
 
 
+COUNTED = {"counts_per_turn": 2000}
+
+
 @pytest.mark.parametrize("counts", [0, -100, [4096, 0, 4096]])
 def test_counts_need_an_encoder_at_every_wheel(counts):
     message = refused(lambda: Filter(plant(0.01), KNOWN, encoder={"counts_per_turn": counts}))
     assert message.startswith("encoder.counts_per_turn: is ") and "above 0" in message
 
 
+@pytest.mark.parametrize(("encoder", "text"), [
+    ({"counts_per_turn": [4096, False, 4096]}, "encoder.counts_per_turn: wheel 2 has none; give a number above 0"),
+    ({}, "encoder.counts_per_turn: is missing"), ({"counts": 3}, "encoder.counts: unknown key"),
+    ({"counts_per_turn": 4096, "gear_ratio": 0}, "encoder.gear_ratio: is 0; give another number, below 0 for"),
+    ({"counts_per_turn": 4096, "wrap": 0}, "encoder.wrap: is 0; give the number of values that the counter has")])
+def test_encoders_of_a_filter_are_read_as_those_of_a_scene(encoder, text):
+    assert refused(lambda: Filter(plant(0.01), KNOWN, encoder=encoder)).startswith(text)
+
+
+HEAVY = laconic.read_scene("robotino2").vehicle | {"mass_kg": 30.0}
+
+
+@pytest.mark.parametrize(("other", "what"), [
+    (lambda: Filter(plant(0.02), KNOWN), "step_s"), (lambda: Filter(plant(0.01), KNOWN, encoder=COUNTED), "encoder"),
+    (lambda: Filter(laconic.Vehicle(HEAVY).plant(step_s=0.01), KNOWN), "vehicle"),
+    (lambda: Filter(laconic.Vehicle(HEAVY, "single").plant(step_s=0.01), KNOWN), "precision")])
+def test_a_filter_takes_back_what_was_saved_of_its_like_alone(other, what):
+    ours = Filter(plant(0.01), KNOWN)
+    assert refused(lambda: ours.restore(other().save())) == \
+        f"saved: is not of this filter, whose {what} is another; give what its save() gave"
+    like = Filter(plant(0.01), KNOWN)
+    like.predict({"voltage_V": [6, -3, 2]}, 5)
+    ours.restore(like.save())
+    assert ours.state.tolist() == like.state.tolist()
+
+
 @pytest.mark.parametrize(("settings", "text"), [
-    ({"period": 0}, "period: 0 steps"), ({"period": None}, "period: None"), ({"period": 1.5}, "period: 1.5"),
+    ({"period": 0}, "period: 0 is no number of steps between two views; give 1 or more"),
+    ({"period": -1}, "period: -1 is no number of steps between two views; give 1 or more"),
+    ({"period": None}, "period: None"), ({"period": 1.5}, "period: 1.5"),
     ({"std_m": -1.0}, "std_m: -1 is below 0"), ({"heading_std_rad": math.nan}, "heading_std_rad: nan is not finite"),
     ({"seed": -1}, "seed: ")])
 def test_a_camera_that_none_is_is_refused(settings, text):

@@ -304,6 +304,6 @@ def test_what_another_robots_filter_saved_is_refused():
     ours = laconic.Filter(plant_of(OMNI), SETTINGS)
     before = ours.state.copy()
     for saved in (None, (1, 2), laconic.Filter(plant_of({**OMNI, "wheel": OMNI["wheel"][:3]}), {}).save()):
-        with pytest.raises(BadInput, match=r"saved: .* is not of this filter"):
+        with pytest.raises(BadInput, match=r"saved: .*is not of this filter"):
             ours.restore(saved)
     assert np.array_equal(ours.state, before)

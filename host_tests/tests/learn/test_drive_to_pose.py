@@ -96,6 +96,17 @@ def test_without_autoreset_an_ended_robot_waits_for_its_reset_and_the_others_sta
         env.step(first)
 
 
+@pytest.mark.parametrize("make", [lambda: gymnasium.make_vec(ID, 2), DriveToPose, lambda: DriveToPoseVector(2)])
+def test_what_was_closed_neither_steps_nor_begins_anew(make):
+    env = make()
+    env.reset(seed=0)
+    action = env.action_space.sample()
+    env.close()
+    for what, call in (("step", lambda: env.step(action)), ("reset", env.reset)):
+        with pytest.raises(BadInput, match=f"{what}: this environment is closed; make another one"):
+            call()
+
+
 def test_a_controller_reaches_its_targets_and_is_paid_for_it():
     env = DriveToPoseVector(8, max_episode_steps=400, area_m=0.5, autoreset_mode=AutoresetMode.DISABLED)
     seen, _ = env.reset(seed=2)
@@ -149,6 +160,7 @@ def test_vehicles_are_drawn_within_their_spreads_once_and_by_seed():
     ({"spreads": {"vehicle.mass_kg": 1.5}}, "no share"), ({"spreads": {"vehicle.mass_kg": (9, 7)}}, "no range"),
     ({"spreads": {"vehicle.motor.viscous_friction_Nms": 0.1}}, "least value and the largest"),
     ({"spreads": {"vehicle.mass_kg": 0.1}, "variants": 0}, "variants: 0"),
+    ({"variants": 0}, "variants: 0 is not from 1 to"), ({"spreads": []}, r"spreads: \[\] is no mapping"),
     ({"spreads": {"vehicle.motor.viscous_friction_Nms": (0.0, 0.01)}}, "stepped in another way"),
     ({"scene": "no_such"}, "no such scene"), ({"largest_voltage_V": np.inf}, "largest_voltage_V: inf is not finite"),
     ({"area_m": np.nan}, "area_m: nan is not finite"), ({"step_s": np.nan}, "step_s: nan is not finite"),

@@ -109,3 +109,7 @@ def test_an_address_without_a_scheduler_is_refused_in_one_line(tmp_path, expecte
     store = begun(tmp_path / "nowhere")
     with pytest.raises(BadInput, match="--scheduler tcp://127.0.0.1:1: cannot be reached"):
         sweep.carry_on(store, scheduler="tcp://127.0.0.1:1")
+    fresh = tmp_path / "not" / "made"
+    with pytest.raises(BadInput, match="--scheduler tcp://127.0.0.1:1: cannot be reached"):
+        sweep.begin(store.plan, fresh, "tcp://127.0.0.1:1")
+    assert not fresh.parent.exists()

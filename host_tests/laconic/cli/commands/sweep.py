@@ -106,7 +106,7 @@ def run(plan: Plan, folder: Path, scheduler: str | None, workers: int | None) ->
     from laconic.sweep.page import check_any_run, write_page
     from laconic.sweep.sweep import begin, carry_on, runs_there
 
-    store = begin(plan, folder)
+    store = begin(plan, folder, scheduler)
     if there := runs_there(store):
         click.echo(f"{there} of {plan.runs} runs are in {folder}" + (", which goes on" if there < plan.runs else ""))
     try:
