@@ -102,9 +102,14 @@ def claim_file(option: str, path: Path, endings: tuple[str, ...] = (), context: 
     """Claims an output file before any work is done; BadInput where it cannot be one."""
     check_ending(option, path, endings)
     claims(context).claim(option, path)
+    check_file(option, path)
+    return path
+
+
+def check_file(option: str, path: Path) -> None:
+    """BadInput where no file can be written, before any work is done."""
     if not is_stdout(path):
         _check_writable(option, path, is_folder=False)
-    return path
 
 
 def claim_folder(option: str, path: Path) -> Path:
@@ -116,8 +121,10 @@ def claim_folder(option: str, path: Path) -> Path:
 def check_ending(option: str, path: Path, endings: tuple[str, ...]) -> None:
     """BadInput when a file's name does not end as its format does; "-" and devices need no ending."""
     if endings and not (path.suffix.lower() in endings or is_stdout(path) or is_special(path)):
-        raise BadInput(f"{option} {path}: is no name for this format; choose a name that ends in "
-                       f"{' or '.join([', '.join(endings[:-1]), endings[-1]] if endings[1:] else endings)}")
+        ends = " or ".join([", ".join(endings[:-1]), endings[-1]] if endings[1:] else endings)
+        if path.is_dir():
+            raise BadInput(f"{option} {path}: is a folder; give the name of a file in it that ends in {ends}")
+        raise BadInput(f"{option} {path}: is no name for this format; choose a name that ends in {ends}")
 
 
 def _check_writable(option: str, path: Path, is_folder: bool) -> None:
@@ -161,7 +168,10 @@ def make_folder(folder: Path) -> None:
     """A folder with those above it; a command says so on stderr, since a name typed wrong makes one, too."""
     if folder.is_dir():
         return
-    folder.mkdir(parents=True, exist_ok=True)
+    try:
+        folder.mkdir(parents=True, exist_ok=True)
+    except FileExistsError:
+        raise NotADirectoryError(errno.ENOTDIR, os.strerror(errno.ENOTDIR)) from None
     if click.get_current_context(silent=True) is not None:
         click.echo(f"laconic: made the folder {folder}", err=True)
 

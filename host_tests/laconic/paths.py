@@ -82,7 +82,7 @@ def as_path(name: str, given: Any) -> Path:
         path = Path(given)
     except TypeError:
         path = Path("\0")
-    if "\0" in str(path):
+    if "\0" in str(path) or given == "":
         raise BadInput(f"{name}: {given!r} is no path; give one as text or as a Path")
     return path
 

@@ -30,8 +30,15 @@ def shown(value: Any) -> str:
 
 
 def is_real(value: Any) -> bool:
-    """Whether it may be a real number: no text, flag, complex number, date or duration, of Python or NumPy."""
-    return not isinstance(value, str | bytes | bool) and getattr(getattr(value, "dtype", None), "kind", "f") in REAL
+    """Whether it may be a real number: no text, flag, complex number, date or duration, of Python or NumPy, and none
+    that is masked."""
+    return not (isinstance(value, str | bytes | bool) or is_masked(value)) \
+        and getattr(getattr(value, "dtype", None), "kind", "f") in REAL
+
+
+def is_masked(value: Any) -> bool:
+    """Whether NumPy holds no measurement there: it would show NaN or whatever stands under the mask."""
+    return isinstance(value, np.ma.MaskedArray) and bool(np.ma.is_masked(value))
 
 
 def number(name: str, value: Any) -> float:
@@ -110,6 +117,8 @@ def c_object(core: Core, kind: str, given: Any) -> Any:
     ffi = core.ffi
     found = getattr(given, "c", given) if kind == "vehicle" and not isinstance(given, ffi.CData) else given
     if not isinstance(found, ffi.CData) or ffi.typeof(found) is not ffi.typeof(f"laconic_{kind} *"):
+        if isinstance(its := getattr(given, "core", None), type(core)) and its is not core:
+            raise BadInput(f"{kind}: is in {its.real} precision, and this is in {core.real}; make both in one")
         raise BadInput(f"{kind}: {shown(given)} is no laconic_{kind} of this core; make it with {MAKERS[kind]}")
     return found
 

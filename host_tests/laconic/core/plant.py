@@ -18,6 +18,8 @@ if TYPE_CHECKING:
     from laconic.core import Core
     from laconic.core.recording import Recorder
 
+PLACED_BY = ("kind", "x_m", "y_m", "axle_rad", "roller_rad")  # what of a wheel no change changes
+
 
 class Pose(NamedTuple):
     """Place and direction of a vehicle in the world."""
@@ -85,11 +87,24 @@ class Plant:
         self.core.check(self.core.lib.laconic_plant_set_step(self.c, number("step_s", step_s), why), why)
 
     def change(self, vehicle: Any) -> None:
-        """Another payload, motor … while it moves, of a Vehicle; the wheels must stay as they are."""
+        """Another payload, motor … while it moves, of a Vehicle; BadInput where its wheels are not the plant's, each at
+        its place."""
         why = self.core.why()
         vehicle = c_object(self.core, "vehicle", vehicle)
+        self._check_wheels_of(vehicle)
         self.core.check(self.core.lib.laconic_plant_change(self.c, vehicle, why), why)
         self._contact = None
+
+    def _check_wheels_of(self, vehicle: Any) -> None:
+        if vehicle.wheel_count != self.wheel_count:
+            raise BadInput(f"vehicle: has {vehicle.wheel_count} wheels, and the plant {self.wheel_count}; make a plant "
+                           "of it")
+        for index in range(self.wheel_count):
+            ours, its = self.c.vehicle.wheel[index], vehicle.wheel[index]
+            for name in PLACED_BY:
+                if (now := getattr(ours, name)) != (then := getattr(its, name)):
+                    raise BadInput(f"vehicle.wheel[{index + 1}].{name}: is {then:g}, and the plant's {now:g}; wheels "
+                                   "stay where they are, or make a plant of this vehicle")
 
     def save(self) -> Any:
         """A copy of the state; with friction of the whole plant, whose wheels have states of their own."""

@@ -11,7 +11,7 @@ from typing import Any
 from laconic.core import load
 from laconic.core.sensors import settings_of, values_of
 from laconic.errors import BadInput
-from laconic.outputs import check_ending, whole_file
+from laconic.outputs import check_ending, check_file, whole_file
 from laconic.paths import SOURCE_DIR, as_path, built
 from laconic.scene import METHODS, Scene, check_scene
 from laconic.scene.methods import ON_HOSTS
@@ -68,6 +68,7 @@ def make_fmu(scene: Scene, out: str | Path, *, version: int, scalar: bool = Fals
              enumerations: bool = True, derivatives: bool = False) -> Path:
     """Writes the scene's FMU; BadInput when the scene has no such FMU.
 
+    `version` of FMI, 2 or 3, is what the importing tool reads: there is no default, as each tool reads one or both.
     `derivatives`: for Co-Simulation alone, whose directional and adjoint derivatives are those of its steps.
     """
     check_scene(scene)
@@ -75,6 +76,7 @@ def make_fmu(scene: Scene, out: str | Path, *, version: int, scalar: bool = Fals
         raise BadInput(f"version: there is no FMI {version!r}; give {' or '.join(map(str, VERSIONS))}")
     path = as_path("out", out)
     check_ending("out", path, (".fmu",))
+    check_file("out", path)
     check_method(scene)
     if derivatives:
         _check_smooth(scene)

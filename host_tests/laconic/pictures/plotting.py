@@ -15,7 +15,7 @@ import numpy as np
 
 from laconic.core.given import shown
 from laconic.errors import BadInput
-from laconic.outputs import check_ending, whole_file
+from laconic.outputs import check_ending, check_file, whole_file
 from laconic.paths import as_path
 from laconic.pictures.curve_style import wrapped
 from laconic.pictures.curves import MOST_CURVES, head, keep_scale, plot_beside_yaw_rate, plot_curves, plot_rows
@@ -184,6 +184,7 @@ def plot(run: Trajectory, path: str | Path | None = None) -> Figure:
     target = None if path is None else as_path("path", path)
     if target is not None:
         check_ending("path", target, (".png", ".svg", ".pdf"))
+        check_file("path", target)
     picture = run_figure(run)
     check_formulas(picture)
     if target is not None:

@@ -12,6 +12,7 @@ from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
 from pathlib import Path
 from typing import Any, NoReturn
 
+from laconic.core.given import is_masked
 from laconic.errors import BadInput, nearest_of, reason_of
 from laconic.scene.not_modelled import instead_of
 
@@ -199,7 +200,9 @@ def _line_of(text: str, error: Exception) -> str:
 
 
 def plain(value: Any) -> Any:
-    """A value as TOML would give it: numpy's scalars as Python's."""
+    """A value as TOML would give it: numpy's scalars as Python's, but for one that is masked."""
+    if is_masked(value):
+        return value
     return value.item() if hasattr(value, "item") and not getattr(value, "shape", ()) else value
 
 
@@ -219,6 +222,8 @@ def _shown(value: Any) -> str:
         return f'the text "{_short(value)}"'
     if isinstance(value, (list, dict)):
         return "a list" if isinstance(value, list) else "a table"
+    if is_masked(value):
+        return "masked"
     return _short(repr(value)) if isinstance(value, (int, float)) else str(value)  # dates as they are written
 
 

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import copy
 from collections.abc import Callable
 from pathlib import Path
 from typing import Any
@@ -12,6 +13,7 @@ import pytest
 import laconic
 import laconic.batch.memory
 from laconic.errors import BadInput
+from laconic.outputs import write_text
 
 ROBOT = {"mass_kg": 1.0, "yaw_inertia_kgm2": 0.1, "wheel_radius_m": 0.05}
 
@@ -36,6 +38,16 @@ def short_run() -> laconic.Trajectory:
     return laconic.simulate(scene().with_run(duration_s=0.1), ["x_m", "nu_rad_per_s"])
 
 
+def whole_run() -> laconic.Trajectory:
+    return laconic.simulate(scene().with_run(duration_s=0.1))
+
+
+def moved_wheel() -> laconic.Vehicle:
+    vehicle = copy.deepcopy(laconic.read_scene("robotino2").vehicle)
+    vehicle["wheel"][1]["x_m"] = 3.0
+    return laconic.Vehicle(vehicle)
+
+
 WRONG: list[tuple[Callable[[], Any], str]] = [
     (lambda: scene().with_run(step_s=0), "s1.toml: run.step_s: is 0; give a value above 0"),
     (lambda: scene().with_run(step_s=float("nan")), "s1.toml: run.step_s: is nan; give a finite number"),
@@ -54,10 +66,15 @@ WRONG: list[tuple[Callable[[], Any], str]] = [
     (lambda: plant().run({"body_force_N": [1j, 1]}), "body_force_N: [1j, 1] is no number and no list of numbers"),
     (lambda: plant().run({"body_force_N": np.ones(2, bool)}), "is no number and no list of numbers; give real numbers"),
     (lambda: core().vehicle({"mass_kg": True}), "vehicle.mass_kg: True is no number"),
-    (lambda: plant().sensors({"encoder": {"counts_per_turn": True}}),
-     "sensors.encoder.counts_per_turn: True is no whole number"),
-    (lambda: plant().sensors({"encoder": {"counts_per_turn": np.ma.masked}}),
-     "sensors.encoder.counts_per_turn: masked is no whole number"),
+    (lambda: wheels().plant().sensors({"encoder": {"counts_per_turn": True}}),
+     "sensors.encoder.counts_per_turn: is true, not a whole number"),
+    (lambda: wheels().plant().sensors({"encoder": {"counts_per_turn": np.ma.masked}}),
+     "sensors.encoder.counts_per_turn: is masked, not a whole number"),
+    (lambda: plant().sensors({"encoder": {"counts_per_turn": 4}}), "counts turns of wheels, and the vehicle has none"),
+    (lambda: wheels().plant(heading_rad=np.ma.masked), "heading_rad: masked is no number"),
+    (lambda: wheels().linearise(heading_rad=np.ma.masked), "heading_rad: masked is no number"),
+    (lambda: scene().with_run(step_s=np.ma.masked), "s1.toml: run.step_s: is masked, not a number"),
+    (lambda: scene().with_run(step_s=np.ma.array(1.0, mask=True)), "s1.toml: run.step_s: is masked, not a number"),
     (lambda: laconic.read_scene(None), "scene: None is no path"),  # type: ignore[arg-type]
     (lambda: laconic.make_fmu("s1", "s1.fmu", version=3), "scene: 's1' is no Scene"),  # type: ignore[arg-type]
     (lambda: laconic.make_fmu(scene(), "s1.fmu", version=4), "version: there is no FMI 4; give 2 or 3"),
@@ -103,10 +120,21 @@ WRONG: list[tuple[Callable[[], Any], str]] = [
     (lambda: wheels().derivative([1, 2, float("nan")]), "nu_rad_per_s[3]: nan is not finite"),
     (lambda: wheels().linearise(heading_rad=float("inf")), "heading_rad: inf is not finite"),
     (lambda: wheels().derivative(inputs={"voltage_V[2]": float("nan")}), "voltage_V: nan is not finite"),
-    (lambda: plant().change(laconic.Vehicle(ROBOT, "single")), "is no laconic_vehicle of this core"),
+    (lambda: plant().change(laconic.Vehicle(ROBOT, "single")), "vehicle: is in single precision, and this is in "),
+    (lambda: laconic.load_core("single").check_vehicle(wheels()), "vehicle: is in double precision, and this is in "),
+    (lambda: plant().change(wheels()), "vehicle: has 3 wheels, and the plant 0; make a plant of it"),
+    (lambda: wheels().plant().change(moved_wheel()), "vehicle.wheel[2].x_m: is 3, and the plant's -0.125; wheels stay"),
+    (lambda: laconic.plot(whole_run(), ""), "path: '' is no path; give one as text or as a Path"),
+    (lambda: laconic.plot(whole_run(), "."), "path .: is a folder; give the name of a file in it that ends in .png"),
+    (lambda: laconic.plot(whole_run(), Path("/")), "path /: is a folder; give the name of a file in it"),
+    (lambda: laconic.plot(whole_run(), f"{__file__}/run.png"), f"run.png: cannot be written ({__file__} is no folder)"),
+    (lambda: laconic.make_fmu(scene(), "", version=2), "out: '' is no path"),
+    (lambda: laconic.make_fmu(scene(), f"{__file__}/f.fmu", version=2), f"cannot be written ({__file__} is no folder)"),
+    (lambda: write_text(Path(__file__) / "text", ""), "text: cannot be written (not a directory); choose another path"),
 ]
 
 
+@pytest.mark.filterwarnings("error")
 @pytest.mark.parametrize("call, message", WRONG, ids=[message for _, message in WRONG])
 def test_a_wrong_argument_is_refused_in_one_line_by_its_name(call: Callable[[], Any], message: str) -> None:
     with pytest.raises(BadInput) as refused:
