@@ -62,7 +62,7 @@ def _amount(scenes: Sequence[Scene], quick: bool) -> int:
     board_count = 1 if quick else len(BOARDS)
     sizes = 2 * len(METHODS[1:]) * board_count + 2 * len(scenes)
     costs = len(REALS) * len(friction_cost.cost_scenes())
-    return numeric + len(stability.FACTORS) + 8 + 2 * len(extremes.CASES) + 2 + sizes + costs
+    return numeric + 2 * len(stability.FACTORS) + 8 + 2 * len(extremes.CASES) + 2 + sizes + costs
 
 
 def _numeric(report: Report, scenes: Sequence[Scene], bench: Scene, workshop: Workshop, folder: Path, quick: bool,
@@ -80,7 +80,9 @@ def _numeric(report: Report, scenes: Sequence[Scene], bench: Scene, workshop: Wo
 def _stiffness(report: Report, scenes: Sequence[Scene], bench: Scene, workshop: Workshop, folder: Path, quick: bool,
                advance: Any) -> dict[str, list[dict[str, Any]]]:
     advance(0, "stability map")
-    return {"map": stability.map_rows(read_scene(MAP_SCENE), advance=advance),
+    ideal = read_scene(MAP_SCENE)
+    slips = replace(ideal, vehicle=ideal.vehicle | {"friction_coefficient": 0.0, "ground": friction_cost.GROUND})
+    return {"map": [*stability.map_rows(ideal, advance=advance), *stability.friction_map_rows(slips, advance=advance)],
             "stiff": stability.stiff_rows([read_scene(name) for name in STIFF_SCENES], advance=advance)}
 
 

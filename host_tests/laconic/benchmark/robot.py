@@ -112,13 +112,14 @@ def worst_error(row: Row) -> float:
 
 
 def map_rows(scene: Scene, factors: Sequence[float], advance: Any = lambda: None) -> list[Row]:
-    """The stability map of this robot with weaker and stronger motors; none where no motor drives and damps it."""
-    if has_friction(scene.vehicle):  # its step damps whatever the motors do
-        return []
+    """The stability map of this robot with weaker and stronger motors, on its own ground; none where no motor drives
+    and damps it, and none where motors have limits, which would not grow with them."""
     totals = totals_of(scene.vehicle)
-    if not (scene.wheel_count and totals.motor_gain_Nm_per_V and totals.motor_damping_Nms):
+    if not (scene.wheel_count and totals.motor_gain_Nm_per_V and totals.motor_damping_Nms) or "drive" in scene.vehicle:
         return []
     try:
+        if has_friction(scene.vehicle):
+            return stability.friction_map_rows(scene, factors, advance)
         return stability.map_rows(scene, factors=factors, advance=advance)
     except Refused as refused:
         raise refused.at(scene.path) from None

@@ -7,7 +7,8 @@ from collections.abc import Sequence
 from laconic.benchmark import pictures, texts
 from laconic.benchmark.page import Row, Section, Table
 from laconic.benchmark.plan import plan
-from laconic.scene import METHODS, Scene
+from laconic.benchmark.sections import mapped
+from laconic.scene import Scene
 
 Results = dict[str, list[Row]]
 
@@ -57,8 +58,9 @@ def _stability(scenes: Sequence[Scene], results: Results) -> Section:
         rows = [row for row in results["map"] if row["scene"] == scene.path.stem]
         own = next(row for row in results["robots"] if row["scene"] == scene.path.stem)
         whose = f", {scene.path.stem}" if len(scenes) > 1 else ""
-        drawn += [pictures.stability(rows, method, (own["step_s"], own["fastest_decay_per_s"]), whose)
-                  for method in (METHODS if rows else ())]
+        star = (own["step_s"], own["fastest_decay_per_s"]) if "fastest_decay_per_s" in own else None
+        drawn += [pictures.stability(rows, method, star, whose)
+                  for method in mapped(rows)]
     return Section("stability", "Stability map", texts.paragraphs(texts.ROBOT_STABILITY), drawn)
 
 

@@ -6,7 +6,6 @@ from collections.abc import Sequence
 
 from laconic.benchmark import pictures, texts
 from laconic.benchmark.page import Row, Section, Table
-from laconic.scene import METHODS
 
 
 def project_sections(results: dict[str, list[Row]]) -> list[Section]:
@@ -40,8 +39,13 @@ def _peers(results: dict[str, list[Row]]) -> Section:
     return _section("peers", "Beside other integrators", [pictures.precision(rows)] if rows else [], steps, runs)
 
 
+def mapped(rows: Sequence[Row]) -> list[str]:
+    """The methods of a stability map, in the order of its rows; the friction step counts as one."""
+    return list(dict.fromkeys(row["method"] for row in rows))
+
+
 def _stability(results: dict[str, list[Row]]) -> Section:
-    drawn = [pictures.stability(results["map"], method) for method in METHODS] if results["map"] else []
+    drawn = [pictures.stability(results["map"], method) for method in mapped(results["map"])]
     fields = ("scene", "factor", "inputs", "step_s", "status", "error_nu", "error_path")
     return _section("stability", "Stability map", drawn, Table(results["stiff"], fields))
 
@@ -80,7 +84,7 @@ def _references(results: dict[str, list[Row]]) -> Section:
 
 
 def _extremes(results: dict[str, list[Row]]) -> Section:
-    fields = ("case", "real", "outcome", "error", "digits_lost", "why")
+    fields = ("case", "real", "method", "outcome", "error", "digits_lost", "why")
     return _section("extremes", "Extremes", (), Table(results["extremes"], fields))
 
 

@@ -4,13 +4,16 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from dataclasses import replace
+from fractions import Fraction
 from pathlib import Path
 from typing import Any
 
 import numpy as np
 
 from laconic.benchmark.accuracy import follow, relative
+from laconic.benchmark.exact_reference import exact_states
 from laconic.benchmark.stiff_reference import stiff_states
+from laconic.core import load
 from laconic.errors import Refused
 from laconic.scene import METHODS, Scene
 from laconic.scene.inputs import Input
@@ -20,6 +23,7 @@ SEGMENT_S, SEGMENTS = 0.25, 4
 STEPS_S = tuple(SEGMENT_S / n for n in (250, 160, 100, 64, 40, 25, 16, 10, 6, 4, 2, 1))
 FACTORS = tuple(float(f) for f in 10.0 ** np.arange(-1.0, 6.01, 0.5))
 PATTERN, SIGNS = (6.0, -2.0, 4.0, 1.0), (1.0, -0.7, 0.5, -1.0)
+FINER = 32
 STIFF_STEPS_S, STIFF_FACTORS = (1e-3, 5e-3, 0.02, 0.1), (1e3, 1e6)
 SINE_HZ, STIFF_S = 0.5, 3.0
 OWN = {"inertia_kgm2", "motor_gain_Nm_per_V", "motor_damping_Nms"}  # of a wheel, what the motors bring
@@ -64,13 +68,44 @@ def map_rows(scene: Scene, methods: Sequence[str] = METHODS, factors: Sequence[f
     rows, ends = [], SEGMENT_S * np.arange(1, SEGMENTS + 1)
     for factor in factors:
         strong = strengthened(scene, factor, four_steps(scene.wheel_count), SEGMENT_S * SEGMENTS)
-        expected = stiff_states(strong.with_run(step_s=SEGMENT_S), ends)
+        expected = map_truth(strong)
         rate = Reference(strong.vehicle).fastest_decay_per_s()
         for method in methods:
             for step_s in STEPS_S:
                 row = {"scene": scene.path.stem, "method": method, "factor": factor, "fastest_decay_per_s": rate,
                        "step_s": step_s}
                 rows.append(row | _map_run(strong.with_run(method=method, step_s=step_s), ends, expected))
+        advance()
+    return rows
+
+
+def map_truth(scene: Scene) -> np.ndarray:
+    """The states at the four segments' ends, in 50 digits."""
+    volts = [[PATTERN[i % 4] * sign for i in range(scene.wheel_count)] for sign in SIGNS[:SEGMENTS]]
+    nu = scene.plant(load("double")).nu
+    return exact_states(scene.vehicle, nu.tolist(), volts, [[k * Fraction(SEGMENT_S)] for k in range(1, SEGMENTS + 1)])
+
+
+def friction_map_rows(scene: Scene, factors: Sequence[float] = FACTORS, advance: Any = lambda: None
+                      ) -> list[dict[str, Any]]:
+    """The same of the friction step, beside itself in steps FINER times as fine as the finest; `reference_error_nu`:
+    what these are off by, as twice their length tells."""
+    rows, ends = [], SEGMENT_S * np.arange(1, SEGMENTS + 1)
+    for factor in factors:
+        strong = strengthened(scene, factor, four_steps(scene.wheel_count), SEGMENT_S * SEGMENTS)
+        row = {"scene": scene.path.stem, "method": "friction step", "factor": factor,
+               "fastest_decay_per_s": Reference(strong.vehicle).fastest_decay_per_s()}
+        try:
+            expected, coarser = (follow(strong.with_run(method="auto", step_s=STEPS_S[0] / finer), "double", ends)
+                                 for finer in (FINER, FINER // 2))
+        except Refused as refused:
+            rows += [row | {"step_s": step_s, "status": f"no reference: {refused.status}"} for step_s in STEPS_S]
+            advance()
+            continue
+        row["reference_error_nu"] = relative(coarser[:, :3], expected[:, :3])
+        for step_s in STEPS_S:
+            rows.append(row | {"step_s": step_s} | _map_run(strong.with_run(method="auto", step_s=step_s), ends,
+                                                           expected))
         advance()
     return rows
 

@@ -32,7 +32,8 @@ The general solvers restart at every jump of the voltages. Adams and BDF are CVO
 
 STABILITY = f"""
 Scene {MAP_SCENE}, its motors from a tenth of their strength to a million times that: four voltage steps of a quarter
-second, error of ν at their ends. Grey: refused by the core before it could go wrong. Dashed: h·r = 1.
+second, error of ν at their ends beside the motion in 50 digits. Grey: refused by the core before it could go wrong.
+Dashed: h·r = 1. The last map is that of the friction step, on ground with friction, beside itself in much finer steps.
 
 The table: auto on very stiff vehicles. Sinusoids are sampled at the start, middle and end of each step.
 """
@@ -59,7 +60,8 @@ the inputs of this scene.
 
 ROBOT_STABILITY = """
 This robot, its motors from a tenth of their strength to a million times that: four voltage steps of a quarter second,
-error of ν at their ends. Grey: refused by the core before it could go wrong.
+error of ν at their ends. Grey: refused by the core before it could go wrong. On ground with friction it is the friction
+step's, beside itself in much finer steps.
 """
 
 ROBOT_BOARD = """
@@ -87,8 +89,9 @@ Solutions to 25 digits; errors over max(1, largest value of that kind in the cas
 """
 
 EXTREMES = """
-Numbers at the edge: S1's vehicle with one thing changed, a hundred steps of 10 ms by auto. `right`: within 1e-6 plus
-the digits that the condition number takes; `number`: finite, but beyond what the reference solver can check.
+Numbers at the edge: S1's vehicle with one thing changed, a hundred steps of 10 ms (ten of 1 s) by auto and by the
+method of order 8. `right`: ν is within 1e-6, plus the digits that the condition number takes, of the motion in 50
+digits; `coarse`: some digits are, as the step is long; `number`: finite, but too far to be followed.
 """
 
 

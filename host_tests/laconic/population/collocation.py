@@ -11,6 +11,7 @@ from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from fractions import Fraction
 from itertools import pairwise
+from typing import Any
 
 from flint import arb, arb_mat, ctx
 from mpmath import mp, mpf
@@ -18,7 +19,7 @@ from mpmath import mp, mpf
 from laconic.enclosure.balls import Vector, added, ball, dot
 from laconic.errors import ResultFails
 from laconic.population.nodes import BITS, POINTS, column, damped, last_coefficient, nodes
-from laconic.verification.derivatives.exact_model import ExactModel
+from laconic.verification.derivatives.exact_model import ExactModel, exact_model, numbers_of
 from laconic.verification.derivatives.exact_steps import forcing_of
 
 Held = Mapping[str, Sequence[float]]
@@ -26,7 +27,8 @@ Held = Mapping[str, Sequence[float]]
 DIGITS = 60              # with which numbers pass from mpmath
 FIRST = 2.0              # of the fastest damping's time, the first panel after a change of inputs
 GROWTH = 0.5             # of the time since then, each further one
-LONGEST_S = 1.0
+LONGEST_S = 1e4
+MOST_PANELS = 20_000
 FAST = 0.5               # decay times panel, from which on damping is solved
 ROUNDS = 60
 SETTLED = arb(2) ** -150  # of the largest number, between two rounds
@@ -104,12 +106,12 @@ def panel(k: Constants, start: Motion, h: arb) -> Motion | None:
         moved = max(float(abs(p - q)) for new, old in zip(fresh, z, strict=True) for p, q in zip(new, old, strict=True))
         z = fresh
         largest = max(1.0, *(float(abs(x)) for each in z for x in each))
-        if moved <= float(SETTLED * largest):
+        if not (all(x.is_finite() for each in z for x in each) and moved < HOPELESS * largest):
+            return None
+        if moved <= float(SETTLED) * largest:
             is_resolved = all(float(last_coefficient(each)) <= RESOLVED * largest for each in
                               ([x, *rest] for x, rest in zip(start.zeta, z, strict=True)))
             return end_of(k, start, h, z, headings) if is_resolved else None
-        if not moved < HOPELESS * largest:
-            return None
     return None
 
 
@@ -145,18 +147,26 @@ def end_of(k: Constants, start: Motion, h: arb, z: list[Vector], headings: Vecto
 
 def onward(k: Constants, start: Motion, begin_s: Fraction, end_s: Fraction) -> Motion:
     """From one time to another, both since the inputs changed: panels grow from the time of the fastest decay."""
-    fastest, now, state, most = max(float(x) for x in k.decay), begin_s, start, LONGEST_S
+    fastest, now, state, most, panels = max(float(x) for x in k.decay), begin_s, start, LONGEST_S, 0
     while now < end_s:
+        panels += 1
         h = min(most, max(FIRST / fastest if fastest > 0 else LONGEST_S, GROWTH * float(now)))
         length = min(Fraction(h), end_s - now)
         found = panel(k, state, ball(length).mid())
         if found is None:
             most = float(length) / 2
-            if most < SHORTEST_S:
+            if most < SHORTEST_S or panels > MOST_PANELS:
                 raise ResultFails(f"the collocation does not settle in panels of {h:g} s")
             continue
         state, now, most = found, now + length, min(LONGEST_S, 2 * most)
     return state
+
+
+def exact_start(table: Mapping[str, Any], nu: Sequence[float]) -> tuple[ExactModel, Vector]:
+    """A vehicle's model, and ν at the start: doubles meet the constraints to rounding alone, this to all digits."""
+    with mp.workdps(DIGITS), ctx.workprec(BITS):
+        model = exact_model(numbers_of(table))
+        return model, [exact(x) for x in model.nu(model.zeta([mpf(float(x)) for x in nu]))]
 
 
 def true_states(model: ExactModel, start_nu: Sequence[arb], heading_rad: float, helds: Sequence[Held],

@@ -7,8 +7,7 @@ from dataclasses import dataclass
 from itertools import pairwise
 
 import numpy as np
-from flint import arb, ctx
-from mpmath import mp, mpf
+from flint import arb
 
 from laconic.enclosure.balls import Vector, ball, precision, times
 from laconic.enclosure.equation import equation_of
@@ -16,10 +15,8 @@ from laconic.enclosure.loads import Stretch
 from laconic.enclosure.motion import Motion
 from laconic.enclosure.state import Beginning
 from laconic.errors import ResultFails
-from laconic.population.collocation import DIGITS, exact, true_states
+from laconic.population.collocation import exact_start, true_states
 from laconic.population.made import Made, cuts_s
-from laconic.population.nodes import BITS
-from laconic.verification.derivatives.exact_model import ExactModel, exact_model, numbers_of
 from laconic.verification.derivatives.trials import INPUTS
 
 MOST_ENCLOSED = 1e3       # times the usual damping
@@ -57,9 +54,7 @@ def size_of(states: list[Vector], part: slice) -> float:
 
 def truth_of(vehicle: Made, nu: np.ndarray) -> Truth:
     """The true motion from the core's start."""
-    with mp.workdps(DIGITS):
-        model = exact_model(numbers_of(vehicle.trial.table))
-    start = start_of(model, nu)
+    model, start = exact_start(vehicle.trial.table, nu.tolist())
     digits = true_states(model, start, vehicle.trial.heading_rad, vehicle.helds, cuts_s())
     if vehicle.factor > MOST_ENCLOSED:
         return Truth("50 digits", digits, 0.0)
@@ -77,12 +72,6 @@ def check_inside(enclosure: list[Vector], digits: list[Vector]) -> None:
                    for x, y in zip(one[part], other[part], strict=True)), default=0.0)
         if not off <= slack:
             raise ResultFails(f"the motion in 50 digits is {off:.1e} outside of its enclosure")
-
-
-def start_of(model: ExactModel, nu: np.ndarray) -> Vector:
-    """ν at the start: doubles meet the constraints to rounding alone, this to all digits."""
-    with mp.workdps(DIGITS), ctx.workprec(BITS):
-        return [exact(x) for x in model.nu(model.zeta([mpf(float(x)) for x in nu]))]
 
 
 def enclosed(vehicle: Made, start_nu: Vector) -> list[Vector]:

@@ -14,6 +14,7 @@ from laconic.outputs import make_folder
 from laconic.paths import results_dir
 from laconic.scene import METHODS
 from laconic.soak import StoppedEarly
+from laconic.soak._long.cases import CASES
 from laconic.soak._long.measure import LEAST_PATH_M, Row
 from laconic.soak._long.run import LongRun
 
@@ -22,7 +23,9 @@ SEED = 1  # nothing is drawn
 STEPS = 10**9
 USUAL_METHODS, REALS = ("auto", "rk4"), ("double", "single")
 LARGEST_ULP = 16.0  # of heading and place, in units of rounding of what they have come to;
+WALK_ULP = 0.02     # and where ζ itself moves, each step's rounding changes its speed: times the root of the steps,
 STANDING_M = 1e-12  # and of place what a method's own error at 1 ms holds a motion off by, however long it lasts
+STEADY = {case.name for case in CASES if case.steady}
 
 
 def runs_of(method: str | None) -> list[tuple[str, str]]:
@@ -74,9 +77,10 @@ def last_rows(rows: list[Row], steps: int) -> list[Row]:
 def drifted(row: Row) -> bool:
     """Whether heading or place is further off than so many roundings of what they have come to."""
     unit = float(np.finfo(np.float64 if row["real"] == "double" else np.float32).eps) / 2
+    walk = 0.0 if row["case"] in STEADY else WALK_ULP * row["steps"] ** 0.5
+    allowed = (LARGEST_ULP + walk) * unit
     standing = STANDING_M / max(row["path_m"], LEAST_PATH_M)
-    return not (row["heading_relative"] <= LARGEST_ULP * unit
-                and row["place_relative"] <= LARGEST_ULP * unit + standing)
+    return not (row["heading_relative"] <= allowed and row["place_relative"] <= allowed + standing)
 
 
 def text_of(row: Row) -> str:

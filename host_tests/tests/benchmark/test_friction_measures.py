@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
 from pathlib import Path
 
 import numpy as np
@@ -11,6 +12,7 @@ from friction_scenes import slipping
 from laconic.benchmark import accuracy, friction_accuracy, friction_cost, robot
 from laconic.benchmark.targets import friction_targets
 from laconic.benchmark.workshop import HOST
+from laconic.scene import read_scene
 
 
 def test_the_order_through_a_current_limit_and_on_smooth_slip_is_printed_and_is_one(
@@ -43,7 +45,20 @@ def test_a_scene_with_friction_is_judged_by_a_finer_step_of_its_only_method(tmp_
     assert {row["method"] for row in rows} == {"auto"} and len(rows) == 3
     errors = [row["error_nu"] for row in sorted(rows, key=lambda row: row["step_s"])]
     assert 0.0 < errors[0] < errors[1] < errors[2] < 1.0
-    assert robot.map_rows(scene, (1.0,)) == [] and robot.robot_row(scene)["works"] == "the friction step"
+    assert robot.robot_row(scene)["works"] == "the friction step"
+
+
+def test_the_stability_map_of_a_scene_with_friction_is_the_friction_steps(tmp_path: Path) -> None:
+    assert robot.map_rows(slipping(tmp_path), (1.0,)) == []  # its motors have limits
+    scene = read_scene("kuka_youbot")
+    vehicle = scene.vehicle | {"friction_coefficient": 0.0, "ground": friction_cost.GROUND}
+    rows = robot.map_rows(replace(scene, vehicle=vehicle), (0.1, 1e6))
+    assert {(row["method"], row["status"]) for row in rows} == {("friction step", "ok")}
+    for factor in (0.1, 1e6):
+        mine = {row["step_s"]: row for row in rows if row["factor"] == factor}
+        assert mine[0.001]["error_nu"] < mine[0.01]["error_nu"] < 0.05
+        assert mine[0.001]["reference_error_nu"] < 0.2 * mine[0.001]["error_nu"]
+        assert max(row["error_nu"] for row in mine.values()) < 1.0
 
 
 def test_costs_are_median_99th_percentile_and_worst_in_ideal_steps() -> None:

@@ -16,6 +16,7 @@ from laconic.benchmark.collect import PARTS, Report
 from laconic.benchmark.equality import rates_of_peer
 from laconic.benchmark.page import shown
 from laconic.benchmark.referenced import beats
+from laconic.benchmark.stiff_reference import stiff_states
 from laconic.benchmark.targets import (
     COARSE_S,
     FINE_S,
@@ -82,11 +83,19 @@ def test_auto_follows_very_stiff_vehicles_under_voltages_that_vary_inside_the_st
 
 
 def test_the_map_has_no_silent_failure():
-    rows = stability.map_rows(read_scene("kuka_youbot"), methods=("auto", "rk4", "exact-flow"), factors=(1e4,))
+    rows = stability.map_rows(read_scene("kuka_youbot"), ("auto", "rk4", "exact-flow", "exponential-gauss-8"), (1e4,))
     for row in rows:
         assert row["status"].startswith("step") or row["error_nu"] < 1.0, row
     assert all(row["status"] == "ok" for row in rows if row["method"] == "auto")
     assert any(row["status"] == "step beyond damping limit" for row in rows if row["method"] == "rk4")
+    assert max(row["error_nu"] for row in rows if row["method"] == "exponential-gauss-8") < 1e-14
+
+
+def test_the_maps_50_digits_are_the_stiff_solvers_to_its_tolerance():
+    scene = stability.strengthened(read_scene("kuka_youbot"), 1e2, stability.four_steps(4), 1.0)
+    ends = stability.SEGMENT_S * np.arange(1, stability.SEGMENTS + 1)
+    expected = stiff_states(scene.with_run(step_s=stability.SEGMENT_S), ends)
+    np.testing.assert_allclose(stability.map_truth(scene), expected, rtol=0.0, atol=1e-8)
 
 
 @pytest.mark.skipif(not HOST.present, reason="no gcc here")

@@ -42,7 +42,7 @@ def made(tmp_path_factory):
         patch.setattr(robot, "QUICK_FACTORS", (0.1, 1.0))
         patch.setattr("laconic.cli.commands.report.read_scene", lambda name: read_scene(name).with_run(duration_s=1.0))
         patch.setattr("laconic.benchmark.stability.SEGMENTS", 1)
-        patch.setattr("laconic.benchmark.robot_sections.METHODS", ("auto",))
+        patch.setattr("laconic.benchmark.robot_sections.mapped", lambda rows: ["auto"])
         for drawing in ("pictures", "plan"):
             patch.setattr(f"laconic.benchmark.{drawing}.svg", without_layout)
         with contextlib.redirect_stdout(io.StringIO()) as out:

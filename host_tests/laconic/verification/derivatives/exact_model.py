@@ -85,11 +85,12 @@ class _Wheel:
     """One wheel's numbers, its own or the vehicle's."""
 
     def __init__(self, v: Numbers, stem: str):
-        own = {key: v.get(f"{stem}{key}", mpf(0)) for key in (
+        own = {key: v.get(f"{stem}{key}") for key in (
             "radius_m", "inertia_kgm2", "motor_gain_Nm_per_V", "motor_damping_Nms")}
         given = {"radius_m": v["wheel_radius_m"], "inertia_kgm2": v["wheel_inertia_kgm2"],
                  "motor_gain_Nm_per_V": v["motor_gain_Nm_per_V"], "motor_damping_Nms": v["motor_damping_Nms"]}
-        self.radius, self.inertia, self.gain, self.damping = (own[key] or given[key] for key in own)
+        self.radius, self.inertia, self.gain, self.damping = (
+            given[key] if value is None else value for key, value in own.items())
         if not v.get(f"{stem}driven", True):
             self.gain = self.damping = mpf(0)
         self.fixed = v[f"{stem}kind"] == "fixed"
