@@ -95,6 +95,25 @@ static void the_counter_leaves_the_bits_beside_it(void) {
     TEST_ASSERT_EQUAL_HEX8(0xA5, data[1]);
 }
 
+static void a_stray_frame_is_forgotten_when_the_next_one_is_right(void) {
+    laconic_e2e_receiver receiver = {0};
+    laconic_e2e_check(&receiver, true, 9, 15, 1);
+    TEST_ASSERT_EQUAL(LACONIC_E2E_WRONG_SEQUENCE, laconic_e2e_check(&receiver, true, 1, 15, 1));
+    TEST_ASSERT_EQUAL(LACONIC_E2E_WRONG_SEQUENCE, laconic_e2e_check(&receiver, true, 2, 15, 1));
+    TEST_ASSERT_EQUAL(LACONIC_E2E_OK, laconic_e2e_check(&receiver, true, 10, 15, 1));
+    TEST_ASSERT_EQUAL_UINT8(0, receiver.stray_count);
+    TEST_ASSERT_EQUAL(LACONIC_E2E_WRONG_SEQUENCE, laconic_e2e_check(&receiver, true, 3, 15, 1));
+    TEST_ASSERT_EQUAL_UINT8(1, receiver.stray_count);
+}
+
+/* Before any stray frame the number 0 is none: a frame with count 1 does not follow it. */
+static void the_first_stray_frame_follows_none(void) {
+    laconic_e2e_receiver receiver = {0};
+    laconic_e2e_check(&receiver, true, 9, 15, 1);
+    laconic_e2e_check(&receiver, true, 1, 15, 1);
+    TEST_ASSERT_EQUAL_UINT8(1, receiver.stray_count);
+}
+
 int main(void) {
     UNITY_BEGIN();
     RUN_TEST(profile_2_gives_the_published_headers);
@@ -106,5 +125,7 @@ int main(void) {
     RUN_TEST(profile_5_gives_the_headers_of_another_implementation);
     RUN_TEST(the_shortest_frames_are_their_headers);
     RUN_TEST(the_counter_leaves_the_bits_beside_it);
+    RUN_TEST(a_stray_frame_is_forgotten_when_the_next_one_is_right);
+    RUN_TEST(the_first_stray_frame_follows_none);
     return UNITY_END();
 }

@@ -169,6 +169,66 @@ static void checksum_and_count_must_both_be_right(void) {
                             laconic_loader_check(&loader, 9, loader.checksum ^ LACONIC_CRC32_END, &field, &item));
 }
 
+/* Of a field that this build has, an item that is not there is unknown; only a field that it lacks is left out. */
+static void a_wrong_item_of_any_field_is_unknown_and_not_left_out(void) {
+    static const int fields[] = {LACONIC_FIELD_OWN_RADIUS,
+                                 LACONIC_FIELD_DRIVEN,
+                                 LACONIC_FIELD_SLOPE,
+                                 LACONIC_FIELD_SLOPE_HEADING,
+                                 LACONIC_FIELD_WHEEL_FRICTION_COEFFICIENT,
+                                 LACONIC_DRIVES_FIELD_DRIVE_PROTOCOL,
+                                 LACONIC_DRIVES_FIELD_LAST,
+                                 LACONIC_SENSOR_FIELD_IMU_X,
+                                 LACONIC_SENSOR_FIELD_COUNT - 1};
+    for (size_t k = 0; k < sizeof fields / sizeof fields[0]; k++) {
+        laconic_loader_begin(&loader);
+        send(0, fields[k], 200, 0);
+        TEST_ASSERT_EQUAL_UINT8(LACONIC_WIRE_STATUS_PARAMETER_UNKNOWN, check());
+        TEST_ASSERT_EQUAL_UINT8(fields[k], loader.field);
+        TEST_ASSERT_EQUAL_UINT8(200, loader.item);
+    }
+}
+
+/* CRC-32 of the upper half's bit and the six bytes behind it, of each frame: not of its protection. */
+static void the_checksum_is_that_of_what_a_frame_tells(void) {
+    static const uint8_t told[7] = {0x10, 1, 0, 0x11, 0x22, 0x33, 0x44};
+    uint8_t data[9] = {0xAA, 0x1B, 1, 0, 0x11, 0x22, 0x33, 0x44, 0xBB};
+    laconic_loader_take(&loader, data);
+    TEST_ASSERT_EQUAL_HEX32(laconic_crc32(LACONIC_CRC32_START, told, 7), loader.checksum);
+    TEST_ASSERT_EQUAL_UINT16(1, loader.frame_count);
+}
+
+static void the_largest_kind_of_a_wheel_fits_a_byte_with_a_sign(void) {
+    send(0, LACONIC_FIELD_WHEEL_KIND, 1, 127);
+    TEST_ASSERT_EQUAL_UINT8(0, loader.status);
+    send(0, LACONIC_FIELD_WHEEL_KIND, 1, 128);
+    TEST_ASSERT_EQUAL_UINT8(LACONIC_WIRE_STATUS_OUT_OF_RANGE, loader.status);
+}
+
+static void the_half_that_is_missing_is_named(void) {
+    if (sizeof(laconic_real) == 4) return;
+    send(0, LACONIC_FIELD_WHEEL_X, 2, 1);
+    send(0, LACONIC_FIELD_MASS, 0, 1);
+    TEST_ASSERT_EQUAL_UINT8(LACONIC_WIRE_STATUS_INPUT_INCOMPLETE, loader.status);
+    TEST_ASSERT_TRUE(loader.field == LACONIC_FIELD_WHEEL_X && loader.item == 2);
+    laconic_loader_begin(&loader);
+    send(0, LACONIC_FIELD_WHEEL_X, 2, 1);
+    send(1, LACONIC_FIELD_WHEEL_X, 1, 1);
+    TEST_ASSERT_EQUAL_UINT8(LACONIC_WIRE_STATUS_INPUT_INCOMPLETE, loader.status);
+    TEST_ASSERT_TRUE(loader.field == LACONIC_FIELD_WHEEL_X && loader.item == 1);
+    laconic_loader_begin(&loader);
+    send(0, LACONIC_FIELD_WHEEL_X, 2, 1);
+    TEST_ASSERT_EQUAL_UINT8(LACONIC_WIRE_STATUS_INPUT_INCOMPLETE, check());
+    TEST_ASSERT_TRUE(field == LACONIC_FIELD_WHEEL_X && item == 2);
+}
+
+static void rollers_need_their_angle_and_wheels_that_are_not_there_need_nothing(void) {
+    send_cart_without(LACONIC_FIELD_ROLLER, 2);
+    send(0, LACONIC_FIELD_WHEEL_KIND, 2, LACONIC_WHEEL_FIXED);
+    send(0, LACONIC_FIELD_WHEEL_KIND, 3, LACONIC_WHEEL_ROLLER); /* beyond the two */
+    TEST_ASSERT_EQUAL_UINT8(0, check());
+}
+
 int main(void) {
     UNITY_BEGIN();
     RUN_TEST(numbers_arrive_bit_for_bit_where_they_belong);
@@ -181,5 +241,10 @@ int main(void) {
     RUN_TEST(part_of_a_payload_or_support_is_not_enough);
     RUN_TEST(numbers_that_the_core_has_no_use_for_yet_are_refused_by_name);
     RUN_TEST(checksum_and_count_must_both_be_right);
+    RUN_TEST(a_wrong_item_of_any_field_is_unknown_and_not_left_out);
+    RUN_TEST(the_checksum_is_that_of_what_a_frame_tells);
+    RUN_TEST(the_largest_kind_of_a_wheel_fits_a_byte_with_a_sign);
+    RUN_TEST(the_half_that_is_missing_is_named);
+    RUN_TEST(rollers_need_their_angle_and_wheels_that_are_not_there_need_nothing);
     return UNITY_END();
 }

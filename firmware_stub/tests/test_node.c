@@ -1,5 +1,6 @@
 /* Tests of node.c and node_motion.c: frames, steps and answers of a node in lockstep. */
 #include "bench.h"
+#include "laconic_node/crc.h"
 #include "unity.h"
 
 #include <math.h>
@@ -159,6 +160,144 @@ static void can_fd_is_refused_where_there_is_none(void) {
     TEST_ASSERT_EQUAL_UINT8(0, bench_select(LACONIC_NODE_SEND_STATE_FD, 0, 0));
 }
 
+static void a_node_begins_with_an_empty_loader_whatever_its_memory_held(void) {
+    const laconic_node_config config = node.config;
+    memset(&node, 0xA5, sizeof node);
+    TEST_ASSERT_TRUE(laconic_node_init(&node, &config, 7));
+    TEST_ASSERT_EQUAL_HEX32(LACONIC_CRC32_START, node.loader.checksum);
+    TEST_ASSERT_TRUE(node.heartbeat_us == 7 && node.state == LACONIC_WIRE_STATE_EMPTY && node.pending == 0);
+}
+
+static void a_fetched_frame_says_of_which_kind_it_is(void) {
+    laconic_frame frame;
+    bench_load(2);
+    bench_select(LACONIC_NODE_SEND_NU | LACONIC_NODE_SEND_STATE_FD, 0, 0);
+    bench_start_lockstep();
+    bench_sync(1);
+    laconic_node_on_tick(&node, now_us);
+    for (int k = 0; k < 2; k++) {
+        memset(&frame, 0xFF, sizeof frame);
+        TEST_ASSERT_TRUE(laconic_node_next_frame(&node, &frame));
+        TEST_ASSERT_TRUE(!frame.extended && !frame.remote && frame.fd == (k == 1) && frame.bit_rate_switch == (k == 1));
+        TEST_ASSERT_EQUAL_UINT8(k == 0 ? 8 : 64, frame.length);
+        TEST_ASSERT_EQUAL_UINT32((uint32_t)(LACONIC_WIRE_ID_BASE + (k == 0 ? LACONIC_WIRE_NU : LACONIC_WIRE_STATE_FD)),
+                                 frame.id);
+        if (k == 1)
+            for (int byte = 36; byte < 64; byte++) TEST_ASSERT_EQUAL_HEX8(0, frame.data[byte]);
+    }
+    TEST_ASSERT_FALSE(laconic_node_next_frame(&node, &frame));
+}
+
+static uint16_t refused_of(uint8_t offset) {
+    const uint8_t none[LACONIC_FRAME_BYTES] = {0};
+    const uint16_t before = node.counters.refused;
+    bench_send(offset, none);
+    return (uint16_t)(node.counters.refused - before);
+}
+
+static void raw_inputs_are_for_lockstep_between_its_steps(void) {
+    bench_load(2);
+    bench_select(0, 0, LACONIC_RAW_VOLTAGE);
+    bench_control(LACONIC_WIRE_COMMAND_START_FREE_RUN, 0, 0);
+    TEST_ASSERT_EQUAL_UINT16(1, refused_of(LACONIC_WIRE_RAW_INPUT));
+    bench_control(LACONIC_WIRE_COMMAND_STOP, 0, 0);
+    bench_start_lockstep();
+    TEST_ASSERT_EQUAL_UINT16(0, refused_of(LACONIC_WIRE_RAW_INPUT));
+    node.lockstep.steps_due = 1;
+    TEST_ASSERT_EQUAL_UINT16(1, refused_of(LACONIC_WIRE_RAW_INPUT));
+}
+
+static void a_sync_while_one_step_is_due_is_told_that_the_node_is_busy(void) {
+    uint8_t data[LACONIC_FRAME_BYTES];
+    bench_load(2);
+    bench_start_lockstep();
+    bench_sync(1);
+    bench_sync(1);
+    TEST_ASSERT_TRUE(bench_receive(LACONIC_WIRE_RESULT, data));
+    TEST_ASSERT_EQUAL_UINT8(LACONIC_WIRE_STATUS_BUSY, data[3]);
+    TEST_ASSERT_EQUAL_UINT8(sent[LACONIC_WIRE_SYNC] & 15U, data[1] >> 4);
+}
+
+static void a_million_steps_are_the_most_of_one_sync(void) {
+    bench_load(2);
+    bench_start_lockstep();
+    bench_sync(1000000);
+    TEST_ASSERT_EQUAL_UINT32(1000000, node.lockstep.steps_due);
+}
+
+static void voltages_go_to_the_wheels_of_their_group_and_to_no_others(void) {
+    bench_load(4);
+    bench_start_lockstep();
+    bench_voltage(1, 500, 0);
+    for (int k = 0; k < LACONIC_MAX_WHEELS; k++) TEST_ASSERT_TRUE(node.input[0].voltage_V[k] == (k == 3));
+    bench_voltage(0, 1000, 0);
+    for (int k = 0; k < LACONIC_MAX_WHEELS; k++)
+        TEST_ASSERT_TRUE(node.input[0].voltage_V[k] == (k < 3 ? 2 : (laconic_real)(k == 3)));
+    const uint16_t before = node.counters.refused;
+    bench_voltage(2, 500, 0); /* there are four wheels */
+    TEST_ASSERT_EQUAL_UINT16(before + 1, node.counters.refused);
+    TEST_ASSERT_EQUAL_UINT16(0, node.counters.overrange);
+    const struct laconic_dbc_voltage_t over = {.overrange = 1};
+    uint8_t data[LACONIC_FRAME_BYTES];
+    laconic_dbc_voltage_pack(data, &over, 8);
+    bench_send(LACONIC_WIRE_VOLTAGE, data);
+    TEST_ASSERT_EQUAL_UINT16(1, node.counters.overrange);
+}
+
+static void a_single_wheel_has_a_group_of_its_own_behind_the_first(void) {
+    bench_load(1);
+    bench_start_lockstep();
+    const uint16_t before = node.counters.refused;
+    bench_voltage(1, 500, 0);
+    TEST_ASSERT_EQUAL_UINT16(before + 1, node.counters.refused);
+}
+
+static void a_selected_wheel_of_one_is_sent(void) {
+    uint8_t data[LACONIC_FRAME_BYTES];
+    bench_load(1);
+    bench_select(LACONIC_NODE_SEND_WHEEL_SPEED | LACONIC_NODE_SEND_WHEEL_ANGLE, 0, 0);
+    bench_start_lockstep();
+    bench_sync(1);
+    laconic_node_on_tick(&node, now_us);
+    TEST_ASSERT_TRUE(bench_receive(LACONIC_WIRE_WHEEL_SPEED, data));
+    TEST_ASSERT_TRUE(bench_receive(LACONIC_WIRE_WHEEL_ANGLE, data));
+    TEST_ASSERT_EQUAL_UINT32(0, node.pending);
+}
+
+static void three_wheels_fill_one_frame_of_speeds_and_one_of_angles(void) {
+    uint8_t data[LACONIC_FRAME_BYTES];
+    bench_load(3);
+    bench_select(LACONIC_NODE_SEND_WHEEL_SPEED | LACONIC_NODE_SEND_WHEEL_ANGLE, 0, 0);
+    bench_start_lockstep();
+    const laconic_start start = {{0, 2, 0}, 0, 0, 0, {0}};
+    laconic_state_set(&node.plant.state, &node.plant.model, &start, NULL);
+    for (int again = 0; again < 2; again++) {
+        struct laconic_dbc_wheel_speed_t speed;
+        bench_sync(1);
+        laconic_node_on_tick(&node, now_us);
+        TEST_ASSERT_TRUE(bench_receive(LACONIC_WIRE_WHEEL_SPEED, data));
+        laconic_dbc_wheel_speed_unpack(&speed, data, 8);
+        TEST_ASSERT_TRUE(speed.group == 0 && speed.wheel_speed_1 == 400 && speed.wheel_speed_3 == 400);
+        TEST_ASSERT_TRUE(bench_receive(LACONIC_WIRE_WHEEL_ANGLE, data));
+        TEST_ASSERT_EQUAL_UINT8(0, data[1] >> 5);
+        TEST_ASSERT_EQUAL_UINT32(0, node.pending);
+    }
+}
+
+static void a_fault_in_lockstep_answers_the_sync_and_forgets_the_steps_left(void) {
+    uint8_t data[LACONIC_FRAME_BYTES];
+    bench_load(2);
+    bench_start_lockstep();
+    node.input[0].voltage_V[0] = (laconic_real)NAN;
+    bench_sync(200);
+    laconic_node_on_tick(&node, now_us);
+    TEST_ASSERT_EQUAL_UINT8(LACONIC_WIRE_STATE_FAULT, node.state);
+    TEST_ASSERT_FALSE(laconic_node_is_busy(&node));
+    TEST_ASSERT_TRUE(node.input[0].voltage_V[0] == 0);
+    TEST_ASSERT_TRUE(bench_receive(LACONIC_WIRE_RESULT, data));
+    TEST_ASSERT_EQUAL_UINT8(sent[LACONIC_WIRE_SYNC] & 15U, data[1] >> 4);
+}
+
 int main(void) {
     UNITY_BEGIN();
     RUN_TEST(id_bases_are_multiples_of_32);
@@ -171,5 +310,15 @@ int main(void) {
     RUN_TEST(a_step_that_the_core_refuses_ends_in_fault_and_reset_mends_it);
     RUN_TEST(the_fault_names_the_wheel_whichever_sample_of_the_step_is_to_blame);
     RUN_TEST(can_fd_is_refused_where_there_is_none);
+    RUN_TEST(a_node_begins_with_an_empty_loader_whatever_its_memory_held);
+    RUN_TEST(a_fetched_frame_says_of_which_kind_it_is);
+    RUN_TEST(raw_inputs_are_for_lockstep_between_its_steps);
+    RUN_TEST(a_sync_while_one_step_is_due_is_told_that_the_node_is_busy);
+    RUN_TEST(a_million_steps_are_the_most_of_one_sync);
+    RUN_TEST(voltages_go_to_the_wheels_of_their_group_and_to_no_others);
+    RUN_TEST(a_single_wheel_has_a_group_of_its_own_behind_the_first);
+    RUN_TEST(a_selected_wheel_of_one_is_sent);
+    RUN_TEST(three_wheels_fill_one_frame_of_speeds_and_one_of_angles);
+    RUN_TEST(a_fault_in_lockstep_answers_the_sync_and_forgets_the_steps_left);
     return UNITY_END();
 }

@@ -266,6 +266,22 @@ static void an_order_that_cannot_be_is_refused_and_changes_nothing(void) {
     for (int k = 0; k < node.drives.count; k++) TEST_ASSERT_EQUAL_UINT32(0, node.drives.drive[k].faults);
 }
 
+static void a_plays_periods_are_single_steps_and_its_answer_names_no_field(void) {
+    uint8_t field = 99;
+    TEST_ASSERT_EQUAL_UINT8(0, laconic_node_start_drives(&node, now_us, &field));
+    TEST_ASSERT_EQUAL_UINT8(0, field);
+    TEST_ASSERT_EQUAL_UINT32(1, node.free_run.steps_per_period);
+}
+
+static void a_refused_step_answers_no_request(void) {
+    uint8_t data[LACONIC_FRAME_BYTES];
+    start();
+    node.input[0].body_moment_Nm = LACONIC_REAL_MAX * 2;
+    pass(1000, 1000);
+    TEST_ASSERT_TRUE(bench_receive(LACONIC_WIRE_RESULT, data));
+    TEST_ASSERT_EQUAL_UINT8(0, data[1] >> 4);
+}
+
 int main(void) {
     UNITY_BEGIN();
     RUN_TEST(one_step_is_taken_each_period);
@@ -284,5 +300,7 @@ int main(void) {
     RUN_TEST(a_plan_is_checked_against_the_protocols_that_are_linked);
     RUN_TEST(faults_of_a_drive_are_ordered_by_its_wheel_while_it_plays);
     RUN_TEST(an_order_that_cannot_be_is_refused_and_changes_nothing);
+    RUN_TEST(a_plays_periods_are_single_steps_and_its_answer_names_no_field);
+    RUN_TEST(a_refused_step_answers_no_request);
     return UNITY_END();
 }

@@ -278,6 +278,26 @@ static void while_drives_play_a_wheels_encoder_counts_as_its_drives_does(void) {
     }
 }
 
+static void an_imu_that_was_not_selected_is_not_sent(void) {
+    load(settings());
+    bench_select(LACONIC_NODE_SEND_WHEEL_ANGLE, 0, 0);
+    bench_start_lockstep();
+    step(1);
+    TEST_ASSERT_EQUAL_UINT32((uint32_t)1 << LACONIC_WIRE_WHEEL_ANGLE, node.pending);
+}
+
+static void frames_of_wheels_begin_anew_with_each_step(void) {
+    bench_load(4);
+    bench_select(LACONIC_NODE_SEND_WHEEL_ANGLE, 0, 0);
+    bench_start_lockstep();
+    for (int k = 0; k < 2; k++) {
+        laconic_frame frame;
+        step(1);
+        TEST_ASSERT_TRUE(laconic_node_next_frame(&node, &frame)); /* one of two is fetched */
+        TEST_ASSERT_EQUAL_UINT8(0, frame.data[1] >> 5);
+    }
+}
+
 int main(void) {
     UNITY_BEGIN();
     RUN_TEST(each_setting_has_its_number_on_the_wire);
@@ -292,5 +312,7 @@ int main(void) {
     RUN_TEST(without_settings_a_selected_imu_is_an_ideal_one);
     RUN_TEST(sampled_and_free_running_steps_are_watched_too);
     RUN_TEST(while_drives_play_a_wheels_encoder_counts_as_its_drives_does);
+    RUN_TEST(an_imu_that_was_not_selected_is_not_sent);
+    RUN_TEST(frames_of_wheels_begin_anew_with_each_step);
     return UNITY_END();
 }

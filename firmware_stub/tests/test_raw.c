@@ -68,6 +68,23 @@ static void nothing_chosen_takes_nothing(void) {
     TEST_ASSERT_TRUE(laconic_raw_is_whole(&raw, 0));
 }
 
+static void a_stream_that_begins_anew_counts_its_frames_anew(void) {
+    const uint8_t bytes[6] = {0};
+    raw.take = LACONIC_RAW_VOLTAGE;
+    TEST_ASSERT_TRUE(laconic_raw_take(&raw, input, 4, 0, 15, bytes, 6));
+    TEST_ASSERT_EQUAL_UINT16(1, raw.frames);
+    laconic_raw_restart(&raw);
+    TEST_ASSERT_TRUE(raw.frames == 0 && raw.segment == 0 && raw.filled == 0 && raw.position == 0);
+}
+
+static void world_forces_fill_four_numbers_each(void) {
+    raw.take = LACONIC_RAW_WORLD_FORCE;
+    send(4, 2);
+    TEST_ASSERT_TRUE(raw.complete);
+    TEST_ASSERT_TRUE(input[0].world_force_N[0] == 1 && input[0].world_force_N[1] == 2);
+    TEST_ASSERT_TRUE(input[0].world_force_point_m[0] == 3 && input[0].world_force_point_m[1] == 4);
+}
+
 int main(void) {
     UNITY_BEGIN();
     RUN_TEST(every_input_has_its_position_in_the_stream);
@@ -75,5 +92,7 @@ int main(void) {
     RUN_TEST(a_missing_segment_breaks_the_stream_until_it_begins_anew);
     RUN_TEST(one_segment_too_many_is_refused);
     RUN_TEST(nothing_chosen_takes_nothing);
+    RUN_TEST(a_stream_that_begins_anew_counts_its_frames_anew);
+    RUN_TEST(world_forces_fill_four_numbers_each);
     return UNITY_END();
 }

@@ -1,4 +1,6 @@
 /* Tests of node_session.c: handshakes, repetitions and stale frames. */
+#include "node_internal.h" /* before the bench, whose `node` would be shadowed */
+
 #include "bench.h"
 #include "unity.h"
 
@@ -184,6 +186,60 @@ static void stale_commands_pass_at_the_rate_of_their_crc(void) {
     TEST_ASSERT_UINT32_WITHIN(4 * 16, 256, passed);
 }
 
+static void a_session_counts_from_the_beginning(void) {
+    bench_load(2);
+    for (int k = 0; k < 5; k++) TEST_ASSERT_EQUAL_UINT8(0, bench_control(LACONIC_WIRE_COMMAND_STOP, 0, 0));
+    node.session.armed = node.session.deaf = BIT(LACONIC_WIRE_SYNC);
+    TEST_ASSERT_EQUAL_UINT8(0, bench_open(8));
+    TEST_ASSERT_TRUE(node.session.armed == 0 && node.session.deaf == 0);
+    TEST_ASSERT_EQUAL_HEX32(laconic_run_key(node.session.key, 0), node.session.run_key);
+    TEST_ASSERT_EQUAL_UINT8(0, bench_control(LACONIC_WIRE_COMMAND_STOP, 0, 0));
+    TEST_ASSERT_EQUAL_UINT32(1, node.session.count[LACONIC_WIRE_CONTROL]);
+}
+
+static void the_next_nonce_is_mixed_of_the_last_the_session_and_the_time(void) {
+    const uint32_t nonce = bench_hello();
+    bench_open(99);
+    TEST_ASSERT_EQUAL_HEX32(laconic_mix(99, nonce), node.session.key);
+    TEST_ASSERT_EQUAL_HEX32(laconic_mix(laconic_mix(nonce, 99), now_us), bench_hello());
+}
+
+static void every_frame_is_counted_as_what_it_is(void) {
+    uint8_t data[LACONIC_FRAME_BYTES] = {0};
+    bench_load(2);
+    bench_start_lockstep();
+    laconic_node_counters before = node.counters;
+    bench_voltage(0, 1, 0);
+    TEST_ASSERT_EQUAL_UINT16(before.accepted + 2, node.counters.accepted);
+    bench_send_count(LACONIC_WIRE_VOLTAGE, data, sent[LACONIC_WIRE_VOLTAGE]);
+    TEST_ASSERT_EQUAL_UINT16(before.repeated + 1, node.counters.repeated);
+    bench_send_count(LACONIC_WIRE_VOLTAGE, data, sent[LACONIC_WIRE_VOLTAGE] + 5);
+    TEST_ASSERT_EQUAL_UINT16(before.sequence_errors + 1, node.counters.sequence_errors);
+    TEST_ASSERT_EQUAL_UINT16(before.crc_errors, node.counters.crc_errors);
+    bench_send_count(LACONIC_WIRE_SELECT, data, 0); /* the count before the first */
+    TEST_ASSERT_EQUAL_UINT16(before.sequence_errors + 2, node.counters.sequence_errors);
+    laconic_frame frame = recorded(LACONIC_WIRE_CONTROL, data, bench_key + 1U, sent[LACONIC_WIRE_CONTROL] + 1U);
+    frame.data[0] ^= 1;
+    laconic_node_on_frame(&node, &frame, now_us);
+    before = node.counters;
+    const laconic_frame open = bench_open_frame(77, bench_hello());
+    laconic_node_on_frame(&node, &open, now_us);
+    laconic_node_on_frame(&node, &open, now_us);
+    TEST_ASSERT_EQUAL_UINT16(before.repeated + 1, node.counters.repeated);
+    TEST_ASSERT_EQUAL_UINT16(before.accepted + 2, node.counters.accepted); /* HELLO and OPEN */
+}
+
+static void an_answer_repeats_all_four_bits_of_its_request(void) {
+    uint8_t data[LACONIC_FRAME_BYTES];
+    for (uint8_t k = 1; k <= 15; k++) {
+        const struct laconic_dbc_control_t begin = {.command = LACONIC_WIRE_COMMAND_BEGIN};
+        laconic_dbc_control_pack(data, &begin, 8);
+        bench_send(LACONIC_WIRE_CONTROL, data);
+        TEST_ASSERT_TRUE(bench_receive(LACONIC_WIRE_RESULT, data));
+        TEST_ASSERT_EQUAL_UINT8(k, data[1] >> 4);
+    }
+}
+
 int main(void) {
     UNITY_BEGIN();
     RUN_TEST(hello_is_answered_at_any_time_and_changes_nothing);
@@ -197,5 +253,9 @@ int main(void) {
     RUN_TEST(nothing_but_start_brings_a_lost_count_back);
     RUN_TEST(in_free_run_two_lost_frames_are_forgiven_in_lockstep_none);
     RUN_TEST(stale_commands_pass_at_the_rate_of_their_crc);
+    RUN_TEST(a_session_counts_from_the_beginning);
+    RUN_TEST(the_next_nonce_is_mixed_of_the_last_the_session_and_the_time);
+    RUN_TEST(every_frame_is_counted_as_what_it_is);
+    RUN_TEST(an_answer_repeats_all_four_bits_of_its_request);
     return UNITY_END();
 }
