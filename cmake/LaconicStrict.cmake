@@ -17,6 +17,18 @@ function(laconic_strict target)
     laconic_instrument(${target})
 endfunction()
 
+# clang from 18 on counts lines, branches and the conditions of each decision (MC/DC), other compilers lines and
+# branches: not by --coverage, which a file's own options could not take back.
+if(CMAKE_C_COMPILER_ID STREQUAL "Clang" AND CMAKE_C_COMPILER_VERSION VERSION_GREATER_EQUAL 18)
+    set(LACONIC_COVERAGE_FLAGS -fprofile-instr-generate -fcoverage-mapping -fcoverage-mcdc)
+    set(LACONIC_NO_COVERAGE_FLAGS -fno-profile-instr-generate -fno-coverage-mapping -fno-coverage-mcdc)
+    set(LACONIC_COVERAGE_LINK_FLAGS -fprofile-instr-generate)
+else()
+    set(LACONIC_COVERAGE_FLAGS -fprofile-arcs -ftest-coverage)
+    set(LACONIC_NO_COVERAGE_FLAGS -fno-profile-arcs -fno-test-coverage)
+    set(LACONIC_COVERAGE_LINK_FLAGS --coverage)
+endif()
+
 # Sanitizers and coverage where LACONIC_SANITIZE and LACONIC_COVERAGE set them, also for code that is not ours.
 function(laconic_instrument target)
     if(LACONIC_SANITIZE)
@@ -27,8 +39,7 @@ function(laconic_instrument target)
     endif()
     if(LACONIC_COVERAGE)
         target_compile_definitions(${target} PRIVATE LACONIC_PLAIN_INLINE)
-        # not --coverage, which a file's own options could not take back
-        target_compile_options(${target} PRIVATE -fprofile-arcs -ftest-coverage -O0 -g)
-        target_link_options(${target} PUBLIC --coverage)
+        target_compile_options(${target} PRIVATE ${LACONIC_COVERAGE_FLAGS} -O0 -g)
+        target_link_options(${target} PUBLIC ${LACONIC_COVERAGE_LINK_FLAGS})
     endif()
 endfunction()

@@ -1,0 +1,207 @@
+"""What the C tests reach, by file: lines, branches, and the conditions of decisions (MC/DC), in double and in single.
+
+    coverage_table.py BUILD            runs the Unity tests of a build tree of clang >= 18 with -DLACONIC_COVERAGE=ON
+                                       and prints the table; exit status 1 where more is missed than docs/assurance.md
+                                       states
+    coverage_table.py BUILD --write    writes the table into that page instead
+    coverage_table.py BUILD --missed   prints each line, branch and condition that is missed
+"""
+
+from __future__ import annotations
+
+import json
+import os
+import re
+import shutil
+import subprocess
+import sys
+from collections import Counter
+from concurrent.futures import ThreadPoolExecutor
+from pathlib import Path
+
+ROOT = Path(__file__).resolve().parents[1]
+PAGE = ROOT / "docs/assurance.md"
+PARTS = {"core": ("core_c/src", "core_c/derivatives", "core_c/filter"), "node": ("firmware_stub/src",),
+         "FMU": ("fmu", "fmu/vehicle")}
+LEFT_OUT = ("shared_library", "library_drives")  # what Python alone calls
+SCALARS = {"double": r"(test|node)_\w+_double|fmu_unit_\w+", "single": r"(test|node)_\w+_single"}
+KINDS = ("lines", "branches", "conditions")
+BEGIN, END = "<!-- coverage: made by cmake/coverage_table.py -->\n", "<!-- end of coverage -->\n"
+
+
+def sources() -> list[str]:
+    """The files whose coverage counts."""
+    found = [path for folders in PARTS.values() for folder in folders
+             for path in sorted((ROOT / folder).glob("*.[ch]"))]
+    return [str(path) for path in found if path.stem not in LEFT_OUT]
+
+
+def tool(name: str) -> str:
+    """LLVM's tool of the newest version here."""
+    for version in ("", *(f"-{number}" for number in range(25, 17, -1))):
+        if path := shutil.which(name + version):
+            said = subprocess.run([path, "--version"], capture_output=True, text=True, check=False).stdout
+            number = re.search(r"version (\d+)", said)
+            if number and int(number[1]) >= 18:
+                return path
+    sys.exit(f"coverage: needs {name} of LLVM 18 or newer; install the package llvm-19")
+
+
+def report(build: Path, scalar: str) -> dict:
+    """What llvm-cov says of all tests of a scalar type together."""
+    programs = sorted(path for folder in ("core_c/tests", "firmware_stub/tests", "fmu/tests")
+                      for path in (build / folder).glob("*")
+                      if re.fullmatch(SCALARS[scalar], path.name) and path.is_file() and os.access(path, os.X_OK))
+    if not programs:
+        sys.exit(f"coverage: {build} has no tests; build laconic_unity_tests with clang and -DLACONIC_COVERAGE=ON")
+    profiles = build / "profiles"
+    profiles.mkdir(exist_ok=True)
+
+    def run(program: Path) -> Path:
+        raw = profiles / f"{program.name}.profraw"
+        subprocess.run([program], env={**os.environ, "LLVM_PROFILE_FILE": str(raw)}, stdout=subprocess.DEVNULL,
+                       check=True)
+        return raw
+
+    with ThreadPoolExecutor(os.cpu_count()) as pool:
+        raws = list(pool.map(run, programs))
+    merged = profiles / f"{scalar}.profdata"
+    subprocess.run([tool("llvm-profdata"), "merge", "-sparse", "-o", merged, *raws], check=True)
+    for raw in raws:
+        raw.unlink()
+    objects = [word for program in programs[1:] for word in ("-object", str(program))]
+    said = subprocess.run([tool("llvm-cov"), "export", "-format=text", f"-instr-profile={merged}", str(programs[0]),
+                           *objects, "-sources", *sources()], capture_output=True, text=True, check=True).stdout
+    return json.loads(said)["data"][0]
+
+
+def listed(file: str) -> set[int]:
+    """Lines of a file that say why they cannot be reached."""
+    lines = Path(file).read_text(encoding="utf-8").splitlines()
+    return {number for number, line in enumerate(lines, 1) if "cannot be reached" in line}
+
+
+def missed(data: dict) -> dict[str, list[tuple[str, int, str]]]:
+    """By kind: file, line and what of it no test reaches; without what the sources list. A function of a header counts
+    once, whichever file it was reached from."""
+    found: dict[str, set] = {kind: set() for kind in KINDS}
+    for file in data["files"]:
+        name, reasons = file["filename"], listed(file["filename"])
+        found["lines"] |= {(name, line, "line") for line in uncovered_lines(file["segments"]) - reasons}
+        for (line, column, side), count in taken_branches(file["branches"]).items():
+            if count == 0 and line not in reasons:
+                found["branches"].add((name, line, f"column {column}, {side}"))
+        hidden = hidden_conditions(file.get("mcdc_records", ()))
+        left = file["summary"]["mcdc"]["count"] - file["summary"]["mcdc"]["covered"]
+        found["conditions"] |= set([(name, line, f"column {column}, condition {number}")
+                                    for line, column, number in hidden if line not in reasons][:left])
+    return {kind: sorted(each) for kind, each in found.items()}
+
+
+def taken_branches(branches: list) -> Counter:
+    """How often each side was taken. One whose condition the compiler knows has no counts and is left out."""
+    found: Counter = Counter()
+    for line, column, _, _, true, false, *_ in branches:
+        if true or false:
+            found[line, column, "true"] += true
+            found[line, column, "false"] += false
+    return found
+
+
+def hidden_conditions(records: list) -> list[tuple[int, int, int]]:
+    """Conditions that no test has shown to decide by themselves: line, column, number. Those that the compiler knows
+    come last: they decide nothing, and LLVM's counts leave them out."""
+    shown: dict[tuple[int, int, int], bool] = {}
+    whole: Counter = Counter()
+    for record in records:
+        for number, is_shown in enumerate(record[-1], 1):
+            key = (record[0], record[1], number)
+            shown[key] = shown.get(key, False) or is_shown
+            whole[record[0], record[1]] += is_shown
+    return sorted((key for key, is_shown in shown.items() if not is_shown), key=lambda key: (whole[key[:2]] == 0, key))
+
+
+def uncovered_lines(segments: list) -> set[int]:
+    """Lines of which no region was ever run."""
+    best: dict[int, int] = {}
+    wrapped = None
+    for segment, following in zip(segments, [*segments[1:], None], strict=True):
+        line, _, count, has_count, is_entry, _ = segment
+        if has_count and is_entry:
+            best[line] = max(best.get(line, 0), count)
+        if wrapped is not None and wrapped[3]:
+            best[line] = max(best.get(line, 0), wrapped[2])
+        wrapped = segment
+        if has_count and following is not None:
+            for between in range(line + 1, following[0]):
+                best[between] = count
+    return {line for line, count in best.items() if count == 0}
+
+
+def totals(data: dict) -> dict[str, Counter]:
+    """How many there are, by part and kind."""
+    found = {part: Counter() for part in PARTS}
+    for file in data["files"]:
+        summary = file["summary"]
+        found[part_of(file["filename"])].update(
+            lines=summary["lines"]["count"], branches=summary["branches"]["count"],
+            conditions=summary["mcdc"]["count"])
+    return found
+
+
+def part_of(file: str) -> str:
+    """The part that a file is of."""
+    folder = Path(file).relative_to(ROOT).parent.as_posix()
+    return next(part for part, folders in PARTS.items() if folder in folders)
+
+
+def table(data: dict[str, dict]) -> list[str]:
+    """Rows of the page's table: missed of how many."""
+    rows = [f"| part, scalar | {' | '.join(KINDS)} |", f"|{' --- |' * (1 + len(KINDS))}"]
+    for scalar, each in data.items():
+        count, gaps = totals(each), missed(each)
+        for part in PARTS:
+            if count[part]:
+                left = {kind: sum(part_of(file) == part for file, _, _ in gaps[kind]) for kind in KINDS}
+                cells = [f"{count[part][kind] - left[kind]} of {count[part][kind]}" for kind in KINDS]
+                rows.append(f"| {part}, {scalar} | {' | '.join(cells)} |")
+    return rows
+
+
+def gaps_of(rows: list[str]) -> dict[tuple[str, str], int]:
+    """How many each cell misses."""
+    found = {}
+    for row in rows[2:]:
+        name, *cells = [cell.strip() for cell in row.strip("|").split("|")]
+        for kind, cell in zip(KINDS, cells, strict=True):
+            reached, _, there = cell.partition(" of ")
+            found[name, kind] = int(there) - int(reached)
+    return found
+
+
+def main(build: str, *options: str) -> int:
+    data = {scalar: report(Path(build).resolve(), scalar) for scalar in SCALARS}
+    if "--missed" in options:
+        for scalar, each in data.items():
+            for kind, gaps in missed(each).items():
+                for file, line, what in gaps:
+                    print(f"{Path(file).relative_to(ROOT)}:{line}: {scalar}, {kind}: {what}")
+    rows = table(data)
+    print("\n".join(rows))
+    before, _, rest = PAGE.read_text(encoding="utf-8").partition(BEGIN)
+    stated, _, after = rest.partition(END)
+    if "--write" in options:
+        PAGE.write_text(before + BEGIN + "\n" + "\n".join(rows) + "\n\n" + END + after, encoding="utf-8")
+        return 0
+    bound = gaps_of(stated.strip().splitlines())
+    worse = {cell: gap for cell, gap in gaps_of(rows).items() if gap > bound.get(cell, 0)}
+    for (name, kind), gap in worse.items():
+        print(f"coverage: {name}: {gap} {kind} are missed, and docs/assurance.md states {bound.get((name, kind), 0)}; "
+              "--missed names them")
+    return 1 if worse else 0
+
+
+if __name__ == "__main__":
+    if len(sys.argv) < 2:
+        sys.exit(__doc__)
+    sys.exit(main(*sys.argv[1:]))
