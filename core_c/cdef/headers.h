@@ -3,4 +3,5 @@
 
 #include "laconic/batch.h"
 #include "laconic/derivatives.h"
+#include "laconic/estimate.h"
 #include "laconic/filter.h"

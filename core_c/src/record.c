@@ -87,6 +87,27 @@ static uint64_t stretch_at(const laconic_schedule *schedule, uint64_t step) {
     return low;
 }
 
+/* Inputs are 0 but for the signals, which `value` has. */
+static void inputs_of(laconic_input *input, const laconic_schedule *schedule, const real *value, int32_t count) {
+    const laconic_input nothing = ALL_ZERO;
+    for (int32_t k = 0; k < count; k++) {
+        input[k] = nothing;
+        set_signals(&input[k], schedule, value + k * schedule->signal_count);
+    }
+}
+
+int32_t laconic_schedule_at(laconic_input inputs[3], uint64_t *until_step, const laconic_schedule *schedule,
+                            uint64_t step) {
+    const uint64_t since = step - schedule->first_step, width = (uint64_t)schedule->signal_count;
+    const bool is_held = schedule->until_step != NULL;
+    const uint64_t at = is_held ? stretch_at(schedule, since) : since;
+    if (at >= schedule->count) return 0;
+    const uint64_t end = schedule->first_step + (is_held ? schedule->until_step[at] : since + 1);
+    *until_step = end < schedule->first_step ? UINT64_MAX : end; /* a stretch that lasts for ever */
+    inputs_of(inputs, schedule, schedule->value + at * width * (is_held ? 1U : 3U), is_held ? 1 : 3);
+    return is_held ? 1 : 3;
+}
+
 static laconic_status follow_held(laconic_plant *plant, const laconic_schedule *schedule, uint64_t until_step,
                                   laconic_recorder *recorder, laconic_refusal *why) {
     laconic_input input = ALL_ZERO;

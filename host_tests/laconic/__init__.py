@@ -26,6 +26,8 @@ if TYPE_CHECKING:  # for type checkers and editors; the table below is what runs
     from laconic.core import load as load_core
     from laconic.core.derivatives import StepDerivatives as StepDerivatives
     from laconic.core.derivatives import StepJacobian as StepJacobian
+    from laconic.core.estimate import Errors as Errors
+    from laconic.core.estimate import Estimate as Estimate
     from laconic.core.plant import Plant as Plant
     from laconic.core.plant import Pose as Pose
     from laconic.core.sensors import Readings as Readings
@@ -43,14 +45,14 @@ if TYPE_CHECKING:  # for type checkers and editors; the table below is what runs
     from laconic.simulation import Trajectory as Trajectory
     from laconic.simulation import simulate as simulate
 
-__all__ = ["METHODS", "BadInput", "Batch", "Core", "Filter", "Linearisation", "Matrices", "Plant", "Pose", "Rates",
-           "Readings", "Refused", "RunRefused", "Scene", "Sensors", "StepDerivatives", "StepJacobian", "Study",
+__all__ = ["METHODS", "BadInput", "Batch", "Core", "Errors", "Estimate", "Filter", "Linearisation", "Matrices", "Plant",
+           "Pose", "Rates", "Readings", "Refused", "RunRefused", "Scene", "Sensors", "StepDerivatives", "StepJacobian", "Study",
            "Trajectory", "Vehicle", "analyse", "build_scene", "load_core", "make_fmu", "plot", "read_scene",
            "scene_names", "simulate"]
 
 _MODULES = {  # name → where it is, and as what if not by the same name
     "METHODS": "scene", "BadInput": "errors", "Batch": "batch", "Core": "core", "Linearisation": "core",
-    "Filter": "control.filter", "Matrices": "core", "Plant": "core.plant", "Pose": "core.plant", "Rates": "core",
+    "Errors": "core.estimate", "Estimate": "core.estimate", "Filter": "control.filter", "Matrices": "core", "Plant": "core.plant", "Pose": "core.plant", "Rates": "core",
     "Readings": "core.sensors", "Refused": "errors", "RunRefused": "simulation", "Scene": "scene",
     "Sensors": "core.sensors", "StepDerivatives": "core.derivatives", "StepJacobian": "core.derivatives",
     "Study": "analysis.findings", "Trajectory": "simulation", "Vehicle": "core", "analyse": "analysis.analyse",

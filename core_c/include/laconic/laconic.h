@@ -596,6 +596,11 @@ typedef struct laconic_schedule {
     uint64_t first_step;        /* plant->steps at which the first begins                           */
 } laconic_schedule;
 
+/* The inputs of the step that begins after `step` steps of the plant: one that is held until `until_step`, or the three
+ * samples of that step alone. Returns how many; 0 where the schedule has ended. */
+int32_t laconic_schedule_at(laconic_input inputs[3], uint64_t *until_step, const laconic_schedule *schedule,
+                            uint64_t step);
+
 /* What is kept of a run: rows of chosen outputs, and whether the no-slip model was true. */
 typedef struct laconic_recorder {
     const laconic_contact *contact; /* of this plant; NULL: no reactions, which cost as much as some steps */

@@ -5,8 +5,8 @@ from __future__ import annotations
 import re
 from pathlib import Path
 
-HEADERS = ("laconic.h", "vehicle.h", "friction.h", "sensors.h", "batch.h", "derivatives.h", "filter.h", "status.h",
-           "real.h")
+HEADERS = ("laconic.h", "vehicle.h", "friction.h", "sensors.h", "batch.h", "derivatives.h", "filter.h", "estimate.h",
+           "status.h", "real.h")
 SECTION = re.compile(r"/\* -{8,} (.+?) -+ \*/")
 COMMENT = re.compile(r"/\*(.*?)\*/", re.DOTALL)
 
@@ -16,7 +16,7 @@ def c_page(source: Path) -> str:
     parts = ["# C reference", "Made from the comments of `core_c/include/laconic`. Compile with the folder "
                               "`core_c/include` on the "
              "include path and `#include <laconic/laconic.h>`, which includes the others but "
-             "`batch.h`, `derivatives.h` and `filter.h`."]
+             "`batch.h`, `derivatives.h`, `filter.h` and `estimate.h`."]
     for name in HEADERS:
         path = source / "core_c" / "include" / "laconic" / name
         if path.is_file():

@@ -22,8 +22,8 @@ GROUPS = {
                "rig-free-run", "rig-faults", "rig-same-bits", "rig-ports", "play", "play-canopen", "play-odrive",
                "play-robomaster", "play-moteus", "logs", "sweep", "page", "release"),
     "Explanation": ("performance", "soft-double", "batch", "gpu", "learn", "derivatives", "control", "optimise",
-                    "assurance", "enclosures", "integrators", "friction", "sensors", "real-robots", "paper",
-                    "architecture", "glossary"),
+                    "assurance", "enclosures", "error-estimate", "integrators", "friction", "sensors", "real-robots",
+                    "paper", "architecture", "glossary"),
     "Reference": ("reference-c", "reference-python", "reference-commands", "reference-scene", "signals",
                   "reference-fmi", "wire", "changelog"),
 }

@@ -8,6 +8,7 @@ from typing import TYPE_CHECKING, Any, NamedTuple
 import numpy as np
 
 from laconic.core.derivatives import StepDerivatives
+from laconic.core.estimate import USUAL_STEPS, Estimate
 from laconic.core.given import c_object, number, shown, step_count
 from laconic.core.inputs import check_held, check_wheels
 from laconic.core.schedule import Schedule
@@ -130,6 +131,10 @@ class Plant:
         BadInput names a key that is unknown or no number; Refused one that the core refuses.
         """
         return Sensors(self, settings_of(self.core, {} if settings is None else settings, self.wheel_count))
+
+    def estimate(self, most_steps: int = USUAL_STEPS) -> Estimate:
+        """An error estimate that watches the run from here on; one step in `most_steps` is taken twice."""
+        return Estimate(self, most_steps)
 
     def step_derivatives(self, held: Any = None) -> StepDerivatives:
         """How the state after the next step changes with state, input and vehicle before it; input as for `run`.

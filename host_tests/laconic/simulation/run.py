@@ -5,10 +5,11 @@ from __future__ import annotations
 import time
 from collections.abc import Sequence
 from contextlib import nullcontext
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 
 import numpy as np
 
+from laconic.core.estimate import ErrorRows, Errors, Estimate
 from laconic.core.given import shown
 from laconic.core.grip import Grip
 from laconic.core.plant import Plant
@@ -49,6 +50,8 @@ class Trajectory:
     columns: dict[str, np.ndarray]
     grip: Grip | None = None  # None: the scene has no data of the ground
     refused: Refused | None = None  # what ended it before its time
+    errors: Errors | None = None  # at its end; None: the estimate was not asked for
+    error_columns: dict[str, np.ndarray] = field(default_factory=dict)  # the same over time, by estimated_error_…
 
     def columns_of(self, name: str) -> np.ndarray:
         """All columns of one signal, side by side; BadInput for one that is not among them."""
@@ -109,13 +112,26 @@ def is_watched(scene: Scene) -> bool:
     return bool(scene.wheel_count and (vehicle["friction_coefficient"] or vehicle["com_z_m"] or slips(vehicle)))
 
 
-def advance_plant(plant: Plant, inputs: InputsOnGrid, first: int, count: int, recorder: Recorder | None = None) -> None:
+@dataclass
+class Watch:
+    """What watches a run beside its recorder: an error estimate, and its rows."""
+
+    estimate: Estimate
+    rows: ErrorRows | None = None
+
+
+def advance_plant(plant: Plant, inputs: InputsOnGrid, first: int, count: int, recorder: Recorder | None = None,
+                  watch: Watch | None = None) -> None:
     """Steps `first` … `first + count − 1` of a run with these inputs."""
     origin, last = plant.steps - first, first + count
     while first < last:
         schedule, end = inputs.schedule(plant.core, first)
         first = min(last, end)
-        plant.follow(schedule.from_origin(origin), origin + first, recorder)
+        along = schedule.from_origin(origin)
+        if watch:
+            watch.estimate.follow(along, origin + first, recorder, watch.rows)
+        else:
+            plant.follow(along, origin + first, recorder)
 
 
 def kept_signals(scene: Scene, given: Sequence[str]) -> tuple[str, ...]:
@@ -127,11 +143,13 @@ def kept_signals(scene: Scene, given: Sequence[str]) -> tuple[str, ...]:
     return kept or wanted_signals(scene)
 
 
-def simulate(scene: Scene, signals: Sequence[str] = (), progress: bool = False, watched: bool = True) -> Trajectory:
+def simulate(scene: Scene, signals: Sequence[str] = (), progress: bool = False, watched: bool = True,
+             estimated: bool = False) -> Trajectory:
     """Runs a scene from its start to its end.
 
     Keeps the given signals (outputs, or inputs), else the scene's outputs, else the default ones. `progress`: says on
-    stderr how far it is; `watched`: watches the ground where the scene has data of it, which costs more than the steps.
+    stderr how far it is; `watched`: watches the ground where the scene has data of it, which costs more than the steps;
+    `estimated`: estimates the run's error (docs/error-estimate.md), with friction at three times the cost.
     Refused names file and time when the first step is refused or an input is no number; RunRefused, when a later step
     is refused, has the motion up to it.
     """
@@ -146,11 +164,12 @@ def simulate(scene: Scene, signals: Sequence[str] = (), progress: bool = False, 
     sensors = scene.sensors_of(plant)  # refuses, by its field, what the core refuses
     recorder = Recorder(plant, kept, every, len(ticks), watched=watched and is_watched(scene),
                         sensors=sensors if any(needs_sensors(core, signal) for signal in kept) else None)
+    watch = Watch(plant.estimate(), ErrorRows(plant, every, len(ticks))) if estimated else None
     began = time.perf_counter()
     refused = None
     try:
         with progress_bar(scene.name, steps, forecasts=True) if progress else nullcontext(_silently) as moved:
-            run_window(scene, plant, inputs, 0, steps, moved, recorder)
+            run_window(scene, plant, inputs, 0, steps, moved, recorder, watch)
         recorder.take_last(core.input(inputs.held_at(steps)))
     except Refused as why:
         if not plant.steps or why.status == "not finite":  # an input that the file should not have
@@ -158,6 +177,8 @@ def simulate(scene: Scene, signals: Sequence[str] = (), progress: bool = False, 
         refused, ticks = why, take_end(plant, inputs, recorder, every)
     run = Trajectory(scene, plant.chosen_method, plant.steps, time.perf_counter() - began, ticks * scene.run.step_s,
                      recorder.columns(), recorder.grip(scene.run.step_s), refused)
+    if watch:
+        run.errors, run.error_columns = watch.estimate.read(), error_columns(watch, len(ticks))
     if refused:
         raise RunRefused(refused, run) from None
     return run
@@ -167,6 +188,14 @@ def _silently(amount: float = 1, what: str | None = None) -> None:
     """Progress that nobody asked for."""
 
 
+def error_columns(watch: Watch, rows: int) -> dict[str, np.ndarray]:
+    """The estimate's rows; the last one is that of the run's end."""
+    assert watch.rows is not None
+    if len(watch.rows) < rows:
+        watch.rows.take(watch.estimate)
+    return watch.rows.columns()
+
+
 def take_end(plant: Plant, inputs: InputsOnGrid, recorder: Recorder, every: int) -> np.ndarray:
     """Ends the rows where a step was refused; returns the steps that they belong to."""
     recorder.take_refused(plant.core.input(inputs.held_at(plant.steps)))
@@ -174,12 +203,12 @@ def take_end(plant: Plant, inputs: InputsOnGrid, recorder: Recorder, every: int)
 
 
 def run_window(scene: Scene, plant: Plant, inputs: InputsOnGrid, first: int, count: int,
-               moved: Advance = lambda _: None, recorder: Recorder | None = None) -> None:
+               moved: Advance = lambda _: None, recorder: Recorder | None = None, watch: Watch | None = None) -> None:
     """Takes `count` steps from step `first` on; a refusal names file and time."""
     try:
         for begin in range(first, first + count, CHUNK):
             steps = min(CHUNK, first + count - begin)
-            advance_plant(plant, inputs, begin, steps, recorder)
+            advance_plant(plant, inputs, begin, steps, recorder, watch)
             moved(steps)
     except Refused as refused:
         raise scene.refusal_in_file(refused, f"at t = {plant.steps * scene.run.step_s:g} s") from None

@@ -19,7 +19,7 @@ HOST_PORT_OF_LINUX = (*HOST_PORT, "socketcan.c")
 def compile_all(platform: Platform, project: Path, wire: Path, out: Path, python: str) -> Path:
     """Compiles into the folders lib and bin of `out`, which is returned."""
     node_dir = project / "firmware_stub"
-    rooms = ("src", "derivatives", "filter", "batch")
+    rooms = ("src", "derivatives", "filter", "estimate", "batch")
     core = sorted(path for room in rooms for path in (project / "core_c" / room).glob("*.c"))
     apart = [node_dir / "src" / name for name in ("shared_library.c", "library_drives.c")]
     node = [path for path in sorted([*(node_dir / "src").glob("*.c"), *(node_dir / "drives").rglob("*.c")])

@@ -3,8 +3,8 @@
 from __future__ import annotations
 
 import json
-from collections.abc import Sequence
-from dataclasses import dataclass
+from collections.abc import Mapping, Sequence
+from dataclasses import asdict, dataclass
 from pathlib import Path
 from typing import Any
 
@@ -14,6 +14,7 @@ import numpy as np
 from laconic.cli.options import PICTURES, OutputFile, SceneName, belongs_to, check_step, json_flag, one_of
 from laconic.cli.streams import warn
 from laconic.core import REALS
+from laconic.core.estimate import Errors, ErrorSizes
 from laconic.errors import Refused, ResultFails
 from laconic.film.moving_picture import FILMED, write_film
 from laconic.outputs import is_stdout, opened
@@ -38,21 +39,25 @@ ROLLED = 1e-5                # J for 1 kg on wheels of 1 m: a millionth of the r
               help="Draw a moving picture: the robot on its path, which a browser plays.")
 @click.option("--inputs", "inputs_wanted", is_flag=True,
               help="Write the inputs as further columns of --out: what acts from each row on.")
+@click.option("--errors", "errors_wanted", is_flag=True,
+              help="Write the estimated error of each row as further columns of --out.")
 @click.option("--enclose", "enclose_wanted", is_flag=True,
               help="Enclose the true motion and prove how far the core is from it; --out gets columns of both.")
 @json_flag("Machine-readable summary.")
 def command(scene: str, method: str | None, step_s: float | None, real: str | None, out: Path | None,
-            plot: Path | None, film: Path | None, inputs_wanted: bool, enclose_wanted: bool, json_wanted: bool) -> None:
+            plot: Path | None, film: Path | None, inputs_wanted: bool, errors_wanted: bool, enclose_wanted: bool,
+            json_wanted: bool) -> None:
     """Runs SCENE, a TOML file or the name of a scene that comes with the project.
 
     Inputs of kind "steps" are held over each step; a step that one of them changes within is refused. Where the scene
     gives a friction coefficient or the height of the centre of mass, the ground is watched: the first wheel that
     would slip or lift is named on stderr. Where a step on the way is refused, everything is written up to it, and
-    the exit status is 1. --enclose proves what the true motion of the file's numbers is, as intervals: see
+    the exit status is 1. The estimated error of the steps and of rounding is told at the end: see
+    docs/error-estimate.md. --enclose proves what the true motion of the file's numbers is, as intervals: see
     docs/enclosures.md.
     """
     check_step(step_s)
-    belongs_to("--out", bool(out), "--inputs")
+    belongs_to("--out", bool(out), "--inputs", "--errors")
     given = read_scene(scene).with_run(method=method, step_s=step_s, real=real)
     written = (*wanted_signals(given), *(input_signals(given) if inputs_wanted else ()))
     signals = dict.fromkeys((*written, *(usual_signals(given) if plot or film else ()), *(FILMED if film else ()),
@@ -60,7 +65,8 @@ def command(scene: str, method: str | None, step_s: float | None, real: str | No
     run = as_far_as_it_goes(given, tuple(signals))
     enclosure = enclosed(run) if enclose_wanted else None
     if out:
-        write_csv(run, (*written, *(enclosure.columns if enclosure else ())), out)
+        further = run.error_columns if errors_wanted else {}
+        write_csv(run, (*written, *(enclosure.columns if enclosure else ())), out, further)
     if plot:
         from laconic.pictures.plotting import simulation_picture
         simulation_picture(run, plot)
@@ -79,7 +85,7 @@ def command(scene: str, method: str | None, step_s: float | None, real: str | No
 def as_far_as_it_goes(scene: Scene, signals: tuple[str, ...]) -> Trajectory:
     """The run, to its end or to the step that is refused."""
     try:
-        return simulate(scene, signals, progress=True)
+        return simulate(scene, signals, progress=True, estimated=True)
     except RunRefused as cut_short:
         return cut_short.run
 
@@ -119,12 +125,12 @@ def kept_in(*paths: Path | None) -> str:
     return f" (the run up to there is in {' and '.join(files)})" if files else ""
 
 
-def write_csv(run: Trajectory, signals: tuple[str, ...], path: Path) -> None:
-    """A header line; then time_s and the signals, with all digits."""
-    columns = [run.time_s, *(run.columns[name] for name in signals)]
+def write_csv(run: Trajectory, signals: tuple[str, ...], path: Path, further: Mapping[str, np.ndarray]) -> None:
+    """A header line; then time_s, the signals and further columns, with all digits."""
+    columns = [run.time_s, *(run.columns[name] for name in signals), *further.values()]
     whole = [number for number, column in enumerate(columns) if column.dtype.kind == "i"]
     with opened(path) as file:
-        file.write(",".join(("time_s", *signals)) + "\n")
+        file.write(",".join(("time_s", *signals, *further)) + "\n")
         for lines in csv_text(np.column_stack(columns), whole):
             file.write(lines)
 
@@ -135,6 +141,7 @@ def summary(run: Trajectory, *files: Path | None) -> dict[str, Any]:
         "scene": str(run.scene.path), "name": run.scene.name, "method": run.scene.run.method, "chosen": run.method,
         "step_s": run.scene.run.step_s, "real": run.scene.run.real, "steps": run.steps, "seconds": run.seconds,
         "final": {"time_s": run.time_s[-1], **{name: values[-1].item() for name, values in run.columns.items()}},
+        "estimated_error": asdict(run.errors) if run.errors else None,
         "no_slip": run.grip.as_json() if run.grip else None,
         "refused": in_words(run.refused, run) if run.refused else None,
         "files": [str(path) for path in files if path]}
@@ -160,6 +167,22 @@ def words_of_slip(run: Trajectory) -> list[str]:
     return told
 
 
+def words_of_errors(errors: Errors | None) -> list[str]:
+    """How far the end is off, and the worst on the way."""
+    if errors is None:
+        return []
+    lines = [f"estimated error: {sizes_text(errors.now)}", f"  largest of the run: {sizes_text(errors.largest)}"]
+    if errors.unknown:
+        lines.append(f"  not known of {errors.unknown} windows of steps, in which half of the step is refused")
+    return lines
+
+
+def sizes_text(sizes: ErrorSizes) -> str:
+    """The four sizes with their units."""
+    return (f"nu {sizes.nu_rad_per_s:.1e} rad/s, place {sizes.place_m:.1e} m, heading {sizes.heading_rad:.1e} rad, "
+            f"wheel angles {sizes.wheel_angle_rad:.1e} rad")
+
+
 def print_summary(run: Trajectory, *files: Path | None, lines: Sequence[str] = ()) -> None:
     """The same for people, with further lines."""
     given, picked = run.scene.run.method, run.method
@@ -170,7 +193,7 @@ def print_summary(run: Trajectory, *files: Path | None, lines: Sequence[str] = (
     click.echo(f"at {run.time_s[-1]:g} s:")
     for name, values in run.columns.items():
         click.echo(f"  {name:28} {values[-1]: .12g}")
-    for line in (*words_of_slip(run), *lines):
+    for line in (*words_of_errors(run.errors), *words_of_slip(run), *lines):
         click.echo(line)
     for path in files:
         if path:

@@ -1,0 +1,108 @@
+/* Tests of linear_motion.c: an error is carried as the difference of two motions that are a little apart. */
+#include "linear_motion.h"
+#include "methods.h"
+
+static laconic_refusal why;
+
+#define APART EITHER(1e-7, 1e-3)
+
+typedef struct pair { /* two plants, the second a little off */
+    laconic_plant plant, off;
+} pair;
+
+static pair apart(laconic_vehicle v) {
+    const laconic_start start = start_with(2, 1, 4), other = start_with(2 + APART, 1 - APART, 4 + 2 * APART);
+    pair both;
+    memset(&both, 0, sizeof both);
+    ASSERT_STATUS(LACONIC_OK, laconic_plant_start(&both.plant, &v, &laconic_auto, REAL(0.002), &start, &why));
+    ASSERT_STATUS(LACONIC_OK, laconic_plant_start(&both.off, &v, &laconic_auto, REAL(0.002), &other, &why));
+    return both;
+}
+
+static laconic_real between(laconic_sum a, laconic_sum b) { return (a.value - b.value) + (a.rest - b.rest); }
+
+/* Each step makes no error of its own: what is left is how far two motions part. */
+static void assert_carried(laconic_vehicle v, int32_t steps, const laconic_input *input) {
+    pair both = apart(v);
+    laconic_estimate estimate;
+    state_error error;
+    window_motion motion;
+    memset(&error, 0, sizeof error);
+    ASSERT_STATUS(LACONIC_OK, laconic_estimate_start(&estimate, &both.plant, 16, NULL, &why));
+    laconic_forcing_of(&estimate.forcing, &both.plant.model, input);
+    error.zeta = minus(zeta_of(&both.plant.state), zeta_of(&both.off.state));
+    motion.steps = steps;
+    motion.step_s = REAL(0.002);
+    motion.zeta[0] = zeta_of(&both.plant.state);
+    ASSERT_STATUS(LACONIC_OK, laconic_plant_run(&both.plant, input, (uint64_t)steps, &why));
+    ASSERT_STATUS(LACONIC_OK, laconic_plant_run(&both.off, input, (uint64_t)steps, &why));
+    const laconic_state *s = &both.plant.state, *t = &both.off.state;
+    motion.zeta[1] = zeta_of(s);
+    motion.way = vector_of(s->travel[0].value, s->travel[1].value, s->travel[2].value);
+    motion.path_m[0] = s->x_m.value;
+    motion.path_m[1] = s->y_m.value;
+    motion.heading = laconic_direction_of_angle(REAL(0.5) * dot(vec(both.plant.model.yaw_rate_of_zeta), motion.way));
+    laconic_carry_error(&error, &estimate, &both.plant.model, &motion);
+    const vector expected = minus(zeta_of(s), zeta_of(t));
+    ASSERT_NEAR(0.03 * APART, expected.x, error.zeta.x);
+    ASSERT_NEAR(0.03 * APART, expected.y, error.zeta.y);
+    ASSERT_NEAR(0.03 * APART, expected.z, error.zeta.z);
+    ASSERT_NEAR(0.03 * APART * 0.1, between(s->travel[0], t->travel[0]), error.travel.x);
+    ASSERT_NEAR(0.03 * APART * 0.1, between(s->travel[2], t->travel[2]), error.travel.z);
+    ASSERT_NEAR(0.01 * APART * 0.1, between(s->x_m, t->x_m), error.place_m[0]);
+    ASSERT_NEAR(0.01 * APART * 0.1, between(s->y_m, t->y_m), error.place_m[1]);
+}
+
+static void free_motion_turns_the_error(void) {
+    const laconic_input input = no_input();
+    assert_carried(three_wheels(), 50, &input);
+    assert_carried(mecanum(), 50, &input);
+}
+
+static void damping_lets_it_die(void) {
+    const laconic_input input = no_input();
+    laconic_vehicle v = with_motors(three_wheels());
+    assert_carried(v, 50, &input);
+    v.motor_damping_Nms = REAL(100 * DAMPING);
+    assert_carried(v, 50, &input);
+}
+
+static void a_force_in_the_world_follows_the_heading(void) {
+    laconic_input input = every_input();
+    input.world_force_N[0] = REAL(40);
+    assert_carried(with_motors(three_wheels()), 50, &input);
+}
+
+/* The source that makes the error of one step makes that of n steps: e+ of n windows of one step is e+ of one of n. */
+static void windows_of_one_step_and_one_of_many_agree(void) {
+    pair both = apart(with_motors(three_wheels()));
+    laconic_estimate estimate;
+    state_error stepwise, at_once;
+    window_motion motion;
+    memset(&stepwise, 0, sizeof stepwise);
+    memset(&motion, 0, sizeof motion);
+    ASSERT_STATUS(LACONIC_OK, laconic_estimate_start(&estimate, &both.plant, 16, NULL, &why));
+    estimate.local[0] = estimate.local[4] = REAL(1e-6);
+    estimate.local[2] = estimate.local[6] = REAL(-2e-6);
+    motion.step_s = REAL(0.002);
+    motion.heading.cosine = 1;
+    motion.zeta[0] = motion.zeta[1] = zeta_of(&both.plant.state);
+    at_once = stepwise;
+    motion.steps = 1;
+    for (int k = 0; k < 13; k++) laconic_carry_error(&stepwise, &estimate, &both.plant.model, &motion);
+    motion.steps = 13;
+    laconic_carry_error(&at_once, &estimate, &both.plant.model, &motion);
+    ASSERT_NEAR(3e-8, stepwise.zeta.x, at_once.zeta.x);
+    ASSERT_NEAR(3e-8, stepwise.zeta.z, at_once.zeta.z);
+    ASSERT_NEAR(3e-8, stepwise.travel.y, at_once.travel.y);
+    ASSERT_NEAR(3e-8, stepwise.place_m[0], at_once.place_m[0]);
+}
+
+int main(void) {
+    UNITY_BEGIN();
+    RUN_TEST(free_motion_turns_the_error);
+    RUN_TEST(damping_lets_it_die);
+    RUN_TEST(a_force_in_the_world_follows_the_heading);
+    RUN_TEST(windows_of_one_step_and_one_of_many_agree);
+    return UNITY_END();
+}
