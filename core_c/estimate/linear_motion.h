@@ -26,8 +26,8 @@ typedef struct window_motion {
     direction heading; /* in the middle                */
 } window_motion;
 
-/* Carries an error over a window each of whose steps makes the error `local` (ζ, travel, place) of its own, less and less
- * where it fades. */
+/* Carries an error over a window, each step of which makes the error `local` (ζ, travel, place) of its own, less and
+ * less where it fades. */
 void laconic_carry_error(state_error *error, const laconic_estimate *estimate, const laconic_model *model,
                          const window_motion *motion);
 

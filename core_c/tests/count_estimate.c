@@ -1,5 +1,6 @@
 /* count_estimate METHOD WINDOW STEPS: a mecanum carriage with its input held, watched by an error estimate with windows
- * of up to WINDOW steps (0: not watched), so that instructions can be counted. The difference of two counts is the cost. */
+ * of up to WINDOW steps (0: not watched), so that instructions can be counted. The difference of two counts is the
+ * cost. */
 #include "laconic/estimate.h"
 #include "vehicles.h"
 

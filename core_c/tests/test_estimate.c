@@ -1,5 +1,4 @@
-/* Tests of estimate.c: the estimate is near the true error, whatever the method and the windows, and the plant keeps its
- * bits. */
+/* Tests of estimate.c: the estimate is near the true error, whatever the method, and the plant keeps its bits. */
 #include "laconic/estimate.h"
 #include "methods.h"
 
@@ -42,7 +41,7 @@ static laconic_error true_error(const laconic_plant *plant, const double *y, int
     return e;
 }
 
-/* `blind`: an error below it may be taken for this, as one that passes 0 is known to some parts of a hundred of others. */
+/* `blind`: an error below it may be taken for it, as one that passes 0 is known to a share of others. */
 static void assert_size(const char *what, laconic_real found, laconic_real truth, laconic_real rounding,
                         laconic_real blind) {
     TEST_ASSERT_TRUE_MESSAGE(found >= rounding, what);

@@ -46,13 +46,14 @@ if TYPE_CHECKING:  # for type checkers and editors; the table below is what runs
     from laconic.simulation import simulate as simulate
 
 __all__ = ["METHODS", "BadInput", "Batch", "Core", "Errors", "Estimate", "Filter", "Linearisation", "Matrices", "Plant",
-           "Pose", "Rates", "Readings", "Refused", "RunRefused", "Scene", "Sensors", "StepDerivatives", "StepJacobian", "Study",
-           "Trajectory", "Vehicle", "analyse", "build_scene", "load_core", "make_fmu", "plot", "read_scene",
+           "Pose", "Rates", "Readings", "Refused", "RunRefused", "Scene", "Sensors", "StepDerivatives", "StepJacobian",
+           "Study", "Trajectory", "Vehicle", "analyse", "build_scene", "load_core", "make_fmu", "plot", "read_scene",
            "scene_names", "simulate"]
 
 _MODULES = {  # name → where it is, and as what if not by the same name
     "METHODS": "scene", "BadInput": "errors", "Batch": "batch", "Core": "core", "Linearisation": "core",
-    "Errors": "core.estimate", "Estimate": "core.estimate", "Filter": "control.filter", "Matrices": "core", "Plant": "core.plant", "Pose": "core.plant", "Rates": "core",
+    "Errors": "core.estimate", "Estimate": "core.estimate", "Filter": "control.filter", "Matrices": "core",
+    "Plant": "core.plant", "Pose": "core.plant", "Rates": "core",
     "Readings": "core.sensors", "Refused": "errors", "RunRefused": "simulation", "Scene": "scene",
     "Sensors": "core.sensors", "StepDerivatives": "core.derivatives", "StepJacobian": "core.derivatives",
     "Study": "analysis.findings", "Trajectory": "simulation", "Vehicle": "core", "analyse": "analysis.analyse",

@@ -1,22 +1,21 @@
-/* Error estimate of a run: how far the numbers of a plant are from the true motion of its equations. docs/error-estimate.md
- * derives it and has measured figures.
+/* Error estimate of a run: how far the numbers of a plant are from the true motion of its equations.
+ * docs/error-estimate.md derives it and has measured figures.
  *
- *     laconic_estimate_start(&estimate, &plant, 16);
+ *     laconic_estimate_start(&estimate, &plant, 16, laconic_finer_method(&plant), &why);
  *     laconic_estimate_run(&estimate, &plant, &input, 1000, &why);    the bits of laconic_plant_run
  *     laconic_estimate_read(&errors, &estimate, &plant);              errors.now.place_m: the distance in metres
  *
  * Optional: a program that calls nothing of it carries nothing of it.
  *
- * What      the first step of each window of up to K steps is taken again as two half steps of the same method. What they
- *           differ by stands for the error of each step of the window. It is carried on by the linearised motion: damping,
+ * What      the first step of each window of up to K steps is taken again as two half steps. What they differ by
+ *           stands for the error of each step of the window. It is carried on by the linearised motion: damping,
  *           gyroscopic rotation, and the path that an error of the heading turns. After a change of the input windows
  *           begin at one step and double. Beside it stands what rounding makes at least.
  * Friction  a vehicle with friction has a twin, which takes two half steps for each step: the error is twice (first
  *           order) what plant and twin differ by. K does not count there.
- * Counts    as error: of the method, and of rounding. Not: of the vehicle's numbers, and of an input that varies between
- *           the samples that a step takes.
- * Cost      two half steps and some 600 operations for each window; the state of the plant and its bits stay the same.
- *           docs/error-estimate.md has the instructions.
+ * Counts    as error: of the method, and of rounding. Not: of the vehicle's numbers, and of an input that varies
+ *           between the samples that a step takes.
+ * Cost      two half steps and some 3,000 instructions for each window; the plant's bits stay the same.
  * Memory    the caller owns every struct; no heap, no globals. Plain data: copy it with its plant to save both. */
 #ifndef LACONIC_ESTIMATE_H
 #define LACONIC_ESTIMATE_H

@@ -100,7 +100,7 @@ WRONG = {
     "simulate s1 --out ''": EMPTY, "simulate s1 --plot ''": EMPTY, "derive s1 -o ''": EMPTY,
     "fmu s1 --fmi 2 -o ''": EMPTY, "rig s1 --log ''": EMPTY, "rig s1 --junit ''": EMPTY, "trim s1 --out ''": EMPTY,
     "analyse s1 --out ''": EMPTY, "core --out ''": EMPTY, "demo s1 --out ''": EMPTY, "report --out ''": EMPTY,
-    "simulate s1 --out folder": "ends in .csv", "simulate s1 --plot x.gif": "ends in .png",
+    "simulate s1 --errors": "has a meaning with --out alone", "simulate s1 --out folder": "ends in .csv", "simulate s1 --plot x.gif": "ends in .png",
     "simulate s1 --out /dev/null/x.csv": "cannot be written", "simulate s1 --out /proc/no/x.csv": "cannot be written",
     "simulate s1 --plot /proc/x.png": "cannot be written", "fmu s1 --fmi 3 -o /proc/x.fmu": "cannot be written",
     "trim s1 --out /proc": "cannot be written",

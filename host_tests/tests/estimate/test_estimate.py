@@ -121,7 +121,8 @@ def test_windows_that_make_no_sense_are_refused_in_one_line(steps, words):
 
 
 def command(*arguments):
-    return subprocess.run([sys.executable, "-m", "laconic", *arguments], capture_output=True, text=True, check=True).stdout
+    program = [sys.executable, "-m", "laconic", *arguments]
+    return subprocess.run(program, capture_output=True, text=True, check=True).stdout
 
 
 def test_the_command_tells_the_error_and_writes_it(tmp_path):
