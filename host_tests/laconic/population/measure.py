@@ -2,18 +2,24 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 from typing import Any
 
 import numpy as np
 
 from laconic.core import load
+from laconic.core.estimate import Errors, ErrorSizes
 from laconic.core.plant import Plant
 from laconic.errors import Refused
 from laconic.population.made import INSTANTS, TICK_S, Made
-from laconic.population.truth import Truth, truth_of
+from laconic.population.truth import KINDS, Truth, truth_of
 
 STEPS_S = (0.001, 0.01)
+
+ESTIMATED: dict[str, Callable[[ErrorSizes], float]] = {
+    "nu": lambda sizes: sizes.nu_rad_per_s, "pose": lambda sizes: max(sizes.place_m, sizes.heading_rad),
+    "wheel": lambda sizes: sizes.wheel_angle_rad}
+"""What an estimate has of each kind of a truth."""
 
 Row = dict[str, Any]
 
@@ -32,19 +38,26 @@ def measured(vehicle: Made, truth: Truth, method: str, step_s: float) -> Row:
     """Errors at all instants of one run."""
     try:
         plant = vehicle.plant(load("double"), method, step_s)
-        found = states_of(plant, vehicle, step_s)
+        estimate, estimated = plant.estimate(), list[Errors]()
+        found = states_of(plant, vehicle, step_s, estimate.run, lambda: estimated.append(estimate.read()))
     except Refused as refused:
         return {"status": refused.status}
     return {"status": "ok", "taken": plant.chosen_method,
-            **{f"error_{name}": error for name, error in truth.errors(found).items()}}
+            **{f"error_{name}": error for name, error in truth.errors(found).items()},
+            **{f"estimate_{name}": max(size(errors.now) for errors in estimated) / truth.size(KINDS[name])
+               for name, size in ESTIMATED.items()},
+            **{f"rounding_{name}": max(size(errors.rounding) for errors in estimated) / truth.size(KINDS[name])
+               for name, size in ESTIMATED.items()}}
 
 
-def states_of(plant: Plant, vehicle: Made, step_s: float) -> np.ndarray:
-    """The core's states at the instants, one row each."""
+def states_of(plant: Plant, vehicle: Made, step_s: float, run: Callable[..., None] | None = None,
+              seen: Callable[[], None] = lambda: None) -> np.ndarray:
+    """The core's states at the instants, one row each; `run` steps the plant, `seen` is called at each instant."""
     rows, done, per_tick = [], 0, round(float(TICK_S) / step_s)
     for held, ticks in zip(vehicle.helds, INSTANTS, strict=True):
         for tick in ticks:
-            plant.run(held, tick * per_tick - done)
+            (run or plant.run)(held, tick * per_tick - done)
+            seen()
             done = tick * per_tick
             pose = plant.pose
             rows.append([*plant.nu, pose.x_m, pose.y_m, pose.heading_rad, *plant.wheel_angles()])

@@ -44,9 +44,11 @@ def summary_of(rows: Sequence[Row]) -> dict[str, Any]:
 
 
 def ratios_of(rows: Sequence[Row], kind: str) -> dict[str, Any]:
-    """Estimate over error where the error is above rounding: quantiles, and the share within a factor of 10."""
+    """Estimate over error where the error is above rounding, three times what the estimate has of it: quantiles, and
+    the share within a factor of 10."""
     found = np.array([row[f"estimate_{kind}"] / row[f"error_{kind}"] for row in rows
-                      if row.get(f"estimate_{kind}") is not None and row[f"error_{kind}"] > ROUNDING])
+                      if row.get(f"estimate_{kind}") is not None
+                      and row[f"error_{kind}"] > max(ROUNDING, 3.0 * row.get(f"rounding_{kind}", 0.0))])
     if not found.size:
         return {}
     within = float(np.mean((found >= 0.1) & (found <= 10.0)))
