@@ -20,6 +20,7 @@ from laconic.scene.not_modelled import KINDS_OF_WHEELS, OF_VEHICLES, OF_WHEELS
 from laconic.scene.sensors import NO_SENSORS, SensorTables, read_sensors
 from laconic.scene.signals import LENGTHS, PER_WHEEL, missing_outputs, output_signals, signal_names
 from laconic.scene.speed_controller import read_speed_controller
+from laconic.scene.step_choice import AUTO, LARGEST_TOLERANCE
 from laconic.scene.table import Table
 
 
@@ -194,9 +195,25 @@ def check_instants(table: Table, t_s: Sequence[float]) -> None:
             table.fail("t_s", f"goes from {before:g} to {after:g} s; give instants in ascending order")
 
 
+def read_step(table: Table) -> dict[str, Any]:
+    """A step, or "auto" (as 0, until it is found) with the tolerance that it must keep."""
+    if table.plain().get("step_s") != AUTO:
+        if table.has("tolerance"):
+            table.fail("tolerance", f'has a meaning with step_s = "{AUTO}" alone; take one of them out')
+        return {"step_s": read_number(table, "step_s")}
+    table.has("step_s")
+    tolerance = read_number(table, "tolerance")
+    if tolerance is None:
+        table.fail("tolerance", f'is missing; step_s = "{AUTO}" needs the largest error that the run may have, such as '
+                   "1e-9 (rad/s, m, rad)")
+    if tolerance > LARGEST_TOLERANCE:
+        table.fail("tolerance", f"is {tolerance:g}; give {LARGEST_TOLERANCE:g} (rad/s, m, rad) or less")
+    return {"step_s": 0.0, "tolerance": tolerance}
+
+
 def read_run(table: Table, methods: Sequence[str], reals: Sequence[str]) -> dict[str, Any]:
     """`[run]`."""
-    run: dict[str, Any] = {key: read_number(table, key) for key in ("duration_s", "step_s")}
+    run: dict[str, Any] = {"duration_s": read_number(table, "duration_s"), **read_step(table)}
     run["method"] = table.choice("method", methods, key_of(table, "method").default)
     run["real"] = table.choice("real", reals, key_of(table, "real").default)
     table.done()

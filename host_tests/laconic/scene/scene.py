@@ -24,6 +24,7 @@ from laconic.scene.names import in_file
 from laconic.scene.reader import read_parts, read_run
 from laconic.scene.sensors import DELAY_S, NO_SENSORS, SensorTables
 from laconic.scene.speed_controller import SpeedController
+from laconic.scene.step_choice import AUTO, chosen_step_s
 from laconic.scene.table import Table, plain, read_toml
 
 MOST_STEPS = 9e15  # as laconic_steps_in
@@ -69,6 +70,7 @@ class Run:
     step_s: float
     method: str = "auto"
     real: str = "double"
+    tolerance: float | None = None  # by which the step was found; None: it was given
 
 
 @dataclass(frozen=True)
@@ -115,7 +117,15 @@ class Scene:
         """The scene with some of `[run]` replaced; what the file could not have there is BadInput as if it had."""
         given: dict[str, Any] = {"method": method, "step_s": step_s, "real": real, "duration_s": duration_s}
         entries = asdict(self.run) | {key: plain(value) for key, value in given.items() if value is not None}
-        return replace(self, run=Run(**read_run(Table(self.path, "run", entries), METHODS, REALS)))
+        tolerance = entries.pop("tolerance")
+        if tolerance is not None and step_s is None:
+            entries |= {"step_s": AUTO, "tolerance": tolerance}
+        run = Run(**read_run(Table(self.path, "run", entries), METHODS, REALS))
+        return with_found_step(replace(self, run=run))
+
+    def with_step(self, step_s: float) -> Scene:
+        """The scene in another step, which keeps its tolerance: for those that find the step."""
+        return replace(self, run=replace(self.run, step_s=step_s))
 
     def core(self) -> Core:
         """The core in the scene's scalar type."""
@@ -229,8 +239,14 @@ def read_scene(given: str | Path) -> Scene:
 def scene_of(top: Table) -> Scene:
     """The scene in a file's top table."""
     parts = read_parts(top, methods=METHODS, reals=REALS)
-    return Scene(
+    return with_found_step(Scene(
         path=top.path, name=parts["name"], source=parts["source"], vehicle=parts["vehicle"],
         initial=Initial(**parts["initial"]), inputs=tuple(parts["inputs"]), run=Run(**parts["run"]),
         outputs=Outputs(**parts["outputs"]), rig=Rig(**parts["rig"]), speed_controller=parts["speed_controller"],
-        sensors=parts["sensors"], in_degrees=parts["in_degrees"])
+        sensors=parts["sensors"], in_degrees=parts["in_degrees"]))
+
+
+def with_found_step(scene: Scene) -> Scene:
+    """The scene itself, or where its step is "auto" with the step that keeps its tolerance."""
+    tolerance = scene.run.tolerance
+    return scene if tolerance is None else scene.with_step(chosen_step_s(scene, tolerance))

@@ -21,6 +21,7 @@ from laconic.scene.key_defaults import default_of
 from laconic.scene.key_path import EVERY, KeyPath, key_path
 from laconic.scene.scene import Scene, scene_of
 from laconic.scene.scene_text import lines_of
+from laconic.scene.step_choice import AUTO
 from laconic.scene.table import Table, plain, read_toml
 
 Value = float | bool | str
@@ -156,7 +157,11 @@ def scene_tables(given: str | Path | SceneTables) -> SceneTables:
     if isinstance(given, SceneTables):
         return given
     top = read_toml(scene_path(given))
-    return SceneTables(top.path, top.plain())
+    entries, run = top.plain(), top.plain().get("run")
+    if isinstance(run, dict) and run.get("step_s") == AUTO:  # one step for all that is made of it
+        entries["run"]["step_s"] = scene_of(top).run.step_s
+        entries["run"].pop("tolerance")
+    return SceneTables(top.path, entries)
 
 
 def spelled_otherwise(name: str) -> str:

@@ -139,7 +139,8 @@ def summary(run: Trajectory, *files: Path | None) -> dict[str, Any]:
     """What was run and where it ended."""
     return {
         "scene": str(run.scene.path), "name": run.scene.name, "method": run.scene.run.method, "chosen": run.method,
-        "step_s": run.scene.run.step_s, "real": run.scene.run.real, "steps": run.steps, "seconds": run.seconds,
+        "step_s": run.scene.run.step_s, "tolerance": run.scene.run.tolerance, "real": run.scene.run.real,
+        "steps": run.steps, "seconds": run.seconds,
         "final": {"time_s": run.time_s[-1], **{name: values[-1].item() for name, values in run.columns.items()}},
         "estimated_error": asdict(run.errors) if run.errors else None,
         "no_slip": run.grip.as_json() if run.grip else None,
@@ -188,8 +189,10 @@ def print_summary(run: Trajectory, *files: Path | None, lines: Sequence[str] = (
     given, picked = run.scene.run.method, run.method
     method = given if given == picked else f"{given} (picked {picked})"
     taken = f"{run.steps} of {run.scene.steps()}" if run.refused else f"{run.steps}"
-    click.echo(f"{run.scene.name}: {taken} steps of {run.scene.run.step_s:g} s by {method}, {run.scene.run.real}, "
-               f"in {run.seconds:.2f} s")
+    tolerance = run.scene.run.tolerance
+    found = "" if tolerance is None else f" (found for the tolerance {tolerance:g})"
+    click.echo(f"{run.scene.name}: {taken} steps of {run.scene.run.step_s:g} s{found} by {method}, "
+               f"{run.scene.run.real}, in {run.seconds:.2f} s")
     click.echo(f"at {run.time_s[-1]:g} s:")
     for name, values in run.columns.items():
         click.echo(f"  {name:28} {values[-1]: .12g}")
