@@ -197,7 +197,8 @@ def check_instants(table: Table, t_s: Sequence[float]) -> None:
 
 def read_step(table: Table) -> dict[str, Any]:
     """A step, or "auto" (as 0, until it is found) with the tolerance that it must keep."""
-    if table.plain().get("step_s") != AUTO:
+    given = table.plain().get("step_s")
+    if not isinstance(given, str) or given != AUTO:
         if table.has("tolerance"):
             table.fail("tolerance", f'has a meaning with step_s = "{AUTO}" alone; take one of them out')
         return {"step_s": read_number(table, "step_s")}
