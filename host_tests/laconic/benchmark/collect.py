@@ -22,13 +22,15 @@ from laconic.benchmark import (
     targets,
 )
 from laconic.benchmark.workshop import BOARDS, HOST, M4F, Variant, Workshop
+from laconic.enclosure.rounding_bound import rounding_row
 from laconic.progress import progress_bar
 from laconic.scene import METHODS, Outputs, Scene, read_scene
 
 REALS = ("double", "single")
 MAP_SCENE, BENCH_SCENE, FREE_SCENE = "kuka_youbot", "s1", "paper_three_wheel_free"
 STIFF_SCENES = ("robotino2", "kuka_youbot")
-PARTS = ("targets", "robots", "take", "accuracy", "drift", "norm", "map", "stiff", "extremes", "verified", "prototype",
+PARTS = ("targets", "robots", "take", "accuracy", "drift", "norm", "map", "stiff", "extremes",
+         "rounding", "verified", "prototype",
          "single", "long", "steps", "precision", "boards", "scenes", "smallest",
          "friction_cost", "friction_order", "friction_extremes")  # all that report.json may hold
 
@@ -94,7 +96,8 @@ def _edges(report: Report, scenes: Sequence[Scene], bench: Scene, workshop: Work
     straight = single.straight_run(bench)
     long_runs = [{"what": "heading", "found": float(single.heading_after_many_turns(bench))},
                  {"what": "x", "found": straight["error"]}]
-    return {"extremes": extremes.extreme_rows(REALS, advance), "verified": referenced.verified_rows(),
+    return {"extremes": extremes.extreme_rows(REALS, advance), "rounding": [rounding_row(scene) for scene in scenes],
+            "verified": referenced.verified_rows(),
             "prototype": referenced.table_rows(), "single": single.s1_rows(bench, METHODS), "long": long_runs}
 
 

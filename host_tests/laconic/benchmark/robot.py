@@ -13,6 +13,7 @@ from laconic.benchmark import accuracy, boards, stability
 from laconic.benchmark.collect import PARTS, REALS, Report
 from laconic.benchmark.workshop import M4F, Workshop
 from laconic.core import load
+from laconic.enclosure.rounding_bound import rounding_row
 from laconic.errors import BadInput, Refused
 from laconic.paths import sources_missing
 from laconic.progress import progress_bar
@@ -44,6 +45,7 @@ def collect_robots(scenes: Sequence[Scene], folder: Path, quick: bool = False) -
         report.results["take"] = [row for scene in scenes for row in advice(report.results["accuracy"], scene)]
         advance(0, "stability map")
         report.results["map"] = [row for scene in scenes for row in map_rows(scene, factors, advance)]
+        report.results["rounding"] = [rounding_row(scene) for scene in scenes]
         advance(0, "Cortex-M")
         if M4F.present:
             report.results["scenes"] = boards.scene_rows(workshop, scenes, reals, advance=advance)

@@ -7,7 +7,7 @@ from collections.abc import Sequence
 from laconic.benchmark import pictures, texts
 from laconic.benchmark.page import Row, Section, Table
 from laconic.benchmark.plan import plan
-from laconic.benchmark.sections import mapped
+from laconic.benchmark.sections import mapped, rounding_section
 from laconic.scene import Scene
 
 Results = dict[str, list[Row]]
@@ -15,7 +15,8 @@ Results = dict[str, list[Row]]
 
 def robot_sections(scenes: Sequence[Scene], results: Results) -> list[Section]:
     """In order."""
-    return [_robot(scenes, results), _accuracy(scenes, results), _stability(scenes, results), _board(scenes, results)]
+    return [_robot(scenes, results), _accuracy(scenes, results), _stability(scenes, results), rounding_section(results),
+            _board(scenes, results)]
 
 
 def _fields(scenes: Sequence[Scene], *fields: str) -> tuple[str, ...]:

@@ -11,7 +11,7 @@ from laconic.benchmark.page import Row, Section, Table
 def project_sections(results: dict[str, list[Row]]) -> list[Section]:
     """In order."""
     return [_accuracy(results), _peers(results), _stability(results), _conserved(results), _boards(results),
-            _scenes(results), _references(results), _extremes(results), _friction(results)]
+            _scenes(results), _references(results), _extremes(results), rounding_section(results), _friction(results)]
 
 
 def goal_sections(results: dict[str, list[Row]]) -> list[Section]:
@@ -86,6 +86,13 @@ def _references(results: dict[str, list[Row]]) -> Section:
 def _extremes(results: dict[str, list[Row]]) -> Section:
     fields = ("case", "real", "method", "outcome", "error", "digits_lost", "why")
     return _section("extremes", "Extremes", (), Table(results["extremes"], fields))
+
+
+def rounding_section(results: dict[str, list[Row]]) -> Section:
+    """Of a robot's page, too."""
+    fields = ("scene", "step_s", "status", "nu_rad_per_s", "heading_rad", "place_m", "heading_rad_per_hour",
+              "place_m_per_hour")
+    return _section("rounding", "Rounding in single precision", (), Table(results["rounding"], fields))
 
 
 def _friction(results: dict[str, list[Row]]) -> Section:

@@ -66,7 +66,7 @@ def test_the_page_of_a_robot_opens_with_it_and_shows_no_other_scene_and_no_goal(
 def test_nothing_but_the_robot_is_measured(made):
     rows = json.loads((made[1] / "report.json").read_text())
     measured = {name for name in PARTS if rows[name]}
-    assert measured == {"robots", "take", "accuracy", "map"}  # and a microcontroller, where one can be emulated
+    assert measured == {"robots", "take", "accuracy", "map", "rounding"}  # and a board, where one can be emulated
     assert {row["scene"] for name in measured for row in rows[name]} == {SCENE}
     assert rows["targets"] == []  # the keys stay, for those who read the file
 
