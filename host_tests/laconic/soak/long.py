@@ -23,7 +23,8 @@ SEED = 1  # nothing is drawn
 STEPS = 10**9
 USUAL_METHODS, REALS = ("auto", "rk4"), ("double", "single")
 LARGEST_ULP = 16.0  # of heading and place, in units of rounding of what they have come to;
-WALK_ULP = 0.02     # and where ζ itself moves, each step's rounding changes its speed: times the root of the steps,
+FREE_ULP = 100.0    # where ζ itself turns, which amplifies the rounding of its start in a period,
+MOVED_ULP = 2e-4    # and for each step what it changes of ζ, which it rounds: so much of the speed, all one way;
 STANDING_M = 1e-12  # and of place what a method's own error at 1 ms holds a motion off by, however long it lasts
 STEADY = {case.name for case in CASES if case.steady}
 
@@ -77,8 +78,8 @@ def last_rows(rows: list[Row], steps: int) -> list[Row]:
 def drifted(row: Row) -> bool:
     """Whether heading or place is further off than so many roundings of what they have come to."""
     unit = float(np.finfo(np.float64 if row["real"] == "double" else np.float32).eps) / 2
-    walk = 0.0 if row["case"] in STEADY else WALK_ULP * row["steps"] ** 0.5
-    allowed = (LARGEST_ULP + walk) * unit
+    free = 0.0 if row["case"] in STEADY else FREE_ULP + MOVED_ULP * row["steps"]
+    allowed = (LARGEST_ULP + free) * unit
     standing = STANDING_M / max(row["path_m"], LEAST_PATH_M)
     return not (row["heading_relative"] <= allowed and row["place_relative"] <= allowed + standing)
 
