@@ -49,7 +49,7 @@ def tool(name: str) -> str:
 
 def report(build: Path, scalar: str) -> dict:
     """What llvm-cov says of all tests of a scalar type together."""
-    programs = sorted(path for folder in ("core_c/tests", "firmware_stub/tests", "fmu/tests")
+    programs = sorted(path for folder in ("core_c/tests", "firmware_stub/tests", "fmu/tests/unit")
                       for path in (build / folder).glob("*")
                       if re.fullmatch(SCALARS[scalar], path.name) and path.is_file() and os.access(path, os.X_OK))
     if not programs:

@@ -19,10 +19,10 @@ from laconic.mutation.results import Results, read_equivalents
 from laconic.mutation.trial import Outcome, Trials
 from laconic.paths import SOURCE_DIR, build_dir, sources_missing
 
-PARTS = {"core": ("core_c/src",), "node": ("firmware_stub/src",), }
+PARTS = {"core": ("core_c/src",), "node": ("firmware_stub/src",), "fmu": ("fmu", "fmu/vehicle")}
 LEFT_OUT = ("firmware_stub/src/shared_library.c", "firmware_stub/src/shared_library.h",
-            "firmware_stub/src/library_drives.c", "firmware_stub/src/library_drives.h")
-"""What Python alone calls: its tests drive it."""
+            "firmware_stub/src/library_drives.c", "firmware_stub/src/library_drives.h", "fmu/vehicle/kept_step.c")
+"""What Python alone calls, and the FMU with derivatives of steps: Python's tests drive them."""
 
 
 @dataclass

@@ -82,7 +82,7 @@ def constants(node: Node) -> Iterator[Change]:
     """A whole number is one more, and one less; a number with a point is a hundredth more, a power of ten ten times
     more, and 0 is 1. An array is not made longer, which no program could notice."""
     if node.type == "number_literal":
-        grows = node.parent is None or node.parent.type != "array_declarator"
+        grows = not _is_length(node)
         for number, text in enumerate(other_numbers(_text(node))):
             if grows or number > 0:
                 yield node.start_byte, node.end_byte, text
@@ -91,6 +91,13 @@ def constants(node: Node) -> Iterator[Change]:
         for found in re.finditer(r"(?<![\w.])\d[\w.]*(?:(?<=e)[+-]\d+)?", told):
             for text in other_numbers(found[0]):
                 yield node.start_byte + found.start(), node.start_byte + found.end(), text
+
+
+def _is_length(node: Node) -> bool:
+    around = node.parent
+    while around is not None and around.type in ("binary_expression", "parenthesized_expression"):
+        around = around.parent
+    return around is not None and around.type == "array_declarator"
 
 
 def other_numbers(literal: str) -> Iterator[str]:

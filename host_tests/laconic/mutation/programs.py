@@ -23,7 +23,7 @@ from laconic.paths import SOURCE_DIR, build_dir
 FOLDERS = ("core_c", "firmware_stub", "fmu")
 FAMILIES = {"double": r"laconic_objects_double|laconic_node_double|laconic_wire",
             "single": r"laconic_objects_single|laconic_node_single|laconic_wire",
-            "fmu": r"laconic_fmu_checked"}
+            "fmu": r"laconic_fmu_checked|laconic_objects_double"}
 """By the targets whose objects make the family's library."""
 TESTS = {"double": r"(test|node)_\w+_double", "single": r"(test|node)_\w+_single", "fmu": r"fmu_unit_\w+"}
 LEFT_OUT = r"test_soft_double|node_socketcan_\w+|test_batch\w*"
@@ -51,9 +51,7 @@ class Unit:
 
 
 def _moved(word: str, tree: Path) -> str:
-    for folder in FOLDERS:
-        word = word.replace(f"{SOURCE_DIR}/{folder}/", f"{tree}/{folder}/")
-    return word
+    return re.sub(rf"{re.escape(str(SOURCE_DIR))}(?=/({'|'.join(FOLDERS)})(/|$))", str(tree), word)
 
 
 # A fault may make a warning, but no other program than its text says: so a wrong pointer is no mutant.
@@ -173,7 +171,7 @@ def families(folder: Path, wanted: Iterable[str] = FAMILIES) -> list[Family]:
     every, found = units(), []
     for name in wanted:
         library = [unit for unit in every if re.fullmatch(FAMILIES[name], unit.target)]
-        if not library:
+        if not any(re.fullmatch(TESTS[name], unit.target) for unit in every):
             continue
         family = Family(name, folder / name, library)
         of_target: dict[str, list[Unit]] = defaultdict(list)

@@ -62,9 +62,14 @@ class Trials:
             changed.write_bytes(source)
         return Outcome(verdict, by, round(time.monotonic() - began, 2))
 
+    def _families_of(self, mutant: Mutant) -> list[Family]:
+        """The FMU's tests are for its own files: those of the core have theirs."""
+        is_of_fmu = mutant.file.startswith("fmu/")
+        return [family for family in self.families if (family.name == "fmu") == is_of_fmu]
+
     def _tried(self, mutant: Mutant, tree: Path, source: bytes) -> tuple[str, str]:
         differs = False
-        for family in self.families:
+        for family in self._families_of(mutant):
             objects: dict[Unit, Path] = {}
             for unit in self._of(mutant):
                 if unit in family.library_units or any(unit in program.units for program in family.programs):
@@ -83,7 +88,7 @@ class Trials:
     def _with_sanitizers(self, mutant: Mutant, tree: Path, source: bytes) -> tuple[str, str] | None:
         """What the tests passed is given to them once more under the sanitizers, as continuous integration runs them: a
         fault may write past an array, and nothing else."""
-        for family in self.families[:1]:
+        for family in self._families_of(mutant)[:1]:
             found = self._checked(mutant, family, tree, None)
             if found is None:
                 continue
@@ -140,7 +145,7 @@ class Trials:
 
     def _of(self, mutant: Mutant) -> list[Unit]:
         """The units that its file is in. Lanes have the methods' text, too, but are not compiled anew."""
-        every = [unit for family in self.families
+        every = [unit for family in self._families_of(mutant)
                  for unit in [*family.library_units, *(unit for program in family.programs for unit in program.units)]]
         path = (SOURCE_DIR / mutant.file).resolve()
         if path.suffix == ".c":

@@ -77,7 +77,7 @@ def test_a_row_without_a_reason_is_refused(tmp_path):
         read_equivalents(path)
 
 
-def test_core_and_node_are_the_parts_and_what_python_alone_calls_is_in_neither():
+def test_core_node_and_fmu_are_the_parts_and_what_python_alone_calls_is_in_neither():
     assert "core_c/src/rk4.c" in files_of("core") and "firmware_stub/src/node.c" in files_of("node")
-    assert set(files_of(None)) == {*files_of("core"), *files_of("node")}
+    assert set(files_of(None)) == {*files_of("core"), *files_of("node"), *files_of("fmu")}
     assert not any("library" in Path(file).name for file in files_of(None))

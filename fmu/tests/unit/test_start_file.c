@@ -1,0 +1,110 @@
+/* Tests of start_file.c: the start values that an FMU of a scene carries in resources/start.bin. */
+#include "fmi_bench.h"
+#include "stream.h"
+
+#include <sys/stat.h>
+#include <unistd.h>
+
+#define TOKEN "{of-a-scene}"
+
+static char folder[256], file[300];
+static uint8_t bytes[4096];
+
+void setUp(void) {
+    log_clear();
+    snprintf(folder, sizeof folder, "/tmp/laconic start %ld", (long)getpid());
+    mkdir(folder, 0700);
+    snprintf(file, sizeof file, "%s/start.bin", folder);
+}
+void tearDown(void) {
+    remove(file);
+    rmdir(folder);
+}
+
+/* A file of these pairs; its size. */
+static size_t make(uint64_t version, uint64_t scalar, const char *token, const fmu_start_value *pairs, uint64_t count,
+                   uint64_t stated) {
+    fmu_stream to = {.to = bytes, .size = sizeof bytes, .at = 8};
+    uint64_t hash = fmu_token_hash(token);
+    memcpy(bytes, "LACSTART", 8);
+    fmu_stream_u64(&to, &version);
+    fmu_stream_u64(&to, &scalar);
+    fmu_stream_u64(&to, &hash);
+    fmu_stream_u64(&to, &stated);
+    for (uint64_t k = 0; k < count; k++) {
+        uint64_t reference = pairs[k].reference;
+        double value = pairs[k].value;
+        fmu_stream_u64(&to, &reference);
+        fmu_stream_reals(&to, &value, 1);
+    }
+    uint64_t checksum = fmu_checksum(bytes, to.at);
+    fmu_stream_u64(&to, &checksum);
+    return to.at;
+}
+
+static fmi2Component with(size_t size, const char *resources) {
+    static const fmi2CallbackFunctions callbacks = {log_2, calloc, free, NULL, NULL};
+    FILE *out = fopen(file, "wb");
+    TEST_ASSERT_NOT_NULL(out);
+    fwrite(bytes, 1, size, out);
+    fclose(out);
+    return fmi2Instantiate("one", fmi2CoSimulation, TOKEN, resources, &callbacks, fmi2False, fmi2True);
+}
+
+static double mass_of(fmi2Component c) {
+    const fmi2ValueReference mass = ref("mass_kg", 0);
+    double value = NAN;
+    OK(fmi2EnterInitializationMode(c));
+    OK(fmi2GetReal(c, &mass, 1, &value));
+    return value;
+}
+
+static void values_come_from_the_file_by_a_path_or_a_uri(void) {
+    const fmu_start_value pairs[2] = {{ref("wheel_count", 0), 3}, {ref("mass_kg", 0), 12.5}};
+    const size_t size = make(2, 1, TOKEN, pairs, 2, 2);
+    char uri[4][400];
+    snprintf(uri[0], 400, "%s", folder);
+    snprintf(uri[1], 400, "file:///tmp/laconic%%20start%%20%ld/", (long)getpid());
+    snprintf(uri[2], 400, "file://localhost/tmp/laconic%%20start%%20%ld", (long)getpid());
+    snprintf(uri[3], 400, "file:/tmp/laconic%%20start%%20%ld//", (long)getpid());
+    for (int k = 0; k < 4; k++) {
+        fmi2Component c = with(size, uri[k]);
+        TEST_ASSERT_NOT_NULL_MESSAGE(c, uri[k]);
+        TEST_ASSERT_TRUE(mass_of(c) == 12.5);
+        TEST_ASSERT_EQUAL_INT(3, ((const fmu_instance *)c)->model.vehicle.wheel_count);
+        fmi2FreeInstance(c);
+    }
+}
+
+static void a_file_that_does_not_fit_is_refused(void) {
+    const fmu_start_value good[1] = {{ref("mass_kg", 0), 2}};
+    const fmu_start_value bad[4] = {
+        {0x7FFFFFFF, 1}, {ref("mass_kg", 0), -1}, {ref("x_m", 0), 1}, {ref("wheel_count", 0), 17}};
+    TEST_ASSERT_NULL(with(make(1, 0, TOKEN, good, 1, 1), folder));       /* another version */
+    TEST_ASSERT_NULL(with(make(2, 0, "{another}", good, 1, 1), folder)); /* of another FMU */
+    TEST_ASSERT_NULL(with(make(2, 0, TOKEN, good, 1, 2), folder));       /* a value is missing */
+    TEST_ASSERT_NULL(with(make(2, 0, TOKEN, good, 1, 1) - 1, folder));   /* cut off */
+    TEST_ASSERT_NULL(with(8, folder));
+    for (int k = 0; k < 4; k++) TEST_ASSERT_NULL(with(make(2, 0, TOKEN, &bad[k], 1, 1), folder));
+    const size_t size = make(2, 0, TOKEN, good, 1, 1);
+    bytes[40] ^= 1;
+    TEST_ASSERT_NULL(with(size, folder));
+    ASSERT_LOGGED("holds no start values for it: import the FMU anew");
+    make(2, 0, TOKEN, good, 1, 1);
+    bytes[0] = 'l';
+    TEST_ASSERT_NULL(with(size, folder));
+    TEST_ASSERT_NULL(with(make(2, 0, TOKEN, good, 1, 1), "file://host"));
+}
+
+static void a_hash_is_that_of_fnv_1a(void) {
+    TEST_ASSERT_TRUE(fmu_token_hash("") == 0xCBF29CE484222325U);
+    TEST_ASSERT_TRUE(fmu_token_hash("a") == 0xAF63DC4C8601EC8CU);
+}
+
+int main(void) {
+    UNITY_BEGIN();
+    RUN_TEST(values_come_from_the_file_by_a_path_or_a_uri);
+    RUN_TEST(a_file_that_does_not_fit_is_refused);
+    RUN_TEST(a_hash_is_that_of_fnv_1a);
+    return UNITY_END();
+}

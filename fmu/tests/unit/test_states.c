@@ -1,0 +1,144 @@
+/* Tests of saved_states.c: a state is kept, written as bytes, read again; damaged and foreign ones are refused. */
+#include "fmi_bench.h"
+#include "stream.h"
+
+static fmi2Component c;
+
+void setUp(void) {
+    log_clear();
+    c = make_2(fmi2CoSimulation, fmu_token_2);
+    TEST_ASSERT_NOT_NULL(c);
+}
+void tearDown(void) { fmi2FreeInstance(c); }
+
+static double x_m(void) {
+    const fmi2ValueReference reference = ref("x_m", 0);
+    double value = NAN;
+    OK(fmi2GetReal(c, &reference, 1, &value));
+    return value;
+}
+
+static void run(int steps, int first) {
+    for (int k = first; k < first + steps; k++) OK(fmi2DoStep(c, k * 0.01, 0.01, fmi2True));
+}
+
+static void begin(void) {
+    const fmi2ValueReference voltage[2] = {ref("voltage_V", 1), ref("voltage_V", 2)};
+    const double volts[2] = {3, 2};
+    OK(fmi2SetupExperiment(c, fmi2False, 0, 0, fmi2True, 5));
+    OK(fmi2EnterInitializationMode(c));
+    OK(fmi2ExitInitializationMode(c));
+    OK(fmi2SetReal(c, voltage, 2, volts));
+}
+
+static void a_kept_state_is_taken_up_again_bit_for_bit(void) {
+    fmi2FMUstate kept = NULL;
+    begin();
+    run(10, 0);
+    OK(fmi2GetFMUstate(c, &kept));
+    run(10, 10);
+    const double there = x_m();
+    OK(fmi2SetFMUstate(c, kept));
+    TEST_ASSERT_TRUE(x_m() != there);
+    run(10, 10);
+    TEST_ASSERT_TRUE(x_m() == there);
+    OK(fmi2GetFMUstate(c, &kept)); /* the same memory */
+    OK(fmi2FreeFMUstate(c, &kept));
+    TEST_ASSERT_NULL(kept);
+    OK(fmi2FreeFMUstate(c, &kept));
+    ASSERT_REFUSED(fmi2SetFMUstate(c, NULL), "the saved state is missing");
+    ASSERT_REFUSED(fmi2GetFMUstate(c, NULL), "the pointer to the state is missing");
+}
+
+static fmi2Byte bytes[65536];
+
+static size_t write(void) {
+    fmi2FMUstate kept = NULL;
+    size_t size = 0;
+    OK(fmi2GetFMUstate(c, &kept));
+    OK(fmi2SerializedFMUstateSize(c, kept, &size));
+    TEST_ASSERT_TRUE(size > 100 && size < sizeof bytes);
+    ASSERT_REFUSED(fmi2SerializeFMUstate(c, kept, bytes, size - 1), "bytes given for a state of");
+    ASSERT_REFUSED(fmi2SerializeFMUstate(c, kept, NULL, size), "the memory for the bytes is missing");
+    ASSERT_REFUSED(fmi2SerializedFMUstateSize(c, kept, NULL), "the pointer to the size is missing");
+    OK(fmi2SerializeFMUstate(c, kept, bytes, size));
+    fmi2FreeFMUstate(c, &kept);
+    return size;
+}
+
+static void bytes_are_read_by_another_instance(void) {
+    fmi2FMUstate read = NULL;
+    begin();
+    run(20, 0);
+    const size_t size = write();
+    run(10, 20);
+    const double there = x_m();
+    fmi2FreeInstance(c);
+    c = make_2(fmi2CoSimulation, fmu_token_2);
+    OK(fmi2DeSerializeFMUstate(c, bytes, size, &read));
+    OK(fmi2SetFMUstate(c, read));
+    run(10, 20);
+    TEST_ASSERT_TRUE(x_m() == there);
+    OK(fmi2DeSerializeFMUstate(c, bytes, size, &read)); /* the same memory */
+    fmi2FreeFMUstate(c, &read);
+}
+
+static void damaged_bytes_are_refused_whichever_they_are(void) {
+    fmi2FMUstate read = NULL;
+    begin();
+    const size_t size = write();
+    for (size_t at = 0; at < size; at += at < 64 ? 1 : 37) {
+        bytes[at] ^= 0x10;
+        TEST_ASSERT_EQUAL_INT(fmi2Error, fmi2DeSerializeFMUstate(c, bytes, size, &read));
+        bytes[at] ^= 0x10;
+    }
+    ASSERT_REFUSED(fmi2DeSerializeFMUstate(c, bytes, size - 8, &read), "are damaged or cut off");
+    ASSERT_REFUSED(fmi2DeSerializeFMUstate(c, bytes, 20, &read), "these 20 bytes are no state of Laconic");
+    ASSERT_REFUSED(fmi2DeSerializeFMUstate(c, NULL, size, &read), "are missing (NULL)");
+    ASSERT_REFUSED(fmi2DeSerializeFMUstate(c, bytes, size, NULL), "are missing (NULL)");
+    bytes[8]++; /* the version */
+    ASSERT_REFUSED(fmi2DeSerializeFMUstate(c, bytes, size, &read), "has format version 8, this FMU reads 7");
+    TEST_ASSERT_NULL(read);
+}
+
+/* Bytes with a right checksum and a wrong mode, as nobody but an attacker writes them. */
+static void an_impossible_state_is_refused_though_its_checksum_is_right(void) {
+    fmi2FMUstate read = NULL;
+    begin();
+    const size_t size = write();
+    const size_t mode_at = 8 + 24 + 8;
+    for (int mode = 0; mode < 12; mode++) {
+        bytes[mode_at] = (fmi2Byte)mode;
+        const uint32_t checksum = fmu_checksum((const uint8_t *)bytes, size - 8);
+        for (int k = 0; k < 4; k++) bytes[size - 8 + (size_t)k] = (fmi2Byte)(checksum >> (8 * k));
+        const bool fits = mode == FMU_INSTANTIATED || mode == FMU_CONFIGURATION || mode == FMU_INITIALIZATION ||
+                          mode == FMU_STEP || mode == FMU_TERMINATED;
+        TEST_ASSERT_EQUAL_INT(fits ? fmi2OK : fmi2Error, fmi2DeSerializeFMUstate(c, bytes, size, &read));
+    }
+    fmi2FreeFMUstate(c, &read);
+}
+
+static void a_state_of_the_other_kind_is_refused(void) {
+    fmi2FMUstate kept = NULL;
+    fmi2Component other = make_2(fmi2ModelExchange, fmu_token_2);
+    OK(fmi2GetFMUstate(other, &kept));
+    ASSERT_REFUSED(fmi2SetFMUstate(c, kept), "belongs to an instance of the other kind");
+    fmi2FreeFMUstate(other, &kept);
+    fmi2FreeInstance(other);
+    fmi3FMUState of_3 = NULL;
+    fmi3Instance third = make_3(false);
+    OK(fmi3GetFMUState(third, &of_3));
+    ASSERT_REFUSED(fmi2SetFMUstate(c, of_3), "the saved state belongs to another FMU");
+    OK(fmi3FreeFMUState(third, &of_3));
+    fmi3FreeInstance(third);
+}
+
+int main(void) {
+    UNITY_BEGIN();
+    RUN_TEST(a_kept_state_is_taken_up_again_bit_for_bit);
+    RUN_TEST(bytes_are_read_by_another_instance);
+    RUN_TEST(damaged_bytes_are_refused_whichever_they_are);
+    RUN_TEST(an_impossible_state_is_refused_though_its_checksum_is_right);
+    RUN_TEST(a_state_of_the_other_kind_is_refused);
+    return UNITY_END();
+}
