@@ -114,6 +114,14 @@ static void the_first_stray_frame_follows_none(void) {
     TEST_ASSERT_EQUAL_UINT8(1, receiver.stray_count);
 }
 
+static void stray_frames_that_do_not_follow_each_other_make_no_reference(void) {
+    laconic_e2e_receiver receiver = {0};
+    laconic_e2e_check(&receiver, true, 9, 15, 1);
+    for (uint8_t k = 0; k < 8; k++)
+        TEST_ASSERT_EQUAL(LACONIC_E2E_WRONG_SEQUENCE, laconic_e2e_check(&receiver, true, k % 2 ? 1 : 5, 15, 1));
+    TEST_ASSERT_EQUAL_UINT8(9, receiver.counter);
+}
+
 int main(void) {
     UNITY_BEGIN();
     RUN_TEST(profile_2_gives_the_published_headers);
@@ -127,5 +135,6 @@ int main(void) {
     RUN_TEST(the_counter_leaves_the_bits_beside_it);
     RUN_TEST(a_stray_frame_is_forgotten_when_the_next_one_is_right);
     RUN_TEST(the_first_stray_frame_follows_none);
+    RUN_TEST(stray_frames_that_do_not_follow_each_other_make_no_reference);
     return UNITY_END();
 }

@@ -166,6 +166,43 @@ static void a_frame_of_the_other_kind_is_malformed(void) {
     TEST_ASSERT_EQUAL_UINT16(2, node.counters.malformed);
 }
 
+static void a_sync_names_the_frames_of_its_inputs_and_begins_the_next_ones(void) {
+    bench_load(2);
+    bench_select(0, 0, LACONIC_RAW_VOLTAGE);
+    bench_start_lockstep();
+    for (int again = 0; again < 2; again++) {
+        struct laconic_dbc_sync_t frame = {.step_count = 1, .input_frames = 1};
+        memset(data, 0, sizeof data);
+        bench_send(LACONIC_WIRE_RAW_INPUT_FD, data);
+        laconic_dbc_sync_pack(data, &frame, 8);
+        bench_send(LACONIC_WIRE_SYNC, data);
+        laconic_node_on_tick(&node, now_us);
+        TEST_ASSERT_EQUAL_UINT64((uint64_t)again + 1, node.plant.steps);
+        TEST_ASSERT_EQUAL_UINT16(0, node.counters.refused);
+    }
+}
+
+static void its_counter_asks_for_no_step(void) {
+    bench_load(2);
+    bench_start_lockstep();
+    for (int k = 0; k < 3; k++) {
+        voltages(2, 0);
+        TEST_ASSERT_EQUAL_UINT32(0, node.lockstep.steps_due);
+    }
+}
+
+static void each_step_begins_its_raw_numbers_anew(void) {
+    bench_load(2);
+    bench_select(0, LACONIC_RAW_NU, 0);
+    bench_start_lockstep();
+    for (int k = 0; k < 2; k++) {
+        bench_sync(1);
+        laconic_node_on_tick(&node, now_us);
+        TEST_ASSERT_TRUE(bench_receive(LACONIC_WIRE_RAW_OUTPUT, data));
+        TEST_ASSERT_EQUAL_UINT8(0, data[1] >> 4);
+    }
+}
+
 int main(void) {
     UNITY_BEGIN();
     RUN_TEST(one_frame_has_the_voltages_of_all_wheels);
@@ -176,5 +213,8 @@ int main(void) {
     RUN_TEST(raw_outputs_go_by_frames_of_either_length_and_end_in_zeros);
     RUN_TEST(a_number_out_of_range_of_the_state_sets_its_flag);
     RUN_TEST(a_frame_of_the_other_kind_is_malformed);
+    RUN_TEST(a_sync_names_the_frames_of_its_inputs_and_begins_the_next_ones);
+    RUN_TEST(its_counter_asks_for_no_step);
+    RUN_TEST(each_step_begins_its_raw_numbers_anew);
     return UNITY_END();
 }

@@ -185,6 +185,32 @@ static void whoever_waits_wakes_for_the_next_period_or_heartbeat(void) {
     TEST_ASSERT_EQUAL_UINT32(0, laconic_node_idle_us(&node, node.heartbeat_us + 100001U));
 }
 
+static void voltages_of_every_group_feed_the_watchdog_however_many_wheels_there_are(void) {
+    static const int32_t wheels[] = {0, 1, 2, 3, 4, 6, 7};
+    for (size_t k = 0; k < sizeof wheels / sizeof wheels[0]; k++) {
+        bench_begin();
+        bench_load(wheels[k]);
+        start(1000, 10);
+        const uint8_t groups = wheels[k] > 3 ? (uint8_t)((wheels[k] + 2) / 3) : 1;
+        for (uint8_t group = 0; group < groups; group++) {
+            now_us += 10;
+            TEST_ASSERT_TRUE(node.free_run.fed_us != now_us);
+            bench_voltage(group, 500, 0);
+        }
+        TEST_ASSERT_EQUAL_UINT32(now_us, node.free_run.fed_us);
+    }
+}
+
+static void a_period_of_a_second_is_a_million_microseconds(void) {
+    const laconic_vehicle vehicle = {.mass_kg = 1, .yaw_inertia_kgm2 = 1, .wheel_radius_m = 1};
+    laconic_plant_start(&node.plant, &vehicle, &laconic_rk4, 1, &node.start, NULL);
+    TEST_ASSERT_EQUAL_UINT8(0, start(1, 0));
+    const uint32_t begun_us = now_us;
+    laconic_node_on_tick(&node, begun_us + 2000000U);
+    TEST_ASSERT_TRUE(node.plant.steps == 1 && node.counters.late_periods == 1);
+    TEST_ASSERT_EQUAL_UINT32(begun_us + 2000000U, node.free_run.next_us);
+}
+
 int main(void) {
     UNITY_BEGIN();
     RUN_TEST(every_period_takes_its_steps_though_the_time_wraps);
@@ -200,5 +226,7 @@ int main(void) {
     RUN_TEST(the_watchdog_waits_its_time_to_the_microsecond);
     RUN_TEST(groups_of_voltages_begin_anew_with_each_run);
     RUN_TEST(whoever_waits_wakes_for_the_next_period_or_heartbeat);
+    RUN_TEST(voltages_of_every_group_feed_the_watchdog_however_many_wheels_there_are);
+    RUN_TEST(a_period_of_a_second_is_a_million_microseconds);
     return UNITY_END();
 }

@@ -229,6 +229,49 @@ static void rollers_need_their_angle_and_wheels_that_are_not_there_need_nothing(
     TEST_ASSERT_EQUAL_UINT8(0, check());
 }
 
+static void single_numbers_have_no_item(void) {
+    static const int reals[] = {LACONIC_FIELD_SLOPE, LACONIC_FIELD_START_X, LACONIC_FIELD_STEP,
+                                LACONIC_SENSOR_FIELD_IMU_X};
+    for (size_t k = 0; k < sizeof reals / sizeof reals[0]; k++) send_real(reals[k], 0, 0);
+    send(0, LACONIC_DRIVES_FIELD_DRIVE_PROTOCOL, 0, 3);
+    TEST_ASSERT_EQUAL_UINT8(0, loader.status);
+    TEST_ASSERT_EQUAL_INT(3, loader.parameters.drives.protocol);
+    send_real(LACONIC_FIELD_SLOPE, 1, 0);
+    TEST_ASSERT_EQUAL_UINT8(LACONIC_WIRE_STATUS_PARAMETER_UNKNOWN, loader.status);
+}
+
+static void a_loader_begins_with_the_usual_plan_of_drives(void) {
+    laconic_drive_plan usual;
+    memset(&usual, 0, sizeof usual);
+    laconic_drive_plan_begin(&usual);
+    TEST_ASSERT_EQUAL_MEMORY(&usual, &loader.parameters.drives, sizeof usual);
+}
+
+static void in_single_precision_an_upper_half_is_out_of_range(void) {
+    if (sizeof(laconic_real) == 8) return;
+    send(1, LACONIC_FIELD_WHEEL_X, 2, 1);
+    TEST_ASSERT_EQUAL_UINT8(LACONIC_WIRE_STATUS_OUT_OF_RANGE, loader.status);
+    TEST_ASSERT_TRUE(loader.field == LACONIC_FIELD_WHEEL_X && loader.item == 2);
+}
+
+static void an_integer_out_of_range_names_field_and_item(void) {
+    send(1, LACONIC_FIELD_WHEEL_LOCKED, 2, 1);
+    TEST_ASSERT_EQUAL_UINT8(LACONIC_WIRE_STATUS_OUT_OF_RANGE, loader.status);
+    TEST_ASSERT_TRUE(loader.field == LACONIC_FIELD_WHEEL_LOCKED && loader.item == 2);
+}
+
+/* One wheel needs what two need. */
+static void a_single_wheel_needs_the_numbers_of_wheels(void) {
+    static const uint8_t of_wheels[] = {LACONIC_FIELD_WHEEL_INERTIA, LACONIC_FIELD_MOTOR_GAIN,
+                                        LACONIC_FIELD_MOTOR_DAMPING};
+    for (size_t k = 0; k < sizeof of_wheels; k++) {
+        send_cart_without(of_wheels[k], 0);
+        send(0, LACONIC_FIELD_WHEEL_COUNT, 0, 1);
+        TEST_ASSERT_EQUAL_UINT8(LACONIC_WIRE_STATUS_PARAMETER_MISSING, check());
+        TEST_ASSERT_TRUE(field == of_wheels[k] && item == 0);
+    }
+}
+
 int main(void) {
     UNITY_BEGIN();
     RUN_TEST(numbers_arrive_bit_for_bit_where_they_belong);
@@ -246,5 +289,10 @@ int main(void) {
     RUN_TEST(the_largest_kind_of_a_wheel_fits_a_byte_with_a_sign);
     RUN_TEST(the_half_that_is_missing_is_named);
     RUN_TEST(rollers_need_their_angle_and_wheels_that_are_not_there_need_nothing);
+    RUN_TEST(single_numbers_have_no_item);
+    RUN_TEST(a_loader_begins_with_the_usual_plan_of_drives);
+    RUN_TEST(in_single_precision_an_upper_half_is_out_of_range);
+    RUN_TEST(an_integer_out_of_range_names_field_and_item);
+    RUN_TEST(a_single_wheel_needs_the_numbers_of_wheels);
     return UNITY_END();
 }

@@ -203,8 +203,11 @@ static void raw_inputs_are_for_lockstep_between_its_steps(void) {
     bench_control(LACONIC_WIRE_COMMAND_STOP, 0, 0);
     bench_start_lockstep();
     TEST_ASSERT_EQUAL_UINT16(0, refused_of(LACONIC_WIRE_RAW_INPUT));
+    bench_control(LACONIC_WIRE_COMMAND_STOP, 0, 0);
+    bench_start_lockstep();
     node.lockstep.steps_due = 1;
-    TEST_ASSERT_EQUAL_UINT16(1, refused_of(LACONIC_WIRE_RAW_INPUT));
+    bench_send(LACONIC_WIRE_RAW_INPUT, (const uint8_t[LACONIC_FRAME_BYTES]){0});
+    TEST_ASSERT_EQUAL_UINT16(0, node.raw_input.frames);
 }
 
 static void a_sync_while_one_step_is_due_is_told_that_the_node_is_busy(void) {
@@ -298,6 +301,83 @@ static void a_fault_in_lockstep_answers_the_sync_and_forgets_the_steps_left(void
     TEST_ASSERT_EQUAL_UINT8(sent[LACONIC_WIRE_SYNC] & 15U, data[1] >> 4);
 }
 
+/* How many frames of each kind wait. */
+static void fetch_all(int count[LACONIC_WIRE_OFFSETS]) {
+    laconic_frame frame;
+    memset(count, 0, LACONIC_WIRE_OFFSETS * sizeof count[0]);
+    while (laconic_node_next_frame(&node, &frame)) count[frame.id - LACONIC_WIRE_ID_BASE]++;
+}
+
+static void there_are_as_many_frames_of_wheels_as_groups(void) {
+    for (int32_t wheels = 0; wheels <= 7; wheels++) {
+        int count[LACONIC_WIRE_OFFSETS];
+        bench_begin();
+        bench_load(wheels);
+        bench_select(LACONIC_NODE_SEND_WHEEL_SPEED | LACONIC_NODE_SEND_WHEEL_ANGLE, 0, 0);
+        bench_start_lockstep();
+        bench_sync(1);
+        laconic_node_on_tick(&node, now_us);
+        fetch_all(count);
+        TEST_ASSERT_EQUAL_INT((wheels + 2) / 3, count[LACONIC_WIRE_WHEEL_SPEED]);
+        TEST_ASSERT_EQUAL_INT((wheels + 2) / 3, count[LACONIC_WIRE_WHEEL_ANGLE]);
+        TEST_ASSERT_EQUAL_UINT16(0, node.counters.refused);
+    }
+}
+
+static void the_identifier_behind_the_nodes_last_is_anothers(void) {
+    laconic_frame frame = {.id = LACONIC_WIRE_ID_BASE + LACONIC_NODE_ID_STRIDE, .length = 8};
+    laconic_node_on_frame(&node, &frame, now_us);
+    TEST_ASSERT_EQUAL_UINT16(0, node.counters.malformed);
+    frame.id--;
+    laconic_node_on_frame(&node, &frame, now_us);
+    TEST_ASSERT_EQUAL_UINT16(1, node.counters.malformed);
+}
+
+static void a_repeated_sync_takes_no_further_step(void) {
+    bench_load(2);
+    bench_start_lockstep();
+    bench_sync(1);
+    laconic_node_on_tick(&node, now_us);
+    const struct laconic_dbc_sync_t frame = {.step_count = 1};
+    uint8_t data[LACONIC_FRAME_BYTES];
+    laconic_dbc_sync_pack(data, &frame, 8);
+    bench_send_count(LACONIC_WIRE_SYNC, data, sent[LACONIC_WIRE_SYNC]);
+    laconic_node_on_tick(&node, now_us);
+    TEST_ASSERT_EQUAL_UINT64(1, node.plant.steps);
+}
+
+static void a_group_that_begins_where_the_wheels_end_is_refused_and_a_puck_takes_the_first(void) {
+    bench_load(3);
+    bench_start_lockstep();
+    bench_voltage(1, 500, 0);
+    TEST_ASSERT_EQUAL_UINT16(1, node.counters.refused);
+    bench_begin();
+    bench_load(0);
+    bench_start_lockstep();
+    bench_voltage(0, 500, 0);
+    TEST_ASSERT_EQUAL_UINT16(0, node.counters.refused);
+}
+
+static void reset_ends_a_run(void) {
+    bench_load(2);
+    bench_start_lockstep();
+    bench_voltage(0, 500, 0);
+    bench_sync(1000);
+    TEST_ASSERT_EQUAL_UINT8(0, bench_control(LACONIC_WIRE_COMMAND_RESET, 0, 0));
+    TEST_ASSERT_FALSE(laconic_node_is_busy(&node));
+    TEST_ASSERT_TRUE(node.input[0].voltage_V[0] == 0);
+}
+
+static void the_first_nonce_is_mixed_of_seed_and_time(void) {
+    const laconic_node_config config = node.config;
+    laconic_node_init(&node, &config, now_us);
+    TEST_ASSERT_EQUAL_HEX32(laconic_mix(config.nonce_seed, now_us), bench_hello());
+    const laconic_frame wrong = bench_open_frame(3, 12345);
+    const uint16_t before = node.counters.crc_errors;
+    laconic_node_on_frame(&node, &wrong, now_us);
+    TEST_ASSERT_EQUAL_UINT16(before + 1, node.counters.crc_errors);
+}
+
 int main(void) {
     UNITY_BEGIN();
     RUN_TEST(id_bases_are_multiples_of_32);
@@ -320,5 +400,11 @@ int main(void) {
     RUN_TEST(a_selected_wheel_of_one_is_sent);
     RUN_TEST(three_wheels_fill_one_frame_of_speeds_and_one_of_angles);
     RUN_TEST(a_fault_in_lockstep_answers_the_sync_and_forgets_the_steps_left);
+    RUN_TEST(there_are_as_many_frames_of_wheels_as_groups);
+    RUN_TEST(the_identifier_behind_the_nodes_last_is_anothers);
+    RUN_TEST(a_repeated_sync_takes_no_further_step);
+    RUN_TEST(a_group_that_begins_where_the_wheels_end_is_refused_and_a_puck_takes_the_first);
+    RUN_TEST(reset_ends_a_run);
+    RUN_TEST(the_first_nonce_is_mixed_of_seed_and_time);
     return UNITY_END();
 }

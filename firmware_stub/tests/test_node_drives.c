@@ -282,6 +282,21 @@ static void a_refused_step_answers_no_request(void) {
     TEST_ASSERT_EQUAL_UINT8(0, data[1] >> 4);
 }
 
+static void an_order_is_answered_with_its_wheel(void) {
+    const struct laconic_dbc_parameter_t frame = {.field = LACONIC_WIRE_FIELD_DRIVE_FAULTS, .item = 3, .value = 4};
+    uint8_t data[LACONIC_FRAME_BYTES];
+    start();
+    laconic_dbc_parameter_pack(data, &frame, 8);
+    bench_send(LACONIC_WIRE_PARAMETER, data);
+    TEST_ASSERT_TRUE(bench_receive(LACONIC_WIRE_RESULT, data));
+    TEST_ASSERT_TRUE(data[4] == LACONIC_WIRE_FIELD_DRIVE_FAULTS && data[5] == 3);
+}
+
+static void more_than_ten_thousand_steps_a_second_are_refused(void) {
+    load(REAL(1.0 / 10050));
+    TEST_ASSERT_EQUAL_UINT8(LACONIC_WIRE_STATUS_OUT_OF_RANGE, start());
+}
+
 int main(void) {
     UNITY_BEGIN();
     RUN_TEST(one_step_is_taken_each_period);
@@ -302,5 +317,7 @@ int main(void) {
     RUN_TEST(an_order_that_cannot_be_is_refused_and_changes_nothing);
     RUN_TEST(a_plays_periods_are_single_steps_and_its_answer_names_no_field);
     RUN_TEST(a_refused_step_answers_no_request);
+    RUN_TEST(an_order_is_answered_with_its_wheel);
+    RUN_TEST(more_than_ten_thousand_steps_a_second_are_refused);
     return UNITY_END();
 }

@@ -298,6 +298,29 @@ static void frames_of_wheels_begin_anew_with_each_step(void) {
     }
 }
 
+static void sensors_that_nobody_asks_for_see_nothing(void) {
+    bench_load(2);
+    bench_select(0, LACONIC_RAW_NU, 0);
+    bench_start_lockstep();
+    step(5);
+    TEST_ASSERT_EQUAL_UINT64(0, node.sensors.newest);
+}
+
+static void every_wheel_of_a_group_shows_its_own_angle(void) {
+    struct laconic_dbc_wheel_angle_t frame;
+    laconic_real angle[LACONIC_MAX_WHEELS];
+    bench_load(3);
+    bench_select(LACONIC_NODE_SEND_WHEEL_ANGLE, 0, 0);
+    bench_start_lockstep();
+    step(500);
+    laconic_plant_wheel_angles(&node.plant, angle);
+    TEST_ASSERT_TRUE(bench_receive(LACONIC_WIRE_WHEEL_ANGLE, data));
+    laconic_dbc_wheel_angle_unpack(&frame, data, 8);
+    TEST_ASSERT_EQUAL_INT(rounded(laconic_angle_wrapped(angle[1]) * 10000), frame.wheel_angle_2);
+    TEST_ASSERT_EQUAL_INT(rounded(laconic_angle_wrapped(angle[2]) * 10000), frame.wheel_angle_3);
+    TEST_ASSERT_TRUE(frame.wheel_angle_2 != 0);
+}
+
 int main(void) {
     UNITY_BEGIN();
     RUN_TEST(each_setting_has_its_number_on_the_wire);
@@ -314,5 +337,7 @@ int main(void) {
     RUN_TEST(while_drives_play_a_wheels_encoder_counts_as_its_drives_does);
     RUN_TEST(an_imu_that_was_not_selected_is_not_sent);
     RUN_TEST(frames_of_wheels_begin_anew_with_each_step);
+    RUN_TEST(sensors_that_nobody_asks_for_see_nothing);
+    RUN_TEST(every_wheel_of_a_group_shows_its_own_angle);
     return UNITY_END();
 }

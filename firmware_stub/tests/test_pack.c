@@ -22,6 +22,16 @@ static void publish(laconic_real nu_2, laconic_real x_m, laconic_real heading_ra
     laconic_node_on_tick(&node, now_us);
 }
 
+/* The same of a vehicle that moves freely. */
+static void publish_all(laconic_real nu_1, laconic_real nu_2) {
+    const laconic_start start = {{nu_1, nu_2, 0}, 0, 0, 0, {0}};
+    bench_select(LACONIC_NODE_SEND_STATE_FD, 0, 0);
+    bench_start_lockstep();
+    laconic_state_set(&node.plant.state, &node.plant.model, &start, NULL);
+    bench_sync(1);
+    laconic_node_on_tick(&node, now_us);
+}
+
 static void values_are_rounded_to_the_nearest(void) {
     uint8_t data[LACONIC_FRAME_BYTES];
     struct laconic_dbc_nu_t nu;
@@ -223,6 +233,36 @@ static void counters_stop_at_their_largest_number(void) {
     TEST_ASSERT_EQUAL_UINT16(UINT16_MAX, counter);
 }
 
+static void a_number_just_below_a_half_is_rounded_down(void) {
+    uint8_t data[LACONIC_FRAME_BYTES];
+    struct laconic_dbc_nu_t nu;
+    publish((laconic_real)0.012485, 0, 0); /* 2.497 units */
+    TEST_ASSERT_TRUE(bench_receive(LACONIC_WIRE_NU, data));
+    laconic_dbc_nu_unpack(&nu, data, 8);
+    TEST_ASSERT_EQUAL_INT16(2, nu.nu_2);
+}
+
+static void a_deaf_node_that_was_never_late_says_so(void) {
+    node.session.deaf = BIT(LACONIC_WIRE_SYNC);
+    const struct laconic_dbc_heartbeat_t beat = heartbeat();
+    TEST_ASSERT_TRUE(beat.deaf == 1 && beat.worst_lateness == 0);
+}
+
+static void the_fd_frame_has_all_three_numbers_of_nu_and_sixteen_wheels(void) {
+    uint8_t data[LACONIC_FRAME_BYTES];
+    bench_load(0);
+    publish_all((laconic_real)0.5, (laconic_real)-0.25);
+    TEST_ASSERT_TRUE(bench_receive(LACONIC_WIRE_STATE_FD, data));
+    TEST_ASSERT_EQUAL_INT32(500000, (int32_t)word32(data + 8));
+    TEST_ASSERT_EQUAL_INT32(-250000, (int32_t)word32(data + 12));
+    TEST_ASSERT_EQUAL_INT32(0, (int32_t)word32(data + 16));
+    bench_begin();
+    bench_load(16);
+    publish(2, 0, 0);
+    TEST_ASSERT_TRUE(bench_receive(LACONIC_WIRE_STATE_FD, data));
+    for (int k = 0; k < 16; k++) TEST_ASSERT_INT_WITHIN(2, 400, (int16_t)word16(data + 32 + 2 * k));
+}
+
 int main(void) {
     UNITY_BEGIN();
     RUN_TEST(values_are_rounded_to_the_nearest);
@@ -238,5 +278,8 @@ int main(void) {
     RUN_TEST(a_challenge_repeats_the_request_of_its_hello);
     RUN_TEST(what_a_frame_does_not_tell_is_zero);
     RUN_TEST(counters_stop_at_their_largest_number);
+    RUN_TEST(a_number_just_below_a_half_is_rounded_down);
+    RUN_TEST(a_deaf_node_that_was_never_late_says_so);
+    RUN_TEST(the_fd_frame_has_all_three_numbers_of_nu_and_sixteen_wheels);
     return UNITY_END();
 }

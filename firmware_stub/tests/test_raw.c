@@ -85,6 +85,28 @@ static void world_forces_fill_four_numbers_each(void) {
     TEST_ASSERT_TRUE(input[0].world_force_point_m[0] == 3 && input[0].world_force_point_m[1] == 4);
 }
 
+static void bytes_are_given_in_parts_and_the_last_ends_in_zeros(void) {
+    laconic_raw_output out;
+    uint8_t bytes[10];
+    memset(&out, 0xEE, sizeof out);
+    out.size = 16;
+    out.position = 0;
+    out.segment = 0;
+    for (uint8_t k = 0; k < 16; k++) ((uint8_t *)out.number)[k] = k;
+    TEST_ASSERT_TRUE(laconic_raw_give(&out, bytes, 10));
+    TEST_ASSERT_TRUE(bytes[0] == 0 && bytes[9] == 9 && out.position == 10 && out.segment == 1);
+    TEST_ASSERT_FALSE(laconic_raw_give(&out, bytes, 10));
+    TEST_ASSERT_TRUE(bytes[0] == 10 && bytes[5] == 15 && bytes[6] == 0 && bytes[9] == 0 && out.position == 16);
+}
+
+static void a_restart_forgets_that_all_had_come(void) {
+    raw.take = LACONIC_RAW_VOLTAGE;
+    send(16, 16);
+    TEST_ASSERT_TRUE(raw.complete && input[0].voltage_V[15] == 16);
+    laconic_raw_restart(&raw);
+    TEST_ASSERT_FALSE(raw.complete || raw.broken);
+}
+
 int main(void) {
     UNITY_BEGIN();
     RUN_TEST(every_input_has_its_position_in_the_stream);
@@ -94,5 +116,7 @@ int main(void) {
     RUN_TEST(nothing_chosen_takes_nothing);
     RUN_TEST(a_stream_that_begins_anew_counts_its_frames_anew);
     RUN_TEST(world_forces_fill_four_numbers_each);
+    RUN_TEST(bytes_are_given_in_parts_and_the_last_ends_in_zeros);
+    RUN_TEST(a_restart_forgets_that_all_had_come);
     return UNITY_END();
 }

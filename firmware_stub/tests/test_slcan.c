@@ -206,6 +206,18 @@ static void the_longest_line_has_room_and_one_letter_more_has_none(void) {
     answers(line, "\a");
 }
 
+static void a_command_too_long_for_a_line_is_none(void) {
+    feed("O");
+    for (int k = 0; k < LACONIC_SLCAN_LINE; k++) feed("1");
+    answers("\r", "\a");
+    TEST_ASSERT_FALSE(slcan.open);
+}
+
+static void a_classic_frame_has_eight_bytes_at_most_whatever_its_line_holds(void) {
+    feed("O\r");
+    answers("t2009112233445566778899AABBCC\r", "\a");
+}
+
 int main(void) {
     UNITY_BEGIN();
     RUN_TEST(commands_are_answered);
@@ -222,5 +234,7 @@ int main(void) {
     RUN_TEST(who_only_listens_sends_no_frames_and_hears_them);
     RUN_TEST(a_channel_begins_closed_and_without_a_reply);
     RUN_TEST(the_longest_line_has_room_and_one_letter_more_has_none);
+    RUN_TEST(a_command_too_long_for_a_line_is_none);
+    RUN_TEST(a_classic_frame_has_eight_bytes_at_most_whatever_its_line_holds);
     return UNITY_END();
 }

@@ -12,6 +12,8 @@
 #include <stdlib.h>
 #include <string.h>
 
+#define NOT_A_NUMBER ((double)NAN)
+
 static char logged[1024]; /* the last line, behind its category; "" since log_clear() */
 static int lines;
 

@@ -17,7 +17,7 @@ static void set(const char *name, uint32_t element, double value) {
 
 static double get(const char *name, uint32_t element) {
     const fmi3ValueReference reference = ref(name, element);
-    double value = NAN;
+    double value = NOT_A_NUMBER;
     OK(fmi3GetFloat64(c, &reference, 1, &value, 1));
     return value;
 }

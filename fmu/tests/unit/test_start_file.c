@@ -53,7 +53,7 @@ static fmi2Component with(size_t size, const char *resources) {
 
 static double mass_of(fmi2Component c) {
     const fmi2ValueReference mass = ref("mass_kg", 0);
-    double value = NAN;
+    double value = NOT_A_NUMBER;
     OK(fmi2EnterInitializationMode(c));
     OK(fmi2GetReal(c, &mass, 1, &value));
     return value;

@@ -13,7 +13,7 @@ void tearDown(void) { fmi2FreeInstance(c); }
 
 static double x_m(void) {
     const fmi2ValueReference reference = ref("x_m", 0);
-    double value = NAN;
+    double value = NOT_A_NUMBER;
     OK(fmi2GetReal(c, &reference, 1, &value));
     return value;
 }
