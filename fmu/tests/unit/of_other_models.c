@@ -1,5 +1,5 @@
-/* Functions that only models with bus terminals or with derivatives of steps have. The glue calls them behind conditions
- * that are false in this model; a compiler that counts coverage keeps the calls nevertheless. */
+/* Functions that only models with bus terminals or with derivatives of steps have. The glue calls them behind
+ * conditions that are false in this model; a compiler that counts coverage keeps the calls nevertheless. */
 #include <stdlib.h>
 
 #include "model_interface.h"
