@@ -8,12 +8,14 @@ from typing import Any
 
 import numpy as np
 
+from laconic.benchmark.estimated import columns_of
 from laconic.core import load
+from laconic.core.estimate import Errors
 from laconic.core.plant import Plant
 from laconic.errors import BadInput, Refused
 from laconic.scene import METHODS, Scene
 from laconic.scene.ground import has_friction
-from laconic.simulation import advance_plant
+from laconic.simulation import Watch, advance_plant
 from laconic.verification.reference import reference_states
 
 STEPS_S = (0.001, 0.002, 0.0025, 0.005, 0.01, 0.0125, 0.02, 0.025, 0.05, 0.1)
@@ -99,13 +101,16 @@ def state_row(plant: Plant) -> np.ndarray:
     return np.concatenate([plant.nu, [pose.x_m, pose.y_m, pose.heading_rad], plant.wheel_angles()]).astype(float)
 
 
-def follow(scene: Scene, real: str, at_s: np.ndarray) -> np.ndarray:
-    """The core's states at some instants, one row each."""
+def follow(scene: Scene, real: str, at_s: np.ndarray, seen: list[Errors] | None = None) -> np.ndarray:
+    """The core's states at some instants, one row each; with `seen` an estimate watches, which goes there."""
     plant, inputs, rows, done = scene.plant(load(real)), scene.inputs_on_grid(), [], 0
+    watch = None if seen is None else Watch(plant.estimate())
     for tick in np.rint(at_s / scene.run.step_s).astype(int):
-        advance_plant(plant, inputs, done, int(tick) - done)
+        advance_plant(plant, inputs, done, int(tick) - done, watch=watch)
         done = int(tick)
         rows.append(state_row(plant))
+        if watch and seen is not None:
+            seen.append(watch.estimate.read())
     return np.array(rows)
 
 
@@ -147,14 +152,15 @@ def one_run(scene: Scene, real: str, truth: Truth) -> dict[str, Any]:
     """Errors of one run, or the refusal."""
     row: dict[str, Any] = {"scene": scene.path.stem, "real": real, "method": scene.run.method,
                            "step_s": scene.run.step_s}
+    seen: list[Errors] = []
     try:
-        states = follow(scene, real, truth.at_s)
+        states = follow(scene, real, truth.at_s, seen)
     except Refused as refused:
         return row | {"status": refused.status}
     errors: dict[str, Any] = {name: relative(states[:, part], truth.states[:, part]) for name, part in KINDS.items()}
     if truth.error:
         errors["reference_error_nu"] = truth.error["error_nu"]
-    return row | {"status": "ok"} | errors
+    return row | {"status": "ok"} | errors | columns_of(seen, truth.states)
 
 
 def rows_of(scene: Scene, reals: tuple[str, ...], methods: tuple[str, ...] = METHODS,

@@ -18,7 +18,8 @@ TITLES = {
     "bound": "", "fact": "", "value": "", "ns_per_step": "ns a step", "step_code": "code [B]", "flash": "flash [B]",
     "state": "state [B]", "worst_stack": "worst stack [B]", "stack_measured": "stack measured [B]",
     "tables": "constants [B]", "error_nu": "error ν", "error_pose": "error pose", "error_wheel": "error wheels",
-    "error_path": "error path", "step_s": "h [s]", "same_bits": "host's bits",
+    "estimate_nu": "estimated ν", "estimate_pose": "estimated pose", "estimate_wheel": "estimated wheels",
+    "within_10": "within a factor of 10", "error_path": "error path", "step_s": "h [s]", "same_bits": "host's bits",
     "worst_growth_ulp": "largest growth [ulp]", "steps_taken": "steps taken", "digits_lost": "digits lost",
     "who": "integrator", "as_good": "reached", "us_per_second": "µs a second",
     "fastest_decay_per_s": "fastest damping r [1/s]", "wanted_error": "error at most", "ratio": "over CasADi's"}
@@ -57,7 +58,7 @@ def shown(name: str, value: Any) -> str:
         return "yes" if value else "no"
     if isinstance(value, str):
         return value
-    if name.startswith("error") or name in ("prototype", "energy", "K", "wanted_error"):
+    if name.startswith(("error", "estimate")) or name in ("prototype", "energy", "K", "wanted_error"):
         return "0" if value == 0 else f"{value:.1e}"
     if isinstance(value, int):
         return str(value)

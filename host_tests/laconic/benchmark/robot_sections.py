@@ -5,6 +5,7 @@ from __future__ import annotations
 from collections.abc import Sequence
 
 from laconic.benchmark import pictures, texts
+from laconic.benchmark.estimated import table_of
 from laconic.benchmark.page import Row, Section, Table
 from laconic.benchmark.plan import plan
 from laconic.benchmark.sections import mapped, rounding_section
@@ -47,10 +48,10 @@ def _facts(row: Row) -> list[Row]:
 def _accuracy(scenes: Sequence[Scene], results: Results) -> Section:
     rows = results["accuracy"]
     drawn = [pictures.error_against_time(rows, scene.path.stem, scene.name) for scene in scenes]
-    fields = _fields(scenes, "real", "method", "step_s", "status", "error_nu", "error_pose", "error_wheel",
-                     "ns_per_step", "us_per_second")
+    fields = _fields(scenes, "real", "method", "step_s", "status", "error_nu", "estimate_nu", "error_pose",
+                     "estimate_pose", "error_wheel", "estimate_wheel", "ns_per_step", "us_per_second")
     return Section("accuracy", "Error against run time", texts.paragraphs(texts.ACCURACY), drawn,
-                   (Table(rows, fields, "All runs", True),))
+                   (table_of(rows), Table(rows, fields, "All runs", True)))
 
 
 def _stability(scenes: Sequence[Scene], results: Results) -> Section:

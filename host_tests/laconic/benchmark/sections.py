@@ -5,6 +5,7 @@ from __future__ import annotations
 from collections.abc import Sequence
 
 from laconic.benchmark import pictures, texts
+from laconic.benchmark.estimated import table_of
 from laconic.benchmark.page import Row, Section, Table
 
 
@@ -27,9 +28,9 @@ def _section(key: str, title: str, pictures_of: Sequence[str], *tables: Table) -
 def _accuracy(results: dict[str, list[Row]]) -> Section:
     rows = results["accuracy"]
     drawn = [pictures.error_against_time(rows, scene) for scene in dict.fromkeys(row["scene"] for row in rows)]
-    fields = ("scene", "real", "method", "step_s", "status", "error_nu", "error_pose", "error_wheel", "ns_per_step",
-              "us_per_second")
-    return _section("accuracy", "Error against run time", drawn, Table(rows, fields, "All runs", True))
+    fields = ("scene", "real", "method", "step_s", "status", "error_nu", "estimate_nu", "error_pose", "estimate_pose",
+              "error_wheel", "estimate_wheel", "ns_per_step", "us_per_second")
+    return _section("accuracy", "Error against run time", drawn, table_of(rows), Table(rows, fields, "All runs", True))
 
 
 def _peers(results: dict[str, list[Row]]) -> Section:

@@ -19,6 +19,9 @@ forty times finer than the finest here, and its own error, which the band shows,
 that step: the step is of first order.
 
 Choose the lowest point that fits your run time. The core refused steps without a point.
+
+The first table compares the error that a run estimates of itself (docs/error-estimate.md) with the true one, where that
+is above the reference's own error and rounding.
 """
 
 PEERS = """

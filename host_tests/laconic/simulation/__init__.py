@@ -3,6 +3,7 @@
 from laconic.simulation.run import (
     RunRefused,
     Trajectory,
+    Watch,
     advance_plant,
     input_signals,
     run_window,
@@ -11,5 +12,5 @@ from laconic.simulation.run import (
     wanted_signals,
 )
 
-__all__ = ["RunRefused", "Trajectory", "advance_plant", "input_signals", "run_window", "simulate", "usual_signals",
-           "wanted_signals"]
+__all__ = ["RunRefused", "Trajectory", "Watch", "advance_plant", "input_signals", "run_window", "simulate",
+           "usual_signals", "wanted_signals"]
