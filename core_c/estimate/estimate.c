@@ -368,16 +368,12 @@ laconic_status laconic_estimate_run_sampled(laconic_estimate *estimate, laconic_
     return status;
 }
 
-static bool row_is_due(const laconic_error_rows *rows, const laconic_plant *plant) {
-    return rows != NULL && rows->every != 0 && plant->steps % rows->every == 0;
-}
-
 /* Takes the row of this moment, where one is due; how many of `left` steps may pass before the next. */
 static uint64_t take_row(laconic_error_rows *rows, const laconic_estimate *estimate, const laconic_plant *plant,
                          uint64_t left) {
     laconic_errors errors;
     if (rows == NULL || rows->every == 0) return left;
-    if (row_is_due(rows, plant)) {
+    if (plant->steps % rows->every == 0) {
         if (rows->row_count >= rows->row_room) return 0;
         laconic_estimate_read(&errors, estimate, plant);
         rows->row[rows->row_count++] = errors.now;

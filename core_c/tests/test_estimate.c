@@ -255,6 +255,72 @@ static void half_steps_that_are_refused_are_counted(void) {
     TEST_ASSERT_TRUE(errors_now(&estimate, &plant).now.place_m > before.now.place_m);
 }
 
+static void a_half_step_that_cannot_be_prepared_is_refused(void) {
+    laconic_vehicle v = with_motors(three_wheels());
+    laconic_plant plant = plant_by(&laconic_auto, &v, start_with(2, 1, 4), 12.0 * (double)LACONIC_REAL_MIN);
+    laconic_estimate estimate;
+    ASSERT_REFUSED(LACONIC_OVERFLOW, LACONIC_FIELD_STEP, 0, laconic_estimate_start(&estimate, &plant, 1, NULL, &why),
+                   why);
+    v.motor_damping_Nms = REAL(100 * DAMPING);
+    plant = plant_by(&laconic_auto, &v, start_with(2, 1, 4), 0.1);
+    ASSERT_REFUSED(LACONIC_STEP_BEYOND_DAMPING_LIMIT, LACONIC_FIELD_STEP, 0,
+                   laconic_estimate_start(&estimate, &plant, 1, &laconic_rk4, &why), why);
+}
+
+static void samples_whose_half_steps_are_refused_are_counted(void) {
+    const laconic_vehicle v = with_motors(three_wheels());
+    laconic_plant plant = plant_by(&laconic_rk4, &v, start_with(2, 1, 4), 0.01);
+    laconic_estimate estimate = estimate_of(&plant, 1);
+    laconic_input samples[3] = {no_input(), no_input(), no_input()};
+    for (int k = 0; k < 3; k++) samples[k].body_moment_Nm = REAL(5); /* yaws faster and faster */
+    const laconic_real yaw = plant.model.nu_of_zeta[2][0] * plant.state.zeta[0].value +
+                             plant.model.nu_of_zeta[2][1] * plant.state.zeta[1].value +
+                             plant.model.nu_of_zeta[2][2] * plant.state.zeta[2].value;
+    estimate.halves.gyro_limit = estimate.finer.gyro_limit = yaw * REAL(1.0001); /* reached by the first half step */
+    ASSERT_STATUS(LACONIC_OK, laconic_estimate_run_sampled(&estimate, &plant, samples, &why));
+    TEST_ASSERT_EQUAL_UINT64(1, errors_now(&estimate, &plant).unknown);
+    samples[0].voltage_V[1] = NOT_A_NUMBER;
+    ASSERT_REFUSED(LACONIC_NOT_FINITE, LACONIC_FIELD_VOLTAGE, 2,
+                   laconic_estimate_run_sampled(&estimate, &plant, samples, &why), why);
+    TEST_ASSERT_EQUAL_UINT64(2, errors_now(&estimate, &plant).unknown);
+}
+
+static void a_twin_that_is_refused_stays(void) {
+    laconic_vehicle v = with_motors(mecanum());
+    v.ground.friction_coefficient = REAL(0.5);
+    laconic_plant plant = plant_by(&laconic_auto, &v, start_with(0, 0, 0), 0.01);
+    laconic_estimate estimate = estimate_of(&plant, 16);
+    const laconic_state before = estimate.twin;
+    laconic_input input = no_input();
+    input.voltage_V[0] = NOT_A_NUMBER;
+    TEST_ASSERT_EQUAL_UINT64(1, laconic_estimate_before(&estimate, &plant, &input, 1, 5));
+    TEST_ASSERT_EQUAL_UINT64(1, errors_now(&estimate, &plant).unknown);
+    TEST_ASSERT_EQUAL_MEMORY(&before, &estimate.twin, sizeof before);
+}
+
+/* It ends where the schedule does, where a step is refused, and where the recorder has no room; rows may be none. */
+static void following_ends_as_without_an_estimate(void) {
+    const laconic_vehicle v = with_motors(three_wheels());
+    laconic_plant plant = plant_by(&laconic_auto, &v, start_with(2, 1, 4), 0.01);
+    laconic_estimate estimate = estimate_of(&plant, 4);
+    const uint32_t signal = offsetof(laconic_input, voltage_V), column = offsetof(laconic_outputs, energy_J);
+    const laconic_real values[2] = {REAL(1), NOT_A_NUMBER};
+    const uint64_t ends[2] = {20, 30};
+    laconic_real row[3];
+    laconic_schedule schedule = {1, &signal, values, ends, 1, 0};
+    laconic_recorder recorder = {NULL, NULL, 5, 1, &column, row, 0, 3, NULL};
+    laconic_error_rows none_of_them = {0, NULL, 0, 0};
+    ASSERT_STATUS(LACONIC_OK,
+                  laconic_estimate_follow(&estimate, &plant, &schedule, 100, &recorder, &none_of_them, &why));
+    TEST_ASSERT_EQUAL_UINT64(15, plant.steps);
+    ASSERT_STATUS(LACONIC_OK, laconic_estimate_follow(&estimate, &plant, &schedule, 100, NULL, NULL, &why));
+    TEST_ASSERT_EQUAL_UINT64(20, plant.steps);
+    schedule.count = 2;
+    ASSERT_REFUSED(LACONIC_NOT_FINITE, LACONIC_FIELD_VOLTAGE, 1,
+                   laconic_estimate_follow(&estimate, &plant, &schedule, 100, NULL, NULL, &why), why);
+    TEST_ASSERT_EQUAL_UINT64(20, plant.steps);
+}
+
 int main(void) {
     UNITY_BEGIN();
     RUN_TEST(every_method_estimates_within_a_factor_of_10);
@@ -268,5 +334,9 @@ int main(void) {
     RUN_TEST(windows_without_steps_are_refused);
     RUN_TEST(a_refused_step_is_refused_as_without);
     RUN_TEST(half_steps_that_are_refused_are_counted);
+    RUN_TEST(a_half_step_that_cannot_be_prepared_is_refused);
+    RUN_TEST(samples_whose_half_steps_are_refused_are_counted);
+    RUN_TEST(a_twin_that_is_refused_stays);
+    RUN_TEST(following_ends_as_without_an_estimate);
     return UNITY_END();
 }

@@ -98,11 +98,34 @@ static void windows_of_one_step_and_one_of_many_agree(void) {
     ASSERT_NEAR(3e-8, stepwise.place_m[0], at_once.place_m[0]);
 }
 
+/* Where the linear system has no usable solution, what is known of the window's start counts alone: g along z, w
+ * along x, both 1, and ζ along −y at 1/16 ms, half of the window's length. */
+static void a_window_without_a_solution_stays_finite(void) {
+    pair both = apart(three_wheels());
+    laconic_model *m = &both.plant.model;
+    laconic_estimate estimate;
+    state_error error;
+    window_motion motion;
+    memset(&error, 0, sizeof error);
+    memset(&motion, 0, sizeof motion);
+    store(m->nu_of_zeta[2], vector_of(0, 0, 1));
+    store(m->gyro, vector_of(1, 0, 0));
+    ASSERT_STATUS(LACONIC_OK, laconic_estimate_start(&estimate, &both.plant, 16, NULL, &why));
+    error.zeta.z = REAL(1e-6);
+    motion.steps = 16;
+    motion.step_s = REAL(0.002);
+    motion.heading.cosine = 1;
+    motion.zeta[0] = motion.zeta[1] = vector_of(0, REAL(-62.5), 0);
+    laconic_carry_error(&error, &estimate, m, &motion);
+    TEST_ASSERT_TRUE(size(error.zeta) < REAL(1e-5));
+}
+
 int main(void) {
     UNITY_BEGIN();
     RUN_TEST(free_motion_turns_the_error);
     RUN_TEST(damping_lets_it_die);
     RUN_TEST(a_force_in_the_world_follows_the_heading);
     RUN_TEST(windows_of_one_step_and_one_of_many_agree);
+    RUN_TEST(a_window_without_a_solution_stays_finite);
     return UNITY_END();
 }
