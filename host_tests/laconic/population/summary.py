@@ -57,6 +57,12 @@ def ratios_of(rows: Sequence[Row], kind: str) -> dict[str, Any]:
                                             "within a factor of 10": within}}
 
 
+def by_truth(rows: Sequence[Row]) -> dict[str, dict[str, Any]]:
+    """The same of the rows beside enclosures, and of those with more damping, beside 50 digits alone."""
+    return {truth: summary_of([row for row in rows if row["truth"] == truth])
+            for truth in dict.fromkeys(row["truth"] for row in rows)}
+
+
 def groups_of(rows: Sequence[Row]) -> dict[tuple[str, float], list[Row]]:
     """By method and step."""
     found: dict[tuple[str, float], list[Row]] = {}

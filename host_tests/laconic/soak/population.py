@@ -20,7 +20,7 @@ from laconic.paths import results_dir
 from laconic.population.made import made
 from laconic.population.measure import STEPS_S, Row, rows_of
 from laconic.population.store import About, Store, core_digest
-from laconic.population.summary import groups_of, name_of, summary_of, text_of, worst_of
+from laconic.population.summary import by_truth, groups_of, name_of, summary_of, text_of, worst_of
 from laconic.population.worst_scene import scene_text
 from laconic.scene import METHODS
 from laconic.soak import StoppedEarly
@@ -61,7 +61,7 @@ def result_of(store: Store) -> dict[str, Any]:
     """What the rows tell, also as summary.json beside them, and the scenes of the worst vehicles."""
     folder, about = store.path.parent, store.about
     groups = groups_of([row for each in store.done for row in each])
-    told = {name_of(*which): summary_of(rows) for which, rows in groups.items()}
+    told = {name_of(*which): summary_of(rows) | {"by truth": by_truth(rows)} for which, rows in groups.items()}
     wrong = wrong_of(groups)
     scenes = [save_worst(store, *which, told[name_of(*which)]["worst vehicle"]) for which in groups]
     write_text(folder / "summary.json", json.dumps({**asdict(about), "done": len(store.done), **told}, indent=1) + "\n")

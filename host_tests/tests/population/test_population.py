@@ -41,6 +41,9 @@ def test_a_sample_of_all_kinds_and_dampings_passes(sample):
     assert told["done"] == SAMPLE
     assert all(told[f"auto, {step}"]["refused"] == 0 for step in ("1 ms", "10 ms"))
     assert told["exponential-gauss-8, 1 ms"]["error_nu"]["worst"] < 1e-9
+    parts = told["auto, 10 ms"]["by truth"]
+    assert sum(part["vehicles"] for part in parts.values()) == SAMPLE
+    assert max(part["error_nu"]["worst"] for part in parts.values()) == told["auto, 10 ms"]["error_nu"]["worst"]
     drawn = [made(SEED, number, SAMPLE) for number in range(SAMPLE)]
     assert {each.trial.kind for each in drawn} == set(KINDS)
     assert min(each.factor for each in drawn) < 10.0
