@@ -15,7 +15,7 @@ from laconic.paths import results_dir
 from laconic.scene import METHODS
 from laconic.soak import StoppedEarly
 from laconic.soak._long.cases import CASES
-from laconic.soak._long.measure import LEAST_PATH_M, Row
+from laconic.soak._long.measure import Row
 from laconic.soak._long.run import LongRun
 
 OPTIONS = ("steps", "method", "out")
@@ -76,12 +76,11 @@ def last_rows(rows: list[Row], steps: int) -> list[Row]:
 
 
 def drifted(row: Row) -> bool:
-    """Whether heading or place is further off than so many roundings of what they have come to."""
+    """Whether heading or place is further off than so many roundings of the heading, and of how far ν would lead."""
     unit = float(np.finfo(np.float64 if row["real"] == "double" else np.float32).eps) / 2
     free = 0.0 if row["case"] in STEADY else FREE_ULP + MOVED_ULP * row["steps"]
     allowed = (LARGEST_ULP + free) * unit
-    standing = STANDING_M / max(row["path_m"], LEAST_PATH_M)
-    return not (row["heading_relative"] <= allowed and row["place_relative"] <= allowed + standing)
+    return not (row["heading_relative"] <= allowed and row["place_error_m"] <= allowed * row["reach_m"] + STANDING_M)
 
 
 def text_of(row: Row) -> str:

@@ -35,10 +35,12 @@ def row_of(prepared: Prepared, state: Any, real: str, steps: int, step_s: float)
     off = mp.mpc(total(state.x_m), total(state.y_m)) - truth.place
     turned = truth.heading - prepared.motion.heading
     yaw_rate, path = truth.nu[2] / model.yaw_scale, max(truth.path, mpf(LEAST_PATH_M))
+    speed = model.radius * mp.sqrt(sum(x**2 for x in truth.nu))  # of which ν is rounded, whatever the place does
     aside = off
     if abs(turned) > 1:
         aside = off - velocity_of(model, truth.nu) * mp.expj(truth.heading) * late / yaw_rate
     return {"case": prepared.case.name, "steps": steps, "heading_error_rad": float(late),
             "heading_relative": float(abs(late) / max(abs(turned), mpf(1))), "place_error_m": float(abs(off)),
-            "place_relative": float(abs(off) / path), "aside_m": float(abs(aside)), "path_m": float(truth.path),
+            "place_relative": float(abs(off) / path), "aside_m": float(abs(aside)),
+            "reach_m": float(max(speed * steps * mpf(step_s), mpf(LEAST_PATH_M))), "path_m": float(truth.path),
             "turns": float(turned / (2 * mp.pi))}
