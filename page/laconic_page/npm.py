@@ -34,7 +34,9 @@ def manifest_of(sources: Path, version: str) -> dict[str, Any]:
     own = json.loads((sources / "package.json").read_text(encoding="utf-8"))
     facts = json.loads((sources.parent / "facts.json").read_text(encoding="utf-8"))
     told = {"description": facts["sentence"], "keywords": [*facts["keywords"], "webassembly"],
-            "author": facts["author"], "homepage": facts["homepage"]}
+            "author": facts["author"]}
+    if not facts["homepage"].endswith(".example"):  # a placeholder, as laconic_packages.facts tells
+        told["homepage"] = facts["homepage"]
     return {"name": own.pop("name"), "version": version, **told, **own}
 
 

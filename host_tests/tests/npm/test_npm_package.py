@@ -202,6 +202,7 @@ def test_it_tells_of_itself_what_all_packages_tell():
     manifest = json.loads((FOLDER / "package.json").read_text(encoding="utf-8"))
     facts = json.loads((SOURCES.parent / "facts.json").read_text(encoding="utf-8"))
     assert manifest["description"] == facts["sentence"]
+    assert ".example" not in json.dumps(manifest)
     assert re.fullmatch(r"\d+\.\d+\.\d+", manifest["version"]) and manifest["license"] == "MIT"
 
 

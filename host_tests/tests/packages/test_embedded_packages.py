@@ -10,12 +10,15 @@ import re
 import shutil
 import subprocess
 import zipfile
+from dataclasses import replace
 from pathlib import Path
 from xml.etree import ElementTree
 
 import pytest
 
 from laconic.paths import SOURCE_DIR, built
+from laconic_packages.embedded import TOOLS, package, values_of
+from laconic_packages.facts import facts
 
 FACTS = json.loads((SOURCE_DIR / "packages" / "facts.json").read_text(encoding="utf-8"))
 HEADER = (SOURCE_DIR / "core_c/include/laconic/laconic.h").read_text(encoding="utf-8")
@@ -62,6 +65,26 @@ def test_its_archive_holds_the_same_files(tool):
     assert all(VERSION in path.name for path in names)
 
 
+DEMANDED = {"arduino": "url=", "cmsis-pack": "<url>"}  # by the tool, whatever the address
+
+
+@pytest.mark.parametrize("tool", TOOLS)
+def test_an_address_that_is_a_placeholder_is_shown_only_where_the_tool_demands_one(tool):
+    pages, mails = {"homepage": "https://laconic.example"}, {"contact": "us@laconic.example"}
+    real = {"homepage": "https://robots.test/laconic", "contact": "us@robots.test"}
+    lines = [line.strip() for line in lines_with(tool, {**pages, **mails}) if ".example" in line]
+    assert all(line.startswith(DEMANDED.get(tool, "nothing")) for line in lines)
+    shown = "\n".join(lines_with(tool, real))
+    has_manifest = tool != "zephyr"
+    assert all((address in shown) == has_manifest for address in real.values()), shown
+
+
+def lines_with(tool, told):
+    """The lines of a package whose facts are these."""
+    ours = replace(facts(), **told)
+    return "\n".join(package(tool, {}, values_of(ours), ours).values()).splitlines()
+
+
 def test_arduino_has_every_field_that_its_specification_asks_for():
     given = dict(line.split("=", 1) for line in text("arduino", "library.properties").splitlines())
     assert given.keys() == {"name", "version", "author", "maintainer", "sentence", "paragraph", "category", "url",
@@ -81,6 +104,7 @@ def test_platformio_has_its_fields_and_names_files_that_are_there():
     given = json.loads(text("platformio", "library.json"))
     assert (given["version"], given["license"], given["description"]) == (VERSION, "MIT", FACTS["sentence"])
     assert len(given["description"]) <= 255
+    assert given["authors"][0]["name"] == FACTS["author"]
     assert all(re.fullmatch(r"[a-z\d-]+", word) for word in given["keywords"])
     for example in given["examples"]:
         assert all((folder("platformio") / example["base"] / name).exists() for name in example["files"])
@@ -133,7 +157,7 @@ def test_esp_idf_and_zephyr_state_version_and_folders():
 
 def test_the_cmsis_pack_describes_the_files_that_it_has():
     root = ElementTree.fromstring(text("cmsis-pack", "Laconic.Laconic.pdsc"))
-    order = ["vendor", "name", "description", "url", "supportContact", "license", "licenseSets", "releases", "keywords",
+    order = ["vendor", "name", "description", "url", "license", "licenseSets", "releases", "keywords",
              "taxonomy", "components"]
     assert [child.tag for child in root] == order
     release = root.find("releases/release")

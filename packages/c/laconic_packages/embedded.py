@@ -16,7 +16,7 @@ from pathlib import Path, PurePosixPath
 from xml.sax.saxutils import escape
 
 from laconic_packages.amalgamation import amalgamation
-from laconic_packages.facts import ROOT, Facts, one
+from laconic_packages.facts import ROOT, Facts, one, placeholders
 
 TEMPLATES = Path(__file__).resolve().parents[1] / "templates"
 
@@ -59,12 +59,26 @@ def package(tool: str, pair: Mapping[str, str], values: Mapping[str, str], facts
 def values_of(facts: Facts) -> dict[str, str]:
     """What may stand between @ and @ in a template."""
     texts = {name: value for name, value in asdict(facts).items() if isinstance(value, str)}
-    return texts | {
+    return texts | addresses(facts) | {
         "keywords_json": json.dumps(facts.keywords),
         "keyword_elements": "".join(f"    <keyword>{escape(word)}</keyword>\n" for word in facts.keywords),
         "release": escape(first_change()),
         "robot": (TEMPLATES / "robot.c.in").read_text(encoding="utf-8"),
         "main": (TEMPLATES / "main.c.in").read_text(encoding="utf-8"),
+    }
+
+
+def addresses(facts: Facts) -> dict[str, str]:
+    """Lines with the project's page and contact, empty while these are placeholders: nobody is sent where nothing is.
+    Arduino and CMSIS-Pack demand an address of the page, and get it as it is."""
+    missing = placeholders(facts)
+    has_page, has_contact = "homepage" not in missing, "contact" not in missing
+    return {
+        "maintainer": f"{facts.author} <{facts.contact}>" if has_contact else facts.author,
+        "email_entry": f', "email": "{facts.contact}"' if has_contact else "",
+        "contact_element": f"  <supportContact>{escape(facts.contact)}</supportContact>\n" if has_contact else "",
+        "homepage_entry": f'  "homepage": "{facts.homepage}",\n' if has_page else "",
+        "homepage_line": f'url: "{facts.homepage}"\n' if has_page else "",
     }
 
 
