@@ -54,6 +54,8 @@ class Filter:
         self._innovation = ffi.new("laconic_innovation *")
         self._sensors = None if encoder is None else self._encoders(encoder)
         self._is_of = self._what_it_is_of()
+        if start_count is not None and encoder is None:
+            raise BadInput("start_count: has no effect without `encoder`; give that, too, or leave it out")
         self._count = self._counts([0] * self.wheel_count if start_count is None else start_count)
         self._check(self.core.lib.laconic_filter_start(
             self.c, self._model, self._settings(settings), ffi.addressof(self._plant.c, "state")), "settings")
@@ -204,6 +206,10 @@ class Filter:
         if not np.all((-2**31 <= values) & (values < 2**31) & (values == np.floor(values))):
             raise BadInput(f"count: {shown(values.tolist())} are no counts; give whole numbers of 32 bits, one for "
                            "each wheel")
+        wrap = self._sensors.encoder_wrap if self._sensors else 0
+        if wrap and not np.all((0 <= values) & (values < wrap)):
+            raise BadInput(f"count: {shown(values.tolist())} are not what a counter that wraps shows; give 0 to "
+                           f"{wrap - 1}")
         return self.core.ffi.new("int32_t[]", [int(value) for value in values] or [0])
 
     def _read(self, function: Any, reading: Any, name: str, needs: str) -> Innovation:

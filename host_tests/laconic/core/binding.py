@@ -30,6 +30,7 @@ from laconic.paths import built, library
 REALS = ("double", "single")
 WHEEL_KINDS = {"omni": "ROLLER", "mecanum": "ROLLER", "roller": "ROLLER", "fixed": "FIXED", "unset": "UNSET"}
 OMNI_ROLLER_RAD = math.pi / 2
+BESIDE_MOTOR = ("motor_gain_Nm_per_V", "motor_damping_Nms")  # of a vehicle, which its motor determines
 
 
 @dataclass(frozen=True)
@@ -123,9 +124,7 @@ class Core:
         """
         parts = ("wheel", "support", "motor", "payload", "ground", "drive")
         plain: dict[str, Any] = table(self, "vehicle", "vehicle", data, parts)
-        if payload := data.get("payload"):
-            plain["payload"] = table(self, "vehicle.payload", "vehicle.payload", payload)
-        for part, path in (("ground", "ground"), ("drive", "vehicle.drive")):
+        for part, path in (("payload", "vehicle.payload"), ("ground", "ground"), ("drive", "vehicle.drive")):
             if part in data:
                 plain[part] = table(self, path, path, data[part])
         vehicle = self.ffi.new("laconic_vehicle *", plain)
@@ -138,8 +137,10 @@ class Core:
             self._set_support(target, name, support)
         given = [wheel for _, wheel in wheels]
         set_own_zeros(vehicle, given, self.own_fields("inertia_"))  # before the rotor's is added
-        if motor := data.get("motor"):
-            self._fit_motor(vehicle, table(self, "vehicle.motor", "vehicle.motor", motor))
+        if "motor" in data:
+            self._fit_motor(vehicle, table(self, "vehicle.motor", "vehicle.motor", data["motor"]))
+            if beside := [key for key in BESIDE_MOTOR if plain.get(key)]:
+                raise BadInput(f"vehicle.{beside[0]}: is given besides vehicle.motor, from which it follows; keep one")
         for stem in ("motor_", *OF_GROUND):
             set_own_zeros(vehicle, given, self.own_fields(stem))
         return vehicle
@@ -147,8 +148,8 @@ class Core:
     def _set_wheel(self, target: Any, name: str, wheel: Mapping[str, Any]) -> None:
         given = {"roller_rad": OMNI_ROLLER_RAD, **table(self, "vehicle.wheel[#]", name, wheel, ("kind",))}
         kind = wheel.get("kind")
-        if kind not in WHEEL_KINDS:
-            raise BadInput(f"{name}.kind: there is no {kind!r}; {nearest_of(str(kind), WHEEL_KINDS)}")
+        if not isinstance(kind, str) or kind not in WHEEL_KINDS:
+            raise BadInput(f"{name}.kind: there is no {shown(kind)}; {nearest_of(str(kind), WHEEL_KINDS)}")
         target.kind = getattr(self.lib, f"LACONIC_WHEEL_{WHEEL_KINDS[kind]}")
         fields = {field.key: field for field in self.fields_of("vehicle.wheel[#]")}
         for key, value in given.items():
@@ -230,15 +231,26 @@ class Core:
               x_m: float = 0.0, y_m: float = 0.0, heading_rad: float = 0.0,
               wheel_speed_rad_per_s: Sequence[float] = ()) -> Plant:
         """A vehicle that stands at its start, ready to step."""
+        vehicle = c_object(self, "vehicle", vehicle)
+        speeds = self._wheel_speeds(vehicle, wheel_speed_rad_per_s)
         start = self.ffi.new("laconic_start *", {
             "nu_rad_per_s": numbers("nu_rad_per_s", nu_rad_per_s, 3), "x_m": number("x_m", x_m),
             "y_m": number("y_m", y_m), "heading_rad": number("heading_rad", heading_rad),
-            "wheel_speed_rad_per_s": numbers("wheel_speed_rad_per_s", wheel_speed_rad_per_s,
-                                             len(wheel_speed_rad_per_s))})
+            "wheel_speed_rad_per_s": speeds})
         plant, why = self.ffi.new("laconic_plant *"), self.why()
         self.check(self.lib.laconic_plant_start(
-            plant, c_object(self, "vehicle", vehicle), self.method(method), number("step_s", step_s), start, why), why)
+            plant, vehicle, self.method(method), number("step_s", step_s), start, why), why)
         return Plant(self, plant)
+
+    def _wheel_speeds(self, vehicle: Any, given: Any) -> list[float]:
+        """Those that a start gives; BadInput where wheels roll and have none of their own."""
+        if isinstance(given, list | tuple) and not given:
+            return []
+        speeds = numbers("wheel_speed_rad_per_s", given, int(vehicle.wheel_count))
+        if not self.lib.laconic_vehicle_has_friction(vehicle):
+            raise BadInput("wheel_speed_rad_per_s: has no effect on ideal ground, where wheels roll as the vehicle "
+                           "moves; give the vehicle a ground with friction_coefficient, or leave it out")
+        return speeds
 
     def steps_in(self, interval_s: float, step_s: float) -> int:
         """The whole number of steps in an interval; Refused when it is none."""

@@ -137,12 +137,22 @@ def table(core: Core, path: str, name: str, given: Any, others: Sequence[str] = 
     found: dict[str, float | bool] = {}
     for key in given:
         if key not in others:
-            kind, value = fields[key].kind, given[key]
-            if kind in FLAGS and isinstance(value, bool | np.bool_):
-                value = float(value)
-            value = number(f"{name}.{key}", value)
-            found[key] = bool(value) if kind in FLAGS else int(value) if kind == "INTEGER" else value
+            found[key] = _of_kind(fields[key].kind, f"{name}.{key}", given[key])
     return found
+
+
+def _of_kind(kind: str, name: str, given: Any) -> float | bool:
+    """A number as the core's list of fields says that it is one."""
+    if kind not in (*FLAGS, "INTEGER"):
+        return number(name, given)
+    if kind in FLAGS and isinstance(given, bool | np.bool_):
+        return bool(given)
+    value = number(name, given)
+    if kind in FLAGS and value not in (0.0, 1.0):
+        raise BadInput(f"{name}: {value:g} is neither true nor false; give one of them")
+    if not (math.isfinite(value) and value == int(value) and abs(value) < 2**31):
+        raise BadInput(f"{name}: {value:g} is no whole number of 32 bits; give one")
+    return bool(value) if kind in FLAGS else int(value)
 
 
 def items(name: str, given: Any) -> Iterator[tuple[str, Any]]:

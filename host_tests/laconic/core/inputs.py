@@ -12,7 +12,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from laconic.core.given import REAL, finite_number, shown
-from laconic.core.given_array import any_array
+from laconic.core.given_array import any_array, real_array
 from laconic.errors import BadInput, nearest_of
 
 if TYPE_CHECKING:
@@ -119,6 +119,13 @@ def check_wheels(core: Core, rows: np.ndarray, wheel_count: int) -> None:
         if beyond.any():
             wheel = wheel_count + 1 + int(np.argwhere(beyond)[0][-1])
             raise BadInput(f"input: {no_such_wheel(f'{name}[{wheel}]', name, wheel_count)}")
+
+
+def sampled_rows(core: Core, given: Any, wheel_count: int) -> np.ndarray:
+    """Inputs at the start, middle and end of steps, (steps, 3, numbers of an input); the core checks their numbers."""
+    rows = real_array("samples", given, ("steps", 3, core.input_length), dtype=core.dtype, is_finite=False)
+    check_wheels(core, rows, wheel_count)
+    return rows
 
 
 def check_held(core: Core, held: Any, wheel_count: int) -> None:

@@ -10,7 +10,7 @@ import numpy as np
 from laconic.core.derivatives import StepDerivatives
 from laconic.core.estimate import USUAL_STEPS, Estimate
 from laconic.core.given import c_object, number, shown, step_count
-from laconic.core.inputs import check_held, check_wheels
+from laconic.core.inputs import check_held, sampled_rows
 from laconic.core.schedule import Schedule
 from laconic.core.sensors import Sensors, settings_of
 from laconic.errors import BadInput
@@ -69,11 +69,9 @@ class Plant:
 
     def run_sampled(self, samples: np.ndarray) -> None:
         """One step per samples[k] = rows of input numbers at the step's start, middle and end."""
-        width = self.core.input_length
-        if np.ndim(samples) != 3 or np.shape(samples)[1:] != (3, width):
-            raise BadInput(f"samples: has the shape {np.shape(samples)}; give (steps, 3, {width})")
-        check_wheels(self.core, np.asarray(samples), self.wheel_count)
-        self.follow(Schedule(self.core, range(width), samples, first_step=self.steps), self.steps + len(samples))
+        rows = sampled_rows(self.core, samples, self.wheel_count)
+        signals = range(self.core.input_length)
+        self.follow(Schedule(self.core, signals, rows, first_step=self.steps), self.steps + len(rows))
 
     def follow(self, schedule: Schedule, until_step: int, recorder: Recorder | None = None) -> None:
         """Steps along a schedule, recorded on the way; Refused leaves the state before the refused step."""

@@ -15,9 +15,9 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from laconic.core.encoders import GEAR, KEYS, LEAST_INTEGER, MOST_INTEGER, failing, read_encoders
-from laconic.core.fields import Field
+from laconic.core.fields import ITEM, Field
 from laconic.core.given import c_object, is_real, number, shown, step_count
-from laconic.core.inputs import check_wheels
+from laconic.core.inputs import sampled_rows
 from laconic.errors import BadInput, nearest_of
 
 if TYPE_CHECKING:
@@ -67,12 +67,8 @@ class Sensors:
     def run_sampled(self, samples: np.ndarray) -> None:
         """One step per samples[k], as Plant.run_sampled: (steps, 3, numbers of an input)."""
         core, why = self.plant.core, self.plant.core.why()
-        width = core.input_length
-        if np.ndim(samples) != 3 or np.shape(samples)[1:] != (3, width):
-            raise BadInput(f"samples: has the shape {np.shape(samples)}; give (steps, 3, {width})")
-        check_wheels(core, np.asarray(samples), self.plant.wheel_count)
         three = core.ffi.new("laconic_input[3]")
-        for each in np.asarray(samples, core.dtype):
+        for each in sampled_rows(core, samples, self.plant.wheel_count):
             core.ffi.memmove(three, each.tobytes(), core.ffi.sizeof("laconic_input[3]"))
             core.check(core.lib.laconic_sensors_run_sampled(self.c, self.plant.c, three, why), why)
 
@@ -91,8 +87,13 @@ class Sensors:
         return self.plant.core.ffi.new("laconic_sensors *", self.c[0])
 
     def restore(self, saved: Any) -> None:
-        """Back to what `save` gave."""
-        self.c[0] = c_object(self.plant.core, "sensors", saved)[0]
+        """Back to what `save` gave; BadInput for what sensors with other settings gave."""
+        found, core = c_object(self.plant.core, "sensors", saved), self.plant.core
+        for field in core.sensor_fields:
+            if values_of(field, found.settings) != values_of(field, self.c.settings):
+                raise BadInput(f"sensors: were saved with another {field.path.removesuffix(ITEM)}; give what the "
+                               "save() of these gave")
+        self.c[0] = found[0]
 
 
 def settings_of(core: Core, given: Mapping[str, Any], wheel_count: int) -> Any:

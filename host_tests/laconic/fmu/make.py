@@ -8,6 +8,8 @@ from __future__ import annotations
 from pathlib import Path
 from typing import Any
 
+import numpy as np
+
 from laconic.core import load
 from laconic.core.sensors import settings_of, values_of
 from laconic.errors import BadInput
@@ -72,7 +74,7 @@ def make_fmu(scene: Scene, out: str | Path, *, version: int, scalar: bool = Fals
     `derivatives`: for Co-Simulation alone, whose directional and adjoint derivatives are those of its steps.
     """
     check_scene(scene)
-    if isinstance(version, float) or version not in VERSIONS:
+    if not isinstance(version, int | np.integer) or version not in VERSIONS:
         raise BadInput(f"version: there is no FMI {version!r}; give {' or '.join(map(str, VERSIONS))}")
     path = as_path("out", out)
     check_ending("out", path, (".fmu",))

@@ -10,7 +10,7 @@ import numpy as np
 
 from laconic.errors import BadInput
 from laconic.scene.scene import Scene, scene_of
-from laconic.scene.table import Table, plain
+from laconic.scene.table import LONGEST_SHOWN, Table, plain
 
 
 def build_scene(tables: Mapping[str, Any]) -> Scene:
@@ -22,7 +22,12 @@ def build_scene(tables: Mapping[str, Any]) -> Scene:
     if not isinstance(tables, Mapping):
         raise BadInput(f"scene: {tables!r} is no mapping; give the tables of a scene, such as {{\"vehicle\": …}}")
     name = str(tables.get("name") or "scene")
-    return scene_of(Table(Path(name.replace("/", "-")), "", _values(tables)))
+    try:
+        values = _values(tables)
+    except RecursionError:
+        raise BadInput(f"{name[:LONGEST_SHOWN]}: nests its tables too deeply, or one in itself; give those of a scene"
+                       ) from None
+    return scene_of(Table(Path(name.replace("/", "-")), "", values))
 
 
 def _values(given: Any) -> Any:

@@ -178,6 +178,14 @@ def test_encoders_of_a_filter_are_read_as_those_of_a_scene(encoder, text):
     assert refused(lambda: Filter(plant(0.01), KNOWN, encoder=encoder)).startswith(text)
 
 
+def test_counts_are_those_that_the_counter_shows():
+    assert refused(lambda: Filter(plant(0.01), KNOWN, start_count=[1, 2, 3])).startswith("start_count: has no effect ")
+    ours = Filter(plant(0.01), KNOWN, encoder={"counts_per_turn": 2000, "wrap": 100})
+    for counts in ([100, 0, 0], [0, -1, 0]):
+        assert refused(lambda given=counts: ours.counts(given)).endswith("a counter that wraps shows; give 0 to 99")
+    assert ours.counts([99, 0, 1]).numbers == 3
+
+
 HEAVY = laconic.read_scene("robotino2").vehicle | {"mass_kg": 30.0}
 
 

@@ -69,6 +69,21 @@ def test_an_input_by_names_has_the_bits_of_one_that_the_core_made(robot):
     assert robot.plant().wheel_torques() == pytest.approx(0.0)
 
 
+MOTOR = {"resistance_ohm": 1.0, "torque_constant_Nm_per_A": 0.02, "back_emf_Vs_per_rad": 0.02,
+         "viscous_friction_Nms": 1e-5, "rotor_inertia_kgm2": 1e-6}
+
+
+@pytest.mark.parametrize("limits", [{}, {"drive": {"supply_V": 12.0, "current_limit_A": 1.0}}], ids=["free", "limited"])
+def test_a_gear_that_reverses_turns_the_wheel_back_by_the_same_voltage(limits):
+    bare = {key: value for key, value in CARRIAGE.items() if not key.startswith("motor_")} | limits
+    motors = [{"motor": MOTOR | {"gear_ratio": ratio}} for ratio in (12.0, -12.0)]
+    plants = [laconic.Vehicle(bare | motor).plant(step_s=0.001) for motor in motors]
+    for plant, sign in zip(plants, (1.0, -1.0), strict=True):
+        plant.run({"voltage_V": [6.0 * sign, -3.0 * sign, 2.0 * sign]}, 200)
+    assert plants[0].row().tolist() == plants[1].row().tolist()
+    assert np.abs(plants[0].wheel_speeds()).min() > 0.1
+
+
 def test_a_vehicle_without_wheels_has_no_columns_of_voltages():
     body = laconic.Vehicle({"mass_kg": 1.0, "yaw_inertia_kgm2": 0.1, "wheel_radius_m": 0.1})
     assert body.linearise().voltage_matrix.shape == (6, 0)

@@ -42,6 +42,12 @@ def whole_run() -> laconic.Trajectory:
     return laconic.simulate(scene().with_run(duration_s=0.1))
 
 
+def in_itself() -> dict[str, Any]:
+    tables: dict[str, Any] = {}
+    tables["vehicle"] = tables
+    return tables
+
+
 def moved_wheel() -> laconic.Vehicle:
     vehicle = copy.deepcopy(laconic.read_scene("robotino2").vehicle)
     vehicle["wheel"][1]["x_m"] = 3.0
@@ -85,7 +91,28 @@ WRONG: list[tuple[Callable[[], Any], str]] = [
     (lambda: plant().run([1.0]), "input: [1.0] names no signal; give them by its name"),
     (lambda: plant().run({"voltage": [1]}), "voltage: there is no such input; did you mean voltage_V"),
     (lambda: plant().run(laconic.load_core("single").input()), "is no laconic_input of this core"),
-    (lambda: plant().run_sampled(np.zeros((3, 3))), "samples: has the shape (3, 3); give (steps, 3, "),
+    (lambda: plant().run_sampled(np.zeros((3, 3))), "samples: an array of shape (3, 3) and type float64 "),
+    (lambda: plant().run_sampled(np.zeros((2, 3, core().input_length), complex)), "and type complex128 does not fit"),
+    (lambda: plant().sensors().run_sampled("x"), "samples: 'x' does not fit; give real numbers of shape (steps, 3, "),
+    (lambda: core().vehicle({"motor": {}}), "vehicle.motor.resistance_ohm: 0 is not positive"),
+    (lambda: core().vehicle({"motor": None}), "vehicle.motor: None is no table"),
+    (lambda: core().vehicle({"payload": None}), "vehicle.payload: None is no table"),
+    (lambda: laconic.Vehicle(laconic.read_scene("robotino2").vehicle | {"motor_damping_Nms": 1.0}),
+     "vehicle.motor_damping_Nms: is given besides vehicle.motor, from which it follows; keep one"),
+    (lambda: core().vehicle({"wheel": [{"kind": ["omni"]}]}), "vehicle.wheel[1].kind: there is no ['omni']"),
+    (lambda: core().vehicle({"wheel": [{"kind": "omni", "locked": 2}]}), "locked: 2 is neither true nor false"),
+    (lambda: core().vehicle({"wheel": [{"kind": "omni", "motor_circuit": 1.5}]}), "motor_circuit: 1.5 is no whole"),
+    (lambda: core().vehicle({"wheel": [{"kind": "omni", "motor_circuit": np.nan}]}), "motor_circuit: nan is no whole"),
+    (lambda: wheels().plant(wheel_speed_rad_per_s=[1, 2]), "wheel_speed_rad_per_s: [1, 2] is no list of 3 numbers"),
+    (lambda: wheels().plant(wheel_speed_rad_per_s=None), "wheel_speed_rad_per_s: None is no list of 3 numbers"),
+    (lambda: wheels().plant(wheel_speed_rad_per_s=[1, 2, 3]), "wheel_speed_rad_per_s: has no effect on ideal ground"),
+    (lambda: laconic.analyse(scene(), parts=3), "parts: 3 is no list; give a list, such as ["),  # type: ignore
+    (lambda: laconic.analyse(scene(), at_s="1"), "at_s: '1' is no number; give one"),  # type: ignore[arg-type]
+    (lambda: laconic.analyse(scene(), at_s=1e9), "at_s: 1e+09 s lies outside the run; give 0 to "),
+    (lambda: laconic.make_fmu(scene(), "s1.fmu", version=np.array([2, 3])), "there is no FMI array([2, 3])"),  # type: ignore
+    (lambda: laconic.build_scene(in_itself()), "scene: nests its tables too deeply, or one in itself; give those of"),
+    (lambda: wheels().plant().sensors().restore(wheels().plant().sensors({"imu": {"seed": 3}}).save()),
+     "sensors: were saved with another sensors.imu.seed; give what the save() of these gave"),
     (lambda: plant().set_step("x"), "step_s: 'x' is no number"),
     (lambda: plant().change(ROBOT), "is no laconic_vehicle of this core; make it with laconic.Vehicle("),
     (lambda: plant().restore(None, 3), "state: None is no laconic_state of this core; make it with plant.save()"),
