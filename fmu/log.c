@@ -29,7 +29,7 @@ static void deliver(const fmu_instance *instance, fmu_status status, fmu_categor
     char line[LINE_LENGTH];
     /* errors are always logged, as FMI 3.0 requires */
     if (instance->deliver == NULL || !((instance->log_categories | FMU_LOG_ERROR) & (unsigned)category)) return;
-    vsnprintf(line, sizeof line, format, arguments);
+    (void)vsnprintf(line, sizeof line, format, arguments);
     unsign_nan(line);
     for (size_t k = 0; k < CATEGORY_COUNT; k++)
         if (categories[k].category == category) instance->deliver(instance, status, categories[k].name, line);

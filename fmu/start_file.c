@@ -32,7 +32,7 @@ static int hex_digit(char c) {
     return -1;
 }
 
-/* "file:///a%20b/c" or "/a b/c" → "/a b/c/start.bin"; false: it does not fit. */
+/* A URI of the scheme "file" (with %20 for a blank) or a path → the path with "/start.bin"; false: it does not fit. */
 static bool file_name(char *name, size_t size, const char *resources) {
     static const char tail[] = "/start.bin";
     size_t used = 0;
@@ -62,7 +62,7 @@ static size_t read_file(const char *name, uint8_t *bytes, size_t size) {
     FILE *file = fopen(name, "rb");
     if (file == NULL) return 0;
     const size_t got = fread(bytes, 1, size, file);
-    fclose(file);
+    (void)fclose(file); /* it was only read */
     return got;
 }
 

@@ -54,9 +54,9 @@ static double most_of(const fmu_instance *instance, const fmu_variable *variable
 
 static void name_element(char name[NAME_LENGTH], const fmu_slot *slot, uint32_t element) {
     if (slot->variable->size == 1)
-        snprintf(name, NAME_LENGTH, "%s", fmu_name_of(slot->variable));
+        (void)snprintf(name, NAME_LENGTH, "%s", fmu_name_of(slot->variable));
     else
-        snprintf(name, NAME_LENGTH, "%s[%u]", fmu_name_of(slot->variable), (unsigned)(slot->first + element + 1));
+        (void)snprintf(name, NAME_LENGTH, "%s[%u]", fmu_name_of(slot->variable), (unsigned)(slot->first + element + 1));
 }
 
 static fmu_status refuse_result(const fmu_instance *instance, const fmu_slot *slot, uint32_t element) {
@@ -85,7 +85,7 @@ static void store(fmu_instance *instance, const fmu_slot *slot, uint32_t element
     switch (slot->variable->type) {
     case FMU_REAL: *(double *)address = value; break;
     case FMU_BOOLEAN: *(bool *)address = value != 0.0; break;
-    default: *(int32_t *)address = (int32_t)value;
+    default: *(int32_t *)address = (int32_t)value; break;
     }
 }
 

@@ -23,8 +23,14 @@ real laconic_root(real x) {
     real scale = R(1), guess;
     if (!(x > R(0))) return R(0);
     if (!is_finite(x)) return x;
-    for (; x > R(4); x *= R(0.0625)) scale *= R(4); /* powers of two: exact */
-    for (; x < R(0.25); x *= R(16)) scale *= R(0.25);
+    while (x > R(4)) { /* powers of two: exact */
+        x *= R(0.0625);
+        scale *= R(4);
+    }
+    while (x < R(0.25)) {
+        x *= R(16);
+        scale *= R(0.25);
+    }
     guess = R(0.5) + R(0.5) * x;
     /* The guess is at most 25 % off, and each round squares that: 2.5e-2, 3e-4, 5e-8, 1.2e-15, then rounding. In a
      * million samples the sixth round changes no bit; the seventh is a reserve. */

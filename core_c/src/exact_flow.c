@@ -19,7 +19,10 @@ RARE_AND_OPAQUE half_angle large_half_angle(real z, real along, real across) {
     half_angle a;
     real s, c = R(1);
     int doublings = 0;
-    for (; ALL(magnitude(z) > TANGENT_SMALL) && doublings < LARGEST_DOUBLINGS; z *= R(0.25)) doublings++;
+    while (ALL(magnitude(z) > TANGENT_SMALL) && doublings < LARGEST_DOUBLINGS) {
+        z *= R(0.25);
+        doublings++;
+    }
     s = poly_tangent(z);
     for (; doublings > 0; doublings--) {
         const real zss = z * s * s, norm = R(1) / (c * c + magnitude(zss));

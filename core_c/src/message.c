@@ -24,8 +24,14 @@ static void put_count(writer *w, int32_t number) {
 /* Scales a finite x > 0 to 1 <= x < 10; returns the exponent of 10 that is taken out. */
 static int32_t scale_to_digits(real *x) {
     int32_t exponent = 0;
-    for (; *x >= R(10); *x *= R(0.1)) exponent++;
-    for (; *x < R(1); *x *= R(10)) exponent--;
+    while (*x >= R(10)) {
+        *x *= R(0.1);
+        exponent++;
+    }
+    while (*x < R(1)) {
+        *x *= R(10);
+        exponent--;
+    }
     return exponent;
 }
 

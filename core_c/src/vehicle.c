@@ -58,7 +58,7 @@ static laconic_status check_numbers(const void *of, const checked_number *number
 }
 
 static laconic_status check_body(const laconic_vehicle *v, laconic_refusal *why) {
-    for (uint8_t rule = LACONIC_RULE_POSITIVE; rule < LACONIC_RULE_COUNT; rule++) {
+    for (uint8_t rule = LACONIC_RULE_POSITIVE; rule < (uint8_t)LACONIC_RULE_COUNT; rule++) {
         const laconic_status status = check_numbers(v, of_body, COUNT(of_body), rule, rule, 0, why);
         if (status != LACONIC_OK) return status;
     }

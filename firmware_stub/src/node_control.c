@@ -191,9 +191,8 @@ laconic_node_result laconic_node_select(laconic_node *node, const uint8_t *data)
         (uint8_t)((data[3] & 0x7FU) | ((uint32_t)data[4] << 3 & LACONIC_RAW_HELD_TORQUE)); /* its bit 4 */
     if (listens_to_voltages(node)) {
         answer.status = LACONIC_WIRE_STATUS_WRONG_STATE;
-    } else if ((raw_fd || data[2] & LACONIC_NODE_SEND_STATE_FD) && !node->config.can_fd) {
-        answer.status = LACONIC_WIRE_STATUS_NOT_SUPPORTED;
-    } else if (((data[2] & SENDS_LEFT_OUT) | (raw & RAW_LEFT_OUT)) != 0) {
+    } else if (((raw_fd || data[2] & LACONIC_NODE_SEND_STATE_FD) && !node->config.can_fd) ||
+               ((data[2] & SENDS_LEFT_OUT) | (raw & RAW_LEFT_OUT)) != 0) {
         answer.status = LACONIC_WIRE_STATUS_NOT_SUPPORTED;
     } else {
         node->send = data[2];

@@ -20,9 +20,9 @@ static void explain(char *text, size_t size, const laconic_refusal *why) {
     const char *name = laconic_field_name(why->field);
     laconic_explanation(why, reason, sizeof reason);
     if (why->item > 0)
-        snprintf(text, size, "%s[%d]: %s", name, (int)why->item, reason);
+        (void)snprintf(text, size, "%s[%d]: %s", name, (int)why->item, reason);
     else
-        snprintf(text, size, "%s%s%s", name, *name != '\0' ? ": " : "", reason);
+        (void)snprintf(text, size, "%s%s%s", name, *name != '\0' ? ": " : "", reason);
 }
 
 static fmu_status refuse_with(const fmu_instance *instance, const laconic_refusal *why, const char *when) {

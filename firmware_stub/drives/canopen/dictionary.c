@@ -32,7 +32,7 @@ static bool is_of_pdo(uint16_t index) { return index >= 0x1400 && index < 0x1C00
 uint8_t canopen_find(uint16_t index, uint8_t sub, uint32_t *abort) {
     const uint16_t first = is_of_pdo(index) ? (uint16_t)(index & ~3U) : index;
     *abort = CANOPEN_NO_OBJECT;
-    for (uint8_t k = 0; k < ROWS; k++) {
+    for (uint8_t k = 0; k < (uint8_t)ROWS; k++) {
         if (rows[k].index != first) continue;
         if (sub >= canopen_sub(&rows[k]) && sub <= rows[k].subs >> 4) return k;
         *abort = CANOPEN_NO_SUB;

@@ -153,7 +153,7 @@ static void profile_position(const canopen_node *on) {
 
 static laconic_real interpolation_period_s(const canopen_axis *axis) {
     laconic_real period = axis->period;
-    for (int k = axis->period_exponent; k < 0; k++) period /= 10;
+    for (int8_t k = axis->period_exponent; k < 0; k++) period /= 10;
     return period;
 }
 
