@@ -18,6 +18,7 @@ uint32_t laconic_node_idle_us(const struct laconic_node *node, uint32_t now_us);
 #include "laconic_node/e2e.h"
 #include "laconic_node/protection.h"
 #include "laconic_node/slcan.h"
+#include "laconic_secure/gate.h"
 #include "library_drives.h"
 
 /* Bytes of a node, and its start with all methods in memory that the caller provides, aligned to 8 bytes. */

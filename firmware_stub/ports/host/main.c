@@ -1,6 +1,7 @@
 /* The node as a process: SLCAN on a TCP socket, so that python-can's `slcan` connects to it as to a board.
  *
- *     laconic-node-double [--port N] [--id-base 0xNNN] [--bitrate N] [--once] [--shared] | --socketcan can0
+ *     laconic-node-double [--port N] [--id-base 0xNNN] [--bitrate N] [--once] [--shared] [--key FILE]
+ *     laconic-node-double --socketcan can0 [--id-base 0xNNN] [--key FILE]
  *
  * Prints "listening on 127.0.0.1:PORT" (port 0: any free one). The node keeps its vehicle between clients, as a
  * board does. Like a serial line it has one client at a time; a second one gets a line of text and is disconnected.
@@ -8,6 +9,7 @@
  * among those that have spoken to it, and before anybody has, to all: a controller hears nothing but its drives. */
 #define _GNU_SOURCE
 #include "laconic_node/node.h"
+#include "laconic_secure/gate.h"
 #include "laconic_wire.h"
 #include "station.h"
 #ifdef __linux__
@@ -34,10 +36,13 @@ typedef struct options {
     char rate; /* '0' … '8', 0: any */
     bool once, shared;
     const char *interface; /* of SocketCAN, NULL: none */
+    const char *key;       /* file, NULL: everybody commands */
 } options;
 
 typedef struct board {
     laconic_node node;
+    laconic_gate gate; /* where `guarded` */
+    bool guarded;
     station station[MOST_STATIONS];
     int stations;            /* that there is room for: 1, or all with --shared  */
     int refused;             /* socket of the last refused client, -1: none     */
@@ -63,7 +68,7 @@ static void hear_the_end(sigset_t *heard) {
 
 static const char help[] =
     "usage: laconic-node-double|laconic-node-single [--port N] [--id-base 0xNNN] [--bitrate N] [--once]\n"
-    "       [--shared] | --socketcan can0\n"
+    "       [--shared] [--key FILE] | --socketcan can0 [--key FILE]\n"
     "\n"
     "The CAN node as a process, computing in double or single precision: SLCAN on a TCP socket of this machine.\n"
     "Prints \"listening on 127.0.0.1:PORT\" and serves one client at a time until it is ended (Ctrl-C, SIGTERM).\n"
@@ -74,6 +79,7 @@ static const char help[] =
     "  --once           end when the first client leaves\n"
     "  --shared         serve up to four clients, which hear each other as stations of a bus do\n"
     "  --socketcan IF   serve a CAN interface of Linux instead, such as can0, which must be up: no port is opened\n"
+    "  --key FILE       take commands only with codes by the key in FILE, 32 hexadecimal digits (docs/secure.md)\n"
     "  -h, --help       this text\n"
     "\n"
     "Drive it:  laconic rig SCENE --interface slcan --channel socket://127.0.0.1:PORT\n";
@@ -120,6 +126,7 @@ static void give(board *port, station *it, const laconic_frame *frame) {
 static void fetch_frames(board *port) {
     laconic_frame frame;
     while (has_room(port) && laconic_node_next_frame(&port->node, &frame)) {
+        if (port->guarded) laconic_gate_sent(&port->gate, &frame);
         const bool own = is_own(&port->node, &frame);
         for (int k = 0; k < port->stations; k++)
             if (!own || port->station[k].is_rig) give(port, &port->station[k], &frame);
@@ -143,13 +150,20 @@ static void make_rig(board *port, station *sender) {
     sender->is_rig = sender->speaks = true;
 }
 
+/* To the node; with a key only what its holder sends. */
+static void hand_over(board *port, const laconic_frame *frame) {
+    laconic_frame passed = *frame;
+    if (!port->guarded || laconic_gate_take(&port->gate, frame, &passed))
+        laconic_node_on_frame(&port->node, &passed, now_us());
+}
+
 /* A frame of one station goes to the node and to all other stations; what a rig tells the node, to rigs only. */
 static void take_frame(board *port, station *sender, const laconic_frame *frame) {
     const bool own = is_own(&port->node, frame);
     if (own) make_rig(port, sender);
     for (int k = 0; k < port->stations; k++)
         if (&port->station[k] != sender && (!own || port->station[k].is_rig)) give(port, &port->station[k], frame);
-    laconic_node_on_frame(&port->node, frame, now_us());
+    hand_over(port, frame);
     step_node(port);
 }
 
@@ -325,6 +339,10 @@ static int parse(int count, char **words, options *settings) {
             if (*value == 0) return complain("--socketcan", "name a CAN interface, such as can0");
             settings->interface = value;
             k++;
+        } else if (strcmp(words[k], "--key") == 0) {
+            if (*value == 0) return complain("--key", "name a file with 32 hexadecimal digits");
+            settings->key = value;
+            k++;
         } else if (strcmp(words[k], "--port") == 0) {
             if (!number(value, 65535, &settings->port)) return complain("--port", "give a number from 0 to 65535");
             k++;
@@ -343,10 +361,44 @@ static int parse(int count, char **words, options *settings) {
     return 0;
 }
 
+/* 32 hexadecimal digits, with blanks around them at most. */
+static bool read_key(const char *name, uint8_t key[LACONIC_AES_BYTES]) {
+    char text[2 * LACONIC_AES_BYTES + 8];
+    FILE *file = fopen(name, "r");
+    if (file == NULL) return false;
+    const size_t length = fread(text, 1, sizeof text - 1, file);
+    (void)fclose(file);
+    text[length] = '\0';
+    for (size_t k = 0; k < LACONIC_AES_BYTES; k++) {
+        unsigned byte;
+        if (strspn(text + 2 * k, "0123456789abcdefABCDEF") < 2 || sscanf(text + 2 * k, "%2x", &byte) != 1) return false;
+        key[k] = (uint8_t)byte;
+    }
+    return strspn(text + 2 * LACONIC_AES_BYTES, " \r\n") == length - 2 * LACONIC_AES_BYTES;
+}
+
+static void tell_of_codes(const laconic_gate *gate) {
+    for (int k = 0; k < LACONIC_SECOC_STATUSES; k++)
+        printf("%s: %u\n", laconic_secoc_text((laconic_secoc_status)k), (unsigned)gate->refused[k]);
+    printf("without a code: %u\n", (unsigned)gate->bare);
+}
+
+/* The exit status, 0 where the key could be read. */
+static int guard(board *port, const options *settings) {
+    uint8_t key[LACONIC_AES_BYTES];
+    port->guarded = settings->key != NULL;
+    if (!port->guarded) return 0;
+    if (!read_key(settings->key, key))
+        return complain(settings->key, "holds no key; give a file with 32 hexadecimal digits");
+    laconic_gate_init(&port->gate, (uint32_t)settings->id_base, key);
+    return 0;
+}
+
 #ifdef __linux__
 /* The exit status: an interface can be refused and can go, but it does not end by itself. */
-static int serve_interface(laconic_node *node, const char *interface) {
-    socketcan_port port = {.node = node, .socket = socketcan_open(interface)};
+static int serve_interface(board *of, const char *interface) {
+    laconic_gate *gate = of->guarded ? &of->gate : NULL;
+    socketcan_port port = {.node = &of->node, .gate = gate, .socket = socketcan_open(interface)};
     if (port.socket < 0) {
         fprintf(stderr, "laconic-node: --socketcan %s: cannot be opened: %s; see `ip link show type can`\n", interface,
                 strerror(errno));
@@ -360,8 +412,8 @@ static int serve_interface(laconic_node *node, const char *interface) {
     return BUS_DIED;
 }
 #else
-static int serve_interface(laconic_node *node, const char *interface) {
-    (void)node;
+static int serve_interface(board *of, const char *interface) {
+    (void)of;
     (void)interface;
     return complain("--socketcan", "only Linux has such interfaces; serve a port instead (--port)");
 }
@@ -372,18 +424,20 @@ int main(int count, char **words) {
     options settings = {.id_base = LACONIC_WIRE_ID_BASE};
     unsigned long chosen;
     if (asks_for_help(count, words)) return printf(help, (unsigned)LACONIC_WIRE_ID_BASE) < 0;
-    const int bad = parse(count, words, &settings);
+    int bad = parse(count, words, &settings);
+    if (bad == 0) bad = guard(&port, &settings);
     if (bad != 0) return bad;
     const laconic_node_config config = {(uint16_t)settings.id_base, true, laconic_method_by_number, nonce_seed(),
                                         laconic_drive_protocol_by_number};
     laconic_node_init(&port.node, &config, now_us());
-    if (settings.interface != NULL) return serve_interface(&port.node, settings.interface);
+    if (settings.interface != NULL) return serve_interface(&port, settings.interface);
     signal(SIGPIPE, SIG_IGN); /* a client that has gone is noticed by reading from it */
     const int listening = open_listener(settings.port, &chosen);
     if (listening < 0) return complain(strerror(errno), "the port is taken or not allowed; choose another --port");
     printf("listening on 127.0.0.1:%lu\n", chosen);
     fflush(stdout);
     serve(&port, listening, &settings);
+    if (port.guarded) tell_of_codes(&port.gate);
     if (settings.shared) printf("clients %d, frames not taken %lu\n", port.clients, port.not_taken);
     close(listening);
     return 0;

@@ -53,7 +53,9 @@ static bool receive(const socketcan_port *port, uint32_t now_us) {
     for (int k = 0; k < FRAMES_AT_ONCE; k++) {
         const ssize_t size = recv(port->socket, &raw, sizeof raw, MSG_DONTWAIT);
         if (size < 0) return is_passing(errno);
-        if (socketcan_take(&frame, &raw, (size_t)size)) laconic_node_on_frame(port->node, &frame, now_us);
+        if (socketcan_take(&frame, &raw, (size_t)size) &&
+            (port->gate == NULL || laconic_gate_take(port->gate, &frame, &frame)))
+            laconic_node_on_frame(port->node, &frame, now_us);
     }
     return true;
 }
@@ -63,6 +65,7 @@ static bool transmit(socketcan_port *port) {
     for (;;) {
         if (!port->waits) {
             if (!laconic_node_next_frame(port->node, &frame)) return true;
+            if (port->gate != NULL) laconic_gate_sent(port->gate, &frame);
             port->unsent_size = socketcan_put(&port->unsent, &frame);
         }
         port->waits = send(port->socket, &port->unsent, port->unsent_size, MSG_DONTWAIT | MSG_NOSIGNAL) < 0;

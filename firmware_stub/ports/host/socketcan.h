@@ -4,6 +4,7 @@
 #define LACONIC_HOST_SOCKETCAN_H
 
 #include "laconic_node/node.h"
+#include "laconic_secure/gate.h"
 
 #include <linux/can.h>
 
@@ -16,6 +17,7 @@ bool socketcan_take(laconic_frame *frame, const struct canfd_frame *from, size_t
 /* A node on a socket that does not block and keeps the ends of frames. */
 typedef struct socketcan_port {
     laconic_node *node;
+    laconic_gate *gate; /* NULL: everybody commands */
     int socket;
     bool waits; /* the kernel had no room for `unsent` */
     struct canfd_frame unsent;

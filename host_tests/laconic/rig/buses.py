@@ -161,11 +161,12 @@ def node_process(real: str = "double", id_base: int = ID_BASE, *arguments: str,
 
 
 @contextmanager
-def connected(interface: str, channel: str | None, id_base: int = ID_BASE, **options: Any) -> Iterator[NodeClient]:
-    """A client on a bus that python-can opens."""
+def connected(interface: str, channel: str | None, id_base: int = ID_BASE, *, key: bytes | None = None,
+              **options: Any) -> Iterator[NodeClient]:
+    """A client on a bus that python-can opens; with a key, of a node that takes commands with codes alone."""
     bus = open_bus(interface, channel, **options)
     try:
-        yield NodeClient(Link(bus, id_base))
+        yield NodeClient(Link(bus, id_base, key=key))
     finally:
         with suppress(can.CanError, OSError):
             bus.shutdown()

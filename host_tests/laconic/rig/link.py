@@ -9,6 +9,7 @@ from collections.abc import Callable
 import can
 from can.interfaces.slcan import slcanBus
 
+from laconic.rig.codes import Codes
 from laconic.rig.errors import BusDied, in_words
 from laconic.rig.node_library import E2E_STATUS, node_library
 from laconic.rig.session import Session
@@ -54,7 +55,8 @@ class Link:
     """One end of the wire. `pump`, where given, runs a node in this process; it returns False when idle."""
 
     def __init__(self, bus: can.BusABC, id_base: int = ID_BASE, *, clock: Clock | None = None,
-                 pump: Callable[[], bool] | None = None):
+                 pump: Callable[[], bool] | None = None, key: bytes | None = None):
+        self.codes = Codes(key, id_base) if key is not None else None
         self.bus, self.id_base, self.clock, self.pump = bus, id_base, clock or Clock(), pump
         self.library = node_library("double")
         self.session = Session(self.library)
@@ -91,11 +93,13 @@ class Link:
             self.bus.open()
 
     def send_message(self, message: can.Message) -> None:
-        """Sends a frame as it is."""
-        send_on(self.bus, message)
-        self.frames_out += 1
-        for listener in self.listeners:
-            listener(message)
+        """Sends a frame as it is, and with a key its code behind it."""
+        code = self.codes.behind(message) if self.codes is not None else None
+        for each in (message, code) if code is not None else (message,):
+            send_on(self.bus, each)
+            self.frames_out += 1
+            for listener in self.listeners:
+                listener(each)
 
     def receive(self, timeout_s: float = 1.0) -> Received | None:
         """The next right frame from the node; None when none comes in time. Wrong ones are counted and dropped."""
@@ -140,6 +144,8 @@ class Link:
         """Checks one frame: ours, well-formed, fresh and right."""
         for listener in self.listeners:
             listener(message)
+        if self.codes is not None:
+            self.codes.heard(message)
         frame = self._by_offset.get(message.arbitration_id - self.id_base)
         if frame is None or message.is_extended_id or message.is_error_frame:
             return None

@@ -12,6 +12,7 @@ from laconic.rig.boards import own_node
 from laconic.rig.bus_options import read_bus_options
 from laconic.rig.buses import connected
 from laconic.rig.client import NodeClient
+from laconic.rig.codes import read_key
 from laconic.rig.wire import ID_BASE, ID_STRIDE
 from laconic.scene import Scene
 
@@ -40,6 +41,7 @@ class Options:
     logs: tuple[Path, ...]
     replay: Path | None
     live: bool
+    key: Path | None
     junit: Path | None
     json_wanted: bool
 
@@ -80,11 +82,15 @@ def node_for(options: Options, real: str, id_base: int) -> Iterator[NodeClient]:
             raise BadInput(f"--bitrate {options.bitrate}: give its --interface as well, such as socketcan")
         if options.bus_options:
             raise BadInput(f"--bus-option {options.bus_options[0]}: NAME=VALUE needs an --interface, such as faulty")
+        if options.key is not None:
+            raise BadInput(f"--key {options.key}: nodes that are started here have none; "
+                           "give the --interface of one that has")
         with own_node(options.board or "virtual", real, id_base) as node:
             yield node
         return
     if options.board is not None:
         raise BadInput(f"--board {options.board}: starts a node itself; leave --interface out")
     more = read_bus_options(options.bus_options, options.interface)
-    with connected(options.interface, options.channel, id_base, bitrate=options.bitrate, **more) as node:
+    key = read_key(options.key) if options.key is not None else None
+    with connected(options.interface, options.channel, id_base, key=key, bitrate=options.bitrate, **more) as node:
         yield node

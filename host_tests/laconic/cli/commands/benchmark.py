@@ -17,10 +17,11 @@ COLUMNS = {"who": "", "real": "scalar", "environments": "environments", "thousan
            "times_alone": "over one by one", "nJ_per_step": "nJ a step", "prediction": "prediction",
            "encoders": "encoders", "gyro": "gyro", "cycle": "whole cycle", "stack": "stack B", "flash": "flash B",
            "whole": "flash B, all methods", "ram": "filter B", "soft_double": "soft_double.c", "libgcc": "libgcc",
-           "same_bits": "host's bits"}
+           "same_bits": "host's bits", "instructions": "instructions", "other_key": "with another key"}
 TITLES = {"batch": "Vehicle-steps on one core", "learn": "Environments under random actions, on one core",
           "filter": "Instructions of a Kalman filter on a Cortex-M4F, in single", "gpu": "Vehicle-steps on a GPU",
-          "soft-double": "Double precision on a Cortex-M4F, in instructions and bytes"}
+          "soft-double": "Double precision on a Cortex-M4F, in instructions and bytes",
+          "codes": "Codes that only a key's holder can make, on a Cortex-M4F"}
 
 
 @click.command("benchmark")
@@ -30,7 +31,8 @@ TITLES = {"batch": "Vehicle-steps on one core", "learn": "Environments under ran
               help="How often all run in turn; the least time of each counts.")
 @json_flag()
 def command(what: str, lanes: int | None, rounds: int, json_wanted: bool) -> None:
-    """Times vehicles that step side by side, or counts instructions: WHAT is batch, learn, gpu, filter or soft-double.
+    """Times vehicles that step side by side, or counts instructions: WHAT is batch, learn, gpu, filter, soft-double
+    or codes.
 
     batch: Robotino 2, Runge-Kutta steps of 1 ms with pose and wheel angles, 100 in a run, on one core: the core's
     batch, the core one vehicle after the other, and the same step in numba and JAX, and MuJoCo, where they are
@@ -46,13 +48,16 @@ def command(what: str, lanes: int | None, rounds: int, json_wanted: bool) -> Non
 
     soft-double: additions in double precision by soft_double.c and by libgcc on an emulated Cortex-M4F, and a step of
     scene s1 with either.
+
+    codes: what docs/secure.md costs, a key and the code of a frame (AES-128 CMAC), on an emulated Cortex-M4F, with two
+    keys.
     """
     from laconic.benchmark.many.race import stay_on_one_core
 
     stay_on_one_core()
     lanes = lanes or (10**6 if what == "gpu" else 1000)
     rows, notes = {"batch": _batch, "learn": _learn, "gpu": _gpu, "filter": _filter,
-                   "soft-double": _soft_double}[what](lanes, rounds)
+                   "soft-double": _soft_double, "codes": _codes}[what](lanes, rounds)
     if json_wanted:
         click.echo(json.dumps({"lanes": lanes, "rows": rows, "notes": notes}, indent=1))
         return
@@ -92,6 +97,12 @@ def _soft_double(lanes: int, rounds: int) -> Found:
     from laconic.benchmark import soft_double_cost
 
     return soft_double_cost.rows(), []
+
+
+def _codes(lanes: int, rounds: int) -> Found:
+    from laconic.benchmark import code_cost
+
+    return code_cost.rows(), []
 
 
 def _filter(lanes: int, rounds: int) -> Found:

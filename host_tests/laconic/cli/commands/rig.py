@@ -17,7 +17,7 @@ from laconic.scene import METHODS, Scene, read_scene
 if TYPE_CHECKING:
     from laconic.rig.options import Options
 
-CONNECTION = ("--interface", "--channel", "--bitrate", "--bus-option", "--id-base")
+CONNECTION = ("--interface", "--channel", "--bitrate", "--bus-option", "--id-base", "--key")
 
 
 @click.command("rig")
@@ -45,6 +45,7 @@ CONNECTION = ("--interface", "--channel", "--bitrate", "--bus-option", "--id-bas
               help="Allowed difference; half the resolution of the signal's frame where none is given.")
 @click.option("--log", "logs", multiple=True, type=OutputFile(*LOGS), help="Log all frames: .blf, .asc.")
 @click.option("--replay", type=InputPath(), help="Judge a log of a scaled lockstep run, without a node.")
+@click.option("--key", type=InputPath(), help="File with the key of a node that takes commands with codes alone.")
 @click.option("--live", is_flag=True, help="Show the signals while it runs.")
 @click.option("--stop", is_flag=True, help="Stop the node, whatever it does, and nothing else; no SCENE needed.")
 @click.option("--reset", is_flag=True, help="Stop the node and put its vehicle back to its start; no SCENE needed.")
