@@ -21,7 +21,8 @@ from pathlib import Path
 
 ROOT = Path(__file__).resolve().parents[1]
 PAGE = ROOT / "docs/assurance.md"
-PARTS = {"core": ("core_c/src", "core_c/derivatives", "core_c/filter"), "node": ("firmware_stub/src",),
+PARTS = {"core": ("core_c/src", "core_c/derivatives", "core_c/filter", "core_c/estimate"),
+         "node": ("firmware_stub/src",),
          "FMU": ("fmu", "fmu/vehicle")}
 LEFT_OUT = ("shared_library", "library_drives")  # what Python alone calls
 SCALARS = {"double": r"(test|node)_\w+_double|fmu_unit_\w+", "single": r"(test|node)_\w+_single"}

@@ -313,6 +313,8 @@ static void following_ends_as_without_an_estimate(void) {
     ASSERT_STATUS(LACONIC_OK,
                   laconic_estimate_follow(&estimate, &plant, &schedule, 100, &recorder, &none_of_them, &why));
     TEST_ASSERT_EQUAL_UINT64(15, plant.steps);
+    ASSERT_STATUS(LACONIC_OK, laconic_estimate_follow(&estimate, &plant, &schedule, 17, NULL, NULL, &why));
+    TEST_ASSERT_EQUAL_UINT64(17, plant.steps);
     ASSERT_STATUS(LACONIC_OK, laconic_estimate_follow(&estimate, &plant, &schedule, 100, NULL, NULL, &why));
     TEST_ASSERT_EQUAL_UINT64(20, plant.steps);
     schedule.count = 2;

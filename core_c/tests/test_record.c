@@ -219,6 +219,35 @@ static void a_refused_step_keeps_the_steps_taken_and_gives_the_reason(void) {
     TEST_ASSERT_EQUAL_UINT64(0, plant.steps);
 }
 
+static void a_schedule_tells_the_inputs_of_a_step(void) {
+    laconic_schedule schedule = held();
+    laconic_input inputs[3];
+    uint64_t end = 0;
+    schedule.first_step = 100;
+    TEST_ASSERT_EQUAL_INT(1, laconic_schedule_at(inputs, &end, &schedule, 107));
+    TEST_ASSERT_EQUAL_UINT64(108, end);
+    TEST_ASSERT_TRUE(inputs[0].voltage_V[1] == -2 && inputs[0].voltage_V[0] == 0);
+    TEST_ASSERT_EQUAL_INT(0, laconic_schedule_at(inputs, &end, &schedule, 100 + STEPS));
+    schedule = sampled();
+    schedule.first_step = 100;
+    TEST_ASSERT_EQUAL_INT(3, laconic_schedule_at(inputs, &end, &schedule, 102));
+    TEST_ASSERT_EQUAL_UINT64(103, end);
+    for (int k = 0; k < 3; k++) TEST_ASSERT_TRUE(inputs[k].voltage_V[1] == sampled_values[2][k][0]);
+    TEST_ASSERT_EQUAL_INT(0, laconic_schedule_at(inputs, &end, &schedule, 100 + STEPS));
+}
+
+static void a_stretch_may_last_for_ever(void) {
+    const uint64_t for_ever = UINT64_MAX;
+    laconic_schedule schedule = held();
+    laconic_input inputs[3];
+    uint64_t end = 0;
+    schedule.until_step = &for_ever;
+    schedule.count = 1;
+    schedule.first_step = 7;
+    TEST_ASSERT_EQUAL_INT(1, laconic_schedule_at(inputs, &end, &schedule, 1000));
+    TEST_ASSERT_TRUE(end == UINT64_MAX);
+}
+
 int main(void) {
     UNITY_BEGIN();
     RUN_TEST(a_held_schedule_gives_the_bits_of_running_it_by_hand);
@@ -229,5 +258,7 @@ int main(void) {
     RUN_TEST(a_full_recorder_stops_the_run_where_it_can_go_on);
     RUN_TEST(without_rows_and_watch_the_plant_only_steps);
     RUN_TEST(a_refused_step_keeps_the_steps_taken_and_gives_the_reason);
+    RUN_TEST(a_schedule_tells_the_inputs_of_a_step);
+    RUN_TEST(a_stretch_may_last_for_ever);
     return UNITY_END();
 }
