@@ -4,7 +4,7 @@
 
 #define LARGEST_LANE_COUNT (1 << 28)
 #define ALIGNMENT 64
-#define LANES_WAYS (LANES_METHOD_COUNT + MOST_HALVINGS) /* in which lanes take a step */
+#define LANES_WAYS (LANES_METHOD_COUNT + 2 * MOST_STRETCHES) /* in which lanes take a step */
 
 /* ------------------------------------------------------------------------------- widths -- */
 
@@ -51,7 +51,8 @@ static lanes_kind lanes_kind_of(const laconic_batch_kind *kind) {
     out.wheel_count = LACONIC_WHEELS(&kind->model);
     out.stiff = kind->integrator.stiff;
 #if LACONIC_WITH_EXPONENTIAL_GAUSS
-    out.halvings = kind->integrator.halvings;
+    out.stretches = kind->integrator.stretches;
+    out.has_rest = kind->integrator.has_rest;
 #endif
 #if LACONIC_WITH_SLOPE
     out.sloped = kind->model.sloped;
@@ -148,7 +149,8 @@ size_t laconic_batch_size(const laconic_batch_shape *shape) {
 /* Lanes of equal keys can share a block. */
 static int32_t way_of(const laconic_batch_kind *of) {
     const lanes_kind kind = lanes_kind_of(of);
-    return (int32_t)kind.method + kind.halvings + LANES_WAYS * (kind.sloped + 2 * kind.stiff + 4 * kind.wheel_count);
+    const int32_t step = (int32_t)kind.method + 2 * kind.stretches - kind.has_rest;
+    return step + LANES_WAYS * (kind.sloped + 2 * kind.stiff + 4 * kind.wheel_count);
 }
 
 static int32_t key_of(const laconic_batch *batch, int32_t lane) {

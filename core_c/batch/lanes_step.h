@@ -77,7 +77,8 @@ static void place(const laconic_batch_block *block, int32_t lane, lanes_kind kin
     LANES_INTEGRATOR_MEMBERS(SPREAD_TO_INTEGRATOR)
 #if LACONIC_WITH_EXPONENTIAL_GAUSS
     if (kind.method != LANES_EXPONENTIAL_GAUSS_8) return;
-    integrator->halvings = kind.halvings;
+    integrator->stretches = kind.stretches;
+    integrator->has_rest = kind.has_rest;
     LANES_COLLOCATION_MEMBERS(SPREAD_TO_INTEGRATOR)
 #endif
 }

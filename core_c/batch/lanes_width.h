@@ -45,7 +45,7 @@ enum {
     X(yaw_rate_of_zeta) X(wheel_of_zeta) X(torque_scale) X(voltage_scale) X(yaw_scale) X(slope_force_N)
 #define LANES_INTEGRATOR_MEMBERS(X) X(step_s) X(decay) X(gyro_limit)
 #if LACONIC_WITH_EXPONENTIAL_GAUSS
-#define LANES_COLLOCATION_MEMBERS(X) X(collocation)
+#define LANES_COLLOCATION_MEMBERS(X) X(first_share) X(rest_share) X(collocation) X(collocation_of_rest)
 #else
 #define LANES_COLLOCATION_MEMBERS(X)
 #endif
@@ -53,7 +53,7 @@ enum {
 /* clang-format on */
 
 /* How many numbers they are. */
-#define LANES_CONSTANTS (35 + 3 * LACONIC_MAX_WHEELS + LACONIC_OWN_WHEELS + 83 + 90)
+#define LANES_CONSTANTS (35 + 3 * LACONIC_MAX_WHEELS + LACONIC_OWN_WHEELS + 83 + 182)
 
 typedef enum lanes_method {
     LANES_RK4,
@@ -64,15 +64,15 @@ typedef enum lanes_method {
     LANES_TAYLOR_8,
     LANES_AUTO_SLOW, /* auto_slow and auto_fast of auto.c */
     LANES_AUTO_FAST,
-    LANES_EXPONENTIAL_GAUSS_8, /* the last, since its halvings count as further methods: LANES_WAYS */
+    LANES_EXPONENTIAL_GAUSS_8, /* the last, since its stretches count as further methods: LANES_WAYS */
     LANES_METHOD_COUNT
 } lanes_method;
 
 /* What all lanes of a block share. */
 typedef struct lanes_kind {
     lanes_method method;
-    int32_t wheel_count, halvings;
-    bool sloped, stiff;
+    int32_t wheel_count, stretches;
+    bool has_rest, sloped, stiff;
 } lanes_kind;
 
 /* Some lanes that step together: in each register of `state` one number of each. */

@@ -281,7 +281,7 @@ INLINE step_response panel_response(const panel_trace *t, const step_point *at, 
     return out;
 }
 
-/* joined() of exponential_gauss_8.c. */
+/* Two displacements, one after the other, in axes at the heading half-way of both together. */
 static void join_response(step_response *so_far, const panel_trace *t, const step_response *own) {
     const direction on = laconic_direction_of_angle(R(0.5) * t->before.yaw_change_rad);
     step_response out = {lanes_plus(so_far->delta, own->delta), lanes_plus(so_far->path, own->path), lane_of(R(0)),
@@ -320,9 +320,9 @@ void laconic_gauss_responses(step_result *step, step_response out[], const step_
     const step_response still = {no_lanes(), no_lanes(), lane_of(R(0)), lane_of(R(0)), lane_of(R(0))};
     const step_result rest = {none, none, {R(0), R(0), R(0)}};
     panel_trace t;
-    doubling_panel among;
+    panel_among among;
     *step = rest;
-    t.is_whole = integrator->halvings == 0;
+    t.is_whole = integrator->stretches == 0;
     t.h = integrator->step_s;
     for (int axis = 0; axis < 3; axis++) t.row[axis] = integrator->collocation[axis];
     if (!t.is_whole) {
@@ -331,9 +331,9 @@ void laconic_gauss_responses(step_result *step, step_response out[], const step_
         t.h = among.h;
     }
     for (int32_t k = 0; k < count; k++) out[k] = still;
-    for (int panel = 0; panel <= integrator->halvings; panel++) {
+    for (int32_t panel = 0; panel < panels_of(integrator); panel++) {
         if (panel > 0) {
-            next_panel(&among, at->model, panel);
+            next_panel(&among, at->model, integrator, panel);
             t.h = among.h;
         }
         trace_panel(&t, step, at);

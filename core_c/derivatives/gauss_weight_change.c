@@ -7,15 +7,17 @@
 #if LACONIC_WITH_EXPONENTIAL_GAUSS
 
 static void phis_at(real phi[PHIS * (NODES + 1)], real a) {
-    for (int j = 0; j < NODES; j++) laconic_phi(&PHI(phi, j, 0), a * gauss_node[j]);
-    laconic_phi(&PHI(phi, NODES, 0), a);
+    for (int j = 0; j <= NODES; j++) {
+        real of_node[PHIS];
+        laconic_phi(of_node, j < NODES ? a * gauss_node[j] : a);
+        for (int n = 0; n < PHIS; n++) PHI(phi, j, n) = of_node[n];
+    }
 }
 
 static void weights_at(real w[], real h, real rate) {
     real phi[PHIS * (NODES + 1)];
     phis_at(phi, h * rate);
     weights_of(w, phi, h, h * rate);
-    set_means_to_points(w, phi, h);
 }
 
 /* φ6 at −a. */
@@ -30,14 +32,14 @@ static real phi_6(real a, real phi_5) {
 }
 
 /* integrated() by a = h·r: φk(−a)' = k φk+1 − φk. */
-static real integrated_slope(int i, const real phi[PHIS], real a, int times, real to) {
+static real integrated_slope(int i, const real *phi, int node, real a, int times, real to) {
     real sum = R(0), factorial = R(1), power = times == 1 ? to : to * to;
     for (int n = 0; n < NODES; n++) {
         const int k = n + times;
-        const real higher = k + 1 < PHIS ? phi[k + 1] : phi_6(a * to, phi[PHIS - 1]);
+        const real higher = k + 1 < PHIS ? PHI(phi, node, k + 1) : phi_6(a * to, PHI(phi, node, PHIS - 1));
         if (n > 0) factorial *= (real)n;
         power *= to;
-        sum += lagrange[i][n] * factorial * power * ((real)k * higher - phi[k]);
+        sum += lagrange[i][n] * factorial * power * ((real)k * higher - PHI(phi, node, k));
     }
     return sum;
 }
@@ -48,11 +50,11 @@ static void weight_slopes_at(real w[], real h, real rate) {
     phis_at(phi, a);
     for (int i = 0; i < NODES; i++) {
         for (int j = 0; j < NODES; j++) {
-            AT_POINT(w, i, j) = scale * integrated_slope(i, &PHI(phi, j, 0), a, 1, gauss_node[j]);
-            MEAN_TO_POINT(w, i, j) = scale * integrated_slope(i, &PHI(phi, j, 0), a, 2, gauss_node[j]);
+            AT_POINT(w, i, j) = scale * integrated_slope(i, phi, j, a, 1, gauss_node[j]);
+            MEAN_TO_POINT(w, i, j) = scale * integrated_slope(i, phi, j, a, 2, gauss_node[j]);
         }
-        w[AT_END + i] = scale * integrated_slope(i, &PHI(phi, NODES, 0), a, 1, R(1));
-        w[OF_MEAN + i] = scale * integrated_slope(i, &PHI(phi, NODES, 0), a, 2, R(1));
+        w[AT_END + i] = scale * integrated_slope(i, phi, NODES, a, 1, R(1));
+        w[OF_MEAN + i] = scale * integrated_slope(i, phi, NODES, a, 2, R(1));
     }
 }
 

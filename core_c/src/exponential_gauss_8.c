@@ -6,14 +6,14 @@
  * those of Gauss' quadrature. F depends on η; ROUNDS rounds from F(start) on find it, each an order better.
  *
  * Where damping is fast beside the step, what the start is away from the steady state dies out within its first part.
- * The step is then taken in panels that double, h/2ᵏ, h/2ᵏ, h/2ᵏ⁻¹, … h/2, the first so short that this is smooth. */
+ * The step is then taken in panels: the first so short that this is smooth in it, longer ones while it dies out, one for
+ * the rest of the step. */
 #include "exponential_gauss_8.h"
 #include "eighth_order.h"
 
 #if LACONIC_WITH_EXPONENTIAL_GAUSS
 
-#define GAUSS_ROTATION R(2)  /* h·|w||g·ζ|: the rounds converge; free motion gains 1.4e-5 of ζ in such a step */
-#define LARGEST_PANEL R(0.5) /* h·r of the first panel */
+#define GAUSS_ROTATION R(2) /* h·|w||g·ζ|: the rounds converge; free motion gains 1.4e-5 of ζ in such a step */
 
 /* -------------------------------------------------------------------------- one panel -- */
 
@@ -58,21 +58,10 @@ INLINE void add_varying_forcing(node_vectors *rate, const laconic_model *m, cons
     }
 }
 
-/* Two displacements, one after the other, in axes at the heading half-way of both together. */
-static pose_change joined(pose_change first, pose_change second) {
-    const direction back = laconic_direction_of_binary_angle(laconic_binary_angle_of(R(-0.5) * second.yaw_change_rad));
-    const direction on = laconic_direction_of_binary_angle(laconic_binary_angle_of(R(0.5) * first.yaw_change_rad));
-    const pose_change both = {back.cosine * first.along_m - back.sine * first.across_m +
-                                  (on.cosine * second.along_m - on.sine * second.across_m),
-                              back.sine * first.along_m + back.cosine * first.across_m +
-                                  (on.sine * second.along_m + on.cosine * second.across_m),
-                              first.yaw_change_rad + second.yaw_change_rad};
-    return both;
-}
-
-INLINE pose_change panel_displacement(const laconic_model *m, real h, const node_vectors *zeta, vector path,
-                                      real yaw[NODES]) {
+INLINE pose_change whole_displacement(const laconic_model *m, real h, const node_vectors *zeta, vector path) {
     const real yaw_change = dot(vec(m->yaw_rate_of_zeta), path);
+    real yaw[NODES];
+    yaw_at_nodes(yaw, m, h, zeta);
     for (int j = 0; j < NODES; j++) yaw[j] -= R(0.5) * yaw_change;
     return displacement_at_nodes(m, h, yaw_change, zeta->x, zeta->y, zeta->z, yaw);
 }
@@ -84,12 +73,14 @@ INLINE void mean_to_nodes(real mean[NODES], const real *row, const real rate[NOD
         for (int j = 0; j < NODES; j++) mean[j] += MEAN_TO_POINT(row, i, j) * rate[i];
 }
 
-/* The same where something dies out within the panel. The quadrature does not see that well: the yaw comes from
- * weights, and what the quadrature lacks of ∫v dt belongs to the heading at the panel's start. */
-RARE pose_change stiff_panel_displacement(const laconic_model *m, const panel *p, vector start,
-                                          const node_vectors *zeta, const node_vectors *rate, vector path) {
+/* The same where something dies out within the panel, in axes at the heading of the step's start. The quadrature does
+ * not see that well: the yaw comes from weights, and what the quadrature lacks of ∫v dt belongs to the heading at the
+ * panel's start. */
+RARE void add_displacement(pose_change *moved, const laconic_model *m, const panel *p, vector start,
+                           const node_vectors *zeta, const node_vectors *rate, vector path) {
     const vector forth = vec(m->velocity_of_zeta[0]), left = vec(m->velocity_of_zeta[1]);
     const vector yaw_rate = vec(m->yaw_rate_of_zeta);
+    const real before = moved->yaw_change_rad;
     real x[NODES], y[NODES], z[NODES], yaw[NODES];
     vector lacking = path;
     mean_to_nodes(x, p->weight[0], rate->x);
@@ -97,15 +88,22 @@ RARE pose_change stiff_panel_displacement(const laconic_model *m, const panel *p
     mean_to_nodes(z, p->weight[2], rate->z);
     for (int j = 0; j < NODES; j++) {
         const vector mean = plus(scaled(R(gauss_node[j]), start), vector_of(x[j], y[j], z[j]));
-        yaw[j] = p->h * dot(yaw_rate, mean);
+        yaw[j] = before + p->h * dot(yaw_rate, mean);
         lacking = minus(lacking, scaled(p->h * R(gauss_weight[j]), vector_of(zeta->x[j], zeta->y[j], zeta->z[j])));
     }
-    pose_change moved = panel_displacement(m, p->h, zeta, path, yaw);
-    const direction at_start =
-        laconic_direction_of_binary_angle(laconic_binary_angle_of(R(-0.5) * moved.yaw_change_rad));
-    moved.along_m += at_start.cosine * dot(forth, lacking) - at_start.sine * dot(left, lacking);
-    moved.across_m += at_start.sine * dot(forth, lacking) + at_start.cosine * dot(left, lacking);
-    return moved;
+    const pose_change by = displacement_at_nodes(m, p->h, dot(yaw_rate, path), zeta->x, zeta->y, zeta->z, yaw);
+    const direction at_start = laconic_direction_of_binary_angle(laconic_binary_angle_of(before));
+    moved->along_m += by.along_m + (at_start.cosine * dot(forth, lacking) - at_start.sine * dot(left, lacking));
+    moved->across_m += by.across_m + (at_start.sine * dot(forth, lacking) + at_start.cosine * dot(left, lacking));
+    moved->yaw_change_rad += by.yaw_change_rad;
+}
+
+/* Into axes at the heading half-way between start and end. */
+RARE pose_change seen_half_way(pose_change moved) {
+    const direction back = laconic_direction_of_binary_angle(laconic_binary_angle_of(R(-0.5) * moved.yaw_change_rad));
+    const pose_change seen = {back.cosine * moved.along_m - back.sine * moved.across_m,
+                              back.sine * moved.along_m + back.cosine * moved.across_m, moved.yaw_change_rad};
+    return seen;
 }
 
 /* Σ weight · F on each axis; `weights`: the first of its weights in the row. */
@@ -119,13 +117,25 @@ INLINE vector weighted(const panel *p, int weights, const node_vectors *rate) {
     return sum;
 }
 
+/* A round; returns whether it left every number as it was. Then all further rounds would, too, so that ending here
+ * changes no bit. */
+INLINE bool settled_by_answer(node_vectors *zeta, vector start, const panel *p, const node_vectors *rate) {
+    const node_vectors before = *zeta;
+    real change = R(0);
+    answer(zeta, start, p->weight, rate);
+    for (int j = 0; j < NODES; j++)
+        change += magnitude(zeta->x[j] - before.x[j]) + magnitude(zeta->y[j] - before.y[j]) +
+                  magnitude(zeta->z[j] - before.z[j]);
+    return ALL(change == R(0));
+}
+
 /* Find ζ and F at the nodes, by rounds from F at the start on. */
 INLINE void take_rounds(node_vectors *zeta, node_vectors *rate, const laconic_model *m, const panel *p, vector start) {
     const vector still = minus(p->constant, damping(m, start));
     first_answer(zeta, start, p->weight, first_rate(m, start, still));
     for (int round = 1; round < ROUNDS; round++) {
         rates_at(rate, m, zeta, still);
-        answer(zeta, start, p->weight, rate);
+        if (settled_by_answer(zeta, start, p, rate)) return;
     }
 }
 
@@ -140,7 +150,7 @@ RARE void take_varying_rounds(node_vectors *zeta, node_vectors *rate, const laco
     for (int round = 0; round < ROUNDS; round++) {
         rates_at(rate, m, zeta, still);
         add_varying_forcing(rate, m, p, zeta, yaw_before);
-        answer(zeta, start, p->weight, rate);
+        if (settled_by_answer(zeta, start, p, rate)) return;
     }
 }
 
@@ -153,12 +163,10 @@ INLINE void finish_panel(progress *found, const laconic_model *m, const panel *p
     if (!LACONIC_WITH_POSE) return; /* then no force is fixed in the world */
     const vector path = scaled(p->h, mean);
     if (p->is_whole) {
-        real yaw[NODES];
-        yaw_at_nodes(yaw, m, p->h, zeta);
-        found->moved = panel_displacement(m, p->h, zeta, path, yaw);
+        found->moved = whole_displacement(m, p->h, zeta, path);
     } else {
         const node_vectors at = *zeta, f = *rate; /* only copies are in memory */
-        found->moved = joined(found->moved, stiff_panel_displacement(m, p, start, &at, &f, path));
+        add_displacement(&found->moved, m, p, start, &at, &f, path);
     }
 }
 
@@ -177,18 +185,19 @@ static void take_panel(progress *found, const laconic_model *m, const panel *p, 
 
 /* -------------------------------------------------------------------------------- the step -- */
 
-RARE void take_doubling_panels(progress *found, const laconic_model *m, const laconic_integrator *integrator, panel *p,
-                               vector step_start) {
-    doubling_panel among;
+RARE void take_panels(progress *found, const laconic_model *m, const laconic_integrator *integrator, panel *p,
+                      vector step_start) {
+    panel_among among;
     first_panel(&among, m, integrator);
     for (int axis = 0; axis < 3; axis++) p->weight[axis] = among.row[axis];
-    for (int k = 0; k <= integrator->halvings; k++) {
-        if (k > 0) next_panel(&among, m, k);
+    for (int32_t k = 0; k < panels_of(integrator); k++) {
+        if (k > 0) next_panel(&among, m, integrator, k);
         p->h = among.h;
         p->first = among.first;
         p->share = among.share;
         take_panel(found, m, p, step_start);
     }
+    if (LACONIC_WITH_POSE) found->moved = seen_half_way(found->moved);
 }
 
 static laconic_status exponential_gauss_8_step(const laconic_model *model, const laconic_integrator *integrator,
@@ -202,7 +211,7 @@ static laconic_status exponential_gauss_8_step(const laconic_model *model, const
     for (int axis = 0; axis < 3; axis++) p.weight[axis] = integrator->collocation[axis];
     p.first = R(0);
     p.share = R(1);
-    p.is_whole = integrator->halvings == 0;
+    p.is_whole = integrator->stretches == 0;
     p.constant = none;
     p.varying = NULL;
     p.heading = &state->heading;
@@ -215,7 +224,7 @@ static laconic_status exponential_gauss_8_step(const laconic_model *model, const
     if (p.is_whole)
         take_panel(&found, model, &p, zeta);
     else
-        take_doubling_panels(&found, model, integrator, &p, zeta);
+        take_panels(&found, model, integrator, &p, zeta);
     increment by = {found.delta, found.mean, found.delta};
     if (!USUALLY(passive(model, state, integrator->step_s, samples, zeta, by), &found.moved.along_m))
         return not_passive(by);
@@ -225,22 +234,51 @@ static laconic_status exponential_gauss_8_step(const laconic_model *model, const
 
 /* ------------------------------------------------------------------------------ preparation -- */
 
+/* The stretches end when they cover the step, or when what dies out has done so on the slowest of those axes on which
+ * the step would be too long a panel. */
+static void choose_panels(laconic_integrator *integrator, const laconic_model *m) {
+    const real fastest = integrator->step_s * laconic_fastest_decay(m), first = R(PARTS) * PANEL_DECAY;
+    real slowest = fastest, end = R(0), length = R(1); /* in units of the first stretch */
+    if (!ANY(fastest > PANEL_DECAY)) return;
+    for (int axis = 0; axis < 3; axis++) {
+        const real a = integrator->step_s * m->decay_per_s[axis];
+        if (ANY(BOTH(a > PANEL_DECAY, a < slowest))) slowest = a;
+    }
+    do {
+        if (integrator->stretches >= 2) length *= R(2);
+        end += length;
+        integrator->stretches++;
+        integrator->has_rest = ANY(end * first * slowest >= DEAD_AFTER * fastest);
+    } while (ANY(end * first < fastest) && !integrator->has_rest && integrator->stretches < MOST_STRETCHES);
+    integrator->has_rest = integrator->has_rest && ANY(end * first < fastest);
+    integrator->first_share = (integrator->has_rest ? first / fastest : R(1) / end) / R(PARTS);
+    integrator->rest_share = R(1) - end * R(PARTS) * integrator->first_share;
+}
+
+static void phis_at_nodes(real phi[PHIS * (NODES + 1)], real a) {
+    for (int j = 0; j <= NODES; j++) {
+        real of_node[PHIS];
+        laconic_phi(of_node, a * (j < NODES ? R(gauss_node[j]) : R(1)));
+        for (int n = 0; n < PHIS; n++) PHI(phi, j, n) = of_node[n];
+    }
+}
+
 static laconic_status exponential_gauss_8_prepare(laconic_integrator *integrator, const laconic_model *model,
                                                   laconic_refusal *why) {
-    real h = integrator->step_s;
-    while (ANY(h * laconic_fastest_decay(model) > LARGEST_PANEL) && integrator->halvings < MOST_HALVINGS) {
-        h *= R(0.5);
-        integrator->halvings++;
-    }
+    const real h = integrator->step_s;
+    choose_panels(integrator, model);
     for (int axis = 0; axis < 3; axis++) {
-        real phi[PHIS * (NODES + 1)], *kept = integrator->collocation[axis];
         const real a = h * model->decay_per_s[axis];
-        for (int j = 0; j < NODES; j++) laconic_phi(&PHI(phi, j, 0), a * R(gauss_node[j]));
-        laconic_phi(&PHI(phi, NODES, 0), a);
-        if (integrator->halvings == 0)
-            weights_of(kept, phi, h, a);
-        else
-            for (int n = 0; n < PHIS * (NODES + 1); n++) kept[n] = phi[n];
+        real *kept = integrator->collocation[axis];
+        if (integrator->stretches == 0) {
+            real phi[PHIS * (NODES + 1)], weights[PANEL_WEIGHTS];
+            phis_at_nodes(phi, a);
+            weights_of(weights, phi, h, a);
+            for (int n = 0; n < WEIGHTS; n++) kept[n] = weights[n];
+        } else {
+            phis_at_nodes(kept, a * integrator->first_share);
+        }
+        if (integrator->has_rest) phis_at_nodes(integrator->collocation_of_rest[axis], a * integrator->rest_share);
     }
     return laconic_explicit_limits(integrator, model, R(LACONIC_REAL_MAX), GAUSS_ROTATION, why);
 }

@@ -30,7 +30,7 @@ static void large_steps_meet_the_reference(void) {
     TEST_ASSERT_TRUE(e.wheels < EITHER(1e-11, 1e-5));
 }
 
-/* h·r of 0.3 is one panel, of 30 seven of them. */
+/* h·r of 0.3 is one panel, of 30 many of them and the rest. */
 static void damping_and_forcing_alone_are_exact_in_one_panel_and_in_many(void) {
     laconic_vehicle v = with_motors(three_wheels());
     laconic_input input = no_input();

@@ -269,8 +269,11 @@ typedef struct laconic_integrator {
     laconic_decay decay[3];              /* for h, h/2, h/4, as far as the method needs them      */
     laconic_real gyro_limit;             /* largest |g·ζ| that an explicit method takes; not read by others */
 #if LACONIC_WITH_EXPONENTIAL_GAUSS
-    int32_t halvings;                /* its first panel is h/2ᵏ long                          */
-    laconic_real collocation[3][30]; /* its weights, of each axis; with halvings the φ they are made of */
+    int32_t stretches;                       /* of a step while something dies out; 0: it is one panel */
+    bool has_rest;                           /* after them, which is one more panel */
+    laconic_real first_share, rest_share;    /* of the step: the first panel, and the rest */
+    laconic_real collocation[3][30];         /* weights of each axis; with stretches the φ that make the first panel's */
+    laconic_real collocation_of_rest[3][30]; /* and those of the rest */
 #endif
     bool stiff; /* damping is fast beside the step: h·r_max >= 0.3       */
 } laconic_integrator;

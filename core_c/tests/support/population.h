@@ -8,7 +8,7 @@
 
 #define LANES 100
 #define KINDS 24
-#define MEMORY (1 << 20)
+#define MEMORY (1 << 21)
 
 typedef struct population {
     uint64_t random;

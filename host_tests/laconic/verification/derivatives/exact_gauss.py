@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 from typing import Any
 
@@ -11,6 +11,8 @@ from mpmath import mp, mpf
 from laconic.verification.derivatives.exact_model import ExactModel, Vector, added, cross, dot
 
 ROUNDS = 9
+PARTS = 3  # of a stretch, in double precision
+WHOLE = (mpf(1),)
 POINTS = range(4)
 
 
@@ -62,13 +64,16 @@ def response(weights: list[list[Any]], rate: list[Vector]) -> Vector:
     return [sum(weights[k][i] * rate[i][k] for i in POINTS) for k in range(3)]
 
 
-def shares_of(halvings: int) -> list[Any]:
-    """The panels of a step."""
-    return [mpf(1) / 2**halvings, *(mpf(1) / 2 ** (halvings - k) for k in range(halvings))]
+def shares_of(stretches: int, has_rest: bool, first_share: Any) -> list[Any]:
+    """The panels of a step: stretches of 1, 1, 2, 4 …, each in three equal parts, and the rest of the step."""
+    if stretches == 0:
+        return [mpf(1)]
+    shares = [mpf(first_share) * 2 ** max(0, k - 1) for k in range(stretches) for _ in range(PARTS)]
+    return [*shares, 1 - sum(shares)] if has_rest else shares
 
 
 def gauss_8(m: ExactModel, h: Any, start: Vector, b: Callable[[Any], Vector],
-            halvings: int) -> tuple[tuple[Vector, Vector, Vector], tuple[Any, Any, Any]]:
+            shares: Sequence[Any] = WHOLE) -> tuple[tuple[Vector, Vector, Vector], tuple[Any, Any, Any]]:
     """(increment, mean, slope) of ζ and (along, across, yaw) in axes at the heading in the middle."""
     at, undamped = points(), weights_of(mpf(1), mpf(0))
     delta, mean, moved, turned = [mpf(0)] * 3, [mpf(0)] * 3, mp.mpc(0), mpf(0)
@@ -79,7 +84,7 @@ def gauss_8(m: ExactModel, h: Any, start: Vector, b: Callable[[Any], Vector],
     def velocity(z: Vector) -> Any:
         return m.radius * mp.mpc(dot(m.nu_of_zeta[0], z), dot(m.nu_of_zeta[1], z))
 
-    for share in shares_of(halvings):
+    for share in shares:
         length, z0 = share * h, added(start, 1, delta)
         axes = [weights_of(length, length * r) for r in m.decay]
 
@@ -94,7 +99,7 @@ def gauss_8(m: ExactModel, h: Any, start: Vector, b: Callable[[Any], Vector],
         average = added(z0, 1, response([w.mean for w in axes], rate))
         yaw_change, shift, lacking = length * yaw_of(average), mp.mpc(0), length * velocity(average)
         for j in POINTS:
-            if halvings == 0:
+            if len(shares) == 1:
                 yaw = sum(length * undamped.to_point[i][j] * yaw_of(z[i]) for i in POINTS)
             else:
                 so_far = response([[row[j] for row in w.mean_to_point] for w in axes], rate)
@@ -102,7 +107,7 @@ def gauss_8(m: ExactModel, h: Any, start: Vector, b: Callable[[Any], Vector],
             part = length * undamped.end[j] * velocity(z[j])
             shift += part * mp.expj(yaw)
             lacking -= part
-        moved += mp.expj(turned) * (shift + (lacking if halvings else 0))
+        moved += mp.expj(turned) * (shift + (lacking if len(shares) > 1 else 0))
         delta, mean = added(delta, 1, response([w.end for w in axes], rate)), added(mean, share, average)
         turned += yaw_change
     moved *= mp.expj(-turned / 2)

@@ -3,13 +3,13 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable
+from collections.abc import Callable, Sequence
 from functools import lru_cache
 from typing import Any
 
 from mpmath import mp, mpf
 
-from laconic.verification.derivatives.exact_gauss import gauss_8
+from laconic.verification.derivatives.exact_gauss import WHOLE, gauss_8
 from laconic.verification.derivatives.exact_model import ExactModel, Vector, added, cross, dot
 
 MEAN_FORCE_ROUNDS = 3
@@ -265,15 +265,15 @@ METHODS: dict[str, Callable[[bool], Callable[..., Increment]]] = {
 
 
 def exact_step(m: ExactModel, method: str, step_s: Any, state: Vector, held: dict[str, Vector], stiff: bool,
-               halvings: int = 0) -> Vector:
-    """(ν, x, y, θ, χ) after a step. `stiff`, `halvings`: as the core decides them for the given vehicle."""
+               panels: Sequence[Any] = WHOLE) -> Vector:
+    """(ν, x, y, θ, χ) after a step. `stiff`, `panels`: as the core decides them for the given vehicle."""
     z, (x, y, heading), angles = m.zeta(state[:3]), state[3:6], state[6:]
     b = forcing_of(m, held, heading)
     varies = any(held["world_force_N"]) or any(m.slope_force)
     if method == "taylor-8":
         by, (along, across, yaw) = taylor_8(m, step_s, z, b, varies)
     elif method == "exponential-gauss-8":
-        by, (along, across, yaw) = gauss_8(m, step_s, z, b, halvings)
+        by, (along, across, yaw) = gauss_8(m, step_s, z, b, panels)
     else:
         by = METHODS[method](stiff)(m, step_s, z, b, varies)
         along, across, yaw = chord(m, step_s, by)

@@ -17,6 +17,7 @@ from laconic.core.binding import Core
 from laconic.core.derivatives import StepDerivatives
 from laconic.core.plant import Plant
 from laconic.errors import Refused
+from laconic.verification.derivatives.exact_gauss import shares_of
 from laconic.verification.derivatives.exact_model import Numbers, Vector, exact_model, numbers_of
 from laconic.verification.derivatives.exact_steps import exact_step
 
@@ -153,15 +154,15 @@ def difference(trial: Trial, plant: Plant, along: Direction) -> np.ndarray:
     """The change of the state after the step along a direction, from two exact steps."""
     with mp.workdps(DIGITS):
         numbers, state = numbers_of(trial.table), _state(trial, plant)
-        (stiff, halvings), found = (bool(plant.c.integrator.stiff), plant.c.integrator.halvings), []
+        of, found = plant.c.integrator, []
+        stiff, panels = bool(of.stiff), shares_of(of.stretches, of.has_rest, of.first_share)
         same = exact_model(numbers) if not along.vehicle else None
         for by in (INCREMENT, -INCREMENT):
             model = same or exact_model(_moved(numbers, along.vehicle, by))
             held = {name: [mpf(x) + by * mpf(d) for x, d in zip(trial.held[name], along.held[name], strict=True)]
                     for name in INPUTS}
             at = [x + by * mpf(d) for x, d in zip(state, along.state, strict=True)]
-            found.append(exact_step(model, plant.chosen_method, mpf(plant.step_s), at, held, stiff,
-                                    halvings))
+            found.append(exact_step(model, plant.chosen_method, mpf(plant.step_s), at, held, stiff, panels))
         return np.array([float((a - b) / (2 * INCREMENT)) for a, b in zip(*found, strict=True)])
 
 
