@@ -6,8 +6,8 @@
  * those of Gauss' quadrature. F depends on η; ROUNDS rounds from F(start) on find it, each an order better.
  *
  * Where damping is fast beside the step, what the start is away from the steady state dies out within its first part.
- * The step is then taken in panels: the first so short that this is smooth in it, longer ones while it dies out, one for
- * the rest of the step. */
+ * The step is then taken in panels: the first so short that this is smooth in it, longer ones while it dies out, one
+ * for the rest of the step. */
 #include "exponential_gauss_8.h"
 #include "eighth_order.h"
 

@@ -167,10 +167,10 @@ typedef struct panel_among {
     real phi[3][PHIS * (NODES + 1)], row[3][PANEL_WEIGHTS];
 } panel_among;
 
-/* Stretches grow as the time that has passed, 1, 1, 2, 4 … of the first, each taken in PARTS equal panels. PANEL_DECAY is
- * h·r of the longest step that is one panel, and of the first panel where there are more; after DEAD_AFTER decay times
- * something has died out, and the rest of the step is one panel. Chosen on 500 random vehicles: fewer or longer panels
- * err by more than 1e-12 at 1 ms in double, by more than rounding in single precision. */
+/* Stretches grow as the time that has passed, 1, 1, 2, 4 … of the first, each taken in PARTS equal panels. PANEL_DECAY
+ * is h·r of the longest step that is one panel, and of the first panel where there are more; after DEAD_AFTER decay
+ * times something has died out, and the rest of the step is one panel. Chosen on 500 random vehicles: fewer or longer
+ * panels err by more than 1e-12 at 1 ms in double, by more than rounding in single precision. */
 #ifdef LACONIC_SINGLE
 #define PARTS 1
 #define PANEL_DECAY R(0.5)

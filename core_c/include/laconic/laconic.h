@@ -272,7 +272,7 @@ typedef struct laconic_integrator {
     int32_t stretches;                       /* of a step while something dies out; 0: it is one panel */
     bool has_rest;                           /* after them, which is one more panel */
     laconic_real first_share, rest_share;    /* of the step: the first panel, and the rest */
-    laconic_real collocation[3][30];         /* weights of each axis; with stretches the φ that make the first panel's */
+    laconic_real collocation[3][30];         /* weights of each axis; with stretches the φ of the first panel's */
     laconic_real collocation_of_rest[3][30]; /* and those of the rest */
 #endif
     bool stiff; /* damping is fast beside the step: h·r_max >= 0.3       */

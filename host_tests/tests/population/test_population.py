@@ -40,7 +40,7 @@ def test_a_sample_of_all_kinds_and_dampings_passes(sample):
     told = json.loads((folder / "summary.json").read_text())
     assert told["done"] == SAMPLE
     assert all(told[f"auto, {step}"]["refused"] == 0 for step in ("1 ms", "10 ms"))
-    assert told["exponential-gauss-8, 1 ms"]["error_nu"]["worst"] < 1e-9
+    assert told["exponential-gauss-8, 1 ms"]["error_nu"]["worst"] < 1e-12
     parts = told["auto, 10 ms"]["by truth"]
     assert sum(part["vehicles"] for part in parts.values()) == SAMPLE
     assert max(part["error_nu"]["worst"] for part in parts.values()) == told["auto, 10 ms"]["error_nu"]["worst"]

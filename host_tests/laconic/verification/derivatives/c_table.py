@@ -18,6 +18,7 @@ from mpmath import mp, mpf
 from laconic.core import load
 from laconic.core.binding import Core
 from laconic.errors import Refused
+from laconic.verification.derivatives.exact_gauss import panels_of
 from laconic.verification.derivatives.exact_model import Vector, exact_model, numbers_of
 from laconic.verification.derivatives.exact_steps import exact_step
 from laconic.verification.derivatives.trials import DIGITS, INPUTS, KINDS, METHODS, Trial, made_up, plant_of
@@ -103,7 +104,7 @@ def exact(trial: Trial, method: str, plant: Any) -> Vector:
     start = [*nu, mpf(0), mpf(0), mpf(trial.heading_rad), *([mpf(0)] * len(trial.table["wheel"]))]
     held = {name: [mpf(value) for value in values] for name, values in trial.held.items()}
     return exact_step(model, method, mpf(trial.step_s), start, held, bool(plant.c.integrator.stiff),
-                      plant.c.integrator.halvings)
+                      panels_of(plant.c.integrator))
 
 
 def text() -> str:

@@ -64,12 +64,12 @@ def response(weights: list[list[Any]], rate: list[Vector]) -> Vector:
     return [sum(weights[k][i] * rate[i][k] for i in POINTS) for k in range(3)]
 
 
-def shares_of(stretches: int, has_rest: bool, first_share: Any) -> list[Any]:
-    """The panels of a step: stretches of 1, 1, 2, 4 …, each in three equal parts, and the rest of the step."""
-    if stretches == 0:
-        return [mpf(1)]
-    shares = [mpf(first_share) * 2 ** max(0, k - 1) for k in range(stretches) for _ in range(PARTS)]
-    return [*shares, 1 - sum(shares)] if has_rest else shares
+def panels_of(integrator: Any) -> list[Any]:
+    """The share of a step that each panel has, by the core's integrator: stretches of 1, 1, 2, 4 …, each in three equal
+    parts, and the rest of the step."""
+    shares = [mpf(integrator.first_share) * 2 ** max(0, k - 1)
+              for k in range(integrator.stretches) for _ in range(PARTS)]
+    return [*shares, 1 - sum(shares)] if integrator.has_rest or not shares else shares
 
 
 def gauss_8(m: ExactModel, h: Any, start: Vector, b: Callable[[Any], Vector],

@@ -17,7 +17,7 @@ from laconic.core.binding import Core
 from laconic.core.derivatives import StepDerivatives
 from laconic.core.plant import Plant
 from laconic.errors import Refused
-from laconic.verification.derivatives.exact_gauss import shares_of
+from laconic.verification.derivatives.exact_gauss import panels_of
 from laconic.verification.derivatives.exact_model import Numbers, Vector, exact_model, numbers_of
 from laconic.verification.derivatives.exact_steps import exact_step
 
@@ -154,8 +154,7 @@ def difference(trial: Trial, plant: Plant, along: Direction) -> np.ndarray:
     """The change of the state after the step along a direction, from two exact steps."""
     with mp.workdps(DIGITS):
         numbers, state = numbers_of(trial.table), _state(trial, plant)
-        of, found = plant.c.integrator, []
-        stiff, panels = bool(of.stiff), shares_of(of.stretches, of.has_rest, of.first_share)
+        stiff, panels, found = bool(plant.c.integrator.stiff), panels_of(plant.c.integrator), []
         same = exact_model(numbers) if not along.vehicle else None
         for by in (INCREMENT, -INCREMENT):
             model = same or exact_model(_moved(numbers, along.vehicle, by))
