@@ -1,4 +1,4 @@
-"""SLCAN reader, frame handler, parameter loader and drives under libFuzzer with sanitizers, the time shared evenly."""
+"""SLCAN reader, frames, loader, vehicles with their steps, and drives under libFuzzer, the time shared evenly."""
 
 from __future__ import annotations
 
@@ -8,7 +8,7 @@ from typing import Any
 from laconic.soak._fuzzing import fuzz_in_turn
 from laconic.soak.drive_frames import TARGETS as OF_DRIVES
 
-TARGETS = ("slcan", "frames", "loader", *OF_DRIVES)
+TARGETS = ("slcan", "frames", "loader", "vehicle", *OF_DRIVES)
 
 
 def soak(minutes: float, seed: int, advance: Callable[[float], None]) -> dict[str, Any]:

@@ -63,7 +63,8 @@ def command(what: str, minutes: float, seed: int | None, json_wanted: bool, **sp
     friction-energy  whole vehicles that nothing drives: energy never grows, rest holds;
                      a minute takes millions of steps
     free-run         the node process at 1 kHz: no step may be lost
-    fuzz             what reads frames (SLCAN, node, loader, protocols of drives) under libFuzzer
+    fuzz             what reads frames (SLCAN, node, loader, protocols of drives), and vehicles
+                     with their steps, under libFuzzer
     identify         a thousand made-up robots: what their intervals hold
     lateness         play at 1 kHz with four drives, in this process and in the node's,
                      for a controller in another process: how late periods begin
