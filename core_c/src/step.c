@@ -1,35 +1,42 @@
 /* Steps: input → b, then the method; and why a step was refused. */
 #include "step_internals.h"
 
-uint64_t laconic_run(const laconic_model *model, const laconic_integrator *integrator, laconic_state *state,
-                     const laconic_input *held, uint64_t steps, laconic_status *status) {
-    laconic_forcing forcing;
-    laconic_forcing_samples samples = {&forcing, &forcing, &forcing, true};
-    laconic_status last = LACONIC_OK;
-    uint64_t left;
-    if (zero_if_finite(world_force_point(held)) != R(0)) {
-        *status = LACONIC_OVERFLOW;
-        return 0;
-    }
-    forcing_of(&forcing, model, held);
-    samples.is_constant = !forcing.rotates;
-    for (left = steps; left > 0; left--) {
-        if (!heading_has_room(&state->heading)) {
-            last = LACONIC_OVERFLOW;
-            break;
-        }
-        last = integrator->chosen->step(model, integrator, state, &samples);
-        if (last != LACONIC_OK) break;
-    }
-    *status = last;
-    return steps - left;
+/* The forcing of a held input; false where the point of its world force is not finite, which a step would not notice. */
+static inline bool hold(laconic_forcing *forcing, laconic_forcing_samples *samples, const laconic_model *model,
+                        const laconic_input *held) {
+    if (zero_if_finite(world_force_point(held)) != R(0)) return false;
+    forcing_of(forcing, model, held);
+    samples->start = samples->middle = samples->end = forcing;
+    samples->is_constant = !forcing->rotates;
+    return true;
+}
+
+INLINE laconic_status take_step(const laconic_model *model, const laconic_integrator *integrator,
+                                       laconic_state *state, const laconic_forcing_samples *samples) {
+    if (!heading_has_room(&state->heading)) return LACONIC_OVERFLOW;
+    return integrator->chosen->step(model, integrator, state, samples);
 }
 
 laconic_status laconic_step(const laconic_model *model, const laconic_integrator *integrator, laconic_state *state,
                             const laconic_input *held) {
-    laconic_status status;
-    laconic_run(model, integrator, state, held, 1, &status);
-    return status;
+    laconic_forcing forcing;
+    laconic_forcing_samples samples;
+    if (!hold(&forcing, &samples, model, held)) return LACONIC_OVERFLOW;
+    return take_step(model, integrator, state, &samples);
+}
+
+uint64_t laconic_run(const laconic_model *model, const laconic_integrator *integrator, laconic_state *state,
+                     const laconic_input *held, uint64_t steps, laconic_status *status) {
+    laconic_forcing forcing;
+    laconic_forcing_samples samples;
+    laconic_status last = hold(&forcing, &samples, model, held) ? LACONIC_OK : LACONIC_OVERFLOW;
+    uint64_t left = steps;
+    while (left > 0 && last == LACONIC_OK) {
+        last = take_step(model, integrator, state, &samples);
+        if (last == LACONIC_OK) left--;
+    }
+    *status = last;
+    return steps - left;
 }
 
 /* Some methods do not use the world force in the middle (those of second order) or the point of a force of 0; without
@@ -46,11 +53,11 @@ laconic_status laconic_step_sampled(const laconic_model *model, const laconic_in
                                     const laconic_input *end) {
     laconic_forcing forcing[3];
     const laconic_forcing_samples samples = {&forcing[0], &forcing[1], &forcing[2], false};
-    if (!world_forces_are_finite(start, middle, end) || !heading_has_room(&state->heading)) return LACONIC_OVERFLOW;
+    if (!world_forces_are_finite(start, middle, end)) return LACONIC_OVERFLOW;
     laconic_forcing_of(&forcing[0], model, start);
     laconic_forcing_of(&forcing[1], model, middle);
     laconic_forcing_of(&forcing[2], model, end);
-    return integrator->chosen->step(model, integrator, state, &samples);
+    return take_step(model, integrator, state, &samples);
 }
 
 static laconic_status check_many(const real *numbers, int32_t count, laconic_field field, laconic_refusal *why) {

@@ -60,7 +60,7 @@ static inline vector damping(const laconic_model *m, vector z) {
 }
 
 /* ζ' = (g·ζ)(ζ×w) − diag(r)ζ + b: equation (4.7) in the coordinates of laconic_model. */
-static inline vector zeta_rate(const laconic_model *m, vector z, vector b) {
+INLINE vector zeta_rate(const laconic_model *m, vector z, vector b) {
     const vector gyroscopic = scaled(dot(vec(m->nu_of_zeta[2]), z), cross(z, vec(m->gyro)));
     return plus(minus(gyroscopic, damping(m, z)), b);
 }
@@ -189,7 +189,8 @@ INLINE verdict passive(const laconic_model *model, const laconic_state *state, r
     const verdict driven = OR_ELSE(calm, excess <= R(2) * step_s * dot(vec(samples->start->constant), by.mean));
     if (ALL(driven)) return KNOWN(true, driven);
     if (constant_over(samples)) return KNOWN(false, driven);
-    return OR_ELSE(driven, laconic_growth_is_forced(model, state, step_s, samples, &by));
+    const increment copy = by; /* by itself has no address and stays in registers */
+    return OR_ELSE(driven, laconic_growth_is_forced(model, state, step_s, samples, &copy));
 }
 
 /* The status of a step that is not passive. */
@@ -225,10 +226,11 @@ INLINE pose_change displacement(const laconic_model *m, vector path, vector bend
     const vector yaw_rate = vec(m->yaw_rate_of_zeta);
     const real yaw_change = dot(yaw_rate, path), yaw_bend = dot(yaw_rate, bend) * (R(1) / R(12));
     const real forth = dot(along, path), left = dot(across, path);
+    const real bend_forth = dot(along, bend), bend_left = dot(across, bend);
     real sinc, half_j1;
     chord_factors(&sinc, &half_j1, R(0.5) * yaw_change);
-    const real aside_forth = half_j1 * dot(along, bend) - yaw_bend * forth;
-    const real aside_left = half_j1 * dot(across, bend) - yaw_bend * left;
+    const real aside_forth = half_j1 * bend_forth - yaw_bend * forth;
+    const real aside_left = half_j1 * bend_left - yaw_bend * left;
     const pose_change moved = {sinc * forth - aside_left, sinc * left + aside_forth, yaw_change};
     return moved;
 }
