@@ -43,9 +43,8 @@ void fmu_enter(fmu_instance *instance, fmu_mode mode) {
         if (allows(instance, &fmu_rules[call], mode)) instance->allowed |= 1U << call;
 }
 
-bool fmu_refuse_call(const fmu_instance *instance, fmu_call call) {
+void fmu_refuse_call(const fmu_instance *instance, fmu_call call) {
     fmu_refuse(instance, "%s is not allowed in %s", fmu_rules[call].what, fmu_mode_names[instance->mode]);
-    return false;
 }
 
 static char *copy_text(const char *text) {

@@ -97,12 +97,12 @@ typedef struct fmu_request {
 fmu_instance *fmu_create(const fmu_request *request);
 void fmu_free(fmu_instance *instance);
 
-/* Logs that the call is not allowed in the instance's present mode (lifecycle.h); false. */
-bool fmu_refuse_call(const fmu_instance *instance, fmu_call call);
+/* Logs that the call is not allowed in the instance's present mode (lifecycle.h). */
+void fmu_refuse_call(const fmu_instance *instance, fmu_call call);
 
-static inline bool fmu_may_call(const fmu_instance *instance, fmu_call call) {
-    return (instance->allowed >> call & 1U) != 0 || fmu_refuse_call(instance, call);
-}
+/* A macro, since compilers that look for size would make a function of it that importers' every call pays for. */
+#define FMU_MAY_CALL(instance, call) \
+    (((instance)->allowed >> (call) & 1U) != 0 || (fmu_refuse_call((instance), (call)), false))
 
 void fmu_enter(fmu_instance *instance, fmu_mode mode);
 

@@ -11,8 +11,8 @@ static inline bool hold(laconic_forcing *forcing, laconic_forcing_samples *sampl
     return true;
 }
 
-INLINE laconic_status take_step(const laconic_model *model, const laconic_integrator *integrator,
-                                       laconic_state *state, const laconic_forcing_samples *samples) {
+INLINE laconic_status take_step(const laconic_model *model, const laconic_integrator *integrator, laconic_state *state,
+                                const laconic_forcing_samples *samples) {
     if (!heading_has_room(&state->heading)) return LACONIC_OVERFLOW;
     return integrator->chosen->step(model, integrator, state, samples);
 }
