@@ -226,11 +226,10 @@ INLINE pose_change displacement(const laconic_model *m, vector path, vector bend
     const vector yaw_rate = vec(m->yaw_rate_of_zeta);
     const real yaw_change = dot(yaw_rate, path), yaw_bend = dot(yaw_rate, bend) * (R(1) / R(12));
     const real forth = dot(along, path), left = dot(across, path);
-    const real bend_forth = dot(along, bend), bend_left = dot(across, bend);
     real sinc, half_j1;
     chord_factors(&sinc, &half_j1, R(0.5) * yaw_change);
-    const real aside_forth = half_j1 * bend_forth - yaw_bend * forth;
-    const real aside_left = half_j1 * bend_left - yaw_bend * left;
+    const real aside_forth = half_j1 * dot(along, bend) - yaw_bend * forth;
+    const real aside_left = half_j1 * dot(across, bend) - yaw_bend * left;
     const pose_change moved = {sinc * forth - aside_left, sinc * left + aside_forth, yaw_change};
     return moved;
 }

@@ -1,7 +1,8 @@
 /* What the glue costs: set 4 voltages, doStep, get ν, x, y and heading through the FMI functions, beside the bare core
- * step and beside a minimal FMU. All loops take turns; the least time of each counts. Prints JSON with --json.
+ * step and beside a minimal FMU. All loops take turns; the least time of each counts. Prints JSON with --json. With
+ * --count one loop alone takes so many steps: its instructions are (I(2n) − I(n))/n.
  *
- *     fmu_overhead fmi2/Laconic.so fmi3/Laconic.so libminimal.so [--json] */
+ *     fmu_overhead fmi2/Laconic.so fmi3/Laconic.so libminimal.so [--json | --count LOOP STEPS] */
 #define _POSIX_C_SOURCE 200809L
 #include <dlfcn.h>
 #include <stdbool.h>
@@ -239,6 +240,16 @@ typedef struct contender {
     long at;
 } contender;
 
+static int count_one(const contender all[], size_t count, const char *name, const char *steps) {
+    for (size_t i = 0; i < count; i++)
+        if (strcmp(all[i].name, name) == 0) {
+            all[i].run(0, strtol(steps, NULL, 10));
+            return 0;
+        }
+    fprintf(stderr, "fmu_overhead: there is no loop %s\n", name);
+    return 2;
+}
+
 int main(int argc, char **argv) {
     contender all[] = {{"core", run_core, 1e99, 0},
                        {"core_with_outputs", run_core_with_outputs, 1e99, 0},
@@ -247,13 +258,14 @@ int main(int argc, char **argv) {
                        {"minimal", run_minimal, 1e99, 0}};
     const size_t count = sizeof all / sizeof all[0];
     if (argc < 4) {
-        fprintf(stderr, "usage: fmu_overhead FMI2.so FMI3.so MINIMAL.so [--json]\n");
+        fprintf(stderr, "usage: fmu_overhead FMI2.so FMI3.so MINIMAL.so [--json | --count LOOP STEPS]\n");
         return 2;
     }
     start_2(argv[1]);
     start_3(argv[2]);
     start_minimal(argv[3]);
     start_core();
+    if (argc > 6 && strcmp(argv[4], "--count") == 0) return count_one(all, count, argv[5], argv[6]);
     for (int round = 0; round < ROUNDS; round++)
         for (size_t i = 0; i < count; i++) {
             const long steps = round == 0 ? WARM : STEPS / 20;
