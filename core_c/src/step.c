@@ -1,7 +1,7 @@
 /* Steps: input → b, then the method; and why a step was refused. */
 #include "step_internals.h"
 
-/* The forcing of a held input; false where the point of its world force is not finite, which a step would not notice. */
+/* The forcing of a held input; false where the point of its world force is not finite, which steps would not notice. */
 static inline bool hold(laconic_forcing *forcing, laconic_forcing_samples *samples, const laconic_model *model,
                         const laconic_input *held) {
     if (zero_if_finite(world_force_point(held)) != R(0)) return false;
