@@ -27,7 +27,7 @@ PARTS = {"core": ("core_c/src", "core_c/derivatives", "core_c/filter", "core_c/e
 LEFT_OUT = ("shared_library", "library_drives")  # what Python alone calls
 SCALARS = {"double": r"(test|node)_\w+_double|fmu_unit_\w+", "single": r"(test|node)_\w+_single"}
 KINDS = ("lines", "branches", "conditions")
-BEGIN, END = "<!-- coverage: made by cmake/coverage_table.py -->\n", "<!-- end of coverage -->\n"
+BEGIN, END = "<!-- coverage, made by cmake/coverage_table.py -->\n", "<!-- end of coverage -->\n"
 
 
 def sources() -> list[str]:
