@@ -297,6 +297,17 @@ static void more_than_ten_thousand_steps_a_second_are_refused(void) {
     TEST_ASSERT_EQUAL_UINT8(LACONIC_WIRE_STATUS_OUT_OF_RANGE, start());
 }
 
+/* Byte 0 is the checksum, whose bits tell nothing of the order. */
+static void the_half_of_an_order_stands_beside_its_counter(void) {
+    uint8_t lower[8] = {0x10, 0x0F, LACONIC_WIRE_FIELD_DRIVE_FAULTS, 1, 4}, upper[8];
+    start();
+    TEST_ASSERT_EQUAL_UINT8(0, laconic_node_order_drive(&node, lower));
+    memcpy(upper, lower, sizeof upper);
+    upper[0] = 0;
+    upper[1] = 0x1F;
+    TEST_ASSERT_EQUAL_UINT8(LACONIC_WIRE_STATUS_OUT_OF_RANGE, laconic_node_order_drive(&node, upper));
+}
+
 int main(void) {
     UNITY_BEGIN();
     RUN_TEST(one_step_is_taken_each_period);
@@ -319,5 +330,6 @@ int main(void) {
     RUN_TEST(a_refused_step_answers_no_request);
     RUN_TEST(an_order_is_answered_with_its_wheel);
     RUN_TEST(more_than_ten_thousand_steps_a_second_are_refused);
+    RUN_TEST(the_half_of_an_order_stands_beside_its_counter);
     return UNITY_END();
 }

@@ -263,6 +263,14 @@ static void the_fd_frame_has_all_three_numbers_of_nu_and_sixteen_wheels(void) {
     for (int k = 0; k < 16; k++) TEST_ASSERT_INT_WITHIN(2, 400, (int16_t)word16(data + 32 + 2 * k));
 }
 
+static void the_fd_frame_ends_with_its_last_byte(void) {
+    uint8_t data[LACONIC_FRAME_BYTES + 1];
+    memset(data, 0xA5, sizeof data);
+    laconic_node_pack(&node, LACONIC_WIRE_STATE_FD, data);
+    TEST_ASSERT_EQUAL_HEX8(0, data[LACONIC_FRAME_BYTES - 1]);
+    TEST_ASSERT_EQUAL_HEX8(0xA5, data[LACONIC_FRAME_BYTES]);
+}
+
 int main(void) {
     UNITY_BEGIN();
     RUN_TEST(values_are_rounded_to_the_nearest);
@@ -281,5 +289,6 @@ int main(void) {
     RUN_TEST(a_number_just_below_a_half_is_rounded_down);
     RUN_TEST(a_deaf_node_that_was_never_late_says_so);
     RUN_TEST(the_fd_frame_has_all_three_numbers_of_nu_and_sixteen_wheels);
+    RUN_TEST(the_fd_frame_ends_with_its_last_byte);
     return UNITY_END();
 }
