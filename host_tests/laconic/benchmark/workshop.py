@@ -128,6 +128,12 @@ def _whole(variant: Variant) -> str:
     return f"whole_{method}" if method in ON_HOSTS else "whole"
 
 
+def _trimmed(variant: Variant) -> str:
+    """The folder of what is built for a scene, whose methods share a core but those with structs of their own."""
+    method, stem = variant.scene.run.method, variant.scene.path.stem
+    return f"trimmed_{stem}_{method}" if method in ON_HOSTS else f"trimmed_{stem}"
+
+
 def entry_of(files: Trimmed, scene: Scene) -> str:
     """The function of the core that takes a step of the scene."""
     if files.needs.friction:
@@ -172,7 +178,7 @@ class Workshop:
     def archive(self, target: Target, variant: Variant, folder: Path, extra: Sequence[str] = ()) -> Path:
         """The core as a static library, with .ci files (call graph and stack) beside its objects."""
         kind = "_".join((target.name, variant.real, variant.optimisation.strip("-"), *(e.strip("-") for e in extra)))
-        place = self.folder / (f"trimmed_{variant.scene.path.stem}" if variant.trim else _whole(variant)) / kind
+        place = self.folder / (_trimmed(variant) if variant.trim else _whole(variant)) / kind
         if place not in self._archives:
             shutil.rmtree(place, ignore_errors=True)
             place.mkdir(parents=True)
