@@ -26,6 +26,9 @@ from laconic.scene.table import Table
 DIGITS = 9
 ACCELERATION_M_PER_S2 = 0.3
 PUSH_S = 1.0
+TOUCHING_M = 1e-9  # a centre so little below the ground is on it, but for rounding
+THIN = 1e-3  # more than a flat body's largest moment: rounding in a file
+ASIDE = 0.05  # of the way ahead, at which a push still is one ahead
 DURATION_S, STEP_S = 3.0, 0.01
 FRICTION_STEP_S = 0.001
 SHARED = {"radius_m": ("wheel_radius_m", "by the shapes of the wheels, unless said with --radius"),
@@ -80,7 +83,10 @@ class _Writer:
         self.comments: Comments = {}
         self.remarks = [*robot.remarks, *ground.remarks]
         for link in robot.links.values():
-            least, *_, most = np.linalg.eigvalsh(link.inertia_kgm2)
+            least, middle, most = np.linalg.eigvalsh(link.inertia_kgm2)
+            if most > (1.0 + THIN) * (least + middle) and least >= 0.0:
+                self.remarks.append(f"link {link.name} has a principal moment of {most:.3g} kg·m², more than its other "
+                                    "two together, which no body has; it is counted as it is given")
             if least < -1e-9 * abs(most):
                 self.remarks.append(f"link {link.name} has a principal moment of {least:.3g} kg·m², which no body "
                                     "has; it is "
@@ -173,9 +179,12 @@ class _Writer:
         if yaw <= 0.0:
             raise BadInput(f"{self.robot.path}: the yaw inertia of all links is {yaw:g} kg·m²; give the links' "
                            "<inertia>")
+        if (below_m := self.ground.height_m - float(whole.com_m[2])) > TOUCHING_M:
+            raise BadInput(f"{self.robot.path}: the centre of mass lies {below_m:.3g} m below the lowest point of the "
+                           "wheels; see the origins of the wheels' joints and of <inertial>")
         return {"mass_kg": _rounded(whole.mass_kg), "yaw_inertia_kgm2": _rounded(yaw),
                 "com_x_m": _rounded(whole.com_m[0]), "com_y_m": _rounded(whole.com_m[1]),
-                "com_z_m": _rounded(whole.com_m[2] - self.ground.height_m)}
+                "com_z_m": _rounded(max(float(whole.com_m[2]) - self.ground.height_m, 0.0))}
 
     def wheel(self, index: int, wheel: FoundWheel, kind: Kind) -> dict[str, Any]:
         """One wheel, with a radius and an inertia of its own."""
@@ -240,7 +249,12 @@ class _Writer:
                 rubbing = np.sign(rate) * self.ground.wheels[index].joint.friction_Nm if slips else 0.0
                 inputs.append({"signal": f"axle_torque_Nm[{index + 1}]", "kind": "steps", "t_s": [0.0, PUSH_S],
                                "value": [_rounded((scale + damping[index] * speed_m_per_s) * rate + rubbing), 0.0]})
-        return inputs
+        if goes_ahead(scene, {each["signal"]: each["value"][0] for each in inputs}):
+            return inputs
+        del self.comments["input", "0", "signal"]
+        self.remarks.append("torques that roll the wheels ahead push the robot aside, too, by where its wheels and its "
+                            "centre of mass are; no inputs are given")
+        return []
 
     def words(self) -> list[str]:
         """A line for each wheel."""
@@ -263,6 +277,17 @@ def rolling_ahead(scene: Scene) -> np.ndarray:
     if found.constraint_rows.size and np.abs(found.constraint_rows[:, 0]).max() > 1e-9:
         return np.zeros(scene.wheel_count)
     return np.asarray(found.wheel_rows[:, 0] / scene.vehicle["wheel_radius_m"])
+
+
+def goes_ahead(scene: Scene, torques: dict[str, float]) -> bool:
+    """Whether a push from rest moves the robot along its ξ axis, aside by a small part of the way alone."""
+    plant = scene.plant(scene.core())
+    try:
+        plant.run(torques, round(PUSH_S / scene.run.step_s))
+    except Refused:
+        return False
+    way_m = plant.pose.x_m
+    return way_m > 0.0 and max(abs(plant.pose.y_m), way_m * abs(plant.pose.heading_rad)) <= ASIDE * way_m
 
 
 def speed_of_drag(decay_per_s: float) -> float:

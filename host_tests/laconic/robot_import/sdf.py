@@ -23,6 +23,7 @@ from laconic.robot_import.checked import (
 )
 from laconic.robot_import.gravity import gravity_left_out
 from laconic.robot_import.meshes import MeshFiles
+from laconic.robot_import.once import refuse_doubled
 from laconic.robot_import.placement import (
     IDENTITY,
     Array,
@@ -101,6 +102,8 @@ class _Model:
             if model.find(nested) is not None:
                 raise BadInput(f"{path}: model {model.get('name')} has an <{nested}>, which is not read; put its "
                                "links into it")
+        for part in (*model.findall("link"), *model.findall("joint")):
+            refuse_doubled(path, part)
         self.links = {self._name(each): each for each in model.findall("link")}
         self.joints = {self._name(each): each for each in model.findall("joint")}
         frames = {self._name(each): each for each in model.findall("frame")}

@@ -27,6 +27,7 @@ from laconic.robot_import.checked import (
     words_of,
 )
 from laconic.robot_import.meshes import MeshFiles
+from laconic.robot_import.once import refuse_doubled
 from laconic.robot_import.placement import IDENTITY, Array, placement, point_of, rotation_of_rpy
 from laconic.robot_import.robot_tree import (
     BALL,
@@ -48,6 +49,7 @@ NO_URDF = "is no URDF that can be read"
 NUMBERS = {"mass": ("value",), "inertia": ("ixx", "ixy", "ixz", "iyy", "iyz", "izz"), "sphere": ("radius",),
            "cylinder": ("radius", "length"), "dynamics": ("damping", "friction"), "mimic": ("multiplier", "offset"),
            "limit": ("lower", "upper", "effort", "velocity")}
+REQUIRED = {"mass": ("value",), "sphere": ("radius",), "cylinder": ("radius", "length")}
 
 
 def read_xacro(path: Path, arguments: Mapping[str, str], packages: Mapping[str, Path]) -> Robot:
@@ -100,12 +102,14 @@ def _robot(path: Path, root: Element, files: MeshFiles, form: str) -> Robot:
 
 def _check_numbers(path: Path, root: Element) -> None:
     """BadInput with the link or joint for a vector that has not three numbers, which the library would not place, and
-    for what only Python takes for a number."""
+    for what only Python takes for a number, and for what stands twice."""
     for part in root:
+        if part.tag in ("link", "joint"):
+            refuse_doubled(path, part)
         for element in part.iter():
             for key in NUMBERS.get(element.tag, ()) if part.tag in ("link", "joint") else ():
-                if key in element.attrib:
-                    number(f"{path}: {part.tag} {part.get('name', '')}: <{element.tag}> {key}", element.attrib[key])
+                if key in element.attrib or key in REQUIRED.get(element.tag, ()):
+                    number(f"{path}: {part.tag} {part.get('name', '')}: <{element.tag}> {key}", element.get(key))
             for key in ("xyz", "rpy", "size"):
                 if key in element.attrib:
                     where = f"{path}: {part.tag} {part.get('name', '')}: <{element.tag}> {key}"

@@ -101,6 +101,9 @@ def find_wheels(robot: Robot, answers: Answers) -> Ground:
                        "modelled; give --wheel JOINT for those that are held")
     _check_places(robot, wheels)
     remarks += [remark for wheel in wheels for remark in wheel.remarks]
+    remarks += [f"joint {joint.name} turns round on an axle {_degrees(np.arcsin(min(abs(joint.axis[2]), 1.0)))} from "
+                "level, and is no wheel; a wheel's axle is level" for joint in robot.joints.values()
+                if _is_tilted(joint)]
     return Ground(wheels, casters, height, tuple(remarks))
 
 
@@ -131,8 +134,10 @@ def _named(robot: Robot, name: str) -> Joint:
 
 
 def _check_named(robot: Robot, named: Sequence[Joint]) -> None:
-    """BadInput for a wheel that another carries round, whose place is none of the robot's."""
+    """BadInput for a wheel that another carries round, whose place is none of the robot's, or that is named twice."""
     for joint in named:
+        if named.count(joint) > 1:
+            raise BadInput(f"--wheel {joint.name}: is given twice; name each wheel once")
         for above in robot.chain(joint):
             if above in named and not has_the_axle_of(joint, above):
                 raise BadInput(f"--wheel {joint.name}: hangs on wheel {above.name}, which carries it round; name one "
@@ -147,6 +152,11 @@ def _turns_as_wheel(robot: Robot, joint: Joint) -> bool:
                    for above in robot.chain(joint))
 
 
+def _is_tilted(joint: Joint) -> bool:
+    """A free hinge that is neither a wheel's nor, as a swivel's, upright."""
+    return joint.kind == HINGE and not joint.is_limited and LEVEL < abs(joint.axis[2]) < UPRIGHT
+
+
 def _no_wheel(robot: Robot, candidates: Sequence[Joint]) -> str:
     if candidates:
         names = ", ".join(joint.name for joint in candidates[:6])
@@ -154,9 +164,11 @@ def _no_wheel(robot: Robot, candidates: Sequence[Joint]) -> str:
         why = f"the shapes of {names} have the radius 0" if are_there else f"no shape tells the radius of {names}"
         why += _unread(robot, candidates[:6])
         return f"{why}; give --radius METRES, and --wheel JOINT for each wheel"
-    return ("no joint turns round on a level axle (continuous, z up), so there is no wheel; give --wheel JOINT for "
-            "each joint "
-            "that is one")
+    limited = [joint.name for joint in robot.joints.values() if joint.kind == HINGE and joint.is_limited
+               and abs(joint.axis[2]) <= LEVEL]
+    seen = f" ({', '.join(limited[:6])}: within limits)" if limited else ""
+    return (f"no joint turns round on a level axle (continuous, z up){seen}, so there is no wheel; give --wheel JOINT "
+            "for each joint that is one")
 
 
 def _unread(robot: Robot, joints: Sequence[Joint]) -> str:

@@ -59,6 +59,8 @@ def read_vehicle(table: Table) -> dict[str, Any]:
     table.expect(field.key for field in fields)
     vehicle: dict[str, Any] = {field.key: read_field(table, field) for field in fields if field.need == "ALWAYS"}
     vehicle |= {field.key: read_field(table, field, 0.0) for field in fields if field.need == "NEVER"}
+    if table.has("friction_coefficient"):
+        key_of(table, "friction_coefficient").check(table, vehicle["friction_coefficient"])
     vehicle["wheel"] = [read_wheel(each) for each in table.tables("wheel")]
     needed = ... if vehicle["wheel"] else 0.0
     vehicle |= {field.key: read_field(table, field, needed) for field in fields if field.need == "WITH_WHEELS"}
@@ -121,6 +123,8 @@ def read_position(table: Table) -> dict[str, float]:
     if not polar:
         return {key: table.number(key, finite=False) for key in ("x_m", "y_m")}
     distance, bearing = table.number("distance_m"), table.angle("bearing")
+    if distance < 0:
+        table.fail("distance_m", f"is {distance:g}; give 0 or more, and the direction by the bearing")
     return {"x_m": distance * math.cos(bearing), "y_m": distance * math.sin(bearing)}
 
 
@@ -176,6 +180,8 @@ def read_input(table: Table, wheel_count: int) -> Input:
         phase = table.angle("phase", 0.0)
         found = Input(signal, kind, table.location, amplitude=read_number(table, "amplitude"),
                       frequency_Hz=read_number(table, "frequency_Hz"), phase_rad=phase)
+        if found.frequency_Hz < 0:
+            table.fail("frequency_Hz", f"is {found.frequency_Hz:g}; give 0 or more, and a sine's sign by its amplitude")
     else:
         t_s = table.numbers("t_s")
         found = Input(signal, kind, table.location, t_s=t_s, value=table.numbers("value", len(t_s)))
