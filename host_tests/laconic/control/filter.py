@@ -19,6 +19,7 @@ from laconic.core.derivatives import check_smooth
 from laconic.core.given import finite_number, number, numbers, shown, step_count
 from laconic.core.given_array import real_array
 from laconic.core.plant import Plant, Pose
+from laconic.core.saved import check_saved
 from laconic.core.sensors import ENCODER, put_encoders, values_of
 from laconic.errors import BadInput, Refused, nearest_of
 
@@ -162,6 +163,7 @@ class Filter:
         for name, ours in self._is_of.items():
             if is_of.get(name) != ours:
                 raise BadInput(f"saved: is not of this filter, whose {name} is another; give what its save() gave")
+        check_saved(self.core, "saved", state[0])
         self.c[0], self._count = state[0], count
 
     # ---- between numpy and C

@@ -21,15 +21,16 @@ import numpy as np
 from cffi import FFI
 
 from laconic.core.fields import ABOVE_0, OF_GROUND, Field, fields_from, set_own_zeros
-from laconic.core.given import c_object, items, number, numbers, shown, table
+from laconic.core.given import c_object, items, number, numbers, one_of, several, table
 from laconic.core.inputs import input_fields, row_of, slots_of
 from laconic.core.plant import Plant
-from laconic.errors import BadInput, Refused, nearest_of
+from laconic.errors import BadInput, Refused
 from laconic.paths import built, library
 
 REALS = ("double", "single")
-WHEEL_KINDS = {"omni": "ROLLER", "mecanum": "ROLLER", "roller": "ROLLER", "fixed": "FIXED", "unset": "UNSET"}
+WHEEL_KINDS = {"omni": "ROLLER", "mecanum": "ROLLER", "roller": "ROLLER", "fixed": "FIXED"}
 OMNI_ROLLER_RAD = math.pi / 2
+NEEDS_ROLLER = ("mecanum", "roller")  # kinds whose rollers have no usual angle
 BESIDE_MOTOR = ("motor_gain_Nm_per_V", "motor_damping_Nms")  # of a vehicle, which its motor determines
 
 
@@ -47,9 +48,7 @@ class Matrices:
 
 def load(real: str = "double") -> Core:
     """The core in one scalar type, loaded once."""
-    if real not in REALS:
-        raise BadInput(f"real: there is no {shown(real)}; {nearest_of(str(real), REALS)}")
-    return _loaded(real)
+    return _loaded(one_of("real", real, REALS))
 
 
 @cache
@@ -141,15 +140,18 @@ class Core:
             self._fit_motor(vehicle, table(self, "vehicle.motor", "vehicle.motor", data["motor"]))
             if beside := [key for key in BESIDE_MOTOR if plain.get(key)]:
                 raise BadInput(f"vehicle.{beside[0]}: is given besides vehicle.motor, from which it follows; keep one")
+        else:
+            _check_windings(plain.get("drive", {}))
         for stem in ("motor_", *OF_GROUND):
             set_own_zeros(vehicle, given, self.own_fields(stem))
         return vehicle
 
     def _set_wheel(self, target: Any, name: str, wheel: Mapping[str, Any]) -> None:
         given = {"roller_rad": OMNI_ROLLER_RAD, **table(self, "vehicle.wheel[#]", name, wheel, ("kind",))}
-        kind = wheel.get("kind")
-        if not isinstance(kind, str) or kind not in WHEEL_KINDS:
-            raise BadInput(f"{name}.kind: there is no {shown(kind)}; {nearest_of(str(kind), WHEEL_KINDS)}")
+        kind = one_of(f"{name}.kind", wheel.get("kind"), WHEEL_KINDS)
+        if kind in NEEDS_ROLLER and "roller_rad" not in wheel:
+            raise BadInput(f"{name}.roller_rad: is missing; give the angle between axle and rollers, such as "
+                           f"{math.pi / 4:g} (45°)")
         target.kind = getattr(self.lib, f"LACONIC_WHEEL_{WHEEL_KINDS[kind]}")
         fields = {field.key: field for field in self.fields_of("vehicle.wheel[#]")}
         for key, value in given.items():
@@ -195,6 +197,12 @@ class Core:
         """A C array as a numpy array of its own."""
         return np.frombuffer(self.ffi.buffer(array), self.dtype).reshape(shape or -1).copy()
 
+    def check_range(self, what: str, *found: Any) -> None:
+        """Refused, as a step would be, where a result is infinite or NaN though all that was given is finite."""
+        if not all(np.isfinite(each).all() for each in found):
+            raise Refused("overflow", what, 0, f"{what}: a result leaves the range of {self.real} precision; check "
+                          "inputs and units")
+
     # ---- input
 
     def input_offset(self, signal: str) -> int:
@@ -223,9 +231,7 @@ class Core:
 
     def method(self, name: str) -> Any:
         """The laconic_method of that name."""
-        if name not in self.method_names:
-            raise BadInput(f"method: there is no {shown(name)}; {nearest_of(str(name), self.method_names)}")
-        return self.lib.laconic_method_by_name(name.encode())
+        return self.lib.laconic_method_by_name(one_of("method", name, self.method_names).encode())
 
     def plant(self, vehicle: Any, method: str, step_s: float, *, nu_rad_per_s: Sequence[float] = (0.0, 0.0, 0.0),
               x_m: float = 0.0, y_m: float = 0.0, heading_rad: float = 0.0,
@@ -244,9 +250,10 @@ class Core:
 
     def _wheel_speeds(self, vehicle: Any, given: Any) -> list[float]:
         """Those that a start gives; BadInput where wheels roll and have none of their own."""
-        if isinstance(given, list | tuple) and not given:
+        many = several(given)
+        if many == []:
             return []
-        speeds = numbers("wheel_speed_rad_per_s", given, int(vehicle.wheel_count))
+        speeds = numbers("wheel_speed_rad_per_s", given if many is None else many, int(vehicle.wheel_count))
         if not self.lib.laconic_vehicle_has_friction(vehicle):
             raise BadInput("wheel_speed_rad_per_s: has no effect on ideal ground, where wheels roll as the vehicle "
                            "moves; give the vehicle a ground with friction_coefficient, or leave it out")
@@ -266,3 +273,11 @@ class Core:
         self.lib.laconic_derivative(rates, c_object(self, "model", model), nu, number("heading_rad", heading_rad),
                                     c_object(self, "input", held))
         return rates
+
+
+def _check_windings(drive: Mapping[str, Any]) -> None:
+    """BadInput for limits of a drive whose motors' windings are not known; the core has them by a motor alone."""
+    limits = [key for key in ("supply_V", "current_limit_A") if drive.get(key, 0.0) > 0.0]
+    if limits and "winding_resistance_ohm" not in drive:
+        raise BadInput(f"vehicle.drive.{limits[0]}: limits a current through windings, and nothing gives their "
+                       "resistance; give vehicle.motor with its resistance_ohm, or take vehicle.drive out")

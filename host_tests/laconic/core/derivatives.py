@@ -20,7 +20,7 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from laconic.core.fields import Field
-from laconic.core.given import by_names, finite_number, finite_numbers, name_list, shown
+from laconic.core.given import by_names, finite_number, finite_numbers, flag, name_list, shown
 from laconic.core.inputs import check_finite_input
 from laconic.errors import BadInput, nearest_of
 
@@ -81,7 +81,7 @@ class StepDerivatives:
         """All columns; those by a world force are 0 unless one acts, or `world_force` asks for them."""
         ffi, lib, size = self.core.ffi, self.core.lib, 6 + self.wheels
         found = ffi.new("laconic_step_jacobian *")
-        self._check(lib.laconic_step_jacobian_of(found, *self._step, bool(world_force)))
+        self._check(lib.laconic_step_jacobian_of(found, *self._step, flag("world_force", world_force)))
         by_state = np.zeros((size, size), self.core.dtype)
         by_input = np.zeros((size, 2 * self.wheels + 7), self.core.dtype)
         lib.laconic_jacobian_by_state(self._numbers(by_state), found, self._step[0])

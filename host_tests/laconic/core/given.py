@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import math
 import operator
-from collections.abc import Iterator, Mapping, Sequence
+from collections.abc import Iterable, Iterator, Mapping, Sequence, Set
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
@@ -51,13 +51,21 @@ def number(name: str, value: Any) -> float:
         raise BadInput(f"{name}: {shown(value)} is no number; give one") from None
 
 
+def several(values: Any) -> list[Any] | None:
+    """The items of a list, tuple, array …; None for what is none: text, bytes, a mapping, and a set, which has no
+    order."""
+    if isinstance(values, str | bytes | bytearray | Mapping | Set):
+        return None
+    try:
+        return list(values)
+    except TypeError:
+        return None
+
+
 def numbers(name: str, values: Any, count: int) -> list[float]:
     """So many numbers."""
-    try:
-        many = list(values)
-    except TypeError:
-        many = []
-    if len(many) != count or isinstance(values, str):
+    many = several(values)
+    if many is None or len(many) != count:
         raise BadInput(f"{name}: {shown(values)} is no list of {count} numbers; give one")
     return [number(f"{name}[{item}]", value) for item, value in enumerate(many, start=1)]
 
@@ -85,6 +93,21 @@ def name_list(name: str, given: Any) -> list[str]:
     if isinstance(given, str | bytes) or not all(isinstance(each, str) for each in many):
         raise BadInput(f"{name}: {shown(given)} is no list of names; give one, such as [\"mass_kg\"]")
     return many
+
+
+def one_of(name: str, given: Any, known: Iterable[str]) -> str:
+    """A word that is among those that are known."""
+    words = list(known)
+    if not isinstance(given, str) or given not in words:
+        raise BadInput(f"{name}: there is no {shown(given)}; {nearest_of(str(given), words)}")
+    return given
+
+
+def flag(name: str, value: Any) -> bool:
+    """True or false; no text, of which each that is not empty would be true, and no number."""
+    if not isinstance(value, bool | np.bool_):
+        raise BadInput(f"{name}: {shown(value)} is neither True nor False; give one of them")
+    return bool(value)
 
 
 def by_names(name: str, given: Any) -> Mapping[str, Any]:
@@ -131,7 +154,7 @@ def table(core: Core, path: str, name: str, given: Any, others: Sequence[str] = 
     if not isinstance(given, Mapping):
         raise BadInput(f"{name}: {shown(given)} is no table; give a mapping from keys to numbers")
     fields = {field.key: field for field in core.fields_of(path)}
-    known = [*fields, *others]
+    known = list(dict.fromkeys((*fields, *others)))
     if unknown := [key for key in given if key not in known]:
         raise BadInput(f"{name}.{unknown[0]}: unknown key; {nearest_of(str(unknown[0]), known)}")
     found: dict[str, float | bool] = {}

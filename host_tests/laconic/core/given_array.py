@@ -43,7 +43,8 @@ def real_array(name: str, given: Any, shape: Sequence[Length], unit: str = "", *
 def any_array(given: Any) -> np.ndarray:
     """As NumPy takes it; an array of objects for rows of unlike lengths, where numbers are masked, and what else is no
     array."""
-    if is_masked(given) or (isinstance(given, list | tuple) and any(map(is_masked, given))):
+    if isinstance(given, bytearray) or is_masked(given) or (
+            isinstance(given, list | tuple) and any(map(is_masked, given))):
         return np.empty((), object)
     try:
         return np.asarray(given)

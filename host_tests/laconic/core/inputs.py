@@ -24,8 +24,9 @@ PER_WHEEL = ("voltage_V", "axle_torque_Nm")
 
 def no_such_wheel(given: str, name: str, wheel_count: int) -> str:
     """Why what was given of a signal does not fit a vehicle's wheels, with the remedy."""
-    there = f"use {name}[1] to {name}[{wheel_count}]" if wheel_count else "it has no such signals"
-    return f"{given} does not match the vehicle's {wheel_count} wheels; {there}"
+    last = f" to {name}[{wheel_count}]" if wheel_count > 1 else ""
+    there = f"use {name}[1]{last}" if wheel_count else "it has no such signals"
+    return f"{given} does not match the vehicle's {wheel_count} wheel{'s' * (wheel_count != 1)}; {there}"
 
 
 def input_fields(core: Core) -> dict[str, tuple[int, int]]:
@@ -37,8 +38,9 @@ def input_fields(core: Core) -> dict[str, tuple[int, int]]:
     return found
 
 
-def slots_of(core: Core, signal: str) -> range:
-    """The numbers that a signal may set; BadInput where there is no such signal or item."""
+def slots_of(core: Core, signal: str, wheel_count: int | None = None) -> range:
+    """The numbers that a signal may set; BadInput where there is no such signal or item, with the items that a vehicle
+    with so many wheels has."""
     name, _, index = str(signal).partition("[")
     if name not in core.input_fields:
         raise BadInput(f"{signal}: there is no such input; {nearest_of(name, core.input_fields)}")
@@ -47,7 +49,8 @@ def slots_of(core: Core, signal: str) -> range:
         return range(start, start + length)
     item = index.removesuffix("]")
     if not item.isdecimal() or not 1 <= int(item) <= length or signal != f"{name}[{int(item)}]":  # one spelling each
-        raise BadInput(f"{signal}: there is no such item; give 1 to {length}")
+        items = wheel_count if wheel_count and name in PER_WHEEL else length
+        raise BadInput(f"{signal}: there is no such item; give {f'1 to {items}' if items > 1 else name}")
     return range(start + int(item) - 1, start + int(item))
 
 
@@ -59,7 +62,7 @@ def row_of(core: Core, values: Mapping[str, float | Sequence[float]], wheel_coun
                        "give one such as {\"voltage_V\": [1, 2]}")
     row = np.zeros(core.input_length, core.dtype)
     for signal, value in values.items():
-        slots = slots_of(core, signal)
+        slots = slots_of(core, signal, wheel_count)
         _check_alone(signal, values)
         found = any_array(value)
         if found.dtype.kind not in REAL:

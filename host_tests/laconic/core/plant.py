@@ -11,6 +11,7 @@ from laconic.core.derivatives import StepDerivatives
 from laconic.core.estimate import USUAL_STEPS, Estimate
 from laconic.core.given import c_object, number, shown, step_count
 from laconic.core.inputs import check_held, sampled_rows
+from laconic.core.saved import check_saved
 from laconic.core.schedule import Schedule
 from laconic.core.sensors import Sensors, settings_of
 from laconic.errors import BadInput
@@ -112,13 +113,17 @@ class Plant:
         return self.core.ffi.new("laconic_state *", self.c.state)
 
     def restore(self, state: Any, steps: int) -> None:
-        """Back to a saved state."""
+        """Back to a saved state; BadInput for one with a number that is infinite or NaN."""
         steps = step_count("steps", steps)
         if self.has_friction:
             saved = c_object(self.core, "plant", state)
+            check_saved(self.core, "plant.state", saved.state)
+            check_saved(self.core, "plant.slip", saved.slip)
             self.c.state, self.c.slip, self.c.steps = saved.state, saved.slip, steps
         else:
-            self.c.state, self.c.steps = c_object(self.core, "state", state)[0], steps
+            found = c_object(self.core, "state", state)[0]
+            check_saved(self.core, "state", found)
+            self.c.state, self.c.steps = found, steps
 
     # ---- sensors
 
@@ -163,8 +168,9 @@ class Plant:
         if held is None or isinstance(held, Mapping):
             return self.core.input(held, self.wheel_count)
         if isinstance(held, list | tuple | np.ndarray):
+            numbers = np.ravel(held).tolist() if isinstance(held, np.ndarray) else [*held]
             raise BadInput(f'input: {shown(held)} names no signal; give them by its name, such as {{"voltage_V": '
-                           f"{shown([*held][: self.wheel_count])}}}")
+                           f"{shown(numbers[: self.wheel_count])}}}")
         made = c_object(self.core, "input", held)
         check_held(self.core, made, self.wheel_count)
         return made
@@ -199,14 +205,17 @@ class Plant:
     def body_acceleration(self, held: Any = None) -> np.ndarray:
         """Acceleration of the body's origin in body axes, shape (2,) [m/s²], at this moment with this input.
 
-        BadInput for a vehicle with friction, whose acceleration is known of a whole step alone: Sensors.read has it.
+        Refused where it leaves the range of numbers. BadInput for a vehicle with friction, whose acceleration is known
+        of a whole step alone: Sensors.read has it.
         """
         if self.has_friction:
             raise BadInput("plant: has ground friction or limits of its drive, so its acceleration is the mean over a "
                            "step; step it by sensors = plant.sensors(), and take sensors.read()")
         held, found = self.input_of(held), self.core.ffi.new("laconic_real[2]")
         self.core.lib.laconic_acceleration_body(found, self.core.ffi.NULL, self.c, held)
-        return self.core.numbers(found)
+        acceleration = self.core.numbers(found)
+        self.core.check_range("body_acceleration", acceleration)
+        return acceleration
 
     def _per_wheel(self, function: Any, *more: Any) -> np.ndarray:
         room = self.core.ffi.new("laconic_real[]", max(self.wheel_count, 1))
@@ -223,8 +232,11 @@ class Plant:
         """Torque on each axle: motor and applied [N·m], shape (N,). Input as for `run`."""
         held = self.input_of(held)
         if self.has_friction:
-            return self.core.numbers(self.outputs(held).wheel_torque_Nm)[: self.wheel_count]
-        return self._per_wheel(self.core.lib.laconic_wheel_torques, held)
+            torques = self.core.numbers(self.outputs(held).wheel_torque_Nm)[: self.wheel_count]
+        else:
+            torques = self._per_wheel(self.core.lib.laconic_wheel_torques, held)
+        self.core.check_range("wheel_torques", torques)
+        return torques
 
     def wheel_angles(self) -> np.ndarray:
         """χ [rad], shape (N,)."""

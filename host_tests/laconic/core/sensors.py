@@ -16,8 +16,9 @@ import numpy as np
 
 from laconic.core.encoders import GEAR, KEYS, LEAST_INTEGER, MOST_INTEGER, failing, read_encoders
 from laconic.core.fields import ITEM, Field
-from laconic.core.given import c_object, is_real, number, shown, step_count
+from laconic.core.given import c_object, is_real, number, several, shown, step_count
 from laconic.core.inputs import sampled_rows
+from laconic.core.saved import check_saved
 from laconic.errors import BadInput, nearest_of
 
 if TYPE_CHECKING:
@@ -74,11 +75,13 @@ class Sensors:
 
     def read(self, held: Any = None) -> Readings:
         """What the sensors show now. `held`: the input that acts from now on, on which only acceleration_body_m_per_s2
-        depends; None: none."""
+        depends; None: none. Refused where that leaves the range of numbers."""
         core, plant = self.plant.core, self.plant
         shown_now = core.ffi.new("laconic_sensor_outputs *")
         core.lib.laconic_sensors_read(shown_now, self.c, plant.c, plant.input_of(held))
-        return Readings(core.numbers(shown_now.acceleration_body_m_per_s2),
+        acceleration = core.numbers(shown_now.acceleration_body_m_per_s2)
+        core.check_range("acceleration_body_m_per_s2", acceleration)
+        return Readings(acceleration,
                         core.numbers(shown_now.imu_acceleration_m_per_s2), float(shown_now.imu_yaw_rate_rad_per_s),
                         core.numbers(shown_now.encoder_count)[: plant.wheel_count].astype(np.int64))
 
@@ -89,6 +92,7 @@ class Sensors:
     def restore(self, saved: Any) -> None:
         """Back to what `save` gave; BadInput for what sensors with other settings gave."""
         found, core = c_object(self.plant.core, "sensors", saved), self.plant.core
+        check_saved(core, "sensors", found[0])
         for field in core.sensor_fields:
             if values_of(field, found.settings) != values_of(field, self.c.settings):
                 raise BadInput(f"sensors: were saved with another {field.path.removesuffix(ITEM)}; give what the "
@@ -148,10 +152,10 @@ def _mapping(name: str, given: Any, known: Sequence[str] | Mapping[str, Any]) ->
 def _values(name: str, field: Field, given: Any) -> list[float]:
     """Of an IMU: a number, or one for each axis."""
     count = field.items
-    many = isinstance(given, Sequence | np.ndarray) and not isinstance(given, str) and np.ndim(given) > 0
-    if many and len(given) != count:
-        raise BadInput(f"{name}: has {len(given)} entries; give one number{f', or {count}' if count else ''}")
-    values = list(given) if many else [given] * max(count, 1)
+    many = several(given)
+    if many is not None and (not count or len(many) != count):
+        raise BadInput(f"{name}: has {len(many)} entries; give one number{f', or {count}' if count else ''}")
+    values = [given] * max(count, 1) if many is None else many
     return [_whole(name, each) if field.kind == "INTEGER" else number(name, each) for each in values]
 
 

@@ -93,13 +93,18 @@ class Vehicle:
         """The right-hand side of the equations of motion (4.7) at a motion.
 
         `nu_rad_per_s`: ν, three numbers in rad/s, first projected onto what the constraints allow. `inputs`: held ones.
-        Raises BadInput for what does not fit, and for a vehicle with friction: its rates depend on wheels that slip.
+        Raises BadInput for what does not fit, and for a vehicle with friction: its rates depend on wheels that slip;
+        Refused where a rate leaves the range of numbers.
         """
         self._has_no_friction("derivative")
         nu, heading, held = self._at(nu_rad_per_s, heading_rad, inputs)
         found = self.core.derivative(self.model, nu, heading, held)
-        return Rates(self.core.numbers(found.nu_rad_per_s2), np.array([found.x_m_per_s, found.y_m_per_s]),
-                     float(found.yaw_rate_rad_per_s), self.core.numbers(found.wheel_speed_rad_per_s)[:self.wheel_count])
+        rates = Rates(self.core.numbers(found.nu_rad_per_s2), np.array([found.x_m_per_s, found.y_m_per_s]),
+                      float(found.yaw_rate_rad_per_s),
+                      self.core.numbers(found.wheel_speed_rad_per_s)[:self.wheel_count])
+        self.core.check_range("derivative", rates.nu_rad_per_s2, rates.velocity_m_per_s, rates.yaw_rate_rad_per_s,
+                              rates.wheel_speed_rad_per_s)
+        return rates
 
     def linearise(self, nu_rad_per_s: Sequence[float] | np.ndarray = (0.0, 0.0, 0.0), heading_rad: float = 0.0,
                   inputs: Inputs | None = None) -> Linearisation:
@@ -119,8 +124,10 @@ class Vehicle:
         of_states = [column(ffi.new("laconic_variation *", by)) for by in states]
         voltages = [{"input": {"voltage_V": [0.0] * i + [1.0]}} for i in range(self.wheel_count)]
         of_voltages = [column(ffi.new("laconic_variation *", by)) for by in voltages]
-        return Linearisation(np.array(of_states, self.core.dtype).T,
-                             np.array(of_voltages, self.core.dtype).reshape(-1, len(STATES)).T)
+        found = Linearisation(np.array(of_states, self.core.dtype).T,
+                              np.array(of_voltages, self.core.dtype).reshape(-1, len(STATES)).T)
+        self.core.check_range("linearise", found.state_matrix, found.voltage_matrix)
+        return found
 
     def plant(self, method: str = "auto", step_s: float = 1e-3, *, nu_rad_per_s: Sequence[float] = (0.0, 0.0, 0.0),
               x_m: float = 0.0, y_m: float = 0.0, heading_rad: float = 0.0,

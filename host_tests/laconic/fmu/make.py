@@ -11,6 +11,7 @@ from typing import Any
 import numpy as np
 
 from laconic.core import load
+from laconic.core.given import flag
 from laconic.core.sensors import settings_of, values_of
 from laconic.errors import BadInput
 from laconic.outputs import check_ending, check_file, whole_file
@@ -74,6 +75,8 @@ def make_fmu(scene: Scene, out: str | Path, *, version: int, scalar: bool = Fals
     `derivatives`: for Co-Simulation alone, whose directional and adjoint derivatives are those of its steps.
     """
     check_scene(scene)
+    scalar, sources = flag("scalar", scalar), flag("sources", sources)
+    enumerations, derivatives = flag("enumerations", enumerations), flag("derivatives", derivatives)
     if not isinstance(version, int | np.integer) or version not in VERSIONS:
         raise BadInput(f"version: there is no FMI {version!r}; give {' or '.join(map(str, VERSIONS))}")
     path = as_path("out", out)

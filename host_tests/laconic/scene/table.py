@@ -22,13 +22,19 @@ else:
     import tomli as tomllib
 
 LONGEST_SHOWN = 60  # of a value in a message
+MOST_BYTES = 64 * 2**20  # of a file: a thousand times a usual scene
 NO_HINTS: Mapping[str, str] = {}
 
 
 def read_toml(path: Path) -> Table:
     """The file's top table."""
     try:
-        text = path.read_bytes().decode("utf-8-sig")
+        with path.open("rb") as file:
+            given = file.read(MOST_BYTES + 1)
+        if len(given) > MOST_BYTES:
+            raise BadInput(f"{path}: has more than {MOST_BYTES >> 20} MiB, which no scene needs; give the path of a "
+                           "scene")
+        text = given.decode("utf-8-sig")
         return Table(path, "", entries_of(text))
     except OSError as error:
         raise BadInput(f"{path}: cannot be read ({reason_of(error)}); give the path of a readable TOML file") from None

@@ -10,7 +10,7 @@ from dataclasses import dataclass, field
 import numpy as np
 
 from laconic.core.estimate import ErrorRows, Errors, Estimate
-from laconic.core.given import shown
+from laconic.core.given import flag, shown
 from laconic.core.grip import Grip
 from laconic.core.plant import Plant
 from laconic.core.recording import Recorder, needs_sensors
@@ -154,6 +154,7 @@ def simulate(scene: Scene, signals: Sequence[str] = (), progress: bool = False, 
     is refused, has the motion up to it.
     """
     kept = kept_signals(check_scene(scene), signals)
+    progress, watched, estimated = flag("progress", progress), flag("watched", watched), flag("estimated", estimated)
     core, steps = scene.core(), scene.steps()
     every = 1 if scene.outputs.every_s is None else scene.steps_in("outputs.every_s", scene.outputs.every_s)
     if steps / every > MOST_ROWS:

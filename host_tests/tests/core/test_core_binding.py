@@ -69,7 +69,6 @@ def test_a_scalar_type_that_there_is_not():
     ({"wheel": [WHEEL, {**WHEEL, "roller_rad": 0.0}]}, "roller along axle", "roller_rad", 2,
      "vehicle.wheel[2].roller_rad: "),
     ({"wheel": [WHEEL, {**WHEEL, "y_m": math.inf}]}, "not finite", "wheel_y_m", 2, "vehicle.wheel[2].y_m: "),
-    ({"wheel": [{**WHEEL, "kind": "unset"}]}, "wheel not set", "wheel_kind", 1, "vehicle.wheel[1].kind: "),
     ({"wheel": 17 * [WHEEL]}, "too many wheels", "wheel_count", 0, "vehicle.wheel: "),
     ({"wheel": [{**WHEEL, "kind": "fixed", "locked": True}, {**WHEEL, "kind": "fixed", "x_m": 1.0, "axle_rad": 1.5}]},
      "nothing moves", "wheel_kind", 0, "vehicle.wheel.kind: "),
@@ -81,6 +80,15 @@ def test_a_refusal_arrives_with_status_field_item_and_the_words_of_a_scene(core,
     assert str(found).startswith(place)
     assert found.exit_status == 2
     assert "\n" not in str(found)
+
+
+def test_a_wheel_that_nobody_set_is_refused(core):
+    vehicle = core.vehicle({**VEHICLE, "wheel": [WHEEL]})
+    vehicle.wheel[0].kind = core.lib.LACONIC_WHEEL_UNSET
+    with pytest.raises(Refused) as found:
+        core.prepare(vehicle)
+    assert (found.value.status, found.value.field, found.value.item) == ("wheel not set", "wheel_kind", 1)
+    assert str(found.value).startswith("vehicle.wheel[1].kind: ")
 
 
 def test_motor_data_become_gain_damping_and_inertia():

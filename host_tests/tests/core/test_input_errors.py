@@ -27,6 +27,7 @@ from laconic.scene import read_scene
     ({"voltage_V[\u0661]": 1}, r"voltage_V\[\u0661\]: there is no such item"),
     ({"voltage_V[1": 1}, r"voltage_V\[1: there is no such item"),
     ({"voltage_V[1]": [1, 2]}, r"voltage_V\[1\]: .* of which there are 1"),
+    ({"body_moment_Nm[2]": 1}, r"body_moment_Nm\[2\]: there is no such item; give body_moment_Nm$"),
     ({"voltag_V": [1]}, "voltag_V: there is no such input; did you mean voltage_V?"),
     (np.zeros(3), r"input: a row has [0-9]+ numbers, this array has the shape \(3,\)")])
 @pytest.mark.parametrize("real", ["double", "single"])
@@ -55,6 +56,16 @@ def test_python_refuses_inputs_of_wheels_that_are_not_there_and_lists_that_are_n
         with pytest.raises(BadInput, match=message):
             entrance(values)
     assert plant.steps == 0
+
+
+def test_a_remedy_names_the_wheels_that_there_are() -> None:
+    for spelled in ("voltage_V[01]", "voltage_V[4]", "voltage_V[17]"):
+        with pytest.raises(BadInput, match=r"give 1 to 3$|use voltage_V\[1\] to voltage_V\[3\]$"):
+            Vehicle.of(read_scene("robotino2")).derivative(inputs={spelled: 1.0})
+    one = {"mass_kg": 1.0, "yaw_inertia_kgm2": 0.1, "wheel_radius_m": 0.1, "wheel": [{"kind": "omni", "x_m": 0.1}]}
+    text = r"voltage_V: \[1.0, 2.0\] does not match the vehicle's 1 wheel; use voltage_V\[1\], or a list of 1$"
+    with pytest.raises(BadInput, match=text):
+        Vehicle(one).derivative(inputs={"voltage_V": [1.0, 2.0]})
 
 
 def test_a_ready_made_input_may_not_act_on_wheels_that_are_not_there() -> None:

@@ -34,6 +34,10 @@ def wheels() -> laconic.Vehicle:
     return laconic.Vehicle.of(laconic.read_scene("robotino2"))
 
 
+def skids() -> laconic.Vehicle:
+    return laconic.Vehicle.of(laconic.read_scene("skid_steer"))
+
+
 def short_run() -> laconic.Trajectory:
     return laconic.simulate(scene().with_run(duration_s=0.1), ["x_m", "nu_rad_per_s"])
 
@@ -106,13 +110,47 @@ WRONG: list[tuple[Callable[[], Any], str]] = [
     (lambda: wheels().plant(wheel_speed_rad_per_s=[1, 2]), "wheel_speed_rad_per_s: [1, 2] is no list of 3 numbers"),
     (lambda: wheels().plant(wheel_speed_rad_per_s=None), "wheel_speed_rad_per_s: None is no list of 3 numbers"),
     (lambda: wheels().plant(wheel_speed_rad_per_s=[1, 2, 3]), "wheel_speed_rad_per_s: has no effect on ideal ground"),
-    (lambda: laconic.analyse(scene(), parts=3), "parts: 3 is no list; give a list, such as ["),  # type: ignore
-    (lambda: laconic.analyse(scene(), at_s="1"), "at_s: '1' is no number; give one"),  # type: ignore[arg-type]
+    (lambda: laconic.analyse(scene(), parts=3), "parts: 3 is no list; give a list, such as ["),
+    (lambda: laconic.analyse(scene(), at_s="1"), "at_s: '1' is no number; give one"),
     (lambda: laconic.analyse(scene(), at_s=1e9), "at_s: 1e+09 s lies outside the run; give 0 to "),
-    (lambda: laconic.make_fmu(scene(), "s1.fmu", version=np.array([2])), "there is no FMI array([2])"),  # type: ignore
+    (lambda: laconic.make_fmu(scene(), "s1.fmu", version=np.array([2])), "there is no FMI array([2])"),
     (lambda: laconic.build_scene(in_itself()), "scene: nests its tables too deeply, or one in itself; give those of"),
     (lambda: wheels().plant().sensors().restore(wheels().plant().sensors({"imu": {"seed": 3}}).save()),
      "sensors: were saved with another sensors.imu.seed; give what the save() of these gave"),
+    (lambda: wheels().plant(wheel_speed_rad_per_s=5.0), "wheel_speed_rad_per_s: 5.0 is no list of 3 numbers; give"),
+    (lambda: wheels().plant(wheel_speed_rad_per_s=np.array(5.0)), "wheel_speed_rad_per_s: array(5.) is no list of 3"),
+    (lambda: wheels().plant(wheel_speed_rad_per_s=(5.0 for _ in "ab")), "wheel_speed_rad_per_s: [5.0, 5.0] is no list"),
+    (lambda: wheels().plant(wheel_speed_rad_per_s=b"abc"), "wheel_speed_rad_per_s: b'abc' is no list of 3 numbers"),
+    (lambda: skids().plant(wheel_speed_rad_per_s=[1]), "wheel_speed_rad_per_s: [1] is no list of 4 numbers; give one"),
+    (lambda: skids().plant(wheel_speed_rad_per_s=[1] * 5), "is no list of 4 numbers; give one"),
+    (lambda: skids().plant(wheel_speed_rad_per_s=b"abcd"), "b'abcd' is no list of 4 numbers; give one"),
+    (lambda: wheels().plant(nu_rad_per_s=b"abc"), "nu_rad_per_s: b'abc' is no list of 3 numbers; give one"),
+    (lambda: wheels().plant(nu_rad_per_s=bytearray(b"abc")), "is no list of 3 numbers; give one"),
+    (lambda: wheels().derivative(b"abc"), "nu_rad_per_s: b'abc' is no list of 3 numbers; give one"),
+    (lambda: wheels().derivative({300, 2, 1}), "is no list of 3 numbers; give one"),
+    (lambda: wheels().derivative({1: 1, 2: 2, 3: 3}), "{1: 1, 2: 2, 3: 3} is no list of 3 numbers"),
+    (lambda: wheels().derivative(inputs={"voltage_V": bytearray(b"abc")}), "is no number and no list"),
+    (lambda: wheels().plant(np.ma.array([1.0, 2, 3], mask=[0, 1, 0]), 0.01), "method: there is no masked_array("),
+    (lambda: laconic.load_core(np.array(["double"])), "real: there is no array(['double']"),
+    (lambda: wheels().plant().run(np.array(5.0)), 'array(5.) names no signal; give them by its name, such as {"volt'),
+    (lambda: wheels().plant().step_derivatives({"voltage_V": [1, 2, 3]}).tangent(None, np.array(5.0)),
+     'array(5.) names no signal; give them by its name, such as {"voltage_V": [5.0]}'),
+    (lambda: wheels().plant().step_derivatives().jacobian("no"), "world_force: 'no' is neither True nor False; give"),
+    *((lambda key=key: wheels().plant().sensors({"imu": {key: []}}), f"sensors.imu.{key}: has 0 entries; give one num")
+      for key in ("x_m", "heading_rad", "seed", "delay_steps", "yaw_rate_range_rad_per_s")),
+    (lambda: wheels().plant().sensors({"imu": {"acceleration_bias_m_per_s2": b"ab"}}), "b'ab' is no number; give one"),
+    *((lambda key=key, no=no: laconic.make_fmu(scene(), "s1.fmu", version=3, **{key: no}),
+       f"{key}: {no!r} is neither True nor False; give one of them")
+      for key in ("scalar", "sources", "enumerations", "derivatives") for no in ("no", float("nan"), 0)),
+    *((lambda key=key: laconic.simulate(scene(), **{key: "no"}), f"{key}: 'no' is neither True nor False")
+      for key in ("progress", "watched", "estimated")),
+    (lambda: laconic.read_scene("/dev/zero"), "/dev/zero: has more than 64 MiB, which no scene needs; give the"),
+    (lambda: laconic.Vehicle(ROBOT | {"wheel": [{"kind": "unset"}]}), "known are fixed, mecanum, omni, roller"),
+    (lambda: laconic.Vehicle(ROBOT | {"wheel": [{"kind": "mecanum"}]}),
+     "vehicle.wheel[1].roller_rad: is missing; give the angle between axle and rollers, such as 0.785398 (45°)"),
+    (lambda: laconic.Vehicle(ROBOT | {"wheel": [{"kind": "roller"}]}), "vehicle.wheel[1].roller_rad: is missing"),
+    (lambda: laconic.Vehicle(ROBOT | {"drive": {"supply_V": 5}}), "vehicle.drive.supply_V: limits a current through "
+     "windings, and nothing gives their resistance; give vehicle.motor with its resistance_ohm"),
     (lambda: plant().set_step("x"), "step_s: 'x' is no number"),
     (lambda: plant().change(ROBOT), "is no laconic_vehicle of this core; make it with laconic.Vehicle("),
     (lambda: plant().restore(None, 3), "state: None is no laconic_state of this core; make it with plant.save()"),

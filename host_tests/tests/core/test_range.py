@@ -1,0 +1,87 @@
+"""A result beyond the range of numbers is refused, as a step is, and a saved state that holds none is not restored."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from typing import Any
+
+import numpy as np
+import pytest
+
+import laconic
+from laconic.core.saved import check_saved
+
+HUGE = {"voltage_V": [1e308] * 3}
+TORQUES = {"axle_torque_Nm": [1.7e308] * 3, "voltage_V": [1.7e308] * 3}
+KNOWN = {"position_std_m": 0.1, "encoder_std_rad": 0.1, "nu_std_rad_per_s": 0.1}
+
+
+def robot(name: str = "robotino2", real: str = "double") -> laconic.Vehicle:
+    return laconic.Vehicle(laconic.read_scene(name).vehicle, real)
+
+
+@pytest.mark.filterwarnings("error")
+@pytest.mark.parametrize("ask, what", [
+    (lambda: robot().derivative([1e200] * 3), "derivative"),
+    (lambda: robot().derivative(inputs=HUGE), "derivative"),
+    (lambda: robot().linearise([1.7e308] * 3, 0.3), "linearise"),
+    (lambda: robot().plant().body_acceleration(HUGE), "body_acceleration"),
+    (lambda: robot().plant().wheel_torques(TORQUES), "wheel_torques"),
+    (lambda: robot().plant().sensors().read(HUGE), "acceleration_body_m_per_s2")])
+def test_a_result_beyond_all_numbers_is_refused_and_never_nan(ask: Callable[[], Any], what: str) -> None:
+    with pytest.raises(laconic.Refused) as refused:
+        ask()
+    assert str(refused.value) == f"{what}: a result leaves the range of double precision; check inputs and units"
+    assert refused.value.status == "overflow"
+
+
+@pytest.mark.parametrize("real", ["double", "single"])
+@pytest.mark.parametrize("name", ["robotino2", "skid_steer"])
+@pytest.mark.parametrize("bad", [float("nan"), float("inf")])
+def test_a_saved_state_that_was_spoilt_is_not_restored(bad: float, name: str, real: str) -> None:
+    plant = robot(name, real).plant(step_s=0.01)
+    plant.run({}, 3)
+    saved, before = plant.save(), plant.row().tolist()
+    state = saved.state if plant.has_friction else saved
+    state.x_m.value = bad
+    where = "plant.state.x_m.value" if plant.has_friction else "state.x_m.value"
+    with pytest.raises(laconic.BadInput, match=f"^{where}: {bad} is not finite; give what save"):
+        plant.restore(saved, 5)
+    assert (plant.row().tolist(), plant.steps) == (before, 3)
+    state.x_m.value = 0.25
+    plant.restore(saved, 5)
+    assert (plant.pose.x_m, plant.steps) == (0.25, 5)
+
+
+def test_spoilt_wheels_sensors_and_filters_are_not_restored() -> None:
+    skids = robot("skid_steer").plant()
+    saved = skids.save()
+    saved.slip.wheel_angle_rad[1].value = float("nan")
+    with pytest.raises(laconic.BadInput, match=r"^plant.slip.wheel_angle_rad\[2\].value: nan is not finite"):
+        skids.restore(saved, 0)
+    sensors = robot().plant().sensors()
+    shown = sensors.save()
+    shown.sample[0].yaw_rate_rad_per_s = float("inf")
+    with pytest.raises(laconic.BadInput, match=r"^sensors.sample\[1\].yaw_rate_rad_per_s: inf is not finite"):
+        sensors.restore(shown)
+    ours = laconic.Filter(robot().plant(), KNOWN)
+    kept = ours.save()
+    kept[1].state.heading.rest = float("nan")
+    with pytest.raises(laconic.BadInput, match=r"^saved.state.heading.rest: nan is not finite"):
+        ours.restore(kept)
+
+
+def test_every_real_number_of_a_saved_state_is_looked_at() -> None:
+    plant = robot().plant()
+    core, words = plant.core, plant.core.ffi.sizeof("laconic_state") // 8
+    passed = []
+    for word in range(words):
+        saved = plant.save()
+        np.frombuffer(core.ffi.buffer(saved))[word] = np.nan
+        try:
+            check_saved(core, "state", saved[0])
+        except laconic.BadInput:
+            continue
+        passed.append(word)
+    heading = core.ffi.offsetof("laconic_state", "heading") // 8
+    assert passed == [heading, heading + 1]  # turns and fraction, which are whole numbers
