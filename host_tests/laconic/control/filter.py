@@ -160,6 +160,9 @@ class Filter:
         if not (isinstance(saved, tuple) and len(saved) == 3 and isinstance(saved[0], dict)):
             raise BadInput(f"saved: {shown(saved)} is not of this filter; give what its save() gave")
         is_of, state, count = saved
+        ffi = self.core.ffi
+        if not (isinstance(state, ffi.CData) and isinstance(count, ffi.CData)):
+            raise BadInput(f"saved: {shown(saved)} is not of this filter; give what its save() gave")
         for name, ours in self._is_of.items():
             if is_of.get(name) != ours:
                 raise BadInput(f"saved: is not of this filter, whose {name} is another; give what its save() gave")

@@ -100,14 +100,14 @@ class StepDerivatives:
         model = ffi.NULL if vehicle is None else self.model_change(vehicle)
         before = self._change([0.0] * (6 + self.wheels) if state is None else state)
         self._check(self.core.lib.laconic_step_tangent(after, *self._step, before, varied, model))
-        return self._row(after)
+        return self._in_range("tangent", self._row(after))
 
     def adjoint(self, gradient: ArrayLike) -> tuple[np.ndarray, np.ndarray]:
         """Gradients by state (6 + N,) and input (2 N + 7,) before the step, from that by the state after it."""
         found, held = self.core.ffi.new("laconic_state_change *"), self.core.ffi.new("laconic_input *")
         self._check(self.core.lib.laconic_step_adjoint(
             found, held, self.core.ffi.NULL, *self._step, self._change(gradient)))
-        return self._row(found), self._input_row(held)
+        return self._in_range("adjoint", self._row(found)), self._in_range("adjoint", self._input_row(held))
 
     def vehicle_gradient(self, gradient: ArrayLike, names: Sequence[str]) -> np.ndarray:
         """Gradients by numbers of the vehicle, named as for `tangent`, from that by the state after the step."""
@@ -115,7 +115,9 @@ class StepDerivatives:
         before, by_model = ffi.new("laconic_state_change *"), ffi.new("laconic_model_change *")
         self._check(lib.laconic_step_adjoint(before, ffi.NULL, by_model, *self._step, self._change(gradient)))
         weights = self._flat(by_model)
-        return np.array([weights @ self._flat(self.model_change({name: 1.0})) for name in wanted])
+        with np.errstate(over="ignore", invalid="ignore"):  # which is refused
+            found = np.array([weights @ self._flat(self.model_change({name: 1.0})) for name in wanted])
+        return self._in_range("vehicle_gradient", found)
 
     def model_change(self, vehicle: Mapping[str, float]) -> Any:
         """The laconic_model_change along changes of numbers of the vehicle."""
@@ -138,6 +140,10 @@ class StepDerivatives:
         why = self.core.why()
         self.core.lib.laconic_step_refusal(why, status, *self._step, 1)
         raise self.core.refusal(why)
+
+    def _in_range(self, what: str, found: np.ndarray) -> np.ndarray:
+        self.core.check_range(what, found)
+        return found
 
     def _numbers(self, array: np.ndarray) -> Any:
         return self.core.ffi.cast("laconic_real *", array.ctypes.data)

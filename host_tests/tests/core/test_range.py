@@ -27,7 +27,11 @@ def robot(name: str = "robotino2", real: str = "double") -> laconic.Vehicle:
     (lambda: robot().linearise([1.7e308] * 3, 0.3), "linearise"),
     (lambda: robot().plant().body_acceleration(HUGE), "body_acceleration"),
     (lambda: robot().plant().wheel_torques(TORQUES), "wheel_torques"),
-    (lambda: robot().plant().sensors().read(HUGE), "acceleration_body_m_per_s2")])
+    (lambda: robot().plant().sensors().read(HUGE), "acceleration_body_m_per_s2"),
+    (lambda: robot().plant().step_derivatives().tangent([1e308] * 9), "tangent"),
+    (lambda: robot().plant(step_s=0.1, nu_rad_per_s=(5, 9, 2)).step_derivatives().adjoint([1.797e308] * 9), "adjoint"),
+    (lambda: robot().plant(step_s=0.01, nu_rad_per_s=(5, 9, 2)).step_derivatives({"voltage_V": [9, 8, 7]})
+     .vehicle_gradient([1e308] * 9, ["wheel_radius_m"]), "vehicle_gradient")])
 def test_a_result_beyond_all_numbers_is_refused_and_never_nan(ask: Callable[[], Any], what: str) -> None:
     with pytest.raises(laconic.Refused) as refused:
         ask()
@@ -69,6 +73,9 @@ def test_spoilt_wheels_sensors_and_filters_are_not_restored() -> None:
     kept[1].state.heading.rest = float("nan")
     with pytest.raises(laconic.BadInput, match=r"^saved.state.heading.rest: nan is not finite"):
         ours.restore(kept)
+    for parts in ((None, kept[2]), (kept[1], None)):
+        with pytest.raises(laconic.BadInput, match=r"^saved: .* is not of this filter; give what its save\(\) gave"):
+            ours.restore((kept[0], *parts))
 
 
 def test_every_real_number_of_a_saved_state_is_looked_at() -> None:
