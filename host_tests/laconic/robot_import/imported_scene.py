@@ -238,7 +238,7 @@ class _Writer:
             return []
         slips = "ground" in scene.vehicle  # only there have the axles their friction
         scale = scene.vehicle["mass_kg"] * ACCELERATION_M_PER_S2 / float(rolling @ rolling)
-        inputs = []
+        inputs: list[dict[str, Any]] = []
         self.comments["input", "0", "signal"] = (f"assumption: these torques push ahead with about "
                                                  f"{ACCELERATION_M_PER_S2:g} m/s² "
                                                  f"for {PUSH_S:g} s")
