@@ -57,7 +57,7 @@ typedef bool verdict;    /* the result of a comparison                          
 #endif
 
 /* For the parts of a step, which compilers would not inline by themselves: vectors passed through memory cost time. */
-#if defined(__GNUC__) && !defined(LACONIC_PLAIN_INLINE) /* coverage counts each function once */
+#if defined(__GNUC__) && !defined(LACONIC_PLAIN_INLINE) /* coverage counts each function once; images may be smaller */
 #define INLINE static inline __attribute__((always_inline))
 #else
 #define INLINE static inline

@@ -168,20 +168,22 @@ def words_of_slip(run: Trajectory) -> list[str]:
     return told
 
 
-def words_of_errors(errors: Errors | None) -> list[str]:
+def words_of_errors(errors: Errors | None, wheel_count: int) -> list[str]:
     """How far the end is off, and the worst on the way."""
     if errors is None:
         return []
-    lines = [f"estimated error: {sizes_text(errors.now)}", f"  largest of the run: {sizes_text(errors.largest)}"]
+    lines = [f"estimated error: {sizes_text(errors.now, wheel_count)}",
+             f"  largest of the run: {sizes_text(errors.largest, wheel_count)}"]
     if errors.unknown:
         lines.append(f"  not known of {errors.unknown} windows of steps, in which half of the step is refused")
     return lines
 
 
-def sizes_text(sizes: ErrorSizes) -> str:
-    """The four sizes with their units."""
-    return (f"nu {sizes.nu_rad_per_s:.1e} rad/s, place {sizes.place_m:.1e} m, heading {sizes.heading_rad:.1e} rad, "
-            f"wheel angles {sizes.wheel_angle_rad:.1e} rad")
+def sizes_text(sizes: ErrorSizes, wheel_count: int) -> str:
+    """The sizes with their units; that of wheel angles where there are wheels."""
+    angles = f", wheel angles {sizes.wheel_angle_rad:.1e} rad" if wheel_count else ""
+    return (f"nu {sizes.nu_rad_per_s:.1e} rad/s, place {sizes.place_m:.1e} m, heading {sizes.heading_rad:.1e} rad"
+            f"{angles}")
 
 
 def print_summary(run: Trajectory, *files: Path | None, lines: Sequence[str] = ()) -> None:
@@ -196,7 +198,7 @@ def print_summary(run: Trajectory, *files: Path | None, lines: Sequence[str] = (
     click.echo(f"at {run.time_s[-1]:g} s:")
     for name, values in run.columns.items():
         click.echo(f"  {name:28} {values[-1]: .12g}")
-    for line in (*words_of_errors(run.errors), *words_of_slip(run), *lines):
+    for line in (*words_of_errors(run.errors, run.scene.wheel_count), *words_of_slip(run), *lines):
         click.echo(line)
     for path in files:
         if path:
