@@ -12,12 +12,14 @@ from typing import Any
 from laconic.mutation import Campaign, Mutant, Tally
 from laconic.soak import StoppedEarly
 
-OPTIONS = ("sample", "only")
+OPTIONS = ("sample", "survivors", "only")
 
 
 def soak(minutes: float, seed: int, advance: Callable[[float], None], sample: int | None = None,
-         only: str | None = None) -> dict[str, Any]:
-    """Until the time is over or all were tried; passed when every survivor is in the list of equivalents."""
+         survivors: int | None = None, only: str | None = None) -> dict[str, Any]:
+    """Until the time is over or all were tried; passed when no more than `survivors` are outside of the list of
+    equivalents."""
+    most = survivors or 0
     campaign = Campaign(only, seed)
     began = last = time.monotonic()
 
@@ -29,18 +31,18 @@ def soak(minutes: float, seed: int, advance: Callable[[float], None], sample: in
 
     try:
         until = began + 60.0 * minutes if sample is None else math.inf
-        return told(campaign.run(sample, until, moved), len(campaign.mutants))
+        return told(campaign.run(sample, until, moved), len(campaign.mutants), most)
     except KeyboardInterrupt as stopped:
-        raise StoppedEarly(told(campaign.tally, len(campaign.mutants))) from stopped
+        raise StoppedEarly(told(campaign.tally, len(campaign.mutants), most)) from stopped
 
 
-def told(tally: Tally, all_of_them: int) -> dict[str, Any]:
+def told(tally: Tally, all_of_them: int, most: int) -> dict[str, Any]:
     """The figures, by file, and the survivors."""
     def line(mutant: Mutant) -> str:
         return f"{mutant.file}:{mutant.line} {mutant.function}: {mutant.before}  →  {mutant.after}"
 
     total = tally.total
-    return {"passed": not tally.survivors and not tally.listed_yet_killed, "mutants": all_of_them,
+    return {"passed": len(tally.survivors) <= most and not tally.listed_yet_killed, "mutants": all_of_them,
             "tried": sum(total.values()), **dict(sorted(total.items())),
             "files": {file: dict(sorted(counts.items())) for file, counts in sorted(tally.of_file.items())},
             "survivors": sorted(map(line, tally.survivors)),

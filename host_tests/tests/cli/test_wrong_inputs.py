@@ -46,6 +46,7 @@ WRONG = {
     "rig s1 --steps 0": "--steps", "rig s1 --steps 1.5": "--steps",
     "rig s1 --rate 0 --free-run": "--rate", "rig s1 --bitrate x": "--bitrate",
     "soak mutants --only cor": "neither a part (core, node, fmu)", "soak mutants --sample 0": "--sample",
+    "soak mutants --survivors -1": "--survivors", "soak rig --survivors 5": "--survivors 5: has no effect",
     "soak mutants --only core_c/src/nothing.c": "nor a C file", "soak rig --sample 5": "--sample 5: has no effect",
     "rig s1 --watchdog 70000 --free-run": "--watchdog", "rig s1 --id-base ''": "--id-base",
     "rig s1 --id-base -32": "--id-base",

@@ -8,6 +8,7 @@ from pathlib import Path
 import pytest
 
 from laconic.mutation import mutants_of
+from laconic.mutation.campaign import place_of
 from laconic.mutation.programs import Family, Program, Unit
 from laconic.mutation.results import Results
 from laconic.mutation.trial import Outcome, Trials
@@ -91,3 +92,11 @@ def test_a_result_holds_until_its_file_changes_and_a_survivor_until_the_tests_do
     assert again.known(other) is None
     (tmp_path / "core_c/a.c").write_text("int f(int a, int b) { return a - b * 3; } /* new */\n")
     assert Results(tmp_path / "results.jsonl", ["core_c/a.c"]).known(one) is None
+
+
+def test_a_sample_stays_where_it_is_when_other_mutants_come(trials):
+    there = mutants_of(trials[1], "core_c/limited.c")
+    order = sorted(there, key=lambda mutant: place_of(1, mutant))
+    fewer = sorted(there[::2], key=lambda mutant: place_of(1, mutant))
+    assert fewer == [mutant for mutant in order if mutant in fewer]
+    assert order != sorted(there, key=lambda mutant: place_of(2, mutant))
