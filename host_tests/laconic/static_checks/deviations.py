@@ -48,7 +48,7 @@ DEVIATIONS = {
     "9.2": counted(R, "structs and arrays within structs are filled in order where the type makes plain what is "
                       "meant", core=12, FMU=4),
     "9.3": everywhere(R, "{0} and ALL_ZERO set everything to zero; of other arrays the rest is zero and says so"),
-    "10.1": everywhere(R, "& and | of flags as a condition, shifts by a constant of a checked unsigned type, sums "
+    "10.1": everywhere(R, "bitwise operators between flags as a condition, shifts by a constant of a checked unsigned type, sums "
                           "of verdicts as 0 or 1"),
     "10.3": everywhere(R, "a number of bits or items that fits the narrower type by what was checked before"),
     "10.4": everywhere(R, "int and int32_t, enumerations and their numbers meet; the compilers' -Wconversion and "

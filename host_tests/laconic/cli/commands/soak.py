@@ -38,7 +38,7 @@ def kinds() -> dict[str, str]:
 @click.option("--steps", type=click.IntRange(min=1), metavar="N", help="long: 10⁹ by default.")
 @click.option("-o", "--out", type=OutputFolder(), metavar="DIR", help="population, long: what is done; goes on there.")
 @click.option("--sample", type=click.IntRange(min=1), metavar="N", help="mutants: so many, whatever the minutes.")
-@click.option("--survivors", type=click.IntRange(min=0), metavar="N", help="mutants: passed with so many, 0 by default.")
+@click.option("--survivors", type=click.IntRange(min=0), metavar="N", help="mutants: passed with so many, or 0.")
 @click.option("--only", metavar="PART", help="mutants: core, node, fmu, or one C file by its path.")
 @json_flag()
 def command(what: str, minutes: float, seed: int | None, json_wanted: bool, **special: Any) -> int:
