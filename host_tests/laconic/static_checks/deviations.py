@@ -48,8 +48,8 @@ DEVIATIONS = {
     "9.2": counted(R, "structs and arrays within structs are filled in order where the type makes plain what is "
                       "meant", core=12, FMU=4),
     "9.3": everywhere(R, "{0} and ALL_ZERO set everything to zero; of other arrays the rest is zero and says so"),
-    "10.1": everywhere(R, "bitwise operators between flags as a condition, shifts by a constant of a checked unsigned type, sums "
-                          "of verdicts as 0 or 1"),
+    "10.1": everywhere(R, "bitwise operators between flags as a condition, shifts by a constant of a checked unsigned "
+                          "type, sums of verdicts as 0 or 1"),
     "10.3": everywhere(R, "a number of bits or items that fits the narrower type by what was checked before"),
     "10.4": everywhere(R, "int and int32_t, enumerations and their numbers meet; the compilers' -Wconversion and "
                           "-Wsign-conversion are errors"),
@@ -60,7 +60,6 @@ DEVIATIONS = {
     "11.1": counted(R, "callbacks are kept as the type that FMI gives them", FMU=8),
     "11.5": everywhere(A, "void pointers carry what memory is made of: offsets into a vehicle by its table, and "
                           "FMI's instances"),
-    "11.8": counted(R, "no const is taken away: a constant list of pointers to numbers that change", FMU=4),
     "12.1": everywhere(A, "* before +, && before ||, and comparison before both, as physicists write; compilers "
                           "warn of all others (-Wparentheses)"),
     "12.3": everywhere(A, "declarations of several numbers of one kind on one line, such as x_m, y_m"),

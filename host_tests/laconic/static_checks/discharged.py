@@ -7,8 +7,7 @@ E, H, M = "core_c/src/elementary.c", "core_c/src/heading.h", "core_c/src/message
 CONVERSION, UNSET = "", "uninitialized"
 OF_N = "written for each wheel of the same model in the lines before; both loops run to the same wheel_count"
 ROTATES = ("cosine and sine of a forcing, and what is made of them, are read only where its flag `rotates` is "
-           "set; the function"
-           "that sets the flag sets them, too. The analyser forgets that both go together")
+           "set; the function that sets the flag sets them, too. The analyser forgets that both go together")
 
 DISCHARGED: tuple[tuple[str, str, str, str], ...] = (
     ("core_c/proof/core.c", "assert 0 <= vehicle.wheel_count", "assertion",
@@ -29,8 +28,7 @@ DISCHARGED: tuple[tuple[str, str, str, str], ...] = (
      "turns, below 2⁶³"),
     (H, "const signed_binary_angle half", CONVERSION,
      "turns − whole lies in (−1, 1), so its product with 2⁶³ is at most 2⁶³ − 2¹⁰; rest is within ±1 in every "
-     "heading that the core has"
-     "made, since it is what rounding to whole units left"),
+     "heading that the core has made, since it is what rounding to whole units left"),
     (H, "heading->turns += whole", "signed overflow",
      "whole is within ±2.9·10¹⁸; steps begin within 2⁶² turns (heading_has_room) and a start with none, so the "
      "sum stays within 7.6·10¹⁸"),
