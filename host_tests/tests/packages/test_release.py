@@ -23,6 +23,7 @@ from laconic_release.collect import collect
 from laconic_release.parts import Places
 from laconic_release.products import products
 from laconic_release.tree import NoRelease, Tree, tree_of
+from laconic_wheel import cross
 from laconic_wheel.contents import FMUS
 from laconic_wheel.platforms import PLATFORMS
 
@@ -209,3 +210,13 @@ def test_the_fmus_in_a_wheel_run_on_the_systems_that_its_tag_names():
     """A glibc or a macOS without a version would be the newest that the compiler knows."""
     of_wheels = {each.target for each in PLATFORMS.values() if "musl" not in each.target}
     assert set(TARGETS.values()) == of_wheels
+
+
+def test_the_node_of_a_wheel_for_another_platform_has_every_room_of_the_node(monkeypatch, tmp_path: Path) -> None:
+    compiled: list[list[Path]] = []
+    monkeypatch.setattr(cross, "compile_to", lambda target, sources, *rest, **more: compiled.append(list(sources)))
+    cross.compile_all(PLATFORMS["linux-x86_64"], SOURCE_DIR, tmp_path, tmp_path, "python")
+    process = {path.relative_to(SOURCE_DIR / "firmware_stub").parts[0] for path in compiled[-1]
+               if SOURCE_DIR / "firmware_stub" in path.parents}
+    rooms = {folder.name for folder in (SOURCE_DIR / "firmware_stub").iterdir() if any(folder.rglob("*.c"))}
+    assert len(compiled) == 6 and process == rooms - {"fuzz", "proof", "tests"}

@@ -22,7 +22,8 @@ def compile_all(platform: Platform, project: Path, wire: Path, out: Path, python
     rooms = ("src", "derivatives", "filter", "estimate", "batch")
     core = sorted(path for room in rooms for path in (project / "core_c" / room).glob("*.c"))
     apart = [node_dir / "src" / name for name in ("shared_library.c", "library_drives.c")]
-    node = [path for path in sorted([*(node_dir / "src").glob("*.c"), *(node_dir / "drives").rglob("*.c")])
+    rooms_of_node = ("src", "drives", "secure")
+    node = [path for room in rooms_of_node for path in sorted((node_dir / room).rglob("*.c"))
             if path not in apart] + sorted(wire.glob("*.c"))
     includes = [project / "core_c" / "include", project / "core_c" / "src", node_dir / "include", node_dir / "src",
                 node_dir / "drives", wire]
