@@ -10,10 +10,10 @@ from dataclasses import dataclass
 from functools import lru_cache
 from pathlib import Path
 
+from laconic.benchmark.counting_board import CALIBRATED_INSTRUCTIONS, lines_of_board, stopped_early
 from laconic.benchmark.workshop import Target, Variant, Workshop, entry_of, run_tool
 from laconic.errors import ResultFails
 
-CALIBRATED_INSTRUCTIONS = 65536
 LARGEST_COUNTER = 2**24
 STATE_LINES = ("zeta", "x", "y", "turns", "heading", "travel", "wheel_speed", "wheel_angle")
 CONSTANTS = ("laconic_scene_model", "laconic_scene_integrator", "laconic_scene_friction")
@@ -56,14 +56,11 @@ def count_on_board(workshop: Workshop, target: Target, variant: Variant) -> Boar
 
 
 def run_on_board(target: Target, image: Path) -> BoardRun | None:
-    """Runs a counting image under QEMU with one instruction every 256 ns; None where the counter overflows."""
-    command = ["qemu-system-arm", "-M", target.machine, "-nographic", "-monitor", "none", "-serial", "none", "-icount",
-               "shift=8", "-semihosting-config", "enable=on,target=native", "-kernel", str(image)]
-    done = subprocess.run(command, capture_output=True, text=True, timeout=60, stdin=subprocess.DEVNULL, check=False)
-    lines = [line for line in (done.stdout + done.stderr).splitlines() if line.strip()]
+    """Runs a counting image; None where the counter overflows."""
+    lines, exit_status = lines_of_board(target, image)
     values = {name: text for name, _, text in (line.partition(" ") for line in lines)}
-    if done.returncode != 0 or "status" not in values:
-        raise ResultFails(f"{image.name} on {target.machine} stopped early: {' '.join(lines[-2:])}")
+    if exit_status != 0 or "status" not in values:
+        raise stopped_early(target, image, lines)
     steps, first, second = int(values["steps"]), int(values["ticks_1"]), int(values["ticks_2"])
     if not first * 1.5 < second < first * 2.5 or first > LARGEST_COUNTER * 0.45:
         return None

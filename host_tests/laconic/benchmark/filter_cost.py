@@ -5,7 +5,6 @@ of 2,000 counts a turn and a gyro.
 
 from __future__ import annotations
 
-import subprocess
 from collections.abc import Iterator
 from dataclasses import dataclass
 from pathlib import Path
@@ -14,11 +13,11 @@ from typing import Any
 
 import numpy as np
 
-from laconic.benchmark.counting import CALIBRATED_INSTRUCTIONS
+from laconic.benchmark.counting_board import CALIBRATED_INSTRUCTIONS, lines_of_board, stopped_early
 from laconic.benchmark.workshop import BENCH, M4F, Target, Variant, Workshop, run_tool
 from laconic.control.filter import Filter
 from laconic.core import load
-from laconic.errors import BadInput, ResultFails
+from laconic.errors import BadInput
 from laconic.scene import Scene, read_scene
 from laconic.trim.c_tables import initializer
 
@@ -194,14 +193,11 @@ class BoardRun:
 
 
 def run_on_board(target: Target, image: Path) -> BoardRun:
-    """Runs a counting image under QEMU, one instruction every 256 ns."""
-    command = ["qemu-system-arm", "-M", target.machine, "-nographic", "-monitor", "none", "-serial", "none", "-icount",
-               "shift=8", "-semihosting-config", "enable=on,target=native", "-kernel", str(image)]
-    done = subprocess.run(command, capture_output=True, text=True, timeout=60, stdin=subprocess.DEVNULL, check=False)
-    lines = [line for line in (done.stdout + done.stderr).splitlines() if line.strip()]
+    """Runs a counting image."""
+    lines, exit_status = lines_of_board(target, image)
     values = {name: int(text) for name, _, text in (line.partition(" ") for line in lines) if text.isdecimal()}
-    if done.returncode != 0 or values.get("status") != 0 or "end" not in lines:
-        raise ResultFails(f"{image.name} on {target.machine} stopped early: {' '.join(lines[-2:])}")
+    if exit_status != 0 or values.get("status") != 0 or "end" not in lines:
+        raise stopped_early(target, image, lines)
     per_instruction = values["calibration"] / CALIBRATED_INSTRUCTIONS
     counts = {part: (values[part] / values["cycles"] - values["overhead"]) / per_instruction for part in PARTS}
     stacks = [int(line.split()[1]) for line in lines if line.startswith("stack ")]

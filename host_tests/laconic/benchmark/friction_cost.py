@@ -16,7 +16,8 @@ from typing import Any
 
 import numpy as np
 
-from laconic.benchmark.counting import CALIBRATED_INSTRUCTIONS, cachegrind_present, size_of_step
+from laconic.benchmark.counting import cachegrind_present, size_of_step
+from laconic.benchmark.counting_board import CALIBRATED_INSTRUCTIONS, lines_of_board, stopped_early
 from laconic.benchmark.workshop import HOST, Target, Variant, Workshop
 from laconic.errors import ResultFails
 from laconic.scene import Scene, read_scene
@@ -85,14 +86,12 @@ def host_spread(program: Path, steps: int = HOST_STEPS) -> np.ndarray:
 def board_spread(workshop: Workshop, target: Target, variant: Variant, steps: int = BOARD_STEPS) -> np.ndarray:
     """Instructions of each step on a board under QEMU."""
     image = workshop.board_image(target, variant, steps, "spread")
-    command = ["qemu-system-arm", "-M", target.machine, "-nographic", "-monitor", "none", "-serial", "none", "-icount",
-               "shift=8", "-semihosting-config", "enable=on,target=native", "-kernel", str(image)]
-    done = subprocess.run(command, capture_output=True, text=True, timeout=120, stdin=subprocess.DEVNULL, check=False)
-    lines = [line.split() for line in (done.stdout + done.stderr).splitlines() if line.strip()]
+    printed, _ = lines_of_board(target, image, 120.0)
+    lines = [line.split() for line in printed]
     ticks = np.array([int(line[1]) for line in lines if line[0] == "ticks"], float)
     one = {line[0]: int(line[1]) for line in lines if line[0] in ("calibration", "overhead")}
     if len(ticks) != steps or len(one) != 2:
-        raise ResultFails(f"{image.name} on {target.machine} stopped early: {done.stderr[-200:]}")
+        raise stopped_early(target, image, printed)
     return (ticks - one["overhead"]) / (one["calibration"] / CALIBRATED_INSTRUCTIONS)
 
 

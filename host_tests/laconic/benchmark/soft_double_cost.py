@@ -3,13 +3,13 @@ QEMU, and flash."""
 
 from __future__ import annotations
 
-import subprocess
 from pathlib import Path
 from tempfile import TemporaryDirectory
 from typing import Any
 
-from laconic.benchmark.counting import CALIBRATED_INSTRUCTIONS, count_on_board, host_state, size_of_step
-from laconic.benchmark.workshop import BENCH, M4F, Variant, Workshop, run_tool
+from laconic.benchmark.counting import count_on_board, host_state, size_of_step
+from laconic.benchmark.counting_board import instructions_by_kind
+from laconic.benchmark.workshop import M4F, Variant, Workshop
 from laconic.errors import BadInput
 from laconic.paths import SOURCE_DIR
 from laconic.scene import read_scene
@@ -35,19 +35,8 @@ def rows() -> list[Row]:
 
 def additions(folder: Path, soft_double: bool) -> dict[str, float]:
     """Instructions of one addition, by kind."""
-    console, startup = BENCH / "cortex_m", BENCH.parent / "cortex_m"
-    image = folder / "count_add.elf"
-    sources = [console / "count_add.c", console / "bench_board.c", startup / "startup.c",
-               *([SOFT_DOUBLE] if soft_double else [])]
-    run_tool([M4F.tool("gcc"), *M4F.flags, "-O2", "-std=c99", f"-I{console}", f"-I{startup}", f"-L{startup}",
-              "-ffreestanding", "-nostartfiles", *map(str, sources), f"-T{M4F.script}", "-o", str(image)])
-    command = ["qemu-system-arm", "-M", M4F.machine, "-nographic", "-monitor", "none", "-serial", "none", "-icount",
-               "shift=8", "-semihosting-config", "enable=on,target=native", "-kernel", str(image)]
-    done = subprocess.run(command, capture_output=True, text=True, timeout=60, stdin=subprocess.DEVNULL, check=True)
-    ticks = {name: int(value) for name, value in
-             (line.split() for line in (done.stdout + done.stderr).splitlines() if line.strip())}
-    per_instruction = ticks.pop("calibration") / CALIBRATED_INSTRUCTIONS
-    return {name: round(value / per_instruction / PAIRS, 1) for name, value in ticks.items()}
+    counted = instructions_by_kind(M4F, "count_add", [SOFT_DOUBLE] if soft_double else [], (), folder)
+    return {name: round(value / PAIRS, 1) for name, value in counted.items()}
 
 
 def step_rows(folder: Path, method: str) -> list[Row]:

@@ -27,11 +27,6 @@ class Equivalent:
     after: str
     reason: str
 
-    def is_of(self, mutant: Mutant) -> bool:
-        """Whether it is this one."""
-        return (self.file, self.function, self.before, self.after) == (mutant.file, mutant.function, mutant.before,
-                                                                       mutant.after)
-
 
 def read_equivalents(path: Path = EQUIVALENTS) -> list[Equivalent]:
     """The list; BadInput for a row that is not complete."""
