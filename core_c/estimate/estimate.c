@@ -1,6 +1,6 @@
 /* Error estimate: windows of steps, in each the error of the first step by two half steps; and the twin of a plant with
  * friction. linear_motion.c carries the error from window to window. */
-#include "linear_motion.h"
+#include "estimate_parts.h"
 
 /* ----------------------------------------------------------------------------------- starting -- */
 
@@ -135,7 +135,7 @@ static state_error error_at_start(const laconic_estimate *estimate) {
     return error;
 }
 
-static void keep_error(laconic_estimate *estimate, const state_error *error) {
+void laconic_estimate_keep_error(laconic_estimate *estimate, const state_error *error) {
     store(estimate->zeta, error->zeta);
     store(estimate->travel, error->travel);
     for (int k = 0; k < 2; k++) estimate->place_m[k] = error->place_m[k];
@@ -148,7 +148,7 @@ static void keep_error(laconic_estimate *estimate, const state_error *error) {
 }
 
 /* The error at the moment of the plant, as far as the window has come. */
-static state_error error_now(const laconic_estimate *estimate, const laconic_plant *plant) {
+state_error laconic_estimate_error_now(const laconic_estimate *estimate, const laconic_plant *plant) {
     state_error error = error_at_start(estimate);
     const laconic_state *now = &plant->state, *start = &estimate->start;
     window_motion motion;
@@ -226,7 +226,7 @@ static void sizes_by_wheel(laconic_error *sizes, laconic_error *floor, const sta
 
 /* How far the plant has been from where the estimate began: a growing error ε of the heading turns the path, and
  * |∫ε i dp| = |ε p − ∫p dε| is at most twice the last ε times that. */
-static real extent_of(const laconic_estimate *estimate, const laconic_state *now) {
+real laconic_estimate_extent(const laconic_estimate *estimate, const laconic_state *now) {
     const real dx = now->x_m.value - estimate->origin_m[0], dy = now->y_m.value - estimate->origin_m[1];
     return larger_of(estimate->extent_m, magnitude(dx) + magnitude(dy));
 }
@@ -249,7 +249,7 @@ static void sizes_of(laconic_error *sizes, laconic_error *floor, const state_err
     sizes->heading_rad = magnitude(dot(yaw, error->travel)) + sizes_dot(yaw, error->doubt_travel);
     floor->heading_rad = size(yaw) * error->floor_travel;
     sizes->place_m = laconic_root(place[0] * place[0] + place[1] * place[1]) + error->doubt_place_m;
-    floor->place_m = error->floor_path_m + R(2) * floor->heading_rad * extent_of(estimate, &plant->state);
+    floor->place_m = error->floor_path_m + R(2) * floor->heading_rad * laconic_estimate_extent(estimate, &plant->state);
     add_resolution(floor, plant);
     add_floor(sizes, floor);
 }
@@ -257,11 +257,11 @@ static void sizes_of(laconic_error *sizes, laconic_error *floor, const state_err
 /* Carries the error to the plant's moment, at which the window ends. */
 static void end_window(laconic_estimate *estimate, const laconic_plant *plant) {
     laconic_error sizes, floor;
-    const state_error error = error_now(estimate, plant);
+    const state_error error = laconic_estimate_error_now(estimate, plant);
     if (estimate->taken == 0) return;
-    keep_error(estimate, &error);
+    laconic_estimate_keep_error(estimate, &error);
     sizes_of(&sizes, &floor, &error, estimate, plant);
-    estimate->extent_m = extent_of(estimate, &plant->state);
+    estimate->extent_m = laconic_estimate_extent(estimate, &plant->state);
     keep_largest(&estimate->largest, &sizes);
 }
 
@@ -338,7 +338,7 @@ void laconic_estimate_read(laconic_errors *errors, const laconic_estimate *estim
     if (has_friction(plant)) {
         read_friction(errors, estimate, plant);
     } else {
-        const state_error error = error_now(estimate, plant);
+        const state_error error = laconic_estimate_error_now(estimate, plant);
         sizes_of(&errors->now, &errors->rounding, &error, estimate, plant);
     }
     errors->largest = estimate->largest;

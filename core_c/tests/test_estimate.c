@@ -215,6 +215,99 @@ static void a_vehicle_with_friction_has_a_twin(void) {
     TEST_ASSERT_TRUE(found.now.wheel_angle_rad > 0);
 }
 
+/* ------------------------------------------------------------------------- another step or vehicle -- */
+
+/* What two plants at the same time differ by; wheel angles of three wheels. */
+static laconic_error between(const laconic_plant *plant, const laconic_plant *fine) {
+    double y[6 + LACONIC_MAX_WHEELS];
+    laconic_real nu[3], angle[LACONIC_MAX_WHEELS];
+    laconic_pose pose;
+    laconic_nu(&fine->model, &fine->state, nu);
+    laconic_pose_of(&pose, &fine->model, &fine->state);
+    laconic_wheel_angles(&fine->model, &fine->state, angle);
+    for (int k = 0; k < 3; k++) y[k] = (double)nu[k];
+    y[3] = (double)pose.x_m;
+    y[4] = (double)pose.y_m;
+    y[5] = (double)pose.heading_rad;
+    for (int i = 0; i < 3; i++) y[6 + i] = (double)angle[i];
+    return true_error(plant, y, 3);
+}
+
+static laconic_vehicle with_load(laconic_vehicle v) {
+    v.payload.mass_kg = REAL(8);
+    v.payload.x_m = REAL(0.15);
+    v.payload.y_m = REAL(-0.2);
+    v.payload.yaw_inertia_kgm2 = REAL(0.4);
+    return v;
+}
+
+/* The same changes of the vehicle and of the step, fifty times finer: the estimate must hold after them, which it would
+ * not if it had begun anew, since the later steps are ten times shorter. */
+static void after_a_change_the_estimate_goes_on(void) {
+    const laconic_vehicle v = with_motors(three_wheels());
+    const laconic_vehicle loaded = with_load(v);
+    const laconic_input input = every_input();
+    laconic_plant plant = plant_by(&laconic_exact_flow, &v, start_with(2, 1, 4), 0.04);
+    laconic_plant fine = plant_by(&laconic_exact_flow, &v, start_with(2, 1, 4), 0.0008);
+    laconic_estimate estimate = estimate_of(&plant, 16);
+    ASSERT_STATUS(LACONIC_OK, laconic_estimate_run(&estimate, &plant, &input, 20, &why));
+    ASSERT_STATUS(LACONIC_OK, laconic_plant_run(&fine, &input, 1000, &why));
+    laconic_plant before = plant;
+    ASSERT_STATUS(LACONIC_OK, laconic_plant_change(&plant, &loaded, &why));
+    ASSERT_STATUS(LACONIC_OK, laconic_plant_change(&fine, &loaded, &why));
+    const laconic_errors until = errors_now(&estimate, &before);
+    ASSERT_STATUS(LACONIC_OK, laconic_estimate_carry(&estimate, &before, &plant, NULL, &why));
+    laconic_errors found = errors_now(&estimate, &plant);
+    laconic_error truth = between(&plant, &fine);
+    assert_errors(&found, &truth);
+    TEST_ASSERT_TRUE(found.largest.nu_rad_per_s >= until.largest.nu_rad_per_s);
+    before = plant;
+    ASSERT_STATUS(LACONIC_OK, laconic_plant_set_step(&plant, REAL(0.004), &why));
+    ASSERT_STATUS(LACONIC_OK, laconic_estimate_carry(&estimate, &before, &plant, NULL, &why));
+    for (int k = 0; k < 2; k++) {
+        ASSERT_STATUS(LACONIC_OK, laconic_estimate_run(&estimate, &plant, &input, 10, &why));
+        ASSERT_STATUS(LACONIC_OK, laconic_plant_run(&fine, &input, 50, &why));
+        found = errors_now(&estimate, &plant);
+        truth = between(&plant, &fine);
+        assert_errors(&found, &truth);
+    }
+}
+
+static void a_twin_goes_on_after_a_change_and_begins_where_friction_does(void) {
+    const laconic_vehicle ideal = with_motors(mecanum());
+    laconic_vehicle v = ideal;
+    v.ground.friction_coefficient = REAL(0.5);
+    const laconic_vehicle loaded = with_load(v);
+    laconic_plant plant = plant_by(&laconic_auto, &v, start_with(0, 0, 0), 0.01);
+    laconic_estimate estimate = estimate_of(&plant, 16);
+    laconic_input input = no_input();
+    input.voltage_V[0] = input.voltage_V[1] = REAL(2);
+    ASSERT_STATUS(LACONIC_OK, laconic_estimate_run(&estimate, &plant, &input, 40, &why));
+    const laconic_errors until = errors_now(&estimate, &plant);
+    laconic_plant before = plant;
+    ASSERT_STATUS(LACONIC_OK, laconic_plant_change(&plant, &loaded, &why));
+    ASSERT_STATUS(LACONIC_OK, laconic_estimate_carry(&estimate, &before, &plant, NULL, &why));
+    const laconic_errors then = errors_now(&estimate, &plant);
+    TEST_ASSERT_TRUE(then.now.wheel_angle_rad == until.now.wheel_angle_rad);
+    TEST_ASSERT_TRUE(then.now.place_m > REAL(0.5) * until.now.place_m && then.now.place_m < 2 * until.now.place_m);
+    before = plant;
+    ASSERT_STATUS(LACONIC_OK, laconic_plant_change(&plant, &ideal, &why));
+    ASSERT_STATUS(LACONIC_OK, laconic_estimate_carry(&estimate, &before, &plant, NULL, &why));
+    const laconic_errors fresh = errors_now(&estimate, &plant);
+    TEST_ASSERT_TRUE(fresh.largest.wheel_angle_rad < REAL(0.5) * until.now.wheel_angle_rad);
+}
+
+static void a_step_without_half_of_it_is_refused_after_a_change(void) {
+    const laconic_vehicle v = with_motors(three_wheels());
+    laconic_plant plant = plant_by(&laconic_auto, &v, start_with(2, 1, 4), 0.01), before = plant;
+    laconic_estimate estimate = estimate_of(&plant, 4);
+    const laconic_estimate kept = estimate;
+    ASSERT_STATUS(LACONIC_OK, laconic_plant_set_step(&plant, REAL(12.0 * (double)LACONIC_REAL_MIN), &why));
+    ASSERT_REFUSED(LACONIC_OVERFLOW, LACONIC_FIELD_STEP, 0,
+                   laconic_estimate_carry(&estimate, &before, &plant, NULL, &why), why);
+    TEST_ASSERT_EQUAL_MEMORY(&kept, &estimate, sizeof kept);
+}
+
 /* --------------------------------------------------------------------------------------- refusals -- */
 
 static void windows_without_steps_are_refused(void) {
@@ -333,6 +426,9 @@ int main(void) {
     RUN_TEST(a_schedule_gives_rows_and_the_bits_of_runs);
     RUN_TEST(samples_that_follow_one_another_share_windows);
     RUN_TEST(a_vehicle_with_friction_has_a_twin);
+    RUN_TEST(after_a_change_the_estimate_goes_on);
+    RUN_TEST(a_twin_goes_on_after_a_change_and_begins_where_friction_does);
+    RUN_TEST(a_step_without_half_of_it_is_refused_after_a_change);
     RUN_TEST(windows_without_steps_are_refused);
     RUN_TEST(a_refused_step_is_refused_as_without);
     RUN_TEST(half_steps_that_are_refused_are_counted);

@@ -8,6 +8,7 @@ from pathlib import Path
 
 from . import archive, fmi2, fmi3
 from .description import parse, read, token_in, token_of, with_token
+from .estimate import with_estimate, without_estimate
 from .field_list import missing_variable
 from .for_vehicle import for_vehicle
 from .licences import licence_parts, ziglang_in
@@ -26,6 +27,7 @@ def make_tables(arguments: argparse.Namespace) -> None:
     for header in arguments.fields:
         if fault := missing_variable(header, arguments.description, description):
             sys.exit(fault)
+    description = with_estimate(description) if arguments.estimate else without_estimate(description)
     generic = for_vehicle(description)
     if arguments.of_step:
         generic = of_step(generic)
@@ -85,6 +87,7 @@ def main() -> None:
     command.add_argument("--fields", type=Path, nargs="*", default=[],
                          help="headers with the core's lists of fields, each of which must be a variable")
     command.add_argument("--of-step", action="store_true", help="derivatives of communication steps")
+    command.add_argument("--estimate", action="store_true", help="with an error estimate")
     command.set_defaults(run=make_tables)
     command = commands.add_parser("pack")
     command.add_argument("--version", type=int, choices=(2, 3), required=True)

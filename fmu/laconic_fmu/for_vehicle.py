@@ -1,11 +1,11 @@
-"""A description for one vehicle: with friction and sensors only where its start values have them."""
+"""A description for one vehicle: with friction, sensors and an estimate only where its start values have them."""
 
 from __future__ import annotations
 
-from . import friction, sensors
+from . import estimate, friction, sensors
 from .description import Description
 
 
 def for_vehicle(description: Description) -> Description:
     """The description without what its vehicle does not need."""
-    return friction.for_vehicle(sensors.for_vehicle(description))
+    return friction.for_vehicle(sensors.for_vehicle(estimate.for_vehicle(description)))

@@ -7,14 +7,11 @@ One structure cannot state both, so this FMU is for Co-Simulation alone, and its
 from __future__ import annotations
 
 from .description import Description
-from .reduced import EVERYTHING, reduced
+from .reduced import EVERYTHING, reduced, without_model_exchange
 
 
 def of_step(description: Description) -> Description:
     """The description for Co-Simulation with derivatives of its steps."""
     names = {v.reference: v.name for v in description.variables}
     unknowns = {names[u.reference]: EVERYTHING for u in description.unknowns if u.tag != "InitialUnknown"}
-    changed = reduced(description, lambda v: True, unknowns)
-    for interface in changed.root.findall("ModelExchange"):
-        changed.root.remove(interface)
-    return changed
+    return without_model_exchange(reduced(description, lambda v: True, unknowns))

@@ -32,6 +32,14 @@ def reduced(description: Description, kept: Callable[[Variable], bool],
     return replace(description, root=root, variables=variables, unknowns=unknowns)
 
 
+def without_model_exchange(description: Description) -> Description:
+    """The description for Co-Simulation alone."""
+    root = ET.fromstring(ET.tostring(description.root))
+    for interface in root.findall("ModelExchange"):
+        root.remove(interface)
+    return replace(description, root=root)
+
+
 def _depending(description: Description, unknown: Unknown, name: str, depends: Dependencies) -> Unknown:
     if name not in depends:
         return unknown

@@ -5,11 +5,8 @@ Sensors sample at internal steps, which Model Exchange does not have, so such an
 
 from __future__ import annotations
 
-import xml.etree.ElementTree as ET
-from dataclasses import replace
-
 from .description import Description
-from .reduced import is_above_0, reduced
+from .reduced import is_above_0, reduced, without_model_exchange
 
 HAS_IMU, COUNTS = "has_imu", "encoder_counts_per_turn"
 """Above 0: the vehicle has an IMU; a wheel has an encoder."""
@@ -25,11 +22,4 @@ def for_vehicle(description: Description) -> Description:
     absent = tuple(start for start, there in ((HAS_IMU, has_imu), (OF_IMU, has_imu), (OF_ENCODERS, has_encoders))
                    if not there)
     found = reduced(description, lambda v: not v.name.startswith(absent))
-    return _without_model_exchange(found) if has_imu or has_encoders else found
-
-
-def _without_model_exchange(description: Description) -> Description:
-    root = ET.fromstring(ET.tostring(description.root))
-    for interface in root.findall("ModelExchange"):
-        root.remove(interface)
-    return replace(description, root=root)
+    return without_model_exchange(found) if has_imu or has_encoders else found

@@ -1,6 +1,7 @@
 /* The vehicle as an FMU model: starts and steps the core's plant, and computes outputs when they are read. */
 #include <stdio.h>
 
+#include "estimate_part.h"
 #include "friction_part.h"
 #include "grip_warning.h"
 #include "idle_motors.h"
@@ -65,9 +66,11 @@ fmu_status fmu_model_start(fmu_instance *instance) {
     if (status == LACONIC_OK) status = fmu_friction_prepare(&self->vehicle, &self->contact, &self->rolling, &why);
     if (status == LACONIC_OK) fmu_sensors_find(self);
     if (status == LACONIC_OK) status = fmu_sensors_start(self, &why);
+    if (FMU_MODEL_ESTIMATES && status == LACONIC_OK) status = fmu_estimate_start(self, &why);
     if (status != LACONIC_OK) return refuse_with(instance, &why, "this vehicle cannot start");
     if ((self->continuous && fmu_friction_refuses(instance, &self->vehicle)) || fmu_sensors_refuse(instance))
         return FMU_ERROR;
+    if (FMU_MODEL_ESTIMATES && fmu_estimate_refuses(instance)) return FMU_ERROR;
     self->start_needed = self->change_needed = false;
     fmu_idle_motors_find(self);
     fmu_model_input_changed(instance);
@@ -96,6 +99,7 @@ fmu_status fmu_model_change(fmu_instance *instance) {
     if (self->stand_in && !laconic_vehicle_has_friction(&self->vehicle)) plant.integrator.method = &laconic_exact_flow;
     laconic_status status = laconic_plant_change(&plant, &self->vehicle, &why);
     if (status == LACONIC_OK) status = fmu_friction_prepare(&self->vehicle, &contact, &rolling, &why);
+    if (FMU_MODEL_ESTIMATES && status == LACONIC_OK) status = fmu_estimate_change(self, &plant, &why);
     if (status != LACONIC_OK) return refuse_with(instance, &why, "the changed vehicle is refused");
     plant.integrator.method = self->plant.integrator.method;
     self->plant = plant;
@@ -184,6 +188,7 @@ void fmu_model_refresh(fmu_instance *instance, uint32_t groups) {
     else
         refresh_ideal(self, groups);
     if (groups & FMU_GROUP_SENSORS) fmu_sensors_refresh(self);
+    if (FMU_MODEL_ESTIMATES && groups & FMU_GROUP_ESTIMATE) fmu_estimate_refresh(self);
     self->stale &= ~groups;
     if (groups & FMU_GROUP_RATES) refresh_rates(instance);
     if (groups & FMU_GROUP_ACCELERATION) refresh_acceleration(instance);
@@ -193,9 +198,14 @@ void fmu_model_refresh(fmu_instance *instance, uint32_t groups) {
 
 double fmu_model_own_step(const fmu_model *model) { return model->step_s; }
 
+static laconic_status set_step(fmu_model *self, double step_s, laconic_refusal *why) {
+    if (FMU_MODEL_ESTIMATES && fmu_estimate_is_on(self)) return fmu_estimate_set_step(self, step_s, why);
+    return laconic_plant_set_step(&self->plant, step_s, why);
+}
+
 fmu_status fmu_model_set_step(fmu_instance *instance, double step_s) {
     laconic_refusal why = {LACONIC_OK, LACONIC_FIELD_NONE, 0, 0.0, 0.0};
-    if (laconic_plant_set_step(&instance->model.plant, step_s, &why) != LACONIC_OK) return discard_with(instance, &why);
+    if (set_step(&instance->model, step_s, &why) != LACONIC_OK) return discard_with(instance, &why);
     instance->model.stand_in = false;
     return FMU_OK;
 }
@@ -241,6 +251,12 @@ static void shift_input(laconic_input *out, const fmu_model *self, double by_s) 
     out->body_moment_Nm = u->body_moment_Nm + by_s * du->body_moment_Nm;
 }
 
+static laconic_status step_sampled(fmu_model *self, const laconic_input samples[3], laconic_refusal *why) {
+    if (FMU_MODEL_ESTIMATES && fmu_estimate_is_on(self)) return fmu_estimate_run_sampled(self, samples, why);
+    if (self->watched) return laconic_sensors_run_sampled(&self->sensors, &self->plant, samples, why);
+    return laconic_plant_run_sampled(&self->plant, samples, why);
+}
+
 /* Inputs change linearly over the communication step and are sampled three times in each internal step. */
 static laconic_status run_sloped(fmu_instance *instance, uint64_t steps, laconic_refusal *why) {
     fmu_model *self = &instance->model;
@@ -252,8 +268,7 @@ static laconic_status run_sloped(fmu_instance *instance, uint64_t steps, laconic
             laconic_plant_reactions(&self->ground, &self->plant, &self->contact, &at[0]);
             fmu_grip_check(instance, &self->ground, start_s + (double)n * h);
         }
-        const laconic_status status = self->watched ? laconic_sensors_run_sampled(&self->sensors, &self->plant, at, why)
-                                                    : laconic_plant_run_sampled(&self->plant, at, why);
+        const laconic_status status = step_sampled(self, at, why);
         if (status != LACONIC_OK) return status;
     }
     shift_input(&self->input, self, (double)steps * h);
@@ -262,6 +277,7 @@ static laconic_status run_sloped(fmu_instance *instance, uint64_t steps, laconic
 }
 
 static laconic_status step_held(fmu_model *self, uint64_t steps, laconic_refusal *why) {
+    if (FMU_MODEL_ESTIMATES && fmu_estimate_is_on(self)) return fmu_estimate_run(self, steps, why);
     if (self->watched) return laconic_sensors_run(&self->sensors, &self->plant, &self->input, steps, why);
     return laconic_plant_run(&self->plant, &self->input, steps, why);
 }
@@ -281,15 +297,16 @@ static laconic_status run_held(fmu_instance *instance, uint64_t steps, laconic_r
     return step_held(self, steps - n, why);
 }
 
-/* Where a sensor leaves its range, its step has been taken; it is taken back. */
+/* Where a sensor leaves its range, its step has been taken; it is taken back. So is what an estimate has begun. */
 static fmu_status run_several_steps(fmu_instance *instance, uint64_t steps, uint64_t *taken) {
     fmu_model *self = &instance->model;
     laconic_refusal why;
     const uint64_t before = self->plant.steps;
     fmu_model_motion motion;
-    if (self->watched) fmu_model_save_motion(self, &motion);
+    const bool is_kept = self->watched || (FMU_MODEL_ESTIMATES && fmu_estimate_is_on(self));
+    if (is_kept) fmu_model_save_motion(self, &motion);
     const laconic_status status = self->sloped ? run_sloped(instance, steps, &why) : run_held(instance, steps, &why);
-    if (self->watched && status != LACONIC_OK) fmu_model_restore_motion(self, &motion);
+    if (is_kept && status != LACONIC_OK) fmu_model_restore_motion(self, &motion);
     *taken = self->plant.steps - before;
     self->stale = FMU_GROUPS_ALL & ~FMU_GROUP_STATE;
     return status == LACONIC_OK ? FMU_OK : discard_with(instance, &why);
@@ -297,7 +314,7 @@ static fmu_status run_several_steps(fmu_instance *instance, uint64_t steps, uint
 
 /* One step with held inputs: what most importers need at every communication step. */
 static bool run_one(fmu_model *self) {
-    if (self->watched) return false;
+    if (self->watched || (FMU_MODEL_ESTIMATES && fmu_estimate_is_on(self))) return false;
     if (laconic_step(&self->plant.model, &self->plant.integrator, &self->plant.state, &self->input) != LACONIC_OK)
         return false;
     self->plant.steps++;
@@ -318,6 +335,7 @@ void fmu_model_save_motion(const fmu_model *model, fmu_model_motion *motion) {
     if (model->watched) motion->sensors = model->sensors;
     motion->steps = model->plant.steps;
     motion->input = model->input;
+    if (FMU_MODEL_ESTIMATES) fmu_estimate_save(model, motion);
 }
 
 void fmu_model_restore_motion(fmu_model *model, const fmu_model_motion *motion) {
@@ -326,6 +344,7 @@ void fmu_model_restore_motion(fmu_model *model, const fmu_model_motion *motion) 
     if (model->watched) model->sensors = motion->sensors;
     model->plant.steps = motion->steps;
     model->input = motion->input;
+    if (FMU_MODEL_ESTIMATES) fmu_estimate_restore(model, motion);
     model->stale = FMU_GROUPS_ALL & ~FMU_GROUP_STATE;
 }
 

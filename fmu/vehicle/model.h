@@ -18,6 +18,19 @@
 #include "laconic/derivatives.h"
 #endif
 
+/* 1 in an FMU that estimates its error (estimate_part.c): sources/ has that number. */
+#ifndef FMU_MODEL_ESTIMATES
+#define FMU_MODEL_ESTIMATES 0
+#endif
+#if FMU_MODEL_ESTIMATES
+#include "laconic/estimate.h"
+#define FMU_ESTIMATED_MEMBERS \
+    laconic_errors estimated; \
+    double estimated_unknown;
+#else
+#define FMU_ESTIMATED_MEMBERS
+#endif
+
 /* Number of elements of the arrays that have one for each wheel, at most FMU_MODEL_LARGEST_ARRAY. */
 #define FMU_MODEL_ARRAY_SIZE(model) ((uint32_t)(model)->vehicle.wheel_count)
 
@@ -38,7 +51,8 @@
 #define FMU_GROUP_FRICTION 2048U /* what only vehicles with friction or limits of a drive show */
 #define FMU_GROUP_ACCELERATION 4096U
 #define FMU_GROUP_SENSORS 8192U /* what IMU and encoders show: samples of internal steps, which no input changes */
-#define FMU_GROUPS_ALL 16379U
+#define FMU_GROUP_ESTIMATE 16384U
+#define FMU_GROUPS_ALL 32763U
 #define FMU_GROUPS_OF_INPUT \
     (FMU_GROUP_TORQUES | FMU_GROUP_GROUND | FMU_GROUP_RATES | FMU_GROUP_FRICTION | FMU_GROUP_ACCELERATION)
 #define FMU_GROUPS_OF_CONTINUOUS_STATES(model) \
@@ -46,6 +60,7 @@
 
 /* The continuous states and the outputs: values as members of fmu_model, derivatives as members of fmu_tangent. */
 #define FMU_MOVING_MEMBERS \
+    FMU_ESTIMATED_MEMBERS \
     double nu[3], x_m, y_m, heading_rad; \
     double wheel_angle_rad[LACONIC_MAX_WHEELS]; \
     laconic_pose pose; \
@@ -121,6 +136,12 @@ typedef struct fmu_model {
     bool has_jacobian;        /* of `last`                  */
     laconic_step_jacobian jacobian;
 #endif
+#if FMU_MODEL_ESTIMATES
+    bool estimate_error;
+    bool estimate_begun; /* the step is known, and `estimate` set */
+    int32_t estimate_window_steps;
+    laconic_estimate estimate;
+#endif
 } fmu_model;
 
 /* What steps change. */
@@ -130,6 +151,9 @@ typedef struct fmu_model_motion {
     laconic_sensors sensors; /* where they watch     */
     uint64_t steps;
     laconic_input input;
+#if FMU_MODEL_ESTIMATES
+    laconic_estimate estimate;
+#endif
 } fmu_model_motion;
 
 /* Derivatives of states, inputs and outputs along one direction. */

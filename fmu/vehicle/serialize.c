@@ -169,6 +169,62 @@ static void serialize_plant(fmu_stream *s, fmu_model *self) {
     if (!prepare_again(self, method, step_s)) s->failed = true;
 }
 
+#if FMU_MODEL_ESTIMATES
+
+static void serialize_forcing(fmu_stream *s, laconic_forcing *forcing) {
+    fmu_stream_reals(s, forcing->constant, 3);
+    fmu_stream_reals(s, forcing->cosine, 3);
+    fmu_stream_reals(s, forcing->sine, 3);
+    fmu_stream_bool(s, &forcing->rotates);
+}
+
+/* Its error at the start of the window, and the window so far. */
+static void serialize_window(fmu_stream *s, laconic_estimate *e) {
+    const int32_t most = LACONIC_ESTIMATE_MOST;
+    fmu_stream_reals(s, e->zeta, 3);
+    fmu_stream_reals(s, e->travel, 3);
+    fmu_stream_reals(s, e->place_m, 2);
+    fmu_stream_reals(s, &e->floor_zeta, 1);
+    fmu_stream_reals(s, &e->floor_travel, 1);
+    fmu_stream_reals(s, &e->floor_path_m, 1);
+    fmu_stream_reals(s, e->doubt_zeta, 3);
+    fmu_stream_reals(s, e->doubt_travel, 3);
+    fmu_stream_reals(s, &e->doubt_place_m, 1);
+    fmu_stream_i32(s, &e->length, 0, most);
+    fmu_stream_i32(s, &e->taken, 0, most);
+    fmu_stream_i32(s, &e->last_length, 0, most);
+    fmu_stream_bool(s, &e->begun);
+    serialize_input(s, &e->input);
+    serialize_state(s, &e->start);
+    serialize_state(s, &e->twin);
+    fmu_stream_reals(s, e->local, 8);
+    fmu_stream_reals(s, &e->fading, 1);
+    fmu_stream_reals(s, e->first_path_m, 2);
+    serialize_forcing(s, &e->forcing);
+    fmu_stream_bool(s, &e->twin_stepped);
+    serialize_slip(s, &e->twin_slip);
+}
+
+/* What follows from the plant is prepared again. */
+static void serialize_estimate(fmu_stream *s, fmu_model *self) {
+    laconic_estimate *e = &self->estimate;
+    fmu_stream_bool(s, &self->estimate_error);
+    fmu_stream_i32(s, &self->estimate_window_steps, INT32_MIN, INT32_MAX);
+    fmu_stream_bool(s, &self->estimate_begun);
+    if (!self->estimate_begun || s->failed) return;
+    if (s->from != NULL && !self->start_needed &&
+        laconic_estimate_start(e, &self->plant, self->estimate_window_steps, laconic_finer_method(&self->plant),
+                               NULL) != LACONIC_OK)
+        s->failed = true;
+    serialize_window(s, e);
+    fmu_stream_reals(s, &e->largest.nu_rad_per_s, 4);
+    fmu_stream_reals(s, e->origin_m, 2);
+    fmu_stream_reals(s, &e->extent_m, 1);
+    fmu_stream_u64(s, &e->unknown);
+}
+
+#endif
+
 bool fmu_model_serialize(fmu_stream *stream, fmu_model *model) {
     fmu_stream_bool(stream, &model->start_needed);
     fmu_stream_bool(stream, &model->change_needed);
@@ -198,6 +254,9 @@ bool fmu_model_serialize(fmu_stream *stream, fmu_model *model) {
     fmu_stream_reals(stream, &model->last.step_s, 1);
     fmu_stream_u64(stream, &model->last.steps);
     if (stream->from != NULL) model->has_jacobian = false;
+#endif
+#if FMU_MODEL_ESTIMATES
+    serialize_estimate(stream, model);
 #endif
     return !stream->failed;
 }

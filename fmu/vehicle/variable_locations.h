@@ -32,6 +32,12 @@
 #define FMU_FRICTION(member, group) FMU_AT(member), sizeof(double), group, FMU_NO_TANGENT
 #define OF_FRICTION(name) FMU_LOCATION(name, FMU_FRICTION(friction.name, FMU_GROUP_FRICTION))
 
+#define OF_ESTIMATE(which, member) \
+    OUTPUT(estimated_error_##which##nu_rad_per_s, estimated.member.nu_rad_per_s, FMU_GROUP_ESTIMATE) \
+    OUTPUT(estimated_error_##which##place_m, estimated.member.place_m, FMU_GROUP_ESTIMATE) \
+    OUTPUT(estimated_error_##which##heading_rad, estimated.member.heading_rad, FMU_GROUP_ESTIMATE) \
+    OUTPUT(estimated_error_##which##wheel_angle_rad, estimated.member.wheel_angle_rad, FMU_GROUP_ESTIMATE)
+
 /* clang-format off */
 enum fmu_locations {
     FMU_LOCATION(time, FMU_PLAIN(time_s))
@@ -83,6 +89,15 @@ enum fmu_locations {
     OUTPUT(encoder_count, sensed.encoder_count, FMU_GROUP_SENSORS)
     FMU_LOCATION(has_imu, FMU_PLAIN(has_imu))
     LACONIC_SENSOR_FIELDS(FIELD)
+
+#if FMU_MODEL_ESTIMATES
+    FMU_LOCATION(estimate_error, FMU_PLAIN(estimate_error))
+    FMU_LOCATION(estimate_window_steps, FMU_PLAIN(estimate_window_steps))
+    OF_ESTIMATE(, now)
+    OF_ESTIMATE(largest_, largest)
+    OF_ESTIMATE(rounding_, rounding)
+    OUTPUT(estimated_error_unknown_windows, estimated_unknown, FMU_GROUP_ESTIMATE)
+#endif
 };
 /* clang-format on */
 

@@ -77,10 +77,16 @@ typedef struct laconic_estimate {
 } laconic_estimate;
 
 /* An estimate of no error, for a plant that stands where it is, with windows of up to `most_steps` steps. Start it
- * again after laconic_plant_restart, _set_step, _change and where the state was set. Refuses ABOVE_LIMIT (step) where
+ * again after laconic_plant_restart and where the state was set. Refuses ABOVE_LIMIT (step) where
  * most_steps is not 1 … LACONIC_ESTIMATE_MOST, and as laconic_integrator_prepare() does for half of the step. */
 laconic_status laconic_estimate_start(laconic_estimate *estimate, const laconic_plant *plant, int32_t most_steps,
                                       const laconic_method *finer, laconic_refusal *why);
+
+/* After laconic_plant_set_step or _change: goes on with the error that was, from the plant as it was `before` to
+ * `plant`, whose state is the same motion. Where friction begins or ends with the change it starts anew. Refuses, and
+ * leaves all as it was, as laconic_estimate_start() does. */
+laconic_status laconic_estimate_carry(laconic_estimate *estimate, const laconic_plant *before,
+                                      const laconic_plant *plant, const laconic_method *finer, laconic_refusal *why);
 
 /* The method for the half steps of a plant: its own; where damping is fast beside the step that of eighth order, since
  * methods whose order falls there err in two half steps nearly as in one. Links that method. */

@@ -7,6 +7,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Callable
 from dataclasses import dataclass
 from typing import TYPE_CHECKING, Any
 
@@ -74,6 +75,25 @@ class Estimate:
         record, error_rows = (core.ffi.NULL if each is None else each.c for each in (recorder, rows))
         core.check(core.lib.laconic_estimate_follow(self.c, self.plant.c, schedule.c, until_step, record, error_rows,
                                                     why), why)
+
+    def change(self, vehicle: Any) -> None:
+        """Plant.change, and the estimate goes on with the error that was; where friction begins or ends it starts
+        anew."""
+        self._carry(lambda: self.plant.change(vehicle))
+
+    def set_step(self, step_s: float) -> None:
+        """Plant.set_step, and the estimate goes on with the error that was."""
+        self._carry(lambda: self.plant.set_step(step_s))
+
+    def _carry(self, change: Callable[[], None]) -> None:
+        """Where the estimate cannot go on the plant stays as it was."""
+        core, c, why = self.plant.core, self.plant.c, self.plant.core.why()
+        before = core.ffi.new("laconic_plant *", c[0])
+        change()
+        status = core.lib.laconic_estimate_carry(self.c, before, c, core.lib.laconic_finer_method(c), why)
+        if status != core.lib.LACONIC_OK:
+            c[0] = before[0]
+        core.check(status, why)
 
     def read(self) -> Errors:
         """The errors at this moment."""

@@ -25,9 +25,9 @@ DESCRIPTION = SOURCE_DIR / "modelDescription.xml"
 VERSIONS = (2, 3)  # of FMI
 
 
-def generic_fmu(version: int, derivatives: bool = False) -> Path:
+def generic_fmu(version: int, derivatives: bool = False, estimate: bool = False) -> Path:
     """The FMU that the build made."""
-    return built(f"fmu/Laconic{'Derivatives' if derivatives else ''}_fmi{version}.fmu")
+    return built(f"fmu/Laconic{'Derivatives' if derivatives else 'Estimate' if estimate else ''}_fmi{version}.fmu")
 
 
 def start_values(scene: Scene) -> dict[str, list[float]]:
@@ -68,15 +68,19 @@ def content_of(scene: Scene, name: str, text: str, values: dict[str, Any]) -> Co
 
 
 def make_fmu(scene: Scene, out: str | Path, *, version: int, scalar: bool = False, sources: bool = True,
-             enumerations: bool = True, derivatives: bool = False) -> Path:
+             enumerations: bool = True, derivatives: bool = False, estimate: bool = False) -> Path:
     """Writes the scene's FMU; BadInput when the scene has no such FMU.
 
     `version` of FMI, 2 or 3, is what the importing tool reads: there is no default, as each tool reads one or both.
     `derivatives`: for Co-Simulation alone, whose directional and adjoint derivatives are those of its steps.
+    `estimate`: for Co-Simulation alone, with outputs of how far the run is from the true motion.
     """
     check_scene(scene)
     scalar, sources = flag("scalar", scalar), flag("sources", sources)
     enumerations, derivatives = flag("enumerations", enumerations), flag("derivatives", derivatives)
+    estimate = flag("estimate", estimate)
+    if estimate and derivatives:
+        raise BadInput("estimate, derivatives: no FMU has both; leave one of them out")
     if not isinstance(version, int | np.integer) or version not in VERSIONS:
         raise BadInput(f"version: there is no FMI {version!r}; give {' or '.join(map(str, VERSIONS))}")
     path = as_path("out", out)
@@ -88,10 +92,10 @@ def make_fmu(scene: Scene, out: str | Path, *, version: int, scalar: bool = Fals
     if scene.wheel_count == 0 and version == 3 and not scalar:
         raise BadInput(f"{scene.path}: vehicle.wheel: a vehicle without wheels has no arrays; use --scalar or --fmi 2")
     scene.sensors_of(scene.plant(load("double")))  # refuses a scene that cannot start, naming the field
-    content = content_of(scene, scene.name, f"Dynamics of a wheeled robot; its numbers: {scene.source}",
-                         start_values(scene))
+    values = start_values(scene) | ({"estimate_error": [1.0]} if estimate else {})
+    content = content_of(scene, scene.name, f"Dynamics of a wheeled robot; its numbers: {scene.source}", values)
     with whole_file(path) as fresh:
-        scene_fmu(generic_fmu(version, derivatives), DESCRIPTION, content, fresh,
+        scene_fmu(generic_fmu(version, derivatives, estimate), DESCRIPTION, content, fresh,
                   Variant(version, scalar, enumerations, sources, derivatives), vehicle_parts)
     return path
 

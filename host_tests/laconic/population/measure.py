@@ -26,10 +26,10 @@ Row = dict[str, Any]
 
 def rows_of(vehicle: Made, methods: Sequence[str]) -> list[Row]:
     """The vehicle's rows; a refusal has the status, and no errors."""
-    core = load("double")
+    core = load(vehicle.real)
     truth = truth_of(vehicle, vehicle.plant(core, "auto", STEPS_S[0]).nu)
-    known = {"number": vehicle.number, "kind": vehicle.trial.kind, "factor": vehicle.factor, "truth": truth.by,
-             "width": truth.width}
+    known = {"number": vehicle.number, "kind": vehicle.trial.kind, "real": vehicle.real, "factor": vehicle.factor,
+             "truth": truth.by, "width": truth.width}
     return [known | {"method": method, "step_s": step_s} | measured(vehicle, truth, method, step_s)
             for method in methods for step_s in STEPS_S]
 
@@ -37,7 +37,7 @@ def rows_of(vehicle: Made, methods: Sequence[str]) -> list[Row]:
 def measured(vehicle: Made, truth: Truth, method: str, step_s: float) -> Row:
     """Errors at all instants of one run."""
     try:
-        plant = vehicle.plant(load("double"), method, step_s)
+        plant = vehicle.plant(load(vehicle.real), method, float(TICK_S[vehicle.real] / per_tick(step_s)))
         estimate, estimated = plant.estimate(), list[Errors]()
         found = states_of(plant, vehicle, step_s, estimate.run, lambda: estimated.append(estimate.read()))
     except Refused as refused:
@@ -50,15 +50,20 @@ def measured(vehicle: Made, truth: Truth, method: str, step_s: float) -> Row:
                for name, size in ESTIMATED.items()}}
 
 
+def per_tick(step_s: float) -> int:
+    """Steps of about this length in a tick."""
+    return round(float(TICK_S["double"]) / step_s)
+
+
 def states_of(plant: Plant, vehicle: Made, step_s: float, run: Callable[..., None] | None = None,
               seen: Callable[[], None] = lambda: None) -> np.ndarray:
     """The core's states at the instants, one row each; `run` steps the plant, `seen` is called at each instant."""
-    rows, done, per_tick = [], 0, round(float(TICK_S) / step_s)
+    rows, done, steps = [], 0, per_tick(step_s)
     for held, ticks in zip(vehicle.helds, INSTANTS, strict=True):
         for tick in ticks:
-            (run or plant.run)(held, tick * per_tick - done)
+            (run or plant.run)(held, tick * steps - done)
             seen()
-            done = tick * per_tick
+            done = tick * steps
             pose = plant.pose
             rows.append([*plant.nu, pose.x_m, pose.y_m, pose.heading_rad, *plant.wheel_angles()])
     return np.array(rows)

@@ -25,6 +25,7 @@ class About:
     seed: int
     vehicles: int
     methods: tuple[str, ...]
+    real: str
     core: str
 
 

@@ -15,7 +15,11 @@ from laconic.population.measure import Row
 from laconic.population.truth import KINDS
 
 SHARES = {"median": 0.5, "95 %": 0.95, "99 %": 0.99, "worst": 1.0}
-ROUNDING = 1e-14  # errors below it are no method's
+ROUNDING = {"double": 1e-14, "single": 5e-6}  # errors below it are no method's
+FACTOR, MOST_OUTSIDE, LEAST = 10.0, 0.05, 0.01
+"""Of estimates of errors above rounding all but this share lie within the factor; none is below this part of its
+error."""
+FEW = 20  # of fewer no share is asked: one of them would be more than it
 
 
 def worst_of(row: Row) -> float:
@@ -48,13 +52,29 @@ def ratios_of(rows: Sequence[Row], kind: str) -> dict[str, Any]:
     the share within a factor of 10."""
     found = np.array([row[f"estimate_{kind}"] / row[f"error_{kind}"] for row in rows
                       if row.get(f"estimate_{kind}") is not None
-                      and row[f"error_{kind}"] > max(ROUNDING, 3.0 * row.get(f"rounding_{kind}", 0.0))])
+                      and row[f"error_{kind}"] > max(ROUNDING[row.get("real", "double")],
+                                                     3.0 * row.get(f"rounding_{kind}", 0.0))])
     if not found.size:
         return {}
-    within = float(np.mean((found >= 0.1) & (found <= 10.0)))
+    within = float(np.mean((found >= 1.0 / FACTOR) & (found <= FACTOR)))
     return {f"estimate over error_{kind}": {"runs": int(found.size), "least": float(found.min()),
                                             "median": float(np.median(found)), "largest": float(found.max()),
                                             "within a factor of 10": within}}
+
+
+def wrong_estimates(told: dict[str, Any]) -> list[str]:
+    """What estimates must not be, in words, of what summary_of() found."""
+    wrong = []
+    for kind in KINDS:
+        ratio = told.get(f"estimate over error_{kind}")
+        if ratio is None:
+            continue
+        if not ratio["least"] >= LEAST:
+            wrong.append(f"an estimate of {kind} is {ratio['least']:.1e} of its error, less than {LEAST:g}")
+        if ratio["runs"] >= FEW and not ratio["within a factor of 10"] >= 1.0 - MOST_OUTSIDE:
+            wrong.append(f"{ratio['within a factor of 10']:.1%} of {ratio['runs']} estimates of {kind} are within a "
+                         f"factor of {FACTOR:g} of their errors, fewer than {1.0 - MOST_OUTSIDE:.0%}")
+    return wrong
 
 
 def by_truth(rows: Sequence[Row]) -> dict[str, dict[str, Any]]:
@@ -83,6 +103,6 @@ def text_of(told: dict[str, Any]) -> str:
             each = ", ".join(f"{share} {error:.1e}" for share, error in told[f"error_{kind}"].items())
             parts.append(f"{kind}: {each}")
         if ratio := told.get(f"estimate over error_{kind}"):
-            parts.append(f"estimate over error: {ratio['least']:.1e} to {ratio['largest']:.1e}, "
+            parts.append(f"estimate over error of {ratio['runs']}: {ratio['least']:.1e} to {ratio['largest']:.1e}, "
                          f"{ratio['within a factor of 10']:.1%} within a factor of 10")
     return "; ".join([*parts, f"worst: vehicle {told['worst vehicle']}"])

@@ -55,7 +55,7 @@ def size_of(states: list[Vector], part: slice) -> float:
 def truth_of(vehicle: Made, nu: np.ndarray) -> Truth:
     """The true motion from the core's start."""
     model, start = exact_start(vehicle.trial.table, nu.tolist())
-    digits = true_states(model, start, vehicle.trial.heading_rad, vehicle.helds, cuts_s())
+    digits = true_states(model, start, vehicle.trial.heading_rad, vehicle.helds, cuts_s(vehicle.real))
     if vehicle.factor > MOST_ENCLOSED:
         return Truth("50 digits", digits, 0.0)
     states = enclosed(vehicle, start)
@@ -76,7 +76,7 @@ def check_inside(enclosure: list[Vector], digits: list[Vector]) -> None:
 
 def enclosed(vehicle: Made, start_nu: Vector) -> list[Vector]:
     """By laconic.enclosure, each number of the vehicle the double that it is."""
-    cuts = cuts_s()
+    cuts = cuts_s(vehicle.real)
     edges = [cuts[0][0] * 0, *(each[-1] for each in cuts)]
     stretches = [Stretch(begin, end, named(held))
                  for (begin, end), held in zip(pairwise(edges), vehicle.helds, strict=True)]

@@ -41,6 +41,6 @@ def inputs_of(vehicle: Made) -> list[dict[str, Any]]:
     idle |= {f"axle_torque_Nm[{i}]" for i, wheel in wheels if wheel.get("locked")}
     if not any(value for held in vehicle.helds for value in held["world_force_N"]):
         idle |= {"world_force_point_m[1]", "world_force_point_m[2]"}
-    change_s = float(INSTANTS[0][-1] * TICK_S)
+    change_s = float(INSTANTS[0][-1] * TICK_S[vehicle.real])
     return [{"signal": signal, "kind": "steps", "t_s": [0.0, change_s], "value": [value, second[signal]]}
             for signal, value in first.items() if signal not in idle and (value or second[signal])]

@@ -39,7 +39,7 @@ PARTS = (
     Part("core", "core", ("core_c/src/*.c",), (CORE,)),
     Part("node", "node", ("firmware_stub/src/*.c", "firmware_stub/secure/*.c"), OF_NODE),
     Part("FMU glue and vehicle", "FMU", ("fmu/*.c", "fmu/vehicle/*.c"),
-         ("fmu", "fmu/vehicle", CORE, "core_c/derivatives"), without=("kept_step.c",)),
+         ("fmu", "fmu/vehicle", CORE, "core_c/derivatives"), without=("kept_step.c", "estimate_part.c")),
     Part("controller", "FMU", ("fmu/controller/*.c",), ("fmu", "fmu/controller")),
     Part("bus", "FMU", ("fmu/network/*.c", "fmu/network/bus/*.c"), ("fmu/network/bus", *NETWORK)),
     Part("node as FMU", "FMU", ("fmu/network/node/*.c",), ("fmu/network/node", *NETWORK)),

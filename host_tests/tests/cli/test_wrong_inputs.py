@@ -41,6 +41,8 @@ WRONG = {
     "verify no.json --tolerance nan": "--tolerance", "soak rig --minutes 0": "--minutes",
     "soak rig --minutes nan": "--minutes", "soak rig --seed 1e5": "--seed",
     "soak population --vehicles 0": "--vehicles", "soak long --steps 0": "--steps", "soak long --out ''": EMPTY,
+    "fmu s1 --fmi 2 --estimate --ssp": "--estimate", "soak population --real half": "--real half",
+    "soak population --method rk4,rk5": "'rk5'; did you mean rk4?", "soak rig --real single": "has no effect on soak",
     "soak population --method rk5": "did you mean rk4?", "soak population -o good.toml": "--out",
     "soak rig --vehicles 3": "has no effect on soak rig", "soak population --method ''": "--method",
     "rig s1 --steps 0": "--steps", "rig s1 --steps 1.5": "--steps",

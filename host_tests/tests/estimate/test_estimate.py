@@ -112,6 +112,31 @@ def test_a_plant_has_an_estimate_that_can_be_saved():
     assert 0.0 < after.rounding.place_m <= after.now.place_m <= after.largest.place_m < 1e-3
 
 
+def test_an_estimate_goes_on_with_another_vehicle_and_step():
+    """Beside the same changes at a tenth of the steps, by eighth order; a refused one leaves plant and estimate."""
+    scene, held = read_scene("robotino2").with_run(method="exact-flow", step_s=0.02), {"voltage_V": [5.0, -3.0, 1.0]}
+    plant = scene.plant(load("double"))
+    fine = scene.with_run(method="exponential-gauss-8", step_s=0.002).plant(load("double"))
+    vehicle = scene.c_vehicle(load("double"))
+    estimate = plant.estimate()
+    estimate.run(held, steps=50)
+    fine.run(held, steps=500)
+    vehicle.payload.mass_kg, vehicle.payload.x_m, vehicle.payload.yaw_inertia_kgm2 = 10.0, 0.1, 0.1
+    estimate.change(vehicle)
+    fine.change(vehicle)
+    before = estimate.read()
+    with pytest.raises(Refused):
+        estimate.set_step(-1.0)
+    assert estimate.read() == before
+    estimate.set_step(0.004)
+    assert plant.step_s == 0.004
+    estimate.run(held, steps=25)
+    fine.run(held, steps=50)
+    off = max(abs(plant.nu - fine.nu)), math.hypot(plant.pose.x_m - fine.pose.x_m, plant.pose.y_m - fine.pose.y_m)
+    for error, found in zip(off, astuple(estimate.read().now), strict=False):
+        assert error / FACTOR < found < FACTOR * error
+
+
 @pytest.mark.parametrize(("steps", "words"), [(0, "is not positive"), (1025, "1025 is above 1024"), (2.5, "most_steps"),
                                               (10**12, "is above 1024")])
 def test_windows_that_make_no_sense_are_refused_in_one_line(steps, words):

@@ -63,6 +63,7 @@ class Importer:
     def __init__(self, fmu: Path, kind: str = "CoSimulation", *, logging: bool = False, event_mode: bool = False,
                  early_return: bool = False, update: Any = None, token: str | None = "", name: str | None = "vehicle",
                  resources: Path | None = None, intermediate: Sequence[int] | None = ()):
+        self.fmu = fmu
         self.folder, self.description = unpacked(fmu)
         self.version = 2 if self.description.fmiVersion == "2.0" else 3
         self.ffi = interface(self.version)

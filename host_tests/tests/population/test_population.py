@@ -3,6 +3,8 @@
 from __future__ import annotations
 
 import json
+import math
+from fractions import Fraction
 from pathlib import Path
 from typing import Any
 
@@ -14,9 +16,9 @@ from laconic.core import load
 from laconic.enclosure.scene_case import verify_scene_enclosed
 from laconic.errors import BadInput, ResultFails
 from laconic.population import collocation
-from laconic.population.made import DECADES, KINDS, made
+from laconic.population.made import DECADES, KINDS, TICK_S, made
 from laconic.population.measure import STEPS_S, measured, rows_of, states_of
-from laconic.population.summary import quantile, summary_of
+from laconic.population.summary import FEW, quantile, summary_of, wrong_estimates
 from laconic.population.truth import MOST_ENCLOSED, truth_of
 from laconic.population.worst_scene import scene_text
 from laconic.scene import read_scene
@@ -142,6 +144,47 @@ def test_an_estimate_beside_an_error_is_judged_above_rounding():
                                               "within a factor of 10": 1.0}
     assert told["estimate over error_pose"]["within a factor of 10"] == 0.0
     assert "estimate over error_wheel" not in told
+
+
+def estimated(ratios: list[float]) -> dict[str, Any]:
+    """What is told of rows with these ratios of estimate to error of ν."""
+    rows = [{"number": k, "status": "ok", "real": "double", "error_nu": 1e-8, "error_pose": 0.0, "error_wheel": 0.0,
+             "estimate_nu": ratio * 1e-8, "estimate_pose": 0.0, "estimate_wheel": 0.0}
+            for k, ratio in enumerate(ratios)]
+    return summary_of(rows)
+
+
+def test_estimates_far_from_their_errors_are_wrong():
+    assert wrong_estimates(estimated([1.0] * 95 + [11.0] * 5)) == []
+    assert wrong_estimates(estimated([0.1] * 95 + [0.0101] * 5)) == []
+    (few,) = wrong_estimates(estimated([1.0] * 94 + [11.0] * 6))
+    assert few.startswith("94.0% of 100 estimates of nu are within a factor of 10")
+    (low,) = wrong_estimates(estimated([1.0] * 99 + [0.0099]))
+    assert low == "an estimate of nu is 9.9e-03 of its error, less than 0.01"
+    assert len(wrong_estimates(estimated([math.nan] * 3))) == 1
+    assert wrong_estimates(estimated([20.0] * (FEW - 1))) == []
+    assert wrong_estimates(estimated([20.0] * FEW)) != []
+
+
+def test_a_soak_with_wrong_estimates_has_not_passed(monkeypatch, tmp_path):
+    monkeypatch.setattr("laconic.population.summary.LEAST", 2.0)
+    result = soak(1.0, SEED, lambda _: None, vehicles=1, method="rk4,exact-flow-4", out=tmp_path)
+    assert not result["passed"]
+    assert any(each.startswith("exact-flow-4, 10 ms: an estimate of") for each in result["wrong"])
+
+
+def test_vehicles_in_single_precision_are_given_what_the_core_is_given(tmp_path):
+    result = soak(1.0, SEED, lambda _: None, vehicles=len(KINDS), real="single", out=tmp_path)
+    assert result["passed"], result["wrong"]
+    rows = [row for line in (tmp_path / "population.jsonl").read_text().splitlines()[1:] for row in json.loads(line)]
+    assert {row["real"] for row in rows} == {"single"}
+    assert max(row["error_pose"] for row in rows if row["method"] == "exponential-gauss-8") < 1e-5
+    vehicle = made(SEED, 2, len(KINDS), "single")
+    assert all(np.float32(wheel[key]) == wheel[key] for wheel in vehicle.trial.table["wheel"]
+               for key in ("x_m", "y_m", "axle_rad"))
+    step = vehicle.plant(load("single"), "rk4", float(TICK_S["single"] / 10)).step_s
+    tick = np.float32(float(TICK_S["single"]))
+    assert 10 * Fraction(float(np.float32(step))) == TICK_S["single"] == Fraction(float(tick))
 
 
 def test_quantiles_are_numbers_that_were_found():

@@ -141,7 +141,7 @@ WRONG: list[tuple[Callable[[], Any], str]] = [
     (lambda: wheels().plant().sensors({"imu": {"acceleration_bias_m_per_s2": b"ab"}}), "b'ab' is no number; give one"),
     *((lambda key=key, no=no: laconic.make_fmu(scene(), "s1.fmu", version=3, **{key: no}),
        f"{key}: {no!r} is neither True nor False; give one of them")
-      for key in ("scalar", "sources", "enumerations", "derivatives") for no in ("no", float("nan"), 0)),
+      for key in ("scalar", "sources", "enumerations", "derivatives", "estimate") for no in ("no", float("nan"), 0)),
     *((lambda key=key: laconic.simulate(scene(), **{key: "no"}), f"{key}: 'no' is neither True nor False")
       for key in ("progress", "watched", "estimated")),
     (lambda: laconic.read_scene("/dev/zero"), "/dev/zero: has more than 64 MiB, which no scene needs; give the"),

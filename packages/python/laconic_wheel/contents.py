@@ -20,8 +20,8 @@ REALS = ("double", "single")
 LIBRARIES = tuple(f"laconic_{part}{real}" for part in ("", "node_") for real in REALS)
 PROGRAMS = tuple(f"laconic-node-{real}" for real in REALS)
 DECLARATIONS = ("laconic_cdef_double.h", "laconic_cdef_single.h", "laconic_node_cdef.h")
-FMUS = (*(f"{name}_fmi{version}.fmu" for name in ("Laconic", "LaconicDerivatives", "LaconicController")
-          for version in (2, 3)),
+FMUS = (*(f"{name}_fmi{version}.fmu"
+          for name in ("Laconic", "LaconicDerivatives", "LaconicEstimate", "LaconicController") for version in (2, 3)),
         *(f"{name}_fmi3.fmu" for name in ("LaconicNode", "LaconicCanBus", "LaconicCanController")))
 
 

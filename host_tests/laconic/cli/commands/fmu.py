@@ -27,6 +27,8 @@ from laconic_fmu.network import TX_CLOCKS
 @click.option("--no-enumerations", is_flag=True, help="Whole numbers instead, for importers that know no enumerations.")
 @click.option("--derivatives", is_flag=True,
               help="Co-Simulation only: partial derivatives are those of each step, by its start and its inputs.")
+@click.option("--estimate", is_flag=True,
+              help="Co-Simulation only: outputs estimate how far the run is from the true motion.")
 @click.option("--ssp", is_flag=True, help="An SSP archive (--fmi 2): the vehicle with a wheel-speed controller.")
 @click.option("--bus", type=click.Choice(("can",)),
               help="The vehicle's CAN node as a network FMU by FMI-LS-BUS (--fmi 3), instead of its plain variables.")
@@ -38,27 +40,31 @@ from laconic_fmu.network import TX_CLOCKS
               help="File to write; SCENE_fmi3.fmu if not given.")
 @json_flag()
 def command(scene: str, version: str, scalar: bool, without_sources: bool, no_enumerations: bool,
-            derivatives: bool, ssp: bool, out: Path | None, bus: str | None, drives: str | None, tx_clock: str | None,
-            json_wanted: bool) -> None:
+            derivatives: bool, estimate: bool, ssp: bool, out: Path | None, bus: str | None, drives: str | None,
+            tx_clock: str | None, json_wanted: bool) -> None:
     """Writes an FMU whose start values are SCENE's vehicle, start, method and step.
 
     Model Exchange and Co-Simulation are both in it. In FMI 3.0 the number of wheels is a structural parameter; in
-    FMI 2.0 and with --scalar it is a constant. With --derivatives the FMU is for Co-Simulation alone. With --bus can it
-    is the CAN node of SCENE, for co-simulation with other FMUs on a bus.
+    FMI 2.0 and with --scalar it is a constant. With --derivatives or --estimate the FMU is for Co-Simulation alone.
+    With --bus can it is the CAN node of SCENE, for co-simulation with other FMUs on a bus.
     """
     check_bus(version, bus, {"--scalar": scalar, "--ssp": ssp, "--no-enumerations": no_enumerations,
-                               "--derivatives": derivatives},
+                               "--derivatives": derivatives, "--estimate": estimate},
               {"--drives": drives, "--tx-clock": tx_clock})
     if scalar and version == "2":
         raise BadInput("--scalar: FMI 2.0 has no arrays anyway; leave it out or use --fmi 3")
     if derivatives and ssp:
         raise BadInput("--derivatives: an SSP archive has no such variant; leave --ssp out")
+    if estimate and (ssp or derivatives):
+        other, name = ("ssp", "SSP archive") if ssp else ("derivatives", "FMU with --derivatives")
+        raise BadInput(f"--estimate: an {name} has no such variant; leave --{other} out")
     ending = "ssp" if ssp else "fmu"
     if out is not None:
         check_ending("--out", out, (f".{ending}",))
     given = read_scene(scene)
     if out is None:
         kind = ("_scalar" if scalar else f"_{bus}" if bus else "") + ("_derivatives" if derivatives else "")
+        kind += "_estimate" if estimate else ""
         out = claim_file("--out", Path(f"{given.path.stem}_fmi{version}{kind}.{ending}"))
     options: dict[str, Any] = {"version": int(version), "sources": not without_sources,
                                "enumerations": not no_enumerations}
@@ -69,12 +75,12 @@ def command(scene: str, version: str, scalar: bool, without_sources: bool, no_en
                                 sources=not without_sources)
     else:
         made = make_ssp(given, out, **options) if ssp else make_fmu(
-            given, out, scalar=scalar, derivatives=derivatives, **options)
+            given, out, scalar=scalar, derivatives=derivatives, estimate=estimate, **options)
     size = None if is_special(made) else made.stat().st_size
     if json_wanted:
         click.echo(json.dumps({"scene": str(given.path), "fmi": int(version), "scalar": scalar,
-                               "enumerations": not no_enumerations, "derivatives": derivatives, "bus": bus,
-                               "drives": drives, "real": "double",
+                               "enumerations": not no_enumerations, "derivatives": derivatives, "estimate": estimate,
+                               "bus": bus, "drives": drives, "real": "double",
                                "scene_real": given.run.real, "file": str(made), "bytes": size}, indent=1))
     else:
         shown = "" if size is None else f" ({size / 1000:.0f} kB)"

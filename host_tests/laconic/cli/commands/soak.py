@@ -34,7 +34,8 @@ def kinds() -> dict[str, str]:
 @click.option("--seconds", type=float, metavar="S", help="lateness: on each board, 10 by default.")
 @click.option("--step", "step_s", type=float, metavar="S", help="controllers: period of the drives, 0.005 by default.")
 @click.option("--vehicles", type=click.IntRange(min=1), metavar="N", help="population: 2000 by default.")
-@click.option("--method", metavar="METHOD", help="population, long: beside auto, instead of auto and rk4.")
+@click.option("--method", metavar="METHOD", help="population: beside auto, or A,B; long: instead of auto and rk4.")
+@click.option("--real", metavar="REAL", help="population: double, unless single.")
 @click.option("--steps", type=click.IntRange(min=1), metavar="N", help="long: 10⁹ by default.")
 @click.option("-o", "--out", type=OutputFolder(), metavar="DIR", help="population, long: what is done; goes on there.")
 @click.option("--sample", type=click.IntRange(min=1), metavar="N", help="mutants: so many, whatever the minutes.")
@@ -74,8 +75,8 @@ def command(what: str, minutes: float, seed: int | None, json_wanted: bool, **sp
     mutants          the C sources with one small fault each: some C test must notice it;
                      goes on where the last run ended, and prints by file what survived
     population       2000 made-up vehicles, damping up to a million times the usual,
-                     beside their true motion: errors' quantiles, refusals, the worst
-                     as scenes; goes on where it was ended
+                     beside their true motion: errors' quantiles, error estimates beside
+                     them, refusals, the worst as scenes; goes on where it was ended
     misra            MISRA C:2012 by cppcheck's addon against the stated deviations, and
                      clang-tidy, over core, node and FMUs; takes minutes
     proof            Frama-C's analyser over every public function of core and node: no
