@@ -290,11 +290,21 @@ static void a_twin_goes_on_after_a_change_and_begins_where_friction_does(void) {
     const laconic_errors then = errors_now(&estimate, &plant);
     TEST_ASSERT_TRUE(then.now.wheel_angle_rad == until.now.wheel_angle_rad);
     TEST_ASSERT_TRUE(then.now.place_m > REAL(0.5) * until.now.place_m && then.now.place_m < 2 * until.now.place_m);
+    laconic_estimate spoilt = estimate;
+    spoilt.twin.x_m.value = NOT_A_NUMBER;
+    ASSERT_REFUSED(LACONIC_OVERFLOW, LACONIC_FIELD_NONE, 0,
+                   laconic_estimate_carry(&spoilt, &before, &plant, NULL, &why), why);
     before = plant;
     ASSERT_STATUS(LACONIC_OK, laconic_plant_change(&plant, &ideal, &why));
     ASSERT_STATUS(LACONIC_OK, laconic_estimate_carry(&estimate, &before, &plant, NULL, &why));
     const laconic_errors fresh = errors_now(&estimate, &plant);
     TEST_ASSERT_TRUE(fresh.largest.wheel_angle_rad < REAL(0.5) * until.now.wheel_angle_rad);
+    ASSERT_STATUS(LACONIC_OK, laconic_estimate_run(&estimate, &plant, &input, 20, &why));
+    before = plant;
+    ASSERT_STATUS(LACONIC_OK, laconic_plant_change(&plant, &loaded, &why));
+    ASSERT_STATUS(LACONIC_OK, laconic_estimate_carry(&estimate, &before, &plant, NULL, &why));
+    TEST_ASSERT_EQUAL_INT(0, estimate.taken);
+    TEST_ASSERT_EQUAL_MEMORY(&plant.state, &estimate.twin, sizeof plant.state);
 }
 
 static void a_step_without_half_of_it_is_refused_after_a_change(void) {

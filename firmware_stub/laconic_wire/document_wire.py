@@ -71,7 +71,7 @@ def choices_text(signal: Signal) -> str:
 
 def signal_row(signal: Signal) -> str:
     """One row of a frame's table."""
-    sign = "signed" if signal.is_signed else "unsigned"
+    sign = "IEEE" if signal.is_float else "signed" if signal.is_signed else "unsigned"
     page = f" (page {signal.multiplexer_ids[0]})" if signal.multiplexer_ids else ""
     least, largest = limits(signal)
     shown = "" if least == 0 and largest + 1 == 2.0**signal.length else f"{least:.10g} … {largest:.10g}"

@@ -17,7 +17,8 @@ from .contract import attribute, limits, load
 
 ID_BASE = 1664
 NOTE = "/* Generated from laconic.dbc. */\n"
-SMALL_IMAGES_LEAVE_OUT = ("WHEEL_ANGLE", "IMU", "ENCODER")  # the last frames of the DBC
+OPTIONAL = {"WHEEL_ANGLE": "SENSORS", "IMU": "SENSORS", "ENCODER": "SENSORS", "ERROR_ESTIMATE": "ESTIMATE"}
+"""The last frames of the DBC, which images leave out that are built without LACONIC_NODE_WITH_…"""
 MADE_AT = re.compile(r"^( \* @brief .* by cantools version [\w.]+) .*\.$", re.MULTILINE)
 KEYS = ("none", "nonce", "session", "run")  # what keys a frame's protection
 
@@ -45,14 +46,19 @@ def constants(database: Database) -> list[str]:
     if max(rig) >= min(node):
         raise SystemExit("laconic.dbc: identifiers of the rig's frames must all lie below those of the node's")
     lines += [f"#define LACONIC_WIRE_RIG_OFFSETS {max(rig) + 1}", f"#define LACONIC_WIRE_NODE_FIRST {min(node)}"]
-    kept, less = max(node), max(node) - len(SMALL_IMAGES_LEAVE_OUT)
-    if [m.name for m in database.messages[-len(SMALL_IMAGES_LEAVE_OUT):]] != list(SMALL_IMAGES_LEAVE_OUT):
-        raise SystemExit(f"laconic.dbc: {', '.join(SMALL_IMAGES_LEAVE_OUT)} must be the last frames")
+    if [m.name for m in database.messages[-len(OPTIONAL):]] != list(OPTIONAL):
+        raise SystemExit(f"laconic.dbc: {', '.join(OPTIONAL)} must be the last frames")
     classic = sum(not m.is_fd for m in database.messages)
+    of_estimate = sum(part == "ESTIMATE" for part in OPTIONAL.values())
     lines += ["#ifndef LACONIC_NODE_WITH_SENSORS",
               "#define LACONIC_NODE_WITH_SENSORS 1 /* 0: neither sensors nor their frames, for small images */",
-              "#endif", "#if LACONIC_NODE_WITH_SENSORS", *counts(min(node), kept, classic), "#else",
-              *counts(min(node), less, classic - len(SMALL_IMAGES_LEAVE_OUT)), "#endif"]
+              "#endif", "#ifndef LACONIC_NODE_WITH_ESTIMATE",
+              "#define LACONIC_NODE_WITH_ESTIMATE 0 /* 1: an error estimate and its frame; links the core's */",
+              "#endif"]
+    for condition, less in (("#if LACONIC_NODE_WITH_ESTIMATE", 0), ("#elif LACONIC_NODE_WITH_SENSORS", of_estimate),
+                            ("#else", len(OPTIONAL))):
+        lines += [condition, *counts(min(node), max(node) - less, classic - less)]
+    lines.append("#endif")
     moving = [m.frame_id - ID_BASE for m in database.messages if attribute(m, "E2EKey") == "run"]
     if sorted(moving) != list(range(min(moving), max(moving) + 1)):
         raise SystemExit("laconic.dbc: identifiers of the frames with E2EKey run must follow one another")
@@ -77,9 +83,12 @@ def counts(first: int, last: int, classic: int) -> list[str]:
 
 
 def guarded(lines: list[str]) -> list[str]:
-    """Lines of a table, of which the last ones are those that small images leave out."""
-    at = -len(SMALL_IMAGES_LEAVE_OUT)
-    return [*lines[:at], "#if LACONIC_NODE_WITH_SENSORS", *lines[at:], "#endif"]
+    """Lines of a table, of which the last ones are those that images may leave out."""
+    kept, parts = lines[:-len(OPTIONAL)], list(OPTIONAL.values())
+    of_sensors, of_estimate = ([line for line, part in zip(lines[-len(OPTIONAL):], parts, strict=True) if part == each]
+                               for each in ("SENSORS", "ESTIMATE"))
+    return [*kept, "#if LACONIC_NODE_WITH_SENSORS || LACONIC_NODE_WITH_ESTIMATE", *of_sensors, "#endif",
+            "#if LACONIC_NODE_WITH_ESTIMATE", *of_estimate, "#endif"]
 
 
 def scale(message: Message, signal: Signal) -> list[str]:

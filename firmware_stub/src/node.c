@@ -78,7 +78,7 @@ void laconic_node_on_frame(laconic_node *node, const laconic_frame *frame, uint3
 
 /* A controller of drives has the bus for itself, unless a rig asks for frames. */
 static bool is_silent(const laconic_node *node) {
-    return plays_drives(node) && node->send == 0 && node->raw_output.send == 0;
+    return plays_drives(node) && node->send == 0 && node->raw_output.send == 0 && !estimates(node);
 }
 
 void laconic_node_on_tick(laconic_node *node, uint32_t now_us) {
@@ -86,6 +86,9 @@ void laconic_node_on_tick(laconic_node *node, uint32_t now_us) {
         node->heartbeat_us += LACONIC_NODE_HEARTBEAT_US;
         if (!is_silent(node)) node->pending |= BIT(LACONIC_WIRE_HEARTBEAT);
         if (node->send & LACONIC_NODE_SEND_COUNTERS) node->pending |= BIT(LACONIC_WIRE_COUNTERS);
+#if LACONIC_NODE_WITH_ESTIMATE
+        if (estimates(node)) laconic_node_publish_estimate(node);
+#endif
     }
 #if LACONIC_NODE_WITH_DRIVES
     if (plays_drives(node)) laconic_node_run_drives(node, now_us);
@@ -108,6 +111,9 @@ static bool has_more(laconic_node *node, uint8_t offset) {
     case LACONIC_WIRE_ENCODER:
         node->encoder_wheel = laconic_node_encoder_from(node, node->encoder_wheel + 1);
         return node->encoder_wheel < LACONIC_MAX_WHEELS;
+#endif
+#if LACONIC_NODE_WITH_ESTIMATE
+    case LACONIC_WIRE_ERROR_ESTIMATE: node->estimate_page++; return node->estimate_page < LACONIC_NODE_ESTIMATE_PAGES;
 #endif
     case LACONIC_WIRE_COUNTERS:
         node->counter_page = (uint8_t)((node->counter_page + 1U) % 3U);

@@ -86,6 +86,9 @@ void laconic_node_make_idle(laconic_node *node) {
     node->send = 0;
     if (!LACONIC_NODE_DRIVES_ONLY) node->raw_input.take = 0;
     node->raw_output.send = 0;
+#if LACONIC_NODE_WITH_ESTIMATE
+    node->estimates = false;
+#endif
     node->answers_due = 0;
     node->pending = 0;
 }
@@ -93,9 +96,12 @@ void laconic_node_make_idle(laconic_node *node) {
 static uint8_t reset(laconic_node *node, uint8_t *field, uint8_t *item) {
     laconic_refusal why = {0};
     if (node->state == LACONIC_WIRE_STATE_EMPTY) return LACONIC_WIRE_STATUS_WRONG_STATE;
-    const laconic_status status = laconic_plant_restart(&node->plant, &node->start, &why);
+    laconic_status status = laconic_plant_restart(&node->plant, &node->start, &why);
 #if LACONIC_NODE_WITH_SENSORS
     laconic_node_start_sensors(node, &node->sensors.settings);
+#endif
+#if LACONIC_NODE_WITH_ESTIMATE
+    if (estimates(node) && status == LACONIC_OK) status = laconic_node_start_estimate(node, &why);
 #endif
     stop(node);
     node->state = LACONIC_WIRE_STATE_READY;
@@ -159,6 +165,9 @@ static uint8_t adopt(laconic_node *node, uint8_t *field, uint8_t *item) {
 #endif
     if (status == LACONIC_OK)
         status = laconic_plant_start(&node->plant, &new->vehicle, method, new->step_s, &new->start, &why);
+#if LACONIC_NODE_WITH_ESTIMATE
+    if (status == LACONIC_OK) node->estimates = false; /* of the vehicle before; SELECT begins another */
+#endif
     *field = (uint8_t)why.field;
     *item = (uint8_t)why.item;
     if (status != LACONIC_OK) return (uint8_t)status;
@@ -184,6 +193,24 @@ laconic_node_result laconic_node_commit(laconic_node *node, const uint8_t *data)
     return answer;
 }
 
+#if LACONIC_NODE_WITH_ESTIMATE
+#define ESTIMATE_LEFT_OUT 0U
+
+/* The estimate begins here, with no error; a vehicle must be there. */
+static uint8_t select_estimate(laconic_node *node, bool wanted, laconic_node_result *answer) {
+    laconic_refusal why = {0};
+    if (!wanted) node->estimates = false;
+    if (!wanted) return 0;
+    if (node->state == LACONIC_WIRE_STATE_EMPTY) return LACONIC_WIRE_STATUS_WRONG_STATE;
+    const laconic_status status = laconic_node_start_estimate(node, &why);
+    answer->field = (uint8_t)why.field;
+    answer->item = (uint8_t)why.item;
+    return (uint8_t)status;
+}
+#else
+#define ESTIMATE_LEFT_OUT SELECTS_ESTIMATE
+#endif
+
 laconic_node_result laconic_node_select(laconic_node *node, const uint8_t *data) {
     laconic_node_result answer = {.command = LACONIC_WIRE_COMMAND_SELECT};
     const uint8_t raw_fd = data[3] >> 7;
@@ -192,9 +219,13 @@ laconic_node_result laconic_node_select(laconic_node *node, const uint8_t *data)
     if (listens_to_voltages(node)) {
         answer.status = LACONIC_WIRE_STATUS_WRONG_STATE;
     } else if (((raw_fd || data[2] & LACONIC_NODE_SEND_STATE_FD) && !node->config.can_fd) ||
-               ((data[2] & SENDS_LEFT_OUT) | (raw & RAW_LEFT_OUT)) != 0) {
+               ((data[2] & SENDS_LEFT_OUT) | (raw & RAW_LEFT_OUT) | (data[4] & ESTIMATE_LEFT_OUT)) != 0) {
         answer.status = LACONIC_WIRE_STATUS_NOT_SUPPORTED;
     } else {
+#if LACONIC_NODE_WITH_ESTIMATE
+        answer.status = select_estimate(node, (data[4] & SELECTS_ESTIMATE) != 0, &answer);
+        if (answer.status != 0) return answer;
+#endif
         node->send = data[2];
         node->raw_fd = raw_fd != 0;
         node->raw_output.send = raw;

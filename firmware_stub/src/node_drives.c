@@ -46,7 +46,7 @@ uint8_t laconic_node_start_drives(laconic_node *node, uint32_t now_us, uint8_t *
     return 0;
 }
 
-static laconic_status step(laconic_node *node, uint32_t now_us, laconic_refusal *why) {
+static laconic_status step_unwatched(laconic_node *node, uint32_t now_us, laconic_refusal *why) {
 #if LACONIC_NODE_WITH_SENSORS
     if (laconic_node_watches(node)) {
         laconic_sensor_moment before;
@@ -57,6 +57,18 @@ static laconic_status step(laconic_node *node, uint32_t now_us, laconic_refusal 
     }
 #endif
     return laconic_drives_step(&node->drives, &node->plant, &node->input[0], now_us, why);
+}
+
+static laconic_status step(laconic_node *node, uint32_t now_us, laconic_refusal *why) {
+#if LACONIC_NODE_WITH_ESTIMATE
+    if (estimates(node)) {
+        const laconic_state before = node->plant.state;
+        const laconic_status status = step_unwatched(node, now_us, why);
+        if (status == LACONIC_OK) laconic_node_watch_taken(node, &before);
+        return status;
+    }
+#endif
+    return step_unwatched(node, now_us, why);
 }
 
 /* Whoever reads the torques must miss no step, or his own steps are others from there on: the next one waits until the

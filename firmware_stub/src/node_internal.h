@@ -43,6 +43,17 @@ static inline bool is_running(const laconic_node *node) {
     ((LACONIC_NODE_WITH_SENSORS ? 0U : RAW_OF_SENSORS) | (LACONIC_NODE_WITH_DRIVES ? 0U : LACONIC_RAW_HELD_TORQUE) | \
      (LACONIC_NODE_DRIVES_ONLY ? LACONIC_RAW_NU | LACONIC_RAW_ENERGY : 0U))
 
+#define SELECTS_ESTIMATE 0x20U /* of the byte with the take_ bits */
+
+static inline bool estimates(const laconic_node *node) {
+#if LACONIC_NODE_WITH_ESTIMATE
+    return node->estimates;
+#else
+    (void)node;
+    return false;
+#endif
+}
+
 static inline bool listens_to_voltages(const laconic_node *node) {
     if (LACONIC_NODE_DRIVES_ONLY) return false;
     return node->state == LACONIC_WIRE_STATE_LOCKSTEP || node->state == LACONIC_WIRE_STATE_FREE_RUN;
@@ -107,6 +118,17 @@ void laconic_node_start_sensors(laconic_node *node, const laconic_sensor_setting
 void laconic_node_publish_sensors(laconic_node *node, laconic_sensor_outputs *sensed);
 /* The next wheel from `wheel` on that has an encoder; LACONIC_MAX_WHEELS: there is none. */
 uint8_t laconic_node_encoder_from(const laconic_node *node, int32_t wheel);
+#endif
+
+#if LACONIC_NODE_WITH_ESTIMATE
+/* node_estimate.c: the error estimate beside the plant; a refusal ends it. */
+laconic_status laconic_node_start_estimate(laconic_node *node, laconic_refusal *why);
+/* `begin` before steps that the caller takes: how many to take at most; `end` after they were taken. */
+uint64_t laconic_node_begin_watched(laconic_node *node, int32_t samples, uint64_t steps);
+void laconic_node_end_watched(laconic_node *node, uint64_t steps);
+/* The same after one step with the input held, from the state before it: drives know their torques in it alone. */
+void laconic_node_watch_taken(laconic_node *node, const laconic_state *before);
+void laconic_node_publish_estimate(laconic_node *node);
 #endif
 
 /* node_pack.c: writes the payload of one frame; its protection follows. */

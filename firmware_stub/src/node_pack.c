@@ -119,6 +119,22 @@ static void pack_encoder(const laconic_node *node, uint8_t *data) {
 }
 #endif
 
+#if LACONIC_NODE_WITH_ESTIMATE
+/* Page k: number k of those now, then of the largest. A number beyond the range of single precision is sent as
+ * infinity. */
+static void pack_error_estimate(const laconic_node *node, uint8_t *data) {
+    const laconic_error *sizes = node->estimate_page < 4 ? &node->estimated.now : &node->estimated.largest;
+    const laconic_real size[4] = {sizes->nu_rad_per_s, sizes->place_m, sizes->heading_rad, sizes->wheel_angle_rad};
+    const float single = (float)size[node->estimate_page & 3U];
+    const uint64_t unknown = node->estimated.unknown;
+    uint32_t bits;
+    memcpy(&bits, &single, sizeof bits);
+    data[1] = (uint8_t)(node->estimate_page << 4);
+    put32(data + 2, bits);
+    put16(data + 6, unknown > UINT16_MAX ? UINT16_MAX : (uint32_t)unknown);
+}
+#endif
+
 #define MOST_LATENESS 32767U
 
 /* While drives play there is no rig to be deaf to; the bit then tells that a drive has heard no controller in time. It
@@ -192,6 +208,9 @@ void laconic_node_pack(laconic_node *node, uint8_t offset, uint8_t *data) {
     case LACONIC_WIRE_WHEEL_ANGLE: pack_wheel_angle(node, data); break;
     case LACONIC_WIRE_IMU: pack_imu(node, data); break;
     case LACONIC_WIRE_ENCODER: pack_encoder(node, data); break;
+#endif
+#if LACONIC_NODE_WITH_ESTIMATE
+    case LACONIC_WIRE_ERROR_ESTIMATE: pack_error_estimate(node, data); break;
 #endif
     default:
         if (!LACONIC_NODE_CAN_FD) break;

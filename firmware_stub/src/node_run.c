@@ -37,7 +37,7 @@ void laconic_node_fail(laconic_node *node, const laconic_refusal *why, uint8_t r
     laconic_node_answer(node, LACONIC_WIRE_SYNC, answer);
 }
 
-static laconic_status step(laconic_node *node, uint64_t steps, laconic_refusal *why) {
+static laconic_status step_unwatched(laconic_node *node, uint64_t steps, laconic_refusal *why) {
 #if LACONIC_NODE_WITH_SENSORS
     if (laconic_node_watches(node))
         return laconic_sensors_run(&node->sensors, &node->plant, &node->input[0], steps, why);
@@ -45,11 +45,38 @@ static laconic_status step(laconic_node *node, uint64_t steps, laconic_refusal *
     return laconic_plant_run(&node->plant, &node->input[0], steps, why);
 }
 
-static laconic_status step_sampled(laconic_node *node, laconic_refusal *why) {
+/* With an estimate in the parts that it asks for, which changes no bit. */
+static laconic_status step(laconic_node *node, uint64_t steps, laconic_refusal *why) {
+#if LACONIC_NODE_WITH_ESTIMATE
+    laconic_status status = LACONIC_OK;
+    while (estimates(node) && steps > 0 && status == LACONIC_OK) {
+        const uint64_t now = laconic_node_begin_watched(node, 1, steps), before = node->plant.steps;
+        status = step_unwatched(node, now, why);
+        laconic_node_end_watched(node, node->plant.steps - before);
+        steps -= now;
+    }
+    if (estimates(node)) return status;
+#endif
+    return step_unwatched(node, steps, why);
+}
+
+static laconic_status step_sampled_unwatched(laconic_node *node, laconic_refusal *why) {
 #if LACONIC_NODE_WITH_SENSORS
     if (laconic_node_watches(node)) return laconic_sensors_run_sampled(&node->sensors, &node->plant, node->input, why);
 #endif
     return laconic_plant_run_sampled(&node->plant, node->input, why);
+}
+
+static laconic_status step_sampled(laconic_node *node, laconic_refusal *why) {
+#if LACONIC_NODE_WITH_ESTIMATE
+    if (estimates(node)) {
+        laconic_node_begin_watched(node, 3, 1);
+        const laconic_status status = step_sampled_unwatched(node, why);
+        laconic_node_end_watched(node, status == LACONIC_OK);
+        return status;
+    }
+#endif
+    return step_sampled_unwatched(node, why);
 }
 
 void laconic_node_run_lockstep(laconic_node *node) {

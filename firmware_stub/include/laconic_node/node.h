@@ -27,6 +27,9 @@
 #include "laconic_node/raw_frames.h"
 #include "laconic_node/session.h"
 #include "laconic_wire.h"
+#if LACONIC_NODE_WITH_ESTIMATE
+#include "laconic/estimate.h"
+#endif
 
 #ifndef LACONIC_NODE_STEPS_PER_TICK
 #define LACONIC_NODE_STEPS_PER_TICK 64
@@ -105,6 +108,12 @@ typedef struct laconic_node {
     laconic_sensors sensors; /* beside the plant */
     bool has_sensors;        /* the vehicle came with settings of them: they watch every step */
 #endif
+#if LACONIC_NODE_WITH_ESTIMATE
+    bool estimates;        /* SELECT has chosen ERROR_ESTIMATE: `estimate` watches every step */
+    uint8_t estimate_page; /* next ERROR_ESTIMATE page                                        */
+    laconic_estimate estimate;
+    laconic_errors estimated; /* what its pages tell */
+#endif
 } laconic_node;
 
 #define LACONIC_NODE_SEND_NU 1U
@@ -115,6 +124,7 @@ typedef struct laconic_node {
 #define LACONIC_NODE_SEND_STATE_FD 32U
 #define LACONIC_NODE_SEND_IMU 64U
 #define LACONIC_NODE_SEND_ENCODER 128U
+#define LACONIC_NODE_ESTIMATE_PAGES 8U
 
 /* False iff the ID base is no multiple of 32 or beyond 0x7E0; the node is then not usable. */
 bool laconic_node_init(laconic_node *node, const laconic_node_config *config, uint32_t now_us);

@@ -115,7 +115,7 @@ def wheel_of(frame: Frame, part: int, number: int) -> int:
 def value_text(frame: Frame, name: str, raw: int) -> str:
     """Its name in the value table, or the number in its unit."""
     field = frame.fields[name]
-    return wire().choice(frame.name, name, raw) if field.choices else f"{raw * field.scale:.6g}"
+    return wire().choice(frame.name, name, raw) if field.choices else f"{field.value(raw):.6g}"
 
 
 @contextmanager

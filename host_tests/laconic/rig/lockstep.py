@@ -22,6 +22,7 @@ from laconic.core.recording import Recorder
 from laconic.errors import BadInput
 from laconic.rig.client import Identity, NodeClient
 from laconic.rig.errors import NodeSilent
+from laconic.rig.estimated import is_estimated
 from laconic.rig.parameters import Parameter, method_number
 from laconic.rig.sensed import RAW_OF_SENSORS, has_sensors, raw_row, sensor_parameters
 from laconic.rig.wire import wire
@@ -123,7 +124,7 @@ class RawStream:
         self.row_length = 6 + 2 * scene.wheel_count + self.has_sensors * (5 + scene.wheel_count)
         self.sampled = not self.inputs.is_held
         self.columns = self._columns(scene.wheel_count)
-        self.fd = fd
+        self.fd, self.estimated = fd, is_estimated(scene)
         self._in = wire()["RAW_INPUT_FD" if fd else "RAW_INPUT"]
         self._out = "RAW_OUTPUT_FD" if fd else "RAW_OUTPUT"
         self._chunk = 60 if fd else 6
@@ -141,9 +142,11 @@ class RawStream:
         return np.array(columns, dtype=int)
 
     def select(self) -> None:
-        """Selects the numbers that go over the bus; the node sends nothing else."""
+        """Selects the numbers that go over the bus; the node sends no frame of its own but ERROR_ESTIMATE, where the
+        scene lists it."""
         bits = dict.fromkeys([*self.groups, *OUTPUTS, *(RAW_OF_SENSORS if self.has_sensors else ())], 1)
-        self.node.select(**bits, take_sampled=int(self.sampled and bool(self.groups)), raw_fd=int(self.fd))
+        self.node.select(**bits, take_sampled=int(self.sampled and bool(self.groups)), raw_fd=int(self.fd),
+                         send_error_estimate=int(self.estimated))
 
     def send_inputs(self, rows: np.ndarray) -> None:
         """Sends one row of laconic_input numbers; three rows (start, middle, end of a step) for sampled inputs."""

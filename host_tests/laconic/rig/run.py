@@ -8,6 +8,7 @@ from contextlib import contextmanager
 from laconic.progress import progress_bar
 from laconic.rig.client import NodeClient
 from laconic.rig.errors import Interrupted
+from laconic.rig.estimated import is_estimated, read_estimate
 from laconic.rig.free_judge import Free
 from laconic.rig.interruption import Interruption
 from laconic.rig.judge import SameBits, Scaled
@@ -29,12 +30,14 @@ def run(scene: Scene, options: Options) -> Judgement:
           shown(node, scene, options) as moved):
         node.link.may_go_on = signals.check  # between frames, so that no frame and no log entry is cut in two
         trial, notes, is_over = trial_of(node, scene, options, limits), [], False
+        estimate: dict[str, float] = {}
         try:
             found = stop_running(node)
             if found in RUNNING:
                 notes.append(f"the node was found in state {found} and has been stopped before the run")
             trial.drive(moved)
             is_over = trial.ending is None
+            estimate = read_estimate(node) if is_over and is_estimated(scene) else {}
         except Interrupted as ending:  # before the first step
             trial.ending = ending
         finally:
@@ -43,6 +46,7 @@ def run(scene: Scene, options: Options) -> Judgement:
                     notes += after_early_end(node)
     judgement = trial.judge()
     judgement.notes += notes
+    judgement.figures |= estimate
     return judgement
 
 

@@ -33,7 +33,7 @@ from laconic.scene.inputs import InputsOnGrid
 DEFAULT_FRAMES = ("NU", "POSE", "WHEEL_SPEED")
 SELECT_BIT = {"NU": "send_nu", "POSE": "send_pose", "WHEEL_SPEED": "send_wheel_speed", "COUNTERS": "send_counters",
               "STATE_FD": "send_state_fd", "WHEEL_ANGLE": "send_wheel_angle", "IMU": "send_imu",
-              "ENCODER": "send_encoder"}
+              "ENCODER": "send_encoder", "ERROR_ESTIMATE": "send_error_estimate"}
 ANSWERS = ("NU", "POSE", "WHEEL_SPEED", "STATE_FD", *SENSED_FRAMES)
 ALWAYS_SENT = ("HEARTBEAT",)
 

@@ -6,6 +6,7 @@ frames a second. Protection (first two or three bytes) is put on by the link.
 
 from __future__ import annotations
 
+import struct
 from dataclasses import dataclass
 from functools import lru_cache
 from typing import Any
@@ -31,11 +32,16 @@ class Field:
     scale: float
     largest: int          # largest magnitude of the raw value that the contract allows
     choices: dict[int, str]
+    real: bool = False    # its bits are an IEEE number of single precision
 
     @property
     def mask(self) -> int:
         """All its bits, shifted down."""
         return (1 << self.bits) - 1
+
+    def value(self, raw: int) -> float:
+        """The number in its unit."""
+        return float(struct.unpack("<f", struct.pack("<I", raw & self.mask))[0]) if self.real else raw * self.scale
 
     def raw(self, value: float) -> tuple[int, bool]:
         """The nearest raw value, and whether it had to be cut off."""
@@ -85,7 +91,7 @@ class Frame:
 
     def physical(self, data: bytes) -> dict[str, float]:
         """Values in their units."""
-        return {name: value * self.fields[name].scale for name, value in self.unpack(data).items()}
+        return {name: self.fields[name].value(raw) for name, raw in self.unpack(data).items()}
 
 
 def field_of(signal: Any) -> Field:
@@ -95,7 +101,8 @@ def field_of(signal: Any) -> Field:
     scale = float(signal.scale)
     largest = round(float(signal.maximum) / scale)
     choices = {int(number): str(name) for number, name in (signal.choices or {}).items()}
-    return Field(signal.name, signal.start, signal.length, signal.is_signed, scale, largest, choices)
+    return Field(signal.name, signal.start, signal.length, signal.is_signed and not signal.is_float, scale, largest,
+                 choices, signal.is_float)
 
 
 class Wire:
