@@ -220,16 +220,18 @@ INLINE void chord_factors(real *sinc, real *half_j1, real alpha) {
 
 /* Pose is a quadrature of ζ. Mean and first moment of ζ over the step, which every method delivers at its own
  * order, fix it to fourth order with a single sine and cosine, as complex numbers in body axes:
- * ∫ e^{iθ} v dt = e^{iθ_mid} { sinc α · h v̄ + i [½ j₁(α) h Δv − (h Δω/12) h v̄] } */
+ * ∫ e^{iθ} v dt = e^{iθ_mid} { sinc α · h v̄ + i [½ j₁(α) h Δv − (h Δω/12) h v̄] }
+ * Both products of a row stand together, so that its numbers need registers once. */
 INLINE pose_change displacement(const laconic_model *m, vector path, vector bend) {
     const vector along = vec(m->velocity_of_zeta[0]), across = vec(m->velocity_of_zeta[1]);
     const vector yaw_rate = vec(m->yaw_rate_of_zeta);
     const real yaw_change = dot(yaw_rate, path), yaw_bend = dot(yaw_rate, bend) * (R(1) / R(12));
-    const real forth = dot(along, path), left = dot(across, path);
+    const real forth = dot(along, path), forth_bend = dot(along, bend);
+    const real left = dot(across, path), left_bend = dot(across, bend);
     real sinc, half_j1;
     chord_factors(&sinc, &half_j1, R(0.5) * yaw_change);
-    const real aside_forth = half_j1 * dot(along, bend) - yaw_bend * forth;
-    const real aside_left = half_j1 * dot(across, bend) - yaw_bend * left;
+    const real aside_forth = half_j1 * forth_bend - yaw_bend * forth;
+    const real aside_left = half_j1 * left_bend - yaw_bend * left;
     const pose_change moved = {sinc * forth - aside_left, sinc * left + aside_forth, yaw_change};
     return moved;
 }

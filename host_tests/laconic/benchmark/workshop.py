@@ -193,11 +193,11 @@ class Workshop:
         return self._archives[place]
 
     def _link(self, target: Target, variant: Variant, name: str, sources: Sequence[Path], flags: Sequence[str],
-              extra: Sequence[str] = ()) -> Path:
+              extra: Sequence[str] = (), tables: Sequence[str] = ("laconic_scene_model.c", "bench_segments.c")) -> Path:
         folder, _ = self.files(variant)
         core = self.archive(target, variant, folder, extra)
         output = folder / f"{target.name}_{name}"
-        generated = [str(folder / name) for name in ("laconic_scene_model.c", "bench_segments.c")]
+        generated = [str(folder / name) for name in tables]
         run_tool([target.tool("gcc"), *FLAGS, *extra, variant.optimisation, *target.flags,
                   *self.definitions(target, variant, folder), f"-I{self.core_dir / 'include'}", f"-I{BENCH}",
                   f"-I{folder}", *map(str, sources), *generated, str(core), "-Wl,--gc-sections", *flags,
@@ -211,6 +211,21 @@ class Workshop:
     def host_library(self, variant: Variant) -> Path:
         """The bench as a shared library: bench_reset, bench_run."""
         return self._link(HOST, variant, "bench.so", [BENCH / "bench.c"], ["-shared", "-Wl,-Bsymbolic"], ["-fPIC"])
+
+    def hand_program(self, variant: Variant, *, refuses: bool) -> Path:
+        """Counts steps of the kernel that was written by hand for rk4; it knows the model, so it has it in itself."""
+        return self._hand(variant, f"hand{refuses:d}", [BENCH / "count_host.c"], [f"-DHAND_REFUSES={refuses:d}"])
+
+    def hand_library(self, variant: Variant, *, refuses: bool) -> Path:
+        """The same as a shared library."""
+        flags = [f"-DHAND_REFUSES={refuses:d}", "-shared", "-Wl,-Bsymbolic"]
+        return self._hand(variant, f"hand{refuses:d}.so", [], flags, ["-fPIC"])
+
+    def _hand(self, variant: Variant, name: str, sources: Sequence[Path], flags: Sequence[str],
+              extra: Sequence[str] = ()) -> Path:
+        kernel = BENCH / "peers" / "hand_rk4.c"
+        return self._link(HOST, variant, name, [kernel, *sources], [f"-I{self.core_dir / 'src'}", *flags], extra,
+                          ["bench_segments.c"])
 
     def board_image(self, target: Target, variant: Variant, steps: int, program: str = "count") -> Path:
         """The image that counts so many steps on a board: all together, or each by itself (`spread`)."""

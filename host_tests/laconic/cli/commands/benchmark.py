@@ -17,8 +17,10 @@ COLUMNS = {"who": "", "real": "scalar", "environments": "environments", "thousan
            "times_alone": "over one by one", "nJ_per_step": "nJ a step", "prediction": "prediction",
            "encoders": "encoders", "gyro": "gyro", "cycle": "whole cycle", "stack": "stack B", "flash": "flash B",
            "whole": "flash B, all methods", "ram": "filter B", "soft_double": "soft_double.c", "libgcc": "libgcc",
-           "same_bits": "host's bits", "instructions": "instructions", "other_key": "with another key"}
-TITLES = {"batch": "Vehicle-steps on one core", "learn": "Environments under random actions, on one core",
+           "over_whole": "over the whole core", "over_hand": "over by hand", "same_bits": "host's bits",
+           "instructions": "instructions", "other_key": "with another key"}
+TITLES = {"step": "A step of rk4 on one core", "batch": "Vehicle-steps on one core",
+          "learn": "Environments under random actions, on one core",
           "filter": "Instructions of a Kalman filter on a Cortex-M4F, in single", "gpu": "Vehicle-steps on a GPU",
           "soft-double": "Double precision on a Cortex-M4F, in instructions and bytes",
           "codes": "Codes that only a key's holder can make, on a Cortex-M4F"}
@@ -31,8 +33,11 @@ TITLES = {"batch": "Vehicle-steps on one core", "learn": "Environments under ran
               help="How often all run in turn; the least time of each counts.")
 @json_flag()
 def command(what: str, lanes: int | None, rounds: int, json_wanted: bool) -> None:
-    """Times vehicles that step side by side, or counts instructions: WHAT is batch, learn, gpu, filter, soft-double
-    or codes.
+    """Times vehicles that step side by side, or counts instructions: WHAT is step, batch, learn, gpu, filter,
+    soft-double or codes.
+
+    step: scene s1 by rk4, with the whole core, with the core trimmed to the scene, and by a kernel written by hand for
+    this one vehicle, with the core's refusals and without any; all have the same bits.
 
     batch: Robotino 2, Runge-Kutta steps of 1 ms with pose and wheel angles, 100 in a run, on one core: the core's
     batch, the core one vehicle after the other, and the same step in numba and JAX, and MuJoCo, where they are
@@ -56,7 +61,7 @@ def command(what: str, lanes: int | None, rounds: int, json_wanted: bool) -> Non
 
     stay_on_one_core()
     lanes = lanes or (10**6 if what == "gpu" else 1000)
-    rows, notes = {"batch": _batch, "learn": _learn, "gpu": _gpu, "filter": _filter,
+    rows, notes = {"step": _step, "batch": _batch, "learn": _learn, "gpu": _gpu, "filter": _filter,
                    "soft-double": _soft_double, "codes": _codes}[what](lanes, rounds)
     if json_wanted:
         click.echo(json.dumps({"lanes": lanes, "rows": rows, "notes": notes}, indent=1))
@@ -67,6 +72,12 @@ def command(what: str, lanes: int | None, rounds: int, json_wanted: bool) -> Non
 
 
 Found = tuple[list[dict[str, Any]], list[str]]
+
+
+def _step(lanes: int, rounds: int) -> Found:
+    from laconic.benchmark import step_cost
+
+    return step_cost.rows(rounds), []
 
 
 def _batch(lanes: int, rounds: int) -> Found:
