@@ -194,7 +194,8 @@ static void sampled_steps_are_watched(void) {
     TEST_ASSERT_EQUAL_MEMORY(estimate.local, node.estimate.local, sizeof estimate.local);
 }
 
-/* 60 ms of drives that are commanded a current, from a yawing start. */
+/* 120 ms of drives that are commanded a current, from a yawing start: over a heartbeat, which
+ * is sent where the estimate is. */
 static void play_drives(uint8_t take) {
     laconic_frame frame = {.id = 0x200, .length = 8, .data = {3, 232, 0, 0, 3, 232}};
     load_turning();
@@ -202,11 +203,12 @@ static void play_drives(uint8_t take) {
     TEST_ASSERT_EQUAL_UINT8(0, bench_select(0, 0, take));
     TEST_ASSERT_EQUAL_UINT8(0, bench_control(LACONIC_WIRE_COMMAND_START_DRIVES, 0, 0));
     laconic_node_on_frame(&node, &frame, now_us);
-    for (int k = 0; k < 60; k++) {
+    for (int k = 0; k < 120; k++) {
         now_us += 1000;
         laconic_node_on_tick(&node, now_us);
     }
-    TEST_ASSERT_EQUAL_UINT64(60, node.plant.steps);
+    TEST_ASSERT_EQUAL_UINT64(120, node.plant.steps);
+    TEST_ASSERT_EQUAL(take == CHOSEN, bench_receive(LACONIC_WIRE_HEARTBEAT, data));
     TEST_ASSERT_TRUE(node.input[0].axle_torque_Nm[0] > REAL(0.01));
     TEST_ASSERT_EQUAL_UINT8(0, bench_control(LACONIC_WIRE_COMMAND_STOP, 0, 0));
 }
