@@ -34,6 +34,4 @@ void laconic_node_publish_estimate(laconic_node *node) {
     node->pending |= BIT(LACONIC_WIRE_ERROR_ESTIMATE);
 }
 
-#else
-typedef int laconic_node_has_no_estimate; /* a file without a declaration is no C */
 #endif
