@@ -49,11 +49,16 @@ void fmu_stream_reals(fmu_stream *stream, double *values, size_t count) {
     }
 }
 
+/* Half a byte at a time: a quarter of the steps of single bits, and a table of 64 bytes. */
 uint32_t fmu_checksum(const uint8_t *bytes, size_t size) {
+    static const uint32_t table[16] = {0x00000000U, 0x1DB71064U, 0x3B6E20C8U, 0x26D930ACU, 0x76DC4190U, 0x6B6B51F4U,
+                                       0x4DB26158U, 0x5005713CU, 0xEDB88320U, 0xF00F9344U, 0xD6D6A3E8U, 0xCB61B38CU,
+                                       0x9B64C2B0U, 0x86D3D2D4U, 0xA00AE278U, 0xBDBDF21CU};
     uint32_t remainder = 0xFFFFFFFFU;
     for (size_t k = 0; k < size; k++) {
         remainder ^= bytes[k];
-        for (int bit = 0; bit < 8; bit++) remainder = (remainder >> 1) ^ (0xEDB88320U & (0U - (remainder & 1U)));
+        remainder = (remainder >> 4) ^ table[remainder & 15U];
+        remainder = (remainder >> 4) ^ table[remainder & 15U];
     }
     return ~remainder;
 }

@@ -72,6 +72,7 @@ static void serialize_state(fmu_stream *s, laconic_state *state) {
     fmu_stream_u64(s, &fraction);
     state->heading.fraction = fraction;
     fmu_stream_reals(s, &state->heading.rest, 1);
+    if (s->from != NULL && !(state->heading.rest <= 1.0 && state->heading.rest >= -1.0)) s->failed = true;
     serialize_sums(s, state->travel, 3);
     fmu_stream_reals(s, state->wheel_angle_set_rad, LACONIC_MAX_WHEELS);
 }

@@ -118,6 +118,18 @@ static void an_impossible_state_is_refused_though_its_checksum_is_right(void) {
     fmi2FreeFMUstate(c, &read);
 }
 
+/* What a heading has not taken up is less than a unit; with more, a step would leave the range of its integer. */
+static void a_heading_whose_rest_is_no_rest_is_refused(void) {
+    const double rests[] = {1.5, -1.5, 1e101, NOT_A_NUMBER};
+    begin();
+    for (size_t k = 0; k < sizeof rests / sizeof rests[0]; k++) {
+        fmi2FMUstate read = NULL;
+        ((fmu_instance *)c)->model.plant.state.heading.rest = rests[k];
+        ASSERT_REFUSED(fmi2DeSerializeFMUstate(c, bytes, write(), &read), "no possible state");
+        TEST_ASSERT_NULL(read);
+    }
+}
+
 static void a_state_of_the_other_kind_is_refused(void) {
     fmi2FMUstate kept = NULL;
     fmi2Component other = make_2(fmi2ModelExchange, fmu_token_2);
@@ -139,6 +151,7 @@ int main(void) {
     RUN_TEST(bytes_are_read_by_another_instance);
     RUN_TEST(damaged_bytes_are_refused_whichever_they_are);
     RUN_TEST(an_impossible_state_is_refused_though_its_checksum_is_right);
+    RUN_TEST(a_heading_whose_rest_is_no_rest_is_refused);
     RUN_TEST(a_state_of_the_other_kind_is_refused);
     return UNITY_END();
 }

@@ -17,6 +17,7 @@ from laconic.soak import StoppedEarly
 
 LOOK_S = 0.5
 PATIENCE_S = 10.0  # for the end of a target
+CORPORA = {name: f"fmu/tests/corpus_{name}" for name in ("fmi", "fmu_state")}
 
 
 @dataclass(frozen=True)
@@ -62,7 +63,7 @@ class Run:
         self.log = build_dir() / "fuzz" / f"{target}.log"
         command = [str(self.program), f"-max_total_time={max(1, round(seconds))}", f"-seed={seed % 2**31 or 1}",
                    "-max_len=2000", "-rss_limit_mb=1024", f"-artifact_prefix={fresh}/", str(fresh),
-                   str(SOURCE_DIR / "firmware_stub" / "fuzz" / "corpus" / target)]
+                   str(SOURCE_DIR / CORPORA.get(target, f"firmware_stub/fuzz/corpus/{target}"))]
         with self.log.open("w", encoding="utf-8") as log:
             self.process = subprocess.Popen(command, stdin=subprocess.DEVNULL, stdout=subprocess.DEVNULL, stderr=log)
 

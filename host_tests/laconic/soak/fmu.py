@@ -14,7 +14,7 @@ SLICE_S = 5.0
 def soak(minutes: float, seed: int, advance: Callable[[float], None]) -> dict[str, Any]:
     """Runs the kept corpus, then new inputs; an input that a sanitizer stops is kept in build/fuzz/fmu_culprit.bin."""
     program, culprit = built("fuzz/fmu_fuzz"), build_dir() / "fuzz" / "fmu_culprit.bin"
-    corpus = sorted((SOURCE_DIR / "fmu" / "tests" / "corpus").glob("*.bin"))
+    corpus = sorted((SOURCE_DIR / "fmu" / "tests" / "corpus_fmi").glob("*"))
     result = subprocess.run([str(program), *map(str, corpus)], capture_output=True, text=True)
     left_s, inputs, slices = 60.0 * minutes, len(corpus), 0
     while left_s > 0.0 and result.returncode == 0:

@@ -1,4 +1,4 @@
-"""SLCAN reader, frames, loader, vehicles with their steps, and drives under libFuzzer, the time shared evenly."""
+"""SLCAN reader, frames, loader, vehicles with their steps, drives, FMI calls and saved states under libFuzzer."""
 
 from __future__ import annotations
 
@@ -8,7 +8,7 @@ from typing import Any
 from laconic.soak._fuzzing import fuzz_in_turn
 from laconic.soak.drive_frames import TARGETS as OF_DRIVES
 
-TARGETS = ("slcan", "frames", "loader", "vehicle", *OF_DRIVES)
+TARGETS = ("slcan", "frames", "loader", "vehicle", *OF_DRIVES, "fmi", "fmu_state")
 
 
 def soak(minutes: float, seed: int, advance: Callable[[float], None]) -> dict[str, Any]:

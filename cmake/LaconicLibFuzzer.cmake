@@ -1,0 +1,42 @@
+# Whether there is a clang with libFuzzer: has_libfuzzer, and fuzz_compiler, which fuzz targets are compiled by; without it
+# the project's own compiler, and fuzz_main replays a corpus. Looked for once.
+
+find_program(LACONIC_CLANG clang)
+if(NOT DEFINED CACHE{LACONIC_HAS_LIBFUZZER})
+    set(probe "${PROJECT_BINARY_DIR}/CMakeFiles/libfuzzer_probe")
+    set(works FALSE)
+    if(LACONIC_CLANG)
+        file(WRITE "${probe}.c" "int LLVMFuzzerTestOneInput(const char *d, unsigned long n);\nint LLVMFuzzerTestOneInput(const char *d, unsigned long n) { return d == 0 && n; }\n")
+        execute_process(COMMAND "${LACONIC_CLANG}" -fsanitize=fuzzer,address,undefined "${probe}.c" -o "${probe}"
+            RESULT_VARIABLE probe_failed OUTPUT_QUIET ERROR_QUIET)
+        if(NOT probe_failed)
+            set(works TRUE)
+        endif()
+    endif()
+    set(LACONIC_HAS_LIBFUZZER ${works} CACHE INTERNAL "clang has libFuzzer")
+    if(NOT works)
+        message(STATUS "laconic: no clang with libFuzzer: the fuzz corpus is replayed, not extended")
+    endif()
+endif()
+set(has_libfuzzer ${LACONIC_HAS_LIBFUZZER})
+if(has_libfuzzer)
+    set(fuzz_compiler "${LACONIC_CLANG}" -fsanitize=fuzzer,address,undefined)
+    set(fuzz_main "")
+else()
+    set(fuzz_compiler "${CMAKE_C_COMPILER}" -fsanitize=address,undefined)
+    set(fuzz_main "${PROJECT_SOURCE_DIR}/firmware_stub/fuzz/replay_main.c")
+endif()
+list(APPEND fuzz_compiler -fno-sanitize-recover=all -std=c99 -O1 -g -ffp-contract=off)
+set(fuzz_runner "${PROJECT_SOURCE_DIR}/firmware_stub/fuzz/run_fuzzer.cmake")
+
+# laconic_fuzz_test(<target> <program> <corpus> <seconds>): replays the corpus, and searches for so long where libFuzzer is.
+function(laconic_fuzz_test target program corpus seconds)
+    if(has_libfuzzer)
+        add_test(NAME fuzz_${target} COMMAND "${CMAKE_COMMAND}" -DPROGRAM=${program}
+            -DFRESH=${PROJECT_BINARY_DIR}/fuzz/${target} -DCORPUS=${corpus} -DSECONDS=${seconds} -P "${fuzz_runner}")
+    else()
+        add_test(NAME fuzz_${target} COMMAND "${program}" "${corpus}")
+    endif()
+    # two of the preset's three places: what is bounded by the clock has a core for itself
+    set_tests_properties(fuzz_${target} PROPERTIES TIMEOUT 120 LABELS fuzz PROCESSORS 2 COST 20)
+endfunction()
