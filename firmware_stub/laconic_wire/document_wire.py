@@ -46,7 +46,8 @@ STATUSES = {
     "CHECKSUM_MISMATCH": "COMMIT: frames were lost or another number was sent",
     "INPUT_INCOMPLETE": "raw inputs or half a double are missing", "PARAMETER_UNKNOWN": "no such field or item",
     "OUT_OF_RANGE": "value, rate or step_count", "NOT_SUPPORTED": "reserved field, or CAN FD on a classic node",
-    "BUSY": "the last SYNC still runs", "PARAMETER_MISSING": "a required number has not come"}
+    "BUSY": "the last SYNC still runs", "PARAMETER_MISSING": "a required number has not come",
+    "MEMORY_CHANGED": "the node's memory is not as it was left; `item` says where, section 3"}
 
 
 def time_text(milliseconds: str) -> str:

@@ -1,6 +1,6 @@
 /* Counts the instructions of the node for a frame and for a step, under QEMU with -icount; prints them and ends. */
 #include "bench_board.h"
-#include "laconic_node/node.h"
+#include "laconic_node/integrity.h"
 #include "laconic_node/protection.h"
 #include "laconic_node/slcan.h"
 #include "laconic_wire.h"
@@ -59,6 +59,37 @@ static bool start(void) {
 
 enum { TIMES = 8 };
 
+/* The calls of a node that watches its memory, which stands still meanwhile: a frame for nobody, and a tick without a
+ * step and with one slice, or with none. */
+static void count_watched(void) {
+    static laconic_integrity integrity;
+    static laconic_node_config original;
+    static const laconic_integrity_limits none = {0, 0, 0, 0};
+    const laconic_frame other = {.id = 0x7FF, .length = 8};
+    uint32_t frames = 0, ticks = 0, slices = 0;
+    original = node.config;
+    laconic_integrity_begin(&integrity, &node, &original, &none, LACONIC_INTEGRITY_ALL);
+    for (int k = 0; k < TIMES; k++) {
+        integrity.has_vehicle = false;
+        uint32_t begin = board_clock_now();
+        laconic_integrity_on_frame(&integrity, &node, &other, 0);
+        frames += board_clock_since(begin);
+        begin = board_clock_now();
+        laconic_integrity_on_tick(&integrity, &node, 0);
+        ticks += board_clock_since(begin);
+        integrity.has_vehicle = true;
+        integrity.part = 1;
+        integrity.at = 0;
+        integrity.slices = 0;
+        begin = board_clock_now();
+        laconic_integrity_on_tick(&integrity, &node, 0);
+        slices += board_clock_since(begin);
+    }
+    print_count("watched_frame", frames, TIMES);
+    print_count("watched_tick", ticks, TIMES);
+    print_count("watched_slice", slices - ticks, TIMES);
+}
+
 int main(void) {
     uint32_t on_frame = 0, on_tick = 0, next = 0, reading = 0, writing = 0;
     char line[LACONIC_SLCAN_LINE];
@@ -91,5 +122,6 @@ int main(void) {
     print_count("on_tick_with_step", on_tick, TIMES);
     print_count("next_frame", next, TIMES);
     print_count("write_line", writing, TIMES);
+    count_watched();
     return node.plant.steps == TIMES ? 0 : 1;
 }

@@ -8,6 +8,7 @@
 #include "laconic_wire.h"
 #include "methods.h"
 #include "protocols.h"
+#include "watch.h"
 
 #define RING_SIZE 256U /* 11 classic frames; a power of two */
 
@@ -58,7 +59,7 @@ static bool send_some(void) {
     if (line_sent == line_length) {
         line_sent = 0;
         line_length = 0;
-        if (laconic_node_next_frame(&node, &frame)) line_length = (uint16_t)laconic_slcan_write(&slcan, &frame, line);
+        if (port_next_frame(&node, &frame)) line_length = (uint16_t)laconic_slcan_write(&slcan, &frame, line);
     }
     while (line_sent < line_length && board_send(line[line_sent])) line_sent++;
     return line_length > 0;
@@ -75,7 +76,7 @@ static bool receive_some(void) {
     char byte;
     while (take_byte(&byte)) {
         switch (laconic_slcan_feed(&slcan, byte, &frame)) {
-        case LACONIC_SLCAN_FRAME: laconic_node_on_frame(&node, &frame, board_now_us()); return true;
+        case LACONIC_SLCAN_FRAME: port_on_frame(&node, &frame, board_now_us()); return true;
         case LACONIC_SLCAN_REPLY:
             if (line_sent == line_length) queue_reply(slcan.reply);
             return true;
@@ -116,6 +117,7 @@ static void begin(void) {
     port_add_protocols(&config);
     laconic_slcan_init(&slcan, 0);
     laconic_node_init(&node, &config, board_now_us());
+    port_watch(&node);
 }
 
 int main(void) {
@@ -123,7 +125,7 @@ int main(void) {
     begin();
     for (;;) {
         const bool received = receive_some();
-        laconic_node_on_tick(&node, board_now_us());
+        port_on_tick(&node, board_now_us());
         const bool sending = send_some();
         if (!received && !sending && node.pending == 0 && !has_steps()) sleep_until_interrupt();
     }

@@ -8,7 +8,7 @@
  * With --shared its port is a bus: clients are stations that hear each other. Frames to and from the node itself pass
  * among those that have spoken to it, and before anybody has, to all: a controller hears nothing but its drives. */
 #define _GNU_SOURCE
-#include "laconic_node/node.h"
+#include "laconic_node/integrity.h"
 #include "laconic_secure/gate.h"
 #include "laconic_wire.h"
 #include "station.h"
@@ -41,6 +41,7 @@ typedef struct options {
 
 typedef struct board {
     laconic_node node;
+    laconic_integrity integrity;
     laconic_gate gate; /* where `guarded` */
     bool guarded;
     station station[MOST_STATIONS];
@@ -125,7 +126,7 @@ static void give(board *port, station *it, const laconic_frame *frame) {
 
 static void fetch_frames(board *port) {
     laconic_frame frame;
-    while (has_room(port) && laconic_node_next_frame(&port->node, &frame)) {
+    while (has_room(port) && laconic_integrity_next_frame(&port->integrity, &port->node, &frame)) {
         if (port->guarded) laconic_gate_sent(&port->gate, &frame);
         const bool own = is_own(&port->node, &frame);
         for (int k = 0; k < port->stations; k++)
@@ -134,7 +135,7 @@ static void fetch_frames(board *port) {
 }
 
 static void step_node(board *port) {
-    laconic_node_on_tick(&port->node, now_us());
+    laconic_integrity_on_tick(&port->integrity, &port->node, now_us());
     fetch_frames(port);
 }
 
@@ -154,7 +155,7 @@ static void make_rig(board *port, station *sender) {
 static void hand_over(board *port, const laconic_frame *frame) {
     laconic_frame passed = *frame;
     if (!port->guarded || laconic_gate_take(&port->gate, frame, &passed))
-        laconic_node_on_frame(&port->node, &passed, now_us());
+        laconic_integrity_on_frame(&port->integrity, &port->node, &passed, now_us());
 }
 
 /* A frame of one station goes to the node and to all other stations; what a rig tells the node, to rigs only. */
@@ -398,7 +399,8 @@ static int guard(board *port, const options *settings) {
 /* The exit status: an interface can be refused and can go, but it does not end by itself. */
 static int serve_interface(board *of, const char *interface) {
     laconic_gate *gate = of->guarded ? &of->gate : NULL;
-    socketcan_port port = {.node = &of->node, .gate = gate, .socket = socketcan_open(interface)};
+    socketcan_port port = {
+        .node = &of->node, .integrity = &of->integrity, .gate = gate, .socket = socketcan_open(interface)};
     if (port.socket < 0) {
         fprintf(stderr, "laconic-node: --socketcan %s: cannot be opened: %s; see `ip link show type can`\n", interface,
                 strerror(errno));
@@ -421,6 +423,7 @@ static int serve_interface(board *of, const char *interface) {
 
 int main(int count, char **words) {
     static board port;
+    static const laconic_integrity_limits any_finite_number = {0, 0, 0, 0};
     options settings = {.id_base = LACONIC_WIRE_ID_BASE};
     unsigned long chosen;
     if (asks_for_help(count, words)) return printf(help, (unsigned)LACONIC_WIRE_ID_BASE) < 0;
@@ -430,6 +433,7 @@ int main(int count, char **words) {
     const laconic_node_config config = {(uint16_t)settings.id_base, true, laconic_method_by_number, nonce_seed(),
                                         laconic_drive_protocol_by_number};
     laconic_node_init(&port.node, &config, now_us());
+    laconic_integrity_begin(&port.integrity, &port.node, &config, &any_finite_number, LACONIC_INTEGRITY_ALL);
     if (settings.interface != NULL) return serve_interface(&port, settings.interface);
     signal(SIGPIPE, SIG_IGN); /* a client that has gone is noticed by reading from it */
     const int listening = open_listener(settings.port, &chosen);

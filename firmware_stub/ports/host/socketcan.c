@@ -47,6 +47,18 @@ static bool is_passing(int error) {
     return error == EAGAIN || error == EWOULDBLOCK || error == EINTR || error == ENOBUFS;
 }
 
+static void hand_over(const socketcan_port *port, const laconic_frame *frame, uint32_t now_us) {
+    if (port->integrity != NULL)
+        laconic_integrity_on_frame(port->integrity, port->node, frame, now_us);
+    else
+        laconic_node_on_frame(port->node, frame, now_us);
+}
+
+static bool fetch(const socketcan_port *port, laconic_frame *frame) {
+    if (port->integrity != NULL) return laconic_integrity_next_frame(port->integrity, port->node, frame);
+    return laconic_node_next_frame(port->node, frame);
+}
+
 static bool receive(const socketcan_port *port, uint32_t now_us) {
     struct canfd_frame raw;
     laconic_frame frame;
@@ -55,7 +67,7 @@ static bool receive(const socketcan_port *port, uint32_t now_us) {
         if (size < 0) return is_passing(errno);
         if (socketcan_take(&frame, &raw, (size_t)size) &&
             (port->gate == NULL || laconic_gate_take(port->gate, &frame, &frame)))
-            laconic_node_on_frame(port->node, &frame, now_us);
+            hand_over(port, &frame, now_us);
     }
     return true;
 }
@@ -64,7 +76,7 @@ static bool transmit(socketcan_port *port) {
     laconic_frame frame;
     for (;;) {
         if (!port->waits) {
-            if (!laconic_node_next_frame(port->node, &frame)) return true;
+            if (!fetch(port, &frame)) return true;
             if (port->gate != NULL) laconic_gate_sent(port->gate, &frame);
             port->unsent_size = socketcan_put(&port->unsent, &frame);
         }
@@ -75,7 +87,10 @@ static bool transmit(socketcan_port *port) {
 
 bool socketcan_round(socketcan_port *port, uint32_t now_us) {
     if (!receive(port, now_us)) return false;
-    laconic_node_on_tick(port->node, now_us);
+    if (port->integrity != NULL)
+        laconic_integrity_on_tick(port->integrity, port->node, now_us);
+    else
+        laconic_node_on_tick(port->node, now_us);
     return transmit(port);
 }
 

@@ -3,7 +3,7 @@
 #ifndef LACONIC_HOST_SOCKETCAN_H
 #define LACONIC_HOST_SOCKETCAN_H
 
-#include "laconic_node/node.h"
+#include "laconic_node/integrity.h"
 #include "laconic_secure/gate.h"
 
 #include <linux/can.h>
@@ -17,7 +17,8 @@ bool socketcan_take(laconic_frame *frame, const struct canfd_frame *from, size_t
 /* A node on a socket that does not block and keeps the ends of frames. */
 typedef struct socketcan_port {
     laconic_node *node;
-    laconic_gate *gate; /* NULL: everybody commands */
+    laconic_gate *gate;           /* NULL: everybody commands          */
+    laconic_integrity *integrity; /* NULL: its memory is not watched   */
     int socket;
     bool waits; /* the kernel had no room for `unsent` */
     struct canfd_frame unsent;

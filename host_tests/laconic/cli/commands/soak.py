@@ -30,17 +30,18 @@ def kinds() -> dict[str, str]:
 @click.option("--seed", type=int, help="Seed of the random numbers; printed when not given.")
 @click.option("--protocol", metavar="P", help="controllers, drive-frames: this one alone.")
 @click.option("--board", metavar="B", help="controllers: virtual, process, emulated, or a board of rig; lateness.")
-@click.option("--cycles", type=click.IntRange(min=1), metavar="N", help="controllers: of each, 10000 by default.")
+@click.option("--cycles", type=click.IntRange(min=1), metavar="N", help="controllers: 10000; fmu-cycles: 100000.")
 @click.option("--seconds", type=float, metavar="S", help="lateness: on each board, 10 by default.")
+@click.option("--hours", type=float, metavar="H", help="node: 24 by default.")
 @click.option("--step", "step_s", type=float, metavar="S", help="controllers: period of the drives, 0.005 by default.")
 @click.option("--vehicles", type=click.IntRange(min=1), metavar="N", help="population: 2000 by default.")
 @click.option("--method", metavar="METHOD", help="population: beside auto, or A,B; long: instead of auto and rk4.")
 @click.option("--real", metavar="REAL", help="population: double, unless single.")
 @click.option("--steps", type=click.IntRange(min=1), metavar="N", help="long: 10⁹ by default.")
 @click.option("-o", "--out", type=OutputFolder(), metavar="DIR", help="population, long: what is done; goes on there.")
-@click.option("--sample", type=click.IntRange(min=1), metavar="N", help="mutants: so many, whatever the minutes.")
+@click.option("--sample", type=click.IntRange(min=1), metavar="N", help="mutants, faults of memory: so many.")
 @click.option("--survivors", type=click.IntRange(min=0), metavar="N", help="mutants: passed with so many, or 0.")
-@click.option("--only", metavar="PART", help="mutants: core, node, fmu, or one C file by its path.")
+@click.option("--only", metavar="PART", help="mutants: core, node, fmu, or a C file; faults: a kind.")
 @json_flag()
 def command(what: str, minutes: float, seed: int | None, json_wanted: bool, **special: Any) -> int:
     """Runs WHAT for a long time and reports what was found.
@@ -58,8 +59,11 @@ def command(what: str, minutes: float, seed: int | None, json_wanted: bool, **sp
                      each, under libFuzzer; Ctrl-C keeps and prints what was found
     enclosures       all scenes over their whole run and random vehicles, stiff ones too,
                      enclosed: how wide, how far the core is
-    faults           the fault matrix of the rig, with new seeds
+    faults           clocks that run wrong, power lost between any two frames, each bit of
+                     the node's memory flipped (goes on where it was ended), and the fault
+                     matrix of the rig with new seeds; --only clocks, power, memory, frames
     fmu              random use of the FMUs' C interface, under sanitizers
+    fmu-cycles       100,000 life cycles of FMU instances, memory constant
     friction         the friction solver against a conic one with 40 digits, and driven
                      motions; Ctrl-C prints what was found until then
     friction-energy  whole vehicles that nothing drives: energy never grows, rest holds;
@@ -74,6 +78,8 @@ def command(what: str, minutes: float, seed: int | None, json_wanted: bool, **sp
                      goes on where it was ended
     mutants          the C sources with one small fault each: some C test must notice it;
                      goes on where the last run ended, and prints by file what survived
+    node             one node process for 24 hours: lockstep with the core's bits, free runs
+                     at 1 kHz, its memory constant and its checks of it silent
     population       2000 made-up vehicles, damping up to a million times the usual,
                      beside their true motion: errors' quantiles, error estimates beside
                      them, refusals, the worst as scenes; goes on where it was ended
