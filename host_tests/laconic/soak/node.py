@@ -4,6 +4,7 @@ Its memory may not grow, no motion may be another than the core's, and its own c
 
 from __future__ import annotations
 
+import math
 import random
 import time
 from collections.abc import Callable
@@ -59,7 +60,7 @@ def one_turn(node: NodeClient, source: random.Random, found: dict[str, Any], adv
     found["lockstep_runs"] += 1
     found["lockstep_steps"] += LOCKSTEP_STEPS
     advance(time.monotonic() - began)
-    left_s = min(FREE_S, end - time.monotonic())
+    left_s = float(min(FREE_S, math.floor(end - time.monotonic())))  # a whole number of steps
     if left_s < 1.0:
         return
     free = read_scene("turtlebot3_burger").with_run(step_s=1.0 / RATE_HZ, duration_s=left_s, real=REAL)
