@@ -1,5 +1,6 @@
 /* Checks that every number of a vehicle is usable. */
 #include "geometry.h"
+#include "vector.h"
 
 typedef struct checked_number {
     uint16_t offset; /* in the struct that the table is for */
@@ -28,7 +29,8 @@ static const checked_number of_support[] = {LACONIC_SUPPORT_FIELDS(IN_SUPPORT, )
 static laconic_status check_number(real value, const checked_number *number, int32_t item, laconic_refusal *why) {
     const laconic_field field = (laconic_field)number->field;
     const uint8_t rule = number->rule;
-    if (!is_finite(value)) return refuse(why, LACONIC_NOT_FINITE, field, item, value, R(0));
+    if (!fits_squared(value)) /* here it has a name; where several leave the range together, it is prepare's */
+        return refuse(why, is_finite(value) ? LACONIC_OVERFLOW : LACONIC_NOT_FINITE, field, item, value, R(0));
     if (rule == LACONIC_RULE_POSITIVE && value <= R(0))
         return refuse(why, LACONIC_NOT_POSITIVE, field, item, value, R(0));
     if (rule == LACONIC_RULE_POSITIVE && value < LACONIC_REAL_MIN)

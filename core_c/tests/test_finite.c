@@ -152,10 +152,10 @@ static void a_payload_whose_inertia_leaves_the_range_is_refused_in_motion(void) 
     before = plant;
     v.payload.mass_kg = REAL(0.1);
     v.payload.yaw_inertia_kgm2 = LACONIC_REAL_MAX;
-    ASSERT_REFUSED(LACONIC_OVERFLOW, LACONIC_FIELD_NONE, 0, laconic_plant_change(&plant, &v, &why), why);
+    ASSERT_REFUSED(LACONIC_OVERFLOW, LACONIC_FIELD_PAYLOAD_YAW_INERTIA, 0, laconic_plant_change(&plant, &v, &why), why);
     v.payload.yaw_inertia_kgm2 = REAL(1);
     v.payload.x_m = REAL(EITHER(2e154, 2e19));
-    ASSERT_REFUSED(LACONIC_OVERFLOW, LACONIC_FIELD_NONE, 0, laconic_plant_change(&plant, &v, &why), why);
+    ASSERT_REFUSED(LACONIC_OVERFLOW, LACONIC_FIELD_PAYLOAD_X, 0, laconic_plant_change(&plant, &v, &why), why);
     TEST_ASSERT_EQUAL_MEMORY(&before, &plant, sizeof plant);
 }
 

@@ -133,10 +133,10 @@ static void a_drive_on_ideal_ground_starts_only_as_its_wheels_allow(void) {
 }
 
 static void numbers_too_far_apart_overflow_by_name(void) {
-    laconic_vehicle v = robotino(0.5, 0, 0);
+    laconic_vehicle v = with_drive(robotino(0.5, 0, 0));
     const laconic_start start = start_with(0, 0, 0);
     laconic_plant plant;
-    v.com_z_m = EITHER(REAL(1e200), REAL(1e30));
+    v.com_z_m = v.drive.supply_V = EITHER(REAL(1.3e154), REAL(1.8e19));
     ASSERT_REFUSED(LACONIC_OVERFLOW, LACONIC_FIELD_NONE, 0,
                    laconic_plant_start(&plant, &v, &laconic_auto, REAL(1e-3), &start, &why), why);
 }

@@ -244,7 +244,7 @@ static void a_value_that_leaves_the_range_is_named(void) {
             " precision; check inputs and units");
     v = unlike();
     v.mass_kg = REAL(EITHER(1e300, 1e35));
-    ASSERT_REFUSED(LACONIC_OVERFLOW, LACONIC_FIELD_NONE, 0, laconic_prepare(&model, &v, &why), why);
+    ASSERT_REFUSED(LACONIC_OVERFLOW, LACONIC_FIELD_MASS, 0, laconic_prepare(&model, &v, &why), why);
 }
 
 /* Wheels beyond wheel_count are not read, whatever stands there. */

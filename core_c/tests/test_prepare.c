@@ -165,18 +165,15 @@ static void numbers_that_leave_the_range_are_refused(void) {
     v.wheel_radius_m = REAL(EITHER(1e-100, 1e-12));
     ASSERT_REFUSED(LACONIC_OVERFLOW, LACONIC_FIELD_NONE, 0, laconic_prepare(&model, &v, &why), why);
     v = three_wheels();
-    v.mass_kg = REAL(EITHER(1e300, 1e35));
-    v.wheel_radius_m = REAL(EITHER(1e30, 1e10));
+    v.mass_kg = REAL(EITHER(1e150, 1e19));
+    v.wheel_radius_m = REAL(EITHER(1e90, 1e11)); /* M R² overflows */
     ASSERT_REFUSED(LACONIC_OVERFLOW, LACONIC_FIELD_NONE, 0, laconic_prepare(&model, &v, &why), why);
     v = three_wheels();
-    v.mass_kg = v.yaw_inertia_kgm2 = REAL(EITHER(1e300, 1e35)); /* M R² overflows */
-    v.wheel_radius_m = REAL(EITHER(1e5, 1e3));
-    ASSERT_REFUSED(LACONIC_OVERFLOW, LACONIC_FIELD_NONE, 0, laconic_prepare(&model, &v, &why), why);
-    v.mass_kg = v.yaw_inertia_kgm2 = REAL(EITHER(1e200, 1e25)); /* squares would */
-    v.wheel_radius_m = REAL(0.05);
+    v.mass_kg = v.yaw_inertia_kgm2 = REAL(EITHER(1e150, 1e19)); /* the same beside a body as heavy */
+    v.wheel_radius_m = REAL(EITHER(1e80, 1e10));
     ASSERT_REFUSED(LACONIC_OVERFLOW, LACONIC_FIELD_NONE, 0, laconic_prepare(&model, &v, &why), why);
     v = three_wheels();
-    v.com_x_m = REAL(EITHER(1e300, 1e36));
+    v.com_x_m = REAL(EITHER(1e100, 1e15)); /* its fourth power would */
     ASSERT_REFUSED(LACONIC_OVERFLOW, LACONIC_FIELD_NONE, 0, laconic_prepare(&model, &v, &why), why);
 }
 
@@ -184,8 +181,8 @@ static void a_wheel_at_the_end_of_the_range_is_refused_and_never_gives_nan(void)
     laconic_vehicle v = differential_drive();
     laconic_model model;
     v.wheel[0].x_m = LACONIC_REAL_MAX;
-    v.com_x_m = -LACONIC_REAL_MAX;
-    ASSERT_REFUSED(LACONIC_OVERFLOW, LACONIC_FIELD_NONE, 0, laconic_prepare(&model, &v, &why), why);
+    v.com_x_m = REAL(EITHER(-1.3e154, -1.8e19));
+    ASSERT_REFUSED(LACONIC_OVERFLOW, LACONIC_FIELD_WHEEL_X, 1, laconic_prepare(&model, &v, &why), why);
 }
 
 /* Rates many decades apart all keep their digits, since ΞᵀΞ is never formed. */

@@ -96,6 +96,19 @@ static void every_number_that_is_not_finite_is_named(void) {
     }
 }
 
+/* The largest number whose square is finite passes this check; whether the numbers make a model is for prepare. */
+static void a_number_whose_square_leaves_the_range_is_named(void) {
+    const double root = EITHER(1.34e154, 1.84e19);
+    refuses(must_be_positive, COUNT(must_be_positive), REAL(1.01 * root), LACONIC_OVERFLOW);
+    refuses(must_not_be_negative, COUNT(must_not_be_negative), REAL(1.01 * root), LACONIC_OVERFLOW);
+    refuses(any_number, COUNT(any_number), REAL(-1.01 * root), LACONIC_OVERFLOW);
+    for (size_t i = 0; i < COUNT(must_be_positive); i++) {
+        laconic_vehicle v = three_wheels();
+        *must_be_positive[i].where(&v) = REAL(root);
+        ASSERT_STATUS(LACONIC_OK, laconic_vehicle_check(&v, &why));
+    }
+}
+
 static void mass_radius_and_yaw_inertia_must_be_positive(void) {
     refuses(must_be_positive, COUNT(must_be_positive), REAL(0), LACONIC_NOT_POSITIVE);
     refuses(must_be_positive, COUNT(must_be_positive), REAL(-2), LACONIC_NOT_POSITIVE);
@@ -186,6 +199,7 @@ int main(void) {
     RUN_TEST(good_vehicles_are_accepted);
     RUN_TEST(zero_inertia_of_wheels_and_negative_gain_are_accepted);
     RUN_TEST(every_number_that_is_not_finite_is_named);
+    RUN_TEST(a_number_whose_square_leaves_the_range_is_named);
     RUN_TEST(mass_radius_and_yaw_inertia_must_be_positive);
     RUN_TEST(inertias_damping_friction_and_height_must_not_be_negative);
     RUN_TEST(a_roller_along_the_axle_is_refused_just_below_the_limit);

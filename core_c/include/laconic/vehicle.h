@@ -149,8 +149,8 @@ typedef enum laconic_field_kind {
                                 wheel. On the wire, and as the key of a scene, 1 and true mean that it is there     */
 } laconic_field_kind;
 
-/* What a number must satisfy; all but UNCHECKED must be finite. laconic_vehicle_check() goes through a vehicle's own
- * numbers and its payload's rule by rule in this order. */
+/* What a number must satisfy; all but UNCHECKED must be finite, and a vehicle's have finite squares.
+ * laconic_vehicle_check() goes through a vehicle's own numbers and its payload's rule by rule in this order. */
 typedef enum laconic_field_rule {
     LACONIC_RULE_UNCHECKED, /* has a check of its own, or every value is valid */
     LACONIC_RULE_POSITIVE,
