@@ -16,6 +16,7 @@ import numpy as np
 from laconic.analysis.from_core import Subject, nu_rates
 from laconic.analysis.geometry import wheel_positions_m
 from laconic.core.plant import Plant
+from laconic.errors import Refused
 from laconic.scene.inputs import InputsOnGrid
 from laconic.simulation import run_window
 
@@ -114,7 +115,10 @@ class _Sampler:
         points = n + subject.vehicle.support_count
         inputs = dict(zip(signals, values.tolist(), strict=True))
         held = core.input(inputs)
-        found = self.plant.reactions(held)
+        try:
+            found = self.plant.reactions(held)
+        except Refused as refused:
+            raise subject.scene.refusal_in_file(refused, f"at t = {time_s:g} s") from None
         along, lateral = core.numbers(found.along_N)[:n], core.numbers(found.lateral_N)[:n]
         pose, nu = self.plant.pose, self.plant.nu
         self._balance(along, lateral, nu, float(pose.heading_rad), held, inputs)

@@ -21,7 +21,7 @@ import numpy as np
 from cffi import FFI
 
 from laconic.core.fields import ABOVE_0, OF_GROUND, Field, fields_from, set_own_zeros
-from laconic.core.given import c_object, items, number, numbers, one_of, several, table
+from laconic.core.given import c_object, check_there, items, number, numbers, one_of, several, table
 from laconic.core.inputs import input_fields, row_of, slots_of
 from laconic.core.plant import Plant
 from laconic.errors import BadInput, Refused
@@ -117,9 +117,10 @@ class Core:
     # ---- vehicle and model
 
     def vehicle(self, data: Mapping[str, Any]) -> Any:
-        """A laconic_vehicle from a mapping with the keys of `[vehicle]`; `motor` is fitted, nothing else is checked.
+        """A laconic_vehicle from a mapping with the keys of `[vehicle]`; `motor` is fitted.
 
-        Wheels beyond the core's array are only counted, so that the check refuses them.
+        What 0 is no value of must be there; all else that is left out is 0. Values are not checked. Wheels beyond the
+        core's array are only counted, so that the check refuses them.
         """
         parts = ("wheel", "support", "motor", "payload", "ground", "drive")
         plain: dict[str, Any] = table(self, "vehicle", "vehicle", data, parts)
@@ -144,10 +145,13 @@ class Core:
             _check_windings(plain.get("drive", {}))
         for stem in ("motor_", *OF_GROUND):
             set_own_zeros(vehicle, given, self.own_fields(stem))
+        check_there(self, "vehicle", "vehicle", plain, "ALWAYS")
         return vehicle
 
     def _set_wheel(self, target: Any, name: str, wheel: Mapping[str, Any]) -> None:
         given = {"roller_rad": OMNI_ROLLER_RAD, **table(self, "vehicle.wheel[#]", name, wheel, ("kind",))}
+        if "kind" not in wheel:
+            raise BadInput(f"{name}.kind: is missing; give one of {', '.join(sorted(WHEEL_KINDS))}")
         kind = one_of(f"{name}.kind", wheel.get("kind"), WHEEL_KINDS)
         if kind in NEEDS_ROLLER and "roller_rad" not in wheel:
             raise BadInput(f"{name}.roller_rad: is missing; give the angle between axle and rollers, such as "
@@ -163,13 +167,13 @@ class Core:
 
     def _set_support(self, target: Any, name: str, support: Mapping[str, Any]) -> None:
         given = table(self, "vehicle.support[#]", name, support)
-        for field in self.fields_of("vehicle.support[#]"):
-            if field.key not in given:
-                raise BadInput(f"{name}.{field.key}: is missing; give a number")
-            setattr(target, field.key, given[field.key])
+        check_there(self, "vehicle.support[#]", name, given, "EACH_SUPPORT")
+        for key, value in given.items():
+            setattr(target, key, value)
 
     def _fit_motor(self, vehicle: Any, motor: Mapping[str, float]) -> None:
         why = self.why()
+        check_there(self, "vehicle.motor", "vehicle.motor", motor, "ALWAYS")
         self.check(self.lib.laconic_motor_fit(vehicle, self.ffi.new("laconic_motor *", dict(motor)), why), why)
 
     def check_vehicle(self, vehicle: Any) -> None:

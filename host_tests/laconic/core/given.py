@@ -164,18 +164,23 @@ def table(core: Core, path: str, name: str, given: Any, others: Sequence[str] = 
     return found
 
 
+def check_there(core: Core, path: str, name: str, given: Mapping[str, Any], need: str) -> None:
+    """BadInput for the first number of a table that must be given, by the core's list of fields, and is not."""
+    for field in core.fields_of(path):
+        if field.need == need and field.key not in given:
+            raise BadInput(f"{name}.{field.key}: is missing; give a number")
+
+
 def _of_kind(kind: str, name: str, given: Any) -> float | bool:
-    """A number as the core's list of fields says that it is one."""
-    if kind not in (*FLAGS, "INTEGER"):
-        return number(name, given)
-    if kind in FLAGS and isinstance(given, bool | np.bool_):
-        return bool(given)
+    """A number as the core's list of fields says that it is one; a flag as everywhere."""
+    if kind in FLAGS:
+        return flag(name, given)
     value = number(name, given)
-    if kind in FLAGS and value not in (0.0, 1.0):
-        raise BadInput(f"{name}: {value:g} is neither true nor false; give one of them")
+    if kind != "INTEGER":
+        return value
     if not (math.isfinite(value) and value == int(value) and abs(value) < 2**31):
         raise BadInput(f"{name}: {value:g} is no whole number of 32 bits; give one")
-    return bool(value) if kind in FLAGS else int(value)
+    return int(value)
 
 
 def items(name: str, given: Any) -> Iterator[tuple[str, Any]]:

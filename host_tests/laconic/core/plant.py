@@ -11,7 +11,7 @@ from laconic.core.derivatives import StepDerivatives
 from laconic.core.estimate import USUAL_STEPS, Estimate
 from laconic.core.given import c_object, number, shown, step_count
 from laconic.core.inputs import check_held, sampled_rows
-from laconic.core.saved import check_saved
+from laconic.core.saved import check_motion_of, check_saved, check_wheels_of
 from laconic.core.schedule import Schedule
 from laconic.core.sensors import Sensors, settings_of
 from laconic.errors import BadInput
@@ -113,16 +113,23 @@ class Plant:
         return self.core.ffi.new("laconic_state *", self.c.state)
 
     def restore(self, state: Any, steps: int) -> None:
-        """Back to a saved state; BadInput for one with a number that is infinite or NaN."""
+        """Back to a state that `save`, or a batch of this robot, gave.
+
+        BadInput for one with a number that is infinite or NaN, and for one that this robot cannot have: with a motion
+        that its wheels forbid, with friction of another number of wheels. Without friction a state does not say of
+        which robot it is: that of another, which may move alike, is taken.
+        """
         steps = step_count("steps", steps)
         if self.has_friction:
             saved = c_object(self.core, "plant", state)
+            check_wheels_of("plant", saved, self)
             check_saved(self.core, "plant.state", saved.state)
             check_saved(self.core, "plant.slip", saved.slip)
             self.c.state, self.c.slip, self.c.steps = saved.state, saved.slip, steps
         else:
             found = c_object(self.core, "state", state)[0]
             check_saved(self.core, "state", found)
+            check_motion_of("state", found, self)
             self.c.state, self.c.steps = found, steps
 
     # ---- sensors
@@ -176,10 +183,18 @@ class Plant:
         return made
 
     def outputs(self, held: Any = None) -> Any:
-        """The laconic_outputs with the reactions; its `friction` where the vehicle has friction. Input as for `run`."""
-        held, found = self.input_of(held), self.core.ffi.new("laconic_outputs *")
-        self.core.lib.laconic_outputs_of(found, self.c, held)
+        """The laconic_outputs with the reactions; its `friction` where the vehicle has friction. Input as for `run`.
+
+        Refused where one of them leaves the range of numbers."""
+        held = self.input_of(held)
+        found = self._outputs(held)
+        self.core.check_range("outputs", self.core.numbers(found))
         found.reactions = self.reactions(held)[0]
+        return found
+
+    def _outputs(self, held: Any) -> Any:
+        found = self.core.ffi.new("laconic_outputs *")
+        self.core.lib.laconic_outputs_of(found, self.c, held)
         return found
 
     @property
@@ -232,7 +247,7 @@ class Plant:
         """Torque on each axle: motor and applied [N·m], shape (N,). Input as for `run`."""
         held = self.input_of(held)
         if self.has_friction:
-            torques = self.core.numbers(self.outputs(held).wheel_torque_Nm)[: self.wheel_count]
+            torques = self.core.numbers(self._outputs(held).wheel_torque_Nm)[: self.wheel_count]
         else:
             torques = self._per_wheel(self.core.lib.laconic_wheel_torques, held)
         self.core.check_range("wheel_torques", torques)
@@ -270,7 +285,9 @@ class Plant:
         return self._contact
 
     def reactions(self, held: Any = None) -> Any:
-        """The laconic_reactions of this state and input, which is given as for `run`."""
+        """The laconic_reactions of this state and input, given as for `run`; Refused where one leaves the range of
+        numbers."""
         held, found = self.input_of(held), self.core.ffi.new("laconic_reactions *")
         self.core.lib.laconic_plant_reactions(found, self.c, self.contact, held)
+        self.core.check_range("reactions", self.core.numbers(found))
         return found

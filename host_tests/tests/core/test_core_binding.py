@@ -95,7 +95,8 @@ def test_motor_data_become_gain_damping_and_inertia():
     core = load("double")
     motor = {"resistance_ohm": 2.0, "torque_constant_Nm_per_A": 0.05, "back_emf_Vs_per_rad": 0.06, "gear_ratio": 10.0,
              "viscous_friction_Nms": 1e-4, "rotor_inertia_kgm2": 1e-5}
-    vehicle = core.vehicle({"wheel_inertia_kgm2": 0.002, "motor": motor})
+    vehicle = core.vehicle({**dict.fromkeys(("mass_kg", "yaw_inertia_kgm2", "wheel_radius_m"), 1.0),
+                            "wheel_inertia_kgm2": 0.002, "motor": motor})
     assert vehicle.motor_gain_Nm_per_V == pytest.approx(10.0 * 0.05 / 2.0)
     assert vehicle.motor_damping_Nms == pytest.approx(100.0 * (0.05 * 0.06 / 2.0 + 1e-4))
     assert vehicle.wheel_inertia_kgm2 == pytest.approx(0.002 + 100.0 * 1e-5)

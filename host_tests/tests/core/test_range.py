@@ -27,6 +27,9 @@ def robot(name: str = "robotino2", real: str = "double") -> laconic.Vehicle:
     (lambda: robot().linearise([1.7e308] * 3, 0.3), "linearise"),
     (lambda: robot().plant().body_acceleration(HUGE), "body_acceleration"),
     (lambda: robot().plant().wheel_torques(TORQUES), "wheel_torques"),
+    (lambda: robot().plant().reactions(HUGE), "reactions"),
+    (lambda: robot().plant().outputs(HUGE), "reactions"),
+    (lambda: robot().plant().outputs(TORQUES), "outputs"),
     (lambda: robot().plant().sensors().read(HUGE), "acceleration_body_m_per_s2"),
     (lambda: robot().plant().step_derivatives().tangent([1e308] * 9), "tangent"),
     (lambda: robot().plant(step_s=0.1, nu_rad_per_s=(5, 9, 2)).step_derivatives().adjoint([1.797e308] * 9), "adjoint"),
@@ -76,6 +79,48 @@ def test_spoilt_wheels_sensors_and_filters_are_not_restored() -> None:
     for parts in ((None, kept[2]), (kept[1], None)):
         with pytest.raises(laconic.BadInput, match=r"^saved: .* is not of this filter; give what its save\(\) gave"):
             ours.restore((kept[0], *parts))
+
+
+CART, OMNI = "turtlebot3_burger", "robotino2"
+
+
+@pytest.mark.parametrize("real", ["double", "single"])
+def test_a_state_with_a_motion_that_the_wheels_forbid_is_not_restored(real: str) -> None:
+    cart, omni = robot(CART, real).plant(step_s=0.01), robot(OMNI, real).plant(step_s=0.01)
+    cart.run({"voltage_V": [3, 4]}, 5)
+    omni.run({"voltage_V": [3, -1, 2]}, 5)
+    before = cart.row().tolist()
+    with pytest.raises(laconic.BadInput, match=r"^state.zeta\[3\].value: .* is a motion that the wheels of this robot"):
+        cart.restore(omni.save(), 5)
+    way = omni.save()
+    way.zeta[2].value = 0.0
+    with pytest.raises(laconic.BadInput, match=r"^state.travel\[3\].value: .* forbid; give what save\(\) of this"):
+        cart.restore(way, 5)
+    more = cart.save()
+    more.wheel_angle_set_rad[2] = 0.5
+    with pytest.raises(laconic.BadInput, match=r"^state.wheel_angle_set_rad\[3\]: is 0.5, and this robot has 2 wheels"):
+        cart.restore(more, 5)
+    assert (cart.row().tolist(), cart.steps) == (before, 5)
+    cart.restore(cart.save(), 3)
+    assert (cart.row().tolist(), cart.steps) == (before, 3)
+
+
+def test_a_saved_plant_of_another_number_of_wheels_or_without_friction_is_not_restored() -> None:
+    skids, three = robot("skid_steer").plant(), robot("robotino_grey").plant()
+    with pytest.raises(laconic.BadInput, match="^plant: is of a robot with 3 wheels, and this has 4; give what save"):
+        skids.restore(three.save(), 0)
+    with pytest.raises(laconic.BadInput, match="^plant: is of a robot without friction; give what save"):
+        skids.restore(robot().plant().c, 0)
+
+
+def test_a_state_of_a_batch_of_the_robot_is_restored() -> None:
+    cart = robot(CART)
+    batch = laconic.Batch(cart, 3, "rk4", 0.001)
+    batch.voltage_V = np.array([[1.0, 2, 3], [3, 2, 1]])
+    batch.run(20)
+    plant = cart.plant("rk4", 0.001)
+    plant.restore(batch.state(2), 20)
+    assert plant.pose.x_m == batch.x_m[2] != 0.0
 
 
 def test_every_real_number_of_a_saved_state_is_looked_at() -> None:

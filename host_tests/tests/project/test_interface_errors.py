@@ -16,6 +16,8 @@ from laconic.errors import BadInput
 from laconic.outputs import write_text
 
 ROBOT = {"mass_kg": 1.0, "yaw_inertia_kgm2": 0.1, "wheel_radius_m": 0.05}
+MOTOR = {"resistance_ohm": 1.0, "torque_constant_Nm_per_A": 0.02, "back_emf_Vs_per_rad": 0.02, "gear_ratio": 12.0}
+WHEEL = {"kind": "omni", "x_m": 0.1, "y_m": 0.0, "axle_rad": 0.0}
 
 
 def scene() -> Any:
@@ -98,13 +100,22 @@ WRONG: list[tuple[Callable[[], Any], str]] = [
     (lambda: plant().run_sampled(np.zeros((3, 3))), "samples: an array of shape (3, 3) and type float64 "),
     (lambda: plant().run_sampled(np.zeros((2, 3, core().input_length), complex)), "and type complex128 does not fit"),
     (lambda: plant().sensors().run_sampled("x"), "samples: 'x' does not fit; give real numbers of shape (steps, 3, "),
-    (lambda: core().vehicle({"motor": {}}), "vehicle.motor.resistance_ohm: 0 is not positive"),
+    (lambda: core().vehicle(ROBOT | {"motor": {}}), "vehicle.motor.resistance_ohm: is missing; give a number"),
+    (lambda: laconic.Vehicle({}), "vehicle.mass_kg: is missing; give a number"),
+    *((lambda key=key: laconic.Vehicle({each: ROBOT[each] for each in ROBOT if each != key}),
+       f"vehicle.{key}: is missing; give a number") for key in ROBOT),
+    *((lambda key=key: laconic.Vehicle(ROBOT | {"motor": {each: MOTOR[each] for each in MOTOR if each != key}}),
+       f"vehicle.motor.{key}: is missing; give a number") for key in MOTOR),
+    (lambda: laconic.Vehicle(ROBOT | {"wheel": [WHEEL, {"x_m": 1.0}]}), "vehicle.wheel[2].kind: is missing; give on"),
     (lambda: core().vehicle({"motor": None}), "vehicle.motor: None is no table"),
     (lambda: core().vehicle({"payload": None}), "vehicle.payload: None is no table"),
     (lambda: laconic.Vehicle(laconic.read_scene("robotino2").vehicle | {"motor_damping_Nms": 1.0}),
      "vehicle.motor_damping_Nms: is given besides vehicle.motor, from which it follows; keep one"),
     (lambda: core().vehicle({"wheel": [{"kind": ["omni"]}]}), "vehicle.wheel[1].kind: there is no ['omni']"),
-    (lambda: core().vehicle({"wheel": [{"kind": "omni", "locked": 2}]}), "locked: 2 is neither true nor false"),
+    (lambda: core().vehicle({"wheel": [{"kind": "omni", "locked": 2}]}), "locked: 2 is neither True nor False"),
+    *((lambda key=key, no=no: laconic.Vehicle(ROBOT | {"wheel": [WHEEL | {key: no}]}),
+       f"vehicle.wheel[1].{key}: {no!r} is neither True nor False; give one of them")
+      for key in ("locked", "driven") for no in (0, 1, 1.0, "yes", None)),
     (lambda: core().vehicle({"wheel": [{"kind": "omni", "motor_circuit": 1.5}]}), "motor_circuit: 1.5 is no whole"),
     (lambda: core().vehicle({"wheel": [{"kind": "omni", "motor_circuit": np.nan}]}), "motor_circuit: nan is no whole"),
     (lambda: wheels().plant(wheel_speed_rad_per_s=[1, 2]), "wheel_speed_rad_per_s: [1, 2] is no list of 3 numbers"),
@@ -164,7 +175,7 @@ WRONG: list[tuple[Callable[[], Any], str]] = [
     (lambda: core().vehicle([1]), "vehicle: [1] is no table"),
     (lambda: core().vehicle({"mass_kg": "1"}), "vehicle.mass_kg: '1' is no number"),
     (lambda: core().vehicle({"wheel": {"x_m": 1}}), "vehicle.wheel: {'x_m': 1} is no list"),
-    (lambda: core().vehicle({"wheel": [{}]}), "vehicle.wheel[1].kind: there is no None; known are fixed"),
+    (lambda: core().vehicle({"wheel": [{}]}), "vehicle.wheel[1].kind: is missing; give one of fixed, mecanum, omni, "),
     (lambda: core().vehicle({"wheel": [{"kind": "omni", "xm": 1}]}), "vehicle.wheel[1].xm: unknown key; did you mean"),
     (lambda: core().vehicle({"support": [{"x_m": 1}]}), "vehicle.support[1].y_m: is missing; give a number"),
     (lambda: core().vehicle({"payload": {"mass": 1}}), "vehicle.payload.mass: unknown key; did you mean mass_kg?"),
