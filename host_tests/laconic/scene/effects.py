@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from collections.abc import Sequence
 from typing import TYPE_CHECKING, Any
 
@@ -15,6 +16,7 @@ if TYPE_CHECKING:
 
 OF_FIXED = ("roller_rad", "roller_deg", "roller_drag")
 OF_MOTOR = ("motor_gain_Nm_per_V", "motor_damping_Nms", "motor_circuit")
+STILL = 1e-12  # the sine of 180°, which is no multiple of 1 in rad, is not 0
 CIRCUITS = {1: "open", 2: "shorted"}  # laconic_motor_circuit, where no controller sets the voltage
 
 
@@ -55,6 +57,7 @@ def check_input(top: Table, each: Input, vehicle: dict[str, Any], duration_s: fl
     """Fails for an input that moves nothing, or that the run never comes to."""
     if each.signal.startswith("voltage_V"):
         check_motor(top, each, vehicle)
+    check_sine(top, each)
     check_end(top, each, duration_s)
 
 
@@ -85,6 +88,13 @@ def check_motor(top: Table, each: Input, vehicle: dict[str, Any]) -> None:
         why = f"wheel {number} is locked; take out this input, or its locked = true"
     if why:
         top.fail(f"{each.location}.signal", f"{each.signal} would do nothing, {why}")
+
+
+def check_sine(top: Table, each: Input) -> None:
+    """Fails for a sine that stands still at 0; at another phase it is a constant."""
+    if each.kind == "sine" and each.frequency_Hz == 0.0 and abs(math.sin(each.phase_rad)) < STILL:
+        top.fail(f"{each.location}.frequency_Hz", "is 0, and this sine would do nothing at its phase; give a value "
+                 "above 0, or take this input out")
 
 
 def check_end(top: Table, each: Input, duration_s: float) -> None:

@@ -29,6 +29,7 @@ POSITIVE = Rule("a value above 0", "above 0", lambda value: value > 0.0)
 FRICTION = Rule("a value above 0 (1e-6 is ice)", "above 0", lambda value: value > 0.0)
 NOT_NEGATIVE = Rule("a value of 0 or more", "0 or more", lambda value: value >= 0.0)
 SECONDS = Rule("seconds, 0 for none", "0 or more", lambda value: value >= 0.0)
+SWINGS = Rule("another value, or take this input out, which would do nothing", "not 0", lambda value: value != 0.0)
 NOT_ZERO = Rule("another value, below 0 for a shaft that turns the other way", "not 0", lambda value: value != 0.0)
 
 
@@ -157,9 +158,10 @@ KEYS: Mapping[str, Key] = {key.path: key for key in (
     Key("input[#].t_s", A_LIST, "Instants; those of `steps` fall on steps of the run",
         usual="must be given, of a `sine` not", range="ascending, from 0"),
     Key("input[#].value", A_LIST, "At each instant, in the signal's unit", usual="must be given, of a `sine` not"),
-    Key("input[#].amplitude", A_NUMBER, "Of a `sine`, in the signal's unit", usual="must be given for a `sine`"),
+    Key("input[#].amplitude", A_NUMBER, "Of a `sine`, in the signal's unit", usual="must be given for a `sine`",
+        rule=SWINGS),
     Key("input[#].frequency_Hz", A_NUMBER, "Of a `sine`; four steps a period at least",
-        usual="must be given for a `sine`", range="0 or more"),
+        usual="must be given for a `sine`", range="0 or more; above 0 where the phase is 0"),
     Key("input[#].phase_rad", A_NUMBER, "Of a `sine`", 0.0),
     Key("run.duration_s", A_NUMBER, "Length of the run, a whole number of steps", rule=POSITIVE),
     Key("run.step_s", A_NUMBER, 'Internal step, or "auto" with `tolerance`: [found before the run]'

@@ -44,6 +44,9 @@ duration_s = 1.0
 step_s = 0.01
 """
 
+STEPS = 'kind = "steps"\nt_s = [0.0, 0.5]\nvalue = [6.0, -3.0]'
+SINE = 'kind = "sine"\namplitude = {}\nfrequency_Hz = {}\nphase_deg = {}'
+
 # what is changed in the good scene, and what the line must contain
 BAD = {
     "missing field": (("mass_kg = 20.0\n", ""), ("vehicle.mass_kg", "missing")),
@@ -59,6 +62,15 @@ BAD = {
     "negative frequency": (('kind = "steps"\nt_s = [0.0, 0.5]\nvalue = [6.0, -3.0]',
                             'kind = "sine"\namplitude = 1.0\nfrequency_Hz = -1.0'),
                            ("input[1].frequency_Hz: is -1; give 0 or more",)),
+    "a sine of amplitude 0": ((STEPS, SINE.format(0, 1, 90)),
+                              ("input[1].amplitude: is 0; give another value, or take this input out, which would",)),
+    "a sine of 0 Hz": ((STEPS, SINE.format(1, 0, 0)), ("input[1].frequency_Hz: is 0, and this sine would do nothing",)),
+    "a sine of 0 Hz at 180°": ((STEPS, SINE.format(1, 0, 180)), ("input[1].frequency_Hz: is 0, and this sine would",)),
+    "a radius whose square is no number": (("axle_deg = -90", "radius_m = 1e300\naxle_deg = -90"),
+                                           ("vehicle.wheel[1].radius_m: a result leaves the range of double",)),
+    "a place whose square is no number": (("x_m = 0.2", "x_m = -1e300"), ("vehicle.wheel[1].x_m: a result leaves",)),
+    "an inertia whose square is no number": (("yaw_inertia_kgm2 = 1.2", "yaw_inertia_kgm2 = 1e300"),
+                                             ("vehicle.yaw_inertia_kgm2: a result leaves the range of double",)),
     "zero radius": (("wheel_radius_m = 0.05", "wheel_radius_m = 0.0"), ("vehicle.wheel_radius_m", "above 0")),
     "negative inertia": (("wheel_inertia_kgm2 = 0.004", "wheel_inertia_kgm2 = -1"), ("vehicle.wheel_inertia_kgm2: -",)),
     "NaN": (("yaw_inertia_kgm2 = 1.2", "yaw_inertia_kgm2 = nan"), ("vehicle.yaw_inertia_kgm2: NaN", "finite")),
