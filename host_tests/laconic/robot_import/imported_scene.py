@@ -14,6 +14,7 @@ import numpy as np
 from laconic.errors import BadInput, Refused
 from laconic.robot_import.answers import Answers
 from laconic.robot_import.formats import read_robot
+from laconic.robot_import.plausible import doubts_of
 from laconic.robot_import.rigid_body import RigidBody, add_up
 from laconic.robot_import.robot_tree import Robot
 from laconic.robot_import.rollers import Kind, kinds_of
@@ -27,7 +28,6 @@ DIGITS = 9
 ACCELERATION_M_PER_S2 = 0.3
 PUSH_S = 1.0
 TOUCHING_M = 1e-9  # a centre so little below the ground is on it, but for rounding
-THIN = 1e-3  # more than a flat body's largest moment: rounding in a file
 ASIDE = 0.05  # of the way ahead, at which a push still is one ahead
 DURATION_S, STEP_S = 3.0, 0.01
 FRICTION_STEP_S = 0.001
@@ -81,16 +81,7 @@ class _Writer:
         self.robot, self.ground, self.kinds, self.whole = robot, ground, kinds, whole
         self.supports, self.answers = supports, answers
         self.comments: Comments = {}
-        self.remarks = [*robot.remarks, *ground.remarks]
-        for link in robot.links.values():
-            least, middle, most = np.linalg.eigvalsh(link.inertia_kgm2)
-            if most > (1.0 + THIN) * (least + middle) and least >= 0.0:
-                self.remarks.append(f"link {link.name} has a principal moment of {most:.3g} kg·m², more than its other "
-                                    "two together, which no body has; it is counted as it is given")
-            if least < -1e-9 * abs(most):
-                self.remarks.append(f"link {link.name} has a principal moment of {least:.3g} kg·m², which no body "
-                                    "has; it is "
-                                    "counted as it is given")
+        self.remarks = [*robot.remarks, *ground.remarks, *doubts_of(robot, ground, whole)]
 
     def imported(self) -> Imported:
         """All tables, checked by the core."""
