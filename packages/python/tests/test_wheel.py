@@ -92,6 +92,13 @@ def test_a_command_whose_extra_is_missing_names_the_extra_in_one_line(installed:
     assert done.stderr == 'laconic: this needs scipy, which is not installed; pip install "laconic[analysis]"\n'
 
 
+def test_the_remedy_keeps_the_wheel_and_asks_for_what_the_extra_brings_alone(installed: Environment) -> None:
+    """Without an index pip gets no further; with one that lacks laconic it would come so far, too."""
+    remedy = ("install", "--disable-pip-version-check", "--no-index", "laconic[analysis]")
+    done = installed.run("pip", *remedy, status=1)
+    assert "No matching distribution found for scipy" in done.stderr
+
+
 @pytest.mark.parametrize("command", [("soak", "fuzz"), ("rig", "s1", "--board", "an386")], ids=" ".join)
 def test_a_command_that_needs_a_build_tree_states_so_in_one_line(installed: Environment,
                                                                  command: tuple[str, ...]) -> None:
