@@ -1,4 +1,7 @@
-"""How long a sweep takes, told before it begins: its steps are known, the time of one is tried."""
+"""How long a sweep takes, told before it begins: its steps are known, the time of one is tried.
+
+On a machine that is busy a few steps may be quick and all of them slow: `foretell_by` tells by chunks that are done.
+"""
 
 from __future__ import annotations
 
@@ -25,7 +28,12 @@ DURATION, STEP = "run.duration_s", "run.step_s"
 def steps_of_runs(plan: Plan, scene: Scene) -> np.ndarray:
     """Steps of the runs of a plan, or of so many evenly over it; 0 for what has no time or step."""
     count = min(plan.runs, MOST_LOOKED_AT)
-    values = plan.values_at(np.arange(count) * plan.runs // count)
+    return steps_at(plan, scene, np.arange(count) * plan.runs // count)
+
+
+def steps_at(plan: Plan, scene: Scene, index: np.ndarray) -> np.ndarray:
+    """The same of these runs."""
+    values, count = plan.values_at(index), len(index)
     usual = {DURATION: scene.run.duration_s, STEP: scene.run.step_s}
     duration, step = (np.broadcast_to(np.asarray(values.get(key, value), float), count) for key, value in usual.items())
     with np.errstate(divide="ignore", invalid="ignore", over="ignore"):
@@ -47,16 +55,27 @@ def step_seconds(scene: Scene, clock: Callable[[], float] = time.perf_counter) -
     return 0.0 if math.isinf(best) else best
 
 
-def foretell(plan: Plan, scene: Scene, share: float, in_lanes: bool, workers: int) -> None:
-    """One line on stderr where the `share` of a plan that is left takes long; `workers`: 0, not known."""
+def foretell(plan: Plan, scene: Scene, share: float, in_lanes: bool, workers: int) -> bool:
+    """One line on stderr where the `share` of a plan that is left takes long, and whether there was one; `workers`: 0,
+    not known."""
+    if float(steps_of_runs(plan, scene).mean()) * plan.runs * share < SHORT_STEPS:
+        return False
+    return foretell_by(tried_seconds(plan, scene, in_lanes), plan, scene, share, workers)
+
+
+def tried_seconds(plan: Plan, scene: Scene, in_lanes: bool) -> float:
+    """Seconds of one step of a sweep, about, by some that are tried."""
+    return step_seconds(scene) / (LANES_GAIN if in_lanes and plan.runs >= MANY else 1)
+
+
+def foretell_by(each_s: float, plan: Plan, scene: Scene, share: float, workers: int) -> bool:
+    """The same by what a step takes."""
     steps = steps_of_runs(plan, scene)
     all_steps = float(steps.mean()) * plan.runs * share
-    if all_steps < SHORT_STEPS:
-        return
-    gain = LANES_GAIN if in_lanes and plan.runs >= MANY else 1
-    each_s = step_seconds(scene) / gain
     whole_s = max(all_steps * each_s / max(1, workers), float(steps.max()) * each_s)  # a run is one worker's
-    if whole_s > LONG_S:
-        alone = "" if workers else " on one core"
-        print(f"laconic: {plan.runs} runs, the longest of {steps.max():.3g} steps, take about "
-              f"{duration_text(whole_s)}{alone}; Ctrl-C ends it and keeps what is done", file=sys.stderr, flush=True)
+    if whole_s <= LONG_S:
+        return False
+    alone = "" if workers else " on one core"
+    print(f"laconic: {plan.runs} runs, the longest of {steps.max():.3g} steps, take about "
+          f"{duration_text(whole_s)}{alone}; Ctrl-C ends it and keeps what is done", file=sys.stderr, flush=True)
+    return True

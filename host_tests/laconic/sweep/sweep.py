@@ -3,7 +3,9 @@
 from __future__ import annotations
 
 import shlex
+from collections.abc import Callable
 from pathlib import Path
+from time import perf_counter
 
 import numpy as np
 
@@ -12,7 +14,7 @@ from laconic.measures.needs import lacks
 from laconic.progress import progress_bar
 from laconic.scene import Scene
 from laconic.sweep.chunk import Rows, nominal_course
-from laconic.sweep.effort import foretell, steps_of_runs
+from laconic.sweep.effort import foretell, foretell_by, steps_at, steps_of_runs, tried_seconds
 from laconic.sweep.lanes import Template
 from laconic.sweep.numbers import is_number_of_struct
 from laconic.sweep.plan import Plan
@@ -31,6 +33,8 @@ STEPS_OF_LANES = 1e7  # of a chunk: a second or so
 STEPS_ALONE = 5e5
 MOST_RUNS_OF_CHUNK = 65536
 MOST_RUNS_ALONE = 500   # each is read from its tables, which takes a millisecond
+CHUNKS_HERE = 2         # before other processes begin: the first also makes ready, the second shows how long one takes
+LONGEST_HERE_S = 3.0    # of both, about
 OF_TIME = ("run.duration_s", "run.step_s")
 
 
@@ -99,8 +103,8 @@ def carry_on(store: Store, scheduler: str | None = None, workers: int | None = N
     if store.is_whole:
         return
     chunks = store.missing()
-    done_before = store.plan.runs - sum(store.range_of(number)[1] for number in chunks)
-    _foretell(store, 1.0 - done_before / store.plan.runs, scheduler, workers)
+    done_before = runs_there(store)
+    is_told = _foretell(store, scheduler, workers)
     with progress_bar(store.plan.tables.path.stem, store.plan.runs) as moved:
         moved(done_before)
 
@@ -117,16 +121,39 @@ def carry_on(store: Store, scheduler: str | None = None, workers: int | None = N
         elif len(chunks) <= 1 or workers == 0:
             run_here(store.plan, values_of, chunks, done)
         else:
+            chunks = chunks[_some_here(store, chunks, values_of, done, 0 if is_told else workers or usual_workers()):]
             with local_client(min(workers or usual_workers(), len(chunks))) as client:
                 run_on(client, store.plan, values_of, chunks, done)
     store.finish()
 
 
-def _foretell(store: Store, share: float, scheduler: str | None, workers: int | None) -> None:
-    """Tells how long the rest takes, if that is long."""
+def _foretell(store: Store, scheduler: str | None, workers: int | None) -> bool:
+    """Tells how long the rest takes, if that is long, and whether it did."""
     scene = store.plan.tables.scene()
     at_once = 0 if scheduler else max(1, usual_workers() if workers is None else workers)
-    foretell(store.plan, scene, share, goes_in_lanes(store.plan, scene), at_once)
+    return foretell(store.plan, scene, _share_left(store), goes_in_lanes(store.plan, scene), at_once)
+
+
+def _share_left(store: Store) -> float:
+    return 1.0 - runs_there(store) / store.plan.runs
+
+
+def _some_here(store: Store, chunks: list[int], values_of: Callable[[int], dict[str, np.ndarray]],
+               done: Callable[[int, Rows], None], workers: int) -> int:
+    """Does the first chunks, if they are short, while no other process is there yet: whatever ends the program then
+    keeps them. By the last of them tells how long the rest takes on so many workers; 0: that is told. How many."""
+    scene, here = store.plan.tables.scene(), chunks[:min(CHUNKS_HERE, len(chunks) - 1)]
+    steps = [float(steps_at(store.plan, scene, np.arange(first, first + count)).sum())
+             for first, count in map(store.range_of, here)]
+    if sum(steps) * tried_seconds(store.plan, scene, goes_in_lanes(store.plan, scene)) > LONGEST_HERE_S:
+        return 0
+    for number in here:
+        began = perf_counter()
+        run_here(store.plan, values_of, [number], done)
+        each_s = (perf_counter() - began) / max(steps.pop(0), 1.0)
+    if workers and len(here) == CHUNKS_HERE:
+        foretell_by(each_s, store.plan, scene, _share_left(store), workers)
+    return len(here)
 
 
 def runs_there(store: Store) -> int:

@@ -21,6 +21,7 @@ from laconic.sweep.plan import Plan
 
 AHEAD = 2              # chunks that wait for each worker
 MOST_DEATHS = 20       # of workers under one chunk, before it is given up
+ENDED = ("finished", "error", "cancelled")  # what a future of Dask can be at last
 CONNECT_S = 10
 LOOPBACK = "127.0.0.1"
 LIBRARIES = ("laconic", "numpy", "scipy", "SALib", "pyarrow")
@@ -69,6 +70,9 @@ def run_on(client: Any, plan: Plan, values_of: Callable[[int], Mapping[str, np.n
 
     running = as_completed(list(next_ones(_ahead(client))))
     for future in running:
+        if future.status not in ENDED:  # its worker died with the result: the scheduler has it done again
+            running.add(future)
+            continue
         number = number_of.pop(future.key)
         if future.status == "finished":
             done(number, future.result())

@@ -11,7 +11,7 @@ import pytest
 
 from laconic.errors import BadInput, ResultFails
 from laconic.scene.scene_tables import scene_tables
-from laconic.sweep import sweep, workers
+from laconic.sweep import effort, sweep, workers
 from laconic.sweep.plan import make_plan
 
 RUNS = 40
@@ -70,6 +70,46 @@ def expected(tmp_path, monkeypatch):
     return (tmp_path / "alone/results.parquet").read_bytes()
 
 
+def test_what_ends_a_sweep_while_its_workers_begin_leaves_the_first_chunks(expected, tmp_path, monkeypatch):
+    def interrupted(_):
+        raise KeyboardInterrupt
+
+    store = begun(tmp_path / "ended")
+    with monkeypatch.context() as patch, pytest.raises(KeyboardInterrupt):
+        patch.setattr(sweep, "local_client", interrupted)
+        sweep.carry_on(store, workers=2)
+    assert (sweep.runs_there(store), store.missing()) == (10, [2, 3, 4, 5, 6, 7])
+    sweep.carry_on(store, workers=0)
+    assert (tmp_path / "ended/results.parquet").read_bytes() == expected
+
+
+def test_chunks_that_take_long_are_left_to_the_workers(expected, tmp_path, monkeypatch):
+    def interrupted(_):
+        raise KeyboardInterrupt
+
+    monkeypatch.setattr(effort, "step_seconds", lambda _: 1.0)
+    monkeypatch.setattr(sweep, "local_client", interrupted)
+    store = begun(tmp_path / "long")
+    with pytest.raises(KeyboardInterrupt):
+        sweep.carry_on(store, workers=2)
+    assert sweep.runs_there(store) == 0
+
+
+@pytest.mark.parametrize(("each_s", "words"), [
+    (50.0, "laconic: 40 runs, the longest of 1.25e+04 steps, take about 2 minutes; Ctrl-C ends it and keeps what is "
+           "done"),
+    (0.01, "")])
+def test_a_machine_that_is_busy_shows_with_the_second_chunk(expected, tmp_path, monkeypatch, capsys, each_s, words):
+    now = iter(each_s * count for count in (0, 100, 100, 101))  # the first makes ready, too
+    monkeypatch.setattr(effort, "step_seconds", lambda _: 1e-12)
+    monkeypatch.setattr(sweep, "perf_counter", lambda: next(now))
+    monkeypatch.setattr(sweep, "local_client", lambda _: pytest.fail("told"))
+    store = begun(tmp_path / "busy")
+    with pytest.raises(pytest.fail.Exception, match="told"):
+        sweep.carry_on(store, workers=2)
+    assert capsys.readouterr().err.strip() == words
+
+
 def kept(store):
     return lambda number, rows: store.keep(number, values_of(store)(number), rows)
 
@@ -86,6 +126,48 @@ def test_a_worker_that_dies_costs_nothing_but_time(client, expected, tmp_path):
     workers.run_on(Client(client, mortal_work, str(grave), victim), store.plan, values_of(store), store.missing(),
                    kept(store))
     assert grave.exists(), "no worker has died"
+    assert store.finish().read_bytes() == expected
+
+
+class Lost:
+    """A future whose worker dies with the result: what is asked first of all is lost, and done again."""
+
+    def __init__(self, key, rows):
+        self.key, self._rows, self._states = key, rows, iter(("lost", "pending"))
+
+    @property
+    def status(self):
+        return next(self._states, "finished")
+
+    def result(self):
+        return self._rows
+
+
+class Queue(list):
+    """What Dask's as_completed does for futures that are there at once."""
+
+    def __iter__(self):
+        while self:
+            yield self.pop(0)
+
+    add = list.append
+
+
+def test_a_result_that_its_worker_takes_along_is_waited_for_again(expected, tmp_path, monkeypatch):
+    class Here:
+        def __init__(self):
+            self.sent = 0
+
+        def submit(self, work, *task, pure):
+            self.sent += 1
+            return Lost(self.sent, work(*task))
+
+        def nthreads(self):
+            return {"one": 1}
+
+    monkeypatch.setattr("distributed.as_completed", Queue)
+    store = begun(tmp_path / "lost")
+    workers.run_on(Here(), store.plan, values_of(store), store.missing(), kept(store))
     assert store.finish().read_bytes() == expected
 
 
