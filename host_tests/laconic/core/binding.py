@@ -204,8 +204,12 @@ class Core:
     def check_range(self, what: str, *found: Any) -> None:
         """Refused, as a step would be, where a result is infinite or NaN though all that was given is finite."""
         if not all(np.isfinite(each).all() for each in found):
-            raise Refused("overflow", what, 0, f"{what}: a result leaves the range of {self.real} precision; check "
-                          "inputs and units")
+            raise self.out_of_range(what)
+
+    def out_of_range(self, what: str) -> Refused:
+        """That a result is infinite or NaN."""
+        return Refused("overflow", what, 0, f"{what}: a result leaves the range of {self.real} precision; check inputs "
+                       "and units")
 
     # ---- input
 

@@ -6,6 +6,7 @@ would have to be below zero. The model does neither: from there on it describes 
 
 from __future__ import annotations
 
+import math
 from dataclasses import asdict, dataclass
 from typing import TYPE_CHECKING, Any
 
@@ -58,7 +59,7 @@ class Grip:
 
     def as_json(self) -> dict[str, Any]:
         """Machine-readable. Where wheels slip by the ground's friction, there is no condition to hold: null."""
-        found = {"holds": self.holds, **asdict(self)}
+        found = {"holds": self.holds, **{name: _of_json(each) for name, each in asdict(self).items()}}
         return found if self.slip_loss_J is None else found | {"holds": None, "slipping": None}
 
     def warning(self) -> str:
@@ -80,6 +81,13 @@ class Grip:
         return f"{at_worst}; {percent(count, self.instants)} of the run"
 
 
+def _of_json(value: Any) -> Any:
+    """JSON has no infinite number and no NaN."""
+    if isinstance(value, dict):
+        return {name: _of_json(each) for name, each in value.items()}
+    return None if isinstance(value, float) and not math.isfinite(value) else value
+
+
 def _load_below_zero(event: GripEvent) -> str:
     """Why the margin is below minus the need: it counts the friction coefficient times a load below 0."""
     return f" under a load of {newtons(event.normal_N)}" if event.normal_N < 0.0 else ""
@@ -93,6 +101,8 @@ def percent(count: int, of: int) -> str:
 
 def newtons(force_N: float) -> str:
     """A force for people: three digits, or all before the point."""
+    if not math.isfinite(force_N):
+        return "beyond all numbers"
     return f"{force_N:.0f} N" if abs(force_N) >= 100.0 else f"{force_N:.3g} N"
 
 

@@ -58,6 +58,13 @@ class Recorder:
             self.c.grip = self._plant.core.ffi.NULL  # this instant was watched before the step
             self.take_last(held)
 
+    def drop_unfinite(self) -> bool:
+        """Takes the last row back where a number of it is infinite or NaN, and says whether it did."""
+        if np.isfinite(self._table[self.row_count - 1]).all():
+            return False
+        self.c.row_count -= 1
+        return True
+
     @property
     def row_count(self) -> int:
         """How many rows were taken."""

@@ -38,7 +38,7 @@ MOST_ROWS = 10**7  # of outputs that are kept: some gigabytes
 CHUNK = 1 << 18    # steps between updates of the progress bar and checks for Ctrl-C: 0.1 s, or 0.3 s with grip
 
 
-@dataclass
+@dataclass(repr=False)
 class Trajectory:
     """Outputs over time; `columns` by signal name in the order to write them."""
 
@@ -52,6 +52,12 @@ class Trajectory:
     refused: Refused | None = None  # what ended it before its time
     errors: Errors | None = None  # at its end; None: the estimate was not asked for
     error_columns: dict[str, np.ndarray] = field(default_factory=dict)  # the same over time, by estimated_error_…
+
+    def __repr__(self) -> str:
+        """In one line: its arrays have thousands of numbers."""
+        names = ", ".join(dict.fromkeys(name.partition("[")[0] for name in self.columns))
+        return (f"<run of {self.scene.name}: {self.steps} steps by {self.method}, {len(self.time_s)} rows to "
+                f"{self.time_s[-1]:g} s of {names}>")
 
     def columns_of(self, name: str) -> np.ndarray:
         """All columns of one signal, side by side; BadInput for one that is not among them."""
@@ -151,7 +157,7 @@ def simulate(scene: Scene, signals: Sequence[str] = (), progress: bool = False, 
     stderr how far it is; `watched`: watches the ground where the scene has data of it, which costs more than the steps;
     `estimated`: estimates the run's error (docs/error-estimate.md), with friction at three times the cost.
     Refused names file and time when the first step is refused or an input is no number; RunRefused, when a later step
-    is refused, has the motion up to it.
+    is refused or the outputs at the end leave the range of numbers, has the motion up to there.
     """
     kept = kept_signals(check_scene(scene), signals)
     progress, watched, estimated = flag("progress", progress), flag("watched", watched), flag("estimated", estimated)
@@ -172,6 +178,8 @@ def simulate(scene: Scene, signals: Sequence[str] = (), progress: bool = False, 
         with progress_bar(scene.name, steps, forecasts=True) if progress else nullcontext(_silently) as moved:
             run_window(scene, plant, inputs, 0, steps, moved, recorder, watch)
         recorder.take_last(core.input(inputs.held_at(steps)))
+        if recorder.drop_unfinite():
+            raise scene.refusal_in_file(core.out_of_range("outputs"), f"at t = {steps * scene.run.step_s:g} s")
     except Refused as why:
         if not plant.steps or why.status == "not finite":  # an input that the file should not have
             raise
@@ -194,13 +202,15 @@ def error_columns(watch: Watch, rows: int) -> dict[str, np.ndarray]:
     assert watch.rows is not None
     if len(watch.rows) < rows:
         watch.rows.take(watch.estimate)
-    return watch.rows.columns()
+    return {name: column[:rows] for name, column in watch.rows.columns().items()}
 
 
 def take_end(plant: Plant, inputs: InputsOnGrid, recorder: Recorder, every: int) -> np.ndarray:
-    """Ends the rows where a step was refused; returns the steps that they belong to."""
+    """Ends the rows where a step was refused; returns the steps that they belong to. The last is one whose outputs are
+    in the range of numbers."""
     recorder.take_refused(plant.core.input(inputs.held_at(plant.steps)))
-    return np.append(np.arange(recorder.row_count - 1) * every, plant.steps)
+    whole = np.append(np.arange(recorder.row_count - 1) * every, plant.steps)
+    return whole[:-1] if recorder.drop_unfinite() else whole
 
 
 def run_window(scene: Scene, plant: Plant, inputs: InputsOnGrid, first: int, count: int,

@@ -244,6 +244,11 @@ def test_columns_of_a_signal_are_all_of_them_or_the_one_that_is_named() -> None:
     assert run.columns_of("nu_rad_per_s[2]").ravel().tolist() == run.columns["nu_rad_per_s[2]"].tolist()
 
 
+def test_a_run_shows_itself_in_one_line() -> None:
+    shown = repr(short_run())
+    assert shown.startswith("<run of ") and shown.endswith(" rows to 0.1 s of x_m, nu_rad_per_s>") and len(shown) < 200
+
+
 def test_a_pose_shows_its_numbers() -> None:
     pose = plant().pose
     assert isinstance(pose, laconic.Pose)

@@ -75,8 +75,8 @@ def test_what_ends_a_sweep_while_its_workers_begin_leaves_the_first_chunks(expec
         raise KeyboardInterrupt
 
     store = begun(tmp_path / "ended")
-    with monkeypatch.context() as patch, pytest.raises(KeyboardInterrupt):
-        patch.setattr(sweep, "local_client", interrupted)
+    monkeypatch.setattr(sweep, "local_client", interrupted)
+    with pytest.raises(KeyboardInterrupt):
         sweep.carry_on(store, workers=2)
     assert (sweep.runs_there(store), store.missing()) == (10, [2, 3, 4, 5, 6, 7])
     sweep.carry_on(store, workers=0)
