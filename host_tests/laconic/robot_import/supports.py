@@ -4,9 +4,10 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 
-from laconic.robot_import.robot_tree import Robot
+from laconic.robot_import.robot_tree import BALL, FIXED, SLIDE, Robot
 from laconic.robot_import.wheels import FoundWheel, Ground
 
+MOVES = {SLIDE: "shifts and does not turn", BALL: "turns about every axis"}
 TOUCHES = 0.05  # of the smallest wheel's radius above or below the ground
 BELOW = 0.2
 
@@ -36,8 +37,17 @@ def find_supports(robot: Robot, ground: Ground) -> list[Support]:
         if -BELOW * smallest <= point[2] - ground.height_m <= TOUCHES * smallest:
             found.append(Support(float(point[0]), float(point[1]),
                                  f"assumption: {link.name}, {_height(point[2] - ground.height_m)}, slides without "
-                                 "drag"))
+                                 f"drag{_no_wheel(robot, link.name)}"))
     return found
+
+
+def _no_wheel(robot: Robot, link: str) -> str:
+    """Why a link that its joint lets move is no wheel; nothing of one that is fixed."""
+    joint = next((each for each in robot.joints.values() if each.child == link), None)
+    if joint is None or joint.kind == FIXED:
+        return ""
+    why = MOVES.get(joint.kind, "turns within limits" if joint.is_limited else "turns on no level axle")
+    return f"; its joint {joint.name} {why}, so it is no wheel"
 
 
 def _caster(wheel: FoundWheel) -> Support:

@@ -108,3 +108,14 @@ def test_a_link_without_weight_and_a_gravity_that_is_none_are_named(tmp_path: Pa
 def test_gravity_along_the_vertical_is_nothing_to_tell(tmp_path: Path, gravity: str) -> None:
     text = MJCF.replace("<worldbody>", f'<option gravity="{gravity}"/><worldbody>')
     assert imported(tmp_path, text, name="robot.xml").remarks == imported(tmp_path, MJCF, name="robot.xml").remarks
+
+
+@pytest.mark.parametrize(("kind", "more", "why"), [
+    ("planar", "", "shifts and does not turn"), ("floating", "", "turns about every axis"),
+    ("revolute", '<limit lower="-1" upper="1" effort="1" velocity="1"/>', "turns within limits"), ("fixed", "", "")])
+def test_what_stands_on_the_ground_and_is_no_wheel_says_why(tmp_path: Path, kind: str, more: str, why: str) -> None:
+    third = wheel("third", "base", "-0.2 0 -0.05").replace("</joint>", f"{more}</joint>").replace("continuous", kind)
+    found = imported(tmp_path, robot(TWO_WHEELS + third))
+    told = [each for each in found.assumptions if "third_link, on the ground, slides without drag" in each]
+    assert len(told) == 1 and told[0].endswith(f"; its joint third {why}, so it is no wheel" if why else "drag")
+    assert told[0].partition("third_link, ")[2] in found.text
