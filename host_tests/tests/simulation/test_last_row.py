@@ -114,7 +114,9 @@ REFUSED = {
     "payload hides a mass": (
         ("mass_kg = 6.0\n", "mass_kg = 1e-320\npayload = {mass_kg = 1, x_m = 0, y_m = 0, yaw_inertia_kgm2 = 1}\n"),
         ("vehicle.mass_kg: ", "range")),
-    "radius beyond all range": (("wheel_radius_m = 0.04", "wheel_radius_m = 1e300"), ("vehicle: a result leaves",)),
+    "radius beyond all range": (("wheel_radius_m = 0.04", "wheel_radius_m = 1e300"), ("wheel_radius_m: a result",)),
+    "numbers beyond all range together": (("wheel_radius_m = 0.04", "wheel_radius_m = 1e100"),
+                                          ("vehicle: a result leaves",)),
     "axle lines that do not meet": (
         ("x_m = 0\ny_m = -0.1\naxle_deg = -90", "x_m = 0.3\ny_m = -0.1\naxle_deg = -80\n[[vehicle.wheel]]\n"
          "kind = \"fixed\"\nx_m = 1\ny_m = 1\naxle_deg = -90"), ("fixed wheels must meet in one point",)),
