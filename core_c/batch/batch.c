@@ -4,7 +4,7 @@
 
 #define LARGEST_LANE_COUNT (1 << 28)
 #define ALIGNMENT 64
-#define LANES_WAYS (LANES_METHOD_COUNT + 2 * MOST_STRETCHES) /* in which lanes take a step */
+#define LANES_WAYS (LANES_METHOD_COUNT + 6 * MOST_STRETCHES) /* in which lanes take a step */
 
 /* ------------------------------------------------------------------------------- widths -- */
 
@@ -36,10 +36,10 @@ static const laconic_method *const steppers[LANES_METHOD_COUNT] = {&laconic_rk4,
                                                                    &laconic_exact_flow,
                                                                    &laconic_exact_flow_4,
                                                                    &laconic_taylor_8,
-                                                                   &laconic_auto_slow,
-                                                                   &laconic_auto_fast,
 #if LACONIC_WITH_EXPONENTIAL_GAUSS
-                                                                   &laconic_exponential_gauss_8
+                                                                   &laconic_exponential_gauss_8,
+                                                                   &laconic_auto_slow,
+                                                                   &laconic_auto_fast
 #endif
 };
 
@@ -149,7 +149,7 @@ size_t laconic_batch_size(const laconic_batch_shape *shape) {
 /* Lanes of equal keys can share a block. */
 static int32_t way_of(const laconic_batch_kind *of) {
     const lanes_kind kind = lanes_kind_of(of);
-    const int32_t step = (int32_t)kind.method + 2 * kind.stretches - kind.has_rest;
+    const int32_t step = (int32_t)kind.method + 3 * (2 * kind.stretches - kind.has_rest);
     return step + LANES_WAYS * (kind.sloped + 2 * kind.stiff + 4 * kind.wheel_count);
 }
 

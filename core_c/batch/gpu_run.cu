@@ -7,24 +7,25 @@
 #include "../src/elementary.c"
 #include "../src/step_internals.c"
 
-/* 6 and 7 are auto's, which chooses among the others while it steps. */
+#include "../src/eighth_order.h" /* of two methods: a file's text stands where it is included first */
+
 #if LACONIC_GPU_METHOD == 0
 #include "../src/rk4.c"
 #endif
-#if LACONIC_GPU_METHOD == 1 || LACONIC_GPU_METHOD == 2 || LACONIC_GPU_METHOD >= 6
+#if LACONIC_GPU_METHOD == 1 || LACONIC_GPU_METHOD == 2 || LACONIC_GPU_METHOD >= 7
 #include "../src/exponential_kahan.c"
 #endif
-#if LACONIC_GPU_METHOD == 3 || LACONIC_GPU_METHOD == 4 || LACONIC_GPU_METHOD >= 6
+#if LACONIC_GPU_METHOD == 3 || LACONIC_GPU_METHOD == 4 || LACONIC_GPU_METHOD >= 7
 #include "../src/exact_flow.c"
 #endif
-#if LACONIC_GPU_METHOD == 5 || LACONIC_GPU_METHOD >= 6
+#if LACONIC_GPU_METHOD == 5
 #include "../src/taylor_8.c"
 #endif
-#if LACONIC_GPU_METHOD == 6 || LACONIC_GPU_METHOD == 7
-#include "../src/auto.c"
-#endif
-#if LACONIC_GPU_METHOD == 8
+#if LACONIC_GPU_METHOD >= 6
 #include "../src/exponential_gauss_8.c"
+#endif
+#if LACONIC_GPU_METHOD >= 7 /* auto_slow and auto_fast, which try several */
+#include "../src/auto.c"
 #endif
 
 #include "batch_run.c"

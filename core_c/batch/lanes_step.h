@@ -76,7 +76,7 @@ static void place(const laconic_batch_block *block, int32_t lane, lanes_kind kin
     LANES_MODEL_MEMBERS(SPREAD_TO_MODEL)
     LANES_INTEGRATOR_MEMBERS(SPREAD_TO_INTEGRATOR)
 #if LACONIC_WITH_EXPONENTIAL_GAUSS
-    if (kind.method != LANES_EXPONENTIAL_GAUSS_8) return;
+    if (kind.method < LANES_EXPONENTIAL_GAUSS_8) return;
     integrator->stretches = kind.stretches;
     integrator->has_rest = kind.has_rest;
     LANES_COLLOCATION_MEMBERS(SPREAD_TO_INTEGRATOR)
@@ -389,19 +389,18 @@ RUN_OF(run_exponential_kahan_4, exponential_kahan_4_step, exponential_kahan_4_st
 RUN_OF(run_exact_flow, exact_flow_step, exact_flow_step)
 RUN_OF(run_exact_flow_4, exact_flow_4_step, exact_flow_4_step)
 RUN_OF(run_taylor_8, taylor_8_step, taylor_8_step)
-RUN_OF(run_auto_slow, exact_flow_4_step, taylor_8_step)
 #if LACONIC_WITH_EXPONENTIAL_GAUSS
 RUN_OF(run_exponential_gauss_8, exponential_gauss_8_step, exponential_gauss_8_step)
 #else
 #define run_exponential_gauss_8 NULL
 #endif
 
-const lanes_width LANES_NAME(laconic_lanes_of) = {LACONIC_LANES,
-                                                  sizeof(laconic_model),
-                                                  sizeof(laconic_integrator),
-                                                  place,
-                                                  {run_rk4, run_exponential_kahan, run_exponential_kahan_4,
-                                                   run_exact_flow, run_exact_flow_4, run_taylor_8, run_auto_slow,
-                                                   run_exponential_kahan_4, run_exponential_gauss_8}};
+const lanes_width LANES_NAME(laconic_lanes_of) = {
+    LACONIC_LANES,
+    sizeof(laconic_model),
+    sizeof(laconic_integrator),
+    place,
+    {run_rk4, run_exponential_kahan, run_exponential_kahan_4, run_exact_flow, run_exact_flow_4, run_taylor_8,
+     run_exponential_gauss_8, run_exponential_gauss_8, run_exponential_gauss_8}};
 
 #endif

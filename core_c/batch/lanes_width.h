@@ -62,9 +62,9 @@ typedef enum lanes_method {
     LANES_EXACT_FLOW,
     LANES_EXACT_FLOW_4,
     LANES_TAYLOR_8,
-    LANES_AUTO_SLOW, /* auto_slow and auto_fast of auto.c */
-    LANES_AUTO_FAST,
-    LANES_EXPONENTIAL_GAUSS_8, /* the last, since its stretches count as further methods: LANES_WAYS */
+    LANES_EXPONENTIAL_GAUSS_8, /* the last three, since their stretches count as further methods: LANES_WAYS */
+    LANES_AUTO_SLOW,           /* auto_slow and auto_fast of auto.c: the same steps, and lanes for which others are */
+    LANES_AUTO_FAST,           /* taken go alone */
     LANES_METHOD_COUNT
 } lanes_method;
 

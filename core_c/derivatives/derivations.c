@@ -3,7 +3,7 @@
 #include "step_change.h"
 
 #define NO_STEP {NULL, NULL}
-#define ONE_STEP(method, responds) {NO_STEP, {&method, responds}, NO_STEP}
+#define ONE_STEP(method, responds) {{&method, responds}, NO_STEP, NO_STEP}
 
 static const laconic_derived_method derived_rk4 = {&laconic_rk4, ONE_STEP(laconic_rk4, laconic_rk4_responses)};
 static const laconic_derived_method derived_taylor_8 = {&laconic_taylor_8,
@@ -21,20 +21,23 @@ static const laconic_derived_method derived_flow_4 = {&laconic_exact_flow_4,
 static const laconic_derived_method derived_gauss = {&laconic_exponential_gauss_8,
                                                      ONE_STEP(laconic_exponential_gauss_8, laconic_gauss_responses)};
 const laconic_derivation laconic_derivation_of_exponential_gauss_8 = {{&derived_gauss}};
-#define DERIVED_GAUSS , &derived_gauss
+
+/* By the rule of auto.c. */
+static const laconic_derived_method derived_slow = {&laconic_auto_slow,
+                                                    {{&laconic_exponential_gauss_8, laconic_gauss_responses},
+                                                     {&laconic_exact_flow_4, laconic_flow_4_responses},
+                                                     {&laconic_exact_flow, laconic_flow_responses}}};
+static const laconic_derived_method derived_fast = {&laconic_auto_fast,
+                                                    {{&laconic_exponential_gauss_8, laconic_gauss_responses},
+                                                     {&laconic_exponential_kahan_4, laconic_kahan_4_responses},
+                                                     {&laconic_exact_flow, laconic_flow_responses}}};
+const laconic_derivation laconic_derivation_of_auto = {{&derived_slow, &derived_fast}};
+const laconic_derivation laconic_derivation_of_auto_slow = {{&derived_slow}};
+const laconic_derivation laconic_derivation_of_auto_fast = {{&derived_fast}};
+#define DERIVED_GAUSS , &derived_gauss, &derived_slow, &derived_fast
 #else
 #define DERIVED_GAUSS
 #endif
-
-/* By the rule of auto.c. */
-static const laconic_derived_method derived_fast = {&laconic_auto_fast,
-                                                    {NO_STEP,
-                                                     {&laconic_exponential_kahan_4, laconic_kahan_4_responses},
-                                                     {&laconic_exact_flow, laconic_flow_responses}}};
-static const laconic_derived_method derived_slow = {&laconic_auto_slow,
-                                                    {{&laconic_taylor_8, laconic_taylor_8_responses},
-                                                     {&laconic_exact_flow_4, laconic_flow_4_responses},
-                                                     {&laconic_exact_flow, laconic_flow_responses}}};
 
 const laconic_derivation laconic_derivation_of_rk4 = {{&derived_rk4}};
 const laconic_derivation laconic_derivation_of_taylor_8 = {{&derived_taylor_8}};
@@ -42,9 +45,5 @@ const laconic_derivation laconic_derivation_of_exponential_kahan = {{&derived_ka
 const laconic_derivation laconic_derivation_of_exponential_kahan_4 = {{&derived_kahan_4}};
 const laconic_derivation laconic_derivation_of_exact_flow = {{&derived_flow}};
 const laconic_derivation laconic_derivation_of_exact_flow_4 = {{&derived_flow_4}};
-const laconic_derivation laconic_derivation_of_auto = {{&derived_slow, &derived_fast}};
-const laconic_derivation laconic_derivation_of_auto_slow = {{&derived_slow}};
-const laconic_derivation laconic_derivation_of_auto_fast = {{&derived_fast}};
-const laconic_derivation laconic_derivation_of_all = {{&derived_rk4, &derived_taylor_8, &derived_kahan,
-                                                       &derived_kahan_4, &derived_flow, &derived_flow_4, &derived_slow,
-                                                       &derived_fast DERIVED_GAUSS}};
+const laconic_derivation laconic_derivation_of_all = {
+    {&derived_rk4, &derived_taylor_8, &derived_kahan, &derived_kahan_4, &derived_flow, &derived_flow_4 DERIVED_GAUSS}};

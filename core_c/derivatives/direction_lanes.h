@@ -34,6 +34,14 @@ static inline lanes lanes_with(lane x, lane y, lane z) {
     return out;
 }
 
+static inline bool lanes_same(lanes a, lanes b) {
+    bool same = true;
+    for (int k = 0; k < LANES; k++)
+        same = same && lane_number(a.x, k) == lane_number(b.x, k) && lane_number(a.y, k) == lane_number(b.y, k) &&
+               lane_number(a.z, k) == lane_number(b.z, k);
+    return same;
+}
+
 /* The same vector in every lane. */
 static inline lanes lanes_of(vector v) { return lanes_with(lane_of(v.x), lane_of(v.y), lane_of(v.z)); }
 

@@ -1,20 +1,20 @@
-/* exponential-gauss-8, linearised round by round and panel by panel (exponential_gauss_8.c). A direction goes through a
- * panel as ζ does: with F at the nodes and the panel's weights. */
+/* exponential-gauss-8, linearised panel by panel (exponential_gauss_8.c). A direction goes through a panel as ζ does:
+ * with F at the nodes and the panel's weights, by rounds until they settle. The rounds of ζ have found the solution of
+ * the collocation, so all rounds of a direction are linearised there. */
 #include "exponential_gauss_8.h"
 #include "gauss_weight_change.h"
 #include "step_change.h"
 
 #if LACONIC_WITH_EXPONENTIAL_GAUSS
 
-/* A round: ζ before it, F of that; ζ × w and g·ζ in every lane; where b rotates, the yaw at which it is taken and
- * ∂b/∂yaw there. */
-typedef struct round_trace {
-    node_vectors zeta, rate;
+/* F at the nodes; ζ × w and g·ζ in every lane; where b rotates, the yaw at which it is taken and ∂b/∂yaw there. */
+typedef struct rate_trace {
+    node_vectors rate;
     lanes turned[NODES];
     lane yaw_speed[NODES];
     direction yaw[NODES];
     vector slope[NODES];
-} round_trace;
+} rate_trace;
 
 static inline lanes lanes_multiplied(lanes a, lanes b) { return lanes_with(a.x * b.x, a.y * b.y, a.z * b.z); }
 
@@ -28,8 +28,8 @@ typedef struct panel_trace {
     real h;
     bool is_whole;
     vector start, path, lacking;
-    round_trace round[ROUNDS];
-    node_vectors zeta;                /* at the end of the rounds                   */
+    node_vectors zeta; /* at the nodes, and F of that */
+    rate_trace of;
     real cosine[NODES], sine[NODES];  /* of the yaw from the panel's middle, times h·weight */
     real along[NODES], across[NODES]; /* displacement that a node stands for, turned */
     direction to_start;               /* half of the panel's yaw back               */
@@ -46,34 +46,56 @@ static inline vector weight_at(const panel_trace *t, int place) {
 
 /* ------------------------------------------------------------------------------- the step itself -- */
 
-static void trace_turning_forcing(round_trace *r, const panel_trace *t, const step_point *at) {
+static void trace_turning_forcing(rate_trace *of, const panel_trace *t, const step_point *at) {
     real yaw[NODES];
-    yaw_at_nodes(yaw, at->model, t->h, &r->zeta);
+    yaw_at_nodes(yaw, at->model, t->h, &t->zeta);
     for (int j = 0; j < NODES; j++) {
-        r->yaw[j] = laconic_direction_of_angle(t->before.yaw_change_rad + yaw[j]);
-        r->slope[j] = forcing_slope(at, r->yaw[j]);
-        const vector b = forcing_seen(at, r->yaw[j]);
-        r->rate.x[j] += b.x;
-        r->rate.y[j] += b.y;
-        r->rate.z[j] += b.z;
+        of->yaw[j] = laconic_direction_of_angle(t->before.yaw_change_rad + yaw[j]);
+        const vector b = forcing_seen(at, of->yaw[j]);
+        of->rate.x[j] += b.x;
+        of->rate.y[j] += b.y;
+        of->rate.z[j] += b.z;
     }
 }
 
-static void trace_round(round_trace *r, const panel_trace *t, const step_point *at, vector still) {
+static bool same_vectors(const node_vectors *a, const node_vectors *b) {
+    bool same = true;
+    for (int j = 0; j < NODES; j++) same = same && a->x[j] == b->x[j] && a->y[j] == b->y[j] && a->z[j] == b->z[j];
+    return same;
+}
+
+/* ζ and F at the nodes, from ζ at the start at all of them. */
+static void trace_rounds(panel_trace *t, const step_point *at, vector still) {
+    node_vectors before;
+    for (int j = 0; j < NODES; j++) {
+        t->zeta.x[j] = t->start.x;
+        t->zeta.y[j] = t->start.y;
+        t->zeta.z[j] = t->start.z;
+    }
+    for (int round = 0; round < ROUNDS; round++) {
+        before = t->zeta;
+        rates_at(&t->of.rate, at->model, &t->zeta, still);
+        if (at->rotates) trace_turning_forcing(&t->of, t, at);
+        answer(&t->zeta, t->start, t->row, &t->of.rate);
+        if (same_vectors(&t->zeta, &before)) return;
+    }
+}
+
+/* What ∂F/∂ζ and ∂F/∂yaw are made of. */
+static void trace_slopes(rate_trace *of, const panel_trace *t, const step_point *at) {
     const laconic_model *m = at->model;
-    rates_at(&r->rate, m, &r->zeta, still);
-    if (at->rotates) trace_turning_forcing(r, t, at);
     for (int j = 0; j < NODES; j++) {
-        const vector zeta = node_vector(&r->zeta, j);
-        r->turned[j] = lanes_of(cross(zeta, vec(m->gyro)));
-        r->yaw_speed[j] = lane_of(dot(vec(m->nu_of_zeta[2]), zeta));
+        const vector zeta = node_vector(&t->zeta, j);
+        of->turned[j] = lanes_of(cross(zeta, vec(m->gyro)));
+        of->yaw_speed[j] = lane_of(dot(vec(m->nu_of_zeta[2]), zeta));
+        if (at->rotates) of->slope[j] = forcing_slope(at, of->yaw[j]);
     }
 }
 
-/* Σ weight · F of the last round, from a place of the row on, `stride` places apart. */
+/* Σ weight · F, from a place of the row on, `stride` places apart. */
 static vector summed_rates(const panel_trace *t, int place, int stride) {
     vector sum = none;
-    const node_vectors *rate = &t->round[ROUNDS - 1].rate;
+    const node_vectors *rate = &t->of.rate;
     for (int i = 0; i < NODES; i++) sum = plus(sum, times(weight_at(t, place + stride * i), node_vector(rate, i)));
     return sum;
 }
@@ -114,16 +136,8 @@ static void trace_panel(panel_trace *t, step_result *step, const step_point *at)
     for (int k = 0; k < weights; k++) t->weight[k] = lanes_of(weight_at(t, k));
     const vector damped = damping(at->model, t->start),
                  still = at->rotates ? minus(none, damped) : minus(at->constant, damped);
-    for (int j = 0; j < NODES; j++) {
-        t->zeta.x[j] = t->start.x;
-        t->zeta.y[j] = t->start.y;
-        t->zeta.z[j] = t->start.z;
-    }
-    for (int k = 0; k < ROUNDS; k++) {
-        t->round[k].zeta = t->zeta;
-        trace_round(&t->round[k], t, at, still);
-        answer(&t->zeta, t->start, t->row, &t->round[k].rate);
-    }
+    trace_rounds(t, at, still);
+    trace_slopes(&t->of, t, at);
     t->path = scaled(t->h, plus(t->start, summed_rates(t, OF_MEAN, 1)));
     step->delta = plus(step->delta, summed_rates(t, AT_END, 1));
     step->path = plus(step->path, t->path);
@@ -142,18 +156,17 @@ static void trace_panel(panel_trace *t, step_result *step, const step_point *at)
 
 /* ------------------------------------------------------------------------------------ directions -- */
 
-/* What a change of the model adds in a panel: of each weight, of F at each node of a round. */
+/* What a change of the model adds in a panel: of each weight, of F at each node. */
 typedef struct panel_model {
     const dynamics_change *by;
     gauss_weight_change weight;
 } panel_model;
 
 /* Σ changed weight · F. */
-static vector weight_response(const panel_trace *t, const panel_model *model, int round, int place, int stride) {
+static vector weight_response(const panel_trace *t, const panel_model *model, int place, int stride) {
     vector sum = none;
     for (int i = 0; i < NODES; i++)
-        sum = plus(sum, laconic_gauss_weight_mapped(&model->weight, place + stride * i,
-                                                    node_vector(&t->round[round].rate, i)));
+        sum = plus(sum, laconic_gauss_weight_mapped(&model->weight, place + stride * i, node_vector(&t->of.rate, i)));
     return sum;
 }
 
@@ -164,33 +177,32 @@ INLINE lanes summed_changes(const panel_trace *t, const lanes rate[NODES], int p
 }
 
 /* The change of the yaw since the panel's start at node j, where it is a quadrature of ζ. */
-INLINE lane quadrature_yaw_change(const panel_trace *t, const laconic_model *m, const lanes zeta[NODES],
-                                  const node_vectors *traced, int j, const dynamics_change *by) {
+INLINE lane quadrature_yaw_change(const panel_trace *t, const laconic_model *m, const lanes zeta[NODES], int j,
+                                  const dynamics_change *by) {
     lane yaw = lane_of(R(0));
     for (int i = 0; i < NODES; i++) {
         lane rate = lanes_dot(vec(m->yaw_rate_of_zeta), zeta[i]);
-        if (by != NULL) rate += dot(by->yaw_rate, node_vector(traced, i));
+        if (by != NULL) rate += dot(by->yaw_rate, node_vector(&t->zeta, i));
         yaw += t->h * undamped[i][j] * rate;
     }
     return yaw;
 }
 
-/* The change of F at the nodes, in one round. */
+/* The change of F at the nodes. */
 INLINE void rate_changes(lanes rate[NODES], const panel_trace *t, const step_point *at, const step_direction *in,
-                         const step_response *before, int round, const lanes zeta[NODES], lanes still,
-                         const panel_model *model) {
+                         const step_response *before, const lanes zeta[NODES], lanes still, const panel_model *model) {
     const dynamics_change *by = model != NULL ? model->by : NULL;
     const laconic_model *m = at->model;
-    const round_trace *r = &t->round[round];
+    const rate_trace *r = &t->of;
     for (int j = 0; j < NODES; j++) {
         const lane turn = lanes_dot(vec(m->nu_of_zeta[2]), zeta[j]);
         const lanes twist = lanes_cross(zeta[j], vec(m->gyro)), *turned = &r->turned[j];
         rate[j].x = still.x + (turn * turned->x + r->yaw_speed[j] * twist.x);
         rate[j].y = still.y + (turn * turned->y + r->yaw_speed[j] * twist.y);
         rate[j].z = still.z + (turn * turned->z + r->yaw_speed[j] * twist.z);
-        if (by != NULL) rate[j] = lanes_plus(rate[j], lanes_of(gyroscopic_change(m, by, node_vector(&r->zeta, j))));
+        if (by != NULL) rate[j] = lanes_plus(rate[j], lanes_of(gyroscopic_change(m, by, node_vector(&t->zeta, j))));
         if (at->rotates) {
-            const lane yaw = before->yaw_change_rad + quadrature_yaw_change(t, m, zeta, &r->zeta, j, by);
+            const lane yaw = before->yaw_change_rad + quadrature_yaw_change(t, m, zeta, j, by);
             rate[j] = lanes_plus(rate[j], lanes_plus(forcing_change(in, r->yaw[j]), lanes_along(yaw, r->slope[j])));
         }
     }
@@ -200,14 +212,13 @@ INLINE void rate_changes(lanes rate[NODES], const panel_trace *t, const step_poi
 INLINE void yaw_changes(lane yaw[NODES], const panel_trace *t, const laconic_model *m, lanes start,
                         const lanes zeta[NODES], const lanes rate[NODES], const panel_model *model) {
     const dynamics_change *by = model != NULL ? model->by : NULL;
-    const int last = ROUNDS - 1;
     for (int j = 0; j < NODES; j++) {
         if (t->is_whole) {
-            yaw[j] = quadrature_yaw_change(t, m, zeta, &t->zeta, j, by);
+            yaw[j] = quadrature_yaw_change(t, m, zeta, j, by);
             continue;
         }
         lanes mean = lanes_added(summed_changes(t, rate, MEAN_TO(0, j), NODES), gauss_node[j], start);
-        if (model != NULL) mean = lanes_plus(mean, lanes_of(weight_response(t, model, last, MEAN_TO(0, j), NODES)));
+        if (model != NULL) mean = lanes_plus(mean, lanes_of(weight_response(t, model, MEAN_TO(0, j), NODES)));
         lane turn = lanes_dot(vec(m->yaw_rate_of_zeta), mean);
         if (by != NULL)
             turn += dot(by->yaw_rate, added(summed_rates(t, MEAN_TO(0, j), NODES), gauss_node[j], t->start));
@@ -251,27 +262,30 @@ INLINE void displacement_change(step_response *out, const panel_trace *t, const 
 INLINE step_response panel_response(const panel_trace *t, const step_point *at, const step_direction *in,
                                     const step_response *before, const panel_model *model) {
     const laconic_model *m = at->model;
-    const int last = ROUNDS - 1;
     const lanes start = lanes_plus(in->zeta, before->delta);
     step_response out = {no_lanes(), no_lanes(), lane_of(R(0)), lane_of(R(0)), lane_of(R(0))};
-    lanes zeta[NODES], rate[NODES], still = at->rotates ? no_lanes() : in->constant;
+    lanes zeta[NODES], own[NODES], rate[NODES], still = at->rotates ? no_lanes() : in->constant;
     lane yaw[NODES];
     if (LACONIC_WITH_DAMPING) still = lanes_minus(still, lanes_times(vec(m->decay_per_s), start));
     if (model != NULL) still = lanes_minus(still, lanes_of(mapped(&model->by->damping, t->start)));
     for (int j = 0; j < NODES; j++) zeta[j] = start;
-    for (int round = 0; round < ROUNDS; round++) {
-        rate_changes(rate, t, at, in, before, round, zeta, still, model);
+    for (int j = 0; j < NODES; j++)
+        own[j] = model != NULL ? lanes_plus(start, lanes_of(weight_response(t, model, TO_POINT(0, j), NODES))) : start;
+    bool settled = false;
+    for (int round = 0; round < ROUNDS && !settled; round++) {
+        settled = true;
+        rate_changes(rate, t, at, in, before, zeta, still, model);
         for (int j = 0; j < NODES; j++) {
-            zeta[j] = lanes_plus(start, summed_changes(t, rate, TO_POINT(0, j), NODES));
-            if (model != NULL)
-                zeta[j] = lanes_plus(zeta[j], lanes_of(weight_response(t, model, round, TO_POINT(0, j), NODES)));
+            const lanes now = lanes_plus(own[j], summed_changes(t, rate, TO_POINT(0, j), NODES));
+            settled = settled && lanes_same(now, zeta[j]);
+            zeta[j] = now;
         }
     }
     lanes mean = lanes_plus(start, summed_changes(t, rate, OF_MEAN, 1));
     out.delta = summed_changes(t, rate, AT_END, 1);
     if (model != NULL) {
-        mean = lanes_plus(mean, lanes_of(weight_response(t, model, last, OF_MEAN, 1)));
-        out.delta = lanes_plus(out.delta, lanes_of(weight_response(t, model, last, AT_END, 1)));
+        mean = lanes_plus(mean, lanes_of(weight_response(t, model, OF_MEAN, 1)));
+        out.delta = lanes_plus(out.delta, lanes_of(weight_response(t, model, AT_END, 1)));
     }
     out.path = lanes_scaled(t->h, mean);
     out.yaw_change_rad = lanes_dot(vec(m->yaw_rate_of_zeta), out.path);

@@ -104,7 +104,7 @@ typedef struct derived_step {
     responder responds;
 } derived_step;
 
-/* What an integrator with this method tries in turn; the first only in steps over which b varies. */
+/* What an integrator with this method tries in turn. */
 struct laconic_derived_method {
     const laconic_method *chosen; /* of the integrator */
     derived_step tried[3];

@@ -20,8 +20,7 @@ static laconic_status find_responder(responder *found, const laconic_derivation 
     laconic_state after = *state;
     laconic_status status = LACONIC_METHOD_UNKNOWN;
     if (of == NULL) return status;
-    for (int i = constant_over(&samples) ? 1 : 0; i < 3 && status != LACONIC_OK; i++) {
-        if (of->tried[i].method == NULL) continue;
+    for (int i = 0; i < 3 && status != LACONIC_OK && of->tried[i].method != NULL; i++) {
         *found = of->tried[i].responds;
         status = of->tried[i].method->step(model, integrator, &after, &samples);
     }

@@ -2,7 +2,11 @@
 #include "common.h"
 
 static const laconic_method *const methods[LACONIC_METHOD_COUNT] = {
+#if LACONIC_WITH_EXPONENTIAL_GAUSS
     &laconic_auto,
+#else
+    NULL, /* auto steps by exponential-gauss-8 */
+#endif
     &laconic_rk4,
     &laconic_exponential_kahan,
     &laconic_exponential_kahan_4,
@@ -25,6 +29,6 @@ const laconic_method *laconic_method_by_number(int32_t number) {
 
 const laconic_method *laconic_method_by_name(const char *name) {
     for (int32_t i = 0; i < LACONIC_METHOD_COUNT; i++)
-        if (same_text(methods[i]->name, name)) return methods[i];
+        if (methods[i] != NULL && same_text(methods[i]->name, name)) return methods[i];
     return NULL;
 }

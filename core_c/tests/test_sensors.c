@@ -269,7 +269,7 @@ static void a_change_of_the_vehicle_turns_no_encoder(void) {
 }
 
 static void a_wheel_that_is_too_fast_to_count_is_refused(void) {
-    laconic_plant plant = started(wheels(), 10, 0, 0, 1e6);
+    laconic_plant plant = started(wheels(), 10, 0, 0, 1e5);
     laconic_sensor_settings settings = nothing();
     const laconic_input input = no_input();
     settings.encoder[1] = (laconic_encoder_settings){1000000000, 1000};

@@ -39,9 +39,13 @@ typedef struct laconic_forcing_samples {
     bool is_constant; /* b over the step: start->constant */
 } laconic_forcing_samples;
 
+#if LACONIC_WITH_EXPONENTIAL_GAUSS
 /* The values of laconic_integrator.chosen for laconic_auto; they cannot be prepared by themselves. */
-extern const struct laconic_method laconic_auto_slow; /* exact-flow-4 or taylor-8, else exact-flow */
-extern const struct laconic_method laconic_auto_fast; /* exponential-kahan-4, else exact-flow      */
+extern const struct laconic_method
+    laconic_auto_slow; /* exponential-gauss-8, else exact-flow-4, else exact-flow        */
+extern const struct laconic_method
+    laconic_auto_fast; /* exponential-gauss-8, else exponential-kahan-4, else exact-flow */
+#endif
 
 #ifdef __cplusplus
 }

@@ -294,7 +294,7 @@ extern const laconic_method laconic_exact_flow;          /* 2  everything       
 extern const laconic_method laconic_exact_flow_4;        /* 4  any damping, best below h·r ≈ 0.3    */
 extern const laconic_method laconic_taylor_8;            /* 8  h·r ≤ 4.313, h·|ν3| limited  –       */
 extern const laconic_method laconic_exponential_gauss_8; /* 8  any damping, h·|ν3| limited  nearly  */
-extern const laconic_method laconic_auto;                /* 4  any step: the rule stands in auto.c  */
+extern const laconic_method laconic_auto;                /* 8  everything: the rule stands in auto.c */
 
 /* All methods, for adapters that choose by number (0 auto, 1 rk4, 2 exponential-kahan, 3 exponential-kahan-4, 4
  * exact-flow, 5 exact-flow-4, 6 taylor-8, 7 exponential-gauss-8) or by name. NULL if there is none. Links every

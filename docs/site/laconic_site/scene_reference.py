@@ -7,7 +7,6 @@ from pathlib import Path
 from xml.etree import ElementTree
 
 from laconic.scene.keys import TABLES
-from laconic.scene.methods import ON_HOSTS
 from laconic.scene.reference import Row, rows
 
 HEAD = ("# Scene keys\n\nMade from the lists by which the program reads a scene. [Scenes](scenes.md) has an example "
@@ -32,7 +31,7 @@ def descriptions(source: Path) -> tuple[Mapping[str, str], Mapping[str, str]]:
     root = ElementTree.parse(source / "modelDescription.xml").getroot()
     variables = {each.get("name", ""): each.get("description", "") for each in root.iterfind(".//ModelVariables/*")}
     items = root.iterfind(".//EnumerationType[@name='Method']/Item")
-    return variables, {each.get("name", ""): each.get("description", "") for each in items} | ON_HOSTS
+    return variables, {each.get("name", ""): each.get("description", "") for each in items}
 
 
 def _head(table: str) -> str:

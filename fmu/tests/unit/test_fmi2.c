@@ -97,8 +97,8 @@ static void every_type_has_its_functions_and_refuses_the_others(void) {
     ASSERT_REFUSED(fmi2GetInteger(c, &mass, 1, &whole), "mass_kg is a Float64 (Real), not an Int32");
     ASSERT_REFUSED(fmi2GetBoolean(c, &mass, 1, &flag), "not a Boolean");
     ASSERT_REFUSED(fmi2GetReal(c, &none, 1, &real), "no variable with the value reference");
-    whole = 7;
-    ASSERT_REFUSED(fmi2SetInteger(c, &method, 1, &whole), "method: 7 is outside its range: 0 to 6");
+    whole = 8;
+    ASSERT_REFUSED(fmi2SetInteger(c, &method, 1, &whole), "method: 8 is outside its range: 0 to 7");
     real = -1;
     ASSERT_REFUSED(fmi2SetReal(c, &mass, 1, &real), "mass_kg: -1 is outside its range: at least 0");
     real = NOT_A_NUMBER;

@@ -68,17 +68,18 @@ def cost_of(workshop: Workshop, scene: Scene, board: Target = M4F, real: str = "
     source = recording.source()
     ran = run_on_board(board, image_of(workshop, board, variant, source))
     method = workshop.files(variant)[1].method
-    by_one = ("laconic_filter_predict_by", derivation_of(scene, method))
+    by_one = ("laconic_filter_predict_by", derivation_of(scene))
     return FilterCost(method, ran.instructions, ran.stack_bytes, flash_of(workshop, board, variant, source, *by_one),
                       flash_of(workshop, board, variant, source, "laconic_filter_predict"), ran.filter_bytes,
                       ran.estimate == recording.estimate(scene))
 
 
-def derivation_of(scene: Scene, chosen: str) -> str:
-    """The core's name of what differentiates the scene's steps; of auto that of the pair that it chose."""
-    if scene.run.method == "auto":
-        return f"laconic_derivation_of_auto_{'slow' if chosen == 'exact-flow-4' else 'fast'}"
-    return f"laconic_derivation_of_{chosen.replace('-', '_')}"
+def derivation_of(scene: Scene) -> str:
+    """The core's name of what differentiates the scene's steps; of auto that of the row of methods that it chose."""
+    method = scene.run.method
+    if method == "auto":
+        method = f"auto_{'fast' if scene.plant(load('double')).c.integrator.stiff else 'slow'}"
+    return f"laconic_derivation_of_{method.replace('-', '_')}"
 
 
 # ---- recorded readings

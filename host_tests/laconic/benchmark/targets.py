@@ -63,7 +63,7 @@ def one(rows: Iterable[Row], field: str, **wanted: Any) -> float | None:
 
 
 def orders() -> dict[str, int]:
-    """The order of every method but auto, which takes others."""
+    """The order of every method but auto, whose steps are those of others."""
     core = load("double")
     return {name: int(core.method(name).order) for name in METHODS[1:]}
 
@@ -105,16 +105,11 @@ def reference_targets(results: Results) -> list[Target]:
     """auto on the reference trajectories; stiff vehicles."""
     auto = select(results["verified"], method="auto")
     fine = select(auto, step_s=1e-3)
-    plain = [row for row in fine if "stiff" not in row["case"]]
-    stiff = [row for row in fine if "stiff" in row["case"]]
     every = ("error_nu", "error_pose", "error_wheel")
-    found = [at_most("references", "auto, h = 1 ms, not stiff: ν, pose, wheel angles", _worst_of(plain, every), 2e-11),
-             at_most("references", "auto, h = 1 ms, stiff: ν", worst(stiff, "error_nu"), 2e-11),
-             at_most("references", "auto, h = 1 ms, stiff: pose, wheel angles", _worst_of(stiff, every[1:]), 5e-8),
-             at_most("references", "auto, h = 10 ms, not stiff: ν, pose, wheel angles", _worst_of(
-                 [row for row in select(auto, step_s=1e-2) if "stiff" not in row["case"]], every), 5e-7),
-             at_most("references", "auto, h = 10 ms, stiff: ν, pose, wheel angles", _worst_of(
-                 [row for row in select(auto, step_s=1e-2) if "stiff" in row["case"]], every), 5e-7)]
+    found = [at_most("references", "auto, h = 1 ms: ν", worst(fine, "error_nu"), 1e-12),
+             at_most("references", "auto, h = 1 ms: pose, wheel angles", _worst_of(fine, every[1:]), 1e-11),
+             at_most("references", "auto, h = 10 ms: ν, pose, wheel angles",
+                     _worst_of(select(auto, step_s=1e-2), every), 1e-8)]
     strange = [row for row in results["verified"] if row["status"] == "ok"
                and not all(row[f] is None or math.isfinite(row[f]) for f in every)]
     found.append(at_most("references", "runs of any method that end in NaN or infinity",

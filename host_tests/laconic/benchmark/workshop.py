@@ -14,12 +14,12 @@ from laconic.core import Core, load
 from laconic.errors import ResultFails
 from laconic.paths import SOURCE_DIR, sources_missing
 from laconic.scene import Scene
-from laconic.scene.methods import ON_HOSTS
 from laconic.trim import Trimmed, trimmed
 from laconic.trim.c_tables import initializer
 
 BENCH = SOURCE_DIR / "core_c" / "bench"
 FLAGS = ("-std=c99", "-ffp-contract=off", "-fno-tree-slp-vectorize", "-ffunction-sections", "-fdata-sections")
+WITH_WEIGHTS = ("auto", "exponential-gauss-8")  # methods for which an integrator is larger
 SAMPLED_STEPS = 16  # of a scene with sampled inputs, taken again and again
 
 
@@ -125,13 +125,13 @@ def segments_source(core: Core, scene: Scene, names: dict[int, str] | None = Non
 def _whole(variant: Variant) -> str:
     """The folder of what is built for all scenes alike."""
     method = variant.scene.run.method
-    return f"whole_{method}" if method in ON_HOSTS else "whole"
+    return f"whole_{method}" if method in WITH_WEIGHTS else "whole"
 
 
 def _trimmed(variant: Variant) -> str:
     """The folder of what is built for a scene, whose methods share a core but those with structs of their own."""
     method, stem = variant.scene.run.method, variant.scene.path.stem
-    return f"trimmed_{stem}_{method}" if method in ON_HOSTS else f"trimmed_{stem}"
+    return f"trimmed_{stem}_{method}" if method in WITH_WEIGHTS else f"trimmed_{stem}"
 
 
 def entry_of(files: Trimmed, scene: Scene) -> str:
@@ -171,7 +171,7 @@ class Workshop:
         found = ["-DLACONIC_SINGLE"] if variant.real == "single" else []
         if variant.trim:
             found.append(f'-DLACONIC_SCENE_HEADER="{folder / "laconic_scene.h"}"')
-        elif target.machine and variant.scene.run.method not in ON_HOSTS:
+        elif target.machine and variant.scene.run.method not in WITH_WEIGHTS:
             found.append("-DLACONIC_WITH_EXPONENTIAL_GAUSS=0")
         return found
 

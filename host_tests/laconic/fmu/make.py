@@ -17,7 +17,6 @@ from laconic.errors import BadInput
 from laconic.outputs import check_ending, check_file, whole_file
 from laconic.paths import SOURCE_DIR, as_path, built
 from laconic.scene import METHODS, Scene, check_scene
-from laconic.scene.methods import ON_HOSTS
 from laconic_fmu.archive import Content, Variant, scene_fmu
 from laconic_fmu.page import vehicle_parts
 
@@ -42,13 +41,6 @@ def start_values(scene: Scene) -> dict[str, list[float]]:
             values[field.name] = field.values(roots[root])[:scene.wheel_count if of_wheels else None]
     values |= sensor_values(scene)
     return values | {"method": [METHODS.index(scene.run.method)], "step_s": [scene.run.step_s]}
-
-
-def check_method(scene: Scene) -> None:
-    """BadInput where FMUs are built without the scene's method."""
-    if scene.run.method in ON_HOSTS:
-        raise BadInput(f"{scene.path}: run.method: FMUs are built without {scene.run.method}; take another method, "
-                       "such as auto, or simulate the scene with laconic simulate")
 
 
 def sensor_values(scene: Scene) -> dict[str, list[float]]:
@@ -86,7 +78,6 @@ def make_fmu(scene: Scene, out: str | Path, *, version: int, scalar: bool = Fals
     path = as_path("out", out)
     check_ending("out", path, (".fmu",))
     check_file("out", path)
-    check_method(scene)
     if derivatives:
         _check_smooth(scene)
     if scene.wheel_count == 0 and version == 3 and not scalar:

@@ -15,7 +15,7 @@ from pathlib import Path
 import can
 
 from laconic.errors import BadInput
-from laconic.fmu.make import check_method, content_of
+from laconic.fmu.make import content_of
 from laconic.outputs import whole_file
 from laconic.paths import SOURCE_DIR, as_path, built
 from laconic.play.node_vehicle import remedy
@@ -100,7 +100,6 @@ def make_network_fmu(scene: Scene, out: str | Path, *, drives: str | None = None
     """Writes the FMU of the scene's node; with `drives` its wheels have drives of that protocol, which play from the
     start, else it waits for a rig. BadInput when the scene has no such FMU."""
     check_scene(scene)
-    check_method(scene)
     if tx_clock not in TX_CLOCKS:
         raise BadInput(f"tx_clock: there is no {tx_clock!r}; give {' or '.join(TX_CLOCKS)}")
     if scene.wheel_count == 0:

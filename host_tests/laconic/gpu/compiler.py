@@ -12,7 +12,7 @@ from laconic.errors import BadInput
 from laconic.gpu.text import NUMBERS_OF_C, kernel_text
 
 STEPS = ("rk4_step", "exponential_kahan_step", "exponential_kahan_4_step", "exact_flow_step", "exact_flow_4_step",
-         "taylor_8_step", "auto_slow_step", "auto_fast_step", "exponential_gauss_8_step")
+         "taylor_8_step", "exponential_gauss_8_step", "auto_slow_step", "auto_fast_step")
 """The step functions, by the numbers of lanes_method in core_c/batch/lanes_width.h."""
 
 OPTIONS = ("--std=c++17", "--device-as-default-execution-space", "--fmad=false", "--prec-div=true", "--prec-sqrt=true",

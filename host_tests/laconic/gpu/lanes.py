@@ -15,7 +15,6 @@ from laconic.gpu.compiler import STEPS
 from laconic.gpu.driver import CudaDevice
 
 BY_NAME = {step.removesuffix("_step").replace("_", "-"): number for number, step in enumerate(STEPS)}
-OF_AUTO = {"exact-flow-4": BY_NAME["auto-slow"], "exponential-kahan-4": BY_NAME["auto-fast"]}
 
 
 class Device(Protocol):
@@ -108,5 +107,5 @@ class Gpu:
 
 def _method_of(core: Core, kind: Any) -> int:
     """By the numbers of lanes_method."""
-    chosen = core.text(kind.integrator.chosen.name)
-    return OF_AUTO[chosen] if core.text(kind.integrator.method.name) == "auto" else BY_NAME[chosen]
+    name = core.text(kind.integrator.method.name)
+    return BY_NAME[f"auto-{'fast' if kind.integrator.stiff else 'slow'}" if name == "auto" else name]

@@ -99,21 +99,22 @@ def trimmed(scene: Scene, real: str) -> Trimmed:
     plant = scene.plant(core)
     method = plant.chosen_method
     needs = needs_of(scene)
-    return Trimmed(needs, method, method_steps(scene, method), header_of(scene, real, needs, method),
+    steps = method_steps(scene, method, bool(plant.c.integrator.stiff))
+    return Trimmed(needs, method, steps, header_of(scene, real, needs, method),
                    table_header(scene, real, needs), tables(core, plant, scene))
 
 
-def method_steps(scene: Scene, chosen: str) -> tuple[str, ...]:
-    """The method's own step function; for auto that of the chosen pair of methods and those that this pair calls; none
-    with friction, whose step calls nothing by a pointer."""
+def method_steps(scene: Scene, chosen: str, stiff: bool) -> tuple[str, ...]:
+    """The method's own step function; for auto its own and those of the methods that it calls; none with friction,
+    whose step calls nothing by a pointer."""
     if chosen == FRICTION:
         return ()
     own = f"{chosen.replace('-', '_')}_step"
     if scene.run.method != "auto":
         return (own,)
-    if chosen == "exact-flow-4":
-        return ("auto_slow_step", own, "taylor_8_step", "exact_flow_step")
-    return ("auto_fast_step", own, "exact_flow_step")
+    if stiff:
+        return ("auto_fast_step", own, "exponential_kahan_4_step", "exact_flow_step")
+    return ("auto_slow_step", own, "exact_flow_4_step", "exact_flow_step")
 
 
 def header_of(scene: Scene, real: str, needs: Needs, method: str) -> str:
@@ -181,8 +182,8 @@ def tables(core: Core, plant: Plant, scene: Scene) -> str:
     """laconic_scene_model.c: the plant's constants and start, to the last bit."""
     integrator = core.ffi.new("laconic_integrator *", plant.c.integrator)
     integrator.method = integrator.chosen
-    if plant.has_friction:
-        integrator.method = integrator.chosen = core.ffi.NULL
+    if plant.has_friction:  # whose step reads the length of a step alone
+        integrator = core.ffi.new("laconic_integrator *", {"step_s": plant.c.integrator.step_s})
     names = {} if plant.has_friction else method_symbols(core, integrator)
     values: dict[str, tuple[str, Any]] = {
         "laconic_scene_model": ("laconic_model", plant.c.model),
@@ -198,10 +199,9 @@ def tables(core: Core, plant: Plant, scene: Scene) -> str:
 
 
 def method_symbols(core: Core, integrator: Any) -> dict[int, str]:
-    """Address of a method → its C name. What auto chose is a pair of methods with a name of its own."""
+    """Address of a method → its C name. What auto chose is a row of methods with a name of its own."""
     found = {_address(core, core.method(name)): f"&laconic_{name.replace('-', '_')}" for name in core.method_names}
-    pair = "slow" if core.text(integrator.chosen.name) == "exact-flow-4" else "fast"
-    found.setdefault(_address(core, integrator.chosen), f"&laconic_auto_{pair}")
+    found.setdefault(_address(core, integrator.chosen), f"&laconic_auto_{'fast' if integrator.stiff else 'slow'}")
     return found
 
 

@@ -10,7 +10,7 @@ from laconic.verification.derivatives.trials import METHODS
 
 FEW, MANY = 100, 300  # calls: what a count of one run has in common with another's cancels
 LIMIT = 6.0           # steps
-LIMITS = {"exponential-gauss-8": 7.6}  # nine rounds at four nodes, in which a direction costs as much as the step
+LIMITS = {"exponential-gauss-8": 6.6}  # rounds at four nodes, in which a direction costs as much as the step
 
 
 def cost(method: str, what: str) -> float:

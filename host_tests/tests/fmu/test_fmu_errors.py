@@ -40,8 +40,8 @@ def test_parameters_that_cannot_be_are_refused_by_the_core_with_the_fields_name(
 @pytest.mark.parametrize(("name", "value", "message"), [
     ("mass_kg", -1.0, "-1 is outside its range: at least 0"), ("wheel_inertia_kgm2", -1.0, "at least 0"),
     ("com_z_m", -5.0, "at least 0"), ("payload_mass_kg", -2.0, "at least 0"), ("step_s", -1e-3, "at least 0"),
-    ("friction_coefficient", -0.1, "at least 0"), ("method", 17, "17 is outside its range: 0 to 6"),
-    ("method", -1, "0 to 6"), ("support_count", 9, "0 to 4"), ("motor_damping_Nms", math.nan, "not a finite number")])
+    ("friction_coefficient", -0.1, "at least 0"), ("method", 17, "17 is outside its range: 0 to 7"),
+    ("method", -1, "0 to 7"), ("support_count", 9, "0 to 4"), ("motor_damping_Nms", math.nan, "not a finite number")])
 def test_a_parameter_outside_its_declared_range_is_refused_when_it_is_set(
         version: int, name: str, value: float, message: str) -> None:
     with Importer(generic(version)) as importer:

@@ -17,9 +17,7 @@ from fmpy.validation import validate_fmu
 from fmu_importer import ERROR, OK, Importer, generic
 
 from laconic.cli.main import run
-from laconic.errors import BadInput
 from laconic.fmu import make_fmu, start_values
-from laconic.fmu.network import make_network_fmu
 from laconic.paths import scene_names
 from laconic.scene import read_scene
 from laconic_fmu.archive import MOST_ROWS, output_step, read_parts
@@ -157,10 +155,10 @@ def test_without_enumerations_the_numbers_are_whole_numbers_with_their_meaning(
         kinds = {variable.type for variable in importer.variables.values()}
         assert kinds <= {"Real", "Integer", "Boolean", "Float64", "Int64", "Int32", "UInt64"}
         assert "0 auto, 1 rk4, 2 exponential-kahan" in importer.variables["method"].description
-        assert (int(importer.variables["method"].min), int(importer.variables["method"].max)) == (0, 6)
+        assert (int(importer.variables["method"].min), int(importer.variables["method"].max)) == (0, 7)
         first = importer.elements("wheel_kind")[0][0]
         assert importer.variables[first].start.split() == ["2"] * (1 if scalar or version == 2 else 2)
-        assert importer.set("method", 7) == ERROR
+        assert importer.set("method", 8) == ERROR
         for each in (importer, other):
             assert each.set("method", 1) == OK
             each.initialize()
@@ -168,25 +166,6 @@ def test_without_enumerations_the_numbers_are_whole_numbers_with_their_meaning(
             assert each.set("voltage_V", 3.0, 4.0) == OK
             assert each.step(0.0, 0.01) == OK
         assert importer.get("nu_rad_per_s") == other.get("nu_rad_per_s")
-
-
-def test_a_method_that_fmus_are_built_without_is_refused_by_name(tmp_path: Path) -> None:
-    scene = read_scene("robotino2").with_run(method="exponential-gauss-8")
-    for make in (lambda: make_fmu(scene, tmp_path / "x.fmu", version=3),
-                 lambda: make_network_fmu(scene, tmp_path / "x.fmu")):
-        with pytest.raises(BadInput, match=r"robotino2.toml: run.method: FMUs are built without exponential-gauss-8; "
-                                           r"take another method, such as auto"):
-            make()
-    assert not list(tmp_path.iterdir())
-
-
-@BOTH
-def test_who_compiles_an_fmus_sources_gets_the_methods_of_its_binary(version: int, tmp_path: Path) -> None:
-    fmu = make_fmu(read_scene("robotino2"), tmp_path / "x.fmu", version=version)
-    with zipfile.ZipFile(fmu) as archive:
-        real = archive.read("sources/laconic/real.h").decode()
-        assert not [name for name in archive.namelist() if "gauss_8" in name]
-    assert "#define LACONIC_WITH_EXPONENTIAL_GAUSS 0" in real and "EXPONENTIAL_GAUSS 1" not in real
 
 
 def test_the_command_reports_what_it_made(tmp_path: Path, capsys) -> None:

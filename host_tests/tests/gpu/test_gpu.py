@@ -19,7 +19,7 @@ import laconic
 from laconic.cli.main import run
 from laconic.core import load
 from laconic.gpu import Gpu, compiler, driver, text
-from laconic.gpu.lanes import BY_NAME, OF_AUTO
+from laconic.gpu.lanes import BY_NAME
 
 PAGE = (text.CORE.parent / "docs/gpu.md").read_text(encoding="utf-8")
 needs_compiler = pytest.mark.skipif(shutil.which("g++") is None, reason="no g++ here")
@@ -75,7 +75,6 @@ def test_kernels_are_numbered_as_the_lanes_methods_are():
     header = (text.CORE / "batch/lanes_width.h").read_text(encoding="utf-8")
     names = re.findall(r"^    LANES_(\w+),", header, re.MULTILINE)
     assert [name.lower().replace("_", "-") for name in names] == list(BY_NAME)
-    assert {*OF_AUTO.values()} == {6, 7}
 
 
 def test_the_text_is_the_cores_own_each_file_once():

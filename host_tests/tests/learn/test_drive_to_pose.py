@@ -51,7 +51,7 @@ def test_every_lane_has_the_bits_of_the_plant_that_drives_alone(real):
     env = DriveToPoseVector(20, real=real, **MIXED)
     env.reset(seed=4)
     fleet, actions = env.fleet, actions_of(env, 3)
-    plants = [fleet.vehicles[fleet.variant[lane]].plant("auto", 0.005) for lane in range(20)]
+    plants = [fleet.vehicles[fleet.variant[lane]].plant("exponential-kahan-4", 0.005) for lane in range(20)]
     for lane, plant in enumerate(plants):
         plant.restore(fleet.batch.state(lane), 0)
     for each in actions:

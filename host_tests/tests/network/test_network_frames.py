@@ -15,7 +15,6 @@ from laconic.rig.node_library import LibraryNode
 from laconic.rig.session import Session
 from laconic.rig.wire import ID_BASE, wire
 from laconic.scene import read_scene
-from laconic.scene.methods import METHODS, ON_HOSTS
 
 EXCHANGES = 10_000
 PERIOD_US = 1000
@@ -38,19 +37,7 @@ class HostNode:
 
     def _frames(self) -> Iterator[Frame]:
         while (taken := self.node.take_frame()) is not None:
-            yield self._as_an_fmu_tells(taken[0], taken[1])
-
-    def _as_an_fmu_tells(self, identifier: int, data: bytes) -> Frame:
-        """IDENTITY names the methods that a node is built with; an FMU's lacks those of hosts alone."""
-        identity = wire()["IDENTITY"]
-        if identifier != ID_BASE + identity.offset:
-            return identifier, data
-        told = identity.unpack(data)
-        assert told["methods"] == (1 << len(METHODS)) - 1
-        told["methods"] &= ~sum(1 << METHODS.index(name) for name in ON_HOSTS)
-        now = identity.pack(**told)
-        self.node.library.protect_plain(identity.offset, now, data[1] & 15)
-        return identifier, bytes(now)
+            yield taken[0], taken[1]
 
     def hear(self, frames: list[Frame]) -> list[Frame]:
         """Frames come at this instant."""

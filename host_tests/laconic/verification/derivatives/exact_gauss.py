@@ -10,7 +10,7 @@ from mpmath import mp, mpf
 
 from laconic.verification.derivatives.exact_model import ExactModel, Vector, added, cross, dot
 
-ROUNDS = 9
+SETTLED, MOST_ROUNDS = mpf(10) ** -38, 400
 PARTS = 3  # of a stretch, in double precision
 WHOLE = (mpf(1),)
 POINTS = range(4)
@@ -64,6 +64,12 @@ def response(weights: list[list[Any]], rate: list[Vector]) -> Vector:
     return [sum(weights[k][i] * rate[i][k] for i in POINTS) for k in range(3)]
 
 
+def settled(now: list[Vector], before: list[Vector]) -> bool:
+    """Whether a round changed nothing that counts."""
+    changes = [abs(a - b) for z, old in zip(now, before, strict=True) for a, b in zip(z, old, strict=True)]
+    return max(changes) <= SETTLED * max(abs(a) for z in now for a in z)
+
+
 def panels_of(integrator: Any) -> list[Any]:
     """The share of a step that each panel has, by the core's integrator: stretches of 1, 1, 2, 4 …, each in three equal
     parts, and the rest of the step."""
@@ -89,13 +95,15 @@ def gauss_8(m: ExactModel, h: Any, start: Vector, b: Callable[[Any], Vector],
         axes = [weights_of(length, length * r) for r in m.decay]
 
         z, rate = [z0] * 4, [z0] * 4
-        for _ in range(ROUNDS):
-            rate = []
+        for _ in range(MOST_ROUNDS):
+            before, rate = z, []
             for j in POINTS:
                 yaw = turned + sum(length * undamped.to_point[i][j] * yaw_of(z[i]) for i in POINTS)
                 twist, push = cross(z[j], m.gyro), b(yaw)
                 rate.append([dot(m.nu_of_zeta[2], z[j]) * twist[k] + push[k] - m.decay[k] * z0[k] for k in range(3)])
             z = [added(z0, 1, response([[row[j] for row in w.to_point] for w in axes], rate)) for j in POINTS]
+            if settled(z, before):
+                break
         average = added(z0, 1, response([w.mean for w in axes], rate))
         yaw_change, shift, lacking = length * yaw_of(average), mp.mpc(0), length * velocity(average)
         for j in POINTS:
