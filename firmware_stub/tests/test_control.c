@@ -169,12 +169,14 @@ static void parameter(uint8_t upper, uint8_t field, uint8_t item, uint32_t value
     TEST_ASSERT_TRUE(bench_receive(LACONIC_WIRE_RESULT, data));
 }
 
-static void real_parameter(uint8_t field, laconic_real value) {
+static void real_of_item(uint8_t field, uint8_t item, laconic_real value) {
     uint32_t words[2] = {0, 0};
     memcpy(words, &value, sizeof value);
-    parameter(0, field, 0, words[0]);
-    if (sizeof value == 8) parameter(1, field, 0, words[1]);
+    parameter(0, field, item, words[0]);
+    if (sizeof value == 8) parameter(1, field, item, words[1]);
 }
+
+static void real_parameter(uint8_t field, laconic_real value) { real_of_item(field, 0, value); }
 
 /* A puck; the status of COMMIT's RESULT, which stays in `data`. */
 static uint8_t commit_puck(laconic_real mass_kg, uint32_t method) {
@@ -214,6 +216,55 @@ static void a_vehicle_that_the_core_refuses_leaves_the_one_before(void) {
     TEST_ASSERT_EQUAL_UINT8(0, bench_start_lockstep());
 }
 
+/* A cart with two wheels and a drive on the second, whose gear is given; the status of COMMIT's RESULT, which stays in
+ * `data`. */
+static uint8_t commit_driven(laconic_real wheel_2_x_m, laconic_real gear_ratio) {
+    static const uint8_t single[] = {LACONIC_FIELD_MASS,         LACONIC_FIELD_YAW_INERTIA,
+                                     LACONIC_FIELD_WHEEL_RADIUS, LACONIC_FIELD_WHEEL_INERTIA,
+                                     LACONIC_FIELD_MOTOR_GAIN,   LACONIC_FIELD_MOTOR_DAMPING};
+    uint8_t payload[LACONIC_FRAME_BYTES] = {0};
+    bench_control(LACONIC_WIRE_COMMAND_BEGIN, 0, 0);
+    for (size_t k = 0; k < sizeof single; k++) real_parameter(single[k], 1);
+    real_parameter(LACONIC_FIELD_STEP, (laconic_real)0.001);
+    parameter(0, LACONIC_FIELD_WHEEL_COUNT, 0, 2);
+    for (uint8_t wheel = 1; wheel <= 2; wheel++) {
+        parameter(0, LACONIC_FIELD_WHEEL_KIND, wheel, LACONIC_WHEEL_FIXED);
+        real_of_item(LACONIC_FIELD_WHEEL_X, wheel, wheel == 1 ? 1 : wheel_2_x_m);
+        real_of_item(LACONIC_FIELD_WHEEL_Y, wheel, 0);
+        real_of_item(LACONIC_FIELD_AXLE, wheel, 0);
+    }
+    parameter(0, LACONIC_DRIVES_FIELD_DRIVE_PROTOCOL, 0, 3);
+    parameter(0, LACONIC_DRIVES_FIELD_DRIVE_NODE_ID, 2, 7);
+    parameter(0, LACONIC_DRIVES_FIELD_ENCODER_COUNTS, 2, 8192);
+    real_of_item(LACONIC_DRIVES_FIELD_DRIVE_GEAR_RATIO, 2, gear_ratio);
+    real_of_item(LACONIC_DRIVES_FIELD_DRIVE_TORQUE_CONSTANT, 2, (laconic_real)0.015);
+    real_of_item(LACONIC_DRIVES_FIELD_DRIVE_CURRENT_LIMIT, 2, 20);
+    const struct laconic_dbc_commit_t commit = {.frame_count = node.loader.frame_count,
+                                                .checksum = node.loader.checksum ^ LACONIC_CRC32_END};
+    laconic_dbc_commit_pack(payload, &commit, 8);
+    bench_send(LACONIC_WIRE_COMMIT, payload);
+    return bench_receive(LACONIC_WIRE_RESULT, data) ? data[3] : 255U;
+}
+
+static void a_committed_vehicle_has_the_drives_that_came_with_it(void) {
+    TEST_ASSERT_EQUAL_UINT8(0, commit_driven(2, -19));
+    TEST_ASSERT_EQUAL_INT(3, node.drive_plan.protocol);
+    TEST_ASSERT_EQUAL_INT(-1, node.drive_plan.drive[0].node_id);
+    TEST_ASSERT_EQUAL_INT(7, node.drive_plan.drive[1].node_id);
+    TEST_ASSERT_TRUE(node.drive_plan.drive[1].gear_ratio == -19);
+    TEST_ASSERT_EQUAL_UINT8(0, bench_control(LACONIC_WIRE_COMMAND_START_DRIVES, 0, 0));
+    TEST_ASSERT_EQUAL_INT(1, node.drives.count);
+}
+
+static void a_refused_vehicle_names_field_and_wheel_and_keeps_the_drives_before(void) {
+    TEST_ASSERT_EQUAL_UINT8(0, commit_driven(2, -19));
+    TEST_ASSERT_EQUAL_UINT8(LACONIC_NOT_POSITIVE, commit_driven(2, 0));
+    TEST_ASSERT_TRUE(data[4] == LACONIC_DRIVES_FIELD_DRIVE_GEAR_RATIO && data[5] == 2);
+    TEST_ASSERT_EQUAL_UINT8(LACONIC_NOT_FINITE, commit_driven(LACONIC_REAL_MAX * 2, 5));
+    TEST_ASSERT_TRUE(data[4] == LACONIC_FIELD_WHEEL_X && data[5] == 2);
+    TEST_ASSERT_TRUE(node.drive_plan.drive[1].gear_ratio == -19);
+}
+
 int main(void) {
     UNITY_BEGIN();
     RUN_TEST(a_rate_takes_a_whole_number_of_steps_up_to_what_a_tick_may_take);
@@ -230,5 +281,7 @@ int main(void) {
     RUN_TEST(a_selection_clears_the_inputs);
     RUN_TEST(a_committed_vehicle_is_ready_at_its_start_with_cleared_inputs);
     RUN_TEST(a_vehicle_that_the_core_refuses_leaves_the_one_before);
+    RUN_TEST(a_committed_vehicle_has_the_drives_that_came_with_it);
+    RUN_TEST(a_refused_vehicle_names_field_and_wheel_and_keeps_the_drives_before);
     return UNITY_END();
 }

@@ -272,6 +272,21 @@ static void a_single_wheel_needs_the_numbers_of_wheels(void) {
     }
 }
 
+/* Item 1 is the first of a list, and each item has a place of its own. */
+static void every_wheel_has_its_own_drive_and_encoder(void) {
+    for (uint8_t wheel = 1; wheel <= LACONIC_MAX_WHEELS; wheel++) {
+        send(0, LACONIC_DRIVES_FIELD_DRIVE_NODE_ID, wheel, wheel + 100U);
+        send_real(LACONIC_DRIVES_FIELD_DRIVE_GEAR_RATIO, wheel, (laconic_real)(-wheel));
+        send(0, LACONIC_SENSOR_FIELD_WHEEL_ENCODER_COUNTS, wheel, wheel * 16U);
+    }
+    TEST_ASSERT_EQUAL_UINT8(0, loader.status);
+    for (int k = 0; k < LACONIC_MAX_WHEELS; k++) {
+        TEST_ASSERT_EQUAL_INT(k + 101, loader.parameters.drives.drive[k].node_id);
+        TEST_ASSERT_TRUE(loader.parameters.drives.drive[k].gear_ratio == (laconic_real)(-k - 1));
+        TEST_ASSERT_EQUAL_INT(16 * (k + 1), loader.parameters.sensors.encoder[k].counts_per_turn);
+    }
+}
+
 int main(void) {
     UNITY_BEGIN();
     RUN_TEST(numbers_arrive_bit_for_bit_where_they_belong);
@@ -294,5 +309,6 @@ int main(void) {
     RUN_TEST(in_single_precision_an_upper_half_is_out_of_range);
     RUN_TEST(an_integer_out_of_range_names_field_and_item);
     RUN_TEST(a_single_wheel_needs_the_numbers_of_wheels);
+    RUN_TEST(every_wheel_has_its_own_drive_and_encoder);
     return UNITY_END();
 }

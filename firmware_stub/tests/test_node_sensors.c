@@ -1,4 +1,6 @@
 /* Tests of a node's IMU and encoders: settings, frames, raw numbers. */
+#include "node_internal.h" /* before the bench, whose `node` would be shadowed */
+
 #include "bench.h"
 #include "drive_scene.h"
 #include "laconic_node/crc.h"
@@ -321,6 +323,41 @@ static void every_wheel_of_a_group_shows_its_own_angle(void) {
     TEST_ASSERT_TRUE(frame.wheel_angle_2 != 0);
 }
 
+/* Either frame, either raw number, and settings alone: each is enough for the sensors to watch. */
+static void one_wish_of_any_kind_makes_the_sensors_watch(void) {
+    static const uint8_t wish[][2] = {
+        {LACONIC_NODE_SEND_IMU, 0}, {LACONIC_NODE_SEND_ENCODER, 0}, {0, LACONIC_RAW_IMU}, {0, LACONIC_RAW_ENCODER}};
+    for (size_t k = 0; k < sizeof wish / sizeof wish[0]; k++) {
+        bench_begin();
+        bench_load(2);
+        TEST_ASSERT_EQUAL_UINT8(0, bench_select(wish[k][0], wish[k][1], 0));
+        bench_start_lockstep();
+        step(3);
+        TEST_ASSERT_EQUAL_UINT64(3, node.sensors.newest);
+    }
+    bench_begin();
+    load(settings());
+    bench_start_lockstep();
+    step(3);
+    TEST_ASSERT_EQUAL_UINT64(3, node.sensors.newest);
+}
+
+/* A setting is one that is not 0, whichever byte of it says so. */
+static void any_setting_but_0_gives_the_vehicle_sensors(void) {
+    laconic_sensor_settings with;
+    bench_load(2);
+    for (size_t k = 0; k < sizeof with; k++) {
+        memset(&with, 0, sizeof with);
+        ((uint8_t *)&with)[k] = 1;
+        node.has_sensors = false;
+        laconic_node_start_sensors(&node, &with);
+        TEST_ASSERT_TRUE(node.has_sensors);
+    }
+    memset(&with, 0, sizeof with);
+    laconic_node_start_sensors(&node, &with);
+    TEST_ASSERT_FALSE(node.has_sensors);
+}
+
 int main(void) {
     UNITY_BEGIN();
     RUN_TEST(each_setting_has_its_number_on_the_wire);
@@ -339,5 +376,7 @@ int main(void) {
     RUN_TEST(frames_of_wheels_begin_anew_with_each_step);
     RUN_TEST(sensors_that_nobody_asks_for_see_nothing);
     RUN_TEST(every_wheel_of_a_group_shows_its_own_angle);
+    RUN_TEST(one_wish_of_any_kind_makes_the_sensors_watch);
+    RUN_TEST(any_setting_but_0_gives_the_vehicle_sensors);
     return UNITY_END();
 }

@@ -263,6 +263,20 @@ static void the_fd_frame_has_all_three_numbers_of_nu_and_sixteen_wheels(void) {
     for (int k = 0; k < 16; k++) TEST_ASSERT_INT_WITHIN(2, 400, (int16_t)word16(data + 32 + 2 * k));
 }
 
+static void the_fd_frame_has_nu_3_of_a_vehicle_that_turns(void) {
+    uint8_t data[LACONIC_FRAME_BYTES];
+    const laconic_start start = {{0, 0, (laconic_real)-0.75}, 0, 0, 0, {0}};
+    bench_load(0);
+    bench_select(LACONIC_NODE_SEND_STATE_FD, 0, 0);
+    bench_start_lockstep();
+    TEST_ASSERT_EQUAL(LACONIC_OK, laconic_state_set(&node.plant.state, &node.plant.model, &start, NULL));
+    bench_sync(1);
+    laconic_node_on_tick(&node, now_us);
+    TEST_ASSERT_TRUE(bench_receive(LACONIC_WIRE_STATE_FD, data));
+    TEST_ASSERT_INT_WITHIN(1, -750000, (int32_t)word32(data + 16));
+    TEST_ASSERT_EQUAL_UINT8(0, data[3]);
+}
+
 static void the_fd_frame_ends_with_its_last_byte(void) {
     uint8_t data[LACONIC_FRAME_BYTES + 1];
     memset(data, 0xA5, sizeof data);
@@ -290,5 +304,6 @@ int main(void) {
     RUN_TEST(a_deaf_node_that_was_never_late_says_so);
     RUN_TEST(the_fd_frame_has_all_three_numbers_of_nu_and_sixteen_wheels);
     RUN_TEST(the_fd_frame_ends_with_its_last_byte);
+    RUN_TEST(the_fd_frame_has_nu_3_of_a_vehicle_that_turns);
     return UNITY_END();
 }

@@ -107,6 +107,20 @@ static void a_restart_forgets_that_all_had_come(void) {
     TEST_ASSERT_FALSE(raw.complete || raw.broken);
 }
 
+/* Frames that bring no whole number, and those that end with one of several, are no whole inputs either. */
+static void a_stream_that_ends_early_is_not_whole(void) {
+    const uint8_t bytes[2 * sizeof(laconic_real)] = {0};
+    raw.take = LACONIC_RAW_VOLTAGE;
+    TEST_ASSERT_TRUE(laconic_raw_take(&raw, input, 2, 0, 15, bytes, sizeof(laconic_real) / 2));
+    TEST_ASSERT_TRUE(raw.position == 0 && raw.filled == sizeof(laconic_real) / 2);
+    TEST_ASSERT_FALSE(laconic_raw_is_whole(&raw, 1));
+    TEST_ASSERT_TRUE(laconic_raw_take(&raw, input, 2, 1, 15, bytes, sizeof(laconic_real) / 2));
+    TEST_ASSERT_TRUE(raw.position == 1 && raw.filled == 0);
+    TEST_ASSERT_FALSE(laconic_raw_is_whole(&raw, 2));
+    TEST_ASSERT_TRUE(laconic_raw_take(&raw, input, 2, 2, 15, bytes, sizeof(laconic_real)));
+    TEST_ASSERT_TRUE(laconic_raw_is_whole(&raw, 3));
+}
+
 int main(void) {
     UNITY_BEGIN();
     RUN_TEST(every_input_has_its_position_in_the_stream);
@@ -118,5 +132,6 @@ int main(void) {
     RUN_TEST(world_forces_fill_four_numbers_each);
     RUN_TEST(bytes_are_given_in_parts_and_the_last_ends_in_zeros);
     RUN_TEST(a_restart_forgets_that_all_had_come);
+    RUN_TEST(a_stream_that_ends_early_is_not_whole);
     return UNITY_END();
 }
