@@ -34,6 +34,36 @@
     } while (0)
 #define ASSERT_STATUS(expected, actual) \
     TEST_ASSERT_EQUAL_STRING(laconic_status_name(expected), laconic_status_name(actual))
+
+/* What laconic.h states of a refusal's numbers: the value is one that the status speaks of, and there is a limit where one
+ * is acceptable, else 0. */
+static inline void assert_tells_what_was_wrong(const laconic_refusal *why) {
+    const double value = (double)why->value, limit = (double)why->limit;
+    bool has_limit = false, fits = true;
+    switch (why->status) {
+    case LACONIC_NOT_FINITE: fits = !isfinite(value); break;
+    case LACONIC_NOT_POSITIVE: fits = value <= 0; break;
+    case LACONIC_NEGATIVE: fits = value < 0; break;
+    case LACONIC_ZERO: fits = value == 0; break;
+    case LACONIC_FRICTION_TWICE:
+    case LACONIC_FRICTION_MISSING: fits = value > 0; break;
+    case LACONIC_ILL_CONDITIONED: fits = value > 1; break;
+    case LACONIC_NOTHING_MOVES: fits = value >= 3; break; /* constraints */
+    case LACONIC_ROLLER_ALONG_AXLE:
+    case LACONIC_WHEEL_KIND_UNKNOWN:
+    case LACONIC_MOTOR_CIRCUIT_UNKNOWN: fits = isfinite(value); break;
+    case LACONIC_WHEEL_NOT_SET:
+    case LACONIC_METHOD_UNKNOWN:
+    case LACONIC_METHOD_WITHOUT_FRICTION:
+    case LACONIC_STRAIGHT_ONLY: fits = value == 0; break;
+    case LACONIC_ABOVE_LIMIT: fits = has_limit = value > limit && limit >= 0; break;
+    case LACONIC_TOO_MANY_WHEELS:
+    case LACONIC_TOO_MANY_SUPPORTS: fits = has_limit = (value < 0 || value > limit) && limit > 0; break;
+    default: has_limit = true; break;
+    }
+    TEST_ASSERT_TRUE_MESSAGE(fits && (has_limit || limit == 0), "its value or limit is none of its status");
+}
+
 #define ASSERT_REFUSED(expected_status, expected_field, expected_item, actual, why) \
     do { \
         const laconic_status refused_with = (actual); \
@@ -41,6 +71,7 @@
         ASSERT_STATUS(expected_status, (why).status); \
         TEST_ASSERT_EQUAL_STRING(laconic_field_name(expected_field), laconic_field_name((why).field)); \
         TEST_ASSERT_EQUAL_INT(expected_item, (why).item); \
+        assert_tells_what_was_wrong(&(why)); \
     } while (0)
 
 void setUp(void) {}
