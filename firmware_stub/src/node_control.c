@@ -179,7 +179,6 @@ static uint8_t adopt(laconic_node *node, uint8_t *field, uint8_t *item) {
 #endif
     node->start = new->start;
     node->state = LACONIC_WIRE_STATE_READY;
-    memset(node->input, 0, sizeof node->input);
     laconic_node_clear_inputs(node);
     return 0;
 }

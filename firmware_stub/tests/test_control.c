@@ -144,6 +144,13 @@ static void each_bit_of_select_has_its_meaning(void) {
     TEST_ASSERT_EQUAL_HEX8(0, node.raw_input.take);
 }
 
+static void the_last_raw_number_asks_for_no_can_fd(void) {
+    bench_load(2);
+    TEST_ASSERT_EQUAL_UINT8(0, bench_select(0, LACONIC_RAW_ENCODER, 0));
+    TEST_ASSERT_FALSE(node.raw_fd);
+    TEST_ASSERT_EQUAL_HEX8(LACONIC_RAW_ENCODER, node.raw_output.send);
+}
+
 static void raw_numbers_by_can_fd_need_can_fd(void) {
     bench_load(2);
     node.config.can_fd = false;
@@ -277,6 +284,7 @@ int main(void) {
     RUN_TEST(a_reset_to_a_start_that_cannot_be_names_its_field);
     RUN_TEST(begin_forgets_what_was_loaded);
     RUN_TEST(each_bit_of_select_has_its_meaning);
+    RUN_TEST(the_last_raw_number_asks_for_no_can_fd);
     RUN_TEST(raw_numbers_by_can_fd_need_can_fd);
     RUN_TEST(a_selection_clears_the_inputs);
     RUN_TEST(a_committed_vehicle_is_ready_at_its_start_with_cleared_inputs);

@@ -211,6 +211,12 @@ static void a_period_of_a_second_is_a_million_microseconds(void) {
     TEST_ASSERT_EQUAL_UINT32(begun_us + 2000000U, node.free_run.next_us);
 }
 
+static void without_a_watchdog_a_run_goes_on_for_ever(void) {
+    TEST_ASSERT_EQUAL_UINT8(0, start(1000, 0));
+    pass(50000);
+    TEST_ASSERT_EQUAL_UINT8(LACONIC_WIRE_STATE_FREE_RUN, node.state);
+}
+
 int main(void) {
     UNITY_BEGIN();
     RUN_TEST(every_period_takes_its_steps_though_the_time_wraps);
@@ -228,5 +234,6 @@ int main(void) {
     RUN_TEST(whoever_waits_wakes_for_the_next_period_or_heartbeat);
     RUN_TEST(voltages_of_every_group_feed_the_watchdog_however_many_wheels_there_are);
     RUN_TEST(a_period_of_a_second_is_a_million_microseconds);
+    RUN_TEST(without_a_watchdog_a_run_goes_on_for_ever);
     return UNITY_END();
 }

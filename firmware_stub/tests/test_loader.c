@@ -287,6 +287,47 @@ static void every_wheel_has_its_own_drive_and_encoder(void) {
     }
 }
 
+/* A single number is item 0 and no other; items of a list count from 1 to its end. */
+static void every_field_of_a_vehicle_takes_its_own_items_alone(void) {
+    int count = 0;
+    for (int number = 1; number < LACONIC_FIELD_COUNT; number++) {
+        const laconic_field_traits *traits = laconic_field_traits_of((laconic_field)number);
+        const bool of_motor = number >= LACONIC_WIRE_FIELD_RESISTANCE && number <= LACONIC_WIRE_FIELD_ROTOR_INERTIA;
+        if (traits == NULL || traits->kind != LACONIC_KIND_REAL || of_motor) continue;
+        if (strncmp(laconic_field_path((laconic_field)number), "vehicle.", 8) != 0) continue;
+        const uint8_t first = traits->items > 0, last = (uint8_t)traits->items;
+        laconic_loader_begin(&loader);
+        send_real(number, first, 1);
+        send_real(number, last, 1);
+        TEST_ASSERT_EQUAL_UINT8(0, loader.status);
+        send_real(number, first > 0 ? 0 : 1, 1);
+        TEST_ASSERT_EQUAL_UINT8(LACONIC_WIRE_STATUS_PARAMETER_UNKNOWN, loader.status);
+        laconic_loader_begin(&loader);
+        send_real(number, (uint8_t)(last + 1), 1);
+        TEST_ASSERT_EQUAL_UINT8(LACONIC_WIRE_STATUS_PARAMETER_UNKNOWN, loader.status);
+        TEST_ASSERT_TRUE(loader.field == number && loader.item == last + 1);
+        count++;
+    }
+    TEST_ASSERT_TRUE(count > 30);
+}
+
+static void half_a_double_leaves_the_number_before(void) {
+    send_real(LACONIC_FIELD_MASS, 0, 5);
+    send_real(LACONIC_FIELD_YAW_INERTIA, 0, 7);
+    if (sizeof(laconic_real) == 8) send(0, LACONIC_FIELD_MASS, 0, 1);
+    TEST_ASSERT_TRUE(loader.parameters.vehicle.mass_kg == 5);
+    send_real(LACONIC_FIELD_YAW_INERTIA, 0, 7);
+    send(1, LACONIC_FIELD_MASS, 0, 1);
+    TEST_ASSERT_TRUE(loader.parameters.vehicle.mass_kg == 5);
+}
+
+static void a_check_that_passes_names_nothing(void) {
+    send_cart_without(0, 0);
+    field = item = 77;
+    TEST_ASSERT_EQUAL_UINT8(0, check());
+    TEST_ASSERT_TRUE(field == 0 && item == 0);
+}
+
 int main(void) {
     UNITY_BEGIN();
     RUN_TEST(numbers_arrive_bit_for_bit_where_they_belong);
@@ -310,5 +351,8 @@ int main(void) {
     RUN_TEST(an_integer_out_of_range_names_field_and_item);
     RUN_TEST(a_single_wheel_needs_the_numbers_of_wheels);
     RUN_TEST(every_wheel_has_its_own_drive_and_encoder);
+    RUN_TEST(every_field_of_a_vehicle_takes_its_own_items_alone);
+    RUN_TEST(half_a_double_leaves_the_number_before);
+    RUN_TEST(a_check_that_passes_names_nothing);
     return UNITY_END();
 }

@@ -308,6 +308,49 @@ static void the_half_of_an_order_stands_beside_its_counter(void) {
     TEST_ASSERT_EQUAL_UINT8(LACONIC_WIRE_STATUS_OUT_OF_RANGE, laconic_node_order_drive(&node, upper));
 }
 
+/* The step whose rate is that number, but for rounding. */
+static void load_rate(double rate_Hz) { load((laconic_real)(1 / rate_Hz)); }
+
+/* A rate may be off by a ten-thousandth, and the nearest whole one is taken; above 10,000 there is none. */
+static void a_rate_is_rounded_to_the_nearest(void) {
+    load_rate(9999.4965);
+    TEST_ASSERT_EQUAL_UINT8(0, start());
+    TEST_ASSERT_EQUAL_UINT32(9999, node.free_run.rate_Hz);
+    load_rate(9998.6);
+    TEST_ASSERT_EQUAL_UINT8(0, start());
+    TEST_ASSERT_EQUAL_UINT32(9999, node.free_run.rate_Hz);
+    load_rate(10000.5);
+    TEST_ASSERT_TRUE(1 / node.plant.integrator.step_s == (laconic_real)10000.5);
+    TEST_ASSERT_EQUAL_UINT8(LACONIC_WIRE_STATUS_OUT_OF_RANGE, start());
+}
+
+/* An ideal IMU feels what the drives do, in the very step. */
+static void sensors_watch_what_the_drives_do(void) {
+    laconic_real number[5];
+    start();
+    TEST_ASSERT_EQUAL_UINT8(0, bench_select(0, LACONIC_RAW_IMU, 0));
+    command(3000);
+    pass(3000, 1000);
+    memcpy(number, node.raw_output.number, sizeof number);
+    TEST_ASSERT_TRUE(number[0] > REAL(0.1));
+    TEST_ASSERT_TRUE(number[2] == number[0] && number[3] == number[1]);
+    TEST_ASSERT_EQUAL_UINT64(3, node.sensors.newest);
+}
+
+static void an_order_for_a_wheel_without_a_drive_is_unknown(void) {
+    uint8_t data[LACONIC_FRAME_BYTES];
+    node.drive_plan.drive[0].node_id = -1;
+    TEST_ASSERT_EQUAL_UINT8(0, start());
+    TEST_ASSERT_EQUAL_INT(3, node.drives.count);
+    for (uint8_t wheel = 1; wheel <= 4; wheel++) {
+        const struct laconic_dbc_parameter_t frame = {.field = LACONIC_WIRE_FIELD_DRIVE_FAULTS, .item = wheel};
+        laconic_dbc_parameter_pack(data, &frame, 8);
+        bench_send(LACONIC_WIRE_PARAMETER, data);
+        TEST_ASSERT_TRUE(bench_receive(LACONIC_WIRE_RESULT, data));
+        TEST_ASSERT_EQUAL_UINT8(wheel == 1 ? LACONIC_WIRE_STATUS_PARAMETER_UNKNOWN : 0, data[3]);
+    }
+}
+
 int main(void) {
     UNITY_BEGIN();
     RUN_TEST(one_step_is_taken_each_period);
@@ -331,5 +374,8 @@ int main(void) {
     RUN_TEST(an_order_is_answered_with_its_wheel);
     RUN_TEST(more_than_ten_thousand_steps_a_second_are_refused);
     RUN_TEST(the_half_of_an_order_stands_beside_its_counter);
+    RUN_TEST(a_rate_is_rounded_to_the_nearest);
+    RUN_TEST(sensors_watch_what_the_drives_do);
+    RUN_TEST(an_order_for_a_wheel_without_a_drive_is_unknown);
     return UNITY_END();
 }

@@ -90,7 +90,7 @@ static void counters_come_in_three_pages(void) {
     uint8_t data[LACONIC_FRAME_BYTES];
     struct laconic_dbc_counters_t counters;
     publish(0, 0, 0);
-    const laconic_node_counters all = {1, 2, 3, 4, 5, 6, 7, 8, 9};
+    const laconic_node_counters all = {0x101, 0x102, 0x103, 0x104, 0x105, 0x106, 0x107, 0x108, 0x109};
     node.counters = all;
     now_us += LACONIC_NODE_HEARTBEAT_US;
     laconic_node_on_tick(&node, now_us);
@@ -101,7 +101,7 @@ static void counters_come_in_three_pages(void) {
         const uint16_t found[9] = {counters.crc_errors, counters.sequence_errors, counters.repeated,
                                    counters.lost,       counters.malformed,       counters.late_periods,
                                    counters.accepted,   counters.refused,         counters.overrange};
-        for (uint8_t k = 0; k < 3; k++) TEST_ASSERT_EQUAL_UINT16(3 * page + k + 1, found[3 * page + k]);
+        for (uint8_t k = 0; k < 3; k++) TEST_ASSERT_EQUAL_UINT16(0x101 + 3 * page + k, found[3 * page + k]);
     }
     TEST_ASSERT_FALSE(bench_receive(LACONIC_WIRE_COUNTERS, data));
 }
@@ -263,15 +263,19 @@ static void the_fd_frame_has_all_three_numbers_of_nu_and_sixteen_wheels(void) {
     for (int k = 0; k < 16; k++) TEST_ASSERT_INT_WITHIN(2, 400, (int16_t)word16(data + 32 + 2 * k));
 }
 
-static void the_fd_frame_has_nu_3_of_a_vehicle_that_turns(void) {
+static void either_frame_has_nu_3_of_a_vehicle_that_turns(void) {
     uint8_t data[LACONIC_FRAME_BYTES];
+    struct laconic_dbc_nu_t nu;
     const laconic_start start = {{0, 0, (laconic_real)-0.75}, 0, 0, 0, {0}};
     bench_load(0);
-    bench_select(LACONIC_NODE_SEND_STATE_FD, 0, 0);
+    bench_select(LACONIC_NODE_SEND_NU | LACONIC_NODE_SEND_STATE_FD, 0, 0);
     bench_start_lockstep();
     TEST_ASSERT_EQUAL(LACONIC_OK, laconic_state_set(&node.plant.state, &node.plant.model, &start, NULL));
     bench_sync(1);
     laconic_node_on_tick(&node, now_us);
+    TEST_ASSERT_TRUE(bench_receive(LACONIC_WIRE_NU, data));
+    laconic_dbc_nu_unpack(&nu, data, 8);
+    TEST_ASSERT_EQUAL_INT16(-150, nu.nu_3);
     TEST_ASSERT_TRUE(bench_receive(LACONIC_WIRE_STATE_FD, data));
     TEST_ASSERT_INT_WITHIN(1, -750000, (int32_t)word32(data + 16));
     TEST_ASSERT_EQUAL_UINT8(0, data[3]);
@@ -283,6 +287,45 @@ static void the_fd_frame_ends_with_its_last_byte(void) {
     laconic_node_pack(&node, LACONIC_WIRE_STATE_FD, data);
     TEST_ASSERT_EQUAL_HEX8(0, data[LACONIC_FRAME_BYTES - 1]);
     TEST_ASSERT_EQUAL_HEX8(0xA5, data[LACONIC_FRAME_BYTES]);
+}
+
+static void a_value_at_the_bound_is_in_range(void) {
+    uint8_t data[LACONIC_FRAME_BYTES];
+    struct laconic_dbc_nu_t nu;
+    const laconic_real bound = (laconic_real)(32767.0 / 200);
+    if (sizeof bound == 4) return; /* there is no such number in single */
+    TEST_ASSERT_TRUE(bound * 200 == 32767);
+    for (int sign = -1; sign <= 1; sign += 2) {
+        const laconic_start start = {{bound * (laconic_real)sign, 0, 0}, 0, 0, 0, {0}};
+        bench_load(0);
+        bench_select(LACONIC_NODE_SEND_NU, 0, 0);
+        TEST_ASSERT_EQUAL(LACONIC_OK, laconic_state_set(&node.plant.state, &node.plant.model, &start, NULL));
+        laconic_node_pack(&node, LACONIC_WIRE_NU, data);
+        laconic_dbc_nu_unpack(&nu, data, 8);
+        TEST_ASSERT_EQUAL_INT16(32767 * sign, nu.nu_1);
+        TEST_ASSERT_EQUAL_UINT8(0, nu.overrange);
+    }
+}
+
+/* The second group of a cart that spins about its origin is beyond the range; the first is not, and says so. */
+static void the_flag_of_a_group_is_of_its_own_wheels(void) {
+    uint8_t data[LACONIC_FRAME_BYTES];
+    struct laconic_dbc_wheel_speed_t speed;
+    laconic_real found[LACONIC_MAX_WHEELS];
+    const laconic_start start = {{0, -60, 60}, 0, 0, 0, {0}};
+    laconic_vehicle vehicle = node.plant.vehicle;
+    for (int i = 0; i < 4; i++) vehicle.wheel[i].kind = LACONIC_WHEEL_ROLLER;
+    for (int i = 0; i < 4; i++) vehicle.wheel[i].roller_rad = (laconic_real)1.5;
+    TEST_ASSERT_EQUAL(LACONIC_OK,
+                      laconic_plant_start(&node.plant, &vehicle, &laconic_rk4, (laconic_real)0.001, &start, NULL));
+    laconic_plant_wheel_speeds(&node.plant, found);
+    const laconic_real most = 32767 / (laconic_real)200;
+    for (int i = 0; i < 4; i++) TEST_ASSERT_TRUE((found[i] > most || found[i] < -most) == (i == 3));
+    for (node.wheel_group = 0; node.wheel_group < 2; node.wheel_group++) {
+        laconic_node_pack(&node, LACONIC_WIRE_WHEEL_SPEED, data);
+        laconic_dbc_wheel_speed_unpack(&speed, data, 8);
+        TEST_ASSERT_EQUAL_UINT8(node.wheel_group, speed.overrange);
+    }
 }
 
 int main(void) {
@@ -304,6 +347,8 @@ int main(void) {
     RUN_TEST(a_deaf_node_that_was_never_late_says_so);
     RUN_TEST(the_fd_frame_has_all_three_numbers_of_nu_and_sixteen_wheels);
     RUN_TEST(the_fd_frame_ends_with_its_last_byte);
-    RUN_TEST(the_fd_frame_has_nu_3_of_a_vehicle_that_turns);
+    RUN_TEST(either_frame_has_nu_3_of_a_vehicle_that_turns);
+    RUN_TEST(a_value_at_the_bound_is_in_range);
+    RUN_TEST(the_flag_of_a_group_is_of_its_own_wheels);
     return UNITY_END();
 }

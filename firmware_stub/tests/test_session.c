@@ -240,6 +240,29 @@ static void an_answer_repeats_all_four_bits_of_its_request(void) {
     }
 }
 
+/* Neither the right echo nor a right protection is enough by itself. */
+static void an_open_needs_the_echo_and_its_protection(void) {
+    uint8_t data[LACONIC_FRAME_BYTES];
+    const uint32_t nonce = bench_hello(), before = node.session.number;
+    laconic_frame frame = bench_open_frame(0x77, nonce);
+    frame.data[5] ^= 1U;
+    laconic_node_on_frame(&node, &frame, now_us);
+    const struct laconic_dbc_open_t other = {.nonce_echo = (uint16_t)(nonce + 1U), .session = 0x77};
+    laconic_dbc_open_pack(frame.data, &other, 8);
+    laconic_protect_keyed(LACONIC_WIRE_OPEN, frame.data, nonce, 3);
+    laconic_node_on_frame(&node, &frame, now_us);
+    TEST_ASSERT_FALSE(bench_receive(LACONIC_WIRE_RESULT, data));
+    TEST_ASSERT_EQUAL_HEX32(before, node.session.number);
+    TEST_ASSERT_EQUAL_UINT16(2, node.counters.crc_errors);
+}
+
+static void a_run_begins_with_open_ears(void) {
+    bench_load(2);
+    node.session.deaf = BIT(LACONIC_WIRE_SYNC);
+    bench_start_lockstep();
+    TEST_ASSERT_EQUAL_UINT32(0, node.session.deaf);
+}
+
 int main(void) {
     UNITY_BEGIN();
     RUN_TEST(hello_is_answered_at_any_time_and_changes_nothing);
@@ -257,5 +280,7 @@ int main(void) {
     RUN_TEST(the_next_nonce_is_mixed_of_the_last_the_session_and_the_time);
     RUN_TEST(every_frame_is_counted_as_what_it_is);
     RUN_TEST(an_answer_repeats_all_four_bits_of_its_request);
+    RUN_TEST(an_open_needs_the_echo_and_its_protection);
+    RUN_TEST(a_run_begins_with_open_ears);
     return UNITY_END();
 }

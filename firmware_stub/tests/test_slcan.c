@@ -218,6 +218,19 @@ static void a_classic_frame_has_eight_bytes_at_most_whatever_its_line_holds(void
     answers("t2009112233445566778899AABBCC\r", "\a");
 }
 
+static void any_rate_is_right_where_none_is_required(void) {
+    for (char rate = '0'; rate <= '8'; rate++) {
+        const char line[] = {'S', rate, '\r', 0};
+        answers(line, "\r");
+        TEST_ASSERT_FALSE(slcan.rate_is_wrong);
+    }
+    laconic_slcan_init(&slcan, '6');
+    answers("S5\r", "\r");
+    TEST_ASSERT_TRUE(slcan.rate_is_wrong);
+    answers("S6\r", "\r");
+    TEST_ASSERT_FALSE(slcan.rate_is_wrong);
+}
+
 int main(void) {
     UNITY_BEGIN();
     RUN_TEST(commands_are_answered);
@@ -236,5 +249,6 @@ int main(void) {
     RUN_TEST(the_longest_line_has_room_and_one_letter_more_has_none);
     RUN_TEST(a_command_too_long_for_a_line_is_none);
     RUN_TEST(a_classic_frame_has_eight_bytes_at_most_whatever_its_line_holds);
+    RUN_TEST(any_rate_is_right_where_none_is_required);
     return UNITY_END();
 }
