@@ -5,7 +5,8 @@
 
 #define SELF(component) ((fmu_instance *)(component))
 #define ALLOW(component, call) \
-    if ((component) == NULL || !FMU_MAY_CALL(SELF(component), call)) return fmi2Error
+    if ((component) == NULL) return fmi2Error; \
+    if (!FMU_MAY_CALL(SELF(component), call)) return fmi2Error
 
 static fmi2Status to_fmi(fmu_status status) { return (fmi2Status)status; }
 

@@ -7,7 +7,8 @@
 
 #define SELF(instance) ((fmu_instance *)(instance))
 #define ALLOW(instance, call) \
-    if ((instance) == NULL || !FMU_MAY_CALL(SELF(instance), call)) return fmi3Error
+    if ((instance) == NULL) return fmi3Error; \
+    if (!FMU_MAY_CALL(SELF(instance), call)) return fmi3Error
 
 static fmi3Status to_fmi(fmu_status status) { return (fmi3Status)status; }
 

@@ -3,7 +3,8 @@
 
 #define near(expected, actual, within) TEST_ASSERT_DOUBLE_WITHIN(within, (double)(expected), (double)(actual))
 
-enum { NODE = 1, ASK = 0x8000, TO_NODE = ASK | NODE, REPLY = NODE << 8, GEAR = 4 };
+enum { NODE = 1, ASK = 0x8000, TO_NODE = ASK | NODE, REPLY = NODE << 8 };
+#define GEAR 4
 enum {
     STOPPED = 0,
     FAULT = 1,

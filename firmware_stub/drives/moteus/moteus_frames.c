@@ -98,7 +98,7 @@ static bool answer_stream(moteus_axis *axis, reader *from, bool with_data) {
     if (with_data && from->length - from->at < size) return false;
     if (with_data) from->at += size;
     const uint8_t length = axis->reply_length;
-    if (axis->answers && !(put_varuint(axis, SERVER_DATA) && put_varuint(axis, channel) && put_varuint(axis, 0)))
+    if (axis->answers && (!put_varuint(axis, SERVER_DATA) || !put_varuint(axis, channel) || !put_varuint(axis, 0)))
         axis->reply_length = length;
     return true;
 }

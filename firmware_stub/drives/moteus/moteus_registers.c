@@ -190,8 +190,10 @@ static bool write_special(laconic_drives *drives, int32_t i, uint32_t number, ui
 }
 
 static bool is_modelled(laconic_real mode) {
-    return mode == MOTEUS_STOPPED || mode == MOTEUS_FAULT || (mode >= 2 && mode <= 4) || mode == MOTEUS_BRAKE ||
-           (mode >= MOTEUS_CURRENT && mode <= MOTEUS_STAY_WITHIN);
+    const laconic_real stopped = MOTEUS_STOPPED, fault = MOTEUS_FAULT, brake = MOTEUS_BRAKE;
+    const laconic_real first = MOTEUS_CURRENT, last = MOTEUS_STAY_WITHIN;
+    return mode == stopped || mode == fault || (mode >= 2 && mode <= 4) || mode == brake ||
+           (mode >= first && mode <= last);
 }
 
 /* A mode that is not modelled is refused as the controller refuses a number that is no mode. */

@@ -71,7 +71,7 @@ static void on_frame(laconic_drives *drives, const laconic_frame *frame, uint32_
 
 /* A vehicle whose step is longer than a millisecond has nothing new in between: its feedback comes each step. */
 static bool feedback_is_due(const laconic_drives *drives, axis *of, uint32_t now_us) {
-    if (drives->step_s * (laconic_real)1e6 >= PERIOD_US) return true;
+    if (drives->step_s * (laconic_real)1e6 >= (laconic_real)PERIOD_US) return true;
     if ((int32_t)(now_us - of->next_us) < 0) return false;
     of->next_us += PERIOD_US;
     return true;
