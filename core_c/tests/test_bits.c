@@ -1,7 +1,8 @@
-/* Tests that every number of the core is, bit for bit, that of the version before: motions by every method, with friction
- * and without, what sensors show, constants and derivatives. A recording then replays in a later version as it was made.
- * Other tests compare the numbers with independent ones; a change of bits on purpose is one of these and goes with a line
- * of the changelog. The vehicles are written in numbers alone, since a sine of the host's library may differ. */
+/* Tests that every number of the core is, bit for bit, that of the version before: motions by every method, with
+ * friction and without, what sensors show, constants and derivatives. A recording then replays in a later version as it
+ * was made. Other tests compare the numbers with independent ones; a change of bits on purpose is one of these and goes
+ * with a line of the changelog. The vehicles are written in numbers alone, since a sine of the host's library may
+ * differ. */
 #include <inttypes.h>
 #include <stdio.h>
 
@@ -59,8 +60,8 @@ static laconic_vehicle vehicle_number(int number) {
     return v;
 }
 
-/* Three omni wheels on ground with friction and a slope; four fixed wheels that skid; wheels of every kind, each with its
- * own ground and motor circuit. */
+/* Three omni wheels on ground with friction and a slope; four fixed wheels that skid; wheels of every kind, each with
+ * its own ground and motor circuit. */
 static laconic_vehicle slipping_vehicle(int number) {
     static const double bearing[3][3] = {{0.065, 0.11258330249197702, 1.0471975511965976},
                                          {-0.13, 0, 3.14159265358979323846},

@@ -123,6 +123,20 @@ static void a_reset_to_a_start_that_cannot_be_names_its_field(void) {
     TEST_ASSERT_EQUAL_UINT8(1, data[5]);
 }
 
+/* So that a port can look at its bus in between. */
+static void a_tick_takes_no_more_steps_than_it_may(void) {
+    bench_load(2);
+    bench_start_lockstep();
+    bench_sync(2 * LACONIC_NODE_STEPS_PER_TICK + 3);
+    for (uint64_t k = 1; k <= 3; k++) {
+        TEST_ASSERT_TRUE(laconic_node_is_busy(&node));
+        laconic_node_on_tick(&node, now_us);
+        TEST_ASSERT_EQUAL_UINT64(k < 3 ? k * LACONIC_NODE_STEPS_PER_TICK : 2 * LACONIC_NODE_STEPS_PER_TICK + 3,
+                                 node.plant.steps);
+    }
+    TEST_ASSERT_FALSE(laconic_node_is_busy(&node));
+}
+
 static void begin_forgets_what_was_loaded(void) {
     node.loader.frame_count = 3;
     TEST_ASSERT_EQUAL_UINT8(0, bench_control(LACONIC_WIRE_COMMAND_BEGIN, 0, 0));
@@ -291,5 +305,6 @@ int main(void) {
     RUN_TEST(a_vehicle_that_the_core_refuses_leaves_the_one_before);
     RUN_TEST(a_committed_vehicle_has_the_drives_that_came_with_it);
     RUN_TEST(a_refused_vehicle_names_field_and_wheel_and_keeps_the_drives_before);
+    RUN_TEST(a_tick_takes_no_more_steps_than_it_may);
     return UNITY_END();
 }

@@ -378,36 +378,6 @@ static void the_first_nonce_is_mixed_of_seed_and_time(void) {
     TEST_ASSERT_EQUAL_UINT16(before + 1, node.counters.crc_errors);
 }
 
-static void frames_of_a_kind_are_counted_upwards(void) {
-    uint8_t data[LACONIC_FRAME_BYTES];
-    uint8_t last = 0;
-    bench_load(2);
-    bench_select(LACONIC_NODE_SEND_NU, 0, 0);
-    bench_start_lockstep();
-    for (int k = 0; k < 4; k++) {
-        bench_sync(1);
-        laconic_node_on_tick(&node, now_us);
-        TEST_ASSERT_TRUE(bench_receive(LACONIC_WIRE_NU, data));
-        const uint8_t counter = laconic_counter_of(LACONIC_WIRE_NU, data);
-        if (k > 0) TEST_ASSERT_EQUAL_UINT8((last + 1) & 15, counter);
-        last = counter;
-    }
-}
-
-/* So that a port can look at its bus in between. */
-static void a_tick_takes_no_more_steps_than_it_may(void) {
-    bench_load(2);
-    bench_start_lockstep();
-    bench_sync(2 * LACONIC_NODE_STEPS_PER_TICK + 3);
-    for (uint64_t k = 1; k <= 3; k++) {
-        TEST_ASSERT_TRUE(laconic_node_is_busy(&node));
-        laconic_node_on_tick(&node, now_us);
-        TEST_ASSERT_EQUAL_UINT64(k < 3 ? k * LACONIC_NODE_STEPS_PER_TICK : 2 * LACONIC_NODE_STEPS_PER_TICK + 3,
-                                 node.plant.steps);
-    }
-    TEST_ASSERT_FALSE(laconic_node_is_busy(&node));
-}
-
 int main(void) {
     UNITY_BEGIN();
     RUN_TEST(id_bases_are_multiples_of_32);
@@ -436,7 +406,5 @@ int main(void) {
     RUN_TEST(a_group_that_begins_where_the_wheels_end_is_refused_and_a_puck_takes_the_first);
     RUN_TEST(reset_ends_a_run);
     RUN_TEST(the_first_nonce_is_mixed_of_seed_and_time);
-    RUN_TEST(frames_of_a_kind_are_counted_upwards);
-    RUN_TEST(a_tick_takes_no_more_steps_than_it_may);
     return UNITY_END();
 }

@@ -328,6 +328,22 @@ static void the_flag_of_a_group_is_of_its_own_wheels(void) {
     }
 }
 
+static void frames_of_a_kind_are_counted_upwards(void) {
+    uint8_t data[LACONIC_FRAME_BYTES];
+    uint8_t last = 0;
+    bench_load(2);
+    bench_select(LACONIC_NODE_SEND_NU, 0, 0);
+    bench_start_lockstep();
+    for (int k = 0; k < 4; k++) {
+        bench_sync(1);
+        laconic_node_on_tick(&node, now_us);
+        TEST_ASSERT_TRUE(bench_receive(LACONIC_WIRE_NU, data));
+        const uint8_t counter = laconic_counter_of(LACONIC_WIRE_NU, data);
+        if (k > 0) TEST_ASSERT_EQUAL_UINT8((last + 1) & 15, counter);
+        last = counter;
+    }
+}
+
 int main(void) {
     UNITY_BEGIN();
     RUN_TEST(values_are_rounded_to_the_nearest);
@@ -350,5 +366,6 @@ int main(void) {
     RUN_TEST(either_frame_has_nu_3_of_a_vehicle_that_turns);
     RUN_TEST(a_value_at_the_bound_is_in_range);
     RUN_TEST(the_flag_of_a_group_is_of_its_own_wheels);
+    RUN_TEST(frames_of_a_kind_are_counted_upwards);
     return UNITY_END();
 }

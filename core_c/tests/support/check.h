@@ -35,8 +35,8 @@
 #define ASSERT_STATUS(expected, actual) \
     TEST_ASSERT_EQUAL_STRING(laconic_status_name(expected), laconic_status_name(actual))
 
-/* What laconic.h states of a refusal's numbers: the value is one that the status speaks of, and there is a limit where one
- * is acceptable, else 0. */
+/* What laconic.h states of a refusal's numbers: the value is one that the status speaks of, and there is a limit where
+ * one is acceptable, else 0. */
 static inline void assert_tells_what_was_wrong(const laconic_refusal *why) {
     const double value = (double)why->value, limit = (double)why->limit;
     bool has_limit = false, fits = true;
