@@ -286,6 +286,29 @@ static void a_refused_vehicle_names_field_and_wheel_and_keeps_the_drives_before(
     TEST_ASSERT_TRUE(node.drive_plan.drive[1].gear_ratio == -19);
 }
 
+static void a_single_step_that_is_due_keeps_the_node_busy(void) {
+    bench_load(2);
+    bench_start_lockstep();
+    bench_sync(1);
+    TEST_ASSERT_TRUE(laconic_node_is_busy(&node));
+    laconic_node_on_tick(&node, now_us);
+    TEST_ASSERT_FALSE(laconic_node_is_busy(&node));
+}
+
+static void a_commit_names_field_and_item_of_what_is_missing(void) {
+    uint8_t payload[LACONIC_FRAME_BYTES] = {0};
+    bench_control(LACONIC_WIRE_COMMAND_BEGIN, 0, 0);
+    parameter(0, LACONIC_FIELD_WHEEL_COUNT, 0, LACONIC_MAX_WHEELS + 9);
+    real_of_item(LACONIC_FIELD_WHEEL_X, 3, 1);
+    node.loader.status = LACONIC_WIRE_STATUS_OUT_OF_RANGE;
+    node.loader.field = LACONIC_FIELD_WHEEL_X;
+    node.loader.item = 3;
+    bench_send(LACONIC_WIRE_COMMIT, payload);
+    TEST_ASSERT_TRUE(bench_receive(LACONIC_WIRE_RESULT, data));
+    TEST_ASSERT_EQUAL_UINT8(LACONIC_WIRE_STATUS_OUT_OF_RANGE, data[3]);
+    TEST_ASSERT_TRUE(data[4] == LACONIC_FIELD_WHEEL_X && data[5] == 3);
+}
+
 int main(void) {
     UNITY_BEGIN();
     RUN_TEST(a_rate_takes_a_whole_number_of_steps_up_to_what_a_tick_may_take);
@@ -306,5 +329,7 @@ int main(void) {
     RUN_TEST(a_committed_vehicle_has_the_drives_that_came_with_it);
     RUN_TEST(a_refused_vehicle_names_field_and_wheel_and_keeps_the_drives_before);
     RUN_TEST(a_tick_takes_no_more_steps_than_it_may);
+    RUN_TEST(a_single_step_that_is_due_keeps_the_node_busy);
+    RUN_TEST(a_commit_names_field_and_item_of_what_is_missing);
     return UNITY_END();
 }

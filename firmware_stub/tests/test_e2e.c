@@ -122,6 +122,12 @@ static void stray_frames_that_do_not_follow_each_other_make_no_reference(void) {
     TEST_ASSERT_EQUAL_UINT8(9, receiver.counter);
 }
 
+static void a_counter_takes_the_place_of_what_stood_there(void) {
+    uint8_t data[8] = {0, 0xFF};
+    laconic_e2e_p22_protect(data, 8, of(2), 2);
+    TEST_ASSERT_EQUAL_HEX8(0xF2, data[1]);
+}
+
 int main(void) {
     UNITY_BEGIN();
     RUN_TEST(profile_2_gives_the_published_headers);
@@ -136,5 +142,6 @@ int main(void) {
     RUN_TEST(a_stray_frame_is_forgotten_when_the_next_one_is_right);
     RUN_TEST(the_first_stray_frame_follows_none);
     RUN_TEST(stray_frames_that_do_not_follow_each_other_make_no_reference);
+    RUN_TEST(a_counter_takes_the_place_of_what_stood_there);
     return UNITY_END();
 }

@@ -217,6 +217,22 @@ static void without_a_watchdog_a_run_goes_on_for_ever(void) {
     TEST_ASSERT_EQUAL_UINT8(LACONIC_WIRE_STATE_FREE_RUN, node.state);
 }
 
+/* 7 periods a second: the k-th begins at k · 1,000,000/7 µs, rounded down, and no microsecond is lost. */
+static void periods_that_are_no_whole_microseconds_begin_when_they_should(void) {
+    const laconic_vehicle vehicle = {.mass_kg = 1, .yaw_inertia_kgm2 = 1, .wheel_radius_m = 1};
+    TEST_ASSERT_EQUAL(LACONIC_OK,
+                      laconic_plant_start(&node.plant, &vehicle, &laconic_rk4, 1 / (laconic_real)7, &node.start, NULL));
+    TEST_ASSERT_EQUAL_UINT8(0, start(7, 0));
+    const uint32_t began_us = now_us;
+    for (uint64_t k = 1; k <= 21; k++) {
+        now_us = began_us + (uint32_t)(k * 1000000U / 7U) - 1U;
+        laconic_node_on_tick(&node, now_us);
+        TEST_ASSERT_EQUAL_UINT64(k - 1, node.plant.steps);
+        laconic_node_on_tick(&node, ++now_us);
+        TEST_ASSERT_EQUAL_UINT64(k, node.plant.steps);
+    }
+}
+
 int main(void) {
     UNITY_BEGIN();
     RUN_TEST(every_period_takes_its_steps_though_the_time_wraps);
@@ -235,5 +251,6 @@ int main(void) {
     RUN_TEST(voltages_of_every_group_feed_the_watchdog_however_many_wheels_there_are);
     RUN_TEST(a_period_of_a_second_is_a_million_microseconds);
     RUN_TEST(without_a_watchdog_a_run_goes_on_for_ever);
+    RUN_TEST(periods_that_are_no_whole_microseconds_begin_when_they_should);
     return UNITY_END();
 }

@@ -328,6 +328,13 @@ static void a_check_that_passes_names_nothing(void) {
     TEST_ASSERT_TRUE(field == 0 && item == 0);
 }
 
+static void a_check_names_what_a_frame_was_refused_for(void) {
+    send_real(LACONIC_FIELD_WHEEL_X, LACONIC_MAX_WHEELS + 1, 1);
+    field = item = 77;
+    TEST_ASSERT_EQUAL_UINT8(LACONIC_WIRE_STATUS_PARAMETER_UNKNOWN, check());
+    TEST_ASSERT_TRUE(field == LACONIC_FIELD_WHEEL_X && item == LACONIC_MAX_WHEELS + 1);
+}
+
 int main(void) {
     UNITY_BEGIN();
     RUN_TEST(numbers_arrive_bit_for_bit_where_they_belong);
@@ -354,5 +361,6 @@ int main(void) {
     RUN_TEST(every_field_of_a_vehicle_takes_its_own_items_alone);
     RUN_TEST(half_a_double_leaves_the_number_before);
     RUN_TEST(a_check_that_passes_names_nothing);
+    RUN_TEST(a_check_names_what_a_frame_was_refused_for);
     return UNITY_END();
 }

@@ -351,6 +351,20 @@ static void an_order_for_a_wheel_without_a_drive_is_unknown(void) {
     }
 }
 
+static laconic_drive_protocol of_size;
+
+static const laconic_drive_protocol *large_protocol(int32_t number) { return number == 3 ? &of_size : NULL; }
+
+/* A node has so many bytes for what a protocol knows of each drive, and not one more. */
+static void a_protocol_may_fill_its_room(void) {
+    of_size = laconic_robomaster;
+    node.config.protocol = large_protocol;
+    of_size.axis_bytes = LACONIC_NODE_AXIS_BYTES + 1;
+    TEST_ASSERT_EQUAL_UINT8(LACONIC_WIRE_STATUS_PARAMETER_MISSING, start());
+    of_size.axis_bytes = LACONIC_NODE_AXIS_BYTES;
+    TEST_ASSERT_EQUAL_UINT8(0, start());
+}
+
 int main(void) {
     UNITY_BEGIN();
     RUN_TEST(one_step_is_taken_each_period);
@@ -377,5 +391,6 @@ int main(void) {
     RUN_TEST(a_rate_is_rounded_to_the_nearest);
     RUN_TEST(sensors_watch_what_the_drives_do);
     RUN_TEST(an_order_for_a_wheel_without_a_drive_is_unknown);
+    RUN_TEST(a_protocol_may_fill_its_room);
     return UNITY_END();
 }

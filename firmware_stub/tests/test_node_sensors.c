@@ -358,6 +358,26 @@ static void any_setting_but_0_gives_the_vehicle_sensors(void) {
     TEST_ASSERT_FALSE(node.has_sensors);
 }
 
+static void angles_that_were_not_selected_are_not_sent(void) {
+    load(settings());
+    bench_select(LACONIC_NODE_SEND_IMU, 0, 0);
+    bench_start_lockstep();
+    step(1);
+    TEST_ASSERT_EQUAL_UINT32((uint32_t)1 << LACONIC_WIRE_IMU, node.pending);
+}
+
+static void angles_of_all_wheels_come_in_as_many_groups_as_they_need(void) {
+    bench_load(LACONIC_MAX_WHEELS);
+    bench_select(LACONIC_NODE_SEND_WHEEL_ANGLE, 0, 0);
+    bench_start_lockstep();
+    step(1);
+    for (int k = 0; k < (LACONIC_MAX_WHEELS + 2) / 3; k++) {
+        TEST_ASSERT_TRUE(bench_receive(LACONIC_WIRE_WHEEL_ANGLE, data));
+        TEST_ASSERT_EQUAL_INT(k, data[1] >> 5);
+    }
+    TEST_ASSERT_FALSE(bench_receive(LACONIC_WIRE_WHEEL_ANGLE, data));
+}
+
 int main(void) {
     UNITY_BEGIN();
     RUN_TEST(each_setting_has_its_number_on_the_wire);
@@ -378,5 +398,7 @@ int main(void) {
     RUN_TEST(every_wheel_of_a_group_shows_its_own_angle);
     RUN_TEST(one_wish_of_any_kind_makes_the_sensors_watch);
     RUN_TEST(any_setting_but_0_gives_the_vehicle_sensors);
+    RUN_TEST(angles_that_were_not_selected_are_not_sent);
+    RUN_TEST(angles_of_all_wheels_come_in_as_many_groups_as_they_need);
     return UNITY_END();
 }

@@ -344,6 +344,35 @@ static void frames_of_a_kind_are_counted_upwards(void) {
     }
 }
 
+static void more_than_a_half_of_a_unit_is_one(void) {
+    uint8_t data[LACONIC_FRAME_BYTES];
+    struct laconic_dbc_nu_t nu;
+    const laconic_start start = {{(laconic_real)(0.7 / 200), (laconic_real)(-0.7 / 200), 0}, 0, 0, 0, {0}};
+    bench_load(0);
+    TEST_ASSERT_EQUAL(LACONIC_OK, laconic_state_set(&node.plant.state, &node.plant.model, &start, NULL));
+    laconic_node_pack(&node, LACONIC_WIRE_NU, data);
+    laconic_dbc_nu_unpack(&nu, data, 8);
+    TEST_ASSERT_EQUAL_INT16(1, nu.nu_1);
+    TEST_ASSERT_EQUAL_INT16(-1, nu.nu_2);
+}
+
+/* Also where the frame before had more of them. */
+static void wheels_that_are_not_there_have_no_speed(void) {
+    static laconic_plant two;
+    uint8_t data[LACONIC_FRAME_BYTES];
+    const laconic_start start = {{0, 2, 0}, 0, 0, 0, {0}};
+    bench_load(2);
+    TEST_ASSERT_EQUAL(LACONIC_OK, laconic_state_set(&node.plant.state, &node.plant.model, &start, NULL));
+    two = node.plant;
+    bench_load(LACONIC_MAX_WHEELS);
+    TEST_ASSERT_EQUAL(LACONIC_OK, laconic_state_set(&node.plant.state, &node.plant.model, &start, NULL));
+    laconic_node_pack(&node, LACONIC_WIRE_STATE_FD, data);
+    node.plant = two;
+    laconic_node_pack(&node, LACONIC_WIRE_STATE_FD, data);
+    TEST_ASSERT_INT_WITHIN(2, 400, (int16_t)word16(data + 34));
+    for (size_t k = 36; k < 64; k++) TEST_ASSERT_EQUAL_HEX8(0, data[k]);
+}
+
 int main(void) {
     UNITY_BEGIN();
     RUN_TEST(values_are_rounded_to_the_nearest);
@@ -367,5 +396,7 @@ int main(void) {
     RUN_TEST(a_value_at_the_bound_is_in_range);
     RUN_TEST(the_flag_of_a_group_is_of_its_own_wheels);
     RUN_TEST(frames_of_a_kind_are_counted_upwards);
+    RUN_TEST(more_than_a_half_of_a_unit_is_one);
+    RUN_TEST(wheels_that_are_not_there_have_no_speed);
     return UNITY_END();
 }

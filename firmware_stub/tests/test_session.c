@@ -263,6 +263,13 @@ static void a_run_begins_with_open_ears(void) {
     TEST_ASSERT_EQUAL_UINT32(0, node.session.deaf);
 }
 
+static void a_frame_of_the_nodes_own_is_malformed(void) {
+    uint8_t payload[LACONIC_FRAME_BYTES] = {0};
+    const laconic_frame frame = recorded(LACONIC_WIRE_RIG_OFFSETS, payload, bench_key, 1);
+    laconic_node_on_frame(&node, &frame, now_us);
+    TEST_ASSERT_TRUE(node.counters.malformed == 1 && node.counters.refused == 0);
+}
+
 int main(void) {
     UNITY_BEGIN();
     RUN_TEST(hello_is_answered_at_any_time_and_changes_nothing);
@@ -282,5 +289,6 @@ int main(void) {
     RUN_TEST(an_answer_repeats_all_four_bits_of_its_request);
     RUN_TEST(an_open_needs_the_echo_and_its_protection);
     RUN_TEST(a_run_begins_with_open_ears);
+    RUN_TEST(a_frame_of_the_nodes_own_is_malformed);
     return UNITY_END();
 }
