@@ -214,6 +214,115 @@ static void the_covariance_stays_positive_over_a_hundred_thousand_steps(void) {
     }
 }
 
+/* Its drift alone is enough for a bias to be estimated; without either there is none, and a reading leaves it 0. */
+static void a_bias_is_estimated_where_it_may_be_or_become_one(void) {
+    laconic_filter_settings s = usual();
+    s.bias_std_rad_per_s = 0;
+    robot r = robot_with(with_motors(three_wheels()), s, start_with(0, 0, 0));
+    TEST_ASSERT_EQUAL_INT(1, r.filter.biases);
+    predict(&r, 20);
+    ASSERT_STATUS(LACONIC_OK, laconic_filter_yaw_rate(&r.filter, &r.model, REAL(0.3), NULL));
+    TEST_ASSERT_TRUE(r.filter.bias_rad_per_s != 0);
+    s.bias_noise_rad_per_s2_per_sqrt_Hz = 0;
+    r = robot_with(with_motors(three_wheels()), s, start_with(0, 0, 0));
+    TEST_ASSERT_EQUAL_INT(0, r.filter.biases);
+    predict(&r, 20);
+    ASSERT_STATUS(LACONIC_OK, laconic_filter_yaw_rate(&r.filter, &r.model, REAL(0.3), NULL));
+    TEST_ASSERT_TRUE(r.filter.bias_rad_per_s == 0);
+}
+
+/* Its angle goes on from where it was; the others are measured from the reading. */
+static void a_wheel_without_an_encoder_is_not_read(void) {
+    laconic_filter_settings s = usual();
+    laconic_real turned[LACONIC_MAX_WHEELS], after[LACONIC_MAX_WHEELS];
+    laconic_innovation found;
+    s.encoder_std_rad[1] = 0;
+    robot r = robot_with(with_motors(three_wheels()), s, start_with(0.5, -0.2, 1.0));
+    predict(&r, 10);
+    laconic_wheel_angles(&r.model, &r.filter.state, turned);
+    const laconic_real of_second = turned[1];
+    turned[1] = NOT_A_NUMBER; /* nobody looks */
+    ASSERT_STATUS(LACONIC_OK, laconic_filter_encoders(&r.filter, &r.model, turned, &found));
+    TEST_ASSERT_EQUAL_INT(2, found.count);
+    laconic_wheel_angles(&r.model, &r.filter.state, after);
+    ASSERT_NEAR(CLOSE, 0, after[0]);
+    ASSERT_NEAR(CLOSE, 0, after[2]);
+    ASSERT_NEAR(CLOSE, of_second, after[1]);
+    TEST_ASSERT_TRUE(of_second > REAL(0.01) || of_second < REAL(-0.01));
+}
+
+static void a_fix_may_be_of_the_place_or_of_the_heading_alone(void) {
+    laconic_pose_fix fix;
+    laconic_innovation found;
+    memset(&fix, 0, sizeof fix);
+    fix.x_m = REAL(0.07);
+    fix.heading_rad = REAL(0.3);
+    for (int of_heading = 0; of_heading < 2; of_heading++) {
+        robot r = robot_with(with_motors(three_wheels()), usual(), start_with(0, 0, 0));
+        fix.place_x_m = r.model.com_x_m;
+        fix.place_y_m = r.model.com_y_m;
+        fix.std_m = REAL(of_heading ? 0 : 1e-6);
+        fix.heading_std_rad = REAL(of_heading ? 1e-6 : 0);
+        ASSERT_STATUS(LACONIC_OK, laconic_filter_fix(&r.filter, &r.model, &fix, &found));
+        TEST_ASSERT_EQUAL_INT(of_heading ? 1 : 2, found.count);
+        laconic_pose pose;
+        laconic_pose_of(&pose, &r.model, &r.filter.state);
+        ASSERT_NEAR(EITHER(1e-9, 1e-5), of_heading ? 0.3 : 0, pose.heading_rad);
+        ASSERT_NEAR(EITHER(1e-9, 1e-5), of_heading ? 0 : 0.07, pose.x_m);
+    }
+    robot r = robot_with(with_motors(three_wheels()), usual(), start_with(0, 0, 0));
+    fix.std_m = fix.heading_std_rad = 0;
+    ASSERT_STATUS(LACONIC_NOT_POSITIVE, laconic_filter_fix(&r.filter, &r.model, &fix, NULL));
+    fix.std_m = 1;
+    fix.heading_std_rad = -1;
+    ASSERT_STATUS(LACONIC_NEGATIVE, laconic_filter_fix(&r.filter, &r.model, &fix, NULL));
+    fix.std_m = -1;
+    fix.heading_std_rad = 1;
+    ASSERT_STATUS(LACONIC_NEGATIVE, laconic_filter_fix(&r.filter, &r.model, &fix, NULL));
+}
+
+/* A reading far from all that can be leaves the estimate as it was. */
+static void readings_beyond_the_range_change_nothing(void) {
+    robot r = robot_with(with_motors(three_wheels()), usual(), start_with(0, 0, 0));
+    laconic_real turned[LACONIC_MAX_WHEELS] = {0};
+    predict(&r, 10);
+    laconic_filter before = r.filter;
+    const laconic_real far[2] = {REAL(EITHER(1e85, 1e15)), REAL(EITHER(1e200, 1e30))};
+    for (int k = 0; k < 2; k++) {
+        turned[0] = far[k];
+        ASSERT_STATUS(LACONIC_OVERFLOW, laconic_filter_yaw_rate(&r.filter, &r.model, far[k], NULL));
+        ASSERT_STATUS(LACONIC_OVERFLOW, laconic_filter_encoders(&r.filter, &r.model, turned, NULL));
+        TEST_ASSERT_EQUAL_MEMORY(&before, &r.filter, sizeof before);
+    }
+    r.filter.state.heading.turns = (int64_t)1 << 62;
+    before = r.filter;
+    ASSERT_STATUS(LACONIC_OVERFLOW, laconic_filter_yaw_rate(&r.filter, &r.model, 0, NULL));
+    TEST_ASSERT_EQUAL_MEMORY(&before, &r.filter, sizeof before);
+}
+
+static void noise_beyond_the_range_is_refused_at_the_start_or_when_it_gets_there(void) {
+    laconic_filter_settings s = usual();
+    robot r = robot_with(with_motors(three_wheels()), s, start_with(0, 0, 0));
+    laconic_filter filter = r.filter;
+    s.voltage_noise_V_per_sqrt_Hz = REAL(EITHER(1e200, 1e30));
+    ASSERT_STATUS(LACONIC_OVERFLOW, laconic_filter_start(&filter, &r.model, &s, &r.filter.state));
+    s = usual();
+    s.position_std_m = REAL(EITHER(1e200, 1e30));
+    ASSERT_STATUS(LACONIC_OVERFLOW, laconic_filter_start(&filter, &r.model, &s, &r.filter.state));
+    s = usual();
+    s.slip_noise_m_per_s_per_sqrt_Hz = REAL(EITHER(1e154, 1.5e19));
+    ASSERT_STATUS(LACONIC_OK, laconic_filter_start(&filter, &r.model, &s, &r.filter.state));
+    laconic_status status = LACONIC_OK;
+    int steps = 0;
+    for (; steps < 100000 && status == LACONIC_OK; steps++)
+        status = laconic_filter_predict(&filter, &r.model, &r.integrator, &r.held);
+    ASSERT_STATUS(LACONIC_OVERFLOW, status);
+    const laconic_filter before = filter;
+    ASSERT_STATUS(LACONIC_OVERFLOW, laconic_filter_predict(&filter, &r.model, &r.integrator, &r.held));
+    TEST_ASSERT_EQUAL_MEMORY(&before.covariance, &filter.covariance, sizeof before.covariance);
+    TEST_ASSERT_EQUAL_MEMORY(&before.state, &filter.state, sizeof before.state);
+}
+
 int main(void) {
     UNITY_BEGIN();
     RUN_TEST(the_estimate_without_readings_is_the_core_s_own_run);
@@ -227,5 +336,10 @@ int main(void) {
     RUN_TEST(settings_out_of_range_are_refused);
     RUN_TEST(instruments_that_are_not_there_are_refused);
     RUN_TEST(the_covariance_stays_positive_over_a_hundred_thousand_steps);
+    RUN_TEST(a_bias_is_estimated_where_it_may_be_or_become_one);
+    RUN_TEST(a_wheel_without_an_encoder_is_not_read);
+    RUN_TEST(a_fix_may_be_of_the_place_or_of_the_heading_alone);
+    RUN_TEST(readings_beyond_the_range_change_nothing);
+    RUN_TEST(noise_beyond_the_range_is_refused_at_the_start_or_when_it_gets_there);
     return UNITY_END();
 }
