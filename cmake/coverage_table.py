@@ -28,7 +28,8 @@ PARTS = {"core": ("core_c/src", "core_c/derivatives", "core_c/filter", "core_c/e
          "commands": ("firmware_stub/secure",),
          "FMU": ("fmu", "fmu/vehicle")}
 LEFT_OUT = ("shared_library", "library_drives")  # what Python alone calls
-SCALARS = {"double": r"(test|node)_\w+_double|node_secure|fmu_unit_\w+", "single": r"(test|node)_\w+_single|node_secure"}
+SCALARS = {"double": r"(test|node)_\w+_double|node_secure|fmu_unit_\w+",
+           "single": r"(test|node)_\w+_single|node_secure"}
 KINDS = ("lines", "branches", "conditions")
 MARK = re.compile(r"cannot be reached(?: in (double|single))?: \S")  # in a comment, with the reason behind it
 STALE = "is listed as what cannot be reached, and a test reaches it: take the comment out"
@@ -82,13 +83,14 @@ def report(build: Path, scalar: str) -> dict:
 
 
 def listed(file: str, scalar: str) -> list[set[int]]:
-    """Lines of a file that say why they cannot be reached: of either scalar type, or of this one."""
+    """Lines of a file that say why they cannot be reached, of either scalar type or of this one: the comment stands in
+    the line, or by itself in the line before."""
     lines = Path(file).read_text(encoding="utf-8").splitlines()
     found = []
     for number, line in enumerate(lines, 1):
         told = MARK.search(line)
         if told and told[1] in (None, scalar):
-            found.append({number})
+            found.append({number + line.strip().startswith("/*")})
     return found
 
 
@@ -98,9 +100,9 @@ def missed(data: dict, scalar: str) -> dict[str, list[tuple[str, int, str]]]:
     found: dict[str, set] = {kind: set() for kind in KINDS}
     for file in data["files"]:
         name = file["filename"]
-        lines = uncovered_lines(file["segments"])
+        lines = uncovered_lines(file["segments"]) & lines_of_code(name)
         branches = {key for key, count in taken_branches(file["branches"]).items() if count == 0}
-        hidden = hidden_conditions(file.get("mcdc_records", ()))
+        hidden = hidden_conditions(file.get("mcdc_records", ()), known_conditions(file["branches"]))
         left = file["summary"]["mcdc"]["count"] - file["summary"]["mcdc"]["covered"]
         marks = listed(name, scalar)
         reasons = set()
@@ -136,17 +138,41 @@ def taken_branches(branches: list) -> Counter:
     return found
 
 
-def hidden_conditions(records: list) -> list[tuple[int, int, int]]:
+def known_conditions(branches: list) -> set[tuple[int, int, int, int]]:
+    """Where conditions stand that have no counts, since the compiler knows them, or since they were never asked: what
+    made that so is then a side of another condition that was never taken."""
+    asked: Counter = Counter()
+    for line, column, end, end_column, true, false, *_ in branches:
+        asked[line, column, end, end_column] += true + false
+    return {place for place, count in asked.items() if count == 0}
+
+
+def hidden_conditions(records: list, known: set[tuple[int, int, int, int]]) -> list[tuple[int, int, int]]:
     """Conditions that no test has shown to decide by themselves: line, column, number. Those that the compiler knows
     come last: they decide nothing, and LLVM's counts leave them out."""
     shown: dict[tuple[int, int, int], bool] = {}
     whole: Counter = Counter()
+    last: set[tuple[int, int]] = set()
     for record in records:
         for number, is_shown in enumerate(record[-1], 1):
             key = (record[0], record[1], number)
             shown[key] = shown.get(key, False) or is_shown
             whole[record[0], record[1]] += is_shown
-    return sorted((key for key, is_shown in shown.items() if not is_shown), key=lambda key: (whole[key[:2]] == 0, key))
+        if any((record[0], record[1]) <= place[:2] and place[2:] <= (record[2], record[3]) for place in known):
+            last.add((record[0], record[1]))
+    return sorted((key for key, is_shown in shown.items() if not is_shown),
+                  key=lambda key: (key[:2] in last, whole[key[:2]] == 0, key))
+
+
+def lines_of_code(file: str) -> set[int]:
+    """Lines that are neither the preprocessor's nor a comment by itself."""
+    found, goes_on = set(), False
+    for number, line in enumerate(Path(file).read_text(encoding="utf-8").splitlines(), 1):
+        is_directive = goes_on or line.lstrip().startswith("#")
+        goes_on = is_directive and line.endswith("\\")
+        if not is_directive and not (line.lstrip().startswith("/*") and line.rstrip().endswith("*/")):
+            found.add(number)
+    return found
 
 
 def uncovered_lines(segments: list) -> set[int]:

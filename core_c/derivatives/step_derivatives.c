@@ -6,6 +6,7 @@
 
 /* NULL: the derivation is of other methods. */
 static const laconic_derived_method *derived(const laconic_derivation *derivation, const laconic_method *chosen) {
+    /* cannot be reached: every list ends with NULL */
     for (int i = 0; i < LACONIC_DERIVED_METHODS && derivation->method[i] != NULL; i++)
         if (derivation->method[i]->chosen == chosen) return derivation->method[i];
     return NULL;

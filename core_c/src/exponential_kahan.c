@@ -94,7 +94,7 @@ INLINE increment kahan_base(const laconic_model *m, const laconic_integrator *in
 
 /* Smaller where a program has a single base step: the second-order method where b never varies. */
 INLINE increment only_kahan_base(const laconic_model *m, const laconic_integrator *integrator, int level, vector zeta,
-                                 const parabola *b) {
+                                 const parabola *b) { /* cannot be reached: of a core without samples */
     return kahan_increment(m, integrator, level, zeta, b, follow_inlined);
 }
 

@@ -226,6 +226,21 @@ static void a_slope_is_a_downhill_force_and_a_lighter_load(void) {
     ASSERT_NEAR(EITHER(1e-11, 1e-4), level.state.x_m.value, sloped.state.x_m.value);
 }
 
+/* A wheel without a motor has no current that could reach a limit. */
+static void limits_of_current_are_of_wheels_with_motors(void) {
+    laconic_vehicle v = with_drive(robotino(0.5, 0.1, 0));
+    laconic_input input = no_input();
+    v.drive.current_limit_A = 2;
+    v.wheel[1].undriven = true;
+    laconic_plant plant = started(v, 1e-3, 0, 0, 0);
+    for (int i = 0; i < 3; i++) input.voltage_V[i] = 24;
+    run(&plant, &input, 20);
+    const laconic_outputs out = outputs_with(&plant, &input);
+    TEST_ASSERT_TRUE(out.friction.drive_limit[0] == REAL(LACONIC_LIMIT_CURRENT));
+    TEST_ASSERT_TRUE(out.friction.drive_limit[1] == 0 && out.friction.motor_current_A[1] == 0);
+    ASSERT_NEAR(1e-6, 2, out.friction.motor_current_A[0]);
+}
+
 int main(void) {
     UNITY_BEGIN();
     RUN_TEST(what_contradicts_itself_is_refused_by_name);
@@ -238,5 +253,6 @@ int main(void) {
     RUN_TEST(wheels_are_taken_over_from_the_ideal_model_and_back);
     RUN_TEST(the_sampled_step_holds_the_input_of_the_middle);
     RUN_TEST(a_slope_is_a_downhill_force_and_a_lighter_load);
+    RUN_TEST(limits_of_current_are_of_wheels_with_motors);
     return UNITY_END();
 }

@@ -88,6 +88,16 @@ static void a_negative_wheel_inertia_is_refused_before_the_rotors_inertia_hides_
     ASSERT_REFUSED(LACONIC_NEGATIVE, LACONIC_FIELD_WHEEL_INERTIA, 0, laconic_motor_fit(&v, &m, &why), why);
 }
 
+/* A vehicle is checked later: a count beyond the array is not followed. */
+static void a_motor_is_fitted_to_the_wheels_that_there_can_be(void) {
+    laconic_vehicle v = three_wheels();
+    const laconic_motor m = good_motor();
+    v.wheel_count = LACONIC_MAX_WHEELS + 9;
+    for (int i = 0; i < LACONIC_MAX_WHEELS; i++) v.wheel[i].undriven = i < 2;
+    ASSERT_STATUS(LACONIC_OK, laconic_motor_fit(&v, &m, &why));
+    TEST_ASSERT_TRUE(v.wheel_count == LACONIC_MAX_WHEELS + 9 && v.motor_gain_Nm_per_V > 0);
+}
+
 int main(void) {
     UNITY_BEGIN();
     RUN_TEST(the_data_sheet_becomes_gain_damping_and_inertia);
@@ -98,5 +108,6 @@ int main(void) {
     RUN_TEST(a_motor_whose_constants_leave_the_range_or_add_energy_is_refused);
     RUN_TEST(a_back_emf_of_the_wrong_sign_is_refused_even_where_friction_outweighs_it);
     RUN_TEST(a_negative_wheel_inertia_is_refused_before_the_rotors_inertia_hides_it);
+    RUN_TEST(a_motor_is_fitted_to_the_wheels_that_there_can_be);
     return UNITY_END();
 }

@@ -31,8 +31,10 @@ static laconic_real *slot_in(laconic_input *input, uint8_t take, int32_t wheel_c
         if (k < 3) return k < 2 ? &input->body_force_N[k] : &input->body_moment_Nm;
         k -= 3;
     }
+    /* cannot be reached: numbers beyond the last are refused before */
     if (take & LACONIC_RAW_WORLD_FORCE && k < 4)
         return k < 2 ? &input->world_force_N[k] : &input->world_force_point_m[k - 2];
+    /* cannot be reached: numbers beyond the last are refused before */
     return NULL;
 }
 
@@ -100,6 +102,7 @@ void laconic_raw_collect(laconic_raw_output *raw, const laconic_plant *plant, co
                          const laconic_sensor_outputs *sensed) {
     laconic_real *to = raw->number;
     const int32_t n = plant->model.wheel_count;
+    /* cannot be reached: a constant of the build */
     if (!LACONIC_NODE_DRIVES_ONLY && raw->send & LACONIC_RAW_NU) {
         laconic_nu(&plant->model, &plant->state, to);
         to += 3;
@@ -113,9 +116,11 @@ void laconic_raw_collect(laconic_raw_output *raw, const laconic_plant *plant, co
         laconic_plant_wheel_angles(plant, to);
         to += n;
     }
+    /* cannot be reached: a constant of the build */
     if (!LACONIC_NODE_DRIVES_ONLY && raw->send & LACONIC_RAW_ENERGY) *to++ = laconic_plant_energy_J(plant);
     if (raw->send >= LACONIC_RAW_IMU) { /* one of the last three, which few choose */
         if (LACONIC_NODE_WITH_SENSORS) to = collect_sensors(to, raw->send, n, sensed);
+        /* cannot be reached: the first is a constant of the build */
         if (LACONIC_NODE_WITH_DRIVES && raw->send & LACONIC_RAW_HELD_TORQUE)
             for (int32_t i = 0; i < n; i++) *to++ = held->axle_torque_Nm[i];
     }

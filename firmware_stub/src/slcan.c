@@ -44,7 +44,9 @@ static bool kind_of(char letter, laconic_frame *frame) {
     const char kind = (char)(letter | ' ');
     frame->extended = kind != letter;
     frame->remote = kind == 'r';
+    /* cannot be reached: a constant of the build */
     frame->bit_rate_switch = LACONIC_NODE_CAN_FD && kind == 'b';
+    /* cannot be reached: the first is a constant of the build */
     frame->fd = LACONIC_NODE_CAN_FD && (kind == 'd' || kind == 'b');
     return kind == 't' || frame->remote || frame->fd;
 }
@@ -54,6 +56,7 @@ static bool parse_frame(const char *line, size_t length, laconic_frame *frame) {
     laconic_frame read = {0};
     uint32_t dlc;
     uint32_t byte;
+    /* cannot be reached: the caller has asked the same before */
     if (!kind_of(line[0], &read)) return false;
     const size_t id_digits = read.extended ? 8 : 3;
     if (length < 1U + id_digits + 1U) return false;

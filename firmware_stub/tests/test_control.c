@@ -309,6 +309,41 @@ static void a_commit_names_field_and_item_of_what_is_missing(void) {
     TEST_ASSERT_TRUE(data[4] == LACONIC_FIELD_WHEEL_X && data[5] == 3);
 }
 
+static void a_voltage_comes_too_late_for_steps_that_are_due(void) {
+    bench_load(2);
+    bench_start_lockstep();
+    bench_sync(1000);
+    bench_voltage(0, 500, 0);
+    TEST_ASSERT_TRUE(node.input[0].voltage_V[0] == 0);
+    TEST_ASSERT_EQUAL_UINT16(1, node.counters.refused);
+}
+
+static void a_sync_asks_for_a_million_steps_at_most_and_for_one_of_sampled_inputs(void) {
+    bench_load(2);
+    bench_start_lockstep();
+    bench_sync(0);
+    bench_sync(1000001);
+    TEST_ASSERT_EQUAL_UINT16(2, node.counters.refused);
+    TEST_ASSERT_FALSE(laconic_node_is_busy(&node));
+    bench_sync(1000000);
+    TEST_ASSERT_EQUAL_UINT32(1000000, node.lockstep.steps_due);
+    bench_control(LACONIC_WIRE_COMMAND_STOP, 0, 0);
+    bench_select(0, 0, LACONIC_RAW_SAMPLED | LACONIC_RAW_VOLTAGE);
+    bench_start_lockstep();
+    bench_sync(2);
+    TEST_ASSERT_FALSE(laconic_node_is_busy(&node));
+    bench_sync(1);
+    TEST_ASSERT_TRUE(laconic_node_is_busy(&node));
+}
+
+static const laconic_method *only_rk4(int32_t number) { return number == 1 ? &laconic_rk4 : NULL; }
+
+static void an_identity_names_the_methods_that_are_there(void) {
+    node.config.method = only_rk4;
+    laconic_node_pack(&node, LACONIC_WIRE_IDENTITY, data);
+    TEST_ASSERT_EQUAL_HEX8(2, data[7]);
+}
+
 int main(void) {
     UNITY_BEGIN();
     RUN_TEST(a_rate_takes_a_whole_number_of_steps_up_to_what_a_tick_may_take);
@@ -331,5 +366,8 @@ int main(void) {
     RUN_TEST(a_tick_takes_no_more_steps_than_it_may);
     RUN_TEST(a_single_step_that_is_due_keeps_the_node_busy);
     RUN_TEST(a_commit_names_field_and_item_of_what_is_missing);
+    RUN_TEST(a_voltage_comes_too_late_for_steps_that_are_due);
+    RUN_TEST(a_sync_asks_for_a_million_steps_at_most_and_for_one_of_sampled_inputs);
+    RUN_TEST(an_identity_names_the_methods_that_are_there);
     return UNITY_END();
 }

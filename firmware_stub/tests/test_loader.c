@@ -335,6 +335,11 @@ static void a_check_names_what_a_frame_was_refused_for(void) {
     TEST_ASSERT_TRUE(field == LACONIC_FIELD_WHEEL_X && item == LACONIC_MAX_WHEELS + 1);
 }
 
+static void a_number_that_no_field_has_is_unknown(void) {
+    send(0, 250, 0, 0);
+    TEST_ASSERT_EQUAL_UINT8(LACONIC_WIRE_STATUS_PARAMETER_UNKNOWN, check());
+}
+
 int main(void) {
     UNITY_BEGIN();
     RUN_TEST(numbers_arrive_bit_for_bit_where_they_belong);
@@ -362,5 +367,6 @@ int main(void) {
     RUN_TEST(half_a_double_leaves_the_number_before);
     RUN_TEST(a_check_that_passes_names_nothing);
     RUN_TEST(a_check_names_what_a_frame_was_refused_for);
+    RUN_TEST(a_number_that_no_field_has_is_unknown);
     return UNITY_END();
 }

@@ -69,7 +69,7 @@ static void ten_thousand_steps_a_second_are_taken(void) {
 
 static void steps_without_a_whole_rate_are_refused(void) {
     uint8_t data[LACONIC_FRAME_BYTES];
-    static const double steps_s[] = {0.0007, 0.00009, 1.5, 2};
+    static const double steps_s[] = {0.0007, 0.00009, 1.5, 2, 1 / 1000.4};
     for (size_t k = 0; k < sizeof steps_s / sizeof steps_s[0]; k++) {
         load((laconic_real)steps_s[k]);
         const struct laconic_dbc_control_t frame = {.command = LACONIC_WIRE_COMMAND_START_DRIVES};
@@ -365,6 +365,24 @@ static void a_protocol_may_fill_its_room(void) {
     TEST_ASSERT_EQUAL_UINT8(0, start());
 }
 
+static void raw_numbers_alone_make_the_node_speak_while_drives_play(void) {
+    uint8_t data[LACONIC_FRAME_BYTES];
+    start();
+    TEST_ASSERT_EQUAL_UINT8(0, bench_select(0, LACONIC_RAW_WHEEL_SPEED, 0));
+    pass(100000, 1000);
+    TEST_ASSERT_TRUE(bench_receive(LACONIC_WIRE_HEARTBEAT, data));
+}
+
+static void a_step_that_is_refused_under_sensors_is_a_fault_too(void) {
+    start();
+    TEST_ASSERT_EQUAL_UINT8(0, bench_select(0, LACONIC_RAW_IMU, 0));
+    pass(2000, 1000);
+    node.input[0].body_moment_Nm = LACONIC_REAL_MAX * 2;
+    pass(1000, 1000);
+    TEST_ASSERT_EQUAL_UINT8(LACONIC_WIRE_STATE_FAULT, node.state);
+    TEST_ASSERT_EQUAL_UINT64(2, node.sensors.newest);
+}
+
 int main(void) {
     UNITY_BEGIN();
     RUN_TEST(one_step_is_taken_each_period);
@@ -392,5 +410,7 @@ int main(void) {
     RUN_TEST(sensors_watch_what_the_drives_do);
     RUN_TEST(an_order_for_a_wheel_without_a_drive_is_unknown);
     RUN_TEST(a_protocol_may_fill_its_room);
+    RUN_TEST(raw_numbers_alone_make_the_node_speak_while_drives_play);
+    RUN_TEST(a_step_that_is_refused_under_sensors_is_a_fault_too);
     return UNITY_END();
 }

@@ -243,7 +243,7 @@ static void an_answer_repeats_all_four_bits_of_its_request(void) {
 /* Neither the right echo nor a right protection is enough by itself. */
 static void an_open_needs_the_echo_and_its_protection(void) {
     uint8_t data[LACONIC_FRAME_BYTES];
-    const uint32_t nonce = bench_hello(), before = node.session.number;
+    const uint32_t before = node.session.number, nonce = bench_hello();
     laconic_frame frame = bench_open_frame(0x77, nonce);
     frame.data[5] ^= 1U;
     laconic_node_on_frame(&node, &frame, now_us);
@@ -251,9 +251,11 @@ static void an_open_needs_the_echo_and_its_protection(void) {
     laconic_dbc_open_pack(frame.data, &other, 8);
     laconic_protect_keyed(LACONIC_WIRE_OPEN, frame.data, nonce, 3);
     laconic_node_on_frame(&node, &frame, now_us);
+    frame = bench_open_frame(before, node.session.last_nonce + 1U); /* as if it were repeated */
+    laconic_node_on_frame(&node, &frame, now_us);
     TEST_ASSERT_FALSE(bench_receive(LACONIC_WIRE_RESULT, data));
     TEST_ASSERT_EQUAL_HEX32(before, node.session.number);
-    TEST_ASSERT_EQUAL_UINT16(2, node.counters.crc_errors);
+    TEST_ASSERT_EQUAL_UINT16(3, node.counters.crc_errors);
 }
 
 static void a_run_begins_with_open_ears(void) {

@@ -56,8 +56,9 @@ static void frames_of_every_kind_are_read(void) {
 }
 
 static void lines_that_are_no_frames_are_refused(void) {
-    const char *const wrong[] = {"t\r",        "t20\r",     "t8001AA\r", "t2009\r",      "t2001\r",   "t2001A\r",
-                                 "t2001AAB\r", "t2001GG\r", "tXYZ0\r",   "T200000000\r", "d2009AA\r", "r20080011\r"};
+    const char *const wrong[] = {"t\r",       "t20\r",       "t8001AA\r", "t2009\r", "t2001\r",
+                                 "t2001A\r",  "t2001AAB\r",  "t2001GG\r", "tXYZ0\r", "T200000000\r",
+                                 "d2009AA\r", "r20080011\r", "t200G\r"};
     feed("O\r");
     for (size_t k = 0; k < sizeof wrong / sizeof wrong[0]; k++) answers(wrong[k], "\a");
     TEST_ASSERT_EQUAL_UINT8(0, frame.length);
