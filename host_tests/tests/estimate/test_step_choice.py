@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import numpy as np
 import pytest
+from moving_carriage import MOVING_CARRIAGE
 
 from laconic.benchmark.accuracy import state_row
 from laconic.core import load
@@ -14,23 +15,6 @@ from laconic.scene.step_choice import candidates, run_pilot
 from laconic.simulation import advance_plant, simulate
 from laconic.verification.reference import reference_states
 
-VEHICLE = """
-[vehicle]
-mass_kg = 10.0
-yaw_inertia_kgm2 = 0.3
-com_x_m = 0.03
-wheel_radius_m = 0.05
-wheel_inertia_kgm2 = 0.002
-motor_gain_Nm_per_V = 0.5
-motor_damping_Nms = 0.05
-wheel = [
-    {kind = "omni", x_m = 0.2, y_m = 0.0, axle_deg = 0.0},
-    {kind = "omni", x_m = -0.1, y_m = 0.17, axle_deg = 120.0},
-    {kind = "omni", x_m = -0.1, y_m = -0.17, axle_deg = 240.0},
-]
-[initial]
-nu_rad_per_s = [10.0, -5.0, 20.0]
-"""
 STEPPED = """
 [[input]]
 signal = "voltage_V[1]"
@@ -54,7 +38,7 @@ tolerance = {}
 
 
 def text_of(tolerance="1e-7", inputs=STEPPED, run=AUTO):
-    return VEHICLE + inputs + run.format(tolerance)
+    return MOVING_CARRIAGE + inputs + run.format(tolerance)
 
 
 def scene_in(folder, text):
@@ -118,7 +102,7 @@ def test_another_method_finds_another_step(tmp_path):
 def test_nonsense_is_one_line(tmp_path, step, tolerance, words):
     run = f"duration_s = 1.0\nstep_s = {step}\n" + (f"tolerance = {tolerance}\n" if tolerance else "")
     with pytest.raises(BadInput) as refused:
-        scene_in(tmp_path, f"{VEHICLE}{STEPPED}[run]\n{run}")
+        scene_in(tmp_path, f"{MOVING_CARRIAGE}{STEPPED}[run]\n{run}")
     assert words in str(refused.value)
     assert "\n" not in str(refused.value)
 

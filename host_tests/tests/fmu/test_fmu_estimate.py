@@ -12,6 +12,7 @@ import pytest
 from fmpy.validation import validate_fmu
 from fmu_importer import DISCARD, ERROR, OK, Importer, generic
 from fmu_saved_states import SUFFIX, deserialize, save, serialize
+from moving_carriage import MOVING_CARRIAGE
 
 from laconic.cli.main import run
 from laconic.core import load
@@ -27,22 +28,7 @@ VARIANTS = [(2, False), (3, False), (3, True)]
 VOLTS = [3.0, -2.0, 5.0]
 OUTPUTS = tuple(f"estimated_error_{which}{name}" for which in ("", "largest_", "rounding_") for name in NAMES)
 STATES = ("nu_rad_per_s", "x_m", "y_m", "heading_rad", "wheel_angle_rad")
-SCENE = """
-[vehicle]
-mass_kg = 10.0
-yaw_inertia_kgm2 = 0.3
-com_x_m = 0.03
-wheel_radius_m = 0.05
-wheel_inertia_kgm2 = 0.002
-motor_gain_Nm_per_V = 0.5
-motor_damping_Nms = 0.05
-wheel = [
-    {kind = "omni", x_m = 0.2, y_m = 0.0, axle_deg = 0.0},
-    {kind = "omni", x_m = -0.1, y_m = 0.17, axle_deg = 120.0},
-    {kind = "omni", x_m = -0.1, y_m = -0.17, axle_deg = 240.0},
-]
-[initial]
-nu_rad_per_s = [10.0, -5.0, 20.0]
+SCENE = MOVING_CARRIAGE + """\
 [[input]]
 signal = "voltage_V[1]"
 kind = "steps"
