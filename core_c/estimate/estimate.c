@@ -1,6 +1,7 @@
 /* Error estimate: windows of steps, in each the error of the first step by two half steps; and the twin of a plant with
  * friction. linear_motion.c carries the error from window to window. */
 #include "estimate_parts.h"
+#include "exponential_gauss_8.h"
 
 /* ----------------------------------------------------------------------------------- starting -- */
 
@@ -24,6 +25,10 @@ laconic_status laconic_estimate_start(laconic_estimate *estimate, const laconic_
         status = laconic_integrator_prepare(&fresh.finer, finer != NULL ? finer : plant->integrator.method,
                                             &plant->model, R(0.5) * h, why);
     if (status != LACONIC_OK) return status;
+#if LACONIC_WITH_EXPONENTIAL_GAUSS
+    laconic_halve_panels(&fresh.halves, &plant->model);
+    laconic_halve_panels(&fresh.finer, &plant->model);
+#endif
     fresh.most_steps = most_steps;
     laconic_carry_prepare(&fresh, &plant->model, h);
     fresh.start = fresh.twin = plant->state;

@@ -236,13 +236,15 @@ static laconic_status exponential_gauss_8_step(const laconic_model *model, const
 
 /* The stretches end when they cover the step, or when what dies out has done so on the slowest of those axes on which
  * the step would be too long a panel. */
-static void choose_panels(laconic_integrator *integrator, const laconic_model *m) {
-    const real fastest = integrator->step_s * laconic_fastest_decay(m), first = R(PARTS) * PANEL_DECAY;
+static void choose_panels(laconic_integrator *integrator, const laconic_model *m, real panel_decay) {
+    const real fastest = integrator->step_s * laconic_fastest_decay(m), first = R(PARTS) * panel_decay;
     real slowest = fastest, end = R(0), length = R(1); /* in units of the first stretch */
-    if (!ANY(fastest > PANEL_DECAY)) return;
+    integrator->stretches = 0;
+    integrator->has_rest = false;
+    if (!ANY(fastest > panel_decay)) return;
     for (int axis = 0; axis < 3; axis++) {
         const real a = integrator->step_s * m->decay_per_s[axis];
-        if (ANY(BOTH(a > PANEL_DECAY, a < slowest))) slowest = a;
+        if (ANY(BOTH(a > panel_decay, a < slowest))) slowest = a;
     }
     do {
         if (integrator->stretches >= 2) length *= R(2);
@@ -263,10 +265,9 @@ static void phis_at_nodes(real phi[PHIS * (NODES + 1)], real a) {
     }
 }
 
-static laconic_status exponential_gauss_8_prepare(laconic_integrator *integrator, const laconic_model *model,
-                                                  laconic_refusal *why) {
+static void prepare_panels(laconic_integrator *integrator, const laconic_model *model, real panel_decay) {
     const real h = integrator->step_s;
-    choose_panels(integrator, model);
+    choose_panels(integrator, model, panel_decay);
     for (int axis = 0; axis < 3; axis++) {
         const real a = h * model->decay_per_s[axis];
         real *kept = integrator->collocation[axis];
@@ -280,6 +281,17 @@ static laconic_status exponential_gauss_8_prepare(laconic_integrator *integrator
         }
         if (integrator->has_rest) phis_at_nodes(integrator->collocation_of_rest[axis], a * integrator->rest_share);
     }
+}
+
+#if LACONIC_WITH_PREPARE /* lanes have constants alone */
+void laconic_halve_panels(laconic_integrator *integrator, const laconic_model *model) {
+    if (integrator->collocation[0][0] != R(0)) prepare_panels(integrator, model, R(0.5) * PANEL_DECAY);
+}
+#endif
+
+static laconic_status exponential_gauss_8_prepare(laconic_integrator *integrator, const laconic_model *model,
+                                                  laconic_refusal *why) {
+    prepare_panels(integrator, model, PANEL_DECAY);
     return laconic_explicit_limits(integrator, model, R(LACONIC_REAL_MAX), GAUSS_ROTATION, why);
 }
 

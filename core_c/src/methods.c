@@ -1,6 +1,8 @@
 /* The list of all methods. It links every method; firmware with one fixed method uses that one's name instead. */
 #include "common.h"
 
+#define FIRST (1 - LACONIC_WITH_EXPONENTIAL_GAUSS) /* without that method there is no auto, which has the number 0 */
+
 static const laconic_method *const methods[LACONIC_METHOD_COUNT] = {
 #if LACONIC_WITH_EXPONENTIAL_GAUSS
     &laconic_auto,
@@ -28,7 +30,7 @@ const laconic_method *laconic_method_by_number(int32_t number) {
 }
 
 const laconic_method *laconic_method_by_name(const char *name) {
-    for (int32_t i = 0; i < LACONIC_METHOD_COUNT; i++)
-        if (methods[i] != NULL && same_text(methods[i]->name, name)) return methods[i];
+    for (int32_t i = FIRST; i < LACONIC_METHOD_COUNT; i++)
+        if (same_text(methods[i]->name, name)) return methods[i];
     return NULL;
 }

@@ -141,6 +141,8 @@ static void test_what_no_motion_has_is_out_of_range(void) {
     in_free_run();
     expect_out_of_range(&on.node.plant.state.zeta[1].rest, 1);
     in_free_run();
+    expect_out_of_range(&on.node.plant.state.travel[2].rest, 1);
+    in_free_run();
     expect_out_of_range(&on.node.plant.state.heading.rest, (laconic_real)1.5);
     in_free_run();
     expect_out_of_range(&on.node.input[0].voltage_V[1], 60);
@@ -192,6 +194,25 @@ static void test_a_possible_motion_is_in_range(void) {
     TEST_ASSERT_EQUAL(LACONIC_WIRE_STATE_TIMEOUT, on.node.state);
 }
 
+static void test_a_sum_of_nought_may_have_a_rest(void) {
+    in_free_run();
+    TEST_ASSERT_EQUAL(0, rig_command(&on, LACONIC_WIRE_COMMAND_STOP));
+    on.node.plant.state.x_m.value = 0;
+    on.node.plant.state.x_m.rest = LACONIC_EPSILON;
+    bench_tick(&on);
+    TEST_ASSERT_EQUAL(LACONIC_INTEGRITY_SOUND, on.integrity.broken);
+}
+
+static void test_what_stood_in_its_memory_before_does_not_matter(void) {
+    static laconic_integrity clean, dirty;
+    in_free_run();
+    memset(&clean, 0, sizeof clean);
+    memset(&dirty, 0xA5, sizeof dirty);
+    laconic_integrity_begin(&clean, &on.node, &on.config, &on.integrity.limits, on.checks);
+    laconic_integrity_begin(&dirty, &on.node, &on.config, &on.integrity.limits, on.checks);
+    TEST_ASSERT_EQUAL_MEMORY(&clean, &dirty, sizeof clean);
+}
+
 static void test_a_limit_of_0_is_none(void) {
     in_free_run();
     memset(&on.integrity.limits, 0, sizeof on.integrity.limits);
@@ -228,6 +249,9 @@ static void test_without_a_vehicle_the_node_begins_as_after_power_up(void) {
         session_with(bytes[k], 1, IN_LOADING, LACONIC_INTEGRITY_ALL);
         TEST_ASSERT_EQUAL(LACONIC_WIRE_STATE_EMPTY, on.node.state);
         TEST_ASSERT_FALSE(on.integrity.has_vehicle);
+        static laconic_integrity fresh;
+        laconic_integrity_begin(&fresh, &on.node, &on.config, &on.integrity.limits, on.checks);
+        TEST_ASSERT_EQUAL_MEMORY(&fresh.loaded, &on.integrity.loaded, sizeof fresh.loaded);
         TEST_ASSERT_TRUE(rig_session(&on, NULL, NULL, NULL));
     }
 }
@@ -311,6 +335,8 @@ int main(void) {
     RUN_TEST(test_a_count_of_wheels_beyond_the_largest_reads_nothing_behind_them);
     RUN_TEST(test_two_changes_that_cancel_in_the_sum_of_words_are_noticed_by_the_other);
     RUN_TEST(test_a_possible_motion_is_in_range);
+    RUN_TEST(test_a_sum_of_nought_may_have_a_rest);
+    RUN_TEST(test_what_stood_in_its_memory_before_does_not_matter);
     RUN_TEST(test_a_limit_of_0_is_none);
     RUN_TEST(test_loaded_numbers_that_changed_are_refused_at_commit);
     RUN_TEST(test_a_changed_configuration_is_repaired_and_told);

@@ -37,5 +37,6 @@ def analyse(scene: Scene, parts: Sequence[str] = PARTS, *, at_s: float = 0.0) ->
         raise BadInput(f"at_s: {at_s:g} s lies outside the run; give 0 to {scene.run.duration_s:g} s")
     if unknown := [part for part in parts if part not in PARTS]:
         raise BadInput(f"parts: there is no {unknown[0]!r}; {nearest_of(str(unknown[0]), PARTS)}")
-    chosen = tuple(part for part in PARTS if part in parts)
+    if not (chosen := tuple(part for part in PARTS if part in parts)):
+        raise BadInput(f"parts: is empty; give one or more of {', '.join(PARTS)}")
     return study(chosen_subject(scene, chosen, at_s), StudyOptions(chosen), lambda share, part: None)

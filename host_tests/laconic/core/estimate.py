@@ -14,6 +14,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from laconic.core.given import c_object, step_count
+from laconic.core.saved import check_saved
 from laconic.core.schedule import Schedule
 
 if TYPE_CHECKING:
@@ -106,8 +107,21 @@ class Estimate:
         return self.plant.core.ffi.new("laconic_estimate *", self.c[0])
 
     def restore(self, saved: Any) -> None:
-        """Back to what `save` gave."""
-        self.c[0] = c_object(self.plant.core, "estimate", saved)[0]
+        """Back to what `save` gave; BadInput for what an estimate of another robot, method, step or window gave."""
+        found = c_object(self.plant.core, "estimate", saved)
+        if _constants_of(found) != _constants_of(self.c):
+            raise BadInput("estimate: was saved for another robot, method, step or window; give what the save() of this "
+                           "one gave")
+        check_saved(self.plant.core, "estimate", found[0])
+        self.c[0] = found[0]
+
+
+def _constants_of(estimate: Any) -> tuple[Any, ...]:
+    """What stays while an estimate runs, by which it belongs to its plant."""
+    halves = estimate.halves
+    return (estimate.most_steps, halves.method, estimate.finer.method, halves.step_s, halves.gyro_limit,
+            *estimate.angle_per_zeta, *(gain for decay in halves.decay for gain in decay.gain),
+            *(weight for row in halves.collocation for weight in row))
 
 
 def sizes_of(error: Any) -> ErrorSizes:

@@ -16,6 +16,7 @@ if TYPE_CHECKING:
 
 MAKERS = {"input": "plant.input_of({…})", "vehicle": "laconic.Vehicle({…})", "model": "core.prepare(vehicle)",
           "state": "plant.save()", "plant": "plant.save()", "sensors": "sensors.save()",
+          "estimate": "estimate.save()",
           "batch_kind": "batch.prepared(vehicle)"}
 FLAGS = ("FLAG", "ABSENCE")
 MOST_STEPS = 2**64 - 1
