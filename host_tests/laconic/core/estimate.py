@@ -16,6 +16,7 @@ import numpy as np
 from laconic.core.given import c_object, step_count
 from laconic.core.saved import check_saved
 from laconic.core.schedule import Schedule
+from laconic.errors import BadInput
 
 if TYPE_CHECKING:
     from laconic.core.plant import Plant
@@ -110,8 +111,8 @@ class Estimate:
         """Back to what `save` gave; BadInput for what an estimate of another robot, method, step or window gave."""
         found = c_object(self.plant.core, "estimate", saved)
         if _constants_of(found) != _constants_of(self.c):
-            raise BadInput("estimate: was saved for another robot, method, step or window; give what the save() of this "
-                           "one gave")
+            raise BadInput("estimate: was saved for another robot, method, step or window; give what the save() of "
+                           "this one gave")
         check_saved(self.plant.core, "estimate", found[0])
         self.c[0] = found[0]
 

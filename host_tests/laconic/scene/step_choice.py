@@ -115,7 +115,8 @@ def without_step(scene: Scene, tolerance: float, best: Pilot | None, last: BadIn
                         f"number ({str(last).removeprefix(f'{scene.path}: ')})")
     error, unit = best.worst()
     return BadInput(f"{scene.path}: run.tolerance: {tolerance:g} is kept by no step of 1, 2 or 5 times a power of ten; "
-                    f"the least error found is {error:.1e} {unit}, at {best.step_s:g} s: give {1.1 * error:.1e} or more")
+                    f"the least error found is {error:.1e} {unit}, at {best.step_s:g} s: give {1.1 * error:.1e} or "
+                    "more")
 
 
 def run_pilot(scene: Scene, step_s: float) -> Pilot:
