@@ -249,11 +249,20 @@ static void test_without_a_vehicle_the_node_begins_as_after_power_up(void) {
         session_with(bytes[k], 1, IN_LOADING, LACONIC_INTEGRITY_ALL);
         TEST_ASSERT_EQUAL(LACONIC_WIRE_STATE_EMPTY, on.node.state);
         TEST_ASSERT_FALSE(on.integrity.has_vehicle);
-        static laconic_integrity fresh;
-        laconic_integrity_begin(&fresh, &on.node, &on.config, &on.integrity.limits, on.checks);
-        TEST_ASSERT_EQUAL_MEMORY(&fresh.loaded, &on.integrity.loaded, sizeof fresh.loaded);
         TEST_ASSERT_TRUE(rig_session(&on, NULL, NULL, NULL));
     }
+}
+
+static void test_numbers_that_were_loaded_before_are_then_forgotten(void) {
+    static laconic_integrity fresh;
+    bench_power_up(&on, 7, 0, LACONIC_INTEGRITY_ALL);
+    on.node.loader.parameters.vehicle.mass_kg = 5;
+    laconic_integrity_begin(&on.integrity, &on.node, &on.config, &on.integrity.limits, on.checks);
+    on.node.session.key ^= 1U;
+    bench_tick(&on);
+    TEST_ASSERT_EQUAL(LACONIC_WIRE_STATE_EMPTY, on.node.state);
+    laconic_integrity_begin(&fresh, &on.node, &on.config, &on.integrity.limits, on.checks);
+    TEST_ASSERT_EQUAL_MEMORY(&fresh.loaded, &on.integrity.loaded, sizeof fresh.loaded);
 }
 
 static void test_a_tick_sees_few_slices_however_late_it_comes(void) {
@@ -341,6 +350,7 @@ int main(void) {
     RUN_TEST(test_loaded_numbers_that_changed_are_refused_at_commit);
     RUN_TEST(test_a_changed_configuration_is_repaired_and_told);
     RUN_TEST(test_without_a_vehicle_the_node_begins_as_after_power_up);
+    RUN_TEST(test_numbers_that_were_loaded_before_are_then_forgotten);
     RUN_TEST(test_a_tick_sees_few_slices_however_late_it_comes);
     RUN_TEST(test_sampled_inputs_and_slip_count_as_motion_where_they_are_used);
     RUN_TEST(test_what_waits_to_be_sent_is_checked_before_it_is_fetched);
