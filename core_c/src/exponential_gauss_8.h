@@ -183,9 +183,9 @@ typedef struct panel_among {
 #define DEAD_AFTER R(18)
 #endif
 
-/* Panels half as long for an integrator that steps by exponential-gauss-8, which auto does; others stay as they are: they
- * have no weights. Two half steps have the same panels as the whole step otherwise, or, where that has panels and they
- * have none, longer ones, and do not show its error. */
+/* Panels half as long for an integrator that steps by exponential-gauss-8, as auto does; others stay as they are. Two
+ * half steps have otherwise the same panels as the whole step, or, where that has panels and they have none, longer
+ * ones, and do not show its error. */
 #if LACONIC_WITH_PREPARE
 void laconic_halve_panels(laconic_integrator *integrator, const laconic_model *model);
 #endif

@@ -123,6 +123,26 @@ static void a_derivation_of_another_method_is_refused_and_nothing_is_written(voi
     TEST_ASSERT_EQUAL_MEMORY(&before, &filter, sizeof filter);
 }
 
+static void an_adjoint_that_is_asked_for_less_gives_the_rest_as_it_is(void) {
+    const robot r = robot_of(&every_case[0]);
+    const laconic_input held = held_with(false);
+    laconic_state_change before, alone, after;
+    laconic_model_change by_model, by_model_alone;
+    laconic_input input;
+    memset(&after, 0, sizeof after);
+    memset(&by_model, 0, sizeof by_model);
+    memset(&by_model_alone, 0, sizeof by_model_alone);
+    memset(&before, 0, sizeof before);
+    memset(&alone, 0, sizeof alone);
+    after.nu_rad_per_s[0] = after.x_m = REAL(1);
+    ASSERT_STATUS(LACONIC_OK,
+                  laconic_step_adjoint(&before, &input, &by_model, &r.model, &r.integrator, &r.state, &held, &after));
+    ASSERT_STATUS(LACONIC_OK, laconic_step_adjoint(&alone, NULL, &by_model_alone, &r.model, &r.integrator, &r.state,
+                                                   &held, &after));
+    TEST_ASSERT_EQUAL_MEMORY(&before, &alone, sizeof before);
+    TEST_ASSERT_EQUAL_MEMORY(&by_model, &by_model_alone, sizeof by_model);
+}
+
 static void a_method_that_no_derivation_has_is_refused_by_that_of_all(void) {
     robot r = robot_of(&every_case[0]);
     laconic_step_jacobian jacobian;
@@ -137,6 +157,7 @@ int main(void) {
     UNITY_BEGIN();
     RUN_TEST(the_derivation_of_a_method_gives_what_that_of_all_gives);
     RUN_TEST(a_derivation_of_another_method_is_refused_and_nothing_is_written);
+    RUN_TEST(an_adjoint_that_is_asked_for_less_gives_the_rest_as_it_is);
     RUN_TEST(a_method_that_no_derivation_has_is_refused_by_that_of_all);
     return UNITY_END();
 }

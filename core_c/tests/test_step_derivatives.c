@@ -332,26 +332,6 @@ static void is_transposed(const step_case *c) {
 
 static void the_adjoint_is_the_tangent_transposed(void) { for_every_case(is_transposed); }
 
-static void what_an_adjoint_is_not_asked_for_leaves_the_rest_as_it_is(void) {
-    const step_case c = case_of(with_motors(three_wheels()), &laconic_auto, 0.01);
-    const laconic_plant plant = plant_of(&c);
-    laconic_state_change before, alone, after;
-    laconic_model_change by_model, by_model_alone;
-    laconic_input input;
-    memset(&after, 0, sizeof after);
-    memset(&by_model, 0, sizeof by_model);
-    memset(&by_model_alone, 0, sizeof by_model_alone);
-    memset(&before, 0, sizeof before);
-    memset(&alone, 0, sizeof alone);
-    after.nu_rad_per_s[0] = after.x_m = REAL(1);
-    ASSERT_STATUS(LACONIC_OK, laconic_step_adjoint(&before, &input, &by_model, &plant.model, &plant.integrator,
-                                                   &plant.state, &c.held, &after));
-    ASSERT_STATUS(LACONIC_OK, laconic_step_adjoint(&alone, NULL, &by_model_alone, &plant.model, &plant.integrator,
-                                                   &plant.state, &c.held, &after));
-    TEST_ASSERT_EQUAL_MEMORY(&before, &alone, sizeof before);
-    TEST_ASSERT_EQUAL_MEMORY(&by_model, &by_model_alone, sizeof by_model);
-}
-
 static void add_columns(rows *sum, const laconic_real *matrix, int count, const laconic_real *weight, int columns) {
     for (int i = 0; i < count; i++)
         for (int k = 0; k < columns; k++) sum->n[i] += (double)matrix[i * columns + k] * (double)weight[k];
@@ -468,7 +448,6 @@ int main(void) {
     RUN_TEST(fast_turns_and_large_steps_are_linearised);
     RUN_TEST(a_step_of_many_panels_is_linearised);
     RUN_TEST(the_adjoint_is_the_tangent_transposed);
-    RUN_TEST(what_an_adjoint_is_not_asked_for_leaves_the_rest_as_it_is);
     RUN_TEST(the_jacobian_has_the_tangents_as_columns);
     RUN_TEST(without_a_world_force_its_columns_are_zero);
     RUN_TEST(a_refused_step_has_no_derivative);
