@@ -235,13 +235,14 @@ static laconic_status exponential_gauss_8_step(const laconic_model *model, const
 /* ------------------------------------------------------------------------------ preparation -- */
 
 /* The stretches end when they cover the step, or when what dies out has done so on the slowest of those axes on which
- * the step would be too long a panel. */
-static void choose_panels(laconic_integrator *integrator, const laconic_model *m, real panel_decay) {
-    const real fastest = integrator->step_s * laconic_fastest_decay(m), first = R(PARTS) * panel_decay;
+ * the step would be too long a panel. `scale` shortens all panels. */
+static void choose_panels(laconic_integrator *integrator, const laconic_model *m, real scale) {
+    const real panel_decay = scale * PANEL_DECAY, first = R(PARTS) * panel_decay;
+    const real fastest = integrator->step_s * laconic_fastest_decay(m);
     real slowest = fastest, end = R(0), length = R(1); /* in units of the first stretch */
     integrator->stretches = 0;
     integrator->has_rest = false;
-    if (!ANY(fastest > panel_decay)) return;
+    if (!ANY(fastest > scale * WHOLE_DECAY)) return;
     for (int axis = 0; axis < 3; axis++) {
         const real a = integrator->step_s * m->decay_per_s[axis];
         if (ANY(BOTH(a > panel_decay, a < slowest))) slowest = a;
@@ -265,9 +266,9 @@ static void phis_at_nodes(real phi[PHIS * (NODES + 1)], real a) {
     }
 }
 
-static void prepare_panels(laconic_integrator *integrator, const laconic_model *model, real panel_decay) {
+static void prepare_panels(laconic_integrator *integrator, const laconic_model *model, real scale) {
     const real h = integrator->step_s;
-    choose_panels(integrator, model, panel_decay);
+    choose_panels(integrator, model, scale);
     for (int axis = 0; axis < 3; axis++) {
         const real a = h * model->decay_per_s[axis];
         real *kept = integrator->collocation[axis];
@@ -285,13 +286,13 @@ static void prepare_panels(laconic_integrator *integrator, const laconic_model *
 
 #if LACONIC_WITH_PREPARE /* lanes have constants alone */
 void laconic_halve_panels(laconic_integrator *integrator, const laconic_model *model) {
-    if (integrator->collocation[0][0] != R(0)) prepare_panels(integrator, model, R(0.5) * PANEL_DECAY);
+    if (integrator->collocation[0][0] != R(0)) prepare_panels(integrator, model, R(0.5));
 }
 #endif
 
 static laconic_status exponential_gauss_8_prepare(laconic_integrator *integrator, const laconic_model *model,
                                                   laconic_refusal *why) {
-    prepare_panels(integrator, model, PANEL_DECAY);
+    prepare_panels(integrator, model, R(1));
     return laconic_explicit_limits(integrator, model, R(LACONIC_REAL_MAX), GAUSS_ROTATION, why);
 }
 

@@ -9,6 +9,7 @@ from tempfile import TemporaryDirectory
 from typing import Any
 
 from laconic.errors import LaconicError
+from laconic.soak import StoppedEarly
 from laconic.targets import TARGETS, Bits, HashTarget
 
 REALS = ("double", "single")
@@ -24,13 +25,23 @@ def soak(minutes: float, seed: int, advance: Callable[[float], None]) -> dict[st
     """Each target once, whatever `minutes` and `seed`: passed when all that are here have the hashes of the first. A
     library whose faults touch no trajectory is told."""
     found: dict[str, list[Bits]] = {}
-    for target in TARGETS:
-        found[target.name] = [] if target.lacks() else [_bits(target, real) for real in REALS]
-        advance(len(REALS))
+    try:
+        for target in TARGETS:
+            found[target.name] = [] if target.lacks() else [_bits(target, real) for real in REALS]
+            advance(len(REALS))
+    except KeyboardInterrupt as stop:
+        raise StoppedEarly(_result_of(found)) from stop
+    return _result_of(found)
+
+
+def _result_of(found: dict[str, list[Bits]]) -> dict[str, Any]:
+    """Of all targets, those that were reached and those that were not."""
     ran = [bits for bits in found.values() if bits]
     same = all([each.hashes for each in bits] == [each.hashes for each in ran[0]] for bits in ran)
-    told = {target.name: _told(found[target.name]) or f"not here: no {target.lacks()}" for target in TARGETS}
-    return {"passed": same and len(ran) >= LEAST, "targets": len(ran), **told}
+    enough = len(ran) >= LEAST or len(found) < len(TARGETS)
+    told = {target.name: _told(found[target.name]) or f"not here: no {target.lacks()}" if target.name in found
+            else "not reached" for target in TARGETS}
+    return {"passed": same and enough, "targets": len(ran), **told}
 
 
 def _bits(target: HashTarget, real: str) -> Bits:
