@@ -12,6 +12,8 @@ if TYPE_CHECKING:
     from sphinx.application import Sphinx
     from sphinx.writers.html5 import HTML5Translator
 
+LONG = 40  # characters; a longer formula within a sentence scrolls by itself where the page is narrow
+
 
 def setup(app: Sphinx) -> dict[str, bool]:
     """What Sphinx calls: `html_math_renderer = "mathml"` then names these two."""
@@ -20,7 +22,8 @@ def setup(app: Sphinx) -> dict[str, bool]:
 
 
 def _in_line(page: HTML5Translator, node: nodes.math) -> None:
-    page.body.append(_mathml(node, "inline"))
+    made = _mathml(node, "inline")
+    page.body.append(f'<span class="long-formula">{made}</span>' if len(node.astext()) > LONG else made)
     raise nodes.SkipNode
 
 

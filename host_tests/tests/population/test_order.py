@@ -25,7 +25,7 @@ def end_of(vehicle: Made, step_s: float, steps: int) -> np.ndarray:
 
 
 def errors_where(is_meant: Callable[[float], bool], longest_s: float, most_yaw_rad: float) -> Iterator[list[float]]:
-    """Of a step and of half of it, for vehicles and steps by chance; `is_meant` takes h·r, `most_yaw_rad` is a step's."""
+    """Of a step and of half of it, for vehicles and steps by chance; `is_meant` takes h·r, a step's yaw is bounded."""
     for number in range(VEHICLES):
         vehicle = made(SEED, number, VEHICLES)
         start = vehicle.plant(CORE, "auto", 0.001)
