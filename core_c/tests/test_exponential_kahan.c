@@ -53,6 +53,30 @@ static void a_step_without_a_solution_is_refused(void) {
 
 static void numbers_beyond_the_range_are_refused(void) { assert_too_large_force_refused(&laconic_exponential_kahan); }
 
+/* ------------------------------------------------------------------ damping fast beside the step -- */
+
+/* h·r is 0.63 and 0.31: from 0.3 on the gyroscopic term is followed over the step. */
+static void assert_follows(const laconic_method *method, double order, errors most) {
+    const laconic_start start = start_with(2, 1, 4);
+    laconic_vehicle v = with_motors(three_wheels());
+    laconic_input input = every_input();
+    v.motor_damping_Nms = REAL(0.2);
+    v.motor_gain_Nm_per_V = REAL(0.6);
+    input.body_force_N[0] = 40;
+    input.world_force_N[0] = input.world_force_N[1] = 0;
+    const errors found = errors_of(method, &v, start, &input, 1.0, 10);
+    TEST_ASSERT_TRUE_MESSAGE(found.nu < most.nu, "nu");
+    TEST_ASSERT_TRUE_MESSAGE(found.pose < most.pose, "pose");
+    TEST_ASSERT_TRUE_MESSAGE(found.wheels < most.wheels, "wheels");
+    if (IN_DOUBLE || order < 3) assert_order(method, &v, start, &input, 1.0, 10, order);
+}
+
+static void fast_damping_leaves_order_and_accuracy(void) {
+    const errors of_second = {0.0135, 3.3e-3, 0.0205}, of_fourth = {1.08e-4, 4.6e-5, 1.72e-4};
+    assert_follows(&laconic_exponential_kahan, 2, of_second);
+    assert_follows(&laconic_exponential_kahan_4, 4, of_fourth);
+}
+
 /* ------------------------------------------------------------------------------ fourth order -- */
 
 static void is_of_fourth_order_under_everything_that_can_act(void) {
@@ -104,6 +128,7 @@ int main(void) {
     RUN_TEST(a_step_that_gains_energy_is_refused);
     RUN_TEST(a_step_without_a_solution_is_refused);
     RUN_TEST(numbers_beyond_the_range_are_refused);
+    RUN_TEST(fast_damping_leaves_order_and_accuracy);
     RUN_TEST(is_of_fourth_order_under_everything_that_can_act);
     RUN_TEST(is_of_fourth_order_without_a_world_force);
     RUN_TEST(a_steady_motion_stays_at_any_step_in_the_extrapolated);

@@ -19,7 +19,8 @@ from laconic.mutation.results import Results, read_equivalents
 from laconic.mutation.trial import Outcome, Trials
 from laconic.paths import SOURCE_DIR, build_dir, sources_missing
 
-PARTS = {"core": ("core_c/src",), "node": ("firmware_stub/src",), "fmu": ("fmu", "fmu/vehicle")}
+PARTS = {"core": ("core_c/src", "core_c/derivatives", "core_c/estimate", "core_c/filter"),
+         "node": ("firmware_stub/src",), "fmu": ("fmu", "fmu/vehicle")}
 LEFT_OUT = ("firmware_stub/src/shared_library.c", "firmware_stub/src/shared_library.h",
             "firmware_stub/src/library_drives.c", "firmware_stub/src/library_drives.h", "fmu/vehicle/kept_step.c",
             "fmu/vehicle/estimate_part.c")

@@ -133,15 +133,18 @@ class Trials:
         return None
 
     def _in_order(self, mutant: Mutant, family: Family, affected: set[str], objects: dict[Unit, Path]) -> list[Program]:
-        """The program of the file's own name first, then those that noticed most of its mutants, then the fastest."""
+        """The program of the file's own name first, then those that noticed most of its mutants, then most of others,
+        then the fastest."""
         own = {unit for unit in objects if unit not in family.library_units}
         chosen = [program for program in family.programs
                   if program.name in affected or any(unit in own for unit in program.units)]
         with self._lock:
             kills = Counter(self._kills[mutant.file])
+            all_kills = sum(self._kills.values(), Counter())
         stem = Path(mutant.file).stem.removeprefix("node_")
         name = re.compile(rf"(test|node|fmu_unit)_(node_)?{stem}(_double|_single)?")
-        return sorted(chosen, key=lambda each: (not name.fullmatch(each.name), -kills[each.name], each.seconds))
+        return sorted(chosen, key=lambda each: (not name.fullmatch(each.name), -kills[each.name], -all_kills[each.name],
+                                                    each.seconds))
 
     def _of(self, mutant: Mutant) -> list[Unit]:
         """The units that its file is in. Lanes have the methods' text, too, but are not compiled anew."""

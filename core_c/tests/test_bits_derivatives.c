@@ -1,0 +1,140 @@
+/* Tests that the derivatives of a step are, bit for bit, those of the version before: all columns of the Jacobian, the
+ * tangent and the adjoint with inputs and constants of the model, by every method, and how a model changes with each
+ * number of its vehicle. test_step_derivatives.c and host_tests/tests/derivatives compare them with differences. */
+#include "bits.h"
+#include "laconic/derivatives.h"
+
+static laconic_vehicle every_number_of(const laconic_vehicle *vehicle, int part) {
+    laconic_vehicle by;
+    memset(&by, 0, sizeof by);
+    if (part == 0 || part == 4) {
+        by.mass_kg = 1;
+        by.yaw_inertia_kgm2 = REAL(0.03);
+        by.com_x_m = REAL(0.02);
+        by.com_y_m = REAL(-0.01);
+    }
+    if (part == 1 || part == 4) {
+        by.wheel_radius_m = REAL(0.004);
+        by.wheel_inertia_kgm2 = REAL(0.001);
+        by.motor_gain_Nm_per_V = REAL(0.07);
+        by.motor_damping_Nms = REAL(0.05);
+    }
+    if (part == 2 || part == 4) by.payload = (laconic_payload){REAL(0.5), REAL(0.01), REAL(-0.02), REAL(0.004)};
+    if (part == 2 || part == 4) by.ground.slope_rad = REAL(0.1), by.ground.slope_heading_rad = REAL(-0.3);
+    for (int i = 0; part >= 3 && i < vehicle->wheel_count; i++) {
+        laconic_wheel *w = &by.wheel[i];
+        if (vehicle->wheel[0].kind != LACONIC_WHEEL_FIXED) {
+            w->x_m = REAL(0.01 * i - 0.02);
+            w->y_m = REAL(0.03 - 0.02 * i);
+            w->axle_rad = REAL(0.2 + 0.1 * i);
+        }
+        w->roller_rad = REAL(0.3 - 0.2 * i);
+        w->own_radius_m = REAL(0.002 * i - 0.001);
+        w->own_inertia_kgm2 = REAL(0.0004);
+        w->own_motor_gain_Nm_per_V = REAL(0.03 * i);
+        w->own_motor_damping_Nms = REAL(0.02 - 0.006 * i);
+    }
+    return by;
+}
+
+#define PARTS 5
+
+static void constants_of_a_model_by_each_number_of_its_vehicle(void) {
+    begin();
+    for (int number = 0; number < MORE_VEHICLES; number++)
+        for (int part = 0; part < PARTS; part++) {
+            const laconic_vehicle vehicle = vehicle_number(number), by = every_number_of(&vehicle, part);
+            const laconic_model model = model_of(vehicle);
+            laconic_model_change change;
+            memset(&change, 0, sizeof change);
+            ASSERT_STATUS(LACONIC_OK, laconic_model_tangent(&change, &model, &vehicle, &by));
+            TAKE(change);
+        }
+    expect(EITHER(0xd2c348686be04417U, 0x5e38380668771894U));
+}
+
+static void take_jacobian(const laconic_plant *plant, const laconic_input *held, bool with_world_force) {
+    static laconic_real by_state[(6 + LACONIC_MAX_WHEELS) * (6 + LACONIC_MAX_WHEELS)],
+        by_input[(6 + LACONIC_MAX_WHEELS) * LACONIC_INPUT_NUMBERS(LACONIC_MAX_WHEELS)];
+    laconic_step_jacobian jacobian;
+    memset(&jacobian, 0, sizeof jacobian);
+    memset(by_state, 0, sizeof by_state);
+    memset(by_input, 0, sizeof by_input);
+    const laconic_real status = REAL(
+        laconic_step_jacobian_of(&jacobian, &plant->model, &plant->integrator, &plant->state, held, with_world_force));
+    TAKE(status);
+    if (status != 0) return;
+    laconic_jacobian_by_state(by_state, &jacobian, &plant->model);
+    laconic_jacobian_by_input(by_input, &jacobian, &plant->model);
+    TAKE(by_state);
+    TAKE(by_input);
+}
+
+static laconic_state_change some_change(int number) {
+    laconic_state_change change;
+    memset(&change, 0, sizeof change);
+    for (int i = 0; i < 3; i++) change.nu_rad_per_s[i] = REAL(0.3 * number - 0.5 * i + 0.2);
+    change.x_m = REAL(0.1);
+    change.y_m = REAL(0.2 - 0.1 * number);
+    change.heading_rad = REAL(0.7 - 0.4 * number);
+    for (int i = 0; i < LACONIC_MAX_WHEELS; i++) change.wheel_angle_rad[i] = REAL(0.3 - 0.2 * i + 0.1 * number);
+    return change;
+}
+
+static void take_directions(const laconic_plant *plant, const laconic_input *held, int number) {
+    const laconic_vehicle by = every_number_of(&plant->vehicle, PARTS - 1);
+    const laconic_state_change along = some_change(number);
+    const laconic_input input = input_at(number + 3);
+    laconic_state_change after, before;
+    laconic_model_change change, gradient;
+    laconic_input by_input;
+    memset(&change, 0, sizeof change);
+    memset(&gradient, 0, sizeof gradient);
+    memset(&after, 0, sizeof after);
+    memset(&before, 0, sizeof before);
+    memset(&by_input, 0, sizeof by_input);
+    ASSERT_STATUS(LACONIC_OK, laconic_model_tangent(&change, &plant->model, &plant->vehicle, &by));
+    laconic_step_tangent(&after, &plant->model, &plant->integrator, &plant->state, held, &along, &input, &change);
+    TAKE(after);
+    laconic_step_tangent(&after, &plant->model, &plant->integrator, &plant->state, held, &along, NULL, NULL);
+    TAKE(after);
+    laconic_step_adjoint(&before, &by_input, &gradient, &plant->model, &plant->integrator, &plant->state, held, &along);
+    TAKE(before);
+    TAKE(by_input);
+    TAKE(gradient);
+}
+
+static void take_derivatives(const laconic_method *method) {
+    const double step_s[3] = {0.004, 0.05, 0.4};
+    for (int number = 0; number < MORE_VEHICLES; number++)
+        for (int k = 0; k < 6; k++) {
+            const laconic_vehicle vehicle = vehicle_number(number);
+            const laconic_start motion = {{REAL(0.8), REAL(-0.5), REAL(k == 4 ? 200 : 2.4)}, 1, 2, REAL(0.9), {0}};
+            const laconic_start still = start_with(0, 0, 0);
+            laconic_input held = input_at(k);
+            laconic_plant plant;
+            if (k % 2 == 0) held.world_force_N[0] = held.world_force_N[1] = 0;
+            if (laconic_plant_start(&plant, &vehicle, method, REAL(step_s[k % 3]), &still, &why) != LACONIC_OK)
+                continue;
+            ASSERT_STATUS(LACONIC_OK, laconic_state_project(&plant.state, &plant.model, &motion, &why));
+            take_jacobian(&plant, &held, k % 4 == 0);
+            take_directions(&plant, &held, k);
+        }
+}
+
+static void derivatives_of_steps_by_every_method(void) {
+    static const uint64_t bits[] = {
+        EITHER(0xb5debcf1b418e8c1U, 0x880233902b350143U), EITHER(0x7702c29140885dd3U, 0x25cde69524554f9cU),
+        EITHER(0x0a63b1528be976ddU, 0x0919b9b6cced88a5U), EITHER(0xc0c63eea9cf88eafU, 0xdc1c963bce8b0becU),
+        EITHER(0x3e30f81c9e06a74eU, 0x3954bac3dce37427U), EITHER(0x1819b71956063edaU, 0x5a9fc689c8b92730U),
+        EITHER(0xb32ed61e3e5e182eU, 0x20889cd854c98f85U), EITHER(0xac408c5127543fc7U, 0xce15ffb7d68043b3U),
+    };
+    expect_by_method(take_derivatives, bits);
+}
+
+int main(void) {
+    UNITY_BEGIN();
+    RUN_TEST(constants_of_a_model_by_each_number_of_its_vehicle);
+    RUN_TEST(derivatives_of_steps_by_every_method);
+    return UNITY_END();
+}
