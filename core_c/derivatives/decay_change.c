@@ -9,16 +9,20 @@ typedef struct factors {
     real gain, inverse_gain, mean, mean_ramp, slope, slope_ramp;
 } factors;
 
-/* φ1 … φ4 at −a, and mean and slope of them. From a = 1 on by 1/(1 − e⁻ᵃ): the differences of φ cancel more and more
+/* Mean and slope at −a, of φ1 … φ4 there; and how all of these change with a. From a = 1 on by 1/(1 − e⁻ᵃ): the differences of φ cancel more and more
  * there, and a stiff vehicle multiplies what is left by its large damping. */
 typedef struct phi_part {
-    real phi[5], mean, slope;
+    real mean, slope;
 } phi_part;
+
+typedef struct phi_slopes {
+    real phi[5], mean, slope;
+} phi_slopes;
 
 #define FAST R(1)
 
 static phi_part part_at(real a, const real phi[6]) {
-    phi_part p = {{R(0), phi[1], phi[2], phi[3], phi[4]}, R(0), R(0)};
+    phi_part p;
     if (a > FAST) {
         p.mean = R(1) / (R(1) - phi[0]) - R(1) / a;
         p.slope = (R(12) * p.mean - R(6)) / a;
@@ -30,11 +34,11 @@ static phi_part part_at(real a, const real phi[6]) {
 }
 
 /* By a: φk(−a)' = k φk+1 − φk, and also −(φk−1' + φk)/a. */
-static phi_part slope_at(real a, const real phi[6], const phi_part *at) {
-    phi_part d = {{R(0), R(0), R(0), R(0), R(0)}, R(0), R(0)};
+static phi_slopes slope_at(real a, const real phi[6], const phi_part *at) {
+    phi_slopes d;
+    d.phi[0] = -phi[0];
     if (a > FAST) {
         const real whole = R(1) / (R(1) - phi[0]);
-        d.phi[0] = -phi[0];
         for (int k = 1; k < 5; k++) d.phi[k] = -(d.phi[k - 1] + phi[k]) / a;
         d.mean = R(1) / (a * a) - phi[0] * whole * whole;
         d.slope = (R(12) * d.mean - at->slope) / a;
@@ -60,7 +64,8 @@ static factors factors_at(real h, real rate) {
 static factors factor_slopes(real h, real rate) {
     real phi[6];
     laconic_phi(phi, h * rate);
-    const phi_part p = part_at(h * rate, phi), d = slope_at(h * rate, phi, &p);
+    const phi_part p = part_at(h * rate, phi);
+    const phi_slopes d = slope_at(h * rate, phi, &p);
     const real mean_ramp = d.phi[3] - d.mean * phi[2] - p.mean * d.phi[2];
     const real slope_ramp = R(6) * d.phi[3] - R(12) * d.phi[4] - d.slope * phi[2] - p.slope * d.phi[2];
     const factors f = {h * h * d.phi[1],  -d.phi[1] / (phi[1] * phi[1]), h * d.mean, h * h * mean_ramp, h * d.slope,

@@ -50,7 +50,7 @@ static void constants_of_a_model_by_each_number_of_its_vehicle(void) {
             ASSERT_STATUS(LACONIC_OK, laconic_model_tangent(&change, &model, &vehicle, &by));
             TAKE(change);
         }
-    expect(EITHER(0xd2c348686be04417U, 0x5e38380668771894U));
+    expect(EITHER(0x74fc4589b681f53cU, 0x64a1d3af786ac71eU));
 }
 
 static void take_jacobian(const laconic_plant *plant, const laconic_input *held, bool with_world_force) {
@@ -124,10 +124,10 @@ static void take_derivatives(const laconic_method *method) {
 
 static void derivatives_of_steps_by_every_method(void) {
     static const uint64_t bits[] = {
-        EITHER(0xb5debcf1b418e8c1U, 0x880233902b350143U), EITHER(0x7702c29140885dd3U, 0x25cde69524554f9cU),
-        EITHER(0x0a63b1528be976ddU, 0x0919b9b6cced88a5U), EITHER(0xc0c63eea9cf88eafU, 0xdc1c963bce8b0becU),
-        EITHER(0x3e30f81c9e06a74eU, 0x3954bac3dce37427U), EITHER(0x1819b71956063edaU, 0x5a9fc689c8b92730U),
-        EITHER(0xb32ed61e3e5e182eU, 0x20889cd854c98f85U), EITHER(0xac408c5127543fc7U, 0xce15ffb7d68043b3U),
+        EITHER(0x15a5cf073ce0a65cU, 0x82ed83c800580ae9U), EITHER(0x9c871462a4249e4dU, 0xa315f16b7f733390U),
+        EITHER(0x8b0550c26b2f49e2U, 0xdee00113a8468a17U), EITHER(0x4920f613d1369981U, 0x8a18c63411b9e095U),
+        EITHER(0xd71e8c12842f6e34U, 0x3c10116e06572cbeU), EITHER(0x239d0df7f49d55a1U, 0x99164b51c9884cb9U),
+        EITHER(0x1a97b4d0bc807c76U, 0x0bbc447e1979a3cfU), EITHER(0x3bec303f0b0f3d2eU, 0x14061a5ab05bd7f9U),
     };
     expect_by_method(take_derivatives, bits);
 }

@@ -14,10 +14,10 @@ static void take_motions(const laconic_method *method) {
 
 static void motions_by_every_method(void) {
     static const uint64_t bits[] = {
-        EITHER(0x5e6d19ec7b760359U, 0x9e90471b0f7a0c26U), EITHER(0xb5730bc5b4ec8833U, 0x35fabf258aa2e999U),
-        EITHER(0x50f8c8a4471bd43bU, 0xeb3ae21949d06d76U), EITHER(0x0e4223c959bac127U, 0xefb7e6e8a9350c7fU),
-        EITHER(0x84c08eb893597120U, 0xfa934a52705fbd6cU), EITHER(0x64acebb0688e50a1U, 0xb9a1ce6f3752fa46U),
-        EITHER(0x9c83dcf17db75d5bU, 0x4c8033b1be747bb9U), EITHER(0x5e6d19ec7b760359U, 0x9e90471b0f7a0c26U),
+        EITHER(0xecba7a48f3ef2b4dU, 0xcdbc1fedc7b0c908U), EITHER(0x11cf2b03942ed98fU, 0x01495e99d9cd49b1U),
+        EITHER(0xc6a08413cc24bc81U, 0x109f84f9be63236bU), EITHER(0xab9b93ad809d1549U, 0x1a48a1048d1dfb7bU),
+        EITHER(0x47f67a29f2025800U, 0xe8745f206a1031afU), EITHER(0x8662de9582d53a22U, 0x9772f6a893230337U),
+        EITHER(0x923fe4569b542d67U, 0xf60e9453f4427e5dU), EITHER(0xecba7a48f3ef2b4dU, 0xcdbc1fedc7b0c908U),
     };
     expect_by_method(take_motions, bits);
 }
@@ -100,10 +100,10 @@ static void take_motions_under_one_force(const laconic_method *method) {
 
 static void motions_under_one_force_by_every_method(void) {
     static const uint64_t bits[] = {
-        EITHER(0xb2f5b2b24cb9c0f4U, 0xdf109075ae464875U), EITHER(0x75fb411b59a7ceb9U, 0xff0a3b0e0365780bU),
-        EITHER(0xce7cff30df7c476cU, 0xa315716b53361f0dU), EITHER(0x0c8f078ba944cceaU, 0x0533b2545ad10768U),
-        EITHER(0x389a80d247ff39f8U, 0x0760a30bacb3fea3U), EITHER(0xff80d304c8ddb015U, 0x1dcbbad4f5fb3ca1U),
-        EITHER(0x55c8ca9ae011ba11U, 0xad02c38a2f5f7a38U), EITHER(0xa985805dc24fc642U, 0x42a125848becb71bU),
+        EITHER(0xacffe55c3511242fU, 0xc2ffb405e747ed0eU), EITHER(0xb0c35a5bfca9dc53U, 0x4ce8a0810ed87ae7U),
+        EITHER(0x2f6b7dded678c2bfU, 0x2821382001d0152fU), EITHER(0x6d4b87f2ac5753bfU, 0xc83e8d8037257c7bU),
+        EITHER(0x2602cfe174a0bfefU, 0xfbd7e8305349555dU), EITHER(0x0c3687500ecffb74U, 0xc0bbb546e513c2ceU),
+        EITHER(0x9ca569344c0a1833U, 0xfb732d4477c270bbU), EITHER(0xfb7c42ffee6c3030U, 0x8fd56a4e56d438c4U),
     };
     expect_by_method(take_motions_under_one_force, bits);
 }
@@ -126,10 +126,10 @@ static void take_long_steps(const laconic_method *method) {
 
 static void long_steps_by_every_method(void) {
     static const uint64_t bits[] = {
-        EITHER(0x2d227cd21a3b3a78U, 0xf12f9f17886a44b1U), EITHER(0x3481fdd22a54eb75U, 0xc7666bb26f9b86e8U),
-        EITHER(0x3b153cf1d816860bU, 0x0861af80c42dbf01U), EITHER(0xc7125dc4fda4e1e1U, 0xd58ff4dbd1ae0a11U),
-        EITHER(0xd168de66e8a44a97U, 0xc26593a3a4e56375U), EITHER(0x13ca7a6bf8cd552bU, 0xe5e37b073cbe67cbU),
-        EITHER(0x507e7b930eef71beU, 0x6bc88607da9029dfU), EITHER(0xff22e08fd5e9c81bU, 0xbb963da55133de75U),
+        EITHER(0x662da58f74357f41U, 0x63a9d4f03dbf6bc9U), EITHER(0x0e2766e500fcbeddU, 0x987067ee4b3182b9U),
+        EITHER(0x22333f9c159a4d32U, 0xbcaa57be5e78dc69U), EITHER(0x84b2d89310da5510U, 0xafcfcbfe506d6669U),
+        EITHER(0x0adbf1a717336871U, 0xf658c4cb1dd01ad6U), EITHER(0x5c00a81c33c66ad9U, 0x7e14a4a184ae9ee0U),
+        EITHER(0x1b19cfc3bdb343cfU, 0xe047ee9c9d31948eU), EITHER(0xab6fdab74d74c967U, 0xe6c754d0ae953d50U),
     };
     expect_by_method(take_long_steps, bits);
 }
@@ -162,10 +162,10 @@ static void take_changes(const laconic_method *method) {
 
 static void changes_by_every_method(void) {
     static const uint64_t bits[] = {
-        EITHER(0x408649c5a011d1f2U, 0x7c08ba38dc10a3a6U), EITHER(0x654b6892a1933ad6U, 0x494dfb42cb93fd19U),
-        EITHER(0xf5afc87a0b2f69e7U, 0x49f618186b48d364U), EITHER(0x6c6ae493c17ee314U, 0x4a065e3a4a3300b3U),
-        EITHER(0xd1d56ed9185a63c8U, 0x8d12238146a154ccU), EITHER(0xc5578ef6007246ecU, 0x6a6b1ce249e925bfU),
-        EITHER(0x15bf28ac09ee5e07U, 0x6cbbf5935a4fc4abU), EITHER(0x408649c5a011d1f2U, 0x7c08ba38dc10a3a6U),
+        EITHER(0x5af40ebf0d27ef5eU, 0xd463a7a18c32ae54U), EITHER(0x5232dde7904d7134U, 0x812fe8e4fd06aad9U),
+        EITHER(0xbe57eb28d0524696U, 0x56b09690b88dc7b1U), EITHER(0xbf50ea676d8c7f67U, 0x8b4f4617f6e67757U),
+        EITHER(0x8f892df642129f0cU, 0xf4bbf65245f873a0U), EITHER(0x4157d75233a81f13U, 0x7d73f5c4d099fc23U),
+        EITHER(0xc2ecfa2ae4576d0eU, 0xcdce281fe645d501U), EITHER(0x5af40ebf0d27ef5eU, 0xd463a7a18c32ae54U),
     };
     expect_by_method(take_changes, bits);
 }

@@ -56,12 +56,15 @@ static inline void take_refusal(void) {
 /* ------------------------------------------------------------------------------------- vehicles -- */
 
 #define VEHICLES 6
-#define MORE_VEHICLES 12
+#define MORE_VEHICLES 13
 
 /* One degree of freedom; eight wheels with rollers, no two alike, on a slope; wheels that nothing drives on another
- * slope; a caster whose damping is fast; dampings of four orders of magnitude; two fixed wheels of unlike size. */
+ * slope; a caster whose damping is fast; dampings of four orders of magnitude; two fixed wheels of unlike size; as many
+ * wheels and supports as there is room for. */
 static inline laconic_vehicle unusual_vehicle(int number) {
-    laconic_vehicle v = number == 7 || number == 10 ? bare_body() : number == 9 ? caster() : differential_drive();
+    laconic_vehicle v = number == 7 || number == 10 || number == 12 ? bare_body()
+                        : number == 9                               ? caster()
+                                                                    : differential_drive();
     if (number == 8) v = three_wheels();
     if (number != 8) v = with_motors(v);
     if (number == 6) add_wheel(&v, LACONIC_WHEEL_ROLLER, 0.1, 0.2, 0.3, 1.1);
@@ -84,10 +87,12 @@ static inline laconic_vehicle unusual_vehicle(int number) {
     if (number == 11) v = with_own_wheels(v);
     if (number == 11) v.wheel[1].undriven = false;
     if (number == 11) v.payload = (laconic_payload){REAL(2.5), REAL(-0.04), REAL(0.06), REAL(0.02)};
+    for (int i = 0; number == 12 && i < LACONIC_MAX_WHEELS; i++)
+        add_wheel(&v, LACONIC_WHEEL_ROLLER, 0.3 - 0.04 * i, i % 2 == 0 ? 0.2 : -0.19, 0.5 * i - 4, 1.5 - 0.05 * i);
     v.com_x_m = REAL(number == 9 ? 0.03 : -0.02);
     v.com_z_m = REAL(0.11);
     v.friction_coefficient = REAL(0.45);
-    v.support_count = number == 10 ? 4 : number == 9 ? 2 : 0;
+    v.support_count = number == 10 || number == 12 ? LACONIC_MAX_SUPPORTS : number == 9 ? 2 : 0;
     for (int i = 0; i < v.support_count; i++) {
         v.support[i].x_m = REAL(0.15 - 0.1 * i);
         v.support[i].y_m = REAL(0.05 * i * i - 0.1);
@@ -161,10 +166,11 @@ static inline laconic_vehicle slipping_vehicle(int number) { /* 0 … 2 */
 }
 
 #define SLIPPING 3
-#define MORE_SLIPPING 7
+#define MORE_SLIPPING 8
 
 /* A drive with limits on ideal ground; a skid on a slope, one wheel held by its brake, between supports; rollers that
- * drag as tyres do, every wheel on ground of its own; two wheels with a heavy body that leans on casters. */
+ * drag as tyres do, every wheel on ground of its own; two wheels with a heavy body that leans on casters; as many wheels
+ * and supports as there is room for. */
 static inline laconic_vehicle more_slipping_vehicle(int number) {
     laconic_vehicle v = slipping_vehicle(number == 4 ? 1 : 0);
     if (number == 3) {
@@ -194,7 +200,9 @@ static inline laconic_vehicle more_slipping_vehicle(int number) {
         v.wheel[1].undriven = true;
         v.com_z_m = REAL(0.5);
     }
-    v.support_count = number == 6 ? 3 : number == 4 ? 2 : 0;
+    for (int i = 3; number == 7 && i < LACONIC_MAX_WHEELS; i++)
+        add_wheel(&v, LACONIC_WHEEL_ROLLER, 0.3 - 0.04 * i, i % 2 == 0 ? 0.2 : -0.19, 0.5 * i - 4, 1.5 - 0.05 * i);
+    v.support_count = number == 7 ? LACONIC_MAX_SUPPORTS : number == 6 ? 3 : number == 4 ? 2 : 0;
     for (int i = 0; i < v.support_count; i++) {
         v.support[i].x_m = REAL(0.2 - 0.17 * i);
         v.support[i].y_m = REAL(0.12 * i - 0.1);

@@ -8,6 +8,7 @@ import subprocess
 import threading
 import time
 from collections import Counter, defaultdict
+from collections.abc import Iterator
 from dataclasses import dataclass
 from pathlib import Path
 
@@ -71,19 +72,29 @@ class Trials:
         differs = False
         for family in self._families_of(mutant):
             objects: dict[Unit, Path] = {}
-            for unit in self._of(mutant):
-                if unit in family.library_units or any(unit in program.units for program in family.programs):
+            for stage, programs in self._stages(mutant, family):
+                for unit in stage:
                     out = tree / f"{family.name}_{unit.target}_{unit.source.name}.o"
                     if unit.compile(tree, out).returncode != 0:
                         return "invalid", ""
                     if out.read_bytes() != self._plain[unit.target, str(unit.source)]:
                         objects[unit] = out
-            differs |= bool(objects)
-            if objects and (by := self._noticed(mutant, family, objects, tree)):
-                return by
+                differs |= bool(objects)
+                if objects and (by := self._noticed(mutant, family, objects, tree, programs)):
+                    return by
         if not differs:
             return "same code", ""
         return self._with_sanitizers(mutant, tree, source) or ("survived", "")
+
+    def _stages(self, mutant: Mutant, family: Family) -> Iterator[tuple[list[Unit], set[str]]]:
+        """What is compiled, and which programs then run: first the library and the programs that do not include the
+        mutant's file themselves. Most faults are noticed by these, so that the others need not be compiled."""
+        units = self._of(mutant)
+        include = {program.name for program in family.programs if set(units).intersection(program.units)}
+        every = {program.name for program in family.programs}
+        yield [unit for unit in units if unit in family.library_units], every - include
+        if include:
+            yield [unit for unit in units if any(unit in program.units for program in family.programs)], include
 
     def _with_sanitizers(self, mutant: Mutant, tree: Path, source: bytes) -> tuple[str, str] | None:
         """What the tests passed is given to them once more under the sanitizers, as continuous integration runs them: a
@@ -104,10 +115,11 @@ class Trials:
                 objects[unit] = tree / f"checked_{unit.target}_{unit.source.name}.o"
                 if unit.compile(tree, objects[unit], *SANITIZERS).returncode != 0:
                     return None
-        return self._noticed(mutant, family, objects, tree, only=only, checks=SANITIZERS[:1]) if objects else None
+        every = {program.name for program in family.programs} if only is None else {only}
+        return self._noticed(mutant, family, objects, tree, every, checks=SANITIZERS[:1]) if objects else None
 
     def _noticed(self, mutant: Mutant, family: Family, objects: dict[Unit, Path], tree: Path,
-                 only: str | None = None, checks: tuple[str, ...] = ()) -> tuple[str, str] | None:
+                 programs: set[str], checks: tuple[str, ...] = ()) -> tuple[str, str] | None:
         of_library = {unit: path for unit, path in objects.items() if unit in family.library_units}
         preload = tree / f"fault_{family.name}.so" if of_library else None
         if preload is not None:
@@ -117,7 +129,7 @@ class Trials:
                 return "invalid", ""
         affected = set().union(*(family.reach[unit.object] for unit in of_library)) if of_library else set()
         for program in self._in_order(mutant, family, affected, objects):
-            if only not in (None, program.name):
+            if program.name not in programs:
                 continue
             own = {unit: path for unit, path in objects.items() if unit in program.units}
             used = program
