@@ -45,6 +45,43 @@ static void wheels_that_spin(void) {
     expect(EITHER(0xbbabd4a8bd406d35U, 0x0388c216731c3df9U));
 }
 
+/* Ground that begins to hold and ceases to, other vehicles, and vehicles that a motion cannot be carried over to. */
+static void changes_of_the_ground(void) {
+    begin();
+    for (int number = 0; number < MORE_SLIPPING; number++) {
+        laconic_vehicle vehicle = number < SLIPPING ? slipping_vehicle(number) : more_slipping_vehicle(number);
+        const laconic_start start = start_with(0, 0, 0);
+        laconic_plant plant;
+        ASSERT_STATUS(LACONIC_OK, laconic_plant_start(&plant, &vehicle, &laconic_auto, REAL(0.005), &start, &why));
+        for (int k = 0; k < 8; k++) {
+            laconic_vehicle other = vehicle;
+            const laconic_input input = input_at(5 * k + number);
+            ASSERT_STATUS(LACONIC_OK, laconic_plant_run(&plant, &input, 9, &why));
+            if (k % 2 == 0 && number < 4) {
+                other.ground = (laconic_ground){0};
+                other.drive = (laconic_drive){0};
+                for (int i = 0; i < other.wheel_count; i++) {
+                    laconic_wheel *w = &other.wheel[i];
+                    w->own_friction_coefficient = w->own_roller_drag = w->own_axle_friction_Nm = 0;
+                    w->motor_circuit = LACONIC_MOTOR_DRIVEN;
+                }
+            }
+            other.payload.mass_kg = REAL(0.4 * k);
+            if (k == 5) other.wheel_count -= 1;
+            if (k == 6) other.mass_kg = EITHER(REAL(1e200), REAL(1e25));
+            if (k == 7) other.payload.x_m = EITHER(REAL(1e140), REAL(1e17));
+            why = (laconic_refusal){LACONIC_OK, LACONIC_FIELD_NONE, 0, 0, 0};
+            laconic_plant_change(&plant, &other, &why);
+            take_refusal();
+            laconic_outputs out;
+            memset(&out, 0, sizeof out);
+            laconic_outputs_of(&out, &plant, &input);
+            TAKE(out);
+        }
+    }
+    expect(EITHER(0xa0db8e6abb44639eU, 0xf06c14c37178afe9U));
+}
+
 /* A schedule with a recorder that watches the grip. */
 static void what_a_recorder_keeps(void) {
     static const uint32_t signals[] = {offsetof(laconic_input, voltage_V), offsetof(laconic_input, world_force_N)};
@@ -279,6 +316,7 @@ int main(void) {
     RUN_TEST(motions_with_friction);
     RUN_TEST(more_motions_with_friction);
     RUN_TEST(wheels_that_spin);
+    RUN_TEST(changes_of_the_ground);
     RUN_TEST(what_a_recorder_keeps);
     RUN_TEST(the_smooth_law_of_friction);
     RUN_TEST(what_sensors_show);

@@ -16,8 +16,8 @@ static void take_errors(const laconic_estimate *estimate, const laconic_plant *p
 }
 
 /* Held for some steps, sampled, changed to another step and another vehicle. */
-static void take_estimate(laconic_vehicle vehicle, const laconic_method *method, double step_s, int32_t most_steps) {
-    const laconic_start start = {{0}, REAL(0.3), REAL(-0.2), REAL(0.7), {0}};
+static void take_estimate_from(laconic_start start, laconic_vehicle vehicle, const laconic_method *method,
+                               double step_s, int32_t most_steps) {
     laconic_plant plant, before;
     laconic_estimate estimate;
     memset(&estimate, 0, sizeof estimate);
@@ -41,6 +41,11 @@ static void take_estimate(laconic_vehicle vehicle, const laconic_method *method,
     }
 }
 
+static void take_estimate(laconic_vehicle vehicle, const laconic_method *method, double step_s, int32_t most_steps) {
+    const laconic_start start = {{0}, REAL(0.3), REAL(-0.2), REAL(0.7), {0}};
+    take_estimate_from(start, vehicle, method, step_s, most_steps);
+}
+
 static void take_estimates(const laconic_method *method) {
     static const int32_t window[4] = {1, 16, 5, 200};
     static const double step_s[3] = {0.003, 0.02, 0.08};
@@ -57,6 +62,19 @@ static void estimates_by_every_method(void) {
         EITHER(0xa08b9fe7d8f69ba4U, 0x51d06da5c04f189aU), EITHER(0x5a149ac268739f79U, 0xe499df7a7bf23939U),
     };
     expect_by_method(take_estimates, bits);
+}
+
+static void estimates_of_wheels_that_slip_from_the_start(void) {
+    laconic_start start = start_with(12, -7, 5);
+    start.wheel_speed_rad_per_s[0] = -20;
+    begin();
+    for (int number = 0; number < MORE_SLIPPING; number++) {
+        if (number == 3) continue; /* wheels that hold cannot slip */
+        const laconic_vehicle vehicle =
+            number < SLIPPING ? slipping_vehicle(number) : more_slipping_vehicle(number);
+        take_estimate_from(start, vehicle, &laconic_auto, 0.004, 4);
+    }
+    expect(EITHER(0x54ac6b3f2564dfd3U, 0x421f07520b9584deU));
 }
 
 static void estimates_with_friction(void) {
@@ -112,6 +130,7 @@ int main(void) {
     UNITY_BEGIN();
     RUN_TEST(estimates_by_every_method);
     RUN_TEST(estimates_with_friction);
+    RUN_TEST(estimates_of_wheels_that_slip_from_the_start);
     RUN_TEST(rows_of_errors);
     return UNITY_END();
 }

@@ -116,6 +116,23 @@ static void a_refused_change_changes_nothing(void) {
 }
 
 /* A vehicle with friction, too: its wheels start again. */
+/* On wheels of a tenth of the radius the same motion is ten times as fast in ν. */
+static void a_motion_that_a_changed_vehicle_cannot_have_is_refused(void) {
+    const double fastest = EITHER(1e77, 1e9);
+    laconic_vehicle v = three_wheels();
+    laconic_plant plant = plant_of(v, &laconic_exact_flow, 0.01);
+    const laconic_start start = start_with(0.5 * fastest, 0, 0);
+    ASSERT_STATUS(LACONIC_OK, laconic_plant_restart(&plant, &start, &why));
+    const laconic_plant before = plant;
+    v.wheel_radius_m *= REAL(0.1);
+    ASSERT_REFUSED(LACONIC_OVERFLOW, LACONIC_FIELD_NONE, 0, laconic_plant_change(&plant, &v, &why), why);
+    TEST_ASSERT_TRUE(why.value == 0);
+    TEST_ASSERT_TRUE(why.limit == 0);
+    TEST_ASSERT_EQUAL_MEMORY(&before.state, &plant.state, sizeof plant.state);
+    v.wheel_radius_m *= 9;
+    ASSERT_STATUS(LACONIC_OK, laconic_plant_change(&plant, &v, &why));
+}
+
 static void a_restart_begins_again_with_the_same_vehicle(void) {
     const laconic_input input = no_input();
     laconic_start start = start_with(1, 2, 3);
@@ -152,6 +169,7 @@ int main(void) {
     RUN_TEST(the_count_of_steps_goes_on_with_another_step_size);
     RUN_TEST(a_payload_in_motion_leaves_the_body_where_it_is);
     RUN_TEST(a_refused_change_changes_nothing);
+    RUN_TEST(a_motion_that_a_changed_vehicle_cannot_have_is_refused);
     RUN_TEST(a_restart_begins_again_with_the_same_vehicle);
     return UNITY_END();
 }

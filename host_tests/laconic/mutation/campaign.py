@@ -14,7 +14,7 @@ from pathlib import Path
 
 from laconic.errors import BadInput
 from laconic.mutation.operators import Mutant, mutants_of
-from laconic.mutation.programs import families
+from laconic.mutation.programs import FAMILIES, families
 from laconic.mutation.results import Results, read_equivalents
 from laconic.mutation.trial import Outcome, Trials
 from laconic.paths import SOURCE_DIR, build_dir, sources_missing
@@ -97,7 +97,8 @@ class Campaign:
         return self.tally
 
     def _try(self, todo: list[Mutant], results: Results, until: float, advance: Callable[[float], None]) -> None:
-        tested = families(self.folder)
+        of_fmu = {mutant.file.startswith("fmu/") for mutant in todo}
+        tested = families(self.folder, [name for name in FAMILIES if (name == "fmu") in of_fmu])
         for family in tested:
             family.link()
             family.check()
