@@ -9,8 +9,8 @@ typedef struct factors {
     real gain, inverse_gain, mean, mean_ramp, slope, slope_ramp;
 } factors;
 
-/* Mean and slope at −a, of φ1 … φ4 there; and how all of these change with a. From a = 1 on by 1/(1 − e⁻ᵃ): the differences of φ cancel more and more
- * there, and a stiff vehicle multiplies what is left by its large damping. */
+/* Mean and slope at −a, of φ1 … φ4 there; and how all of these change with a. From a = 1 on by 1/(1 − e⁻ᵃ): the
+ * differences of φ cancel more and more there, and a stiff vehicle multiplies what is left by its large damping. */
 typedef struct phi_part {
     real mean, slope;
 } phi_part;

@@ -70,8 +70,7 @@ static void estimates_of_wheels_that_slip_from_the_start(void) {
     begin();
     for (int number = 0; number < MORE_SLIPPING; number++) {
         if (number == 3) continue; /* wheels that hold cannot slip */
-        const laconic_vehicle vehicle =
-            number < SLIPPING ? slipping_vehicle(number) : more_slipping_vehicle(number);
+        const laconic_vehicle vehicle = number < SLIPPING ? slipping_vehicle(number) : more_slipping_vehicle(number);
         take_estimate_from(start, vehicle, &laconic_auto, 0.004, 4);
     }
     expect(EITHER(0x54ac6b3f2564dfd3U, 0x421f07520b9584deU));

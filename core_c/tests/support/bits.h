@@ -22,6 +22,13 @@ static inline void take(const laconic_real *number, size_t count) {
     }
 }
 
+/* Before a call that writes some items: the others must stay as they were. */
+#define FILL(numbers) fill((laconic_real *)(void *)&(numbers), sizeof(numbers) / (sizeof(laconic_real)))
+
+static inline void fill(laconic_real *number, size_t count) {
+    for (size_t i = 0; i < count; i++) number[i] = REAL(7.25);
+}
+
 #define TAKE(numbers) take((const laconic_real *)&(numbers), sizeof(numbers) / (sizeof(laconic_real)))
 
 static inline void begin(void) { hash = 1469598103934665603U; }
@@ -169,8 +176,8 @@ static inline laconic_vehicle slipping_vehicle(int number) { /* 0 … 2 */
 #define MORE_SLIPPING 8
 
 /* A drive with limits on ideal ground; a skid on a slope, one wheel held by its brake, between supports; rollers that
- * drag as tyres do, every wheel on ground of its own; two wheels with a heavy body that leans on casters; as many wheels
- * and supports as there is room for. */
+ * drag as tyres do, every wheel on ground of its own; two wheels with a heavy body that leans on casters; as many
+ * wheels and supports as there is room for. */
 static inline laconic_vehicle more_slipping_vehicle(int number) {
     laconic_vehicle v = slipping_vehicle(number == 4 ? 1 : 0);
     if (number == 3) {
