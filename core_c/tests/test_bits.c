@@ -1,7 +1,7 @@
-/* Tests that every number of the core is, bit for bit, that of the version before: motions with friction, what sensors
- * show, constants, rates and their directional derivatives; test_bits_motions.c has the motions by every method. A recording then replays in a later version as it
- * was made. Other tests compare the numbers with independent ones; a change of bits on purpose is one of these and goes
- * with a line of the changelog. */
+/* Tests that every number of the core is, bit for bit, that of the version before: motions with friction, what
+ * sensors show, constants, rates and their directional derivatives; test_bits_motions.c has the motions by every
+ * method. A recording then replays in a later version as it was made. Other tests compare the numbers with independent
+ * ones; a change of bits on purpose is one of these and goes with a line of the changelog. */
 #include "bits.h"
 
 static void motions_with_friction(void) {

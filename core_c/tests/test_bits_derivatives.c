@@ -1,7 +1,7 @@
-/* Tests that the derivatives of a step are, bit for bit, those of the version before: all columns of the Jacobian, the
- * tangent and the adjoint with inputs and constants of the model, by every method, and how a model changes with each
- * number of its vehicle. Items
- * of wheels that a vehicle has not stay as they were. test_step_derivatives.c and host_tests/tests/derivatives compare them with differences. */
+/* Tests that the derivatives of a step are, bit for bit, those of the version before: all columns of the Jacobian,
+ * the tangent and the adjoint with inputs and constants of the model, by every method, and how a model changes with
+ * each number of its vehicle. Items of wheels that a vehicle has not stay as they were. test_step_derivatives.c and
+ * host_tests/tests/derivatives compare them with differences. */
 #include "bits.h"
 #include "laconic/derivatives.h"
 
