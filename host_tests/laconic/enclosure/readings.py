@@ -70,8 +70,8 @@ def entries_as_written(path: Path) -> dict[str, Any]:
 
 
 def given_or(written: Any, used: float) -> Fraction:
-    """A number of the file, or the one that is used instead of it."""
-    return Fraction(written) if float(written) == used else as_written(used)
+    """A number of the file, or the one that is used instead of it, as for `"auto"`."""
+    return Fraction(written) if written != "auto" and float(written) == used else as_written(used)
 
 
 def reading_of_file(scene: Scene) -> Reading:

@@ -90,6 +90,13 @@ def test_the_proved_error_is_that_of_the_true_motion(puck):
     assert 0 < true_error <= Fraction(float(found.errors[-1, 3])) < true_error * Fraction(100001, 100000)
 
 
+@pytest.mark.parametrize("options", [(), ("--step", "0.1")])
+def test_a_step_that_is_found_or_given_instead_is_enclosed_as_a_number(puck, options, capsys):
+    puck.write_text(PUCK.replace("step_s = 0.1", 'step_s = "auto"\ntolerance = 1e-9'))
+    status, said = answer(capsys, "simulate", puck, "--enclose", *options)
+    assert status == 0 and said["enclosure"]
+
+
 def test_simulate_writes_error_and_width_beside_each_state(puck, tmp_path, capsys):
     out = tmp_path / "out.csv"
     status, said = answer(capsys, "simulate", puck, "--enclose", "--out", out)
