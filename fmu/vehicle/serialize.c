@@ -92,9 +92,10 @@ static void serialize_stale(fmu_stream *s, fmu_model *self) {
     bool follows = (self->stale & FMU_GROUP_STATE) != 0;
     fmu_stream_bool(s, &follows);
     if (s->from == NULL) return;
+    if (follows && !self->continuous) s->failed = true;
     self->stale = FMU_GROUPS_ALL & ~FMU_GROUP_STATE;
     if (self->continuous) self->stale &= ~FMU_GROUPS_OF_CONTINUOUS_STATES(self);
-    if (self->continuous && follows) self->stale |= FMU_GROUP_STATE;
+    if (follows) self->stale |= FMU_GROUP_STATE;
 }
 
 static int32_t method_number(const laconic_method *method) {
@@ -166,8 +167,10 @@ static void serialize_plant(fmu_stream *s, fmu_model *self) {
     fmu_stream_u64(s, &self->plant.steps);
     fmu_stream_i32(s, &method, 0, LACONIC_METHOD_COUNT - 1);
     fmu_stream_reals(s, &step_s, 1);
-    if (s->from == NULL || s->failed || self->start_needed) return;
-    if (!prepare_again(self, method, step_s)) s->failed = true;
+    if (s->from == NULL || s->failed) return;
+    self->plant.integrator.method = laconic_method_by_number(method);
+    self->plant.integrator.step_s = step_s;
+    if (!self->start_needed && !prepare_again(self, method, step_s)) s->failed = true;
 }
 
 #if FMU_MODEL_ESTIMATES

@@ -130,6 +130,32 @@ static void a_heading_whose_rest_is_no_rest_is_refused(void) {
     }
 }
 
+/* Found by fuzzing: the plant follows from continuous states, which a Co-Simulation has none of. */
+static void a_co_simulation_that_follows_continuous_states_is_refused(void) {
+    fmi2FMUstate read = NULL;
+    begin();
+    ((fmu_instance *)c)->model.stale |= FMU_GROUP_STATE;
+    const size_t size = write();
+    ASSERT_REFUSED(fmi2DeSerializeFMUstate(c, bytes, size, &read), "no possible state");
+    TEST_ASSERT_NULL(read);
+}
+
+/* Found by fuzzing: what was not prepared again lost its step. */
+static void a_state_that_is_to_be_started_again_is_written_as_it_was_read(void) {
+    static fmi2Byte first[sizeof bytes];
+    fmi2FMUstate read = NULL;
+    begin();
+    run(3, 0);
+    ((fmu_instance *)c)->model.start_needed = true;
+    const size_t size = write();
+    memcpy(first, bytes, size);
+    OK(fmi2DeSerializeFMUstate(c, first, size, &read));
+    OK(fmi2SetFMUstate(c, read));
+    TEST_ASSERT_EQUAL_size_t(size, write());
+    TEST_ASSERT_EQUAL_MEMORY(first, bytes, size);
+    fmi2FreeFMUstate(c, &read);
+}
+
 static void a_state_of_the_other_kind_is_refused(void) {
     fmi2FMUstate kept = NULL;
     fmi2Component other = make_2(fmi2ModelExchange, fmu_token_2);
@@ -152,6 +178,8 @@ int main(void) {
     RUN_TEST(damaged_bytes_are_refused_whichever_they_are);
     RUN_TEST(an_impossible_state_is_refused_though_its_checksum_is_right);
     RUN_TEST(a_heading_whose_rest_is_no_rest_is_refused);
+    RUN_TEST(a_co_simulation_that_follows_continuous_states_is_refused);
+    RUN_TEST(a_state_that_is_to_be_started_again_is_written_as_it_was_read);
     RUN_TEST(a_state_of_the_other_kind_is_refused);
     return UNITY_END();
 }
