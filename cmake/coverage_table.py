@@ -26,10 +26,16 @@ PARTS = {"core": ("core_c/src", "core_c/derivatives", "core_c/filter", "core_c/e
          "drives": ("firmware_stub/drives", *(f"firmware_stub/drives/{protocol}" for protocol in
                                               ("canopen", "moteus", "odrive", "robomaster"))),
          "commands": ("firmware_stub/secure",),
-         "FMU": ("fmu", "fmu/vehicle")}
+         "FMU": ("fmu", "fmu/vehicle"),
+         "FMU, controller": ("fmu/controller",),
+         "FMU, bus terminals": ("fmu/network", *(f"fmu/network/{model}" for model in ("node", "bus", "robomaster")))}
 LEFT_OUT = ("shared_library", "library_drives")  # what Python alone calls
 SCALARS = {"double": r"(test|node)_\w+_double|node_secure|fmu_unit_\w+",
            "single": r"(test|node)_\w+_single|node_secure"}
+OTHER_MODELS = {"double": r"fmu_(derivatives|estimate|controller|node|bus|robomaster)_\w+", "single": ""}
+"""Programs of the FMUs' glue around another model than the vehicle's: it is other code there where the model's macros
+choose. LLVM knows each function once, so the programs of each model are looked at by themselves."""
+CHOICE = re.compile(r"\bFMU_MODEL_(PORTS|KEEPS_STEPS|ESTIMATES|TAKES_SLOPES)\b")
 KINDS = ("lines", "branches", "conditions")
 MARK = re.compile(r"cannot be reached(?: in (double|single))?: \S")  # in a comment, with the reason behind it
 STALE = "is listed as what cannot be reached, and a test reaches it: take the comment out"
@@ -54,14 +60,32 @@ def tool(name: str) -> str:
     sys.exit(f"coverage: needs {name} of LLVM 18 or newer; install the package llvm-19")
 
 
-def report(build: Path, scalar: str) -> dict:
-    """What llvm-cov says of all tests of a scalar type together."""
-    programs = sorted(path for folder in ("core_c/tests", "firmware_stub/tests", "fmu/tests/unit")
-                      for path in (build / folder).glob("*")
-                      if re.fullmatch(SCALARS[scalar], path.name) and path.is_file() and os.access(path, os.X_OK))
-    if not programs:
+def report(build: Path, scalar: str) -> dict[str, list[dict]]:
+    """By file: what llvm-cov says of all tests of a scalar type together, then of those around each other model."""
+    found: dict[str, list[dict]] = {}
+    for number, programs in enumerate(groups(build, scalar)):
+        files = [path for path in sources() if number == 0 or part_of(path).startswith("FMU")]
+        for file in export(build / "profiles", f"{scalar}_{number}", programs, files):
+            found.setdefault(file["filename"], []).append(file)
+    return found
+
+
+def groups(build: Path, scalar: str) -> list[list[Path]]:
+    """The test programs of a scalar type, and those around each other model."""
+    every = sorted(path for folder in ("core_c/tests", "firmware_stub/tests", "fmu/tests/unit")
+                   for path in (build / folder).glob("*") if path.is_file() and os.access(path, os.X_OK))
+    first = [path for path in every if re.fullmatch(SCALARS[scalar], path.name)]
+    if not first:
         sys.exit(f"coverage: {build} has no tests; build laconic_unity_tests with clang and -DLACONIC_COVERAGE=ON")
-    profiles = build / "profiles"
+    others: dict[str, list[Path]] = {}
+    for path in every:
+        if told := re.fullmatch(OTHER_MODELS[scalar], path.name):
+            others.setdefault(told[1], []).append(path)
+    return [first, *others.values()]
+
+
+def export(profiles: Path, name: str, programs: list[Path], files: list[str]) -> list[dict]:
+    """These files, as llvm-cov reports on these programs."""
     profiles.mkdir(exist_ok=True)
 
     def run(program: Path) -> Path:
@@ -72,14 +96,14 @@ def report(build: Path, scalar: str) -> dict:
 
     with ThreadPoolExecutor(os.cpu_count()) as pool:
         raws = list(pool.map(run, programs))
-    merged = profiles / f"{scalar}.profdata"
+    merged = profiles / f"{name}.profdata"
     subprocess.run([tool("llvm-profdata"), "merge", "-sparse", "-o", merged, *raws], check=True)
     for raw in raws:
         raw.unlink()
     objects = [word for program in programs[1:] for word in ("-object", str(program))]
     said = subprocess.run([tool("llvm-cov"), "export", "-format=text", f"-instr-profile={merged}", str(programs[0]),
-                           *objects, "-sources", *sources()], capture_output=True, text=True, check=True).stdout
-    return json.loads(said)["data"][0]
+                           *objects, "-sources", *files], capture_output=True, text=True, check=True).stdout
+    return list(json.loads(said)["data"][0]["files"])
 
 
 def listed(file: str, scalar: str) -> list[set[int]]:
@@ -94,16 +118,14 @@ def listed(file: str, scalar: str) -> list[set[int]]:
     return found
 
 
-def missed(data: dict, scalar: str) -> dict[str, list[tuple[str, int, str]]]:
+def missed(data: dict[str, list[dict]], scalar: str) -> dict[str, list[tuple[str, int, str]]]:
     """By kind: file, line and what of it no test reaches; without what the sources list. A function of a header counts
     once, whichever file it was reached from. A list of what is reached after all is missed itself."""
     found: dict[str, set] = {kind: set() for kind in KINDS}
-    for file in data["files"]:
-        name = file["filename"]
-        lines = uncovered_lines(file["segments"]) & lines_of_code(name)
-        branches = {key for key, count in taken_branches(file["branches"]).items() if count == 0}
-        hidden = hidden_conditions(file.get("mcdc_records", ()), known_conditions(file["branches"]))
-        left = file["summary"]["mcdc"]["count"] - file["summary"]["mcdc"]["covered"]
+    for name, reports in data.items():
+        lines = uncovered_lines(reports) & lines_of_code(name)
+        branches = {key for key, count in taken_branches(reports).items() if count == 0}
+        hidden = hidden_of_all(name, reports)
         marks = listed(name, scalar)
         reasons = set()
         for mark in marks:
@@ -113,9 +135,47 @@ def missed(data: dict, scalar: str) -> dict[str, list[tuple[str, int, str]]]:
         found["lines"] |= {(name, line, "line") for line in lines - reasons}
         found["branches"] |= {(name, line, f"column {column}, {side}") for line, column, side in branches
                               if line not in reasons}
+        left = None if len(reports) > 1 else conditions_left(reports[0])
         found["conditions"] |= set([(name, line, f"column {column}, condition {number}")
                                     for line, column, number in hidden if line not in reasons][:left])
     return {kind: sorted(each) for kind, each in found.items()}
+
+
+def conditions_left(file: dict) -> int:
+    """How many LLVM counts as missed."""
+    return file["summary"]["mcdc"]["count"] - file["summary"]["mcdc"]["covered"]
+
+
+def hidden_of_all(name: str, reports: list[dict]) -> list[tuple[int, int, int]]:
+    """Conditions that no test shows, around whichever model. Those that a model's macros decide are none."""
+    each = [hidden_conditions(file.get("mcdc_records", ()), known_conditions(file["branches"])) for file in reports]
+    if len(each) == 1:
+        return each[0]
+    decided = conditions(name, reports)
+    return sorted(key for key in decided
+                  if all(key in hidden for hidden, file in zip(each, reports, strict=True) if has_decision(file, key)))
+
+
+def has_decision(file: dict, key: tuple[int, int, int]) -> bool:
+    """Whether the decision is in what these programs were made of."""
+    return any((record[0], record[1]) == key[:2] for record in file.get("mcdc_records", ()))
+
+
+def conditions(name: str, reports: list[dict]) -> set[tuple[int, int, int]]:
+    """Line, column and number of each condition, but of those that a model's macros decide."""
+    text = Path(name).read_text(encoding="utf-8").splitlines()
+    of_code = lines_of_code(name)
+    found = set()
+    for file in reports:
+        for line, column, end, end_column, *_, shown in file.get("mcdc_records", ()):
+            words = [*text[line - 1:end - 1], text[end - 1][:end_column - 1]]
+            words[0] = words[0][column - 1:]
+            pieces = re.split(r"&&|\|\|", " ".join(words))
+            chosen = [bool(CHOICE.search(piece)) for piece in pieces]
+            if line in of_code:
+                found |= {(line, column, number) for number in range(1, len(shown) + 1)
+                          if len(pieces) != len(shown) or not chosen[number - 1]}
+    return found
 
 
 def with_block(mark: set[int], lines: set[int]) -> set[int]:
@@ -128,10 +188,10 @@ def with_block(mark: set[int], lines: set[int]) -> set[int]:
     return block
 
 
-def taken_branches(branches: list) -> Counter:
+def taken_branches(reports: list[dict]) -> Counter:
     """How often each side was taken. One whose condition the compiler knows has no counts and is left out."""
     found: Counter = Counter()
-    for line, column, _, _, true, false, *_ in branches:
+    for line, column, _, _, true, false, *_ in (branch for file in reports for branch in file["branches"]):
         if true or false:
             found[line, column, "true"] += true
             found[line, column, "false"] += false
@@ -175,8 +235,21 @@ def lines_of_code(file: str) -> set[int]:
     return found
 
 
-def uncovered_lines(segments: list) -> set[int]:
-    """Lines of which no region was ever run."""
+def uncovered_lines(reports: list[dict]) -> set[int]:
+    """Lines of which no region was ever run. Where a model leaves lines out, they look like a part of the region before
+    them: they count only if a region begins there around another model."""
+    best: Counter = Counter()
+    seen: Counter = Counter()
+    begun = {segment[0] for file in reports for segment in file["segments"] if segment[4]}
+    for file in reports:
+        for line, count in counts_of_lines(file["segments"]).items():
+            best[line] = max(best[line], count)
+            seen[line] += 1
+    return {line for line, count in best.items() if count == 0 and (seen[line] == len(reports) or line in begun)}
+
+
+def counts_of_lines(segments: list) -> dict[int, int]:
+    """How often each line was run."""
     best: dict[int, int] = {}
     wrapped = None
     for segment, following in zip(segments, [*segments[1:], None], strict=True):
@@ -189,17 +262,19 @@ def uncovered_lines(segments: list) -> set[int]:
         if has_count and following is not None:
             for between in range(line + 1, following[0]):
                 best[between] = count
-    return {line for line, count in best.items() if count == 0}
+    return best
 
 
-def totals(data: dict) -> dict[str, Counter]:
+def totals(data: dict[str, list[dict]]) -> dict[str, Counter]:
     """How many there are, by part and kind."""
     found = {part: Counter() for part in PARTS}
-    for file in data["files"]:
-        summary = file["summary"]
-        found[part_of(file["filename"])].update(
-            lines=summary["lines"]["count"], branches=summary["branches"]["count"],
-            conditions=summary["mcdc"]["count"])
+    for name, reports in data.items():
+        summaries = [file["summary"] for file in reports]
+        several = len(reports) > 1
+        found[part_of(name)].update(
+            lines=max(each["lines"]["count"] for each in summaries),
+            branches=len(taken_branches(reports)) if several else summaries[0]["branches"]["count"],
+            conditions=len(conditions(name, reports)) if several else summaries[0]["mcdc"]["count"])
     return found
 
 
@@ -209,7 +284,7 @@ def part_of(file: str) -> str:
     return next(part for part, folders in PARTS.items() if folder in folders)
 
 
-def table(data: dict[str, dict]) -> list[str]:
+def table(data: dict[str, dict[str, list[dict]]]) -> list[str]:
     """Rows of the page's table: missed of how many."""
     rows = [f"| part, scalar | {' | '.join(KINDS)} |", f"|{' --- |' * (1 + len(KINDS))}"]
     for scalar, each in data.items():

@@ -71,13 +71,12 @@ static bool get_quickly(fmu_instance *instance, const uint32_t *references, size
     return true;
 }
 
-/* All is checked before anything is stored. */
+/* All is checked before anything is stored. Inputs may be set wherever the call is allowed (lifecycle.c). */
 static bool set_quickly(fmu_instance *instance, const uint32_t *references, size_t count, const double *values,
                         size_t value_count) {
     fmu_model *model = &instance->model;
     fmu_list *list = &instance->written;
     double not_finite = 0.0;
-    if (!(instance->settable >> FMU_INPUT & 1U)) return false;
     if (!is_known(list, references, count) && !look_up(instance, list, references, count, true)) return false;
     if (list->values != value_count) return false;
     for (size_t i = 0; i < value_count; i++) not_finite += zero_if_finite(values[i]);

@@ -20,6 +20,10 @@ typedef struct fmu_callbacks_2 {
     fmi2CallbackLogger log;
 } fmu_callbacks_2;
 
+typedef char
+    fmu_callback_storage_is_large_enough[sizeof(fmu_callbacks_2) <= sizeof(((fmu_instance *)0)->callback_storage) ? 1
+                                                                                                                  : -1];
+
 static const fmu_callbacks_2 *callbacks(const fmu_instance *instance) {
     return (const fmu_callbacks_2 *)(const void *)&instance->callback_storage;
 }
@@ -27,9 +31,9 @@ static const fmu_callbacks_2 *callbacks(const fmu_instance *instance) {
 /* The logger formats like printf, and no arguments are passed to it: each % must be doubled. Importers that print
  * the text as it is show both. */
 static void log_message(const fmu_instance *instance, fmu_status status, const char *category, const char *text) {
-    char safe[1024];
+    char safe[2 * FMU_LINE_LENGTH];
     size_t used = 0;
-    for (; *text != '\0' && used + 2 < sizeof safe; text++) {
+    for (; *text != '\0'; text++) {
         if (*text == '%') safe[used++] = '%';
         safe[used++] = *text;
     }
@@ -230,8 +234,8 @@ fmi2Status fmi2DoStep(fmi2Component c, fmi2Real currentCommunicationPoint, fmi2R
 }
 
 fmi2Status fmi2CancelStep(fmi2Component c) {
-    ALLOW(c, FMU_CALL_CANCEL_STEP); /* never: steps are not asynchronous */
-    return fmi2OK;
+    ALLOW(c, FMU_CALL_CANCEL_STEP);
+    return fmi2OK; /* cannot be reached: never allowed, since steps are not asynchronous */
 }
 
 static fmi2Status no_status(fmi2Component c) {

@@ -19,7 +19,7 @@ static uint32_t settable_in(const fmu_instance *instance, fmu_mode mode) {
     case FMU_INITIALIZATION: return start;
     case FMU_EVENT: return SETS(FMU_TUNABLE) | SETS(FMU_INPUT) | (sets_states ? SETS(FMU_STATE) : 0);
     case FMU_STEP: return SETS(FMU_INPUT) | (instance->event_mode_used ? 0 : SETS(FMU_TUNABLE));
-    case FMU_CONTINUOUS: return SETS(FMU_INPUT) | (sets_states ? SETS(FMU_STATE) : 0);
+    case FMU_CONTINUOUS: return SETS(FMU_INPUT) | SETS(FMU_STATE);
     case FMU_INTERMEDIATE: return SETS(FMU_INPUT);
     default: return 0;
     }
@@ -78,8 +78,7 @@ fmu_instance *fmu_create(const fmu_request *request) {
     instance->version = request->version;
     instance->deliver = request->deliver;
     instance->environment = request->environment;
-    if (request->callbacks_size <= sizeof instance->callback_storage)
-        memcpy(instance->callback_storage, request->callbacks, request->callbacks_size);
+    memcpy(instance->callback_storage, request->callbacks, request->callbacks_size);
     /* warnings are logged by default, since they state that results are invalid */
     instance->log_categories = request->logging_on ? FMU_LOG_ALL : FMU_LOG_ERROR | FMU_LOG_WARNING;
     instance->name = copy_text(request->instance_name != NULL ? request->instance_name : "");

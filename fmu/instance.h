@@ -88,7 +88,7 @@ typedef struct fmu_request {
     bool logging_on;
     fmu_deliver deliver;
     void *environment;
-    const void *callbacks; /* callbacks for fmu_instance.callback_storage */
+    const void *callbacks; /* callbacks for fmu_instance.callback_storage, which holds them */
     size_t callbacks_size;
 } fmu_request;
 
@@ -117,6 +117,9 @@ fmu_status fmu_reset(fmu_instance *instance);
 fmu_status fmu_apply_parameters(fmu_instance *instance);
 
 /* ---------------------------------------------------------------------------------- messages -- */
+
+/* Of a line of the log, with the 0 behind it; longer ones are cut. */
+#define FMU_LINE_LENGTH 512U
 
 #if defined(__GNUC__)
 #define FMU_LIKE_PRINTF(text, first) __attribute__((format(printf, text, first)))

@@ -5,8 +5,6 @@
 
 #include "instance.h"
 
-#define LINE_LENGTH 512
-
 static const struct {
     fmu_category category;
     const char *name;
@@ -26,7 +24,7 @@ static void unsign_nan(char *line) {
 
 static void deliver(const fmu_instance *instance, fmu_status status, fmu_category category, const char *format,
                     va_list arguments) {
-    char line[LINE_LENGTH];
+    char line[FMU_LINE_LENGTH];
     /* errors are always logged, as FMI 3.0 requires */
     if (instance->deliver == NULL || !((instance->log_categories | FMU_LOG_ERROR) & (unsigned)category)) return;
     (void)vsnprintf(line, sizeof line, format, arguments);

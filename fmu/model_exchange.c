@@ -30,7 +30,7 @@ static fmu_status check_count(const fmu_instance *instance, const double *values
     const uint32_t states = fmu_model_state_count(&instance->model);
     if (count != states)
         return fmu_refuse(instance, "there are %u continuous states, not %zu", (unsigned)states, count);
-    return values != NULL || count == 0 ? FMU_OK : fmu_refuse(instance, "the list of values is missing (NULL)");
+    return values != NULL ? FMU_OK : fmu_refuse(instance, "the list of values is missing (NULL)");
 }
 
 fmu_status fmu_get_states(fmu_instance *instance, double *values, size_t count) {

@@ -78,7 +78,6 @@ static bool serialize(fmu_stream *stream, fmu_snapshot *snapshot, uint64_t *vers
     fmu_stream_u64(stream, version);
     fmu_stream_u64(stream, &snapshot->token_hash);
     fmu_stream_u64(stream, size);
-    if (stream->from != NULL && *version != STATE_VERSION) return false;
     fmu_stream_i32(stream, &kind, FMU_MODEL_EXCHANGE, FMU_CO_SIMULATION);
     fmu_stream_i32(stream, &mode, FMU_INSTANTIATED, FMU_MODE_COUNT - 1);
     fmu_stream_bool(stream, &snapshot->event_mode_used);

@@ -105,7 +105,10 @@ static bool load_file(fmu_instance *instance, const char *token, const char *res
     char name[4096];
     uint8_t *bytes = malloc(LARGEST_FILE);
     const bool named = file_name(name, sizeof name, resources);
-    if (bytes == NULL) return false;
+    if (bytes == NULL) {
+        fmu_refuse(instance, "Instantiate: out of memory");
+        return false;
+    }
     const bool good = named && parse(instance, bytes, read_file(name, bytes, LARGEST_FILE), token);
     free(bytes);
     if (!good)

@@ -95,7 +95,6 @@ static const char *who_sets(fmu_access access) {
     case FMU_STRUCTURAL: return "it is set in configuration mode, before initialization";
     case FMU_FIXED: return "it is fixed once initialization has ended";
     case FMU_TUNABLE: return "it is tunable: between steps, or in event mode where that is used";
-    case FMU_INPUT: return "it is an input";
     case FMU_STATE: return "it is a state; only Model Exchange sets it";
     default: return "it is computed by the model";
     }

@@ -78,6 +78,7 @@ fmu_status fmu_model_set_step(fmu_instance *instance, double step_s) {
     return FMU_OK;
 }
 
+/* cannot be reached: a controller has no internal step of its own */
 fmu_status fmu_model_count_steps(fmu_instance *instance, double step_s, double own_s, uint64_t *steps) {
     (void)instance;
     (void)step_s;
@@ -97,8 +98,9 @@ fmu_status fmu_model_run(fmu_instance *instance, uint64_t steps, uint64_t *taken
     return FMU_OK;
 }
 
+/* cannot be reached: a controller has no warnings */
 void fmu_model_settle_warnings(fmu_instance *instance, bool accepted) {
-    (void)instance; /* a controller has no warnings */
+    (void)instance;
     (void)accepted;
 }
 
@@ -108,6 +110,7 @@ void fmu_model_save_motion(const fmu_model *model, fmu_model_motion *motion) {
     for (uint32_t i = 0; i < FMU_MODEL_LARGEST_ARRAY; i++) motion->error_rad[i] = model->error_rad[i];
 }
 
+/* cannot be reached: a controller refuses no step */
 void fmu_model_restore_motion(fmu_model *model, const fmu_model_motion *motion) {
     for (uint32_t i = 0; i < FMU_MODEL_LARGEST_ARRAY; i++) model->error_rad[i] = motion->error_rad[i];
     model->stale = FMU_GROUPS_ALL;
@@ -159,7 +162,7 @@ void fmu_model_motion_seed(fmu_instance *instance, fmu_tangent *tangent) {
         tangent->error_rad[i] = instance->model.error_rate_rad_per_s[i];
 }
 
-/* Never called: FMU_MODEL_TAKES_SLOPES is false, inputs are held. */
+/* cannot be reached: FMU_MODEL_TAKES_SLOPES is false, inputs are held */
 void fmu_model_set_slope(fmu_model *model, uint32_t tangent_offset, double slope) {
     (void)model;
     (void)tangent_offset;

@@ -80,7 +80,8 @@ fmi3Status fmi3GetBinary(fmi3Instance instance, const fmi3ValueReference valueRe
                          size_t valueSizes[], fmi3Binary values[], size_t nValues) {
     fmu_instance *self = SELF(instance);
     const fmu_variable *variable;
-    if (self == NULL || !FMU_MAY_CALL(self, FMU_CALL_GET)) return fmi3Error;
+    if (self == NULL) return fmi3Error;
+    if (!FMU_MAY_CALL(self, FMU_CALL_GET)) return fmi3Error;
     if (nValues != nValueReferences || (nValues > 0 && valueSizes == NULL) ||
         !has_lists(self, nValues, valueReferences, values))
         return to_fmi(fmu_refuse(self, "GetBinary: give one value and one size for each reference"));
@@ -110,7 +111,8 @@ static bool check_binary(const fmu_instance *instance, uint32_t reference, size_
 fmi3Status fmi3SetBinary(fmi3Instance instance, const fmi3ValueReference valueReferences[], size_t nValueReferences,
                          const size_t valueSizes[], const fmi3Binary values[], size_t nValues) {
     fmu_instance *self = SELF(instance);
-    if (self == NULL || !FMU_MAY_CALL(self, FMU_CALL_SET_DISCRETE)) return fmi3Error;
+    if (self == NULL) return fmi3Error;
+    if (!FMU_MAY_CALL(self, FMU_CALL_SET_DISCRETE)) return fmi3Error;
     if (nValues != nValueReferences || (nValues > 0 && valueSizes == NULL) ||
         !has_lists(self, nValues, valueReferences, values))
         return to_fmi(fmu_refuse(self, "SetBinary: give one value and one size for each reference"));

@@ -33,17 +33,22 @@ static bool is_finite(const laconic_grip_event *event) {
     return fmu_is_finite(event->needed_N + event->normal_N + event->margin_N);
 }
 
+static void warn(const fmu_instance *instance, bool of_slip, bool of_lift) {
+    const fmu_model *self = &instance->model;
+    if ((of_slip && !is_finite(&self->pending_slip)) || (of_lift && !is_finite(&self->pending_lift))) {
+        warn_of_overflow(instance);
+        return;
+    }
+    if (of_slip) warn_of_slip(instance);
+    if (of_lift) warn_of_lift(instance);
+}
+
 void fmu_model_settle_warnings(fmu_instance *instance, bool accepted) {
     const uint32_t pending = instance->warnings_pending;
-    const fmu_model *self = &instance->model;
-    if (accepted && ((pending & FMU_SLIP_WARNING && !is_finite(&self->pending_slip)) ||
-                     (pending & FMU_LIFT_WARNING && !is_finite(&self->pending_lift))))
-        warn_of_overflow(instance);
-    else if (accepted) {
-        if (pending & FMU_SLIP_WARNING) warn_of_slip(instance);
-        if (pending & FMU_LIFT_WARNING) warn_of_lift(instance);
+    if (accepted) {
+        warn(instance, (pending & FMU_SLIP_WARNING) != 0, (pending & FMU_LIFT_WARNING) != 0);
+        instance->warnings_given |= pending;
     }
-    if (accepted) instance->warnings_given |= pending;
     instance->warnings_pending = 0;
 }
 

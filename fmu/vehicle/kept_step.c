@@ -95,7 +95,7 @@ static bool add_step(laconic_step_jacobian *sum, laconic_plant *plant, const lac
     return laconic_step(&plant->model, &plant->integrator, &plant->state, held) == LACONIC_OK;
 }
 
-/* False where the core refuses what it did not refuse when it took the step: never, as far as is known. */
+/* False where the core refuses what it did not refuse when it took the step: that of a state which was no run's. */
 static bool find_jacobian(fmu_model *self) {
     laconic_plant plant = self->plant;
     const laconic_step_jacobian nothing = {0};
@@ -113,15 +113,14 @@ static bool find_jacobian(fmu_model *self) {
 
 fmu_status fmu_model_check_step(fmu_instance *instance) {
     static const char *const reasons[FMU_STEP_KINDS] = {
-        NULL, NULL, "its inputs had slopes, and derivatives are by inputs that are held",
+        NULL, "the core refuses them", "its inputs had slopes, and derivatives are by inputs that are held",
         "inputs were set within it, and derivatives are by inputs that are held",
         "the vehicle has changed since; take another step first"};
     fmu_model *self = &instance->model;
     if (!asks_for_step(instance)) return FMU_OK;
     if (self->last.kept == FMU_STEP_KEPT && !self->has_jacobian) self->has_jacobian = find_jacobian(self);
     if (self->last.kept == FMU_STEP_KEPT && self->has_jacobian) return FMU_OK;
-    return fmu_refuse(instance, "the last communication step has no derivatives: %s",
-                      self->last.kept == FMU_STEP_KEPT ? "the core refuses them" : reasons[self->last.kept]);
+    return fmu_refuse(instance, "the last communication step has no derivatives: %s", reasons[self->last.kept]);
 }
 
 /* ---------------------------------------------------------------------------------- a response -- */

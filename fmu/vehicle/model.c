@@ -216,10 +216,9 @@ static double nearest_step(const fmu_instance *instance, double step_s, double o
     const double ratio = step_s / own_s;
     if (!(ratio < MOST_STEPS)) return 0.0;
     const uint64_t rounded = ratio < 1.0 ? 1 : (uint64_t)(ratio + 0.5);
-    for (uint64_t count = rounded; count > 0 && count + 1 >= rounded; count--)
-        if (!fmu_clock_passes_stop(&instance->clock, instance->model.time_s + own_s * (double)count, own_s))
-            return own_s * (double)count;
-    return 0.0;
+    const double end_s = instance->model.time_s + own_s * (double)rounded;
+    /* step_s itself does not pass the stop time, so one step less does not */
+    return own_s * (double)(fmu_clock_passes_stop(&instance->clock, end_s, own_s) ? rounded - 1 : rounded);
 }
 
 fmu_status fmu_model_count_steps(fmu_instance *instance, double step_s, double own_s, uint64_t *steps) {

@@ -63,6 +63,9 @@ static void serialize_sums(fmu_stream *s, laconic_sum *sums, size_t count) {
     }
 }
 
+/* What a heading has not taken up; not so NaN. */
+static bool is_rest(double rest) { return rest <= 1.0 && rest >= -1.0; }
+
 static void serialize_state(fmu_stream *s, laconic_state *state) {
     uint64_t fraction = state->heading.fraction;
     serialize_sums(s, state->zeta, 3);
@@ -72,7 +75,7 @@ static void serialize_state(fmu_stream *s, laconic_state *state) {
     fmu_stream_u64(s, &fraction);
     state->heading.fraction = fraction;
     fmu_stream_reals(s, &state->heading.rest, 1);
-    if (s->from != NULL && !(state->heading.rest <= 1.0 && state->heading.rest >= -1.0)) s->failed = true;
+    if (s->from != NULL && !is_rest(state->heading.rest)) s->failed = true;
     serialize_sums(s, state->travel, 3);
     fmu_stream_reals(s, state->wheel_angle_set_rad, LACONIC_MAX_WHEELS);
 }

@@ -86,6 +86,7 @@ fmu_status fmu_model_start(fmu_instance *instance) {
     return FMU_OK;
 }
 
+/* cannot be reached: no parameter is tunable */
 fmu_status fmu_model_change(fmu_instance *instance) {
     instance->model.change_needed = false;
     return FMU_OK;
@@ -135,7 +136,7 @@ static void tick(fmu_instance *instance) {
 static uint64_t idle_us(const fmu_model *self) {
     const uint64_t idle = laconic_node_idle_us(&self->node, (uint32_t)self->now_us);
     if (self->can.status != LS_BUS_BUS_OFF || self->can.off_until_us >= self->now_us + idle) return idle;
-    return self->can.off_until_us > self->now_us ? self->can.off_until_us - self->now_us : 0;
+    return self->can.off_until_us - self->now_us; /* it is to come: the last tick would have ended it */
 }
 
 void fmu_model_advance(fmu_instance *instance, double end_s) {
@@ -191,7 +192,8 @@ void fmu_model_refresh(fmu_instance *instance, uint32_t groups) {
     show_wheels(self);
 }
 
-bool fmu_model_serialize(fmu_stream *stream, fmu_model *model) { /* never called: saved_states.c */
+/* cannot be reached: saved_states.c refuses to write a model with bus terminals */
+bool fmu_model_serialize(fmu_stream *stream, fmu_model *model) {
     (void)model;
     return !stream->failed;
 }

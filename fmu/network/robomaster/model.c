@@ -3,7 +3,8 @@
 
 #include "model_interface.h"
 
-enum { COMMAND = 0x200, FIRST_FEEDBACK = 0x201, FULL_SCALE = 16384 };
+enum { COMMAND = 0x200, FIRST_FEEDBACK = 0x201 };
+#define FULL_SCALE 16384.0
 #define FULL_SCALE_A 20.0
 #define RAD_PER_S_PER_RPM 0.10471975511965977
 #define ROUNDING 1e-9 /* of a period */
@@ -32,6 +33,7 @@ fmu_status fmu_model_start(fmu_instance *instance) {
     return FMU_OK;
 }
 
+/* cannot be reached: no parameter is tunable */
 fmu_status fmu_model_change(fmu_instance *instance) {
     instance->model.change_needed = false;
     return FMU_OK;
@@ -44,7 +46,8 @@ void fmu_model_refresh(fmu_instance *instance, uint32_t groups) {
     (void)groups;
 }
 
-bool fmu_model_serialize(fmu_stream *stream, fmu_model *model) { /* never called: saved_states.c */
+/* cannot be reached: saved_states.c refuses to write a model with bus terminals */
+bool fmu_model_serialize(fmu_stream *stream, fmu_model *model) {
     (void)model;
     return !stream->failed;
 }

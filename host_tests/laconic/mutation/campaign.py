@@ -20,11 +20,12 @@ from laconic.mutation.trial import Outcome, Trials
 from laconic.paths import SOURCE_DIR, build_dir, sources_missing
 
 PARTS = {"core": ("core_c/src", "core_c/derivatives", "core_c/estimate", "core_c/filter"),
-         "node": ("firmware_stub/src",), "fmu": ("fmu", "fmu/vehicle")}
+         "node": ("firmware_stub/src",),
+         "fmu": ("fmu", "fmu/vehicle", "fmu/controller", "fmu/network", "fmu/network/node", "fmu/network/bus",
+                 "fmu/network/robomaster")}
 LEFT_OUT = ("firmware_stub/src/shared_library.c", "firmware_stub/src/shared_library.h",
-            "firmware_stub/src/library_drives.c", "firmware_stub/src/library_drives.h", "fmu/vehicle/kept_step.c",
-            "fmu/vehicle/estimate_part.c")
-"""What Python alone calls, and the FMUs with derivatives of steps and with an estimate: Python's tests drive them."""
+            "firmware_stub/src/library_drives.c", "firmware_stub/src/library_drives.h")
+"""What Python alone calls."""
 
 
 @dataclass

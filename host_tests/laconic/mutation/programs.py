@@ -21,11 +21,16 @@ from laconic.errors import BadInput, ResultFails
 from laconic.paths import SOURCE_DIR, build_dir
 
 FOLDERS = ("core_c", "firmware_stub", "fmu")
+FMU_MODELS = ("unit", "derivatives", "estimate", "controller", "node", "bus", "robomaster")
+"""What the FMUs' glue stands around; `unit` is the vehicle."""
 FAMILIES = {"double": r"laconic_objects_double|laconic_node_double|laconic_wire",
             "single": r"laconic_objects_single|laconic_node_single|laconic_wire",
-            "fmu": r"laconic_fmu_checked|laconic_objects_double"}
+            **{f"fmu_{model}": rf"laconic_fmu_checked_{model}|laconic_fmu_memory|laconic_objects_double"
+                               + ("|laconic_node_double|laconic_wire" if model == "node" else "")
+               for model in FMU_MODELS}}
 """By the targets whose objects make the family's library."""
-TESTS = {"double": r"(test|node)_\w+_double", "single": r"(test|node)_\w+_single", "fmu": r"fmu_unit_\w+"}
+TESTS = {"double": r"(test|node)_\w+_double", "single": r"(test|node)_\w+_single",
+         **{f"fmu_{model}": rf"fmu_{model}_\w+" for model in FMU_MODELS}}
 LEFT_OUT = r"test_soft_double|node_socketcan_\w+|test_batch\w*"
 """Programs that tell nothing: of files that are not mutated, and of lanes, whose text is not compiled anew here, so
 that they differ from every mutant of a method."""
@@ -100,7 +105,7 @@ class Program:
 
 @dataclass
 class Family:
-    """The tests of one scalar type, or of the FMU: all of them around one library."""
+    """The tests of one scalar type, or of the FMU around one model: all of them around one library."""
 
     name: str
     folder: Path

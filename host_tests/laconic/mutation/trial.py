@@ -66,7 +66,7 @@ class Trials:
     def _families_of(self, mutant: Mutant) -> list[Family]:
         """The FMU's tests are for its own files: those of the core have theirs."""
         is_of_fmu = mutant.file.startswith("fmu/")
-        return [family for family in self.families if (family.name == "fmu") == is_of_fmu]
+        return [family for family in self.families if family.name.startswith("fmu_") == is_of_fmu]
 
     def _tried(self, mutant: Mutant, tree: Path, source: bytes) -> tuple[str, str]:
         differs = False
@@ -99,14 +99,14 @@ class Trials:
     def _with_sanitizers(self, mutant: Mutant, tree: Path, source: bytes) -> tuple[str, str] | None:
         """What the tests passed is given to them once more under the sanitizers, as continuous integration runs them: a
         fault may write past an array, and nothing else."""
-        for family in self._families_of(mutant)[:1]:
-            found = self._checked(mutant, family, tree, None)
-            if found is None:
-                continue
-            (tree / mutant.file).write_bytes(source)
-            if self._checked(mutant, family, tree, found[1]) is None:  # the program passes without the fault
-                return found
-        return None
+        units = self._of(mutant)
+        family = next((each for each in self._families_of(mutant)
+                       if any(unit in each.library_units for unit in units)), None)
+        if family is None or (found := self._checked(mutant, family, tree, None)) is None:
+            return None
+        (tree / mutant.file).write_bytes(source)
+        again = self._checked(mutant, family, tree, found[1])
+        return found if again is None else None  # else the program does not pass without the fault
 
     def _checked(self, mutant: Mutant, family: Family, tree: Path, only: str | None) -> tuple[str, str] | None:
         objects = {}
@@ -153,8 +153,9 @@ class Trials:
         with self._lock:
             kills = Counter(self._kills[mutant.file])
             all_kills = sum(self._kills.values(), Counter())
-        stem = Path(mutant.file).stem.removeprefix("node_")
-        name = re.compile(rf"(test|node|fmu_unit)_(node_)?{stem}(_double|_single)?")
+        path = Path(mutant.file)
+        stem = path.parent.name if path.stem == "model" else path.stem.removeprefix("node_")
+        name = re.compile(rf"(test|node|fmu_[a-z]+)_(node_)?{stem}(_double|_single)?")
         return sorted(chosen, key=lambda each: (not name.fullmatch(each.name), -kills[each.name], -all_kills[each.name],
                                                     each.seconds))
 

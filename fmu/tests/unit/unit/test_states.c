@@ -156,6 +156,61 @@ static void a_state_that_is_to_be_started_again_is_written_as_it_was_read(void) 
     fmi2FreeFMUstate(c, &read);
 }
 
+static void seal(size_t size) {
+    const uint32_t checksum = fmu_checksum((const uint8_t *)bytes, size - 8);
+    for (size_t k = 0; k < 4; k++) bytes[size - 8 + k] = (fmi2Byte)(checksum >> (8 * k));
+}
+
+/* The size stands in the bytes, and is that of what is read. */
+static void a_state_is_neither_longer_nor_of_another_size(void) {
+    fmi2FMUstate read = NULL;
+    begin();
+    const size_t size = write();
+    bytes[8 + 16]++;
+    seal(size);
+    ASSERT_REFUSED(fmi2DeSerializeFMUstate(c, bytes, size, &read), "are no possible state");
+    bytes[8 + 16] = (fmi2Byte)((size + 8) & 255U);
+    bytes[8 + 17] = (fmi2Byte)((size + 8) >> 8 & 255U);
+    memset(bytes + size, 0, 8);
+    seal(size + 8);
+    ASSERT_REFUSED(fmi2DeSerializeFMUstate(c, bytes, size + 8, &read), "are no possible state");
+    ASSERT_REFUSED(fmi2SerializeFMUstate(c, NULL, bytes, size), "the saved state is missing (NULL)");
+    ASSERT_REFUSED(fmi2SerializedFMUstateSize(c, NULL, NULL), "the saved state is missing (NULL)");
+}
+
+static void modes_of_model_exchange_are_its_own(void) {
+    fmi2FMUstate read = NULL;
+    fmi2FreeInstance(c);
+    c = make_2(fmi2ModelExchange, fmu_token_2);
+    const size_t size = write();
+    for (int mode = 0; mode < 9; mode++) {
+        bytes[8 + 24 + 8] = (fmi2Byte)mode;
+        seal(size);
+        const bool fits = mode != FMU_STEP && mode != FMU_INTERMEDIATE && mode < FMU_MODE_COUNT;
+        TEST_ASSERT_EQUAL_INT(fits ? fmi2OK : fmi2Error, fmi2DeSerializeFMUstate(c, bytes, size, &read));
+    }
+    OK(fmi2FreeFMUstate(c, &read));
+}
+
+static void event_mode_is_for_who_uses_it(void) {
+    static fmi3Byte of_events[65536];
+    fmi3FMUState kept = NULL;
+    size_t size = 0;
+    fmi3Instance with = make_3(true), without = make_3(false);
+    OK(fmi3EnterInitializationMode(with, false, 0, 0, false, 0));
+    OK(fmi3ExitInitializationMode(with));
+    OK(fmi3GetFMUState(with, &kept));
+    ASSERT_REFUSED(fmi3SetFMUState(without, kept), "Co-Simulation, with or without event mode");
+    OK(fmi3SerializedFMUStateSize(with, kept, &size));
+    OK(fmi3SerializeFMUState(with, kept, of_events, size));
+    OK(fmi3DeserializeFMUState(with, of_events, size, &kept));
+    OK(fmi3SetFMUState(with, kept));
+    OK(fmi3EnterStepMode(with));
+    OK(fmi3FreeFMUState(with, &kept));
+    fmi3FreeInstance(with);
+    fmi3FreeInstance(without);
+}
+
 static void a_state_of_the_other_kind_is_refused(void) {
     fmi2FMUstate kept = NULL;
     fmi2Component other = make_2(fmi2ModelExchange, fmu_token_2);
@@ -180,6 +235,9 @@ int main(void) {
     RUN_TEST(a_heading_whose_rest_is_no_rest_is_refused);
     RUN_TEST(a_co_simulation_that_follows_continuous_states_is_refused);
     RUN_TEST(a_state_that_is_to_be_started_again_is_written_as_it_was_read);
+    RUN_TEST(a_state_is_neither_longer_nor_of_another_size);
+    RUN_TEST(modes_of_model_exchange_are_its_own);
+    RUN_TEST(event_mode_is_for_who_uses_it);
     RUN_TEST(a_state_of_the_other_kind_is_refused);
     return UNITY_END();
 }

@@ -94,6 +94,7 @@ static void every_type_has_its_functions_and_the_fmu_has_no_others(void) {
     whole = 0;
     OK(fmi3GetInt32(c, &supports, 1, &whole, 1));
     TEST_ASSERT_EQUAL_INT(2, whole);
+    ASSERT_REFUSED(fmi3GetInt32(c, &supports, 1, NULL, 0), "support_count has 1 values, but only 0 were left");
     ASSERT_REFUSED(fmi3GetInt32(c, &mass, 1, &whole, 1), "mass_kg is a Float64 (Real), not an Int32");
     ASSERT_REFUSED(fmi3GetFloat32(c, &mass, 1, &single, 1), "Float32");
     ASSERT_REFUSED(fmi3GetInt8(c, &mass, 1, &small, 1), "Int8");
@@ -195,6 +196,35 @@ static void an_output_depends_on_what_the_description_says(void) {
         fmi3InstantiateScheduledExecution("a", fmu_token_3, NULL, false, true, NULL, log_3, NULL, NULL, NULL));
 }
 
+static void a_run_that_cannot_be_leaves_the_instance_where_it_was(void) {
+    ASSERT_REFUSED(fmi3EnterInitializationMode(c, false, 0, 2, true, 1),
+                   "the stop time 1 s is before the start time 2 s");
+    begin();
+}
+
+static void without_a_logger_nothing_is_told(void) {
+    fmi3FreeInstance(c);
+    c = fmi3InstantiateCoSimulation("one", fmu_token_3, NULL, false, true, false, false, NULL, 0, NULL, NULL, NULL);
+    TEST_ASSERT_NOT_NULL(c);
+    TEST_ASSERT_EQUAL_INT(fmi3Error, fmi3EnterStepMode(c));
+    TEST_ASSERT_NULL(
+        fmi3InstantiateScheduledExecution("a", fmu_token_3, NULL, false, true, NULL, NULL, NULL, NULL, NULL));
+    TEST_ASSERT_EQUAL_INT(0, lines);
+}
+
+static void what_an_importer_does_not_ask_for_is_not_told(void) {
+    fmi3Boolean event = true, terminate = true;
+    fmi3Instance exchange = fmi3InstantiateModelExchange("one", fmu_token_3, NULL, false, true, NULL, log_3);
+    OK(fmi3EnterInitializationMode(exchange, false, 0, 0, false, 0));
+    OK(fmi3ExitInitializationMode(exchange));
+    OK(fmi3UpdateDiscreteStates(exchange, NULL, NULL, NULL, NULL, NULL, NULL));
+    OK(fmi3EnterContinuousTimeMode(exchange));
+    OK(fmi3CompletedIntegratorStep(exchange, true, NULL, &terminate));
+    OK(fmi3CompletedIntegratorStep(exchange, true, &event, NULL));
+    TEST_ASSERT_FALSE(event || terminate);
+    fmi3FreeInstance(exchange);
+}
+
 static void a_run_ends_where_it_was_said_to(void) {
     double end_s;
     OK(fmi3EnterInitializationMode(c, true, 1e-4, 1, true, 2));
@@ -229,6 +259,9 @@ int main(void) {
     RUN_TEST(variables_without_intermediate_values_cannot_be_required);
     RUN_TEST(in_event_mode_motors_are_tuned_and_the_change_is_told);
     RUN_TEST(an_output_depends_on_what_the_description_says);
+    RUN_TEST(a_run_that_cannot_be_leaves_the_instance_where_it_was);
+    RUN_TEST(without_a_logger_nothing_is_told);
+    RUN_TEST(what_an_importer_does_not_ask_for_is_not_told);
     RUN_TEST(a_run_ends_where_it_was_said_to);
     RUN_TEST(logging_adds_and_removes_categories);
     return UNITY_END();

@@ -1,17 +1,7 @@
 /* Tests of what stands beside the vehicle's plain motion: ground with friction and limits of a drive in both kinds of
  * FMU, sensors, and the warnings of a run. The core's plant, stepped beside the FMU, says what is right. */
-#include "fmi_bench.h"
+#include "fmi2_bench.h"
 #include "model_interface.h"
-
-static fmi2Component c;
-
-static fmu_instance *instance(void) { return c; }
-
-static void make(fmi2Type kind) {
-    fmi2FreeInstance(c);
-    c = make_2(kind, fmu_token_2);
-    TEST_ASSERT_NOT_NULL(c);
-}
 
 void setUp(void) {
     log_clear();
@@ -21,41 +11,6 @@ void setUp(void) {
 void tearDown(void) {
     fmi2FreeInstance(c);
     c = NULL;
-}
-
-static fmi2Status try_set(const char *name, uint32_t element, double value) {
-    const fmi2ValueReference reference = ref(name, element);
-    return fmi2SetReal(c, &reference, 1, &value);
-}
-
-static void set(const char *name, uint32_t element, double value) { OK(try_set(name, element, value)); }
-
-static void set_integer(const char *name, uint32_t element, int value) {
-    const fmi2ValueReference reference = ref(name, element);
-    OK(fmi2SetInteger(c, &reference, 1, &value));
-}
-
-static void set_flag(const char *name, uint32_t element) {
-    const fmi2ValueReference reference = ref(name, element);
-    const fmi2Boolean yes = fmi2True;
-    OK(fmi2SetBoolean(c, &reference, 1, &yes));
-}
-
-static double get(const char *name, uint32_t element) {
-    const fmi2ValueReference reference = ref(name, element);
-    double value = NOT_A_NUMBER;
-    OK(fmi2GetReal(c, &reference, 1, &value));
-    return value;
-}
-
-static void initialise(void) {
-    OK(fmi2EnterInitializationMode(c));
-    OK(fmi2ExitInitializationMode(c));
-}
-
-static fmi2Status initialise_refused(void) {
-    OK(fmi2EnterInitializationMode(c));
-    return fmi2ExitInitializationMode(c);
 }
 
 static void ground_with_friction(void) {

@@ -44,6 +44,9 @@ static void nothing_is_made_without_name_token_kind_or_callbacks(void) {
     ASSERT_LOGGED("/nowhere at/all/start.bin holds no start values");
     TEST_ASSERT_NULL(fmi2Instantiate("a", fmi2CoSimulation, fmu_token_2, NULL, NULL, 0, 0));
     TEST_ASSERT_NULL(fmi2Instantiate("", fmi2CoSimulation, fmu_token_2, NULL, &silent, 0, 0));
+    TEST_ASSERT_NULL(fmi2Instantiate("a", (fmi2Type)7, fmu_token_2, NULL, &silent, 0, 0));
+    TEST_ASSERT_NULL(make_2(fmi2CoSimulation, "{100%}"));
+    ASSERT_LOGGED("the token {100%%} is not this binary's"); /* loggers format as printf does */
     fmi2FreeInstance(NULL);
     TEST_ASSERT_EQUAL_STRING("2.0", fmi2GetVersion());
     TEST_ASSERT_EQUAL_STRING("default", fmi2GetTypesPlatform());
@@ -238,7 +241,13 @@ static void what_has_no_use_is_refused_and_statuses_are_told(void) {
     TEST_ASSERT_TRUE(fmi2GetStatus(c, fmi2DoStepStatus, &status) != fmi2OK);
     TEST_ASSERT_TRUE(fmi2GetIntegerStatus(c, fmi2DoStepStatus, &whole) != fmi2OK);
     TEST_ASSERT_TRUE(fmi2GetStringStatus(c, fmi2PendingStatus, &text) != fmi2OK);
-    (void)fmi2GetBooleanStatus(c, fmi2Terminated, &flag);
+    flag = fmi2True;
+    OK(fmi2GetBooleanStatus(c, fmi2Terminated, &flag));
+    TEST_ASSERT_EQUAL_INT(fmi2False, flag);
+    TEST_ASSERT_EQUAL_INT(fmi2Discard, fmi2GetBooleanStatus(c, fmi2DoStepStatus, &flag)); /* none is ever pending */
+    TEST_ASSERT_EQUAL_INT(fmi2Discard, fmi2GetBooleanStatus(c, fmi2Terminated, NULL));
+    TEST_ASSERT_EQUAL_INT(fmi2Discard, fmi2GetRealStatus(c, fmi2LastSuccessfulTime, NULL));
+    TEST_ASSERT_EQUAL_INT(fmi2Discard, fmi2GetRealStatus(c, fmi2DoStepStatus, &time));
     ASSERT_REFUSED(fmi2EnterEventMode(c), "EnterEventMode is not allowed");
     ASSERT_REFUSED(fmi2SetTime(c, 1), "SetTime is not allowed");
 }

@@ -1,0 +1,160 @@
+/* What the tests of FMUs with bus terminals share: an instance in event mode, its clocks and its bytes. */
+#ifndef NETWORK_BENCH_H
+#define NETWORK_BENCH_H
+
+#include "fmi3Functions.h"
+#include "instance.h"
+#include "ls_bus.h"
+#include "unity.h"
+
+#include <math.h>
+#include <stdio.h>
+#include <string.h>
+
+#define NOT_A_NUMBER ((double)NAN)
+
+static fmi3Instance c;
+static char logged[1024]; /* the last line, behind its category; "" since log_clear() */
+static int lines;
+
+static inline void log_clear(void) {
+    logged[0] = 0;
+    lines = 0;
+}
+
+static void log_3(fmi3InstanceEnvironment e, fmi3Status status, fmi3String category, fmi3String text) {
+    (void)e, (void)status;
+    snprintf(logged, sizeof logged, "%s: %s", category, text);
+    lines++;
+}
+
+#define ASSERT_LOGGED(part) TEST_ASSERT_TRUE_MESSAGE(strstr(logged, part) != NULL, logged)
+#define ASSERT_REFUSED(call, part) \
+    do { \
+        log_clear(); \
+        TEST_ASSERT_EQUAL_INT(3, (int)(call)); \
+        ASSERT_LOGGED(part); \
+    } while (0)
+#define OK(call) TEST_ASSERT_EQUAL_INT_MESSAGE(0, (int)(call), logged)
+
+static inline fmu_instance *instance(void) { return c; }
+
+static inline fmi3ValueReference ref(const char *name, uint32_t element) {
+    for (uint32_t row = 0; row < fmu_variable_count; row++)
+        if (strcmp(fmu_name_of(&fmu_variables[row]), name) == 0)
+            return element == 0 ? row : row << FMU_ELEMENT_SHIFT | element;
+    TEST_FAIL_MESSAGE(name);
+    return 0;
+}
+
+static inline fmi3ValueReference of_terminal(const char *terminal, const char *member) {
+    char name[64];
+    snprintf(name, sizeof name, "%s.%s", terminal, member);
+    return ref(name, 0);
+}
+
+static inline void make(void) {
+    fmi3FreeInstance(c);
+    c = fmi3InstantiateCoSimulation("one", fmu_token_3, NULL, false, true, true, false, NULL, 0, NULL, log_3, NULL);
+    TEST_ASSERT_NOT_NULL(c);
+}
+
+static inline void set_real(const char *name, uint32_t element, double value) {
+    const fmi3ValueReference reference = ref(name, element);
+    OK(fmi3SetFloat64(c, &reference, 1, &value, 1));
+}
+
+static inline void set_integer(const char *name, int32_t value) {
+    const fmi3ValueReference reference = ref(name, 0);
+    OK(fmi3SetInt32(c, &reference, 1, &value, 1));
+}
+
+static inline void set_flag(const char *name) {
+    const fmi3ValueReference reference = ref(name, 0);
+    const bool yes = true;
+    OK(fmi3SetBoolean(c, &reference, 1, &yes, 1));
+}
+
+static inline double get_real(const char *name, uint32_t element) {
+    const fmi3ValueReference reference = ref(name, element);
+    double value = NOT_A_NUMBER;
+    OK(fmi3GetFloat64(c, &reference, 1, &value, 1));
+    return value;
+}
+
+static inline int32_t get_integer(const char *name) {
+    const fmi3ValueReference reference = ref(name, 0);
+    int32_t value = -7;
+    OK(fmi3GetInt32(c, &reference, 1, &value, 1));
+    return value;
+}
+
+/* Ends initialization; from then on the instance is in event mode. */
+static inline fmi3Status begin_from(double start_s) {
+    OK(fmi3EnterInitializationMode(c, false, 0, start_s, false, 0));
+    return fmi3ExitInitializationMode(c);
+}
+
+static inline bool update(void) {
+    bool again = false;
+    OK(fmi3UpdateDiscreteStates(c, &again, NULL, NULL, NULL, NULL, NULL));
+    return again;
+}
+
+/* Bytes come to a terminal, in an event iteration. */
+static inline void give(const char *terminal, const ls_bus_buffer *bytes) {
+    const fmi3ValueReference data = of_terminal(terminal, "Rx_Data"), clock = of_terminal(terminal, "Rx_Clock");
+    const fmi3Binary value = bytes->bytes;
+    const bool active = true;
+    OK(fmi3SetBinary(c, &data, 1, &bytes->size, &value, 1));
+    OK(fmi3SetClock(c, &clock, 1, &active));
+}
+
+/* What a terminal sends when its clock is set, as a countdown clock is; then that is gone. */
+static ls_bus_buffer got;
+static inline void take(const char *terminal) {
+    const fmi3ValueReference data = of_terminal(terminal, "Tx_Data"), clock = of_terminal(terminal, "Tx_Clock");
+    const bool active = true;
+    fmi3Binary value;
+    OK(fmi3SetClock(c, &clock, 1, &active));
+    OK(fmi3GetBinary(c, &data, 1, &got.size, &value, 1));
+    memcpy(got.bytes, value, got.size);
+    update();
+}
+
+/* The next operation of what was taken; its code, 0: none. */
+static ls_bus_operation told;
+static size_t told_to;
+static inline uint32_t next(void) {
+    if (ls_bus_read(got.bytes, got.size, &told_to, &told) == LS_BUS_END) return 0;
+    return told.code;
+}
+
+static inline uint32_t first_of(const char *terminal) {
+    take(terminal);
+    told_to = 0;
+    return next();
+}
+
+static inline fmi3Status try_step(double at_s, double step_s) {
+    bool event = false;
+    if (instance()->mode == FMU_EVENT) OK(fmi3EnterStepMode(c));
+    return fmi3DoStep(c, at_s, step_s, true, &event, NULL, NULL, NULL);
+}
+
+/* A step, and the event mode behind it. */
+static inline void step(double at_s, double step_s) {
+    OK(try_step(at_s, step_s));
+    OK(fmi3EnterEventMode(c));
+}
+
+static inline double countdown(const char *terminal, bool *known) {
+    const fmi3ValueReference clock = of_terminal(terminal, "Tx_Clock");
+    fmi3IntervalQualifier qualifier;
+    double interval_s = NOT_A_NUMBER;
+    OK(fmi3GetIntervalDecimal(c, &clock, 1, &interval_s, &qualifier));
+    *known = qualifier == fmi3IntervalChanged;
+    return interval_s;
+}
+
+#endif

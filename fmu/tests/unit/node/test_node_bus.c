@@ -1,0 +1,132 @@
+/* Tests of node/model.c: its bus and its clock. */
+#include "node_bench.h"
+
+static void what_nobody_takes_waits_in_the_node_and_is_told_once(void) {
+    OK(begin_from(100));
+    instance()->model.port[0].tx.size = LS_BUS_BUFFER_BYTES - 2 * LS_BUS_LARGEST_OPERATION;
+    log_clear();
+    step(100, 0);
+    TEST_ASSERT_EQUAL_INT(0, lines);
+    instance()->model.port[0].tx.size++;
+    step(100, 0);
+    ASSERT_LOGGED("logStatusWarning: CAN.Tx_Data is full at 100 s: more frames wait in the node");
+    step(100, 0.5);
+    TEST_ASSERT_EQUAL_INT(1, lines);
+    TEST_ASSERT_TRUE(instance()->model.can.sent <= 1);
+    instance()->model.port[0].tx.size = 0;
+    step(100.5, 0);
+    TEST_ASSERT_EQUAL(LS_BUS_CAN_TRANSMIT, first_of("CAN"));
+}
+
+/* Also in the middle of a step, at the instant at which its time is over. */
+static void off_the_bus_it_returns_when_its_time_is_over(void) {
+    set_flag("org.fmi_standard.fmi_ls_bus.Can_BusNotifications");
+    begin();
+    take("CAN");
+    for (int k = 0; k < 32; k++) ls_bus_put_error(&out, 1, LS_BUS_CRC_ERROR, LS_BUS_SECONDARY_ERROR_FLAG, true);
+    give("CAN", &out);
+    out.size = 0;
+    update();
+    TEST_ASSERT_EQUAL_INT32(LS_BUS_BUS_OFF, get_integer("bus_status"));
+    TEST_ASSERT_EQUAL(LS_BUS_STATUS, first_of("CAN"));
+    bool known;
+    TEST_ASSERT_EQUAL_UINT64(1408, instance()->model.can.off_until_us);
+    const double wait_s = countdown("CAN", &known);
+    TEST_ASSERT_TRUE(wait_s <= 1408e-6 && known);
+    step(0, 1407e-6);
+    TEST_ASSERT_EQUAL_INT32(LS_BUS_BUS_OFF, get_integer("bus_status"));
+    TEST_ASSERT_DOUBLE_WITHIN(1e-12, 1e-6, countdown("CAN", &known));
+    step(1407e-6, 1e-6);
+    TEST_ASSERT_EQUAL_INT32(LS_BUS_ERROR_ACTIVE, get_integer("bus_status"));
+    TEST_ASSERT_EQUAL_INT32(0, get_integer("transmit_errors"));
+}
+
+/* At a low bit rate the node's own instants come before the bus lets it back. */
+static void off_a_slow_bus_the_node_ticks_on(void) {
+    bool known;
+    set_flag("org.fmi_standard.fmi_ls_bus.Can_BusNotifications");
+    set_integer("bit_rate_bit_per_s", 1000);
+    begin();
+    for (int k = 0; k < 32; k++) ls_bus_put_error(&out, 1, LS_BUS_CRC_ERROR, LS_BUS_SECONDARY_ERROR_FLAG, true);
+    give("CAN", &out);
+    out.size = 0;
+    update();
+    take("CAN");
+    step(0, 0.01);
+    take("CAN");
+    TEST_ASSERT_EQUAL_UINT64(1408000, instance()->model.can.off_until_us);
+    const double idle_s = countdown("CAN", &known);
+    TEST_ASSERT_TRUE(idle_s == laconic_node_idle_us(&instance()->model.node, 10000) * 1e-6 && idle_s < 1);
+}
+
+/* A scene with more wheels than the FMU has outputs for shows the first ones. */
+static void wheels_are_shown_as_far_as_there_are_outputs(void) {
+    cart(true);
+    load();
+    instance()->model.wheel_count = 1;
+    begin();
+    set_real("body_force_N", 1, 3);
+    set_real("body_force_N", 2, 3);
+    step(0, 0.1);
+    TEST_ASSERT_TRUE(get_real("wheel_angle_rad", 1) != 0);
+    TEST_ASSERT_TRUE(instance()->model.wheel_angle_rad[1] == 0);
+}
+
+static void an_empty_node_s_next_instant_is_its_heartbeat(void) {
+    bool known;
+    begin();
+    TEST_ASSERT_TRUE(countdown("CAN", &known) == 1e-6 && known); /* its bit rate is ready */
+    take("CAN");
+    step(0, 1e-3);
+    take("CAN");
+    const double idle_s = countdown("CAN", &known);
+    TEST_ASSERT_DOUBLE_WITHIN(1e-12, laconic_node_idle_us(&instance()->model.node, 1000) * 1e-6, idle_s);
+    TEST_ASSERT_TRUE(idle_s > 1e-3);
+    step(1e-3, idle_s);
+    TEST_ASSERT_EQUAL(LS_BUS_CAN_TRANSMIT, first_of("CAN"));
+    TEST_ASSERT_EQUAL_HEX32(LACONIC_WIRE_ID_BASE + LACONIC_WIRE_HEARTBEAT, told.id);
+}
+
+static void times_are_rounded_to_microseconds_and_never_go_back(void) {
+    begin();
+    step(0, 1.4e-6);
+    TEST_ASSERT_EQUAL_UINT64(1, instance()->model.now_us);
+    step(1.4e-6, 0.2e-6);
+    TEST_ASSERT_EQUAL_UINT64(2, instance()->model.now_us);
+    instance()->model.time_s = 1e-6;
+    OK(try_step(1e-6, 0));
+    TEST_ASSERT_EQUAL_UINT64(2, instance()->model.now_us);
+}
+
+static void with_can_fd_the_node_hears_its_frames(void) {
+    const laconic_frame frame = {.id = 1, .length = 12, .fd = true};
+    for (int fd = 0; fd < 2; fd++) {
+        make();
+        if (fd) set_integer("fd_bit_rate_bit_per_s", 2000000);
+        begin();
+        TEST_ASSERT_EQUAL(fd, instance()->model.node.config.can_fd);
+        ls_bus_put_frame(&out, &frame, false);
+        give("CAN", &out);
+        out.size = 0;
+        update();
+        TEST_ASSERT_EQUAL_INT32(fd, get_integer("frames_heard"));
+    }
+    const fmi3ValueReference data = ref("CAN.Rx_Data", 0);
+    ls_bus_put_frame(&out, &frame, false);
+    const fmi3Binary value = out.bytes;
+    OK(fmi3SetBinary(c, &data, 1, &out.size, &value, 1)); /* without its clock nothing comes */
+    update();
+    TEST_ASSERT_EQUAL_INT32(1, get_integer("frames_heard"));
+}
+
+int main(void) {
+    UNITY_BEGIN();
+    RUN_TEST(what_nobody_takes_waits_in_the_node_and_is_told_once);
+    RUN_TEST(off_the_bus_it_returns_when_its_time_is_over);
+    RUN_TEST(off_a_slow_bus_the_node_ticks_on);
+    RUN_TEST(wheels_are_shown_as_far_as_there_are_outputs);
+    RUN_TEST(an_empty_node_s_next_instant_is_its_heartbeat);
+    RUN_TEST(times_are_rounded_to_microseconds_and_never_go_back);
+    RUN_TEST(with_can_fd_the_node_hears_its_frames);
+    return UNITY_END();
+}

@@ -1,0 +1,140 @@
+/* Tests of grip_warning.c: what is told of grip and lift, once in a run, and only where somebody listens. */
+#include "fmi2_bench.h"
+#include "model_interface.h"
+
+void setUp(void) {
+    log_clear();
+    c = NULL;
+    make(fmi2CoSimulation);
+}
+void tearDown(void) {
+    fmi2FreeInstance(c);
+    c = NULL;
+}
+
+static fmi2Component quiet(const fmi2CallbackFunctions *callbacks) {
+    fmi2FreeInstance(c);
+    c = fmi2Instantiate("one", fmi2CoSimulation, fmu_token_2, NULL, callbacks, fmi2False, fmi2True);
+    set("step_s", 0, 0.01);
+    set("friction_coefficient", 0, 0.02);
+    set("com_z_m", 0, 0.1);
+    initialise();
+    set("voltage_V", 1, 14);
+    return c;
+}
+
+static void nothing_is_watched_where_nobody_listens(void) {
+    static const fmi2CallbackFunctions callbacks = {log_2, calloc, free, NULL, NULL}, silent = {0};
+    const fmi2String errors[1] = {"logStatusError"};
+    quiet(&silent);
+    OK(step(0, 0.05));
+    TEST_ASSERT_TRUE(instance()->warnings_given == 0);
+    quiet(&callbacks);
+    OK(fmi2SetDebugLogging(c, fmi2True, 1, errors));
+    OK(step(0, 0.05));
+    TEST_ASSERT_TRUE(instance()->warnings_given == 0);
+    OK(fmi2SetDebugLogging(c, fmi2True, 0, NULL));
+    log_clear();
+    OK(step(0.05, 0.05));
+    ASSERT_LOGGED("logStatusWarning: at 0.05 s wheel 1 needs");
+    TEST_ASSERT_EQUAL_INT(1, lines);
+    TEST_ASSERT_EQUAL_UINT32(1, instance()->warnings_given);
+}
+
+/* Of slip, or of what lifts where slip has been told before, at its own time. A step with such forces is refused. */
+static void forces_beyond_the_range_are_told_in_place_of_slip_and_lift(void) {
+    for (int told = 0; told < 2; told++) {
+        make(fmi2ModelExchange);
+        set("friction_coefficient", 0, 0.02);
+        set("com_z_m", 0, 0.1);
+        initialise();
+        OK(fmi2EnterContinuousTimeMode(c));
+        if (told) set("voltage_V", 1, 3);
+        OK(fmi2CompletedIntegratorStep(c, fmi2True, NULL, NULL));
+        TEST_ASSERT_EQUAL_UINT32(told, instance()->warnings_given);
+        OK(fmi2SetTime(c, 3));
+        set("body_force_N", 1, 1e160);
+        log_clear();
+        OK(fmi2CompletedIntegratorStep(c, fmi2True, NULL, NULL));
+        ASSERT_LOGGED("at 3 s the forces on the ground leave the range of double precision; check the inputs");
+        TEST_ASSERT_TRUE(lines == 1 && instance()->warnings_given == 3);
+    }
+}
+
+static void a_limited_drive_on_ideal_ground_is_watched_for_slip(void) {
+    set("step_s", 0, 0.01);
+    set("friction_coefficient", 0, 0.02);
+    set("com_z_m", 0, 0.1);
+    set("supply_V", 0, 24);
+    set("winding_resistance_ohm", 0, 1.5);
+    initialise();
+    set("voltage_V", 1, 14);
+    log_clear();
+    OK(step(0, 0.05));
+    ASSERT_LOGGED("the model has no slip, so its motion no longer holds");
+}
+
+/* Both at once, each told one time, and again in another run. */
+static void slip_and_lift_are_told_once_in_a_run(void) {
+    for (int run = 0; run < 2; run++) {
+        if (run > 0) OK(fmi2Reset(c));
+        set("step_s", 0, 0.01);
+        set("com_z_m", 0, 0.5);
+        set("friction_coefficient", 0, 0.02);
+        initialise();
+        log_clear();
+        set("body_force_N", 1, 2000);
+        set("voltage_V", 1, 14);
+        OK(step(0, 0.02));
+        TEST_ASSERT_EQUAL_INT(2, lines);
+        TEST_ASSERT_EQUAL_UINT32(3, instance()->warnings_given);
+        OK(step(0.02, 0.02));
+        TEST_ASSERT_EQUAL_INT(2, lines);
+    }
+}
+
+static void a_refused_step_gives_no_warning(void) {
+    set("step_s", 0, 0.01);
+    set("friction_coefficient", 0, 0.02);
+    initialise();
+    set("body_force_N", 1, 1.7e308);
+    set("body_force_N", 2, 1.7e308);
+    ASSERT_DISCARDED(step(0, 0.01), "is refused");
+    TEST_ASSERT_EQUAL_INT(1, lines);
+    TEST_ASSERT_TRUE(instance()->warnings_given == 0 && instance()->warnings_pending == 0);
+}
+
+/* A support is numbered from 1, as wheels are. It needs no grip; the wheels' slip is told when they have none left. */
+static void a_support_that_lifts_is_told_and_slip_after_it(void) {
+    set("step_s", 0, 0.01);
+    set_integer("support_count", 0, 1);
+    set("support_x_m", 1, -1);
+    set("support_y_m", 1, 0);
+    set("com_z_m", 0, 0.5);
+    set("friction_coefficient", 0, 100);
+    initialise();
+    set("body_force_N", 1, 200);
+    log_clear();
+    OK(step(0, 0.01));
+    ASSERT_LOGGED("at 0 s support 1 lifts: its normal load would be -");
+    TEST_ASSERT_EQUAL_INT(1, lines);
+    OK(step(0.01, 0.01));
+    TEST_ASSERT_EQUAL_UINT32(2, instance()->warnings_given);
+    set("friction_coefficient", 0, 0.02);
+    OK(step(0.02, 0.01));
+    ASSERT_LOGGED("at 0.02 s wheel ");
+    ASSERT_LOGGED("(friction_coefficient = 0.02)");
+    TEST_ASSERT_EQUAL_UINT32(3, instance()->warnings_given);
+    TEST_ASSERT_EQUAL_INT(3, lines); /* with that of the change */
+}
+
+int main(void) {
+    UNITY_BEGIN();
+    RUN_TEST(nothing_is_watched_where_nobody_listens);
+    RUN_TEST(forces_beyond_the_range_are_told_in_place_of_slip_and_lift);
+    RUN_TEST(a_limited_drive_on_ideal_ground_is_watched_for_slip);
+    RUN_TEST(slip_and_lift_are_told_once_in_a_run);
+    RUN_TEST(a_refused_step_gives_no_warning);
+    RUN_TEST(a_support_that_lifts_is_told_and_slip_after_it);
+    return UNITY_END();
+}

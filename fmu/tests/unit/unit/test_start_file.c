@@ -1,0 +1,208 @@
+/* Tests of start_file.c: the start values that an FMU of a scene carries in resources/start.bin. */
+#include "fmi_bench.h"
+#include "stream.h"
+
+#include <sys/stat.h>
+#include <unistd.h>
+
+#define TOKEN "{of-a-scene}"
+
+static char folder[256], file[300];
+static uint8_t bytes[4096];
+
+void setUp(void) {
+    log_clear();
+    snprintf(folder, sizeof folder, "/tmp/laconic start %ld", (long)getpid());
+    mkdir(folder, 0700);
+    snprintf(file, sizeof file, "%s/start.bin", folder);
+}
+void tearDown(void) {
+    remove(file);
+    rmdir(folder);
+}
+
+/* A file of these pairs; its size. */
+static size_t make(uint64_t version, uint64_t scalar, const char *token, const fmu_start_value *pairs, uint64_t count,
+                   uint64_t stated) {
+    fmu_stream to = {.to = bytes, .size = sizeof bytes, .at = 8};
+    uint64_t hash = fmu_token_hash(token);
+    memcpy(bytes, "LACSTART", 8);
+    fmu_stream_u64(&to, &version);
+    fmu_stream_u64(&to, &scalar);
+    fmu_stream_u64(&to, &hash);
+    fmu_stream_u64(&to, &stated);
+    for (uint64_t k = 0; k < count; k++) {
+        uint64_t reference = pairs[k].reference;
+        double value = pairs[k].value;
+        fmu_stream_u64(&to, &reference);
+        fmu_stream_reals(&to, &value, 1);
+    }
+    uint64_t checksum = fmu_checksum(bytes, to.at);
+    fmu_stream_u64(&to, &checksum);
+    return to.at;
+}
+
+static fmi2Component with(size_t size, const char *resources) {
+    static const fmi2CallbackFunctions callbacks = {log_2, calloc, free, NULL, NULL};
+    FILE *out = fopen(file, "wb");
+    TEST_ASSERT_NOT_NULL(out);
+    fwrite(bytes, 1, size, out);
+    fclose(out);
+    return fmi2Instantiate("one", fmi2CoSimulation, TOKEN, resources, &callbacks, fmi2False, fmi2True);
+}
+
+static double mass_of(fmi2Component c) {
+    const fmi2ValueReference mass = ref("mass_kg", 0);
+    double value = NOT_A_NUMBER;
+    OK(fmi2EnterInitializationMode(c));
+    OK(fmi2GetReal(c, &mass, 1, &value));
+    return value;
+}
+
+static void values_come_from_the_file_by_a_path_or_a_uri(void) {
+    const fmu_start_value pairs[2] = {{ref("wheel_count", 0), 3}, {ref("mass_kg", 0), 12.5}};
+    const size_t size = make(2, 1, TOKEN, pairs, 2, 2);
+    char uri[4][400];
+    snprintf(uri[0], 400, "%s", folder);
+    snprintf(uri[1], 400, "file:///tmp/laconic%%20start%%20%ld/", (long)getpid());
+    snprintf(uri[2], 400, "file://localhost/tmp/laconic%%20start%%20%ld", (long)getpid());
+    snprintf(uri[3], 400, "file:/tmp/laconic%%20start%%20%ld//", (long)getpid());
+    for (int k = 0; k < 4; k++) {
+        fmi2Component c = with(size, uri[k]);
+        TEST_ASSERT_NOT_NULL_MESSAGE(c, uri[k]);
+        TEST_ASSERT_TRUE(mass_of(c) == 12.5);
+        TEST_ASSERT_EQUAL_INT(3, ((const fmu_instance *)c)->model.vehicle.wheel_count);
+        fmi2FreeInstance(c);
+    }
+}
+
+static fmi2Component at(const char *resources) {
+    static const fmi2CallbackFunctions callbacks = {log_2, calloc, free, NULL, NULL};
+    return fmi2Instantiate("one", fmi2CoSimulation, TOKEN, resources, &callbacks, fmi2False, fmi2True);
+}
+
+/* The log names the file that was looked for. */
+static void uris_are_decoded_and_paths_are_not(void) {
+    static const char *const cases[][2] = {{"file:///no%2fwhere%4A%4a", "/no/whereJJ/start.bin"},
+                                           {"file:///no%", "/no%/start.bin"},
+                                           {"file:///no%4", "/no%4/start.bin"},
+                                           {"file:///no%4g%G1%:1%/1%@1%`1", "/no%4g%G1%:1%/1%@1%`1/start.bin"},
+                                           {"file:///no%c3%9F", "/no\xC3\x9F/start.bin"},
+                                           {"file:///C:/no", "C:/no/start.bin"},
+                                           {"file:C:/no", "C:/no/start.bin"},
+                                           {"file:/", "/start.bin"},
+                                           {"/no%20where", "/no%20where/start.bin"},
+                                           {"/nowhere\\", "/nowhere/start.bin"},
+                                           {"/nowhere//", "/nowhere/start.bin"},
+                                           {"/C:/no", "/C:/no/start.bin"},
+                                           {"/", "/start.bin"}};
+    char expected[128];
+    for (size_t k = 0; k < sizeof cases / sizeof cases[0]; k++) {
+        log_clear();
+        TEST_ASSERT_NULL(at(cases[k][0]));
+        snprintf(expected, sizeof expected, ", and %s holds no start values", cases[k][1]);
+        for (char *c = logged; (c = strstr(c, "%%")) != NULL; c++)
+            memmove(c, c + 1, strlen(c)); /* doubled for printf */
+        ASSERT_LOGGED(expected);
+    }
+}
+
+static void a_path_that_is_too_long_is_refused(void) {
+    static char path[5000];
+    memset(path, 'a', sizeof path - 1);
+    for (size_t length = 4080; length < 4100; length++) {
+        path[length] = 0;
+        log_clear();
+        TEST_ASSERT_NULL(at(path));
+        ASSERT_LOGGED("holds no start values for it");
+        path[length] = 'a';
+    }
+}
+
+/* A puck without wheels has no structural parameter, also in FMI 3. */
+static void a_vehicle_without_wheels_is_a_vehicle(void) {
+    const fmu_start_value pairs[] = {{ref("wheel_count", 0), 0},      {ref("mass_kg", 0), 2},
+                                     {ref("yaw_inertia_kgm2", 0), 1}, {ref("wheel_radius_m", 0), 0.1},
+                                     {ref("step_s", 0), 0.01},        {ref("ground_friction_coefficient", 0), 0.5}};
+    for (uint64_t scalar = 0; scalar < 2; scalar++) {
+        fmi2Component c = with(make(2, scalar, TOKEN, pairs, 6, 6), folder);
+        TEST_ASSERT_NULL(c == NULL ? "refused" : NULL);
+        TEST_ASSERT_TRUE(((const fmu_instance *)c)->scalar);
+        TEST_ASSERT_TRUE(mass_of(c) == 2);
+        OK(fmi2ExitInitializationMode(c));
+        OK(fmi2DoStep(c, 0, 0.1, fmi2True));
+        fmi2FreeInstance(c);
+        fmi3Instance i =
+            fmi3InstantiateCoSimulation("one", TOKEN, folder, false, true, false, false, NULL, 0, NULL, log_3, NULL);
+        TEST_ASSERT_NOT_NULL(i);
+        ASSERT_REFUSED(fmi3EnterConfigurationMode(i), "this FMU has no structural parameters");
+        fmi3FreeInstance(i);
+    }
+}
+
+/* An FMU of a scene is scalar where its file says so; bytes of a state cannot make it otherwise. */
+static void the_file_says_whether_the_number_of_wheels_is_fixed(void) {
+    static fmi3Byte state[65536];
+    const fmu_start_value pairs[1] = {{ref("wheel_count", 0), 3}};
+    const fmi3ValueReference wheels = ref("wheel_count", 0);
+    const fmi3UInt64 five = 5;
+    fmi3FMUState kept = NULL;
+    size_t size = 0;
+    for (uint64_t scalar = 0; scalar < 2; scalar++) {
+        fmi2FreeInstance(with(make(2, scalar, TOKEN, pairs, 1, 1), folder));
+        fmi3Instance i =
+            fmi3InstantiateCoSimulation("one", TOKEN, folder, false, true, false, false, NULL, 0, NULL, log_3, NULL);
+        TEST_ASSERT_NOT_NULL(i);
+        OK(fmi3GetFMUState(i, &kept));
+        OK(fmi3SerializedFMUStateSize(i, kept, &size));
+        OK(fmi3SerializeFMUState(i, kept, state, size));
+        state[8 + 24 + 8] = FMU_CONFIGURATION;
+        const uint32_t checksum = fmu_checksum(state, size - 8);
+        for (size_t k = 0; k < 4; k++) state[size - 8 + k] = (fmi3Byte)(checksum >> (8 * k));
+        OK(fmi3DeserializeFMUState(i, state, size, &kept));
+        OK(fmi3SetFMUState(i, kept));
+        OK(fmi3FreeFMUState(i, &kept));
+        if (scalar)
+            ASSERT_REFUSED(fmi3SetUInt64(i, &wheels, 1, &five, 1), "wheel_count cannot be set in configuration");
+        if (!scalar) OK(fmi3SetUInt64(i, &wheels, 1, &five, 1));
+        fmi3FreeInstance(i);
+    }
+}
+
+static void a_file_that_does_not_fit_is_refused(void) {
+    const fmu_start_value good[1] = {{ref("mass_kg", 0), 2}};
+    const fmu_start_value bad[6] = {{0x7FFFFFFF, 1},          {ref("mass_kg", 0), -1},
+                                    {ref("x_m", 0), 1},       {ref("wheel_count", 0), 17},
+                                    {ref("voltage_V", 0), 1}, {ref("support_count", 0), -1}};
+    TEST_ASSERT_NULL(with(make(1, 0, TOKEN, good, 1, 1), folder));       /* another version */
+    TEST_ASSERT_NULL(with(make(2, 0, "{another}", good, 1, 1), folder)); /* of another FMU */
+    TEST_ASSERT_NULL(with(make(2, 0, TOKEN, good, 1, 2), folder));       /* a value is missing */
+    TEST_ASSERT_NULL(with(make(2, 0, TOKEN, good, 1, 1) - 1, folder));   /* cut off */
+    TEST_ASSERT_NULL(with(8, folder));
+    for (int k = 0; k < 6; k++) TEST_ASSERT_NULL(with(make(2, 0, TOKEN, &bad[k], 1, 1), folder));
+    const size_t size = make(2, 0, TOKEN, good, 1, 1);
+    bytes[40] ^= 1;
+    TEST_ASSERT_NULL(with(size, folder));
+    ASSERT_LOGGED("holds no start values for it: import the FMU anew");
+    make(2, 0, TOKEN, good, 1, 1);
+    bytes[0] = 'l';
+    TEST_ASSERT_NULL(with(size, folder));
+    TEST_ASSERT_NULL(with(make(2, 0, TOKEN, good, 1, 1), "file://host"));
+}
+
+static void a_hash_is_that_of_fnv_1a(void) {
+    TEST_ASSERT_TRUE(fmu_token_hash("") == 0xCBF29CE484222325U);
+    TEST_ASSERT_TRUE(fmu_token_hash("a") == 0xAF63DC4C8601EC8CU);
+}
+
+int main(void) {
+    UNITY_BEGIN();
+    RUN_TEST(values_come_from_the_file_by_a_path_or_a_uri);
+    RUN_TEST(uris_are_decoded_and_paths_are_not);
+    RUN_TEST(a_path_that_is_too_long_is_refused);
+    RUN_TEST(a_vehicle_without_wheels_is_a_vehicle);
+    RUN_TEST(the_file_says_whether_the_number_of_wheels_is_fixed);
+    RUN_TEST(a_file_that_does_not_fit_is_refused);
+    RUN_TEST(a_hash_is_that_of_fnv_1a);
+    return UNITY_END();
+}
