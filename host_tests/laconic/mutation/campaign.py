@@ -16,7 +16,7 @@ from laconic.errors import BadInput
 from laconic.mutation.operators import Mutant, mutants_of
 from laconic.mutation.programs import FAMILIES, families
 from laconic.mutation.results import Results, read_equivalents
-from laconic.mutation.trial import Outcome, Trials
+from laconic.mutation.trial import Outcome, Trials, is_of_fmu
 from laconic.paths import SOURCE_DIR, build_dir, sources_missing
 
 PARTS = {"core": ("core_c/src", "core_c/derivatives", "core_c/estimate", "core_c/filter"),
@@ -98,8 +98,8 @@ class Campaign:
         return self.tally
 
     def _try(self, todo: list[Mutant], results: Results, until: float, advance: Callable[[float], None]) -> None:
-        of_fmu = {mutant.file.startswith("fmu/") for mutant in todo}
-        tested = families(self.folder, [name for name in FAMILIES if (name == "fmu") in of_fmu])
+        of_fmu = {is_of_fmu(mutant.file) for mutant in todo}
+        tested = families(self.folder, [name for name in FAMILIES if name.startswith("fmu_") in of_fmu])
         for family in tested:
             family.link()
             family.check()

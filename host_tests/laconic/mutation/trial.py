@@ -8,14 +8,14 @@ import subprocess
 import threading
 import time
 from collections import Counter, defaultdict
-from collections.abc import Iterator
+from collections.abc import Iterable, Iterator
 from dataclasses import dataclass
 from pathlib import Path
 
 from laconic.errors import ResultFails
 from laconic.mutation.operators import Mutant
 from laconic.mutation.programs import FOLDERS, Family, Program, Unit, link
-from laconic.paths import SOURCE_DIR
+from laconic.paths import SOURCE_DIR, build_dir
 
 SANITIZERS = ("-fsanitize=address,undefined", "-fno-sanitize-recover=all", "-fno-sanitize=vptr", "-O1")
 VERDICTS = {"killed": "a test failed", "timeout": "a test ran past its bound", "survived": "all tests passed",
@@ -39,7 +39,8 @@ class Trials:
         self._kills: dict[str, Counter[str]] = defaultdict(Counter)
         self._plain: dict[tuple[str, str], bytes] = {}
         self._lock = threading.Lock()
-        self._includes = inclusions()
+        self._includes = inclusions({unit.source.resolve() for family in families for unit in family.library_units
+                                     if build_dir().resolve() in unit.source.resolve().parents})
 
     def tree(self, number: int) -> Path:
         """A copy of the sources in which one thread makes its faults."""
@@ -55,7 +56,10 @@ class Trials:
         began = time.monotonic()
         changed = tree / mutant.file
         source = changed.read_bytes()
-        self._compile_plain(self._of(mutant), tree)
+        units = self._of(mutant)
+        if not units:  # else it would count as the same code
+            raise ResultFails(f"{mutant.file}: no test program is made of it, so that its mutants would tell nothing")
+        self._compile_plain(units, tree)
         changed.write_bytes(mutant.applied_to(source))
         try:
             verdict, by = self._tried(mutant, tree, source)
@@ -65,8 +69,7 @@ class Trials:
 
     def _families_of(self, mutant: Mutant) -> list[Family]:
         """The FMU's tests are for its own files: those of the core have theirs."""
-        is_of_fmu = mutant.file.startswith("fmu/")
-        return [family for family in self.families if family.name.startswith("fmu_") == is_of_fmu]
+        return [family for family in self.families if family.name.startswith("fmu_") == is_of_fmu(mutant.file)]
 
     def _tried(self, mutant: Mutant, tree: Path, source: bytes) -> tuple[str, str]:
         differs = False
@@ -191,9 +194,14 @@ def runtime_of_sanitizers(family: Family) -> list[Path]:
     return [Path(said.stdout.strip()).resolve()]
 
 
-def inclusions() -> dict[Path, set[Path]]:
-    """The C files that include a header, by the header: by way of others, too."""
-    sources = [path for folder in FOLDERS for path in (SOURCE_DIR / folder).rglob("*.[ch]")]
+def is_of_fmu(file: str) -> bool:
+    """Whether the tests around the FMU's models are those of this file."""
+    return file.startswith("fmu/")
+
+
+def inclusions(generated: Iterable[Path] = ()) -> dict[Path, set[Path]]:
+    """The C files that include a header, by the header: by way of others, too. Those that the build has made count."""
+    sources = [*(path for folder in FOLDERS for path in (SOURCE_DIR / folder).rglob("*.[ch]")), *generated]
     named: dict[str, list[Path]] = defaultdict(list)
     for path in sources:
         named[path.name].append(path.resolve())
