@@ -107,13 +107,14 @@ void fmu_model_settle_warnings(fmu_instance *instance, bool accepted) {
 void fmu_model_completed_step(fmu_instance *instance) { (void)instance; /* a controller has no warnings */ }
 
 void fmu_model_save_motion(const fmu_model *model, fmu_model_motion *motion) {
-    for (uint32_t i = 0; i < FMU_MODEL_LARGEST_ARRAY; i++) motion->error_rad[i] = model->error_rad[i];
+    (void)model; /* a controller refuses no step, so that nothing is restored */
+    (void)motion;
 }
 
 /* cannot be reached: a controller refuses no step */
 void fmu_model_restore_motion(fmu_model *model, const fmu_model_motion *motion) {
-    for (uint32_t i = 0; i < FMU_MODEL_LARGEST_ARRAY; i++) model->error_rad[i] = motion->error_rad[i];
-    model->stale = FMU_GROUPS_ALL;
+    (void)model;
+    (void)motion;
 }
 
 uint32_t fmu_model_state_count(const fmu_model *model) { return FMU_MODEL_ARRAY_SIZE(model); }

@@ -34,7 +34,7 @@ typedef struct fmu_model {
 } fmu_model;
 
 typedef struct fmu_model_motion {
-    double error_rad[FMU_MODEL_LARGEST_ARRAY];
+    double none;
 } fmu_model_motion;
 
 typedef struct fmu_tangent {

@@ -65,7 +65,6 @@ static void configure(bus_node *node, const ls_bus_operation *operation) {
 static void take(fmu_instance *instance, unsigned from, ls_bus_reading reading, const ls_bus_operation *operation) {
     fmu_model *self = &instance->model;
     bus_node *node = &self->node[from];
-    node->is_known = true;
     if (reading == LS_BUS_WRONG) {
         if (operation->code != LS_BUS_FORMAT_ERROR)
             ls_bus_put_format_error(&self->port[from].tx, operation->bytes, operation->size);

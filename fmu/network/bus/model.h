@@ -17,7 +17,6 @@
 
 /* What the bus knows of a node. */
 typedef struct bus_node {
-    bool is_known; /* it has said something */
     bool discards;
     int32_t status;
     uint32_t bit_rate_bit_per_s, fd_bit_rate_bit_per_s; /* 0: it has not said */

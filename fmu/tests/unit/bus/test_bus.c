@@ -201,6 +201,14 @@ static void the_faster_part_of_can_fd_has_the_higher_rate(void) {
 }
 
 static void each_so_many_frames_one_fails(void) {
+    set_integer("error_every", 3);
+    begin();
+    for (uint32_t k = 0; k < 9; k++) put(0x30 + k, false, false);
+    send("Node1");
+    update();
+    step(0, 1e-3);
+    TEST_ASSERT_TRUE(get_integer("frames_carried") == 6 && get_integer("frames_failed") == 3);
+    make();
     set_integer("error_every", 2);
     begin();
     for (uint32_t k = 0; k < 5; k++) put(0x30 + k, false, false);
@@ -286,11 +294,16 @@ static void it_has_no_start_values_of_its_own(void) {
 /* A bus that has started anew has nothing of before. */
 static void a_reset_empties_the_bus(void) {
     begin();
+    ls_bus_put_configuration(&out, LS_BUS_CAN_BAUDRATE, 1000000);
     put(0x10, false, false);
     put(0x11, false, false);
     send("Node1");
     update();
+    TEST_ASSERT_EQUAL_UINT32(0, instance()->model.node[0].fd_bit_rate_bit_per_s);
     step(0, ONE_S * 1.5);
+    instance()->model.start_needed = true; /* another start, without a reset */
+    TEST_ASSERT_TRUE(!update() && instance()->model.node[0].queue.size == 0 && instance()->model.busy_s == 0);
+    TEST_ASSERT_EQUAL_UINT32(0, instance()->model.node[0].bit_rate_bit_per_s);
     OK(fmi3Reset(c));
     begin();
     TEST_ASSERT_TRUE(get_integer("frames_carried") == 0 && get_real("busy_s", 0) == 0);

@@ -132,6 +132,11 @@ static void bytes_count_only_with_their_clock(void) {
     fmi3Binary back;
     size_t found = 0;
     OK(fmi3SetBinary(c, &data, 1, &size, &value, 1));
+    const fmi3ValueReference both[2] = {of_terminal("Node1", "Rx_Data"), data};
+    fmi3Binary backs[2] = {NULL, NULL};
+    size_t sizes[2] = {9, 9};
+    OK(fmi3GetBinary(c, both, 2, sizes, backs, 2));
+    TEST_ASSERT_TRUE(sizes[0] == 0 && sizes[1] == 16 && memcmp(backs[1], out.bytes, 16) == 0);
     OK(fmi3GetBinary(c, &data, 1, &found, &back, 1));
     TEST_ASSERT_TRUE(found == 16 && memcmp(back, out.bytes, 16) == 0);
     OK(fmi3SetClock(c, &clock, 1, &on));
@@ -312,7 +317,11 @@ static void steps_of_any_length_are_taken_but_not_backwards(void) {
     ASSERT_REFUSED(try_step(1, -0.1), "a communication step of -0.1 s cannot be taken: it must not be negative");
     ASSERT_REFUSED(try_step(1, NOT_A_NUMBER), "a step of nan s from 1 s cannot be taken: they must be finite");
     ASSERT_REFUSED(try_step(NOT_A_NUMBER, 1), "they must be finite");
-    ASSERT_REFUSED(try_step(1, 1.1e6), "give 1e+06 s or less, and an end of 4e+09 s or less");
+    ASSERT_REFUSED(try_step(1, 1.1e6),
+                   "of 1100000 s from 1 s cannot be taken: give 1e+06 s or less, and an end of 4e+09 s");
+    double end_s = 7;
+    TEST_ASSERT_EQUAL(fmi3Error, fmi3DoStep(c, 1.1, 0.1, true, NULL, NULL, NULL, &end_s));
+    TEST_ASSERT_TRUE(end_s == 1 + 0.5e-9);
     TEST_ASSERT_TRUE(get_real("time", 0) == 1 + 0.5e-9);
     OK(try_step(1, 1e6));
     ASSERT_REFUSED(try_step(1000001 + 0.3e-3, 1), "but the model is at"); /* 10⁶ ε · 10⁶ s of rounding */

@@ -179,6 +179,11 @@ static void outputs_change_in_time_with_the_integral(void) {
     OK(step(0, 0.1));
     OK(fmi2GetRealOutputDerivatives(c, &voltage, 1, &first, &rate));
     TEST_ASSERT_DOUBLE_WITHIN(1e-12, KI * 6, rate);
+    const fmi2ValueReference second = ref("voltage_V", 2);
+    OK(fmi2GetRealOutputDerivatives(c, &second, 1, &first, &rate));
+    TEST_ASSERT_DOUBLE_WITHIN(1e-12, KI * -23, rate);
+    instance()->model.start_needed = true; /* a new start has no integral */
+    for (uint32_t k = 1; k <= 4; k++) TEST_ASSERT_TRUE(get("angle_error_rad", k) == 0);
 }
 
 static void a_state_is_kept_in_bytes(void) {

@@ -1,7 +1,6 @@
 /* Tests of kept_step.c: derivatives of the last communication step, beside differences of steps from other starts, and
  * the reasons why a step has none. */
-#include "fmi2_bench.h"
-#include "model_interface.h"
+#include "saved_bench.h"
 
 void setUp(void) {
     log_clear();
@@ -221,24 +220,35 @@ static void a_step_that_was_never_taken_has_none(void) {
 }
 
 static void a_step_is_kept_in_bytes(void) {
-    static fmi2Byte bytes[65536];
-    fmi2FMUstate kept = NULL;
-    size_t size = 0;
     initialise();
     set("voltage_V", 2, 3);
     OK(step(0, STEP_S));
     OK(step(STEP_S, STEP_S));
     const double found = by_voltage();
-    OK(fmi2GetFMUstate(c, &kept));
-    OK(fmi2SerializedFMUstateSize(c, kept, &size));
-    TEST_ASSERT_TRUE(size < sizeof bytes);
-    OK(fmi2SerializeFMUstate(c, kept, bytes, size));
+    const size_t size = write();
     OK(step(2 * STEP_S, 3 * STEP_S));
     TEST_ASSERT_TRUE(by_voltage() != found);
-    OK(fmi2DeSerializeFMUstate(c, bytes, size, &kept));
-    OK(fmi2SetFMUstate(c, kept));
+    OK(read(size));
     TEST_ASSERT_TRUE(by_voltage() == found);
-    OK(fmi2FreeFMUstate(c, &kept));
+}
+
+static void every_member_of_a_step_comes_back_in_another_instance(void) {
+    fmu_model *model = &instance()->model;
+    initialise();
+    OK(step(0, STEP_S));
+    (void)by_voltage();
+    model->last.kept = FMU_STEP_CHANGED;
+    fill_state(&model->last.state);
+    FILL(model->last.input);
+    FILL(model->last.step_s);
+    model->last.steps = 0x1020304050607080U;
+    const fmu_model before = *model;
+    into_another(fmi2CoSimulation);
+    const fmu_model *after = &instance()->model;
+    COMES_BACK(last);
+    TEST_ASSERT_TRUE(before.has_jacobian && !after->has_jacobian);
+    instance()->model.last.kept = FMU_STEP_KINDS;
+    ASSERT_REFUSED(read(write()), "no possible state");
 }
 
 /* ------------------------------------------------------------------------------------------- by FMI 3 -- */
@@ -311,6 +321,7 @@ int main(void) {
     RUN_TEST(friction_has_no_derivatives);
     RUN_TEST(a_step_that_was_never_taken_has_none);
     RUN_TEST(a_step_is_kept_in_bytes);
+    RUN_TEST(every_member_of_a_step_comes_back_in_another_instance);
     RUN_TEST(a_step_whose_inputs_were_set_within_has_none);
     RUN_TEST(in_event_mode_derivatives_are_those_of_the_instant);
     RUN_TEST(terminated_model_exchange_is_at_its_instant);

@@ -178,6 +178,23 @@ static void a_sender_s_errors_make_it_passive_and_then_take_it_off_the_bus(void)
     TEST_ASSERT_EQUAL(LS_BUS_CAN_TRANSMIT, next());
 }
 
+/* The counter may be odd: confirmed frames take 1 off. */
+static void the_limits_of_the_counters_are_127_and_255(void) {
+    start(true);
+    can.transmit_errors = 119;
+    hear_error(1, true, 2, 0);
+    TEST_ASSERT_TRUE(can.transmit_errors == 127 && can.status == LS_BUS_ERROR_ACTIVE);
+    can.transmit_errors = 120;
+    hear_error(1, true, 2, 0);
+    TEST_ASSERT_TRUE(can.transmit_errors == 128 && can.status == LS_BUS_ERROR_PASSIVE);
+    can.transmit_errors = 247;
+    hear_error(1, true, 2, 0);
+    TEST_ASSERT_TRUE(can.transmit_errors == 255 && can.status == LS_BUS_ERROR_PASSIVE);
+    can.transmit_errors = 248;
+    hear_error(1, true, 2, 0);
+    TEST_ASSERT_TRUE(can.transmit_errors == 256 && can.status == LS_BUS_BUS_OFF);
+}
+
 static void an_error_of_another_frame_sends_nothing_again(void) {
     start(true);
     hear_error(0x77, true, 2, 0);
@@ -265,6 +282,7 @@ int main(void) {
     RUN_TEST(a_frame_waits_for_room_to_be_sent_again);
     RUN_TEST(a_frame_leaves_room_for_a_status);
     RUN_TEST(a_sender_s_errors_make_it_passive_and_then_take_it_off_the_bus);
+    RUN_TEST(the_limits_of_the_counters_are_127_and_255);
     RUN_TEST(an_error_of_another_frame_sends_nothing_again);
     RUN_TEST(a_receiver_s_errors_make_it_passive);
     RUN_TEST(a_passive_sender_of_can_fd_says_so_in_its_frames);

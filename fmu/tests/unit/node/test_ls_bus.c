@@ -68,22 +68,22 @@ static void a_frame_of_can_fd_has_its_bytes(void) {
 
 static void the_other_operations_have_their_bytes(void) {
     TEST_ASSERT_TRUE(ls_bus_put_id(&buffer, LS_BUS_CONFIRM, 0x01020304));
-    TEST_ASSERT_TRUE(ls_bus_put_error(&buffer, 5, LS_BUS_CRC_ERROR, LS_BUS_SECONDARY_ERROR_FLAG, true));
+    TEST_ASSERT_TRUE(ls_bus_put_error(&buffer, 0x15000005, LS_BUS_CRC_ERROR, LS_BUS_SECONDARY_ERROR_FLAG, true));
     TEST_ASSERT_TRUE(ls_bus_put_configuration(&buffer, LS_BUS_CAN_BAUDRATE, 500000));
     TEST_ASSERT_TRUE(ls_bus_put_configuration(&buffer, LS_BUS_ARBITRATION_LOST_BEHAVIOR, LS_BUS_DISCARD_AND_NOTIFY));
     TEST_ASSERT_TRUE(ls_bus_put_status(&buffer, LS_BUS_BUS_OFF));
     TEST_ASSERT_TRUE(ls_bus_put_format_error(&buffer, (const uint8_t *)"abc", 3));
-    BYTES(0x20, 0, 0, 0, 12, 0, 0, 0, 4, 3, 2, 1,          /* confirm */
-          0x31, 0, 0, 0, 15, 0, 0, 0, 5, 0, 0, 0, 4, 2, 1, /* bus error */
-          0x40, 0, 0, 0, 13, 0, 0, 0, 1, 0x20, 0xA1, 7, 0, /* bit rate */
-          0x40, 0, 0, 0, 10, 0, 0, 0, 4, 2,                /* behaviour */
-          0x41, 0, 0, 0, 9, 0, 0, 0, 3,                    /* status */
+    BYTES(0x20, 0, 0, 0, 12, 0, 0, 0, 4, 3, 2, 1,             /* confirm */
+          0x31, 0, 0, 0, 15, 0, 0, 0, 5, 0, 0, 0x15, 4, 2, 1, /* bus error */
+          0x40, 0, 0, 0, 13, 0, 0, 0, 1, 0x20, 0xA1, 7, 0,    /* bit rate */
+          0x40, 0, 0, 0, 10, 0, 0, 0, 4, 2,                   /* behaviour */
+          0x41, 0, 0, 0, 9, 0, 0, 0, 3,                       /* status */
           0x01, 0, 0, 0, 13, 0, 0, 0, 3, 0, 'a', 'b', 'c');
     size_t at = 0;
     TEST_ASSERT_EQUAL(LS_BUS_RIGHT, read_at(&at));
     TEST_ASSERT_TRUE(operation.code == LS_BUS_CONFIRM && operation.id == 0x01020304 && at == 12);
     TEST_ASSERT_EQUAL(LS_BUS_RIGHT, read_at(&at));
-    TEST_ASSERT_TRUE(operation.id == 5 && operation.error == 4 && operation.flag == 2 && operation.is_sender);
+    TEST_ASSERT_TRUE(operation.id == 0x15000005 && operation.error == 4 && operation.flag == 2 && operation.is_sender);
     TEST_ASSERT_EQUAL(LS_BUS_RIGHT, read_at(&at));
     TEST_ASSERT_TRUE(operation.parameter == LS_BUS_CAN_BAUDRATE && operation.value == 500000);
     TEST_ASSERT_EQUAL(LS_BUS_RIGHT, read_at(&at));
@@ -139,6 +139,10 @@ static void an_operation_whose_length_cannot_be_trusted_is_all_that_is_left(void
     TAKES(0x42, 0, 0);
     TEST_ASSERT_EQUAL(LS_BUS_WRONG, read_at(&at));
     TEST_ASSERT_TRUE(operation.code == 0 && operation.size == 3 && at == 3);
+    at = 0;
+    TAKES(0x42, 0, 0, 0);
+    TEST_ASSERT_EQUAL(LS_BUS_WRONG, read_at(&at));
+    TEST_ASSERT_TRUE(operation.code == 0x42 && operation.size == 4 && at == 4);
     at = 0;
     TAKES(0x42, 0, 0, 0, 8, 0, 0);
     TEST_ASSERT_EQUAL(LS_BUS_WRONG, read_at(&at));
@@ -232,6 +236,9 @@ static void arguments_of_settings_are_checked(void) {
 static void lengths_within_format_errors_and_can_xl_fit(void) {
     RIGHT(0x01, 0, 0, 0, 12, 0, 0, 0, 2, 0, 1, 1);
     WRONG(0x01, 0, 0, 0, 12, 0, 0, 0, 1, 0, 1, 1);
+    static uint8_t many[300];
+    TEST_ASSERT_TRUE(ls_bus_put_format_error((setUp(), &buffer), many, sizeof many));
+    TEST_ASSERT_TRUE(read_first() == LS_BUS_RIGHT && operation.size == 310);
     WRONG(0x01, 0, 0, 0, 9, 0, 0, 0, 0);
     RIGHT(0x01, 0, 0, 0, 10, 0, 0, 0, 0, 0);
     RIGHT(0x12, 0, 0, 0, 23, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 1, 0, 9);

@@ -72,6 +72,15 @@ static void wheels_are_shown_as_far_as_there_are_outputs(void) {
     TEST_ASSERT_TRUE(instance()->model.wheel_angle_rad[1] == 0);
 }
 
+static void at_its_start_it_tells_its_bit_rate_at_the_first_communication_point(void) {
+    begin();
+    TEST_ASSERT_TRUE(update());
+    const fmi3ValueReference clock = ref("CAN.Tx_Clock", 0);
+    bool active = false;
+    OK(fmi3GetClock(c, &clock, 1, &active));
+    TEST_ASSERT_TRUE(active && instance()->model.port[0].offered == 13 + 10);
+}
+
 static void an_empty_node_s_next_instant_is_its_heartbeat(void) {
     bool known;
     begin();
@@ -125,6 +134,7 @@ int main(void) {
     RUN_TEST(off_the_bus_it_returns_when_its_time_is_over);
     RUN_TEST(off_a_slow_bus_the_node_ticks_on);
     RUN_TEST(wheels_are_shown_as_far_as_there_are_outputs);
+    RUN_TEST(at_its_start_it_tells_its_bit_rate_at_the_first_communication_point);
     RUN_TEST(an_empty_node_s_next_instant_is_its_heartbeat);
     RUN_TEST(times_are_rounded_to_microseconds_and_never_go_back);
     RUN_TEST(with_can_fd_the_node_hears_its_frames);

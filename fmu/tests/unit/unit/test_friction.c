@@ -51,6 +51,7 @@ static void outputs_with_friction_are_those_of_the_core(void) {
     initialise();
     laconic_plant twin = twin_of(0.01);
     apply(&held);
+    set("body_force_N", 1, held.body_force_N[0] = 2);
     for (int k = 0; k < 40; k++) OK(fmi2DoStep(c, k * 0.01, 0.01, fmi2True));
     TEST_ASSERT_EQUAL(LACONIC_OK, laconic_plant_run(&twin, &held, 40, NULL));
     laconic_outputs_of(&now, &twin, &held);
@@ -74,7 +75,7 @@ static void outputs_with_friction_are_those_of_the_core(void) {
     TEST_ASSERT_TRUE(get("supply_current_A", 0) == now.friction.supply_current_A);
     TEST_ASSERT_TRUE(get("supply_voltage_V", 0) == now.friction.supply_voltage_V);
     TEST_ASSERT_TRUE(get("supply_energy_J", 0) == now.friction.supply_energy_J);
-    TEST_ASSERT_TRUE(get("outer_work_J", 0) == now.friction.outer_work_J);
+    TEST_ASSERT_TRUE(get("outer_work_J", 0) == now.friction.outer_work_J && now.friction.outer_work_J != 0);
     TEST_ASSERT_TRUE(get("slip_loss_J", 0) == now.friction.slip_loss_J && now.friction.slip_loss_J > 0);
     TEST_ASSERT_TRUE(get("axle_loss_J", 0) == now.friction.axle_loss_J);
     TEST_ASSERT_TRUE(get("motor_loss_J", 0) == now.friction.motor_loss_J);
@@ -151,6 +152,11 @@ static void rates_of_wheels_that_slip_are_those_of_the_smooth_law(void) {
     for (int k = 0; k < 3; k++) TEST_ASSERT_DOUBLE_WITHIN(1e-9, rates.nu_rad_per_s2[k], rate[k]);
     for (int k = 0; k < 4; k++) TEST_ASSERT_DOUBLE_WITHIN(1e-9, wheel_rate[k], rate[10 + k]);
     TEST_ASSERT_TRUE(get("supply_current_A", 0) != 0);
+    for (int k = 0; k < 4; k++) { /* what the plant got: a brake holds its wheel */
+        TEST_ASSERT_TRUE(instance()->model.plant.slip.wheel_speed_rad_per_s[k] == speed[k]);
+        TEST_ASSERT_TRUE(instance()->model.plant.slip.wheel_angle_rad[k].value == state[6 + k]);
+        TEST_ASSERT_TRUE(instance()->model.plant.slip.wheel_angle_rad[k].rest == 0);
+    }
     TEST_ASSERT_TRUE(isfinite(get("acceleration_body_m_per_s2", 1)));
     TEST_ASSERT_TRUE(get("wheel_reaction_N", 1) != 0);
 }
@@ -254,6 +260,26 @@ static void a_step_that_a_sensor_cannot_follow_is_taken_back(void) {
 }
 
 /* -------------------------------------------------------------------------------------- warnings -- */
+
+/* Also what friction has added: losses, and the wheels' own speeds. Of a sudden the encoder turns too fast. */
+static void with_friction_too_all_is_taken_back(void) {
+    laconic_input held;
+    ground_with_friction();
+    set_integer("encoder_counts_per_turn", 1, 4096);
+    initialise();
+    apply(&held);
+    OK(fmi2DoStep(c, 0, 0.1, fmi2True));
+    const int64_t count = instance()->model.sensors.encoder[0].count;
+    instance()->model.sensors.settings.encoder[0].gear_ratio = 1e12;
+    const laconic_slip before = instance()->model.plant.slip;
+    for (int several = 0; several < 2; several++) {
+        TEST_ASSERT_EQUAL_INT(fmi2Discard, fmi2DoStep(c, 0.1, several ? 0.03 : 0.01, fmi2True));
+        TEST_ASSERT_EQUAL_MEMORY(&before, &instance()->model.plant.slip, sizeof before);
+        TEST_ASSERT_EQUAL_UINT64(10, instance()->model.plant.steps);
+        TEST_ASSERT_TRUE(get("slip_loss_J", 0) == before.slip_loss_J.value && before.slip_loss_J.value > 0);
+        TEST_ASSERT_TRUE(instance()->model.sensors.encoder[0].count == count);
+    }
+}
 
 static void a_wheel_without_grip_is_told_once(void) {
     laconic_input held;
@@ -359,6 +385,7 @@ int main(void) {
     RUN_TEST(sensors_show_what_the_core_s_show);
     RUN_TEST(sensors_that_cannot_be_are_refused);
     RUN_TEST(a_step_that_a_sensor_cannot_follow_is_taken_back);
+    RUN_TEST(with_friction_too_all_is_taken_back);
     RUN_TEST(a_wheel_without_grip_is_told_once);
     RUN_TEST(a_wheel_that_lifts_is_told_in_either_kind);
     RUN_TEST(with_friction_a_wheel_that_lifts_carries_nothing);

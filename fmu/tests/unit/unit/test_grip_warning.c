@@ -2,6 +2,8 @@
 #include "fmi2_bench.h"
 #include "model_interface.h"
 
+#define FMU_SLIP 1U /* of fmu_instance.warnings_given */
+
 void setUp(void) {
     log_clear();
     c = NULL;
@@ -93,6 +95,33 @@ static void slip_and_lift_are_told_once_in_a_run(void) {
     }
 }
 
+/* Within a communication step of many internal ones, at the step where it begins. */
+static void a_warning_has_the_time_of_its_internal_step(void) {
+    const fmi2ValueReference voltage = ref("voltage_V", 1);
+    const fmi2Integer first = 1;
+    const double slope = 10;
+    double begins = 0;
+    for (int sloped = 1; sloped >= 0; sloped--) {
+        make(fmi2CoSimulation);
+        set("step_s", 0, 0.125);
+        set("friction_coefficient", 0, 0.02);
+        set("com_z_m", 0, 0.1);
+        OK(fmi2SetupExperiment(c, fmi2False, 0, 3, fmi2False, 0));
+        initialise();
+        log_clear();
+        if (sloped) {
+            OK(fmi2SetRealInputDerivatives(c, &voltage, 1, &first, &slope));
+            OK(step(3, 1));
+        } else {
+            set("voltage_V", 1, 14);
+            OK(step(3, 1));
+        }
+        TEST_ASSERT_EQUAL_UINT32(FMU_SLIP, instance()->warnings_given & FMU_SLIP);
+        begins = instance()->model.slip_s;
+        TEST_ASSERT_TRUE(sloped ? begins > 3 && begins < 4 && fmod(begins, 0.125) == 0 : begins == 3);
+    }
+}
+
 static void a_refused_step_gives_no_warning(void) {
     set("step_s", 0, 0.01);
     set("friction_coefficient", 0, 0.02);
@@ -134,6 +163,7 @@ int main(void) {
     RUN_TEST(forces_beyond_the_range_are_told_in_place_of_slip_and_lift);
     RUN_TEST(a_limited_drive_on_ideal_ground_is_watched_for_slip);
     RUN_TEST(slip_and_lift_are_told_once_in_a_run);
+    RUN_TEST(a_warning_has_the_time_of_its_internal_step);
     RUN_TEST(a_refused_step_gives_no_warning);
     RUN_TEST(a_support_that_lifts_is_told_and_slip_after_it);
     return UNITY_END();

@@ -42,6 +42,9 @@ static void bytes_that_are_too_few_fail_and_are_not_touched(void) {
     fmu_stream_u64(&from, &value);
     TEST_ASSERT_TRUE(to.failed && from.failed && value == 99 && to.at == 0);
     for (int k = 0; k < 8; k++) TEST_ASSERT_EQUAL_HEX8(0, bytes[k]);
+    fmu_stream end = {.from = bytes, .size = 15, .at = 8};
+    fmu_stream_u64(&end, &value);
+    TEST_ASSERT_TRUE(end.failed && value == 99 && end.at == 8);
     fmu_stream exact = {.from = bytes, .size = 8};
     fmu_stream_u64(&exact, &value);
     TEST_ASSERT_TRUE(!exact.failed && value == 0);
@@ -61,6 +64,12 @@ static void a_number_out_of_its_range_fails_and_keeps_the_one_before(void) {
 }
 
 static void the_checksum_is_the_usual_crc_32(void) {
+    for (unsigned byte = 0; byte < 256; byte++) { /* bit by bit */
+        const uint8_t one = (uint8_t)byte;
+        uint32_t remainder = 0xFFFFFFFFU ^ byte;
+        for (int k = 0; k < 8; k++) remainder = (remainder >> 1) ^ (remainder & 1U ? 0xEDB88320U : 0U);
+        TEST_ASSERT_EQUAL_HEX32(~remainder, fmu_checksum(&one, 1));
+    }
     TEST_ASSERT_EQUAL_HEX32(0xCBF43926U, fmu_checksum((const uint8_t *)"123456789", 9));
     TEST_ASSERT_EQUAL_HEX32(0, fmu_checksum(bytes, 0));
 }
