@@ -20,9 +20,8 @@ typedef struct fmu_callbacks_2 {
     fmi2CallbackLogger log;
 } fmu_callbacks_2;
 
-typedef char
-    fmu_callback_storage_is_large_enough[sizeof(fmu_callbacks_2) <= sizeof(((fmu_instance *)0)->callback_storage) ? 1
-                                                                                                                  : -1];
+typedef char fmu_callback_storage_is_large_enough_2
+    [sizeof(fmu_callbacks_2) <= sizeof(((fmu_instance *)0)->callback_storage) ? 1 : -1];
 
 static const fmu_callbacks_2 *callbacks(const fmu_instance *instance) {
     return (const fmu_callbacks_2 *)(const void *)&instance->callback_storage;

@@ -23,9 +23,8 @@ typedef struct fmu_callbacks_3 {
     fmi3IntermediateUpdateCallback update;
 } fmu_callbacks_3;
 
-typedef char
-    fmu_callback_storage_is_large_enough[sizeof(fmu_callbacks_3) <= sizeof(((fmu_instance *)0)->callback_storage) ? 1
-                                                                                                                  : -1];
+typedef char fmu_callback_storage_is_large_enough_3
+    [sizeof(fmu_callbacks_3) <= sizeof(((fmu_instance *)0)->callback_storage) ? 1 : -1];
 
 static const fmu_callbacks_3 *callbacks(const fmu_instance *instance) {
     return (const fmu_callbacks_3 *)(const void *)&instance->callback_storage;

@@ -264,9 +264,17 @@ static void wrong_operations_are_answered_but_for_wrong_answers(void) {
 }
 
 static void a_start_forgets_what_was(void) {
-    memset(&can, 0x7F, sizeof can);
-    can.bit_rate_bit_per_s = 500000;
-    can.fd_bit_rate_bit_per_s = 0;
+    const can_controller used = {.bit_rate_bit_per_s = 500000,
+                                 .waits = true,
+                                 .again = true,
+                                 .transmit_errors = 1,
+                                 .receive_errors = 2,
+                                 .status = LS_BUS_BUS_OFF,
+                                 .sent = 3,
+                                 .heard = 4,
+                                 .lost = 5,
+                                 .wrong = 6};
+    can = used;
     start(true);
     TEST_ASSERT_TRUE(!can.waits && !can.again && can.transmit_errors == 0 && can.receive_errors == 0);
     TEST_ASSERT_TRUE(can.sent == 0 && can.heard == 0 && can.lost == 0 && can.wrong == 0);

@@ -108,6 +108,31 @@ static void currents_are_those_of_the_limited_loops(void) {
     TEST_ASSERT_EQUAL_INT32(40, get_integer("frames_sent"));
 }
 
+/* At the limit itself a loop is not limited: its integral goes on. */
+static void at_its_limit_a_loop_goes_on(void) {
+    set_real("gear_ratio", 0, 1);
+    set_real("proportional_gain_As_per_rad", 0, 1);
+    set_real("current_limit_A", 0, 2);
+    begin();
+    set_real("setpoint_rad_per_s", 1, -2);
+    set_real("setpoint_rad_per_s", 2, 2);
+    step(0, period_s);
+    TEST_ASSERT_TRUE(get_real("current_A", 1) == -2 && get_real("current_A", 2) == 2);
+    TEST_ASSERT_TRUE(instance()->model.error_rad[0] == -2 * period_s && instance()->model.error_rad[1] == 2 * period_s);
+}
+
+/* Outputs may be read in initialization, and settings changed behind it: what the first start sent is gone. */
+static void a_second_start_begins_anew(void) {
+    OK(fmi3EnterInitializationMode(c, false, 0, 0, false, 0));
+    TEST_ASSERT_TRUE(get_real("current_A", 1) == 0);
+    set_integer("bit_rate_bit_per_s", 250000);
+    OK(fmi3ExitInitializationMode(c));
+    TEST_ASSERT_EQUAL(LS_BUS_CONFIGURATION, first_of("CAN"));
+    TEST_ASSERT_EQUAL_UINT32(250000, (uint32_t)told.value);
+    TEST_ASSERT_EQUAL(LS_BUS_CONFIGURATION, next());
+    TEST_ASSERT_EQUAL(0, next());
+}
+
 static void each_period_has_its_command_however_long_the_step(void) {
     begin();
     step(0, 3.5 * period_s);
@@ -228,6 +253,8 @@ int main(void) {
     RUN_TEST(feedback_is_a_speed_of_its_wheel);
     RUN_TEST(other_frames_are_no_feedback);
     RUN_TEST(currents_are_those_of_the_limited_loops);
+    RUN_TEST(at_its_limit_a_loop_goes_on);
+    RUN_TEST(a_second_start_begins_anew);
     RUN_TEST(each_period_has_its_command_however_long_the_step);
     RUN_TEST(a_command_that_waits_is_replaced);
     RUN_TEST(off_the_bus_time_brings_it_back);

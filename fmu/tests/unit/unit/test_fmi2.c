@@ -218,6 +218,10 @@ static void the_log_has_the_categories_that_were_chosen(void) {
     const fmi2String warnings[1] = {"logStatusWarning"}, discards[1] = {"logStatusDiscard"};
     OK(fmi2SetDebugLogging(c, fmi2True, 1, warnings));
     TEST_ASSERT_EQUAL_UINT(1, ((const fmu_instance *)c)->log_categories);
+    log_clear();
+    set("motor_gain_Nm_per_V", 0, 0.12);
+    (void)get("x_m", 0);
+    TEST_ASSERT_EQUAL_INT(0, lines); /* an event, of another category */
     OK(fmi2SetDebugLogging(c, fmi2True, 1, discards));
     TEST_ASSERT_EQUAL_UINT(2, ((const fmu_instance *)c)->log_categories);
     log_clear();

@@ -83,6 +83,28 @@ static void outputs_with_friction_are_those_of_the_core(void) {
     TEST_ASSERT_TRUE(get("numerical_loss_J", 0) == now.friction.numerical_loss_J);
 }
 
+/* Each output by itself, so that no other one has made it fresh. */
+static void an_output_with_friction_is_fresh_whichever_is_read_first(void) {
+    laconic_input held;
+    laconic_outputs now;
+    ground_with_friction();
+    initialise();
+    laconic_plant twin = twin_of(0.01);
+    apply(&held);
+    for (int n = 0; n < 6; n++) {
+        OK(fmi2DoStep(c, n * 0.01, 0.01, fmi2True));
+        TEST_ASSERT_EQUAL(LACONIC_OK, laconic_plant_run(&twin, &held, 1, NULL));
+        laconic_outputs_of(&now, &twin, &held);
+        laconic_plant_reactions(&now.reactions, &twin, NULL, &held);
+        if (n == 0) TEST_ASSERT_TRUE(get("wheel_torque_Nm", 1) == now.wheel_torque_Nm[0]);
+        if (n == 1) TEST_ASSERT_TRUE(get("wheel_speed_rad_per_s", 1) == now.wheel_speed_rad_per_s[0]);
+        if (n == 2) TEST_ASSERT_TRUE(get("wheel_angle_rad", 1) == now.wheel_angle_rad[0]);
+        if (n == 3) TEST_ASSERT_TRUE(get("energy_J", 0) == now.energy_J);
+        if (n == 4) TEST_ASSERT_TRUE(get("wheel_reaction_N", 1) == now.reactions.along_N[0]);
+        if (n == 5) TEST_ASSERT_TRUE(get("slip_loss_J", 0) == now.friction.slip_loss_J);
+    }
+}
+
 static void a_state_with_friction_is_taken_up_again(void) {
     static fmi2Byte bytes[65536];
     laconic_input held;
@@ -231,6 +253,8 @@ static void sensors_show_what_the_core_s_show(void) {
     TEST_ASSERT_TRUE(get("imu_yaw_rate_rad_per_s", 0) == now.imu_yaw_rate_rad_per_s);
     for (uint32_t k = 0; k < 4; k++) TEST_ASSERT_TRUE(get("encoder_count", k + 1) == now.encoder_count[k]);
     TEST_ASSERT_TRUE(get("encoder_count", 2) != 0 && get("encoder_count", 1) == 0);
+    const laconic_encoder_settings unset = instance()->model.sensors.settings.encoder[4]; /* no such wheel */
+    TEST_ASSERT_TRUE(unset.counts_per_turn == 0 && unset.gear_ratio == 0);
 }
 
 static void sensors_that_cannot_be_are_refused(void) {
@@ -377,6 +401,7 @@ static void a_voltage_for_a_wheel_without_a_motor_is_told_once(void) {
 int main(void) {
     UNITY_BEGIN();
     RUN_TEST(outputs_with_friction_are_those_of_the_core);
+    RUN_TEST(an_output_with_friction_is_fresh_whichever_is_read_first);
     RUN_TEST(a_state_with_friction_is_taken_up_again);
     RUN_TEST(model_exchange_takes_friction_where_it_has_states_for_it);
     RUN_TEST(rates_of_wheels_that_slip_are_those_of_the_smooth_law);

@@ -122,6 +122,25 @@ static void a_warning_has_the_time_of_its_internal_step(void) {
     }
 }
 
+/* A vehicle that a moment turns faster and faster: as many steps by the importer tell the same time. */
+static void a_warning_within_a_held_step_has_the_time_of_its_internal_step(void) {
+    double begins[2];
+    for (int single = 0; single < 2; single++) {
+        make(fmi2CoSimulation);
+        set("step_s", 0, 0.125);
+        set("friction_coefficient", 0, 0.05);
+        set("com_y_m", 0, 0.05);
+        set("com_z_m", 0, 0.1);
+        OK(fmi2SetupExperiment(c, fmi2False, 0, 3, fmi2False, 0));
+        initialise();
+        set("body_moment_Nm", 0, 2);
+        for (int k = 0; k < (single ? 8 : 1); k++) OK(step(3 + 0.125 * k, single ? 0.125 : 1));
+        TEST_ASSERT_EQUAL_UINT32(FMU_SLIP, instance()->warnings_given & FMU_SLIP);
+        begins[single] = instance()->model.slip_s;
+    }
+    TEST_ASSERT_TRUE(begins[0] > 3 && begins[0] < 4 && begins[0] == begins[1]);
+}
+
 static void a_refused_step_gives_no_warning(void) {
     set("step_s", 0, 0.01);
     set("friction_coefficient", 0, 0.02);
@@ -164,6 +183,7 @@ int main(void) {
     RUN_TEST(a_limited_drive_on_ideal_ground_is_watched_for_slip);
     RUN_TEST(slip_and_lift_are_told_once_in_a_run);
     RUN_TEST(a_warning_has_the_time_of_its_internal_step);
+    RUN_TEST(a_warning_within_a_held_step_has_the_time_of_its_internal_step);
     RUN_TEST(a_refused_step_gives_no_warning);
     RUN_TEST(a_support_that_lifts_is_told_and_slip_after_it);
     return UNITY_END();

@@ -46,6 +46,22 @@ static void arrays_of_more_values_than_the_fast_path_keeps_are_read_and_set(void
     fmi3FreeInstance(i);
 }
 
+/* The fast path stops at such a reference; those before it, or none, are as many values as are given. */
+static void a_list_that_cannot_be_set_or_read_is_refused_whatever_its_number_of_values(void) {
+    const fmi3ValueReference behind = ref("voltage_V", 0) << FMU_ELEMENT_SHIFT | 5, none = 0x7FFFFFFF;
+    const fmi3ValueReference to_set[2] = {ref("voltage_V", 0), ref("mass_kg", 0)}, to_get[2] = {to_set[0], none};
+    double values[4] = {1, 2, 3, 4};
+    fmi3Instance i = make_3(false);
+    OK(fmi3EnterInitializationMode(i, false, 0, 0, false, 0));
+    OK(fmi3ExitInitializationMode(i));
+    ASSERT_REFUSED(fmi3SetFloat64(i, to_set, 2, values, 4), "mass_kg");
+    ASSERT_REFUSED(fmi3GetFloat64(i, to_get, 2, values, 4), "there is no variable with the value reference");
+    ASSERT_REFUSED(fmi3GetFloat64(i, &behind, 1, values, 0), "there is no variable with the value reference");
+    OK(fmi3GetFloat64(i, to_get, 1, values, 4));
+    TEST_ASSERT_TRUE(values[0] == 0 && values[3] == 0);
+    fmi3FreeInstance(i);
+}
+
 /* Another number of values than the last time, by a list that the fast path has kept. */
 static void the_number_of_values_is_checked_each_time(void) {
     const fmi3ValueReference voltage = ref("voltage_V", 0);
@@ -195,6 +211,7 @@ int main(void) {
     UNITY_BEGIN();
     RUN_TEST(a_list_longer_than_the_fast_path_keeps_is_read_and_set);
     RUN_TEST(arrays_of_more_values_than_the_fast_path_keeps_are_read_and_set);
+    RUN_TEST(a_list_that_cannot_be_set_or_read_is_refused_whatever_its_number_of_values);
     RUN_TEST(the_number_of_values_is_checked_each_time);
     RUN_TEST(references_that_are_none_are_refused_whatever_their_form);
     RUN_TEST(a_list_of_inputs_and_parameters_is_set_as_a_whole_or_not_at_all);
