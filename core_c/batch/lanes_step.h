@@ -79,6 +79,7 @@ static void place(const laconic_batch_block *block, int32_t lane, lanes_kind kin
     if (kind.method < LANES_EXPONENTIAL_GAUSS_8) return;
     integrator->stretches = kind.stretches;
     integrator->has_rest = kind.has_rest;
+    integrator->halved = false; /* which only estimates have */
     LANES_COLLOCATION_MEMBERS(SPREAD_TO_INTEGRATOR)
 #endif
 }

@@ -77,14 +77,16 @@ static laconic_status half_steps(laconic_state *twin, const laconic_model *model
     return laconic_step_sampled(model, halves, twin, &inputs[1], &between, &inputs[2]);
 }
 
-/* By the finer method, and where that refuses by the plant's own. */
+/* By the finer method, and where that refuses by the plant's own; where that does, too, there are none. */
 static bool take_half_steps(laconic_estimate *estimate, const laconic_plant *plant, const laconic_input *inputs,
                             int32_t count) {
     laconic_state *twin = &estimate->twin;
     *twin = plant->state;
     if (half_steps(twin, &plant->model, &estimate->finer, inputs, count) == LACONIC_OK) return true;
     *twin = plant->state;
-    return half_steps(twin, &plant->model, &estimate->halves, inputs, count) == LACONIC_OK;
+    if (half_steps(twin, &plant->model, &estimate->halves, inputs, count) == LACONIC_OK) return true;
+    *twin = plant->state;
+    return false;
 }
 
 /* A plant with friction: with three samples a step holds the middle one. */
@@ -112,12 +114,12 @@ static vector differences(const laconic_sum a[3], const laconic_sum b[3]) {
     return vector_of(difference(a[0], b[0]), difference(a[1], b[1]), difference(a[2], b[2]));
 }
 
-/* The error of the window's first step: what plant and half steps differ by. Where there were none, that of before. */
+/* The error of the window's first step: what plant and half steps differ by. Where there were none, all that the step
+ * has changed. */
 static void measure_step(laconic_estimate *estimate, const laconic_plant *plant) {
     const laconic_state *now = &plant->state, *fine = &estimate->twin, *start = &estimate->start;
     estimate->first_path_m[0] = difference(now->x_m, start->x_m);
     estimate->first_path_m[1] = difference(now->y_m, start->y_m);
-    if (!estimate->twin_stepped) return;
     const real before = size(vec(estimate->local)), here = size(differences(now->zeta, fine->zeta));
     estimate->fading = here < before ? here / before : R(1);
     store(&estimate->local[0], differences(now->zeta, fine->zeta));
@@ -277,8 +279,7 @@ static void begin_window(laconic_estimate *estimate, const laconic_plant *plant,
     estimate->taken = 0;
     estimate->start = plant->state;
     laconic_forcing_of(&estimate->forcing, &plant->model, &inputs[count / 2]);
-    estimate->twin_stepped = take_half_steps(estimate, plant, inputs, count);
-    estimate->unknown += !estimate->twin_stepped;
+    estimate->unknown += !take_half_steps(estimate, plant, inputs, count);
 }
 
 uint64_t laconic_estimate_before(laconic_estimate *estimate, const laconic_plant *plant, const laconic_input *inputs,

@@ -7,7 +7,10 @@
  *
  *     e⁺ = e^−rT e + T φ1 f,    T ē = T φ1 e + T² φ2 f,
  *
- * which is linear in f. Where nothing is damped e⁺ is a Cayley rotation of e, for any angle. */
+ * which is linear in f. Where nothing is damped e⁺ is a Cayley rotation of e, for any angle.
+ *
+ * What M makes of a step's own error within that step is in it already, since it was measured. So from ē is taken what
+ * the source makes within each step, h² φ2 s of one: on an axis whose damping is fast that is nearly all of ē. */
 #include "linear_motion.h"
 
 /* e^−a, T φ1, T² φ2 of each axis over some time T. */
@@ -143,13 +146,14 @@ static void carry_part(state_error *error, const laconic_estimate *estimate, con
     const decay_factors one = of_one_step(estimate, motion->step_s), over = over_steps(one, motion->steps);
     const vector zeta = scaled(R(0.5), plus(motion->zeta[0], motion->zeta[1])), before = error->zeta;
     const vector source = quotient(scaled(share, vec(&estimate->local[0])), one.mean); /* s */
-    const vector own = minus(scaled(share, vec(&estimate->local[3])), times(one.second, source));
-    const real per_time = R(1) / over.time_s;
+    const real steps = (real)motion->steps, per_time = R(1) / over.time_s;
+    /* T ē without what f makes of it */
+    const vector carried = minus(times(over.mean, before), scaled(steps, times(one.second, source)));
     const vector right = plus(plus(source, turned_forcing(estimate, m, error, &over, &motion->heading)),
-                              scaled(per_time, gyroscopic_change(m, zeta, times(over.mean, before))));
+                              scaled(per_time, gyroscopic_change(m, zeta, carried)));
     const vector f = solve(m, zeta, scaled(per_time, over.second), right);
-    const vector way = plus(times(over.mean, before), times(over.second, f));
-    const vector travel_after = plus(error->travel, plus(way, scaled((real)motion->steps, own)));
+    const vector way = plus(carried, times(over.second, f));
+    const vector travel_after = plus(error->travel, plus(way, scaled(steps * share, vec(&estimate->local[3]))));
     carry_place(error, estimate, m, motion, share, travel_after);
     carry_floor(error, estimate, m, motion, &over);
     error->zeta = plus(times(over.stays, before), times(over.mean, f));

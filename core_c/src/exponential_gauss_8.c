@@ -235,9 +235,10 @@ static laconic_status exponential_gauss_8_step(const laconic_model *model, const
 /* ------------------------------------------------------------------------------ preparation -- */
 
 /* The stretches end when they cover the step, or when what dies out has done so on the slowest of those axes on which
- * the step would be too long a panel. `scale` shortens all panels. */
-static void choose_panels(laconic_integrator *integrator, const laconic_model *m, real scale) {
-    const real panel_decay = scale * PANEL_DECAY, first = R(PARTS) * panel_decay;
+ * the step would be too long a panel. */
+static void choose_panels(laconic_integrator *integrator, const laconic_model *m) {
+    const real scale = integrator->halved ? R(0.5) : R(1), parts = integrator->halved ? R(2 * PARTS) : R(PARTS);
+    const real panel_decay = scale * PANEL_DECAY, first = parts * panel_decay, dead_after = DEAD_AFTER / scale;
     const real fastest = integrator->step_s * laconic_fastest_decay(m);
     real slowest = fastest, end = R(0), length = R(1); /* in units of the first stretch */
     integrator->stretches = 0;
@@ -251,11 +252,11 @@ static void choose_panels(laconic_integrator *integrator, const laconic_model *m
         if (integrator->stretches >= 2) length *= R(2);
         end += length;
         integrator->stretches++;
-        integrator->has_rest = ANY(end * first * slowest >= DEAD_AFTER * fastest);
+        integrator->has_rest = ANY(end * first * slowest >= dead_after * fastest);
     } while (ANY(end * first < fastest) && !integrator->has_rest && integrator->stretches < MOST_STRETCHES);
     integrator->has_rest = integrator->has_rest && ANY(end * first < fastest);
-    integrator->first_share = (integrator->has_rest ? first / fastest : R(1) / end) / R(PARTS);
-    integrator->rest_share = R(1) - end * R(PARTS) * integrator->first_share;
+    integrator->first_share = (integrator->has_rest ? first / fastest : R(1) / end) / parts;
+    integrator->rest_share = R(1) - end * parts * integrator->first_share;
 }
 
 static void phis_at_nodes(real phi[PHIS * (NODES + 1)], real a) {
@@ -266,9 +267,9 @@ static void phis_at_nodes(real phi[PHIS * (NODES + 1)], real a) {
     }
 }
 
-static void prepare_panels(laconic_integrator *integrator, const laconic_model *model, real scale) {
+static void prepare_panels(laconic_integrator *integrator, const laconic_model *model) {
     const real h = integrator->step_s;
-    choose_panels(integrator, model, scale);
+    choose_panels(integrator, model);
     for (int axis = 0; axis < 3; axis++) {
         const real a = h * model->decay_per_s[axis];
         real *kept = integrator->collocation[axis];
@@ -286,13 +287,14 @@ static void prepare_panels(laconic_integrator *integrator, const laconic_model *
 
 #if LACONIC_WITH_PREPARE /* lanes have constants alone */
 void laconic_halve_panels(laconic_integrator *integrator, const laconic_model *model) {
-    if (integrator->collocation[0][0] != R(0)) prepare_panels(integrator, model, R(0.5));
+    integrator->halved = integrator->collocation[0][0] != R(0);
+    if (integrator->halved) prepare_panels(integrator, model);
 }
 #endif
 
 static laconic_status exponential_gauss_8_prepare(laconic_integrator *integrator, const laconic_model *model,
                                                   laconic_refusal *why) {
-    prepare_panels(integrator, model, R(1));
+    prepare_panels(integrator, model);
     return laconic_explicit_limits(integrator, model, R(LACONIC_REAL_MAX), GAUSS_ROTATION, why);
 }
 

@@ -186,15 +186,17 @@ typedef struct panel_among {
 #define DEAD_AFTER R(18)
 #endif
 
-/* Panels half as long for an integrator that steps by exponential-gauss-8, as auto does; others stay as they are. Two
- * half steps have otherwise the same panels as the whole step, or, where that has panels and they have none, longer
- * ones, and do not show its error. */
+/* Panels half as long, and twice as many decay times until something counts as died out, for an integrator that steps
+ * by exponential-gauss-8, as auto does; others stay as they are. Two half steps have otherwise the same panels as the
+ * whole step, or, where that has panels and they have none, longer ones, and do not show its error. */
 #if LACONIC_WITH_PREPARE
 void laconic_halve_panels(laconic_integrator *integrator, const laconic_model *model);
 #endif
 
+static inline int32_t parts_of(const laconic_integrator *integrator) { return integrator->halved ? 2 * PARTS : PARTS; }
+
 static inline int32_t panels_of(const laconic_integrator *integrator) {
-    return integrator->stretches == 0 ? 1 : PARTS * integrator->stretches + integrator->has_rest;
+    return integrator->stretches == 0 ? 1 : parts_of(integrator) * integrator->stretches + integrator->has_rest;
 }
 
 static inline void set_rows(panel_among *p, const laconic_model *m) {
@@ -217,10 +219,11 @@ static inline void first_panel(panel_among *p, const laconic_model *m, const lac
 
 /* `k` counts from 0. The last one takes the rest of the step. */
 static inline void next_panel(panel_among *p, const laconic_model *m, const laconic_integrator *integrator, int32_t k) {
+    const int32_t parts = parts_of(integrator);
     p->first += p->share;
-    if (k == PARTS * integrator->stretches) {
+    if (k == parts * integrator->stretches) {
         start_panel(p, m, integrator, integrator->rest_share, integrator->collocation_of_rest);
-    } else if (k >= 2 * PARTS && k % PARTS == 0) {
+    } else if (k >= 2 * parts && k % parts == 0) {
         p->share *= R(2);
         p->h *= R(2);
         for (int axis = 0; axis < 3; axis++) double_phis(p->phi[axis]);

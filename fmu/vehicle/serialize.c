@@ -208,7 +208,6 @@ static void serialize_window(fmu_stream *s, laconic_estimate *e) {
     fmu_stream_reals(s, &e->fading, 1);
     fmu_stream_reals(s, e->first_path_m, 2);
     serialize_forcing(s, &e->forcing);
-    fmu_stream_bool(s, &e->twin_stepped);
     serialize_slip(s, &e->twin_slip);
 }
 

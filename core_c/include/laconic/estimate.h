@@ -39,7 +39,7 @@ typedef struct laconic_errors {
     laconic_error now;      /* at this moment, rounding included                          */
     laconic_error largest;  /* at any window's end since the start, and now               */
     laconic_error rounding; /* the part of `now` that rounding makes whatever the step is */
-    uint64_t unknown;       /* windows in which no half step was taken; they count as the window before. 0: none */
+    uint64_t unknown;       /* steps of which no half was taken: all that they change counts as error. 0: none */
 } laconic_errors;
 
 /* Longest windows: K is 1 … LACONIC_ESTIMATE_MOST. */
@@ -70,7 +70,6 @@ typedef struct laconic_estimate {
     int32_t last_length;          /* of the last window */
     laconic_real first_path_m[2]; /* way of the window's first step                                  */
     laconic_forcing forcing;      /* at the window's start: how b follows the heading                 */
-    bool twin_stepped;            /* whether the half steps were taken                               */
 #if LACONIC_WITH_FRICTION
     laconic_slip twin_slip; /* with friction: of the twin */
 #endif

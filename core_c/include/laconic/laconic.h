@@ -271,6 +271,7 @@ typedef struct laconic_integrator {
 #if LACONIC_WITH_EXPONENTIAL_GAUSS
     int32_t stretches;                       /* of a step while something dies out; 0: it is one panel */
     bool has_rest;                           /* after them, which is one more panel */
+    bool halved;                             /* panels half as long, for the half steps of an error estimate */
     laconic_real first_share, rest_share;    /* of the step: the first panel, and the rest */
     laconic_real collocation[3][30];         /* weights of each axis; with stretches the φ of the first panel's */
     laconic_real collocation_of_rest[3][30]; /* and those of the rest */

@@ -49,7 +49,7 @@ class Errors:
     rounding: ErrorSizes
     """The part of `now` that rounding makes whatever the step is."""
     unknown: int
-    """Windows in which the half steps were refused; 0: none."""
+    """Windows in which the half steps were refused: all that their first step changed counts as error. 0: none."""
 
 
 class Estimate:
