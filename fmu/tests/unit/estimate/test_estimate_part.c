@@ -329,7 +329,7 @@ static void every_member_of_an_estimate_comes_back_in_another_instance(void) {
     FILL(e->forcing.constant);
     FILL(e->forcing.cosine);
     FILL(e->forcing.sine);
-    e->forcing.rotates = e->twin_stepped = true;
+    e->forcing.rotates = true;
     fill_slip(&e->twin_slip);
     const fmu_model before = instance()->model;
     into_another(fmi2CoSimulation);
