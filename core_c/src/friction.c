@@ -115,27 +115,36 @@ laconic_status laconic_friction_of(laconic_friction *friction, const laconic_mod
 
 /* --------------------------------------------------------------------------------- the start -- */
 
+/* Of a wheel that does not slip. A wheel of hardly any radius turns beyond all numbers. */
+static real rolling_speed(const laconic_friction *f, int32_t i, const real nu[3]) {
+    const laconic_friction_wheel *w = &f->wheel[i];
+    return f->axle[i].locked ? R(0) : dot(vec(w->along), vec(nu)) / w->rim_along;
+}
+
+static laconic_status check_wheel_speed(real speed, laconic_status otherwise, int32_t i, laconic_refusal *why) {
+    if (magnitude(speed) <= LARGEST_SPEED) return LACONIC_OK;
+    return refuse(why, otherwise, LACONIC_FIELD_START_WHEEL_SPEED, i + 1, speed, R(0));
+}
+
 /* ν of the start must suit wheels that cannot slip. */
 static laconic_status check_wheel_start(const laconic_friction *f, const laconic_vehicle *vehicle,
                                         const laconic_start *start, laconic_refusal *why) {
     laconic_model ideal;
     laconic_state state;
+    laconic_status status = LACONIC_OK;
     if (!f->slips && laconic_prepare_ideal(&ideal, vehicle, NULL) == LACONIC_OK)
         return laconic_state_set(&state, &ideal, start, why);
-    for (int32_t i = 0; i < f->wheel_count && f->slips; i++) {
+    for (int32_t i = 0; i < f->wheel_count && f->slips && status == LACONIC_OK; i++) {
         const real speed = start->wheel_speed_rad_per_s[i];
-        if (!(magnitude(speed) <= LARGEST_SPEED))
-            return refuse(why, is_finite(speed) ? LACONIC_OVERFLOW : LACONIC_NOT_FINITE,
-                          LACONIC_FIELD_START_WHEEL_SPEED, i + 1, speed, R(0));
+        status = check_wheel_speed(speed, is_finite(speed) ? LACONIC_OVERFLOW : LACONIC_NOT_FINITE, i, why);
+        if (status == LACONIC_OK)
+            status = check_wheel_speed(rolling_speed(f, i, start->nu_rad_per_s), LACONIC_OVERFLOW, i, why);
     }
-    return LACONIC_OK;
+    return status;
 }
 
 static void roll(laconic_slip *slip, const laconic_friction *f, const real nu[3]) {
-    for (int32_t i = 0; i < f->wheel_count; i++) {
-        const laconic_friction_wheel *w = &f->wheel[i];
-        slip->wheel_speed_rad_per_s[i] = f->axle[i].locked ? R(0) : dot(vec(w->along), vec(nu)) / w->rim_along;
-    }
+    for (int32_t i = 0; i < f->wheel_count; i++) slip->wheel_speed_rad_per_s[i] = rolling_speed(f, i, nu);
 }
 
 static void set_at_rest(laconic_slip *slip, const laconic_friction *f) {

@@ -114,6 +114,16 @@ static void wheels_start_as_they_roll_or_as_they_are_given(void) {
                    laconic_plant_start(&plant, &v, &laconic_auto, REAL(1e-3), &start, &why), why);
 }
 
+/* Found by fuzzing: 1/R is no number there, and neither was the speed. */
+static void a_wheel_of_hardly_any_radius_does_not_roll_beyond_all_numbers(void) {
+    laconic_vehicle v = robotino(0.5, 0, 0);
+    const laconic_start start = start_with(3, 1, 0);
+    laconic_plant plant;
+    v.wheel[1].own_radius_m = LACONIC_REAL_MIN * LACONIC_EPSILON;
+    ASSERT_REFUSED(LACONIC_OVERFLOW, LACONIC_FIELD_START_WHEEL_SPEED, 2,
+                   laconic_plant_start(&plant, &v, &laconic_auto, REAL(1e-3), &start, &why), why);
+}
+
 static void a_drive_on_ideal_ground_starts_only_as_its_wheels_allow(void) {
     laconic_vehicle v = with_drive(robotino(0, 0, 0));
     laconic_start start = start_with(0, 3, 0);
@@ -247,6 +257,7 @@ int main(void) {
     RUN_TEST(friction_is_what_a_wheel_a_limit_or_a_circuit_gives);
     RUN_TEST(only_auto_knows_friction);
     RUN_TEST(wheels_start_as_they_roll_or_as_they_are_given);
+    RUN_TEST(a_wheel_of_hardly_any_radius_does_not_roll_beyond_all_numbers);
     RUN_TEST(a_drive_on_ideal_ground_starts_only_as_its_wheels_allow);
     RUN_TEST(numbers_too_far_apart_overflow_by_name);
     RUN_TEST(a_change_in_motion_keeps_body_and_wheels);
