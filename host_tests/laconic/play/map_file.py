@@ -16,6 +16,7 @@ from laconic.scene.table import Table, read_toml
 AT_TIMEOUT = ("hold", "zero", "off", "end")
 REMOTE = "remote"
 PAGES = ("in turn", "together")
+MOST_VALUES = 2**64  # of a signal
 
 
 @dataclass(frozen=True)
@@ -214,6 +215,6 @@ def _wrap(table: Table) -> float:
     value: Any = table.value("wrap", False, (bool, int), "true, or the whole number at which raw values wrap")
     if isinstance(value, bool):
         return float("inf") if value else 0.0
-    if value < 2:
-        table.fail("wrap", f"is {value}; give true, or a whole number of 2 or more")
+    if not 2 <= value <= MOST_VALUES:
+        table.fail("wrap", f"is {value if value < 2 else 'beyond 2^64'}; give true, or a whole number from 2 to 2^64")
     return float(value)
