@@ -107,18 +107,17 @@ int LLVMFuzzerTestOneInput(const uint8_t *data, size_t size) {
         laconic_frame frame;
         fill(&frame, data);
         laconic_canopen.on_frame(&on.drives, &frame, on.now_us);
-        check(&on);
         drain(&on);
-        for (int n = data[2] >> 5; n > 0; n--) {
-            on.now_us += 1000U * (data[2] & 31U);
+        for (int n = data[2] >> 6; n > 0; n--) {
+            on.now_us += 1000U * (data[2] & 31U) * (data[2] & 32U ? 64U : 1U);
             if (data[3] >> 4 == 0xE) /* faults by order that remain until the next one */
                 laconic_drive_order(&on.drives.drive[data[3] & 1],
                                     (data[0] | (uint32_t)data[0] << 3) & LACONIC_DRIVE_ORDERS);
             if (data[3] > 0xF0) laconic_drive_fail(&on.drives.drive[data[3] & 1], 1U << (data[3] >> 1 & 3U));
             step(&on);
-            check(&on);
-            drain(&on);
         }
+        check(&on);
+        drain(&on);
     }
     return 0;
 }

@@ -2,8 +2,10 @@
  * their motors are numbers.
  *
  * Input: records. The first byte n: up to 127 it is followed by a frame, identifier (4 bytes; bit 31 remote, bit 30 FD,
- * bit 29 29-bit) and n modulo 65 bytes; from 128 on n − 127 steps are taken. A frame that is both remote and FD, which
- * no bus has, stands for faults by order: bit 0 of the identifier is the drive, the bits above are the orders. */
+ * bit 29 29-bit) and n modulo 65 bytes; from 128 on one to eight steps are taken (three bits), before each of which no
+ * time or 1 ms to 16 s pass (four bits: a power of two), so that a silence costs as much as a step. A frame that is both
+ * remote and FD, which no bus has, stands for faults by order: bit 0 of the identifier is the drive, the bits above are
+ * the orders. */
 #ifndef FUZZ_DRIVES_H
 #define FUZZ_DRIVES_H
 
@@ -69,8 +71,8 @@ static inline void take_frames(void) {
     }
 }
 
-static inline void step(void) {
-    now_us += 1000;
+static inline void step(uint32_t passes_us) {
+    now_us += passes_us;
     drives.protocol->on_step(&drives, now_us);
     for (int32_t i = 0; i < FUZZ_DRIVES; i++) {
         const laconic_real torque_Nm = laconic_drive_act(&drives.drive[i], drives.step_s);
@@ -86,7 +88,8 @@ static inline int fuzz(const laconic_drive_protocol *protocol, int32_t first_id,
         const uint8_t what = *data++;
         size--;
         if (what > 127) {
-            for (int32_t k = 127; k < what; k++) step();
+            const uint32_t power = what >> 3 & 15U;
+            for (int32_t k = what & 7; k >= 0; k--) step(power > 0 ? 1000U << (power - 1U) : 0);
             take_frames();
             continue;
         }

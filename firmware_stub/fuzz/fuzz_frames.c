@@ -100,13 +100,15 @@ static void drain(bench *bench) {
 }
 
 int LLVMFuzzerTestOneInput(const uint8_t *data, size_t size) {
-    static bench bench;
+    static bench bench, ready; /* with session and vehicle, made once */
     const laconic_node_config config = {LACONIC_WIRE_ID_BASE, true, laconic_method_by_number, 0,
                                         laconic_drive_protocol_by_number};
-    memset(&bench, 0, sizeof bench);
-    laconic_node_init(&bench.node, &config, 0);
-    open_session(&bench);
-    load(&bench.node);
+    if (!ready.node.session.open) {
+        laconic_node_init(&ready.node, &config, 0);
+        open_session(&ready);
+        load(&ready.node);
+    }
+    memcpy(&bench, &ready, sizeof bench);
     for (; size >= RECORD; data += RECORD, size -= RECORD) {
         laconic_frame frame;
         fill(&frame, data, config.id_base);

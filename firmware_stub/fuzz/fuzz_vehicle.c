@@ -1,43 +1,10 @@
 /* Any vehicle under any method, step and input: what is refused changes nothing, what is accepted is finite, and the
  * same call gives the same bits again.
  *
- * Input: numbers of one to nine bytes each, of which the first chooses among usual, extreme and any; what is missing
- * is 0. */
-#include "laconic/laconic.h"
+ * Input: numbers, as fuzz_motions.h has them. */
+#include "fuzz_motions.h"
 
-#include <stdlib.h>
-#include <string.h>
-
-int LLVMFuzzerTestOneInput(const uint8_t *data, size_t size);
-
-enum { WHEELS = 5, STEPS = 4 };
-
-typedef struct reader {
-    const uint8_t *at, *end;
-} reader;
-
-static void must(bool holds) {
-    if (!holds) abort();
-}
-
-static uint8_t byte(reader *from) { return from->at < from->end ? *from->at++ : 0; }
-
-static laconic_real any(reader *from) {
-    uint8_t bytes[sizeof(laconic_real)];
-    laconic_real number;
-    for (size_t k = 0; k < sizeof bytes; k++) bytes[k] = byte(from);
-    memcpy(&number, bytes, sizeof number);
-    return number;
-}
-
-/* Mostly numbers that a vehicle has, else extreme ones or any bits. */
-static laconic_real number(reader *from) {
-    static const laconic_real chosen[] = {0, 1, -1, 0.1, -0.1, 0.5, 3, 10, 1e-3, 1e3, 1e-9, 1e9, 1e-150, 1e150};
-    const uint8_t kind = byte(from);
-    if (kind == 255) return any(from);
-    if (kind >= 128) return (laconic_real)(kind - 128) / 16;
-    return chosen[kind % (sizeof chosen / sizeof chosen[0])];
-}
+enum { WHEELS = 5, STEPS = 1 };
 
 static void fill_wheel(reader *from, laconic_wheel *wheel) {
     const uint8_t flags = byte(from);
@@ -78,46 +45,18 @@ static void fill_vehicle(reader *from, laconic_vehicle *vehicle) {
     if (more & 16U) vehicle->com_z_m = number(from);
 }
 
-static void fill_input(reader *from, laconic_input *input) {
-    memset(input, 0, sizeof *input);
-    for (int32_t i = 0; i < WHEELS; i++) input->voltage_V[i] = number(from);
-    input->axle_torque_Nm[0] = number(from);
-    input->body_force_N[0] = number(from);
-    input->body_moment_Nm = number(from);
-    input->world_force_N[1] = number(from);
-    input->world_force_point_m[0] = number(from);
-}
-
-static bool is_finite_number(laconic_real x) { return x - x == 0; }
-
-/* Every number of a motion. */
-static bool is_finite_motion(const laconic_plant *plant) {
-    laconic_pose pose;
-    laconic_real nu[3], speed[LACONIC_MAX_WHEELS], angle[LACONIC_MAX_WHEELS];
-    laconic_real zero = 0;
-    laconic_pose_of(&pose, &plant->model, &plant->state);
-    laconic_nu(&plant->model, &plant->state, nu);
-    laconic_plant_wheel_speeds(plant, speed);
-    laconic_plant_wheel_angles(plant, angle);
-    for (int k = 0; k < 3; k++) zero += nu[k] - nu[k];
-    for (int32_t i = 0; i < plant->model.wheel_count; i++) zero += (speed[i] - speed[i]) + (angle[i] - angle[i]);
-    return zero == 0 && is_finite_number(pose.x_m) && is_finite_number(pose.y_m) && is_finite_number(pose.heading_rad);
-}
-
-/* One call, twice from the same memory. */
+/* One call, twice from the same motion. */
 static bool takes_step(laconic_plant *plant, const laconic_input *input) {
-    static laconic_plant before, again;
-    laconic_refusal why, why_again;
-    memset(&why, 0, sizeof why);
-    memset(&why_again, 0, sizeof why_again);
-    memcpy(&before, plant, sizeof before);
-    memcpy(&again, plant, sizeof again);
+    static saved before, after;
+    laconic_refusal why = {0}, why_again = {0};
+    save(&before, plant);
     const laconic_status status = laconic_plant_run(plant, input, 1, &why);
-    must(laconic_plant_run(&again, input, 1, &why_again) == status);
-    must(memcmp(&again, plant, sizeof again) == 0 && memcmp(&why, &why_again, sizeof why) == 0);
+    save(&after, plant);
+    restore(plant, &before);
+    must(laconic_plant_run(plant, input, 1, &why_again) == status);
+    must(is_at(plant, &after));
     if (status != LACONIC_OK) {
-        must(memcmp(&before, plant, sizeof before) == 0);
-        must(why.status == status);
+        must(is_at(plant, &before) && why.status == status && same_refusal(&why, &why_again));
         return false;
     }
     must(plant->steps == before.steps + 1 && is_finite_motion(plant));
@@ -131,9 +70,9 @@ int LLVMFuzzerTestOneInput(const uint8_t *data, size_t size) {
     laconic_start start;
     laconic_input input;
     laconic_refusal why;
-    memset(&plant, 0x5A, sizeof plant);
+    if (untouched.vehicle.wheel_count == 0) memset(&untouched, 0x5A, sizeof untouched);
+    memcpy(&plant, &untouched, sizeof plant);
     memset(&start, 0, sizeof start);
-    memcpy(&untouched, &plant, sizeof plant);
     const laconic_method *method = laconic_method_by_number(byte(&from) % LACONIC_METHOD_COUNT);
     const laconic_real step_s = number(&from);
     for (int k = 0; k < 3; k++) start.nu_rad_per_s[k] = number(&from);
@@ -145,7 +84,7 @@ int LLVMFuzzerTestOneInput(const uint8_t *data, size_t size) {
     }
     must(is_finite_motion(&plant));
     for (int k = 0; k < STEPS; k++) {
-        fill_input(&from, &input);
+        fill_input(&from, &input, WHEELS);
         if (!takes_step(&plant, &input)) return 0;
     }
     return 0;

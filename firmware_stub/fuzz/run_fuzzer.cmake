@@ -2,7 +2,7 @@
 # tree.
 file(MAKE_DIRECTORY "${FRESH}")
 execute_process(
-    COMMAND "${PROGRAM}" -max_total_time=${SECONDS} -max_len=2000 -rss_limit_mb=1024 -print_final_stats=1
+    COMMAND "${PROGRAM}" -max_total_time=${SECONDS} -max_len=${BYTES} -rss_limit_mb=1024 -print_final_stats=1
             "-artifact_prefix=${FRESH}/" "${FRESH}" "${CORPUS}"
     RESULT_VARIABLE failed)
 if(failed)
