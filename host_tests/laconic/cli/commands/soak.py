@@ -41,7 +41,8 @@ def kinds() -> dict[str, str]:
 @click.option("-o", "--out", type=OutputFolder(), metavar="DIR", help="population, long: what is done; goes on there.")
 @click.option("--sample", type=click.IntRange(min=1), metavar="N", help="mutants, faults of memory: so many.")
 @click.option("--survivors", type=click.IntRange(min=0), metavar="N", help="mutants: passed with so many, or 0.")
-@click.option("--only", metavar="PART", help="mutants: core, node, fmu, or a C file; faults: a kind.")
+@click.option("--only", metavar="PART", help="mutants: core, node, fmu, or a C file; faults: a kind; fuzz: a target.")
+@click.option("--minimise", is_flag=True, default=None, help="fuzz: afterwards the kept corpora of the sources.")
 @json_flag()
 def command(what: str, minutes: float, seed: int | None, json_wanted: bool, **special: Any) -> int:
     """Runs WHAT for a long time and reports what was found.
@@ -69,8 +70,9 @@ def command(what: str, minutes: float, seed: int | None, json_wanted: bool, **sp
     friction-energy  whole vehicles that nothing drives: energy never grows, rest holds;
                      a minute takes millions of steps
     free-run         the node process at 1 kHz: no step may be lost
-    fuzz             what reads frames (SLCAN, node, loader, protocols of drives), and vehicles
-                     with their steps, under libFuzzer
+    fuzz             what reads frames (SLCAN, node, loader, protocols of drives), vehicles,
+                     steps, FMI calls and saved states under libFuzzer, N minutes each;
+                     rates are kept in build/fuzz/results.json
     identify         a thousand made-up robots: what their intervals hold
     lateness         play at 1 kHz with four drives, in this process and in the node's,
                      for a controller in another process: how late periods begin
