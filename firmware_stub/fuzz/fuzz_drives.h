@@ -3,9 +3,9 @@
  *
  * Input: records. The first byte n: up to 127 it is followed by a frame, identifier (4 bytes; bit 31 remote, bit 30 FD,
  * bit 29 29-bit) and n modulo 65 bytes; from 128 on one to eight steps are taken (three bits), before each of which no
- * time or 1 ms to 16 s pass (four bits: a power of two), so that a silence costs as much as a step. A frame that is both
- * remote and FD, which no bus has, stands for faults by order: bit 0 of the identifier is the drive, the bits above are
- * the orders. */
+ * time or 1 ms to 16 s pass (four bits: a power of two), so that a silence costs as much as a step. A frame that is
+ * both remote and FD, which no bus has, stands for faults by order: bit 0 of the identifier is the drive, the bits
+ * above are the orders. */
 #ifndef FUZZ_DRIVES_H
 #define FUZZ_DRIVES_H
 

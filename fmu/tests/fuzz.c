@@ -2,7 +2,6 @@
 #include "fuzz.h"
 
 #include <float.h>
-#include <math.h>
 #include <stdbool.h>
 #include <stdio.h>
 #include <stdlib.h>
@@ -11,14 +10,10 @@
 #include "fmi2Functions.h"
 #include "fmi3Functions.h"
 
-#include "model_interface.h"
+#include "fuzz_bytes.h"
+#include "long_steps.h"
 
 enum { LIVE = 2, STATES = 4, NUMBERS = 3000 };
-
-typedef struct source {
-    const uint8_t *bytes;
-    size_t size, at;
-} source;
 
 typedef struct live {
     int version; /* 0: none */
@@ -36,29 +31,6 @@ static int64_t wholes_64[NUMBERS];
 static uint64_t counts[NUMBERS];
 static bool flags[NUMBERS];
 static fmi3ValueReference references[NUMBERS];
-
-static unsigned next(source *s) { return s->at < s->size ? s->bytes[s->at++] : 0; }
-
-static uint32_t next_word(source *s) {
-    uint32_t word = next(s);
-    word |= next(s) << 8;
-    word |= next(s) << 16;
-    return word | next(s) << 24;
-}
-
-static double next_number(source *s) {
-    static const double odd[] = {0.0,   -0.0,   1.0,     -1.0,    1e-3,     0.01,   0.1,  2.0, 5.0,  1e9, -1e9,
-                                 1e300, -1e300, DBL_MIN, DBL_MAX, -DBL_MAX, 1e-300, 3.14, 0.5, 1e17, 1e19};
-    const unsigned choice = next(s);
-    double value;
-    if (choice < 128) return odd[choice % (sizeof odd / sizeof odd[0])];
-    if (choice < 140) return NAN;
-    if (choice < 150) return choice % 2 ? INFINITY : -INFINITY;
-    if (choice < 230) return (double)(int32_t)next_word(s) * 1e-9;
-    uint64_t bits = (uint64_t)next_word(s) << 32 | next_word(s);
-    memcpy(&value, &bits, sizeof value);
-    return value;
-}
 
 /* Mostly variables that exist, elements that exist, lists of a sensible length. */
 static size_t next_list(source *s) {
@@ -123,14 +95,20 @@ static void update_3(fmi3InstanceEnvironment e, fmi3Float64 time, fmi3Boolean se
 
 static const char *const token_names[] = {NULL, "", "{wrong %s %n}"};
 
-/* Makes it one of a scene with ground friction and a drive with limits. */
+/* Makes it one of a scene with ground friction and a drive with limits; prepared once for all. */
 static void give_friction(fmu_instance *instance) {
     static const fmu_start_value given[] = {{11, 0.0}, {63, 0.6}, {64, 0.2}, {65, 0.01}, {68, 12.0},
                                             {69, 0.1}, {70, 5.0}, {71, 0.5}, {72, 0.01}};
-    for (size_t k = 0; k < sizeof given / sizeof given[0]; k++)
-        fmu_set_start_value(instance, given[k].reference, given[k].value);
-    fmu_model_made(&instance->model);
-    instance->initial = instance->model;
+    static bool is_made;
+    static fmu_model made;
+    if (!is_made) {
+        for (size_t k = 0; k < sizeof given / sizeof given[0]; k++)
+            fmu_set_start_value(instance, given[k].reference, given[k].value);
+        fmu_model_made(&instance->model);
+        made = instance->model;
+        is_made = true;
+    }
+    instance->initial = instance->model = made;
 }
 
 static void create(source *s, live *l) {
@@ -197,12 +175,6 @@ static double next_step(source *s) {
     const unsigned choice = next(s);
     const double step = choice < 220 ? steps[choice % 6] : next_number(s);
     return step > 1.0 && step <= DBL_MAX ? 1.0 : step; /* a step of 1e9 s is allowed, but takes too long */
-}
-
-/* Communication steps of a billion internal ones are allowed, too; thirty show as much as a thousand. */
-static bool takes_too_long(const live *l, double step) {
-    const double own = ((const fmu_instance *)l->instance)->model.step_s;
-    return own > 0.0 && step > 32.0 * own;
 }
 
 /* Serializes a state, flips some bits or cuts the bytes, and deserializes them. */
@@ -303,7 +275,7 @@ static void call_2(source *s, live *l) {
     case 23:
     case 24: {
         const double step = next_step(s);
-        if (takes_too_long(l, step)) break;
+        if (takes_too_long(l->instance, step)) break;
         if (fmi2DoStep(c, next(s) % 16 ? l->time : next_number(s), step, fmi2True) == fmi2OK) l->time += step;
         break;
     }
@@ -400,7 +372,7 @@ static void call_3(source *s, live *l) {
     case 29:
     case 30: {
         const double step = next_step(s);
-        if (takes_too_long(l, step)) break;
+        if (takes_too_long(l->instance, step)) break;
         if (fmi3DoStep(c, next(s) % 16 ? l->time : next_number(s), step, true, &b[0], &b[1], &b[2], &time) == fmi3OK)
             l->time = time;
         break;

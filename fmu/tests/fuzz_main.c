@@ -1,6 +1,7 @@
 /* fmu_fuzz FILE…               replays those inputs
  * fmu_fuzz --seconds S --seed N --out FILE   random inputs for S seconds; when a sanitizer
- *                              ends the program, FILE holds the input that caused it */
+ *                              ends the program, FILE holds the input that caused it
+ * fmu_fuzz --inputs I …        so many, the same ones each time */
 #define _POSIX_C_SOURCE 200809L
 #include <stdio.h>
 #include <stdlib.h>
@@ -43,7 +44,7 @@ static void keep_culprit(void) {
     fclose(file);
 }
 
-static unsigned long soak(double seconds, uint64_t seed) {
+static unsigned long soak(double seconds, unsigned long inputs, uint64_t seed) {
     const time_t end = time(NULL) + (time_t)seconds;
     unsigned long played = 0;
     do {
@@ -53,16 +54,19 @@ static unsigned long soak(double seconds, uint64_t seed) {
         culprit_size = size;
         fuzz_one(bytes, size);
         played++;
-    } while (time(NULL) < end);
+    } while (inputs > 0 ? played < inputs : time(NULL) < end);
     return played;
 }
 
 int main(int argc, char **argv) {
     double seconds = 0.0;
+    unsigned long inputs = 0;
     uint64_t seed = 1;
     for (int k = 1; k < argc; k++) {
         if (strcmp(argv[k], "--seconds") == 0 && k + 1 < argc)
             seconds = atof(argv[++k]);
+        else if (strcmp(argv[k], "--inputs") == 0 && k + 1 < argc)
+            inputs = strtoul(argv[++k], NULL, 10);
         else if (strcmp(argv[k], "--seed") == 0 && k + 1 < argc)
             seed = strtoull(argv[++k], NULL, 10);
         else if (strcmp(argv[k], "--out") == 0 && k + 1 < argc)
@@ -71,6 +75,6 @@ int main(int argc, char **argv) {
             replay(argv[k]);
     }
     if (__sanitizer_set_death_callback != NULL) __sanitizer_set_death_callback(keep_culprit);
-    if (seconds > 0.0) printf("%lu\n", soak(seconds, seed));
+    if (seconds > 0.0 || inputs > 0) printf("%lu\n", soak(seconds, inputs, seed));
     return 0;
 }

@@ -1,13 +1,16 @@
-"""Spoilt files are read or refused by one line; what fuzzes them notices when they are not."""
+"""Spoilt files are read or refused by one line; what fuzzes them notices when they are not; a search with a seed is
+the same each time."""
 
 from __future__ import annotations
 
+import subprocess
 from collections.abc import Callable
 from pathlib import Path
 
 import pytest
 
 from laconic.errors import BadInput
+from laconic.paths import SOURCE_DIR, built
 from laconic.scene.table import entries_of
 from laconic.soak._fuzzing import files, kept
 from laconic.soak._fuzzing.file_readers import FILE_TARGETS, FileTarget
@@ -25,7 +28,7 @@ def _elsewhere(monkeypatch: pytest.MonkeyPatch, tmp_path: Path) -> None:
 
 @pytest.mark.parametrize("name", FILE_TARGETS)
 def test_spoilt_files_are_read_or_refused_by_one_line(name: str) -> None:
-    found, _ = files.fuzz_files(name, 60.0, 1, lambda _: None, INPUTS[name])
+    found, _ = files.fuzz_files(name, float("inf"), 1, lambda _: None, INPUTS[name])
     assert not found.crash, Path(f"{found.crash}.txt").read_text(encoding="utf-8")
     assert found.executions == INPUTS[name]
 
@@ -45,13 +48,13 @@ def test_what_is_no_refusal_by_one_line_is_found_and_kept(monkeypatch: pytest.Mo
     good = tmp_path / "good.toml"
     good.write_text(GOOD, encoding="utf-8")
     monkeypatch.setitem(FILE_TARGETS, "scenes", FileTarget(lambda: [good], raising(error)))
-    found, _ = files.fuzz_files("scenes", 60.0, 1, lambda _: None, 3)
+    found, _ = files.fuzz_files("scenes", float("inf"), 1, lambda _: None, 3)
     assert found.executions == 1 and Path(found.crash).read_text(encoding="utf-8") == GOOD
     assert said in Path(f"{found.crash}.txt").read_text(encoding="utf-8")
 
 
 def test_a_file_that_reaches_new_lines_is_kept_and_others_are_not(tmp_path: Path) -> None:
-    files.fuzz_files("column-maps", 60.0, 1, lambda _: None, INPUTS["column-maps"])
+    files.fuzz_files("column-maps", float("inf"), 1, lambda _: None, INPUTS["column-maps"])
     kept_texts = sorted((tmp_path / "fuzz/column-maps").glob("kept-*"))
     assert 0 < len(kept_texts) < INPUTS["column-maps"] / 3
 
@@ -61,6 +64,19 @@ def test_the_same_seed_spoils_alike_and_tables_are_written_as_they_are_read() ->
     assert one == other and Spoiler(6).spoilt(GOOD, GOOD) != one[0]
     tables = {"name": "a\n\"", "vehicle": {"mass_kg": 1.5, "wheel": [{"at": [1, {"b c": True}]}]}}
     assert entries_of("\n".join(lines_of(tables))) == tables
+
+
+def test_the_search_of_continuous_integration_is_the_same_each_time(tmp_path: Path) -> None:
+    target, program = targets_by_name()["moteus"], built("fuzz/fuzz_moteus")
+    if b"libFuzzer" not in program.read_bytes():
+        pytest.skip("no clang with libFuzzer")
+    found = []
+    for folder in (tmp_path / "one", tmp_path / "another"):
+        subprocess.run(["cmake", f"-DPROGRAM={program}", f"-DBYTES={target.most_bytes}", "-DRUNS=8000",
+                        f"-DFRESH={folder}", f"-DCORPUS={target.corpus}", "-P",
+                        SOURCE_DIR / "firmware_stub/fuzz/run_fuzzer.cmake"], check=True, capture_output=True)
+        found.append(sorted(path.name for path in folder.iterdir()))
+    assert found[0] == found[1] and len(found[0]) > len(list(target.corpus.iterdir()))
 
 
 def test_the_page_has_a_row_for_each_target_which_no_result_contradicts() -> None:

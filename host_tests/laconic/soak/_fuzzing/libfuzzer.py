@@ -51,8 +51,8 @@ class Run:
         self.log = build_dir() / "fuzz" / f"{name}.log"
         self.cpu_s_before = cpu_s_of_children()
         command = [str(self.program), f"-max_total_time={max(1, round(seconds))}", f"-seed={seed % 2**31 or 1}",
-                   f"-max_len={most_bytes}", "-rss_limit_mb=1024", f"-artifact_prefix={fresh}/", str(fresh),
-                   str(target.corpus)]
+                   f"-max_len={most_bytes}", "-timeout=20", "-rss_limit_mb=1024", f"-artifact_prefix={fresh}/",
+                   str(fresh), str(target.corpus)]
         with self.log.open("w", encoding="utf-8") as log:
             self.process = subprocess.Popen(command, stdin=subprocess.DEVNULL, stdout=subprocess.DEVNULL, stderr=log)
 
