@@ -15,15 +15,18 @@ static bool is_set(const laconic_sensor_settings *settings) {
     return false;
 }
 
-/* The settings have been checked with the vehicle. */
-void laconic_node_start_sensors(laconic_node *node, const laconic_sensor_settings *settings) {
-    node->has_sensors = is_set(settings);
-    (void)laconic_sensors_start(&node->sensors, settings, &node->plant, NULL);
-}
-
 uint8_t laconic_node_encoder_from(const laconic_node *node, int32_t wheel) {
     while (wheel < LACONIC_MAX_WHEELS && node->sensors.settings.encoder[wheel].counts_per_turn == 0) wheel++;
     return (uint8_t)wheel;
+}
+
+/* The settings have been checked with the vehicle. A frame that waits to be fetched names an encoder of the settings
+ * before: without it the next one takes its place, or the frame falls away. */
+void laconic_node_start_sensors(laconic_node *node, const laconic_sensor_settings *settings) {
+    node->has_sensors = is_set(settings);
+    (void)laconic_sensors_start(&node->sensors, settings, &node->plant, NULL);
+    node->encoder_wheel = laconic_node_encoder_from(node, node->encoder_wheel);
+    if (node->encoder_wheel >= LACONIC_MAX_WHEELS) node->pending &= ~BIT(LACONIC_WIRE_ENCODER);
 }
 
 void laconic_node_publish_sensors(laconic_node *node, laconic_sensor_outputs *sensed) {

@@ -169,6 +169,27 @@ static void two_encoders_take_two_frames(void) {
     TEST_ASSERT_FALSE(bench_receive(LACONIC_WIRE_ENCODER, data));
 }
 
+/* The bus is busy: a frame of the encoder waits while another vehicle, without encoders, is committed. */
+static void an_encoder_frame_that_waits_falls_away_with_its_encoder(void) {
+    load(settings());
+    bench_select(LACONIC_NODE_SEND_ENCODER, 0, 0);
+    bench_start_lockstep();
+    step(1);
+    TEST_ASSERT_EQUAL_UINT8(0, bench_control(LACONIC_WIRE_COMMAND_STOP, 0, 0));
+    TEST_ASSERT_EQUAL_UINT8(0, commit_puck(0));
+    TEST_ASSERT_FALSE(bench_receive(LACONIC_WIRE_ENCODER, data));
+}
+
+static void an_encoder_frame_that_waits_survives_a_reset(void) {
+    load(settings());
+    bench_select(LACONIC_NODE_SEND_ENCODER, 0, 0);
+    bench_start_lockstep();
+    step(1);
+    TEST_ASSERT_EQUAL_UINT8(0, bench_control(LACONIC_WIRE_COMMAND_RESET, 0, 0));
+    TEST_ASSERT_TRUE(bench_receive(LACONIC_WIRE_ENCODER, data));
+    TEST_ASSERT_EQUAL_INT(1, data[1] >> 4);
+}
+
 static void wheel_angles_are_wrapped_and_grouped(void) {
     struct laconic_dbc_wheel_angle_t frame;
     laconic_real angle[LACONIC_MAX_WHEELS];
@@ -386,6 +407,8 @@ int main(void) {
     RUN_TEST(a_reading_beyond_its_frame_saturates_with_the_flag);
     RUN_TEST(encoder_frames_come_for_the_wheels_that_have_one);
     RUN_TEST(two_encoders_take_two_frames);
+    RUN_TEST(an_encoder_frame_that_waits_falls_away_with_its_encoder);
+    RUN_TEST(an_encoder_frame_that_waits_survives_a_reset);
     RUN_TEST(wheel_angles_are_wrapped_and_grouped);
     RUN_TEST(a_vehicle_without_wheels_sends_neither_angles_nor_encoders);
     RUN_TEST(raw_numbers_of_sensors_have_all_their_bits);
