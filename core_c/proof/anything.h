@@ -15,6 +15,9 @@
 /* Steps begin within 2^62 turns and add less than 2^62 (heading.h). */
 #define MOST_TURNS ((1LL << 62) + ((1LL << 62) - 2))
 
+/* Each step adds less than 2^32 counts, so an encoder needs 2^31 steps to come here. */
+#define MOST_COUNTS (1LL << 62)
+
 static laconic_vehicle vehicle;
 static laconic_model model, other;
 static laconic_state state;
@@ -60,5 +63,22 @@ static void any_state(void) {
 }
 
 static void any_inputs(void) { ANYTHING(input); }
+
+static uint64_t any_count(void) {
+    uint64_t count;
+    ANYTHING(count);
+    return count;
+}
+
+/* Rows and points as laconic_contact_prepare() counts them. */
+static void any_contact(laconic_contact *of) {
+    Frama_C_make_unknown((char *)of, sizeof *of);
+    of->constraint_count = Frama_C_interval(0, 2 * LACONIC_MAX_WHEELS);
+    of->point_count = Frama_C_interval(0, LACONIC_MAX_WHEELS + LACONIC_MAX_SUPPORTS);
+    for (int32_t i = 0; i < LACONIC_MAX_WHEELS; i++) {
+        of->lateral_row[i] = Frama_C_interval(-1, 2 * LACONIC_MAX_WHEELS - 1);
+        of->brake_row[i] = Frama_C_interval(-1, 2 * LACONIC_MAX_WHEELS - 1);
+    }
+}
 
 #endif

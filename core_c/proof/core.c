@@ -17,8 +17,9 @@ void prove_prepare(void) {
     (void)laconic_prepare(&model, &vehicle, any_refusal());
 }
 
+static laconic_contact contact;
+
 void prove_contact_prepare(void) {
-    static laconic_contact contact;
     countable_vehicle();
     (void)laconic_contact_prepare(&contact, &vehicle, any_refusal());
 }
@@ -86,7 +87,7 @@ static void prove_steps_of(const laconic_method *method) {
     if (laconic_integrator_prepare(&integrator, method, &model, any_real(), NULL) != LACONIC_OK) return;
     PERHAPS(void) laconic_step(&model, &integrator, &state, &input[0]);
     PERHAPS(void)
-    laconic_run(&model, &integrator, &state, &input[0], Frama_C_unsigned_int_interval(0, 0xFFFFFFFFU), &status);
+    laconic_run(&model, &integrator, &state, &input[0], any_count(), &status);
     PERHAPS(void) laconic_step_sampled(&model, &integrator, &state, &input[0], &input[1], &input[2]);
     status = (laconic_status)Frama_C_interval(0, LACONIC_STATUS_COUNT);
     laconic_step_refusal(any_refusal(), status, &model, &integrator, &state, input, ANY_BOOL() ? 1 : 3);
@@ -143,19 +144,6 @@ void prove_outputs(void) {
 
 /* ------------------------------------------------------------------------- contacts as prepared, or any -- */
 
-static laconic_contact contact;
-
-/* Rows and points as laconic_contact_prepare() counts them; numbers are any. */
-static void any_contact(void) {
-    ANYTHING(contact);
-    contact.constraint_count = Frama_C_interval(0, 2 * LACONIC_MAX_WHEELS);
-    contact.point_count = Frama_C_interval(0, LACONIC_MAX_WHEELS + LACONIC_MAX_SUPPORTS);
-    for (int32_t i = 0; i < LACONIC_MAX_WHEELS; i++) {
-        contact.lateral_row[i] = Frama_C_interval(-1, 2 * LACONIC_MAX_WHEELS - 1);
-        contact.brake_row[i] = Frama_C_interval(-1, 2 * LACONIC_MAX_WHEELS - 1);
-    }
-}
-
 void prove_reactions(void) {
     static laconic_reactions reactions, change;
     static laconic_grip grip;
@@ -166,12 +154,12 @@ void prove_reactions(void) {
     any_model(&model);
     any_state();
     any_inputs();
-    any_contact();
+    any_contact(&contact);
     ANYTHING(grip);
     ANYTHING(at);
     ANYTHING(by);
     laconic_reactions_of(&reactions, &contact, &model, &state, &input[0]);
-    laconic_grip_watch(&grip, &contact, &model, &reactions, Frama_C_unsigned_int_interval(0, 0xFFFFFFFFU));
+    laconic_grip_watch(&grip, &contact, &model, &reactions, any_count());
     laconic_reactions_tangent(&change, &contact, &model, &at, &input[0], &reactions, &by);
     laconic_derivative_tangent(&rates, &model, &at, &input[0], &by);
     laconic_motion_tangent(&outputs, &model, &at, &by);

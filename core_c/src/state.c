@@ -1,7 +1,14 @@
 /* Start values, or the numbers of an outer integrator → state; a motion carried over to a changed vehicle. */
 #include "step_internals.h"
 
+/*@ requires \valid_read(start) && (why == \null || \valid(why)) && \separated(start, why);
+    assigns *why;
+    ensures \result == LACONIC_OK ==> (\forall integer k; 0 <= k < 3 ==> \is_finite(start->nu_rad_per_s[k])) &&
+            \is_finite(start->x_m) && \is_finite(start->y_m) && \is_finite(start->heading_rad); */
 static laconic_status check_start(const laconic_start *start, laconic_refusal *why) {
+    /*@ loop invariant 0 <= k <= 3 && \forall integer i; 0 <= i < k ==> \is_finite(start->nu_rad_per_s[i]);
+        loop assigns k;
+        loop variant 3 - k; */
     for (int32_t k = 0; k < 3; k++)
         if (!is_finite(start->nu_rad_per_s[k]))
             return refuse(why, LACONIC_NOT_FINITE, LACONIC_FIELD_START_NU, k + 1, start->nu_rad_per_s[k], R(0));

@@ -127,7 +127,9 @@ const char *laconic_arithmetic_text(laconic_arithmetic found);
 
 /* -------------------------------------------------------------------------------- vehicle -- */
 
-/* OK iff every number of the vehicle is usable; else the first that is not. O(N). */
+/* OK iff every number of the vehicle is usable; else the first that is not. O(N). No number but the two counts has to
+ * be checked for the code to be defined: that is proved for every number (docs/proof.md). What the check adds is that
+ * results are finite. */
 laconic_status laconic_vehicle_check(const laconic_vehicle *vehicle, laconic_refusal *why);
 
 /* c1 = n k_t/R_a, c2 = n² (k_t k_e/R_a + d) set in the vehicle; a wheel's own c1 and c2 stay. n² J_rotor is added to
@@ -208,7 +210,8 @@ laconic_status laconic_matrices_of(laconic_matrices *matrices, const laconic_veh
 
 /* ---------------------------------------------------------------------------------- input -- */
 
-/* OK iff every number is finite, those of the first wheel_count wheels and those without a wheel. */
+/* OK iff every number is finite, those of the first wheel_count wheels and those without a wheel. Here, too, the code
+ * is proved to be defined for every number, checked or not. */
 laconic_status laconic_input_check(const laconic_model *model, const laconic_input *input, laconic_refusal *why);
 
 /* The forcing b that an input makes, as a function of the heading: constant + cos θ · cosine + sin θ · sine. */

@@ -52,6 +52,7 @@ WRONG = {
     "soak node --hours 0": "--hours 0", "soak node --hours nan": "--hours",
     "soak rig --hours 3": "has no effect on soak rig", "soak fmu-cycles --cycles 0": "--cycles",
     "soak faults --only memor": "did you mean memory?", "soak faults --sample 5": "--sample 5: is of memory alone",
+    "soak proof --only rk": "--only rk: there is no such proof; did you mean rk4?",
     "soak mutants --survivors -1": "--survivors", "soak rig --survivors 5": "--survivors 5: has no effect",
     "soak mutants --only core_c/src/nothing.c": "nor a C file", "soak rig --sample 5": "--sample 5: has no effect",
     "rig s1 --watchdog 70000 --free-run": "--watchdog", "rig s1 --id-base ''": "--id-base",

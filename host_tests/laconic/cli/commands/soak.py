@@ -41,7 +41,8 @@ def kinds() -> dict[str, str]:
 @click.option("-o", "--out", type=OutputFolder(), metavar="DIR", help="population, long: what is done; goes on there.")
 @click.option("--sample", type=click.IntRange(min=1), metavar="N", help="mutants, faults of memory: so many.")
 @click.option("--survivors", type=click.IntRange(min=0), metavar="N", help="mutants: passed with so many, or 0.")
-@click.option("--only", metavar="PART", help="mutants: core, node, fmu, or a C file; faults: a kind; fuzz: a target.")
+@click.option("--only", metavar="PART",
+              help="mutants: core, node, fmu, or a C file; faults: a kind; fuzz: a target; proof: one of its parts.")
 @click.option("--minimise", is_flag=True, default=None, help="fuzz: afterwards the kept corpora of the sources.")
 @json_flag()
 def command(what: str, minutes: float, seed: int | None, json_wanted: bool, **special: Any) -> int:
@@ -87,8 +88,9 @@ def command(what: str, minutes: float, seed: int | None, json_wanted: bool, **sp
                      them, refusals, the worst as scenes; goes on where it was ended
     misra            MISRA C:2012 by cppcheck's addon against the stated deviations, and
                      clang-tidy, over core, node and FMUs; takes minutes
-    proof            Frama-C's analyser over every public function of core and node: no
-                     undefined behaviour for any input in the stated boxes; an hour
+    proof            Frama-C's analyser over public functions of core and node: no undefined
+                     behaviour for any input in the stated boxes; WP for contracts; an hour,
+                     and only what has other sources than at its last run
     rig              all scenes in lockstep on the virtual bus, same bits
     slcan            all scenes over SLCAN to a node process
     soft-double      soft_double.c beside this processor's addition; a minute takes 10⁹ pairs

@@ -1,0 +1,69 @@
+"""The public functions of core and node, read from their headers, and which proof follows each."""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Iterable
+from functools import cache
+
+from laconic.paths import SOURCE_DIR
+from laconic.static_checks.frama_c import PROGRAMS
+from laconic.static_checks.proved import Row
+
+FOLDERS = ("core_c/include/laconic", "firmware_stub/include/laconic_node", "firmware_stub/include/laconic_drives",
+           "firmware_stub/include/laconic_secure")
+HEADERS = tuple(str(path.relative_to(SOURCE_DIR)) for folder in FOLDERS
+                for path in sorted((SOURCE_DIR / folder).glob("*.h")))
+COMMENT = re.compile(r"/\*.*?\*/", re.DOTALL)
+PROTOTYPE = re.compile(r"^(?!typedef|return|#|\s)[\w ]+?[ *](laconic_\w+)\([^;{]*\)\s*[;{]", re.MULTILINE)
+
+OPTIONAL = "an optional part beside the core, of which no entry is written yet; sanitizers and fuzzing watch its tests"
+LANES = "is compiled for registers of several numbers by extensions of C that Frama-C does not read"
+DRIVES = "the proof's node is without drives; fuzzing watches them"
+WITHOUT_HEADERS = {
+    "core_c/include/laconic/batch.h": LANES,
+    "core_c/include/laconic/derivatives.h": OPTIONAL,
+    "core_c/include/laconic/estimate.h": OPTIONAL,
+    "core_c/include/laconic/filter.h": OPTIONAL,
+    "firmware_stub/include/laconic_node/integrity.h": OPTIONAL,
+    "firmware_stub/include/laconic_drives/drive.h": DRIVES,
+    "firmware_stub/include/laconic_drives/drives.h": DRIVES,
+    "firmware_stub/include/laconic_drives/protocol.h": DRIVES,
+    "firmware_stub/include/laconic_drives/settings.h": DRIVES,
+}
+"""Headers of which no entry follows a function, each with the reason."""
+WITHOUT = {
+    "laconic_plant_change": "prepares and carries, which entries of their own follow, and copies what came out",
+    "laconic_plant_follow": "follows offsets and counts of the caller's arrays, which a box cannot state",
+    "laconic_schedule_at": "follows offsets and counts of the caller's arrays, which a box cannot state",
+    "laconic_record_row": "follows offsets and counts of the caller's arrays, which a box cannot state",
+    "laconic_sensors_start": "checks settings and reads the plant, which entries of their own follow",
+    "laconic_sensors_run": "calls the plant's steps and laconic_sensors_after(), which entries of their own follow",
+    "laconic_sensors_run_sampled": "calls the plant's steps and laconic_sensors_after(), which entries of their own "
+                                   "follow",
+}
+"""Functions of other headers that no entry follows, each with the reason."""
+
+
+def reason_without(header: str, name: str) -> str:
+    """Why no entry follows a function; empty where one should."""
+    return WITHOUT_HEADERS.get(header) or WITHOUT.get(name, "")
+
+
+@cache
+def public_functions(header: str) -> tuple[str, ...]:
+    """In the order of the header."""
+    text = COMMENT.sub(" ", (SOURCE_DIR / header).read_text(encoding="utf-8"))
+    bare = "\n".join(line for line in text.splitlines() if not line.rstrip().endswith("\\"))
+    return tuple(dict.fromkeys(PROTOTYPE.findall(bare)))
+
+
+def covered_by(rows: Iterable[Row]) -> dict[str, list[str]]:
+    """Function → the entries of the analyser that follow it, ended, and have no open alarm."""
+    found: dict[str, list[str]] = {}
+    stand_ins = {program.name: program.stand_ins() for program in PROGRAMS}
+    for row in rows:
+        if row.tool == "eva" and row.holds:
+            for function in set(row.functions) - stand_ins[row.part]:
+                found.setdefault(function, []).append(row.name)
+    return found
