@@ -50,7 +50,6 @@ INLINE vector follow_inlined(parabola *b, const laconic_model *m, const laconic_
     const vector g = vec(m->nu_of_zeta[2]), w = vec(m->gyro), end = plus(zeta, delta);
     const vector change = minus(scaled(dot(g, end), cross(end, w)), scaled(dot(g, zeta), cross(zeta, w)));
     const vector half = {R(0.5), R(0.5), R(0.5)};
-    if (!b->varies) b->change = b->curve = none;
     b->change = plus(b->change, change);
     b->varies = true;
     return plus(delta, solve(s, times(minus(vec(d->mean), half), change)));

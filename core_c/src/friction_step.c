@@ -96,7 +96,6 @@ static laconic_status solve_friction(part *p, const laconic_slip *slip) {
     store(nu, p->rotated);
     for (int32_t i = 0; i < p->f->wheel_count; i++) {
         load_wheel(p, slip, i);
-        p->speed[i] = slip->wheel_speed_rad_per_s[i];
         for (int k = 0; k < 2; k++) p->impulse[i][k] = slip->grip_N[i][k] * to_impulse;
     }
     if (laconic_friction_solve(p->f->wheel, p->load, p->f->wheel_count, free, nu, p->speed, p->impulse) == 0)

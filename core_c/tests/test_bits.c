@@ -45,6 +45,29 @@ static void wheels_that_spin(void) {
     expect(EITHER(0xbbabd4a8bd406d35U, 0x0388c216731c3df9U));
 }
 
+/* A supply that sags under more than it can give, beside wheels that draw nothing. */
+static void a_supply_that_sags(void) {
+    begin();
+    for (int number = 0; number < MORE_SLIPPING; number++)
+        for (int k = 0; k < 4; k++) {
+            laconic_vehicle vehicle = number < SLIPPING ? slipping_vehicle(number) : more_slipping_vehicle(number);
+            const laconic_start start = start_with(0, 0, 0);
+            laconic_plant plant;
+            vehicle.drive.supply_V = 12;
+            vehicle.drive.supply_resistance_ohm = REAL(0.2 + 0.9 * k);
+            vehicle.drive.current_limit_A = REAL(k == 3 ? 4 : 0);
+            vehicle.wheel[k % 2].undriven = k < 3;
+            ASSERT_STATUS(LACONIC_OK, laconic_plant_start(&plant, &vehicle, &laconic_auto, REAL(0.01), &start, &why));
+            for (int step = 0; step < 24; step++) {
+                laconic_input input = input_at(7 * step);
+                for (int i = 0; i < LACONIC_MAX_WHEELS; i++) input.voltage_V[i] *= REAL(0.4 * (step % 8));
+                ASSERT_STATUS(LACONIC_OK, laconic_plant_run(&plant, &input, 2, &why));
+                if (step % 3 == 0) take_all(&plant, NULL, NULL, &input);
+            }
+        }
+    expect(EITHER(0x03d9bab658481b9dU, 0x297ef77b89ad5d3cU));
+}
+
 /* Ground that begins to hold and ceases to, other vehicles, and vehicles that a motion cannot be carried over to. */
 static void changes_of_the_ground(void) {
     begin();
@@ -316,6 +339,7 @@ int main(void) {
     RUN_TEST(motions_with_friction);
     RUN_TEST(more_motions_with_friction);
     RUN_TEST(wheels_that_spin);
+    RUN_TEST(a_supply_that_sags);
     RUN_TEST(changes_of_the_ground);
     RUN_TEST(what_a_recorder_keeps);
     RUN_TEST(the_smooth_law_of_friction);

@@ -148,9 +148,39 @@ static void derivatives_of_steps_by_every_method(void) {
     expect_by_method(take_derivatives, bits);
 }
 
+static laconic_input one_world_force(void) {
+    laconic_input input = no_input();
+    input.world_force_N[0] = REAL(2);
+    return input;
+}
+
+static void take_jacobians_at_every_yaw(const laconic_method *method) {
+    const laconic_vehicle vehicle = three_wheels();
+    const laconic_input held = one_world_force();
+    laconic_real nu3 = REAL(0.5);
+    for (int k = 0; k < 220; k++) {
+        const laconic_start start = {{1, 2, k % 2 == 0 ? nu3 : -nu3}, 0, 0, REAL(0.3), {0}};
+        laconic_plant plant;
+        ASSERT_STATUS(LACONIC_OK, laconic_plant_start(&plant, &vehicle, method, REAL(0.1), &start, &why));
+        take_jacobian(&plant, &held, false);
+        nu3 *= REAL(1.025);
+    }
+}
+
+static void derivatives_at_every_yaw_by_every_method(void) {
+    static const uint64_t bits[] = {
+        EITHER(0xa3ec1abc37cd18a7U, 0x85df876037583c9bU), EITHER(0x5d0e7de4e56d22ffU, 0xabb85a06532ce607U),
+        EITHER(0x9642e8c673d81573U, 0x85d59f975660a63bU), EITHER(0x4da6f2e4b3d19dbfU, 0x03ce948d4513ce8bU),
+        EITHER(0x7e94fc984c744737U, 0x0a525fb96b4759c7U), EITHER(0xb28b4a8b21a88013U, 0x75d6a72dba0342f3U),
+        EITHER(0x9e09dc4115b98c87U, 0x65404a83b807d953U), EITHER(0xa7726a3206c31dddU, 0x992629a52fb88049U),
+    };
+    expect_by_method(take_jacobians_at_every_yaw, bits);
+}
+
 int main(void) {
     UNITY_BEGIN();
     RUN_TEST(constants_of_a_model_by_each_number_of_its_vehicle);
     RUN_TEST(derivatives_of_steps_by_every_method);
+    RUN_TEST(derivatives_at_every_yaw_by_every_method);
     return UNITY_END();
 }

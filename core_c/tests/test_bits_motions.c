@@ -72,6 +72,38 @@ static void free_motions_by_every_method(void) {
     expect_by_method(take_free_motions, bits);
 }
 
+/* One step each with a yaw from 0.2 to 1.1 rad in steps of 0.4 %, where formulas for small angles give way to
+ * others. */
+static void take_yaws(const laconic_method *method) {
+    const laconic_model model = model_of(three_wheels());
+    const laconic_input input = no_input();
+    laconic_integrator integrator;
+    laconic_real nu3 = REAL(6);
+    ASSERT_STATUS(LACONIC_OK, laconic_integrator_prepare(&integrator, method, &model, REAL(0.1), &why));
+    for (int k = 0; k < 425; k++) {
+        laconic_state state;
+        laconic_pose pose;
+        const laconic_start start = {{1, 2, k % 2 == 0 ? nu3 : -nu3}, 0, 0, 0, {0}};
+        ASSERT_STATUS(LACONIC_OK, laconic_state_set(&state, &model, &start, &why));
+        const laconic_real status = REAL(laconic_step(&model, &integrator, &state, &input));
+        laconic_pose_of(&pose, &model, &state);
+        TAKE(status);
+        TAKE(pose);
+        TAKE(state.zeta);
+        nu3 *= REAL(1.004);
+    }
+}
+
+static void every_yaw_by_every_method(void) {
+    static const uint64_t bits[] = {
+        EITHER(0xb3828cdfeecc6a87U, 0x80e9edbf082f51edU), EITHER(0xc97588f06fb53af3U, 0xdfade2e943492012U),
+        EITHER(0xcb4962443912d65eU, 0x6374efb8845e29edU), EITHER(0x40aa1d2ad601ff2aU, 0x44e63578bac470edU),
+        EITHER(0xb98338b17913e69fU, 0xea2a3fffb22e25cdU), EITHER(0x6680e2356d5b9b3eU, 0x8f66e6b948c76a2eU),
+        EITHER(0xf09ea718f68e660fU, 0x3c70c2e7e41d3ee8U), EITHER(0xb3828cdfeecc6a87U, 0x80e9edbf082f51edU),
+    };
+    expect_by_method(take_yaws, bits);
+}
+
 /* Voltages alone; a moment; a force fixed in the body; one fixed in the world, which may turn or act at a point; each
  * with one sample that differs. */
 static laconic_input one_kind(int kind, double size) {
@@ -174,6 +206,7 @@ int main(void) {
     UNITY_BEGIN();
     RUN_TEST(motions_by_every_method);
     RUN_TEST(free_motions_by_every_method);
+    RUN_TEST(every_yaw_by_every_method);
     RUN_TEST(motions_under_one_force_by_every_method);
     RUN_TEST(long_steps_by_every_method);
     RUN_TEST(changes_by_every_method);

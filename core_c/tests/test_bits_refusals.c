@@ -141,6 +141,30 @@ static void a_vehicle_in_units_far_off(void) {
     expect(EITHER(0xb715ea324df5908aU, 0x073785e7357be315U));
 }
 
+/* Some numbers of a vehicle anywhere in the range, alone and together: each constant comes to its end. */
+static void numbers_of_a_vehicle_anywhere_in_the_range(void) {
+    const size_t count = sizeof numbers_of_vehicle / sizeof numbers_of_vehicle[0];
+    uint32_t seed = 7;
+    begin();
+    for (int n = 0; n < 6000; n++) {
+        laconic_vehicle vehicle = vehicle_number(n % MORE_VEHICLES);
+        laconic_model model;
+        laconic_contact contact;
+        for (int k = 0; k < 1 + n % 5; k++) {
+            seed = seed * 1664525U + 1013904223U;
+            const size_t which = (seed >> 8) % count;
+            seed = seed * 1664525U + 1013904223U;
+            const int exponent = (int)((seed >> 8) % EITHER(311U, 39U)) - EITHER(155, 19);
+            seed = seed * 1664525U + 1013904223U;
+            const laconic_real number = (1 + REAL(seed >> 8) / 2000000) * power_of_ten(exponent);
+            memcpy((unsigned char *)&vehicle + numbers_of_vehicle[which], &number, sizeof number);
+        }
+        take_why(laconic_prepare(&model, &vehicle, &why));
+        take_why(laconic_contact_prepare(&contact, &vehicle, &why));
+    }
+    expect(EITHER(0xbcf64120c4991261U, 0xb6f226eb28f06643U));
+}
+
 static void wheels_and_supports_of_a_vehicle(void) {
     begin();
     for (int k = 0; k < 40; k++) {
@@ -323,6 +347,7 @@ int main(void) {
     UNITY_BEGIN();
     RUN_TEST(a_number_of_a_vehicle);
     RUN_TEST(a_vehicle_in_units_far_off);
+    RUN_TEST(numbers_of_a_vehicle_anywhere_in_the_range);
     RUN_TEST(wheels_and_supports_of_a_vehicle);
     RUN_TEST(a_number_of_a_start_and_a_step);
     RUN_TEST(a_number_of_an_input);

@@ -263,6 +263,18 @@ static void a_margin_that_is_nan_does_not_count_as_large(void) {
     TEST_ASSERT_TRUE(!(s.out.no_slip_margin_N >= -LACONIC_REAL_MAX));
 }
 
+/* Either coordinate by itself can be squared, their sum cannot. */
+static void a_support_so_far_off_that_products_leave_the_range_is_refused(void) {
+    const laconic_real far_m = REAL(0.6 * sqrt((double)LACONIC_REAL_MAX));
+    laconic_vehicle v = three_wheels();
+    laconic_contact contact;
+    v.support_count = 1;
+    v.support[0].x_m = far_m;
+    ASSERT_STATUS(LACONIC_OK, laconic_contact_prepare(&contact, &v, &why));
+    v.support[0].y_m = far_m;
+    ASSERT_REFUSED(LACONIC_OVERFLOW, LACONIC_FIELD_NONE, 0, laconic_contact_prepare(&contact, &v, &why), why);
+}
+
 static void a_refused_vehicle_changes_nothing(void) {
     laconic_vehicle v = three_wheels();
     laconic_contact contact, before;
@@ -291,6 +303,7 @@ int main(void) {
     RUN_TEST(without_wheels_the_margin_is_zero);
     RUN_TEST(points_so_far_away_that_constants_leave_the_range_are_refused);
     RUN_TEST(a_margin_that_is_nan_does_not_count_as_large);
+    RUN_TEST(a_support_so_far_off_that_products_leave_the_range_is_refused);
     RUN_TEST(a_refused_vehicle_changes_nothing);
     return UNITY_END();
 }

@@ -60,6 +60,13 @@ static void a_lifted_wheel_turns_by_its_motor_within_the_limit(void) {
     ASSERT_NEAR(1e-6, -0.5, p.speed[0]); /* (½ − 0.125) / (½ + ¼) */
 }
 
+static void constants_that_are_no_numbers_have_no_solution(void) {
+    problem p = one_wheel(1);
+    p.free[0] = p.free[1] = REAL(3);
+    p.wheel[0].row[0].x = NOT_A_NUMBER;
+    TEST_ASSERT_EQUAL_INT(0, solve(&p));
+}
+
 static void rigid_contacts_with_free_rollers_give_the_model_without_slip(void) {
     for (int n = 0; n < 200; n++) {
         problem p;
@@ -252,6 +259,7 @@ int main(void) {
     RUN_TEST(rolling_shares_the_motion_by_inertia);
     RUN_TEST(what_the_grip_can_hold_stops_to_the_last_bit);
     RUN_TEST(a_lifted_wheel_turns_by_its_motor_within_the_limit);
+    RUN_TEST(constants_that_are_no_numbers_have_no_solution);
     RUN_TEST(rigid_contacts_with_free_rollers_give_the_model_without_slip);
     RUN_TEST(a_roller_that_does_not_turn_is_a_fixed_wheel_whatever_its_angle);
     RUN_TEST(a_wheel_with_free_rollers_at_the_border_of_its_grip_is_solved);

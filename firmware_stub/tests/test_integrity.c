@@ -201,6 +201,14 @@ static void test_a_sum_of_nought_may_have_a_rest(void) {
     on.node.plant.state.x_m.rest = LACONIC_EPSILON;
     bench_tick(&on);
     TEST_ASSERT_EQUAL(LACONIC_INTEGRITY_SOUND, on.integrity.broken);
+    on.node.plant.state.x_m.rest = 4 * LACONIC_EPSILON; /* the most, on either side */
+    on.node.plant.state.y_m.value = 0;
+    on.node.plant.state.y_m.rest = -4 * LACONIC_EPSILON;
+    bench_tick(&on);
+    TEST_ASSERT_EQUAL(LACONIC_INTEGRITY_SOUND, on.integrity.broken);
+    on.node.plant.state.x_m.rest = 5 * LACONIC_EPSILON;
+    bench_tick(&on);
+    TEST_ASSERT_EQUAL(LACONIC_INTEGRITY_OF_RANGE, on.integrity.broken);
 }
 
 static void test_what_stood_in_its_memory_before_does_not_matter(void) {
@@ -227,6 +235,7 @@ static void test_loaded_numbers_that_changed_are_refused_at_commit(void) {
     TEST_ASSERT_EQUAL(LACONIC_WIRE_STATUS_MEMORY_CHANGED, on.node.answer[LACONIC_WIRE_PARAMETER].status);
     TEST_ASSERT_EQUAL(LACONIC_WIRE_STATUS_MEMORY_CHANGED, on.node.answer[LACONIC_WIRE_COMMIT].status);
     TEST_ASSERT_EQUAL(LACONIC_INTEGRITY_OF_LOADED, on.node.answer[LACONIC_WIRE_COMMIT].item);
+    TEST_ASSERT_EQUAL(0, on.node.answer[LACONIC_WIRE_COMMIT].field);
     TEST_ASSERT_EQUAL(LACONIC_WIRE_STATE_EMPTY, on.node.state);
     TEST_ASSERT_TRUE(rig_session(&on, NULL, NULL, NULL));
 }
@@ -263,6 +272,19 @@ static void test_numbers_that_were_loaded_before_are_then_forgotten(void) {
     TEST_ASSERT_EQUAL(LACONIC_WIRE_STATE_EMPTY, on.node.state);
     laconic_integrity_begin(&fresh, &on.node, &on.config, &on.integrity.limits, on.checks);
     TEST_ASSERT_EQUAL_MEMORY(&fresh.loaded, &on.integrity.loaded, sizeof fresh.loaded);
+}
+
+/* Evenly: ticks of 5 ms find one slice or two due, and a round lasts its half second. */
+static void test_a_round_over_the_model_lasts_its_time(void) {
+    bench_power_up(&on, 7, 0, LACONIC_INTEGRITY_ALL);
+    TEST_ASSERT_TRUE(rig_session(&on, NULL, NULL, NULL));
+    const uint32_t rounds = on.integrity.rounds, ticks = 4 * LACONIC_INTEGRITY_ROUND_US / TICK_US;
+    for (uint32_t k = 0; k < ticks; k++) {
+        on.time_us += TICK_US;
+        bench_tick(&on);
+    }
+    TEST_ASSERT_TRUE(on.integrity.rounds - rounds >= 3);
+    TEST_ASSERT_TRUE(on.integrity.rounds - rounds <= 5);
 }
 
 static void test_a_tick_sees_few_slices_however_late_it_comes(void) {
@@ -351,6 +373,7 @@ int main(void) {
     RUN_TEST(test_a_changed_configuration_is_repaired_and_told);
     RUN_TEST(test_without_a_vehicle_the_node_begins_as_after_power_up);
     RUN_TEST(test_numbers_that_were_loaded_before_are_then_forgotten);
+    RUN_TEST(test_a_round_over_the_model_lasts_its_time);
     RUN_TEST(test_a_tick_sees_few_slices_however_late_it_comes);
     RUN_TEST(test_sampled_inputs_and_slip_count_as_motion_where_they_are_used);
     RUN_TEST(test_what_waits_to_be_sent_is_checked_before_it_is_fetched);

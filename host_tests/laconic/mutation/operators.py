@@ -138,9 +138,13 @@ def statements(node: Node) -> Iterator[Change]:
             yield begin.start_byte, end.end_byte, ""
 
 
+COMMUTATIVE = {"plus", "times", "dot"}
+"""Functions of vector.h that give the same bits either way."""
+
+
 def arguments(node: Node) -> Iterator[Change]:
-    """Two neighbouring arguments of a call change places."""
-    if node.type == "argument_list":
+    """Two neighbouring arguments of a call change places, but of sums and products of two."""
+    if node.type == "argument_list" and _text(node.parent.children[0] if node.parent else node) not in COMMUTATIVE:
         given = [child for child in node.named_children if child.type != "comment"]
         for one, other in zip(given, given[1:], strict=False):
             if _text(one) != _text(other):
