@@ -1,6 +1,8 @@
 /* exponential-gauss-8, linearised panel by panel (exponential_gauss_8.c). A direction goes through a panel as ζ does:
- * with F at the nodes and the panel's weights, by rounds until they settle. The rounds of ζ have found the solution of
- * the collocation, so all rounds of a direction are linearised there. */
+ * with F at the nodes and the panel's weights, by rounds until they settle. Where the rounds of ζ have found the
+ * solution of the collocation, all rounds of a direction are linearised there. Where an input turns the vehicle by
+ * radians they end before it: then each is linearised where it was, so that the derivative is that of the step as it
+ * is. */
 #include "exponential_gauss_8.h"
 #include "gauss_weight_change.h"
 #include "step_change.h"
@@ -27,7 +29,9 @@ typedef struct panel_trace {
     lanes weight[PANEL_WEIGHTS]; /* the same in every lane */
     real h;
     bool is_whole;
-    vector start, path, lacking;
+    bool settles;        /* the rounds of ζ have found the solution */
+    vector start, still; /* still: what F is without turning        */
+    vector path, lacking;
     node_vectors zeta; /* at the nodes, and F of that */
     rate_trace of;
     real cosine[NODES], sine[NODES];  /* of the yaw from the panel's middle, times h·weight */
@@ -58,27 +62,43 @@ static void trace_turning_forcing(rate_trace *of, const panel_trace *t, const st
     }
 }
 
-static bool same_vectors(const node_vectors *a, const node_vectors *b) {
-    bool same = true;
-    for (int j = 0; j < NODES; j++) same = same && a->x[j] == b->x[j] && a->y[j] == b->y[j] && a->z[j] == b->z[j];
-    return same;
-}
-
-/* ζ and F at the nodes, from ζ at the start at all of them. */
-static void trace_rounds(panel_trace *t, const step_point *at, vector still) {
-    node_vectors before;
+/* ζ at the start at all nodes. */
+static void begin_rounds(panel_trace *t) {
     for (int j = 0; j < NODES; j++) {
         t->zeta.x[j] = t->start.x;
         t->zeta.y[j] = t->start.y;
         t->zeta.z[j] = t->start.z;
     }
-    for (int round = 0; round < ROUNDS; round++) {
+}
+
+/* F at the nodes, from ζ there. */
+static void trace_rates(panel_trace *t, const step_point *at) {
+    rates_at(&t->of.rate, at->model, &t->zeta, t->still);
+    if (at->rotates) trace_turning_forcing(&t->of, t, at);
+}
+
+/* Σ |ζ − other| at the nodes. */
+static real distance(const node_vectors *zeta, const node_vectors *other) {
+    real sum = R(0);
+    for (int j = 0; j < NODES; j++)
+        sum += magnitude(zeta->x[j] - other->x[j]) + magnitude(zeta->y[j] - other->y[j]) +
+               magnitude(zeta->z[j] - other->z[j]);
+    return sum;
+}
+
+/* ζ and F at the nodes. Rounds that go on changing the last digits have settled, too. */
+static void trace_rounds(panel_trace *t, const step_point *at) {
+    static const node_vectors zero;
+    node_vectors before;
+    real change = R(1);
+    begin_rounds(t);
+    for (int round = 0; round < ROUNDS && change != R(0); round++) {
         before = t->zeta;
-        rates_at(&t->of.rate, at->model, &t->zeta, still);
-        if (at->rotates) trace_turning_forcing(&t->of, t, at);
+        trace_rates(t, at);
         answer(&t->zeta, t->start, t->row, &t->of.rate);
-        if (same_vectors(&t->zeta, &before)) return;
+        change = distance(&t->zeta, &before);
     }
+    t->settles = change <= R(64) * LACONIC_EPSILON * distance(&t->zeta, &zero);
 }
 
 /* What ∂F/∂ζ and ∂F/∂yaw are made of. */
@@ -134,9 +154,9 @@ static void trace_panel(panel_trace *t, step_result *step, const step_point *at)
     t->start = plus(at->zeta, step->delta);
     t->before = step->moved;
     for (int k = 0; k < weights; k++) t->weight[k] = lanes_of(weight_at(t, k));
-    const vector damped = damping(at->model, t->start),
-                 still = at->rotates ? minus(none, damped) : minus(at->constant, damped);
-    trace_rounds(t, at, still);
+    const vector damped = damping(at->model, t->start);
+    t->still = at->rotates ? minus(none, damped) : minus(at->constant, damped);
+    trace_rounds(t, at);
     trace_slopes(&t->of, t, at);
     t->path = scaled(t->h, plus(t->start, summed_rates(t, OF_MEAN, 1)));
     step->delta = plus(step->delta, summed_rates(t, AT_END, 1));
@@ -258,8 +278,44 @@ INLINE void displacement_change(step_response *out, const panel_trace *t, const 
     add_turned(out, t->to_start, -half, ahead, aside, dot(forth, t->lacking), dot(left, t->lacking));
 }
 
+/* What ζ at the nodes has of the start and of changed weights. */
+INLINE void own_changes(lanes own[NODES], const panel_trace *t, lanes start, const panel_model *model) {
+    for (int j = 0; j < NODES; j++)
+        own[j] = model != NULL ? lanes_plus(start, lanes_of(weight_response(t, model, TO_POINT(0, j), NODES))) : start;
+}
+
+/* A round of a direction; returns whether it left every number as it was. */
+INLINE bool settled_by_round(lanes zeta[NODES], lanes rate[NODES], const lanes own[NODES], const panel_trace *t,
+                             const step_point *at, const step_direction *in, const step_response *before, lanes still,
+                             const panel_model *model) {
+    bool settled = true;
+    rate_changes(rate, t, at, in, before, zeta, still, model);
+    for (int j = 0; j < NODES; j++) {
+        const lanes now = lanes_plus(own[j], summed_changes(t, rate, TO_POINT(0, j), NODES));
+        settled = settled && lanes_same(now, zeta[j]);
+        zeta[j] = now;
+    }
+    return settled;
+}
+
+/* Takes the rounds of ζ again, and the direction through each of them where it was. */
+RARE void follow_rounds(lanes zeta[NODES], lanes rate[NODES], panel_trace *t, const step_point *at,
+                        const step_direction *in, const step_response *before, const lanes *still,
+                        const panel_model *model) {
+    const lanes start = lanes_plus(in->zeta, before->delta);
+    lanes own[NODES];
+    begin_rounds(t);
+    for (int round = 0; round < ROUNDS; round++) {
+        trace_rates(t, at);
+        trace_slopes(&t->of, t, at);
+        own_changes(own, t, start, model);
+        (void)settled_by_round(zeta, rate, own, t, at, in, before, *still, model);
+        answer(&t->zeta, t->start, t->row, &t->of.rate);
+    }
+}
+
 /* The response of this panel alone, from that of the panels before it. */
-INLINE step_response panel_response(const panel_trace *t, const step_point *at, const step_direction *in,
+INLINE step_response panel_response(panel_trace *t, const step_point *at, const step_direction *in,
                                     const step_response *before, const panel_model *model) {
     const laconic_model *m = at->model;
     const lanes start = lanes_plus(in->zeta, before->delta);
@@ -269,17 +325,13 @@ INLINE step_response panel_response(const panel_trace *t, const step_point *at, 
     if (LACONIC_WITH_DAMPING) still = lanes_minus(still, lanes_times(vec(m->decay_per_s), start));
     if (model != NULL) still = lanes_minus(still, lanes_of(mapped(&model->by->damping, t->start)));
     for (int j = 0; j < NODES; j++) zeta[j] = start;
-    for (int j = 0; j < NODES; j++)
-        own[j] = model != NULL ? lanes_plus(start, lanes_of(weight_response(t, model, TO_POINT(0, j), NODES))) : start;
-    bool settled = false;
-    for (int round = 0; round < ROUNDS && !settled; round++) {
-        settled = true;
-        rate_changes(rate, t, at, in, before, zeta, still, model);
-        for (int j = 0; j < NODES; j++) {
-            const lanes now = lanes_plus(own[j], summed_changes(t, rate, TO_POINT(0, j), NODES));
-            settled = settled && lanes_same(now, zeta[j]);
-            zeta[j] = now;
-        }
+    if (t->settles) {
+        bool settled = false;
+        own_changes(own, t, start, model);
+        for (int round = 0; round < ROUNDS && !settled; round++)
+            settled = settled_by_round(zeta, rate, own, t, at, in, before, still, model);
+    } else {
+        follow_rounds(zeta, rate, t, at, in, before, &still, model);
     }
     lanes mean = lanes_plus(start, summed_changes(t, rate, OF_MEAN, 1));
     out.delta = summed_changes(t, rate, AT_END, 1);
@@ -314,7 +366,7 @@ static const panel_model *model_change_of(panel_model *room, const panel_trace *
     return room;
 }
 
-static void respond_in_panel(step_response out[], const panel_trace *t, const step_point *at, const step_direction in[],
+static void respond_in_panel(step_response out[], panel_trace *t, const step_point *at, const step_direction in[],
                              int32_t count) {
     panel_model room;
     for (int32_t k = 0; k < count; k++) {

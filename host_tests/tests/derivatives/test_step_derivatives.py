@@ -11,10 +11,12 @@ import pytest
 from laconic import BadInput, Refused
 from laconic.core.binding import load
 from laconic.core.derivatives import StepDerivatives
+from laconic.verification.derivatives import exact_gauss
 from laconic.verification.derivatives.adjoints import adjoint_error
 from laconic.verification.derivatives.trials import (
     KINDS,
     METHODS,
+    Trial,
     difference,
     directions,
     error,
@@ -147,3 +149,23 @@ def test_what_is_no_direction_is_refused_in_one_line(message):
     with pytest.raises(BadInput) as caught:
         WRONG[message](StepDerivatives(carriage(), HELD))
     assert str(caught.value).startswith(message)
+
+
+@pytest.mark.parametrize("damping, force_N, moment_Nm", [(0.0, 10.0, -8.0), (0.02, 168.0, 0.0), (0.02, 200.0, 0.0)])
+def test_rounds_of_exponential_gauss_8_that_do_not_settle_are_derived_as_they_are(monkeypatch, damping, force_N,
+                                                                                  moment_Nm):
+    table = {**CARRIAGE, "yaw_inertia_kgm2": 0.225, "com_x_m": 0.0, "com_y_m": 0.02, "wheel_inertia_kgm2": 0.009,
+             "motor_damping_Nms": damping, "wheel": [
+                 {"kind": "roller", "x_m": x, "y_m": y, "axle_rad": axle, "roller_rad": np.pi / 2}
+                 for x, y, axle in ((0.05, 0.0, 0.0), (-0.05, 0.0, np.pi), (0.0, 0.06, np.pi / 2))]}
+    held = {"voltage_V": [1.5, 0.8, 0.1], "axle_torque_Nm": [-0.03, -0.01, 0.01], "body_force_N": [0.8, -0.5],
+            "body_moment_Nm": [moment_Nm], "world_force_N": [force_N, 0.6], "world_force_point_m": [0.5, -0.07]}
+    trial = Trial("omni", "exponential-gauss-8", table, 0.8, [0.8, -0.5, 2.4], 0.0, held)
+    random, plant = np.random.default_rng(1), plant_of(load(), trial)
+    for along in directions(random, trial, plant).values():
+        found = difference(trial, plant, along)
+        assert error(tangent(trial, plant, along), found, along) <= TOLERANCE
+        with monkeypatch.context() as more:
+            more.setattr(exact_gauss, "MOST_ROUNDS", 400)
+            assert error(difference(trial, plant, along), found, along) > 1e-4
+    assert adjoint_error(random, trial, plant) <= 1e-13
