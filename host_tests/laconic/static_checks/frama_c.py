@@ -112,14 +112,20 @@ CORE_FOLDERS = ("core_c/include", "core_c/src", "core_c/proof")
 NODE_FOLDERS = (*CORE_FOLDERS, "firmware_stub/include", "firmware_stub/drives", "firmware_stub/src")
 CORE = Program("core", "core_c/proof/*.c", ("core_c/src/*.c",), CORE_FOLDERS)
 SINGLE = Program("core, single", "core_c/proof/*.c", ("core_c/src/*.c",), CORE_FOLDERS, ("LACONIC_SINGLE",),
-                 ("vehicle_check", "motor_fit", "integrator_prepare", "largest_stable_step", "input", "rk4",
-                  "exact_flow", "state", "steps_in", "outputs", "texts", "names", "encoders", "imu"))
+                 ("vehicle_check", "prepare", "contact_prepare", "motor_fit", "integrator_prepare",
+                  "largest_stable_step", "input", "rk4", "exponential_kahan", "exponential_kahan_4", "exact_flow",
+                  "exact_flow_4", "taylor_8", "state", "steps_in", "outputs", "reactions", "texts", "names",
+                  "plant_run", "plant_restart", "plant_outputs", "friction_moment", "friction_step_4", "encoders",
+                  "sensor_settings", "sensors_read", "imu"))
 NODE = Program("node", "firmware_stub/proof/node.c", ("core_c/src/*.c", "firmware_stub/src/*.c"), NODE_FOLDERS,
                ("LACONIC_NODE_WITH_DRIVES=0",))
 FRAMES = Program("node, on frames", "firmware_stub/proof/frames.c", NODE.sources, NODE_FOLDERS, NODE.defined,
                  without=("plant.c", "sensors.c", "loader.c"))
 SECURE = Program("secure", "firmware_stub/proof/secure.c", ("firmware_stub/secure/*.c",), NODE_FOLDERS, NODE.defined)
-PROGRAMS = (CORE, SINGLE, NODE, FRAMES, SECURE)
+DERIVATIVES = Program("derivatives", "core_c/proof/parts/derivatives.c",
+                      ("core_c/src/*.c", "core_c/derivatives/*.c"), CORE_FOLDERS)
+FILTER = Program("filter", "core_c/proof/parts/filter.c", (*DERIVATIVES.sources, "core_c/filter/*.c"), CORE_FOLDERS)
+PROGRAMS = (CORE, SINGLE, NODE, FRAMES, SECURE, DERIVATIVES, FILTER)
 """In the order in which they run."""
 
 

@@ -22,9 +22,7 @@ LANES = "is compiled for registers of several numbers by extensions of C that Fr
 DRIVES = "the proof's node is without drives; fuzzing watches them"
 WITHOUT_HEADERS = {
     "core_c/include/laconic/batch.h": LANES,
-    "core_c/include/laconic/derivatives.h": OPTIONAL,
     "core_c/include/laconic/estimate.h": OPTIONAL,
-    "core_c/include/laconic/filter.h": OPTIONAL,
     "firmware_stub/include/laconic_node/integrity.h": OPTIONAL,
     "firmware_stub/include/laconic_drives/drive.h": DRIVES,
     "firmware_stub/include/laconic_drives/drives.h": DRIVES,
@@ -32,7 +30,12 @@ WITHOUT_HEADERS = {
     "firmware_stub/include/laconic_drives/settings.h": DRIVES,
 }
 """Headers of which no entry follows a function, each with the reason."""
+OF_STEPS = ("the derivatives of a step: the analyser merges refusal and acceptance of the step, and takes all that is "
+            "set by the latter for perhaps not set; sanitizers and fuzzing watch them")
 WITHOUT = {
+    **dict.fromkeys(("laconic_step_jacobian_of", "laconic_step_jacobian_by", "laconic_step_tangent",
+                     "laconic_step_tangent_by", "laconic_step_adjoint", "laconic_step_adjoint_by",
+                     "laconic_filter_predict", "laconic_filter_predict_by"), OF_STEPS),
     "laconic_plant_change": "prepares and carries, which entries of their own follow, and copies what came out",
     "laconic_plant_follow": "follows offsets and counts of the caller's arrays, which a box cannot state",
     "laconic_schedule_at": "follows offsets and counts of the caller's arrays, which a box cannot state",
