@@ -40,5 +40,4 @@ void fmu_clock_change_step(fmu_clock *clock, double step_s) {
     clock->anchor_s = anchor;
     clock->ticks = 0;
     clock->step_s = step_s;
-    clock->communication_s = 0.0;
 }

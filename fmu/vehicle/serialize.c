@@ -259,7 +259,6 @@ bool fmu_model_serialize(fmu_stream *stream, fmu_model *model) {
     serialize_input(stream, &model->last.input);
     fmu_stream_reals(stream, &model->last.step_s, 1);
     fmu_stream_u64(stream, &model->last.steps);
-    if (stream->from != NULL) model->has_jacobian = false;
 #endif
 #if FMU_MODEL_ESTIMATES
     serialize_estimate(stream, model);

@@ -178,8 +178,7 @@ static void begin_frame(fmu_instance *instance, double at_s) {
     self->free_s = at_s + lasts_s;
     self->busy_s += lasts_s;
     ls_bus_drop(&self->node[best].queue, operation.size);
-    for (unsigned k = 0; k < FMU_MODEL_PORTS; k++)
-        if (k != best) lose(self, k);
+    lose(self, 1 - best);
 }
 
 /* ------------------------------------------------------------------------------------ what is sent -- */

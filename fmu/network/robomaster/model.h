@@ -31,10 +31,10 @@ typedef struct fmu_model {
     can_controller can;
     network_port port[FMU_MODEL_PORTS];
 
+    double measured_rad_per_s[MOTORS], error_rad[MOTORS], current_A[MOTORS];
     double start_s;
     uint64_t periods; /* passed */
     bool is_due;      /* a command waits for the bus */
-    double measured_rad_per_s[MOTORS], error_rad[MOTORS], current_A[MOTORS];
 } fmu_model;
 
 #endif

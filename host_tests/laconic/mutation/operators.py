@@ -125,9 +125,10 @@ def conditions(node: Node) -> Iterator[Change]:
 
 
 def statements(node: Node) -> Iterator[Change]:
-    """A statement is left out: an assignment, a call, break, continue, or a member of an initialiser."""
+    """A statement is left out: an assignment, a call, break, continue, or a member of an initialiser. What stands outside
+    of functions is a macro that makes some: without them nothing links."""
     if node.type in ("expression_statement", "break_statement", "continue_statement") and _text(node) != ";":
-        if not _text(node).startswith("(void)"):
+        if _is_in_function(node) and not _text(node).startswith("(void)"):
             yield node.start_byte, node.end_byte, ";"
     elif node.type == "initializer_pair":
         after = node.next_sibling
@@ -136,6 +137,13 @@ def statements(node: Node) -> Iterator[Change]:
             begin, end = (node, after) if first else (node.prev_sibling, node)
             assert begin is not None and end is not None
             yield begin.start_byte, end.end_byte, ""
+
+
+def _is_in_function(node: Node) -> bool:
+    around = node.parent
+    while around is not None and around.type != "function_definition":
+        around = around.parent
+    return around is not None
 
 
 COMMUTATIVE = {"plus", "times", "dot"}

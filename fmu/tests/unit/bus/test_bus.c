@@ -104,6 +104,23 @@ static void the_lower_number_wins_bit_by_bit(void) {
     wins(0x10U << 18 | 0x3FFFF, true, true, 0x11U << 18, true, false);
 }
 
+/* What no bus could arbitrate: the first node's frame goes first. */
+static void the_same_frame_of_both_nodes_goes_by_their_order(void) {
+    for (int turned = 0; turned < 2; turned++) {
+        make();
+        begin();
+        put(0x10, false, false);
+        give(turned ? "Node2" : "Node1", &out);
+        give(turned ? "Node1" : "Node2", &out);
+        out.size = 0;
+        update();
+        step(0, 60e-6);
+        TEST_ASSERT_EQUAL_INT32(1, get_integer("frames_carried"));
+        TEST_ASSERT_EQUAL(LS_BUS_CAN_TRANSMIT, first_of("Node2"));
+        TEST_ASSERT_EQUAL(LS_BUS_CONFIRM, first_of("Node1"));
+    }
+}
+
 static void who_discards_is_told_of_lost_arbitration(void) {
     begin();
     put(0x10, false, false);
@@ -301,9 +318,14 @@ static void a_reset_empties_the_bus(void) {
     update();
     TEST_ASSERT_EQUAL_UINT32(0, instance()->model.node[0].fd_bit_rate_bit_per_s);
     step(0, ONE_S * 1.5);
-    instance()->model.start_needed = true; /* another start, without a reset */
+    fmu_model *model = &instance()->model;
+    model->start_needed = true; /* another start, without a reset */
+    model->carried = model->contended = model->failed = model->dropped = 7;
+    model->rates_differ = true;
     TEST_ASSERT_TRUE(!update() && instance()->model.node[0].queue.size == 0 && instance()->model.busy_s == 0);
     TEST_ASSERT_EQUAL_UINT32(0, instance()->model.node[0].bit_rate_bit_per_s);
+    TEST_ASSERT_TRUE(!model->is_busy && !model->rates_differ && model->carried == 0 && model->contended == 0);
+    TEST_ASSERT_TRUE(model->failed == 0 && model->dropped == 0 && !model->start_needed && !model->change_needed);
     OK(fmi3Reset(c));
     begin();
     TEST_ASSERT_TRUE(get_integer("frames_carried") == 0 && get_real("busy_s", 0) == 0);
@@ -350,6 +372,7 @@ int main(void) {
     RUN_TEST(a_frame_arrives_after_its_time_and_is_confirmed);
     RUN_TEST(frames_follow_each_other_in_either_direction);
     RUN_TEST(the_lower_number_wins_bit_by_bit);
+    RUN_TEST(the_same_frame_of_both_nodes_goes_by_their_order);
     RUN_TEST(who_discards_is_told_of_lost_arbitration);
     RUN_TEST(a_passive_node_goes_behind_an_active_one);
     RUN_TEST(a_node_that_is_off_neither_sends_nor_hears);

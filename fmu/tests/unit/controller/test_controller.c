@@ -85,6 +85,36 @@ static void gains_are_tuned_in_a_run_and_the_integral_stays(void) {
     TEST_ASSERT_TRUE(get("angle_error_rad", 1) == integral); /* held at the limit */
 }
 
+/* Outputs may be read in initialization, and parameters set behind it; and states behind outputs. */
+static void outputs_follow_what_is_set_behind_them(void) {
+    make(fmi2ModelExchange);
+    const double integral[4] = {1, 2, 3, 4};
+    OK(fmi2EnterInitializationMode(c));
+    set("setpoint_rad_per_s", 1, 2);
+    TEST_ASSERT_DOUBLE_WITHIN(1e-12, 2 * KP, get("voltage_V", 1));
+    set("proportional_gain_Vs_per_rad", 0, 3);
+    TEST_ASSERT_DOUBLE_WITHIN(1e-12, 2 * 3, get("voltage_V", 1));
+    OK(fmi2ExitInitializationMode(c));
+    OK(fmi2EnterContinuousTimeMode(c));
+    TEST_ASSERT_DOUBLE_WITHIN(1e-12, 2 * 3, get("voltage_V", 1));
+    OK(fmi2SetContinuousStates(c, integral, 4));
+    TEST_ASSERT_DOUBLE_WITHIN(1e-12, 2 * 3 + KI, get("voltage_V", 1));
+}
+
+/* At the limit itself the voltage still follows. */
+static void at_the_limit_derivatives_are_those_of_the_law(void) {
+    const double one = 1;
+    double found = 7;
+    initialise();
+    for (uint32_t k = 1; k <= 2; k++) {
+        const fmi2ValueReference voltage = ref("voltage_V", k), setpoint = ref("setpoint_rad_per_s", k);
+        set("setpoint_rad_per_s", k, k == 1 ? LIMIT / KP : -LIMIT / KP);
+        TEST_ASSERT_TRUE(get("voltage_V", k) == (k == 1 ? LIMIT : -LIMIT));
+        OK(fmi2GetDirectionalDerivative(c, &voltage, 1, &setpoint, 1, &one, &found));
+        TEST_ASSERT_TRUE(found == KP);
+    }
+}
+
 static void a_run_that_starts_anew_has_no_integral(void) {
     initialise();
     apply();
@@ -255,6 +285,8 @@ int main(void) {
     RUN_TEST(a_step_integrates_the_error_of_wheels_that_are_not_limited);
     RUN_TEST(a_gain_below_zero_and_a_limit_that_is_none_are_refused);
     RUN_TEST(gains_are_tuned_in_a_run_and_the_integral_stays);
+    RUN_TEST(outputs_follow_what_is_set_behind_them);
+    RUN_TEST(at_the_limit_derivatives_are_those_of_the_law);
     RUN_TEST(a_run_that_starts_anew_has_no_integral);
     RUN_TEST(inputs_are_held_over_a_step_and_have_no_slopes);
     RUN_TEST(a_callback_sees_the_step_s_end);

@@ -228,11 +228,14 @@ static void without_an_estimate_all_is_zero(void) {
     set("step_s", 0, 0.05);
     initialise();
     set("voltage_V", 1, 5);
+    instance()->model.estimated.unknown = 5; /* of another run, whose state was left */
     OK(step(0, 0.5));
     OK(step(0.5, 0.05));
     TEST_ASSERT_TRUE(get("estimated_error_place_m", 0) == 0 && get("estimated_error_largest_place_m", 0) == 0);
     TEST_ASSERT_TRUE(get("estimated_error_rounding_place_m", 0) == 0 && get("x_m", 0) != 0);
     TEST_ASSERT_TRUE(get("estimated_error_unknown_windows", 0) == 0);
+    const laconic_errors none = {0};
+    TEST_ASSERT_EQUAL_MEMORY(&none, &instance()->model.estimated, sizeof none);
     OK(fmi2SetRealInputDerivatives(c, &force, 1, &first, &slope));
     OK(step(0.55, 0.05));
     const double x = get("x_m", 0);
@@ -331,6 +334,7 @@ static void every_member_of_an_estimate_comes_back_in_another_instance(void) {
     FILL(e->forcing.sine);
     e->forcing.rotates = true;
     fill_slip(&e->twin_slip);
+    TEST_ASSERT_EQUAL_size_t(8792, write()); /* another size is another STATE_VERSION */
     const fmu_model before = instance()->model;
     into_another(fmi2CoSimulation);
     const fmu_model *after = &instance()->model;

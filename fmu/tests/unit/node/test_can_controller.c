@@ -263,6 +263,15 @@ static void wrong_operations_are_answered_but_for_wrong_answers(void) {
     TEST_ASSERT_EQUAL(0, next());
 }
 
+/* As slow as it may be. */
+static void one_bit_per_second_is_can_fd(void) {
+    can.fd_bit_rate_bit_per_s = 1;
+    can_controller_start(&can, &tx);
+    TEST_ASSERT_TRUE(next() == LS_BUS_CONFIGURATION && next() == LS_BUS_CONFIGURATION);
+    TEST_ASSERT_TRUE(told.parameter == LS_BUS_CAN_FD_BAUDRATE && told.value == 1);
+    TEST_ASSERT_TRUE(hear_frame(true));
+}
+
 static void a_start_forgets_what_was(void) {
     const can_controller used = {.bit_rate_bit_per_s = 500000,
                                  .waits = true,
@@ -296,6 +305,7 @@ int main(void) {
     RUN_TEST(a_passive_sender_of_can_fd_says_so_in_its_frames);
     RUN_TEST(frames_of_can_fd_are_heard_by_who_has_it);
     RUN_TEST(wrong_operations_are_answered_but_for_wrong_answers);
+    RUN_TEST(one_bit_per_second_is_can_fd);
     RUN_TEST(a_start_forgets_what_was);
     return UNITY_END();
 }

@@ -2,6 +2,7 @@
 #include "ls_bus.h"
 #include "unity.h"
 
+#include <stdlib.h>
 #include <string.h>
 
 static ls_bus_buffer buffer;
@@ -247,6 +248,32 @@ static void lengths_within_format_errors_and_can_xl_fit(void) {
     WRONG(0x12, 0, 0, 0, 21, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0);
 }
 
+/* In memory of just their size, so that sanitizers see every byte behind it. */
+static void operations_are_read_no_further_than_they_reach(void) {
+    static const uint8_t codes[] = {0x01, 0x10, 0x11, 0x12, 0x20, 0x30, 0x31, 0x40, 0x41, 0x42};
+    for (size_t size = 1; size <= 40; size++)
+        for (size_t k = 0; k < sizeof codes; k++) {
+            uint8_t *bytes = calloc(1, size);
+            size_t at = 0;
+            if (size > 0) bytes[0] = codes[k];
+            if (size > 4) bytes[4] = (uint8_t)size;
+            const ls_bus_reading reading = ls_bus_read(bytes, size, &at, &operation);
+            TEST_ASSERT_TRUE(reading != LS_BUS_END && at == size && operation.size == size);
+            free(bytes);
+        }
+}
+
+static void a_full_buffer_loses_what_is_dropped(void) {
+    buffer.size = LS_BUS_BUFFER_BYTES;
+    for (size_t k = 0; k < LS_BUS_BUFFER_BYTES; k++) buffer.bytes[k] = (uint8_t)(k % 251);
+    ls_bus_buffer *copy = malloc(sizeof *copy);
+    *copy = buffer;
+    ls_bus_drop(copy, 16);
+    TEST_ASSERT_EQUAL_size_t(LS_BUS_BUFFER_BYTES - 16, copy->size);
+    TEST_ASSERT_EQUAL_MEMORY(buffer.bytes + 16, copy->bytes, copy->size);
+    free(copy);
+}
+
 int main(void) {
     UNITY_BEGIN();
     RUN_TEST(a_classic_frame_has_its_bytes);
@@ -261,5 +288,7 @@ int main(void) {
     RUN_TEST(arguments_of_notifications_are_checked);
     RUN_TEST(arguments_of_settings_are_checked);
     RUN_TEST(lengths_within_format_errors_and_can_xl_fit);
+    RUN_TEST(operations_are_read_no_further_than_they_reach);
+    RUN_TEST(a_full_buffer_loses_what_is_dropped);
     return UNITY_END();
 }

@@ -41,6 +41,17 @@ static void off_the_bus_it_returns_when_its_time_is_over(void) {
     TEST_ASSERT_EQUAL_INT32(0, get_integer("transmit_errors"));
 }
 
+static void another_start_begins_at_its_time(void) {
+    begin();
+    step(0, 0.5);
+    fmu_model *model = &instance()->model;
+    model->start_needed = model->change_needed = model->is_full = true;
+    model->stale = 0;
+    update();
+    TEST_ASSERT_TRUE(model->now_us == 0 && !model->is_full && !model->start_needed && !model->change_needed);
+    TEST_ASSERT_EQUAL_UINT32(FMU_GROUPS_ALL, model->stale);
+}
+
 /* At a low bit rate the node's own instants come before the bus lets it back. */
 static void off_a_slow_bus_the_node_ticks_on(void) {
     bool known;
@@ -132,6 +143,7 @@ int main(void) {
     UNITY_BEGIN();
     RUN_TEST(what_nobody_takes_waits_in_the_node_and_is_told_once);
     RUN_TEST(off_the_bus_it_returns_when_its_time_is_over);
+    RUN_TEST(another_start_begins_at_its_time);
     RUN_TEST(off_a_slow_bus_the_node_ticks_on);
     RUN_TEST(wheels_are_shown_as_far_as_there_are_outputs);
     RUN_TEST(at_its_start_it_tells_its_bit_rate_at_the_first_communication_point);

@@ -101,6 +101,7 @@ static void currents_are_those_of_the_limited_loops(void) {
             if (!((amperes > limit_A && e > 0) || (amperes < -limit_A && e < 0))) integral[k] += e * period_s;
             TEST_ASSERT_DOUBLE_WITHIN(1e-9, shown, get_real("current_A", k + 1));
             TEST_ASSERT_EQUAL_INT16((int16_t)lround(shown * 16384 / 20), raw[k]);
+            TEST_ASSERT_DOUBLE_WITHIN(1e-9, integral[k], instance()->model.error_rad[k]);
             sum += fabs(shown);
         }
     }
@@ -119,6 +120,24 @@ static void at_its_limit_a_loop_goes_on(void) {
     step(0, period_s);
     TEST_ASSERT_TRUE(get_real("current_A", 1) == -2 && get_real("current_A", 2) == 2);
     TEST_ASSERT_TRUE(instance()->model.error_rad[0] == -2 * period_s && instance()->model.error_rad[1] == 2 * period_s);
+}
+
+/* A hundredth of a unit at a time, either way. */
+static void currents_are_rounded_to_the_nearest_unit(void) {
+    int16_t raw[4];
+    set_real("gear_ratio", 0, 1);
+    set_real("proportional_gain_As_per_rad", 0, 1);
+    set_real("integral_gain_A_per_rad", 0, 0);
+    begin();
+    for (int n = 0; n < 100; n++) {
+        const double units[2] = {-1.003 - 0.01 * n, 1.003 + 0.01 * n};
+        for (uint32_t k = 0; k < 2; k++) set_real("setpoint_rad_per_s", k + 1, units[k] * 20 / 16384);
+        step(n * period_s, period_s);
+        TEST_ASSERT_EQUAL(LS_BUS_CAN_TRANSMIT, first_of("CAN"));
+        told_to = 0;
+        command(raw);
+        for (uint32_t k = 0; k < 2; k++) TEST_ASSERT_EQUAL_INT16((int16_t)lround(units[k]), raw[k]);
+    }
 }
 
 /* Outputs may be read in initialization, and settings changed behind it: what the first start sent is gone. */
@@ -240,6 +259,11 @@ static void a_reset_forgets_what_was_measured(void) {
     set_real("setpoint_rad_per_s", 1, 5);
     feedback(0, 500);
     step(0, 4 * period_s);
+    fmu_model *model = &instance()->model;
+    model->start_needed = model->change_needed = model->is_due = true; /* another start, without a reset */
+    update();
+    TEST_ASSERT_TRUE(!model->start_needed && !model->change_needed && !model->is_due && model->periods == 0);
+    TEST_ASSERT_TRUE(model->measured_rad_per_s[0] == 0 && model->error_rad[0] == 0 && model->current_A[0] == 0);
     OK(fmi3Reset(c));
     begin();
     TEST_ASSERT_TRUE(get_real("measured_rad_per_s", 1) == 0 && get_real("current_A", 1) == 0);
@@ -254,6 +278,7 @@ int main(void) {
     RUN_TEST(other_frames_are_no_feedback);
     RUN_TEST(currents_are_those_of_the_limited_loops);
     RUN_TEST(at_its_limit_a_loop_goes_on);
+    RUN_TEST(currents_are_rounded_to_the_nearest_unit);
     RUN_TEST(a_second_start_begins_anew);
     RUN_TEST(each_period_has_its_command_however_long_the_step);
     RUN_TEST(a_command_that_waits_is_replaced);

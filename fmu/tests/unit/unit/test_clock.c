@@ -46,6 +46,7 @@ static void a_time_before_the_start_is_before_it_by_more_than_rounding(void) {
     fmu_clock_start(&clock, -20.0, false, 0.0);
     TEST_ASSERT_FALSE(fmu_clock_is_before_start(&clock, -20.0 - 1.9e-8));
     TEST_ASSERT_TRUE(fmu_clock_is_before_start(&clock, -20.0 - 2.1e-8));
+    TEST_ASSERT_FALSE(fmu_clock_is_before_start(&clock, -20.0 - 1e-9 * 20.0)); /* the border itself */
 }
 
 static void a_solver_may_look_beyond_the_stop_by_a_fiftieth_of_the_run_on_its_way(void) {
@@ -55,8 +56,11 @@ static void a_solver_may_look_beyond_the_stop_by_a_fiftieth_of_the_run_on_its_wa
     clock.completed_s = 15.0;
     TEST_ASSERT_TRUE(fmu_clock_allows_overshoot(&clock, 20.19));
     TEST_ASSERT_FALSE(fmu_clock_allows_overshoot(&clock, 20.21));
-    clock.completed_s = 20.0;
-    TEST_ASSERT_FALSE(fmu_clock_allows_overshoot(&clock, 20.1));
+    fmu_clock_start(&clock, 0.0, true, 50.0);
+    clock.completed_s = 1.0;
+    TEST_ASSERT_TRUE(fmu_clock_allows_overshoot(&clock, 51.0));
+    clock.completed_s = 50.0;
+    TEST_ASSERT_FALSE(fmu_clock_allows_overshoot(&clock, 50.5));
 }
 
 int main(void) {

@@ -58,6 +58,21 @@ static void with_an_own_step_half_of_it_is_forgiven(void) {
     TEST_ASSERT_EQUAL_UINT64(6, ticks());
 }
 
+/* Before the first step there is no rounding of earlier ones. */
+static void the_first_step_begins_at_the_start(void) {
+    begin(0, false, 0);
+    ASSERT_REFUSED(step(0.0011, 0.1 * 10), "but the model is at");
+    OK(step(0.0009, 1));
+}
+
+/* A step that is shorter than the last: what counts of the rounding is how many of the last there were. */
+static void roundings_are_those_of_the_steps_that_were(void) {
+    begin(0, false, 0);
+    for (int k = 0; k < 20; k++) OK(step(0.5 * k, 0.5));
+    ASSERT_REFUSED(step(10 + 1.1e-8, 1e-5), "but the model is at");
+    OK(step(10 + 0.9e-8, 1e-5));
+}
+
 static void steps_that_differ_by_rounding_are_one_step(void) {
     begin(0, false, 0);
     OK(step(0, 0.1));
@@ -251,6 +266,8 @@ int main(void) {
     RUN_TEST(a_step_that_begins_off_the_models_time_is_refused_on_either_side);
     RUN_TEST(the_roundings_of_many_steps_are_forgiven);
     RUN_TEST(with_an_own_step_half_of_it_is_forgiven);
+    RUN_TEST(the_first_step_begins_at_the_start);
+    RUN_TEST(roundings_are_those_of_the_steps_that_were);
     RUN_TEST(steps_that_differ_by_rounding_are_one_step);
     RUN_TEST(a_millionth_of_a_step_is_none);
     RUN_TEST(the_nearest_step_that_would_be_taken_is_named);

@@ -52,6 +52,29 @@ static void nothing_is_made_without_name_token_kind_or_callbacks(void) {
     TEST_ASSERT_EQUAL_STRING("default", fmi2GetTypesPlatform());
 }
 
+static int told_to;
+static void log_to(fmi2ComponentEnvironment e, fmi2String name, fmi2Status status, fmi2String category, fmi2String text,
+                   ...) {
+    TEST_ASSERT_EQUAL_PTR(&told_to, e);
+    TEST_ASSERT_EQUAL_STRING("one", name);
+    TEST_ASSERT_EQUAL_INT(fmi2Error, status);
+    log_line(category, text);
+    told_to++;
+}
+
+static void the_log_goes_to_the_importer_s_environment_in_lines_of_511_letters(void) {
+    const fmi2CallbackFunctions callbacks = {log_to, calloc, free, NULL, &told_to};
+    static char token[700];
+    memset(token, 'x', sizeof token - 1);
+    TEST_ASSERT_NULL(fmi2Instantiate("one", fmi2CoSimulation, token, NULL, &callbacks, 0, 0));
+    TEST_ASSERT_EQUAL_size_t(strlen("logStatusError: ") + 511, strlen(logged));
+    fmi2FreeInstance(c);
+    c = fmi2Instantiate("one", fmi2CoSimulation, fmu_token_2, NULL, &callbacks, 0, 0);
+    told_to = 0;
+    TEST_ASSERT_EQUAL_INT(fmi2Error, fmi2Terminate(c));
+    TEST_ASSERT_EQUAL_INT(1, told_to);
+}
+
 /* The vehicle of the description's start values, by the core alone. */
 static void a_step_has_the_bits_of_the_core(void) {
     laconic_plant plant;
@@ -286,6 +309,7 @@ static void outputs_have_derivatives_and_inputs_may_have_slopes(void) {
 int main(void) {
     UNITY_BEGIN();
     RUN_TEST(nothing_is_made_without_name_token_kind_or_callbacks);
+    RUN_TEST(the_log_goes_to_the_importer_s_environment_in_lines_of_511_letters);
     RUN_TEST(a_step_has_the_bits_of_the_core);
     RUN_TEST(every_type_has_its_functions_and_refuses_the_others);
     RUN_TEST(each_access_is_set_in_its_modes_and_the_refusal_says_when);

@@ -156,6 +156,9 @@ static void variables_without_intermediate_values_cannot_be_required(void) {
     TEST_ASSERT_NULL(
         fmi3InstantiateCoSimulation("a", fmu_token_3, NULL, false, true, false, false, NULL, 2, NULL, log_3, between));
     ASSERT_LOGGED("the list of 2 required intermediate variables is missing");
+    TEST_ASSERT_NULL(
+        fmi3InstantiateCoSimulation("a", fmu_token_3, NULL, false, true, false, false, NULL, 1, NULL, log_3, between));
+    ASSERT_LOGGED("the list of 1 required intermediate variables is missing");
 }
 
 static void in_event_mode_motors_are_tuned_and_the_change_is_told(void) {
@@ -184,6 +187,35 @@ static void in_event_mode_motors_are_tuned_and_the_change_is_told(void) {
     OK(fmi3Terminate(c));
     OK(fmi3Reset(c));
     TEST_ASSERT_TRUE(get("motor_gain_Nm_per_V", 0) == 0.2);
+}
+
+static int told_to;
+static void log_to(fmi3InstanceEnvironment e, fmi3Status status, fmi3String category, fmi3String text) {
+    (void)category, (void)text;
+    TEST_ASSERT_EQUAL_PTR(&told_to, e);
+    TEST_ASSERT_EQUAL_INT(fmi3Error, status);
+    told_to++;
+}
+
+static void the_log_goes_to_the_importer_s_environment(void) {
+    fmi3FreeInstance(c);
+    c = fmi3InstantiateCoSimulation("one", fmu_token_3, NULL, false, true, false, false, NULL, 0, &told_to, log_to,
+                                    NULL);
+    told_to = 0;
+    TEST_ASSERT_EQUAL_INT(fmi3Error, fmi3Terminate(c));
+    fmi3Instance exchange = fmi3InstantiateModelExchange("one", fmu_token_3, NULL, false, true, &told_to, log_to);
+    TEST_ASSERT_EQUAL_INT(fmi3Error, fmi3Terminate(exchange));
+    fmi3FreeInstance(exchange);
+    TEST_ASSERT_EQUAL_INT(2, told_to);
+}
+
+static void in_event_mode_the_number_of_wheels_stays(void) {
+    const fmi3ValueReference wheels = ref("wheel_count", 0);
+    const fmi3UInt64 two = 2;
+    fmi3FreeInstance(c);
+    c = make_3(true);
+    begin();
+    ASSERT_REFUSED(fmi3SetUInt64(c, &wheels, 1, &two, 1), "wheel_count cannot be set in event mode");
 }
 
 static void an_output_depends_on_what_the_description_says(void) {
@@ -258,6 +290,8 @@ int main(void) {
     RUN_TEST(an_importer_may_look_between_internal_steps_and_return);
     RUN_TEST(variables_without_intermediate_values_cannot_be_required);
     RUN_TEST(in_event_mode_motors_are_tuned_and_the_change_is_told);
+    RUN_TEST(the_log_goes_to_the_importer_s_environment);
+    RUN_TEST(in_event_mode_the_number_of_wheels_stays);
     RUN_TEST(an_output_depends_on_what_the_description_says);
     RUN_TEST(a_run_that_cannot_be_leaves_the_instance_where_it_was);
     RUN_TEST(without_a_logger_nothing_is_told);

@@ -1,5 +1,6 @@
 /* Tests of grip_warning.c: what is told of grip and lift, once in a run, and only where somebody listens. */
 #include "fmi2_bench.h"
+#include "grip_warning.h"
 #include "model_interface.h"
 
 #define FMU_SLIP 1U /* of fmu_instance.warnings_given */
@@ -74,6 +75,14 @@ static void a_limited_drive_on_ideal_ground_is_watched_for_slip(void) {
     log_clear();
     OK(step(0, 0.05));
     ASSERT_LOGGED("the model has no slip, so its motion no longer holds");
+    const laconic_grip_event *event = &instance()->model.pending_slip;
+    const double has_N = 0.02 * event->normal_N;
+    char told[160];
+    snprintf(told, sizeof told,
+             "wheel %d needs %.4g N of grip and has %.4g N (friction_coefficient = 0.02): %.4g N are",
+             (int)event->point, event->needed_N, has_N, event->needed_N - has_N);
+    ASSERT_LOGGED(told);
+    TEST_ASSERT_TRUE(event->needed_N > has_N && has_N > 0);
 }
 
 /* Both at once, each told one time, and again in another run. */
@@ -141,6 +150,21 @@ static void a_warning_within_a_held_step_has_the_time_of_its_internal_step(void)
     TEST_ASSERT_TRUE(begins[0] > 3 && begins[0] < 4 && begins[0] == begins[1]);
 }
 
+static void a_wheel_or_a_support_that_lifts_has_its_number(void) {
+    initialise();
+    for (int point = 1; point <= 6; point++) {
+        const laconic_grip_event event = {.point = point, .needed_N = 1, .normal_N = -2, .margin_N = -3};
+        char told[80];
+        instance()->model.pending_lift = event;
+        instance()->model.lift_s = 5;
+        instance()->warnings_pending = FMU_LIFT_WARNING;
+        fmu_model_settle_warnings(instance(), true);
+        snprintf(told, sizeof told, "at 5 s %s %d lifts: its normal load would be -2 N",
+                 point > 4 ? "support" : "wheel", point > 4 ? point - 4 : point);
+        ASSERT_LOGGED(told);
+    }
+}
+
 static void a_refused_step_gives_no_warning(void) {
     set("step_s", 0, 0.01);
     set("friction_coefficient", 0, 0.02);
@@ -184,6 +208,7 @@ int main(void) {
     RUN_TEST(slip_and_lift_are_told_once_in_a_run);
     RUN_TEST(a_warning_has_the_time_of_its_internal_step);
     RUN_TEST(a_warning_within_a_held_step_has_the_time_of_its_internal_step);
+    RUN_TEST(a_wheel_or_a_support_that_lifts_has_its_number);
     RUN_TEST(a_refused_step_gives_no_warning);
     RUN_TEST(a_support_that_lifts_is_told_and_slip_after_it);
     return UNITY_END();

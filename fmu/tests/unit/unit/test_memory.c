@@ -58,10 +58,44 @@ static void a_state_is_kept_and_written_as_far_as_there_is_memory(void) {
     OK(fmi2FreeFMUstate(c, NULL));
 }
 
+/* An instance, a kept state and one that was read, and all that a refusal had begun. */
+static void what_was_allocated_is_freed(void) {
+    static fmi2Byte bytes[65536];
+    static const fmi2CallbackFunctions callbacks = {log_2, calloc, free, NULL, NULL};
+    const int before = short_memory_blocks;
+    fmi2FMUstate kept = NULL, read = NULL;
+    size_t size = 0;
+    OK(fmi2GetFMUstate(c, &kept));
+    TEST_ASSERT_EQUAL_INT(before + 1, short_memory_blocks);
+    OK(fmi2SerializedFMUstateSize(c, kept, &size));
+    OK(fmi2SerializeFMUstate(c, kept, bytes, size));
+    TEST_ASSERT_EQUAL_INT(before + 1, short_memory_blocks);
+    OK(fmi2DeSerializeFMUstate(c, bytes, size, &read));
+    TEST_ASSERT_EQUAL_INT(before + 2, short_memory_blocks);
+    OK(fmi2FreeFMUstate(c, &read));
+    OK(fmi2FreeFMUstate(c, &kept));
+    TEST_ASSERT_NULL(kept);
+    TEST_ASSERT_EQUAL_INT(before, short_memory_blocks);
+    bytes[30]++;
+    ASSERT_REFUSED(fmi2DeSerializeFMUstate(c, bytes, size, &read), "damaged");
+    TEST_ASSERT_EQUAL_INT(before, short_memory_blocks);
+    TEST_ASSERT_NULL(fmi2Instantiate("one", fmi2CoSimulation, "{another}", "/nowhere", &callbacks, 0, 0));
+    TEST_ASSERT_NULL(make_2(fmi2CoSimulation, "{another}"));
+    TEST_ASSERT_NULL(
+        fmi3InstantiateCoSimulation("a", fmu_token_3, NULL, false, true, false, false, NULL, 1, NULL, log_3, NULL));
+    TEST_ASSERT_EQUAL_INT(before, short_memory_blocks);
+    fmi3Instance third = make_3(false);
+    TEST_ASSERT_EQUAL_INT(before + 2, short_memory_blocks); /* itself and its name */
+    fmi3FreeInstance(third);
+    fmi2FreeInstance(make_2(fmi2CoSimulation, fmu_token_2));
+    TEST_ASSERT_EQUAL_INT(before, short_memory_blocks);
+}
+
 int main(void) {
     UNITY_BEGIN();
     RUN_TEST(an_instance_needs_memory_for_itself_and_its_name);
     RUN_TEST(start_values_from_a_file_need_memory);
     RUN_TEST(a_state_is_kept_and_written_as_far_as_there_is_memory);
+    RUN_TEST(what_was_allocated_is_freed);
     return UNITY_END();
 }

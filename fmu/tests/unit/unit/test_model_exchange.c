@@ -24,6 +24,30 @@ static void begin(bool has_stop, double stop_s) {
 
 static const double here[STATES] = {0.5, -0.3, 0.2, 1, 2, 0.7, 0, 0, 0, 0};
 
+static void an_event_has_no_next_one(void) {
+    fmi2EventInfo info;
+    memset(&info, 0x7F, sizeof info);
+    OK(fmi2EnterInitializationMode(c));
+    OK(fmi2ExitInitializationMode(c));
+    OK(fmi2NewDiscreteStates(c, &info));
+    TEST_ASSERT_TRUE(!info.newDiscreteStatesNeeded && !info.terminateSimulation && !info.nextEventTimeDefined);
+    TEST_ASSERT_TRUE(!info.nominalsOfContinuousStatesChanged && !info.valuesOfContinuousStatesChanged);
+    TEST_ASSERT_TRUE(info.nextEventTime == 0);
+}
+
+/* As many as there are, and no further. */
+static void states_are_read_into_their_places_alone(void) {
+    double found[STATES + 1];
+    begin(false, 0);
+    found[STATES] = 77;
+    OK(fmi2GetContinuousStates(c, found, STATES));
+    TEST_ASSERT_TRUE(found[STATES] == 77);
+    OK(fmi2GetDerivatives(c, found, STATES));
+    TEST_ASSERT_TRUE(found[STATES] == 77);
+    OK(fmi2GetNominalsOfContinuousStates(c, found, STATES));
+    TEST_ASSERT_TRUE(found[STATES] == 77);
+}
+
 static void states_are_set_and_come_back(void) {
     double found[STATES], nominal[STATES];
     begin(false, 0);
@@ -160,6 +184,8 @@ static void adjoint_derivatives_are_the_transposed_ones(void) {
 
 int main(void) {
     UNITY_BEGIN();
+    RUN_TEST(an_event_has_no_next_one);
+    RUN_TEST(states_are_read_into_their_places_alone);
     RUN_TEST(states_are_set_and_come_back);
     RUN_TEST(rates_are_those_of_the_motion);
     RUN_TEST(single_states_may_be_set);

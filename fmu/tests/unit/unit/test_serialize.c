@@ -99,6 +99,7 @@ static void every_member_comes_back_in_another_instance(void) {
     model->plant.steps = 0x1020304050607080U;
     fill_sensors(&model->sensors);
     fill_clock(&instance()->clock);
+    TEST_ASSERT_EQUAL_size_t(9704, write()); /* another size is another STATE_VERSION */
     const fmu_clock clock = instance()->clock;
     const fmu_model before = *model;
     into_another(fmi2CoSimulation);
@@ -175,6 +176,30 @@ static void what_cannot_be_prepared_again_is_no_state(void) {
     OK(read(write()));
 }
 
+/* The method is a number in the bytes, which differ by it alone. */
+static void a_method_that_is_none_is_no_state(void) {
+    static fmi2Byte others[sizeof bytes];
+    fmu_model *model = &instance()->model;
+    size_t at = 0, differ = 0;
+    model->plant.integrator.method = laconic_method_by_number(1);
+    const size_t size = write();
+    memcpy(others, bytes, size);
+    model->plant.integrator.method = laconic_method_by_number(2);
+    TEST_ASSERT_EQUAL_size_t(size, write());
+    for (size_t k = 0; k < size - 8; k++)
+        if (bytes[k] != others[k]) differ++, at = k;
+    TEST_ASSERT_TRUE(differ == 1 && bytes[at] == 2);
+    for (int number = LACONIC_METHOD_COUNT - 1; number <= LACONIC_METHOD_COUNT; number++) {
+        bytes[at] = (fmi2Byte)number;
+        const uint32_t checksum = fmu_checksum((const uint8_t *)bytes, size - 8);
+        for (size_t k = 0; k < 4; k++) bytes[size - 8 + k] = (fmi2Byte)(checksum >> (8 * k));
+        if (number < LACONIC_METHOD_COUNT)
+            OK(read(size));
+        else
+            ASSERT_REFUSED(read(size), "are no possible state");
+    }
+}
+
 /* Before the model is started, what is in the plant does not count. */
 static void a_state_from_before_the_start_is_no_plant(void) {
     instance()->model.plant.vehicle.mass_kg = 0;
@@ -182,6 +207,25 @@ static void a_state_from_before_the_start_is_no_plant(void) {
     OK(fmi2EnterInitializationMode(c));
     set("mass_kg", 0, 3);
     OK(fmi2ExitInitializationMode(c));
+}
+
+/* States that were set and are not followed yet, and such that are: neither is rounded by the way through the plant. */
+static void states_of_model_exchange_come_back_to_the_last_bit(void) {
+    double state[10], again[10];
+    make(fmi2ModelExchange);
+    initialise();
+    OK(fmi2EnterContinuousTimeMode(c));
+    for (int n = 0; n < 60; n++) {
+        for (int k = 0; k < 10; k++) state[k] = again[k] = sin(n + 0.7 * k) * (1 + k) / 3;
+        OK(fmi2SetContinuousStates(c, state, 10));
+        if (n % 2) (void)get("energy_J", 0);
+        const size_t size = write();
+        for (int k = 0; k < 10; k++) again[k] = -1;
+        OK(fmi2SetContinuousStates(c, again, 10));
+        OK(read(size));
+        OK(fmi2GetContinuousStates(c, again, 10));
+        TEST_ASSERT_EQUAL_MEMORY(state, again, sizeof state);
+    }
 }
 
 static void states_of_model_exchange_are_taken_up_with_what_follows_from_them(void) {
@@ -216,7 +260,9 @@ int main(void) {
     RUN_TEST(every_member_comes_back_in_another_instance);
     RUN_TEST(a_state_before_the_first_step_keeps_its_method);
     RUN_TEST(what_cannot_be_prepared_again_is_no_state);
+    RUN_TEST(a_method_that_is_none_is_no_state);
     RUN_TEST(a_state_from_before_the_start_is_no_plant);
+    RUN_TEST(states_of_model_exchange_come_back_to_the_last_bit);
     RUN_TEST(states_of_model_exchange_are_taken_up_with_what_follows_from_them);
     return UNITY_END();
 }

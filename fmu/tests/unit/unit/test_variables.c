@@ -50,13 +50,18 @@ static void arrays_of_more_values_than_the_fast_path_keeps_are_read_and_set(void
 static void a_list_that_cannot_be_set_or_read_is_refused_whatever_its_number_of_values(void) {
     const fmi3ValueReference behind = ref("voltage_V", 0) << FMU_ELEMENT_SHIFT | 5, none = 0x7FFFFFFF;
     const fmi3ValueReference to_set[2] = {ref("voltage_V", 0), ref("mass_kg", 0)}, to_get[2] = {to_set[0], none};
-    double values[4] = {1, 2, 3, 4};
+    double values[4] = {1, 2, 3, 4}, five[5] = {5, 6, 7, 8, 9};
     fmi3Instance i = make_3(false);
     OK(fmi3EnterInitializationMode(i, false, 0, 0, false, 0));
     OK(fmi3ExitInitializationMode(i));
     ASSERT_REFUSED(fmi3SetFloat64(i, to_set, 2, values, 4), "mass_kg");
     ASSERT_REFUSED(fmi3GetFloat64(i, to_get, 2, values, 4), "there is no variable with the value reference");
     ASSERT_REFUSED(fmi3GetFloat64(i, &behind, 1, values, 0), "there is no variable with the value reference");
+    const fmi3ValueReference force = ref("body_force_N", 0), twice[2] = {to_set[0], to_set[0]};
+    ASSERT_REFUSED(fmi3SetFloat64(i, &force, 1, values, 4), "4 values given, but the variables have 2");
+    ASSERT_REFUSED(fmi3GetFloat64(i, &force, 1, values, 4), "4 values asked for, but the variables have 2");
+    ASSERT_REFUSED(fmi3SetFloat64(i, twice, 2, five, 5), "voltage_V has 4 values, but only 1 were left");
+    ASSERT_REFUSED(fmi3GetFloat64(i, twice, 2, five, 5), "voltage_V has 4 values, but only 1 were left");
     OK(fmi3GetFloat64(i, to_get, 1, values, 4));
     TEST_ASSERT_TRUE(values[0] == 0 && values[3] == 0);
     fmi3FreeInstance(i);

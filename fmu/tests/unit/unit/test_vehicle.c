@@ -218,6 +218,16 @@ static void rates_beyond_the_range_are_refused(void) {
     ASSERT_REFUSED(fmi2GetNominalsOfContinuousStates(c, rate, 11), "there are 10 continuous states, not 11");
 }
 
+/* A wheel that slips, by its own torque alone: the last of the states. */
+static void a_rate_beyond_the_range_is_refused_by_its_number(void) {
+    double rate[14];
+    with_wheel_states();
+    initialise();
+    OK(fmi2GetDerivatives(c, rate, 14));
+    set("axle_torque_Nm", 4, 1.7e308);
+    ASSERT_REFUSED(fmi2GetDerivatives(c, rate, 14), "the derivative of continuous state 14 of 14 leaves the range");
+}
+
 static void states_lie_within_what_doubles_tell_apart(void) {
     double state[10] = {0};
     make(fmi2ModelExchange);
@@ -227,6 +237,13 @@ static void states_lie_within_what_doubles_tell_apart(void) {
     OK(fmi2SetContinuousStates(c, state, 10));
     state[4] = -1e18;
     OK(fmi2SetContinuousStates(c, state, 10));
+    for (int k = 0; k < 10; k++) {
+        char told[80];
+        double one[10] = {0};
+        one[k] = 1.1e18;
+        snprintf(told, sizeof told, "continuous state %d of 10 cannot be 1.1e+18: take a smaller step", k + 1);
+        ASSERT_DISCARDED(fmi2SetContinuousStates(c, one, 10), told);
+    }
     state[4] = -1.1e18;
     ASSERT_DISCARDED(fmi2SetContinuousStates(c, state, 10), "continuous state 5 of 10 cannot be -1.1e+18");
     state[4] = 1.1e18;
@@ -273,6 +290,7 @@ int main(void) {
     RUN_TEST(a_step_starts_a_model_that_must_be_started);
     RUN_TEST(a_refused_step_with_friction_is_taken_back);
     RUN_TEST(rates_beyond_the_range_are_refused);
+    RUN_TEST(a_rate_beyond_the_range_is_refused_by_its_number);
     RUN_TEST(states_lie_within_what_doubles_tell_apart);
     RUN_TEST(nominals_are_those_of_the_description);
     RUN_TEST(a_completed_step_looks_for_warnings_only_where_there_are_some);
