@@ -43,6 +43,11 @@ def test_each_operator_makes_its_faults(tmp_path):
     assert ("a, b", "b, a") in found                                                   # arguments
 
 
+def test_what_makes_functions_is_not_left_out(tmp_path):
+    found = changes(tmp_path, "MAKES(f, int)\nMAKES(g, float);\nint h(void) { MAKES(i); return 2; }\n")
+    assert [old for old, new in found if new == ";"] == ["MAKES(i);"]
+
+
 def test_comments_have_none_and_an_array_only_becomes_shorter(tmp_path):
     found = changes(tmp_path)
     assert not any("9" in old for old, _ in found)
