@@ -125,8 +125,8 @@ def conditions(node: Node) -> Iterator[Change]:
 
 
 def statements(node: Node) -> Iterator[Change]:
-    """A statement is left out: an assignment, a call, break, continue, or a member of an initialiser. What stands outside
-    of functions is a macro that makes some: without them nothing links."""
+    """A statement is left out: an assignment, a call, break, continue, or a member of an initialiser. What stands
+    outside of functions is a macro that makes some: without them nothing links."""
     if node.type in ("expression_statement", "break_statement", "continue_statement") and _text(node) != ";":
         if _is_in_function(node) and not _text(node).startswith("(void)"):
             yield node.start_byte, node.end_byte, ";"
