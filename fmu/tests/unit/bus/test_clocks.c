@@ -99,16 +99,6 @@ static void a_clock_that_was_ready_becomes_so_anew(void) {
     TEST_ASSERT_TRUE(is_active(tx_clock()) && offered() == 24);
 }
 
-static void clocks_of_one_list_are_set_each(void) {
-    const fmi3ValueReference clocks[2] = {of_terminal("Node1", "Rx_Clock"), rx_clock()};
-    const bool on[2] = {true, true}, second[2] = {false, true};
-    begin();
-    OK(fmi3SetClock(c, clocks, 2, on));
-    TEST_ASSERT_TRUE(instance()->model.port[0].rx_clock && instance()->model.port[1].rx_clock);
-    OK(fmi3SetClock(c, clocks, 2, second));
-    TEST_ASSERT_TRUE(!instance()->model.port[0].rx_clock && instance()->model.port[1].rx_clock);
-}
-
 /* An answer to what comes in the same iteration waits for the next step. */
 static void an_answer_waits_for_the_next_step(void) {
     const uint8_t wrong[9] = {0x99, 0, 0, 0, 9, 0, 0, 0, 1};
@@ -366,17 +356,6 @@ static fmi3Instance as(bool event_mode, bool exchange) {
                                        NULL);
 }
 
-static void no_step_ends_early(void) {
-    fmu_step_end end = {.early = true};
-    begin();
-    OK(fmi3EnterStepMode(c));
-    OK((int)fmu_do_step(instance(), 0, 0.25, &end));
-    TEST_ASSERT_TRUE(!end.early && end.time_s == 0.25);
-    end.early = true;
-    TEST_ASSERT_EQUAL_INT(FMU_ERROR, fmu_do_step(instance(), 0.25, -1, &end));
-    TEST_ASSERT_TRUE(!end.early && end.time_s == 0.25);
-}
-
 static void a_bus_needs_event_mode_and_no_model_exchange(void) {
     TEST_ASSERT_NULL(as(false, false));
     ASSERT_LOGGED("the clocks of a bus need event mode");
@@ -432,7 +411,6 @@ int main(void) {
     RUN_TEST(a_triggered_clock_activates_in_the_second_iteration);
     RUN_TEST(what_was_not_asked_for_stays);
     RUN_TEST(a_clock_that_was_ready_becomes_so_anew);
-    RUN_TEST(clocks_of_one_list_are_set_each);
     RUN_TEST(an_answer_waits_for_the_next_step);
     RUN_TEST(a_clock_that_the_importer_sets_sends_all);
     RUN_TEST(bytes_count_only_with_their_clock);
@@ -444,7 +422,6 @@ int main(void) {
     RUN_TEST(no_clock_is_periodic);
     RUN_TEST(an_instance_that_is_none_has_no_clocks);
     RUN_TEST(steps_of_any_length_are_taken_but_not_backwards);
-    RUN_TEST(no_step_ends_early);
     RUN_TEST(a_bus_needs_event_mode_and_no_model_exchange);
     RUN_TEST(what_belongs_to_model_exchange_is_refused);
     RUN_TEST(a_state_is_kept_but_not_written);
