@@ -21,8 +21,8 @@ Row = dict[str, Any]
 def rows(rounds: int) -> list[Row]:
     """Each with its time and instructions, over those of the whole core and of the kernel by hand; BadInput where
     there is no compiler."""
-    if not HOST.present:
-        raise BadInput("no gcc with its C library, or no sources of the core here: install gcc, work in a checkout")
+    if lacking := HOST.missing:
+        raise BadInput(f"what: step needs {lacking}")
     with TemporaryDirectory() as folder:
         return rows_of(Workshop(Path(folder)), rounds)
 

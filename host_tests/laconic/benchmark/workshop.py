@@ -41,11 +41,19 @@ class Target:
 
     @property
     def present(self) -> bool:
-        """Whether its compiler (with a C library, which comes apart), its emulator and our sources are here."""
-        if sources_missing():
-            return False
-        emulator = not self.machine or shutil.which("qemu-system-arm") is not None
-        return emulator and can_link(self.tool("gcc"), self.flags, bare=bool(self.machine))
+        """Whether its compiler, its emulator and our sources are here."""
+        return not self.missing
+
+    @property
+    def missing(self) -> str:
+        """What of that is not, with what to do; empty where all is."""
+        if lacking := sources_missing():
+            return lacking
+        if self.machine and shutil.which("qemu-system-arm") is None:
+            return "qemu-system-arm: install it"
+        if not can_link(self.tool("gcc"), self.flags, bare=bool(self.machine)):
+            return f"{self.tool('gcc')} with its C library, which comes apart: install both"
+        return ""
 
     def windows(self, real: str) -> tuple[int, ...]:
         """Numbers of steps to try: twice as many must fit the 24-bit counter."""

@@ -21,8 +21,8 @@ FLAGS = ("-std=c99", "-O2", "-ffp-contract=off")
 
 def soak(minutes: float, seed: int, advance: Callable[[float], None]) -> dict[str, Any]:
     """Pairs with new seeds until the time is up or one differs."""
-    if not HOST.present:
-        raise BadInput("soak soft-double: no gcc with its C library here, or no sources of the project: install both")
+    if lacking := HOST.missing:
+        raise BadInput(f"soak soft-double: needs {lacking}")
     began, done, wrong = time.monotonic(), 0, ""
     with TemporaryDirectory() as folder:
         program = Path(folder) / "soak_soft_double"

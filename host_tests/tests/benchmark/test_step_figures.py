@@ -7,7 +7,8 @@ import pytest
 from laconic.benchmark import step_cost
 from laconic.benchmark.boards import board_row
 from laconic.benchmark.counting import cachegrind_present, host_instructions
-from laconic.benchmark.workshop import HOST, M4F, Variant, Workshop
+from laconic.benchmark.workshop import HOST, M4F, Target, Variant, Workshop
+from laconic.errors import BadInput
 from laconic.scene import read_scene
 
 HOST_MOST = {("double", "whole"): 593, ("double", "trimmed"): 582, ("single", "whole"): 575}
@@ -26,6 +27,15 @@ def workshop(tmp_path_factory: pytest.TempPathFactory) -> Workshop:
 
 def rk4(real: str, *, trim: bool, step_s: float, optimisation: str = "-O2") -> Variant:
     return Variant(read_scene("s1").with_run(method="rk4", step_s=step_s), real, optimisation, trim)
+
+
+def test_what_a_measurement_lacks_is_named_with_its_remedy(monkeypatch: pytest.MonkeyPatch):
+    none = Target("none", "no-such-")
+    assert none.missing == "no-such-gcc with its C library, which comes apart: install both" and not none.present
+    assert Target("board", "no-such-", machine="none").missing.startswith(("qemu-system-arm: install", "no-such-gcc"))
+    monkeypatch.setattr(step_cost, "HOST", none)
+    with pytest.raises(BadInput, match=r"^what: step needs no-such-gcc with its C library, which comes apart: install"):
+        step_cost.rows(1)
 
 
 @needs_counter

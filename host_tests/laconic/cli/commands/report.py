@@ -19,7 +19,8 @@ from laconic.scene import read_scene
 @click.command("report")
 @click.option("--scene", "scenes", type=SceneName(), multiple=True, metavar="SCENE",
               help="About this robot, instead of the project; may be given several times.")
-@click.option("-o", "--out", type=OutputFolder(), metavar="DIR", help="Folder; else report/ of the build tree.")
+@click.option("-o", "--out", type=OutputFolder(), metavar="DIR",
+              help="Folder; else report/ of the build tree, or laconic-report/ here where there is none.")
 @click.option("--quick", is_flag=True, help="Fewer repetitions and one board: rough figures, much sooner.")
 @json_flag("Print what is shown as JSON.")
 def command(scenes: tuple[str, ...], out: Path | None, quick: bool, json_wanted: bool) -> None:
