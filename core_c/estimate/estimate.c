@@ -54,38 +54,57 @@ static bool same_input(const laconic_input *a, const laconic_input *b) {
     return true;
 }
 
-/* The parabola through three samples, a quarter of a step after its start, or before its end. */
-static void quarter(laconic_input *at, const laconic_input *near, const laconic_input *middle,
-                    const laconic_input *far) {
+/* The parabola through three samples at `share` of the step. */
+static void sample_at(laconic_input *at, const laconic_input samples[3], real share) {
+    const real first = R(2) * (share - R(0.5)) * (share - R(1)), middle = R(4) * share * (R(1) - share),
+               last = R(2) * share * (share - R(0.5));
     real *out = (real *)(void *)at;
     for (uint32_t k = 0; k < INPUT_NUMBERS; k++)
-        out[k] = R(0.375) * numbers_of(near)[k] + R(0.75) * numbers_of(middle)[k] - R(0.125) * numbers_of(far)[k];
+        out[k] = first * numbers_of(&samples[0])[k] + middle * numbers_of(&samples[1])[k] +
+                 last * numbers_of(&samples[2])[k];
 }
 
-static laconic_status half_steps(laconic_state *twin, const laconic_model *model, const laconic_integrator *halves,
-                                 const laconic_input *inputs, int32_t count) {
-    laconic_input between;
+/* One step of the plant in equal parts. */
+static laconic_status take_parts(laconic_state *twin, const laconic_model *model, const laconic_integrator *part,
+                                 const laconic_input *inputs, int32_t count, int32_t parts) {
+    laconic_input at[3];
     laconic_status status = LACONIC_OK;
     if (count == 1) {
-        laconic_run(model, halves, twin, &inputs[0], 2, &status);
+        laconic_run(model, part, twin, &inputs[0], (uint64_t)parts, &status);
         return status;
     }
-    quarter(&between, &inputs[0], &inputs[1], &inputs[2]);
-    status = laconic_step_sampled(model, halves, twin, &inputs[0], &between, &inputs[1]);
-    if (status != LACONIC_OK) return status;
-    quarter(&between, &inputs[2], &inputs[1], &inputs[0]);
-    return laconic_step_sampled(model, halves, twin, &inputs[1], &between, &inputs[2]);
+    for (int32_t j = 0; j < parts && status == LACONIC_OK; j++) {
+        for (int32_t k = 0; k < 3; k++) sample_at(&at[k], inputs, (real)(2 * j + k) / (real)(2 * parts));
+        status = laconic_step_sampled(model, part, twin, &at[0], &at[1], &at[2]);
+    }
+    return status;
 }
 
-/* By the finer method, and where that refuses by the plant's own; where that does, too, there are none. */
+#define MOST_PARTS 64
+
+/* By the finer method in so many parts that it takes them: it refuses those that yaw too far. */
+static bool take_finer_parts(laconic_estimate *estimate, const laconic_plant *plant, const laconic_input *inputs,
+                             int32_t count) {
+    laconic_state *twin = &estimate->twin;
+    laconic_integrator finer = estimate->finer;
+    for (int32_t parts = 2; parts <= MOST_PARTS; parts *= 2) {
+        if (parts > 2 && laconic_integrator_prepare(&finer, estimate->finer.method, &plant->model,
+                                                    plant->integrator.step_s / (real)parts, NULL) != LACONIC_OK)
+            return false;
+        *twin = plant->state;
+        if (take_parts(twin, &plant->model, &finer, inputs, count, parts) == LACONIC_OK) return true;
+        if (estimate->finer.method == plant->integrator.method) return false; /* its own two follow anyway */
+    }
+    return false;
+}
+
+/* And where that refuses them all, two by the plant's own; where that does, too, there are none. */
 static bool take_half_steps(laconic_estimate *estimate, const laconic_plant *plant, const laconic_input *inputs,
                             int32_t count) {
-    laconic_state *twin = &estimate->twin;
-    *twin = plant->state;
-    if (half_steps(twin, &plant->model, &estimate->finer, inputs, count) == LACONIC_OK) return true;
-    *twin = plant->state;
-    if (half_steps(twin, &plant->model, &estimate->halves, inputs, count) == LACONIC_OK) return true;
-    *twin = plant->state;
+    if (take_finer_parts(estimate, plant, inputs, count)) return true;
+    estimate->twin = plant->state;
+    if (take_parts(&estimate->twin, &plant->model, &estimate->halves, inputs, count, 2) == LACONIC_OK) return true;
+    estimate->twin = plant->state;
     return false;
 }
 
@@ -180,12 +199,12 @@ state_error laconic_estimate_error_now(const laconic_estimate *estimate, const l
 
 static real larger_of(real a, real b) { return a > b ? a : b; }
 
-/* Length of a next window: one step after a change of the input, then doubled, within K and the angle. */
+/* Length of a next window: one step after a change of the input and again one, then doubled, within K and the angle. */
 static int32_t next_length(const laconic_estimate *estimate, const laconic_plant *plant, bool changed) {
     const real speed = laconic_root(square(zeta_of(&plant->state)));
     const real turn = larger_of(estimate->angle_per_zeta[0], estimate->angle_per_zeta[1]) * speed;
     const real angle = turn * plant->integrator.step_s;
-    int32_t length = changed ? 1 : 2 * estimate->length;
+    int32_t length = changed || estimate->last_length == 0 ? 1 : 2 * estimate->length;
     if (length > estimate->most_steps) length = estimate->most_steps;
     while (length > 1 && (real)length * angle > WINDOW_ANGLE) length /= 2;
     return length;
@@ -274,8 +293,8 @@ static void end_window(laconic_estimate *estimate, const laconic_plant *plant) {
 
 static void begin_window(laconic_estimate *estimate, const laconic_plant *plant, const laconic_input *inputs,
                          int32_t count, bool changed) {
-    estimate->last_length = changed ? 0 : estimate->taken;
     estimate->length = next_length(estimate, plant, changed);
+    estimate->last_length = changed ? 0 : estimate->taken;
     estimate->taken = 0;
     estimate->start = plant->state;
     laconic_forcing_of(&estimate->forcing, &plant->model, &inputs[count / 2]);

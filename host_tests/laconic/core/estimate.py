@@ -49,7 +49,7 @@ class Errors:
     rounding: ErrorSizes
     """The part of `now` that rounding makes whatever the step is."""
     unknown: int
-    """Windows in which the half steps were refused: all that their first step changed counts as error. 0: none."""
+    """Steps of which no half was taken: all that they change counts as error. 0: none."""
 
 
 class Estimate:

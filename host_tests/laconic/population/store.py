@@ -58,8 +58,8 @@ class Store:
         except (ValueError, KeyError, TypeError):
             raise BadInput(f"{self.path}: is no file of a population; give another --out") from None
         if different:
-            raise BadInput(f"{self.path}: holds a population of another {', '.join(different)}; give another --out, or "
-                           "remove it")
+            raise BadInput(f"{self.path}: holds a population that differs in {', '.join(different)}; give another "
+                           "--out, or remove it")
         return rows
 
     def _write_whole(self) -> None:
