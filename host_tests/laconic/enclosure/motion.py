@@ -33,7 +33,7 @@ from laconic.enclosure.equation import Equation
 from laconic.enclosure.flow import Frame, carried, flow_of
 from laconic.enclosure.loads import Forcing, Stretch, forcing_of
 from laconic.enclosure.radii import Radii, radii_of
-from laconic.enclosure.series import Rates, Series, Start, slow_motion, step_for, taylor
+from laconic.enclosure.series import Rates, Series, Start, serves, slow_motion, step_for, taylor
 from laconic.enclosure.state import Beginning, Sample, State, Taken
 from laconic.errors import ResultFails
 
@@ -175,7 +175,8 @@ class Motion:
             if series is not None:
                 off = length([series.zeta[j][0] - begin.zeta[j] for j in fast])
                 near = off <= self.scale * self.tolerance * 1024
-                return (series if near else None), step_for(series, self.scale, self.tolerance, left_s)
+                serves_s = serves(series, unit_s, left_s)
+                return (series if near else None), step_for(series, self.scale, self.tolerance, serves_s)
             unit_s /= 4.0
         return None, 0.0
 

@@ -180,6 +180,13 @@ def downwards(source: Vector, decay: arb, unit_s: arb) -> Vector:
     return found[::-1]
 
 
+def serves(series: Series, unit_s: float, bound_s: float) -> float:
+    """The time that a slow motion may be asked for: one unit where its passes have settled before they came to the last
+    powers, of which each finds one more. Then the last terms are 0 and tell nothing."""
+    found = (all(x == 0 for x in part[2:]) or any(x != 0 for x in part[-2:]) for part in series.parts())
+    return bound_s if all(found) else min(unit_s, bound_s)
+
+
 def step_for(series: Series, scale: arb, tolerance: arb, bound_s: float) -> float:
     """The time over which the last two terms stay below the tolerance, at most `bound_s`."""
     order = len(series.cosine) - 1

@@ -39,6 +39,33 @@ duration_s = 1.0
 step_s = 0.1
 """
 
+# It yaws at 30 rad/s, so that its place is a quadrature over many turns, while all else is at rest.
+TURNING = """name = "turning"
+[vehicle]
+mass_kg = 10.0
+yaw_inertia_kgm2 = 0.5
+com_x_m = 0.05
+wheel_radius_m = 0.1
+wheel_inertia_kgm2 = 0.01
+motor_gain_Nm_per_V = 1.0
+motor_damping_Nms = 10.0
+{wheels}
+[run]
+duration_s = 2.1
+step_s = 0.3
+"""
+TURNING_WHEEL = """[[vehicle.wheel]]
+kind = "omni"
+x_m = {x_m}
+y_m = {y_m}
+axle_deg = {axle_deg}
+[[input]]
+signal = "voltage_V[{number}]"
+kind = "steps"
+t_s = [0.0]
+value = [{voltage_V}]
+"""
+
 
 @pytest.fixture
 def puck(tmp_path) -> Path:
@@ -50,6 +77,20 @@ def puck(tmp_path) -> Path:
 def answer(capsys, *arguments: object) -> tuple[int, dict]:
     status = run([*map(str, arguments), "--json"])
     return status, json.loads(capsys.readouterr().out)
+
+
+def test_the_place_of_a_robot_that_turns_for_long_is_enclosed(tmp_path):
+    """A slow motion's series may settle before its passes come to the last powers; then it serves no longer time."""
+    wheels = "".join(TURNING_WHEEL.format(number=number, x_m=x_m, y_m=y_m, axle_deg=axle_deg, voltage_V=voltage_V)
+                     for number, (x_m, y_m, axle_deg, voltage_V) in enumerate(
+                         ((0.3, 0.0, 0, 900.0), (-0.15, 0.26, 120, 900.9), (-0.15, -0.26, 240, 901.8)), start=1))
+    path = tmp_path / "turning.toml"
+    path.write_text(TURNING.format(wheels=wheels), encoding="utf-8")
+    scene = read_scene(path)
+    reading = reading_of_file(scene)
+    end = enclose(reading, reading.instants([scene.steps()]), None, "", shown=False).end.row()
+    assert end[5] > 60.0
+    assert all(x.rad() < 1e-16 for x in end)
 
 
 @pytest.mark.parametrize("name", SCENES)
