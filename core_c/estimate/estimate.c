@@ -82,28 +82,33 @@ static laconic_status take_parts(laconic_state *twin, const laconic_model *model
 
 #define MOST_PARTS 64
 
-/* By the finer method in so many parts that it takes them: it refuses those that yaw too far. */
-static bool take_finer_parts(laconic_estimate *estimate, const laconic_plant *plant, const laconic_input *inputs,
-                             int32_t count) {
-    laconic_state *twin = &estimate->twin;
-    laconic_integrator finer = estimate->finer;
-    for (int32_t parts = 2; parts <= MOST_PARTS; parts *= 2) {
-        if (parts > 2 && laconic_integrator_prepare(&finer, estimate->finer.method, &plant->model,
-                                                    plant->integrator.step_s / (real)parts, NULL) != LACONIC_OK)
+/* By the finer method in so many more parts that it takes them: it refuses those that yaw too far. */
+static bool take_shorter_parts(laconic_estimate *estimate, const laconic_plant *plant, const laconic_input *inputs,
+                               int32_t count) {
+    laconic_integrator part;
+    for (int32_t parts = 4; parts <= MOST_PARTS; parts *= 2) {
+        if (laconic_integrator_prepare(&part, estimate->finer.method, &plant->model,
+                                       plant->integrator.step_s / (real)parts, NULL) != LACONIC_OK)
             return false;
-        *twin = plant->state;
-        if (take_parts(twin, &plant->model, &finer, inputs, count, parts) == LACONIC_OK) return true;
-        if (estimate->finer.method == plant->integrator.method) return false; /* its own two follow anyway */
+        estimate->twin = plant->state;
+        if (take_parts(&estimate->twin, &plant->model, &part, inputs, count, parts) == LACONIC_OK) return true;
     }
     return false;
 }
 
-/* And where that refuses them all, two by the plant's own; where that does, too, there are none. */
+static bool take_two(laconic_estimate *estimate, const laconic_plant *plant, const laconic_integrator *half,
+                     const laconic_input *inputs, int32_t count) {
+    estimate->twin = plant->state;
+    return take_parts(&estimate->twin, &plant->model, half, inputs, count, 2) == LACONIC_OK;
+}
+
+/* By the finer method; where that refuses all parts two by the plant's own, and where that does, too, there are none. */
 static bool take_half_steps(laconic_estimate *estimate, const laconic_plant *plant, const laconic_input *inputs,
                             int32_t count) {
-    if (take_finer_parts(estimate, plant, inputs, count)) return true;
-    estimate->twin = plant->state;
-    if (take_parts(&estimate->twin, &plant->model, &estimate->halves, inputs, count, 2) == LACONIC_OK) return true;
+    if (take_two(estimate, plant, &estimate->finer, inputs, count)) return true;
+    if (estimate->finer.method != plant->integrator.method && take_shorter_parts(estimate, plant, inputs, count))
+        return true;
+    if (take_two(estimate, plant, &estimate->halves, inputs, count)) return true;
     estimate->twin = plant->state;
     return false;
 }
