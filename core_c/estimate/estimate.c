@@ -102,7 +102,7 @@ static bool take_two(laconic_estimate *estimate, const laconic_plant *plant, con
     return take_parts(&estimate->twin, &plant->model, half, inputs, count, 2) == LACONIC_OK;
 }
 
-/* By the finer method; where that refuses all parts two by the plant's own, and where that does, too, there are none. */
+/* By the finer method; where that refuses all parts, two by the plant's own; where that does, too, there are none. */
 static bool take_half_steps(laconic_estimate *estimate, const laconic_plant *plant, const laconic_input *inputs,
                             int32_t count) {
     if (take_two(estimate, plant, &estimate->finer, inputs, count)) return true;
