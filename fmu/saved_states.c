@@ -7,7 +7,7 @@
 
 #include "model_interface.h"
 
-#define STATE_VERSION 7U
+#define STATE_VERSION 8U
 static const char magic[8] = {'L', 'A', 'C', 'S', 'T', 'A', 'T', 'E'};
 
 struct fmu_snapshot {

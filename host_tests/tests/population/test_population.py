@@ -104,7 +104,7 @@ def test_a_run_that_was_ended_goes_on_to_the_same_bytes(sample, tmp_path):
 
 
 def test_the_folder_of_another_population_is_refused(sample):
-    with pytest.raises(BadInput, match="another seed, vehicles; give another --out"):
+    with pytest.raises(BadInput, match="differs in seed, vehicles; give another --out"):
         soak(1.0, SEED + 1, lambda _: None, vehicles=3, out=sample[0])
     (other := sample[0].parent / "other").mkdir()
     (other / "population.jsonl").write_text("[3]\n")

@@ -97,7 +97,7 @@ static void damaged_bytes_are_refused_whichever_they_are(void) {
     ASSERT_REFUSED(fmi2DeSerializeFMUstate(c, NULL, size, &read), "are missing (NULL)");
     ASSERT_REFUSED(fmi2DeSerializeFMUstate(c, bytes, size, NULL), "are missing (NULL)");
     bytes[8]++; /* the version */
-    ASSERT_REFUSED(fmi2DeSerializeFMUstate(c, bytes, size, &read), "has format version 8, this FMU reads 7");
+    ASSERT_REFUSED(fmi2DeSerializeFMUstate(c, bytes, size, &read), "has format version 9, this FMU reads 8");
     TEST_ASSERT_NULL(read);
 }
 
