@@ -12,8 +12,8 @@
  *           Jacobian of rk4. Exact but for rounding, about 1e-13 of the largest number of the same kind in double.
  *           Where an input turns the vehicle by radians within a step of exponential-gauss-8, its rounds may end
  *           before they have settled. The derivatives are then of those rounds, as the step is, and take longer. From
- *           rest such rounds can settle where those of every motion beside it diverge, whose steps are refused: there
- *           the derivatives are as large as those rounds make them. Take a smaller step.
+ *           rest such rounds can settle where those of motions beside it diverge: there the derivatives are as large
+ *           as those rounds make them. Take a smaller step.
  * State     here (ν, x, y, θ, χ): 6 + N numbers, in SI units and radians. ν before a step is projected onto the
  *           motions that the constraints allow, as laconic_state_project() does, so a direction that a constraint
  *           forbids has no effect on the velocity, and ν after a step obeys all constraints.

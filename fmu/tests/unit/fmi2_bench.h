@@ -3,6 +3,7 @@
 #define FMI2_BENCH_H
 
 #include "fmi_bench.h"
+#include "model_interface.h"
 
 static fmi2Component c;
 
@@ -12,6 +13,18 @@ static inline void make(fmi2Type kind) {
     fmi2FreeInstance(c);
     c = make_2(kind, fmu_token_2);
     TEST_ASSERT_NOT_NULL(c);
+}
+
+/* For setUp and tearDown. */
+static inline void begin_test(fmi2Type kind) {
+    log_clear();
+    c = NULL;
+    make(kind);
+}
+
+static inline void end_test(void) {
+    fmi2FreeInstance(c);
+    c = NULL;
 }
 
 static inline fmi2Status try_set(const char *name, uint32_t element, double value) {
@@ -41,6 +54,14 @@ static inline double get(const char *name, uint32_t element) {
     double value = NOT_A_NUMBER;
     OK(try_get(name, element, &value));
     return value;
+}
+
+/* A Model Exchange on ground with friction, whose wheels have angles and speeds of their own. */
+static inline void with_wheel_states(void) {
+    make(fmi2ModelExchange);
+    set("friction_coefficient", 0, 0);
+    set("ground_friction_coefficient", 0, 0.4);
+    fmu_model_made(&instance()->model);
 }
 
 static inline void initialise(void) {

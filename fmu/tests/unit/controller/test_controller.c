@@ -3,15 +3,8 @@
 #include "fmi2_bench.h"
 #include "model_interface.h"
 
-void setUp(void) {
-    log_clear();
-    c = NULL;
-    make(fmi2CoSimulation);
-}
-void tearDown(void) {
-    fmi2FreeInstance(c);
-    c = NULL;
-}
+void setUp(void) { begin_test(fmi2CoSimulation); }
+void tearDown(void) { end_test(); }
 
 /* Start values of the description. */
 #define KP 0.5

@@ -2,15 +2,8 @@
  * the reasons why a step has none. */
 #include "saved_bench.h"
 
-void setUp(void) {
-    log_clear();
-    c = NULL;
-    make(fmi2CoSimulation);
-}
-void tearDown(void) {
-    fmi2FreeInstance(c);
-    c = NULL;
-}
+void setUp(void) { begin_test(fmi2CoSimulation); }
+void tearDown(void) { end_test(); }
 
 static const struct {
     const char *start, *known; /* the start value, and the state or input by which the derivative is */

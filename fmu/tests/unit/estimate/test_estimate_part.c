@@ -2,15 +2,8 @@
  * changes, slopes, sensors and refusals; and the bits of the motion stay. */
 #include "saved_bench.h"
 
-void setUp(void) {
-    log_clear();
-    c = NULL;
-    make(fmi2CoSimulation);
-}
-void tearDown(void) {
-    fmi2FreeInstance(c);
-    c = NULL;
-}
+void setUp(void) { begin_test(fmi2CoSimulation); }
+void tearDown(void) { end_test(); }
 
 /* The description's start value is "yes". */
 static void without_estimate(void) {

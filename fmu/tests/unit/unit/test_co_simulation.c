@@ -2,15 +2,8 @@
 #include "fmi2_bench.h"
 #include "model_interface.h"
 
-void setUp(void) {
-    log_clear();
-    c = NULL;
-    make(fmi2CoSimulation);
-}
-void tearDown(void) {
-    fmi2FreeInstance(c);
-    c = NULL;
-}
+void setUp(void) { begin_test(fmi2CoSimulation); }
+void tearDown(void) { end_test(); }
 
 static void begin(double start_s, bool has_stop, double stop_s) {
     OK(fmi2SetupExperiment(c, fmi2False, 0, start_s, has_stop, stop_s));

@@ -3,15 +3,8 @@
 #include "fmi2_bench.h"
 #include "model_interface.h"
 
-void setUp(void) {
-    log_clear();
-    c = NULL;
-    make(fmi2CoSimulation);
-}
-void tearDown(void) {
-    fmi2FreeInstance(c);
-    c = NULL;
-}
+void setUp(void) { begin_test(fmi2CoSimulation); }
+void tearDown(void) { end_test(); }
 
 static void ground_with_friction(void) {
     set("step_s", 0, 0.01);
@@ -134,7 +127,7 @@ static void a_state_with_friction_is_taken_up_again(void) {
 }
 
 /* What a scene with [ground] makes of the FMU: wheel speeds are states. */
-static void with_wheel_states(void) {
+static void with_drag_and_wheel_states(void) {
     make(fmi2ModelExchange);
     ground_with_friction();
     fmu_model_made(&instance()->model);
@@ -145,7 +138,7 @@ static void model_exchange_takes_friction_where_it_has_states_for_it(void) {
     set("friction_coefficient", 0, 0);
     set("ground_friction_coefficient", 0, 0.4);
     ASSERT_REFUSED(initialise_refused(), "has no states for wheels that slip");
-    with_wheel_states();
+    with_drag_and_wheel_states();
     set("ground_friction_coefficient", 0, 0);
     set("ground_roller_drag", 0, 0);
     set("ground_axle_friction_Nm", 0, 0);
@@ -158,7 +151,7 @@ static void rates_of_wheels_that_slip_are_those_of_the_smooth_law(void) {
     double state[SLIP_STATES], rate[SLIP_STATES], back[SLIP_STATES], wheel_rate[LACONIC_MAX_WHEELS];
     laconic_input held;
     laconic_rates rates;
-    with_wheel_states();
+    with_drag_and_wheel_states();
     set_flag("wheel_locked", 4);
     initialise();
     OK(fmi2EnterContinuousTimeMode(c));
@@ -189,7 +182,7 @@ static void contacts_by_the_smooth_law_slip_or_lift(void) {
     for (int k = 0; k < SLIP_STATES; k++) state[k] = k < 6 ? 0.2 * k - 0.3 : 0.7 * k - 6;
     for (int high = 0; high < 2; high++) {
         int of_state[3] = {0};
-        with_wheel_states();
+        with_drag_and_wheel_states();
         set("com_z_m", 0, high ? 5 : 0.01);
         initialise();
         OK(fmi2EnterContinuousTimeMode(c));

@@ -5,15 +5,8 @@
 
 #define FMU_SLIP 1U /* of fmu_instance.warnings_given */
 
-void setUp(void) {
-    log_clear();
-    c = NULL;
-    make(fmi2CoSimulation);
-}
-void tearDown(void) {
-    fmi2FreeInstance(c);
-    c = NULL;
-}
+void setUp(void) { begin_test(fmi2CoSimulation); }
+void tearDown(void) { end_test(); }
 
 static fmi2Component quiet(const fmi2CallbackFunctions *callbacks) {
     fmi2FreeInstance(c);

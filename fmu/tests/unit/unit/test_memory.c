@@ -10,8 +10,7 @@ void setUp(void) {
 }
 void tearDown(void) {
     short_memory_left = -1;
-    fmi2FreeInstance(c);
-    c = NULL;
+    end_test();
 }
 
 static void an_instance_needs_memory_for_itself_and_its_name(void) {

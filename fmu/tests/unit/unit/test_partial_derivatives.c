@@ -7,15 +7,8 @@
 
 static const double here[STATES] = {0.5, -0.3, 0.2, 1, 2, 0.7, 0.1, 0.2, 0.3, 0.4};
 
-void setUp(void) {
-    log_clear();
-    c = NULL;
-    make(fmi2ModelExchange);
-}
-void tearDown(void) {
-    fmi2FreeInstance(c);
-    c = NULL;
-}
+void setUp(void) { begin_test(fmi2ModelExchange); }
+void tearDown(void) { end_test(); }
 
 static void at_here(void) {
     initialise();

@@ -1,22 +1,8 @@
 /* Tests of vehicle/serialize.c: bytes of states that could not be, and states of Model Exchange with what follows. */
 #include "saved_bench.h"
 
-void setUp(void) {
-    log_clear();
-    c = NULL;
-    make(fmi2CoSimulation);
-}
-void tearDown(void) {
-    fmi2FreeInstance(c);
-    c = NULL;
-}
-
-static void with_wheel_states(void) {
-    make(fmi2ModelExchange);
-    set("friction_coefficient", 0, 0);
-    set("ground_friction_coefficient", 0, 0.4);
-    fmu_model_made(&instance()->model);
-}
+void setUp(void) { begin_test(fmi2CoSimulation); }
+void tearDown(void) { end_test(); }
 
 #define FILL_REAL(number) FILL(number)
 #define FILL_INTEGER(number) (number) = (int32_t)(filled += 1)

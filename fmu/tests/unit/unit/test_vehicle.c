@@ -3,22 +3,8 @@
 #include "fmi2_bench.h"
 #include "model_interface.h"
 
-void setUp(void) {
-    log_clear();
-    c = NULL;
-    make(fmi2CoSimulation);
-}
-void tearDown(void) {
-    fmi2FreeInstance(c);
-    c = NULL;
-}
-
-static void with_wheel_states(void) {
-    make(fmi2ModelExchange);
-    set("friction_coefficient", 0, 0);
-    set("ground_friction_coefficient", 0, 0.4);
-    fmu_model_made(&instance()->model);
-}
+void setUp(void) { begin_test(fmi2CoSimulation); }
+void tearDown(void) { end_test(); }
 
 /* ------------------------------------------------------------------------------------ start and change -- */
 

@@ -175,7 +175,7 @@ def words_of_errors(errors: Errors | None, wheel_count: int) -> list[str]:
     lines = [f"estimated error: {sizes_text(errors.now, wheel_count)}",
              f"  largest of the run: {sizes_text(errors.largest, wheel_count)}"]
     if errors.unknown:
-        lines.append(f"  {errors.unknown} steps of which no half is taken: all that they change is counted as error")
+        lines.append(f"  steps of which no half is taken: {errors.unknown}; all that they change counts as error")
     return lines
 
 

@@ -22,10 +22,11 @@ def fuzz_in_turn(names: Sequence[str], minutes: float, seed: int, advance: Calla
     tried first by the next run. StoppedEarly, with what was found, when a signal ends it."""
     known = targets_by_name()
     result: dict[str, Any] = {"passed": True}
-    for number, name in enumerate(names):
-        def share(seconds: float) -> None:
-            advance(seconds / len(names))
 
+    def share(seconds: float) -> None:
+        advance(seconds / len(names))
+
+    for number, name in enumerate(names):
         if name in FILE_TARGETS:
             found, stopped = fuzz_files(name, 60.0 * minutes, seed + number, share)
         else:

@@ -37,8 +37,8 @@ def keep_result(name: str, found: Found) -> None:
     results = read_results()
     before = results.get(name, {}).get("executions in all", 0)
     results[name] = {"executions": found.executions, "processor time, s": round(found.cpu_s, 1),
-                            "executions/s": round(found.rate_per_s), "edges": found.edges, "found": found.crash,
-                            "executions in all": before + found.executions}
+                     "executions/s": round(found.rate_per_s), "edges": found.edges, "found": found.crash,
+                     "executions in all": before + found.executions}
     results_path().write_text(json.dumps(results, indent=1) + "\n", encoding="utf-8")
 
 
