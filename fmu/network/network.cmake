@@ -1,7 +1,7 @@
 # The FMUs with bus terminals: FMI 3 only, Co-Simulation only, with the glue of the others but its steps.
 
 set(network_glue instance.c lifecycle.c log.c variables.c cached_reals.c start_file.c clock.c saved_states.c stream.c
-    network/step.c network/fmi3_clocks.c network/network_port.c network/ls_bus.c)
+    network/event_model.c network/step.c network/fmi3_clocks.c network/network_port.c network/ls_bus.c)
 set(network_files "")
 foreach(name network_port.h ls_bus.h)
     list(APPEND network_files "${name}=${CMAKE_CURRENT_SOURCE_DIR}/network/${name}")

@@ -86,14 +86,6 @@ fmu_status fmu_model_start(fmu_instance *instance) {
     return FMU_OK;
 }
 
-/* cannot be reached: no parameter is tunable */
-fmu_status fmu_model_change(fmu_instance *instance) {
-    instance->model.change_needed = false;
-    return FMU_OK;
-}
-
-void fmu_model_input_changed(fmu_instance *instance) { (void)instance; /* the next tick takes inputs */ }
-
 /* ------------------------------------------------------------------------------------------ the bus -- */
 
 void fmu_model_receive(fmu_instance *instance) {
@@ -190,10 +182,4 @@ void fmu_model_refresh(fmu_instance *instance, uint32_t groups) {
     self->yaw_rate_rad_per_s = laconic_body_velocity(&plant->model, &plant->state, self->velocity_m_per_s);
     laconic_nu(&plant->model, &plant->state, self->nu);
     show_wheels(self);
-}
-
-/* cannot be reached: saved_states.c refuses to write a model with bus terminals */
-bool fmu_model_serialize(fmu_stream *stream, fmu_model *model) {
-    (void)model;
-    return !stream->failed;
 }

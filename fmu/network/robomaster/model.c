@@ -33,23 +33,9 @@ fmu_status fmu_model_start(fmu_instance *instance) {
     return FMU_OK;
 }
 
-/* cannot be reached: no parameter is tunable */
-fmu_status fmu_model_change(fmu_instance *instance) {
-    instance->model.change_needed = false;
-    return FMU_OK;
-}
-
-void fmu_model_input_changed(fmu_instance *instance) { (void)instance; /* the next period takes it */ }
-
 void fmu_model_refresh(fmu_instance *instance, uint32_t groups) {
     (void)instance; /* outputs are those of the last frame */
     (void)groups;
-}
-
-/* cannot be reached: saved_states.c refuses to write a model with bus terminals */
-bool fmu_model_serialize(fmu_stream *stream, fmu_model *model) {
-    (void)model;
-    return !stream->failed;
 }
 
 /* ------------------------------------------------------------------------------------------ frames -- */

@@ -59,6 +59,21 @@ static inline void make(void) {
     TEST_ASSERT_NOT_NULL(c);
 }
 
+/* What a test is about to send to a terminal. */
+static ls_bus_buffer out;
+
+static inline void begin_test(void) {
+    log_clear();
+    c = NULL;
+    out.size = 0;
+    make();
+}
+
+static inline void end_test(void) {
+    fmi3FreeInstance(c);
+    c = NULL;
+}
+
 static inline void set_real(const char *name, uint32_t element, double value) {
     const fmi3ValueReference reference = ref(name, element);
     OK(fmi3SetFloat64(c, &reference, 1, &value, 1));

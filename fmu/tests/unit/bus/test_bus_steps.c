@@ -2,15 +2,8 @@
 #include "model_interface.h"
 #include "network_bench.h"
 
-void setUp(void) {
-    log_clear();
-    c = NULL;
-    make();
-}
-void tearDown(void) {
-    fmi3FreeInstance(c);
-    c = NULL;
-}
+void setUp(void) { begin_test(); }
+void tearDown(void) { end_test(); }
 
 static void begin(void) { OK(begin_from(0)); }
 

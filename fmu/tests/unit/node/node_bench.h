@@ -22,23 +22,15 @@ static inline void keep_on_frame(laconic_node *node, const laconic_frame *frame,
 #include "bench.h"
 #undef laconic_node_on_frame
 
-static ls_bus_buffer out;
-
 void setUp(void) {
     const laconic_node_config config = {LACONIC_WIRE_ID_BASE, false, laconic_method_by_number, 0,
                                         laconic_drive_protocol_by_number};
-    log_clear();
-    c = NULL;
-    out.size = 0;
     kept_count = 0;
     now_us = 0;
     TEST_ASSERT_TRUE(laconic_node_init(&node, &config, 0));
-    make();
+    begin_test();
 }
-void tearDown(void) {
-    fmi3FreeInstance(c);
-    c = NULL;
-}
+void tearDown(void) { end_test(); }
 
 /* ------------------------------------------------------------------------------------ how it is loaded -- */
 

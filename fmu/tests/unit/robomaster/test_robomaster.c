@@ -2,18 +2,8 @@
 #include "model_interface.h"
 #include "network_bench.h"
 
-static ls_bus_buffer out;
-
-void setUp(void) {
-    log_clear();
-    c = NULL;
-    out.size = 0;
-    make();
-}
-void tearDown(void) {
-    fmi3FreeInstance(c);
-    c = NULL;
-}
+void setUp(void) { begin_test(); }
+void tearDown(void) { end_test(); }
 
 #define RPM 0.10471975511965977 /* rad/s */
 
