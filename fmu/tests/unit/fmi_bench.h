@@ -1,31 +1,11 @@
-/* What the tests of both FMI versions share: references by name, and the last line of the log. */
+/* What the tests of both FMI versions share beside shared_bench.h: an instance by FMI 2. */
 #ifndef FMI_BENCH_H
 #define FMI_BENCH_H
 
 #include "fmi2Functions.h"
-#include "fmi3Functions.h"
-#include "instance.h"
-#include "unity.h"
+#include "shared_bench.h"
 
-#include <math.h>
-#include <stdio.h>
 #include <stdlib.h>
-#include <string.h>
-
-#define NOT_A_NUMBER ((double)NAN)
-
-static char logged[1024]; /* the last line, behind its category; "" since log_clear() */
-static int lines;
-
-static inline void log_clear(void) {
-    logged[0] = 0;
-    lines = 0;
-}
-
-static inline void log_line(const char *category, const char *text) {
-    snprintf(logged, sizeof logged, "%s: %s", category, text);
-    lines++;
-}
 
 static void log_2(fmi2ComponentEnvironment e, fmi2String name, fmi2Status status, fmi2String category, fmi2String text,
                   ...) {
@@ -35,38 +15,9 @@ static void log_2(fmi2ComponentEnvironment e, fmi2String name, fmi2Status status
     log_line(category, text);
 }
 
-static void log_3(fmi3InstanceEnvironment e, fmi3Status status, fmi3String category, fmi3String text) {
-    (void)e;
-    (void)status;
-    log_line(category, text);
-}
-
-/* The reference of a variable; of one element, from 1, where `element` is not 0. */
-static inline uint32_t ref(const char *name, uint32_t element) {
-    for (uint32_t row = 0; row < fmu_variable_count; row++)
-        if (strcmp(fmu_name_of(&fmu_variables[row]), name) == 0)
-            return element == 0 ? row : row << FMU_ELEMENT_SHIFT | element;
-    TEST_FAIL_MESSAGE(name);
-    return 0;
-}
-
-#define ASSERT_LOGGED(part) TEST_ASSERT_TRUE_MESSAGE(strstr(logged, part) != NULL, logged)
-#define ASSERT_REFUSED(call, part) \
-    do { \
-        log_clear(); \
-        TEST_ASSERT_EQUAL_INT(3, (int)(call)); \
-        ASSERT_LOGGED(part); \
-    } while (0)
-#define OK(call) TEST_ASSERT_EQUAL_INT_MESSAGE(0, (int)(call), logged)
-
 static inline fmi2Component make_2(fmi2Type kind, const char *token) {
     static const fmi2CallbackFunctions callbacks = {log_2, calloc, free, NULL, NULL};
     return fmi2Instantiate("one", kind, token, NULL, &callbacks, fmi2False, fmi2True);
-}
-
-static inline fmi3Instance make_3(bool event_mode) {
-    return fmi3InstantiateCoSimulation("one", fmu_token_3, NULL, false, true, event_mode, false, NULL, 0, NULL, log_3,
-                                       NULL);
 }
 
 #endif

@@ -2,50 +2,12 @@
 #ifndef NETWORK_BENCH_H
 #define NETWORK_BENCH_H
 
-#include "fmi3Functions.h"
-#include "instance.h"
 #include "ls_bus.h"
-#include "unity.h"
-
-#include <math.h>
-#include <stdio.h>
-#include <string.h>
-
-#define NOT_A_NUMBER ((double)NAN)
+#include "shared_bench.h"
 
 static fmi3Instance c;
-static char logged[1024]; /* the last line, behind its category; "" since log_clear() */
-static int lines;
-
-static inline void log_clear(void) {
-    logged[0] = 0;
-    lines = 0;
-}
-
-static void log_3(fmi3InstanceEnvironment e, fmi3Status status, fmi3String category, fmi3String text) {
-    (void)e, (void)status;
-    snprintf(logged, sizeof logged, "%s: %s", category, text);
-    lines++;
-}
-
-#define ASSERT_LOGGED(part) TEST_ASSERT_TRUE_MESSAGE(strstr(logged, part) != NULL, logged)
-#define ASSERT_REFUSED(call, part) \
-    do { \
-        log_clear(); \
-        TEST_ASSERT_EQUAL_INT(3, (int)(call)); \
-        ASSERT_LOGGED(part); \
-    } while (0)
-#define OK(call) TEST_ASSERT_EQUAL_INT_MESSAGE(0, (int)(call), logged)
 
 static inline fmu_instance *instance(void) { return c; }
-
-static inline fmi3ValueReference ref(const char *name, uint32_t element) {
-    for (uint32_t row = 0; row < fmu_variable_count; row++)
-        if (strcmp(fmu_name_of(&fmu_variables[row]), name) == 0)
-            return element == 0 ? row : row << FMU_ELEMENT_SHIFT | element;
-    TEST_FAIL_MESSAGE(name);
-    return 0;
-}
 
 static inline fmi3ValueReference of_terminal(const char *terminal, const char *member) {
     char name[64];
@@ -55,7 +17,7 @@ static inline fmi3ValueReference of_terminal(const char *terminal, const char *m
 
 static inline void make(void) {
     fmi3FreeInstance(c);
-    c = fmi3InstantiateCoSimulation("one", fmu_token_3, NULL, false, true, true, false, NULL, 0, NULL, log_3, NULL);
+    c = make_3(true);
     TEST_ASSERT_NOT_NULL(c);
 }
 
