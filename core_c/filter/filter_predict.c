@@ -177,8 +177,7 @@ static void set_transported(laconic_filter *f, const error_change change[CHANGES
         for (int32_t i = 0; i < f->errors; i++) f->room.row[i][j] = i == heading || i >= first ? R(0) : p->upper[i][j];
         f->room.weight[j] = p->diagonal[j];
         if (j >= heading) add_column(f->room.row, j, f, p->upper[heading][j], &change[BY_HEADING]);
-        for (int32_t k = 0; first + k <= j && k < f->dof; k++)
-            add_column(f->room.row, j, f, p->upper[first + k][j], &change[k]);
+        for (int32_t k = 0; first + k <= j; k++) add_column(f->room.row, j, f, p->upper[first + k][j], &change[k]);
     }
 }
 

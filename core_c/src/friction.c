@@ -132,9 +132,11 @@ static laconic_status check_wheel_start(const laconic_friction *f, const laconic
     laconic_model ideal;
     laconic_state state;
     laconic_status status = LACONIC_OK;
-    if (!f->slips && laconic_prepare_ideal(&ideal, vehicle, NULL) == LACONIC_OK)
-        return laconic_state_set(&state, &ideal, start, why);
-    for (int32_t i = 0; i < f->wheel_count && f->slips && status == LACONIC_OK; i++) {
+    if (!f->slips) {
+        status = laconic_prepare_ideal(&ideal, vehicle, why);
+        return status == LACONIC_OK ? laconic_state_set(&state, &ideal, start, why) : status;
+    }
+    for (int32_t i = 0; i < f->wheel_count && status == LACONIC_OK; i++) {
         const real speed = start->wheel_speed_rad_per_s[i];
         status = check_wheel_speed(speed, is_finite(speed) ? LACONIC_OVERFLOW : LACONIC_NOT_FINITE, i, why);
         if (status == LACONIC_OK)

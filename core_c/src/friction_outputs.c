@@ -67,7 +67,7 @@ void laconic_friction_reactions_of(laconic_reactions *out, const laconic_plant *
     for (int32_t i = 0; i < f->wheel_count; i++) {
         const laconic_friction_axle *a = &f->axle[i];
         const real along = -s->grip_N[i][0], across = -f->wheel[i].drag * s->grip_N[i][1];
-        const real carried = s->normal_N[i] > R(0) ? s->normal_N[i] : R(0);
+        const real carried = s->normal_N[i] < R(0) ? R(0) : s->normal_N[i];    /* NaN makes the margin NaN */
         const real dragged = f->wheel[i].drag > R(0) ? s->grip_N[i][1] : R(0); /* the law's force: an ellipse's */
         const real margin = a->friction_coefficient * carried - laconic_root(along * along + dragged * dragged);
         out->along_N[i] = along;

@@ -323,6 +323,63 @@ static void noise_beyond_the_range_is_refused_at_the_start_or_when_it_gets_there
     TEST_ASSERT_EQUAL_MEMORY(&before.state, &filter.state, sizeof before.state);
 }
 
+/* The squares of settings fit, what the vehicle makes of them does not: noise of voltages by a strong motor, then ν of
+ * the start by the wheels' inertia. */
+static void what_the_vehicle_makes_of_the_settings_is_refused_beyond_the_range(void) {
+    laconic_vehicle strong = with_motors(three_wheels()), heavy = three_wheels();
+    laconic_filter_settings s = usual();
+    laconic_filter filter;
+    memset(&filter, 0, sizeof filter);
+    const laconic_filter before = filter;
+    strong.motor_gain_Nm_per_V = REAL(EITHER(1e100, 1e10));
+    s.voltage_noise_V_per_sqrt_Hz = REAL(EITHER(1e100, 1e12));
+    laconic_model model = model_of(strong);
+    laconic_state state = moving(&model, 0, 0, 0);
+    ASSERT_STATUS(LACONIC_OVERFLOW, laconic_filter_start(&filter, &model, &s, &state));
+    s = usual();
+    heavy.wheel_inertia_kgm2 = REAL(1e4);
+    s.nu_std_rad_per_s[0] = s.nu_std_rad_per_s[1] = REAL(EITHER(1e154, 1.5e19));
+    model = model_of(heavy);
+    state = moving(&model, 0, 0, 0);
+    ASSERT_STATUS(LACONIC_OVERFLOW, laconic_filter_start(&filter, &model, &s, &state));
+    TEST_ASSERT_EQUAL_MEMORY(&before, &filter, sizeof before);
+}
+
+/* A place seen aside of the robot's path turns the robot; here by more than a heading can count. */
+static void a_fix_that_would_turn_the_robot_beyond_all_counts_changes_nothing(void) {
+    laconic_filter_settings s = usual();
+    laconic_pose_fix fix;
+    s.heading_std_rad = REAL(1e6);
+    robot r = robot_with(with_motors(three_wheels()), s, start_with(0, 0, 0));
+    const laconic_filter before = r.filter;
+    memset(&fix, 0, sizeof fix);
+    fix.place_x_m = REAL(1);
+    fix.y_m = REAL(EITHER(1e25, 1e15));
+    fix.std_m = REAL(0.1);
+    ASSERT_STATUS(LACONIC_OVERFLOW, laconic_filter_fix(&r.filter, &r.model, &fix, NULL));
+    TEST_ASSERT_EQUAL_MEMORY(&before, &r.filter, sizeof before);
+    fix.y_m = REAL(1e3);
+    ASSERT_STATUS(LACONIC_OK, laconic_filter_fix(&r.filter, &r.model, &fix, NULL));
+    TEST_ASSERT_TRUE(r.filter.state.heading.turns > 100);
+}
+
+/* The estimate is right about a place far away, and its heading is certain: nothing is to be corrected, and yet the
+ * covariance would leave the range. */
+static void a_fix_whose_covariance_leaves_the_range_changes_nothing(void) {
+    laconic_filter_settings s = usual();
+    laconic_pose_fix fix;
+    s.heading_std_rad = 0;
+    s.position_std_m = REAL(1e-10);
+    robot r = robot_with(with_motors(three_wheels()), s, start_with(0, 0, 0));
+    const laconic_filter before = r.filter;
+    memset(&fix, 0, sizeof fix);
+    fix.x_m = fix.place_x_m = REAL(EITHER(1e300, 1e30));
+    fix.y_m = -r.model.com_y_m;
+    fix.std_m = REAL(1e-10);
+    ASSERT_STATUS(LACONIC_OVERFLOW, laconic_filter_fix(&r.filter, &r.model, &fix, NULL));
+    TEST_ASSERT_EQUAL_MEMORY(&before, &r.filter, sizeof before);
+}
+
 int main(void) {
     UNITY_BEGIN();
     RUN_TEST(the_estimate_without_readings_is_the_core_s_own_run);
@@ -341,5 +398,8 @@ int main(void) {
     RUN_TEST(a_fix_may_be_of_the_place_or_of_the_heading_alone);
     RUN_TEST(readings_beyond_the_range_change_nothing);
     RUN_TEST(noise_beyond_the_range_is_refused_at_the_start_or_when_it_gets_there);
+    RUN_TEST(what_the_vehicle_makes_of_the_settings_is_refused_beyond_the_range);
+    RUN_TEST(a_fix_that_would_turn_the_robot_beyond_all_counts_changes_nothing);
+    RUN_TEST(a_fix_whose_covariance_leaves_the_range_changes_nothing);
     return UNITY_END();
 }

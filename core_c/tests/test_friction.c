@@ -251,6 +251,25 @@ static void limits_of_current_are_of_wheels_with_motors(void) {
     ASSERT_NEAR(1e-6, 2, out.friction.motor_current_A[0]);
 }
 
+/* Motors with a limit on ideal ground move what the wheels allow, which must be something; so must the start. */
+static void a_drive_on_ideal_ground_needs_wheels_that_allow_a_motion(void) {
+    laconic_vehicle v = with_drive(skid(0));
+    const laconic_start start = start_with(0, 0, 0);
+    laconic_plant plant;
+    laconic_slip slip;
+    v.drive.supply_V = 24;
+    ASSERT_REFUSED(LACONIC_STRAIGHT_ONLY, LACONIC_FIELD_WHEEL_KIND, 0,
+                   laconic_plant_start(&plant, &v, &laconic_auto, REAL(1e-3), &start, &why), why);
+    laconic_vehicle movable = v;
+    movable.wheel_count = 2;
+    plant = started(movable, 1e-3, 0, 0, 0);
+    memset(&slip, 3, sizeof slip);
+    const laconic_slip before = slip;
+    ASSERT_REFUSED(LACONIC_STRAIGHT_ONLY, LACONIC_FIELD_WHEEL_KIND, 0,
+                   laconic_slip_set(&slip, &plant.friction, &v, &start, &why), why);
+    TEST_ASSERT_EQUAL_MEMORY(&before, &slip, sizeof slip);
+}
+
 int main(void) {
     UNITY_BEGIN();
     RUN_TEST(what_contradicts_itself_is_refused_by_name);
@@ -265,5 +284,6 @@ int main(void) {
     RUN_TEST(the_sampled_step_holds_the_input_of_the_middle);
     RUN_TEST(a_slope_is_a_downhill_force_and_a_lighter_load);
     RUN_TEST(limits_of_current_are_of_wheels_with_motors);
+    RUN_TEST(a_drive_on_ideal_ground_needs_wheels_that_allow_a_motion);
     return UNITY_END();
 }

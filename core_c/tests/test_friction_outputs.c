@@ -125,6 +125,22 @@ static void the_smooth_laws_outputs_are_those_of_the_friction_step(void) {
     }
 }
 
+/* Of a motion that is no number; and if it is only one wheel's load, whatever the margins of the wheels after it. */
+static void a_load_that_is_no_number_leaves_no_margin(void) {
+    const laconic_input input = no_input();
+    laconic_plant plant = started(robotino(0.4, 0.3, 0), 1e-3, 0, 0, 0);
+    laconic_state state = plant.state;
+    state.zeta[1].value = NOT_A_NUMBER;
+    laconic_slip_smooth(&plant.slip, &plant.friction, &state, &input);
+    TEST_ASSERT_TRUE(isnan(outputs_with(&plant, &input).reactions.no_slip_margin_N));
+    for (int i = 0; i < 3; i++) {
+        plant = started(robotino(0.4, 0.3, 0), 1e-3, 0, 0, 0);
+        TEST_ASSERT_TRUE(outputs_with(&plant, &input).reactions.no_slip_margin_N > 1);
+        plant.slip.normal_N[i] = NOT_A_NUMBER;
+        TEST_ASSERT_TRUE(isnan(outputs_with(&plant, &input).reactions.no_slip_margin_N));
+    }
+}
+
 int main(void) {
     UNITY_BEGIN();
     RUN_TEST(contacts_that_slip_stick_and_lift_are_told_apart);
@@ -133,5 +149,6 @@ int main(void) {
     RUN_TEST(outputs_are_those_of_the_wheels_own_states);
     RUN_TEST(the_smooth_law_follows_the_friction_step);
     RUN_TEST(the_smooth_laws_outputs_are_those_of_the_friction_step);
+    RUN_TEST(a_load_that_is_no_number_leaves_no_margin);
     return UNITY_END();
 }

@@ -283,6 +283,60 @@ static void a_wheel_that_rolls_in_a_curve_on_a_slope_gains_no_energy(void) {
     }
 }
 
+/* Motors with a limit on ideal ground: a brake takes a motion away, as it does in the model without limits. */
+static void a_locked_wheel_on_ideal_ground_does_not_turn(void) {
+    laconic_vehicle v = with_drive(robotino(0, 0, 0));
+    laconic_input input = no_input();
+    v.drive.current_limit_A = 3;
+    v.wheel[1].locked = true;
+    laconic_plant plant = started(v, 1e-3, 0, 0, 0);
+    for (int i = 0; i < 3; i++) input.voltage_V[i] = 24;
+    run(&plant, &input, 500);
+    TEST_ASSERT_TRUE(plant.slip.wheel_speed_rad_per_s[1] == 0 && plant.slip.wheel_angle_rad[1].value == 0);
+    TEST_ASSERT_TRUE(kinetic_J(&plant) > 0.1);
+    laconic_real rolling = 0;
+    for (int k = 0; k < 3; k++) rolling += plant.friction.wheel[1].along[k] * plant.state.zeta[k].value;
+    ASSERT_NEAR(EITHER(1e-9, 1e-3), 0, rolling);
+}
+
+/* The solver can still be right about it, a state could not. */
+static void a_speed_beyond_the_range_is_refused(void) {
+    laconic_plant plant = started(robotino(0.5, 0, 0), 1e-3, 0, 0, 0);
+    const laconic_plant before = plant;
+    laconic_input input = no_input();
+    input.body_force_N[0] = EITHER(REAL(1e90), REAL(1e15));
+    ASSERT_REFUSED(LACONIC_OVERFLOW, LACONIC_FIELD_STEP, 0, laconic_plant_run(&plant, &input, 1, &why), why);
+    TEST_ASSERT_EQUAL_MEMORY(&before.state, &plant.state, sizeof before.state);
+    TEST_ASSERT_EQUAL_MEMORY(&before.slip, &plant.slip, sizeof before.slip);
+}
+
+static void a_displacement_beyond_the_range_is_refused(void) {
+    laconic_plant plant = started(robotino(0.5, 0, 0), EITHER(1e9, 1e8), 0, 0, 0);
+    const laconic_plant before = plant;
+    laconic_input input = no_input();
+    input.body_force_N[0] = EITHER(REAL(1e9), REAL(1));
+    ASSERT_REFUSED(LACONIC_OVERFLOW, LACONIC_FIELD_STEP, 0, laconic_plant_run(&plant, &input, 1, &why), why);
+    TEST_ASSERT_EQUAL_MEMORY(&before.state, &plant.state, sizeof before.state);
+    TEST_ASSERT_EQUAL_MEMORY(&before.slip, &plant.slip, sizeof before.slip);
+}
+
+/* Nothing brakes this body, so its displacement is that of the mean velocity: x = ½ g sin α t², whatever the step. What
+ * rounding makes of the energy's growth is not taken for a growth. */
+static void a_body_that_only_slides_falls_as_a_stone_does(void) {
+    const double h = 0.01, slope = 0.3, seconds = 2;
+    const laconic_input none = no_input();
+    for (int k = 0; k < 8; k++) {
+        laconic_vehicle v = robotino(1e-20, 0, 0);
+        v.ground.slope_rad = REAL(slope);
+        v.ground.slope_heading_rad = REAL(0.7 * k);
+        laconic_plant plant = started(v, h, 0, 0, 0);
+        run(&plant, &none, (uint64_t)(seconds / h + 0.5));
+        const double fallen = 0.5 * LACONIC_GRAVITY_M_PER_S2 * sin(slope) * seconds * seconds;
+        ASSERT_NEAR(EITHER(1e-9, 1e-3), -fallen * cos(0.7 * k), plant.state.x_m.value);
+        ASSERT_NEAR(EITHER(1e-9, 1e-3), -fallen * sin(0.7 * k), plant.state.y_m.value);
+    }
+}
+
 int main(void) {
     UNITY_BEGIN();
     RUN_TEST(rest_below_breakaway_holds_to_the_last_bit);
@@ -301,5 +355,9 @@ int main(void) {
     RUN_TEST(a_step_that_the_solver_refuses_is_taken_in_parts);
     RUN_TEST(a_step_that_the_solver_refuses_in_all_parts_changes_nothing);
     RUN_TEST(a_wheel_that_rolls_in_a_curve_on_a_slope_gains_no_energy);
+    RUN_TEST(a_locked_wheel_on_ideal_ground_does_not_turn);
+    RUN_TEST(a_speed_beyond_the_range_is_refused);
+    RUN_TEST(a_displacement_beyond_the_range_is_refused);
+    RUN_TEST(a_body_that_only_slides_falls_as_a_stone_does);
     return UNITY_END();
 }

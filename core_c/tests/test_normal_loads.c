@@ -61,11 +61,23 @@ static void on_a_slope_only_the_part_across_the_ground_loads(void) {
     ASSERT_NEAR(EITHER(1e-10, 1e-3), 20 * LACONIC_GRAVITY_M_PER_S2 * cos(0.5), sum_of_loads(&f, &loads));
 }
 
+/* A vehicle on one wheel tips over: what the ground pushes turns it off that wheel. Nothing is divided by. */
+static void where_all_points_lift_nothing_is_carried(void) {
+    laconic_vehicle v = robotino(0.5, 0, 0);
+    const laconic_real forward_N[2] = {10000, 0};
+    normal_loads loads;
+    v.wheel_count = 1;
+    const laconic_friction f = friction_of(v);
+    laconic_normal_loads(&loads, &f, forward_N);
+    TEST_ASSERT_TRUE(loads.statics_N[0] < 0 && loads.carried_N[0] == 0);
+}
+
 int main(void) {
     UNITY_BEGIN();
     RUN_TEST(at_rest_three_wheels_share_the_weight);
     RUN_TEST(the_ground_s_pull_below_the_centre_of_mass_moves_load);
     RUN_TEST(a_wheel_that_lifts_carries_nothing_and_the_others_carry_the_weight);
     RUN_TEST(on_a_slope_only_the_part_across_the_ground_loads);
+    RUN_TEST(where_all_points_lift_nothing_is_carried);
     return UNITY_END();
 }

@@ -185,6 +185,18 @@ static void a_wheel_at_the_end_of_the_range_is_refused_and_never_gives_nan(void)
     ASSERT_REFUSED(LACONIC_OVERFLOW, LACONIC_FIELD_WHEEL_X, 1, laconic_prepare(&model, &v, &why), why);
 }
 
+/* The radius of gyration of this body is 0 in the scalar type, so a wheel under its centre has the lever 0/0. */
+static void a_body_without_any_extent_is_refused_and_never_gives_nan(void) {
+    laconic_vehicle v = caster();
+    laconic_model model, before;
+    memset(&model, 5, sizeof model);
+    before = model;
+    v.mass_kg = REAL(EITHER(1e150, 1e18));
+    v.yaw_inertia_kgm2 = LACONIC_REAL_MIN;
+    ASSERT_REFUSED(LACONIC_OVERFLOW, LACONIC_FIELD_NONE, 0, laconic_prepare(&model, &v, &why), why);
+    TEST_ASSERT_EQUAL_MEMORY(&before, &model, sizeof model);
+}
+
 /* Rates many decades apart all keep their digits, since ΞᵀΞ is never formed. */
 static void a_slow_rate_keeps_its_digits_beside_a_fast_one(void) {
     const double small = EITHER(1e-9, 1e-5); /* angle between the rolling directions of the two wheels */
@@ -242,6 +254,7 @@ int main(void) {
     RUN_TEST(inertias_too_far_apart_for_the_precision_are_refused);
     RUN_TEST(numbers_that_leave_the_range_are_refused);
     RUN_TEST(a_wheel_at_the_end_of_the_range_is_refused_and_never_gives_nan);
+    RUN_TEST(a_body_without_any_extent_is_refused_and_never_gives_nan);
     RUN_TEST(a_slow_rate_keeps_its_digits_beside_a_fast_one);
     RUN_TEST(sixteen_wheels_and_none_are_both_a_vehicle);
     RUN_TEST(wheels_far_away_or_all_on_one_spot_give_numbers);

@@ -192,6 +192,20 @@ static void a_full_recorder_stops_the_run_where_it_can_go_on(void) {
     stops_before_a_row_without_room(sampled());
 }
 
+static void a_recorder_that_is_full_before_the_last_stretch_stops_there(void) {
+    laconic_plant plant = plant_of(with_motors(mecanum()), 0.01), whole = plant;
+    const laconic_schedule schedule = held();
+    film f;
+    load_film(&f, &plant, 4, 1);
+    ASSERT_STATUS(LACONIC_OK, laconic_plant_follow(&plant, &schedule, STEPS, &f.recorder, &why));
+    TEST_ASSERT_EQUAL_UINT64(4, plant.steps);
+    f.recorder.row_room = STEPS;
+    ASSERT_STATUS(LACONIC_OK, laconic_plant_follow(&plant, &schedule, STEPS, &f.recorder, &why));
+    ASSERT_STATUS(LACONIC_OK, laconic_plant_follow(&whole, &schedule, STEPS, NULL, &why));
+    TEST_ASSERT_EQUAL_UINT64(STEPS / 4, f.recorder.row_count);
+    TEST_ASSERT_EQUAL_MEMORY(&whole.state, &plant.state, sizeof whole.state);
+}
+
 static void without_rows_and_watch_the_plant_only_steps(void) {
     laconic_plant plant = plant_of(with_motors(mecanum()), 0.01);
     const laconic_schedule schedule = held();
@@ -256,6 +270,7 @@ int main(void) {
     RUN_TEST(a_later_piece_of_a_sampled_run_has_a_schedule_of_its_own);
     RUN_TEST(a_held_schedule_may_begin_at_any_step_of_the_plant);
     RUN_TEST(a_full_recorder_stops_the_run_where_it_can_go_on);
+    RUN_TEST(a_recorder_that_is_full_before_the_last_stretch_stops_there);
     RUN_TEST(without_rows_and_watch_the_plant_only_steps);
     RUN_TEST(a_refused_step_keeps_the_steps_taken_and_gives_the_reason);
     RUN_TEST(a_schedule_tells_the_inputs_of_a_step);

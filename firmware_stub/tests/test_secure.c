@@ -198,6 +198,65 @@ static void a_recording_of_an_earlier_power_up_does_not_pass(void) {
     TEST_ASSERT_EQUAL(1, gate.refused[LACONIC_SECOC_WRONG_CODE]);
 }
 
+/* The node ignores remote frames; a frame of the node itself, heard by the gate, is none of the rig's. */
+static void frames_of_the_node_and_requests_for_data_need_no_code(void) {
+    laconic_frame code, answer = frame_of(LACONIC_WIRE_RIG_OFFSETS, 0), request = frame_of(LACONIC_WIRE_CONTROL, 0);
+    begin(7);
+    request.remote = true;
+    TEST_ASSERT_TRUE(laconic_gate_take(&gate, &answer, &out));
+    TEST_ASSERT_EQUAL_MEMORY(&answer, &out, sizeof out);
+    TEST_ASSERT_TRUE(laconic_gate_take(&gate, &request, &out));
+    TEST_ASSERT_FALSE(laconic_gate_seal(&rig, &answer, &code));
+    TEST_ASSERT_FALSE(laconic_gate_seal(&rig, &request, &code));
+    TEST_ASSERT_EQUAL_UINT64((uint64_t)7 << 32, rig.freshness);
+}
+
+static void frames_of_others_get_no_code(void) {
+    laconic_frame code, drive = frame_of(LACONIC_WIRE_CONTROL, 0), extended = drive;
+    begin(7);
+    drive.id = 5;
+    extended.extended = true;
+    TEST_ASSERT_FALSE(laconic_gate_seal(&rig, &drive, &code));
+    TEST_ASSERT_FALSE(laconic_gate_seal(&rig, &extended, &code));
+    TEST_ASSERT_EQUAL_UINT64((uint64_t)7 << 32, rig.freshness);
+}
+
+static void a_code_of_another_length_ends_the_wait(void) {
+    const laconic_frame control = frame_of(LACONIC_WIRE_CONTROL, 1);
+    laconic_frame code, cut;
+    begin(7);
+    laconic_gate_seal(&rig, &control, &code);
+    cut = code;
+    cut.length = 7;
+    TEST_ASSERT_FALSE(passes(&control, &cut));
+    TEST_ASSERT_FALSE(laconic_gate_take(&gate, &code, &out));
+    TEST_ASSERT_EQUAL(2, gate.bare);
+}
+
+/* A CHALLENGE begins a new freshness only by a new nonce: else whoever makes the node repeat it could replay. */
+static void only_a_new_challenge_begins_a_new_freshness(void) {
+    const laconic_frame control = frame_of(LACONIC_WIRE_CONTROL, 1);
+    laconic_frame code, sent = frame_of(LACONIC_WIRE_CHALLENGE, 7);
+    begin(7);
+    laconic_gate_seal(&rig, &control, &code);
+    TEST_ASSERT_TRUE(passes(&control, &code));
+    laconic_gate_sent(&gate, &sent);
+    TEST_ASSERT_FALSE(passes(&control, &code));
+    TEST_ASSERT_EQUAL(1, gate.refused[LACONIC_SECOC_REPLAYED]);
+    sent = frame_of(LACONIC_WIRE_CHALLENGE, 8);
+    sent.extended = true;
+    laconic_gate_sent(&gate, &sent);
+    sent = frame_of(LACONIC_WIRE_CHALLENGE, 8);
+    sent.length = 7;
+    laconic_gate_sent(&gate, &sent);
+    sent = frame_of(LACONIC_WIRE_CHALLENGE - 1, 8);
+    laconic_gate_sent(&gate, &sent);
+    TEST_ASSERT_EQUAL_UINT64(((uint64_t)7 << 32) + 1, gate.freshness);
+    sent = frame_of(LACONIC_WIRE_CHALLENGE, 8);
+    laconic_gate_sent(&gate, &sent);
+    TEST_ASSERT_EQUAL_UINT64((uint64_t)8 << 32, gate.freshness);
+}
+
 int main(void) {
     UNITY_BEGIN();
     RUN_TEST(aes_of_FIPS_197);
@@ -211,5 +270,9 @@ int main(void) {
     RUN_TEST(what_commands_nothing_needs_no_code);
     RUN_TEST(what_is_wrong_is_counted_by_name);
     RUN_TEST(a_recording_of_an_earlier_power_up_does_not_pass);
+    RUN_TEST(frames_of_the_node_and_requests_for_data_need_no_code);
+    RUN_TEST(frames_of_others_get_no_code);
+    RUN_TEST(a_code_of_another_length_ends_the_wait);
+    RUN_TEST(only_a_new_challenge_begins_a_new_freshness);
     return UNITY_END();
 }

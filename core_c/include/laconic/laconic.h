@@ -489,7 +489,7 @@ laconic_status laconic_friction_of(laconic_friction *friction, const laconic_mod
                                    const laconic_vehicle *vehicle, laconic_refusal *why);
 
 /* Wheels at their start: with its wheel_speed_rad_per_s, or as they roll at its ν. Refuses NOT_FINITE and OVERFLOW
- * (start_wheel_speed), and on ideal ground as laconic_state_set. */
+ * (start_wheel_speed), and on ideal ground as laconic_prepare_ideal and laconic_state_set. */
 laconic_status laconic_slip_set(laconic_slip *slip, const laconic_friction *friction, const laconic_vehicle *vehicle,
                                 const laconic_start *start, laconic_refusal *why);
 
