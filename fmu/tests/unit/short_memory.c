@@ -5,6 +5,7 @@
 
 int short_memory_left = -1;
 int short_memory_blocks = 0;
+size_t short_memory_asked = 0;
 
 void *short_malloc(size_t size);
 void *short_calloc(size_t count, size_t size);
@@ -22,7 +23,10 @@ static void *counted(void *block) {
 
 void *short_malloc(size_t size) { return is_there() ? counted(malloc(size)) : NULL; }
 
-void *short_calloc(size_t count, size_t size) { return is_there() ? counted(calloc(count, size)) : NULL; }
+void *short_calloc(size_t count, size_t size) {
+    short_memory_asked = count * size;
+    return is_there() ? counted(calloc(count, size)) : NULL;
+}
 
 void short_free(void *block) {
     short_memory_blocks -= block != NULL;

@@ -108,6 +108,56 @@ static void at_the_limit_derivatives_are_those_of_the_law(void) {
     }
 }
 
+/* There the integral is not held either: its rate and the rate's derivative are the error's, from both sides. */
+static void at_the_limit_itself_and_without_an_error_the_integral_follows(void) {
+    const double one = 1;
+    double found = 7;
+    make(fmi2ModelExchange);
+    initialise();
+    OK(fmi2EnterContinuousTimeMode(c));
+    for (uint32_t k = 1; k <= 4; k++) {
+        const double sign = k % 2 == 1 ? 1 : -1;
+        const fmi2ValueReference rate = ref("der(angle_error_rad)", k), setpoint = ref("setpoint_rad_per_s", k);
+        set("setpoint_rad_per_s", k, k <= 2 ? sign * LIMIT / KP : 0);
+        set("angle_error_rad", k, k <= 2 ? 0 : sign * LIMIT); /* of the last two the voltage is beyond the limit */
+        TEST_ASSERT_TRUE(get("voltage_V", k) == sign * LIMIT);
+        TEST_ASSERT_TRUE(get("der(angle_error_rad)", k) == (k <= 2 ? sign * LIMIT / KP : 0));
+        OK(fmi2GetDirectionalDerivative(c, &rate, 1, &setpoint, 1, &one, &found));
+        TEST_ASSERT_TRUE(found == 1);
+    }
+}
+
+/* The arrays of the model are full then. */
+static void a_controller_of_sixteen_wheels_is_sixteen_controllers(void) {
+    double state[FMU_MODEL_LARGEST_ARRAY], found[FMU_MODEL_LARGEST_ARRAY];
+    instance()->initial.wheel_count = FMU_MODEL_LARGEST_ARRAY;
+    OK(fmi2Reset(c));
+    initialise();
+    for (uint32_t k = 1; k <= FMU_MODEL_LARGEST_ARRAY; k++) {
+        set("setpoint_rad_per_s", k, k);
+        set("wheel_speed_rad_per_s", k, 0.25 * k);
+    }
+    for (int n = 0; n < 2; n++) {
+        for (uint32_t k = 1; k <= FMU_MODEL_LARGEST_ARRAY; k++) {
+            const double integral = 0.1 * n * 0.75 * k;
+            TEST_ASSERT_DOUBLE_WITHIN(1e-14, integral, get("angle_error_rad", k));
+            TEST_ASSERT_DOUBLE_WITHIN(1e-13, KP * 0.75 * k + KI * integral, get("voltage_V", k));
+        }
+        for (uint32_t k = 1; k <= FMU_MODEL_LARGEST_ARRAY; k++)
+            TEST_ASSERT_TRUE(get("der(angle_error_rad)", k) == 0.75 * k);
+        for (uint32_t k = 1; k <= FMU_MODEL_LARGEST_ARRAY; k++)
+            TEST_ASSERT_DOUBLE_WITHIN(1e-13, (KP + KI * 0.1 * n) * 0.75 * k, get("voltage_V", k));
+        if (n == 0) OK(step(0, 0.1));
+    }
+    TEST_ASSERT_EQUAL_UINT32(FMU_MODEL_LARGEST_ARRAY, fmu_model_state_count(&instance()->model));
+    for (int k = 0; k < FMU_MODEL_LARGEST_ARRAY; k++) state[k] = -k;
+    fmu_model_set_states(instance(), state);
+    fmu_model_get_states(instance(), found);
+    TEST_ASSERT_EQUAL_MEMORY(state, found, sizeof state);
+    TEST_ASSERT_DOUBLE_WITHIN(1e-13, KP * 0.75, get("voltage_V", 1));
+    TEST_ASSERT_TRUE(get("wheel_speed_rad_per_s", 1) == 0.25 && get("setpoint_rad_per_s", 1) == 1);
+}
+
 static void a_run_that_starts_anew_has_no_integral(void) {
     initialise();
     apply();
@@ -280,6 +330,8 @@ int main(void) {
     RUN_TEST(gains_are_tuned_in_a_run_and_the_integral_stays);
     RUN_TEST(outputs_follow_what_is_set_behind_them);
     RUN_TEST(at_the_limit_derivatives_are_those_of_the_law);
+    RUN_TEST(at_the_limit_itself_and_without_an_error_the_integral_follows);
+    RUN_TEST(a_controller_of_sixteen_wheels_is_sixteen_controllers);
     RUN_TEST(a_run_that_starts_anew_has_no_integral);
     RUN_TEST(inputs_are_held_over_a_step_and_have_no_slopes);
     RUN_TEST(a_callback_sees_the_step_s_end);

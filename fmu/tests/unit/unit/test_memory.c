@@ -90,11 +90,30 @@ static void what_was_allocated_is_freed(void) {
     TEST_ASSERT_EQUAL_INT(before, short_memory_blocks);
 }
 
+/* A board's importer counts on it: no call asks for more than what it keeps. */
+static void an_instance_and_a_state_ask_for_their_own_size(void) {
+    static fmi2Byte bytes[65536];
+    fmi2FMUstate kept = NULL, read = NULL;
+    size_t size = 0;
+    fmi2FreeInstance(make_2(fmi2CoSimulation, fmu_token_2));
+    TEST_ASSERT_EQUAL(sizeof(fmu_instance), short_memory_asked);
+    OK(fmi2GetFMUstate(c, &kept));
+    const size_t asked = short_memory_asked;
+    TEST_ASSERT_TRUE(asked > sizeof(fmu_model) && asked < sizeof(fmu_model) + 256);
+    OK(fmi2SerializedFMUstateSize(c, kept, &size));
+    OK(fmi2SerializeFMUstate(c, kept, bytes, size));
+    OK(fmi2DeSerializeFMUstate(c, bytes, size, &read));
+    TEST_ASSERT_EQUAL(asked, short_memory_asked);
+    OK(fmi2FreeFMUstate(c, &read));
+    OK(fmi2FreeFMUstate(c, &kept));
+}
+
 int main(void) {
     UNITY_BEGIN();
     RUN_TEST(an_instance_needs_memory_for_itself_and_its_name);
     RUN_TEST(start_values_from_a_file_need_memory);
     RUN_TEST(a_state_is_kept_and_written_as_far_as_there_is_memory);
     RUN_TEST(what_was_allocated_is_freed);
+    RUN_TEST(an_instance_and_a_state_ask_for_their_own_size);
     return UNITY_END();
 }

@@ -39,6 +39,32 @@ static void arrays_of_more_values_than_the_fast_path_keeps_are_read_and_set(void
     fmi3FreeInstance(i);
 }
 
+/* Which path a list takes shows in nothing but its time; so here by what is kept for the next call. */
+static void a_list_for_the_fast_path_is_kept_with_all_of_its_values(void) {
+    fmi3ValueReference list[16];
+    double given[64] = {0}, found[64];
+    fmi3Instance i = make_3(false);
+    const fmu_instance *it = i;
+    OK(fmi3EnterInitializationMode(i, false, 0, 0, false, 0));
+    OK(fmi3ExitInitializationMode(i));
+    for (uint32_t k = 0; k < 16; k++) list[k] = ref("voltage_V", 0);
+    for (uint32_t count = 1; count <= 16; count += 5) {
+        OK(fmi3SetFloat64(i, list, count, given, 4 * (size_t)count));
+        OK(fmi3GetFloat64(i, list, count, found, 4 * (size_t)count));
+        TEST_ASSERT_EQUAL(count, it->written.count);
+        TEST_ASSERT_EQUAL(4 * count, it->written.values);
+        TEST_ASSERT_EQUAL(count, it->read.count);
+        TEST_ASSERT_EQUAL(4 * count, it->read.values);
+    }
+    list[0] = ref("voltage_V", 4);
+    OK(fmi3GetFloat64(i, list, 1, found, 1));
+    TEST_ASSERT_EQUAL(1, it->read.values);
+    list[0] = ref("mass_kg", 0); /* cannot be set in this mode */
+    ASSERT_REFUSED(fmi3SetFloat64(i, list, 1, given, 1), "mass_kg");
+    TEST_ASSERT_EQUAL(0, it->written.count);
+    fmi3FreeInstance(i);
+}
+
 /* The fast path stops at such a reference; those before it, or none, are as many values as are given. */
 static void a_list_that_cannot_be_set_or_read_is_refused_whatever_its_number_of_values(void) {
     const fmi3ValueReference behind = ref("voltage_V", 0) << FMU_ELEMENT_SHIFT | 5, none = 0x7FFFFFFF;
@@ -209,6 +235,7 @@ int main(void) {
     UNITY_BEGIN();
     RUN_TEST(a_list_longer_than_the_fast_path_keeps_is_read_and_set);
     RUN_TEST(arrays_of_more_values_than_the_fast_path_keeps_are_read_and_set);
+    RUN_TEST(a_list_for_the_fast_path_is_kept_with_all_of_its_values);
     RUN_TEST(a_list_that_cannot_be_set_or_read_is_refused_whatever_its_number_of_values);
     RUN_TEST(the_number_of_values_is_checked_each_time);
     RUN_TEST(references_that_are_none_are_refused_whatever_their_form);

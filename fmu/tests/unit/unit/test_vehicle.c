@@ -259,6 +259,21 @@ static void a_completed_step_looks_for_warnings_only_where_there_are_some(void) 
     TEST_ASSERT_EQUAL_INT(0, lines);
 }
 
+/* Else one group's numbers would be computed, or become stale, with another's. */
+static void each_group_is_a_bit_of_its_own(void) {
+    static const uint32_t groups[] = {FMU_GROUP_STATE,   FMU_GROUP_MOTION,  FMU_GROUP_ANGLES,   FMU_GROUP_VELOCITY,
+                                      FMU_GROUP_SPEEDS,  FMU_GROUP_TORQUES, FMU_GROUP_GROUND,   FMU_GROUP_ENERGY,
+                                      FMU_GROUP_RATES,   FMU_GROUP_POSE,    FMU_GROUP_FRICTION, FMU_GROUP_ACCELERATION,
+                                      FMU_GROUP_SENSORS, FMU_GROUP_ESTIMATE};
+    uint32_t all = 0;
+    for (size_t k = 0; k < sizeof groups / sizeof groups[0]; k++) {
+        TEST_ASSERT_TRUE(groups[k] != 0 && (groups[k] & (groups[k] - 1)) == 0);
+        TEST_ASSERT_EQUAL_UINT32(0, all & groups[k]);
+        all |= groups[k];
+    }
+    TEST_ASSERT_EQUAL_UINT32(FMU_GROUPS_ALL, all);
+}
+
 int main(void) {
     UNITY_BEGIN();
     RUN_TEST(a_method_that_is_none_and_a_negative_step_cannot_start);
@@ -280,5 +295,6 @@ int main(void) {
     RUN_TEST(states_lie_within_what_doubles_tell_apart);
     RUN_TEST(nominals_are_those_of_the_description);
     RUN_TEST(a_completed_step_looks_for_warnings_only_where_there_are_some);
+    RUN_TEST(each_group_is_a_bit_of_its_own);
     return UNITY_END();
 }
