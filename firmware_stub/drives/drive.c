@@ -7,7 +7,7 @@
 #define TURN_RAD R(6.28318530717958647693)
 
 void laconic_drive_start(laconic_wheel_drive *drive, const laconic_drive_settings *settings) {
-    if (settings != &drive->settings) drive->settings = *settings;
+    drive->settings = *settings;
     memset((uint8_t *)drive + sizeof drive->settings, 0, sizeof *drive - sizeof drive->settings);
 }
 

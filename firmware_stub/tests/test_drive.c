@@ -123,6 +123,19 @@ static void a_load_that_holds_the_wheel_winds_no_integral_up(void) {
     TEST_ASSERT_TRUE(drive.current_A < R(0.1) && drive.current_A > R(-0.1));
 }
 
+/* The integral takes up an error that leads back from the limit. */
+static void a_limit_does_not_keep_the_integral_from_unwinding(void) {
+    ask_speed(100);
+    drive.target.current_A = 20; /* the feed-forward alone is twice the limit */
+    drive.speed_rad_per_s = 102;
+    laconic_drive_act(&drive, STEP_S);
+    TEST_ASSERT_TRUE(drive.current_A == 10);
+    TEST_ASSERT_DOUBLE_WITHIN(1e-6, -2 * 3 * 0.001, (double)drive.integral_A);
+    ask_speed(104); /* what leads further beyond the limit is not taken up */
+    laconic_drive_act(&drive, STEP_S);
+    TEST_ASSERT_DOUBLE_WITHIN(1e-6, -2 * 3 * 0.001, (double)drive.integral_A);
+}
+
 static void the_current_follows_with_its_bandwidth_and_never_overshoots(void) {
     drive.settings.current_bandwidth_rad_per_s = 100;
     drive.target.mode = LACONIC_DRIVE_CURRENT;
@@ -266,6 +279,7 @@ int main(void) {
     RUN_TEST(the_supply_limits_the_current_against_the_back_emf);
     RUN_TEST(beyond_its_no_load_speed_a_drive_can_only_brake);
     RUN_TEST(a_load_that_holds_the_wheel_winds_no_integral_up);
+    RUN_TEST(a_limit_does_not_keep_the_integral_from_unwinding);
     RUN_TEST(the_current_follows_with_its_bandwidth_and_never_overshoots);
     RUN_TEST(the_position_loop_goes_to_its_count_and_stays);
     RUN_TEST(a_far_position_loses_no_count);

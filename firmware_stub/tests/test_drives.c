@@ -191,6 +191,33 @@ static void brakes_on_all_wheels_stop_the_vehicle_and_keep_it(void) {
     TEST_ASSERT_INT_WITHIN(1, 0, (int)(drives.drive[0].encoder.count - count));
 }
 
+static void a_brake_stops_its_wheel_within_a_step_as_far_as_it_is_strong_enough(void) {
+    laconic_wheel_drive *drive = &drives.drive[0];
+    drive->torque_Nm = REAL(0.5);
+    drive->brake_Nm = 1;
+    TEST_ASSERT_TRUE(laconic_drive_brake(drive, &plant, 0, 10, 1) == -1);
+    TEST_ASSERT_TRUE(laconic_drive_brake(drive, &plant, 0, -10, 1) == 1);
+    TEST_ASSERT_TRUE(laconic_drive_brake(drive, &plant, 0, 0, 1) == REAL(-0.5)); /* against the drive alone */
+    drive->brake_Nm = 1000;
+    const laconic_real whole = laconic_drive_brake(drive, &plant, 0, 1, 1) + REAL(0.5);
+    const laconic_real half = laconic_drive_brake(drive, &plant, 0, 1, REAL(0.5)) + REAL(0.5);
+    TEST_ASSERT_TRUE(whole < 0);
+    TEST_ASSERT_DOUBLE_WITHIN(1e-4, (double)whole / 2, (double)half);
+}
+
+/* The only motion that its two fixed wheels leave this vehicle is a turn about the first of them. */
+static void a_wheel_that_no_motion_turns_is_not_braked(void) {
+    laconic_vehicle vehicle = {.mass_kg = 20, .yaw_inertia_kgm2 = 1, .wheel_radius_m = REAL(0.05)};
+    vehicle.wheel_count = 2;
+    vehicle.wheel[0].kind = vehicle.wheel[1].kind = LACONIC_WHEEL_FIXED;
+    vehicle.wheel[0].axle_rad = REAL(1.57079632679489661923);
+    vehicle.wheel[1].x_m = 1;
+    scene_plant(&plant, &vehicle);
+    drives.drive[0].brake_Nm = drives.drive[1].brake_Nm = 1000;
+    TEST_ASSERT_TRUE(laconic_drive_brake(&drives.drive[0], &plant, 0, 1, 1) == 0);
+    TEST_ASSERT_TRUE(laconic_drive_brake(&drives.drive[1], &plant, 1, 1, 1) < 0);
+}
+
 static void a_refused_step_switches_every_drive_off(void) {
     laconic_refusal why;
     ask(0, 100);
@@ -234,6 +261,8 @@ int main(void) {
     RUN_TEST(a_start_in_motion_measures_the_wheels_speed);
     RUN_TEST(a_brake_by_order_stalls_its_drive);
     RUN_TEST(brakes_on_all_wheels_stop_the_vehicle_and_keep_it);
+    RUN_TEST(a_brake_stops_its_wheel_within_a_step_as_far_as_it_is_strong_enough);
+    RUN_TEST(a_wheel_that_no_motion_turns_is_not_braked);
     RUN_TEST(a_refused_step_switches_every_drive_off);
     RUN_TEST(the_protocols_time_never_runs_backwards);
     RUN_TEST(frames_go_through_the_protocol);

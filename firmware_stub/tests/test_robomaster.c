@@ -108,6 +108,22 @@ static void feedback_comes_every_millisecond_with_angle_speed_and_current(void) 
     TEST_ASSERT_TRUE(drives.drive[0].encoder.count < -1000);
 }
 
+static void a_speed_or_current_beyond_16_bits_is_their_end(void) {
+    laconic_frame frame;
+    for (int side = -1; side <= 1; side += 2) {
+        step(1);
+        drives.drive[0].speed_rad_per_s = REAL(side * 1e4); /* 95,493 rpm */
+        drives.drive[0].current_A = REAL(side * 50);        /* 40,960 of 16,384 for 20 A */
+        TEST_ASSERT_TRUE(laconic_drives_next_frame(&drives, &frame));
+        TEST_ASSERT_EQUAL_HEX32(0x201, frame.id);
+        for (int at = 2; at < 6; at += 2) {
+            TEST_ASSERT_EQUAL_HEX8(side < 0 ? 0x80 : 0x7F, frame.data[at]);
+            TEST_ASSERT_EQUAL_HEX8(side < 0 ? 0x00 : 0xFF, frame.data[at + 1]);
+        }
+        while (laconic_drives_next_frame(&drives, &frame)) continue;
+    }
+}
+
 static void an_encoder_of_other_counts_is_told_in_8192_parts_of_a_turn(void) {
     laconic_frame frame;
     drives.drive[0].settings.encoder_counts = 1024;
@@ -201,6 +217,7 @@ int main(void) {
     RUN_TEST(a_c610_has_half_the_current_and_no_temperature);
     RUN_TEST(frames_that_are_no_commands_are_passed_over);
     RUN_TEST(feedback_comes_every_millisecond_with_angle_speed_and_current);
+    RUN_TEST(a_speed_or_current_beyond_16_bits_is_their_end);
     RUN_TEST(an_encoder_of_other_counts_is_told_in_8192_parts_of_a_turn);
     RUN_TEST(shorter_steps_send_feedback_every_millisecond_also_late);
     RUN_TEST(longer_steps_send_their_feedback_alone);

@@ -82,6 +82,12 @@ static void the_watchdog_is_a_time(void) {
     TEST_ASSERT_EQUAL_INT(LACONIC_OK, laconic_drive_plan_check(&plan, &laconic_robomaster, 4, NULL));
 }
 
+static void a_refusal_needs_no_place_for_its_reason(void) {
+    TEST_ASSERT_EQUAL_INT(LACONIC_OK, laconic_drive_plan_check(&plan, &laconic_robomaster, 4, NULL));
+    plan.drive[1].current_limit_A = 0;
+    TEST_ASSERT_EQUAL_INT(LACONIC_NOT_POSITIVE, laconic_drive_plan_check(&plan, &laconic_robomaster, 4, NULL));
+}
+
 int main(void) {
     UNITY_BEGIN();
     RUN_TEST(a_right_plan_passes);
@@ -91,5 +97,6 @@ int main(void) {
     RUN_TEST(node_ids_are_those_of_the_protocol_and_differ);
     RUN_TEST(a_drive_of_a_wheel_that_does_not_exist_is_refused);
     RUN_TEST(the_watchdog_is_a_time);
+    RUN_TEST(a_refusal_needs_no_place_for_its_reason);
     return UNITY_END();
 }
