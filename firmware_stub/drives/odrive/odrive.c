@@ -20,9 +20,11 @@ void odrive_restart(laconic_drives *drives, int32_t i, uint32_t now_us) {
     odrive_axis *axis = odrive_axis_of(drives, i);
     laconic_wheel_drive *drive = &drives->drive[i];
     const laconic_drive_settings saved = axis->saved;
+    const laconic_real most_current_A = axis->most_current_A;
     memset(axis, 0, sizeof *axis);
     laconic_drive_off(drive);
     axis->saved = drive->settings = saved;
+    axis->most_current_A = most_current_A;
     set_defaults(axis);
     axis->node_id = (uint8_t)saved.node_id;
     axis->zero.count = drive->encoder.count; /* an incremental encoder starts at 0 */
@@ -33,7 +35,9 @@ void odrive_restart(laconic_drives *drives, int32_t i, uint32_t now_us) {
 
 static void start(laconic_drives *drives, uint32_t now_us) {
     for (int32_t i = 0; i < drives->count; i++) {
-        odrive_axis_of(drives, i)->saved = drives->drive[i].settings;
+        odrive_axis *axis = odrive_axis_of(drives, i);
+        axis->saved = drives->drive[i].settings;
+        axis->most_current_A = axis->saved.current_limit_A;
         odrive_restart(drives, i, now_us);
     }
 }

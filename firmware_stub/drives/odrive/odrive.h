@@ -88,6 +88,7 @@ typedef enum odrive_input_mode {
 /* Speeds are in turns of the shaft a second, torques in N·m at the shaft. */
 typedef struct odrive_axis {
     laconic_drive_settings saved; /* what a reboot brings back */
+    laconic_real most_current_A;  /* of the scene: no message makes it more */
     drive_place zero;             /* place whose position on the bus is 0 */
     drive_place input_place, place;
     laconic_real input_speed, speed;

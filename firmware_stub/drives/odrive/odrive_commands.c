@@ -75,7 +75,7 @@ static void input_torque(laconic_drives *drives, int32_t i, const laconic_frame 
     read(frame->data, -most, &odrive_axis_of(drives, i)->input_torque);
 }
 
-/* Infinity is no limit of the speed. The current is never more than the drive was built for. */
+/* Infinity is no limit of the speed. The current is never more than the scene has it. */
 static void limits(laconic_drives *drives, int32_t i, const laconic_frame *frame, uint32_t now_us) {
     (void)now_us;
     odrive_axis *axis = odrive_axis_of(drives, i);
@@ -85,7 +85,7 @@ static void limits(laconic_drives *drives, int32_t i, const laconic_frame *frame
     axis->speed_limit = is_finite(speed) ? speed : LACONIC_REAL_MAX;
     has->speed_limit_rad_per_s = speed < most ? speed * (2 * ODRIVE_PI) : 0;
     if (speed == 0) has->speed_limit_rad_per_s = LACONIC_REAL_MIN; /* 0 is no limit to the drive */
-    has->current_limit_A = current_A < axis->saved.current_limit_A ? current_A : axis->saved.current_limit_A;
+    has->current_limit_A = current_A < axis->most_current_A ? current_A : axis->most_current_A;
 }
 
 static void travel_speed(laconic_drives *drives, int32_t i, const laconic_frame *frame, uint32_t now_us) {
