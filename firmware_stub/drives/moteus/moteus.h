@@ -102,6 +102,11 @@ static inline laconic_real moteus_torque_constant(const laconic_wheel_drive *dri
     return drive->settings.torque_constant_Nm_per_A * drive->settings.gear_ratio;
 }
 
+/* Whether a completed command has limits: then of the speed, too. */
+static inline bool moteus_is_limited(const moteus_command *command) {
+    return command->velocity_limit - command->velocity_limit == 0;
+}
+
 /* moteus_command.c: a command begins, is completed with defaults, acts. */
 moteus_command moteus_blank(void);
 void moteus_set_mode(moteus_axis *axis, laconic_real mode);

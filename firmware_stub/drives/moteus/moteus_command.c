@@ -46,6 +46,7 @@ static laconic_real limit(laconic_real given, laconic_real by_default) {
     return given != given ? by_default : given < 0 ? real_not_a_number() : given;
 }
 
+/* Any limit makes one of the speed. */
 static void complete_limits(moteus_command *command, const laconic_wheel_drive *drive) {
     const laconic_real gear = real_magnitude(drive->settings.gear_ratio);
     laconic_real fastest = drive->settings.speed_limit_rad_per_s / (2 * MOTEUS_PI * gear);
@@ -100,10 +101,8 @@ void moteus_command_drive(const laconic_drives *drives, moteus_axis *axis, lacon
     axis->acting = axis->given;
     complete(axis, drives, drive);
     if (mode == MOTEUS_STOPPED || axis->mode == MOTEUS_FAULT || axis->mode == MOTEUS_TIMEOUT) return;
-    const moteus_command *command = &axis->acting;
-    const bool limited = is_finite(command->velocity_limit) || is_finite(command->acceleration_limit);
     enter(axis, mode);
-    if (is_finite(command->stop_position) && limited) {
+    if (is_finite(axis->acting.stop_position) && moteus_is_limited(&axis->acting)) {
         axis->mode = MOTEUS_FAULT;
         axis->fault = MOTEUS_STOP_POSITION_DEPRECATED;
     }

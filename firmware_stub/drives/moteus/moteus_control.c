@@ -90,10 +90,8 @@ static void stop_there(moteus_axis *axis, const laconic_wheel_drive *drive) {
 }
 
 static void follow(moteus_axis *axis, const laconic_wheel_drive *drive, laconic_real step_s) {
-    const moteus_command *command = &axis->acting;
-    const bool limited = is_finite(command->velocity_limit) || is_finite(command->acceleration_limit);
     capture(axis, drive);
-    if (axis->has_target && limited) {
+    if (axis->has_target && moteus_is_limited(&axis->acting)) {
         follow_place(axis, drive, step_s);
     } else {
         if (axis->has_target) axis->control = axis->target;
@@ -120,7 +118,7 @@ static void give_torque(moteus_axis *axis, laconic_wheel_drive *drive, const gai
     const laconic_real wanted = by->feedforward_torque - by->kp * off - by->kd * slip;
     laconic_real torque = wanted;
     if (by->maximum_torque == by->maximum_torque) torque = real_within(wanted, -by->maximum_torque, by->maximum_torque);
-    if (axis->mode != MOTEUS_FAULT) axis->fault = torque != wanted ? MOTEUS_LIMIT_TORQUE : 0;
+    axis->fault = torque != wanted ? MOTEUS_LIMIT_TORQUE : 0;
     status->command_torque = torque;
     give_current(drive, torque / moteus_torque_constant(drive));
 }

@@ -15,7 +15,7 @@ static bool read_varuint(reader *from, uint32_t *value) {
     *value = 0;
     for (uint32_t shift = 0; shift < 35 && from->at < from->length; shift += 7) {
         const uint8_t octet = from->data[from->at++];
-        *value |= (uint32_t)(octet & 0x7FU) << (shift < 32 ? shift : 0);
+        *value |= (uint32_t)(octet & 0x7FU) << shift;
         if ((octet & 0x80U) == 0) return true;
     }
     return false;

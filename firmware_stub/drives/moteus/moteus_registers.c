@@ -189,12 +189,8 @@ static bool write_special(laconic_drives *drives, int32_t i, uint32_t number, ui
     }
 }
 
-static bool is_modelled(laconic_real mode) {
-    const laconic_real stopped = MOTEUS_STOPPED, fault = MOTEUS_FAULT, brake = MOTEUS_BRAKE;
-    const laconic_real first = MOTEUS_CURRENT, last = MOTEUS_STAY_WITHIN;
-    return mode == stopped || mode == fault || (mode >= 2 && mode <= 4) || mode == brake ||
-           (mode >= first && mode <= last);
-}
+/* 0 to 4, 9 to 13 and 15; of a number with a share its whole part, as the firmware takes it. */
+static bool is_modelled(laconic_real mode) { return mode >= 0 && mode < 16 && (0xBE1FU >> (uint32_t)mode & 1U) != 0; }
 
 /* A mode that is not modelled is refused as the controller refuses a number that is no mode. */
 static uint32_t write_mode(moteus_axis *axis, laconic_real mode) {

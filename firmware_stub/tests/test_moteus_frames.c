@@ -1,0 +1,181 @@
+/* Tests of firmware_stub/drives/moteus: subframes that end early, replies that run out of room, registers by number. */
+#include "moteus_bench.h"
+
+void setUp(void) { bench_begin(&laconic_moteus, NODE, GEAR); }
+void tearDown(void) {}
+
+/* Reads that fill a reply with exactly this many octets, 62 to 64: 14 registers of 4 (59) and int8 ones. */
+static void fill(uint8_t octets) {
+    static const struct {
+        const char *reads;
+        uint8_t length;
+    } rest[] = {{"\x11\x20", 2}, {"\x15\x20", 2}, {"\x13\x20", 2}}; /* 3, 4 and 5 octets */
+    put("\x18\x0E\x20", 3);
+    put(rest[octets - 62].reads, rest[octets - 62].length);
+}
+
+/* The reply to what was put has so many octets, and what did not fit left nothing of itself. */
+static void fills(uint8_t octets) {
+    send();
+    reply();
+    TEST_ASSERT_EQUAL_UINT8(64, frame.length);
+    TEST_ASSERT_TRUE(octets == 64 || frame.data[octets - 1] != 0x50);
+    for (uint8_t k = octets; k < 64; k++) TEST_ASSERT_EQUAL_HEX8(0x50, frame.data[k]);
+}
+
+/* A position of -1.01 turns, so that no reply that is filled with it ends like padding. */
+static void write_position(void) { put("\x01\x00\x0A\x0D\x20\xAE\x47\x81\xBF", 9); }
+
+static void a_reply_without_room_for_another_register_ends_there(void) {
+    for (uint8_t octets = 62; octets <= 64; octets++) {
+        write_position();
+        fill(octets);
+        put("\x11\x20", 2);
+        fills(octets);
+        write_position();
+        fill(octets);
+        put("\x10\x01\x20", 3); /* the count by itself */
+        fills(octets);
+    }
+}
+
+static void an_error_without_room_is_left_out_whole(void) {
+    for (uint8_t octets = 62; octets <= 64; octets++) {
+        write_position();
+        fill(octets);
+        put("\x01\x7F\x05", 3); /* register 0x7F is unknown */
+        fills(octets);
+        write_position();
+        fill(octets);
+        put("\x11\x7F", 2);
+        fills(octets);
+    }
+}
+
+static void a_stream_without_room_for_its_answer_is_left_out_whole(void) {
+    for (uint8_t octets = 62; octets <= 64; octets++) {
+        write_position();
+        fill(octets);
+        put("\x42\x01\x30", 3);
+        fills(octets);
+    }
+}
+
+static void a_frame_that_asks_for_no_reply_gets_no_error_and_no_stream(void) {
+    bench_send(NODE, "\x01\x7F\x05\x42\x01\x30", 6);
+    TEST_ASSERT_FALSE(drives.protocol->next_frame(&drives, &frame));
+    bench_send(NODE, "\x11\x7F\x01\x00\x0A", 5); /* reads are passed over without one, what follows acts */
+    near(POSITION, read_float(0x00), 0.1);
+}
+
+static void streams_that_end_early_or_of_other_channels_end_the_frame(void) {
+    static const char *const frames[] = {"\x42", "\x42\x01", "\x42\x02\x30\x11\x0D"};
+    for (size_t k = 0; k < sizeof frames / sizeof frames[0]; k++) {
+        bench_send(TO_NODE, frames[k], (uint8_t)strlen(frames[k]));
+        reply();
+        TEST_ASSERT_EQUAL_UINT8(0, frame.length);
+    }
+}
+
+static void a_number_that_the_frame_cuts_off_ends_it(void) {
+    static const char *const frames[] = {"\xFF", "\x11\x80", "\x10\x80", "\xD0\x80\x80\x80\x80\x80"};
+    for (size_t k = 0; k < sizeof frames / sizeof frames[0]; k++) {
+        bench_send(TO_NODE, frames[k], (uint8_t)strlen(frames[k]));
+        reply();
+        TEST_ASSERT_EQUAL_UINT8(0, frame.length);
+    }
+}
+
+static void an_error_names_a_register_of_any_number(void) {
+    ANSWERS("\x11\x80\x80\x01", "\x31\x80\x80\x01\x01");                             /* 0x4000 */
+    ANSWERS("\x11\x80\x80\x80\x01", "\x31\x80\x80\x80\x01\x01");                     /* 0x200000 */
+    ANSWERS("\x11\x80\x80\x80\x80\x01", "\x31\x80\x80\x80\x80\x01\x01");             /* 0x10000000 */
+    ANSWERS("\x11\xFF\xFF\xFF\xFF\x0F", "\x31\xFF\xFF\xFF\xFF\x0F\x01");             /* the largest */
+    ANSWERS("\x02\xFF\x01\x05\x05", "\x30\xFF\x01\x01\x30\x80\x02\x02");             /* 0x0FF, then 0x100 */
+    ANSWERS("\x11\x80\x02\x11\x00", "\x31\x80\x02\x01");                             /* a model is no int8 */
+    ANSWERS("\x00\x80\x80\x80\x80\x10\x80\x80\x80\x80\x10\x11\x0D", "\x21\x0D\x30"); /* no more than 32 bits */
+}
+
+static void frames_that_are_remote_are_passed_over(void) {
+    const laconic_frame query = {.id = TO_NODE, .length = 2, .data = {0x11, 0x0D}, .remote = true};
+    drives.protocol->on_frame(&drives, &query, now_us);
+    TEST_ASSERT_FALSE(drives.protocol->next_frame(&drives, &frame));
+}
+
+static void the_reply_of_the_lowest_id_goes_first(void) {
+    drives.drive[0].settings.node_id = 5;
+    drives.drive[1].settings.node_id = 2;
+    drives.protocol->start(&drives, now_us);
+    bench_send(ASK | 0x7F, "\x11\x0D", 2);
+    TEST_ASSERT_TRUE(drives.protocol->next_frame(&drives, &frame));
+    TEST_ASSERT_EQUAL_HEX32(0x200, frame.id);
+    TEST_ASSERT_TRUE(drives.protocol->next_frame(&drives, &frame));
+    TEST_ASSERT_EQUAL_HEX32(0x500, frame.id);
+}
+
+/* --- registers --------------------------------------------------------------------------------------------------- */
+
+static void words_of_the_device_stand_in_their_ranges_alone(void) {
+    static const struct {
+        uint16_t first, last;
+    } ranges[] = {{0x100, 0x102}, {0x120, 0x122}, {0x150, 0x153}, {0x158, 0x158}};
+    for (uint32_t number = 0xF0; number < 0x170; number++) {
+        bool there = number == 0x140 || number == 0x141;
+        for (size_t k = 0; k < sizeof ranges / sizeof ranges[0]; k++)
+            there = there || (number >= ranges[k].first && number <= ranges[k].last);
+        const uint8_t request[] = {0x19, (uint8_t)(number | 0x80U), (uint8_t)(number >> 7)};
+        bench_send(TO_NODE, request, 3);
+        TEST_ASSERT_EQUAL_HEX8(there ? 0x29 : 0x31, reply()[0]);
+    }
+}
+
+static void every_drive_has_its_serial_number_and_takes_uuid_masks(void) {
+    ANSWERS("\x1B\xA0\x02", "\x2B\xA0\x02\x01\x00\x00\x00\x00\x00\x00\x00\x00\x00\x00\x00");
+    ANSWERS("\x19\xD8\x02", "\x29\xD8\x02\x01\x00\x00\x00");
+    bench_send(ASK | (NODE + 1), "\x19\xA0\x02", 3);
+    TEST_ASSERT_TRUE(bench_receive(REPLY + 0x100, &frame));
+    TEST_ASSERT_EQUAL_UINT8(2, frame.data[3]);
+}
+
+static void a_uuid_mask_that_is_no_int32_selects_no_drive(void) {
+    bench_send(TO_NODE, "\x01\xD4\x02\x6C\x11\x00", 6); /* its first octet alone, which is right */
+    TEST_ASSERT_FALSE(drives.protocol->next_frame(&drives, &frame));
+}
+
+static void milliseconds_as_a_float_wrap_where_it_is_exact(void) {
+    bench_steps(300);
+    near(300, read_float(0x70), 0);
+    now_us += 1;
+    for (uint32_t k = 0; k < 8; k++) /* to 2^23 ms and 5 more, in whole seconds and a rest */
+        drives.protocol->on_step(&drives, now_us += 1048575000U + (k == 7 ? 8U * 1000U - 295000U : 0));
+    near(5, read_float(0x70), 0);
+    ANSWERS("\x19\x70", "\x29\x70\x05\x00\x80\x00");
+}
+
+static void a_mode_with_a_share_is_its_whole_part(void) {
+    ANSWERS("\x0D\x00\x00\x00\x20\xC1", "\x30\x00\x01"); /* -10 */
+    ANSWERS("\x0D\x00\x00\x00\x80\x41", "\x30\x00\x01"); /* 16 */
+    ANSWERS("\x0D\x00\x00\x00\xC0\x7F", "\x30\x00\x01"); /* none */
+    put_float(0x00, (laconic_real)10.75);
+    send();
+    near(POSITION, read_float(0x00), 0);
+}
+
+int main(void) {
+    UNITY_BEGIN();
+    RUN_TEST(a_reply_without_room_for_another_register_ends_there);
+    RUN_TEST(an_error_without_room_is_left_out_whole);
+    RUN_TEST(a_stream_without_room_for_its_answer_is_left_out_whole);
+    RUN_TEST(a_frame_that_asks_for_no_reply_gets_no_error_and_no_stream);
+    RUN_TEST(streams_that_end_early_or_of_other_channels_end_the_frame);
+    RUN_TEST(a_number_that_the_frame_cuts_off_ends_it);
+    RUN_TEST(an_error_names_a_register_of_any_number);
+    RUN_TEST(frames_that_are_remote_are_passed_over);
+    RUN_TEST(the_reply_of_the_lowest_id_goes_first);
+    RUN_TEST(words_of_the_device_stand_in_their_ranges_alone);
+    RUN_TEST(every_drive_has_its_serial_number_and_takes_uuid_masks);
+    RUN_TEST(a_uuid_mask_that_is_no_int32_selects_no_drive);
+    RUN_TEST(milliseconds_as_a_float_wrap_where_it_is_exact);
+    RUN_TEST(a_mode_with_a_share_is_its_whole_part);
+    return UNITY_END();
+}
