@@ -222,6 +222,103 @@ static void another_mode_begins_where_the_wheel_is(void) {
     TEST_ASSERT_EQUAL(8, get(0x6061, 0));
 }
 
+static void a_third_set_point_finds_no_room(void) {
+    prepare_profile_position();
+    for (int k = 1; k <= 3; k++) {
+        set(0x607A, 0, 1000 * k);
+        control(15 | 16);
+        control(15);
+    }
+    TEST_ASSERT_BITS_HIGH(4096, statusword());
+    step(3000);
+    TEST_ASSERT_EQUAL(2000, get(0x6062, 0));
+    TEST_ASSERT_BITS_LOW(4096, statusword());
+}
+
+static void a_set_point_at_once_replaces_one_that_waits(void) {
+    prepare_profile_position();
+    for (int k = 1; k <= 3; k++) {
+        set(0x607A, 0, 1000 * k);
+        control(k < 3 ? 15 | 16 : 15 | 16 | 32);
+        control(15);
+    }
+    step(3000);
+    TEST_ASSERT_EQUAL(3000, get(0x6062, 0));
+}
+
+static void profile_position_stays_below_607F(void) {
+    prepare_profile_position();
+    set(0x607F, 0, 5000);
+    set(0x607A, 0, 12000);
+    control(15 | 16);
+    for (int k = 0; k < 3000; k++) {
+        step(1);
+        TEST_ASSERT_LESS_OR_EQUAL(5000, get(0x606B, 0));
+    }
+    TEST_ASSERT_EQUAL(12000, get(0x6062, 0));
+}
+
+/* Even where a single step of the deceleration is further than the way. */
+static void a_short_way_keeps_the_profiles_speed(void) {
+    prepare_profile_position();
+    set(0x6081, 0, 100);
+    set(0x6084, 0, 100000000);
+    set(0x607A, 0, 5);
+    control(15 | 16);
+    step(25);
+    TEST_ASSERT_INT_WITHIN(1, 2, get(0x6062, 0));
+    step(30);
+    TEST_ASSERT_EQUAL(5, get(0x6062, 0));
+}
+
+static void enabled_without_a_mode_the_wheel_coasts(void) {
+    set(0x60FF, 0, 20000);
+    enable(0);
+    step(5);
+    TEST_ASSERT_EQUAL(LACONIC_DRIVE_OFF, on.drives.drive[0].target.mode);
+    TEST_ASSERT_BITS_LOW(1024 | 4096, statusword());
+}
+
+static void another_mode_leaves_a_drive_that_slows_down_alone(void) {
+    set(0x605C, 0, 1);
+    set(0x60FF, 0, 20000);
+    enable(9);
+    step(500);
+    control(7);
+    step(50);
+    const int32_t demand = get(0x606B, 0);
+    set(0x6060, 0, 3);
+    TEST_ASSERT_EQUAL(3, get(0x6061, 0));
+    TEST_ASSERT_EQUAL(demand, get(0x606B, 0));
+    step(20);
+    TEST_ASSERT_INT_WITHIN(100, demand - 2000, get(0x606B, 0)); /* 100,000 counts/s² as before */
+}
+
+static void the_following_error_is_that_of_modes_of_positions(void) {
+    static const int modes[5] = {1, 8, 3, 9, 10};
+    for (int k = 0; k < 5; k++) {
+        power_up();
+        set(0x6065, 0, 10);
+        enable(modes[k]);
+        on.drives.drive[0].encoder.count += 1000; /* dragged */
+        step(1);
+        TEST_ASSERT_EQUAL(k < 2 ? 8192 : 0, statusword() & 8192);
+        on.axes[0].demand += 100000;
+        step(15);
+        TEST_ASSERT_EQUAL_HEX16(k < 2 ? REACTION : ENABLED, state());
+    }
+}
+
+static void speeds_beyond_32_bits_are_shown_as_their_ends(void) {
+    on.drives.drive[0].speed_rad_per_s = (laconic_real)1e9;
+    TEST_ASSERT_EQUAL(INT32_MAX, get(0x606C, 0));
+    on.drives.drive[0].speed_rad_per_s = (laconic_real)-1e9;
+    TEST_ASSERT_EQUAL(-INT32_MAX, get(0x606C, 0));
+    on.drives.drive[0].speed_rad_per_s = LACONIC_REAL_MAX * 2;
+    on.drives.drive[0].speed_rad_per_s -= on.drives.drive[0].speed_rad_per_s; /* no number */
+    TEST_ASSERT_EQUAL(0, get(0x606C, 0));
+}
+
 int main(void) {
     UNITY_BEGIN();
     RUN_TEST(profile_velocity_ramps_up_and_down_and_turns_back);
@@ -237,5 +334,13 @@ int main(void) {
     RUN_TEST(profile_position_goes_to_its_target_by_ramps);
     RUN_TEST(a_second_set_point_waits_and_one_at_once_does_not);
     RUN_TEST(another_mode_begins_where_the_wheel_is);
+    RUN_TEST(a_third_set_point_finds_no_room);
+    RUN_TEST(a_set_point_at_once_replaces_one_that_waits);
+    RUN_TEST(profile_position_stays_below_607F);
+    RUN_TEST(a_short_way_keeps_the_profiles_speed);
+    RUN_TEST(enabled_without_a_mode_the_wheel_coasts);
+    RUN_TEST(another_mode_leaves_a_drive_that_slows_down_alone);
+    RUN_TEST(the_following_error_is_that_of_modes_of_positions);
+    RUN_TEST(speeds_beyond_32_bits_are_shown_as_their_ends);
     return UNITY_END();
 }

@@ -170,6 +170,47 @@ static void stopping_a_node_that_drives_is_a_lost_connection(void) {
     TEST_ASSERT_EQUAL_HEX16(SWITCH_ON_DISABLED, state());
 }
 
+static void a_start_of_a_node_that_runs_begins_nothing_anew(void) {
+    set(0x1801, 2, 2); /* at every second SYNC */
+    start_nodes();
+    sync();
+    nmt(1, ID);
+    forget();
+    sync();
+    TEST_ASSERT_EQUAL(1, count_of(0x280 + ID));
+}
+
+static void frames_that_only_look_like_commands_move_no_node(void) {
+    laconic_frame frame = {.id = 0, .length = 2, .data = {1, 0}, .remote = true};
+    laconic_canopen.on_frame(&on.drives, &frame, on.now_us);
+    frame.remote = false;
+    frame.fd = true;
+    laconic_canopen.on_frame(&on.drives, &frame, on.now_us);
+    frame.fd = false;
+    frame.extended = true;
+    laconic_canopen.on_frame(&on.drives, &frame, on.now_us);
+    TEST_ASSERT_EQUAL(CANOPEN_PRE_OPERATIONAL, on.axes[0].nmt);
+    frame.extended = false;
+    laconic_canopen.on_frame(&on.drives, &frame, on.now_us);
+    TEST_ASSERT_EQUAL(CANOPEN_OPERATIONAL, on.axes[0].nmt);
+}
+
+static void the_windows_of_a_coarse_encoder_are_parts_of_its_turn(void) {
+    static const int rows[3][3] = {{30, 1, 4}, {640, 11, 44}, {4095, 64, 256}};
+    for (int k = 0; k < 3; k++) {
+        on.drives.drive[0].settings.encoder_counts = rows[k][0];
+        nmt(129, ID);
+        TEST_ASSERT_EQUAL(rows[k][1], get(0x6067, 0));
+        TEST_ASSERT_EQUAL(rows[k][2], get(0x606D, 0));
+        TEST_ASSERT_EQUAL(rows[k][1], get(0x606F, 0));
+    }
+    on.drives.drive[0].settings.encoder_counts = 4096;
+    nmt(129, ID);
+    TEST_ASSERT_EQUAL(100, get(0x6067, 0));
+    TEST_ASSERT_EQUAL(500, get(0x606D, 0));
+    TEST_ASSERT_EQUAL(5, get(0x606F, 0));
+}
+
 int main(void) {
     UNITY_BEGIN();
     RUN_TEST(each_node_boots_up_and_is_pre_operational);
@@ -182,5 +223,8 @@ int main(void) {
     RUN_TEST(silence_is_a_fault_by_default_and_the_drive_brakes);
     RUN_TEST(option_codes_say_what_silence_does);
     RUN_TEST(stopping_a_node_that_drives_is_a_lost_connection);
+    RUN_TEST(a_start_of_a_node_that_runs_begins_nothing_anew);
+    RUN_TEST(frames_that_only_look_like_commands_move_no_node);
+    RUN_TEST(the_windows_of_a_coarse_encoder_are_parts_of_its_turn);
     return UNITY_END();
 }

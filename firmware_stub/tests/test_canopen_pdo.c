@@ -267,6 +267,39 @@ static void a_scenes_watchdog_is_the_deadline_of_the_targets(void) {
     TEST_ASSERT_EQUAL_HEX16(SWITCH_ON_DISABLED, state());
 }
 
+static void a_watchdog_beyond_16_bits_is_the_longest_deadline(void) {
+    on.drives.watchdog_s = 100;
+    nmt(129, ID);
+    TEST_ASSERT_EQUAL_HEX16(0xFFFF, get(0x1401, 5) & 0xFFFF);
+}
+
+static void a_received_pdo_that_is_switched_off_is_not_missed(void) {
+    set(0x1400, 5, 50);
+    start_nodes();
+    deliver(RPDO1, BYTES(0, 0, 0), 3);
+    set(0x1400, 1, (int64_t)(0x80000200U + ID));
+    step(200);
+    TEST_ASSERT_EQUAL_HEX16(SWITCH_ON_DISABLED, state());
+    TEST_ASSERT_EQUAL_HEX8(0, get(0x1001, 0));
+}
+
+static void data_that_wait_for_sync_are_dropped_with_their_pdo(void) {
+    set(0x1401, 2, 1);
+    start_nodes();
+    deliver(RPDO2, BYTES(7), 4);
+    set(0x1401, 1, (int64_t)(0x80000300U + ID));
+    sync();
+    set(0x1401, 1, 0x300 + ID);
+    sync();
+    TEST_ASSERT_EQUAL(0, get(0x60FF, 0));
+}
+
+static void the_inhibit_time_is_read_as_it_was_written(void) {
+    set(0x1802, 3, 250);
+    TEST_ASSERT_EQUAL(250, get(0x1802, 3));
+    TEST_ASSERT_EQUAL(0, get(0x1800, 3));
+}
+
 int main(void) {
     UNITY_BEGIN();
     RUN_TEST(after_power_up_the_usual_objects_are_mapped);
@@ -285,5 +318,9 @@ int main(void) {
     RUN_TEST(a_remote_request_is_answered_iff_the_pdo_allows_it);
     RUN_TEST(a_received_pdo_that_stops_coming_counts_as_a_lost_controller);
     RUN_TEST(a_scenes_watchdog_is_the_deadline_of_the_targets);
+    RUN_TEST(a_watchdog_beyond_16_bits_is_the_longest_deadline);
+    RUN_TEST(a_received_pdo_that_is_switched_off_is_not_missed);
+    RUN_TEST(data_that_wait_for_sync_are_dropped_with_their_pdo);
+    RUN_TEST(the_inhibit_time_is_read_as_it_was_written);
     return UNITY_END();
 }

@@ -251,6 +251,45 @@ static void homing_is_refused_by_every_way(void) {
     TEST_ASSERT_BITS_LOW(32, get(0x6502, 0));
 }
 
+static void identifiers_are_those_of_the_predefined_connections(void) {
+    TEST_ASSERT_EQUAL_HEX32(0x80, get(0x1005, 0));
+    TEST_ASSERT_EQUAL_HEX32(0x80 + ID, get(0x1014, 0));
+    TEST_ASSERT_EQUAL_HEX32(0x600 + ID, get(0x1200, 1));
+    TEST_ASSERT_EQUAL_HEX32(0x580 + ID, get(0x1200, 2));
+    TEST_ASSERT_EQUAL(ID, get(0x1018, 4));
+    TEST_ASSERT_EQUAL(24000, get(0x6079, 0)); /* mV */
+}
+
+/* CiA 301 reserves 0 to 0x7F, 0x101 to 0x180, 0x581 to 0x5FF, 0x601 to 0x67F and those from 0x6E0 on. */
+static void reserved_identifiers_are_refused_at_each_end_of_their_ranges(void) {
+    static const struct {
+        uint16_t id;
+        bool is_free;
+    } ends[] = {{0x000, false}, {0x001, false}, {0x07F, false}, {0x080, true},  {0x100, true},  {0x101, false},
+                {0x180, false}, {0x181, true},  {0x580, true},  {0x581, false}, {0x5FF, false}, {0x600, true},
+                {0x601, false}, {0x67F, false}, {0x680, true},  {0x6DF, true},  {0x6E0, false}, {0x7FF, false}};
+    for (size_t k = 0; k < sizeof ends / sizeof ends[0]; k++) {
+        TEST_ASSERT_EQUAL_HEX32(0, write_as(0x1402, 1, 0x80000400U + ID, 4));
+        const uint32_t refusal = write_as(0x1402, 1, ends[k].id, 4);
+        TEST_ASSERT_EQUAL_HEX32(ends[k].is_free ? 0 : CANOPEN_VALUE, refusal);
+        if (refusal == 0) set(0x1402, 1, (int64_t)(0x80000000U | ends[k].id));
+        if (refusal == 0) set(0x1402, 1, (int64_t)(0x80000400U + ID));
+    }
+}
+
+static void another_identifier_of_sync_is_heard_instead_of_the_usual_one(void) {
+    set(0x1005, 0, 0x81);
+    TEST_ASSERT_EQUAL_HEX32(0x81, get(0x1005, 0));
+    start_nodes();
+    forget();
+    sync();
+    TEST_ASSERT_EQUAL(0, count_of(0x280 + ID));
+    deliver(0x81, "", 0);
+    TEST_ASSERT_EQUAL(1, count_of(0x280 + ID));
+    TEST_ASSERT_EQUAL_HEX32(CANOPEN_VALUE, write_as(0x1005, 0, 0x40000080, 4)); /* it is no producer */
+    TEST_ASSERT_EQUAL_HEX32(CANOPEN_VALUE, write_as(0x1014, 0, 0x40000080U + ID, 4));
+}
+
 int main(void) {
     UNITY_BEGIN();
     RUN_TEST(each_wrong_request_has_its_abort_code);
@@ -264,5 +303,8 @@ int main(void) {
     RUN_TEST(requests_that_are_no_sdo_and_those_for_others_are_passed_over);
     RUN_TEST(what_the_drive_is_may_be_written_as_it_is);
     RUN_TEST(homing_is_refused_by_every_way);
+    RUN_TEST(identifiers_are_those_of_the_predefined_connections);
+    RUN_TEST(reserved_identifiers_are_refused_at_each_end_of_their_ranges);
+    RUN_TEST(another_identifier_of_sync_is_heard_instead_of_the_usual_one);
     return UNITY_END();
 }

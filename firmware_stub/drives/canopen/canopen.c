@@ -31,7 +31,7 @@ static void reset_communication(const canopen_node *on) {
     axis->sync_id = 0x80;
     axis->emergency_id = (uint16_t)(0x80 + canopen_id(on));
     canopen_start_pdos(on);
-    axis->due = CANOPEN_DUE_BOOT;
+    axis->due = (uint8_t)((axis->due & CANOPEN_DUE_EMERGENCY) | CANOPEN_DUE_BOOT);
     axis->nmt = CANOPEN_PRE_OPERATIONAL;
 }
 
@@ -73,7 +73,7 @@ void canopen_set_nmt(const canopen_node *on, uint8_t nmt) {
     canopen_axis *axis = on->axis;
     const uint8_t before = axis->nmt;
     axis->nmt = nmt;
-    if (nmt == CANOPEN_STOPPED) axis->due &= CANOPEN_DUE_BOOT | CANOPEN_DUE_HEARTBEAT;
+    if (nmt == CANOPEN_STOPPED) axis->due &= CANOPEN_DUE_BOOT | CANOPEN_DUE_EMERGENCY | CANOPEN_DUE_HEARTBEAT;
     if (nmt == CANOPEN_PRE_OPERATIONAL) axis->due &= (uint8_t)~(15U * CANOPEN_DUE_TPDO);
     if (nmt == CANOPEN_OPERATIONAL && before != nmt) canopen_pdos_begin(on);
 }
@@ -119,7 +119,7 @@ static void check_heartbeats(const canopen_node *on) {
     }
     if ((axis->trouble & CANOPEN_LISTENS) == 0) return;
     if (on->now_us - axis->consumer_us <= 1000U * (axis->consumer & 0xFFFFU)) return;
-    axis->trouble &= (uint8_t)~CANOPEN_LISTENS;
+    axis->trouble = (uint8_t)((axis->trouble & ~CANOPEN_LISTENS) | CANOPEN_TROUBLE_SILENCE);
     canopen_connection_lost(on, 0x8130);
 }
 
@@ -186,12 +186,17 @@ static void send(const canopen_node *on, uint8_t what, laconic_frame *frame) {
     }
 }
 
+/* An error waits until a stopped node may speak again. */
+static uint8_t sendable(const canopen_axis *axis) {
+    return axis->nmt == CANOPEN_STOPPED ? axis->due & (uint8_t)~CANOPEN_DUE_EMERGENCY : axis->due;
+}
+
 /* The most urgent kind of frame first, of the first node that has one: near what identifiers decide on a bus. */
 static bool next_frame(laconic_drives *drives, laconic_frame *frame) {
     for (uint32_t what = CANOPEN_DUE_BOOT; what <= CANOPEN_DUE_HEARTBEAT; what <<= 1) {
         for (int i = 0; i < drives->count; i++) {
             const canopen_node on = node_at(drives, i, 0);
-            if ((on.axis->due & what) == 0) continue;
+            if ((sendable(on.axis) & what) == 0) continue;
             on.axis->due &= (uint8_t)~what;
             memset(frame, 0, sizeof *frame);
             send(&on, (uint8_t)what, frame);

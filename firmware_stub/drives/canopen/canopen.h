@@ -33,7 +33,6 @@ enum { CANOPEN_ARRAY = 8, CANOPEN_RECORD = 9 };
 #define CANOPEN_TOGGLE 0x05030000U        /* toggle bit not alternated                      */
 #define CANOPEN_COMMAND 0x05040001U       /* command specifier unknown or not expected      */
 #define CANOPEN_NO_ACCESS 0x06010000U     /* unsupported access                             */
-#define CANOPEN_WRITE_ONLY 0x06010001U    /* read of a write-only object                    */
 #define CANOPEN_READ_ONLY 0x06010002U     /* write of a read-only object                    */
 #define CANOPEN_NO_OBJECT 0x06020000U     /* index unknown                                  */
 #define CANOPEN_NOT_MAPPABLE 0x06040041U  /* object cannot be mapped to the PDO             */
@@ -108,7 +107,7 @@ typedef struct canopen_axis {
     uint8_t history_count, emergencies; /* emergencies: newest of the history that are still to be sent */
     uint8_t due;
     uint8_t received; /* bits: RPDOs with data that waits for SYNC; from 16 on: those with a deadline */
-    uint8_t trouble;  /* bits: CANOPEN_TROUBLE_… */
+    uint8_t trouble;  /* bits: CANOPEN_TROUBLE_…, CANOPEN_LISTENS, CANOPEN_FOLLOWS_BADLY */
     uint8_t sdo_sub, sdo_row, sdo_at, sdo_step;
     /* the drive */
     uint8_t state, ending, ramp; /* ending: state after the ramp to standstill; CANOPEN_NO_ENDING: no ramp */
@@ -139,7 +138,15 @@ typedef struct canopen_axis {
 } canopen_axis;
 
 enum { CANOPEN_NO_ENDING = 0xFF };
-enum { CANOPEN_TROUBLE_LENGTH = 1, CANOPEN_TROUBLE_SILENCE = 2, CANOPEN_LISTENS = 4, CANOPEN_FOLLOWS_BADLY = 8 };
+/* Bits of `trouble`; those of CANOPEN_TROUBLE are errors of the communication that remain. */
+enum {
+    CANOPEN_TROUBLE_LENGTH = 1,
+    CANOPEN_TROUBLE_SILENCE = 2, /* no heartbeat comes */
+    CANOPEN_LISTENS = 4,
+    CANOPEN_FOLLOWS_BADLY = 8,
+    CANOPEN_TROUBLE_DEADLINE = 16, /* and 32, 64, 128: that RPDO does not come */
+    CANOPEN_TROUBLE = 0xF3
+};
 enum {
     CANOPEN_SET_POINT_MOVES = 1,
     CANOPEN_SET_POINT_WAITS = 2,

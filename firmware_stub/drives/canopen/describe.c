@@ -50,7 +50,7 @@ static bool value_after_power_up(laconic_canopen_object *object, const laconic_c
     laconic_canopen.start(&drives, 0);
     const canopen_node on = {&axis, &drives.drive[0], 1, 0, 0};
     const canopen_row *row = canopen_row_at(canopen_find(object->index, object->sub, &abort));
-    if (row == NULL || canopen_size(row) == 0) return false;
+    if (canopen_size(row) == 0) return false;
     if (canopen_read(&on, row, object->index, object->sub, &value) != 0) return false;
     const uint8_t size = canopen_size(row);
     const uint32_t sign = 1U << (8U * size - 1U), mask = size == 4 ? UINT32_MAX : (sign << 1) - 1U;

@@ -70,8 +70,7 @@ uint32_t canopen_cob_id(uint16_t stored) {
 
 /* Current in thousandths of the rated current, which is the torque in thousandths of the rated torque, too. */
 static int32_t permille(const canopen_node *on) {
-    const laconic_real rated = on->axis->rated_A;
-    return rated > 0 ? canopen_rounded(1000 * on->drive->current_A / rated) : 0;
+    return canopen_rounded(1000 * on->drive->current_A / on->axis->rated_A);
 }
 
 static uint32_t milli(laconic_real value) { return (uint32_t)canopen_rounded(1000 * value); }
@@ -102,10 +101,9 @@ static uint32_t call(const canopen_node *on, canopen_call what, uint8_t sub) {
     case CANOPEN_CALL_RATED_CURRENT: return milli(axis->rated_A);
     case CANOPEN_CALL_RATED_TORQUE: return milli(axis->rated_A * drive->settings.torque_constant_Nm_per_A);
     case CANOPEN_CALL_COUNTS: return (uint32_t)drive->settings.encoder_counts;
-    case CANOPEN_CALL_POSITION_UNIT: return 0x00B50000;     /* increments, by the codes of CiA 303-2: */
-    case CANOPEN_CALL_SPEED_UNIT: return 0x00B50300;        /* ... per second */
-    case CANOPEN_CALL_ACCELERATION_UNIT: return 0x00B55700; /* ... per square second */
-    default: return 0;
+    case CANOPEN_CALL_POSITION_UNIT: return 0x00B50000; /* increments, by the codes of CiA 303-2: */
+    case CANOPEN_CALL_SPEED_UNIT: return 0x00B50300;    /* ... per second */
+    default: return 0x00B55700;                         /* CANOPEN_CALL_ACCELERATION_UNIT: ... per square second */
     }
 }
 
@@ -192,8 +190,8 @@ static uint32_t write_axis(const canopen_node *on, const canopen_row *row, uint8
 /* Identifiers that the predefined connections or CiA 301 reserve for something else are refused, and 29-bit ones. */
 uint32_t canopen_store_cob_id(uint16_t *stored, uint32_t value) {
     const uint32_t id = value & 0x7FFU;
-    const bool reserved = id == 0 || (id > 0 && id < 0x80) || (id > 0x100 && id < 0x181) ||
-                          (id > 0x580 && id < 0x600) || (id > 0x600 && id < 0x680) || id > 0x6DF;
+    const bool reserved = id < 0x80 || (id > 0x100 && id < 0x181) || (id > 0x580 && id < 0x600) ||
+                          (id > 0x600 && id < 0x680) || id > 0x6DF;
     if ((value & 0x3FFFF800U) != 0 || reserved) return CANOPEN_VALUE;
     if (((*stored | value >> 16) & CANOPEN_OFF) == 0 && ((*stored ^ value) & 0x7FFU) != 0) return CANOPEN_PRESENT_STATE;
     *stored = (uint16_t)(id | (value >> 16 & (CANOPEN_OFF | CANOPEN_NO_REMOTE)));

@@ -2,10 +2,10 @@
 #include "../octets.h"
 #include "canopen.h"
 
-/* Bit of the error register by the class of the code: current, voltage, temperature, communication, the device. */
+/* Bit of the error register by the class of the code: voltage, temperature, communication, the device. No error here is
+ * of the current alone. */
 static uint8_t register_bit(uint16_t code) {
     switch (code >> 12) {
-    case 2: return 2;
     case 3: return 4;
     case 4: return 8;
     default: return code >> 8 == 0x81 || code >> 8 == 0x82 ? 16 : 32;
@@ -31,7 +31,7 @@ void canopen_emergency(canopen_axis *axis, uint16_t code) {
 
 /* Error reset: EMCY 0000, iff no error remains. */
 void canopen_all_clear(canopen_axis *axis) {
-    const bool remains = (axis->trouble & (CANOPEN_TROUBLE_LENGTH | CANOPEN_TROUBLE_SILENCE)) != 0;
+    const bool remains = (axis->trouble & CANOPEN_TROUBLE) != 0;
     if (remains || axis->state >= CANOPEN_FAULT_REACTION || axis->error_register == 0) return;
     axis->error_register = 0;
     announce(axis);
@@ -40,7 +40,6 @@ void canopen_all_clear(canopen_axis *axis) {
 /* 0x1029 says what becomes of the communication, 0x6007 what of the drive. */
 void canopen_connection_lost(const canopen_node *on, uint16_t code) {
     canopen_axis *axis = on->axis;
-    axis->trouble |= CANOPEN_TROUBLE_SILENCE;
     on->drive->unheard = true;
     if (axis->connection_option != 1) canopen_emergency(axis, code); /* a fault tells it itself */
     canopen_connection_option(on, code);

@@ -145,7 +145,7 @@ static void profile_position(const canopen_node *on) {
         if (speed > brake) speed = brake;
     }
     axis->speed = direction * speed;
-    if (speed >= 0 && (distance <= speed * on->step_s || distance <= down * on->step_s * on->step_s))
+    if (speed >= 0 && distance <= speed * on->step_s)
         end_set_point(axis);
     else
         advance(axis, axis->speed * on->step_s);

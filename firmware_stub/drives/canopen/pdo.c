@@ -159,14 +159,14 @@ static void apply(const canopen_node *on, const canopen_pdo *pdo) {
 static void take(const canopen_node *on, int k, const laconic_frame *frame) {
     canopen_axis *axis = on->axis;
     canopen_pdo *pdo = &axis->pdo[k];
-    const uint8_t length = length_of(pdo);
+    const uint8_t length = length_of(pdo), ends = (uint8_t)(CANOPEN_TROUBLE_LENGTH | CANOPEN_TROUBLE_DEADLINE << k);
     if (frame->length < length) {
         if ((axis->trouble & CANOPEN_TROUBLE_LENGTH) == 0) canopen_emergency(axis, 0x8210);
         axis->trouble |= CANOPEN_TROUBLE_LENGTH;
         return;
     }
-    if (axis->trouble & CANOPEN_TROUBLE_LENGTH) {
-        axis->trouble &= (uint8_t)~CANOPEN_TROUBLE_LENGTH;
+    if (axis->trouble & ends) {
+        axis->trouble &= (uint8_t)~ends;
         canopen_all_clear(axis);
     }
     memcpy(pdo->data, frame->data, length);
@@ -198,9 +198,10 @@ void canopen_check_deadlines(const canopen_node *on) {
     for (int k = 0; k < CANOPEN_PDOS; k++) {
         const canopen_pdo *pdo = &axis->pdo[k];
         const uint8_t watched = (uint8_t)(16U << k);
-        if ((axis->received & watched) == 0 || pdo->timer_ms == 0 || !is_on(pdo)) continue;
+        if ((axis->received & watched) == 0 || pdo->timer_ms == 0) continue;
         if (on->now_us - pdo->at_us <= 1000U * pdo->timer_ms) continue;
         axis->received &= (uint8_t)~watched;
+        axis->trouble |= watched; /* CANOPEN_TROUBLE_DEADLINE << k */
         canopen_connection_lost(on, 0x8250);
     }
 }
@@ -234,7 +235,7 @@ static bool has_changed(const canopen_node *on, const canopen_pdo *pdo) {
 void canopen_sync(const canopen_node *on) {
     canopen_axis *axis = on->axis;
     for (int k = 0; k < CANOPEN_PDOS; k++) {
-        if ((axis->received & 1U << k) != 0 && is_on(&axis->pdo[k])) apply(on, &axis->pdo[k]);
+        if ((axis->received & 1U << k) != 0) apply(on, &axis->pdo[k]);
     }
     axis->received &= 0xF0U;
     for (int k = 0; k < CANOPEN_PDOS; k++) {

@@ -12,7 +12,7 @@ enum { STEP_NONE = 0, STEP_UP = 1, STEP_DOWN = 2 }; /* sdo_step, with TOGGLE as 
 static uint32_t upload(const canopen_node *on, const canopen_row *row) {
     canopen_axis *axis = on->axis;
     uint32_t value = 0;
-    if ((row->form & CANOPEN_R) == 0) return row->form & CANOPEN_W ? CANOPEN_WRITE_ONLY : CANOPEN_NO_ACCESS;
+    if ((row->form & CANOPEN_R) == 0) return CANOPEN_NO_ACCESS; /* no object can only be written */
     const uint8_t size = canopen_size(row);
     if (size > 0) {
         const uint32_t abort = canopen_read(on, row, axis->sdo_index, axis->sdo_sub, &value);

@@ -33,7 +33,6 @@ static void tell_drive(const canopen_node *on) {
 
 void canopen_go(const canopen_node *on, uint8_t state) {
     canopen_axis *axis = on->axis;
-    const uint8_t before = axis->state;
     axis->state = state;
     axis->ending = CANOPEN_NO_ENDING;
     if (state == CANOPEN_ENABLED) {
@@ -42,8 +41,6 @@ void canopen_go(const canopen_node *on, uint8_t state) {
         on->drive->target.mode = LACONIC_DRIVE_OFF;
         axis->speed = 0;
         if (state == CANOPEN_FAULT) tell_drive(on);
-    } else if (before < CANOPEN_ENABLED) {
-        axis->speed = canopen_actual_speed(on->drive);
     }
 }
 
