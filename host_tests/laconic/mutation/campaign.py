@@ -21,6 +21,9 @@ from laconic.paths import SOURCE_DIR, build_dir, sources_missing
 
 PARTS = {"core": ("core_c/src", "core_c/derivatives", "core_c/estimate", "core_c/filter"),
          "node": ("firmware_stub/src",),
+         "drives": ("firmware_stub/drives", *(f"firmware_stub/drives/{protocol}" for protocol in
+                                              ("canopen", "moteus", "odrive", "robomaster"))),
+         "commands": ("firmware_stub/secure",),
          "fmu": ("fmu", "fmu/vehicle", "fmu/controller", "fmu/network", "fmu/network/node", "fmu/network/bus",
                  "fmu/network/robomaster")}
 LEFT_OUT = ("firmware_stub/src/shared_library.c", "firmware_stub/src/shared_library.h",

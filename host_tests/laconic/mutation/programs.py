@@ -25,11 +25,12 @@ FMU_MODELS = ("unit", "derivatives", "estimate", "controller", "node", "bus", "r
 """What the FMUs' glue stands around; `unit` is the vehicle."""
 FAMILIES = {"double": r"laconic_objects_double|laconic_node_double|laconic_wire",
             "single": r"laconic_objects_single|laconic_node_single|laconic_wire",
+            "secure": r"laconic_secure|laconic_wire",
             **{f"fmu_{model}": rf"laconic_fmu_checked_{model}|laconic_fmu_memory|laconic_objects_double"
                                + ("|laconic_node_double|laconic_wire" if model == "node" else "")
                for model in FMU_MODELS}}
 """By the targets whose objects make the family's library."""
-TESTS = {"double": r"(test|node)_\w+_double", "single": r"(test|node)_\w+_single",
+TESTS = {"double": r"(test|node)_\w+_double", "single": r"(test|node)_\w+_single", "secure": r"node_secure",
          **{f"fmu_{model}": rf"fmu_{model}_\w+" for model in FMU_MODELS}}
 LEFT_OUT = r"test_soft_double|node_socketcan_\w+|test_batch\w*"
 """Programs that tell nothing: of files that are not mutated, and of lanes, whose text is not compiled anew here, so
@@ -105,7 +106,8 @@ class Program:
 
 @dataclass
 class Family:
-    """The tests of one scalar type, or of the FMU around one model: all of them around one library."""
+    """The tests of one scalar type, of what knows none (secure), or of the FMU around one model: all of them around one
+    library."""
 
     name: str
     folder: Path

@@ -48,7 +48,7 @@ WRONG = {
     "rig s1 --steps 0": "--steps", "rig s1 --steps 1.5": "--steps",
     "rig s1 --rate 0 --free-run": "--rate", "rig s1 --bitrate x": "--bitrate",
     "soak fuzz --only slca": "did you mean slcan?", "soak rig --minimise": "has no effect on soak rig",
-    "soak mutants --only cor": "neither a part (core, node, fmu)", "soak mutants --sample 0": "--sample",
+    "soak mutants --only cor": "neither a part (core, node, drives", "soak mutants --sample 0": "--sample",
     "soak node --hours 0": "--hours 0", "soak node --hours nan": "--hours",
     "soak rig --hours 3": "has no effect on soak rig", "soak fmu-cycles --cycles 0": "--cycles",
     "soak faults --only memor": "did you mean memory?", "soak faults --sample 5": "--sample 5: is of memory alone",

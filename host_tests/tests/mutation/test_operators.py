@@ -8,7 +8,7 @@ import pytest
 
 from laconic.errors import BadInput
 from laconic.mutation import mutants_of, read_equivalents
-from laconic.mutation.campaign import files_of
+from laconic.mutation.campaign import PARTS, files_of
 from laconic.paths import SOURCE_DIR
 
 SOURCE = """\
@@ -84,5 +84,7 @@ def test_a_row_without_a_reason_is_refused(tmp_path):
 
 def test_core_node_and_fmu_are_the_parts_and_what_python_alone_calls_is_in_neither():
     assert "core_c/src/rk4.c" in files_of("core") and "firmware_stub/src/node.c" in files_of("node")
-    assert set(files_of(None)) == {*files_of("core"), *files_of("node"), *files_of("fmu")}
+    assert "firmware_stub/drives/canopen/sdo.c" in files_of("drives")
+    assert set(files_of("commands")) == {f"firmware_stub/secure/{name}.c" for name in ("aes", "cmac", "gate", "secoc")}
+    assert set(files_of(None)) == {file for part in PARTS for file in files_of(part)}
     assert not any("library" in Path(file).name for file in files_of(None))

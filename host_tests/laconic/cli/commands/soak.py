@@ -42,7 +42,7 @@ def kinds() -> dict[str, str]:
 @click.option("--sample", type=click.IntRange(min=1), metavar="N", help="mutants, faults of memory: so many.")
 @click.option("--survivors", type=click.IntRange(min=0), metavar="N", help="mutants: passed with so many, or 0.")
 @click.option("--only", metavar="PART",
-              help="mutants: core, node, fmu, or a C file; faults: a kind; fuzz: a target; proof: one of its parts.")
+              help="mutants: core, node, drives, commands, fmu or a C file; faults: a kind; fuzz, proof: one of them.")
 @click.option("--minimise", is_flag=True, default=None, help="fuzz: afterwards the kept corpora of the sources.")
 @json_flag()
 def command(what: str, minutes: float, seed: int | None, json_wanted: bool, **special: Any) -> int:
