@@ -97,8 +97,8 @@ static void a_missed_deadline_ends_with_the_next_frame_of_that_pdo(void) {
     start_nodes();
     deliver(RPDO1, BYTES(0, 0, 0), 3);
     forget();
-    step(51);
-    TOLD(0x8250);
+    step(151);
+    TOLD(0x8250); /* once */
     TEST_ASSERT_EQUAL_HEX8(0x11, get(0x1001, 0));
     forget();
     deliver(RPDO2, BYTES(0, 0, 0, 0), 4); /* another */
@@ -240,6 +240,39 @@ static void silence_of_option_3_stops_no_drive_that_is_not_enabled(void) {
     TEST_ASSERT_EQUAL_HEX16(SWITCHED_ON, state());
 }
 
+/* Neither ends the silence of heartbeats nor begins nor ends the watch over them. */
+static void process_data_are_no_heartbeats(void) {
+    static const uint8_t lengths[4] = {3, 4, 4, 2};
+    for (uint32_t k = 0; k < 4; k++) {
+        power_up();
+        set(0x1016, 1, MASTER << 16 | 50);
+        set(0x6007, 0, 0);
+        set(0x1029, 1, 1);
+        start_nodes();
+        heartbeat();
+        step(45);
+        forget();
+        deliver(RPDO1 + 0x100 * k, BYTES(0), lengths[k]);
+        step(6);
+        TOLD(0x8130);
+        TEST_ASSERT_TRUE(on.drives.drive[0].unheard);
+        forget();
+        deliver(RPDO1 + 0x100 * k, BYTES(0), lengths[k]);
+        step(200);
+        TEST_ASSERT_EQUAL(0, count_of(EMCY));
+        TEST_ASSERT_EQUAL_HEX8(0x11, get(0x1001, 0));
+    }
+}
+
+static void a_drive_that_nmt_stops_has_lost_its_controller(void) {
+    enable(9);
+    start_nodes();
+    nmt(2, ID);
+    step(100);
+    TEST_ASSERT_EQUAL(CANOPEN_FAULT, on.axes[0].state);
+    TEST_ASSERT_EQUAL_UINT32(LACONIC_DRIVE_FAULT_WATCHDOG, on.drives.drive[0].faults);
+}
+
 int main(void) {
     UNITY_BEGIN();
     RUN_TEST(a_busy_bus_gets_the_four_newest_errors_oldest_first_then_their_reset);
@@ -257,5 +290,7 @@ int main(void) {
     RUN_TEST(a_drive_that_fails_while_it_brakes_is_off_at_once);
     RUN_TEST(silence_does_not_take_a_drive_out_of_its_fault);
     RUN_TEST(silence_of_option_3_stops_no_drive_that_is_not_enabled);
+    RUN_TEST(process_data_are_no_heartbeats);
+    RUN_TEST(a_drive_that_nmt_stops_has_lost_its_controller);
     return UNITY_END();
 }

@@ -319,6 +319,41 @@ static void speeds_beyond_32_bits_are_shown_as_their_ends(void) {
     TEST_ASSERT_EQUAL(0, get(0x606C, 0));
 }
 
+static void a_following_error_lasts_its_time_to_the_microsecond(void) {
+    set(0x6065, 0, 10);
+    set(0x6066, 0, 20);
+    enable(8);
+    on.axes[0].demand += 11;
+    laconic_canopen.on_step(&on.drives, 1000);
+    laconic_canopen.on_step(&on.drives, 20999);
+    TEST_ASSERT_EQUAL_HEX16(ENABLED, state());
+    laconic_canopen.on_step(&on.drives, 21000);
+    TEST_ASSERT_EQUAL_HEX16(REACTION, state());
+}
+
+/* Each step of the ramp is 100 counts/s, so that the last one back to 0 is a shorter one. */
+static void a_set_point_behind_turns_the_motion_back_by_a_standstill(void) {
+    bool stood = false;
+    prepare_profile_position();
+    set(0x6081, 0, 15050);
+    set(0x607A, 0, -12000);
+    control(15 | 16);
+    control(15);
+    step(150);
+    TEST_ASSERT_EQUAL(-15050, get(0x606B, 0));
+    set(0x607A, 0, 12000);
+    control(15 | 16 | 32);
+    for (int32_t k = 0, speed = -15050; k < 160; k++) {
+        step(1);
+        const int32_t now = get(0x606B, 0);
+        TEST_ASSERT_TRUE(now >= speed);
+        TEST_ASSERT_TRUE(now <= 0 || stood);
+        stood = stood || now == 0;
+        speed = now;
+    }
+    TEST_ASSERT_TRUE(stood);
+}
+
 int main(void) {
     UNITY_BEGIN();
     RUN_TEST(profile_velocity_ramps_up_and_down_and_turns_back);
@@ -342,5 +377,7 @@ int main(void) {
     RUN_TEST(another_mode_leaves_a_drive_that_slows_down_alone);
     RUN_TEST(the_following_error_is_that_of_modes_of_positions);
     RUN_TEST(speeds_beyond_32_bits_are_shown_as_their_ends);
+    RUN_TEST(a_following_error_lasts_its_time_to_the_microsecond);
+    RUN_TEST(a_set_point_behind_turns_the_motion_back_by_a_standstill);
     return UNITY_END();
 }

@@ -211,6 +211,25 @@ static void the_windows_of_a_coarse_encoder_are_parts_of_its_turn(void) {
     TEST_ASSERT_EQUAL(5, get(0x606F, 0));
 }
 
+static void heartbeats_are_exact_to_the_microsecond(void) {
+    set(0x1017, 0, 20);
+    set(0x1016, 1, MASTER << 16 | 50);
+    deliver(0x700 + MASTER, BYTES(5), 1);
+    forget();
+    for (uint32_t k = 1; k <= 2; k++) {
+        laconic_canopen.on_step(&on.drives, 20000 * k - 1);
+        collect();
+        TEST_ASSERT_EQUAL(k - 1, count_of(HEARTBEAT));
+        laconic_canopen.on_step(&on.drives, 20000 * k);
+        collect();
+        TEST_ASSERT_EQUAL(k, count_of(HEARTBEAT));
+    }
+    laconic_canopen.on_step(&on.drives, 50000);
+    TEST_ASSERT_EQUAL(0, on.drives.drive[0].faults);
+    laconic_canopen.on_step(&on.drives, 50001);
+    TEST_ASSERT_EQUAL(LACONIC_DRIVE_FAULT_WATCHDOG, on.drives.drive[0].faults);
+}
+
 int main(void) {
     UNITY_BEGIN();
     RUN_TEST(each_node_boots_up_and_is_pre_operational);
@@ -226,5 +245,6 @@ int main(void) {
     RUN_TEST(a_start_of_a_node_that_runs_begins_nothing_anew);
     RUN_TEST(frames_that_only_look_like_commands_move_no_node);
     RUN_TEST(the_windows_of_a_coarse_encoder_are_parts_of_its_turn);
+    RUN_TEST(heartbeats_are_exact_to_the_microsecond);
     return UNITY_END();
 }

@@ -300,6 +300,103 @@ static void the_inhibit_time_is_read_as_it_was_written(void) {
     TEST_ASSERT_EQUAL(0, get(0x1800, 3));
 }
 
+static void a_sync_that_changes_the_state_tells_it_at_once(void) {
+    set(0x1400, 2, 1);
+    start_nodes();
+    deliver(RPDO1, BYTES(6, 0, 9), 3);
+    forget();
+    sync();
+    TEST_ASSERT_EQUAL(1, count_of(TPDO1));
+    TEST_ASSERT_EQUAL_HEX8(READY, last(TPDO1)->data[0] & 0x6F);
+}
+
+static void every_pdo_by_event_is_sent_when_its_node_starts(void) {
+    for (uint16_t k = 0; k < 4; k++) {
+        const uint32_t id = 0x180U + 0x100U * k + ID;
+        set((uint16_t)(0x1800 + k), 1, (int64_t)(0x80000000U | id));
+        set((uint16_t)(0x1800 + k), 2, k < 3 ? 254 : 240);
+        set((uint16_t)(0x1800 + k), 1, id);
+    }
+    forget();
+    start_nodes();
+    for (int k = 0; k < 4; k++) TEST_ASSERT_EQUAL(k < 3, count_of((uint32_t)(TPDO1 + 0x100 * k)));
+}
+
+static void process_data_that_were_due_are_dropped_with_the_state_operational(void) {
+    for (uint8_t command = 2; command != 0; command = command == 2 ? 128 : 0) {
+        power_up();
+        start_nodes();
+        forget();
+        on.count = KEPT; /* a busy bus */
+        sync();
+        deliver(0x600 + ID, BYTES(0x40, 0x00, 0x10), 8);
+        nmt(command, ID);
+        forget();
+        collect();
+        TEST_ASSERT_EQUAL(0, count_of(TPDO2));
+        TEST_ASSERT_EQUAL(command == 128, count_of(0x580 + ID)); /* a stopped node has no SDO either */
+    }
+}
+
+static void an_answer_that_is_due_stays_when_the_node_starts(void) {
+    on.count = KEPT;
+    deliver(0x600 + ID, BYTES(0x40, 0x00, 0x10), 8);
+    start_nodes();
+    forget();
+    collect();
+    TEST_ASSERT_EQUAL(1, count_of(0x580 + ID));
+}
+
+/* --- times, to the microsecond ----------------------------------------------------------------------------------- */
+
+static void pass_to(uint32_t now_us) {
+    on.now_us = now_us;
+    laconic_canopen.on_step(&on.drives, now_us);
+    collect();
+}
+
+static void the_event_timer_and_the_inhibit_time_are_exact(void) {
+    set(0x1800, 5, 7);
+    start_nodes();
+    forget();
+    pass_to(6999);
+    TEST_ASSERT_EQUAL(0, count_of(TPDO1));
+    pass_to(7000);
+    TEST_ASSERT_EQUAL(1, count_of(TPDO1));
+    power_up();
+    set(0x1800, 1, (int64_t)(0x80000180U + ID));
+    set(0x1800, 3, 13);
+    set(0x1800, 1, 0x180 + ID);
+    start_nodes();
+    control(6);
+    forget();
+    pass_to(1299);
+    TEST_ASSERT_EQUAL(0, count_of(TPDO1));
+    pass_to(1300);
+    TEST_ASSERT_EQUAL(1, count_of(TPDO1));
+}
+
+static void a_deadline_is_exact(void) {
+    set(0x1400, 5, 50);
+    start_nodes();
+    deliver(RPDO1, BYTES(0, 0, 0), 3);
+    pass_to(50000);
+    TEST_ASSERT_EQUAL_HEX8(0, get(0x1001, 0));
+    pass_to(50001);
+    TEST_ASSERT_EQUAL_HEX8(0x11, get(0x1001, 0));
+}
+
+static void after_power_up_types_and_times_are_as_the_page_says(void) {
+    static const int types[8] = {255, 255, 255, 255, 255, 1, 1, 1};
+    for (int k = 0; k < 8; k++) {
+        const uint16_t base = (uint16_t)((k < 4 ? 0x1400 : 0x1800) + k % 4);
+        TEST_ASSERT_EQUAL_UINT8(types[k], get(base, 2));
+        TEST_ASSERT_EQUAL(k == 4 ? 100 : 0, get(base, 5));
+        if (k >= 4) TEST_ASSERT_EQUAL(0, get(base, 3));
+        if (k >= 4) TEST_ASSERT_EQUAL_HEX8(k >= 6 ? 3 : 1, (uint32_t)get(base, 1) >> 30); /* off, no remote request */
+    }
+}
+
 int main(void) {
     UNITY_BEGIN();
     RUN_TEST(after_power_up_the_usual_objects_are_mapped);
@@ -322,5 +419,12 @@ int main(void) {
     RUN_TEST(a_received_pdo_that_is_switched_off_is_not_missed);
     RUN_TEST(data_that_wait_for_sync_are_dropped_with_their_pdo);
     RUN_TEST(the_inhibit_time_is_read_as_it_was_written);
+    RUN_TEST(a_sync_that_changes_the_state_tells_it_at_once);
+    RUN_TEST(every_pdo_by_event_is_sent_when_its_node_starts);
+    RUN_TEST(process_data_that_were_due_are_dropped_with_the_state_operational);
+    RUN_TEST(an_answer_that_is_due_stays_when_the_node_starts);
+    RUN_TEST(the_event_timer_and_the_inhibit_time_are_exact);
+    RUN_TEST(a_deadline_is_exact);
+    RUN_TEST(after_power_up_types_and_times_are_as_the_page_says);
     return UNITY_END();
 }

@@ -272,6 +272,7 @@ static void reserved_identifiers_are_refused_at_each_end_of_their_ranges(void) {
         TEST_ASSERT_EQUAL_HEX32(0, write_as(0x1402, 1, 0x80000400U + ID, 4));
         const uint32_t refusal = write_as(0x1402, 1, ends[k].id, 4);
         TEST_ASSERT_EQUAL_HEX32(ends[k].is_free ? 0 : CANOPEN_VALUE, refusal);
+        if (refusal == 0) TEST_ASSERT_EQUAL_HEX32(ends[k].id, get(0x1402, 1));
         if (refusal == 0) set(0x1402, 1, (int64_t)(0x80000000U | ends[k].id));
         if (refusal == 0) set(0x1402, 1, (int64_t)(0x80000400U + ID));
     }

@@ -269,6 +269,15 @@ static void a_reversed_gear_turns_the_shaft_against_the_wheel(void) {
     TEST_ASSERT_TRUE(drive.speed_rad_per_s > R(9.9) && wheel_rad_per_s < R(-0.99) && drive.encoder.count > 0);
 }
 
+static void a_drive_that_is_cleared_is_off(void) {
+    ask_speed(10);
+    run(100);
+    TEST_ASSERT_TRUE(drive.torque_Nm != 0 || drive.integral_A != 0);
+    laconic_drive_clear(&drive);
+    TEST_ASSERT_EQUAL_INT(LACONIC_DRIVE_OFF, drive.target.mode);
+    TEST_ASSERT_TRUE(drive.current_A == 0 && drive.torque_Nm == 0 && drive.integral_A == 0);
+}
+
 int main(void) {
     UNITY_BEGIN();
     RUN_TEST(a_drive_starts_off_and_lets_its_wheel_coast);
@@ -294,5 +303,6 @@ int main(void) {
     RUN_TEST(a_lost_encoder_shows_no_motion);
     RUN_TEST(a_target_that_is_no_number_is_a_fault_and_never_a_torque);
     RUN_TEST(a_reversed_gear_turns_the_shaft_against_the_wheel);
+    RUN_TEST(a_drive_that_is_cleared_is_off);
     return UNITY_END();
 }

@@ -152,11 +152,24 @@ static void an_order_that_is_repeated_changes_nothing(void) {
     TEST_ASSERT_EQUAL_MEMORY(&before, &drives.drive[0], sizeof before);
 }
 
+static void a_drive_that_goes_off_the_bus_takes_back_what_was_due(void) {
+    for (int n = 0; n < PROTOCOLS; n++) {
+        begin(&all[n]);
+        all[n].command();
+        listen(&all[n], 200);
+        all[n].command();
+        laconic_drive_order(&drives.drive[1], LACONIC_DRIVE_ORDER_OFF_BUS);
+        const heard now = listen(&all[n], 200);
+        TEST_ASSERT_TRUE_MESSAGE(now.first > 0 && now.second == 0, all[n].protocol->name);
+    }
+}
+
 int main(void) {
     UNITY_BEGIN();
     RUN_TEST(a_drive_off_the_bus_neither_hears_nor_is_heard_and_comes_back);
     RUN_TEST(a_silent_drive_goes_on_but_gives_no_sign_of_life);
     RUN_TEST(an_order_replaces_the_one_before_it);
     RUN_TEST(an_order_that_is_repeated_changes_nothing);
+    RUN_TEST(a_drive_that_goes_off_the_bus_takes_back_what_was_due);
     return UNITY_END();
 }

@@ -79,6 +79,13 @@ static void streams_that_end_early_or_of_other_channels_end_the_frame(void) {
 
 static void a_number_that_the_frame_cuts_off_ends_it(void) {
     static const char *const frames[] = {"\xFF", "\x11\x80", "\x10\x80", "\xD0\x80\x80\x80\x80\x80"};
+    static const char *const longer[] = {"\x80\x80\x80\x80\x80\x11\x0D", "\x01\x80\x80\x80\x80\x80\x11\x0D",
+                                         "\x11\x80\x80\x80\x80\x80\x11\x0D", "\x42\x80\x80\x80\x80\x80\x11\x0D"};
+    for (size_t k = 0; k < 4; k++) { /* of more than five octets: the rest of the frame is left */
+        bench_send(TO_NODE, longer[k], (uint8_t)strlen(longer[k]));
+        reply();
+        TEST_ASSERT_EQUAL_UINT8(0, frame.length);
+    }
     for (size_t k = 0; k < sizeof frames / sizeof frames[0]; k++) {
         bench_send(TO_NODE, frames[k], (uint8_t)strlen(frames[k]));
         reply();
@@ -161,6 +168,20 @@ static void a_mode_with_a_share_is_its_whole_part(void) {
     near(POSITION, read_float(0x00), 0);
 }
 
+static void every_register_of_the_page_is_there_and_no_other(void) {
+    static const uint16_t ranges[][2] = {{0x000, 0x007}, {0x00A, 0x00F}, {0x01C, 0x01D}, {0x020, 0x02D}, {0x030, 0x034},
+                                         {0x038, 0x03D}, {0x040, 0x048}, {0x050, 0x055}, {0x058, 0x058}, {0x05C, 0x05F},
+                                         {0x070, 0x071}, {0x140, 0x141}, {0x158, 0x158}};
+    for (uint32_t number = 0; number < 0x200; number++) {
+        bool there = false;
+        for (size_t k = 0; k < sizeof ranges / sizeof ranges[0]; k++)
+            there = there || (number >= ranges[k][0] && number <= ranges[k][1]);
+        const uint8_t request[] = {0x1D, (uint8_t)(number | 0x80U), (uint8_t)(number >> 7)};
+        bench_send(TO_NODE, request, 3);
+        TEST_ASSERT_EQUAL_HEX8(there ? 0x2D : 0x31, reply()[0]);
+    }
+}
+
 int main(void) {
     UNITY_BEGIN();
     RUN_TEST(a_reply_without_room_for_another_register_ends_there);
@@ -177,5 +198,6 @@ int main(void) {
     RUN_TEST(a_uuid_mask_that_is_no_int32_selects_no_drive);
     RUN_TEST(milliseconds_as_a_float_wrap_where_it_is_exact);
     RUN_TEST(a_mode_with_a_share_is_its_whole_part);
+    RUN_TEST(every_register_of_the_page_is_there_and_no_other);
     return UNITY_END();
 }

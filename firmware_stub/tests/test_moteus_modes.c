@@ -226,6 +226,34 @@ static void capturing_anew_begins_where_the_wheel_is(void) {
     near(0, drives.drive[0].target.current_A, 1e-3);
 }
 
+static void within_its_bounds_a_place_has_no_error(void) {
+    put_mode(STAY_WITHIN);
+    put_float(0x40, -1);
+    put_float(0x41, 1);
+    put_float(0x42, (laconic_real)0.125);
+    put_float(0x46, none);
+    send();
+    bench_steps(200);
+    TEST_ASSERT_TRUE(read_float(0x01) != 0);
+    drives.protocol->on_step(&drives, now_us += 1000);
+    near(0, read_float(0x3B), 0);
+    near(0.125, read_float(0x34), 1e-6); /* the feed-forward alone */
+    TEST_ASSERT_TRUE(control_position() != control_position());
+}
+
+static void a_slow_motion_stops_at_its_stop_position(void) {
+    begin_position(none, (laconic_real)0.01);
+    put_float(0x26, (laconic_real)0.005);
+    put_float(0x29, -1);
+    send();
+    for (int k = 0; k < 600; k++) {
+        bench_steps(1);
+        TEST_ASSERT_TRUE(control_position() <= (laconic_real)0.00502);
+    }
+    near(0.005, control_position(), 1e-6);
+    near(0, read_float(0x39), 0);
+}
+
 int main(void) {
     UNITY_BEGIN();
     RUN_TEST(the_scenes_speed_limit_is_the_fastest);
@@ -245,5 +273,7 @@ int main(void) {
     RUN_TEST(an_output_that_is_no_number_stays);
     RUN_TEST(the_nearest_place_is_found_on_both_sides);
     RUN_TEST(capturing_anew_begins_where_the_wheel_is);
+    RUN_TEST(within_its_bounds_a_place_has_no_error);
+    RUN_TEST(a_slow_motion_stops_at_its_stop_position);
     return UNITY_END();
 }

@@ -250,7 +250,8 @@ static void faults_of_the_drive_are_errors_of_the_axis(void) {
     static const uint32_t rows[][2] = {
         {LACONIC_DRIVE_FAULT_ENCODER, 0x8},        {LACONIC_DRIVE_FAULT_STALL, 0x4000000},
         {LACONIC_DRIVE_FAULT_TEMPERATURE, 0x4000}, {LACONIC_DRIVE_FAULT_OVERSPEED, 0x8000},
-        {LACONIC_DRIVE_FAULT_SUPPLY, 0x200},       {LACONIC_DRIVE_FAULT_FOLLOWING, 0x10000}};
+        {LACONIC_DRIVE_FAULT_SUPPLY, 0x200},       {LACONIC_DRIVE_FAULT_FOLLOWING, 0x10000},
+        {LACONIC_DRIVE_FAULT_WATCHDOG, 0x1000000}, {LACONIC_DRIVE_FAULT_TARGET, 0x10}};
     for (size_t k = 0; k < sizeof rows / sizeof rows[0]; k++) {
         close_loop(VELOCITY, PASSTHROUGH);
         laconic_drive_fail(&drives.drive[0], rows[k][0]);

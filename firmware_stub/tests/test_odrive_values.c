@@ -235,6 +235,65 @@ static void messages_that_came_too_late_are_not_made_up_for(void) {
     TEST_ASSERT_TRUE(bench_receive(id(HEARTBEAT), &frame)); /* 100 ms after the late one */
 }
 
+static void a_speed_ramp_takes_its_torque_from_inertia_alone(void) {
+    close_loop(VELOCITY, VEL_RAMP);
+    send_floats(INPUT_VEL, 3, 0.5F);
+    bench_steps(100);
+    near(0, drives.drive[0].target.current_A, 0);
+}
+
+static void each_message_has_its_numbers(void) {
+    static const uint8_t address[7] = {NODE, 0, 0, 0x6F, 0x63, 0x61, 0x4C};
+    laconic_wheel_drive *drive = &drives.drive[0];
+    drive->current_A = 4;
+    drive->speed_rad_per_s = 100;
+    for (int k = 0; k < 2; k++) {
+        near(4, bench_float(ask(0x14) + 4 * k), 1e-6);
+        near(25, bench_float(ask(0x15) + 4 * k), 0);
+        near(4 * 0.05, bench_float(ask(0x1C) + 4 * k), 1e-6);
+    }
+    near((0.05 * 100 + 0.1 * 4) * 4, bench_float(ask(0x1D)), 1e-5);
+    near(0.05 * 100 * 4, bench_float(frame.data + 4), 1e-5);
+    near(100 / (double)TURN_RAD, bench_float(ask(ESTIMATES) + 4), 1e-5);
+    TEST_ASSERT_EQUAL_HEX8_ARRAY(address, ask(ADDRESS), 7);
+}
+
+static void a_trajectory_that_is_not_told_otherwise_has_the_defaults_of_0_5_6(void) {
+    close_loop(POSITION, TRAP_TRAJ);
+    go_to(100, 0, 0);
+    bench_steps(1000);
+    near(0.5, asked_speed(), 0.01);
+    bench_steps(4000);
+    near(2, asked_speed(), 1e-5);
+}
+
+static void a_procedure_takes_200_milliseconds(void) {
+    send_words(SET_STATE, 3, 0);
+    drives.protocol->on_step(&drives, now_us + 199999);
+    TEST_ASSERT_EQUAL_UINT8(3, ask(HEARTBEAT)[4]);
+    drives.protocol->on_step(&drives, now_us + 200000);
+    TEST_ASSERT_EQUAL_UINT8(IDLE, ask(HEARTBEAT)[4]);
+}
+
+static void the_watchdog_is_exact_and_fed_by_any_message(void) {
+    drives.watchdog_s = (laconic_real)0.0625;
+    close_loop(VELOCITY, PASSTHROUGH);
+    now_us += 62000;
+    bench_send(id(ENTER_DFU), NULL, 0);
+    drives.protocol->on_step(&drives, now_us + 62500);
+    TEST_ASSERT_TRUE(drives.drive[0].faults == 0);
+    drives.protocol->on_step(&drives, now_us + 62501);
+    TEST_ASSERT_EQUAL_UINT32(LACONIC_DRIVE_FAULT_WATCHDOG, drives.drive[0].faults);
+}
+
+static void an_axis_that_was_idle_when_it_erred_does_not_arm(void) {
+    bench_send(id(ESTOP), NULL, 0);
+    is_in(IDLE, SUCCESS);
+    TEST_ASSERT_EQUAL_HEX32(0, ask_word(GET_ERROR, 4)); /* nothing was disarmed */
+    send_words(SET_STATE, CLOSED_LOOP, 0);
+    is_in(IDLE, DISARMED);
+}
+
 int main(void) {
     UNITY_BEGIN();
     RUN_TEST(a_scenes_speed_limit_is_that_of_the_axis);
@@ -258,5 +317,11 @@ int main(void) {
     RUN_TEST(a_reboot_without_a_byte_is_a_plain_one);
     RUN_TEST(a_serial_number_that_differs_in_its_high_half_is_another_drive);
     RUN_TEST(messages_that_came_too_late_are_not_made_up_for);
+    RUN_TEST(a_speed_ramp_takes_its_torque_from_inertia_alone);
+    RUN_TEST(each_message_has_its_numbers);
+    RUN_TEST(a_trajectory_that_is_not_told_otherwise_has_the_defaults_of_0_5_6);
+    RUN_TEST(a_procedure_takes_200_milliseconds);
+    RUN_TEST(the_watchdog_is_exact_and_fed_by_any_message);
+    RUN_TEST(an_axis_that_was_idle_when_it_erred_does_not_arm);
     return UNITY_END();
 }

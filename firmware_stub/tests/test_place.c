@@ -160,6 +160,33 @@ static void a_way_that_a_step_makes_is_made_in_one(void) {
     TEST_ASSERT_TRUE(motion.speed == 0 && place_counts(motion.place) == place_counts(motion.target));
 }
 
+static void a_slow_motion_arrives_without_a_jolt(void) {
+    drive_motion motion = motion_of(R(0.05));
+    motion.acceleration = motion.deceleration = 10;
+    laconic_real before = 0;
+    bool arrives = false;
+    for (int k = 0; k < 1000 && !arrives; k++) {
+        before = motion.speed;
+        arrives = motion_step(&motion, STEP_S);
+    }
+    TEST_ASSERT_TRUE(arrives);
+    TEST_ASSERT_TRUE(before <= 2 * 10 * STEP_S);
+}
+
+static void motions_of_any_way_go_never_beyond_their_target_and_end_without_a_jolt(void) {
+    for (int k = 1; k <= 500; k++) {
+        drive_motion motion = motion_of(R(0.0771) * (laconic_real)k);
+        laconic_real before = 0;
+        bool arrives = false;
+        for (int steps = 0; steps < 10000 && !arrives; steps++) {
+            before = motion.speed;
+            arrives = motion_step(&motion, STEP_S);
+            TEST_ASSERT_FALSE(place_counts(place_difference(motion.target, motion.place)) < 0);
+        }
+        TEST_ASSERT_TRUE(arrives && before <= 2 * motion.deceleration * STEP_S);
+    }
+}
+
 int main(void) {
     UNITY_BEGIN();
     RUN_TEST(a_place_is_whole_counts_and_a_share_of_one);
@@ -177,5 +204,7 @@ int main(void) {
     RUN_TEST(a_motion_away_from_its_target_turns_back);
     RUN_TEST(a_target_that_moves_is_met_at_its_speed);
     RUN_TEST(a_way_that_a_step_makes_is_made_in_one);
+    RUN_TEST(a_slow_motion_arrives_without_a_jolt);
+    RUN_TEST(motions_of_any_way_go_never_beyond_their_target_and_end_without_a_jolt);
     return UNITY_END();
 }
