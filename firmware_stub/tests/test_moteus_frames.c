@@ -182,6 +182,20 @@ static void every_register_of_the_page_is_there_and_no_other(void) {
     }
 }
 
+static void a_reply_has_the_next_length_of_can_fd(void) {
+    static const uint8_t lengths[65] = {[12] = 12, [16] = 16, [20] = 20, [24] = 24, [32] = 32, [48] = 48, [64] = 64};
+    for (uint8_t count = 1; count <= 20; count++) {
+        uint8_t expected = (uint8_t)(3 * count); /* an int8 register takes three octets */
+        while (expected > 8 && lengths[expected] == 0) expected++;
+        for (uint8_t k = 0; k < count; k++) put("\x11\x0D", 2);
+        send();
+        reply();
+        TEST_ASSERT_EQUAL_UINT8(expected, frame.length);
+        TEST_ASSERT_EQUAL(expected > 8, frame.fd);
+        for (uint8_t k = (uint8_t)(3 * count); k < expected; k++) TEST_ASSERT_EQUAL_HEX8(0x50, frame.data[k]);
+    }
+}
+
 int main(void) {
     UNITY_BEGIN();
     RUN_TEST(a_reply_without_room_for_another_register_ends_there);
@@ -199,5 +213,6 @@ int main(void) {
     RUN_TEST(milliseconds_as_a_float_wrap_where_it_is_exact);
     RUN_TEST(a_mode_with_a_share_is_its_whole_part);
     RUN_TEST(every_register_of_the_page_is_there_and_no_other);
+    RUN_TEST(a_reply_has_the_next_length_of_can_fd);
     return UNITY_END();
 }

@@ -157,6 +157,15 @@ static void what_is_done_by_writing_is_no_error(void) {
     ANSWERS("\x08\x04\xD4\x02laconic wheel\0\0\x01\x11\x0D", "\x21\x0D\x30"); /* its own UUID */
 }
 
+static void milliseconds_lose_no_part_of_one(void) {
+    for (int k = 0; k < 1000; k++) drives.protocol->on_step(&drives, now_us += 333);
+    TEST_ASSERT_EQUAL_INT32(333, read_integer(0x70, INT32));
+    drives.protocol->on_step(&drives, now_us += 999);
+    TEST_ASSERT_EQUAL_INT32(333, read_integer(0x70, INT32));
+    drives.protocol->on_step(&drives, now_us += 1);
+    TEST_ASSERT_EQUAL_INT32(334, read_integer(0x70, INT32));
+}
+
 int main(void) {
     UNITY_BEGIN();
     RUN_TEST(integers_are_worth_what_their_mapping_says);
@@ -168,5 +177,6 @@ int main(void) {
     RUN_TEST(what_a_frame_does_not_write_is_as_the_page_says);
     RUN_TEST(the_terms_of_the_law_are_shown);
     RUN_TEST(what_is_done_by_writing_is_no_error);
+    RUN_TEST(milliseconds_lose_no_part_of_one);
     return UNITY_END();
 }

@@ -294,6 +294,27 @@ static void an_axis_that_was_idle_when_it_erred_does_not_arm(void) {
     is_in(IDLE, DISARMED);
 }
 
+static void a_filtered_place_gets_the_torque_of_its_acceleration(void) {
+    const float inertia = 0.05F;
+    bench_send(id(0x13), &inertia, 4);
+    close_loop(POSITION, POS_FILTER);
+    go_to(1, 0, 0);
+    bench_step();
+    near(4 * 0.05 / 0.05, drives.drive[0].target.current_A, 1e-4); /* 4/s² for a turn, by the bandwidth of 2/s */
+    near(4 * 0.001, asked_speed(), 1e-6);
+}
+
+static void a_trajectory_has_the_torque_of_its_acceleration_until_it_is_done(void) {
+    const float inertia = 0.05F;
+    bench_send(id(0x13), &inertia, 4);
+    close_loop(POSITION, TRAP_TRAJ);
+    go_to(1, 0, 0);
+    bench_step();
+    near(0.5 * 0.05 / 0.05, drives.drive[0].target.current_A, 1e-3);
+    for (int k = 0; k < 5000 && ask(HEARTBEAT)[6] == 0; k++) bench_step();
+    near(0, drives.drive[0].target.current_A, 0);
+}
+
 int main(void) {
     UNITY_BEGIN();
     RUN_TEST(a_scenes_speed_limit_is_that_of_the_axis);
@@ -323,5 +344,7 @@ int main(void) {
     RUN_TEST(a_procedure_takes_200_milliseconds);
     RUN_TEST(the_watchdog_is_exact_and_fed_by_any_message);
     RUN_TEST(an_axis_that_was_idle_when_it_erred_does_not_arm);
+    RUN_TEST(a_filtered_place_gets_the_torque_of_its_acceleration);
+    RUN_TEST(a_trajectory_has_the_torque_of_its_acceleration_until_it_is_done);
     return UNITY_END();
 }

@@ -47,6 +47,18 @@ static void a_command_is_a_current_in_its_place_high_byte_first(void) {
     TEST_ASSERT_TRUE(drives.drive[3].target.current_A == 5);
 }
 
+static void each_number_has_its_place_in_one_of_two_frames(void) {
+    for (int number = 1; number <= 8; number++) {
+        setUp();
+        drives.drive[0].settings.node_id = number;
+        for (int place = 0; place < 4; place++) command(number <= 4 ? 0x1FF : 0x200, place, 4096);
+        TEST_ASSERT_EQUAL_INT(LACONIC_DRIVE_OFF, drives.drive[0].target.mode);
+        command(number <= 4 ? 0x200 : 0x1FF, (number - 1) % 4, 1024 * number);
+        TEST_ASSERT_EQUAL_INT(LACONIC_DRIVE_CURRENT, drives.drive[0].target.mode);
+        TEST_ASSERT_TRUE(drives.drive[0].target.current_A == REAL(1.25) * (laconic_real)number);
+    }
+}
+
 static void a_command_beyond_full_scale_is_full_scale(void) {
     command(0x200, 0, 32767);
     TEST_ASSERT_TRUE(drives.drive[0].target.current_A == 20);
@@ -213,6 +225,7 @@ static void a_vehicle_without_drives_is_silent(void) {
 int main(void) {
     UNITY_BEGIN();
     RUN_TEST(a_command_is_a_current_in_its_place_high_byte_first);
+    RUN_TEST(each_number_has_its_place_in_one_of_two_frames);
     RUN_TEST(a_command_beyond_full_scale_is_full_scale);
     RUN_TEST(a_c610_has_half_the_current_and_no_temperature);
     RUN_TEST(frames_that_are_no_commands_are_passed_over);

@@ -67,6 +67,19 @@ static void node_ids_are_those_of_the_protocol_and_differ(void) {
     REFUSED(node_id, 1, LACONIC_ABOVE_LIMIT, DRIVE_NODE_ID);
 }
 
+static void a_refusal_tells_the_number_and_its_limit(void) {
+    plan.drive[1].node_id = 9;
+    expect(LACONIC_ABOVE_LIMIT, LACONIC_DRIVES_FIELD_DRIVE_NODE_ID, 2);
+    TEST_ASSERT_TRUE(why.value == 9 && why.limit == 8);
+    plan.drive[1].node_id = 2;
+    plan.drive[1].current_limit_A = -3;
+    expect(LACONIC_NOT_POSITIVE, LACONIC_DRIVES_FIELD_DRIVE_CURRENT_LIMIT, 2);
+    TEST_ASSERT_TRUE(why.value == -3 && why.limit == 0);
+    plan.watchdog_s = 1001;
+    expect(LACONIC_ABOVE_LIMIT, LACONIC_DRIVES_FIELD_DRIVE_WATCHDOG, 0);
+    TEST_ASSERT_TRUE(why.value == 1001 && why.limit == 1000);
+}
+
 static void a_drive_of_a_wheel_that_does_not_exist_is_refused(void) {
     plan.drive[4] = plan.drive[0];
     plan.drive[4].node_id = 8;
@@ -95,6 +108,7 @@ int main(void) {
     RUN_TEST(a_wheel_without_a_drive_needs_no_numbers);
     RUN_TEST(each_number_has_its_rule);
     RUN_TEST(node_ids_are_those_of_the_protocol_and_differ);
+    RUN_TEST(a_refusal_tells_the_number_and_its_limit);
     RUN_TEST(a_drive_of_a_wheel_that_does_not_exist_is_refused);
     RUN_TEST(the_watchdog_is_a_time);
     RUN_TEST(a_refusal_needs_no_place_for_its_reason);
