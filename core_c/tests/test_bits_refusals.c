@@ -165,6 +165,25 @@ static void numbers_of_a_vehicle_anywhere_in_the_range(void) {
     expect(EITHER(0xbcf64120c4991261U, 0xb6f226eb28f06643U));
 }
 
+/* Two numbers near the ends of what may be squared: each alone is taken, both together may leave the range. */
+static void two_numbers_of_a_vehicle_near_the_ends_of_the_range(void) {
+    const size_t count = sizeof numbers_of_vehicle / sizeof numbers_of_vehicle[0];
+    const laconic_real root = EITHER(REAL(1.34e154), REAL(1.84e19));
+    const laconic_real near[6] = {root * REAL(0.6), root * REAL(-0.9), REAL(1.7) / root,
+                                  -1 / root,        REAL(0.7),         REAL(1e-3)};
+    begin();
+    for (size_t k = 0; k < count; k++)
+        for (size_t other = 0; other <= k; other++)
+            for (int n = 0; n < 24; n++) {
+                laconic_vehicle vehicle = n % 2 == 0 ? bare_body() : vehicle_number((int)(k + other) % MORE_VEHICLES);
+                laconic_model model;
+                memcpy((unsigned char *)&vehicle + numbers_of_vehicle[k], &near[n / 2 % 4], sizeof near[0]);
+                memcpy((unsigned char *)&vehicle + numbers_of_vehicle[other], &near[n % 6], sizeof near[0]);
+                take_why(laconic_prepare(&model, &vehicle, &why));
+            }
+    expect(EITHER(0x0dbaf1484e349324U, 0xc40d1841b9f6d0faU));
+}
+
 static void wheels_and_supports_of_a_vehicle(void) {
     begin();
     for (int k = 0; k < 40; k++) {
@@ -348,6 +367,7 @@ int main(void) {
     RUN_TEST(a_number_of_a_vehicle);
     RUN_TEST(a_vehicle_in_units_far_off);
     RUN_TEST(numbers_of_a_vehicle_anywhere_in_the_range);
+    RUN_TEST(two_numbers_of_a_vehicle_near_the_ends_of_the_range);
     RUN_TEST(wheels_and_supports_of_a_vehicle);
     RUN_TEST(a_number_of_a_start_and_a_step);
     RUN_TEST(a_number_of_an_input);

@@ -21,6 +21,16 @@ static void is_the_papers_right_hand_side(laconic_vehicle v) {
     }
 }
 
+static void rates_of_wheels_that_a_vehicle_has_not_stay_as_they_were(void) {
+    const laconic_model model = model_of(three_wheels());
+    const laconic_real nu[3] = {REAL(0.8), REAL(-1.3), REAL(2.1)};
+    const laconic_input input = no_input();
+    laconic_rates rates;
+    for (int i = 0; i < LACONIC_MAX_WHEELS; i++) rates.wheel_speed_rad_per_s[i] = 7;
+    laconic_derivative(&rates, &model, nu, 0, &input);
+    for (int i = 0; i < LACONIC_MAX_WHEELS; i++) TEST_ASSERT_TRUE((rates.wheel_speed_rad_per_s[i] == 7) == (i >= 3));
+}
+
 static void carriages_follow_equation_4_7(void) {
     is_the_papers_right_hand_side(with_motors(three_wheels()));
     is_the_papers_right_hand_side(with_motors(mecanum()));
@@ -78,6 +88,7 @@ static void what_the_constraints_forbid_is_projected_away_first(void) {
 
 int main(void) {
     UNITY_BEGIN();
+    RUN_TEST(rates_of_wheels_that_a_vehicle_has_not_stay_as_they_were);
     RUN_TEST(carriages_follow_equation_4_7);
     RUN_TEST(the_differential_drive_follows_section_6);
     RUN_TEST(the_caster_follows_section_3);

@@ -27,12 +27,28 @@ static void voltages_are_cut_to_the_supply_s(void) {
     TEST_ASSERT_EQUAL_INT(LACONIC_LIMIT_NONE, within.limit);
 }
 
+static void a_supply_of_less_than_a_volt_is_one(void) {
+    const laconic_friction stiff = drive_of(0.5, 0, 0), sagging = drive_of(0.5, 0.5, 0);
+    const laconic_real at_rest[3] = {0, 0, 0};
+    laconic_input input = no_input();
+    ASSERT_NEAR(0, 0.5, laconic_supply_voltage(&stiff, &input, at_rest, 0));
+    input.voltage_V[0] = input.voltage_V[1] = 30; /* two of 2 Ω in parallel, as below */
+    ASSERT_NEAR(EITHER(1e-14, 1e-6), 0.5 / 1.5, laconic_supply_voltage(&sagging, &input, at_rest, 0));
+}
+
 static void a_limited_motor_has_the_voltage_of_its_current(void) {
     const laconic_friction f = drive_of(24, 0, 3);
     const motor_state m = laconic_motor_at(&f, 1, -20, 2, 24);
     TEST_ASSERT_EQUAL_INT(LACONIC_LIMIT_CURRENT, m.limit);
     ASSERT_NEAR(EITHER(1e-14, 1e-5), -3, m.current_A);
     ASSERT_NEAR(EITHER(1e-13, 1e-5), -3 * 2 + 0.5 * 2, m.voltage_V);
+}
+
+static void a_limit_of_less_than_an_ampere_is_one(void) {
+    const laconic_friction f = drive_of(24, 0, 0.5);
+    const motor_state m = laconic_motor_at(&f, 0, 20, 0, 24);
+    TEST_ASSERT_EQUAL_INT(LACONIC_LIMIT_CURRENT, m.limit);
+    ASSERT_NEAR(EITHER(1e-14, 1e-6), 0.5, m.current_A);
 }
 
 static void an_open_motor_takes_no_current(void) {
@@ -70,7 +86,9 @@ static void a_supply_that_breaks_down_stays_above_0(void) {
 int main(void) {
     UNITY_BEGIN();
     RUN_TEST(voltages_are_cut_to_the_supply_s);
+    RUN_TEST(a_supply_of_less_than_a_volt_is_one);
     RUN_TEST(a_limited_motor_has_the_voltage_of_its_current);
+    RUN_TEST(a_limit_of_less_than_an_ampere_is_one);
     RUN_TEST(an_open_motor_takes_no_current);
     RUN_TEST(the_supply_sags_under_the_currents_of_all_motors);
     RUN_TEST(a_supply_that_breaks_down_stays_above_0);

@@ -134,6 +134,34 @@ static void counts_wrap_by_the_shorter_way(void) {
     ASSERT_NEAR(1e-6, 0.04 * PI, turned[0]);
 }
 
+/* Of half a wrap nobody can tell the direction: it is the sign that the numbers have. A wheel without an encoder has not
+ * turned, whatever stood there. */
+static void half_a_wrap_keeps_its_sign_and_no_encoder_turns_nothing(void) {
+    laconic_sensor_settings s;
+    memset(&s, 0, sizeof s);
+    s.encoder[0].counts_per_turn = s.encoder[1].counts_per_turn = 1000;
+    s.encoder_wrap = 1000;
+    const int32_t before[3] = {100, 600, 0}, now[3] = {600, 100, 500};
+    laconic_real turned[3] = {7, 7, 7};
+    laconic_filter_turned(turned, &s, before, now, 3);
+    ASSERT_NEAR(1e-6, PI, turned[0]);
+    ASSERT_NEAR(1e-6, -PI, turned[1]);
+    TEST_ASSERT_TRUE(turned[2] == 0);
+}
+
+static void each_number_of_a_covariance_must_be_finite(void) {
+    const robot r = robot_with(with_motors(three_wheels()), usual(), start_with(0.5, 0, 0));
+    for (int row = 0; row < r.filter.errors; row++)
+        for (int column = row; column < r.filter.errors; column++) {
+            robot wrong = r;
+            laconic_factors *of = &wrong.filter.covariance;
+            *(row == column ? &of->diagonal[row] : &of->upper[row][column]) = NOT_A_NUMBER;
+            const laconic_status status =
+                laconic_filter_predict(&wrong.filter, &wrong.model, &wrong.integrator, &wrong.held);
+            TEST_ASSERT_NOT_EQUAL(LACONIC_OK, status);
+        }
+}
+
 static void a_world_force_turns_with_the_heading_error(void) {
     laconic_filter_settings s = usual();
     robot still = robot_with(with_motors(three_wheels()), s, start_with(0, 0, 0)), pushed = still;
@@ -388,6 +416,8 @@ int main(void) {
     RUN_TEST(a_reading_shrinks_the_covariance_by_the_plain_formula);
     RUN_TEST(a_fix_without_error_places_the_robot);
     RUN_TEST(counts_wrap_by_the_shorter_way);
+    RUN_TEST(half_a_wrap_keeps_its_sign_and_no_encoder_turns_nothing);
+    RUN_TEST(each_number_of_a_covariance_must_be_finite);
     RUN_TEST(a_world_force_turns_with_the_heading_error);
     RUN_TEST(nothing_changes_where_a_call_is_refused);
     RUN_TEST(settings_out_of_range_are_refused);

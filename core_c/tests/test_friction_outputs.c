@@ -23,6 +23,36 @@ static void contacts_that_slip_stick_and_lift_are_told_apart(void) {
     TEST_ASSERT_TRUE(out.reactions.normal_N[0] < 0 || out.reactions.normal_N[1] < 0);
 }
 
+/* Constants of wheels that it has not are no numbers: nothing is computed of them. */
+static void what_lies_beyond_the_last_wheel_is_not_read(void) {
+    const laconic_real nu[3] = {2, -1, REAL(0.7)};
+    laconic_input input = no_input();
+    laconic_plant plant = started(with_drive(robotino(0.3, 0.5, 0.05)), 1e-3, 8, 4, 0);
+    input.voltage_V[0] = 5;
+    plant.slip.wheel_speed_rad_per_s[1] = 3;
+    laconic_plant beside = plant;
+    memset(&beside.friction.wheel[3], 0xFF, sizeof beside.friction.wheel[3]);
+    memset(&beside.friction.axle[3], 0xFF, sizeof beside.friction.axle[3]);
+    beside.slip.wheel_speed_rad_per_s[3] = NOT_A_NUMBER;
+    input.voltage_V[3] = input.axle_torque_Nm[3] = NOT_A_NUMBER;
+    for (int step = 0; step < 5; step++) {
+        laconic_rates rates[2];
+        laconic_real wheel_rate[2][LACONIC_MAX_WHEELS];
+        memset(rates, 0, sizeof rates);
+        memset(wheel_rate, 0, sizeof wheel_rate);
+        for (int k = 0; k < 2; k++) {
+            laconic_plant *of = k == 0 ? &plant : &beside;
+            laconic_friction_derivative(&rates[k], wheel_rate[k], &of->friction, &of->model, nu, REAL(0.3),
+                                        of->slip.wheel_speed_rad_per_s, &input);
+            ASSERT_STATUS(LACONIC_OK, laconic_plant_run(of, &input, 1, &why));
+        }
+        TEST_ASSERT_EQUAL_MEMORY(&rates[0], &rates[1], sizeof rates[0]);
+        TEST_ASSERT_EQUAL_MEMORY(wheel_rate[0], wheel_rate[1], sizeof wheel_rate[0]);
+        TEST_ASSERT_EQUAL_MEMORY(&plant.state, &beside.state, sizeof plant.state);
+        TEST_ASSERT_EQUAL_MEMORY(plant.slip.grip_N, beside.slip.grip_N, 3 * sizeof plant.slip.grip_N[0]);
+    }
+}
+
 /* M v' = F + Σ of the wheels' forces, along u and along u turned by −90°. */
 static void the_reactions_move_the_body(void) {
     laconic_input input = no_input();
@@ -144,6 +174,7 @@ static void a_load_that_is_no_number_leaves_no_margin(void) {
 int main(void) {
     UNITY_BEGIN();
     RUN_TEST(contacts_that_slip_stick_and_lift_are_told_apart);
+    RUN_TEST(what_lies_beyond_the_last_wheel_is_not_read);
     RUN_TEST(the_reactions_move_the_body);
     RUN_TEST(a_brake_holds_its_wheel_against_motor_and_ground);
     RUN_TEST(outputs_are_those_of_the_wheels_own_states);

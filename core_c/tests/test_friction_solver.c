@@ -262,8 +262,29 @@ static void what_is_not_finite_is_refused(void) {
 static void nothing_that_moves_is_no_motion(void) {
     problem p = one_wheel(1);
     p.impulse[0][0] = REAL(1);
+    p.nu[0] = p.nu[2] = p.speed[0] = p.speed[1] = REAL(7); /* there is no second wheel */
     TEST_ASSERT_EQUAL_INT(1, solve(&p));
-    TEST_ASSERT_TRUE(p.nu[0] == 0 && p.impulse[0][0] == 0);
+    TEST_ASSERT_TRUE(p.nu[0] == 0 && p.nu[1] == 0 && p.nu[2] == 0 && p.impulse[0][0] == 0);
+    TEST_ASSERT_TRUE(p.speed[0] == 0 && p.speed[1] == 7);
+}
+
+/* Contacts beyond those that are counted are neither read nor written. */
+static void what_lies_beyond_the_last_wheel_stays(void) {
+    problem p = one_wheel(1), alone;
+    p.free[0] = REAL(3);
+    p.free[1] = REAL(0.5);
+    p.wheel[1] = p.wheel[0];
+    p.load[1] = p.load[0];
+    alone = p;
+    p.load[1].free_speed = p.load[1].drive = p.speed[1] = REAL(7);
+    p.impulse[1][0] = p.impulse[1][1] = EITHER(REAL(1e30), REAL(1e15)); /* a stress that would be forgotten */
+    TEST_ASSERT_EQUAL_INT(solve(&alone), solve(&p));
+    TEST_ASSERT_EQUAL_MEMORY(alone.nu, p.nu, sizeof p.nu);
+    TEST_ASSERT_TRUE(p.speed[0] == alone.speed[0] && p.speed[1] == 7);
+    for (int m = 0; m < 2; m++) {
+        TEST_ASSERT_TRUE(p.impulse[0][m] == alone.impulse[0][m]);
+        TEST_ASSERT_TRUE(p.impulse[1][m] == EITHER(REAL(1e30), REAL(1e15)));
+    }
 }
 
 int main(void) {
@@ -284,5 +305,6 @@ int main(void) {
     RUN_TEST(what_pulls_less_than_the_grip_moves_nothing_to_the_last_bit);
     RUN_TEST(what_is_not_finite_is_refused);
     RUN_TEST(nothing_that_moves_is_no_motion);
+    RUN_TEST(what_lies_beyond_the_last_wheel_stays);
     return UNITY_END();
 }

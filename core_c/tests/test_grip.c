@@ -49,6 +49,18 @@ static void a_gentle_run_counts_instants_and_nothing_else(void) {
     TEST_ASSERT_EQUAL_INT(0, s.grip.first_slip.point);
 }
 
+static void of_instants_that_are_equally_bad_the_first_is_the_worst(void) {
+    scene slips = scene_of(with_motors(mecanum()), 0.8, 0.0), lifts = scene_of(with_motors(mecanum()), 100, 2);
+    for (uint64_t step = 3; step < 6; step++) {
+        look_at(&slips, forward(6), step);
+        look_at(&lifts, forward(20), step);
+    }
+    TEST_ASSERT_EQUAL_UINT64(3, slips.grip.slipping);
+    TEST_ASSERT_EQUAL_UINT64(3, slips.grip.worst_slip.steps);
+    TEST_ASSERT_EQUAL_UINT64(3, lifts.grip.lifting);
+    TEST_ASSERT_EQUAL_UINT64(3, lifts.grip.worst_lift.steps);
+}
+
 static void the_first_and_the_worst_slip_are_kept_with_what_was_needed(void) {
     scene s = scene_of(with_motors(mecanum()), 0.8, 0.0);
     laconic_reactions first, worst;
@@ -137,6 +149,7 @@ static void nan_counts_as_slip_and_as_lift(void) {
 int main(void) {
     UNITY_BEGIN();
     RUN_TEST(a_gentle_run_counts_instants_and_nothing_else);
+    RUN_TEST(of_instants_that_are_equally_bad_the_first_is_the_worst);
     RUN_TEST(the_first_and_the_worst_slip_are_kept_with_what_was_needed);
     RUN_TEST(without_friction_nothing_slips);
     RUN_TEST(a_wheel_that_would_lift_is_kept_with_its_normal_load);

@@ -23,9 +23,33 @@ static void rows_of_zero_carry_nothing(void) {
     ASSERT_NEAR(ROUNDING, 0.5, solver[1][0]);
 }
 
+static void rows_that_are_all_zero_carry_nothing_and_give_no_nan(void) {
+    const laconic_real rows[2][3] = {{0, 0, 0}, {0, 0, 0}};
+    laconic_real solver[2][3] = {{1, 1, 1}, {1, 1, 1}};
+    laconic_least_norm(solver, rows, 2);
+    for (int i = 0; i < 2; i++)
+        for (int c = 0; c < 3; c++) TEST_ASSERT_TRUE(solver[i][c] == 0);
+}
+
+/* No unit is preferred: rows twice as long have a solution half as large, however small they are. */
+static void the_solution_scales_with_the_rows(void) {
+    const laconic_real rows[3][3] = {{1, REAL(0.5), 0}, {REAL(0.25), -1, 1}, {1, 0, 2}};
+    laconic_real solver[3][3];
+    laconic_least_norm(solver, rows, 3);
+    for (int k = -24; k <= 24; k += 4) { /* powers of two, so that nothing is rounded anew */
+        const laconic_real scale = REAL(ldexp(1, k));
+        laconic_real scaled[3][3], found[3][3];
+        for (int n = 0; n < 9; n++) scaled[n / 3][n % 3] = scale * rows[n / 3][n % 3];
+        laconic_least_norm(found, (const laconic_real(*)[3])scaled, 3);
+        for (int n = 0; n < 9; n++) TEST_ASSERT_TRUE(found[n / 3][n % 3] == solver[n / 3][n % 3] / scale);
+    }
+}
+
 int main(void) {
     UNITY_BEGIN();
     RUN_TEST(the_solution_is_exact_where_there_is_one_and_the_shortest);
     RUN_TEST(rows_of_zero_carry_nothing);
+    RUN_TEST(rows_that_are_all_zero_carry_nothing_and_give_no_nan);
+    RUN_TEST(the_solution_scales_with_the_rows);
     return UNITY_END();
 }

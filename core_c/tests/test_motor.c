@@ -73,6 +73,16 @@ static void a_motor_whose_constants_leave_the_range_or_add_energy_is_refused(voi
     refuses(m, LACONIC_NEGATIVE, LACONIC_FIELD_BACK_EMF);
 }
 
+static void a_motor_without_back_emf_may_pull_either_way(void) {
+    for (int sign = -1; sign <= 1; sign += 2) {
+        laconic_vehicle v = three_wheels();
+        laconic_motor m = good_motor();
+        m.back_emf_Vs_per_rad = 0;
+        m.torque_constant_Nm_per_A *= REAL(sign);
+        ASSERT_STATUS(LACONIC_OK, laconic_motor_fit(&v, &m, &why));
+    }
+}
+
 static void a_back_emf_of_the_wrong_sign_is_refused_even_where_friction_outweighs_it(void) {
     laconic_motor m = good_motor();
     m.back_emf_Vs_per_rad = REAL(-0.12);
@@ -106,6 +116,7 @@ int main(void) {
     RUN_TEST(resistance_must_be_positive_and_the_gear_not_zero);
     RUN_TEST(friction_and_rotor_inertia_must_not_be_negative);
     RUN_TEST(a_motor_whose_constants_leave_the_range_or_add_energy_is_refused);
+    RUN_TEST(a_motor_without_back_emf_may_pull_either_way);
     RUN_TEST(a_back_emf_of_the_wrong_sign_is_refused_even_where_friction_outweighs_it);
     RUN_TEST(a_negative_wheel_inertia_is_refused_before_the_rotors_inertia_hides_it);
     RUN_TEST(a_motor_is_fitted_to_the_wheels_that_there_can_be);

@@ -263,6 +263,24 @@ static void values_beyond_the_last_wheel_are_not_read(void) {
     TEST_ASSERT_EQUAL_MEMORY(&clean, &m, sizeof m);
 }
 
+/* Of one wheel with its own inertia the vehicle's does not count, larger or smaller. */
+static void a_single_wheel_s_own_inertia_takes_the_vehicle_s_place(void) {
+    for (int k = 0; k < 2; k++) {
+        laconic_vehicle v = bare_body(), own;
+        add_wheel(&v, LACONIC_WHEEL_ROLLER, 0.1, 0.05, 0.3, 1.1);
+        own = v;
+        own.wheel[0].own_inertia_kgm2 = v.wheel_inertia_kgm2 * REAL(k == 0 ? 0.125 : 8);
+        v.wheel_inertia_kgm2 = own.wheel[0].own_inertia_kgm2;
+        const laconic_model wanted = model_of(v), found = model_of(own);
+        laconic_matrices x[2];
+        ASSERT_STATUS(LACONIC_OK, laconic_matrices_of(&x[0], &v, &why));
+        ASSERT_STATUS(LACONIC_OK, laconic_matrices_of(&x[1], &own, &why));
+        TEST_ASSERT_TRUE(x[0].lambda_wheel == x[1].lambda_wheel);
+        TEST_ASSERT_EQUAL_MEMORY(wanted.inertia, found.inertia, sizeof wanted.inertia);
+        TEST_ASSERT_EQUAL_MEMORY(wanted.nu_of_zeta, found.nu_of_zeta, sizeof wanted.nu_of_zeta);
+    }
+}
+
 int main(void) {
     UNITY_BEGIN();
     RUN_TEST(own_values_that_are_the_vehicles_give_the_same_bits);
@@ -280,5 +298,6 @@ int main(void) {
     RUN_TEST(bad_values_are_refused_by_their_key_in_a_scene);
     RUN_TEST(a_value_that_leaves_the_range_is_named);
     RUN_TEST(values_beyond_the_last_wheel_are_not_read);
+    RUN_TEST(a_single_wheel_s_own_inertia_takes_the_vehicle_s_place);
     return UNITY_END();
 }

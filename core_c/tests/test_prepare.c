@@ -177,6 +177,28 @@ static void numbers_that_leave_the_range_are_refused(void) {
     ASSERT_REFUSED(LACONIC_OVERFLOW, LACONIC_FIELD_NONE, 0, laconic_prepare(&model, &v, &why), why);
 }
 
+static void a_wheel_that_the_vehicle_has_not_is_not_blamed(void) {
+    laconic_vehicle v = three_wheels();
+    laconic_model model;
+    v.mass_kg = REAL(EITHER(1e150, 1e19));
+    v.wheel_radius_m = REAL(EITHER(1e90, 1e11));
+    v.wheel[3].own_radius_m = REAL(EITHER(1e-150, 1e-19));
+    ASSERT_REFUSED(LACONIC_OVERFLOW, LACONIC_FIELD_NONE, 0, laconic_prepare(&model, &v, &why), why);
+    v.wheel_count = 4;
+    v.wheel[3].kind = LACONIC_WHEEL_ROLLER;
+    v.wheel[3].roller_rad = REAL(PI / 2);
+    ASSERT_REFUSED(LACONIC_OVERFLOW, LACONIC_FIELD_OWN_RADIUS, 4, laconic_prepare(&model, &v, &why), why);
+}
+
+/* In units in which M R² is 1 its torque is counted beside 1, so that both leave the range together. */
+static void a_wheel_just_within_the_range_is_blamed_with_its_own_number(void) {
+    laconic_vehicle v = three_wheels();
+    laconic_model model;
+    v.mass_kg = v.wheel_radius_m = 1;
+    v.wheel[1].own_inertia_kgm2 = EITHER(REAL(1.2e154), REAL(1.7e19));
+    ASSERT_REFUSED(LACONIC_OVERFLOW, LACONIC_FIELD_OWN_INERTIA, 2, laconic_prepare(&model, &v, &why), why);
+}
+
 static void a_wheel_at_the_end_of_the_range_is_refused_and_never_gives_nan(void) {
     laconic_vehicle v = differential_drive();
     laconic_model model;
@@ -253,6 +275,8 @@ int main(void) {
     RUN_TEST(what_the_vehicle_check_refuses_is_refused);
     RUN_TEST(inertias_too_far_apart_for_the_precision_are_refused);
     RUN_TEST(numbers_that_leave_the_range_are_refused);
+    RUN_TEST(a_wheel_that_the_vehicle_has_not_is_not_blamed);
+    RUN_TEST(a_wheel_just_within_the_range_is_blamed_with_its_own_number);
     RUN_TEST(a_wheel_at_the_end_of_the_range_is_refused_and_never_gives_nan);
     RUN_TEST(a_body_without_any_extent_is_refused_and_never_gives_nan);
     RUN_TEST(a_slow_rate_keeps_its_digits_beside_a_fast_one);

@@ -77,6 +77,21 @@ static void a_start_that_slides_a_fixed_wheel_is_refused_with_the_nearest_that_d
     ASSERT_STATUS(LACONIC_OK, laconic_state_set(&state, &m, &start, &why));
 }
 
+/* A locked wheel below S: only a rotation is left, so both others are wrong by the same. */
+static void of_two_that_are_equally_wrong_the_first_is_named(void) {
+    laconic_vehicle v = bare_body();
+    laconic_start start = start_with(-2, 2, 1);
+    laconic_state state;
+    add_wheel(&v, LACONIC_WHEEL_FIXED, 0, 0, 0, 0);
+    v.wheel[0].locked = true;
+    const laconic_model m = model_of(v);
+    ASSERT_REFUSED(LACONIC_START_AGAINST_CONSTRAINTS, LACONIC_FIELD_START_NU, 1,
+                   laconic_state_set(&state, &m, &start, &why), why);
+    start = start_with(2, REAL(2.5), 1);
+    ASSERT_REFUSED(LACONIC_START_AGAINST_CONSTRAINTS, LACONIC_FIELD_START_NU, 2,
+                   laconic_state_set(&state, &m, &start, &why), why);
+}
+
 static void a_start_that_rotates_a_locked_wheel_is_refused(void) {
     laconic_vehicle v = three_wheels();
     laconic_start start = start_with(1, 0, 0);
@@ -191,6 +206,7 @@ int main(void) {
     RUN_TEST(a_heading_or_velocity_beyond_the_range_is_refused);
     RUN_TEST(a_velocity_of_any_size_is_refused_before_it_becomes_nan);
     RUN_TEST(a_start_that_slides_a_fixed_wheel_is_refused_with_the_nearest_that_does_not);
+    RUN_TEST(of_two_that_are_equally_wrong_the_first_is_named);
     RUN_TEST(a_start_that_rotates_a_locked_wheel_is_refused);
     RUN_TEST(rest_is_always_allowed);
     RUN_TEST(a_changed_vehicle_moves_on_where_the_old_one_was);

@@ -45,6 +45,24 @@ static void an_input_that_is_not_finite_leaves_the_state_as_it_was_whatever_the_
     }
 }
 
+/* Also in the middle of a sampled step, which methods of second order do not use: numbers that are finite, their sum is
+ * not. */
+static void a_world_force_beyond_the_range_is_refused_at_every_sample(void) {
+    const laconic_model m = model_of(three_wheels());
+    for (int32_t i = 0; i < LACONIC_METHOD_COUNT; i++)
+        for (int sample = 0; sample < 3; sample++)
+            for (int sign = -1; sign <= 1; sign += 2) {
+                const laconic_integrator integrator = integrator_of(laconic_method_by_number(i), &m, 0.01);
+                laconic_input input[3] = {no_input(), no_input(), no_input()};
+                laconic_state state = moving(&m, 1, 2, 3);
+                const laconic_state before = state;
+                input[sample].world_force_N[0] = input[sample].world_force_N[1] = REAL(sign) * LACONIC_REAL_MAX;
+                TEST_ASSERT_NOT_EQUAL(LACONIC_OK,
+                                      laconic_step_sampled(&m, &integrator, &state, &input[0], &input[1], &input[2]));
+                TEST_ASSERT_EQUAL_MEMORY(&before, &state, sizeof state);
+            }
+}
+
 /* The voltage beyond the last wheel belongs to no wheel. */
 static void what_lies_beyond_the_last_wheel_is_not_read(void) {
     const laconic_model m = model_of(with_motors(three_wheels()));
@@ -373,6 +391,7 @@ int main(void) {
     RUN_TEST(the_fastest_yaw_ends_in_a_refusal_never_in_a_jump);
     RUN_TEST(an_input_that_does_not_vary_gives_the_motion_of_a_held_one);
     RUN_TEST(a_sampled_sine_keeps_every_methods_order);
+    RUN_TEST(a_world_force_beyond_the_range_is_refused_at_every_sample);
     RUN_TEST(a_world_force_may_begin_or_end_within_a_step);
     RUN_TEST(a_world_force_at_one_sample_alone_counts_by_its_weight);
     RUN_TEST(a_number_that_is_not_finite_at_any_sample_is_refused);

@@ -1,6 +1,8 @@
 /* Tests of vehicle.c: every number that is not usable is refused with its field. */
 #include "vehicles.h"
 
+#include "elementary.h"
+
 static laconic_refusal why;
 
 static void good_vehicles_are_accepted(void) {
@@ -131,9 +133,27 @@ static void a_roller_along_the_axle_is_refused_just_below_the_limit(void) {
     ASSERT_STATUS(LACONIC_OK, laconic_vehicle_check(&v, &why));
 }
 
+/* Small angles that are neighbours have sines that are, so one of them has the limit itself: sin x = x − x³/6. */
+static void a_roller_exactly_at_the_limit_is_taken(void) {
+    const laconic_real limit = LACONIC_SMALLEST_ROLLER_SINE, unit = limit * LACONIC_EPSILON / 2;
+    const laconic_real angle = limit + limit * limit * limit / 6;
+    laconic_vehicle v = three_wheels();
+    int taken = 0;
+    for (int k = -40; k <= 40; k++) {
+        v.wheel[2].roller_rad = angle + REAL(k) * unit;
+        const laconic_real sine = laconic_direction_of_angle(v.wheel[2].roller_rad).sine;
+        TEST_ASSERT_EQUAL_INT(sine < limit ? LACONIC_ROLLER_ALONG_AXLE : LACONIC_OK, laconic_vehicle_check(&v, NULL));
+        taken += sine >= limit && sine <= limit;
+    }
+    TEST_ASSERT_TRUE(taken > 0);
+}
+
 static void an_angle_too_large_to_have_a_direction_is_refused_for_axle_and_roller_alike(void) {
     const double largest = (double)LACONIC_SMALLEST_ROLLER_SINE / (double)LACONIC_EPSILON;
     const number_of angle[] = {second_axle, second_roller};
+    laconic_vehicle at_the_limit = three_wheels();
+    at_the_limit.wheel[1].axle_rad = LACONIC_SMALLEST_ROLLER_SINE / LACONIC_EPSILON;
+    ASSERT_STATUS(LACONIC_OK, laconic_vehicle_check(&at_the_limit, &why));
     const laconic_field field[] = {LACONIC_FIELD_AXLE, LACONIC_FIELD_ROLLER};
     for (int k = 0; k < 2; k++) {
         laconic_vehicle v = three_wheels();
@@ -203,6 +223,7 @@ int main(void) {
     RUN_TEST(mass_radius_and_yaw_inertia_must_be_positive);
     RUN_TEST(inertias_damping_friction_and_height_must_not_be_negative);
     RUN_TEST(a_roller_along_the_axle_is_refused_just_below_the_limit);
+    RUN_TEST(a_roller_exactly_at_the_limit_is_taken);
     RUN_TEST(an_angle_too_large_to_have_a_direction_is_refused_for_axle_and_roller_alike);
     RUN_TEST(the_roller_of_a_fixed_wheel_is_not_read);
     RUN_TEST(a_forgotten_wheel_is_refused);

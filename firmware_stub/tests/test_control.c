@@ -237,6 +237,16 @@ static void a_vehicle_that_the_core_refuses_leaves_the_one_before(void) {
     TEST_ASSERT_EQUAL_UINT8(0, bench_start_lockstep());
 }
 
+static void the_estimate_of_the_vehicle_before_ends_with_a_commit_that_is_taken(void) {
+    TEST_ASSERT_EQUAL_UINT8(0, commit_puck(2, 0));
+    TEST_ASSERT_EQUAL_UINT8(0, bench_select(0, 0, 0x20U));
+    TEST_ASSERT_TRUE(node.estimates);
+    TEST_ASSERT_EQUAL_UINT8(LACONIC_NOT_POSITIVE, commit_puck(-1, 0));
+    TEST_ASSERT_TRUE(node.estimates);
+    TEST_ASSERT_EQUAL_UINT8(0, commit_puck(3, 0));
+    TEST_ASSERT_FALSE(node.estimates);
+}
+
 /* A cart with two wheels and a drive on the second, whose gear is given; the status of COMMIT's RESULT, which stays in
  * `data`. */
 static uint8_t commit_driven(laconic_real wheel_2_x_m, laconic_real gear_ratio) {
@@ -361,6 +371,7 @@ int main(void) {
     RUN_TEST(a_selection_clears_the_inputs);
     RUN_TEST(a_committed_vehicle_is_ready_at_its_start_with_cleared_inputs);
     RUN_TEST(a_vehicle_that_the_core_refuses_leaves_the_one_before);
+    RUN_TEST(the_estimate_of_the_vehicle_before_ends_with_a_commit_that_is_taken);
     RUN_TEST(a_committed_vehicle_has_the_drives_that_came_with_it);
     RUN_TEST(a_refused_vehicle_names_field_and_wheel_and_keeps_the_drives_before);
     RUN_TEST(a_tick_takes_no_more_steps_than_it_may);

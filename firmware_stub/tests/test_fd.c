@@ -32,6 +32,14 @@ static void one_frame_has_the_voltages_of_all_wheels(void) {
     TEST_ASSERT_EQUAL_UINT16(0, node.counters.overrange);
 }
 
+static void voltages_beyond_the_last_wheel_go_nowhere(void) {
+    bench_load(2);
+    bench_start_lockstep();
+    voltages(16, 0);
+    TEST_ASSERT_TRUE(node.input[0].voltage_V[1] < 0);
+    for (int32_t k = 2; k < LACONIC_MAX_WHEELS; k++) TEST_ASSERT_TRUE(node.input[0].voltage_V[k] == 0);
+}
+
 static void its_flags_ask_for_a_step_and_tell_of_a_voltage_out_of_range(void) {
     bench_load(2);
     bench_start_lockstep();
@@ -42,6 +50,14 @@ static void its_flags_ask_for_a_step_and_tell_of_a_voltage_out_of_range(void) {
     TEST_ASSERT_EQUAL_UINT8(sent[LACONIC_WIRE_VOLTAGE_FD] & 15U, node.lockstep.request);
     laconic_node_on_tick(&node, now_us);
     TEST_ASSERT_EQUAL_UINT64(1, node.plant.steps);
+}
+
+static void a_count_stays_at_the_largest_that_it_can_be(void) {
+    bench_load(2);
+    bench_start_lockstep();
+    node.counters.overrange = UINT16_MAX - 1;
+    for (int k = 0; k < 3; k++) voltages(2, 2);
+    TEST_ASSERT_EQUAL_UINT16(UINT16_MAX, node.counters.overrange);
 }
 
 static void it_feeds_the_watchdog_at_once(void) {
@@ -95,6 +111,17 @@ static void raw_inputs_come_by_frames_of_either_length(void) {
         TEST_ASSERT_EQUAL_MEMORY(number + 18, node.input[0].world_force_point_m, 2 * sizeof number[0]);
         TEST_ASSERT_TRUE(laconic_raw_is_whole(&node.raw_input, frames));
     }
+}
+
+static void a_raw_number_out_of_order_is_refused_and_counted(void) {
+    bench_load(8);
+    bench_select(0, 0, LACONIC_RAW_VOLTAGE);
+    bench_start_lockstep();
+    bench_send(LACONIC_WIRE_RAW_INPUT, data);
+    TEST_ASSERT_EQUAL_UINT16(0, node.counters.refused);
+    data[1] = 5U << 4;
+    bench_send(LACONIC_WIRE_RAW_INPUT, data);
+    TEST_ASSERT_EQUAL_UINT16(1, node.counters.refused);
 }
 
 /* The numbers behind RAW_OUTPUT, in the order of their bits. */
@@ -206,7 +233,10 @@ static void each_step_begins_its_raw_numbers_anew(void) {
 int main(void) {
     UNITY_BEGIN();
     RUN_TEST(one_frame_has_the_voltages_of_all_wheels);
+    RUN_TEST(voltages_beyond_the_last_wheel_go_nowhere);
     RUN_TEST(its_flags_ask_for_a_step_and_tell_of_a_voltage_out_of_range);
+    RUN_TEST(a_count_stays_at_the_largest_that_it_can_be);
+    RUN_TEST(a_raw_number_out_of_order_is_refused_and_counted);
     RUN_TEST(it_feeds_the_watchdog_at_once);
     RUN_TEST(a_vehicle_with_more_wheels_than_it_has_room_for_takes_none);
     RUN_TEST(raw_inputs_come_by_frames_of_either_length);

@@ -236,9 +236,12 @@ static void refused_steps_are_refused_as_without(void) {
     bench_start_lockstep();
     step(20);
     const int32_t taken = node.estimate.taken;
+    const laconic_estimate before = node.estimate;
     node.input[0].voltage_V[0] = nothing / nothing;
     bench_sync(20);
     tick_lockstep();
+    TEST_ASSERT_EQUAL_MEMORY(before.local, node.estimate.local, sizeof before.local);
+    TEST_ASSERT_EQUAL_MEMORY(before.first_path_m, node.estimate.first_path_m, sizeof before.first_path_m);
     TEST_ASSERT_EQUAL_UINT8(LACONIC_WIRE_STATE_FAULT, node.state);
     TEST_ASSERT_EQUAL_UINT64(20, node.plant.steps);
     TEST_ASSERT_TRUE(taken > 0);

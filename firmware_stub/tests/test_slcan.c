@@ -15,7 +15,10 @@ void tearDown(void) {}
 
 static laconic_slcan_event feed(const char *text) {
     laconic_slcan_event event = LACONIC_SLCAN_NOTHING;
-    for (; *text != 0; text++) event = laconic_slcan_feed(&slcan, *text, &frame);
+    for (; *text != 0; text++) {
+        event = laconic_slcan_feed(&slcan, *text, &frame);
+        if (*text != '\r') TEST_ASSERT_EQUAL(LACONIC_SLCAN_NOTHING, event); /* a line ends nowhere else */
+    }
     return event;
 }
 
@@ -214,6 +217,16 @@ static void a_command_too_long_for_a_line_is_none(void) {
     TEST_ASSERT_FALSE(slcan.open);
 }
 
+/* Nor does what is too much go anywhere else. */
+static void a_line_too_long_changes_nothing_behind_it(void) {
+    feed("O\rV\r");
+    const laconic_slcan before = slcan;
+    for (int k = 0; k < LACONIC_SLCAN_LINE + 20; k++) feed("1");
+    TEST_ASSERT_EQUAL_UINT16(LACONIC_SLCAN_LINE, slcan.length);
+    TEST_ASSERT_EQUAL_STRING(before.reply, slcan.reply);
+    TEST_ASSERT_TRUE(slcan.open && !slcan.listen_only && !slcan.rate_is_wrong && slcan.required_rate == 0);
+}
+
 static void a_classic_frame_has_eight_bytes_at_most_whatever_its_line_holds(void) {
     feed("O\r");
     answers("t2009112233445566778899AABBCC\r", "\a");
@@ -249,6 +262,7 @@ int main(void) {
     RUN_TEST(a_channel_begins_closed_and_without_a_reply);
     RUN_TEST(the_longest_line_has_room_and_one_letter_more_has_none);
     RUN_TEST(a_command_too_long_for_a_line_is_none);
+    RUN_TEST(a_line_too_long_changes_nothing_behind_it);
     RUN_TEST(a_classic_frame_has_eight_bytes_at_most_whatever_its_line_holds);
     RUN_TEST(any_rate_is_right_where_none_is_required);
     return UNITY_END();

@@ -28,9 +28,9 @@ class Equivalent:
     reason: str
 
 
-def read_equivalents(path: Path = EQUIVALENTS) -> list[Equivalent]:
-    """The list; BadInput for a row that is not complete."""
-    rows = entries_of(path.read_text(encoding="utf-8")).get("equivalent", [])
+def read_equivalents(path: Path = EQUIVALENTS, table: str = "equivalent") -> list[Equivalent]:
+    """The list, or `other`, of faults that no operator makes; BadInput for a row that is not complete."""
+    rows = entries_of(path.read_text(encoding="utf-8")).get(table, [])
     names = set(Equivalent.__dataclass_fields__)
     for number, row in enumerate(rows, 1):
         if set(row) != names or not all(isinstance(value, str) for value in row.values()) or not row["reason"].strip():

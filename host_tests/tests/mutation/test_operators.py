@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import re
 from pathlib import Path
 
 import pytest
@@ -73,6 +74,18 @@ def test_every_row_of_the_list_of_equivalents_fits_a_mutant():
              for file in {row.file for row in read_equivalents()} for each in mutants_of(SOURCE_DIR, file)}
     lost = [row for row in read_equivalents() if (row.file, row.function, row.before, row.after) not in there]
     assert lost == []
+
+
+def test_every_row_of_other_equivalents_has_a_line_of_its_function_and_is_none_of_the_operators():
+    rows = read_equivalents(table="other")
+    assert rows
+    for file in {row.file for row in rows}:
+        text = (SOURCE_DIR / file).read_text(encoding="utf-8")
+        lines = {" ".join(re.sub(r"/\*.*?(\*/|$)", "", line).split()) for line in text.splitlines()}
+        ours = {(each.before, each.after) for each in mutants_of(SOURCE_DIR, file)}
+        for row in (each for each in rows if each.file == file):
+            assert row.before in lines and row.function in text, row
+            assert (row.before, row.after) not in ours, row
 
 
 def test_a_row_without_a_reason_is_refused(tmp_path):
