@@ -134,8 +134,8 @@ static void counts_wrap_by_the_shorter_way(void) {
     ASSERT_NEAR(1e-6, 0.04 * PI, turned[0]);
 }
 
-/* Of half a wrap nobody can tell the direction: it is the sign that the numbers have. A wheel without an encoder has not
- * turned, whatever stood there. */
+/* Of half a wrap nobody can tell the direction: it is the sign that the numbers have. A wheel without an encoder has
+ * not turned, whatever stood there. */
 static void half_a_wrap_keeps_its_sign_and_no_encoder_turns_nothing(void) {
     laconic_sensor_settings s;
     memset(&s, 0, sizeof s);
