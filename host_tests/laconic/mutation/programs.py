@@ -50,8 +50,8 @@ class Unit:
     object: Path
 
     def compile(self, tree: Path, out: Path, *more: str) -> subprocess.CompletedProcess[bytes]:
-        """Compiles it as it stands in another tree of sources."""
-        here = [*(_moved(word, tree) for word in self.command), *more]
+        """Compiles it as it stands in another tree of sources, to bytes (__FILE__) that do not tell which."""
+        here = [*(_moved(word, tree) for word in self.command), f"-ffile-prefix-map={tree}/=", *more]
         return subprocess.run([*here, "-o", str(out), "-c", _moved(str(self.source), tree)], cwd=self.directory,
                               capture_output=True, check=False)
 

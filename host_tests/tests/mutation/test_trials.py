@@ -14,6 +14,7 @@ from laconic.mutation.results import Results
 from laconic.mutation.trial import Outcome, Trials
 
 SOURCE = """\
+const char *const where = __FILE__;
 int limited(int a) {
     volatile int k = 0;
     while (k < 10) k += 5;
@@ -74,6 +75,12 @@ def test_the_sources_are_as_before(trials):
     verdicts(*trials)
     assert (trials[1] / "core_c/limited.c").read_text() == SOURCE
     assert (trials[0].folder / "tree0/core_c/limited.c").read_text() == SOURCE
+
+
+def test_the_same_code_is_the_same_in_any_copy_of_the_sources(trials):
+    tried, sources = trials
+    alike = next(each for each in mutants_of(sources, "core_c/limited.c") if "a / 1" in each.after)
+    assert [tried.outcome(alike, tried.tree(number)).verdict for number in range(2)] == ["same code", "same code"]
 
 
 def test_a_result_holds_until_its_file_changes_and_a_survivor_until_the_tests_do(tmp_path, monkeypatch):

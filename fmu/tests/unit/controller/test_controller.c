@@ -78,6 +78,20 @@ static void gains_are_tuned_in_a_run_and_the_integral_stays(void) {
     TEST_ASSERT_TRUE(get("angle_error_rad", 1) == integral); /* held at the limit */
 }
 
+/* What is read again without any change is not computed again, though another group is. */
+static void what_is_fresh_is_computed_once(void) {
+    initialise();
+    apply();
+    TEST_ASSERT_TRUE(get("voltage_V", 1) == 3);
+    instance()->model.voltage_V[0] = 4;
+    TEST_ASSERT_TRUE(get("der(angle_error_rad)", 1) == 6);
+    TEST_ASSERT_TRUE(get("voltage_V", 1) == 4);
+    fmu_model_refresh(instance(), FMU_GROUPS_ALL);
+    TEST_ASSERT_TRUE(get("voltage_V", 1) == 4);
+    set("setpoint_rad_per_s", 1, 12);
+    TEST_ASSERT_TRUE(get("voltage_V", 1) == 4 && get("der(angle_error_rad)", 1) == 8);
+}
+
 /* Outputs may be read in initialization, and parameters set behind it; and states behind outputs. */
 static void outputs_follow_what_is_set_behind_them(void) {
     make(fmi2ModelExchange);
@@ -328,6 +342,7 @@ int main(void) {
     RUN_TEST(a_step_integrates_the_error_of_wheels_that_are_not_limited);
     RUN_TEST(a_gain_below_zero_and_a_limit_that_is_none_are_refused);
     RUN_TEST(gains_are_tuned_in_a_run_and_the_integral_stays);
+    RUN_TEST(what_is_fresh_is_computed_once);
     RUN_TEST(outputs_follow_what_is_set_behind_them);
     RUN_TEST(at_the_limit_derivatives_are_those_of_the_law);
     RUN_TEST(at_the_limit_itself_and_without_an_error_the_integral_follows);

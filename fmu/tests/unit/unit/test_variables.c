@@ -56,9 +56,13 @@ static void a_list_for_the_fast_path_is_kept_with_all_of_its_values(void) {
         TEST_ASSERT_EQUAL(count, it->read.count);
         TEST_ASSERT_EQUAL(4 * count, it->read.values);
     }
-    list[0] = ref("voltage_V", 4);
+    list[0] = ref("energy_J", 0);
+    OK(fmi3GetFloat64(i, list, 1, found, 1));
+    TEST_ASSERT_EQUAL_UINT32(FMU_GROUP_ENERGY, it->read.groups); /* no more is computed than is read */
+    list[0] = ref("voltage_V", 0) << FMU_ELEMENT_SHIFT | 4;
     OK(fmi3GetFloat64(i, list, 1, found, 1));
     TEST_ASSERT_EQUAL(1, it->read.values);
+    TEST_ASSERT_EQUAL_UINT32(0, it->read.groups);
     list[0] = ref("mass_kg", 0); /* cannot be set in this mode */
     ASSERT_REFUSED(fmi3SetFloat64(i, list, 1, given, 1), "mass_kg");
     TEST_ASSERT_EQUAL(0, it->written.count);

@@ -55,6 +55,22 @@ static void a_drive_within_its_limits_is_one_without(void) {
     TEST_ASSERT_TRUE(rate[0][0] != 0 && rate[0][1] != 0 && shown[0][0][3] != 0);
 }
 
+/* At rest the body's acceleration is R ν', also where it is read before any rate; after each change of an input. */
+static void the_acceleration_on_ground_with_friction_is_that_of_the_rates(void) {
+    with_wheel_states();
+    initialise();
+    OK(fmi2EnterContinuousTimeMode(c));
+    for (int n = 1; n <= 3; n++) {
+        set("body_force_N", 1, 4 * n);
+        set("body_force_N", 2, -3 * n);
+        for (uint32_t k = 1; k <= 2; k++) {
+            const double felt = get("acceleration_body_m_per_s2", k);
+            TEST_ASSERT_TRUE(fabs(felt) > 0.01);
+            TEST_ASSERT_DOUBLE_WITHIN(1e-12, get("wheel_radius_m", 0) * get("der(nu_rad_per_s)", k), felt);
+        }
+    }
+}
+
 static void a_single_wheel_slips_too(void) {
     laconic_vehicle v = instance()->model.vehicle;
     v.ground.friction_coefficient = 0.3;
@@ -103,6 +119,7 @@ int main(void) {
     UNITY_BEGIN();
     RUN_TEST(sixteen_wheels_have_38_states);
     RUN_TEST(a_drive_within_its_limits_is_one_without);
+    RUN_TEST(the_acceleration_on_ground_with_friction_is_that_of_the_rates);
     RUN_TEST(a_single_wheel_slips_too);
     RUN_TEST(wheels_that_are_not_there_have_no_sensors);
     RUN_TEST(sensors_watch_steps_with_slopes);
