@@ -189,12 +189,12 @@ static void put_any_wheel(problem *p, uint32_t *at) {
 /* Contacts that hold each other, light wheels, guesses far off: some need passes of every kind, and a few more than
  * there are. */
 static void contacts_of_every_kind_solved_from_any_guess(void) {
-    uint32_t at = 1;
+    uint32_t at = 11;
     begin();
     for (int n = 0; n < 1500; n++) {
         problem p;
         memset(&p, 0, sizeof p);
-        for (int i = 0; i < 1 + n % 8; i++) put_any_wheel(&p, &at);
+        for (int i = 0; i < 1 + n % 16; i++) put_any_wheel(&p, &at);
         for (int m = 0; m < 3; m++) p.free[m] = power(&at, 6) - power(&at, 6);
         for (int i = 0; i < p.count; i++)
             for (int m = 0; m < 2; m++)
@@ -204,7 +204,7 @@ static void contacts_of_every_kind_solved_from_any_guess(void) {
         for (int m = 0; m < 3; m++) p.free[m] = p.nu[m]; /* and on from there, with little that changes */
         take_solution(&p);
     }
-    expect(EITHER(0x36faf73885b3fdccU, 0xa418270abc829c97U));
+    expect(EITHER(0x931e0d913c4ef66cU, 0x41199441aebe89a1U));
 }
 
 /* ------------------------------------------------------------------- the ends of the range of a vehicle -- */
@@ -313,13 +313,14 @@ static laconic_vehicle turning_on_a_spot(void) {
     add_wheel(&v, LACONIC_WHEEL_FIXED, 0, 0, 0, 0);
     add_wheel(&v, LACONIC_WHEEL_FIXED, 0, 0.2, 0, 0);
     v.wheel[0].locked = true;
-    return with_motors(v);
+    v.wheel_inertia_kgm2 = 0;
+    return v;
 }
 
 static void borders_of_a_model_that_only_turns(void) {
     begin();
     take_borders(taken_by_prepare, turning_on_a_spot());
-    expect(EITHER(0xdf908906686d22b0U, 0x1ac217281ec6e179U));
+    expect(EITHER(0x222f9673cff9c765U, 0xf35a73efca950b43U));
 }
 
 static void borders_of_contacts(void) {
