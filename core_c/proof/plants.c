@@ -1,33 +1,9 @@
 /* Calls of the functions of plants, of the friction step and of sensors, for Frama-C's analyser. Their numbers are any;
  * counts and flags are as the functions that prepare leave them. */
-#include "anything.h"
+#include "any_plant.h"
 
-static laconic_plant plant;
-static laconic_sensors sensors;
 static laconic_contact contact;
 static laconic_rates rates;
-
-/* As laconic_friction_of() leaves it: its counts are those of the vehicle. */
-static void any_friction(laconic_friction *of, int32_t wheels) {
-    Frama_C_make_unknown((char *)of, sizeof *of);
-    of->acts = ANY_BOOL();
-    of->slips = ANY_BOOL();
-    of->wheel_count = wheels;
-    of->point_count = wheels + Frama_C_interval(0, LACONIC_MAX_SUPPORTS);
-    for (int32_t i = 0; i < LACONIC_SLIP_WHEELS; i++) of->axle[i].locked = ANY_BOOL();
-}
-
-/* A plant that has been started by some method; with friction, or without. */
-static bool any_plant(const laconic_method *method) {
-    ANYTHING(plant);
-    any_model(&plant.model);
-    any_state();
-    plant.state = state;
-    any_friction(&plant.friction, plant.model.wheel_count);
-    any_inputs();
-    return laconic_integrator_prepare(&plant.integrator, method, &plant.model, plant.integrator.step_s, NULL) ==
-           LACONIC_OK;
-}
 
 void prove_plant_start(void) {
     laconic_real step_s;
@@ -127,17 +103,6 @@ void prove_encoders(void) {
     (void)laconic_encoder_shown(&encoder, Frama_C_interval(0, 2147483647));
     (void)laconic_encoder_turn(&encoder, &settings, turned);
     laconic_normal_pair(pair, any_count(), Frama_C_unsigned_int_interval(0, 0xFFFFFFFFU), any_count());
-}
-
-/* Settings that laconic_sensor_settings_check() lets pass have such a delay. */
-static void any_sensors(void) {
-    ANYTHING(sensors);
-    sensors.settings.imu.delay_steps = Frama_C_interval(0, LACONIC_IMU_MAX_DELAY);
-    for (int32_t i = 0; i < LACONIC_MAX_WHEELS; i++) {
-        sensors.settings.encoder[i].counts_per_turn = Frama_C_interval(0, 2147483647);
-        sensors.encoder[i].count = Frama_C_long_long_interval(-MOST_COUNTS, MOST_COUNTS);
-    }
-    sensors.settings.encoder_wrap = Frama_C_interval(0, 2147483647);
 }
 
 void prove_sensor_settings(void) {

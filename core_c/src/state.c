@@ -22,13 +22,24 @@ static laconic_status check_start(const laconic_start *start, laconic_refusal *w
     return LACONIC_OK;
 }
 
+/*@ requires \valid_read(state);
+    assigns \nothing;
+    ensures \result ==> \is_finite(state->zeta[0].value) && \is_finite(state->zeta[1].value) &&
+            \is_finite(state->zeta[2].value); */
+static bool moves_in_range(const laconic_state *state) {
+    return square(zeta_of(state)) <= LARGEST_SPEED * LARGEST_SPEED;
+}
+
+/*@ requires why == \null || \valid(why);
+    assigns *why; */
 static laconic_status check_allowed(const laconic_model *m, const laconic_state *state, const real nu[3],
                                     laconic_refusal *why) {
     real nearest[3], worst = R(0);
     int32_t item = 0;
-    if (!(square(zeta_of(state)) <= LARGEST_SPEED * LARGEST_SPEED))
-        return refuse(why, LACONIC_OVERFLOW, LACONIC_FIELD_START_NU, 0, size(vec(nu)), R(0));
     laconic_nu(m, state, nearest);
+    /*@ loop invariant 0 <= k <= 3 && 0 <= item < 3;
+        loop assigns k, item, worst;
+        loop variant 3 - k; */
     for (int32_t k = 0; k < 3; k++)
         if (magnitude(nu[k] - nearest[k]) > worst) {
             worst = magnitude(nu[k] - nearest[k]);
@@ -40,17 +51,36 @@ static laconic_status check_allowed(const laconic_model *m, const laconic_state 
     return refuse(why, LACONIC_START_AGAINST_CONSTRAINTS, LACONIC_FIELD_START_NU, item + 1, nu[item], nearest[item]);
 }
 
-laconic_status laconic_state_set(laconic_state *state, const laconic_model *model, const laconic_start *start,
+/* The state of a start; what a refusal leaves in `fresh` is not used. */
+/*@ requires \valid(fresh) && \valid_read(model) && \valid_read(start) && (why == \null || \valid(why));
+    requires \separated(fresh, model, start, why);
+    assigns *fresh, *why; */
+static laconic_status find_state(laconic_state *fresh, const laconic_model *model, const laconic_start *start,
                                  laconic_refusal *why) {
-    laconic_state fresh = ALL_ZERO;
+    const laconic_state still = ALL_ZERO;
+    *fresh = still;
     laconic_status status = check_start(start, why);
     if (status != LACONIC_OK) return status;
-    set_zeta(&fresh, zeta_of_nu(model, start->nu_rad_per_s));
-    status = check_allowed(model, &fresh, start->nu_rad_per_s, why);
+    set_zeta(fresh, zeta_of_nu(model, start->nu_rad_per_s));
+    if (!moves_in_range(fresh))
+        return refuse(why, LACONIC_OVERFLOW, LACONIC_FIELD_START_NU, 0, size(vec(start->nu_rad_per_s)), R(0));
+    status = check_allowed(model, fresh, start->nu_rad_per_s, why);
     if (status != LACONIC_OK) return status;
-    fresh.x_m = sum_of(start->x_m);
-    fresh.y_m = sum_of(start->y_m);
-    heading_advance(&fresh.heading, start->heading_rad);
+    fresh->x_m = sum_of(start->x_m);
+    fresh->y_m = sum_of(start->y_m);
+    heading_advance(&fresh->heading, start->heading_rad);
+    return LACONIC_OK;
+}
+
+/*@ requires \valid(state) && \valid_read(model) && \valid_read(start) && (why == \null || \valid(why));
+    requires \separated(state, model, start, why);
+    assigns *state, *why;
+    ensures \result != LACONIC_OK ==> *state == \old(*state); */
+laconic_status laconic_state_set(laconic_state *state, const laconic_model *model, const laconic_start *start,
+                                 laconic_refusal *why) {
+    laconic_state fresh;
+    const laconic_status status = find_state(&fresh, model, start, why);
+    if (status != LACONIC_OK) return status;
     *state = fresh;
     return LACONIC_OK;
 }
@@ -78,7 +108,7 @@ static bool carried_in_range(const laconic_state *state, const real *angle, int3
     real zero = zero_if_finite(state->x_m.value) + zero_if_finite(state->x_m.rest) + zero_if_finite(state->y_m.value) +
                 zero_if_finite(state->y_m.rest);
     for (int32_t i = 0; i < wheel_count; i++) zero += zero_if_finite(angle[i]);
-    return zero == R(0) && square(zeta_of(state)) <= LARGEST_SPEED * LARGEST_SPEED;
+    return zero == R(0) && moves_in_range(state);
 }
 
 /* The body's origin Q keeps its position and velocity, v_Q = v_S − θ' e_z × s with s from Q to S; x_S = x_Q + Rot(θ)

@@ -22,7 +22,8 @@ PROVERS = ("-wp-prover", "z3,cvc4", "-wp-timeout", "10", "-wp-par", "1", "-wp-ca
 
 @dataclass(frozen=True)
 class Room:
-    """Functions of a part that are proved together. `inlined`: what they call that has no contract of its own."""
+    """Functions of a part that are proved together. `inlined`: what they call that has no contract of its own. Without
+    `memory` accesses and conversions are left to the analyser, which follows these functions, too."""
 
     name: str
     program: Program
@@ -30,6 +31,7 @@ class Room:
     functions: tuple[str, ...]
     inlined: tuple[str, ...] = ()
     without: tuple[str, ...] = ()
+    memory: bool = True
 
 
 @dataclass(frozen=True)
@@ -53,8 +55,14 @@ ROOMS = (
     Room("inputs", CORE, ("core_c/src/step.c",), ("is_finite", "refuse", "check_many", "laconic_input_check"),
          inlined=("magnitude",)),
     Room("starts", CORE, ("core_c/src/state.c",), ("check_start",), inlined=("magnitude",)),
+    Room("states", CORE, ("core_c/src/state.c",),
+         ("moves_in_range", "check_allowed", "find_state", "laconic_state_set"),
+         inlined=("magnitude", "square", "dot", "vec", "zeta_of", "zeta_of_nu", "size", "set_zeta", "sum_of",
+                  "vector_of", "scaled", "plus", "times", "rotated_twice", "inverse_row", "heading_advance"),
+         memory=False),
     Room("encoders", CORE, ("core_c/src/encoder.c",),
          ("laconic_encoder_place", "laconic_encoder_turns", "laconic_encoder_shown")),
+    Room("schedules", CORE, ("core_c/src/record.c",), ("stretch_at",)),
     Room("steps", CORE, ("core_c/src/integrator.c",), ("laconic_steps_in",), inlined=("magnitude",)),
 )
 
@@ -65,10 +73,15 @@ def prove_contracts(room: Room, limit_s: float = 3600.0) -> Goals:
         if shutil.which(tool) is None:
             raise BadInput(f"soak proof: there is no {tool}; install frama-c-base, why3, z3 and cvc4 (Debian), "
                            "then call `why3 config detect`")
-    inlined = ("-inline-calls", ",".join(room.inlined)) if room.inlined else ()
-    command = ["frama-c", *preprocessed(room.program), *room.files, *inlined, *room.without, "-wp", "-wp-rte",
-               "-wp-fct", ",".join(room.functions), *PROVERS]
+    command = ["frama-c", *preprocessed(room.program), *room.files, *options_of(room)]
     return goals_of(room.name, run_frama_c(room.name, command, limit_s).stdout)
+
+
+def options_of(room: Room) -> list[str]:
+    """Of WP for one room."""
+    inlined = ("-inline-calls", ",".join(room.inlined)) if room.inlined else ()
+    memory = ("-wp-rte",) if room.memory else ()
+    return [*inlined, *room.without, "-wp", *memory, "-wp-fct", ",".join(room.functions), *PROVERS]
 
 
 def goals_of(name: str, printed: str) -> Goals:

@@ -18,10 +18,10 @@ STRETCHES = "choose_panels() leaves at most MOST_STRETCHES in a prepared integra
 PLACE = ("find() refuses an item beyond its field's; offset + stride · (item − 1) is then the place of that item in "
          "laconic_parameters, of the field's own type. The analyser knows offset, stride and items only one by one")
 WITH_MODEL = ("prove_matrices", "prove_contact_prepare")
-OF_PLANT = ("prove_plant_start", "prove_slip_set")
+OF_PLANT = ("prove_plant_start", "prove_slip_set", "prove_plant_restart_slipping", "prove_plant_change")
 STEPS_OF_FRICTION = tuple(f"prove_friction_step_{wheels}" for wheels in range(17))
 OF_FRICTION = ("prove_friction_moment", "prove_slip_set", "prove_sensors_read", "prove_plant_outputs",
-               *STEPS_OF_FRICTION)
+               "prove_plant_restart_slipping", "prove_follow", "prove_record_row", *STEPS_OF_FRICTION)
 POINTS = ("loads and forces are written for each of the point_count points, or of the wheel_count wheels, before; the "
           "points are the wheels, then the supports")
 FRAMES = ("prove_frames",)
@@ -31,9 +31,14 @@ GROUP = ("the group is 0 where its frame becomes pending, and has_more() lets it
          "below the wheels of a vehicle, at most LACONIC_MAX_WHEELS; the array has three more")
 RANK = ("the second row of a contact, and what is made of it, is read only where its rank is 2, and written where that "
         "is set. The analyser forgets that both go together")
-METHODS = tuple(f"prove_{name}" for name in (
-    "rk4", "exponential_kahan", "exponential_kahan_4", "exact_flow", "exact_flow_4", "taylor_8", "exponential_gauss_8",
-    "auto", "reactions", "outputs", "plant_run", "plant_outputs", "sensors_read"))
+STEPS = ("rk4", "exponential_kahan", "exponential_kahan_4", "exact_flow", "exact_flow_4", "taylor_8",
+         "exponential_gauss_8", "auto")
+REFUSED = tuple(f"prove_refused_{name}" for name in STEPS)
+METHODS = (*REFUSED, *(f"prove_{name}" for name in (
+    *STEPS, "reactions", "outputs", "plant_run", "plant_outputs", "sensors_read", "plant_run_slipping",
+    "sensors_start", "sensors_run", "follow", "record_row")))
+RUNS = ("prove_sensors_run", "prove_follow")
+RECORDED = ("prove_follow", "prove_record_row")
 
 
 class Argument(NamedTuple):
@@ -53,6 +58,32 @@ class Argument(NamedTuple):
 
 
 DISCHARGED: tuple[Argument, ...] = (
+    Argument("core_c/src/common.h", "sum->rest = wanted", "out of bounds write",
+             "meant to be seen: the state of these entries cannot be written to. This is the first write of "
+             "accept_step(), after the last place at which a step is refused", REFUSED),
+    Argument("core_c/src/state.c", "*state = carried;", "out of bounds write",
+             "meant to be seen: the state of this entry cannot be written to. The next line accepts",
+             ("prove_refused_carry",)),
+    Argument("core_c/src/record.c", "assert middle < schedule->count", "assertion",
+             "proved by WP in the room schedules"),
+    Argument("core_c/src/record.c", "*number_at(now, recorder->column[k])", UNSET,
+             "columns name numbers that laconic_outputs has for this plant, of wheels that it has, as laconic.h asks; "
+             "outputs, reactions and sensors have filled those", RECORDED),
+    Argument("core_c/src/contact.c", "out->along_N[i] * c->pull", UNSET, OF_N, RECORDED),
+    Argument("core_c/src/contact.c", "r->along_N[i] * r->along_N[i]", UNSET, OF_N, RECORDED),
+    Argument("core_c/src/contact.c", "c->friction_coefficient * out->normal_N[i]", UNSET, POINTS, RECORDED),
+    Argument("core_c/src/grip.c", "r->along_N[wheel] * r->along_N[wheel]", UNSET, OF_N, RECORDED),
+    Argument("core_c/src/grip.c", "r->normal_N[", UNSET, POINTS, RECORDED),
+    Argument("core_c/src/encoder.c", "(now->value - before->value)", UNSET,
+             "laconic_odometer_of() has filled it for each wheel of the same plant before the step", RUNS),
+    Argument("core_c/src/imu.c", "old = before->yaw_rate_rad_per_s", "out of bounds read",
+             "`before` is NULL only where laconic_sensors_run() watches no single step, and watches_each_step() holds "
+             "for a plant with friction, of which alone it is read", RUNS),
+    Argument(H, "const int64_t turns = heading->turns +", "signed overflow",
+             "a heading has at most 2⁶³ − 2 turns: a step begins within 2⁶² and adds less than 2⁶²", RUNS),
+    Argument("core_c/src/state.c", "to->com_x_m - from->com_x_m", UNSET, FILLED, ("prove_plant_change",)),
+    Argument("core_c/src/state.c", "/ to->wheel_radius_m", UNSET, FILLED, ("prove_plant_change",)),
+    Argument("core_c/src/state.c", "to->yaw_scale * yaw_rate", UNSET, FILLED, ("prove_plant_change",)),
     Argument("core_c/proof/core.c", "assert 0 <= vehicle.wheel_count", "assertion",
              "the second test of laconic_vehicle_check() refuses every other count; the analyser merges its returns"),
     Argument("core_c/proof/core.c", "assert 0 <= vehicle.support_count", "assertion",
@@ -141,14 +172,16 @@ DISCHARGED: tuple[Argument, ...] = (
     Argument("core_c/src/encoder.c", "const int32_t whole = (int32_t)counts", CONVERSION,
              "counts lies within ±MOST_COUNTS, below 2³¹, by the line before, which NaN does not"),
     Argument("core_c/src/encoder.c", "encoder->count +=", "signed overflow",
-             "an encoder is within ±2⁶² counts (the box), and a step adds less than 2³¹ + 2", ("prove_sensors_read",)),
+             "an encoder begins within ±2⁶² counts (the box), and a step adds less than 2³¹ + 2, so that 2³¹ steps are "
+             "needed to leave the range", ("prove_sensors_read", *RUNS)),
     Argument("core_c/src/integrator.c", "fastest = model->decay_per_s", UNSET, FILLED, OF_PLANT),
     Argument("core_c/src/step_internals.h", "return m->rotated_twice", UNSET, FILLED, OF_PLANT),
     Argument("core_c/src/state.c", "m->dof == 3", UNSET, FILLED, OF_PLANT),
     Argument("core_c/src/vector.h", "v[0], v[1], v[2]", UNSET, FILLED, OF_PLANT),
     Argument("core_c/src/normal_loads.c", "loads->carried_N[i]", UNSET, POINTS, OF_FRICTION),
     Argument("core_c/src/friction_step.c", "p->loads.statics_N[i]", UNSET, POINTS, STEPS_OF_FRICTION),
-    Argument("core_c/src/friction.c", "loads.statics_N[i]", UNSET, POINTS, ("prove_slip_set",)),
+    Argument("core_c/src/friction.c", "loads.statics_N[i]", UNSET, POINTS,
+             ("prove_slip_set", "prove_plant_restart_slipping")),
     Argument("core_c/src/friction_outputs.c", "loads", UNSET, POINTS, OF_FRICTION),
     Argument("core_c/src/friction_outputs.c", "force", UNSET, POINTS, OF_FRICTION),
     Argument("core_c/src/friction_outputs.c", "const real torque = motor.torque", UNSET, POINTS, OF_FRICTION),

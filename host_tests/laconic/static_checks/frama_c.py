@@ -45,7 +45,7 @@ class Program:
     sources: tuple[str, ...]
     folders: tuple[str, ...]
     defined: tuple[str, ...] = ()
-    chosen: tuple[str, ...] = ()  # names of entries; none: all
+    left_out: tuple[str, ...] = ()  # names of entries
     without: tuple[str, ...] = ()  # files of which the harness has stand-ins
 
     def entries(self) -> dict[str, str]:
@@ -53,7 +53,7 @@ class Program:
         found = {entry: str(path.relative_to(SOURCE_DIR)) for path in sorted(SOURCE_DIR.glob(self.harnesses))
                  for entry in ENTRY.findall(path.read_text(encoding="utf-8"))}
         return {entry: path for entry, path in found.items()
-                if not self.chosen or entry.removeprefix("prove_") in self.chosen}
+                if entry.removeprefix("prove_") not in self.left_out}
 
     def files(self) -> list[Path]:
         """The C files that are given to the analyser; those that the build makes with their whole path."""
@@ -112,11 +112,8 @@ CORE_FOLDERS = ("core_c/include", "core_c/src", "core_c/proof")
 NODE_FOLDERS = (*CORE_FOLDERS, "firmware_stub/include", "firmware_stub/drives", "firmware_stub/src")
 CORE = Program("core", "core_c/proof/*.c", ("core_c/src/*.c",), CORE_FOLDERS)
 SINGLE = Program("core, single", "core_c/proof/*.c", ("core_c/src/*.c",), CORE_FOLDERS, ("LACONIC_SINGLE",),
-                 ("vehicle_check", "prepare", "contact_prepare", "motor_fit", "integrator_prepare",
-                  "largest_stable_step", "input", "rk4", "exponential_kahan", "exponential_kahan_4", "exact_flow",
-                  "exact_flow_4", "taylor_8", "state", "steps_in", "outputs", "reactions", "texts", "names",
-                  "plant_run", "plant_restart", "plant_outputs", "friction_moment", "friction_step_4", "encoders",
-                  "sensor_settings", "sensors_read", "imu"))
+                 left_out=tuple(f"friction_step_{wheels}" for wheels in range(17) if wheels != 4))
+PLANTS = Program("plants", "core_c/proof/plants/*.c", CORE.sources, CORE_FOLDERS, without=("friction_step.c",))
 NODE = Program("node", "firmware_stub/proof/node.c", ("core_c/src/*.c", "firmware_stub/src/*.c"), NODE_FOLDERS,
                ("LACONIC_NODE_WITH_DRIVES=0",))
 FRAMES = Program("node, on frames", "firmware_stub/proof/frames.c", NODE.sources, NODE_FOLDERS, NODE.defined,
@@ -125,7 +122,7 @@ SECURE = Program("secure", "firmware_stub/proof/secure.c", ("firmware_stub/secur
 DERIVATIVES = Program("derivatives", "core_c/proof/parts/derivatives.c",
                       ("core_c/src/*.c", "core_c/derivatives/*.c"), CORE_FOLDERS)
 FILTER = Program("filter", "core_c/proof/parts/filter.c", (*DERIVATIVES.sources, "core_c/filter/*.c"), CORE_FOLDERS)
-PROGRAMS = (CORE, SINGLE, NODE, FRAMES, SECURE, DERIVATIVES, FILTER)
+PROGRAMS = (CORE, SINGLE, PLANTS, NODE, FRAMES, SECURE, DERIVATIVES, FILTER)
 """In the order in which they run."""
 
 
@@ -133,7 +130,7 @@ def prove(program: Program, entry: str, limit_s: float = 3600.0) -> Analysis:
     """One entry; BadInput where the analyser is not there or does not end well."""
     if shutil.which("frama-c") is None:
         raise BadInput("soak proof: there is no frama-c; install it (Debian's package frama-c-base)")
-    command = ["frama-c", "-load", str(_parsed(program)), "-eva", "-main", entry, *OPTIONS, *OPTIONS_OF.get(entry, ())]
+    command = ["frama-c", "-load", str(_parsed(program)), "-eva", "-main", entry, *options_for(entry)]
     ran = run_frama_c(entry, command, limit_s)
     if ran.returncode != 0 or ENDED not in ran.stdout:
         raise BadInput(f"soak proof: {entry}: frama-c ended with status {ran.returncode}: {_last_words(ran)}")
@@ -142,6 +139,11 @@ def prove(program: Program, entry: str, limit_s: float = 3600.0) -> Analysis:
     if _changed_since(_parsed(program), program):
         raise BadInput(f"soak proof: {entry}: a source changed while it ran; run it again")
     return analysis_of(entry, ran.stdout)
+
+
+def options_for(entry: str) -> tuple[str, ...]:
+    """Of the analyser for one entry."""
+    return (*OPTIONS, *OPTIONS_OF.get(entry, ()))
 
 
 @cache

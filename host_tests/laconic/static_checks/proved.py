@@ -1,6 +1,7 @@
 """What came out of each proof last, and of which sources: `proved.json`, of which the tables of docs/proof.md are made.
 
-A row holds as long as the files that the proof has read are the same but for comments; contracts in them count."""
+A row holds as long as the files that the proof has read are the same but for comments, and Frama-C's options are;
+contracts in the files count."""
 
 from __future__ import annotations
 
@@ -14,8 +15,8 @@ from functools import cache
 from pathlib import Path
 
 from laconic.paths import SOURCE_DIR
-from laconic.static_checks.contracts import ROOMS, Goals, Room
-from laconic.static_checks.frama_c import PROGRAMS, Alarm, Analysis, Program, wire
+from laconic.static_checks.contracts import ROOMS, Goals, Room, options_of
+from laconic.static_checks.frama_c import PROGRAMS, Alarm, Analysis, Program, options_for, preprocessed, wire
 
 KEPT = Path(__file__).parent / "proved.json"
 COMMENT = re.compile(r"/\*(?!@).*?\*/|//[^\n]*", re.DOTALL)
@@ -62,8 +63,8 @@ class Row:
         return not self.failed and not self.open
 
     def is_of_these_sources(self) -> bool:
-        """Whether what it has read is still the same."""
-        return bool(self.files) and self.digest == digest_of(self.files)
+        """Whether what it has read is still the same, by the same options."""
+        return bool(self.files) and self.digest == digest_of(self.files, options_of_row(self.tool, self.part, self.name))
 
 
 def wanted() -> list[str]:
@@ -93,7 +94,9 @@ def row_of_analysis(program: Program, entry: str, seconds: float, found: Analysi
     known = set().union(*(_defined(SOURCE_DIR / path) for path in given))
     functions = sorted({name if name in known else NUMBERED.sub("", name) for name in found.functions})
     files = files_read(given, functions, program)
-    return Row("eva", program.name, entry.removeprefix("prove_"), _today(), round(seconds), digest_of(files), files,
+    name = entry.removeprefix("prove_")
+    digest = digest_of(files, options_of_row("eva", program.name, name))
+    return Row("eva", program.name, name, _today(), round(seconds), digest, files,
                [[alarm.file, alarm.code.strip(), alarm.what] for alarm in found.alarms], functions=functions,
                statements=found.statements, reached=found.reached)
 
@@ -101,7 +104,8 @@ def row_of_analysis(program: Program, entry: str, seconds: float, found: Analysi
 def row_of_goals(room: Room, seconds: float, goals: Goals) -> Row:
     """What WP has found for one room."""
     files = closure(room.files, room.program)
-    return Row("wp", room.program.name, room.name, _today(), round(seconds), digest_of(files), files,
+    digest = digest_of(files, options_of_row("wp", room.program.name, room.name))
+    return Row("wp", room.program.name, room.name, _today(), round(seconds), digest, files,
                goals=goals.count, unproved=goals.open, functions=sorted(room.functions))
 
 
@@ -153,9 +157,20 @@ def _defined(path: Path) -> set[str]:
     return set(DEFINED.findall(_text(path)))
 
 
-def digest_of(files: Iterable[str]) -> str:
-    """Of the texts without comments and without space; a file that is gone counts as empty."""
-    made = hashlib.sha256()
+def options_of_row(tool: str, part: str, name: str) -> list[str]:
+    """All that Frama-C is told beside the files; the place of the build is none of it."""
+    if tool == "wp":
+        room = next(room for room in ROOMS if room.name == name)
+        program, options = room.program, [*room.files, *options_of(room)]
+    else:
+        program = next(program for program in PROGRAMS if program.name == part)
+        options = [*program.sources, *program.without, *options_for(f"prove_{name}")]
+    return [option.replace(str(wire()), "wire") for option in (*preprocessed(program), *options)]
+
+
+def digest_of(files: Iterable[str], options: Iterable[str]) -> str:
+    """Of the options, and of the texts without comments and without space; a file that is gone counts as empty."""
+    made = hashlib.sha256("\0".join(options).encode())
     for file in files:
         path = SOURCE_DIR / file
         bare = COMMENT.sub(" ", _text(path)) if path.is_file() else ""

@@ -36,14 +36,6 @@ WITHOUT = {
     **dict.fromkeys(("laconic_step_jacobian_of", "laconic_step_jacobian_by", "laconic_step_tangent",
                      "laconic_step_tangent_by", "laconic_step_adjoint", "laconic_step_adjoint_by",
                      "laconic_filter_predict", "laconic_filter_predict_by"), OF_STEPS),
-    "laconic_plant_change": "prepares and carries, which entries of their own follow, and copies what came out",
-    "laconic_plant_follow": "follows offsets and counts of the caller's arrays, which a box cannot state",
-    "laconic_schedule_at": "follows offsets and counts of the caller's arrays, which a box cannot state",
-    "laconic_record_row": "follows offsets and counts of the caller's arrays, which a box cannot state",
-    "laconic_sensors_start": "checks settings and reads the plant, which entries of their own follow",
-    "laconic_sensors_run": "calls the plant's steps and laconic_sensors_after(), which entries of their own follow",
-    "laconic_sensors_run_sampled": "calls the plant's steps and laconic_sensors_after(), which entries of their own "
-                                   "follow",
 }
 """Functions of other headers that no entry follows, each with the reason."""
 

@@ -1,0 +1,55 @@
+/* Runs of a plant with friction or without, its changes, and sensors that watch it, for Frama-C's analyser. The friction
+ * step, which entries of its own follow for each number of wheels, stands here as what it may leave: any motion. */
+#include "any_plant.h"
+
+laconic_status laconic_friction_step(const laconic_friction *friction, const laconic_model *of, laconic_real step_s,
+                                     laconic_state *moved, laconic_slip *slip, const laconic_input *held) {
+    const laconic_status status = (laconic_status)Frama_C_interval(0, LACONIC_STATUS_COUNT - 1);
+    (void)friction;
+    (void)of;
+    (void)step_s;
+    (void)held;
+    if (status != LACONIC_OK) return status;
+    Frama_C_make_unknown((char *)moved, sizeof *moved);
+    Frama_C_make_unknown((char *)slip, sizeof *slip);
+    moved->heading.turns = Frama_C_long_long_interval(-MOST_TURNS - 1, MOST_TURNS);
+    return status;
+}
+
+void prove_plant_run_slipping(void) {
+    if (!any_plant(&laconic_rk4)) return;
+    PERHAPS(void) laconic_plant_run(&plant, &input[0], any_count(), any_refusal());
+    PERHAPS(void) laconic_plant_run_sampled(&plant, input, any_refusal());
+}
+
+void prove_plant_restart_slipping(void) {
+    if (!any_plant(&laconic_rk4)) return;
+    countable_vehicle();
+    vehicle.wheel_count = plant.friction.wheel_count;
+    plant.vehicle = vehicle;
+    ANYTHING(start);
+    (void)laconic_plant_restart(&plant, &start, any_refusal());
+}
+
+void prove_plant_change(void) {
+    if (!any_plant(&laconic_rk4)) return;
+    countable_vehicle();
+    vehicle.wheel_count = plant.model.wheel_count; /* the wheels stay as they are */
+    (void)laconic_plant_change(&plant, &vehicle, any_refusal());
+}
+
+/* -------------------------------------------------------------------------------------- sensors -- */
+
+void prove_sensors_start(void) {
+    static laconic_sensor_settings settings;
+    if (!any_plant(&laconic_rk4)) return;
+    ANYTHING(settings);
+    (void)laconic_sensors_start(&sensors, &settings, &plant, any_refusal());
+}
+
+void prove_sensors_run(void) {
+    if (!any_plant(&laconic_rk4)) return;
+    any_sensors();
+    PERHAPS(void) laconic_sensors_run(&sensors, &plant, &input[0], any_count(), any_refusal());
+    PERHAPS(void) laconic_sensors_run_sampled(&sensors, &plant, input, any_refusal());
+}
