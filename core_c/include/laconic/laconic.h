@@ -614,7 +614,7 @@ typedef struct laconic_recorder {
     laconic_grip *grip;             /* watched at the start of every step; not where it or contact is NULL */
     uint64_t every;                 /* a row at the start of each step whose number it divides; 0: none   */
     int32_t column_count;
-    const uint32_t *column; /* offset of each in laconic_outputs, in bytes: of numbers that are set */
+    const uint32_t *column; /* offset of each in laconic_outputs, in bytes                  */
     laconic_real *row;      /* room for row_room rows of column_count numbers               */
     uint64_t row_count, row_room;
     laconic_sensors *sensors; /* of this plant, which see every step; NULL: none            */

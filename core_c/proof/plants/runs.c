@@ -1,20 +1,7 @@
-/* Runs of a plant with friction or without, its changes, and sensors that watch it, for Frama-C's analyser. The friction
- * step, which entries of its own follow for each number of wheels, stands here as what it may leave: any motion. */
+/* Runs of a plant with friction or without, its changes, and sensors that watch it, for Frama-C's analyser. */
 #include "any_plant.h"
 
-laconic_status laconic_friction_step(const laconic_friction *friction, const laconic_model *of, laconic_real step_s,
-                                     laconic_state *moved, laconic_slip *slip, const laconic_input *held) {
-    const laconic_status status = (laconic_status)Frama_C_interval(0, LACONIC_STATUS_COUNT - 1);
-    (void)friction;
-    (void)of;
-    (void)step_s;
-    (void)held;
-    if (status != LACONIC_OK) return status;
-    Frama_C_make_unknown((char *)moved, sizeof *moved);
-    Frama_C_make_unknown((char *)slip, sizeof *slip);
-    moved->heading.turns = Frama_C_long_long_interval(-MOST_TURNS - 1, MOST_TURNS);
-    return status;
-}
+#include "friction_step_stand_in.h"
 
 void prove_plant_run_slipping(void) {
     if (!any_plant(&laconic_rk4)) return;

@@ -6,7 +6,7 @@ from typing import NamedTuple
 
 E, H, M = "core_c/src/elementary.c", "core_c/src/heading.h", "core_c/src/message.c"
 PANELS, PANELS_H = "core_c/src/exponential_gauss_8.c", "core_c/src/exponential_gauss_8.h"
-L = "firmware_stub/src/loader.c"
+L, WATCH = "firmware_stub/src/loader.c", "firmware_stub/src/integrity.c"
 CONVERSION, UNSET = "", "uninitialized"
 OF_N = "written for each wheel of the same model in the lines before; both loops run to the same wheel_count"
 ROTATES = ("cosine and sine of a forcing, and what is made of them, are read only where its flag `rotates` is "
@@ -27,6 +27,8 @@ POINTS = ("loads and forces are written for each of the point_count points, or o
 FRAMES = ("prove_frames",)
 OF_ENCODER = ("ENCODER is pending only while encoder_wheel names a wheel with an encoder: "
               "laconic_node_publish_sensors(), laconic_node_start_sensors() and has_more() set both")
+OF_PART = ("as many bytes as `count` says are left of a part, whose offset and size are those of a member of "
+           "laconic_node")
 GROUP = ("the group is 0 where its frame becomes pending, and has_more() lets it grow only while three times it is "
          "below the wheels of a vehicle, at most LACONIC_MAX_WHEELS; the array has three more")
 RANK = ("the second row of a contact, and what is made of it, is read only where its rank is 2, and written where that "
@@ -36,9 +38,60 @@ STEPS = ("rk4", "exponential_kahan", "exponential_kahan_4", "exact_flow", "exact
 REFUSED = tuple(f"prove_refused_{name}" for name in STEPS)
 METHODS = (*REFUSED, *(f"prove_{name}" for name in (
     *STEPS, "reactions", "outputs", "plant_run", "plant_outputs", "sensors_read", "plant_run_slipping",
-    "sensors_start", "sensors_run", "follow", "record_row")))
-RUNS = ("prove_sensors_run", "prove_follow")
+    "sensors_start", "sensors_run", "follow", "record_row", "estimate_start", "estimate_run", "estimate_carry",
+    "estimate_follow", "derivatives_of_rk4")))
+OF_ESTIMATE = tuple(f"prove_estimate_{name}" for name in ("start", "carry", "run", "follow"))
+OF_DRIVES = ("prove_drives_by_odrive", "prove_drives_by_robomaster")
+OF_DERIVATIVES = ("prove_derivatives_of_rk4",)
+TAKEN = ("laconic_take_step() fills a step where it returns LACONIC_OK, and its callers return where it does not: the "
+         "analyser merges both. Columns are set for ν, force and moment, and where b rotates for its parts; of those, and "
+         "of what is made of them, nothing is read where it does not")
+RUNS = ("prove_sensors_run", "prove_follow", *OF_ESTIMATE)
+SAMPLED = ("sample_at() and laconic_schedule_at() write every number of the inputs that are read; the analyser joins "
+           "the rounds of their loops, and forgets that as many inputs are read as were written")
+FINITE = ("frames with a number that is not finite are passed over, and products of finite numbers are no NaN: what is "
+          "beyond the bound is held at it")
 RECORDED = ("prove_follow", "prove_record_row")
+
+
+PLACES_OF_STEPS = {
+    "core_c/derivatives/step_derivatives.c": (
+        "const int columns = s->at.rotates",
+        "s->responds(&s->result",
+        "heading_rad + R(0.5) * by->yaw_change_rad",
+        "s->middle.cosine * by->along_m",
+        "const real x = weight.x",
+        "to[i] = x * a[i]",
+        "to[i] += from[i]",
+        "const laconic_model *m = s->at.model;",
+        "to[i] = factor * from[i]",
+    ),
+    "core_c/derivatives/rk4_change.c": (
+        "at->integrator->step_s",
+        "*m = at->model",
+        "if (at->rotates)",
+    ),
+    "core_c/src/vector.h": (
+        "dot(vector a, vector b)",
+        "factor * v.x",
+        "a.y * b.z - a.z * b.y",
+        "{a.x * b.x, a.y",
+    ),
+    "core_c/derivatives/direction_lanes.h": (
+        "lanes_with(a.x + b.x",
+        "lanes_dot(vector a",
+    ),
+    "core_c/derivatives/step_chain.h": (
+        "heading.cosine, b.cosine",
+        "s->at.model->nu_of_zeta",
+    ),
+    "core_c/derivatives/step_adjoint.c": (
+        "s->at.heading.cosine",
+        "a->x_m * b->x_m",
+        "a->wheel_angle_rad[i]",
+    ),
+}
+"""Lines of the derivatives of a step, whose alarms have one argument."""
 
 
 class Argument(NamedTuple):
@@ -81,6 +134,45 @@ DISCHARGED: tuple[Argument, ...] = (
              "for a plant with friction, of which alone it is read", RUNS),
     Argument(H, "const int64_t turns = heading->turns +", "signed overflow",
              "a heading has at most 2⁶³ − 2 turns: a step begins within 2⁶² and adds less than 2⁶²", RUNS),
+    Argument(E, "(int)(a * R(1.4426950408889634)", "overflow in conversion",
+             "a is h·r, and rates of a model are not negative", OF_ESTIMATE),
+    Argument("core_c/estimate/estimate.c", "farthest = larger_of(farthest, magnitude(angle[i]))", UNSET, OF_N,
+             OF_ESTIMATE),
+    Argument("core_c/estimate/estimate.c", "estimate->taken += (int32_t)steps", "signed overflow",
+             "steps are at most the length less those taken, which laconic_estimate_before() has told", OF_ESTIMATE),
+    Argument("core_c/estimate/estimate.c", "(uint64_t)(estimate->length - estimate->taken)", "signed overflow",
+             "both are from 0 to LACONIC_ESTIMATE_MOST, and a window that is full has been ended before", OF_ESTIMATE),
+    Argument("core_c/src/step.c", "middle->world_force_N[0] + middle", UNSET, SAMPLED, OF_ESTIMATE),
+    Argument("core_c/src/step_internals.h", "input->world_force_point_m[0] + input", UNSET, SAMPLED, OF_ESTIMATE),
+    Argument("core_c/src/step_internals.h", "in->axle_torque_Nm[i]", UNSET, SAMPLED, OF_ESTIMATE),
+    Argument("core_c/src/step_internals.h", "in->voltage_V[i]", UNSET, SAMPLED, OF_ESTIMATE),
+    Argument("core_c/src/step_internals.h", "m->torque_scale * in->world_force_N[0]", UNSET, SAMPLED, OF_ESTIMATE),
+    Argument("core_c/src/step_internals.h", "scaled(r[", UNSET, SAMPLED, OF_ESTIMATE),
+    Argument("core_c/estimate/estimate.c", "numbers_of(", UNSET, SAMPLED, OF_ESTIMATE),
+    Argument("core_c/src/step_internals.h", "acts(input->body_force_N[0]", UNSET, SAMPLED, OF_ESTIMATE),
+    Argument("core_c/src/step_internals.h", "acts(input->world_force_N[0]", UNSET, SAMPLED, OF_ESTIMATE),
+    Argument("firmware_stub/drives/robomaster/robomaster.c", "(int32_t)(bounded < 0", "non-finite",
+             "neither a speed, the product of two finite numbers, is NaN, nor a current: laconic_drive_act() fails a "
+             "drive whose current is", OF_DRIVES),
+    Argument("firmware_stub/drives/drive.c", "laconic_encoder_place(&drive->encoder", "precondition",
+             "laconic_drive_plan_check() refuses a drive whose encoder_counts are not positive", OF_DRIVES),
+    Argument("firmware_stub/drives/place.c", "(int32_t)turns", "non-finite", FINITE, OF_DRIVES),
+    Argument("firmware_stub/drives/place.c", "(int32_t)real_within(about", "non-finite",
+             "a count, divided by encoder_counts, which are positive, is finite", OF_DRIVES),
+    Argument("firmware_stub/drives/odrive/odrive_control.c", "modes[axis->control_mode]", "out of bounds",
+             "odrive_supervise() comes before it and disarms an axis whose control mode is none of the three",
+             OF_DRIVES),
+    Argument("firmware_stub/drives/odrive/odrive_control.c", "axis->place = axis->input_place", "overlapping",
+             "both are members of one struct, at different places", OF_DRIVES),
+    Argument("firmware_stub/drives/odrive/odrive_messages.c", "fills[command](", "function",
+             "a command becomes pending only where odrive_sends() holds, or by its name among those that are sent",
+             OF_DRIVES),
+    Argument(WATCH, "memcpy(word, bytes, sizeof word", "precondition", OF_PART, ("prove_integrity",)),
+    Argument(WATCH, "(uint32_t)bytes[k]", "out of bounds", OF_PART, ("prove_integrity",)),
+    Argument(WATCH, "LACONIC_INTEGRITY_ROUND_US / slices_of_a_round()", "division",
+             "the parts of a model have bytes, so a round has slices", ("prove_integrity",)),
+    Argument(WATCH, "here->size - it->at", "out of bounds",
+             "see_slice() begins a new round as soon as the part it comes to is beyond the last", ("prove_integrity",)),
     Argument("core_c/src/state.c", "to->com_x_m - from->com_x_m", UNSET, FILLED, ("prove_plant_change",)),
     Argument("core_c/src/state.c", "/ to->wheel_radius_m", UNSET, FILLED, ("prove_plant_change",)),
     Argument("core_c/src/state.c", "to->yaw_scale * yaw_rate", UNSET, FILLED, ("prove_plant_change",)),
@@ -241,4 +333,5 @@ DISCHARGED: tuple[Argument, ...] = (
     Argument("firmware_stub/src/raw_frames.c", "(const uint8_t *)raw->number + raw->position", "precondition",
              "position is at most size, since each call adds at most what is left of it, and size counts numbers that "
              "have been written", FRAMES),
+    *(Argument(file, part, UNSET, TAKEN, OF_DERIVATIVES) for file, parts in PLACES_OF_STEPS.items() for part in parts),
 )

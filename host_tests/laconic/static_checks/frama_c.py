@@ -20,6 +20,7 @@ from laconic.static_checks.discharged import DISCHARGED
 
 ENTRY = re.compile(r"^void (prove_\w+)\(void\)", re.MULTILINE)
 STAND_IN = re.compile(r"^(?!static\b)\w[\w ]*?[ *](laconic_\w+)\(", re.MULTILINE)
+HARNESS_HEADER = re.compile(r'^#include "(\w+_stand_in\.h)"', re.MULTILINE)
 ALARM = re.compile(r"^\[eva:alarm\] (?P<file>[^:]+):(?P<line>\d+): Warning:(?P<text>[^\[]*)", re.MULTILINE)
 REACHED = re.compile(r"^  (\w+): \d+ stmts out of \d+ ", re.MULTILINE)
 COUNTED = re.compile(r"^  (\d+) stmts in analyzed functions, (\d+) stmts analyzed", re.MULTILINE)
@@ -30,7 +31,10 @@ OPTIONS = ("-warn-special-float", "none",  # infinities and NaN are numbers like
            "-eva-domains", "equality,symbolic-locations", "-metrics-eva-cover",
            "-eva-msg-key=-initial-state,-final-states", "-no-unicode")
 PARSING_S = 600.0
-OPTIONS_OF = {f"prove_friction_step_{wheels}": ("-eva-min-loop-unroll", str(wheels + 1)) for wheels in range(17)}
+OPTIONS_OF: dict[str, tuple[str, ...]] = {
+    **{f"prove_friction_step_{wheels}": ("-eva-min-loop-unroll", str(wheels + 1)) for wheels in range(17)},
+    "prove_integrity": ("-eva-precision", "0", "-eva-auto-loop-unroll", "0"),  # hours otherwise
+}
 """Of entries with one number of wheels: each round of a loop over them is followed by itself."""
 FOLDED = r's/\[\(?(\d+) ([*+]) (\d+)\)?\]/"[".eval("$1$2$3")."]"/ge'
 """Lengths of arrays such as [2 * 16] as one number: Frama-C 25 ends with a fault of its own at a sum or product."""
@@ -64,9 +68,12 @@ class Program:
         return [*found, *made, *map(Path, dict.fromkeys(self.entries().values()))]
 
     def stand_ins(self) -> set[str]:
-        """Functions of the project that a harness writes anew: no run of this program follows the real ones."""
-        return {name for path in self.entries().values()
-                for name in STAND_IN.findall((SOURCE_DIR / path).read_text(encoding="utf-8"))}
+        """Functions of the project that a harness, or a header of harnesses that it includes, writes anew: no run of
+        this program follows the real ones."""
+        texts = [(SOURCE_DIR / path).read_text(encoding="utf-8") for path in set(self.entries().values())]
+        headers = {header for text in texts for header in HARNESS_HEADER.findall(text)}
+        texts += [(SOURCE_DIR / "core_c" / "proof" / header).read_text(encoding="utf-8") for header in headers]
+        return {name for text in texts for name in STAND_IN.findall(text)}
 
     def reads_wire(self) -> bool:
         """Whether it needs the tables that the build makes of laconic.dbc."""
@@ -112,17 +119,28 @@ CORE_FOLDERS = ("core_c/include", "core_c/src", "core_c/proof")
 NODE_FOLDERS = (*CORE_FOLDERS, "firmware_stub/include", "firmware_stub/drives", "firmware_stub/src")
 CORE = Program("core", "core_c/proof/*.c", ("core_c/src/*.c",), CORE_FOLDERS)
 SINGLE = Program("core, single", "core_c/proof/*.c", ("core_c/src/*.c",), CORE_FOLDERS, ("LACONIC_SINGLE",),
-                 left_out=tuple(f"friction_step_{wheels}" for wheels in range(17) if wheels != 4))
+                 left_out=(*(f"friction_step_{wheels}" for wheels in range(17) if wheels != 4),
+                           *(f"refused_{method}" for method in (
+                               "rk4", "exponential_kahan", "exponential_kahan_4", "exact_flow", "exact_flow_4",
+                               "taylor_8", "exponential_gauss_8", "auto"))))
 PLANTS = Program("plants", "core_c/proof/plants/*.c", CORE.sources, CORE_FOLDERS, without=("friction_step.c",))
+ESTIMATES = Program("estimates", "core_c/proof/estimates/*.c", ("core_c/src/*.c", "core_c/estimate/*.c"),
+                    (*CORE_FOLDERS, "core_c/estimate"), without=PLANTS.without)
 NODE = Program("node", "firmware_stub/proof/node.c", ("core_c/src/*.c", "firmware_stub/src/*.c"), NODE_FOLDERS,
                ("LACONIC_NODE_WITH_DRIVES=0",))
 FRAMES = Program("node, on frames", "firmware_stub/proof/frames.c", NODE.sources, NODE_FOLDERS, NODE.defined,
                  without=("plant.c", "sensors.c", "loader.c"))
+WATCHED = Program("node, watched", "firmware_stub/proof/watched/*.c",
+                  ("core_c/src/*.c", "firmware_stub/src/integrity.c"), NODE_FOLDERS, NODE.defined)
+DRIVES = Program("drives", "firmware_stub/proof/drives/*.c",
+                 ("core_c/src/*.c", "firmware_stub/drives/*.c", "firmware_stub/drives/*/*.c"), NODE_FOLDERS,
+                 left_out=("drives_by_canopen", "drives_by_moteus"),  # which did not end within ten minutes
+                 without=("plant.c",))
 SECURE = Program("secure", "firmware_stub/proof/secure.c", ("firmware_stub/secure/*.c",), NODE_FOLDERS, NODE.defined)
-DERIVATIVES = Program("derivatives", "core_c/proof/parts/derivatives.c",
+DERIVATIVES = Program("derivatives", "core_c/proof/parts/derivatives*.c",
                       ("core_c/src/*.c", "core_c/derivatives/*.c"), CORE_FOLDERS)
 FILTER = Program("filter", "core_c/proof/parts/filter.c", (*DERIVATIVES.sources, "core_c/filter/*.c"), CORE_FOLDERS)
-PROGRAMS = (CORE, SINGLE, PLANTS, NODE, FRAMES, SECURE, DERIVATIVES, FILTER)
+PROGRAMS = (CORE, SINGLE, PLANTS, NODE, FRAMES, WATCHED, DRIVES, SECURE, ESTIMATES, DERIVATIVES, FILTER)
 """In the order in which they run."""
 
 

@@ -64,7 +64,8 @@ class Row:
 
     def is_of_these_sources(self) -> bool:
         """Whether what it has read is still the same, by the same options."""
-        return bool(self.files) and self.digest == digest_of(self.files, options_of_row(self.tool, self.part, self.name))
+        options = options_of_row(self.tool, self.part, self.name)
+        return bool(self.files) and self.digest == digest_of(self.files, options)
 
 
 def wanted() -> list[str]:

@@ -17,13 +17,10 @@ HEADERS = tuple(str(path.relative_to(SOURCE_DIR)) for folder in FOLDERS
 COMMENT = re.compile(r"/\*.*?\*/", re.DOTALL)
 PROTOTYPE = re.compile(r"^(?!typedef|return|#|\s)[\w ]+?[ *](laconic_\w+)\([^;{]*\)\s*[;{]", re.MULTILINE)
 
-OPTIONAL = "an optional part beside the core, of which no entry is written yet; sanitizers and fuzzing watch its tests"
 LANES = "is compiled for registers of several numbers by extensions of C that Frama-C does not read"
 DRIVES = "the proof's node is without drives; fuzzing watches them"
 WITHOUT_HEADERS = {
     "core_c/include/laconic/batch.h": LANES,
-    "core_c/include/laconic/estimate.h": OPTIONAL,
-    "firmware_stub/include/laconic_node/integrity.h": OPTIONAL,
     "firmware_stub/include/laconic_drives/drive.h": DRIVES,
     "firmware_stub/include/laconic_drives/drives.h": DRIVES,
     "firmware_stub/include/laconic_drives/protocol.h": DRIVES,
@@ -33,9 +30,9 @@ WITHOUT_HEADERS = {
 OF_STEPS = ("the derivatives of a step: the analyser merges refusal and acceptance of the step, and takes all that is "
             "set by the latter for perhaps not set; sanitizers and fuzzing watch them")
 WITHOUT = {
-    **dict.fromkeys(("laconic_step_jacobian_of", "laconic_step_jacobian_by", "laconic_step_tangent",
-                     "laconic_step_tangent_by", "laconic_step_adjoint", "laconic_step_adjoint_by",
-                     "laconic_filter_predict", "laconic_filter_predict_by"), OF_STEPS),
+    **dict.fromkeys(("laconic_step_jacobian_of", "laconic_step_tangent", "laconic_step_adjoint"),
+                    "calls the function of the same name with _by, of which an entry follows the derivation of rk4"),
+    **dict.fromkeys(("laconic_filter_predict", "laconic_filter_predict_by"), OF_STEPS),
 }
 """Functions of other headers that no entry follows, each with the reason."""
 

@@ -13,9 +13,20 @@ from laconic.soak.proof import chosen
 from laconic.static_checks import contracts, proved
 from laconic.static_checks.contracts import ROOMS, contracts_in, goals_of
 from laconic.static_checks.discharged import DISCHARGED
-from laconic.static_checks.frama_c import CORE, FRAMES, NODE, PROGRAMS, Program, alarms_of, analysis_of, prove
+from laconic.static_checks.frama_c import (
+    CORE,
+    ESTIMATES,
+    FRAMES,
+    NODE,
+    PLANTS,
+    PROGRAMS,
+    Program,
+    alarms_of,
+    analysis_of,
+    prove,
+)
 from laconic.static_checks.proof_page import PAGE, shown, tables
-from laconic.static_checks.proved import Row, digest_of, files_read, keep, read_kept, wanted
+from laconic.static_checks.proved import Row, digest_of, files_read, keep, options_of_row, read_kept, wanted
 from laconic.static_checks.public_functions import (
     HEADERS,
     WITHOUT,
@@ -53,6 +64,7 @@ WRONG = """\
 int made_up(int x) { return x < 5 ? x + 1 : x; }
 """
 ROW = Row("eva", "core", "rk4", "2026-11-23", 9, "", ["core_c/src/rk4.c"], functions=["laconic_step"])
+OF_ROW = options_of_row("eva", "core", "rk4")
 needs_frama_c = pytest.mark.skipif(shutil.which("frama-c") is None, reason="Frama-C is not installed")
 
 
@@ -106,6 +118,7 @@ def test_what_a_harness_stands_in_for_counts_as_followed_by_others_alone():
     assert covered_by([row]) == {"laconic_node_on_tick": ["frames"]}
     assert {"laconic_plant_run", "laconic_loader_check", "laconic_sensors_start"} <= FRAMES.stand_ins()
     assert CORE.stand_ins() == set()
+    assert PLANTS.stand_ins() == ESTIMATES.stand_ins() == {"laconic_friction_step"}
 
 
 def test_headers_are_read_whole():
@@ -121,10 +134,26 @@ def test_a_row_is_older_as_soon_as_a_source_that_it_read_changes(tmp_path: Path,
     for text in ("int a; /* one */\n", "int  a; // two\n", "int a; /*@ assigns \\nothing; */\n", "int b;\n"):
         source.write_text(text, encoding="utf-8")
         proved._text.cache_clear()
-        digests.append(digest_of(["a.c"]))
+        digests.append(digest_of(["a.c"], OF_ROW))
     assert digests[0] == digests[1] and len(set(digests)) == 3
     assert replace(ROW, files=["a.c"], digest=digests[3]).is_of_these_sources()
     assert not replace(ROW, files=["a.c"], digest=digests[0]).is_of_these_sources()
+
+
+@pytest.mark.parametrize("tool,part,name", [("eva", "core", "rk4"), ("wp", "core", "states")])
+def test_a_row_is_older_as_soon_as_an_option_of_frama_c_changes(tool: str, part: str, name: str, monkeypatch):
+    row = replace(ROW, tool=tool, part=part, name=name)
+    row = replace(row, digest=digest_of(row.files, options_of_row(tool, part, name)))
+    assert row.is_of_these_sources()
+    monkeypatch.setattr("laconic.static_checks.frama_c.OPTIONS", ("-eva-precision", "0"))
+    monkeypatch.setattr("laconic.static_checks.contracts.PROVERS", ("-wp-prover", "z3"))
+    assert not row.is_of_these_sources()
+
+
+def test_the_place_of_the_build_is_no_option(monkeypatch, tmp_path: Path):
+    before = options_of_row("eva", "node", "loader")
+    monkeypatch.setenv("LACONIC_BUILD_DIR", str(tmp_path))
+    assert options_of_row("eva", "node", "loader") == before
 
 
 def test_an_entry_has_read_the_files_of_the_functions_that_it_followed_with_their_headers():
@@ -138,7 +167,7 @@ def test_an_entry_has_read_the_files_of_the_functions_that_it_followed_with_thei
 def test_rows_are_kept_by_proof_and_only_changed_ones_are_run_again(tmp_path: Path, monkeypatch):
     kept = tmp_path / "proved.json"
     keep(replace(ROW, digest="old"), kept)
-    keep(replace(ROW, digest=digest_of(ROW.files)), kept)
+    keep(replace(ROW, digest=digest_of(ROW.files, OF_ROW)), kept)
     assert [row.key for row in read_kept(kept).values()] == ["eva core: rk4"]
     monkeypatch.setattr("laconic.soak.proof.read_kept", lambda: read_kept(kept))
     assert "eva core: rk4" not in chosen(None) and "eva core: texts" in chosen(None)
@@ -155,7 +184,7 @@ def test_every_contract_of_the_sources_is_proved_in_a_room():
 def test_the_boxes_narrow_no_number_that_the_checks_let_pass():
     paths = sorted((SOURCE_DIR / "core_c/proof").rglob("*.[ch]"))
     harness = "".join(path.read_text(encoding="utf-8") for path in paths)
-    narrowed = set(re.findall(r"\b((?:vehicle|input|start)\b[.\[][^=;()]*?) = ", harness))
+    narrowed = set(re.findall(r"(?<![\w.>])((?:vehicle|input|start)\b[.\[][^=;()]*?) = ", harness))
     assert narrowed == {"vehicle.wheel[i].locked", "vehicle.wheel[i].undriven", "vehicle.wheel_count",
                         "vehicle.support_count"}
     check = (SOURCE_DIR / "core_c/src/vehicle.c").read_text(encoding="utf-8")
