@@ -44,9 +44,10 @@ OF_ESTIMATE = tuple(f"prove_estimate_{name}" for name in ("start", "carry", "run
 OF_DRIVES = ("prove_drives_by_odrive", "prove_drives_by_robomaster")
 OF_DERIVATIVES = ("prove_derivatives_of_rk4",)
 TAKEN = ("laconic_take_step() fills a step where it returns LACONIC_OK, and its callers return where it does not: the "
-         "analyser merges both. Columns are set for ν, force and moment, and where b rotates for its parts; of those, and "
-         "of what is made of them, nothing is read where it does not")
+         "analyser merges both. Columns are set for ν, force and moment, and for the parts of b where it rotates; "
+         "where it does not, nothing is read of the latter nor of what is made of them")
 RUNS = ("prove_sensors_run", "prove_follow", *OF_ESTIMATE)
+COUNTED = (*RUNS, *OF_DRIVES)
 SAMPLED = ("sample_at() and laconic_schedule_at() write every number of the inputs that are read; the analyser joins "
            "the rounds of their loops, and forgets that as many inputs are read as were written")
 FINITE = ("frames with a number that is not finite are passed over, and products of finite numbers are no NaN: what is "
@@ -128,7 +129,7 @@ DISCHARGED: tuple[Argument, ...] = (
     Argument("core_c/src/grip.c", "r->along_N[wheel] * r->along_N[wheel]", UNSET, OF_N, RECORDED),
     Argument("core_c/src/grip.c", "r->normal_N[", UNSET, POINTS, RECORDED),
     Argument("core_c/src/encoder.c", "(now->value - before->value)", UNSET,
-             "laconic_odometer_of() has filled it for each wheel of the same plant before the step", RUNS),
+             "laconic_odometer_of() has filled it for each wheel of the same plant before the step", COUNTED),
     Argument("core_c/src/imu.c", "old = before->yaw_rate_rad_per_s", "out of bounds read",
              "`before` is NULL only where laconic_sensors_run() watches no single step, and watches_each_step() holds "
              "for a plant with friction, of which alone it is read", RUNS),
@@ -265,7 +266,7 @@ DISCHARGED: tuple[Argument, ...] = (
              "counts lies within ±MOST_COUNTS, below 2³¹, by the line before, which NaN does not"),
     Argument("core_c/src/encoder.c", "encoder->count +=", "signed overflow",
              "an encoder begins within ±2⁶² counts (the box), and a step adds less than 2³¹ + 2, so that 2³¹ steps are "
-             "needed to leave the range", ("prove_sensors_read", *RUNS)),
+             "needed to leave the range", ("prove_sensors_read", *COUNTED)),
     Argument("core_c/src/integrator.c", "fastest = model->decay_per_s", UNSET, FILLED, OF_PLANT),
     Argument("core_c/src/step_internals.h", "return m->rotated_twice", UNSET, FILLED, OF_PLANT),
     Argument("core_c/src/state.c", "m->dof == 3", UNSET, FILLED, OF_PLANT),

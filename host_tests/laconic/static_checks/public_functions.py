@@ -18,13 +18,8 @@ COMMENT = re.compile(r"/\*.*?\*/", re.DOTALL)
 PROTOTYPE = re.compile(r"^(?!typedef|return|#|\s)[\w ]+?[ *](laconic_\w+)\([^;{]*\)\s*[;{]", re.MULTILINE)
 
 LANES = "is compiled for registers of several numbers by extensions of C that Frama-C does not read"
-DRIVES = "the proof's node is without drives; fuzzing watches them"
 WITHOUT_HEADERS = {
     "core_c/include/laconic/batch.h": LANES,
-    "firmware_stub/include/laconic_drives/drive.h": DRIVES,
-    "firmware_stub/include/laconic_drives/drives.h": DRIVES,
-    "firmware_stub/include/laconic_drives/protocol.h": DRIVES,
-    "firmware_stub/include/laconic_drives/settings.h": DRIVES,
 }
 """Headers of which no entry follows a function, each with the reason."""
 OF_STEPS = ("the derivatives of a step: the analyser merges refusal and acceptance of the step, and takes all that is "
