@@ -1,5 +1,5 @@
-/* A plant that has been started, and the sensors beside it: their numbers are any; counts and flags are as the functions
- * that prepare leave them. */
+/* A plant that has been started, and the sensors beside it: their numbers are any; counts and flags are as the
+ * functions that prepare leave them. */
 #ifndef LACONIC_PROOF_ANY_PLANT_H
 #define LACONIC_PROOF_ANY_PLANT_H
 

@@ -1,5 +1,5 @@
-/* Functions that refuse leave the state as it was: here a state to which nobody can write. A first write ends a path, and
- * is an alarm; so whatever comes back has refused, and has written nothing before. */
+/* Functions that refuse leave the state as it was: here a state to which nobody can write. A first write ends a path,
+ * and is an alarm; so whatever comes back has refused, and has written nothing before. */
 #include "anything.h"
 
 extern const laconic_state kept; /* any numbers */

@@ -1,4 +1,4 @@
-/* Calls of functions of derivatives.h that take a step, for Frama-C's analyser: by each method that is one by itself. */
+/* Calls of functions of derivatives.h that take a step, for Frama-C's analyser: by rk4. */
 #include "laconic/derivatives.h"
 
 #include "anything.h"
