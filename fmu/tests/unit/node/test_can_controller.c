@@ -97,7 +97,12 @@ static void with_notifications_one_frame_is_on_its_way(void) {
     can_controller_send(&can, &tx, &frame);
     hear(LS_BUS_CONFIRM, 0x77, 0);
     TEST_ASSERT_EQUAL_INT32(1, can.transmit_errors);
-    TEST_ASSERT_EQUAL_INT32(2, can.sent);
+    for (int n = 0; n < 2; n++) { /* not below 0 */
+        can_controller_send(&can, &tx, &frame);
+        hear(LS_BUS_CONFIRM, 0x77, 0);
+        TEST_ASSERT_EQUAL_INT32(0, can.transmit_errors);
+    }
+    TEST_ASSERT_EQUAL_INT32(4, can.sent);
 }
 
 static void a_frame_that_lost_arbitration_is_sent_again_or_dropped(void) {

@@ -67,6 +67,17 @@ static void a_frame_of_can_fd_has_its_bytes(void) {
     TEST_ASSERT_EQUAL_HEX8(0, buffer.bytes[14]);
 }
 
+/* Nobody here reads what such a frame carries, but its length, of two bytes, must be right. */
+static void a_frame_of_can_xl_is_as_long_as_it_says(void) {
+    uint8_t bytes[22 + 260] = {0x12, 0, 0, 0, 26, 1};
+    for (unsigned length = 259; length <= 261; length++) {
+        bytes[20] = (uint8_t)(length & 255U);
+        bytes[21] = (uint8_t)(length >> 8);
+        takes(bytes, sizeof bytes);
+        TEST_ASSERT_EQUAL(length == 260 ? LS_BUS_RIGHT : LS_BUS_WRONG, read_first());
+    }
+}
+
 static void the_other_operations_have_their_bytes(void) {
     TEST_ASSERT_TRUE(ls_bus_put_id(&buffer, LS_BUS_CONFIRM, 0x01020304));
     TEST_ASSERT_TRUE(ls_bus_put_error(&buffer, 0x15000005, LS_BUS_CRC_ERROR, LS_BUS_SECONDARY_ERROR_FLAG, true));
@@ -278,6 +289,7 @@ int main(void) {
     UNITY_BEGIN();
     RUN_TEST(a_classic_frame_has_its_bytes);
     RUN_TEST(a_frame_of_can_fd_has_its_bytes);
+    RUN_TEST(a_frame_of_can_xl_is_as_long_as_it_says);
     RUN_TEST(the_other_operations_have_their_bytes);
     RUN_TEST(an_operation_without_room_is_not_begun);
     RUN_TEST(what_is_sent_goes_from_the_front);

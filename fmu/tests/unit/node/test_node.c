@@ -195,7 +195,8 @@ static fmi3Instance make_of_file(uint32_t more_offset) {
         fmu_stream_reals(&to, &value, 1);
     }
     for (size_t k = 0; k <= kept_count; k++) {
-        uint64_t reference = FMU_PRIVATE_START + (k < kept_count ? kept[k].id - LACONIC_WIRE_ID_BASE : more_offset);
+        /* as package.py writes it */
+        uint64_t reference = 0x80000000U + (k < kept_count ? kept[k].id - LACONIC_WIRE_ID_BASE : more_offset);
         fmu_stream_u64(&to, &reference);
         memcpy(bytes + to.at, k < kept_count ? kept[k].data : (const uint8_t[8]){0}, 8);
         to.at += 8;

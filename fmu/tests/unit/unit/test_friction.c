@@ -380,6 +380,7 @@ static void a_voltage_for_a_wheel_without_a_motor_is_told_once(void) {
     set_flag("wheel_undriven", 2);
     initialise();
     log_clear();
+    instance()->model.input.voltage_V[4] = 5; /* of a wheel that is not there */
     set("voltage_V", 1, 5);
     TEST_ASSERT_EQUAL_INT(0, lines);
     set("voltage_V", 2, 5);
