@@ -198,14 +198,35 @@ static void texts_and_an_empty_history_have_no_value(void) {
     TEST_ASSERT_TRUE(described(0x1003, 0)->has_value);
 }
 
-static void ranges_narrower_than_the_type_are_told(void) {
-    TEST_ASSERT_TRUE(described(0x6072, 0)->has_limits);
-    TEST_ASSERT_TRUE(object.low == 0 && object.high == 1000);
-    TEST_ASSERT_TRUE(described(0x60C2, 2)->has_limits);
-    TEST_ASSERT_TRUE(object.low == -6 && object.high == 0);
-    TEST_ASSERT_FALSE(described(0x6040, 0)->has_limits);
-    TEST_ASSERT_FALSE(described(0x60C2, 0)->has_limits);
-    TEST_ASSERT_TRUE(described(0x6083, 0)->has_limits && object.low == 1 && object.high == 0xFFFFFFFFLL);
+static void ranges_narrower_than_the_type_are_told_and_no_others(void) {
+    static const struct {
+        uint16_t index;
+        uint8_t sub;
+        int64_t low, high;
+    } limits[] = {{0x1029, 1, 0, 2},
+                  {0x6007, 0, 0, 3},
+                  {0x605A, 0, 0, 6},
+                  {0x605B, 0, 0, 1},
+                  {0x605C, 0, 0, 1},
+                  {0x605D, 0, 1, 2},
+                  {0x605E, 0, 0, 2},
+                  {0x6072, 0, 0, 1000},
+                  {0x6083, 0, 1, 0xFFFFFFFFLL},
+                  {0x6084, 0, 1, 0xFFFFFFFFLL},
+                  {0x6085, 0, 1, 0xFFFFFFFFLL},
+                  {0x60C2, 1, 1, 255},
+                  {0x60C2, 2, -6, 0}};
+    enum { LIMITS = sizeof limits / sizeof limits[0] };
+    int found = 0;
+    for (uint32_t k = 0; laconic_canopen_describe(k, &drive, &object); k++) {
+        if (!object.has_limits) continue;
+        TEST_ASSERT_LESS_THAN(LIMITS, found);
+        TEST_ASSERT_EQUAL_HEX16(limits[found].index, object.index);
+        TEST_ASSERT_EQUAL_UINT8(limits[found].sub, object.sub);
+        TEST_ASSERT_EQUAL_INT64(limits[found].low, object.low);
+        TEST_ASSERT_EQUAL_INT64(limits[found++].high, object.high);
+    }
+    TEST_ASSERT_EQUAL(LIMITS, found);
 }
 
 static void arrays_and_records_have_their_names_and_rows_tell_how_many_they_are(void) {
@@ -227,7 +248,7 @@ int main(void) {
     RUN_TEST(dummies_are_named_by_their_size);
     RUN_TEST(values_and_types_are_those_that_a_drive_answers_after_power_up);
     RUN_TEST(texts_and_an_empty_history_have_no_value);
-    RUN_TEST(ranges_narrower_than_the_type_are_told);
+    RUN_TEST(ranges_narrower_than_the_type_are_told_and_no_others);
     RUN_TEST(arrays_and_records_have_their_names_and_rows_tell_how_many_they_are);
     return UNITY_END();
 }

@@ -397,6 +397,19 @@ static void after_power_up_types_and_times_are_as_the_page_says(void) {
     }
 }
 
+static void a_pdo_that_is_switched_on_begins_its_timer_anew(void) {
+    set(0x1802, 2, 254);
+    set(0x1802, 5, 20); /* torque and current, both 0 */
+    start_nodes();
+    pass_to(1000000);
+    set(0x1802, 1, 0x380 + ID);
+    forget();
+    pass_to(1019999);
+    TEST_ASSERT_EQUAL(0, count_of(TPDO3));
+    pass_to(1020000);
+    TEST_ASSERT_EQUAL(1, count_of(TPDO3));
+}
+
 int main(void) {
     UNITY_BEGIN();
     RUN_TEST(after_power_up_the_usual_objects_are_mapped);
@@ -426,5 +439,6 @@ int main(void) {
     RUN_TEST(the_event_timer_and_the_inhibit_time_are_exact);
     RUN_TEST(a_deadline_is_exact);
     RUN_TEST(after_power_up_types_and_times_are_as_the_page_says);
+    RUN_TEST(a_pdo_that_is_switched_on_begins_its_timer_anew);
     return UNITY_END();
 }

@@ -291,6 +291,37 @@ static void another_identifier_of_sync_is_heard_instead_of_the_usual_one(void) {
     TEST_ASSERT_EQUAL_HEX32(CANOPEN_VALUE, write_as(0x1014, 0, 0x40000080U + ID, 4));
 }
 
+static void limits_hold_at_each_end(void) {
+    static const struct {
+        uint16_t index;
+        uint8_t sub;
+        int64_t low, high;
+        uint32_t below, above; /* 0: there is nothing beyond */
+    } limits[] = {{0x1029, 1, 0, 2, 0, CANOPEN_TOO_HIGH},
+                  {0x6007, 0, 0, 3, CANOPEN_TOO_LOW, CANOPEN_TOO_HIGH},
+                  {0x605A, 0, 0, 6, CANOPEN_TOO_LOW, CANOPEN_TOO_HIGH},
+                  {0x605B, 0, 0, 1, CANOPEN_TOO_LOW, CANOPEN_TOO_HIGH},
+                  {0x605C, 0, 0, 1, CANOPEN_TOO_LOW, CANOPEN_TOO_HIGH},
+                  {0x605D, 0, 1, 2, CANOPEN_TOO_LOW, CANOPEN_TOO_HIGH},
+                  {0x605E, 0, 0, 2, CANOPEN_TOO_LOW, CANOPEN_TOO_HIGH},
+                  {0x6072, 0, 0, 1000, 0, CANOPEN_TOO_HIGH},
+                  {0x6083, 0, 1, 0xFFFFFFFFLL, CANOPEN_TOO_LOW, 0},
+                  {0x6084, 0, 1, 0xFFFFFFFFLL, CANOPEN_TOO_LOW, 0},
+                  {0x6085, 0, 1, 0xFFFFFFFFLL, CANOPEN_TOO_LOW, 0},
+                  {0x60C2, 1, 1, 255, CANOPEN_TOO_LOW, 0},
+                  {0x60C2, 2, -6, 0, CANOPEN_TOO_LOW, CANOPEN_TOO_HIGH}};
+    for (size_t k = 0; k < sizeof limits / sizeof limits[0]; k++) {
+        const uint16_t index = limits[k].index;
+        const uint8_t sub = limits[k].sub, size = size_of(index, sub);
+        set(index, sub, limits[k].low);
+        set(index, sub, limits[k].high);
+        if (limits[k].below != 0)
+            TEST_ASSERT_EQUAL_HEX32(limits[k].below, write_as(index, sub, (uint32_t)(limits[k].low - 1), size));
+        if (limits[k].above != 0)
+            TEST_ASSERT_EQUAL_HEX32(limits[k].above, write_as(index, sub, (uint32_t)(limits[k].high + 1), size));
+    }
+}
+
 int main(void) {
     UNITY_BEGIN();
     RUN_TEST(each_wrong_request_has_its_abort_code);
@@ -307,5 +338,6 @@ int main(void) {
     RUN_TEST(identifiers_are_those_of_the_predefined_connections);
     RUN_TEST(reserved_identifiers_are_refused_at_each_end_of_their_ranges);
     RUN_TEST(another_identifier_of_sync_is_heard_instead_of_the_usual_one);
+    RUN_TEST(limits_hold_at_each_end);
     return UNITY_END();
 }

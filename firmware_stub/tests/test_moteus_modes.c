@@ -254,6 +254,19 @@ static void a_slow_motion_stops_at_its_stop_position(void) {
     near(0, read_float(0x39), 0);
 }
 
+static void a_way_of_whole_steps_ends_with_the_last_of_them(void) {
+    const laconic_real counts = GEAR * BENCH_COUNTS;
+    begin_position(4 / counts, 0);
+    put_float(0x28, 2000 / counts); /* two counts a step */
+    put_float(0x29, -1);
+    send();
+    bench_step();
+    near(0, read_float(0x0B), 0);
+    bench_step();
+    near(1, read_float(0x0B), 0);
+    near(0, read_float(0x39), 0);
+}
+
 int main(void) {
     UNITY_BEGIN();
     RUN_TEST(the_scenes_speed_limit_is_the_fastest);
@@ -275,5 +288,6 @@ int main(void) {
     RUN_TEST(capturing_anew_begins_where_the_wheel_is);
     RUN_TEST(within_its_bounds_a_place_has_no_error);
     RUN_TEST(a_slow_motion_stops_at_its_stop_position);
+    RUN_TEST(a_way_of_whole_steps_ends_with_the_last_of_them);
     return UNITY_END();
 }

@@ -187,6 +187,16 @@ static void motions_of_any_way_go_never_beyond_their_target_and_end_without_a_jo
     }
 }
 
+static void a_strong_deceleration_ends_at_the_limit_of_the_speed_too(void) {
+    for (int side = -1; side <= 1; side += 2) {
+        drive_motion motion = motion_of(R(100000 * side));
+        motion.speed = R(101 * side);
+        motion.deceleration = 100500; /* 100.5 counts/s in a step */
+        motion_step(&motion, STEP_S);
+        TEST_ASSERT_TRUE(motion.speed == R(100 * side));
+    }
+}
+
 int main(void) {
     UNITY_BEGIN();
     RUN_TEST(a_place_is_whole_counts_and_a_share_of_one);
@@ -206,5 +216,6 @@ int main(void) {
     RUN_TEST(a_way_that_a_step_makes_is_made_in_one);
     RUN_TEST(a_slow_motion_arrives_without_a_jolt);
     RUN_TEST(motions_of_any_way_go_never_beyond_their_target_and_end_without_a_jolt);
+    RUN_TEST(a_strong_deceleration_ends_at_the_limit_of_the_speed_too);
     return UNITY_END();
 }

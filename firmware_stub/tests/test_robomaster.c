@@ -222,6 +222,15 @@ static void a_vehicle_without_drives_is_silent(void) {
     TEST_ASSERT_FALSE(laconic_drives_next_frame(&drives, &frame));
 }
 
+static void a_speed_that_rounds_beyond_16_bits_is_their_end(void) {
+    laconic_frame frame;
+    step(1);
+    drives.drive[0].speed_rad_per_s = REAL(32767.75) / REAL(9.54929658551372014613);
+    TEST_ASSERT_TRUE(laconic_drives_next_frame(&drives, &frame));
+    TEST_ASSERT_EQUAL_HEX8(0x7F, frame.data[2]);
+    TEST_ASSERT_EQUAL_HEX8(0xFF, frame.data[3]);
+}
+
 int main(void) {
     UNITY_BEGIN();
     RUN_TEST(a_command_is_a_current_in_its_place_high_byte_first);
@@ -239,5 +248,6 @@ int main(void) {
     RUN_TEST(the_watchdog_of_a_group_runs_from_its_first_command_on);
     RUN_TEST(a_fault_by_order_stays_whatever_is_commanded);
     RUN_TEST(a_vehicle_without_drives_is_silent);
+    RUN_TEST(a_speed_that_rounds_beyond_16_bits_is_their_end);
     return UNITY_END();
 }
