@@ -273,6 +273,19 @@ static void a_drive_that_nmt_stops_has_lost_its_controller(void) {
     TEST_ASSERT_EQUAL_UINT32(LACONIC_DRIVE_FAULT_WATCHDOG, on.drives.drive[0].faults);
 }
 
+static void resetting_the_communication_ends_its_errors_but_no_fault(void) {
+    start_nodes();
+    deliver(RPDO1, BYTES(0), 1);
+    TEST_ASSERT_EQUAL_HEX8(0x11, get(0x1001, 0));
+    nmt(130, ID);
+    TEST_ASSERT_EQUAL_HEX8(0, get(0x1001, 0));
+    laconic_drive_fail(&on.drives.drive[0], LACONIC_DRIVE_FAULT_STALL);
+    step(1);
+    nmt(130, ID);
+    TEST_ASSERT_EQUAL_HEX8(0x21, get(0x1001, 0));
+    TEST_ASSERT_EQUAL_HEX16(FAULT, state());
+}
+
 int main(void) {
     UNITY_BEGIN();
     RUN_TEST(a_busy_bus_gets_the_four_newest_errors_oldest_first_then_their_reset);
@@ -292,5 +305,6 @@ int main(void) {
     RUN_TEST(silence_of_option_3_stops_no_drive_that_is_not_enabled);
     RUN_TEST(process_data_are_no_heartbeats);
     RUN_TEST(a_drive_that_nmt_stops_has_lost_its_controller);
+    RUN_TEST(resetting_the_communication_ends_its_errors_but_no_fault);
     return UNITY_END();
 }

@@ -354,6 +354,19 @@ static void a_set_point_behind_turns_the_motion_back_by_a_standstill(void) {
     TEST_ASSERT_TRUE(stood);
 }
 
+static void a_drive_that_is_enabled_anew_has_no_following_error(void) {
+    set(0x605C, 0, 0);
+    set(0x6065, 0, 10);
+    set(0x6066, 0, 100);
+    enable(8);
+    on.drives.drive[0].encoder.count += 1000; /* dragged */
+    step(1);
+    TEST_ASSERT_BITS_HIGH(8192, statusword());
+    control(7);
+    control(15);
+    TEST_ASSERT_BITS_LOW(8192, statusword());
+}
+
 int main(void) {
     UNITY_BEGIN();
     RUN_TEST(profile_velocity_ramps_up_and_down_and_turns_back);
@@ -379,5 +392,6 @@ int main(void) {
     RUN_TEST(speeds_beyond_32_bits_are_shown_as_their_ends);
     RUN_TEST(a_following_error_lasts_its_time_to_the_microsecond);
     RUN_TEST(a_set_point_behind_turns_the_motion_back_by_a_standstill);
+    RUN_TEST(a_drive_that_is_enabled_anew_has_no_following_error);
     return UNITY_END();
 }

@@ -403,7 +403,6 @@ static void a_pdo_that_is_switched_on_begins_its_timer_anew(void) {
     start_nodes();
     pass_to(1000000);
     set(0x1802, 1, 0x380 + ID);
-    forget();
     pass_to(1019999);
     TEST_ASSERT_EQUAL(0, count_of(TPDO3));
     pass_to(1020000);

@@ -278,6 +278,18 @@ static void a_drive_that_is_cleared_is_off(void) {
     TEST_ASSERT_TRUE(drive.current_A == 0 && drive.torque_Nm == 0 && drive.integral_A == 0);
 }
 
+static void a_supply_limits_no_current_unless_the_resistance_is_known(void) {
+    drive.target.mode = LACONIC_DRIVE_CURRENT;
+    drive.target.current_A = 5;
+    drive.settings.supply_V = 24;
+    laconic_drive_measure(&drive, 0, 30); /* the shaft at 300 rad/s: 30 V */
+    TEST_ASSERT_DOUBLE_WITHIN(1e-5, 5, (double)laconic_drive_act(&drive, STEP_S));
+    drive.settings.supply_V = 0;
+    drive.settings.winding_resistance_ohm = 2;
+    TEST_ASSERT_DOUBLE_WITHIN(1e-5, 5, (double)laconic_drive_act(&drive, STEP_S));
+    TEST_ASSERT_EQUAL_UINT8(0, drive.limits);
+}
+
 int main(void) {
     UNITY_BEGIN();
     RUN_TEST(a_drive_starts_off_and_lets_its_wheel_coast);
@@ -304,5 +316,6 @@ int main(void) {
     RUN_TEST(a_target_that_is_no_number_is_a_fault_and_never_a_torque);
     RUN_TEST(a_reversed_gear_turns_the_shaft_against_the_wheel);
     RUN_TEST(a_drive_that_is_cleared_is_off);
+    RUN_TEST(a_supply_limits_no_current_unless_the_resistance_is_known);
     return UNITY_END();
 }

@@ -196,6 +196,16 @@ static void a_reply_has_the_next_length_of_can_fd(void) {
     }
 }
 
+static void a_reply_of_eight_octets_to_a_classic_frame_is_one(void) {
+    ANSWERS("\x15\x0D\x15\x0D", "\x25\x0D\xF0\x00\x25\x0D\xF0\x00");
+    TEST_ASSERT_FALSE(frame.fd);
+    TEST_ASSERT_EQUAL_UINT8(8, frame.length);
+    laconic_frame query = {.id = TO_NODE, .length = 2, .fd = true, .data = {0x11, 0x0D}};
+    drives.protocol->on_frame(&drives, &query, now_us);
+    reply();
+    TEST_ASSERT_TRUE(frame.fd && !frame.bit_rate_switch); /* as the query was */
+}
+
 int main(void) {
     UNITY_BEGIN();
     RUN_TEST(a_reply_without_room_for_another_register_ends_there);
@@ -214,5 +224,6 @@ int main(void) {
     RUN_TEST(a_mode_with_a_share_is_its_whole_part);
     RUN_TEST(every_register_of_the_page_is_there_and_no_other);
     RUN_TEST(a_reply_has_the_next_length_of_can_fd);
+    RUN_TEST(a_reply_of_eight_octets_to_a_classic_frame_is_one);
     return UNITY_END();
 }

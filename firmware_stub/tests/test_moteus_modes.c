@@ -267,6 +267,21 @@ static void a_way_of_whole_steps_ends_with_the_last_of_them(void) {
     near(0, read_float(0x39), 0);
 }
 
+static void a_mode_begins_a_command_from_its_defaults(void) {
+    begin_position(none, (laconic_real)0.5);
+    put_float(0x23, (laconic_real)0.25);
+    put_float(0x25, 1);
+    send();
+    near(0.25, read_float(0x23), 0);
+    put_mode(POSITION);
+    send();
+    near(1, read_float(0x23), 0);
+    near(0, read_float(0x20), 0);
+    near(0, read_float(0x21), 0);
+    near(0, read_float(0x27), 0);
+    TEST_ASSERT_TRUE(read_float(0x25) != read_float(0x25));
+}
+
 int main(void) {
     UNITY_BEGIN();
     RUN_TEST(the_scenes_speed_limit_is_the_fastest);
@@ -289,5 +304,6 @@ int main(void) {
     RUN_TEST(within_its_bounds_a_place_has_no_error);
     RUN_TEST(a_slow_motion_stops_at_its_stop_position);
     RUN_TEST(a_way_of_whole_steps_ends_with_the_last_of_them);
+    RUN_TEST(a_mode_begins_a_command_from_its_defaults);
     return UNITY_END();
 }

@@ -22,12 +22,11 @@ static canopen_node node_at(laconic_drives *drives, int i, uint32_t now_us) {
 /* The communication's objects as after power-up; boot-up, then pre-operational. */
 static void reset_communication(const canopen_node *on) {
     canopen_axis *axis = on->axis;
-    const uint8_t error_register = axis->error_register;
     axis->consumer = axis->producer_ms = axis->behaviour = 0;
     axis->sdo_step = 0;
     axis->trouble = 0;
     CANOPEN_DEVICE_OBJECTS(NOTHING, RESET, NOTHING, NOTHING)
-    axis->error_register = error_register;
+    if (axis->state < CANOPEN_FAULT_REACTION) axis->error_register = 0;
     axis->sync_id = 0x80;
     axis->emergency_id = (uint16_t)(0x80 + canopen_id(on));
     canopen_start_pdos(on);

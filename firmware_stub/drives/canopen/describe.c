@@ -41,7 +41,7 @@ static bool value_after_power_up(laconic_canopen_object *object, const laconic_c
     };
     canopen_axis axis;
     laconic_drives drives;
-    uint32_t value = 0, abort = 0;
+    uint32_t value = 0, abort;
     memset(&axis, 0, sizeof axis);
     memset(&drives, 0, sizeof drives);
     drives.axes = &axis;

@@ -165,10 +165,8 @@ static void take(const canopen_node *on, int k, const laconic_frame *frame) {
         axis->trouble |= CANOPEN_TROUBLE_LENGTH;
         return;
     }
-    if (axis->trouble & ends) {
-        axis->trouble &= (uint8_t)~ends;
-        canopen_all_clear(axis);
-    }
+    axis->trouble &= (uint8_t)~ends;
+    canopen_all_clear(axis);
     memcpy(pdo->data, frame->data, length);
     pdo->at_us = on->now_us;
     axis->received |= (uint8_t)(16U << k);
