@@ -95,6 +95,16 @@ static void refusals_have_names_and_change_nothing(void) {
     TEST_ASSERT_EQUAL_STRING("unknown", laconic_secoc_text(LACONIC_SECOC_STATUSES));
 }
 
+/* AUTOSAR SecOC: the code is of the number, the payload and the whole freshness, each with its highest byte first. */
+static void the_code_is_of_every_byte(void) {
+    static const uint8_t message[] = {0x01, 0x23, 9, 8, 7, 6, 0x01, 0x23, 0x45, 0x67, 0x89, 0xAB, 0xCD, 0xEF};
+    uint8_t mac[LACONIC_AES_BYTES], trailer[1 + LACONIC_SECOC_FD];
+    laconic_cmac(&key, message, sizeof message, mac);
+    laconic_secoc_seal(&key, NUMBER, 0x0123456789ABCDEFU, payload, LENGTH, trailer, LACONIC_SECOC_FD);
+    TEST_ASSERT_EQUAL_HEX8(0xEF, trailer[0]);
+    TEST_ASSERT_EQUAL_HEX8_ARRAY(mac, trailer + 1, LACONIC_SECOC_FD);
+}
+
 static void the_first_message_of_all_is_number_1(void) {
     uint64_t last = 0;
     TEST_ASSERT_EQUAL(LACONIC_SECOC_REPLAYED, opened(&last, 0, payload));
@@ -257,6 +267,16 @@ static void only_a_new_challenge_begins_a_new_freshness(void) {
     TEST_ASSERT_EQUAL_UINT64((uint64_t)8 << 32, gate.freshness);
 }
 
+static void the_freshness_begins_with_all_four_bytes_of_the_nonce(void) {
+    laconic_frame sent = frame_of(LACONIC_WIRE_CHALLENGE, 0x78);
+    sent.data[3] = 0x56;
+    sent.data[4] = 0x34;
+    sent.data[5] = 0x12;
+    laconic_gate_init(&gate, LACONIC_WIRE_ID_BASE, key_bytes);
+    laconic_gate_sent(&gate, &sent);
+    TEST_ASSERT_EQUAL_UINT64((uint64_t)0x12345678U << 32, gate.freshness);
+}
+
 int main(void) {
     UNITY_BEGIN();
     RUN_TEST(aes_of_FIPS_197);
@@ -264,6 +284,7 @@ int main(void) {
     RUN_TEST(bytes_are_the_same_or_not);
     RUN_TEST(the_next_message_is_accepted_over_every_carry);
     RUN_TEST(refusals_have_names_and_change_nothing);
+    RUN_TEST(the_code_is_of_every_byte);
     RUN_TEST(the_first_message_of_all_is_number_1);
     RUN_TEST(the_longest_payload_of_FD);
     RUN_TEST(frames_pass_with_their_code);
@@ -274,5 +295,6 @@ int main(void) {
     RUN_TEST(frames_of_others_get_no_code);
     RUN_TEST(a_code_of_another_length_ends_the_wait);
     RUN_TEST(only_a_new_challenge_begins_a_new_freshness);
+    RUN_TEST(the_freshness_begins_with_all_four_bytes_of_the_nonce);
     return UNITY_END();
 }
