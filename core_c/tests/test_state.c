@@ -87,7 +87,7 @@ static void of_two_that_are_equally_wrong_the_first_is_named(void) {
     const laconic_model m = model_of(v);
     ASSERT_REFUSED(LACONIC_START_AGAINST_CONSTRAINTS, LACONIC_FIELD_START_NU, 1,
                    laconic_state_set(&state, &m, &start, &why), why);
-    start = start_with(2, REAL(2.5), 1);
+    start = start_with(2, 2.5, 1);
     ASSERT_REFUSED(LACONIC_START_AGAINST_CONSTRAINTS, LACONIC_FIELD_START_NU, 2,
                    laconic_state_set(&state, &m, &start, &why), why);
 }
