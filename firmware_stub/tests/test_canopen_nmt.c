@@ -180,6 +180,19 @@ static void a_start_of_a_node_that_runs_begins_nothing_anew(void) {
     TEST_ASSERT_EQUAL(1, count_of(0x280 + ID));
 }
 
+static void a_start_counts_syncs_from_the_beginning(void) {
+    set(0x1801, 2, 2); /* at every second SYNC */
+    start_nodes();
+    sync();
+    nmt(128, ID);
+    nmt(1, ID);
+    forget();
+    sync();
+    TEST_ASSERT_EQUAL(0, count_of(0x280 + ID));
+    sync();
+    TEST_ASSERT_EQUAL(1, count_of(0x280 + ID));
+}
+
 static void frames_that_only_look_like_commands_move_no_node(void) {
     laconic_frame frame = {.id = 0, .length = 2, .data = {1, 0}, .remote = true};
     laconic_canopen.on_frame(&on.drives, &frame, on.now_us);
@@ -243,6 +256,7 @@ int main(void) {
     RUN_TEST(option_codes_say_what_silence_does);
     RUN_TEST(stopping_a_node_that_drives_is_a_lost_connection);
     RUN_TEST(a_start_of_a_node_that_runs_begins_nothing_anew);
+    RUN_TEST(a_start_counts_syncs_from_the_beginning);
     RUN_TEST(frames_that_only_look_like_commands_move_no_node);
     RUN_TEST(the_windows_of_a_coarse_encoder_are_parts_of_its_turn);
     RUN_TEST(heartbeats_are_exact_to_the_microsecond);

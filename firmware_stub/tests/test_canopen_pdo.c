@@ -133,6 +133,21 @@ static void synchronous_data_take_effect_at_the_next_sync_together(void) {
     TEST_ASSERT_EQUAL(7, get(0x60FF, 0));
 }
 
+/* 240 is the last type that waits, 254 the first that does not. */
+static void received_data_wait_for_sync_by_the_types_up_to_240(void) {
+    static const uint8_t types[] = {0, 1, 239, 240, 254, 255};
+    const uint32_t speed = 0x60FF0020;
+    for (size_t k = 0; k < sizeof types; k++) {
+        power_up();
+        TEST_ASSERT_EQUAL_HEX32(0, map(0x1401, types[k], &speed, 1));
+        start_nodes();
+        deliver(RPDO2, BYTES(7), 4);
+        TEST_ASSERT_EQUAL(types[k] <= 240 ? 0 : 7, get(0x60FF, 0));
+        sync();
+        TEST_ASSERT_EQUAL(7, get(0x60FF, 0));
+    }
+}
+
 static void a_frame_that_is_too_short_is_told_once_and_not_used(void) {
     start_nodes();
     forget();
@@ -276,6 +291,7 @@ int main(void) {
     RUN_TEST(wrong_mappings_have_their_abort_codes);
     RUN_TEST(identifiers_of_pdos_can_be_changed_and_swapped);
     RUN_TEST(synchronous_data_take_effect_at_the_next_sync_together);
+    RUN_TEST(received_data_wait_for_sync_by_the_types_up_to_240);
     RUN_TEST(a_frame_that_is_too_short_is_told_once_and_not_used);
     RUN_TEST(a_value_that_an_object_refuses_leaves_it_as_it_was);
     RUN_TEST(synchronous_data_are_sent_at_every_nth_sync);

@@ -110,6 +110,15 @@ static void reset_begins_at_the_start_and_counts_anew(void) {
     TEST_ASSERT_EQUAL_UINT8(LACONIC_WIRE_STATE_READY, node.state);
 }
 
+static void reset_begins_every_counter_anew(void) {
+    static const laconic_node_counters none;
+    bench_load(2);
+    memset(&node.counters, 0x5A, sizeof node.counters);
+    TEST_ASSERT_EQUAL_UINT8(0, bench_control(LACONIC_WIRE_COMMAND_RESET, 0, 0));
+    TEST_ASSERT_EQUAL_UINT16(0, node.counters.overrange);
+    TEST_ASSERT_EQUAL_MEMORY(&none, &node.counters, sizeof none);
+}
+
 static void a_reset_to_a_start_that_cannot_be_names_its_field(void) {
     bench_load(2);
     node.start.nu_rad_per_s[0] = LACONIC_REAL_MAX * 2;
@@ -363,6 +372,7 @@ int main(void) {
     RUN_TEST(stop_forgets_the_steps_that_are_due_and_the_inputs);
     RUN_TEST(a_new_session_forgets_selections_and_answers);
     RUN_TEST(reset_begins_at_the_start_and_counts_anew);
+    RUN_TEST(reset_begins_every_counter_anew);
     RUN_TEST(a_reset_to_a_start_that_cannot_be_names_its_field);
     RUN_TEST(begin_forgets_what_was_loaded);
     RUN_TEST(each_bit_of_select_has_its_meaning);

@@ -70,6 +70,22 @@ static void three_frames_in_a_row_make_a_new_reference(void) {
     TEST_ASSERT_EQUAL(LACONIC_E2E_WRONG_SEQUENCE, laconic_e2e_check(&receiver, true, 9, 15, 1));
 }
 
+/* Counters of four bits and of eight, each over its end. */
+static void three_frames_in_a_row_follow_each_other_over_the_counters_end(void) {
+    static const uint8_t masks[] = {15, 255};
+    for (size_t k = 0; k < sizeof masks; k++) {
+        const uint8_t mask = masks[k];
+        for (uint8_t first = (uint8_t)(mask - 2U); first != 1; first = (uint8_t)((first + 1U) & mask)) {
+            laconic_e2e_receiver receiver = {.known = true, .counter = 9};
+            const uint8_t second = (uint8_t)((first + 1U) & mask), third = (uint8_t)((first + 2U) & mask);
+            TEST_ASSERT_EQUAL(LACONIC_E2E_WRONG_SEQUENCE, laconic_e2e_check(&receiver, true, first, mask, 1));
+            TEST_ASSERT_EQUAL(LACONIC_E2E_WRONG_SEQUENCE, laconic_e2e_check(&receiver, true, second, mask, 1));
+            TEST_ASSERT_EQUAL(LACONIC_E2E_OK, laconic_e2e_check(&receiver, true, third, mask, 1));
+            TEST_ASSERT_EQUAL_UINT8(third, receiver.counter);
+        }
+    }
+}
+
 /* The headers come from PyPI's autosar-e2e, an implementation of others. */
 static void profile_5_gives_the_headers_of_another_implementation(void) {
     uint8_t zeros[8] = {0}, rising[16];
@@ -136,6 +152,7 @@ int main(void) {
     RUN_TEST(the_status_machine_never_moves_for_a_refused_frame);
     RUN_TEST(lost_frames_are_counted_up_to_max_delta);
     RUN_TEST(three_frames_in_a_row_make_a_new_reference);
+    RUN_TEST(three_frames_in_a_row_follow_each_other_over_the_counters_end);
     RUN_TEST(profile_5_gives_the_headers_of_another_implementation);
     RUN_TEST(the_shortest_frames_are_their_headers);
     RUN_TEST(the_counter_leaves_the_bits_beside_it);

@@ -54,6 +54,24 @@ static void test_each_slice_is_seen_when_it_is_due_and_the_last_ends_the_round(v
     TEST_ASSERT_EQUAL(LACONIC_INTEGRITY_SOUND, on.integrity.broken);
 }
 
+/* What waits to be sent stays, too: nothing is found anew. */
+static void test_a_model_that_is_known_to_be_wrong_is_told_once_and_seen_no_more(void) {
+    laconic_frame frame;
+    bench_power_up(&on, 7, 0, LACONIC_INTEGRITY_SUM);
+    TEST_ASSERT_TRUE(rig_session(&on, NULL, NULL, NULL));
+    on.node.plant.vehicle.mass_kg *= 2;
+    while (on.integrity.broken == LACONIC_INTEGRITY_SOUND) (void)slices_after(1000);
+    TEST_ASSERT_TRUE(bench_next(&on, &frame));
+    TEST_ASSERT_EQUAL_HEX32(LACONIC_WIRE_ID_BASE + LACONIC_WIRE_RESULT, frame.id);
+    while (bench_next(&on, &frame)) continue;
+    on.node.pending |= 1U << LACONIC_WIRE_NU;
+    const uint32_t slices = on.integrity.slices;
+    for (uint32_t k = 0; k < 3 * LACONIC_INTEGRITY_ROUND_US / 1000; k++)
+        TEST_ASSERT_EQUAL_UINT32(slices, slices_after(1000));
+    TEST_ASSERT_TRUE(on.node.answers_due == 0 && (on.node.pending & 1U << LACONIC_WIRE_NU) != 0);
+    while (bench_next(&on, &frame)) TEST_ASSERT_TRUE(frame.id != LACONIC_WIRE_ID_BASE + LACONIC_WIRE_RESULT);
+}
+
 static void test_a_new_vehicle_begins_a_new_round(void) {
     bench_power_up(&on, 7, 0, LACONIC_INTEGRITY_ALL);
     TEST_ASSERT_TRUE(rig_session(&on, NULL, NULL, NULL));
@@ -95,6 +113,7 @@ int main(void) {
     UNITY_BEGIN();
     RUN_TEST(test_a_round_over_the_model_lasts_its_time);
     RUN_TEST(test_each_slice_is_seen_when_it_is_due_and_the_last_ends_the_round);
+    RUN_TEST(test_a_model_that_is_known_to_be_wrong_is_told_once_and_seen_no_more);
     RUN_TEST(test_a_new_vehicle_begins_a_new_round);
     RUN_TEST(test_the_model_is_seen_only_where_there_is_one_and_its_sum_is_wanted);
     RUN_TEST(test_a_tick_sees_few_slices_however_late_it_comes);

@@ -55,6 +55,19 @@ static void without_an_acceleration_limit_it_glides_at_the_limit_of_the_speed(vo
     }
 }
 
+/* By half the acceleration times the square of the time, step by step: its mean speed, not that of a step's end. */
+static void a_speed_that_rises_moves_the_place_by_its_mean(void) {
+    begin_position(none, 1);
+    put_float(0x29, 2);
+    send();
+    for (int k = 1; k <= 400; k++) {
+        bench_steps(1);
+        const double time_s = 0.001 * k;
+        near(2 * time_s, read_float(0x39), 1e-5);
+        near(time_s * time_s, control_position(), 1e-5);
+    }
+}
+
 static void a_gliding_target_that_moves_goes_on_with_its_speed(void) {
     begin_position((laconic_real)0.5, (laconic_real)0.25);
     put_float(0x28, (laconic_real)0.5);
@@ -75,6 +88,18 @@ static void a_stop_position_turns_the_speed_to_its_side(void) {
     bench_steps(2000);
     near(-0.25, control_position(), 1e-5);
     near(0, read_float(0x39), 0);
+}
+
+static void without_speed_a_stop_position_moves_nothing(void) {
+    for (int side = -1; side <= 1; side += 2) {
+        begin_position(none, 0);
+        put_float(0x26, (laconic_real)(side * 0.25));
+        put_float(0x29, -1);
+        send();
+        bench_steps(100);
+        near(0, control_position(), 1e-6);
+        near(0, read_float(0x01), 1e-6);
+    }
 }
 
 static void a_stop_position_with_a_limit_of_the_speed_alone_is_fault_45_too(void) {
@@ -147,6 +172,24 @@ static void silence_ends_stay_within_too(void) {
     bench_steps(20);
     near(TIMEOUT, read_float(0x00), 0);
     TEST_ASSERT_TRUE(drives.drive[0].unheard);
+}
+
+/* The wheel turns at 1 turn/s, where damping alone would take 10 N m. */
+static void in_the_timeout_the_torque_is_5_newton_metres_at_most_whatever_was_commanded(void) {
+    static const laconic_real most_Nm[] = {(laconic_real)0.02, 50, 0};
+    for (int k = 0; k < 3; k++) {
+        bench_begin(&laconic_moteus, NODE, GEAR);
+        begin_position(none, 0);
+        if (k < 2) put_float(0x25, most_Nm[k]);
+        put_float(0x27, (laconic_real)0.002);
+        send();
+        bench_steps(5);
+        near(TIMEOUT, read_float(0x00), 0);
+        bench_speed[0] = TURN_RAD;
+        laconic_drive_measure(&drives.drive[0], 0, bench_speed[0]);
+        drives.protocol->on_step(&drives, now_us);
+        near(-5, read_float(0x34), 1e-5);
+    }
 }
 
 static void a_brake_is_the_back_emf_through_the_winding(void) {
@@ -287,14 +330,17 @@ int main(void) {
     RUN_TEST(the_scenes_speed_limit_is_the_fastest);
     RUN_TEST(a_velocity_that_is_not_set_is_0);
     RUN_TEST(without_an_acceleration_limit_it_glides_at_the_limit_of_the_speed);
+    RUN_TEST(a_speed_that_rises_moves_the_place_by_its_mean);
     RUN_TEST(a_gliding_target_that_moves_goes_on_with_its_speed);
     RUN_TEST(a_stop_position_turns_the_speed_to_its_side);
+    RUN_TEST(without_speed_a_stop_position_moves_nothing);
     RUN_TEST(a_stop_position_with_a_limit_of_the_speed_alone_is_fault_45_too);
     RUN_TEST(modes_of_the_firmwares_own_are_no_commands);
     RUN_TEST(a_fault_is_left_by_stopped_alone);
     RUN_TEST(a_current_that_is_no_number_is_none);
     RUN_TEST(stay_within_pulls_back_from_its_upper_bound);
     RUN_TEST(silence_ends_stay_within_too);
+    RUN_TEST(in_the_timeout_the_torque_is_5_newton_metres_at_most_whatever_was_commanded);
     RUN_TEST(a_brake_is_the_back_emf_through_the_winding);
     RUN_TEST(a_register_says_what_limits_the_current);
     RUN_TEST(an_index_that_is_required_anew_makes_this_place_0);

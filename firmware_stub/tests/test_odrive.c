@@ -303,6 +303,16 @@ static void a_reboot_brings_back_what_was_saved(void) {
     near(7, drives.drive[0].settings.position_gain_per_s, 1e-6);
 }
 
+/* Also where it stands somewhere else: its encoder is an incremental one. */
+static void after_a_reboot_the_place_is_0(void) {
+    close_loop(VELOCITY, PASSTHROUGH);
+    send_floats(INPUT_VEL, 3, 0);
+    bench_steps(2000);
+    TEST_ASSERT_TRUE(position() > 4);
+    bench_send(id(REBOOT), "\0", 1);
+    near(0, position(), 0.0002); /* less than a count */
+}
+
 static void endpoints_and_firmware_loading_are_left_unanswered(void) {
     close_loop(VELOCITY, PASSTHROUGH);
     bench_drop_frames();
@@ -350,6 +360,7 @@ int main(void) {
     RUN_TEST(a_shaft_that_is_dragged_beyond_its_limit_disarms);
     RUN_TEST(a_node_id_is_given_by_serial_number);
     RUN_TEST(a_reboot_brings_back_what_was_saved);
+    RUN_TEST(after_a_reboot_the_place_is_0);
     RUN_TEST(endpoints_and_firmware_loading_are_left_unanswered);
     RUN_TEST(frames_of_other_kinds_and_short_ones_are_passed_over);
     return UNITY_END();

@@ -187,6 +187,14 @@ static void who_only_listens_sends_no_frames_and_hears_them(void) {
     answers("t2000\r", "\a");
 }
 
+static void who_closes_and_opens_for_all_sends_frames_again(void) {
+    answers("L\r", "\r");
+    answers("C\r", "\r");
+    answers("O\r", "\r");
+    TEST_ASSERT_EQUAL(LACONIC_SLCAN_FRAME, feed("t1230\r"));
+    TEST_ASSERT_EQUAL_HEX32(0x123, frame.id);
+}
+
 static void a_channel_begins_closed_and_without_a_reply(void) {
     memset(&slcan, 0x55, sizeof slcan);
     laconic_slcan_init(&slcan, '6');
@@ -259,6 +267,7 @@ int main(void) {
     RUN_TEST(the_largest_identifiers_are_taken_and_the_next_are_none);
     RUN_TEST(a_rate_is_one_digit_from_0_to_8);
     RUN_TEST(who_only_listens_sends_no_frames_and_hears_them);
+    RUN_TEST(who_closes_and_opens_for_all_sends_frames_again);
     RUN_TEST(a_channel_begins_closed_and_without_a_reply);
     RUN_TEST(the_longest_line_has_room_and_one_letter_more_has_none);
     RUN_TEST(a_command_too_long_for_a_line_is_none);
