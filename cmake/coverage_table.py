@@ -37,7 +37,7 @@ OTHER_MODELS = {"double": r"fmu_(derivatives|estimate|controller|node|bus|roboma
 choose. LLVM knows each function once, so the programs of each model are looked at by themselves."""
 CHOICE = re.compile(r"\bFMU_MODEL_(PORTS|KEEPS_STEPS|ESTIMATES|TAKES_SLOPES)\b")
 KINDS = ("lines", "branches", "conditions")
-MARK = re.compile(r"cannot be reached(?: in (double|single))?: \S")  # in a comment, with the reason behind it
+MARK = re.compile(r"(a condition )?cannot be reached(?: in (double|single))?: \S")  # in a comment, the reason behind it
 STALE = "is listed as what cannot be reached, and a test reaches it: take the comment out"
 BEGIN, END = "<!-- coverage, made by cmake/coverage_table.py -->\n", "<!-- end of coverage -->\n"
 
@@ -106,15 +106,15 @@ def export(profiles: Path, name: str, programs: list[Path], files: list[str]) ->
     return list(json.loads(said)["data"][0]["files"])
 
 
-def listed(file: str, scalar: str) -> list[set[int]]:
+def listed(file: str, scalar: str) -> list[tuple[set[int], bool]]:
     """Lines of a file that say why they cannot be reached, of either scalar type or of this one: the comment stands in
-    the line, or by itself in the line before."""
+    the line, or by itself in the line before. True where it speaks of conditions alone, not of the line's branches."""
     lines = Path(file).read_text(encoding="utf-8").splitlines()
     found = []
     for number, line in enumerate(lines, 1):
         told = MARK.search(line)
-        if told and told[1] in (None, scalar):
-            found.append({number + line.strip().startswith("/*")})
+        if told and told[2] in (None, scalar):
+            found.append(({number + line.strip().startswith("/*")}, told[1] is not None))
     return found
 
 
@@ -126,18 +126,22 @@ def missed(data: dict[str, list[dict]], scalar: str) -> dict[str, list[tuple[str
         lines = uncovered_lines(reports) & lines_of_code(name)
         branches = {key for key, count in taken_branches(reports).items() if count == 0}
         hidden = hidden_of_all(name, reports)
-        marks = listed(name, scalar)
-        reasons = set()
-        for mark in marks:
-            reasons |= with_block(mark, lines)
-            if not mark & (lines | {line for line, *_ in branches} | {line for line, *_ in hidden}):
+        reasons, of_conditions = set(), set()
+        for mark, of_conditions_alone in listed(name, scalar):
+            undecided = {line for line, *_ in hidden}
+            if of_conditions_alone:
+                of_conditions |= mark
+            else:
+                reasons |= with_block(mark, lines)
+                undecided |= lines | {line for line, *_ in branches}
+            if not mark & undecided:
                 found["lines"].add((name, min(mark), STALE))
         found["lines"] |= {(name, line, "line") for line in lines - reasons}
         found["branches"] |= {(name, line, f"column {column}, {side}") for line, column, side in branches
                               if line not in reasons}
         left = None if len(reports) > 1 else conditions_left(reports[0])
-        found["conditions"] |= set([(name, line, f"column {column}, condition {number}")
-                                    for line, column, number in hidden if line not in reasons][:left])
+        found["conditions"] |= {(name, line, f"column {column}, condition {number}")
+                                for line, column, number in hidden[:left] if line not in reasons | of_conditions}
     return {kind: sorted(each) for kind, each in found.items()}
 
 

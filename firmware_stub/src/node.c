@@ -17,7 +17,6 @@ bool laconic_node_init(laconic_node *node, const laconic_node_config *config, ui
 }
 
 static bool is_well_formed(const laconic_frame *frame, const laconic_wire_row *row) {
-    /* cannot be reached: a constant of the build, which in the tests has CAN FD */
     if (row->fd && !LACONIC_NODE_CAN_FD) return false;
     return !frame->remote && frame->fd == (row->fd != 0) && frame->length == row->length;
 }
@@ -48,7 +47,6 @@ static bool dispatch(laconic_node *node, uint8_t offset, const uint8_t *data, ui
     case LACONIC_WIRE_SELECT: answer = laconic_node_select(node, data); break;
     case LACONIC_WIRE_COMMIT: answer = laconic_node_commit(node, data); break;
     case LACONIC_WIRE_PARAMETER: answer = laconic_node_parameter(node, data); break;
-    /* cannot be reached: a constant of the build, which in the tests does more than play drives */
     default: return !LACONIC_NODE_DRIVES_ONLY && dispatch_motion(node, offset, data, now_us);
     }
     laconic_node_answer(node, offset, answer);
@@ -59,7 +57,7 @@ static bool dispatch(laconic_node *node, uint8_t offset, const uint8_t *data, ui
 static bool takes(laconic_node *node, uint8_t offset, const uint8_t *data) {
     const uint8_t key = laconic_wire[offset].key;
     if (key == LACONIC_WIRE_KEY_SESSION) return laconic_node_takes_command(node, offset, data);
-    /* cannot be reached: a constant of the build, which in the tests does more than play drives */
+    /* a condition cannot be reached: the second is a constant of the build */
     return key != LACONIC_WIRE_KEY_RUN || LACONIC_NODE_DRIVES_ONLY || laconic_node_takes_motion(node, offset, data);
 }
 
@@ -154,7 +152,6 @@ bool laconic_node_next_frame(laconic_node *node, laconic_frame *frame) {
 }
 
 bool laconic_node_is_busy(const laconic_node *node) {
-    /* cannot be reached: the first is a constant of the build */
     return !LACONIC_NODE_DRIVES_ONLY && node->lockstep.steps_due > 0;
 }
 

@@ -105,7 +105,6 @@ void laconic_raw_collect(laconic_raw_output *raw, const laconic_plant *plant, co
                          const laconic_sensor_outputs *sensed) {
     laconic_real *to = raw->number;
     const int32_t n = plant->model.wheel_count;
-    /* cannot be reached: a constant of the build */
     if (!LACONIC_NODE_DRIVES_ONLY && raw->send & LACONIC_RAW_NU) {
         laconic_nu(&plant->model, &plant->state, to);
         to += 3;
@@ -119,11 +118,10 @@ void laconic_raw_collect(laconic_raw_output *raw, const laconic_plant *plant, co
         laconic_plant_wheel_angles(plant, to);
         to += n;
     }
-    /* cannot be reached: a constant of the build */
     if (!LACONIC_NODE_DRIVES_ONLY && raw->send & LACONIC_RAW_ENERGY) *to++ = laconic_plant_energy_J(plant);
     if (raw->send >= LACONIC_RAW_IMU) { /* one of the last three, which few choose */
         if (LACONIC_NODE_WITH_SENSORS) to = collect_sensors(to, raw->send, n, sensed);
-        /* cannot be reached: the first is a constant of the build */
+        /* a condition cannot be reached: the first is a constant of the build */
         if (LACONIC_NODE_WITH_DRIVES && raw->send & LACONIC_RAW_HELD_TORQUE)
             for (int32_t i = 0; i < n; i++) *to++ = held->axle_torque_Nm[i];
     }

@@ -62,9 +62,7 @@ static bool kind_of(char letter, laconic_frame *frame) {
     const char kind = (char)(letter | ' ');
     frame->extended = kind != letter;
     frame->remote = kind == 'r';
-    /* cannot be reached: a constant of the build */
     frame->bit_rate_switch = LACONIC_NODE_CAN_FD && kind == 'b';
-    /* cannot be reached: the first is a constant of the build */
     frame->fd = LACONIC_NODE_CAN_FD && (kind == 'd' || kind == 'b');
     return kind == 't' || frame->remote || frame->fd;
 }
