@@ -106,6 +106,20 @@ static void counters_come_in_three_pages(void) {
     TEST_ASSERT_FALSE(bench_receive(LACONIC_WIRE_COUNTERS, data));
 }
 
+/* A busy bus that takes one of them in each period of the heartbeat gets them all. */
+static void pages_of_counters_go_on_where_they_were(void) {
+    uint8_t data[LACONIC_FRAME_BYTES];
+    struct laconic_dbc_counters_t counters;
+    publish(0, 0, 0);
+    for (uint8_t k = 0; k < 7; k++) {
+        now_us += LACONIC_NODE_HEARTBEAT_US;
+        laconic_node_on_tick(&node, now_us);
+        TEST_ASSERT_TRUE(bench_receive(LACONIC_WIRE_COUNTERS, data));
+        laconic_dbc_counters_unpack(&counters, data, 8);
+        TEST_ASSERT_EQUAL_UINT8(k % 3, counters.page);
+    }
+}
+
 static void each_number_of_a_pose_has_its_place(void) {
     uint8_t data[LACONIC_FRAME_BYTES];
     struct laconic_dbc_pose_t pose;
@@ -380,6 +394,7 @@ int main(void) {
     RUN_TEST(wheels_come_in_groups_of_three);
     RUN_TEST(the_fd_frame_packed_by_hand_reads_by_the_contract);
     RUN_TEST(counters_come_in_three_pages);
+    RUN_TEST(pages_of_counters_go_on_where_they_were);
     RUN_TEST(each_number_of_a_pose_has_its_place);
     RUN_TEST(each_number_of_nu_has_its_place);
     RUN_TEST(a_heartbeat_tells_steps_state_and_lateness);
