@@ -32,7 +32,7 @@ def entries_table(rows: dict[str, Row]) -> str:
             reached = f"{row.reached} of {row.statements}"
             alarms = f"{len(row.alarms)} | {len(row.open)}"
             lines.append(f"| {part} | `{name}` | {len(row.functions)} | {reached} | {alarms} | {row.seconds} "
-                         f"| {row.ended} |")
+                         f"| {run_of(row)} |")
     return _joined(lines)
 
 
@@ -49,8 +49,13 @@ def contracts_table(rows: dict[str, Row]) -> str:
         else:
             names = ", ".join(f"`{function}`" for function in row.functions)
             lines.append(f"| {part} | `{name}` | {names} | {row.goals} | {len(row.open)} | {row.seconds} "
-                         f"| {row.ended} |")
+                         f"| {run_of(row)} |")
     return _joined(lines)
+
+
+def run_of(row: Row) -> str:
+    """When a proof ran, and whether its sources have changed since."""
+    return row.ended if row.is_of_these_sources() else f"{row.ended}, of older sources"
 
 
 def functions_table(rows: dict[str, Row]) -> str:

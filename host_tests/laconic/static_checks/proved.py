@@ -174,6 +174,11 @@ def digest_of(files: Iterable[str], options: Iterable[str]) -> str:
     made = hashlib.sha256("\0".join(options).encode())
     for file in files:
         path = SOURCE_DIR / file
-        bare = COMMENT.sub(" ", _text(path)) if path.is_file() else ""
-        made.update("".join(bare.split()).encode() + b"\0")
+        made.update((_bare(path) if path.is_file() else "").encode() + b"\0")
     return made.hexdigest()[:16]
+
+
+@cache
+def _bare(path: Path) -> str:
+    """A source without comments and without space."""
+    return "".join(COMMENT.sub(" ", _text(path)).split())
