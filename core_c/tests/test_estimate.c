@@ -259,6 +259,10 @@ static void after_a_change_the_estimate_goes_on(void) {
     ASSERT_STATUS(LACONIC_OK, laconic_plant_change(&plant, &loaded, &why));
     ASSERT_STATUS(LACONIC_OK, laconic_plant_change(&fine, &loaded, &why));
     const laconic_errors until = errors_now(&estimate, &before);
+    laconic_estimate unsure = estimate;
+    unsure.unknown = 3;
+    ASSERT_STATUS(LACONIC_OK, laconic_estimate_carry(&unsure, &before, &plant, NULL, &why));
+    TEST_ASSERT_EQUAL_UINT64(3, errors_now(&unsure, &plant).unknown);
     ASSERT_STATUS(LACONIC_OK, laconic_estimate_carry(&estimate, &before, &plant, NULL, &why));
     laconic_errors found = errors_now(&estimate, &plant);
     laconic_error truth = between(&plant, &fine);
@@ -373,6 +377,31 @@ static void a_half_step_that_cannot_be_prepared_is_refused(void) {
                    laconic_estimate_start(&estimate, &plant, 1, &laconic_rk4, &why), why);
 }
 
+static laconic_real turning_speed(const laconic_plant *plant) {
+    laconic_real nu[3];
+    laconic_nu(&plant->model, &plant->state, nu);
+    return nu[2];
+}
+
+/* The third step of a window of four yaws beyond what the method takes. */
+static void of_a_run_that_is_refused_midway_the_steps_that_were_taken_count(void) {
+    const laconic_vehicle v = with_motors(three_wheels());
+    laconic_plant plant = plant_by(&laconic_rk4, &v, start_with(2, 1, 0.1), 0.01);
+    laconic_estimate estimate = estimate_of(&plant, 16);
+    laconic_input input = no_input();
+    input.body_moment_Nm = REAL(50);
+    ASSERT_STATUS(LACONIC_OK, laconic_estimate_run(&estimate, &plant, &input, 4, &why));
+    laconic_plant ahead = plant;
+    ASSERT_STATUS(LACONIC_OK, laconic_plant_run(&ahead, &input, 1, &why));
+    const laconic_real taken = turning_speed(&ahead);
+    ASSERT_STATUS(LACONIC_OK, laconic_plant_run(&ahead, &input, 1, &why));
+    plant.integrator.gyro_limit = (taken + turning_speed(&ahead)) / 2;
+    ASSERT_REFUSED(LACONIC_STEP_BEYOND_GYROSCOPIC_LIMIT, LACONIC_FIELD_STEP, 0,
+                   laconic_estimate_run(&estimate, &plant, &input, 4, &why), why);
+    TEST_ASSERT_EQUAL_UINT64(6, plant.steps);
+    TEST_ASSERT_EQUAL_INT(2, estimate.taken);
+}
+
 static void samples_whose_half_steps_are_refused_are_counted(void) {
     const laconic_vehicle v = with_motors(three_wheels());
     laconic_plant plant = plant_by(&laconic_rk4, &v, start_with(2, 1, 4), 0.01);
@@ -385,6 +414,8 @@ static void samples_whose_half_steps_are_refused_are_counted(void) {
     estimate.halves.gyro_limit = estimate.finer.gyro_limit = yaw * REAL(1.0001); /* reached by the first half step */
     ASSERT_STATUS(LACONIC_OK, laconic_estimate_run_sampled(&estimate, &plant, samples, &why));
     TEST_ASSERT_EQUAL_UINT64(1, errors_now(&estimate, &plant).unknown);
+    TEST_ASSERT_TRUE(estimate.local[6] == estimate.first_path_m[0]); /* whole, not from a first half on */
+    TEST_ASSERT_TRUE(estimate.local[7] == estimate.first_path_m[1]);
     samples[0].voltage_V[1] = NOT_A_NUMBER;
     ASSERT_REFUSED(LACONIC_NOT_FINITE, LACONIC_FIELD_VOLTAGE, 2,
                    laconic_estimate_run_sampled(&estimate, &plant, samples, &why), why);
@@ -446,6 +477,7 @@ int main(void) {
     RUN_TEST(a_refused_step_is_refused_as_without);
     RUN_TEST(half_steps_that_are_refused_are_counted);
     RUN_TEST(a_half_step_that_cannot_be_prepared_is_refused);
+    RUN_TEST(of_a_run_that_is_refused_midway_the_steps_that_were_taken_count);
     RUN_TEST(samples_whose_half_steps_are_refused_are_counted);
     RUN_TEST(a_twin_that_is_refused_stays);
     RUN_TEST(following_ends_as_without_an_estimate);

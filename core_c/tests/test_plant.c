@@ -106,6 +106,10 @@ static void a_payload_in_motion_leaves_the_body_where_it_is(void) {
 static void a_refused_change_changes_nothing(void) {
     laconic_plant plant = plant_of(three_wheels(), &laconic_rk4, 0.1), before = plant;
     laconic_vehicle v = three_wheels();
+    v.wheel[v.wheel_count++] = v.wheel[0];
+    ASSERT_REFUSED(LACONIC_ABOVE_LIMIT, LACONIC_FIELD_WHEEL_COUNT, 0, laconic_plant_change(&plant, &v, &why), why);
+    TEST_ASSERT_TRUE(why.value == 4 && why.limit == 3);
+    v = three_wheels();
     v.payload.mass_kg = REAL(-1);
     ASSERT_REFUSED(LACONIC_NEGATIVE, LACONIC_FIELD_PAYLOAD_MASS, 0, laconic_plant_change(&plant, &v, &why), why);
     v = three_wheels();
@@ -115,7 +119,6 @@ static void a_refused_change_changes_nothing(void) {
     TEST_ASSERT_EQUAL_MEMORY(&before, &plant, sizeof plant);
 }
 
-/* A vehicle with friction, too: its wheels start again. */
 /* On wheels of a tenth of the radius the same motion is ten times as fast in ν. */
 static void a_motion_that_a_changed_vehicle_cannot_have_is_refused(void) {
     const double fastest = EITHER(1e77, 1e9);

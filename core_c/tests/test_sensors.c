@@ -288,6 +288,7 @@ static void a_place_so_far_that_its_acceleration_overflows_is_refused_by_the_ste
         const laconic_sensor_field far = axis == 0 ? LACONIC_SENSOR_FIELD_IMU_X : LACONIC_SENSOR_FIELD_IMU_Y;
         ASSERT_REFUSED(LACONIC_OVERFLOW, (laconic_field)far, 0, laconic_sensors_run(&sensors, &plant, &input, 1, &why),
                        why);
+        TEST_ASSERT_TRUE(fabs((double)why.value) > 1e15); /* the acceleration that is too large */
     }
 }
 
