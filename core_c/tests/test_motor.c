@@ -34,6 +34,17 @@ static void refuses(laconic_motor m, laconic_status status, laconic_field field)
     TEST_ASSERT_EQUAL_MEMORY(&before, &v, sizeof v);
 }
 
+static void a_rotor_turns_with_each_of_as_many_wheels_as_there_may_be(void) {
+    laconic_vehicle v = three_wheels();
+    const laconic_motor m = good_motor();
+    while (v.wheel_count < LACONIC_MAX_WHEELS) v.wheel[v.wheel_count++] = v.wheel[0];
+    v.wheel[0].undriven = true;
+    ASSERT_STATUS(LACONIC_OK, laconic_motor_fit(&v, &m, &why));
+    ASSERT_NEAR(ROUNDING, 0.009, v.wheel_inertia_kgm2);
+    TEST_ASSERT_TRUE(v.wheel[0].own_inertia_kgm2 == 0);
+    for (int i = 1; i < LACONIC_MAX_WHEELS; i++) ASSERT_NEAR(ROUNDING, 0.009 + 25 * 2e-5, v.wheel[i].own_inertia_kgm2);
+}
+
 static void every_number_that_is_not_finite_is_named(void) {
     laconic_motor m;
     m = good_motor(), m.resistance_ohm = NOT_A_NUMBER, refuses(m, LACONIC_NOT_FINITE, LACONIC_FIELD_RESISTANCE);
@@ -112,6 +123,7 @@ int main(void) {
     UNITY_BEGIN();
     RUN_TEST(the_data_sheet_becomes_gain_damping_and_inertia);
     RUN_TEST(a_gear_that_reverses_negates_the_gain);
+    RUN_TEST(a_rotor_turns_with_each_of_as_many_wheels_as_there_may_be);
     RUN_TEST(every_number_that_is_not_finite_is_named);
     RUN_TEST(resistance_must_be_positive_and_the_gear_not_zero);
     RUN_TEST(friction_and_rotor_inertia_must_not_be_negative);
