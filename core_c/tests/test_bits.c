@@ -90,7 +90,7 @@ static void changes_of_the_ground(void) {
                 }
             }
             other.payload.mass_kg = REAL(0.4 * k);
-            if (k == 5) other.wheel_count -= 1;
+            if (k >= 5) other.wheel_count -= 1; /* none comes back: a plant takes no more wheels */
             if (k == 6) other.mass_kg = EITHER(REAL(1e200), REAL(1e25));
             if (k == 7) other.payload.x_m = EITHER(REAL(1e140), REAL(1e17));
             why = (laconic_refusal){LACONIC_OK, LACONIC_FIELD_NONE, 0, 0, 0};
