@@ -134,7 +134,7 @@ WATCHED = Program("node, watched", "firmware_stub/proof/watched/*.c",
                   ("core_c/src/*.c", "firmware_stub/src/integrity.c"), NODE_FOLDERS, NODE.defined)
 DRIVES = Program("drives", "firmware_stub/proof/drives/*.c",
                  ("core_c/src/*.c", "firmware_stub/drives/*.c", "firmware_stub/drives/*/*.c"), NODE_FOLDERS,
-                 left_out=("drives_by_canopen", "drives_by_moteus"),  # which did not end within ten minutes
+                 left_out=("drives_by_canopen", "drives_by_moteus"),  # not run to their ends: minutes
                  without=("plant.c",))
 SECURE = Program("secure", "firmware_stub/proof/secure.c", ("firmware_stub/secure/*.c",), NODE_FOLDERS, NODE.defined)
 DERIVATIVES = Program("derivatives", "core_c/proof/parts/derivatives*.c",

@@ -19,7 +19,7 @@ def tables(rows: dict[str, Row]) -> dict[str, str]:
 
 def entries_table(rows: dict[str, Row]) -> str:
     """What the analyser found for each entry."""
-    lines = ["| part | entry | functions | statements reached | alarms | without argument | s | run |",
+    lines = ["| part | entry | functions | statements reached | alarms | not justified | s | run |",
              "| --- | --- | --- | --- | --- | --- | --- | --- |"]
     for key in wanted():
         row = rows.get(key)
