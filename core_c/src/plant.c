@@ -173,9 +173,8 @@ laconic_status laconic_plant_change(laconic_plant *plant, const laconic_vehicle 
     const int32_t wheels = LACONIC_WHEELS(&plant->model);
     laconic_status status = prepare_constants(&c, vehicle, plant->integrator.method, plant->integrator.step_s, why);
     if (status != LACONIC_OK) return status;
-    if (LACONIC_WHEELS(&c.model) > wheels) /* they would turn as nobody knows */
-        return refuse(why, LACONIC_ABOVE_LIMIT, LACONIC_FIELD_WHEEL_COUNT, 0, (real)LACONIC_WHEELS(&c.model),
-                      (real)wheels);
+    if (vehicle->wheel_count > wheels) /* how far they have turned nobody knows */
+        return refuse(why, LACONIC_ABOVE_LIMIT, LACONIC_FIELD_WHEEL_COUNT, 0, (real)vehicle->wheel_count, (real)wheels);
     laconic_plant_wheel_speeds(plant, speed);
     laconic_plant_wheel_angles(plant, angle_rad);
     status = laconic_state_carry(&plant->state, &plant->model, &c.model);

@@ -153,11 +153,31 @@ static void a_method_that_no_derivation_has_is_refused_by_that_of_all(void) {
                   laconic_step_jacobian_of(&jacobian, &r.model, &r.integrator, &r.state, &held, false));
 }
 
+/* A change of the force along one axis alone acts as both do without the other. */
+static void a_world_force_acts_along_each_axis_alone(void) {
+    const robot r = robot_of(&every_case[0]);
+    const laconic_input held = every_input();
+    laconic_state_change after[3], none;
+    memset(after, 0, sizeof after);
+    memset(&none, 0, sizeof none);
+    for (int k = 0; k < 3; k++) {
+        laconic_input by = no_input();
+        by.world_force_N[0] = REAL(k != 1);
+        by.world_force_N[1] = REAL(k != 0);
+        ASSERT_STATUS(LACONIC_OK,
+                      laconic_step_tangent(&after[k], &r.model, &r.integrator, &r.state, &held, &none, &by, NULL));
+    }
+    ASSERT_NEAR(ROUNDING, after[2].x_m, after[0].x_m + after[1].x_m);
+    ASSERT_NEAR(ROUNDING, after[2].y_m, after[0].y_m + after[1].y_m);
+    TEST_ASSERT_TRUE(after[1].y_m > 0 && after[0].x_m > 0);
+}
+
 int main(void) {
     UNITY_BEGIN();
     RUN_TEST(the_derivation_of_a_method_gives_what_that_of_all_gives);
     RUN_TEST(a_derivation_of_another_method_is_refused_and_nothing_is_written);
     RUN_TEST(an_adjoint_that_is_asked_for_less_gives_the_rest_as_it_is);
     RUN_TEST(a_method_that_no_derivation_has_is_refused_by_that_of_all);
+    RUN_TEST(a_world_force_acts_along_each_axis_alone);
     return UNITY_END();
 }

@@ -377,22 +377,6 @@ static void without_a_world_force_its_columns_are_zero(void) {
     for (int i = 0; i < 10; i++) TEST_ASSERT_EQUAL_DOUBLE(0.0, (double)by_input[i * LACONIC_INPUT_NUMBERS(4) + 11]);
 }
 
-/* A derivative is linear, so along one axis alone it is what both axes give without the other. */
-static void a_world_force_acts_along_each_axis_alone(void) {
-    const step_case c = case_of(with_motors(mecanum()), &laconic_rk4, 0.05);
-    rows found[3];
-    for (int which = 1; which <= 3; which++) { /* x, y, both */
-        direction_case d;
-        memset(&d, 0, sizeof d);
-        d.input.world_force_N[0] = REAL(which & 1);
-        d.input.world_force_N[1] = REAL(which >> 1);
-        const laconic_state_change after = tangent_of(&c, &d);
-        found[which - 1] = rows_of(&after);
-        TEST_ASSERT_TRUE(fabs(found[which - 1].n[0]) > 1e-6);
-    }
-    for (int i = 0; i < 10; i++) ASSERT_NEAR(TRANSPOSED, found[2].n[i], found[0].n[i] + found[1].n[i]);
-}
-
 /* -------------------------------------------------------------------------------- branches -- */
 
 static laconic_status jacobian_status(laconic_plant *plant, const laconic_input *held) {
@@ -466,7 +450,6 @@ int main(void) {
     RUN_TEST(the_adjoint_is_the_tangent_transposed);
     RUN_TEST(the_jacobian_has_the_tangents_as_columns);
     RUN_TEST(without_a_world_force_its_columns_are_zero);
-    RUN_TEST(a_world_force_acts_along_each_axis_alone);
     RUN_TEST(a_refused_step_has_no_derivative);
     RUN_TEST(ground_with_friction_is_refused);
     RUN_TEST(the_derivative_of_auto_is_that_of_the_method_that_steps);

@@ -542,8 +542,8 @@ laconic_real laconic_plant_energy_J(const laconic_plant *plant);
 laconic_status laconic_plant_set_step(laconic_plant *plant, laconic_real step_s, laconic_refusal *why);
 
 /* Another payload, motor, motor_circuit, mass … while the vehicle moves (laconic_state_carry). The wheels must stay as
- * they are; body velocity, wheel speeds and angles stay. Refuses what laconic_plant_start refuses of a vehicle, OVERFLOW,
- * and more wheels (ABOVE_LIMIT, wheel_count); a refusal changes nothing. */
+ * they are; body velocity, wheel speeds and angles stay. Refuses what laconic_plant_start refuses of a vehicle,
+ * OVERFLOW, and more wheels (ABOVE_LIMIT, wheel_count); a refusal changes nothing. */
 laconic_status laconic_plant_change(laconic_plant *plant, const laconic_vehicle *vehicle, laconic_refusal *why);
 
 /* -------------------------------------------------------------------------------- recording -- */
