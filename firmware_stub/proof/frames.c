@@ -3,15 +3,11 @@
  * numbers, with counts and flags as they set them. */
 #include "laconic_node/node.h"
 
-#include "__fc_builtin.h"
+#include "any_frame.h"
 
-#define ANYTHING(thing) Frama_C_make_unknown((char *)&(thing), sizeof(thing))
-#define ANY_BOOL() ((bool)Frama_C_interval(0, 1))
-#define ANY_WORD() Frama_C_unsigned_int_interval(0, 0xFFFFFFFFU)
 #define MOST_TURNS ((1LL << 62) + ((1LL << 62) - 2))
 
 static laconic_node node;
-static laconic_frame frame;
 
 static laconic_status any_status(laconic_refusal *why) {
     const laconic_status status = (laconic_status)Frama_C_interval(0, LACONIC_STATUS_COUNT - 1);
@@ -173,15 +169,6 @@ uint8_t laconic_loader_check(const laconic_loader *loader, uint16_t frame_count,
 }
 
 /* ------------------------------------------------------------------------------------------ frames -- */
-
-static void any_frame(void) {
-    ANYTHING(frame);
-    frame.extended = ANY_BOOL();
-    frame.remote = ANY_BOOL();
-    frame.fd = ANY_BOOL();
-    frame.bit_rate_switch = ANY_BOOL();
-    frame.length = Frama_C_unsigned_char_interval(0, LACONIC_FRAME_BYTES);
-}
 
 /* From power-up: any frames, at any time. */
 void prove_frames(void) {

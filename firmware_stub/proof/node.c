@@ -6,26 +6,11 @@
 #include "laconic_node/protection.h"
 #include "laconic_node/slcan.h"
 
-#include "__fc_builtin.h"
+#include "any_frame.h"
 
-#define ANYTHING(thing) Frama_C_make_unknown((char *)&(thing), sizeof(thing))
-#define ANY_BOOL() ((bool)Frama_C_interval(0, 1))
 #define ANY_BYTE() Frama_C_unsigned_char_interval(0, 255)
 /* A receiver that laconic_e2e_check() alone has changed has fewer: its contract. */
 #define ANY_STRAYS() Frama_C_unsigned_char_interval(0, LACONIC_E2E_RESYNC - 1)
-#define ANY_WORD() Frama_C_unsigned_int_interval(0, 0xFFFFFFFFU)
-
-static laconic_frame frame;
-
-/* As a port makes it: so many bytes as the frame's kind may have. */
-static void any_frame(void) {
-    ANYTHING(frame);
-    frame.extended = ANY_BOOL();
-    frame.remote = ANY_BOOL();
-    frame.fd = ANY_BOOL();
-    frame.bit_rate_switch = ANY_BOOL();
-    frame.length = Frama_C_unsigned_char_interval(0, LACONIC_FRAME_BYTES);
-}
 
 void prove_checksums(void) {
     static uint8_t data[LACONIC_FRAME_BYTES];

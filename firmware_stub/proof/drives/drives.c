@@ -5,11 +5,8 @@
 
 #include "laconic_node/node.h"
 
-#include "__fc_builtin.h"
+#include "../any_frame.h"
 
-#define ANYTHING(thing) Frama_C_make_unknown((char *)&(thing), sizeof(thing))
-#define ANY_BOOL() ((bool)Frama_C_interval(0, 1))
-#define ANY_WORD() Frama_C_unsigned_int_interval(0, 0xFFFFFFFFU)
 /* Each step adds less than 2^32 counts, so an encoder needs 2^31 steps to come here. */
 #define MOST_COUNTS (1LL << 62)
 
@@ -18,7 +15,6 @@ static laconic_drives drives;
 static laconic_plant plant;
 static laconic_input held;
 static laconic_refusal refusal;
-static laconic_frame frame;
 static uint64_t axes[(LACONIC_MAX_WHEELS * LACONIC_NODE_AXIS_BYTES + 7) / 8];
 
 static void any_motion(void) {
@@ -49,15 +45,6 @@ void laconic_plant_wheel_speeds(const laconic_plant *of, laconic_real *speed_rad
 void laconic_plant_wheel_angles(const laconic_plant *of, laconic_real *angle_rad) {
     (void)of;
     for (int32_t i = 0; i < LACONIC_MAX_WHEELS; i++) ANYTHING(angle_rad[i]);
-}
-
-static void any_frame(void) {
-    ANYTHING(frame);
-    frame.extended = ANY_BOOL();
-    frame.remote = ANY_BOOL();
-    frame.fd = ANY_BOOL();
-    frame.bit_rate_switch = ANY_BOOL();
-    frame.length = Frama_C_unsigned_char_interval(0, LACONIC_FRAME_BYTES);
 }
 
 static void encoders_in_range(void) {

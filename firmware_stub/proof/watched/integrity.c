@@ -5,16 +5,11 @@
 
 #include "node_internal.h"
 
-#include "__fc_builtin.h"
-
-#define ANYTHING(thing) Frama_C_make_unknown((char *)&(thing), sizeof(thing))
-#define ANY_BOOL() ((bool)Frama_C_interval(0, 1))
-#define ANY_WORD() Frama_C_unsigned_int_interval(0, 0xFFFFFFFFU)
+#include "../any_frame.h"
 
 static laconic_node node;
 static laconic_node_config config;
 static laconic_integrity integrity;
-static laconic_frame frame;
 
 /* Any bytes, but for the pointers: a changed one is compared with the original before it is used. */
 static void any_node(laconic_node *of) {
@@ -54,15 +49,6 @@ bool laconic_node_next_frame(laconic_node *of, laconic_frame *to) {
     any_node(of);
     Frama_C_make_unknown((char *)to, sizeof *to);
     return ANY_BOOL();
-}
-
-static void any_frame(void) {
-    ANYTHING(frame);
-    frame.extended = ANY_BOOL();
-    frame.remote = ANY_BOOL();
-    frame.fd = ANY_BOOL();
-    frame.bit_rate_switch = ANY_BOOL();
-    frame.length = Frama_C_unsigned_char_interval(0, LACONIC_FRAME_BYTES);
 }
 
 void prove_integrity(void) {

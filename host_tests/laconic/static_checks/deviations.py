@@ -65,8 +65,8 @@ DEVIATIONS = {
     "12.3": everywhere(A, "declarations of several numbers of one kind on one line, such as x_m, y_m"),
     "13.3": everywhere(A, "*to++ = … fills what is packed"),
     "13.4": everywhere(A, "one value given to two names: a = b = …"),
-    "14.1": counted(R, "a number is multiplied by powers of 4 and 16, exactly, until it is near 1: each of its "
-                       "values ends the loop", core=2),
+    "14.1": counted(R, "a loop scales a number by 4 or 16, exactly, until it is near 1, where every number "
+                       "comes to", core=2),
     "14.2": everywhere(R, "a loop over text moves on by a place's length inside of its body"),
     "14.4": everywhere(R, "flags & BIT and counts as conditions"),
     "15.5": everywhere(A, "a function ends where its answer is known: each refusal is one line, and nothing is "
