@@ -156,6 +156,19 @@ static void the_smooth_laws_outputs_are_those_of_the_friction_step(void) {
 }
 
 /* Of a motion that is no number; and if it is only one wheel's load, whatever the margins of the wheels after it. */
+/* What is not known of the windings, the motors' losses hold: the supply gives more than the motion has. */
+static void without_a_winding_resistance_the_supply_still_gives_energy(void) {
+    laconic_vehicle v = with_motors(mecanum());
+    laconic_input input = no_input();
+    v.ground.friction_coefficient = REAL(0.5);
+    for (int i = 0; i < 4; i++) input.voltage_V[i] = REAL(2);
+    laconic_plant plant = started(v, 0.005, 0, 0, 0);
+    ASSERT_STATUS(LACONIC_OK, laconic_plant_run(&plant, &input, 100, &why));
+    TEST_ASSERT_TRUE(laconic_plant_energy_J(&plant) > 0);
+    TEST_ASSERT_TRUE(plant.slip.supply_energy_J.value > laconic_plant_energy_J(&plant));
+    TEST_ASSERT_TRUE(plant.slip.motor_loss_J.value > 0);
+}
+
 static void a_load_that_is_no_number_leaves_no_margin(void) {
     const laconic_input input = no_input();
     laconic_plant plant = started(robotino(0.4, 0.3, 0), 1e-3, 0, 0, 0);
@@ -180,6 +193,7 @@ int main(void) {
     RUN_TEST(outputs_are_those_of_the_wheels_own_states);
     RUN_TEST(the_smooth_law_follows_the_friction_step);
     RUN_TEST(the_smooth_laws_outputs_are_those_of_the_friction_step);
+    RUN_TEST(without_a_winding_resistance_the_supply_still_gives_energy);
     RUN_TEST(a_load_that_is_no_number_leaves_no_margin);
     return UNITY_END();
 }

@@ -68,6 +68,22 @@ static void damping_rates_of_the_three_wheel_example_are_the_closed_form(void) {
     ASSERT_NEAR(8 * ROUNDING, (1 + square * x[0]) / (1 + square * x[2]), laconic_condition_number(&m));
 }
 
+/* Wheels that are alike have the same share in inertia and damping, also where either is 0. */
+static void axes_are_the_same_without_damping(void) {
+    for (int inert = 0; inert < 2; inert++) {
+        laconic_vehicle v = mecanum();
+        v.com_x_m = REAL(0.13);
+        v.com_y_m = REAL(-0.07);
+        v.wheel_inertia_kgm2 = inert ? REAL(0.01) : 0;
+        v.motor_damping_Nms = REAL(DAMPING);
+        const laconic_model damped = model_of(v);
+        v.motor_damping_Nms = 0;
+        const laconic_model free = model_of(v);
+        TEST_ASSERT_EQUAL_MEMORY(damped.nu_of_zeta, free.nu_of_zeta, sizeof free.nu_of_zeta);
+        for (int k = 0; k < 3; k++) TEST_ASSERT_TRUE(free.decay_per_s[k] == 0 && damped.decay_per_s[k] > 0);
+    }
+}
+
 static void degrees_of_freedom_are_counted(void) {
     laconic_vehicle v = differential_drive();
     TEST_ASSERT_EQUAL_INT(3, model_of(bare_body()).dof);
@@ -265,6 +281,7 @@ int main(void) {
     RUN_TEST(the_basis_makes_damping_diagonal);
     RUN_TEST(every_constraint_is_built_in);
     RUN_TEST(damping_rates_of_the_three_wheel_example_are_the_closed_form);
+    RUN_TEST(axes_are_the_same_without_damping);
     RUN_TEST(degrees_of_freedom_are_counted);
     RUN_TEST(columns_beyond_the_degrees_of_freedom_are_zero);
     RUN_TEST(axle_lines_that_agree_to_rounding_count_once);

@@ -155,6 +155,23 @@ static void the_fastest_yaw_ends_in_a_refusal_never_in_a_jump(void) {
 
 /* ----------------------------------------------------------------------------------- sampled -- */
 
+/* A step so short that its path is small, by so large a force that the speed leaves the range. */
+static void a_speed_beyond_the_range_is_refused_whatever_the_method(void) {
+    const double fastest = EITHER(1e77, 1e9), step_s = EITHER(1e-66, 1e-5);
+    for (int32_t i = 0; i < LACONIC_METHOD_COUNT; i++) {
+        const laconic_model m = model_of(bare_body());
+        const laconic_integrator in = integrator_of(laconic_method_by_number(i), &m, step_s);
+        laconic_input input = no_input();
+        laconic_state state = moving(&m, 0.4 * fastest, 0, 0);
+        input.body_force_N[0] = REAL(0.1 * fastest * MASS * RADIUS / step_s);
+        ASSERT_STATUS(LACONIC_OK, laconic_step(&m, &in, &state, &input));
+        const laconic_state before = state;
+        input.body_force_N[0] *= 9;
+        ASSERT_STATUS(LACONIC_OVERFLOW, laconic_step(&m, &in, &state, &input));
+        TEST_ASSERT_EQUAL_MEMORY(&before, &state, sizeof state);
+    }
+}
+
 static void an_input_that_does_not_vary_gives_the_motion_of_a_held_one(void) {
     const laconic_model m = model_of(with_motors(three_wheels()));
     const laconic_input input = every_input();
@@ -389,6 +406,7 @@ int main(void) {
     RUN_TEST(a_free_puck_goes_straight);
     RUN_TEST(a_heading_of_more_turns_than_can_be_counted_is_refused_whatever_the_method);
     RUN_TEST(the_fastest_yaw_ends_in_a_refusal_never_in_a_jump);
+    RUN_TEST(a_speed_beyond_the_range_is_refused_whatever_the_method);
     RUN_TEST(an_input_that_does_not_vary_gives_the_motion_of_a_held_one);
     RUN_TEST(a_sampled_sine_keeps_every_methods_order);
     RUN_TEST(a_world_force_beyond_the_range_is_refused_at_every_sample);
