@@ -190,6 +190,7 @@ static void sampled_steps_are_watched(void) {
     TEST_ASSERT_EQUAL_INT(LACONIC_OK, laconic_estimate_run_sampled(&estimate, &plant, node.input, &why));
     laconic_node_on_tick(&node, now_us);
     TEST_ASSERT_EQUAL_UINT64(1, node.plant.steps);
+    TEST_ASSERT_EQUAL_UINT8(LACONIC_WIRE_STATE_LOCKSTEP, node.state); /* no fault */
     TEST_ASSERT_EQUAL_INT(1, node.estimate.taken);
     TEST_ASSERT_EQUAL_MEMORY(estimate.local, node.estimate.local, sizeof estimate.local);
 }
