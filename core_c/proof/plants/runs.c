@@ -21,7 +21,6 @@ void prove_plant_restart_slipping(void) {
 void prove_plant_change(void) {
     if (!any_plant(&laconic_rk4)) return;
     countable_vehicle();
-    vehicle.wheel_count = plant.model.wheel_count; /* the wheels stay as they are */
     (void)laconic_plant_change(&plant, &vehicle, any_refusal());
 }
 
