@@ -13,9 +13,10 @@ from dataclasses import dataclass, field
 from pathlib import Path
 
 from laconic.errors import BadInput
+from laconic.mutation.equivalent import read_equivalents
 from laconic.mutation.operators import Mutant, mutants_of
 from laconic.mutation.programs import FAMILIES, families
-from laconic.mutation.results import Results, read_equivalents
+from laconic.mutation.results import Results
 from laconic.mutation.trial import Outcome, Trials, is_of_fmu
 from laconic.paths import SOURCE_DIR, build_dir, sources_missing
 

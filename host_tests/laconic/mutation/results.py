@@ -1,41 +1,16 @@
-"""What came out, kept as JSON lines so that a run goes on where the last one ended; and the list of equivalents."""
+"""What came out, kept as JSON lines so that a run goes on where the last one ended."""
 
 from __future__ import annotations
 
 import hashlib
 import json
 from collections.abc import Iterable
-from dataclasses import asdict, dataclass
+from dataclasses import asdict
 from pathlib import Path
 
-from laconic.errors import BadInput
 from laconic.mutation.operators import Mutant
 from laconic.mutation.trial import Outcome
 from laconic.paths import SOURCE_DIR
-from laconic.scene.table import entries_of
-
-EQUIVALENTS = Path(__file__).parent / "equivalents.toml"
-
-
-@dataclass(frozen=True)
-class Equivalent:
-    """A mutant that no test can notice, and why. It is found by its text, so that other lines may come and go."""
-
-    file: str
-    function: str
-    before: str
-    after: str
-    reason: str
-
-
-def read_equivalents(path: Path = EQUIVALENTS, table: str = "equivalent") -> list[Equivalent]:
-    """The list, or `other`, of faults that no operator makes; BadInput for a row that is not complete."""
-    rows = entries_of(path.read_text(encoding="utf-8")).get(table, [])
-    names = set(Equivalent.__dataclass_fields__)
-    for number, row in enumerate(rows, 1):
-        if set(row) != names or not all(isinstance(value, str) for value in row.values()) or not row["reason"].strip():
-            raise BadInput(f"{path.name}: row {number}: needs {', '.join(sorted(names))}, each a text, and a reason")
-    return [Equivalent(**row) for row in rows]
 
 
 class Results:
