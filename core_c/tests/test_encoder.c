@@ -1,5 +1,6 @@
-/* Tests of encoder.c: whole counts, their wrap and the index. */
-#include "check.h"
+/* Tests of encoder.c: whole counts, their wrap and the index, and how far a wheel has turned. */
+#include "methods.h"
+#include "vehicles.h"
 
 static const laconic_encoder_settings plain = {.counts_per_turn = 4096};
 
@@ -60,6 +61,17 @@ static void a_step_that_no_count_can_hold_is_refused(void) {
     }
 }
 
+/* Behind a gear of 2π each radian is a count. */
+static void the_most_counts_that_every_scalar_type_can_hold_are_taken(void) {
+    const laconic_encoder_settings one_a_rad = {.counts_per_turn = 1, .gear_ratio = REAL(2 * PI)};
+    const double most = 2147483520.0; /* the largest number below 2^31 of single precision */
+    TEST_ASSERT_TRUE(turned(&one_a_rad, most).count == INT64_C(2147483520));
+    TEST_ASSERT_TRUE(turned(&one_a_rad, -most).count == -INT64_C(2147483520));
+    laconic_encoder encoder = {0, 0};
+    TEST_ASSERT_FALSE(laconic_encoder_turn(&encoder, &one_a_rad, REAL(2147483648.0)));
+    TEST_ASSERT_FALSE(laconic_encoder_turn(&encoder, &one_a_rad, REAL(-2147483648.0)));
+}
+
 static void the_index_is_passed_once_a_turn_in_either_direction(void) {
     const int64_t count[] = {0, 9, 10, 11, 29, -1, -10, -11};
     const int32_t place[] = {0, 9, 0, 1, 9, 9, 0, 9};
@@ -77,6 +89,7 @@ static void it_shows_its_count_wrapped(void) {
     for (int k = 0; k < 5; k++) {
         const laconic_encoder encoder = {count[k], 0};
         TEST_ASSERT_EQUAL_INT(shown[k], laconic_encoder_shown(&encoder, 65536));
+        TEST_ASSERT_EQUAL_INT(0, laconic_encoder_shown(&encoder, 1));
     }
 }
 
@@ -90,6 +103,46 @@ static void without_a_wrap_it_shows_32_bits(void) {
     }
 }
 
+/* ------------------------------------------------------------------------------------ odometer -- */
+
+static laconic_plant driven(laconic_vehicle v, double friction) {
+    laconic_plant plant;
+    laconic_refusal why;
+    memset(&plant, 0, sizeof plant);
+    v.ground.friction_coefficient = REAL(friction);
+    const laconic_start start = start_with(3, -2, 5);
+    ASSERT_STATUS(LACONIC_OK, laconic_plant_start(&plant, &v, &laconic_auto, REAL(1e-3), &start, &why));
+    const laconic_input input = every_input();
+    ASSERT_STATUS(LACONIC_OK, laconic_plant_run(&plant, &input, 100, &why));
+    return plant;
+}
+
+/* The rests of the sums, too, are those of the place where it began. */
+static void a_wheel_has_not_turned_since_now(void) {
+    for (int k = 0; k < 2; k++) {
+        const laconic_plant plant = driven(with_motors(three_wheels()), k * 0.5);
+        laconic_odometer now;
+        laconic_odometer_of(&now, &plant);
+        for (int32_t i = 0; i < 3; i++) {
+            TEST_ASSERT_TRUE(now.sum[i].rest != 0);
+            TEST_ASSERT_TRUE(laconic_wheel_turned_rad(&plant, &now, i) == 0);
+        }
+    }
+}
+
+static void an_odometer_takes_as_many_sums_as_there_are(void) {
+    for (int k = 0; k < 2; k++) {
+        const laconic_plant plant = driven(with_motors(mecanum()), k * 0.5);
+        const int32_t count = k == 0 ? 3 : 4; /* one a wheel where there is friction */
+        laconic_odometer now, before;
+        memset(&before, 7, sizeof before);
+        now = before;
+        laconic_odometer_of(&now, &plant);
+        for (int32_t i = 0; i < LACONIC_TURNED_SUMS; i++)
+            TEST_ASSERT_EQUAL_INT(i < count, memcmp(&before.sum[i], &now.sum[i], sizeof now.sum[i]) != 0);
+    }
+}
+
 int main(void) {
     UNITY_BEGIN();
     RUN_TEST(half_a_turn_gives_half_its_counts);
@@ -98,8 +151,11 @@ int main(void) {
     RUN_TEST(a_shaft_far_from_its_start_counts_as_well_as_near_it);
     RUN_TEST(the_share_of_a_count_stays_below_one);
     RUN_TEST(a_step_that_no_count_can_hold_is_refused);
+    RUN_TEST(the_most_counts_that_every_scalar_type_can_hold_are_taken);
     RUN_TEST(the_index_is_passed_once_a_turn_in_either_direction);
     RUN_TEST(it_shows_its_count_wrapped);
     RUN_TEST(without_a_wrap_it_shows_32_bits);
+    RUN_TEST(a_wheel_has_not_turned_since_now);
+    RUN_TEST(an_odometer_takes_as_many_sums_as_there_are);
     return UNITY_END();
 }

@@ -172,11 +172,32 @@ static void rates_of_an_outer_integrator_give_the_same(void) {
     ASSERT_NEAR_ALL(20 * ROUNDING, expected, found, 2);
 }
 
+/* A body that turns at ω about S, where nothing holds it: beside S a place feels −ω² d. The mean over a step, in the
+ * axes of its middle, is that times the mean of cos over ± ωh/2. */
+static void over_a_step_a_place_feels_its_distance_from_the_mass_centre(void) {
+    const double h = 0.05, yaw_rate = 6.0 / BIG_LAMBDA, half = yaw_rate * h / 2;
+    laconic_vehicle v = bare_body();
+    v.com_x_m = REAL(0.12);
+    v.com_y_m = REAL(-0.07);
+    laconic_plant plant = plant_of(&v, &laconic_auto, h, start_with(0, 0, 6));
+    const laconic_imu_settings imu = at(0.12 + 0.3, -0.07 + 0.2);
+    const laconic_input input = no_input();
+    laconic_sensor_moment before;
+    laconic_imu_sample sample;
+    laconic_sensors_before(&before, &plant);
+    ASSERT_STATUS(LACONIC_OK, laconic_plant_run(&plant, &input, 1, &why));
+    laconic_imu_feel_step(&sample, &imu, &plant, &before);
+    const double square = yaw_rate * yaw_rate * sin(half) / half;
+    ASSERT_NEAR(EITHER(1e-13, 1e-4), -square * 0.3, sample.specific_force_m_per_s2[0]);
+    ASSERT_NEAR(EITHER(1e-13, 1e-4), -square * 0.2, sample.specific_force_m_per_s2[1]);
+}
+
 /* ν and an input are varied; the ν of the differential drive, which slides its wheels, is projected. */
 static void the_tangent_of_the_acceleration_is_its_slope(void) {
     const double by[3] = {0.3, -0.8, 0.5}, h = EITHER(1e-4, 2e-2);
-    const laconic_vehicle each[] = {with_motors(three_wheels()), differential_drive()};
-    for (int k = 0; k < 2; k++) {
+    laconic_vehicle each[] = {with_motors(three_wheels()), differential_drive(), with_motors(mecanum())};
+    each[2].com_x_m = REAL(0.2);
+    for (int k = 0; k < 3; k++) {
         laconic_model m;
         laconic_variation along;
         laconic_rates rates, change;
@@ -226,6 +247,22 @@ static void scale_and_bias_change_each_axis_by_itself(void) {
 static void an_ideal_imu_shows_the_truth_to_the_last_bit(void) {
     const laconic_imu_settings imu = {0};
     laconic_real acceleration[2], yaw_rate;
+    laconic_imu_show(&imu, &truth, 5, REAL(STEP), acceleration, &yaw_rate);
+    TEST_ASSERT_TRUE(acceleration[0] == 2 && acceleration[1] == -3 && yaw_rate == REAL(0.5));
+}
+
+static void leave_behind(laconic_real number) {
+    volatile laconic_real stack[500];
+    for (int k = 0; k < 500; k++) stack[k] = number;
+    TEST_ASSERT_TRUE(stack[0] != stack[0]);
+}
+
+/* Without noise nothing is drawn, and what stood in memory before plays no part. */
+static void without_noise_it_shows_the_truth_whatever_stood_in_memory(void) {
+    const laconic_imu_settings imu = {0};
+    laconic_real acceleration[2], yaw_rate;
+    void (*volatile leave)(laconic_real) = leave_behind; /* in a frame of its own */
+    leave(NOT_A_NUMBER);
     laconic_imu_show(&imu, &truth, 5, REAL(STEP), acceleration, &yaw_rate);
     TEST_ASSERT_TRUE(acceleration[0] == 2 && acceleration[1] == -3 && yaw_rate == REAL(0.5));
 }
@@ -281,9 +318,11 @@ int main(void) {
     RUN_TEST(at_rest_on_a_slope_it_feels_what_holds_it);
     RUN_TEST(lever_arms_agree_with_the_change_of_the_place_s_velocity);
     RUN_TEST(rates_of_an_outer_integrator_give_the_same);
+    RUN_TEST(over_a_step_a_place_feels_its_distance_from_the_mass_centre);
     RUN_TEST(the_tangent_of_the_acceleration_is_its_slope);
     RUN_TEST(scale_and_bias_change_each_axis_by_itself);
     RUN_TEST(an_ideal_imu_shows_the_truth_to_the_last_bit);
+    RUN_TEST(without_noise_it_shows_the_truth_whatever_stood_in_memory);
     RUN_TEST(beyond_its_range_it_shows_the_end_of_the_range);
     RUN_TEST(the_density_of_the_noise_sets_its_deviation_at_every_step);
     RUN_TEST(seeds_choose_the_noise);

@@ -114,6 +114,21 @@ static void a_short_buffer_gets_what_fits_and_the_whole_length_is_returned(void)
     TEST_ASSERT_EQUAL_UINT(length, laconic_message(&why, NULL, 0));
 }
 
+/* Whatever its size: cut or whole, it ends within, and what stands behind it stays. */
+static void nothing_behind_the_buffer_is_written(void) {
+    const laconic_refusal why = {LACONIC_OK, LACONIC_FIELD_MASS, 0, 0, 0};
+    const char whole[] = "vehicle.mass_kg: ok";
+    for (size_t size = 0; size <= sizeof whole + 2; size++) {
+        char expected[sizeof whole + 6], found[sizeof whole + 6];
+        memset(expected, '#', sizeof expected);
+        memset(found, '#', sizeof found);
+        snprintf(expected, size, "%s", whole);
+        TEST_ASSERT_EQUAL_UINT(sizeof whole - 1, laconic_message(&why, found, size));
+        for (size_t k = 0; k < sizeof found; k++)
+            if (k <= strlen(whole) || k >= size) TEST_ASSERT_EQUAL_INT(expected[k], found[k]);
+    }
+}
+
 int main(void) {
     UNITY_BEGIN();
     RUN_TEST(a_refusal_names_field_item_value_and_remedy);
@@ -127,5 +142,6 @@ int main(void) {
     RUN_TEST(zero_infinity_and_nan_are_written_out);
     RUN_TEST(the_ends_of_the_range_are_shown);
     RUN_TEST(a_short_buffer_gets_what_fits_and_the_whole_length_is_returned);
+    RUN_TEST(nothing_behind_the_buffer_is_written);
     return UNITY_END();
 }

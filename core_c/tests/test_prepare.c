@@ -223,6 +223,22 @@ static void a_wheel_at_the_end_of_the_range_is_refused_and_never_gives_nan(void)
     ASSERT_REFUSED(LACONIC_OVERFLOW, LACONIC_FIELD_WHEEL_X, 1, laconic_prepare(&model, &v, &why), why);
 }
 
+/* Two wheels under the mass centre leave the rotation alone, so that 1/Λ and the one yaw rate fill the range: two
+ * thirds of it by each are too much, where either alone would be taken. */
+static void a_body_that_turns_alone_is_refused_by_both_of_its_yaw_scales(void) {
+    const double part = EITHER(1e154, 1.3e19); /* the root of the range is 1.34e154, or 1.84e19 */
+    laconic_vehicle v = bare_body();
+    laconic_model model;
+    add_wheel(&v, LACONIC_WHEEL_FIXED, 0.0, 0.0, 0.0, 0.0);
+    add_wheel(&v, LACONIC_WHEEL_FIXED, 0.0, 0.0, PI / 2, 0.0);
+    v.wheel_inertia_kgm2 = 0;
+    v.mass_kg = v.wheel_radius_m = REAL(EITHER(1e50, 1e6));
+    v.yaw_inertia_kgm2 = REAL((double)v.mass_kg / part / part * (double)v.mass_kg * (double)v.mass_kg);
+    ASSERT_REFUSED(LACONIC_OVERFLOW, LACONIC_FIELD_NONE, 0, laconic_prepare(&model, &v, &why), why);
+    v.yaw_inertia_kgm2 *= 9; /* a third */
+    TEST_ASSERT_EQUAL_INT(1, model_of(v).dof);
+}
+
 /* The radius of gyration of this body is 0 in the scalar type, so a wheel under its centre has the lever 0/0. */
 static void a_body_without_any_extent_is_refused_and_never_gives_nan(void) {
     laconic_vehicle v = caster();
@@ -295,6 +311,7 @@ int main(void) {
     RUN_TEST(a_wheel_that_the_vehicle_has_not_is_not_blamed);
     RUN_TEST(a_wheel_just_within_the_range_is_blamed_with_its_own_number);
     RUN_TEST(a_wheel_at_the_end_of_the_range_is_refused_and_never_gives_nan);
+    RUN_TEST(a_body_that_turns_alone_is_refused_by_both_of_its_yaw_scales);
     RUN_TEST(a_body_without_any_extent_is_refused_and_never_gives_nan);
     RUN_TEST(a_slow_rate_keeps_its_digits_beside_a_fast_one);
     RUN_TEST(sixteen_wheels_and_none_are_both_a_vehicle);
