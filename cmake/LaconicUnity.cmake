@@ -51,4 +51,11 @@ function(laconic_unity_test name)
     add_dependencies(laconic_unity_tests ${name})
     add_test(NAME ${name} COMMAND ${name})
     set_tests_properties(${name} PROPERTIES TIMEOUT 60 LABELS unity)
+    if(LACONIC_SANITIZE)
+        set_tests_properties(${name} PROPERTIES TIMEOUT 300)
+    endif()
+    if(LACONIC_COVERAGE) # what clang's tests leave for cmake/coverage_table.py
+        set_tests_properties(${name} PROPERTIES
+            ENVIRONMENT "LLVM_PROFILE_FILE=${CMAKE_BINARY_DIR}/profiles/${name}.profraw")
+    endif()
 endfunction()

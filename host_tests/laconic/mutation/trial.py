@@ -17,6 +17,7 @@ from laconic.mutation.operators import Mutant
 from laconic.mutation.programs import FOLDERS, Family, Program, Unit, link
 from laconic.paths import SOURCE_DIR, build_dir
 
+START_S = 0.005  # that any program takes, however little it does
 SANITIZERS = ("-fsanitize=address,undefined", "-fno-sanitize-recover=all", "-fno-sanitize=vptr", "-O1")
 VERDICTS = {"killed": "a test failed", "timeout": "a test ran past its bound", "survived": "all tests passed",
             "same code": "the compiler makes the same bytes of it: equivalent", "invalid": "does not compile"}
@@ -148,8 +149,8 @@ class Trials:
         return None
 
     def _in_order(self, mutant: Mutant, family: Family, affected: set[str], objects: dict[Unit, Path]) -> list[Program]:
-        """The program of the file's own name first, then those that noticed most of its mutants, then most of others,
-        then the fastest."""
+        """The program of the file's own name first, then those that notice most in their time: of this file's mutants,
+        and a hundredth as much of others."""
         own = {unit for unit in objects if unit not in family.library_units}
         chosen = [program for program in family.programs
                   if program.name in affected or any(unit in own for unit in program.units)]
@@ -159,8 +160,12 @@ class Trials:
         path = Path(mutant.file)
         stem = path.parent.name if path.stem == "model" else path.stem.removeprefix("node_")
         name = re.compile(rf"(test|node|fmu_[a-z]+)_(node_)?{stem}(_double|_single)?")
-        return sorted(chosen, key=lambda each: (not name.fullmatch(each.name), -kills[each.name], -all_kills[each.name],
-                                                    each.seconds))
+
+
+        def noticed_per_second(program: Program) -> float:
+            return (kills[program.name] + 0.01 * all_kills[program.name] + 0.01) / (program.seconds + START_S)
+
+        return sorted(chosen, key=lambda each: (not name.fullmatch(each.name), -noticed_per_second(each)))
 
     def _of(self, mutant: Mutant) -> list[Unit]:
         """The units that its file is in. Lanes have the methods' text, too, but are not compiled anew."""

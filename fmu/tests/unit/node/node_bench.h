@@ -35,9 +35,12 @@ void tearDown(void) { end_test(); }
 /* ------------------------------------------------------------------------------------ how it is loaded -- */
 
 static inline void parameter(uint8_t field, uint8_t item, double value, bool is_real) {
-    uint64_t bits = (uint64_t)value;
+    uint64_t bits;
     uint8_t payload[LACONIC_FRAME_BYTES], data[LACONIC_FRAME_BYTES];
-    if (is_real) memcpy(&bits, &value, sizeof bits);
+    if (is_real)
+        memcpy(&bits, &value, sizeof bits);
+    else
+        bits = (uint64_t)value;
     for (unsigned half = 0; half < (is_real ? 2U : 1U); half++) {
         const struct laconic_dbc_parameter_t frame = {
             .upper_half = (uint8_t)half, .field = field, .item = item, .value = (uint32_t)(bits >> (32 * half))};
