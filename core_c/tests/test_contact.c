@@ -286,6 +286,72 @@ static void a_refused_vehicle_changes_nothing(void) {
     TEST_ASSERT_EQUAL_MEMORY(&before, &contact, sizeof contact);
 }
 
+/* Of fixed wheels and of brakes, the dependent ones too. */
+static void constraints_are_counted(void) {
+    scene s;
+    laconic_vehicle v = differential_drive();
+    judge(&s, mecanum(), start_with(0, 0, 0), no_input());
+    TEST_ASSERT_EQUAL_INT(0, s.contact.constraint_count);
+    judge(&s, v, start_with(0, 0, 0), no_input());
+    TEST_ASSERT_EQUAL_INT(2, s.contact.constraint_count);
+    v.wheel[1].locked = true;
+    judge(&s, v, start_with(0, 0, 0), no_input());
+    TEST_ASSERT_EQUAL_INT(3, s.contact.constraint_count);
+}
+
+static laconic_reactions change_of(const scene *s, const laconic_reactions *now, const laconic_variation *by) {
+    const laconic_motion at = {{0, 0, 0}, 0};
+    laconic_reactions change;
+    memset(&change, 0xFF, sizeof change); /* no numbers */
+    laconic_reactions_tangent(&change, &s->contact, &s->model, &at, &s->input, now, by);
+    return change;
+}
+
+static void without_wheels_the_margin_does_not_change_either(void) {
+    scene s;
+    laconic_variation by;
+    memset(&by, 0, sizeof by);
+    by.input.body_force_N[0] = 1;
+    judge(&s, bare_body(), start_with(1, 2, 3), no_input());
+    TEST_ASSERT_EQUAL_DOUBLE(0.0, (double)change_of(&s, &s.out, &by).no_slip_margin_N);
+    memset(&s.out, 0xFF, sizeof s.out);
+    laconic_reactions_of(&s.out, &s.contact, &s.model, &s.state, &s.input);
+    TEST_ASSERT_EQUAL_DOUBLE(0.0, (double)s.out.no_slip_margin_N);
+}
+
+/* A fixed wheel holds 0.5 N along its axle, then 1 N more in each unit of the variation. */
+static void a_reaction_of_less_than_a_newton_uses_up_the_margin_too(void) {
+    scene s;
+    laconic_variation by;
+    laconic_vehicle v = caster();
+    laconic_input input = no_input();
+    memset(&by, 0, sizeof by);
+    v.friction_coefficient = REAL(0.6);
+    input.body_force_N[1] = REAL(0.5);
+    by.input.body_force_N[1] = 1;
+    judge(&s, v, start_with(0, 0, 0), input);
+    ASSERT_NEAR(EITHER(1e-13, 1e-6), -1, change_of(&s, &s.out, &by).no_slip_margin_N);
+}
+
+/* Where several wheels have the least margin, the derivative is the first one's. */
+static void of_equal_margins_the_first_wheels_changes(void) {
+    scene s;
+    laconic_variation by;
+    laconic_vehicle v = with_motors(mecanum());
+    v.com_z_m = REAL(0.12);
+    v.friction_coefficient = REAL(0.6);
+    judge(&s, v, start_with(0, 0, 0), no_input());
+    memset(&by, 0, sizeof by);
+    for (int i = 0; i < 4; i++) {
+        by.input.voltage_V[i] = 1;
+        s.out.normal_N[i] = 20;
+        s.out.along_N[i] = 0;
+    }
+    const laconic_reactions change = change_of(&s, &s.out, &by);
+    TEST_ASSERT_TRUE(change.normal_N[0] < REAL(-0.1) && change.normal_N[3] > REAL(0.1));
+    TEST_ASSERT_TRUE(change.no_slip_margin_N == REAL(0.6) * change.normal_N[0]);
+}
+
 int main(void) {
     UNITY_BEGIN();
     RUN_TEST(reactions_and_outer_forces_make_the_motion);
@@ -305,5 +371,9 @@ int main(void) {
     RUN_TEST(a_margin_that_is_nan_does_not_count_as_large);
     RUN_TEST(a_support_so_far_off_that_products_leave_the_range_is_refused);
     RUN_TEST(a_refused_vehicle_changes_nothing);
+    RUN_TEST(constraints_are_counted);
+    RUN_TEST(without_wheels_the_margin_does_not_change_either);
+    RUN_TEST(a_reaction_of_less_than_a_newton_uses_up_the_margin_too);
+    RUN_TEST(of_equal_margins_the_first_wheels_changes);
     return UNITY_END();
 }

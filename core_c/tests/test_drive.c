@@ -83,6 +83,46 @@ static void a_supply_that_breaks_down_stays_above_0(void) {
     TEST_ASSERT_TRUE(laconic_supply_voltage(&f, &input, fast, 24) > 0);
 }
 
+/* Whatever it was before: a vehicle may get another supply in motion. */
+static void a_supply_without_resistance_has_its_voltage(void) {
+    const laconic_friction f = drive_of(24, 0, 0);
+    const laconic_real at_rest[3] = {0, 0, 0};
+    laconic_input input = no_input();
+    input.voltage_V[0] = 10;
+    TEST_ASSERT_TRUE(laconic_supply_voltage(&f, &input, at_rest, REAL(1e6)) == 24);
+    TEST_ASSERT_TRUE(laconic_supply_voltage(&f, &input, at_rest, REAL(1e-6)) == 24);
+}
+
+/* The least supply that there is, of which a generating motor leaves nothing: 0 V are 0 V, as in a shorted motor. */
+static void a_supply_of_which_nothing_is_left_drives_nothing(void) {
+    const laconic_real least_V = LACONIC_REAL_MIN * LACONIC_EPSILON;
+    laconic_vehicle v = with_drive(robotino(0.5, 0, 0));
+    laconic_input input = no_input();
+    laconic_plant plant[2];
+    v.drive.supply_V = least_V;
+    v.drive.supply_resistance_ohm = 1000;
+    for (int shorted = 0; shorted < 2; shorted++) {
+        if (shorted) v.wheel[0].motor_circuit = LACONIC_MOTOR_SHORTED;
+        plant[shorted] = started(v, 1e-3, 0, 0, 0);
+        plant[shorted].slip.wheel_speed_rad_per_s[0] = -400;
+        input.voltage_V[0] = shorted ? 0 : 30;
+        if (!shorted) {
+            const laconic_slip *s = &plant[0].slip;
+            TEST_ASSERT_TRUE(laconic_supply_voltage(&plant[0].friction, &input, s->wheel_speed_rad_per_s, least_V) ==
+                             0);
+            laconic_slip smooth = *s;
+            laconic_slip_smooth(&smooth, &plant[0].friction, &plant[0].state, &input);
+            TEST_ASSERT_TRUE(smooth.supply_voltage_V == 0 && smooth.supply_current_A == 0);
+        }
+        run(&plant[shorted], &input, 1);
+    }
+    const motor_state motor = laconic_motor_at(&plant[0].friction, 0, 30, 0, 0);
+    TEST_ASSERT_TRUE(motor.voltage_V == 0 && motor.limit == LACONIC_LIMIT_VOLTAGE);
+    TEST_ASSERT_TRUE(plant[0].slip.supply_current_A == 0);
+    TEST_ASSERT_TRUE(plant[0].slip.wheel_speed_rad_per_s[0] > -400);
+    ASSERT_NEAR_ALL(0, plant[1].slip.wheel_speed_rad_per_s, plant[0].slip.wheel_speed_rad_per_s, 3);
+}
+
 int main(void) {
     UNITY_BEGIN();
     RUN_TEST(voltages_are_cut_to_the_supply_s);
@@ -92,5 +132,7 @@ int main(void) {
     RUN_TEST(an_open_motor_takes_no_current);
     RUN_TEST(the_supply_sags_under_the_currents_of_all_motors);
     RUN_TEST(a_supply_that_breaks_down_stays_above_0);
+    RUN_TEST(a_supply_without_resistance_has_its_voltage);
+    RUN_TEST(a_supply_of_which_nothing_is_left_drives_nothing);
     return UNITY_END();
 }

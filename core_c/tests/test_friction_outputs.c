@@ -155,7 +155,6 @@ static void the_smooth_laws_outputs_are_those_of_the_friction_step(void) {
     }
 }
 
-/* Of a motion that is no number; and if it is only one wheel's load, whatever the margins of the wheels after it. */
 /* What is not known of the windings, the motors' losses hold: the supply gives more than the motion has. */
 static void without_a_winding_resistance_the_supply_still_gives_energy(void) {
     laconic_vehicle v = with_motors(mecanum());
@@ -169,6 +168,7 @@ static void without_a_winding_resistance_the_supply_still_gives_energy(void) {
     TEST_ASSERT_TRUE(plant.slip.motor_loss_J.value > 0);
 }
 
+/* Of a motion that is no number; and if it is only one wheel's load, whatever the margins of the wheels after it. */
 static void a_load_that_is_no_number_leaves_no_margin(void) {
     const laconic_input input = no_input();
     laconic_plant plant = started(robotino(0.4, 0.3, 0), 1e-3, 0, 0, 0);
@@ -184,6 +184,92 @@ static void a_load_that_is_no_number_leaves_no_margin(void) {
     }
 }
 
+static void what_lies_beyond_the_last_point_is_not_written(void) {
+    const laconic_input input = no_input();
+    laconic_plant plant = started(with_drive(robotino(0.4, 0.3, 0)), 1e-3, 2, 1, 0);
+    laconic_slip *s = &plant.slip;
+    s->current_A[3] = s->grip_N[3][0] = s->grip_N[3][1] = s->normal_N[3] = 7;
+    s->limit[3] = 7;
+    laconic_slip_smooth(s, &plant.friction, &plant.state, &input);
+    TEST_ASSERT_TRUE(s->current_A[3] == 7 && s->grip_N[3][0] == 7 && s->grip_N[3][1] == 7 && s->normal_N[3] == 7);
+    TEST_ASSERT_EQUAL_INT(7, s->limit[3]);
+}
+
+static void without_brakes_no_brake_has_a_torque(void) {
+    const laconic_input input = no_input();
+    const laconic_plant plant = started(robotino(0.4, 0.3, 0), 1e-3, 2, 1, 0);
+    laconic_reactions reactions;
+    memset(&reactions, 0xFF, sizeof reactions);
+    laconic_plant_reactions(&reactions, &plant, NULL, &input);
+    for (int i = 0; i < 3; i++) TEST_ASSERT_TRUE(reactions.brake_Nm[i] == 0);
+}
+
+/* A supply of half a volt drives, and is cut, as any other. */
+static void a_supply_of_less_than_a_volt_is_one(void) {
+    laconic_vehicle v = with_drive(robotino(0.5, 0, 0));
+    laconic_input input = no_input();
+    v.drive.supply_V = REAL(0.5);
+    laconic_plant plant = started(v, 1e-3, 0, 0, 0);
+    input.voltage_V[0] = 20;
+    ASSERT_NEAR(EITHER(1e-14, 1e-6), 0.25, outputs_with(&plant, &input).wheel_torque_Nm[0]);
+    laconic_slip_smooth(&plant.slip, &plant.friction, &plant.state, &input);
+    TEST_ASSERT_TRUE(plant.slip.supply_voltage_V == REAL(0.5));
+    ASSERT_NEAR(EITHER(1e-14, 1e-6), 0.25, plant.slip.supply_current_A);
+}
+
+/* A contact that slips and carries just nothing is at its limit: none. */
+static void a_contact_that_slips_without_a_load_slips(void) {
+    const laconic_input input = no_input();
+    laconic_plant plant = started(skid(0.3), 1e-3, 0, 2, 0);
+    TEST_ASSERT_TRUE(outputs_with(&plant, &input).friction.contact_state[0] == 0);
+    plant.slip.normal_N[0] = 0;
+    TEST_ASSERT_TRUE(outputs_with(&plant, &input).friction.contact_state[0] == 1);
+}
+
+/* Rollers that drag push across; once they are free, what they pushed before is no part of the margin. */
+static void free_rollers_leave_the_margin_to_the_force_along_them(void) {
+    const laconic_input input = no_input();
+    laconic_vehicle v = robotino(0.4, 0.5, 0);
+    laconic_plant plant = started(v, 1e-3, 8, 4, 0);
+    run(&plant, &input, 5);
+    v.ground.roller_drag = 0;
+    ASSERT_STATUS(LACONIC_OK, laconic_plant_change(&plant, &v, &why));
+    double least = HUGE_VAL;
+    for (int i = 0; i < 3; i++) {
+        TEST_ASSERT_TRUE(fabs((double)plant.slip.grip_N[i][1]) > 1);
+        least = fmin(least, 0.4 * (double)plant.slip.normal_N[i] - fabs((double)plant.slip.grip_N[i][0]));
+    }
+    ASSERT_NEAR(EITHER(1e-12, 1e-5), least, outputs_with(&plant, &input).reactions.no_slip_margin_N);
+}
+
+/* Moments of the loads about S hold the ground's force, which acts com_z below; across the rollers the law's force is
+ * that along them times k times their slips' ratio. */
+static void loads_of_the_smooth_law_hold_the_forces_that_they_make(void) {
+    const laconic_input input = no_input();
+    laconic_plant plant = started(robotino(0.4, 0.5, 0), 1e-3, 8, 20, 0);
+    for (int i = 0; i < 3; i++) plant.slip.wheel_speed_rad_per_s[i] = REAL(9 - 6 * i);
+    laconic_slip_smooth(&plant.slip, &plant.friction, &plant.state, &input);
+    const laconic_outputs out = outputs_with(&plant, &input);
+    double weight = 0, moment[2] = {0, 0}, force[2] = {0, 0};
+    for (int i = 0; i < 3; i++) {
+        const laconic_real *u = plant.friction.axle[i].pull, *grip = plant.slip.grip_N[i];
+        const double load = (double)plant.slip.normal_N[i];
+        weight += load;
+        moment[0] += load * (double)plant.vehicle.wheel[i].x_m;
+        moment[1] += load * (double)plant.vehicle.wheel[i].y_m;
+        force[0] += (double)(out.reactions.along_N[i] * u[0] + out.reactions.lateral_N[i] * u[1]);
+        force[1] += (double)(out.reactions.along_N[i] * u[1] - out.reactions.lateral_N[i] * u[0]);
+        ASSERT_NEAR(1e-3, 0.4 * load, hypot((double)grip[0], (double)grip[1]));
+        ASSERT_NEAR(1e-3,
+                    (double)grip[0] * 0.5 * (double)out.friction.slip_across_m_per_s[i] /
+                        (double)out.friction.slip_along_m_per_s[i],
+                    grip[1]);
+    }
+    ASSERT_NEAR(EITHER(1e-9, 1e-3), 20 * LACONIC_GRAVITY_M_PER_S2, weight);
+    TEST_ASSERT_TRUE(fabs(force[0]) > 10 && fabs(force[1]) > 10);
+    for (int k = 0; k < 2; k++) ASSERT_NEAR(1e-3, -0.1 * force[k], moment[k]);
+}
+
 int main(void) {
     UNITY_BEGIN();
     RUN_TEST(contacts_that_slip_stick_and_lift_are_told_apart);
@@ -195,5 +281,11 @@ int main(void) {
     RUN_TEST(the_smooth_laws_outputs_are_those_of_the_friction_step);
     RUN_TEST(without_a_winding_resistance_the_supply_still_gives_energy);
     RUN_TEST(a_load_that_is_no_number_leaves_no_margin);
+    RUN_TEST(what_lies_beyond_the_last_point_is_not_written);
+    RUN_TEST(without_brakes_no_brake_has_a_torque);
+    RUN_TEST(a_supply_of_less_than_a_volt_is_one);
+    RUN_TEST(a_contact_that_slips_without_a_load_slips);
+    RUN_TEST(free_rollers_leave_the_margin_to_the_force_along_them);
+    RUN_TEST(loads_of_the_smooth_law_hold_the_forces_that_they_make);
     return UNITY_END();
 }

@@ -3,13 +3,6 @@
 
 #include "slipping.h"
 
-static double potential_J(const laconic_plant *p) {
-    const laconic_ground *g = &p->vehicle.ground;
-    const double up = (double)p->state.x_m.value * cos((double)g->slope_heading_rad) +
-                      (double)p->state.y_m.value * sin((double)g->slope_heading_rad);
-    return (double)p->model.mass_kg * LACONIC_GRAVITY_M_PER_S2 * sin((double)g->slope_rad) * up;
-}
-
 static void rest_below_breakaway_holds_to_the_last_bit(void) {
     laconic_vehicle v = robotino(0.6, 1, 0.2);
     laconic_input push = no_input();
@@ -236,36 +229,6 @@ static void a_locked_wheel_does_not_turn(void) {
     TEST_ASSERT_TRUE(plant.slip.wheel_angle_rad[1].value == 0);
 }
 
-/* A torque whose impulse has a square beyond the range of the scalar type, against a strong damping: the
- * solver refuses the whole step, and takes its halves. */
-static laconic_plant pushed_beyond_range(laconic_input *input, double times) {
-    laconic_vehicle v = robotino(0.5, 0.3, 0);
-    v.motor_damping_Nms = 320;
-    *input = no_input();
-    input->axle_torque_Nm[1] = REAL(times) * EITHER(REAL(5e155), REAL(7e20));
-    return started(v, 1e-3, 0, 0, 0);
-}
-
-static void a_step_that_the_solver_refuses_is_taken_in_parts(void) {
-    laconic_input input;
-    laconic_plant plant = pushed_beyond_range(&input, 1);
-    run(&plant, &input, 1);
-    TEST_ASSERT_EQUAL_UINT64(1, plant.steps);
-    TEST_ASSERT_TRUE(plant.slip.wheel_speed_rad_per_s[1] > 0);
-    plant = pushed_beyond_range(&input, 2);
-    run(&plant, &input, 1);
-    TEST_ASSERT_EQUAL_UINT64(1, plant.steps);
-}
-
-static void a_step_that_the_solver_refuses_in_all_parts_changes_nothing(void) {
-    laconic_input input;
-    laconic_plant plant = pushed_beyond_range(&input, 100);
-    const laconic_plant before = plant;
-    ASSERT_REFUSED(LACONIC_STEP_UNSOLVED, LACONIC_FIELD_STEP, 0, laconic_plant_run(&plant, &input, 1, &why), why);
-    TEST_ASSERT_EQUAL_MEMORY(&before.state, &plant.state, sizeof before.state);
-    TEST_ASSERT_EQUAL_MEMORY(&before.slip, &plant.slip, sizeof before.slip);
-}
-
 /* A wheel that rolls in a curve on a slope loses nothing to the ground: only the slope's pull may give it energy. */
 static void a_wheel_that_rolls_in_a_curve_on_a_slope_gains_no_energy(void) {
     const laconic_input none = no_input();
@@ -371,8 +334,6 @@ int main(void) {
     RUN_TEST(a_step_that_cannot_be_taken_changes_nothing);
     RUN_TEST(a_step_too_far_is_refused);
     RUN_TEST(a_locked_wheel_does_not_turn);
-    RUN_TEST(a_step_that_the_solver_refuses_is_taken_in_parts);
-    RUN_TEST(a_step_that_the_solver_refuses_in_all_parts_changes_nothing);
     RUN_TEST(a_wheel_that_rolls_in_a_curve_on_a_slope_gains_no_energy);
     RUN_TEST(a_locked_wheel_on_ideal_ground_does_not_turn);
     RUN_TEST(a_speed_beyond_the_range_is_refused);

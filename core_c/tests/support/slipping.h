@@ -58,6 +58,14 @@ static inline double kinetic_J(const laconic_plant *plant) {
     return (double)laconic_friction_energy_J(&plant->friction, &plant->state, &plant->slip);
 }
 
+/* Of its place on the slope. */
+static inline double potential_J(const laconic_plant *p) {
+    const laconic_ground *g = &p->vehicle.ground;
+    const double up = (double)p->state.x_m.value * cos((double)g->slope_heading_rad) +
+                      (double)p->state.y_m.value * sin((double)g->slope_heading_rad);
+    return (double)p->model.mass_kg * LACONIC_GRAVITY_M_PER_S2 * sin((double)g->slope_rad) * up;
+}
+
 static inline laconic_outputs outputs_with(const laconic_plant *plant, const laconic_input *input) {
     laconic_outputs out;
     memset(&out, 0, sizeof out);

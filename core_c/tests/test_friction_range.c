@@ -1,0 +1,203 @@
+/* Tests of friction.c: constants of vehicles with friction at the ends of the scalar type's range, and beyond. */
+#include "friction_vehicle.h"
+
+#include "slipping.h"
+
+/* Beyond it the square of a sum of sizes leaves the range. */
+#define LIMIT EITHER(1.34078e154, 1.84467e19)
+#define PART (0.6 * LIMIT) /* one of these fits, two do not */
+
+/* M R², by which torques are divided. */
+#define ENERGY_J 0.01
+
+/* One wheel of 1 m under a body of 0.01 kg and 0.01 kg m²: each constant is 0, or near to 1. */
+static laconic_vehicle unit_vehicle(void) {
+    laconic_vehicle v = {0};
+    v.mass_kg = v.yaw_inertia_kgm2 = v.wheel_inertia_kgm2 = v.motor_gain_Nm_per_V = REAL(ENERGY_J);
+    v.wheel_radius_m = 1;
+    add_wheel(&v, LACONIC_WHEEL_ROLLER, 0, 0, 0, PI / 2);
+    v.ground.friction_coefficient = REAL(0.5);
+    v.ground.roller_drag = REAL(0.5);
+    v.drive.supply_V = 1;
+    v.drive.winding_resistance_ohm = 1;
+    return v;
+}
+
+static laconic_status status_of(const laconic_vehicle *v) {
+    const laconic_model model = model_of(*v);
+    laconic_friction f;
+    return laconic_friction_of(&f, &model, v, &why);
+}
+
+/* With one constant of some size: alone it fits, beside a second one of this size it does not. */
+static void counts(laconic_vehicle v) {
+    ASSERT_STATUS(LACONIC_OK, status_of(&v));
+    v.com_z_m = REAL(PART);
+    ASSERT_REFUSED(LACONIC_OVERFLOW, LACONIC_FIELD_NONE, 0, status_of(&v), why);
+}
+
+static void each_constant_of_ground_and_supply_counts_in_the_range(void) {
+    laconic_vehicle v = unit_vehicle();
+    v.com_z_m = REAL(PART);
+    ASSERT_STATUS(LACONIC_OK, status_of(&v));
+    v = unit_vehicle(), v.drive.supply_V = REAL(PART), counts(v);
+    v = unit_vehicle(), v.drive.supply_resistance_ohm = REAL(PART), counts(v);
+    v = unit_vehicle(), v.drive.winding_resistance_ohm = REAL(PART), counts(v);
+    v = unit_vehicle(), v.ground.friction_coefficient = REAL(PART), counts(v);
+    v = unit_vehicle(), v.ground.axle_friction_Nm = REAL(ENERGY_J * PART), counts(v);
+    v = unit_vehicle(), v.support_count = 1, v.support[0].x_m = REAL(PART), counts(v);
+    v = unit_vehicle(), v.mass_kg = v.yaw_inertia_kgm2 = v.wheel_inertia_kgm2 = REAL(PART / 10); /* the weight */
+    v.motor_gain_Nm_per_V = v.mass_kg, counts(v);
+}
+
+static void each_constant_of_motor_and_wheel_counts_in_the_range(void) {
+    laconic_vehicle v = unit_vehicle();
+    v = unit_vehicle(), v.motor_gain_Nm_per_V = REAL(ENERGY_J * PART), counts(v);
+    v = unit_vehicle(), v.motor_gain_Nm_per_V = REAL(ENERGY_J / PART), counts(v); /* amperes per torque */
+    v = unit_vehicle(), v.motor_damping_Nms = REAL(ENERGY_J * PART), counts(v);   /* back-EMF */
+    v = unit_vehicle(), v.motor_damping_Nms = v.drive.viscous_friction_Nms = REAL(ENERGY_J * PART), counts(v);
+    v = unit_vehicle(), v.wheel_inertia_kgm2 = REAL(ENERGY_J * PART), counts(v);
+    v = unit_vehicle(), v.wheel_inertia_kgm2 = REAL(ENERGY_J * 2 / PART), counts(v); /* 1/j, and as much mobility */
+}
+
+/* 1/k² twice: what an impulse across the rollers moves, with the wheel held and with a wheel that rolls. */
+static void rollers_that_hardly_drag_count_in_the_range_once_for_each_of_two_masses(void) {
+    laconic_vehicle v = unit_vehicle();
+    v.ground.roller_drag = REAL(1 / sqrt(0.3 * LIMIT));
+    counts(v);
+    v.com_z_m = REAL(0.3 * LIMIT);
+    ASSERT_STATUS(LACONIC_OK, status_of(&v));
+}
+
+/* A light and huge wheel: mobility and inertia each as large as its radius, over the vehicle's. */
+static void a_huge_wheel_counts_in_the_range(void) {
+    laconic_vehicle v = unit_vehicle();
+    v.wheel[0].own_radius_m = REAL(0.32 * LIMIT);
+    v.wheel_inertia_kgm2 = REAL(ENERGY_J * 0.32 * LIMIT);
+    ASSERT_STATUS(LACONIC_OK, status_of(&v));
+    v.wheel[0].own_radius_m = REAL(0.35 * LIMIT);
+    v.wheel_inertia_kgm2 = REAL(ENERGY_J * 0.35 * LIMIT);
+    ASSERT_REFUSED(LACONIC_OVERFLOW, LACONIC_FIELD_NONE, 0, status_of(&v), why);
+}
+
+/* A wheel far along its own roller's axis, on free rollers: its lever across counts beside its place. */
+static void a_wheel_far_off_counts_by_its_place_and_by_its_lever(void) {
+    laconic_vehicle v = unit_vehicle();
+    v.ground.roller_drag = 0;
+    v.wheel[0].kind = LACONIC_WHEEL_ROLLER;
+    v.wheel[0].x_m = REAL(0.4 * LIMIT);
+    v.wheel[0].axle_rad = REAL(-PI / 2);
+    ASSERT_STATUS(LACONIC_OK, status_of(&v));
+    v.wheel[0].x_m = REAL(0.6 * LIMIT);
+    ASSERT_REFUSED(LACONIC_OVERFLOW, LACONIC_FIELD_NONE, 0, status_of(&v), why);
+}
+
+/* Normal loads of points that are hardly apart: newtons for each newton metre. */
+static void points_that_are_hardly_apart_count_in_the_range(void) {
+    const double small = EITHER(1e-150, 1e-16), apart = EITHER(1e-152, 1e-18);
+    laconic_vehicle v = unit_vehicle();
+    v.mass_kg = REAL(1 / small);
+    v.wheel_radius_m = v.wheel_inertia_kgm2 = v.yaw_inertia_kgm2 = REAL(small);
+    v.wheel_count = 0;
+    for (int i = 0; i < 3; i++)
+        add_wheel(&v, LACONIC_WHEEL_ROLLER, apart * cos(2 * PI * i / 3), apart * sin(2 * PI * i / 3), 0, PI / 2);
+    const laconic_model model = model_of(v);
+    laconic_friction f;
+    ASSERT_STATUS(LACONIC_OK, laconic_friction_of(&f, &model, &v, &why));
+    double sum = 0;
+    for (int i = 0; i < 3; i++)
+        for (int k = 0; k < 3; k++) sum += fabs((double)f.normal_load_of_wrench[i][k]);
+    v.com_z_m = REAL(LIMIT - 0.5 * sum);
+    ASSERT_REFUSED(LACONIC_OVERFLOW, LACONIC_FIELD_NONE, 0, status_of(&v), why);
+    v.com_z_m = REAL(LIMIT - 3 * sum);
+    ASSERT_STATUS(LACONIC_OK, status_of(&v));
+}
+
+static laconic_status start_with_wheel(int wheel, laconic_real speed, laconic_real nu) {
+    laconic_start start = start_with((double)nu, 0, 0);
+    const laconic_vehicle v = unit_vehicle();
+    laconic_plant plant;
+    start.wheel_speed_rad_per_s[wheel] = speed;
+    return laconic_plant_start(&plant, &v, &laconic_auto, REAL(1e-3), &start, &why);
+}
+
+/* At the end of the range of speeds a wheel still starts, given or rolling, beyond it not. */
+static void wheels_start_up_to_the_end_of_the_range_of_speeds(void) {
+    const laconic_real beyond = LARGEST_SPEED * (1 + 4 * LACONIC_EPSILON);
+    for (int sign = -1; sign <= 1; sign += 2) {
+        const laconic_real s = REAL(sign);
+        ASSERT_STATUS(LACONIC_OK, start_with_wheel(0, s * LARGEST_SPEED, 0));
+        ASSERT_REFUSED(LACONIC_OVERFLOW, LACONIC_FIELD_START_WHEEL_SPEED, 1, start_with_wheel(0, s * beyond, 0), why);
+    }
+    ASSERT_STATUS(LACONIC_OK, start_with_wheel(0, 0, LARGEST_SPEED));
+    ASSERT_REFUSED(LACONIC_NOT_FINITE, LACONIC_FIELD_START_WHEEL_SPEED, 1, start_with_wheel(0, NOT_A_NUMBER, 0), why);
+}
+
+/* Speeds of wheels that it has not are not given. */
+static void a_speed_beyond_the_last_wheel_is_not_read(void) {
+    laconic_start start = start_with(3, 1, 2);
+    const laconic_vehicle v = robotino(0.5, 0, 0);
+    laconic_plant plant;
+    const laconic_plant rolling = started(v, 1e-3, 3, 1, 2);
+    start.wheel_speed_rad_per_s[3] = 7;
+    ASSERT_STATUS(LACONIC_OK, laconic_plant_start(&plant, &v, &laconic_auto, REAL(1e-3), &start, &why));
+    ASSERT_NEAR_ALL(0, rolling.slip.wheel_speed_rad_per_s, plant.slip.wheel_speed_rad_per_s, 3);
+    TEST_ASSERT_TRUE(plant.slip.wheel_speed_rad_per_s[3] == 0);
+}
+
+static void wheels_that_are_taken_over_are_those_that_there_are(void) {
+    const laconic_plant plant = started(robotino(0.5, 0, 0), 1e-3, 0, 0, 0);
+    const laconic_real speed[4] = {1, 2, 3, 4}, angle_rad[4] = {5, 6, 7, 8};
+    laconic_slip slip;
+    laconic_slip_take_over(&slip, &plant.friction, speed, angle_rad);
+    for (int i = 0; i < 4; i++) {
+        TEST_ASSERT_TRUE(slip.wheel_speed_rad_per_s[i] == (i < 3 ? speed[i] : 0));
+        TEST_ASSERT_TRUE(slip.wheel_angle_rad[i].value == (i < 3 ? angle_rad[i] : 0));
+    }
+}
+
+/* However high the body: nothing pushes it yet. */
+static void wheels_start_with_equal_shares_of_the_weight(void) {
+    laconic_vehicle v = robotino(0.5, 0, 0);
+    v.com_z_m = 1;
+    const laconic_plant plant = started(v, 1e-3, 0, 0, 0);
+    for (int i = 0; i < 3; i++)
+        ASSERT_NEAR(EITHER(1e-12, 1e-4), 20 * LACONIC_GRAVITY_M_PER_S2 / 3, plant.slip.normal_N[i]);
+}
+
+/* Over M R²: a motor that gives 1 for 1 ampere has its limit as any other. */
+static void a_motor_of_one_ampere_for_a_unit_of_torque_is_limited(void) {
+    laconic_vehicle v = unit_vehicle();
+    v.drive.current_limit_A = 3;
+    const laconic_plant plant = started(v, 1e-3, 0, 0, 0);
+    TEST_ASSERT_TRUE(plant.friction.axle[0].torque_limit == 3);
+    TEST_ASSERT_TRUE(plant.friction.axle[0].ampere == 1);
+}
+
+static void of_windings_that_are_not_known_no_current_is_either(void) {
+    laconic_vehicle v = unit_vehicle();
+    laconic_input input = no_input();
+    v.drive.winding_resistance_ohm = v.drive.supply_V = 0;
+    laconic_plant plant = started(v, 1e-3, 0, 0, 0);
+    input.voltage_V[0] = 2;
+    run(&plant, &input, 1);
+    TEST_ASSERT_TRUE(plant.friction.axle[0].ampere == 0);
+    TEST_ASSERT_TRUE(plant.slip.current_A[0] == 0 && plant.slip.wheel_speed_rad_per_s[0] != 0);
+}
+
+int main(void) {
+    UNITY_BEGIN();
+    RUN_TEST(each_constant_of_ground_and_supply_counts_in_the_range);
+    RUN_TEST(each_constant_of_motor_and_wheel_counts_in_the_range);
+    RUN_TEST(rollers_that_hardly_drag_count_in_the_range_once_for_each_of_two_masses);
+    RUN_TEST(a_huge_wheel_counts_in_the_range);
+    RUN_TEST(a_wheel_far_off_counts_by_its_place_and_by_its_lever);
+    RUN_TEST(points_that_are_hardly_apart_count_in_the_range);
+    RUN_TEST(wheels_start_up_to_the_end_of_the_range_of_speeds);
+    RUN_TEST(a_speed_beyond_the_last_wheel_is_not_read);
+    RUN_TEST(wheels_that_are_taken_over_are_those_that_there_are);
+    RUN_TEST(wheels_start_with_equal_shares_of_the_weight);
+    RUN_TEST(a_motor_of_one_ampere_for_a_unit_of_torque_is_limited);
+    RUN_TEST(of_windings_that_are_not_known_no_current_is_either);
+    return UNITY_END();
+}

@@ -1,0 +1,145 @@
+/* Tests of friction_step.c where a step nearly fails: parts of a step, ends of the range, doubtful energy. */
+#include "friction_vehicle.h"
+
+#include "slipping.h"
+
+#define PARTS_STEP_S 1e-3
+#define STRONG_DAMPING 320.0
+
+/* A torque whose impulse has a square beyond the range of the scalar type, against a strong damping: the
+ * solver refuses the whole step, and takes its halves; of 2.3 times as much its quarters, of 4.5 times its eighths. */
+static laconic_plant pushed_beyond_range(laconic_input *input, double times) {
+    laconic_vehicle v = robotino(0.5, 0.3, 0);
+    v.motor_damping_Nms = REAL(STRONG_DAMPING);
+    *input = no_input();
+    input->axle_torque_Nm[1] = REAL(times) * EITHER(REAL(5e155), REAL(7e20));
+    return started(v, PARTS_STEP_S, 0, 0, 0);
+}
+
+/* The wheel follows J s' = T − c s by that many backward Euler steps: nothing else counts beside such a torque. */
+static void a_step_that_the_solver_refuses_is_taken_in_parts(void) {
+    const double times[3] = {1, 2.3, 4.5}, inertia = 0.003;
+    for (int k = 0; k < 3; k++) {
+        laconic_input input;
+        laconic_plant plant = pushed_beyond_range(&input, times[k]);
+        const double parts = 2 << k, h = PARTS_STEP_S / parts;
+        const double last = (double)input.axle_torque_Nm[1] / STRONG_DAMPING;
+        double speed = 0, angle = 0; /* over those of the speed that it tends to */
+        for (int part = 0; part < parts; part++) {
+            const double before = speed;
+            speed = (speed + h * STRONG_DAMPING / inertia) / (1 + h * STRONG_DAMPING / inertia);
+            angle += 0.5 * (before + speed) / parts;
+        }
+        run(&plant, &input, 1);
+        TEST_ASSERT_EQUAL_UINT64(1, plant.steps);
+        ASSERT_NEAR(EITHER(1e-12, 1e-6), speed, (double)plant.slip.wheel_speed_rad_per_s[1] / last);
+        ASSERT_NEAR(EITHER(1e-12, 1e-6), angle, (double)plant.slip.wheel_angle_rad[1].value / (last * PARTS_STEP_S));
+    }
+}
+
+/* Sixteen parts would do, eight do not. */
+static void a_step_that_the_solver_refuses_in_all_parts_changes_nothing(void) {
+    const double times[2] = {9, 100};
+    for (int k = 0; k < 2; k++) {
+        laconic_input input;
+        laconic_plant plant = pushed_beyond_range(&input, times[k]);
+        const laconic_plant before = plant;
+        ASSERT_REFUSED(LACONIC_STEP_UNSOLVED, LACONIC_FIELD_STEP, 0, laconic_plant_run(&plant, &input, 1, &why), why);
+        TEST_ASSERT_EQUAL_MEMORY(&before.state, &plant.state, sizeof before.state);
+        TEST_ASSERT_EQUAL_MEMORY(&before.slip, &plant.slip, sizeof before.slip);
+    }
+}
+
+/* Any two numbers of an input: each is finite, their sum is not. */
+static void inputs_that_leave_the_range_together_are_refused(void) {
+    laconic_plant plant = started(robotino(0.5, 0, 0), 1e-3, 0, 0, 0);
+    const laconic_plant before = plant;
+    for (int first = 0; first < 10; first++)
+        for (int second = 0; second < first; second++) {
+            laconic_input input = no_input();
+            laconic_real *numbers[10] = {&input.body_force_N[0],        &input.body_force_N[1],
+                                         &input.body_moment_Nm,         &input.world_force_N[0],
+                                         &input.world_force_N[1],       &input.world_force_point_m[0],
+                                         &input.world_force_point_m[1], &input.voltage_V[0],
+                                         &input.axle_torque_Nm[0],      &input.axle_torque_Nm[2]};
+            *numbers[first] = *numbers[second] = REAL(0.6) * LACONIC_REAL_MAX;
+            ASSERT_STATUS(LACONIC_OVERFLOW,
+                          laconic_friction_step(&plant.friction, &plant.model, plant.integrator.step_s, &plant.state,
+                                                &plant.slip, &input));
+        }
+    TEST_ASSERT_EQUAL_MEMORY(&before, &plant, sizeof before);
+}
+
+/* A body that turned to some heading: a push along the world's x or y moves it there. */
+static void a_world_force_along_either_axis_turns_with_the_heading(void) {
+    for (int axis = 0; axis < 2; axis++) {
+        const laconic_vehicle v = robotino(1e-9, 0, 0);
+        laconic_start start = start_with(0, 0, 0);
+        laconic_input input = no_input();
+        laconic_plant plant;
+        memset(&plant, 0, sizeof plant);
+        start.heading_rad = REAL(0.7);
+        input.world_force_N[axis] = 40;
+        ASSERT_STATUS(LACONIC_OK, laconic_plant_start(&plant, &v, &laconic_auto, REAL(1e-2), &start, &why));
+        run(&plant, &input, 1);
+        const double change = 40 / 20.0 * 1e-2 / 0.04; /* F h/(M R) */
+        ASSERT_NEAR(1e-6, change * (axis == 0 ? cos(0.7) : sin(0.7)), plant.state.zeta[0].value);
+        ASSERT_NEAR(1e-6, change * (axis == 0 ? -sin(0.7) : cos(0.7)), plant.state.zeta[1].value);
+    }
+}
+
+/* Its contact has four times the vehicle's arm. */
+static void the_brake_of_a_large_wheel_holds_what_its_contact_can_give(void) {
+    laconic_vehicle v = robotino(0.5, 0.3, 0);
+    laconic_input input = no_input();
+    v.wheel[1].locked = true;
+    v.wheel[1].own_radius_m = REAL(0.16);
+    laconic_plant plant = started(v, 0.1, 0, 0, 0);
+    input.body_force_N[1] = 300;
+    run(&plant, &input, 3);
+    TEST_ASSERT_TRUE(outputs_with(&plant, &input).friction.contact_state[1] == 1);
+    TEST_ASSERT_TRUE(plant.slip.wheel_speed_rad_per_s[1] == 0);
+}
+
+/* As long as it stays there, nothing is wrong with it. */
+static void a_body_at_the_end_of_the_range_of_speeds_is_stepped(void) {
+    const laconic_input coasting = no_input();
+    laconic_plant plant = started(robotino(1e-9, 0, 0), EITHER(1e-80, 1e-12), (double)LARGEST_SPEED, 0, 0);
+    run(&plant, &coasting, 1);
+    TEST_ASSERT_TRUE(plant.state.zeta[0].value == LARGEST_SPEED);
+}
+
+/* Steps in which contacts take more than the slope's pull would give along the mean velocity, but not twice as much. */
+static void what_contacts_take_counts_as_it_is_where_the_motion_reverses_on_a_slope(void) {
+    static const struct {
+        double mu, drag, slope, heading, step_s, nu[3];
+    } scenes[] = {
+        {0.206, 0.841, 0.187, -0.0786, 0.44, {5.025, -2.535, -1.817}},
+        {0.794, 0.525, 0.301, 0.827, 0.174, {0.7552, 0.8863, -0.241}},
+        {1.2, 0.614, 0.75, -0.945, 0.00669, {0.3895, -0.1556, 0.06829}},
+        {0.98, 0.847, 0.631, 2.07, 0.487, {-8.287, 9.419, 3.689}},
+    };
+    const laconic_input coasting = no_input();
+    for (size_t n = 0; n < sizeof scenes / sizeof scenes[0]; n++) {
+        laconic_vehicle v = robotino(scenes[n].mu, scenes[n].drag, 0);
+        v.com_z_m = 0;
+        v.ground.slope_rad = REAL(scenes[n].slope);
+        v.ground.slope_heading_rad = REAL(scenes[n].heading);
+        laconic_plant plant = started(v, scenes[n].step_s, scenes[n].nu[0], scenes[n].nu[1], scenes[n].nu[2]);
+        const double before = kinetic_J(&plant) + potential_J(&plant);
+        run(&plant, &coasting, 1);
+        TEST_ASSERT_TRUE(kinetic_J(&plant) + potential_J(&plant) < before);
+    }
+}
+
+int main(void) {
+    UNITY_BEGIN();
+    RUN_TEST(a_step_that_the_solver_refuses_is_taken_in_parts);
+    RUN_TEST(a_step_that_the_solver_refuses_in_all_parts_changes_nothing);
+    RUN_TEST(inputs_that_leave_the_range_together_are_refused);
+    RUN_TEST(a_world_force_along_either_axis_turns_with_the_heading);
+    RUN_TEST(the_brake_of_a_large_wheel_holds_what_its_contact_can_give);
+    RUN_TEST(a_body_at_the_end_of_the_range_of_speeds_is_stepped);
+    RUN_TEST(what_contacts_take_counts_as_it_is_where_the_motion_reverses_on_a_slope);
+    return UNITY_END();
+}
