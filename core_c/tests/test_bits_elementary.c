@@ -2,6 +2,7 @@
  * directions, polynomials, headings, noise, encoders, angles and counts of steps. test_elementary.c, test_heading.c and
  * test_noise.c compare them with the host's library. */
 #include "elementary.h"
+#include "friction_internals.h"
 #include "heading.h"
 
 #include "bits.h"
@@ -148,9 +149,20 @@ static void counts_of_steps(void) {
     expect(EITHER(0xc054bf0899bdf561U, 0xa5aae9c35a064b49U));
 }
 
+static void quick_roots(void) {
+    laconic_real x = LACONIC_REAL_MIN;
+    begin();
+    for (int k = 0; k < 2000; k++) {
+        TAKE_ONE(quick_root(x));
+        x *= EITHER(REAL(2.03), REAL(1.091));
+    }
+    expect(EITHER(0xa78314da3f5c44adU, 0xb8a2772ea584677eU));
+}
+
 int main(void) {
     UNITY_BEGIN();
     RUN_TEST(roots_and_exponentials);
+    RUN_TEST(quick_roots);
     RUN_TEST(exponential_integrals);
     RUN_TEST(directions_of_angles);
     RUN_TEST(polynomials);

@@ -192,6 +192,15 @@ static void stiff_vehicles_at_any_scale_are_solved(void) {
     TEST_ASSERT_LESS_OR_EQUAL(EITHER(0, 20), refused); /* 1 % */
 }
 
+/* Over the whole range of normal numbers some units in the last place; of 0 next to nothing. */
+static void quick_roots_are_roots(void) {
+    for (double x = (double)LACONIC_REAL_MIN; x < 0.9 * (double)LACONIC_REAL_MAX; x *= 1.37) {
+        const double root = sqrt((double)REAL(x));
+        ASSERT_NEAR(4 * (double)LACONIC_EPSILON * root, root, quick_root(REAL(x)));
+    }
+    TEST_ASSERT_TRUE(quick_root(0) >= 0 && quick_root(0) < EITHER(REAL(1e-150), REAL(1e-18)));
+}
+
 int main(void) {
     UNITY_BEGIN();
     RUN_TEST(problems_in_which_exact_passes_go_in_circles_are_solved);
@@ -201,5 +210,6 @@ int main(void) {
     RUN_TEST(a_motor_between_near_limits_is_solved);
     RUN_TEST(redundant_contacts_are_solved_from_any_stress);
     RUN_TEST(stiff_vehicles_at_any_scale_are_solved);
+    RUN_TEST(quick_roots_are_roots);
     return UNITY_END();
 }

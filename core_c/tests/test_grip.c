@@ -146,6 +146,46 @@ static void nan_counts_as_slip_and_as_lift(void) {
     TEST_ASSERT_EQUAL_INT(2, s.grip.first_lift.point);
 }
 
+/* A margin or a load below 0 by half the tolerance is rounding, by twice the tolerance it is not. */
+static void the_tolerance_is_a_part_of_the_weight(void) {
+    const double parts[2] = {0.5, 2};
+    for (int k = 0; k < 2; k++) {
+        scene s = scene_of(with_motors(mecanum()), 0.8, 0.05);
+        laconic_reactions found = look_at(&s, no_input(), 0);
+        found.normal_N[0] = REAL(-parts[k] * (double)LACONIC_RANK_TOLERANCE * MASS * GRAVITY);
+        laconic_grip_watch(&s.grip, &s.contact, &s.model, &found, 1);
+        TEST_ASSERT_EQUAL_UINT64(k, s.grip.lifting);
+        TEST_ASSERT_EQUAL_INT(k, s.grip.first_lift.point);
+    }
+}
+
+/* The wheel in the air has no reaction that could slip, and the one beside it has all the friction that it needs. */
+static void a_wheel_at_its_limit_does_not_slip_since_another_one_lifts(void) {
+    scene s = scene_of(with_motors(mecanum()), 0.5, 0.05);
+    laconic_reactions found = look_at(&s, no_input(), 0);
+    found.normal_N[0] = -10;
+    found.along_N[0] = 0;
+    found.normal_N[1] = 10;
+    found.along_N[1] = 5;
+    found.no_slip_margin_N = -5;
+    laconic_grip_watch(&s.grip, &s.contact, &s.model, &found, 1);
+    TEST_ASSERT_EQUAL_UINT64(1, s.grip.lifting);
+    TEST_ASSERT_EQUAL_UINT64(0, s.grip.slipping);
+}
+
+static void of_points_that_are_equally_bad_the_first_is_named(void) {
+    scene s = scene_of(with_motors(mecanum()), 0.5, 0.05);
+    laconic_reactions found = look_at(&s, no_input(), 0);
+    for (int i = 1; i < 4; i++) {
+        found.normal_N[i] = -10;
+        found.along_N[i] = 5;
+    }
+    found.no_slip_margin_N = -10;
+    laconic_grip_watch(&s.grip, &s.contact, &s.model, &found, 1);
+    TEST_ASSERT_EQUAL_INT(2, s.grip.first_lift.point);
+    TEST_ASSERT_EQUAL_INT(2, s.grip.first_slip.point);
+}
+
 int main(void) {
     UNITY_BEGIN();
     RUN_TEST(a_gentle_run_counts_instants_and_nothing_else);
@@ -157,5 +197,8 @@ int main(void) {
     RUN_TEST(what_is_within_rounding_of_zero_neither_lifts_nor_slips);
     RUN_TEST(a_wheel_that_lifts_without_a_reaction_does_not_slip);
     RUN_TEST(nan_counts_as_slip_and_as_lift);
+    RUN_TEST(the_tolerance_is_a_part_of_the_weight);
+    RUN_TEST(a_wheel_at_its_limit_does_not_slip_since_another_one_lifts);
+    RUN_TEST(of_points_that_are_equally_bad_the_first_is_named);
     return UNITY_END();
 }

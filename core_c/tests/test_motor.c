@@ -119,6 +119,65 @@ static void a_motor_is_fitted_to_the_wheels_that_there_can_be(void) {
     TEST_ASSERT_TRUE(v.wheel_count == LACONIC_MAX_WHEELS + 9 && v.motor_gain_Nm_per_V > 0);
 }
 
+static void a_negative_inertia_of_a_wheel_is_refused_by_its_number(void) {
+    const laconic_motor m = good_motor();
+    for (int i = 0; i < 3; i++) {
+        laconic_vehicle v = three_wheels();
+        v.wheel[i].own_inertia_kgm2 = REAL(-1e-6);
+        const laconic_vehicle before = v;
+        ASSERT_REFUSED(LACONIC_NEGATIVE, LACONIC_FIELD_OWN_INERTIA, i + 1, laconic_motor_fit(&v, &m, &why), why);
+        TEST_ASSERT_EQUAL_MEMORY(&before, &v, sizeof v);
+    }
+}
+
+static void wheels_without_inertia_get_the_rotors(void) {
+    laconic_vehicle v = three_wheels();
+    const laconic_motor m = good_motor();
+    v.wheel_inertia_kgm2 = 0;
+    ASSERT_STATUS(LACONIC_OK, laconic_motor_fit(&v, &m, &why));
+    ASSERT_NEAR(ROUNDING, 25 * 2e-5, v.wheel_inertia_kgm2);
+}
+
+/* Where all are driven, only wheels with an inertia of their own need the rotor added to that. */
+static void a_rotor_is_added_to_the_inertia_that_a_wheel_has(void) {
+    laconic_vehicle v = three_wheels();
+    const laconic_motor m = good_motor();
+    v.wheel[0].own_inertia_kgm2 = REAL(0.02);
+    v.wheel[1].own_inertia_kgm2 = 1;
+    ASSERT_STATUS(LACONIC_OK, laconic_motor_fit(&v, &m, &why));
+    ASSERT_NEAR(ROUNDING, 0.02 + 25 * 2e-5, v.wheel[0].own_inertia_kgm2);
+    ASSERT_NEAR(ROUNDING, 1 + 25 * 2e-5, v.wheel[1].own_inertia_kgm2);
+    TEST_ASSERT_TRUE(v.wheel[2].own_inertia_kgm2 == 0);
+    ASSERT_NEAR(ROUNDING, 0.009 + 25 * 2e-5, v.wheel_inertia_kgm2);
+}
+
+static void the_first_wheel_gets_its_rotor_beside_one_without_a_motor(void) {
+    laconic_vehicle v = three_wheels();
+    const laconic_motor m = good_motor();
+    v.wheel[2].undriven = true;
+    ASSERT_STATUS(LACONIC_OK, laconic_motor_fit(&v, &m, &why));
+    ASSERT_NEAR(ROUNDING, 0.009 + 25 * 2e-5, v.wheel[0].own_inertia_kgm2);
+    TEST_ASSERT_TRUE(v.wheel[2].own_inertia_kgm2 == 0);
+}
+
+static void what_lies_beyond_the_last_wheel_is_neither_read_nor_written(void) {
+    const laconic_motor m = good_motor();
+    for (int driven = 0; driven < 2; driven++) {
+        laconic_vehicle v = three_wheels();
+        v.wheel[0].undriven = driven == 0;
+        v.wheel[3].own_inertia_kgm2 = -1;
+        v.wheel[3].undriven = driven == 1;
+        const laconic_wheel before = v.wheel[3];
+        ASSERT_STATUS(LACONIC_OK, laconic_motor_fit(&v, &m, &why));
+        TEST_ASSERT_EQUAL_MEMORY(&before, &v.wheel[3], sizeof before);
+        ASSERT_NEAR(ROUNDING, 0.009 + (driven ? 25 * 2e-5 : 0), v.wheel_inertia_kgm2);
+        v.wheel[3].own_inertia_kgm2 = 0;
+        const laconic_wheel empty = v.wheel[3];
+        ASSERT_STATUS(LACONIC_OK, laconic_motor_fit(&v, &m, &why));
+        TEST_ASSERT_EQUAL_MEMORY(&empty, &v.wheel[3], sizeof empty);
+    }
+}
+
 int main(void) {
     UNITY_BEGIN();
     RUN_TEST(the_data_sheet_becomes_gain_damping_and_inertia);
@@ -132,5 +191,10 @@ int main(void) {
     RUN_TEST(a_back_emf_of_the_wrong_sign_is_refused_even_where_friction_outweighs_it);
     RUN_TEST(a_negative_wheel_inertia_is_refused_before_the_rotors_inertia_hides_it);
     RUN_TEST(a_motor_is_fitted_to_the_wheels_that_there_can_be);
+    RUN_TEST(a_negative_inertia_of_a_wheel_is_refused_by_its_number);
+    RUN_TEST(wheels_without_inertia_get_the_rotors);
+    RUN_TEST(a_rotor_is_added_to_the_inertia_that_a_wheel_has);
+    RUN_TEST(the_first_wheel_gets_its_rotor_beside_one_without_a_motor);
+    RUN_TEST(what_lies_beyond_the_last_wheel_is_neither_read_nor_written);
     return UNITY_END();
 }

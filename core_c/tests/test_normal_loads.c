@@ -78,6 +78,63 @@ static void where_all_points_lift_nothing_is_carried(void) {
     TEST_ASSERT_TRUE(loads.statics_N[0] < 0 && loads.carried_N[0] == 0);
 }
 
+/* Two wheels in line with the centre of mass, but for a hair, carry all; the third is lifted by rounding, or by more. */
+static void a_load_below_zero_by_rounding_carries_nothing_and_has_not_lifted(void) {
+    const double parts[2] = {0.5, 2};
+    for (int k = 0; k < 2; k++) {
+        const laconic_real none_N[2] = {0, 0};
+        const double arm_m = 0.2, weight_N = 20 * LACONIC_GRAVITY_M_PER_S2;
+        laconic_vehicle v = robotino(0.5, 0, 0);
+        normal_loads loads;
+        v.wheel_count = 0;
+        for (int i = 0; i < 3; i++)
+            add_wheel(&v, LACONIC_WHEEL_ROLLER, i < 2 ? 0.2 - 0.4 * i : 0, i < 2 ? 0 : arm_m, 0, PI / 2);
+        v.com_y_m = REAL(-parts[k] * (double)LACONIC_RANK_TOLERANCE * arm_m);
+        const laconic_friction f = friction_of(v);
+        laconic_normal_loads(&loads, &f, none_N);
+        ASSERT_NEAR(0.1 * (double)LACONIC_RANK_TOLERANCE * weight_N,
+                    -parts[k] * (double)LACONIC_RANK_TOLERANCE * weight_N, loads.statics_N[2]);
+        TEST_ASSERT_TRUE(loads.carried_N[2] == 0);
+        ASSERT_NEAR(EITHER(1e-12, 1e-4), weight_N / 2, loads.carried_N[0]);
+        if (k == 0) /* still the whole wrench's statics: nothing was shared again */
+            TEST_ASSERT_TRUE(loads.statics_N[0] + loads.statics_N[1] > loads.carried_N[0] + loads.carried_N[1]);
+    }
+}
+
+static void where_a_load_is_no_number_nothing_is_carried(void) {
+    const laconic_friction f = friction_of(robotino(0.5, 0, 0));
+    const laconic_real pull_N[2] = {NOT_A_NUMBER, 0};
+    normal_loads loads;
+    laconic_normal_loads(&loads, &f, pull_N);
+    for (int i = 0; i < 3; i++) TEST_ASSERT_TRUE(isnan(loads.statics_N[i]) && loads.carried_N[i] == 0);
+}
+
+/* All wheels and supports that there can be, and those beyond fewer of them. */
+static void points_are_as_many_as_the_vehicle_has(void) {
+    const laconic_real forward_N[2] = {2000, 0};
+    laconic_vehicle v = robotino(0.5, 0, 0);
+    normal_loads loads;
+    memset(&loads, 0xFF, sizeof loads);
+    const laconic_friction few = friction_of(v);
+    laconic_normal_loads(&loads, &few, forward_N);
+    for (int i = 3; i < LACONIC_SLIP_POINTS; i++)
+        TEST_ASSERT_TRUE(isnan(loads.statics_N[i]) && isnan(loads.carried_N[i]));
+    v.wheel_count = 0;
+    for (int i = 0; i < LACONIC_MAX_WHEELS; i++)
+        add_wheel(&v, LACONIC_WHEEL_ROLLER, 0.3 * cos(i), 0.3 * sin(i), i, PI / 2);
+    v.support_count = LACONIC_MAX_SUPPORTS;
+    for (int i = 0; i < LACONIC_MAX_SUPPORTS; i++) {
+        v.support[i].x_m = REAL(-0.2 * cos(i));
+        v.support[i].y_m = REAL(-0.2 * sin(i));
+    }
+    const laconic_friction many = friction_of(v);
+    laconic_normal_loads(&loads, &many, forward_N);
+    int lifted = 0;
+    for (int i = 0; i < LACONIC_SLIP_POINTS; i++) lifted += loads.statics_N[i] < 0;
+    TEST_ASSERT_TRUE(lifted > 0 && lifted < LACONIC_SLIP_POINTS);
+    ASSERT_NEAR(EITHER(1e-10, 1e-3), 20 * LACONIC_GRAVITY_M_PER_S2, sum_of_loads(&many, &loads));
+}
+
 int main(void) {
     UNITY_BEGIN();
     RUN_TEST(at_rest_three_wheels_share_the_weight);
@@ -85,5 +142,8 @@ int main(void) {
     RUN_TEST(a_wheel_that_lifts_carries_nothing_and_the_others_carry_the_weight);
     RUN_TEST(on_a_slope_only_the_part_across_the_ground_loads);
     RUN_TEST(where_all_points_lift_nothing_is_carried);
+    RUN_TEST(a_load_below_zero_by_rounding_carries_nothing_and_has_not_lifted);
+    RUN_TEST(where_a_load_is_no_number_nothing_is_carried);
+    RUN_TEST(points_are_as_many_as_the_vehicle_has);
     return UNITY_END();
 }
