@@ -34,6 +34,12 @@ static void the_exponential_agrees_with_libms(void) {
     TEST_ASSERT_EQUAL_DOUBLE(0.0, (double)laconic_decaying_exponential(INFINITE));
 }
 
+static void the_exponential_is_zero_from_the_end_of_the_range_on(void) {
+    const double end = EITHER(745, 103);
+    TEST_ASSERT_EQUAL_DOUBLE(0.0, (double)laconic_decaying_exponential(REAL(end)));
+    TEST_ASSERT_TRUE(laconic_decaying_exponential(REAL(end - 1)) > 0);
+}
+
 static void sine_and_cosine_of_an_angle_are_libms_to_the_last_digits(void) {
     double angle;
     for (angle = EITHER(-1e5, -1e3); angle < EITHER(1e5, 1e3); angle += EITHER(7.131, 0.07131)) {
@@ -51,6 +57,18 @@ static void the_direction_of_a_very_large_angle_is_as_exact_as_the_angle(void) {
     ASSERT_NEAR(tolerance, cos((double)angle), d.cosine);
     ASSERT_NEAR(tolerance, sin((double)angle), d.sine);
     ASSERT_NEAR(tolerance, -sin((double)angle), back.sine);
+}
+
+/* The angle that is a million quarters when it is multiplied by 2/π, and the next one towards 0. */
+static void from_a_million_quarters_on_an_angle_is_reduced_as_a_binary_angle(void) {
+    const laconic_real border = REAL(EITHER(1570796.3267948965, 1570796.375));
+    const laconic_real below = REAL(EITHER(nextafter(border, 0), (double)nextafterf((float)border, 0)));
+    const direction at = laconic_direction_of_angle(border), near = laconic_direction_of_angle(below);
+    const direction binary = laconic_direction_of_binary_angle(laconic_binary_angle_of(border));
+    TEST_ASSERT_TRUE(border * REAL(0.6366197723675813431) == REAL(1e6));
+    TEST_ASSERT_TRUE(at.cosine == binary.cosine && at.sine == binary.sine);
+    ASSERT_NEAR(2 * (double)LACONIC_EPSILON, cos((double)below), near.cosine);
+    ASSERT_NEAR(2 * (double)LACONIC_EPSILON, sin((double)below), near.sine);
 }
 
 static void a_quarter_turn_is_exact(void) {
@@ -75,6 +93,8 @@ static void an_angle_without_a_direction_counts_as_zero(void) {
     TEST_ASSERT_TRUE(laconic_binary_angle_of(NOT_A_NUMBER) == 0);
     TEST_ASSERT_TRUE(laconic_binary_angle_of(INFINITE) == 0);
     TEST_ASSERT_TRUE(laconic_binary_angle_of(REAL(1e30)) == 0);
+    const laconic_real first = REAL(EITHER(5.795215566461698e19, 13493038080.0)); /* of half the range of turns */
+    TEST_ASSERT_TRUE(laconic_binary_angle_of(first) == 0 && laconic_binary_angle_of(-first) == 0);
     TEST_ASSERT_EQUAL_DOUBLE(1.0, (double)laconic_direction_of_angle(NOT_A_NUMBER).cosine);
 }
 
@@ -102,6 +122,15 @@ static void phi_functions_agree_with_their_integrals(void) {
     }
 }
 
+/* In 25 digits. At 4 the series would err by 17 units in the last place. */
+static void at_four_the_phi_functions_are_those_from_the_exponential_upwards(void) {
+    const double exact[6] = {0.01831563888873418029371802, 0.2454210902778164549265705, 0.1886447274305458862683574,
+                             0.07783881814236352843291066, 0.022206962131075784558439,  0.004864926133897720527056916};
+    laconic_real phi[6];
+    laconic_phi(phi, REAL(4));
+    for (int k = 0; k < 6; k++) ASSERT_NEAR(3 * (double)LACONIC_EPSILON * exact[k], exact[k], phi[k]);
+}
+
 static void phi_functions_stay_finite_for_any_damping(void) {
     laconic_real phi[6];
     laconic_phi(phi, REAL(1e30));
@@ -115,6 +144,9 @@ int main(void) {
     RUN_TEST(the_square_root_is_right_to_the_last_bits_over_the_whole_range);
     RUN_TEST(the_root_of_zero_or_less_is_zero_and_of_infinity_infinity);
     RUN_TEST(the_exponential_agrees_with_libms);
+    RUN_TEST(the_exponential_is_zero_from_the_end_of_the_range_on);
+    RUN_TEST(from_a_million_quarters_on_an_angle_is_reduced_as_a_binary_angle);
+    RUN_TEST(at_four_the_phi_functions_are_those_from_the_exponential_upwards);
     RUN_TEST(sine_and_cosine_of_an_angle_are_libms_to_the_last_digits);
     RUN_TEST(the_direction_of_a_very_large_angle_is_as_exact_as_the_angle);
     RUN_TEST(a_quarter_turn_is_exact);

@@ -278,6 +278,7 @@ static void a_twin_goes_on_after_a_change_and_begins_where_friction_does(void) {
     spoilt.twin.x_m.value = NOT_A_NUMBER;
     ASSERT_REFUSED(LACONIC_OVERFLOW, LACONIC_FIELD_NONE, 0,
                    laconic_estimate_carry(&spoilt, &before, &plant, NULL, &why), why);
+    TEST_ASSERT_TRUE(why.value == 0 && why.limit == 0); /* of a twin nobody has given a number */
     before = plant;
     ASSERT_STATUS(LACONIC_OK, laconic_plant_change(&plant, &ideal, &why));
     ASSERT_STATUS(LACONIC_OK, laconic_estimate_carry(&estimate, &before, &plant, NULL, &why));
@@ -289,6 +290,26 @@ static void a_twin_goes_on_after_a_change_and_begins_where_friction_does(void) {
     ASSERT_STATUS(LACONIC_OK, laconic_estimate_carry(&estimate, &before, &plant, NULL, &why));
     TEST_ASSERT_EQUAL_INT(0, estimate.taken);
     TEST_ASSERT_EQUAL_MEMORY(&plant.state, &estimate.twin, sizeof plant.state);
+}
+
+/* To a vehicle with friction and back: of the first motion's error nothing is left. */
+static void an_estimate_that_began_anew_with_friction_has_no_older_error(void) {
+    const laconic_vehicle ideal = with_motors(mecanum());
+    laconic_vehicle v = ideal;
+    v.ground.friction_coefficient = REAL(0.5);
+    laconic_plant plant = plant_by(&laconic_auto, &ideal, start_with(2, 1, 4), 0.01);
+    laconic_estimate estimate = estimate_of(&plant, 16);
+    const laconic_input input = every_input();
+    ASSERT_STATUS(LACONIC_OK, laconic_estimate_run(&estimate, &plant, &input, 40, &why));
+    for (int k = 0; k < 2; k++) {
+        const laconic_plant before = plant;
+        ASSERT_STATUS(LACONIC_OK, laconic_plant_change(&plant, k == 0 ? &v : &ideal, &why));
+        ASSERT_STATUS(LACONIC_OK, laconic_estimate_carry(&estimate, &before, &plant, NULL, &why));
+    }
+    laconic_estimate fresh;
+    ASSERT_STATUS(LACONIC_OK, laconic_estimate_start(&fresh, &plant, 16, NULL, &why));
+    const laconic_errors expected = errors_now(&fresh, &plant), found = errors_now(&estimate, &plant);
+    TEST_ASSERT_EQUAL_MEMORY(&expected, &found, sizeof found);
 }
 
 static void a_step_without_half_of_it_is_refused_after_a_change(void) {
@@ -314,6 +335,7 @@ int main(void) {
     RUN_TEST(a_vehicle_with_friction_has_a_twin);
     RUN_TEST(after_a_change_the_estimate_goes_on);
     RUN_TEST(a_twin_goes_on_after_a_change_and_begins_where_friction_does);
+    RUN_TEST(an_estimate_that_began_anew_with_friction_has_no_older_error);
     RUN_TEST(a_step_without_half_of_it_is_refused_after_a_change);
     return UNITY_END();
 }

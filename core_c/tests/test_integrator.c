@@ -53,6 +53,21 @@ static void a_good_step_is_kept_with_its_method(void) {
     TEST_ASSERT_EQUAL_PTR(&laconic_rk4, in.chosen);
 }
 
+/* Below h·r = 0.3 auto goes on with exact-flow-4 where it must, from there on with exponential-kahan-4. */
+static void damping_is_fast_from_its_border_on(void) {
+    const laconic_real border = REAL(0.3), below = border * (1 - LACONIC_EPSILON);
+    laconic_model m;
+    laconic_integrator in;
+    memset(&m, 0, sizeof m);
+    m.decay_per_s[1] = REAL(1);
+    ASSERT_STATUS(LACONIC_OK, laconic_integrator_prepare(&in, &laconic_auto, &m, border, &why));
+    TEST_ASSERT_TRUE(in.stiff);
+    TEST_ASSERT_EQUAL_PTR(&laconic_auto_fast, in.chosen);
+    ASSERT_STATUS(LACONIC_OK, laconic_integrator_prepare(&in, &laconic_auto, &m, below, &why));
+    TEST_ASSERT_FALSE(in.stiff);
+    TEST_ASSERT_EQUAL_PTR(&laconic_auto_slow, in.chosen);
+}
+
 static void the_fastest_decay_is_the_largest_of_all_axes(void) {
     laconic_model m;
     memset(&m, 0, sizeof m);
@@ -159,6 +174,21 @@ static void an_explicit_method_is_limited_by_fast_turning(laconic_vehicle v) {
     ASSERT_STATUS(LACONIC_OK, laconic_step(&m, &in, &state, &input));
 }
 
+/* A step of the limit itself is taken; as short as this every yaw is slow enough, up to the end of the range. */
+static void at_its_limits_a_step_is_taken(void) {
+    laconic_model m;
+    laconic_integrator in;
+    memset(&m, 0, sizeof m);
+    memset(&in, 0, sizeof in);
+    m.decay_per_s[2] = m.gyro[0] = REAL(1);
+    in.step_s = REAL(2.5);
+    ASSERT_STATUS(LACONIC_OK, laconic_explicit_limits(&in, &m, REAL(2.5), REAL(5), &why));
+    TEST_ASSERT_EQUAL_DOUBLE(2, (double)in.gyro_limit);
+    in.step_s = 4 / LACONIC_REAL_MAX;
+    ASSERT_STATUS(LACONIC_OK, laconic_explicit_limits(&in, &m, REAL(2.5), REAL(4), &why));
+    TEST_ASSERT_TRUE(in.gyro_limit == LACONIC_REAL_MAX);
+}
+
 static void a_fast_yaw_limits_the_step_with_and_without_damping(void) {
     an_explicit_method_is_limited_by_fast_turning(three_wheels());
     an_explicit_method_is_limited_by_fast_turning(with_motors(three_wheels()));
@@ -199,6 +229,15 @@ static void whole_numbers_of_steps_are_counted(void) {
     TEST_ASSERT_EQUAL_UINT64(1, steps);
 }
 
+static void intervals_and_steps_up_to_the_end_of_the_range_are_counted(void) {
+    uint64_t steps = 77;
+    ASSERT_STATUS(LACONIC_OK, laconic_steps_in(DBL_MAX, DBL_MAX, &steps, &why));
+    TEST_ASSERT_EQUAL_UINT64(1, steps);
+    ASSERT_STATUS(LACONIC_OK, laconic_steps_in(9e15 - 2, 1, &steps, &why));
+    TEST_ASSERT_EQUAL_UINT64(8999999999999998, steps);
+    ASSERT_STATUS(LACONIC_STEP_DOES_NOT_FIT, laconic_steps_in(9e15, 1, &steps, &why));
+}
+
 static void an_interval_of_no_whole_number_of_steps_is_refused_with_one_that_fits(void) {
     uint64_t steps = 77;
     ASSERT_REFUSED(LACONIC_STEP_DOES_NOT_FIT, LACONIC_FIELD_STEP, 0, laconic_steps_in(0.1, 0.03, &steps, &why), why);
@@ -237,6 +276,9 @@ int main(void) {
     RUN_TEST(a_step_whose_parts_have_no_inverse_is_refused_with_the_shortest_there_is);
     RUN_TEST(a_null_method_is_refused);
     RUN_TEST(a_good_step_is_kept_with_its_method);
+    RUN_TEST(damping_is_fast_from_its_border_on);
+    RUN_TEST(at_its_limits_a_step_is_taken);
+    RUN_TEST(intervals_and_steps_up_to_the_end_of_the_range_are_counted);
     RUN_TEST(the_fastest_decay_is_the_largest_of_all_axes);
     RUN_TEST(factors_are_those_of_the_damped_axis);
     RUN_TEST(levels_are_halved_steps);

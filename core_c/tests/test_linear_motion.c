@@ -120,12 +120,36 @@ static void a_window_without_a_solution_stays_finite(void) {
     TEST_ASSERT_TRUE(size(error.zeta) < REAL(1e-5));
 }
 
+/* What is left after as many steps as the last window had is the border: that much does not count as fading. */
+static void errors_fade_below_their_border_alone(void) {
+    const laconic_real fading[3] = {REAL(1), REAL(0.7), REAL(0.69)};
+    pair both = apart(with_motors(three_wheels()));
+    laconic_estimate estimate;
+    state_error error[3];
+    window_motion motion;
+    memset(error, 0, sizeof error);
+    memset(&motion, 0, sizeof motion);
+    ASSERT_STATUS(LACONIC_OK, laconic_estimate_start(&estimate, &both.plant, 16, NULL, &why));
+    estimate.local[0] = REAL(1e-6);
+    estimate.last_length = 2;
+    motion.step_s = REAL(0.002);
+    motion.heading.cosine = 1;
+    motion.steps = 4;
+    for (int k = 0; k < 3; k++) {
+        estimate.fading = fading[k];
+        laconic_carry_error(&error[k], &estimate, &both.plant.model, &motion);
+    }
+    TEST_ASSERT_EQUAL_MEMORY(&error[0], &error[1], sizeof error[0]);
+    TEST_ASSERT_TRUE(error[2].zeta.x < REAL(0.8) * error[1].zeta.x);
+}
+
 int main(void) {
     UNITY_BEGIN();
     RUN_TEST(free_motion_turns_the_error);
     RUN_TEST(damping_lets_it_die);
     RUN_TEST(a_force_in_the_world_follows_the_heading);
     RUN_TEST(windows_of_one_step_and_one_of_many_agree);
+    RUN_TEST(errors_fade_below_their_border_alone);
     RUN_TEST(a_window_without_a_solution_stays_finite);
     return UNITY_END();
 }
