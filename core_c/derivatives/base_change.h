@@ -9,7 +9,6 @@
 typedef struct base_trace {
     int level;
     vector zeta, delta; /* delta: as increment_of() takes it                          */
-    vector start;       /* b at the base step's start                                 */
     vector change;      /* of b over the base step, with what follow() adds           */
     bool varies;
     vector mean;              /* of ζ over the base step */

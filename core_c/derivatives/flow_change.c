@@ -99,7 +99,7 @@ static increment trace_flow(base_trace *t, const step_point *at, int level, vect
     const laconic_decay *half = &at->integrator->decay[level + 1];
     t->level = level;
     t->zeta = zeta;
-    t->start = t->of.flow.first = t->of.flow.second = b->start;
+    t->of.flow.first = t->of.flow.second = b->start;
     t->change = b->change;
     t->varies = b->varies;
     if (b->varies) {

@@ -52,7 +52,6 @@ static increment trace_kahan(base_trace *t, const step_point *at, int level, vec
     const laconic_decay *d = &at->integrator->decay[level];
     t->level = level;
     t->zeta = zeta;
-    t->start = b->start;
     t->change = t->of.kahan.given = b->change;
     t->varies = b->varies;
     t->of.kahan.at_start = gyroscopic_map(m, zeta);
@@ -62,7 +61,7 @@ static increment trace_kahan(base_trace *t, const step_point *at, int level, vec
     const linear_map rate = rate_map(m, added(zeta, R(0.5), t->delta));
     t->by_zeta = product_of(&t->by_b, &rate);
     if (at->integrator->stiff) trace_follow(t, m, d);
-    const parabola followed = {t->start, t->change, none, t->varies};
+    const parabola followed = {b->start, t->change, none, t->varies};
     return increment_of(d, zeta, t->delta, &followed);
 }
 

@@ -4,6 +4,7 @@
  * host_tests/tests/derivatives compare them with differences. */
 #include "bits.h"
 #include "laconic/derivatives.h"
+#include "stack.h"
 
 static laconic_vehicle every_number_of(const laconic_vehicle *vehicle, int part) {
     laconic_vehicle by;
@@ -48,6 +49,7 @@ static void constants_of_a_model_by_each_number_of_its_vehicle(void) {
             const laconic_model model = model_of(vehicle);
             laconic_model_change change;
             FILL(change);
+            fill_stack(ALL_NAN);
             ASSERT_STATUS(LACONIC_OK, laconic_model_tangent(&change, &model, &vehicle, &by));
             TAKE(change);
         }
@@ -68,6 +70,7 @@ static void take_jacobian(const laconic_plant *plant, const laconic_input *held,
     FILL(j.by_world_force_point);
     FILL(by_state);
     FILL(by_input);
+    fill_stack(ALL_NAN);
     const laconic_real status =
         REAL(laconic_step_jacobian_of(&j, &plant->model, &plant->integrator, &plant->state, held, with_world_force));
     TAKE(status);
@@ -110,10 +113,13 @@ static void take_directions(const laconic_plant *plant, const laconic_input *hel
     FILL(before);
     FILL(by_input);
     ASSERT_STATUS(LACONIC_OK, laconic_model_tangent(&change, &plant->model, &plant->vehicle, &by));
+    fill_stack(ALL_NAN);
     laconic_step_tangent(&after, &plant->model, &plant->integrator, &plant->state, held, &along, &input, &change);
     TAKE(after);
+    fill_stack(ALL_NAN);
     laconic_step_tangent(&after, &plant->model, &plant->integrator, &plant->state, held, &along, NULL, NULL);
     TAKE(after);
+    fill_stack(ALL_NAN);
     laconic_step_adjoint(&before, &by_input, &gradient, &plant->model, &plant->integrator, &plant->state, held, &along);
     TAKE(before);
     TAKE(by_input);

@@ -1,5 +1,7 @@
 /* Tests of derivatives of exponential-gauss-8 where an input turns the vehicle by radians within a step, so that the
- * rounds end before they have settled: they are of the step as it is. test_step_derivatives.c has the usual steps. */
+ * rounds end before they have settled: they are of the step as it is; and of the room that its weights take.
+ * test_step_derivatives.c has the usual steps. */
+#include "../derivatives/gauss_weight_change.h"
 #include "laconic/derivatives.h"
 #include "stiff.h"
 
@@ -90,8 +92,21 @@ static void rounds_that_do_not_settle_are_linearised_one_by_one(void) {
     }
 }
 
+static void no_number_behind_the_weights_is_written(void) {
+    const laconic_model m = model_of(with_motors(three_wheels()));
+    const linear_map every = {vector_of(3, 3, 3), vector_of(3, 3, 3), vector_of(3, 3, 3)};
+    struct {
+        gauss_weight_change change;
+        laconic_real behind;
+    } room;
+    room.behind = 7;
+    laconic_gauss_weight_change_of(&room.change, &m, REAL(0.1), &every);
+    TEST_ASSERT_TRUE(room.behind == 7);
+}
+
 int main(void) {
     UNITY_BEGIN();
+    RUN_TEST(no_number_behind_the_weights_is_written);
     RUN_TEST(rounds_that_do_not_settle_are_linearised_one_by_one);
     return UNITY_END();
 }
