@@ -1,5 +1,5 @@
-/* Tests of how a model changes with its vehicle, beside those of the steps that follow from it (test_step_derivatives.c):
- * of which numbers it is no change at all. */
+/* Tests of how a model changes with its vehicle, beside those of the steps that follow from it
+ * (test_step_derivatives.c): of which numbers it is no change at all. */
 #include "laconic/derivatives.h"
 #include "vehicles.h"
 
