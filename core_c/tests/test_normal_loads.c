@@ -78,7 +78,7 @@ static void where_all_points_lift_nothing_is_carried(void) {
     TEST_ASSERT_TRUE(loads.statics_N[0] < 0 && loads.carried_N[0] == 0);
 }
 
-/* Two wheels in line with the centre of mass, but for a hair, carry all; the third is lifted by rounding, or by more. */
+/* Two wheels in line with the centre of mass, but for a hair, carry all; the third is lifted by rounding, or more. */
 static void a_load_below_zero_by_rounding_carries_nothing_and_has_not_lifted(void) {
     const double parts[2] = {0.5, 2};
     for (int k = 0; k < 2; k++) {
