@@ -1,4 +1,6 @@
 /* Tests of exact_flow.c: order, energy and K, free motion in closed form, refusals. */
+#include "step_internals.h"
+
 #include "stiff.h"
 
 /* ------------------------------------------------------------------------------ second order -- */
@@ -100,6 +102,41 @@ static void numbers_beyond_the_range_are_refused(void) {
     assert_step_refused(&laconic_exact_flow, three_wheels(), start_with(0, 0, 0), input, 1.0, LACONIC_OVERFLOW);
 }
 
+/* From rest, by a voltage that makes as many units of velocity in a second. */
+static void a_step_may_lead_to_the_largest_speed_and_not_beyond(void) {
+    for (int k = 0; k < 2; k++) {
+        const laconic_real speed = LARGEST_SPEED * (1 + 2 * REAL(k) * LACONIC_EPSILON);
+        laconic_input input = no_input();
+        laconic_model m;
+        laconic_state state;
+        memset(&m, 0, sizeof m);
+        memset(&state, 0, sizeof state);
+        m.wheel_count = 1;
+        m.wheel_of_zeta[0][0] = m.voltage_scale[0] = REAL(1);
+        input.voltage_V[0] = speed;
+        const laconic_integrator in = integrator_of(&laconic_exact_flow, &m, 1);
+        ASSERT_STATUS(k == 0 ? LACONIC_OK : LACONIC_OVERFLOW, laconic_step(&m, &in, &state, &input));
+        TEST_ASSERT_TRUE(state.zeta[0].value == (k == 0 ? speed : 0));
+    }
+}
+
+/* Straight on at an eighth of it a second, eight metres for each unit of velocity. */
+static void a_step_is_shorter_than_the_yaw_that_can_be_counted(void) {
+    for (int k = 0; k < 2; k++) {
+        const laconic_real speed = LARGEST_YAW_CHANGE_RAD / 8 * (1 - REAL(k) * LACONIC_EPSILON);
+        const laconic_input input = no_input();
+        laconic_model m;
+        laconic_state state;
+        memset(&m, 0, sizeof m);
+        memset(&state, 0, sizeof state);
+        m.velocity_of_zeta[k][0] = REAL(8);
+        state.zeta[0].value = speed;
+        const laconic_integrator in = integrator_of(&laconic_exact_flow, &m, 1);
+        ASSERT_STATUS(k == 0 ? LACONIC_OVERFLOW : LACONIC_OK, laconic_step(&m, &in, &state, &input));
+        TEST_ASSERT_TRUE(state.x_m.value == 0 && state.y_m.value == (k == 0 ? 0 : 8 * speed));
+    }
+}
+
 static void more_turns_in_a_step_than_can_be_counted_are_refused(void) {
     assert_step_refused(&laconic_exact_flow, caster(), start_with(1, 0, EITHER(1e20, 1e6)), no_input(), 1e8,
                         LACONIC_OVERFLOW);
@@ -172,6 +209,8 @@ int main(void) {
     RUN_TEST(a_motion_whose_square_is_no_number_any_more_is_turned);
     RUN_TEST(a_method_that_only_auto_chooses_is_not_prepared);
     RUN_TEST(numbers_beyond_the_range_are_refused);
+    RUN_TEST(a_step_may_lead_to_the_largest_speed_and_not_beyond);
+    RUN_TEST(a_step_is_shorter_than_the_yaw_that_can_be_counted);
     RUN_TEST(more_turns_in_a_step_than_can_be_counted_are_refused);
     RUN_TEST(is_of_fourth_order_under_everything_that_can_act);
     RUN_TEST(is_of_fourth_order_without_a_world_force);

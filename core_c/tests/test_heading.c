@@ -69,6 +69,38 @@ static void a_compensated_sum_loses_nothing(void) {
     ASSERT_NEAR(2 * (double)LACONIC_EPSILON, 1.0 + 1e6 * addend, (double)sum.value + (double)sum.rest);
 }
 
+/* Half of what a heading can show at a time: every second one is seen, and none is lost. */
+static void angles_below_the_resolution_are_kept_until_they_count(void) {
+    laconic_heading heading = {0, 0, 0};
+    for (int i = 0; i < 1000; i++) {
+        TEST_ASSERT_TRUE(heading.fraction <= (laconic_binary_angle)i);
+        TEST_ASSERT_TRUE(heading.fraction + 3 >= (laconic_binary_angle)i);
+        heading_advance(&heading, BINARY_ANGLE_UNIT_RAD);
+    }
+}
+
+/* 2⁶² turns either way: as many are left for a step as it may add. */
+static void a_step_begins_within_the_turns_that_leave_room_for_it(void) {
+    const int64_t most = (int64_t)1 << 62;
+    const laconic_heading inside[2] = {{most - 1, 0, 0}, {-most, 0, 0}}, outside[2] = {{most, 0, 0}, {-most - 1, 0, 0}};
+    laconic_model m;
+    laconic_integrator in;
+    laconic_input input;
+    memset(&m, 0, sizeof m);
+    memset(&input, 0, sizeof input);
+    ASSERT_STATUS(LACONIC_OK, laconic_integrator_prepare(&in, &laconic_exact_flow, &m, REAL(1), NULL));
+    for (int k = 0; k < 2; k++) {
+        laconic_state state;
+        memset(&state, 0, sizeof state);
+        state.heading = inside[k];
+        TEST_ASSERT_TRUE(heading_has_room(&state.heading));
+        ASSERT_STATUS(LACONIC_OK, laconic_step(&m, &in, &state, &input));
+        state.heading = outside[k];
+        TEST_ASSERT_FALSE(heading_has_room(&state.heading));
+        ASSERT_STATUS(LACONIC_OVERFLOW, laconic_step(&m, &in, &state, &input));
+    }
+}
+
 int main(void) {
     UNITY_BEGIN();
     RUN_TEST(the_wrapped_heading_lies_in_minus_pi_to_pi);
@@ -77,5 +109,7 @@ int main(void) {
     RUN_TEST(many_turns_in_one_step_are_counted);
     RUN_TEST(the_heading_half_way_is_returned);
     RUN_TEST(a_compensated_sum_loses_nothing);
+    RUN_TEST(angles_below_the_resolution_are_kept_until_they_count);
+    RUN_TEST(a_step_begins_within_the_turns_that_leave_room_for_it);
     return UNITY_END();
 }

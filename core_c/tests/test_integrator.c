@@ -189,6 +189,24 @@ static void at_its_limits_a_step_is_taken(void) {
     TEST_ASSERT_TRUE(in.gyro_limit == LACONIC_REAL_MAX);
 }
 
+static void a_yaw_of_the_limit_itself_is_not_beyond_it(void) {
+    const laconic_input input = no_input();
+    const laconic_method *const explicit_ones[3] = {&laconic_rk4, &laconic_taylor_8, &laconic_exponential_gauss_8};
+    laconic_model m;
+    laconic_state state;
+    memset(&m, 0, sizeof m);
+    m.nu_of_zeta[2][2] = REAL(1);
+    for (int k = 0; k < 3; k++) {
+        laconic_integrator in = integrator_of(explicit_ones[k], &m, 0.5);
+        in.gyro_limit = REAL(2);
+        memset(&state, 0, sizeof state);
+        state.zeta[2].value = REAL(2);
+        ASSERT_STATUS(LACONIC_OK, laconic_step(&m, &in, &state, &input));
+        state.zeta[2].value = REAL(2) * (1 + LACONIC_EPSILON);
+        ASSERT_STATUS(LACONIC_STEP_BEYOND_GYROSCOPIC_LIMIT, laconic_step(&m, &in, &state, &input));
+    }
+}
+
 static void a_fast_yaw_limits_the_step_with_and_without_damping(void) {
     an_explicit_method_is_limited_by_fast_turning(three_wheels());
     an_explicit_method_is_limited_by_fast_turning(with_motors(three_wheels()));
@@ -278,6 +296,7 @@ int main(void) {
     RUN_TEST(a_good_step_is_kept_with_its_method);
     RUN_TEST(damping_is_fast_from_its_border_on);
     RUN_TEST(at_its_limits_a_step_is_taken);
+    RUN_TEST(a_yaw_of_the_limit_itself_is_not_beyond_it);
     RUN_TEST(intervals_and_steps_up_to_the_end_of_the_range_are_counted);
     RUN_TEST(the_fastest_decay_is_the_largest_of_all_axes);
     RUN_TEST(factors_are_those_of_the_damped_axis);
