@@ -288,6 +288,31 @@ static void what_lies_beyond_the_last_wheel_stays(void) {
     }
 }
 
+/* A wheel that slides sideways keeps what the grip leaves: below 1e-10 of the free motion (1e-4) nothing. */
+static void speeds_of_hardly_any_share_of_the_free_motion_are_none(void) {
+    const double share[2] = {EITHER(0.5e-10, 0.5e-4), EITHER(2e-10, 2e-4)};
+    for (int moves = 0; moves < 2; moves++) {
+        problem p = one_wheel(1 - share[moves]);
+        p.free[1] = REAL(1);
+        TEST_ASSERT_GREATER_THAN(0, solve(&p));
+        if (moves)
+            ASSERT_NEAR(0.1 * share[1], share[1], p.nu[1]);
+        else
+            TEST_ASSERT_TRUE(p.nu[1] == 0);
+    }
+}
+
+/* Squares of residuals of a smaller motion would underflow. */
+static void a_motion_next_to_the_least_number_s_root_is_none(void) {
+    const double speed = EITHER(1e-142, 1e-14);
+    for (int moves = 0; moves < 2; moves++) {
+        problem p = one_wheel(0);
+        p.free[1] = REAL(moves ? 2 * speed : speed);
+        TEST_ASSERT_GREATER_THAN(0, solve(&p));
+        TEST_ASSERT_TRUE(p.nu[1] == (moves ? p.free[1] : 0));
+    }
+}
+
 int main(void) {
     UNITY_BEGIN();
     RUN_TEST(a_sliding_wheel_loses_the_grip_against_its_slip);
@@ -307,5 +332,7 @@ int main(void) {
     RUN_TEST(what_is_not_finite_is_refused);
     RUN_TEST(nothing_that_moves_is_no_motion);
     RUN_TEST(what_lies_beyond_the_last_wheel_stays);
+    RUN_TEST(speeds_of_hardly_any_share_of_the_free_motion_are_none);
+    RUN_TEST(a_motion_next_to_the_least_number_s_root_is_none);
     return UNITY_END();
 }
