@@ -143,6 +143,25 @@ static void an_odometer_takes_as_many_sums_as_there_are(void) {
     }
 }
 
+static void an_encoder_of_one_count_counts_the_turns(void) {
+    const laconic_vehicle v = three_wheels();
+    const laconic_start start = start_with(0, 0, 100);
+    const laconic_input input = no_input();
+    laconic_sensor_settings settings = {0};
+    laconic_plant plant;
+    laconic_sensors sensors;
+    laconic_refusal why;
+    laconic_real angle[3];
+    memset(&plant, 0, sizeof plant);
+    ASSERT_STATUS(LACONIC_OK, laconic_plant_start(&plant, &v, &laconic_auto, REAL(1e-3), &start, &why));
+    settings.encoder[0].counts_per_turn = 1;
+    ASSERT_STATUS(LACONIC_OK, laconic_sensors_start(&sensors, &settings, &plant, &why));
+    ASSERT_STATUS(LACONIC_OK, laconic_sensors_run(&sensors, &plant, &input, 1000, &why));
+    laconic_plant_wheel_angles(&plant, angle);
+    TEST_ASSERT_TRUE((double)angle[0] > 4 * PI);
+    TEST_ASSERT_TRUE(sensors.encoder[0].count == (int64_t)floor((double)angle[0] / (2 * PI)));
+}
+
 int main(void) {
     UNITY_BEGIN();
     RUN_TEST(half_a_turn_gives_half_its_counts);
@@ -157,5 +176,6 @@ int main(void) {
     RUN_TEST(without_a_wrap_it_shows_32_bits);
     RUN_TEST(a_wheel_has_not_turned_since_now);
     RUN_TEST(an_odometer_takes_as_many_sums_as_there_are);
+    RUN_TEST(an_encoder_of_one_count_counts_the_turns);
     return UNITY_END();
 }

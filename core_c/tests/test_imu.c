@@ -308,6 +308,38 @@ static void seeds_choose_the_noise(void) {
     TEST_ASSERT_TRUE(yaw_rate == truth.yaw_rate_rad_per_s);
 }
 
+/* ------------------------------------------------------------------------- beside a plant -- */
+
+static void settings_exactly_at_their_limits_are_taken(void) {
+    laconic_sensor_settings settings = {0};
+    settings.imu.x_m = REAL(1e15);
+    settings.imu.y_m = REAL(-1e15);
+    settings.imu.heading_rad = LACONIC_SMALLEST_ROLLER_SINE / LACONIC_EPSILON;
+    settings.imu.delay_steps = LACONIC_IMU_MAX_DELAY;
+    ASSERT_STATUS(LACONIC_OK, laconic_sensor_settings_check(&settings, 3, &why));
+    settings.imu.x_m *= 1 + LACONIC_EPSILON;
+    ASSERT_REFUSED(LACONIC_OVERFLOW, (laconic_field)LACONIC_SENSOR_FIELD_IMU_X, 0,
+                   laconic_sensor_settings_check(&settings, 3, &why), why);
+}
+
+/* What was before the sensors' start was as at their start, at whatever step of the plant that is. */
+static void a_delay_that_reaches_before_the_start_shows_the_start(void) {
+    const laconic_vehicle v = bare_body();
+    laconic_plant plant = plant_of(&v, &laconic_auto, STEP, start_with(1, 2, 3));
+    const laconic_input input = no_input();
+    ASSERT_STATUS(LACONIC_OK, laconic_plant_run(&plant, &input, 5, &why));
+    for (int32_t delay = 0; delay <= LACONIC_IMU_MAX_DELAY; delay++) {
+        laconic_sensor_settings settings = {0};
+        settings.imu.delay_steps = delay;
+        laconic_sensors sensors;
+        laconic_sensor_outputs out;
+        memset(&sensors, 0xA5, sizeof sensors); /* as memory comes */
+        ASSERT_STATUS(LACONIC_OK, laconic_sensors_start(&sensors, &settings, &plant, &why));
+        laconic_sensors_read(&out, &sensors, &plant, &input);
+        ASSERT_NEAR(4 * ROUNDING, 3 / BIG_LAMBDA, out.imu_yaw_rate_rad_per_s);
+    }
+}
+
 int main(void) {
     UNITY_BEGIN();
     RUN_TEST(at_rest_on_level_ground_nothing_is_felt);
@@ -326,5 +358,7 @@ int main(void) {
     RUN_TEST(beyond_its_range_it_shows_the_end_of_the_range);
     RUN_TEST(the_density_of_the_noise_sets_its_deviation_at_every_step);
     RUN_TEST(seeds_choose_the_noise);
+    RUN_TEST(settings_exactly_at_their_limits_are_taken);
+    RUN_TEST(a_delay_that_reaches_before_the_start_shows_the_start);
     return UNITY_END();
 }

@@ -152,6 +152,14 @@ static void a_slow_rate_keeps_its_digits_beside_fast_ones(void) {
     ASSERT_NEAR(EITHER(1e-10, 1e-4), 2.0, product[1] / product[0]); /* linear in it to first order */
 }
 
+static void without_damping_one_rotation_is_enough_whatever_the_inertias(void) {
+    laconic_vehicle v = mecanum();
+    for (int i = 0; i < 4; i++) v.wheel[i].own_inertia_kgm2 = REAL(0.001) * REAL(1 << i);
+    TEST_ASSERT_FALSE(model_of(v).rotated_twice);
+    v.motor_damping_Nms = REAL(DAMPING);
+    TEST_ASSERT_TRUE(model_of(v).rotated_twice);
+}
+
 static void a_common_ratio_needs_one_rotation_only(void) {
     laconic_vehicle v = with_motors(mecanum());
     for (int i = 0; i < 4; i++) {
@@ -292,6 +300,7 @@ int main(void) {
     RUN_TEST(a_quarter_of_a_second_of_auto_errs_by_rounding);
     RUN_TEST(free_motion_keeps_energy_and_k);
     RUN_TEST(a_slow_rate_keeps_its_digits_beside_fast_ones);
+    RUN_TEST(without_damping_one_rotation_is_enough_whatever_the_inertias);
     RUN_TEST(a_common_ratio_needs_one_rotation_only);
     RUN_TEST(a_wheel_without_a_motor_takes_no_voltage_and_damps_nothing);
     RUN_TEST(the_rotor_goes_to_the_driven_wheels_only);

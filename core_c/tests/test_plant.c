@@ -162,6 +162,45 @@ static void a_restart_begins_again_with_the_same_vehicle(void) {
     }
 }
 
+/* A vehicle with friction takes the friction step alone, which auto stands for: by its whole name. */
+static void with_friction_no_method_but_auto_is_taken(void) {
+    const char *const names[] = {"", "a", "aut", "buto", "aato", "auuo", "auta", "autob", "auto-8"};
+    const laconic_start start = start_with(1, 2, 3);
+    laconic_vehicle v = three_wheels();
+    laconic_plant plant;
+    memset(&plant, 0, sizeof plant);
+    v.ground.friction_coefficient = REAL(0.5);
+    laconic_method method = laconic_auto;
+    for (size_t k = 0; k < sizeof names / sizeof names[0]; k++) {
+        method.name = names[k];
+        ASSERT_REFUSED(LACONIC_METHOD_WITHOUT_FRICTION, LACONIC_FIELD_METHOD, 0,
+                       laconic_plant_start(&plant, &v, &method, REAL(0.001), &start, &why), why);
+    }
+    method.name = "auto";
+    ASSERT_STATUS(LACONIC_OK, laconic_plant_start(&plant, &v, &method, REAL(0.001), &start, &why));
+}
+
+/* Wheels that hold begin as they roll: as fast as on ideal ground, and without slip they have turned as far. */
+static void wheels_that_roll_turn_as_on_ideal_ground(void) {
+    laconic_vehicle v = three_wheels();
+    laconic_plant ideal = plant_of(v, &laconic_auto, 0.001);
+    v.ground.friction_coefficient = REAL(0.8);
+    laconic_plant held = plant_of(v, &laconic_auto, 0.001);
+    const laconic_input input = no_input();
+    for (int k = 0; k < 2; k++) {
+        laconic_real expected[2][3] = {{0}}, found[2][3] = {{0}};
+        laconic_plant_wheel_speeds(&ideal, expected[0]);
+        laconic_plant_wheel_angles(&ideal, expected[1]);
+        laconic_plant_wheel_speeds(&held, found[0]);
+        laconic_plant_wheel_angles(&held, found[1]);
+        for (int i = 0; i < 3; i++) TEST_ASSERT_TRUE(expected[0][i] != 0 && (expected[1][i] != 0) == (k > 0));
+        ASSERT_NEAR_ALL(k == 0 ? 4 * ROUNDING : 1e-3, expected[0], found[0], 3);
+        ASSERT_NEAR_ALL(1e-4, expected[1], found[1], 3);
+        ASSERT_STATUS(LACONIC_OK, laconic_plant_run(&ideal, &input, 20, &why));
+        ASSERT_STATUS(LACONIC_OK, laconic_plant_run(&held, &input, 20, &why));
+    }
+}
+
 int main(void) {
     UNITY_BEGIN();
     RUN_TEST(running_is_stepping);
@@ -174,5 +213,7 @@ int main(void) {
     RUN_TEST(a_refused_change_changes_nothing);
     RUN_TEST(a_motion_that_a_changed_vehicle_cannot_have_is_refused);
     RUN_TEST(a_restart_begins_again_with_the_same_vehicle);
+    RUN_TEST(with_friction_no_method_but_auto_is_taken);
+    RUN_TEST(wheels_that_roll_turn_as_on_ideal_ground);
     return UNITY_END();
 }

@@ -139,6 +139,8 @@ static void fixed_wheels_on_parallel_axle_lines_are_refused_unless_they_slip(voi
     ASSERT_STATUS(LACONIC_OK, laconic_prepare(&model, &v, &why));
     add_wheel(&v, LACONIC_WHEEL_FIXED, -0.15, 0.2, -PI / 2, 0.0);
     ASSERT_REFUSED(LACONIC_STRAIGHT_ONLY, LACONIC_FIELD_WHEEL_KIND, 0, laconic_prepare(&model, &v, &why), why);
+    v.wheel[3].locked = true; /* which it has not */
+    ASSERT_REFUSED(LACONIC_STRAIGHT_ONLY, LACONIC_FIELD_WHEEL_KIND, 0, laconic_prepare(&model, &v, &why), why);
     v.wheel[2].axle_rad = REAL(-0.4); /* its line meets the others': the vehicle rotates about that point */
     TEST_ASSERT_EQUAL_INT(1, model_of(v).dof);
     v.wheel[2].axle_rad = REAL(-PI / 2);

@@ -111,9 +111,10 @@ static void a_watched_plant_takes_the_same_steps_to_the_last_bit(void) {
 
 static void readings_do_not_depend_on_how_steps_are_grouped(void) {
     const laconic_input input = push(2);
-    for (int kind = 0; kind < 2; kind++) { /* watched step by step, and without need */
+    for (int kind = 0; kind < 3; kind++) { /* watched step by step, without need, and for a delay alone */
         laconic_plant one = started(wheels(), STEP, 1, 2, 3), other = one;
         laconic_sensor_settings settings = kind == 0 ? everything() : nothing();
+        if (kind == 2) settings.imu.delay_steps = 1;
         settings.imu.acceleration_noise_m_per_s2_per_sqrt_Hz = REAL(0.1);
         laconic_sensors a = beside(&one, settings), b = beside(&other, settings);
         watch(&a, &one, &input, 70);
@@ -301,6 +302,7 @@ static void a_wheel_that_is_too_fast_to_count_is_refused(void) {
     laconic_sensors sensors = beside(&plant, settings);
     ASSERT_REFUSED(LACONIC_OVERFLOW, (laconic_field)LACONIC_SENSOR_FIELD_WHEEL_ENCODER_COUNTS, 2,
                    laconic_sensors_run(&sensors, &plant, &input, 1, &why), why);
+    TEST_ASSERT_TRUE(why.limit == 0); /* it is of counts, the value of radians */
 }
 
 static void a_place_so_far_that_its_acceleration_overflows_is_refused_by_the_step(void) {
@@ -314,6 +316,7 @@ static void a_place_so_far_that_its_acceleration_overflows_is_refused_by_the_ste
         ASSERT_REFUSED(LACONIC_OVERFLOW, (laconic_field)far, 0, laconic_sensors_run(&sensors, &plant, &input, 1, &why),
                        why);
         TEST_ASSERT_TRUE(fabs((double)why.value) > 1e15); /* the acceleration that is too large */
+        TEST_ASSERT_TRUE(why.limit == 0);
     }
 }
 

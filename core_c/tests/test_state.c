@@ -58,6 +58,29 @@ static void a_heading_or_velocity_beyond_the_range_is_refused(void) {
             0);
 }
 
+/* The largest numbers are taken, and their neighbours refused: a heading below 2^64 rad, or 2^32 in single precision,
+ * and a size of ζ, which is ν for a body alone, up to 1e77 or 1e9. */
+static void headings_and_velocities_are_taken_up_to_their_limits(void) {
+    const laconic_model m = model_of(bare_body());
+    const laconic_real turn = REAL(ldexp(1, EITHER(64, 32))), fastest = REAL(EITHER(1e77, 1e9));
+    laconic_state state;
+    laconic_start start = start_with(0, 0, 0);
+    start.heading_rad = turn;
+    refuses(start, LACONIC_OVERFLOW, LACONIC_FIELD_START_HEADING, 0);
+    start.heading_rad = -turn * (1 - LACONIC_EPSILON / 2);
+    ASSERT_STATUS(LACONIC_OK, laconic_state_set(&state, &m, &start, &why));
+    for (int k = 0; k < 3; k++) {
+        start = start_with(0, 0, 0);
+        start.nu_rad_per_s[k] = fastest;
+        ASSERT_STATUS(LACONIC_OK, laconic_state_set(&state, &m, &start, &why));
+        ASSERT_STATUS(LACONIC_OK, laconic_state_project(&state, &m, &start, &why));
+        start.nu_rad_per_s[k] *= 1 + 2 * LACONIC_EPSILON;
+        ASSERT_REFUSED(LACONIC_OVERFLOW, LACONIC_FIELD_START_NU, 0, laconic_state_set(&state, &m, &start, &why), why);
+        ASSERT_REFUSED(LACONIC_OVERFLOW, LACONIC_FIELD_START_NU, 0, laconic_state_project(&state, &m, &start, &why),
+                       why);
+    }
+}
+
 static void a_velocity_of_any_size_is_refused_before_it_becomes_nan(void) {
     const laconic_model m = model_of(differential_drive());
     laconic_start start = start_with((double)LACONIC_REAL_MAX, (double)LACONIC_REAL_MAX, (double)LACONIC_REAL_MAX);
@@ -204,6 +227,7 @@ int main(void) {
     RUN_TEST(what_is_set_is_what_is_read);
     RUN_TEST(every_number_that_is_not_finite_is_named);
     RUN_TEST(a_heading_or_velocity_beyond_the_range_is_refused);
+    RUN_TEST(headings_and_velocities_are_taken_up_to_their_limits);
     RUN_TEST(a_velocity_of_any_size_is_refused_before_it_becomes_nan);
     RUN_TEST(a_start_that_slides_a_fixed_wheel_is_refused_with_the_nearest_that_does_not);
     RUN_TEST(of_two_that_are_equally_wrong_the_first_is_named);

@@ -122,6 +122,35 @@ static void inertias_damping_friction_and_height_must_not_be_negative(void) {
     TEST_ASSERT_EQUAL_DOUBLE(-0.5, (double)why.value);
 }
 
+static void a_number_exactly_at_its_limit_is_taken(void) {
+    for (size_t i = 0; i < COUNT(must_be_positive); i++) {
+        laconic_vehicle v = three_wheels();
+        *must_be_positive[i].where(&v) = LACONIC_REAL_MIN;
+        ASSERT_STATUS(LACONIC_OK, laconic_vehicle_check(&v, &why));
+    }
+    laconic_vehicle v = three_wheels();
+    v.ground.friction_coefficient = REAL(0.5);
+    v.ground.roller_drag = 1;
+    v.ground.slope_rad = REAL(1.5); /* 86° */
+    ASSERT_STATUS(LACONIC_OK, laconic_vehicle_check(&v, &why));
+    v.ground.slope_rad *= 1 + LACONIC_EPSILON;
+    ASSERT_REFUSED(LACONIC_ABOVE_LIMIT, LACONIC_FIELD_SLOPE, 0, laconic_vehicle_check(&v, &why), why);
+    v.ground.slope_rad = 0;
+    v.ground.roller_drag += LACONIC_EPSILON;
+    ASSERT_REFUSED(LACONIC_ABOVE_LIMIT, LACONIC_FIELD_GROUND_ROLLER_DRAG, 0, laconic_vehicle_check(&v, &why), why);
+}
+
+static void as_many_wheels_as_there_is_room_for_may_slip(void) {
+    laconic_vehicle v = bare_body();
+    for (int i = 0; i < LACONIC_MAX_WHEELS; i++) {
+        v.ground.friction_coefficient = 0;
+        add_wheel(&v, LACONIC_WHEEL_ROLLER, 0.1, 0.0, 0.3 * i, PI / 2);
+        TEST_ASSERT_FALSE(laconic_vehicle_has_friction(&v));
+        v.ground.friction_coefficient = REAL(0.5);
+        TEST_ASSERT_TRUE(laconic_vehicle_has_friction(&v));
+    }
+}
+
 static void a_roller_along_the_axle_is_refused_just_below_the_limit(void) {
     const double limit = EITHER(1e-6, 1e-3);
     laconic_vehicle v = three_wheels();
@@ -222,6 +251,8 @@ int main(void) {
     RUN_TEST(a_number_whose_square_leaves_the_range_is_named);
     RUN_TEST(mass_radius_and_yaw_inertia_must_be_positive);
     RUN_TEST(inertias_damping_friction_and_height_must_not_be_negative);
+    RUN_TEST(a_number_exactly_at_its_limit_is_taken);
+    RUN_TEST(as_many_wheels_as_there_is_room_for_may_slip);
     RUN_TEST(a_roller_along_the_axle_is_refused_just_below_the_limit);
     RUN_TEST(a_roller_exactly_at_the_limit_is_taken);
     RUN_TEST(an_angle_too_large_to_have_a_direction_is_refused_for_axle_and_roller_alike);
