@@ -292,6 +292,7 @@ static void constraints_are_counted(void) {
     laconic_vehicle v = differential_drive();
     judge(&s, mecanum(), start_with(0, 0, 0), no_input());
     TEST_ASSERT_EQUAL_INT(0, s.contact.constraint_count);
+    TEST_ASSERT_TRUE(s.contact.lateral_row[0] == -1 && s.contact.brake_row[0] == -1);
     judge(&s, v, start_with(0, 0, 0), no_input());
     TEST_ASSERT_EQUAL_INT(2, s.contact.constraint_count);
     v.wheel[1].locked = true;
