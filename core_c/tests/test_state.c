@@ -78,6 +78,7 @@ static void headings_and_velocities_are_taken_up_to_their_limits(void) {
         ASSERT_REFUSED(LACONIC_OVERFLOW, LACONIC_FIELD_START_NU, 0, laconic_state_set(&state, &m, &start, &why), why);
         ASSERT_REFUSED(LACONIC_OVERFLOW, LACONIC_FIELD_START_NU, 0, laconic_state_project(&state, &m, &start, &why),
                        why);
+        TEST_ASSERT_TRUE(why.limit == 0);
     }
 }
 

@@ -201,6 +201,20 @@ static void the_roller_of_a_fixed_wheel_is_not_read(void) {
     ASSERT_STATUS(LACONIC_OK, laconic_vehicle_check(&v, &why));
 }
 
+static void what_ground_and_drive_need_is_asked_of_each_wheel(void) {
+    for (int i = 0; i < 3; i++) {
+        laconic_vehicle v = three_wheels();
+        v.wheel[i].own_friction_coefficient = REAL(0.5);
+        ASSERT_REFUSED(LACONIC_FRICTION_MISSING, LACONIC_FIELD_WHEEL_FRICTION_COEFFICIENT, i + 1,
+                       laconic_vehicle_check(&v, &why), why);
+        v = three_wheels();
+        v.ground.friction_coefficient = REAL(0.5);
+        v.wheel_inertia_kgm2 = 0;
+        for (int k = 0; k < 3; k++) v.wheel[k].own_inertia_kgm2 = k == i ? 0 : REAL(0.01);
+        ASSERT_REFUSED(LACONIC_NOT_POSITIVE, LACONIC_FIELD_WHEEL_INERTIA, 0, laconic_vehicle_check(&v, &why), why);
+    }
+}
+
 static void a_forgotten_wheel_is_refused(void) {
     laconic_vehicle v = three_wheels();
     v.wheel_count = 4;
@@ -257,6 +271,7 @@ int main(void) {
     RUN_TEST(a_roller_exactly_at_the_limit_is_taken);
     RUN_TEST(an_angle_too_large_to_have_a_direction_is_refused_for_axle_and_roller_alike);
     RUN_TEST(the_roller_of_a_fixed_wheel_is_not_read);
+    RUN_TEST(what_ground_and_drive_need_is_asked_of_each_wheel);
     RUN_TEST(a_forgotten_wheel_is_refused);
     RUN_TEST(an_unknown_kind_is_named_with_its_number);
     RUN_TEST(the_wheel_count_stays_within_its_bounds);
