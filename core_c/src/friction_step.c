@@ -93,7 +93,6 @@ static laconic_status solve_friction(part *p, const laconic_slip *slip) {
     const real to_impulse = p->h / p->f->impulse_N;
     real free[3], nu[3];
     store(free, plus(p->rotated, p->forcing));
-    store(nu, p->rotated);
     for (int32_t i = 0; i < p->f->wheel_count; i++) {
         load_wheel(p, slip, i);
         for (int k = 0; k < 2; k++) p->impulse[i][k] = slip->grip_N[i][k] * to_impulse;
@@ -131,14 +130,13 @@ static real growth_by_mean(const part *p, const laconic_slip *slip, vector chang
 /* On a slope the displacement is that of the velocities in the world, so that their work by the slope's pull is exactly
  * the change of its potential. Where the mean would let the energy grow (the motion reverses within the step, or turns
  * across the slope) the velocity at the end is taken. */
-static pose_change sloped_displacement(const part *p, const laconic_slip *slip, direction *axes) {
+static pose_change sloped_displacement(const part *p, const laconic_slip *slip) {
     const vector change = minus(p->nu, p->rotated), mean = scaled(R(0.5), plus(p->nu, p->rotated));
     const real growth = growth_by_mean(p, slip, change);
     const bool grows =
         growth > R(0) && growth * growth > GROWTH_IN_DOUBT * GROWTH_IN_DOUBT * square(p->forcing) * square(p->nu);
     const vector taken = grows ? p->nu : mean;
     const real reach = p->h * p->m->wheel_radius_m;
-    *axes = p->end;
     const pose_change moved = {reach * taken.x, reach * taken.y,
                                p->h * R(0.5) * (p->old.z + p->nu.z) * p->m->yaw_rate_of_zeta[2]};
     return moved;
@@ -150,17 +148,16 @@ static pose_change level_displacement(const part *p) {
 }
 
 static laconic_status move_body(const part *p, const laconic_slip *slip, laconic_state *state) {
-    direction axes = {R(1), R(0)};
     const bool slope = sloped(p->m);
-    const pose_change moved = slope ? sloped_displacement(p, slip, &axes) : level_displacement(p);
+    const pose_change moved = slope ? sloped_displacement(p, slip) : level_displacement(p);
     if (!(magnitude(moved.yaw_change_rad) + magnitude(moved.along_m) + magnitude(moved.across_m) <
           LARGEST_YAW_CHANGE_RAD))
         return LACONIC_OVERFLOW;
     set_zeta(state, p->nu);
     if (slope) {
         heading_advance(&state->heading, moved.yaw_change_rad);
-        sum_add(&state->x_m, axes.cosine * moved.along_m - axes.sine * moved.across_m);
-        sum_add(&state->y_m, axes.sine * moved.along_m + axes.cosine * moved.across_m);
+        sum_add(&state->x_m, p->end.cosine * moved.along_m - p->end.sine * moved.across_m);
+        sum_add(&state->y_m, p->end.sine * moved.along_m + p->end.cosine * moved.across_m);
     } else {
         advance_pose(state, moved);
     }

@@ -253,6 +253,10 @@ static void intervals_and_steps_up_to_the_end_of_the_range_are_counted(void) {
     TEST_ASSERT_EQUAL_UINT64(1, steps);
     ASSERT_STATUS(LACONIC_OK, laconic_steps_in(9e15 - 2, 1, &steps, &why));
     TEST_ASSERT_EQUAL_UINT64(8999999999999998, steps);
+    ASSERT_STATUS(LACONIC_OK, laconic_steps_in(9e15 - 1, 1, &steps, &why)); /* half a step more would be even */
+    TEST_ASSERT_EQUAL_UINT64(8999999999999999, steps);
+    ASSERT_STATUS(LACONIC_OK, laconic_steps_in(4503599627370497, 1, &steps, &why));
+    TEST_ASSERT_EQUAL_UINT64(4503599627370497, steps);
     ASSERT_STATUS(LACONIC_STEP_DOES_NOT_FIT, laconic_steps_in(9e15, 1, &steps, &why));
 }
 
@@ -262,6 +266,10 @@ static void an_interval_of_no_whole_number_of_steps_is_refused_with_one_that_fit
     ASSERT_NEAR(ROUNDING, 0.1 / 3, why.limit);
     ASSERT_REFUSED(LACONIC_STEP_DOES_NOT_FIT, LACONIC_FIELD_STEP, 0, laconic_steps_in(0.001, 1.0, &steps, &why), why);
     ASSERT_NEAR(ROUNDING, 0.001, why.limit);
+    ASSERT_REFUSED(LACONIC_STEP_DOES_NOT_FIT, LACONIC_FIELD_STEP, 0, laconic_steps_in(2.5, 1.0, &steps, &why), why);
+    ASSERT_NEAR(ROUNDING, 2.5 / 3, why.limit); /* the shorter of both that are as near */
+    ASSERT_REFUSED(LACONIC_STEP_DOES_NOT_FIT, LACONIC_FIELD_STEP, 0, laconic_steps_in(0.25, 1.0, &steps, &why), why);
+    ASSERT_NEAR(ROUNDING, 0.25, why.limit);
     TEST_ASSERT_EQUAL_UINT64(77, steps);
 }
 
