@@ -340,6 +340,21 @@ static void a_delay_that_reaches_before_the_start_shows_the_start(void) {
     }
 }
 
+static void readings_stay_within_their_struct(void) {
+    const laconic_vehicle v = bare_body();
+    const laconic_plant plant = plant_of(&v, &laconic_auto, STEP, start_with(1, 2, 3));
+    const laconic_input input = no_input();
+    const laconic_sensor_settings settings = {0};
+    laconic_sensors sensors;
+    struct {
+        laconic_sensor_outputs out;
+        laconic_real beyond[2];
+    } read = {.beyond = {7, 7}};
+    ASSERT_STATUS(LACONIC_OK, laconic_sensors_start(&sensors, &settings, &plant, &why));
+    laconic_sensors_read(&read.out, &sensors, &plant, &input);
+    TEST_ASSERT_TRUE(read.beyond[0] == 7 && read.beyond[1] == 7);
+}
+
 int main(void) {
     UNITY_BEGIN();
     RUN_TEST(at_rest_on_level_ground_nothing_is_felt);
@@ -360,5 +375,6 @@ int main(void) {
     RUN_TEST(seeds_choose_the_noise);
     RUN_TEST(settings_exactly_at_their_limits_are_taken);
     RUN_TEST(a_delay_that_reaches_before_the_start_shows_the_start);
+    RUN_TEST(readings_stay_within_their_struct);
     return UNITY_END();
 }

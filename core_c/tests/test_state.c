@@ -175,6 +175,17 @@ static void a_changed_vehicle_moves_on_where_the_old_one_was(void) {
     ASSERT_NEAR_ALL(10 * ROUNDING, old_speed, new_speed, 3);
 }
 
+static void an_angle_of_any_wheel_that_left_the_range_is_not_carried_on(void) {
+    const laconic_model m = model_of(three_wheels());
+    for (int i = 0; i < 3; i++) {
+        laconic_state state = moving(&m, 1, 2, 3), before;
+        state.wheel_angle_set_rad[i] = INFINITE;
+        before = state;
+        ASSERT_STATUS(LACONIC_OVERFLOW, laconic_state_carry(&state, &m, &m));
+        TEST_ASSERT_EQUAL_MEMORY(&before, &state, sizeof state);
+    }
+}
+
 /* -------------------------------------------------------- the numbers of an outer integrator -- */
 
 static void what_the_constraints_forbid_is_projected_away_and_the_rest_stays(void) {
@@ -235,6 +246,7 @@ int main(void) {
     RUN_TEST(a_start_that_rotates_a_locked_wheel_is_refused);
     RUN_TEST(rest_is_always_allowed);
     RUN_TEST(a_changed_vehicle_moves_on_where_the_old_one_was);
+    RUN_TEST(an_angle_of_any_wheel_that_left_the_range_is_not_carried_on);
     RUN_TEST(what_the_constraints_forbid_is_projected_away_and_the_rest_stays);
     RUN_TEST(allowed_motions_are_set_as_they_are);
     RUN_TEST(numbers_that_are_not_finite_are_refused);
