@@ -325,6 +325,13 @@ static void other_refusals_give_half_the_step(void) {
     TEST_ASSERT_EQUAL_DOUBLE(0.0, (double)why.limit);
 }
 
+static void an_input_behind_the_last_is_not_read(void) {
+    laconic_input inputs[2] = {no_input(), no_input()};
+    inputs[1].body_moment_Nm = NOT_A_NUMBER;
+    ASSERT_REFUSED(LACONIC_OVERFLOW, LACONIC_FIELD_STEP, 0, explain(&laconic_exact_flow, LACONIC_OVERFLOW, inputs),
+                   why);
+}
+
 static void the_refusal_may_be_null(void) {
     const laconic_model m = model_of(three_wheels());
     const laconic_integrator in = integrator_of(&laconic_rk4, &m, 0.1);
@@ -353,6 +360,7 @@ int main(void) {
     RUN_TEST(every_sample_of_a_step_is_checked);
     RUN_TEST(a_refusal_at_the_gyroscopic_limit_gives_the_largest_step);
     RUN_TEST(other_refusals_give_half_the_step);
+    RUN_TEST(an_input_behind_the_last_is_not_read);
     RUN_TEST(the_refusal_may_be_null);
     return UNITY_END();
 }

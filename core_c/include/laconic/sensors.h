@@ -127,7 +127,8 @@ typedef struct laconic_encoder {
 } laconic_encoder;
 
 /* Turns the encoder with its wheel. Whole counts and the share are added apart, so that no number of turns costs
- * resolution. False, and unchanged, iff that is NaN or beyond ± 2³¹ counts. */
+ * resolution. False, and unchanged, iff that is NaN or beyond ± 2147483520 counts, the
+ * last whole number of 32 bits that single precision has. */
 bool laconic_encoder_turn(laconic_encoder *encoder, const laconic_encoder_settings *settings,
                           laconic_real wheel_turned_rad);
 
@@ -197,9 +198,9 @@ laconic_status laconic_sensors_start(laconic_sensors *sensors, const laconic_sen
                                      const struct laconic_plant *plant, struct laconic_refusal *why);
 
 /* laconic_plant_run() and laconic_plant_run_sampled() with sensors that watch. Steps are taken one by one where a
- * sensor must see each. Besides their refusals OVERFLOW where an encoder was turned by more than 2³¹ counts in a step
- * (WHEEL_ENCODER_COUNTS, item: the wheel) or a sample is beyond ± 10¹⁵ m/s² (IMU_X or IMU_Y, the farther); that step
- * has been taken. */
+ * sensor must see each. Besides their refusals OVERFLOW where an encoder was turned by more than 2147483520 counts in
+ * a step (WHEEL_ENCODER_COUNTS, item: the wheel) or a sample is beyond ± 10¹⁵ m/s² (IMU_X or IMU_Y, the farther); that
+ * step has been taken. */
 laconic_status laconic_sensors_run(laconic_sensors *sensors, struct laconic_plant *plant, const laconic_input *held,
                                    uint64_t steps, struct laconic_refusal *why);
 laconic_status laconic_sensors_run_sampled(laconic_sensors *sensors, struct laconic_plant *plant,

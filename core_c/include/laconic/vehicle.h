@@ -156,7 +156,7 @@ typedef enum laconic_field_rule {
     LACONIC_RULE_POSITIVE,
     LACONIC_RULE_NOT_NEGATIVE,
     LACONIC_RULE_SHARE,   /* 0 … 1                                              */
-    LACONIC_RULE_INCLINE, /* 0 … below π/2                                      */
+    LACONIC_RULE_INCLINE, /* 0 … 1.5 rad                                        */
     LACONIC_RULE_FINITE,
     LACONIC_RULE_NOT_ZERO,
     LACONIC_RULE_ANGLE,  /* small enough that its direction is known             */
