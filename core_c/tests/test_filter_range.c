@@ -125,6 +125,23 @@ static void a_fix_ends_with_its_last_number(void) {
     ASSERT_STATUS(LACONIC_NOT_FINITE, laconic_filter_fix(&r.filter, &r.model, &at.fix, NULL));
 }
 
+/* The variances' sum is 3/4 of the largest number; then they are 1.69 times as large. */
+static void the_noise_of_forces_counts_once_up_to_the_end_of_the_range(void) {
+    const laconic_model m = model_of(mecanum());
+    const laconic_state state = moving(&m, 0, 0, 0);
+    laconic_filter_settings settings;
+    laconic_filter filter;
+    laconic_real sum = 0;
+    memset(&settings, 0, sizeof settings);
+    settings.yaw_rate_std_rad_per_s = settings.force_noise_N_per_sqrt_Hz = 1;
+    ASSERT_STATUS(LACONIC_OK, laconic_filter_start(&filter, &m, &settings, &state));
+    for (int k = 0; k < 3; k++) sum += filter.forcing_variance_s[k];
+    settings.force_noise_N_per_sqrt_Hz = REAL(sqrt((double)(REAL(0.75) * LACONIC_REAL_MAX) / (double)sum));
+    ASSERT_STATUS(LACONIC_OK, laconic_filter_start(&filter, &m, &settings, &state));
+    settings.force_noise_N_per_sqrt_Hz *= REAL(1.3);
+    ASSERT_STATUS(LACONIC_OVERFLOW, laconic_filter_start(&filter, &m, &settings, &state));
+}
+
 int main(void) {
     UNITY_BEGIN();
     RUN_TEST(a_velocity_is_corrected_up_to_the_largest_in_any_direction);
@@ -134,5 +151,6 @@ int main(void) {
     RUN_TEST(encoders_of_the_most_wheels_are_read);
     RUN_TEST(counts_are_those_of_the_wheels_alone);
     RUN_TEST(a_fix_ends_with_its_last_number);
+    RUN_TEST(the_noise_of_forces_counts_once_up_to_the_end_of_the_range);
     return UNITY_END();
 }

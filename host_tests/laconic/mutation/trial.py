@@ -140,7 +140,9 @@ class Trials:
             if own:
                 used = Program(program.name, program.units,
                                family.link_program(program, own, tree / f"{program.name}.with_fault"), program.seconds)
-            loaded = [*(runtime_of_sanitizers(family) if checks else []), *([preload] if preload else [])]
+            # the library behind it: what the fault's objects need is there, too, where the program itself needs none of it
+            loaded = [*(runtime_of_sanitizers(family) if checks else []),
+                      *([preload, family.library] if preload else [])]
             status = used.run(family.library, loaded, family.bound_s(program))
             if status != 0:
                 with self._lock:
