@@ -209,6 +209,16 @@ static void a_sync_names_the_frames_of_its_inputs_and_begins_the_next_ones(void)
     }
 }
 
+static void raw_numbers_of_another_segment_count_as_refused(void) {
+    bench_load(2);
+    bench_select(0, 0, LACONIC_RAW_VOLTAGE);
+    bench_start_lockstep();
+    memset(data, 0, sizeof data);
+    data[3] = 5;
+    bench_send(LACONIC_WIRE_RAW_INPUT_FD, data);
+    TEST_ASSERT_EQUAL_UINT16(1, node.counters.refused);
+}
+
 static void its_counter_asks_for_no_step(void) {
     bench_load(2);
     bench_start_lockstep();
@@ -244,6 +254,7 @@ int main(void) {
     RUN_TEST(a_number_out_of_range_of_the_state_sets_its_flag);
     RUN_TEST(a_frame_of_the_other_kind_is_malformed);
     RUN_TEST(a_sync_names_the_frames_of_its_inputs_and_begins_the_next_ones);
+    RUN_TEST(raw_numbers_of_another_segment_count_as_refused);
     RUN_TEST(its_counter_asks_for_no_step);
     RUN_TEST(each_step_begins_its_raw_numbers_anew);
     return UNITY_END();
