@@ -17,7 +17,7 @@ static void slopes(laconic_real value[], laconic_real h, laconic_real rate) {
     value[2] = 3 * h * rate * rate;
 }
 
-/* Of a cube it is a² + a b + b²; what stood there before does not count, and the number behind the last is left alone. */
+/* Of a cube it is a² + a b + b². What stood there before does not count; the number behind the last is left alone. */
 static void check_at(double h, double a, double b) {
     laconic_real found[FUNCTIONS + 1];
     for (int k = 0; k <= FUNCTIONS; k++) found[k] = NOT_A_NUMBER;

@@ -140,7 +140,7 @@ class Trials:
             if own:
                 used = Program(program.name, program.units,
                                family.link_program(program, own, tree / f"{program.name}.with_fault"), program.seconds)
-            # the library behind it: what the fault's objects need is there, too, where the program itself needs none of it
+            # the library behind it: a program may need nothing of it, but what the fault's objects need must be there
             loaded = [*(runtime_of_sanitizers(family) if checks else []),
                       *([preload, family.library] if preload else [])]
             status = used.run(family.library, loaded, family.bound_s(program))

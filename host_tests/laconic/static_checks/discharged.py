@@ -202,7 +202,7 @@ DISCHARGED: tuple[Argument, ...] = (
              "sum stays within 7.6·10¹⁸"),
     Argument("core_c/src/integrator.c", "step = why.limit", UNSET,
              "laconic_integrator_prepare() has refused, and each of its refusals fills the struct it is given"),
-    Argument("core_c/src/integrator.c", "(uint64_t)(ratio + 0.5)", "non-finite",
+    Argument("core_c/src/integrator.c", "(uint64_t)ratio", "non-finite",
              "ratio is positive, since interval and step are, and below 9·10¹⁵ by the line before, which NaN is not"),
     Argument(M, "w->text[w->length] = c", "out of bounds",
              "length + 1 < size in the same line, and the text has room for size"),
