@@ -287,7 +287,7 @@ static void prepare_panels(laconic_integrator *integrator, const laconic_model *
 
 #if LACONIC_WITH_PREPARE /* lanes have constants alone */
 void laconic_halve_panels(laconic_integrator *integrator, const laconic_model *model) {
-    integrator->halved = integrator->collocation[0][0] != R(0);
+    integrator->halved = integrator->stretches > 0 || integrator->collocation[0][0] != R(0); /* others set neither */
     if (integrator->halved) prepare_panels(integrator, model);
 }
 #endif

@@ -113,7 +113,8 @@ laconic_status laconic_steps_in(double interval_s, double step_s, uint64_t *step
     if (!(step_s > 0.0)) return refuse(why, LACONIC_NOT_POSITIVE, LACONIC_FIELD_STEP, 0, (real)step_s, R(0));
     if (!(ratio < 9e15)) return refuse(why, LACONIC_STEP_DOES_NOT_FIT, LACONIC_FIELD_STEP, 0, (real)step_s, R(0));
     uint64_t nearest = (uint64_t)ratio;
-    if (ratio - (double)nearest >= 0.5 || nearest == 0) nearest++; /* ratio + 0.5 would round above 2^52 */
+    if (ratio - (double)nearest >= 0.5) nearest++; /* ratio + 0.5 would round above 2^52 */
+    if (nearest == 0) nearest = 1;
     const double count = (double)nearest;
     const double off = ratio - count;
     if (off > 1e-6 || off < -1e-6)

@@ -1,7 +1,7 @@
 /* Tests of the panels of exponential-gauss-8: how many, how long, and those of an integrator of half steps. */
 #include "exponential_gauss_8.h"
 
-#include "check.h"
+#include "methods.h"
 
 /* One stretch of the first kind in decay times. */
 #define FIRST (REAL(PARTS) * PANEL_DECAY)
@@ -15,21 +15,14 @@ static laconic_model damped(laconic_real x, laconic_real y, laconic_real z) {
     return m;
 }
 
-static laconic_integrator prepared(const laconic_method *method, const laconic_model *m, laconic_real step_s) {
-    laconic_integrator in;
-    laconic_refusal why;
-    ASSERT_STATUS(LACONIC_OK, laconic_integrator_prepare(&in, method, m, step_s, &why));
-    return in;
-}
-
 static laconic_integrator with_panels(laconic_real x, laconic_real y, laconic_real z) {
     const laconic_model m = damped(x, y, z);
-    return prepared(&laconic_exponential_gauss_8, &m, REAL(1));
+    return integrator_of(&laconic_exponential_gauss_8, &m, 1);
 }
 
 static laconic_integrator halved(laconic_real x, laconic_real y, laconic_real z) {
     const laconic_model m = damped(x, y, z);
-    laconic_integrator in = prepared(&laconic_exponential_gauss_8, &m, REAL(1));
+    laconic_integrator in = integrator_of(&laconic_exponential_gauss_8, &m, 1);
     laconic_halve_panels(&in, &m);
     TEST_ASSERT_TRUE(in.halved);
     return in;
@@ -91,7 +84,7 @@ static void there_are_no_more_stretches_than_the_most(void) {
 static void panels_of_other_methods_are_not_halved(void) {
     const laconic_model m = damped(REAL(1), REAL(2), REAL(0.5));
     for (int32_t i = 1; i < LACONIC_METHOD_COUNT - 1; i++) {
-        const laconic_integrator before = prepared(laconic_method_by_number(i), &m, REAL(1));
+        const laconic_integrator before = integrator_of(laconic_method_by_number(i), &m, 1);
         laconic_integrator in = before;
         laconic_halve_panels(&in, &m);
         TEST_ASSERT_EQUAL_MEMORY(&before, &in, sizeof in);
@@ -104,6 +97,13 @@ static void an_axis_without_damping_does_not_keep_panels_from_being_halved(void)
     TEST_ASSERT_TRUE(halved(0, REAL(9), 0).stretches > 0);
 }
 
+/* Their first panel is so long that what there is at its nodes has underflowed. */
+static void the_longest_panels_are_halved_too(void) {
+    const laconic_integrator in = with_panels(REAL(1e15), 0, REAL(1));
+    TEST_ASSERT_TRUE(in.collocation[0][0] == 0);
+    TEST_ASSERT_TRUE(halved(REAL(1e15), 0, REAL(1)).first_share == in.first_share / 2);
+}
+
 int main(void) {
     UNITY_BEGIN();
     RUN_TEST(the_longest_step_of_one_panel_is_one);
@@ -113,5 +113,6 @@ int main(void) {
     RUN_TEST(there_are_no_more_stretches_than_the_most);
     RUN_TEST(panels_of_other_methods_are_not_halved);
     RUN_TEST(an_axis_without_damping_does_not_keep_panels_from_being_halved);
+    RUN_TEST(the_longest_panels_are_halved_too);
     return UNITY_END();
 }

@@ -2,6 +2,7 @@
 #include "imu.h"
 
 #include "methods.h"
+#include "stack.h"
 
 #define STEP 1e-3
 
@@ -251,18 +252,11 @@ static void an_ideal_imu_shows_the_truth_to_the_last_bit(void) {
     TEST_ASSERT_TRUE(acceleration[0] == 2 && acceleration[1] == -3 && yaw_rate == REAL(0.5));
 }
 
-static void leave_behind(laconic_real number) {
-    volatile laconic_real stack[500];
-    for (int k = 0; k < 500; k++) stack[k] = number;
-    TEST_ASSERT_TRUE(stack[0] != stack[0]);
-}
-
 /* Without noise nothing is drawn, and what stood in memory before plays no part. */
 static void without_noise_it_shows_the_truth_whatever_stood_in_memory(void) {
     const laconic_imu_settings imu = {0};
     laconic_real acceleration[2], yaw_rate;
-    void (*volatile leave)(laconic_real) = leave_behind; /* in a frame of its own */
-    leave(NOT_A_NUMBER);
+    fill_stack(ALL_NAN);
     laconic_imu_show(&imu, &truth, 5, REAL(STEP), acceleration, &yaw_rate);
     TEST_ASSERT_TRUE(acceleration[0] == 2 && acceleration[1] == -3 && yaw_rate == REAL(0.5));
 }

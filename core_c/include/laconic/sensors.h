@@ -127,8 +127,8 @@ typedef struct laconic_encoder {
 } laconic_encoder;
 
 /* Turns the encoder with its wheel. Whole counts and the share are added apart, so that no number of turns costs
- * resolution. False, and unchanged, iff that is NaN or beyond ± 2147483520 counts, the
- * last whole number of 32 bits that single precision has. */
+ * resolution. False, and unchanged, iff that is NaN or beyond ± 2147483520 counts, the last whole number of 32 bits
+ * that single precision has. */
 bool laconic_encoder_turn(laconic_encoder *encoder, const laconic_encoder_settings *settings,
                           laconic_real wheel_turned_rad);
 
