@@ -163,7 +163,6 @@ class Trials:
         stem = path.parent.name if path.stem == "model" else path.stem.removeprefix("node_")
         name = re.compile(rf"(test|node|fmu_[a-z]+)_(node_)?{stem}(_double|_single)?")
 
-
         def noticed_per_second(program: Program) -> float:
             return (kills[program.name] + 0.01 * all_kills[program.name] + 0.01) / (program.seconds + START_S)
 

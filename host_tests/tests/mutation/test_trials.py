@@ -28,32 +28,38 @@ int main(void) { return limited(9) != 5 || limited(2) != 2; }
 """
 
 
-@pytest.fixture
-def trials(tmp_path, monkeypatch):
+def trials_of(tmp_path: Path, monkeypatch, library: dict[str, str], tests: dict[str, str]) -> tuple[Trials, Path]:
+    """Of texts: the library's files, and the test programs', of one file each."""
     if shutil.which("gcc") is None:
         pytest.skip("needs gcc")
     sources = tmp_path / "sources"
     (sources / "core_c").mkdir(parents=True)
-    (sources / "core_c/limited.c").write_text(SOURCE)
-    (sources / "core_c/test_limited.c").write_text(TEST)
+    for file, text in (library | tests).items():
+        (sources / "core_c" / file).write_text(text)
     for module in ("trial", "programs", "results"):
         monkeypatch.setattr(f"laconic.mutation.{module}.SOURCE_DIR", sources)
     monkeypatch.setattr("laconic.mutation.trial.FOLDERS", ("core_c",))
-    units = []
-    for name in ("limited", "test_limited"):
-        unit = Unit(sources / f"core_c/{name}.c", name, ("gcc", "-O2", "-fPIC"), tmp_path, tmp_path / f"{name}.o")
+    units = {}
+    for file in (each for each in library | tests if each.endswith(".c")):
+        name = Path(file).stem
+        unit = Unit(sources / "core_c" / file, name, ("gcc", "-O2", "-fPIC"), tmp_path, tmp_path / f"{name}.o")
         assert unit.compile(sources, unit.object).returncode == 0
-        units.append(unit)
+        units[file] = unit
     empty = tmp_path / "liblaconic_unity.a"
-    shutil.copy(units[0].object, tmp_path / "nothing.o")
-    monkeypatch.setattr("laconic.mutation.programs.unity", lambda: empty)
     empty.write_text("/* a linker script */\n")
-    family = Family("double", tmp_path / "double", units[:1],
-                    [Program("test_limited_double", units[1:], tmp_path / "double/test_limited_double")])
+    monkeypatch.setattr("laconic.mutation.programs.unity", lambda: empty)
+    folder = tmp_path / "double"
+    programs = [Program(f"{Path(file).stem}_double", [units[file]], folder / f"{Path(file).stem}_double") for file in tests]
+    family = Family("double", folder, [unit for file, unit in units.items() if file in library], programs)
     family.link()
     family.check()
     monkeypatch.setattr("laconic.mutation.programs.PATIENCE_S", 0.5)
     return Trials([family], tmp_path), sources
+
+
+@pytest.fixture
+def trials(tmp_path, monkeypatch):
+    return trials_of(tmp_path, monkeypatch, {"limited.c": SOURCE}, {"test_limited.c": TEST})
 
 
 def verdicts(trials: Trials, sources: Path) -> dict[str, str]:
@@ -69,6 +75,19 @@ def test_what_a_test_notices_is_killed_and_what_none_does_survives(trials):
     assert found["while (k < 10) k += 5; → while (k < 10) ;"] == "timeout"
     assert found["return a * 1 + (0 && a); → return a / 1 + (0 && a);"] == "same code"
     assert found["return a * 1 + (0 && a); → return a * 1 - (0 && a);"] == "same code"
+
+
+def test_a_program_that_needs_nothing_of_the_library_runs_beside_a_fault_that_does(tmp_path, monkeypatch):
+    library = {
+        "limit.h": "static inline int limit(int a) { return a > 5 ? 5 : a; }\n",
+        "limited.c": """#include "limit.h"\nextern const int size;\nconst int *const address = &size;
+            int limited(int a) { return limit(a); }\n""",
+        "size.c": "const int size = 3;\n",
+    }
+    test = """#include "limit.h"\nint main(int count, char **words) { (void)words; return limit(count + 8) != 5; }\n"""
+    tried, sources = trials_of(tmp_path, monkeypatch, library, {"test_limit.c": test})
+    fault = next(each for each in mutants_of(sources, "core_c/limit.h") if "a > 6" in each.after)
+    assert tried.outcome(fault, tried.tree(0)).verdict == "survived"
 
 
 def test_the_sources_are_as_before(trials):
