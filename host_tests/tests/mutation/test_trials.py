@@ -49,7 +49,8 @@ def trials_of(tmp_path: Path, monkeypatch, library: dict[str, str], tests: dict[
     empty.write_text("/* a linker script */\n")
     monkeypatch.setattr("laconic.mutation.programs.unity", lambda: empty)
     folder = tmp_path / "double"
-    programs = [Program(f"{Path(file).stem}_double", [units[file]], folder / f"{Path(file).stem}_double") for file in tests]
+    names = {file: f"{Path(file).stem}_double" for file in tests}
+    programs = [Program(name, [units[file]], folder / name) for file, name in names.items()]
     family = Family("double", folder, [unit for file, unit in units.items() if file in library], programs)
     family.link()
     family.check()
