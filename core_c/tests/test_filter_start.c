@@ -1,0 +1,36 @@
+/* Tests of what a filter takes over at its start, and what not; test_filter.c sees it at work. */
+#include "laconic/filter.h"
+#include "vehicles.h"
+
+/* Each travel alone turns some of these wheels. */
+static laconic_vehicle most_wheels(void) {
+    laconic_vehicle v = bare_body();
+    for (int i = 0; i < LACONIC_MAX_WHEELS; i++)
+        add_wheel(&v, LACONIC_WHEEL_ROLLER, 0.1 * i - 0.2, 0.1, PI / 4 * i, PI / 2);
+    return v;
+}
+
+/* Wheel angles are those since the start, whatever was set or travelled before. */
+static void wheel_angles_are_not_taken_over(void) {
+    const laconic_model m = model_of(most_wheels());
+    laconic_filter_settings settings;
+    memset(&settings, 0, sizeof settings);
+    for (int with_encoders = 0; with_encoders < 2; with_encoders++) {
+        laconic_state state = moving(&m, 0.3, -0.2, 0.5);
+        laconic_real angle[LACONIC_MAX_WHEELS];
+        laconic_filter filter;
+        settings.encoder_std_rad[1] = REAL(with_encoders);
+        for (int k = 0; k < 3; k++) state.travel[k].value = state.travel[k].rest = REAL(0.4 + k);
+        for (int i = 0; i < LACONIC_MAX_WHEELS; i++) state.wheel_angle_set_rad[i] = REAL(0.1 * (i + 1));
+        ASSERT_STATUS(LACONIC_OK, laconic_filter_start(&filter, &m, &settings, &state));
+        laconic_wheel_angles(&m, &filter.state, angle);
+        for (int i = 0; i < LACONIC_MAX_WHEELS; i++) TEST_ASSERT_EQUAL_DOUBLE(0, (double)angle[i]);
+        TEST_ASSERT_EQUAL_MEMORY(&state.zeta, &filter.state.zeta, offsetof(laconic_state, travel));
+    }
+}
+
+int main(void) {
+    UNITY_BEGIN();
+    RUN_TEST(wheel_angles_are_not_taken_over);
+    return UNITY_END();
+}
