@@ -183,10 +183,48 @@ static void derivatives_at_every_yaw_by_every_method(void) {
     expect_by_method(take_jacobians_at_every_yaw, bits);
 }
 
+/* Neither the step nor its direction has a force fixed in the world, nor a slope: nothing rotates. */
+static void take_tangents_in_body_axes(const laconic_method *method) {
+    for (int number = 0; number < MORE_VEHICLES; number++) {
+        const laconic_vehicle vehicle = vehicle_number(number);
+        const laconic_vehicle by = every_number_of(&vehicle, 1);
+        const laconic_start motion = {{REAL(0.8), REAL(-0.5), REAL(2.4)}, 1, 2, REAL(0.9), {0}};
+        const laconic_start still = start_with(0, 0, 0);
+        const laconic_state_change along = some_change(number);
+        laconic_state_change after;
+        laconic_model_change change;
+        laconic_input held = input_at(number), input = input_at(number + 3);
+        laconic_plant plant;
+        held.world_force_N[0] = held.world_force_N[1] = input.world_force_N[0] = input.world_force_N[1] = 0;
+        if (vehicle.ground.slope_rad > 0 ||
+            laconic_plant_start(&plant, &vehicle, method, REAL(0.05), &still, &why) != LACONIC_OK)
+            continue;
+        ASSERT_STATUS(LACONIC_OK, laconic_state_project(&plant.state, &plant.model, &motion, &why));
+        ASSERT_STATUS(LACONIC_OK, laconic_model_tangent(&change, &plant.model, &plant.vehicle, &by));
+        for (int k = 0; k < 3; k++) {
+            FILL(after);
+            laconic_step_tangent(&after, &plant.model, &plant.integrator, &plant.state, &held, &along,
+                                 k == 0 ? NULL : &input, k == 1 ? NULL : &change);
+            TAKE(after);
+        }
+    }
+}
+
+static void tangents_in_body_axes_by_every_method(void) {
+    static const uint64_t bits[] = {
+        EITHER(0x7939f39a29a5252fU, 0x46ec8121ab5cdaa9U), EITHER(0x1df405f8cf4616e7U, 0xb7d09709b2a76947U),
+        EITHER(0x6e5dd52af45edea2U, 0x06e52760dfc001f6U), EITHER(0x2f82585213dc3df0U, 0x2d1d2cf65f5d6087U),
+        EITHER(0x388480b37bbfd2fdU, 0x036ca5fdf3be39b5U), EITHER(0xff4e40333a28b758U, 0x5411831f1cd69356U),
+        EITHER(0x11e2f17b43b219f5U, 0xa39e9ecb350d2e7fU), EITHER(0x7939f39a29a5252fU, 0x46ec8121ab5cdaa9U),
+    };
+    expect_by_method(take_tangents_in_body_axes, bits);
+}
+
 int main(void) {
     UNITY_BEGIN();
     RUN_TEST(constants_of_a_model_by_each_number_of_its_vehicle);
     RUN_TEST(derivatives_of_steps_by_every_method);
     RUN_TEST(derivatives_at_every_yaw_by_every_method);
+    RUN_TEST(tangents_in_body_axes_by_every_method);
     return UNITY_END();
 }

@@ -71,11 +71,14 @@ static void a_slope_changes_a_step_as_a_force_at_the_centre_of_mass_does(void) {
             const robot r = robot_by(laconic_method_by_number(number), with_wheels(4));
             laconic_state_change by_slope = none, by_force = none;
             laconic_input force = no_input();
-            laconic_model_change slope;
-            memset(&slope, 0, sizeof slope);
-            slope.slope_force_N[k] = force.world_force_N[k] = REAL(1);
+            struct {
+                laconic_model_change slope;
+                laconic_real behind; /* is no part of it */
+            } by;
+            memset(&by, 0, sizeof by);
+            by.slope.slope_force_N[k] = force.world_force_N[k] = REAL(1);
             ASSERT_STATUS(LACONIC_OK, laconic_step_tangent(&by_slope, &r.model, &r.integrator, &r.state, &held, &none,
-                                                           NULL, &slope));
+                                                           NULL, &by.slope));
             ASSERT_STATUS(LACONIC_OK, laconic_step_tangent(&by_force, &r.model, &r.integrator, &r.state, &held, &none,
                                                            &force, NULL));
             ASSERT_NEAR_ALL(CLOSE * fabs((double)by_force.x_m), &by_force.x_m, &by_slope.x_m, 2);
