@@ -68,8 +68,33 @@ static void what_lay_on_the_stack_changes_no_answer(void) {
         }
 }
 
+/* Whether the columns are found without a number written to what the caller has on its stack, here `above`. */
+static bool found_below(const core_columns *c, question *q) {
+    volatile uint8_t above[1024];
+    bool same = true;
+    for (size_t i = 0; i < sizeof above; i++) above[i] = ALL_NAN;
+    laconic_core_columns(c, &q->step, &q->state);
+    for (size_t i = 0; i < sizeof above; i++) same = same && above[i] == ALL_NAN;
+    return same;
+}
+
+/* Those of a step in which b rotates fill all directions that there is room for. */
+static void columns_are_found_in_a_room_of_their_own(void) {
+    bool (*volatile opaque)(const core_columns *, question *) = found_below;
+    laconic_state_change column[CORE_COLUMNS];
+    question q;
+    core_columns c;
+    ask(&q, &laconic_rk4, 0.01, true);
+    memset(column, 0, sizeof column);
+    laconic_jacobian_directions(&c, &q.model);
+    for (int k = 0; k < CORE_COLUMNS; k++) c.column[k] = &column[k];
+    TEST_ASSERT_TRUE(opaque(&c, &q));
+    for (int k = 0; k < CORE_COLUMNS; k++) TEST_ASSERT_TRUE(column[k].x_m != 0 || column[k].y_m != 0);
+}
+
 int main(void) {
     UNITY_BEGIN();
     RUN_TEST(what_lay_on_the_stack_changes_no_answer);
+    RUN_TEST(columns_are_found_in_a_room_of_their_own);
     return UNITY_END();
 }
