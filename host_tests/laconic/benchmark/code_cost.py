@@ -7,8 +7,9 @@ from pathlib import Path
 from tempfile import TemporaryDirectory
 from typing import Any
 
+from laconic.benchmark.binary_tools import run_tool
 from laconic.benchmark.counting_board import instructions_by_kind
-from laconic.benchmark.workshop import M4F, run_tool
+from laconic.benchmark.workshop import M4F
 from laconic.errors import BadInput
 from laconic.paths import SOURCE_DIR
 

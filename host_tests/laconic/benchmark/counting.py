@@ -10,8 +10,9 @@ from dataclasses import dataclass
 from functools import lru_cache
 from pathlib import Path
 
+from laconic.benchmark.binary_tools import run_tool
 from laconic.benchmark.counting_board import CALIBRATED_INSTRUCTIONS, lines_of_board, stopped_early
-from laconic.benchmark.workshop import Target, Variant, Workshop, entry_of, run_tool
+from laconic.benchmark.workshop import Target, Variant, Workshop, entry_of
 from laconic.errors import ResultFails
 
 LARGEST_COUNTER = 2**24
@@ -101,7 +102,7 @@ def size_of_step(workshop: Workshop, target: Target, variant: Variant) -> Size:
     image = workshop.step_image(target, variant)
     symbols = _symbols(target, image)
     folder, files = workshop.files(variant)
-    graph = CallGraph.read(workshop.archive(target, variant, folder).parent)
+    graph = CallGraph.read(tuple(sorted(workshop.archive(target, variant, folder).place.glob("*.ci"))))
     entry = entry_of(files, variant.scene)
     method = [title for title in graph.stack if title.rpartition(":")[2] in files.method_steps]
     reached = graph.reached(entry, method)
@@ -147,11 +148,11 @@ class CallGraph:
 
     @classmethod
     @lru_cache(maxsize=64)
-    def read(cls, folder: Path) -> CallGraph:
-        """From all .ci files of a folder."""
+    def read(cls, files: tuple[Path, ...]) -> CallGraph:
+        """From .ci files."""
         stack: dict[str, int] = {}
         calls: dict[str, set[str]] = {}
-        for path in sorted(folder.glob("*.ci")):
+        for path in files:
             text = path.read_text()
             for title, label in NODE.findall(text):
                 if found := BYTES.search(label):

@@ -6,7 +6,8 @@ import subprocess
 from collections.abc import Sequence
 from pathlib import Path
 
-from laconic.benchmark.workshop import BENCH, Target, run_tool
+from laconic.benchmark.binary_tools import run_tool
+from laconic.benchmark.workshop import BENCH, Target
 from laconic.errors import ResultFails
 
 CALIBRATED_INSTRUCTIONS = 65536  # of the loop whose ticks an image prints as "calibration"

@@ -13,8 +13,9 @@ from typing import Any
 
 import numpy as np
 
+from laconic.benchmark.binary_tools import run_tool
 from laconic.benchmark.counting_board import CALIBRATED_INSTRUCTIONS, lines_of_board, stopped_early
-from laconic.benchmark.workshop import BENCH, M4F, Target, Variant, Workshop, run_tool
+from laconic.benchmark.workshop import BENCH, M4F, Target, Variant, Workshop
 from laconic.control.filter import Filter
 from laconic.core import load
 from laconic.errors import BadInput

@@ -18,7 +18,8 @@ from typing import Any
 import numpy as np
 from scipy.integrate import solve_ivp
 
-from laconic.benchmark.workshop import BENCH, run_tool
+from laconic.benchmark.binary_tools import run_tool
+from laconic.benchmark.workshop import BENCH
 from laconic.scene import Scene
 from laconic.verification.reference import Reference
 

@@ -10,6 +10,8 @@ from functools import cache
 from pathlib import Path
 from tempfile import TemporaryDirectory
 
+from laconic.benchmark.binary_tools import run_tool
+from laconic.benchmark.core_archive import CoreArchive, undefined
 from laconic.core import Core, load
 from laconic.errors import ResultFails
 from laconic.paths import SOURCE_DIR, sources_missing
@@ -103,15 +105,6 @@ class Variant:
         return "_".join(parts)
 
 
-def run_tool(command: Sequence[str], where: Path | None = None) -> str:
-    """A compiler or binary tool; its messages when it fails."""
-    done = subprocess.run(command, capture_output=True, text=True, cwd=where, check=False)
-    if done.returncode != 0:
-        first = next((line for line in done.stderr.splitlines() if "error" in line), done.stderr[-300:])
-        raise ResultFails(f"{command[0]} failed: {first}")
-    return done.stdout
-
-
 def segments_source(core: Core, scene: Scene, names: dict[int, str] | None = None) -> str:
     """bench_segments.c: the scene's inputs."""
     inputs, rows = scene.inputs_on_grid(), []
@@ -142,6 +135,11 @@ def _trimmed(variant: Variant) -> str:
     return f"trimmed_{stem}_{method}" if method in WITH_WEIGHTS else f"trimmed_{stem}"
 
 
+def _kind(target: Target, variant: Variant, extra: Sequence[str] = ()) -> str:
+    """The folder of what one compiler makes with the same options."""
+    return "_".join((target.name, variant.real, variant.optimisation.strip("-"), *(each.strip("-") for each in extra)))
+
+
 def entry_of(files: Trimmed, scene: Scene) -> str:
     """The function of the core that takes a step of the scene."""
     if files.needs.friction:
@@ -150,7 +148,7 @@ def entry_of(files: Trimmed, scene: Scene) -> str:
 
 
 class Workshop:
-    """Builds into one folder; the whole core is compiled once per target, scalar type and optimisation.
+    """Builds into one folder; a file of the core is compiled once per target, scalar type and optimisation.
 
     Boards without double precision in hardware get soft_double.c with it, unless `soft_double` is False: then libgcc's
     adder, which has its faults (docs/soft-double.md).
@@ -160,7 +158,7 @@ class Workshop:
         """Where to build, from which core."""
         self.folder, self.core_dir = folder.resolve(), core_dir  # gcc runs in other folders
         self.soft_double = soft_double
-        self._archives: dict[Path, Path] = {}
+        self._archives: dict[Path, CoreArchive] = {}
         self._trimmed: dict[tuple[str, str, str, float], Trimmed] = {}
 
     def files(self, variant: Variant) -> tuple[Path, Trimmed]:
@@ -183,34 +181,46 @@ class Workshop:
             found.append("-DLACONIC_WITH_EXPONENTIAL_GAUSS=0")
         return found
 
-    def archive(self, target: Target, variant: Variant, folder: Path, extra: Sequence[str] = ()) -> Path:
+    def archive(self, target: Target, variant: Variant, folder: Path, extra: Sequence[str] = ()) -> CoreArchive:
         """The core as a static library, with .ci files (call graph and stack) beside its objects."""
-        kind = "_".join((target.name, variant.real, variant.optimisation.strip("-"), *(e.strip("-") for e in extra)))
-        place = self.folder / (_trimmed(variant) if variant.trim else _whole(variant)) / kind
+        place = self.folder / (_trimmed(variant) if variant.trim else _whole(variant)) / _kind(target, variant, extra)
         if place not in self._archives:
-            shutil.rmtree(place, ignore_errors=True)
-            place.mkdir(parents=True)
-            sources = sorted(map(str, (self.core_dir / "src").glob("*.c")))
-            if self.soft_double and target.machine and variant.real == "double" and not target.hardware_double:
-                sources.append(str(self.core_dir / "soft_double" / "soft_double.c"))
+            needs_sum = self.soft_double and target.machine and variant.real == "double" and not target.hardware_double
+            always = [self.core_dir / "soft_double" / "soft_double.c"] if needs_sum else []
             graph = ("-fstack-usage", "-fcallgraph-info=su") if target.machine else ()
-            run_tool([target.tool("gcc"), "-c", *FLAGS, *graph, *extra, variant.optimisation, *target.flags,
-                      *self.definitions(target, variant, folder), f"-I{self.core_dir / 'include'}", *sources], place)
-            run_tool([target.tool("ar"), "rcs", "libcore.a", *sorted(p.name for p in place.glob("*.o"))], place)
-            self._archives[place] = place / "libcore.a"
+            self._archives[place] = CoreArchive(place, (self.core_dir / "src").glob("*.c"), always, [
+                target.tool("gcc"), *FLAGS, *graph, *extra, variant.optimisation, *target.flags,
+                *self.definitions(target, variant, folder), f"-I{self.core_dir / 'include'}"], target.tools)
         return self._archives[place]
 
     def _link(self, target: Target, variant: Variant, name: str, sources: Sequence[Path], flags: Sequence[str],
-              extra: Sequence[str] = (), tables: Sequence[str] = ("laconic_scene_model.c", "bench_segments.c")) -> Path:
+              extra: Sequence[str] = (), tables: Sequence[str] = ("laconic_scene_model.c", "bench_segments.c"),
+              before: Sequence[CoreArchive] = ()) -> Path:
         folder, _ = self.files(variant)
-        core = self.archive(target, variant, folder, extra)
         output = folder / f"{target.name}_{name}"
-        generated = [str(folder / name) for name in tables]
-        run_tool([target.tool("gcc"), *FLAGS, *extra, variant.optimisation, *target.flags,
-                  *self.definitions(target, variant, folder), f"-I{self.core_dir / 'include'}", f"-I{BENCH}",
-                  f"-I{folder}", *map(str, sources), *generated, str(core), "-Wl,--gc-sections", *flags,
-                  "-o", str(output)])
+        archives = [*before, self.archive(target, variant, folder, extra)]
+        gcc = [target.tool("gcc"), *FLAGS, *extra, variant.optimisation, *target.flags]
+        objects = self._objects(folder / f"{output.name}.objects", [
+            *gcc, *self.definitions(target, variant, folder), f"-I{self.core_dir / 'include'}", f"-I{BENCH}",
+            f"-I{folder}", *flags], [*sources, *(folder / table for table in tables)])
+        wanted = undefined(target.tools, objects) | {word for flag in flags for word in flag.split(",")[2:]}
+        for archive in archives:
+            wanted |= archive.provide(wanted)
+        command = [*gcc, *map(str, objects), *(str(archive.path) for archive in archives), "-Wl,--gc-sections",
+                   "-Wl,-z,defs", *flags, "-o", str(output)]
+        try:
+            run_tool(command)
+        except ResultFails:
+            if not any([archive.provide_all() for archive in archives]):
+                raise
+            run_tool(command)
         return output
+
+    def _objects(self, place: Path, compile_command: Sequence[str], sources: Sequence[Path]) -> list[Path]:
+        """What is linked beside the core, compiled by itself, so that it tells what it wants."""
+        place.mkdir(exist_ok=True)
+        run_tool([*compile_command, "-c", *map(str, sources)], place)
+        return [place / source.with_suffix(".o").name for source in sources]
 
     def host_program(self, variant: Variant) -> Path:
         """count STEPS."""
@@ -249,22 +259,17 @@ class Workshop:
         folder, _ = self.files(variant)
         (folder / "bench_readings.c").write_text(readings)
         name = f"filter_{sources[-1].stem}" if sources else "filter"
-        archives = self._filter_archive(target, variant), self.archive(target, variant, folder)
-        return self._link(target, variant, name, [BENCH / "filter.c", folder / "bench_readings.c", *sources],
-                          [*map(str, archives), *flags])
+        return self._link(target, variant, name, [BENCH / "filter.c", folder / "bench_readings.c", *sources], flags,
+                          before=[self._filter_archive(target, variant)])
 
-    def _filter_archive(self, target: Target, variant: Variant) -> Path:
-        kind = "_".join((target.name, variant.real, variant.optimisation.strip("-")))
-        place = self.folder / f"filter_{_whole(variant)}" / kind
+    def _filter_archive(self, target: Target, variant: Variant) -> CoreArchive:
+        place = self.folder / f"filter_{_whole(variant)}" / _kind(target, variant)
         if place not in self._archives:
-            place.mkdir(parents=True)
-            sources = [str(path) for room in ("derivatives", "filter")
-                       for path in sorted((self.core_dir / room).glob("*.c"))]
-            run_tool([target.tool("gcc"), "-c", *FLAGS, variant.optimisation, *target.flags,
-                      *self.definitions(target, variant, self.files(variant)[0]), f"-I{self.core_dir / 'include'}",
-                      f"-I{self.core_dir / 'src'}", *sources], place)
-            run_tool([target.tool("ar"), "rcs", "libfilter.a", *sorted(p.name for p in place.glob("*.o"))], place)
-            self._archives[place] = place / "libfilter.a"
+            sources = [path for room in ("derivatives", "filter") for path in (self.core_dir / room).glob("*.c")]
+            self._archives[place] = CoreArchive(place, sources, [], [
+                target.tool("gcc"), *FLAGS, variant.optimisation, *target.flags,
+                *self.definitions(target, variant, self.files(variant)[0]), f"-I{self.core_dir / 'include'}",
+                f"-I{self.core_dir / 'src'}"], target.tools)
         return self._archives[place]
 
     def step_image(self, target: Target, variant: Variant) -> Path:

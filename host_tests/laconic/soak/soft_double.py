@@ -10,7 +10,8 @@ from pathlib import Path
 from tempfile import TemporaryDirectory
 from typing import Any
 
-from laconic.benchmark.workshop import HOST, run_tool
+from laconic.benchmark.binary_tools import run_tool
+from laconic.benchmark.workshop import HOST
 from laconic.errors import BadInput
 from laconic.paths import SOURCE_DIR
 

@@ -5,7 +5,8 @@ from __future__ import annotations
 import subprocess
 from pathlib import Path
 
-from laconic.benchmark.workshop import BENCH, Target, run_tool
+from laconic.benchmark.binary_tools import run_tool
+from laconic.benchmark.workshop import BENCH, Target
 from laconic.errors import ResultFails
 from laconic.paths import SOURCE_DIR, built
 

@@ -7,7 +7,8 @@ from pathlib import Path
 
 import pytest
 
-from laconic.benchmark.workshop import BOARDS, M4F, run_tool
+from laconic.benchmark.binary_tools import run_tool
+from laconic.benchmark.workshop import BOARDS, M4F
 from laconic.cli.main import run
 from laconic.paths import SOURCE_DIR, built
 from laconic.targets import board_lines

@@ -12,9 +12,10 @@ import numpy as np
 import pytest
 from friction_scenes import skid_steering, slipping
 
+from laconic.benchmark.binary_tools import run_tool
 from laconic.benchmark.boards import board_row
 from laconic.benchmark.counting import host_state
-from laconic.benchmark.workshop import HOST, M4F, Variant, Workshop, run_tool
+from laconic.benchmark.workshop import HOST, M4F, Variant, Workshop
 from laconic.cli.main import run
 from laconic.core import load
 from laconic.errors import ResultFails
