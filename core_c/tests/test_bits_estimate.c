@@ -64,6 +64,30 @@ static void estimates_by_every_method(void) {
     expect_by_method(take_estimates, bits);
 }
 
+/* One input over hundreds of steps, so that windows grow long, read amid them. */
+static void take_long_estimate(laconic_vehicle vehicle, double step_s, int32_t most_steps) {
+    const laconic_start start = start_with(0, 0, 0);
+    const laconic_input input = input_at(3);
+    laconic_plant plant;
+    laconic_estimate estimate;
+    ASSERT_STATUS(LACONIC_OK, laconic_plant_start(&plant, &vehicle, &laconic_exact_flow_4, REAL(step_s), &start, &why));
+    ASSERT_STATUS(LACONIC_OK,
+                  laconic_estimate_start(&estimate, &plant, most_steps, laconic_finer_method(&plant), &why));
+    for (int k = 0; k < 40; k++) {
+        laconic_estimate_run(&estimate, &plant, &input, 13, &why);
+        take_errors(&estimate, &plant);
+    }
+}
+
+static void estimates_in_long_windows(void) {
+    begin();
+    for (int number = 0; number < MORE_VEHICLES; number++) {
+        take_long_estimate(vehicle_number(number), 0.0005, 200);
+        take_long_estimate(vehicle_number(number), 0.005, 32);
+    }
+    expect(EITHER(0x99182d1a05fd8eb4U, 0x41fd48b535b629efU));
+}
+
 static void estimates_of_wheels_that_slip_from_the_start(void) {
     laconic_start start = start_with(12, -7, 5);
     start.wheel_speed_rad_per_s[0] = -20;
@@ -131,5 +155,6 @@ int main(void) {
     RUN_TEST(estimates_with_friction);
     RUN_TEST(estimates_of_wheels_that_slip_from_the_start);
     RUN_TEST(rows_of_errors);
+    RUN_TEST(estimates_in_long_windows);
     return UNITY_END();
 }

@@ -195,6 +195,41 @@ static void a_vehicle_with_friction_has_a_twin(void) {
     TEST_ASSERT_TRUE(found.now.wheel_angle_rad > 0);
 }
 
+/* In ν as laconic_nu() has it. */
+static void assert_twice_what_plant_and_twin_differ_by(laconic_vehicle v) {
+    v.ground.friction_coefficient = REAL(0.5);
+    laconic_plant plant = plant_by(&laconic_auto, &v, start_with(2, 1, 4), 0.01);
+    laconic_estimate estimate = estimate_of(&plant, 16);
+    for (int k = 0; k < 20; k++) {
+        laconic_real nu[3], of_twin[3], off = 0;
+        laconic_pose pose, pose_of_twin;
+        laconic_input input = no_input();
+        input.voltage_V[k % 3] = REAL(k - 10);
+        input.body_moment_Nm = REAL(k % 5 - 2);
+        ASSERT_STATUS(LACONIC_OK, laconic_estimate_run(&estimate, &plant, &input, 3, &why));
+        laconic_nu(&plant.model, &plant.state, nu);
+        laconic_nu(&plant.model, &estimate.twin, of_twin);
+        laconic_pose_of(&pose, &plant.model, &plant.state);
+        laconic_pose_of(&pose_of_twin, &plant.model, &estimate.twin);
+        for (int i = 0; i < 3; i++) off = REAL(larger((double)off, 2 * fabs((double)(nu[i] - of_twin[i]))));
+        const laconic_errors found = errors_now(&estimate, &plant);
+        ASSERT_NEAR(EITHER(1e-12, 1e-4), off, found.now.nu_rad_per_s);
+        ASSERT_NEAR(EITHER(1e-12, 1e-5),
+                    2 * hypot((double)(pose.x_m - pose_of_twin.x_m), (double)(pose.y_m - pose_of_twin.y_m)),
+                    found.now.place_m);
+        ASSERT_NEAR(EITHER(1e-12, 1e-5), 2 * fabs((double)(pose.heading_rad - pose_of_twin.heading_rad)),
+                    found.now.heading_rad);
+        TEST_ASSERT_TRUE(off > REAL(1e-3));
+    }
+}
+
+static void with_friction_the_error_is_twice_what_plant_and_twin_differ_by(void) {
+    laconic_vehicle light = with_motors(three_wheels());
+    light.yaw_inertia_kgm2 = REAL(0.01); /* below M R²: w of its model is longer than g */
+    assert_twice_what_plant_and_twin_differ_by(with_motors(three_wheels()));
+    assert_twice_what_plant_and_twin_differ_by(light);
+}
+
 /* ------------------------------------------------------------------------- another step or vehicle -- */
 
 /* What two plants at the same time differ by; wheel angles of three wheels. */
@@ -282,6 +317,7 @@ static void a_twin_goes_on_after_a_change_and_begins_where_friction_does(void) {
     before = plant;
     ASSERT_STATUS(LACONIC_OK, laconic_plant_change(&plant, &ideal, &why));
     ASSERT_STATUS(LACONIC_OK, laconic_estimate_carry(&estimate, &before, &plant, NULL, &why));
+    ASSERT_STATUS(LACONIC_OK, laconic_estimate_carry(&spoilt, &before, &plant, NULL, &why)); /* its twin has ended */
     const laconic_errors fresh = errors_now(&estimate, &plant);
     TEST_ASSERT_TRUE(fresh.largest.wheel_angle_rad < REAL(0.5) * until.now.wheel_angle_rad);
     ASSERT_STATUS(LACONIC_OK, laconic_estimate_run(&estimate, &plant, &input, 20, &why));
@@ -305,22 +341,25 @@ static void an_estimate_that_began_anew_with_friction_has_no_older_error(void) {
         const laconic_plant before = plant;
         ASSERT_STATUS(LACONIC_OK, laconic_plant_change(&plant, k == 0 ? &v : &ideal, &why));
         ASSERT_STATUS(LACONIC_OK, laconic_estimate_carry(&estimate, &before, &plant, NULL, &why));
+        laconic_estimate fresh;
+        ASSERT_STATUS(LACONIC_OK, laconic_estimate_start(&fresh, &plant, 16, NULL, &why));
+        const laconic_errors expected = errors_now(&fresh, &plant), found = errors_now(&estimate, &plant);
+        TEST_ASSERT_EQUAL_MEMORY(&expected, &found, sizeof found);
     }
-    laconic_estimate fresh;
-    ASSERT_STATUS(LACONIC_OK, laconic_estimate_start(&fresh, &plant, 16, NULL, &why));
-    const laconic_errors expected = errors_now(&fresh, &plant), found = errors_now(&estimate, &plant);
-    TEST_ASSERT_EQUAL_MEMORY(&expected, &found, sizeof found);
 }
 
 static void a_step_without_half_of_it_is_refused_after_a_change(void) {
-    const laconic_vehicle v = with_motors(three_wheels());
-    laconic_plant plant = plant_by(&laconic_auto, &v, start_with(2, 1, 4), 0.01), before = plant;
-    laconic_estimate estimate = estimate_of(&plant, 4);
-    const laconic_estimate kept = estimate;
-    ASSERT_STATUS(LACONIC_OK, laconic_plant_set_step(&plant, REAL(12.0 * (double)LACONIC_REAL_MIN), &why));
-    ASSERT_REFUSED(LACONIC_OVERFLOW, LACONIC_FIELD_STEP, 0,
-                   laconic_estimate_carry(&estimate, &before, &plant, NULL, &why), why);
-    TEST_ASSERT_EQUAL_MEMORY(&kept, &estimate, sizeof kept);
+    laconic_vehicle v[2] = {with_motors(three_wheels()), with_motors(mecanum())};
+    v[1].ground.friction_coefficient = REAL(0.5);
+    for (int k = 0; k < 2; k++) {
+        laconic_plant plant = plant_by(&laconic_auto, &v[k], start_with(2, 1, 4), 0.01), before = plant;
+        laconic_estimate estimate = estimate_of(&plant, 4);
+        const laconic_estimate kept = estimate;
+        ASSERT_STATUS(LACONIC_OK, laconic_plant_set_step(&plant, REAL(12.0 * (double)LACONIC_REAL_MIN), &why));
+        ASSERT_REFUSED(LACONIC_OVERFLOW, LACONIC_FIELD_STEP, 0,
+                       laconic_estimate_carry(&estimate, &before, &plant, NULL, &why), why);
+        TEST_ASSERT_EQUAL_MEMORY(&kept, &estimate, sizeof kept);
+    }
 }
 
 int main(void) {
@@ -333,6 +372,7 @@ int main(void) {
     RUN_TEST(a_schedule_gives_rows_and_the_bits_of_runs);
     RUN_TEST(samples_that_follow_one_another_share_windows);
     RUN_TEST(a_vehicle_with_friction_has_a_twin);
+    RUN_TEST(with_friction_the_error_is_twice_what_plant_and_twin_differ_by);
     RUN_TEST(after_a_change_the_estimate_goes_on);
     RUN_TEST(a_twin_goes_on_after_a_change_and_begins_where_friction_does);
     RUN_TEST(an_estimate_that_began_anew_with_friction_has_no_older_error);

@@ -23,6 +23,7 @@ static void a_refused_step_is_refused_as_without(void) {
                    laconic_estimate_run(&estimate, &plant, &input, 3, &why), why);
     TEST_ASSERT_EQUAL_UINT64(3, plant.steps);
     TEST_ASSERT_TRUE(errors_now(&estimate, &plant).now.place_m < 1);
+    TEST_ASSERT_EQUAL_UINT64(1, errors_now(&estimate, &plant).unknown); /* the first of the three is tried alone */
 }
 
 /* Where no half step is taken all that the step has changed counts as its error, and it is said. */
@@ -107,6 +108,8 @@ static void a_twin_that_is_refused_stays(void) {
     TEST_ASSERT_EQUAL_UINT64(1, laconic_estimate_before(&estimate, &plant, &input, 1, 5));
     TEST_ASSERT_EQUAL_UINT64(1, errors_now(&estimate, &plant).unknown);
     TEST_ASSERT_EQUAL_MEMORY(&before, &estimate.twin, sizeof before);
+    TEST_ASSERT_EQUAL_UINT64(1, laconic_estimate_before(&estimate, &plant, &input, 1, 5));
+    TEST_ASSERT_EQUAL_UINT64(2, errors_now(&estimate, &plant).unknown);
 }
 
 /* It ends where the schedule does, where a step is refused, and where the recorder has no room; rows may be none. */
@@ -128,6 +131,8 @@ static void following_ends_as_without_an_estimate(void) {
     TEST_ASSERT_EQUAL_UINT64(17, plant.steps);
     ASSERT_STATUS(LACONIC_OK, laconic_estimate_follow(&estimate, &plant, &schedule, 100, NULL, NULL, &why));
     TEST_ASSERT_EQUAL_UINT64(20, plant.steps);
+    ASSERT_STATUS(LACONIC_OK, laconic_estimate_follow(&estimate, &plant, &schedule, 10, NULL, NULL, &why));
+    TEST_ASSERT_EQUAL_UINT64(20, plant.steps); /* which lies behind */
     schedule.count = 2;
     ASSERT_REFUSED(LACONIC_NOT_FINITE, LACONIC_FIELD_VOLTAGE, 1,
                    laconic_estimate_follow(&estimate, &plant, &schedule, 100, NULL, NULL, &why), why);

@@ -120,6 +120,57 @@ static void a_window_without_a_solution_stays_finite(void) {
     TEST_ASSERT_TRUE(size(error.zeta) < REAL(1e-5));
 }
 
+/* The same with a determinant that is given. Solved it is a Cayley rotation by 2/det − 1, else its first term. */
+static double z_where_the_determinant_is(double determinant) {
+    pair both = apart(three_wheels());
+    laconic_model *m = &both.plant.model;
+    laconic_estimate estimate;
+    state_error error;
+    window_motion motion;
+    memset(&error, 0, sizeof error);
+    memset(&motion, 0, sizeof motion);
+    store(m->nu_of_zeta[2], vector_of(0, 0, 1));
+    store(m->gyro, vector_of(1, 0, 0));
+    ASSERT_STATUS(LACONIC_OK, laconic_estimate_start(&estimate, &both.plant, 16, NULL, &why));
+    error.zeta.z = 1;
+    motion.steps = 16;
+    motion.step_s = REAL(0.002);
+    motion.heading.cosine = 1;
+    motion.zeta[0] = motion.zeta[1] = vector_of(0, REAL(-62.5 * (1 - determinant)), 0);
+    laconic_carry_error(&error, &estimate, m, &motion);
+    return (double)error.zeta.z;
+}
+
+static void a_solution_is_usable_from_a_twentieth_on(void) {
+    for (int sign = -1; sign <= 1; sign += 2) {
+        const double usable = sign * 0.0502, not_usable = sign * 0.0498;
+        ASSERT_NEAR(EITHER(1e-9, 1e-2), 2 / usable - 1, z_where_the_determinant_is(usable));
+        ASSERT_NEAR(EITHER(1e-9, 1e-4), 3 - 2 * not_usable, z_where_the_determinant_is(not_usable));
+    }
+}
+
+/* What a force in the world was, before there was none, is not looked at. */
+static void a_force_that_has_ended_turns_nothing(void) {
+    pair both = apart(with_motors(three_wheels()));
+    laconic_estimate estimate;
+    state_error error[2];
+    window_motion motion;
+    memset(error, 0, sizeof error);
+    memset(&motion, 0, sizeof motion);
+    ASSERT_STATUS(LACONIC_OK, laconic_estimate_start(&estimate, &both.plant, 16, NULL, &why));
+    motion.steps = 16;
+    motion.step_s = REAL(0.002);
+    motion.heading = laconic_direction_of_angle(1);
+    motion.zeta[0] = motion.zeta[1] = zeta_of(&both.plant.state);
+    for (int k = 0; k < 2; k++) {
+        estimate.forcing.rotates = false;
+        for (int i = 0; i < 3; i++) estimate.forcing.cosine[i] = estimate.forcing.sine[i] = REAL(30 * k);
+        error[k].zeta = vector_of(REAL(0.1), REAL(0.2), REAL(0.3));
+        laconic_carry_error(&error[k], &estimate, &both.plant.model, &motion);
+    }
+    TEST_ASSERT_EQUAL_MEMORY(&error[0], &error[1], sizeof error[0]);
+}
+
 /* What is left after as many steps as the last window had is the border: that much does not count as fading. */
 static void errors_fade_below_their_border_alone(void) {
     const laconic_real fading[3] = {REAL(1), REAL(0.7), REAL(0.69)};
@@ -151,5 +202,7 @@ int main(void) {
     RUN_TEST(windows_of_one_step_and_one_of_many_agree);
     RUN_TEST(errors_fade_below_their_border_alone);
     RUN_TEST(a_window_without_a_solution_stays_finite);
+    RUN_TEST(a_solution_is_usable_from_a_twentieth_on);
+    RUN_TEST(a_force_that_has_ended_turns_nothing);
     return UNITY_END();
 }
