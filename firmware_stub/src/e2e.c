@@ -74,7 +74,7 @@ static laconic_e2e_status accept(laconic_e2e_receiver *receiver, uint8_t counter
     ensures \result == LACONIC_E2E_WRONG_SEQUENCE ==>
             receiver->counter == \old(receiver->counter) && receiver->known == \old(receiver->known); */
 static laconic_e2e_status stray(laconic_e2e_receiver *receiver, uint8_t counter, uint8_t mask) {
-    const bool follows = receiver->stray_count > 0 && counter == ((receiver->stray + 1U) & mask);
+    const bool follows = counter == ((receiver->stray + 1U) & mask);
     receiver->stray_count = (uint8_t)(follows ? receiver->stray_count + 1U : 1U);
     receiver->stray = counter;
     if (receiver->stray_count >= LACONIC_E2E_RESYNC) return accept(receiver, counter, 0);

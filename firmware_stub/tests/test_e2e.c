@@ -27,8 +27,12 @@ static void profile_2_gives_the_published_headers(void) {
 
 static void a_frame_too_short_for_its_header_is_never_right(void) {
     uint8_t data[3] = {0};
-    TEST_ASSERT_FALSE(laconic_e2e_p22_crc_is_right(data, 1, of(0)));
-    TEST_ASSERT_FALSE(laconic_e2e_p05_crc_is_right(data, 2, fd));
+    for (uint32_t crc = 0; crc <= 0xFFFFU; crc++) {
+        data[0] = (uint8_t)(crc & 255U);
+        data[1] = (uint8_t)(crc >> 8);
+        TEST_ASSERT_FALSE(laconic_e2e_p22_crc_is_right(data, 1, of(0)));
+        TEST_ASSERT_FALSE(laconic_e2e_p05_crc_is_right(data, 2, fd));
+    }
 }
 
 static void profile_5_finds_each_flipped_bit(void) {
@@ -135,6 +139,11 @@ static void stray_frames_that_do_not_follow_each_other_make_no_reference(void) {
     laconic_e2e_check(&receiver, true, 9, 15, 1);
     for (uint8_t k = 0; k < 8; k++)
         TEST_ASSERT_EQUAL(LACONIC_E2E_WRONG_SEQUENCE, laconic_e2e_check(&receiver, true, k % 2 ? 1 : 5, 15, 1));
+    static const uint8_t down[] = {7, 6, 5, 4}, up[] = {1, 3, 5, 7};
+    for (int k = 0; k < 4; k++)
+        TEST_ASSERT_EQUAL(LACONIC_E2E_WRONG_SEQUENCE, laconic_e2e_check(&receiver, true, down[k], 15, 1));
+    for (int k = 0; k < 4; k++)
+        TEST_ASSERT_EQUAL(LACONIC_E2E_WRONG_SEQUENCE, laconic_e2e_check(&receiver, true, up[k], 15, 1));
     TEST_ASSERT_EQUAL_UINT8(9, receiver.counter);
 }
 

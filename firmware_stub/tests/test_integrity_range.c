@@ -29,7 +29,11 @@ static void test_what_no_motion_has_is_out_of_range(void) {
     in_free_run();
     expect_out_of_range(&on.node.plant.state.travel[1].rest, -1);
     in_free_run();
+    expect_out_of_range(&on.node.plant.state.zeta[0].rest, 1);
+    in_free_run();
     expect_out_of_range(&on.node.plant.state.zeta[1].rest, 1);
+    in_free_run();
+    expect_out_of_range(&on.node.plant.state.zeta[2].rest, -1);
     in_free_run();
     expect_out_of_range(&on.node.plant.state.travel[2].rest, 1);
     in_free_run();

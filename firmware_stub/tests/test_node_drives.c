@@ -205,7 +205,11 @@ static void start_needs_a_vehicle_with_drives_that_is_ready(void) {
     TEST_ASSERT_EQUAL_UINT8(LACONIC_WIRE_STATUS_PARAMETER_MISSING, start());
     node.drive_plan.protocol = 3;
     start();
-    TEST_ASSERT_EQUAL_UINT8(LACONIC_WIRE_STATUS_WRONG_STATE, start());
+    command(1000);
+    pass(3000, 100);
+    const laconic_drives before = node.drives;
+    TEST_ASSERT_EQUAL_UINT8(LACONIC_WIRE_STATUS_WRONG_STATE, start()); /* and they go on as they were */
+    TEST_ASSERT_EQUAL_MEMORY(&before, &node.drives, sizeof before);
 }
 
 static void voltages_and_syncs_of_a_rig_do_not_act_while_drives_play(void) {

@@ -229,9 +229,10 @@ static void drives_are_watched_and_keep_their_bits(void) {
     assert_pages(&errors);
 }
 
-/* They end in FAULT, as without an estimate, which has not moved. */
-static void refused_steps_are_refused_as_without(void) {
+/* They end in FAULT, as without an estimate, which has not moved; `steps`: in one SYNC. */
+static void expect_refused(uint32_t steps) {
     const laconic_real nothing = REAL(now_us - now_us);
+    bench_begin();
     load_turning();
     TEST_ASSERT_EQUAL_UINT8(0, bench_select(0, 0, CHOSEN));
     bench_start_lockstep();
@@ -239,14 +240,22 @@ static void refused_steps_are_refused_as_without(void) {
     const int32_t taken = node.estimate.taken;
     const laconic_estimate before = node.estimate;
     node.input[0].voltage_V[0] = nothing / nothing;
-    bench_sync(20);
+    bench_sync(steps);
     tick_lockstep();
     TEST_ASSERT_EQUAL_MEMORY(before.local, node.estimate.local, sizeof before.local);
     TEST_ASSERT_EQUAL_MEMORY(before.first_path_m, node.estimate.first_path_m, sizeof before.first_path_m);
     TEST_ASSERT_EQUAL_UINT8(LACONIC_WIRE_STATE_FAULT, node.state);
     TEST_ASSERT_EQUAL_UINT64(20, node.plant.steps);
     TEST_ASSERT_TRUE(taken > 0);
-    bench_begin();
+}
+
+static void refused_steps_are_refused_as_without(void) {
+    expect_refused(20);
+    expect_refused(1);
+}
+
+static void a_refused_step_of_drives_and_a_refused_reset_are_refused_as_without(void) {
+    const laconic_real nothing = REAL(now_us - now_us);
     load_turning();
     node.drive_plan = scene_plan(3);
     TEST_ASSERT_EQUAL_UINT8(0, bench_select(0, 0, CHOSEN));
@@ -284,6 +293,7 @@ int main(void) {
     RUN_TEST(sampled_steps_are_watched);
     RUN_TEST(drives_are_watched_and_keep_their_bits);
     RUN_TEST(refused_steps_are_refused_as_without);
+    RUN_TEST(a_refused_step_of_drives_and_a_refused_reset_are_refused_as_without);
     RUN_TEST(windows_that_are_not_known_are_told_up_to_65535);
     return UNITY_END();
 }

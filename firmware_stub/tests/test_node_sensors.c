@@ -211,6 +211,18 @@ static void wheel_angles_are_wrapped_and_grouped(void) {
     TEST_ASSERT_FALSE(bench_receive(LACONIC_WIRE_WHEEL_ANGLE, data));
 }
 
+static void frames_of_all_sensors_wait_side_by_side(void) {
+    uint32_t seen = 0;
+    laconic_frame frame;
+    load(settings());
+    bench_select(LACONIC_NODE_SEND_WHEEL_ANGLE | LACONIC_NODE_SEND_ENCODER | LACONIC_NODE_SEND_IMU, 0, 0);
+    bench_start_lockstep();
+    step(1);
+    while (laconic_node_next_frame(&node, &frame)) seen |= BIT(frame.id - LACONIC_WIRE_ID_BASE);
+    const uint32_t wanted = BIT(LACONIC_WIRE_WHEEL_ANGLE) | BIT(LACONIC_WIRE_IMU) | BIT(LACONIC_WIRE_ENCODER);
+    TEST_ASSERT_EQUAL_HEX32(wanted, seen & wanted);
+}
+
 static void a_vehicle_without_wheels_sends_neither_angles_nor_encoders(void) {
     bench_load(0);
     bench_select(LACONIC_NODE_SEND_WHEEL_ANGLE | LACONIC_NODE_SEND_ENCODER | LACONIC_NODE_SEND_IMU, 0, 0);
@@ -410,6 +422,7 @@ int main(void) {
     RUN_TEST(an_encoder_frame_that_waits_falls_away_with_its_encoder);
     RUN_TEST(an_encoder_frame_that_waits_survives_a_reset);
     RUN_TEST(wheel_angles_are_wrapped_and_grouped);
+    RUN_TEST(frames_of_all_sensors_wait_side_by_side);
     RUN_TEST(a_vehicle_without_wheels_sends_neither_angles_nor_encoders);
     RUN_TEST(raw_numbers_of_sensors_have_all_their_bits);
     RUN_TEST(without_settings_a_selected_imu_is_an_ideal_one);

@@ -30,6 +30,17 @@ static void hello_is_answered_at_any_time_and_changes_nothing(void) {
     TEST_ASSERT_EQUAL_UINT64(1, node.plant.steps);
 }
 
+static void hello_drops_no_frame_that_waits(void) {
+    laconic_frame frame = {.id = LACONIC_WIRE_ID_BASE + LACONIC_WIRE_HELLO, .length = 8};
+    uint32_t seen = 0;
+    now_us += LACONIC_NODE_HEARTBEAT_US;
+    laconic_node_on_tick(&node, now_us);
+    laconic_protect_plain(LACONIC_WIRE_HELLO, frame.data, 0);
+    laconic_node_on_frame(&node, &frame, now_us);
+    while (laconic_node_next_frame(&node, &frame)) seen |= BIT(frame.id - LACONIC_WIRE_ID_BASE);
+    TEST_ASSERT_EQUAL_HEX32(BIT(LACONIC_WIRE_HEARTBEAT) | BIT(LACONIC_WIRE_IDENTITY) | BIT(LACONIC_WIRE_CHALLENGE), seen);
+}
+
 static void the_nonce_depends_on_seed_and_instant(void) {
     laconic_node_config config = node.config;
     laconic_node_init(&node, &config, now_us);
@@ -129,6 +140,23 @@ static void the_first_motion_frame_after_start_and_after_a_wrong_one_is_for_refe
     TEST_ASSERT_TRUE(node.session.deaf == 0 && node.input[0].voltage_V[0] == 1);
     bench_send_count(LACONIC_WIRE_VOLTAGE, data, 4);
     TEST_ASSERT_TRUE(node.input[0].voltage_V[0] != 1);
+}
+
+/* Two kinds of frames were wrong: one that is right again says nothing of the other. */
+static void a_node_is_deaf_until_it_has_heard_all_that_it_had_not(void) {
+    static const uint8_t offsets[] = {LACONIC_WIRE_VOLTAGE, LACONIC_WIRE_SYNC};
+    uint8_t data[LACONIC_FRAME_BYTES] = {0};
+    bench_load(2);
+    bench_start_lockstep();
+    for (size_t k = 0; k < 2; k++) {
+        laconic_frame spoilt = recorded(offsets[k], data, bench_run_key, 1);
+        spoilt.data[0] ^= 1;
+        laconic_node_on_frame(&node, &spoilt, now_us);
+    }
+    bench_send_count(LACONIC_WIRE_SYNC, data, 1);
+    TEST_ASSERT_TRUE(node.session.deaf != 0);
+    bench_send_count(LACONIC_WIRE_VOLTAGE, data, 1);
+    TEST_ASSERT_TRUE(node.session.deaf == 0);
 }
 
 static void nothing_but_start_brings_a_lost_count_back(void) {
@@ -275,6 +303,7 @@ static void a_frame_of_the_nodes_own_is_malformed(void) {
 int main(void) {
     UNITY_BEGIN();
     RUN_TEST(hello_is_answered_at_any_time_and_changes_nothing);
+    RUN_TEST(hello_drops_no_frame_that_waits);
     RUN_TEST(the_nonce_depends_on_seed_and_instant);
     RUN_TEST(without_a_session_nothing_is_accepted);
     RUN_TEST(a_new_session_finds_a_running_node_at_rest_with_its_vehicle);
@@ -282,6 +311,7 @@ int main(void) {
     RUN_TEST(a_command_that_comes_twice_acts_once_and_is_answered_twice);
     RUN_TEST(answers_do_not_overwrite_one_another);
     RUN_TEST(the_first_motion_frame_after_start_and_after_a_wrong_one_is_for_reference_only);
+    RUN_TEST(a_node_is_deaf_until_it_has_heard_all_that_it_had_not);
     RUN_TEST(nothing_but_start_brings_a_lost_count_back);
     RUN_TEST(in_free_run_two_lost_frames_are_forgiven_in_lockstep_none);
     RUN_TEST(stale_commands_pass_at_the_rate_of_their_crc);

@@ -146,8 +146,8 @@ def _is_in_function(node: Node) -> bool:
     return around is not None
 
 
-COMMUTATIVE = {"plus", "times", "dot"}
-"""Functions of vector.h that give the same bits either way."""
+COMMUTATIVE = {"plus", "times", "dot", "lanes_plus", "lanes_multiplied", "lanes_same", "same"}
+"""Functions of two values that give the same bits either way."""
 
 
 def arguments(node: Node) -> Iterator[Change]:
