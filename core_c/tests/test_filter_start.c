@@ -22,6 +22,7 @@ static void wheel_angles_are_not_taken_over(void) {
         settings.encoder_std_rad[1] = REAL(with_encoders);
         for (int k = 0; k < 3; k++) state.travel[k].value = state.travel[k].rest = REAL(0.4 + k);
         for (int i = 0; i < LACONIC_MAX_WHEELS; i++) state.wheel_angle_set_rad[i] = REAL(0.1 * (i + 1));
+        state.wheel_angle_set_rad[with_encoders] = NOT_A_NUMBER;
         ASSERT_STATUS(LACONIC_OK, laconic_filter_start(&filter, &m, &settings, &state));
         laconic_wheel_angles(&m, &filter.state, angle);
         for (int i = 0; i < LACONIC_MAX_WHEELS; i++) TEST_ASSERT_EQUAL_DOUBLE(0, (double)angle[i]);
@@ -29,8 +30,23 @@ static void wheel_angles_are_not_taken_over(void) {
     }
 }
 
+static void numbers_before_and_behind_the_settings_are_not_read(void) {
+    const laconic_model m = model_of(most_wheels());
+    const laconic_state state = moving(&m, 0, 0, 0);
+    laconic_filter filter;
+    struct {
+        laconic_real before;
+        laconic_filter_settings settings;
+        laconic_real behind;
+    } of;
+    memset(&of, 0, sizeof of);
+    of.before = of.behind = NOT_A_NUMBER;
+    ASSERT_STATUS(LACONIC_OK, laconic_filter_start(&filter, &m, &of.settings, &state));
+}
+
 int main(void) {
     UNITY_BEGIN();
     RUN_TEST(wheel_angles_are_not_taken_over);
+    RUN_TEST(numbers_before_and_behind_the_settings_are_not_read);
     return UNITY_END();
 }
