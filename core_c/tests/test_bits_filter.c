@@ -3,6 +3,7 @@
  * them with the plain formulas and with a dense filter. */
 #include "bits.h"
 #include "laconic/filter.h"
+#include "stack.h"
 
 static laconic_filter_settings settings_number(int number) {
     laconic_filter_settings s;
@@ -41,14 +42,17 @@ static void take_readings(laconic_filter *filter, const laconic_model *model, in
     laconic_innovation found = {0, 0};
     laconic_pose_fix fix = {REAL(0.1), REAL(-0.2), REAL(0.4 + 6.283 * step), REAL(0.05), REAL(0.1), 0, 0};
     for (int i = 0; i < LACONIC_MAX_WHEELS; i++) turned[i] = REAL(0.01 * i - 0.02);
+    fill_stack(ALL_NAN);
     const laconic_real status = REAL(laconic_filter_encoders(filter, model, turned, &found)); /* some have none */
     TAKE(status);
     take_filter(filter, model, &found);
+    fill_stack(ALL_NAN);
     ASSERT_STATUS(LACONIC_OK, laconic_filter_yaw_rate(filter, model, REAL(0.3), &found));
     take_filter(filter, model, &found);
     if (step % 2 == 1) fix.place_x_m = REAL(0.3), fix.place_y_m = REAL(-0.1);
     if (step == 4) fix.heading_std_rad = 0;
     if (step == 6) fix.std_m = 0;
+    fill_stack(ALL_NAN);
     ASSERT_STATUS(LACONIC_OK, laconic_filter_fix(filter, model, &fix, &found));
     take_filter(filter, model, &found);
 }
@@ -64,10 +68,12 @@ static void take_filters(const laconic_method *method) {
         memset(&filter, 0, sizeof filter);
         if (laconic_plant_start(&plant, &vehicle, method, REAL(step_s[number % 4]), &start, &why) != LACONIC_OK)
             continue;
+        fill_stack(ALL_NAN);
         ASSERT_STATUS(LACONIC_OK, laconic_filter_start(&filter, &plant.model, &settings, &plant.state));
         for (int step = 0; step < 8; step++) {
             laconic_input held = input_at(step);
             if (number % 2 == 1) held.world_force_N[0] = held.world_force_N[1] = 0;
+            fill_stack(ALL_NAN);
             ASSERT_STATUS(LACONIC_OK, laconic_filter_predict(&filter, &plant.model, &plant.integrator, &held));
             if (step % 2 == 0) take_readings(&filter, &plant.model, step);
         }
