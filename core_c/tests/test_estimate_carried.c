@@ -53,6 +53,51 @@ static void an_error_is_of_the_same_motion_in_another_model(void) {
     ASSERT_NEAR(10 * ROUNDING, -0.7 + way[0][2] * (c * x - s * y), carried.place_m[1]);
 }
 
+static laconic_estimate carried_with(const laconic_plant *before, const laconic_plant *plant,
+                                     laconic_estimate estimate) {
+    ASSERT_STATUS(LACONIC_OK, laconic_estimate_carry(&estimate, before, plant, NULL, &why));
+    return estimate;
+}
+
+/* Of sizes each component counts with the magnitude of what an error along it becomes. */
+static void doubts_and_floors_are_carried_as_sizes(void) {
+    bool turned = false;
+    for (int n = 0; n < 24; n++) {
+        laconic_vehicle v = with_motors(n % 2 == 0 ? three_wheels() : mecanum()), other;
+        if (n % 3 == 0) v = with_own_wheels(v);
+        v.payload.mass_kg = REAL(25 - n);
+        v.payload.x_m = REAL(0.3 - 0.2 * (n % 4));
+        v.payload.y_m = REAL(0.1 * (n % 3) - 0.2);
+        other = v;
+        other.payload.mass_kg = REAL(1 + n);
+        other.payload.x_m = REAL(0.1 * (n % 5) - 0.2);
+        other.payload.y_m = REAL(0.3 - 0.1 * (n % 7));
+        other.payload.yaw_inertia_kgm2 = REAL(0.02 * n * n);
+        laconic_plant plant = plant_by(&laconic_rk4, &v, start_with(0, 0, 0), 0.01);
+        const laconic_plant before = plant;
+        ASSERT_STATUS(LACONIC_OK, laconic_plant_change(&plant, &other, &why));
+        laconic_estimate estimate = estimate_of(&before, 16);
+        double expected[3] = {0, 0, 0}, every = 0;
+        for (int k = 0; k < 3; k++) {
+            laconic_estimate along = estimate_of(&before, 16);
+            along.zeta[k] = 1;
+            along = carried_with(&before, &plant, along);
+            for (int i = 0; i < 3; i++) expected[i] += fabs((double)along.zeta[i]) * (0.1 + 0.2 * k);
+            for (int i = 0; i < 3; i++) every += fabs((double)along.zeta[i]) / sqrt(3);
+            turned |= along.zeta[k] < 0;
+            estimate.doubt_zeta[k] = estimate.doubt_travel[k] = REAL(0.1 + 0.2 * k);
+        }
+        estimate.floor_zeta = REAL(0.5);
+        estimate.floor_travel = REAL(0.25);
+        estimate = carried_with(&before, &plant, estimate);
+        ASSERT_NEAR_ALL(10 * ROUNDING, expected, estimate.doubt_zeta, 3);
+        ASSERT_NEAR_ALL(10 * ROUNDING, expected, estimate.doubt_travel, 3);
+        ASSERT_NEAR(10 * ROUNDING, 0.5 * every, estimate.floor_zeta);
+        ASSERT_NEAR(10 * ROUNDING, 0.25 * every, estimate.floor_travel);
+    }
+    TEST_ASSERT_TRUE(turned); /* an axis of one model is against that of the other */
+}
+
 /* A refusal is told where there is one: with friction, too, a change that is made leaves it as it was. */
 static void a_change_that_is_made_tells_no_refusal(void) {
     laconic_vehicle v = with_motors(mecanum());
@@ -74,6 +119,7 @@ static void a_change_that_is_made_tells_no_refusal(void) {
 int main(void) {
     UNITY_BEGIN();
     RUN_TEST(an_error_is_of_the_same_motion_in_another_model);
+    RUN_TEST(doubts_and_floors_are_carried_as_sizes);
     RUN_TEST(a_change_that_is_made_tells_no_refusal);
     return UNITY_END();
 }

@@ -107,6 +107,17 @@ static void parts_that_cannot_be_prepared_are_not_taken(void) {
     TEST_ASSERT_EQUAL_MEMORY(&expected, &estimate.twin, sizeof expected);
 }
 
+static void the_finer_method_is_the_plants_own_unless_damping_is_fast(void) {
+    const laconic_vehicle v = three_wheels(), stiff = stiff_wheels();
+    const laconic_start start = start_with(0, 0, 0);
+    laconic_plant plant;
+    memset(&plant, 0, sizeof plant);
+    ASSERT_STATUS(LACONIC_OK, laconic_plant_start(&plant, &v, &laconic_exact_flow, REAL(0.02), &start, &why));
+    TEST_ASSERT_EQUAL_PTR(&laconic_exact_flow, laconic_finer_method(&plant));
+    ASSERT_STATUS(LACONIC_OK, laconic_plant_start(&plant, &stiff, &laconic_exact_flow, REAL(0.02), &start, &why));
+    TEST_ASSERT_EQUAL_PTR(&laconic_exponential_gauss_8, laconic_finer_method(&plant));
+}
+
 /* ------------------------------------------------------------------------------- how many parts -- */
 
 /* The end of a step whose input is held, in so many equal parts. */
@@ -255,6 +266,7 @@ int main(void) {
     RUN_TEST(a_sampled_step_that_yaws_too_far_is_compared_with_shorter_ones);
     RUN_TEST(a_step_that_yaws_too_far_in_all_parts_has_half_steps_of_its_own);
     RUN_TEST(parts_that_cannot_be_prepared_are_not_taken);
+    RUN_TEST(the_finer_method_is_the_plants_own_unless_damping_is_fast);
     RUN_TEST(a_step_is_taken_in_the_fewest_parts_up_to_64);
     RUN_TEST(any_other_method_than_the_plants_has_shorter_parts);
     RUN_TEST(shorter_parts_of_a_sampled_step_have_the_inputs_of_their_moments);

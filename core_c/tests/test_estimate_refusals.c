@@ -9,6 +9,8 @@ static void windows_without_steps_are_refused(void) {
                    laconic_estimate_start(&estimate, &plant, 0, NULL, &why), why);
     ASSERT_REFUSED(LACONIC_ABOVE_LIMIT, LACONIC_FIELD_NONE, 0,
                    laconic_estimate_start(&estimate, &plant, LACONIC_ESTIMATE_MOST + 1, NULL, &why), why);
+    TEST_ASSERT_EQUAL_INT(LACONIC_FIELD_NONE, why.field);
+    TEST_ASSERT_TRUE(why.value == LACONIC_ESTIMATE_MOST + 1 && why.limit == LACONIC_ESTIMATE_MOST);
     TEST_ASSERT_EQUAL_INT(LACONIC_ESTIMATE_MOST, estimate.most_steps);
 }
 

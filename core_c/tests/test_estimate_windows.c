@@ -205,9 +205,14 @@ static void following_ends_at_the_step_that_is_asked_for(void) {
     const uint64_t ends[2] = {150, UINT64_MAX};
     const laconic_schedule schedule = {1, &signal, values, ends, 2, 0};
     laconic_input input = no_input();
+    laconic_error row[20];
+    laconic_error_rows rows = {20, row, 0, 20};
     for (uint64_t until = 3; until < 400; until += until / 2) {
-        ASSERT_STATUS(LACONIC_OK, laconic_estimate_follow(&estimate, &plant, &schedule, until, NULL, NULL, &why));
+        ASSERT_STATUS(LACONIC_OK, laconic_estimate_follow(&estimate, &plant, &schedule, until, NULL, &rows, &why));
         TEST_ASSERT_EQUAL_UINT64(until, plant.steps);
+        TEST_ASSERT_EQUAL_UINT64((until + 19) / 20, rows.row_count);
+        ASSERT_STATUS(LACONIC_OK, laconic_estimate_follow(&estimate, &plant, &schedule, until - 1, NULL, NULL, &why));
+        TEST_ASSERT_EQUAL_UINT64(until, plant.steps); /* what lies behind is not gone back to */
         while (stepwise.steps < until) {
             input.voltage_V[0] = values[stepwise.steps >= 150];
             ASSERT_STATUS(LACONIC_OK, laconic_estimate_run(&same, &stepwise, &input, 1, &why));
