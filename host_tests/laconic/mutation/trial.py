@@ -40,12 +40,16 @@ class Trials:
         self._kills: dict[str, Counter[str]] = defaultdict(Counter)
         self._plain: dict[tuple[str, str], bytes] = {}
         self._lock = threading.Lock()
+        self._untouched = self._copied("untouched")
         self._includes = inclusions({unit.source.resolve() for family in families for unit in family.library_units
                                      if build_dir().resolve() in unit.source.resolve().parents})
 
     def tree(self, number: int) -> Path:
         """A copy of the sources in which one thread makes its faults."""
-        copy = self.folder / f"tree{number}"
+        return self._copied(f"tree{number}")
+
+    def _copied(self, name: str) -> Path:
+        copy = self.folder / name
         for name in FOLDERS:
             shutil.copytree(SOURCE_DIR / name, copy / name, dirs_exist_ok=True,
                             ignore=lambda folder, names: [name for name in names if (Path(folder) / name).is_file()
@@ -60,7 +64,6 @@ class Trials:
         units = self._of(mutant)
         if not units:  # else it would count as the same code
             raise ResultFails(f"{mutant.file}: no test program is made of it, so that its mutants would tell nothing")
-        self._compile_plain(units, tree)
         changed.write_bytes(mutant.applied_to(source))
         try:
             verdict, by = self._tried(mutant, tree, source)
@@ -81,7 +84,7 @@ class Trials:
                     out = tree / f"{family.name}_{unit.target}_{unit.source.name}.o"
                     if unit.compile(tree, out).returncode != 0:
                         return "invalid", ""
-                    if out.read_bytes() != self._plain[unit.target, str(unit.source)]:
+                    if out.read_bytes() != self._plain_of(unit, tree):
                         objects[unit] = out
                 differs |= bool(objects)
                 if objects and (by := self._noticed(mutant, family, objects, tree, programs)):
@@ -180,18 +183,20 @@ class Trials:
             found = [unit for unit in every if unit.source.resolve() in users and "/batch/" not in str(unit.source)]
         return list(dict.fromkeys(found))
 
-    def _compile_plain(self, units: list[Unit], tree: Path) -> None:
-        for unit in units:
-            name = (unit.target, str(unit.source))
-            with self._lock:
-                known = name in self._plain
-            if not known:
-                out = tree / "plain.o"
-                done = unit.compile(tree, out)
-                if done.returncode != 0:
-                    raise ResultFails(f"{unit.source}: does not compile without a fault: {done.stderr[-300:]!r}")
-                with self._lock:
-                    self._plain[name] = out.read_bytes()
+    def _plain_of(self, unit: Unit, tree: Path) -> bytes:
+        """What it is compiled to without a fault: for a header's mutant that many units have, only when it is their
+        turn."""
+        name = (unit.target, str(unit.source))
+        with self._lock:
+            known = self._plain.get(name)
+        if known is not None:
+            return known
+        out = tree / "plain.o"
+        done = unit.compile(self._untouched, out)
+        if done.returncode != 0:
+            raise ResultFails(f"{unit.source}: does not compile without a fault: {done.stderr[-300:]!r}")
+        with self._lock:
+            return self._plain.setdefault(name, out.read_bytes())
 
 
 def runtime_of_sanitizers(family: Family) -> list[Path]:
