@@ -224,7 +224,7 @@ static void instruments_that_are_not_there_are_refused(void) {
 static void the_covariance_stays_positive_over_a_hundred_thousand_steps(void) {
     robot r = robot_with(with_motors(three_wheels()), usual(), start_with(0.5, -0.2, 1.0));
     laconic_real turned[3], angle[LACONIC_MAX_WHEELS];
-    for (int k = 0; k < 100000; k++) {
+    for (int k = 0; k < LONG_RUN(100000); k++) {
         if (laconic_filter_predict(&r.filter, &r.model, &r.integrator, &r.held) != LACONIC_OK) TEST_FAIL();
         if (k % 10 > 0) continue;
         laconic_wheel_angles(&r.model, &r.filter.state, angle);
