@@ -142,7 +142,7 @@ static void half_a_wrap_keeps_its_sign_and_no_encoder_turns_nothing(void) {
     s.encoder[0].counts_per_turn = s.encoder[1].counts_per_turn = 1000;
     s.encoder_wrap = 1000;
     const int32_t before[3] = {100, 600, 0}, now[3] = {600, 100, 500};
-    laconic_real turned[3] = {7, 7, 7};
+    laconic_real turned[3] = {NOT_A_NUMBER, NOT_A_NUMBER, NOT_A_NUMBER};
     laconic_filter_turned(turned, &s, before, now, 3);
     ASSERT_NEAR(1e-6, PI, turned[0]);
     ASSERT_NEAR(1e-6, -PI, turned[1]);

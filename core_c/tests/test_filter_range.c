@@ -111,15 +111,16 @@ static void counts_are_those_of_the_wheels_alone(void) {
     TEST_ASSERT_EQUAL_DOUBLE(9, (double)turned[2]);
 }
 
-static void a_fix_ends_with_its_last_number(void) {
+static void a_fix_is_its_seven_numbers(void) {
     reader r = reader_of(0);
     struct {
+        laconic_real before;
         laconic_pose_fix fix;
         laconic_real behind;
     } at;
     memset(&at, 0, sizeof at);
     at.fix.std_m = at.fix.heading_std_rad = REAL(1);
-    at.behind = NOT_A_NUMBER;
+    at.before = at.behind = NOT_A_NUMBER;
     ASSERT_STATUS(LACONIC_OK, laconic_filter_fix(&r.filter, &r.model, &at.fix, NULL));
     at.fix.place_y_m = NOT_A_NUMBER;
     ASSERT_STATUS(LACONIC_NOT_FINITE, laconic_filter_fix(&r.filter, &r.model, &at.fix, NULL));
@@ -150,7 +151,7 @@ int main(void) {
     RUN_TEST(an_infinite_correction_of_any_error_is_refused);
     RUN_TEST(encoders_of_the_most_wheels_are_read);
     RUN_TEST(counts_are_those_of_the_wheels_alone);
-    RUN_TEST(a_fix_ends_with_its_last_number);
+    RUN_TEST(a_fix_is_its_seven_numbers);
     RUN_TEST(the_noise_of_forces_counts_once_up_to_the_end_of_the_range);
     return UNITY_END();
 }

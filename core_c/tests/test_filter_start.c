@@ -44,9 +44,33 @@ static void numbers_before_and_behind_the_settings_are_not_read(void) {
     ASSERT_STATUS(LACONIC_OK, laconic_filter_start(&filter, &m, &of.settings, &state));
 }
 
+/* As after a prediction that left the range. */
+static void what_lies_in_the_room_for_a_prediction_changes_none(void) {
+    const laconic_model m = model_of(most_wheels());
+    const laconic_state state = moving(&m, 0.3, -0.2, 0.5);
+    const laconic_input held = no_input();
+    laconic_integrator integrator;
+    laconic_filter_settings settings;
+    laconic_filter clean, spoilt;
+    memset(&settings, 0, sizeof settings);
+    settings.force_noise_N_per_sqrt_Hz = settings.slip_noise_m_per_s_per_sqrt_Hz = REAL(0.1);
+    settings.bias_noise_rad_per_s2_per_sqrt_Hz = settings.encoder_std_rad[0] = settings.heading_std_rad = REAL(0.2);
+    ASSERT_STATUS(LACONIC_OK, laconic_integrator_prepare(&integrator, &laconic_rk4, &m, REAL(0.01), NULL));
+    ASSERT_STATUS(LACONIC_OK, laconic_filter_start(&clean, &m, &settings, &state));
+    spoilt = clean;
+    memset(&spoilt.room, 0xFF, sizeof spoilt.room); /* NaN in every number */
+    ASSERT_STATUS(LACONIC_OK, laconic_filter_predict(&clean, &m, &integrator, &held));
+    ASSERT_STATUS(LACONIC_OK, laconic_filter_predict(&spoilt, &m, &integrator, &held));
+    for (int32_t j = 0; j < clean.errors; j++) {
+        TEST_ASSERT_TRUE(clean.covariance.diagonal[j] == spoilt.covariance.diagonal[j]);
+        for (int32_t i = 0; i < j; i++) TEST_ASSERT_TRUE(clean.covariance.upper[i][j] == spoilt.covariance.upper[i][j]);
+    }
+}
+
 int main(void) {
     UNITY_BEGIN();
     RUN_TEST(wheel_angles_are_not_taken_over);
     RUN_TEST(numbers_before_and_behind_the_settings_are_not_read);
+    RUN_TEST(what_lies_in_the_room_for_a_prediction_changes_none);
     return UNITY_END();
 }
