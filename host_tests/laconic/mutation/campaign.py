@@ -5,6 +5,7 @@ from __future__ import annotations
 import hashlib
 import os
 import queue
+import threading
 import time
 from collections import Counter
 from collections.abc import Callable
@@ -17,6 +18,7 @@ from laconic.mutation.equivalent import read_equivalents
 from laconic.mutation.operators import Mutant, mutants_of
 from laconic.mutation.programs import FAMILIES, families
 from laconic.mutation.results import Results
+from laconic.mutation.switches import bench_of
 from laconic.mutation.trial import Outcome, Trials, is_of_fmu
 from laconic.paths import SOURCE_DIR, build_dir, sources_missing
 
@@ -27,6 +29,8 @@ PARTS = {"core": ("core_c/src", "core_c/derivatives", "core_c/estimate", "core_c
          "commands": ("firmware_stub/secure",),
          "fmu": ("fmu", "fmu/vehicle", "fmu/controller", "fmu/network", "fmu/network/node", "fmu/network/bus",
                  "fmu/network/robomaster")}
+MANY = 40
+"""Mutants of one file, from which on it is worth a library with switches."""
 LEFT_OUT = ("firmware_stub/src/shared_library.c", "firmware_stub/src/shared_library.h",
             "firmware_stub/src/library_drives.c", "firmware_stub/src/library_drives.h")
 """What Python alone calls."""
@@ -112,6 +116,8 @@ class Campaign:
         for number in range(workers):
             trees.put(trials.tree(number))
 
+        todo = self._try_by_switches(todo, trials, trees, results, until, advance)
+
         def one(mutant: Mutant) -> Outcome:
             tree = trees.get()
             try:
@@ -136,6 +142,44 @@ class Campaign:
                         advance(1.0)
             finally:
                 pool.shutdown(cancel_futures=True)
+
+    def _try_by_switches(self, todo: list[Mutant], trials: Trials, trees: queue.Queue[Path], results: Results,
+                         until: float, advance: Callable[[float], None]) -> list[Mutant]:
+        """Those that no test notices so, and those of files with few."""
+        of_file: dict[str, list[Mutant]] = {}
+        for mutant in todo:
+            of_file.setdefault(mutant.file, []).append(mutant)
+        noticed: queue.Queue[tuple[Mutant, Outcome]] = queue.Queue()
+        stopped = threading.Event()
+
+        def one(mutants: list[Mutant]) -> None:
+            tree = trees.get()
+            try:
+                bench = bench_of(mutants, trials.libraries_of(mutants[0]), tree)
+                for found in bench.noticed(lambda: stopped.is_set() or time.monotonic() > until) if bench else ():
+                    noticed.put(found)
+            finally:
+                trees.put(tree)
+
+        done: set[str] = set()
+        with ThreadPoolExecutor(trees.qsize()) as pool:
+            running = [pool.submit(one, mutants) for mutants in of_file.values() if len(mutants) >= MANY]
+            try:
+                while not all(each.done() for each in running) or not noticed.empty():
+                    try:
+                        mutant, outcome = noticed.get(timeout=0.1)
+                    except queue.Empty:
+                        continue
+                    results.keep(mutant, outcome)
+                    self._add(mutant, outcome)
+                    done.add(mutant.key)
+                    advance(1.0)
+            finally:
+                stopped.set()
+                pool.shutdown(cancel_futures=True)
+        for each in running:
+            each.result()
+        return [mutant for mutant in todo if mutant.key not in done]
 
     def _add(self, mutant: Mutant, outcome: Outcome) -> None:
         told = (mutant.file, mutant.function, mutant.before, mutant.after)

@@ -11,7 +11,7 @@ from dataclasses import dataclass
 from pathlib import Path
 
 import tree_sitter_c
-from tree_sitter import Language, Node, Parser
+from tree_sitter import Language, Node, Parser, Tree
 
 _PARSER = Parser(Language(tree_sitter_c.language()))
 
@@ -167,10 +167,15 @@ OPERATORS: dict[str, Callable[[Node], Iterator[Change]]] = {
 _SKIPPED = {"preproc_if": "condition", "preproc_elif": "condition", "preproc_include": "path"}
 
 
+def parsed(source: bytes) -> Tree:
+    """A file's tree; its places are those of the text."""
+    return _PARSER.parse(_WORDS.sub(lambda found: b" " * len(found[0]), source))
+
+
 def mutants_of(root: Path, file: str) -> list[Mutant]:
     """All mutants of a file, in the order of its text."""
     source = (root / file).read_bytes()
-    tree = _PARSER.parse(_WORDS.sub(lambda found: b" " * len(found[0]), source))
+    tree = parsed(source)
     seen: Counter[str] = Counter()
     found = []
     for node, function in _walk(tree.root_node, ""):

@@ -92,9 +92,9 @@ class Program:
     path: Path
     seconds: float = 0.0
 
-    def run(self, library: Path, preload: list[Path], bound_s: float | None) -> int | None:
-        """Its exit status; None: it ran past the bound."""
-        environment = {"LD_LIBRARY_PATH": str(library.parent), "ASAN_OPTIONS": "detect_leaks=0"}
+    def run(self, library: Path, preload: list[Path], bound_s: float | None, **more: str) -> int | None:
+        """Its exit status, with more in its environment; None: it ran past the bound."""
+        environment = {"LD_LIBRARY_PATH": str(library.parent), "ASAN_OPTIONS": "detect_leaks=0", **more}
         if preload:
             environment["LD_PRELOAD"] = ":".join(map(str, preload))
         try:

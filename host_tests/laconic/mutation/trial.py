@@ -71,6 +71,13 @@ class Trials:
             changed.write_bytes(source)
         return Outcome(verdict, by, round(time.monotonic() - began, 2))
 
+    def libraries_of(self, mutant: Mutant) -> list[tuple[Family, list[Unit]]]:
+        """The families in whose libraries its file is, with its units there."""
+        units = self._of(mutant)
+        found = [(family, [unit for unit in units if unit in family.library_units])
+                 for family in self._families_of(mutant)]
+        return [(family, of) for family, of in found if of]
+
     def _families_of(self, mutant: Mutant) -> list[Family]:
         """The FMU's tests are for its own files: those of the core have theirs."""
         return [family for family in self.families if family.name.startswith("fmu_") == is_of_fmu(mutant.file)]

@@ -2,14 +2,12 @@
 
 from __future__ import annotations
 
-import shutil
 from pathlib import Path
 
 import pytest
 
 from laconic.mutation import mutants_of
 from laconic.mutation.campaign import place_of
-from laconic.mutation.programs import Family, Program, Unit
 from laconic.mutation.results import Results
 from laconic.mutation.trial import Outcome, Trials
 
@@ -28,39 +26,9 @@ int main(void) { return limited(9) != 5 || limited(2) != 2; }
 """
 
 
-def trials_of(tmp_path: Path, monkeypatch, library: dict[str, str], tests: dict[str, str]) -> tuple[Trials, Path]:
-    """Of texts: the library's files, and the test programs', of one file each."""
-    if shutil.which("gcc") is None:
-        pytest.skip("needs gcc")
-    sources = tmp_path / "sources"
-    (sources / "core_c").mkdir(parents=True)
-    for file, text in (library | tests).items():
-        (sources / "core_c" / file).write_text(text)
-    for module in ("trial", "programs", "results"):
-        monkeypatch.setattr(f"laconic.mutation.{module}.SOURCE_DIR", sources)
-    monkeypatch.setattr("laconic.mutation.trial.FOLDERS", ("core_c",))
-    units = {}
-    for file in (each for each in library | tests if each.endswith(".c")):
-        name = Path(file).stem
-        unit = Unit(sources / "core_c" / file, name, ("gcc", "-O2", "-fPIC"), tmp_path, tmp_path / f"{name}.o")
-        assert unit.compile(sources, unit.object).returncode == 0
-        units[file] = unit
-    empty = tmp_path / "liblaconic_unity.a"
-    empty.write_text("/* a linker script */\n")
-    monkeypatch.setattr("laconic.mutation.programs.unity", lambda: empty)
-    folder = tmp_path / "double"
-    names = {file: f"{Path(file).stem}_double" for file in tests}
-    programs = [Program(name, [units[file]], folder / name) for file, name in names.items()]
-    family = Family("double", folder, [unit for file, unit in units.items() if file in library], programs)
-    family.link()
-    family.check()
-    monkeypatch.setattr("laconic.mutation.programs.PATIENCE_S", 0.5)
-    return Trials([family], tmp_path), sources
-
-
 @pytest.fixture
-def trials(tmp_path, monkeypatch):
-    return trials_of(tmp_path, monkeypatch, {"limited.c": SOURCE}, {"test_limited.c": TEST})
+def trials(trials_of):
+    return trials_of({"limited.c": SOURCE}, {"test_limited.c": TEST})
 
 
 def verdicts(trials: Trials, sources: Path) -> dict[str, str]:
@@ -78,7 +46,7 @@ def test_what_a_test_notices_is_killed_and_what_none_does_survives(trials):
     assert found["return a * 1 + (0 && a); → return a * 1 - (0 && a);"] == "same code"
 
 
-def test_a_program_that_needs_nothing_of_the_library_runs_beside_a_fault_that_does(tmp_path, monkeypatch):
+def test_a_program_that_needs_nothing_of_the_library_runs_beside_a_fault_that_does(trials_of):
     library = {
         "limit.h": "static inline int limit(int a) { return a > 5 ? 5 : a; }\n",
         "limited.c": """#include "limit.h"\nextern const int size;\nconst int *const address = &size;
@@ -86,7 +54,7 @@ def test_a_program_that_needs_nothing_of_the_library_runs_beside_a_fault_that_do
         "size.c": "const int size = 3;\n",
     }
     test = """#include "limit.h"\nint main(int count, char **words) { (void)words; return limit(count + 8) != 5; }\n"""
-    tried, sources = trials_of(tmp_path, monkeypatch, library, {"test_limit.c": test})
+    tried, sources = trials_of(library, {"test_limit.c": test})
     fault = next(each for each in mutants_of(sources, "core_c/limit.h") if "a > 6" in each.after)
     assert tried.outcome(fault, tried.tree(0)).verdict == "survived"
 
