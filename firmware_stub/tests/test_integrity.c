@@ -164,6 +164,8 @@ static void test_sampled_inputs_and_slip_count_as_motion_where_they_are_used(voi
             on.node.raw_input.take = used == 1 ? LACONIC_RAW_SAMPLED : 0;
             laconic_integrity_begin(&on.integrity, &on.node, &on.config, &on.integrity.limits, on.checks);
             on.integrity.has_vehicle = true;
+            bench_tick(&on);
+            TEST_ASSERT_EQUAL(LACONIC_INTEGRITY_SOUND, on.integrity.broken);
             ((uint8_t *)&on.node)[bytes[k]] ^= 1U;
             bench_tick(&on);
             TEST_ASSERT_EQUAL(used == 1 ? LACONIC_INTEGRITY_OF_MOTION : LACONIC_INTEGRITY_SOUND, on.integrity.broken);

@@ -62,6 +62,7 @@ static void test_a_count_of_wheels_beyond_the_largest_reads_nothing_behind_them(
     in_free_run();
     TEST_ASSERT_EQUAL(0, rig_command(&on, LACONIC_WIRE_COMMAND_STOP));
     on.node.plant.model.wheel_count = LACONIC_MAX_WHEELS + 100;
+    for (int i = 0; i < LACONIC_MAX_WHEELS; i++) on.node.input[0].axle_torque_Nm[i] = 1000; /* behind the voltages */
     bench_tick(&on);
     TEST_ASSERT_EQUAL(LACONIC_INTEGRITY_SOUND, on.integrity.broken);
 }
@@ -79,6 +80,37 @@ static void test_the_limits_themselves_are_in_range(void) {
         bench_tick(&on);
         TEST_ASSERT_EQUAL(LACONIC_INTEGRITY_SOUND, on.integrity.broken);
     }
+}
+
+static laconic_real size_of(laconic_real x) { return x < 0 ? -x : x; }
+
+/* Whether the node as it was then is out of these limits. */
+static bool is_beyond(const bench *then, laconic_real speed_m_per_s, laconic_real yaw_rate_rad_per_s) {
+    const laconic_integrity_limits limits = {.speed_m_per_s = speed_m_per_s, .yaw_rate_rad_per_s = yaw_rate_rad_per_s};
+    on = *then;
+    on.integrity.limits = limits;
+    bench_tick(&on);
+    return on.integrity.broken == LACONIC_INTEGRITY_OF_RANGE;
+}
+
+/* Each by itself, on either side; of these motions some are faster forwards, others to the left. */
+static void test_the_velocity_in_x_and_in_y_and_the_yaw_rate_each_have_their_limit(void) {
+    static bench then;
+    int fastest[2] = {0, 0};
+    for (int k = 0; k < 6; k++) {
+        laconic_real v[2];
+        in_free_run();
+        TEST_ASSERT_EQUAL(0, rig_command(&on, LACONIC_WIRE_COMMAND_STOP));
+        on.node.plant.state.zeta[k / 2].value = k % 2 == 0 ? 3 : -3;
+        then = on;
+        const laconic_real yaw_rate = size_of(laconic_body_velocity(&on.node.plant.model, &on.node.plant.state, v));
+        const int most = size_of(v[1]) > size_of(v[0]) ? 1 : 0;
+        const laconic_real speed = size_of(v[most]), less = (laconic_real)0.99;
+        fastest[most] += speed > 0;
+        if (speed > 0) TEST_ASSERT_TRUE(!is_beyond(&then, speed, 0) && is_beyond(&then, less * speed, 0));
+        if (yaw_rate > 0) TEST_ASSERT_TRUE(!is_beyond(&then, 0, yaw_rate) && is_beyond(&then, 0, less * yaw_rate));
+    }
+    TEST_ASSERT_TRUE(fastest[0] > 0 && fastest[1] > 0);
 }
 
 static void test_a_possible_motion_is_in_range(void) {
@@ -150,6 +182,7 @@ int main(void) {
     RUN_TEST(test_a_number_that_is_none_is_out_of_range_at_rest_too);
     RUN_TEST(test_a_count_of_wheels_beyond_the_largest_reads_nothing_behind_them);
     RUN_TEST(test_the_limits_themselves_are_in_range);
+    RUN_TEST(test_the_velocity_in_x_and_in_y_and_the_yaw_rate_each_have_their_limit);
     RUN_TEST(test_a_possible_motion_is_in_range);
     RUN_TEST(test_a_sum_of_nought_may_have_a_rest);
     RUN_TEST(test_a_number_that_is_none_is_out_of_range_without_limits_too);

@@ -74,6 +74,9 @@ static void part_of_a_payload_or_support_is_not_enough(void) {
     send_real(LACONIC_FIELD_PAYLOAD_MASS, 0, 1);
     TEST_ASSERT_EQUAL_UINT8(LACONIC_WIRE_STATUS_PARAMETER_MISSING, check());
     TEST_ASSERT_EQUAL_UINT8(LACONIC_FIELD_PAYLOAD_X, field);
+    send_real(LACONIC_FIELD_PAYLOAD_X, 0, 1);
+    TEST_ASSERT_EQUAL_UINT8(LACONIC_WIRE_STATUS_PARAMETER_MISSING, check());
+    TEST_ASSERT_EQUAL_UINT8(LACONIC_FIELD_PAYLOAD_Y, field);
     send_cart_without(0, 0);
     send_real(LACONIC_FIELD_SUPPORT_Y, 1, 1);
     TEST_ASSERT_EQUAL_UINT8(LACONIC_WIRE_STATUS_PARAMETER_MISSING, check());
@@ -167,6 +170,8 @@ static void checksum_and_count_must_both_be_right(void) {
                             laconic_loader_check(&loader, loader.frame_count, loader.checksum, &field, &item));
     TEST_ASSERT_EQUAL_UINT8(LACONIC_WIRE_STATUS_CHECKSUM_MISMATCH,
                             laconic_loader_check(&loader, 9, loader.checksum ^ LACONIC_CRC32_END, &field, &item));
+    TEST_ASSERT_EQUAL_UINT8(LACONIC_WIRE_STATUS_CHECKSUM_MISMATCH,
+                            laconic_loader_check(&loader, 0, loader.checksum ^ LACONIC_CRC32_END, &field, &item));
 }
 
 /* Of a field that this build has, an item that is not there is unknown; only a field that it lacks is left out. */
@@ -222,11 +227,36 @@ static void the_half_that_is_missing_is_named(void) {
     TEST_ASSERT_TRUE(field == LACONIC_FIELD_WHEEL_X && item == 2);
 }
 
+/* Of another field or of another item, whether its number is larger or smaller. */
+static void an_upper_half_of_another_number_is_refused(void) {
+    static const uint8_t others[][2] = {
+        {LACONIC_FIELD_WHEEL_X, 2}, {LACONIC_FIELD_AXLE, 2}, {LACONIC_FIELD_WHEEL_Y, 1}, {LACONIC_FIELD_WHEEL_Y, 3}};
+    if (sizeof(laconic_real) == 4) return;
+    for (size_t k = 0; k < sizeof others / sizeof others[0]; k++) {
+        laconic_loader_begin(&loader);
+        send(0, LACONIC_FIELD_WHEEL_Y, 2, 1);
+        send(1, others[k][0], others[k][1], 1);
+        TEST_ASSERT_EQUAL_UINT8(LACONIC_WIRE_STATUS_INPUT_INCOMPLETE, loader.status);
+        TEST_ASSERT_TRUE(loader.field == others[k][0] && loader.item == others[k][1]);
+    }
+}
+
 static void rollers_need_their_angle_and_wheels_that_are_not_there_need_nothing(void) {
     send_cart_without(LACONIC_FIELD_ROLLER, 2);
     send(0, LACONIC_FIELD_WHEEL_KIND, 2, LACONIC_WHEEL_FIXED);
     send(0, LACONIC_FIELD_WHEEL_KIND, 3, LACONIC_WHEEL_ROLLER); /* beyond the two */
     TEST_ASSERT_EQUAL_UINT8(0, check());
+}
+
+/* Neither needs anything that would be missing first. */
+static void a_kind_that_is_unset_and_a_count_below_0_are_for_the_core_to_refuse(void) {
+    send_cart_without(LACONIC_FIELD_ROLLER, 2);
+    send(0, LACONIC_FIELD_WHEEL_KIND, 2, LACONIC_WHEEL_UNSET);
+    TEST_ASSERT_EQUAL_UINT8(0, check());
+    send_cart_without(LACONIC_FIELD_WHEEL_INERTIA, 0);
+    send(0, LACONIC_FIELD_WHEEL_COUNT, 0, UINT32_MAX);
+    TEST_ASSERT_EQUAL_UINT8(0, check());
+    TEST_ASSERT_EQUAL_INT32(-1, loader.parameters.vehicle.wheel_count);
 }
 
 static void single_numbers_have_no_item(void) {
@@ -356,6 +386,8 @@ int main(void) {
     RUN_TEST(the_checksum_is_that_of_what_a_frame_tells);
     RUN_TEST(the_largest_kind_of_a_wheel_fits_a_byte_with_a_sign);
     RUN_TEST(the_half_that_is_missing_is_named);
+    RUN_TEST(an_upper_half_of_another_number_is_refused);
+    RUN_TEST(a_kind_that_is_unset_and_a_count_below_0_are_for_the_core_to_refuse);
     RUN_TEST(rollers_need_their_angle_and_wheels_that_are_not_there_need_nothing);
     RUN_TEST(single_numbers_have_no_item);
     RUN_TEST(a_loader_begins_with_the_usual_plan_of_drives);

@@ -1,0 +1,122 @@
+/* Tests of integrity.c: how long what was found stays so, and what heals it. */
+#include "integrity_bench.h"
+#include "laconic_dbc.h"
+#include "laconic_node/protection.h"
+
+void setUp(void) {}
+void tearDown(void) {}
+
+static void wait_two_rounds(void) {
+    for (uint32_t k = 0; k < 2 * LACONIC_INTEGRITY_ROUND_US / TICK_US + 2; k++) {
+        on.time_us += TICK_US;
+        bench_tick(&on);
+    }
+}
+
+/* A node whose model is found to be wrong. */
+static void with_a_wrong_model(uint8_t checks) {
+    bench_power_up(&on, 7, 0, checks);
+    TEST_ASSERT_TRUE(rig_session(&on, NULL, NULL, NULL));
+    on.node.plant.vehicle.mass_kg *= 2;
+    wait_two_rounds();
+    TEST_ASSERT_EQUAL(LACONIC_INTEGRITY_OF_MODEL, on.integrity.broken);
+    TEST_ASSERT_EQUAL(LACONIC_WIRE_STATE_FAULT, on.node.state);
+}
+
+/* The next COMMIT of the session, with a checksum of nothing that was loaded; its status. */
+static uint8_t commit_what_was_not_loaded(void) {
+    const struct laconic_dbc_commit_t commit = {.checksum = 12345};
+    laconic_frame frame = {.id = LACONIC_WIRE_ID_BASE + LACONIC_WIRE_COMMIT, .length = 8};
+    laconic_dbc_commit_pack(frame.data, &commit, 8);
+    laconic_protect_keyed(LACONIC_WIRE_COMMIT, frame.data, on.node.session.key,
+                          on.node.session.count[LACONIC_WIRE_COMMIT] + 1U);
+    bench_frame(&on, &frame);
+    return on.node.answer[LACONIC_WIRE_COMMIT].status;
+}
+
+static void test_a_commit_that_is_refused_makes_no_vehicle(void) {
+    bench_power_up(&on, 7, 0, LACONIC_INTEGRITY_ALL);
+    TEST_ASSERT_TRUE(rig_open(&on));
+    TEST_ASSERT_EQUAL(LACONIC_WIRE_STATUS_CHECKSUM_MISMATCH, commit_what_was_not_loaded());
+    TEST_ASSERT_FALSE(on.integrity.has_vehicle);
+    wait_two_rounds();
+    TEST_ASSERT_EQUAL_UINT32(0, on.integrity.rounds);
+}
+
+static void test_a_commit_that_is_refused_heals_no_model(void) {
+    with_a_wrong_model(LACONIC_INTEGRITY_ALL);
+    TEST_ASSERT_TRUE(rig_open(&on));
+    TEST_ASSERT_EQUAL(LACONIC_WIRE_STATUS_CHECKSUM_MISMATCH, commit_what_was_not_loaded());
+    TEST_ASSERT_EQUAL(LACONIC_INTEGRITY_OF_MODEL, on.integrity.broken);
+    TEST_ASSERT_EQUAL(LACONIC_WIRE_STATE_FAULT, on.node.state);
+    (void)rig_command(&on, LACONIC_WIRE_COMMAND_RESET);
+    TEST_ASSERT_EQUAL(LACONIC_WIRE_STATE_FAULT, on.node.state);
+}
+
+/* A rig that selects nothing sends its next frame: the model is that of COMMIT still. */
+static void test_only_the_frame_of_a_commit_is_one(void) {
+    bench_power_up(&on, 7, 0, LACONIC_INTEGRITY_SUM);
+    TEST_ASSERT_TRUE(rig_session(&on, NULL, NULL, NULL));
+    on.node.session.count[LACONIC_WIRE_SELECT] = 0;
+    on.node.plant.vehicle.mass_kg *= 2;
+    TEST_ASSERT_EQUAL(0, rig_command(&on, LACONIC_WIRE_COMMAND_STOP));
+    wait_two_rounds();
+    TEST_ASSERT_EQUAL(LACONIC_INTEGRITY_OF_MODEL, on.integrity.broken);
+}
+
+/* Whatever state it is found in: the next frame, even one that is malformed, leads back to FAULT. */
+static void test_a_wrong_model_moves_in_no_state(void) {
+    const laconic_frame malformed = {.id = LACONIC_WIRE_ID_BASE + LACONIC_WIRE_COMMIT, .length = 3};
+    with_a_wrong_model(LACONIC_INTEGRITY_SUM);
+    for (uint8_t state = LACONIC_WIRE_STATE_READY; state <= LACONIC_WIRE_STATE_DRIVES; state++) {
+        on.node.state = state;
+        bench_frame(&on, &malformed);
+        TEST_ASSERT_EQUAL(LACONIC_WIRE_STATE_FAULT, on.node.state);
+        TEST_ASSERT_EQUAL(LACONIC_INTEGRITY_OF_MODEL, on.integrity.broken);
+    }
+}
+
+static void test_a_wrong_model_is_found_behind_a_wrong_motion(void) {
+    bench_power_up(&on, 7, 0, LACONIC_INTEGRITY_ALL);
+    TEST_ASSERT_TRUE(rig_session(&on, NULL, NULL, NULL));
+    on.node.plant.steps++;
+    bench_tick(&on);
+    TEST_ASSERT_EQUAL(LACONIC_INTEGRITY_OF_MOTION, on.integrity.broken);
+    on.node.plant.vehicle.mass_kg *= 2;
+    wait_two_rounds();
+    TEST_ASSERT_EQUAL(LACONIC_INTEGRITY_OF_MODEL, on.integrity.broken);
+}
+
+static void test_what_a_node_without_a_vehicle_has_found_stays_until_there_is_one(void) {
+    bench_power_up(&on, 7, 0, LACONIC_INTEGRITY_ALL);
+    on.node.session.key ^= 1U;
+    bench_tick(&on);
+    TEST_ASSERT_EQUAL(LACONIC_INTEGRITY_OF_MOTION, on.integrity.broken);
+    TEST_ASSERT_EQUAL(LACONIC_WIRE_STATE_EMPTY, on.node.state);
+    TEST_ASSERT_TRUE(rig_open(&on));
+    TEST_ASSERT_EQUAL(LACONIC_INTEGRITY_OF_MOTION, on.integrity.broken);
+    TEST_ASSERT_TRUE(rig_session(&on, NULL, NULL, NULL));
+    TEST_ASSERT_EQUAL(LACONIC_INTEGRITY_SOUND, on.integrity.broken);
+}
+
+/* It would lose what is being loaded for a motion that it does not have. */
+static void test_a_node_without_a_vehicle_has_no_motion_to_be_out_of_range(void) {
+    bench_power_up(&on, 7, 0, LACONIC_INTEGRITY_RANGE);
+    on.node.loader.frame_count = 3;
+    on.node.plant.state.x_m.value = 5000;
+    bench_tick(&on);
+    TEST_ASSERT_EQUAL(LACONIC_INTEGRITY_SOUND, on.integrity.broken);
+    TEST_ASSERT_EQUAL_UINT16(3, on.node.loader.frame_count);
+}
+
+int main(void) {
+    UNITY_BEGIN();
+    RUN_TEST(test_a_commit_that_is_refused_makes_no_vehicle);
+    RUN_TEST(test_a_commit_that_is_refused_heals_no_model);
+    RUN_TEST(test_only_the_frame_of_a_commit_is_one);
+    RUN_TEST(test_a_wrong_model_moves_in_no_state);
+    RUN_TEST(test_a_wrong_model_is_found_behind_a_wrong_motion);
+    RUN_TEST(test_what_a_node_without_a_vehicle_has_found_stays_until_there_is_one);
+    RUN_TEST(test_a_node_without_a_vehicle_has_no_motion_to_be_out_of_range);
+    return UNITY_END();
+}
