@@ -48,6 +48,9 @@ static void steps_that_are_nearly_whole_are_refused(void) {
     TEST_ASSERT_EQUAL_UINT8(LACONIC_WIRE_STATUS_OUT_OF_RANGE, run(0.01 / 0.9995, 100));
     TEST_ASSERT_EQUAL_UINT8(0, run(0.01 / 1.00005, 100));
     TEST_ASSERT_EQUAL_UINT8(0, run(0.01 / 0.99995, 100));
+    TEST_ASSERT_EQUAL_UINT8(LACONIC_WIRE_STATUS_OUT_OF_RANGE, run(0.01 / 1.0001005, 100));
+    TEST_ASSERT_EQUAL_UINT8(0, run(0.01 / 1.0000995, 100));
+    TEST_ASSERT_EQUAL_UINT8(LACONIC_WIRE_STATUS_OUT_OF_RANGE, run(100, 1000)); /* a hundred-thousandth of a step */
 }
 
 static void the_watchdog_is_given_in_milliseconds(void) {

@@ -1,4 +1,6 @@
 /* Tests of the error estimate that a node sends: its pages, when it begins and ends, and the bits, which stay. */
+#include "node_internal.h" /* before the bench, whose `node` would be shadowed */
+
 #include "bench.h"
 #include "drive_scene.h"
 #include "unity.h"
@@ -280,6 +282,77 @@ static void windows_that_are_not_known_are_told_up_to_65535(void) {
     TEST_ASSERT_EQUAL_UINT16(65535, page(0).unknown);
 }
 
+static void reset_begins_none_that_was_not_chosen(void) {
+    load_turning();
+    TEST_ASSERT_EQUAL_UINT8(0, bench_control(LACONIC_WIRE_COMMAND_RESET, 0, 0));
+    TEST_ASSERT_FALSE(node.estimates);
+}
+
+static void each_page_has_its_number(void) {
+    load_turning();
+    node.estimated.now = (laconic_error){1, 2, 3, 4};
+    node.estimated.largest = (laconic_error){5, 6, 7, 8};
+    for (node.estimate_page = 0; node.estimate_page < LACONIC_NODE_ESTIMATE_PAGES; node.estimate_page++) {
+        float number;
+        laconic_node_pack(&node, LACONIC_WIRE_ERROR_ESTIMATE, data);
+        memcpy(&number, data + 2, sizeof number);
+        TEST_ASSERT_TRUE(number == (float)(node.estimate_page + 1));
+        TEST_ASSERT_EQUAL_UINT8(node.estimate_page, data[1] >> 4);
+    }
+}
+
+/* Where damping is fast a step, auto is of another order than the method that measures it. */
+static void a_stiff_vehicles_error_is_measured_by_the_finer_method(void) {
+    laconic_vehicle vehicle = scene_vehicle(0);
+    vehicle.motor_gain_Nm_per_V = 1;
+    vehicle.motor_damping_Nms = 1000;
+    TEST_ASSERT_EQUAL_INT(LACONIC_OK,
+                          laconic_plant_start(&node.plant, &vehicle, &laconic_auto, SCENE_STEP_S, &node.start, &why));
+    node.state = LACONIC_WIRE_STATE_READY;
+    TEST_ASSERT_TRUE(node.plant.integrator.stiff);
+    TEST_ASSERT_TRUE(laconic_finer_method(&node.plant) != node.plant.integrator.method);
+    TEST_ASSERT_EQUAL_UINT8(0, bench_select(0, 0, CHOSEN));
+    TEST_ASSERT_TRUE(node.estimate.finer.method == laconic_finer_method(&node.plant));
+}
+
+static void a_step_of_drives_counts_once(void) {
+    load_turning();
+    node.drive_plan = scene_plan(3);
+    TEST_ASSERT_EQUAL_UINT8(0, bench_select(0, 0, CHOSEN));
+    TEST_ASSERT_EQUAL_UINT8(0, bench_control(LACONIC_WIRE_COMMAND_START_DRIVES, 0, 0));
+    now_us += 1000;
+    laconic_node_on_tick(&node, now_us);
+    TEST_ASSERT_EQUAL_UINT64(1, node.plant.steps);
+    TEST_ASSERT_EQUAL_INT(1, node.estimate.taken);
+}
+
+/* Of sampled inputs the last is what the next step begins with. A step that is refused was not taken. */
+static void sampled_inputs_end_with_their_last_and_a_refused_step_counts_not(void) {
+    load_turning();
+    TEST_ASSERT_EQUAL_UINT8(0, bench_select(0, 0, CHOSEN | LACONIC_RAW_SAMPLED | LACONIC_RAW_VOLTAGE));
+    bench_start_lockstep();
+    for (int k = 0; k < 3; k++) node.input[k].voltage_V[0] = REAL(1 + k);
+    bench_sync(1);
+    tick_lockstep();
+    TEST_ASSERT_EQUAL_INT(1, node.estimate.taken);
+    TEST_ASSERT_EQUAL_MEMORY(&node.input[2], &node.estimate.input, sizeof node.input[2]);
+    node.input[0].voltage_V[0] = LACONIC_REAL_MAX * 2;
+    bench_sync(1);
+    tick_lockstep();
+    TEST_ASSERT_EQUAL_UINT8(LACONIC_WIRE_STATE_FAULT, node.state);
+    TEST_ASSERT_EQUAL_INT(0, node.estimate.taken);
+}
+
+/* The error of steps that were not taken is not asked for, however many were left. */
+static void steps_behind_a_refused_one_are_not_watched(void) {
+    uint64_t unknown[2];
+    for (int k = 0; k < 2; k++) {
+        expect_refused(k == 0 ? 1 : 20);
+        unknown[k] = node.estimate.unknown;
+    }
+    TEST_ASSERT_EQUAL_UINT64(unknown[0], unknown[1]);
+}
+
 int main(void) {
     UNITY_BEGIN();
     RUN_TEST(unless_chosen_there_is_none);
@@ -295,5 +368,11 @@ int main(void) {
     RUN_TEST(refused_steps_are_refused_as_without);
     RUN_TEST(a_refused_step_of_drives_and_a_refused_reset_are_refused_as_without);
     RUN_TEST(windows_that_are_not_known_are_told_up_to_65535);
+    RUN_TEST(reset_begins_none_that_was_not_chosen);
+    RUN_TEST(each_page_has_its_number);
+    RUN_TEST(a_stiff_vehicles_error_is_measured_by_the_finer_method);
+    RUN_TEST(a_step_of_drives_counts_once);
+    RUN_TEST(sampled_inputs_end_with_their_last_and_a_refused_step_counts_not);
+    RUN_TEST(steps_behind_a_refused_one_are_not_watched);
     return UNITY_END();
 }

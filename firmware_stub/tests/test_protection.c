@@ -96,6 +96,15 @@ static void the_key_of_a_run_is_mixed_with_the_count_of_its_start(void) {
     TEST_ASSERT_EQUAL_HEX32(0xF6B1738DU, laconic_run_key(5, 5));
 }
 
+/* Of the node's own frames, too, each with the list of its own kind. */
+static void plain_frames_of_the_node_are_those_of_the_reference_client(void) {
+    uint8_t result[8] = {0, 0x30, 2, 3, 4, 5, 6, 7}, nu[8] = {0, 0x30, 2, 3, 4, 5, 6, 7};
+    laconic_protect_plain(LACONIC_WIRE_RESULT, result, 6);
+    TEST_ASSERT_TRUE(result[0] == 0xEC && result[1] == 0x36);
+    laconic_protect_plain(LACONIC_WIRE_NU, nu, 15);
+    TEST_ASSERT_TRUE(nu[0] == 0x43 && nu[1] == 0x3F);
+}
+
 int main(void) {
     UNITY_BEGIN();
     RUN_TEST(the_mixing_function_gives_its_test_vectors);
@@ -106,5 +115,6 @@ int main(void) {
     RUN_TEST(frames_of_can_fd_are_those_of_the_reference_client);
     RUN_TEST(a_plain_frame_is_that_of_the_reference_client);
     RUN_TEST(the_key_of_a_run_is_mixed_with_the_count_of_its_start);
+    RUN_TEST(plain_frames_of_the_node_are_those_of_the_reference_client);
     return UNITY_END();
 }

@@ -1,4 +1,5 @@
 /* Tests of raw_frames.c: numbers cross the bus bit for bit, and a stream out of order is refused. */
+#include "drive_scene.h"
 #include "laconic_node/raw_frames.h"
 #include "unity.h"
 
@@ -121,6 +122,46 @@ static void a_stream_that_ends_early_is_not_whole(void) {
     TEST_ASSERT_TRUE(laconic_raw_is_whole(&raw, 3));
 }
 
+static void a_wrench_alone_fills_two_forces_and_a_moment(void) {
+    raw.take = LACONIC_RAW_BODY_WRENCH;
+    send(3, 2);
+    TEST_ASSERT_TRUE(raw.complete);
+    TEST_ASSERT_TRUE(input[0].body_force_N[0] == 1 && input[0].body_force_N[1] == 2 && input[0].body_moment_Nm == 3);
+}
+
+static void a_segment_that_comes_again_breaks_the_stream(void) {
+    const uint8_t bytes[6] = {0};
+    raw.take = LACONIC_RAW_VOLTAGE;
+    TEST_ASSERT_TRUE(laconic_raw_take(&raw, input, 4, 0, 15, bytes, 6));
+    TEST_ASSERT_FALSE(laconic_raw_take(&raw, input, 4, 0, 15, bytes, 6));
+    TEST_ASSERT_TRUE(raw.broken);
+}
+
+static void more_frames_than_the_rig_has_sent_are_not_whole(void) {
+    raw.take = LACONIC_RAW_VOLTAGE;
+    const uint16_t frames = send(4, 4);
+    TEST_ASSERT_TRUE(laconic_raw_is_whole(&raw, frames));
+    TEST_ASSERT_FALSE(laconic_raw_is_whole(&raw, (uint16_t)(frames - 1U)));
+}
+
+static void reading_moves_nothing_and_each_torque_is_its_wheels(void) {
+    static laconic_plant plant, before;
+    static laconic_raw_output out;
+    const laconic_vehicle vehicle = scene_vehicle(0);
+    const laconic_start start = {{1, 2, 3}, 0, 0, 0, {0}};
+    const laconic_input held = {.axle_torque_Nm = {5, 6, 7, 8}};
+    laconic_real nu[3];
+    TEST_ASSERT_EQUAL(LACONIC_OK, laconic_plant_start(&plant, &vehicle, &laconic_rk4, SCENE_STEP_S, &start, NULL));
+    memcpy(&before, &plant, sizeof plant);
+    laconic_nu(&before.model, &before.state, nu);
+    out.send = LACONIC_RAW_NU | LACONIC_RAW_HELD_TORQUE;
+    laconic_raw_collect(&out, &plant, &held, NULL);
+    TEST_ASSERT_EQUAL_MEMORY(&before, &plant, sizeof plant);
+    TEST_ASSERT_EQUAL_UINT16(7 * sizeof(laconic_real), out.size);
+    TEST_ASSERT_EQUAL_MEMORY(nu, out.number, sizeof nu);
+    TEST_ASSERT_EQUAL_MEMORY(held.axle_torque_Nm, out.number + 3, 4 * sizeof(laconic_real));
+}
+
 int main(void) {
     UNITY_BEGIN();
     RUN_TEST(every_input_has_its_position_in_the_stream);
@@ -133,5 +174,9 @@ int main(void) {
     RUN_TEST(bytes_are_given_in_parts_and_the_last_ends_in_zeros);
     RUN_TEST(a_restart_forgets_that_all_had_come);
     RUN_TEST(a_stream_that_ends_early_is_not_whole);
+    RUN_TEST(a_wrench_alone_fills_two_forces_and_a_moment);
+    RUN_TEST(a_segment_that_comes_again_breaks_the_stream);
+    RUN_TEST(more_frames_than_the_rig_has_sent_are_not_whole);
+    RUN_TEST(reading_moves_nothing_and_each_torque_is_its_wheels);
     return UNITY_END();
 }

@@ -301,6 +301,68 @@ static void a_frame_of_the_nodes_own_is_malformed(void) {
     TEST_ASSERT_TRUE(node.counters.malformed == 1 && node.counters.refused == 0);
 }
 
+/* The session before, named otherwise: it has the nonce before, but is none that was opened. */
+static void an_open_is_repeated_only_with_the_number_of_its_session(void) {
+    uint8_t data[LACONIC_FRAME_BYTES];
+    const uint32_t nonce = bench_hello();
+    const laconic_frame open = bench_open_frame(99, nonce);
+    laconic_node_on_frame(&node, &open, now_us);
+    TEST_ASSERT_TRUE(bench_receive(LACONIC_WIRE_RESULT, data));
+    for (uint32_t number = 98; number <= 100; number += 2) {
+        const uint16_t before = node.counters.crc_errors;
+        const laconic_frame other = bench_open_frame(number, nonce);
+        laconic_node_on_frame(&node, &other, now_us);
+        TEST_ASSERT_FALSE(bench_receive(LACONIC_WIRE_RESULT, data));
+        TEST_ASSERT_EQUAL_UINT16(before + 1, node.counters.crc_errors);
+    }
+}
+
+static void before_any_session_none_is_repeated(void) {
+    uint8_t data[LACONIC_FRAME_BYTES];
+    const laconic_node_config config = node.config;
+    const laconic_frame nothing = bench_open_frame(0, 0);
+    laconic_node_init(&node, &config, now_us);
+    laconic_node_on_frame(&node, &nothing, now_us);
+    TEST_ASSERT_FALSE(bench_receive(LACONIC_WIRE_RESULT, data));
+    TEST_ASSERT_EQUAL_UINT16(1, node.counters.crc_errors);
+}
+
+static void an_echo_below_the_nonce_opens_nothing(void) {
+    uint8_t data[LACONIC_FRAME_BYTES];
+    const uint32_t nonce = bench_hello();
+    const struct laconic_dbc_open_t below = {.nonce_echo = (uint16_t)((nonce & 0xFFFFU) / 2U), .session = 0x77};
+    laconic_frame frame = bench_open_frame(0x77, nonce);
+    laconic_dbc_open_pack(frame.data, &below, 8);
+    laconic_protect_keyed(LACONIC_WIRE_OPEN, frame.data, nonce, 3);
+    laconic_node_on_frame(&node, &frame, now_us);
+    TEST_ASSERT_FALSE(bench_receive(LACONIC_WIRE_RESULT, data));
+}
+
+/* A command behind a gap, or with a wrong checksum, is neither executed nor answered; the next in order is. */
+static void commands_out_of_order_or_spoilt_are_counted_and_do_nothing(void) {
+    uint8_t data[LACONIC_FRAME_BYTES];
+    const struct laconic_dbc_control_t begin = {.command = LACONIC_WIRE_COMMAND_BEGIN};
+    laconic_dbc_control_pack(data, &begin, 8);
+    bench_send_count(LACONIC_WIRE_CONTROL, data, sent[LACONIC_WIRE_CONTROL] + 2U);
+    TEST_ASSERT_TRUE(node.counters.sequence_errors == 1 && node.counters.crc_errors == 0);
+    laconic_frame spoilt = recorded(LACONIC_WIRE_CONTROL, data, bench_key, sent[LACONIC_WIRE_CONTROL] + 1U);
+    spoilt.data[0] ^= 1;
+    laconic_node_on_frame(&node, &spoilt, now_us);
+    TEST_ASSERT_TRUE(node.counters.sequence_errors == 1 && node.counters.crc_errors == 1);
+    TEST_ASSERT_FALSE(bench_receive(LACONIC_WIRE_RESULT, data));
+    TEST_ASSERT_EQUAL_UINT8(0, bench_control(LACONIC_WIRE_COMMAND_BEGIN, 0, 0));
+}
+
+static void a_run_that_has_timed_out_forgives_no_gap(void) {
+    const uint8_t data[LACONIC_FRAME_BYTES] = {0};
+    bench_load(2);
+    bench_control(LACONIC_WIRE_COMMAND_START_FREE_RUN, 0, 0);
+    bench_voltage(0, 0, 0);
+    node.state = LACONIC_WIRE_STATE_TIMEOUT;
+    bench_send_count(LACONIC_WIRE_VOLTAGE, data, sent[LACONIC_WIRE_VOLTAGE] + 2U);
+    TEST_ASSERT_TRUE(node.counters.sequence_errors == 1 && node.counters.lost == 0);
+}
+
 int main(void) {
     UNITY_BEGIN();
     RUN_TEST(hello_is_answered_at_any_time_and_changes_nothing);
@@ -323,5 +385,10 @@ int main(void) {
     RUN_TEST(an_open_needs_the_echo_and_its_protection);
     RUN_TEST(a_run_begins_with_open_ears);
     RUN_TEST(a_frame_of_the_nodes_own_is_malformed);
+    RUN_TEST(an_open_is_repeated_only_with_the_number_of_its_session);
+    RUN_TEST(before_any_session_none_is_repeated);
+    RUN_TEST(an_echo_below_the_nonce_opens_nothing);
+    RUN_TEST(commands_out_of_order_or_spoilt_are_counted_and_do_nothing);
+    RUN_TEST(a_run_that_has_timed_out_forgives_no_gap);
     return UNITY_END();
 }

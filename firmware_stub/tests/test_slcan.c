@@ -253,6 +253,38 @@ static void any_rate_is_right_where_none_is_required(void) {
     TEST_ASSERT_FALSE(slcan.rate_is_wrong);
 }
 
+/* Letters beside those of frames begin no frame. */
+static void only_the_letters_of_frames_begin_one(void) {
+    feed("O\r");
+    answers("a2000\r", "\a");
+    answers("c2000\r", "\a");
+    answers("12000\r", "\a");
+}
+
+static void a_rate_is_not_that_of_the_line_before(void) {
+    answers("S6\r", "\r");
+    answers("S\r", "\a");
+}
+
+static void a_higher_rate_is_as_wrong_as_a_lower_one(void) {
+    laconic_slcan_init(&slcan, '6');
+    answers("S7\r", "\r");
+    TEST_ASSERT_TRUE(slcan.rate_is_wrong);
+}
+
+static void a_closed_channel_takes_no_frames(void) {
+    answers("t2000\r", "\a");
+    feed("O\rC\r");
+    answers("t2000\r", "\a");
+}
+
+/* Terminals send CR LF; a tab is a letter that no line has. */
+static void a_line_ends_with_cr_alone(void) {
+    feed("O\r");
+    TEST_ASSERT_EQUAL(LACONIC_SLCAN_FRAME, feed("t20\n00\r"));
+    answers("t20\t00\r", "\a");
+}
+
 int main(void) {
     UNITY_BEGIN();
     RUN_TEST(commands_are_answered);
@@ -274,5 +306,10 @@ int main(void) {
     RUN_TEST(a_line_too_long_changes_nothing_behind_it);
     RUN_TEST(a_classic_frame_has_eight_bytes_at_most_whatever_its_line_holds);
     RUN_TEST(any_rate_is_right_where_none_is_required);
+    RUN_TEST(only_the_letters_of_frames_begin_one);
+    RUN_TEST(a_rate_is_not_that_of_the_line_before);
+    RUN_TEST(a_higher_rate_is_as_wrong_as_a_lower_one);
+    RUN_TEST(a_closed_channel_takes_no_frames);
+    RUN_TEST(a_line_ends_with_cr_alone);
     return UNITY_END();
 }

@@ -1,0 +1,136 @@
+/* Tests of what a node refuses in each state, and that what is refused changes nothing. */
+#include "node_internal.h" /* before the bench, whose `node` would be shadowed */
+
+#include "bench.h"
+#include "drive_scene.h"
+#include "unity.h"
+
+static uint8_t data[LACONIC_FRAME_BYTES];
+
+void setUp(void) {
+    bench_begin();
+    memset(data, 0, sizeof data);
+}
+void tearDown(void) {}
+
+static uint8_t start_free_run(uint16_t rate) { return bench_control(LACONIC_WIRE_COMMAND_START_FREE_RUN, rate, 0); }
+
+static void an_empty_node_starts_neither_a_free_run_nor_drives(void) {
+    TEST_ASSERT_EQUAL_UINT8(LACONIC_WIRE_STATUS_WRONG_STATE, start_free_run(0));
+    TEST_ASSERT_EQUAL_UINT8(LACONIC_WIRE_STATUS_WRONG_STATE, start_free_run(1000));
+    TEST_ASSERT_EQUAL_UINT8(LACONIC_WIRE_STATUS_WRONG_STATE, bench_control(LACONIC_WIRE_COMMAND_START_DRIVES, 0, 0));
+}
+
+static void a_start_that_is_refused_leaves_the_run_its_periods(void) {
+    bench_load(4);
+    TEST_ASSERT_EQUAL_UINT8(0, start_free_run(100));
+    const laconic_node_free_run before = node.free_run;
+    now_us += 500;
+    TEST_ASSERT_EQUAL_UINT8(LACONIC_WIRE_STATUS_WRONG_STATE, start_free_run(1000));
+    TEST_ASSERT_EQUAL_MEMORY(&before, &node.free_run, sizeof before);
+}
+
+static void after_stop_neither_raw_inputs_nor_syncs_act(void) {
+    bench_load(2);
+    bench_select(0, 0, LACONIC_RAW_VOLTAGE);
+    bench_start_lockstep();
+    bench_control(LACONIC_WIRE_COMMAND_STOP, 0, 0);
+    bench_send(LACONIC_WIRE_RAW_INPUT, data);
+    TEST_ASSERT_EQUAL_UINT16(1, node.counters.refused);
+    TEST_ASSERT_EQUAL_UINT16(0, node.raw_input.frames);
+    bench_sync(1);
+    TEST_ASSERT_TRUE(bench_receive(LACONIC_WIRE_RESULT, data));
+    TEST_ASSERT_EQUAL_UINT8(LACONIC_WIRE_STATUS_WRONG_STATE, data[3]);
+    TEST_ASSERT_EQUAL_UINT32(0, node.lockstep.steps_due);
+}
+
+static void voltages_by_can_fd_come_too_late_for_steps_that_are_due(void) {
+    bench_load(2);
+    bench_start_lockstep();
+    bench_sync(1000);
+    memset(data, 0x11, sizeof data);
+    data[3] = 0;
+    bench_send(LACONIC_WIRE_VOLTAGE_FD, data);
+    TEST_ASSERT_TRUE(node.input[0].voltage_V[0] == 0 && node.counters.refused == 1);
+}
+
+static void each_voltage_of_a_group_goes_to_its_own_wheel(void) {
+    const struct laconic_dbc_voltage_t frame = {.voltage_1 = 100, .voltage_2 = -200, .voltage_3 = 300};
+    bench_load(4);
+    bench_start_lockstep();
+    laconic_dbc_voltage_pack(data, &frame, 8);
+    bench_send(LACONIC_WIRE_VOLTAGE, data);
+    TEST_ASSERT_TRUE(node.input[0].voltage_V[0] == REAL(100) / 500 && node.input[0].voltage_V[1] == REAL(-200) / 500);
+    TEST_ASSERT_TRUE(node.input[0].voltage_V[2] == REAL(300) / 500 && node.input[0].voltage_V[3] == 0);
+}
+
+/* Whatever its checksum, of which some hold the bit that asks for CAN FD. */
+static void only_what_is_chosen_asks_for_can_fd(void) {
+    bench_load(2);
+    node.config.can_fd = false;
+    for (int k = 0; k < 32; k++) {
+        TEST_ASSERT_EQUAL_UINT8(LACONIC_WIRE_STATUS_NOT_SUPPORTED, bench_select(LACONIC_NODE_SEND_STATE_FD, 0, 0));
+        TEST_ASSERT_EQUAL_UINT8(0, bench_select(LACONIC_NODE_SEND_NU, 0, 0));
+    }
+}
+
+static void a_field_behind_the_last_is_unknown(void) {
+    const struct laconic_dbc_parameter_t frame = {.field = LACONIC_WIRE_FIELD_DRIVE_FAULTS + 1};
+    laconic_dbc_parameter_pack(data, &frame, 8);
+    bench_send(LACONIC_WIRE_PARAMETER, data);
+    TEST_ASSERT_TRUE(bench_receive(LACONIC_WIRE_RESULT, data));
+    TEST_ASSERT_EQUAL_UINT8(LACONIC_WIRE_STATUS_PARAMETER_UNKNOWN, data[3]);
+    TEST_ASSERT_EQUAL_UINT8(LACONIC_WIRE_STATUS_PARAMETER_UNKNOWN, node.loader.status);
+}
+
+/* ----------------------------------------------------------------------------------------- drives -- */
+
+static void load_driven(double rate_Hz) {
+    const laconic_vehicle vehicle = scene_vehicle(0);
+    memset(&node.start, 0, sizeof node.start);
+    TEST_ASSERT_EQUAL(LACONIC_OK, laconic_plant_start(&node.plant, &vehicle, &laconic_auto, (laconic_real)(1 / rate_Hz),
+                                                      &node.start, NULL));
+    node.drive_plan = scene_plan(3);
+    node.state = LACONIC_WIRE_STATE_READY;
+}
+
+static void no_protocol_has_a_number_below_0(void) {
+    uint8_t field = 0, item = 0;
+    laconic_drive_plan plan = scene_plan(-1);
+    TEST_ASSERT_EQUAL_UINT8(LACONIC_WIRE_STATUS_NOT_SUPPORTED,
+                            laconic_node_check_drives(&node, &plan, 4, &field, &item));
+    TEST_ASSERT_EQUAL_UINT8(LACONIC_DRIVES_FIELD_DRIVE_PROTOCOL, field);
+}
+
+static void a_start_without_drives_names_their_protocol(void) {
+    const struct laconic_dbc_control_t frame = {.command = LACONIC_WIRE_COMMAND_START_DRIVES};
+    load_driven(1000);
+    node.drive_plan.protocol = 0;
+    laconic_dbc_control_pack(data, &frame, 8);
+    bench_send(LACONIC_WIRE_CONTROL, data);
+    TEST_ASSERT_TRUE(bench_receive(LACONIC_WIRE_RESULT, data));
+    TEST_ASSERT_EQUAL_UINT8(LACONIC_WIRE_STATUS_PARAMETER_MISSING, data[3]);
+    TEST_ASSERT_EQUAL_UINT8(LACONIC_DRIVES_FIELD_DRIVE_PROTOCOL, data[4]);
+}
+
+static void a_rate_is_whole_up_to_a_ten_thousandth(void) {
+    load_driven(1000 * 1.0001005);
+    TEST_ASSERT_EQUAL_UINT8(LACONIC_WIRE_STATUS_OUT_OF_RANGE, bench_control(LACONIC_WIRE_COMMAND_START_DRIVES, 0, 0));
+    load_driven(1000 * 1.0000995);
+    TEST_ASSERT_EQUAL_UINT8(0, bench_control(LACONIC_WIRE_COMMAND_START_DRIVES, 0, 0));
+}
+
+int main(void) {
+    UNITY_BEGIN();
+    RUN_TEST(an_empty_node_starts_neither_a_free_run_nor_drives);
+    RUN_TEST(a_start_that_is_refused_leaves_the_run_its_periods);
+    RUN_TEST(after_stop_neither_raw_inputs_nor_syncs_act);
+    RUN_TEST(voltages_by_can_fd_come_too_late_for_steps_that_are_due);
+    RUN_TEST(each_voltage_of_a_group_goes_to_its_own_wheel);
+    RUN_TEST(only_what_is_chosen_asks_for_can_fd);
+    RUN_TEST(a_field_behind_the_last_is_unknown);
+    RUN_TEST(no_protocol_has_a_number_below_0);
+    RUN_TEST(a_start_without_drives_names_their_protocol);
+    RUN_TEST(a_rate_is_whole_up_to_a_ten_thousandth);
+    return UNITY_END();
+}

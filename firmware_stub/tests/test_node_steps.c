@@ -1,0 +1,108 @@
+/* Tests of a node's steps: with sensors and without, by drives, sampled, and when the next one is due. */
+#include "node_internal.h" /* before the bench, whose `node` would be shadowed */
+
+#include "bench.h"
+#include "drive_scene.h"
+#include "unity.h"
+
+#define RAW_BY_FD 0x80U              /* with the bits of RAW_OUTPUT */
+#define SELECT_RAW_AXLE_TORQUE 0x10U /* with the take_ bits */
+
+static uint8_t data[LACONIC_FRAME_BYTES];
+
+void setUp(void) {
+    bench_begin();
+    memset(data, 0, sizeof data);
+}
+void tearDown(void) {}
+
+static void pass(uint32_t milliseconds) {
+    for (uint32_t k = 0; k < milliseconds; k++) {
+        now_us += 1000;
+        laconic_node_on_tick(&node, now_us);
+    }
+}
+
+static void play(uint8_t raw, uint8_t take) {
+    const laconic_vehicle vehicle = scene_vehicle(0);
+    memset(&node.start, 0, sizeof node.start);
+    scene_plant(&node.plant, &vehicle);
+    node.drive_plan = scene_plan(3);
+    node.state = LACONIC_WIRE_STATE_READY;
+    TEST_ASSERT_EQUAL_UINT8(0, bench_select(0, raw, take));
+    TEST_ASSERT_EQUAL_UINT8(0, bench_control(LACONIC_WIRE_COMMAND_START_DRIVES, 0, 0));
+}
+
+static void sensors_that_nobody_asks_for_see_nothing_of_drives(void) {
+    play(0, 0);
+    pass(3);
+    TEST_ASSERT_EQUAL_UINT64(3, node.plant.steps);
+    TEST_ASSERT_EQUAL_UINT64(0, node.sensors.newest);
+}
+
+static void a_step_of_drives_that_is_refused_ends_in_fault_under_sensors_too(void) {
+    play(LACONIC_RAW_IMU, 0);
+    pass(3);
+    TEST_ASSERT_EQUAL_UINT64(3, node.sensors.newest);
+    node.input[0].body_moment_Nm = LACONIC_REAL_MAX * 2;
+    pass(1);
+    TEST_ASSERT_EQUAL_UINT8(LACONIC_WIRE_STATE_FAULT, node.state);
+    TEST_ASSERT_TRUE(bench_receive(LACONIC_WIRE_RESULT, data));
+    TEST_ASSERT_EQUAL_UINT8(LACONIC_FIELD_BODY_MOMENT, data[4]); /* what the step was refused for */
+    TEST_ASSERT_EQUAL_UINT64(3, node.plant.steps);
+    TEST_ASSERT_EQUAL_UINT64(3, node.sensors.newest);
+}
+
+/* As those that go by classic frames. */
+static void the_next_step_waits_until_the_torques_are_sent_by_can_fd(void) {
+    play(LACONIC_RAW_WHEEL_SPEED | RAW_BY_FD, SELECT_RAW_AXLE_TORQUE);
+    pass(5);
+    TEST_ASSERT_EQUAL_UINT64(1, node.plant.steps);
+    TEST_ASSERT_TRUE(bench_receive(LACONIC_WIRE_RAW_OUTPUT_FD, data));
+    while (bench_receive(LACONIC_WIRE_RAW_OUTPUT_FD, data)) {
+    }
+    laconic_node_on_tick(&node, now_us);
+    TEST_ASSERT_EQUAL_UINT64(2, node.plant.steps);
+}
+
+/* A sampled step with these voltages at its start, middle and end, beside the core's. */
+static void expect_sampled(uint8_t raw) {
+    bench_load(2);
+    laconic_plant twin = node.plant;
+    TEST_ASSERT_EQUAL_UINT8(0, bench_select(0, raw, LACONIC_RAW_SAMPLED | LACONIC_RAW_VOLTAGE));
+    bench_start_lockstep();
+    for (int k = 0; k < 3; k++) node.input[k].voltage_V[0] = REAL(1 + k * k);
+    TEST_ASSERT_EQUAL(LACONIC_OK, laconic_plant_run_sampled(&twin, node.input, NULL));
+    bench_sync(1);
+    laconic_node_on_tick(&node, now_us);
+    TEST_ASSERT_EQUAL_UINT64(1, node.plant.steps);
+    TEST_ASSERT_EQUAL_MEMORY(&twin.state, &node.plant.state, sizeof twin.state);
+}
+
+static void sampled_steps_have_the_cores_bits_whether_sensors_watch_or_not(void) {
+    expect_sampled(0);
+    TEST_ASSERT_EQUAL_UINT64(0, node.sensors.newest);
+    bench_begin();
+    expect_sampled(LACONIC_RAW_IMU);
+    TEST_ASSERT_EQUAL_UINT64(1, node.sensors.newest);
+}
+
+/* The periods of a free run before it do not wake a node in lockstep. */
+static void in_lockstep_a_node_sleeps_until_its_heartbeat(void) {
+    bench_load(2);
+    TEST_ASSERT_EQUAL_UINT8(0, bench_control(LACONIC_WIRE_COMMAND_START_FREE_RUN, 100, 0));
+    bench_control(LACONIC_WIRE_COMMAND_STOP, 0, 0);
+    bench_start_lockstep();
+    TEST_ASSERT_EQUAL_UINT32(LACONIC_NODE_HEARTBEAT_US - (now_us - node.heartbeat_us),
+                             laconic_node_idle_us(&node, now_us));
+}
+
+int main(void) {
+    UNITY_BEGIN();
+    RUN_TEST(sensors_that_nobody_asks_for_see_nothing_of_drives);
+    RUN_TEST(a_step_of_drives_that_is_refused_ends_in_fault_under_sensors_too);
+    RUN_TEST(the_next_step_waits_until_the_torques_are_sent_by_can_fd);
+    RUN_TEST(sampled_steps_have_the_cores_bits_whether_sensors_watch_or_not);
+    RUN_TEST(in_lockstep_a_node_sleeps_until_its_heartbeat);
+    return UNITY_END();
+}
