@@ -57,6 +57,32 @@ static void an_open_motor_takes_no_current(void) {
     TEST_ASSERT_TRUE(m.current_A == 0 && m.torque == 0 && m.voltage_V == 0);
 }
 
+/* No controller stands between: at 100 rad/s −K ω/R_a, whatever the limit. */
+static void a_shorted_motor_has_no_current_limit(void) {
+    laconic_vehicle v = with_drive(robotino(0.5, 0, 0));
+    laconic_friction f;
+    v.drive.current_limit_A = 3;
+    v.wheel[2].motor_circuit = LACONIC_MOTOR_SHORTED;
+    const laconic_model model = model_of(v);
+    ASSERT_STATUS(LACONIC_OK, laconic_friction_of(&f, &model, &v, &why));
+    const motor_state m = laconic_motor_at(&f, 2, 20, 100, 24);
+    ASSERT_NEAR(EITHER(1e-13, 1e-5), -0.5 * 100 / 2, m.current_A);
+    TEST_ASSERT_TRUE(m.voltage_V == 0 && m.limit == LACONIC_LIMIT_NONE);
+}
+
+/* Before, there was a voltage of none; and the speed of a wheel that there is not is no speed. */
+static void a_supply_starts_from_its_own_voltage_where_there_was_none(void) {
+    const laconic_friction f = drive_of(24, 0.5, 0);
+    const laconic_real at_rest[4] = {0, 0, 0, NOT_A_NUMBER};
+    laconic_input input = no_input();
+    input.voltage_V[0] = 10;
+    const laconic_real volts = laconic_supply_voltage(&f, &input, at_rest, 24);
+    TEST_ASSERT_TRUE(laconic_supply_voltage(&f, &input, at_rest, 0) == volts);
+    TEST_ASSERT_TRUE(laconic_supply_voltage(&f, &input, at_rest, -1) == volts);
+    TEST_ASSERT_TRUE(laconic_supply_voltage(&f, &input, at_rest, NOT_A_NUMBER) == volts);
+    ASSERT_NEAR(EITHER(1e-13, 1e-4), 12 + sqrt(144 - 25), volts); /* V = 24 − 0.5 · 10/V · 5 A */
+}
+
 /* At stall two motors of 2 Ω in parallel hang on the supply: V = V₀ 1/(1 + R_s). */
 static void the_supply_sags_under_the_currents_of_all_motors(void) {
     const laconic_friction f = drive_of(24, 0.5, 0), stiff = drive_of(24, 0, 0), unlimited = drive_of(0, 0, 3);
@@ -130,6 +156,8 @@ int main(void) {
     RUN_TEST(a_limited_motor_has_the_voltage_of_its_current);
     RUN_TEST(a_limit_of_less_than_an_ampere_is_one);
     RUN_TEST(an_open_motor_takes_no_current);
+    RUN_TEST(a_shorted_motor_has_no_current_limit);
+    RUN_TEST(a_supply_starts_from_its_own_voltage_where_there_was_none);
     RUN_TEST(the_supply_sags_under_the_currents_of_all_motors);
     RUN_TEST(a_supply_that_breaks_down_stays_above_0);
     RUN_TEST(a_supply_without_resistance_has_its_voltage);

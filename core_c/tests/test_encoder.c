@@ -130,6 +130,23 @@ static void a_wheel_has_not_turned_since_now(void) {
     }
 }
 
+/* A turn too small for the value of a sum is in its rest. */
+static void a_tiny_turn_counts_by_the_rest_of_its_sum(void) {
+    const laconic_real tiny = LACONIC_EPSILON * LACONIC_EPSILON;
+    for (int k = 0; k < 2; k++) {
+        laconic_plant plant = driven(with_motors(three_wheels()), k * 0.5);
+        laconic_sum *sums = k == 0 ? plant.state.travel : plant.slip.wheel_angle_rad;
+        laconic_odometer before;
+        for (int32_t i = 0; i < 3; i++) sums[i].rest = 0;
+        laconic_odometer_of(&before, &plant);
+        sums[1].rest = tiny;
+        for (int32_t i = 0; i < 3; i++) {
+            const laconic_real share = k == 0 ? plant.model.wheel_of_zeta[i][1] : (laconic_real)(i == 1);
+            TEST_ASSERT_TRUE(laconic_wheel_turned_rad(&plant, &before, i) == share * tiny);
+        }
+    }
+}
+
 static void an_odometer_takes_as_many_sums_as_there_are(void) {
     for (int k = 0; k < 2; k++) {
         const laconic_plant plant = driven(with_motors(mecanum()), k * 0.5);
@@ -175,6 +192,7 @@ int main(void) {
     RUN_TEST(it_shows_its_count_wrapped);
     RUN_TEST(without_a_wrap_it_shows_32_bits);
     RUN_TEST(a_wheel_has_not_turned_since_now);
+    RUN_TEST(a_tiny_turn_counts_by_the_rest_of_its_sum);
     RUN_TEST(an_odometer_takes_as_many_sums_as_there_are);
     RUN_TEST(an_encoder_of_one_count_counts_the_turns);
     return UNITY_END();
