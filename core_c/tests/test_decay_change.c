@@ -1,4 +1,4 @@
-/* Tests of decay_change.c that no step shows: what an entry of the damping that does not change makes of the factors. */
+/* Tests of decay_change.c that no step shows: what a damping that stays, and one entry of it, make of the factors. */
 #include "../derivatives/step_change.h"
 
 #include "methods.h"
