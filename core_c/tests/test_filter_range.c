@@ -143,6 +143,42 @@ static void the_noise_of_forces_counts_once_up_to_the_end_of_the_range(void) {
     ASSERT_STATUS(LACONIC_OVERFLOW, laconic_filter_start(&filter, &m, &settings, &state));
 }
 
+/* A fix that is so far off, along or across, that its square leaves the range, and what it corrects does not. */
+static void a_fix_whose_innovation_is_no_number_is_refused(void) {
+    for (int k = 0; k < 4; k++) {
+        const laconic_real far = REAL(EITHER(1e170, 1e25)) * REAL(k < 2 ? 1 : -1);
+        const laconic_pose_fix fix = {k % 2 == 0 ? far : 0, k % 2 == 1 ? far : 0, 0, 1, 0, 0, 0};
+        reader r = reader_of(0);
+        const laconic_filter before = r.filter;
+        ASSERT_STATUS(LACONIC_OVERFLOW, laconic_filter_fix(&r.filter, &r.model, &fix, NULL));
+        TEST_ASSERT_EQUAL_MEMORY(&before, &r.filter, sizeof before);
+    }
+}
+
+/* A point a metre ahead is seen far aside: a heading of which nothing is known would turn there by so many radians. */
+static void a_yaw_beyond_what_can_be_counted_is_refused_in_either_direction(void) {
+    for (int sign = -1; sign < 2; sign += 2) {
+        reader r = reader_of(0);
+        laconic_pose_fix fix = {0, LARGEST_YAW_CHANGE_RAD * REAL(4 * sign), 0, 1, 0, 1, 0};
+        fix.place_x_m += r.model.com_x_m;
+        fix.place_y_m += r.model.com_y_m;
+        r.filter.covariance.diagonal[row_of_x(&r.filter)] = r.filter.covariance.diagonal[row_of_x(&r.filter) + 1] = 0;
+        const laconic_filter before = r.filter;
+        ASSERT_STATUS(LACONIC_OVERFLOW, laconic_filter_fix(&r.filter, &r.model, &fix, NULL));
+        TEST_ASSERT_EQUAL_MEMORY(&before, &r.filter, sizeof before);
+    }
+}
+
+static void a_wheel_without_counts_has_not_turned(void) {
+    const int32_t before[2] = {0, 0}, now[2] = {5, 5};
+    laconic_real turned[2] = {7, 7};
+    laconic_sensor_settings sensors;
+    memset(&sensors, 0, sizeof sensors);
+    sensors.encoder[1].counts_per_turn = -100;
+    laconic_filter_turned(turned, &sensors, before, now, 2);
+    TEST_ASSERT_TRUE(turned[0] == 0 && turned[1] == 0);
+}
+
 int main(void) {
     UNITY_BEGIN();
     RUN_TEST(a_velocity_is_corrected_up_to_the_largest_in_any_direction);
@@ -153,5 +189,8 @@ int main(void) {
     RUN_TEST(counts_are_those_of_the_wheels_alone);
     RUN_TEST(a_fix_is_its_seven_numbers);
     RUN_TEST(the_noise_of_forces_counts_once_up_to_the_end_of_the_range);
+    RUN_TEST(a_fix_whose_innovation_is_no_number_is_refused);
+    RUN_TEST(a_yaw_beyond_what_can_be_counted_is_refused_in_either_direction);
+    RUN_TEST(a_wheel_without_counts_has_not_turned);
     return UNITY_END();
 }

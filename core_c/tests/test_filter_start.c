@@ -44,6 +44,34 @@ static void numbers_before_and_behind_the_settings_are_not_read(void) {
     ASSERT_STATUS(LACONIC_OK, laconic_filter_start(&filter, &m, &of.settings, &state));
 }
 
+/* Whichever wheel it is, the first or the last. */
+static void a_single_encoder_is_enough_to_read(void) {
+    const laconic_model m = model_of(most_wheels());
+    const laconic_state state = moving(&m, 0, 0, 0);
+    const laconic_real turned[LACONIC_MAX_WHEELS] = {0};
+    for (int i = 0; i < LACONIC_MAX_WHEELS; i++) {
+        laconic_filter_settings settings;
+        laconic_filter filter;
+        memset(&settings, 0, sizeof settings);
+        settings.encoder_std_rad[i] = REAL(0.1);
+        ASSERT_STATUS(LACONIC_OK, laconic_filter_start(&filter, &m, &settings, &state));
+        ASSERT_STATUS(LACONIC_OK, laconic_filter_encoders(&filter, &m, turned, NULL));
+    }
+}
+
+/* Nobody squares that of an encoder before its first reading. */
+static void a_deviation_whose_square_leaves_the_range_is_refused_at_the_start(void) {
+    const laconic_model m = model_of(most_wheels());
+    const laconic_state state = moving(&m, 0, 0, 0);
+    for (int i = 0; i < LACONIC_MAX_WHEELS; i++) {
+        laconic_filter_settings settings;
+        laconic_filter filter;
+        memset(&settings, 0, sizeof settings);
+        settings.encoder_std_rad[i] = REAL(EITHER(1e160, 1e25));
+        ASSERT_STATUS(LACONIC_OVERFLOW, laconic_filter_start(&filter, &m, &settings, &state));
+    }
+}
+
 /* As after a prediction that left the range. */
 static void what_lies_in_the_room_for_a_prediction_changes_none(void) {
     const laconic_model m = model_of(most_wheels());
@@ -70,6 +98,8 @@ static void what_lies_in_the_room_for_a_prediction_changes_none(void) {
 int main(void) {
     UNITY_BEGIN();
     RUN_TEST(wheel_angles_are_not_taken_over);
+    RUN_TEST(a_single_encoder_is_enough_to_read);
+    RUN_TEST(a_deviation_whose_square_leaves_the_range_is_refused_at_the_start);
     RUN_TEST(numbers_before_and_behind_the_settings_are_not_read);
     RUN_TEST(what_lies_in_the_room_for_a_prediction_changes_none);
     return UNITY_END();
