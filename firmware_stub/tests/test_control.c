@@ -124,7 +124,7 @@ static void reset_begins_every_counter_anew(void) {
 
 static void a_reset_to_a_start_that_cannot_be_names_its_field(void) {
     bench_load(2);
-    node.start.nu_rad_per_s[0] = LACONIC_REAL_MAX * 2;
+    node.start.nu_rad_per_s[1] = LACONIC_REAL_MAX * 2;
     const struct laconic_dbc_control_t reset = {.command = LACONIC_WIRE_COMMAND_RESET};
     laconic_dbc_control_pack(data, &reset, 8);
     bench_send(LACONIC_WIRE_CONTROL, data);
@@ -132,7 +132,7 @@ static void a_reset_to_a_start_that_cannot_be_names_its_field(void) {
     TEST_ASSERT_EQUAL_UINT8(LACONIC_WIRE_COMMAND_RESET, data[2]);
     TEST_ASSERT_EQUAL_UINT8(LACONIC_NOT_FINITE, data[3]);
     TEST_ASSERT_EQUAL_UINT8(LACONIC_FIELD_START_NU, data[4]);
-    TEST_ASSERT_EQUAL_UINT8(1, data[5]);
+    TEST_ASSERT_EQUAL_UINT8(2, data[5]);
 }
 
 /* So that a port can look at its bus in between. */
@@ -237,6 +237,8 @@ static void a_committed_vehicle_is_ready_at_its_start_with_cleared_inputs(void) 
     TEST_ASSERT_EQUAL_UINT8(LACONIC_WIRE_STATE_READY, node.state);
     TEST_ASSERT_TRUE(node.start.x_m == 7 && node.input[1].voltage_V[0] == 0);
     TEST_ASSERT_TRUE(node.plant.integrator.step_s == (laconic_real)0.01);
+    TEST_ASSERT_TRUE(node.plant.state.x_m.value == 7);
+    TEST_ASSERT_TRUE(node.plant.integrator.method == laconic_method_by_number(0));
 }
 
 static void a_vehicle_that_the_core_refuses_leaves_the_one_before(void) {
@@ -366,6 +368,27 @@ static void an_identity_names_the_methods_that_are_there(void) {
     TEST_ASSERT_EQUAL_HEX8(2, data[7]);
 }
 
+/* The last wheel may have an encoder and a drive; the one behind it is none. */
+static void drives_and_encoders_are_of_wheels_that_are_there(void) {
+    laconic_parameters *loaded = &node.loader.parameters;
+    uint8_t field = 0, item = 0;
+    TEST_ASSERT_EQUAL_UINT8(0, commit_driven(2, -19));
+    const struct laconic_dbc_commit_t commit = {.frame_count = node.loader.frame_count,
+                                                .checksum = node.loader.checksum ^ LACONIC_CRC32_END};
+    laconic_dbc_commit_pack(data, &commit, 8);
+    loaded->sensors.encoder[1] = (laconic_encoder_settings){256, 1};
+    TEST_ASSERT_EQUAL_UINT8(0, laconic_node_commit(&node, data).status);
+    loaded->sensors.encoder[2] = loaded->sensors.encoder[1];
+    TEST_ASSERT_EQUAL_UINT8(LACONIC_ABOVE_LIMIT, laconic_node_commit(&node, data).status);
+    loaded->sensors.encoder[2].counts_per_turn = 0;
+    loaded->drives.drive[2] = loaded->drives.drive[1];
+    loaded->drives.drive[2].node_id = 8;
+    const uint8_t refused = laconic_node_check_drives(&node, &loaded->drives, 2, &field, &item);
+    TEST_ASSERT_TRUE(refused != 0);
+    TEST_ASSERT_EQUAL_UINT8(0, laconic_node_check_drives(&node, &loaded->drives, 3, &field, &item));
+    TEST_ASSERT_EQUAL_UINT8(refused, laconic_node_commit(&node, data).status);
+}
+
 int main(void) {
     UNITY_BEGIN();
     RUN_TEST(a_rate_takes_a_whole_number_of_steps_up_to_what_a_tick_may_take);
@@ -393,5 +416,6 @@ int main(void) {
     RUN_TEST(a_voltage_comes_too_late_for_steps_that_are_due);
     RUN_TEST(a_sync_asks_for_a_million_steps_at_most_and_for_one_of_sampled_inputs);
     RUN_TEST(an_identity_names_the_methods_that_are_there);
+    RUN_TEST(drives_and_encoders_are_of_wheels_that_are_there);
     return UNITY_END();
 }

@@ -153,6 +153,16 @@ static void a_counter_takes_the_place_of_what_stood_there(void) {
     TEST_ASSERT_EQUAL_HEX8(0xF2, data[1]);
 }
 
+static void frames_in_order_are_right_and_each_is_the_next_reference(void) {
+    laconic_e2e_receiver receiver = {0};
+    for (uint8_t k = 0; k < 20; k++) {
+        TEST_ASSERT_EQUAL(LACONIC_E2E_OK, laconic_e2e_check(&receiver, true, k & 15U, 15, 3));
+        TEST_ASSERT_TRUE(receiver.lost == 0 && receiver.counter == (k & 15U));
+    }
+    TEST_ASSERT_EQUAL(LACONIC_E2E_OK_SOME_LOST, laconic_e2e_check(&receiver, true, 5, 15, 3));
+    TEST_ASSERT_TRUE(receiver.lost == 1 && receiver.counter == 5);
+}
+
 int main(void) {
     UNITY_BEGIN();
     RUN_TEST(profile_2_gives_the_published_headers);
@@ -169,5 +179,6 @@ int main(void) {
     RUN_TEST(the_first_stray_frame_follows_none);
     RUN_TEST(stray_frames_that_do_not_follow_each_other_make_no_reference);
     RUN_TEST(a_counter_takes_the_place_of_what_stood_there);
+    RUN_TEST(frames_in_order_are_right_and_each_is_the_next_reference);
     return UNITY_END();
 }

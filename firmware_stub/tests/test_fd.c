@@ -259,6 +259,18 @@ static void twenty_lost_frames_are_a_gap(void) {
     }
 }
 
+static void a_step_by_request_sets_no_voltages_in_free_run(void) {
+    bench_load(4);
+    bench_control(LACONIC_WIRE_COMMAND_START_FREE_RUN, 1000, 10);
+    now_us += 300;
+    voltages(4, 4);
+    TEST_ASSERT_EQUAL_UINT32(now_us, node.free_run.fed_us);
+    TEST_ASSERT_EQUAL_UINT16(0, node.counters.overrange);
+    node.input[0].voltage_V[0] = 7;
+    voltages(4, 1);
+    TEST_ASSERT_TRUE(node.input[0].voltage_V[0] == 7 && node.counters.refused == 1);
+}
+
 int main(void) {
     UNITY_BEGIN();
     RUN_TEST(one_frame_has_the_voltages_of_all_wheels);
@@ -278,5 +290,6 @@ int main(void) {
     RUN_TEST(each_step_begins_its_raw_numbers_anew);
     RUN_TEST(a_longer_frame_than_its_own_is_malformed);
     RUN_TEST(twenty_lost_frames_are_a_gap);
+    RUN_TEST(a_step_by_request_sets_no_voltages_in_free_run);
     return UNITY_END();
 }

@@ -233,6 +233,31 @@ static void periods_that_are_no_whole_microseconds_begin_when_they_should(void) 
     }
 }
 
+/* 1666 2/3 µs: the second rest of two thirds goes beyond a microsecond. */
+static void periods_of_two_thirds_of_a_microsecond_keep_their_rate(void) {
+    const laconic_vehicle vehicle = {.mass_kg = 1, .yaw_inertia_kgm2 = 1, .wheel_radius_m = 1};
+    TEST_ASSERT_EQUAL(LACONIC_OK, laconic_plant_start(&node.plant, &vehicle, &laconic_rk4, (laconic_real)(1.0 / 600),
+                                                      &node.start, NULL));
+    TEST_ASSERT_EQUAL_UINT8(0, start(0, 0));
+    const uint32_t begun_us = now_us;
+    for (uint32_t k = 1; k <= 600; k++) {
+        now_us = node.free_run.next_us;
+        TEST_ASSERT_UINT32_WITHIN(1, k * 10000U / 6U, now_us - begun_us);
+        laconic_node_on_tick(&node, now_us);
+    }
+    TEST_ASSERT_EQUAL_UINT32(1000000, now_us - begun_us);
+}
+
+static void long_periods_are_late_from_one_of_theirs_on(void) {
+    start(100, 0);
+    now_us += 10000 + 9999;
+    laconic_node_on_tick(&node, now_us);
+    TEST_ASSERT_EQUAL_UINT16(0, node.counters.late_periods);
+    now_us += 10001;
+    laconic_node_on_tick(&node, now_us);
+    TEST_ASSERT_EQUAL_UINT16(1, node.counters.late_periods);
+}
+
 int main(void) {
     UNITY_BEGIN();
     RUN_TEST(every_period_takes_its_steps_though_the_time_wraps);
@@ -252,5 +277,7 @@ int main(void) {
     RUN_TEST(a_period_of_a_second_is_a_million_microseconds);
     RUN_TEST(without_a_watchdog_a_run_goes_on_for_ever);
     RUN_TEST(periods_that_are_no_whole_microseconds_begin_when_they_should);
+    RUN_TEST(periods_of_two_thirds_of_a_microsecond_keep_their_rate);
+    RUN_TEST(long_periods_are_late_from_one_of_theirs_on);
     return UNITY_END();
 }

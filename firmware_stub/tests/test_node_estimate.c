@@ -155,6 +155,7 @@ static void half_a_step_that_cannot_be_prepared_is_refused_with_its_field(void) 
     node.plant.integrator.step_s = 12 * LACONIC_REAL_MIN;
     TEST_ASSERT_EQUAL_UINT8(LACONIC_OVERFLOW, bench_select(LACONIC_NODE_SEND_NU, 0, CHOSEN));
     TEST_ASSERT_EQUAL_UINT8(LACONIC_FIELD_STEP, node.answer[LACONIC_WIRE_SELECT].field);
+    TEST_ASSERT_EQUAL_UINT8(0, node.answer[LACONIC_WIRE_SELECT].item);
     TEST_ASSERT_FALSE(node.estimates);
     TEST_ASSERT_EQUAL_UINT8(0, node.send);
 }
@@ -353,6 +354,36 @@ static void steps_behind_a_refused_one_are_not_watched(void) {
     TEST_ASSERT_EQUAL_UINT64(unknown[0], unknown[1]);
 }
 
+static void a_reset_that_cannot_begin_it_names_the_field(void) {
+    load_turning();
+    TEST_ASSERT_EQUAL_UINT8(0, bench_select(0, 0, CHOSEN));
+    node.plant.integrator.step_s = 12 * LACONIC_REAL_MIN;
+    TEST_ASSERT_EQUAL_UINT8(LACONIC_OVERFLOW, bench_control(LACONIC_WIRE_COMMAND_RESET, 0, 0));
+    TEST_ASSERT_EQUAL_UINT8(LACONIC_FIELD_STEP, node.answer[LACONIC_WIRE_CONTROL].field);
+}
+
+/* Step by step as the core watches the same torques. */
+static void steps_of_drives_are_watched_as_the_core_does(void) {
+    const laconic_frame frame = {.id = 0x200, .length = 8, .data = {3, 232, 0, 0, 0, 0, 3, 232}};
+    load_turning();
+    node.drive_plan = scene_plan(3);
+    TEST_ASSERT_EQUAL_UINT8(0, bench_select(0, 0, CHOSEN));
+    TEST_ASSERT_EQUAL_UINT8(0, bench_control(LACONIC_WIRE_COMMAND_START_DRIVES, 0, 0));
+    laconic_plant plant = node.plant;
+    laconic_estimate estimate = estimate_of(&plant);
+    for (int k = 0; k < 6; k++) {
+        if (k == 3) laconic_node_on_frame(&node, &frame, now_us);
+        now_us += 1000;
+        laconic_node_on_tick(&node, now_us);
+        const laconic_input held = node.input[0];
+        TEST_ASSERT_EQUAL_INT(LACONIC_OK, laconic_estimate_run(&estimate, &plant, &held, 1, &why));
+        TEST_ASSERT_EQUAL_MEMORY(&plant.state, &node.plant.state, sizeof plant.state);
+        TEST_ASSERT_EQUAL_INT(estimate.taken, node.estimate.taken);
+        TEST_ASSERT_EQUAL_INT(estimate.length, node.estimate.length);
+        TEST_ASSERT_EQUAL_MEMORY(estimate.local, node.estimate.local, sizeof estimate.local);
+    }
+}
+
 int main(void) {
     UNITY_BEGIN();
     RUN_TEST(unless_chosen_there_is_none);
@@ -374,5 +405,7 @@ int main(void) {
     RUN_TEST(a_step_of_drives_counts_once);
     RUN_TEST(sampled_inputs_end_with_their_last_and_a_refused_step_counts_not);
     RUN_TEST(steps_behind_a_refused_one_are_not_watched);
+    RUN_TEST(a_reset_that_cannot_begin_it_names_the_field);
+    RUN_TEST(steps_of_drives_are_watched_as_the_core_does);
     return UNITY_END();
 }

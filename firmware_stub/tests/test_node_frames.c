@@ -178,6 +178,46 @@ static void the_state_has_each_wheel_with_its_own_speed(void) {
     }
 }
 
+static void a_heartbeat_comes_to_the_microsecond_and_with_counters_where_they_were_chosen(void) {
+    int count[LACONIC_WIRE_OFFSETS];
+    load();
+    TEST_ASSERT_EQUAL_UINT8(0, bench_select(EVERY_FRAME & ~LACONIC_NODE_SEND_COUNTERS, 0, 0));
+    now_us = node.heartbeat_us + LACONIC_NODE_HEARTBEAT_US - 1U;
+    laconic_node_on_tick(&node, now_us);
+    TEST_ASSERT_EQUAL_INT(0, fetch_all(count));
+    laconic_node_on_tick(&node, ++now_us);
+    TEST_ASSERT_EQUAL_INT(1, fetch_all(count));
+    TEST_ASSERT_EQUAL_INT(1, count[LACONIC_WIRE_HEARTBEAT]);
+}
+
+/* Of two encoders, on the first wheel and on the last, the first has been fetched when a reset comes. */
+static void encoders_of_the_last_wheel_are_sent_and_wait_through_a_reset(void) {
+    laconic_sensor_settings with = {.encoder[0] = {256, 3}};
+    with.encoder[LACONIC_MAX_WHEELS - 1] = with.encoder[0];
+    bench_load(LACONIC_MAX_WHEELS);
+    node.has_sensors = true;
+    TEST_ASSERT_EQUAL(LACONIC_OK, laconic_sensors_start(&node.sensors, &with, &node.plant, NULL));
+    bench_select(LACONIC_NODE_SEND_ENCODER, 0, 0);
+    for (int k = 0; k < 2; k++) {
+        laconic_node_publish(&node);
+        TEST_ASSERT_TRUE(bench_receive(LACONIC_WIRE_ENCODER, data));
+        TEST_ASSERT_EQUAL_UINT8(0, data[1] >> 4);
+        if (k == 1) TEST_ASSERT_EQUAL_UINT8(0, bench_control(LACONIC_WIRE_COMMAND_RESET, 0, 0));
+        TEST_ASSERT_TRUE(bench_receive(LACONIC_WIRE_ENCODER, data));
+        TEST_ASSERT_EQUAL_UINT8(LACONIC_MAX_WHEELS - 1, data[1] >> 4);
+        TEST_ASSERT_FALSE(bench_receive(LACONIC_WIRE_ENCODER, data));
+    }
+}
+
+static void an_encoder_that_falls_away_takes_no_other_frame_along(void) {
+    static const laconic_sensor_settings none;
+    load();
+    bench_select(LACONIC_NODE_SEND_ENCODER | LACONIC_NODE_SEND_NU, 0, 0);
+    laconic_node_publish(&node);
+    laconic_node_start_sensors(&node, &none);
+    TEST_ASSERT_EQUAL_HEX32(BIT(LACONIC_WIRE_NU), node.pending);
+}
+
 int main(void) {
     UNITY_BEGIN();
     RUN_TEST(a_frame_that_waits_goes_on_waiting_when_it_is_due_again);
@@ -189,5 +229,8 @@ int main(void) {
     RUN_TEST(two_numbers_out_of_range_set_the_flag_as_one_does);
     RUN_TEST(a_heartbeat_tells_while_drives_play_that_one_is_unheard);
     RUN_TEST(the_state_has_each_wheel_with_its_own_speed);
+    RUN_TEST(a_heartbeat_comes_to_the_microsecond_and_with_counters_where_they_were_chosen);
+    RUN_TEST(encoders_of_the_last_wheel_are_sent_and_wait_through_a_reset);
+    RUN_TEST(an_encoder_that_falls_away_takes_no_other_frame_along);
     return UNITY_END();
 }

@@ -55,13 +55,17 @@ static void voltages_by_can_fd_come_too_late_for_steps_that_are_due(void) {
 }
 
 static void each_voltage_of_a_group_goes_to_its_own_wheel(void) {
-    const struct laconic_dbc_voltage_t frame = {.voltage_1 = 100, .voltage_2 = -200, .voltage_3 = 300};
-    bench_load(4);
+    static const int16_t raw[3] = {100, -200, 300};
+    bench_load(9);
     bench_start_lockstep();
-    laconic_dbc_voltage_pack(data, &frame, 8);
-    bench_send(LACONIC_WIRE_VOLTAGE, data);
-    TEST_ASSERT_TRUE(node.input[0].voltage_V[0] == REAL(100) / 500 && node.input[0].voltage_V[1] == REAL(-200) / 500);
-    TEST_ASSERT_TRUE(node.input[0].voltage_V[2] == REAL(300) / 500 && node.input[0].voltage_V[3] == 0);
+    for (uint8_t group = 0; group < 3; group++) {
+        const struct laconic_dbc_voltage_t frame = {
+            .group = group, .voltage_1 = raw[0], .voltage_2 = raw[1], .voltage_3 = raw[2]};
+        laconic_dbc_voltage_pack(data, &frame, 8);
+        bench_send(LACONIC_WIRE_VOLTAGE, data);
+        for (int k = 0; k < 9; k++)
+            TEST_ASSERT_TRUE(node.input[0].voltage_V[k] == (k / 3 > group ? 0 : REAL(raw[k % 3]) / 500));
+    }
 }
 
 /* Whatever its checksum, of which some hold the bit that asks for CAN FD. */
@@ -70,7 +74,8 @@ static void only_what_is_chosen_asks_for_can_fd(void) {
     node.config.can_fd = false;
     for (int k = 0; k < 32; k++) {
         TEST_ASSERT_EQUAL_UINT8(LACONIC_WIRE_STATUS_NOT_SUPPORTED, bench_select(LACONIC_NODE_SEND_STATE_FD, 0, 0));
-        TEST_ASSERT_EQUAL_UINT8(0, bench_select(LACONIC_NODE_SEND_NU, 0, 0));
+        TEST_ASSERT_EQUAL_UINT8(
+            0, bench_select(LACONIC_NODE_SEND_NU | LACONIC_NODE_SEND_IMU | LACONIC_NODE_SEND_ENCODER, 0, 0));
     }
 }
 
@@ -120,6 +125,57 @@ static void a_rate_is_whole_up_to_a_ten_thousandth(void) {
     TEST_ASSERT_EQUAL_UINT8(0, bench_control(LACONIC_WIRE_COMMAND_START_DRIVES, 0, 0));
 }
 
+static void inputs_that_are_taken_begin_no_estimate_and_ask_for_no_single_step(void) {
+    bench_load(2);
+    TEST_ASSERT_EQUAL_UINT8(0, bench_select(0, 0, LACONIC_RAW_TAKES | 0x10U));
+    TEST_ASSERT_FALSE(node.estimates);
+    TEST_ASSERT_EQUAL_UINT8(0, bench_select(0, 0, LACONIC_RAW_TAKES & ~LACONIC_RAW_SAMPLED));
+    bench_start_lockstep();
+    bench_sync(2);
+    TEST_ASSERT_EQUAL_UINT32(2, node.lockstep.steps_due);
+    laconic_node_on_tick(&node, now_us);
+    TEST_ASSERT_EQUAL_UINT64(2, node.plant.steps);
+}
+
+static void a_step_by_voltages_has_their_request(void) {
+    bench_load(2);
+    bench_start_lockstep();
+    for (int k = 0; k < 20; k++) {
+        bench_voltage(0, 500, 1);
+        TEST_ASSERT_EQUAL_UINT8(sent[LACONIC_WIRE_VOLTAGE] & 15U, node.lockstep.request);
+        laconic_node_on_tick(&node, now_us);
+        memset(data, 0, sizeof data);
+        data[3] = 1;
+        bench_send(LACONIC_WIRE_VOLTAGE_FD, data);
+        TEST_ASSERT_EQUAL_UINT8(sent[LACONIC_WIRE_VOLTAGE_FD] & 15U, node.lockstep.request);
+        laconic_node_on_tick(&node, now_us);
+    }
+}
+
+static void bits_beside_that_of_the_half_say_nothing(void) {
+    const uint8_t order[8] = {0, 0xEF, LACONIC_WIRE_FIELD_DRIVE_FAULTS, 1, 4};
+    load_driven(1000);
+    TEST_ASSERT_EQUAL_UINT8(0, bench_control(LACONIC_WIRE_COMMAND_START_DRIVES, 0, 0));
+    TEST_ASSERT_EQUAL_UINT8(0, laconic_node_order_drive(&node, order));
+}
+
+static void a_refused_sync_is_answered_with_its_request(void) {
+    bench_load(2);
+    bench_start_lockstep();
+    for (int k = 0; k < 20; k++) {
+        bench_sync(0);
+        TEST_ASSERT_TRUE(bench_receive(LACONIC_WIRE_RESULT, data));
+        TEST_ASSERT_EQUAL_UINT8(sent[LACONIC_WIRE_SYNC] & 15U, data[1] >> 4);
+    }
+}
+
+static void cleared_inputs_are_zero_to_their_last_byte(void) {
+    static const laconic_input none[3];
+    memset(node.input, 0x5A, sizeof node.input);
+    laconic_node_clear_inputs(&node);
+    TEST_ASSERT_EQUAL_MEMORY(none, node.input, sizeof none);
+}
+
 int main(void) {
     UNITY_BEGIN();
     RUN_TEST(an_empty_node_starts_neither_a_free_run_nor_drives);
@@ -132,5 +188,10 @@ int main(void) {
     RUN_TEST(no_protocol_has_a_number_below_0);
     RUN_TEST(a_start_without_drives_names_their_protocol);
     RUN_TEST(a_rate_is_whole_up_to_a_ten_thousandth);
+    RUN_TEST(inputs_that_are_taken_begin_no_estimate_and_ask_for_no_single_step);
+    RUN_TEST(a_step_by_voltages_has_their_request);
+    RUN_TEST(bits_beside_that_of_the_half_say_nothing);
+    RUN_TEST(a_refused_sync_is_answered_with_its_request);
+    RUN_TEST(cleared_inputs_are_zero_to_their_last_byte);
     return UNITY_END();
 }

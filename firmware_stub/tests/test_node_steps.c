@@ -97,6 +97,71 @@ static void in_lockstep_a_node_sleeps_until_its_heartbeat(void) {
                              laconic_node_idle_us(&node, now_us));
 }
 
+/* Frames that come behind the torques may wait. */
+static void only_the_torques_hold_the_next_step_back(void) {
+    const uint8_t select[LACONIC_FRAME_BYTES] = {0, 0, LACONIC_NODE_SEND_IMU, 0, SELECT_RAW_AXLE_TORQUE};
+    laconic_frame frame;
+    play(0, 0);
+    bench_send(LACONIC_WIRE_SELECT, select);
+    TEST_ASSERT_TRUE(bench_receive(LACONIC_WIRE_RESULT, data));
+    pass(2);
+    TEST_ASSERT_EQUAL_UINT64(1, node.plant.steps);
+    while (node.pending & BIT(LACONIC_WIRE_RAW_OUTPUT)) TEST_ASSERT_TRUE(laconic_node_next_frame(&node, &frame));
+    TEST_ASSERT_EQUAL_HEX32(BIT(LACONIC_WIRE_IMU), node.pending);
+    laconic_node_on_tick(&node, now_us);
+    TEST_ASSERT_EQUAL_UINT64(2, node.plant.steps);
+}
+
+static void drives_have_the_time_of_their_node_whoever_watches(void) {
+    static const uint8_t raw[] = {0, LACONIC_RAW_IMU, LACONIC_RAW_IMU}, take[] = {0, 0, 0x20U};
+    const laconic_frame frame = {.id = 0x200, .length = 8};
+    for (int k = 0; k < 3; k++) {
+        bench_begin();
+        now_us = 5000000;
+        play(raw[k], take[k]);
+        TEST_ASSERT_EQUAL_UINT32(now_us, node.drives.now_us);
+        pass(3);
+        TEST_ASSERT_EQUAL_UINT64(3, node.plant.steps);
+        TEST_ASSERT_EQUAL_UINT32(now_us, node.drives.now_us);
+        now_us += 500;
+        laconic_node_on_frame(&node, &frame, now_us);
+        TEST_ASSERT_EQUAL_UINT32(now_us, node.drives.now_us);
+    }
+}
+
+/* In lockstep, in sampled steps and by drives, watched by nobody, by sensors, by an estimate or by both. */
+static void a_refused_step_names_its_field_whoever_watches(void) {
+    for (unsigned k = 0; k < 12; k++) {
+        const uint8_t raw = k & 1U ? LACONIC_RAW_IMU : 0, estimate = k & 2U ? 0x20U : 0;
+        const uint8_t sampled = k / 4 == 1 ? LACONIC_RAW_SAMPLED : 0;
+        bench_begin();
+        if (k / 4 == 2) {
+            play(raw, estimate);
+        } else {
+            bench_load(2);
+            TEST_ASSERT_EQUAL_UINT8(0, bench_select(0, raw, estimate | sampled));
+            bench_start_lockstep();
+            bench_sync(1);
+        }
+        node.input[0].body_moment_Nm = LACONIC_REAL_MAX * 2;
+        pass(1);
+        TEST_ASSERT_EQUAL_UINT8(LACONIC_WIRE_STATE_FAULT, node.state);
+        TEST_ASSERT_TRUE(bench_receive(LACONIC_WIRE_RESULT, data));
+        TEST_ASSERT_EQUAL_UINT8(LACONIC_NOT_FINITE, data[3]);
+        TEST_ASSERT_EQUAL_UINT8(LACONIC_FIELD_BODY_MOMENT, data[4]);
+    }
+}
+
+static void frames_of_the_plant_ask_for_no_sensors(void) {
+    bench_load(2);
+    TEST_ASSERT_EQUAL_UINT8(0, bench_select(0xFFU & ~(LACONIC_NODE_SEND_IMU | LACONIC_NODE_SEND_ENCODER), 0x1F, 0));
+    bench_start_lockstep();
+    bench_sync(3);
+    laconic_node_on_tick(&node, now_us);
+    TEST_ASSERT_EQUAL_UINT64(3, node.plant.steps);
+    TEST_ASSERT_EQUAL_UINT64(0, node.sensors.newest);
+}
+
 int main(void) {
     UNITY_BEGIN();
     RUN_TEST(sensors_that_nobody_asks_for_see_nothing_of_drives);
@@ -104,5 +169,9 @@ int main(void) {
     RUN_TEST(the_next_step_waits_until_the_torques_are_sent_by_can_fd);
     RUN_TEST(sampled_steps_have_the_cores_bits_whether_sensors_watch_or_not);
     RUN_TEST(in_lockstep_a_node_sleeps_until_its_heartbeat);
+    RUN_TEST(only_the_torques_hold_the_next_step_back);
+    RUN_TEST(drives_have_the_time_of_their_node_whoever_watches);
+    RUN_TEST(a_refused_step_names_its_field_whoever_watches);
+    RUN_TEST(frames_of_the_plant_ask_for_no_sensors);
     return UNITY_END();
 }
