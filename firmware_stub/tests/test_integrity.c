@@ -49,8 +49,14 @@ static void test_a_changed_motion_is_noticed_by_the_next_call(void) {
                             BYTE(input[0].voltage_V),
                             BYTE(session.run_key),
                             BYTE(free_run.next_us),
+                            BYTE(lockstep.request),
                             BYTE(plant.integrator.chosen),
+                            BYTE(plant.integrator.step_s),
                             BYTE(plant.model.wheel_count),
+                            BYTE(plant.model.dof),
+                            BYTE(drives.protocol),
+                            BYTE(drives.count),
+                            BYTE(drives.wheel),
                             BYTE(state)};
     for (size_t k = 0; k < sizeof bytes / sizeof bytes[0]; k++) {
         const fault it = session_with(bytes[k], 2, IN_FREE_RUN, LACONIC_INTEGRITY_ALL);
