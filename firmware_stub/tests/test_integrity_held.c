@@ -90,9 +90,11 @@ static void test_a_wrong_model_is_found_behind_a_wrong_motion(void) {
 static void test_what_a_node_without_a_vehicle_has_found_stays_until_there_is_one(void) {
     bench_power_up(&on, 7, 0, LACONIC_INTEGRITY_ALL);
     on.node.session.key ^= 1U;
+    on.time_us = 12345;
     bench_tick(&on);
     TEST_ASSERT_EQUAL(LACONIC_INTEGRITY_OF_MOTION, on.integrity.broken);
     TEST_ASSERT_EQUAL(LACONIC_WIRE_STATE_EMPTY, on.node.state);
+    TEST_ASSERT_EQUAL_UINT32(12345, on.node.heartbeat_us); /* as after power-up at this time */
     TEST_ASSERT_TRUE(rig_open(&on));
     TEST_ASSERT_EQUAL(LACONIC_INTEGRITY_OF_MOTION, on.integrity.broken);
     TEST_ASSERT_TRUE(rig_session(&on, NULL, NULL, NULL));

@@ -54,6 +54,16 @@ static void test_each_slice_is_seen_when_it_is_due_and_the_last_ends_the_round(v
     TEST_ASSERT_EQUAL(LACONIC_INTEGRITY_SOUND, on.integrity.broken);
 }
 
+/* A frame may have a later time than the tick behind it, and begin a round. */
+static void test_before_a_round_has_begun_no_slice_is_due(void) {
+    bench_power_up(&on, 7, 0, LACONIC_INTEGRITY_ALL);
+    TEST_ASSERT_TRUE(rig_session(&on, NULL, NULL, NULL));
+    while (on.integrity.slices != 2) (void)slices_after(1000);
+    while (on.integrity.slices != 1) (void)slices_after(1); /* until the next begins */
+    on.time_us -= 1000;
+    TEST_ASSERT_EQUAL_UINT32(1, slices_after(0));
+}
+
 /* What waits to be sent stays, too: nothing is found anew. */
 static void test_a_model_that_is_known_to_be_wrong_is_told_once_and_seen_no_more(void) {
     laconic_frame frame;
@@ -113,6 +123,7 @@ int main(void) {
     UNITY_BEGIN();
     RUN_TEST(test_a_round_over_the_model_lasts_its_time);
     RUN_TEST(test_each_slice_is_seen_when_it_is_due_and_the_last_ends_the_round);
+    RUN_TEST(test_before_a_round_has_begun_no_slice_is_due);
     RUN_TEST(test_a_model_that_is_known_to_be_wrong_is_told_once_and_seen_no_more);
     RUN_TEST(test_a_new_vehicle_begins_a_new_round);
     RUN_TEST(test_the_model_is_seen_only_where_there_is_one_and_its_sum_is_wanted);
