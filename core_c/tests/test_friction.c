@@ -114,6 +114,36 @@ static void wheels_start_as_they_roll_or_as_they_are_given(void) {
                    laconic_plant_start(&plant, &v, &laconic_auto, REAL(1e-3), &start, &why), why);
 }
 
+/* Whichever wheel's it is; then those of the others are 0. */
+static void the_speed_of_a_single_wheel_is_enough_to_give_all(void) {
+    const laconic_vehicle v = robotino(0.5, 0, 0);
+    for (int i = 0; i < 3; i++) {
+        laconic_start start = start_with(3, 0, 0);
+        laconic_plant plant;
+        start.wheel_speed_rad_per_s[i] = 7;
+        ASSERT_STATUS(LACONIC_OK, laconic_plant_start(&plant, &v, &laconic_auto, REAL(1e-3), &start, &why));
+        for (int j = 0; j < 3; j++) TEST_ASSERT_TRUE(plant.slip.wheel_speed_rad_per_s[j] == REAL(i == j ? 7 : 0));
+    }
+}
+
+/* Force and moments of the loads balance the weight; each wheel has another load, since S lies beside the middle. */
+static void at_the_start_each_wheel_carries_its_part_of_the_weight(void) {
+    laconic_vehicle v = robotino(0.5, 0, 0);
+    v.com_x_m = REAL(0.02);
+    v.com_y_m = REAL(-0.03);
+    const laconic_plant plant = started(v, 1e-3, 0, 0, 0);
+    double force_N = 0, pitch_Nm = 0, roll_Nm = 0;
+    for (int i = 0; i < 3; i++) {
+        const double load_N = (double)plant.slip.normal_N[i];
+        force_N += load_N;
+        pitch_Nm += load_N * (double)(v.wheel[i].x_m - v.com_x_m);
+        roll_Nm += load_N * (double)(v.wheel[i].y_m - v.com_y_m);
+    }
+    ASSERT_NEAR(EITHER(1e-12, 1e-4), 20 * LACONIC_GRAVITY_M_PER_S2, force_N);
+    ASSERT_NEAR(EITHER(1e-12, 1e-4), 0, pitch_Nm);
+    ASSERT_NEAR(EITHER(1e-12, 1e-4), 0, roll_Nm);
+}
+
 /* Found by fuzzing: 1/R is no number there, and neither was the speed. */
 static void a_wheel_of_hardly_any_radius_does_not_roll_beyond_all_numbers(void) {
     laconic_vehicle v = robotino(0.5, 0, 0);
@@ -276,6 +306,8 @@ int main(void) {
     RUN_TEST(friction_is_what_a_wheel_a_limit_or_a_circuit_gives);
     RUN_TEST(only_auto_knows_friction);
     RUN_TEST(wheels_start_as_they_roll_or_as_they_are_given);
+    RUN_TEST(the_speed_of_a_single_wheel_is_enough_to_give_all);
+    RUN_TEST(at_the_start_each_wheel_carries_its_part_of_the_weight);
     RUN_TEST(a_wheel_of_hardly_any_radius_does_not_roll_beyond_all_numbers);
     RUN_TEST(a_drive_on_ideal_ground_starts_only_as_its_wheels_allow);
     RUN_TEST(numbers_too_far_apart_overflow_by_name);

@@ -23,6 +23,33 @@ static void contacts_that_slip_stick_and_lift_are_told_apart(void) {
     TEST_ASSERT_TRUE(out.reactions.normal_N[0] < 0 || out.reactions.normal_N[1] < 0);
 }
 
+/* The middle wheel alone drags across its rolling direction; the whole body moves there, and it is at its limit. */
+static void a_contact_slips_across_by_its_own_drag(void) {
+    const laconic_input input = no_input();
+    laconic_plant plant = started(robotino(0.4, 0, 0), 1e-3, 0, 0, 0);
+    plant.friction.wheel[1].drag = REAL(0.5);
+    for (int i = 0; i < 3; i++) {
+        laconic_friction_wheel *w = &plant.friction.wheel[i];
+        for (int k = 0; k < 3; k++) w->along[k] = w->across[k] = REAL(0);
+        w->along[0] = w->across[1] = 1;
+        plant.slip.grip_N[i][1] = plant.friction.axle[i].friction_coefficient * plant.slip.normal_N[i];
+    }
+    plant.state.zeta[1].value = 2;
+    const laconic_outputs out = outputs_with(&plant, &input);
+    for (int i = 0; i < 3; i++) TEST_ASSERT_TRUE(out.friction.contact_state[i] == REAL(i == 1));
+}
+
+/* A wheel that spins on the spot slips along its rolling direction alone. */
+static void a_wheel_that_spins_slips_along(void) {
+    const laconic_input input = no_input();
+    laconic_plant plant = started(robotino(0.4, 0, 0), 1e-3, 0, 0, 0);
+    plant.slip.wheel_speed_rad_per_s[1] = 5;
+    plant.friction.wheel[1].rim_across = 0;
+    plant.slip.grip_N[1][0] = plant.friction.axle[1].friction_coefficient * plant.slip.normal_N[1];
+    const laconic_outputs out = outputs_with(&plant, &input);
+    for (int i = 0; i < 3; i++) TEST_ASSERT_TRUE(out.friction.contact_state[i] == REAL(i == 1));
+}
+
 /* Constants of wheels that it has not are no numbers: nothing is computed of them. */
 static void what_lies_beyond_the_last_wheel_is_not_read(void) {
     const laconic_real nu[3] = {2, -1, REAL(0.7)};
@@ -273,6 +300,8 @@ static void loads_of_the_smooth_law_hold_the_forces_that_they_make(void) {
 int main(void) {
     UNITY_BEGIN();
     RUN_TEST(contacts_that_slip_stick_and_lift_are_told_apart);
+    RUN_TEST(a_contact_slips_across_by_its_own_drag);
+    RUN_TEST(a_wheel_that_spins_slips_along);
     RUN_TEST(what_lies_beyond_the_last_wheel_is_not_read);
     RUN_TEST(the_reactions_move_the_body);
     RUN_TEST(a_brake_holds_its_wheel_against_motor_and_ground);
