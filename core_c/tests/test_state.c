@@ -1,4 +1,5 @@
 /* Tests of state.c: start values, and a motion carried over to a changed vehicle. */
+#include "stack.h"
 #include "vehicles.h"
 
 /* ------------------------------------------------------------------------------------- start -- */
@@ -116,6 +117,33 @@ static void of_two_that_are_equally_wrong_the_first_is_named(void) {
                    laconic_state_set(&state, &m, &start, &why), why);
 }
 
+/* A wheel that is far ahead and may not move aside forbids the yaw more than anything else. */
+static void a_start_that_yaws_against_a_far_wheel_names_the_yaw(void) {
+    laconic_vehicle v = bare_body();
+    laconic_start start = start_with(0, 0, 1);
+    laconic_state state;
+    add_wheel(&v, LACONIC_WHEEL_FIXED, 5, 0, PI / 2, 0);
+    const laconic_model m = model_of(v);
+    ASSERT_REFUSED(LACONIC_START_AGAINST_CONSTRAINTS, LACONIC_FIELD_START_NU, 3,
+                   laconic_state_set(&state, &m, &start, &why), why);
+    TEST_ASSERT_TRUE(why.value == 1 && why.limit > 0 && why.limit < REAL(0.1));
+}
+
+/* Along its axle a wheel may not move at all: of that 0 is told, not what rounding leaves of it. */
+static void of_a_motion_that_is_forbidden_altogether_zero_is_told(void) {
+    for (int k = 1; k < 45; k++) {
+        const double angle = PI / 180 * (2 * k); /* never 45° */
+        laconic_vehicle v = bare_body();
+        laconic_start start = start_with(cos(angle), sin(angle), 0);
+        laconic_state state;
+        add_wheel(&v, LACONIC_WHEEL_FIXED, 0, 0, angle, 0);
+        const laconic_model m = model_of(v);
+        ASSERT_REFUSED(LACONIC_START_AGAINST_CONSTRAINTS, LACONIC_FIELD_START_NU, 2 * k < 45 ? 1 : 2,
+                       laconic_state_set(&state, &m, &start, &why), why);
+        TEST_ASSERT_TRUE(why.limit == 0);
+    }
+}
+
 static void a_start_that_rotates_a_locked_wheel_is_refused(void) {
     laconic_vehicle v = three_wheels();
     laconic_start start = start_with(1, 0, 0);
@@ -126,6 +154,17 @@ static void a_start_that_rotates_a_locked_wheel_is_refused(void) {
     ASSERT_STATUS(LACONIC_START_AGAINST_CONSTRAINTS, laconic_state_set(&state, &m, &start, NULL));
     start = start_with(RHO * 1.5, -2, 1.5);
     ASSERT_STATUS(LACONIC_OK, laconic_state_set(&state, &m, &start, &why));
+}
+
+/* So slow that no square of its velocities is left, and rounding is not below any share of 0. */
+static void without_constraints_a_start_of_any_slowness_is_allowed(void) {
+    const laconic_model m = model_of(with_own_wheels(mecanum()));
+    const double slow = EITHER(1e-180, 1e-28);
+    for (int k = 1; k < 20; k++) {
+        const laconic_start start = start_with(slow * k, slow / k, slow * (7 - k));
+        laconic_state state;
+        ASSERT_STATUS(LACONIC_OK, laconic_state_set(&state, &m, &start, &why));
+    }
 }
 
 static void rest_is_always_allowed(void) {
@@ -186,6 +225,14 @@ static void an_angle_of_any_wheel_that_left_the_range_is_not_carried_on(void) {
     }
 }
 
+/* Numbers that happen to lie where the angles of wheels would, which there are not. */
+static void what_the_stack_held_refuses_nothing(void) {
+    const laconic_model m = model_of(three_wheels());
+    laconic_state state = moving(&m, 1, 2, 3);
+    fill_stack(ALL_NAN);
+    ASSERT_STATUS(LACONIC_OK, laconic_state_carry(&state, &m, &m));
+}
+
 /* -------------------------------------------------------- the numbers of an outer integrator -- */
 
 static void what_the_constraints_forbid_is_projected_away_and_the_rest_stays(void) {
@@ -230,6 +277,10 @@ static void numbers_that_are_not_finite_are_refused(void) {
     refuses_placed(start_with(0, (double)NAN, 0), LACONIC_NOT_FINITE, LACONIC_FIELD_START_NU, 2);
     refuses_placed(start_with((double)LACONIC_REAL_MAX, 0, (double)LACONIC_REAL_MAX), LACONIC_OVERFLOW,
                    LACONIC_FIELD_START_NU, 0);
+    motion.nu_rad_per_s[0] = REAL(0.5 * sqrt((double)LACONIC_REAL_MAX));
+    refuses_placed(motion, LACONIC_OVERFLOW, LACONIC_FIELD_START_NU, 0);
+    TEST_ASSERT_TRUE(why.value == motion.nu_rad_per_s[0]);
+    motion.nu_rad_per_s[0] = 0;
     motion.y_m = INFINITE;
     refuses_placed(motion, LACONIC_NOT_FINITE, LACONIC_FIELD_START_Y, 0);
 }
@@ -243,10 +294,14 @@ int main(void) {
     RUN_TEST(a_velocity_of_any_size_is_refused_before_it_becomes_nan);
     RUN_TEST(a_start_that_slides_a_fixed_wheel_is_refused_with_the_nearest_that_does_not);
     RUN_TEST(of_two_that_are_equally_wrong_the_first_is_named);
+    RUN_TEST(a_start_that_yaws_against_a_far_wheel_names_the_yaw);
+    RUN_TEST(of_a_motion_that_is_forbidden_altogether_zero_is_told);
     RUN_TEST(a_start_that_rotates_a_locked_wheel_is_refused);
+    RUN_TEST(without_constraints_a_start_of_any_slowness_is_allowed);
     RUN_TEST(rest_is_always_allowed);
     RUN_TEST(a_changed_vehicle_moves_on_where_the_old_one_was);
     RUN_TEST(an_angle_of_any_wheel_that_left_the_range_is_not_carried_on);
+    RUN_TEST(what_the_stack_held_refuses_nothing);
     RUN_TEST(what_the_constraints_forbid_is_projected_away_and_the_rest_stays);
     RUN_TEST(allowed_motions_are_set_as_they_are);
     RUN_TEST(numbers_that_are_not_finite_are_refused);
