@@ -156,10 +156,10 @@ static void a_start_that_rotates_a_locked_wheel_is_refused(void) {
     ASSERT_STATUS(LACONIC_OK, laconic_state_set(&state, &m, &start, &why));
 }
 
-/* So slow that no square of its velocities is left, and rounding is not below any share of 0. */
+/* So slow that rounding is as large as the velocities, or a share of them that counts. */
 static void without_constraints_a_start_of_any_slowness_is_allowed(void) {
     const laconic_model m = model_of(with_own_wheels(mecanum()));
-    const double slow = EITHER(1e-180, 1e-28);
+    const double slow = (double)LACONIC_REAL_MIN * (double)LACONIC_EPSILON;
     for (int k = 1; k < 20; k++) {
         const laconic_start start = start_with(slow * k, slow / k, slow * (7 - k));
         laconic_state state;
