@@ -20,6 +20,7 @@ from laconic.paths import SOURCE_DIR, build_dir
 START_S = 0.005  # that any program takes, however little it does
 SANITIZERS = ("-fsanitize=address,undefined", "-fno-sanitize-recover=all", "-fno-sanitize=vptr", "-O1")
 VERDICTS = {"killed": "a test failed", "timeout": "a test ran past its bound", "survived": "all tests passed",
+            "sanitizers": "all tests passed, and one failed under the sanitizers",
             "same code": "the compiler makes the same bytes of it: equivalent", "invalid": "does not compile"}
 
 
@@ -120,7 +121,7 @@ class Trials:
             return None
         (tree / mutant.file).write_bytes(source)
         again = self._checked(mutant, family, tree, found[1])
-        return found if again is None else None  # else the program does not pass without the fault
+        return ("sanitizers", found[1]) if again is None else None  # else it does not pass without the fault
 
     def _checked(self, mutant: Mutant, family: Family, tree: Path, only: str | None) -> tuple[str, str] | None:
         objects = {}

@@ -59,6 +59,17 @@ def test_a_program_that_needs_nothing_of_the_library_runs_beside_a_fault_that_do
     assert tried.outcome(fault, tried.tree(0)).verdict == "survived"
 
 
+def test_what_only_the_sanitizers_notice_is_told_apart(trials_of):
+    source = """int volatile table[2];\nint filled(int with) {
+        for (int k = 0; k < 2; k++) table[k] = with;
+        return table[0] + table[1];\n}\n"""
+    test = """int filled(int with);\nint main(void) { return filled(2) != 4; }\n"""
+    tried, sources = trials_of({"filled.c": source}, {"test_filled.c": test})
+    longer = next(each for each in mutants_of(sources, "core_c/filled.c") if "k <= 2" in each.after)
+    found = tried.outcome(longer, tried.tree(0))
+    assert (found.verdict, found.by) == ("sanitizers", "test_filled_double")
+
+
 def test_the_sources_are_as_before(trials):
     verdicts(*trials)
     assert (trials[1] / "core_c/limited.c").read_text() == SOURCE
