@@ -49,11 +49,13 @@ class Unit:
     directory: Path
     object: Path
 
-    def compile(self, tree: Path, out: Path, *more: str) -> subprocess.CompletedProcess[bytes]:
-        """Compiles it as it stands in another tree of sources, to bytes (__FILE__) that do not tell which."""
+    def compile(self, tree: Path, out: Path, *more: str, bound_s: int = 600) -> subprocess.CompletedProcess[bytes]:
+        """Compiles it as it stands in another tree of sources, to bytes (__FILE__) that do not tell which. It fails
+        when a compiler has taken that much of a processor: the shell's limit holds for what the driver starts, too."""
         here = [*(_moved(word, tree) for word in self.command), f"-ffile-prefix-map={tree}/=", *more]
-        return subprocess.run([*here, "-o", str(out), "-c", _moved(str(self.source), tree)], cwd=self.directory,
-                              capture_output=True, check=False)
+        bounded = ["sh", "-c", f'ulimit -t {bound_s}; exec "$@"', "sh"]
+        return subprocess.run([*bounded, *here, "-o", str(out), "-c", _moved(str(self.source), tree)],
+                              cwd=self.directory, capture_output=True, check=False)
 
 
 def _moved(word: str, tree: Path) -> str:

@@ -39,6 +39,7 @@ __attribute__((destructor)) static void laconic_tell_places(void) {
 """
 PLACES = 30000
 ROUNDS = 50  # of compiling without what did not compile
+COMPILER_S = 60  # a long function with a thousand switches may take hours
 
 _STATEMENTS = {"expression_statement", "break_statement", "continue_statement"}
 _EXPRESSIONS = {"binary_expression", "unary_expression", "pointer_expression", "call_expression",
@@ -224,7 +225,7 @@ class Bench:
 
     def _said_of(self, unit: Unit, out: Path, *more: str) -> str | None:
         """What the compiler said where it failed."""
-        done = unit.compile(self.tree, out, "-include", str(self.tree / "switches.h"), "-w", *more)
+        done = unit.compile(self.tree, out, "-include", str(self.tree / "switches.h"), "-w", *more, bound_s=COMPILER_S)
         return done.stderr.decode("utf-8", "replace") if done.returncode != 0 else None
 
     def _look(self, family: Family, units: list[Unit], library: Path) -> None:

@@ -86,6 +86,13 @@ def test_a_fault_that_does_not_compile_is_left_out_and_the_others_stay(trials_of
     assert (trials.folder / "tree0" / FILE).read_text() == (sources / FILE).read_text()
 
 
+def test_a_file_that_takes_the_compiler_too_long_has_no_bench(small, monkeypatch):
+    trials, mutants = small
+    monkeypatch.setattr("laconic.mutation.switches.COMPILER_S", 0)
+    assert bench_of(mutants, trials.libraries_of(mutants[0]), trials.tree(0)) is None
+    assert (trials.folder / "tree0" / FILE).read_text() == SOURCE
+
+
 def test_a_bench_ends_when_it_is_over(small):
     trials, mutants = small
     assert noticed(trials, mutants, is_over=lambda: True) == {}
