@@ -17,27 +17,27 @@ from laconic.mutation.operators import Mutant, parsed
 from laconic.mutation.programs import Family, Program, Unit, link
 from laconic.mutation.trial import Outcome
 
-PRELUDE = """\
+PLACES = 30000
+"""That a file may have."""
+PRELUDE = f"""\
 #include <stdio.h>
 #include <stdlib.h>
-#define LACONIC_PLACES 30000
 static int laconic_switch;
-static unsigned char laconic_places[LACONIC_PLACES];
+static unsigned char laconic_places[{PLACES}];
 #define LACONIC_COMES_HERE(k) (laconic_places[k] = 1)
-__attribute__((constructor)) static void laconic_read_switch(void) {
+__attribute__((constructor)) static void laconic_read_switch(void) {{
     const char *text = getenv("LACONIC_SWITCH");
     laconic_switch = text ? atoi(text) : 0;
-}
-__attribute__((destructor)) static void laconic_tell_places(void) {
+}}
+__attribute__((destructor)) static void laconic_tell_places(void) {{
     const char *path = getenv("LACONIC_PLACES");
     FILE *file = path ? fopen(path, "ab") : NULL;
-    if (file) {
+    if (file) {{
         (void)fwrite(laconic_places, 1, sizeof laconic_places, file);
         (void)fclose(file);
-    }
-}
+    }}
+}}
 """
-PLACES = 30000
 ROUNDS = 50  # of compiling without what did not compile
 COMPILER_S = 60  # a long function with a thousand switches may take hours
 
@@ -83,40 +83,7 @@ class Switched:
 
     def text(self) -> bytes:
         """The file with all switches; every fault has a line of its own."""
-        numbers = {place: number for number, place in enumerate(self.order())}
-        within: dict[Place | None, list[Place]] = defaultdict(list)
-        around: list[Place] = []
-        for place in numbers:
-            while around and around[-1].end < place.end:
-                around.pop()
-            while around and place.start >= around[-1].end:
-                around.pop()
-            within[around[-1] if around else None].append(place)
-            around.append(place)
-        faults: dict[Place, list[int]] = defaultdict(list)
-        for k, place in self.places.items():
-            faults[place].append(k)
-
-        def between(start: int, end: int, inner: list[Place]) -> bytes:
-            pieces = []
-            for place in inner:
-                pieces += [self.source[start:place.start], switch(place)]
-                start = place.end
-            return b"".join([*pieces, self.source[start:end]])
-
-        def switch(place: Place) -> bytes:
-            plain = between(place.start, place.end, within[place])
-            here = b"LACONIC_COMES_HERE(%d)" % numbers[place]
-            asked, then = (b"\nif (laconic_switch == %d) {%s} else ", b"{%s}") if place.is_statement else (
-                b"\nlaconic_switch == %d ? (%s) : ", b"\n(%s)")
-            cases = b"".join(asked % (k + 1, self._faulty(place, self.mutants[k])) for k in faults[place])
-            return (b"{%s; %s%s}" if place.is_statement else b"(%s, %s%s)") % (here, cases, then % plain)
-
-        return between(0, len(self.source), within[None])
-
-    def _faulty(self, place: Place, mutant: Mutant) -> bytes:
-        text = self.source[place.start:mutant.start] + mutant.text.encode() + self.source[mutant.end:place.end]
-        return re.sub(rb"/\*.*?\*/", b" ", text, flags=re.DOTALL).replace(b"\n", b" ")
+        return _Writer(self).between(0, len(self.source), None)
 
     def without_what_fails(self, path: Path, said: str) -> bool:
         """Takes the mutants out in whose lines the compiler found errors; False where it found none of them."""
@@ -135,6 +102,46 @@ class Switched:
         for k in wrong:
             self.places.pop(k, None)
         return found_any
+
+
+class _Writer:
+    """Writes the text: places stand within others, faults have none within."""
+
+    def __init__(self, switched: Switched):
+        self.source, self.mutants = switched.source, switched.mutants
+        self.number = {place: number for number, place in enumerate(switched.order())}
+        self.within: dict[Place | None, list[Place]] = defaultdict(list)
+        self.faults: dict[Place, list[int]] = defaultdict(list)
+        around: list[Place] = []
+        for place in self.number:
+            while around and around[-1].end < place.end:
+                around.pop()
+            self.within[around[-1] if around else None].append(place)
+            around.append(place)
+        for k, place in switched.places.items():
+            self.faults[place].append(k)
+
+    def between(self, start: int, end: int, around: Place | None) -> bytes:
+        """What stands there, with the switches of the places within."""
+        pieces = []
+        for place in self.within[around]:
+            pieces += [self.source[start:place.start], self._switch(place)]
+            start = place.end
+        return b"".join([*pieces, self.source[start:end]])
+
+    def _switch(self, place: Place) -> bytes:
+        plain = self.between(place.start, place.end, place)
+        faults = [(k + 1, self._faulty(place, self.mutants[k])) for k in self.faults[place]]
+        here = b"LACONIC_COMES_HERE(%d)" % self.number[place]
+        if place.is_statement:
+            cases = b"".join(b"\nif (laconic_switch == %d) {%s} else " % fault for fault in faults)
+            return b"{%s; %s{%s}}" % (here, cases, plain)
+        cases = b"".join(b"\nlaconic_switch == %d ? (%s) : " % fault for fault in faults)
+        return b"(%s, %s\n(%s))" % (here, cases, plain)
+
+    def _faulty(self, place: Place, mutant: Mutant) -> bytes:
+        text = self.source[place.start:mutant.start] + mutant.text.encode() + self.source[mutant.end:place.end]
+        return re.sub(rb"/\*.*?\*/", b" ", text, flags=re.DOTALL).replace(b"\n", b" ")
 
 
 def _place_around(node: Node | None, mutant: Mutant) -> Place | None:
