@@ -144,15 +144,25 @@ static void a_refused_step_leaves_nothing_in_the_estimate(void) {
 
 /* ---------------------------------------------------------------------------------------- rows -- */
 
+/* One volt on the first wheel until that step. */
+static laconic_schedule one_volt_until(const uint64_t *end) {
+    static const uint32_t signal = offsetof(laconic_input, voltage_V);
+    static const laconic_real value = 1;
+    const laconic_schedule schedule = {1, &signal, &value, end, 1, 0};
+    return schedule;
+}
+
+static laconic_plant turning(void) {
+    const laconic_vehicle v = with_motors(three_wheels());
+    return plant_by(&laconic_auto, &v, start_with(2, 1, 4), 0.01);
+}
+
 /* Rows are of starts of steps: the end of the last step has none. */
 static void the_end_of_a_run_has_no_row(void) {
-    const laconic_vehicle v = with_motors(three_wheels());
-    laconic_plant plant = plant_by(&laconic_auto, &v, start_with(2, 1, 4), 0.01);
+    laconic_plant plant = turning();
     laconic_estimate estimate = estimate_of(&plant, 16);
-    const uint32_t signal = offsetof(laconic_input, voltage_V);
-    const laconic_real value = REAL(1);
     const uint64_t end = UINT64_MAX;
-    const laconic_schedule schedule = {1, &signal, &value, &end, 1, 0};
+    const laconic_schedule schedule = one_volt_until(&end);
     laconic_error row[5];
     laconic_error_rows rows = {5, row, 0, 5};
     for (uint64_t until = 10; until <= 20; until += 10) {
@@ -164,13 +174,10 @@ static void the_end_of_a_run_has_no_row(void) {
 
 /* Nor has the end of the schedule. */
 static void the_end_of_a_schedule_has_no_row(void) {
-    const laconic_vehicle v = with_motors(three_wheels());
-    laconic_plant plant = plant_by(&laconic_auto, &v, start_with(2, 1, 4), 0.01);
+    laconic_plant plant = turning();
     laconic_estimate estimate = estimate_of(&plant, 16);
-    const uint32_t signal = offsetof(laconic_input, voltage_V);
-    const laconic_real value = REAL(1);
     const uint64_t end = 20;
-    const laconic_schedule schedule = {1, &signal, &value, &end, 1, 0};
+    const laconic_schedule schedule = one_volt_until(&end);
     laconic_error row[5];
     laconic_error_rows rows = {5, row, 0, 5};
     ASSERT_STATUS(LACONIC_OK, laconic_estimate_follow(&estimate, &plant, &schedule, 100, NULL, &rows, &why));
@@ -179,13 +186,10 @@ static void the_end_of_a_schedule_has_no_row(void) {
 }
 
 static void rows_without_room_end_the_run_and_no_rows_need_none(void) {
-    const laconic_vehicle v = with_motors(three_wheels());
-    laconic_plant plant = plant_by(&laconic_auto, &v, start_with(2, 1, 4), 0.01);
+    laconic_plant plant = turning();
     laconic_estimate estimate = estimate_of(&plant, 16);
-    const uint32_t signal = offsetof(laconic_input, voltage_V);
-    const laconic_real value = REAL(1);
     const uint64_t end = UINT64_MAX;
-    const laconic_schedule schedule = {1, &signal, &value, &end, 1, 0};
+    const laconic_schedule schedule = one_volt_until(&end);
     laconic_error row[3];
     laconic_error_rows full = {5, NULL, 0, 0}, never = {0, row, 0, 3};
     ASSERT_STATUS(LACONIC_OK, laconic_estimate_follow(&estimate, &plant, &schedule, 9, NULL, &full, &why));

@@ -98,9 +98,9 @@ static void windows_of_one_step_and_one_of_many_agree(void) {
     ASSERT_NEAR(3e-8, stepwise.place_m[0], at_once.place_m[0]);
 }
 
-/* Where the linear system has no usable solution, what is known of the window's start counts alone: g along z, w
- * along x, both 1, and ζ along −y at 1/16 ms, half of the window's length. */
-static void a_window_without_a_solution_stays_finite(void) {
+/* What becomes of an error of ζ along z in a window of 16 steps of 2 ms: g along z, w along x, both 1, and ζ along −y
+ * such that the determinant of the linear system is the one given. */
+static vector z_carried(laconic_real z, double determinant) {
     pair both = apart(three_wheels());
     laconic_model *m = &both.plant.model;
     laconic_estimate estimate;
@@ -111,35 +111,22 @@ static void a_window_without_a_solution_stays_finite(void) {
     store(m->nu_of_zeta[2], vector_of(0, 0, 1));
     store(m->gyro, vector_of(1, 0, 0));
     ASSERT_STATUS(LACONIC_OK, laconic_estimate_start(&estimate, &both.plant, 16, NULL, &why));
-    error.zeta.z = REAL(1e-6);
-    motion.steps = 16;
-    motion.step_s = REAL(0.002);
-    motion.heading.cosine = 1;
-    motion.zeta[0] = motion.zeta[1] = vector_of(0, REAL(-62.5), 0);
-    laconic_carry_error(&error, &estimate, m, &motion);
-    TEST_ASSERT_TRUE(size(error.zeta) < REAL(1e-5));
-}
-
-/* The same with a determinant that is given. Solved it is a Cayley rotation by 2/det − 1, else its first term. */
-static double z_where_the_determinant_is(double determinant) {
-    pair both = apart(three_wheels());
-    laconic_model *m = &both.plant.model;
-    laconic_estimate estimate;
-    state_error error;
-    window_motion motion;
-    memset(&error, 0, sizeof error);
-    memset(&motion, 0, sizeof motion);
-    store(m->nu_of_zeta[2], vector_of(0, 0, 1));
-    store(m->gyro, vector_of(1, 0, 0));
-    ASSERT_STATUS(LACONIC_OK, laconic_estimate_start(&estimate, &both.plant, 16, NULL, &why));
-    error.zeta.z = 1;
+    error.zeta.z = z;
     motion.steps = 16;
     motion.step_s = REAL(0.002);
     motion.heading.cosine = 1;
     motion.zeta[0] = motion.zeta[1] = vector_of(0, REAL(-62.5 * (1 - determinant)), 0);
     laconic_carry_error(&error, &estimate, m, &motion);
-    return (double)error.zeta.z;
+    return error.zeta;
 }
+
+/* Where the linear system has no usable solution, what is known of the window's start counts alone. */
+static void a_window_without_a_solution_stays_finite(void) {
+    TEST_ASSERT_TRUE(size(z_carried(REAL(1e-6), 0)) < REAL(1e-5));
+}
+
+/* Solved it is a Cayley rotation by 2/det − 1, else its first term. */
+static double z_where_the_determinant_is(double determinant) { return (double)z_carried(1, determinant).z; }
 
 static void a_solution_is_usable_from_a_twentieth_on(void) {
     for (int sign = -1; sign <= 1; sign += 2) {
