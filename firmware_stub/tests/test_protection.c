@@ -57,6 +57,19 @@ static void a_plain_frame_is_that_of_the_profile(void) {
     TEST_ASSERT_FALSE(laconic_plain_is_right(LACONIC_WIRE_HELLO, data));
 }
 
+/* A node counts what it sends in eight bits. */
+static void of_the_count_of_a_classic_plain_frame_four_bits_matter(void) {
+    static const uint8_t offsets[] = {LACONIC_WIRE_HELLO, LACONIC_WIRE_RESULT, LACONIC_WIRE_NU};
+    for (size_t k = 0; k < sizeof offsets; k++)
+        for (uint32_t counter = 16; counter <= 255; counter++) {
+            uint8_t first[8] = {0, 0x30, 2, 3, 4, 5, 6, 7}, data[8] = {0, 0x30, 2, 3, 4, 5, 6, 7};
+            laconic_protect_plain(offsets[k], first, (uint8_t)(counter & 15U));
+            laconic_protect_plain(offsets[k], data, (uint8_t)counter);
+            TEST_ASSERT_EQUAL_HEX8_ARRAY(first, data, 8);
+            TEST_ASSERT_TRUE(laconic_plain_is_right(offsets[k], data));
+        }
+}
+
 /* The first bytes come from firmware_stub/reference_client.py, an independent implementation. */
 static void keyed_frames_are_those_of_the_reference_client(void) {
     static const uint8_t crc[3] = {0xDB, 0x2E, 0x01};
@@ -111,6 +124,7 @@ int main(void) {
     RUN_TEST(every_bit_of_both_sides_flips_about_half_of_the_result);
     RUN_TEST(a_frame_passes_with_its_own_key_and_count_only);
     RUN_TEST(a_plain_frame_is_that_of_the_profile);
+    RUN_TEST(of_the_count_of_a_classic_plain_frame_four_bits_matter);
     RUN_TEST(keyed_frames_are_those_of_the_reference_client);
     RUN_TEST(frames_of_can_fd_are_those_of_the_reference_client);
     RUN_TEST(a_plain_frame_is_that_of_the_reference_client);
