@@ -2,7 +2,7 @@
 equivalents/<path of the source>.toml, with a row for each line and reason: the function (empty outside of any), the
 line `before` as it stands, without comments and with single spaces, and every line with a fault, `after`. A row is
 found by its text, so that other lines may come and go. Faults that none of the operators makes, which another sampler
-has found, have rows as well."""
+has found, have rows as well. commutative.toml names functions whose two arguments may change places anywhere."""
 
 from __future__ import annotations
 
@@ -15,6 +15,7 @@ from laconic.errors import BadInput
 from laconic.scene.table import entries_of
 
 EQUIVALENTS = Path(__file__).parent / "equivalents"
+COMMUTATIVE = Path(__file__).parent / "commutative.toml"
 
 
 @dataclass(frozen=True)
@@ -31,6 +32,11 @@ class Equivalent:
 def read_equivalents(folder: Path = EQUIVALENTS) -> list[Equivalent]:
     """The rows of all files, one for each `after`; BadInput for a row that is not complete."""
     return [each for path in sorted(folder.rglob("*.toml")) for each in _of(path, folder)]
+
+
+def read_commutative() -> frozenset[str]:
+    """The functions that give the same bits either way."""
+    return frozenset(entries_of(COMMUTATIVE.read_text(encoding="utf-8"))["functions"])
 
 
 def _of(path: Path, folder: Path) -> Iterator[Equivalent]:

@@ -13,6 +13,8 @@ from pathlib import Path
 import tree_sitter_c
 from tree_sitter import Language, Node, Parser, Tree
 
+from laconic.mutation.equivalent import read_commutative
+
 _PARSER = Parser(Language(tree_sitter_c.language()))
 
 RELATIONAL = {"<": ("<=", ">="), "<=": ("<", ">"), ">": (">=", "<="), ">=": (">", "<"), "==": ("!=",), "!=": ("==",)}
@@ -146,13 +148,12 @@ def _is_in_function(node: Node) -> bool:
     return around is not None
 
 
-COMMUTATIVE = {"plus", "times", "dot", "lanes_plus", "lanes_multiplied", "lanes_same", "same"}
-"""Functions of two values that give the same bits either way."""
+_COMMUTATIVE = read_commutative()
 
 
 def arguments(node: Node) -> Iterator[Change]:
-    """Two neighbouring arguments of a call change places, but of sums and products of two."""
-    if node.type == "argument_list" and _text(node.parent.children[0] if node.parent else node) not in COMMUTATIVE:
+    """Two neighbouring arguments of a call change places, where that is not the same."""
+    if node.type == "argument_list" and _text(node.parent.children[0] if node.parent else node) not in _COMMUTATIVE:
         given = [child for child in node.named_children if child.type != "comment"]
         for one, other in zip(given, given[1:], strict=False):
             if _text(one) != _text(other):

@@ -11,6 +11,7 @@ import pytest
 from laconic.errors import BadInput
 from laconic.mutation import mutants_of, read_equivalents
 from laconic.mutation.campaign import PARTS, files_of
+from laconic.mutation.equivalent import read_commutative
 from laconic.paths import SOURCE_DIR
 
 SOURCE = """\
@@ -102,3 +103,9 @@ def test_core_node_and_fmu_are_the_parts_and_what_python_alone_calls_is_in_neith
     assert set(files_of("commands")) == {f"firmware_stub/secure/{name}.c" for name in ("aes", "cmac", "gate", "secoc")}
     assert set(files_of(None)) == {file for part in PARTS for file in files_of(part)}
     assert not any("library" in Path(file).name for file in files_of(None))
+
+
+def test_the_functions_that_are_said_to_commute_are_there_and_take_two_of_a_kind():
+    text = "\n".join((SOURCE_DIR / file).read_text(encoding="utf-8") for part in PARTS for file in files_of(part))
+    for name in read_commutative():
+        assert re.search(rf"\b{name}\((const )?(\w+) \w+, (const )?\2 \w+\) \{{", text), name
