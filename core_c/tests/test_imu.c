@@ -191,6 +191,10 @@ static void over_a_step_a_place_feels_its_distance_from_the_mass_centre(void) {
     const double square = yaw_rate * yaw_rate * sin(half) / half;
     ASSERT_NEAR(EITHER(1e-13, 1e-4), -square * 0.3, sample.specific_force_m_per_s2[0]);
     ASSERT_NEAR(EITHER(1e-13, 1e-4), -square * 0.2, sample.specific_force_m_per_s2[1]);
+    laconic_real middle[2]; /* of the body's axes, from S at minus its own place */
+    laconic_accelerate_over_step(middle, &plant, &before);
+    ASSERT_NEAR(EITHER(1e-13, 1e-4), square * 0.12, middle[0]);
+    ASSERT_NEAR(EITHER(1e-13, 1e-4), -square * 0.07, middle[1]);
 }
 
 /* ν and an input are varied; the ν of the differential drive, which slides its wheels, is projected. */
