@@ -134,6 +134,8 @@ static void test_a_changed_configuration_is_repaired_and_told(void) {
         TEST_ASSERT_EQUAL(LACONIC_INTEGRITY_OF_CONFIGURATION, on.node.answer[LACONIC_WIRE_SYNC].item);
         TEST_ASSERT_EQUAL(LACONIC_WIRE_STATE_FAULT, on.node.state);
         TEST_ASSERT_EQUAL_HEX16(LACONIC_WIRE_ID_BASE, on.node.config.id_base);
+        TEST_ASSERT_EQUAL(0, rig_command(&on, LACONIC_WIRE_COMMAND_RESET));
+        TEST_ASSERT_EQUAL(LACONIC_INTEGRITY_SOUND, on.integrity.broken);
         TEST_ASSERT_TRUE(rig_session(&on, NULL, NULL, NULL));
     }
 }

@@ -162,9 +162,24 @@ static void frames_of_the_plant_ask_for_no_sensors(void) {
     TEST_ASSERT_EQUAL_UINT64(0, node.sensors.newest);
 }
 
+/* Whatever number it has: the stream that it found incomplete is forgotten. */
+static void a_sync_begins_raw_inputs_anew(void) {
+    const uint8_t bytes[6] = {0};
+    bench_load(2);
+    TEST_ASSERT_EQUAL_UINT8(0, bench_select(0, 0, LACONIC_RAW_VOLTAGE));
+    bench_start_lockstep();
+    for (uint8_t request = 0; request < 16; request++) {
+        TEST_ASSERT_TRUE(laconic_node_raw(&node, bytes, 0, 15, 6));
+        laconic_node_sync(&node, 1, 1, request);
+        TEST_ASSERT_EQUAL_UINT8(LACONIC_WIRE_STATUS_INPUT_INCOMPLETE, node.answer[LACONIC_WIRE_SYNC].status);
+        TEST_ASSERT_EQUAL_UINT32(0, node.raw_input.frames);
+    }
+}
+
 int main(void) {
     UNITY_BEGIN();
     RUN_TEST(sensors_that_nobody_asks_for_see_nothing_of_drives);
+    RUN_TEST(a_sync_begins_raw_inputs_anew);
     RUN_TEST(a_step_of_drives_that_is_refused_ends_in_fault_under_sensors_too);
     RUN_TEST(the_next_step_waits_until_the_torques_are_sent_by_can_fd);
     RUN_TEST(sampled_steps_have_the_cores_bits_whether_sensors_watch_or_not);
