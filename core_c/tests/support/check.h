@@ -21,8 +21,8 @@
 #define NOT_A_NUMBER ((laconic_real)NAN)
 #define INFINITE ((laconic_real)INFINITY)
 
-/* Steps of a long run. Its numbers are looked at without sanitizers; these see in each step alike which memory it
- * touches, and take eighty times as long, so that they see a tenth. */
+/* Steps of a long run. Builds without sanitizers check the numbers of all steps. Under clang's sanitizers a step takes
+ * eighty times as long, and all steps touch the same memory, so that a tenth of them is taken there. */
 #ifdef __has_feature /* clang */
 #if __has_feature(address_sanitizer)
 #define LONG_RUN(steps) ((steps) / 10)

@@ -145,42 +145,42 @@ class Campaign:
 
     def _try_by_switches(self, todo: list[Mutant], trials: Trials, trees: queue.Queue[Path], results: Results,
                          until: float, advance: Callable[[float], None]) -> list[Mutant]:
-        """Those that no test notices so, and those of files with few."""
+        """Those that no test notices so, those of files with few, and those of the list: what reads beyond an array
+        finds other memory there, which would look like a test that notices it."""
         of_file: dict[str, list[Mutant]] = {}
         for mutant in todo:
-            of_file.setdefault(mutant.file, []).append(mutant)
-        noticed: queue.Queue[tuple[Mutant, Outcome]] = queue.Queue()
-        stopped = threading.Event()
+            if not self._is_listed(mutant):
+                of_file.setdefault(mutant.file, []).append(mutant)
+        many = [mutants for mutants in of_file.values() if len(mutants) >= MANY]
+        done: set[str] = set()
+        stopped, lock = threading.Event(), threading.Lock()
+
+        def is_over() -> bool:
+            return stopped.is_set() or time.monotonic() > until
 
         def one(mutants: list[Mutant]) -> None:
             tree = trees.get()
             try:
-                bench = bench_of(mutants, trials.libraries_of(mutants[0]), tree)
-                for found in bench.noticed(lambda: stopped.is_set() or time.monotonic() > until) if bench else ():
-                    noticed.put(found)
+                bench = None if is_over() else bench_of(mutants, trials.libraries_of(mutants[0]), tree)
+                for mutant, outcome in bench.noticed(is_over) if bench else ():
+                    with lock:
+                        results.keep(mutant, outcome)
+                        self._add(mutant, outcome)
+                        done.add(mutant.key)
+                        advance(1.0)
             finally:
                 trees.put(tree)
 
-        done: set[str] = set()
         with ThreadPoolExecutor(trees.qsize()) as pool:
-            running = [pool.submit(one, mutants) for mutants in of_file.values() if len(mutants) >= MANY]
             try:
-                while not all(each.done() for each in running) or not noticed.empty():
-                    try:
-                        mutant, outcome = noticed.get(timeout=0.1)
-                    except queue.Empty:
-                        continue
-                    results.keep(mutant, outcome)
-                    self._add(mutant, outcome)
-                    done.add(mutant.key)
-                    advance(1.0)
+                list(pool.map(one, many))
             finally:
                 stopped.set()
                 pool.shutdown(cancel_futures=True)
-        for each in running:
-            each.result()
         return [mutant for mutant in todo if mutant.key not in done]
 
     def _add(self, mutant: Mutant, outcome: Outcome) -> None:
-        told = (mutant.file, mutant.function, mutant.before, mutant.after)
-        self.tally.add(mutant, outcome.verdict, is_listed=told in self._listed)
+        self.tally.add(mutant, outcome.verdict, is_listed=self._is_listed(mutant))
+
+    def _is_listed(self, mutant: Mutant) -> bool:
+        return (mutant.file, mutant.function, mutant.before, mutant.after) in self._listed

@@ -51,8 +51,8 @@ class Trials:
 
     def _copied(self, name: str) -> Path:
         copy = self.folder / name
-        for name in FOLDERS:
-            shutil.copytree(SOURCE_DIR / name, copy / name, dirs_exist_ok=True,
+        for part in FOLDERS:
+            shutil.copytree(SOURCE_DIR / part, copy / part, dirs_exist_ok=True,
                             ignore=lambda folder, names: [name for name in names if (Path(folder) / name).is_file()
                                                           and not name.endswith((".c", ".h"))])
         return copy
@@ -114,24 +114,20 @@ class Trials:
     def _with_sanitizers(self, mutant: Mutant, tree: Path, source: bytes) -> tuple[str, str] | None:
         """What the tests passed is given to them once more under the sanitizers, as continuous integration runs them: a
         fault may write past an array, and nothing else."""
-        units = self._of(mutant)
-        family = next((each for each in self._families_of(mutant)
-                       if any(unit in each.library_units for unit in units)), None)
-        if family is None or (found := self._checked(mutant, family, tree, None)) is None:
+        libraries = self.libraries_of(mutant)
+        if not libraries or (found := self._checked(mutant, *libraries[0], tree, None)) is None:
             return None
         (tree / mutant.file).write_bytes(source)
-        again = self._checked(mutant, family, tree, found[1])
+        again = self._checked(mutant, *libraries[0], tree, found[1])
         return ("sanitizers", found[1]) if again is None else None  # else it does not pass without the fault
 
-    def _checked(self, mutant: Mutant, family: Family, tree: Path, only: str | None) -> tuple[str, str] | None:
-        objects = {}
-        for unit in self._of(mutant):
-            if unit in family.library_units:
-                objects[unit] = tree / f"checked_{unit.target}_{unit.source.name}.o"
-                if unit.compile(tree, objects[unit], *SANITIZERS).returncode != 0:
-                    return None
+    def _checked(self, mutant: Mutant, family: Family, units: list[Unit], tree: Path,
+                 only: str | None) -> tuple[str, str] | None:
+        objects = {unit: tree / f"checked_{unit.target}_{unit.source.name}.o" for unit in units}
+        if any(unit.compile(tree, out, *SANITIZERS).returncode != 0 for unit, out in objects.items()):
+            return None
         every = {program.name for program in family.programs} if only is None else {only}
-        return self._noticed(mutant, family, objects, tree, every, checks=SANITIZERS[:1]) if objects else None
+        return self._noticed(mutant, family, objects, tree, every, checks=SANITIZERS[:1])
 
     def _noticed(self, mutant: Mutant, family: Family, objects: dict[Unit, Path], tree: Path,
                  programs: set[str], checks: tuple[str, ...] = ()) -> tuple[str, str] | None:
