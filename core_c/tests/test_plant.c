@@ -1,5 +1,6 @@
 /* Tests of plant.c: start, run and change of a vehicle that counts its steps. */
 #include "methods.h"
+#include "stack.h"
 
 static laconic_refusal why;
 
@@ -66,6 +67,39 @@ static void a_refused_step_stops_the_run_after_what_was_taken(void) {
                    laconic_plant_run(&plant, &input, 100000, &why), why);
     TEST_ASSERT_TRUE(plant.steps > 0 && plant.steps < 100000);
     TEST_ASSERT_TRUE((double)why.limit < 0.1);
+}
+
+/* What stands behind the three samples of a step is none of them. */
+static void of_a_refused_sampled_step_three_samples_are_asked(void) {
+    laconic_vehicle v = three_wheels();
+    laconic_plant plant = plant_of(v, &laconic_rk4, 0.1);
+    const laconic_start start = start_with(0, 0, EITHER(1e60, 1e8));
+    laconic_input samples[4] = {no_input(), no_input(), no_input(), no_input()};
+    samples[3].body_moment_Nm = NOT_A_NUMBER;
+    ASSERT_STATUS(LACONIC_OK, laconic_plant_restart(&plant, &start, &why));
+    ASSERT_REFUSED(LACONIC_STEP_BEYOND_GYROSCOPIC_LIMIT, LACONIC_FIELD_STEP, 0,
+                   laconic_plant_run_sampled(&plant, samples, &why), why);
+    samples[2].body_moment_Nm = NOT_A_NUMBER;
+    ASSERT_REFUSED(LACONIC_NOT_FINITE, LACONIC_FIELD_BODY_MOMENT, 0, laconic_plant_run_sampled(&plant, samples, &why),
+                   why);
+}
+
+static void steps_that_are_taken_refuse_nothing(void) {
+    const laconic_refusal untouched = {LACONIC_NEGATIVE, LACONIC_FIELD_MASS, 3, REAL(1), REAL(2)};
+    const laconic_input samples[3] = {no_input(), no_input(), no_input()};
+    for (int friction = 0; friction < 2; friction++) {
+        laconic_vehicle v = three_wheels();
+        if (friction) v.ground.friction_coefficient = REAL(0.5);
+        laconic_plant plant = plant_of(v, &laconic_auto, 0.001);
+        why = untouched;
+        for (uint64_t steps = 0; steps < 3; steps++) {
+            fill_stack(ALL_NAN);
+            ASSERT_STATUS(LACONIC_OK, laconic_plant_run(&plant, samples, steps, &why));
+        }
+        ASSERT_STATUS(LACONIC_OK, laconic_plant_run_sampled(&plant, samples, &why));
+        TEST_ASSERT_EQUAL_UINT64(4, plant.steps);
+        TEST_ASSERT_EQUAL_MEMORY(&untouched, &why, sizeof why);
+    }
 }
 
 static void an_input_that_is_not_finite_is_named(void) {
@@ -201,12 +235,34 @@ static void wheels_that_roll_turn_as_on_ideal_ground(void) {
     }
 }
 
+/* ½ (M v² + I θ'² + Σ J χ'²), with the wheels as they roll or, where they slip, as they turn. */
+static void energy_is_that_of_the_body_and_of_its_wheels(void) {
+    const double body = MASS * RADIUS * RADIUS * (1 + 2 * 2) + 0.225 * 1, turned[4] = {3, -1, 4, 20};
+    laconic_vehicle v = mecanum();
+    laconic_start start = start_with(1, 2, BIG_LAMBDA);
+    for (int friction = 0; friction < 2; friction++) {
+        laconic_plant plant;
+        laconic_real speed[4];
+        double sum = body;
+        memset(&plant, 0, sizeof plant);
+        if (friction) v.ground.friction_coefficient = REAL(0.5);
+        for (int i = 0; i < 4 && friction; i++) start.wheel_speed_rad_per_s[i] = REAL(turned[i]);
+        ASSERT_STATUS(LACONIC_OK, laconic_plant_start(&plant, &v, &laconic_auto, REAL(0.001), &start, &why));
+        laconic_plant_wheel_speeds(&plant, speed);
+        for (int i = 0; i < 4; i++) sum += 0.009 * (double)speed[i] * (double)speed[i];
+        for (int i = 0; i < 4 && friction; i++) TEST_ASSERT_TRUE((double)speed[i] == turned[i]);
+        ASSERT_NEAR(8 * ROUNDING, 0.5 * sum, laconic_plant_energy_J(&plant));
+    }
+}
+
 int main(void) {
     UNITY_BEGIN();
     RUN_TEST(running_is_stepping);
     RUN_TEST(a_refused_start_changes_nothing);
     RUN_TEST(more_wheels_than_there_is_room_for_are_refused_before_any_of_them_is_read);
     RUN_TEST(a_refused_step_stops_the_run_after_what_was_taken);
+    RUN_TEST(of_a_refused_sampled_step_three_samples_are_asked);
+    RUN_TEST(steps_that_are_taken_refuse_nothing);
     RUN_TEST(an_input_that_is_not_finite_is_named);
     RUN_TEST(the_count_of_steps_goes_on_with_another_step_size);
     RUN_TEST(a_payload_in_motion_leaves_the_body_where_it_is);
@@ -215,5 +271,6 @@ int main(void) {
     RUN_TEST(a_restart_begins_again_with_the_same_vehicle);
     RUN_TEST(with_friction_no_method_but_auto_is_taken);
     RUN_TEST(wheels_that_roll_turn_as_on_ideal_ground);
+    RUN_TEST(energy_is_that_of_the_body_and_of_its_wheels);
     return UNITY_END();
 }

@@ -187,6 +187,29 @@ static void a_held_schedule_may_begin_at_any_step_of_the_plant(void) {
     TEST_ASSERT_EQUAL_MEMORY(&early.state, &late.state, sizeof late.state);
 }
 
+/* Neither until a step that has passed, nor beyond the schedule's end, nor before it begins. */
+static void where_nothing_is_left_no_step_is_taken(laconic_schedule schedule) {
+    const struct {
+        uint64_t taken, until;
+    } nothing_left[] = {{20, 15}, {20, 20}, {10 + STEPS, UINT64_MAX}, {15 + STEPS, UINT64_MAX}, {9, UINT64_MAX}};
+    laconic_plant plant = plant_of(with_motors(mecanum()), 0.01);
+    film f;
+    load_film(&f, &plant, 1, STEPS);
+    schedule.first_step = 10;
+    for (size_t k = 0; k < sizeof nothing_left / sizeof nothing_left[0]; k++) {
+        plant.steps = nothing_left[k].taken;
+        const laconic_plant before = plant;
+        ASSERT_STATUS(LACONIC_OK, laconic_plant_follow(&plant, &schedule, nothing_left[k].until, &f.recorder, &why));
+        TEST_ASSERT_EQUAL_MEMORY(&before, &plant, sizeof plant);
+    }
+    TEST_ASSERT_EQUAL_UINT64(0, f.recorder.row_count);
+}
+
+static void outside_of_its_schedule_a_plant_stands_still(void) {
+    where_nothing_is_left_no_step_is_taken(held());
+    where_nothing_is_left_no_step_is_taken(sampled());
+}
+
 static void a_full_recorder_stops_the_run_where_it_can_go_on(void) {
     stops_before_a_row_without_room(held());
     stops_before_a_row_without_room(sampled());
@@ -238,8 +261,11 @@ static void a_schedule_tells_the_inputs_of_a_step(void) {
     laconic_input inputs[3];
     uint64_t end = 0;
     schedule.first_step = 100;
+    inputs[1] = inputs[2] = every_input();
+    const laconic_input others = inputs[1];
     TEST_ASSERT_EQUAL_INT(1, laconic_schedule_at(inputs, &end, &schedule, 107));
     TEST_ASSERT_EQUAL_UINT64(108, end);
+    for (int k = 1; k < 3; k++) TEST_ASSERT_EQUAL_MEMORY(&others, &inputs[k], sizeof others);
     TEST_ASSERT_TRUE(inputs[0].voltage_V[1] == -2 && inputs[0].voltage_V[0] == 0);
     TEST_ASSERT_EQUAL_INT(0, laconic_schedule_at(inputs, &end, &schedule, 100 + STEPS));
     schedule = sampled();
@@ -269,6 +295,7 @@ int main(void) {
     RUN_TEST(a_run_in_pieces_is_the_run_in_one);
     RUN_TEST(a_later_piece_of_a_sampled_run_has_a_schedule_of_its_own);
     RUN_TEST(a_held_schedule_may_begin_at_any_step_of_the_plant);
+    RUN_TEST(outside_of_its_schedule_a_plant_stands_still);
     RUN_TEST(a_full_recorder_stops_the_run_where_it_can_go_on);
     RUN_TEST(a_recorder_that_is_full_before_the_last_stretch_stops_there);
     RUN_TEST(without_rows_and_watch_the_plant_only_steps);
