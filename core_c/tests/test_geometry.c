@@ -30,6 +30,20 @@ static void a_payload_moves_mass_centre_and_inertia_by_the_parallel_axes(void) {
     ASSERT_NEAR(ROUNDING, 0.009 / (15 * RADIUS * RADIUS), b.wheel_scale_square);
 }
 
+/* Of the largest: exactly 1 where they are alike, also without any inertia. */
+static void inertias_are_given_as_shares_of_the_largest(void) {
+    laconic_vehicle v = mecanum();
+    real share[4];
+    for (int none = 0; none < 2; none++) {
+        if (none) v.wheel_inertia_kgm2 = REAL(0);
+        laconic_inertia_shares(share, &v);
+        for (int i = 0; i < 4; i++) TEST_ASSERT_TRUE(share[i] == 1);
+    }
+    for (int i = 0; i < 4; i++) v.wheel[i].own_inertia_kgm2 = REAL(i == 2 ? 0.5 : 0.125);
+    laconic_inertia_shares(share, &v);
+    for (int i = 0; i < 4; i++) TEST_ASSERT_TRUE((double)share[i] == (i == 2 ? 1 : 0.25));
+}
+
 static void a_wheel_pulls_along_its_rollers_axis(void) {
     const laconic_vehicle v = mecanum();
     direction pull;
@@ -76,6 +90,7 @@ int main(void) {
     UNITY_BEGIN();
     RUN_TEST(a_body_without_payload_has_the_papers_numbers);
     RUN_TEST(a_payload_moves_mass_centre_and_inertia_by_the_parallel_axes);
+    RUN_TEST(inertias_are_given_as_shares_of_the_largest);
     RUN_TEST(a_wheel_pulls_along_its_rollers_axis);
     RUN_TEST(a_fixed_wheel_pulls_where_it_rolls_whatever_its_roller_angle);
     RUN_TEST(rows_are_the_velocity_of_the_wheels_centre);

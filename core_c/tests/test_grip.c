@@ -144,6 +144,8 @@ static void nan_counts_as_slip_and_as_lift(void) {
     TEST_ASSERT_EQUAL_UINT64(1, s.grip.slipping);
     TEST_ASSERT_EQUAL_UINT64(1, s.grip.lifting);
     TEST_ASSERT_EQUAL_INT(2, s.grip.first_lift.point);
+    TEST_ASSERT_TRUE(s.grip.worst_slip.point == s.grip.first_slip.point && s.grip.worst_lift.point == 2);
+    TEST_ASSERT_TRUE(s.grip.worst_slip.steps == 1 && s.grip.worst_lift.steps == 1);
 }
 
 /* A margin or a load below 0 by half the tolerance is rounding, by twice the tolerance it is not. */
