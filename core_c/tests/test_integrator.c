@@ -282,6 +282,15 @@ static void the_tolerance_is_of_the_step_not_of_the_time(void) {
     TEST_ASSERT_EQUAL_UINT64(1000000, steps);
 }
 
+static void the_tolerance_is_a_millionth_of_the_step_to_both_sides(void) {
+    uint64_t steps = 0;
+    ASSERT_STATUS(LACONIC_OK, laconic_steps_in(3 + 0.999e-6, 1, &steps, &why));
+    ASSERT_STATUS(LACONIC_OK, laconic_steps_in(3 - 0.999e-6, 1, &steps, &why));
+    TEST_ASSERT_EQUAL_UINT64(3, steps);
+    ASSERT_STATUS(LACONIC_STEP_DOES_NOT_FIT, laconic_steps_in(3 + 1.001e-6, 1, &steps, &why));
+    ASSERT_STATUS(LACONIC_STEP_DOES_NOT_FIT, laconic_steps_in(3 - 1.001e-6, 1, &steps, &why));
+}
+
 static void intervals_and_steps_that_are_not_positive_and_finite_are_refused(void) {
     const double bad[] = {0, -1, (double)NAN, HUGE_VAL, -HUGE_VAL};
     uint64_t steps = 0;
@@ -290,6 +299,7 @@ static void intervals_and_steps_that_are_not_positive_and_finite_are_refused(voi
         TEST_ASSERT_NOT_EQUAL(LACONIC_OK, laconic_steps_in(1.0, bad[i], &steps, &why));
         TEST_ASSERT_EQUAL_STRING("step_s", laconic_field_name(why.field));
     }
+    ASSERT_STATUS(LACONIC_STEP_DOES_NOT_FIT, laconic_steps_in(HUGE_VAL, HUGE_VAL, &steps, &why)); /* first the interval */
     ASSERT_STATUS(LACONIC_NOT_FINITE, laconic_steps_in(1.0, (double)NAN, &steps, &why));
     ASSERT_STATUS(LACONIC_NOT_POSITIVE, laconic_steps_in(1.0, 0.0, &steps, &why));
     ASSERT_STATUS(LACONIC_STEP_DOES_NOT_FIT, laconic_steps_in(1e9, 1e-9, &steps, &why));
@@ -318,6 +328,7 @@ int main(void) {
     RUN_TEST(whole_numbers_of_steps_are_counted);
     RUN_TEST(an_interval_of_no_whole_number_of_steps_is_refused_with_one_that_fits);
     RUN_TEST(the_tolerance_is_of_the_step_not_of_the_time);
+    RUN_TEST(the_tolerance_is_a_millionth_of_the_step_to_both_sides);
     RUN_TEST(intervals_and_steps_that_are_not_positive_and_finite_are_refused);
     return UNITY_END();
 }
