@@ -2,6 +2,7 @@
  * the tangent and the adjoint with inputs and constants of the model, by every method, and how a model changes with
  * each number of its vehicle. Items of wheels that a vehicle has not stay as they were. test_step_derivatives.c and
  * host_tests/tests/derivatives compare them with differences. */
+#include "../derivatives/gauss_weight_change.h"
 #include "bits.h"
 #include "laconic/derivatives.h"
 #include "stack.h"
@@ -39,12 +40,12 @@ static laconic_vehicle every_number_of(const laconic_vehicle *vehicle, int part)
     return by;
 }
 
-#define PARTS 5
+#define KINDS_OF_CHANGE 5
 
 static void constants_of_a_model_by_each_number_of_its_vehicle(void) {
     begin();
     for (int number = 0; number < MORE_VEHICLES; number++)
-        for (int part = 0; part < PARTS; part++) {
+        for (int part = 0; part < KINDS_OF_CHANGE; part++) {
             const laconic_vehicle vehicle = vehicle_number(number), by = every_number_of(&vehicle, part);
             const laconic_model model = model_of(vehicle);
             laconic_model_change change;
@@ -101,7 +102,7 @@ static laconic_state_change some_change(int number) {
 }
 
 static void take_directions(const laconic_plant *plant, const laconic_input *held, int number) {
-    const laconic_vehicle by = every_number_of(&plant->vehicle, PARTS - 1);
+    const laconic_vehicle by = every_number_of(&plant->vehicle, KINDS_OF_CHANGE - 1);
     const laconic_state_change along = some_change(number);
     const laconic_input input = input_at(number + 3);
     laconic_state_change after, before;
@@ -220,11 +221,29 @@ static void tangents_in_body_axes_by_every_method(void) {
     expect_by_method(take_tangents_in_body_axes, bits);
 }
 
+/* At every damping of a panel, on both sides of the border between the two formulas of its sixth function. */
+static void weights_of_panels_by_their_damping(void) {
+    const linear_map every = {vector_of(1, 2, 3), vector_of(2, -1, REAL(0.5)), vector_of(3, REAL(0.5), 2)};
+    static gauss_weight_change change;
+    laconic_model m;
+    memset(&m, 0, sizeof m);
+    begin();
+    for (int k = 0; k < 90; k++) {
+        for (int i = 0; i < 3; i++) m.decay_per_s[i] = REAL(0.25 * k * (i + 1));
+        FILL(change);
+        fill_stack(ALL_NAN);
+        laconic_gauss_weight_change_of(&change, &m, REAL(0.5), &every);
+        TAKE(change);
+    }
+    expect(EITHER(0x8d888147d917b638U, 0x2e974b22c8daa907U));
+}
+
 int main(void) {
     UNITY_BEGIN();
     RUN_TEST(constants_of_a_model_by_each_number_of_its_vehicle);
     RUN_TEST(derivatives_of_steps_by_every_method);
     RUN_TEST(derivatives_at_every_yaw_by_every_method);
     RUN_TEST(tangents_in_body_axes_by_every_method);
+    RUN_TEST(weights_of_panels_by_their_damping);
     return UNITY_END();
 }
