@@ -89,6 +89,15 @@ static void angles_and_binary_angles_agree(void) {
     }
 }
 
+/* Its units count in pairs, towards zero, so that an angle to the right is as far as that to the left. */
+static void a_binary_angle_is_even_and_the_same_to_both_sides(void) {
+    for (double angle = EITHER(1e-18, 1e-9); angle < 3; angle *= 1.7) {
+        const laconic_binary_angle left = laconic_binary_angle_of(REAL(angle));
+        TEST_ASSERT_TRUE(left % 2 == 0);
+        TEST_ASSERT_TRUE((laconic_binary_angle)(left + laconic_binary_angle_of(REAL(-angle))) == 0);
+    }
+}
+
 static void an_angle_without_a_direction_counts_as_zero(void) {
     TEST_ASSERT_TRUE(laconic_binary_angle_of(NOT_A_NUMBER) == 0);
     TEST_ASSERT_TRUE(laconic_binary_angle_of(INFINITE) == 0);
@@ -151,6 +160,7 @@ int main(void) {
     RUN_TEST(the_direction_of_a_very_large_angle_is_as_exact_as_the_angle);
     RUN_TEST(a_quarter_turn_is_exact);
     RUN_TEST(angles_and_binary_angles_agree);
+    RUN_TEST(a_binary_angle_is_even_and_the_same_to_both_sides);
     RUN_TEST(an_angle_without_a_direction_counts_as_zero);
     RUN_TEST(phi_functions_agree_with_their_integrals);
     RUN_TEST(phi_functions_stay_finite_for_any_damping);
