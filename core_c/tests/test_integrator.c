@@ -299,7 +299,8 @@ static void intervals_and_steps_that_are_not_positive_and_finite_are_refused(voi
         TEST_ASSERT_NOT_EQUAL(LACONIC_OK, laconic_steps_in(1.0, bad[i], &steps, &why));
         TEST_ASSERT_EQUAL_STRING("step_s", laconic_field_name(why.field));
     }
-    ASSERT_STATUS(LACONIC_STEP_DOES_NOT_FIT, laconic_steps_in(HUGE_VAL, HUGE_VAL, &steps, &why)); /* first the interval */
+    ASSERT_STATUS(LACONIC_STEP_DOES_NOT_FIT,
+                  laconic_steps_in(HUGE_VAL, HUGE_VAL, &steps, &why)); /* first the interval */
     ASSERT_STATUS(LACONIC_NOT_FINITE, laconic_steps_in(1.0, (double)NAN, &steps, &why));
     ASSERT_STATUS(LACONIC_NOT_POSITIVE, laconic_steps_in(1.0, 0.0, &steps, &why));
     ASSERT_STATUS(LACONIC_STEP_DOES_NOT_FIT, laconic_steps_in(1e9, 1e-9, &steps, &why));
