@@ -97,6 +97,21 @@ static void in_lockstep_a_node_sleeps_until_its_heartbeat(void) {
                              laconic_node_idle_us(&node, now_us));
 }
 
+/* So that frames are heard between: 65 steps take a second tick, 64 do not. */
+static void a_tick_takes_so_many_steps_and_no_more(void) {
+    for (uint32_t more = 0; more < 2; more++) {
+        bench_begin();
+        bench_load(2);
+        bench_start_lockstep();
+        laconic_node_sync(&node, LACONIC_NODE_STEPS_PER_TICK + more, 0, 1);
+        laconic_node_on_tick(&node, now_us);
+        TEST_ASSERT_EQUAL_UINT64(64, node.plant.steps);
+        TEST_ASSERT_EQUAL_UINT32(more, node.lockstep.steps_due);
+        laconic_node_on_tick(&node, now_us);
+        TEST_ASSERT_EQUAL_UINT64(64 + more, node.plant.steps);
+    }
+}
+
 /* Frames that come behind the torques may wait. */
 static void only_the_torques_hold_the_next_step_back(void) {
     const uint8_t select[LACONIC_FRAME_BYTES] = {0, 0, LACONIC_NODE_SEND_IMU, 0, SELECT_RAW_AXLE_TORQUE};
@@ -184,6 +199,7 @@ int main(void) {
     RUN_TEST(the_next_step_waits_until_the_torques_are_sent_by_can_fd);
     RUN_TEST(sampled_steps_have_the_cores_bits_whether_sensors_watch_or_not);
     RUN_TEST(in_lockstep_a_node_sleeps_until_its_heartbeat);
+    RUN_TEST(a_tick_takes_so_many_steps_and_no_more);
     RUN_TEST(only_the_torques_hold_the_next_step_back);
     RUN_TEST(drives_have_the_time_of_their_node_whoever_watches);
     RUN_TEST(a_refused_step_names_its_field_whoever_watches);
