@@ -165,11 +165,11 @@ static void test_numbers_that_were_loaded_before_are_then_forgotten(void) {
 static void test_sampled_inputs_and_slip_count_as_motion_where_they_are_used(void) {
     const size_t bytes[] = {BYTE(input[2].voltage_V), BYTE(plant.slip)};
     for (size_t k = 0; k < sizeof bytes / sizeof bytes[0]; k++) {
-        for (int used = 0; used < 2; used++) {
+        for (int used = 0; used < 3; used++) { /* 2: raw inputs, but not sampled ones */
             bench_power_up(&on, 7, 0, LACONIC_INTEGRITY_MOTION);
             TEST_ASSERT_TRUE(rig_session(&on, NULL, NULL, NULL));
             on.node.plant.friction.acts = used == 1;
-            on.node.raw_input.take = used == 1 ? LACONIC_RAW_SAMPLED : 0;
+            on.node.raw_input.take = used == 1 ? LACONIC_RAW_SAMPLED : used == 2 ? LACONIC_RAW_VOLTAGE : 0;
             laconic_integrity_begin(&on.integrity, &on.node, &on.config, &on.integrity.limits, on.checks);
             on.integrity.has_vehicle = true;
             bench_tick(&on);
@@ -192,6 +192,7 @@ static void test_what_waits_to_be_sent_is_checked_before_it_is_fetched(void) {
         TEST_ASSERT_TRUE(bench_next(&on, &frame));
         TEST_ASSERT_EQUAL_HEX32(LACONIC_WIRE_ID_BASE + LACONIC_WIRE_RESULT, frame.id);
         TEST_ASSERT_EQUAL(LACONIC_WIRE_STATUS_MEMORY_CHANGED, frame.data[3]);
+        TEST_ASSERT_EQUAL(LACONIC_INTEGRITY_OF_MOTION, on.integrity.broken);
         TEST_ASSERT_FALSE(bench_next(&on, &frame));
         on.time_us += TICK_US;
         bench_tick(&on); /* what was found once is told once */

@@ -64,12 +64,14 @@ static void test_only_the_frame_of_a_commit_is_one(void) {
     TEST_ASSERT_EQUAL(LACONIC_INTEGRITY_OF_MODEL, on.integrity.broken);
 }
 
-/* Whatever state it is found in: the next frame, even one that is malformed, leads back to FAULT. */
+/* Whatever state it is found in, and whichever wheel's encoder is next: the next frame, even one that is malformed,
+ * leads back to FAULT. */
 static void test_a_wrong_model_moves_in_no_state(void) {
     const laconic_frame malformed = {.id = LACONIC_WIRE_ID_BASE + LACONIC_WIRE_COMMIT, .length = 3};
     with_a_wrong_model(LACONIC_INTEGRITY_SUM);
     for (uint8_t state = LACONIC_WIRE_STATE_READY; state <= LACONIC_WIRE_STATE_DRIVES; state++) {
         on.node.state = state;
+        on.node.encoder_wheel = 0;
         bench_frame(&on, &malformed);
         TEST_ASSERT_EQUAL(LACONIC_WIRE_STATE_FAULT, on.node.state);
         TEST_ASSERT_EQUAL(LACONIC_INTEGRITY_OF_MODEL, on.integrity.broken);
@@ -85,6 +87,39 @@ static void test_a_wrong_model_is_found_behind_a_wrong_motion(void) {
     on.node.plant.vehicle.mass_kg *= 2;
     wait_two_rounds();
     TEST_ASSERT_EQUAL(LACONIC_INTEGRITY_OF_MODEL, on.integrity.broken);
+}
+
+/* Whatever the round over the model has come to, and whichever wheel's encoder is next. */
+static void test_a_motion_that_was_wrong_is_sound_again_when_the_rig_resets_it(void) {
+    const uint8_t checks[] = {LACONIC_INTEGRITY_MOTION, LACONIC_INTEGRITY_RANGE};
+    for (size_t k = 0; k < sizeof checks; k++)
+        for (uint8_t part = 0; part <= LACONIC_INTEGRITY_OF_MODEL; part++) {
+            laconic_frame told;
+            in_free_run_with(checks[k]);
+            const laconic_integrity_limits limits = on.integrity.limits;
+            on.node.encoder_wheel = 0;
+            laconic_integrity_begin(&on.integrity, &on.node, &on.config, &limits, on.checks);
+            on.integrity.has_vehicle = true;
+            on.integrity.part = part;
+            on.node.plant.state.x_m.value = 5000;
+            bench_tick(&on);
+            TEST_ASSERT_EQUAL(k == 0 ? LACONIC_INTEGRITY_OF_MOTION : LACONIC_INTEGRITY_OF_RANGE, on.integrity.broken);
+            while (bench_next(&on, &told)) TEST_ASSERT_EQUAL(LACONIC_WIRE_STATE_FAULT, on.node.state);
+            TEST_ASSERT_EQUAL(0, rig_command(&on, LACONIC_WIRE_COMMAND_RESET));
+            TEST_ASSERT_EQUAL(LACONIC_WIRE_STATE_READY, on.node.state);
+            TEST_ASSERT_EQUAL(LACONIC_INTEGRITY_SOUND, on.integrity.broken);
+        }
+}
+
+/* Numbers that change after they came, with a frame before COMMIT that loads nothing. */
+static void test_a_frame_that_loads_nothing_hides_no_change_of_what_was_loaded(void) {
+    const laconic_frame hello = {.id = LACONIC_WIRE_ID_BASE + LACONIC_WIRE_HELLO, .length = 8};
+    bench_power_up(&on, 7, 0, LACONIC_INTEGRITY_ALL);
+    TEST_ASSERT_TRUE(rig_open(&on));
+    on.node.loader.parameters.vehicle.mass_kg = 5;
+    bench_frame(&on, &hello);
+    (void)commit_what_was_not_loaded();
+    TEST_ASSERT_EQUAL(LACONIC_WIRE_STATUS_MEMORY_CHANGED, on.node.answer[LACONIC_WIRE_COMMIT].status);
 }
 
 static void test_what_a_node_without_a_vehicle_has_found_stays_until_there_is_one(void) {
@@ -118,6 +153,8 @@ int main(void) {
     RUN_TEST(test_only_the_frame_of_a_commit_is_one);
     RUN_TEST(test_a_wrong_model_moves_in_no_state);
     RUN_TEST(test_a_wrong_model_is_found_behind_a_wrong_motion);
+    RUN_TEST(test_a_motion_that_was_wrong_is_sound_again_when_the_rig_resets_it);
+    RUN_TEST(test_a_frame_that_loads_nothing_hides_no_change_of_what_was_loaded);
     RUN_TEST(test_what_a_node_without_a_vehicle_has_found_stays_until_there_is_one);
     RUN_TEST(test_a_node_without_a_vehicle_has_no_motion_to_be_out_of_range);
     return UNITY_END();

@@ -46,6 +46,21 @@ static void test_what_no_motion_has_is_out_of_range(void) {
     TEST_ASSERT_EQUAL(LACONIC_INTEGRITY_OF_RANGE, on.integrity.broken);
 }
 
+/* Whatever it sends, and whichever wheel's encoder is next. */
+static void test_a_node_that_sends_nothing_has_its_range_too(void) {
+    in_free_run();
+    on.node.send = 0;
+    on.node.encoder_wheel = 0;
+    expect_out_of_range(&on.node.plant.state.x_m.value, 2000);
+}
+
+static void test_a_vehicle_has_more_wheels_than_freedoms(void) {
+    in_free_run();
+    TEST_ASSERT_EQUAL(0, rig_command(&on, LACONIC_WIRE_COMMAND_STOP));
+    on.node.plant.model.wheel_count = 4;
+    expect_out_of_range(&on.node.input[0].voltage_V[3], 1000);
+}
+
 /* A node that stands still takes no step that the core would refuse. */
 static void test_a_number_that_is_none_is_out_of_range_at_rest_too(void) {
     volatile laconic_real zero = 0;
@@ -179,6 +194,8 @@ static void test_a_limit_of_0_is_none(void) {
 int main(void) {
     UNITY_BEGIN();
     RUN_TEST(test_what_no_motion_has_is_out_of_range);
+    RUN_TEST(test_a_node_that_sends_nothing_has_its_range_too);
+    RUN_TEST(test_a_vehicle_has_more_wheels_than_freedoms);
     RUN_TEST(test_a_number_that_is_none_is_out_of_range_at_rest_too);
     RUN_TEST(test_a_count_of_wheels_beyond_the_largest_reads_nothing_behind_them);
     RUN_TEST(test_the_limits_themselves_are_in_range);
