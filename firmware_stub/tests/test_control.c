@@ -53,6 +53,14 @@ static void steps_that_are_nearly_whole_are_refused(void) {
     TEST_ASSERT_EQUAL_UINT8(LACONIC_WIRE_STATUS_OUT_OF_RANGE, run(100, 1000)); /* a hundred-thousandth of a step */
 }
 
+/* So is the rate that a step has by itself, and the most steps that a period may have. */
+static void a_rate_is_rounded_and_so_are_its_steps(void) {
+    TEST_ASSERT_EQUAL_UINT8(0, run(1 / 99.9995, 0));
+    TEST_ASSERT_EQUAL_UINT32(100, node.free_run.rate_Hz);
+    TEST_ASSERT_EQUAL_UINT8(0, run(1 / 64000.03, 1000));
+    TEST_ASSERT_EQUAL_UINT32(64, node.free_run.steps_per_period);
+}
+
 static void the_watchdog_is_given_in_milliseconds(void) {
     bench_load(2);
     bench_control(LACONIC_WIRE_COMMAND_START_FREE_RUN, 0, 250);
@@ -393,6 +401,7 @@ int main(void) {
     UNITY_BEGIN();
     RUN_TEST(a_rate_takes_a_whole_number_of_steps_up_to_what_a_tick_may_take);
     RUN_TEST(steps_that_are_nearly_whole_are_refused);
+    RUN_TEST(a_rate_is_rounded_and_so_are_its_steps);
     RUN_TEST(the_watchdog_is_given_in_milliseconds);
     RUN_TEST(a_run_begins_without_what_was_left_of_the_one_before);
     RUN_TEST(stop_forgets_the_steps_that_are_due_and_the_inputs);

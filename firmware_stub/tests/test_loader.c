@@ -142,6 +142,14 @@ static void a_field_or_item_that_is_not_there_is_remembered(void) {
     TEST_ASSERT_EQUAL_UINT8(LACONIC_FIELD_VOLTAGE, loader.field);
 }
 
+/* Also a first one that has no number: what is told is the first. */
+static void the_first_refusal_stays(void) {
+    send_real(0, 9, 1);
+    send_real(LACONIC_FIELD_WHEEL_X, 0, 1);
+    TEST_ASSERT_EQUAL_UINT8(LACONIC_WIRE_STATUS_PARAMETER_UNKNOWN, check());
+    TEST_ASSERT_TRUE(loader.field == 0 && loader.item == 9);
+}
+
 static void items_end_where_the_list_ends(void) {
     send_real(LACONIC_FIELD_START_NU, 4, 1);
     TEST_ASSERT_EQUAL_UINT8(LACONIC_WIRE_STATUS_PARAMETER_UNKNOWN, check());
@@ -246,6 +254,18 @@ static void rollers_need_their_angle_and_wheels_that_are_not_there_need_nothing(
     send(0, LACONIC_FIELD_WHEEL_KIND, 2, LACONIC_WHEEL_FIXED);
     send(0, LACONIC_FIELD_WHEEL_KIND, 3, LACONIC_WHEEL_ROLLER); /* beyond the two */
     TEST_ASSERT_EQUAL_UINT8(0, check());
+}
+
+static void the_first_of_several_items_is_needed_as_the_last_is(void) {
+    send_cart_without(LACONIC_FIELD_ROLLER, 1);
+    TEST_ASSERT_EQUAL_UINT8(LACONIC_WIRE_STATUS_PARAMETER_MISSING, check());
+    TEST_ASSERT_TRUE(field == LACONIC_FIELD_ROLLER && item == 1);
+    send_cart_without(0, 0);
+    send_real(LACONIC_FIELD_SUPPORT_X, 2, 1);
+    send_real(LACONIC_FIELD_SUPPORT_Y, 2, 1);
+    send(0, LACONIC_FIELD_SUPPORT_COUNT, 0, 2);
+    TEST_ASSERT_EQUAL_UINT8(LACONIC_WIRE_STATUS_PARAMETER_MISSING, check());
+    TEST_ASSERT_TRUE(field == LACONIC_FIELD_SUPPORT_X && item == 1);
 }
 
 /* Neither needs anything that would be missing first. */
@@ -384,6 +404,8 @@ int main(void) {
     RUN_TEST(numbers_arrive_bit_for_bit_where_they_belong);
     RUN_TEST(a_wheels_own_values_arrive_and_driven_0_means_no_motor);
     RUN_TEST(a_field_or_item_that_is_not_there_is_remembered);
+    RUN_TEST(the_first_refusal_stays);
+    RUN_TEST(the_first_of_several_items_is_needed_as_the_last_is);
     RUN_TEST(items_end_where_the_list_ends);
     RUN_TEST(numbers_out_of_their_range_are_refused);
     RUN_TEST(half_a_double_is_not_enough);

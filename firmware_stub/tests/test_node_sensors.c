@@ -169,21 +169,6 @@ static void two_encoders_take_two_frames(void) {
     TEST_ASSERT_FALSE(bench_receive(LACONIC_WIRE_ENCODER, data));
 }
 
-/* Nothing of the loader's: the vehicle has as many wheels as a node may have. */
-static void the_last_wheel_may_have_the_only_encoder(void) {
-    laconic_sensor_settings with = {.encoder_wrap = 1000};
-    bench_load(2);
-    node.plant.model.wheel_count = LACONIC_MAX_WHEELS;
-    with.encoder[LACONIC_MAX_WHEELS - 1] = (laconic_encoder_settings){256, 3};
-    laconic_node_start_sensors(&node, &with);
-    TEST_ASSERT_TRUE(node.has_sensors);
-    TEST_ASSERT_EQUAL_INT(LACONIC_MAX_WHEELS - 1, laconic_node_encoder_from(&node, 0));
-    TEST_ASSERT_EQUAL_UINT8(0, bench_select(LACONIC_NODE_SEND_ENCODER, 0, 0));
-    laconic_node_publish(&node);
-    TEST_ASSERT_TRUE(bench_receive(LACONIC_WIRE_ENCODER, data));
-    TEST_ASSERT_EQUAL_INT(LACONIC_MAX_WHEELS - 1, data[1] >> 4);
-}
-
 /* The bus is busy: a frame of the encoder waits while another vehicle, without encoders, is committed. */
 static void an_encoder_frame_that_waits_falls_away_with_its_encoder(void) {
     load(settings());
@@ -434,7 +419,6 @@ int main(void) {
     RUN_TEST(a_reading_beyond_its_frame_saturates_with_the_flag);
     RUN_TEST(encoder_frames_come_for_the_wheels_that_have_one);
     RUN_TEST(two_encoders_take_two_frames);
-    RUN_TEST(the_last_wheel_may_have_the_only_encoder);
     RUN_TEST(an_encoder_frame_that_waits_falls_away_with_its_encoder);
     RUN_TEST(an_encoder_frame_that_waits_survives_a_reset);
     RUN_TEST(wheel_angles_are_wrapped_and_grouped);

@@ -44,6 +44,16 @@ static void sampled_inputs_fill_start_middle_and_end(void) {
     TEST_ASSERT_TRUE(input[0].voltage_V[1] == 2 && input[1].voltage_V[0] == 3 && input[2].voltage_V[1] == 6);
 }
 
+static void torques_alone_and_sampled_torques_with_voltages_are_as_many_as_they_are(void) {
+    raw.take = LACONIC_RAW_AXLE_TORQUE;
+    send(2, 2);
+    TEST_ASSERT_TRUE(raw.complete && input[0].axle_torque_Nm[1] == 2);
+    laconic_raw_restart(&raw);
+    raw.take = LACONIC_RAW_VOLTAGE | LACONIC_RAW_AXLE_TORQUE | LACONIC_RAW_SAMPLED;
+    send(12, 2);
+    TEST_ASSERT_TRUE(raw.complete && input[1].voltage_V[0] == 5 && input[2].axle_torque_Nm[1] == 12);
+}
+
 static void a_missing_segment_breaks_the_stream_until_it_begins_anew(void) {
     const uint8_t bytes[6] = {0};
     raw.take = LACONIC_RAW_VOLTAGE;
@@ -166,6 +176,7 @@ int main(void) {
     UNITY_BEGIN();
     RUN_TEST(every_input_has_its_position_in_the_stream);
     RUN_TEST(sampled_inputs_fill_start_middle_and_end);
+    RUN_TEST(torques_alone_and_sampled_torques_with_voltages_are_as_many_as_they_are);
     RUN_TEST(a_missing_segment_breaks_the_stream_until_it_begins_anew);
     RUN_TEST(one_segment_too_many_is_refused);
     RUN_TEST(nothing_chosen_takes_nothing);
