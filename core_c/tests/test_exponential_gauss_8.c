@@ -80,6 +80,35 @@ static void energy_and_k_drift_only_by_the_truncation_error(void) {
     TEST_ASSERT_TRUE(d.yaw_integral < EITHER(1e-12, 1e-5));
 }
 
+/* From rest, by a b that grows from 0 along one of ζ's axes alone: what else moves, the gyroscopic term has made. */
+static void end_of_one_axis(double zeta[3], const laconic_model *m, const laconic_method *method, int axis, int steps) {
+    const laconic_integrator in = integrator_of(method, m, 0.25 / steps);
+    laconic_state state = moving(m, 0, 0, 0);
+    for (int i = 0; i < steps; i++) {
+        laconic_forcing at[3];
+        memset(at, 0, sizeof at);
+        for (int k = 0; k < 3; k++) at[k].constant[axis] = REAL(6 * (i + 0.5 * k) / steps);
+        const laconic_forcing_samples samples = {&at[0], &at[1], &at[2], false};
+        ASSERT_STATUS(LACONIC_OK, method->step(m, &in, &state, &samples));
+    }
+    for (int k = 0; k < 3; k++) zeta[k] = (double)state.zeta[k].value;
+}
+
+static void a_forcing_along_one_axis_turns_the_motion(void) {
+    laconic_vehicle v = with_own_wheels(with_motors(three_wheels()));
+    v.com_x_m = REAL(0.03);
+    const laconic_model m = model_of(v);
+    for (int axis = 0; axis < 3; axis++) {
+        double whole[3], fine[3];
+        end_of_one_axis(whole, &m, &laconic_exponential_gauss_8, axis, 1);
+        end_of_one_axis(fine, &m, &laconic_taylor_8, axis, 32);
+        for (int k = 0; k < 3; k++) {
+            TEST_ASSERT_TRUE(fabs(fine[k]) > 1e-4);
+            ASSERT_NEAR(EITHER(1e-8, 1e-5), fine[k], whole[k]);
+        }
+    }
+}
+
 static void a_yaw_too_fast_for_the_step_is_refused(void) { assert_too_fast_yaw_refused(&laconic_exponential_gauss_8); }
 
 static void a_step_that_gains_energy_is_refused(void) {
@@ -99,6 +128,7 @@ int main(void) {
     RUN_TEST(what_dies_out_within_a_step_is_integrated);
     RUN_TEST(damping_beyond_the_panels_is_taken);
     RUN_TEST(energy_and_k_drift_only_by_the_truncation_error);
+    RUN_TEST(a_forcing_along_one_axis_turns_the_motion);
     RUN_TEST(a_yaw_too_fast_for_the_step_is_refused);
     RUN_TEST(a_step_that_gains_energy_is_refused);
     RUN_TEST(numbers_beyond_the_range_are_refused);

@@ -99,11 +99,25 @@ static void a_speed_beyond_the_range_is_refused_whatever_the_method(void) {
     }
 }
 
+/* The squares of the speeds before and after a step are summed: without any force a speed of three quarters is one. */
+static void a_step_that_begins_near_the_end_of_the_range_is_refused_whatever_the_method(void) {
+    const double fastest = EITHER(1e77, 1e9), step_s = EITHER(1e-66, 1e-5), share[2] = {0.7, 0.75};
+    const laconic_input input = no_input();
+    const laconic_model m = model_of(bare_body());
+    for (int32_t i = 0; i < LACONIC_METHOD_COUNT; i++)
+        for (int k = 0; k < 2; k++) {
+            const laconic_integrator in = integrator_of(laconic_method_by_number(i), &m, step_s);
+            laconic_state state = moving(&m, share[k] * fastest, 0, 0);
+            ASSERT_STATUS(k == 0 ? LACONIC_OK : LACONIC_OVERFLOW, laconic_step(&m, &in, &state, &input));
+        }
+}
+
 int main(void) {
     UNITY_BEGIN();
     RUN_TEST(a_heading_of_more_turns_than_can_be_counted_is_refused_whatever_the_method);
     RUN_TEST(the_fastest_yaw_ends_in_a_refusal_never_in_a_jump);
     RUN_TEST(a_speed_beyond_the_range_is_refused_whatever_the_method);
+    RUN_TEST(a_step_that_begins_near_the_end_of_the_range_is_refused_whatever_the_method);
     RUN_TEST(points_and_forces_that_leave_the_range_together_are_refused_whatever_the_method);
     return UNITY_END();
 }
