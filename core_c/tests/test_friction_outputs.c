@@ -220,6 +220,10 @@ static void what_lies_beyond_the_last_point_is_not_written(void) {
     laconic_slip_smooth(s, &plant.friction, &plant.state, &input);
     TEST_ASSERT_TRUE(s->current_A[3] == 7 && s->grip_N[3][0] == 7 && s->grip_N[3][1] == 7 && s->normal_N[3] == 7);
     TEST_ASSERT_EQUAL_INT(7, s->limit[3]);
+    laconic_reactions reactions;
+    memset(&reactions, 0, sizeof reactions);
+    laconic_plant_reactions(&reactions, &plant, NULL, &input);
+    TEST_ASSERT_TRUE(reactions.normal_N[2] > 0 && reactions.normal_N[3] == 0);
 }
 
 static void without_brakes_no_brake_has_a_torque(void) {
@@ -297,6 +301,23 @@ static void loads_of_the_smooth_law_hold_the_forces_that_they_make(void) {
     for (int k = 0; k < 2; k++) ASSERT_NEAR(1e-3, -0.1 * force[k], moment[k]);
 }
 
+/* The ground's force, whatever the rollers make of it, turns the wheel by its part along the rolling direction. */
+static void a_brake_holds_a_wheel_with_oblique_rollers_that_drag(void) {
+    laconic_vehicle v = robotino(0.4, 0.5, 0);
+    laconic_input input = no_input();
+    for (int i = 0; i < 3; i++) v.wheel[i].roller_rad = REAL(PI / 4);
+    v.wheel[1].locked = true;
+    laconic_plant plant = started(v, 1e-3, 0, 0, 0);
+    input.body_force_N[1] = 60;
+    run(&plant, &input, 20);
+    const laconic_outputs out = outputs_with(&plant, &input);
+    const laconic_real *u = plant.friction.axle[1].pull, along = out.reactions.along_N[1];
+    const laconic_real aside = out.reactions.lateral_N[1];
+    const double force[2] = {(double)(along * u[0] + aside * u[1]), (double)(along * u[1] - aside * u[0])};
+    TEST_ASSERT_TRUE(fabs((double)aside) > 1);
+    ASSERT_NEAR(EITHER(1e-12, 1e-5), -0.04 * force[1], out.reactions.brake_Nm[1]); /* its axle is along −x */
+}
+
 int main(void) {
     UNITY_BEGIN();
     RUN_TEST(contacts_that_slip_stick_and_lift_are_told_apart);
@@ -316,5 +337,6 @@ int main(void) {
     RUN_TEST(a_contact_that_slips_without_a_load_slips);
     RUN_TEST(free_rollers_leave_the_margin_to_the_force_along_them);
     RUN_TEST(loads_of_the_smooth_law_hold_the_forces_that_they_make);
+    RUN_TEST(a_brake_holds_a_wheel_with_oblique_rollers_that_drag);
     return UNITY_END();
 }

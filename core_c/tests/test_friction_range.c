@@ -53,8 +53,10 @@ static void each_constant_of_ground_and_supply_counts_in_the_range(void) {
 static void each_constant_of_motor_and_wheel_counts_in_the_range(void) {
     laconic_vehicle v = unit_vehicle();
     v = unit_vehicle(), v.motor_gain_Nm_per_V = REAL(ENERGY_J * PART), counts(v);
-    v = unit_vehicle(), v.motor_gain_Nm_per_V = REAL(ENERGY_J / PART), counts(v); /* amperes per torque */
-    v = unit_vehicle(), v.motor_damping_Nms = REAL(ENERGY_J * PART), counts(v);   /* back-EMF */
+    v = unit_vehicle(), v.motor_gain_Nm_per_V = REAL(ENERGY_J / PART), counts(v);  /* amperes per torque */
+    v = unit_vehicle(), v.motor_gain_Nm_per_V = REAL(-ENERGY_J * PART), counts(v); /* a shaft that turns backwards */
+    v = unit_vehicle(), v.motor_gain_Nm_per_V = REAL(-ENERGY_J / PART), counts(v);
+    v = unit_vehicle(), v.motor_damping_Nms = REAL(ENERGY_J * PART), counts(v); /* back-EMF */
     v = unit_vehicle(), v.motor_damping_Nms = v.drive.viscous_friction_Nms = REAL(ENERGY_J * PART), counts(v);
     v = unit_vehicle(), v.wheel_inertia_kgm2 = REAL(ENERGY_J * PART), counts(v);
     v = unit_vehicle(), v.wheel_inertia_kgm2 = REAL(ENERGY_J * 2 / PART), counts(v); /* 1/j, and as much mobility */
@@ -67,6 +69,16 @@ static void rollers_that_hardly_drag_count_in_the_range_once_for_each_of_two_mas
     counts(v);
     v.com_z_m = REAL(0.3 * LIMIT);
     ASSERT_STATUS(LACONIC_OK, status_of(&v));
+}
+
+/* Beside a lever of 3, which makes the mass along the rollers' axis a tenth, the two masses count as they are. */
+static void masses_across_rollers_count_in_the_range_whatever_the_mass_along_them(void) {
+    laconic_vehicle v = unit_vehicle();
+    v.wheel[0].x_m = 3;
+    v.ground.roller_drag = REAL(1 / sqrt(0.3 * LIMIT));
+    ASSERT_STATUS(LACONIC_OK, status_of(&v));
+    v.com_z_m = REAL(PART);
+    ASSERT_REFUSED(LACONIC_OVERFLOW, LACONIC_FIELD_NONE, 0, status_of(&v), why);
 }
 
 /* A light and huge wheel: mobility and inertia each as large as its radius, over the vehicle's. */
@@ -185,11 +197,35 @@ static void of_windings_that_are_not_known_no_current_is_either(void) {
     TEST_ASSERT_TRUE(plant.slip.current_A[0] == 0 && plant.slip.wheel_speed_rad_per_s[0] != 0);
 }
 
+/* It takes no current, whatever it brakes. */
+static void a_motor_without_a_gain_is_a_damper_that_no_current_limits(void) {
+    const laconic_input coasting = no_input();
+    laconic_vehicle v = unit_vehicle();
+    v.motor_gain_Nm_per_V = 0;
+    v.motor_damping_Nms = 1;
+    v.drive.current_limit_A = REAL(1e-3);
+    laconic_plant plant = started(v, 1e-3, 5, 0, 0);
+    run(&plant, &coasting, 1000);
+    TEST_ASSERT_TRUE(plant.friction.axle[0].torque_limit == LACONIC_REAL_MAX);
+    ASSERT_NEAR(EITHER(1e-6, 1e-4), 0, plant.slip.wheel_speed_rad_per_s[0]);
+}
+
+/* A limit of the current makes it a vehicle with friction, though its wheels do not slip. */
+static void wheels_that_allow_no_motion_on_ideal_ground_are_refused(void) {
+    laconic_vehicle v = unit_vehicle();
+    v.ground.friction_coefficient = v.ground.roller_drag = 0;
+    ASSERT_STATUS(LACONIC_OK, status_of(&v));
+    v.wheel_count = 0;
+    for (int i = 0; i < 3; i++) add_wheel(&v, LACONIC_WHEEL_FIXED, i, i * i, i, 0);
+    ASSERT_REFUSED(LACONIC_NOTHING_MOVES, LACONIC_FIELD_WHEEL_KIND, 0, status_of(&v), why);
+}
+
 int main(void) {
     UNITY_BEGIN();
     RUN_TEST(each_constant_of_ground_and_supply_counts_in_the_range);
     RUN_TEST(each_constant_of_motor_and_wheel_counts_in_the_range);
     RUN_TEST(rollers_that_hardly_drag_count_in_the_range_once_for_each_of_two_masses);
+    RUN_TEST(masses_across_rollers_count_in_the_range_whatever_the_mass_along_them);
     RUN_TEST(a_huge_wheel_counts_in_the_range);
     RUN_TEST(a_wheel_far_off_counts_by_its_place_and_by_its_lever);
     RUN_TEST(points_that_are_hardly_apart_count_in_the_range);
@@ -199,5 +235,7 @@ int main(void) {
     RUN_TEST(wheels_start_with_equal_shares_of_the_weight);
     RUN_TEST(a_motor_of_one_ampere_for_a_unit_of_torque_is_limited);
     RUN_TEST(of_windings_that_are_not_known_no_current_is_either);
+    RUN_TEST(a_motor_without_a_gain_is_a_damper_that_no_current_limits);
+    RUN_TEST(wheels_that_allow_no_motion_on_ideal_ground_are_refused);
     return UNITY_END();
 }

@@ -313,6 +313,30 @@ static void a_motion_next_to_the_least_number_s_root_is_none(void) {
     }
 }
 
+/* Beside a body that a brake stops, a wheel in the air of 100 times the other's inertia has energy worth keeping. */
+static void a_heavy_wheel_that_turns_slowly_is_not_at_rest(void) {
+    const double speed = EITHER(3e-11, 3e-5);
+    problem p = one_wheel(LACONIC_REAL_MAX);
+    put_wheel(&p, 0, 0, PI / 2, PI / 2, 1, 100);
+    p.wheel[0].inertia = 1;
+    laconic_friction_prepare(&p.wheel[0]);
+    p.load[0].axle = p.load[1].drive_limit = LACONIC_REAL_MAX;
+    p.free[0] = 1;
+    p.load[1].free_speed = REAL(speed);
+    TEST_ASSERT_GREATER_THAN(0, solve(&p));
+    ASSERT_NEAR(EITHER(1e-6, 1e-5) * speed, speed, p.speed[1]);
+}
+
+/* Of each wheel, also where nothing moves. */
+static void wheels_stand_where_nothing_moves(void) {
+    problem p = one_wheel(1);
+    put_wheel(&p, 0, 1, PI / 2, PI / 2, 1, 0.5);
+    p.load[1] = p.load[0];
+    p.speed[0] = p.speed[1] = 7;
+    TEST_ASSERT_GREATER_THAN(0, solve(&p));
+    TEST_ASSERT_TRUE(p.speed[0] == 0 && p.speed[1] == 0);
+}
+
 int main(void) {
     UNITY_BEGIN();
     RUN_TEST(a_sliding_wheel_loses_the_grip_against_its_slip);
@@ -334,5 +358,7 @@ int main(void) {
     RUN_TEST(what_lies_beyond_the_last_wheel_stays);
     RUN_TEST(speeds_of_hardly_any_share_of_the_free_motion_are_none);
     RUN_TEST(a_motion_next_to_the_least_number_s_root_is_none);
+    RUN_TEST(a_heavy_wheel_that_turns_slowly_is_not_at_rest);
+    RUN_TEST(wheels_stand_where_nothing_moves);
     return UNITY_END();
 }

@@ -133,6 +133,24 @@ static void what_contacts_take_counts_as_it_is_where_the_motion_reverses_on_a_sl
     }
 }
 
+/* Metres and radians together have one bound: what one step of so fast a body adds must fit its heading. */
+static void a_body_that_goes_further_in_a_step_than_a_heading_can_turn_is_refused(void) {
+    const laconic_input coasting = no_input();
+    const double step_s = 1e3, turn = 0.04 * sqrt(20 / 0.7); /* R/√(I/M): rad of yaw per rad of zeta */
+    for (int axis = 0; axis < 3; axis++)
+        for (int sign = -1; sign <= 1; sign += 2)
+            for (int beyond = 0; beyond < 2; beyond++) {
+                const double way = sign * (beyond ? 1.2 : 0.8) * (double)LARGEST_YAW_CHANGE_RAD;
+                laconic_plant plant = started(robotino(1e-9, 0, 0), step_s, 0, 0, 0);
+                plant.state.zeta[axis].value = REAL(way / (step_s * (axis == 2 ? turn : 0.04)));
+                ASSERT_NEAR(1e-6, turn, plant.model.yaw_rate_of_zeta[2]);
+                const laconic_plant before = plant;
+                const laconic_status status = laconic_plant_run(&plant, &coasting, 1, &why);
+                ASSERT_STATUS(beyond ? LACONIC_OVERFLOW : LACONIC_OK, status);
+                if (beyond) TEST_ASSERT_EQUAL_MEMORY(&before.state, &plant.state, sizeof before.state);
+            }
+}
+
 int main(void) {
     UNITY_BEGIN();
     RUN_TEST(a_step_that_the_solver_refuses_is_taken_in_parts);
@@ -142,5 +160,6 @@ int main(void) {
     RUN_TEST(the_brake_of_a_large_wheel_holds_what_its_contact_can_give);
     RUN_TEST(a_body_at_the_end_of_the_range_of_speeds_is_stepped);
     RUN_TEST(what_contacts_take_counts_as_it_is_where_the_motion_reverses_on_a_slope);
+    RUN_TEST(a_body_that_goes_further_in_a_step_than_a_heading_can_turn_is_refused);
     return UNITY_END();
 }
