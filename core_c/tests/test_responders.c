@@ -92,9 +92,37 @@ static void columns_are_found_in_a_room_of_their_own(void) {
     for (int k = 0; k < CORE_COLUMNS; k++) TEST_ASSERT_TRUE(column[k].x_m != 0 || column[k].y_m != 0);
 }
 
+/* With a change of the model or without, first or second. */
+static void a_direction_beside_another_is_answered_as_alone(void) {
+    static const double step_s[2] = {0.01, 0.8};
+    for (int32_t number = 0; number < LACONIC_METHOD_COUNT; number++)
+        for (int k = 0; k < 8; k++) {
+            const char *const name = laconic_method_by_number(number)->name;
+            question q;
+            answers both;
+            ask(&q, laconic_method_by_number(number), step_s[k / 4], k % 2 == 0);
+            q.in[1].zeta = lanes_of(vector_of(REAL(-0.4), REAL(0.5), REAL(0.2)));
+            if (k / 2 % 2 == 1) {
+                const step_direction first = q.in[0];
+                q.in[0] = q.in[1];
+                q.in[1] = first;
+            }
+            memset(&both, 0, sizeof both);
+            q.step.responds(&both.step, both.by, &q.step.at, q.in, 2);
+            for (int i = 0; i < 2; i++) {
+                answers alone;
+                memset(&alone, 0, sizeof alone);
+                q.step.responds(&alone.step, alone.by, &q.step.at, &q.in[i], 1);
+                TEST_ASSERT_EQUAL_MEMORY_MESSAGE(&both.by[i], &alone.by[0], sizeof alone.by[0], name);
+                TEST_ASSERT_EQUAL_MEMORY_MESSAGE(&both.step, &alone.step, sizeof alone.step, name);
+            }
+        }
+}
+
 int main(void) {
     UNITY_BEGIN();
     RUN_TEST(what_lay_on_the_stack_changes_no_answer);
     RUN_TEST(columns_are_found_in_a_room_of_their_own);
+    RUN_TEST(a_direction_beside_another_is_answered_as_alone);
     return UNITY_END();
 }
