@@ -318,6 +318,26 @@ static void a_brake_holds_a_wheel_with_oblique_rollers_that_drag(void) {
     ASSERT_NEAR(EITHER(1e-12, 1e-5), -0.04 * force[1], out.reactions.brake_Nm[1]); /* its axle is along −x */
 }
 
+static void outputs_do_not_hang_on_those_before(void) {
+    laconic_vehicle v = with_drive(robotino(0.4, 0.3, 0.02));
+    laconic_input input = no_input();
+    v.drive.supply_V = 12;
+    v.drive.supply_resistance_ohm = REAL(0.1);
+    v.drive.current_limit_A = 2;
+    v.wheel[2].locked = true;
+    laconic_plant plant = started(v, 1e-3, 5, 1, 2);
+    input.voltage_V[0] = 10;
+    input.body_force_N[1] = 30;
+    run(&plant, &input, 20);
+    const laconic_outputs once = outputs_with(&plant, &input);
+    laconic_outputs again = once;
+    laconic_outputs_of(&again, &plant, &input);
+    laconic_plant_reactions(&again.reactions, &plant, NULL, &input);
+    TEST_ASSERT_EQUAL_MEMORY(&once, &again, sizeof once);
+    TEST_ASSERT_TRUE(again.friction.motor_loss_J > 0 && again.friction.supply_loss_J > 0);
+    TEST_ASSERT_TRUE(again.friction.axle_loss_J > 0 && again.friction.slip_loss_J > 0);
+}
+
 int main(void) {
     UNITY_BEGIN();
     RUN_TEST(contacts_that_slip_stick_and_lift_are_told_apart);
@@ -338,5 +358,6 @@ int main(void) {
     RUN_TEST(free_rollers_leave_the_margin_to_the_force_along_them);
     RUN_TEST(loads_of_the_smooth_law_hold_the_forces_that_they_make);
     RUN_TEST(a_brake_holds_a_wheel_with_oblique_rollers_that_drag);
+    RUN_TEST(outputs_do_not_hang_on_those_before);
     return UNITY_END();
 }

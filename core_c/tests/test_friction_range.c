@@ -104,25 +104,34 @@ static void a_wheel_far_off_counts_by_its_place_and_by_its_lever(void) {
     ASSERT_REFUSED(LACONIC_OVERFLOW, LACONIC_FIELD_NONE, 0, status_of(&v), why);
 }
 
-/* Normal loads of points that are hardly apart: newtons for each newton metre. */
+/* Normal loads of points that are hardly apart, wheels or supports: newtons for each newton metre. */
 static void points_that_are_hardly_apart_count_in_the_range(void) {
     const double small = EITHER(1e-150, 1e-16), apart = EITHER(1e-152, 1e-18);
-    laconic_vehicle v = unit_vehicle();
-    v.mass_kg = REAL(1 / small);
-    v.wheel_radius_m = v.wheel_inertia_kgm2 = v.yaw_inertia_kgm2 = REAL(small);
-    v.wheel_count = 0;
-    for (int i = 0; i < 3; i++)
-        add_wheel(&v, LACONIC_WHEEL_ROLLER, apart * cos(2 * PI * i / 3), apart * sin(2 * PI * i / 3), 0, PI / 2);
-    const laconic_model model = model_of(v);
-    laconic_friction f;
-    ASSERT_STATUS(LACONIC_OK, laconic_friction_of(&f, &model, &v, &why));
-    double sum = 0;
-    for (int i = 0; i < 3; i++)
-        for (int k = 0; k < 3; k++) sum += fabs((double)f.normal_load_of_wrench[i][k]);
-    v.com_z_m = REAL(LIMIT - 0.5 * sum);
-    ASSERT_REFUSED(LACONIC_OVERFLOW, LACONIC_FIELD_NONE, 0, status_of(&v), why);
-    v.com_z_m = REAL(LIMIT - 3 * sum);
-    ASSERT_STATUS(LACONIC_OK, status_of(&v));
+    for (int wheels = 1; wheels <= 3; wheels++) {
+        laconic_vehicle v = unit_vehicle();
+        v.mass_kg = REAL(1 / small);
+        v.wheel_radius_m = v.wheel_inertia_kgm2 = v.yaw_inertia_kgm2 = REAL(small);
+        v.wheel_count = 0;
+        for (int i = 0; i < 3; i++) {
+            const double x = apart * cos(2 * PI * i / 3), y = apart * sin(2 * PI * i / 3);
+            if (i < wheels) {
+                add_wheel(&v, LACONIC_WHEEL_ROLLER, x, y, 0, PI / 2);
+            } else {
+                v.support[v.support_count].x_m = REAL(x);
+                v.support[v.support_count++].y_m = REAL(y);
+            }
+        }
+        const laconic_model model = model_of(v);
+        laconic_friction f;
+        ASSERT_STATUS(LACONIC_OK, laconic_friction_of(&f, &model, &v, &why));
+        double sum = 0;
+        for (int i = 0; i < 3; i++)
+            for (int k = 0; k < 3; k++) sum += fabs((double)f.normal_load_of_wrench[i][k]);
+        v.com_z_m = REAL(LIMIT - 0.3 * sum);
+        ASSERT_REFUSED(LACONIC_OVERFLOW, LACONIC_FIELD_NONE, 0, status_of(&v), why);
+        v.com_z_m = REAL(LIMIT - 3 * sum);
+        ASSERT_STATUS(LACONIC_OK, status_of(&v));
+    }
 }
 
 static laconic_status start_with_wheel(int wheel, laconic_real speed, laconic_real nu) {
@@ -220,6 +229,15 @@ static void wheels_that_allow_no_motion_on_ideal_ground_are_refused(void) {
     ASSERT_REFUSED(LACONIC_NOTHING_MOVES, LACONIC_FIELD_WHEEL_KIND, 0, status_of(&v), why);
 }
 
+/* Then nothing of it is left for the motor's own voltage. */
+static void friction_of_motor_and_gears_is_at_most_the_whole_damping(void) {
+    laconic_vehicle v = with_drive(robotino(0.4, 0, 0));
+    v.drive.viscous_friction_Nms = 3;
+    const laconic_plant plant = started(v, 1e-3, 0, 0, 0);
+    ASSERT_NEAR(EITHER(1e-12, 1e-5), 0.26 / (20 * 0.04 * 0.04), plant.friction.axle[1].viscous);
+    TEST_ASSERT_TRUE(plant.friction.axle[1].back_emf == 0);
+}
+
 int main(void) {
     UNITY_BEGIN();
     RUN_TEST(each_constant_of_ground_and_supply_counts_in_the_range);
@@ -237,5 +255,6 @@ int main(void) {
     RUN_TEST(of_windings_that_are_not_known_no_current_is_either);
     RUN_TEST(a_motor_without_a_gain_is_a_damper_that_no_current_limits);
     RUN_TEST(wheels_that_allow_no_motion_on_ideal_ground_are_refused);
+    RUN_TEST(friction_of_motor_and_gears_is_at_most_the_whole_damping);
     return UNITY_END();
 }

@@ -337,6 +337,49 @@ static void wheels_stand_where_nothing_moves(void) {
     TEST_ASSERT_TRUE(p.speed[0] == 0 && p.speed[1] == 0);
 }
 
+/* Impulses and speeds times a power of two: dampings and inertias stay. */
+static void scale(problem *p, laconic_real by) {
+    for (int m = 0; m < 3; m++) p->free[m] *= by;
+    for (int i = 0; i < p->count; i++) {
+        friction_load *l = &p->load[i];
+        laconic_real *const numbers[5] = {&l->grip, &l->axle, &l->drive, &l->drive_limit, &l->free_speed};
+        for (int k = 0; k < 5; k++)
+            if (*numbers[k] < LACONIC_REAL_MAX) *numbers[k] *= by;
+    }
+}
+
+/* No bound hangs on the unit of speed. */
+static void the_solution_of_a_slower_motion_is_as_much_slower_to_the_last_bit(void) {
+    const laconic_real by = REAL(EITHER(0x1p-60, 0x1p-6)); /* squares of residuals stay normal numbers */
+    for (int n = 0; n < 600; n++) {
+        problem p;
+        if (n % 2 == 0) {
+            random_vehicle(&p, 1 + n % 4);
+        } else { /* of which some are solved only as far as numbers tell */
+            memset(&p, 0, sizeof p);
+            for (int i = 0; i < 3; i++) put_wheel(&p, cos(2.1 * i), sin(2.1 * i), 2.1 * i, PI / 2, 1e-4, 1e-4);
+        }
+        random_loads(&p);
+        random_motion(&p);
+        problem slower = p;
+        scale(&slower, by);
+        TEST_ASSERT_EQUAL_INT(solve(&p), solve(&slower));
+        for (int m = 0; m < 3; m++) TEST_ASSERT_TRUE(slower.nu[m] == p.nu[m] * by);
+        for (int i = 0; i < p.count; i++) TEST_ASSERT_TRUE(slower.speed[i] == p.speed[i] * by);
+    }
+}
+
+static void what_is_prepared_again_stays_and_free_rollers_have_no_mass_across(void) {
+    problem p = one_wheel(1);
+    put_wheel(&p, 0.3, -0.7, 0.4, PI / 2, 0, 0.5);
+    TEST_ASSERT_TRUE(p.wheel[1].row_mass[1] == 0 && p.wheel[1].lateral_mass == 0 && p.wheel[1].row_mass[0] > 0);
+    for (int i = 0; i < 2; i++) {
+        const friction_wheel before = p.wheel[i];
+        laconic_friction_prepare(&p.wheel[i]);
+        TEST_ASSERT_EQUAL_MEMORY(&before, &p.wheel[i], sizeof before);
+    }
+}
+
 int main(void) {
     UNITY_BEGIN();
     RUN_TEST(a_sliding_wheel_loses_the_grip_against_its_slip);
@@ -360,5 +403,7 @@ int main(void) {
     RUN_TEST(a_motion_next_to_the_least_number_s_root_is_none);
     RUN_TEST(a_heavy_wheel_that_turns_slowly_is_not_at_rest);
     RUN_TEST(wheels_stand_where_nothing_moves);
+    RUN_TEST(the_solution_of_a_slower_motion_is_as_much_slower_to_the_last_bit);
+    RUN_TEST(what_is_prepared_again_stays_and_free_rollers_have_no_mass_across);
     return UNITY_END();
 }
