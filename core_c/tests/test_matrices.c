@@ -68,6 +68,17 @@ static void a_locked_wheel_whose_row_leaves_the_range_is_refused(void) {
     ASSERT_REFUSED(LACONIC_OVERFLOW, LACONIC_FIELD_NONE, 0, laconic_matrices_of(&x, &v, &why), why);
 }
 
+/* Its row twice, as a wheel's and as a constraint: each alone is within the range, with a square that is, too. */
+static void sizes_of_rows_add_up_whatever_they_are_of(void) {
+    laconic_vehicle v = three_wheels();
+    v.wheel[0].locked = true;
+    v.wheel[0].x_m = REAL(EITHER(1.0e154, 1.3e19) * RADIUS * BIG_LAMBDA);
+    v.wheel_inertia_kgm2 = 0;
+    ASSERT_REFUSED(LACONIC_OVERFLOW, LACONIC_FIELD_NONE, 0, laconic_matrices_of(&x, &v, &why), why);
+    v.wheel[0].x_m *= REAL(0.4);
+    ASSERT_STATUS(LACONIC_OK, laconic_matrices_of(&x, &v, &why));
+}
+
 static void a_refused_vehicle_changes_nothing(void) {
     laconic_vehicle v = three_wheels();
     laconic_matrices before;
@@ -86,6 +97,7 @@ int main(void) {
     RUN_TEST(the_differential_drive_has_the_papers_rows_and_constraint);
     RUN_TEST(a_locked_wheel_adds_its_own_row_as_a_constraint);
     RUN_TEST(a_locked_wheel_whose_row_leaves_the_range_is_refused);
+    RUN_TEST(sizes_of_rows_add_up_whatever_they_are_of);
     RUN_TEST(a_refused_vehicle_changes_nothing);
     return UNITY_END();
 }

@@ -88,6 +88,12 @@ static void numbers_are_written_as_printf_writes_them(void) {
 static void a_number_that_rounds_up_to_the_next_power_stays_right(void) {
     TEST_ASSERT_EQUAL_STRING("1e+6", shown(999999.9));
     TEST_ASSERT_EQUAL_STRING("10", shown(9.9999999));
+    TEST_ASSERT_EQUAL_STRING("9.99999", shown(9.99999));
+}
+
+/* Just below the middle of two: a power of 10 taken out and put back would round it up. */
+static void a_number_is_scaled_no_farther_than_it_must_be(void) {
+    TEST_ASSERT_EQUAL_STRING("92.5649", shown(EITHER(92.564949999999996, 92.5649)));
 }
 
 static void zero_infinity_and_nan_are_written_out(void) {
@@ -139,6 +145,7 @@ int main(void) {
     RUN_TEST(every_status_has_a_text_and_so_has_an_unknown_number);
     RUN_TEST(numbers_are_written_as_printf_writes_them);
     RUN_TEST(a_number_that_rounds_up_to_the_next_power_stays_right);
+    RUN_TEST(a_number_is_scaled_no_farther_than_it_must_be);
     RUN_TEST(zero_infinity_and_nan_are_written_out);
     RUN_TEST(the_ends_of_the_range_are_shown);
     RUN_TEST(a_short_buffer_gets_what_fits_and_the_whole_length_is_returned);

@@ -17,11 +17,15 @@ static void every_number_has_its_method_and_every_name_leads_back(void) {
 
 static void what_is_no_method_is_null(void) {
     TEST_ASSERT_NULL(laconic_method_by_number(-1));
+    TEST_ASSERT_NULL(laconic_method_by_number(INT32_MIN));
     TEST_ASSERT_NULL(laconic_method_by_number(LACONIC_METHOD_COUNT));
+    TEST_ASSERT_NULL(laconic_method_by_number(INT32_MAX));
     TEST_ASSERT_NULL(laconic_method_by_name(""));
     TEST_ASSERT_NULL(laconic_method_by_name("rk"));
     TEST_ASSERT_NULL(laconic_method_by_name("rk45"));
     TEST_ASSERT_NULL(laconic_method_by_name("RK4"));
+    TEST_ASSERT_NULL(laconic_method_by_name("rk3"));
+    TEST_ASSERT_NULL(laconic_method_by_name("rk5"));
 }
 
 int main(void) {

@@ -64,6 +64,9 @@ static void resistance_must_be_positive_and_the_gear_not_zero(void) {
     m = good_motor();
     m.gear_ratio = 0;
     refuses(m, LACONIC_ZERO, LACONIC_FIELD_GEAR_RATIO);
+    m.gear_ratio = LACONIC_REAL_MIN / -2;
+    refuses(m, LACONIC_ZERO, LACONIC_FIELD_GEAR_RATIO);
+    TEST_ASSERT_TRUE(why.value == LACONIC_REAL_MIN / -2 && why.limit == 0);
 }
 
 static void friction_and_rotor_inertia_must_not_be_negative(void) {
@@ -78,6 +81,10 @@ static void friction_and_rotor_inertia_must_not_be_negative(void) {
 static void a_motor_whose_constants_leave_the_range_or_add_energy_is_refused(void) {
     laconic_motor m = good_motor();
     m.gear_ratio = REAL(EITHER(1e200, 1e25));
+    refuses(m, LACONIC_OVERFLOW, LACONIC_FIELD_GEAR_RATIO);
+    m = good_motor();
+    m.torque_constant_Nm_per_A = LACONIC_REAL_MAX; /* of the three the gain alone is beyond the range */
+    m.back_emf_Vs_per_rad = m.viscous_friction_Nms = 0;
     refuses(m, LACONIC_OVERFLOW, LACONIC_FIELD_GEAR_RATIO);
     m = good_motor();
     m.back_emf_Vs_per_rad = REAL(-0.12); /* damping below zero */

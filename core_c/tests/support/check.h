@@ -55,7 +55,7 @@ static inline void assert_tells_what_was_wrong(const laconic_refusal *why) {
     case LACONIC_NOT_FINITE: fits = !isfinite(value); break;
     case LACONIC_NOT_POSITIVE: fits = value <= 0; break;
     case LACONIC_NEGATIVE: fits = value < 0; break;
-    case LACONIC_ZERO: fits = value == 0; break;
+    case LACONIC_ZERO: fits = fabs(value) < (double)LACONIC_REAL_MIN; break;
     case LACONIC_FRICTION_TWICE:
     case LACONIC_FRICTION_MISSING: fits = value > 0; break;
     case LACONIC_ILL_CONDITIONED: fits = value > 1; break;

@@ -1,0 +1,98 @@
+/* Tests of sensors.c: samples beyond the range, what a run says of them, and a vehicle whose ground changes. */
+#include "slipping.h"
+
+#define STEP 1e-3
+
+static laconic_sensors beside(const laconic_plant *plant, laconic_sensor_settings settings) {
+    laconic_sensors sensors;
+    memset(&sensors, 0xA5, sizeof sensors); /* as memory comes */
+    ASSERT_STATUS(LACONIC_OK, laconic_sensors_start(&sensors, &settings, plant, &why));
+    return sensors;
+}
+
+static void every_number_is_a_seed(void) {
+    const int32_t seeds[] = {INT32_MIN, -1, 0, INT32_MAX};
+    for (int k = 0; k < 4; k++) {
+        const laconic_sensor_settings settings = {.imu = {.seed = seeds[k]}};
+        ASSERT_STATUS(LACONIC_OK, laconic_sensor_settings_check(&settings, 3, &why));
+    }
+}
+
+/* A body that yaws by 2 rad/s feels −4 d m/s² along its axes at a place d: the coordinate that is farther is named, and
+ * the larger part told. */
+static void of_a_sample_beyond_the_range_the_farther_coordinate_and_the_larger_part_are_told(void) {
+    const struct {
+        double x_m, y_m, heading_rad;
+        laconic_sensor_field far;
+        double told;
+    } places[] = {{1e15, 3e14, 0, LACONIC_SENSOR_FIELD_IMU_X, -4e15},
+                  {-1e15, 3e14, 0, LACONIC_SENSOR_FIELD_IMU_X, 4e15},
+                  {-1e15, -3e14, PI / 2, LACONIC_SENSOR_FIELD_IMU_X, -4e15},
+                  {3e14, 1e15, 0, LACONIC_SENSOR_FIELD_IMU_Y, -4e15},
+                  {-3e14, -1e15, 0, LACONIC_SENSOR_FIELD_IMU_Y, 4e15}};
+    const laconic_input input = no_input();
+    for (size_t k = 0; k < sizeof places / sizeof places[0]; k++) {
+        laconic_plant plant = started(bare_body(), STEP, 0, 0, 2 * BIG_LAMBDA);
+        laconic_sensor_settings settings = {0};
+        settings.imu.x_m = REAL(places[k].x_m);
+        settings.imu.y_m = REAL(places[k].y_m);
+        settings.imu.heading_rad = REAL(places[k].heading_rad);
+        laconic_sensors sensors = beside(&plant, settings);
+        ASSERT_REFUSED(LACONIC_OVERFLOW, (laconic_field)places[k].far, 0,
+                       laconic_sensors_run(&sensors, &plant, &input, 1, &why), why);
+        ASSERT_NEAR(EITHER(1e3, 1e10), places[k].told, why.value);
+    }
+}
+
+static void a_watched_run_ends_with_the_step_whose_sample_is_refused(void) {
+    const laconic_sensor_settings settings = {.imu = {.x_m = REAL(1e15), .delay_steps = 1}};
+    laconic_plant plant = started(bare_body(), STEP, 0, 0, 2 * BIG_LAMBDA);
+    laconic_sensors sensors = beside(&plant, settings);
+    const laconic_input input = no_input();
+    ASSERT_STATUS(LACONIC_OVERFLOW, laconic_sensors_run(&sensors, &plant, &input, 5, &why));
+    TEST_ASSERT_EQUAL_UINT64(1, plant.steps);
+}
+
+/* An explicit method refuses a body that spins up; what it feels by then is beyond the range as well. */
+static void of_a_refused_step_its_own_reason_is_told(void) {
+    const laconic_sensor_settings settings = {.imu = {.x_m = REAL(1e15)}};
+    const laconic_vehicle v = three_wheels();
+    const laconic_start start = start_with(0, 0, 0);
+    laconic_input input = no_input();
+    laconic_plant plant;
+    memset(&plant, 0, sizeof plant);
+    ASSERT_STATUS(LACONIC_OK, laconic_plant_start(&plant, &v, &laconic_rk4, REAL(0.1), &start, &why));
+    laconic_sensors sensors = beside(&plant, settings);
+    input.body_moment_Nm = REAL(10);
+    ASSERT_REFUSED(LACONIC_STEP_BEYOND_GYROSCOPIC_LIMIT, LACONIC_FIELD_STEP, 0,
+                   laconic_sensors_run(&sensors, &plant, &input, 1000, &why), why);
+    TEST_ASSERT_TRUE(plant.steps > 0);
+    TEST_ASSERT_EQUAL_UINT64(plant.steps, sensors.newest);
+}
+
+/* The acceleration beside friction is the mean of a step: before the first there is none. */
+static void ground_that_gets_friction_shows_no_acceleration_before_its_first_step(void) {
+    const laconic_sensor_settings settings = {0};
+    laconic_vehicle v = three_wheels();
+    laconic_plant plant = started(v, STEP, 1, 2, 3);
+    laconic_sensors sensors = beside(&plant, settings);
+    const laconic_input input = no_input();
+    laconic_real acceleration[2] = {1, 1};
+    v.ground.friction_coefficient = REAL(0.5);
+    ASSERT_STATUS(LACONIC_OK, laconic_plant_change(&plant, &v, &why));
+    laconic_acceleration_body(acceleration, &sensors, &plant, &input);
+    TEST_ASSERT_TRUE(acceleration[0] == 0 && acceleration[1] == 0);
+    ASSERT_STATUS(LACONIC_OK, laconic_sensors_run(&sensors, &plant, &input, 1, &why));
+    laconic_acceleration_body(acceleration, &sensors, &plant, &input);
+    TEST_ASSERT_TRUE(acceleration[0] != 0 && acceleration[1] != 0);
+}
+
+int main(void) {
+    UNITY_BEGIN();
+    RUN_TEST(every_number_is_a_seed);
+    RUN_TEST(of_a_sample_beyond_the_range_the_farther_coordinate_and_the_larger_part_are_told);
+    RUN_TEST(a_watched_run_ends_with_the_step_whose_sample_is_refused);
+    RUN_TEST(of_a_refused_step_its_own_reason_is_told);
+    RUN_TEST(ground_that_gets_friction_shows_no_acceleration_before_its_first_step);
+    return UNITY_END();
+}
