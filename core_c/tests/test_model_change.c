@@ -48,8 +48,30 @@ static void wheels_that_a_vehicle_has_not_change_nothing(void) {
     }
 }
 
+/* A fixed wheel behind one with rollers, and before it. */
+static void the_change_of_a_constraint_is_that_of_its_wheel_whatever_its_number(void) {
+    laconic_model_change change[2];
+    for (int fixed = 0; fixed < 2; fixed++) {
+        laconic_vehicle v = bare_body(), by = bare_body();
+        for (int i = 0; i < 2; i++)
+            if (i == fixed)
+                add_wheel(&v, LACONIC_WHEEL_FIXED, 0.1, -0.05, 0.3, 0);
+            else
+                add_wheel(&v, LACONIC_WHEEL_ROLLER, -0.2, 0.15, 1, PI / 2);
+        by.wheel[fixed].x_m = REAL(0.7);
+        by.wheel[fixed].axle_rad = REAL(-0.4);
+        const laconic_model m = model_of(v);
+        change[fixed] = change_of(&m, &v, &by);
+    }
+    for (int i = 0; i < 3; i++) {
+        ASSERT_NEAR_ALL(20 * ROUNDING, change[0].nu_of_zeta[i], change[1].nu_of_zeta[i], 3);
+        TEST_ASSERT_TRUE(fabs((double)change[0].nu_of_zeta[i][0]) + fabs((double)change[0].nu_of_zeta[i][1]) > 0.01);
+    }
+}
+
 int main(void) {
     UNITY_BEGIN();
     RUN_TEST(wheels_that_a_vehicle_has_not_change_nothing);
+    RUN_TEST(the_change_of_a_constraint_is_that_of_its_wheel_whatever_its_number);
     return UNITY_END();
 }

@@ -112,6 +112,50 @@ static void a_step_that_begins_near_the_end_of_the_range_is_refused_whatever_the
         }
 }
 
+/* Where no force acts a point may be as far as it likes, beside a strong force at another moment of the step. */
+static void a_far_point_without_a_force_is_no_moment_of_another_sample(void) {
+    for (int32_t i = 0; i < LACONIC_METHOD_COUNT; i++) {
+        const laconic_model m = model_of(bare_body());
+        const laconic_integrator in = integrator_of(laconic_method_by_number(i), &m, 1e-5);
+        laconic_state state = moving(&m, 0, 0, 0);
+        laconic_input samples[3] = {no_input(), no_input(), no_input()};
+        for (int k = 0; k < 3; k++) samples[k].world_force_N[0] = REAL(k == 2 ? 0 : 1e10);
+        samples[2].world_force_point_m[0] = REAL(EITHER(1e300, 1e30));
+        ASSERT_STATUS(LACONIC_OK, laconic_step_sampled(&m, &in, &state, &samples[0], &samples[1], &samples[2]));
+        TEST_ASSERT_TRUE(state.zeta[0].value > 0 && state.zeta[2].value == 0);
+    }
+}
+
+/* ---------------------------------------------------------------------------------- refusals -- */
+
+/* Another step is told where a smaller one may do, and nowhere else. */
+static void only_of_some_refusals_a_smaller_step_is_told(void) {
+    const laconic_model m = model_of(three_wheels());
+    const laconic_integrator in = integrator_of(&laconic_rk4, &m, 0.1);
+    const laconic_state state = moving(&m, 1, 1, 500);
+    const laconic_input input = no_input();
+    laconic_refusal why;
+    for (int status = 1; status < LACONIC_STATUS_COUNT; status++) {
+        laconic_step_refusal(&why, (laconic_status)status, &m, &in, &state, &input, 1);
+        const bool smaller = status == LACONIC_STEP_BEYOND_GYROSCOPIC_LIMIT || status == LACONIC_STEP_GAINS_ENERGY ||
+                             status == LACONIC_STEP_SINGULAR || status == LACONIC_STEP_UNSOLVED;
+        TEST_ASSERT_TRUE((int)why.status == status && (why.limit > 0) == smaller && (double)why.limit < 0.1);
+    }
+}
+
+/* In the order of the fields. */
+static void of_several_numbers_that_are_not_finite_the_first_is_named(void) {
+    const laconic_model m = model_of(with_motors(three_wheels()));
+    laconic_input input = no_input();
+    laconic_refusal why;
+    input.world_force_point_m[0] = input.world_force_N[0] = input.body_moment_Nm = NOT_A_NUMBER;
+    ASSERT_REFUSED(LACONIC_NOT_FINITE, LACONIC_FIELD_BODY_MOMENT, 0, laconic_input_check(&m, &input, &why), why);
+    input.body_force_N[1] = input.axle_torque_Nm[2] = NOT_A_NUMBER;
+    ASSERT_REFUSED(LACONIC_NOT_FINITE, LACONIC_FIELD_AXLE_TORQUE, 3, laconic_input_check(&m, &input, &why), why);
+    input.voltage_V[1] = NOT_A_NUMBER;
+    ASSERT_REFUSED(LACONIC_NOT_FINITE, LACONIC_FIELD_VOLTAGE, 2, laconic_input_check(&m, &input, &why), why);
+}
+
 int main(void) {
     UNITY_BEGIN();
     RUN_TEST(a_heading_of_more_turns_than_can_be_counted_is_refused_whatever_the_method);
@@ -119,5 +163,8 @@ int main(void) {
     RUN_TEST(a_speed_beyond_the_range_is_refused_whatever_the_method);
     RUN_TEST(a_step_that_begins_near_the_end_of_the_range_is_refused_whatever_the_method);
     RUN_TEST(points_and_forces_that_leave_the_range_together_are_refused_whatever_the_method);
+    RUN_TEST(a_far_point_without_a_force_is_no_moment_of_another_sample);
+    RUN_TEST(only_of_some_refusals_a_smaller_step_is_told);
+    RUN_TEST(of_several_numbers_that_are_not_finite_the_first_is_named);
     return UNITY_END();
 }
