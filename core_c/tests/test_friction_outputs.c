@@ -211,19 +211,26 @@ static void a_load_that_is_no_number_leaves_no_margin(void) {
     }
 }
 
+/* Points are wheels and supports: of these only the load is written. */
 static void what_lies_beyond_the_last_point_is_not_written(void) {
     const laconic_input input = no_input();
-    laconic_plant plant = started(with_drive(robotino(0.4, 0.3, 0)), 1e-3, 2, 1, 0);
-    laconic_slip *s = &plant.slip;
-    s->current_A[3] = s->grip_N[3][0] = s->grip_N[3][1] = s->normal_N[3] = 7;
-    s->limit[3] = 7;
-    laconic_slip_smooth(s, &plant.friction, &plant.state, &input);
-    TEST_ASSERT_TRUE(s->current_A[3] == 7 && s->grip_N[3][0] == 7 && s->grip_N[3][1] == 7 && s->normal_N[3] == 7);
-    TEST_ASSERT_EQUAL_INT(7, s->limit[3]);
-    laconic_reactions reactions;
-    memset(&reactions, 0, sizeof reactions);
-    laconic_plant_reactions(&reactions, &plant, NULL, &input);
-    TEST_ASSERT_TRUE(reactions.normal_N[2] > 0 && reactions.normal_N[3] == 0);
+    for (int supports = 0; supports < 2; supports++) {
+        laconic_vehicle v = with_drive(robotino(0.4, 0.3, 0));
+        v.support_count = supports;
+        laconic_plant plant = started(v, 1e-3, 2, 1, 0);
+        laconic_slip *s = &plant.slip;
+        laconic_reactions reactions;
+        s->current_A[3] = s->grip_N[3][0] = s->grip_N[3][1] = s->normal_N[3] = s->normal_N[4] = 7;
+        s->limit[3] = 7;
+        laconic_slip_smooth(s, &plant.friction, &plant.state, &input);
+        TEST_ASSERT_TRUE(s->current_A[3] == 7 && s->grip_N[3][0] == 7 && s->grip_N[3][1] == 7 && s->normal_N[4] == 7);
+        TEST_ASSERT_TRUE((s->normal_N[3] == 7) == (supports == 0));
+        TEST_ASSERT_EQUAL_INT(7, s->limit[3]);
+        memset(&reactions, 0, sizeof reactions);
+        laconic_plant_reactions(&reactions, &plant, NULL, &input);
+        TEST_ASSERT_TRUE(reactions.normal_N[2] > 0 && (reactions.normal_N[3] > 0) == (supports == 1));
+        TEST_ASSERT_TRUE(reactions.normal_N[4] == 0);
+    }
 }
 
 static void without_brakes_no_brake_has_a_torque(void) {
@@ -338,6 +345,23 @@ static void outputs_do_not_hang_on_those_before(void) {
     TEST_ASSERT_TRUE(again.friction.axle_loss_J > 0 && again.friction.slip_loss_J > 0);
 }
 
+/* On ice, by the smooth law, whatever stood in the rates before. */
+static void a_torque_on_an_axle_speeds_up_its_wheel_alone(void) {
+    const laconic_plant plant = started(robotino(1e-9, 0.3, 0), 1e-3, 0, 0, 0);
+    const laconic_real nu[3] = {1, 2, 3}, speed[LACONIC_MAX_WHEELS] = {0};
+    laconic_input input = no_input();
+    laconic_real wheel_rate[LACONIC_MAX_WHEELS];
+    laconic_rates rates;
+    input.axle_torque_Nm[1] = REAL(0.6);
+    memset(&rates, 0xFF, sizeof rates);
+    memset(wheel_rate, 0xFF, sizeof wheel_rate);
+    laconic_friction_derivative(&rates, wheel_rate, &plant.friction, &plant.model, nu, REAL(0.5), speed, &input);
+    for (int i = 0; i < 3; i++) ASSERT_NEAR(1e-3, i == 1 ? 0.6 / 0.003 : 0, wheel_rate[i]);
+    ASSERT_NEAR(1e-6, 3 * 0.04 * sqrt(20 / 0.7), rates.yaw_rate_rad_per_s);
+    ASSERT_NEAR(1e-6, 0.04 * (cos(0.5) - 2 * sin(0.5)), rates.x_m_per_s);
+    ASSERT_NEAR(1e-6, 0.04 * (sin(0.5) + 2 * cos(0.5)), rates.y_m_per_s);
+}
+
 int main(void) {
     UNITY_BEGIN();
     RUN_TEST(contacts_that_slip_stick_and_lift_are_told_apart);
@@ -359,5 +383,6 @@ int main(void) {
     RUN_TEST(loads_of_the_smooth_law_hold_the_forces_that_they_make);
     RUN_TEST(a_brake_holds_a_wheel_with_oblique_rollers_that_drag);
     RUN_TEST(outputs_do_not_hang_on_those_before);
+    RUN_TEST(a_torque_on_an_axle_speeds_up_its_wheel_alone);
     return UNITY_END();
 }

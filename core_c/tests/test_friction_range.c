@@ -127,7 +127,7 @@ static void points_that_are_hardly_apart_count_in_the_range(void) {
         double sum = 0;
         for (int i = 0; i < 3; i++)
             for (int k = 0; k < 3; k++) sum += fabs((double)f.normal_load_of_wrench[i][k]);
-        v.com_z_m = REAL(LIMIT - 0.3 * sum);
+        v.com_z_m = REAL(LIMIT - 0.5 * sum);
         ASSERT_REFUSED(LACONIC_OVERFLOW, LACONIC_FIELD_NONE, 0, status_of(&v), why);
         v.com_z_m = REAL(LIMIT - 3 * sum);
         ASSERT_STATUS(LACONIC_OK, status_of(&v));
@@ -157,8 +157,9 @@ static void wheels_start_up_to_the_end_of_the_range_of_speeds(void) {
 /* Speeds of wheels that it has not are not given. */
 static void a_speed_beyond_the_last_wheel_is_not_read(void) {
     laconic_start start = start_with(3, 1, 2);
-    const laconic_vehicle v = robotino(0.5, 0, 0);
+    laconic_vehicle v = robotino(0.5, 0, 0);
     laconic_plant plant;
+    v.support_count = 1;
     const laconic_plant rolling = started(v, 1e-3, 3, 1, 2);
     start.wheel_speed_rad_per_s[3] = 7;
     ASSERT_STATUS(LACONIC_OK, laconic_plant_start(&plant, &v, &laconic_auto, REAL(1e-3), &start, &why));
@@ -167,7 +168,9 @@ static void a_speed_beyond_the_last_wheel_is_not_read(void) {
 }
 
 static void wheels_that_are_taken_over_are_those_that_there_are(void) {
-    const laconic_plant plant = started(robotino(0.5, 0, 0), 1e-3, 0, 0, 0);
+    laconic_vehicle v = robotino(0.5, 0, 0);
+    v.support_count = 1;
+    const laconic_plant plant = started(v, 1e-3, 0, 0, 0);
     const laconic_real speed[4] = {1, 2, 3, 4}, angle_rad[4] = {5, 6, 7, 8};
     laconic_slip slip;
     laconic_slip_take_over(&slip, &plant.friction, speed, angle_rad);
@@ -238,6 +241,42 @@ static void friction_of_motor_and_gears_is_at_most_the_whole_damping(void) {
     TEST_ASSERT_TRUE(plant.friction.axle[1].back_emf == 0);
 }
 
+/* A caster beyond the wheels carries its part; with the centre of mass on the other side of them it lifts off. */
+static void supports_start_with_the_loads_that_they_have_after_a_step(void) {
+    const laconic_input coasting = no_input();
+    for (int lifts = 0; lifts < 2; lifts++) {
+        laconic_vehicle v = robotino(0.5, 0, 0);
+        v.com_x_m = REAL(lifts ? -0.5 : 0.1);
+        v.support_count = 1;
+        v.support[0].x_m = REAL(0.4);
+        laconic_plant plant = started(v, 1e-3, 0, 0, 0);
+        const laconic_slip start = plant.slip;
+        double weight = 0, moment = 0;
+        for (int i = 0; i < 4; i++) {
+            weight += (double)start.normal_N[i];
+            moment += (double)(start.normal_N[i] * ((i < 3 ? v.wheel[i].x_m : v.support[0].x_m) - v.com_x_m));
+        }
+        TEST_ASSERT_TRUE(lifts ? start.normal_N[3] < 0 : start.normal_N[3] > 0);
+        if (!lifts) ASSERT_NEAR(EITHER(1e-9, 1e-3), 20 * LACONIC_GRAVITY_M_PER_S2, weight);
+        if (!lifts) ASSERT_NEAR(EITHER(1e-9, 1e-3), 0, moment);
+        run(&plant, &coasting, 1);
+        ASSERT_NEAR_ALL(EITHER(1e-9, 1e-3), start.normal_N, plant.slip.normal_N, 4);
+    }
+}
+
+/* A small wheel beside the vehicle's others turns faster than the body. */
+static void the_speed_at_which_a_wheel_would_roll_is_refused_with_its_sign(void) {
+    for (int sign = -1; sign <= 1; sign += 2) {
+        const laconic_start start = start_with(0, sign * 0.25 * (double)LARGEST_SPEED, 0);
+        laconic_vehicle v = unit_vehicle();
+        laconic_plant plant;
+        v.wheel[0].own_radius_m = REAL(0.125);
+        ASSERT_REFUSED(LACONIC_OVERFLOW, LACONIC_FIELD_START_WHEEL_SPEED, 1,
+                       laconic_plant_start(&plant, &v, &laconic_auto, REAL(1e-3), &start, &why), why);
+        ASSERT_NEAR(1e-6, 2 * sign, why.value / LARGEST_SPEED);
+    }
+}
+
 int main(void) {
     UNITY_BEGIN();
     RUN_TEST(each_constant_of_ground_and_supply_counts_in_the_range);
@@ -256,5 +295,7 @@ int main(void) {
     RUN_TEST(a_motor_without_a_gain_is_a_damper_that_no_current_limits);
     RUN_TEST(wheels_that_allow_no_motion_on_ideal_ground_are_refused);
     RUN_TEST(friction_of_motor_and_gears_is_at_most_the_whole_damping);
+    RUN_TEST(supports_start_with_the_loads_that_they_have_after_a_step);
+    RUN_TEST(the_speed_at_which_a_wheel_would_roll_is_refused_with_its_sign);
     return UNITY_END();
 }
