@@ -36,6 +36,26 @@ static void the_basis_makes_damping_diagonal(void) {
         }
 }
 
+/* Shares of inertia and of damping that differ at one wheel alone, either way, and by less than the first wheel's. */
+static void the_basis_makes_damping_diagonal_where_one_wheel_damps_otherwise(void) {
+    const double shares[2][3] = {{0.5, 0.6, 1}, {0.5, 0.8, 1}};
+    for (int k = 0; k < 2; k++) {
+        laconic_vehicle v = with_motors(three_wheels());
+        for (int i = 0; i < 3; i++) {
+            v.wheel[i].own_inertia_kgm2 = REAL(0.009 * shares[k][i]);
+            v.wheel[i].own_motor_damping_Nms = REAL(DAMPING * shares[1 - k][i]);
+        }
+        const laconic_model m = model_of(v);
+        for (int a = 0; a < 3; a++)
+            for (int b = 0; b < 3; b++) {
+                double sum = 0;
+                for (int i = 0; i < 3; i++)
+                    sum += (double)m.wheel_of_zeta[i][a] * (double)m.wheel_of_zeta[i][b] * shares[1 - k][i];
+                ASSERT_NEAR(EITHER(1e-14, 1e-5), a == b ? (double)m.decay_per_s[a] : 0, sum * DAMPING / UNIT_INERTIA);
+            }
+    }
+}
+
 static void every_constraint_is_built_in(void) {
     const laconic_vehicle v = differential_drive();
     const laconic_model m = model_of(v);
@@ -297,6 +317,7 @@ int main(void) {
     UNITY_BEGIN();
     RUN_TEST(the_basis_makes_inertia_the_unit_matrix);
     RUN_TEST(the_basis_makes_damping_diagonal);
+    RUN_TEST(the_basis_makes_damping_diagonal_where_one_wheel_damps_otherwise);
     RUN_TEST(every_constraint_is_built_in);
     RUN_TEST(damping_rates_of_the_three_wheel_example_are_the_closed_form);
     RUN_TEST(axes_are_the_same_without_damping);
