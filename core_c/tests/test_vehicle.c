@@ -255,6 +255,17 @@ static void a_mass_without_all_its_digits_is_refused_even_where_a_payload_outwei
     v.mass_kg = LACONIC_REAL_MIN / 4;
     v.payload.mass_kg = 1;
     ASSERT_REFUSED(LACONIC_OVERFLOW, LACONIC_FIELD_MASS, 0, laconic_vehicle_check(&v, &why), why);
+    TEST_ASSERT_TRUE(why.value == v.mass_kg && why.limit == LACONIC_REAL_MIN);
+}
+
+/* It is asked before the check, which refuses such numbers. */
+static void what_is_not_above_zero_gives_a_vehicle_no_friction(void) {
+    const laconic_real nothing[] = {0, -1, NOT_A_NUMBER};
+    for (int k = 0; k < 3; k++) {
+        laconic_vehicle v = with_motors(three_wheels());
+        v.ground.friction_coefficient = v.drive.supply_V = v.drive.current_limit_A = nothing[k];
+        TEST_ASSERT_FALSE(laconic_vehicle_has_friction(&v));
+    }
 }
 
 int main(void) {
@@ -277,5 +288,6 @@ int main(void) {
     RUN_TEST(the_wheel_count_stays_within_its_bounds);
     RUN_TEST(the_support_count_stays_within_its_bounds);
     RUN_TEST(a_mass_without_all_its_digits_is_refused_even_where_a_payload_outweighs_it);
+    RUN_TEST(what_is_not_above_zero_gives_a_vehicle_no_friction);
     return UNITY_END();
 }
