@@ -1,4 +1,5 @@
 /* Tests of grip.c: the first and the worst instant of slipping and of lifting. */
+#include "stack.h"
 #include "vehicles.h"
 
 #define GRAVITY 9.80665
@@ -27,6 +28,7 @@ static laconic_reactions look_at(scene *s, laconic_input input, uint64_t steps) 
     const laconic_state state = moving(&s->model, 0, 0, 0);
     laconic_reactions found;
     laconic_reactions_of(&found, &s->contact, &s->model, &state, &input);
+    fill_stack(ALL_NAN);
     laconic_grip_watch(&s->grip, &s->contact, &s->model, &found, steps);
     return found;
 }
@@ -188,6 +190,28 @@ static void of_points_that_are_equally_bad_the_first_is_named(void) {
     TEST_ASSERT_EQUAL_INT(2, s.grip.first_slip.point);
 }
 
+/* However little worse it is. Of a support nothing is needed, whatever stands where a wheel's reaction would. */
+static void of_points_the_worse_is_named_by_its_number(void) {
+    laconic_vehicle v = with_motors(differential_drive());
+    v.support_count = 2;
+    v.support[0].y_m = REAL(0.1);
+    v.support[1].y_m = REAL(-0.1);
+    scene s = scene_of(v, 0.8, 0.0);
+    laconic_reactions found = look_at(&s, no_input(), 0);
+    memset(&s.grip, 0, sizeof s.grip);
+    found.normal_N[2] = REAL(-0.5);
+    found.normal_N[3] = REAL(-0.25);
+    found.along_N[2] = found.lateral_N[3] = 7;
+    laconic_grip_watch(&s.grip, &s.contact, &s.model, &found, 1);
+    TEST_ASSERT_EQUAL_INT(3, s.grip.first_lift.point);
+    TEST_ASSERT_TRUE(s.grip.first_lift.needed_N == 0 && s.grip.first_lift.normal_N == REAL(-0.5));
+    found.normal_N[3] = REAL(-0.75);
+    laconic_grip_watch(&s.grip, &s.contact, &s.model, &found, 2);
+    TEST_ASSERT_EQUAL_INT(4, s.grip.worst_lift.point);
+    TEST_ASSERT_TRUE(s.grip.worst_lift.needed_N == 0 && s.grip.worst_lift.normal_N == REAL(-0.75));
+    TEST_ASSERT_EQUAL_INT(3, s.grip.first_lift.point);
+}
+
 int main(void) {
     UNITY_BEGIN();
     RUN_TEST(a_gentle_run_counts_instants_and_nothing_else);
@@ -202,5 +226,6 @@ int main(void) {
     RUN_TEST(the_tolerance_is_a_part_of_the_weight);
     RUN_TEST(a_wheel_at_its_limit_does_not_slip_since_another_one_lifts);
     RUN_TEST(of_points_that_are_equally_bad_the_first_is_named);
+    RUN_TEST(of_points_the_worse_is_named_by_its_number);
     return UNITY_END();
 }

@@ -118,6 +118,9 @@ static void a_short_buffer_gets_what_fits_and_the_whole_length_is_returned(void)
     TEST_ASSERT_EQUAL_UINT(length, laconic_message(&why, little, sizeof little));
     TEST_ASSERT_EQUAL_STRING("vehicle", little);
     TEST_ASSERT_EQUAL_UINT(length, laconic_message(&why, NULL, 0));
+    TEST_ASSERT_EQUAL_UINT(42, laconic_explanation(&why, little, sizeof little));
+    TEST_ASSERT_EQUAL_STRING("-1 is n", little);
+    TEST_ASSERT_EQUAL_UINT(42, laconic_explanation(&why, NULL, 0));
 }
 
 /* Whatever its size: cut or whole, it ends within, and what stands behind it stays. */

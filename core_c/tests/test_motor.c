@@ -185,6 +185,29 @@ static void what_lies_beyond_the_last_wheel_is_neither_read_nor_written(void) {
     }
 }
 
+/* One wheel fewer than there may be: the last place is no wheel, and is not asked. */
+static void all_but_one_of_the_wheels_that_there_can_be_are_those(void) {
+    laconic_vehicle v = three_wheels();
+    const laconic_motor m = good_motor();
+    while (v.wheel_count < LACONIC_MAX_WHEELS - 1) v.wheel[v.wheel_count++] = v.wheel[0];
+    v.wheel[v.wheel_count].own_inertia_kgm2 = -1;
+    ASSERT_STATUS(LACONIC_OK, laconic_motor_fit(&v, &m, &why));
+    TEST_ASSERT_TRUE(v.wheel[v.wheel_count].own_inertia_kgm2 == -1);
+}
+
+static void a_motor_that_is_fitted_again_takes_the_place_of_the_first(void) {
+    laconic_vehicle v = three_wheels();
+    laconic_motor m = good_motor();
+    m.rotor_inertia_kgm2 = 0;
+    for (int k = 0; k < 2; k++) {
+        ASSERT_STATUS(LACONIC_OK, laconic_motor_fit(&v, &m, &why));
+        TEST_ASSERT_TRUE(v.drive.winding_resistance_ohm == 2);
+        ASSERT_NEAR(ROUNDING, 25 * 0.001, v.drive.viscous_friction_Nms);
+        ASSERT_NEAR(ROUNDING, 0.25, v.motor_gain_Nm_per_V);
+        ASSERT_NEAR(ROUNDING, 0.175, v.motor_damping_Nms);
+    }
+}
+
 int main(void) {
     UNITY_BEGIN();
     RUN_TEST(the_data_sheet_becomes_gain_damping_and_inertia);
@@ -203,5 +226,7 @@ int main(void) {
     RUN_TEST(a_rotor_is_added_to_the_inertia_that_a_wheel_has);
     RUN_TEST(the_first_wheel_gets_its_rotor_beside_one_without_a_motor);
     RUN_TEST(what_lies_beyond_the_last_wheel_is_neither_read_nor_written);
+    RUN_TEST(all_but_one_of_the_wheels_that_there_can_be_are_those);
+    RUN_TEST(a_motor_that_is_fitted_again_takes_the_place_of_the_first);
     return UNITY_END();
 }
