@@ -135,6 +135,28 @@ static void points_are_as_many_as_the_vehicle_has(void) {
     ASSERT_NEAR(EITHER(1e-10, 1e-3), 20 * LACONIC_GRAVITY_M_PER_S2, sum_of_loads(&many, &loads));
 }
 
+/* A wheel in front lifts, and the two supports behind it cannot hold the moment: they carry the weight all the same. */
+static void supports_that_cannot_hold_the_moment_carry_the_weight(void) {
+    laconic_vehicle v = robotino(0.5, 0, 0);
+    const laconic_real forward_N[2] = {400, 0};
+    normal_loads loads;
+    v.com_z_m = REAL(0.3);
+    v.wheel_count = 0;
+    add_wheel(&v, LACONIC_WHEEL_ROLLER, 0.2, 0, -PI / 2, PI / 4);
+    v.support_count = 2;
+    for (int i = 0; i < 2; i++) {
+        v.support[i].x_m = REAL(-0.2);
+        v.support[i].y_m = REAL(i == 0 ? 0.1 : -0.1);
+    }
+    const laconic_friction f = friction_of(v);
+    laconic_normal_loads(&loads, &f, forward_N);
+    TEST_ASSERT_TRUE(loads.statics_N[0] < 0 && loads.carried_N[0] == 0);
+    for (int i = 1; i < 3; i++) {
+        TEST_ASSERT_TRUE(fabs((double)loads.carried_N[i] - (double)loads.statics_N[i]) > 1);
+        ASSERT_NEAR(EITHER(1e-10, 1e-3), 10 * LACONIC_GRAVITY_M_PER_S2, loads.carried_N[i]);
+    }
+}
+
 int main(void) {
     UNITY_BEGIN();
     RUN_TEST(at_rest_three_wheels_share_the_weight);
@@ -145,5 +167,6 @@ int main(void) {
     RUN_TEST(a_load_below_zero_by_rounding_carries_nothing_and_has_not_lifted);
     RUN_TEST(where_a_load_is_no_number_nothing_is_carried);
     RUN_TEST(points_are_as_many_as_the_vehicle_has);
+    RUN_TEST(supports_that_cannot_hold_the_moment_carry_the_weight);
     return UNITY_END();
 }

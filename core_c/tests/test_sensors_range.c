@@ -18,6 +18,27 @@ static void every_number_is_a_seed(void) {
     }
 }
 
+static void the_last_encoder_that_there_can_be_is_checked(void) {
+    laconic_sensor_settings settings = {0};
+    settings.encoder[LACONIC_MAX_WHEELS - 1].gear_ratio = NOT_A_NUMBER;
+    ASSERT_REFUSED(LACONIC_NOT_FINITE, (laconic_field)LACONIC_SENSOR_FIELD_WHEEL_ENCODER_GEAR_RATIO, LACONIC_MAX_WHEELS,
+                   laconic_sensor_settings_check(&settings, 3, &why), why);
+}
+
+/* By either sign of its speed: told is by how much it turned. */
+static void of_a_wheel_that_is_too_fast_to_count_its_turn_is_told(void) {
+    const laconic_input input = no_input();
+    for (int way = -1; way <= 1; way += 2) {
+        laconic_sensor_settings settings = {0};
+        laconic_plant plant = started(caster(), STEP, 500 * way, 0, 0);
+        settings.encoder[0] = (laconic_encoder_settings){1000000000, 1000};
+        laconic_sensors sensors = beside(&plant, settings);
+        ASSERT_REFUSED(LACONIC_OVERFLOW, (laconic_field)LACONIC_SENSOR_FIELD_WHEEL_ENCODER_COUNTS, 1,
+                       laconic_sensors_run(&sensors, &plant, &input, 1, &why), why);
+        ASSERT_NEAR(EITHER(1e-12, 1e-6), 500 * way * STEP, why.value);
+    }
+}
+
 /* A body that yaws by 2 rad/s feels −4 d m/s² along its axes at a place d: the coordinate that is farther is named, and
  * the larger part told. */
 static void of_a_sample_beyond_the_range_the_farther_coordinate_and_the_larger_part_are_told(void) {
@@ -90,6 +111,8 @@ static void ground_that_gets_friction_shows_no_acceleration_before_its_first_ste
 int main(void) {
     UNITY_BEGIN();
     RUN_TEST(every_number_is_a_seed);
+    RUN_TEST(the_last_encoder_that_there_can_be_is_checked);
+    RUN_TEST(of_a_wheel_that_is_too_fast_to_count_its_turn_is_told);
     RUN_TEST(of_a_sample_beyond_the_range_the_farther_coordinate_and_the_larger_part_are_told);
     RUN_TEST(a_watched_run_ends_with_the_step_whose_sample_is_refused);
     RUN_TEST(of_a_refused_step_its_own_reason_is_told);
