@@ -24,6 +24,32 @@ static void lanes_have_the_bits_of_one_vehicle_in_32_bytes(void) { compare(32); 
 
 static void lanes_have_the_bits_of_one_vehicle_in_64_bytes(void) { compare(64); }
 
+/* Neighbours with equally many panels, of which one is long beside the damping of an axis in some lanes alone. */
+static void panels_of_neighbours_have_the_bits_of_one_vehicle(void) {
+    static const int32_t widths[3] = {16, 32, 64};
+    for (int w = 0; w < 3; w++) {
+        if (laconic_batch_width(widths[w]) == 0) continue;
+        all.random = 5;
+        all.steps = all.refused = 0;
+        for (int k = 0; k < KINDS; k++) {
+            laconic_refusal why;
+            laconic_vehicle v = with_motors(three_wheels());
+            v.motor_damping_Nms = REAL(0.2 + 0.15 * k);
+            ASSERT_STATUS(LACONIC_OK,
+                          laconic_batch_kind_of(&all.kinds[k], &v, &laconic_exponential_gauss_8, REAL(0.1), &why));
+        }
+        for (int i = 0; i < LANES; i++) all.kind_of[i] = i % KINDS;
+        place(&all, widths[w]);
+        for (int i = 0; i < LANES; i++) {
+            all.states[i] = moving(&all.kinds[all.kind_of[i]].model, 3, -2, 0.05 * i);
+            laconic_batch_load(&all.batch, i, &all.states[i]);
+            all.missed[i] = 0;
+        }
+        for (int i = 0; i < 6; i++) step_and_compare(&all);
+        TEST_ASSERT_TRUE(all.steps > 3 * LANES);
+    }
+}
+
 static void heading_and_nu_are_those_of_the_state(void) {
     fill(&all, 0);
     laconic_batch_observe(&all.batch, 0, all.batch.block_count);
@@ -117,6 +143,7 @@ int main(int argc, char **argv) {
     RUN_TEST(lanes_have_the_bits_of_one_vehicle_in_16_bytes);
     RUN_TEST(lanes_have_the_bits_of_one_vehicle_in_32_bytes);
     RUN_TEST(lanes_have_the_bits_of_one_vehicle_in_64_bytes);
+    RUN_TEST(panels_of_neighbours_have_the_bits_of_one_vehicle);
     RUN_TEST(heading_and_nu_are_those_of_the_state);
     RUN_TEST(rows_are_the_inputs_of_lanes);
     RUN_TEST(sampled_voltages_are_those_of_a_run_for_each_sample);
