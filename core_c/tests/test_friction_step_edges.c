@@ -151,6 +151,31 @@ static void a_body_that_goes_further_in_a_step_than_a_heading_can_turn_is_refuse
             }
 }
 
+/* A push by a thousandth of the largest speed. */
+static void a_body_that_is_pushed_beyond_the_range_of_speeds_is_refused(void) {
+    const double step_s = EITHER(1e-80, 1e-12);
+    for (int back = 0; back < 2; back++) {
+        laconic_input input = no_input();
+        laconic_plant plant = started(robotino(1e-9, 0, 0), step_s, (double)LARGEST_SPEED, 0, 0);
+        input.body_force_N[0] = REAL((back ? -1e-3 : 1e-3) * (double)LARGEST_SPEED * 20 * 0.04 / step_s);
+        ASSERT_STATUS(back ? LACONIC_OK : LACONIC_OVERFLOW, laconic_plant_run(&plant, &input, 1, &why));
+    }
+}
+
+/* Without R_a the electrical side is the torque that the voltage makes, and the speed. */
+static void without_a_winding_resistance_a_motor_takes_what_its_voltage_gives(void) {
+    laconic_vehicle v = robotino(0.5, 0.3, 0);
+    laconic_input input = no_input();
+    v.motor_gain_Nm_per_V = REAL(0.5);
+    v.motor_damping_Nms = REAL(0.26);
+    laconic_plant plant = started(v, 1e-2, 0, 0, 0);
+    input.voltage_V[0] = 5;
+    run(&plant, &input, 1);
+    const double speed = (double)plant.slip.wheel_speed_rad_per_s[0];
+    TEST_ASSERT_TRUE(speed > 1e-3);
+    ASSERT_NEAR(EITHER(1e-12, 1e-5) * speed, 1e-2 * 0.5 * 5 * speed, plant.slip.supply_energy_J.value);
+}
+
 int main(void) {
     UNITY_BEGIN();
     RUN_TEST(a_step_that_the_solver_refuses_is_taken_in_parts);
@@ -161,5 +186,7 @@ int main(void) {
     RUN_TEST(a_body_at_the_end_of_the_range_of_speeds_is_stepped);
     RUN_TEST(what_contacts_take_counts_as_it_is_where_the_motion_reverses_on_a_slope);
     RUN_TEST(a_body_that_goes_further_in_a_step_than_a_heading_can_turn_is_refused);
+    RUN_TEST(a_body_that_is_pushed_beyond_the_range_of_speeds_is_refused);
+    RUN_TEST(without_a_winding_resistance_a_motor_takes_what_its_voltage_gives);
     return UNITY_END();
 }
