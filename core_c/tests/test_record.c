@@ -233,9 +233,40 @@ static void without_rows_and_watch_the_plant_only_steps(void) {
     laconic_plant plant = plant_of(with_motors(mecanum()), 0.01);
     const laconic_schedule schedule = held();
     film f;
-    load_film(&f, &plant, 0, 0);
-    ASSERT_STATUS(LACONIC_OK, laconic_plant_follow(&plant, &schedule, STEPS, &f.recorder, &why));
-    TEST_ASSERT_EQUAL_UINT64(STEPS, plant.steps);
+    for (uint64_t room = 0; room < 2; room++) {
+        plant.steps = 0;
+        load_film(&f, &plant, 0, room);
+        ASSERT_STATUS(LACONIC_OK, laconic_plant_follow(&plant, &schedule, STEPS, &f.recorder, &why));
+        TEST_ASSERT_EQUAL_UINT64(STEPS, plant.steps);
+        TEST_ASSERT_EQUAL_UINT64(0, f.recorder.row_count);
+    }
+}
+
+/* The first row is that of the first step that it divides, and without room for it the run ends there. */
+static void between_two_rows_a_run_may_begin(void) {
+    const laconic_schedule schedule = held();
+    for (uint64_t room = 0; room < 3; room++) {
+        laconic_plant plant = plant_of(with_motors(mecanum()), 0.01);
+        film f;
+        plant.steps = 1;
+        load_film(&f, &plant, 4, room);
+        ASSERT_STATUS(LACONIC_OK, laconic_plant_follow(&plant, &schedule, STEPS, &f.recorder, &why));
+        TEST_ASSERT_EQUAL_UINT64(4 + 4 * room, plant.steps);
+        TEST_ASSERT_EQUAL_UINT64(room, f.recorder.row_count);
+    }
+}
+
+static void a_run_may_end_at_any_step_of_a_stretch(void) {
+    const laconic_schedule schedule = held();
+    laconic_plant by_hand = plant_of(with_motors(mecanum()), 0.01);
+    const laconic_plant start = by_hand;
+    for (uint64_t until = 1; until < 12; until++) {
+        laconic_plant plant = start;
+        const laconic_input input = held_at(until - 1);
+        ASSERT_STATUS(LACONIC_OK, laconic_plant_run(&by_hand, &input, 1, &why));
+        ASSERT_STATUS(LACONIC_OK, laconic_plant_follow(&plant, &schedule, until, NULL, &why));
+        TEST_ASSERT_EQUAL_MEMORY(&by_hand.state, &plant.state, sizeof plant.state);
+    }
 }
 
 static void a_refused_step_keeps_the_steps_taken_and_gives_the_reason(void) {
@@ -276,6 +307,28 @@ static void a_schedule_tells_the_inputs_of_a_step(void) {
     TEST_ASSERT_EQUAL_INT(0, laconic_schedule_at(inputs, &end, &schedule, 100 + STEPS));
 }
 
+static void of_many_stretches_each_step_has_its_own(void) {
+    static const laconic_real values[9][2] = {{0}, {1}, {2}, {3}, {4}, {5}, {6}, {7}, {8}};
+    const uint64_t ends[9] = {1, 2, 4, 5, 8, 9, 10, 13, 14};
+    for (uint64_t count = 1; count <= 9; count++) {
+        const laconic_schedule schedule = {2, signals, &values[0][0], ends, count, 100};
+        uint64_t k = 0, end;
+        laconic_input inputs[3];
+        for (uint64_t step = 0; step < ends[count - 1]; step++) {
+            if (step == ends[k]) k++;
+            TEST_ASSERT_EQUAL_INT(1, laconic_schedule_at(inputs, &end, &schedule, 100 + step));
+            TEST_ASSERT_TRUE((double)inputs[0].voltage_V[1] == (double)k && end == 100 + ends[k]);
+        }
+        TEST_ASSERT_EQUAL_INT(0, laconic_schedule_at(inputs, &end, &schedule, 100 + ends[count - 1] + 5));
+    }
+    laconic_schedule each = sampled();
+    uint64_t end;
+    laconic_input inputs[3];
+    each.first_step = 100;
+    TEST_ASSERT_EQUAL_INT(0, laconic_schedule_at(inputs, &end, &each, 100 + STEPS + 5));
+    TEST_ASSERT_EQUAL_INT(0, laconic_schedule_at(inputs, &end, &each, 99));
+}
+
 static void a_stretch_may_last_for_ever(void) {
     const uint64_t for_ever = UINT64_MAX;
     laconic_schedule schedule = held();
@@ -301,6 +354,9 @@ int main(void) {
     RUN_TEST(without_rows_and_watch_the_plant_only_steps);
     RUN_TEST(a_refused_step_keeps_the_steps_taken_and_gives_the_reason);
     RUN_TEST(a_schedule_tells_the_inputs_of_a_step);
+    RUN_TEST(between_two_rows_a_run_may_begin);
+    RUN_TEST(a_run_may_end_at_any_step_of_a_stretch);
+    RUN_TEST(of_many_stretches_each_step_has_its_own);
     RUN_TEST(a_stretch_may_last_for_ever);
     return UNITY_END();
 }
