@@ -133,6 +133,26 @@ static void what_contacts_take_counts_as_it_is_where_the_motion_reverses_on_a_sl
     }
 }
 
+/* A step that takes so little time that it hardly turns; one in even less, with all speeds as much smaller, goes the
+ * same way by the square of that, since what counts as growth is a matter of proportions. */
+static void a_motion_that_reverses_on_a_slope_goes_the_same_way_however_slow(void) {
+    const laconic_input coasting = no_input();
+    double way[2];
+    for (int slow = 0; slow < 2; slow++) {
+        const double times = slow ? EITHER(1e-14, 1e-6) : EITHER(1e-6, 1e-3);
+        laconic_vehicle v = robotino(0.794, 0.525, 0);
+        v.com_z_m = 0;
+        v.ground.slope_rad = REAL(0.301);
+        v.ground.slope_heading_rad = REAL(0.827);
+        laconic_plant plant = started(v, 0.174 * times, 0.7552 * times, 0.8863 * times, -0.241 * times);
+        const double before = kinetic_J(&plant) + potential_J(&plant);
+        run(&plant, &coasting, 1);
+        TEST_ASSERT_TRUE(kinetic_J(&plant) + potential_J(&plant) < before);
+        way[slow] = (double)plant.state.x_m.value / (times * times);
+    }
+    ASSERT_NEAR(EITHER(1e-12, 1e-5) * fabs(way[0]), way[0], way[1]);
+}
+
 /* Metres and radians together have one bound: what one step of so fast a body adds must fit its heading. */
 static void a_body_that_goes_further_in_a_step_than_a_heading_can_turn_is_refused(void) {
     const laconic_input coasting = no_input();
@@ -185,6 +205,7 @@ int main(void) {
     RUN_TEST(the_brake_of_a_large_wheel_holds_what_its_contact_can_give);
     RUN_TEST(a_body_at_the_end_of_the_range_of_speeds_is_stepped);
     RUN_TEST(what_contacts_take_counts_as_it_is_where_the_motion_reverses_on_a_slope);
+    RUN_TEST(a_motion_that_reverses_on_a_slope_goes_the_same_way_however_slow);
     RUN_TEST(a_body_that_goes_further_in_a_step_than_a_heading_can_turn_is_refused);
     RUN_TEST(a_body_that_is_pushed_beyond_the_range_of_speeds_is_refused);
     RUN_TEST(without_a_winding_resistance_a_motor_takes_what_its_voltage_gives);
