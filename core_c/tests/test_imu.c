@@ -338,6 +338,25 @@ static void a_delay_that_reaches_before_the_start_shows_the_start(void) {
     }
 }
 
+/* However many steps the plant has taken: a puck is pushed from one of the last on that can be counted. */
+static void a_delay_holds_up_to_the_last_number_of_steps(void) {
+    const laconic_vehicle v = bare_body();
+    laconic_plant plant = plant_of(&v, &laconic_auto, STEP, start_with(0, 0, 0));
+    laconic_sensor_settings settings = {0};
+    laconic_input input = no_input();
+    laconic_sensors sensors;
+    input.body_force_N[0] = v.mass_kg;
+    settings.imu.delay_steps = 3;
+    plant.steps = UINT64_MAX - 5;
+    ASSERT_STATUS(LACONIC_OK, laconic_sensors_start(&sensors, &settings, &plant, &why));
+    for (int k = 1; k <= 5; k++) {
+        laconic_sensor_outputs out;
+        ASSERT_STATUS(LACONIC_OK, laconic_sensors_run(&sensors, &plant, &input, 1, &why));
+        laconic_sensors_read(&out, &sensors, &plant, &input);
+        ASSERT_NEAR(4 * ROUNDING, k < 4 ? 0 : 1, out.imu_acceleration_m_per_s2[0]);
+    }
+}
+
 static void readings_stay_within_their_struct(void) {
     const laconic_vehicle v = bare_body();
     const laconic_plant plant = plant_of(&v, &laconic_auto, STEP, start_with(1, 2, 3));
@@ -373,6 +392,7 @@ int main(void) {
     RUN_TEST(seeds_choose_the_noise);
     RUN_TEST(settings_exactly_at_their_limits_are_taken);
     RUN_TEST(a_delay_that_reaches_before_the_start_shows_the_start);
+    RUN_TEST(a_delay_holds_up_to_the_last_number_of_steps);
     RUN_TEST(readings_stay_within_their_struct);
     return UNITY_END();
 }
