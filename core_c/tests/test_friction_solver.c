@@ -316,7 +316,7 @@ static void a_motion_next_to_the_least_number_s_root_is_none(void) {
 /* Beside a body that a brake stops, a wheel in the air of 100 times the other's inertia has energy worth keeping. */
 static void a_heavy_wheel_that_turns_slowly_is_not_at_rest(void) {
     const double speed = EITHER(3e-11, 3e-5);
-    problem p = one_wheel(LACONIC_REAL_MAX);
+    problem p = one_wheel((double)LACONIC_REAL_MAX);
     put_wheel(&p, 0, 0, PI / 2, PI / 2, 1, 100);
     p.wheel[0].inertia = 1;
     laconic_friction_prepare(&p.wheel[0]);
