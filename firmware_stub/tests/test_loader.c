@@ -156,9 +156,10 @@ static void items_end_where_the_list_ends(void) {
     TEST_ASSERT_EQUAL_UINT8(4, loader.item);
 }
 
-static void numbers_out_of_their_range_are_refused(void) {
+static void numbers_out_of_their_range_are_refused_and_not_stored(void) {
     send(0, LACONIC_FIELD_WHEEL_LOCKED, 1, 2);
     TEST_ASSERT_EQUAL_UINT8(LACONIC_WIRE_STATUS_OUT_OF_RANGE, check());
+    TEST_ASSERT_FALSE(loader.parameters.vehicle.wheel[0].locked);
     laconic_loader_begin(&loader);
     send(0, LACONIC_FIELD_WHEEL_KIND, 1, 257); /* would be 1 in a byte */
     TEST_ASSERT_EQUAL_UINT8(LACONIC_WIRE_STATUS_OUT_OF_RANGE, check());
@@ -407,7 +408,7 @@ int main(void) {
     RUN_TEST(the_first_refusal_stays);
     RUN_TEST(the_first_of_several_items_is_needed_as_the_last_is);
     RUN_TEST(items_end_where_the_list_ends);
-    RUN_TEST(numbers_out_of_their_range_are_refused);
+    RUN_TEST(numbers_out_of_their_range_are_refused_and_not_stored);
     RUN_TEST(half_a_double_is_not_enough);
     RUN_TEST(what_a_scene_file_must_give_must_come_even_if_it_is_zero);
     RUN_TEST(part_of_a_payload_or_support_is_not_enough);
