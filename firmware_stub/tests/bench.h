@@ -92,6 +92,11 @@ static inline void bench_load(int32_t wheels) {
     node.state = LACONIC_WIRE_STATE_READY;
 }
 
+/* What a frame tells of a number in its units. */
+static inline int32_t rounded(laconic_real value) {
+    return (int32_t)(value < 0 ? value - (laconic_real)0.5 : value + (laconic_real)0.5);
+}
+
 /* HELLO; the nonce of the CHALLENGE. */
 static inline uint32_t bench_hello(void) {
     laconic_frame frame = {.id = LACONIC_WIRE_ID_BASE + LACONIC_WIRE_HELLO, .length = 8};

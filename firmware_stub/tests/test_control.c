@@ -53,7 +53,8 @@ static void steps_that_are_nearly_whole_are_refused(void) {
     TEST_ASSERT_EQUAL_UINT8(LACONIC_WIRE_STATUS_OUT_OF_RANGE, run(100, 1000)); /* a hundred-thousandth of a step */
 }
 
-/* So is the rate that a step has by itself, and the most steps that a period may have. */
+/* The rate that a step has by itself becomes a whole number, and so do the steps of a period, up to the most that it
+ * may have. */
 static void a_rate_is_rounded_and_so_are_its_steps(void) {
     TEST_ASSERT_EQUAL_UINT8(0, run(1 / 99.9995, 0));
     TEST_ASSERT_EQUAL_UINT32(100, node.free_run.rate_Hz);

@@ -39,7 +39,7 @@ static void a_nonce_opens_nothing_by_itself(void) {
     TEST_ASSERT_FALSE(bench_receive(LACONIC_WIRE_RESULT, data));
 }
 
-/* By the host's own words for it (reference_client.py). */
+/* The numbers are those of mix(key, count + 32) in reference_client.py. */
 static void a_run_has_a_key_of_its_session_and_its_start(void) {
     TEST_ASSERT_EQUAL_HEX32(0x511477A0U, laconic_run_key(0x12345678U, 1));
     TEST_ASSERT_EQUAL_HEX32(0x689BB163U, laconic_run_key(0x9ABCDEF0U, 7));

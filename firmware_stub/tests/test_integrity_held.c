@@ -89,7 +89,7 @@ static void test_a_wrong_model_is_found_behind_a_wrong_motion(void) {
     TEST_ASSERT_EQUAL(LACONIC_INTEGRITY_OF_MODEL, on.integrity.broken);
 }
 
-/* Whatever the round over the model has come to, and whichever wheel's encoder is next. */
+/* RESET heals the motion whatever part of the model the round has come to, and whichever wheel's encoder is next. */
 static void test_a_motion_that_was_wrong_is_sound_again_when_the_rig_resets_it(void) {
     const uint8_t checks[] = {LACONIC_INTEGRITY_MOTION, LACONIC_INTEGRITY_RANGE};
     for (size_t k = 0; k < sizeof checks; k++)
@@ -111,7 +111,7 @@ static void test_a_motion_that_was_wrong_is_sound_again_when_the_rig_resets_it(v
         }
 }
 
-/* Numbers that change after they came, with a frame before COMMIT that loads nothing. */
+/* A number changes after it was loaded; HELLO, which loads nothing, comes before COMMIT. */
 static void test_a_frame_that_loads_nothing_hides_no_change_of_what_was_loaded(void) {
     const laconic_frame hello = {.id = LACONIC_WIRE_ID_BASE + LACONIC_WIRE_HELLO, .length = 8};
     bench_power_up(&on, 7, 0, LACONIC_INTEGRITY_ALL);

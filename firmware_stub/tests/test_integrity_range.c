@@ -46,7 +46,7 @@ static void test_what_no_motion_has_is_out_of_range(void) {
     TEST_ASSERT_EQUAL(LACONIC_INTEGRITY_OF_RANGE, on.integrity.broken);
 }
 
-/* Whatever it sends, and whichever wheel's encoder is next. */
+/* The range is checked whatever the node sends, and whichever wheel's encoder is next. */
 static void test_a_node_that_sends_nothing_has_its_range_too(void) {
     in_free_run();
     on.node.send = 0;

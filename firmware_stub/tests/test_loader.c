@@ -142,7 +142,7 @@ static void a_field_or_item_that_is_not_there_is_remembered(void) {
     TEST_ASSERT_EQUAL_UINT8(LACONIC_FIELD_VOLTAGE, loader.field);
 }
 
-/* Also a first one that has no number: what is told is the first. */
+/* The first refusal may name field 0; a later one does not take its place. */
 static void the_first_refusal_stays(void) {
     send_real(0, 9, 1);
     send_real(LACONIC_FIELD_WHEEL_X, 0, 1);

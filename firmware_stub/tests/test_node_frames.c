@@ -5,10 +5,9 @@
 #include "drive_scene.h"
 #include "unity.h"
 
-#define EVERY_FRAME 0xFFU    /* of SELECT's send_ bits */
-#define EVERY_NUMBER 0x1FU   /* of the plant in RAW_OUTPUT */
-#define RAW_BY_FD 0x80U      /* with the bits of RAW_OUTPUT */
-#define ERROR_ESTIMATE 0x20U /* with the take_ bits */
+#define EVERY_FRAME 0xFFU  /* of SELECT's send_ bits */
+#define EVERY_NUMBER 0x1FU /* of the plant in RAW_OUTPUT */
+#define RAW_BY_FD 0x80U    /* with the bits of RAW_OUTPUT */
 
 static uint8_t data[LACONIC_FRAME_BYTES];
 
@@ -132,7 +131,7 @@ static void every_kind_of_frame_has_a_count_of_its_own(void) {
     memcpy(counts + LACONIC_WIRE_NODE_FIRST, node.sent, sizeof node.sent);
     for (int k = 0; k < 6; k++) {
         const uint8_t select[LACONIC_FRAME_BYTES] = {
-            0, 0, EVERY_FRAME, (uint8_t)(EVERY_NUMBER | (k % 2 ? RAW_BY_FD : 0U)), ERROR_ESTIMATE};
+            0, 0, EVERY_FRAME, (uint8_t)(EVERY_NUMBER | (k % 2 ? RAW_BY_FD : 0U)), SELECTS_ESTIMATE};
         bench_send(LACONIC_WIRE_SELECT, select);
         laconic_node_publish(&node);
         pass_a_heartbeat();

@@ -42,8 +42,6 @@ static laconic_sensor_outputs readings(void) {
     return out;
 }
 
-static int32_t rounded(laconic_real value) { return (int32_t)(value < 0 ? value - REAL(0.5) : value + REAL(0.5)); }
-
 /* -------------------------------------------------------------------------------------- settings -- */
 
 static void parameter(uint8_t upper, uint8_t field, uint8_t item, uint32_t value) {

@@ -5,8 +5,6 @@
 #include "drive_scene.h"
 #include "unity.h"
 
-#define SELECT_ESTIMATE 0x20U /* with the take_ bits */
-
 static uint8_t data[LACONIC_FRAME_BYTES];
 
 void setUp(void) {
@@ -29,14 +27,14 @@ static void every_result_names_its_command(void) {
         TEST_ASSERT_EQUAL_UINT8(commands[k], data[2]);
         TEST_ASSERT_TRUE(data[3] == 0 && data[4] == 0 && data[5] == 0);
     }
-    const uint8_t select[LACONIC_FRAME_BYTES] = {0, 0, 0, 0, SELECT_ESTIMATE};
+    const uint8_t select[LACONIC_FRAME_BYTES] = {0, 0, 0, 0, SELECTS_ESTIMATE};
     bench_send(LACONIC_WIRE_SELECT, select);
     TEST_ASSERT_TRUE(bench_receive(LACONIC_WIRE_RESULT, data));
     TEST_ASSERT_EQUAL_UINT8(LACONIC_WIRE_COMMAND_SELECT, data[2]);
     TEST_ASSERT_TRUE(node.estimates);
 }
 
-/* Whatever number came before: half of a double, of another field. */
+/* Another number has come before: in double, the lower half of one of another field. */
 static void a_parameter_that_is_refused_is_named_with_its_item(void) {
     struct laconic_dbc_parameter_t frame = {.field = LACONIC_FIELD_WHEEL_X, .item = 2, .value = 5};
     bench_control(LACONIC_WIRE_COMMAND_BEGIN, 0, 0);
@@ -113,10 +111,6 @@ static laconic_pose turned(void) {
     return pose;
 }
 
-static int32_t rounded(laconic_real value) {
-    return (int32_t)(value < 0 ? value - (laconic_real)0.5 : value + (laconic_real)0.5);
-}
-
 static void a_pose_is_that_of_the_centre_of_mass_with_its_heading_in_one_turn(void) {
     struct laconic_dbc_pose_t frame;
     const laconic_pose pose = turned();
@@ -138,7 +132,7 @@ static void the_fd_frame_has_the_same_pose(void) {
     TEST_ASSERT_EQUAL_INT32(rounded(pose.heading_wrapped_rad * LACONIC_WIRE_STATE_FD_HEADING_PER_UNIT), told[2]);
 }
 
-/* Its turns are counted there. */
+/* RAW_OUTPUT tells the heading with its whole turns. */
 static void a_raw_pose_has_its_whole_heading(void) {
     laconic_sensor_outputs sensed = {0};
     const laconic_pose pose = turned();

@@ -28,7 +28,6 @@ def campaign_of(trials_of, monkeypatch, tmp_path):
     for folder in ("core_c/tests", "firmware_stub/tests", "fmu/tests"):
         (sources / folder).mkdir(parents=True)
     monkeypatch.setattr(campaign, "SOURCE_DIR", sources)
-    monkeypatch.setattr(campaign, "PARTS", {"core": ("core_c",)})
     monkeypatch.setattr(campaign, "files_of", lambda _: ["core_c/larger.c"])
     monkeypatch.setattr(campaign, "sources_missing", lambda: None)
     monkeypatch.setattr(campaign, "families", lambda *_: trials.families)
