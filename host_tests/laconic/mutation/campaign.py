@@ -15,6 +15,7 @@ from pathlib import Path
 
 from laconic.errors import BadInput
 from laconic.mutation.equivalent import read_equivalents
+from laconic.mutation.listed import Listed
 from laconic.mutation.operators import Mutant, mutants_of
 from laconic.mutation.programs import FAMILIES, families
 from laconic.mutation.results import Results
@@ -88,7 +89,8 @@ class Campaign:
         self.mutants = [mutant for file in files_of(only) for mutant in mutants_of(SOURCE_DIR, file)]
         self.mutants.sort(key=lambda mutant: place_of(seed, mutant))
         self.tally = Tally()
-        self._listed = {(each.file, each.function, each.before, each.after) for each in read_equivalents()}
+        self._listed = Listed(read_equivalents(), SOURCE_DIR)
+        self._lock = threading.Lock()
 
     def run(self, sample: int | None, until: float, advance: Callable[[float], None]) -> Tally:
         """The first `sample` mutants, or all, until that moment; what earlier runs found counts."""
@@ -183,4 +185,5 @@ class Campaign:
         self.tally.add(mutant, outcome.verdict, is_listed=self._is_listed(mutant))
 
     def _is_listed(self, mutant: Mutant) -> bool:
-        return (mutant.file, mutant.function, mutant.before, mutant.after) in self._listed
+        with self._lock:
+            return self._listed.reason(mutant.file, (mutant.start, mutant.end, mutant.text)) is not None

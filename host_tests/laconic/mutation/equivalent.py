@@ -2,8 +2,7 @@
 equivalents/<path of the source>.toml, with a row for each line and reason: the function (empty outside of any), the
 line `before` as it stands, without comments and with single spaces, and every line with a fault, `after`. A row is
 found by its text, so that other lines may come and go; the lines of one statement may stand as one. Faults that none
-of the operators makes, which another sampler has found, have rows as well. commutative.toml names functions whose two
-arguments may change places anywhere."""
+of the operators makes, which another sampler has found, have rows as well. laws.toml has what holds anywhere."""
 
 from __future__ import annotations
 
@@ -16,7 +15,7 @@ from laconic.errors import BadInput
 from laconic.scene.table import entries_of
 
 EQUIVALENTS = Path(__file__).parent / "equivalents"
-COMMUTATIVE = Path(__file__).parent / "commutative.toml"
+LAWS = Path(__file__).parent / "laws.toml"
 
 
 @dataclass(frozen=True)
@@ -35,9 +34,9 @@ def read_equivalents(folder: Path = EQUIVALENTS) -> list[Equivalent]:
     return [each for path in sorted(folder.rglob("*.toml")) for each in _of(path, folder)]
 
 
-def read_commutative() -> frozenset[str]:
-    """The functions that give the same bits either way."""
-    return frozenset(entries_of(COMMUTATIVE.read_text(encoding="utf-8"))["functions"])
+def read_laws() -> dict[str, frozenset[str]]:
+    """Names of the sources about which the laws of alike.py speak, by what is said of them."""
+    return {said: frozenset(names) for said, names in entries_of(LAWS.read_text(encoding="utf-8")).items()}
 
 
 def _of(path: Path, folder: Path) -> Iterator[Equivalent]:

@@ -13,7 +13,7 @@ from pathlib import Path
 import tree_sitter_c
 from tree_sitter import Language, Node, Parser, Tree
 
-from laconic.mutation.equivalent import read_commutative
+from laconic.mutation.equivalent import read_laws
 
 _PARSER = Parser(Language(tree_sitter_c.language()))
 
@@ -48,7 +48,8 @@ class Mutant:
         return source[:self.start] + self.text.encode() + source[self.end:]
 
 
-Change = tuple[int, int, str]  # start, end, the new text
+Change = tuple[int, int, str]
+"""From which byte to which, and what stands there then."""
 
 
 def relational(node: Node) -> Iterator[Change]:
@@ -148,7 +149,7 @@ def _is_in_function(node: Node) -> bool:
     return around is not None
 
 
-_COMMUTATIVE = read_commutative()
+_COMMUTATIVE = read_laws()["commutative_functions"]
 
 
 def arguments(node: Node) -> Iterator[Change]:
@@ -206,7 +207,7 @@ def squeezed(text: bytes) -> str:
 
 def _walk(node: Node, function: str) -> Iterator[tuple[Node, str]]:
     if node.type == "function_definition":
-        function = _name_of(node) or function
+        function = name_of(node) or function
     if node.type in ("comment", "string_literal", "char_literal", "system_lib_string", "static_assert_declaration"):
         return
     yield node, function
@@ -216,7 +217,8 @@ def _walk(node: Node, function: str) -> Iterator[tuple[Node, str]]:
             yield from _walk(child, function)
 
 
-def _name_of(definition: Node) -> str:
+def name_of(definition: Node) -> str:
+    """A function's."""
     inner = definition.child_by_field_name("declarator")
     while inner is not None and inner.type != "identifier":
         inner = inner.child_by_field_name("declarator")

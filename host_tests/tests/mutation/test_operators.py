@@ -11,7 +11,7 @@ import pytest
 from laconic.errors import BadInput
 from laconic.mutation import mutants_of, read_equivalents
 from laconic.mutation.campaign import PARTS, files_of
-from laconic.mutation.equivalent import read_commutative
+from laconic.mutation.equivalent import read_laws
 from laconic.paths import SOURCE_DIR
 
 SOURCE = """\
@@ -106,7 +106,12 @@ def test_core_node_and_fmu_are_the_parts_and_what_python_alone_calls_is_in_neith
     assert not any("library" in Path(file).name for file in files_of(None))
 
 
-def test_the_functions_that_are_said_to_commute_are_there_and_take_two_of_a_kind():
+def test_what_the_laws_speak_of_is_there_and_functions_that_commute_take_two_of_a_kind():
     text = "\n".join((SOURCE_DIR / file).read_text(encoding="utf-8") for part in PARTS for file in files_of(part))
-    for name in read_commutative():
+    headers = "\n".join(path.read_text(encoding="utf-8") for path in (SOURCE_DIR / "core_c/include").rglob("*.h"))
+    laws = read_laws()
+    assert laws.keys() == {"commutative_functions", "counts"}
+    for name in laws["commutative_functions"]:
         assert re.search(rf"\b{name}\((const )?(\w+) \w+, (const )?\2 \w+\) \{{", text), name
+    for name in laws["counts"]:
+        assert re.search(rf"\bu?int\d+_t ([\w, ]+, )?{name}[,;]", headers), name

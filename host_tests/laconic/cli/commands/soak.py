@@ -13,7 +13,7 @@ import click
 from rich.console import Console
 
 import laconic.soak
-from laconic.cli.options import OutputFolder, json_flag
+from laconic.cli.options import InputPath, OutputFolder, json_flag
 from laconic.errors import BadInput, nearest_of
 from laconic.progress import progress_bar
 
@@ -41,6 +41,8 @@ def kinds() -> dict[str, str]:
 @click.option("-o", "--out", type=OutputFolder(), metavar="DIR", help="population, long: what is done; goes on there.")
 @click.option("--sample", type=click.IntRange(min=1), metavar="N", help="mutants, faults of memory: so many.")
 @click.option("--survivors", type=click.IntRange(min=0), metavar="N", help="mutants: passed with so many, or 0.")
+@click.option("--faults", type=InputPath(), metavar="FILE",
+              help="mutants: asks the list of equivalents alone, about another sampler's faults, a line of JSON each.")
 @click.option("--only", metavar="PART",
               help="mutants: core, node, drives, commands, fmu or a C file; faults: a kind; fuzz, proof: one of them.")
 @click.option("--minimise", is_flag=True, default=None, help="fuzz: afterwards the kept corpora of the sources.")

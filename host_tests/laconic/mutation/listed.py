@@ -1,0 +1,127 @@
+"""Whether a fault is in the list of equivalents, however it is spelled: the text is what a row makes of it, or the
+function is, by the laws of alike.py, as it was or as a row makes it."""
+
+from __future__ import annotations
+
+import re
+from collections import Counter, defaultdict
+from collections.abc import Iterable, Iterator
+from functools import cached_property
+from pathlib import Path
+
+from tree_sitter import Node
+
+from laconic.mutation.alike import Meaning, meaning, without_growth
+from laconic.mutation.equivalent import Equivalent
+from laconic.mutation.operators import Change, name_of, parsed
+
+BY_LAW = "C reads both alike: a law of laconic/mutation/alike.py."
+LINES = 6
+"""That a row may be of."""
+
+
+class Listed:
+    """The list, over the sources as they stand."""
+
+    def __init__(self, rows: Iterable[Equivalent], root: Path):
+        self._rows: dict[str, list[Equivalent]] = defaultdict(list)
+        self._root = root
+        self._files: dict[str, _File] = {}
+        for row in rows:
+            self._rows[row.file].append(row)
+
+    def reason(self, file: str, change: Change) -> str | None:
+        """Why no test can tell a change of a file from the file as it is; None where the list does not say it."""
+        if file not in self._files:
+            self._files[file] = _File((self._root / file).read_bytes(), self._rows[file])
+        return self._files[file].reason(change)
+
+
+class _Text:
+    """A source by its lines, without comments and with single spaces."""
+
+    def __init__(self, lines: list[str]):
+        self.lines = lines
+        self.words = " ".join(lines)
+
+    @classmethod
+    def of(cls, source: bytes) -> _Text:
+        blank = re.sub(rb"/\*.*?\*/", lambda found: b"\n" * found[0].count(b"\n") or b" ", source, flags=re.DOTALL)
+        squeezed = (" ".join(line.split()) for line in blank.decode("utf-8").splitlines())
+        return cls([line for line in squeezed if line])
+
+    @cached_property
+    def functions(self) -> dict[str, Node]:
+        """By name; those that stand once more, in another branch of an #if, with a number."""
+        seen: Counter[str] = Counter()
+        found = {}
+        for node in _definitions(parsed("\n".join(self.lines).encode()).root_node):
+            name = name_of(node)
+            seen[name] += 1
+            found[name if seen[name] == 1 else f"{name} {seen[name]}"] = node
+        return found
+
+    @cached_property
+    def outside(self) -> str:
+        """What stands between the functions."""
+        within = {number for node in self.functions.values() for number in _lines_of(node)}
+        return "\n".join(line for number, line in enumerate(self.lines) if number not in within)
+
+
+class _File:
+    """A source with the rows of its list."""
+
+    def __init__(self, source: bytes, rows: list[Equivalent]):
+        self._source, self._text = source, _Text.of(source)
+        self._variants = [(variant, row) for row in rows for variant in self._made_by(row)]
+        self._reasons = {variant.words: row.reason for variant, row in self._variants}
+        self._made: dict[str, dict[Meaning, str]] = {}
+
+    def reason(self, change: Change) -> str | None:
+        """As Listed.reason."""
+        start, end, text = change
+        now = _Text.of(self._source[:start] + text.encode() + self._source[end:])
+        if now.words in self._reasons:
+            return self._reasons[now.words]
+        before, after = self._text.functions, now.functions
+        if before.keys() != after.keys() or self._text.outside != now.outside:
+            return None  # what stands outside of functions has rows of the very text alone
+        changed_functions = [name for name, node in after.items() if node.text != before[name].text]
+        if not changed_functions:
+            return BY_LAW
+        name = changed_functions[0]
+        if len(changed_functions) > 1 or after[name].has_error:
+            return None
+        if name not in self._made:
+            self._made[name] = self._meanings(name)
+        own = meaning(before[name])
+        return self._made[name].get(without_growth(own, meaning(after[name])))
+
+    def _meanings(self, name: str) -> dict[Meaning, str]:
+        """Of the function itself and of what the rows make of it, each with its reason."""
+        made = {}
+        for variant, row in self._variants:
+            node = variant.functions.get(name)
+            if row.function == name.split()[0] and node is not None and not node.has_error:
+                made[meaning(node)] = row.reason
+        return made | {meaning(self._text.functions[name]): BY_LAW}
+
+    def _made_by(self, row: Equivalent) -> Iterator[_Text]:
+        home = [_lines_of(node) for name, node in self._text.functions.items() if name.split()[0] == row.function]
+        lines = self._text.lines
+        for first in range(len(lines)):
+            for behind in range(first + 1, min(first + LINES, len(lines)) + 1):
+                if " ".join(lines[first:behind]) == row.before and (not home or any(first in each for each in home)):
+                    yield _Text([*lines[:first], row.after, *lines[behind:]])
+
+
+def _lines_of(node: Node) -> range:
+    return range(node.start_point[0], node.end_point[0] + 1)
+
+
+def _definitions(node: Node) -> Iterator[Node]:
+    if node.type == "function_definition":
+        yield node
+    else:
+        for child in node.children:
+            yield from _definitions(child)
