@@ -33,6 +33,7 @@ DECIDING = {"&": "&&", "|": "||"}
 ZERO = ("number", "0")
 ONE = ("number", "1")
 REAL_ZERO = ("call", ("identifier", "R"), ZERO)
+ZEROS = (ZERO, REAL_ZERO, ("number", "0.0"))
 NUMBERS = {"false": ZERO, "NULL": ZERO, "LACONIC_OK": ZERO, "true": ("number", "1")}
 
 
@@ -130,6 +131,13 @@ def without_growth(before: Meaning, after: Meaning) -> Meaning:
                            for one, other in zip(before[1:], after[1:], strict=True))
 
     return shortened(before, after)
+
+
+def without_zero_signs(of: Meaning) -> Meaning:
+    """The same where every zero has none."""
+    if of[:2] == ("unary", "-") and of[2] in ZEROS:
+        return of[2]
+    return tuple(without_zero_signs(each) if isinstance(each, tuple) else each for each in of)
 
 
 def within(of: Meaning) -> Iterator[Meaning]:
@@ -290,7 +298,7 @@ def _unsigned_zero(value: Meaning) -> Meaning:
     if value[:2] != ("unary", "-"):
         return value
     of = value[2]
-    return of if of in (ZERO, REAL_ZERO, ("number", "0.0")) else value
+    return of if of in ZEROS else value
 
 
 # -------------------------------------------------------------------------------------------------- nodes

@@ -182,8 +182,11 @@ class Campaign:
         return [mutant for mutant in todo if mutant.key not in done]
 
     def _add(self, mutant: Mutant, outcome: Outcome) -> None:
-        self.tally.add(mutant, outcome.verdict, is_listed=self._is_listed(mutant))
+        with self._lock:
+            listed = (self._listed.reason(mutant.file, mutant.change) is not None if outcome.verdict == "survived"
+                      else self._listed.no_test_can_notice(mutant.file, mutant.change))
+        self.tally.add(mutant, outcome.verdict, is_listed=listed)
 
     def _is_listed(self, mutant: Mutant) -> bool:
         with self._lock:
-            return self._listed.reason(mutant.file, (mutant.start, mutant.end, mutant.text)) is not None
+            return self._listed.no_test_can_notice(mutant.file, mutant.change)

@@ -1,8 +1,9 @@
 """The list of equivalents: mutants that no test can notice, each with its reason. Each source file has its own,
 equivalents/<path of the source>.toml, with a row for each line and reason: the function (empty outside of any), the
 line `before` as it stands, without comments and with single spaces, and every line with a fault, `after`. A row is
-found by its text, so that other lines may come and go; the lines of one statement may stand as one. Faults that none
-of the operators makes, which another sampler has found, have rows as well. laws.toml has what holds anywhere."""
+found by its text, so that other lines may come and go; the lines of one statement may stand as one. In `after`, `…`
+stands for any text: tests notice what would be a fault there, and what they do not is none, for the reason. Faults that
+none of the operators makes, which another sampler has found, have rows as well. laws.toml has what holds anywhere."""
 
 from __future__ import annotations
 

@@ -1,5 +1,7 @@
 """Whether a fault is in the list of equivalents, however it is spelled: the text is what a row makes of it, or the
-function is, by the laws of alike.py, as it was or as a row makes it."""
+function is, by the laws of alike.py, as it was or as a row makes it. Such a fault no test can notice. Two more things
+are said of what no test has noticed, where tests notice the other faults of the place: a row with `…`, which stands for
+any text, and that a zero may have either sign."""
 
 from __future__ import annotations
 
@@ -11,11 +13,13 @@ from pathlib import Path
 
 from tree_sitter import Node
 
-from laconic.mutation.alike import Meaning, meaning, without_growth
+from laconic.mutation.alike import Meaning, meaning, without_growth, without_zero_signs
 from laconic.mutation.equivalent import Equivalent
 from laconic.mutation.operators import Change, name_of, parsed
 
 BY_LAW = "C reads both alike: a law of laconic/mutation/alike.py."
+BY_SIGN = "Only a zero has another sign, and of that nothing is promised."
+ANYTHING = "…"
 LINES = 6
 """That a row may be of."""
 
@@ -31,10 +35,18 @@ class Listed:
             self._rows[row.file].append(row)
 
     def reason(self, file: str, change: Change) -> str | None:
-        """Why no test can tell a change of a file from the file as it is; None where the list does not say it."""
+        """Why a change of a file that no test has noticed is no fault; None where the list does not say it."""
+        of = self._of(file)
+        return of.reason(change) or of.reason_of_survivor(change)
+
+    def no_test_can_notice(self, file: str, change: Change) -> bool:
+        """Whether the list says so, whatever tests there are."""
+        return self._of(file).reason(change) is not None
+
+    def _of(self, file: str) -> _File:
         if file not in self._files:
             self._files[file] = _File((self._root / file).read_bytes(), self._rows[file])
-        return self._files[file].reason(change)
+        return self._files[file]
 
 
 class _Text:
@@ -73,29 +85,49 @@ class _File:
 
     def __init__(self, source: bytes, rows: list[Equivalent]):
         self._source, self._text = source, _Text.of(source)
-        self._variants = [(variant, row) for row in rows for variant in self._made_by(row)]
+        self._variants = [(variant, row) for row in rows if ANYTHING not in row.after for variant in self._made_by(row)]
+        self._places = [(*variant.words.split(ANYTHING, 1), row.reason)
+                        for row in rows if ANYTHING in row.after for variant in self._made_by(row)]
         self._reasons = {variant.words: row.reason for variant, row in self._variants}
         self._made: dict[str, dict[Meaning, str]] = {}
 
     def reason(self, change: Change) -> str | None:
-        """As Listed.reason."""
-        start, end, text = change
-        now = _Text.of(self._source[:start] + text.encode() + self._source[end:])
+        """Why no test can notice it."""
+        now = self._changed(change)
         if now.words in self._reasons:
             return self._reasons[now.words]
-        before, after = self._text.functions, now.functions
-        if before.keys() != after.keys() or self._text.outside != now.outside:
-            return None  # what stands outside of functions has rows of the very text alone
-        changed_functions = [name for name, node in after.items() if node.text != before[name].text]
-        if not changed_functions:
+        if now.words == self._text.words:
             return BY_LAW
-        name = changed_functions[0]
-        if len(changed_functions) > 1 or after[name].has_error:
+        if (name := self._changed_function(now)) is None:
             return None
         if name not in self._made:
             self._made[name] = self._meanings(name)
-        own = meaning(before[name])
-        return self._made[name].get(without_growth(own, meaning(after[name])))
+        own = meaning(self._text.functions[name])
+        return self._made[name].get(without_growth(own, meaning(now.functions[name])))
+
+    def reason_of_survivor(self, change: Change) -> str | None:
+        """Why it is no fault if no test has noticed it."""
+        now = self._changed(change)
+        for before, behind, reason in self._places:
+            is_longer = len(now.words) >= len(before) + len(behind)
+            if is_longer and now.words.startswith(before) and now.words.endswith(behind):
+                return reason
+        name = self._changed_function(now)
+        alike = name is not None and (without_zero_signs(meaning(now.functions[name]))
+                                      == without_zero_signs(meaning(self._text.functions[name])))
+        return BY_SIGN if alike else None
+
+    def _changed(self, change: Change) -> _Text:
+        start, end, text = change
+        return _Text.of(self._source[:start] + text.encode() + self._source[end:])
+
+    def _changed_function(self, now: _Text) -> str | None:
+        """The one that differs, which can be read; what stands outside of functions has rows of the very text alone."""
+        before, after = self._text.functions, now.functions
+        if before.keys() != after.keys() or self._text.outside != now.outside:
+            return None
+        changed = [name for name, node in after.items() if node.text != before[name].text]
+        return changed[0] if len(changed) == 1 and not after[changed[0]].has_error else None
 
     def _meanings(self, name: str) -> dict[Meaning, str]:
         """Of the function itself and of what the rows make of it, each with its reason."""

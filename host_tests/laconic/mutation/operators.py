@@ -28,6 +28,10 @@ COUNTING = {"++": "--", "--": "++"}
 _WORDS = re.compile(rb"^(INLINE|RARE_AND_OPAQUE|RARE|LACONIC_API)\b", re.MULTILINE)
 
 
+Change = tuple[int, int, str]
+"""From which byte to which, and what stands there then."""
+
+
 @dataclass(frozen=True)
 class Mutant:
     """One change of one file: the text from `start` to `end` (bytes) becomes `text`."""
@@ -43,13 +47,14 @@ class Mutant:
     text: str
     key: str       # of file, function and change, not of line numbers
 
+    @property
+    def change(self) -> Change:
+        """What it does to its file."""
+        return self.start, self.end, self.text
+
     def applied_to(self, source: bytes) -> bytes:
         """The file with the fault in it."""
         return source[:self.start] + self.text.encode() + source[self.end:]
-
-
-Change = tuple[int, int, str]
-"""From which byte to which, and what stands there then."""
 
 
 def relational(node: Node) -> Iterator[Change]:

@@ -9,7 +9,7 @@ import pytest
 from laconic.errors import BadInput
 from laconic.mutation.equivalent import Equivalent
 from laconic.mutation.faults import read_faults
-from laconic.mutation.listed import BY_LAW, Listed
+from laconic.mutation.listed import BY_LAW, BY_SIGN, Listed
 from laconic.soak.mutants import soak
 
 SOURCE = """\
@@ -21,24 +21,26 @@ int sum(int a, int b) { /* of both */
     if (a > 7) a = 7;
     held[0] = a +
               b;
+    held[1] = held[2] = 0;
     return held[0] - b;
 }
 """
 ROWS = [Equivalent("a.c", "sum", "if (a > 7) a = 7;", "if (a >= 7) a = 7;", "At 7 it is 7."),
         Equivalent("a.c", "sum", "held[0] = a + b;", "held[0] = b;", "Nobody reads a."),
-        Equivalent("a.c", "", "#define HALF 2", "#define HALF 3", "Half or third.")]
+        Equivalent("a.c", "", "#define HALF 2", "#define HALF 3", "Half or third."),
+        Equivalent("a.c", "half", "static int half(int a, int b) { return a / HALF + b; }",
+                   "static int half(int a, int b) { return … + b; }", "Any half will do.")]
 
 
 @pytest.fixture
-def reason(tmp_path):
+def listed(tmp_path):
     (tmp_path / "a.c").write_text(SOURCE)
-    listed = Listed(ROWS, tmp_path)
+    return Listed(ROWS, tmp_path)
 
-    def of(before: str, after: str) -> str | None:
-        at = SOURCE.index(before)
-        return listed.reason("a.c", (at, at + len(before), after))
 
-    return of
+def change(before: str, after: str) -> tuple[int, int, str]:
+    at = SOURCE.index(before)
+    return at, at + len(before), after
 
 
 @pytest.mark.parametrize(("before", "after", "why"), [
@@ -47,9 +49,19 @@ def reason(tmp_path):
     ("a +\n              b", "b + a", BY_LAW), ("held[3]", "held[9]", BY_LAW), ("held[3]", "held[2]", None),
     (" /* of both */", "", BY_LAW), ("HALF 2", "HALF  3", "Half or third."), ("HALF 2", "HALF 4", None),
     ("first, second", "second, first", None), ("a / HALF + b", "b + a / HALF", BY_LAW), ("> 7", "= 7 +", None),
-    ("return held[0] - b;\n}\n", "return held[0] - b;\n", None)])
-def test_a_fault_is_found_by_its_text_or_by_what_it_means(reason, before, after, why):
-    assert reason(before, after) == why
+    ("held[0] - b;\n}\n", "held[0] - b;\n", None)])
+def test_a_fault_is_found_by_its_text_or_by_what_it_means(listed, before, after, why):
+    assert listed.reason("a.c", change(before, after)) == why
+    assert listed.no_test_can_notice("a.c", change(before, after)) is (why is not None)
+
+
+@pytest.mark.parametrize(("before", "after", "why"), [
+    ("a / HALF", "a", "Any half will do."), ("HALF +", "(HALF + 2) +", "Any half will do."), ("+ b; }", "- b; }", None),
+    ("return a / HALF", "a / HALF", None), ("2] = 0", "2] = -0", BY_SIGN),
+    ("2] = 0", "2] = -1", None), ("a / HALF", "-(a / HALF)", "Any half will do.")])
+def test_of_what_no_test_has_noticed_more_is_said_than_of_what_none_can(listed, before, after, why):
+    assert listed.reason("a.c", change(before, after)) == why
+    assert not listed.no_test_can_notice("a.c", change(before, after))
 
 
 def test_a_row_of_one_function_says_nothing_of_another(tmp_path):
@@ -77,7 +89,7 @@ def test_another_samplers_faults_are_told_with_their_reason_or_as_outside(projec
     path.write_text("\n".join(map(json.dumps, rows)) + "\n\n")
     said = soak(1.0, 1, lambda _: None, faults=path)
     assert not said["passed"] and said["faults"] == 2
-    assert said["outside the list"] == ["a.c:9: -  →  *"] and said["in the list"] == ["a.c:6: >  →  >=: At 7 it is 7."]
+    assert said["outside the list"] == ["a.c:10: -  →  *"] and said["in the list"] == ["a.c:6: >  →  >=: At 7 it is 7."]
     assert soak(1.0, 1, lambda _: None, survivors=1, faults=path)["passed"]
 
 
