@@ -10,12 +10,13 @@ typedef struct reader {
 } reader;
 
 /* A gyro that shows component `seen` of the velocity alone, of which the variance is 1 as that of all errors. */
-static reader reader_of(int seen) {
+static reader reader_with(int seen, laconic_real encoder_std_rad) {
     laconic_filter_settings settings;
     reader r;
     memset(&settings, 0, sizeof settings);
     settings.yaw_rate_std_rad_per_s = CERTAIN;
-    settings.encoder_std_rad[0] = settings.bias_std_rad_per_s = REAL(1);
+    settings.encoder_std_rad[0] = encoder_std_rad;
+    settings.bias_std_rad_per_s = REAL(1);
     r.model = model_of(mecanum());
     for (int k = 0; k < 3; k++) r.model.yaw_rate_of_zeta[k] = REAL(k == seen);
     const laconic_state state = moving(&r.model, 0, 0, 0);
@@ -25,6 +26,8 @@ static reader reader_of(int seen) {
     r.filter.covariance.diagonal[row_of_bias(&r.filter)] = 0;
     return r;
 }
+
+static reader reader_of(int seen) { return reader_with(seen, REAL(1)); }
 
 static void assert_shown(laconic_status expected, reader *r, laconic_real yaw_rate_rad_per_s) {
     const laconic_filter before = r->filter;
@@ -57,6 +60,16 @@ static reader with_heading_by(laconic_real by) {
     reader r = reader_of(2);
     r.filter.covariance.upper[row_of_heading(&r.filter)][r.filter.errors - 1] = by;
     return r;
+}
+
+/* The same without encoders, so that the filter keeps no errors of travels. */
+static void without_encoders_a_velocity_is_corrected_up_to_the_largest_too(void) {
+    for (int k = 0; k < 3; k++) {
+        reader r = reader_with(k, 0);
+        TEST_ASSERT_EQUAL_INT(0, r.filter.travels);
+        assert_shown(LACONIC_OVERFLOW, &r, LARGEST_SPEED * REAL(1.5));
+        assert_shown(LACONIC_OK, &r, LARGEST_SPEED * REAL(0.75));
+    }
 }
 
 static void a_heading_is_corrected_by_less_than_can_be_counted(void) {
@@ -183,6 +196,7 @@ int main(void) {
     UNITY_BEGIN();
     RUN_TEST(a_velocity_is_corrected_up_to_the_largest_in_any_direction);
     RUN_TEST(a_correction_is_judged_by_where_it_leads);
+    RUN_TEST(without_encoders_a_velocity_is_corrected_up_to_the_largest_too);
     RUN_TEST(a_heading_is_corrected_by_less_than_can_be_counted);
     RUN_TEST(an_infinite_correction_of_any_error_is_refused);
     RUN_TEST(encoders_of_the_most_wheels_are_read);
