@@ -186,6 +186,10 @@ static void a_restart_begins_again_with_the_same_vehicle(void) {
         start.x_m = NOT_A_NUMBER;
         ASSERT_REFUSED(LACONIC_NOT_FINITE, LACONIC_FIELD_START_X, 0, laconic_plant_restart(&plant, &start, &why), why);
         start.x_m = 0;
+        start.heading_rad = REAL(1e30);
+        ASSERT_REFUSED(LACONIC_OVERFLOW, LACONIC_FIELD_START_HEADING, 0, laconic_plant_restart(&plant, &start, &why),
+                       why);
+        start.heading_rad = 0;
         if (friction) {
             start.wheel_speed_rad_per_s[1] = NOT_A_NUMBER;
             ASSERT_REFUSED(LACONIC_NOT_FINITE, LACONIC_FIELD_START_WHEEL_SPEED, 2,

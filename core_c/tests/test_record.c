@@ -279,6 +279,13 @@ static void a_refused_step_keeps_the_steps_taken_and_gives_the_reason(void) {
                    laconic_plant_follow(&plant, &schedule, STEPS, &f.recorder, &why), why);
     TEST_ASSERT_EQUAL_UINT64(9, plant.steps);
     TEST_ASSERT_EQUAL_UINT64(10, f.recorder.row_count);
+    plant = plant_of(with_motors(mecanum()), 0.01);
+    schedule = sampled();
+    plant.state.heading.turns = INT64_MAX;
+    ASSERT_REFUSED(LACONIC_OVERFLOW, LACONIC_FIELD_STEP, 0, laconic_plant_follow(&plant, &schedule, STEPS, NULL, &why),
+                   why);
+    TEST_ASSERT_EQUAL_UINT64(0, plant.steps);
+    sampled_values[9][1][1] = NOT_A_NUMBER;
     plant = plant_of(three_wheels(), 0.01);
     schedule = held();
     schedule.value = &sampled_values[9][1][0]; /* a stretch whose second value is not finite */

@@ -74,6 +74,16 @@ static void a_watched_run_ends_with_the_step_whose_sample_is_refused(void) {
     TEST_ASSERT_EQUAL_UINT64(1, plant.steps);
 }
 
+static void a_sampled_step_whose_sample_is_beyond_the_range_is_refused(void) {
+    const laconic_sensor_settings settings = {.imu = {.y_m = REAL(1e15)}};
+    laconic_plant plant = started(bare_body(), STEP, 0, 0, 2 * BIG_LAMBDA);
+    laconic_sensors sensors = beside(&plant, settings);
+    const laconic_input samples[3] = {no_input(), no_input(), no_input()};
+    ASSERT_REFUSED(LACONIC_OVERFLOW, (laconic_field)LACONIC_SENSOR_FIELD_IMU_Y, 0,
+                   laconic_sensors_run_sampled(&sensors, &plant, samples, &why), why);
+    TEST_ASSERT_EQUAL_UINT64(1, plant.steps);
+}
+
 /* An explicit method refuses a body that spins up; what it feels by then is beyond the range as well. */
 static void of_a_refused_step_its_own_reason_is_told(void) {
     const laconic_sensor_settings settings = {.imu = {.x_m = REAL(1e15)}};
@@ -87,7 +97,11 @@ static void of_a_refused_step_its_own_reason_is_told(void) {
     input.body_moment_Nm = REAL(10);
     ASSERT_REFUSED(LACONIC_STEP_BEYOND_GYROSCOPIC_LIMIT, LACONIC_FIELD_STEP, 0,
                    laconic_sensors_run(&sensors, &plant, &input, 1000, &why), why);
-    TEST_ASSERT_TRUE(plant.steps > 0);
+    const uint64_t taken = plant.steps;
+    TEST_ASSERT_TRUE(taken > 0);
+    ASSERT_REFUSED(LACONIC_STEP_BEYOND_GYROSCOPIC_LIMIT, LACONIC_FIELD_STEP, 0,
+                   laconic_sensors_run(&sensors, &plant, &input, 1000, &why), why);
+    TEST_ASSERT_EQUAL_UINT64(taken, plant.steps);
     TEST_ASSERT_EQUAL_UINT64(plant.steps, sensors.newest);
 }
 
@@ -115,6 +129,7 @@ int main(void) {
     RUN_TEST(of_a_wheel_that_is_too_fast_to_count_its_turn_is_told);
     RUN_TEST(of_a_sample_beyond_the_range_the_farther_coordinate_and_the_larger_part_are_told);
     RUN_TEST(a_watched_run_ends_with_the_step_whose_sample_is_refused);
+    RUN_TEST(a_sampled_step_whose_sample_is_beyond_the_range_is_refused);
     RUN_TEST(of_a_refused_step_its_own_reason_is_told);
     RUN_TEST(ground_that_gets_friction_shows_no_acceleration_before_its_first_step);
     return UNITY_END();

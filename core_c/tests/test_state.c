@@ -281,6 +281,13 @@ static void numbers_that_are_not_finite_are_refused(void) {
     refuses_placed(motion, LACONIC_OVERFLOW, LACONIC_FIELD_START_NU, 0);
     TEST_ASSERT_TRUE(why.value == motion.nu_rad_per_s[0]);
     motion.nu_rad_per_s[0] = 0;
+    for (int k = 0; k < 3; k++) {
+        const laconic_real told = k == 1 ? -INFINITE : INFINITE;
+        motion.nu_rad_per_s[k] = told;
+        refuses_placed(motion, LACONIC_NOT_FINITE, LACONIC_FIELD_START_NU, k + 1);
+        TEST_ASSERT_TRUE(why.value == told);
+        motion.nu_rad_per_s[k] = 0;
+    }
     motion.y_m = INFINITE;
     refuses_placed(motion, LACONIC_NOT_FINITE, LACONIC_FIELD_START_Y, 0);
 }
