@@ -15,6 +15,7 @@ not the tree is none. Every law here holds for all numbers, to the bit and for N
 
 from __future__ import annotations
 
+import re
 from collections.abc import Callable, Iterator
 from typing import Any
 
@@ -120,7 +121,7 @@ def _without_length(node: Node) -> Meaning:
 
 def without_growth(before: Meaning, after: Meaning) -> Meaning:
     """`after` with the lengths of `before` for every array of it that is only longer, and whose size nothing asks."""
-    asked = repr([each for each in within(before) if each[0] == "sizeof_expression"])
+    asked = repr([each for each in within(before) if each[0] == "sizeof_expression" or _is_macro(each)])
 
     def shortened(before: Meaning, after: Meaning) -> Meaning:
         if len(before) != len(after) or before[0] != after[0]:
@@ -131,6 +132,10 @@ def without_growth(before: Meaning, after: Meaning) -> Meaning:
                            for one, other in zip(before[1:], after[1:], strict=True))
 
     return shortened(before, after)
+
+
+def _is_macro(called: Meaning) -> bool:
+    return called[0] == "call" and called[1][1].isupper()  # it may ask a size, as COUNT(array) does
 
 
 def without_zero_signs(of: Meaning) -> Meaning:
@@ -185,11 +190,12 @@ def _number(node: Node) -> Meaning:
 
 
 def _digits(text: str) -> Meaning:
-    body = text if text.startswith("0x") else text.rstrip("fl") if "." in text or "e" in text else text
-    if body.startswith("0x") or body.rstrip("ul").isdigit():
-        digits = body.rstrip("ul")
-        return "number", f"{int(digits, 8 if digits.startswith('0') and digits.isdigit() else 0)}{body[len(digits):]}"
-    return "number", f"{float(body)!r}{text[len(body):]}"
+    if whole := re.fullmatch(r"(0x[0-9a-f]+|\d+)(u?l{0,2})", text):
+        is_octal = re.fullmatch("0[0-7]+", whole[1])
+        return "number", f"{int(whole[1], 8 if is_octal else 16 if 'x' in whole[1] else 10)}{whole[2]}"
+    if real := re.fullmatch(r"((?:\d+\.?\d*|\.\d+)(?:e[+-]?\d+)?)([fl]?)", text):
+        return "number", f"{float(real[1])!r}{real[2]}"
+    return "number", text
 
 
 def _binary(node: Node) -> Meaning:

@@ -29,6 +29,7 @@ ALIKE = [
     ("a = a + b;", "a += b;"), ("a = b * a;", "a *= b;"), ("a = a - b;", "a -= b;"), ("a++;", "++a;"),
     ("a++;", "a += 1;"),
     ("return 0x10;", "return 16;"), ("return 1.50;", "return 15e-1;"), ("return 10U;", "return 0xAu;"),
+    ("return 017;", "return 15;"), ("return .5f;", "return 0.5F;"), ("return 08;", "return 08;"),
     ("return LACONIC_OK;", "return 0;"), ("return true;", "return 1;"), ("f(NULL);", "f(false);"),
     ("if (a) { c = 1; }", "if (a) c = 1;"), ("a = 1; ; b = 2;", "a = 1; b = 2;"),
     ("for (int k = 0; k < 3; k++) a += k;", "for (int k = 0; k != 3; ++k) a += k;"),
@@ -84,8 +85,9 @@ def test_an_array_of_a_named_length_grows_by_it(length, is_alike):
     assert without_growth(before, after) != before
 
 
-def test_where_something_asks_its_size_it_may_not():
-    before, after = told("int t[3]; return sizeof t;"), told("int t[4]; return sizeof t;")
+@pytest.mark.parametrize("size", ["sizeof t", "sizeof(t) / sizeof(t)[0]", "COUNT(t)"])
+def test_where_something_asks_its_size_it_may_not(size):
+    before, after = told(f"int t[3]; return {size};"), told(f"int t[4]; return {size};")
     assert without_growth(before, after) != before
 
 
