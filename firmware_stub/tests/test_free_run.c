@@ -177,11 +177,15 @@ static void groups_of_voltages_begin_anew_with_each_run(void) {
 
 static void whoever_waits_wakes_for_the_next_period_or_heartbeat(void) {
     TEST_ASSERT_EQUAL_UINT32(100000 - (now_us - node.heartbeat_us), laconic_node_idle_us(&node, now_us));
+    TEST_ASSERT_EQUAL_UINT32(1, laconic_node_idle_us(&node, node.heartbeat_us + 99999U));
+    TEST_ASSERT_EQUAL_UINT32(0, laconic_node_idle_us(&node, node.heartbeat_us + 100001U));
     start(100, 0);
     TEST_ASSERT_EQUAL_UINT32(10000, laconic_node_idle_us(&node, now_us));
     TEST_ASSERT_EQUAL_UINT32(4000, laconic_node_idle_us(&node, now_us + 6000U));
+    TEST_ASSERT_EQUAL_UINT32(1, laconic_node_idle_us(&node, now_us + 9999U));
     TEST_ASSERT_EQUAL_UINT32(0, laconic_node_idle_us(&node, now_us + 10001U));
     node.free_run.next_us += 1000000U;
+    TEST_ASSERT_EQUAL_UINT32(1, laconic_node_idle_us(&node, node.heartbeat_us + 99999U));
     TEST_ASSERT_EQUAL_UINT32(0, laconic_node_idle_us(&node, node.heartbeat_us + 100001U));
 }
 
