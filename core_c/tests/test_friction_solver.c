@@ -222,6 +222,32 @@ static problem four_mecanum_wheels(double drag) {
     return p;
 }
 
+/* Of the mirror image x is the same; y, angles, yaw and the wheels' speeds are negative. */
+static void a_vehicle_and_its_mirror_image_are_solved_in_as_many_passes(void) {
+    for (int n = 0; n < 20; n++) {
+        int passes[2];
+        problem p[2];
+        const double angle = 0.3 + 0.1 * n, drag = 0.05 * (n + 1);
+        for (int image = 0; image < 2; image++) {
+            const double side = image ? -1 : 1;
+            memset(&p[image], 0, sizeof p[image]);
+            for (int i = 0; i < 3; i++) {
+                put_wheel(&p[image], cos(2.1 * i), side * sin(2.1 * i), side * (angle + i), side * (0.5 + 0.4 * i),
+                          drag, 0.05);
+                p[image].load[i].grip = REAL(1);
+                p[image].load[i].drive_limit = LACONIC_REAL_MAX;
+                p[image].load[i].free_speed = REAL(side * (0.3 - 0.2 * i));
+            }
+            p[image].free[0] = REAL(0.7);
+            p[image].free[1] = REAL(side * 0.4);
+            p[image].free[2] = REAL(side * -0.2);
+            passes[image] = solve(&p[image]);
+        }
+        TEST_ASSERT_EQUAL_INT(passes[0], passes[1]);
+        for (int m = 0; m < 3; m++) ASSERT_NEAR(EITHER(1e-9, 1e-3), (m ? -1 : 1) * p[0].nu[m], p[1].nu[m]);
+    }
+}
+
 static void coasting_ends_in_exact_rest(void) {
     problem p = four_mecanum_wheels(0.5);
     for (int m = 0; m < 3; m++) p.free[m] = REAL(0.4 - 0.3 * m);
@@ -397,6 +423,7 @@ int main(void) {
     RUN_TEST(light_wheels_whose_rollers_hardly_drag_are_solved_as_far_as_numbers_tell);
     RUN_TEST(random_vehicles_at_random_speeds_are_solved);
     RUN_TEST(coasting_vehicles_lose_energy_in_every_step_and_are_seldom_refused);
+    RUN_TEST(a_vehicle_and_its_mirror_image_are_solved_in_as_many_passes);
     RUN_TEST(coasting_ends_in_exact_rest);
     RUN_TEST(what_pulls_less_than_the_grip_moves_nothing_to_the_last_bit);
     RUN_TEST(what_is_not_finite_is_refused);

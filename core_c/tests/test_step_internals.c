@@ -136,6 +136,7 @@ static bool growth_is_supplied_by(real start, real middle, real end, real grown)
 static void growth_that_the_forcing_supplies_is_allowed(void) {
     TEST_ASSERT_TRUE(growth_is_supplied_by(REAL(2), REAL(2), REAL(2), REAL(0.2)));
     TEST_ASSERT_TRUE(growth_is_supplied_by(REAL(0), REAL(2), REAL(4), REAL(0.2)));
+    TEST_ASSERT_TRUE(growth_is_supplied_by(REAL(1.9), REAL(2.02), REAL(2.02), REAL(0.2)));
     TEST_ASSERT_TRUE(growth_is_supplied_by(REAL(5), REAL(5), REAL(5), REAL(0.2)));
 }
 

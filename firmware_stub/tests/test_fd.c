@@ -246,15 +246,16 @@ static void a_longer_frame_than_its_own_is_malformed(void) {
     TEST_ASSERT_TRUE(node.counters.malformed == 1 && node.counters.crc_errors == 0);
 }
 
-/* Their counters have eight bits, so that a gap of twenty is known as one. */
-static void twenty_lost_frames_are_a_gap(void) {
+/* Their counters have eight bits, so that a gap of twenty, or of two hundred, is known as one. */
+static void twenty_lost_frames_and_two_hundred_are_a_gap(void) {
     static const uint8_t offsets[] = {LACONIC_WIRE_VOLTAGE_FD, LACONIC_WIRE_RAW_INPUT_FD};
     bench_load(2);
     bench_start_lockstep();
     for (uint16_t k = 0; k < 2; k++) {
         bench_send_count(offsets[k], data, 1);
         bench_send_count(offsets[k], data, 21);
-        TEST_ASSERT_EQUAL_UINT16(k + 1, node.counters.sequence_errors);
+        bench_send_count(offsets[k], data, 201);
+        TEST_ASSERT_EQUAL_UINT16(2 * (k + 1), node.counters.sequence_errors);
         TEST_ASSERT_EQUAL_UINT16(0, node.counters.crc_errors);
     }
 }
@@ -289,7 +290,7 @@ int main(void) {
     RUN_TEST(its_counter_asks_for_no_step);
     RUN_TEST(each_step_begins_its_raw_numbers_anew);
     RUN_TEST(a_longer_frame_than_its_own_is_malformed);
-    RUN_TEST(twenty_lost_frames_are_a_gap);
+    RUN_TEST(twenty_lost_frames_and_two_hundred_are_a_gap);
     RUN_TEST(a_step_by_request_sets_no_voltages_in_free_run);
     return UNITY_END();
 }

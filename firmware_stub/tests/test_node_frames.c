@@ -213,8 +213,9 @@ static void an_encoder_that_falls_away_takes_no_other_frame_along(void) {
     load();
     bench_select(LACONIC_NODE_SEND_ENCODER | LACONIC_NODE_SEND_NU, 0, 0);
     laconic_node_publish(&node);
+    node.pending |= BIT(LACONIC_WIRE_ERROR_ESTIMATE);
     laconic_node_start_sensors(&node, &none);
-    TEST_ASSERT_EQUAL_HEX32(BIT(LACONIC_WIRE_NU), node.pending);
+    TEST_ASSERT_EQUAL_HEX32(BIT(LACONIC_WIRE_NU) | BIT(LACONIC_WIRE_ERROR_ESTIMATE), node.pending);
 }
 
 int main(void) {

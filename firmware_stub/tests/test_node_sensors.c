@@ -235,21 +235,27 @@ static void a_vehicle_without_wheels_sends_neither_angles_nor_encoders(void) {
 
 /* ------------------------------------------------------------------------------------ raw numbers -- */
 
-static void raw_numbers_of_sensors_have_all_their_bits(void) {
+static void have_all_their_bits_behind(size_t others, uint8_t raw) {
     laconic_real number[5 + 2];
+    bench_begin();
     load(settings());
-    bench_select(0, LACONIC_RAW_IMU | LACONIC_RAW_ENCODER, 0);
+    bench_select(0, LACONIC_RAW_IMU | LACONIC_RAW_ENCODER | raw, 0);
     bench_start_lockstep();
     step(30);
     const laconic_sensor_outputs now = readings();
-    TEST_ASSERT_EQUAL_UINT16(sizeof number, node.raw_output.size);
-    memcpy(number, node.raw_output.number, sizeof number);
+    TEST_ASSERT_EQUAL_UINT16(others * sizeof number[0] + sizeof number, node.raw_output.size);
+    memcpy(number, node.raw_output.number + others, sizeof number);
     for (int k = 0; k < 2; k++) {
         TEST_ASSERT_TRUE(number[k] == now.acceleration_body_m_per_s2[k]);
         TEST_ASSERT_TRUE(number[2 + k] == now.imu_acceleration_m_per_s2[k]);
         TEST_ASSERT_TRUE(number[5 + k] == now.encoder_count[k]);
     }
     TEST_ASSERT_TRUE(number[4] == now.imu_yaw_rate_rad_per_s);
+}
+
+static void raw_numbers_of_sensors_have_all_their_bits(void) {
+    have_all_their_bits_behind(0, 0);
+    have_all_their_bits_behind(3, LACONIC_RAW_NU);
 }
 
 static void without_settings_a_selected_imu_is_an_ideal_one(void) {

@@ -112,7 +112,7 @@ static void a_tick_takes_so_many_steps_and_no_more(void) {
     }
 }
 
-/* Frames that come behind the torques may wait. */
+/* Frames that come before or behind the torques may wait. */
 static void only_the_torques_hold_the_next_step_back(void) {
     const uint8_t select[LACONIC_FRAME_BYTES] = {0, 0, LACONIC_NODE_SEND_IMU, 0, SELECT_RAW_AXLE_TORQUE};
     laconic_frame frame;
@@ -123,6 +123,8 @@ static void only_the_torques_hold_the_next_step_back(void) {
     TEST_ASSERT_EQUAL_UINT64(1, node.plant.steps);
     while (node.pending & BIT(LACONIC_WIRE_RAW_OUTPUT)) TEST_ASSERT_TRUE(laconic_node_next_frame(&node, &frame));
     TEST_ASSERT_EQUAL_HEX32(BIT(LACONIC_WIRE_IMU), node.pending);
+    bench_send(LACONIC_WIRE_SELECT, select);
+    TEST_ASSERT_EQUAL_HEX32(BIT(LACONIC_WIRE_RESULT) | BIT(LACONIC_WIRE_IMU), node.pending);
     laconic_node_on_tick(&node, now_us);
     TEST_ASSERT_EQUAL_UINT64(2, node.plant.steps);
 }

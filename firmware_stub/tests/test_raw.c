@@ -72,9 +72,12 @@ static void one_segment_too_many_is_refused(void) {
     TEST_ASSERT_FALSE(laconic_raw_is_whole(&raw, frames));
 }
 
-static void nothing_chosen_takes_nothing(void) {
+static void nothing_chosen_takes_nothing_nor_do_voltages_without_wheels(void) {
     const uint8_t bytes[6] = {0};
     TEST_ASSERT_FALSE(laconic_raw_take(&raw, input, 2, 0, 15, bytes, 6));
+    laconic_raw_restart(&raw);
+    raw.take = LACONIC_RAW_VOLTAGE;
+    TEST_ASSERT_FALSE(laconic_raw_take(&raw, input, 0, 0, 15, bytes, 6));
     laconic_raw_restart(&raw);
     TEST_ASSERT_TRUE(laconic_raw_is_whole(&raw, 0));
 }
@@ -139,6 +142,12 @@ static void a_wrench_alone_fills_two_forces_and_a_moment(void) {
     TEST_ASSERT_TRUE(input[0].body_force_N[0] == 1 && input[0].body_force_N[1] == 2 && input[0].body_moment_Nm == 3);
 }
 
+static void a_wrench_follows_as_many_voltages_as_it_has_numbers(void) {
+    raw.take = LACONIC_RAW_VOLTAGE | LACONIC_RAW_BODY_WRENCH;
+    send(6, 3);
+    TEST_ASSERT_TRUE(raw.complete && input[0].voltage_V[2] == 3 && input[0].body_moment_Nm == 6);
+}
+
 static void a_segment_that_comes_again_breaks_the_stream(void) {
     const uint8_t bytes[6] = {0};
     raw.take = LACONIC_RAW_VOLTAGE;
@@ -179,13 +188,14 @@ int main(void) {
     RUN_TEST(torques_alone_and_sampled_torques_with_voltages_are_as_many_as_they_are);
     RUN_TEST(a_missing_segment_breaks_the_stream_until_it_begins_anew);
     RUN_TEST(one_segment_too_many_is_refused);
-    RUN_TEST(nothing_chosen_takes_nothing);
+    RUN_TEST(nothing_chosen_takes_nothing_nor_do_voltages_without_wheels);
     RUN_TEST(a_stream_that_begins_anew_counts_its_frames_anew);
     RUN_TEST(world_forces_fill_four_numbers_each);
     RUN_TEST(bytes_are_given_in_parts_and_the_last_ends_in_zeros);
     RUN_TEST(a_restart_forgets_that_all_had_come);
     RUN_TEST(a_stream_that_ends_early_is_not_whole);
     RUN_TEST(a_wrench_alone_fills_two_forces_and_a_moment);
+    RUN_TEST(a_wrench_follows_as_many_voltages_as_it_has_numbers);
     RUN_TEST(a_segment_that_comes_again_breaks_the_stream);
     RUN_TEST(more_frames_than_the_rig_has_sent_are_not_whole);
     RUN_TEST(reading_moves_nothing_and_each_torque_is_its_wheels);

@@ -344,11 +344,12 @@ static void commands_out_of_order_or_spoilt_are_counted_and_do_nothing(void) {
     const struct laconic_dbc_control_t begin = {.command = LACONIC_WIRE_COMMAND_BEGIN};
     laconic_dbc_control_pack(data, &begin, 8);
     bench_send_count(LACONIC_WIRE_CONTROL, data, sent[LACONIC_WIRE_CONTROL] + 2U);
-    TEST_ASSERT_TRUE(node.counters.sequence_errors == 1 && node.counters.crc_errors == 0);
+    bench_send_count(LACONIC_WIRE_CONTROL, data, sent[LACONIC_WIRE_CONTROL] + 15U);
+    TEST_ASSERT_TRUE(node.counters.sequence_errors == 2 && node.counters.crc_errors == 0);
     laconic_frame spoilt = recorded(LACONIC_WIRE_CONTROL, data, bench_key, sent[LACONIC_WIRE_CONTROL] + 1U);
     spoilt.data[0] ^= 1;
     laconic_node_on_frame(&node, &spoilt, now_us);
-    TEST_ASSERT_TRUE(node.counters.sequence_errors == 1 && node.counters.crc_errors == 1);
+    TEST_ASSERT_TRUE(node.counters.sequence_errors == 2 && node.counters.crc_errors == 1);
     TEST_ASSERT_FALSE(bench_receive(LACONIC_WIRE_RESULT, data));
     TEST_ASSERT_EQUAL_UINT8(0, bench_control(LACONIC_WIRE_COMMAND_BEGIN, 0, 0));
 }
