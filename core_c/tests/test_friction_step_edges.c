@@ -102,6 +102,18 @@ static void the_brake_of_a_large_wheel_holds_what_its_contact_can_give(void) {
     TEST_ASSERT_TRUE(plant.slip.wheel_speed_rad_per_s[1] == 0);
 }
 
+/* Constants of a wheel that is not there are no numbers. */
+static void a_brake_of_the_only_wheel_asks_no_other(void) {
+    laconic_vehicle v = caster();
+    const laconic_input input = no_input();
+    v.ground.friction_coefficient = REAL(0.5);
+    v.wheel[0].locked = true;
+    laconic_plant plant = started(v, 1e-3, 0, 2, 0);
+    plant.friction.wheel[1].inertia = NOT_A_NUMBER;
+    run(&plant, &input, 3);
+    TEST_ASSERT_TRUE(plant.slip.wheel_speed_rad_per_s[0] == 0);
+}
+
 /* As long as it stays there, nothing is wrong with it. */
 static void a_body_at_the_end_of_the_range_of_speeds_is_stepped(void) {
     const laconic_input coasting = no_input();
@@ -196,6 +208,20 @@ static void without_a_winding_resistance_a_motor_takes_what_its_voltage_gives(vo
     ASSERT_NEAR(EITHER(1e-12, 1e-5) * speed, 1e-2 * 0.5 * 5 * speed, plant.slip.supply_energy_J.value);
 }
 
+static void with_one_it_takes_what_its_current_gives_whether_its_bearings_rub_or_not(void) {
+    for (int rub = 0; rub < 2; rub++) {
+        laconic_vehicle v = with_drive(robotino(0.5, 0.3, 0));
+        laconic_input input = no_input();
+        if (!rub) v.drive.viscous_friction_Nms = 0;
+        laconic_plant plant = started(v, 1e-2, 0, 0, 0);
+        input.voltage_V[0] = 5;
+        run(&plant, &input, 1);
+        const double current = (double)plant.slip.current_A[0];
+        TEST_ASSERT_TRUE(current > 1e-3);
+        ASSERT_NEAR(EITHER(1e-12, 1e-5) * current, 1e-2 * 5 * current, plant.slip.supply_energy_J.value);
+    }
+}
+
 int main(void) {
     UNITY_BEGIN();
     RUN_TEST(a_step_that_the_solver_refuses_is_taken_in_parts);
@@ -203,11 +229,13 @@ int main(void) {
     RUN_TEST(inputs_that_leave_the_range_together_are_refused);
     RUN_TEST(a_world_force_along_either_axis_turns_with_the_heading);
     RUN_TEST(the_brake_of_a_large_wheel_holds_what_its_contact_can_give);
+    RUN_TEST(a_brake_of_the_only_wheel_asks_no_other);
     RUN_TEST(a_body_at_the_end_of_the_range_of_speeds_is_stepped);
     RUN_TEST(what_contacts_take_counts_as_it_is_where_the_motion_reverses_on_a_slope);
     RUN_TEST(a_motion_that_reverses_on_a_slope_goes_the_same_way_however_slow);
     RUN_TEST(a_body_that_goes_further_in_a_step_than_a_heading_can_turn_is_refused);
     RUN_TEST(a_body_that_is_pushed_beyond_the_range_of_speeds_is_refused);
     RUN_TEST(without_a_winding_resistance_a_motor_takes_what_its_voltage_gives);
+    RUN_TEST(with_one_it_takes_what_its_current_gives_whether_its_bearings_rub_or_not);
     return UNITY_END();
 }

@@ -80,6 +80,17 @@ static void the_first_and_the_worst_slip_are_kept_with_what_was_needed(void) {
     ASSERT_NEAR(1e-4, (double)worst.no_slip_margin_N, s.grip.worst_slip.margin_N);
 }
 
+static void half_a_newton_that_is_missing_is_a_slip(void) {
+    scene s = scene_of(with_motors(mecanum()), 0.8, 0.05);
+    laconic_reactions found = look_at(&s, no_input(), 0);
+    found.along_N[2] = REAL(0.8) * found.normal_N[2] + REAL(0.5);
+    found.lateral_N[2] = 0;
+    found.no_slip_margin_N = REAL(-0.5);
+    laconic_grip_watch(&s.grip, &s.contact, &s.model, &found, 1);
+    TEST_ASSERT_TRUE(s.grip.slipping == 1 && s.grip.first_slip.point == 3);
+    ASSERT_NEAR(1e-4, -0.5, s.grip.first_slip.margin_N);
+}
+
 static void without_friction_nothing_slips(void) {
     scene s = scene_of(with_motors(mecanum()), 0.0, 0.0);
     look_at(&s, forward(9), 0);
@@ -217,6 +228,7 @@ int main(void) {
     RUN_TEST(a_gentle_run_counts_instants_and_nothing_else);
     RUN_TEST(of_instants_that_are_equally_bad_the_first_is_the_worst);
     RUN_TEST(the_first_and_the_worst_slip_are_kept_with_what_was_needed);
+    RUN_TEST(half_a_newton_that_is_missing_is_a_slip);
     RUN_TEST(without_friction_nothing_slips);
     RUN_TEST(a_wheel_that_would_lift_is_kept_with_its_normal_load);
     RUN_TEST(a_support_that_would_lift_has_a_number_after_the_wheels);

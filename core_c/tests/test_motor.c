@@ -124,6 +124,10 @@ static void a_motor_is_fitted_to_the_wheels_that_there_can_be(void) {
     for (int i = 0; i < LACONIC_MAX_WHEELS; i++) v.wheel[i].undriven = i < 2;
     ASSERT_STATUS(LACONIC_OK, laconic_motor_fit(&v, &m, &why));
     TEST_ASSERT_TRUE(v.wheel_count == LACONIC_MAX_WHEELS + 9 && v.motor_gain_Nm_per_V > 0);
+    v.wheel_count = -1;
+    v.wheel_inertia_kgm2 = REAL(0.009);
+    ASSERT_STATUS(LACONIC_OK, laconic_motor_fit(&v, &m, &why));
+    ASSERT_NEAR(ROUNDING, 0.009 + 25 * 2e-5, v.wheel_inertia_kgm2);
 }
 
 static void a_negative_inertia_of_a_wheel_is_refused_by_its_number(void) {

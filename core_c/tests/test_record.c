@@ -67,8 +67,8 @@ static laconic_input held_at(uint64_t step) {
 }
 
 static void a_held_schedule_gives_the_bits_of_running_it_by_hand(void) {
-    const uint64_t every[] = {1, 3, 7, STEPS};
-    for (int k = 0; k < 4; k++) {
+    const uint64_t every[] = {1, 2, 3, 7, STEPS};
+    for (int k = 0; k < 5; k++) {
         laconic_plant by_hand = plant_of(with_motors(mecanum()), 0.01), plant = by_hand;
         const laconic_schedule schedule = held();
         laconic_input input;

@@ -74,6 +74,35 @@ static void a_watched_run_ends_with_the_step_whose_sample_is_refused(void) {
     TEST_ASSERT_EQUAL_UINT64(1, plant.steps);
 }
 
+/* Of a run along a schedule, too. */
+static void a_recorded_run_ends_with_the_step_whose_sample_is_refused(void) {
+    const laconic_sensor_settings settings = {.imu = {.x_m = REAL(1e15)}};
+    const laconic_real none[2] = {0};
+    const uint32_t signals[] = {offsetof(laconic_input, body_moment_Nm)};
+    const uint64_t until = 5;
+    const laconic_schedule schedule = {1, signals, none, &until, 1, 0};
+    laconic_plant plant = started(bare_body(), STEP, 0, 0, 2 * BIG_LAMBDA);
+    laconic_sensors sensors = beside(&plant, settings);
+    laconic_recorder recorder = {.sensors = &sensors};
+    ASSERT_REFUSED(LACONIC_OVERFLOW, (laconic_field)LACONIC_SENSOR_FIELD_IMU_X, 0,
+                   laconic_plant_follow(&plant, &schedule, until, &recorder, &why), why);
+}
+
+/* Of a wheel that turned by a quarter. */
+static void an_encoder_of_any_number_of_counts_counts(void) {
+    for (int32_t counts = 1; counts < 9; counts++) {
+        const laconic_input input = no_input();
+        laconic_sensor_settings settings = {0};
+        laconic_sensor_outputs shown;
+        laconic_plant plant = started(caster(), STEP, PI / 2, 0, 0);
+        settings.encoder[0] = (laconic_encoder_settings){counts, 4};
+        laconic_sensors sensors = beside(&plant, settings);
+        ASSERT_STATUS(LACONIC_OK, laconic_sensors_run(&sensors, &plant, &input, 1010, &why));
+        laconic_sensors_read(&shown, &sensors, &plant, &input);
+        TEST_ASSERT_EQUAL_INT(counts, (int)shown.encoder_count[0]);
+    }
+}
+
 static void a_sampled_step_whose_sample_is_beyond_the_range_is_refused(void) {
     const laconic_sensor_settings settings = {.imu = {.y_m = REAL(1e15)}};
     laconic_plant plant = started(bare_body(), STEP, 0, 0, 2 * BIG_LAMBDA);
@@ -129,6 +158,8 @@ int main(void) {
     RUN_TEST(of_a_wheel_that_is_too_fast_to_count_its_turn_is_told);
     RUN_TEST(of_a_sample_beyond_the_range_the_farther_coordinate_and_the_larger_part_are_told);
     RUN_TEST(a_watched_run_ends_with_the_step_whose_sample_is_refused);
+    RUN_TEST(a_recorded_run_ends_with_the_step_whose_sample_is_refused);
+    RUN_TEST(an_encoder_of_any_number_of_counts_counts);
     RUN_TEST(a_sampled_step_whose_sample_is_beyond_the_range_is_refused);
     RUN_TEST(of_a_refused_step_its_own_reason_is_told);
     RUN_TEST(ground_that_gets_friction_shows_no_acceleration_before_its_first_step);
