@@ -101,6 +101,9 @@ static void wheels_start_as_they_roll_or_as_they_are_given(void) {
     laconic_wheel_speeds(&ideal, &state, rolling);
     ASSERT_NEAR_ALL(10 * ROUNDING, rolling, plant.slip.wheel_speed_rad_per_s, 3);
     laconic_vehicle v = robotino(0.5, 0, 0);
+    start.heading_rad = REAL(0.7);
+    ASSERT_STATUS(LACONIC_OK, laconic_plant_start(&plant, &v, &laconic_auto, REAL(1e-3), &start, &why));
+    ASSERT_NEAR_ALL(10 * ROUNDING, rolling, plant.slip.wheel_speed_rad_per_s, 3);
     v.wheel[1].locked = true;
     start.wheel_speed_rad_per_s[0] = 7;
     start.wheel_speed_rad_per_s[1] = 9;

@@ -293,6 +293,9 @@ static void nothing_that_moves_is_no_motion(void) {
     TEST_ASSERT_EQUAL_INT(1, solve(&p));
     TEST_ASSERT_TRUE(p.nu[0] == 0 && p.nu[1] == 0 && p.nu[2] == 0 && p.impulse[0][0] == 0);
     TEST_ASSERT_TRUE(p.speed[0] == 0 && p.speed[1] == 7);
+    laconic_real speed[3] = {7, 7, 7};
+    TEST_ASSERT_EQUAL_INT(1, laconic_friction_solve(p.wheel, p.load, 1, p.free, p.nu, &speed[1], p.impulse));
+    TEST_ASSERT_TRUE(speed[0] == 7 && speed[1] == 0 && speed[2] == 7);
 }
 
 /* Contacts beyond those that are counted are neither read nor written. */

@@ -91,15 +91,20 @@ static void a_world_force_along_either_axis_turns_with_the_heading(void) {
 
 /* Its contact has four times the vehicle's arm. */
 static void the_brake_of_a_large_wheel_holds_what_its_contact_can_give(void) {
-    laconic_vehicle v = robotino(0.5, 0.3, 0);
-    laconic_input input = no_input();
-    v.wheel[1].locked = true;
-    v.wheel[1].own_radius_m = REAL(0.16);
-    laconic_plant plant = started(v, 0.1, 0, 0, 0);
-    input.body_force_N[1] = 300;
-    run(&plant, &input, 3);
-    TEST_ASSERT_TRUE(outputs_with(&plant, &input).friction.contact_state[1] == 1);
-    TEST_ASSERT_TRUE(plant.slip.wheel_speed_rad_per_s[1] == 0);
+    for (int i = 0; i < 3; i++) {
+        for (int oblique = -1; oblique <= 1; oblique++) {
+            laconic_vehicle v = robotino(0.5, 0.3, 0);
+            laconic_input input = no_input();
+            v.wheel[i].locked = true;
+            v.wheel[i].own_radius_m = REAL(0.16);
+            if (oblique != 0) v.wheel[i].roller_rad = REAL(0.3 * oblique);
+            laconic_plant plant = started(v, 0.1, 0, 0, 0);
+            input.body_force_N[1] = 300;
+            run(&plant, &input, 3);
+            TEST_ASSERT_TRUE(outputs_with(&plant, &input).friction.contact_state[i] == 1);
+            TEST_ASSERT_TRUE(plant.slip.wheel_speed_rad_per_s[i] == 0);
+        }
+    }
 }
 
 /* Constants of a wheel that is not there are no numbers. */

@@ -160,6 +160,15 @@ static void without_damping_one_rotation_is_enough_whatever_the_inertias(void) {
     TEST_ASSERT_TRUE(model_of(v).rotated_twice);
 }
 
+static void a_damping_of_any_one_wheel_takes_a_second_rotation(void) {
+    for (int i = 0; i < 4; i++) {
+        laconic_vehicle v = with_motors(mecanum());
+        TEST_ASSERT_FALSE(model_of(v).rotated_twice);
+        v.wheel[i].own_motor_damping_Nms = REAL(0.5 * DAMPING);
+        TEST_ASSERT_TRUE(model_of(v).rotated_twice);
+    }
+}
+
 static void a_common_ratio_needs_one_rotation_only(void) {
     laconic_vehicle v = with_motors(mecanum());
     for (int i = 0; i < 4; i++) {
@@ -301,6 +310,7 @@ int main(void) {
     RUN_TEST(free_motion_keeps_energy_and_k);
     RUN_TEST(a_slow_rate_keeps_its_digits_beside_fast_ones);
     RUN_TEST(without_damping_one_rotation_is_enough_whatever_the_inertias);
+    RUN_TEST(a_damping_of_any_one_wheel_takes_a_second_rotation);
     RUN_TEST(a_common_ratio_needs_one_rotation_only);
     RUN_TEST(a_wheel_without_a_motor_takes_no_voltage_and_damps_nothing);
     RUN_TEST(the_rotor_goes_to_the_driven_wheels_only);

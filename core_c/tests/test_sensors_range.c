@@ -86,6 +86,10 @@ static void a_recorded_run_ends_with_the_step_whose_sample_is_refused(void) {
     laconic_recorder recorder = {.sensors = &sensors};
     ASSERT_REFUSED(LACONIC_OVERFLOW, (laconic_field)LACONIC_SENSOR_FIELD_IMU_X, 0,
                    laconic_plant_follow(&plant, &schedule, until, &recorder, &why), why);
+    const laconic_real nothing[3] = {0};
+    const laconic_schedule sampled = {1, signals, nothing, NULL, 1, plant.steps};
+    ASSERT_REFUSED(LACONIC_OVERFLOW, (laconic_field)LACONIC_SENSOR_FIELD_IMU_X, 0,
+                   laconic_plant_follow(&plant, &sampled, plant.steps + 1, &recorder, &why), why);
 }
 
 /* Of a wheel that turned by a quarter. */
