@@ -65,6 +65,23 @@ static void a_new_session_has_open_ears(void) {
     TEST_ASSERT_EQUAL_HEX32(0, node.session.deaf);
 }
 
+/* One that is not right, before any HELLO. */
+static void an_open_that_nobody_asked_for_opens_nothing(void) {
+    const laconic_node_config config = node.config;
+    laconic_node_init(&node, &config, now_us);
+    const laconic_frame open = bench_open_frame(9, 0x12345678U);
+    laconic_node_on_frame(&node, &open, now_us);
+    TEST_ASSERT_FALSE(node.session.open);
+    TEST_ASSERT_TRUE(node.counters.crc_errors == 1 && node.counters.accepted == 0);
+}
+
+static void a_command_with_a_wrong_key_is_not_executed_before_a_session_either(void) {
+    const laconic_node_config config = node.config;
+    laconic_node_init(&node, &config, now_us);
+    bench_send_count(LACONIC_WIRE_CONTROL, data, 1);
+    TEST_ASSERT_TRUE(node.counters.crc_errors == 1 && node.counters.accepted == 0);
+}
+
 int main(void) {
     UNITY_BEGIN();
     RUN_TEST(a_later_hello_leaves_the_nonce_of_a_handshake_that_goes_on);
@@ -72,5 +89,7 @@ int main(void) {
     RUN_TEST(a_run_has_a_key_of_its_session_and_its_start);
     RUN_TEST(a_motion_frame_that_is_spoilt_is_counted_as_that);
     RUN_TEST(a_new_session_has_open_ears);
+    RUN_TEST(an_open_that_nobody_asked_for_opens_nothing);
+    RUN_TEST(a_command_with_a_wrong_key_is_not_executed_before_a_session_either);
     return UNITY_END();
 }

@@ -24,13 +24,15 @@ static void expect_repaired(const laconic_node_config *original, const laconic_n
 static void test_a_member_of_the_configuration_that_became_smaller_or_larger_is_repaired(void) {
     const laconic_node_config usual = {LACONIC_WIRE_ID_BASE, true, laconic_method_by_number, 7,
                                        laconic_drive_protocol_by_number};
-    laconic_node_config other[5] = {usual, usual, usual, usual, usual};
+    laconic_node_config other[6] = {usual, usual, usual, usual, usual, usual};
     other[0].id_base = LACONIC_WIRE_ID_BASE + LACONIC_NODE_ID_STRIDE;
     other[1].can_fd = false;
     other[2].method = NULL;
     other[3].nonce_seed = 8;
     other[4].protocol = NULL;
-    for (int k = 0; k < 5; k++) {
+    other[5].id_base = LACONIC_WIRE_ID_BASE + LACONIC_NODE_ID_STRIDE; /* of two members at once */
+    other[5].can_fd = false;
+    for (int k = 0; k < 6; k++) {
         expect_repaired(&usual, &other[k]);
         expect_repaired(&other[k], &usual);
     }
@@ -62,9 +64,19 @@ static void test_a_change_that_one_of_the_two_sums_shows_is_noticed_both_ways(vo
     TEST_ASSERT_FALSE(notices(first, first));
 }
 
+static void test_a_change_of_motion_and_of_what_is_sent_is_noticed_as_either_is(void) {
+    bench_power_up(&on, 7, 0, LACONIC_INTEGRITY_MOTION);
+    TEST_ASSERT_TRUE(rig_session(&on, NULL, NULL, NULL));
+    on.node.plant.state.x_m.value += 1;
+    on.node.pending ^= 1U;
+    bench_tick(&on);
+    TEST_ASSERT_EQUAL(LACONIC_INTEGRITY_OF_MOTION, on.integrity.broken);
+}
+
 int main(void) {
     UNITY_BEGIN();
     RUN_TEST(test_a_member_of_the_configuration_that_became_smaller_or_larger_is_repaired);
     RUN_TEST(test_a_change_that_one_of_the_two_sums_shows_is_noticed_both_ways);
+    RUN_TEST(test_a_change_of_motion_and_of_what_is_sent_is_noticed_as_either_is);
     return UNITY_END();
 }

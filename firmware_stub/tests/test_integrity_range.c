@@ -191,6 +191,45 @@ static void test_a_limit_of_0_is_none(void) {
     TEST_ASSERT_EQUAL(LACONIC_INTEGRITY_SOUND, on.integrity.broken);
 }
 
+/* Two of them may not pass for right because they agree. */
+static void test_two_numbers_out_of_range_are_noticed_as_one_is(void) {
+    laconic_state *const state = &on.node.plant.state;
+    laconic_real *const rests[][2] = {{&state->x_m.rest, &state->y_m.rest},
+                                      {&state->y_m.rest, &state->x_m.value},
+                                      {&state->zeta[1].rest, &state->travel[1].rest},
+                                      {&state->zeta[0].rest, &state->x_m.rest}};
+    for (size_t k = 0; k < sizeof rests / sizeof rests[0]; k++) {
+        in_free_run();
+        *rests[k][0] = 1;
+        expect_out_of_range(rests[k][1], 2000);
+    }
+    in_free_run();
+    state->x_m.value = 2000;
+    expect_out_of_range(&state->y_m.value, 2000);
+    in_free_run();
+    state->y_m.value = 2000;
+    expect_out_of_range(&state->heading.rest, 2);
+    in_free_run();
+    on.node.input[0].voltage_V[0] = 60;
+    expect_out_of_range(&on.node.input[0].voltage_V[1], 60);
+    in_free_run();
+    on.integrity.limits.speed_m_per_s = 0;
+    state->x_m.rest = 1;
+    expect_out_of_range(&state->zeta[2].value, -5000); /* which gives the yaw rate */
+    in_free_run();
+    on.node.state = 77;
+    expect_out_of_range(&state->x_m.value, 2000);
+}
+
+static void test_a_vehicle_of_the_most_wheels_is_in_range(void) {
+    in_free_run();
+    TEST_ASSERT_EQUAL(0, rig_command(&on, LACONIC_WIRE_COMMAND_STOP));
+    on.node.plant.model.wheel_count = LACONIC_MAX_WHEELS;
+    for (int i = 0; i < LACONIC_MAX_WHEELS; i++) on.node.input[0].axle_torque_Nm[i] = 1000; /* behind the voltages */
+    bench_tick(&on);
+    TEST_ASSERT_EQUAL(LACONIC_INTEGRITY_SOUND, on.integrity.broken);
+}
+
 int main(void) {
     UNITY_BEGIN();
     RUN_TEST(test_what_no_motion_has_is_out_of_range);
@@ -205,5 +244,7 @@ int main(void) {
     RUN_TEST(test_a_number_that_is_none_is_out_of_range_without_limits_too);
     RUN_TEST(test_a_node_that_plays_drives_is_in_range);
     RUN_TEST(test_a_limit_of_0_is_none);
+    RUN_TEST(test_two_numbers_out_of_range_are_noticed_as_one_is);
+    RUN_TEST(test_a_vehicle_of_the_most_wheels_is_in_range);
     return UNITY_END();
 }

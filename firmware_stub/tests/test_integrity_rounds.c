@@ -97,6 +97,12 @@ static void commit_again(void) {
     TEST_ASSERT_EQUAL(0, on.node.answer[LACONIC_WIRE_COMMIT].status);
 }
 
+static void test_without_the_check_of_motion_what_was_loaded_is_compared_with_nothing(void) {
+    bench_power_up(&on, 7, 0, LACONIC_INTEGRITY_RANGE);
+    TEST_ASSERT_TRUE(rig_session(&on, NULL, NULL, NULL));
+    commit_again();
+}
+
 /* Of another session, or of the same. */
 static void test_a_new_vehicle_begins_a_new_round(void) {
     for (int same = 0; same < 2; same++) {
@@ -149,5 +155,6 @@ int main(void) {
     RUN_TEST(test_a_new_vehicle_begins_a_new_round);
     RUN_TEST(test_the_model_is_seen_only_where_there_is_one_and_its_sum_is_wanted);
     RUN_TEST(test_a_tick_sees_few_slices_however_late_it_comes);
+    RUN_TEST(test_without_the_check_of_motion_what_was_loaded_is_compared_with_nothing);
     return UNITY_END();
 }

@@ -161,6 +161,9 @@ static void numbers_out_of_their_range_are_refused_and_not_stored(void) {
     TEST_ASSERT_EQUAL_UINT8(LACONIC_WIRE_STATUS_OUT_OF_RANGE, check());
     TEST_ASSERT_FALSE(loader.parameters.vehicle.wheel[0].locked);
     laconic_loader_begin(&loader);
+    send(1, LACONIC_FIELD_WHEEL_LOCKED, 1, 2); /* for two reasons */
+    TEST_ASSERT_EQUAL_UINT8(LACONIC_WIRE_STATUS_OUT_OF_RANGE, check());
+    laconic_loader_begin(&loader);
     send(0, LACONIC_FIELD_WHEEL_KIND, 1, 257); /* would be 1 in a byte */
     TEST_ASSERT_EQUAL_UINT8(LACONIC_WIRE_STATUS_OUT_OF_RANGE, check());
 }

@@ -14,6 +14,8 @@ static void id_bases_are_multiples_of_32(void) {
     TEST_ASSERT_FALSE(laconic_node_init(&node, &config, 0));
     config.id_base = 0x800;
     TEST_ASSERT_FALSE(laconic_node_init(&node, &config, 0));
+    config.id_base = 0x801; /* for two reasons */
+    TEST_ASSERT_FALSE(laconic_node_init(&node, &config, 0));
     config.id_base = 0x7E0;
     TEST_ASSERT_TRUE(laconic_node_init(&node, &config, 0));
 }

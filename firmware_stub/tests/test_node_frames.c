@@ -218,6 +218,18 @@ static void an_encoder_that_falls_away_takes_no_other_frame_along(void) {
     TEST_ASSERT_EQUAL_HEX32(BIT(LACONIC_WIRE_NU) | BIT(LACONIC_WIRE_ERROR_ESTIMATE), node.pending);
 }
 
+static void a_frame_that_is_none_of_the_nodes_is_so_for_one_reason_or_for_two(void) {
+    laconic_frame frame = {.id = LACONIC_WIRE_ID_BASE, .length = 8, .extended = true};
+    for (uint32_t k = 0; k < 3; k++) {
+        frame.id = LACONIC_WIRE_ID_BASE + k * LACONIC_NODE_ID_STRIDE;
+        laconic_node_on_frame(&node, &frame, now_us);
+    }
+    TEST_ASSERT_EQUAL_UINT16(0, node.counters.malformed);
+    const laconic_frame wrong = {.id = LACONIC_WIRE_ID_BASE, .length = 8, .remote = true, .fd = true};
+    laconic_node_on_frame(&node, &wrong, now_us);
+    TEST_ASSERT_EQUAL_UINT16(1, node.counters.malformed);
+}
+
 int main(void) {
     UNITY_BEGIN();
     RUN_TEST(a_frame_that_waits_goes_on_waiting_when_it_is_due_again);
@@ -232,5 +244,6 @@ int main(void) {
     RUN_TEST(a_heartbeat_comes_to_the_microsecond_and_with_counters_where_they_were_chosen);
     RUN_TEST(encoders_of_the_last_wheel_are_sent_and_wait_through_a_reset);
     RUN_TEST(an_encoder_that_falls_away_takes_no_other_frame_along);
+    RUN_TEST(a_frame_that_is_none_of_the_nodes_is_so_for_one_reason_or_for_two);
     return UNITY_END();
 }

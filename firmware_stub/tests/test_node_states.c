@@ -176,6 +176,35 @@ static void cleared_inputs_are_zero_to_their_last_byte(void) {
     TEST_ASSERT_EQUAL_MEMORY(none, node.input, sizeof none);
 }
 
+static void an_order_is_refused_for_two_reasons_as_for_one(void) {
+    uint8_t order[8] = {0, 0x10, LACONIC_WIRE_FIELD_DRIVE_FAULTS, 1};
+    load_driven(1000);
+    TEST_ASSERT_EQUAL_UINT8(0, bench_control(LACONIC_WIRE_COMMAND_START_DRIVES, 0, 0));
+    for (int bit = 0; bit < 32; bit++) {
+        put32(order + 4, (uint32_t)1 << bit);
+        TEST_ASSERT_EQUAL_UINT8(LACONIC_WIRE_STATUS_OUT_OF_RANGE, laconic_node_order_drive(&node, order));
+    }
+}
+
+/* Of wheels that are not there, and after the run. */
+static void voltages_are_refused_for_two_reasons_as_for_one(void) {
+    bench_load(2);
+    bench_start_lockstep();
+    bench_control(LACONIC_WIRE_COMMAND_STOP, 0, 0);
+    bench_voltage(7, 500, 0);
+    TEST_ASSERT_EQUAL_UINT16(1, node.counters.refused);
+}
+
+static void a_sync_of_too_many_steps_that_would_be_sampled_is_refused(void) {
+    bench_load(2);
+    TEST_ASSERT_EQUAL_UINT8(0, bench_select(0, 0, LACONIC_RAW_TAKES));
+    bench_start_lockstep();
+    bench_sync(1000001);
+    TEST_ASSERT_TRUE(bench_receive(LACONIC_WIRE_RESULT, data));
+    TEST_ASSERT_EQUAL_UINT8(LACONIC_WIRE_STATUS_OUT_OF_RANGE, data[3]);
+    TEST_ASSERT_EQUAL_UINT32(0, node.lockstep.steps_due);
+}
+
 int main(void) {
     UNITY_BEGIN();
     RUN_TEST(an_empty_node_starts_neither_a_free_run_nor_drives);
@@ -193,5 +222,8 @@ int main(void) {
     RUN_TEST(bits_beside_that_of_the_half_say_nothing);
     RUN_TEST(a_refused_sync_is_answered_with_its_request);
     RUN_TEST(cleared_inputs_are_zero_to_their_last_byte);
+    RUN_TEST(an_order_is_refused_for_two_reasons_as_for_one);
+    RUN_TEST(voltages_are_refused_for_two_reasons_as_for_one);
+    RUN_TEST(a_sync_of_too_many_steps_that_would_be_sampled_is_refused);
     return UNITY_END();
 }

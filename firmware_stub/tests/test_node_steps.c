@@ -56,7 +56,10 @@ static void a_step_of_drives_that_is_refused_ends_in_fault_under_sensors_too(voi
 /* As those that go by classic frames. */
 static void the_next_step_waits_until_the_torques_are_sent_by_can_fd(void) {
     play(LACONIC_RAW_WHEEL_SPEED | RAW_BY_FD, SELECT_RAW_AXLE_TORQUE);
-    pass(5);
+    pass(1);
+    laconic_node_on_tick(&node, now_us); /* and until its time has come */
+    TEST_ASSERT_EQUAL_UINT64(1, node.plant.steps);
+    pass(4);
     TEST_ASSERT_EQUAL_UINT64(1, node.plant.steps);
     TEST_ASSERT_TRUE(bench_receive(LACONIC_WIRE_RAW_OUTPUT_FD, data));
     while (bench_receive(LACONIC_WIRE_RAW_OUTPUT_FD, data)) {
@@ -193,6 +196,12 @@ static void a_sync_begins_raw_inputs_anew(void) {
     }
 }
 
+static void raw_numbers_and_an_estimate_make_a_node_speak_while_drives_play(void) {
+    play(LACONIC_RAW_WHEEL_SPEED, 0x20U);
+    pass(100);
+    TEST_ASSERT_TRUE(node.pending & BIT(LACONIC_WIRE_HEARTBEAT));
+}
+
 int main(void) {
     UNITY_BEGIN();
     RUN_TEST(sensors_that_nobody_asks_for_see_nothing_of_drives);
@@ -206,5 +215,6 @@ int main(void) {
     RUN_TEST(drives_have_the_time_of_their_node_whoever_watches);
     RUN_TEST(a_refused_step_names_its_field_whoever_watches);
     RUN_TEST(frames_of_the_plant_ask_for_no_sensors);
+    RUN_TEST(raw_numbers_and_an_estimate_make_a_node_speak_while_drives_play);
     return UNITY_END();
 }

@@ -61,7 +61,7 @@ static void frames_of_every_kind_are_read(void) {
 static void lines_that_are_no_frames_are_refused(void) {
     const char *const wrong[] = {"t\r",       "t20\r",       "t8001AA\r", "t2009\r", "t2001\r",
                                  "t2001A\r",  "t2001AAB\r",  "t2001GG\r", "tXYZ0\r", "T200000000\r",
-                                 "d2009AA\r", "r20080011\r", "t200G\r"};
+                                 "d2009AA\r", "r20080011\r", "t200G\r",   "tXYZG\r"};
     feed("O\r");
     for (size_t k = 0; k < sizeof wrong / sizeof wrong[0]; k++) answers(wrong[k], "\a");
     TEST_ASSERT_EQUAL_UINT8(0, frame.length);
@@ -81,8 +81,21 @@ static void at_the_wrong_bit_rate_nothing_comes_or_goes(void) {
     feed("S5\rO\r");
     answers("t2000\r", "\a");
     TEST_ASSERT_EQUAL_size_t(0, laconic_slcan_write(&slcan, &frame, line));
+    feed("C\r");
+    TEST_ASSERT_EQUAL_size_t(0, laconic_slcan_write(&slcan, &frame, line));
+    feed("L\r");
+    answers("t2000\r", "\a");
     feed("C\rS6\rO\r");
     TEST_ASSERT_EQUAL(LACONIC_SLCAN_FRAME, feed("t2000\r"));
+}
+
+static void a_remote_frame_without_bytes_is_written_without_bytes(void) {
+    char line[LACONIC_SLCAN_LINE + 1] = {0};
+    frame.id = 0x123;
+    frame.remote = true;
+    feed("O\r");
+    TEST_ASSERT_EQUAL_size_t(6, laconic_slcan_write(&slcan, &frame, line));
+    TEST_ASSERT_EQUAL_STRING("r1230\r", line);
 }
 
 static void what_is_written_reads_back_the_same(void) {
@@ -238,6 +251,7 @@ static void a_line_too_long_changes_nothing_behind_it(void) {
 static void a_classic_frame_has_eight_bytes_at_most_whatever_its_line_holds(void) {
     feed("O\r");
     answers("t2009112233445566778899AABBCC\r", "\a");
+    answers("t8009112233445566778899AABBCC\r", "\a"); /* and its identifier is too large */
 }
 
 static void any_rate_is_right_where_none_is_required(void) {
@@ -311,5 +325,6 @@ int main(void) {
     RUN_TEST(a_higher_rate_is_as_wrong_as_a_lower_one);
     RUN_TEST(a_closed_channel_takes_no_frames);
     RUN_TEST(a_line_ends_with_cr_alone);
+    RUN_TEST(a_remote_frame_without_bytes_is_written_without_bytes);
     return UNITY_END();
 }
