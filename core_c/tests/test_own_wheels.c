@@ -298,6 +298,39 @@ static void a_single_wheel_s_own_inertia_takes_the_vehicle_s_place(void) {
     }
 }
 
+/* In shares of the largest number with a finite square. */
+static void rows_count_with_all_their_wheels_and_velocities_in_the_range(void) {
+    const double root = sqrt((double)LACONIC_REAL_MAX), radius[2] = {0.07 * root, 0.0895 * root};
+    laconic_model m;
+    for (int refused = 0; refused < 2; refused++) { /* 1/M, R and twice R, M R² */
+        laconic_vehicle v = bare_body();
+        v.mass_kg = REAL(1 / (0.745 * root));
+        v.wheel_radius_m = REAL(radius[refused]);
+        v.yaw_inertia_kgm2 = REAL(radius[refused] / (0.745 * root) * radius[refused]);
+        v.wheel_inertia_kgm2 = 0;
+        ASSERT_STATUS(refused ? LACONIC_OVERFLOW : LACONIC_OK, laconic_prepare(&m, &v, &why));
+    }
+    for (int i = 0; i < 3; i++) { /* two rows, each with a length of 0.6 */
+        laconic_vehicle v = mecanum();
+        v.wheel_inertia_kgm2 = 0;
+        v.wheel[i].own_radius_m = v.wheel[3].own_radius_m = REAL(RADIUS / (0.42 * root));
+        ASSERT_REFUSED(LACONIC_OVERFLOW, LACONIC_FIELD_NONE, 0, laconic_prepare(&m, &v, &why), why);
+    }
+}
+
+/* Two gains that leave the range together; whether M R² has an inverse within it or not. */
+static void a_number_that_fits_by_itself_is_not_named(void) {
+    const double gain = 0.7 * sqrt((double)LACONIC_REAL_MAX);
+    for (int small = 0; small < 2; small++) {
+        laconic_vehicle v = mecanum();
+        laconic_model m;
+        v.wheel_radius_m = small ? EITHER(REAL(1e-80), REAL(1e-11)) : REAL(10);
+        v.wheel_inertia_kgm2 = 0;
+        for (int i = 0; i < 4; i++) v.wheel[i].own_motor_gain_Nm_per_V = REAL(gain);
+        ASSERT_REFUSED(LACONIC_OVERFLOW, LACONIC_FIELD_NONE, 0, laconic_prepare(&m, &v, &why), why);
+    }
+}
+
 int main(void) {
     UNITY_BEGIN();
     RUN_TEST(own_values_that_are_the_vehicles_give_the_same_bits);
@@ -318,5 +351,7 @@ int main(void) {
     RUN_TEST(a_value_that_leaves_the_range_is_named);
     RUN_TEST(values_beyond_the_last_wheel_are_not_read);
     RUN_TEST(a_single_wheel_s_own_inertia_takes_the_vehicle_s_place);
+    RUN_TEST(rows_count_with_all_their_wheels_and_velocities_in_the_range);
+    RUN_TEST(a_number_that_fits_by_itself_is_not_named);
     return UNITY_END();
 }
