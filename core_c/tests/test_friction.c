@@ -184,6 +184,34 @@ static void numbers_too_far_apart_overflow_by_name(void) {
                    laconic_plant_start(&plant, &v, &laconic_auto, REAL(1e-3), &start, &why), why);
 }
 
+/* A third of the largest number with a finite square: as many are its inertia and its mobility. */
+static void a_large_rim_counts_with_both_its_directions_in_the_range(void) {
+    const double root = sqrt((double)LACONIC_REAL_MAX), share[2] = {0.3, 0.34};
+    for (int refused = 0; refused < 2; refused++) {
+        laconic_vehicle v = robotino(0.5, 1, 0);
+        const laconic_start start = start_with(0, 0, 0);
+        laconic_plant plant;
+        v.wheel[1].roller_rad = REAL(0.3);
+        v.wheel[1].own_radius_m = REAL(0.04 * share[refused] * root);
+        v.wheel[1].own_inertia_kgm2 = REAL(20 * 0.04 * 0.04 * share[refused] * root);
+        ASSERT_STATUS(refused ? LACONIC_OVERFLOW : LACONIC_OK,
+                      laconic_plant_start(&plant, &v, &laconic_auto, REAL(1e-3), &start, &why));
+    }
+}
+
+/* Its contact has two masses across the rollers, of 1/k² each. */
+static void rollers_that_hardly_drag_are_taken_up_to_half_the_range(void) {
+    const double root = sqrt((double)LACONIC_REAL_MAX), share[2] = {0.4, 0.6};
+    for (int refused = 0; refused < 2; refused++) {
+        laconic_vehicle v = robotino(0.5, 0, 0);
+        const laconic_start start = start_with(0, 0, 0);
+        laconic_plant plant;
+        v.wheel[1].own_roller_drag = REAL(1 / sqrt(share[refused] * root));
+        ASSERT_STATUS(refused ? LACONIC_OVERFLOW : LACONIC_OK,
+                      laconic_plant_start(&plant, &v, &laconic_auto, REAL(1e-3), &start, &why));
+    }
+}
+
 static void a_change_in_motion_keeps_body_and_wheels(void) {
     laconic_vehicle v = with_drive(robotino(0.5, 0.4, 0.05));
     laconic_plant plant = started(v, 1e-3, 5, 3, 4);
@@ -314,6 +342,8 @@ int main(void) {
     RUN_TEST(a_wheel_of_hardly_any_radius_does_not_roll_beyond_all_numbers);
     RUN_TEST(a_drive_on_ideal_ground_starts_only_as_its_wheels_allow);
     RUN_TEST(numbers_too_far_apart_overflow_by_name);
+    RUN_TEST(a_large_rim_counts_with_both_its_directions_in_the_range);
+    RUN_TEST(rollers_that_hardly_drag_are_taken_up_to_half_the_range);
     RUN_TEST(a_change_in_motion_keeps_body_and_wheels);
     RUN_TEST(wheels_are_taken_over_from_the_ideal_model_and_back);
     RUN_TEST(the_sampled_step_holds_the_input_of_the_middle);
