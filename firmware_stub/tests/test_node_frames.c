@@ -230,6 +230,20 @@ static void a_frame_that_is_none_of_the_nodes_is_so_for_one_reason_or_for_two(vo
     TEST_ASSERT_EQUAL_UINT16(1, node.counters.malformed);
 }
 
+static void each_encoders_frame_tells_its_own_counts(void) {
+    load();
+    for (uint8_t wheel = 0; wheel < 4; wheel++) {
+        struct laconic_dbc_encoder_t frame;
+        node.encoder_wheel = wheel;
+        node.sensors.settings.encoder[wheel].counts_per_turn = wheel + 1;
+        node.sensors.encoder[wheel].count = 100 + wheel;
+        laconic_node_pack(&node, LACONIC_WIRE_ENCODER, data);
+        laconic_dbc_encoder_unpack(&frame, data, 8);
+        TEST_ASSERT_TRUE(frame.wheel == wheel && frame.count == 100 + wheel &&
+                         frame.index_count == (100 + wheel) / (wheel + 1));
+    }
+}
+
 int main(void) {
     UNITY_BEGIN();
     RUN_TEST(a_frame_that_waits_goes_on_waiting_when_it_is_due_again);
@@ -245,5 +259,6 @@ int main(void) {
     RUN_TEST(encoders_of_the_last_wheel_are_sent_and_wait_through_a_reset);
     RUN_TEST(an_encoder_that_falls_away_takes_no_other_frame_along);
     RUN_TEST(a_frame_that_is_none_of_the_nodes_is_so_for_one_reason_or_for_two);
+    RUN_TEST(each_encoders_frame_tells_its_own_counts);
     return UNITY_END();
 }
