@@ -3,13 +3,15 @@
 from __future__ import annotations
 
 import json
+import re
 
 import pytest
 
 from laconic.errors import BadInput
-from laconic.mutation.equivalent import Equivalent
+from laconic.mutation.equivalent import Equivalent, read_equivalents
 from laconic.mutation.faults import read_faults
 from laconic.mutation.listed import BY_LAW, BY_SIGN, Listed
+from laconic.paths import SOURCE_DIR
 from laconic.soak.mutants import soak
 
 SOURCE = """\
@@ -116,3 +118,12 @@ def test_without_a_file_or_with_another_samples_options_it_says_so(project):
         read_faults(project / "none.jsonl")
     with pytest.raises(BadInput, match="leave out --sample and --only"):
         soak(1.0, 1, lambda _: None, sample=3, faults=project / "a.c")
+
+
+def test_the_row_that_the_page_shows_is_a_row_of_the_list(tmp_path):
+    page = (SOURCE_DIR / "docs" / "assurance.md").read_text(encoding="utf-8")
+    row, = re.findall(r"```toml\n(\[\[equivalent\]\]\n.*?)```", page, re.DOTALL)
+    (tmp_path / "a.c.toml").write_text(row)
+    shown, = read_equivalents(tmp_path)
+    parts = (shown.function, shown.before, shown.after, shown.reason)
+    assert parts in [(each.function, each.before, each.after, each.reason) for each in read_equivalents()]

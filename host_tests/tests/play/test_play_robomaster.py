@@ -211,7 +211,10 @@ def test_numbers_that_no_drive_can_have_are_refused_by_field_and_wheel(
     "an386-drives", "single", marks=pytest.mark.skipif(why_no_emulation() is not None, reason="no emulated boards"))])
 def test_the_controller_of_the_page_drives_a_process_and_a_board_that_has_no_other_protocol(
         kind: str, real: str) -> None:
-    """Behind a serial line, 200 periods a second by a clock of their own."""
+    """Behind a serial line, 200 periods a second by a clock of their own; the wheels' speeds hold for twenty of them.
+
+    How many periods that takes depends on how late this process answers.
+    """
     scene = played(read_scene("robomaster_mecanum").with_run(real=real, method="rk4", step_s=0.005))
     twin = scene.plant(scene.core())
     with own_node(kind, real) as client:
@@ -219,13 +222,13 @@ def test_the_controller_of_the_page_drives_a_process_and_a_board_that_has_no_oth
         client.load_parameters([*parameters_of(twin, start_of(scene)), *drive_parameters(drive_settings(scene, None))],
                                twin.core.dtype)
         client.control("START_DRIVES")
-        bus, heard = client.link.bus, 0
+        bus, heard, right = client.link.bus, 0, 0
         loops = controller_of_the_page()(bus)
         loops.wanted_rad_per_s = wheel_speeds_for(scene, 0.4, 0.1, 0.2)
-        while heard < 800 and (message := bus.recv(2.0)) is not None:
+        wanted_rpm = np.array(loops.wanted_rad_per_s) * 60 / (2 * np.pi) * 3591 / 187
+        while heard < 20_000 and right < 80 and (message := bus.recv(2.0)) is not None:
             loops.hear(message)
             heard += 1
-        wanted_rpm = np.array(loops.wanted_rad_per_s) * 60 / (2 * np.pi) * 3591 / 187
-        assert heard == 800
-        assert np.allclose(loops.rpm, wanted_rpm, rtol=0.02, atol=5)
+            right = right + 1 if np.allclose(loops.rpm, wanted_rpm, rtol=0.02, atol=5) else 0
+        assert right == 80, (heard, loops.rpm, wanted_rpm)
         client.stop()
