@@ -135,7 +135,8 @@ def without_growth(before: Meaning, after: Meaning) -> Meaning:
 
 
 def _is_macro(called: Meaning) -> bool:
-    return called[0] == "call" and called[1][0] == "identifier" and called[1][1].isupper()  # it may ask a size, as COUNT(array) does
+    """It may ask a size, as COUNT(array) does."""
+    return called[0] == "call" and called[1][0] == "identifier" and called[1][1].isupper()
 
 
 def without_zero_signs(of: Meaning) -> Meaning:
