@@ -1,7 +1,7 @@
 """Whether a fault is in the list of equivalents, however it is spelled: the text is what a row makes of it, or the
-function is, by the laws of alike.py, as it was or as a row makes it. Such a fault no test can notice. Two more things
+function is, by the laws of alike.py, as it was or as a row makes it. Such a fault no test can notice. Three more things
 are said of what no test has noticed, where tests notice the other faults of the place: a row with `…`, which stands for
-any text, and that a zero may have either sign."""
+any text, that a zero may have either sign, and that the order of some statements says nothing (order.py)."""
 
 from __future__ import annotations
 
@@ -16,9 +16,11 @@ from tree_sitter import Node
 from laconic.mutation.alike import Meaning, meaning, without_growth, without_zero_signs
 from laconic.mutation.equivalent import Equivalent
 from laconic.mutation.operators import Change, name_of, parsed
+from laconic.mutation.order import without_order
 
 BY_LAW = "C reads both alike: a law of laconic/mutation/alike.py."
 BY_SIGN = "Only a zero has another sign, and of that nothing is promised."
+BY_ORDER = "Only the order of statements is another, of which none names what the other writes, or one is there twice."
 ANYTHING = "…"
 LINES = 6
 """That a row may be of."""
@@ -112,10 +114,11 @@ class _File:
             is_longer = len(now.words) >= len(before) + len(behind)
             if is_longer and now.words.startswith(before) and now.words.endswith(behind):
                 return reason
-        name = self._changed_function(now)
-        alike = name is not None and (without_zero_signs(meaning(now.functions[name]))
-                                      == without_zero_signs(meaning(self._text.functions[name])))
-        return BY_SIGN if alike else None
+        if (name := self._changed_function(now)) is None:
+            return None
+        own, changed = meaning(self._text.functions[name]), meaning(now.functions[name])
+        said = {BY_SIGN: without_zero_signs, BY_ORDER: without_order}
+        return next((reason for reason, of in said.items() if of(own) == of(changed)), None)
 
     def _changed(self, change: Change) -> _Text:
         start, end, text = change
