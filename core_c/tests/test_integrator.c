@@ -77,6 +77,8 @@ static void the_fastest_decay_is_the_largest_of_all_axes(void) {
     }
     m.decay_per_s[0] = REAL(9);
     TEST_ASSERT_EQUAL_DOUBLE(9, (double)laconic_fastest_decay(&m));
+    m.decay_per_s[1] = REAL(9) * (REAL(1) + REAL(4) * LACONIC_EPSILON); /* by its last digits */
+    TEST_ASSERT_EQUAL_DOUBLE((double)m.decay_per_s[1], (double)laconic_fastest_decay(&m));
 }
 
 /* -------------------------------------------------------------- factors of exponential steps -- */
