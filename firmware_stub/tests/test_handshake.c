@@ -28,6 +28,19 @@ static void a_later_hello_leaves_the_nonce_of_a_handshake_that_goes_on(void) {
     TEST_ASSERT_TRUE(bench_receive(LACONIC_WIRE_RESULT, data));
 }
 
+static void each_challenge_names_the_hello_that_it_answers(void) {
+    greeted();
+    for (uint8_t count = 1; count < 16; count += 7) {
+        laconic_frame hello = {.id = LACONIC_WIRE_ID_BASE + LACONIC_WIRE_HELLO, .length = 8};
+        struct laconic_dbc_challenge_t challenge = {0};
+        laconic_protect_plain(LACONIC_WIRE_HELLO, hello.data, count);
+        laconic_node_on_frame(&node, &hello, now_us);
+        TEST_ASSERT_TRUE(bench_receive(LACONIC_WIRE_CHALLENGE, data));
+        laconic_dbc_challenge_unpack(&challenge, data, 8);
+        TEST_ASSERT_EQUAL(count, challenge.request);
+    }
+}
+
 /* The keys of a node whose session was never opened are zero, and so is the number of its session. */
 static void a_nonce_opens_nothing_by_itself(void) {
     greeted();
@@ -84,6 +97,7 @@ static void a_command_with_a_wrong_key_is_not_executed_before_a_session_either(v
 
 int main(void) {
     UNITY_BEGIN();
+    RUN_TEST(each_challenge_names_the_hello_that_it_answers);
     RUN_TEST(a_later_hello_leaves_the_nonce_of_a_handshake_that_goes_on);
     RUN_TEST(a_nonce_opens_nothing_by_itself);
     RUN_TEST(a_run_has_a_key_of_its_session_and_its_start);
