@@ -1,15 +1,17 @@
 """Statements whose order says nothing: neighbours of which neither names what the other writes may change places, and
-what is set from other things alone may be set twice. Two names count as two places, which pointers to one place would
-make untrue: so this is said only of what no test has noticed."""
+what is set from other things alone may be set twice, also by a function of laws.toml. Two names count as two places,
+which pointers to one place would make untrue: so this is said only of what no test has noticed."""
 
 from __future__ import annotations
 
-from laconic.mutation.alike import COMMUTATIVE_FUNCTIONS, Meaning
+from laconic.mutation.alike import COMMUTATIVE_FUNCTIONS, Meaning, within
+from laconic.mutation.equivalent import read_laws
 
 Place = tuple[Meaning, ...]  # a name, and what leads on from there: members and indices
 Named = tuple[set[Place], set[Place]]  # what a statement writes, and what it reads
 
 _TYPES = {"type_identifier", "primitive_type", "sized_type_specifier", "type_qualifier", "storage_class_specifier"}
+_SETTING = read_laws()["setting_functions"]
 _FREE = COMMUTATIVE_FUNCTIONS | {"R", "N"}  # they read their arguments alone
 
 
@@ -19,7 +21,7 @@ def without_order(of: Meaning) -> Meaning:
     if parts[0] != "block":
         return parts
     statements = _in_order(list(parts[1:]))
-    return statements[0] if len(statements) == 1 and statements[0][0] == "assign" else ("block", *statements)
+    return statements[0] if len(statements) == 1 and statements[0][0] in ("assign", "call") else ("block", *statements)
 
 
 def _in_order(statements: list[Meaning]) -> list[Meaning]:
@@ -30,7 +32,7 @@ def _in_order(statements: list[Meaning]) -> list[Meaning]:
         free = [k for k in left if not any(_depends(named[k], named[j]) for j in left if j < k)]
         first = min(free, key=lambda k: repr(statements[k]))
         left.remove(first)
-        if not ordered or ordered[-1] != statements[first] or not _may_come_twice(named[first]):
+        if not ordered or ordered[-1] != statements[first] or not _may_come_twice(statements[first], named[first]):
             ordered.append(statements[first])
     return ordered
 
@@ -42,8 +44,14 @@ def _depends(one: Named | None, other: Named | None) -> bool:
                for place in b[0] | b[1])
 
 
-def _may_come_twice(named: Named | None) -> bool:
+def _may_come_twice(statement: Meaning, named: Named | None) -> bool:
+    if statement[0] == "call":
+        return statement[1][1] in _SETTING and not any(_does(each) for given in statement[2:] for each in within(given))
     return named is not None and not any(_overlap(written, read) for written in named[0] for read in named[1])
+
+
+def _does(of: Meaning) -> bool:
+    return of[0] in ("assign", "update_expression") or of[0] == "call" and of[1][1] not in _FREE
 
 
 def _named(statement: Meaning) -> Named | None:

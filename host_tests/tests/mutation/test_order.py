@@ -21,10 +21,14 @@ ALIKE = [
     ("m[0] = x; m[1] = a;", "m[1] = a; m[0] = x;"), ("f(a); a = 1; b = 2; g(b);", "f(a); b = 2; a = 1; g(b);"),
     ("p->q[2].z = R(0); p->q[1].z = R(0);", "p->q[1].z = R(0); p->q[2].z = R(0);"),
     ("real y = x; real z = x; a = 1;", "real z = x; a = 1; real y = x;"), ("a = b;", "a = b; a = b;"),
+    ("memset(p, 0, sizeof *p);", "memset(p, 0, sizeof *p); memset(p, 0, sizeof *p);"),
     ("if (a) { b = 1; c = 2; }", "if (a) { c = 2; b = 1; }"),
 ]
 OTHERS = [
     ("a = 1; b = a;", "b = a; a = 1;"), ("a = 1; a = 2;", "a = 2; a = 1;"), ("a = b; b = c;", "b = c; a = b;"),
+    ("memset(p++, 0, 1);", "memset(p++, 0, 1); memset(p++, 0, 1);"),
+    ("put16(p, a++);", "put16(p, a++); put16(p, a++);"),
+    ("put16(p, f(a));", "put16(p, f(a)); put16(p, f(a));"), ("s->put16(p);", "s->put16(p); s->put16(p);"),
     ("f(a); b = 2;", "b = 2; f(a);"), ("f(a);", "f(a); f(a);"), ("a = f(&b); c = b;", "c = b; a = f(&b);"),
     ("a += b;", "a += b; a += b;"), ("a = a + b;", "a = a + b; a = a + b;"), ("a++;", "a++; a++;"),
     ("m[a] = 1; m[b] = 2;", "m[b] = 2; m[a] = 1;"), ("m[a] = 1; a = 2;", "a = 2; m[a] = 1;"),
