@@ -294,6 +294,26 @@ static void a_refused_step_keeps_the_steps_taken_and_gives_the_reason(void) {
     TEST_ASSERT_EQUAL_UINT64(0, plant.steps);
 }
 
+static void a_step_that_is_refused_beside_sensors_gives_the_reason_too(void) {
+    for (int is_held = 0; is_held < 2; is_held++) {
+        laconic_plant plant = plant_of(with_motors(mecanum()), 0.01);
+        laconic_sensor_settings settings;
+        laconic_sensors sensors;
+        laconic_schedule schedule = is_held ? held() : sampled();
+        film f;
+        memset(&settings, 0, sizeof settings);
+        memset(&why, 0, sizeof why);
+        ASSERT_STATUS(LACONIC_OK, laconic_sensors_start(&sensors, &settings, &plant, &why));
+        load_film(&f, &plant, 1, STEPS);
+        f.recorder.sensors = &sensors;
+        sampled_values[0][1][1] = NOT_A_NUMBER;
+        if (is_held) schedule.value = &sampled_values[0][1][0];
+        ASSERT_REFUSED(LACONIC_NOT_FINITE, LACONIC_FIELD_BODY_MOMENT, 0,
+                       laconic_plant_follow(&plant, &schedule, STEPS, &f.recorder, &why), why);
+        TEST_ASSERT_EQUAL_UINT64(0, plant.steps);
+    }
+}
+
 static void a_schedule_tells_the_inputs_of_a_step(void) {
     laconic_schedule schedule = held();
     laconic_input inputs[3];
@@ -360,6 +380,7 @@ int main(void) {
     RUN_TEST(a_recorder_that_is_full_before_the_last_stretch_stops_there);
     RUN_TEST(without_rows_and_watch_the_plant_only_steps);
     RUN_TEST(a_refused_step_keeps_the_steps_taken_and_gives_the_reason);
+    RUN_TEST(a_step_that_is_refused_beside_sensors_gives_the_reason_too);
     RUN_TEST(a_schedule_tells_the_inputs_of_a_step);
     RUN_TEST(between_two_rows_a_run_may_begin);
     RUN_TEST(a_run_may_end_at_any_step_of_a_stretch);
