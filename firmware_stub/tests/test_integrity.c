@@ -66,6 +66,15 @@ static void test_a_changed_motion_is_noticed_by_the_next_call(void) {
     }
 }
 
+static void test_what_is_noticed_is_refused_once(void) {
+    in_free_run_with(LACONIC_INTEGRITY_ALL);
+    const uint16_t refused = on.node.counters.refused;
+    ((uint8_t *)&on.node)[BYTE(plant.state)] ^= 1U;
+    bench_tick(&on);
+    TEST_ASSERT_EQUAL(LACONIC_INTEGRITY_OF_MOTION, on.integrity.broken);
+    TEST_ASSERT_EQUAL(refused + 1, on.node.counters.refused);
+}
+
 static void test_reset_heals_a_changed_motion(void) {
     session_with(BYTE(plant.state.zeta), 2, IN_FREE_RUN, LACONIC_INTEGRITY_ALL);
     TEST_ASSERT_EQUAL(LACONIC_WIRE_STATE_FAULT, on.node.state);
@@ -329,6 +338,7 @@ int main(void) {
     RUN_TEST(test_a_changed_model_ends_the_run_within_a_second);
     RUN_TEST(test_only_commit_heals_a_changed_model);
     RUN_TEST(test_a_changed_motion_is_noticed_by_the_next_call);
+    RUN_TEST(test_what_is_noticed_is_refused_once);
     RUN_TEST(test_reset_heals_a_changed_motion);
     RUN_TEST(test_two_changes_that_cancel_in_the_sum_of_words_are_noticed_by_the_other);
     RUN_TEST(test_what_stood_in_its_memory_before_does_not_matter);

@@ -403,8 +403,16 @@ static void a_number_that_no_field_has_is_unknown(void) {
     TEST_ASSERT_EQUAL_UINT8(LACONIC_WIRE_STATUS_PARAMETER_UNKNOWN, check());
 }
 
+/* laconic.dbc and the rows of vehicle.h, settings.h and sensors.h each have the number. */
+static void test_the_wire_numbers_each_field_as_its_row_does(void) {
+#define COMPARED(of, number, IDENTIFIER, ...) TEST_ASSERT_EQUAL_MESSAGE(LACONIC_WIRE_FIELD_##IDENTIFIER, number, #IDENTIFIER);
+    LACONIC_LOADER_EVERY(COMPARED)
+#undef COMPARED
+}
+
 int main(void) {
     UNITY_BEGIN();
+    RUN_TEST(test_the_wire_numbers_each_field_as_its_row_does);
     RUN_TEST(numbers_arrive_bit_for_bit_where_they_belong);
     RUN_TEST(a_wheels_own_values_arrive_and_driven_0_means_no_motor);
     RUN_TEST(a_field_or_item_that_is_not_there_is_remembered);

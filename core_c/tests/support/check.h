@@ -77,6 +77,7 @@ static inline void assert_tells_what_was_wrong(const laconic_refusal *why) {
 
 #define ASSERT_REFUSED(expected_status, expected_field, expected_item, actual, why) \
     do { \
+        memset(&(why), 0, sizeof(why)); /* that of an earlier call tells nothing */ \
         const laconic_status refused_with = (actual); \
         ASSERT_STATUS(expected_status, refused_with); \
         ASSERT_STATUS(expected_status, (why).status); \
