@@ -1,22 +1,25 @@
 """What C reads alike: a function as a tree in which spelling does not count, so that a fault that changes the text and
-not the tree is none. Every law here holds for all numbers, to the bit and for NaN, in C99 with IEEE 754:
+not the tree is none. Every law here holds for all numbers, to the bit and for NaN (but for its payload), in C99 with
+IEEE 754, where names in capitals are what they look like: constants without a side effect, and counts none below 0:
 
 * parentheses, spaces and comments say nothing; an empty statement does nothing, and braces around one statement;
-* a sum, a product, `==`, `!=`, `&`, `|` and `^` of two do not hang on their order, nor do the
-  commutative functions of laws.toml; `a > b` is `b < a`;
+* a sum, a product, `==`, `!=`, `&`, `|` and `^` of two do not hang on their order, unless both may do something, nor do
+  the commutative functions of laws.toml; `a > b` is `b < a`;
 * a comparison with -0 is one with 0;
 * `!(a == b)` is `a != b`; in a condition `x != 0` is `x`, `!!x` is `x` and `-x` is `x`; `!c ? a : b` is `c ? b : a`;
 * false, NULL and LACONIC_OK are 0, true is 1;
 * a loop that counts by ones from a number up to a constant no lower, or from 0 up to one of the counts of laws.toml,
-  ends the same with `<` and with `!=`;
+  and changes neither within, ends the same with `<` and with `!=`;
 * `&` of two comparisons is `&&`, `|` is `||`, where the second may be asked though the first decides;
 * `x = x + a` is `x += a`, and as a statement `x++`, `++x` and `x += 1` are one;
-* an array of a function may be longer than it is, unless something asks its size, and so may an array parameter."""
+* an array of a function may be longer than it is, unless something asks its size or takes its address, or a text fills
+  it, and so may an array parameter."""
 
 from __future__ import annotations
 
 import re
 from collections.abc import Callable, Iterator
+from decimal import Decimal
 from typing import Any
 
 from tree_sitter import Node
@@ -27,6 +30,7 @@ Meaning = tuple[Any, ...]  # a name of a kind, and what it is made of
 
 _LAWS = read_laws()
 COMMUTATIVE_FUNCTIONS, COUNTS = _LAWS["commutative_functions"], _LAWS["counts"]
+FREE = COMMUTATIVE_FUNCTIONS | {"R", "N"}  # they read their arguments alone
 COMMUTATIVE = {"+", "*", "==", "!=", "&", "|", "^"}
 MIRRORED = {">": "<", ">=": "<="}
 COMPARISONS = {"<", "<=", "==", "!="}
@@ -34,7 +38,7 @@ DECIDING = {"&": "&&", "|": "||"}
 ZERO = ("number", "0")
 ONE = ("number", "1")
 REAL_ZERO = ("call", ("identifier", "R"), ZERO)
-ZEROS = (ZERO, REAL_ZERO, ("number", "0.0"))
+ZEROS = (ZERO, REAL_ZERO, ("number", "0e0"))
 NUMBERS = {"false": ZERO, "NULL": ZERO, "LACONIC_OK": ZERO, "true": ("number", "1")}
 
 
@@ -77,7 +81,7 @@ def _counted(kind: str, start: Meaning, asked: Meaning, update: Meaning, body: M
         return kind, start, asked, update, body
     counter = update[2]
     begun = [each[3] for each in within(start) if each[0] == "init_declarator" and each[1] == counter]
-    is_set = any(each[0] == "assign" and each[2] == counter for each in within(body))
+    changed = [place for each in within(body) for place in _changed_by(each)]
 
     def below(asked: Meaning) -> Meaning:
         if asked[0] == "&&":
@@ -85,15 +89,23 @@ def _counted(kind: str, start: Meaning, asked: Meaning, update: Meaning, body: M
         if asked[0] != "!=" or counter not in asked[1:]:
             return asked
         end = asked[2] if asked[1] == counter else asked[1]
-        return ("<", counter, end) if _is_no_higher(begun[0], end) else asked
+        return ("<", counter, end) if _is_no_higher(begun[0], end) and end[-1] not in changed else asked
 
-    return kind, start, below(asked) if len(begun) == 1 and not is_set else asked, update, body
+    return kind, start, below(asked) if len(begun) == 1 and counter not in changed else asked, update, body
+
+
+def _changed_by(of: Meaning) -> Iterator[Meaning]:
+    """What it sets or whose address it takes, and that of which this is a member, or the member."""
+    if of[0] == "assign":
+        yield from within(of[2])
+    elif of[0] == "update_expression" or of[:2] == ("pointer_expression", ("&", "&")):
+        yield from within(of)
 
 
 def _is_no_higher(start: Meaning, end: Meaning) -> bool:
     """Both known: numbers, or 0 and a constant, or a count."""
     if start[0] == end[0] == "number":
-        return _count(start) <= _count(end)
+        return 0 <= _count(start) <= _count(end)
     name = end[-1][1] if end[0] == "field_expression" else end[1]
     return start == ZERO and end[0] in ("identifier", "field_expression") and (name.isupper() or name in COUNTS)
 
@@ -121,7 +133,9 @@ def _without_length(node: Node) -> Meaning:
 
 def without_growth(before: Meaning, after: Meaning) -> Meaning:
     """`after` with the lengths of `before` for every array of it that is only longer, and whose size nothing asks."""
-    asked = repr([each for each in within(before) if each[0] == "sizeof_expression" or _is_macro(each)])
+    asked = repr([each for each in within(before) if each[0] == "sizeof_expression" or _is_macro(each)
+                  or each[:2] == ("pointer_expression", ("&", "&"))
+                  or each[0] == "init_declarator" and each[-1][0] == "string_literal"])
 
     def shortened(before: Meaning, after: Meaning) -> Meaning:
         if len(before) != len(after) or before[0] != after[0]:
@@ -171,7 +185,7 @@ def _is_longer(length: Meaning, than: Meaning) -> bool:
 
 def _count(number: Meaning) -> int:
     digits = number[1].rstrip("ul")
-    return int(digits) if digits.isdigit() else 0
+    return int(digits) if digits.isdigit() else -1
 
 
 # -------------------------------------------------------------------------------------------------- values
@@ -181,7 +195,8 @@ def _value(node: Node) -> Meaning:
     if made is not None:
         return made(node)
     if node.child_count == 0 or node.type == "null":
-        return NUMBERS.get(_text(node), (node.type, _text(node)))
+        named = node.type in ("identifier", "true", "false", "null")
+        return NUMBERS.get(_text(node) if named else "", (node.type, _text(node)))
     return _tree(node, _statement if node.type == "compound_statement" else _value)
 
 
@@ -195,8 +210,16 @@ def _digits(text: str) -> Meaning:
         is_octal = re.fullmatch("0[0-7]+", whole[1])
         return "number", f"{int(whole[1], 8 if is_octal else 16 if 'x' in whole[1] else 10)}{whole[2]}"
     if real := re.fullmatch(r"((?:\d+\.?\d*|\.\d+)(?:e[+-]?\d+)?)([fl]?)", text):
-        return "number", f"{float(real[1])!r}{real[2]}"
+        return "number", f"{_plain(real[1])}{real[2]}"
     return "number", text
+
+
+def _plain(text: str) -> str:
+    """A number with a point or a power by its value: the same whatever its zeros."""
+    number = Decimal(text).as_tuple()
+    digits = "".join(map(str, number.digits)).strip("0")
+    zeros = len(number.digits) - len("".join(map(str, number.digits)).rstrip("0"))
+    return f"{digits}e{int(number.exponent) + zeros}" if digits else "0e0"
 
 
 def _binary(node: Node) -> Meaning:
@@ -212,7 +235,8 @@ def _binary(node: Node) -> Meaning:
         operator, one, other = MIRRORED[operator], other, one
     if operator in COMPARISONS:
         one, other = _unsigned_zero(one), _unsigned_zero(other)
-    return operator, *(sorted((one, other), key=repr) if operator in COMMUTATIVE else (one, other))
+    is_free = operator in COMMUTATIVE and not (_may_change(left) and _may_change(right))
+    return operator, *(sorted((one, other), key=repr) if is_free else (one, other))
 
 
 def _unary(node: Node) -> Meaning:
@@ -296,7 +320,9 @@ def _may_fail(node: Node) -> bool:
 
 
 def _may_change(node: Node) -> bool:
-    """Whether reading it does something."""
+    """Whether reading it may do something."""
+    if node.type == "call_expression" and _text(node.children[0]) in FREE:
+        return any(map(_may_change, node.children))
     return node.type in ("call_expression", "assignment_expression", "update_expression") or any(
         map(_may_change, node.children))
 

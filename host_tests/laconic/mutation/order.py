@@ -1,10 +1,11 @@
 """Statements whose order says nothing: neighbours of which neither names what the other writes may change places, and
-what is set from other things alone may be set twice, also by a function of laws.toml. Two names count as two places,
-which pointers to one place would make untrue: so this is said only of what no test has noticed."""
+what is set from other things alone may be set twice, also by a function of laws.toml; and of a sum of two calls, either
+may come first. Two names count as two places, which pointers to one place would make untrue, and calls as such that do
+not hang on one another: so this is said only of what no test has noticed."""
 
 from __future__ import annotations
 
-from laconic.mutation.alike import COMMUTATIVE_FUNCTIONS, Meaning, within
+from laconic.mutation.alike import COMMUTATIVE, FREE, Meaning, within
 from laconic.mutation.equivalent import read_laws
 
 Place = tuple[Meaning, ...]  # a name, and what leads on from there: members and indices
@@ -12,12 +13,13 @@ Named = tuple[set[Place], set[Place]]  # what a statement writes, and what it re
 
 _TYPES = {"type_identifier", "primitive_type", "sized_type_specifier", "type_qualifier", "storage_class_specifier"}
 _SETTING = read_laws()["setting_functions"]
-_FREE = COMMUTATIVE_FUNCTIONS | {"R", "N"}  # they read their arguments alone
 
 
 def without_order(of: Meaning) -> Meaning:
-    """The same with the statements of every block in one order of those that mean the same."""
+    """The same with the statements of a block, and the two of a sum, in one order of those that mean the same."""
     parts = tuple(without_order(each) if isinstance(each, tuple) else each for each in of)
+    if parts[0] in COMMUTATIVE and len(parts) == 3:
+        return parts[0], *sorted(parts[1:], key=repr)
     if parts[0] != "block":
         return parts
     statements = _in_order(list(parts[1:]))
@@ -51,7 +53,7 @@ def _may_come_twice(statement: Meaning, named: Named | None) -> bool:
 
 
 def _does(of: Meaning) -> bool:
-    return of[0] in ("assign", "update_expression") or of[0] == "call" and of[1][1] not in _FREE
+    return of[0] in ("assign", "update_expression") or of[0] == "call" and of[1][1] not in FREE
 
 
 def _named(statement: Meaning) -> Named | None:
@@ -75,7 +77,7 @@ def _collect(of: Meaning, writes: set[Place], reads: set[Place]) -> bool:
             return False
         return all(_collect(each, writes, reads) for each in parts if each[0] not in _TYPES)
     if kind == "call":
-        return of[1][1] in _FREE and all(_collect(each, writes, reads) for each in of[2:])
+        return of[1][1] in FREE and all(_collect(each, writes, reads) for each in of[2:])
     if kind in ("identifier", "field_expression", "subscript_expression", "pointer_expression"):
         reads.add(_place(of))
         return _collect_indices(of, writes, reads)

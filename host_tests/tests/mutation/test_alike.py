@@ -29,7 +29,10 @@ ALIKE = [
     ("a = a + b;", "a += b;"), ("a = b * a;", "a *= b;"), ("a = a - b;", "a -= b;"), ("a++;", "++a;"),
     ("a++;", "a += 1;"),
     ("return 0x10;", "return 16;"), ("return 1.50;", "return 15e-1;"), ("return 10U;", "return 0xAu;"),
-    ("return 017;", "return 15;"), ("return .5f;", "return 0.5F;"), ("return 08;", "return 08;"),
+    ("return 017;", "return 15;"), ("return .5f;", "return 0.5F;"),
+    ("return 0.0 + a;", "return a + 0.000;"), ("return x > 0.0;", "return x > -0.00;"), ("return 20.0;", "return 2e1;"),
+    ("return R(1) + f(a);", "return f(a) + R(1);"), ("return dot(a, b) + R(1);", "return R(1) + dot(b, a);"),
+    ("return 08;", "return 08;"),
     ("return LACONIC_OK;", "return 0;"), ("return true;", "return 1;"), ("f(NULL);", "f(false);"),
     ("if (a) { c = 1; }", "if (a) c = 1;"), ("a = 1; ; b = 2;", "a = 1; b = 2;"),
     ("for (int k = 0; k < 3; k++) a += k;", "for (int k = 0; k != 3; ++k) a += k;"),
@@ -52,6 +55,13 @@ OTHERS = [
     ("for (int k = 4; k < 3; k++) a += k;", "for (int k = 4; k != 3; k++) a += k;"),
     ("for (int k = 0; k < 3; k += 2) a += k;", "for (int k = 0; k != 3; k += 2) a += k;"),
     ("for (int k = 0; k < 3; k++) k += a;", "for (int k = 0; k != 3; k++) k += a;"),
+    ("for (int k = 0; k < 3; k++) t[k++] = a;", "for (int k = 0; k != 3; k++) t[k++] = a;"),
+    ("for (int k = 0; k < 3; k++) f(&k);", "for (int k = 0; k != 3; k++) f(&k);"),
+    ("for (int k = 0; k < 1.5; k++) a += k;", "for (int k = 0; k != 1.5; k++) a += k;"),
+    ("for (int k = 0; k < p->dof; k++) p->dof -= 2;", "for (int k = 0; k != p->dof; k++) p->dof -= 2;"),
+    ("return f(a) + f(b);", "return f(b) + f(a);"), ("return f(a) | a++;", "return a++ | f(a);"),
+    ("return 0.1l;", "return 0.1000000000000000000001l;"), ("return 1e400;", "return 1e999;"),
+    ('f("NULL");', 'f("false");'),
     ("for (int k = 0; k < a; k++) b++;", "for (int k = 0; k != a; k++) b++;"),
     ("for (int k = a; k < NODES; k++) b++;", "for (int k = a; k != NODES; k++) b++;"),
     ("for (; a < 3;) b++;", "for (; b < 3;) b++;"), ("for (a = 1;;) b++;", "for (; a = 1;) b++;"),
@@ -85,7 +95,7 @@ def test_an_array_of_a_named_length_grows_by_it(length, is_alike):
     assert without_growth(before, after) != before
 
 
-@pytest.mark.parametrize("size", ["sizeof t", "sizeof(t) / sizeof(t)[0]", "COUNT(t)"])
+@pytest.mark.parametrize("size", ["sizeof t", "sizeof(t) / sizeof(t)[0]", "COUNT(t)", "*(&t + 1) - t"])
 def test_where_something_asks_its_size_it_may_not(size):
     before, after = told(f"int t[3]; return {size};"), told(f"int t[4]; return {size};")
     assert without_growth(before, after) != before

@@ -16,7 +16,8 @@ def told(body: str) -> tuple:
 
 
 ALIKE = [
-    ("a = 1; b = 2;", "b = 2; a = 1;"), ("p->u = x; p->v = q->w / x;", "p->v = q->w / x; p->u = x;"),
+    ("return f(a) + f(b);", "return f(b) + f(a);"), ("a = 1; b = 2;", "b = 2; a = 1;"),
+    ("p->u = x; p->v = q->w / x;", "p->v = q->w / x; p->u = x;"),
     ("m[a][b] += x * p->u; m[a + 1][b] += x * p->v;", "m[a + 1][b] += x * p->v; m[a][b] += x * p->u;"),
     ("m[0] = x; m[1] = a;", "m[1] = a; m[0] = x;"), ("f(a); a = 1; b = 2; g(b);", "f(a); b = 2; a = 1; g(b);"),
     ("p->q[2].z = R(0); p->q[1].z = R(0);", "p->q[1].z = R(0); p->q[2].z = R(0);"),
